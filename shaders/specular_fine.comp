@@ -22,6 +22,7 @@
 #include "noise/sequence.glsl"
 #include "specular/filter.glsl"
 #include "specular/fine.glsl"
+#include "specular/ray.glsl"
 #include "specular/tiles.glsl"
 #include "trace/scene.glsl"
 
@@ -35,7 +36,8 @@ layout(set = MASU_SET_PASS, binding = 4) uniform sampler2D velocity_image;
 layout(set = MASU_SET_PASS, binding = 5) uniform usampler2D old_guide_image;
 layout(set = MASU_SET_PASS, binding = 6) uniform usampler2D old_fine_image;
 layout(set = MASU_SET_PASS, binding = 7) uniform usampler2D normal_image;
-layout(set = MASU_SET_PASS, binding = 8, rgba32ui) uniform writeonly uimage2D fine_image;
+layout(set = MASU_SET_PASS, binding = 8) uniform usampler2D ray_image;
+layout(set = MASU_SET_PASS, binding = 9, rgba32ui) uniform writeonly uimage2D fine_image;
 
 /* Whether the previous frame has kept full-resolution history. A rung without them keeps the rest of the history alone. */
 bool has_old()
@@ -185,6 +187,7 @@ void main()
                 own = min(own, g.mixed ? 4.0 : 100.0 * g.roughness * g.roughness);
             }
             float share = max(1.0 / (own + 1.0), masu_time_share(reach));
+            share = masu_worthy_share(share, masu_drawn_worth(texelFetch(ray_image, ivec2(texel), 0).g));
             vec2 noise = masu_turn_noise2(masu_trace_noise(masu_noise_index(texel.x, texel.y, 4u)), frame.history.x);
             float dither = noise.x;
             if (!(g.roughness > masu_mirror_roughness)) {

@@ -3,6 +3,11 @@
  * reflects to (brdf/vndf.glsl), by noise that is blue over texels and even over frames
  * (noise/sequence.glsl).
  *
+ * What a ray brings is multiplied by the albedo of its lobe (specular_composite), as if all rays were worth the same. They are
+ * not: of a wet street that is seen at a low angle those that go on along it are mirrored by several times as much as those that
+ * go up to the sky. So means over frames weigh each ray by what it is worth to its own lobe; one that would go below the surface
+ * is worth nothing.
+ *
  * With debug.reference (push.accumulate) also what the ray's radiance is worth, by the lobes themselves and not
  * their albedo: a surface with a coat has two, which take turns; the density is that of both. (Of the same
  * sequence another number must not choose: its steps are those of the first, and each lobe would be asked
@@ -19,6 +24,7 @@
 #include "shared/store.glsl"
 #include "brdf/vndf.glsl"
 #include "noise/sequence.glsl"
+#include "specular/filter.glsl"
 #include "specular/guide.glsl"
 #include "specular/lobes.glsl"
 #include "specular/ray.glsl"
@@ -70,6 +76,17 @@ vec3 worth(masu_surface s, masu_bsdf b, masu_axes f, vec3 v, vec3 l, uint turn)
     return (base * share.x + coat * share.y) / max(3.14159265 * pdf, 1e-9);
 }
 
+/* The same of a lobe of its own, relative to the mean of that: to albedo. Luma; 1 where it is not known. */
+float relative_worth(masu_surface s, masu_bsdf b, masu_vndf_ray r, vec3 l)
+{
+    vec3 sum = l + b.v;
+    float schlick = masu_schlick(0.5 * masu_sqrt(dot(sum, sum)));
+    bool coat = s.coat > 0.0;
+    vec3 mirrored = coat ? vec3(s.coat * (0.04 + 0.96 * schlick)) : b.f0 + (b.f90 - b.f0) * schlick;
+    float mean = masu_luma(coat ? vec3(masu_bsdf_coat(b)) : masu_bsdf_specular(b));
+    return mean > 1e-4 ? masu_sane(masu_luma(mirrored) * r.weight / mean, 0.0, 16.0) : 1.0;
+}
+
 void main()
 {
     masu_count_begin();
@@ -90,9 +107,8 @@ void main()
             vec2 u = push.traced_size == 1u ? masu_noise2(word, number) : masu_turn_noise2(word, number);
             float alpha = masu_alpha(masu_traced_roughness(p.surface));
             uint turn = 0u;
-            masu_bsdf b;
+            masu_bsdf b = masu_bsdf_make(p.surface, n, v);
             if (push.accumulate != 0u) {
-                b = masu_bsdf_make(p.surface, n, v);
                 if (p.surface.coat > 0.0) {
                     turn = 1u + ((number + noise_at(texel, 1u)) & 1u);
                     alpha = turn == 1u ? b.alpha : alpha;
@@ -112,7 +128,7 @@ void main()
              * and to the filters little. */
             vec3 kept = above ? l : l - 2.0 * dot(l, n) * n;
             ray.x = masu_pack_direction(kept);
-            ray.y = floatBitsToUint(masu_sane(r.pdf, 1e-6, 1e9));
+            ray.y = masu_pack_drawn(r.pdf, relative_worth(p.surface, b, r, l));
             if (push.accumulate != 0u) {
                 uint bits = masu_hash(masu_hash(number) ^ noise_at(texel, 2u));
                 ray.y = masu_pack_shared(above ? worth(p.surface, b, f, v_local, l, turn) : vec3(0.0),

@@ -87,7 +87,7 @@ void neighbour(lobe own, masu_guide g, ivec2 at, float width, inout vec4 sum, in
     float squared = dot(to, to);
     float jacobian = clamp(far * far / max(squared, 1e-12), 0.1, 10.0);
     vec3 l = masu_normalize(to, there);
-    float density = masu_sane(uintBitsToFloat(ray.y), 0.0, 1e9);
+    float density = masu_drawn_density(ray.y);
     add(sum, nearness, weight_of(own, l, density) * jacobian, light);
 }
 
@@ -110,7 +110,7 @@ void main()
             own.alpha = masu_vndf_alpha(masu_alpha(g.roughness));
             float width = masu_texel_width(g);
             uvec2 ray = texelFetch(ray_image, ivec2(texel), 0).rg;
-            float density = masu_sane(uintBitsToFloat(ray.y), 0.0, 1e9);
+            float density = masu_drawn_density(ray.y);
             vec4 sum = vec4(0.0);
             float nearness = 0.0;
             /* At least a little, so that there is a result where no other ray fits. */

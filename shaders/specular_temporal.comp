@@ -27,6 +27,7 @@
 #include "shared/store.glsl"
 #include "shared/motion.glsl"
 #include "specular/filter.glsl"
+#include "specular/ray.glsl"
 #include "specular/tiles.glsl"
 
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
@@ -39,8 +40,9 @@ layout(set = MASU_SET_PASS, binding = 4) uniform usampler2D old_guide_image;
 layout(set = MASU_SET_PASS, binding = 5) uniform sampler2D old_mean_image;
 layout(set = MASU_SET_PASS, binding = 6) uniform usampler2D old_age_image;
 layout(set = MASU_SET_PASS, binding = 7) uniform sampler2D ray_image;
-layout(set = MASU_SET_PASS, binding = 8, rgba16f) uniform writeonly image2D mean_image;
-layout(set = MASU_SET_PASS, binding = 9, rg32ui) uniform writeonly uimage2D age_image;
+layout(set = MASU_SET_PASS, binding = 8) uniform usampler2D drawn_image; /* specular_ray */
+layout(set = MASU_SET_PASS, binding = 9, rgba16f) uniform writeonly image2D mean_image;
+layout(set = MASU_SET_PASS, binding = 10, rg32ui) uniform writeonly uimage2D age_image;
 
 /* Deviations of a mean over 3x3 that are still noise, and how fast the history forgets beyond. */
 const float surprise = 3.0;
@@ -252,7 +254,8 @@ void main()
             vec4 sample_mean = vec4(color, y * y);
             present now = gather(h);
             mean = sample_mean;
-            float frames = 1.0;
+            float worth = masu_drawn_worth(texelFetch(drawn_image, h.texel, 0).g);
+            float frames = clamp(worth, 0.1, 1.0);
             vec4 velocity = texelFetch(velocity_image, ivec2(pixel), 0);
             if (frame.history.y != 0u && velocity.w > 0.0 && masu_finite(velocity)) {
                 vec2 ndc = (vec2(pixel) + 0.5 + velocity.xy) / size * 2.0 - 1.0 + previous.jitter.xy;
@@ -306,6 +309,7 @@ void main()
                     }
                     float reach = h.g.roughness > masu_mirror_roughness ? float(push.frames) : 4.0;
                     float share = max(1.0 / (frames + 1.0), masu_time_share(reach));
+                    share = masu_worthy_share(share, worth);
                     float alone = smoothstep(0.0, reuse_until, frames);
                     color = mix(color, masu_tamed(texelFetch(ray_image, h.texel, 0).rgb), alone);
                     y = masu_luma(color);

@@ -2,8 +2,9 @@
  * ray.glsl: the ray of a traced texel and what it meets, as images hold them.
  *
  *   specular_ray, rg32ui   x  direction, octahedral, 16 + 16 bits
- *                          y  density per steradian, a float; with debug.reference what the radiance is to
- *                             be multiplied by, three numbers that share an exponent (9 bits each and 5)
+ *                          y  density per steradian, and what the ray is worth to its lobe, 1 in the mean: two halves; with
+ *                             debug.reference what the radiance is to be multiplied by, three numbers that share an exponent
+ *                             (9 bits each and 5)
  *   specular_hit, rgba32ui x  distance, a float; below 0: nothing is met
  *                          of a polygon  y number of the traced instance, z of the triangle, w barycentric
  *                             coordinates of its second and third corner, 16 bits each
@@ -28,6 +29,27 @@ uint masu_pack_direction(vec3 d)
 vec3 masu_unpack_direction(uint word)
 {
     return masu_oct_decode(unpackSnorm2x16(word));
+}
+
+uint masu_pack_drawn(float density, float worth)
+{
+    return packHalf2x16(vec2(masu_sane(density, 1e-6, 65504.0), masu_sane(worth, 0.0, 65504.0)));
+}
+
+float masu_drawn_density(uint word)
+{
+    return masu_sane(unpackHalf2x16(word).x, 0.0, 65504.0);
+}
+
+float masu_drawn_worth(uint word)
+{
+    return masu_sane(unpackHalf2x16(word).y, 0.0, 65504.0);
+}
+
+/* The share of a ray in a mean, of one that is worth as much as the mean of them. */
+float masu_worthy_share(float share, float worth)
+{
+    return share * worth / max(share * worth + 1.0 - share, 1e-6);
 }
 
 /* Three numbers of 0 to 65280 with one exponent (VK_FORMAT_E5B9G9R9's), rounded up with probability of what
