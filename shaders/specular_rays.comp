@@ -84,7 +84,7 @@ float relative_worth(masu_surface s, masu_bsdf b, masu_vndf_ray r, vec3 l)
     bool coat = s.coat > 0.0;
     vec3 mirrored = coat ? vec3(s.coat * (0.04 + 0.96 * schlick)) : b.f0 + (b.f90 - b.f0) * schlick;
     float mean = masu_luma(coat ? vec3(masu_bsdf_coat(b)) : masu_bsdf_specular(b));
-    return mean > 1e-4 ? masu_sane(masu_luma(mirrored) * r.weight / mean, 0.0, 16.0) : 1.0;
+    return mean > 1e-4 ? masu_sane(masu_luma(mirrored) * r.weight / mean, 0.1, 4.0) : 1.0;
 }
 
 void main()

@@ -46,12 +46,15 @@ static int has_resolve(const masu_frame_data *f) {
 
 /* From 1 on: the first place of Halton's sequence is the corner. Each four of places begin with another of the four: of its
  * number the last two bits say in which quarter of the pixel a place lies, across, and reflections look at each pixel of 2x2 in
- * every fourth frame, which would be the same quarter each time: edges in mirrors were dotted. */
+ * every fourth frame, which would be the same quarter each time: edges in mirrors were dotted. With each round they begin with
+ * yet another, so that after four rounds each pixel has had all places: one that is a mirror in none of its turns' places, and
+ * in others', would show for ever what it had before. */
 void masu_temporal_place(VkExtent2D render, VkExtent2D shown, uint64_t frame, float place[2]) {
     double pixels = (double)render.width * render.height;
     double phases = 4.0 * fmin(ceil(4.0 * shown.width * shown.height / pixels), 256.0);
+    uint64_t round = frame / (uint64_t)phases;
     uint32_t phase = (uint32_t)(frame % (uint64_t)phases), four = phase / 4;
-    uint32_t number = 4 * four + (phase + four) % 4 + 1;
+    uint32_t number = 4 * four + (phase + four + (uint32_t)(round % 4)) % 4 + 1;
     place[0] = mirrored(number, 2) - 0.5f;
     place[1] = mirrored(number, 3) - 0.5f;
 }

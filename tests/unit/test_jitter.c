@@ -41,7 +41,7 @@ static void as_many_places_as_put_16_samples_into_a_pixel(void **state) {
             }
             assert_true(i == 0 || fabsf(place[0] - first[0]) > TOLERANCE);
             float later[2];
-            masu_temporal_place(r->render, r->shown, i + (uint64_t)r->places * 1000003u, later);
+            masu_temporal_place(r->render, r->shown, i + (uint64_t)r->places * 4000012u, later);
             assert_true(later[0] == place[0] && later[1] == place[1]);
         }
         for (int c = 0; c < 2; c++) assert_true(fabsf(sum[c]) / (float)r->places < 0.05f);
@@ -62,6 +62,26 @@ static void each_fourth_place_is_in_all_quarters(void **state) {
             }
             for (int q = 0; q < 4; q++) {
                 assert_in_range(in[q], r->places / 16, (r->places + 15) / 16);
+            }
+        }
+    }
+}
+
+/* In four rounds each fourth place is every place, once. */
+static void each_fourth_place_is_all_places(void **state) {
+    (void)state;
+    for (size_t k = 0; k < RATIOS; k++) {
+        const ratio *r = &ratios[k];
+        for (uint32_t turn = 0; turn < 4; turn++) {
+            uint8_t seen[1024] = {0};
+            for (uint32_t i = turn; i < 4 * r->places; i += 4) {
+                float place[2], other[2];
+                uint32_t number = 0;
+                masu_temporal_place(r->render, r->shown, i, place);
+                for (masu_temporal_place(r->render, r->shown, 0, other); fabsf(other[0] - place[0]) > TOLERANCE;)
+                    masu_temporal_place(r->render, r->shown, ++number, other);
+                assert_true(number < r->places);
+                assert_int_equal(seen[number]++, 0);
             }
         }
     }
@@ -88,6 +108,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(as_many_places_as_put_16_samples_into_a_pixel),
         cmocka_unit_test(each_fourth_place_is_in_all_quarters),
+        cmocka_unit_test(each_fourth_place_is_all_places),
         cmocka_unit_test(four_places_are_in_all_quarters),
     };
     return cmocka_run_group_tests_name("jitter", tests, NULL, NULL);
