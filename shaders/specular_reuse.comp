@@ -6,7 +6,8 @@
  *
  * with l_i from here to that hit (Stachowiak, "Stochastic Screen-Space Reflections", SIGGRAPH 2015). The
  * quotient is biased while few rays are in it, and right in the limit; the sum over a fixed count would be
- * right on average and has the noise of all weights.
+ * right on average and has the noise of all weights. What a surface mirrors of a ray beside its lobe's density, Fresnel's term
+ * and shadowing, is what the neighbour's surface mirrors of it: the ray knows (specular/ray.glsl).
  *
  * The four texels of a quad take different ones of the spiral's points, and each frame turns it, so that
  * what one texel did not ask its neighbours have. The texel's own ray always counts. What was mirrored back
@@ -50,16 +51,16 @@ struct lobe {
     float alpha;
 };
 
-/* lobe * n.l / density of a direction. */
-float weight_of(lobe own, vec3 l, float density)
+/* lobe * n.l / density of a direction; drawn: of its ray (specular/ray.glsl). */
+float weight_of(lobe own, vec3 l, uint drawn)
 {
+    float density = masu_drawn_density(drawn);
     vec3 local = masu_axes_in(own.f, l);
     if (!(local.z > 1e-4) || !(density > least_density)) {
         return 0.0;
     }
     vec3 h = masu_normalize(own.v + local, vec3(0.0, 0.0, 1.0));
-    float value = masu_vndf_density(own.v, h, own.alpha) * masu_vndf_worth(own.v, local.z, own.alpha);
-    return masu_sane(value / density, 0.0, most_weight);
+    return masu_sane(masu_vndf_density(own.v, h, own.alpha) / density, 0.0, most_weight) * masu_drawn_worth(drawn);
 }
 
 /* rgb radiance times weight, a weight; distance by its reciprocal: the sky's would hide all others. */
@@ -87,8 +88,7 @@ void neighbour(lobe own, masu_guide g, ivec2 at, float width, inout vec4 sum, in
     float squared = dot(to, to);
     float jacobian = clamp(far * far / max(squared, 1e-12), 0.1, 10.0);
     vec3 l = masu_normalize(to, there);
-    float density = masu_drawn_density(ray.y);
-    add(sum, nearness, weight_of(own, l, density) * jacobian, light);
+    add(sum, nearness, weight_of(own, l, ray.y) * jacobian, light);
 }
 
 void main()
@@ -110,11 +110,10 @@ void main()
             own.alpha = masu_vndf_alpha(masu_alpha(g.roughness));
             float width = masu_texel_width(g);
             uvec2 ray = texelFetch(ray_image, ivec2(texel), 0).rg;
-            float density = masu_drawn_density(ray.y);
             vec4 sum = vec4(0.0);
             float nearness = 0.0;
             /* At least a little, so that there is a result where no other ray fits. */
-            add(sum, nearness, max(weight_of(own, masu_unpack_direction(ray.x), density), 1e-3), light);
+            add(sum, nearness, max(weight_of(own, masu_unpack_direction(ray.x), ray.y), 1e-3), light);
             float curvature = masu_guide_curvature(guide_image, ivec2(texel), g, own.point);
             float radius = clamp(masu_specular_reach(g, own.point, light.a, curvature), 1.5, widest);
             uint quad = (texel.x & 1u) + 2u * (texel.y & 1u);

@@ -53,6 +53,9 @@ const float forget = 0.5;
 const float reuse_until = 8.0;
 /* Half the width of the clamp, in deviations. */
 const float clamp_width = 2.0;
+/* Of chroma no deviation is kept: that of luma, so many times. Where few rays meet something red, nine that do not are no reason
+ * to forget it. */
+const float chroma_width = 3.0;
 /* Deviations of one ray around the mean over 3x3 texels, as both were, beyond which what moves is a spark; and pixels that
  * it has moved. */
 const float usual = 5.0;
@@ -297,7 +300,7 @@ void main()
                     float trust = masu_exp2(-forget * max(off - surprise, 0.0));
                     frames = mix(b.age, a.age, surface) * trust;
                     /* The clamp, along the line to the present mean. */
-                    vec3 wide = clamp_width * max(now.sigma, vec3(old_sigma)) + 1e-3 + 0.02 * now.mean.x;
+                    vec3 wide = clamp_width * max(now.sigma, old_sigma * vec3(1.0, chroma_width, chroma_width)) + 1e-3 + 0.02 * now.mean.x;
                     vec3 from = masu_ycocg(history.rgb) - now.mean;
                     vec3 times = abs(from) / wide;
                     float most = max(times.x, max(times.y, times.z));

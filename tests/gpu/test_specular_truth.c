@@ -329,6 +329,50 @@ static void all_light_comes_back_in_the_white_furnace(void **state) {
     furnace_with("frames", 0, 2, 0.01);
 }
 
+/* ---- What a ray is worth --------------------------------------------------------------------- */
+
+/* A dull dark street towards a red wall, under a blue sky. */
+static const char street[] =
+    "{\"models\": ["
+    "{\"mesh\": {\"plane\": {\"size_x\": 60, \"size_z\": 60}}, \"material\": "
+    "{\"base_color\": [0.02, 0.02, 0.02], \"roughness\": 0.35}}, "
+    "{\"mesh\": {\"box\": {\"size\": [60, 4, 0.5]}}, \"translate\": [0, 2, -14], \"material\": "
+    "{\"base_color\": [0, 0, 0], \"emissive\": [2, 0.4, 0.1]}}], "
+    "\"sun\": {\"intensity\": 0}, \"ambient\": [0, 0, 0], "
+    "\"sky\": {\"zenith\": [0.1, 0.3, 1], \"horizon\": [0.1, 0.3, 1]}, "
+    "\"camera\": {\"fov_y\": 40, \"near\": 0.05, \"keys\": [{\"position\": [0, 1, 6], \"target\": [0, 0.4, -4]}]}, "
+    "\"reflections\": {\"cutoff\": 0.6}}";
+
+/* Of the lower two fifths of the picture, all street, the mean of each colour. */
+static void colors_of_street(const masu_rung *rung, uint32_t reference, uint32_t frames, double mean[3]) {
+    open_scene("street", W, H, rung, reference);
+    draw_frames(frames, NULL);
+    const uint16_t *hdr = read_image(&s, slot, MASU_READBACK_HDR);
+    uint32_t first = W * (H * 3 / 5), pixels = W * H - first;
+    for (int c = 0; c < 3; c++) {
+        mean[c] = 0;
+        for (uint32_t i = first; i < W * H; i++) mean[c] += half_float(hdr[4 * i + c]) / pixels;
+    }
+    close_session(&s);
+}
+
+/* Fresnel's term makes the rays that go on to the wall worth several times those that go up. As if each were worth the same
+ * red is off by a fifth. */
+static void means_have_the_colors_of_the_reference(void **state) {
+    (void)state;
+    bake_scene("street", street);
+    const masu_rung past = {.scale = 1.0f, .temporal = MASU_ON}, *rungs[] = {NULL, &past};
+    double reference[3], mean[3], worst = 0;
+    colors_of_street(NULL, 1, frames_of(384), reference);
+    for (int i = 0; i < 2; i++) {
+        colors_of_street(rungs[i], 0, frames_of(96), mean);
+        for (int c = 0; c < 3; c++) worst = worst_of(worst, fabs(mean[c] / reference[c] - 1));
+        print_message("  street%s: %.4f %.4f %.4f, reference %.4f %.4f %.4f\n", i ? " with a past" : "", mean[0],
+                      mean[1], mean[2], reference[0], reference[1], reference[2]);
+    }
+    assert_true(worst < 0.03);
+}
+
 /* ---- What is left out ------------------------------------------------------------------------ */
 
 /* Seen from the front: a matt wall, before it two plates, each before a quarter of it. */
@@ -473,6 +517,7 @@ int main(void) {
         cmocka_unit_test(sunny_ones_agree_with_the_tracer),
         cmocka_unit_test(coats_agree_with_the_tracer),
         cmocka_unit_test(all_light_comes_back_in_the_white_furnace),
+        cmocka_unit_test(means_have_the_colors_of_the_reference),
         cmocka_unit_test(only_tiles_that_mirror_are_traced),
         cmocka_unit_test(pixels_are_finite),
         cmocka_unit_test(materials_of_nan_give_finite_pixels),
