@@ -5,6 +5,8 @@
  * what they had, found again where specular_temporal has found the texel's, or else where their own surface
  * was. A mirror's ray has no noise and replaces the mean.
  *
+ * A ray counts by what it is worth (specular_rays.comp).
+ *
  * In motion the four are up to four frames old, and what is reflected has moved by another amount for each:
  * a mean is short then, the shorter the smoother the surface, and held to the colours of the 3x3 rays.
  *
@@ -22,7 +24,6 @@
 #include "noise/sequence.glsl"
 #include "specular/filter.glsl"
 #include "specular/fine.glsl"
-#include "specular/ray.glsl"
 #include "specular/tiles.glsl"
 #include "trace/scene.glsl"
 
@@ -142,8 +143,7 @@ vec3 without_sparks(vec3 color, vec4 old, vec2 around)
     if (old.a > 0.0 && most < masu_huge) {
         most = min(most, 4.0 * masu_luma(old.rgb) + around.x);
     }
-    float y = masu_luma(color);
-    return y > most ? color * (most / max(y, 1e-9)) : color;
+    return masu_no_brighter(color, most);
 }
 
 /* Of the rays of the 3x3 texels. */
@@ -179,7 +179,7 @@ void main()
             float own = max(floor((masu_age_frames(age.x) - 0.9) * 0.25), 0.0);
             /* A ray a quarter as often: the mean of a surface that has no other reaches back four times as far. */
             float reach = max(float(push.frames) * (g.mixed ? 1.0 : 0.25), 1.0);
-            bool moving = any(greaterThan(abs(moved), vec2(0.05)));
+            bool moving = masu_is_moving(moved);
             vec3 least = vec3(0.0);
             vec3 most = vec3(masu_most_radiance);
             if (moving) {

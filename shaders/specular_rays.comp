@@ -6,7 +6,7 @@
  * What a ray brings is multiplied by the albedo of its lobe (specular_composite), as if all rays were worth the same. They are
  * not: of a wet street that is seen at a low angle those that go on along it are mirrored by several times as much as those that
  * go up to the sky. So means over frames weigh each ray by what it is worth to its own lobe; one that would go below the surface
- * is worth nothing.
+ * is worth little.
  *
  * With debug.reference (push.accumulate) also what the ray's radiance is worth, by the lobes themselves and not
  * their albedo: a surface with a coat has two, which take turns; the density is that of both. (Of the same
@@ -84,7 +84,7 @@ float relative_worth(masu_surface s, masu_bsdf b, masu_vndf_ray r, vec3 l)
     bool coat = s.coat > 0.0;
     vec3 mirrored = coat ? vec3(s.coat * (0.04 + 0.96 * schlick)) : b.f0 + (b.f90 - b.f0) * schlick;
     float mean = masu_luma(coat ? vec3(masu_bsdf_coat(b)) : masu_bsdf_specular(b));
-    return mean > 1e-4 ? masu_sane(masu_luma(mirrored) * r.weight / mean, 0.1, 4.0) : 1.0;
+    return mean > 1e-4 ? masu_luma(mirrored) * r.weight / mean : 1.0;
 }
 
 void main()
@@ -128,11 +128,12 @@ void main()
              * and to the filters little. */
             vec3 kept = above ? l : l - 2.0 * dot(l, n) * n;
             ray.x = masu_pack_direction(kept);
-            ray.y = masu_pack_drawn(r.pdf, relative_worth(p.surface, b, r, l));
             if (push.accumulate != 0u) {
                 uint bits = masu_hash(masu_hash(number) ^ noise_at(texel, 2u));
                 ray.y = masu_pack_shared(above ? worth(p.surface, b, f, v_local, l, turn) : vec3(0.0),
                                          float(bits >> 8) * (1.0 / 16777216.0));
+            } else {
+                ray.y = masu_pack_drawn(r.pdf, relative_worth(p.surface, b, r, l));
             }
             masu_count(MASU_COUNTER_SPECULAR_RAYS, 1u);
         }

@@ -6,8 +6,8 @@
  *
  * with l_i from here to that hit (Stachowiak, "Stochastic Screen-Space Reflections", SIGGRAPH 2015). The
  * quotient is biased while few rays are in it, and right in the limit; the sum over a fixed count would be
- * right on average and has the noise of all weights. What a surface mirrors of a ray beside its lobe's density, Fresnel's term
- * and shadowing, is what the neighbour's surface mirrors of it: the ray knows (specular/ray.glsl).
+ * right on average and has the noise of all weights. Fresnel's term and shadowing, which lobe(v, l) has beside the
+ * density of its rays, are taken from the neighbour: they are stored with its ray (specular/ray.glsl).
  *
  * The four texels of a quad take different ones of the spiral's points, and each frame turns it, so that
  * what one texel did not ask its neighbours have. The texel's own ray always counts. What was mirrored back
@@ -39,7 +39,7 @@ layout(set = MASU_SET_PASS, binding = 3, rgba16f) uniform writeonly image2D reus
 
 /* Densities below this are no densities: see above. */
 const float least_density = 1e-4;
-/* One ray that the own lobe would have drawn far more often than the neighbour's is noise. */
+/* One ray that the own lobe would have drawn far more often than the neighbour's is noise; of densities alone. */
 const float most_weight = 2.0;
 /* Texels, of a picture of any size. */
 const float widest = 6.0;

@@ -14,7 +14,9 @@
  * Few rays that meet much light are sparks in so short a mean, while the eye moves: of a ray no more counts than what
  * is usual around. Of what rests all counts, and its mean is seen for long enough to be one.
  *
- * push.frames: how far back the mean reaches, 1/60 s.
+ * A ray counts by what it is worth (specular_rays.comp).
+ *
+ * push.frames: how far back the mean reaches, 1/60 s. push.reused: not 0: specular_reuse has run.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -39,8 +41,8 @@ layout(set = MASU_SET_PASS, binding = 3) uniform sampler2D velocity_image;
 layout(set = MASU_SET_PASS, binding = 4) uniform usampler2D old_guide_image;
 layout(set = MASU_SET_PASS, binding = 5) uniform sampler2D old_mean_image;
 layout(set = MASU_SET_PASS, binding = 6) uniform usampler2D old_age_image;
-layout(set = MASU_SET_PASS, binding = 7) uniform sampler2D ray_image;
-layout(set = MASU_SET_PASS, binding = 8) uniform usampler2D drawn_image; /* specular_ray */
+layout(set = MASU_SET_PASS, binding = 7) uniform sampler2D own_light_image; /* without the neighbours' */
+layout(set = MASU_SET_PASS, binding = 8) uniform usampler2D ray_image;
 layout(set = MASU_SET_PASS, binding = 9, rgba16f) uniform writeonly image2D mean_image;
 layout(set = MASU_SET_PASS, binding = 10, rg32ui) uniform writeonly uimage2D age_image;
 
@@ -56,10 +58,10 @@ const float clamp_width = 2.0;
 /* Of chroma no deviation is kept: that of luma, so many times. Where few rays meet something red, nine that do not are no reason
  * to forget it. */
 const float chroma_width = 3.0;
-/* Deviations of one ray around the mean over 3x3 texels, as both were, beyond which what moves is a spark; and pixels that
- * it has moved. */
+/* What is usual in motion: the mean over the 3x3 texels of the previous frame, a tenth more, and so many deviations of one ray
+ * there. */
 const float usual = 5.0;
-const float moving = 0.05;
+const float near_mean = 0.1;
 
 /* The texel in the present frame, and its surface as the previous frame saw it. */
 struct here {
@@ -257,8 +259,7 @@ void main()
             vec4 sample_mean = vec4(color, y * y);
             present now = gather(h);
             mean = sample_mean;
-            float worth = masu_drawn_worth(texelFetch(drawn_image, h.texel, 0).g);
-            float frames = clamp(worth, 0.1, 1.0);
+            float frames = 1.0;
             vec4 velocity = texelFetch(velocity_image, ivec2(pixel), 0);
             if (frame.history.y != 0u && velocity.w > 0.0 && masu_finite(velocity)) {
                 vec2 ndc = (vec2(pixel) + 0.5 + velocity.xy) / size * 2.0 - 1.0 + previous.jitter.xy;
@@ -312,15 +313,18 @@ void main()
                     }
                     float reach = h.g.roughness > masu_mirror_roughness ? float(push.frames) : 4.0;
                     float share = max(1.0 / (frames + 1.0), masu_time_share(reach));
-                    share = masu_worthy_share(share, worth);
                     float alone = smoothstep(0.0, reuse_until, frames);
-                    color = mix(color, masu_tamed(texelFetch(ray_image, h.texel, 0).rgb), alone);
+                    color = mix(color, masu_tamed(texelFetch(own_light_image, h.texel, 0).rgb), alone);
+                    /* With neighbours' rays each is weighed already. */
+                    float worth = masu_drawn_worth(texelFetch(ray_image, h.texel, 0).g);
+                    share = masu_worthy_share(share, push.reused != 0u ? mix(1.0, worth, alone) : worth);
                     y = masu_luma(color);
                     vec2 motion = masu_unjittered(mix(now.motion, velocity.xy, surface), size);
                     vec2 luma = mix(b.luma, a.luma, surface);
-                    float most_y = max(1.1 * luma.x + usual * masu_sqrt(luma.y), 0.0);
-                    if (y > most_y && any(greaterThan(abs(motion), vec2(moving))) && h.g.roughness > masu_mirror_roughness) {
-                        color *= most_y / max(y, 1e-9); /* not y, whose square says what is usual next time */
+                    float most_y = max((1.0 + near_mean) * luma.x + usual * masu_sqrt(luma.y), 0.0);
+                    /* Where the history has just been found to be another's (frames) nothing is known of what is usual. */
+                    if (frames > 1.0 && masu_is_moving(motion) && h.g.roughness > masu_mirror_roughness) {
+                        color = masu_no_brighter(color, most_y); /* not y, whose square says what is usual next time */
                     }
                     mean = mix(history, vec4(color, y * y), share);
                     frames += 1.0;

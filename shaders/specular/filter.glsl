@@ -47,6 +47,18 @@ float masu_luma(vec3 c)
     return 0.25 * (c.r + c.b) + 0.5 * c.g;
 }
 
+vec3 masu_no_brighter(vec3 color, float most)
+{
+    float y = masu_luma(color);
+    return y > most ? color * (most / max(y, 1e-9)) : color;
+}
+
+/* moved: pixels. */
+bool masu_is_moving(vec2 moved)
+{
+    return any(greaterThan(abs(moved), vec2(0.05)));
+}
+
 uint masu_pack_age(float frames, float far)
 {
     uint age = uint(masu_sane(frames, 0.0, 1023.0) * 64.0 + 0.5);

@@ -2,8 +2,8 @@
  * ray.glsl: the ray of a traced texel and what it meets, as images hold them.
  *
  *   specular_ray, rg32ui   x  direction, octahedral, 16 + 16 bits
- *                          y  density per steradian, and what the ray is worth to its lobe, 1 in the mean: two halves; with
- *                             debug.reference what the radiance is to be multiplied by, three numbers that share an exponent
+ *                          y  root of the density per steradian, and what the ray is worth to its lobe, 1 in the mean: two
+ *                             halves; with debug.reference what the radiance is to be multiplied by, three numbers that share an exponent
  *                             (9 bits each and 5)
  *   specular_hit, rgba32ui x  distance, a float; below 0: nothing is met
  *                          of a polygon  y number of the traced instance, z of the triangle, w barycentric
@@ -31,19 +31,25 @@ vec3 masu_unpack_direction(uint word)
     return masu_oct_decode(unpackSnorm2x16(word));
 }
 
+/* What a ray is worth at least, or a texel whose rays all go below the surface would never forget what it was; and at most. */
+const float masu_least_worth = 0.1;
+const float masu_most_worth = 4.0;
+
+/* Lobes of mirrors have densities beyond what a half holds; their roots end at 31,600. */
 uint masu_pack_drawn(float density, float worth)
 {
-    return packHalf2x16(vec2(masu_sane(density, 1e-6, 65504.0), masu_sane(worth, 0.0, 65504.0)));
+    return packHalf2x16(vec2(masu_sqrt(masu_sane(density, 1e-6, 1e9)), masu_sane(worth, masu_least_worth, masu_most_worth)));
 }
 
 float masu_drawn_density(uint word)
 {
-    return masu_sane(unpackHalf2x16(word).x, 0.0, 65504.0);
+    float root = masu_sane(unpackHalf2x16(word).x, 0.0, 65504.0);
+    return root * root;
 }
 
 float masu_drawn_worth(uint word)
 {
-    return masu_sane(unpackHalf2x16(word).y, 0.0, 65504.0);
+    return masu_sane(unpackHalf2x16(word).y, masu_least_worth, masu_most_worth);
 }
 
 /* The share of a ray in a mean, of one that is worth as much as the mean of them. */

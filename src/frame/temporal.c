@@ -44,11 +44,11 @@ static int has_resolve(const masu_frame_data *f) {
     return masu_has_pass(&masu_frame_rung_plan(f)->active, MASU_PASS_TEMPORAL_FIND);
 }
 
-/* From 1 on: the first place of Halton's sequence is the corner. Each four of places begin with another of the four: of its
- * number the last two bits say in which quarter of the pixel a place lies, across, and reflections look at each pixel of 2x2 in
- * every fourth frame, which would be the same quarter each time: edges in mirrors were dotted. With each round they begin with
- * yet another, so that after four rounds each pixel has had all places: one that is a mirror in none of its turns' places, and
- * in others', would show for ever what it had before. */
+/* From 1 on: the first place of Halton's sequence is the corner. The order of each four places is turned by one against the four
+ * before. The last two bits of a place's number are the quarter of the pixel, across, that it lies in, and reflections trace each
+ * pixel of 2x2 in every fourth frame: it would have one quarter alone, and edges in mirrors were dotted. With each round the
+ * order is turned by one more, so that after four rounds each pixel has had all places; else one that is a mirror at some
+ * places alone, none of them its own, would keep what it once was for ever. */
 void masu_temporal_place(VkExtent2D render, VkExtent2D shown, uint64_t frame, float place[2]) {
     double pixels = (double)render.width * render.height;
     double phases = 4.0 * fmin(ceil(4.0 * shown.width * shown.height / pixels), 256.0);

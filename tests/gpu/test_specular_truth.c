@@ -1,6 +1,6 @@
 /* test_specular_truth.c: the reference of reflections (debug.reference, masu render --reference) against an
- * independent tracer in double precision (tests/reference/specular.h) and in the white furnace; what the
- * plan and the tiles leave out is not traced; odd materials give finite pixels.
+ * independent tracer in double precision (tests/reference/specular.h) and in the white furnace; means over frames
+ * have the colours of the reference; what the plan and the tiles leave out is not traced; odd materials give finite pixels.
  *
  * Both truths are noisy. What a pixel mirrors is the frame's radiance less what the sun and the ambient
  * light give it, by formula. Standard errors are those of independent rays, for the GPU's too, which are
@@ -357,7 +357,7 @@ static void colors_of_street(const masu_rung *rung, uint32_t reference, uint32_t
 }
 
 /* Fresnel's term makes the rays that go on to the wall worth several times those that go up. As if each were worth the same
- * red is off by a fifth. */
+ * red is off by a quarter. */
 static void means_have_the_colors_of_the_reference(void **state) {
     (void)state;
     bake_scene("street", street);

@@ -8,8 +8,8 @@
  *
  * The error is ours, not the simplifier's estimate: a bound of the two-sided distance between the
  * surfaces (surface.c), in the units of the mesh, of the whole mesh and of each of its materials: a
- * lamp on a wall may lose its outline and still be where the wall is. What a level leaves out is no
- * larger a spot than it was. Texture coordinates and normals are not judged. A level has the mesh's primitives in the
+ * lamp on a wall may lose its outline and still be where the wall is. A part of a material that a level
+ * drops counts as an error of its own size. Texture coordinates and normals are not judged. A level has the mesh's primitives in the
  * mesh's order, with its materials and vertices; only indices are added. */
 #include "bake/mesh/detail.h"
 #include "bake/mesh/surface.h"
@@ -91,8 +91,8 @@ static masu_bake_surface surface_of(const source *s, const form *f, uint32_t mat
     return made;
 }
 
-/* A part that is no longer there, or is far from what is left of its material, is a spot as large as
- * the part that has another color. */
+/* A part that is gone, or far from what is left of its material, is seen as a spot of another colour, at most as
+ * large as the part. */
 static double measure_look(const source *s, const look *l, const form *f, double limit) {
     masu_bake_surface coarse = surface_of(s, f, l->material);
     double error = masu_bake_surface_deviation(&coarse, &l->all, limit);
@@ -249,14 +249,20 @@ static double *sizes_of_parts(const masu_bake_vec3 (*triangles)[3], uint32_t cou
     return sizes;
 }
 
-static void look_at_parts(source *s) {
-    uint32_t count = s->total / 3;
-    const masu_bake_vec3(*triangles)[3] = (const masu_bake_vec3(*)[3])s->triangles;
+/* The part of each triangle; returns how many there are. */
+static uint32_t find_parts(const masu_bake_vec3 (*triangles)[3], uint32_t count, uint32_t **part,
+                           double **sizes) {
     bool *closed = masu_bake_allocate(count * sizeof *closed);
-    s->part = masu_bake_allocate(count * sizeof *s->part);
-    s->parts = masu_bake_surface_parts(triangles, count, s->part, closed);
-    s->part_size = sizes_of_parts(triangles, count, s->part, s->parts);
+    *part = masu_bake_allocate(count * sizeof **part);
+    uint32_t parts = masu_bake_surface_parts(triangles, count, *part, closed);
+    *sizes = sizes_of_parts(triangles, count, *part, parts);
     free(closed);
+    return parts;
+}
+
+static void look_at_parts(source *s) {
+    s->parts = find_parts((const masu_bake_vec3(*)[3])s->triangles, s->total / 3, &s->part,
+                          &s->part_size);
 }
 
 /* ---- materials ---- */
@@ -273,10 +279,8 @@ static int by_part(const void *a, const void *b) {
 
 static look look_make(uint32_t material, const masu_bake_vec3 (*triangles)[3], uint32_t count) {
     look l = {.material = material, .all = masu_bake_surface_make(triangles, count)};
-    bool *closed = masu_bake_allocate(count * sizeof *closed);
-    uint32_t *part = masu_bake_allocate(count * sizeof *part);
-    l.part_count = masu_bake_surface_parts(triangles, count, part, closed);
-    l.sizes = sizes_of_parts(triangles, count, part, l.part_count);
+    uint32_t *part;
+    l.part_count = find_parts(triangles, count, &part, &l.sizes);
     l.parts = masu_bake_allocate(l.part_count * sizeof *l.parts);
     numbered *order = masu_bake_allocate(count * sizeof *order);
     masu_bake_vec3(*sorted)[3] = masu_bake_allocate(count * sizeof *sorted);
@@ -292,7 +296,6 @@ static look look_make(uint32_t material, const masu_bake_vec3 (*triangles)[3], u
     free(sorted);
     free(order);
     free(part);
-    free(closed);
     return l;
 }
 
