@@ -82,10 +82,10 @@ static const masu_ladder measured[MASU_SCENE_CLASSES] = {
               {.scale = 0.4f, .easu = MASU_EASU_FAST, .sharpen = MASU_OFF, .sharpness = 0.2f,
                .shadow_refresh = {2, 4, 8, 8}, .specular = MASU_OFF},
          },
-         .ratios = {1.11232f, 0.946669f, 0.791197f, 0.694781f,
-              0.560243f, 0.441098f, 0.367805f, 0.300276f},
-         .flips = {0.0214951f, 0.0228596f, 0.0247834f, 0.0270737f,
-              0.030249f, 0.0473875f, 0.0969826f, 0.103064f},
+         .ratios = {1.11141f, 0.924157f, 0.781281f, 0.660876f,
+              0.539213f, 0.441098f, 0.367805f, 0.300276f},
+         .flips = {0.0184178f, 0.0198828f, 0.021933f, 0.0247881f,
+              0.0279234f, 0.0473875f, 0.0969826f, 0.103064f},
         },
     [MASU_SCENE_WORLD_TRACED] =
         {.from = "forza.masu, 640x360, "
@@ -130,10 +130,10 @@ static const masu_ladder measured[MASU_SCENE_CLASSES] = {
               {.scale = 0.4f, .easu = MASU_EASU_FAST, .sharpen = MASU_OFF, .sharpness = 0.2f,
                .march_steps = 128, .specular = MASU_OFF},
          },
-         .ratios = {1.09419f, 0.869456f, 0.693207f, 0.526681f,
-              0.379517f, 0.29052f, 0.234773f, 0.186405f},
-         .flips = {0.028739f, 0.0298968f, 0.0318985f, 0.0353809f,
-              0.0414322f, 0.0502659f, 0.158416f, 0.161897f},
+         .ratios = {1.07866f, 0.885541f, 0.695238f, 0.515461f,
+              0.376792f, 0.302608f, 0.234773f, 0.186405f},
+         .flips = {0.0246744f, 0.026246f, 0.027737f, 0.0313948f,
+              0.0368444f, 0.0475076f, 0.158416f, 0.161897f},
         },
 };
 
