@@ -188,7 +188,7 @@ void main()
             }
             float share = max(1.0 / (own + 1.0), masu_time_share(reach));
             share = masu_worthy_share(share, masu_drawn_worth(texelFetch(ray_image, ivec2(texel), 0).g));
-            vec2 noise = masu_turn_noise2(masu_trace_noise(masu_noise_index(texel.x, texel.y, 4u)), frame.history.x);
+            vec2 noise = masu_turn_noise2(masu_trace_noise(masu_noise_index(texel.x, texel.y, 4u)), masu_turn(frame.history.x));
             float dither = noise.x;
             if (!(g.roughness > masu_mirror_roughness)) {
                 /* The same ray each time: rounded by another dither it would flicker, up to 6 of 255 in a dark channel

@@ -104,7 +104,7 @@ void main()
             vec3 v_local = masu_axes_in(f, v);
             uint number = frame.history.x;
             uint word = noise_at(texel, 0u);
-            vec2 u = push.traced_size == 1u ? masu_noise2(word, number) : masu_turn_noise2(word, number);
+            vec2 u = push.traced_size == 1u ? masu_noise2(word, number) : masu_turn_noise2(word, masu_turn(number));
             float alpha = masu_alpha(masu_traced_roughness(p.surface));
             uint turn = 0u;
             masu_bsdf b = masu_bsdf_make(p.surface, n, v);

@@ -51,7 +51,16 @@ vec2 masu_noise2(uint noise_word, uint frame)
     return masu_unit2(x, y);
 }
 
-/* Where pixels take turns, and each has every fourth frame. Every fourth of R2's points lies within a strip: 4/g is
+/* Which turn of four frames a frame is, and in which four: its number with the last two bits turned by one more in each four and
+ * in each sixteen. The last two bits of a frame's own number say in which quarter of a pixel rung.temporal looks in it, across:
+ * what had its turn by these would see one quarter alone, and edges in mirrors were dotted. So it sees all in four turns, and all
+ * of 16 places in 16. */
+uint masu_turn(uint frame)
+{
+    return (frame & 0xFFFFFFFCu) | ((frame + (frame >> 2) + (frame >> 4)) & 3u);
+}
+
+/* frame: masu_turn's. Where pixels take turns, and each has every fourth frame. Every fourth of R2's points lies within a strip: 4/g is
  * 3.02. These are multiples of (1 + 1/g) / 4 and (1 + 1/g^2) / 4, of which every fourth is R2, and all of them
  * are as even as R2. */
 vec2 masu_turn_noise2(uint noise_word, uint frame)

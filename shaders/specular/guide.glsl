@@ -2,7 +2,7 @@
  * guide.glsl: what the passes of reflections know of a traced texel, and of the pixel it stands for.
  *
  * The guide, rg32ui, is the G-buffer at half size. A texel stands for one pixel of its 2x2, another one
- * in each frame, so that after four frames all have been asked (pixel (k + frame) of a fixed order):
+ * in each frame, so that after four frames all have been asked (noise/sequence.glsl has the turns):
  *   x  bits 0-25  octahedral normal, as in the G-buffer
  *      bits 26-31 roughness of the lobe that is traced, 0..63; 0: it is a mirror (brdf/vndf.glsl), which
  *                 0.05 must not become by rounding: its rays hold noise
@@ -15,6 +15,7 @@
 
 #include "shared/globals.glsl"
 #include "shared/pack.glsl"
+#include "noise/sequence.glsl"
 
 struct masu_guide {
     vec3 normal;
@@ -48,7 +49,7 @@ uvec2 masu_pack_guide(uint packed_normal, float roughness, float depth, uint pix
 uint masu_guide_pixel(uvec2 texel, uint number)
 {
     const uint order = 0x1Eu; /* 2, 3, 1, 0 in pairs of bits: round the square */
-    uint k = (number + texel.x + 2u * texel.y) & 3u;
+    uint k = (masu_turn(number) + texel.x + 2u * texel.y) & 3u;
     return (order >> (2u * k)) & 3u;
 }
 

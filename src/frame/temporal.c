@@ -44,19 +44,13 @@ static int has_resolve(const masu_frame_data *f) {
     return masu_has_pass(&masu_frame_rung_plan(f)->active, MASU_PASS_TEMPORAL_FIND);
 }
 
-/* From 1 on: the first place of Halton's sequence is the corner. The order of each four places is turned by one against the four
- * before. The last two bits of a place's number are the quarter of the pixel, across, that it lies in, and reflections trace each
- * pixel of 2x2 in every fourth frame: it would have one quarter alone, and edges in mirrors were dotted. With each round the
- * order is turned by one more, so that after four rounds each pixel has had all places; else one that is a mirror at some
- * places alone, none of them its own, would keep what it once was for ever. */
+/* From 1 on: the first place of Halton's sequence is the corner. */
 void masu_temporal_place(VkExtent2D render, VkExtent2D shown, uint64_t frame, float place[2]) {
     double pixels = (double)render.width * render.height;
-    double phases = 4.0 * fmin(ceil(4.0 * shown.width * shown.height / pixels), 256.0);
-    uint64_t round = frame / (uint64_t)phases;
-    uint32_t phase = (uint32_t)(frame % (uint64_t)phases), four = phase / 4;
-    uint32_t number = 4 * four + (phase + four + (uint32_t)(round % 4)) % 4 + 1;
-    place[0] = mirrored(number, 2) - 0.5f;
-    place[1] = mirrored(number, 3) - 0.5f;
+    double phases = fmin(ceil(16.0 * shown.width * shown.height / pixels), 1024.0);
+    uint32_t phase = (uint32_t)(frame % (uint64_t)phases);
+    place[0] = mirrored(phase + 1, 2) - 0.5f;
+    place[1] = mirrored(phase + 1, 3) - 0.5f;
 }
 
 float masu_temporal_jitter(const masu_frame_data *f, float jitter[2]) {

@@ -19,7 +19,7 @@ typedef struct masu_temporal {
 } masu_temporal;
 
 /* By how much beside the middle of its pixels a frame looks, in pixels of the render size, -0.5 to 0.5: Halton's sequence of
- * bases 2 and 3, the order of each four turned, of as many places as put 16 samples into each pixel of the output. */
+ * bases 2 and 3, of as many places as put 16 samples into each pixel of the output. */
 void masu_temporal_place(VkExtent2D render, VkExtent2D shown, uint64_t frame, float place[2]);
 
 /* The same of this frame. Returns the most that it is in any; of a rung without, all is 0. */

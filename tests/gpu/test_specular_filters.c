@@ -68,7 +68,7 @@ static const char panels[] =
 
 /* A lamp so small and bright that a rough floor's rays meet it once in some hundreds. */
 static const char lamp[] =
-    "{\"models\": [{\"mesh\": {\"plane\": {\"size_x\": 40, \"size_z\": 40}}, \"material\": "
+    "{\"models\": [{\"mesh\": {\"plane\": {\"size_x\": 24, \"size_z\": 12}}, \"translate\": [0, 0, -3], \"material\": "
     "{\"base_color\": [0.5, 0.5, 0.5], \"roughness\": 0.4, \"metallic\": 1}},"
     "{\"mesh\": {\"box\": {\"size\": [0.2, 0.2, 0.2]}}, \"translate\": [0, 1.5, -1.5],"
     "\"material\": {\"base_color\": [0, 0, 0], \"emissive\": [200, 200, 200], \"roughness\": 1}}],"

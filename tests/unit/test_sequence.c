@@ -312,12 +312,40 @@ static void the_hash_mixes(void **state) {
     assert_int_equal(masu_noise_index(5, 7, 0), 7 * TILE + 5);
 }
 
+/* Of 16 places that frames look at by turns, a pixel that is asked in one of four turns sees all in 64 frames, and in each
+ * sixteen frames that begin a round one of each four. */
+static void turns_see_all_places(void **state) {
+    (void)state;
+    for (uint32_t turn = 0; turn < 4; turn++) {
+        for (uint32_t first = 0; first < 1024; first += 64) {
+            uint32_t seen = 0, asked = 0;
+            for (uint32_t frame = first; frame < first + 64; frame++) {
+                if (frame % 16 == 0) asked = 0;
+                if ((masu_turn(frame) & 3) != turn) continue;
+                seen |= 1u << frame % 16;
+                asked |= 1u << frame % 4;
+                if (frame % 16 >= 12) assert_int_equal(asked, 15);
+            }
+            assert_int_equal(seen, 0xFFFF);
+        }
+    }
+    for (uint32_t frame = 0xFFFFFF00u; frame != 256; frame += 4) {
+        uint32_t turns = 0;
+        for (uint32_t k = 0; k < 4; k++) {
+            assert_int_equal(masu_turn(frame + k) / 4, frame / 4);
+            turns |= 1u << (masu_turn(frame + k) & 3);
+        }
+        assert_int_equal(turns, 15);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(r2_turned_by_blue_noise_has_the_least_error_over_frames),
         cmocka_unit_test(r2_turned_by_blue_noise_has_the_least_error_over_pixels),
         cmocka_unit_test(numbers_stay_as_even_after_many_frames),
         cmocka_unit_test(the_hash_mixes),
+        cmocka_unit_test(turns_see_all_places),
     };
     return cmocka_run_group_tests(tests, make_scenes, NULL);
 }
