@@ -51,13 +51,13 @@ vec2 masu_noise2(uint noise_word, uint frame)
     return masu_unit2(x, y);
 }
 
-/* Which turn of four frames a frame is, and in which four: its number with the last two bits turned by one more in each four and
- * in each sixteen. The last two bits of a frame's own number say in which quarter of a pixel rung.temporal looks in it, across:
+/* Which turn of four frames a frame is, and in which four: its number with the last two bits turned back by one more in each four
+ * and in each sixteen. The last two bits of a frame's own number say in which quarter of a pixel rung.temporal looks in it, across:
  * what had its turn by these would see one quarter alone, and edges in mirrors were dotted. So it sees all in four turns, and all
- * of 16 places in 16. */
+ * of 16 places in 16. Turned back, it waits for five frames at most, within sixteen; forward for seven. */
 uint masu_turn(uint frame)
 {
-    return (frame & 0xFFFFFFFCu) | ((frame + (frame >> 2) + (frame >> 4)) & 3u);
+    return (frame & 0xFFFFFFFCu) | ((frame - (frame >> 2) - (frame >> 4)) & 3u);
 }
 
 /* frame: masu_turn's. Where pixels take turns, and each has every fourth frame. Every fourth of R2's points lies within a strip: 4/g is
