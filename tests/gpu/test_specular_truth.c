@@ -366,7 +366,7 @@ static void means_have_the_colors_of_the_reference(void **state) {
     double reference[3], mean[3], worst = 0;
     colors_of_street(NULL, 1, frames_of(384), reference);
     for (int i = 0; i < 2; i++) {
-        colors_of_street(rungs[i], 0, frames_of(96), mean);
+        colors_of_street(rungs[i], 0, 96, mean);
         for (int c = 0; c < 3; c++) worst = worst_of(worst, fabs(mean[c] / reference[c] - 1));
         print_message("  street%s: %.4f %.4f %.4f, reference %.4f %.4f %.4f\n", i ? " with a past" : "", mean[0],
                       mean[1], mean[2], reference[0], reference[1], reference[2]);
