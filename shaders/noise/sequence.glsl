@@ -60,8 +60,8 @@ uint masu_turn(uint frame)
     return (frame & 0xFFFFFFFCu) | ((frame - (frame >> 2) - (frame >> 4)) & 3u);
 }
 
-/* frame: masu_turn's. Where pixels take turns, and each has every fourth frame. Every fourth of R2's points lies within a strip: 4/g is
- * 3.02. These are multiples of (1 + 1/g) / 4 and (1 + 1/g^2) / 4, of which every fourth is R2, and all of them
+/* frame: masu_turn's. Where pixels take turns, and each has every fourth frame. Every fourth of R2's points lies within a
+ * strip: 4/g is 3.02. These are multiples of (1 + 1/g) / 4 and (1 + 1/g^2) / 4, of which every fourth is R2, and all of them
  * are as even as R2. */
 vec2 masu_turn_noise2(uint noise_word, uint frame)
 {

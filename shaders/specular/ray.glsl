@@ -3,8 +3,8 @@
  *
  *   specular_ray, rg32ui   x  direction, octahedral, 16 + 16 bits
  *                          y  root of the density per steradian, and what the ray is worth to its lobe, 1 in the mean: two
- *                             halves; with debug.reference what the radiance is to be multiplied by, three numbers that share an exponent
- *                             (9 bits each and 5)
+ *                             halves; with debug.reference what the radiance is to be multiplied by, three numbers
+ *                             that share an exponent (9 bits each and 5)
  *   specular_hit, rgba32ui x  distance, a float; below 0: nothing is met
  *                          of a polygon  y number of the traced instance, z of the triangle, w barycentric
  *                             coordinates of its second and third corner, 16 bits each

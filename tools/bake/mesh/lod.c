@@ -8,9 +8,10 @@
  *
  * The error is ours, not the simplifier's estimate: a bound of the two-sided distance between the
  * surfaces (surface.c), in the units of the mesh, of the whole mesh and of each of its materials: a
- * lamp on a wall may lose its outline and still be where the wall is. A part of a material that a level
- * drops counts as an error of its own size. Texture coordinates and normals are not judged. A level has the mesh's primitives in the
- * mesh's order, with its materials and vertices; only indices are added. */
+ * lamp on a wall may lose its outline and still be where the wall is. A part of a material that a
+ * level drops counts as an error of its own size. Texture coordinates and normals are not judged. A
+ * level has the mesh's primitives in the mesh's order, with its materials and vertices; only indices
+ * are added. */
 #include "bake/mesh/detail.h"
 #include "bake/mesh/surface.h"
 #include "bake/scene/skin.h"
