@@ -4,6 +4,8 @@
 # 6 hits and above 8. A row of the table is a name, a Perl regular expression, an example and a replacement, by tabs.
 #
 # dialect.sh [FILE...]: measures only these Markdown or C files, and prints each hit.
+#
+# shellcheck disable=SC2016 # backquotes are text
 set -u
 export LC_ALL=C
 table=$(dirname "$0")/dialect.tsv
