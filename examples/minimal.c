@@ -1,5 +1,5 @@
-/* minimal.c SCENE.masu OUT.png: the least a port does. The device and the image are its own; here
- * they come from platform/headless.h. */
+/* minimal.c SCENE.masu OUT.png: a minimal port: renders ten frames and saves the last one. A real
+ * port brings its own device and target images; here platform/headless.h creates them. */
 #include "headless.h"
 #include "image.h"
 #include "masu.h"
@@ -35,7 +35,7 @@ int main(int argc, char **argv) {
         .targets = {.images = &image.image, .views = &image.view, .count = 1, .storage = 1}};
     masu_memory need;
     CHECK(masu_memory_query(&desc, &need, &detail) == MASU_OK);
-    printf("the box: %llu bytes host, %llu bytes device\n", (unsigned long long)need.host_bytes,
+    printf("memory: %llu bytes host, %llu bytes device\n", (unsigned long long)need.host_bytes,
            (unsigned long long)need.device_bytes);
     void *block = aligned_alloc(64, (need.host_bytes + 63) / 64 * 64);
     masu_renderer *m;
@@ -44,7 +44,7 @@ int main(int argc, char **argv) {
     while (masu_load(m, &commands) == MASU_INCOMPLETE) {
         CHECK(masu_headless_run(&host, commands.buffer, error, room));
     }
-    for (int i = 0; i < 10; i++) { /* from here on nothing is allocated */
+    for (int i = 0; i < 10; i++) { /* no allocation from here on */
         masu_frame_desc frame = {.time = i / 60.0, .rung = i < 9 ? 2 : 0};
         CHECK(masu_frame(m, &frame, &commands) == MASU_OK);
         CHECK(masu_headless_run(&host, commands.buffer, error, room));
