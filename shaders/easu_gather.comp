@@ -5,8 +5,8 @@
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
-#define MASU_PUSH masu_push_easu
-#include "shared/masu_shared.h"
+#include "push/easu.h"
+#include "shared/types.h"
 #include "shared/store.glsl"
 #include "upscale/easu.glsl"
 #include "upscale/place.glsl"
