@@ -237,8 +237,8 @@ MASU_API int masu_knob_takes(const masu_knob *knob, double to);
     X(materials, 0, "48 bytes each, device")                                                       \
     X(instances, 0,                                                                                \
       "98 bytes each, host, and 52 bytes each per frame in flight, device; with velocities 146"    \
-      " and 100. With occlusion culling, on the device: 32 more per frame in flight, 4 once, and"  \
-      " 8 for each occluder of the instance. With a shadow map, per cascade: 4 more; with"         \
+      " and 100. With occlusion culling, on the device: 32 more, and 8 for each occluder of the"   \
+      " instance, per frame in flight, and 4 once. With a shadow map, per cascade: 4 more; with"   \
       " occlusion culling 12, and 4 once. With LODs: 1 more on the host, and on the device 4 for"  \
       " each LOD of the mesh and each view (8 with occlusion culling)")                            \
     X(models, 0,                                                                                   \
