@@ -172,22 +172,22 @@ typedef struct masu_scene {
     const void *blob; /* the caller's; see masu_scene_bind */
     uint64_t blob_bytes;
     uint32_t vertices, indices, primitives, meshes, instances, materials, camera_keys;
-    uint32_t lods;                        /* LODs of meshes, in all */
-    uint32_t lod_draws, lod_instances;    /* draws of those; instances, counted for each form */
+    uint32_t lods; /* LODs of meshes, in all */
+    uint32_t lod_draws, lod_instances; /* draws of those; instances, counted for each form */
     uint32_t occluders, placed_occluders; /* boxes in meshes; those of all instances */
-    uint32_t groups, group_items;         /* what is culled together; instances in groups */
-    uint32_t models, model_nodes;         /* that move, come and go as one; nodes of them all */
-    uint32_t clips, channels, keys;       /* animations of models, and what they are made of */
-    uint32_t max_nodes;                   /* of one model */
-    uint32_t skins;                       /* meshes that joints bend: */
-    uint32_t skin_vertices, joints;       /* of their kinds, */
+    uint32_t groups, group_items; /* what is culled together; instances in groups */
+    uint32_t models, model_nodes; /* that move, come and go as one; nodes of them all */
+    uint32_t clips, channels, keys; /* animations of models, and what they are made of */
+    uint32_t max_nodes;             /* of one model */
+    uint32_t skins;                 /* meshes that joints bend: */
+    uint32_t skin_vertices, joints; /* of their kinds, */
     uint32_t skinned_vertices, skinned_joints; /* of all of them */
-    uint32_t skinned_nodes;                    /* of their trees that rays are traced through */
+    uint32_t skinned_nodes;               /* of their trees that rays are traced through */
     uint32_t first_skinned, max_skinned; /* the first of those vertices; the most of one mesh */
-    uint32_t metered;                    /* 1: it asks for a metered exposure, */
-    float brighten, darken;              /* that adapts as fast, 1/s; 0: the default */
-    uint32_t sdf;                        /* 1: the scene has an SDF */
-    uint32_t sdf_params;                 /* run-time parameters of it */
+    uint32_t metered;    /* 1: it asks for a metered exposure, */
+    float brighten, darken; /* that adapts as fast, 1/s; 0: the default */
+    uint32_t sdf;        /* 1: the scene has an SDF */
+    uint32_t sdf_params; /* run-time parameters of it */
     uint32_t sdf_parts, sdf_slots, sdf_block_words;
     uint32_t sdf_dynamic;   /* 1: slots depend on parameters or time */
     uint32_t sdf_anchored;  /* 1: it keeps its precision far from the origin (docs/sdf.md) */
@@ -197,44 +197,41 @@ typedef struct masu_scene {
     uint32_t shadow_cascades; /* of the sun's shadow map; 0: none. Scenes with instances only */
     uint32_t shadow_resolution;
     float shadow_distance, shadow_lambda;
-    uint32_t draws;     /* draw calls of one G-buffer pass, without LODs */
-    uint64_t triangles; /* of one frame: every instance counted, in its finest form */
-    uint32_t textures;  /* pictures: layers of the texture arrays */
+    uint32_t draws;      /* draw calls of one G-buffer pass, without LODs */
+    uint64_t triangles;  /* of one frame: every instance counted, in its finest form */
+    uint32_t textures;   /* pictures: layers of the texture arrays */
     uint32_t texture_arrays, texture_sets;
-    uint32_t masks;        /* 1: some material has an alpha mask */
-    uint32_t singles;      /* 1: some material is not seen from behind */
-    uint32_t surfaces;     /* of those not blended: with a specular factor, a coat, small relief or
+    uint32_t masks; /* 1: some material has an alpha mask */
+    uint32_t singles; /* 1: some material is not seen from behind */
+    uint32_t surfaces; /* of those not blended: with a specular factor, a coat, small relief or
                         * occlusion map */
-    uint32_t coats;        /* materials with a clear coat */
-    uint32_t meso;         /* small reliefs */
-    uint32_t blends;       /* materials that are blended */
+    uint32_t coats;    /* materials with a clear coat */
+    uint32_t meso;     /* small reliefs */
+    uint32_t blends;   /* materials that are blended */
     uint32_t transparents; /* their primitives, counted for each instance */
     uint32_t transparent_sets; /* texture sets that these use, at least 1 */
-    uint32_t lights;           /* points and spots */
+    uint32_t lights;   /* points and spots */
     uint32_t probes, probe_sets;
     uint64_t probe_words; /* 4 bytes each: what all sets of all probes take */
     uint32_t environment_size, environment_mips; /* texels along an edge of its map; 0: none */
-    uint32_t analytic_sky;                       /* 1: the sky follows from the sun */
-    uint32_t fog;                                /* 1: there is fog */
+    uint32_t analytic_sky; /* 1: the sky follows from the sun */
+    uint32_t fog;          /* 1: there is fog */
     float occlusion_radius; /* of ambient occlusion in screen space, metres; 0: none */
     uint32_t reflections;   /* 1: reflections are traced: */
     uint32_t trace_sdf;     /* 1: of the SDF too */
     uint32_t trace_nodes, trace_triangles; /* of the trees that rays are traced through; 0: none */
     uint32_t trace_instances;              /* that rays meet */
-    uint32_t
-        trace_levels; /* of nodes, of the deepest mesh's tree that rays are traced through; 0: none */
+    uint32_t trace_levels; /* of nodes, of the deepest mesh's tree that rays are traced through; 0: none */
     uint32_t trace_textures; /* small pictures of textures for them */
     uint32_t trace_colors;   /* of these such as rays look up; the rest are means of roughness */
-    uint64_t trace_texels;   /* 4 bytes each */
-    float specular_cutoff,
-        glossiest;          /* roughness from which they are not; the least of any surface */
+    uint64_t trace_texels; /* 4 bytes each */
+    float specular_cutoff, glossiest; /* roughness from which they are not; the least of any surface */
     float trace_distance;   /* longest ray, m */
-    uint64_t texture_bytes; /* of their texels as compressed blocks */
+    uint64_t texture_bytes;         /* of their texels as compressed blocks */
     uint64_t texture_bytes_decoded; /* and where the device takes no blocks */
-    uint32_t own_coats;             /* 1: some coat has a map, or a normal that is not its base's */
-    uint32_t tints; /* 1: what shines through some blended material has its colour */
-    uint32_t
-        smooth_edges; /* 1: rungs that nobody gave are anti-aliased: MASU_AA_SMAA_HIGH, with a governor
+    uint32_t own_coats; /* 1: some coat has a map, or a normal that is not its base's */
+    uint32_t tints;     /* 1: what shines through some blended material has its colour */
+    uint32_t smooth_edges; /* 1: rungs that nobody gave are anti-aliased: MASU_AA_SMAA_HIGH, with a governor
                               temporal */
 } masu_scene;
 
@@ -255,9 +252,8 @@ MASU_API MASU_MUST_USE masu_result masu_scene_bind(const void *blob, uint64_t bl
 /* Index of the SDF parameter with that name, or -1. Reads the blob. */
 MASU_API int32_t masu_scene_sdf_param(const masu_scene *scene, const char *name);
 
-/* Names of the items of a scene. Indices: 0 .. instances - 1, models - 1, lights - 1, materials -
- * 1. "" if the item has no name or does not exist. The names are in the blob, which must still be
- * readable. */
+/* Names of the items of a scene. Indices start at 0. The result is "" if the item has no name or
+ * does not exist. The names are in the blob, which must still be readable. */
 MASU_API const char *masu_scene_instance_name(const masu_scene *scene, uint32_t index);
 MASU_API const char *masu_scene_model_name(const masu_scene *scene, uint32_t index);
 MASU_API const char *masu_scene_light_name(const masu_scene *scene, uint32_t index);
@@ -302,7 +298,7 @@ MASU_API const char *masu_scene_class_name(masu_scene_class scene_class);
 #include "masu_knobs.h"
 
 /* Room for objects that the host adds at run time. masu_memory includes all of it; limits and peaks
- * include models and lights as if the scene had them. 0: none, at no cost. */
+ * treat its models and lights like those of the scene. 0: none, at no cost. */
 typedef struct masu_reserve {
     /* Slots for copies of movable models, in addition to the pooled copies of the scene
      * (masu_model_add), 0..16384. Any movable model without skins fits into a slot, so each slot
@@ -364,7 +360,7 @@ typedef enum masu_readback_bits {
     MASU_READBACK_VELOCITY = 16,
     /* 2 x 16-bit unorm: visibility of the sun, and of the ambient light. Only for scenes with a
      * shadow map, SDF shadows, or ambient occlusion of either kind; ignored for other scenes. A
-     * rung that uses none of these leaves the image unchanged. */
+     * rung that uses none leaves the image unchanged. */
     MASU_READBACK_OCCLUSION = 32,
     /* float: depth along the sun's direction, 1 is closest to the sun, 0 is empty. Cascades are
      * stacked from top to bottom; four form a grid of 2x2, row by row. Only for scenes with a
@@ -375,8 +371,8 @@ typedef enum masu_readback_bits {
 } masu_readback_bits;
 
 /* Points at which a frame is split, so that host commands can run between its parts. masu_frame
- * then returns several masu_commands.parts, and masu_split_of returns the images available there.
- * */
+ * then returns several masu_commands.parts, and masu_split_of returns the images available
+ * there. */
 typedef enum masu_split_bits {
     /* Before exposure and tone curve: HDR (linear radiance before exposure, at the render size) to
      * render into, and depth to test against. All surfaces of the scene are complete, transparent
@@ -425,26 +421,25 @@ typedef struct masu_vulkan {
     const VkAllocationCallbacks *allocator;
     VkPipelineCache pipeline_cache; /* used in masu_init; VK_NULL_HANDLE: none */
     /* Features that the host has enabled on the device. Vulkan has no query for them. */
-    uint32_t texture_compression_bc; /* flag: textureCompressionBC. Textures stay compressed, which
-                                        takes 1/4 to 1/8 of the memory */
+    uint32_t texture_compression_bc; /* flag: textureCompressionBC. Textures remain compressed, at
+                                        1/4 to 1/8 of the memory */
     float max_anisotropy; /* samplerAnisotropy: largest number of samples, 1..64, clamped to
                              maxSamplerAnisotropy; 0: not enabled */
     uint32_t ray_query;   /* flag: VK_KHR_ray_query, VK_KHR_acceleration_structure and buffer device
-                           addresses (extension or Vulkan 1.2), each with its feature */
+                             addresses (extension or Vulkan 1.2), each with its feature */
     uint32_t shader_float16; /* flag: shaderFloat16 of VK_KHR_shader_float16_int8 (or Vulkan 1.2) */
     masu_pipelines *pipelines; /* valid until masu_destroy; NULL: no pool, masu_destroy destroys the
                                   pipelines */
 } masu_vulkan;
 
-/* Encoding of the target. White is the colour of a radiance of 1 / exposure without a tone curve.
- * */
+/* Encoding of the target. White is the colour of a radiance of 1 / exposure without a tone
+ * curve. */
 typedef enum masu_encoding {
     MASU_ENCODING_AUTO = 0,   /* SRGB; LINEAR for floating-point targets */
     MASU_ENCODING_SRGB = 1,   /* IEC 61966-2-1: 0..1, 1 is white. Any format */
     MASU_ENCODING_LINEAR = 2, /* scRGB: linear, sRGB primaries, 1 is 80 nits, unbounded.
                                  VK_FORMAT_R16G16B16A16_SFLOAT */
-    /* HDR10: BT.2020 primaries, SMPTE ST 2084. Formats of 10 or 16 bits */
-    MASU_ENCODING_PQ = 3
+    MASU_ENCODING_PQ = 3      /* HDR10: BT.2020 primaries, ST 2084. Formats of 10 or 16 bits */
 } masu_encoding;
 
 typedef struct masu_targets {
@@ -472,8 +467,8 @@ typedef enum masu_tone {
     MASU_TONE_AUTO = 0, /* ACES */
     MASU_TONE_NONE = 1, /* linear, clipped at white; with LINEAR and PQ at 10000 nits */
     MASU_TONE_ACES = 2, /* filmic: a fit of the ACES reference rendering (Narkowicz 2016) */
-    /* linear up to 0.76 of the maximum, then desaturates towards white (Khronos PBR Neutral) */
-    MASU_TONE_NEUTRAL = 3
+    MASU_TONE_NEUTRAL = 3 /* Khronos PBR Neutral: linear up to 0.76 of the maximum, then desaturates
+                             towards white */
 } masu_tone;
 
 /* Auto-exposure: light.exposure times 0.18 / the geometric mean of the image's luminance. The mean
@@ -497,16 +492,16 @@ typedef struct masu_exposure {
  * in an sRGB format the view must therefore be UNORM: an sRGB view returns linear values, which are
  * filtered and written without encoding. Anti-aliasing reduces the image to 8 bits per channel. */
 typedef struct masu_source {
-    VkImageView view;       /* VK_NULL_HANDLE: none. Sampled in layout
-                         VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, before and after the frame */
+    VkImageView view;       /* VK_NULL_HANDLE: none. Sampled; its layout before and after the frame
+                               is VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL */
     uint32_t width, height; /* valid texels from (0,0), 1..16384; the image may be larger, texels
                                outside are not read */
     VkFormat format; /* of the view; 0: unspecified. Stating an 8-bit UNORM format saves a tenth of
                         the work; the result is the same */
 } masu_source;
 
-/* A rectangle of the output, in pixels, for views with separate frames: split screen, map, mirror.
- * */
+/* A rectangle of the output, in pixels, for views with separate frames: split screen, map,
+ * mirror. */
 typedef struct masu_viewport {
     uint32_t x, y, width, height;
 } masu_viewport;
@@ -579,7 +574,7 @@ typedef struct masu_desc {
     uint64_t host_budget;   /* bytes; 0: none. A larger plan is MASU_ERROR_LIMIT */
     uint64_t device_budget; /* bytes, all roles together; 0: none */
     masu_device_block device_blocks[MASU_ROLE_COUNT];
-    /* flag: frames may set light.turbidity although the scene has no analytic sky */
+    /* Flag: frames may set light.turbidity although the scene has no analytic sky. */
     uint32_t analytic_sky;
     /* Several views of the scene: each frame renders viewports[masu_frame_desc.viewport] with its
      * own camera and rung. 0..4; 0: one view, all of the output. Each viewport must be inside the
@@ -696,8 +691,8 @@ MASU_API MASU_MUST_USE masu_result masu_init(const masu_desc *desc, void *block,
 MASU_API void masu_destroy(masu_renderer *renderer);
 
 /* Destroys the pipelines and samplers of a pool and zeroes it. Destroy the renderers that use it
- * first. Reads get_instance_proc_addr, instance, device and allocator of `vulkan`. NULL is allowed.
- * */
+ * first. Reads get_instance_proc_addr, instance, device and allocator of `vulkan`. NULL is
+ * allowed. */
 MASU_API void masu_pipelines_destroy(const masu_vulkan *vulkan, masu_pipelines *pipelines);
 
 /* Changes the output size and the targets. Creates no pipeline, allocates and loads nothing, but
@@ -712,8 +707,7 @@ MASU_API void masu_pipelines_destroy(const masu_vulkan *vulkan, masu_pipelines *
  *   MASU_ERROR_ARGUMENT   an argument contradicts the rules above
  *   MASU_ERROR_LIMIT      `output` is larger than desc.output: use masu_destroy and masu_init
  *   MASU_ERROR_STATE      desc.resizable is 0, there is no scene, or masu_load has not finished
- *   MASU_ERROR_VULKAN, _DEVICE_LOST   a Vulkan call failed: only masu_destroy is allowed afterwards
- *                                     */
+ *   MASU_ERROR_VULKAN, _DEVICE_LOST   a Vulkan call failed: only masu_destroy is valid then */
 MASU_API MASU_MUST_USE masu_result masu_resize(masu_renderer *renderer, VkExtent2D output,
                                                const masu_targets *targets,
                                                const masu_viewport *viewports, masu_detail *detail);
@@ -789,9 +783,8 @@ typedef enum masu_governor_reason {
 /* The clock that the governor currently uses. */
 typedef enum masu_governor_source {
     MASU_GOVERNOR_SOURCE_NONE = 0, /* no plausible clock */
-    /* timestamps, checked against the wall-clock time if available */
-    MASU_GOVERNOR_SOURCE_GPU = 1,
-    MASU_GOVERNOR_SOURCE_WALL = 2 /* the host's clock: timestamps are missing or implausible */
+    MASU_GOVERNOR_SOURCE_GPU = 1,  /* timestamps, checked against wall-clock time if available */
+    MASU_GOVERNOR_SOURCE_WALL = 2  /* the host's clock: timestamps are missing or implausible */
 } masu_governor_source;
 
 /* Why the governor cannot reach the rung that it needs. */
@@ -833,7 +826,7 @@ typedef struct masu_governor_info {
      * than half a refresh late. */
     uint64_t missed;
     uint64_t changes; /* of the rung */
-    /* the host's work per frame (masu_frame_times), without outliers; 0: unknown */
+    /* The host's work per frame (masu_frame_times), without outliers; 0: unknown. */
     float cpu_ms;
     float refresh_ms; /* refresh interval of the display (masu_frame_presented); 0: unknown */
     /* Number of refreshes, 1..16, for which the host should present this frame: the smallest number
@@ -909,8 +902,8 @@ typedef struct masu_commands {
  * separate renderer with separate memory blocks, while it shows frames of the first one:
  *
  *     masu_scene_bind(blob, ...); masu_memory_query(&desc, ...);  // slow: read the whole blob and
- *     masu_init(&desc, other_block, ..., &next, &detail);         // create all objects; a thread of
- *                                                                 // the host may run them
+ *     masu_init(&desc, other_block, ..., &next, &detail);         // create all objects; a host's
+ *                                                                 // thread may run them
  *     for (;;) {                                                  // frames
  *         wait_for_fence_of_frame(n - frames_in_flight);
  *         step.part_count = 0;
@@ -941,13 +934,13 @@ typedef struct masu_camera {
     float jitter[2];
     /* Off-centre projection: a window one metre ahead of the camera and perpendicular to `forward`.
      * Its sides, in metres to the right of the centre and above it, are tangents of angles. The
-     * window may be off the centre and have any aspect ratio. All four 0:
-     * symmetric, from fov_y and the aspect ratio of the output. Range -100..100, left < right,
-     * bottom < top, with a difference of at least 0.0001 and at least 1/1024 of the larger absolute
-     * value. To render part of an image, pass the same part of its window; screen-space ambient
-     * occlusion, filters and auto-exposure then have no access to the rest. Velocities and
-     * histories follow a changing window. A different angle of its farthest corner re-renders all
-     * cascades with shadow_refresh above 1.
+     * window may be off the centre and have any aspect ratio. All four 0: symmetric, from fov_y
+     * and the aspect ratio of the output. Range -100..100, left < right, bottom < top, with a
+     * difference of at least 0.0001 and at least 1/1024 of the larger absolute value. To render
+     * part of an image, pass the same part of its window; screen-space ambient occlusion, filters
+     * and auto-exposure then have no access to the rest. Velocities and histories follow a changing
+     * window. A different angle of its farthest corner re-renders all cascades with shadow_refresh
+     * above 1.
      *
      * For host rendering, the projection of a point (x right, y up, z ahead of the camera) is as
      * follows, with reversed depth (n / z; n: near_distance) and compare operator GREATER. l, r, b,
@@ -962,7 +955,7 @@ typedef struct masu_light {
     float sun_color[3];                  /* irradiance on a perpendicular surface / pi */
     float ambient[3];                    /* radiance */
     float sky_zenith[3], sky_horizon[3]; /* radiance */
-    /* linear factor before the tone curve; 0: 1. Metered: in addition to that factor */
+    /* Linear factor before the tone curve; 0: 1. Metered: in addition to that factor. */
     float exposure;
     /* 0: gradient sky from the two colours, with the ambient light above. 1.5 (very clear) to 10
      * (hazy): analytic sky from the sun, which also sets the ambient light; a sun_color of all zero
@@ -982,16 +975,17 @@ typedef struct masu_light {
 
 #define MASU_RUNG_AUTO UINT32_MAX
 
+/* Flags of particles. LIT: `color` is an albedo; without it, a radiance. The light is that of the
+ * sun, times the shadow map's visibility of the centre, and ambient light, with isotropic
+ * scattering as in thin smoke: color * (sun_color / 4 + ambient). ADDITIVE: additive blending,
+ * which occludes nothing. */
+#define MASU_PARTICLE_LIT 1u
+#define MASU_PARTICLE_ADDITIVE 2u
 /* A particle: a camera-facing sprite of elliptical shape with soft edges, for smoke, sparks, dust.
  * It is sorted with transparent surfaces by the distance of its centre, blended in linear light
  * before exposure, and tested against depth. Reflections and shadows do not include particles. They
  * are exposed, metered and anti-aliased with the image. Particles with a non-finite number, beyond
  * 1e15 m, or without size or opacity are skipped; values out of range are clamped. */
-/* `color` is an albedo; else a radiance. Light: the sun, times the shadow map's visibility of the
- * centre, and ambient light, with isotropic scattering as in thin smoke: color * (sun_color / 4 +
- * ambient) */
-#define MASU_PARTICLE_LIT 1u
-#define MASU_PARTICLE_ADDITIVE 2u /* additive blending, occludes nothing */
 typedef struct masu_particle {
     double position[3]; /* of the centre, world, metres */
     float half_width;   /* metres, at most 1e9 */
@@ -999,44 +993,42 @@ typedef struct masu_particle {
     float rotation;     /* radians, counterclockwise on the screen */
     float color[3];     /* linear, 0..4096, not multiplied by opacity */
     float opacity;      /* 0..1, at the centre */
-    /* fraction of the radius at which the fade to the edge starts, 0..1; 1: a disc */
+    /* Fraction of the radius at which the fade to the edge starts, 0..1; 1: a disc. */
     float edge;
-    /* metres before a surface or the near plane over which it fades out, which hides the line of
-     * intersection; 0: no fade */
+    /* Metres before a surface or the near plane over which it fades out, which hides the line of
+     * intersection; 0: no fade. */
     float soft;
     uint32_t flags; /* MASU_PARTICLE_* */
 } masu_particle;
 
+#define MASU_DECAL_ROUND 1u      /* an ellipse in x and y of the box; else a rectangle */
+#define MASU_DECAL_KEEP_COLOR 2u /* keeps colour and metallic: a puddle changes roughness only */
 /* A decal: a box that replaces the material of polygons and SDF surfaces inside it, before
  * lighting. It also covers their emission. Transparent and purely emissive surfaces do not receive
  * decals, and reflections show surfaces without decals. Later decals cover earlier ones. Decals
- * with a non-finite number, no volume or no opacity are skipped; values out of range are clamped.
- * */
-#define MASU_DECAL_ROUND 1u /* an ellipse in x and y of the box; else a rectangle */
-/* keeps colour and metallic: a wet street changes roughness only */
-#define MASU_DECAL_KEEP_COLOR 2u
+ * with a non-finite number, no volume or no opacity are skipped; values out of range are
+ * clamped. */
 typedef struct masu_decal {
-    /* 3x4 matrix from the box, -1..1 along each axis, to the world, row by row. The decal is
-     * projected along the z axis of the box, on surfaces that face it */
+    /* 3x4 matrix from box space, -1..1 along each axis, to the world, row by row. The decal is
+     * projected along the z axis of box space, on surfaces that face it. */
     float rows[12];
     float color[3]; /* albedo, linear, 0..1 */
     float opacity;  /* 0..1 */
-    /* perceptual, 0..1; 0: that of the surface. Smooth decals reflect by ray tracing, if the scene
-     * has reflections */
+    /* Perceptual, 0..1; 0: that of the surface. Smooth decals reflect by ray tracing, if the scene
+     * has reflections. */
     float roughness;
     float metallic; /* 0..1 */
     float edge;     /* fraction of the half width over which it fades out at its edge, 0..1 */
-    /* angle between z axis and surface normal, radians, 0..pi: full effect up to inner, none from
-     * outer on. Both 0: 1.05 and 1.4 */
+    /* Angle between z axis and surface normal, radians, 0..pi: full effect up to inner, none from
+     * outer on. Both 0: 1.05 and 1.4. */
     float inner, outer;
     uint32_t flags; /* MASU_DECAL_* */
 } masu_decal;
 
+#define MASU_LINE_ON_TOP 1u /* no depth test; else surfaces more than 0.5 % closer occlude it */
 /* A debug line: one pixel of the output wide, drawn in its exact colour after tone curve,
  * anti-aliasing and upscaling. The later one of two crossing lines is on top. Lines with a
  * non-finite number or beyond 1e15 m are skipped. */
-/* no depth test; else surfaces that are closer by more than 0.5 % occlude it */
-#define MASU_LINE_ON_TOP 1u
 typedef struct masu_line {
     double from[3], to[3];              /* world, metres */
     uint8_t from_color[4], to_color[4]; /* sRGB-encoded red, green, blue; the fourth is ignored */
@@ -1084,8 +1076,8 @@ typedef struct masu_frame_desc {
 } masu_frame_desc;
 
 /* Writes the uniforms of a frame and returns the command buffer to submit. Records and allocates
- * nothing. Call it when the slot is free: the frame before the last (frames_in_flight - 1) frames
- * has finished on the GPU. commands->rung is the rung of the frame.
+ * nothing. Call it when the slot is free: the frame that masu_frame returned frames_in_flight
+ * calls ago has finished on the GPU. commands->rung is the rung of the frame.
  *   MASU_ERROR_ARGUMENT   rung, target, camera, light or a parameter is out of range or not finite;
  *                         MASU_RUNG_AUTO without a governor; an array is NULL with a count above 0
  *   MASU_ERROR_LIMIT      more particles, decals or lines than desc.reserve
@@ -1161,7 +1153,7 @@ typedef struct masu_split {
     /* AFTER_UPSCALE with KEEP: HDR as the input of the tone curve, read only; layout and usage as
      * velocity. */
     masu_split_image hdr;
-    /* 1: `color` has red and blue exchanged (AFTER_UPSCALE, B8G8R8A8_SRGB target) */
+    /* 1: `color` has red and blue exchanged (AFTER_UPSCALE, B8G8R8A8_SRGB target). */
     uint32_t swapped;
 } masu_split;
 
@@ -1190,8 +1182,8 @@ typedef struct masu_frame_view {
     float output_projection[16];
     float jitter[2];     /* in `projection`: pixels of the render size, right and down */
     float near_distance; /* metres; a depth d is at a view z of near_distance / d */
-    /* masu_light.exposure: factor before the tone curve. Metered: multiplied by the factor that the
-     * GPU determines (masu_stats_info.exposure) */
+    /* Masu_light.exposure: factor before the tone curve. Metered: multiplied by the factor that the
+     * GPU determines (masu_stats_info.exposure). */
     float exposure;
     uint32_t render_width, render_height, output_width, output_height; /* of the viewport, pixels */
 } masu_frame_view;
@@ -1339,7 +1331,7 @@ typedef struct masu_model {
 
 typedef struct masu_instance_state {
     float rows[12]; /* as in masu_instance_set_transform */
-    /* world, metres: contains the transformed box of the mesh, with a small margin */
+    /* World, metres: contains the transformed box of the mesh, with a small margin. */
     float box_low[3], box_high[3];
     uint32_t index; /* for masu_instance_at */
     uint32_t mesh;
@@ -1484,14 +1476,14 @@ typedef struct masu_punctual_light {
 typedef struct masu_punctual_light_state {
     double position[3]; /* metres, world, or object space of `instance`; within 1e15 */
     float direction[3]; /* spot: direction of the light, same space; need not be unit length */
-    /* radiant intensity / pi, 0..1e9; 0: off. A white diffuse surface that faces the light at d
-     * metres has a radiance of color / d^2, less towards `range` */
+    /* Radiant intensity / pi, 0..1e9; 0: off. A white diffuse surface that faces the light at d
+     * metres has a radiance of color / d^2, less towards `range`. */
     float color[3];
     float range;   /* metres, 0..1e15: the light is 0 from this distance on */
     float radius;  /* of the source, metres, 1e-6..1e9: smallest distance d for the falloff */
     uint32_t spot; /* 0: point, 1: spot */
-    /* spot: angles from the direction, radians, 0 <= inner <= outer <= pi: full intensity up to
-     * inner, 0 from outer on */
+    /* Spot: angles from the direction, radians, 0 <= inner <= outer <= pi: full intensity up to
+     * inner, 0 from outer on. */
     float inner, outer;
     masu_instance instance; /* that the light is attached to; id 0: none */
 } masu_punctual_light_state;
@@ -1536,7 +1528,7 @@ typedef struct masu_material {
 
 typedef enum masu_material_mode {
     MASU_MATERIAL_OPAQUE = 0,
-    /* alpha-tested: discarded if the alpha of its map is below `cutoff` */
+    /* Alpha-tested: discarded if the alpha of its map is below `cutoff`. */
     MASU_MATERIAL_MASKED = 1,
     MASU_MATERIAL_BLENDED = 2,
     MASU_MATERIAL_ADDITIVE = 3 /* blended: adds its light, occludes nothing */
@@ -1549,7 +1541,7 @@ typedef struct masu_material_state {
     float emissive[3];   /* linear radiance, 0..1e9 */
     float roughness;     /* perceptual, 0..1 */
     float metallic;      /* 0..1 */
-    /* 0..1: dielectric reflectance at normal incidence / 0.08; default 0.5 */
+    /* 0..1: dielectric reflectance at normal incidence / 0.08; default 0.5. */
     float specular;
     float coat;              /* weight of the clear coat, 0..1 */
     float coat_roughness;    /* perceptual, 0..1 */
@@ -1560,8 +1552,8 @@ typedef struct masu_material_state {
 /* The first material with that name in the scene; id 0 if there is none. */
 MASU_API masu_material masu_material_find(const masu_renderer *renderer, const char *name);
 
-/* The material with that index, in the order of masu_scene_material_name; id 0 after the last one.
- * */
+/* The material with that index, in the order of masu_scene_material_name; id 0 after the last
+ * one. */
 MASU_API masu_material masu_material_at(const masu_renderer *renderer, uint32_t index);
 
 /* State of a material; initially that of the scene. MASU_ERROR_ARGUMENT: a pointer is NULL, or the
@@ -1578,9 +1570,9 @@ MASU_API MASU_MUST_USE masu_result masu_material_get(masu_renderer *renderer,
  *   MASU_ERROR_ARGUMENT   as masu_material_get; a value is out of range or not finite; or a member,
  *                         named in the detail, differs that would change a pass, an image or a
  *                         pipeline: `mode`; `cutoff`; `opacity` of a material that is not blended;
- *                         `specular` and `coat` if no opaque material of the scene has one of
- *                         these, mesoscale detail or an occlusion map; `coat` if no material has
- *                         one
+ *                         `specular` and `coat` if no opaque material of the scene has a
+ *                         specular factor, a clear coat, mesoscale detail or an occlusion map;
+ *                         `coat` if no material has a clear coat
  *   MASU_ERROR_STATE      desc.live_materials is 0 */
 MASU_API MASU_MUST_USE masu_result masu_material_set(masu_renderer *renderer,
                                                      masu_material material,
@@ -1589,7 +1581,7 @@ MASU_API MASU_MUST_USE masu_result masu_material_set(masu_renderer *renderer,
 /* ---- Frame plan ------------------------------------------------------------------------------ */
 
 typedef struct masu_plan_pass {
-    /* also the file name of the shader, the debug label and the timestamp's name */
+    /* Also the file name of the shader, the debug label and the timestamp's name. */
     const char *name;
     uint32_t active; /* bit r: the pass runs in rung r */
     const char *why; /* why the pass runs, or does not */
@@ -1663,17 +1655,17 @@ typedef struct masu_stats_info {
     uint64_t sdf_evals;       /* SDF evaluations of sphere tracing */
     uint64_t sdf_hits;        /* pixels whose closest surface is the SDF */
     uint64_t sdf_unconverged; /* rays that reached march_steps */
-    /* SDF evaluations of SDF shadows and SDF ambient occlusion */
+    /* SDF evaluations of SDF shadows and SDF ambient occlusion. */
     uint64_t shadow_evals, occlusion_evals;
     uint64_t shadow_unconverged; /* shadow rays that reached their step limit */
     uint64_t replaced;           /* non-finite pixel components that were replaced; should be 0 */
     uint64_t draws;              /* G-buffer draws with instances, before occlusion culling */
     uint64_t triangles;          /* of these draws; with debug.counters after occlusion culling */
     uint64_t transparents;       /* transparent primitives drawn, each with its own draw */
-    /* drawn: not skipped, and inside the view as far as tested */
+    /* Drawn: not skipped, and inside the view as far as tested. */
     uint32_t particles, decals, lines;
     uint64_t occlusion_tests; /* with debug.counters */
-    /* punctual lights of the scene; those that may light the view */
+    /* Punctual lights of the scene; those that may light the view. */
     uint32_t lights, lights_in_view;
     /* Punctual lights, with debug.counters: pairs of light and pixel tested, those with a
      * contribution, and 16x16 tiles with more than 63 lights, whose pixels test all lights. */
@@ -1682,7 +1674,7 @@ typedef struct masu_stats_info {
      * and rays that hit the SDF, BVH nodes visited, SDF evaluations. */
     uint64_t specular_tiles, specular_rays, specular_hits, specular_sdf_hits;
     uint64_t specular_nodes, specular_evals;
-    /* rungs[].easu FAST, with debug.counters: uniform 8x8 blocks of the output that skip the
+    /* Rungs[].easu FAST, with debug.counters: uniform 8x8 blocks of the output that skip the
      * filter. 0 without a scene. */
     uint64_t easu_tiles_early;
     uint64_t smaa_tiles; /* with debug.counters: 16x16 tiles that SMAA has blended */
@@ -1738,8 +1730,8 @@ typedef struct masu_pick_info {
     masu_instance instance;
     masu_model model;
     uint32_t node;
-    /* near_distance / view depth, as MASU_READBACK_DEPTH but with transparent surfaces; 0 for the
-     * sky */
+    /* Near_distance / view depth, as MASU_READBACK_DEPTH but with transparent surfaces; 0 for the
+     * sky. */
     float depth;
     double position[3]; /* of the surface point, world, metres; 0 for the sky */
 } masu_pick_info;
@@ -1751,8 +1743,8 @@ typedef struct masu_pick_info {
  * textures only if the alpha of its base colour is 0.5 or more. In rungs of another scale it uses
  * the render pixel that contains the centre of the output pixel, with temporal or camera.jitter at
  * its jittered sample position. Call it at the same point as masu_stats. MASU_ERROR_ARGUMENT:
- * desc.picking is 0, the slot does not exist, or a pointer is NULL. MASU_INCOMPLETE: as masu_stats.
- * */
+ * desc.picking is 0, the slot does not exist, or a pointer is NULL. MASU_INCOMPLETE: as
+ * masu_stats. */
 MASU_API masu_result masu_pick(const masu_renderer *renderer, uint32_t slot, masu_pick_info *out);
 
 /* Unpacks a texel of MASU_READBACK_NORMAL to a unit vector in world space. */
