@@ -1644,7 +1644,7 @@ typedef struct masu_view_stats {
 } masu_view_stats;
 
 typedef struct masu_stats_info {
-    uint64_t frame; /* the newest finished frame of the slot; UINT64_MAX: none yet */
+    uint64_t frame; /* number of the slot's last frame; UINT64_MAX: none yet */
     uint32_t rung;
     uint32_t pass_count;
     const char *pass_names[MASU_MAX_PASSES];
