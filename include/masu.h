@@ -464,9 +464,9 @@ typedef struct masu_targets {
 /* Tone curve: maps radiance times exposure to the output. ACES ends at white. NEUTRAL ends at
  * white, with LINEAR and PQ at the peak. */
 typedef enum masu_tone {
-    MASU_TONE_AUTO = 0, /* ACES */
-    MASU_TONE_NONE = 1, /* linear, clipped at white; with LINEAR and PQ at 10000 nits */
-    MASU_TONE_ACES = 2, /* filmic: a fit of the ACES reference rendering (Narkowicz 2016) */
+    MASU_TONE_AUTO = 0,   /* ACES */
+    MASU_TONE_NONE = 1,   /* linear, clipped at white; with LINEAR and PQ at 10000 nits */
+    MASU_TONE_ACES = 2,   /* filmic: a fit of the ACES reference rendering (Narkowicz 2016) */
     MASU_TONE_NEUTRAL = 3 /* Khronos PBR Neutral: linear up to 0.76 of the maximum, then desaturates
                              towards white */
 } masu_tone;
