@@ -1,5 +1,6 @@
 #!/bin/sh
-# man.sh PROGRAM VERSION: writes a manual page to stdout, generated from the --help texts of the program and its commands.
+# man.sh PROGRAM VERSION: writes a manual page to stdout, generated from the --help texts of the program
+# and its commands.
 set -eu
 folder=$(dirname "$0")
 # shellcheck source=package/help.sh
@@ -12,7 +13,8 @@ plain() {
     sed -e 's/\\/\\e/g' -e 's/-/\\-/g' -e "s/^\\([.']\\)/\\\\\&\\1/" -e "s/'/\\\\(aq/g" -e 's/`/\\(ga/g'
 }
 
-# The body of a help text, without the first line (the name). Headings such as "Options:" become the macro $1.
+# The body of a help text, without the first line (the name). Headings such as "Options:" become
+# the macro $1.
 body() {
     sed 1,2d | plain | awk -v macro="$1" '
         /^[A-Z][a-z ]*:$/ { print ".fi"; sub(/:$/, ""); print macro " " toupper($0); print ".nf"; next }
