@@ -65,12 +65,12 @@ bakes "$many"
 bakes "$(sed 's/{}}/{}}, "group": "g"/g' <<< "$many"), $(model '')"
 [ "$items" = 101 ] || fail "a hundred boxes in a group: $items items"
 
-refuses 'group: must be 1 to 8 names' "$(model ', "group": ""')"
-refuses 'group: must be 1 to 8 names' "$(model ', "group": "/a"')"
-refuses 'group: must be 1 to 8 names' "$(model ', "group": "a/"')"
-refuses 'group: must be 1 to 8 names' "$(model ', "group": "a//b"')"
-refuses 'group: must be 1 to 8 names' "$(model ', "group": "1/2/3/4/5/6/7/8/9"')"
-refuses 'what is "moving" is in no "group"' "$(model ', "group": "a", "moving": true')"
+refuses 'group: expected 1 to 8 names' "$(model ', "group": ""')"
+refuses 'group: expected 1 to 8 names' "$(model ', "group": "/a"')"
+refuses 'group: expected 1 to 8 names' "$(model ', "group": "a/"')"
+refuses 'group: expected 1 to 8 names' "$(model ', "group": "a//b"')"
+refuses 'group: expected 1 to 8 names' "$(model ', "group": "1/2/3/4/5/6/7/8/9"')"
+refuses 'a "moving" model cannot have a "group"' "$(model ', "group": "a", "moving": true')"
 refuses 'models\[0\].moving' "$(model ', "moving": 1')"
 refuses 'models\[0\].group' "$(model ', "group": 3')"
 
@@ -93,17 +93,17 @@ occluders 1 "$block, $block" # one mesh
 leaf='"base_color_map": "'$(realpath "${MADE:-build}")'/textures/leaf.tga"'
 seen_through() { # COUNT MODELS: so many warnings, no occluders
     occluders 0 "$2"
-    [ "$(grep -c 'warning: the mesh .* is masked, blended or inside out: it is no occluder' "$folder/err")" = "$1" ] ||
+    [ "$(grep -c 'warning: the mesh .* is alpha-tested, transparent or inside out: it cannot be an occluder' "$folder/err")" = "$1" ] ||
         fail "$2: not $1 warnings: $(cat "$folder/err")"
 }
 seen_through 1 "$(model ", \"occluder\": true, \"material\": {$leaf}")"
 seen_through 1 "$(model ", \"occluder\": true, \"material\": {$leaf, \"alpha\": \"blend\"}")"
 seen_through 1 "${block%\}}, \"material\": {$leaf}}"
 occluders 1 "$(model ", \"occluder\": true, \"material\": {$leaf, \"alpha\": \"opaque\"}")"
-refuses 'occluder: the mesh ".*" is no box: give two corners' \
+refuses 'occluder: the mesh ".*" is not a box: give two corners' \
     '{"mesh": {"sphere": {}}, "occluder": true}'
-refuses 'occluder: the mesh ".*" is no box' '{"mesh": {"plane": {}}, "occluder": true}'
-refuses 'occluder: the mesh ".*" is no box' "${block//\[\[*\]\]/true}"
+refuses 'occluder: the mesh ".*" is not a box' '{"mesh": {"plane": {}}, "occluder": true}'
+refuses 'occluder: the mesh ".*" is not a box' "${block//\[\[*\]\]/true}"
 refuses 'occluder: expected true or two corners' "$(model ', "occluder": [[0, 0, 0], [1, 0, 1]]')"
 refuses 'occluder' "$(model ', "occluder": 7')"
 refuses 'occluder' "$(model ', "occluder": [[0, 0, 0]]')"

@@ -81,11 +81,11 @@ ball='{"mesh": {"sphere": {"subdivisions": 3}}'
 scene "{\"models\": [$ball}], \"lods\": 4}" ': lods: expected a number from 0 to 3'
 scene "{\"models\": [$ball}], \"lods\": 1.5}" 'lods must be a whole number'
 scene "{\"models\": [$ball}], \"occluders\": -1}" ': occluders: expected a number from 0'
-scene "{\"models\": [$ball, \"merge\": 10}]}" '"merge" is for files'
+scene "{\"models\": [$ball, \"merge\": 10}]}" '"merge" needs "file"'
 scene "{\"models\": [$ball, \"group\": 3}]}" ': models\[0\].group: expected a string'
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n' > "$folder/t.obj"
 scene '{"models": [{"file": "t.obj", "merge": 0}]}' ': models\[0\].merge: expected a number'
-scene '{"models": [{"file": "t.obj", "merge": 1, "occluder": true}]}' 'what is "merge"d has no "occluder"'
+scene '{"models": [{"file": "t.obj", "merge": 1, "occluder": true}]}' '"merge" and "occluder" cannot be combined'
 
 # One placed twice with each of two colours, and a shape twice: three meshes in all.
 cat > "$folder/s.json" << 'END'
