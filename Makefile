@@ -61,6 +61,7 @@ $(BUILD)/obj/tests/%.o: FOLDER_FLAGS := -D_POSIX_C_SOURCE=200809L -UNDEBUG
 
 # ---- Rules ---------------------------------------------------------------------------------------
 
+comma := ,
 objects = $(patsubst %.c,$(BUILD)/obj/%.o,$(1))
 
 # For programs that load Vulkan drivers: lets the leak checker tell the drivers' leaks from ours.
@@ -169,17 +170,17 @@ hostile: $(BUILD)/bin/masu-bake $(BUILD)/bin/masu ## bake all of assimp-testmode
 check: deps-test ## install what is missing, build, run every test: DRIVERS=system, FULL=, LONG=
 	+$(V)$(more) check-built
 
-check-built: all scenes $(BUILD)/bin/masu-world $(UNIT_TESTS) $(GPU_TESTS) $(FUZZ_TESTS) $(DRIVER_INFO)
+check-built: all $(SCRIPT_SCENES) $(BUILD)/bin/masu-world $(UNIT_TESTS) $(GPU_TESTS) $(FUZZ_TESTS) $(DRIVER_INFO)
 	$(V)$(RUN_TESTS) $(RUN_UNIT) $(RUN_GPU)
 
-unit: all scenes $(BUILD)/bin/masu-world $(UNIT_TESTS) $(FUZZ_TESTS) ## run the tests that need no Vulkan driver: TESTS=name
+unit: all $(SCRIPT_SCENES) $(BUILD)/bin/masu-world $(UNIT_TESTS) $(FUZZ_TESTS) ## run the tests that need no Vulkan driver: TESTS=name
 	$(V)$(RUN_TESTS) $(RUN_UNIT)
 
 gpu: | $(filter unit,$(MAKECMDGOALS)) # they use one folder for results
-gpu: all scenes $(GPU_TESTS) $(DRIVER_INFO) ## run the tests that need one: DRIVERS=all TESTS=name
+gpu: all $(GPU_TESTS) $(DRIVER_INFO) ## run the tests that need one: DRIVERS=all TESTS=name
 	$(V)$(RUN_TESTS) $(RUN_GPU)
 
-stiff: all scenes $(BUILD)/tests/gpu/test_stiff $(DRIVER_INFO) ## print the march's errors on stiff scenes: DRIVERS=all
+stiff: all $(BUILD)/tests/gpu/test_stiff $(DRIVER_INFO) ## print the march's errors on stiff scenes: DRIVERS=all
 	$(V)$(RUN_TESTS) --gpu $(BUILD)/tests/gpu/test_stiff; code=$$?; \
 	    for f in $(BUILD)/test-results/*/test_stiff.log; do \
 	        echo; echo "$$f"; grep '^|\|^  figures' "$$f"; done; exit $$code

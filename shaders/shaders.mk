@@ -171,8 +171,9 @@ $(MADE)/tools/make_%: tools/generate/make_%.c $(wildcard shaders/shared/*.h) $(T
 	@mkdir -p $(@D)
 	$(V)$(CC) -std=c11 $(WARNINGS) -O2 -ffp-contract=off -Ishaders -Itools -I$(MADE)/gen $< -lm -o $@
 $(MADE)/tools/make_smaa_area: tools/generate/smaa_tables.h
-$(MADE)/gen/split_sum.h $(MADE)/gen/blue_noise.h $(MADE)/gen/smaa_area.h: $(MADE)/gen/%.h: $(MADE)/tools/make_%
+$(MADE)/gen/%.table: $(MADE)/tools/make_%
 	@mkdir -p $(@D)
 	@echo "  TABLE   $@"
-	$(V)$< > $@.new
-	$(V)$(call move_if_changed,$@.new,$@)
+	$(V)$< > $@
+$(MADE)/gen/split_sum.h $(MADE)/gen/blue_noise.h $(MADE)/gen/smaa_area.h: $(MADE)/gen/%.h: $(MADE)/gen/%.table
+	$(V)cmp -s $< $@ || cp $< $@

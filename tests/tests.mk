@@ -65,6 +65,15 @@ $(BUILD)/tests/fuzz/%: $(BUILD)/obj/tests/fuzz/%.o $(FUZZ_MAIN) $(TEST_ARCHIVES)
 $(DRIVER_INFO): $(BUILD)/obj/tests/driver_info.o $(KEEP_LOADED)
 	$(link)
 
+# Scenes that tests read, by name, are baked before these tests. Programs wait for them; scripts have no file to wait
+# with, so whoever runs scripts does.
+TEST_SCENES := $(shell tests/scenes_of.sh)
+scenes_named = $(if $(filter *,$(1)),$(SCENES),$(addprefix $(MADE)/scenes/,$(addsuffix .masu,$(1))))
+scenes_of_test = $(call scenes_named,$(subst $(comma), ,$(word 2,$(subst :, ,$(1)))))
+$(foreach t,$(filter unit/% gpu/%,$(TEST_SCENES)),$(eval $(BUILD)/tests/$(firstword $(subst :, ,$(t))): | $(call scenes_of_test,$(t))))
+SCRIPT_SCENES := $(sort $(foreach t,$(filter $(patsubst tests/%.sh,%:%,$(filter tests/scripts/%,$(SCRIPT_TESTS))),$(TEST_SCENES)), \
+    $(call scenes_of_test,$(t))))
+
 # The folder of masu bench.
 $(BUILD)/tests/gpu/test_bench: | $(MADE)/stiff/blend.masu $(MADE)/stiff/blend.truth.so
 
@@ -81,12 +90,12 @@ STIFF_OWN := $(STIFF_OWN:%=$(MADE)/stiff/%.masu)
 STIFF_SHARED := $(EXTREME:%=$(MADE)/stiff/%.masu)
 EXTREME := $(EXTREME:%=$(MADE)/scenes/extreme/%.masu)
 
-$(STIFF_OWN): $(MADE)/stiff/%.masu: tests/scenes/stiff/%.json tests/scenes/stiff/%.sdf $(MADE)/bin/masu-bake
+$(STIFF_OWN): $(MADE)/stiff/%.masu: tests/scenes/stiff/%.json tests/scenes/stiff/%.sdf $(MADE)/bin/masu-bake.code
 	@mkdir -p $(@D)
 	@echo "  BAKE    $<"
 	$(V)$(SANITIZER_ENV) $(MADE)/bin/masu-bake $< -o $@ --quiet
 
-$(EXTREME): $(MADE)/scenes/extreme/%.masu: tests/scenes/stiff/%.json tests/scenes/stiff/%.sdf $(MADE)/bin/masu-bake
+$(EXTREME): $(MADE)/scenes/extreme/%.masu: tests/scenes/stiff/%.json tests/scenes/stiff/%.sdf $(MADE)/bin/masu-bake.code
 	@mkdir -p $(@D)
 	@echo "  BAKE    $< --variants"
 	$(V)$(SANITIZER_ENV) $(MADE)/bin/masu-bake $< -o $@ --variants --quiet

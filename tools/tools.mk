@@ -74,18 +74,25 @@ docs-tables: $(BUILD)/bin/masu ## write docs/knobs.md: every knob of a rung, eve
 
 # ---- Scenes --------------------------------------------------------------------------------------
 
-# Those worth looking at are in scenes/, those of the tests in tests/scenes/; their blobs lie side by
-# side. A scene is baked again when any file of its folder changes: descriptions name models and GLSL
-# that lie beside them.
-SCENES := $(patsubst %.json,$(MADE)/scenes/%.masu,$(notdir $(wildcard scenes/*.json tests/scenes/*.json)))
-
+# Scenes to look at are in scenes/, those of the tests in tests/scenes/; their blobs share one folder. A scene is baked again
+# when its description, a file that it names or the code of masu-bake changes.
+SCENE_JSON := $(wildcard scenes/*.json tests/scenes/*.json)
+SCENES     := $(patsubst %.json,$(MADE)/scenes/%.masu,$(notdir $(SCENE_JSON)))
+scene_needs = $(subst $(comma), ,$(word 2,$(subst :, ,$(1))))
 define scene_rule
-$(MADE)/scenes/%.masu: $(1)/%.json $(MADE)/bin/masu-bake $(wildcard $(1)/*.*) $(MADE)/textures/made
+$(MADE)/scenes/$(basename $(notdir $(firstword $(subst :, ,$(1))))).masu: $(firstword $(subst :, ,$(1))) $(scene_needs) \
+    $(MADE)/bin/masu-bake.code $(MADE)/textures/made
 	@mkdir -p $$(@D)
 	@echo "  BAKE    $$<"
 	$$(V)$$(SANITIZER_ENV) $(MADE)/bin/masu-bake $$< -o $$@ --texture-path $(MADE)/textures
 endef
-$(foreach f,scenes tests/scenes,$(eval $(call scene_rule,$(f))))
+$(foreach n,$(shell scenes/needs.sh scenes tests/scenes),$(eval $(call scene_rule,$(n))))
+
+# The hash of what masu-bake runs: it changes only if the program does, not if a comment of its sources does.
+$(MADE)/bin/masu-bake.code: $(MADE)/bin/masu-bake
+	$(V)objcopy --strip-debug -R .note.gnu.build-id $< $@.stripped
+	$(V)cksum < $@.stripped > $@.new && rm $@.stripped
+	$(V)$(call move_if_changed,$@.new,$@)
 
 # The pictures that scenes/textures.json and the tests place: made here, by formula.
 # stb's JPEG writer shifts bits out of signed integers.
@@ -208,7 +215,6 @@ endif
 # ---- What GPUs' compilers make of the shaders ----------------------------------------------------
 
 # Without MASU_ISA_DRIVERS the rows of other GPUs than RADV's stay as they are.
-comma    := ,
 ISA_GPUS := vangogh,raven$(if $(MASU_ISA_DRIVERS),$(comma)skl$(comma)kbl$(comma)tgl$(comma)a630$(comma)a660)
 .PHONY: isa-table
 isa-table: $(BUILD)/bin/masu $(SCENES) ## write docs/report/isa.csv: every pipeline on the GPUs that the project is for
