@@ -1,6 +1,6 @@
-/* draft.c: see draft.h. */
+/* atomic_file.c: see atomic_file.h. */
 #define _POSIX_C_SOURCE 200809L
-#include "draft.h"
+#include "atomic_file.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -23,14 +23,14 @@ static bool is_at(int file, const char *path) {
            open_one.st_dev == there.st_dev;
 }
 
-bool masu_draft_hold(int file, const char *path) {
+bool masu_atomic_file_lock(int file, const char *path) {
     int r;
     do r = flock(file, LOCK_EX);
     while (r != 0 && errno == EINTR);
     return is_at(file, path);
 }
 
-int masu_draft_take_dead(const char *path, bool folder) {
+int masu_atomic_file_lock_stale(const char *path, bool folder) {
     struct stat about;
     if (lstat(path, &about) != 0 || (folder ? !S_ISDIR(about.st_mode) : !S_ISREG(about.st_mode)) || about.st_uid != geteuid())
         return -1;
@@ -55,7 +55,7 @@ static bool is_draft_of(const char *name, const char *target, size_t length) {
     return count && strcmp(at + pid + 1 + count, ".part") == 0;
 }
 
-void masu_draft_sweep(const char *target) {
+void masu_atomic_file_remove_stale(const char *target) {
     const char *slash = strrchr(target, '/'), *base = slash ? slash + 1 : target;
     size_t length = strlen(base), front = (size_t)(base - target);
     char *path = malloc(front + length + 2 + 256);
@@ -66,7 +66,7 @@ void masu_draft_sweep(const char *target) {
     for (struct dirent *entry; folder && (entry = readdir(folder));) {
         if (!is_draft_of(entry->d_name, base, length) || strlen(entry->d_name) > length + 256) continue;
         strcpy(path + front, entry->d_name);
-        int file = masu_draft_take_dead(path, false);
+        int file = masu_atomic_file_lock_stale(path, false);
         if (file < 0) continue;
         (void)unlink(path);
         (void)close(file);
@@ -78,18 +78,18 @@ void masu_draft_sweep(const char *target) {
 /* ---- Drafts ---- */
 
 /* Its permissions follow the umask, which mkstemp's would not. */
-int masu_draft_open(masu_draft *draft, const char *target) {
+int masu_atomic_file_open(masu_atomic_file *draft, const char *target) {
     size_t room = strlen(target) + 48;
     int problem = EEXIST;
-    *draft = (masu_draft){.file = -1, .name = malloc(room)};
+    *draft = (masu_atomic_file){.file = -1, .name = malloc(room)};
     if (!draft->name) return ENOMEM;
-    masu_draft_sweep(target);
+    masu_atomic_file_remove_stale(target);
     for (unsigned attempt = 0; attempt < ATTEMPTS && draft->file < 0 && problem == EEXIST; attempt++) {
         snprintf(draft->name, room, "%s.%ld-%u.part", target, (long)getpid(), attempt);
         draft->file = open(draft->name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (draft->file < 0) {
             problem = errno;
-        } else if (!masu_draft_hold(draft->file, draft->name)) {
+        } else if (!masu_atomic_file_lock(draft->file, draft->name)) {
             (void)close(draft->file);
             draft->file = -1;
         }
@@ -100,7 +100,7 @@ int masu_draft_open(masu_draft *draft, const char *target) {
     return problem;
 }
 
-int masu_draft_write(masu_draft *draft, const void *bytes, size_t count) {
+int masu_atomic_file_write(masu_atomic_file *draft, const void *bytes, size_t count) {
     const char *at = bytes;
     while (count) {
         ssize_t wrote = write(draft->file, at, count);
@@ -112,12 +112,12 @@ int masu_draft_write(masu_draft *draft, const void *bytes, size_t count) {
     return 0;
 }
 
-int masu_draft_finish(masu_draft *draft, const char *target) {
+int masu_atomic_file_commit(masu_atomic_file *draft, const char *target) {
     /* Without the sync, a power cut after the rename could still leave an empty file. */
     int problem = fsync(draft->file) != 0 && errno != EINVAL && errno != ENOSYS ? errno : 0;
     if (!problem && rename(draft->name, target) != 0) problem = errno;
     if (problem) {
-        masu_draft_drop(draft);
+        masu_atomic_file_discard(draft);
         return problem;
     }
     /* Renamed before it is closed: as long as it has this name, the lock is held. */
@@ -128,11 +128,11 @@ int masu_draft_finish(masu_draft *draft, const char *target) {
     return problem;
 }
 
-void masu_draft_drop(masu_draft *draft) {
+void masu_atomic_file_discard(masu_atomic_file *draft) {
     if (draft->file >= 0) {
         (void)unlink(draft->name);
         (void)close(draft->file);
     }
     free(draft->name);
-    *draft = (masu_draft){.file = -1, .name = NULL};
+    *draft = (masu_atomic_file){.file = -1, .name = NULL};
 }

@@ -1,104 +1,17 @@
-/* plan_isa.c: `masu plan --isa`: the command line of isa/isa.h.
- *
- * This process asks no driver. For each GPU it starts itself again with the same arguments and that GPU's
- * environment, in which MASU_ISA_CHILD names the GPU; that one compiles, and sends its rows through its standard
- * output. A compiler that crashes or hangs ends its own process alone. */
-#include "masu/plan.h"
-#include "masu/table.h"
-
-#include "bake/base/file.h"
-#include "bake/base/process.h"
-#include "image.h"
-#include "isa/isa.h"
+/* isa.c: `masu-lab isa`: the command line of lab/isa/ask.h, and its table. */
+#include "lab/command/commands.h"
+#include "lab/isa/ask.h"
+#include "lab/study/table.h"
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-enum { SECONDS = 900 };
-
-static const char child_variable[] = "MASU_ISA_CHILD";
-
-/* ---- The child ------------------------------------------------------------------------------- */
-
-bool masu_plan_is_isa_child(void) { return getenv(child_variable) != NULL; }
-
-static void say_pass(const char *pass) {
-    printf("at\t%s\n", pass);
-    fflush(stdout);
-}
-
-static int compile(masu_plan_options *o) {
-    static masu_isa_rows rows;
-    static masu_scene scene;
-    char error[1024];
-    uint8_t *bytes;
-    size_t count;
-    masu_detail detail;
-    int code = masu_use_ladder(o->ladder, &o->d.desc);
-    if (code) return code;
-    if (!masu_file_read(o->d.scene_path, (size_t)2 << 30, &bytes, &count, error, sizeof error))
-        return masu_cli_error("%s", error);
-    bool good = !masu_scene_bind(bytes, count, &scene, &detail);
-    if (!good) snprintf(error, sizeof error, "%s: %s", o->d.scene_path, detail.text);
-    o->d.desc.scene = &scene;
-    good = good && masu_isa_compile(&o->d.desc, say_pass, &rows, error, sizeof error);
-    free(bytes);
-    if (!good) return masu_cli_error("%s", error);
-    return masu_isa_send(&rows, stdout) ? MASU_CLI_OK : masu_cli_error("cannot write to standard output");
-}
-
-/* ---- The parent ------------------------------------------------------------------------------ */
-
-/* The rest of the last line that starts so; NULL: there is none. */
-static const char *last_line(const char *text, const char *start, char *out, size_t size) {
-    const char *found = NULL;
-    for (const char *line = text; line && *line; line = strchr(line, '\n'), line += line != NULL)
-        if (!strncmp(line, start, strlen(start))) found = line + strlen(start);
-    if (!found) return NULL;
-    snprintf(out, size, "%.*s", (int)strcspn(found, "\n"), found);
-    return out;
-}
-
-bool masu_plan_ask(const masu_isa_gpu *gpu, char **arguments, masu_isa_rows *rows) {
-    char error[2048], line[512];
-    const char *directory = masu_bake_temporary_directory();
-    const char *command[64] = {"/proc/self/exe"};
-    if (!directory) return false;
-    for (int i = 1; i < 63 && arguments[i]; i++) command[i] = arguments[i];
-    char *icd = masu_bake_join(directory, "icd.json");
-    if (!masu_isa_gpu_environment(gpu, icd, error, sizeof error)) {
-        masu_cli_error("%s", error);
-        free(icd);
-        return false;
-    }
-    masu_bake_buffer output = {0};
-    setenv(child_variable, gpu->name, 1);
-    masu_cli_progress("%s: compiling", gpu->name);
-    masu_bake_result r = masu_bake_run(command, SECONDS, &output);
-    masu_cli_progress_clear();
-    unsetenv(child_variable);
-    masu_isa_gpu_leave();
-    free(icd);
-    masu_bake_append(&output, "", 1);
-    const char *text = (const char *)output.data, *pass = last_line(text, "at\t", line, sizeof line);
-    bool good = false;
-    if (r.end == MASU_BAKE_SIGNALED) {
-        masu_cli_error("%s: its compiler crashed (signal %d) at pass %s", gpu->name, r.code, pass ? pass : "none");
-    } else if (r.end == MASU_BAKE_TIMEOUT) {
-        masu_cli_error("%s: its compiler took more than %d seconds, at pass %s", gpu->name, r.code,
-                       pass ? pass : "none");
-    } else if (r.end != MASU_BAKE_EXITED || r.code) {
-        const char *why = last_line(text, "masu: ", line, sizeof line);
-        masu_cli_error("%s: %s", gpu->name, why ? why : "its process failed");
-    } else {
-        good = masu_isa_receive(text, rows);
-        if (!good) masu_cli_error("%s: its rows cannot be read", gpu->name);
-    }
-    masu_bake_release(&output);
-    return good;
-}
+typedef struct options {
+    masu_desc desc;
+    const char *ladder, *gpus, *csv;
+    bool json;
+} options;
 
 static const masu_column columns[] = {
     {"gpu", NULL, NULL, NULL},
@@ -140,40 +53,14 @@ static int list_gpus(void) {
     return MASU_CLI_OK;
 }
 
-uint32_t masu_plan_gpus(const char *list, const masu_isa_gpu *out[MASU_PLAN_GPUS]) {
-    uint32_t n = 0;
-    for (const char *at = list;; at++) {
-        char name[32];
-        size_t length = strcspn(at, ",");
-        snprintf(name, sizeof name, "%.*s", (int)(length < 31 ? length : 31), at);
-        const masu_isa_gpu *gpu = masu_isa_gpu_find(name);
-        if (!gpu) {
-            masu_cli_usage_error("--isa: there is no GPU '%s'; --isa=help lists them", name);
-            return 0;
-        }
-        if (n == MASU_PLAN_GPUS) {
-            masu_cli_usage_error("--isa: at most %d GPUs", MASU_PLAN_GPUS);
-            return 0;
-        }
-        out[n++] = gpu;
-        at += length;
-        if (!*at) return n;
-    }
-}
-
-int masu_plan_isa(masu_plan_options *o, char **arguments) {
+static int ask_all(const options *o, const masu_isa_gpu *const *gpus, uint32_t count, const char *const *arguments) {
     static masu_isa_rows rows;
-    const masu_isa_gpu *gpus[MASU_PLAN_GPUS];
-    if (!arguments) return list_gpus();
-    uint32_t n = masu_plan_gpus(o->isa, gpus);
-    if (!n) return MASU_CLI_USAGE;
-    if (masu_plan_is_isa_child()) return compile(o);
     masu_table table;
     json_t *all = json_object();
     int code = MASU_CLI_OK;
     masu_table_open(&table, columns, "");
-    for (uint32_t i = 0; i < n; i++) {
-        if (!masu_plan_ask(gpus[i], arguments, &rows)) {
+    for (uint32_t i = 0; i < count; i++) {
+        if (!masu_isa_ask(gpus[i], arguments, &rows)) {
             code = MASU_CLI_FAILURE;
             continue;
         }
@@ -191,3 +78,41 @@ int masu_plan_isa(masu_plan_options *o, char **arguments) {
     }
     return code ? code : written;
 }
+
+static const masu_option rows[] = {
+    MASU_TEXT(options, gpus, "gpu", "GPU[,GPU...]", "the GPUs whose compilers are asked; --gpu=help lists them"),
+    MASU_OUTPUT_SIZE_ROW(options, desc.output),
+    MASU_LADDER_ROW(options, ladder, "1, 0.8 and 0.4 of the size (default off)"),
+    MASU_UINT(options, desc.frames_in_flight, "frames-in-flight", 1, MASU_MAX_FLIGHT, "1 to 3 (default 2)"),
+    MASU_UINT(options, desc.reserve.particles, "particles", 0, 65536,
+              "reserve room for that many particles of each frame (default 0)"),
+    MASU_UINT(options, desc.reserve.decals, "decals", 0, 1024, "the same for decals"),
+    MASU_UINT(options, desc.reserve.lines, "lines", 0, 65536, "the same for debug lines"),
+    MASU_FLAG(options, json, "json", "print JSON"),
+    MASU_FILE(options, csv, "csv", "FILE", "write every stage of every pipeline as CSV; - is standard output"),
+    {.name = NULL}};
+
+static int run(masu_cli *cli) {
+    options o = {.desc = {.output = {1920, 1080}, .targets = {.storage = 1}}};
+    masu_given given = {.most = 1, .excess = "one scene at a time"};
+    const masu_isa_gpu *gpus[MASU_ISA_GPUS];
+    int code;
+    char **argv = cli->argv;
+    if (!masu_options_read(cli, rows, &o, &given, &code)) return code;
+    if (o.gpus && !strcmp(o.gpus, "help")) return list_gpus();
+    if (!given.count) return masu_cli_usage_error("no scene is given");
+    if (masu_isa_is_child()) return masu_isa_child(given.arguments[0], o.ladder, &o.desc);
+    if (!o.gpus) return masu_cli_usage_error("no GPU is given: --gpu GPU[,GPU...]");
+    uint32_t count = masu_isa_list("--gpu", o.gpus, gpus);
+    if (!count) return MASU_CLI_USAGE;
+    return ask_all(&o, gpus, count, (const char *const *)argv + 1);
+}
+
+const masu_cli_command lab_isa = {
+    .name = "isa",
+    .arguments = "SCENE.masu --gpu GPU[,GPU...] [options]",
+    .summary = "compile every pipeline with GPUs' own compilers: registers, waves, instructions, spills",
+    .details = "Starts a process for each GPU, in which the GPU's driver compiles all pipelines of the frame plan\n"
+               "and runs nothing. RADV's GPUs need Mesa only. Intel's and Adreno's need the folder of drivers that\n"
+               "`make isa-drivers` builds, named by the environment variable MASU_ISA_DRIVERS.\n",
+    .run = run};

@@ -1,48 +1,49 @@
-/* plan_model.c: `masu plan --model`: the command line of model/write.h. */
-#include "masu/plan.h"
-
-#include "model/write.h"
+/* model.c: `masu-lab model`: the command line of lab/model/write.h. */
+#include "lab/command/commands.h"
+#include "lab/model/ask.h"
+#include "lab/model/write.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* The compilers of the classes that --isa names. Returns an exit code. */
-static int ask_compilers(const masu_plan_options *o, char **arguments, masu_issued issued[MASU_MODEL_CLASSES]) {
-    static masu_isa_rows rows;
-    const masu_isa_gpu *gpus[MASU_PLAN_GPUS];
-    uint32_t n = masu_plan_gpus(o->isa, gpus);
-    for (uint32_t i = 0; i < n; i++) {
-        uint32_t k = 0;
-        while (k < MASU_MODEL_CLASSES && strcmp(masu_model_classes[k].gpu, gpus[i]->name)) k++;
-        if (k == MASU_MODEL_CLASSES) {
-            return masu_cli_usage_error("--model has no class for %s: tgl, kbl, raven, vangogh or a630",
-                                        gpus[i]->name);
-        }
-        if (!masu_plan_ask(gpus[i], arguments, &rows)) return MASU_CLI_FAILURE;
-        masu_issued_make(&rows, &issued[k]);
-    }
-    return n ? MASU_CLI_OK : MASU_CLI_USAGE;
-}
+typedef struct options {
+    VkExtent2D size, drawn;
+    const char *ladder, *isa, *csv, *fragment;
+    double time;
+    masu_headless_desc host;
+} options;
 
-int masu_plan_model(const masu_plan_options *o, char **arguments) {
+static const masu_option rows[] = {
+    MASU_OUTPUT_SIZE_ROW(options, size),
+    MASU_TEXT(options, ladder, "ladder", "FILE|off",
+              "the rungs: those of a ladder.json of masu bench; off, 1, 0.8 and 0.4 of the size (default off)"),
+    MASU_SIZE(options, drawn, "drawn", "size of the frames that are rendered and counted (default: half of --size)"),
+    MASU_REAL(options, time, "time", "SECONDS", -1e9, 1e9, "moment of the scene and its camera"),
+    MASU_TEXT(options, isa, "isa", "GPU[,GPU...]",
+              "use the instruction counts of these GPUs' own compilers (masu-lab isa): tgl, kbl, raven,\n"
+              "vangogh, a630"),
+    MASU_FILE(options, csv, "csv", "FILE", "write every pass of every rung as CSV"),
+    MASU_FILE(options, fragment, "html-fragment", "FILE", "write the tables as one <section> of XHTML"),
+    MASU_DEVICE_ROWS(options, host),
+    {.name = NULL}};
+
+static int run_model(const options *o, const char *scene) {
     static masu_issued issued[MASU_MODEL_CLASSES];
-    masu_model_desc d = {.scene_path = o->d.scene_path,
+    masu_model_desc d = {.scene_path = scene,
                          .ladder_path = o->ladder,
-                         .size = o->d.desc.output,
+                         .size = o->size,
                          .drawn = o->drawn,
                          .time = o->time,
-                         .host = o->d.host,
+                         .host = o->host,
+                         .issued = issued,
                          .progress = masu_cli_progress_text};
     if (o->ladder && !strcmp(o->ladder, "auto"))
-        return masu_cli_usage_error("--model takes the rungs of a file, or off");
+        return masu_cli_usage_error("--ladder takes the rungs of a file, or off");
     if (o->ladder && !strcmp(o->ladder, "off")) d.ladder_path = NULL;
-    if (!d.drawn.width) { /* a quarter of the pixels: a CPU takes its time */
-        d.drawn = masu_count_size((VkExtent2D){(d.size.width + 1) / 2, (d.size.height + 1) / 2});
-    }
-    int code = o->isa ? ask_compilers(o, arguments, issued) : MASU_CLI_OK;
+    if (!d.drawn.width) d.drawn = masu_model_drawn(d.size);
+    int code = o->isa ? masu_model_ask(o->isa, scene, d.ladder_path, d.size, issued) : MASU_CLI_OK;
     if (code) return code;
-    d.issued = issued;
     masu_model_sheet *m = malloc(sizeof *m);
     uint32_t messages = 0;
     char error[4096];
@@ -58,3 +59,20 @@ int masu_plan_model(const masu_plan_options *o, char **arguments) {
     if (messages) return masu_cli_error("the validation layer has reported %u messages", messages);
     return MASU_CLI_OK;
 }
+
+static int run(masu_cli *cli) {
+    options o = {.size = {1920, 1080}, .time = 1.0, .host = {.message = masu_print_message}};
+    masu_given given = {.most = 1, .excess = "one scene at a time"};
+    int code;
+    if (!masu_options_read(cli, rows, &o, &given, &code)) return code;
+    if (!given.count) return masu_cli_usage_error("no scene is given");
+    return run_model(&o, given.arguments[0]);
+}
+
+const masu_cli_command lab_model = {
+    .name = "model",
+    .arguments = "SCENE.masu [options]",
+    .summary = "compute each pass's bytes, operations, and least time on five classes of GPU",
+    .details = "Renders each rung with counters in all shaders, and divides the counts by the peak rates of five\n"
+               "classes of GPU. All times are computed; none of these GPUs is needed.\n",
+    .run = run};

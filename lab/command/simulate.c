@@ -1,11 +1,12 @@
-/* simulate.c: `masu simulate`: the governor and rules of others on simulated GPUs (tools/simulate), as a
+/* simulate.c: `masu-lab simulate`: the governor and the rules of other engines on simulated GPUs, as a
  * table, as CSV, as plots. Needs no device. */
-#include "masu/options.h"
-#include "masu/simulate_record.h"
-#include "masu/table.h"
+#include "command/options.h"
+#include "lab/simulate/record.h"
+#include "lab/study/table.h"
 
 #include "cli/gnuplot.h"
-#include "simulate/simulate.h"
+#include "lab/simulate/controllers.h"
+#include "lab/simulate/trace.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -152,10 +153,10 @@ static void run_model(const sim_model *p, const options *o, masu_table *t, FILE 
     const sim_controller *list[CONTROLLERS_MOST];
     uint32_t count = 0;
     for (uint32_t c = 0; c < sim_controller_count; c++) {
-        if (o->controller && strcmp(o->controller, sim_controllers[c].name) != 0) continue;
-        list[count++] = &sim_controllers[c];
-        row r = measure(p, &sim_controllers[c], o->seeds);
-        add_row(t, p, sim_controllers[c].name, &r, o->seeds);
+        if (o->controller && strcmp(o->controller, sim_controllers[c]->name) != 0) continue;
+        list[count++] = sim_controllers[c];
+        row r = measure(p, sim_controllers[c], o->seeds);
+        add_row(t, p, sim_controllers[c]->name, &r, o->seeds);
     }
     if (!masu_cli_quiet()) {
         masu_table_print(t, stdout);
@@ -198,7 +199,7 @@ static bool is_known(const options *o) {
 static bool read_controller(masu_cli *cli, void *to) {
     const char *names[CONTROLLERS_MOST + 1] = {NULL};
     uint32_t controller = 0;
-    for (uint32_t c = 0; c < sim_controller_count; c++) names[c] = sim_controllers[c].name;
+    for (uint32_t c = 0; c < sim_controller_count; c++) names[c] = sim_controllers[c]->name;
     if (!masu_cli_choice(cli, names, &controller)) return false;
     ((options *)to)->controller = names[controller];
     return true;
@@ -241,7 +242,7 @@ static int run(masu_cli *cli) {
     return run_all(&o);
 }
 
-const masu_cli_command masu_cmd_simulate = {
+const masu_cli_command lab_simulate = {
     .name = "simulate",
     .arguments = "[TRACE.csv...] [options], or --record SCENE.masu TRACE.csv [options]",
     .summary = "the governor and rules of others on simulated GPUs",
@@ -249,5 +250,5 @@ const masu_cli_command masu_cmd_simulate = {
         "over: frames longer than the budget. changes: of the scale. settle: frames from the model's\n"
         "event until 30 in a row keep the budget and the scale does not fall. oracle: the mean scale of\n"
         "who knows every time before. Traces are times of a recorded scene: a line \"frame,SCALE,...\",\n"
-        "then a line per frame (tools/simulate/traces).\n",
+        "then a line per frame (lab/simulate/traces).\n",
     .run = run};

@@ -1,16 +1,10 @@
-/* main.c: masu-world writes the folder of a world, ready for masu-bake; see world.h. */
-#include "cli/cli.h"
-#include "masu.h"
-#include "world/world.h"
+/* world.c: `masu-lab world`: writes the folder of a world, ready for masu-bake; see lab/world/world.h. */
+#include "lab/command/commands.h"
+#include "lab/world/world.h"
 
 #include <errno.h>
 #include <string.h>
 #include <sys/stat.h>
-
-#define TEXT(x) #x
-#define NUMBER(x) TEXT(x)
-#define VERSION                                                                                    \
-    NUMBER(MASU_VERSION_MAJOR) "." NUMBER(MASU_VERSION_MINOR) "." NUMBER(MASU_VERSION_PATCH)
 
 #define TORCS "/usr/share/games/torcs"
 
@@ -75,29 +69,29 @@ static int run_forza(masu_cli *cli) {
     }
 }
 
-int main(int argc, char **argv) {
+static int run(masu_cli *cli) {
     static const masu_cli_option options[] = {
-        {"torcs", "DIR", "where the data of TORCS is\n(" TORCS ")", OPTION_TORCS, 0},
+        {"torcs", "DIR", "where the data of TORCS is\n(default " TORCS ")", OPTION_TORCS, 0},
         {NULL, NULL, NULL, 0, 0},
     };
     static const masu_cli_command city = {
         .name = "city",
         .arguments = "FOLDER",
-        .summary = "writes city.json and its parts: a city on four decks",
+        .summary = "write city.json and its parts: a city on four decks",
         .run = run_city,
     };
     static const masu_cli_command forza = {
         .name = "forza",
         .arguments = "FOLDER [options]",
-        .summary = "writes forza.json: the track forza of TORCS, ten cars, a lap",
+        .summary = "write forza.json: the track forza of TORCS, ten cars, a lap",
         .options = options,
         .run = run_forza,
     };
     static const masu_cli_command *const commands[] = {&city, &forza, NULL};
-    static const masu_cli_program program = {.name = "masu-world",
-                                             .version = VERSION,
-                                             .summary =
-                                                 "writes the scenes of whole worlds, for masu-bake",
-                                             .commands = commands};
-    return masu_cli_main(&program, argc, argv);
+    return masu_cli_commands(cli, lab_world.summary, commands);
 }
+
+const masu_cli_command lab_world = {.name = "world",
+                                    .arguments = "WORLD FOLDER [options]",
+                                    .summary = "write the scene of a whole world, for masu-bake",
+                                    .run = run};

@@ -12,7 +12,7 @@ bake=$(realpath "${BUILD:-build}/bin/masu-bake")
 masu=$(realpath "${BUILD:-build}/bin/masu")
 size=${SIZE:-480x270}
 
-. tools/gallery/outcome.sh
+. tests/outcome.sh
 
 html() { sed 's/&/\&amp;/g; s/</\&lt;/g; s/>/\&gt;/g'; }
 

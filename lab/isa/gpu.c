@@ -1,6 +1,6 @@
 /* gpu.c: see gpu.h. */
 #define _XOPEN_SOURCE 700 /* realpath */
-#include "isa/gpu.h"
+#include "lab/isa/gpu.h"
 
 #include <glob.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* isa.c: see isa.h. */
-#include "isa/isa.h"
-#include "isa/null_device.h"
+#include "lab/isa/isa.h"
+#include "lab/isa/null_device.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -7,7 +7,7 @@
 #ifndef MASU_ISA_H
 #define MASU_ISA_H
 
-#include "isa/gpu.h"
+#include "lab/isa/gpu.h"
 #include "masu.h"
 
 #include <stdio.h>

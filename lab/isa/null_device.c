@@ -1,5 +1,5 @@
 /* null_device.c: see null_device.h. */
-#include "isa/null_device.h"
+#include "lab/isa/null_device.h"
 
 #include <math.h>
 #include <stdlib.h>

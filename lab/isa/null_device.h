@@ -9,7 +9,7 @@
 #ifndef MASU_ISA_NULL_DEVICE_H
 #define MASU_ISA_NULL_DEVICE_H
 
-#include "isa/isa.h"
+#include "lab/isa/isa.h"
 
 #include <vulkan/vulkan.h>
 

@@ -1,9 +1,9 @@
 /* count.c: see count.h. */
-#include "model/count.h"
+#include "lab/model/count.h"
 #include "plan/compile.h"
 
-#include "bench/sweep/settings.h"
-#include "model/hook.h"
+#include "settings/setting.h"
+#include "lab/model/hook.h"
 #include "session.h"
 
 #include <stdio.h>

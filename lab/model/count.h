@@ -10,7 +10,7 @@
 #include "plan/frame.h"
 #include "headless.h"
 #include "plan/plan.h"
-#include "model/spirv_tally.h"
+#include "lab/model/spirv_tally.h"
 
 #define MASU_COUNT_NUMBERS 48u
 

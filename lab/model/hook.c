@@ -1,7 +1,7 @@
 /* hook.c: see hook.h. */
-#include "model/hook.h"
+#include "lab/model/hook.h"
 
-#include "model/spirv_reach.h"
+#include "lab/model/spirv_reach.h"
 
 #include "plan/frame.h"
 

@@ -9,7 +9,7 @@
 #define MASU_MODEL_HOOK_H
 
 #include "headless.h"
-#include "model/spirv_tally.h"
+#include "lab/model/spirv_tally.h"
 
 #define MASU_HOOK_SHADERS 192u
 

@@ -1,5 +1,5 @@
 /* issued.c: see issued.h. */
-#include "model/issued.h"
+#include "lab/model/issued.h"
 
 #include <math.h>
 #include <string.h>

@@ -12,7 +12,7 @@
 #ifndef MASU_MODEL_ISSUED_H
 #define MASU_MODEL_ISSUED_H
 
-#include "isa/isa.h"
+#include "lab/isa/isa.h"
 #include "plan/frame.h"
 
 typedef struct masu_issued {

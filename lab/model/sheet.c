@@ -1,5 +1,5 @@
 /* sheet.c: see sheet.h. */
-#include "model/sheet.h"
+#include "lab/model/sheet.h"
 
 #include <math.h>
 #include <string.h>

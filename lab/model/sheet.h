@@ -11,8 +11,8 @@
 #ifndef MASU_MODEL_SHEET_H
 #define MASU_MODEL_SHEET_H
 
-#include "model/count.h"
-#include "model/issued.h"
+#include "lab/model/count.h"
+#include "lab/model/issued.h"
 
 #define MASU_MODEL_CLASSES 5u
 #define MASU_MODEL_BUDGETS 2u

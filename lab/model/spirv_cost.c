@@ -1,6 +1,6 @@
 /* spirv_cost.c: see spirv_cost.h. Opcodes: Khronos SPIR-V specification, section 3.42; extended
  * instructions: SPIR-V extended instructions for GLSL, section 2. */
-#include "model/spirv_cost.h"
+#include "lab/model/spirv_cost.h"
 
 /* What an operation of one component takes, in units of the peak figure, where an addition is 1
  * and a fused multiply-add 2.

@@ -1,7 +1,7 @@
 /* spirv_reach.c: see spirv_reach.h. Values and ways are followed together (Wegman and Zadeck, "Constant Propagation
  * with Conditional Branches", TOPLAS 1991): what has not been reached has no value yet and counts for nothing where
  * ways meet; values only get less certain, ways only more, until nothing changes. */
-#include "model/spirv_reach.h"
+#include "lab/model/spirv_reach.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -4,7 +4,7 @@
 #ifndef MASU_SPIRV_REACH_H
 #define MASU_SPIRV_REACH_H
 
-#include "model/spirv_cost.h"
+#include "lab/model/spirv_cost.h"
 
 #include <stdbool.h>
 #include <vulkan/vulkan_core.h>

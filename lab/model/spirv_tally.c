@@ -1,8 +1,8 @@
 /* spirv_tally.c: see spirv_tally.h. The layout of a module is that of the SPIR-V specification,
  * section 2.4: annotations before types, types before functions. */
-#include "model/spirv_tally.h"
+#include "lab/model/spirv_tally.h"
 
-#include "model/spirv_cost.h"
+#include "lab/model/spirv_cost.h"
 
 #include <stdlib.h>
 #include <string.h>

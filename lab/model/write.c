@@ -1,7 +1,7 @@
 /* write.c: see write.h. */
-#include "model/write.h"
+#include "lab/model/write.h"
 
-#include "bench/sweep/ladder_file.h"
+#include "settings/ladder_file.h"
 #include "cli/markup.h"
 #include "image.h"
 
@@ -25,6 +25,10 @@ static bool read_ladder(const char *path, masu_count_desc *count, masu_model_she
 }
 
 /* ---- Making ---------------------------------------------------------------------------------- */
+
+VkExtent2D masu_model_drawn(VkExtent2D size) {
+    return masu_count_size((VkExtent2D){(size.width + 1) / 2, (size.height + 1) / 2});
+}
 
 bool masu_model_run(const masu_model_desc *d, masu_model_sheet *out, uint32_t *messages, char *error,
                     size_t error_size) {
@@ -281,29 +285,5 @@ bool masu_model_save(const masu_model_sheet *m, bool (*write)(const masu_model_s
     if (!good) snprintf(error, error_size, "out of memory");
     good = good && masu_file_write(path, text, bytes, error, error_size);
     free(text);
-    return good;
-}
-
-bool masu_model_write(const masu_model_desc *desc, const char *folder, char *error,
-                      size_t error_size) {
-    static const char *const names[] = {"ladder.json", "model.csv", MASU_MODEL_FRAGMENT};
-    char paths[3][4096];
-    for (uint32_t i = 0; i < 3; i++) {
-        if (snprintf(paths[i], sizeof paths[i], "%s/%s", folder, names[i]) >= 4096) {
-            snprintf(error, error_size, "%.200s: the path is too long", folder);
-            return false;
-        }
-    }
-    masu_model_desc d = *desc;
-    d.ladder_path = paths[0];
-    masu_model_sheet *m = malloc(sizeof *m);
-    if (!m) {
-        snprintf(error, error_size, "out of memory");
-        return false;
-    }
-    bool good = masu_model_run(&d, m, NULL, error, error_size) &&
-                masu_model_save(m, masu_model_csv, paths[1], error, error_size) &&
-                masu_model_save(m, masu_model_xhtml, paths[2], error, error_size);
-    free(m);
     return good;
 }

@@ -1,13 +1,11 @@
-/* write.h: `masu plan --model`: the sheet made (count.h, sheet.h) and written, as
- * text, as CSV, and as a part of an XHTML page. Each says that it is computed. */
+/* write.h: `masu-lab model`: computes the model sheet (count.h, sheet.h) and writes it as text, as CSV, and as a
+ * part of an XHTML page. Each output says that its times are computed. */
 #ifndef MASU_MODEL_WRITE_H
 #define MASU_MODEL_WRITE_H
 
-#include "model/sheet.h"
+#include "lab/model/sheet.h"
 
 #include <stdio.h>
-
-#define MASU_MODEL_FRAGMENT "model.xhtml" /* in the folder of `masu bench` */
 
 typedef struct masu_model_desc {
     const char *scene_path;
@@ -20,6 +18,9 @@ typedef struct masu_model_desc {
     void (*progress)(const char *text); /* may be NULL */
 } masu_model_desc;
 
+/* The default size of the frames that are counted: a quarter of the pixels, because a CPU driver is slow. */
+VkExtent2D masu_model_drawn(VkExtent2D size);
+
 /* Draws, counts, computes. `messages`: of the validation layer; may be NULL. False: `error`
  * holds one line. */
 bool masu_model_run(const masu_model_desc *desc, masu_model_sheet *out, uint32_t *messages, char *error,
@@ -31,10 +32,5 @@ bool masu_model_csv(const masu_model_sheet *model, FILE *f);
 bool masu_model_xhtml(const masu_model_sheet *model, FILE *f); /* one <section> */
 bool masu_model_save(const masu_model_sheet *model, bool (*write)(const masu_model_sheet *, FILE *),
                      const char *path, char *error, size_t error_size);
-
-/* For `masu bench`: the sheet of the folder's ladder.json, as model.csv and model.xhtml beside
- * it. */
-bool masu_model_write(const masu_model_desc *desc, const char *folder, char *error,
-                      size_t error_size);
 
 #endif

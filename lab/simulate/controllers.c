@@ -1,27 +1,10 @@
-/* controllers.c: our governor, and the rules of others written from descriptions of them, behind
- * one face. Those of others see what they see at home: a time per frame, and not at which scale
- * it was measured. Their scales are continuous and are snapped to the ladder, so that changes
- * mean the same. */
-#include "simulate/simulate.h"
+/* controllers.c: the rules of other engines, written from their descriptions. They see what they see in those
+ * engines: a time per frame, and not the scale at which it was measured. Their scales are continuous and are snapped
+ * to the ladder, so that the number of changes is comparable. */
+#include "lab/simulate/controllers.h"
 
 #include <math.h>
 #include <string.h>
-
-/* ---- Ours
- * -------------------------------------------------------------------------------------- */
-
-static void masu_init_state(sim_state *s, const masu_governor_rung *ladder, uint32_t rungs,
-                            double budget) {
-    const masu_governor_desc desc = {.mode = MASU_GOVERNOR_ON, .target_ms = (float)budget};
-    masu_governor_init(&s->governor, &desc, ladder, rungs);
-}
-static void masu_take(sim_state *s, const masu_governor_sample *k) {
-    masu_governor_sample_in(&s->governor, k);
-}
-static uint32_t masu_choose(sim_state *s, uint64_t frame, double *scale) {
-    (void)scale;
-    return masu_governor_pick(&s->governor, frame);
-}
 
 /* ---- Others
  * ------------------------------------------------------------------------------------ */
@@ -134,10 +117,10 @@ static void unreal_take(sim_state *s, const masu_governor_sample *k) {
     s->rival.held = s->rival.count = s->rival.over = 0; /* times of the old scale count no more */
 }
 
-const sim_controller sim_controllers[] = {
-    {"masu", masu_init_state, masu_take, masu_choose},
-    {"three_state", three_init, three_take, three_choose},
-    {"filament", rival_init, filament_take_0, rival_choose},
-    {"filament_10", rival_init, filament_take_10, rival_choose},
-    {"unreal", rival_init, unreal_take, rival_choose}};
+static const sim_controller three_state = {"three_state", three_init, three_take, three_choose};
+static const sim_controller filament = {"filament", rival_init, filament_take_0, rival_choose};
+static const sim_controller filament_10 = {"filament_10", rival_init, filament_take_10, rival_choose};
+static const sim_controller unreal = {"unreal", rival_init, unreal_take, rival_choose};
+
+const sim_controller *const sim_controllers[] = {&sim_masu, &three_state, &filament, &filament_10, &unreal};
 const uint32_t sim_controller_count = sizeof sim_controllers / sizeof *sim_controllers;

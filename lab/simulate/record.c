@@ -1,6 +1,6 @@
-/* simulate_record.c: times of a scene along its path, for `masu simulate`: each moment is drawn at
+/* record.c: records the frame times of a scene along its path, for `masu-lab simulate`: each moment is drawn at
  * every scale in turn, so that what else the machine does falls on all of them alike. */
-#include "masu/simulate_record.h"
+#include "lab/simulate/record.h"
 
 #include "clock.h"
 

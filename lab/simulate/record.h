@@ -1,8 +1,8 @@
-/* simulate_record.h: `masu simulate --record`: records the times of a scene. */
-#ifndef MASU_CMD_SIMULATE_RECORD_H
-#define MASU_CMD_SIMULATE_RECORD_H
+/* record.h: `masu-lab simulate --record`: records the frame times of a scene. */
+#ifndef LAB_RECORD_H
+#define LAB_RECORD_H
 
-#include "masu/cmd.h"
+#include "command/output.h"
 
 typedef struct masu_simulate_record {
     const char *scene, *name; /* the blob; the CSV file to write */

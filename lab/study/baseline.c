@@ -1,8 +1,8 @@
 /* baseline.c: see baseline.h. */
-#include "bench/study/baseline.h"
+#include "lab/study/baseline.h"
 
-#include "bench/measure/motion.h"
-#include "bench/measure/picture.h"
+#include "measure/motion.h"
+#include "measure/picture.h"
 #include "clock.h"
 #include "image.h"
 #include "metric/flip.h"
@@ -63,11 +63,7 @@ masu_rung masu_baseline_rung(const masu_scene *scene, const char **march) {
                       .light_tiles = MASU_OFF};
     *march = scene->sdf ? "auto" : "none";
     if (!scene->sdf) return rung;
-    /* The fragment march draws over polygons. */
-    if (!scene->instances && (scene->sdf_march >> MASU_MARCH_FRAGMENT & 1u)) {
-        rung.march = MASU_MARCH_FRAGMENT;
-        *march = "fragment";
-    } else if (scene->sdf_march >> MASU_MARCH_PLAIN & 1u) {
+    if (scene->sdf_march >> MASU_MARCH_PLAIN & 1u) {
         rung.march = MASU_MARCH_PLAIN;
         *march = "plain";
     }

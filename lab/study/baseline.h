@@ -10,7 +10,7 @@
  *
  * PICTURES. A setting's is the last of some frames in which the camera follows its path up to the
  * time of the truth, in steps of `step`. The plain one's with k samples is the mean of k frames, each with another
- * place in the pixel and other rays, as the truth's is (bench/measure/picture.h); textures then have the
+ * place in the pixel and other rays, as the truth's is (measure/picture.h); textures then have the
  * mips that k times the pixels would take. Equal error is looked for with Masu's own march in those
  * pictures, which finds surfaces to 0.002 of a pixel: the plain one stops at 0.1, which no number of
  * samples mends and a smaller tolerance would. Times are the plain march's. So is the error of the
@@ -18,13 +18,13 @@
  *
  * TIMES. Each has a renderer of its own, so that its history stays as warm as a game's. They take
  * turns: first in motion, all going on along the path, then at rest. The first round of both is
- * dropped. Ratios are medians over rounds (bench/measure/samples.h). A frame of k samples is taken for k
+ * dropped. Ratios are medians over rounds (measure/samples.h). A frame of k samples is taken for k
  * times one of one, but for what a moment needs once, the shadow maps; taking their mean is free. */
 #ifndef MASU_BENCH_BASELINE_H
 #define MASU_BENCH_BASELINE_H
 
-#include "bench/measure/samples.h"
-#include "bench/sweep/settings.h"
+#include "measure/samples.h"
+#include "settings/setting.h"
 #include "session.h"
 
 #define MASU_BASELINE_SETTINGS 8u

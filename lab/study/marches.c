@@ -1,7 +1,7 @@
-/* run.c: see run.h. */
-#include "bench/measure/run.h"
+/* marches.c: see marches.h. */
+#include "lab/study/marches.h"
 
-#include "bench/study/shade.h"
+#include "measure/shade.h"
 #include "clock.h"
 #include "image.h"
 #include "metric/image.h"
@@ -11,25 +11,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const masu_bench_names[MASU_BENCH_VARIANTS] = {[MASU_BENCH_FRAGMENT] = "plain_fragment",
-                                                           [MASU_BENCH_COMPUTE] = "plain_compute",
+const char *const masu_bench_names[MASU_BENCH_VARIANTS] = {[MASU_BENCH_PLAIN] = "plain",
                                                            [MASU_BENCH_SEED] = "seed",
                                                            [MASU_BENCH_MASU] = "masu",
-                                                           [MASU_BENCH_CONE8] = "cone8",
-                                                           [MASU_BENCH_CONES] = "cones",
                                                            [MASU_BENCH_CHECKERBOARD] =
-                                                               "checkerboard",
-                                                           [MASU_BENCH_UNPRUNED] = "unpruned"};
+                                                               "checkerboard"};
 
 static const masu_march marches[MASU_BENCH_VARIANTS] = {
-    [MASU_BENCH_FRAGMENT] = MASU_MARCH_FRAGMENT,
-    [MASU_BENCH_COMPUTE] = MASU_MARCH_PLAIN,
+    [MASU_BENCH_PLAIN] = MASU_MARCH_PLAIN,
     [MASU_BENCH_SEED] = MASU_MARCH_SEED,
     [MASU_BENCH_MASU] = MASU_MARCH_AUTO,
-    [MASU_BENCH_CONE8] = MASU_MARCH_CONE8,
-    [MASU_BENCH_CONES] = MASU_MARCH_CONES,
-    [MASU_BENCH_CHECKERBOARD] = MASU_MARCH_CHECKERBOARD,
-    [MASU_BENCH_UNPRUNED] = MASU_MARCH_UNPRUNED};
+    [MASU_BENCH_CHECKERBOARD] = MASU_MARCH_CHECKERBOARD};
 
 /* The passes whose time is the SDF's: those whose names begin like this. */
 static const char *const sdf_passes[] = {"update", "classify", "cone", "march"};
@@ -373,7 +365,7 @@ static bool measure(bench *b) {
     }
     /* What a frame costs besides: one whose march takes a single step. Where a scene has no plain
      * march, its own stands in. */
-    masu_march least = o->rows[MASU_BENCH_COMPUTE].there ? MASU_MARCH_PLAIN : MASU_MARCH_AUTO;
+    masu_march least = o->rows[MASU_BENCH_PLAIN].there ? MASU_MARCH_PLAIN : MASU_MARCH_AUTO;
     if (open_renderer(b, least, 1, false, &b->timed[REST]) <= 0) return false;
     if (!time_all(b)) return false;
     o->by_timestamps = trust_timestamps(b);

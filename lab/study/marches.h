@@ -1,29 +1,19 @@
-/* run.h: the ways of marching, each drawn and measured on one scene.
+/* marches.h: the ways of marching an SDF, each drawn and measured on one scene.
  *
  * A run opens a session without a renderer and makes renderers of its own: one that counts and
  * reads images back for each variant, and then, all alive together, one that is timed for each.
  * What a blob lacks is not there (MASU_ERROR_SCENE); any other failure ends the run. */
-#ifndef MASU_BENCH_RUN_H
-#define MASU_BENCH_RUN_H
+#ifndef LAB_MARCHES_H
+#define LAB_MARCHES_H
 
-#include "bench/measure/truth.h"
+#include "measure/truth.h"
 #include "metric/flip.h"
 #include "metric/march.h"
 #include "session.h"
 
-enum {
-    MASU_BENCH_FRAGMENT,
-    MASU_BENCH_COMPUTE,
-    MASU_BENCH_SEED,
-    MASU_BENCH_MASU,
-    MASU_BENCH_CONE8,
-    MASU_BENCH_CONES,
-    MASU_BENCH_CHECKERBOARD,
-    MASU_BENCH_UNPRUNED,
-    MASU_BENCH_VARIANTS
-};
+enum { MASU_BENCH_PLAIN, MASU_BENCH_SEED, MASU_BENCH_MASU, MASU_BENCH_CHECKERBOARD, MASU_BENCH_VARIANTS };
 
-/* "plain_fragment", "plain_compute", "seed", "masu", ... */
+/* "plain", "seed", "masu", "checkerboard" */
 extern const char *const masu_bench_names[MASU_BENCH_VARIANTS];
 
 typedef struct masu_bench_desc {
@@ -46,7 +36,7 @@ typedef struct masu_bench_row {
     double spread;      /* median / least of the wall times: how busy the machine was */
     uint32_t plausible; /* frames whose timestamps fit the wall clock */
     masu_march_errors errors; /* the rest with a truth only */
-    double rmse, ssim; /* of the frame's G-buffer against the truth, both shaded by bench/study/shade.h */
+    double rmse, ssim; /* of the frame's G-buffer against the truth, both shaded by measure/shade.h */
     masu_flip flip;
     masu_flip shown; /* of the picture that the GPU made: the driver's rounding is in it too */
 } masu_bench_row;

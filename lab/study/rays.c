@@ -1,5 +1,5 @@
 /* rays.c: rays, and what Embree says of them; see rays.h. */
-#include "bench/study/rays.h"
+#include "lab/study/rays.h"
 
 #include "clock.h"
 

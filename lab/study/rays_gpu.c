@@ -1,6 +1,6 @@
 /* rays_gpu.c: the compute program of rays.h. Buffers that the host sees: what is
  * measured is the walk, and a software driver has no others. */
-#include "bench/study/rays.h"
+#include "lab/study/rays.h"
 
 #include "clock.h"
 #include "trace_rays_comp.spv.h"

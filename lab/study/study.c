@@ -1,5 +1,7 @@
-/* study.c: `masu study`: the table of studies and the one command line of them all; see study.h. */
-#include "masu/study.h"
+/* study.c: `masu-lab study`: the table of studies and the one command line of them all; see study.h. */
+#include "lab/study/study.h"
+
+#include "lab/command/commands.h"
 
 #include "image.h"
 
@@ -8,9 +10,8 @@
 #include <string.h>
 
 static const masu_study *const studies[] = {
-    &masu_study_march, &masu_study_cull,        &masu_study_draw, &masu_study_lights,
-    &masu_study_ao,    &masu_study_reflections, &masu_study_rays, &masu_study_upscale,
-    &masu_study_image, &masu_study_temporal,    &masu_study_baseline};
+    &masu_study_march,   &masu_study_rays,  &masu_study_reflections, &masu_study_image,
+    &masu_study_upscale, &masu_study_temporal, &masu_study_baseline};
 enum { STUDIES = sizeof studies / sizeof *studies };
 
 static const masu_study *study_of(const masu_cli_command *command) {
@@ -41,7 +42,7 @@ static int run_study(masu_cli *cli) {
     return code;
 }
 
-/* As commands of `masu study`. */
+/* As commands of `masu-lab study`. */
 static int run(masu_cli *cli) {
     static masu_cli_command commands[STUDIES];
     static const masu_cli_command *list[STUDIES + 1];
@@ -53,7 +54,7 @@ static int run(masu_cli *cli) {
                                          .run = run_study};
         list[i] = &commands[i];
     }
-    return masu_cli_commands(cli, masu_cmd_study.summary, list);
+    return masu_cli_commands(cli, lab_study.summary, list);
 }
 
 bool masu_study_read_scales(masu_cli *cli, uint32_t most, double *scales, uint32_t *count) {
@@ -95,8 +96,8 @@ bool masu_study_save_grey(const char *path, const float *values, VkExtent2D size
     return good;
 }
 
-const masu_cli_command masu_cmd_study = {
+const masu_cli_command lab_study = {
     .name = "study",
     .arguments = "STUDY SCENE.masu [options]",
-    .summary = "measure one part of the renderer beside others, or beside the truth",
+    .summary = "measure one part of the renderer against alternatives or against ground truth",
     .run = run};

@@ -1,13 +1,12 @@
-/* study.h: `masu study NAME`: measurements that each answer one question about the renderer. A study is
- * a row: its name, its purpose, the options that it takes, and what it runs; a file study_NAME.c each.
- * What they share is here: the options, the command line, where tables go. A study measures and
- * compares; but for pictures that must be the same, it judges nothing. */
-#ifndef MASU_STUDY_H
-#define MASU_STUDY_H
+/* study.h: `masu-lab study NAME`: each study answers one question about the renderer by measuring. A study is a row:
+ * its name, its purpose, its options, and the function that runs it, in a file study_NAME.c. This header has what the
+ * studies share: options, command line, tables. Except for images that must be identical, a study only reports. */
+#ifndef LAB_STUDY_H
+#define LAB_STUDY_H
 
-#include "masu/cmd.h"
-#include "masu/options.h"
-#include "masu/table.h"
+#include "command/options.h"
+#include "command/output.h"
+#include "lab/study/table.h"
 
 /* The options of all studies, as far as each takes them. A study that has others makes a struct that
  * begins with this one. What is set before is the default. */
@@ -59,9 +58,8 @@ typedef struct masu_study {
 #define MASU_STUDY_DEVICE MASU_DEVICE_ROWS(masu_study_options, host)
 #define MASU_STUDY_END {.name = NULL}
 
-extern const masu_study masu_study_march, masu_study_cull, masu_study_draw, masu_study_lights,
-    masu_study_ao, masu_study_reflections, masu_study_rays, masu_study_upscale, masu_study_image,
-    masu_study_temporal, masu_study_baseline;
+extern const masu_study masu_study_march, masu_study_rays, masu_study_reflections, masu_study_image,
+    masu_study_upscale, masu_study_temporal, masu_study_baseline;
 
 /* The name of the scene's file without its folder and from its first dot on. */
 void masu_study_scene_name(const char *path, char *name, size_t size);

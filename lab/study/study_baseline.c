@@ -1,11 +1,11 @@
-/* study_baseline.c: `masu study baseline`: settings beside a baseline renderer, at their own errors and at
- * equal error: the command line of bench/study/baseline.h, and its tables. */
-#include "masu/study.h"
+/* study_baseline.c: `masu-lab study baseline`: settings beside a baseline renderer, at their own errors and at
+ * equal error: the command line of lab/study/baseline.h, and its tables. */
+#include "lab/study/study.h"
 
-#include "bench/sweep/ladder_file.h"
-#include "bench/measure/motion.h"
-#include "bench/measure/picture.h"
-#include "bench/study/baseline.h"
+#include "settings/ladder_file.h"
+#include "measure/motion.h"
+#include "measure/picture.h"
+#include "lab/study/baseline.h"
 #include "image.h"
 
 #include <math.h>
@@ -163,8 +163,7 @@ static void print_points(const masu_baseline *w) {
     fprintf(o->text, "\n");
 }
 
-/* Of the baseline and the first setting. 0 is what is not there, or not counted: the fragment
- * march counts nothing. */
+/* Of the baseline and the first setting. 0: not present, or not counted. */
 static void add_pair(masu_table *t, const char *name, double a, double b) {
     if (!(a > 0.0) && !(b > 0.0)) return;
     masu_table_text(t, name);

@@ -1,4 +1,4 @@
-/* study_image.c: `masu study image`: how far each chain of the finished picture (anti-aliasing,
+/* study_image.c: `masu-lab study image`: how far each chain of the finished picture (anti-aliasing,
  * upscaling, sharpening, at some render sizes) is from the picture without shortcuts, and what it
  * costs.
  *
@@ -6,9 +6,9 @@
  * a renderer; as many as a renderer takes are drawn in turns. The picture is that of a scene at
  * rest, after as many frames as the filters of reflections need; times are the least of frames in
  * turns. Nothing is judged. */
-#include "masu/study.h"
+#include "lab/study/study.h"
 
-#include "bench/measure/picture.h"
+#include "measure/picture.h"
 #include "clock.h"
 #include "image.h"
 #include "metric/flip.h"

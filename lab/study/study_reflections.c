@@ -1,13 +1,13 @@
-/* study_reflections.c: `masu study reflections`: what each filter of reflections buys: the error of frames at
+/* study_reflections.c: `masu-lab study reflections`: what each filter of reflections buys: the error of frames at
  * rest, with the camera in motion, with an object in motion, and after it has jumped, each beside the mean of
  * very many rays per pixel; flicker; and time of the passes.
  *
  * One renderer with a rung for each set of filters, and one that traces every pixel and adds up. Its first
  * frames are what unfiltered rays would bring, later ones after a cut are the truth: no ray is in both. Times
  * are the least of nine frames at rest. Nothing is judged. */
-#include "masu/study.h"
+#include "lab/study/study.h"
 
-#include "bench/study/specular.h"
+#include "measure/specular.h"
 #include "image.h"
 
 #include <stdio.h>

@@ -1,9 +1,8 @@
-/* study_temporal.c: `masu study temporal`: pictures with a past and without against the truth: the command line
- * of bench/study/temporal.h, and its table. */
-#include "masu/study.h"
+/* study_temporal.c: `masu-lab study temporal`: the command line of lab/study/temporal.h, and its table. */
+#include "lab/study/study.h"
 
-#include "bench/measure/picture.h"
-#include "bench/study/temporal.h"
+#include "measure/picture.h"
+#include "lab/study/temporal.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -132,17 +131,16 @@ static const masu_option rows[] = {
 
 const masu_study masu_study_temporal = {
     .name = "temporal",
-    .purpose = "many samples from one: with a past and without, and another's way, against the truth",
+    .purpose = "error and flicker with and without temporal upscaling, at rest and in motion",
     .arguments = "SCENE.masu [options]",
     .scenes_min = 1,
     .scenes_max = 1,
     .options = rows,
     .given = &given.study,
     .run = run,
-    .details = "Ways: without, a rung with nothing but its scale; temporal, the same with temporal=on; gsr2,\n"
-               "frames of the render size resolved on the CPU by Snapdragon GSR 2 (two passes), written anew,\n"
-               "without sharpening; temporal sharpens a little, and RCAS what is upscaled without.\n"
-               "Shown is FLIP of the last frame against the truth of masu render --truth. Motion follows the\n"
-               "scene's path and ends where the rest is. Flicker: mean difference of the last two frames, of\n"
-               "255; in slow motion less that of the two truths. Figures are means of some pictures that differ by\n"
-               "where the jitter began: one alone is off by up to 4 % more or less.\n"};
+    .details = "Ways: without, a rung that sets nothing but its scale; temporal, the same rung with temporal=on.\n"
+               "The table shows FLIP of the last frame against the ground truth of masu render --truth. The camera\n"
+               "follows the scene's path and ends at the time of the still frame. Flicker is the mean difference of\n"
+               "the last two frames, of 255; in slow motion less that of the two ground truths. Figures are means of\n"
+               "several images whose jitter sequences start at different positions, because a single image is off\n"
+               "by up to 4 %.\n"};

@@ -1,4 +1,4 @@
-/* study_upscale.c: `masu study upscale`: what a frame does to the finished picture, timed:
+/* study_upscale.c: `masu-lab study upscale`: what a frame does to the finished picture, timed:
  * upscaling and sharpening, by the library's rungs, and beside them shaders of the bench's own.
  *
  * A case is a row of the table below: a rung, which the library runs on the picture as it does in a
@@ -7,9 +7,9 @@
  * the device's timestamps, which Mesa 22.3's lavapipe is known to get wrong: a case where the two
  * differ by more than a tenth and 0.2 ms is marked. Then each picture is compared with that of the
  * case it is like. Nothing is judged. */
-#include "masu/study.h"
+#include "lab/study/study.h"
 
-#include "bench/study/upscale.h"
+#include "lab/study/upscale.h"
 #include "clock.h"
 #include "image.h"
 #include "metric/flip.h"
@@ -45,8 +45,6 @@ typedef struct bench_case {
 /* The first is what ratios are to. */
 static const bench_case cases[] = {
     {"easu+rcas", 17, 1, NULL, .rung = {.upscale = MASU_ON, .sharpen = MASU_ON, .sharpness = 0.2f}},
-    {"fsr1", 12 * 34.0 * 34 / 1024, 0, "easu+rcas",
-     .rung = {.upscale = MASU_ON, .sharpen = MASU_ON, .sharpness = 0.2f, .fuse = MASU_ON}},
     {"easu", 12, 0, NULL, .rung = {.upscale = MASU_ON, .sharpen = MASU_OFF}},
     {"easu-fast+rcas", 17, 1, "easu+rcas",
      .rung = {.upscale = MASU_ON, .sharpen = MASU_ON, .sharpness = 0.2f, .easu = MASU_EASU_FAST}},

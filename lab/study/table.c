@@ -1,6 +1,6 @@
 /* table.c: see table.h. */
 #define _POSIX_C_SOURCE 200809L
-#include "masu/table.h"
+#include "lab/study/table.h"
 
 #include "cli/cli.h"
 #include "image.h"

@@ -1,18 +1,18 @@
-/* temporal.h: pictures with a past and without, at rest and in motion, against the truth: what `rung.temporal` gives
- * beside one frame alone, and beside another's way to take the mean of many (bench/study/gsr2.h).
+/* temporal.h: images with and without temporal upscaling, of a stationary and of a moving camera, against ground
+ * truth: what `rung.temporal` gains over one frame by itself.
  *
  * All ways see the same scene and end at the same moment. Flicker is the mean absolute difference, of 255, of the last
- * two frames: at rest as it is, in slow motion less that of their two truths. What a picture of few samples is off by
- * depends on where its last ones lay, by 4 % either way: figures are means over several starts of the jitter. Nothing here judges. */
-#ifndef MASU_BENCH_TEMPORAL_H
-#define MASU_BENCH_TEMPORAL_H
+ * two frames: at rest as it is, in slow motion less that of the two ground truths. The error of an image of few samples
+ * depends by 4 % on where the last samples were, so figures are means over several starts of the jitter sequence. */
+#ifndef LAB_TEMPORAL_H
+#define LAB_TEMPORAL_H
 
 #include "session.h"
 
-typedef enum masu_past_way { MASU_PAST_NONE, MASU_PAST_OWN, MASU_PAST_GSR2, MASU_PAST_WAYS } masu_past_way;
+typedef enum masu_past_way { MASU_PAST_NONE, MASU_PAST_OWN, MASU_PAST_WAYS } masu_past_way;
 typedef enum masu_past_motion { MASU_PAST_REST, MASU_PAST_SLOW, MASU_PAST_FAST, MASU_PAST_MOTIONS } masu_past_motion;
 
-/* "without", "temporal", "gsr2"; "rest", "slow", "fast" */
+/* "without", "temporal"; "rest", "slow", "fast" */
 extern const char *const masu_past_ways[MASU_PAST_WAYS];
 extern const char *const masu_past_motions[MASU_PAST_MOTIONS];
 

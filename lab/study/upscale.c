@@ -1,5 +1,5 @@
 /* upscale.c: see upscale.h. */
-#include "bench/study/upscale.h"
+#include "lab/study/upscale.h"
 
 #include "clock.h"
 #include "plan/push.h"

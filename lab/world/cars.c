@@ -7,7 +7,7 @@
  *
  * A car stands on the road where its wheels do: the plane through the ground below them turns it,
  * and its own height. */
-#include "world/world.h"
+#include "lab/world/world.h"
 
 #include "bake/base/file.h"
 #include "bake/import/import.h"

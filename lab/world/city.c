@@ -8,7 +8,7 @@
  *            20 s the crowd on the square of the middle, 30 s all of it from above
  *
  * Everything comes from one generator of random numbers with a fixed seed. */
-#include "world/world.h"
+#include "lab/world/world.h"
 
 #include <math.h>
 #include <stdint.h>

@@ -12,7 +12,7 @@
  *            from above ("high"): their times are printed
  *   lights   two spots that are off, "head0" and "head1", for a program to give to a car
  *   track    forza.track: the road and the cars in numbers, for a program that drives (docs/drive.md) */
-#include "world/world.h"
+#include "lab/world/world.h"
 
 #include "bake/base/file.h"
 #include "bake/import/import.h"

@@ -1,5 +1,5 @@
 /* mesh.c: see mesh.h. */
-#include "world/mesh.h"
+#include "lab/world/mesh.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 /* parts.c: the parts of the city, one OBJ file each. Metres; y is up, a facade's outside is
  * +z, and a part stands on y = 0 (what hangs, hangs below it). Sizes are multiples of the facade's
  * module: 6 m wide, floors of 3 m. */
-#include "world/mesh.h"
-#include "world/world.h"
+#include "lab/world/mesh.h"
+#include "lab/world/world.h"
 
 #define WALL "wall"
 #define TRIM "trim"

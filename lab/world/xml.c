@@ -1,7 +1,7 @@
 /* xml.c: what is read of TORCS's parameter files, by looking for the tags: sections that hold
  * no sections, and single values. No parser: the files have entities and a DTD, and none of that
  * stands near what is wanted. Values are in the unit that the file names, which is not looked at. */
-#include "world/world.h"
+#include "lab/world/world.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -5,9 +5,9 @@
 #include "support/support.h"
 #include "support/cli.h"
 
-#include "bench/sweep/ladder.h"
-#include "bench/sweep/report.h"
-#include "bench/sweep/sweep.h"
+#include "settings/ladder.h"
+#include "bench/report.h"
+#include "bench/sweep.h"
 
 #include <jansson.h>
 #include <math.h>

@@ -5,7 +5,7 @@
 #include "support/support.h"
 #include "support/files.h"
 
-#include "bench/measure/picture.h"
+#include "measure/picture.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
  * ratios from 1 to 2.5, garbage around the valid rectangle. */
 #include "support/support.h"
 
-#include "bench/study/upscale.h"
+#include "lab/study/upscale.h"
 #include "easu_fast_bytes_counted_comp.spv.h"
 #include "easu_fast_counted_comp.spv.h"
 #include "reference/fsr1.h"

@@ -1,5 +1,5 @@
 /* ao.c: see ao.h. */
-#include "bench/study/ao.h"
+#include "support/ao.h"
 
 #include "scene/scene.h"
 

@@ -11,7 +11,7 @@
 #ifndef MASU_BENCH_AO_H
 #define MASU_BENCH_AO_H
 
-#include "bench/measure/truth.h"
+#include "measure/truth.h"
 
 typedef struct masu_ao_world {
     void *device, *scene; /* Embree's; NULL: no polygons */

@@ -1,12 +1,12 @@
-/* simulate.h: simulated GPUs and scenes for controllers of resolution, and the controllers that are
- * compared on them. Deterministic: a model, a controller and a seed give the same frames with every
- * compiler. Linked by tests/unit/test_governor.c and by `masu simulate`.
+/* simulated_gpu.h: simulated GPUs and scenes, on which a controller of resolution is run. Deterministic: a model, a
+ * controller and a seed give the same frames with every compiler. The governor's tests use them, and so does
+ * `masu-lab simulate`, which has other engines' controllers and recorded traces (lab/simulate).
  *
  *   true ms = clock(f) * (fixed + load(f) * s^exponent) * (1 + noise * (u - 0.5))
  *
  * u is uniform in 0..1. A sample of frame f is known when frame f + latency is decided. */
-#ifndef SIMULATE_H
-#define SIMULATE_H
+#ifndef SUPPORT_SIMULATED_GPU_H
+#define SUPPORT_SIMULATED_GPU_H
 
 #include "quality/governor.h"
 
@@ -36,7 +36,7 @@ typedef enum sim_lie {
     SIM_GARBAGE /* any of these, and any bits */
 } sim_lie;
 
-/* Times of a recorded scene: a row per frame, a column per scale. */
+/* Times of a recorded scene: a row per frame, a column per scale (lab/simulate/trace.h reads one). */
 typedef struct sim_trace {
     char name[64];
     uint32_t frames, columns;
@@ -107,9 +107,7 @@ typedef struct sim_controller {
     uint32_t (*pick)(sim_state *state, uint64_t frame, double *scale);
 } sim_controller;
 
-/* masu, three_state, filament, filament_headroom, unreal */
-extern const sim_controller sim_controllers[];
-extern const uint32_t sim_controller_count;
+extern const sim_controller sim_masu; /* the library's governor */
 
 /* One frame of a run. */
 typedef struct sim_frame {
@@ -139,11 +137,5 @@ uint32_t sim_ladder(const sim_model *p, masu_governor_rung out[SIM_RUNGS]);
 /* The largest rung's scale that keeps the budget with all the noise there may be, and knows the
  * load: what nobody can beat. */
 double sim_oracle(const sim_model *p);
-
-/* "frame,1,0.88,...": a line of scales, then a line per frame. False: `error` says why. The path of what is parsed is
- * for its name, and for messages. */
-bool sim_trace_parse(FILE *file, const char *path, sim_trace *out, char *error, size_t error_size);
-bool sim_trace_read(const char *path, sim_trace *out, char *error, size_t error_size);
-sim_model sim_of_trace(const sim_trace *trace);
 
 #endif

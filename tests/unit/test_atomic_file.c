@@ -1,5 +1,5 @@
 /*
- * test_draft.c: drafts of files (platform/draft.h) and folders for scratch (bake/base/file.h): what a maker that is killed
+ * test_atomic_file.c: drafts of files (platform/atomic_file.h) and folders for scratch (bake/base/file.h): what a maker that is killed
  * leaves is gone when the next one comes; what a running one holds stays.
  */
 #include <setjmp.h>
@@ -18,7 +18,7 @@
 #include <unistd.h>
 
 #include "bake/base/file.h"
-#include "draft.h"
+#include "atomic_file.h"
 #include "image.h"
 #include "support/files.h"
 
@@ -78,10 +78,10 @@ static void end(maker m, int number) {
 }
 
 static void write_a_draft(int wait) {
-    masu_draft draft;
-    if (masu_draft_open(&draft, in_scratch("x.png")) || masu_draft_write(&draft, "old", 3)) _exit(1);
+    masu_atomic_file draft;
+    if (masu_atomic_file_open(&draft, in_scratch("x.png")) || masu_atomic_file_write(&draft, "old", 3)) _exit(1);
     begun_and_told(wait);
-    _exit(masu_draft_finish(&draft, in_scratch("x.png")) != 0);
+    _exit(masu_atomic_file_commit(&draft, in_scratch("x.png")) != 0);
 }
 
 static void assert_holds(const char *name, const char *text) {
@@ -111,7 +111,7 @@ static void the_draft_of_a_running_maker_stays(void **state) {
     (void)state;
     maker m = start(write_a_draft);
     write_x("new");
-    masu_draft_sweep(in_scratch("x.png"));
+    masu_atomic_file_remove_stale(in_scratch("x.png"));
     assert_int_equal(entries(scratch), 2);
     assert_holds("x.png", "new");
     end(m, 0);

@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "bench/sweep/settings.h"
+#include "bench/settings.h"
 
 #include <stdio.h>
 #include <string.h>

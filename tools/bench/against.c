@@ -1,7 +1,7 @@
 /* against.c: see against.h. */
-#include "bench/sweep/against.h"
+#include "bench/against.h"
 
-#include "bench/sweep/sweep.h"
+#include "bench/sweep.h"
 
 #include <jansson.h>
 #include <math.h>
@@ -30,15 +30,23 @@ static json_t *load(const char *folder, const char *name, char *error, size_t er
     return NULL;
 }
 
+/* What a folder was measured on. A folder of docs/report has no sweep.json (keep.sh): its ladder.json says less. */
+static json_t *about(const char *folder, bool *whole, char *error, size_t error_size) {
+    json_t *sweep = load(folder, "sweep.json", error, error_size);
+    *whole = sweep != NULL;
+    return sweep ? sweep : load(folder, "ladder.json", NULL, 0);
+}
+
 bool masu_against_same(const char *here, const char *there, char *error, size_t error_size) {
-    json_t *a = load(here, "sweep.json", error, error_size);
-    json_t *b = a ? load(there, "sweep.json", error, error_size) : NULL;
+    bool whole_a, whole_b = false;
+    json_t *a = about(here, &whole_a, error, error_size);
+    json_t *b = a ? about(there, &whole_b, error, error_size) : NULL;
     bool good = b != NULL;
     for (size_t i = 0; i < sizeof same_keys / sizeof *same_keys && good; i++) {
-        const json_t *of_a = json_object_get(a, same_keys[i]);
-        if (json_equal(of_a, json_object_get(b, same_keys[i]))) continue;
-        snprintf(error, error_size, "%.2000s: \"%s\" in sweep.json is not that of %.2000s", there,
-                 same_keys[i], here);
+        const json_t *of_a = json_object_get(a, same_keys[i]), *of_b = json_object_get(b, same_keys[i]);
+        if (json_equal(of_a, of_b) || (!of_a && !whole_a) || (!of_b && !whole_b)) continue;
+        snprintf(error, error_size, "%.2000s: \"%s\" in %s is not that of %.2000s", there, same_keys[i],
+                 whole_b ? "sweep.json" : "ladder.json", here);
         good = false;
     }
     json_decref(a);

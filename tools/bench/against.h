@@ -7,7 +7,7 @@
 #ifndef MASU_BENCH_AGAINST_H
 #define MASU_BENCH_AGAINST_H
 
-#include "bench/sweep/table.h"
+#include "bench/table.h"
 
 #include "masu.h"
 

@@ -1,8 +1,8 @@
 /* machine.c: see machine.h. */
 #define _GNU_SOURCE /* sched_getaffinity */
-#include "bench/sweep/machine.h"
+#include "bench/machine.h"
 
-#include "bench/sweep/sweep.h"
+#include "bench/sweep.h"
 #include "image.h"
 
 #include <jansson.h>

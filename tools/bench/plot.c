@@ -1,7 +1,7 @@
 /* plot.c: see plot.h. */
-#include "bench/sweep/plot.h"
+#include "bench/plot.h"
 
-#include "bench/sweep/sweep.h"
+#include "bench/sweep.h"
 #include "cli/gnuplot.h"
 #include "image.h"
 

@@ -6,7 +6,7 @@
 #ifndef MASU_BENCH_PLOT_H
 #define MASU_BENCH_PLOT_H
 
-#include "bench/sweep/table.h"
+#include "bench/table.h"
 
 /* What is drawn: the rows, their place in time (as the ladder has it), and the ladder. */
 typedef struct masu_plot {

@@ -1,21 +1,23 @@
 /* report.c: see report.h. The page is XHTML: strict enough to be checked by a
  * machine. */
-#include "bench/sweep/report.h"
+#include "bench/report.h"
 
-#include "bench/sweep/ladder.h"
-#include "bench/sweep/machine.h"
-#include "bench/measure/picture.h"
-#include "bench/sweep/plot.h"
-#include "bench/sweep/sweep.h"
-#include "bench/sweep/sweep_files.h"
+#include "settings/ladder.h"
+#include "bench/machine.h"
+#include "measure/picture.h"
+#include "bench/plot.h"
+#include "bench/sweep.h"
+#include "bench/sweep_files.h"
 #include "cli/markup.h"
 #include "image.h"
 #include "metric/flip.h"
+#include "settings/ladder_file.h"
 
 #include <jansson.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 typedef struct report {
     const char *folder;
@@ -461,18 +463,6 @@ static void put_all(report *r) {
     fputs("</table></div>\n", r->page);
 }
 
-/* The model sheet, which `masu bench` leaves in the folder as a part of a page. */
-static void put_model(report *r) {
-    char path[4096];
-    uint8_t *bytes = NULL;
-    size_t count = 0;
-    if (!masu_sweep_path(r->folder, "model.xhtml", path) ||
-        !masu_file_read(path, MASU_IMAGE_FILE_BYTES_MAX, &bytes, &count, NULL, 0))
-        return;
-    fwrite(bytes, 1, count, r->page);
-    free(bytes);
-}
-
 static bool put_pictures(report *r) {
     char path[4096];
     fputs("<h2>Pictures</h2>\n<h3>The truth</h3>\n<p class=\"pair\">", r->page);
@@ -507,7 +497,6 @@ static bool write_page(report *r) {
     put_ladder(r);
     bool good = put_plots(r);
     put_techniques(r);
-    put_model(r);
     good = good && put_pictures(r);
     put_all(r);
     fputs("</body>\n</html>\n", r->page);
@@ -528,10 +517,25 @@ static void release(report *r) {
     free(r->rungs);
 }
 
+/* Those of ladder.json, where there is no sweep.json: a folder of docs/report. */
+static bool kept_rungs(const char *folder, masu_setting_list *out, char *error, size_t error_size) {
+    char path[4096];
+    masu_ladder_file ladder;
+    if (!masu_sweep_path(folder, "ladder.json", path) || !masu_ladder_read(path, &ladder, error, error_size))
+        return false;
+    out->count = ladder.count;
+    for (uint32_t i = 0; i < ladder.count; i++) memcpy(out->id[i], ladder.settings[i], MASU_SETTING_ID);
+    return true;
+}
+
 bool masu_report_rungs(const char *folder, masu_setting_list *out, char *error, size_t error_size) {
+    char path[4096];
     masu_report_result result = {0};
     report r = {.folder = folder, .out = &result, .error = error, .error_size = error_size};
     memset(out, 0, sizeof *out);
+    if (masu_sweep_path(folder, "sweep.json", path) && access(path, F_OK) &&
+        masu_sweep_path(folder, "ladder.json", path) && !access(path, F_OK))
+        return kept_rungs(folder, out, error, error_size);
     bool good = read_all(&r) && find_ladder(&r);
     for (uint32_t i = 0; i < r.rung_count && good; i++)
         memcpy(out->id[out->count++], r.rows[r.rungs[i]].setting, MASU_SETTING_ID);

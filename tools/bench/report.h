@@ -6,7 +6,7 @@
 #ifndef MASU_BENCH_REPORT_H
 #define MASU_BENCH_REPORT_H
 
-#include "bench/sweep/sweep.h"
+#include "bench/sweep.h"
 
 typedef struct masu_report_result {
     uint32_t rows, settings, rungs; /* rows there are of settings there should be */
@@ -15,7 +15,8 @@ typedef struct masu_report_result {
     bool by_timestamps; /* times of the ladder; else the wall clock's */
 } masu_report_result;
 
-/* The rungs that ladder.json has or would have now, in order. False: `error` holds one line. */
+/* The rungs that ladder.json has or would have now, in order. Of a folder without sweep.json (docs/report) those of
+ * its ladder.json. False: `error` holds one line. */
 bool masu_report_rungs(const char *folder, masu_setting_list *out, char *error, size_t error_size);
 
 /* What to time again: the first seven rungs that have no times in steady.csv. Where there are fewer, those

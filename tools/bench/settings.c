@@ -1,86 +1,11 @@
 /* settings.c: see settings.h. */
-#include "bench/sweep/settings.h"
+#include "bench/settings.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
-
-/* ---- Names ----------------------------------------------------------------------------------- */
-
-/* AMD's own choice for its "quality" pictures, and that of the library's own rungs. */
-static const masu_rung base_rung = {.scale = 1.0f, .sharpness = 0.2f};
-
-uint32_t masu_setting_period(const masu_rung *rung) {
-    uint32_t most = 1;
-    for (uint32_t k = 0; k < MASU_MAX_CASCADES; k++) {
-        if (rung->shadow_refresh[k] > most) most = rung->shadow_refresh[k];
-    }
-    return most;
-}
-
-bool masu_setting_remembers(const masu_rung *rung) { return rung->temporal == MASU_ON; }
-
-void masu_setting_name(const masu_rung *rung, char out[MASU_SETTING_ID]) {
-    size_t used = 0;
-    snprintf(out, MASU_SETTING_ID, "base");
-    for (const masu_knob *k = masu_knob_table(); k->name; k++) {
-        char text[64];
-        if (!masu_knob_differs(k, rung, &base_rung) || used >= MASU_SETTING_ID) continue;
-        masu_knob_text(k, rung, text, sizeof text);
-        used += (size_t)snprintf(out + used, MASU_SETTING_ID - used, "%s%s=%s", used ? "+" : "",
-                                 k->name, text);
-    }
-}
-
-/* ---- Names read ------------------------------------------------------------------------------- */
-
-static bool wrong(const char *name, char *error, size_t error_size, const char *format, ...) {
-    char text[360];
-    va_list arguments;
-    va_start(arguments, format);
-    if (vsnprintf(text, sizeof text, format, arguments) < 0) text[0] = '\0';
-    va_end(arguments);
-    snprintf(error, error_size, "setting '%.150s': %s", name, text);
-    return false;
-}
-
-#define ONE(...) +1
-_Static_assert(0 MASU_KNOBS(ONE, ONE) <= 64, "a bit for each knob that was seen");
-
-/* A value ends with its number, with which a '+' may belong ("1e+09"), or else at the next '+'. */
-static bool read_part(const char *name, const char **at, masu_rung *rung, uint64_t *seen,
-                      char *error, size_t error_size) {
-    char range[200];
-    size_t length = strcspn(*at, "=+");
-    int part = (int)strcspn(*at, "+");
-    if (part > 60) part = 60;
-    const masu_knob *k = (*at)[length] == '=' ? masu_knob_find(*at, length) : NULL;
-    if (!k) return wrong(name, error, error_size, "'%.*s' is no knob with a value", part, *at);
-    uint64_t bit = 1ull << (k - masu_knob_table());
-    if (*seen & bit) return wrong(name, error, error_size, "'%.*s' comes twice", part, *at);
-    *seen |= bit;
-    const char *value = *at + length + 1, *end = masu_knob_from_text(k, value, rung);
-    if (!end || (*end && *end != '+')) {
-        masu_knob_range(k, range, sizeof range);
-        return wrong(name, error, error_size, "%s: needed is %s, given is '%.*s'", k->name, range,
-                     part - (int)length - 1 > 0 ? part - (int)length - 1 : 0, value);
-    }
-    *at = end;
-    return true;
-}
-
-bool masu_setting_parse(const char *name, masu_rung *out, char *error, size_t error_size) {
-    uint64_t seen = 0;
-    *out = base_rung;
-    if (!strcmp(name, "base")) return true;
-    for (const char *at = name;; at++) {
-        if (!read_part(name, &at, out, &seen, error, error_size)) return false;
-        if (!*at) return true;
-    }
-}
 
 /* ---- Settings -------------------------------------------------------------------------------- */
 
@@ -108,16 +33,16 @@ static const technique techniques[] = {
     {"sharpness", HALF, {.sharpness = 2.0f}},
     {"easu", HALF | QUICK | STRUCTURAL, {.easu = MASU_EASU_FAST}},
     {"easu", HALF | STRUCTURAL, {.easu = MASU_EASU_BILINEAR}},
-    {"fuse", HALF | STRUCTURAL, {.fuse = MASU_ON}},
     {"silhouettes", WHOLE | HALF | STRUCTURAL, {.silhouettes = MASU_ON}},
     {"march_steps", WHOLE, {.march_steps = 32}},
     {"march_steps", WHOLE | HALF | QUICK, {.march_steps = 64}},
     {"march_steps", WHOLE, {.march_steps = 128}},
     {"march_steps", WHOLE, {.march_steps = 512}},
+#ifdef MASU_LAB
     {"march", WHOLE, {.march = MASU_MARCH_PLAIN}},
     {"march", WHOLE, {.march = MASU_MARCH_SEED}},
-    {"march", WHOLE, {.march = MASU_MARCH_CONE8}},
     {"march", WHOLE, {.march = MASU_MARCH_CHECKERBOARD}},
+#endif
     {"ao", WHOLE | HALF | QUICK | STRUCTURAL, {.ao = MASU_OFF}},
     {"ao samples", WHOLE, {.ao_slices = 1, .ao_steps = 4}},
     {"ao samples", WHOLE | HALF, {.ao_slices = 1}},
@@ -186,7 +111,7 @@ typedef struct list {
 
 /* The knobs of `turned` that are not 0 on top of the base at that scale. */
 static masu_rung rung_of(const masu_rung *turned, float scale) {
-    masu_rung rung = base_rung;
+    masu_rung rung = masu_setting_base;
     static const masu_rung zero;
     for (const masu_knob *k = masu_knob_table(); k->name; k++) {
         if (masu_knob_differs(k, turned, &zero)) masu_knob_copy(k, &rung, turned);
@@ -224,11 +149,11 @@ static bool is_turned(const masu_knob *k) {
 /* A knob that no technique turns: each of its words, or halfway and all of the way to its maximum. */
 static void add_knob(list *l, const masu_knob *k) {
     technique one = {.name = k->name};
-    double from = masu_knob_get(k, &base_rung, 0);
+    double from = masu_knob_get(k, &masu_setting_base, 0);
     for (uint32_t n = 1; n <= (k->words ? k->word_count - 1 : 2); n++) {
         double value = k->words ? (double)n : from + (k->max - from) * n / 2.0;
         for (uint32_t i = 0; i < k->values; i++) masu_knob_set(k, &one.rung, i, value);
-        add(l, &one, 1.0f, &base_rung);
+        add(l, &one, 1.0f, &masu_setting_base);
     }
 }
 
@@ -238,18 +163,18 @@ uint32_t masu_settings_make(bool quick, masu_setting out[MASU_SETTINGS_MOST]) {
     const technique base = {.name = "base"}, scale = {.name = "scale"};
     const masu_rung half = rung_of(&base.rung, 0.5f);
     list l = {out, 0};
-    add(&l, &base, 1.0f, &base_rung);
+    add(&l, &base, 1.0f, &masu_setting_base);
     if (quick) {
         for (uint32_t i = 1; i < COUNT(quick_scales); i++)
-            add(&l, &scale, quick_scales[i], &base_rung);
+            add(&l, &scale, quick_scales[i], &masu_setting_base);
     } else {
-        for (int i = 15; i >= 7; i--) add(&l, &scale, (float)i / 16.0f, &base_rung);
-        add(&l, &scale, 0.4f, &base_rung);
+        for (int i = 15; i >= 7; i--) add(&l, &scale, (float)i / 16.0f, &masu_setting_base);
+        add(&l, &scale, 0.4f, &masu_setting_base);
     }
     for (size_t t = 0; t < COUNT(techniques); t++) {
         const technique *one = &techniques[t];
         if (quick && !(one->when & QUICK)) continue;
-        if (one->when & WHOLE) add(&l, one, 1.0f, &base_rung);
+        if (one->when & WHOLE) add(&l, one, 1.0f, &masu_setting_base);
         if (one->when & HALF) add(&l, one, 0.5f, &half);
     }
     for (const masu_knob *k = masu_knob_table(); k->name && !quick; k++) {
@@ -268,38 +193,7 @@ uint32_t masu_settings_make(bool quick, masu_setting out[MASU_SETTINGS_MOST]) {
     return l.count;
 }
 
-/* ---- What a scene has use for ---------------------------------------------------------------- */
-
-static bool has_pass(const masu_plan_info *plan, const char *start) {
-    for (uint32_t p = 0; p < plan->pass_count; p++) {
-        if (plan->passes[p].active && !strncmp(plan->passes[p].name, start, strlen(start)))
-            return true;
-    }
-    return false;
-}
-
-const char *masu_knob_useless(const masu_knob *k, const masu_rung *rung, const masu_scene *scene,
-                              const masu_plan_info *base) {
-    bool upscaled = rung->scale < 1.0f || rung->upscale == MASU_ON;
-    bool by_default = upscaled && rung->easu != MASU_EASU_BILINEAR;
-    bool sharpened = rung->sharpen == MASU_ON || (rung->sharpen == MASU_AUTO && by_default);
-    bool used = true;
-    switch (k->use) {
-    case MASU_USE_ALWAYS: return NULL;
-    case MASU_USE_SDF: used = scene->sdf; break;
-    case MASU_USE_AO: used = has_pass(base, "ao"); break;
-    case MASU_USE_SPECULAR: used = has_pass(base, "specular_"); break;
-    case MASU_USE_SHADOWS: used = has_pass(base, "cascade_"); break;
-    case MASU_USE_LODS: used = scene->lods; break;
-    case MASU_USE_OCCLUDERS: used = scene->placed_occluders; break;
-    case MASU_USE_POLYGONS: used = scene->instances; break;
-    case MASU_USE_LIGHTS: used = scene->lights; break;
-    case MASU_USE_UPSCALED: used = upscaled; break;
-    case MASU_USE_SHARPEN: used = by_default || rung->sharpen == MASU_ON; break;
-    case MASU_USE_SHARPENED: used = sharpened; break;
-    }
-    return used ? NULL : k->missing;
-}
+/* ---- Settings of one scene ------------------------------------------------------------------- */
 
 static void refit_parent(masu_setting *s, const masu_setting *all, uint32_t count,
                          char old[][MASU_SETTING_ID]) {
@@ -334,8 +228,8 @@ void masu_settings_fit(masu_setting *settings, uint32_t count, const masu_scene 
         scene_values(&s->rung, scene, &why);
         for (const masu_knob *k = masu_knob_table(); k->name; k++) {
             const char *no = masu_knob_useless(k, &s->rung, scene, base);
-            if (!no || !masu_knob_differs(k, &s->rung, &base_rung)) continue;
-            masu_knob_copy(k, &s->rung, &base_rung);
+            if (!no || !masu_knob_differs(k, &s->rung, &masu_setting_base)) continue;
+            masu_knob_copy(k, &s->rung, &masu_setting_base);
             why = why ? why : no;
         }
         char fitted[MASU_SETTING_ID];

@@ -6,9 +6,9 @@
 #ifndef MASU_BENCH_SETTINGS_H
 #define MASU_BENCH_SETTINGS_H
 
+#include "settings/setting.h"
+
 #include <stdbool.h>
-#include "bench/sweep/knobs.h"
-#include "bench/sweep/table.h"
 
 #include "masu.h"
 
@@ -33,23 +33,7 @@ uint32_t masu_settings_make(bool quick, masu_setting out[MASU_SETTINGS_MOST]);
 void masu_settings_fit(masu_setting *settings, uint32_t count, const masu_scene *scene,
                        const masu_plan_info *base);
 
-/* Why the knob changes nothing in that rung of that scene, or NULL. `base` as above. */
-const char *masu_knob_useless(const masu_knob *k, const masu_rung *rung, const masu_scene *scene,
-                              const masu_plan_info *base);
-
 /* The plans of one rung each have the same passes, sizes and bytes. */
 bool masu_settings_same_plan(const masu_plan_info *a, const masu_plan_info *b);
-
-/* The knobs that differ from the base, "scale=0.5+sharpen=off", in the table's order; "base": none. */
-void masu_setting_name(const masu_rung *rung, char out[MASU_SETTING_ID]);
-
-/* The other way round, knobs in any order. False: `error` says in one line which part is no knob with
- * a value or comes twice, or what values the knob takes and what was given. */
-bool masu_setting_parse(const char *name, masu_rung *out, char *error, size_t error_size);
-
-/* Frames after which the slowest cascade has been drawn again. */
-uint32_t masu_setting_period(const masu_rung *rung);
-/* Whether a picture with it depends on the frames before, whatever the scene. */
-bool masu_setting_remembers(const masu_rung *rung);
 
 #endif

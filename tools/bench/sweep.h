@@ -22,7 +22,7 @@
  * their rows then have.
  *
  * What a picture does not show (surfaces, radiance, reflections) comes from sessions of their own
- * that read it back: bench/measure/depth.h, bench/measure/radiance.h.
+ * that read it back: depth.h, radiance.h.
  *
  * THE FOLDER. sweep.json: what is measured, and how; a run is only resumed if it is the same.
  * machine.json: on what and when, see machine.h.
@@ -32,8 +32,9 @@
 #ifndef MASU_BENCH_SWEEP_H
 #define MASU_BENCH_SWEEP_H
 
-#include "bench/measure/samples.h"
-#include "bench/sweep/settings.h"
+#include "measure/samples.h"
+#include "bench/settings.h"
+#include "bench/table.h"
 #include "session.h"
 
 #define MASU_SWEEP_RESULTS "results.csv"

@@ -1,7 +1,7 @@
 /* sweep_files.c: see sweep_files.h. */
-#include "bench/sweep/sweep_files.h"
+#include "bench/sweep_files.h"
 
-#include "bench/sweep/machine.h"
+#include "bench/machine.h"
 #include "image.h"
 
 #include <errno.h>

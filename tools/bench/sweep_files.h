@@ -4,7 +4,7 @@
 #ifndef MASU_BENCH_SWEEP_FILES_H
 #define MASU_BENCH_SWEEP_FILES_H
 
-#include "bench/sweep/sweep.h"
+#include "bench/sweep.h"
 
 /* What sweep.json says besides the description. */
 typedef struct masu_sweep_about {

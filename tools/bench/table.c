@@ -1,5 +1,5 @@
 /* table.c: see table.h. */
-#include "bench/sweep/table.h"
+#include "bench/table.h"
 
 #include <math.h>
 #include <stdlib.h>

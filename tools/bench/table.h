@@ -6,12 +6,12 @@
 #ifndef MASU_BENCH_TABLE_H
 #define MASU_BENCH_TABLE_H
 
+#include "settings/setting.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
-
-#define MASU_SETTING_ID 192u
 
 /* Columns in order: what each is, its name. Of the base are the samples of the same renderer, in
  * turns with the setting's. The ratio is the median over the rounds of that round's own; the
@@ -35,7 +35,7 @@
         X(base_wall_min) X(base_gpu_min) X(ratio) X(gpu_ratio) X(least_ratio) X(gpu_least_ratio)   \
             X(rmse) X(psnr_db) X(ssim) X(flip) X(flip_p99) X(flicker) /* rmse, flicker: of 255 */  \
         X(hdr_flip)    /* nan: upscaled, or something is done to the image after the tone curve */ \
-        X(hitmiss_pct) /* bench/measure/depth.h; nan: the scene has no surfaces */                         \
+        X(hitmiss_pct) /* depth.h; nan: the scene has no surfaces */                         \
         X(depth_mean_px) X(depth_p99_px)                                                           \
             X(specular_relmse) /* of pixels that trace; nan: upscaled, or the scene traces none */ \
         X(rest_flip)       /* FLIP when all has come to rest */                                    \

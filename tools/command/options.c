@@ -1,8 +1,8 @@
 /* options.c: see options.h. */
-#include "masu/options.h"
+#include "command/options.h"
 
-#include "bench/sweep/knobs.h"
-#include "bench/sweep/ladder_file.h"
+#include "settings/knobs.h"
+#include "settings/ladder_file.h"
 #include "image.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/* options.h: the options of every command of `masu` as rows of a table: what the help says, how the
+/* options.h: the options of every command of `masu` and `masu-lab` as rows of a table: what the help says, how the
  * value is read, and where in the command's own struct it goes. One loop reads them all, and the help
  * says the defaults that it finds in that struct, so that the two cannot disagree. Rows that several
  * commands have stand here once. */

@@ -1,5 +1,5 @@
-/* common.c: see cmd.h. */
-#include "masu/cmd.h"
+/* output.c: see output.h. */
+#include "command/output.h"
 
 #include "image.h"
 

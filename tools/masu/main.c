@@ -1,5 +1,4 @@
-/* masu.c: the `masu` program: one file NAME.c per command, one file
- * study_NAME.c per study. */
+/* main.c: the program `masu`; each command is a file NAME.c beside this one. */
 #include "cli/cli.h"
 #include "masu/cmd.h"
 
@@ -10,8 +9,8 @@
 
 int main(int argc, char **argv) {
     static const masu_cli_command *const commands[] = {
-        &masu_cmd_render, &masu_cmd_upscale, &masu_cmd_compare, &masu_cmd_plan,     &masu_cmd_bench,
-        &masu_cmd_study,  &masu_cmd_conform, &masu_cmd_simulate, NULL};
+        &masu_cmd_render, &masu_cmd_upscale, &masu_cmd_compare, &masu_cmd_plan,
+        &masu_cmd_bench,  &masu_cmd_conform, NULL};
     static const masu_cli_program program = {
         .name = "masu",
         .version = VERSION_TEXT(MASU_VERSION_MAJOR, MASU_VERSION_MINOR, MASU_VERSION_PATCH),

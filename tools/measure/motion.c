@@ -1,7 +1,7 @@
 /* motion.c: see motion.h. */
-#include "bench/measure/motion.h"
+#include "measure/motion.h"
 
-#include "bench/sweep/settings.h"
+#include "settings/setting.h"
 
 #include <stdio.h>
 

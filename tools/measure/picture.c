@@ -1,7 +1,7 @@
 /* picture.c: see picture.h. */
-#include "bench/measure/picture.h"
+#include "measure/picture.h"
 
-#include "bench/study/specular.h"
+#include "measure/specular.h"
 #include "image.h"
 #include "shared/masu_shared.h"
 

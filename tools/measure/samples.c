@@ -1,5 +1,5 @@
 /* samples.c: see samples.h. */
-#include "bench/measure/samples.h"
+#include "measure/samples.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* shade.c: see shade.h. The names are those of the shaders. */
-#include "bench/study/shade.h"
+#include "measure/shade.h"
 
-#include "bench/study/texel.h"
+#include "measure/texel.h"
 
 #include "shared/masu_shared.h"
 

@@ -10,7 +10,7 @@
 #ifndef MASU_BENCH_SHADE_H
 #define MASU_BENCH_SHADE_H
 
-#include "bench/measure/truth.h"
+#include "measure/truth.h"
 
 /* Radiance towards the eye along `direction` (unit), before exposure. */
 void masu_shade_sky(const masu_view *view, const double direction[3], double out[3]);

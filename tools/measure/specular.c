@@ -1,7 +1,7 @@
 /* specular.c: see specular.h. */
-#include "bench/study/specular.h"
+#include "measure/specular.h"
 
-#include "bench/study/texel.h"
+#include "measure/texel.h"
 #include "scene/scene.h"
 #include "shared/masu_shared.h"
 

@@ -1,5 +1,5 @@
 /* texel.c: see texel.h. */
-#include "bench/study/texel.h"
+#include "measure/texel.h"
 
 #include "shared/masu_shared.h"
 

@@ -1,5 +1,5 @@
 /* truth.c: see truth.h. */
-#include "bench/measure/truth.h"
+#include "measure/truth.h"
 
 #include <dlfcn.h>
 #include <float.h>

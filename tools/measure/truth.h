@@ -18,7 +18,7 @@
 #ifndef MASU_BENCH_TRUTH_H
 #define MASU_BENCH_TRUTH_H
 
-#include "bench/measure/view.h"
+#include "measure/view_uniforms.h"
 
 #include <stddef.h>
 

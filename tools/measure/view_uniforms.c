@@ -1,5 +1,5 @@
 /* view.c: see view.h. */
-#include "bench/measure/view.h"
+#include "measure/view_uniforms.h"
 
 #include "scene/scene.h"
 

@@ -1,5 +1,5 @@
 /* knobs.c: see knobs.h. */
-#include "bench/sweep/knobs.h"
+#include "settings/knobs.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* ladder.c: see ladder.h. */
-#include "bench/sweep/ladder.h"
+#include "settings/ladder.h"
 
 #include <math.h>
 

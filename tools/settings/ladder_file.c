@@ -1,7 +1,7 @@
 /* ladder_file.c: see ladder_file.h. */
-#include "bench/sweep/ladder_file.h"
+#include "settings/ladder_file.h"
 
-#include "bench/sweep/knobs.h"
+#include "settings/knobs.h"
 #include "cli/cli.h"
 #include "image.h"
 

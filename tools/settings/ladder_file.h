@@ -6,7 +6,7 @@
 #ifndef MASU_BENCH_LADDER_FILE_H
 #define MASU_BENCH_LADDER_FILE_H
 
-#include "bench/sweep/table.h"
+#include "settings/setting.h"
 
 #include "masu.h"
 

@@ -1,8 +1,8 @@
-/* fuzz_trace.c: any bytes as a trace of `masu simulate`. What is accepted has scales that fall and times that a
+/* fuzz_trace.c: any bytes as a trace of `masu-lab simulate`. What is accepted has scales that fall and times that a
  * controller can be run on. */
-#include "expect.h"
+#include "fuzz/expect.h"
 
-#include "simulate/simulate.h"
+#include "lab/simulate/trace.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     static sim_trace trace;
@@ -22,7 +22,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     for (uint32_t i = 0; i < trace.columns; i++)
         EXPECT(trace.scale[i] > 0.0 && trace.scale[i] <= 1.0 && (!i || trace.scale[i] < trace.scale[i - 1]));
     sim_model model = sim_of_trace(&trace);
-    sim_result r = sim_run(&model, &sim_controllers[0], 1, NULL, NULL);
+    sim_result r = sim_run(&model, &sim_masu, 1, NULL, NULL);
     EXPECT(!r.invalid && r.mean_scale > 0.0);
     return 0;
 }

@@ -4,8 +4,8 @@
 #include "support/support.h"
 #include "support/cli.h"
 
-#include "bench/measure/motion.h"
-#include "bench/study/baseline.h"
+#include "measure/motion.h"
+#include "lab/study/baseline.h"
 
 #include <math.h>
 #include <stdio.h>

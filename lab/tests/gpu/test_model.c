@@ -6,8 +6,8 @@
 #include "support/cli.h"
 #include "support/compute.h"
 
-#include "model/hook.h"
-#include "model/write.h"
+#include "lab/model/hook.h"
+#include "lab/model/write.h"
 #include "tally_comp.spv.h"
 
 #include <math.h>

@@ -4,7 +4,7 @@
 #include "support/files.h"
 #include "support/cli.h"
 
-#include "bench/measure/run.h"
+#include "lab/study/marches.h"
 #include "image.h"
 
 #include <math.h>

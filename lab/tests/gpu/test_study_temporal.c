@@ -4,7 +4,7 @@
 #include "support/files.h"
 #include "support/support.h"
 
-#include "bench/study/temporal.h"
+#include "lab/study/temporal.h"
 
 #include <math.h>
 #include <stdio.h>

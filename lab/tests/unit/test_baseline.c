@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "bench/study/baseline.h"
+#include "lab/study/baseline.h"
 
 #include <math.h>
 #include <string.h>

@@ -8,12 +8,12 @@
 
 #include <cmocka.h>
 
-#include "bench/sweep/settings.h"
+#include "settings/setting.h"
 #include "plan/compile.h"
-#include "model/sheet.h"
-#include "model/write.h"
-#include "model/spirv_reach.h"
-#include "model/spirv_tally.h"
+#include "lab/model/sheet.h"
+#include "lab/model/write.h"
+#include "lab/model/spirv_reach.h"
+#include "lab/model/spirv_tally.h"
 #include "support/files.h"
 #include "support/spirv.h"
 

@@ -1,5 +1,5 @@
 /* report.c: see report.h. */
-#include "meso/report.h"
+#include "lab/meso/report.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -47,72 +47,16 @@ static bool save(const char *path, text *t) {
     return good;
 }
 
-/* ---- curves ---- */
-
-static void add_three(text *t, const char *name, const double v[3], const char *end) {
-    add(t, "  \"%s\": [%.6g, %.6g, %.6g]%s\n", name, v[0], v[1], v[2], end);
-}
-
-bool masu_meso_write_curves(const char *name, const masu_meso_study *study) {
-    const masu_meso_curves *c = &study->curves;
-    text t = {0};
-    add(&t, "{\n");
-    add_three(&t, "tilt", c->tilt, ",");
-    add_three(&t, "rough", c->rough, ",");
-    add_three(&t, "open", c->ao, ",");
-    add_three(&t, "gain", c->gain, ",");
-    add_three(&t, "tint", c->tint, ",");
-    add_three(&t, "specular", c->specular, ",");
-    add(&t, "  \"facet_roughness\": %.6g,\n  \"spread\": [%.6g, %.6g, %.6g],\n", c->facet,
-        c->spread, c->spread1, c->spread2);
-    add(&t, "  \"alpha\": %.6g,\n  \"offset\": %.6g\n}\n", c->alpha, c->offset);
-    return save(path_of(name, ".json"), &t);
-}
-
-/* ---- maps ---- */
-
-enum { MAP_COLOR, MAP_NORMAL, MAP_ROUGH, MAP_AO, MAPS };
-
-static void encode(const masu_meso_texel *t, int map, uint8_t rgba[4]) {
-    for (int k = 0; k < 3; k++) {
-        double n = k == 0 ? t->normal[0] : k == 1 ? -t->normal[2] : t->normal[1];
-        switch (map) {
-        case MAP_COLOR: rgba[k] = masu_texel_to_srgb((float)t->color[k]); break;
-        case MAP_NORMAL: rgba[k] = (uint8_t)(128.5 + 127 * n); break;
-        case MAP_ROUGH: rgba[k] = masu_texel_to_unorm((float)t->roughness); break;
-        default: rgba[k] = masu_texel_to_unorm((float)t->ao); break;
-        }
-    }
-    rgba[3] = 255;
-}
-
-bool masu_meso_write_maps(const char *name, const masu_meso_study *study) {
-    static const char *const ends[MAPS] = {"_color.png", "_normal.png", "_rough.png", "_ao.png"};
-    size_t texels = (size_t)study->size * study->size;
-    uint8_t *rgba = malloc(texels * 4);
-    if (!rgba) exit(masu_cli_error("out of memory"));
-    bool good = true;
-    for (int map = 0; map < MAPS && good; map++) {
-        char error[1024];
-        for (size_t i = 0; i < texels; i++) encode(&study->texels[i], map, rgba + 4 * i);
-        good = masu_image_save_png(path_of(name, ends[map]), rgba, study->size, study->size, 0,
-                                   error, sizeof error);
-        if (!good) masu_cli_error("%s", error);
-    }
-    free(rgba);
-    return good;
-}
-
 /* ---- numbers ---- */
 
 masu_meso_pair masu_meso_compare(const masu_meso_study *study, uint32_t view) {
-    const masu_meso_view *m = &study->views[view];
-    const masu_meso_curves *c = &study->curves;
+    const masu_meso_view *m = &study->made.views[view];
+    const masu_meso_curves *c = &study->made.curves;
     masu_meso_vec3 v = masu_meso_from_above(m->angle, 0);
-    masu_meso_surface s = {{study->mean.normal[0], study->mean.normal[1], study->mean.normal[2]},
+    masu_meso_surface s = {{study->made.mean.normal[0], study->made.mean.normal[1], study->made.mean.normal[2]},
                            {1, 1, 1},
-                           study->mean.roughness,
-                           study->mean.ao,
+                           study->made.mean.roughness,
+                           study->made.mean.ao,
                            1,
                            1};
     masu_meso_bend(c, v, masu_bake_v3(0, 1, 0), &s);
@@ -123,7 +67,7 @@ masu_meso_pair masu_meso_compare(const masu_meso_study *study, uint32_t view) {
     p.rough[0] = (double)masu_texel_rougher((float)c->facet, (float)m->length);
     p.rough[1] = s.roughness;
     p.ao[0] = m->ao;
-    p.ao[1] = fmin(fmax(study->mean.ao + (1 - study->mean.ao) * open, 0), 1);
+    p.ao[1] = fmin(fmax(study->made.mean.ao + (1 - study->made.mean.ao) * open, 0), 1);
     return p;
 }
 
@@ -133,9 +77,9 @@ bool masu_meso_write_csv(const char *name, const masu_meso_study *study) {
     text t = {0};
     add(&t, "angle,x,tilt_measured,tilt_fitted,roughness_measured,roughness_fitted,"
             "ao_measured,ao_fitted,albedo_r,albedo_g,albedo_b\n");
-    for (uint32_t i = 0; i < study->setup.view_count; i++) {
+    for (uint32_t i = 0; i < study->made.setup.view_count; i++) {
         masu_meso_pair p = masu_meso_compare(study, i);
-        const masu_meso_view *m = &study->views[i];
+        const masu_meso_view *m = &study->made.views[i];
         add(&t, "%g,%.5f,%.3f,%.3f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f\n", m->angle, p.x, p.tilt[0],
             p.tilt[1], p.rough[0], p.rough[1], p.ao[0], p.ao[1], m->color[0], m->color[1],
             m->color[2]);
@@ -186,7 +130,7 @@ void masu_meso_print(const char *name, const masu_meso_study *study) {
 
 static void add_data(FILE *f, const masu_meso_study *study) {
     fprintf(f, "$curves << end\n");
-    for (uint32_t i = 0; i < study->setup.view_count; i++) {
+    for (uint32_t i = 0; i < study->made.setup.view_count; i++) {
         masu_meso_pair p = masu_meso_compare(study, i);
         fprintf(f, "%.5f %.3f %.3f %.4f %.4f %.4f %.4f\n", p.x, p.tilt[0], p.tilt[1], p.rough[0],
             p.rough[1], p.ao[0], p.ao[1]);

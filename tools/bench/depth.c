@@ -1,9 +1,9 @@
 /* depth.c: see depth.h. */
-#include "bench/measure/depth.h"
+#include "bench/depth.h"
 
-#include "bench/measure/motion.h"
-#include "bench/sweep/settings.h"
-#include "bench/measure/truth.h"
+#include "measure/motion.h"
+#include "bench/settings.h"
+#include "measure/truth.h"
 #include "image.h"
 #include "metric/march.h"
 #include "scene/scene.h"
@@ -63,7 +63,9 @@ static masu_rung key_of(const masu_rung *rung) {
                        .specular = MASU_OFF,
                        .shadow_cascades = 1,
                        .shadow_resolution = 64,
+#ifdef MASU_LAB
                        .march = rung->march,
+#endif
                        .march_steps = rung->march_steps,
                        .frustum = rung->frustum,
                        .occlusion = rung->occlusion,

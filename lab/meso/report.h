@@ -1,18 +1,14 @@
-/* report.h: what masu-meso writes, all beginning with one name:
+/* report.h: the files and the table that `masu-lab meso` writes, whose names all begin with NAME:
  *
- *   NAME.json        the curves, as a scene file's material takes them ("meso": "NAME.json")
- *   NAME_color.png   sRGB; NAME_normal.png  +y up the picture; NAME_rough.png, NAME_ao.png  grey
  *   NAME.csv         measured and fitted curves, shadow distribution, errors
  *   NAME_*.svg       the same as plots, by gnuplot (package gnuplot-nox); without it a warning
  *
  * False after an error message. */
-#ifndef MASU_MESO_REPORT_H
-#define MASU_MESO_REPORT_H
+#ifndef LAB_MESO_REPORT_H
+#define LAB_MESO_REPORT_H
 
-#include "meso/study.h"
+#include "lab/meso/study.h"
 
-bool masu_meso_write_curves(const char *name, const masu_meso_study *study);
-bool masu_meso_write_maps(const char *name, const masu_meso_study *study);
 bool masu_meso_write_csv(const char *name, const masu_meso_study *study);
 bool masu_meso_write_plots(const char *name, const masu_meso_study *study);
 /* The table of errors on stdout. */

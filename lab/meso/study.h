@@ -1,9 +1,9 @@
-/* study.h: a patch from start to end: its map, its measurement, the fit, and the comparison of the
- * result with new rays under other lights than those fitted to. */
-#ifndef MASU_MESO_STUDY_H
-#define MASU_MESO_STUDY_H
+/* study.h: how close the material that masu-meso makes of a patch comes to ray tracing: it is compared with new
+ * rays, under other lights than those of the fit. */
+#ifndef LAB_MESO_STUDY_H
+#define LAB_MESO_STUDY_H
 
-#include "meso/fit.h"
+#include "meso/author.h"
 
 /* The view angles of the comparison. */
 #define MASU_MESO_JUDGED 5u
@@ -17,13 +17,6 @@ extern const uint32_t masu_meso_level_size[MASU_MESO_LEVELS];
 /* Mips whose mean is held against that of the map: texels of an edge. */
 #define MASU_MESO_MIPS 3u
 extern const uint32_t masu_meso_mip_size[MASU_MESO_MIPS];
-
-typedef struct masu_meso_options {
-    uint32_t size; /* texels of an edge of the map; a power of two from 32 */
-    uint32_t side; /* side^2 rays per view */
-    uint32_t sky_rays;
-    uint64_t seed;
-} masu_meso_options;
 
 /* Root mean square errors of radiance over lights, relative to its mean over them. */
 typedef struct masu_meso_verdict {
@@ -41,15 +34,7 @@ typedef struct masu_meso_bin {
 } masu_meso_bin;
 
 typedef struct masu_meso_study {
-    masu_meso_texel *texels; /* size * size */
-    uint32_t size;
-    masu_meso_texel mean;
-    double height; /* mean of what is seen from above */
-    masu_meso_setup setup;
-    masu_meso_view views[MASU_MESO_VIEWS_MAX];
-    masu_meso_curves curves;
-    masu_meso_misfit misfit;
-    masu_meso_sky_table table;
+    masu_meso_material made;
     masu_meso_verdict verdict[MASU_MESO_JUDGED];
     masu_meso_bin bins[MASU_MESO_BINS];
 } masu_meso_study;

@@ -1,4 +1,4 @@
-# outcome.sh: which files are models, and what came of a bake, in a few words; for gallery.sh and for the test that counts
+# outcome.sh: which files are models, and what came of a bake, in a few words; for lab/gallery/gallery.sh and for the test that counts
 # them. Sourced.
 
 # Pictures, texts, materials and data beside models: no models.

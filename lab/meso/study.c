@@ -1,5 +1,5 @@
 /* study.c: see study.h. */
-#include "meso/study.h"
+#include "lab/meso/study.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -10,48 +10,16 @@ const double masu_meso_judged[MASU_MESO_JUDGED] = {0, 30, 60, 80, 88};
 const uint32_t masu_meso_level_size[MASU_MESO_LEVELS] = {32, 8, 2};
 const uint32_t masu_meso_mip_size[MASU_MESO_MIPS] = {16, 4, 1};
 
-/* Texels that the fit looks at one by one, and those of the map itself, of which it looks at the mean: with
- * FIT_SIDE rays and more to a side. With fewer as many fewer, but at least a sixth: a draft is one in both. */
-#define FIT_TEXELS 144u
-#define FINE_TEXELS 256u
-#define FIT_SIDE 96u
 #define BIN_LOW (-0.5)
 #define BIN_HIGH 1.5
-
-static void *allocated(size_t count, size_t bytes) {
-    void *r = calloc(count, bytes);
-    if (!r) exit(masu_cli_error("out of memory: %zu times %zu bytes", count, bytes));
-    return r;
-}
-
-static void set_lights(masu_meso_setup *s, const double *elevation, uint32_t elevations,
-                       const double *azimuth, uint32_t azimuths) {
-    s->light_count = 0;
-    for (uint32_t i = 0; i < elevations; i++) {
-        for (uint32_t j = 0; j < azimuths; j++) {
-            s->light[s->light_count++] = (masu_meso_light){elevation[i], azimuth[j]};
-        }
-    }
-}
-
 #define COUNT(array) ((uint32_t)(sizeof(array) / sizeof *(array)))
-
-/* Azimuths lie closer where the mirror direction is: there radiance changes fastest. */
-static void set_fitted(masu_meso_setup *s) {
-    static const double view[] = {0, 15, 30, 45, 60, 70, 80, 85, 88};
-    static const double elevation[] = {5, 10, 20, 30, 45, 60, 80};
-    static const double azimuth[] = {0, 15, 45, 75, 105, 135, 150, 165, 180};
-    memcpy(s->view, view, sizeof view);
-    s->view_count = COUNT(view);
-    set_lights(s, elevation, COUNT(elevation), azimuth, COUNT(azimuth));
-}
 
 static void set_judged(masu_meso_setup *s) {
     static const double elevation[] = {8, 15, 25, 37, 52, 70};
     static const double azimuth[] = {0, 30, 60, 90, 120, 143, 157, 172, 180};
     memcpy(s->view, masu_meso_judged, sizeof masu_meso_judged);
     s->view_count = MASU_MESO_JUDGED;
-    set_lights(s, elevation, COUNT(elevation), azimuth, COUNT(azimuth));
+    masu_meso_set_lights(s, elevation, COUNT(elevation), azimuth, COUNT(azimuth));
 }
 
 /* ---- comparison ---- */
@@ -82,10 +50,10 @@ static double relative_error(const double *got, const double *want, size_t count
 static double filtered_error(const masu_meso_study *study, const masu_meso_shader *shader,
                              masu_meso_vec3 v, const masu_meso_setup *setup, double *bias) {
     double mean[MASU_MESO_LIGHTS_MAX * 3] = {0}, got[MASU_MESO_LIGHTS_MAX * 3] = {0};
-    size_t texels = (size_t)study->size * study->size;
-    shade(shader, &study->mean, v, 0, setup, 1, got);
+    size_t texels = (size_t)study->made.size * study->made.size;
+    shade(shader, &study->made.mean, v, 0, setup, 1, got);
     for (size_t t = 0; t < texels; t++) {
-        shade(shader, &study->texels[t], v, 0, setup, 1.0 / (double)texels, mean);
+        shade(shader, &study->made.texels[t], v, 0, setup, 1.0 / (double)texels, mean);
     }
     double sum[2] = {0, 0};
     for (uint32_t i = 0; i < setup->light_count * 3; i++) {
@@ -96,30 +64,14 @@ static double filtered_error(const masu_meso_study *study, const masu_meso_shade
     return relative_error(got, mean, setup->light_count * 3);
 }
 
-/* The mip of `size` texels that study->texels have. */
-static masu_meso_texel *mip_of(const masu_meso_study *study, uint32_t size) {
-    masu_meso_texel *out = allocated((size_t)size * size, sizeof *out);
-    uint32_t step = study->size / size;
-    masu_meso_texel *block = allocated((size_t)step * step, sizeof *block);
-    for (uint32_t t = 0; t < size * size; t++) {
-        for (uint32_t i = 0; i < step * step; i++) {
-            uint32_t x = t % size * step + i % step, y = t / size * step + i / step;
-            block[i] = study->texels[(size_t)y * study->size + x];
-        }
-        out[t] = masu_meso_mean_texel(block, (size_t)step * step);
-    }
-    free(block);
-    return out;
-}
-
 /* Means over all lights, signed, of the radiance of mips against that of the map. */
 static void judge_mips(masu_meso_study *study, const masu_meso_setup *setup) {
-    masu_meso_texel *texels[MASU_MESO_MIPS + 1] = {study->texels};
-    uint32_t size[MASU_MESO_MIPS + 1] = {study->size}, numbers = setup->light_count * 3;
-    masu_meso_shader shader = {&study->table, study->curves, MASU_MESO_CURVES, false};
+    masu_meso_texel *texels[MASU_MESO_MIPS + 1] = {study->made.texels};
+    uint32_t size[MASU_MESO_MIPS + 1] = {study->made.size}, numbers = setup->light_count * 3;
+    masu_meso_shader shader = {&study->made.table, study->made.curves, MASU_MESO_CURVES, false};
     for (uint32_t m = 1; m <= MASU_MESO_MIPS; m++) {
         size[m] = masu_meso_mip_size[m - 1];
-        texels[m] = mip_of(study, size[m]);
+        texels[m] = masu_meso_mip(&study->made, size[m]);
     }
     for (uint32_t i = 0; i < setup->view_count; i++) {
         masu_meso_vec3 v = masu_meso_from_above(setup->view[i], 0);
@@ -140,7 +92,7 @@ static void judge_far(masu_meso_study *study, const masu_meso_setup *setup,
                       const masu_meso_view *views) {
     double want[MASU_MESO_LIGHTS_MAX * 3], got[MASU_MESO_LIGHTS_MAX * 3];
     uint32_t numbers = setup->light_count * 3;
-    masu_meso_shader shader = {&study->table, study->curves, 0, false};
+    masu_meso_shader shader = {&study->made.table, study->made.curves, 0, false};
     for (uint32_t i = 0; i < setup->view_count; i++) {
         masu_meso_vec3 v = masu_meso_from_above(setup->view[i], 0);
         for (uint32_t j = 0; j < numbers; j++) {
@@ -148,7 +100,7 @@ static void judge_far(masu_meso_study *study, const masu_meso_setup *setup,
         }
         for (shader.way = 0; shader.way < MASU_MESO_WAYS; shader.way++) {
             memset(got, 0, sizeof got);
-            shade(&shader, &study->mean, v, 0, setup, 1, got);
+            shade(&shader, &study->made.mean, v, 0, setup, 1, got);
             study->verdict[i].far[shader.way] = relative_error(got, want, numbers);
         }
         double unused;
@@ -191,19 +143,19 @@ static void judge_texels(masu_meso_study *study, const masu_meso_tracer *tracer,
     lights.side = 3;
     uint32_t fine = masu_meso_level_size[0], numbers = lights.light_count * 3;
     size_t all = (size_t)fine * fine * numbers;
-    double *want = allocated(all, sizeof *want), *reduced = allocated(all, sizeof *reduced);
-    double *got = allocated(all, sizeof *got);
-    masu_meso_shader shader = {&study->table, study->curves, 0, false};
+    double *want = masu_meso_allocated(all, sizeof *want), *reduced = masu_meso_allocated(all, sizeof *reduced);
+    double *got = masu_meso_allocated(all, sizeof *got);
+    masu_meso_shader shader = {&study->made.table, study->made.curves, 0, false};
     for (uint32_t i = 0; i < MASU_MESO_JUDGED * AZIMUTHS; i++) {
         double angle = masu_meso_judged[i / AZIMUTHS], azimuth = 0.7 + 1.9 * (i % AZIMUTHS);
         masu_meso_vec3 v = masu_meso_from_above(angle, azimuth);
         masu_cli_progress("texels at %g degrees", angle);
         lights.seed = setup->seed + 99991 * (i + 1);
-        masu_meso_look_along(tracer, patch, &lights, angle, azimuth, study->height, MASU_MESO_SKY,
+        masu_meso_look_along(tracer, patch, &lights, angle, azimuth, study->made.height, MASU_MESO_SKY,
                              fine, want);
         for (uint32_t m = 0; m < MASU_MESO_LEVELS; m++) {
             uint32_t size = masu_meso_level_size[m];
-            masu_meso_texel *mip = mip_of(study, size);
+            masu_meso_texel *mip = masu_meso_mip(&study->made, size);
             average_down(want, fine, fine / size, numbers, reduced);
             for (shader.way = 0; shader.way < MASU_MESO_WAYS; shader.way++) {
                 memset(got, 0, all * sizeof *got);
@@ -230,11 +182,11 @@ double masu_meso_bin_value(uint32_t bin) {
 
 static void count_shadows(masu_meso_study *study, const masu_meso_tracer *tracer,
                           const masu_meso_patch *patch, const masu_meso_setup *setup) {
-    const masu_meso_curves *c = &study->curves;
-    uint32_t size = study->size, step = size / 32;
+    const masu_meso_curves *c = &study->made.curves;
+    uint32_t size = study->made.size, step = size / 32;
     for (uint32_t t = 0; t < 32 * 32; t++) {
         uint32_t x = t % 32 * step, y = t / 32 * step;
-        const masu_meso_texel *texel = &study->texels[(size_t)y * size + x];
+        const masu_meso_texel *texel = &study->made.texels[(size_t)y * size + x];
         masu_meso_vec3 n = {texel->normal[0], texel->normal[1], texel->normal[2]};
         masu_meso_vec3 from = {(x + 0.5) / size, patch->high + 1e-4, (y + 0.5) / size};
         masu_meso_hit h;
@@ -259,79 +211,19 @@ static void count_shadows(masu_meso_study *study, const masu_meso_tracer *tracer
 
 /* ---- all of it ---- */
 
-static uint32_t fit_share(uint32_t texels, uint32_t side) {
-    if (side >= FIT_SIDE) return texels;
-    return side * 6 > FIT_SIDE ? texels * side / FIT_SIDE : texels / 6;
-}
-
-/* Texels spread over the map, and their radiance from above. */
-static void pick_texels(const masu_meso_study *study, const masu_meso_tracer *tracer,
-                        const masu_meso_patch *patch, const masu_meso_options *options,
-                        masu_meso_samples *samples) {
-    enum { SIDE = 32 };
-    static const double elevation[] = {10, 25, 45, 70}, azimuth[] = {0, 90, 180};
-    masu_meso_setup lights = {.side = 3, .sky_rays = options->sky_rays, .seed = options->seed + 5};
-    set_lights(&lights, elevation, COUNT(elevation), azimuth, COUNT(azimuth));
-    uint32_t numbers = lights.light_count * 3, texel_count = fit_share(FIT_TEXELS, options->side);
-    uint32_t fine_count = fit_share(FINE_TEXELS, options->side);
-    double *all = allocated((size_t)SIDE * SIDE * numbers, sizeof *all);
-    masu_meso_look_along(tracer, patch, &lights, 0, 0, study->height, MASU_MESO_SKY, SIDE, all);
-    masu_meso_texel *texels = allocated(texel_count, sizeof *texels), *mip = mip_of(study, SIDE);
-    double *near = allocated((size_t)texel_count * numbers, sizeof *near);
-    for (uint32_t t = 0; t < texel_count; t++) {
-        uint32_t from = t * 1021 / texel_count;
-        texels[t] = mip[from];
-        memcpy(near + (size_t)t * numbers, all + (size_t)from * numbers, numbers * sizeof *near);
-    }
-    free(mip);
-    free(all);
-    masu_meso_texel *fine = allocated(fine_count, sizeof *fine);
-    for (uint32_t t = 0; t < fine_count; t++) {
-        double u, v;
-        masu_meso_point(t, options->seed + 11, &u, &v);
-        fine[t] =
-            study->texels[(size_t)(v * study->size) * study->size + (size_t)(u * study->size)];
-    }
-    samples->fine = fine;
-    samples->fine_count = fine_count;
-    samples->texels = texels;
-    samples->near = near;
-    samples->texel_count = texel_count;
-    samples->near_count = lights.light_count;
-    memcpy(samples->near_light, lights.light, lights.light_count * sizeof *lights.light);
-}
-
 bool masu_meso_study_run(const masu_meso_patch *patch, const masu_meso_options *options,
                          masu_meso_study *study) {
-    *study = (masu_meso_study){.size = options->size};
-    masu_cli_progress("building the patch of %u triangles", patch->triangle_count);
+    *study = (masu_meso_study){0};
+    if (!masu_meso_author(patch, options, &study->made)) return false;
     masu_meso_tracer *tracer = masu_meso_tracer_create(patch);
     if (!tracer) return false;
-    study->texels = allocated((size_t)options->size * options->size, sizeof *study->texels);
-    masu_cli_progress("looking down");
-    masu_meso_look_down(tracer, patch, options->size, 2, options->sky_rays, options->seed,
-                        study->texels, &study->height);
-    study->mean = masu_meso_mean_texel(study->texels, (size_t)options->size * options->size);
-    masu_meso_sky_table_make(&study->table);
-
     masu_meso_setup judged = {
         .side = options->side, .sky_rays = options->sky_rays, .seed = options->seed + 7777};
     masu_meso_view views[MASU_MESO_VIEWS_MAX];
-    study->setup = (masu_meso_setup){
-        .side = options->side, .sky_rays = options->sky_rays, .seed = options->seed};
-    set_fitted(&study->setup);
     set_judged(&judged);
-    masu_cli_progress("measuring");
-    bool good = masu_meso_measure(tracer, patch, &study->setup, study->views) &&
-                masu_meso_measure(tracer, patch, &judged, views);
+    masu_cli_progress("measuring under other lights");
+    bool good = masu_meso_measure(tracer, patch, &judged, views);
     if (good) {
-        masu_meso_samples samples = {
-            .setup = &study->setup, .views = study->views, .mean = study->mean};
-        pick_texels(study, tracer, patch, options, &samples);
-        study->curves = masu_meso_fit(&samples, &study->table, patch->roughness, &study->misfit);
-        free((void *)samples.texels);
-        free((void *)samples.near);
-        free((void *)samples.fine);
         judge_far(study, &judged, views);
         judge_mips(study, &judged);
         judge_texels(study, tracer, patch, &judged);
@@ -344,10 +236,7 @@ bool masu_meso_study_run(const masu_meso_patch *patch, const masu_meso_options *
     return good;
 }
 
-void masu_meso_study_free(masu_meso_study *study) {
-    free(study->texels);
-    study->texels = NULL;
-}
+void masu_meso_study_free(masu_meso_study *study) { masu_meso_material_free(&study->made); }
 
 double masu_meso_study_gain(const masu_meso_study *study, double *angle) {
     double least = 1e300;

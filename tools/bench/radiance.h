@@ -15,7 +15,7 @@
 #ifndef MASU_BENCH_RADIANCE_H
 #define MASU_BENCH_RADIANCE_H
 
-#include "bench/measure/motion.h"
+#include "measure/motion.h"
 
 typedef struct masu_radiance_desc {
     masu_session_desc session; /* scene, host, output and targets */
