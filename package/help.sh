@@ -11,7 +11,7 @@ options_of() {
     grep -oE '^ +(-[a-z], )?--[a-z][a-z0-9-]*' | tr -d ' ' | tr ',' '\n' | sort -u
 }
 
-# Every command of a program as a line of words, the program itself first: "masu", "masu render", "masu study march".
+# Every command of a program as a line of words, the program itself first: "masu", "masu render".
 # $1 the program's path, $2 its name, $3... the words so far.
 all_commands() {
     path=$1 name=$2

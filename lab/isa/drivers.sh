@@ -1,11 +1,11 @@
 #!/bin/bash
-# drivers.sh FOLDER: builds what `masu plan --isa` takes for Intel's and Adreno's GPUs into FOLDER: ANV, Turnip and
+# drivers.sh FOLDER: builds what `masu-lab isa` needs for Intel's and Adreno's GPUs into FOLDER: ANV, Turnip and
 # Mesa's no-op kernel shims, from Debian's source package of Mesa (the version of Debian 12). Ten minutes on two
 # cores, 1.5 GB while it builds. Not part of any test.
 #
 # PACKAGES_isa of packages.mk are there (make isa-drivers). MASU_DEBIAN_MIRROR replaces http://deb.debian.org/debian.
 set -euo pipefail
-folder=${1:?usage: tools/isa/drivers.sh FOLDER}
+folder=${1:?usage: lab/isa/drivers.sh FOLDER}
 version=22.3.6
 sum=737cb8e5d380ce1a0ad01fb8b74db7f27303435c353e753d2302e8cf3927bad2
 mirror=${MASU_DEBIAN_MIRROR:-http://deb.debian.org/debian}

@@ -1,6 +1,6 @@
 #!/bin/sh
-# table.sh GPU[,GPU...]: prints docs/report/isa.csv: what the GPUs' compilers make of every pipeline of these
-# scenes at 1280x720 (masu plan --isa). Reads baked scenes of $MADE, the program of $BUILD.
+# table.sh GPU[,GPU...]: prints lab/notes/isa.csv: what the GPUs' compilers make of every pipeline of these
+# scenes at 1280x720 (masu-lab isa). Reads baked scenes of $MADE, the program of $BUILD.
 set -eu
 build=${BUILD:-build} made=${MADE:-build}
 line='scene,gpu,pipeline,stage,lanes,registers,waves,instructions,cycles,latency,sends,spills,fills,scalar_spills,scratch,lds'
@@ -9,7 +9,7 @@ echo "$line"
 rows() {
     name=$1 scene=$2 which=$3
     shift 3
-    table=$("$build/bin/masu" plan "$made/scenes/$scene.masu" --isa "$gpus" --size 1280x720 --csv - "$@")
+    table=$("$build/bin/masu-lab" isa "$made/scenes/$scene.masu" --gpu "$gpus" --size 1280x720 --csv - "$@")
     first=$(printf '%s\n' "$table" | sed -n 1p)
     [ "scene,$first" = "$line" ] || { echo "table.sh: the columns are now $first" >&2; exit 1; }
     printf '%s\n' "$table" | sed "1d; s/\"//g; s/, /; /g; s/^/$name,/" | grep -E "^$name,[^,]*,($which)"

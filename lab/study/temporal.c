@@ -6,6 +6,7 @@
 #include "image.h"
 #include "metric/flip.h"
 #include "metric/image.h"
+#include "plan/desc.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,4 +1,4 @@
-/* test_baseline.c: `masu study baseline`: the baseline traces a ray a pixel where Masu traces one in
+/* test_baseline.c: `masu-lab study baseline`: the baseline traces a ray a pixel where Masu traces one in
  * four, its mean over many samples is the truth, the samples of equal error are what they are
  * called, frames before count for more at rest than in motion, and what is no setting is refused. */
 #include "support/support.h"
@@ -192,5 +192,6 @@ int main(void) {
         cmocka_unit_test(bad_input_is_one_line),
         cmocka_unit_test(rows_are_written),
     };
+    cli_program = "masu-lab";
     return cmocka_run_group_tests(tests, make_scratch, remove_scratch);
 }

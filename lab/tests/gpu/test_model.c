@@ -1,4 +1,4 @@
-/* test_model.c: `masu plan --model` on a driver: shaders with counters count what they run, bytes of known
+/* test_model.c: `masu-lab model` on a driver: shaders with counters count what they run, bytes of known
  * passes are those that follow from sizes, sums are sums, and rungs have the rows that they run. */
 #include "support/support.h"
 #include "plan/compile.h"
@@ -222,7 +222,7 @@ static void the_command_writes_its_sheet_and_refuses_what_is_wrong(void **state)
     snprintf(arguments, sizeof arguments,
              "%s --size 64x48 --csv %s/m.csv --html-fragment %s/m.xhtml",
              scene_path("test_sphere_mesh"), scratch, scratch);
-    assert_int_equal(cli_run("plan --model %s", arguments), 0);
+    assert_int_equal(cli_run("model %s", arguments), 0);
     take_text("out", text, sizeof text);
     assert_non_null(strstr(text, "COMPUTED"));
     assert_non_null(strstr(text, "tonemap"));
@@ -231,11 +231,11 @@ static void the_command_writes_its_sheet_and_refuses_what_is_wrong(void **state)
     take_text("m.xhtml", text, sizeof text);
     assert_non_null(strstr(text, "<caption>COMPUTED"));
     assert_null(strstr(text, "instructions by"));
-    assert_int_equal(cli_run("plan --model"), 2);
+    assert_int_equal(cli_run("model"), 2);
     /* RADV compiles for raven without one. Other GPUs stand for no class. */
     snprintf(arguments, sizeof arguments, "%s --size 64x48 --drawn 64x48 --isa raven --csv %s/i.csv",
              scene_path("test_sphere_mesh"), scratch);
-    int code = cli_run("plan --model %s", arguments);
+    int code = cli_run("model %s", arguments);
     take_text("err", text, sizeof text);
     if (code && strstr(text, "RADV is not installed")) skip();
     assert_int_equal(code, 0);
@@ -249,21 +249,21 @@ static void the_command_writes_its_sheet_and_refuses_what_is_wrong(void **state)
     double per_pixel = strtod(end, NULL) / (64 * 48);
     if (!(per_pixel > 20 && per_pixel < 500)) fail_msg("%g instructions of tonemap for each pixel", per_pixel);
     snprintf(arguments, sizeof arguments, "%s --isa navi14", scene_path("test_sphere_mesh"));
-    assert_int_equal(cli_run("plan --model %s", arguments), 2);
+    assert_int_equal(cli_run("model %s", arguments), 2);
     take_text("err", text, sizeof text);
     assert_non_null(strstr(text, "has no class for navi14"));
     snprintf(arguments, sizeof arguments, "%s --ladder auto", scene_path("test_sphere_mesh"));
-    assert_int_equal(cli_run("plan --model %s", arguments), 2);
+    assert_int_equal(cli_run("model %s", arguments), 2);
     snprintf(arguments, sizeof arguments, "%s --ladder %s/none.json",
              scene_path("test_sphere_mesh"), scratch);
-    assert_int_equal(cli_run("plan --model %s", arguments), 1);
+    assert_int_equal(cli_run("model %s", arguments), 1);
     take_text("err", text, sizeof text);
     assert_non_null(strstr(text, "none.json"));
     const char *bad = write_text(
         "bad.json", LADDER_HEAD "{\"setting\": \"a\", \"ratio\": 1, \"flip\": 0, "
                                 "\"knobs\": {\"aa\": \"many\"}}]}");
     snprintf(arguments, sizeof arguments, "%s --ladder %s", scene_path("test_sphere_mesh"), bad);
-    assert_int_equal(cli_run("plan --model %s", arguments), 1);
+    assert_int_equal(cli_run("model %s", arguments), 1);
     take_text("err", text, sizeof text);
     assert_non_null(strstr(text, "bad.json: rungs[0]: aa"));
 }
@@ -276,5 +276,6 @@ int main(void) {
         cmocka_unit_test(rungs_of_an_sdf_cost_less_one_by_one),
         cmocka_unit_test(the_command_writes_its_sheet_and_refuses_what_is_wrong),
     };
+    cli_program = "masu-lab";
     return cmocka_run_group_tests(tests, make_scratch, remove_scratch);
 }

@@ -1,5 +1,5 @@
-/* test_study_temporal.c: `masu study temporal`: at rest a past brings a picture nearer to the truth, ours and the other
- * way's; motion that is read back is what the other needs; rows, CSV and mistakes are as they are told. */
+/* test_study_temporal.c: `masu-lab study temporal`: with history an image has a lower error than without; rows and CSV
+ * are as requested, and mistakes are reported. */
 #include "support/cli.h"
 #include "support/files.h"
 #include "support/support.h"
@@ -50,11 +50,8 @@ static void a_past_brings_a_picture_nearer_to_the_truth(void **state) {
     }
     for (uint32_t i = 0; i < d.scale_count; i++) {
         const masu_past_row *none = row(d.scales[i], MASU_PAST_NONE);
-        const masu_past_row *own = row(d.scales[i], MASU_PAST_OWN), *other = row(d.scales[i], MASU_PAST_GSR2);
-        for (int m = 0; m < MASU_PAST_FAST; m++) {
-            assert_true(own->flip[m] < 0.8 * none->flip[m]);
-            assert_true(other->flip[m] < 0.9 * none->flip[m]);
-        }
+        const masu_past_row *own = row(d.scales[i], MASU_PAST_OWN);
+        for (int m = 0; m < MASU_PAST_FAST; m++) assert_true(own->flip[m] < 0.8 * none->flip[m]);
         assert_true(none->flicker[MASU_PAST_REST] < 1e-9);
         assert_true(fabs(none->flip[MASU_PAST_REST] - none->flip[MASU_PAST_SLOW]) < 1e-9);
     }
@@ -83,13 +80,12 @@ static void the_table_is_told_as_it_is_asked_for(void **state) {
                     {"%s --fast-frames 0", "--fast-frames"}, {"%s --frames 1", "--frames"}, {"%s --starts 0", "--starts"}};
     const char *good = scene_path("test_town");
     int code = cli_run("study temporal %s --size 32x24 --positions 2 --reference 2 --frames 2 --fast-frames 2 "
-                       "--scales 0.5 --only temporal,gsr2 --quiet --csv %s/rows.csv",
+                       "--scales 0.5 --only temporal --quiet --csv %s/rows.csv",
                        good, scratch);
     if (code) fail_msg("exit code %d, %s", code, cli_err);
     char *csv = read_file(in_scratch("rows.csv"), NULL);
     assert_non_null(strstr(csv, "scene,width,height,"));
     assert_non_null(strstr(csv, ",0.5,temporal,16,12,"));
-    assert_non_null(strstr(csv, ",0.5,gsr2,16,12,"));
     assert_null(strstr(csv, ",without,"));
     free(csv);
     for (size_t i = 0; i < sizeof mistakes / sizeof *mistakes; i++) {
@@ -104,5 +100,6 @@ int main(void) {
         cmocka_unit_test(a_past_brings_a_picture_nearer_to_the_truth),
         cmocka_unit_test(the_table_is_told_as_it_is_asked_for),
     };
+    cli_program = "masu-lab";
     return cmocka_run_group_tests(tests, make_scratch, remove_scratch);
 }

@@ -1,10 +1,10 @@
 #!/bin/bash
-# isa.sh: what RADV's compiler makes of the pipelines is what docs/report/isa.csv says: no spill to memory, no more
+# isa.sh: what RADV's compiler makes of the pipelines is what lab/notes/isa.csv says: no spill to memory, no more
 # scalar registers kept in vector registers, no scratch memory, at most 5 % more instructions, the same pipelines
-# (make isa-table writes it anew). Then what masu plan --isa refuses.
+# (make isa-table rewrites it). Then the errors of masu-lab isa.
 set -u
 build=${BUILD:-build} made=${MADE:-build}
-masu=$build/bin/masu
+lab=$build/bin/masu-lab
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 failed=0
@@ -17,9 +17,9 @@ fail() {
 # refuses CODE TEXT ARGUMENTS...: that exit code, and a line that has TEXT
 refuses() {
     local out code
-    out=$("$masu" plan "$made/scenes/engine.masu" "${@:3}" 2>&1 > /dev/null)
+    out=$("$lab" "${@:3}" 2>&1 > /dev/null)
     code=$?
-    [ "$code" = "$1" ] && [[ $out == *"$2"* ]] || fail "plan ${*:3}: exit code $code, $out"
+    [ "$code" = "$1" ] && [[ $out == *"$2"* ]] || fail "masu-lab ${*:3}: exit code $code, $out"
 }
 
 # worse TABLE NEW: a line for everything that NEW has more of than TABLE
@@ -36,10 +36,10 @@ worse() {
 }
 
 # The child's compiler needs nothing of the driver that tests use.
-BUILD=$build MADE=$made tools/isa/table.sh vangogh,raven > "$folder/new.csv" || fail 'table.sh fails'
-worse docs/report/isa.csv "$folder/new.csv" > "$folder/worse"
+BUILD=$build MADE=$made lab/isa/table.sh vangogh,raven > "$folder/new.csv" || fail 'table.sh fails'
+worse lab/notes/isa.csv "$folder/new.csv" > "$folder/worse"
 [ ! -s "$folder/worse" ] || fail "$(cat "$folder/worse")
-make isa-table writes docs/report/isa.csv anew, if that is meant"
+make isa-table rewrites lab/notes/isa.csv, if that is intended"
 
 # It sees what it is there for.
 sed 's/^\(engine,raven,easu,[^,]*,[^,]*,[^,]*,[^,]*\),[0-9]*,/\1,9999,/' "$folder/new.csv" > "$folder/more.csv"
@@ -47,11 +47,14 @@ worse "$folder/new.csv" "$folder/more.csv" | grep -q '^engine,raven,easu,.*9999'
 sed 's/^\(engine,raven,rcas\(,[^,]*\)\{8\}\),0,/\1,3,/' "$folder/new.csv" > "$folder/spill.csv"
 worse "$folder/new.csv" "$folder/spill.csv" | grep -q '^engine,raven,rcas,.*spills 3' || fail 'a spill is not seen'
 
-"$masu" plan --isa=help | grep -q 'vangogh.*RADV' || fail 'no list of GPUs'
-"$masu" plan "$made/scenes/engine.masu" --isa vangogh,raven --json > "$folder/json" || fail 'no JSON'
+scene=$made/scenes/engine.masu
+"$lab" isa --gpu=help | grep -q 'vangogh.*RADV' || fail 'no list of GPUs'
+"$lab" isa "$scene" --gpu vangogh,raven --json > "$folder/json" || fail 'no JSON'
 grep -q '"raven": \[' "$folder/json" && grep -q '"pipeline": "march"' "$folder/json" || fail 'JSON without rows'
-refuses 2 "there is no GPU 'gtx'" --isa gtx
-refuses 2 '--drawn is not of --isa' --isa vangogh --drawn 64x48
-MASU_ISA_DRIVERS='' refuses 1 'MASU_ISA_DRIVERS is to name the folder' --isa tgl
-MASU_ISA_DRIVERS=$folder refuses 1 "has no $folder/libvulkan_intel.so" --isa kbl
+refuses 2 'no GPU is given' isa "$scene"
+refuses 2 "there is no GPU 'gtx'" isa "$scene" --gpu gtx
+refuses 2 'unknown option --drawn' isa "$scene" --gpu vangogh --drawn 64x48
+refuses 1 'cannot' isa "$folder/none.masu" --gpu vangogh
+MASU_ISA_DRIVERS='' refuses 1 'MASU_ISA_DRIVERS is to name the folder' isa "$scene" --gpu tgl
+MASU_ISA_DRIVERS=$folder refuses 1 "has no $folder/libvulkan_intel.so" isa "$scene" --gpu kbl
 exit $failed

@@ -1,7 +1,7 @@
 #!/bin/bash
-# masu simulate: the table, the CSV's columns, plots where gnuplot is, and what it refuses.
+# masu-lab simulate: the table, the CSV's columns, plots where gnuplot is, and what it refuses.
 set -u
-masu=${BUILD:-build}/bin/masu
+lab=${BUILD:-build}/bin/masu-lab
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 failed=0
@@ -14,12 +14,12 @@ fail() {
 # refuses CODE TEXT ARGUMENTS...: that exit code, and a line that has TEXT
 refuses() {
     local out code
-    out=$("$masu" simulate "${@:3}" 2>&1 > /dev/null)
+    out=$("$lab" simulate "${@:3}" 2>&1 > /dev/null)
     code=$?
     [ "$code" = "$1" ] && [[ $out == *"$2"* ]] || fail "simulate ${*:3}: exit code $code, $out"
 }
 
-"$masu" simulate --quiet --seeds 2 --csv "$folder/all.csv" tools/simulate/traces/city.csv || fail 'simulate fails'
+"$lab" simulate --quiet --seeds 2 --csv "$folder/all.csv" lab/simulate/traces/city.csv || fail 'simulate fails'
 [ "$(head -1 "$folder/all.csv" | cut -d, -f1-7)" = \
     model,controller,frames,over_budget,changes,mean_scale,settle_frames ] || fail 'the CSV has other columns'
 for name in standard constant step_4x lies_lavapipe city; do
@@ -31,15 +31,15 @@ done
 # No controller leaves the ladder on any model.
 awk -F, 'NR > 1 && $NF != 0 { print; bad = 1 } END { exit bad }' "$folder/all.csv" || fail 'invalid scales'
 
-[ "$("$masu" simulate --model constant --controller masu --seeds 1 | wc -l)" = 4 ] || fail 'the table is not four lines'
+[ "$("$lab" simulate --model constant --controller masu --seeds 1 | wc -l)" = 4 ] || fail 'the table is not four lines'
 
 if command -v gnuplot > /dev/null; then
-    "$masu" simulate --quiet --seeds 1 --model constant --plots "$folder/plots" || fail 'plots fail'
+    "$lab" simulate --quiet --seeds 1 --model constant --plots "$folder/plots" || fail 'plots fail'
     grep -q '</svg>' "$folder/plots/constant.svg" || fail 'there is no whole constant.svg'
     # A name is a title, whatever stands in it.
     trace="$folder/it's \`touch STRUCK\`.csv"
-    head -40 tools/simulate/traces/city.csv > "$trace"
-    "$masu" simulate --quiet --seeds 1 --model "it's \`touch STRUCK\`" --controller masu \
+    head -40 lab/simulate/traces/city.csv > "$trace"
+    "$lab" simulate --quiet --seeds 1 --model "it's \`touch STRUCK\`" --controller masu \
         --plots "$folder/plots" "$trace" || fail 'a name with quotes is refused'
     [ ! -e "$folder/plots/STRUCK" ] && [ ! -e STRUCK ] || { rm -f STRUCK; fail 'a name was run'; }
     grep -q '</svg>' "$folder/plots/it's \`touch STRUCK\`.svg" || fail 'there is no plot of a name with quotes'

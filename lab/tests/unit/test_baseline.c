@@ -1,4 +1,4 @@
-/* test_baseline.c: what `masu study baseline` is made of, without a device: the search for the least
+/* test_baseline.c: what `masu-lab study baseline` is made of, without a device: the search for the least
  * count of samples, medians over rounds, and what the baseline is. */
 #include <setjmp.h>
 #include <stdarg.h>
