@@ -360,7 +360,7 @@ done
 # ---- hostile models ------------------------------------------------------------------------------
 
 [ -d $models/invalid ] || fail "$models is missing (package assimp-testmodels)"
-. tools/gallery/outcome.sh
+. tests/outcome.sh
 tried=0 least=150
 [ "${NESTED:-}" = '' ] || least=15
 : > "$folder/outcomes"

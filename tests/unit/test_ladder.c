@@ -13,10 +13,10 @@
 #include <cmocka.h>
 #include <glob.h>
 
-#include "bench/sweep/knobs.h"
-#include "bench/sweep/ladder.h"
-#include "bench/sweep/ladder_file.h"
-#include "bench/sweep/settings.h"
+#include "settings/knobs.h"
+#include "settings/ladder.h"
+#include "settings/ladder_file.h"
+#include "bench/settings.h"
 #include "image.h"
 #include "quality/ladder.h"
 #include "plan/compile.h"

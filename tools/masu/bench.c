@@ -1,13 +1,11 @@
-/* bench.c: `masu bench`: every quality level of a scene, a measured error beside a measured
- * time: the command line of bench/sweep/sweep.h, which measures, and bench/sweep/report.h, which makes rungs,
- * plots and a page of it. */
+/* bench.c: `masu bench`: measures every quality level of a scene, error against run time: the command line of
+ * bench/sweep.h, which measures, and of bench/report.h, which writes rungs, plots and a page. */
 #include "masu/bench.h"
 
-#include "bench/sweep/against.h"
-#include "bench/measure/picture.h"
-#include "bench/sweep/report.h"
-#include "bench/sweep/sweep.h"
-#include "model/write.h"
+#include "bench/against.h"
+#include "measure/picture.h"
+#include "bench/report.h"
+#include "bench/sweep.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -19,40 +17,15 @@ typedef struct options {
     masu_setting_list only;
     masu_given given;
     const char *against, *rungs_of, *csv;
-    bool merge, ladder, c, steady; /* --steady is given */
+    bool merge, ladder, steady; /* --steady is given */
 } options;
 
-/* The model sheet of the ladder, which the report has made: the page is then written once more. */
-static void model(const options *o) {
-    char error[4096];
-    masu_model_desc d = {.scene_path = o->given.arguments[0],
-                         .size = {1920, 1080},
-                         .drawn = masu_count_size(o->sweep.size),
-                         .time = o->sweep.time,
-                         .host = {.device = o->sweep.host.device},
-                         .progress = masu_cli_progress_text};
-    if (masu_model_write(&d, o->sweep.folder, error, sizeof error)) return;
-    masu_cli_warn("there is no model sheet: %s", error);
-}
-
 static int report(const options *o) {
-    /* A sheet of another ladder does not stay. */
-    static const char *const sheets[] = {"model.csv", MASU_MODEL_FRAGMENT};
-    char path[4096];
-    for (size_t i = 0; i < 2; i++) {
-        if (masu_sweep_path(o->sweep.folder, sheets[i], path)) (void)remove(path);
-    }
     masu_report_result result;
     char error[4096];
     masu_cli_progress("writing the report");
     if (!masu_report_write(o->sweep.folder, &result, error, sizeof error))
         return masu_cli_error("%s", error);
-    if (!o->merge) {
-        model(o);
-        masu_cli_progress("writing the report");
-        if (!masu_report_write(o->sweep.folder, &result, error, sizeof error))
-            return masu_cli_error("%s", error);
-    }
     masu_cli_progress_clear();
     if (result.unsteady > result.rows / 10) {
         masu_cli_warn("the machine was busy: times of %u of %u settings contradict themselves",
@@ -189,10 +162,6 @@ static const masu_option rows[] = {
               "time ratio of the two, and the worst"),
     MASU_TEXT(options, csv, "csv", "FILE", "of --against: write it as CSV, - is standard output"),
     MASU_FLAG(options, ladder, "ladder", "print the ladders LADDER.json... that have been measured"),
-    MASU_FLAG(options, c, "c",
-              "of --ladder: print src/quality/ladder_tables.h, the ladders that the library is\n"
-              "built with; each file is given as CLASS=FILE: polygons, world, sdf, both, or one\n"
-              "of them with -traced"),
     MASU_FLAG(options, sweep.quick, "quick",
               "few settings, 128x72, 4 positions, 8 frames, 2 runs, no rungs again: a test"),
     MASU_DEVICE_ROWS(options, sweep.host),
@@ -214,7 +183,6 @@ static int check(const options *o) {
                                     : o->merge        ? "--merge"
                                     : o->rungs_of     ? "--rungs-of"
                                                       : "--out");
-    if (o->c && !o->ladder) return masu_cli_usage_error("--c is of --ladder");
     if (o->csv && !o->against) return masu_cli_usage_error("--csv is of --against");
     return MASU_CLI_OK;
 }
@@ -232,7 +200,7 @@ static int run(masu_cli *cli) {
     o.sweep.rays = o.truth.rays;
     code = check(&o);
     if (code) return code;
-    if (o.ladder) return masu_bench_ladder(&o.given, o.c);
+    if (o.ladder) return masu_bench_ladder(&o.given);
     if (o.against) return against(&o);
     if (!o.given.count)
         return masu_cli_usage_error(o.merge ? "no folder to merge is given" : "no scene is given");
@@ -252,8 +220,7 @@ const masu_cli_command masu_cmd_bench = {
         "--truth is DIR/truth.png unless it is given; --positions are 64.\n"
         "Into DIR: results.csv, a row per setting; steady.csv, the rungs timed again; ladder.json,\n"
         "the rungs of the Pareto front; index.html, one page with tables, plots and pictures;\n"
-        "plots/ if there is gnuplot;\n"
-        "model.csv, model.xhtml: the model sheet of these rungs at 1080p (masu plan --model), computed.\n"
+        "plots/ if there is gnuplot.\n"
         "Where NAME.truth.so lies beside NAME.masu (code, as trusted as this program), surfaces are\n"
         "compared with it. A setting's time is that of frames at rest, in turns with the base\n"
         "setting (all defaults, no upscaling); its picture is the last of some frames in motion.\n",

@@ -2,7 +2,7 @@
  * use (metric/image.h, metric/flip.h). tests/scripts/compare.sh holds them against other people's
  * programs. Opens no device; nothing is judged. */
 #include "masu/cmd.h"
-#include "masu/options.h"
+#include "command/options.h"
 
 #include "image.h"
 #include "metric/flip.h"
