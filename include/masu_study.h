@@ -86,17 +86,20 @@ typedef struct masu_debug {
      * undefined memory. The image must not change. 1: NaN; 2: infinities; 3: NaN and 1 alternate as
      * halves. */
     uint32_t poison;
-    /* Flag. Culls for one light-space view that contains the whole scene, for masu_view_stats. */
+    /* Flag. Without a shadow map, culls for one light-space view of the whole scene, for
+     * masu_view_stats. */
     uint32_t casters;
-    uint32_t ao_full;    /* not 0: ambient occlusion at each pixel instead of each fourth, */
-    uint32_t ao_nearest; /* and without the mean over 4x4 texels: both for comparison */
-    /* Flag. Evaluates all SDF primitives of a tile instead of those that its block needs. The
+    /* Flags, for comparison. Screen-space ambient occlusion at full instead of half resolution, and
+     * without its 4x4 filter. */
+    uint32_t ao_full;
+    uint32_t ao_nearest;
+    /* Flag. Evaluates all SDF primitives of a tile, not only the ones that the block needs. The
      * result is bit-identical. */
     uint32_t all_terms;
     /* Load balancing: any invocation of a 16x16 tile may trace any ray of the tile. The image is
      * the same. AUTO: on for GPUs, where idle invocations cost more than the sharing. */
     masu_switch share_rays;
-    /* Flag. Disables the mip bias of rungs: log2(scale), and 2 levels less with temporal. */
+    /* Flag. Disables the mip bias of rungs, which is log2(scale), with temporal log2(scale) - 2. */
     uint32_t no_bias;
     /* Flag. Reflection reference: traces a ray at each pixel, weights it exactly, does not filter,
      * and averages all frames of an unchanged scene. A cut restarts the average. */
