@@ -549,7 +549,7 @@ typedef struct masu_desc {
     /* What weighs the texels that EASU takes: floats of 16 bits, or of 32. AUTO: of MASU_EASU_FAST 16, if
      * vulkan.shader_float16 says that they are there and the device is a discrete or integrated GPU: CPUs
      * emulate them; of MASU_EASU_FULL 32. ON: 16 of both, which changes EASU by up to 2/255, or
-     * MASU_ERROR_DEVICE; rungs with `fuse`, and all with debug.exact, stay at 32. OFF: 32. */
+     * MASU_ERROR_DEVICE; rungs with debug.exact stay at 32. OFF: 32. */
     masu_switch half_floats;
     masu_exposure exposure;
     masu_tone tone;

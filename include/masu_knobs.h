@@ -102,7 +102,7 @@ typedef enum masu_knob_use {
            "Anti-aliasing and upscaling over frames, in place of aa, EASU and RCAS (RCAS where"    \
            " sharpen is on): each frame looks at another place in its pixels. Scenes alone. AUTO:" \
            " on with a governor, at most one viewport and no split but AFTER_UPSCALE, in rungs that" \
-           " leave upscale, easu, sharpen, aa and fuse at AUTO; else off.",                        \
+           " leave upscale, easu, sharpen and aa at AUTO; else off.",                        \
            "A pass of the output size, two of the render size. Device bytes that outlive the frame: 16 per" \
            " pixel of the output, 4 of the render size; that do not: 8 of the render size, and"    \
            " velocities, 8.")                                                                      \

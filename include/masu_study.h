@@ -38,10 +38,6 @@ typedef enum masu_march { MASU_MARCH_WORDS(MASU_WORD_ENUM) } masu_march;
            "Each pixel asks the lights of its 16x16 tile alone; the picture is the same. AUTO:"    \
            " on, if the scene has any.",                                                           \
            "A pass over the tiles; saves work at each pixel where lights are many.")               \
-    WORD(  masu_switch,      fuse,                                   UPSCALED,                     \
-           "EASU (full) and RCAS in one pass where both run: the same picture. Ignored with"       \
-           " deep_color. AUTO: off.",                                                              \
-           "1.13 times the time of upscaling; saves the image between the two.")                   \
     /* Another way to the same surface. */                                                         \
     WORD(  masu_march,       march,                                  SDF,                          \
            "How the SDF is marched. AUTO: the fast way.",                                          \

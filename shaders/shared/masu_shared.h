@@ -29,8 +29,6 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
  * (128). */
 #define MASU_GROUP 8
 
-/* Pixels along an edge of what a workgroup of fsr1.comp makes. */
-#define MASU_FSR1_BLOCK 32
 
 /* Set 0, the same for every pass: MASU_BIND_* follow from the rows of src/plan/buffers.inc. Set 1 is derived
  * from the pass's row in src/plan/passes.inc. Set 2, of

@@ -50,7 +50,6 @@ static VkExtent2D groups_of(const masu_recorder *rec, uint32_t pass, const masu_
     case MASU_EXTENT_TILE:
     case MASU_EXTENT_ONE: edge = 1; break;
     case MASU_EXTENT_OUTPUT_PAIRS: width = 2 * edge; break;
-    case MASU_EXTENT_OUTPUT32: edge = MASU_FSR1_BLOCK; break;
     case MASU_EXTENT_OUTPUT_ODD:
         return (VkExtent2D){push->sizes.render_width / edge + 1, push->sizes.render_height / edge + 1};
     default: break;

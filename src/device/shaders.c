@@ -47,7 +47,7 @@ static int reads_unorm(const masu_frame_plan *plan, uint32_t pass) {
     return 1;
 }
 
-/* Of the axes COLOR, LAST and LAST8. */
+/* Of the axes COLOR and LAST. */
 static int color_form(const masu_frame_plan *plan, uint32_t pass, int last) {
     if (plan->deep) return 3;
     if (plan->needs.scene) return last ? 2 : 4;

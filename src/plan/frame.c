@@ -85,7 +85,6 @@ static const char *no_resolve(const masu_needs *n) {
 
 static const char *no_upscale(const masu_needs *n) {
     return n->resolve   ? "temporal does it"
-           : n->fused   ? "fsr1 does it"
            : n->upscale ? "rung.easu asks for another way"
                         : "render size is output size";
 }
@@ -175,8 +174,7 @@ VkExtent2D masu_extent_of(masu_image_extent extent, VkExtent2D render, VkExtent2
         return (VkExtent2D){1, 1};
     if (extent == MASU_EXTENT_PICK) return (VkExtent2D){2, 2};
     if (extent == MASU_EXTENT_SHADOW) return (VkExtent2D){0, 0};
-    int shown = extent == MASU_EXTENT_OUTPUT || extent == MASU_EXTENT_OUTPUT32 ||
-                extent == MASU_EXTENT_OUTPUT_PAIRS || extent == MASU_EXTENT_OUTPUT_ODD;
+    int shown = extent == MASU_EXTENT_OUTPUT || extent == MASU_EXTENT_OUTPUT_PAIRS || extent == MASU_EXTENT_OUTPUT_ODD;
     VkExtent2D size = shown ? output : render;
     return (VkExtent2D){(size.width + block - 1) / block, (size.height + block - 1) / block};
 }

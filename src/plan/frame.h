@@ -46,7 +46,6 @@ typedef enum masu_image_class {
 typedef enum masu_image_extent {
     MASU_EXTENT_RENDER,
     MASU_EXTENT_OUTPUT,
-    MASU_EXTENT_OUTPUT32, /* the same, a workgroup for 32x32 pixels */
     MASU_EXTENT_OUTPUT_PAIRS, /* the same, an invocation for two pixels side by side */
     MASU_EXTENT_OUTPUT_ODD, /* the same, an invocation for the 2x2 pixels between four texels: one more each way than texels */
     MASU_EXTENT_HALF, /* a texel per 2x2 render pixels */
@@ -163,8 +162,7 @@ typedef struct masu_needs {
     int fxaa, smaa; /* at most one of them */
     int resolve;   /* over frames */
     int resolve_twice; /* the same to twice the size */
-    int fused;     /* upscale and sharpen in one pass */
-    int twice;     /* upscale in full to twice the size, not fused */
+    int twice;     /* upscale in full to twice the size */
     int ao;        /* ambient occlusion in screen space */
     int casters;   /* occlusion, of a view of the sun too */
     int receiver_mask; /* and of cascades that every frame draws anew */

@@ -144,7 +144,6 @@ static masu_rung default_rung(float scale, float sharpness) {
     return (masu_rung){.scale = scale,
                        .easu = MASU_EASU_FULL,
                        .sharpness = sharpness,
-                       .fuse = MASU_OFF,
                        .aa = MASU_AA_OFF,
                        .temporal = MASU_OFF,
                        .silhouettes = MASU_OFF,
@@ -406,23 +405,22 @@ static void words_are_resolved_by_the_rule_of_the_plan(void **state) {
 static void with_a_governor_many_samples_come_from_one(void **state) {
     (void)state;
     masu_desc d = scene_desc(RASTER | SDF, 640, 360);
-    d.rung_count = 8;
-    for (uint32_t r = 0; r < 8; r++) d.rungs[r] = (masu_rung){.scale = r ? 0.5f : 1.0f, .sharpness = 0.5f};
+    d.rung_count = 7;
+    for (uint32_t r = 0; r < 7; r++) d.rungs[r] = (masu_rung){.scale = r ? 0.5f : 1.0f, .sharpness = 0.5f};
     d.rungs[0].specular_frames = 24;
     d.rungs[2].upscale = MASU_ON;
     d.rungs[3].easu = MASU_EASU_FAST;
     d.rungs[4].sharpen = MASU_OFF;
     d.rungs[5].aa = MASU_AA_OFF;
-    d.rungs[6].fuse = MASU_OFF;
-    d.rungs[7].temporal = MASU_OFF;
+    d.rungs[6].temporal = MASU_OFF;
     masu_desc is = masu_desc_resolved(&d);
-    for (uint32_t r = 0; r < 8; r++) assert_int_equal(is.rungs[r].temporal, MASU_OFF);
+    for (uint32_t r = 0; r < 7; r++) assert_int_equal(is.rungs[r].temporal, MASU_OFF);
     static const masu_governor_mode modes[] = {MASU_GOVERNOR_ON, MASU_GOVERNOR_FIXED};
     for (uint32_t k = 0; k < 2; k++) {
         d.governor.mode = modes[k];
         is = masu_desc_resolved(&d);
         masu_desc twice = masu_desc_resolved(&is);
-        for (uint32_t r = 0; r < 8; r++) {
+        for (uint32_t r = 0; r < 7; r++) {
             assert_int_equal(is.rungs[r].temporal, r < 2 ? MASU_ON : MASU_OFF);
             assert_int_equal(twice.rungs[r].temporal, is.rungs[r].temporal);
             assert_int_equal(is.rungs[r].specular_frames, r == 0 ? 24 : r == 1 ? 8 : 32); /* a host's own stays */

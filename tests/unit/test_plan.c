@@ -421,39 +421,6 @@ static void switches_force_upscaling_and_sharpening_on_and_off(void **state) {
     }
 }
 
-static void upscaling_and_sharpening_are_one_pass_where_asked(void **state) {
-    (void)state;
-    static masu_frame_plan plan;
-    masu_desc d = scene_desc(SDF, 1920, 1080);
-    d.rung_count = 5;
-    for (uint32_t r = 0; r < 5; r++) d.rungs[r] = (masu_rung){.scale = 0.5f, .fuse = MASU_ON};
-    d.rungs[1].sharpen = MASU_OFF;
-    d.rungs[2].easu = MASU_EASU_FAST;
-    d.rungs[3].scale = 1.0f;
-    d.rungs[3].sharpen = MASU_ON;
-    d.rungs[4].fuse = MASU_AUTO;
-    static const char *const ends[] = {
-        "tonemap(r:hdr w:ldr) fsr1(r:ldr w:target)",
-        "tonemap(r:hdr w:ldr) easu_twice(r:ldr w:target)",
-        "tonemap(r:hdr w:ldr) easu_fast(r:ldr w:upscaled) rcas(r:upscaled w:target)",
-        "tonemap(r:hdr w:ldr) rcas(r:ldr w:target)",
-        "tonemap(r:hdr w:ldr) easu_twice(r:ldr w:upscaled) rcas(r:upscaled w:target)",
-    };
-    for (uint32_t r = 0; r < 5; r++) {
-        char expected[512];
-        (void)snprintf(expected, sizeof expected, MARCH_ALONE LIGHT_SDF "%s", ends[r]);
-        assert_frame(&d, r, expected);
-    }
-    d.rung_count = 1;
-    compile(&d, &plan);
-    assert_false(plan.images[MASU_IMAGE_UPSCALED].used);
-    assert_string_equal(why_of(&d, MASU_PASS_EASU), "fsr1 does it");
-    assert_string_equal(why_of(&d, MASU_PASS_RCAS), "fsr1 does it");
-    d.targets.storage = 0;
-    assert_frame(&d, 0, MARCH_ALONE LIGHT_SDF
-                 "tonemap(r:hdr w:ldr) fsr1(r:ldr w:final) present(from:final to:target)");
-}
-
 /* Bilinear is the plain base: nothing sharpens it unasked. */
 static void a_rung_says_how_it_is_upscaled(void **state) {
     (void)state;
@@ -648,7 +615,7 @@ static void temporal_stands_in_for_anti_aliasing_and_upscaling(void **state) {
     masu_desc d = scene_desc(RASTER, 64, 64);
     assert_string_equal(why_of(&d, MASU_PASS_TEMPORAL), "rung.temporal is not on");
     d.rung_count = 2;
-    d.rungs[0] = (masu_rung){.temporal = MASU_ON, .scale = 0.5f, .aa = MASU_AA_SMAA_HIGH, .fuse = MASU_ON};
+    d.rungs[0] = (masu_rung){.temporal = MASU_ON, .scale = 0.5f, .aa = MASU_AA_SMAA_HIGH};
     d.rungs[1] = (masu_rung){.temporal = MASU_ON, .sharpen = MASU_ON};
     assert_string_equal(why_of(&d, MASU_PASS_EASU), "temporal does it");
     compile(&d, &plan);
@@ -953,7 +920,6 @@ static void in_every_frame_the_last_colour_writer_alone_writes_the_target(void *
         d.rungs[0].upscale = (masu_switch)((n /= 4) % 3);
         d.rungs[0].sharpen = (masu_switch)((n /= 3) % 3);
         d.rungs[0].easu = (masu_easu)(c % 4);
-        d.rungs[0].fuse = (masu_switch)(c % 3);
         uint32_t size = (n /= 3) % 3, source = n / 3;
         d.rungs[0].scale = size ? 0.5f : 1.0f;
         if (d.rungs[0].upscale == MASU_OFF && size) continue; /* refused */
@@ -1582,7 +1548,6 @@ int main(void) {
         cmocka_unit_test(a_source_image_of_the_output_size_is_written_all_the_same),
         cmocka_unit_test(switches_force_upscaling_and_sharpening_on_and_off),
         cmocka_unit_test(a_rung_says_how_it_is_upscaled),
-        cmocka_unit_test(upscaling_and_sharpening_are_one_pass_where_asked),
         cmocka_unit_test(twice_the_size_has_a_pass_of_its_own),
         cmocka_unit_test(a_target_that_is_no_storage_image_is_blitted_to),
         cmocka_unit_test(a_metered_exposure_is_two_passes),

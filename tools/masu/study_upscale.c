@@ -45,8 +45,6 @@ typedef struct bench_case {
 /* The first is what ratios are to. */
 static const bench_case cases[] = {
     {"easu+rcas", 17, 1, NULL, .rung = {.upscale = MASU_ON, .sharpen = MASU_ON, .sharpness = 0.2f}},
-    {"fsr1", 12 * 34.0 * 34 / 1024, 0, "easu+rcas",
-     .rung = {.upscale = MASU_ON, .sharpen = MASU_ON, .sharpness = 0.2f, .fuse = MASU_ON}},
     {"easu", 12, 0, NULL, .rung = {.upscale = MASU_ON, .sharpen = MASU_OFF}},
     {"easu-fast+rcas", 17, 1, "easu+rcas",
      .rung = {.upscale = MASU_ON, .sharpen = MASU_ON, .sharpness = 0.2f, .easu = MASU_EASU_FAST}},

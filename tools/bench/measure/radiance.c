@@ -97,7 +97,7 @@ static bool whole(const masu_rung *rung) { return rung->scale >= 1.0f; }
 /* What is done after the tone curve leaves radiance as it is. */
 static masu_rung key_of(const masu_rung *rung) {
     masu_rung key = *rung;
-    key.upscale = key.sharpen = key.fuse = MASU_OFF;
+    key.upscale = key.sharpen = MASU_OFF;
     key.sharpness = 0.0f;
     key.easu = MASU_EASU_AUTO;
     key.aa = MASU_AA_OFF;

@@ -108,7 +108,6 @@ static const technique techniques[] = {
     {"sharpness", HALF, {.sharpness = 2.0f}},
     {"easu", HALF | QUICK | STRUCTURAL, {.easu = MASU_EASU_FAST}},
     {"easu", HALF | STRUCTURAL, {.easu = MASU_EASU_BILINEAR}},
-    {"fuse", HALF | STRUCTURAL, {.fuse = MASU_ON}},
     {"silhouettes", WHOLE | HALF | STRUCTURAL, {.silhouettes = MASU_ON}},
     {"march_steps", WHOLE, {.march_steps = 32}},
     {"march_steps", WHOLE | HALF | QUICK, {.march_steps = 64}},
