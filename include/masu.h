@@ -168,7 +168,9 @@ typedef struct masu_scene {
     uint32_t sdf_parts, sdf_slots, sdf_block_words;
     uint32_t sdf_dynamic;   /* 1: slots depend on parameters or time */
     uint32_t sdf_anchored;  /* 1: it keeps its precision far from the origin (docs/sdf.md) */
-    uint32_t sdf_march;     /* bit per masu_march that the blob has code for */
+#ifdef MASU_LAB
+    uint32_t sdf_march; /* bit per masu_march that the blob has code for */
+#endif
     uint32_t sdf_occlusion; /* 1: the SDF casts shadows or occludes ambient light */
     uint32_t max_instances, max_primitives; /* of one mesh */
     uint32_t shadow_cascades; /* of the sun's shadow map; 0: none. Scenes with instances only */
@@ -651,7 +653,6 @@ MASU_API MASU_MUST_USE masu_result masu_resize(masu_renderer *renderer, VkExtent
  * is the same when resolved again. What depends on the scene (or source) or on the output's size is left as it
  * is where these are not given; resolve after the last change, for what follows from another field then stays.
  * These words stay AUTO:
- *  - rungs[].march: it is the name of the fast way itself;
  *  - rungs[].specular and .occlusion where the scene has use for them: with ON masu_init fails on a device
  *    that lacks the storage buffers, with AUTO it goes without;
  *  - ray_query, half_floats, debug.share_rays: these follow from the device. */

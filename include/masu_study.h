@@ -6,21 +6,26 @@
 #ifndef MASU_STUDY_PART_H
 #define MASU_STUDY_PART_H
 
-/* How the SDF is marched. All but AUTO are for comparison; those marked * need a blob baked with
- * --variants, else masu_init fails with MASU_ERROR_SCENE. */
+/* How the SDF is marched: a knob of the lab build, which defines MASU_LAB. Elsewhere the SDF is marched by AUTO. Those marked * need a
+ * blob that the lab build's masu-bake has baked with --variants, else masu_init fails with MASU_ERROR_SCENE. */
+#ifdef MASU_LAB
 #define MASU_MARCH_WORDS(X)                                                                        \
-    X(MASU_MARCH_AUTO, 0, "auto", "the fast way, tile by tile with the parts that matter there")   \
-    X(MASU_MARCH_PLAIN, 1, "plain", "* each pixel by itself, in a compute shader")                 \
-    X(MASU_MARCH_FRAGMENT, 2, "fragment",                                                          \
-      "* each pixel by itself, in a fragment shader; only without polygons")                       \
-    X(MASU_MARCH_SEED, 3, "seed", "* two-phase checkerboard with capped, unchecked restarts")      \
-    X(MASU_MARCH_CONE8, 4, "cone8", "cones of 8x8 pixels alone")                                   \
-    X(MASU_MARCH_CONES, 5, "cones", "cones of 8x8, then of 4x4 pixels")                            \
-    X(MASU_MARCH_CHECKERBOARD, 6, "checkerboard",                                                  \
-      "* cones of 8x8 pixels, then a two-phase checkerboard with provably safe restarts")          \
-    X(MASU_MARCH_UNPRUNED, 7, "unpruned", "as auto, but every tile with all parts")
+    X(MASU_MARCH_AUTO, 0, "auto", "the product's: cones of 8x8, then of 4x4 pixels")               \
+    X(MASU_MARCH_PLAIN, 1, "plain", "* plain sphere tracing, one ray per pixel: the baseline")     \
+    X(MASU_MARCH_SEED, 2, "seed", "* two-phase checkerboard with capped, unchecked restarts")      \
+    X(MASU_MARCH_CONES, 3, "cones", "the same as auto")                                            \
+    X(MASU_MARCH_CHECKERBOARD, 4, "checkerboard",                                                  \
+      "* cones of 8x8 pixels, then a two-phase checkerboard with safe restarts")
 
 typedef enum masu_march { MASU_MARCH_WORDS(MASU_WORD_ENUM) } masu_march;
+
+#define MASU_LAB_KNOBS(NUMBER, WORD)                                                               \
+    WORD(  masu_march,       march,                                  SDF,                          \
+           "How the SDF is marched. AUTO: the product's march.",                                   \
+           "All others take longer (docs/design/05-sphere-tracing.md).")
+#else
+#define MASU_LAB_KNOBS(NUMBER, WORD)
+#endif
 
 /* Rows as in MASU_PRODUCT_KNOBS, behind which they come. */
 /* clang-format off */
@@ -38,10 +43,7 @@ typedef enum masu_march { MASU_MARCH_WORDS(MASU_WORD_ENUM) } masu_march;
            "Each pixel asks the lights of its 16x16 tile alone; the picture is the same. AUTO:"    \
            " on, if the scene has any.",                                                           \
            "A pass over the tiles; saves work at each pixel where lights are many.")               \
-    /* Another way to the same surface. */                                                         \
-    WORD(  masu_march,       march,                                  SDF,                          \
-           "How the SDF is marched. AUTO: the fast way.",                                          \
-           "All others took longer where they were measured (docs/design/11-march-measured.md).")  \
+    MASU_LAB_KNOBS(NUMBER, WORD)                                                                   \
     /* Single stages of traced reflections, and how far they look. */                              \
     WORD(  masu_switch,      specular_reuse,                         SPECULAR,                     \
            "Each texel weighs its neighbours' hits too, while its history is short. AUTO: on,"     \

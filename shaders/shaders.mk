@@ -15,9 +15,11 @@
 # Vertex shaders are of 450: for 440 they declare a block for the position that has no cull distance.
 
 SCENE_SHADERS := update.comp classify.comp cone.comp march.comp march_plain.comp march_seed.comp \
-    march_checkerboard.comp march_fragment.frag sdf_velocity.comp sdf_occlusion.comp \
+    march_checkerboard.comp sdf_velocity.comp sdf_occlusion.comp \
     silhouettes.comp \
     specular_trace_sdf.comp
+# Of these, the marches that only the lab build has: masu-bake holds their text only with MASU_LAB.
+LAB_SCENE_SHADERS := march_plain.comp march_seed.comp march_checkerboard.comp
 
 SPIRV_TARGET := --target-env vulkan1.1
 STAGES       := comp vert frag
@@ -129,8 +131,10 @@ $(MADE)/gen/scene_sources.h: $(SCENE_TEXTS) $(MADE)/gen/scene_texts.list
 	    echo '    const char *text;'; \
 	    echo '} masu_scene_sources[] = {'; \
 	    for f in $(SCENE_TEXTS); do \
-	        name=$${f#shaders/}; echo "    {\"$${name#$(MADE)/gen/}\","; \
+	        name=$${f#shaders/}; lab=; case " $(LAB_SCENE_SHADERS) " in *" $$name "*) lab=1; echo '#ifdef MASU_LAB' ;; esac; \
+	        echo "    {\"$${name#$(MADE)/gen/}\","; \
 	        sed -e 's/[\\"?]/\\&/g' -e 's/.*/     "&\\n"/' "$$f"; echo '     ""},'; \
+	        [ -z "$$lab" ] || echo '#endif'; \
 	    done; \
 	    echo '};'; \
 	    echo '#pragma GCC diagnostic pop'; } > $@

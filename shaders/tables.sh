@@ -14,9 +14,9 @@ cd "$(dirname "$0")/.."
 
 [ $# = 1 ] || { echo "usage: tables.sh tables|permutations|parts|builds" >&2; exit 2; }
 
-# Rows may span lines and hold comments: one row to a line, without comments.
+# Rows may span lines and hold comments: one row to a line, without comments. GUARD(MACRO) stands for #ifdef MACRO, GUARD() for its #endif.
 rows() {
-    awk '
+    sed -e 's/^#ifdef \([A-Z_]*\).*/GUARD(\1)/' -e 's/^#endif.*/GUARD()/' "$1" | awk '
     { line = line " " $0 }
     END {
         while ((from = index(line, "/*")) > 0) {
@@ -31,7 +31,7 @@ rows() {
             if (depth || c != " ") row = row c
             if (!quoted && c == ")" && !--depth) { gsub(/ +/, " ", row); print row; row = "" }
         }
-    }' "$1"
+    }'
 }
 
 {
@@ -59,6 +59,7 @@ function inside(s, word,    from, i, c, depth, quoted) {
 
 # A shader of several rows is of a part that all of them are of.
 function add_shader(name, list,    n, words, i) {
+    if (guard != "") fail(name " is of a row within #ifdef " guard ": the permutations are the same in every build")
     list = trim(list)
     elsewhere[name] += !traced
     without[name] += !polygons
@@ -71,6 +72,11 @@ function add_shader(name, list,    n, words, i) {
         if (!(words[i] in forms)) fail(name " has an axis " words[i] ", which is not in axes.inc")
     shader_axes[name] = list
     shaders[++shader_count] = name
+}
+
+/^GUARD\(/ {
+    guard = inside($0, "GUARD")
+    next
 }
 
 /^AXIS\(/ {
@@ -115,10 +121,9 @@ function add_shader(name, list,    n, words, i) {
         file = trim(part[2])
         add_shader(file "_vert", part[3])
         add_shader(trim(part[4]) "_frag", part[5])
-    } else if (tail ~ /^\)?, *(SCENE|DRAW_SCENE)\(/) {
-        split(inside(tail, tail ~ /DRAW_SCENE\(/ ? "DRAW_SCENE" : "SCENE"), part, ",")
+    } else if (tail ~ /^\)?, *SCENE\(/) {
+        split(inside(tail, "SCENE"), part, ",")
         file = trim(part[1])
-        if (tail ~ /DRAW_SCENE\(/) add_shader("fullscreen_vert", "")
     }
     members = ""
     rest = inside($0, "PUSH")
@@ -136,6 +141,7 @@ function add_shader(name, list,    n, words, i) {
     }
     push[file] = members
     pushes[++push_count] = file
+    guards[push_count] = guard
     next
 }
 
@@ -147,9 +153,11 @@ END {
         print "#ifndef MASU_TABLES_H\n#define MASU_TABLES_H\n"
         for (i = 1; i <= bind_count; i++) print "#define MASU_BIND_" binds[i], i - 1
         print "#define MASU_BIND_COUNT", bind_count
-        for (i = 1; i <= push_count; i++)
-            print "\nstruct masu_push_" pushes[i] " {\n" push[pushes[i]] "};"
-        print "\n#endif"
+        for (i = 1; i <= push_count; i++) {
+            print guards[i] == guards[i - 1] ? "" : guards[i] == "" ? "#endif\n" : "\n#ifdef " guards[i]
+            print "struct masu_push_" pushes[i] " {\n" push[pushes[i]] "};"
+        }
+        print (guards[push_count] == "" ? "" : "#endif\n") "\n#endif"
         exit
     }
     for (s = 1; s <= shader_count; s++) {

@@ -5,7 +5,8 @@
 # ---- Archives: one per folder of tools/ ----------------------------------------------------------
 
 tool_archive = $(BUILD)/lib/libmasu-$(1).a
-tool_sources = $(filter-out %/main.c,$(wildcard tools/$(1)/*.c tools/$(1)/*/*.c))
+OF_LAB := tools/bench/measure/run.c tools/bench/study/baseline.c tools/masu/study_march.c tools/masu/study_baseline.c
+tool_sources = $(filter-out %/main.c $(OF_LAB),$(wildcard tools/$(1)/*.c tools/$(1)/*/*.c))
 TOOL_FOLDERS := cli spirv sdfc bake meso world metric bench model isa conform simulate
 $(foreach f,$(TOOL_FOLDERS),$(eval $(call tool_archive,$(f)): $(call objects,$(call tool_sources,$(f)))))
 
@@ -24,7 +25,7 @@ MASU_LIBS := -lvulkan -ljansson -lembree3 -lm -ldl -lpthread
 # ---- Programs ------------------------------------------------------------------------------------
 
 $(BUILD)/bin/masu: LIBS = $(MASU_LIBS)
-$(BUILD)/bin/masu: $(call objects,$(wildcard tools/masu/*.c)) $(KEEP_LOADED) $(MEASURE_ARCHIVES) $(BAKE_ARCHIVES)
+$(BUILD)/bin/masu: $(call objects,$(filter-out $(OF_LAB),$(wildcard tools/masu/*.c))) $(KEEP_LOADED) $(MEASURE_ARCHIVES) $(BAKE_ARCHIVES)
 	$(link)
 
 $(BUILD)/bin/masu-bake $(BUILD)/bin/masu-meso $(BUILD)/bin/masu-world: LIBS = $(BAKE_LIBS)

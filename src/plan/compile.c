@@ -341,19 +341,15 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                              d->output.height);
         }
         plan->needs.rung = &d->rungs[r];
+#ifdef MASU_LAB
         plan->needs.march = d->rungs[r].march;
-        if (plan->needs.sdf && plan->needs.raster && plan->needs.march == MASU_MARCH_FRAGMENT) {
-            return masu_fail(detail, MASU_ERROR_SCENE, "rungs[].march", plan->needs.march, 0,
-                             "rungs[%u].march is MASU_MARCH_FRAGMENT, which erases polygons: the "
-                             "scene has %u instances",
-                             r, d->scene->instances);
-        }
         if (plan->needs.sdf && !(d->scene->sdf_march & 1u << plan->needs.march)) {
             return masu_fail(detail, MASU_ERROR_SCENE, "rungs[].march", plan->needs.march, 0,
                              "rungs[%u].march is %d, for which the blob has no code (bake with "
                              "--variants)",
                              r, (int)plan->needs.march);
         }
+#endif
         resolve_switches(d, r, rp, &plan->needs);
         plan->needs.ao = rung_has_ao(d, r);
         plan->needs.specular = rung_has_specular(d, r);

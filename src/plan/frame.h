@@ -172,7 +172,9 @@ typedef struct masu_needs {
     int reuse, temporal, fine, filter, taa; /* what is done to them */
     int accumulate;  /* for comparison: of all pixels, summed up over frames, unfiltered */
     const masu_rung *rung; /* itself; only while the plan is compiled */
+#ifdef MASU_LAB
     masu_march march;
+#endif
     masu_easu easu; /* never AUTO */
     uint32_t cascades; /* of the shadow map */
 } masu_needs;
@@ -242,8 +244,10 @@ int masu_is_occluded(const masu_needs *needs);
 
 static inline int masu_is_smaa(masu_aa aa) { return aa >= MASU_AA_SMAA_LOW; }
 
-/* Whether a way to march works on lists of parts by tile. */
-int masu_march_has_tiles(masu_march march);
+/* Whether the march of the SDF writes lists of parts per tile, and of the parts that matter per 4x4 block. Always so in the product:
+ * the lab build has other marches. */
+int masu_march_has_tiles(const masu_needs *needs);
+int masu_march_has_blocks(const masu_needs *needs);
 
 /* Whether the host's own commands are given what is known of the scene at each pixel, depth above all. */
 static inline int masu_split_shows_scene(uint32_t split) {

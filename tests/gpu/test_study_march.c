@@ -152,14 +152,14 @@ static void what_is_missing_is_said(void **state) {
 static void a_choice_of_ways_is_drawn_and_may_go_untimed(void **state) {
     (void)state;
     char arguments[1024];
-    snprintf(arguments, sizeof arguments, "%s --size 32x24 --runs 0 --only masu,unpruned --csv %s/c.csv",
+    snprintf(arguments, sizeof arguments, "%s --size 32x24 --runs 0 --only masu,cones --csv %s/c.csv",
              scene_path("test_sphere_sdf"), scratch);
     if (bench(arguments)) fail_msg("%s", cli_err);
     take_text("c.csv", cli_out, sizeof cli_out);
     assert_true(number("masu", "evals_per_px") > 1);
-    assert_true(number("unpruned", "evals_per_px") > 1);
+    assert_true(number("cones", "evals_per_px") > 1);
     assert_string_equal(csv_field(cli_out, "masu", "ms"), "n/a");
-    assert_string_equal(csv_field(cli_out, "cone8", "evals_per_px"), "n/a");
+    assert_string_equal(csv_field(cli_out, "checkerboard", "evals_per_px"), "n/a");
     snprintf(arguments, sizeof arguments, "%s --only masu,seeds", scene_path("test_sphere_sdf"));
     assert_int_equal(bench(arguments), 2);
     assert_non_null(strstr(cli_err, "\"seeds\""));

@@ -29,8 +29,10 @@ static int check_baked(const char *path, const masu_ladder_file *l) {
     for (uint32_t r = 0; r < l->count; r++) {
         const masu_rung *rung = &l->rungs[r];
         const char *why =
-            rung->march != MASU_MARCH_AUTO ? "march takes a blob baked with --variants, which not all are"
-            : rung->specular == MASU_ON    ? "specular on is an error where buffers are few"
+#ifdef MASU_LAB
+            rung->march != MASU_MARCH_AUTO ? "march takes a blob baked with --variants, which not all are" :
+#endif
+            rung->specular == MASU_ON      ? "specular on is an error where buffers are few"
             : rung->occlusion == MASU_ON   ? "occlusion on is an error where buffers are few"
             : rung->upscale == MASU_OFF    ? "upscale off takes the whole size"
             : rung->shadow_distance > 0.0f ? "shadow_distance is in metres of its own scene"

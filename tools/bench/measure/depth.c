@@ -63,7 +63,9 @@ static masu_rung key_of(const masu_rung *rung) {
                        .specular = MASU_OFF,
                        .shadow_cascades = 1,
                        .shadow_resolution = 64,
+#ifdef MASU_LAB
                        .march = rung->march,
+#endif
                        .march_steps = rung->march_steps,
                        .frustum = rung->frustum,
                        .occlusion = rung->occlusion,

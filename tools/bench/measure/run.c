@@ -11,25 +11,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const masu_bench_names[MASU_BENCH_VARIANTS] = {[MASU_BENCH_FRAGMENT] = "plain_fragment",
-                                                           [MASU_BENCH_COMPUTE] = "plain_compute",
+const char *const masu_bench_names[MASU_BENCH_VARIANTS] = {[MASU_BENCH_COMPUTE] = "plain_compute",
                                                            [MASU_BENCH_SEED] = "seed",
                                                            [MASU_BENCH_MASU] = "masu",
-                                                           [MASU_BENCH_CONE8] = "cone8",
                                                            [MASU_BENCH_CONES] = "cones",
                                                            [MASU_BENCH_CHECKERBOARD] =
-                                                               "checkerboard",
-                                                           [MASU_BENCH_UNPRUNED] = "unpruned"};
+                                                               "checkerboard"};
 
 static const masu_march marches[MASU_BENCH_VARIANTS] = {
-    [MASU_BENCH_FRAGMENT] = MASU_MARCH_FRAGMENT,
     [MASU_BENCH_COMPUTE] = MASU_MARCH_PLAIN,
     [MASU_BENCH_SEED] = MASU_MARCH_SEED,
     [MASU_BENCH_MASU] = MASU_MARCH_AUTO,
-    [MASU_BENCH_CONE8] = MASU_MARCH_CONE8,
     [MASU_BENCH_CONES] = MASU_MARCH_CONES,
-    [MASU_BENCH_CHECKERBOARD] = MASU_MARCH_CHECKERBOARD,
-    [MASU_BENCH_UNPRUNED] = MASU_MARCH_UNPRUNED};
+    [MASU_BENCH_CHECKERBOARD] = MASU_MARCH_CHECKERBOARD};
 
 /* The passes whose time is the SDF's: those whose names begin like this. */
 static const char *const sdf_passes[] = {"update", "classify", "cone", "march"};

@@ -12,18 +12,15 @@
 #include "session.h"
 
 enum {
-    MASU_BENCH_FRAGMENT,
     MASU_BENCH_COMPUTE,
     MASU_BENCH_SEED,
     MASU_BENCH_MASU,
-    MASU_BENCH_CONE8,
     MASU_BENCH_CONES,
     MASU_BENCH_CHECKERBOARD,
-    MASU_BENCH_UNPRUNED,
     MASU_BENCH_VARIANTS
 };
 
-/* "plain_fragment", "plain_compute", "seed", "masu", ... */
+/* "plain_compute", "seed", "masu", ... */
 extern const char *const masu_bench_names[MASU_BENCH_VARIANTS];
 
 typedef struct masu_bench_desc {

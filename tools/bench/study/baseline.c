@@ -63,11 +63,7 @@ masu_rung masu_baseline_rung(const masu_scene *scene, const char **march) {
                       .light_tiles = MASU_OFF};
     *march = scene->sdf ? "auto" : "none";
     if (!scene->sdf) return rung;
-    /* The fragment march draws over polygons. */
-    if (!scene->instances && (scene->sdf_march >> MASU_MARCH_FRAGMENT & 1u)) {
-        rung.march = MASU_MARCH_FRAGMENT;
-        *march = "fragment";
-    } else if (scene->sdf_march >> MASU_MARCH_PLAIN & 1u) {
+    if (scene->sdf_march >> MASU_MARCH_PLAIN & 1u) {
         rung.march = MASU_MARCH_PLAIN;
         *march = "plain";
     }

@@ -113,10 +113,11 @@ static const technique techniques[] = {
     {"march_steps", WHOLE | HALF | QUICK, {.march_steps = 64}},
     {"march_steps", WHOLE, {.march_steps = 128}},
     {"march_steps", WHOLE, {.march_steps = 512}},
+#ifdef MASU_LAB
     {"march", WHOLE, {.march = MASU_MARCH_PLAIN}},
     {"march", WHOLE, {.march = MASU_MARCH_SEED}},
-    {"march", WHOLE, {.march = MASU_MARCH_CONE8}},
     {"march", WHOLE, {.march = MASU_MARCH_CHECKERBOARD}},
+#endif
     {"ao", WHOLE | HALF | QUICK | STRUCTURAL, {.ao = MASU_OFF}},
     {"ao samples", WHOLE, {.ao_slices = 1, .ao_steps = 4}},
     {"ao samples", WHOLE | HALF, {.ao_slices = 1}},
