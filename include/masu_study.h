@@ -7,21 +7,26 @@
 #ifndef MASU_STUDY_PART_H
 #define MASU_STUDY_PART_H
 
-/* How the SDF is marched. All but AUTO are for comparison; those marked * need a blob baked with
- * --variants, else masu_init fails with MASU_ERROR_SCENE. */
+/* How the SDF is marched: a knob of the lab build, which defines MASU_LAB. Elsewhere the SDF is marched by AUTO. Those marked * need a
+ * blob that the lab build's masu-bake has baked with --variants, else masu_init fails with MASU_ERROR_SCENE. */
+#ifdef MASU_LAB
 #define MASU_MARCH_WORDS(X)                                                                        \
-    X(MASU_MARCH_AUTO, 0, "auto", "the fast way, tile by tile with the parts that matter there")   \
-    X(MASU_MARCH_PLAIN, 1, "plain", "* each pixel by itself, in a compute shader")                 \
-    X(MASU_MARCH_FRAGMENT, 2, "fragment",                                                          \
-      "* each pixel by itself, in a fragment shader; only without polygons")                       \
-    X(MASU_MARCH_SEED, 3, "seed", "* two-phase checkerboard with capped, unchecked restarts")      \
-    X(MASU_MARCH_CONE8, 4, "cone8", "cones of 8x8 pixels alone")                                   \
-    X(MASU_MARCH_CONES, 5, "cones", "cones of 8x8, then of 4x4 pixels")                            \
-    X(MASU_MARCH_CHECKERBOARD, 6, "checkerboard",                                                  \
-      "* cones of 8x8 pixels, then a two-phase checkerboard with provably safe restarts")          \
-    X(MASU_MARCH_UNPRUNED, 7, "unpruned", "as auto, but every tile with all parts")
+    X(MASU_MARCH_AUTO, 0, "auto", "the product's: cones of 8x8, then of 4x4 pixels")               \
+    X(MASU_MARCH_PLAIN, 1, "plain", "* plain sphere tracing, one ray per pixel: the baseline")     \
+    X(MASU_MARCH_SEED, 2, "seed", "* two-phase checkerboard with capped, unchecked restarts")      \
+    X(MASU_MARCH_CONES, 3, "cones", "the same as auto")                                            \
+    X(MASU_MARCH_CHECKERBOARD, 4, "checkerboard",                                                  \
+      "* cones of 8x8 pixels, then a two-phase checkerboard with safe restarts")
 
 typedef enum masu_march { MASU_MARCH_WORDS(MASU_WORD_ENUM) } masu_march;
+
+#define MASU_LAB_KNOBS(NUMBER, WORD)                                                               \
+    WORD(  masu_march,       march,                                  SDF,                          \
+           "How the SDF is marched. AUTO: the product's march.",                                   \
+           "All others take longer (docs/design/05-sphere-tracing.md).")
+#else
+#define MASU_LAB_KNOBS(NUMBER, WORD)
+#endif
 
 /* Rows as in MASU_PRODUCT_KNOBS. They follow those rows in masu_rung. */
 /* clang-format off */
@@ -39,14 +44,7 @@ typedef enum masu_march { MASU_MARCH_WORDS(MASU_WORD_ENUM) } masu_march;
            "Tiled light culling: each pixel evaluates the punctual lights of its 16x16 tile only;" \
            " the image is the same. AUTO: on if the scene has punctual lights.",                   \
            "A pass over the tiles; saves shading time in scenes with many lights.")                \
-    WORD(  masu_switch,      fuse,                                   UPSCALED,                     \
-           "EASU (full) and RCAS in one pass where both run: the same picture. Ignored with"       \
-           " deep_color. AUTO: off.",                                                              \
-           "1.13 times the time of upscaling; saves the image between the two.")                   \
-    /* Another way to the same surface. */                                                         \
-    WORD(  masu_march,       march,                                  SDF,                          \
-           "How the SDF is marched. AUTO: the fast way.",                                          \
-           "All others took longer where they were measured (docs/design/11-march-measured.md).")  \
+    MASU_LAB_KNOBS(NUMBER, WORD)                                                                   \
     /* Stages of the reflection filter. */                                                         \
     WORD(  masu_switch,      specular_reuse,                         SPECULAR,                     \
            "Spatial reuse: each texel also weighs the ray hits of its neighbours while its"        \

@@ -21,9 +21,9 @@ case ${1:-}:$# in
     *) echo "usage: tables.sh permutations|parts|builds|pushes, tables.sh headers DIR" >&2; exit 2 ;;
 esac
 
-# Rows may span lines and hold comments: one row to a line, without comments.
+# Rows may span lines and hold comments: one row per line, without comments and preprocessor lines (passes of the lab).
 rows() {
-    awk '
+    sed '/^#/d' "$1" | awk '
     { line = line " " $0 }
     END {
         while ((from = index(line, "/*")) > 0) {
@@ -38,7 +38,7 @@ rows() {
             if (depth || c != " ") row = row c
             if (!quoted && c == ")" && !--depth) { gsub(/ +/, " ", row); print row; row = "" }
         }
-    }' "$1"
+    }'
 }
 
 {
@@ -132,10 +132,9 @@ function add_shader(name, list,    n, words, i) {
         file = trim(part[2])
         add_shader(file "_vert", part[3])
         add_shader(trim(part[4]) "_frag", part[5])
-    } else if (tail ~ /^\)?, *(SCENE|DRAW_SCENE)\(/) {
-        split(inside(tail, tail ~ /DRAW_SCENE\(/ ? "DRAW_SCENE" : "SCENE"), part, ",")
+    } else if (tail ~ /^\)?, *SCENE\(/) {
+        split(inside(tail, "SCENE"), part, ",")
         file = trim(part[1])
-        if (tail ~ /DRAW_SCENE\(/) add_shader("fullscreen_vert", "")
     }
     members = ""
     rest = inside($0, "PUSH")

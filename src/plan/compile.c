@@ -21,12 +21,10 @@ static void resolve_switches(const masu_desc *d, uint32_t r, const masu_rung_pla
     needs->sharpen = rung->sharpen == MASU_ON;
     needs->fxaa = !needs->resolve && rung->aa == MASU_AA_FXAA;
     needs->smaa = !needs->resolve && rung->aa >= MASU_AA_SMAA_LOW;
-    needs->fused = needs->upscale && needs->sharpen && needs->easu == MASU_EASU_FULL &&
-                   rung->fuse == MASU_ON && !(d->scene && d->deep_color == MASU_ON);
     /* A rung of half the size stays one, whatever the output becomes. */
     int half = d->scene ? rung->scale == 0.5f
                         : 2 * rp->render_width == d->output.width && 2 * rp->render_height == d->output.height;
-    needs->twice = half && needs->upscale && !needs->fused && needs->easu == MASU_EASU_FULL && !d->debug.exact &&
+    needs->twice = half && needs->upscale && needs->easu == MASU_EASU_FULL && !d->debug.exact &&
                    d->half_floats != MASU_ON;
     /* An output that may become odd would have its last pixels a pixel elsewhere than in rungs of other sizes, whose past it goes on
      * from. */
@@ -343,19 +341,15 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                              d->output.height);
         }
         plan->needs.rung = &d->rungs[r];
+#ifdef MASU_LAB
         plan->needs.march = d->rungs[r].march;
-        if (plan->needs.sdf && plan->needs.raster && plan->needs.march == MASU_MARCH_FRAGMENT) {
-            return masu_fail(detail, MASU_ERROR_SCENE, "rungs[].march", plan->needs.march, 0,
-                             "rungs[%u].march is MASU_MARCH_FRAGMENT, which erases polygons: the "
-                             "scene has %u instances",
-                             r, d->scene->instances);
-        }
         if (plan->needs.sdf && !(d->scene->sdf_march & 1u << plan->needs.march)) {
             return masu_fail(detail, MASU_ERROR_SCENE, "rungs[].march", plan->needs.march, 0,
                              "rungs[%u].march is %d, for which the blob has no code (bake with "
                              "--variants)",
                              r, (int)plan->needs.march);
         }
+#endif
         resolve_switches(d, r, rp, &plan->needs);
         plan->needs.ao = rung_has_ao(d, r);
         plan->needs.specular = rung_has_specular(d, r);

@@ -46,7 +46,6 @@ typedef enum masu_image_class {
 typedef enum masu_image_extent {
     MASU_EXTENT_RENDER,
     MASU_EXTENT_OUTPUT,
-    MASU_EXTENT_OUTPUT32, /* the same, a workgroup for 32x32 pixels */
     MASU_EXTENT_OUTPUT_PAIRS, /* the same, an invocation for two pixels side by side */
     MASU_EXTENT_OUTPUT_ODD, /* the same, an invocation for the 2x2 pixels between four texels: one more each way than texels */
     MASU_EXTENT_HALF, /* a texel per 2x2 render pixels */
@@ -163,8 +162,7 @@ typedef struct masu_needs {
     int fxaa, smaa; /* at most one of them */
     int resolve;   /* over frames */
     int resolve_twice; /* the same to twice the size */
-    int fused;     /* upscale and sharpen in one pass */
-    int twice;     /* upscale in full to twice the size, not fused */
+    int twice;     /* upscale in full to twice the size */
     int ao;        /* ambient occlusion in screen space */
     int casters;   /* occlusion, of a view of the sun too */
     int receiver_mask; /* and of cascades that every frame draws anew */
@@ -174,7 +172,9 @@ typedef struct masu_needs {
     int reuse, temporal, fine, filter, taa; /* what is done to them */
     int accumulate;  /* for comparison: of all pixels, summed up over frames, unfiltered */
     const masu_rung *rung; /* itself; only while the plan is compiled */
+#ifdef MASU_LAB
     masu_march march;
+#endif
     masu_easu easu; /* never AUTO */
     uint32_t cascades; /* of the shadow map */
 } masu_needs;
@@ -244,8 +244,10 @@ int masu_is_occluded(const masu_needs *needs);
 
 static inline int masu_is_smaa(masu_aa aa) { return aa >= MASU_AA_SMAA_LOW; }
 
-/* Whether a way to march works on lists of parts by tile. */
-int masu_march_has_tiles(masu_march march);
+/* Whether the march of the SDF writes lists of parts per tile, and of the parts that matter per 4x4 block. Always so in the product:
+ * the lab build has other marches. */
+int masu_march_has_tiles(const masu_needs *needs);
+int masu_march_has_blocks(const masu_needs *needs);
 
 /* Whether the host's own commands are given what is known of the scene at each pixel, depth above all. */
 static inline int masu_split_shows_scene(uint32_t split) {

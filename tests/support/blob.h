@@ -40,8 +40,7 @@ enum {
     SUPPORT_RASTER = 1, /* geometry, instances, materials */
     SUPPORT_SDF = 2,    /* field, parameters, slots, code */
     SUPPORT_CAMERA = 4,
-    SUPPORT_VARIANTS = 8, /* with an SDF: the code that a blob may have or lack; that of
-                             march_fragment only without SUPPORT_RASTER */
+    SUPPORT_VARIANTS = 8, /* with an SDF: the code that a blob may have or lack */
     SUPPORT_SHADOW = 16, /* the sun's shadow map */
     SUPPORT_ALL = 31,
     SUPPORT_TEXTURES = 32, /* with SUPPORT_RASTER: "steel" has maps, and is a mask */

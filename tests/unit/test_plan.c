@@ -265,13 +265,7 @@ static void slots_are_updated_only_if_something_changes_them(void **state) {
     assert_string_equal(why_of(&d, MASU_PASS_UPDATE), "the SDF depends on parameters or time");
     d = scene_desc(SDF, 64, 64);
     support_scene.sdf_dynamic = 1;
-    support_scene.sdf_march |= 1u << MASU_MARCH_PLAIN;
     assert_frame(&d, 0, "update(wb:slots) " MARCH_ALONE LIGHT_SDF TONEMAP);
-    d.rungs[0].march = MASU_MARCH_PLAIN;
-    d.rung_count = 1;
-    assert_frame(&d, 0,
-                 "update(wb:slots) march_plain(rb:slots u:albedo u:normal w:scene_depth) " LIGHT_SDF
-                     TONEMAP);
     d = scene_desc(RASTER, 64, 64);
     assert_string_equal(why_of(&d, MASU_PASS_UPDATE), "the scene has no SDF");
 }
@@ -301,66 +295,16 @@ static void light_probes_cost_only_scenes_that_have_them(void **state) {
                      sizeof(masu_blob_probes) + 6 * (2 * MASU_PROBE_WORDS + MASU_PROBE_LIT_WORDS) * 4);
 }
 
-static void each_way_to_march_has_its_passes(void **state) {
-    (void)state;
-    static const char *const alone[] = {
-        [MASU_MARCH_AUTO] = MARCH_ALONE,
-        [MASU_MARCH_PLAIN] = "march_plain(rb:slots u:albedo u:normal w:scene_depth) ",
-        [MASU_MARCH_FRAGMENT] = "march_fragment(rb:slots c:albedo c:normal c:scene_depth) ",
-        [MASU_MARCH_SEED] = "march_seed(rb:slots u:albedo u:normal w:scene_depth) ",
-        [MASU_MARCH_CONE8] = MARCH_ALONE, /* its 4x4 cones make no step */
-        [MASU_MARCH_CONES] = MARCH_ALONE,
-        [MASU_MARCH_CHECKERBOARD] = CLASSIFY_ALONE CONE8
-        "march_checkerboard(r:cone8 rb:tiles u:albedo u:normal u:scene_depth) ",
-        [MASU_MARCH_UNPRUNED] = MARCH_ALONE,
-    };
-    static const char *const on_raster[COUNT(alone)] = {
-        [MASU_MARCH_AUTO] = MARCH_ON_RASTER,
-        [MASU_MARCH_PLAIN] = "march_plain(r:depth rb:slots u:albedo u:normal w:scene_depth) ",
-        [MASU_MARCH_SEED] = "march_seed(r:depth rb:slots u:albedo u:normal w:scene_depth) ",
-        [MASU_MARCH_CONE8] = MARCH_ON_RASTER,
-        [MASU_MARCH_CONES] = MARCH_ON_RASTER,
-        [MASU_MARCH_CHECKERBOARD] = CLASSIFY_ON_RASTER CONE8
-        "march_checkerboard(r:cone8 rb:tiles u:albedo u:normal u:scene_depth) ",
-        [MASU_MARCH_UNPRUNED] = MARCH_ON_RASTER,
-    };
-    assert_int_equal(COUNT(alone), MASU_MARCH_UNPRUNED + 1);
-    for (uint32_t parts = SDF; parts <= (RASTER | SDF); parts++) {
-        for (uint32_t march = 0; march < COUNT(alone); march++) {
-            const char *passes = parts & RASTER ? on_raster[march] : alone[march];
-            if (!passes) continue; /* such a blob has no such code */
-            masu_desc d = scene_desc(parts, 64, 64);
-            char expected[512];
-            support_scene.sdf_march = 0xFF;
-            d.rung_count = 2;
-            d.rungs[1].march = (masu_march)march;
-            (void)snprintf(expected, sizeof expected, "%s%s" LIGHT_SDF TONEMAP,
-                           parts & RASTER ? GBUFFER : "", passes);
-            assert_frame(&d, 1, expected);
-            (void)snprintf(expected, sizeof expected, "%s%s" LIGHT_SDF TONEMAP,
-                           parts & RASTER ? GBUFFER : "",
-                           parts & RASTER ? MARCH_ON_RASTER : MARCH_ALONE);
-            assert_frame(&d, 0, expected); /* that of the other rung */
-        }
-    }
-}
-
-static void knobs_of_a_way_to_march_reach_the_shaders(void **state) {
+static void march_steps_reach_the_shaders(void **state) {
     (void)state;
     masu_frame_plan plan;
     masu_desc d = scene_desc(SDF, 640, 480);
-    support_scene.sdf_march = 0xFF;
     d.rung_count = 1;
-    for (uint32_t march = 0; march <= MASU_MARCH_UNPRUNED; march++) {
-        d.rungs[0] = (masu_rung){.march = (masu_march)march, .march_steps = 77};
-        compile(&d, &plan);
-        assert_int_equal(masu_push_of(&plan, 0, MASU_PASS_CLASSIFY, 0).own.word[0],
-                         march == MASU_MARCH_UNPRUNED);
-        assert_int_equal(masu_push_of(&plan, 0, MASU_PASS_CONE8, 0).own.word[0], 77);
-        assert_int_equal(masu_push_of(&plan, 0, MASU_PASS_CONE4, 0).own.word[0],
-                         march == MASU_MARCH_CONE8 ? 0 : 77);
-        assert_int_equal(masu_push_of(&plan, 0, MASU_PASS_MARCH, 0).own.word[0], 77);
-    }
+    d.rungs[0] = (masu_rung){.march_steps = 77};
+    compile(&d, &plan);
+    assert_int_equal(masu_push_of(&plan, 0, MASU_PASS_CONE8, 0).own.word[0], 77);
+    assert_int_equal(masu_push_of(&plan, 0, MASU_PASS_CONE4, 0).own.word[0], 77);
+    assert_int_equal(masu_push_of(&plan, 0, MASU_PASS_MARCH, 0).own.word[0], 77);
 }
 
 static void an_empty_scene_is_cleared_and_lit(void **state) {
@@ -419,39 +363,6 @@ static void switches_force_upscaling_and_sharpening_on_and_off(void **state) {
         (void)snprintf(expected, sizeof expected, MARCH_ALONE LIGHT_SDF "%s", ends[r]);
         assert_frame(&d, r, expected);
     }
-}
-
-static void upscaling_and_sharpening_are_one_pass_where_asked(void **state) {
-    (void)state;
-    static masu_frame_plan plan;
-    masu_desc d = scene_desc(SDF, 1920, 1080);
-    d.rung_count = 5;
-    for (uint32_t r = 0; r < 5; r++) d.rungs[r] = (masu_rung){.scale = 0.5f, .fuse = MASU_ON};
-    d.rungs[1].sharpen = MASU_OFF;
-    d.rungs[2].easu = MASU_EASU_FAST;
-    d.rungs[3].scale = 1.0f;
-    d.rungs[3].sharpen = MASU_ON;
-    d.rungs[4].fuse = MASU_AUTO;
-    static const char *const ends[] = {
-        "tonemap(r:hdr w:ldr) fsr1(r:ldr w:target)",
-        "tonemap(r:hdr w:ldr) easu_twice(r:ldr w:target)",
-        "tonemap(r:hdr w:ldr) easu_fast(r:ldr w:upscaled) rcas(r:upscaled w:target)",
-        "tonemap(r:hdr w:ldr) rcas(r:ldr w:target)",
-        "tonemap(r:hdr w:ldr) easu_twice(r:ldr w:upscaled) rcas(r:upscaled w:target)",
-    };
-    for (uint32_t r = 0; r < 5; r++) {
-        char expected[512];
-        (void)snprintf(expected, sizeof expected, MARCH_ALONE LIGHT_SDF "%s", ends[r]);
-        assert_frame(&d, r, expected);
-    }
-    d.rung_count = 1;
-    compile(&d, &plan);
-    assert_false(plan.images[MASU_IMAGE_UPSCALED].used);
-    assert_string_equal(why_of(&d, MASU_PASS_EASU), "fsr1 does it");
-    assert_string_equal(why_of(&d, MASU_PASS_RCAS), "fsr1 does it");
-    d.targets.storage = 0;
-    assert_frame(&d, 0, MARCH_ALONE LIGHT_SDF
-                 "tonemap(r:hdr w:ldr) fsr1(r:ldr w:final) present(from:final to:target)");
 }
 
 /* Bilinear is the plain base: nothing sharpens it unasked. */
@@ -648,7 +559,7 @@ static void temporal_stands_in_for_anti_aliasing_and_upscaling(void **state) {
     masu_desc d = scene_desc(RASTER, 64, 64);
     assert_string_equal(why_of(&d, MASU_PASS_TEMPORAL), "rung.temporal is not on");
     d.rung_count = 2;
-    d.rungs[0] = (masu_rung){.temporal = MASU_ON, .scale = 0.5f, .aa = MASU_AA_SMAA_HIGH, .fuse = MASU_ON};
+    d.rungs[0] = (masu_rung){.temporal = MASU_ON, .scale = 0.5f, .aa = MASU_AA_SMAA_HIGH};
     d.rungs[1] = (masu_rung){.temporal = MASU_ON, .sharpen = MASU_ON};
     assert_string_equal(why_of(&d, MASU_PASS_EASU), "temporal does it");
     compile(&d, &plan);
@@ -942,18 +853,15 @@ static void ao_comes_after_all_that_writes_occlusion(void **state) {
 static void in_every_frame_the_last_colour_writer_alone_writes_the_target(void **state) {
     (void)state;
     static masu_frame_plan plan;
-    for (uint32_t c = 0; c < 8 * 2 * 2 * 4 * 3 * 3 * 3 * 2; c++) {
-        uint32_t n = c, march = n % 8, dynamic = (n /= 8) % 2;
+    for (uint32_t c = 0; c < 2 * 2 * 4 * 3 * 3 * 3 * 2; c++) {
+        uint32_t n = c, dynamic = n % 2;
         uint32_t storage = (n /= 2) % 2, parts = (n /= 2) % 4;
         masu_desc d = scene_desc(parts, 640, 480);
         d.rung_count = 1;
-        if (march == MASU_MARCH_FRAGMENT && parts & RASTER) continue; /* there is no such code */
-        d.rungs[0].march = (masu_march)march;
-        if (parts & SDF) support_scene.sdf_march = 0xFF, support_scene.sdf_dynamic = dynamic;
+        if (parts & SDF) support_scene.sdf_dynamic = dynamic;
         d.rungs[0].upscale = (masu_switch)((n /= 4) % 3);
         d.rungs[0].sharpen = (masu_switch)((n /= 3) % 3);
         d.rungs[0].easu = (masu_easu)(c % 4);
-        d.rungs[0].fuse = (masu_switch)(c % 3);
         uint32_t size = (n /= 3) % 3, source = n / 3;
         d.rungs[0].scale = size ? 0.5f : 1.0f;
         if (d.rungs[0].upscale == MASU_OFF && size) continue; /* refused */
@@ -1575,14 +1483,12 @@ int main(void) {
         cmocka_unit_test(without_instances_nothing_is_rasterised),
         cmocka_unit_test(slots_are_updated_only_if_something_changes_them),
         cmocka_unit_test(light_probes_cost_only_scenes_that_have_them),
-        cmocka_unit_test(each_way_to_march_has_its_passes),
-        cmocka_unit_test(knobs_of_a_way_to_march_reach_the_shaders),
+        cmocka_unit_test(march_steps_reach_the_shaders),
         cmocka_unit_test(an_empty_scene_is_cleared_and_lit),
         cmocka_unit_test(a_source_image_alone_is_upscaled_and_sharpened),
         cmocka_unit_test(a_source_image_of_the_output_size_is_written_all_the_same),
         cmocka_unit_test(switches_force_upscaling_and_sharpening_on_and_off),
         cmocka_unit_test(a_rung_says_how_it_is_upscaled),
-        cmocka_unit_test(upscaling_and_sharpening_are_one_pass_where_asked),
         cmocka_unit_test(twice_the_size_has_a_pass_of_its_own),
         cmocka_unit_test(a_target_that_is_no_storage_image_is_blitted_to),
         cmocka_unit_test(a_metered_exposure_is_two_passes),
