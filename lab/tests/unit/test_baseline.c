@@ -73,7 +73,8 @@ static void the_plain_renderer_takes_no_short_cut(void **state) {
         masu_scene scene;
         masu_march march;
         const char *name;
-    } cases[] = {{{.sdf = 1, .sdf_march = all, .instances = 2}, MASU_MARCH_PLAIN, "plain"},
+    } cases[] = {{{.sdf = 1, .sdf_march = all}, MASU_MARCH_PLAIN, "plain"},
+                 {{.sdf = 1, .sdf_march = all, .instances = 2}, MASU_MARCH_PLAIN, "plain"},
                  {{.sdf = 1, .sdf_march = without}, MASU_MARCH_AUTO, "auto"},
                  {{.instances = 2}, MASU_MARCH_AUTO, "none"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
