@@ -69,36 +69,38 @@ typedef enum masu_knob_use {
  * tables. A row is all that a new knob takes; `make docs-tables` then writes docs/knobs.md anew.
  * Below its columns stand what the knob does and what it costs.
  *
- * 0 is always taken: it becomes the number of its column, where the text says no other, or, where
- * that is 0 too, means what the text says. All other numbers lie within min and max. WORD takes the
- * words of its enum, of which 0 is AUTO: the text says what that is. */
+ * 0 is always accepted. It becomes the value of its column; where that is 0 too, or the text says so, the text states the rule. All
+ * other numbers are within min and max. WORD accepts the values of its enum, of which 0 is AUTO. A switch that is resolved by its column
+ * and is of use wherever its `use` says so needs nothing but its row: passes read it as n->on.NAME and n->any.NAME (src/plan/frame.h).
+ * The rules of other switches are in src/plan/desc.c. */
 /* clang-format off */
 #define MASU_PRODUCT_KNOBS(NUMBER, WORD)                                                           \
     /*     type              name                  min   max   0 is  of use in  unit          */   \
+    /*     type              name                  AUTO is         of use in                  */   \
     /* Size and upscaling. Render size is in pixels per axis; all that is shaded has it. */        \
     NUMBER(float,            scale,                0,    1,    1,    ALWAYS,    "",                \
            "Render size / output size, per axis. Ignored with a source image.",                    \
            "Time of the passes before upscaling, and their images, grow with its square.")         \
-    WORD(  masu_switch,      upscale,                                UPSCALED,                     \
+    WORD(  masu_switch,      upscale,              MASU_AUTO,      UPSCALED,                       \
            "EASU. AUTO: where the render size differs from the output size. OFF is an error"       \
            " there.",                                                                              \
            "A pass of the output size.")                                                           \
-    WORD(  masu_easu,        easu,                                   UPSCALED,                     \
+    WORD(  masu_easu,        easu,                 MASU_EASU_FULL, UPSCALED,                       \
            "How the picture is upscaled. AUTO: full.",                                             \
            "Full takes the most time, then fast, then bilinear.")                                  \
-    WORD(  masu_switch,      sharpen,                                SHARPEN,                      \
+    WORD(  masu_switch,      sharpen,              MASU_AUTO,      SHARPEN,                        \
            "RCAS. AUTO: where EASU runs, full or fast; not after bilinear.",                       \
            "A pass of the output size.")                                                           \
     NUMBER(float,            sharpness,            -1,   64,   0.2,  SHARPENED, "stops",           \
            "How much less RCAS sharpens: each stop halves it (AMD's definition). Below 0: no stop," \
            " the sharpest.",                                                                       \
            "None.")                                                                                \
-    WORD(  masu_aa,          aa,                                     ALWAYS,                       \
+    WORD(  masu_aa,          aa,                   MASU_AA_OFF,    ALWAYS,                         \
            "Anti-aliasing, before upscaling. AUTO: off.",                                          \
            "Device bytes per pixel of the render size: SMAA 4.5, FXAA 4, of which other images"    \
            " may share all but SMAA's last 0.5. SMAA takes two passes, of which a picture"         \
            " without edges costs the first; FXAA takes one.")                                      \
-    WORD(  masu_switch,      temporal,                               ALWAYS,                       \
+    WORD(  masu_switch,      temporal,             MASU_AUTO,      ALWAYS,                         \
            "Anti-aliasing and upscaling over frames, in place of aa, EASU and RCAS (RCAS where"    \
            " sharpen is on): each frame looks at another place in its pixels. Scenes alone. AUTO:" \
            " on with a governor, at most one viewport and no split but AFTER_UPSCALE, in rungs that" \
@@ -107,7 +109,7 @@ typedef enum masu_knob_use {
            " pixel of the output, 4 of the render size; that do not: 8 of the render size, and"    \
            " velocities, 8.")                                                                      \
     /* Geometry. */                                                                                \
-    WORD(  masu_switch,      silhouettes,                            SDF,                          \
+    WORD(  masu_switch,      silhouettes,          MASU_OFF,       SDF,                            \
            "Smooth silhouettes of the SDF: pixels in which something of it ends are the mean of four" \
            " samples. AUTO: off.",                                                                 \
            "Up to three rays more at such pixels, at 1920x1080 a tenth to all of the march together;" \
@@ -120,7 +122,7 @@ typedef enum masu_knob_use {
            " mesh is drawn. Below 0: the finest form alone.",                                      \
            "Triangles: the larger, the fewer.")                                                    \
     /* Ambient occlusion in screen space, at half the render size. */                              \
-    WORD(  masu_switch,      ao,                                     AO,                           \
+    WORD(  masu_switch,      ao,                   MASU_ON,        AO,                             \
            "Ambient occlusion in screen space. AUTO: on.",                                         \
            "2 * slices * steps samples per texel of half the render size.")                        \
     NUMBER(uint32_t,         ao_slices,            1,    8,    2,    AO,        "",                \
@@ -145,7 +147,7 @@ typedef enum masu_knob_use {
            "Saves draws. Any above 1 keeps the map's memory from being shared with other images"   \
            " and doubles the rung's recordings.")                                                  \
     /* Traced reflections, at half the render size: one ray per 2x2 pixels, then filters. */       \
-    WORD(  masu_switch,      specular,                               SPECULAR,                     \
+    WORD(  masu_switch,      specular,             MASU_AUTO,      SPECULAR,                       \
            "Traced reflections. AUTO: on, if a surface is glossy enough and the device has the"    \
            " storage buffers for it.",                                                             \
            "The rays, and the passes and images of all that follows.")                             \
@@ -195,7 +197,7 @@ typedef struct masu_knob {
     masu_knob_kind kind;
     uint32_t offset;       /* of the field, bytes */
     uint32_t values;       /* of 4 bytes each: 1, or one for each cascade */
-    double min, max, zero; /* the row's; of a WORD the first, the last and AUTO */
+    double min, max, zero; /* the row's; of a WORD the first, the last, and what AUTO is: 0 where that depends */
     masu_knob_use use;
     const char *where;   /* "scenes with an SDF" */
     const char *missing; /* "the scene has no SDF" */

@@ -1,5 +1,6 @@
-/* masu_study.h: what no port needs: other ways to the same picture, stages switched off one by one, numbers to look at.
- * Ladders and studies turn these. A part of masu.h, which includes it by masu_knobs.h; all zero is what a port wants. */
+/* masu_study.h: settings for tests, measurements and debugging, which a port leaves at zero. A setting is here because a test, `masu bench`,
+ * a conformance suite or a reference image needs it; what only the lab needs exists only with MASU_LAB. A part of masu.h, which
+ * includes it by masu_knobs.h. */
 #ifndef MASU_H
 #error "masu_study.h is a part of masu.h: include that"
 #endif
@@ -20,7 +21,7 @@
 typedef enum masu_march { MASU_MARCH_WORDS(MASU_WORD_ENUM) } masu_march;
 
 #define MASU_LAB_KNOBS(NUMBER, WORD)                                                               \
-    WORD(  masu_march,       march,                                  SDF,                          \
+    WORD(  masu_march,       march,                MASU_MARCH_AUTO, SDF,                           \
            "How the SDF is marched. AUTO: the product's march.",                                   \
            "All others take longer (docs/design/05-sphere-tracing.md).")
 #else
@@ -32,34 +33,34 @@ typedef enum masu_march { MASU_MARCH_WORDS(MASU_WORD_ENUM) } masu_march;
 #define MASU_STUDY_KNOBS(NUMBER, WORD)                                                             \
     /*     type              name                  min   max   0 is  of use in  unit          */   \
     /* The picture is the same either way. */                                                      \
-    WORD(  masu_switch,      frustum,                                POLYGONS,                     \
+    WORD(  masu_switch,      frustum,              MASU_ON,        POLYGONS,                       \
            "Leaves out instances outside of the view; the picture is the same. AUTO: on.",         \
            "Tests on the host; saves draws.")                                                      \
-    WORD(  masu_switch,      occlusion,                              OCCLUDERS,                    \
+    WORD(  masu_switch,      occlusion,            MASU_AUTO,      OCCLUDERS,                      \
            "Leaves out instances hidden by occluders; the picture is the same. AUTO: on, if the"   \
            " scene has occluders.",                                                                \
            "Passes that draw the occluders and test against them; memory: limits.instances.")      \
-    WORD(  masu_switch,      light_tiles,                            LIGHTS,                       \
+    WORD(  masu_switch,      light_tiles,          MASU_ON,        LIGHTS,                         \
            "Each pixel asks the lights of its 16x16 tile alone; the picture is the same. AUTO:"    \
            " on, if the scene has any.",                                                           \
            "A pass over the tiles; saves work at each pixel where lights are many.")               \
     MASU_LAB_KNOBS(NUMBER, WORD)                                                                   \
     /* Single stages of traced reflections, and how far they look. */                              \
-    WORD(  masu_switch,      specular_reuse,                         SPECULAR,                     \
+    WORD(  masu_switch,      specular_reuse,       MASU_AUTO,      SPECULAR,                       \
            "Each texel weighs its neighbours' hits too, while its history is short. AUTO: on,"     \
            " off with temporal.",                                                                  \
            "A pass of specular_reuse_taps.")                                                       \
-    WORD(  masu_switch,      specular_temporal,                      SPECULAR,                     \
+    WORD(  masu_switch,      specular_temporal,    MASU_ON,        SPECULAR,                       \
            "Temporal accumulation. AUTO: on.",                                                     \
            "A pass, and images that outlive the frame.")                                           \
-    WORD(  masu_switch,      specular_fine,                          SPECULAR,                     \
+    WORD(  masu_switch,      specular_fine,        MASU_ON,        SPECULAR,                       \
            "A full-resolution history for smooth surfaces, and for 2x2 pixels that are not one"    \
            " surface; only with specular_temporal. AUTO: on.",                                     \
            "A pass, and an image that outlives the frame.")                                        \
-    WORD(  masu_switch,      specular_filter,                        SPECULAR,                     \
+    WORD(  masu_switch,      specular_filter,      MASU_ON,        SPECULAR,                       \
            "The spatial filter, as wide as noise is left. AUTO: on.",                              \
            "A pass of specular_filter_taps.")                                                      \
-    WORD(  masu_switch,      specular_taa,                           SPECULAR,                     \
+    WORD(  masu_switch,      specular_taa,         MASU_AUTO,      SPECULAR,                       \
            "Evens out what still flickers; only with specular_temporal. AUTO: on, off with"        \
            " temporal.",                                                                           \
            "A pass, and an image that outlives the frame.")                                        \
@@ -81,8 +82,7 @@ typedef struct masu_debug {
                         the picture must not change. 1: NaN; 2: infinities; 3: as half floats NaN and 1 in turn */
     uint32_t casters; /* not 0: culls for the sun as well, with all of the scene in its view, for the
                          numbers in masu_stats */
-    uint32_t ao_full;    /* not 0: ambient occlusion at each pixel instead of each fourth, */
-    uint32_t ao_nearest; /* and without the mean over 4x4 texels: both for comparison */
+    uint32_t ao_full; /* not 0: ambient occlusion at each pixel instead of each fourth, for comparison */
     uint32_t all_terms;  /* not 0: a march asks for all of the SDF that its tile sees, not only for what
                             matters to its block: for comparison, the same to the bit */
     masu_switch share_rays; /* any invocation of a 16x16 tile may march any of its rays, so that none waits long for others;

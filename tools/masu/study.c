@@ -12,7 +12,7 @@ static const masu_study *const studies[] = {
     &masu_study_march, &masu_study_baseline,
 #endif
     &masu_study_cull,        &masu_study_draw, &masu_study_lights,
-    &masu_study_ao,    &masu_study_reflections, &masu_study_rays, &masu_study_upscale,
+    &masu_study_reflections, &masu_study_rays, &masu_study_upscale,
     &masu_study_image, &masu_study_temporal};
 enum { STUDIES = sizeof studies / sizeof *studies };
 
