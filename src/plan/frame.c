@@ -31,10 +31,10 @@ int masu_has_image(const masu_needs *n, uint32_t image) {
 
 #define NO_SCENE "no scene: a source image is upscaled"
 #define NO_SDF "the scene has no SDF"
-#define NO_SPLIT "desc.split does not ask for it"
-#define NOTHING_KEPT "without specular_temporal nothing is kept"
+#define NO_SPLIT "desc.split does not request it"
+#define NOTHING_KEPT "no history without rung.specular_temporal"
 
-int masu_is_occluded(const masu_needs *n) { return n->sdf_occlusion || n->shadow || n->ao; }
+int masu_is_occluded(const masu_needs *n) { return n->sdf_occlusion || n->shadow || n->on.ao; }
 
 #ifdef MASU_LAB
 int masu_march_has_tiles(const masu_needs *n) { return n->march != MASU_MARCH_PLAIN && n->march != MASU_MARCH_SEED; }
@@ -65,12 +65,12 @@ static const char *no_velocity(const masu_needs *n, const char *other) {
     return wants_velocity(n) ? other : "nothing reads velocities";
 }
 
-static const char *no_skins(const masu_needs *n) { return n->scene ? "no model has skins" : NO_SCENE; }
+static const char *no_skins(const masu_needs *n) { return n->scene ? "the scene has no skinned meshes" : NO_SCENE; }
 
 static int has_skin_trees(const masu_needs *n) { return n->skins && n->traced && !n->query; }
 
 static const char *no_shadow_map(const masu_needs *n) {
-    return n->raster ? "the scene asks for no shadows of its polygons" : "the scene has no instances";
+    return n->raster ? "the scene has no shadow map" : "the scene has no instances";
 }
 
 static const char *no_specular(const masu_needs *n) {
@@ -84,12 +84,12 @@ static const char *no_filter(const masu_needs *n, const char *off) {
 }
 
 static const char *no_resolve(const masu_needs *n) {
-    return n->scene ? n->accumulate ? "debug.reference: one place in each pixel" : "rung.temporal is not on" : NO_SCENE;
+    return n->scene ? n->accumulate ? "debug.reference: one sample position per pixel" : "rung.temporal is not on" : NO_SCENE;
 }
 
 static const char *no_upscale(const masu_needs *n) {
-    return n->resolve   ? "temporal does it"
-           : n->upscale ? "rung.easu asks for another way"
+    return n->resolve   ? "temporal runs instead"
+           : n->upscale ? "rung.easu selects another filter"
                         : "render size is output size";
 }
 

@@ -121,6 +121,17 @@ typedef struct masu_access {
 
 _Static_assert(MASU_BEFORE(MASU_CLASS_COUNT) <= 256, "an access names its resource in 8 bits");
 
+/* A flag for each switch among the knobs (masu_knobs.h). */
+#define MASU_FLAG_masu_switch(name) int name;
+#define MASU_FLAG_masu_easu(name)
+#define MASU_FLAG_masu_aa(name)
+#define MASU_FLAG_masu_march(name)
+#define MASU_FLAG_OF_NUMBER(...)
+#define MASU_FLAG_OF_WORD(type, name, ...) MASU_FLAG_##type(name)
+typedef struct masu_switches {
+    MASU_KNOBS(MASU_FLAG_OF_NUMBER, MASU_FLAG_OF_WORD)
+} masu_switches;
+
 /* What the scene and the description need, computed once; the `decide` of each row looks at nothing
  * else. */
 typedef struct masu_needs {
@@ -150,24 +161,22 @@ typedef struct masu_needs {
     int query;         /* polygons are found by ray queries of the device */
     int any_taa;        /* a rung has taa, */
     int any_fine;        /* fine */
-    int any_silhouettes; /* silhouettes */
     int any_resolved;    /* fine, and resolves over frames */
     int smoothing;     /* smaa */
     int picking;       /* the host may ask what is under a pixel */
     int metered;       /* the exposure follows the picture */
     int sprites;       /* frames may bring some of these: */
     int particles, decals, lines;
+    masu_switches any; /* a rung has the switch on, and the scene is one where that is of use */
     /* of one rung: */
+    masu_switches on;  /* the same of this rung */
     int upscale, sharpen, occlusion;
     int fxaa, smaa; /* at most one of them */
     int resolve;   /* over frames */
     int resolve_twice; /* the same to twice the size */
     int twice;     /* upscale in full to twice the size */
-    int ao;        /* ambient occlusion in screen space */
     int casters;   /* occlusion, of a view of the sun too */
     int receiver_mask; /* and of cascades that every frame draws anew */
-    int silhouettes; /* of the SDF are smooth */
-    int light_tiles; /* lights are sorted into tiles */
     int specular;    /* reflections are traced */
     int reuse, temporal, fine, filter, taa; /* what is done to them */
     int accumulate;  /* for comparison: of all pixels, summed up over frames, unfiltered */

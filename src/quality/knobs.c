@@ -47,11 +47,12 @@ MASU_KNOB_USES(USE_TEXTS)
      .unit = is,                                                                                   \
      .text = does,                                                                                 \
      .cost = costs},
-#define WORD_ROW_OF(type, id, of, does, costs)                                                     \
+#define WORD_ROW_OF(type, id, becomes, of, does, costs)                                                     \
     {.name = #id,                                                                                  \
      .kind = MASU_KNOB_WORD,                                                                       \
      FIELD(type, id),                                                                              \
      .max = sizeof(WORDS_##type) / sizeof *(WORDS_##type) - 1,                                     \
+     .zero = (becomes),                                                                            \
      .use = MASU_USE_##of,                                                                         \
      .where = where_##of,                                                                          \
      .missing = missing_##of,                                                                      \

@@ -309,8 +309,8 @@ static void a_scene_that_does_not_ask_has_none_of_it(void **state) {
         assert_int_equal(pass_of(&plan, "light_occluded")->active, i > 0);
         assert_int_equal(pass_of(&plan, "light")->active, i == 0);
         assert_string_equal(pass_of(&plan, "sdf_occlusion")->why,
-                            i ? "the scene asks for SDF shadows or SDF ambient occlusion"
-                              : "the scene asks for no SDF shadows or SDF ambient occlusion");
+                            i ? "the scene has SDF shadows or SDF ambient occlusion"
+                              : "the scene has no SDF shadows or SDF ambient occlusion");
         assert_true((image_bytes(&plan, "occlusion") > 0) == (i > 0));
         assert_int_equal(masu_readback(s.m, 0, MASU_READBACK_OCCLUSION, &out),
                          i ? MASU_OK : MASU_ERROR_ARGUMENT);

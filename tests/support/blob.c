@@ -187,6 +187,10 @@ static const masu_blob_trace_mesh trace_meshes[] = {{0, 2, 0, 3, 2, 0}, {2, 1, 3
 static const masu_blob_reflections reflections[] = {{0.5f, 100.0f, 0.25f, 0}};
 static const uint32_t trace_instances[] = {1, 2};
 
+/* Two by one texels and one, with their mips. */
+static const masu_blob_trace_texture trace_textures[] = {{0, 0, 2, 1, 0, 0}, {2, 0, 1, 1, 3, 0}};
+static const uint32_t trace_texels[4] = {0xFF204060u, 0xFF806040u, 0xFF505050u, 0xFFFFFFFFu};
+
 static const masu_blob_model models[] = {
     {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, 0, 1, NAME_PLATE, 0, 0, {0}},
     {{1, 0, 0, 3, 0, 1, 0, 0, 0, 0, 1, -4}, 1, 1, MASU_BLOB_NONE, MASU_MODEL_HIDDEN, 0, {0}},
@@ -322,6 +326,10 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
     if ((parts & with_textures) == with_textures) sections += 4;
     int trace = parts & SUPPORT_RASTER && parts & SUPPORT_TRACE;
     if (trace) sections += 5;
+    int trace_textured = trace && parts & SUPPORT_TRACE_MORE && parts & SUPPORT_TEXTURES;
+    int trace_sdf = trace && parts & SUPPORT_TRACE_MORE && parts & SUPPORT_SDF;
+    if (trace_textured) sections += 2;
+    if (trace_sdf) sections += 1;
     int live = parts & SUPPORT_RASTER && parts & SUPPORT_LIVE;
     if (live) sections += 2;
     int skin = live && parts & SUPPORT_SKIN;
@@ -407,6 +415,11 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
         ADD(MASU_BLOB_TRACE_INSTANCES, trace_instances);
         ADD(MASU_BLOB_REFLECTIONS, reflections);
     }
+    if (trace_textured) {
+        ADD(MASU_BLOB_TRACE_TEXTURES, trace_textures);
+        ADD(MASU_BLOB_TRACE_TEXELS, trace_texels);
+    }
+    if (trace_sdf) add_code(blob, MASU_BLOB_TRACE_SDF_SPIRV);
     if (live) {
         ADD(MASU_BLOB_MODELS, models);
         ADD(MASU_BLOB_MODEL_NODES, model_nodes);

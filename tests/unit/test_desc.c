@@ -125,7 +125,6 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
     SAME(debug.poison);
     SAME(debug.casters);
     SAME(debug.ao_full);
-    SAME(debug.ao_nearest);
     SAME(debug.all_terms);
     SAME(debug.share_rays);
     SAME(debug.no_bias);
@@ -659,6 +658,11 @@ static void tables_have_every_field_once(void **state) {
             assert_true(k->words[w].word[0] && !strncmp(k->words[w].name, "MASU_", 5));
         }
         if (k->words) assert_string_equal(k->words[0].word, "auto");
+        if (k->words && k->zero > 0.0) { /* the text states the value of the column */
+            char rule[64];
+            (void)snprintf(rule, sizeof rule, "AUTO: %s", k->words[(uint32_t)k->zero].word);
+            assert_non_null(strstr(k->text, rule));
+        }
         masu_rung rung = {.scale = 0.5f};
         masu_knob_set(k, &rung, k->values, 1.0); /* behind the last: nothing */
         assert_true(masu_knob_get(k, &rung, k->values) == 0.0 && rung.scale == 0.5f);

@@ -312,7 +312,7 @@ static void an_empty_scene_is_cleared_and_lit(void **state) {
     masu_desc d = scene_desc(0, 1920, 1080);
     assert_frame(&d, 0, GBUFFER LIGHT_RASTER "tonemap(r:hdr w:target)");
     assert_string_equal(why_of(&d, MASU_PASS_GBUFFER),
-                        "clears: the scene is empty but for its sky");
+                        "clears only: the scene has no geometry");
 }
 
 static void a_source_image_alone_is_upscaled_and_sharpened(void **state) {
@@ -388,7 +388,7 @@ static void a_rung_says_how_it_is_upscaled(void **state) {
         assert_frame(&d, r, expected);
     }
     d.rung_count = 1;
-    assert_string_equal(why_of(&d, MASU_PASS_EASU_FAST), "rung.easu asks for another way");
+    assert_string_equal(why_of(&d, MASU_PASS_EASU_FAST), "rung.easu selects another filter");
     d.rungs[0].scale = 1.0f;
     assert_string_equal(why_of(&d, MASU_PASS_BILINEAR), "render size is output size");
 }
@@ -399,10 +399,10 @@ static void twice_the_size_has_a_pass_of_its_own(void **state) {
     (void)state;
     masu_desc d = source_desc(960, 540);
     assert_frame(&d, 0, "easu_twice(r:source w:upscaled) rcas(r:upscaled w:target)");
-    assert_string_equal(why_of(&d, MASU_PASS_EASU), "easu_twice does it");
+    assert_string_equal(why_of(&d, MASU_PASS_EASU), "easu_twice runs instead");
     d.debug.exact = 1;
     assert_frame(&d, 0, "easu(r:source w:upscaled) rcas(r:upscaled w:target)");
-    assert_string_equal(why_of(&d, MASU_PASS_EASU_TWICE), "the output is not twice as wide and high");
+    assert_string_equal(why_of(&d, MASU_PASS_EASU_TWICE), "the output does not have twice the render size");
     d.debug.exact = 0;
     d.half_floats = MASU_ON;
     assert_frame(&d, 0, "easu(r:source w:upscaled) rcas(r:upscaled w:target)");
@@ -424,7 +424,7 @@ static void a_target_that_is_no_storage_image_is_blitted_to(void **state) {
     assert_frame(&d, 1,
                  GBUFFER LIGHT_RASTER "tonemap(r:hdr w:ldr) easu(r:ldr w:upscaled) "
                                       "rcas(r:upscaled w:final) present(from:final to:target)");
-    assert_string_equal(why_of(&d, MASU_PASS_PRESENT), "targets are no storage images");
+    assert_string_equal(why_of(&d, MASU_PASS_PRESENT), "the targets are not storage images");
     d.rungs[0] = (masu_rung){.scale = 0.5f, .sharpen = MASU_OFF};
     d.rung_count = 1;
     assert_frame(&d, 0,
@@ -440,12 +440,12 @@ static void a_target_that_is_no_storage_image_is_blitted_to(void **state) {
 static void a_metered_exposure_is_two_passes(void **state) {
     (void)state;
     masu_desc d = scene_desc(RASTER, 1920, 1080);
-    assert_string_equal(why_of(&d, MASU_PASS_METER), "the exposure is given");
+    assert_string_equal(why_of(&d, MASU_PASS_METER), "the exposure is fixed");
     d.exposure.metered = MASU_ON;
     assert_frame(&d, 0,
                  GBUFFER LIGHT_RASTER "meter(r:hdr wb:exposure) expose(wb:exposure) "
                                       "tonemap(rb:exposure r:hdr w:target)");
-    assert_string_equal(why_of(&d, MASU_PASS_EXPOSE), "the exposure follows the picture");
+    assert_string_equal(why_of(&d, MASU_PASS_EXPOSE), "the exposure is metered");
     d = source_desc(640, 360); /* nothing is exposed there */
     d.exposure.metered = MASU_ON;
     assert_string_equal(why_of(&d, MASU_PASS_METER), "no scene: a source image is upscaled");
@@ -485,14 +485,14 @@ static void the_reason_of_a_pass_is_that_of_the_first_rung_that_runs_it(void **s
     assert_string_equal(why_of(&d, MASU_PASS_EASU),
                         "render size differs from output size, or rung.upscale is on");
     assert_string_equal(why_of(&d, MASU_PASS_RCAS),
-                        "sharpens what EASU made, or rung.sharpen is on");
+                        "sharpens the upscaled image, or rung.sharpen is on");
     d.rung_count = 1; /* full size only */
     assert_string_equal(why_of(&d, MASU_PASS_EASU), "render size is output size");
     assert_string_equal(why_of(&d, MASU_PASS_RCAS), "nothing was upscaled, or rung.sharpen is off");
     d.rung_count = 3;
     d.rungs[1].scale = 0.5f; /* in this one alone */
-    assert_string_equal(why_of(&d, MASU_PASS_EASU_TWICE), "the output is twice as wide and high as what is rendered");
-    assert_string_equal(why_of(&d, MASU_PASS_READBACK), "desc.readback asks for no image");
+    assert_string_equal(why_of(&d, MASU_PASS_EASU_TWICE), "the output has twice the render size");
+    assert_string_equal(why_of(&d, MASU_PASS_READBACK), "desc.readback requests no image");
     assert_string_equal(why_of(&d, MASU_PASS_LIGHT), "a scene is lit");
 }
 
@@ -520,7 +520,7 @@ static void readback_copies_what_is_asked_for(void **state) {
                                                  : MARCH_ALONE,
                        cases[i].parts & SDF ? LIGHT_SDF : LIGHT_RASTER, cases[i].pass);
         assert_frame(&d, 0, expected);
-        assert_string_equal(why_of(&d, MASU_PASS_READBACK), "desc.readback asks for images");
+        assert_string_equal(why_of(&d, MASU_PASS_READBACK), "desc.readback requests images");
     }
     masu_desc d = source_desc(64, 64); /* has none of these images */
     d.readback = MASU_READBACK_ALL;
@@ -561,7 +561,7 @@ static void temporal_stands_in_for_anti_aliasing_and_upscaling(void **state) {
     d.rung_count = 2;
     d.rungs[0] = (masu_rung){.temporal = MASU_ON, .scale = 0.5f, .aa = MASU_AA_SMAA_HIGH};
     d.rungs[1] = (masu_rung){.temporal = MASU_ON, .sharpen = MASU_ON};
-    assert_string_equal(why_of(&d, MASU_PASS_EASU), "temporal does it");
+    assert_string_equal(why_of(&d, MASU_PASS_EASU), "temporal runs instead");
     compile(&d, &plan);
 #define FOUND_BY(pass)                                                                               \
     "tonemap(r:hdr w:ldr) temporal_find(r:ldr r:depth rl:velocity r:history_depth rl:history w:found) " pass                \
@@ -574,8 +574,8 @@ static void temporal_stands_in_for_anti_aliasing_and_upscaling(void **state) {
     assert_null(strstr(frame_text(&plan, 0), "fsr1"));
     /* Twice the size is for all pixels of an output that keeps its size. */
     d.rung_count = 1;
-    assert_string_equal(why_of(&d, MASU_PASS_TEMPORAL), "temporal_twice does it");
-    static const char other[] = "temporal does it: for any size, and to the same bits with debug.exact";
+    assert_string_equal(why_of(&d, MASU_PASS_TEMPORAL), "temporal_twice runs instead");
+    static const char other[] = "temporal runs instead: for any size, and with debug.exact";
     d.output.width = 65;
     assert_string_equal(why_of(&d, MASU_PASS_TEMPORAL_TWICE), other);
     d.output.width = 64, d.resizable = 1;
@@ -668,8 +668,8 @@ static void picking_costs_nothing_unless_it_is_asked_for(void **state) {
         compile(&d, &without);
         d.picking = 1;
         compile(&d, &with);
-        assert_string_equal(without.why[MASU_PASS_PICK], "desc.picking does not ask for it");
-        assert_string_equal(without.why[MASU_PASS_PICK_TELL], "desc.picking does not ask for it");
+        assert_string_equal(without.why[MASU_PASS_PICK], "desc.picking does not request it");
+        assert_string_equal(without.why[MASU_PASS_PICK_TELL], "desc.picking does not request it");
         assert_int_equal(without.buffers[MASU_BUFFER_PICKED].bytes, 0);
         assert_int_equal(without.images[MASU_IMAGE_PICK_ID].used + without.images[MASU_IMAGE_PICK_DEPTH].used, 0);
         int raster = (parts[i] & RASTER) != 0;
@@ -695,17 +695,17 @@ static void what_is_blended_comes_over_the_light_if_there_is_any(void **state) {
     masu_desc d = scene_desc(RASTER, 64, 64);
     compile(&d, &without);
     assert_int_equal(without.images[MASU_IMAGE_HDR].usage & VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, 0);
-    assert_string_equal(without.why[MASU_PASS_TRANSPARENTS], "no material is blended");
+    assert_string_equal(without.why[MASU_PASS_TRANSPARENTS], "the scene has no transparent materials");
     d = scene_desc(RASTER, 64, 64);
     support_scene.blends = 2; /* materials that nothing has */
     compile(&d, &with);
-    assert_string_equal(with.why[MASU_PASS_TRANSPARENTS], "no material is blended");
+    assert_string_equal(with.why[MASU_PASS_TRANSPARENTS], "the scene has no transparent materials");
     assert_int_equal(with.pass_sets, without.pass_sets);
     support_scene.transparents = 5, support_scene.transparent_sets = 2;
     assert_frame(&d, 0,
                  GBUFFER LIGHT_RASTER "transparents(r:depth b:hdr) tonemap(r:hdr w:target)");
     compile(&d, &with);
-    assert_string_equal(with.why[MASU_PASS_TRANSPARENTS], "some materials are blended");
+    assert_string_equal(with.why[MASU_PASS_TRANSPARENTS], "the scene has transparent materials");
     assert_true(with.images[MASU_IMAGE_HDR].usage & VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
     assert_int_equal(with.pass_sets, without.pass_sets + 3); /* a rung each */
     const masu_buffer_plan *b = with.buffers, *other = without.buffers;
@@ -782,7 +782,7 @@ static void sdf_occlusion_comes_between_march_and_light_if_asked(void **state) {
     d.readback = MASU_READBACK_OCCLUSION;
     assert_frame(&d, 0, GBUFFER MARCH_ON_RASTER LIGHT_SDF TONEMAP);
     assert_string_equal(why_of(&d, MASU_PASS_SDF_OCCLUSION),
-                        "the scene asks for no SDF shadows or SDF ambient occlusion");
+                        "the scene has no SDF shadows or SDF ambient occlusion");
     compile(&d, &plan);
     assert_false(plan.images[MASU_IMAGE_OCCLUSION].used);
     support_scene.sdf_occlusion = 1;
@@ -790,9 +790,9 @@ static void sdf_occlusion_comes_between_march_and_light_if_asked(void **state) {
                    "sdf_occlusion(r:scene_depth r:normal rb:slots w:occlusion) ", light,
                    "readback(from:occlusion) ", TONEMAP);
     assert_frame(&d, 0, expected);
-    assert_string_equal(why_of(&d, MASU_PASS_LIGHT), "light_occluded does it");
+    assert_string_equal(why_of(&d, MASU_PASS_LIGHT), "light_occluded runs instead");
     assert_string_equal(why_of(&d, MASU_PASS_LIGHT_OCCLUDED),
-                        "a scene is lit, and sdf_occlusion says how much arrives");
+                        "a scene is lit, with the visibility from sdf_occlusion");
     d = scene_desc(RASTER, 64, 64);
     assert_string_equal(why_of(&d, MASU_PASS_SDF_OCCLUSION), "the scene has no SDF");
 }
@@ -807,7 +807,7 @@ static void ao_comes_after_all_that_writes_occlusion(void **state) {
     masu_desc d = scene_desc(RASTER, 101, 60);
     d.readback = MASU_READBACK_OCCLUSION;
     assert_string_equal(why_of(&d, MASU_PASS_AO),
-                        "the scene asks for no ambient occlusion, or rung.ao is off");
+                        "the scene has no ambient occlusion, or rung.ao is off");
     compile(&d, &plan);
     assert_false(plan.images[MASU_IMAGE_OCCLUSION].used || plan.images[MASU_IMAGE_AO].used);
     assert_int_equal(plan.desc.readback, 0);
@@ -816,7 +816,7 @@ static void ao_comes_after_all_that_writes_occlusion(void **state) {
                    "readback(from:occlusion) ", TONEMAP);
     assert_frame(&d, 0, expected);
     assert_string_equal(why_of(&d, MASU_PASS_LIGHT_OCCLUDED),
-                        "a scene is lit, and ao_upsample says how much arrives");
+                        "a scene is lit, with the visibility from ao_upsample");
     compile(&d, &plan);
     assert_int_equal(plan.images[MASU_IMAGE_AO].width, 51);
     assert_int_equal(plan.images[MASU_IMAGE_AO].height, 30);
@@ -1349,7 +1349,7 @@ static void anti_aliasing_reads_what_is_shown_and_hands_it_on(void **state) {
                         " easu_twice(r:smooth w:upscaled) rcas(r:upscaled w:target)");
     assert_frame(&d, 2, GBUFFER LIGHT_RASTER "tonemap(r:hdr w:ldr) fxaa(r:ldr w:target)");
     assert_frame(&d, 3, GBUFFER LIGHT_RASTER TONEMAP);
-    assert_string_equal(why_of(&d, MASU_PASS_SMAA_BLEND), "rung.aa asks for it");
+    assert_string_equal(why_of(&d, MASU_PASS_SMAA_BLEND), "rung.aa selects it");
     d.targets.storage = 0;
     assert_frame(&d, 0, GBUFFER LIGHT_RASTER "tonemap(r:hdr w:ldr) " EDGES("ldr", "final")
                         " present(from:final to:target)");
@@ -1363,7 +1363,7 @@ static void anti_aliasing_reads_what_is_shown_and_hands_it_on(void **state) {
     assert_frame(&d, 0, "fxaa(r:source w:target)");
     d.rungs[0].aa = MASU_AA_OFF;
     assert_frame(&d, 0, "easu(r:source w:target)");
-    assert_string_equal(why_of(&d, MASU_PASS_SMAA_EDGES), "rung.aa does not ask for it");
+    assert_string_equal(why_of(&d, MASU_PASS_SMAA_EDGES), "rung.aa does not select it");
 }
 
 /* A rung without has none of its memory; the largest rung with it counts. */
@@ -1421,9 +1421,9 @@ static void ray_queries_stand_in_for_the_own_tree(void **state) {
                            "r:specular_ray rs:top rb:glossy u:specular_hit)"));
     assert_null(strstr(frame_text(&with, 0), "specular_trace"));
     assert_null(strstr(frame_text(&with, 1), "specular_"));
-    assert_string_equal(with.why[MASU_PASS_SPECULAR_TRACE], "specular_query does it");
+    assert_string_equal(with.why[MASU_PASS_SPECULAR_TRACE], "specular_query runs instead");
     assert_string_equal(plan.why[MASU_PASS_SPECULAR_QUERY],
-                        "no ray queries, or desc.ray_query does not take them");
+                        "no ray queries, or desc.ray_query is off");
     /* Nodes of 48 bytes and the tree over instances go. */
     assert_int_equal(plan.buffers[MASU_BUFFER_TRACE].bytes - with.buffers[MASU_BUFFER_TRACE].bytes,
                      9 * 48);
