@@ -58,14 +58,14 @@ static bool read_part(const char *name, const char **at, masu_rung *rung, uint64
     int part = (int)strcspn(*at, "+");
     if (part > 60) part = 60;
     const masu_knob *k = (*at)[length] == '=' ? masu_knob_find(*at, length) : NULL;
-    if (!k) return wrong(name, error, error_size, "'%.*s' is no knob with a value", part, *at);
+    if (!k) return wrong(name, error, error_size, "expected KNOB=VALUE with a known knob, found '%.*s'", part, *at);
     uint64_t bit = 1ull << (k - masu_knob_table());
-    if (*seen & bit) return wrong(name, error, error_size, "'%.*s' comes twice", part, *at);
+    if (*seen & bit) return wrong(name, error, error_size, "'%.*s': the knob is already set", part, *at);
     *seen |= bit;
     const char *value = *at + length + 1, *end = masu_knob_from_text(k, value, rung);
     if (!end || (*end && *end != '+')) {
         masu_knob_range(k, range, sizeof range);
-        return wrong(name, error, error_size, "%s: needed is %s, given is '%.*s'", k->name, range,
+        return wrong(name, error, error_size, "%s: expected %s, found '%.*s'", k->name, range,
                      part - (int)length - 1 > 0 ? part - (int)length - 1 : 0, value);
     }
     *at = end;
@@ -315,11 +315,11 @@ static void scene_values(masu_rung *rung, const masu_scene *scene, const char **
     if (scene->shadow_distance > 0.0f) rung->shadow_distance *= scene->shadow_distance;
     if (rung->shadow_cascades && scene->shadow_cascades &&
         rung->shadow_cascades >= scene->shadow_cascades) {
-        *why = "the scene has no more of them";
+        *why = "the scene does not have more";
         rung->shadow_cascades = 0;
     }
     if (!(fabsf(rung->specular_cutoff - scene->specular_cutoff) > 1e-6f)) {
-        if (rung->specular_cutoff > 0.0f) *why = "it is the scene's own";
+        if (rung->specular_cutoff > 0.0f) *why = "equal to the scene's value";
         rung->specular_cutoff = 0.0f;
     }
 }
@@ -343,7 +343,7 @@ void masu_settings_fit(masu_setting *settings, uint32_t count, const masu_scene 
         refit_parent(s, settings, i, old);
         for (uint32_t k = 0; k < i && !s->dropped[0]; k++) {
             if (strcmp(settings[k].id, fitted) != 0 || settings[k].dropped[0]) continue;
-            snprintf(s->dropped, sizeof s->dropped, "%s", why ? why : "it is there already");
+            snprintf(s->dropped, sizeof s->dropped, "%s", why ? why : "equal to another setting");
         }
         /* What is dropped keeps the name that says what it was to be. */
         if (!s->dropped[0]) memcpy(s->id, fitted, sizeof s->id);
