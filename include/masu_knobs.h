@@ -1,62 +1,69 @@
-/* masu_knobs.h: what can be turned and what is counted: the knobs of a rung and the limits of a scene, each a row of a
- * table that fields, files, the command line and docs/knobs.md are made of. A part of masu.h, which includes it; the
- * knobs that only studies and ladders turn are in masu_study.h. */
+/* masu_knobs.h: the quality settings (knobs) of a rung and the limits of a scene. Each one is a row
+ * of a table, from which the struct members, the file formats, the command line and docs/knobs.md
+ * are generated. Part of masu.h, which includes it. Settings for studies only are in masu_study.h.
+ * */
 #ifndef MASU_H
 #error "masu_knobs.h is a part of masu.h: include that"
 #endif
 #ifndef MASU_KNOBS_PART_H
 #define MASU_KNOBS_PART_H
 
-/* Words that a knob can be set to: enumerator, value, its name in ladder.json, in suites and on the
- * command line, what it means. */
+/* Enum values of knobs. Columns: enumerator, value, name in ladder.json, in suites and on the
+ * command line, meaning. */
 #define MASU_SWITCH_WORDS(X)                                                                       \
-    X(MASU_AUTO, 0, "auto", "as the knob says")                                                    \
+    X(MASU_AUTO, 0, "auto", "the default of the knob")                                             \
     X(MASU_OFF, 1, "off", "")                                                                      \
     X(MASU_ON, 2, "on", "")
 
-/* How the picture is upscaled. */
+/* Upscaling filters. */
 #define MASU_EASU_WORDS(X)                                                                         \
-    X(MASU_EASU_AUTO, 0, "auto", "full")                                                           \
-    X(MASU_EASU_FULL, 1, "full", "FSR1's EASU as AMD published it")                                \
+    X(MASU_EASU_AUTO, 0, "auto", "selects full")                                                   \
+    X(MASU_EASU_FULL, 1, "full", "EASU of FSR1 as AMD published it")                               \
     X(MASU_EASU_FAST, 2, "fast",                                                                   \
-      "edges are looked for once instead of four times, and where the four texels around a pixel"  \
-      " differ by at most 1/255 their bilinear mean is taken, which is within 1/255 of full"       \
-      " (errors elsewhere: docs/design/29-fsr1.md)")                                                       \
-    X(MASU_EASU_BILINEAR, 3, "bilinear", "the four texels around, for comparison")
+      "EASU that detects edges once instead of four times; if the four texels around a pixel"      \
+      " differ by at most 1/255, it uses their bilinear average, which is within 1/255 of full"    \
+      " (errors elsewhere: docs/design/15-fsr1.md)")                                               \
+    X(MASU_EASU_BILINEAR, 3, "bilinear", "bilinear filter, for comparison")
 
-/* Anti-aliasing of the shaded picture, before it is upscaled. All blend linear colour. */
+/* Anti-aliasing filters. They run after shading and before upscaling, and blend linear colour. */
 #define MASU_AA_WORDS(X)                                                                           \
-    X(MASU_AA_AUTO, 0, "auto", "off")                                                              \
+    X(MASU_AA_AUTO, 0, "auto", "selects off")                                                      \
     X(MASU_AA_OFF, 1, "off", "")                                                                   \
-    X(MASU_AA_FXAA, 2, "fxaa", "one pass that looks at the nearest pixels alone")                  \
+    X(MASU_AA_FXAA, 2, "fxaa", "FXAA: one pass that samples adjacent pixels only")                 \
     X(MASU_AA_SMAA_LOW, 3, "smaa-low",                                                             \
-      "SMAA 1x: edges from a contrast of 0.15 on, followed for 8 pixels")                          \
-    X(MASU_AA_SMAA_MEDIUM, 4, "smaa-medium", "from 0.1 on, for 16 pixels")                         \
-    X(MASU_AA_SMAA_HIGH, 5, "smaa-high", "from 0.1 on, for 32 pixels; diagonals and corners too")  \
-    X(MASU_AA_SMAA_ULTRA, 6, "smaa-ultra", "from 0.05 on, for 64 pixels; diagonals and corners too")
+      "SMAA 1x: edges with a contrast of 0.15 or more, searched for 8 pixels")                     \
+    X(MASU_AA_SMAA_MEDIUM, 4, "smaa-medium",                                                       \
+      "SMAA 1x: edges with a contrast of 0.1 or more, searched for 16 pixels")                     \
+    X(MASU_AA_SMAA_HIGH, 5, "smaa-high",                                                           \
+      "SMAA 1x: edges with a contrast of 0.1 or more, searched for 32 pixels, with diagonals"      \
+      " and corners")                                                                              \
+    X(MASU_AA_SMAA_ULTRA, 6, "smaa-ultra",                                                         \
+      "SMAA 1x: edges with a contrast of 0.05 or more, searched for 64 pixels, with diagonals"     \
+      " and corners")
 
 #define MASU_WORD_ENUM(name, value, word, text) name = value,
 typedef enum masu_switch { MASU_SWITCH_WORDS(MASU_WORD_ENUM) } masu_switch;
 typedef enum masu_easu { MASU_EASU_WORDS(MASU_WORD_ENUM) } masu_easu;
 typedef enum masu_aa { MASU_AA_WORDS(MASU_WORD_ENUM) } masu_aa;
 
-/* A number for each cascade. */
+/* One value per shadow cascade, the closest cascade first. */
 typedef uint32_t masu_per_cascade[MASU_MAX_CASCADES];
 
-/* What a knob takes to change anything: name, where it is so, and what is said where it is not. */
+/* Conditions under which a knob has an effect. Columns: name, the condition, the message if it does
+ * not hold. */
 #define MASU_KNOB_USES(X)                                                                          \
     X(ALWAYS, "everywhere", "")                                                                    \
     X(UPSCALED, "rungs that upscale", "nothing is upscaled")                                       \
-    X(SHARPEN, "rungs that would sharpen, or do", "nothing is sharpened")                          \
+    X(SHARPEN, "rungs that upscale by EASU or sharpen", "nothing is sharpened")                    \
     X(SHARPENED, "rungs that sharpen", "nothing is sharpened")                                     \
     X(SDF, "scenes with an SDF", "the scene has no SDF")                                           \
     X(POLYGONS, "scenes with polygons", "the scene has no polygons")                               \
     X(OCCLUDERS, "scenes with occluders", "the scene has no occluders")                            \
-    X(LODS, "scenes whose meshes have LODs", "the scene's meshes have no LODs")           \
-    X(AO, "scenes with ambient occlusion in screen space",                                         \
-      "the scene asks for no ambient occlusion")                                                   \
+    X(LODS, "scenes with LODs of meshes", "the scene's meshes have no LODs")                       \
+    X(AO, "scenes with screen-space ambient occlusion",                                            \
+      "the scene has no screen-space ambient occlusion")                                           \
     X(SHADOWS, "scenes with a shadow map", "the scene has no shadow map")                          \
-    X(LIGHTS, "scenes with punctual lights", "the scene has no punctual lights")                      \
+    X(LIGHTS, "scenes with punctual lights", "the scene has no punctual lights")                   \
     X(SPECULAR, "scenes with traced reflections", "no reflections are traced")
 
 typedef enum masu_knob_use {
@@ -65,219 +72,225 @@ typedef enum masu_knob_use {
 #undef MASU_KNOB_USE_ENUM
 } masu_knob_use;
 
-/* Every knob of a rung: a row each, in this order in masu_rung, in names of settings, in files and
- * tables. A row is all that a new knob takes; `make docs-tables` then writes docs/knobs.md anew.
- * Below its columns stand what the knob does and what it costs.
+/* The knobs of a rung. One row per knob, in the order of the members of masu_rung, of setting
+ * names, files and tables. To add a knob, add a row; `make docs-tables` then regenerates
+ * docs/knobs.md. The two strings of a row are its description and its cost.
  *
- * 0 is always taken: it becomes the number of its column, where the text says no other, or, where
- * that is 0 too, means what the text says. All other numbers lie within min and max. WORD takes the
- * words of its enum, of which 0 is AUTO: the text says what that is. */
+ * NUMBER: `min` and `max` bound the value. 0 is always valid: it selects the default in the column
+ * "0 is" unless the description defines another default; if that column is 0 too, the description
+ * defines the meaning. WORD: the value is an enumerator of the type, and 0 is AUTO. */
 /* clang-format off */
 #define MASU_PRODUCT_KNOBS(NUMBER, WORD)                                                           \
     /*     type              name                  min   max   0 is  of use in  unit          */   \
-    /* Size and upscaling. Render size is in pixels per axis; all that is shaded has it. */        \
+    /* Size and upscaling. All passes before upscaling run at the render size. */                  \
     NUMBER(float,            scale,                0,    1,    1,    ALWAYS,    "",                \
            "Render size / output size, per axis. Ignored with a source image.",                    \
-           "Time of the passes before upscaling, and their images, grow with its square.")         \
+           "Time and images of the passes before upscaling grow with its square.")                 \
     WORD(  masu_switch,      upscale,                                UPSCALED,                     \
-           "EASU. AUTO: where the render size differs from the output size. OFF is an error"       \
-           " there.",                                                                              \
-           "A pass of the output size.")                                                           \
+           "Upscaling by EASU or bilinear filter. AUTO: on if the render size differs from the"    \
+           " output size; OFF is an error then.",                                                  \
+           "One pass at the output size.")                                                         \
     WORD(  masu_easu,        easu,                                   UPSCALED,                     \
-           "How the picture is upscaled. AUTO: full.",                                             \
+           "Upscaling filter. AUTO: full.",                                                        \
            "Full takes the most time, then fast, then bilinear.")                                  \
     WORD(  masu_switch,      sharpen,                                SHARPEN,                      \
-           "RCAS. AUTO: where EASU runs, full or fast; not after bilinear.",                       \
-           "A pass of the output size.")                                                           \
+           "Sharpening by RCAS. AUTO: on after EASU (full or fast), off after bilinear.",          \
+           "One pass at the output size.")                                                         \
     NUMBER(float,            sharpness,            -1,   64,   0.2,  SHARPENED, "stops",           \
-           "How much less RCAS sharpens: each stop halves it (AMD's definition). Below 0: no stop," \
-           " the sharpest.",                                                                       \
+           "Reduction of RCAS sharpening: each stop halves it (AMD's definition). Below 0: no"     \
+           " reduction, the strongest sharpening.",                                                \
            "None.")                                                                                \
     WORD(  masu_aa,          aa,                                     ALWAYS,                       \
-           "Anti-aliasing, before upscaling. AUTO: off.",                                          \
-           "Device bytes per pixel of the render size: SMAA 4.5, FXAA 4, of which other images"    \
-           " may share all but SMAA's last 0.5. SMAA takes two passes, of which a picture"         \
-           " without edges costs the first; FXAA takes one.")                                      \
+           "Anti-aliasing filter before upscaling. AUTO: off.",                                    \
+           "SMAA: two passes, only the first if the image has no edges. FXAA: one pass. Device"    \
+           " bytes per pixel of the render size: SMAA 4.5, of which 4 can be shared with other"    \
+           " images; FXAA 4, all shareable.")                                                      \
     WORD(  masu_switch,      temporal,                               ALWAYS,                       \
-           "Anti-aliasing and upscaling over frames, in place of aa, EASU and RCAS (RCAS where"    \
-           " sharpen is on): each frame looks at another place in its pixels. Scenes alone. AUTO:" \
-           " on with a governor, at most one viewport and no split but AFTER_UPSCALE, in rungs that" \
-           " leave upscale, easu, sharpen, aa and fuse at AUTO; else off.",                        \
-           "A pass of the output size, two of the render size. Device bytes that outlive the frame: 16 per" \
-           " pixel of the output, 4 of the render size; that do not: 8 of the render size, and"    \
-           " velocities, 8.")                                                                      \
+           "Temporal anti-aliasing and upscaling with a jittered camera. Replaces aa and EASU,"    \
+           " and RCAS unless sharpen is on. Scenes only. AUTO: on with a governor, at most one"    \
+           " viewport and no split except AFTER_UPSCALE, in rungs with upscale, easu, sharpen and" \
+           " aa at AUTO; else off.",                                                               \
+           "One pass at the output size, two at the render size. Persistent device bytes: 16 per"  \
+           " pixel of the output, 4 per pixel of the render size. Transient device bytes: 16 per"  \
+           " pixel of the render size, 8 of them for velocities.")                                 \
     /* Geometry. */                                                                                \
     WORD(  masu_switch,      silhouettes,                            SDF,                          \
-           "Smooth silhouettes of the SDF: pixels in which something of it ends are the mean of four" \
-           " samples. AUTO: off.",                                                                 \
-           "Up to three rays more at such pixels, at 1920x1080 a tenth to all of the march together;" \
-           " 4 to 8 device bytes per pixel of the render size.")                                  \
+           "SDF edge anti-aliasing: averages four samples in pixels that contain an edge of the"   \
+           " SDF. AUTO: off.",                                                                     \
+           "Up to three more rays in each such pixel: at 1920x1080 they take 0.1 to 1 times as"    \
+           " long as all other sphere tracing. 4 to 8 device bytes per pixel of the render size.") \
     NUMBER(uint32_t,         march_steps,          1,    2048, 2048, SDF,       "steps",           \
-           "Most SDF steps per ray. A ray that uses them up ends where it is.",                    \
-           "Time of rays that graze surfaces: the more, the longer.")                              \
+           "Largest number of sphere-tracing steps per ray. A ray that reaches it ends at its"     \
+           " current position.",                                                                   \
+           "Time of rays at grazing angles grows with it.")                                        \
     NUMBER(float,            lod_error,            -1e9, 1e9,  1,    LODS,      "pixels",          \
-           "How far, at the render size, a surface may be from its place where an LOD of its"      \
-           " mesh is drawn. Below 0: the finest form alone.",                                      \
-           "Triangles: the larger, the fewer.")                                                    \
-    /* Ambient occlusion in screen space, at half the render size. */                              \
+           "Largest geometric error of an LOD on the screen, in pixels of the render size."        \
+           " Below 0: always the full mesh.",                                                      \
+           "Triangles: fewer with a larger error.")                                                \
+    /* Screen-space ambient occlusion, at half the render size. */                                 \
     WORD(  masu_switch,      ao,                                     AO,                           \
-           "Ambient occlusion in screen space. AUTO: on.",                                         \
-           "2 * slices * steps samples per texel of half the render size.")                        \
+           "Screen-space ambient occlusion. AUTO: on.",                                            \
+           "2 * ao_slices * ao_steps samples per texel at half the render size.")                  \
     NUMBER(uint32_t,         ao_slices,            1,    8,    2,    AO,        "",                \
-           "Directions that are looked along.",                                                    \
-           "Samples grow with it.")                                                                \
+           "Slices (directions) per texel of the ambient occlusion.",                              \
+           "Samples grow in proportion.")                                                          \
     NUMBER(uint32_t,         ao_steps,             1,    16,   8,    AO,        "",                \
-           "Samples on either side of a slice.",                                                   \
-           "Samples grow with it.")                                                                \
-    /* The sun's shadow map. A rung that asks for more than the scene has gets what it has. */     \
+           "Samples on each of the two sides of a slice.",                                         \
+           "Samples grow in proportion.")                                                          \
+    /* The sun's shadow map. Values above those of the scene are reduced to the scene's. */        \
     NUMBER(uint32_t,         shadow_cascades,      1,    4,    0,    SHADOWS,   "",                \
-           "Cascades. 0: the scene's.",                                                            \
-           "A pass each, and its part of the map.")                                                \
+           "Number of shadow cascades. 0: the scene's.",                                           \
+           "One pass per cascade, and its part of the shadow map.")                                \
     NUMBER(uint32_t,         shadow_resolution,    16,   8192, 0,    SHADOWS,   "texels",          \
-           "Along an edge of a cascade. 0: the scene's.",                                          \
-           "4 n^2 device bytes for each cascade.")                                                 \
+           "Width and height of a shadow cascade. 0: the scene's.",                                \
+           "4 n^2 device bytes per cascade.")                                                      \
     NUMBER(float,            shadow_distance,      0,    1e9,  0,    SHADOWS,   "m",               \
-           "View depth where shadows end. 0: the scene's.",                                        \
-           "Instances in the cascades: the farther, the more.")                                    \
+           "View depth at which shadows end. 0: the scene's.",                                     \
+           "More instances in the cascades with a larger distance.")                               \
     NUMBER(masu_per_cascade, shadow_refresh,       1,    64,   1,    SHADOWS,   "frames",          \
-           "Each cascade is drawn anew every so many frames, and at once after a cut or when the"  \
-           " view has left it. In between, what moves leaves its shadow behind.",                  \
-           "Saves draws. Any above 1 keeps the map's memory from being shared with other images"   \
-           " and doubles the rung's recordings.")                                                  \
-    /* Traced reflections, at half the render size: one ray per 2x2 pixels, then filters. */       \
+           "Interval at which each cascade is re-rendered; also after a cut, and when the view"    \
+           " has moved out of the cascade. In between, shadows of moving objects lag behind.",     \
+           "Saves draws. A value above 1 keeps the shadow map from sharing memory with other"      \
+           " images; each cascade with one doubles the number of recordings of the rung.")         \
+    /* Traced reflections at half the render size: one ray per 2x2 pixels, then filters. */        \
     WORD(  masu_switch,      specular,                               SPECULAR,                     \
-           "Traced reflections. AUTO: on, if a surface is glossy enough and the device has the"    \
-           " storage buffers for it.",                                                             \
-           "The rays, and the passes and images of all that follows.")                             \
+           "Traced reflections. AUTO: on if a surface is glossy enough and the device allows"      \
+           " enough storage buffers.",                                                             \
+           "The rays, and the passes and images of the filters.")                                  \
     NUMBER(float,            specular_cutoff,      0,    1,    0,    SPECULAR,  "",                \
-           "Perceptual roughness from which surfaces reflect the sky or the probes instead; both"  \
-           " are blended from 3/4 of it on. 0: the scene's.",                                      \
-           "Pixels that trace: the higher, the more.")                                             \
+           "Perceptual roughness at and above which surfaces reflect the sky or light probes"      \
+           " instead; from 3/4 of it on, both are blended. 0: the scene's.",                       \
+           "More pixels trace rays with a higher cutoff.")                                         \
     NUMBER(uint32_t,         specular_frames,      1,    240,  32,   SPECULAR,  "frames",          \
-           "How far back the reflections' own mean reaches, in frames of 1/60 s. 0: 32, or 8"       \
-           " with temporal, which takes a mean over frames itself.",                               \
+           "Length of the temporal accumulation of reflections, in frames of 1/60 s. 0: 32, or 8"  \
+           " with temporal, which accumulates too.",                                               \
            "None.")
 /* clang-format on */
 
 #include "masu_study.h"
 #undef MASU_WORD_ENUM
 
-/* All of them, in order. */
+/* All knobs, in order. */
 #define MASU_KNOBS(NUMBER, WORD)                                                                   \
     MASU_PRODUCT_KNOBS(NUMBER, WORD)                                                               \
     MASU_STUDY_KNOBS(NUMBER, WORD)
 
-/* One rung of the quality ladder: a setting of all knobs. Each is recorded once and may be chosen
- * freshly every frame. All zero: the size of the output, all that the scene has use for, no
- * anti-aliasing. */
+/* One rung (quality level) of the quality ladder: a value for every knob. masu_init records the
+ * command buffers of each rung; masu_frame_desc.rung selects one per frame. All zero: output size,
+ * every feature of the scene, no anti-aliasing. */
 typedef struct masu_rung {
 #define MASU_KNOB_FIELD(type, name, ...) type name;
     MASU_KNOBS(MASU_KNOB_FIELD, MASU_KNOB_FIELD)
 #undef MASU_KNOB_FIELD
 } masu_rung;
 
-/* The same as data, for settings menus and files. */
+/* The tables above as data, for settings menus and files. An enum value of a knob: */
 typedef struct masu_word {
-    const char *word; /* "smaa-high" */
-    const char *name; /* of the enumerator, "MASU_AA_SMAA_HIGH" */
-    const char *text; /* may be empty */
+    const char *word; /* name in files and settings: "smaa-high" */
+    const char *name; /* enumerator: "MASU_AA_SMAA_HIGH" */
+    const char *text; /* meaning; may be empty */
     uint32_t value;
 } masu_word;
 
 typedef enum masu_knob_kind {
     MASU_KNOB_FLOAT = 0,
-    MASU_KNOB_COUNT = 1, /* a uint32_t */
-    MASU_KNOB_WORD = 2   /* an enum: its value is the place in `words` */
+    MASU_KNOB_COUNT = 1, /* uint32_t */
+    MASU_KNOB_WORD = 2   /* enum: the value is an index into `words` */
 } masu_knob_kind;
 
 typedef struct masu_knob {
-    const char *name; /* of the field of masu_rung */
+    const char *name; /* of the member of masu_rung */
     masu_knob_kind kind;
-    uint32_t offset;       /* of the field, bytes */
-    uint32_t values;       /* of 4 bytes each: 1, or one for each cascade */
-    double min, max, zero; /* the row's; of a WORD the first, the last and AUTO */
+    uint32_t offset;       /* of the member in masu_rung, bytes */
+    uint32_t values;       /* 4 bytes each: 1, or MASU_MAX_CASCADES for a value per cascade */
+    double min, max, zero; /* range and default. WORD: the first and last enumerator, and AUTO */
     masu_knob_use use;
-    const char *where;   /* "scenes with an SDF" */
-    const char *missing; /* "the scene has no SDF" */
+    const char *where;   /* condition of use: "scenes with an SDF" */
+    const char *missing; /* message if the condition does not hold: "the scene has no SDF" */
     const char *unit;    /* may be empty */
     const char *text, *cost;
-    const masu_word *words; /* of a WORD, by value; else NULL */
+    const masu_word *words; /* WORD: the enum values, indexed by value. Else NULL */
     uint32_t word_count;
 } masu_knob;
 
-/* All of them, in order; behind the last one a row whose name is NULL. Constant. */
+/* All knobs in order, terminated by a row whose name is NULL. Static. */
 MASU_API const masu_knob *masu_knob_table(void);
 
-/* One of a knob's values, 0 .. values - 1, and how it is changed, which checks no range. A value
- * that is not there is 0 and cannot be set. */
+/* Read and write value number `value`, 0 .. values - 1, of a knob in a rung. masu_knob_get returns
+ * 0 if there is no such value, and masu_knob_set ignores it. masu_knob_set does not check the
+ * range. */
 MASU_API double masu_knob_get(const masu_knob *knob, const masu_rung *rung, uint32_t value);
 MASU_API void masu_knob_set(const masu_knob *knob, masu_rung *rung, uint32_t value, double to);
 
-/* 1: masu_init takes it: 0, or within min and max; of a COUNT or WORD whole numbers alone. */
+/* 1 if masu_init accepts the value: 0, or a number from min to max, which must be an integer for
+ * COUNT and WORD. */
 MASU_API int masu_knob_takes(const masu_knob *knob, double to);
 
-/* How much of each thing a scene may have: a row each. Name, the maximum of any scene (0: what a
- * blob holds), what each costs.
+/* Limits of a scene. Columns: name, the maximum for any scene (0: bounded by the blob format only),
+ * cost per item.
  *
- * Memory is sized by what the scene has: a limit is a promise to the port that no scene of its own
- * will need more. masu_peaks() returns what is used under the same names. */
+ * Memory is sized by the scene and not by its limits. With a limit, a port makes sure that none of
+ * its scenes exceeds a budget. masu_peaks() returns the actual numbers under the same names. */
 #define MASU_LIMITS(X)                                                                             \
     X(vertices, 0, "16 bytes each, device")                                                        \
     X(indices, 0, "4 bytes each, device")                                                          \
     X(materials, 0, "48 bytes each, device")                                                       \
     X(instances, 0,                                                                                \
-      "52 bytes each per frame in flight, device, and 98 bytes each, host; with velocities 100"    \
-      " and 146. With occlusion 32 more on the device, 4 once, and 8 for each of its occluders;"   \
-      " with a shadow map for each cascade 4 more, with occlusion 12 and 4 once. With LODs 1 more" \
-      " on the host, and on the device for each LOD of its mesh and each view 4 (8 with"           \
-      " occlusion)")                                                                               \
+      "98 bytes each, host, and 52 bytes each per frame in flight, device; with velocities 146"    \
+      " and 100. With occlusion culling, on the device: 32 more, and 8 for each occluder of the"   \
+      " instance, per frame in flight, and 4 once. With a shadow map, per cascade: 4 more; with"   \
+      " occlusion culling 12, and 4 once. With LODs: 1 more on the host, and on the device 4 for"  \
+      " each LOD of the mesh and each view (8 with occlusion culling)")                            \
     X(models, 0,                                                                                   \
-      "that move as one, hidden and spare ones too: 72 bytes each, host, and 4 for each instance " \
-      "of the scene")                                                                              \
-    X(model_nodes, 0, "of all models: 112 bytes each, host")                                       \
+      "movable models, including hidden and pooled copies: 72 bytes each, host, and 4 for each"    \
+      " instance of the scene")                                                                    \
+    X(model_nodes, 0, "nodes of all movable models: 112 bytes each, host")                         \
     X(sdf_params, MASU_MAX_SDF_PARAMS, "16 bytes each, host")                                      \
-    X(shadow_cascades, MASU_MAX_CASCADES, "of the shadow map, as the largest rung has it")         \
-    X(shadow_resolution, 8192, "texels along an edge of a cascade; n take 4 n^2 bytes, device")    \
+    X(shadow_cascades, MASU_MAX_CASCADES, "cascades of the shadow map in the largest rung")        \
+    X(shadow_resolution, 8192, "width and height n of a cascade in texels: 4 n^2 bytes, device")   \
     X(probes, 0,                                                                                   \
-      "light probes: 48 bytes each, 56 more for each set, and its map of distances; device")       \
-    X(textures, 0, "pictures with their mip chains; texture_bytes has their cost")                 \
+      "light probes: 48 bytes each, 56 more for each set, and the distance map of each probe,"     \
+      " device")                                                                                   \
+    X(textures, 0, "textures with their mip chains; texture_bytes has their cost")                 \
     X(texture_bytes, 0,                                                                            \
-      "of texels on the device, as blocks or decoded, whichever is used; the device may add"       \
+      "bytes of all texels on the device, compressed or decoded as used; the device may add"       \
       " padding")                                                                                  \
-    /* Nor more than 65536 times their texture sets, of which there are at most 64. */             \
+    /* Also at most 65536 / (number of their texture sets, at most 64). */                         \
     X(transparents, 4096,                                                                          \
-      "blended primitives, counted for each instance: 76 bytes each, host; 24, and 20 for each"    \
-      " texture set of theirs, per frame in flight, device")                                       \
+      "transparent primitives, summed over all instances: 76 bytes each, host; 24, and 20 for"     \
+      " each texture set that they use, per frame in flight, device")                              \
     X(lights, 4096,                                                                                \
       "punctual lights: 80 bytes each per frame in flight, device, and 80 bytes each, host")       \
     X(trace_triangles, 0,                                                                          \
-      "that rays meet: 16 bytes each, and for each about a quarter of a node of 48, device")       \
+      "triangles in the BVHs for reflections: 16 bytes each, and about a quarter of a 48-byte"     \
+      " node each, device")                                                                        \
     X(trace_instances, 0,                                                                          \
-      "that rays meet: 208 bytes each per frame in flight, device, and about 200 bytes each, host")
+      "instances in the BVH for reflections: 208 bytes each per frame in flight, device, and"      \
+      " about 200 bytes each, host")
 
 #define MASU_LIMIT_FIELD(name, ...) uint64_t name;
 
-/* 0: no limit. A scene that needs more is refused with MASU_ERROR_LIMIT, which names the field. */
+/* 0: no limit. A scene above a limit is MASU_ERROR_LIMIT; the detail names the member. */
 typedef struct masu_limits {
     MASU_LIMITS(MASU_LIMIT_FIELD)
 } masu_limits;
 
 typedef struct masu_peak_info {
     MASU_LIMITS(MASU_LIMIT_FIELD)
-    uint64_t host_bytes;   /* of the host block */
-    uint64_t device_bytes; /* of all device blocks */
+    uint64_t host_bytes;   /* used in the host block */
+    uint64_t device_bytes; /* in all device blocks */
 } masu_peak_info;
 #undef MASU_LIMIT_FIELD
 
-/* The same as data. */
+/* A limit as data. */
 typedef struct masu_limit {
-    const char *name; /* of the field of masu_limits and masu_peak_info */
-    uint32_t offset;  /* in both, bytes */
-    uint64_t max;     /* of any scene; 0: none */
+    const char *name; /* of the member of masu_limits and masu_peak_info */
+    uint32_t offset;  /* in both structs, bytes */
+    uint64_t max;     /* for any scene; 0: none */
     const char *text;
 } masu_limit;
 
-/* All of them, in order; behind the last one a row whose name is NULL. Constant. */
+/* All limits in order, terminated by a row whose name is NULL. Static. */
 MASU_API const masu_limit *masu_limit_table(void);
 
 #endif

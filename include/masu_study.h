@@ -1,5 +1,6 @@
-/* masu_study.h: what no port needs: other ways to the same picture, stages switched off one by one, numbers to look at.
- * Ladders and studies turn these. A part of masu.h, which includes it by masu_knobs.h; all zero is what a port wants. */
+/* masu_study.h: settings for studies, ladders and tests, which a port leaves at zero: alternative
+ * algorithms with the same result, switches for single stages, counters. Part of masu.h, which
+ * includes it through masu_knobs.h. */
 #ifndef MASU_H
 #error "masu_study.h is a part of masu.h: include that"
 #endif
@@ -22,22 +23,22 @@
 
 typedef enum masu_march { MASU_MARCH_WORDS(MASU_WORD_ENUM) } masu_march;
 
-/* Rows as in MASU_PRODUCT_KNOBS, behind which they come. */
+/* Rows as in MASU_PRODUCT_KNOBS. They follow those rows in masu_rung. */
 /* clang-format off */
 #define MASU_STUDY_KNOBS(NUMBER, WORD)                                                             \
     /*     type              name                  min   max   0 is  of use in  unit          */   \
-    /* The picture is the same either way. */                                                      \
+    /* These do not change the image. */                                                           \
     WORD(  masu_switch,      frustum,                                POLYGONS,                     \
-           "Leaves out instances outside of the view; the picture is the same. AUTO: on.",         \
-           "Tests on the host; saves draws.")                                                      \
+           "Frustum culling of instances; the image is the same. AUTO: on.",                       \
+           "Tests on the CPU; saves draws.")                                                       \
     WORD(  masu_switch,      occlusion,                              OCCLUDERS,                    \
-           "Leaves out instances hidden by occluders; the picture is the same. AUTO: on, if the"   \
-           " scene has occluders.",                                                                \
-           "Passes that draw the occluders and test against them; memory: limits.instances.")      \
+           "Occlusion culling of instances; the image is the same. AUTO: on if the scene has"      \
+           " occluders.",                                                                          \
+           "Passes that render the occluders and test against them; memory: limits.instances.")    \
     WORD(  masu_switch,      light_tiles,                            LIGHTS,                       \
-           "Each pixel asks the lights of its 16x16 tile alone; the picture is the same. AUTO:"    \
-           " on, if the scene has any.",                                                           \
-           "A pass over the tiles; saves work at each pixel where lights are many.")               \
+           "Tiled light culling: each pixel evaluates the punctual lights of its 16x16 tile only;" \
+           " the image is the same. AUTO: on if the scene has punctual lights.",                   \
+           "A pass over the tiles; saves shading time in scenes with many lights.")                \
     WORD(  masu_switch,      fuse,                                   UPSCALED,                     \
            "EASU (full) and RCAS in one pass where both run: the same picture. Ignored with"       \
            " deep_color. AUTO: off.",                                                              \
@@ -46,69 +47,81 @@ typedef enum masu_march { MASU_MARCH_WORDS(MASU_WORD_ENUM) } masu_march;
     WORD(  masu_march,       march,                                  SDF,                          \
            "How the SDF is marched. AUTO: the fast way.",                                          \
            "All others took longer where they were measured (docs/design/11-march-measured.md).")  \
-    /* Single stages of traced reflections, and how far they look. */                              \
+    /* Stages of the reflection filter. */                                                         \
     WORD(  masu_switch,      specular_reuse,                         SPECULAR,                     \
-           "Each texel weighs its neighbours' hits too, while its history is short. AUTO: on,"     \
-           " off with temporal.",                                                                  \
-           "A pass of specular_reuse_taps.")                                                       \
+           "Spatial reuse: each texel also weighs the ray hits of its neighbours while its"        \
+           " history is short. AUTO: on; off with temporal.",                                      \
+           "A pass of specular_reuse_taps samples per texel.")                                     \
     WORD(  masu_switch,      specular_temporal,                      SPECULAR,                     \
-           "Temporal accumulation. AUTO: on.",                                                     \
-           "A pass, and images that outlive the frame.")                                           \
+           "Temporal accumulation of reflections. AUTO: on.",                                      \
+           "A pass, and persistent images.")                                                       \
     WORD(  masu_switch,      specular_fine,                          SPECULAR,                     \
-           "A full-resolution history for smooth surfaces, and for 2x2 pixels that are not one"    \
-           " surface; only with specular_temporal. AUTO: on.",                                     \
-           "A pass, and an image that outlives the frame.")                                        \
+           "Full-resolution history for smooth surfaces, and for 2x2 pixels with more than one"    \
+           " surface; requires specular_temporal. AUTO: on.",                                      \
+           "A pass, and a persistent image.")                                                      \
     WORD(  masu_switch,      specular_filter,                        SPECULAR,                     \
-           "The spatial filter, as wide as noise is left. AUTO: on.",                              \
-           "A pass of specular_filter_taps.")                                                      \
+           "Spatial filter whose radius follows the remaining noise. AUTO: on.",                   \
+           "A pass of specular_filter_taps samples per texel.")                                    \
     WORD(  masu_switch,      specular_taa,                           SPECULAR,                     \
-           "Evens out what still flickers; only with specular_temporal. AUTO: on, off with"        \
-           " temporal.",                                                                           \
-           "A pass, and an image that outlives the frame.")                                        \
+           "Second, short temporal accumulation against flicker; requires specular_temporal."      \
+           " AUTO: on; off with temporal.",                                                        \
+           "A pass, and a persistent image.")                                                      \
     NUMBER(uint32_t,         specular_reuse_taps,  1,    16,   8,    SPECULAR,  "",                \
-           "Neighbours that specular_reuse looks at.",                                             \
-           "Time of its pass.")                                                                    \
+           "Neighbours per texel in specular_reuse.",                                              \
+           "Time of its pass grows in proportion.")                                                \
     NUMBER(uint32_t,         specular_filter_taps, 1,    32,   12,   SPECULAR,  "",                \
-           "Neighbours that specular_filter looks at.",                                            \
-           "Time of its pass.")
+           "Neighbours per texel in specular_filter.",                                             \
+           "Time of its pass grows in proportion.")
 /* clang-format on */
 
+/* For tests and studies. Flags: 0 or not 0. */
 typedef struct masu_debug {
-    uint32_t timestamps; /* not 0: GPU time of each pass in masu_stats, with a full barrier around
-                            each pass */
-    uint32_t counters;   /* not 0: SDF evaluations and the like in masu_stats; costs atomics */
-    uint32_t labels; /* not 0: object names and pass labels, where VK_EXT_debug_utils is enabled on
-                        the instance */
-    uint32_t poison; /* not 0: fills all transient image memory with NaN patterns before each frame;
-                        the picture must not change. 1: NaN; 2: infinities; 3: as half floats NaN and 1 in turn */
-    uint32_t casters; /* not 0: culls for the sun as well, with all of the scene in its view, for the
-                         numbers in masu_stats */
+    /* Flag. GPU time of each pass (masu_stats_info.pass_ns). A full barrier surrounds each pass. */
+    uint32_t timestamps;
+    /* Flag. Counts SDF evaluations, rays and more in masu_stats_info. Costs atomic operations. */
+    uint32_t counters;
+    /* Flag. Names objects and passes, if the instance has VK_EXT_debug_utils enabled. */
+    uint32_t labels;
+    /* NaN poisoning: fills all transient image memory before each frame, to detect reads of
+     * undefined memory. The image must not change. 1: NaN; 2: infinities; 3: NaN and 1 alternate as
+     * halves. */
+    uint32_t poison;
+    /* Flag. Culls for one light-space view that contains the whole scene, for masu_view_stats. */
+    uint32_t casters;
     uint32_t ao_full;    /* not 0: ambient occlusion at each pixel instead of each fourth, */
     uint32_t ao_nearest; /* and without the mean over 4x4 texels: both for comparison */
-    uint32_t all_terms;  /* not 0: a march asks for all of the SDF that its tile sees, not only for what
-                            matters to its block: for comparison, the same to the bit */
-    masu_switch share_rays; /* any invocation of a 16x16 tile may march any of its rays, so that none waits long for others;
-                               the same picture. AUTO: on GPUs, where waiting costs more than sharing */
-    uint32_t no_bias; /* not 0: rungs of fewer pixels take the mips of these: for comparison */
-    uint32_t reference; /* not 0: reflections are traced at each pixel, summed up over frames of a
-                           resting scene, weighted exactly and not filtered: the truth after many frames.
-                           A cut begins a new sum */
-    uint32_t exact; /* not 0: full EASU, RCAS and both in one give the same bits on every driver, where inputs have
-                       8 or 10 bits: these become the nearest step, nothing is fused or reordered, divisions are
-                       exact. Three to five times the instructions; without, a pixel in some ten thousands differs */
-    float mip_bias; /* added to the level of detail of textures, -16..16; below 0: finer. What many places in a
-                       pixel are averaged over wants finer ones; log2 of the size undoes a rung's own */
+    /* Flag. Evaluates all SDF primitives of a tile instead of those that its block needs. The
+     * result is bit-identical. */
+    uint32_t all_terms;
+    /* Load balancing: any invocation of a 16x16 tile may trace any ray of the tile. The image is
+     * the same. AUTO: on for GPUs, where idle invocations cost more than the sharing. */
+    masu_switch share_rays;
+    /* Flag. Disables the mip bias of rungs: log2(scale), and 2 levels less with temporal. */
+    uint32_t no_bias;
+    /* Flag. Reflection reference: traces a ray at each pixel, weights it exactly, does not filter,
+     * and averages all frames of an unchanged scene. A cut restarts the average. */
+    uint32_t reference;
+    /* Flag. Full EASU and RCAS give the same bits on every driver for inputs of 8 or 10 bits:
+     * inputs are rounded to the nearest step, no operation is contracted or reordered, divisions
+     * are exact. Costs three to five times the instructions. Without it, one pixel in some ten
+     * thousand differs. */
+    uint32_t exact;
+    /* Added to the level of detail of textures, -16..16; below 0 is sharper. Use a value below 0 if
+     * many jittered samples per pixel are averaged. -log2(scale) cancels the bias of a rung without
+     * temporal. */
+    float mip_bias;
 } masu_debug;
 
-/* Switches off what would be used where the device offers it: to test the other path, or around a
- * driver's fault. */
+/* Leaves device features unused although they are available: to test the fallback, or to work
+ * around a driver bug. Flags: 0 or not 0. */
 typedef struct masu_deny {
-    uint32_t
-        unified_memory; /* not 0: separate blocks per role even where one type could serve all */
-    uint32_t compressed_textures; /* not 0: textures are decoded even where the device takes them
-                                     compressed */
-    uint32_t unorm16; /* not 0: rung.temporal keeps its mean in 16-bit floats even where the device filters
-                         R16G16B16A16_UNORM: a tenth of a step of 8 bits off where it is bright */
+    /* Separate device blocks per role, even if one memory type could serve all. */
+    uint32_t unified_memory;
+    /* Decodes textures, even if the device supports compressed formats. */
+    uint32_t compressed_textures;
+    /* Stores the history of rung.temporal in 16-bit floats, even if the device filters
+     * R16G16B16A16_UNORM. Bright colours then have an error of a tenth of an 8-bit step. */
+    uint32_t unorm16;
 } masu_deny;
 
 #endif

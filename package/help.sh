@@ -1,18 +1,18 @@
-# help.sh: what the programs say of themselves, for man.sh and completion.sh, which read this. Their texts stand
-# once, in the programs.
+# help.sh: functions that parse the programs' --help texts, sourced by man.sh and completion.sh.
+# The help texts are the only source of the manual pages and completions.
 
-# Commands that a help text lists: "NAME" a line.
+# Prints the commands listed in a help text (stdin), one name per line.
 commands_of() {
     sed -n '/^Commands:/,/^$/s/^  \([a-z][a-z-]*\)  .*/\1/p'
 }
 
-# Options: "--NAME", or "-x" beside it, a line.
+# Prints the options in a help text (stdin), "--NAME" and "-x", one per line.
 options_of() {
     grep -oE '^ +(-[a-z], )?--[a-z][a-z0-9-]*' | tr -d ' ' | tr ',' '\n' | sort -u
 }
 
-# Every command of a program as a line of words, the program itself first: "masu", "masu render", "masu study march".
-# $1 the program's path, $2 its name, $3... the words so far.
+# Prints every command of a program, one per line: "masu", "masu render", ...; "masu-lab study rays".
+# $1: path of the program, $2: its name, $3...: the command so far.
 all_commands() {
     path=$1 name=$2
     shift 2

@@ -10,7 +10,7 @@
 #endif
 
 #include "image.h"
-#include "draft.h"
+#include "atomic_file.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -174,17 +174,17 @@ static bool write_straight(const char *path, const void *bytes, size_t count, ch
     return good || fail(error, error_size, "%s: cannot write: %s", path, strerror(why));
 }
 
-/* Without leftovers, whenever it ends: draft.h. */
+/* Without leftovers, whenever it ends: atomic_file.h. */
 static bool write_beside_and_rename(const char *path, const char *target, const void *bytes,
                                     size_t count, char *error, size_t error_size) {
-    masu_draft draft;
-    int problem = masu_draft_open(&draft, target);
+    masu_atomic_file draft;
+    int problem = masu_atomic_file_open(&draft, target);
     if (!problem) {
-        problem = masu_draft_write(&draft, bytes, count);
+        problem = masu_atomic_file_write(&draft, bytes, count);
         if (problem)
-            masu_draft_drop(&draft);
+            masu_atomic_file_discard(&draft);
         else
-            problem = masu_draft_finish(&draft, target);
+            problem = masu_atomic_file_commit(&draft, target);
     }
     return !problem || fail(error, error_size, "%s: cannot write: %s", path, strerror(problem));
 }
@@ -208,9 +208,9 @@ bool masu_file_writable(const char *path, char *error, size_t error_size) {
     if (!may_write(path, &exists, &special, error, error_size)) return false;
     if (special) return true;
     char *resolved = exists ? realpath(path, NULL) : NULL;
-    masu_draft draft;
-    int problem = masu_draft_open(&draft, resolved ? resolved : path);
-    if (!problem) masu_draft_drop(&draft);
+    masu_atomic_file draft;
+    int problem = masu_atomic_file_open(&draft, resolved ? resolved : path);
+    if (!problem) masu_atomic_file_discard(&draft);
     free(resolved);
     return !problem || fail(error, error_size, "%s: cannot write: %s", path, strerror(problem));
 }

@@ -32,8 +32,9 @@
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
-#define MASU_PUSH masu_push_ao
-#include "shared/masu_shared.h"
+#include "push/ao.h"
+#include "shared/ao.h"
+#include "shared/types.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
 #include "shared/pack.glsl"

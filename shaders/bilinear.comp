@@ -8,8 +8,8 @@
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
-#define MASU_PUSH masu_push_bilinear
-#include "shared/masu_shared.h"
+#include "push/bilinear.h"
+#include "shared/types.h"
 #include "shared/output.glsl"
 #include "upscale/place.glsl"
 

@@ -4,8 +4,7 @@
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
-#define MASU_PUSH masu_push_cascade
-#include "shared/masu_shared.h"
+#include "push/cascade.h"
 #include "shared/pack.glsl"
 
 #include "shared/push.glsl"

@@ -10,8 +10,9 @@
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#define MASU_PUSH masu_push_cascade
-#include "shared/masu_shared.h"
+#include "push/cascade.h"
+#include "shared/materials.h"
+#include "shared/shadow.h"
 #include "shared/polygons.glsl"
 
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SHADOW, std140) uniform Shadow

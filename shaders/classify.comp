@@ -12,8 +12,9 @@
 #version 440
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-#define MASU_PUSH masu_push_classify
-#include "shared/masu_shared.h"
+#include "push/classify.h"
+#include "shared/sdf_limits.h"
+#include "shared/types.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
 #include "shared/pack.glsl"

@@ -10,8 +10,10 @@
 #version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_DRAWN_ACCESS
-#define MASU_PUSH masu_push_compact
-#include "shared/masu_shared.h"
+#include "push/compact.h"
+#include "shared/counters.h"
+#include "shared/culling.h"
+#include "shared/types.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
 #include "shared/culling.glsl"

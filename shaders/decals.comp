@@ -8,8 +8,9 @@
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
-#define MASU_PUSH masu_push_decals
-#include "shared/masu_shared.h"
+#include "push/decals.h"
+#include "shared/materials.h"
+#include "shared/sprites.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
 #include "shared/pack.glsl"

@@ -16,8 +16,8 @@
 #ifdef MASU_HALF
 #extension GL_EXT_shader_explicit_arithmetic_types_float16 : require
 #endif
-#define MASU_PUSH masu_push_easu
-#include "shared/masu_shared.h"
+#include "push/easu.h"
+#include "shared/types.h"
 #include "shared/output.glsl"
 #include "shared/unorm.glsl"
 #include "upscale/easu.glsl"

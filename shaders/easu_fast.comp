@@ -11,8 +11,9 @@
 #ifdef MASU_HALF
 #extension GL_EXT_shader_explicit_arithmetic_types_float16 : require
 #endif
-#define MASU_PUSH masu_push_easu_fast
-#include "shared/masu_shared.h"
+#include "push/easu_fast.h"
+#include "shared/counters.h"
+#include "shared/types.h"
 #ifdef MASU_COUNTED
 #include "shared/counters.glsl"
 #endif

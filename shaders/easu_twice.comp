@@ -17,7 +17,7 @@
 #version 440
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-#include "shared/masu_shared.h"
+#include "shared/types.h"
 #include "shared/output.glsl"
 #include "shared/unorm.glsl"
 #include "upscale/easu.glsl"

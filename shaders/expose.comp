@@ -13,8 +13,10 @@
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
-#define MASU_PUSH masu_push_expose
-#include "shared/masu_shared.h"
+#include "push/expose.h"
+#include "shared/counters.h"
+#include "shared/exposure.h"
+#include "shared/frame.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
 #include "shared/guard.glsl"

@@ -8,8 +8,8 @@
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
-#define MASU_PUSH masu_push_fsr1
-#include "shared/masu_shared.h"
+#include "push/fsr1.h"
+#include "shared/types.h"
 #include "shared/output.glsl"
 #include "shared/unorm.glsl"
 #include "upscale/easu.glsl"

@@ -11,7 +11,7 @@
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
-#include "shared/masu_shared.h"
+#include "shared/types.h"
 #include "shared/output.glsl"
 #include "smaa/color.glsl"
 

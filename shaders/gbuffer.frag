@@ -6,8 +6,8 @@
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
-#define MASU_PUSH masu_push_gbuffer
-#include "shared/masu_shared.h"
+#include "push/gbuffer.h"
+#include "shared/materials.h"
 #include "shared/facing.glsl"
 #include "shared/pack.glsl"
 

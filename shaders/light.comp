@@ -13,8 +13,11 @@
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
-#define MASU_PUSH masu_push_light
-#include "shared/masu_shared.h"
+#include "push/light.h"
+#include "shared/counters.h"
+#include "shared/lights.h"
+#include "shared/materials.h"
+#include "shared/sdf_limits.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
 #include "shared/pack.glsl"

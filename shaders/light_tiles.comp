@@ -17,7 +17,9 @@
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
-#include "shared/masu_shared.h"
+#include "shared/counters.h"
+#include "shared/lights.h"
+#include "shared/sdf_limits.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
 #define MASU_LIGHT_TILES_WRITTEN 1

@@ -4,8 +4,9 @@
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
-#define MASU_PUSH masu_push_lines
-#include "shared/masu_shared.h"
+#include "push/lines.h"
+#include "shared/sprites.h"
+#include "shared/types.h"
 #include "shared/push.glsl"
 
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D depth_image;

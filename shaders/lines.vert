@@ -5,8 +5,9 @@
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#define MASU_PUSH masu_push_lines
-#include "shared/masu_shared.h"
+#include "push/lines.h"
+#include "shared/sprites.h"
+#include "shared/types.h"
 #include "shared/push.glsl"
 
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SPRITES, std430) readonly buffer Sprites

@@ -6,8 +6,7 @@
 #version 440
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-#define MASU_PUSH masu_push_march_fragment
-#include "shared/masu_shared.h"
+#include "push/march_fragment.h"
 #include "shared/globals.glsl"
 #include "shared/pack.glsl"
 

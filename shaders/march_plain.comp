@@ -5,8 +5,9 @@
 #version 440
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-#define MASU_PUSH masu_push_march_plain
-#include "shared/masu_shared.h"
+#include "push/march_plain.h"
+#include "shared/counters.h"
+#include "shared/types.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
 #include "shared/pack.glsl"

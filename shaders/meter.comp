@@ -7,7 +7,8 @@
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
-#include "shared/masu_shared.h"
+#include "shared/exposure.h"
+#include "shared/types.h"
 #include "shared/globals.glsl"
 #include "shared/tone.glsl"
 

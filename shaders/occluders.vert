@@ -16,8 +16,9 @@
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#define MASU_PUSH masu_push_occluders
-#include "shared/masu_shared.h"
+#include "push/occluders.h"
+#include "shared/culling.h"
+#include "shared/materials.h"
 #include "shared/globals.glsl"
 #include "shared/culling.glsl"
 

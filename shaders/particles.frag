@@ -5,8 +5,8 @@
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
-#define MASU_PUSH masu_push_particles
-#include "shared/masu_shared.h"
+#include "push/particles.h"
+#include "shared/types.h"
 #include "shared/globals.glsl"
 #include "light/air.glsl"
 

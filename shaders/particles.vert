@@ -8,8 +8,9 @@
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#define MASU_PUSH masu_push_particles
-#include "shared/masu_shared.h"
+#include "push/particles.h"
+#include "shared/sprites.h"
+#include "shared/types.h"
 #include "shared/globals.glsl"
 #include "shared/guard.glsl"
 #ifdef MASU_SUN_MAP

@@ -5,8 +5,9 @@
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
-#define MASU_PUSH masu_push_pick
-#include "shared/masu_shared.h"
+#include "push/pick.h"
+#include "shared/materials.h"
+#include "shared/picking.h"
 #include "shared/pack.glsl"
 
 #include "shared/push.glsl"

@@ -5,8 +5,8 @@
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#define MASU_PUSH masu_push_pick
-#include "shared/masu_shared.h"
+#include "push/pick.h"
+#include "shared/frame.h"
 #include "shared/polygons.glsl"
 
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_FRAME, std140) uniform Frame

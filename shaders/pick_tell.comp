@@ -9,7 +9,8 @@
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
-#include "shared/masu_shared.h"
+#include "shared/picking.h"
+#include "shared/types.h"
 #include "shared/guard.glsl"
 #include "shared/globals.glsl"
 

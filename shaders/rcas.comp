@@ -12,8 +12,8 @@
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
-#define MASU_PUSH masu_push_rcas
-#include "shared/masu_shared.h"
+#include "push/rcas.h"
+#include "shared/types.h"
 #include "shared/output.glsl"
 #include "shared/unorm.glsl"
 #include "upscale/rcas.glsl"

@@ -7,8 +7,9 @@
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
-#define MASU_PUSH masu_push_receiver_mask
-#include "shared/masu_shared.h"
+#include "push/receiver_mask.h"
+#include "shared/culling.h"
+#include "shared/shadow.h"
 #include "shared/globals.glsl"
 #include "shared/culling.glsl"
 #include "shared/pack.glsl"

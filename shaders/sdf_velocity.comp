@@ -23,8 +23,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #define MASU_MOTION 1
-#define MASU_PUSH masu_push_sdf_velocity
-#include "shared/masu_shared.h"
+#include "push/sdf_velocity.h"
+#include "shared/types.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
 #include "shared/pack.glsl"

@@ -25,12 +25,33 @@ STAGES       := comp vert frag
 SHADERS := $(filter-out $(SCENE_SHADERS:%=shaders/%),$(wildcard $(STAGES:%=shaders/*.%)))
 SHADERS += $(wildcard $(STAGES:%=tests/gpu/*.%) $(STAGES:%=tools/view/*.%) $(STAGES:%=examples/*.%))
 
-# What follows from the rows of the frame's tables: bindings and push constants (tables.h), every shader's
-# permutations and how each is compiled. Rows are read by awk: nothing is compiled for it.
+# Derived from the rows of the frame's tables by shell and awk: bindings, push constants, the permutations of every
+# shader and how each is compiled.
 TABLE_ROWS := shaders/tables.sh $(addprefix src/plan/,passes.inc axes.inc buffers.inc)
-$(MADE)/gen/tables.h $(MADE)/gen/permutations.h: $(MADE)/gen/%.h: $(TABLE_ROWS)
+PUSHES     := $(shell shaders/tables.sh pushes)
+TABLE_HEADERS := $(addprefix $(MADE)/gen/,bindings.h push_constants.h $(PUSHES:%=push/%.h))
+
+# Derived files are written only if their content changes; the stamp says that they are up to date. An edited comment in a
+# shader, a shared header or a table therefore compiles no shader: glslang reads copies without comments (gen/glsl).
+GLSL_SOURCES := $(wildcard $(STAGES:%=shaders/*.%) shaders/*/*.h shaders/*/*.glsl)
+GLSL_SOURCES += $(wildcard $(STAGES:%=tests/gpu/*.%) $(STAGES:%=tools/view/*.%) $(STAGES:%=examples/*.%))
+$(MADE)/gen/glsl.stamp: $(TABLE_ROWS) shaders/strip.sh $(GLSL_SOURCES) $(MADE)/gen/glsl.list
 	@mkdir -p $(@D)
-	$(V)shaders/tables.sh $* > $@
+	$(V)shaders/tables.sh headers $(MADE)/gen
+	$(V)shaders/tables.sh permutations > $(MADE)/gen/permutations.new
+	$(V)$(call move_if_changed,$(MADE)/gen/permutations.new,$(MADE)/gen/permutations.h)
+	$(V)shaders/strip.sh $(MADE)/gen/glsl $(GLSL_SOURCES)
+	$(V)touch $@
+$(TABLE_HEADERS) $(MADE)/gen/permutations.h: $(MADE)/gen/glsl.stamp ;
+$(patsubst %,$(MADE)/gen/glsl/%,$(patsubst shaders/%,%,$(GLSL_SOURCES))): $(MADE)/gen/glsl.stamp ;
+
+# The list changes when a source is added or removed.
+$(MADE)/gen/glsl.list: force
+	@mkdir -p $(@D)
+	@echo '$(GLSL_SOURCES)' | cmp -s - $@ || echo '$(GLSL_SOURCES)' > $@
+
+# move_if_changed NEW,FILE
+move_if_changed = if cmp -s $(1) $(2); then rm $(1); else mv $(1) $(2); fi
 
 # Lines NAME_STAGE:FILE:MACRO+MACRO; those with macros have rules of their own. One more: rays for the tests
 # and for masu study, with counters.
@@ -55,18 +76,20 @@ SPIRV         := $(foreach s,$(notdir $(SHADERS)),$(MADE)/gen/$(subst .,_,$(s)).
 SPIRV         += $(foreach b,$(PERMUTATIONS),$(MADE)/gen/$(firstword $(subst :, ,$(b))).opt.spv)
 SPIRV_HEADERS := $(addprefix $(MADE)/gen/,$(sort $(shell grep -rhoE '\b[a-z0-9_]+\.spv\.h' --include='*.[ch]' tools tests examples)))
 # The slow ones first: nothing is compiled before the last of them is there.
-GENERATED     := $(patsubst %,$(MADE)/gen/%.h,blue_noise split_sum smaa_area tables permutations scene_sources packed)
+GENERATED     := $(patsubst %,$(MADE)/gen/%.h,blue_noise split_sum smaa_area permutations scene_sources packed)
+GENERATED     += $(TABLE_HEADERS)
 GENERATED     += $(SPIRV_HEADERS) $(SPIRV)
 
-# glslang's dependency file has no empty rules for what is included; without them, the next make
-# would fail after a file is removed.
+# glslang's dependency file has no empty rules for included files; without them, the next make would fail after a file
+# is removed. Errors are printed with the lines of the source, not of its copy.
 # $(1) the result without .spv (% for any), $(2) its source, $(3) macros or nothing
 define shader_rule
-$(MADE)/gen/$(1).spv: $(2) | $(MADE)/gen/tables.h
+$(MADE)/gen/$(1).spv: $(MADE)/gen/glsl/$(patsubst shaders/%,%,$(2)) | $(TABLE_HEADERS)
 	@mkdir -p $$(@D)
-	@echo "  GLSL    $$<"
-	$$(V)glslangValidator --quiet -V $(SPIRV_TARGET) $(addprefix -D,$(subst +, ,$(3))) -Ishaders -I$(MADE)/gen \
-	    --depfile $$(@:.spv=.d) -o $$@ $$<
+	@echo "  GLSL    $(if $(findstring %,$(1)),$(dir $(2))$$(<F),$(2))"
+	$$(V)compile="glslangValidator --quiet -V $(SPIRV_TARGET) $(addprefix -D,$(subst +, ,$(3)))"; \
+	    $$$$compile -I$(MADE)/gen/glsl -I$(MADE)/gen --depfile $$(@:.spv=.d) -o $$@ $$< > $$@.log || \
+	    { $$$$compile -Ishaders -I$(MADE)/gen -o $$@ $(dir $(2))$$(<F) || cat $$@.log; exit 1; }; rm -f $$@.log
 	$$(V)sed -n 's/^[^:]*: *//p' $$(@:.spv=.d) | tr -s ' ' '\n' | \
 	    sed '1d; /./s/$$$$/:/' >> $$(@:.spv=.d)
 	$$(V)spirv-val $(SPIRV_TARGET) $$@
@@ -118,7 +141,9 @@ $(BUILD)/classes/%/shaders.o: src/device/shaders.c $(BUILD)/classes/%/packed.h $
 # The texts, as string literals: line by line, with what C would read otherwise escaped ('?' because
 # of trigraphs). Strings this long are beyond what C11 promises and within what gcc and clang take;
 # hence the pragmas.
-SCENE_TEXTS := $(wildcard $(addprefix shaders/,$(SCENE_SHADERS)) shaders/*/*.h shaders/*/*.glsl) $(MADE)/gen/tables.h
+SCENE_TEXTS := $(patsubst shaders/%,$(MADE)/gen/glsl/%,$(wildcard $(addprefix shaders/,$(SCENE_SHADERS)) shaders/*/*.h \
+    shaders/*/*.glsl)) $(MADE)/gen/bindings.h \
+    $(foreach p,$(PUSHES),$(if $(filter $(p).%,$(SCENE_SHADERS)),$(MADE)/gen/push/$(p).h))
 
 $(MADE)/gen/scene_sources.h: $(SCENE_TEXTS) $(MADE)/gen/scene_texts.list
 	$(V){ echo '/* Made from $(SCENE_TEXTS). */'; \
@@ -129,7 +154,7 @@ $(MADE)/gen/scene_sources.h: $(SCENE_TEXTS) $(MADE)/gen/scene_texts.list
 	    echo '    const char *text;'; \
 	    echo '} masu_scene_sources[] = {'; \
 	    for f in $(SCENE_TEXTS); do \
-	        name=$${f#shaders/}; echo "    {\"$${name#$(MADE)/gen/}\","; \
+	        name=$${f#$(MADE)/gen/}; echo "    {\"$${name#glsl/}\","; \
 	        sed -e 's/[\\"?]/\\&/g' -e 's/.*/     "&\\n"/' "$$f"; echo '     ""},'; \
 	    done; \
 	    echo '};'; \
@@ -142,11 +167,13 @@ $(MADE)/gen/scene_texts.list: force
 
 # The tables of shaders/brdf and the tile of shaders/noise. Objects wait for what is generated, so these
 # programs have none; the tables take 5 s, and minutes without -O2.
-$(MADE)/tools/make_%: tools/generate/make_%.c $(addprefix shaders/shared/,masu_shared.h floats.h) $(MADE)/gen/tables.h
+$(MADE)/tools/make_%: tools/generate/make_%.c $(wildcard shaders/shared/*.h) $(TABLE_HEADERS)
 	@mkdir -p $(@D)
 	$(V)$(CC) -std=c11 $(WARNINGS) -O2 -ffp-contract=off -Ishaders -Itools -I$(MADE)/gen $< -lm -o $@
 $(MADE)/tools/make_smaa_area: tools/generate/smaa_tables.h
-$(MADE)/gen/split_sum.h $(MADE)/gen/blue_noise.h $(MADE)/gen/smaa_area.h: $(MADE)/gen/%.h: $(MADE)/tools/make_%
+$(MADE)/gen/%.table: $(MADE)/tools/make_%
 	@mkdir -p $(@D)
 	@echo "  TABLE   $@"
 	$(V)$< > $@
+$(MADE)/gen/split_sum.h $(MADE)/gen/blue_noise.h $(MADE)/gen/smaa_area.h: $(MADE)/gen/%.h: $(MADE)/gen/%.table
+	$(V)cmp -s $< $@ || cp $< $@

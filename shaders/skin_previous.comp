@@ -4,8 +4,8 @@
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
-#define MASU_PUSH masu_push_skin_previous
-#include "shared/masu_shared.h"
+#include "push/skin_previous.h"
+#include "shared/types.h"
 #include "shared/push.glsl"
 #include "shared/skinning.glsl"
 

@@ -9,7 +9,7 @@
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
-#include "shared/masu_shared.h"
+#include "shared/trace.h"
 
 layout(local_size_x = 64) in;
 

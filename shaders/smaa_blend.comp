@@ -12,8 +12,8 @@
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
-#define MASU_PUSH masu_push_smaa_blend
-#include "shared/masu_shared.h"
+#include "push/smaa_blend.h"
+#include "shared/types.h"
 #include "shared/globals.glsl"
 #include "shared/output.glsl"
 #include "smaa/color.glsl"

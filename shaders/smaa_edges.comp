@@ -12,8 +12,10 @@
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
-#define MASU_PUSH masu_push_smaa_edges
-#include "shared/masu_shared.h"
+#include "push/smaa_edges.h"
+#include "shared/counters.h"
+#include "shared/smaa.h"
+#include "shared/types.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
 #include "shared/output.glsl"

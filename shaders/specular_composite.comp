@@ -15,8 +15,8 @@
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
-#define MASU_PUSH masu_push_specular_composite
-#include "shared/masu_shared.h"
+#include "push/specular_composite.h"
+#include "shared/types.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
 #include "shared/pack.glsl"

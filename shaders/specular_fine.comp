@@ -14,8 +14,8 @@
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
-#define MASU_PUSH masu_push_specular_fine
-#include "shared/masu_shared.h"
+#include "push/specular_fine.h"
+#include "shared/frame.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
 #include "shared/pack.glsl"

@@ -8,8 +8,9 @@
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
-#define MASU_PUSH masu_push_specular_guide
-#include "shared/masu_shared.h"
+#include "push/specular_guide.h"
+#include "shared/counters.h"
+#include "shared/types.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
 #include "shared/pack.glsl"

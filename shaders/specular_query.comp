@@ -5,8 +5,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_ray_query : require
-#define MASU_PUSH masu_push_specular_query
-#include "shared/masu_shared.h"
+#include "push/specular_query.h"
+#include "shared/counters.h"
+#include "shared/types.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
 #include "shared/pack.glsl"

@@ -11,8 +11,9 @@
 #version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_SURFACE /* any of what is met may have a coat */
-#define MASU_PUSH masu_push_specular_shade
-#include "shared/masu_shared.h"
+#include "push/specular_shade.h"
+#include "shared/lights.h"
+#include "shared/trace.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
 #include "shared/pack.glsl"

@@ -21,8 +21,8 @@
 #version 440
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-#define MASU_PUSH masu_push_specular_temporal
-#include "shared/masu_shared.h"
+#include "push/specular_temporal.h"
+#include "shared/types.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
 #include "shared/pack.glsl"

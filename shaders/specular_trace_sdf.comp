@@ -9,8 +9,9 @@
 #version 440
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-#define MASU_PUSH masu_push_specular_trace_sdf
-#include "shared/masu_shared.h"
+#include "push/specular_trace_sdf.h"
+#include "shared/counters.h"
+#include "shared/types.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
 #include "shared/pack.glsl"

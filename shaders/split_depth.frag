@@ -4,7 +4,7 @@
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
-#include "shared/masu_shared.h"
+#include "shared/types.h"
 
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D depth_image;
 

@@ -15,8 +15,8 @@
 #version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_OUTPUT
-#define MASU_PUSH masu_push_temporal
-#include "shared/masu_shared.h"
+#include "push/temporal.h"
+#include "shared/types.h"
 #include "shared/output.glsl"
 #include "upscale/found.glsl"
 #include "upscale/history.glsl"

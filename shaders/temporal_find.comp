@@ -26,8 +26,8 @@
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
-#define MASU_PUSH masu_push_temporal_find
-#include "shared/masu_shared.h"
+#include "push/temporal_find.h"
+#include "shared/frame.h"
 #include "shared/globals.glsl"
 #include "shared/store.glsl"
 #include "shared/motion.glsl"

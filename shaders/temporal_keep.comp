@@ -6,8 +6,8 @@
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
-#define MASU_PUSH masu_push_temporal_keep
-#include "shared/masu_shared.h"
+#include "push/temporal_keep.h"
+#include "shared/types.h"
 #include "shared/push.glsl"
 #include "shared/store.glsl"
 #include "upscale/corners.glsl"

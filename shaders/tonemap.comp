@@ -10,8 +10,9 @@
 #version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_OUTPUT
-#define MASU_PUSH masu_push_tonemap
-#include "shared/masu_shared.h"
+#include "push/tonemap.h"
+#include "shared/target.h"
+#include "shared/types.h"
 #include "shared/counters.glsl"
 #include "shared/output.glsl"
 #include "shared/encode.glsl"

@@ -22,9 +22,9 @@
 #version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_SURFACE /* any of them may have a coat */
-#define MASU_PUSH masu_push_transparents
+#include "push/transparents.h"
 #define MASU_MAPS_TINTS
-#include "shared/masu_shared.h"
+#include "shared/materials.h"
 #include "shared/globals.glsl"
 #include "shared/facing.glsl"
 #include "shared/pack.glsl"

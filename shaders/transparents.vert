@@ -7,8 +7,9 @@
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#define MASU_PUSH masu_push_transparents
-#include "shared/masu_shared.h"
+#include "push/transparents.h"
+#include "shared/frame.h"
+#include "shared/materials.h"
 #include "shared/polygons.glsl"
 
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_FRAME, std140) uniform Frame

@@ -1,8 +1,7 @@
 #!/bin/bash
-# stability.sh: writes docs/stability.md: what `masu conform --suite extreme` measures on each driver of
-# $DRIVERS (system, lavapipe-25 and swiftshader). Results stay in $BUILD/stability; with KEEP=1 those that are there
-# are not measured again. Exit 1: a case fails on a driver, or a driver is not to be had; the file is written all the
-# same, and says which.
+# stability.sh: writes docs/stability.md from `masu conform --suite extreme`, run on each driver of $DRIVERS
+# (system, lavapipe-25 and swiftshader). Results are kept in $BUILD/stability; KEEP=1 reuses existing ones.
+# Exit 1: a case fails on a driver, or a driver is not available. The file is written anyway and marks failed cases.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
 build=${BUILD:-build}
@@ -12,7 +11,7 @@ drivers=${DRIVERS:-system lavapipe-25 swiftshader}
 failed=0
 mkdir -p "$out"
 
-measure() { # in a shell of its own: what a driver sets, the next does not see
+measure() { # runs in a subshell, so that one driver's environment does not affect the next
     local icd
     icd=$(tests/drivers.sh "$1") || return 1
     [ -z "$icd" ] || export VK_ICD_FILENAMES=$icd VK_DRIVER_FILES=$icd
@@ -33,7 +32,7 @@ for d in $drivers; do
     ! grep -qE '^\| (fail|resource error) ' "$out/$d.md" || failed=1
 done
 
-# One row a case: what was measured on the first, the second, the third.
+# One row per case, with the results of all drivers.
 merged() {
     (cd "$out" && awk -F ' [|] ' -v drivers="$drivers" '
         FNR == 1 { files++ }
@@ -47,52 +46,63 @@ merged() {
     cat << 'END'
 # Stability
 
-Written by `make stability`: the suite of extreme cases (`masu conform --suite extreme`, [conform.md](conform.md)) on
-each driver of the tests. A case passes where what must hold does; limits are a quarter above the worst of what was
-measured on the three, so that what gets worse is seen. Bad numbers stand here as they are: a limit of 30 % is no
-promise of quality, it says how bad the input is for the march.
+This page lists extreme inputs, the conditions that must hold for them, and the values measured on each driver of the
+tests. `make stability` generates it from the suite of extreme cases (`masu conform --suite extreme`,
+[conform.md](conform.md)). A case passes if its conditions hold. Limits are a quarter above the worst value measured on
+the three drivers, so that a regression is detected. A limit of 30 % is therefore no promise of quality; it shows how
+difficult the input is for sphere tracing.
 
-`non_finite`: numbers in depth, radiance and velocity of all frames that are not finite, or depths outside of 0..1.
-`replaced`: values that the guards at stores had to replace. `hitmiss_pct`: pixels in which the picture has something and
-the field in double precision has nothing, or the other way round; `lost_pct`: the latter. `depth_p50`, `depth_p99`:
-distance along the ray against the field's, relative. `steps`: the largest difference of a channel, of 255.
+| metric | meaning |
+|---|---|
+| `non_finite` | number of values in depth, radiance and velocity of all frames that are not finite, or depths outside of 0..1 |
+| `replaced` | number of values that the guards at image stores had to replace |
+| `hitmiss_pct` | percentage of pixels in which the image has a surface and the double-precision field has none, or vice versa |
+| `lost_pct` | percentage of pixels in which only the double-precision field has a surface |
+| `depth_p50`, `depth_p99` | percentiles of the relative error of the distance along the ray |
+| `steps` | largest difference of a colour channel, of 255 |
 
-What is worst here: under 0.01 degrees a slab that is not met in closed form is lost in 28 % of the pixels, whose rays
-use up their 2,048 steps; of a Lipschitz constant of 1,000, waves of a thousandth of the picture, 24 % of the pixels
-hit where there is nothing; the ways `plain`, `fragment` and `seed` of the march, which no rung has by itself, hit
-up to 38 % too much. A field of view goes to 3.1 radians, 177.6 degrees; more is refused by name. The rungs that
-change with each frame leave reflections that have gathered for 16 frames where those at rest have for 32: 48 of 255.
+The worst results:
 
-What else is extreme, and which test has it:
+- At a grazing angle of 0.01 degrees, a slab without a closed-form intersection is lost in 28 % of the pixels: their
+  rays use all of their 2,048 steps.
+- With a Lipschitz constant of 1,000 (waves of a thousandth of the image), 24 % of the pixels hit a surface where none
+  is.
+- With a different rung in each frame, reflections have accumulated over 16 frames instead of 32, and differ by up to 48
+  of 255.
 
-| input | what must hold | test |
+The largest field of view is 3.1 radians (177.6 degrees); a larger one is an error with a message that names it.
+
+Other extreme inputs have their own tests:
+
+| input | condition | test |
 |---|---|---|
-| a scene of an SDF at 1e6 and 1e7 units: coverage, depth, material, velocity | as at the origin | `test_far` |
-| parameters of an SDF of 1e30, 1e-40, NaN | finite pictures; what is not finite is refused by name | `test_stiff` |
-| deep zooms to 1e-6, cameras in and on solids, sizes of zero, equal surfaces | the table of [the march](design/11-march-measured.md), `make stiff` | `test_stiff` |
-| fields of NaN and infinity | a miss, and nothing beside it | `test_extremes` |
-| roughness, all of it, against double precision | a bound on the lobe's error | `test_brdf`, `test_vndf` |
-| each input image and buffer of each pass full of NaN, infinities, denormals, huge, negative | finite pictures; none keeps it. SwiftShader, which looks at no bounds, runs all but the reflections' inputs: of those one still ends the process | `test_poison` |
-| images of more columns or rows than a frame draws, what lies beyond NaN in one component alone; down to 1x1 | the picture of a renderer of that size | `test_resize` |
-| a mirror of textures at rest, 64 frames | the same to the bit; rougher surfaces take new rays in each frame | `test_specular_textures` |
-| the n-th Vulkan call fails, in init, load, resize; a device that is lost; a block one byte short | a named error, nothing left behind | `test_failures`, `test_faults` |
-| each limit of the description, and one over | refused by name, with the limit | `test_desc` |
-| rungs, cameras, scenes, sizes at random, 20,000 frames | memory flat, pictures finite | `make soak` |
+| an SDF scene at 1e6 and 1e7 units: coverage, depth, material, velocity | same as at the origin | `test_far` |
+| SDF parameters of 1e30, 1e-40, NaN | finite images; an error names values that are not finite | `test_stiff` |
+| deep zooms to 1e-6, cameras in and on solids, sizes of zero, equal surfaces | the table of [sphere tracing](design/05-sphere-tracing.md), `make stiff` | `test_stiff` |
+| fields of NaN and infinity | a miss, without effect on other pixels | `test_extremes` |
+| the whole range of roughness, against double precision | bounded error of the lobe | `test_brdf`, `test_vndf` |
+| each input image and buffer of each pass filled with NaN, infinities, denormals, huge and negative values | finite images, and no pass keeps the values. On SwiftShader, which does not check bounds, all but the inputs of reflections are tested: one of these still crashes the process | `test_poison` |
+| images with more columns or rows than a frame draws, down to 1x1; the rest is NaN in one component | same as the image of a renderer of that size | `test_resize` |
+| a static view of textured mirrors, 64 frames | bit-identical; rougher surfaces use new rays in each frame | `test_specular_textures` |
+| failure of the n-th Vulkan call in init, load and resize; device loss; a memory block that is one byte too small | an error with a name, and no leaks | `test_failures`, `test_faults` |
+| each limit of `masu_desc`, and one above it | an error that names the limit | `test_desc` |
+| random rungs, cameras, scenes and sizes, 20,000 frames | constant memory, finite images | `make soak` |
 
-Memory that a driver takes: on Mesa 22.3.6 the process grows by 0.9 MB with each frame of `test_sky`, and by nothing in
-`test_live` and `test_velocity`. It is the driver: frames recorded once and submitted again and again, with no call of
-the library in between, grow by 930 KB each; the soak, a third of whose frames are of that scene, by 312 KB. All of it
-belongs to one dispatch, that of `light` with an analytic sky: alone it takes 0.81 MB a frame, any other pass alone
-nothing. What piles up are blocks of 32 KB that the driver's queue thread takes and keeps until the device is gone.
-What it is in the shader has not been found. The newer lavapipe does not grow (0.02 KB a frame). SwiftShader takes
-memory by leaps, of which too short a soak fails: over 900 frames 75 KB a frame, the bare loop 93 KB.
+**Driver memory.** On Mesa 22.3.6 the process grows by 0.9 MB per frame of `test_sky`, and not at all in `test_live` and
+`test_velocity`. The driver causes this: frames that are recorded once and submitted repeatedly, without calls of the
+library, grow by 930 KB each. The soak test, in which a third of the frames use that scene, grows by 312 KB. A single
+dispatch is responsible: `light` with an analytic sky. By itself it grows by 0.81 MB per frame; every other pass by
+itself does not grow. The driver's queue thread allocates blocks of 32 KB and keeps them until the device is destroyed.
+The cause in the shader is unknown. The newer lavapipe does not grow (0.02 KB per frame). SwiftShader allocates memory
+in large steps, which fails a soak test that is too short: over 900 frames it grows by 75 KB per frame, and the
+submission loop by 93 KB.
 
 ## Cases
 END
     echo
     for d in $drivers; do echo "- \`$d\`: $(head -n 1 "$out/$d.driver")"; done
     echo
-    printf '| case | input | what must hold |'
+    printf '| case | input | condition |'
     printf ' %s |' $drivers
     printf '\n|---|---|---|'
     for d in $drivers; do printf '%s' '---|'; done

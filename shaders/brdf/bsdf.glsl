@@ -36,6 +36,7 @@
 #ifndef MASU_BSDF_GLSL
 #define MASU_BSDF_GLSL
 
+#include "shared/lookup_tables.h"
 #include "brdf/ggx.glsl"
 #include "brdf/tables.glsl"
 #include "shared/guard.glsl"

@@ -5,7 +5,7 @@
 #ifndef MASU_GGX_GLSL
 #define MASU_GGX_GLSL
 
-#include "shared/masu_shared.h"
+#include "shared/lookup_tables.h"
 
 /* Below 0.045 the square of alpha leaves what half floats can hold (Filament, section 4.4); the
  * tables begin there. */

@@ -7,7 +7,8 @@
 #define MASU_TABLES_GLSL
 
 #include "shared/guard.glsl"
-#include "shared/masu_shared.h"
+#include "shared/lookup_tables.h"
+#include "shared/types.h"
 
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_TABLES, std430) readonly buffer Tables
 {

@@ -11,6 +11,8 @@
 #ifndef MASU_AMBIENT_GLSL
 #define MASU_AMBIENT_GLSL
 
+#include "shared/sky.h"
+
 vec3 masu_glow_color()
 {
     return vec3(frame.irradiance[0].w, frame.irradiance[1].w, frame.irradiance[2].w);

@@ -19,6 +19,7 @@
 #ifndef MASU_LIGHTS_GLSL
 #define MASU_LIGHTS_GLSL
 
+#include "shared/lights.h"
 #include "shared/guard.glsl"
 
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_LIGHTS, std430) readonly buffer Lights

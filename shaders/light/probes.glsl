@@ -14,6 +14,7 @@
 #ifndef MASU_LIGHT_PROBES_GLSL
 #define MASU_LIGHT_PROBES_GLSL
 
+#include "shared/probes.h"
 #include "shared/guard.glsl"
 
 #ifdef MASU_PROBES_WRITE

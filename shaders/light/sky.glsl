@@ -12,6 +12,8 @@
 #ifndef MASU_SKY_GLSL
 #define MASU_SKY_GLSL
 
+#include "shared/sky.h"
+
 #extension GL_EXT_control_flow_attributes : require
 
 layout(constant_id = 1) const bool masu_has_sky = false;

@@ -19,6 +19,8 @@
 #ifndef MASU_SUN_MAP_GLSL
 #define MASU_SUN_MAP_GLSL
 
+#include "shared/shadow.h"
+
 #extension GL_EXT_control_flow_attributes : require
 
 #include "shared/globals.glsl"

@@ -18,7 +18,7 @@
 #ifndef MASU_SEQUENCE_GLSL
 #define MASU_SEQUENCE_GLSL
 
-#include "shared/masu_shared.h"
+#include "shared/lookup_tables.h"
 
 /* Every bit of x changes half of the result's (C. Wellons, "Prospecting for Hash Functions", 2018:
  * lowbias32). A bijection; 0 is 0. */

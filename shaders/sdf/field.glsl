@@ -8,6 +8,8 @@
 #ifndef MASU_FIELD_GLSL
 #define MASU_FIELD_GLSL
 
+#include "shared/frame.h"
+
 #ifdef MASU_TILES_WRITTEN
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_TILES, std430) buffer Tiles
 {

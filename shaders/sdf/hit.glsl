@@ -4,6 +4,7 @@
 #ifndef MASU_HIT_GLSL
 #define MASU_HIT_GLSL
 
+#include "shared/counters.h"
 #include "sdf/trace.glsl"
 
 /* A hit becomes texels of the G-buffer; `known`: of half-space `part`. Returns its depth. */

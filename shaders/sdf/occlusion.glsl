@@ -30,6 +30,9 @@
 #ifndef MASU_OCCLUSION_GLSL
 #define MASU_OCCLUSION_GLSL
 
+#include "shared/counters.h"
+#include "shared/sdf_limits.h"
+
 /* A surface point. */
 struct lit_point {
     vec3 place;   /* relative to the eye */

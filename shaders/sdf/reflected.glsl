@@ -29,6 +29,8 @@
 #ifndef MASU_REFLECTED_GLSL
 #define MASU_REFLECTED_GLSL
 
+#include "shared/sdf_limits.h"
+
 #define MOST_LISTED 30
 #define MASU_OWN_PARTS (INVOCATIONS * MOST_LISTED / 2)
 #define MASU_OWN_PARTS_HALVES

@@ -9,6 +9,8 @@
 #ifndef MASU_SPANS_GLSL
 #define MASU_SPANS_GLSL
 
+#include "shared/sdf_limits.h"
+#include "shared/types.h"
 #include "sdf/field.glsl"
 
 #if MASU_SDF_BLOCK_WORDS > 0

@@ -14,6 +14,8 @@
 #ifndef MASU_TRACE_GLSL
 #define MASU_TRACE_GLSL
 
+#include "shared/counters.h"
+#include "shared/sdf_limits.h"
 #include "sdf/field.glsl"
 
 /* What an includer does where the next sample, at t, may not be behind this one. */

@@ -9,6 +9,9 @@
 #ifndef MASU_COUNTERS_GLSL
 #define MASU_COUNTERS_GLSL
 
+#include "shared/counters.h"
+#include "shared/types.h"
+
 layout(constant_id = 0) const bool masu_counting = false;
 
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_COUNTERS, std430) buffer Counters

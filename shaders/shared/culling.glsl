@@ -5,6 +5,9 @@
 #ifndef MASU_CULLING_GLSL
 #define MASU_CULLING_GLSL
 
+#include "shared/culling.h"
+#include "shared/types.h"
+
 #ifndef MASU_DRAWN_ACCESS
 #define MASU_DRAWN_ACCESS readonly
 #endif

@@ -5,6 +5,8 @@
 #ifndef MASU_ENCODE_GLSL
 #define MASU_ENCODE_GLSL
 
+#include "shared/target.h"
+
 vec3 masu_encoded(vec3 y, float white)
 {
     if (masu_encoding == MASU_OUTPUT_SRGB) {

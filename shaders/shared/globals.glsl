@@ -6,6 +6,8 @@
 #ifndef MASU_GLOBALS_GLSL
 #define MASU_GLOBALS_GLSL
 
+#include "shared/frame.h"
+
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_FRAME, std140) uniform Frame
 {
     masu_frame_uniforms frame;

@@ -13,6 +13,7 @@
 #ifndef MASU_MAPS_GLSL
 #define MASU_MAPS_GLSL
 
+#include "shared/materials.h"
 #include "shared/facing.glsl"
 
 /* Flags of the material, layers of its maps, how much more often than its colour the others repeat: the

@@ -14,6 +14,7 @@
 #ifndef MASU_MOTION_GLSL
 #define MASU_MOTION_GLSL
 
+#include "shared/frame.h"
 #include "shared/guard.glsl"
 
 /* sdf/field.glsl declares it where the field itself needs it. */

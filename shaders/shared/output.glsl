@@ -19,7 +19,7 @@
 #ifndef MASU_OUTPUT_GLSL
 #define MASU_OUTPUT_GLSL
 
-#include "shared/masu_shared.h"
+#include "shared/target.h"
 #include "shared/store.glsl"
 
 #if defined(MASU_TEN)

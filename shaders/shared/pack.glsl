@@ -42,6 +42,7 @@
 #ifndef MASU_PACK_GLSL
 #define MASU_PACK_GLSL
 
+#include "shared/materials.h"
 #include "shared/guard.glsl"
 
 const float masu_emissive_range = 16.0;

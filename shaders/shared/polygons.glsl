@@ -6,6 +6,7 @@
 #ifndef MASU_POLYGONS_GLSL
 #define MASU_POLYGONS_GLSL
 
+#include "shared/materials.h"
 #include "shared/pack.glsl"
 
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_INSTANCES, std430) readonly buffer Instances

@@ -1,11 +1,11 @@
 /*
- * push.glsl: the push constants of a pass: sizes, and where its row in src/plan/passes.inc tells it more, that:
- * whoever includes this says by MASU_PUSH which struct of tables.h it is.
+ * push.glsl: the push-constant block: `pc`, common to all passes, and `push`, of the pass itself. A
+ * shader whose row in src/plan/passes.inc has PUSH(...) includes "push/NAME.h" first.
  */
 #ifndef MASU_PUSH_GLSL
 #define MASU_PUSH_GLSL
 
-#include "shared/masu_shared.h"
+#include "shared/push.h"
 
 layout(push_constant) uniform Push
 {

@@ -14,6 +14,8 @@
 #ifndef MASU_SKINNING_GLSL
 #define MASU_SKINNING_GLSL
 
+#include "shared/types.h"
+
 layout(local_size_x = 64) in;
 
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SKIN_VERTICES, std430) readonly buffer SkinVertices

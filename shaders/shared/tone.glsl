@@ -13,7 +13,7 @@
 #ifndef MASU_TONE_GLSL
 #define MASU_TONE_GLSL
 
-#include "shared/masu_shared.h"
+#include "shared/exposure.h"
 #include "shared/guard.glsl"
 
 /* Radiance as the curves take it: 1e4 is far past white, and keeps their squares in range. */

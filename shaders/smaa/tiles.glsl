@@ -8,6 +8,8 @@
 #ifndef MASU_SMAA_TILES_GLSL
 #define MASU_SMAA_TILES_GLSL
 
+#include "shared/smaa.h"
+#include "shared/types.h"
 #include "shared/globals.glsl"
 
 #ifndef MASU_SMAA_TILES_ACCESS

@@ -8,6 +8,8 @@
 #ifndef MASU_SMAA_WEIGHTS_GLSL
 #define MASU_SMAA_WEIGHTS_GLSL
 
+#include "shared/smaa.h"
+#include "shared/types.h"
 #include "smaa/tiles.glsl"
 
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SMAA_AREA, std430) readonly buffer SmaaArea

@@ -13,6 +13,7 @@
 #ifndef MASU_SPECULAR_GUIDE_GLSL
 #define MASU_SPECULAR_GUIDE_GLSL
 
+#include "shared/lookup_tables.h"
 #include "shared/globals.glsl"
 #include "shared/pack.glsl"
 #include "noise/sequence.glsl"

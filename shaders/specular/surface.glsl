@@ -5,6 +5,7 @@
 #ifndef MASU_SPECULAR_SURFACE_GLSL
 #define MASU_SPECULAR_SURFACE_GLSL
 
+#include "shared/materials.h"
 #include "shared/pack.glsl"
 
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D albedo_image;

@@ -5,6 +5,7 @@
 #ifndef MASU_SPECULAR_TILES_GLSL
 #define MASU_SPECULAR_TILES_GLSL
 
+#include "shared/types.h"
 #include "shared/globals.glsl"
 
 #ifndef MASU_SPECULAR_TILES_ACCESS

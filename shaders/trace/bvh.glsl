@@ -38,7 +38,7 @@
 #extension GL_EXT_shader_integer_mix : require /* a part of GLSL from version 450 on only */
 
 #include "shared/guard.glsl"
-#include "shared/masu_shared.h"
+#include "shared/trace.h"
 
 #ifndef MASU_TRACE_OPAQUE
 #define MASU_TRACE_OPAQUE(triangle, instance, barycentrics, d) true

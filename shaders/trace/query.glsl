@@ -14,7 +14,7 @@
 #define MASU_TRACE_QUERY_GLSL
 
 #include "shared/guard.glsl"
-#include "shared/masu_shared.h"
+#include "shared/trace.h"
 
 #ifndef MASU_TRACE_OPAQUE
 #define MASU_TRACE_OPAQUE(triangle, instance, barycentrics, d) true

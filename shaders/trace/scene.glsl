@@ -15,7 +15,7 @@
 #ifndef MASU_TRACE_SCENE_GLSL
 #define MASU_TRACE_SCENE_GLSL
 
-#include "shared/masu_shared.h"
+#include "shared/trace.h"
 
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_TRACE, std430) readonly buffer Trace
 {

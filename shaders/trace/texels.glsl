@@ -8,6 +8,9 @@
 #ifndef MASU_TRACE_TEXELS_GLSL
 #define MASU_TRACE_TEXELS_GLSL
 
+#include "shared/materials.h"
+#include "shared/trace.h"
+
 #extension GL_EXT_control_flow_attributes : require
 
 #ifdef MASU_TRACE_TEXTURES

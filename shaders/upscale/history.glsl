@@ -10,6 +10,7 @@
 #ifndef MASU_HISTORY_GLSL
 #define MASU_HISTORY_GLSL
 
+#include "shared/frame.h"
 #include "shared/encode.glsl"
 #include "upscale/mean.glsl"
 

@@ -1,7 +1,7 @@
 /* probes_lookup.comp: shaders/light/probes.glsl at given points, for test_probes.c. */
 #version 440
 #extension GL_GOOGLE_include_directive : require
-#include "shared/masu_shared.h"
+#include "shared/types.h"
 #include "light/probes.glsl"
 
 layout(local_size_x = 64) in;

@@ -7,7 +7,7 @@
 #include "support/floats.h"
 #include "support/shadow.h"
 
-#include "bench/study/ao.h"
+#include "support/ao.h"
 #include "image.h"
 #include "scene/scene.h"
 

@@ -205,7 +205,6 @@ static void what_is_planted_has_its_verdict(void **state) {
                 "{\"name\": \"least\", \"at_least\": {\"specular_rays\": 1}},"
                 "{\"name\": \"warns\", \"counts\": {\"triangles\": {\"warn\": 3, \"fail\": 1000}}},"
                 "{\"name\": \"scene\", \"scene\": \"none\"},"
-                "{\"name\": \"march\", \"rung\": {\"march\": \"plain\"}},"
                 "{\"name\": \"settles\", \"size\": [16, 16], \"governed\": {\"target_ms\": 20, "
                 "\"frames\": 60,"
                 " \"told\": {\"fixed_ms\": 1, \"load_ms\": 100}, \"settles\": [0, 1]}},"
@@ -218,7 +217,6 @@ static void what_is_planted_has_its_verdict(void **state) {
     cli_said("quality warning  warns");
     cli_said("fail             scene");
     cli_said("none.masu");
-    cli_said("fail             march");
     cli_said("fail             settles");
     cli_said("after 60 frames the rung is");
     cli_said("not supported    rays");

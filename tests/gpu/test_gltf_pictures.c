@@ -9,7 +9,7 @@
 #include "reference/brdf.h"
 #include "split_sum.h"
 
-#include "bench/study/shade.h"
+#include "measure/shade.h"
 #include "image.h"
 #include "scene/scene.h"
 

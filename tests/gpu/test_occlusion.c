@@ -9,7 +9,7 @@
 #include "support/floats.h"
 #include "support/files.h"
 
-#include "bench/measure/truth.h"
+#include "measure/truth.h"
 #include "reference/occlusion.h"
 
 #include <math.h>

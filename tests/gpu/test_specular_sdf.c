@@ -7,7 +7,7 @@
 #include "support/reflect.h"
 #include "support/stiff.h"
 
-#include "bench/measure/truth.h"
+#include "measure/truth.h"
 #include "scene/scene.h"
 #include "reference/vec.h"
 

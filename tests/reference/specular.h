@@ -15,7 +15,7 @@
 #ifndef MASU_REF_SPECULAR_H
 #define MASU_REF_SPECULAR_H
 
-#include "bench/measure/view.h"
+#include "measure/view_uniforms.h"
 #include "triangles.h"
 
 typedef struct masu_ref_mirror {

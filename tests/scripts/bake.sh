@@ -131,7 +131,7 @@ wrong ':2:' '{"models": [],
   oops}'
 wrong ':1:.*duplicate' '{"exposure": 1, "exposure": 2}'
 wrong ': expected an object' '[]'
-wrong ': shows nothing' '{}'
+wrong ': empty scene' '{}'
 wrong ': modles: unknown key' '{"modles": []}'
 wrong ': models: expected an array' '{"models": {}}'
 wrong ': models\[0\].scael: unknown key' '{"models": [{"file": "a.obj", "scael": 2}]}'
@@ -142,9 +142,9 @@ wrong ': models\[0\].scale\[2\]: expected a number, found a string' \
     "{\"models\": [$sphere, \"scale\": [1, 1, \"a\"]}]}"
 wrong ': models\[0\].translate: expected three numbers, found 2' \
     "{\"models\": [$sphere, \"translate\": [1, 1]}]}"
-wrong ': models\[0\]: give either "rotate" or "rotate_y"' \
+wrong ': models\[0\]: expected either "rotate" or "rotate_y", found both' \
     "{\"models\": [$sphere, \"rotate\": [1, 2, 3], \"rotate_y\": 1}]}"
-wrong ': models\[0\].fit: give either' \
+wrong ': models\[0\].fit: expected either' \
     "{\"models\": [$sphere, \"fit\": {\"center\": [0,0,0], \"base\": [0,0,0]}}]}"
 wrong ': models\[0\].material.roughness: expected a number from 0 to 1, found 2' \
     "{\"models\": [$sphere, \"material\": {\"roughness\": 2}}]}"
@@ -162,8 +162,8 @@ wrong ': camera.keys\[0\]: position and target are the same' "{\"models\": [$sph
 wrong ': camera.keys\[1\]: time must be later' "{\"models\": [$sphere}],
     \"camera\": {\"keys\": [{\"time\": 1, \"position\": [1,1,1], \"target\": [0,1,1]},
                             {\"time\": 1, \"position\": [1,1,1], \"target\": [0,1,1]}]}}"
-wrong ': sun.direction: has no length' "{\"models\": [$sphere}], \"sun\": {\"direction\": [0,0,0]}}"
-wrong ': sun: give either' \
+wrong ': sun.direction: expected a vector that is not zero' "{\"models\": [$sphere}], \"sun\": {\"direction\": [0,0,0]}}"
+wrong ': sun: expected either' \
     "{\"models\": [$sphere}], \"sun\": {\"direction\": [0,1,0], \"azimuth\": 3}}"
 for bad in '"cascades": 0' '"cascades": 5' '"cascades": -1' '"resolution": 0' '"resolution": 15' \
     '"resolution": 8193' '"resolution": -64' '"distance": 0' '"distance": -3' '"distance": 1e10' \
@@ -189,13 +189,13 @@ wrong ': sdf: needs "source"' '{"sdf": {"bounds": [[0,0,0],[1,1,1]]}}'
 bounds='"bounds": [[-1,-1,-1],[1,1,1]]'
 wrong ': sdf.lipschitz: expected a number from 0.001' \
     "{\"sdf\": {\"source\": \"good.glsl\", $bounds, \"lipschitz\": 0}}"
-wrong ': sdf.params\[0\].name: must be letters' \
+wrong ': sdf.params\[0\].name: expected at most' \
     "{\"sdf\": {\"source\": \"good.glsl\", $bounds,
       \"params\": [{\"name\": \"a b\", \"value\": 0}]}}"
 wrong ': sdf.params\[0\]: value 3 is not between min 0 and max 1' \
     "{\"sdf\": {\"source\": \"good.glsl\", $bounds,
       \"params\": [{\"name\": \"a\", \"value\": 3, \"min\": 0, \"max\": 1}]}}"
-wrong ': sdf.params\[1\]: a second parameter would be called MASU_PARAM_AB' \
+wrong ': sdf.params\[1\]: another parameter has the same constant MASU_PARAM_AB' \
     "{\"sdf\": {\"source\": \"good.glsl\", $bounds,
       \"params\": [{\"name\": \"ab\", \"value\": 0}, {\"name\": \"AB\", \"value\": 0}]}}"
 wrong ': sdf.shadows: expected an object, found true' \
@@ -296,10 +296,10 @@ two=$(printf '%s%s' "$positions" "$nan")
 sed -e 's/"count": 3/"count": 6/; s/"byteLength": 36/"byteLength": 72/g' \
     -e "s|base64,.*\"}|base64,$two\"}|" "$folder/nodes.gltf" > "$folder/half.gltf"
 accepts "$folder/half.gltf" "${x[@]}" --bare
-says stderr 'half.gltf: 1 of 2 triangles left out, a vertex is not finite (in 1 meshes: "triangle")'
+says stderr 'half.gltf: 1 of 2 triangles skipped: a vertex is not finite (in 1 meshes: "triangle")'
 says stdout ' 3 vertices, 1 triangles'
 sed "s|base64,.*\"}|base64,$nan\"}|" "$folder/nodes.gltf" > "$folder/nan.gltf"
-refuses 1 'nan.gltf: it holds no triangles that could be drawn; 1 of 1' "$folder/nan.gltf" "${x[@]}"
+refuses 1 'nan.gltf: no triangles to draw; 1 of 1' "$folder/nan.gltf" "${x[@]}"
 
 # Nodes that show the same set of meshes share one masu mesh; another set with one of them does not.
 geometry() {
@@ -360,7 +360,7 @@ done
 # ---- hostile models ------------------------------------------------------------------------------
 
 [ -d $models/invalid ] || fail "$models is missing (package assimp-testmodels)"
-. tools/gallery/outcome.sh
+. tests/outcome.sh
 tried=0 least=150
 [ "${NESTED:-}" = '' ] || least=15
 : > "$folder/outcomes"

@@ -85,14 +85,14 @@ refuses 'lights\[0\].colour: unknown key' "{$point, \"colour\": [1, 1, 1]}"
 refuses 'color' "{$point, \"color\": [1, -1, 1]}"
 refuses 'range: expected a number from 0' "{$point, \"range\": -1}"
 refuses 'radius: expected a number from' "{$point, \"radius\": 0}"
-refuses 'above 1e+09' "{$point, \"color\": [1, 1, 1e6], \"intensity\": 1e6}"
-refuses 'a point has no "outer"' "{$point, \"outer\": 10}"
-refuses 'a spot needs a "direction"' '{"type": "spot", "position": [1, 2, 3]}'
+refuses 'at most 1e+09' "{$point, \"color\": [1, 1, 1e6], \"intensity\": 1e6}"
+refuses '"outer" is only allowed for spot lights' "{$point, \"outer\": 10}"
+refuses 'a spot light needs a "direction"' '{"type": "spot", "position": [1, 2, 3]}'
 refuses 'outer: expected a number from 0 to 180' \
     '{"type": "spot", "position": [1, 2, 3], "direction": [0, 1, 0], "outer": 181}'
 refuses 'inner: expected a number from 0 to 30' \
     '{"type": "spot", "position": [1, 2, 3], "direction": [0, 1, 0], "outer": 30, "inner": 31}'
-refuses 'instance: no instance is called "bus"' "{$point, \"instance\": \"bus\"}"
+refuses 'instance: no instance is named "bus"' "{$point, \"instance\": \"bus\"}"
 many="{$point}"
 for ((i = 0; i < 12; i++)); do many="$many, $many"; done
 bakes "$box" "$many"
@@ -123,7 +123,7 @@ cat > "$folder/lamps.gltf" << END
 END
 # The beam is of the body, in its space; a half turn about y points it along +z.
 bakes '{"file": "lamps.gltf"}' ''
-grep -q '1 lights are neither points nor spots' "$folder/err" || fail "no word of the sun"
+grep -q '1 lights are neither point nor spot lights' "$folder/err" || fail "no word of the sun"
 is 1 '0 3 0 5 10 5 0 0.01 0 0 0 | 0 |0 0 | -1 '
 is 0 '1 0 2 10 1 1 1 0.01 0 0 1 | 1 |0.2 0.4 | 0 '
 # Placed: what stands alone moves, what is carried stays in its instance's space.

@@ -137,14 +137,14 @@ bakes "$folder/model/../model/a.gltf" || fail "by another way: $(cat "$folder/st
 for uri in ../other/xyz.bin "$folder/other/xyz.bin" link.bin %2e%2e/other/xyz.bin; do
     gltf "$uri" a.gltf
     bakes a.gltf && fail "$uri: read"
-    says "lies outside of the model's folder" "$uri"
+    says "is outside of the model's folder" "$uri"
     bakes a.gltf --texture-path "$folder/slow:$folder/other" || fail "$uri, named: $(cat "$folder/stderr")"
 done
 
 printf 'newmtl red\nKd 1 0 0\n' > ../other/x.mtl
 printf 'mtllib ../other/x.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n' > a.obj
 bakes a.obj || fail "a.obj: $(cat "$folder/stderr")"
-says "x.mtl lies outside of the model's folder: left out" a.obj
+says "x.mtl is outside of the model's folder: ignored" a.obj
 mv "$folder/out/x.masu" "$folder/out/plain.masu"
 bakes a.obj --texture-path "$folder/other" || fail "a.obj, named: $(cat "$folder/stderr")"
 ! cmp -s "$folder/out/x.masu" "$folder/out/plain.masu" || fail "a.obj: its colour is the same with its materials and without"
@@ -162,7 +162,7 @@ bakes b.obj || fail "b.obj: $(cat "$folder/stderr")"
 rm pic.ppm
 obj ../other/pic.ppm
 bakes b.obj || fail "b.obj: $(cat "$folder/stderr")"
-says "pic.ppm: lies outside of its model's folder" b.obj
+says "pic.ppm: is outside of its model's folder" b.obj
 bakes b.obj --texture-path "$folder/other" || fail "b.obj, named: $(cat "$folder/stderr")"
 [ ! -s "$folder/stderr" ] || fail "b.obj, named: $(cat "$folder/stderr")"
 

@@ -58,7 +58,7 @@ END
 for from in outer b/outer; do
     scene '{"models": [{"file": "camera.gltf", "name": "b", "translate": [1, 2, 3]}], "camera": {"from": "'$from'"}}'
     accepts "$json" "${x[@]}" --stats "$folder/stats.json"
-    says stderr 'camera.gltf: 1 cameras without a perspective, which are not read (first: inner)'
+    says stderr 'camera.gltf: 1 cameras without perspective, which are not supported (first: inner)'
     says stats.json '"b/outer"'
     cp "$folder/out/x.masu" "$folder/out/$(basename $from).$(dirname $from | tr . x).masu"
 done
@@ -70,8 +70,8 @@ cmp "$folder/out/outer.x.masu" "$folder/out/x.masu" || fail "a camera is not whe
 scene '{"models": [{"file": "camera.gltf"}], "camera": {"from": "inner"}}'
 run "$json" "${x[@]}"
 [ $code = 1 ] || fail "a camera that there is not: exit code $code"
-says stderr ': camera.from: no model has a camera "inner"; there are: "outer"'
-wrong ': camera: give either "keys" or "from"' "{\"models\": [$sphere}],
+says stderr ': camera.from: no model has a camera "inner"; available: "outer"'
+wrong ': camera: expected either "keys" or "from", found both' "{\"models\": [$sphere}],
     \"camera\": {\"from\": \"a\", \"keys\": [{\"position\": [0,0,0], \"target\": [1,1,1]}]}}"
 
 # ---- drop ----------------------------------------------------------------------------------------
@@ -97,17 +97,17 @@ wrong ': models\[0\].drop: expected' "{\"models\": [$sphere, \"drop\": \"down\"}
 sed 's/"primitives": \[/"primitives": [{"attributes": {"POSITION": 0}, "mode": 0}, {"attributes": {"POSITION": 0}, "mode": 1}, /' \
     "$folder/camera.gltf" > "$folder/points.gltf"
 accepts "$folder/points.gltf" "${x[@]}"
-says stderr 'points.gltf: 1 primitives are points: left out (first: triangle)'
-says stderr 'points.gltf: 1 primitives are lines: left out (first: triangle)'
+says stderr 'points.gltf: 1 primitives are points: skipped (first: triangle)'
+says stderr 'points.gltf: 1 primitives are lines: skipped (first: triangle)'
 printf 'o thing\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nl 1 2\nl 2 3\n' > "$folder/lines.obj"
 accepts "$folder/lines.obj" "${x[@]}"
-says stderr 'lines.obj: 2 points and lines left out (in 1 meshes: "thing")'
+says stderr 'lines.obj: 2 points and lines skipped (in 1 meshes: "thing")'
 scene '{"models": [{"file": "lines.obj", "materials": [{"match": "pai?t", "coat": 1}]}]}'
 accepts "$json" "${x[@]}"
 says stderr 'models\[0\]: no material matches "pai?t"'
 run "$json" "${x[@]}" --strict
 [ $code = 1 ] || fail "--strict takes warnings: exit code $code"
-says stderr '2 warnings, which --strict takes for errors'
+says stderr '2 warnings are errors with --strict'
 
 # Many files of Collada say that nothing is to be seen of what is all there: it is taken for opaque, and not blended.
 cat > "$folder/unseen.dae" << END
@@ -125,7 +125,7 @@ cat > "$folder/unseen.dae" << END
 </library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>
 END
 accepts "$folder/unseen.dae" "${x[@]}" --stats "$folder/stats.json"
-says stderr 'unseen.dae: 1 materials have an opacity of 0: they are taken for opaque'
+says stderr 'unseen.dae: 1 materials have an opacity of 0: treated as opaque'
 # Rays meet the ground's two triangles and its one: they pass by what is blended.
 found=$(tr -d ' \n' < "$folder/stats.json" | sed 's/.*"reflections":{\([^}]*\)}.*/\1/')
 case $found in *'"triangles":3,'*) ;; *) fail "unseen.dae is blended: $found" ;; esac

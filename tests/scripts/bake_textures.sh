@@ -176,14 +176,14 @@ cmp "$folder/flat.masu" "$folder/up.masu" || fail "a level of heights is no plan
 # Beside normals heights are of no use, which is said.
 material "$(printf 'norm normals.png\nbump heights.png')"
 bakes "$folder/quad.obj"
-warns 1 'textures that nothing is made of: heights.png'
+warns 1 'unsupported textures: heights.png'
 
 # Alpha: a mask where the picture looks like one, or has been given for it; of gloss nothing is a hole.
 convert -size 64x64 gradient:'gray(10%)-gray(70%)' "$folder/gloss.png"
 convert "$pictures/checker.png" -resize 64x64! "$folder/gloss.png" -alpha off -compose CopyOpacity -composite "$folder/shiny.png"
 material 'map_Kd shiny.png'
 bakes "$folder/quad.obj"
-warns 1 'shiny.png: its alpha is not that of a mask (.* % of it is below the cut-off): taken for opaque'
+warns 1 'shiny.png: its alpha is not a mask (.* % of it is below the cut-off): treated as opaque'
 [ "$(counts texels)" = 172 ] || fail "a gloss in alpha: $(counts texels) units of texels"
 "$bake" "$folder/quad.obj" --strict -o "$folder/y.masu" > /dev/null 2>&1 && fail "--strict takes a gloss for opaque"
 material "$(printf 'map_Kd shiny.png\nmap_d shiny.png')"
@@ -218,7 +218,7 @@ warns 0
 printf '\253KTX 20\273\r\n\032\n0123456789' > "$folder/basis.ktx2"
 quad '"base_color_map": "basis.ktx2"'
 bakes "$scene"
-warns 1 'basis.ktx2: a KTX2 (Basis) picture, which is not read: PNG, JPEG or WebP are; left out'
+warns 1 'basis.ktx2: a KTX2 (Basis) image, which is not supported: use PNG, JPEG or WebP; ignored'
 
 # ---- pictures that are none ----------------------------------------------------------------------
 
@@ -226,7 +226,7 @@ warns 1 'basis.ktx2: a KTX2 (Basis) picture, which is not read: PNG, JPEG or Web
 broken() {
     quad "\"base_color_map\": \"$1\""
     bakes "$scene"
-    warns 1 "texture .*$(basename "$1"): .*$2.*left out"
+    warns 1 "texture .*$(basename "$1"): .*$2.*ignored"
     [ "$(counts textures)" = 0 ] && [ "$(counts texcoords)" = 0 ] || fail "$1: has become a texture"
     [ "$(counts vertices)" = 4 ] || fail "$1: the quad is gone"
 }
@@ -237,11 +237,11 @@ broken /dev/zero 'not a regular file'
 : > "$folder/empty.png"
 broken "$folder/empty.png" 'empty'
 head -c 5000 /dev/urandom > "$folder/noise.png"
-broken "$folder/noise.png" 'not a picture'
+broken "$folder/noise.png" 'not an image in a supported format'
 echo 'push graphic-context' > "$folder/script.mvg"
-broken "$folder/script.mvg" 'not a picture'
+broken "$folder/script.mvg" 'not an image in a supported format'
 printf '<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9"/>' > "$folder/drawing.svg"
-broken "$folder/drawing.svg" 'not a picture'
+broken "$folder/drawing.svg" 'not an image in a supported format'
 for name in bricks.png ground.jpg leaf.tga sign.rgb; do
     # Cut short. Readers that fill up what is missing are welcome to.
     head -c 300 "$pictures/$name" > "$folder/cut.${name##*.}"
@@ -294,12 +294,12 @@ refuses() {
 refuses 'expected a string' '"normal_map": 3'
 refuses 'expected "opaque"' '"alpha": "see-through"'
 refuses 'from 0 to 1' '"alpha_cutoff": 2'
-refuses 'another map' '"surface_map": "a.png", "roughness_map": "b.png"'
+refuses 'another member sets the same map' '"surface_map": "a.png", "roughness_map": "b.png"'
 refuses 'unknown key' '"colour_map": "a.png"'
 refuses 'from 0 to 1' '"opacity": 1.5'
 refuses 'expected "alpha", "additive" or "tinted"' '"blend": "multiply"'
-refuses 'not transparent' '"alpha": "mask", "opacity": 0.5'
-refuses 'not transparent' '"alpha": "opaque", "blend": "additive"'
+refuses 'needs "alpha": "blend"' '"alpha": "mask", "opacity": 0.5'
+refuses 'needs "alpha": "blend"' '"alpha": "opaque", "blend": "additive"'
 
 # A coat may have maps, one picture for both or two; of what is blended it has none, which is said.
 quad "\"coat\": 1, \"coat_map\": \"$pictures/gradient.png\", \"coat_roughness_map\": \"$pictures/checker.png\", \"coat_smooth\": true"
@@ -311,7 +311,7 @@ bakes "$scene"
 [ "$(counts textures)" = 0 ] || fail "a map of no coat: $(counts textures) textures"
 quad "\"coat\": 1, \"coat_map\": \"$pictures/gradient.png\", \"blend\": \"tinted\", \"opacity\": 0.25"
 bakes "$scene"
-warns 1 'it is blended, and its coat is the same all over: its map is left out'
+warns 1 'transparent materials have no coat map: ignored'
 refuses 'expected' '"coat_smooth": 1'
 
 # As many blended things as a renderer draws, and one more.
@@ -324,7 +324,7 @@ printf '{"models": [%s]}' "$panes" > "$scene"
 printf '{"models": [%s, %s]}' "$panes" "$pane" > "$scene"
 rm -f "$folder/y.masu"
 "$bake" "$scene" -o "$folder/y.masu" --quiet 2> "$folder/stderr" && fail "4097 panes: accepted"
-grep -q '4097 blended things, at most 4096' "$folder/stderr" || fail "$(cat "$folder/stderr")"
+grep -q 'found 4097 transparent draws, expected at most 4096' "$folder/stderr" || fail "$(cat "$folder/stderr")"
 [ "$(wc -l < "$folder/stderr")" = 1 ] || fail "4097 panes: not one line"
 [ ! -e "$folder/y.masu" ] || fail "4097 panes: wrote its output"
 

@@ -51,19 +51,19 @@ printf "o part\n$square%s" 'v nan 0 0
 f 1 2 3
 f 1 3 5
 ' > nan.obj
-warns nan.obj 1 '1 of 2 triangles left out, a vertex is not finite (in 1 meshes: "part")'
+warns nan.obj 1 '1 of 2 triangles skipped: a vertex is not finite (in 1 meshes: "part")'
 printf "o part\n${square}v 1e30 0 0\nf 1 2 3\nf 1 3 5\n" > far.obj
-warns far.obj 1 '1 of 2 triangles left out, a vertex is not finite'
+warns far.obj 1 '1 of 2 triangles skipped: a vertex is not finite'
 printf "o part\n${square}v 2 0 0\nf 1 2 3\nf 1 2 5\nf 1 1 2\n" > flat.obj
-warns flat.obj 1 'triangles left out, they have no area (in 1 meshes: "part")'
+warns flat.obj 1 'triangles skipped: they have no area (in 1 meshes: "part")'
 printf "o part\n${square}v 2 0 0\nf 1 2 5\n" > all_flat.obj
-refuses all_flat.obj 'it holds no triangles that could be drawn; 1 of 1 triangles left out, they have no area'
+refuses all_flat.obj 'no triangles to draw; 1 of 1 triangles skipped: they have no area'
 printf "${square}f 1 2 9\n" > index.obj
 refuses index.obj 'cannot read index.obj: '
 printf "${square}f 1 2 -9\n" > negative.obj
 refuses negative.obj 'cannot read negative.obj: '
 printf "${square}vn nan nan nan\nvn 0 0 0\nf 1//1 2//2 3//1\n" > normals.obj
-warns normals.obj 1 'normals made new, they were not usable'
+warns normals.obj 1 'normals regenerated: they were invalid'
 printf "mtllib gone.mtl\nusemtl gone\n${square}f 1 2 3\n" > no_material.obj
 try no_material.obj
 [ $code = 0 ] || fail "a missing material file: $(cat stderr)"
@@ -116,11 +116,11 @@ refuses huge.gltf 'no node shows its meshes with a finite transform'
 if [ -d $models/glTF2 ]; then
     cd $models/glTF2 || exit 1
     refuses BoxWithInfinites-glTF-Binary/BoxWithInfinites.glb \
-        '12 of 12 triangles left out, a vertex is not finite'
+        '12 of 12 triangles skipped: a vertex is not finite'
     warns IndexOutOfRange/IndexOutOfRange.gltf 11 'an index is out of range'
-    refuses IndexOutOfRange/AllIndicesOutOfRange.gltf '12 of 12 triangles left out, an index is out of range'
+    refuses IndexOutOfRange/AllIndicesOutOfRange.gltf '12 of 12 triangles skipped: an index is out of range'
     refuses RecursiveNodes/RecursiveNodes.gltf 'is a root and below a node'
-    warns BoxBadNormals-glTF-Binary/BoxBadNormals.glb 12 'normals made new'
+    warns BoxBadNormals-glTF-Binary/BoxBadNormals.glb 12 'normals regenerated'
     if [ "${config:-}" != sanitize ]; then # there it takes a minute
         refuses ../invalid/OutOfMemory.off 'cannot read'
     fi

@@ -89,7 +89,7 @@ printf 'float masu_sdf(vec3 p) { return length(p) - 1.0; }\nvoid masu_sdf_surfac
 json hand.glsl ', "anchored": true'
 expect 1 'only a .sdf file can be "anchored"' "$bake" "$folder/s.json" -o "$folder/t.masu"
 json good.sdf ', "params": [{"name": "r", "value": 1}]'
-expect 1 'its parameters are declared in it' "$bake" "$folder/s.json" -o "$folder/t.masu"
+expect 1 'a .sdf file declares its own parameters' "$bake" "$folder/s.json" -o "$folder/t.masu"
 
 # ---- what comes from data is no index until it is clamped ------------------------------------------------
 

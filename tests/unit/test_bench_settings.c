@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "bench/sweep/settings.h"
+#include "bench/settings.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -92,7 +92,6 @@ static void a_scene_of_nothing_leaves_what_is_done_to_pictures(void **state) {
     check_dropped("occlusion=off", count, "no occluders");
     check_dropped("frustum=off", count, "no polygons");
     check_dropped("light_tiles=off", count, "no punctual lights");
-    check_dropped("march=seed", count, "no SDF");
     check_dropped("shadow_distance=0.5", count, "no shadow map");
     check_dropped("specular_cutoff=0.25", count, "no reflections");
     check_dropped("specular_frames=64", count, "no reflections");
@@ -135,11 +134,7 @@ static void a_scene_of_everything_keeps_everything(void **state) {
             turned += masu_knob_differs(k, &settings[i].rung, &settings[0].rung);
         if (!turned && strcmp(k->name, "upscale") != 0) fail_msg("%s is never turned", k->name);
     }
-    static const char *const there[] = {"march=plain",
-                                        "march=seed",
-                                        "march=cone8",
-                                        "march=checkerboard",
-                                        "specular_cutoff=0.25",
+    static const char *const there[] = {"specular_cutoff=0.25",
                                         "specular_cutoff=0.5",
                                         "specular_frames=16",
                                         "specular_frames=64",
@@ -253,11 +248,11 @@ static void names_are_read_again(void **state) {
     }
     /* In any order; values of all kinds. */
     assert_true(masu_setting_parse("ao_steps=3+lod_error=-1+shadow_refresh=1-2-4-8+scale=0.625+"
-                                   "shadow_distance=1e+09+march=cone8",
+                                   "shadow_distance=1e+09+frustum=off",
                                    &rung, error, sizeof error));
     masu_setting_name(&rung, name);
     assert_string_equal(name, "scale=0.625+lod_error=-1+ao_steps=3+shadow_distance=1e+09+"
-                              "shadow_refresh=1-2-4-8+march=cone8");
+                              "shadow_refresh=1-2-4-8+frustum=off");
 }
 
 /* Both ends and the middle of each knob, by itself and all together. */

@@ -52,7 +52,7 @@ static void a_whole_case_is_read(void **state) {
         "true,"
         "   \"exact_memory\": true, \"same\": [\"poison\", \"again\"], \"needs\": [\"float16\"],"
         "   \"flight\": 3,"
-        "   \"rung\": {\"scale\": 0.8, \"aa\": \"smaa-high\", \"march\": \"cones\", \"easu\": \"fast\","
+        "   \"rung\": {\"scale\": 0.8, \"aa\": \"smaa-high\", \"easu\": \"fast\","
         "             \"specular\": \"off\", \"ao_steps\": 5},"
         "   \"budget\": {\"host_bytes\": 1000, \"ms_ratio\": {\"warn\": 2, \"fail\": 3}},"
         "   \"counts\": {\"sdf_evals\": {\"warn\": 7}}, \"at_least\": {\"draws\": 2}},"
@@ -73,7 +73,6 @@ static void a_whole_case_is_read(void **state) {
     assert_int_equal(a->needs, MASU_NEEDS_FLOAT16);
     assert_true(a->rung_count == 1 && a->rungs[0].scale == 0.8f && a->rungs[0].ao_steps == 5);
     assert_int_equal(a->rungs[0].aa, MASU_AA_SMAA_HIGH);
-    assert_int_equal(a->rungs[0].march, MASU_MARCH_CONES);
     assert_int_equal(a->rungs[0].easu, MASU_EASU_FAST);
     assert_int_equal(a->rungs[0].specular, MASU_OFF);
     assert_true(a->bounds[MASU_MEASURE_HOST_BYTES].fail == 1000);

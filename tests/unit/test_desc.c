@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-#include "bench/sweep/knobs.h"
+#include "settings/knobs.h"
 #include "frame/transparents.h"
 #include "plan/compile.h"
 #include "scene/blob.h"

@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "bench/study/texel.h"
+#include "measure/texel.h"
 #include "shared/masu_shared.h"
 #include "support/random.h"
 

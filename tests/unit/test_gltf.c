@@ -283,7 +283,7 @@ static void maps_of_other_coordinates_are_told(void **state) {
     begin_mapped(attributes, sizeof attributes);
     import_warned(finish_textured(attributes, "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0,\"texCoord\":1}},"
                                               "\"normalTexture\":{\"index\":1,\"texCoord\":0}}"),
-                  "1 textures want other coordinates than the base colour of their material: left out");
+                  "1 textures use other coordinates than the base colour of their material: ignored");
     assert_int_equal(MASU_BAKE_MAPS_OF(&piece)->image[MASU_BAKE_NORMAL], MASU_BLOB_NONE);
     begin_mapped(attributes, sizeof attributes);
     import_quietly(finish_textured(attributes, "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0,\"texCoord\":1}},\"normalTexture\":"
@@ -306,7 +306,7 @@ static void coats_have_pictures_of_their_own(void **state) {
         {"{" NORMAL COAT_OF(",\"clearcoatNormalTexture\":{\"index\":1,\"texCoord\":1}") "}", NULL, MASU_BAKE_RELIEF_OF_BOTH},
         {"{" COAT_OF(",\"clearcoatNormalTexture\":{\"index\":1,\"texCoord\":1,\"scale\":3}") "}", NULL, MASU_BAKE_RELIEF_OF_COAT},
         {"{" NORMAL COAT_OF(",\"clearcoatNormalTexture\":{\"index\":1,\"texCoord\":1,\"scale\":3}") "}",
-         "1 clear coats have another picture of normals than what lies below: it is left out, they are smooth", MASU_BAKE_RELIEF_OF_BASE},
+         "1 clear coats have another normal map than the base layer: ignored, they are smooth", MASU_BAKE_RELIEF_OF_BASE},
         {"{" NORMAL "\"name\":\"without\"}", NULL, MASU_BAKE_RELIEF_OF_BOTH}};
     char attributes[128];
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -412,15 +412,15 @@ static void what_is_not_read_is_told(void **state) {
     begin_quad();
     import_warned(finish_quad("", ",\"material\":0",
                               ",\"materials\":[{\"name\":\"silk\",\"extensions\":{\"KHR_materials_sheen\":{}}},{\"name\":\"wool\",\"extensions\":{\"KHR_materials_sheen\":{}}}]"),
-                  "2 times KHR_materials_sheen, which is not read (first: silk)");
+                  "2 times KHR_materials_sheen, which is not supported (first: silk)");
     begin_quad();
     char attributes[64];
     snprintf(attributes, sizeof attributes, ",\"_WETNESS\":%d", quad_positions);
-    import_warned(finish_quad(attributes, "", ""), "1 primitives have _WETNESS, which is not read (first: quad)");
+    import_warned(finish_quad(attributes, "", ""), "1 primitives have _WETNESS, which is not supported (first: quad)");
     begin_quad();
     import_warned(finish("\"meshes\":[{\"name\":\"quad\",\"primitives\":[{\"attributes\":{\"POSITION\":%d},\"indices\":%d},{\"attributes\":{\"POSITION\":%d},\"mode\":1}]}],\"nodes\":[{\"mesh\":0}]",
                          quad_positions, quad_indices, quad_positions),
-                  "1 primitives are lines: left out (first: quad)");
+                  "1 primitives are lines: skipped (first: quad)");
 }
 
 static void variants_by_name(void **state) {
@@ -435,7 +435,7 @@ static void variants_by_name(void **state) {
     import_as(path, (masu_bake_wanted){.variant = "night"});
     assert_string_equal(heard, "");
     assert_near((double)material(0)->roughness, 0.75, 0);
-    refused(path, "dusk", "it has no variant \"dusk\"; there are: \"day\", \"night\"");
+    refused(path, "dusk", "it has no variant \"dusk\"; available: \"day\", \"night\"");
 }
 
 static void lights_in_candela(void **state) {
@@ -512,13 +512,13 @@ static void names_with_percent_signs(void **state) {
                                         "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"nodes\":[{\"mesh\":0}]}"));
     vertex_at(0, 5, 0, 0);
     refused(write_text("x.gltf", "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"uri\":\"c%20d.bin\",\"byteLength\":36}]}"), NULL, "c d.bin");
-    refused(write_text("x.gltf", "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"uri\":\"http://x/y.bin\",\"byteLength\":36}]}"), NULL, "is no file beside the model");
+    refused(write_text("x.gltf", "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"uri\":\"http://x/y.bin\",\"byteLength\":36}]}"), NULL, "is not a file in the model's folder");
 }
 
 static void what_a_file_requires(void **state) {
     (void)state;
     begin_quad();
-    refused(finish_quad("", "", ",\"extensionsRequired\":[\"EXT_from_tomorrow\"]"), NULL, "it requires EXT_from_tomorrow, which is not read");
+    refused(finish_quad("", "", ",\"extensionsRequired\":[\"EXT_from_tomorrow\"]"), NULL, "it requires EXT_from_tomorrow, which is not supported");
 }
 
 static void hostile_files_are_refused(void **state) {
@@ -539,8 +539,8 @@ static void hostile_files_are_refused(void **state) {
     begin_quad();
     refused(finish("\"nodes\":[{\"children\":[1]},{\"children\":[0]}],\"scenes\":[{\"nodes\":[0]}]"), NULL, "nodes[0] is a root and below a node");
     refused(finish("\"nodes\":[{\"children\":[1,1]},{}]"), NULL, "nodes[1] is a child of two nodes");
-    refused(finish("\"nodes\":[{\"mesh\":3}]"), NULL, "nodes[0]: \"mesh\" is 3, of 0 that there are");
-    refused(finish("\"nodes\":[{}],\"skins\":[{\"joints\":[-1]}]"), NULL, "joints[0] is no node");
+    refused(finish("\"nodes\":[{\"mesh\":3}]"), NULL, "nodes[0]: \"mesh\": index 3 of 0 elements");
+    refused(finish("\"nodes\":[{}],\"skins\":[{\"joints\":[-1]}]"), NULL, "joints[0] is not a node");
     size_t bytes;
     char *whole = read_file(finish("\"nodes\":[]"), &bytes);
     for (size_t cut = 1; cut < bytes; cut += 7) refused(write_bytes("x.glb", whole, cut), NULL, "");

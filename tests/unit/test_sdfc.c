@@ -697,16 +697,16 @@ static void mistakes_name_their_place(void **state) {
         {"part a = menger(9);", "x.sdf:1:17: expected a whole number from 1 to 8, found 9"},
         {"part a = menger(time);", "x.sdf:1:17: expected a whole number known at compile time, "
                                    "found an expression of parameters or time"},
-        {"let pi = 3;", "x.sdf:1:5: expected a name that is no word of the language, found \"pi\""},
-        {"let a = 1; let a = 2;", "x.sdf:1:16: expected a name that is new, found \"a\""},
+        {"let pi = 3;", "x.sdf:1:5: expected a name that is not a keyword, found \"pi\""},
+        {"let a = 1; let a = 2;", "x.sdf:1:16: expected a name that is not declared yet, found \"a\""},
         {"let a = 1 / 0;", "x.sdf:1:13: expected a divisor, found 0"},
         {"let a = $;", "x.sdf:1:9: expected a statement, found \"$\""},
         {"let a = 1e99;", "x.sdf:1:9: expected a number of at most 1e30"},
         {"part a = repeat((2, 0, 0), translate((0.6, 0, 0), sphere(0.5)));",
-         "x.sdf:1:10: repeat: expected a shape within its cell (or symmetric in it): it reaches "
-         "1.1 from the middle along x, the cell 1"},
+         "x.sdf:1:10: repeat: expected a shape within its cell, or symmetric in it: it extends "
+         "1.1 from the centre along x, the cell 1"},
         {"part a = twist(1, plane((0, 1, 0), 0));",
-         "x.sdf:1:10: twist: expected a shape with an end, and a rate with limits"},
+         "x.sdf:1:10: twist: expected a bounded shape and a bounded rate"},
         {"part a = rotate((0, 0, 0), 1, sphere(1));",
          "x.sdf:1:10: rotate: expected an axis that is not zero"},
         {"part a = glsl { return 1.0; ", "x.sdf:1:15: expected a \"}\" for this \"{\""},

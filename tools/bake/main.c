@@ -60,7 +60,7 @@ static void keep_warning(void *user, const char *text) {
 static bool is_clean(const masu_bake_options *options) {
     uint32_t warnings = masu_cli_warnings();
     if (!options->strict || !warnings) return true;
-    masu_cli_error("%s: %u warnings, which --strict takes for errors", options->input, warnings);
+    masu_cli_error("%s: %u warnings are errors with --strict", options->input, warnings);
     return false;
 }
 
@@ -133,24 +133,24 @@ int main(int argc, char **argv) {
         {"variants", NULL, "add the other ways to march the SDF, for masu study march",
          OPTION_VARIANTS, 0},
         {"bare", NULL, "a MODEL alone: without ground, shadows, occlusion and reflections", OPTION_BARE, 0},
-        {"no-textures", NULL, "leave textures out; the materials' factors stay", OPTION_NO_TEXTURES,
+        {"no-textures", NULL, "ignore textures; materials keep their factors", OPTION_NO_TEXTURES,
          0},
-        {"texture-path", "DIR:...", "where to look for textures that are not where models say",
+        {"texture-path", "DIR:...", "folders to search for textures that are not at the model's path",
          OPTION_TEXTURE_PATH, 0},
-        {"probes", NULL, "bake light probes, also if the scene asks for none", OPTION_PROBES, 0},
+        {"probes", NULL, "bake light probes even if the scene has none", OPTION_PROBES, 0},
         {"probe-report", NULL,
-         "bake them and print what they are off by from path-traced truth;\nneeds no -o",
+         "bake light probes and print their error against path tracing;\nneeds no -o",
          OPTION_PROBE_REPORT, 0},
         {"threads", "N", "threads that trace light probes; default: all processors", OPTION_THREADS,
          0},
-        {"strict", NULL, "warnings are errors: what cannot be shown as its file has it gives no blob",
+        {"strict", NULL, "treat warnings as errors: no blob if any content of a file is ignored",
          OPTION_STRICT, 0},
         {"stats", "FILE", "write counts, bytes, bounds, warnings, seconds and peak memory as JSON",
          OPTION_STATS, 0},
-        {"memory-limit", "MIB", "address space that baking may take, 0: any; default: half of the machine's\n"
+        {"memory-limit", "MIB", "address space limit, 0: none; default: half of the machine's\n"
          "memory, at least 4096", OPTION_MEMORY_LIMIT, 0},
-        {"time-limit", "SECONDS", "after which baking is ended, 0: never; default: 3600", OPTION_TIME_LIMIT, 0},
-        {"models", "DIR", "what \"@assimp/\" in a scene stands for\n(" ASSIMP_MODELS ")",
+        {"time-limit", "SECONDS", "time limit, 0: none; default: 3600", OPTION_TIME_LIMIT, 0},
+        {"models", "DIR", "folder that \"@assimp/\" in a scene stands for\n(" ASSIMP_MODELS ")",
          OPTION_MODELS, 0},
         {NULL, NULL, NULL, 0, 0},
     };
@@ -159,13 +159,13 @@ int main(int argc, char **argv) {
         .summary = "turns a model or a scene description into a .masu blob",
         .options = options,
         .details =
-            "A MODEL is any file that Assimp reads (.glb, .gltf, .obj, .ac, ...); it gets a "
+            "A MODEL is a model file (.glb, .gltf, .obj, .ac, ...). It gets a "
             "camera\n"
             "that frames it, a ground, sun and sky, shadows and reflections. A SCENE.json places models, a camera path, light "
             "and\n"
             "an SDF; docs/scene.md describes it. An SDF needs glslangValidator, spirv-val and\n"
             "spirv-opt. The same input gives the same bytes.\n\n"
-            "Exit code: 0 done, 1 failed (one line says why), 2 wrong usage.\n",
+            "Exit code: 0 success, 1 error (one line with the reason), 2 wrong usage.\n",
         .run = run,
     };
     static const masu_cli_command *const commands[] = {&command, NULL};

@@ -1,7 +1,7 @@
 /* read.c: see read.h. */
 #include "conform/read.h"
 
-#include "bench/sweep/knobs.h"
+#include "settings/knobs.h"
 
 #include <math.h>
 #include <stdarg.h>

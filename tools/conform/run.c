@@ -2,7 +2,7 @@
 #include "conform/run.h"
 
 #include "alloc_count.h"
-#include "bench/measure/picture.h"
+#include "measure/picture.h"
 #include "cli/cli.h"
 #include "clock.h"
 #include "image.h"

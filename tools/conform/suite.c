@@ -1,7 +1,7 @@
 /* suite.c: see suite.h. */
 #include "conform/suite.h"
 
-#include "bench/sweep/knobs.h"
+#include "settings/knobs.h"
 #include "cli/cli.h"
 #include "conform/read.h"
 

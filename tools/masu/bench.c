@@ -1,13 +1,11 @@
-/* bench.c: `masu bench`: every quality level of a scene, a measured error beside a measured
- * time: the command line of bench/sweep/sweep.h, which measures, and bench/sweep/report.h, which makes rungs,
- * plots and a page of it. */
+/* bench.c: `masu bench`: measures every quality level of a scene, error against run time: the command line of
+ * bench/sweep.h, which measures, and of bench/report.h, which writes rungs, plots and a page. */
 #include "masu/bench.h"
 
-#include "bench/sweep/against.h"
-#include "bench/measure/picture.h"
-#include "bench/sweep/report.h"
-#include "bench/sweep/sweep.h"
-#include "model/write.h"
+#include "bench/against.h"
+#include "measure/picture.h"
+#include "bench/report.h"
+#include "bench/sweep.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -19,40 +17,15 @@ typedef struct options {
     masu_setting_list only;
     masu_given given;
     const char *against, *rungs_of, *csv;
-    bool merge, ladder, c, steady; /* --steady is given */
+    bool merge, ladder, steady; /* --steady is given */
 } options;
 
-/* The model sheet of the ladder, which the report has made: the page is then written once more. */
-static void model(const options *o) {
-    char error[4096];
-    masu_model_desc d = {.scene_path = o->given.arguments[0],
-                         .size = {1920, 1080},
-                         .drawn = masu_count_size(o->sweep.size),
-                         .time = o->sweep.time,
-                         .host = {.device = o->sweep.host.device},
-                         .progress = masu_cli_progress_text};
-    if (masu_model_write(&d, o->sweep.folder, error, sizeof error)) return;
-    masu_cli_warn("there is no model sheet: %s", error);
-}
-
 static int report(const options *o) {
-    /* A sheet of another ladder does not stay. */
-    static const char *const sheets[] = {"model.csv", MASU_MODEL_FRAGMENT};
-    char path[4096];
-    for (size_t i = 0; i < 2; i++) {
-        if (masu_sweep_path(o->sweep.folder, sheets[i], path)) (void)remove(path);
-    }
     masu_report_result result;
     char error[4096];
     masu_cli_progress("writing the report");
     if (!masu_report_write(o->sweep.folder, &result, error, sizeof error))
         return masu_cli_error("%s", error);
-    if (!o->merge) {
-        model(o);
-        masu_cli_progress("writing the report");
-        if (!masu_report_write(o->sweep.folder, &result, error, sizeof error))
-            return masu_cli_error("%s", error);
-    }
     masu_cli_progress_clear();
     if (result.unsteady > result.rows / 10) {
         masu_cli_warn("%s: noisy times: %u of %u settings vary by more than 10 %%; rerun on an idle machine",
@@ -195,10 +168,6 @@ static const masu_option rows[] = {
               "and of time ratio, and the largest differences"),
     MASU_TEXT(options, csv, "csv", "FILE", "with --against: write CSV there; '-' is stdout"),
     MASU_FLAG(options, ladder, "ladder", "print the measured ladders LADDER.json..."),
-    MASU_FLAG(options, c, "c",
-              "with --ladder: print src/quality/ladder_tables.h, the built-in ladders.\n"
-              "Every argument is CLASS=FILE; CLASS is polygons, world, sdf, both,\n"
-              "polygons-traced, world-traced, sdf-traced or both-traced"),
     MASU_HEADING("Device"),
     MASU_DEVICE_ROWS(options, sweep.host),
     {.name = NULL}};
@@ -218,7 +187,6 @@ static int check(const options *o) {
                                     : o->merge        ? "--merge"
                                     : o->rungs_of     ? "--rungs-of"
                                                       : "--out");
-    if (o->c && !o->ladder) return masu_cli_usage_error("--c needs --ladder");
     if (o->csv && !o->against) return masu_cli_usage_error("--csv needs --against");
     return MASU_CLI_OK;
 }
@@ -236,7 +204,7 @@ static int run(masu_cli *cli) {
     o.sweep.rays = o.truth.rays;
     code = check(&o);
     if (code) return code;
-    if (o.ladder) return masu_bench_ladder(&o.given, o.c);
+    if (o.ladder) return masu_bench_ladder(&o.given);
     if (o.against) return against(&o);
     if (!o.given.count)
         return masu_cli_usage_error(o.merge ? "no folder given: expected the DIR... to merge"
@@ -263,7 +231,6 @@ const masu_cli_command masu_cmd_bench = {
         "  index.html         report with tables, plots and images\n"
         "  truth.png          ground truth, unless --truth names a file (64 samples per pixel)\n"
         "  plots/             plots, if gnuplot is installed\n"
-        "  model.csv, model.xhtml: the model sheet of these rungs at 1080p (masu plan --model), computed.\n"
         "\n"
         "Method: frames of each setting alternate with frames of the base setting (all defaults, no\n"
         "upscaling). Times are measured with a stationary camera. The image of a setting is its last frame\n"

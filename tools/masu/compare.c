@@ -2,7 +2,7 @@
  * use (metric/image.h, metric/flip.h). tests/scripts/compare.sh checks them against other programs.
  * Needs no device. */
 #include "masu/cmd.h"
-#include "masu/options.h"
+#include "command/options.h"
 
 #include "image.h"
 #include "metric/flip.h"

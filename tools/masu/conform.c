@@ -2,7 +2,7 @@
  * this device and this build keep them. */
 #include "masu/cmd.h"
 #include "masu/data.h"
-#include "masu/options.h"
+#include "command/options.h"
 
 #include "conform/report.h"
 #include "image.h"

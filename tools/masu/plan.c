@@ -1,8 +1,9 @@
 /* plan.c: `masu plan`: the compiled frame of a scene: passes, resources, bytes, aliasing, and
- * what was left out and why. With --model: what its passes would take on classes of GPU. */
-#include "masu/plan.h"
+ * what was left out and why. */
+#include "command/options.h"
+#include "masu/cmd.h"
 
-#include "bench/sweep/knobs.h"
+#include "settings/knobs.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -221,7 +222,14 @@ static int print_json(const masu_session *s, const masu_plan_info *p, const char
     return masu_json_write(root, "-");
 }
 
-static int plan(masu_plan_options *o) {
+typedef struct plan_options {
+    masu_session_desc d;
+    const char *ladder; /* as given; NULL: not at all */
+    uint32_t rays;
+    bool json;
+} plan_options;
+
+static int plan(plan_options *o) {
     static masu_session s;
     char error[1024];
     int code = masu_use_ladder(o->ladder, &o->d.desc);
@@ -250,74 +258,49 @@ static bool print_knobs(masu_cli *cli, void *to) {
 
 static bool read_split(masu_cli *cli, void *to) {
     (void)cli;
-    ((masu_plan_options *)to)->d.desc.deny.unified_memory = 1;
+    ((plan_options *)to)->d.desc.deny.unified_memory = 1;
     return true;
 }
 
 static const masu_option rows[] = {
     MASU_HEADING("Output"),
-    MASU_FLAG(masu_plan_options, json, "json", "print JSON"),
+    MASU_FLAG(plan_options, json, "json", "print JSON"),
     MASU_OWN("knobs", "[=md]", print_knobs,
              "print all knobs of a rung and all limits, as text or as docs/knobs.md, and\n"
              "exit"),
     MASU_HEADING("Frame"),
-    MASU_OUTPUT_SIZE_ROW(masu_plan_options, d.desc.output),
-    MASU_LADDER_ROW(masu_plan_options, ladder, "scales 1, 0.8, 0.4 (default off)"),
+    MASU_OUTPUT_SIZE_ROW(plan_options, d.desc.output),
+    MASU_LADDER_ROW(plan_options, ladder, "scales 1, 0.8, 0.4 (default off)"),
     MASU_HEADING("Memory"),
-    MASU_UINT(masu_plan_options, d.desc.frames_in_flight, "frames-in-flight", 1, MASU_MAX_FLIGHT,
+    MASU_UINT(plan_options, d.desc.frames_in_flight, "frames-in-flight", 1, MASU_MAX_FLIGHT,
               "frames recorded ahead of the GPU: 1 to 3 (default 2)"),
     MASU_OWN("split-memory", NULL, read_split,
              "use one memory block per role, even on unified memory"),
-    MASU_UINT(masu_plan_options, d.desc.reserve.particles, "particles", 0, 65536,
+    MASU_UINT(plan_options, d.desc.reserve.particles, "particles", 0, 65536,
               "reserve memory for N particles per frame (default 0)"),
-    MASU_UINT(masu_plan_options, d.desc.reserve.decals, "decals", 0, 1024,
+    MASU_UINT(plan_options, d.desc.reserve.decals, "decals", 0, 1024,
               "reserve memory for N decals per frame (default 0)"),
-    MASU_UINT(masu_plan_options, d.desc.reserve.lines, "lines", 0, 65536,
+    MASU_UINT(plan_options, d.desc.reserve.lines, "lines", 0, 65536,
               "reserve memory for N debug lines per frame (default 0)"),
     MASU_HEADING("Device"),
-    MASU_RAYS_ROW(masu_plan_options, rays),
-    MASU_FLAG(masu_plan_options, model, "model",
-              "compute each pass's bytes, operations, and least time on five classes of GPU instead"),
-    MASU_SIZE(masu_plan_options, drawn, "drawn",
-              "of --model: size of the frames that are counted (default: half of --size)"),
-    MASU_REAL(masu_plan_options, time, "time", "SECONDS", -1e9, 1e9,
-              "of --model: moment of the scene and its camera"),
-    MASU_TEXT(masu_plan_options, isa, "isa", "GPU[,GPU...]",
-              "what the compilers of these GPUs make of each pipeline instead: registers, waves,\n"
-              "instructions, cycles, spills (--isa=help lists the GPUs). With --model: its classes by the\n"
-              "instructions of tgl, kbl, raven, vangogh, a630"),
-    MASU_FILE(masu_plan_options, csv, "csv", "FILE",
-              "of --model: write every pass of every rung; of --isa: every stage of every pipeline"),
-    MASU_FILE(masu_plan_options, fragment, "html-fragment", "FILE",
-              "of --model: write the tables as one <section> of XHTML"),
-    MASU_DEVICE_ROWS(masu_plan_options, d.host),
+    MASU_RAYS_ROW(plan_options, rays),
+    MASU_DEVICE_ROWS(plan_options, d.host),
     {.name = NULL}};
 
 static int run(masu_cli *cli) {
-    static const char *const of_model[] = {"drawn", "time", "csv", "html-fragment", NULL};
-    static const char *const of_plan[] = {"json", "frames-in-flight", "split-memory", "rays", NULL};
-    static const char *const not_of_isa[] = {"drawn", "time", "html-fragment", "split-memory", "rays",
-                                             "device", "validate", "gpu-av", NULL};
-    masu_plan_options o = {.d = {.desc = {.output = {1920, 1080}, .targets = {.storage = 1}},
-                                 .host = {.message = masu_print_message}},
-                           .time = 1.0};
+    plan_options o = {.d = {.desc = {.output = {1920, 1080}, .targets = {.storage = 1}},
+                            .host = {.message = masu_print_message}}};
     masu_given given = {.most = 1, .excess = "expected one scene"};
     int code;
     if (!masu_options_read(cli, rows, &o, &given, &code)) return code;
-    if (o.isa && !strcmp(o.isa, "help")) return masu_plan_isa(&o, NULL);
     if (!given.count) return masu_cli_usage_error("no scene given: expected SCENE.masu");
     o.d.scene_path = given.arguments[0];
-    const char *other = masu_first_given(&given, rows, not_of_isa);
-    if (o.isa && !o.model && other) return masu_cli_usage_error("--%s is not of --isa", other);
-    if (o.isa && (!o.model || masu_plan_is_isa_child())) return masu_plan_isa(&o, cli->argv);
-    other = masu_first_given(&given, rows, o.model ? of_plan : of_model);
-    if (other) return masu_cli_usage_error("--%s is %s --model", other, o.model ? "not of" : "of");
-    return o.model ? masu_plan_model(&o, cli->argv) : plan(&o);
+    return plan(&o);
 }
 
 const masu_cli_command masu_cmd_plan = {
     .name = "plan",
-    .arguments = "SCENE.masu [--model] [options]",
+    .arguments = "SCENE.masu [options]",
     .summary = "print the passes, images and memory of a scene's frame plan",
     .details = "Opens the device and builds all pipelines, but renders nothing.\n\n"
                "Exit codes:\n"
@@ -326,10 +309,5 @@ const masu_cli_command masu_cmd_plan = {
                "  2  the command line is wrong\n\n"
                "Examples:\n"
                "  masu plan engine.masu --ladder auto\n"
-               "  masu plan engine.masu --size 1280x720 --json\n\n"
-               "--model draws each rung with counters in all shaders, and divides what is counted by what\n"
-               "GPUs of five classes can do. All times are computed: no GPU of these classes is needed or\n"
-               "asked.\n"
-               "--isa starts a process for each GPU, in which its driver compiles all pipelines of the plan and\n"
-               "runs nothing. RADV's GPUs need Mesa alone; Intel's and Adreno's a folder MASU_ISA_DRIVERS.\n",
+               "  masu plan engine.masu --size 1280x720 --json\n",
     .run = run};

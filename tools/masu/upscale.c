@@ -1,7 +1,7 @@
 /* upscale.c: `masu upscale`: anti-aliasing and FSR1 on a PNG, by exactly the passes that a frame ends
  * with. */
 #include "masu/cmd.h"
-#include "masu/options.h"
+#include "command/options.h"
 
 #include "image.h"
 

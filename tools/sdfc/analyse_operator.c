@@ -276,8 +276,8 @@ static void repeat_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
         double h = sdfc_corner(&f->box, i);
         if (!mirrored && !(h <= period / 2 * (1 + 1e-9))) {
             sdfc_fail(c, s->token,
-                      "%s: expected a shape within its cell (or symmetric in it): it reaches %g "
-                      "from the middle along %c, the cell %g",
+                      "%s: expected a shape within its cell, or symmetric in it: it extends %g "
+                      "from the centre along %c, the cell %g",
                       sdfc_kind_names[s->kind], h, 'x' + i, period / 2);
         }
         s->extra[i] = mirrored ? 1 : 2;
@@ -345,7 +345,7 @@ static void bend_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
     int a = 0, b = s->kind == SDFC_KIND_TWIST ? 2 : 1, axis = 3 - a - b;
     double radius = sdfc_reach(f, a, b), k = sdfc_most(c, s->number[0]);
     if (!isfinite(radius) || !isfinite(k)) {
-        sdfc_fail(c, s->token, "%s: expected a shape with an end, and a rate with limits",
+        sdfc_fail(c, s->token, "%s: expected a bounded shape and a bounded rate",
                   sdfc_kind_names[s->kind]);
     }
     double margin = fmax(radius * 0.25, 1e-3), shear = k * (radius + margin);

@@ -173,7 +173,7 @@ static void check_estimate(checker *k) {
     k->tried++;
     if (field(k, q, NULL) > 0 || (++k->broken) * 200 <= k->tried + 1000) return;
     sdfc_fail(k->c, k->part->token,
-              "part %s: in %d of %d cases there is something nearer than the estimate says, last "
+              "part %s: the distance estimate exceeds the distance in %d of %d cases, last "
               "(%.17g, %.17g, %.17g) from (%.17g, %.17g, %.17g) at time %.17g",
               k->part->name, k->broken, k->tried, q[0], q[1], q[2], p[0], p[1], p[2], k->time);
 }
@@ -265,7 +265,7 @@ static void check_mirror(sdfc *c, const sdfc_part *part, int shape) {
     sdfc_free_program(&alone.program);
     if (same) return;
     sdfc_fail(c, part->token,
-              "part %s: the field is that of mirrored sectors, of what is not its own mirror image: f(%.17g, %.17g, "
+              "part %s: polar mirrors a shape that is not symmetric: f(%.17g, %.17g, "
               "%.17g) = %.17g, f(.., -z) = %.17g",
               part->name, p[0], p[1], p[2], d, other);
 }

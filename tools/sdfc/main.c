@@ -108,9 +108,9 @@ static int run(masu_cli *cli) {
 int main(int argc, char **argv) {
     static const masu_cli_option options[] = {
         {"glsl", "FILE", "write the scene's GLSL", OPTION_GLSL, 0},
-        {"c", "FILE", "write the distance in double precision, C11", OPTION_C, 0},
+        {"c", "FILE", "write the reference in double precision as C11", OPTION_C, 0},
         {"table", "FILE", "write parts, bounds and parameters as JSON", OPTION_TABLE, 0},
-        {"pairs", "N", "random pairs tried per form (20000)", OPTION_PAIRS, 0},
+        {"pairs", "N", "random point pairs tested per part form; default: 20000", OPTION_PAIRS, 0},
         {"anchored", NULL, "keep the precision of the GLSL far from the origin", OPTION_ANCHORED,
          0},
         {NULL, NULL, NULL, 0, 0},
@@ -120,7 +120,8 @@ int main(int argc, char **argv) {
         .summary = "compiles an SDF scene and checks its constants and bounds",
         .options = options,
         .details = "docs/sdf.md describes the language.\n\n"
-                   "Exit code: 0 done, 1 failed (the message names the place), 2 wrong usage.\n",
+                   "Exit code: 0 success, 1 error (the message has file, line and column), 2 wrong "
+                   "usage.\n",
         .run = run,
     };
     static const masu_cli_command *const commands[] = {&command, NULL};

@@ -19,7 +19,7 @@ bool sdfc_token_is(const sdfc *c, int token, const char *word) {
 
 void sdfc_next(sdfc *c) {
     if (++c->work > SDFC_WORK_MAX) {
-        sdfc_fail(c, c->at, "expected less text in loops: more than %d words read", SDFC_WORK_MAX);
+        sdfc_fail(c, c->at, "expected at most %d tokens with loops expanded", SDFC_WORK_MAX);
     }
     if (c->tokens[c->at].kind != TOKEN_END) c->at++;
 }
@@ -89,9 +89,10 @@ static int need_name(sdfc *c, const char *what, bool declared) {
     int token = c->at;
     if (c->tokens[token].kind != TOKEN_NAME) sdfc_expected(c, token, "%s", what);
     if (declared && reserved(c, token)) {
-        sdfc_expected(c, token, "%s that is no word of the language", what);
+        sdfc_expected(c, token, "%s that is not a keyword", what);
     }
-    if (declared && sdfc_find(c, token)) sdfc_expected(c, token, "%s that is new", what);
+    if (declared && sdfc_find(c, token))
+        sdfc_expected(c, token, "%s that is not declared yet", what);
     sdfc_next(c);
     return token;
 }

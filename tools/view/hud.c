@@ -2,7 +2,7 @@
  * that has finished, from the plan and from the memory that was asked for; nothing is measured here. */
 #include "view/viewer.h"
 
-#include "bench/sweep/settings.h"
+#include "settings/setting.h"
 #include "clock.h"
 
 #include <math.h>

@@ -1,8 +1,8 @@
 /* main.c: the program masu-view: a baked scene in a window. docs/commands.md is its manual. */
 #include "view/script.h"
 
-#include "bench/sweep/settings.h"
-#include "masu/options.h"
+#include "settings/setting.h"
+#include "command/options.h"
 
 #include <stdio.h>
 #include <stdlib.h>

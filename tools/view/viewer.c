@@ -1,7 +1,7 @@
 /* viewer.c: see viewer.h: what is made, in which order, and in which order it ends. */
 #include "view/viewer.h"
 
-#include "bench/sweep/settings.h"
+#include "settings/setting.h"
 #include "clock.h"
 #include "image.h"
 #include "view/stage.h"

@@ -71,8 +71,8 @@ static bool take_camera(const masu_bake_description *d, const masu_bake_content 
             masu_bake_append_text(&names, "\"");
         }
         masu_bake_append(&names, "", 1);
-        (void)masu_bake_wrong(d, "camera.from", "no model has a camera \"%s\"; there are: %s", d->look.camera,
-                              names.bytes > 1 ? (const char *)names.data : "none");
+        (void)masu_bake_wrong(d, "camera.from", "no model has a camera \"%s\"; available: %s",
+                              d->look.camera, names.bytes > 1 ? (const char *)names.data : "none");
         masu_bake_release(&names);
         return false;
     }
@@ -158,6 +158,7 @@ bool masu_bake_build(const masu_bake_description *d, const masu_bake_options *op
     if (!masu_bake_make_bvh(content, &reflections, &report->reflections)) return false;
     masu_bake_trace_textures(content);
     if (content->names_cut)
-        masu_cli_warn("%u names of the scene are longer than %u bytes, and cut", content->names_cut, MASU_BLOB_NAME_MAX);
+        masu_cli_warn("%u names of the scene are longer than %u bytes and were truncated",
+                      content->names_cut, MASU_BLOB_NAME_MAX);
     return build_probes(d, options, content);
 }

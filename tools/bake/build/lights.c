@@ -23,13 +23,13 @@ bool masu_bake_build_lights(const masu_bake_description *d, masu_bake_content *c
         if (from->instance && !find_instance(content, from->instance, &light.parent)) {
             char where[160];
             snprintf(where, sizeof where, "%s.instance", from->where);
-            return masu_bake_wrong(d, where, "no instance is called \"%s\"", from->instance);
+            return masu_bake_wrong(d, where, "no instance is named \"%s\"", from->instance);
         }
         if (from->name) light.name = masu_bake_name(content, from->name, strlen(from->name));
         masu_bake_append(&content->section[MASU_BLOB_LIGHTS], &light, sizeof light);
     }
     uint64_t all = masu_bake_count(content, MASU_BLOB_LIGHTS);
     if (all <= MASU_BLOB_LIGHTS_MAX) return true;
-    return masu_bake_wrong(d, "", "%llu lights, those of models included; at most %u",
+    return masu_bake_wrong(d, "", "%llu lights, including those of models; expected at most %u",
                            (unsigned long long)all, MASU_BLOB_LIGHTS_MAX);
 }

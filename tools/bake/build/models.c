@@ -223,8 +223,8 @@ static void warn_of_namesake(const model_builder *b, const masu_bake_model *mode
          i++) {
         uint32_t name = MASU_BAKE_ARRAY(c, MASU_BLOB_MODELS, masu_blob_model)[i].name;
         if (strcmp(masu_bake_name_text(c, name), model->name) != 0) continue;
-        masu_cli_warn("%s: %s: a moving model before it is named \"%s\" too: the first one is "
-                         "found by that name",
+        masu_cli_warn("%s: %s: another moving model is named \"%s\": programs find the first "
+                         "one",
                          b->description->file, model->where, model->name);
         return;
     }
@@ -283,7 +283,7 @@ static bool add_occluder(const model_builder *b, const masu_bake_model *model, u
             char where[160];
             snprintf(where, sizeof where, "%s.occluder", model->where);
             return masu_bake_wrong(
-                b->description, where, "the mesh \"%s\" is no box: give two corners",
+                b->description, where, "the mesh \"%s\" is not a box: give two corners",
                 masu_bake_name_text(content, MASU_BAKE_MESHES(content)[mesh].name));
         }
         (void)masu_bake_add_occluder(content, mesh, box); /* it may have it already */

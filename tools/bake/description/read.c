@@ -58,7 +58,7 @@ static bool read_members(const masu_bake_json *scene, masu_bake_reader *r) {
         return false;
     }
     if (r->out->sdf.source || r->out->model_count > 0) return true;
-    return masu_bake_json_wrong(scene, "shows nothing: neither models nor an SDF");
+    return masu_bake_json_wrong(scene, "empty scene: expected models or an SDF");
 }
 
 static bool read_scene(const masu_bake_options *options, masu_bake_description *out) {

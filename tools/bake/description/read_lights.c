@@ -27,7 +27,8 @@ static bool read_cone(const masu_bake_json *at, masu_blob_light *light) {
         static const char *const members[] = {"direction", "inner", "outer"};
         for (int i = 0; i < 3; i++) {
             if (masu_bake_json_has(at, members[i]))
-                return masu_bake_json_wrong(at, "a point has no \"%s\"", members[i]);
+                return masu_bake_json_wrong(at, "\"%s\" is only allowed for spot lights",
+                                            members[i]);
         }
         return true;
     }
@@ -38,7 +39,7 @@ static bool read_cone(const masu_bake_json *at, masu_blob_light *light) {
     inner = 0.75 * outer;
     if (!masu_bake_json_number(at, "inner", 0, outer, &inner)) return false;
     if (!masu_bake_normalize(&direction))
-        return masu_bake_json_wrong(at, "a spot needs a \"direction\" that is not zero");
+        return masu_bake_json_wrong(at, "a spot light needs a \"direction\" that is not zero");
     masu_bake_store(direction, light->direction);
     light->inner = (float)(inner * (MASU_BAKE_PI / 180));
     light->outer = (float)(outer * (MASU_BAKE_PI / 180));
@@ -66,7 +67,7 @@ static bool read_light(const masu_bake_json *at, masu_bake_reader *r, masu_bake_
     if (!masu_bake_json_has(at, "position")) return masu_bake_json_wrong(at, "needs \"position\"");
     color = masu_bake_v3(color.x * intensity, color.y * intensity, color.z * intensity);
     if (fmax(color.x, fmax(color.y, color.z)) > MASU_BAKE_LIGHT_COLOR_MAX)
-        return masu_bake_json_wrong(at, "color times intensity is above %g",
+        return masu_bake_json_wrong(at, "expected color times intensity of at most %g",
                                     MASU_BAKE_LIGHT_COLOR_MAX);
     double range = masu_bake_light_range(color);
     if (!masu_bake_json_number(at, "range", 0, 1e9, &range)) return false;

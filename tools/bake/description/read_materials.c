@@ -31,7 +31,7 @@ static bool read_maps(const masu_bake_json *at, masu_bake_reader *r,
         if (!name) continue;
         int map = map_members[i].map;
         if (out->map[map]) {
-            return masu_bake_json_wrong(at, "%s: there is another map for the same",
+            return masu_bake_json_wrong(at, "\"%s\": another member sets the same map",
                                         map_members[i].member);
         }
         out->map[map] = true;
@@ -97,7 +97,7 @@ static bool read_blend(const masu_bake_json *at, masu_bake_override *out) {
     if (blend && strcmp(blend, "alpha") != 0 && strcmp(blend, "additive") != 0 && strcmp(blend, "tinted") != 0)
         return masu_bake_json_wrong(&where, "expected \"alpha\", \"additive\" or \"tinted\"");
     if (out->alpha && out->maps.alpha != MASU_BAKE_ALPHA_BLEND && (blend || opacity < 1))
-        return masu_bake_json_wrong(&where, "\"alpha\" says that it is not transparent");
+        return masu_bake_json_wrong(&where, "needs \"alpha\": \"blend\"");
     if (blend) {
         out->alpha = true;
         out->maps.alpha = MASU_BAKE_ALPHA_BLEND;
@@ -212,10 +212,11 @@ static bool read_change(const masu_bake_json *at, masu_bake_reader *r,
     out->value.roughness = (float)roughness;
     out->value.metallic = (float)metallic;
     if (match && strlen(match) >= sizeof out->match)
-        return masu_bake_json_wrong(at, "\"match\" is longer than %u", MASU_BAKE_MATCH - 1);
+        return masu_bake_json_wrong(at, "\"match\": expected at most %u bytes",
+                                    MASU_BAKE_MATCH - 1);
     if (match) strcpy(out->match, match);
     if (name && strlen(name) >= sizeof out->name)
-        return masu_bake_json_wrong(at, "\"name\" is longer than %u", MASU_BAKE_MATCH - 1);
+        return masu_bake_json_wrong(at, "\"name\": expected at most %u bytes", MASU_BAKE_MATCH - 1);
     if (name) strcpy(out->name, name);
     return true;
 }
@@ -231,14 +232,14 @@ bool masu_bake_read_materials(const masu_bake_json *model, masu_bake_reader *r,
         masu_bake_material_change *change = &out->changes[out->change_count++];
         if (!read_change(&all, r, change)) return false;
         if (*change->value.match)
-            return masu_bake_json_wrong(&all, "\"match\" is for \"materials\"");
+            return masu_bake_json_wrong(&all, "\"match\" is only allowed in \"materials\"");
     }
     for (size_t i = 0; i < count; i++) {
         masu_bake_json at = masu_bake_json_element(&list, i);
         masu_bake_material_change *change = &out->changes[out->change_count++];
         if (!read_change(&at, r, change)) return false;
         if (!*change->value.match)
-            return masu_bake_json_wrong(&at, "needs \"match\": a pattern of names, as \"tr-*\"");
+            return masu_bake_json_wrong(&at, "needs \"match\": a name pattern such as \"tr-*\"");
     }
     return true;
 }

@@ -96,7 +96,8 @@ static bool read_scale(const masu_bake_json *model, masu_bake_affine *out) {
 static bool read_rotation(const masu_bake_json *model, masu_bake_affine *out) {
     masu_bake_vec3 angles = {0, 0, 0};
     if (masu_bake_json_has(model, "rotate") && masu_bake_json_has(model, "rotate_y")) {
-        return masu_bake_json_wrong(model, "give either \"rotate\" or \"rotate_y\"");
+        return masu_bake_json_wrong(model,
+                                    "expected either \"rotate\" or \"rotate_y\", found both");
     }
     if (!masu_bake_json_vec3(model, "rotate", -3600, 3600, &angles) ||
         !masu_bake_json_number(model, "rotate_y", -3600, 3600, &angles.y)) {
@@ -123,7 +124,7 @@ static bool read_fit(const masu_bake_json *model, masu_bake_fit *out) {
     out->center = masu_bake_json_has(&fit, "center");
     out->base = masu_bake_json_has(&fit, "base");
     if (!out->center || !out->base) return true;
-    return masu_bake_json_wrong(&fit, "give either \"center\" or \"base\"");
+    return masu_bake_json_wrong(&fit, "expected either \"center\" or \"base\", found both");
 }
 
 /* true, or the height of the ground where nothing else is below. */
@@ -162,14 +163,15 @@ static bool read_group(const masu_bake_json *model, masu_bake_reader *r, masu_ba
     out->spare = (uint32_t)spare;
     if (out->hidden || out->spare) {
         if (masu_bake_json_has(model, "moving") && !out->moving)
-            return masu_bake_json_wrong(model, "what is \"hidden\" or has \"spare\" ones is \"moving\"");
+            return masu_bake_json_wrong(model, "\"hidden\" and \"spare\" need \"moving\": true");
         out->moving = true;
     }
     if (!path) return true;
-    if (out->moving) return masu_bake_json_wrong(model, "what is \"moving\" is in no \"group\"");
+    if (out->moving)
+        return masu_bake_json_wrong(model, "a \"moving\" model cannot have a \"group\"");
     if (!masu_bake_group_path(path)) {
         masu_bake_json at = masu_bake_json_member(model, "group");
-        return masu_bake_json_wrong(&at, "must be 1 to %u names with / between them",
+        return masu_bake_json_wrong(&at, "expected 1 to %u names separated by /",
                                     MASU_BAKE_GROUP_LEVELS);
     }
     out->group = masu_bake_take_text(&r->out->pool, path);
@@ -195,7 +197,7 @@ static bool read_occluder(const masu_bake_json *model, masu_bake_model *out) {
         box->low.z < box->high.z) {
         return true;
     }
-    return masu_bake_json_wrong(&at, "expected true or two corners, the lower one first");
+    return masu_bake_json_wrong(&at, "expected true or two corners, lower corner first");
 }
 
 static bool read_traced(const masu_bake_json *model, masu_bake_model *out) {
@@ -217,14 +219,14 @@ static bool read_source(const masu_bake_json *model, masu_bake_reader *r, const 
     }
     masu_bake_json mesh = masu_bake_json_member(model, "mesh");
     if (out->merge > 0 && masu_bake_json_has(model, "occluder"))
-        return masu_bake_json_wrong(model, "what is \"merge\"d has no \"occluder\"");
+        return masu_bake_json_wrong(model, "\"merge\" and \"occluder\" cannot be combined");
     if (!masu_bake_json_string(model, "variant", &variant)) return false;
-    if (variant && !file) return masu_bake_json_wrong(model, "\"variant\" is for files");
+    if (variant && !file) return masu_bake_json_wrong(model, "\"variant\" needs \"file\"");
     if (variant) out->variant = masu_bake_take_text(&r->out->pool, variant);
     if (!file == !mesh.value)
         return masu_bake_json_wrong(model, "needs either \"file\" or \"mesh\"");
     if (!file) {
-        if (out->merge > 0) return masu_bake_json_wrong(model, "\"merge\" is for files");
+        if (out->merge > 0) return masu_bake_json_wrong(model, "\"merge\" needs \"file\"");
         return read_mesh(&mesh, r, written, &out->shape);
     }
     out->file = masu_bake_model_path(r, file);

@@ -44,7 +44,7 @@ static bool read_suns(const masu_bake_json *probes, masu_bake_probe_settings *s)
         for (size_t k = 0; k < i; k++) {
             double c = masu_bake_dot(masu_bake_v3f(s->sun[i]), masu_bake_v3f(s->sun[k]));
             if (c < cos(SUNS_APART)) continue;
-            return masu_bake_json_wrong(&at, "within a degree of suns[%zu]", k);
+            return masu_bake_json_wrong(&at, "less than a degree from suns[%zu]", k);
         }
     }
     return true;
@@ -65,7 +65,8 @@ static bool read_spacing(const masu_bake_json *probes, masu_bake_probe_settings 
         return false;
     }
     if (s->has_spacing && s->has_counts) {
-        return masu_bake_json_wrong(probes, "give either \"spacing\" or \"counts\"");
+        return masu_bake_json_wrong(probes,
+                                    "expected either \"spacing\" or \"counts\", found both");
     }
     const double n[3] = {counts.x, counts.y, counts.z};
     for (int k = 0; k < 3; k++) {

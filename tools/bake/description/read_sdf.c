@@ -43,8 +43,8 @@ static bool read_param(const masu_bake_json *at, masu_bake_reader *r) {
     }
     if (!identifier(name)) {
         masu_bake_json where = masu_bake_json_member(at, "name");
-        return masu_bake_json_wrong(&where, "must be letters, digits and _, at most %d",
-                                    PARAM_NAME_MAX);
+        return masu_bake_json_wrong(
+            &where, "expected at most %d letters, digits and _, no digit first", PARAM_NAME_MAX);
     }
     if (!(low <= value && value <= high)) {
         return masu_bake_json_wrong(at, "value %g is not between min %g and max %g", value, low,
@@ -53,7 +53,7 @@ static bool read_param(const masu_bake_json *at, masu_bake_reader *r) {
     char macro[128];
     masu_bake_param_macro(name, macro, sizeof macro);
     if (macro_is_taken(out, macro)) {
-        return masu_bake_json_wrong(at, "a second parameter would be called %s", macro);
+        return masu_bake_json_wrong(at, "another parameter has the same constant %s", macro);
     }
     out->params[out->param_count++] = (masu_bake_sdf_param){
         masu_bake_take_text(&r->out->pool, name), (float)value, (float)low, (float)high};

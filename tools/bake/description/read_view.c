@@ -75,7 +75,7 @@ static bool read_camera(const masu_bake_json *scene, masu_bake_reader *r) {
     }
     r->out->look.own_fov_y = masu_bake_json_has(&camera, "fov_y");
     if (from && masu_bake_json_has(&camera, "keys"))
-        return masu_bake_json_wrong(&camera, "give either \"keys\" or \"from\"");
+        return masu_bake_json_wrong(&camera, "expected either \"keys\" or \"from\", found both");
     if (from) r->out->look.camera = masu_bake_take_text(&r->out->pool, from);
     masu_bake_json keys = masu_bake_json_member(&camera, "keys");
     return !keys.value || read_keys(&keys, r);
@@ -122,11 +122,12 @@ static bool read_sun(const masu_bake_json *scene, masu_bake_look *l) {
     bool angles = masu_bake_json_has(&sun, "azimuth") || masu_bake_json_has(&sun, "elevation");
     if (masu_bake_json_has(&sun, "direction")) {
         if (angles) {
-            return masu_bake_json_wrong(&sun, "give either \"direction\" or the two angles");
+            return masu_bake_json_wrong(
+                &sun, "expected either \"direction\" or the two angles, found both");
         }
         if (!masu_bake_normalize(&direction)) {
             masu_bake_json at = masu_bake_json_member(&sun, "direction");
-            return masu_bake_json_wrong(&at, "has no length");
+            return masu_bake_json_wrong(&at, "expected a vector that is not zero");
         }
         l->sun_direction = direction;
     } else if (angles) {
@@ -151,11 +152,11 @@ static bool read_sky(const masu_bake_json *scene, masu_bake_look *l) {
     bool analytic = masu_bake_json_has(&sky, "turbidity");
     bool colors = masu_bake_json_has(&sky, "zenith") || masu_bake_json_has(&sky, "horizon");
     if (analytic && (colors || masu_bake_json_has(scene, "ambient"))) {
-        return masu_bake_json_wrong(
-            &sky, "with \"turbidity\" the colours of the sky and \"ambient\" follow from the sun");
+        return masu_bake_json_wrong(&sky, "\"turbidity\" sets the colours of the sky: remove "
+                                          "\"zenith\", \"horizon\" and \"ambient\"");
     }
     if (!analytic && masu_bake_json_has(&sky, "ground"))
-        return masu_bake_json_wrong(&sky, "\"ground\" is of a sky with \"turbidity\"");
+        return masu_bake_json_wrong(&sky, "\"ground\" needs \"turbidity\"");
     return true;
 }
 
@@ -201,7 +202,8 @@ static bool read_fog(const masu_bake_json *scene, masu_bake_look *l) {
         return false;
     }
     if (visibility > 0 && masu_bake_json_has(&fog, "density"))
-        return masu_bake_json_wrong(&fog, "give either \"density\" or \"visibility\"");
+        return masu_bake_json_wrong(&fog,
+                                    "expected either \"density\" or \"visibility\", found both");
     if (visibility > 0) l->fog_density = -log(0.02) / visibility;
     return true;
 }
@@ -229,7 +231,7 @@ bool masu_bake_read_environment(const masu_bake_json *scene, masu_bake_reader *r
     if (!file) return masu_bake_json_wrong(&at, "needs \"file\"");
     if (masu_bake_json_has(scene, "sky") || masu_bake_json_has(scene, "ambient"))
         return masu_bake_json_wrong(&at,
-                                    "is sky and ambient light: without \"sky\" and \"ambient\"");
+                                    "replaces the sky: remove \"sky\" and \"ambient\"");
     uint32_t edge = (uint32_t)size;
     if (edge != size || (edge & (edge - 1))) {
         masu_bake_json where = masu_bake_json_member(&at, "size");

@@ -21,29 +21,32 @@ static void report(masu_import *m) {
     if (m->texture_count) {
         m->textures.bytes -= 2; /* the last ", " */
         masu_bake_append(&m->textures, "", 1);
-        masu_import_format(w, "textures that nothing is made of: %s%s\n",
+        masu_import_format(w, "unsupported textures: %s%s\n",
                            (const char *)m->textures.data,
                            m->texture_count > MASU_IMPORT_NAMES_MAX ? ", ..." : "");
     }
     if (m->invisible) {
-        masu_import_format(w, "%u materials have an opacity of 0: they are taken for opaque\n", m->invisible);
+        masu_import_format(w, "%u materials have an opacity of 0: treated as opaque\n",
+                           m->invisible);
     }
     if (m->turned) {
-        masu_import_format(w, "%u meshes have textures that are turned: they are not\n", m->turned);
+        masu_import_format(w, "%u meshes have rotated textures: the rotation is ignored\n",
+                           m->turned);
     }
     if (m->unmapped) {
         masu_import_format(
             w,
-            "%u meshes have textures but no texture coordinates: they get the colour "
-            "of one texel\n",
+            "%u meshes have textures but no texture coordinates: one texel colours "
+            "the whole mesh\n",
             m->unmapped);
     }
     if (m->other_lights) {
-        masu_import_format(w, "%u lights are neither points nor spots: there is nothing of them\n",
+        masu_import_format(w, "%u lights are neither point nor spot lights: ignored\n",
                            m->other_lights);
     }
     if (!m->moving && (m->skins || m->source->mNumAnimations)) {
-        masu_bake_append_text(w, "animations are of models that are \"moving\": this one has its rest pose\n");
+        masu_bake_append_text(w,
+                              "only \"moving\" models are animated: this one has its rest pose\n");
     }
 }
 
@@ -74,7 +77,7 @@ static void convert(masu_import *m, masu_bake_buffer *error) {
     } else if (m->full) {
         masu_bake_append_text(error, "more than 2^31 - 1 vertices or indices");
     } else if (parts.bytes == 0 && masu_bake_count(&m->bent, MASU_BLOB_PRIMITIVES) == 0) {
-        masu_bake_append_text(error, "it holds no triangles that could be drawn");
+        masu_bake_append_text(error, "no triangles to draw");
         masu_import_report_losses(m);
         if (m->warnings->bytes) { /* one line says why */
             masu_bake_append_text(error, "; ");
@@ -110,7 +113,7 @@ static void note_remark(const char *text, char *user) {
     }
     int length = (int)strcspn(colon + 2, "\n");
     masu_bake_buffer line = {0};
-    masu_bake_append_text(&line, "the importer says: ");
+    masu_bake_append_text(&line, "importer: ");
     masu_import_name(&line, colon + 2, length < 200 ? length : 200);
     masu_bake_append(&line, "\n", 2); /* with its NUL */
     masu_bake_append(remarks, "", 1);
@@ -125,7 +128,7 @@ static void note_remark(const char *text, char *user) {
 /* False after an error, or where the file is of an older glTF. */
 static bool read_gltf(masu_gltf *g) {
     if (masu_gltf_read(g)) return true;
-    if (!g->old && !masu_gltf_failed(g)) masu_bake_append_text(g->error, "it is not glTF");
+    if (!g->old && !masu_gltf_failed(g)) masu_bake_append_text(g->error, "not a glTF file");
     return false;
 }
 
@@ -154,7 +157,7 @@ static const struct aiScene *read_assimp(const char *path, masu_bake_buffer *war
     }
     if (!scene) {
         const char *why = aiGetErrorString();
-        masu_bake_append_text(error, why && *why ? why : "the importer gives no reason");
+        masu_bake_append_text(error, why && *why ? why : "the importer gave no reason");
     }
     return scene;
 }
@@ -167,7 +170,7 @@ void masu_bake_read_model(const char *path, const masu_bake_wanted *wanted, masu
     bool ours = masu_gltf_is_named(path) && read_gltf(&g);
     const struct aiScene *scene = ours ? &g.scene : NULL;
     if (!ours && error->bytes) return;
-    if (!ours && wanted->variant) masu_bake_append_text(warnings, "it is no glTF 2 file: it has no variants\n");
+    if (!ours && wanted->variant) masu_bake_append_text(warnings, "variants need a glTF 2 file\n");
     if (!ours && !(scene = read_assimp(path, warnings, error))) return;
     masu_import m = {.source = scene,
                      .given = (const masu_import_given *)(const void *)g.given.data,

@@ -51,7 +51,8 @@ static struct aiFile *open_file(struct aiFileIO *io, const char *path, const cha
     if (!path || !mode || mode[0] != 'r' || stat(path, &about) != 0 || !S_ISREG(about.st_mode)) return NULL;
     if (!masu_bake_inside(files->model, path)) {
         if (!files->warned)
-            masu_import_format(files->warnings, "%.200s lies outside of the model's folder: left out\n", path);
+            masu_import_format(files->warnings,
+                               "%.200s is outside of the model's folder: ignored\n", path);
         files->warned = true;
         return NULL;
     }

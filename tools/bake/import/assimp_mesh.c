@@ -27,12 +27,12 @@ static void note_losses(masu_import *m, const struct aiMesh *mesh, const masu_ba
 
 void masu_import_report_losses(masu_import *m) {
     static const char *const what[MASU_LOSSES] = {
-        [MASU_LOST_INDEX] = "triangles left out, an index is out of range",
-        [MASU_LOST_POSITION] = "triangles left out, a vertex is not finite",
-        [MASU_LOST_AREA] = "triangles left out, they have no area",
-        [MASU_LOST_NORMAL] = "normals made new, they were not usable",
-        [MASU_LOST_FACE] = "points and lines left out",
-        [MASU_LOST_TEXCOORD] = "texture coordinates set to 0, they were not finite or beyond 16384",
+        [MASU_LOST_INDEX] = "triangles skipped: an index is out of range",
+        [MASU_LOST_POSITION] = "triangles skipped: a vertex is not finite",
+        [MASU_LOST_AREA] = "triangles skipped: they have no area",
+        [MASU_LOST_NORMAL] = "normals regenerated: they were invalid",
+        [MASU_LOST_FACE] = "points and lines skipped",
+        [MASU_LOST_TEXCOORD] = "texture coordinates set to 0: they were not finite or beyond 16384",
     };
     for (int kind = 0; kind < MASU_LOSSES; kind++) {
         masu_import_loss *l = &m->losses[kind];

@@ -236,7 +236,7 @@ bool masu_import_walk(masu_import *m, bool convert) {
 }
 
 void masu_import_show_all(masu_import *m) {
-    masu_bake_append_text(m->warnings, "no nodes; every mesh is shown once\n");
+    masu_bake_append_text(m->warnings, "no nodes: every mesh has one instance\n");
     unsigned *order = masu_bake_allocate(m->source->mNumMeshes * sizeof *order);
     masu_bake_affine identity = masu_bake_identity();
     for (unsigned i = 0; i < m->source->mNumMeshes; i++) {

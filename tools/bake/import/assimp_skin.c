@@ -424,15 +424,16 @@ static void make_nodes(masu_import *m) {
 static void report_live(masu_import *m) {
     if (m->crowded) {
         masu_import_format(m->warnings,
-                           "%u vertices are moved by more than 4 joints: by the 4 that move them most\n",
+                           "%u vertices have more than 4 joints: the 4 largest weights are used\n",
                            m->crowded);
     }
     if (m->unbound) {
-        masu_import_format(m->warnings, "%u vertices of skins are moved by no joint: by their node\n",
+        masu_import_format(m->warnings,
+                           "%u vertices of skins have no joint: they follow their node\n",
                            m->unbound);
     }
     if (m->lost_joints) {
-        masu_import_format(m->warnings, "%u joints are no nodes of the file: they do not move\n",
+        masu_import_format(m->warnings, "%u joints are not nodes of the file: they are static\n",
                            m->lost_joints);
     }
 }

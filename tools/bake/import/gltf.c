@@ -144,9 +144,10 @@ static bool decode_data(masu_gltf *g, const char *uri, masu_gltf_bytes *out) {
 bool masu_gltf_fetch(masu_gltf *g, const char *uri, masu_gltf_bytes *out) {
     if (strncmp(uri, "data:", 5) == 0) return decode_data(g, uri, out);
     const char *path = masu_gltf_path(g, uri);
-    if (!path) return masu_gltf_fail(g, "%.100s is no file beside the model", uri);
+    if (!path) return masu_gltf_fail(g, "%.100s is not a file in the model's folder", uri);
     if (!masu_bake_inside(g->path, path))
-        return masu_gltf_fail(g, "%.100s lies outside of the model's folder (--texture-path names others)", uri);
+        return masu_gltf_fail(
+            g, "%.100s is outside of the model's folder (--texture-path adds folders)", uri);
     return read_whole(g, path, out);
 }
 
@@ -186,11 +187,11 @@ static uint32_t word_at(const unsigned char *p) {
 static bool open_glb(masu_gltf *g, masu_gltf_bytes *text) {
     const unsigned char *data = g->file.data;
     size_t bytes = g->file.bytes;
-    if (bytes < GLB_HEAD + CHUNK_HEAD) return masu_gltf_fail(g, "the file ends in its head");
+    if (bytes < GLB_HEAD + CHUNK_HEAD) return masu_gltf_fail(g, "the file ends in its header");
     g->old = word_at(data + 4) == 1;
     if (g->old) return false;
     if (word_at(data + 4) != 2)
-        return masu_gltf_fail(g, "version %u of the container, where 2 is read", word_at(data + 4));
+        return masu_gltf_fail(g, "container: found version %u, expected 2", word_at(data + 4));
     if (word_at(data + 8) > bytes)
         return masu_gltf_fail(g, "it says that it has %u bytes, and has %zu", word_at(data + 8), bytes);
     if (word_at(data + 8) >= GLB_HEAD) bytes = word_at(data + 8);
@@ -222,7 +223,7 @@ static bool parse(masu_gltf *g) {
     g->root = json_loadb((const char *)text.data, text.bytes, JSON_ALLOW_NUL, &error);
     if (!g->root)
         return masu_gltf_fail(g, "line %d, column %d: %s", error.line, error.column, error.text);
-    return json_is_object(g->root) || masu_gltf_fail(g, "its JSON is no object");
+    return json_is_object(g->root) || masu_gltf_fail(g, "its JSON is not an object");
 }
 
 /* ---- extensions ---- */
@@ -257,7 +258,8 @@ static bool check_required(masu_gltf *g) {
     for (size_t i = 0; i < json_array_size(required); i++) {
         const char *name = json_string_value(json_array_get(required, i));
         if (!name || !is_read(name))
-            return masu_gltf_fail(g, "it requires %s, which is not read", name ? name : "something");
+            return masu_gltf_fail(g, "it requires %s, which is not supported",
+                                  name ? name : "something");
     }
     return !masu_gltf_failed(g);
 }
@@ -279,7 +281,7 @@ static void note_extensions(masu_gltf *g, const json_t *in, const char *name, in
                 json_t *about;
                 json_object_foreach(value, extension, about) {
                     char what[128];
-                    snprintf(what, sizeof what, "times %.64s, which is not read", extension);
+                    snprintf(what, sizeof what, "times %.64s, which is not supported", extension);
                     if (!is_read(extension)) masu_gltf_note_one(g, what, name);
                 }
             }
@@ -300,9 +302,9 @@ static bool check_version(masu_gltf *g) {
              (version && strncmp(version, "1.", 2) == 0);
     if (g->old) return false;
     if (!version || strncmp(version, "2.", 2) != 0)
-        return masu_gltf_fail(g, "version \"%s\" of glTF, where 2.0 is read", version ? version : "");
+        return masu_gltf_fail(g, "found glTF version \"%s\", expected 2.0", version ? version : "");
     return !least || strcmp(least, "2.0") == 0 ||
-           masu_gltf_fail(g, "it needs version \"%s\" of glTF, where 2.0 is read", least);
+           masu_gltf_fail(g, "it needs glTF version \"%s\", expected 2.0", least);
 }
 
 static bool check_arrays(masu_gltf *g) {
@@ -334,7 +336,7 @@ static bool find_variant(masu_gltf *g) {
     masu_bake_append(&names, "", 1);
     bool good = !masu_gltf_failed(g);
     if (good && g->variant && g->variant_index < 0) {
-        good = masu_gltf_fail(g, "it has no variant \"%s\"; there are: %.300s", g->variant,
+        good = masu_gltf_fail(g, "it has no variant \"%s\"; available: %.300s", g->variant,
                               names.bytes > 1 ? (const char *)names.data : "none");
     }
     masu_bake_release(&names);

@@ -179,7 +179,7 @@ static bool find_sparse(masu_gltf *g, const json_t *sparse, accessor *a) {
         return false;
     if (count == 0) return true;
     if (count > a->count || !indices || !values || (type != UBYTE && type != USHORT && type != UINT))
-        return masu_gltf_fail(g, "\"sparse\" is not as it must be");
+        return masu_gltf_fail(g, "\"sparse\" is invalid");
     if (!elements(g, indices, count, size_of(type), false, &a->at, &stride) ||
         !elements(g, values, count, (size_t)a->size * a->components, false, &a->values, &stride))
         return false;
@@ -203,7 +203,7 @@ static bool find(masu_gltf *g, json_int_t index, unsigned components, accessor *
     a->size = size_of(type);
     a->type = (unsigned)type;
     if (!a->size || !a->components || (a->components == 16 && type != FLOAT))
-        return masu_gltf_fail(g, "accessors[%lld] is of a type that there is not", (long long)index);
+        return masu_gltf_fail(g, "accessors[%lld] has an unknown type", (long long)index);
     if (components && a->components != components) {
         return masu_gltf_fail(g, "accessors[%lld] is \"%s\": %u numbers are needed", (long long)index,
                               shape, components);

@@ -158,7 +158,8 @@ static struct aiNodeAnim *read_channel(masu_gltf *g, const json_t *clip, const j
     const char *how = masu_gltf_string(g, about, "interpolation");
     int kind = !how || !strcmp(how, "LINEAR") ? LINEAR : !strcmp(how, "STEP") ? STEP : CUBIC;
     if (path && strcmp(path, "weights") == 0)
-        masu_gltf_note_one(g, "channels of clips change morph weights, which stay as they are", g->where);
+        masu_gltf_note_one(g, "animation channels change morph weights, which are not animated",
+                           g->where);
     keys k = {.components = find_path(path) == 1 ? 4 : 3};
     if (find_path(path) < 0 || node < 0 || !about || masu_gltf_failed(g)) return NULL;
     if (!masu_gltf_index(g, about, "input", accessors, &input) ||

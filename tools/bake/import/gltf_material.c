@@ -40,7 +40,7 @@ static uint32_t add_image(masu_gltf *g, json_int_t index) {
     if (uri && strncmp(uri, "data:", 5) != 0) {
         const char *path = masu_gltf_path(g, uri);
         if (!path) {
-            masu_gltf_note_one(g, "pictures that are no files beside the model: left out", uri);
+            masu_gltf_note_one(g, "images that are not files in the model's folder: ignored", uri);
             return MASU_BLOB_NONE;
         }
         about.outside = !masu_bake_inside(g->path, path);
@@ -49,7 +49,7 @@ static uint32_t add_image(masu_gltf *g, json_int_t index) {
     if (uri ? !masu_gltf_fetch(g, uri, &bytes) : view >= 0 && !masu_gltf_view(g, view, &bytes, &stride))
         return MASU_BLOB_NONE;
     if (!bytes.bytes) {
-        masu_gltf_note_one(g, "pictures that are empty: left out", called);
+        masu_gltf_note_one(g, "empty images: ignored", called);
         return MASU_BLOB_NONE;
     }
     masu_import_format(&name, "%s:%lld", g->path ? g->path : "", (long long)index);
@@ -87,7 +87,8 @@ static bool read_sampler(masu_gltf *g, const json_t *about, texture *t) {
         return false;
     for (int k = 0; k < 2; k++) t->wrap[k] = wrap[k] == 33071 ? 1 : wrap[k] == 33648 ? 2 : 0;
     if (filter == 9728) {
-        masu_gltf_note_one(g, "textures want the nearest texel: they are filtered",
+        masu_gltf_note_one(g,
+                           "textures request nearest-neighbour filtering, which is not supported",
                            masu_gltf_name_of(g, "samplers", (size_t)index, sampler));
     }
     return true;
@@ -126,7 +127,7 @@ static bool read_texture(masu_gltf *g, const json_t *of, const char *member, tex
         !source_of(g, about, &image))
         return false;
     if (image < 0) {
-        masu_gltf_note_one(g, "textures have no picture that is read",
+        masu_gltf_note_one(g, "textures have no supported image",
                            masu_gltf_name_of(g, "textures", (size_t)index, about));
         return !masu_gltf_failed(g);
     }
@@ -193,9 +194,13 @@ static const texture *agree(masu_gltf *g, maps *m, float detail[2]) {
         bool same = repeats(first, t, own) && near(own[0], i < 2 ? 1 : times[0]) &&
                     near(own[1], i < 2 ? 1 : times[1]);
         if (!same)
-            leave_out(g, t, "textures want other coordinates than the base colour of their material: left out");
+            leave_out(
+                g, t,
+                "textures use other coordinates than the base colour of their material: ignored");
         else if (memcmp(t->wrap, first->wrap, sizeof t->wrap) != 0)
-            masu_gltf_note_one(g, "textures repeat in another way than the base colour of their material: as that does",
+            masu_gltf_note_one(g,
+                               "textures have another wrap mode than the base colour of their "
+                               "material, which is used",
                                g->where);
     }
     detail[0] = (float)times[0];
@@ -225,7 +230,7 @@ static void settle(masu_gltf *g, maps *m, masu_gltf_material *out) {
 static void note_texture(masu_gltf *g, const json_t *of, const char *member) {
     char what[128];
     if (!of || !json_object_get(of, member)) return;
-    snprintf(what, sizeof what, "materials have a \"%s\", which is not read", member);
+    snprintf(what, sizeof what, "materials have a \"%s\", which is not supported", member);
     masu_gltf_note_one(g, what, g->where);
 }
 
@@ -277,8 +282,8 @@ static bool read_glossiness(masu_gltf *g, const json_t *about, masu_gltf_materia
     double rest = 1 - fmax(specular[0], fmax(specular[1], specular[2])), metallic = 0;
     bool pictured = m->all[MASU_BAKE_ROUGHNESS].image != MASU_BLOB_NONE;
     if (pictured) { /* the factor is that of a picture */
-        masu_gltf_note_one(g, "materials have a picture of their specular colour: its glossiness alone is read",
-                           g->where);
+        masu_gltf_note_one(
+            g, "materials have a specular colour texture: only its glossiness is used", g->where);
         rest = 1;
     } else {
         metallic = solve_metallic(brightness(diffuse), brightness(specular), rest);
@@ -334,7 +339,8 @@ static bool read_specular(masu_gltf *g, const json_t *about, masu_blob_material 
     note_texture(g, specular, "specularTexture");
     note_texture(g, specular, "specularColorTexture");
     if (!near(color[0], color[1]) || !near(color[1], color[2]))
-        masu_gltf_note_one(g, "materials have a specular colour: its brightness alone is read", g->where);
+        masu_gltf_note_one(g, "materials have a specular colour: only its brightness is used",
+                           g->where);
     if (!specular && !refraction) return true;
     double root = (index - 1) / (index + 1), share = 0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2];
     double reflectance = index > 0 ? root * root : 1; /* 0 stands for infinity */
@@ -357,7 +363,9 @@ static void settle_normals(masu_gltf *g, masu_gltf_material *out, maps *m, textu
                near(scale[0], scale[1])) {
         out->given.maps.relief_of = MASU_BAKE_RELIEF_OF_BOTH;
     } else {
-        leave_out(g, coat, "clear coats have another picture of normals than what lies below: it is left out, they are smooth");
+        leave_out(
+            g, coat,
+            "clear coats have another normal map than the base layer: ignored, they are smooth");
     }
 }
 
@@ -431,7 +439,7 @@ static bool read_material(masu_gltf *g, const json_t *about, masu_gltf_material 
         !masu_gltf_number(g, masu_gltf_object(g, about, "occlusionTexture"), "strength", &strength))
         return false;
     if (!near(strength, 1) && m.all[MASU_BAKE_OCCLUSION].image != MASU_BLOB_NONE)
-        masu_gltf_note_one(g, "occlusion maps have a strength, which is not read", g->where);
+        masu_gltf_note_one(g, "occlusion maps have a strength, which is not supported", g->where);
     out->given.maps.single = !json_is_true(json_object_get(about, "doubleSided"));
     if (masu_gltf_extension(g, about, "KHR_materials_unlit")) make_unlit(out, &m);
     settle(g, &m, out);

@@ -136,7 +136,7 @@ static void note_attributes(masu_gltf *g, const source *s, const masu_gltf_mater
         if (!strcmp(key, "POSITION") || !strcmp(key, "NORMAL") || !strcmp(key, "TANGENT") ||
             !strcmp(key, "COLOR_0") || !strncmp(key, "TEXCOORD_", 9) || (joints && skinned))
             continue;
-        snprintf(what, sizeof what, "primitives have %.48s, which is not read", key);
+        snprintf(what, sizeof what, "primitives have %.48s, which is not supported", key);
         masu_gltf_note_one(g, what, s->name);
     }
 }
@@ -159,7 +159,9 @@ static bool morph(masu_gltf *g, const source *s, const json_t *weights, vertices
                 to[a][i] = (float)((double)to[a][i] + weight * (double)from[i]);
         }
         if (json_object_get(target.attributes, "COLOR_0") || json_object_get(target.attributes, "TEXCOORD_0"))
-            masu_gltf_note_one(g, "morph targets change colours or texture coordinates, which is not read", s->name);
+            masu_gltf_note_one(
+                g, "morph targets change colours or texture coordinates, which is not supported",
+                s->name);
     }
     return !masu_gltf_failed(g);
 }
@@ -453,7 +455,7 @@ static bool read_primitive(masu_gltf *g, source *s, unsigned mode, json_int_t sk
     v.positions = attribute(g, s, "POSITION", 3, 3, 0, &v.count, &n);
     if (masu_gltf_failed(g)) return false;
     if (!v.positions) {
-        masu_gltf_note_one(g, "primitives have no positions: left out", s->name);
+        masu_gltf_note_one(g, "primitives have no positions: skipped", s->name);
         return true;
     }
     v.normals = attribute(g, s, "NORMAL", 3, 3, v.count, &count, &n);
@@ -478,9 +480,10 @@ static bool read_mesh(masu_gltf *g, const json_t *mesh, size_t index, json_int_t
         s.attributes = masu_gltf_object(g, s.primitive, "attributes");
         if (!masu_gltf_size(g, s.primitive, "mode", &mode)) break;
         if (mode < 4) {
-            masu_gltf_note_one(g, mode ? "primitives are lines: left out" : "primitives are points: left out", name);
+            masu_gltf_note_one(
+                g, mode ? "primitives are lines: skipped" : "primitives are points: skipped", name);
         } else if (mode > 6 || !s.attributes) {
-            masu_gltf_fail(g, "primitives[%zu] has no attributes, or a mode that there is not", i);
+            masu_gltf_fail(g, "primitives[%zu] has no attributes or an unknown mode", i);
         } else {
             read_primitive(g, &s, (unsigned)mode, skin, weights, &numbers);
             masu_gltf_draco_close(&s.draco);

@@ -88,7 +88,7 @@ static bool link_children(masu_gltf *g, size_t index, const json_t *node, bool *
         const json_t *child = json_array_get(children, i);
         json_int_t number = json_is_integer(child) ? json_integer_value(child) : -1;
         if (number < 0 || (size_t)number >= g->node_count)
-            return masu_gltf_fail(g, "children[%zu] is no node", i);
+            return masu_gltf_fail(g, "children[%zu] is not a node", i);
         if (is_child[number])
             return masu_gltf_fail(g, "nodes[%lld] is a child of two nodes", (long long)number);
         is_child[number] = true;
@@ -114,7 +114,7 @@ static bool find_roots(masu_gltf *g, const bool *is_child, struct aiNode *root) 
         const json_t *node = json_array_get(nodes, i);
         json_int_t number = json_is_integer(node) ? json_integer_value(node) : -1;
         if (number < 0 || (size_t)number >= g->node_count)
-            return masu_gltf_fail(g, "\"nodes\"[%zu] is no node", i);
+            return masu_gltf_fail(g, "\"nodes\"[%zu] is not a node", i);
         if (is_child[number] || taken[number])
             return masu_gltf_fail(g, "nodes[%lld] is a root and below a node, or a root twice", (long long)number);
         taken[number] = true;
@@ -173,7 +173,8 @@ static bool add_camera(masu_gltf *g, const json_t *node, const struct aiNode *at
     double height = 0, aspect = 16.0 / 9;
     if (!camera || masu_gltf_failed(g)) return false;
     if (!lens) {
-        masu_gltf_note_one(g, "cameras without a perspective, which are not read", at->mName.data);
+        masu_gltf_note_one(g, "cameras without perspective, which are not supported",
+                           at->mName.data);
         return true;
     }
     if (!masu_gltf_number(g, lens, "yfov", &height) || !masu_gltf_number(g, lens, "aspectRatio", &aspect)) return false;
@@ -266,7 +267,7 @@ static bool check_skins(masu_gltf *g) {
             const json_t *joint = json_array_get(joints, k);
             if (!json_is_integer(joint) || json_integer_value(joint) < 0 ||
                 (uint64_t)json_integer_value(joint) >= g->node_count)
-                return masu_gltf_fail(g, "joints[%zu] is no node", k);
+                return masu_gltf_fail(g, "joints[%zu] is not a node", k);
         }
     }
     g->where[0] = '\0';

@@ -80,16 +80,16 @@ static bool read_hdr(const char *path, rgbe_reader r, masu_bake_panorama *out) {
     unsigned height = 0, width = 0;
     bool rgbe = false;
     if (!next_line(&r, line, sizeof line) || strncmp(line, "#?", 2) != 0)
-        return masu_cli_error("%s: no Radiance picture", path), false;
+        return masu_cli_error("%s: not a Radiance image", path), false;
     while (next_line(&r, line, sizeof line) && line[0])
         rgbe |= strcmp(line, "FORMAT=32-bit_rle_rgbe") == 0;
     if (!rgbe || !next_line(&r, line, sizeof line) ||
         sscanf(line, "-Y %u +X %u", &height, &width) != 2) {
-        return masu_cli_error("%s: no RGBE picture with rows from top to bottom", path), false;
+        return masu_cli_error("%s: not an RGBE image with rows from top to bottom", path), false;
     }
     if (width < 1 || height < 1 || width > MASU_IMAGE_SIDE_MAX || height > MASU_IMAGE_SIDE_MAX)
-        return masu_cli_error("%s: %ux%u pixels, allowed are 1 to %u a side", path, width, height,
-                              MASU_IMAGE_SIDE_MAX),
+        return masu_cli_error("%s: found %ux%u pixels, expected 1 to %u per side", path, width,
+                              height, MASU_IMAGE_SIDE_MAX),
                false;
     out->rgb = calloc((size_t)width * height, 3 * sizeof(float));
     uint8_t *row = malloc(4 * (size_t)width);
@@ -97,7 +97,7 @@ static bool read_hdr(const char *path, rgbe_reader r, masu_bake_panorama *out) {
     if (!good) masu_cli_error("%s: no memory for %ux%u pixels", path, width, height);
     for (uint32_t y = 0; y < height && good; y++) {
         good = read_row(&r, row, width);
-        if (!good) masu_cli_error("%s: ends or is damaged in row %u of %u", path, y, height);
+        if (!good) masu_cli_error("%s: truncated or damaged in row %u of %u", path, y, height);
         for (uint32_t x = 0; x < width && good; x++) {
             float unit = row[3 * width + x] ? ldexpf(1.0f, row[3 * width + x] - 136) : 0.0f;
             for (uint32_t c = 0; c < 3; c++)
@@ -144,7 +144,7 @@ bool masu_bake_load_panorama(const char *path, masu_bake_panorama *out) {
         if (good) good = read_hdr(path, (rgbe_reader){from, from + bytes.bytes}, out);
         free(bytes.data);
     } else {
-        masu_cli_error("%s: an environment is a .hdr or .pfm file", path);
+        masu_cli_error("%s: expected a .hdr or .pfm file", path);
     }
     for (size_t i = 0; good && i < 3 * (size_t)out->width * out->height; i++) {
         good = out->rgb[i] >= 0.0f && isfinite(out->rgb[i]);

@@ -30,7 +30,7 @@ static bool place(const masu_bake_content *content, const masu_bake_probe_settin
     masu_bake_affine identity = masu_bake_identity();
     masu_bake_box box = s->has_bounds ? s->bounds : masu_bake_bounds(content, &identity);
     if (masu_bake_box_is_empty(&box)) {
-        masu_cli_error("probes: the scene shows no polygons and gives no bounds for them");
+        masu_cli_error("probes: the scene has neither polygons nor bounds for them");
         return false;
     }
     const double low[3] = {box.low.x, box.low.y, box.low.z};
@@ -322,7 +322,7 @@ bool masu_bake_make_probes(masu_bake_content *content, const masu_bake_probe_set
     masu_cli_progress("tracing %u light probes", count);
     masu_path_share(count, s->threads, trace_probe, &w);
     report->invalid = fill_invalid(&w);
-    if (report->invalid == count) masu_cli_warn("probes: all %u are inside of surfaces", count);
+    if (report->invalid == count) masu_cli_warn("probes: all %u are inside surfaces", count);
     masu_bake_buffer *out = &content->section[MASU_BLOB_PROBE_DATA];
     write_sets(&w, &p, out);
     masu_bake_append(out, w.maps, (size_t)count * map * sizeof(uint32_t));

@@ -151,10 +151,10 @@ static bool grow_tree(baker *b, masu_blob_trace_mesh *out) {
         if (shape.depth > b->report->depth) b->report->depth = shape.depth;
         b->report->meshes++;
     } else {
-        masu_cli_error(
-            "reflections: a tree of %u levels, at most %u; %llu nodes in all, at most %u",
-            shape.depth, MASU_TRACE_DEPTH_MAX, (unsigned long long)(before + shape.nodes),
-            MASU_TRACE_NODES_MAX);
+        masu_cli_error("reflections: found a BVH of %u levels, expected at most %u; %llu nodes in "
+                       "total, expected at most %u",
+                       shape.depth, MASU_TRACE_DEPTH_MAX,
+                       (unsigned long long)(before + shape.nodes), MASU_TRACE_NODES_MAX);
     }
     free(order);
     free(below);

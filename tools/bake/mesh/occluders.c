@@ -126,7 +126,8 @@ void masu_bake_drop_occluders(masu_bake_content *content) {
             MASU_BAKE_OCCLUDERS(content)[kept++] = o;
         } else if (o.mesh != warned) {
             warned = o.mesh;
-            masu_cli_warn("the mesh \"%s\" is masked, blended or inside out: it is no occluder",
+            masu_cli_warn("the mesh \"%s\" is alpha-tested, transparent or inside out: it cannot "
+                          "be an occluder",
                           masu_bake_name_text(content, mesh->name));
         }
     }

@@ -133,7 +133,7 @@ static bool compile_scene(const char *path, masu_bake_content *content, masu_bak
     masu_cli_progress("compiling %s", path);
     bool good = masu_bake_count(content, MASU_BLOB_SDF_PARAMS) == 0;
     if (!good) {
-        masu_cli_error("%s: its parameters are declared in it, not in the scene's JSON", path);
+        masu_cli_error("%s: a .sdf file declares its own parameters: remove \"params\" from the scene", path);
         masu_bake_release(&own);
         return false;
     }

@@ -105,8 +105,8 @@ static bool field(trial *t, const double p[3], double *f) {
     for (int i = 0; i < 3 && t->input; i++) t->input[2 + i].f = p[i];
     if (!masu_bake_machine_run(t->machine, error, sizeof error)) {
         snprintf(t->text, sizeof t->text,
-                 "Wpart %s: its glsl is believed, since it cannot be run here: %s", t->part->name,
-                 error);
+                 "Wpart %s: its glsl was not tested, since it cannot run on the CPU: %s",
+                 t->part->name, error);
         return false;
     }
     *f = t->result->f * t->part->lipschitz;
@@ -180,8 +180,8 @@ static void body(void *argument, int fd) {
     size_t count;
     t->machine = masu_bake_machine_make(t->words, t->count, error, sizeof error);
     if (!t->machine) {
-        snprintf(t->text, sizeof t->text, "Wits glsl is believed, since it cannot be run here: %s",
-                 error);
+        snprintf(t->text, sizeof t->text,
+                 "Wits glsl was not tested, since it cannot run on the CPU: %s", error);
     } else {
         t->slots = masu_bake_machine_buffer(t->machine, BIND_SLOTS, &count);
         t->input = masu_bake_machine_buffer(t->machine, BIND_INPUT, &count);
@@ -213,7 +213,7 @@ bool masu_bake_try(const masu_sdfc_result *scene, const uint32_t *words, size_t 
     masu_bake_append(&said, "", 1);
     const char *text = (const char *)said.data;
     bool ended = result.end == MASU_BAKE_EXITED && result.code == 0;
-    if (!ended) masu_cli_warn("%s: its glsl is believed, since trying it did not end well", path);
+    if (!ended) masu_cli_warn("%s: its glsl was not tested, since the test did not finish", path);
     if (ended && text[0] == 'W') masu_cli_warn("%s: %s", path, text + 1);
     if (ended && text[0] == 'E') masu_cli_error("%s: %s", path, text + 1);
     bool good = !(ended && text[0] == 'E');

@@ -93,7 +93,8 @@ static unsigned char *read_bytes(const job *j, int fd, size_t *bytes) {
     off_t size = 0;
     FILE *file = find(j, &size);
     if (!file) {
-        give_up(fd, j->image->outside ? "lies outside of its model's folder (--texture-path names others)"
+        give_up(fd, j->image->outside
+                        ? "is outside of its model's folder (--texture-path adds folders)"
                     : errno == EINVAL ? "not a regular file"
                                       : strerror(errno));
         return NULL;
@@ -195,8 +196,8 @@ static void decode(const job *j, const unsigned char *data, size_t bytes, int fd
     const char *format = masu_bake_image_format(data, bytes, j->name);
     if (!format) {
         bool ktx = bytes > 12 && memcmp(data, "\xABKTX 20\xBB\r\n\x1A\n", 12) == 0;
-        give_up(fd, ktx ? "a KTX2 (Basis) picture, which is not read: PNG, JPEG or WebP are"
-                        : "not a picture of a kind that is read");
+        give_up(fd, ktx ? "a KTX2 (Basis) image, which is not supported: use PNG, JPEG or WebP"
+                        : "not an image in a supported format");
         return;
     }
     char forced[16];
@@ -228,7 +229,7 @@ static void read_in_child(void *argument, int fd) {
 /* ---- the parent's side ---- */
 
 static bool warn(const char *name, const char *why) {
-    masu_cli_warn("texture %s: %s; left out", name, why);
+    masu_cli_warn("texture %s: %s; ignored", name, why);
     return false;
 }
 
@@ -243,9 +244,9 @@ bool masu_bake_read_image(const masu_bake_content *content, uint32_t image, cons
     head h = {0, 0};
     bool good = false;
     if (result.end == MASU_BAKE_TIMEOUT) {
-        warn(name, "reading it takes too long");
+        warn(name, "decoding took too long");
     } else if (result.end != MASU_BAKE_EXITED || result.code || out->bytes < sizeof h) {
-        warn(name, "its reader crashed or ran out of memory");
+        warn(name, "the decoder crashed or ran out of memory");
     } else {
         memcpy(&h, out->data, sizeof h);
         good = h.width > 0 && h.width <= MASU_TEXTURE_SIZE_MAX && h.height > 0 &&
@@ -253,7 +254,7 @@ bool masu_bake_read_image(const masu_bake_content *content, uint32_t image, cons
                out->bytes == sizeof h + (size_t)h.width * h.height * 4;
         if (!good) {
             masu_bake_append(out, "", 1);
-            warn(name, h.width ? "its reader returned something else"
+            warn(name, h.width ? "the decoder returned invalid data"
                                : (const char *)out->data + sizeof h);
         }
     }

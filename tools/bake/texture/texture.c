@@ -215,8 +215,8 @@ static uint8_t judge_alpha(const maker *m, const request *wanted, const float *l
     if (meant == MASU_BAKE_ALPHA_COVERS || masu_mask_is_meant(histogram, masu_texel_to_unorm(wanted->cutoff)))
         return MASU_BAKE_ALPHA_MASK;
     if (!m->sizes) {
-        masu_cli_warn("texture %s: its alpha is not that of a mask (%.0f %% of it is below the cut-off): "
-                      "taken for opaque",
+        masu_cli_warn("texture %s: its alpha is not a mask (%.0f %% of it is below the cut-off): "
+                      "treated as opaque",
                       name_of(m, wanted->image[0]), 100 * (double)below / (double)texels);
     }
     return MASU_BAKE_ALPHA_OPAQUE;
@@ -429,8 +429,9 @@ static void request_all(maker *m, const masu_bake_maps *maps, const masu_blob_ma
             if (!(material->coat > 0)) break;
             if (is_blended(m, maps, material, out[MASU_SLOT_BASE])) {
                 if (!m->sizes && (maps->image[MASU_BAKE_COAT] & maps->image[MASU_BAKE_COAT_ROUGHNESS]) != MASU_BLOB_NONE)
-                    masu_cli_warn("material \"%s\": it is blended, and its coat is the same all over: its map is left out",
-                                  masu_bake_name_text(m->content, material->name));
+                    masu_cli_warn(
+                        "material \"%s\": transparent materials have no coat map: ignored",
+                        masu_bake_name_text(m->content, material->name));
                 break;
             }
             r.image[0] = maps->image[MASU_BAKE_COAT];
@@ -601,15 +602,16 @@ bool masu_bake_make_textures(masu_bake_content *content, const char *directories
         }
         arrays = number_arrays(&m, &made);
         if (arrays <= MASU_TEXTURE_ARRAYS_MAX) break;
-        masu_cli_warn("%u sizes and formats of textures, a scene may have %u: %s", arrays,
-                      MASU_TEXTURE_ARRAYS_MAX,
-                      m.sizes ? "they become squares" : "they become powers of two");
+        masu_cli_warn("found %u combinations of texture size and format, expected at most %u: %s",
+                      arrays, MASU_TEXTURE_ARRAYS_MAX,
+                      m.sizes ? "images are resized to squares"
+                              : "images are resized to powers of two");
     }
     masu_cli_progress_clear();
     bool good = arrays <= MASU_TEXTURE_ARRAYS_MAX;
     if (!good) {
-        masu_cli_error("%u sizes and formats of textures, a scene may have %u", arrays,
-                       MASU_TEXTURE_ARRAYS_MAX);
+        masu_cli_error("found %u combinations of texture size and format, expected at most %u",
+                       arrays, MASU_TEXTURE_ARRAYS_MAX);
     } else {
         write_arrays(&m, made);
         for (size_t i = 0; i < materials; i++) {

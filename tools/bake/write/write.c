@@ -16,18 +16,18 @@ static bool accepted(const char *input, const masu_bake_buffer *blob) {
         return masu_cli_error("%s: %s", input, detail.text), false;
     uint64_t draws = (uint64_t)scene.transparents * scene.transparent_sets;
     if (scene.transparents > MASU_TRANSPARENTS_MAX) {
-        masu_cli_error("%s: %u blended things, at most %u", input, scene.transparents,
-                       MASU_TRANSPARENTS_MAX);
+        masu_cli_error("%s: found %u transparent draws, expected at most %u", input,
+                       scene.transparents, MASU_TRANSPARENTS_MAX);
         return false;
     }
     if (scene.transparent_sets > MASU_TRANSPARENT_SETS_MAX) {
-        masu_cli_error("%s: blended things use more than %u texture sets", input,
+        masu_cli_error("%s: transparent draws use more than %u texture sets", input,
                        MASU_TRANSPARENT_SETS_MAX);
         return false;
     }
     if (draws <= MASU_TRANSPARENT_DRAWS_MAX) return true;
-    masu_cli_error("%s: %u blended things times %u texture sets are %llu, at most %u", input,
-                   scene.transparents, scene.transparent_sets, (unsigned long long)draws,
+    masu_cli_error("%s: %u transparent draws times %u texture sets are %llu, expected at most %u",
+                   input, scene.transparents, scene.transparent_sets, (unsigned long long)draws,
                    MASU_TRANSPARENT_DRAWS_MAX);
     return false;
 }

@@ -1,0 +1,22 @@
+/* lights.h: punctual lights of a frame and their tile lists. */
+#ifndef MASU_SHARED_LIGHTS_H
+#define MASU_SHARED_LIGHTS_H
+
+#include "shared/types.h"
+
+/* A tile's list is a count and light numbers in rising order, or MASU_TILE_ALL (sdf_limits.h) if
+ * more than TILE_LIGHTS_MAX lights reach the tile. */
+#define MASU_LOCAL_LIGHTS_MAX 4096
+#define MASU_TILE_LIGHTS_MAX 63
+
+/* A point or spot light, camera-relative. shaders/light/lights.glsl evaluates it. */
+struct masu_punctual_light_data {
+    masu_vec4 position; /* xyz; w 1 / range^2 */
+    masu_vec4 color;    /* rgb radiant intensity / pi; w smallest squared distance */
+    masu_vec4 axis;     /* xyz unit direction of a spot; w 1 - cos(outer). Point light: 0 0 0 4 */
+    masu_vec4 cone;     /* x 1 / (cos(inner) - cos(outer)), point light 1; y sine and z cosine of
+                           the outer angle, point light 0 */
+    masu_vec4 bound;    /* sphere around everything that it lights: xyz, w radius, rounded up */
+};
+
+#endif

@@ -1,0 +1,41 @@
+/* materials.h: instances, materials and their flags. */
+#ifndef MASU_SHARED_MATERIALS_H
+#define MASU_SHARED_MATERIALS_H
+
+#include "shared/types.h"
+
+/* Material flags of the G-buffer: two bits of the packed normal. */
+#define MASU_SURFACE_EMISSIVE 1u
+#define MASU_SURFACE_MORE 2u /* the surface image holds the remaining parameters */
+
+/* Flags of a textured material; src/scene/blob.h defines the same bits. */
+#define MASU_MAP_BASE 1u
+#define MASU_MAP_NORMAL 2u
+#define MASU_MAP_SURFACE 4u
+#define MASU_MAP_EMISSIVE 8u
+#define MASU_MAP_OCCLUSION 16u
+#define MASU_MAP_COAT 32u
+#define MASU_MAP_ADDITIVE 0x10000u
+#define MASU_MAP_FAR_SIDE_FIRST 0x20000u /* transparent, drawn twice: back faces first */
+#define MASU_MAP_SINGLE 0x40000u         /* single-sided: culled from behind */
+#define MASU_MAP_METAL 0x80000u
+#define MASU_MAP_TINTED 0x100000u        /* transmission is tinted by the base colour */
+#define MASU_MAP_COAT_SMOOTH 0x200000u
+#define MASU_MAP_BASE_SMOOTH 0x400000u
+#define MASU_MAP_CUTOFF_SHIFT 8
+#define MASU_MAP_OCCLUSION_SHIFT 24 /* 8 bits: the layer of the occlusion map */
+
+/* Transform of an instance: the rows of the 3x4 matrix object -> world space. */
+struct masu_instance_data {
+    masu_vec4 row0;
+    masu_vec4 row1;
+    masu_vec4 row2;
+};
+
+struct masu_material_data {
+    masu_vec4 base_color; /* rgb linear albedo; w perceptual roughness 0..1 */
+    masu_vec4 emissive;   /* rgb linear radiance, 0: not emissive; w metallic 0..1 */
+    masu_vec4 more;       /* specular, coat, coat roughness, opacity: each 0..1 */
+};
+
+#endif
