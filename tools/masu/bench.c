@@ -164,8 +164,8 @@ static const masu_option rows[] = {
               "SCENE.masu with the same --out to time the rungs again"),
     MASU_HEADING("Comparison of results"),
     MASU_TEXT(options, against, "against", "DIR2",
-              "compare every rung of DIR with the same setting in DIR2: difference of error\n"
-              "and of time ratio, and the largest differences"),
+              "compare every rung of DIR with the same setting in DIR2: difference of\n"
+              "error and of time ratio, and the largest differences"),
     MASU_TEXT(options, csv, "csv", "FILE", "with --against: write CSV there; '-' is stdout"),
     MASU_FLAG(options, ladder, "ladder", "print the measured ladders LADDER.json..."),
     MASU_HEADING("Device"),

@@ -314,8 +314,8 @@ static const masu_option rows[] = {
              "ground truth: average N full-size samples per pixel (default 64), with the\n"
              "most exact settings and 1024 reflection rays in all"),
     MASU_OWN("reference", "[=N]", read_reference,
-             "trace N unfiltered reflection rays per pixel (default 1024), weighted by the\n"
-             "exact lobe; with --truth: its number of reflection rays"),
+             "trace N unfiltered reflection rays per pixel (default 1024), weighted by\n"
+             "the exact lobe; with --truth: its number of reflection rays"),
     MASU_HEADING("Quality"),
     MASU_UINT(masu_render_options, rung, "rung", 0, MASU_MAX_RUNGS - 1,
               "rung of the ladder, 0 is the best (default 0)"),

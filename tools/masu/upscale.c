@@ -69,7 +69,7 @@ static bool upscale_alpha(const masu_session_desc *d, const struct masu_image *i
     size_t out_pixels = (size_t)d->desc.output.width * d->desc.output.height;
     uint8_t *grey = malloc(in_pixels * 4), *grey_out = malloc(out_pixels * 4);
     bool done = grey && grey_out;
-    if (!done) snprintf(error, size, "no memory for the alpha channel");
+    if (!done) snprintf(error, size, "out of memory for the alpha channel");
     for (size_t i = 0; i < in_pixels && done; i++) {
         memset(grey + 4 * i, image->rgba[4 * i + 3], 3);
         grey[4 * i + 3] = 255;
