@@ -202,7 +202,9 @@ typedef struct masu_scene {
     uint32_t sdf_parts, sdf_slots, sdf_block_words;
     uint32_t sdf_dynamic;   /* 1: slots depend on parameters or time */
     uint32_t sdf_anchored;  /* 1: it keeps its precision far from the origin (docs/sdf.md) */
-    uint32_t sdf_march;     /* bit per masu_march that the blob has code for */
+#ifdef MASU_LAB
+    uint32_t sdf_march; /* bit per masu_march that the blob has code for */
+#endif
     uint32_t sdf_occlusion; /* 1: the SDF casts shadows or occludes ambient light */
     uint32_t max_instances, max_primitives; /* of one mesh */
     uint32_t shadow_cascades; /* of the sun's shadow map; 0: none. Scenes with instances only */
@@ -733,7 +735,6 @@ MASU_API MASU_MUST_USE masu_result masu_resize(masu_renderer *renderer, VkExtent
  * (or source) or on the output size remain unresolved if those are missing. Resolve after the last
  * change: a resolved member no longer follows the member that its default depends on. These members
  * remain AUTO:
- *  - rungs[].march, whose AUTO is the fastest algorithm itself;
  *  - rungs[].specular and .occlusion, if the scene has a use for them: on a device with too few
  *    storage buffers AUTO disables the feature, and ON is an error in masu_init;
  *  - ray_query, half_floats, debug.share_rays, which depend on the device. */

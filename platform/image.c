@@ -78,10 +78,10 @@ void masu_image_free(struct masu_image *image) {
 static bool size_is_allowed(const char *path, uint32_t width, uint32_t height, char *error,
                             size_t error_size) {
     if (width == 0 || height == 0) {
-        return fail(error, error_size, "%s: the picture is empty (%ux%u)", path, width, height);
+        return fail(error, error_size, "%s: the image is empty (%ux%u)", path, width, height);
     }
     if (width > MASU_IMAGE_SIDE_MAX || height > MASU_IMAGE_SIDE_MAX) {
-        return fail(error, error_size, "%s: %ux%u is larger than %u pixels a side", path, width,
+        return fail(error, error_size, "%s: %ux%u is larger than %u pixels per side", path, width,
                     height, MASU_IMAGE_SIDE_MAX);
     }
     if ((uint64_t)width * height > MASU_IMAGE_PIXELS_MAX) {

@@ -94,13 +94,13 @@ static const masu_option rows[] = {
 
 static int run(masu_cli *cli) {
     options o = {.desc = {.output = {1920, 1080}, .targets = {.storage = 1}}};
-    masu_given given = {.most = 1, .excess = "one scene at a time"};
+    masu_given given = {.most = 1, .excess = "expected one scene"};
     const masu_isa_gpu *gpus[MASU_ISA_GPUS];
     int code;
     char **argv = cli->argv;
     if (!masu_options_read(cli, rows, &o, &given, &code)) return code;
     if (o.gpus && !strcmp(o.gpus, "help")) return list_gpus();
-    if (!given.count) return masu_cli_usage_error("no scene is given");
+    if (!given.count) return masu_cli_usage_error("no scene given: expected SCENE.masu");
     if (masu_isa_is_child()) return masu_isa_child(given.arguments[0], o.ladder, &o.desc);
     if (!o.gpus) return masu_cli_usage_error("no GPU is given: --gpu GPU[,GPU...]");
     uint32_t count = masu_isa_list("--gpu", o.gpus, gpus);

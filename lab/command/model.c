@@ -62,10 +62,10 @@ static int run_model(const options *o, const char *scene) {
 
 static int run(masu_cli *cli) {
     options o = {.size = {1920, 1080}, .time = 1.0, .host = {.message = masu_print_message}};
-    masu_given given = {.most = 1, .excess = "one scene at a time"};
+    masu_given given = {.most = 1, .excess = "expected one scene"};
     int code;
     if (!masu_options_read(cli, rows, &o, &given, &code)) return code;
-    if (!given.count) return masu_cli_usage_error("no scene is given");
+    if (!given.count) return masu_cli_usage_error("no scene given: expected SCENE.masu");
     return run_model(&o, given.arguments[0]);
 }
 

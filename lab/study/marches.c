@@ -175,7 +175,7 @@ static bool make_truth(bench *b, const renderer *r) {
     b->shaded = malloc(4 * n);
     b->shown = malloc(4 * n);
     if (!b->samples || !b->compared || !b->true_image || !b->shaded || !b->shown)
-        return failed(b, "no memory for the truth");
+        return failed(b, "out of memory for the ground truth");
     say(b, "marching", "the truth");
     uint64_t start = masu_clock_ns(NULL);
     masu_truth_image(&b->truth, &b->view, b->d->stride, b->samples);
@@ -256,7 +256,7 @@ static bool compare(bench *b, const renderer *r, masu_bench_row *row) {
     return (masu_march_errors_of(b->compared, count, &row->errors) &&
             masu_metric_flip(b->true_image, b->shaded, w, h, 0.0, NULL, &row->flip) &&
             masu_metric_flip(b->true_image, b->shown, w, h, 0.0, NULL, &row->shown)) ||
-           failed(b, "no memory for the errors");
+           failed(b, "out of memory for the errors");
 }
 
 /* ---- Measuring ------------------------------------------------------------------------------- */
@@ -357,7 +357,7 @@ static bool trust_timestamps(const bench *b) {
 static bool measure(bench *b) {
     masu_bench *o = b->out;
     b->walls = calloc((size_t)MASU_BENCH_VARIANTS * b->d->runs, sizeof *b->walls);
-    if (!b->walls) return failed(b, "no memory for the times");
+    if (!b->walls) return failed(b, "out of memory for the times");
     say(b, "building", "pipelines");
     for (int v = 0; v < MASU_BENCH_VARIANTS; v++) {
         if (o->rows[v].there && open_renderer(b, marches[v], 0, false, &b->timed[v]) <= 0)
@@ -428,7 +428,7 @@ bool masu_bench_run(const masu_bench_desc *desc, masu_bench *out,
         if (!desc->only || (desc->only >> v & 1)) good = look_at(&b, v);
     }
     if (desc->runs) good = good && measure(&b);
-    if (good && b.s.host.messages) good = failed(&b, "the validation layer has reported messages");
+    if (good && b.s.host.messages) good = failed(&b, "the validation layer reported messages");
     close_all(&b);
     return good;
 }

@@ -25,11 +25,11 @@ static int run_study(masu_cli *cli) {
     masu_study_options *o = study->given;
     int code;
     o->given.most = study->scenes_max;
-    o->given.excess = study->scenes_max == 0   ? "no scene is needed"
-                      : study->scenes_max == 1 ? "one at a time"
-                                               : "more than 64 scenes";
+    o->given.excess = study->scenes_max == 0   ? "expected no scene"
+                      : study->scenes_max == 1 ? "expected one"
+                                               : "expected at most 64 scenes";
     if (!masu_options_read(cli, study->options, o, &o->given, &code)) return code;
-    if (o->given.count < study->scenes_min) return masu_cli_usage_error("no scene is given");
+    if (o->given.count < study->scenes_min) return masu_cli_usage_error("no scene given: expected SCENE.masu");
     o->scene = o->given.arguments[0];
     o->stride |= 1; /* an even one would only see pixels of one parity */
     o->host.message = masu_print_message;
@@ -68,8 +68,8 @@ bool masu_study_read_scales(masu_cli *cli, uint32_t most, double *scales, uint32
         if (*end != ',') break;
         at = end;
     }
-    masu_cli_usage_error("%s %s: needed are 1 to %u numbers above 0 and at most 1, as in 1,0.8,0.4",
-                         cli->option, cli->value, most);
+    masu_cli_usage_error("%s: expected 1 to %u numbers above 0 and at most 1, for example 1,0.8,0.4; found '%s'",
+                         cli->option, most, cli->value);
     return false;
 }
 

@@ -120,7 +120,7 @@ int masu_table_close(masu_table *t, const char *csv) {
     int code = MASU_CLI_OK;
     if (t->csv && fclose(t->csv)) t->failed = true;
     if (t->failed)
-        code = masu_cli_error("no memory for the table");
+        code = masu_cli_error("out of memory for the table");
     else if (csv && !strcmp(csv, "-"))
         fwrite(t->text, 1, t->bytes, stdout);
     else if (csv && !masu_file_write(csv, t->text, t->bytes, error, sizeof error))

@@ -229,7 +229,7 @@ static void a_folder_has_rows_rungs_and_a_page(void **state) {
     const char *sheet = strstr(page, "<section id=\"model\">");
     assert_non_null(sheet);
     assert_non_null(strstr(sheet, "<caption>COMPUTED"));
-    assert_true(sheet < strstr(page, "<h2>Pictures"));
+    assert_true(sheet < strstr(page, "<h2>Images"));
     free(page);
     /* The scene has an SDF and polygons, and no shadow map or reflections. */
     char *json = read_file(in_scratch("whole/sweep.json"), NULL);
@@ -631,7 +631,7 @@ static void rungs_of_no_use_are_refused(void **state) {
     assert_int_equal(bench("%s " SMALL " --rungs-of %s/odd --out %s/y", scene_path("test_both"),
                            scratch, scratch),
                      1);
-    said("scale=0.3 is none of its settings");
+    said("scale=0.3 is not a setting of this sweep");
     assert_int_equal(bench("%s " SMALL " --rungs-of %s/none --out %s/y", scene_path("test_both"),
                            scratch, scratch),
                      1);

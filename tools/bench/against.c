@@ -25,7 +25,7 @@ static json_t *load(const char *folder, const char *name, char *error, size_t er
     json_t *root = masu_sweep_path(folder, name, path) ? json_load_file(path, 0, NULL) : NULL;
     if (json_is_object(root)) return root;
     json_decref(root);
-    snprintf(error, error_size, "%.2000s: %s cannot be read: no finished folder of masu bench",
+    snprintf(error, error_size, "%.2000s: cannot read %s: expected a finished folder of masu bench",
              folder, name);
     return NULL;
 }
@@ -45,7 +45,7 @@ bool masu_against_same(const char *here, const char *there, char *error, size_t 
     for (size_t i = 0; i < sizeof same_keys / sizeof *same_keys && good; i++) {
         const json_t *of_a = json_object_get(a, same_keys[i]), *of_b = json_object_get(b, same_keys[i]);
         if (json_equal(of_a, of_b) || (!of_a && !whole_a) || (!of_b && !whole_b)) continue;
-        snprintf(error, error_size, "%.2000s: \"%s\" in %s is not that of %.2000s", there, same_keys[i],
+        snprintf(error, error_size, "%.2000s: \"%s\" in %s differs from %.2000s", there, same_keys[i],
                  whole_b ? "sweep.json" : "ladder.json", here);
         good = false;
     }
@@ -92,7 +92,7 @@ static bool compare_rungs(const json_t *ladder, const char *here, const char *th
     bool good = b != NULL;
     size_t count = json_array_size(rungs);
     if (good && (!count || count > MASU_MAX_RUNGS))
-        good = fail(error, error_size, here, "ladder.json has no rungs, or too many");
+        good = fail(error, error_size, here, "ladder.json has no rungs or too many");
     out->count = out->worst_flip = out->worst_time = good ? (uint32_t)count : 0;
     for (uint32_t i = 0; i < out->count && good; i++) {
         const char *id = json_string_value(json_object_get(json_array_get(rungs, i), "setting"));
@@ -150,7 +150,7 @@ int masu_against_print(FILE *f, const masu_against *a, bool csv) {
     if (csv) return print_csv(f, a);
     uint32_t within = 0;
     int n = fprintf(f,
-                    "rung   FLIP here    there        off   time here    there        off  "
+                    "rung   FLIP here    there     change   time here    there     change  "
                     "setting (times by %s)\n",
                     a->by_timestamps ? "timestamps" : "the wall clock");
     for (uint32_t i = 0; i < a->count && n >= 0; i++) {

@@ -197,7 +197,7 @@ static bool draw_job(masu_depth_bench *b, const job *j, uint32_t rung) {
     if (!masu_motion_frame(&b->s, rung, b->time, MASU_MOTION_STEP, true, &commands, b->error, b->error_size))
         return false;
     if (masu_readback(b->s.m, commands.slot, MASU_READBACK_DEPTH, &image))
-        return failed(b, "no depth is read back");
+        return failed(b, "no depth to read back");
     return see(b, image.width, image.height, &view) &&
            (j->is_reference ? keep(b, &image, &view, j->rung.scale)
                             : compare(b, &image, &view, &j->rung));
@@ -249,7 +249,7 @@ bool masu_depth_measure(masu_depth_bench *b, const masu_rung *rungs, uint32_t co
     for (uint32_t i = 0; i < count; i++) {
         const masu_rung key = key_of(&rungs[i]);
         const result *r = find_result(b, &key);
-        if (!r) return failed(b, "more settings than there is room for");
+        if (!r) return failed(b, "too many settings");
         out[i] = r->error;
     }
     return true;

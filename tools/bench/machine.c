@@ -59,7 +59,7 @@ static json_t *load(const char *folder, char path[4096], char *error, size_t err
     fclose(f);
     if (json_is_array(list)) return list;
     json_decref(list);
-    snprintf(error, error_size, "%.2000s: not a list of runs", path);
+    snprintf(error, error_size, "%.2000s: expected a list of runs", path);
     return NULL;
 }
 

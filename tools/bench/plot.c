@@ -86,7 +86,7 @@ static const char style[] =
     "set border 3 lc rgb '#444444'\n"
     "set xtics nomirror (0.05,0.1,0.15,0.2,0.3,0.4,0.5,0.6,0.8,1,1.2,1.5,2,3,4,6,8)\n"
     "set ytics nomirror format '%g' add (0.002,0.005,0.02,0.05,0.2,0.5)\n"
-    "set ylabel 'mean FLIP against the truth, in motion and at rest'\n";
+    "set ylabel 'mean FLIP against the ground truth, in motion and stationary'\n";
 
 /* Left to itself gnuplot goes on to whole powers of ten. To the right there is room for names. */
 static void write_ranges(FILE *f, const masu_plot *p) {
@@ -126,7 +126,7 @@ static void write_commands(FILE *f, const masu_plot *p) {
     static const char *const colors[] = {"#000000", "#0072b2", "#e69f00", "#009e73", "#cc79a7",
                                          "#56b4e9", "#56b4e9", "#56b4e9", "#8c510a", "#d4a017", "#999999"};
     static const char *const names[] = {
-        "base", "render size alone", "cheap",           "middle",  "full",
+        "base", "render size only", "cheap",           "middle",  "full",
         "soft", "soft, SMAA",        "soft, 128 steps", "soft, 2 cascades", "temporal", "one knob"};
     static const int marks[] = {7, 7, 9, 5, 13, 11, 10, 12, 8, 15, 6};
     for (uint32_t k = 0; k <= SERIES; k++)
@@ -140,7 +140,7 @@ static void write_commands(FILE *f, const masu_plot *p) {
     }
     fprintf(f, "\n");
     fprintf(f, "set output 'techniques.svg'\nset key off\n");
-    write_title(f, p, "what each technique does, from the setting without it");
+    write_title(f, p, "effect of each technique, from the setting without it");
     fprintf(f, "plot $front using 1:2 with lines lw 1 dt 2 lc rgb '#888888'");
     if (arrows) {
         fprintf(f, ", \\\n  $arrows using 1:2:($3-$1):($4-$2) with vectors head size screen 0.01,20 "
@@ -157,7 +157,7 @@ static bool write_file(const masu_plot *p, const char *text, size_t bytes, char 
     if (masu_sweep_path(p->folder, "plots", folder) && (!mkdir(folder, 0777) || errno == EEXIST) &&
         masu_sweep_path(p->folder, "plots/plots.gp", path))
         return masu_file_write(path, text, bytes, error, error_size);
-    snprintf(error, error_size, "%.500s: no folder for plots", p->folder);
+    snprintf(error, error_size, "%.500s: cannot create a folder for plots", p->folder);
     return false;
 }
 
@@ -174,6 +174,6 @@ bool masu_plot_draw(const masu_plot *plot, bool *drawn, char *error, size_t erro
     free(text);
     *drawn = end == MASU_GNUPLOT_DRAWN;
     if (!good || end != MASU_GNUPLOT_FAILED) return good;
-    snprintf(error, error_size, "%.500s/plots.gp: gnuplot cannot draw it", folder);
+    snprintf(error, error_size, "%.500s/plots.gp: gnuplot failed", folder);
     return false;
 }

@@ -51,7 +51,7 @@ static bool load(masu_radiance_bench *b, bool *there) {
     bool fits = image.width == size.width && image.height == size.height && image.channels == 3;
     if (fits) memcpy(b->reflections, image.values, 3 * sizeof(float) * b->pixels);
     masu_image_free(&image);
-    return fits || failed(b, "the reference of reflections is of another size");
+    return fits || failed(b, "the reflection reference has another size");
 }
 
 /* Without a file all rays; with one a single frame, for which pixels trace. */
@@ -70,7 +70,7 @@ static bool draw_reference(masu_radiance_bench *b) {
         return false;
     }
     if (!masu_specular_classes(&b->s, b->s.scene.specular_cutoff, b->classes))
-        return failed(b, "nothing is read back");
+        return failed(b, "nothing to read back");
     return there || masu_image_save_pfm(b->d.reflections, b->reflections, size.width, size.height,
                                         3, b->error, b->error_size);
 }
@@ -120,7 +120,7 @@ static bool draw_key(masu_radiance_bench *b, uint32_t rung, const masu_rung *key
     masu_flip flip;
     if (!masu_motion_draw(&b->s, &b->d.motion, rung, key, next, b->error, b->error_size))
         return false;
-    if (!masu_specular_read(&b->s, b->rgb)) return failed(b, "no radiance is read back");
+    if (!masu_specular_read(&b->s, b->rgb)) return failed(b, "no radiance to read back");
     if (!masu_metric_hdr_flip(b->d.truth, b->rgb, size.width, size.height, 0, NULL, &flip))
         return failed(b, "out of memory");
     result *r = &b->results[b->result_count++];

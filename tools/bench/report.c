@@ -71,7 +71,7 @@ static bool read_all(report *r) {
     uint32_t kept = 0;
     if (!masu_sweep_path(r->folder, "sweep.json", path)) return failed(r, "the path is too long");
     r->sweep = json_load_file(path, 0, NULL);
-    if (!r->sweep) return failed(r, "sweep.json cannot be read");
+    if (!r->sweep) return failed(r, "cannot read sweep.json");
     r->rows = masu_sweep_rows(r->folder, &r->count, r->error, r->error_size);
     if (!r->rows) return false;
     r->steady = masu_sweep_steady_rows(r->folder, &r->steady_count, r->error, r->error_size);
@@ -84,7 +84,7 @@ static bool read_all(report *r) {
     r->out->rows = kept;
     r->out->settings = (uint32_t)json_array_size(json_object_get(r->sweep, "settings"));
     uint64_t pixels = (uint64_t)r->size.width * r->size.height;
-    if (!kept) return failed(r, "no setting has been measured");
+    if (!kept) return failed(r, "no setting is measured");
     return (pixels && pixels <= MASU_IMAGE_PIXELS_MAX) || failed(r, "sweep.json has no size");
 }
 
@@ -251,45 +251,44 @@ static void put_machines(report *r) {
 /* What one must know to read the tables, in eight lines. */
 static void put_note(report *r) {
     FILE *f = r->page;
-    masu_markup(f, "<ul>\n<li>The <b>base</b> is every knob at its default at full size; a setting is "
-               "named by the knobs that differ. Ratios are times by the base's.</li>\n");
+    masu_markup(f, "<ul>\n<li>The <b>base</b> setting has all knobs at their defaults, at full size. The name "
+               "of a setting lists the knobs that differ. Ratios are times divided by the time of the base.</li>\n");
     masu_markup(f,
-            "<li>The <b>truth</b> is the mean of %.0f full renders at places all over each pixel, "
-            "with nothing left out for speed (masu render --truth). A picture is the last of up to "
-            "%.0f frames in motion.</li>\n",
+            "<li>The <b>ground truth</b> is the average of %.0f full-size frames with jittered samples "
+            "and the most exact settings (masu render --truth). The image of a setting is the last of "
+            "at most %.0f frames in motion.</li>\n",
             number_of(r, "positions"), number_of(r, "frames"));
-    fputs("<li><b>FLIP</b> is what a viewer notices who flips between picture and truth at 67 "
-          "pixels per degree: 0 nothing, 1 all; mean and 99th percentile in motion along the path, the mean when all has "
-          "come to rest, and in frames an eighth of a second apart. The <b>error</b>, by which the ladder goes, is the mean "
-          "of that in motion and that at rest, where both are known. HDR-FLIP is the worst of "
-          "it over all exposures, before the tone curve.</li>\n"
-          "<li><b>RMSE</b> and flicker are of 255; flicker is the mean difference of successive "
-          "frames at rest.</li>\n<li><b>hit/miss</b> and <b>depth</b> are of surfaces, beside ",
+    fputs("<li><b>FLIP</b> is the perceived difference from the ground truth at 67 pixels per degree: 0 is "
+          "none, 1 is the maximum. The table has its mean and 99th percentile in motion along the path, its "
+          "mean with a stationary camera, and its mean for frames an eighth of a second apart. The "
+          "<b>error</b>, which orders the ladder, is the mean of FLIP in motion and stationary, if both are "
+          "measured. HDR-FLIP is the maximum over all exposures, before the tone curve.</li>\n"
+          "<li><b>RMSE</b> and flicker are out of 255. Flicker is the mean difference of successive "
+          "frames with a stationary camera.</li>\n<li><b>hit/miss</b> and <b>depth</b> compare surfaces with ",
           f);
     masu_markup(r->page, "%s", text_of(r->sweep, "depth"));
-    fputs(" at the same size: pixels where one of the two sees sky, and how far apart the others "
-          "are in widths of a pixel there. <b>relMSE</b> is of pixels that trace reflections, "
-          "against many rays. A dash: the setting has no such value.</li>\n",
+    fputs(" at the same size: pixels where only one of the two shows the sky, and the distance of all other "
+          "surfaces in pixel widths at that depth. <b>relMSE</b> compares pixels with traced reflections "
+          "with many rays. A dash: the setting has no such value.</li>\n",
           f);
     masu_markup(f,
-            "<li><b>Times</b>: %.0f runs of each setting in turns with the base, the first round "
-            "dropped; the ratio is the median of the rounds' own, beside it that of the least "
-            "times. Where they differ by much, the machine was busy: by more than a tenth in %u "
-            "rows of %u.</li>\n",
+            "<li><b>Times</b>: %.0f runs of each setting, interleaved with the base; the first round "
+            "is dropped. The ratio is the median of the ratios per round; the ratio of minima is next to "
+            "it. If the two differ a lot, the machine was busy: they differ by more than 10 %% in %u "
+            "of %u rows.</li>\n",
             number_of(r, "runs"), r->out->unsteady, r->out->rows);
     if (r->steady_count) {
         masu_markup(f,
-                "<li>What looks best of many noisy times is lucky, too: so %u settings, the rungs "
-                "among them, were timed again by themselves and for longer (steady.csv); those are "
-                "the times of their rows.</li>\n",
+                "<li>The best of many noisy times is biased. So %u settings, including the rungs, were "
+                "timed again separately and for longer (steady.csv). Their rows show these times.</li>\n",
                 r->steady_count);
     }
-    masu_markup(f, "<li>The ladder goes by %s.</li>\n",
-            r->out->by_timestamps ? "the device's timestamps, which fit the wall clock"
-                                  : "the wall clock: not all timestamps fit it");
-    fputs("<li><b>Look for</b> the rung whose error you can bear, and what it saves; then for the "
-          "technique that saves most for the least FLIP. A lead of less than 0.001 is "
-          "noise where reflections are traced.</li>\n</ul>\n",
+    masu_markup(f, "<li>The ladder uses %s.</li>\n",
+            r->out->by_timestamps ? "the device's timestamps, which agree with the wall clock"
+                                  : "the wall clock: some timestamps disagree with it");
+    fputs("<li><b>How to read it</b>: find the rung with an acceptable error, and the time that it saves; then "
+          "the technique that saves the most time for the least FLIP. Differences below 0.001 are "
+          "noise if reflections are traced.</li>\n</ul>\n",
           f);
 }
 
@@ -303,7 +302,7 @@ static void put_head(report *r) {
     put_machines(r);
     put_note(r);
     if (r->out->rows < r->out->settings)
-        masu_markup(f, "<p><b>%u of %u settings have been measured.</b></p>\n", r->out->rows,
+        masu_markup(f, "<p><b>%u of %u settings are measured.</b></p>\n", r->out->rows,
                 r->out->settings);
 }
 
@@ -315,7 +314,7 @@ static const struct {
                {"error", "%.4f", true},
                {"FLIP", "%.4f", true},
                {"p99", "%.4f", true},
-               {"at rest", "%.4f", true},
+               {"stationary", "%.4f", true},
                {"fast", "%.4f", true},
                {"HDR-FLIP", "%.4f", false},
                {"RMSE", "%.2f", true},
@@ -326,7 +325,7 @@ static const struct {
                {"depth px", "%.4f", false},
                {"p99", "%.4f", false},
                {"relMSE", "%.4f", false},
-               {"ratio of the least", "%.3f", false},
+               {"ratio of minima", "%.3f", false},
                {"wall ms", "%.2f", true},
                {"p50", "%.2f", false},
                {"p95", "%.2f", false},
@@ -394,8 +393,9 @@ static void put_row(report *r, uint32_t i, const char *label, bool brief, bool m
 static void put_ladder(report *r) {
     FILE *f = r->page;
     fputs(
-        "<h2>The ladder</h2>\n<p>Of the Pareto front, in falling quality; neighbours are at least "
-        "4 % apart in time. ladder.json has all knobs of each; all columns are below.</p>\n<div class=\"wide\"><table>\n",
+        "<h2>The ladder</h2>\n<p>Rungs from the Pareto front in falling quality; neighbours differ in time "
+        "by at least 4 %. ladder.json has all their knobs; the table of all settings has all "
+        "columns.</p>\n<div class=\"wide\"><table>\n",
         f);
     put_columns(f, true);
     for (uint32_t i = 0; i < r->rung_count; i++) {
@@ -408,7 +408,7 @@ static void put_ladder(report *r) {
 
 static bool put_plots(report *r) {
     static const char *const names[][2] = {{"plots/front.svg", "error against time, all settings"},
-                                           {"plots/techniques.svg", "what each technique does"}};
+                                           {"plots/techniques.svg", "effect of each technique"}};
     char path[4096];
     for (size_t i = 0; i < 2 && r->out->plots; i++) {
         fputs("<p>", r->page);
@@ -425,8 +425,8 @@ static bool put_plots(report *r) {
 static void put_techniques(report *r) {
     FILE *f = r->page;
     fputs(
-        "<h2>Techniques</h2>\n<p>Each beside the setting that differs by it alone: its time as a "
-        "part of that one's, and how much error (FLIP), RMSE and device memory it adds.</p>\n"
+        "<h2>Techniques</h2>\n<p>Every technique compared with the setting without it: the ratio of their "
+        "times, and the change in error (FLIP), RMSE and device memory.</p>\n"
         "<div class=\"wide\"><table>\n<tr><th>technique</th><th>from</th><th>time</th><th>error</th>"
         "<th>RMSE</th><th>KiB</th></tr>\n",
         f);
@@ -454,8 +454,8 @@ static void put_all(report *r) {
     fputs("<h2>All settings</h2>\n<div class=\"wide\"><table>\n", r->page);
     put_columns(r->page, false);
     for (uint32_t i = 0; i < r->count; i++) put_row(r, i, "", false, is_rung(r, i));
-    fputs("</table></div>\n<h2>Left out</h2>\n<div class=\"wide\"><table>\n"
-          "<tr><th>setting</th><th>why</th></tr>\n",
+    fputs("</table></div>\n<h2>Skipped settings</h2>\n<div class=\"wide\"><table>\n"
+          "<tr><th>setting</th><th>reason</th></tr>\n",
           r->page);
     json_array_foreach(json_object_get(r->sweep, "dropped"), k, one) {
         masu_markup(r->page, "<tr><td>%s</td><td>%s</td></tr>\n", text_of(one, "setting"), text_of(one, "why"));
@@ -465,15 +465,15 @@ static void put_all(report *r) {
 
 static bool put_pictures(report *r) {
     char path[4096];
-    fputs("<h2>Pictures</h2>\n<h3>The truth</h3>\n<p class=\"pair\">", r->page);
-    if (!masu_sweep_path(r->folder, "truth.png", path) || !put_image(r, path, "image/png", "truth"))
+    fputs("<h2>Images</h2>\n<h3>Ground truth</h3>\n<p class=\"pair\">", r->page);
+    if (!masu_sweep_path(r->folder, "truth.png", path) || !put_image(r, path, "image/png", "ground truth"))
         return false;
     fputs("</p>\n", r->page);
     for (uint32_t i = 0; i < r->rung_count; i++) {
         const masu_row *row = &r->rows[r->rungs[i]];
         masu_markup(r->page, "<h3>Rung %u: %s", i, row->setting);
         masu_markup(r->page,
-                "</h3>\n<p>%.3f of the base's time, FLIP %.4f; beside it the map of FLIP: "
+                "</h3>\n<p>%.3f of the base's time, FLIP %.4f; on the right the map of FLIP: "
                 "violet 0.06, red 0.25, orange 0.56, white 1."
                 "</p>\n<p class=\"pair\">",
                 r->ratios[r->rungs[i]], row->flip);

@@ -209,11 +209,11 @@ static void scene_values(masu_rung *rung, const masu_scene *scene, const char **
     if (scene->shadow_distance > 0.0f) rung->shadow_distance *= scene->shadow_distance;
     if (rung->shadow_cascades && scene->shadow_cascades &&
         rung->shadow_cascades >= scene->shadow_cascades) {
-        *why = "the scene has no more of them";
+        *why = "the scene does not have more";
         rung->shadow_cascades = 0;
     }
     if (!(fabsf(rung->specular_cutoff - scene->specular_cutoff) > 1e-6f)) {
-        if (rung->specular_cutoff > 0.0f) *why = "it is the scene's own";
+        if (rung->specular_cutoff > 0.0f) *why = "equal to the scene's value";
         rung->specular_cutoff = 0.0f;
     }
 }
@@ -237,7 +237,7 @@ void masu_settings_fit(masu_setting *settings, uint32_t count, const masu_scene 
         refit_parent(s, settings, i, old);
         for (uint32_t k = 0; k < i && !s->dropped[0]; k++) {
             if (strcmp(settings[k].id, fitted) != 0 || settings[k].dropped[0]) continue;
-            snprintf(s->dropped, sizeof s->dropped, "%s", why ? why : "it is there already");
+            snprintf(s->dropped, sizeof s->dropped, "%s", why ? why : "equal to another setting");
         }
         /* What is dropped keeps the name that says what it was to be. */
         if (!s->dropped[0]) memcpy(s->id, fitted, sizeof s->id);

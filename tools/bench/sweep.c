@@ -83,7 +83,7 @@ static bool fit_settings(sweep *w, masu_plan_info *plans) {
         for (uint32_t k = 0; k < i && s->structural; k++) {
             if (!strcmp(w->settings[k].id, s->parent) && !w->settings[k].dropped[0] &&
                 masu_settings_same_plan(&plans[k], &plans[i])) {
-                snprintf(s->dropped, sizeof s->dropped, "the same passes and bytes as its parent");
+                snprintf(s->dropped, sizeof s->dropped, "same passes and bytes as its parent");
             }
         }
         w->settings[i].structural = 0; /* answered */
@@ -150,7 +150,7 @@ static bool load_radiance(sweep *w, const char *path) {
     bool fits = image.width == size.width && image.height == size.height && image.channels == 3;
     if (fits) memcpy(w->true_radiance, image.values, 3 * sizeof(float) * w->pixels);
     masu_image_free(&image);
-    return fits || failed(w, "the truth's radiance is of another size");
+    return fits || failed(w, "the ground truth's radiance has another size");
 }
 
 /* Both of them, or both are drawn: a picture that is there stays, whatever is drawn beside it. */
@@ -504,14 +504,14 @@ static bool known(sweep *w) {
     const masu_setting_list *only = w->d->only;
     char text[MASU_SETTING_ID + 256];
     for (uint32_t i = 0; only && i < only->count; i++) {
-        const char *why = "bench knows no such setting, or --quick leaves it out";
+        const char *why = "unknown setting, or omitted by --quick";
         bool there = false;
         for (uint32_t k = 0; k < w->setting_count && !there; k++) {
             if (strcmp(w->settings[k].id, only->id[i]) != 0) continue;
             there = !w->settings[k].dropped[0];
             why = w->settings[k].dropped;
         }
-        snprintf(text, sizeof text, "%s is none of its settings: %.200s", only->id[i], why);
+        snprintf(text, sizeof text, "%s is not a setting of this sweep: %.200s", only->id[i], why);
         if (!there) return failed(w, text);
     }
     return true;
@@ -612,7 +612,7 @@ static void begin(sweep *w, const masu_sweep_desc *desc, masu_sweep_result *out,
 
 static bool begin_folder(sweep *w) {
     const masu_sweep_about about = {.driver = w->driver,
-                                    .depth = !w->surfaces     ? "nothing: there are no surfaces"
+                                    .depth = !w->surfaces     ? "nothing (no surfaces)"
                                              : w->depth_truth ? "the field in double precision"
                                                               : "the most exact rung",
                                     .hash = w->hash,

@@ -101,8 +101,8 @@ static bool begin_with(const char *folder, const char *text, char *error, size_t
     free(old);
     if (other) {
         return fail(error, error_size, folder,
-                    "holds another sweep (scene, size, time, runs, driver or settings differ, see "
-                    "sweep.json): give another folder, or remove this one");
+                    "contains another sweep (scene, size, time, runs, driver or settings differ, see "
+                    "sweep.json): use another folder, or remove this one");
     }
     return same || masu_file_write(json, text, strlen(text), error, error_size);
 }
@@ -110,7 +110,7 @@ static bool begin_with(const char *folder, const char *text, char *error, size_t
 bool masu_sweep_begin(const masu_sweep_desc *d, const masu_sweep_about *about, char *error,
                       size_t error_size) {
     char *text = describe(d, about);
-    if (!text) return fail(error, error_size, d->folder, "no memory for sweep.json");
+    if (!text) return fail(error, error_size, d->folder, "out of memory for sweep.json");
     bool good = begin_with(d->folder, text, error, error_size);
     free(text);
     return good;
@@ -252,7 +252,7 @@ bool masu_sweep_append(const char *folder, const char *name, const masu_row *row
     bool good = !fseek(f, 0, SEEK_END) && (ftell(f) > 0 || masu_rows_header(f) > 0) &&
                 masu_rows_write(f, row) > 0;
     good = !fclose(f) && good;
-    return good || fail(error, error_size, path, "cannot be written");
+    return good || fail(error, error_size, path, "cannot write");
 }
 
 /* ---- Merging --------------------------------------------------------------------------------- */
@@ -290,10 +290,10 @@ static bool merge_part(const char *folder, const char *part, merged *all, char *
     for (uint32_t i = 0; i < n && good; i++) {
         if (masu_rows_find(all->rows, all->count, rows[i].setting)) continue;
         if (all->count == MASU_SETTINGS_MOST)
-            good = fail(error, error_size, part, "more settings than there are");
+            good = fail(error, error_size, part, "too many settings");
         if (good && (!masu_sweep_picture(part, rows[i].setting, "", from) ||
                      !masu_sweep_picture(folder, rows[i].setting, "", to)))
-            good = fail(error, error_size, part, "has a setting whose picture has no path");
+            good = fail(error, error_size, part, "the path of an image is too long");
         good = good && (!strcmp(from, to) || copy(from, to, error, error_size));
         if (!good) break;
         const masu_row *again = masu_rows_find(steady, steady_count, rows[i].setting);
@@ -335,9 +335,9 @@ bool masu_sweep_merge(const char *folder, const char *const *parts, uint32_t par
         good = masu_sweep_path(parts[i], "sweep.json", path);
         char *own = good ? read_text(path) : NULL;
         if (!own) {
-            good = fail(error, error_size, parts[i], "has no sweep.json: no folder of masu bench");
+            good = fail(error, error_size, parts[i], "no sweep.json: expected a folder of masu bench");
         } else if (text && strcmp(text, own) != 0) {
-            good = fail(error, error_size, parts[i], "is of another sweep than the first part");
+            good = fail(error, error_size, parts[i], "contains another sweep than the first folder");
         }
         if (!good || text) {
             free(own);

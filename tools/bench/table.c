@@ -98,12 +98,12 @@ masu_row *masu_rows_read(const char *text, uint32_t *count, char *error, size_t 
     for (const char *c = text; *c; c++) lines += *c == '\n';
     if (end) names = columns_of(text, (size_t)(end - text));
     if (!names) {
-        snprintf(error, error_size, "the first line does not name the columns of this version");
+        snprintf(error, error_size, "line 1: expected the columns of this version");
         return NULL;
     }
     masu_row *rows = malloc((lines + 1) * sizeof *rows);
     if (!rows) {
-        snprintf(error, error_size, "no memory for %u rows", lines);
+        snprintf(error, error_size, "out of memory for %u rows", lines);
         return NULL;
     }
     while (text = end + 1, end = strchr(text, '\n'), end) {
@@ -113,7 +113,7 @@ masu_row *masu_rows_read(const char *text, uint32_t *count, char *error, size_t 
         if (n < sizeof line) memcpy(line, text, n);
         line[n < sizeof line ? n : 0] = 0;
         if (!parse(line, names, &rows[*count])) {
-            snprintf(error, error_size, "line %u is no row", number);
+            snprintf(error, error_size, "line %u: expected a row", number);
             free(rows);
             return NULL;
         }

@@ -13,12 +13,12 @@ enum { ROWS_MAX = 64, HELP_MAX = 640 }; /* as many rows as masu_given has bits *
 
 /* ---- Values ---------------------------------------------------------------------------------- */
 
-/* Said before the work is done, not after it. */
+/* Reported before the work begins, not after it. */
 static bool read_size(const masu_cli *cli, VkExtent2D *size) {
     if (!masu_cli_extent(cli, MASU_IMAGE_SIDE_MAX, &size->width, &size->height)) return false;
     if ((uint64_t)size->width * size->height <= MASU_IMAGE_PIXELS_MAX) return true;
-    masu_cli_usage_error("%s %s: more than %u pixels", cli->option, cli->value,
-                         MASU_IMAGE_PIXELS_MAX);
+    masu_cli_usage_error("%s: expected at most %u pixels, found %s", cli->option, MASU_IMAGE_PIXELS_MAX,
+                         cli->value);
     return false;
 }
 
@@ -40,7 +40,7 @@ static bool read_knob(const masu_cli *cli, const char *name, masu_rung *rung) {
     }
     char range[200];
     masu_knob_range(knob, range, sizeof range);
-    masu_cli_usage_error("%s: needed is %s, given is '%s'", cli->option, range, cli->value);
+    masu_cli_usage_error("%s: expected %s, found '%s'", cli->option, range, cli->value);
     return false;
 }
 
@@ -63,7 +63,7 @@ static bool read_row(masu_cli *cli, const masu_option *row, void *options) {
     return false;
 }
 
-/* What the struct holds before anything is read; "": there is no default to speak of. */
+/* The default: the value in the struct before any option is read; "": no default to print. */
 static void print_default(const masu_option *row, const void *options, char *text, size_t size) {
     const void *from = (const char *)options + row->at;
     text[0] = 0;
@@ -99,9 +99,11 @@ bool masu_options_read(masu_cli *cli, const masu_option *rows, void *options, ma
         char value[96];
         print_default(row, options, value, sizeof value);
         size_t length = strlen(row->help);
-        const char *between = length && row->help[length - 1] == '\n' ? "" : " ";
-        snprintf(help[count], HELP_MAX, *value ? "%s%s(default %s)" : "%s", row->help, between,
-                 value);
+        bool broken = length && row->help[length - 1] == '\n';
+        if (*value)
+            snprintf(help[count], HELP_MAX, "%s%s(default %s)", row->help, broken ? "" : " ", value);
+        else
+            snprintf(help[count], HELP_MAX, "%.*s", (int)(length - broken), row->help);
         list[count] =
             (masu_cli_option){row->name, row->value, help[count], (int)count + 1, row->letter};
     }
@@ -119,7 +121,7 @@ bool masu_options_read(masu_cli *cli, const masu_option *rows, void *options, ma
         cli->exit_code = MASU_CLI_USAGE;
         if (id == MASU_CLI_ARGUMENT) {
             if (given->count == given->most) {
-                masu_cli_usage_error("%s: '%s'", given->excess, cli->value);
+                masu_cli_usage_error("unexpected argument '%s': %s", cli->value, given->excess);
                 break;
             }
             given->arguments[given->count++] = cli->value;
@@ -177,7 +179,7 @@ bool masu_read_names(const char *option, const char *list, const char *const *na
         uint32_t i = 0;
         while (i < count && (strlen(names[i]) != length || strncmp(names[i], at, length) != 0)) i++;
         if (i == count) {
-            masu_cli_usage_error("%s: there is no \"%.*s\"", option, (int)length, at);
+            masu_cli_usage_error("%s: unknown name \"%.*s\"", option, (int)length, at);
             return false;
         }
         *bits |= 1u << i;

@@ -1,7 +1,7 @@
-/* options.h: the options of every command of `masu` and `masu-lab` as rows of a table: what the help says, how the
- * value is read, and where in the command's own struct it goes. One loop reads them all, and the help
- * says the defaults that it finds in that struct, so that the two cannot disagree. Rows that several
- * commands have stand here once. */
+/* options.h: the options of every command of `masu` and `masu-lab` as rows of a table: the help text, how
+ * the value is read, and its member in the command's struct. masu_options_read reads them all. The help
+ * prints the defaults that it finds in that struct, so the two cannot disagree. Rows shared by several
+ * commands are defined here. */
 #ifndef MASU_OPTIONS_H
 #define MASU_OPTIONS_H
 
@@ -24,7 +24,7 @@ typedef enum masu_take {
 } masu_take;
 
 typedef struct masu_option {
-    const char *name;  /* without dashes; NULL ends the table */
+    const char *name;  /* without dashes; "": a heading (MASU_HEADING); NULL ends the table */
     const char *value; /* as masu_cli_option has it */
     const char *help;  /* without the default */
     masu_take take;
@@ -62,54 +62,61 @@ typedef struct masu_option {
 #define MASU_OWN(name_, value_, read_, help_)                                                      \
     { .name = (name_), .value = (value_), .help = (help_), .take = MASU_TAKE_OWN, .read = (read_) }
 
+/* A heading in the help: the rows up to the next heading are printed below it. */
+#define MASU_HEADING(heading)                                                                        \
+    { .name = "", .help = (heading), .take = MASU_TAKE_FLAG }
+
 /* Of every command that opens a device: `host` is a masu_headless_desc. */
 #define MASU_DEVICE_ROWS(type, host)                                                               \
     MASU_TEXT(type, host.device, "device", "NAME|INDEX",                                           \
-              "GPU by index or part of its name (default: the first that suits)"),                 \
+              "GPU by index or part of its name (default: the first suitable one)"),               \
         MASU_FLAG(type, host.validate, "validate",                                                 \
-                  "run under the Khronos validation layer, with synchronisation checks;\n"         \
-                  "any message makes the exit code 1"),                                            \
+                  "enable the Khronos validation layer with synchronization checks; any\n"         \
+                  "message makes the exit code 1"),                                                \
         MASU_FLAG(type, host.gpu_av, "gpu-av",                                                     \
-                  "run under the layer's GPU-assisted shader checks instead (slow)")
+                  "use the layer's GPU-assisted shader validation instead (slow)")
 
 #define MASU_OUTPUT_SIZE_ROW(type, member)                                                         \
-    MASU_SIZE(type, member, "size", "output size in pixels, at most 16384 a side and 64 Mi in all\n")
+    MASU_SIZE(type, member, "size", "output size in pixels: at most 16384 per side, 64 Mi in all\n")
 
-/* What finds the polygons in reflections; then masu_use_rays. */
+/* Ray-tracing backend for reflections of polygons; then masu_use_rays. */
 extern const char *const masu_ray_ways[];
 #define MASU_RAYS_ROW(type, member)                                                                \
-    MASU_CHOICE(type, member, "rays", "WAY", masu_ray_ways,                                        \
-                "what finds polygons in reflections: compute; query, which takes a device with\n"  \
-                "ray queries; auto, which takes them on GPUs")
+    MASU_CHOICE(type, member, "rays", "BACKEND", masu_ray_ways,                                    \
+                "ray-tracing backend for reflections of polygons: compute (built-in BVH),\n"       \
+                "query (VK_KHR_ray_query), or auto: query on GPUs that support it\n")
 /* A device is asked for ray queries unless it is `compute`. */
 void masu_use_rays(uint32_t way, masu_switch *ray_query, masu_headless_desc *host);
 
 /* A const char *; then masu_use_ladder. */
 #define MASU_LADDER_ROW(type, member, off)                                                         \
     MASU_TEXT(type, member, "ladder", "FILE|auto|off",                                             \
-              "the rungs: those of a ladder.json of masu bench; auto, those measured for scenes\n" \
-              "of this class; off, " off)
+              "source of the rungs:\n"                                                             \
+              "  FILE  a ladder.json of `masu bench`\n"                                            \
+              "  auto  the built-in ladder of the scene's class\n"                                 \
+              "  off   " off)
 /* NULL: it was not given. Sets the ladder, or the rungs out of a file; an exit code. */
 int masu_use_ladder(const char *given, masu_desc *desc);
 
 #define MASU_MOMENT_ROW(type, member)                                                              \
-    MASU_REAL(type, member, "time", "SECONDS", -1e9, 1e9, "moment of the scene and its camera")
+    MASU_REAL(type, member, "time", "SECONDS", -1e9, 1e9, "time in the scene and on its camera path")
 
-/* The words of a knob, for its help: MASU_AA_WORDS(MASU_WORD_LIST). */
+/* The values of a knob, for its help: MASU_AA_WORDS(MASU_WORD_LIST). */
 #define MASU_WORD_LIST(name, value, word, text) " " word
 
-/* A picture without shortcuts, with which others are compared. */
+/* The supersampled ground truth image that others are compared with. */
 typedef struct masu_truth_options {
-    const char *path;   /* PNG to read it from, or to write it to; NULL: neither */
-    uint32_t positions; /* in each pixel that it is the mean of */
-    uint32_t rays;      /* of reflections from each of its pixels, in all */
+    const char *path;   /* PNG to read the image from, or to write it to; NULL: neither */
+    uint32_t positions; /* samples per pixel */
+    uint32_t rays;      /* reflection rays per pixel, in all */
 } masu_truth_options;
 #define MASU_TRUTH_ROWS(type, truth)                                                               \
-    MASU_TEXT(type, truth.path, "truth", "FILE.png", "read the truth from there, or write it there"), \
+    MASU_TEXT(type, truth.path, "truth", "FILE.png",                                           \
+              "ground truth image: read if it exists, else written"),                              \
         MASU_UINT(type, truth.positions, "positions", 1, MASU_PICTURE_POSITIONS_MAX,               \
-                  "places in each pixel that the truth is the mean of"),                           \
+                  "samples per pixel of the ground truth"),                                        \
         MASU_UINT(type, truth.rays, "reference", 1, 1000000,                                       \
-                  "rays of reflections from each of its pixels, in all")
+                  "reflection rays per pixel of the ground truth, in all")
 
 /* ---- Reading --------------------------------------------------------------------------------- */
 
@@ -117,7 +124,7 @@ typedef struct masu_truth_options {
 
 typedef struct masu_given {
     uint32_t most;      /* arguments that may be given, at most MASU_ARGUMENTS_MAX */
-    const char *excess; /* what is said of one more: "one scene at a time" */
+    const char *excess; /* message for one more: "expected one scene" */
     uint32_t count;
     const char *arguments[MASU_ARGUMENTS_MAX];
     uint64_t options; /* bit i: the i-th row of the table */

@@ -14,7 +14,7 @@ void masu_print_message(void *user, const char *text) {
 
 int masu_finish_validation(const masu_headless *host, int code) {
     if (!host->messages || code) return code;
-    return masu_cli_error("the validation layer has reported %u message%s", host->messages,
+    return masu_cli_error("the validation layer reported %u message%s", host->messages,
                           host->messages == 1 ? "" : "s");
 }
 
@@ -43,7 +43,7 @@ json_t *masu_json_memory(const masu_memory *m) {
 int masu_json_write(json_t *json, const char *path) {
     char *text = json_dumps(json, JSON_INDENT(2));
     json_decref(json);
-    if (!text) return masu_cli_error("%s: no memory for the JSON text", path);
+    if (!text) return masu_cli_error("%s: out of memory for the JSON text", path);
     int code = MASU_CLI_OK;
     if (!strcmp(path, "-")) {
         printf("%s\n", text);

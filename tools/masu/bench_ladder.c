@@ -17,7 +17,7 @@ static void print_table(const char *path, const masu_ladder_file *l) {
 }
 
 int masu_bench_ladder(const masu_given *given) {
-    if (!given->count) return masu_cli_usage_error("no ladder is given");
+    if (!given->count) return masu_cli_usage_error("no ladder given: expected LADDER.json");
     for (uint32_t i = 0; i < given->count; i++) {
         static masu_ladder_file ladder;
         char error[1024];

@@ -95,7 +95,7 @@ static bool draw_position(masu_session *s, masu_frame_desc frame, uint32_t frame
 static bool add_radiance(masu_session *s, size_t pixels, float *one, float *sum, char *error,
                          size_t error_size) {
     if (!masu_specular_read(s, one)) {
-        snprintf(error, error_size, "no radiance is read back");
+        snprintf(error, error_size, "no radiance to read back");
         return false;
     }
     for (size_t i = 0; i < 3 * pixels; i++) sum[i] += one[i];
@@ -104,7 +104,7 @@ static bool add_radiance(masu_session *s, size_t pixels, float *one, float *sum,
 
 static void say_position(uint32_t i, uint32_t of, void (*progress)(const char *text)) {
     char text[64];
-    snprintf(text, sizeof text, "truth: position %u of %u", i + 1, of);
+    snprintf(text, sizeof text, "ground truth: sample %u of %u", i + 1, of);
     if (progress) progress(text);
 }
 
@@ -169,7 +169,7 @@ bool masu_picture_load(const char *path, VkExtent2D size, uint8_t *rgba, char *e
     if (fits) {
         memcpy(rgba, image.rgba, 4 * (size_t)size.width * size.height);
     } else {
-        snprintf(error, error_size, "%.500s is %ux%u, needed is %ux%u", path, image.width,
+        snprintf(error, error_size, "%.500s: found %ux%u, expected %ux%u", path, image.width,
                  image.height, size.width, size.height);
     }
     masu_image_free(&image);

@@ -1,4 +1,4 @@
-/* view.c: see view.h. */
+/* view_uniforms.c: see view_uniforms.h. */
 #include "measure/view_uniforms.h"
 
 #include "scene/scene.h"
@@ -50,7 +50,7 @@ bool masu_view_seen(const masu_scene *scene, const masu_camera *camera, uint32_t
     out->width = width;
     out->height = height;
     if (!look(camera, out)) {
-        snprintf(error, error_size, "the camera looks nowhere");
+        snprintf(error, error_size, "the camera has no direction");
         return false;
     }
     const masu_blob_environment *e = blob.environment;

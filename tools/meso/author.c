@@ -103,7 +103,7 @@ bool masu_meso_author(const masu_meso_patch *patch, const masu_meso_options *opt
     masu_meso_tracer *tracer = masu_meso_tracer_create(patch);
     if (!tracer) return false;
     made->texels = masu_meso_allocated((size_t)options->size * options->size, sizeof *made->texels);
-    masu_cli_progress("looking down");
+    masu_cli_progress("measuring the view from above");
     masu_meso_look_down(tracer, patch, options->size, 2, options->sky_rays, options->seed,
                         made->texels, &made->height);
     made->mean = masu_meso_mean_texel(made->texels, (size_t)options->size * options->size);
@@ -122,7 +122,7 @@ bool masu_meso_author(const masu_meso_patch *patch, const masu_meso_options *opt
         free((void *)samples.near);
         free((void *)samples.fine);
     } else {
-        masu_cli_error("no ray meets the patch");
+        masu_cli_error("no ray hits the relief");
     }
     masu_cli_progress_clear();
     masu_meso_tracer_free(tracer);

@@ -31,11 +31,17 @@ static int run(masu_cli *cli) {
 int main(int argc, char **argv) {
     static const masu_cli_command command = {
         .arguments = "(RELIEF.png --height H | RELIEF.obj | --make NAME) -o NAME [options]",
-        .summary = "measures a relief by ray tracing and fits the angle-dependent curves of a material to it",
+        .summary = "measure a relief by ray tracing and fit the angle-dependent curves of a material",
         .options = masu_meso_request_options,
         .details = "Writes NAME.json, NAME_color.png, NAME_normal.png, NAME_rough.png and NAME_ao.png.\n"
-                   "docs/meso.md explains them.\n\n"
-                   "Exit code: 0 done, 1 failed, 2 wrong usage.\n",
+                   "docs/meso.md describes them.\n\n"
+                   "Exit codes:\n"
+                   "  0  success\n"
+                   "  1  the relief is not usable, or a file could not be read or written\n"
+                   "  2  the command line is wrong\n\n"
+                   "Examples:\n"
+                   "  masu-meso --make gravel -o gravel\n"
+                   "  masu-meso bricks.png --height 0.05 -o bricks\n",
         .run = run,
     };
     static const masu_cli_command *const commands[] = {&command, NULL};

@@ -20,17 +20,17 @@ enum {
 };
 
 #define COMMON_OPTIONS                                                                             \
-    {"output", "NAME", "what the names of all files begin with", OPTION_OUTPUT, 'o'}, \
-    {"make", "NAME", "no file: asphalt, gravel or grass", OPTION_MAKE, 0}, \
-    {"height", "H", "of a picture: height of white over black, in periods", OPTION_HEIGHT, 0}, \
-    {"tile", "W", "of a model: edge of its period (its extent in x)", OPTION_TILE, 0}, \
-    {"roughness", "R", "of the facets of a file (0.5)", OPTION_ROUGHNESS, 0}, \
-    {"albedo", "A", "of a picture's relief (0.5)", OPTION_ALBEDO, 0}, \
-    {"size", "N", "texels of an edge of the maps, a power of two (256)", OPTION_SIZE, 0}, \
-    {"rays", "N", "N x N rays per view angle (96)", OPTION_RAYS, 0}, \
-    {"sky-rays", "N", "rays to the sky per hit (16)", OPTION_SKY, 0}, \
-    {"seed", "N", "of all random numbers (1)", OPTION_SEED, 0}, \
-    {"detail", "N", "of what --make makes, 1 to 4 (2)", OPTION_DETAIL, 0}
+    {"output", "NAME", "prefix of the names of all output files", OPTION_OUTPUT, 'o'}, \
+    {"make", "NAME", "generate the relief: asphalt, gravel or grass", OPTION_MAKE, 0}, \
+    {"height", "H", "with RELIEF.png: height of white above black, in periods", OPTION_HEIGHT, 0}, \
+    {"tile", "W", "with a model: edge length of its period (default: its extent in x)", OPTION_TILE, 0}, \
+    {"roughness", "R", "facet roughness of a relief file (default 0.5)", OPTION_ROUGHNESS, 0}, \
+    {"albedo", "A", "with RELIEF.png: albedo of the relief (default 0.5)", OPTION_ALBEDO, 0}, \
+    {"size", "N", "texels per edge of the maps, a power of two (default 256)", OPTION_SIZE, 0}, \
+    {"rays", "N", "N x N rays per view angle (default 96)", OPTION_RAYS, 0}, \
+    {"sky-rays", "N", "rays to the sky per hit (default 16)", OPTION_SKY, 0}, \
+    {"seed", "N", "seed of all random numbers (default 1)", OPTION_SEED, 0}, \
+    {"detail", "N", "with --make: level of detail, 1 to 4 (default 2)", OPTION_DETAIL, 0}
 
 const masu_cli_option masu_meso_request_options[] = {COMMON_OPTIONS, {NULL, NULL, NULL, 0, 0}};
 const masu_cli_option masu_meso_study_options[] = {
@@ -48,15 +48,15 @@ bool masu_meso_request_patch(const masu_meso_request *r, masu_meso_patch *patch)
 }
 
 static int check(masu_meso_request *r) {
-    if (r->make && r->input) return masu_cli_usage_error("give a file or --make, not both");
-    if (!r->make && !r->input) return masu_cli_usage_error("no relief given: a file or --make");
+    if (r->make && r->input) return masu_cli_usage_error("expected a relief file or --make, not both");
+    if (!r->make && !r->input) return masu_cli_usage_error("no relief given: expected a file or --make NAME");
     if (!r->output) return masu_cli_usage_error("no output given: -o NAME");
     if (r->input && has_end(r->input, ".png") && !r->has_height) {
         return masu_cli_usage_error(
-            "a picture of heights needs --height: periods from black to white");
+            "RELIEF.png needs --height H: the height of white above black, in periods");
     }
     if (r->options.size & (r->options.size - 1)) {
-        return masu_cli_usage_error("--size: expected a power of two, not %u", r->options.size);
+        return masu_cli_usage_error("--size: expected a power of two, found %u", r->options.size);
     }
     r->options.seed = r->seed;
     r->complete = true;

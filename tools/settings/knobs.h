@@ -2,8 +2,8 @@
  * there is to be written is the library's table (masu_knob_table), so that none is forgotten.
  *
  * Owns nothing; nothing allocates. */
-#ifndef MASU_BENCH_KNOBS_H
-#define MASU_BENCH_KNOBS_H
+#ifndef MASU_SETTINGS_KNOBS_H
+#define MASU_SETTINGS_KNOBS_H
 
 #include "masu.h"
 
@@ -31,7 +31,7 @@ void masu_knob_range(const masu_knob *k, char *out, size_t size);
 /* What a JSON value is, as messages say it: "3", "'high'", "an array", "nothing". Returns `out`. */
 const char *masu_json_given(const json_t *value, char *out, size_t size);
 
-/* One knob as masu_knob_json writes it. False: `error` says "needed is ..., given is ..."; the rung is
+/* One knob as masu_knob_json writes it. False: `error` says "expected ..., found ..."; the rung is
  * as before. */
 bool masu_knob_from_json(const masu_knob *k, const json_t *value, masu_rung *rung, char *error,
                          size_t error_size);

@@ -36,7 +36,7 @@ static bool read_text(const place *at, const json_t *object, const char *key, ch
     char is[80];
     const json_t *value = json_object_get(object, key);
     if (!json_is_string(value) || !json_string_length(value))
-        return wrong(at, "%s: needed is a text, given is %s", key, masu_json_given(value, is, sizeof is));
+        return wrong(at, "%s: expected a string, found %s", key, masu_json_given(value, is, sizeof is));
     snprintf(out, size, "%s", json_string_value(value));
     for (char *c = out; *c; c++) {
         if (*c < ' ' || *c == 127 || strchr("\"\\*?", *c)) *c = '.';
@@ -53,7 +53,7 @@ static bool read_number(const place *at, const json_t *object, const char *key, 
         *out = v;
         return true;
     }
-    return wrong(at, "%s: needed is a number from %.4g to %.4g, given is %s", key, low, high,
+    return wrong(at, "%s: expected a number from %.4g to %.4g, found %s", key, low, high,
                  masu_json_given(value, is, sizeof is));
 }
 
@@ -64,7 +64,7 @@ static bool known_keys(const place *at, const json_t *object, const char *const 
     json_object_foreach((json_t *)(uintptr_t)object, key, value) {
         const char *const *k = keys;
         while (*k && strcmp(*k, key)) k++;
-        if (!*k) return wrong(at, "%.60s: there is no such key", key);
+        if (!*k) return wrong(at, "%.60s: unknown key", key);
     }
     return true;
 }
@@ -74,10 +74,10 @@ static bool read_knobs(const place *at, const json_t *knobs, masu_rung *rung) {
     json_t *value;
     char error[300], is[80];
     if (!json_is_object(knobs))
-        return wrong(at, "knobs: needed is an object, given is %s", masu_json_given(knobs, is, sizeof is));
+        return wrong(at, "knobs: expected an object, found %s", masu_json_given(knobs, is, sizeof is));
     json_object_foreach((json_t *)(uintptr_t)knobs, key, value) {
         const masu_knob *k = masu_knob_find(key, strlen(key));
-        if (!k) return wrong(at, "%.60s: there is no such knob", key);
+        if (!k) return wrong(at, "%.60s: unknown knob", key);
         if (!masu_knob_from_json(k, value, rung, error, sizeof error))
             return wrong(at, "%s: %s", k->name, error);
     }
@@ -90,7 +90,7 @@ static bool read_rung(const place *at, const json_t *value, masu_ladder_file *ou
     int r = at->rung;
     char is[80];
     if (!json_is_object(value))
-        return wrong(at, "needed is an object, given is %s", masu_json_given(value, is, sizeof is));
+        return wrong(at, "expected an object, found %s", masu_json_given(value, is, sizeof is));
     out->rmses[r] = -1.0;
     if (!known_keys(at, value, keys) ||
         !read_text(at, value, "setting", out->settings[r], sizeof out->settings[r]) ||
@@ -103,7 +103,7 @@ static bool read_rung(const place *at, const json_t *value, masu_ladder_file *ou
     }
     /* As the floats that they become. */
     if (r && !((float)out->ratios[r] < (float)out->ratios[r - 1])) {
-        return wrong(at, "ratio: needed is less than that of the rung before, %.6g, given is %.6g",
+        return wrong(at, "ratio: expected less than the previous rung, %.6g, found %.6g",
                      out->ratios[r - 1], out->ratios[r]);
     }
     return true;
@@ -115,7 +115,7 @@ static bool read_ladder(place *at, const json_t *root, masu_ladder_file *out) {
     double width = 0, height = 0;
     char is[80];
     if (!json_is_object(root))
-        return wrong(at, "needed is an object, given is %s", masu_json_given(root, is, sizeof is));
+        return wrong(at, "expected an object, found %s", masu_json_given(root, is, sizeof is));
     const json_t *rungs = json_object_get(root, "rungs"), *error = json_object_get(root, "error");
     if (!known_keys(at, root, keys) ||
         !read_text(at, root, "scene", out->scene, sizeof out->scene) ||
@@ -130,12 +130,12 @@ static bool read_ladder(place *at, const json_t *root, masu_ladder_file *out) {
         return false;
     }
     if (!json_is_string(error) || strcmp(json_string_value(error), "flip") != 0)
-        return wrong(at, "error: needed is 'flip', given is %s", masu_json_given(error, is, sizeof is));
+        return wrong(at, "error: expected 'flip', found %s", masu_json_given(error, is, sizeof is));
     out->width = (uint32_t)width;
     out->height = (uint32_t)height;
     size_t n = json_array_size(rungs);
     if (!json_is_array(rungs) || !n || n > MASU_MAX_RUNGS) {
-        return wrong(at, "rungs: needed is an array of 1 to %u, given are %zu", MASU_MAX_RUNGS, n);
+        return wrong(at, "rungs: expected an array of 1 to %u rungs, found %zu", MASU_MAX_RUNGS, n);
     }
     out->count = (uint32_t)n;
     for (size_t r = 0; r < n; r++) {

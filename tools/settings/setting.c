@@ -55,14 +55,14 @@ static bool read_part(const char *name, const char **at, masu_rung *rung, uint64
     int part = (int)strcspn(*at, "+");
     if (part > 60) part = 60;
     const masu_knob *k = (*at)[length] == '=' ? masu_knob_find(*at, length) : NULL;
-    if (!k) return wrong(name, error, error_size, "'%.*s' is no knob with a value", part, *at);
+    if (!k) return wrong(name, error, error_size, "expected KNOB=VALUE with a known knob, found '%.*s'", part, *at);
     uint64_t bit = 1ull << (k - masu_knob_table());
-    if (*seen & bit) return wrong(name, error, error_size, "'%.*s' comes twice", part, *at);
+    if (*seen & bit) return wrong(name, error, error_size, "'%.*s': the knob is already set", part, *at);
     *seen |= bit;
     const char *value = *at + length + 1, *end = masu_knob_from_text(k, value, rung);
     if (!end || (*end && *end != '+')) {
         masu_knob_range(k, range, sizeof range);
-        return wrong(name, error, error_size, "%s: needed is %s, given is '%.*s'", k->name, range,
+        return wrong(name, error, error_size, "%s: expected %s, found '%.*s'", k->name, range,
                      part - (int)length - 1 > 0 ? part - (int)length - 1 : 0, value);
     }
     *at = end;

@@ -48,7 +48,7 @@ static void name_it(const masu_viewer *v, const masu_pick_info *p, char *out, si
         used = snprintf(out, size, "node %u of model '%.60s', ", p->node, masu_scene_model_name(&v->scene, model.index));
     }
     if (!p->instance.id || masu_instance_get(v->a.m, p->instance, &instance)) {
-        snprintf(out + used, size - (size_t)used, "an edge of some instance");
+        snprintf(out + used, size - (size_t)used, "an edge of an instance");
         return;
     }
     snprintf(out + used, size - (size_t)used, "instance '%.60s'", masu_scene_instance_name(&v->scene, instance.index));

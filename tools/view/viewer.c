@@ -167,9 +167,9 @@ static bool resize_stages(masu_viewer *v, VkExtent2D now) {
     if (kept) masu_plan_of(v->a.m, &v->plan);
     if (!kept && !start_a(v)) return false;
     masu_viewer_note(v, "%ux%u in %.0f ms, %s", now.width, now.height, v->a.start_ms,
-                     kept            ? "no pipeline made anew"
-                     : v->a.in_place ? "made anew in the same blocks"
-                                     : "made anew in larger blocks");
+                     kept            ? "no pipeline rebuilt"
+                     : v->a.in_place ? "rebuilt in the same blocks"
+                                     : "rebuilt in larger blocks");
     if (v->show == MASU_SHOW_A) return true;
     return masu_stage_resize(&v->b, now, v->error, sizeof v->error) || start_b(v);
 }
@@ -184,7 +184,7 @@ bool masu_viewer_resize(masu_viewer *v) {
     const masu_headless_target *is = &v->a.target;
     if (!now.width || (v->a.m && is->width == now.width && is->height == now.height)) return true;
     if (!masu_canvas_resize(&v->canvas, now.width, now.height)) {
-        snprintf(v->error, sizeof v->error, "no memory for an overlay of %ux%u", now.width, now.height);
+        snprintf(v->error, sizeof v->error, "out of memory for an overlay of %ux%u", now.width, now.height);
         return false;
     }
     if (!masu_compose_resize(&v->compose, now, v->error, sizeof v->error)) return false;
@@ -234,7 +234,7 @@ bool masu_viewer_load(masu_viewer *v, const char *path) {
         v->trouble[0] = '\0';
         v->path_end = masu_fly_path_end(v->a.m);
         if (!scene.camera_keys) v->on_path = false;
-        masu_viewer_note(v, "reloaded in %.0f ms, %s", v->a.start_ms,
+        masu_viewer_note(v, "reloaded in %.0f ms %s", v->a.start_ms,
                          v->a.in_place ? "in the same blocks" : "in larger blocks");
         return v->show == MASU_SHOW_A || start_b(v);
     }
@@ -268,7 +268,7 @@ static bool open_device(masu_viewer *v) {
         SDL_Delay(50);
     }
     if (v->a.m) return true;
-    snprintf(v->error, sizeof v->error, "no window: it has no size");
+    snprintf(v->error, sizeof v->error, "no window: its size is 0");
     return false;
 }
 
@@ -309,8 +309,8 @@ bool masu_viewer_open(masu_viewer *v) {
     want_given(v);
     v->reference = v->want.rungs[0];
     if (v->rung >= v->want.rung_count) {
-        snprintf(v->error, sizeof v->error, "--rung %u does not exist, there are 0 to %u", v->rung,
-                 v->want.rung_count - 1);
+        snprintf(v->error, sizeof v->error, "--rung: expected 0 to %u, found %u", v->want.rung_count - 1,
+                 v->rung);
         return false;
     }
     if (!masu_window_open(&v->window, title, v->o->size, v->error, sizeof v->error) || !open_device(v))

@@ -140,7 +140,7 @@ static void bad_input_is_one_line(void **state) {
         int code;
         const char *says;
     } cases[] = {{"", 2, "no scene"},
-                 {"a.masu b.masu", 2, "one at a time"},
+                 {"a.masu b.masu", 2, "expected one"},
                  {"%s --rung speed=3", 2, "'speed=3'"},
                  {"%s --most 0", 2, "--most"},
                  {"%s --step -1", 2, "--step"},

@@ -52,7 +52,7 @@ for knob in '"march": "plain"' '"specular": "on"' '"occlusion": "on"' '"upscale"
     refuses 1 'rungs[1]: ' sdf="$folder/refused.json"
 done
 ladder near 0.99 ''
-refuses 1 'needed is 1.04 times less than the rung before, 1, given is 0.99' sdf="$folder/near.json"
+refuses 1 'expected at least 1.04 times less than the previous rung, 1, found 0.99' sdf="$folder/near.json"
 refuses 2 'no ladder is given'
 refuses 2 'expected CLASS=FILE' "$folder/good.json"
 refuses 2 'expected CLASS=FILE' many="$folder/good.json"
