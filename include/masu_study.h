@@ -16,8 +16,7 @@
     X(MASU_MARCH_AUTO, 0, "auto", "the product's: cones of 8x8, then of 4x4 pixels")               \
     X(MASU_MARCH_PLAIN, 1, "plain", "* plain sphere tracing, one ray per pixel: the baseline")     \
     X(MASU_MARCH_SEED, 2, "seed", "* two-phase checkerboard with capped, unchecked restarts")      \
-    X(MASU_MARCH_CONES, 3, "cones", "the same as auto")                                            \
-    X(MASU_MARCH_CHECKERBOARD, 4, "checkerboard",                                                  \
+    X(MASU_MARCH_CHECKERBOARD, 3, "checkerboard",                                                  \
       "* cones of 8x8 pixels, then a two-phase checkerboard with safe restarts")
 
 typedef enum masu_march { MASU_MARCH_WORDS(MASU_WORD_ENUM) } masu_march;

@@ -17,7 +17,7 @@ TESTS ?=
 wanted := $(foreach t,$(TESTS),%/$(t) %/test_$(t) %/fuzz_$(t) %/$(t).sh)
 only = $(if $(wanted),$(filter $(wanted),$(1)),$(1))
 
-test_programs = $(call only,$(patsubst tests/%.c,$(BUILD)/tests/%,$(filter-out %/test_study_march.c %/test_baseline.c,$(wildcard $(1)))))
+test_programs = $(call only,$(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard $(1))))
 GPU_TESTS    := $(call test_programs,tests/gpu/test_*.c)
 FUZZ_TESTS   := $(call test_programs,tests/fuzz/fuzz_*.c)
 # Those that look at texts and not at what is built say nothing new a second time: NESTED is set by tests/full.

@@ -24,7 +24,7 @@ MASU_LIBS := -lvulkan -ljansson -lembree3 -lm -ldl -lpthread
 # ---- Programs ------------------------------------------------------------------------------------
 
 $(BUILD)/bin/masu: LIBS = $(MASU_LIBS)
-$(BUILD)/bin/masu: $(call objects,$(filter-out $(OF_LAB),$(wildcard tools/masu/*.c))) $(KEEP_LOADED) $(MEASURE_ARCHIVES) $(BAKE_ARCHIVES)
+$(BUILD)/bin/masu: $(call objects,$(wildcard tools/masu/*.c)) $(KEEP_LOADED) $(MEASURE_ARCHIVES) $(BAKE_ARCHIVES)
 	$(link)
 
 $(BUILD)/bin/masu-bake $(BUILD)/bin/masu-meso: LIBS = $(BAKE_LIBS)

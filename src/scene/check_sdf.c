@@ -78,7 +78,7 @@ void masu_look_at_sdf(const reader *r, masu_scene *out) {
     } variants[] = {{MASU_BLOB_PLAIN_SPIRV, MASU_MARCH_PLAIN},
                     {MASU_BLOB_SEED_SPIRV, MASU_MARCH_SEED},
                     {MASU_BLOB_CHECKERBOARD_SPIRV, MASU_MARCH_CHECKERBOARD}};
-    out->sdf_march = 1u << MASU_MARCH_AUTO | 1u << MASU_MARCH_CONES;
+    out->sdf_march = 1u << MASU_MARCH_AUTO;
     for (size_t i = 0; i < sizeof variants / sizeof *variants; i++) {
         if (r->view.code[variants[i].kind].words) out->sdf_march |= 1u << variants[i].march;
     }

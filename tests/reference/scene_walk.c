@@ -439,7 +439,7 @@ static const struct {
 
 static void read_code(walker *w) {
 #ifdef MASU_LAB
-    uint32_t marches = w->view.sdf ? 1u << MASU_MARCH_AUTO | 1u << MASU_MARCH_CONES : 0;
+    uint32_t marches = w->view.sdf ? 1u << MASU_MARCH_AUTO : 0;
 #endif
     for (uint32_t k = 0; k < MASU_BLOB_KIND_COUNT; k++) {
         const uint32_t *words = w->view.code[k].words;

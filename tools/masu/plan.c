@@ -4,6 +4,7 @@
 #include "masu/cmd.h"
 
 #include "settings/knobs.h"
+#include "settings/setting.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -256,6 +257,16 @@ static bool print_knobs(masu_cli *cli, void *to) {
     return false;
 }
 
+/* The only rung of the plan. */
+static bool read_setting(masu_cli *cli, void *to) {
+    masu_desc *desc = &((plan_options *)to)->d.desc;
+    char error[600];
+    desc->rung_count = 1;
+    if (masu_setting_parse(cli->value, &desc->rungs[0], error, sizeof error)) return true;
+    masu_cli_usage_error("%s", error);
+    return false;
+}
+
 static bool read_split(masu_cli *cli, void *to) {
     (void)cli;
     ((plan_options *)to)->d.desc.deny.unified_memory = 1;
@@ -272,6 +283,7 @@ static const masu_option rows[] = {
     MASU_OUTPUT_SIZE_ROW(plan_options, d.desc.output),
     MASU_LADDER_ROW(plan_options, ladder, "scales 1, 0.8, 0.4 (default off)"),
     MASU_HEADING("Memory"),
+    MASU_OWN("setting", "NAME", read_setting, "one rung instead of a ladder: scale=0.5+aa=fxaa; --knobs lists the knobs"),
     MASU_UINT(plan_options, d.desc.frames_in_flight, "frames-in-flight", 1, MASU_MAX_FLIGHT,
               "frames recorded ahead of the GPU: 1 to 3 (default 2)"),
     MASU_OWN("split-memory", NULL, read_split,
@@ -294,6 +306,7 @@ static int run(masu_cli *cli) {
     int code;
     if (!masu_options_read(cli, rows, &o, &given, &code)) return code;
     if (!given.count) return masu_cli_usage_error("no scene given: expected SCENE.masu");
+    if (o.ladder && masu_is_given(&given, rows, "setting")) return masu_cli_usage_error("--setting plans one rung: no --ladder");
     o.d.scene_path = given.arguments[0];
     return plan(&o);
 }

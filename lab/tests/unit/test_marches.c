@@ -25,7 +25,7 @@ static int runs(masu_pass_id pass) { return masu_has_pass(&plan.rungs[0].active,
 
 static masu_desc desc_of(uint32_t parts, masu_march march) {
     masu_desc d = scene_desc(parts, 64, 64);
-    support_scene.sdf_march = BIT(AUTO) | BIT(PLAIN) | BIT(SEED) | BIT(CONES) | BIT(CHECKERBOARD);
+    support_scene.sdf_march = BIT(AUTO) | BIT(PLAIN) | BIT(SEED) | BIT(CHECKERBOARD);
     d.rung_count = 1;
     d.rungs[0] = (masu_rung){.march = march, .march_steps = 77};
     return d;
@@ -38,7 +38,6 @@ static void each_march_has_its_passes(void **state) {
         int tiles, blocks; /* classify and cone8; cone4 and the product's march */
         masu_pass_id pass;
     } cases[] = {{MASU_MARCH_AUTO, 1, 1, MASU_PASS_MARCH},
-                 {MASU_MARCH_CONES, 1, 1, MASU_PASS_MARCH},
                  {MASU_MARCH_CHECKERBOARD, 1, 0, MASU_PASS_MARCH_CHECKERBOARD},
                  {MASU_MARCH_PLAIN, 0, 0, MASU_PASS_MARCH_PLAIN},
                  {MASU_MARCH_SEED, 0, 0, MASU_PASS_MARCH_SEED}};
@@ -63,7 +62,7 @@ static void a_march_without_code_in_the_blob_is_a_scene_error(void **state) {
     static const masu_march marches[] = {MASU_MARCH_PLAIN, MASU_MARCH_SEED, MASU_MARCH_CHECKERBOARD};
     for (size_t i = 0; i < sizeof marches / sizeof *marches; i++) {
         masu_desc d = desc_of(SDF, marches[i]);
-        support_scene.sdf_march = BIT(AUTO) | BIT(CONES);
+        support_scene.sdf_march = BIT(AUTO);
         assert_int_equal(masu_compile(&d, 256, 64, &plan, &detail), MASU_ERROR_SCENE);
         assert_string_equal(detail.what, "rungs[].march");
         assert_non_null(strstr(detail.text, "--variants"));
