@@ -67,7 +67,7 @@ masu_result masu_check_sdf(reader *r) {
     return MASU_OK;
 }
 
-void masu_look_at_sdf(const reader *r, masu_scene *out) {
+void masu_look_at_sdf(const reader *r, masu_scene_data *out) {
     static const struct {
         uint32_t kind;
         masu_march march;

@@ -704,7 +704,7 @@ static void meshes_too_large_for_occlusion_are_a_limit(void **state) {
 static void a_march_that_the_blob_has_no_code_for_is_a_scene_error(void **state) {
     (void)state;
     static masu_frame_plan plan;
-    const uint32_t always = scene_desc(SDF, 64, 64).scene->sdf_march;
+    const uint32_t always = masu_scene_data_of(scene_desc(SDF, 64, 64).scene)->sdf_march;
     for (uint32_t parts = SDF; parts <= (RASTER | SDF); parts++) {
         for (uint32_t march = 0; march <= MASU_MARCH_UNPRUNED; march++) {
             masu_desc d = scene_desc(parts, 64, 64);

@@ -88,7 +88,9 @@ static double seen_at(const masu_readback_image *image, uint32_t x, uint32_t y) 
 
 static masu_readback_image occlusion(bench *b, uint32_t way, uint32_t rung, uint32_t slot) {
     masu_readback_image image = {0};
-    if (rung == OFF && !b->scene.sdf_occlusion && !b->scene.shadow_cascades) return image;
+    if (rung == OFF && !masu_scene_data_of(&b->scene)->sdf_occlusion &&
+        !masu_scene_shadow_cascades(&b->scene, NULL))
+        return image;
     if (masu_readback(b->s[way].m, slot, MASU_READBACK_OCCLUSION, &image)) image.pixels = NULL;
     return image;
 }
@@ -126,7 +128,7 @@ static bool open_truth(bench *b) {
     if (!masu_file_read(o->scene, (size_t)2 << 30, &b->blob, &bytes, b->error, sizeof b->error))
         return false;
     if (masu_scene_bind(b->blob, bytes, &b->scene, &detail)) return failed(b, detail.text);
-    if (b->scene.sdf) {
+    if ((masu_scene_features(&b->scene) & MASU_SCENE_HAS_SDF)) {
         const char *truth = o->field;
         if (!truth && masu_truth_path(o->scene, path, sizeof path)) truth = path;
         if (!masu_view_of(&b->scene, &b->camera, o->time, o->size.width, o->size.height,
@@ -136,7 +138,8 @@ static bool open_truth(bench *b) {
         }
     }
     if (!masu_ao_open(&b->scene, &b->world, b->error, sizeof b->error)) return false;
-    if (b->scene.sdf) b->world.field = &b->field, b->world.view = &b->view;
+    if ((masu_scene_features(&b->scene) & MASU_SCENE_HAS_SDF))
+        b->world.field = &b->field, b->world.view = &b->view;
     return true;
 }
 
@@ -413,7 +416,7 @@ static bool open_sessions(bench *b, uint32_t *opened) {
 
 /* Of the rays: the scene's, or the one that is given where it has none. */
 static bool choose_radius(bench *b) {
-    double own = (double)b->scene.occlusion_radius;
+    double own = (double)masu_scene_data_of(&b->scene)->occlusion_radius;
     if (!(given.radius > 0)) given.radius = own;
     if (!(given.radius > 0))
         return failed(b, "asks for no ambient occlusion, and --radius is not given");

@@ -251,13 +251,17 @@ static int cull_scene(const char *path) {
     int code = MASU_CLI_FAILURE;
     if (masu_scene_bind(bytes, count, &scene, &detail)) {
         masu_cli_error("%s: %s", path, detail.text);
-    } else if (!scene.instances || !scene.camera_keys) {
+    } else if (!masu_scene_count(&scene, MASU_SCENE_INSTANCE) ||
+               !masu_scene_count(&scene, MASU_SCENE_CAMERA_KEY)) {
         masu_cli_error("%s: has no instances or no camera path", path);
     } else {
         masu_scene_view v = masu_scene_look(&scene);
-        field f = {.count = scene.instances, .groups = scene.groups, .grouped = scene.group_items};
+        field f = {.count = masu_scene_count(&scene, MASU_SCENE_INSTANCE),
+                   .groups = masu_scene_data_of(&scene)->groups,
+                   .grouped = masu_scene_data_of(&scene)->group_items};
         fill(&f, v.instances, v.meshes, v.groups, v.group_items);
-        figures r = measure(&f, v.camera_keys, scene.camera_keys, given.study.frames);
+        figures r = measure(&f, v.camera_keys, masu_scene_count(&scene, MASU_SCENE_CAMERA_KEY),
+                            given.study.frames);
         code = print(&f, &r);
         release(&f);
     }

@@ -173,7 +173,8 @@ static int run(void) {
     int code = MASU_CLI_FAILURE;
     for (uint32_t i = 0; i < WAYS; i++)
         b.pixels[i] = malloc((size_t)o->size.width * o->size.height * 4);
-    if (!b.s.scene.instances || !b.s.scene.camera_keys) {
+    if (!masu_scene_count(&b.s.scene, MASU_SCENE_INSTANCE) ||
+        !masu_scene_count(&b.s.scene, MASU_SCENE_CAMERA_KEY)) {
         masu_cli_error("%s: has no instances or no camera path", o->scene);
     } else if (!b.pixels[BOTH] || !b.pixels[FRUSTUM] || !b.pixels[NEITHER]) {
         masu_cli_error("out of memory");

@@ -37,7 +37,7 @@ typedef struct bench {
 
 /* `count` of them, evenly from first to last; the others off. */
 static bool switch_lights(bench *b, uint32_t count) {
-    uint32_t all = b->s.scene.lights;
+    uint32_t all = masu_scene_count(&b->s.scene, MASU_SCENE_LIGHT);
     for (uint32_t i = 0; i < all; i++) {
         masu_punctual_light_state s = b->states[i];
         uint64_t before = (uint64_t)i * count / all, after = (uint64_t)(i + 1) * count / all;
@@ -149,7 +149,7 @@ static int print(const bench *b) {
 }
 
 static bool keep_lights(bench *b) {
-    uint32_t all = b->s.scene.lights;
+    uint32_t all = masu_scene_count(&b->s.scene, MASU_SCENE_LIGHT);
     if (b->states) return true;
     b->states = malloc((all ? all : 1) * sizeof *b->states);
     if (!b->states) return false;
@@ -176,7 +176,8 @@ static bool measure_scene(bench *b, bool counts, int *code) {
     d.desc.rungs[ALL].light_tiles = MASU_OFF;
     if (!masu_session_open(&d, &b->s, b->error, sizeof b->error)) return false;
     bool good = false;
-    if (!b->s.scene.lights || !b->s.scene.camera_keys) {
+    if (!masu_scene_count(&b->s.scene, MASU_SCENE_LIGHT) ||
+        !masu_scene_count(&b->s.scene, MASU_SCENE_CAMERA_KEY)) {
         snprintf(b->error, sizeof b->error, "%s: has no lights or no camera path", o->scene);
     } else if (!keep_lights(b)) {
         snprintf(b->error, sizeof b->error, "out of memory");

@@ -7,6 +7,7 @@
 #include "image.h"
 #include "metric/flip.h"
 #include "metric/image.h"
+#include "scene/scene.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -61,13 +62,14 @@ masu_rung masu_baseline_rung(const masu_scene *scene, const char **march) {
                       .occlusion = MASU_OFF,
                       .lod_error = -1.0f,
                       .light_tiles = MASU_OFF};
-    *march = scene->sdf ? "auto" : "none";
-    if (!scene->sdf) return rung;
+    *march = (masu_scene_features(scene) & MASU_SCENE_HAS_SDF) ? "auto" : "none";
+    if (!(masu_scene_features(scene) & MASU_SCENE_HAS_SDF)) return rung;
     /* The fragment march draws over polygons. */
-    if (!scene->instances && (scene->sdf_march >> MASU_MARCH_FRAGMENT & 1u)) {
+    if (!masu_scene_count(scene, MASU_SCENE_INSTANCE) &&
+        (masu_scene_data_of(scene)->sdf_march >> MASU_MARCH_FRAGMENT & 1u)) {
         rung.march = MASU_MARCH_FRAGMENT;
         *march = "fragment";
-    } else if (scene->sdf_march >> MASU_MARCH_PLAIN & 1u) {
+    } else if (masu_scene_data_of(scene)->sdf_march >> MASU_MARCH_PLAIN & 1u) {
         rung.march = MASU_MARCH_PLAIN;
         *march = "plain";
     }
@@ -126,9 +128,10 @@ static bool find_entries(bench *w) {
     if (!masu_session_open(&d, &w->other, w->error, w->error_size)) return false;
     const masu_scene *scene = &w->other.scene;
     snprintf(out->driver, sizeof out->driver, "%s", w->other.host.driver);
-    w->textured = scene->textures != 0;
-    w->remembers = scene->reflections || scene->metered;
-    out->plain_count = scene->occlusion_radius > 0.0f ? 2 : 1;
+    w->textured = masu_scene_data_of(scene)->textures != 0;
+    w->remembers = (masu_scene_features(scene) & MASU_SCENE_HAS_REFLECTIONS) ||
+                   (masu_scene_features(scene) & MASU_SCENE_HAS_METERED_EXPOSURE);
+    out->plain_count = masu_scene_data_of(scene)->occlusion_radius > 0.0f ? 2 : 1;
     for (uint32_t e = 0; e < out->plain_count; e++) {
         w->rungs[e] = masu_baseline_rung(scene, &out->march);
         out->entries[e].plain = true;

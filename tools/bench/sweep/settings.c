@@ -1,5 +1,6 @@
 /* settings.c: see settings.h. */
 #include "bench/sweep/settings.h"
+#include "scene/scene.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -286,14 +287,14 @@ const char *masu_knob_useless(const masu_knob *k, const masu_rung *rung, const m
     bool used = true;
     switch (k->use) {
     case MASU_USE_ALWAYS: return NULL;
-    case MASU_USE_SDF: used = scene->sdf; break;
+    case MASU_USE_SDF: used = (masu_scene_features(scene) & MASU_SCENE_HAS_SDF); break;
     case MASU_USE_AO: used = has_pass(base, "ao"); break;
     case MASU_USE_SPECULAR: used = has_pass(base, "specular_"); break;
     case MASU_USE_SHADOWS: used = has_pass(base, "cascade_"); break;
-    case MASU_USE_LODS: used = scene->lods; break;
-    case MASU_USE_OCCLUDERS: used = scene->placed_occluders; break;
-    case MASU_USE_POLYGONS: used = scene->instances; break;
-    case MASU_USE_LIGHTS: used = scene->lights; break;
+    case MASU_USE_LODS: used = masu_scene_data_of(scene)->lods; break;
+    case MASU_USE_OCCLUDERS: used = masu_scene_data_of(scene)->placed_occluders; break;
+    case MASU_USE_POLYGONS: used = masu_scene_count(scene, MASU_SCENE_INSTANCE); break;
+    case MASU_USE_LIGHTS: used = masu_scene_count(scene, MASU_SCENE_LIGHT); break;
     case MASU_USE_UPSCALED: used = upscaled; break;
     case MASU_USE_SHARPEN: used = by_default || rung->sharpen == MASU_ON; break;
     case MASU_USE_SHARPENED: used = sharpened; break;
@@ -312,13 +313,14 @@ static void refit_parent(masu_setting *s, const masu_setting *all, uint32_t coun
 
 /* Values that only a scene can give a meaning. */
 static void scene_values(masu_rung *rung, const masu_scene *scene, const char **why) {
-    if (scene->shadow_distance > 0.0f) rung->shadow_distance *= scene->shadow_distance;
-    if (rung->shadow_cascades && scene->shadow_cascades &&
-        rung->shadow_cascades >= scene->shadow_cascades) {
+    if (masu_scene_shadow_distance(scene) > 0.0f)
+        rung->shadow_distance *= masu_scene_shadow_distance(scene);
+    if (rung->shadow_cascades && masu_scene_shadow_cascades(scene, NULL) &&
+        rung->shadow_cascades >= masu_scene_shadow_cascades(scene, NULL)) {
         *why = "the scene has no more of them";
         rung->shadow_cascades = 0;
     }
-    if (!(fabsf(rung->specular_cutoff - scene->specular_cutoff) > 1e-6f)) {
+    if (!(fabsf(rung->specular_cutoff - masu_scene_specular_cutoff(scene)) > 1e-6f)) {
         if (rung->specular_cutoff > 0.0f) *why = "it is the scene's own";
         rung->specular_cutoff = 0.0f;
     }
