@@ -6,7 +6,6 @@
 
 .DEFAULT_GOAL := all
 .DELETE_ON_ERROR:
-.SECONDARY:
 .SUFFIXES:
 MAKEFLAGS += --no-builtin-rules
 
@@ -19,6 +18,9 @@ ifeq ($(config),release)
 BUILD  ?= build
 else
 BUILD  ?= build/$(config)
+endif
+ifeq ($(config),lab)
+MADE   ?= build
 endif
 # Headers made of shaders and tables, and baked scenes: no compiler of C changes them. MADE=build takes those of
 # the main build, as they are.
@@ -36,6 +38,8 @@ LONG   ?=
 # ---- Flags ---------------------------------------------------------------------------------------
 
 CONFIG_release  := -O2 -g -DNDEBUG
+# The laboratory (lab/lab.mk), and what of the product only it has, under the define MASU_LAB.
+CONFIG_lab      := $(CONFIG_release) -DMASU_LAB
 CONFIG_debug    := -O0 -g3
 # Undefined behaviour traps, and the address sanitizer says where: texts for each place take a tenth of the time to compile.
 CONFIG_sanitize := -O1 -g1 -fno-omit-frame-pointer -fsanitize=address,undefined
@@ -43,7 +47,7 @@ CONFIG_sanitize += $(if $(findstring clang,$(CC)),-fsanitize-trap=undefined,-fsa
 CONFIG_coverage := -O0 -g --coverage
 CONFIG_fuzz     := $(CONFIG_sanitize) -fsanitize=fuzzer-no-link
 ifndef CONFIG_$(config)
-$(error config=$(config) is not known: release, debug, sanitize, coverage or fuzz)
+$(error config=$(config) is not known: release, debug, sanitize, coverage, fuzz or lab)
 endif
 
 # -ffp-contract=off and no -ffast-math: the CPU references are compared with the GPU bit for bit
@@ -61,12 +65,27 @@ $(BUILD)/obj/tests/%.o: FOLDER_FLAGS := -D_POSIX_C_SOURCE=200809L -UNDEBUG
 
 # ---- Rules ---------------------------------------------------------------------------------------
 
+comma := ,
 objects = $(patsubst %.c,$(BUILD)/obj/%.o,$(1))
 
 # For programs that load Vulkan drivers: lets the leak checker tell the drivers' leaks from ours.
 KEEP_LOADED := $(if $(filter sanitize,$(config)),$(BUILD)/obj/tests/keep_loaded.o)
 
 include packages.mk shaders/shaders.mk src/src.mk platform/platform.mk tools/tools.mk package/package.mk tests/tests.mk
+
+# Classes of scenes, and the folder that each one's ladder was measured into; folders that do not exist are skipped. A
+# class without a folder has the ladder of the nearest class: worlds-city shows a place in the shade, where two cascades
+# instead of four cost no quality.
+LADDERS ?= polygons=textures sdf=city_shadows both=engine polygons-traced=mirrors \
+    world-traced=forza both-traced=wet_city
+LADDER_FOLDER ?= docs/report
+ladder_scene = $(call bench_file,$(lastword $(subst =, ,$(1)))).masu
+# A name is that of a scene or of a world; where both have it, the scene's: worlds/city is the other. The folder march
+# is the lab's: scenes with every march, and beside them what depth is compared with.
+bench_file = $(if $(filter march/%,$(1)),$(BUILD)/$(1),$(MADE)/$(if $(findstring /,$(1)),,$(if $(wildcard \
+    scenes/$(1).json),scenes/,worlds/))$(1))
+
+include lab/lab.mk
 
 # Changes when the compiler or its flags do: then everything is compiled again.
 $(BUILD)/flags: force
@@ -116,7 +135,7 @@ tools: $(addprefix $(BUILD)/bin/,masu masu-bake masu-sdfc masu-meso $(if $(HAVE_
 shaders: $(SPIRV) ## compile, validate and optimise all shaders
 scenes: $(SCENES) ## bake scenes/*.json to build/scenes/*.masu
 
-.PHONY: demo demo-picture view view-window worlds hostile gallery
+.PHONY: demo demo-picture view view-window worlds hostile
 demo: deps-demo $(if $(filter forza,$(WORLD)),deps-worlds)
 demo: ## install what is missing, build, bake, render: WORLD=garden|engine|forza|city|... SIZE=1920x1080 TIME= DEMO_ARGS=
 	+$(V)$(more) demo-picture
@@ -158,10 +177,6 @@ drive-long: deps-test deps-view deps-worlds ## a lap of forza by script, under t
 	$(V)BUILD='$(BUILD)' tests/drive_long.sh $(DRIVE_ARGS)
 drive-built: $(BUILD)/examples/drive $(BUILD)/worlds/forza.masu $(BUILD)/worlds/forza.track
 
-gallery: $(BUILD)/bin/masu-bake $(BUILD)/bin/masu ## a page of all of assimp-testmodels and TORCS's tracks, build/gallery/index.html: MATCH='*OBJ*' SIZE=
-	$(V)BUILD='$(BUILD)' SIZE='$(if $(filter command line,$(origin SIZE)),$(SIZE),480x270)' MATCH='$(or $(MATCH),*)' \
-	    tools/gallery/gallery.sh $(BUILD)/gallery $(or $(MODELS),/usr/share/assimp/models) $(TORCS)/tracks
-
 hostile: $(BUILD)/bin/masu-bake $(BUILD)/bin/masu ## bake all of assimp-testmodels, broken ones too: RENDER=1
 	$(V)BUILD='$(BUILD)' config='$(config)' RENDER='$(RENDER)' tests/hostile.sh
 
@@ -169,17 +184,17 @@ hostile: $(BUILD)/bin/masu-bake $(BUILD)/bin/masu ## bake all of assimp-testmode
 check: deps-test ## install what is missing, build, run every test: DRIVERS=system, FULL=, LONG=
 	+$(V)$(more) check-built
 
-check-built: all scenes $(BUILD)/bin/masu-world $(UNIT_TESTS) $(GPU_TESTS) $(FUZZ_TESTS) $(DRIVER_INFO)
+check-built: all $(SCRIPT_SCENES) $(UNIT_TESTS) $(GPU_TESTS) $(FUZZ_TESTS) $(DRIVER_INFO)
 	$(V)$(RUN_TESTS) $(RUN_UNIT) $(RUN_GPU)
 
-unit: all scenes $(BUILD)/bin/masu-world $(UNIT_TESTS) $(FUZZ_TESTS) ## run the tests that need no Vulkan driver: TESTS=name
+unit: all $(SCRIPT_SCENES) $(UNIT_TESTS) $(FUZZ_TESTS) ## run the tests that need no Vulkan driver: TESTS=name
 	$(V)$(RUN_TESTS) $(RUN_UNIT)
 
 gpu: | $(filter unit,$(MAKECMDGOALS)) # they use one folder for results
-gpu: all scenes $(GPU_TESTS) $(DRIVER_INFO) ## run the tests that need one: DRIVERS=all TESTS=name
+gpu: all $(GPU_TESTS) $(DRIVER_INFO) ## run the tests that need one: DRIVERS=all TESTS=name
 	$(V)$(RUN_TESTS) $(RUN_GPU)
 
-stiff: all scenes $(BUILD)/tests/gpu/test_stiff $(DRIVER_INFO) ## print the march's errors on stiff scenes: DRIVERS=all
+stiff: all $(BUILD)/tests/gpu/test_stiff $(DRIVER_INFO) ## print the march's errors on stiff scenes: DRIVERS=all
 	$(V)$(RUN_TESTS) --gpu $(BUILD)/tests/gpu/test_stiff; code=$$?; \
 	    for f in $(BUILD)/test-results/*/test_stiff.log; do \
 	        echo; echo "$$f"; grep '^|\|^  figures' "$$f"; done; exit $$code
@@ -189,8 +204,8 @@ fuzz: ## fuzz with clang's libFuzzer: FUZZ=name FUZZ_TIME=60
 fuzz-all: ## fuzz every target of tests/fuzz for so long each: FUZZ_TIME=600
 	+$(V)for f in $(FUZZ_ALL); do $(more) config=fuzz CC=clang fuzz-$$f FUZZ=$$f || exit 1; done
 
-# Two hours on a CPU driver. Of docs/report are kept: ladders.txt, and of each scene the page, the rows, the ladder,
-# what was measured.
+# Two hours on a CPU driver. Pages stay in build/report. docs/report keeps ladders.txt, and of each scene the ladder and
+# the rows (tools/bench/keep.sh). The lab's build keeps nothing there.
 # Those of a scene alone: BENCH_ARGS_NAME; there a time at which forza's car is on its lap, and fewer rays for the
 # truth and frames where one takes long.
 .PHONY: bench
@@ -198,17 +213,18 @@ BENCH ?= engine mirrors wet_city worlds/city forza textures city_shadows
 BENCH_ARGS ?= --size 640x360
 BENCH_ARGS_forza ?= --time 60 --reference 64 --frames 16
 BENCH_ARGS_wet_city ?= --reference 256
-# A name is that of a scene or of a world; where both have it, the scene's: worlds/city is the other. The
-# folder march has the scenes with all ways to march, and beside them what depth is compared with.
-bench_file = $(BUILD)/$(if $(findstring /,$(1)),,$(if $(wildcard scenes/$(1).json),scenes/,worlds/))$(1)
 bench_truth = $(patsubst %,$(BUILD)/%.truth.so,$(filter march/%,$(BENCH)))
 bench_needs = $(BUILD)/bin/masu $(foreach s,$(BENCH),$(call bench_file,$(s)).masu) $(bench_truth)
 bench_scene = $(BUILD)/bin/masu bench $(call bench_file,$(1)).masu $(BENCH_ARGS) \
     $(BENCH_ARGS_$(subst /,-,$(1)))
-bench: $(bench_needs) ## error against run time: docs/report/SCENE/index.html: BENCH='engine worlds/city' BENCH_ARGS=
-	$(V)mkdir -p docs/report
-	$(V)$(foreach s,$(BENCH),$(call bench_scene,$(s)) --out docs/report/$(subst /,-,$(s)) &&) true
+REPORT := $(MADE)/report
+bench: $(bench_needs) ## error against run time: build/report/SCENE/index.html, and the ladder to docs/report: BENCH='engine worlds/city' BENCH_ARGS=
+	$(V)mkdir -p $(REPORT)
+	$(V)$(foreach s,$(BENCH),$(call bench_scene,$(s)) --out $(REPORT)/$(subst /,-,$(s)) &&) true
+ifneq ($(config),lab)
+	$(V)$(foreach s,$(BENCH),tools/bench/keep.sh $(REPORT)/$(subst /,-,$(s)) docs/report/$(subst /,-,$(s)) &&) true
 	$(V)$(BUILD)/bin/masu bench --ladder docs/report/*/ladder.json > docs/report/ladders.txt
+endif
 
 # Whether the rungs hold on this machine, today. Nothing in docs/report is touched.
 bench_again = if [ -d $(2) ]; then rm -rf $(3) && $(call bench_scene,$(1)) --rungs-of $(2) --out $(3) && \
@@ -217,31 +233,6 @@ bench_again = if [ -d $(2) ]; then rm -rf $(3) && $(call bench_scene,$(1)) --run
 bench-again: $(bench_needs) ## measure the rungs of docs/report again, and compare error and time ratio: BENCH=
 	$(V)mkdir -p $(BUILD)/again
 	$(V)$(foreach s,$(BENCH),$(call bench_again,$(s),docs/report/$(subst /,-,$(s)),$(BUILD)/again/$(subst /,-,$(s))) &&) true
-
-# Classes of scenes, and the folder that each one's ladder was measured into; folders that are not
-# there are left out. A class without one has the ladder of the nearest class: worlds-city is of a place in
-# the shade, where two cascades for four look like nothing lost.
-.PHONY: ladders
-LADDERS ?= polygons=textures sdf=city_shadows both=engine polygons-traced=mirrors \
-    world-traced=forza both-traced=wet_city
-LADDER_FOLDER ?= docs/report
-ladders: $(BUILD)/bin/masu ## write src/quality/ladder_tables.h from docs/report/*/ladder.json: LADDERS='both=engine ...'
-	$(V)files=; for l in $(LADDERS); do \
-	    f=$(LADDER_FOLDER)/$${l#*=}/ladder.json; \
-	    if [ -f "$$f" ]; then files="$$files $${l%%=*}=$$f"; else echo "masu: there is no $$f"; fi; \
-	done; \
-	[ "$$files" ] || { echo "masu: no ladder to take; see make bench" >&2; exit 1; }; \
-	$(BUILD)/bin/masu bench --ladder --c $$files > $(BUILD)/ladder_tables.h && \
-	{ cmp -s $(BUILD)/ladder_tables.h src/quality/ladder_tables.h || cp $(BUILD)/ladder_tables.h src/quality/ladder_tables.h; }
-
-# The same ladders on GPUs of the model sheet. Of forza the moment at which a car is near, as in make bench.
-ladder_scene = $(call bench_file,$(1)).masu
-.PHONY: ladder-devices
-ladder-devices: $(BUILD)/bin/masu $(foreach l,$(LADDERS),$(call ladder_scene,$(lastword $(subst =, ,$(l))))) ## write src/quality/ladder_devices.h by the model sheet: MASU_ISA_DRIVERS=
-	$(V)BUILD=$(BUILD) SHEET_ARGS_forza='--time 146.5' tools/model/ladder_devices.sh $(foreach l,$(LADDERS),$(firstword $(subst =, \
-	    ,$(l)))=$(call ladder_scene,$(lastword $(subst =, ,$(l))))=$(LADDER_FOLDER)/$(lastword $(subst =, ,$(l)))/ladder.json) \
-	    > $(BUILD)/ladder_devices.h
-	$(V)cp $(BUILD)/ladder_devices.h src/quality/ladder_devices.h
 
 coverage: ## run the tests with gcov and print the lines executed of each file of src/
 	+$(V)$(more) config=coverage check-built
@@ -254,15 +245,15 @@ sizes: lib $(CLASS_OBJECTS) ## print the size of each object of the library, and
 	$(V)size -t $(BUILD)/lib/libmasu.a
 	$(V)package/sizes.sh $(BUILD) $(ALL_CLASSES)
 .PHONY: sizes-table
-sizes-table: lib $(CLASS_OBJECTS) ## write docs/report/sizes.csv, which tests/scripts/sizes.sh compares, and its rows in docs/embedding.md
+sizes-table: lib $(CLASS_OBJECTS) ## write package/sizes.csv, which tests/scripts/sizes.sh compares, and its rows in docs/embedding.md
 	$(V)package/sizes.sh $(BUILD) $(ALL_CLASSES) > $(BUILD)/sizes.csv
-	$(V)mv $(BUILD)/sizes.csv docs/report/sizes.csv
-	$(V)package/sizes.sh docs/report/sizes.csv > $(BUILD)/sizes.rows
+	$(V)mv $(BUILD)/sizes.csv package/sizes.csv
+	$(V)package/sizes.sh package/sizes.csv > $(BUILD)/sizes.rows
 	$(V)awk -F '|' 'NR == FNR { row[$$2] = $$0; next } $$2 in row { $$0 = row[$$2] } { print }' $(BUILD)/sizes.rows \
 	    docs/embedding.md > $(BUILD)/embedding.md
 	$(V)mv $(BUILD)/embedding.md docs/embedding.md
 
-FORMATTED = $(shell find include src platform tools examples tests -name '*.[ch]')
+FORMATTED = $(shell find include src platform tools examples tests lab -name '*.[ch]')
 format: ## clang-format every C file in place
 	$(V)clang-format -i $(FORMATTED)
 format-check: ## fail if clang-format would change a file
@@ -283,6 +274,13 @@ compdb: ## write compile_commands.json (with bear)
 clean: ## remove what was built, of all configurations; keeps build/drivers
 	$(V)[ ! -d build ] || find build -mindepth 1 -maxdepth 1 ! -name drivers -exec rm -rf {} +
 help: ## print this
-	@echo "make [TARGET] [config=release|debug|sanitize|coverage] [CC=gcc|clang] [WERROR=1] [V=]"
+	@echo "make [TARGET] [config=release|debug|sanitize|coverage|lab] [CC=gcc|clang] [WERROR=1] [V=]"
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/\1 \2/p' $(filter Makefile %.mk,$(MAKEFILE_LIST)) | \
 	    while read -r target text; do printf '  %-14s %s\n' "$$target" "$$text"; done
+
+# Made by chains of pattern rules, and kept. (All of them by an empty list would make make itself slow: it looks at what
+# such files depend on again and again.)
+.SECONDARY: $(SPIRV:.opt.spv=.spv) $(CLASS_OBJECTS:shaders.o=packed.h) $(STIFF:.masu=.truth.c) $(EXTREME:.masu=.truth.c) \
+    $(call objects,$(foreach d,unit gpu fuzz support reference,$(wildcard tests/$(d)/*.c lab/tests/$(d)/*.c)) \
+    tests/driver_info.c $(wildcard examples/*.c tools/generate/*.c)) $(FUZZ_MAIN) \
+    $(addprefix $(MADE)/tools/make_,blue_noise split_sum smaa_area font textures)

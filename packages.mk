@@ -28,10 +28,10 @@ PACKAGES_test := libcmocka-dev vulkan-validationlayers g++ imagemagick cmake $(P
 # its own (make check FULL=1), and for `make fuzz`; and another measure of SSIM
 PACKAGES_full := clang libclang-rt-dev python3-skimage
 
-# for the plots of masu-meso and masu bench, which go without. Never installed by itself
+# for the plots of masu bench and masu-lab, which go without. Never installed by itself
 PACKAGES_plots := gnuplot-nox
 
-# to build the drivers of `masu plan --isa` for Intel and Adreno (make isa-drivers)
+# to build the drivers of `masu-lab isa` for Intel and Adreno (make isa-drivers)
 PACKAGES_isa := meson ninja-build bison flex python3-mako libdrm-dev libexpat1-dev libelf-dev zlib1g-dev libncurses-dev
 PACKAGES_isa += pkgconf g++ glslang-tools curl ca-certificates
 

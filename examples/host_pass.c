@@ -248,7 +248,7 @@ int main(int argc, char **argv) {
     }
     CHECK(masu_headless_target_read(&host, &image, error, room));
     CHECK(masu_image_save_png(argv[2], image.mapped, WIDTH, HEIGHT, 0, error, room));
-    printf("%u parts, drawn at %ux%u, validation %u\n", commands.part_count,
+    printf("%u parts, rendered at %ux%u, validation %u\n", commands.part_count,
            split[0].color.width, split[0].color.height, host.messages);
     for (int i = 0; i < 2; i++) {
         destroy_painter(host.device, &painters[i]);

@@ -72,7 +72,7 @@ static bool create_instance(masu_headless *host, char *error, size_t size) {
     host->validating = wants && has_layer(layer);
     if (wants && !host->validating && host->desc.message) {
         host->desc.message(host->desc.message_user,
-                           "the Khronos validation layer is not installed: not validating");
+                           "the Khronos validation layer is not installed: validation is disabled");
     }
     host->labels =
         (host->validating || host->desc.labels) &&
@@ -189,8 +189,8 @@ static bool choose_device(masu_headless *host, char *error, size_t size) {
     VkResult r = vkEnumeratePhysicalDevices(host->instance, &n, devices);
     if (r && r != VK_INCOMPLETE)
         return masu_headless_fail(error, size, "vkEnumeratePhysicalDevices", r);
-    size_t used = (size_t)snprintf(error, size, "no Vulkan device%s%s; there are:",
-                                   wanted ? " matches " : " suits", wanted ? wanted : "");
+    size_t used = (size_t)snprintf(error, size, "no Vulkan device%s%s; available:",
+                                   wanted ? " matches " : " is suitable", wanted ? wanted : "");
     for (uint32_t i = 0; i < n; i++) {
         VkPhysicalDeviceProperties p;
         vkGetPhysicalDeviceProperties(devices[i], &p);
@@ -380,7 +380,7 @@ bool masu_headless_wait(masu_headless *host, uint32_t slot, char *error, size_t 
         vkWaitForFences(host->device, 1, &host->fences[slot], VK_TRUE, MASU_HEADLESS_TIMEOUT_NS);
     if (r) host->lost = true;
     if (r == VK_TIMEOUT) {
-        snprintf(error, error_size, "the GPU has not finished within %u s",
+        snprintf(error, error_size, "the GPU did not finish within %u s",
                  (unsigned)(MASU_HEADLESS_TIMEOUT_NS / 1000000000u));
         return false;
     }

@@ -10,7 +10,7 @@
 #endif
 
 #include "image.h"
-#include "draft.h"
+#include "atomic_file.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -78,10 +78,10 @@ void masu_image_free(struct masu_image *image) {
 static bool size_is_allowed(const char *path, uint32_t width, uint32_t height, char *error,
                             size_t error_size) {
     if (width == 0 || height == 0) {
-        return fail(error, error_size, "%s: the picture is empty (%ux%u)", path, width, height);
+        return fail(error, error_size, "%s: the image is empty (%ux%u)", path, width, height);
     }
     if (width > MASU_IMAGE_SIDE_MAX || height > MASU_IMAGE_SIDE_MAX) {
-        return fail(error, error_size, "%s: %ux%u is larger than %u pixels a side", path, width,
+        return fail(error, error_size, "%s: %ux%u is larger than %u pixels per side", path, width,
                     height, MASU_IMAGE_SIDE_MAX);
     }
     if ((uint64_t)width * height > MASU_IMAGE_PIXELS_MAX) {
@@ -174,17 +174,17 @@ static bool write_straight(const char *path, const void *bytes, size_t count, ch
     return good || fail(error, error_size, "%s: cannot write: %s", path, strerror(why));
 }
 
-/* Without leftovers, whenever it ends: draft.h. */
+/* Without leftovers, whenever it ends: atomic_file.h. */
 static bool write_beside_and_rename(const char *path, const char *target, const void *bytes,
                                     size_t count, char *error, size_t error_size) {
-    masu_draft draft;
-    int problem = masu_draft_open(&draft, target);
+    masu_atomic_file draft;
+    int problem = masu_atomic_file_open(&draft, target);
     if (!problem) {
-        problem = masu_draft_write(&draft, bytes, count);
+        problem = masu_atomic_file_write(&draft, bytes, count);
         if (problem)
-            masu_draft_drop(&draft);
+            masu_atomic_file_discard(&draft);
         else
-            problem = masu_draft_finish(&draft, target);
+            problem = masu_atomic_file_commit(&draft, target);
     }
     return !problem || fail(error, error_size, "%s: cannot write: %s", path, strerror(problem));
 }
@@ -208,9 +208,9 @@ bool masu_file_writable(const char *path, char *error, size_t error_size) {
     if (!may_write(path, &exists, &special, error, error_size)) return false;
     if (special) return true;
     char *resolved = exists ? realpath(path, NULL) : NULL;
-    masu_draft draft;
-    int problem = masu_draft_open(&draft, resolved ? resolved : path);
-    if (!problem) masu_draft_drop(&draft);
+    masu_atomic_file draft;
+    int problem = masu_atomic_file_open(&draft, resolved ? resolved : path);
+    if (!problem) masu_atomic_file_discard(&draft);
     free(resolved);
     return !problem || fail(error, error_size, "%s: cannot write: %s", path, strerror(problem));
 }

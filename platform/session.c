@@ -36,7 +36,7 @@ static bool open_targets(const masu_session_desc *d, masu_session *s, char *erro
     uint32_t count = d->target_count ? d->target_count : 1;
     uint32_t most = s->host.properties.limits.maxImageDimension2D;
     if (s->desc.output.width > most || s->desc.output.height > most) {
-        snprintf(error, size, "size %ux%u is larger than the device's images may be (%u)",
+        snprintf(error, size, "size: found %ux%u pixels, expected at most %u per side on this device",
                  s->desc.output.width, s->desc.output.height, most);
         return false;
     }
@@ -72,7 +72,7 @@ bool masu_session_start(masu_session *s, char *error, size_t size) {
                             s->need.host_alignment * s->need.host_alignment);
     s->block = aligned_alloc((size_t)s->need.host_alignment, bytes);
     if (!s->block) {
-        snprintf(error, size, "no memory for a host block of %zu bytes", bytes);
+        snprintf(error, size, "out of memory for a host block of %zu bytes", bytes);
         return false;
     }
     if (masu_init(&s->desc, s->block, s->need.host_bytes, &s->m, &s->detail))

@@ -17,14 +17,14 @@ TESTS ?=
 wanted := $(foreach t,$(TESTS),%/$(t) %/test_$(t) %/fuzz_$(t) %/$(t).sh)
 only = $(if $(wanted),$(filter $(wanted),$(1)),$(1))
 
-test_programs = $(call only,$(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard $(1))))
+test_programs = $(call only,$(patsubst tests/%.c,$(BUILD)/tests/%,$(filter-out %/test_study_march.c %/test_baseline.c,$(wildcard $(1)))))
 GPU_TESTS    := $(call test_programs,tests/gpu/test_*.c)
 FUZZ_TESTS   := $(call test_programs,tests/fuzz/fuzz_*.c)
 # Those that look at texts and not at what is built say nothing new a second time: NESTED is set by tests/full.
 TEXT_TESTS   := $(addprefix tests/scripts/,docs.sh docs_tables.sh layers.sh source_gates.sh install.sh bundle.sh exports.sh sizes.sh floats.sh)
 TEXT_TESTS   += $(BUILD)/tests/unit/test_shader_gates
 # Nor do those that take long for code that unit tests go through, or whose time goes by in a driver.
-LONG_TESTS   := $(addprefix tests/scripts/,bake_blocks.sh drive.sh isa.sh meso.sh view.sh worlds.sh)
+LONG_TESTS   := $(addprefix tests/scripts/,bake_blocks.sh drive.sh meso.sh view.sh)
 # Nor sums in double precision, which touch no memory but their own variables.
 SUM_TESTS    := $(addprefix $(BUILD)/tests/unit/,test_brdf test_sequence test_sky test_vndf)
 once_is_enough = $(filter-out $(if $(NESTED),$(TEXT_TESTS) $(LONG_TESTS) $(SUM_TESTS)),$(1))
@@ -51,8 +51,6 @@ KEPT_FUNCTIONS += DestroyPipeline AllocateMemory FreeMemory GetInstanceProcAddr 
 $(BUILD)/tests/gpu/%: LIBS = $(patsubst %,-Wl$(comma)--wrap=vk%,$(KEPT_FUNCTIONS)) $(TEST_LIBS)
 # The game's physics needs neither SDL2 nor a driver.
 $(BUILD)/tests/unit/test_drive: $(call objects,examples/drive/car.c examples/drive/track.c)
-# The hook of masu model knows passes by their layouts, of which equal ones would be one.
-$(BUILD)/tests/gpu/test_model: LIBS = $(TEST_LIBS)
 # What is kept would not be made again.
 $(BUILD)/tests/gpu/test_reinit: LIBS = $(TEST_LIBS)
 
@@ -65,13 +63,21 @@ $(BUILD)/tests/fuzz/%: $(BUILD)/obj/tests/fuzz/%.o $(FUZZ_MAIN) $(TEST_ARCHIVES)
 $(DRIVER_INFO): $(BUILD)/obj/tests/driver_info.o $(KEEP_LOADED)
 	$(link)
 
+# Scenes that tests read, by name, are baked before these tests. Programs wait for them; scripts have no file to wait
+# with, so whoever runs scripts does.
+TEST_SCENES := $(shell tests/scenes_of.sh)
+scenes_named = $(if $(filter *,$(1)),$(SCENES),$(addprefix $(MADE)/scenes/,$(addsuffix .masu,$(1))))
+scenes_of_test = $(call scenes_named,$(subst $(comma), ,$(word 2,$(subst :, ,$(1)))))
+$(foreach t,$(filter unit/% gpu/%,$(TEST_SCENES)),$(eval $(BUILD)/tests/$(firstword $(subst :, ,$(t))): | $(call scenes_of_test,$(t))))
+SCRIPT_SCENES := $(sort $(foreach t,$(filter $(patsubst tests/%.sh,%:%,$(filter tests/scripts/%,$(SCRIPT_TESTS))),$(TEST_SCENES)), \
+    $(call scenes_of_test,$(t))))
+
 # The folder of masu bench.
 $(BUILD)/tests/gpu/test_bench: | $(MADE)/stiff/blend.masu $(MADE)/stiff/blend.truth.so
 
 # ---- Stiff and extreme scenes, and their truths ---------------------------------------------------
 
-# Those of `masu conform --suite extreme` are baked with all ways to march. What the march takes by itself is the same
-# code, so that the tests take those, too.
+# Those of `masu conform --suite extreme` are in a folder of their own, as the suite names them; the tests use them, too.
 EXTREME := figures figures_far figures_far7 lipschitz_2 lipschitz_10 displace_sine lipschitz_100 lipschitz_1000
 EXTREME += rods ground grazing many
 STIFF := $(patsubst tests/scenes/stiff/%.json,%,$(wildcard tests/scenes/stiff/*.json))
@@ -81,15 +87,15 @@ STIFF_OWN := $(STIFF_OWN:%=$(MADE)/stiff/%.masu)
 STIFF_SHARED := $(EXTREME:%=$(MADE)/stiff/%.masu)
 EXTREME := $(EXTREME:%=$(MADE)/scenes/extreme/%.masu)
 
-$(STIFF_OWN): $(MADE)/stiff/%.masu: tests/scenes/stiff/%.json tests/scenes/stiff/%.sdf $(MADE)/bin/masu-bake
+$(STIFF_OWN): $(MADE)/stiff/%.masu: tests/scenes/stiff/%.json tests/scenes/stiff/%.sdf $(MADE)/bin/masu-bake.code
 	@mkdir -p $(@D)
 	@echo "  BAKE    $<"
 	$(V)$(SANITIZER_ENV) $(MADE)/bin/masu-bake $< -o $@ --quiet
 
-$(EXTREME): $(MADE)/scenes/extreme/%.masu: tests/scenes/stiff/%.json tests/scenes/stiff/%.sdf $(MADE)/bin/masu-bake
+$(EXTREME): $(MADE)/scenes/extreme/%.masu: tests/scenes/stiff/%.json tests/scenes/stiff/%.sdf $(MADE)/bin/masu-bake.code
 	@mkdir -p $(@D)
-	@echo "  BAKE    $< --variants"
-	$(V)$(SANITIZER_ENV) $(MADE)/bin/masu-bake $< -o $@ --variants --quiet
+	@echo "  BAKE    $<"
+	$(V)$(SANITIZER_ENV) $(MADE)/bin/masu-bake $< -o $@ --quiet
 
 define stiff_truth
 $(1)/%.truth.c: tests/scenes/stiff/%.sdf $(MADE)/bin/masu-sdfc
@@ -134,7 +140,7 @@ device-report: scenes $(BUILD)/bin/masu $(SUITES) $(EXTREME) $(EXTREME:.masu=.tr
 
 # A blob of a kilobyte, in which most mutations hit something that is looked at, and a real
 # one.
-FUZZ_SEEDS_scene := $(patsubst %,$(BUILD)/tests/fuzz/%.masu,scene textures lods trace skins code)
+FUZZ_SEEDS_scene := $(patsubst %,$(BUILD)/tests/fuzz/%.masu,scene textures lods trace skins code lighting reflections)
 FUZZ_SEEDS_scene += $(firstword $(filter-out %/engine.masu,$(SCENES)) $(SCENES))
 
 $(BUILD)/tests/fuzz/seed_scene: $(BUILD)/obj/tests/fuzz/seed_scene.o $(TEST_ARCHIVES)
@@ -149,7 +155,11 @@ $(BUILD)/tests/fuzz/trace.masu: $(BUILD)/tests/fuzz/seed_scene
 	$(V)$< $@ 257
 $(BUILD)/tests/fuzz/skins.masu: $(BUILD)/tests/fuzz/seed_scene
 	$(V)$< $@ 1537
-# The code of an SDF alone, and each way to march it: most of such a blob's words are SPIR-V's.
+$(BUILD)/tests/fuzz/lighting.masu: $(BUILD)/tests/fuzz/seed_scene
+	$(V)$< $@ 129
+$(BUILD)/tests/fuzz/reflections.masu: $(BUILD)/tests/fuzz/seed_scene
+	$(V)$< $@ 4387
+# The code of an SDF alone: most of such a blob's words are SPIR-V's.
 $(BUILD)/tests/fuzz/code.masu: $(BUILD)/tests/fuzz/seed_scene
 	$(V)$< $@ 10
 $(BUILD)/tests/fuzz/fuzz_scene: | $(FUZZ_SEEDS_scene)
@@ -159,11 +169,10 @@ FUZZ_SEEDS_sdfc := tests/unit/features.sdf scenes/rods.sdf
 
 # Every feature that is read, in a small file.
 FUZZ_SEEDS_gltf := tests/fuzz/all.gltf
-# Modules, and what `masu conform`, `masu bench` and `masu simulate` read.
-$(foreach n,spirv suite ladder sweep trace png panorama acc description,$(eval FUZZ_SEEDS_$(n) := $(wildcard tests/fuzz/corpus/$(n)/*)))
+# Modules, and what `masu conform` and `masu bench` read.
+$(foreach n,spirv suite ladder sweep machine png panorama acc description,$(eval FUZZ_SEEDS_$(n) := $(wildcard tests/fuzz/corpus/$(n)/*)))
 
 FUZZ_SEEDS_description += $(wildcard scenes/*.json)
-FUZZ_SEEDS_machine := docs/report/engine/machine.json
 
 FUZZ      ?= scene
 FUZZ_TIME ?= 60

@@ -12,7 +12,7 @@ void *__real_calloc(size_t count, size_t bytes);
 void *__real_realloc(void *block, size_t bytes);
 
 static void check(void) {
-    static const char text[] = "drive: the heap is closed, and something asked it for memory\n";
+    static const char text[] = "drive: the heap is closed: unexpected allocation\n";
     if (!heap_closed) return;
     (void)!write(2, text, sizeof text - 1); /* printf might allocate */
     abort();

@@ -6,7 +6,7 @@
 
 bool script_open(script *s, const char *path) {
     if (path) s->text = s->next = SDL_LoadFile(path, NULL); /* with a 0 behind it */
-    if (path && !s->text) fprintf(stderr, "no script: %s\n", SDL_GetError());
+    if (path && !s->text) fprintf(stderr, "cannot read the script: %s\n", SDL_GetError());
     return !path || s->text;
 }
 
@@ -45,5 +45,5 @@ bool script_resize(const script_line *line, window *w) {
 }
 
 bool script_unknown(const script_line *line) {
-    return fprintf(stderr, "no line of a script: %s %s %s\n", line->verb, line->value, line->how), false;
+    return fprintf(stderr, "script: unknown command: %s %s %s\n", line->verb, line->value, line->how), false;
 }

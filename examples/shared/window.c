@@ -67,7 +67,7 @@ static bool choose_device(window *w) {
             return true;
         }
     }
-    return fprintf(stderr, "no Vulkan device draws to this window\n"), false;
+    return fprintf(stderr, "no Vulkan device can present to this window\n"), false;
 }
 
 static bool create_device(window *w) {
@@ -112,7 +112,7 @@ static bool choose_format(window *w) {
         w->format = formats[i].format;
         if (w->format == VK_FORMAT_B8G8R8A8_UNORM || w->format == VK_FORMAT_R8G8B8A8_UNORM) return true;
     }
-    return fprintf(stderr, "the window has no format of 8 bits\n"), false;
+    return fprintf(stderr, "the window's surface has no 8-bit format\n"), false;
 }
 
 bool window_open(window *w, const char *title, int width, int height, bool validate) {

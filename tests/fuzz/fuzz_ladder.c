@@ -2,7 +2,7 @@
  * order that the library's own checks take, and texts that can stand in a comment of C. */
 #include "expect.h"
 
-#include "bench/sweep/ladder_file.h"
+#include "settings/ladder_file.h"
 
 static void check_text(const char *text, size_t room) {
     EXPECT(memchr(text, '\0', room));

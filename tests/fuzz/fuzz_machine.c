@@ -2,7 +2,7 @@
  * no list of runs is refused in a line and stays as it was; all texts that come out are ended. */
 #include "in_file.h"
 
-#include "bench/sweep/machine.h"
+#include "bench/machine.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     char path[64], error[1024] = "";

@@ -6,9 +6,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "bench/sweep/against.h"
-#include "bench/sweep/machine.h"
-#include "bench/sweep/report.h"
+#include "bench/against.h"
+#include "bench/machine.h"
+#include "bench/report.h"
 
 static const char *const files[] = {"sweep.json", "results.csv", "steady.csv", "machine.json", "ladder.json"};
 enum { FILES = sizeof files / sizeof *files };

@@ -5,7 +5,7 @@
 #include "support/floats.h"
 #include "support/shadow.h"
 
-#include "bench/study/specular.h"
+#include "measure/specular.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -7,7 +7,7 @@
  * more even than that. Pixels are told apart by their material, and the mean of each material must lie
  * within 3 standard errors, and 0.2 % for what images round: 9 bits of a ray's worth, halves of its light. */
 #include "reference/specular.h"
-#include "bench/study/shade.h"
+#include "measure/shade.h"
 #include "image.h"
 #include "scene/scene.h"
 #include "support/files.h"

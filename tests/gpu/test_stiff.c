@@ -8,7 +8,7 @@
  * depth_max is bounded only where there is none. */
 #include "support/stiff.h"
 
-#include "bench/measure/truth.h"
+#include "measure/truth.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -6,7 +6,7 @@
 #include "support/floats.h"
 #include "support/support.h"
 
-#include "bench/measure/picture.h"
+#include "measure/picture.h"
 
 #include <math.h>
 #include <stdio.h>

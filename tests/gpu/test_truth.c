@@ -5,7 +5,7 @@
 #include "support/support.h"
 #include "support/files.h"
 
-#include "bench/measure/picture.h"
+#include "measure/picture.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -385,31 +385,6 @@ static void silhouettes_go_towards_the_truth(void **state) {
     }
 }
 
-/* masu study image: a row for each chain, and what is smaller is farther from the truth. */
-static void the_table_is_made(void **state) {
-    (void)state;
-    char line[4096];
-    assert_int_equal(shell("%s/bin/masu study image %s --size 96x64 --positions 4 --runs 1 "
-                           "--scales 1,0.8,0.4 --csv %s --validate >/dev/null 2>&1",
-                           build_dir(), scene_path("test_truth"), in_scratch("table.csv")),
-                     0);
-    FILE *f = fopen(in_scratch("table.csv"), "r");
-    assert_non_null(f);
-    double whole = -1, small = -1, flip, scale;
-    uint32_t rows = 0;
-    char name[64];
-    while (fgets(line, sizeof line, f)) {
-        if (sscanf(line, "test_truth,%lf,%63[^,],%*u,%*u,%lf", &scale, name, &flip) != 3) continue;
-        rows++;
-        assert_true(flip >= 0 && flip < 0.5);
-        if (!strcmp(name, "none")) whole = flip;
-        if (!strcmp(name, "bilinear") && scale < 0.5) small = flip;
-    }
-    fclose(f);
-    assert_true(rows >= 24);
-    assert_true(whole > 0 && small > whole);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(places_are_even),
@@ -422,7 +397,6 @@ int main(void) {
         cmocka_unit_test(silhouettes_stand_beside_everything_else),
         cmocka_unit_test(silhouettes_read_what_was_written),
         cmocka_unit_test(silhouettes_go_towards_the_truth),
-        cmocka_unit_test(the_table_is_made),
     };
     return cmocka_run_group_tests(tests, make_scratch, remove_scratch);
 }

@@ -3,9 +3,6 @@
  * ratios from 1 to 2.5, garbage around the valid rectangle. */
 #include "support/support.h"
 
-#include "bench/study/upscale.h"
-#include "easu_fast_bytes_counted_comp.spv.h"
-#include "easu_fast_counted_comp.spv.h"
 #include "reference/fsr1.h"
 #include "reference/patterns.h"
 #include "reference/tone.h"
@@ -20,7 +17,7 @@ typedef struct job {
     float stops;
     masu_easu easu;
     VkFormat format; /* of the source; 0: R8G8B8A8_UNORM, which the renderer is not told */
-    masu_switch half, fuse;
+    masu_switch half;
     int shipped; /* not 0: as it is without debug.exact */
 } job;
 
@@ -54,8 +51,7 @@ static void run_gpu(const job *j, const void *texels, uint32_t beyond, uint8_t *
     d.rungs[0] = (masu_rung){.upscale = j->upscale,
                              .sharpen = j->sharpen,
                              .sharpness = j->stops > 0.0f ? j->stops : -1.0f,
-                             .easu = j->easu,
-                             .fuse = j->fuse};
+                             .easu = j->easu};
     draw_rungs_of(&s, &d, &out, NULL);
     masu_headless_source_destroy(&s.host, &source);
 }
@@ -109,7 +105,7 @@ static void is_the_reference_within_one_step(masu_easu easu, const char *name) {
         uint32_t worst = 0, texels = 0;
         for (size_t i = 0; i < SIZES; i++) {
             job j = {sizes[i][0], sizes[i][1], sizes[i][2], sizes[i][3], MASU_ON,  MASU_OFF,
-                     0,           easu,        0,           MASU_AUTO,   MASU_AUTO, 0};
+                     0,           easu,        0,           MASU_AUTO, 0};
             masu_pattern_fill((enum masu_pattern)pattern, 11 + (uint32_t)i, j.in_w, j.in_h, in);
             run_gpu(&j, in, i % 2 ? 0xFFFFFFFFu : 0xFF00FF00u, gpu);
             reference_upscale(&j, in, cpu);
@@ -222,7 +218,7 @@ static void rcas_is_the_scalar_reference_within_one_step(void **state) {
         uint32_t worst = 0;
         for (size_t i = 0; i < 4; i++) {
             job j = {61, 47,        61,       47, MASU_AUTO, MASU_ON, stops[i], MASU_EASU_AUTO,
-                     0,  MASU_AUTO, MASU_AUTO, 0};
+                     0,  MASU_AUTO, 0};
             masu_pattern_fill((enum masu_pattern)pattern, 5 + (uint32_t)i, j.in_w, j.in_h, in);
             run_gpu(&j, in, 0xFFFFFFFFu, gpu);
             reference_rcas(j.out_w, j.out_h, j.stops, in, cpu);
@@ -261,7 +257,7 @@ static void the_chain_is_easu_then_rcas_with_10_bits_between(void **state) {
         difference d = {0, 0, 0};
         for (size_t i = 0; i < SIZES; i++) {
             job j = {sizes[i][0], sizes[i][1], sizes[i][2], sizes[i][3], MASU_ON,   MASU_ON,
-                     0.2f,        0,           0,           MASU_AUTO,   MASU_AUTO, 0};
+                     0.2f,        0,           0,           MASU_AUTO, 0};
             masu_pattern_fill((enum masu_pattern)pattern, 3, j.in_w, j.in_h, in);
             run_gpu(&j, in, 0, gpu);
             reference_chain(&j, in, TEN_BITS, cpu);
@@ -281,7 +277,7 @@ static void the_chain_is_near_the_one_with_floats_between(void **state) {
         difference d = {0, 0, 0}, of_bytes = {0, 0, 0};
         for (size_t i = 0; i < SIZES; i++) {
             job j = {sizes[i][0], sizes[i][1], sizes[i][2], sizes[i][3], MASU_ON,   MASU_ON,
-                     0,           0,           0,           MASU_AUTO,   MASU_AUTO, 0};
+                     0,           0,           0,           MASU_AUTO, 0};
             masu_pattern_fill((enum masu_pattern)pattern, 3, j.in_w, j.in_h, in);
             run_gpu(&j, in, 0, gpu);
             reference_chain(&j, in, FLOATS, floats);
@@ -298,24 +294,6 @@ static void the_chain_is_near_the_one_with_floats_between(void **state) {
     }
 }
 
-static void the_two_in_one_pass_are_the_two_to_the_bit(void **state) {
-    (void)state;
-    static uint8_t in[MOST], two[MOST], one[MOST];
-    for (uint32_t pattern = 0; pattern < MASU_PATTERN_COUNT; pattern++) {
-        for (size_t i = 0; i < SIZES; i += 2) {
-            job j = {sizes[i][0],     sizes[i][1],    sizes[i][2],
-                     sizes[i][3],     MASU_ON,        MASU_ON,
-                     0.2f * (float)i, MASU_EASU_FULL, pattern % 2 ? VK_FORMAT_R8G8B8A8_UNORM : 0,
-                     MASU_AUTO,       MASU_OFF, 0};
-            masu_pattern_fill((enum masu_pattern)pattern, 3, j.in_w, j.in_h, in);
-            run_gpu(&j, in, 0xFFFFFFFFu, two);
-            j.fuse = MASU_ON;
-            run_gpu(&j, in, 0x00FF00FFu, one);
-            assert_int_equal(max_difference(one, two, (size_t)j.out_w * j.out_h * 4), 0);
-        }
-    }
-}
-
 /* In halves, too: 1/255 is none. What comes out is the nearest step of 8 bits. */
 static void constants_of_floats_come_out_as_the_nearest_byte(void **state) {
     (void)state;
@@ -325,25 +303,12 @@ static void constants_of_floats_come_out_as_the_nearest_byte(void **state) {
     static uint8_t gpu[MOST];
     for (size_t k = 0; k < 4; k++) {
         for (int easu = MASU_EASU_FULL; easu <= MASU_EASU_BILINEAR; easu++) {
-            for (int fuse = MASU_OFF; fuse <= MASU_ON; fuse++) {
-                job j = {20,
-                         20,
-                         37,
-                         41,
-                         MASU_ON,
-                         MASU_ON,
-                         0,
-                         (masu_easu)easu,
-                         VK_FORMAT_R16G16_SFLOAT,
-                         MASU_AUTO,
-                         (masu_switch)fuse, 0};
-                for (size_t i = 0; i < 20 * 20; i++) in[i] = halves[k] * 0x10001u;
-                run_gpu(&j, in, 0, gpu);
-                for (uint32_t i = 0; i < j.out_w * j.out_h; i++) {
-                    if (!(fabs(gpu[4 * i] - 255 * values[k]) <= 0.5 + 1e-6))
-                        fail_msg("%g, easu %d, fuse %d: %d", values[k], easu, fuse, gpu[4 * i]);
-                    assert_int_equal(gpu[4 * i + 2], 0);
-                }
+            job j = {20, 20, 37, 41, MASU_ON, MASU_ON, .easu = (masu_easu)easu, .format = VK_FORMAT_R16G16_SFLOAT};
+            for (size_t i = 0; i < 20 * 20; i++) in[i] = halves[k] * 0x10001u;
+            run_gpu(&j, in, 0, gpu);
+            for (uint32_t i = 0; i < j.out_w * j.out_h; i++) {
+                if (!(fabs(gpu[4 * i] - 255 * values[k]) <= 0.5 + 1e-6)) fail_msg("%g, easu %d: %d", values[k], easu, gpu[4 * i]);
+                assert_int_equal(gpu[4 * i + 2], 0);
             }
         }
     }
@@ -383,7 +348,7 @@ static void an_input_known_to_have_8_bits_gives_the_same_picture(void **state) {
     static uint8_t in[MOST], a[MOST], b[MOST];
     for (uint32_t pattern = 0; pattern < MASU_PATTERN_COUNT; pattern++) {
         for (int easu = MASU_EASU_FULL; easu <= MASU_EASU_BILINEAR; easu++) {
-            job j = {50, 30, 65, 39, MASU_ON, MASU_ON, 0, (masu_easu)easu, 0, MASU_AUTO, MASU_AUTO, 0};
+            job j = {50, 30, 65, 39, MASU_ON, MASU_ON, 0, (masu_easu)easu, 0, MASU_AUTO, 0};
             masu_pattern_fill((enum masu_pattern)pattern, 4, j.in_w, j.in_h, in);
             run_gpu(&j, in, 0, a);
             j.format = VK_FORMAT_R8G8B8A8_UNORM;
@@ -408,7 +373,6 @@ static void an_srgb_view_is_filtered_as_the_linear_numbers_it_gives(void **state
                  0,
                  (masu_easu)easu,
                  VK_FORMAT_R8G8B8A8_SRGB,
-                 MASU_AUTO,
                  MASU_AUTO, 0};
         masu_pattern_fill(MASU_PATTERN_PHOTO, 1, j.in_w, j.in_h, in);
         for (uint32_t i = 0; i < j.in_w * j.in_h; i++) {
@@ -442,7 +406,7 @@ static int looks_at(const job *j, int x, int y, int bad_x, int bad_y) {
 
 /* NaN, infinities and numbers out of range, as 16-bit floats: they count as 0 or 1, and touch no
  * more than the taps of EASU and, sharpened, the cross of RCAS around them. */
-static void assert_footprint(masu_switch half, masu_switch fuse) {
+static void assert_footprint(masu_switch half) {
     static const uint32_t bad[] = {0x7E00, 0xFE01, 0x7C00, 0xFC00, 0xC500, 0x70E2, 0x8001};
     static const float counts_as[] = {0, 0, 0, 0, 0, 1, 0};
     static uint32_t in[32 * 24];
@@ -450,7 +414,6 @@ static void assert_footprint(masu_switch half, masu_switch fuse) {
     static uint8_t base[MOST], gpu[MOST], cpu[MOST];
     for (int easu = MASU_EASU_FULL; easu <= MASU_EASU_BILINEAR; easu++) {
         if (half == MASU_ON && easu == MASU_EASU_BILINEAR) continue;
-        if (fuse == MASU_ON && easu != MASU_EASU_FULL) continue;
         for (int sharpen = 0; sharpen < 2; sharpen++) {
             job j = {32,
                      24,
@@ -461,8 +424,7 @@ static void assert_footprint(masu_switch half, masu_switch fuse) {
                      0,
                      (masu_easu)easu,
                      VK_FORMAT_R16G16_SFLOAT,
-                     half,
-                     fuse, 0};
+                     half, 0};
             j.shipped = sharpen;
             for (uint32_t i = 0; i < 32 * 24; i++) {
                 /* Half of it flat: fast EASU leaves there. */
@@ -503,9 +465,8 @@ static void assert_footprint(masu_switch half, masu_switch fuse) {
 
 static void a_bad_texel_stays_within_its_footprint(void **state) {
     (void)state;
-    assert_footprint(MASU_AUTO, MASU_AUTO);
-    assert_footprint(MASU_AUTO, MASU_ON);
-    if (s.host.float16) assert_footprint(MASU_ON, MASU_AUTO);
+    assert_footprint(MASU_AUTO);
+    if (s.host.float16) assert_footprint(MASU_ON);
 }
 
 /* ---- Floats of 16 bits ----------------------------------------------------------------------- */
@@ -539,7 +500,7 @@ static void halves_change_easu_by_this_much(void **state) {
             job j = {sizes[i][0], sizes[i][1], sizes[i][2],
                      sizes[i][3], MASU_ON,     MASU_OFF,
                      0,           easu,        i % 2 ? VK_FORMAT_R8G8B8A8_UNORM : 0,
-                     MASU_ON,     MASU_AUTO,   1};
+                     MASU_ON,   1};
             masu_pattern_fill(pattern, 11 + (uint32_t)i, j.in_w, j.in_h, in);
             run_gpu(&j, in, 0, gpu);
             /* What decides is in 32 bits in both: of full EASU the same edges are found. */
@@ -561,68 +522,6 @@ static void halves_change_easu_by_this_much(void **state) {
 }
 
 /* ---- Tiles that leave early ------------------------------------------------------------------ */
-
-static uint32_t early_tiles(const job *j, const uint8_t *rgba) {
-    static float rgb[MOST];
-    uint32_t count = 0;
-    masu_ref_from_rgba8(rgba, j->in_w, j->in_h, 0, rgb);
-    struct masu_ref_image in = {rgb, j->in_w, j->in_h, 0};
-    for (uint32_t ty = 0; ty < j->out_h; ty += 8) {
-        for (uint32_t tx = 0; tx < j->out_w; tx += 8) {
-            int all = 1;
-            for (uint32_t i = 0; i < 64 && all; i++) {
-                uint32_t x = tx + i % 8, y = ty + i / 8;
-                if (x >= j->out_w || y >= j->out_h) continue;
-                all = masu_ref_easu_leaves_early(&in, j->out_w, j->out_h, x, y);
-            }
-            count += (uint32_t)all;
-        }
-    }
-    return count;
-}
-
-static void fast_easu_counts_the_tiles_that_leave_early(void **state) {
-    (void)state;
-    static uint8_t in[MOST];
-    char error[ERROR_SIZE];
-    const masu_bench_stage builds[2] = {
-        {masu_spv_easu_fast_counted_comp, sizeof masu_spv_easu_fast_counted_comp, 0, 0},
-        {masu_spv_easu_fast_bytes_counted_comp, sizeof masu_spv_easu_fast_bytes_counted_comp, 0,
-         0}};
-    uint32_t some = 0;
-    for (uint32_t pattern = 0; pattern < MASU_PATTERN_COUNT; pattern++) {
-        for (size_t i = 0; i < 3; i++) {
-            job j = {sizes[i][0], sizes[i][1], sizes[i][2], sizes[i][3], MASU_ON,  MASU_OFF,
-                     0,           0,           0,           MASU_AUTO,   MASU_AUTO, 0};
-            masu_headless_source source;
-            masu_headless_target target;
-            masu_pattern_fill((enum masu_pattern)pattern, 8, j.in_w, j.in_h, in);
-            for (uint32_t k = 0; k < j.in_w * j.in_h * 2; k++) in[k] = 77; /* a flat upper half */
-            assert_ok(masu_headless_source_create(&s.host, in, j.in_w, j.in_h, j.in_w, j.in_h, 0,
-                                                  &source, error, sizeof error));
-            assert_ok(masu_headless_target_create(&s.host, j.out_w, j.out_h,
-                                                  VK_FORMAT_R8G8B8A8_UNORM, true, &target, error,
-                                                  sizeof error));
-            uint32_t want = early_tiles(&j, in);
-            some += want;
-            for (int build = 0; build < 2; build++) {
-                masu_bench_stage stages[MASU_BENCH_STAGES] = {builds[build]};
-                masu_bench_chain chain;
-                double wall, gpu;
-                assert_ok(masu_bench_chain_open(&s.host, stages, &source,
-                                                (VkExtent2D){j.in_w, j.in_h}, &target, true, &chain,
-                                                error, sizeof error));
-                assert_ok(masu_bench_chain_run(&chain, &wall, &gpu, error, sizeof error));
-                assert_int_equal(masu_bench_chain_count(&chain, MASU_COUNTER_EASU_TILES_EARLY),
-                                 want);
-                masu_bench_chain_close(&chain);
-            }
-            masu_headless_target_destroy(&s.host, &target);
-            masu_headless_source_destroy(&s.host, &source);
-        }
-    }
-    assert_true(some > 100);
-}
 
 static void a_scene_says_how_many_tiles_left_early(void **state) {
     (void)state;
@@ -674,7 +573,6 @@ int main(void) {
         cmocka_unit_test(rcas_as_shipped_is_the_scalar_reference_within_one_step),
         cmocka_unit_test(the_chain_is_easu_then_rcas_with_10_bits_between),
         cmocka_unit_test(the_chain_is_near_the_one_with_floats_between),
-        cmocka_unit_test(the_two_in_one_pass_are_the_two_to_the_bit),
         cmocka_unit_test(constants_of_floats_come_out_as_the_nearest_byte),
         cmocka_unit_test(flat_pictures_stay_exactly_as_they_are),
         cmocka_unit_test(what_lies_beyond_the_valid_rectangle_is_never_read),
@@ -682,7 +580,6 @@ int main(void) {
         cmocka_unit_test(an_srgb_view_is_filtered_as_the_linear_numbers_it_gives),
         cmocka_unit_test(a_bad_texel_stays_within_its_footprint),
         cmocka_unit_test(halves_change_easu_by_this_much),
-        cmocka_unit_test(fast_easu_counts_the_tiles_that_leave_early),
         cmocka_unit_test(a_scene_says_how_many_tiles_left_early),
     };
     return cmocka_run_group_tests_name("upscale", tests, open_group, close_group);

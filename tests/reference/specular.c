@@ -1,8 +1,8 @@
 /* specular.c: see specular.h. */
 #include "specular.h"
 
-#include "bench/study/shade.h"
-#include "bench/study/texel.h"
+#include "measure/shade.h"
+#include "measure/texel.h"
 #include "scene/scene.h"
 #include "shared/masu_shared.h"
 #include "split_sum.h"

@@ -108,17 +108,5 @@ refuses 'occluder: expected true or two corners' "$(model ', "occluder": [[0, 0,
 refuses 'occluder' "$(model ', "occluder": 7')"
 refuses 'occluder' "$(model ', "occluder": [[0, 0, 0]]')"
 
-# The bench sees the same scene, and the tree saves tests. Times are nobody's business here.
-"$bin/masu" study cull "${MADE:-build}/scenes/test_town.masu" --frames 20 --json > "$folder/b" ||
-    fail "study cull fails"
-value() { sed -n "s/.*\"$1\": \([0-9]*\).*/\1/p" "$folder/b"; }
-[ "$(value boxes)" = 211 ] || fail "study cull: $(value boxes) boxes"
-[ "$(value plane_tests)" -lt "$(value plane_tests_one_by_one)" ] || fail "study cull: more tests"
-"$bin/masu" study cull --boxes 500 --frames 5 | grep -q '^500 boxes in [0-9]* groups, 5 frames' ||
-    fail "study cull --boxes 500"
-"$bin/masu" study cull "${MADE:-build}/scenes/spheres.masu" 2> "$folder/err" &&
-    fail "study cull takes a scene without instances"
-grep -q 'no instances' "$folder/err" || fail "study cull: $(cat "$folder/err")"
-
 [ $failures = 0 ] && echo "groups: all as expected"
 [ $failures = 0 ]

@@ -50,7 +50,7 @@ broken_links() {
 # Paths in code spans, but patterns and placeholders. A changelog names what has gone, too.
 missing_paths() {
     code "$1" | grep -v '^CHANGELOG.md' |
-        grep -E '	(src|include|shaders|tools|tests|platform|suites|scenes|docs|examples)/[A-Za-z0-9_./-]*$' |
+        grep -E '	(src|include|shaders|tools|tests|platform|suites|scenes|docs|examples|lab|package)/[A-Za-z0-9_./-]*$' |
         grep -vE 'NAME|SCENE' | sort -u | while IFS='	' read -r file path; do
         [ -e "$1/$path" ] || echo "$file names $path"
     done
@@ -79,8 +79,9 @@ unknown_targets() {
         done
 }
 
-# unknown_commands FOLDER HELP: `masu COMMAND` and `masu study NAME` that the program does not have, and
-# options that the command does not; HELP is called with the words of a command and prints its help.
+# unknown_commands FOLDER HELP: `masu COMMAND`, `masu-lab COMMAND` and `masu-lab study NAME` that the program does not
+# have, and options that the command does not; HELP is called with the words of a command and prints its help. masu-lab
+# is tested where LAB_PROGRAM names it (lab/tests/scripts/docs.sh).
 unknown_commands() {
     code "$1" | sed 's/\$([^)]*)//g; s/ *[&|;]\+ */\n&/g' | awk -F '\t' '
         NF == 2 { file = $1 }
@@ -89,13 +90,14 @@ unknown_commands() {
         sort -u | while IFS='	' read -r file line; do
         read -ra words <<< "$line"
         program=("${words[0]}")
-        if [ "${words[0]}" = masu ]; then
+        [ "${words[0]}" != masu-lab ] || [ "${LAB_PROGRAM:-}" ] || continue
+        if [ "${words[0]}" = masu ] || [ "${words[0]}" = masu-lab ]; then
             [[ ${words[1]:-} =~ ^[a-z-]+$ ]] || continue
-            "$2" masu | grep -qE "^  ${words[1]} " || { echo "$file names masu ${words[1]}" && continue; }
+            "$2" "${program[@]}" | grep -qE "^  ${words[1]} " || { echo "$file names ${words[*]:0:2}" && continue; }
             program+=("${words[1]}")
-            if [ "${words[1]}" = study ] && [[ ${words[2]:-} =~ ^[a-z] ]]; then
+            if [ "${words[*]:0:2}" = 'masu-lab study' ] && [[ ${words[2]:-} =~ ^[a-z] ]]; then
                 for name in ${words[2]//|/ }; do
-                    "$2" masu study | grep -qE "^  $name " || echo "$file names masu study $name"
+                    "$2" masu-lab study | grep -qE "^  $name " || echo "$file names masu-lab study $name"
                 done
                 program+=("${words[2]%%|*}")
             fi
@@ -111,7 +113,9 @@ unknown_commands() {
 
 help_of() {
     local key="$folder/help-$*"
-    [ -e "$key" ] || "$bin/$1" "${@:2}" --help > "$key" 2>&1
+    local program=$bin/$1
+    [ "$1" != masu-lab ] || program=$LAB_PROGRAM
+    [ -e "$key" ] || "$program" "${@:2}" --help > "$key" 2>&1
     cat "$key"
 }
 
@@ -169,8 +173,8 @@ mkdir -p "$bad/docs/design" "$bad/src/plan"
 cat > "$bad/docs/a.md" << 'END'
 [here](a.md#part), [there](b.md), [out](https://example.org/x), `[code](c.md)`
 `src/plan`, `src/none.c`, `src/NAME.c`, `tools/*/x`, `make all
-nothing TESTS="x y" DRIVERS=z`, `make` makes nonsense, `masu render`, `masu paint`, `masu study march`,
-`masu study dance`, `masu-bake --old`
+nothing TESTS="x y" DRIVERS=z`, `make` makes nonsense, `masu render`, `masu paint`, `masu-lab study march`,
+`masu-lab study dance`, `masu-bake --old`
 
 ```sh
 apt-get install make && make none V=1   # make comment
@@ -187,8 +191,9 @@ touch "$bad/docs/design/01-a.md" "$bad/docs/design/02-b.md"
 printf 'all\nhelp\n' > "$bad/targets"
 bad_help() {
     case $* in
-        masu) echo '  render  x'; echo '  study  x' ;;
-        'masu study') echo '  march  x' ;;
+        masu) echo '  render  x' ;;
+        masu-lab) echo '  study  x' ;;
+        'masu-lab study') echo '  march  x' ;;
         'masu render') echo '  -o, --output FILE'; echo '      --size WxH' ;;
         masu-bake) echo '      --older' ;;
     esac
@@ -197,7 +202,8 @@ expect 1 broken_links "$bad"
 expect 1 missing_paths "$bad"
 expect 1 missing_documents "$bad"
 expect 2 unknown_targets "$bad" "$bad/targets"
-expect 5 unknown_commands "$bad" bad_help
+LAB_PROGRAM=x expect 5 unknown_commands "$bad" bad_help
+LAB_PROGRAM= expect 4 unknown_commands "$bad" bad_help
 expect 1 unknown_passes "$bad"
 expect 1 unlisted_chapters "$bad"
 expect 1 too_long "$bad/docs/a.md" 10

@@ -125,12 +125,12 @@ refuses() {
     grep -q -e "$pattern" "$folder/$name.err" || fail "$name: \"$pattern\" is not in $(cat "$folder/$name.err")"
 }
 echo 'frame 3 key nosuch' > "$folder/key.txt"
-refuses key 'no line of a script: key nosuch'
+refuses key 'script: unknown command: key nosuch'
 echo 'fly away' > "$folder/word.txt"
-refuses word 'no line of a script: fly away'
+refuses word 'script: unknown command: fly away'
 printf 'frame 1 quit\n' | tee "$folder/track.txt" "$folder/blob.txt" "$folder/big.txt" > /dev/null
 echo 'masu-track 1 points 2' > "$folder/bad.track"
-track=$folder/bad.track refuses track 'bad.track: no track of version 1'
+track=$folder/bad.track refuses track 'bad.track: expected a track of version 1'
 scene=tests/scenes/test_drive.track refuses blob 'scene blob'
 "$game" > /dev/null 2> "$folder/err"
 [ $? = 2 ] && grep -q '^usage' "$folder/err" || fail "no usage without a scene"

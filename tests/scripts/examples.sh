@@ -86,7 +86,7 @@ rungs=$(sed -n 's/.* rungs \([^ ]*\) .*/\1/p' "$folder/out")
 [ $((rungs)) -gt 1 ] || fail "no rung but the first: $(cat "$folder/out")"
 echo 'frame 1 fly' > "$folder/script"
 "$examples/loop" "$scenes/test_live.masu" "$folder/script" 2> "$folder/err" > /dev/null && fail "loop flies"
-grep -q 'no line of a script: fly' "$folder/err" || fail "loop: $(cat "$folder/err")"
+grep -q 'script: unknown command: fly' "$folder/err" || fail "loop: $(cat "$folder/err")"
 
 [ $failures = 0 ] && echo "examples: all as expected: $(cat "$folder/out")"
 [ $failures = 0 ]

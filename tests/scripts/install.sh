@@ -121,17 +121,14 @@ completes() {
         bash "$share/bash-completion/completions/$1" "$@"
 }
 [ "$(completes masu ren)" = render ]
-[ "$(completes masu study ref)" = reflections ]
 [ "$(completes masu render --si)" = --size ]
 [ "$(completes masu render a.masu --size 1x1 --tar)" = --target-ms ]
 [ -z "$(completes masu compare --size)" ]
 [ "$(completes masu-bake --prob | paste -sd' ')" = '--probe-report --probes' ]
 sed 's/\\-/-/g' "$share/man/man1/masu.1" > "$folder/page"
-for command in render plan bench conform 'study march'; do
-    # shellcheck disable=SC2086
-    "$bin/masu" $command --help | grep -oE '^ +(-[a-z], )?--[a-z-]+' | grep -oE -e '--[a-z-]+' | sort -u > "$folder/options"
-    # shellcheck disable=SC2086
-    completes masu $command -- | sort -u | diff - "$folder/options"
+for command in render plan bench conform; do
+    "$bin/masu" "$command" --help | grep -oE '^ +(-[a-z], )?--[a-z-]+' | grep -oE -e '--[a-z-]+' | sort -u > "$folder/options"
+    completes masu "$command" -- | sort -u | diff - "$folder/options"
     while read -r option; do
         grep -qF -e "$option" "$folder/page" || { echo "masu.1 has no $option"; exit 1; }
     done < "$folder/options"

@@ -1,7 +1,7 @@
 #!/bin/bash
-# The house of the sources: a file of src/ includes and calls only what lies in its own folder or below,
-# no file needs another that needs it, none is too long to be one idea, and tools/ has folders alone.
-# Each rule is first shown something that breaks it.
+# The layers of the sources: a file of src/ includes and calls only what is in its own folder or below, there are no
+# cycles of files in src/ and of folders in tools/, no file is too long, tools/ has no files of its own, and nothing
+# outside lab/ includes or links anything of lab/. Each rule is first shown something that breaks it.
 #
 # A node is a module, x.c with x.h. Includes are read from the text, calls from the object files.
 #
@@ -64,6 +64,23 @@ long_files() {
         $2 != "total" && $1 > most { print $1, $2 }' | while read -r lines file; do
         head -n 12 "$file" | grep -qE 'Over 700 lines: |not to be edited' || echo "$file: $lines lines"
     done
+}
+
+# folders TOOLS: "folder folder" for each include of a file of a folder of TOOLS by another folder
+folders() {
+    (cd "$1" && grep -rHE '^[[:space:]]*#[[:space:]]*include "' --include='*.[ch]' --include='*.cpp' . | sed 's|^\./||' |
+        awk -F '"' '{ from = $1; sub(/\/.*/, "", from); to = $2
+            if (to ~ /\// && sub(/\/.*/, "", to) && from != to) print from, to }' | sort -u) |
+        while read -r from to; do [ ! -d "$1/$to" ] || echo "$from $to"; done
+}
+folder_circles() { folders "$1" | tsort 2>&1 > /dev/null | sed -n 's/^tsort: \([^ ]*\)$/\1/p' | grep -v '^-:' | sort -u; }
+
+# lab_users ROOT: files outside of lab/ that include something of lab/, and makefiles that link its archive or objects
+lab_users() {
+    (cd "$1" && grep -rlE '^[[:space:]]*#[[:space:]]*include "([^"]*/)?lab/' --include='*.[chS]' --include='*.cpp' --include='*.inc' \
+        --include='*.glsl' --include='*.comp' --include='*.vert' --include='*.frag' . &&
+        grep -rlE 'libmasu-lab|obj/lab/|LAB_(SOURCES|ARCHIVE|LINKED)' --include='*.mk' --include=Makefile .) |
+        sed 's|^\./||' | grep -vE '^(lab|build)/' | sort
 }
 
 # loose FOLDER: sources directly in it
@@ -132,6 +149,21 @@ expect 2 long_files "$folder/tools"
 touch "$folder/tools/drawer.c" "$folder/tools/one/kept.c"
 expect 1 loose "$folder/tools"
 
+mkdir -p "$folder/rooms/a" "$folder/rooms/b" "$folder/rooms/c"
+printf '#include "b/x.h"\n#include <a/y.h>\n' > "$folder/rooms/a/x.c"
+printf '#include "c/x.h"\n#include "none/x.h"\n' > "$folder/rooms/b/x.h"
+expect 2 folders "$folder/rooms"
+expect 0 folder_circles "$folder/rooms"
+printf '#include "a/y.h"\n' > "$folder/rooms/c/x.h"
+expect 3 folder_circles "$folder/rooms"
+
+mkdir -p "$folder/tree/tools/one" "$folder/tree/lab/study" "$folder/tree/tests"
+printf '#include "lab/study/x.h"\n' | tee "$folder/tree/tools/one/x.c" > "$folder/tree/lab/study/x.c"
+printf '  #  include "../../lab/study/x.h"\n' > "$folder/tree/tests/x.h"
+printf '#include "slab/x.h"\n// "lab/x.h"\n' > "$folder/tree/tests/y.h"
+printf 'x: $(BUILD)/lib/libmasu-lab.a\n' | tee "$folder/tree/tools/tools.mk" > "$folder/tree/lab/lab.mk"
+expect 3 lab_users "$folder/tree"
+
 # ---- The rules -----------------------------------------------------------------------------------
 
 objects=${BUILD:-build}/obj/src
@@ -139,6 +171,9 @@ objects=${BUILD:-build}/obj/src
 expect_none "upwards (layers: $LAYERS)" of src "$objects" upward
 expect_none 'modules on a circle of includes and calls' of src "$objects" circles
 expect_none "over $LONG lines without a reason ('Over 700 lines: why') at the head" \
-    long_files src shaders tools
+    long_files src shaders tools lab
+expect_none 'folders of tools/ on a circle of includes' folder_circles tools
+expect_none 'these include or link something of lab/' lab_users .
+[ ! -e "${BUILD:-build}/obj/lab" ] || { echo "the product's build has objects of lab/" && failed=1; }
 expect_none 'sources directly in tools/' loose tools
 exit $failed

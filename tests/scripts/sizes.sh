@@ -1,5 +1,5 @@
 #!/bin/bash
-# The library is no larger than docs/report/sizes.csv says, 3 % aside (make sizes-table writes it anew), and for one class
+# The library is no larger than package/sizes.csv says, 3 % aside (make sizes-table writes it anew), and for one class
 # of scenes at most 1.5 MB. Built for a class it takes every baked scene of that class, and of others at least
 # refuses those that draw or trace what it cannot, by a line that says what to build.
 set -u
@@ -32,10 +32,10 @@ grown() {
 make --no-print-directory sizes > "$folder/said" 2>&1 || { cat "$folder/said" && exit 1; }
 sed -n '/^classes,/,$p' "$folder/said" > "$folder/new.csv"
 [ "$(wc -l < "$folder/new.csv")" = 10 ] || fail 'make sizes does not end in a table of eight classes and all'
-grown docs/report/sizes.csv "$folder/new.csv" > "$folder/grown"
+grown package/sizes.csv "$folder/new.csv" > "$folder/grown"
 [ ! -s "$folder/grown" ] || fail "$(cat "$folder/grown")"
 # Documents have the table's numbers.
-package/sizes.sh docs/report/sizes.csv | while read -r row; do
+package/sizes.sh package/sizes.csv | while read -r row; do
     grep -qxF "$row" docs/embedding.md || echo "docs/embedding.md has no row $row; make sizes-table writes it"
 done > "$folder/rows"
 [ ! -s "$folder/rows" ] || fail "$(cat "$folder/rows")"

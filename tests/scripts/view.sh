@@ -45,23 +45,23 @@ refuses() {
 # ---- without a screen ----------------------------------------------------------------------------
 
 both=$scenes/test_both.masu
-"$view" --help | grep -q 'F12' || fail "--help does not tell the keys"
+"$view" --help | grep -q 'F12' || fail "--help does not list the keys"
 refuses 2 'unknown option --gone' --gone "$both"
-refuses 2 'no scene is given'
-refuses 2 'one scene at a time' "$both" "$both"
+refuses 2 'no scene given'
+refuses 2 'expected one scene' "$both" "$both"
 refuses 2 '--bake needs --json' "$both" --bake true
 refuses 2 '--quit needs --frames' "$both" --quit
 refuses 2 '--setting' "$both" --setting scale=7
 refuses 1 'none.masu' none.masu
-refuses 1 '--rung 7 does not exist' "$both" --rung 7 --ladder off
+refuses 1 '--rung: expected 0 to 2, found 7' "$both" --rung 7 --ladder off
 printf 'frame 3 quit\nframe 2 quit\n' > falling
-refuses 1 'falling:2: frames must not fall' "$both" --script falling
+refuses 1 'falling:2: expected frame numbers in rising order' "$both" --script falling
 printf '\n# nothing\nframe 3 key Nokey\n' > nokey
 refuses 1 'nokey:3: ' "$both" --script nokey
 printf 'frame 3 dance\n' > dance
-refuses 1 'dance:1: there is no such action' "$both" --script dance
+refuses 1 'dance:1: unknown action' "$both" --script dance
 printf 'frame 3 click 5\n' > half
-refuses 1 'half:1: what follows the action' "$both" --script half
+refuses 1 'half:1: wrong or missing argument' "$both" --script half
 SDL_VIDEODRIVER=x11 DISPLAY='' refuses 1 'masu-view: no window: ' "$both"
 head -c 1000 "$both" > short.masu
 SDL_VIDEODRIVER=x11 DISPLAY='' refuses 1 'short.masu: ' short.masu
@@ -219,7 +219,7 @@ same red.png rung0.png $upper
 same again.png rung0.png $upper
 same found.png rung0.png $upper
 [ "$(grep -c 'device was lost' stderr)" = 1 ] || fail "one line about the lost device: $(cat stderr)"
-read -r frames turns < <(sed -n 's/.*: \([0-9]*\) frames in \([0-9]*\) turns.*/\1 \2/p' stderr)
+read -r frames turns < <(sed -n 's/.*: \([0-9]*\) frames in \([0-9]*\) loop iterations.*/\1 \2/p' stderr)
 [ -n "${turns:-}" ] && [ $((turns - frames)) -ge 20 ] && [ $((turns - frames)) -le 40 ] ||
     fail "while it was minimised $((turns - frames)) turns drew nothing, not 20 and a few"
 cd ..

@@ -1,10 +1,11 @@
-/* cli.h: the program `masu` as a stranger runs it: in a shell, with the scratch folder of files.h, and
+/* cli.h: the program `masu` as a user runs it: in a shell, with the scratch folder of files.h, and
  * what it has said. Anything that goes wrong here fails the test. */
 #ifndef SUPPORT_CLI_H
 #define SUPPORT_CLI_H
 
 #include "support/files.h"
 
+extern const char *cli_program; /* of $BUILD/bin: "masu" */
 extern char cli_out[1 << 16], cli_err[1 << 16]; /* of the last run; longer ones are cut */
 
 /* `masu ARGUMENTS`; returns the exit code. */

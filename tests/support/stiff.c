@@ -3,7 +3,7 @@
 #include "support/files.h"
 #include "support/stiff.h"
 
-#include "bench/measure/truth.h"
+#include "measure/truth.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -8,9 +8,9 @@
 
 #include <cmocka.h>
 
-#include "bench/sweep/against.h"
-#include "bench/sweep/machine.h"
-#include "bench/sweep/sweep.h"
+#include "bench/against.h"
+#include "bench/machine.h"
+#include "bench/sweep.h"
 #include "support/files.h"
 
 #include <math.h>

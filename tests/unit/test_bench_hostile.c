@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "bench/sweep/report.h"
+#include "bench/report.h"
 #include "cli/gnuplot.h"
 #include "cli/markup.h"
 #include "image.h"

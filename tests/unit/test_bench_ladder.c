@@ -8,8 +8,8 @@
 
 #include <cmocka.h>
 
-#include "bench/sweep/ladder.h"
-#include "bench/sweep/table.h"
+#include "settings/ladder.h"
+#include "bench/table.h"
 #include "support/random.h"
 
 #include <math.h>

@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "bench/sweep/settings.h"
+#include "bench/settings.h"
 #include "scene/scene.h"
 
 #include <stdio.h>
@@ -37,13 +37,9 @@ static void check_names(uint32_t count) {
     }
 }
 
-static const masu_scene_data everything = {.sdf = 1,
-                                           .lods = 1,
-                                           .placed_occluders = 1,
-                                           .instances = 1,
-                                           .lights = 1,
-                                           .shadow_cascades = 4,
-                                           .shadow_distance = 80};
+static const masu_scene_data everything = {
+    .sdf = 1, .lods = 1, .placed_occluders = 1, .instances = 1, .lights = 1, .shadow_cascades = 4,
+    .shadow_distance = 80};
 
 static masu_plan_info plan_with(const char *const *passes, uint32_t count) {
     masu_plan_info plan;
@@ -97,7 +93,6 @@ static void a_scene_of_nothing_leaves_what_is_done_to_pictures(void **state) {
     check_dropped("occlusion=off", count, "no occluders");
     check_dropped("frustum=off", count, "no polygons");
     check_dropped("light_tiles=off", count, "no punctual lights");
-    check_dropped("march=seed", count, "no SDF");
     check_dropped("shadow_distance=0.5", count, "no shadow map");
     check_dropped("specular_cutoff=0.25", count, "no reflections");
     check_dropped("specular_frames=64", count, "no reflections");
@@ -140,11 +135,7 @@ static void a_scene_of_everything_keeps_everything(void **state) {
             turned += masu_knob_differs(k, &settings[i].rung, &settings[0].rung);
         if (!turned && strcmp(k->name, "upscale") != 0) fail_msg("%s is never turned", k->name);
     }
-    static const char *const there[] = {"march=plain",
-                                        "march=seed",
-                                        "march=cone8",
-                                        "march=checkerboard",
-                                        "specular_cutoff=0.25",
+    static const char *const there[] = {"specular_cutoff=0.25",
                                         "specular_cutoff=0.5",
                                         "specular_frames=16",
                                         "specular_frames=64",
@@ -168,7 +159,7 @@ static void a_cutoff_that_is_the_scenes_own_is_the_base(void **state) {
     uint32_t count = masu_settings_make(false, settings);
     masu_settings_fit(settings, count, masu_scene_of(&scene), &plan);
     check_names(count);
-    check_dropped("specular_cutoff=0.5", count, "the scene's own");
+    check_dropped("specular_cutoff=0.5", count, "the scene's value");
     assert_true(find(count, "specular_cutoff=0.25") < count);
 }
 
@@ -258,11 +249,11 @@ static void names_are_read_again(void **state) {
     }
     /* In any order; values of all kinds. */
     assert_true(masu_setting_parse("ao_steps=3+lod_error=-1+shadow_refresh=1-2-4-8+scale=0.625+"
-                                   "shadow_distance=1e+09+march=cone8",
+                                   "shadow_distance=1e+09+frustum=off",
                                    &rung, error, sizeof error));
     masu_setting_name(&rung, name);
     assert_string_equal(name, "scale=0.625+lod_error=-1+ao_steps=3+shadow_distance=1e+09+"
-                              "shadow_refresh=1-2-4-8+march=cone8");
+                              "shadow_refresh=1-2-4-8+frustum=off");
 }
 
 /* Both ends and the middle of each knob, by itself and all together. */
@@ -297,29 +288,29 @@ static void names_that_are_none_are_refused(void **state) {
     (void)state;
     static const char *const bad[][2] = {{"", "''"},
                                          {"scale", "'scale'"},
-                                         {"scale=", "scale: needed is a number from 0 to 1, given is ''"},
-                                         {"scale=half", "given is 'half'"},
-                                         {"scale=nan", "given is 'nan'"},
-                                         {"scale=inf", "given is 'inf'"},
-                                         {"scale=0.5x", "given is '0.5x'"},
-                                         {"scale=1.5", "given is '1.5'"},
-                                         {"scale=1e+09", "given is '1e'"},
-                                         {"aa=off+lod_error=1e+10", "lod_error: needed is"},
+                                         {"scale=", "scale: expected a number from 0 to 1, found ''"},
+                                         {"scale=half", "found 'half'"},
+                                         {"scale=nan", "found 'nan'"},
+                                         {"scale=inf", "found 'inf'"},
+                                         {"scale=0.5x", "found '0.5x'"},
+                                         {"scale=1.5", "found '1.5'"},
+                                         {"scale=1e+09", "found '1e'"},
+                                         {"aa=off+lod_error=1e+10", "lod_error: expected"},
                                          {"scale=0.5+", "''"},
-                                         {"scale=0.5+scale=0.4", "'scale=0.4' comes twice"},
-                                         {"aa=smaa", "given is 'smaa'"},
-                                         {"aa=high", "aa: needed is one of auto, off, fxaa, smaa-low"},
-                                         {"aa=smaa-high2", "given is 'smaa-high2'"},
+                                         {"scale=0.5+scale=0.4", "'scale=0.4': the knob is already set"},
+                                         {"aa=smaa", "found 'smaa'"},
+                                         {"aa=high", "aa: expected one of auto, off, fxaa, smaa-low"},
+                                         {"aa=smaa-high2", "found 'smaa-high2'"},
                                          {"base+aa=fxaa", "'base'"},
                                          {"speed=3", "'speed=3'"},
-                                         {"ao_steps=-1", "given is '-1'"},
-                                         {"ao_steps= 1", "given is ' 1'"},
-                                         {"ao_steps=17", "ao_steps: needed is a whole number from 0 to 16"},
-                                         {"ao_steps=99999999999", "given is '99999999999'"},
+                                         {"ao_steps=-1", "found '-1'"},
+                                         {"ao_steps= 1", "found ' 1'"},
+                                         {"ao_steps=17", "ao_steps: expected a whole number from 0 to 16"},
+                                         {"ao_steps=99999999999", "found '99999999999'"},
                                          {"shadow_resolution=8",
-                                          "needed is 0 or a whole number from 16 to 8192"},
+                                          "expected 0 or a whole number from 16 to 8192"},
                                          {"shadow_refresh=1-2-4", "4 whole numbers, each from 0 to 64"},
-                                         {"shadow_refresh=1-2-4-65", "given is '1-2-4-65'"}};
+                                         {"shadow_refresh=1-2-4-65", "found '1-2-4-65'"}};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         char error[600] = "";
         masu_rung rung;

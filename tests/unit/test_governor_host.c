@@ -13,7 +13,7 @@
 
 #include "frame/timeline.h"
 #include "quality/governor_state.h"
-#include "simulate/simulate.h"
+#include "support/simulated_gpu.h"
 #include "support/random.h"
 
 #define RUNGS 8u
@@ -544,7 +544,7 @@ static void it_is_not_kept_low_by_a_low_clock(void **state) {
             late.load = NULL;
             late.a = p->b;
             double best = sim_oracle(&late), scale = 0.0;
-            sim_result r = sim_run(p, &sim_controllers[0], seed, out, NULL);
+            sim_result r = sim_run(p, &sim_masu, seed, out, NULL);
             uint32_t changes = 0;
             for (uint32_t f = 3000; f < 4000; f++) {
                 scale += out[f].scale / 1000.0;

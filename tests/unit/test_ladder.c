@@ -13,10 +13,10 @@
 #include <cmocka.h>
 #include <glob.h>
 
-#include "bench/sweep/knobs.h"
-#include "bench/sweep/ladder.h"
-#include "bench/sweep/ladder_file.h"
-#include "bench/sweep/settings.h"
+#include "settings/knobs.h"
+#include "settings/ladder.h"
+#include "settings/ladder_file.h"
+#include "bench/settings.h"
 #include "image.h"
 #include "quality/ladder.h"
 #include "plan/compile.h"
@@ -90,7 +90,6 @@ static void tables_are_well_formed(void **state) {
                             MASU_LADDER_APART * (double)l->ratios[r] * (1 - 1e-5));
             if (r) assert_true(l->flips[r] > l->flips[r - 1]);
             /* What not every device or blob can do is not built in. */
-            assert_int_equal(rung->march, MASU_MARCH_AUTO);
             assert_true(rung->specular != MASU_ON && rung->occlusion != MASU_ON);
             assert_true(rung->scale > 0 && rung->upscale != MASU_OFF);
             assert_true(rung->shadow_distance <= 0 && rung->specular_cutoff <= 0);
@@ -351,7 +350,7 @@ static void what_a_scene_lacks_is_ignored(void **state) {
         compile(&d);
         plain = plan;
         d.rungs[0] = wish;
-        if (!(parts & SDF)) d.rungs[0].march_steps = 64, d.rungs[0].march = MASU_MARCH_PLAIN;
+        if (!(parts & SDF)) d.rungs[0].march_steps = 64;
         compile(&d);
         assert_memory_equal(&plan.rungs[0].active, &plain.rungs[0].active, sizeof plan.rungs[0].active);
         assert_int_equal(plan.recordings, plain.recordings);
@@ -448,7 +447,6 @@ static void what_is_written_reads_back_knob_for_knob(void **state) {
     assert_string_equal(f.settings[3], "s3");
     assert_true(fabs(f.rmses[2] - 2.5) < 1e-9 && f.width == 320 && f.height == 180);
     /* What it takes, masu_init takes too. */
-    d.rungs[0].march = d.rungs[1].march = d.rungs[2].march = d.rungs[3].march = MASU_MARCH_AUTO;
     for (uint32_t r = 0; r < 4; r++) d.rungs[r].upscale = MASU_AUTO;
     compile(&d);
 }
@@ -473,52 +471,52 @@ static void mistakes_are_named_in_one_line(void **state) {
     static const struct {
         const char *find, *replace, *says;
     } rows[] = {
-        {"\"ao\"", "\"a\\no\"", "rungs[0]: a?o: there is no such knob"},
-        {"\"scale\": 1", "\"scale\": 1.5", "scale: needed is a number from 0 to 1, given is 1.5"},
-        {"\"scale\": 1", "\"scale\": \"1\"", "given is '1'"},
-        {"\"scale\": 1", "\"scale\": null", "given is null"},
+        {"\"ao\"", "\"a\\no\"", "rungs[0]: a?o: unknown knob"},
+        {"\"scale\": 1", "\"scale\": 1.5", "scale: expected a number from 0 to 1, found 1.5"},
+        {"\"scale\": 1", "\"scale\": \"1\"", "found '1'"},
+        {"\"scale\": 1", "\"scale\": null", "found null"},
         {"\"scale\": 1", "\"scale\": NaN", "line 1"},
         {"\"scale\": 1", "\"scale\": 1e999", "line 1"},
         {"\"scale\": 1", "\"scale\": 1, \"scale\": 1", "line 1"},
         {"\"easu\": \"auto\"", "\"easu\": \"best\"",
-         "easu: needed is one of auto, full, fast, bilinear, given is 'best'"},
+         "easu: expected one of auto, full, fast, bilinear, found 'best'"},
         {"\"march_steps\": 0", "\"march_steps\": 2049",
-         "march_steps: needed is a whole number from "
-         "0 to 2048, given is 2049"},
-        {"\"march_steps\": 0", "\"march_steps\": 1.5", "given is 1.5"},
-        {"\"march_steps\": 0", "\"march_steps\": -1", "given is -1"},
+         "march_steps: expected a whole number from "
+         "0 to 2048, found 2049"},
+        {"\"march_steps\": 0", "\"march_steps\": 1.5", "found 1.5"},
+        {"\"march_steps\": 0", "\"march_steps\": -1", "found -1"},
         {"\"shadow_resolution\": 0", "\"shadow_resolution\": 8",
-         "needed is 0 or a whole number from 16 to 8192, given is 8"},
-        {"[0, 0, 0, 0]", "[0, 0, 0]", "shadow_refresh: needed is an array of 4"},
+         "expected 0 or a whole number from 16 to 8192, found 8"},
+        {"[0, 0, 0, 0]", "[0, 0, 0]", "shadow_refresh: expected an array of 4"},
         {"[0, 0, 0, 0]", "[0, 0, 0, 65]", "shadow_refresh"},
         {"\"ratio\": 0.900", "\"ratio\": 1.0",
-         "rungs[1]: ratio: needed is less than that of the "
-         "rung before, 1, given is 1"},
-        {"\"ratio\": 0.900", "\"ratio\": 0", "rungs[1]: ratio: needed is a number"},
+         "rungs[1]: ratio: expected less than the "
+         "previous rung, 1, found 1"},
+        {"\"ratio\": 0.900", "\"ratio\": 0", "rungs[1]: ratio: expected a number"},
         {"\"ratio\": 0.900, ", "",
-         "rungs[1]: ratio: needed is a number from 1e-06 to 1e+06, given "
+         "rungs[1]: ratio: expected a number from 1e-06 to 1e+06, given "
          "is nothing"},
         {"\"ratio\": 0.900", "\"ratio\": 0.99999999999", "rungs[1]: ratio"},
         {"\"flip\": 0.200", "\"flip\": 1.2", "rungs[1]: flip"},
         {"\"rmse\": 1.5", "\"rmse\": false", "rungs[1]: rmse"},
-        {"\"wall_ms\"", "\"walls\"", "rungs[0]: walls: there is no such key"},
-        {"\"setting\": \"s1\"", "\"setting\": 3", "setting: needed is a text, given is 3"},
-        {"\"error\": \"flip\"", "\"error\": \"rmse\"", "error: needed is 'flip', given is 'rmse'"},
-        {"\"hash\"", "\"hush\"", "hush: there is no such key"},
-        {"\"width\": 320", "\"width\": 0", "width: needed is a number from 1 to"},
-        {"\"rungs\": [", "\"rungs\": 3, \"hash2\": [", "there is no such key"},
+        {"\"wall_ms\"", "\"walls\"", "rungs[0]: walls: unknown key"},
+        {"\"setting\": \"s1\"", "\"setting\": 3", "setting: expected a string, found 3"},
+        {"\"error\": \"flip\"", "\"error\": \"rmse\"", "error: expected 'flip', found 'rmse'"},
+        {"\"hash\"", "\"hush\"", "hush: unknown key"},
+        {"\"width\": 320", "\"width\": 0", "width: expected a number from 1 to"},
+        {"\"rungs\": [", "\"rungs\": 3, \"hash2\": [", "unknown key"},
     };
     written(rungs, 2);
     for (size_t i = 0; i < COUNT(rows); i++)
         expect_error(rows[i].find, rows[i].replace, rows[i].says);
     written(rungs, 9);
-    expect_error("s8", "s8", "rungs: needed is an array of 1 to 8, given are 9");
+    expect_error("s8", "s8", "rungs: expected an array of 1 to 8 rungs, found 9");
     written(rungs, 0);
     expect_error("[]", "[]", "given are 0");
     static masu_ladder_file f;
     char error[1024] = "";
     assert_false(masu_ladder_parse("l.json", "[]", 2, &f, error, sizeof error));
-    assert_non_null(strstr(error, "needed is an object, given is an array"));
+    assert_non_null(strstr(error, "expected an object, found an array"));
     assert_false(masu_ladder_read("there/is/none.json", &f, error, sizeof error));
     assert_non_null(strstr(error, "there/is/none.json"));
     /* Texts end up in comments and constants of C. */

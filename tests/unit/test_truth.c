@@ -7,8 +7,8 @@
 
 #include <cmocka.h>
 
-#include "bench/study/shade.h"
-#include "bench/measure/truth.h"
+#include "measure/shade.h"
+#include "measure/truth.h"
 #include "reference/brdf.h"
 #include "split_sum.h"
 #include "support/random.h"

@@ -13,9 +13,9 @@
 enum { OPTION_HELP = -10, OPTION_VERSION = -11, OPTION_QUIET = -12 };
 
 static const masu_cli_option common_options[] = {
-    {"help", NULL, "show this text and stop", OPTION_HELP, 'h'},
-    {"version", NULL, "print the version and stop", OPTION_VERSION, 0},
-    {"quiet", NULL, "no progress line and no summary; warnings and errors stay", OPTION_QUIET, 0},
+    {"help", NULL, "print this text and exit", OPTION_HELP, 'h'},
+    {"version", NULL, "print the version and exit", OPTION_VERSION, 0},
+    {"quiet", NULL, "print only warnings and errors", OPTION_QUIET, 0},
     {NULL, NULL, NULL, 0, 0},
 };
 
@@ -112,6 +112,10 @@ void masu_cli_progress(const char *format, ...) {
 static void print_option(const masu_cli_option *option) {
     enum { COLUMN = 26 };
     char letter[5] = "    ";
+    if (!option->name[0]) {
+        printf("\n%s:\n", option->help);
+        return;
+    }
     if (option->letter) snprintf(letter, sizeof letter, "-%c, ", option->letter);
     bool apart = option->value && option->value[0] != '[';
     int width = printf("  %s--%s%s%s", letter, option->name, apart ? " " : "",
@@ -129,9 +133,11 @@ static void print_option(const masu_cli_option *option) {
 }
 
 static void print_command_help(const masu_cli_command *command) {
-    printf("%s: %s\n\nUsage: %s %s\n\nOptions:\n", state.name, command->summary, state.name,
-           command->arguments);
+    bool grouped = command->options && command->options->name && !command->options->name[0];
+    printf("%s: %s\n\nUsage: %s %s\n%s", state.name, command->summary, state.name,
+           command->arguments, grouped ? "" : "\nOptions:\n");
     for (const masu_cli_option *o = command->options; o && o->name; o++) print_option(o);
+    if (grouped) printf("\nCommon:\n");
     for (const masu_cli_option *o = common_options; o->name; o++) print_option(o);
     if (command->details) printf("\n%s", command->details);
 }
@@ -142,7 +148,7 @@ static void print_commands(const char *summary, const masu_cli_command *const *c
     for (const masu_cli_command *const *c = commands; *c; c++) {
         printf("  %-12s %s\n", (*c)->name, (*c)->summary);
     }
-    printf("\n`%s COMMAND --help` explains a command.\n", state.name);
+    printf("\n`%s COMMAND --help` describes a command.\n", state.name);
 }
 
 /* ---- options ---- */
@@ -150,7 +156,8 @@ static void print_commands(const char *summary, const masu_cli_command *const *c
 static const masu_cli_option *find_long(const masu_cli_option *list, const char *name,
                                         size_t length) {
     for (; list && list->name; list++) {
-        if (strlen(list->name) == length && memcmp(list->name, name, length) == 0) return list;
+        if (length && strlen(list->name) == length && memcmp(list->name, name, length) == 0)
+            return list;
     }
     return NULL;
 }
@@ -320,7 +327,7 @@ static void turn_help(masu_cli *cli) {
 }
 
 int masu_cli_commands(masu_cli *cli, const char *summary, const masu_cli_command *const *commands) {
-    if (cli->next >= cli->argc) return masu_cli_usage_error("no command given");
+    if (cli->next >= cli->argc) return masu_cli_usage_error("expected a command");
     const char *word = cli->argv[cli->next++];
     if (strcmp(word, "help") == 0) {
         turn_help(cli);

@@ -55,10 +55,11 @@ enum {
 typedef struct masu_cli masu_cli;
 
 typedef struct masu_cli_option {
-    const char *name;  /* long name without dashes; NULL ends the list */
+    const char *name;  /* long name without dashes; "": help is the heading of a group in the help
+                          text, without colon; NULL ends the list */
     const char *value; /* what the help calls the value, "FILE"; NULL: a switch, which takes none;
                           "[=N]": one that may be left out, --name=N */
-    const char *help;  /* may hold '\n': the following lines are indented */
+    const char *help;  /* may contain '\n': the following lines are indented */
     int id;            /* > 0; what masu_cli_next returns */
     char letter;       /* -o as a short form of --output; 0: none */
 } masu_cli_option;
@@ -98,7 +99,7 @@ int masu_cli_main(const masu_cli_program *program, int argc, char **argv);
 /* Its end by itself, for a child that leaves by exit(): returns the exit code. */
 int masu_cli_end(int exit_code);
 
-/* For a command that has commands of its own, `masu study march`: its run function calls this. */
+/* For a command that has commands of its own, `masu-lab study march`: its run function calls this. */
 int masu_cli_commands(masu_cli *cli, const char *summary, const masu_cli_command *const *commands);
 
 /* The next option's id, or MASU_CLI_ARGUMENT, _END or _EXIT. */

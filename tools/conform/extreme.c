@@ -16,7 +16,7 @@ static bool read_floats(const masu_suite_place *at, const char *key, const json_
                         double most, double *out) {
     char name[64];
     if (json_array_size(value) != n)
-        return masu_suite_wrong(at, key, "needed is an array of %zu numbers, given are %zu", n,
+        return masu_suite_wrong(at, key, "expected an array of %zu numbers, found %zu", n,
                                 json_array_size(value));
     for (size_t i = 0; i < n; i++) {
         snprintf(name, sizeof name, "%s[%zu]", key, i);
@@ -276,7 +276,7 @@ bool masu_field_compare(const masu_session *s, uint32_t slot, const char *scene_
     size_t pixels = (size_t)view->width * view->height;
     if (masu_readback(s->m, slot, MASU_READBACK_DEPTH, &image) || image.width != view->width ||
         image.height != view->height) {
-        snprintf(error, error_size, "field: needed is a depth of %ux%u", view->width, view->height);
+        snprintf(error, error_size, "field: expected a depth image of %ux%u", view->width, view->height);
         return false;
     }
     if (!masu_truth_path(scene_path, path, sizeof path)) {
@@ -290,7 +290,7 @@ bool masu_field_compare(const masu_session *s, uint32_t slot, const char *scene_
         masu_truth_image(&truth, view, 1, samples);
         compare(&image, view, samples, errors, out);
     } else {
-        snprintf(error, error_size, "field: no memory for %zu samples", pixels);
+        snprintf(error, error_size, "field: out of memory for %zu samples", pixels);
     }
     bool good = samples && errors;
     free(samples);

@@ -6,7 +6,7 @@
 #ifndef MASU_CONFORM_EXTREME_H
 #define MASU_CONFORM_EXTREME_H
 
-#include "bench/measure/truth.h"
+#include "measure/truth.h"
 #include "session.h"
 
 #include <jansson.h>

@@ -1,7 +1,7 @@
 /* read.c: see read.h. */
 #include "conform/read.h"
 
-#include "bench/sweep/knobs.h"
+#include "settings/knobs.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -28,7 +28,7 @@ bool masu_suite_number(const masu_suite_place *at, const char *key, const json_t
         *out = v;
         return true;
     }
-    return masu_suite_wrong(at, key, "needed is a %snumber from %.10g to %.10g, given is %s",
+    return masu_suite_wrong(at, key, "expected a %snumber from %.10g to %.10g, found %s",
                             whole ? "whole " : "", low, high,
                             masu_json_given(value, text, sizeof text));
 }
@@ -44,7 +44,7 @@ bool masu_suite_count(const masu_suite_place *at, const char *key, const json_t 
 bool masu_suite_flag(const masu_suite_place *at, const char *key, const json_t *value, bool *out) {
     char text[80];
     if (!json_is_boolean(value))
-        return masu_suite_wrong(at, key, "needed is true or false, given is %s",
+        return masu_suite_wrong(at, key, "expected true or false, found %s",
                                 masu_json_given(value, text, sizeof text));
     *out = json_is_true(value);
     return true;
@@ -54,7 +54,7 @@ bool masu_suite_string(const masu_suite_place *at, const char *key, const json_t
                        const char **out) {
     char text[80];
     if (!json_is_string(value) || !json_string_length(value)) {
-        return masu_suite_wrong(at, key, "needed is a string that is not empty, given is %s",
+        return masu_suite_wrong(at, key, "expected a non-empty string, found %s",
                                 masu_json_given(value, text, sizeof text));
     }
     *out = json_string_value(value);
@@ -63,7 +63,7 @@ bool masu_suite_string(const masu_suite_place *at, const char *key, const json_t
 
 bool masu_suite_object(const masu_suite_place *at, const char *key, const json_t *value) {
     char text[80];
-    return json_is_object(value) || masu_suite_wrong(at, key, "needed is an object, given is %s",
+    return json_is_object(value) || masu_suite_wrong(at, key, "expected an object, found %s",
                                                      masu_json_given(value, text, sizeof text));
 }
 
@@ -79,7 +79,7 @@ bool masu_suite_choice(const masu_suite_place *at, const char *key, const json_t
         size_t n = strlen(list);
         snprintf(list + n, sizeof list - n, "%s%s", i ? ", " : "", names[i]);
     }
-    return masu_suite_wrong(at, key, "needed is one of %s, given is %s", list,
+    return masu_suite_wrong(at, key, "expected one of %s, found %s", list,
                             masu_json_given(value, text, sizeof text));
 }
 
@@ -88,7 +88,7 @@ bool masu_suite_names(const masu_suite_place *at, const char *key, const json_t 
                       const char *const *names, uint32_t *out) {
     char text[80];
     if (!json_is_array(value))
-        return masu_suite_wrong(at, key, "needed is an array, given is %s",
+        return masu_suite_wrong(at, key, "expected an array, found %s",
                                 masu_json_given(value, text, sizeof text));
     *out = 0;
     for (size_t i = 0; i < json_array_size(value); i++) {
@@ -102,5 +102,5 @@ bool masu_suite_names(const masu_suite_place *at, const char *key, const json_t 
 bool masu_suite_unknown(const masu_suite_place *at, const char *group, const char *key) {
     char text[160];
     snprintf(text, sizeof text, "%s%s%.100s", group, group[0] ? "." : "", key);
-    return masu_suite_wrong(at, text, "there is no such key");
+    return masu_suite_wrong(at, text, "unknown key");
 }

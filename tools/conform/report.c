@@ -140,9 +140,9 @@ static void print_limits(FILE *f, const masu_case *c) {
             join = ", ";
         }
     }
-    if (c->exact_memory) fprintf(f, "%sa byte less is refused", join), join = ", ";
+    if (c->exact_memory) fprintf(f, "%sone byte less is rejected", join), join = ", ";
     for (int i = 0; same[i]; i++) {
-        if (c->same & 1u << i) fprintf(f, "%sequal to the bit: %s", join, same[i]), join = ", ";
+        if (c->same & 1u << i) fprintf(f, "%sbit-identical: %s", join, same[i]), join = ", ";
     }
     if (c->against) {
         fprintf(f, "%sagainst ", join);

@@ -2,7 +2,7 @@
 #include "conform/run.h"
 
 #include "alloc_count.h"
-#include "bench/measure/picture.h"
+#include "measure/picture.h"
 #include "cli/cli.h"
 #include "clock.h"
 #include "image.h"
@@ -49,11 +49,12 @@ static void judge(masu_conform_result *r, masu_measure m, bool least) {
     if (verdict == MASU_VERDICT_PASS) return;
     double limit = verdict == MASU_VERDICT_FAIL ? bound->fail : bound->warn;
     if (isnan(r->values[m])) {
-        find(r, verdict, "%s was not measured, the limit is %.10g", masu_measure_name(m), limit);
+        find(r, verdict, "%s was not measured, expected at %s %.10g", masu_measure_name(m),
+             more ? "least" : "most", limit);
         return;
     }
-    find(r, verdict, "%s is %.10g, %s is %.10g", masu_measure_name(m), r->values[m],
-         more ? "needed" : "the limit", limit);
+    find(r, verdict, "%s is %.10g, expected at %s %.10g", masu_measure_name(m), r->values[m],
+         more ? "least" : "most", limit);
 }
 
 static void judge_all(masu_conform_result *r, bool validated) {
@@ -148,16 +149,16 @@ static void check_memory(masu_session *s, masu_conform_result *r) {
     q.host_budget = need.host_bytes;
     q.device_budget = need.device_bytes;
     if (masu_memory_query(&q, &need, &detail))
-        find(r, MASU_VERDICT_FAIL, "a budget of what is needed is refused: %s", detail.text);
+        find(r, MASU_VERDICT_FAIL, "a budget of exactly the required size is rejected: %s", detail.text);
     q.host_budget--;
     if (masu_memory_query(&q, &need, &detail) != MASU_ERROR_LIMIT ||
         strcmp(detail.what, "host_budget"))
-        find(r, MASU_VERDICT_FAIL, "a host budget of a byte less than needed is not refused");
+        find(r, MASU_VERDICT_FAIL, "a host budget of one byte less than required is accepted");
     q.host_budget++;
     q.device_budget--;
     if (masu_memory_query(&q, &need, &detail) != MASU_ERROR_LIMIT ||
         strcmp(detail.what, "device_budget")) {
-        find(r, MASU_VERDICT_FAIL, "a device budget of a byte less than needed is not refused");
+        find(r, MASU_VERDICT_FAIL, "a device budget of one byte less than required is accepted");
     }
     q.device_budget++;
     size_t bytes = (size_t)need.host_bytes;
@@ -165,7 +166,7 @@ static void check_memory(masu_session *s, masu_conform_result *r) {
                                                                  need.host_alignment *
                                                                  (size_t)need.host_alignment);
     if (block && masu_init(&q, block, bytes - 1, &m, &detail) != MASU_ERROR_MEMORY)
-        find(r, MASU_VERDICT_FAIL, "a host block of a byte less than needed is not refused");
+        find(r, MASU_VERDICT_FAIL, "a host block of one byte less than required is accepted");
     masu_destroy(m);
     free(block);
 }
@@ -193,7 +194,7 @@ static bool open_session(masu_conform *c, const masu_case *of, const way *w,
         masu_peaks(s->m, &peaks);
         if (peaks.host_bytes == s->need.host_bytes && peaks.device_bytes == s->need.device_bytes)
             return true;
-        find(r, MASU_VERDICT_FAIL, "the memory used is not what was asked for");
+        find(r, MASU_VERDICT_FAIL, "the memory used differs from the memory required");
     } else {
         find(r, verdict_of(&s->detail), "%s", error);
     }
@@ -209,7 +210,7 @@ static void close_session(masu_conform *c, masu_conform_result *r) {
     double *all = &r->values[MASU_MEASURE_MESSAGES];
     *all = (isnan(*all) ? 0.0 : *all) + s->host.messages;
     if (s->host.messages && !masu_bound_is_set(&r->of->bounds[MASU_MEASURE_MESSAGES]))
-        find(r, MASU_VERDICT_FAIL, "the validation layer says: %.300s", s->host.first_message);
+        find(r, MASU_VERDICT_FAIL, "validation layer: %.300s", s->host.first_message);
 }
 
 /* ---- Frames ---------------------------------------------------------------------------------- */
@@ -336,7 +337,7 @@ static uint8_t *draw_frames(masu_conform *c, const masu_case *of, masu_conform_r
     size_t bytes = 4 * (size_t)of->width * of->height;
     uint8_t *rgba = malloc(bytes);
     if (!rgba) {
-        find(r, MASU_VERDICT_RESOURCE, "no memory for a picture of %zu bytes", bytes);
+        find(r, MASU_VERDICT_RESOURCE, "out of memory for an image of %zu bytes", bytes);
         return NULL;
     }
     if (masu_headless_target_read(&s->host, &s->targets[0], error, sizeof error)) {
@@ -365,7 +366,7 @@ static void run_governed(masu_conform *c, const masu_case *of, masu_conform_resu
         double wall = (double)(masu_clock_ns(NULL) - start) / 1e6;
         last = commands.rung;
         if (last < g->best || last > worst) {
-            find(r, MASU_VERDICT_FAIL, "frame %u is of rung %u, allowed are %u to %u", i, last,
+            find(r, MASU_VERDICT_FAIL, "frame %u: found rung %u, expected %u to %u", i, last,
                  g->best, worst);
             return;
         }
@@ -373,14 +374,14 @@ static void run_governed(masu_conform *c, const masu_case *of, masu_conform_resu
         double cost = of->measured && ratio > 0.0 ? ratio : scale * scale;
         masu_frame_wall(s->m, commands.slot, g->told ? g->fixed_ms + g->load_ms * cost : wall);
         if (masu_stats(s->m, commands.slot, &stats)) {
-            find(r, MASU_VERDICT_FAIL, "there are no statistics of frame %u", i);
+            find(r, MASU_VERDICT_FAIL, "frame %u: no statistics", i);
             return;
         }
     }
     r->values[MASU_MEASURE_CHANGES] = (double)stats.governor.changes;
     if (counts(of)) take_counts(&stats, r);
     if (g->settles[0] >= 0 && ((int32_t)last < g->settles[0] || (int32_t)last > g->settles[1])) {
-        find(r, MASU_VERDICT_FAIL, "after %u frames the rung is %u (%s), needed is %d to %d",
+        find(r, MASU_VERDICT_FAIL, "after %u frames the rung is %u (%s), expected %d to %d",
              g->frames, last, stats.governor.reason_text, g->settles[0], g->settles[1]);
     }
 }
@@ -416,7 +417,7 @@ static bool calibrate(masu_conform *c, masu_conform_result *r) {
         if (!c->calibrated) masu_headless_source_destroy(&s->host, &c->source);
     }
     if (good && !c->calibrated) masu_session_close(s);
-    if (!c->calibrated) find(r, MASU_VERDICT_FAIL, "the calibration: %s", error);
+    if (!c->calibrated) find(r, MASU_VERDICT_FAIL, "calibration: %s", error);
     return c->calibrated;
 }
 
@@ -456,7 +457,7 @@ static void time_case(masu_conform *c, const masu_case *of, masu_conform_result 
         r->values[MASU_MEASURE_MS_RATIO] = own / other;
         if (!masu_bound_judge(&of->bounds[MASU_MEASURE_MS_RATIO], own / other, false)) break;
     }
-    if (!good) find(r, MASU_VERDICT_FAIL, "the calibration: %s", unused.why);
+    if (!good) find(r, MASU_VERDICT_FAIL, "calibration: %s", unused.why);
 }
 
 /* ---- Pictures -------------------------------------------------------------------------------- */
@@ -503,7 +504,7 @@ static void draw_ways(masu_conform *c, const masu_case *of, const uint8_t *pictu
         uint32_t pixels = differing(picture, own, of, &steps);
         free(own);
         if (!pixels) continue;
-        find(r, MASU_VERDICT_FAIL, "same: %s: %u of %u pixels differ, by up to %u steps",
+        find(r, MASU_VERDICT_FAIL, "same: %s: %u of %u pixels differ, by at most %u of 255",
              names[ways[i].name], pixels, of->width * of->height, steps);
     }
 }
@@ -529,8 +530,8 @@ static const uint8_t *truth_of(masu_conform *c, const masu_case *of, masu_confor
     d.no_renderer = false;
     uint8_t *rgba = malloc(4 * (size_t)of->width * of->height);
     if (!rgba || !masu_picture_open(&d, of->positions, s, error, sizeof error)) {
-        find(r, rgba ? MASU_VERDICT_FAIL : MASU_VERDICT_RESOURCE, "the truth: %s",
-             rgba ? error : "no memory for it");
+        find(r, rgba ? MASU_VERDICT_FAIL : MASU_VERDICT_RESOURCE, "ground truth: %s",
+             rgba ? error : "out of memory");
         free(rgba);
         return NULL;
     }
@@ -543,8 +544,8 @@ static const uint8_t *truth_of(masu_conform *c, const masu_case *of, masu_confor
     masu_truth_picture *more =
         good ? realloc(c->truths, (c->truth_count + 1) * sizeof *more) : NULL;
     if (!more) {
-        find(r, good ? MASU_VERDICT_RESOURCE : MASU_VERDICT_FAIL, "the truth: %s",
-             good ? "no memory for it" : error);
+        find(r, good ? MASU_VERDICT_RESOURCE : MASU_VERDICT_FAIL, "ground truth: %s",
+             good ? "out of memory" : error);
         free(rgba);
         return NULL;
     }
@@ -599,7 +600,7 @@ static bool supported(const masu_conform *c, const masu_case *of, masu_conform_r
             find(r, MASU_VERDICT_UNSUPPORTED, "the device has no %s", names[i]);
     }
     if (of->width > c->most_pixels || of->height > c->most_pixels) {
-        find(r, MASU_VERDICT_UNSUPPORTED, "%ux%u is more than the device's images may have, %u",
+        find(r, MASU_VERDICT_UNSUPPORTED, "size: found %ux%u, expected at most %u per side on this device",
              of->width, of->height, c->most_pixels);
     }
     return r->verdict == MASU_VERDICT_PASS;

@@ -1,7 +1,7 @@
 /* suite.c: see suite.h. */
 #include "conform/suite.h"
 
-#include "bench/sweep/knobs.h"
+#include "settings/knobs.h"
 #include "cli/cli.h"
 #include "conform/read.h"
 
@@ -79,7 +79,7 @@ static bool read_ladder(const masu_suite_place *at, const json_t *value, masu_ca
     if (c->measured) return true;
     if (!json_is_array(value) || !n || n > MASU_MAX_RUNGS) {
         return masu_suite_wrong(at, "ladder",
-                                "needed is 'auto' or an array of 1 to %u rungs, given are %zu",
+                                "expected 'auto' or an array of 1 to %u rungs, found %zu",
                                 MASU_MAX_RUNGS, n);
     }
     memset(c->rungs, 0, sizeof c->rungs);
@@ -104,18 +104,18 @@ static bool read_bound(const masu_suite_place *at, const char *name, const json_
         char text[200];
         snprintf(text, sizeof text, "%.160s.%.20s", name, key);
         bool warn = !strcmp(key, "warn");
-        if (!warn && strcmp(key, "fail")) return masu_suite_wrong(at, text, "there is no such key");
+        if (!warn && strcmp(key, "fail")) return masu_suite_wrong(at, text, "unknown key");
         if (!masu_suite_number(at, text, member, 0.0, 1e18, false,
                                warn ? &bound->warn : &bound->fail))
             return false;
     }
     if (!masu_bound_is_set(bound))
-        return masu_suite_wrong(at, name, "needed is warn, fail, or both");
+        return masu_suite_wrong(at, name, "expected warn, fail, or both");
     if (isnan(bound->warn) || isnan(bound->fail) ||
         (least ? bound->warn >= bound->fail : bound->warn <= bound->fail)) {
         return true;
     }
-    return masu_suite_wrong(at, name, "warn is %.10g, which is beyond fail, %.10g", bound->warn,
+    return masu_suite_wrong(at, name, "warn is %.10g, beyond fail, which is %.10g", bound->warn,
                             bound->fail);
 }
 
@@ -165,7 +165,7 @@ static bool read_pair(const masu_suite_place *at, const char *key, const json_t 
                       uint32_t low, uint32_t high, uint32_t *a, uint32_t *b) {
     char text[80];
     if (!json_is_array(value) || json_array_size(value) != 2) {
-        return masu_suite_wrong(at, key, "needed are two numbers in an array, given is %s",
+        return masu_suite_wrong(at, key, "expected an array of two numbers, found %s",
                                 masu_json_given(value, text, sizeof text));
     }
     return masu_suite_count(at, key, json_array_get(value, 0), low, high, a) &&
@@ -177,7 +177,7 @@ static bool read_settles(const masu_suite_place *at, const json_t *value, masu_g
     if (!read_pair(at, "governed.settles", value, 0, MASU_MAX_RUNGS - 1, &low, &high)) return false;
     if (low > high) {
         return masu_suite_wrong(at, "governed.settles",
-                                "needed is the lower rung first, given are %u and %u", low, high);
+                                "expected the lower rung first, found %u and %u", low, high);
     }
     g->settles[0] = (int32_t)low;
     g->settles[1] = (int32_t)high;
@@ -229,7 +229,7 @@ static bool read_governed(const masu_suite_place *at, const json_t *value, masu_
     }
     return json_object_get(value, "target_ms") ||
            masu_suite_wrong(at, "governed.target_ms",
-                            "needed is a number from 1 to 1000, given is nothing");
+                            "expected a number from 1 to 1000, found nothing");
 }
 
 /* ---- Cases ----------------------------------------------------------------------------------- */
@@ -263,7 +263,7 @@ static bool read_key(const masu_suite_place *at, const char *key, const json_t *
     if (!strcmp(key, "budget") || !strcmp(key, "counts") || !strcmp(key, "at_least") ||
         !strcmp(key, "field"))
         return read_measures(at, key, value, c);
-    return masu_suite_wrong(at, key, "there is no such key");
+    return masu_suite_wrong(at, key, "unknown key");
 }
 
 static bool read_keys(const masu_suite_place *at, const json_t *value, masu_case *c) {
@@ -285,17 +285,18 @@ bool masu_case_field(const masu_case *c) {
 static bool check_extreme(const masu_suite_place *at, const masu_case *c) {
     const masu_extreme *x = &c->extreme;
     if (c->governed.on && (x->given || masu_bound_is_set(&c->bounds[MASU_MEASURE_NON_FINITE])))
-        return masu_suite_wrong(at, "extreme", "needed is a case that is not governed");
+        return masu_suite_wrong(at, "extreme", "cannot be combined with 'governed'");
     if (x->cycle && c->rung_count < 2)
-        return masu_suite_wrong(at, "extreme.cycle", "needed is a ladder of two rungs or more");
+        return masu_suite_wrong(at, "extreme.cycle", "expected a ladder of two rungs or more");
     if (x->has_other && !x->has_camera)
-        return masu_suite_wrong(at, "extreme.other_camera", "needed is a camera beside it");
+        return masu_suite_wrong(at, "extreme.other_camera", "expected a 'camera' as well");
     if (masu_case_field(c) && (!x->has_camera || x->cycle || c->rungs[0].scale > 0.0f))
-        return masu_suite_wrong(at, "field", "needed are extreme.camera and one rung of scale 1");
+        return masu_suite_wrong(at, "field", "expected extreme.camera and one rung of scale 1");
     if (c->against && !strcmp(c->against, "truth") && (x->has_transform || x->has_material))
-        return masu_suite_wrong(at, "error.against", "of what has been changed there is no truth");
+        return masu_suite_wrong(at, "error.against",
+                                "a changed transform or material has no ground truth");
     if (masu_case_field(c) && c->move > 0)
-        return masu_suite_wrong(at, "field", "needed is a case whose time stands still");
+        return masu_suite_wrong(at, "field", "expected a case without 'move'");
     return true;
 }
 
@@ -305,34 +306,34 @@ static bool check_case(const masu_suite_place *at, masu_case *c) {
     for (int m = MASU_MEASURE_RMSE; m <= MASU_MEASURE_PIXELS; m++)
         compares = compares || masu_bound_is_set(&c->bounds[m]);
     if (!c->scene)
-        return masu_suite_wrong(at, "scene", "needed is the name of a scene, given is nothing");
+        return masu_suite_wrong(at, "scene", "expected the name of a scene, found nothing");
     if (strstr(c->scene, "..") || c->scene[0] == '/')
         return masu_suite_wrong(
-            at, "scene", "needed is a name in the folder of scenes, given is '%s'", c->scene);
+            at, "scene", "expected a name in the folder of scenes, found '%s'", c->scene);
     if (!c->width)
-        return masu_suite_wrong(at, "size", "needed are width and height, given is nothing");
+        return masu_suite_wrong(at, "size", "expected width and height, found nothing");
     if (compares != (c->against != NULL)) {
         return masu_suite_wrong(at, compares ? "error.against" : "error",
                                 compares
-                                    ? "needed is 'truth' or the name of a case, given is nothing"
-                                    : "needed is a limit beside 'against', given is none");
+                                    ? "expected 'truth' or the name of a case, found nothing"
+                                    : "expected a limit with 'against', found none");
     }
     if (!check_extreme(at, c)) return false;
     masu_governed *g = &c->governed;
     if (!g->on && (c->measured || (c->rung_count > 1 && !c->extreme.cycle)))
         return masu_suite_wrong(at, "ladder",
-                                "needed is 'governed', for something to choose from it");
+                                "expected 'governed', which chooses its rungs");
     if (!g->on) return true;
     if (c->against || c->same || masu_bound_is_set(&c->bounds[MASU_MEASURE_MS_RATIO])) {
         return masu_suite_wrong(at, "governed",
-                                "needed is a picture of one rung for error, same and ms_ratio, "
-                                "which a governed case has not");
+                                "cannot be combined with error, same and ms_ratio, which need an "
+                                "image of one rung");
     }
     if (c->measured) { /* as long as it is: that is known when the scene is */
         memset(c->rungs, 0, sizeof c->rungs);
         c->rung_count = 0;
         if (g->worst && g->best > g->worst) {
-            return masu_suite_wrong(at, "governed.worst_rung", "needed is %u to %u, given is %u",
+            return masu_suite_wrong(at, "governed.worst_rung", "expected %u to %u, found %u",
                                     g->best, MASU_MAX_RUNGS - 1, g->worst);
         }
         return true;
@@ -348,7 +349,7 @@ static bool check_case(const masu_suite_place *at, masu_case *c) {
     }
     if (!g->worst) g->worst = c->rung_count - 1;
     if (g->worst >= c->rung_count || g->best > g->worst) {
-        return masu_suite_wrong(at, "governed.worst_rung", "needed is %u to %u, given is %u",
+        return masu_suite_wrong(at, "governed.worst_rung", "expected %u to %u, found %u",
                                 g->best, c->rung_count - 1, g->worst);
     }
     return true;
@@ -361,13 +362,13 @@ static bool append(const masu_suite_place *at, const masu_case *c) {
         const masu_case *o = &s->cases[i];
         if (strcmp(o->name, c->name) || o->width != c->width || o->height != c->height) continue;
         snprintf(size, sizeof size, "%ux%u", c->width, c->height);
-        return masu_suite_wrong(at, "name", "there are two cases of this name at %s", size);
+        return masu_suite_wrong(at, "name", "two cases have this name at %s", size);
     }
     if (s->count == CASES_MOST) return masu_suite_wrong(at, NULL, "more than %u cases", CASES_MOST);
     if (!(s->count & (s->count - 1))) { /* full at each power of two */
         size_t room = s->count ? 2 * (size_t)s->count : 1;
         masu_case *more = realloc(s->cases, room * sizeof *more);
-        if (!more) return masu_suite_wrong(at, NULL, "no memory for %zu cases", room);
+        if (!more) return masu_suite_wrong(at, NULL, "out of memory for %zu cases", room);
         s->cases = more;
     }
     s->cases[s->count++] = *c;
@@ -383,8 +384,8 @@ static bool read_name(masu_suite_place *at, const json_t *value, masu_case *c) {
         good = good && (unsigned char)c->name[i] >= ' ' && c->name[i] != ':' && c->name[i] != 127;
     if (!good) {
         return masu_suite_wrong(at, "name",
-                                "needed are up to %u characters, none of them ':' or a control "
-                                "character, given are %zu",
+                                "expected at most %u characters without ':' and control "
+                                "characters, found %zu",
                                 NAME_MOST, n);
     }
     at->case_name = c->name;
@@ -403,11 +404,11 @@ static bool read_case(masu_suite_place *at, size_t number, const json_t *value,
     const json_t *sizes = json_object_get(value, "sizes");
     if (!sizes) return check_case(at, &c) && append(at, &c);
     if (!json_is_array(sizes) || !json_array_size(sizes)) {
-        return masu_suite_wrong(at, "sizes", "needed is an array of sizes, given is %s",
+        return masu_suite_wrong(at, "sizes", "expected an array of sizes, found %s",
                                 masu_json_given(sizes, text, sizeof text));
     }
     if (json_object_get(value, "size"))
-        return masu_suite_wrong(at, "sizes", "given is 'size' as well");
+        return masu_suite_wrong(at, "sizes", "cannot be combined with 'size'");
     for (size_t i = 0; i < json_array_size(sizes); i++) {
         masu_case one = c;
         if (!read_pair(at, "sizes", json_array_get(sizes, i), 1, 16384, &one.width, &one.height) ||
@@ -434,8 +435,8 @@ static bool find_others(masu_suite_place *at) {
         }
         if (c->other < 0) {
             return masu_suite_wrong(at, "error.against",
-                                    "needed is 'truth' or another case of %ux%u that is not "
-                                    "governed, given is '%.60s'",
+                                    "expected 'truth' or another case of %ux%u without 'governed', "
+                                    "found '%.60s'",
                                     c->width, c->height, c->against);
         }
     }
@@ -451,7 +452,7 @@ static bool read_suite(masu_suite_place *at) {
     json_object_foreach(root, key, member) {
         const char *const *k = known;
         while (*k && strcmp(*k, key)) k++;
-        if (!*k) return masu_suite_wrong(at, key, "there is no such key");
+        if (!*k) return masu_suite_wrong(at, key, "unknown key");
     }
     if (!masu_suite_count(at, "format", json_object_get(root, "format"), 1, 1, &format))
         return false;
@@ -473,7 +474,7 @@ static bool read_suite(masu_suite_place *at) {
     at->case_name = NULL;
     const json_t *cases = json_object_get(root, "cases");
     if (!json_array_size(cases))
-        return masu_suite_wrong(at, "cases", "needed is an array of cases, given is none");
+        return masu_suite_wrong(at, "cases", "expected an array of cases, found none");
     for (size_t i = 0; i < json_array_size(cases); i++) {
         if (!read_case(at, i, json_array_get(cases, i), &defaults)) return false;
     }
@@ -527,14 +528,14 @@ int32_t masu_replay_find(const masu_suite *suite, const char *token, char *error
     int read = 0;
     if (sscanf(token, "%8x:%n", &hash, &read) != 1 || read != 9) {
         snprintf(error, error_size,
-                 "'%.80s' is no token: needed is suite:case:size, as in "
+                 "expected a token suite:case:size, found '%.80s'; example: "
                  "1f00ba42:rungs.city:96x64",
                  token);
         return -1;
     }
     if (hash != suite->hash) {
-        snprintf(error, error_size, "the token is of suite %08x, %s is %08x", hash, suite->file,
-                 suite->hash);
+        snprintf(error, error_size, "token of another suite: found %08x, expected %08x (%s)", hash,
+                 suite->hash, suite->file);
         return -1;
     }
     for (uint32_t i = 0; i < suite->count; i++) {
@@ -542,7 +543,7 @@ int32_t masu_replay_find(const masu_suite *suite, const char *token, char *error
             !strcmp(own + 9, token + 9))
             return (int32_t)i;
     }
-    snprintf(error, error_size, "%s has no case '%.140s'", suite->file, token + 9);
+    snprintf(error, error_size, "%s: no case '%.140s'", suite->file, token + 9);
     return -1;
 }
 

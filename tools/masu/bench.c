@@ -1,13 +1,11 @@
-/* bench.c: `masu bench`: every quality level of a scene, a measured error beside a measured
- * time: the command line of bench/sweep/sweep.h, which measures, and bench/sweep/report.h, which makes rungs,
- * plots and a page of it. */
+/* bench.c: `masu bench`: measures every quality level of a scene, error against run time: the command line of
+ * bench/sweep.h, which measures, and of bench/report.h, which writes rungs, plots and a page. */
 #include "masu/bench.h"
 
-#include "bench/sweep/against.h"
-#include "bench/measure/picture.h"
-#include "bench/sweep/report.h"
-#include "bench/sweep/sweep.h"
-#include "model/write.h"
+#include "bench/against.h"
+#include "measure/picture.h"
+#include "bench/report.h"
+#include "bench/sweep.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -19,48 +17,23 @@ typedef struct options {
     masu_setting_list only;
     masu_given given;
     const char *against, *rungs_of, *csv;
-    bool merge, ladder, c, steady; /* --steady is given */
+    bool merge, ladder, steady; /* --steady is given */
 } options;
 
-/* The model sheet of the ladder, which the report has made: the page is then written once more. */
-static void model(const options *o) {
-    char error[4096];
-    masu_model_desc d = {.scene_path = o->given.arguments[0],
-                         .size = {1920, 1080},
-                         .drawn = masu_count_size(o->sweep.size),
-                         .time = o->sweep.time,
-                         .host = {.device = o->sweep.host.device},
-                         .progress = masu_cli_progress_text};
-    if (masu_model_write(&d, o->sweep.folder, error, sizeof error)) return;
-    masu_cli_warn("there is no model sheet: %s", error);
-}
-
 static int report(const options *o) {
-    /* A sheet of another ladder does not stay. */
-    static const char *const sheets[] = {"model.csv", MASU_MODEL_FRAGMENT};
-    char path[4096];
-    for (size_t i = 0; i < 2; i++) {
-        if (masu_sweep_path(o->sweep.folder, sheets[i], path)) (void)remove(path);
-    }
     masu_report_result result;
     char error[4096];
     masu_cli_progress("writing the report");
     if (!masu_report_write(o->sweep.folder, &result, error, sizeof error))
         return masu_cli_error("%s", error);
-    if (!o->merge) {
-        model(o);
-        masu_cli_progress("writing the report");
-        if (!masu_report_write(o->sweep.folder, &result, error, sizeof error))
-            return masu_cli_error("%s", error);
-    }
     masu_cli_progress_clear();
     if (result.unsteady > result.rows / 10) {
-        masu_cli_warn("the machine was busy: times of %u of %u settings contradict themselves",
-                      result.unsteady, result.rows);
+        masu_cli_warn("%s: noisy times: %u of %u settings vary by more than 10 %%; rerun on an idle machine",
+                      o->sweep.folder, result.unsteady, result.rows);
     }
-    if (!result.plots) masu_cli_warn("no gnuplot: there are no plots");
+    if (!result.plots) masu_cli_warn("gnuplot not found: no plots written");
     if (masu_cli_quiet()) return MASU_CLI_OK;
-    printf("%s: %u of %u settings, %u rungs by %s; see %s/index.html\n", o->sweep.folder,
+    printf("%s: %u of %u settings, %u rungs chosen by %s; report: %s/index.html\n", o->sweep.folder,
            result.rows, result.settings, result.rungs,
            result.by_timestamps ? "timestamps" : "the wall clock", o->sweep.folder);
     return MASU_CLI_OK;
@@ -76,16 +49,16 @@ static int merge(const options *o) {
 static int against(const options *o) {
     masu_against result;
     char error[8192];
-    if (o->given.count != 1) return masu_cli_usage_error("--against needs one folder besides its own");
+    if (o->given.count != 1) return masu_cli_usage_error("--against: expected one folder to compare with it");
     if (!masu_against_compare(o->given.arguments[0], o->against, &result, error, sizeof error))
         return masu_cli_error("%s", error);
     bool to_file = o->csv && strcmp(o->csv, "-") != 0;
     FILE *f = to_file ? fopen(o->csv, "w") : stdout;
-    if (!f) return masu_cli_error("%s: cannot be written", o->csv);
+    if (!f) return masu_cli_error("%s: cannot write", o->csv);
     bool good = masu_against_print(f, &result, o->csv != NULL) >= 0;
     if (to_file) good = !fclose(f) && good;
     return good ? MASU_CLI_OK
-                : masu_cli_error("%s: cannot be written", to_file ? o->csv : "output");
+                : masu_cli_error("%s: cannot write", to_file ? o->csv : "standard output");
 }
 
 /* The rungs again, and those that have come up in place of what was not as quick as it looked. */
@@ -112,7 +85,7 @@ static int sweep(options *o) {
     if (o->rungs_of) {
         if (!masu_report_rungs(o->rungs_of, &o->only, error, sizeof error))
             return masu_cli_error("%s", error);
-        if (!o->only.count) return masu_cli_error("%s: has no rungs", o->rungs_of);
+        if (!o->only.count) return masu_cli_error("%s: the ladder has no rungs", o->rungs_of);
         o->sweep.only = &o->only;
         o->sweep.like = o->rungs_of;
     }
@@ -130,15 +103,15 @@ static int sweep(options *o) {
     masu_cli_progress_clear();
     if (!good) return masu_cli_error("%s", error);
     if (!masu_cli_quiet()) {
-        printf("%s: %u settings measured, %u were there; of %u, and %u that the scene has no use "
-               "for; %u timed again\n",
+        printf("%s: %u settings measured, %u already there, of %u; %u skipped as useless for the "
+               "scene; %u timed again\n",
                o->sweep.folder, result.measured, result.there, result.settings, result.dropped,
                timed);
     }
     int code = MASU_CLI_OK;
     if (o->sweep.shards == 1) code = report(o);
     if (result.messages)
-        code = masu_cli_error("the validation layer has reported %u messages", result.messages);
+        code = masu_cli_error("the validation layer reported %u messages", result.messages);
     return code;
 }
 
@@ -156,66 +129,65 @@ static bool read_shard(masu_cli *cli, void *to) {
     d->shards = (uint32_t)shards;
     return true;
 bad:
-    masu_cli_usage_error("%s '%s': I/N, with I from 0 to N - 1 and N up to 1000", cli->option,
-                         text);
+    masu_cli_usage_error("%s: expected I/N with I from 0 to N - 1 and N up to 1000, found '%s'",
+                         cli->option, text);
     return false;
 }
 
 static const masu_option rows[] = {
+    MASU_HEADING("Output"),
     {MASU_ROW(options, sweep.folder, MASU_TAKE_TEXT, "out", "DIR",
-              "folder of the results; one with a part of the same sweep is gone on with"),
+              "folder of the results; an interrupted sweep in it continues"),
      .letter = 'o'},
+    MASU_HEADING("Measurement"),
     MASU_SIZE(options, sweep.size, "size", "output size (default 640x360)"),
     MASU_MOMENT_ROW(options, sweep.time),
     MASU_TRUTH_ROWS(options, truth),
     MASU_UINT(options, sweep.frames, "frames", 1, 10000,
-              "in motion before a picture is taken, where one depends on those before\n"
+              "frames in motion before the measured image, for settings with history\n"
               "(default 32)"),
     MASU_UINT(options, sweep.runs, "runs", 1, MASU_SWEEP_RUNS_MAX,
-              "timed frames of each setting (default 9)"),
+              "timed frames per setting (default 9)"),
     MASU_REAL(options, sweep.steady, "steady", "SECONDS", 0.0, 3600.0,
-              "that each seven rungs of the ladder are timed again when all is\n"
-              "measured; 0: not at all (default 60)"),
+              "after the sweep, time the rungs again: at least so long per group of seven\n"
+              "rungs; 0 disables it (default 60)"),
     MASU_TEXT(options, rungs_of, "rungs-of", "DIR2",
-              "measure the base and the rungs of that folder's ladder alone: to see\n"
-              "on another day whether they hold (--against)"),
-    MASU_OWN("shard", "I/N", read_shard,
-             "measure each N-th setting alone, from the I-th on, 0 to N - 1; no report"),
-    MASU_FLAG(options, merge, "merge",
-              "join DIR... of shards in --out, and write the report; a run with SCENE.masu and\n"
-              "that --out then times the rungs again"),
-    MASU_TEXT(options, against, "against", "DIR2",
-              "compare each rung of the folder DIR with the same setting there: error and\n"
-              "time ratio of the two, and the worst"),
-    MASU_TEXT(options, csv, "csv", "FILE", "of --against: write it as CSV, - is standard output"),
-    MASU_FLAG(options, ladder, "ladder", "print the ladders LADDER.json... that have been measured"),
-    MASU_FLAG(options, c, "c",
-              "of --ladder: print src/quality/ladder_tables.h, the ladders that the library is\n"
-              "built with; each file is given as CLASS=FILE: polygons, world, sdf, both, or one\n"
-              "of them with -traced"),
+              "measure only the base setting and the rungs of that folder's ladder, to\n"
+              "reproduce them with --against"),
     MASU_FLAG(options, sweep.quick, "quick",
-              "few settings, 128x72, 4 positions, 8 frames, 2 runs, no rungs again: a test"),
+              "smoke test: few settings, 128x72, 4 samples, 8 frames, 2 runs, no --steady"),
+    MASU_HEADING("Shards"),
+    MASU_OWN("shard", "I/N", read_shard,
+             "measure every N-th setting from the I-th (0 to N - 1); writes no report"),
+    MASU_FLAG(options, merge, "merge",
+              "join the shard folders DIR... into --out and write the report; then run\n"
+              "SCENE.masu with the same --out to time the rungs again"),
+    MASU_HEADING("Comparison of results"),
+    MASU_TEXT(options, against, "against", "DIR2",
+              "compare every rung of DIR with the same setting in DIR2: difference of\n"
+              "error and of time ratio, and the largest differences"),
+    MASU_TEXT(options, csv, "csv", "FILE", "with --against: write CSV there; '-' is stdout"),
+    MASU_FLAG(options, ladder, "ladder", "print the measured ladders LADDER.json..."),
+    MASU_HEADING("Device"),
     MASU_DEVICE_ROWS(options, sweep.host),
     {.name = NULL}};
 
-/* What does not go together; an exit code. */
+/* Options that cannot be combined; an exit code. */
 static int check(const options *o) {
     const bool apart = o->against || o->merge;
     if (o->rungs_of && apart)
-        return masu_cli_usage_error("--rungs-of is of measuring: not with --against or --merge");
+        return masu_cli_usage_error("--rungs-of cannot be combined with --against or --merge");
     if (o->steady && (apart || o->sweep.shards > 1))
-        return masu_cli_usage_error("--steady needs all settings and their scene: not with --shard, "
-                                    "--merge or --against");
+        return masu_cli_usage_error("--steady cannot be combined with --shard, --merge or --against");
     if (o->rungs_of && o->sweep.folder && !strcmp(o->rungs_of, o->sweep.folder))
-        return masu_cli_usage_error("--rungs-of and --out are one folder");
+        return masu_cli_usage_error("--rungs-of and --out: expected two folders, found one folder");
     if (o->ladder && (apart || o->rungs_of || o->sweep.folder))
-        return masu_cli_usage_error("--ladder prints what is measured: not with %s",
+        return masu_cli_usage_error("--ladder cannot be combined with %s",
                                     o->against        ? "--against"
                                     : o->merge        ? "--merge"
                                     : o->rungs_of     ? "--rungs-of"
                                                       : "--out");
-    if (o->c && !o->ladder) return masu_cli_usage_error("--c is of --ladder");
-    if (o->csv && !o->against) return masu_cli_usage_error("--csv is of --against");
+    if (o->csv && !o->against) return masu_cli_usage_error("--csv needs --against");
     return MASU_CLI_OK;
 }
 
@@ -223,7 +195,7 @@ static int run(masu_cli *cli) {
     static options o = {
         .sweep = {.time = 1.0, .shards = 1, .host = {.message = masu_print_message}},
         .truth = {.rays = MASU_PICTURE_RAYS},
-        .given = {.most = MASU_ARGUMENTS_MAX, .excess = "more than 64 folders"}};
+        .given = {.most = MASU_ARGUMENTS_MAX, .excess = "expected at most 64 folders"}};
     int code;
     if (!masu_options_read(cli, rows, &o, &o.given, &code)) return code;
     o.steady = masu_is_given(&o.given, rows, "steady");
@@ -232,29 +204,45 @@ static int run(masu_cli *cli) {
     o.sweep.rays = o.truth.rays;
     code = check(&o);
     if (code) return code;
-    if (o.ladder) return masu_bench_ladder(&o.given, o.c);
+    if (o.ladder) return masu_bench_ladder(&o.given);
     if (o.against) return against(&o);
     if (!o.given.count)
-        return masu_cli_usage_error(o.merge ? "no folder to merge is given" : "no scene is given");
-    if (!o.sweep.folder) return masu_cli_usage_error("--out is missing");
+        return masu_cli_usage_error(o.merge ? "no folder given: expected the DIR... to merge"
+                                            : "no scene given: expected SCENE.masu");
+    if (!o.sweep.folder) return masu_cli_usage_error("--out DIR is missing");
     if (o.merge) return merge(&o);
     if (o.given.count > 1)
-        return masu_cli_usage_error("one scene at a time: '%s'", o.given.arguments[1]);
+        return masu_cli_usage_error("unexpected argument '%s': expected one scene", o.given.arguments[1]);
     return sweep(&o);
 }
 
 const masu_cli_command masu_cmd_bench = {
     .name = "bench",
-    .arguments = "SCENE.masu --out DIR [options], or --merge DIR... --out DIR, or DIR --against DIR2,\n"
-                 "       or --ladder LADDER.json...",
-    .summary = "measure each quality level: error against run time, and the rungs worth having",
+    .arguments = "SCENE.masu --out DIR [options]\n"
+                 "       masu bench --merge DIR... --out DIR\n"
+                 "       masu bench DIR --against DIR2\n"
+                 "       masu bench --ladder LADDER.json...",
+    .summary = "measure error and time of every quality setting, and build a quality ladder",
     .details =
-        "--truth is DIR/truth.png unless it is given; --positions are 64.\n"
-        "Into DIR: results.csv, a row per setting; steady.csv, the rungs timed again; ladder.json,\n"
-        "the rungs of the Pareto front; index.html, one page with tables, plots and pictures;\n"
-        "plots/ if there is gnuplot;\n"
-        "model.csv, model.xhtml: the model sheet of these rungs at 1080p (masu plan --model), computed.\n"
-        "Where NAME.truth.so lies beside NAME.masu (code, as trusted as this program), surfaces are\n"
-        "compared with it. A setting's time is that of frames at rest, in turns with the base\n"
-        "setting (all defaults, no upscaling); its picture is the last of some frames in motion.\n",
+        "Files in DIR:\n"
+        "  results.csv        one row per setting\n"
+        "  steady.csv         the rungs timed again\n"
+        "  ladder.json        the rungs, from the Pareto front\n"
+        "  index.html         report with tables, plots and images\n"
+        "  truth.png          ground truth, unless --truth names a file (64 samples per pixel)\n"
+        "  plots/             plots, if gnuplot is installed\n"
+        "\n"
+        "Method: frames of each setting alternate with frames of the base setting (all defaults, no\n"
+        "upscaling). Times are measured with a stationary camera. The image of a setting is its last frame\n"
+        "in motion. If NAME.truth.so is next to NAME.masu, SDF surfaces are compared with its\n"
+        "double-precision field; the file is loaded as code, so it must be trusted.\n\n"
+        "Exit codes:\n"
+        "  0  success\n"
+        "  1  a measurement failed, a file could not be read or written, or --validate reported a\n"
+        "     message\n"
+        "  2  the command line is wrong\n\n"
+        "Examples:\n"
+        "  masu bench engine.masu --out results\n"
+        "  masu bench engine.masu --out today --rungs-of results\n"
+        "  masu bench today --against results\n",
     .run = run};

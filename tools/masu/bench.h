@@ -3,10 +3,9 @@
 #define MASU_CMD_BENCH_H
 
 #include "masu/cmd.h"
-#include "masu/options.h"
+#include "command/options.h"
 
-/* --ladder FILE...: prints ladders; with `c`, each file being CLASS=FILE, as the table that the library
- * is built with. An exit code. */
-int masu_bench_ladder(const masu_given *given, bool c);
+/* --ladder FILE...: prints ladders. An exit code. */
+int masu_bench_ladder(const masu_given *given);
 
 #endif

@@ -1,8 +1,8 @@
-/* compare.c: `masu compare`: how far one PNG is from another, by the measures that all benches
- * use (metric/image.h, metric/flip.h). tests/scripts/compare.sh holds them against other people's
- * programs. Opens no device; nothing is judged. */
+/* compare.c: `masu compare`: the error of one PNG against another, by the metrics that all benches
+ * use (metric/image.h, metric/flip.h). tests/scripts/compare.sh checks them against other programs.
+ * Needs no device. */
 #include "masu/cmd.h"
-#include "masu/options.h"
+#include "command/options.h"
 
 #include "image.h"
 #include "metric/flip.h"
@@ -56,13 +56,13 @@ static int write_json(const differences *d, const char *path) {
 static int compare(const char *const files[2], const options *o) {
     struct masu_image images[2];
     differences d;
-    char error[4096] = "no memory for the comparison";
+    char error[4096] = "out of memory for the comparison";
     memset(images, 0, sizeof images);
     bool good = masu_image_load_png(files[0], &images[0], error, sizeof error) &&
                 masu_image_load_png(files[1], &images[1], error, sizeof error);
     if (good && (images[0].width != images[1].width || images[0].height != images[1].height)) {
-        snprintf(error, sizeof error, "%.1500s is %ux%u, but %.1500s is %ux%u", files[1],
-                 images[1].width, images[1].height, files[0], images[0].width, images[0].height);
+        snprintf(error, sizeof error, "%.1500s: found %ux%u, expected %ux%u as in %.1500s", files[1],
+                 images[1].width, images[1].height, images[0].width, images[0].height, files[0]);
         good = false;
     }
     float *map = NULL;
@@ -77,31 +77,40 @@ static int compare(const char *const files[2], const options *o) {
     masu_image_free(&images[1]);
     if (!good) return masu_cli_error("%s", error);
     if (o->json) return write_json(&d, o->json);
-    printf("RMSE %.4f of 255, PSNR %.3f dB, SSIM %.5f, FLIP %.5f (p99 %.4f, most %.4f)\n",
+    printf("RMSE %.4f of 255, PSNR %.3f dB, SSIM %.5f, FLIP %.5f (p99 %.4f, max %.4f)\n",
            255.0 * d.rmse, d.psnr, d.ssim, d.flip.mean, d.flip.p99, d.flip.max);
     return MASU_CLI_OK;
 }
 
 static const masu_option rows[] = {
     MASU_FILE(options, map, "map", "FILE.png",
-              "write FLIP of each pixel there, black where there is no difference"),
+              "write FLIP per pixel as a grey image; black is no difference"),
     MASU_REAL(options, ppd, "ppd", "N", 1.0, 1000.0,
-              "pixels per degree of sight, 1 to 1000 (default 67.02: 0.7 m before a 4K screen)"),
-    MASU_OUTPUT(options, json, "json", "FILE", "write the numbers there instead, - for stdout"),
+              "pixels per degree of the viewer's field of view, 1 to 1000\n"
+              "(default 67.02: a 4K screen at 0.7 m)"),
+    MASU_OUTPUT(options, json, "json", "FILE", "write the metrics there as JSON, and print no text; '-' is stdout"),
     {.name = NULL}};
 
 static int run(masu_cli *cli) {
     options o = {.ppd = 0.0};
-    masu_given given = {.most = 2, .excess = "one reference and one picture"};
+    masu_given given = {.most = 2, .excess = "expected one reference and one image"};
     int code;
     if (!masu_options_read(cli, rows, &o, &given, &code)) return code;
-    if (given.count < 2) return masu_cli_usage_error("a reference and a picture are needed");
+    if (given.count < 2) return masu_cli_usage_error("expected a reference and an image: REFERENCE.png IMAGE.png");
     return compare(given.arguments, &o);
 }
 
 const masu_cli_command masu_cmd_compare = {
     .name = "compare",
-    .arguments = "REFERENCE.png PICTURE.png [options]",
-    .summary = "how far a picture is from another: RMSE, PSNR, SSIM, FLIP",
-    .details = "Pictures are taken as sRGB-encoded, alpha is ignored. SSIM is that of luma.\n",
+    .arguments = "REFERENCE.png IMAGE.png [options]",
+    .summary = "print the error of an image against a reference: RMSE, PSNR, SSIM, FLIP",
+    .details = "Both images must have the same size. They are read as sRGB; alpha is ignored. SSIM is computed on\n"
+               "luma.\n\n"
+               "Exit codes:\n"
+               "  0  success, for any error\n"
+               "  1  a file could not be read or written, or the sizes differ\n"
+               "  2  the command line is wrong\n\n"
+               "Examples:\n"
+               "  masu compare reference.png frame.png\n"
+               "  masu compare reference.png frame.png --map flip.png --json -\n",
     .run = run};

@@ -2,7 +2,7 @@
  * this device and this build keep them. */
 #include "masu/cmd.h"
 #include "masu/data.h"
-#include "masu/options.h"
+#include "command/options.h"
 
 #include "conform/report.h"
 #include "image.h"
@@ -36,9 +36,9 @@ static int write_file(const char *path, writer write, const masu_suite *suite,
         return MASU_CLI_OK;
     }
     FILE *f = open_memstream(&text, &bytes);
-    if (!f) return masu_cli_error("%s: no memory for it", path);
+    if (!f) return masu_cli_error("%s: out of memory", path);
     write(f, suite, results, n, driver);
-    int code = fclose(f) ? masu_cli_error("%s: no memory for it", path) : MASU_CLI_OK;
+    int code = fclose(f) ? masu_cli_error("%s: out of memory", path) : MASU_CLI_OK;
     if (!code && !masu_file_write(path, text, bytes, error, sizeof error))
         code = masu_cli_error("%s", error);
     free(text);
@@ -96,7 +96,7 @@ static int run_cases(const options *o, const masu_suite *suite, const bool *mark
         n++;
     }
     masu_conform_close(&c);
-    int code = command ? MASU_CLI_OK : masu_cli_error("no memory for a line");
+    int code = command ? MASU_CLI_OK : masu_cli_error("out of memory");
     free(command);
     if (code) return code;
     if (!quiet) masu_conform_sum(stdout, results, n);
@@ -117,7 +117,7 @@ static int mark(const options *o, const masu_suite *suite, bool *marks, uint32_t
         return MASU_CLI_OK;
     }
     if (!masu_suite_select(suite, o->glob, 0, 1, marks))
-        return masu_cli_usage_error("no case of %s is named '%s'", suite->file, o->glob);
+        return masu_cli_usage_error("--case: no case of %s matches '%s'", suite->file, o->glob);
     *count = masu_suite_select(suite, o->glob, o->first, o->of, marks);
     return MASU_CLI_OK;
 }
@@ -136,7 +136,7 @@ static int conform(const options *o) {
     bool *marks = calloc(suite.count, sizeof *marks);
     masu_conform_result *results = calloc(suite.count, sizeof *results);
     int code = marks && results ? mark(o, &suite, marks, &count)
-                                : masu_cli_error("no memory for %u cases", suite.count);
+                                : masu_cli_error("out of memory for %u cases", suite.count);
     if (!code && o->list) {
         for (uint32_t i = 0; i < suite.count; i++) {
             const masu_case *c = &suite.cases[i];
@@ -164,7 +164,7 @@ static int find_suite(options *o) {
     }
     char folder[MASU_DATA_PATH];
     if (!masu_data_folder("suites", folder)) {
-        return masu_cli_error("no suites are beside this program: %s; --suite FILE.json names one",
+        return masu_cli_error("no suites found in %s: use --suite FILE.json",
                               folder);
     }
     snprintf(o->suite_file, sizeof o->suite_file, "%.3500s/%.500s.json", folder, name);
@@ -178,8 +178,8 @@ static int find_scenes(options *o) {
         return MASU_CLI_OK;
     }
     if (masu_data_folder("scenes", o->scene_folder)) return MASU_CLI_OK;
-    return masu_cli_error("no baked scenes are beside this program: %s; `make scenes install` in Masu's "
-                          "sources bakes and installs them, --scenes DIR names others",
+    return masu_cli_error("no baked scenes found in %s: run `make scenes install` in Masu's source tree, "
+                          "or use --scenes DIR",
                           o->scene_folder);
 }
 
@@ -192,28 +192,32 @@ static bool read_fraction(masu_cli *cli, void *to) {
         cli->value[0] != '-' && o->first < o->of) {
         return true;
     }
-    masu_cli_usage_error("%s %s: needed is I,N with I below N, as in 0,4 to 3,4", cli->option,
-                         cli->value);
+    masu_cli_usage_error("%s: expected I,N with I below N, for example 0,4 to 3,4; found '%s'",
+                         cli->option, cli->value);
     return false;
 }
 
 static const masu_option rows[] = {
+    MASU_HEADING("Cases"),
     MASU_TEXT(options, suite, "suite", "NAME|FILE.json",
-              "the cases: smoke, full or extreme, which come with the program, or a file"),
+              "smoke, full or extreme, which are installed with the program, or a file\n"),
     MASU_TEXT(options, scenes, "scenes", "DIR",
-              "where baked scenes are (default: those beside the program)"),
-    MASU_FLAG(options, list, "list", "print the cases instead of running them"),
-    MASU_TEXT(options, glob, "case", "GLOB", "only cases of such names, as in 'memory.*'"),
-    MASU_OWN("fraction", "I,N", read_fraction, "of these each N-th from the I-th on, from 0"),
-    MASU_TEXT(options, replay, "replay", "TOKEN", "the one case that a failure has named so"),
-    MASU_OUTPUT(options, junit, "junit", "FILE.xml", "the results as JUnit XML"),
-    MASU_OUTPUT(options, csv, "csv", "FILE.csv",
-                "the results with all that was measured; - for stdout"),
-    MASU_OUTPUT(options, table, "table", "FILE.md",
-                "rows of a table: what is given, what must hold, what was measured"),
-    MASU_TEXT(options, images, "images", "DIR", "the picture of each case, as PNG"),
+              "folder of the baked scenes (default: the installed scenes)"),
+    MASU_TEXT(options, glob, "case", "GLOB", "run only cases whose name matches, e.g. 'memory.*'"),
+    MASU_OWN("fraction", "I,N", read_fraction,
+             "run only every N-th of these cases, from the I-th (0 to N - 1)"),
+    MASU_TEXT(options, replay, "replay", "TOKEN", "run only the case of this token, as a failure prints it"),
+    MASU_FLAG(options, list, "list", "print the names of the cases and run none"),
     MASU_UINT(options, runs, "runs", 1, 999,
-              "timed frames in each of up to four rounds, where a case has a limit"),
+              "timed frames per round, in up to four rounds, of cases with a time limit\n"),
+    MASU_HEADING("Output"),
+    MASU_OUTPUT(options, junit, "junit", "FILE.xml", "write the results as JUnit XML; '-' is stdout"),
+    MASU_OUTPUT(options, csv, "csv", "FILE.csv",
+                "write the results with all measurements; '-' is stdout"),
+    MASU_OUTPUT(options, table, "table", "FILE.md",
+                "write rows of a Markdown table: input, limits, measurements; '-' is stdout"),
+    MASU_TEXT(options, images, "images", "DIR", "write the image of every case as PNG"),
+    MASU_HEADING("Device"),
     MASU_RAYS_ROW(options, rays),
     MASU_DEVICE_ROWS(options, host),
     {.name = NULL}};
@@ -221,11 +225,11 @@ static const masu_option rows[] = {
 static int run(masu_cli *cli) {
     static const char *const parts[] = {"case", "fraction", NULL};
     static options o = {.suite = "smoke", .of = 1, .runs = 9};
-    masu_given given = {.most = 0, .excess = "a suite is given by --suite"};
+    masu_given given = {.most = 0, .excess = "the suite is an option, --suite"};
     int code;
     if (!masu_options_read(cli, rows, &o, &given, &code)) return code;
     const char *part = masu_first_given(&given, rows, parts);
-    if (o.replay && part) return masu_cli_usage_error("--replay names one case: no --%s", part);
+    if (o.replay && part) return masu_cli_usage_error("--replay names one case: it cannot be combined with --%s", part);
     o.rays_given = masu_is_given(&given, rows, "rays");
     code = find_suite(&o);
     if (!code && !o.list) code = find_scenes(&o);
@@ -235,9 +239,15 @@ static int run(masu_cli *cli) {
 const masu_cli_command masu_cmd_conform = {
     .name = "conform",
     .arguments = "[--suite NAME|FILE.json] [options]",
-    .summary = "pass or fail against fixed budgets: memory, counts, errors, allocations",
+    .summary = "run a conformance suite: limits of memory, counts, errors, times and allocations",
     .details =
-        "Verdicts: pass, quality warning, not supported, resource error, fail. Exit code 0: none\n"
-        "of the last two. docs/conform.md describes suites. Times are ratios to a fixed piece of\n"
-        "work that takes turns with the case.\n",
+        "Verdicts: pass, quality warning, not supported, resource error, fail. Times are ratios to a fixed\n"
+        "workload whose frames alternate with those of the case. docs/conform.md describes the suites.\n\n"
+        "Exit codes:\n"
+        "  0  no case failed or had a resource error\n"
+        "  1  a case failed or had a resource error, or the suite could not be run\n"
+        "  2  the command line is wrong\n\n"
+        "Examples:\n"
+        "  masu conform\n"
+        "  masu conform --suite full --case 'memory.*' --junit results.xml\n",
     .run = run};

@@ -1,9 +1,10 @@
 /* plan.c: `masu plan`: the compiled frame of a scene: passes, resources, bytes, aliasing, and
- * what was left out and why. With --model: what its passes would take on classes of GPU. */
-#include "masu/plan.h"
-
-#include "bench/sweep/knobs.h"
+ * what was left out and why. */
+#include "command/options.h"
+#include "masu/cmd.h"
 #include "scene/scene.h"
+
+#include "settings/knobs.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -47,19 +48,19 @@ static void print_passes(const masu_plan_info *p) {
                  writes);
         for (uint32_t r = 0; r < p->rung_count; r++)
             rungs[r] = pass->active & 1u << r ? (char)('0' + r) : '-';
-        printf("  %-19s %-*s %-44s %s\n", pass->name, width, rungs, pass->active ? both : "left out",
+        printf("  %-19s %-*s %-44s %s\n", pass->name, width, rungs, pass->active ? both : "omitted",
                pass->why);
     }
 }
 
 static void print_images(const masu_plan_info *p) {
-    printf("\nimages, alive from pass to pass; equal bytes are shared\n  %-19s %-20s %-11s %10s  "
+    printf("\nimages; images whose ranges overlap share memory\n  %-19s %-20s %-11s %10s  "
            "%-22s %s\n",
-           "", "format", "extent", "bytes", "at", "alive");
+           "", "format", "extent", "bytes", "range", "lifetime");
     for (uint32_t i = 0; i < p->image_count; i++) {
         const masu_plan_image *image = &p->images[i];
         if (!image->used) {
-            printf("  %-19s %-20s left out\n", image->name, format_name(image->format));
+            printf("  %-19s %-20s omitted\n", image->name, format_name(image->format));
             continue;
         }
         char extent[32], at[48];
@@ -74,7 +75,7 @@ static void print_images(const masu_plan_info *p) {
 }
 
 static void print_pipelines(const masu_plan_info *p) {
-    printf("\npipelines, time to build\n");
+    printf("\npipelines, build time\n");
     for (uint32_t i = 0; i < p->pass_count; i++) {
         if (p->passes[i].pipeline_ns) {
             printf("  %-19s %8.1f ms\n", p->passes[i].name, (double)p->passes[i].pipeline_ns / 1e6);
@@ -97,7 +98,7 @@ static void print_memory(const masu_session *s, const masu_plan_info *p) {
     printf("\nmemory\n  host block          %12llu bytes\n", (unsigned long long)m->host_bytes);
     printf("  device, all roles   %12llu bytes  (%.1f MiB)%s\n",
            (unsigned long long)m->device_bytes, mib(m->device_bytes),
-           m->unified ? "  one block, unified memory" : "");
+           m->unified ? "  one block (unified memory)" : "");
     for (uint32_t r = 0; r < MASU_ROLE_COUNT && !m->unified; r++) {
         if (m->roles[r].bytes)
             printf("    %-17s %12llu bytes\n", names[r], (unsigned long long)m->roles[r].bytes);
@@ -105,7 +106,7 @@ static void print_memory(const masu_session *s, const masu_plan_info *p) {
     printf("  transient images: unaliased %llu, aliased %llu, lower bound %llu bytes\n",
            (unsigned long long)m->transient_unaliased, (unsigned long long)m->transient_aliased,
            (unsigned long long)m->transient_lower_bound);
-    printf("  left out: %llu bytes of images\n", (unsigned long long)p->left_out_bytes);
+    printf("  omitted images: %llu bytes\n", (unsigned long long)p->left_out_bytes);
     uint32_t n;
     masu_memory_row *rows = memory_rows(s, &n);
     printf("\n  %-22s %-7s %10s %12s %12s\n", "row", "kind", "count", "bytes", "offset");
@@ -129,16 +130,16 @@ static int print_text(const masu_session *s, const masu_plan_info *p, const char
                (unsigned long long)content->texture_bytes_decoded);
     }
     if (content->environment_size) {
-        printf("sky: a picture, %u texels an edge, %u mips\n", content->environment_size,
+        printf("sky: image, %u texels per edge, %u mips\n", content->environment_size,
                content->environment_mips);
     } else {
-        printf("sky: %s\n", content->analytic_sky ? "follows from the sun" : "two colours");
+        printf("sky: %s\n", content->analytic_sky ? "analytic" : "two colours");
     }
     printf("class: %s", masu_scene_class_name(masu_scene_class_of(&s->scene)));
     masu_desc ladder;
     const char *from;
     if (s->desc.ladder == MASU_ON && !masu_ladder_of(&s->scene, &ladder, &from))
-        printf("; its ladder is that of %s%s%s", from, *p->computed_for ? ", times computed for " : "",
+        printf("; ladder: %s%s%s", from, *p->computed_for ? ", times computed for " : "",
                p->computed_for);
     printf("\noutput %ux%u\n\nrungs\n", s->desc.output.width, s->desc.output.height);
     for (uint32_t r = 0; r < p->rung_count; r++) {
@@ -223,7 +224,14 @@ static int print_json(const masu_session *s, const masu_plan_info *p, const char
     return masu_json_write(root, "-");
 }
 
-static int plan(masu_plan_options *o) {
+typedef struct plan_options {
+    masu_session_desc d;
+    const char *ladder; /* as given; NULL: not at all */
+    uint32_t rays;
+    bool json;
+} plan_options;
+
+static int plan(plan_options *o) {
     static masu_session s;
     char error[1024];
     int code = masu_use_ladder(o->ladder, &o->d.desc);
@@ -242,7 +250,7 @@ static int plan(masu_plan_options *o) {
 static bool print_knobs(masu_cli *cli, void *to) {
     (void)to;
     if (cli->value && strcmp(cli->value, "md") != 0) {
-        masu_cli_usage_error("--knobs is for a terminal, --knobs=md Markdown; not '%s'", cli->value);
+        masu_cli_usage_error("--knobs: expected no value or md, found '%s'", cli->value);
         return false;
     }
     (cli->value ? masu_knobs_document : masu_knobs_print)(stdout);
@@ -252,70 +260,56 @@ static bool print_knobs(masu_cli *cli, void *to) {
 
 static bool read_split(masu_cli *cli, void *to) {
     (void)cli;
-    ((masu_plan_options *)to)->d.desc.deny.unified_memory = 1;
+    ((plan_options *)to)->d.desc.deny.unified_memory = 1;
     return true;
 }
 
 static const masu_option rows[] = {
-    MASU_OUTPUT_SIZE_ROW(masu_plan_options, d.desc.output),
-    MASU_FLAG(masu_plan_options, json, "json", "print JSON"),
+    MASU_HEADING("Output"),
+    MASU_FLAG(plan_options, json, "json", "print JSON"),
     MASU_OWN("knobs", "[=md]", print_knobs,
-             "instead: every knob of a rung and every limit, as text or as docs/knobs.md"),
-    MASU_LADDER_ROW(masu_plan_options, ladder, "1, 0.8 and 0.4 of the size (default off)"),
-    MASU_UINT(masu_plan_options, d.desc.frames_in_flight, "frames-in-flight", 1, MASU_MAX_FLIGHT,
-              "1 to 3 (default 2)"),
-    MASU_OWN("split-memory", NULL, read_split, "one block per memory role, even on unified memory"),
-    MASU_UINT(masu_plan_options, d.desc.reserve.particles, "particles", 0, 65536,
-              "room for so many that a frame brings (default 0)"),
-    MASU_UINT(masu_plan_options, d.desc.reserve.decals, "decals", 0, 1024, "the same of decals"),
-    MASU_UINT(masu_plan_options, d.desc.reserve.lines, "lines", 0, 65536, "the same of debug lines"),
-    MASU_RAYS_ROW(masu_plan_options, rays),
-    MASU_FLAG(masu_plan_options, model, "model",
-              "compute each pass's bytes, operations, and least time on five classes of GPU instead"),
-    MASU_SIZE(masu_plan_options, drawn, "drawn",
-              "of --model: size of the frames that are counted (default: half of --size)"),
-    MASU_REAL(masu_plan_options, time, "time", "SECONDS", -1e9, 1e9,
-              "of --model: moment of the scene and its camera"),
-    MASU_TEXT(masu_plan_options, isa, "isa", "GPU[,GPU...]",
-              "what the compilers of these GPUs make of each pipeline instead: registers, waves,\n"
-              "instructions, cycles, spills (--isa=help lists the GPUs). With --model: its classes by the\n"
-              "instructions of tgl, kbl, raven, vangogh, a630"),
-    MASU_FILE(masu_plan_options, csv, "csv", "FILE",
-              "of --model: write every pass of every rung; of --isa: every stage of every pipeline"),
-    MASU_FILE(masu_plan_options, fragment, "html-fragment", "FILE",
-              "of --model: write the tables as one <section> of XHTML"),
-    MASU_DEVICE_ROWS(masu_plan_options, d.host),
+             "print all knobs of a rung and all limits, as text or as docs/knobs.md, and\n"
+             "exit"),
+    MASU_HEADING("Frame"),
+    MASU_OUTPUT_SIZE_ROW(plan_options, d.desc.output),
+    MASU_LADDER_ROW(plan_options, ladder, "scales 1, 0.8, 0.4 (default off)"),
+    MASU_HEADING("Memory"),
+    MASU_UINT(plan_options, d.desc.frames_in_flight, "frames-in-flight", 1, MASU_MAX_FLIGHT,
+              "frames recorded ahead of the GPU: 1 to 3 (default 2)"),
+    MASU_OWN("split-memory", NULL, read_split,
+             "use one memory block per role, even on unified memory"),
+    MASU_UINT(plan_options, d.desc.reserve.particles, "particles", 0, 65536,
+              "reserve memory for N particles per frame (default 0)"),
+    MASU_UINT(plan_options, d.desc.reserve.decals, "decals", 0, 1024,
+              "reserve memory for N decals per frame (default 0)"),
+    MASU_UINT(plan_options, d.desc.reserve.lines, "lines", 0, 65536,
+              "reserve memory for N debug lines per frame (default 0)"),
+    MASU_HEADING("Device"),
+    MASU_RAYS_ROW(plan_options, rays),
+    MASU_DEVICE_ROWS(plan_options, d.host),
     {.name = NULL}};
 
 static int run(masu_cli *cli) {
-    static const char *const of_model[] = {"drawn", "time", "csv", "html-fragment", NULL};
-    static const char *const of_plan[] = {"json", "frames-in-flight", "split-memory", "rays", NULL};
-    static const char *const not_of_isa[] = {"drawn", "time", "html-fragment", "split-memory", "rays",
-                                             "device", "validate", "gpu-av", NULL};
-    masu_plan_options o = {.d = {.desc = {.output = {1920, 1080}, .targets = {.storage = 1}},
-                                 .host = {.message = masu_print_message}},
-                           .time = 1.0};
-    masu_given given = {.most = 1, .excess = "one scene at a time"};
+    plan_options o = {.d = {.desc = {.output = {1920, 1080}, .targets = {.storage = 1}},
+                            .host = {.message = masu_print_message}}};
+    masu_given given = {.most = 1, .excess = "expected one scene"};
     int code;
     if (!masu_options_read(cli, rows, &o, &given, &code)) return code;
-    if (o.isa && !strcmp(o.isa, "help")) return masu_plan_isa(&o, NULL);
-    if (!given.count) return masu_cli_usage_error("no scene is given");
+    if (!given.count) return masu_cli_usage_error("no scene given: expected SCENE.masu");
     o.d.scene_path = given.arguments[0];
-    const char *other = masu_first_given(&given, rows, not_of_isa);
-    if (o.isa && !o.model && other) return masu_cli_usage_error("--%s is not of --isa", other);
-    if (o.isa && (!o.model || masu_plan_is_isa_child())) return masu_plan_isa(&o, cli->argv);
-    other = masu_first_given(&given, rows, o.model ? of_plan : of_model);
-    if (other) return masu_cli_usage_error("--%s is %s --model", other, o.model ? "not of" : "of");
-    return o.model ? masu_plan_model(&o, cli->argv) : plan(&o);
+    return plan(&o);
 }
 
 const masu_cli_command masu_cmd_plan = {
     .name = "plan",
-    .arguments = "SCENE.masu [--model] [options]",
-    .summary = "print a scene's passes, images, memory, and what was left out",
-    .details = "--model draws each rung with counters in all shaders, and divides what is counted by what\n"
-               "GPUs of five classes can do. All times are computed: no GPU of these classes is needed or\n"
-               "asked.\n"
-               "--isa starts a process for each GPU, in which its driver compiles all pipelines of the plan and\n"
-               "runs nothing. RADV's GPUs need Mesa alone; Intel's and Adreno's a folder MASU_ISA_DRIVERS.\n",
+    .arguments = "SCENE.masu [options]",
+    .summary = "print the passes, images and memory of a scene's frame plan",
+    .details = "Opens the device and builds all pipelines, but renders nothing.\n\n"
+               "Exit codes:\n"
+               "  0  success\n"
+               "  1  the plan cannot be made, or --validate reported a message\n"
+               "  2  the command line is wrong\n\n"
+               "Examples:\n"
+               "  masu plan engine.masu --ladder auto\n"
+               "  masu plan engine.masu --size 1280x720 --json\n",
     .run = run};

@@ -1,12 +1,12 @@
 /* render.c: `masu render`: frames of a baked scene to PNG, headless, with measured times,
  * counts and memory. */
-#include "masu/options.h"
+#include "command/options.h"
 #include "masu/render.h"
 
 #include "alloc_count.h"
-#include "bench/measure/picture.h"
-#include "bench/sweep/knobs.h"
-#include "bench/sweep/settings.h"
+#include "measure/picture.h"
+#include "settings/knobs.h"
+#include "settings/setting.h"
 #include "clock.h"
 #include "image.h"
 
@@ -37,7 +37,7 @@ static int save(masu_session *s, const masu_render_options *o, uint32_t frame) {
     bool each = strchr(o->output, '#') != NULL;
     if (!each && frame + 1 < o->frames) return MASU_CLI_OK;
     if (!output_name(o->output, frame, name, sizeof name))
-        return masu_cli_error("output name is too long");
+        return masu_cli_error("--output: the file name is too long");
     if (!masu_headless_target_read(&s->host, &s->targets[0], error, sizeof error))
         return masu_cli_error("%s", error);
     if (!masu_image_save_png(name, s->targets[0].mapped, s->targets[0].width, s->targets[0].height,
@@ -80,7 +80,7 @@ static bool measure(masu_session *s, const masu_render_options *o, uint32_t fram
     masu_light light;
     bool own_light = o->own_sun || o->turbidity > 0.0 || o->exposure > 0.0;
     if (own_light && masu_light_of(s->m, &light)) {
-        snprintf(error, size, "the scene has no light");
+        snprintf(error, size, "--sun, --turbidity and --exposure: the scene has no light");
         return false;
     }
     if (own_light) set_light(o, &light);
@@ -124,10 +124,10 @@ static void report_rays(const masu_session *s, const masu_render_options *o, con
     masu_plan_of(s->m, &plan);
     const masu_plan_rung *r = &plan.rungs[o->rung];
     double pixels = (double)r->render_width * (double)r->render_height;
-    if (!stats->specular_rays) masu_cli_warn("nothing in the picture traces reflections");
+    if (!stats->specular_rays) masu_cli_warn("--reference: no pixel of the image traces reflections");
     if (masu_cli_quiet()) return;
     masu_cli_progress_clear();
-    fprintf(stderr, "masu: reference: %u rays per pixel that mirrors, %.1f %% of the picture\n", o->rays,
+    fprintf(stderr, "masu: reference: %u rays per reflecting pixel, %.1f %% of the image\n", o->rays,
             100.0 * (double)stats->specular_rays / pixels);
 }
 
@@ -136,11 +136,11 @@ static int render_truth(masu_session *s, const masu_render_options *o) {
     masu_light light;
     char error[1024];
     bool own_light = o->own_sun || o->turbidity > 0.0 || o->exposure > 0.0;
-    if (own_light && masu_light_of(s->m, &light)) return masu_cli_error("the scene has no light");
+    if (own_light && masu_light_of(s->m, &light)) return masu_cli_error("--sun, --turbidity and --exposure: the scene has no light");
     if (own_light) set_light(o, &light);
     VkExtent2D size = s->desc.output;
     uint8_t *rgba = malloc(4 * (size_t)size.width * size.height);
-    if (!rgba) return masu_cli_error("no memory for a picture of %ux%u", size.width, size.height);
+    if (!rgba) return masu_cli_error("out of memory for an image of %ux%u", size.width, size.height);
     masu_frame_desc frame = {.light = own_light ? &light : NULL, .time = o->time};
     uint32_t rays = o->rays ? o->rays : MASU_PICTURE_RAYS;
     bool good = masu_picture_truth(s, &frame, o->positions, rays, rgba, masu_cli_progress_text, error,
@@ -150,7 +150,7 @@ static int render_truth(masu_session *s, const masu_render_options *o) {
     if (!good) return masu_cli_error("%s", error);
     if (masu_cli_quiet()) return MASU_CLI_OK;
     masu_cli_progress_clear();
-    fprintf(stderr, "masu: truth: %u positions of each pixel, %u frame%s each\n", o->positions,
+    fprintf(stderr, "masu: ground truth: %u samples per pixel, %u frame%s each\n", o->positions,
             masu_picture_frames(s, o->positions, rays),
             masu_picture_frames(s, o->positions, rays) == 1 ? "" : "s");
     return MASU_CLI_OK;
@@ -163,14 +163,14 @@ static int render_frames(masu_session *s, const masu_render_options *o,
     masu_sample *samples = calloc(o->frames, sizeof *samples);
     masu_stats_info stats;
     char error[1024];
-    int code = samples ? MASU_CLI_OK : masu_cli_error("no memory for %u frames", o->frames);
+    int code = samples ? MASU_CLI_OK : masu_cli_error("out of memory for %u frames", o->frames);
     memset(&stats, 0, sizeof stats);
     masu_sample warm_up;
     if (!code && o->stats && !measure(s, o, 0, counts, &warm_up, &stats, error, sizeof error)) {
         code = masu_cli_error("%s", error);
     }
     for (uint32_t i = 0; i < o->frames && !code; i++) {
-        masu_cli_progress(o->rays ? "ray %u of %u of each pixel" : "frame %u of %u", i + 1, o->frames);
+        masu_cli_progress(o->rays ? "ray %u of %u per pixel" : "frame %u of %u", i + 1, o->frames);
         if (!measure(s, o, i, counts, &samples[i], &stats, error, sizeof error)) {
             code = masu_cli_error("%s", error);
         } else if (o->output) {
@@ -202,7 +202,6 @@ static void turn(masu_desc *d, const masu_turned *t) {
     *d = masu_desc_resolved(d);
     for (uint32_t r = 0; r < d->rung_count; r++) {
         masu_rung *rung = &d->rungs[r];
-        if (t->march_given) rung->march = t->to.march;
         if (t->cull_given) rung->frustum = t->cull < 2 ? MASU_ON : MASU_OFF;
         if (t->cull_given) rung->occlusion = t->cull % 2 ? MASU_OFF : MASU_ON;
         if (t->lod_given) rung->lod_error = t->to.lod_error;
@@ -230,8 +229,8 @@ static bool open_rungs(const masu_render_options *o, masu_session *s, int *code)
     }
     turn(&s->desc, &o->turned);
     if (o->rung >= s->desc.rung_count) {
-        *code = masu_cli_usage_error("--rung %u does not exist, there are 0 to %u", o->rung,
-                                     s->desc.rung_count - 1);
+        *code = masu_cli_usage_error("--rung: expected 0 to %u, found %u", s->desc.rung_count - 1,
+                                     o->rung);
     } else if (masu_session_start(s, error, sizeof error)) {
         return true;
     } else {
@@ -289,98 +288,103 @@ static const char *const tones[] = {"auto", "none", "aces", "neutral", NULL};
 static const char *const stages[] = {"both", "frustum", "occlusion", "none", NULL};
 
 static const masu_option rows[] = {
+    MASU_HEADING("Output"),
     {MASU_ROW(masu_render_options, output, MASU_TAKE_TEXT, "output", "FILE.png",
-              "the last frame; with '####' in the name every frame, numbered"),
+              "write the last frame; with '####' in the name, every frame, numbered"),
      .letter = 'o'},
     MASU_OUTPUT_SIZE_ROW(masu_render_options, d.desc.output),
+    MASU_TEXT(masu_render_options, stats, "stats", "FILE.json",
+              "write times, counts, memory and allocations; '-' is stdout"),
+    MASU_TEXT(masu_render_options, times, "times", "FILE.csv",
+              "write time, rung and governor reason of every frame"),
+    MASU_HEADING("Frames"),
     MASU_UINT(masu_render_options, frames, "frames", 1, FRAMES_MAX,
-              "frames to draw along the scene's camera path"),
-    MASU_OWN("reference", "[=N]", read_reference,
-             "the truth of reflections, at one moment: N unfiltered rays from each pixel\n"
-             "(default 1024; 64 for what 64 rays look like), each weighted by the exact lobe"),
-    MASU_OWN("truth", "[=N]", read_truth,
-             "what the picture would be with no shortcut: the mean of N places in each pixel (default\n"
-             "64), each at full size and at the most exact; reflections by 1024 rays in all, or --reference=N"),
-    MASU_UINT(masu_render_options, rung, "rung", 0, MASU_MAX_RUNGS - 1,
-              "quality: a rung of the ladder, 0 the best (default 0)"),
-    MASU_OWN("setting", "NAME|help", read_setting,
-             "instead of a ladder one rung, by the name that masu bench gives it: scale=0.5+aa=fxaa;\n"
-             "help: all knobs, their values and what they cost"),
-    MASU_KNOB(masu_render_options, turned.to, "aa", "WAY", "aa",
-              "anti-aliasing:" MASU_AA_WORDS(MASU_WORD_LIST) " (default off)"),
-    MASU_REAL(masu_render_options, target_ms, "target-ms", "MS", 1.0, 1000.0,
-              "let the governor choose among the rungs of the ladder, for frames of so long, or follow\n"
-              "--rung of these; prints what it has seen and done"),
-    MASU_LADDER_ROW(masu_render_options, ladder,
-                    "sizes alone: 1, 0.8 and 0.4, with --target-ms eight from 1 to 0.4\n"
-                    "(default: auto with --target-ms, else off)"),
-    MASU_TEXT(masu_render_options, times, "times", "FILE.csv", "time, rung and reason of every frame"),
+              "number of frames along the scene's camera path"),
     MASU_REAL(masu_render_options, time, "time", "SECONDS", -1e9, 1e9,
               "time of the first frame (default 0)"),
     MASU_REAL(masu_render_options, time_step, "time-step", "SECONDS", 0.0, 1e6,
-              "between frames"),
-    MASU_TEXT(masu_render_options, stats, "stats", "FILE.json",
-              "times, counts, memory, allocations of the frames; - for stdout"),
-    MASU_KNOB(masu_render_options, turned.to, "march", "WAY", "march",
-              "how the SDF is marched:" MASU_MARCH_WORDS(MASU_WORD_LIST) ";\n"
-              "plain, fragment, seed, checkerboard need a blob baked with --variants (default auto)"),
-    MASU_CHOICE(masu_render_options, turned.cull, "cull", "STAGES", stages,
-                "both, frustum, occlusion or none: the picture stays the same"),
-    MASU_KNOB(masu_render_options, turned.to, "lod-error", "PIXELS", "lod_error",
-              "how wrong a surface may be drawn by an LOD of its mesh; below 0: none (default 1)"),
-    MASU_FLAG(masu_render_options, casters, "casters",
-              "cull for the sun too, for the numbers of --stats"),
-    MASU_OWN("sun", "AZIMUTH,ELEVATION", read_sun,
-             "where the sun stands, degrees, instead of the scene's"),
-    MASU_REAL(masu_render_options, turbidity, "turbidity", "T", 1.5, 10.0,
-              "a sky that follows from the sun: 1.5 (very clear) to 10 (hazy)"),
-    MASU_OWN("exposure", "E", read_exposure,
-             "factor before the tone curve, instead of the scene's; auto: metered; fixed: the scene's factor,\n"
-             "not metered even where the scene asks for it"),
-    MASU_CHOICE(masu_render_options, tone, "tone", "CURVE", tones,
-                "none, aces (filmic) or neutral; auto: aces"),
+              "time between frames"),
     MASU_FLAG(masu_render_options, animate, "animate",
-              "models that have clips play their first one, by the time of the frame, again and again"),
-    MASU_FLAG(masu_render_options, dither, "dither", "round to 8 bits with a pattern instead of bands"),
+              "loop the first animation clip of every model"),
+    MASU_HEADING("Reference images of one moment"),
+    MASU_OWN("truth", "[=N]", read_truth,
+             "ground truth: average N full-size samples per pixel (default 64), with the\n"
+             "most exact settings and 1024 reflection rays in all"),
+    MASU_OWN("reference", "[=N]", read_reference,
+             "trace N unfiltered reflection rays per pixel (default 1024), weighted by\n"
+             "the exact lobe; with --truth: its number of reflection rays"),
+    MASU_HEADING("Quality"),
+    MASU_UINT(masu_render_options, rung, "rung", 0, MASU_MAX_RUNGS - 1,
+              "rung of the ladder, 0 is the best (default 0)"),
+    MASU_REAL(masu_render_options, target_ms, "target-ms", "MS", 1.0, 1000.0,
+              "let the governor choose the rung for this frame time and print a report;\n"
+              "with --rung it keeps that rung and only models the times"),
+    MASU_LADDER_ROW(masu_render_options, ladder,
+                    "scales 1, 0.8, 0.4; with --target-ms eight scales from 1 to 0.4\n"
+                    "(default: auto with --target-ms, else off)"),
+    MASU_OWN("setting", "NAME|help", read_setting,
+             "render one rung with these knobs, named as by `masu bench`, for example\n"
+             "scale=0.5+aa=fxaa; help: print all knobs, their values and cost, and exit"),
+    MASU_KNOB(masu_render_options, turned.to, "aa", "MODE", "aa",
+              "anti-aliasing; disables temporal upscaling (default off). MODE is one of\n"
+              " " MASU_AA_WORDS(MASU_WORD_LIST)),
+    MASU_CHOICE(masu_render_options, turned.cull, "cull", "STAGES", stages,
+                "culling stages: both, frustum, occlusion or none; the image is the same\n"),
+    MASU_KNOB(masu_render_options, turned.to, "lod-error", "PIXELS", "lod_error",
+              "largest screen-space error of a mesh LOD; below 0: no LODs (default 1)"),
     MASU_REAL(masu_render_options, anisotropy, "anisotropy", "N", 1.0, 64.0,
-              "samples of textures along the longer axis, where the device offers it (default 1)"),
-    MASU_UINT(masu_render_options, d.desc.frames_in_flight, "frames-in-flight", 1, MASU_MAX_FLIGHT,
-              "1 to 3 (default 2)"),
+              "anisotropic texture samples, if the device supports them (default 1)"),
+    MASU_HEADING("Light and tone"),
+    MASU_OWN("sun", "AZIMUTH,ELEVATION", read_sun,
+             "sun position in degrees (default: the scene's)"),
+    MASU_REAL(masu_render_options, turbidity, "turbidity", "T", 1.5, 10.0,
+              "use the analytic sky: 1.5 (very clear) to 10 (hazy)"),
+    MASU_OWN("exposure", "E", read_exposure,
+             "factor before the tone curve, or auto for auto-exposure, or fixed for the\n"
+             "scene's factor without auto-exposure (default: the scene's)"),
+    MASU_CHOICE(masu_render_options, tone, "tone", "CURVE", tones,
+                "tone curve: none, aces (filmic), neutral; auto is aces"),
+    MASU_FLAG(masu_render_options, dither, "dither", "dither to 8 bits to avoid banding"),
+    MASU_HEADING("Debugging"),
     MASU_FLAG(masu_render_options, poison, "poison",
-              "fill all transient images with NaN before each frame (the picture must not change)"),
+              "fill transient images with NaN before each frame; the output must not\n"
+              "change"),
     MASU_FLAG(masu_render_options, split, "split-memory",
-              "one block per memory role, even on unified memory"),
+              "use one memory block per role, even on unified memory"),
+    MASU_FLAG(masu_render_options, casters, "casters",
+              "also cull for the sun, for the counts of --stats"),
+    MASU_HEADING("Device"),
     MASU_RAYS_ROW(masu_render_options, ray_way),
+    MASU_UINT(masu_render_options, d.desc.frames_in_flight, "frames-in-flight", 1, MASU_MAX_FLIGHT,
+              "frames recorded ahead of the GPU: 1 to 3 (default 2)"),
     MASU_DEVICE_ROWS(masu_render_options, d.host),
     {.name = NULL}};
 
 /* What does not go together, and what is missing; an exit code. */
 static int check(const masu_render_options *o, const masu_given *given) {
     /* About what --truth has its own mind of. */
-    static const char *const decided[] = {"stats", "rung",      "setting", "aa",        "march",
-                                          "cull",  "lod-error", "ladder",  "target-ms", "times",
-                                          "anisotropy", NULL};
+    static const char *const decided[] = {"stats",  "rung",      "setting", "aa",         "cull", "lod-error",
+                                          "ladder", "target-ms", "times",   "anisotropy", NULL};
     static const char *const moving[] = {"frames", "time-step", NULL};
     static const char *const choosing[] = {"ladder", "target-ms", NULL};
     const char *own = masu_first_given(given, rows, decided);
     const char *move = masu_first_given(given, rows, moving);
     if (o->positions && own)
-        return masu_cli_usage_error("--truth takes everything at its most exact: no --%s", own);
+        return masu_cli_usage_error("--truth cannot be combined with --%s: it uses the most exact settings", own);
     if ((o->rays || o->positions) && move) {
-        return masu_cli_usage_error("%s draws one moment: no --%s",
-                                    o->positions ? "--truth" : "--reference, a frame for each ray,",
-                                    move);
+        return masu_cli_usage_error("%s cannot be combined with --%s: it renders one moment",
+                                    o->positions ? "--truth" : "--reference", move);
     }
     const char *choice = masu_first_given(given, rows, choosing);
     if (masu_is_given(given, rows, "setting") && choice)
-        return masu_cli_usage_error("--setting draws one rung: no --%s", choice);
-    if (!given->count) return masu_cli_usage_error("no scene is given");
+        return masu_cli_usage_error("--setting cannot be combined with --%s: it renders one rung", choice);
+    if (!given->count) return masu_cli_usage_error("no scene given: expected SCENE.masu");
     if (!o->output && !o->stats && !o->times && !(o->target_ms > 0.0))
-        return masu_cli_usage_error("none of --output, --stats, --times, --target-ms is given");
+        return masu_cli_usage_error("expected at least one of --output, --stats, --times, --target-ms");
     if (o->target_ms > 0.0 && o->rays)
-        return masu_cli_usage_error("--target-ms and --reference do not go together");
+        return masu_cli_usage_error("--target-ms and --reference cannot be combined");
     if ((o->rays || o->positions) && strchr(o->output ? o->output : "", '#')) {
-        return masu_cli_usage_error("%s makes one picture: --output %s names many",
+        return masu_cli_usage_error("%s writes one image: expected --output without '#', found %s",
                                     o->positions ? "--truth" : "--reference", o->output);
     }
     if (o->positions && !o->output) return masu_cli_usage_error("--truth needs --output");
@@ -391,7 +395,6 @@ static int check(const masu_render_options *o, const masu_given *given) {
 static int describe(masu_render_options *o, const masu_given *given) {
     masu_desc *d = &o->d.desc;
     o->d.scene_path = given->arguments[0];
-    o->turned.march_given = masu_is_given(given, rows, "march");
     o->turned.cull_given = masu_is_given(given, rows, "cull");
     o->turned.aa_given = masu_is_given(given, rows, "aa");
     o->turned.lod_given = masu_is_given(given, rows, "lod-error");
@@ -425,7 +428,7 @@ static int run(masu_cli *cli) {
               .host = {.message = masu_print_message}},
         .frames = 1,
         .time_step = 1.0 / 60.0};
-    masu_given given = {.most = 1, .excess = "one scene at a time"};
+    masu_given given = {.most = 1, .excess = "expected one scene"};
     masu_vk_alloc_counts counts;
     VkAllocationCallbacks allocator = masu_vk_alloc_callbacks(&counts);
     char error[1024];
@@ -453,10 +456,15 @@ const masu_cli_command masu_cmd_render = {
     .name = "render",
     .arguments = "SCENE.masu -o OUT.png [options]",
     .summary = "render a baked scene to PNG",
-    .details = "Scenes are made by masu-bake. Frames are drawn one after another; with --stats a "
-               "first one is\n"
-               "drawn and not counted. Wall time is from masu_frame to the fence. GPU times come "
-               "from timestamps with\n"
-               "a full barrier around each pass; \"timestamps_plausible\" says whether they fit "
-               "the wall clock.\n",
+    .details = "With --stats, an extra first frame is rendered and not counted. Wall time is measured from\n"
+               "masu_frame to the fence. GPU times are timestamps with a full barrier around each pass;\n"
+               "\"timestamps_plausible\" reports whether they agree with the wall time.\n\n"
+               "Exit codes:\n"
+               "  0  success\n"
+               "  1  rendering failed, a file could not be read or written, or --validate reported a message\n"
+               "  2  the command line is wrong\n\n"
+               "Examples:\n"
+               "  masu render engine.masu -o frame.png --size 1280x720\n"
+               "  masu render engine.masu -o frame.png --setting scale=0.5+aa=fxaa\n"
+               "  masu render engine.masu --target-ms 33 --frames 300 --size 640x360\n",
     .run = run};

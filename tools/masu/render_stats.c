@@ -134,7 +134,7 @@ static json_t *allocations_json(const masu_sample *samples, uint32_t n) {
 int masu_render_stats(const masu_session *s, const masu_render_options *o, const masu_sample *samples,
                       uint32_t n, const masu_stats_info *last) {
     double *scratch = malloc(n * sizeof *scratch);
-    if (!scratch) return masu_cli_error("no memory for %u samples", n);
+    if (!scratch) return masu_cli_error("out of memory for %u samples", n);
     masu_plan_info plan;
     masu_plan_of(s->m, &plan);
     uint32_t rung = last->rung;
@@ -166,7 +166,7 @@ int masu_render_stats(const masu_session *s, const masu_render_options *o, const
 
 int masu_render_times(const masu_session *s, const masu_render_options *o, const masu_sample *samples) {
     FILE *f = fopen(o->times, "w");
-    if (!f) return masu_cli_error("%s: cannot be written", o->times);
+    if (!f) return masu_cli_error("%s: cannot write", o->times);
     fprintf(f, "frame,time,rung,scale,gpu_ms,wall_ms,reason\n");
     for (uint32_t i = 0; i < o->frames; i++) {
         fprintf(f, "%" PRIu32 ",%.4f,%" PRIu32 ",%.4f,%.4f,%.4f,\"%s\"\n", i,
@@ -174,7 +174,7 @@ int masu_render_times(const masu_session *s, const masu_render_options *o, const
                 (double)s->desc.rungs[samples[i].rung].scale, samples[i].gpu_ms, samples[i].wall_ms,
                 samples[i].reason);
     }
-    return fclose(f) ? masu_cli_error("%s: cannot be written", o->times) : MASU_CLI_OK;
+    return fclose(f) ? masu_cli_error("%s: cannot write", o->times) : MASU_CLI_OK;
 }
 
 void masu_render_governor(const masu_session *s, const masu_render_options *o, const masu_sample *samples,
@@ -188,19 +188,19 @@ void masu_render_governor(const masu_session *s, const masu_render_options *o, c
     }
     if (masu_cli_quiet()) return;
     masu_cli_progress_clear();
-    printf("governor: target %.2f ms, %" PRIu32 " of %" PRIu32 " frames over it by the wall, %" PRIu64
-           " changes, mean scale %.3f\n",
+    printf("governor: target %.2f ms, %" PRIu32 " of %" PRIu32 " frames over it in wall time, %" PRIu64
+           " rung changes, mean scale %.3f\n",
            o->target_ms, over, o->frames, g->changes, scale);
-    printf("  times from %s; model: %.2f ms fixed, %.2f ms that follow the rung, noise %.1f %%\n",
+    printf("  times from %s; model: %.2f ms fixed, %.2f ms that depend on the rung, noise %.1f %%\n",
            sources[g->source], (double)g->fixed_ms, (double)g->load_ms, 100.0 * (double)g->noise);
     for (uint32_t r = 0; r < g->rung_count; r++) {
         uint32_t frames = 0;
         for (uint32_t i = 0; i < o->frames; i++) frames += samples[i].rung == r;
-        printf("  rung %" PRIu32 ", scale %.3f: %5" PRIu32 " frames, now predicted %.2f ms%s\n", r,
+        printf("  rung %" PRIu32 ", scale %.3f: %5" PRIu32 " frames, predicted %.2f ms%s\n", r,
                (double)s->desc.rungs[r].scale, frames, (double)g->predicted_ms[r],
                r == g->rung ? " <" : "");
     }
     printf("  last: rung %" PRIu32 ": %s%s\n", g->rung, g->reason_text,
-           g->locked ? " (it cannot move to where it should be)" : "");
+           g->locked ? " (locked: it cannot change to the rung that it wants)" : "");
 }
 

@@ -1,7 +1,7 @@
 /* upscale.c: `masu upscale`: anti-aliasing and FSR1 on a PNG, by exactly the passes that a frame ends
  * with. */
 #include "masu/cmd.h"
-#include "masu/options.h"
+#include "command/options.h"
 
 #include "image.h"
 
@@ -29,8 +29,8 @@ static bool upscale(const masu_session_desc *given, const uint8_t *rgba, uint32_
     if (!masu_session_open(&d, &s, error, size)) return false;
     uint32_t most = s.host.properties.limits.maxImageDimension2D;
     if (width > most || height > most) {
-        snprintf(error, size, "input %ux%u is larger than the device's images may be (%u)", width,
-                 height, most);
+        snprintf(error, size, "input: found %ux%u pixels, expected at most %u per side on this device",
+                 width, height, most);
     } else if (masu_headless_source_create(&s.host, rgba, width, height, width, height, 0, &source,
                                            error, size)) {
         s.desc.source = (masu_source){source.view, width, height,
@@ -44,7 +44,7 @@ static bool upscale(const masu_session_desc *given, const uint8_t *rgba, uint32_
             memcpy(out, s.targets[0].mapped,
                    (size_t)s.desc.output.width * s.desc.output.height * 4);
         if (done && s.host.messages) {
-            snprintf(error, size, "the validation layer has reported %u messages", s.host.messages);
+            snprintf(error, size, "the validation layer reported %u messages", s.host.messages);
             done = false;
         }
         masu_destroy(s.m);
@@ -69,7 +69,7 @@ static bool upscale_alpha(const masu_session_desc *d, const struct masu_image *i
     size_t out_pixels = (size_t)d->desc.output.width * d->desc.output.height;
     uint8_t *grey = malloc(in_pixels * 4), *grey_out = malloc(out_pixels * 4);
     bool done = grey && grey_out;
-    if (!done) snprintf(error, size, "no memory for the alpha channel");
+    if (!done) snprintf(error, size, "out of memory for the alpha channel");
     for (size_t i = 0; i < in_pixels && done; i++) {
         memset(grey + 4 * i, image->rgba[4 * i + 3], 3);
         grey[4 * i + 3] = 255;
@@ -95,13 +95,13 @@ static int upscale_file(const masu_session_desc *given, const char *from, const 
     uint8_t *out = malloc((size_t)width * height * 4);
     int code = MASU_CLI_OK;
     if (!out) {
-        code = masu_cli_error("no memory for %ux%u pixels", width, height);
+        code = masu_cli_error("out of memory for %ux%u pixels", width, height);
     } else if (!upscale(d, image.rgba, image.width, image.height, out, error, sizeof error) ||
                (has_alpha(&image) && !upscale_alpha(d, &image, out, error, sizeof error)) ||
                !masu_image_save_png(to, out, width, height, 0, error, sizeof error)) {
         code = masu_cli_error("%s", error);
     } else if (width > 2 * image.width || height > 2 * image.height) {
-        masu_cli_warn("%ux%u to %ux%u: FSR1 is made for at most twice the size per axis",
+        masu_cli_warn("%s: FSR1 is designed for at most 2x per axis: found %ux%u to %ux%u", from,
                       image.width, image.height, width, height);
     }
     free(out);
@@ -112,18 +112,23 @@ static int upscale_file(const masu_session_desc *given, const char *from, const 
 /* ---- Command line ---------------------------------------------------------------------------- */
 
 static const masu_option rows[] = {
-    MASU_OUTPUT_SIZE_ROW(options, d.desc.output),
-    MASU_KNOB(options, d.desc.rungs[0], "sharpness", "STOPS", "sharpness",
-              "RCAS strength: 0 is sharpest, each stop halves it (default 0.2)"),
-    MASU_KNOB(options, d.desc.rungs[0], "aa", "WAY", "aa",
-              "first anti-aliasing:" MASU_AA_WORDS(MASU_WORD_LIST) " (default off)"),
-    MASU_FLAG(options, no_rcas, "no-rcas", "EASU alone"),
-    MASU_KNOB(options, d.desc.rungs[0], "easu", "WAY", "easu",
-              "how to upscale:" MASU_EASU_WORDS(MASU_WORD_LIST) " (default full); fast looks at edges\n"
-              "once, bilinear is for comparison"),
+    MASU_HEADING("Output"),
     {MASU_ROW(options, output, MASU_TAKE_FILE, "output", "FILE.png",
-              "the output, instead of the second argument"),
+              "write the result there, instead of the second argument"),
      .letter = 'o'},
+    MASU_OUTPUT_SIZE_ROW(options, d.desc.output),
+    MASU_HEADING("Filters"),
+    MASU_KNOB(options, d.desc.rungs[0], "sharpness", "STOPS", "sharpness",
+              "RCAS sharpening: 0 is sharpest, each stop halves it (default 0.2)"),
+    MASU_FLAG(options, no_rcas, "no-rcas", "run EASU without RCAS"),
+    MASU_KNOB(options, d.desc.rungs[0], "easu", "MODE", "easu",
+              "upscaling filter (default full). MODE is one of\n"
+              " " MASU_EASU_WORDS(MASU_WORD_LIST) "\n"
+              "fast samples edges once; bilinear is for comparison"),
+    MASU_KNOB(options, d.desc.rungs[0], "aa", "MODE", "aa",
+              "anti-aliasing before the upscaling (default off). MODE is one of\n"
+              " " MASU_AA_WORDS(MASU_WORD_LIST)),
+    MASU_HEADING("Device"),
     MASU_DEVICE_ROWS(options, d.host),
     {.name = NULL}};
 
@@ -135,26 +140,31 @@ static int run(masu_cli *cli) {
                                            .sharpness = 0.2f}}},
                        .host = {.message = masu_print_message}}};
     masu_rung *rung = &o.d.desc.rungs[0];
-    masu_given given = {.most = 2, .excess = "one input and one output"};
+    masu_given given = {.most = 2, .excess = "expected one input and one output"};
     int code;
     if (!masu_options_read(cli, rows, &o, &given, &code)) return code;
     const char *to = o.output ? o.output : given.arguments[1];
     if (o.output && given.count > 1)
-        return masu_cli_usage_error("one input and one output: '%s'", given.arguments[1]);
-    if (!given.count || !to) return masu_cli_usage_error("an input and an output file are needed");
+        return masu_cli_usage_error("unexpected argument '%s': the output is --output", given.arguments[1]);
+    if (!given.count || !to) return masu_cli_usage_error("expected an input and an output file: IN.png OUT.png");
     if (!o.d.desc.output.width && rung->aa <= MASU_AA_OFF)
-        return masu_cli_usage_error("--size WxH is needed");
+        return masu_cli_usage_error("expected --size WxH or --aa MODE");
     if (o.no_rcas) rung->sharpen = MASU_OFF;
     return upscale_file(&o.d, given.arguments[0], to);
 }
 
 const masu_cli_command masu_cmd_upscale = {
     .name = "upscale",
-    .arguments = "IN.png OUT.png --size WxH|--aa WAY [options]",
-    .summary = "upscale a picture by FSR1 (EASU, RCAS), smooth its edges by SMAA",
-    .details = "The picture is taken as it is: already display-encoded (sRGB), as FSR1 wants it. "
-               "Alpha goes through the\n"
-               "same passes as a picture of its own. With --aa and no other --size than the picture's "
-               "own, there is\n"
-               "anti-aliasing alone.\n",
+    .arguments = "IN.png OUT.png --size WxH|--aa MODE [options]",
+    .summary = "upscale an image with FSR1 (EASU, RCAS) or anti-alias it with SMAA or FXAA",
+    .details = "The input must be display-encoded (sRGB), as FSR1 expects. Alpha goes through the same passes\n"
+               "as a separate image. With --aa and no --size, or with --size equal to the input's size, only\n"
+               "anti-aliasing runs.\n\n"
+               "Exit codes:\n"
+               "  0  success\n"
+               "  1  a pass failed, or a file could not be read or written\n"
+               "  2  the command line is wrong\n\n"
+               "Examples:\n"
+               "  masu upscale small.png large.png --size 1920x1080\n"
+               "  masu upscale jagged.png smooth.png --aa smaa-high\n",
     .run = run};

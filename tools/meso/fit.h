@@ -29,7 +29,7 @@ typedef struct masu_meso_samples {
     masu_meso_light near_light[MASU_MESO_NEAR_LIGHTS_MAX];
 } masu_meso_samples;
 
-/* The sum of the squared residuals, each kind's mean square: for messages. */
+/* The root mean square of each kind of residual, for messages. */
 typedef struct masu_meso_misfit {
     double far, near, filtered;
 } masu_meso_misfit;

@@ -8,11 +8,11 @@
 
 static bool fits(const char *path, uint32_t width, uint32_t height) {
     if (width != height) {
-        masu_cli_error("%s: a period is square, this is %ux%u", path, width, height);
+        masu_cli_error("%s: expected a square image, found %ux%u", path, width, height);
         return false;
     }
     if (width < 4 || width > MASU_MESO_HEIGHT_SIDE_MAX) {
-        masu_cli_error("%s: an edge is from 4 to %u pixels, not %u", path,
+        masu_cli_error("%s: expected 4 to %u pixels per side, found %u", path,
                        MASU_MESO_HEIGHT_SIDE_MAX, width);
         return false;
     }

@@ -51,19 +51,19 @@ static bool take(const char *path, const masu_bake_content *piece, const masu_me
     masu_bake_box box = masu_bake_bounds(piece, &identity);
     uint64_t triangles = triangles_of(piece);
     if (triangles == 0 || triangles > MASU_MESO_TRIANGLES_MAX) {
-        masu_cli_error("%s: from 1 to %u triangles are taken, not %llu", path,
+        masu_cli_error("%s: expected 1 to %u triangles, found %llu", path,
                        MASU_MESO_TRIANGLES_MAX, (unsigned long long)triangles);
         return false;
     }
     double tile = input->tile > 0 ? input->tile : box.high.x - box.low.x;
     if (!(tile > 1e-9)) {
-        masu_cli_error("%s: has no extent in x; give --tile", path);
+        masu_cli_error("%s: the model has no extent in x: use --tile", path);
         return false;
     }
     double height = (box.high.y - box.low.y) / tile;
     double reach = fmax(box.high.x - box.low.x, box.high.z - box.low.z) / tile;
     if (!(height <= MASU_MESO_HEIGHT_MAX) || !(reach <= 2)) {
-        masu_cli_error("%s: at most %g periods high and 2 wide, not %g and %g; see --tile", path,
+        masu_cli_error("%s: expected at most %g periods high and 2 wide, found %g and %g: use --tile", path,
                        MASU_MESO_HEIGHT_MAX, height, reach);
         return false;
     }

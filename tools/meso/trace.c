@@ -87,7 +87,7 @@ masu_meso_tracer *masu_meso_tracer_create(const masu_meso_patch *patch) {
     t->high = patch->high + 1e-4;
     t->device = rtcNewDevice("threads=1,set_affinity=0");
     if (!t->device) {
-        masu_cli_error("Embree does not start: error %d", (int)rtcGetDeviceError(NULL));
+        masu_cli_error("cannot create an Embree device: error %d", (int)rtcGetDeviceError(NULL));
         masu_meso_tracer_free(t);
         return NULL;
     }
@@ -103,7 +103,7 @@ masu_meso_tracer *masu_meso_tracer_create(const masu_meso_patch *patch) {
     rtcReleaseGeometry(g);
     rtcCommitScene(t->scene);
     if (rtcGetDeviceError(t->device) != RTC_ERROR_NONE) {
-        masu_cli_error("Embree could not build the patch of %zu triangles", triangles);
+        masu_cli_error("Embree cannot build a BVH of %zu triangles", triangles);
         masu_meso_tracer_free(t);
         return NULL;
     }

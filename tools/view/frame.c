@@ -132,7 +132,7 @@ bool masu_viewer_frame(masu_viewer *v) {
 bool masu_viewer_screenshot(masu_viewer *v, const char *path) {
     masu_headless_target *t = &v->compose.shown;
     if (!v->frames) {
-        snprintf(v->error, sizeof v->error, "%s: no frame has been drawn yet", path);
+        snprintf(v->error, sizeof v->error, "%s: no frame is rendered yet", path);
         return false;
     }
     return masu_headless_target_read(&v->host, t, v->error, sizeof v->error) &&

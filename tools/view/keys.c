@@ -12,7 +12,7 @@ enum { TARGETS = sizeof targets / sizeof *targets };
 
 static void take_rung(masu_viewer *v, uint32_t rung) {
     if (rung >= v->want.rung_count) {
-        masu_viewer_note(v, "there is no rung %u: there are 0 to %u", rung, v->want.rung_count - 1);
+        masu_viewer_note(v, "rung %u does not exist: expected 0 to %u", rung, v->want.rung_count - 1);
         return;
     }
     v->rung = rung;
@@ -22,11 +22,11 @@ static void take_rung(masu_viewer *v, uint32_t rung) {
 
 static void govern(masu_viewer *v, bool on) {
     if (on && v->want.governor.mode == MASU_GOVERNOR_OFF) {
-        masu_viewer_note(v, "there is one rung: nothing to choose from");
+        masu_viewer_note(v, "the governor needs more than one rung");
         return;
     }
     v->governed = on;
-    masu_viewer_note(v, on ? "the governor chooses the rung" : "rung %u, the governor is off", v->rung);
+    masu_viewer_note(v, on ? "governor on" : "rung %u, governor off", v->rung);
 }
 
 /* The next one of the list, up or down. */
@@ -70,7 +70,7 @@ static void toggle_path(masu_viewer *v) {
     v->on_path = !v->on_path;
     v->cut = true;
     v->moved = v->frames;
-    masu_viewer_note(v, v->on_path ? "on the scene's path" : "flying");
+    masu_viewer_note(v, v->on_path ? "camera path" : "free camera");
 }
 
 static void store_reference(masu_viewer *v) {

@@ -41,7 +41,7 @@ static void restart(masu_viewer *v, bool *good) {
     *good = masu_viewer_restart(v);
     v->moved = v->frames;
     if (!*good || v->trouble[0]) return;
-    masu_viewer_note(v, "%s: made anew in %.0f ms, %s", v->change, v->a.start_ms,
+    masu_viewer_note(v, "%s: renderer rebuilt in %.0f ms %s", v->change, v->a.start_ms,
                      v->a.in_place ? "in the same blocks" : "in larger blocks");
 }
 
@@ -73,8 +73,8 @@ static bool recover(masu_viewer *v) {
         snprintf(v->error, sizeof v->error, "the Vulkan device was lost twice in a row");
         return false;
     }
-    masu_cli_warn("the Vulkan device was lost (%s): made anew", v->error);
-    masu_viewer_note(v, "the device was lost and made anew");
+    masu_cli_warn("the Vulkan device was lost (%s); it was recreated", v->error);
+    masu_viewer_note(v, "the device was lost and recreated");
     return masu_viewer_recover(v);
 }
 

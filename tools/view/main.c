@@ -1,8 +1,8 @@
 /* main.c: the program masu-view: a baked scene in a window. docs/commands.md is its manual. */
 #include "view/script.h"
 
-#include "bench/sweep/settings.h"
-#include "masu/options.h"
+#include "settings/setting.h"
+#include "command/options.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,32 +12,41 @@
 #define VERSION_TEXT(a, b, c) TEXT(a) "." TEXT(b) "." TEXT(c)
 
 static const masu_option rows[] = {
-    MASU_SIZE(masu_viewer_options, size, "size", "of the window, pixels"),
+    MASU_HEADING("Scene"),
     MASU_TEXT(masu_viewer_options, json, "json", "FILE.json",
-              "the scene's description: when it or a file that it names (.sdf, .glsl, models) changes,\n"
-              "it is baked again; without SCENE.masu it is baked at the start, too"),
+              "scene description; baked again when it or a file that it names (.sdf, .glsl,\n"
+              "models) changes, and baked at the start if there is no SCENE.masu"),
     MASU_TEXT(masu_viewer_options, bake, "bake", "COMMAND",
-              "what bakes it, by sh: COMMAND FILE.json -o OUT.masu --quiet\n"
-              "(default: masu-bake beside this program)"),
+              "shell command of the baker, run as COMMAND FILE.json -o OUT.masu --quiet\n"
+              "(default: masu-bake in the folder of this program)"),
+    MASU_HEADING("Window"),
+    MASU_SIZE(masu_viewer_options, size, "size", "size of the window in pixels"),
+    MASU_FLAG(masu_viewer_options, no_vsync, "no-vsync", "present without waiting for vertical blanks"),
+    MASU_HEADING("Quality"),
     MASU_UINT(masu_viewer_options, rung, "rung", 0, MASU_MAX_RUNGS - 1,
-              "begin with this rung, the governor off"),
-    MASU_TEXT(masu_viewer_options, setting, "setting", "NAME",
-              "instead of a ladder one rung, by the name that masu bench gives it: scale=0.5+aa=fxaa"),
-    MASU_LADDER_ROW(masu_viewer_options, ladder, "sizes alone: 1, 0.8 and 0.4 (default: auto)"),
+              "start with this rung, without the governor"),
     MASU_REAL(masu_viewer_options, target_ms, "target-ms", "MS", 1.0, 1000.0,
-              "how long the governor lets a frame take on the GPU"),
-    MASU_REAL(masu_viewer_options, time, "time", "SECONDS", 0.0, 1e9, "where to begin"),
-    MASU_FLAG(masu_viewer_options, no_vsync, "no-vsync", "frames as fast as they come"),
-    MASU_FLAG(masu_viewer_options, no_timestamps, "no-timestamps",
-              "no times of passes, and none of the barriers that they need"),
-    MASU_FLAG(masu_viewer_options, counters, "counters",
-              "count evaluations of the SDF and what occlusion leaves; takes time"),
+              "target of the governor: GPU time of a frame"),
+    MASU_LADDER_ROW(masu_viewer_options, ladder, "scales 1, 0.8, 0.4 (default: auto)"),
+    MASU_TEXT(masu_viewer_options, setting, "setting", "NAME",
+              "render one rung with these knobs, named as by `masu bench`, for example\n"
+              "scale=0.5+aa=fxaa"),
+    MASU_HEADING("Scripts and tests"),
     MASU_TEXT(masu_viewer_options, script, "script", "FILE",
-              "lines such as `frame 30 key F2` (docs/commands.md); time goes by frames, 1/60 s each"),
+              "run a script of lines such as `frame 30 key F2` (docs/commands.md), with a\n"
+              "fixed step of 1/60 s per frame"),
+    MASU_REAL(masu_viewer_options, time, "time", "SECONDS", 0.0, 1e9,
+              "time of the first frame (default 0)"),
     MASU_UINT(masu_viewer_options, frames, "frames", 1, 1000000000,
-              "of --screenshot and --quit; time goes by frames then"),
-    MASU_FILE(masu_viewer_options, screenshot, "screenshot", "FILE.png", "what the --frames-th frame shows"),
-    MASU_FLAG(masu_viewer_options, quit, "quit", "end after --frames"),
+              "number of frames for --screenshot and --quit, with a fixed step of 1/60 s"),
+    MASU_FILE(masu_viewer_options, screenshot, "screenshot", "FILE.png",
+              "write frame number --frames to a file"),
+    MASU_FLAG(masu_viewer_options, quit, "quit", "exit after --frames frames"),
+    MASU_FLAG(masu_viewer_options, no_timestamps, "no-timestamps",
+              "do not time passes, which avoids a barrier around each"),
+    MASU_FLAG(masu_viewer_options, counters, "counters",
+              "count SDF evaluations and visible instances; slower"),
+    MASU_HEADING("Device"),
     MASU_RAYS_ROW(masu_viewer_options, rays),
     MASU_DEVICE_ROWS(masu_viewer_options, host),
     {.name = NULL}};
@@ -47,7 +56,7 @@ static void print_message(void *user, const char *text) {
     masu_cli_warn("validation: %s", text);
 }
 
-/* What of the description the command line says. */
+/* Writes the members of the description that the command line sets. */
 static int describe(const masu_viewer_options *o, masu_viewer *v) {
     masu_desc *d = &v->given;
     char error[1024];
@@ -72,7 +81,7 @@ static int describe(const masu_viewer_options *o, masu_viewer *v) {
 
 static int view(const masu_viewer_options *o) {
     masu_viewer *v = calloc(1, sizeof *v);
-    if (!v) return masu_cli_error("no memory");
+    if (!v) return masu_cli_error("out of memory");
     v->o = o;
     v->scripted = o->script || o->frames;
     v->rung = o->rung;
@@ -95,27 +104,27 @@ static int view(const masu_viewer_options *o) {
     free(v);
     if (code) return code;
     if (messages)
-        return masu_cli_error("the validation layer has reported %u message%s", messages,
+        return masu_cli_error("the validation layer reported %u message%s", messages,
                               messages == 1 ? "" : "s");
     if (!masu_cli_quiet() && (o->script || o->frames))
-        fprintf(stderr, "masu-view: %llu frames in %llu turns\n", (unsigned long long)frames,
+        fprintf(stderr, "masu-view: %llu frames in %llu loop iterations\n", (unsigned long long)frames,
                 (unsigned long long)turns);
     return MASU_CLI_OK;
 }
 
 static int run(masu_cli *cli) {
     masu_viewer_options o = {.size = {1280, 720}, .target_ms = 16.67, .host.message = print_message};
-    masu_given given = {.most = 1, .excess = "one scene at a time"};
+    masu_given given = {.most = 1, .excess = "expected one scene"};
     int code;
     if (!masu_options_read(cli, rows, &o, &given, &code)) return code;
     o.scene = given.count ? given.arguments[0] : NULL;
     o.rung_given = masu_is_given(&given, rows, "rung");
     masu_switch ignored;
     masu_use_rays(o.rays, &ignored, &o.host);
-    if (!o.scene && !o.json) return masu_cli_usage_error("no scene is given");
+    if (!o.scene && !o.json) return masu_cli_usage_error("no scene given: expected SCENE.masu or --json FILE.json");
     if (o.bake && !o.json) return masu_cli_usage_error("--bake needs --json");
     if (o.setting && (o.ladder || o.rung_given || masu_is_given(&given, rows, "target-ms")))
-        return masu_cli_usage_error("--setting is one rung: no --ladder, --rung or --target-ms");
+        return masu_cli_usage_error("--setting cannot be combined with --ladder, --rung or --target-ms");
     if ((o.screenshot || o.quit) && !o.frames)
         return masu_cli_usage_error("%s needs --frames", o.screenshot ? "--screenshot" : "--quit");
     return view(&o);
@@ -123,20 +132,31 @@ static int run(masu_cli *cli) {
 
 int main(int argc, char **argv) {
     static const masu_cli_command command = {
-        .arguments = "SCENE.masu [options]",
-        .summary = "looks at a baked scene in a window",
+        .arguments = "SCENE.masu [options]\n"
+                     "       masu-view --json FILE.json [options]",
+        .summary = "show a baked scene in a window",
         .details = "Keys:\n"
-                   "  W A S D, Q E          fly; Shift: faster; wheel: speed; right mouse button: look\n"
-                   "  P, Space              the scene's path; pause. Left, Right, Home: time (Shift: more)\n"
-                   "  1 .. 8, 0             a rung; the governor's choice. G: governor on, off. + -: its target\n"
+                   "  W A S D, Q E          move the camera; Shift: faster; mouse wheel: speed\n"
+                   "  right mouse button    turn the camera\n"
+                   "  P, Space              camera path on, off; pause\n"
+                   "  Left, Right, Home     time backward, forward, 0; Shift: larger steps\n"
+                   "  1 to 8                rung of the ladder\n"
+                   "  0; G; + and -         governor on; governor on, off; its target\n"
                    "  Tab or M              knobs: arrow keys select and change, Backspace: the default\n"
-                   "  F1                    overlay off, short, full\n"
-                   "  F2, [ ], left mouse   split screen: A, what is set, beside B; the line between them\n"
-                   "  left mouse            without split screen: what is under it\n"
-                   "  B                     what is set becomes B (at first the best rung)\n"
+                   "  F1                    overlay: off, short, full\n"
+                   "  F2                    split screen: A, the current setting, and B, a stored one\n"
+                   "  [ ], left mouse       move the dividing line; without split screen: pick an object\n"
+                   "  B                     store the current setting as B (at first the best rung)\n"
                    "  F3                    FLIP of A against B\n"
-                   "  F11, F12, Esc         full screen; picture to a file; end\n"
-                   "A game controller flies, too.\n",
+                   "  F11, F12, Esc         full screen; screenshot; exit\n"
+                   "A game controller also moves the camera.\n\n"
+                   "Exit codes:\n"
+                   "  0  success\n"
+                   "  1  the scene, the device or a file failed, or --validate reported a message\n"
+                   "  2  the command line is wrong\n\n"
+                   "Examples:\n"
+                   "  masu-view engine.masu\n"
+                   "  masu-view --json scenes/engine.json --setting scale=0.5\n",
         .run = run};
     static const masu_cli_command *const commands[] = {&command, NULL};
     static const masu_cli_program program = {

@@ -3,7 +3,7 @@
  * effect at the end of the turn, when the renderer is made anew. */
 #include "view/viewer.h"
 
-#include "bench/sweep/settings.h"
+#include "settings/setting.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -49,7 +49,7 @@ static void name_it(const masu_viewer *v, const masu_pick_info *p, char *out, si
                         masu_scene_name(&v->scene, MASU_SCENE_MODEL, model.index));
     }
     if (!p->instance.id || masu_instance_get(v->a.m, p->instance, &instance)) {
-        snprintf(out + used, size - (size_t)used, "an edge of some instance");
+        snprintf(out + used, size - (size_t)used, "an edge of an instance");
         return;
     }
     snprintf(out + used, size - (size_t)used, "instance '%.60s'",

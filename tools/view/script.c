@@ -95,10 +95,10 @@ static bool read_line(char *text, masu_script_line *line, const char **wrong) {
     for (int a = 0; a < ACTS; a++) {
         if (strcmp(act_names[a], word) != 0) continue;
         line->act = (masu_act)a;
-        *wrong = "what follows the action is missing or not understood";
+        *wrong = "wrong or missing argument of the action";
         return read_text(line);
     }
-    *wrong = "there is no such action";
+    *wrong = "unknown action";
     return false;
 }
 
@@ -121,7 +121,7 @@ bool masu_script_read(const char *path, masu_script *s, char *error, size_t size
     if (!s->text || !s->lines) {
         free(bytes);
         masu_script_free(s);
-        snprintf(error, size, "%s: no memory", path);
+        snprintf(error, size, "%s: out of memory", path);
         return false;
     }
     if (count) memcpy(s->text, bytes, count);
@@ -138,7 +138,7 @@ bool masu_script_read(const char *path, masu_script *s, char *error, size_t size
         bool good = read_line(text, line, &wrong);
         if (good && s->count && line->frame < s->lines[s->count - 1].frame) {
             good = false;
-            wrong = "frames must not fall";
+            wrong = "expected frame numbers in rising order";
         }
         if (!good) {
             snprintf(error, size, "%s:%u: %s: '%.80s'", path, number, wrong, text);
@@ -195,7 +195,7 @@ static bool run(masu_viewer *v, const char *command) {
     fflush(NULL);
     int status = system(command);
     if (!status) return true;
-    snprintf(v->error, sizeof v->error, "run: exit status %d of: %.300s", status, command);
+    snprintf(v->error, sizeof v->error, "run: exit code %d: %.300s", status, command);
     return false;
 }
 

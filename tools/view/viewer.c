@@ -1,7 +1,7 @@
 /* viewer.c: see viewer.h: what is made, in which order, and in which order it ends. */
 #include "view/viewer.h"
 
-#include "bench/sweep/settings.h"
+#include "settings/setting.h"
 #include "clock.h"
 #include "image.h"
 #include "view/stage.h"
@@ -47,8 +47,7 @@ static bool read_scene(masu_viewer *v, const char *path, void **blob, masu_scene
 /* The path's camera where there is one, else one that looks at the middle from a few metres. */
 static void place_camera(masu_viewer *v) {
     masu_camera camera = {.position = {0.0, 1.7, 6.0}, .forward = {0.0f, -0.1f, -1.0f}, .fov_y = 1.0f};
-    bool has = masu_scene_count(&v->scene, MASU_SCENE_CAMERA_KEY) &&
-               masu_camera_at(v->a.m, v->time, &camera) == MASU_OK;
+    bool has = masu_scene_count(&v->scene, MASU_SCENE_CAMERA_KEY) && masu_camera_at(v->a.m, v->time, &camera) == MASU_OK;
     masu_fly_from(&v->fly, &camera);
     v->on_path = has;
 }
@@ -168,9 +167,9 @@ static bool resize_stages(masu_viewer *v, VkExtent2D now) {
     if (kept) masu_plan_of(v->a.m, &v->plan);
     if (!kept && !start_a(v)) return false;
     masu_viewer_note(v, "%ux%u in %.0f ms, %s", now.width, now.height, v->a.start_ms,
-                     kept            ? "no pipeline made anew"
-                     : v->a.in_place ? "made anew in the same blocks"
-                                     : "made anew in larger blocks");
+                     kept            ? "no pipeline rebuilt"
+                     : v->a.in_place ? "rebuilt in the same blocks"
+                                     : "rebuilt in larger blocks");
     if (v->show == MASU_SHOW_A) return true;
     return masu_stage_resize(&v->b, now, v->error, sizeof v->error) || start_b(v);
 }
@@ -185,7 +184,7 @@ bool masu_viewer_resize(masu_viewer *v) {
     const masu_headless_target *is = &v->a.target;
     if (!now.width || (v->a.m && is->width == now.width && is->height == now.height)) return true;
     if (!masu_canvas_resize(&v->canvas, now.width, now.height)) {
-        snprintf(v->error, sizeof v->error, "no memory for an overlay of %ux%u", now.width, now.height);
+        snprintf(v->error, sizeof v->error, "out of memory for an overlay of %ux%u", now.width, now.height);
         return false;
     }
     if (!masu_compose_resize(&v->compose, now, v->error, sizeof v->error)) return false;
@@ -235,7 +234,7 @@ bool masu_viewer_load(masu_viewer *v, const char *path) {
         v->trouble[0] = '\0';
         v->path_end = masu_fly_path_end(v->a.m);
         if (!masu_scene_count(&scene, MASU_SCENE_CAMERA_KEY)) v->on_path = false;
-        masu_viewer_note(v, "reloaded in %.0f ms, %s", v->a.start_ms,
+        masu_viewer_note(v, "reloaded in %.0f ms %s", v->a.start_ms,
                          v->a.in_place ? "in the same blocks" : "in larger blocks");
         return v->show == MASU_SHOW_A || start_b(v);
     }
@@ -269,7 +268,7 @@ static bool open_device(masu_viewer *v) {
         SDL_Delay(50);
     }
     if (v->a.m) return true;
-    snprintf(v->error, sizeof v->error, "no window: it has no size");
+    snprintf(v->error, sizeof v->error, "no window: its size is 0");
     return false;
 }
 
@@ -310,8 +309,8 @@ bool masu_viewer_open(masu_viewer *v) {
     want_given(v);
     v->reference = v->want.rungs[0];
     if (v->rung >= v->want.rung_count) {
-        snprintf(v->error, sizeof v->error, "--rung %u does not exist, there are 0 to %u", v->rung,
-                 v->want.rung_count - 1);
+        snprintf(v->error, sizeof v->error, "--rung: expected 0 to %u, found %u", v->want.rung_count - 1,
+                 v->rung);
         return false;
     }
     if (!masu_window_open(&v->window, title, v->o->size, v->error, sizeof v->error) || !open_device(v))

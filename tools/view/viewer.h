@@ -18,7 +18,7 @@
 #include "view/stage.h"
 #include "view/window.h"
 
-#include "bench/sweep/table.h"
+#include "settings/setting.h"
 
 #define MASU_VIEWER_STEP (1.0 / 60.0) /* seconds a frame, where a script says what happens when */
 

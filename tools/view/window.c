@@ -125,7 +125,7 @@ static bool choose_format(masu_window *w, VkSurfaceFormatKHR *out, char *error, 
             return true;
         }
     }
-    snprintf(error, size, "the window's surface has no UNORM format that can be blitted to");
+    snprintf(error, size, "the window's surface has no UNORM format that supports blits");
     return false;
 }
 
@@ -160,7 +160,7 @@ static bool make_images(masu_window *w, char *error, size_t size) {
     w->count = MASU_WINDOW_IMAGES;
     VkResult r = vkGetSwapchainImagesKHR(w->host->device, w->swapchain, &w->count, w->images);
     if (r == VK_INCOMPLETE) {
-        snprintf(error, size, "the swapchain has more than %u images", MASU_WINDOW_IMAGES);
+        snprintf(error, size, "swapchain: expected at most %u images", MASU_WINDOW_IMAGES);
         return false;
     }
     if (r) return masu_headless_fail(error, size, "vkGetSwapchainImagesKHR", r);
@@ -184,7 +184,7 @@ bool masu_window_swapchain(masu_window *w, bool vsync, char *error, size_t size)
         return true;
     }
     if (!(caps.supportedUsageFlags & VK_IMAGE_USAGE_TRANSFER_DST_BIT)) {
-        snprintf(error, size, "the window's surface cannot be copied to");
+        snprintf(error, size, "the window's surface does not support copies");
         return false;
     }
     VkSurfaceFormatKHR format = {VK_FORMAT_UNDEFINED, VK_COLOR_SPACE_SRGB_NONLINEAR_KHR};

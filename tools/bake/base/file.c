@@ -2,7 +2,7 @@
 #define _XOPEN_SOURCE 700
 #include "bake/base/file.h"
 #include "cli/cli.h"
-#include "draft.h"
+#include "atomic_file.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -16,7 +16,7 @@
 static struct {
     pid_t owner; /* forked children inherit this state and must not act on it */
     char *directory;
-    int lock; /* of the directory, until this process ends: platform/draft.h */
+    int lock; /* of the directory, until this process ends: platform/atomic_file.h */
     const char *file;
     bool registered;
 } temporary;
@@ -92,7 +92,7 @@ void masu_bake_sweep_temporary(void) {
             strlen(entry->d_name) != sizeof TEMPORARY - 1 + TEMPORARY_RANDOM)
             continue;
         char *path = masu_bake_join(parent, entry->d_name);
-        int lock = masu_draft_take_dead(path, true);
+        int lock = masu_atomic_file_lock_stale(path, true);
         if (lock >= 0) {
             remove_tree(path, 0);
             close(lock);
@@ -113,7 +113,7 @@ const char *masu_bake_temporary_directory(void) {
             return NULL;
         }
         temporary.lock = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-        if (temporary.lock >= 0 && masu_draft_hold(temporary.lock, path)) return temporary.directory = path;
+        if (temporary.lock >= 0 && masu_atomic_file_lock(temporary.lock, path)) return temporary.directory = path;
         if (temporary.lock >= 0) close(temporary.lock); /* swept while it was new */
         free(path);
     }
@@ -184,15 +184,15 @@ static int write_straight(const char *path, const void *data, size_t bytes) {
 }
 
 static int write_and_rename(const char *path, const void *data, size_t bytes) {
-    masu_draft draft;
+    masu_atomic_file draft;
     clean_up_at_exit();
-    int problem = masu_draft_open(&draft, path);
+    int problem = masu_atomic_file_open(&draft, path);
     if (problem) return problem;
     temporary.file = draft.name;
-    problem = masu_draft_write(&draft, data, bytes);
+    problem = masu_atomic_file_write(&draft, data, bytes);
     temporary.file = NULL; /* the next two remove it */
-    if (!problem) return masu_draft_finish(&draft, path);
-    masu_draft_drop(&draft);
+    if (!problem) return masu_atomic_file_commit(&draft, path);
+    masu_atomic_file_discard(&draft);
     return problem;
 }
 

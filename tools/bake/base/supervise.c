@@ -4,7 +4,7 @@
 #include "bake/base/file.h"
 #include "bake/base/process.h"
 #include "cli/cli.h"
-#include "draft.h"
+#include "atomic_file.h"
 
 #include <errno.h>
 #include <signal.h>
@@ -38,7 +38,7 @@ static void limit_memory(uint32_t mib) {
 static int report(const masu_bake_supervised *w, int status, bool timed_out, int heard) {
     if (WIFEXITED(status) && !timed_out) return WEXITSTATUS(status);
     masu_cli_progress_clear();
-    masu_draft_sweep(w->output ? w->output : "");
+    masu_atomic_file_remove_stale(w->output ? w->output : "");
     masu_bake_sweep_temporary();
     if (heard) {
         masu_cli_error("interrupted by signal %d", heard);

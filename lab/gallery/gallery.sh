@@ -1,0 +1,92 @@
+#!/bin/bash
+# gallery.sh: every model of strangers, as masu-bake shows it: one HTML page with a picture of each, its name, triangles,
+# bytes, seconds, and what masu-bake says of it. For people to look at; tests/scripts/bake.sh counts outcomes.
+#
+#   gallery.sh OUT FOLDER...     OUT: a new or empty folder for index.html, the pictures, counts.txt
+#
+# SIZE (480x270) of the pictures, MATCH a pattern (find -path) of the models, JOBS (all processors) at once.
+# NO_PICTURES=1 only bakes.
+set -u
+cd "$(dirname "$0")/../.." || exit 1
+bake=$(realpath "${BUILD:-build}/bin/masu-bake")
+masu=$(realpath "${BUILD:-build}/bin/masu")
+size=${SIZE:-480x270}
+
+. tests/outcome.sh
+
+html() { sed 's/&/\&amp;/g; s/</\&lt;/g; s/>/\&gt;/g'; }
+
+# one NUMBER FILE NAME: a row of the page in OUT/NUMBER.row, its outcome in OUT/NUMBER.outcome
+one() {
+    local number=$1 file=$2 name=$3 at=$out/$1 start took code
+    start=$(date +%s%N)
+    timeout 60 "$bake" "$file" -o "$at.masu" --stats "$at.json" --quiet > /dev/null 2> "$at.err" < /dev/null
+    code=$?
+    took=$((($(date +%s%N) - start) / 1000000))
+    outcome $code "$at.err" > "$at.outcome"
+    {
+        echo "<figure>"
+        if [ $code = 0 ] && [ ! "${NO_PICTURES:-}" ]; then
+            if timeout 300 "$masu" render "$at.masu" -o "$at.png" --size "$size" --quiet > /dev/null 2>> "$at.err"; then
+                echo "<img src=\"$number.png\" loading=\"lazy\" alt=\"\">"
+            else
+                echo "WRONG: does not render" > "$at.outcome"
+            fi
+        fi
+        printf '<figcaption><b>%s</b><br>' "$(html <<< "$name")"
+        if [ $code = 0 ]; then
+            printf '%s triangles, %s bytes, ' "$(sed -n 's/^  "drawn_triangles": \([0-9]*\).*/\1/p' "$at.json")" \
+                "$(stat -c %s "$at.masu")"
+        fi
+        printf '%d.%03d s<br>%s' $((took / 1000)) $((took % 1000)) "$(cat "$at.outcome")"
+        sed "s|^masu-bake: ||; s|$file: ||; s|${file%/*}/||g" "$at.err" | cut -c 1-300 | html | sed 's/^/<br><small>/; s/$/<\/small>/'
+        printf '</figcaption></figure>\n'
+    } > "$at.row"
+    echo "$took $name" > "$at.took"
+    sed -n 's/^  "peak_bytes": \([0-9]*\).*/\1/p' "$at.json" > "$at.peak" 2> /dev/null
+    rm -f "$at.masu" "$at.json"
+}
+
+if [ "${1:-}" = --one ]; then
+    out=$2
+    one "$3" "$4" "$5"
+    exit
+fi
+
+out=$1
+shift
+mkdir -p "$out" || exit 1
+out=$(realpath "$out")
+rm -f "$out"/[0-9]*.{png,row,outcome,took,peak,err} "$out"/index.html "$out"/counts.txt
+number=0
+for folder in "$@"; do
+    [ -d "$folder" ] || continue
+    while read -r file; do
+        is_model "$file" || continue
+        case $folder in */tracks | */tracks/) [[ $file == *.acc ]] || continue ;; esac # beside descriptions in XML
+        number=$((number + 1))
+        printf '%s\0%s\0%s\0%s\0%s\0' --one "$out" "$(printf %04d $number)" "$file" "${file#"${folder%/}"/}"
+    done < <(find "$folder" -type f ! -size +64M -path "${MATCH:-*}" | LC_ALL=C sort)
+done > "$out/list"
+xargs -0 -n 5 -P "${JOBS:-$(nproc)}" -r "$0" < "$out/list"
+rm -f "$out/list"
+cat "$out"/[0-9]*.outcome 2> /dev/null | sort | uniq -c | sort -rn > "$out/counts.txt"
+{
+    echo '<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>Models of strangers</title>'
+    echo '<style>body{font:14px sans-serif;background:#ddd}figure{display:inline-block;vertical-align:top;margin:6px;width:480px;'
+    echo 'background:#fff;overflow-wrap:anywhere}img{width:480px;display:block}figcaption{padding:6px}small{color:#a30}</style>'
+    echo '<h1>Models of strangers</h1><pre>'
+    html < "$out/counts.txt"
+    cut -d ' ' -f 1 "$out"/[0-9]*.took 2> /dev/null | sort -n | awk '{ t[NR] = $1 } END { if (NR)
+        printf "seconds to bake: median %.2f, most %.2f\n", t[int((NR + 1) / 2)] / 1000, t[NR] / 1000 }' | tee -a "$out/counts.txt"
+    cat "$out"/[0-9]*.peak 2> /dev/null | sort -n | awk '{ p[NR] = $1 } END { if (NR)
+        printf "memory to bake, MB: median %.1f, most %.1f\n", p[int((NR + 1) / 2)] / 1e6, p[NR] / 1e6 }' | tee -a "$out/counts.txt"
+    sort -rn "$out"/[0-9]*.took 2> /dev/null | head -5 | awk '{ $1 = $1 / 1000 " s "; print }' | html
+    echo '</pre>'
+    cat "$out"/[0-9]*.row 2> /dev/null
+    echo '</html>'
+} > "$out/index.html"
+rm -f "$out"/[0-9]*.{row,outcome,took,peak,err}
+cat "$out/counts.txt"
+echo "The page is $out/index.html"
+! grep -q WRONG "$out/counts.txt"

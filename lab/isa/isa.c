@@ -1,0 +1,109 @@
+/* isa.c: see isa.h. */
+#include "lab/isa/isa.h"
+#include "lab/isa/null_device.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *const masu_isa_field_names[MASU_ISA_FIELD_COUNT] = {
+#define MASU_ISA_NAME(ID, name, ...) name,
+    MASU_ISA_FIELDS(MASU_ISA_NAME)
+#undef MASU_ISA_NAME
+};
+
+/* Handles that nobody follows. */
+static void give_targets(masu_desc *desc) {
+    static const VkImage image = (VkImage)(uintptr_t)1;
+    static const VkImageView view = (VkImageView)(uintptr_t)1;
+    desc->targets.images = &image;
+    desc->targets.views = &view;
+    desc->targets.count = 1;
+    desc->targets.storage = 1;
+}
+
+static bool compile(masu_desc *desc, char *error, size_t size) {
+    masu_detail detail;
+    masu_memory need;
+    masu_renderer *m = NULL;
+    bool good = !masu_memory_query(desc, &need, &detail);
+    void *block = NULL;
+    if (good) {
+        size_t align = (size_t)need.host_alignment;
+        block = aligned_alloc(align, ((size_t)need.host_bytes + align - 1) / align * align);
+        good = block && !masu_init(desc, block, need.host_bytes, &m, &detail);
+        if (!block) snprintf(detail.text, sizeof detail.text, "out of memory");
+    }
+    if (!good) snprintf(error, size, "%s", detail.text);
+    masu_destroy(m);
+    free(block);
+    return good;
+}
+
+bool masu_isa_compile(const masu_desc *given, void (*before)(const char *pass), masu_isa_rows *rows, char *error,
+                      size_t error_size) {
+    masu_null_device device;
+    masu_desc desc = *given;
+    memset(rows, 0, sizeof *rows);
+    if (!masu_null_device_open(&device, before, rows, error, error_size)) return false;
+    desc.vulkan = (masu_vulkan){.get_instance_proc_addr = masu_null_get_instance_proc_addr,
+                                .instance = device.instance,
+                                .physical_device = device.physical,
+                                .device = device.device,
+                                .queue_family = device.family,
+                                .texture_compression_bc = device.compressed,
+                                .max_anisotropy = desc.vulkan.max_anisotropy > device.most_anisotropy
+                                                      ? device.most_anisotropy
+                                                      : desc.vulkan.max_anisotropy,
+                                .shader_float16 = device.float16};
+    desc.ray_query = MASU_OFF; /* our own tree is what these GPUs trace with */
+    desc.debug.labels = 1;     /* names, by which rows know their pass */
+    give_targets(&desc);
+    bool good = compile(&desc, error, error_size);
+    if (good && rows->failed[0]) {
+        snprintf(error, error_size, "%s", rows->failed);
+        good = false;
+    }
+    masu_null_device_close(&device);
+    return good;
+}
+
+bool masu_isa_send(const masu_isa_rows *rows, FILE *f) {
+    for (uint32_t i = 0; i < rows->count; i++) {
+        const masu_isa_row *r = &rows->row[i];
+        fprintf(f, "isa\t%s\t%s\t%u", r->pipeline, r->stage, r->lanes);
+        for (int k = 0; k < MASU_ISA_FIELD_COUNT; k++) fprintf(f, "\t%.9g", r->value[k]);
+        fputc('\n', f);
+    }
+    return fflush(f) == 0;
+}
+
+/* The text up to the next tab, and where it goes on; NULL: there is none. */
+static const char *take(const char *at, char out[MASU_ISA_TEXT]) {
+    size_t n = strcspn(at, "\t\n");
+    if (at[n] != '\t' || n >= MASU_ISA_TEXT) return NULL;
+    memcpy(out, at, n);
+    out[n] = 0;
+    return at + n + 1;
+}
+
+static bool receive_row(const char *at, masu_isa_row *row) {
+    char *end;
+    if (!(at = take(at, row->pipeline)) || !(at = take(at, row->stage))) return false;
+    row->lanes = (uint32_t)strtoul(at, &end, 10);
+    for (int k = 0; k < MASU_ISA_FIELD_COUNT; k++) {
+        if (*end != '\t') return false;
+        row->value[k] = strtod(end + 1, &end);
+    }
+    return *end == '\n';
+}
+
+bool masu_isa_receive(const char *text, masu_isa_rows *rows) {
+    memset(rows, 0, sizeof *rows);
+    for (const char *line = text; line && *line; line = strchr(line, '\n'), line += line != NULL) {
+        if (strncmp(line, "isa\t", 4)) continue;
+        if (rows->count == MASU_ISA_ROWS || !receive_row(line + 4, &rows->row[rows->count])) return false;
+        rows->count++;
+    }
+    return true;
+}

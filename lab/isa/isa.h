@@ -1,0 +1,71 @@
+/* isa.h: what the pipelines of a scene become on a GPU that is not here: registers, waves, instructions,
+ * cycles, spills, by the GPU's own compiler (VK_KHR_pipeline_executable_properties).
+ *
+ * A row is one stage of one pipeline, or one width of it where the compiler makes several. Numbers that a
+ * driver does not give are NAN. `cycles` is of one wave: RADV's inverse throughput, ANV's cycle count; loops are
+ * guessed by the compilers, so it compares shaders and says nothing of a frame. */
+#ifndef MASU_ISA_H
+#define MASU_ISA_H
+
+#include "lab/isa/gpu.h"
+#include "masu.h"
+
+#include <stdio.h>
+
+/* FIELD(ID, name, unit and meaning, its names in RADV, ANV, Turnip; NULL: not given) */
+#define MASU_ISA_FIELDS(FIELD)                                                                     \
+    FIELD(REGISTERS, "registers", "vector registers of a lane (Turnip: of four numbers)", "VGPRs", \
+          NULL, "Registers used")                                                                  \
+    FIELD(WAVES, "waves", "waves that a SIMD (Turnip: a core) holds at once", "Subgroups per SIMD", \
+          NULL, "Max Waves Per Core")                                                              \
+    FIELD(INSTRUCTIONS, "instructions", "instructions", "Instructions", "Instruction Count",       \
+          "Instruction Count")                                                                     \
+    FIELD(CYCLES, "cycles", "RADV: inverse throughput; ANV: cycles", "Inverse Throughput",         \
+          "Cycle Count", NULL)                                                                     \
+    FIELD(LATENCY, "latency", "cycles of one wave alone", "Latency", NULL, NULL)                   \
+    FIELD(SENDS, "sends", "messages to memory and samplers", NULL, "SEND Count", NULL)             \
+    FIELD(SPILLS, "spills", "registers written to memory", "Spilled VGPRs", "Spill Count",         \
+          "STP Count")                                                                             \
+    FIELD(FILLS, "fills", "and read again", NULL, "Fill Count", "LDP Count")                       \
+    FIELD(SCALAR_SPILLS, "scalar_spills", "scalar registers put into vector ones", "Spilled SGPRs", \
+          NULL, NULL)                                                                              \
+    FIELD(SCRATCH, "scratch", "bytes of memory of a lane (ANV: of a thread)", "Scratch size",      \
+          "Scratch Memory Size", NULL)                                                             \
+    FIELD(LDS, "lds", "bytes of shared memory of a group", "LDS size", NULL, NULL)
+
+typedef enum masu_isa_field {
+#define MASU_ISA_ID(ID, ...) MASU_ISA_##ID,
+    MASU_ISA_FIELDS(MASU_ISA_ID)
+#undef MASU_ISA_ID
+    MASU_ISA_FIELD_COUNT
+} masu_isa_field;
+
+extern const char *const masu_isa_field_names[MASU_ISA_FIELD_COUNT];
+
+enum { MASU_ISA_ROWS = 256, MASU_ISA_TEXT = 48 };
+
+typedef struct masu_isa_row {
+    char pipeline[MASU_ISA_TEXT]; /* as the renderer names it: of a pass, or "gbuffer, masks" */
+    char stage[MASU_ISA_TEXT];    /* of the driver's: "Compute Shader", "SIMD16 Fragment Shader" */
+    uint32_t lanes;               /* of a wave */
+    double value[MASU_ISA_FIELD_COUNT];
+} masu_isa_row;
+
+typedef struct masu_isa_rows {
+    uint32_t count;
+    masu_isa_row row[MASU_ISA_ROWS];
+    char failed[160]; /* the first thing that went wrong; "" */
+} masu_isa_rows;
+
+/* In a process that has the GPU's environment: compiles all pipelines of the plan. `desc` has a scene and
+ * neither device nor targets. `before` is called with the pass whose pipelines come next: a compiler that
+ * crashes is to be blamed for it by name. False: `error` holds one line. */
+bool masu_isa_compile(const masu_desc *desc, void (*before)(const char *pass), masu_isa_rows *rows, char *error,
+                      size_t error_size);
+
+/* Rows through a pipe: one line each, which starts with "isa\t". */
+bool masu_isa_send(const masu_isa_rows *rows, FILE *f);
+/* Lines of other kinds are passed over: what a driver says of itself. False: a line is broken. */
+bool masu_isa_receive(const char *text, masu_isa_rows *rows);
+
+#endif

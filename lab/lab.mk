@@ -1,0 +1,204 @@
+# lab.mk: the laboratory: the program masu-lab, its tests, and the targets that run it. It is built apart, by
+# config=lab: with the define MASU_LAB, into build/lab. Nothing outside lab/ includes or links anything of it.
+#
+# In every other config the targets here start make again with config=lab. Shaders, tables and scenes are those of the
+# main build (MADE).
+
+ifneq ($(config),lab)
+
+LAB_BUILD := $(BUILD)/lab
+lab_make = $(more) config=lab BUILD='$(LAB_BUILD)' MADE='$(MADE)'
+
+.PHONY: lab lab-check
+lab: $(GENERATED) ## build build/lab/bin/masu-lab, and masu and masu-bake with every march
+	+$(V)$(lab_make) lab-programs
+lab-check: deps-test ## install what is missing, build, run the lab's tests on the system driver: TESTS=name
+	+$(V)$(more) tools scenes
+	+$(V)$(lab_make) lab-check-built
+
+.PHONY: study isa-table ladders ladder-devices gallery
+study: tools scenes ## masu-lab study on its scenes: STUDY=march STUDY_SCENES='march/city' STUDY_ARGS=
+isa-table: tools scenes ## write lab/notes/isa.csv: every pipeline on the GPUs that the project is for
+ladders: $(GENERATED) ## write src/quality/ladder_tables.h from docs/report/*/ladder.json: LADDERS='both=engine ...'
+ladder-devices: tools $(foreach l,$(LADDERS),$(call ladder_scene,$(l))) ## write src/quality/ladder_devices.h by the cost model: MASU_ISA_DRIVERS=
+gallery: tools ## a page of all of assimp-testmodels and TORCS's tracks, build/gallery/index.html: MATCH='*OBJ*' SIZE=
+study isa-table ladders ladder-devices gallery:
+	+$(V)$(lab_make) $@
+
+.PHONY: isa-drivers
+isa-drivers: ## build Intel's and Adreno's compilers for MASU_ISA_DRIVERS=build/isa-drivers (ten minutes)
+	$(call install-packages,$(PACKAGES_isa))
+	$(V)lab/isa/drivers.sh build/isa-drivers
+
+# ---- Worlds: written by masu-lab and baked like any scene. Not part of `all` or of the tests. ----
+
+$(LAB_BUILD)/bin/masu-lab: force | $(GENERATED)
+	+$(V)$(lab_make) $@
+
+$(BUILD)/worlds/city/city.json: $(LAB_BUILD)/bin/masu-lab
+	@mkdir -p $(@D)
+	$(V)$< world city $(@D) --quiet
+$(BUILD)/worlds/forza/forza.json: $(LAB_BUILD)/bin/masu-lab
+	@mkdir -p $(@D)
+	$(V)$< world forza $(@D) --torcs '$(TORCS)'
+FORZA_RELIEFS := $(foreach r,asphalt grass gravel,$(BUILD)/worlds/forza/$(r).json)
+$(FORZA_RELIEFS): $(BUILD)/worlds/forza/%.json: $(BUILD)/bin/masu-meso
+	@mkdir -p $(@D)
+	@echo "  MESO    $*"
+	$(V)cd $(@D) && $(abspath $(BUILD)/bin/masu-meso) --make $* -o $* > /dev/null
+$(BUILD)/worlds/forza.masu: $(FORZA_RELIEFS)
+
+.PHONY: $(WORLDS:%=world-%)
+$(WORLDS:%=world-%): world-%: $(BUILD)/worlds/%.masu
+define world_rule
+$(BUILD)/worlds/$(1).masu: $(BUILD)/worlds/$(1)/$(1).json $(BUILD)/bin/masu-bake
+	@echo "  BAKE    $$<"
+	$$(V)$(BUILD)/bin/masu-bake $$< -o $$@ --stats $$(@:.masu=.stats.json)
+endef
+$(foreach w,$(WORLDS),$(eval $(call world_rule,$(w))))
+$(BUILD)/worlds/forza.track: $(BUILD)/worlds/forza/forza.json
+	$(V)cp $(@D)/forza/forza.track $@
+
+else # ---- config=lab ------------------------------------------------------------------------------
+
+LAB := $(BUILD)/bin/masu-lab
+LAB_SOURCES := $(filter-out lab/command/main.c,$(wildcard lab/*/*.c))
+LAB_ARCHIVE := $(BUILD)/lib/libmasu-lab.a
+LAB_LINKED  := $(LAB_ARCHIVE) $(call tool_archive,meso) $(MEASURE_ARCHIVES) $(BAKE_ARCHIVES)
+
+$(BUILD)/obj/lab/%.o: FOLDER_FLAGS := -D_POSIX_C_SOURCE=200809L -I.
+$(BUILD)/obj/lab/tests/%.o: FOLDER_FLAGS := -D_POSIX_C_SOURCE=200809L -UNDEBUG -I.
+
+# Shaders that only the lab uses, as C (shaders/shaders.mk).
+LAB_SPIRV := $(addprefix $(MADE)/gen/,$(sort $(shell grep -rhoE '\b[a-z0-9_]+\.spv\.h' --include='*.[ch]' lab)))
+$(foreach d,lab/study lab/tests/gpu,$(foreach s,$(STAGES),$(eval $(call shader_rule,%_$(s),$(d)/%.$(s)))))
+LAB_TESTS_SOURCES := $(wildcard lab/tests/*/*.c)
+$(call objects,$(LAB_SOURCES) $(LAB_TESTS_SOURCES)): | $(LAB_SPIRV)
+
+$(LAB_ARCHIVE): $(call objects,$(LAB_SOURCES))
+$(LAB): LIBS = $(MASU_LIBS) $(BAKE_LIBS)
+$(LAB): $(BUILD)/obj/lab/command/main.o $(BUILD)/obj/tests/support/simulated_gpu.o $(KEEP_LOADED) $(LAB_LINKED)
+	$(link)
+
+# masu conform finds a suite and its scenes beside itself.
+LAB_SUITES := $(patsubst lab/%,$(BUILD)/%,$(wildcard lab/suites/*.json))
+$(LAB_SUITES): $(BUILD)/%.json: lab/%.json
+	@mkdir -p $(@D)
+	$(V)cp $< $@
+
+.PHONY: lab-programs
+lab-programs: $(LAB) $(BUILD)/bin/masu $(BUILD)/bin/masu-bake $(LAB_SUITES)
+
+# ---- Scenes with every march ---------------------------------------------------------------------
+
+# For masu-lab study march: each .sdf scene, and its double-precision truth beside it. For study baseline: engine.
+MARCH_SCENES := $(patsubst scenes/%.sdf,$(BUILD)/march/%.masu,$(wildcard scenes/*.sdf))
+MARCH_SUITE  := $(patsubst %,$(BUILD)/scenes/extreme/%.masu,displace_sine rods)
+
+# lab_bake: the first prerequisite, a scene, with every march
+define lab_bake
+@mkdir -p $(@D)
+@echo "  BAKE    $< --variants"
+$(V)$(BUILD)/bin/masu-bake $< -o $@ --variants --quiet
+endef
+$(MARCH_SCENES): $(BUILD)/march/%.masu: scenes/%.json scenes/%.sdf $(BUILD)/bin/masu-bake
+	$(lab_bake)
+$(BUILD)/march/engine.masu: scenes/engine.json scenes/engine.glsl $(BUILD)/bin/masu-bake
+	$(lab_bake)
+$(MARCH_SUITE): $(BUILD)/scenes/extreme/%.masu: tests/scenes/stiff/%.json tests/scenes/stiff/%.sdf $(BUILD)/bin/masu-bake
+	$(lab_bake)
+$(BUILD)/march/%.truth.c: scenes/%.sdf $(MADE)/bin/masu-sdfc
+	@mkdir -p $(@D)
+	$(V)$(MADE)/bin/masu-sdfc $< --c $@ --quiet
+$(BUILD)/scenes/extreme/%.truth.c: tests/scenes/stiff/%.sdf $(MADE)/bin/masu-sdfc
+	@mkdir -p $(@D)
+	$(V)$(MADE)/bin/masu-sdfc $< --c $@ --quiet
+
+# ---- Targets that run it -------------------------------------------------------------------------
+
+# masu-lab study $(STUDY) on each of its scenes, names as march/city, scenes/engine, worlds/forza, with STUDY_ARGS.
+# The worlds are measured if they are baked (make worlds). march is one run on all scenes, which it sums up; upscale
+# has an image of its own.
+STUDY ?= march
+baked_worlds = $(patsubst $(MADE)/%.masu,%,$(wildcard $(WORLDS:%=$(MADE)/worlds/%.masu)))
+SCENES_march       := $(MARCH_SCENES:$(BUILD)/%.masu=%)
+SCENES_reflections := scenes/mirrors
+SCENES_rays        := scenes/test_trace scenes/mirrors
+SCENES_image       := scenes/engine
+SCENES_temporal    := scenes/engine
+SCENES_baseline    := march/engine march/city march/wet_city scenes/mirrors $(baked_worlds)
+STUDY_SCENES ?= $(SCENES_$(STUDY))
+study_blob   = $(if $(filter march/%,$(1)),$(BUILD),$(MADE))/$(1).masu
+study_blobs  = $(foreach s,$(STUDY_SCENES),$(call study_blob,$(s)))
+study_truths = $(if $(filter march,$(STUDY)),$(study_blobs:.masu=.truth.so))
+.PHONY: study
+study: $(LAB) $(study_blobs) $(study_truths)
+ifeq ($(STUDY),march)
+	$(V)$(LAB) study march $(study_blobs) $(STUDY_ARGS)
+else ifeq ($(STUDY),upscale)
+	$(V)$(LAB) study upscale $(STUDY_ARGS)
+else
+	$(V)mkdir -p $(BUILD)/study
+	$(V)for s in $(study_blobs); do \
+	    set -- ; [ $(STUDY) != baseline ] || { \
+	        time=1; [ $${s##*/} != forza.masu ] || time=146.5; \
+	        to=$(BUILD)/study/baseline-$$(basename $$s .masu); \
+	        set -- --time $$time --truth $$to.truth.png --csv $$to.csv; }; \
+	    $(LAB) study $(STUDY) $$s "$$@" $(STUDY_ARGS) || exit 1; \
+	done
+endif
+
+# Without MASU_ISA_DRIVERS only the rows of RADV's GPUs change.
+ISA_GPUS := vangogh,raven$(if $(MASU_ISA_DRIVERS),$(comma)skl$(comma)kbl$(comma)tgl$(comma)a630$(comma)a660)
+.PHONY: isa-table
+isa-table: $(LAB) $(SCENES)
+	$(V)BUILD=$(BUILD) MADE=$(MADE) lab/isa/table.sh $(ISA_GPUS) > $(BUILD)/isa.csv
+	$(V)test -n '$(MASU_ISA_DRIVERS)' || awk -F, '$$2 ~ /^(skl|kbl|tgl|a630|a660)$$/' lab/notes/isa.csv >> $(BUILD)/isa.csv
+	$(V)mv $(BUILD)/isa.csv lab/notes/isa.csv
+
+.PHONY: ladders ladder-devices
+ladders: $(LAB)
+	$(V)files=; for l in $(LADDERS); do \
+	    f=$(LADDER_FOLDER)/$${l#*=}/ladder.json; \
+	    if [ -f "$$f" ]; then files="$$files $${l%%=*}=$$f"; else echo "masu: there is no $$f"; fi; \
+	done; \
+	[ "$$files" ] || { echo "masu: no ladder is measured; see make bench" >&2; exit 1; }; \
+	$(LAB) ladder $$files > $(BUILD)/ladder_tables.h && \
+	{ cmp -s $(BUILD)/ladder_tables.h src/quality/ladder_tables.h || cp $(BUILD)/ladder_tables.h src/quality/ladder_tables.h; }
+
+# forza at a time at which a car is close, as in make bench.
+ladder_device = $(firstword $(subst =, ,$(1)))=$(call ladder_scene,$(1))=$(LADDER_FOLDER)/$(lastword $(subst =, \
+    ,$(1)))/ladder.json$(if $(filter %=forza,$(1)),=146.5)
+ladder-devices: $(LAB)
+	$(V)$(LAB) ladder --devices $(foreach l,$(LADDERS),$(call ladder_device,$(l))) > $(BUILD)/ladder_devices.h
+	$(V)cp $(BUILD)/ladder_devices.h src/quality/ladder_devices.h
+
+.PHONY: gallery
+gallery:
+	$(V)BUILD='$(MADE)' SIZE='$(if $(filter command line,$(origin SIZE)),$(SIZE),480x270)' MATCH='$(or $(MATCH),*)' \
+	    lab/gallery/gallery.sh $(MADE)/gallery $(or $(MODELS),/usr/share/assimp/models) $(TORCS)/tracks
+
+# ---- Tests: lab/tests/{unit,gpu,fuzz,scripts}, as in tests/tests.mk ------------------------------
+
+lab_programs = $(call only,$(patsubst lab/tests/%.c,$(BUILD)/tests/lab/%,$(wildcard $(1))))
+LAB_UNIT    := $(call lab_programs,lab/tests/unit/test_*.c)
+LAB_GPU     := $(call lab_programs,lab/tests/gpu/test_*.c)
+LAB_FUZZ    := $(call lab_programs,lab/tests/fuzz/fuzz_*.c)
+LAB_SCRIPTS := $(call only,$(wildcard lab/tests/scripts/*.sh))
+FUZZ_SEEDS_trace := $(wildcard lab/tests/fuzz/corpus/trace/*)
+FUZZ_SEEDS_tally := $(wildcard tests/fuzz/corpus/spirv/*)
+
+$(BUILD)/tests/lab/unit/%: $(BUILD)/obj/lab/tests/unit/%.o $(LAB_ARCHIVE) $(TEST_ARCHIVES)
+	$(link)
+$(BUILD)/tests/lab/gpu/%: $(BUILD)/obj/lab/tests/gpu/%.o $(KEEP_LOADED) $(LAB_ARCHIVE) $(TEST_ARCHIVES)
+	$(link)
+$(BUILD)/tests/lab/fuzz/%: $(BUILD)/obj/lab/tests/fuzz/%.o $(FUZZ_MAIN) $(LAB_ARCHIVE) $(TEST_ARCHIVES)
+	$(link)
+
+.PHONY: lab-check-built
+lab-check-built: override DRIVERS := system
+lab-check-built: lab-programs $(LAB_UNIT) $(LAB_GPU) $(LAB_FUZZ) $(DRIVER_INFO) $(MARCH_SUITE) $(MARCH_SUITE:.masu=.truth.so)
+	$(V)$(foreach t,$(LAB_FUZZ),$(call fuzz_seeds,$(t))) $(RUN_TESTS) --unit $(LAB_UNIT) --script $(LAB_SCRIPTS) \
+	    --fuzz $(LAB_FUZZ) --gpu $(LAB_GPU)
+
+endif

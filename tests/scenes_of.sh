@@ -1,0 +1,28 @@
+#!/bin/sh
+# scenes_of.sh: prints `KIND/TEST:SCENE,SCENE` for each test program and script that names baked scenes, for make: only
+# these are baked before the test runs. KIND is unit, gpu or scripts. A scene is named as "NAME" or NAME.masu. A test that
+# reads `scenes/*.masu` needs all of them: `*`.
+set -eu
+names=$(find scenes tests/scenes -maxdepth 1 -name '*.json' | sed 's|.*/||; s|\.json$||')
+find tests/unit tests/gpu tests/scripts lab/tests -name '*.c' -o -name '*.sh' 2> /dev/null | sort | xargs awk -v names="$names" '
+function finish(    text, n) {
+    if (file == "") return
+    text = all ? ",*" : ""
+    if (!all) for (n in found) text = text "," n
+    sub(/\.(c|sh)$/, "", file)
+    n = split(file, part, "/")
+    if (text != "") print part[n - 1] "/" part[n] ":" substr(text, 2)
+}
+BEGIN { n = split(names, list, /[ \n]+/); for (i = 1; i <= n; i++) scene[list[i]] = 1 }
+FNR == 1 { finish(); file = FILENAME; all = 0; split("", found) }
+/scenes"?\/\*\.masu/ { all = 1 }
+{
+    line = $0
+    while (match(line, /["\/{,][a-z0-9_]+(["},]|\.masu)/)) {
+        word = substr(line, RSTART + 1, RLENGTH - 2)
+        sub(/\.masu?$/, "", word)
+        if (word in scene) found[word] = 1
+        line = substr(line, RSTART + 1)
+    }
+}
+END { finish() }'

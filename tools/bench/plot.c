@@ -1,0 +1,179 @@
+/* plot.c: see plot.h. */
+#include "bench/plot.h"
+
+#include "bench/sweep.h"
+#include "cli/gnuplot.h"
+#include "image.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+/* What has no error at all has a place on a logarithmic axis, too. */
+#define LEAST_ERROR 1e-5
+
+static double shown_error(const masu_row *row) { return fmax(masu_row_error(row), LEAST_ERROR); }
+
+static bool drawable(const masu_plot *p, uint32_t i) {
+    return isfinite(p->ratios[i]) && p->ratios[i] > 0.0 && isfinite(p->rows[i].flip);
+}
+
+/* Series of points: those that are bundles or sizes by name, single knobs together. */
+static const char *const series[] = {"base", "scale", "cheap",   "middle",
+                                     "full", "soft",  "soft aa", "soft steps",
+                                     "soft cascades", "temporal"};
+enum { SERIES = sizeof series / sizeof *series };
+
+static uint32_t series_of(const masu_row *row) {
+    uint32_t k = 0;
+    while (k < SERIES && strcmp(series[k], row->technique) != 0) k++;
+    return k;
+}
+
+static void write_points(FILE *f, const masu_plot *p) {
+    for (uint32_t k = 0; k <= SERIES; k++) {
+        fprintf(f, "$series%u << EOD\n", k);
+        for (uint32_t i = 0; i < p->row_count; i++) {
+            if (drawable(p, i) && series_of(&p->rows[i]) == k)
+                fprintf(f, "%.9g %.9g\n", p->ratios[i], shown_error(&p->rows[i]));
+        }
+        fprintf(f, "nan nan\nEOD\n"); /* a series without points is no error */
+    }
+}
+
+static void write_list(FILE *f, const char *name, const masu_plot *p, const uint32_t *list,
+                       uint32_t count) {
+    fprintf(f, "$%s << EOD\n", name);
+    for (uint32_t i = 0; i < count; i++)
+        fprintf(f, "%.9g %.9g %u\n", p->ratios[list[i]], shown_error(&p->rows[list[i]]), i);
+    fprintf(f, "EOD\n");
+}
+
+/* Names of arrows that hardly go anywhere would lie on top of each other. */
+static bool is_far(double from_time, double from_error, double time, double error) {
+    return hypot(log(time / from_time), log(error / from_error)) > 0.12;
+}
+
+/* From its parent to each single technique. Returns how many. */
+static uint32_t write_arrows(FILE *f, const masu_plot *p) {
+    uint32_t count = 0;
+    fprintf(f, "$arrows << EOD\n");
+    for (uint32_t i = 0; i < p->row_count; i++) {
+        const masu_row *row = &p->rows[i],
+                       *parent = masu_rows_find(p->rows, p->row_count, row->parent);
+        if (series_of(row) < SERIES || !parent || !drawable(p, i)) continue;
+        uint32_t from = (uint32_t)(parent - p->rows);
+        if (!drawable(p, from)) continue;
+        const char *name =
+            strncmp(row->setting, "scale=", 6) ? row->setting : strchr(row->setting, '+');
+        bool named = is_far(p->ratios[from], shown_error(parent), p->ratios[i], shown_error(row));
+        fprintf(f, "%.9g %.9g %.9g %.9g ", p->ratios[from], shown_error(parent), p->ratios[i],
+                shown_error(row));
+        masu_gnuplot_label(f, !named ? "" : name ? name + (*name == '+') : row->setting);
+        fprintf(f, "\n");
+        count++;
+    }
+    fprintf(f, "nan nan nan nan \"\"\nEOD\n");
+    return count;
+}
+
+static const char style[] =
+    "set terminal svg size 960,640 dynamic background '#ffffff' font 'sans-serif,13'\n"
+    "set logscale xy\n"
+    "set grid xtics ytics mxtics mytics lc rgb '#dddddd', lc rgb '#eeeeee'\n"
+    "set border 3 lc rgb '#444444'\n"
+    "set xtics nomirror (0.05,0.1,0.15,0.2,0.3,0.4,0.5,0.6,0.8,1,1.2,1.5,2,3,4,6,8)\n"
+    "set ytics nomirror format '%g' add (0.002,0.005,0.02,0.05,0.2,0.5)\n"
+    "set ylabel 'mean FLIP against the ground truth, in motion and stationary'\n";
+
+/* Left to itself gnuplot goes on to whole powers of ten. To the right there is room for names. */
+static void write_ranges(FILE *f, const masu_plot *p) {
+    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {0.0, 0.0};
+    for (uint32_t i = 0; i < p->row_count; i++) {
+        if (!drawable(p, i)) continue;
+        const double at[2] = {p->ratios[i], shown_error(&p->rows[i])};
+        for (int k = 0; k < 2; k++) {
+            low[k] = fmin(low[k], at[k]);
+            high[k] = fmax(high[k], at[k]);
+        }
+    }
+    if (!(high[0] > 0.0)) return;
+    fprintf(f, "set xrange [%.9g:%.9g]\n", low[0] / 1.08, 1.4 * high[0]);
+    fprintf(f, "set yrange [%.9g:%.9g]\n", low[1] / 1.15, 1.25 * high[1]);
+}
+
+static void write_title(FILE *f, const masu_plot *p, const char *what) {
+    char title[512];
+    snprintf(title, sizeof title, "%.400s: %s", p->title, what);
+    fprintf(f, "set title ");
+    masu_gnuplot_quote(f, title);
+    fprintf(f, " noenhanced\n");
+}
+
+static void write_commands(FILE *f, const masu_plot *p) {
+    write_points(f, p);
+    write_list(f, "front", p, p->front, p->front_count);
+    write_list(f, "rungs", p, p->rungs, p->rung_count);
+    uint32_t arrows = write_arrows(f, p);
+    fputs(style, f);
+    write_ranges(f, p);
+    fprintf(f, "set xlabel 'time / time of the base setting (%s)'\n", p->clock);
+    fprintf(f, "set output 'front.svg'\nset key top right\n");
+    write_title(f, p, "error against time, and the ladder");
+    fprintf(f, "plot $front using 1:2 with lines lw 2 lc rgb '#222222' title 'Pareto front', \\\n");
+    static const char *const colors[] = {"#000000", "#0072b2", "#e69f00", "#009e73", "#cc79a7",
+                                         "#56b4e9", "#56b4e9", "#56b4e9", "#8c510a", "#d4a017", "#999999"};
+    static const char *const names[] = {
+        "base", "render size only", "cheap",           "middle",  "full",
+        "soft", "soft, SMAA",        "soft, 128 steps", "soft, 2 cascades", "temporal", "one knob"};
+    static const int marks[] = {7, 7, 9, 5, 13, 11, 10, 12, 8, 15, 6};
+    for (uint32_t k = 0; k <= SERIES; k++)
+        fprintf(f, "  $series%u using 1:2 with points pt %d ps 0.8 lc rgb '%s' title '%s', \\\n", k,
+                marks[k], colors[k], names[k]);
+    fprintf(f, "  $rungs using 1:2 with points pt 6 ps 2 lw 2 lc rgb '#d55e00' title 'rungs'");
+    /* gnuplot 5.4 ends by a fault where there is not one label to write. */
+    if (p->rung_count) {
+        fprintf(f, ", \\\n  $rungs using 1:2:3 with labels offset 0,1.2 textcolor rgb '#d55e00' "
+                   "notitle");
+    }
+    fprintf(f, "\n");
+    fprintf(f, "set output 'techniques.svg'\nset key off\n");
+    write_title(f, p, "effect of each technique, from the setting without it");
+    fprintf(f, "plot $front using 1:2 with lines lw 1 dt 2 lc rgb '#888888'");
+    if (arrows) {
+        fprintf(f, ", \\\n  $arrows using 1:2:($3-$1):($4-$2) with vectors head size screen 0.01,20 "
+                   "filled lw 1.2 lc rgb '#0072b2', \\\n"
+                   "  $arrows using 3:4:5 with labels font ',9' left offset 0.5,0 noenhanced");
+    }
+    fprintf(f, "\n");
+}
+
+/* The commands are left beside the plots, for who wants to change them. */
+static bool write_file(const masu_plot *p, const char *text, size_t bytes, char folder[4096], char *error,
+                       size_t error_size) {
+    char path[4096];
+    if (masu_sweep_path(p->folder, "plots", folder) && (!mkdir(folder, 0777) || errno == EEXIST) &&
+        masu_sweep_path(p->folder, "plots/plots.gp", path))
+        return masu_file_write(path, text, bytes, error, error_size);
+    snprintf(error, error_size, "%.500s: cannot create a folder for plots", p->folder);
+    return false;
+}
+
+bool masu_plot_draw(const masu_plot *plot, bool *drawn, char *error, size_t error_size) {
+    char folder[4096], *text = NULL;
+    size_t bytes = 0;
+    masu_gnuplot_end end = MASU_GNUPLOT_FAILED;
+    FILE *f = open_memstream(&text, &bytes);
+    if (f) write_commands(f, plot);
+    bool good = f && !fclose(f);
+    if (!good) snprintf(error, error_size, "out of memory");
+    good = good && write_file(plot, text, bytes, folder, error, error_size);
+    if (good) end = masu_gnuplot_run(folder, text, bytes);
+    free(text);
+    *drawn = end == MASU_GNUPLOT_DRAWN;
+    if (!good || end != MASU_GNUPLOT_FAILED) return good;
+    snprintf(error, error_size, "%.500s/plots.gp: gnuplot failed", folder);
+    return false;
+}

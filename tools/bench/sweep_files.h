@@ -1,0 +1,31 @@
+/* sweep_files.h: the folder of `masu bench`, see sweep.h: what is in it, begun,
+ * resumed, appended to, merged. Functions that can fail return false (NULL) and write one line to
+ * `error`. */
+#ifndef MASU_BENCH_SWEEP_FILES_H
+#define MASU_BENCH_SWEEP_FILES_H
+
+#include "bench/sweep.h"
+
+/* What sweep.json says besides the description. */
+typedef struct masu_sweep_about {
+    const char *driver;
+    const char *depth; /* what surfaces are compared with */
+    uint64_t hash;     /* of the scene */
+    const masu_setting *settings;
+    uint32_t count;
+} masu_sweep_about;
+
+/* Makes the folder and writes sweep.json. If there is one already it must say the same. */
+bool masu_sweep_begin(const masu_sweep_desc *desc, const masu_sweep_about *about, char *error,
+                      size_t error_size);
+
+/* The rows of results.csv that have a picture in the folder. It then has no others, nor what was torn;
+ * steady.csv has none but of these. No file is no error. Freed by free(). */
+masu_row *masu_sweep_resume(const char *folder, uint32_t *count, char *error, size_t error_size);
+
+/* On the disk when it returns; a new file begins with the header. `name`: MASU_SWEEP_RESULTS or
+ * MASU_SWEEP_STEADY. */
+bool masu_sweep_append(const char *folder, const char *name, const masu_row *row, char *error,
+                       size_t error_size);
+
+#endif

@@ -1,0 +1,89 @@
+/* ladder.c: see ladder.h. */
+#include "settings/ladder.h"
+
+#include <math.h>
+
+static bool measured(masu_ladder_point p) {
+    return isfinite(p.time) && p.time > 0.0 && isfinite(p.error) && p.error >= 0.0;
+}
+
+bool masu_ladder_dominates(masu_ladder_point a, masu_ladder_point b) {
+    return measured(a) && measured(b) && a.time <= b.time && a.error <= b.error &&
+           (a.time < b.time || a.error < b.error);
+}
+
+/* Of b, which is measured. What is no number is neither less nor more than anything. */
+static bool same(masu_ladder_point a, masu_ladder_point b) {
+    return measured(a) && !(a.time < b.time) && !(a.time > b.time) && !(a.error < b.error) &&
+           !(a.error > b.error);
+}
+
+static bool on_front(const masu_ladder_point *points, uint32_t n, uint32_t i) {
+    if (!measured(points[i])) return false;
+    for (uint32_t k = 0; k < n; k++) {
+        if (masu_ladder_dominates(points[k], points[i])) return false;
+        if (k < i && same(points[k], points[i])) return false;
+    }
+    return true;
+}
+
+/* Hundreds of points at most: every pair is looked at, and sorting is by insertion. */
+uint32_t masu_ladder_front(const masu_ladder_point *points, uint32_t n, uint32_t *out) {
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < n; i++) {
+        if (!on_front(points, n, i)) continue;
+        uint32_t at = count++;
+        for (; at && points[out[at - 1]].time > points[i].time; at--) out[at] = out[at - 1];
+        out[at] = i;
+    }
+    return count;
+}
+
+static uint32_t remove_at(uint32_t *list, uint32_t count, uint32_t at) {
+    for (uint32_t i = at + 1; i < count; i++) list[i - 1] = list[i];
+    return count - 1;
+}
+
+/* Of a list in falling quality; the quickest stays. */
+static uint32_t keep_better(const masu_ladder_point *points, double better, uint32_t *list,
+                            uint32_t count) {
+    uint32_t first = count - 1;
+    for (uint32_t i = count - 1; i-- > 0;) {
+        if (better * points[list[i]].error <= points[list[first]].error) list[--first] = list[i];
+    }
+    for (uint32_t i = first; i < count; i++) list[i - first] = list[i];
+    return count - first;
+}
+
+uint32_t masu_ladder_rungs(const masu_ladder_point *points, uint32_t n, double apart, double better,
+                           uint32_t most, uint32_t *out) {
+    uint32_t count = masu_ladder_front(points, n, out);
+    if (!count || !most) return 0;
+    for (uint32_t i = 0; i < count / 2; i++) { /* falling quality */
+        uint32_t first = out[i];
+        out[i] = out[count - 1 - i];
+        out[count - 1 - i] = first;
+    }
+    count = keep_better(points, better, out, count);
+    uint32_t quickest = out[count - 1], kept = 1;
+    for (uint32_t i = 1; i < count; i++) {
+        if (points[out[kept - 1]].time >= apart * points[out[i]].time) out[kept++] = out[i];
+    }
+    if (out[kept - 1] != quickest) { /* the last kept gives way to it, but for the best */
+        while (kept > 1 && points[out[kept - 1]].time < apart * points[quickest].time) kept--;
+        if (points[out[kept - 1]].time >= apart * points[quickest].time) out[kept++] = quickest;
+    }
+    while (kept > most) {
+        uint32_t least = kept - 1; /* of two places the best stays */
+        double gap = HUGE_VAL;
+        for (uint32_t i = 1; i + 1 < kept; i++) {
+            double g = points[out[i - 1]].time / points[out[i + 1]].time;
+            if (g < gap) {
+                gap = g;
+                least = i;
+            }
+        }
+        kept = remove_at(out, kept, least);
+    }
+    return kept;
+}

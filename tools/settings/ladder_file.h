@@ -1,0 +1,33 @@
+/* ladder_file.h: ladder.json, as `masu bench` writes it, read back into rungs.
+ *
+ * Strict: what is unknown, out of range or out of order is refused in one line, so that a ladder that is
+ * read is one that masu_init takes on any scene whose blob has code for its marches. A knob that is not
+ * named is 0. Nothing of the file's text is kept. */
+#ifndef MASU_SETTINGS_LADDER_FILE_H
+#define MASU_SETTINGS_LADDER_FILE_H
+
+#include "settings/setting.h"
+
+#include "masu.h"
+
+typedef struct masu_ladder_file {
+    char scene[80], driver[200], clock[16];
+    char date[12]; /* "2026-11-22"; empty: not said */
+    uint32_t width, height;
+    uint32_t count; /* at least 1 */
+    char settings[MASU_MAX_RUNGS][MASU_SETTING_ID];
+    masu_rung rungs[MASU_MAX_RUNGS];
+    double ratios[MASU_MAX_RUNGS]; /* falling */
+    double flips[MASU_MAX_RUNGS];
+    double rmses[MASU_MAX_RUNGS]; /* below 0: not said */
+} masu_ladder_file;
+
+/* `name` is the file's, for messages. On false `error` holds one line, and *out is undefined. */
+bool masu_ladder_parse(const char *name, const char *text, size_t bytes, masu_ladder_file *out,
+                       char *error, size_t error_size);
+bool masu_ladder_read(const char *path, masu_ladder_file *out, char *error, size_t error_size);
+
+/* Rungs, flips, and ratios as the governor's costs. */
+void masu_ladder_give(const masu_ladder_file *ladder, masu_desc *desc);
+
+#endif
