@@ -1,6 +1,8 @@
 /* setting.c: see setting.h. */
 #include "settings/setting.h"
 
+#include "scene/scene.h"
+
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
