@@ -1,17 +1,18 @@
-/* masu.c: the public functions, but for what stats.c tells: the life of a renderer, and its frames. */
+/* api.c: the public functions for the life of a renderer (masu_init, masu_load, masu_destroy) and for
+ * its frames. The other api_*.c contain the rest of masu.h. */
 #include "base/error.h"
 #include "plan/compile.h"
 #include "device/capabilities.h"
-#include "device/lifetime.h"
+#include "device/device_objects.h"
 #include "device/load.h"
 #include "device/offers.h"
 #include "device/ray_query.h"
 #include "device/shaders.h"
 #include "quality/governor_desc.h"
-#include "governed.h"
+#include "api_governor.h"
 #include "renderer.h"
 #include "scene/scene.h"
-#include "stats.h"
+#include "api_stats.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,7 +1,7 @@
-/* frame_view.h: view and projection of the frame at hand, as a host takes them for what it draws itself
- * (masu_frame_view_of of the public header). Nothing here fails. */
-#ifndef MASU_FRAME_VIEW_H
-#define MASU_FRAME_VIEW_H
+/* host_matrices.h: view and projection of the current frame for the host's own draws (the public
+ * masu_frame_view_of). Nothing here fails. */
+#ifndef MASU_HOST_MATRICES_H
+#define MASU_HOST_MATRICES_H
 
 #include "frame/frame_data.h"
 

@@ -211,7 +211,7 @@ static int is_of_use(const masu_desc *d, uint32_t r, masu_knob_use use) {
     case MASU_USE_AO: return s && s->occlusion_radius > 0.0f;
     case MASU_USE_SHADOWS: return s && s->shadow_cascades;
     case MASU_USE_LIGHTS: return s && s->lights;
-    case MASU_USE_SPECULAR: return masu_could_trace(s, &d->rungs[r]);
+    case MASU_USE_SPECULAR: return masu_could_trace(d->scene, &d->rungs[r]);
     case MASU_USE_ALWAYS:
     case MASU_USE_UPSCALED:
     case MASU_USE_SHARPEN:

@@ -4,7 +4,7 @@
 #ifndef MASU_PLAN_H
 #define MASU_PLAN_H
 
-#include "plan/frame.h"
+#include "plan/frame_plan.h"
 #include "plan/limits.h"
 #include "plan/reserve.h"
 #include "scene/scene.h"

@@ -3,7 +3,7 @@
  * A place holds a copy of any model that moves and has no skin: each is as large as the largest of them in
  * instances, nodes, blended primitives and traced instances. The counts of plan->scene are with all places; those
  * of the blob come first, then the places side by side. So all that is sized by a scene has room for them, and
- * without a reserve nothing changes. What is in which place is src/frame/added.h's. */
+ * without a reserve nothing changes. What is in which place is src/api_add.c's. */
 #ifndef MASU_PLAN_RESERVE_H
 #define MASU_PLAN_RESERVE_H
 

@@ -7,7 +7,7 @@
 #define MASU_SCENE_H
 
 #include "masu.h"
-#include "scene/view.h"
+#include "scene/blob_section.h"
 
 /* The content of a masu_scene. It is smaller: never copy a masu_scene from it. A host declares its
  * object as masu_scene, so accesses through this type must not be optimised by type. */
