@@ -88,7 +88,7 @@
  *    masu_desc, its arrays, pipeline_cache         during the call
  *    device, allocator, log, clock, source view, masu_pipelines                 until masu_destroy
  *    target images and views                       until masu_resize or masu_destroy
- *    strings that functions return                 static, or in the blob (masu_scene_*_name)
+ *    strings that functions return                 static, or in the blob (masu_scene_name)
  *
  * CONVENTIONS
  *    world        right-handed, +Y up, metres            time     seconds
@@ -177,75 +177,10 @@ typedef void (*masu_log_fn)(void *user, masu_log_level level, const char *text);
 
 /* ---- Scenes ---------------------------------------------------------------------------------- */
 
-/* A validated look at a baked blob (docs/blob.md): plain numbers and the pointer. Filled by
- * masu_scene_bind alone. */
+/* A validated scene, filled by masu_scene_bind. Copyable; its content is private. A zeroed one is an
+ * empty scene for the functions below, and MASU_ERROR_ARGUMENT as masu_desc.scene. */
 typedef struct masu_scene {
-    const void *blob; /* the caller's; see masu_scene_bind */
-    uint64_t blob_bytes;
-    uint32_t vertices, indices, primitives, meshes, instances, materials, camera_keys;
-    uint32_t lods; /* LODs of meshes, in all */
-    uint32_t lod_draws, lod_instances; /* draws of those; instances, counted for each form */
-    uint32_t occluders, placed_occluders; /* boxes in meshes; those of all instances */
-    uint32_t groups, group_items; /* what is culled together; instances in groups */
-    uint32_t models, model_nodes; /* that move, come and go as one; nodes of them all */
-    uint32_t clips, channels, keys; /* animations of models, and what they are made of */
-    uint32_t max_nodes;             /* of one model */
-    uint32_t skins;                 /* meshes that joints bend: */
-    uint32_t skin_vertices, joints; /* of their kinds, */
-    uint32_t skinned_vertices, skinned_joints; /* of all of them */
-    uint32_t skinned_nodes;               /* of their trees that rays are traced through */
-    uint32_t first_skinned, max_skinned; /* the first of those vertices; the most of one mesh */
-    uint32_t metered;    /* 1: it asks for a metered exposure, */
-    float brighten, darken; /* that adapts as fast, 1/s; 0: the default */
-    uint32_t sdf;        /* 1: the scene has an SDF */
-    uint32_t sdf_params; /* run-time parameters of it */
-    uint32_t sdf_parts, sdf_slots, sdf_block_words;
-    uint32_t sdf_dynamic;   /* 1: slots depend on parameters or time */
-    uint32_t sdf_anchored;  /* 1: it keeps its precision far from the origin (docs/sdf.md) */
-#ifdef MASU_LAB
-    uint32_t sdf_march; /* bit per masu_march that the blob has code for */
-#endif
-    uint32_t sdf_occlusion; /* 1: the SDF casts shadows or occludes ambient light */
-    uint32_t max_instances, max_primitives; /* of one mesh */
-    uint32_t shadow_cascades; /* of the sun's shadow map; 0: none. Scenes with instances only */
-    uint32_t shadow_resolution;
-    float shadow_distance, shadow_lambda;
-    uint32_t draws;      /* draw calls of one G-buffer pass, without LODs */
-    uint64_t triangles;  /* of one frame: every instance counted, in its finest form */
-    uint32_t textures;   /* pictures: layers of the texture arrays */
-    uint32_t texture_arrays, texture_sets;
-    uint32_t masks; /* 1: some material has an alpha mask */
-    uint32_t singles; /* 1: some material is not seen from behind */
-    uint32_t surfaces; /* of those not blended: with a specular factor, a coat, small relief or
-                        * occlusion map */
-    uint32_t coats;    /* materials with a clear coat */
-    uint32_t meso;     /* small reliefs */
-    uint32_t blends;   /* materials that are blended */
-    uint32_t transparents; /* their primitives, counted for each instance */
-    uint32_t transparent_sets; /* texture sets that these use, at least 1 */
-    uint32_t lights;   /* points and spots */
-    uint32_t probes, probe_sets;
-    uint64_t probe_words; /* 4 bytes each: what all sets of all probes take */
-    uint32_t environment_size, environment_mips; /* texels along an edge of its map; 0: none */
-    uint32_t analytic_sky; /* 1: the sky follows from the sun */
-    uint32_t fog;          /* 1: there is fog */
-    float occlusion_radius; /* of ambient occlusion in screen space, metres; 0: none */
-    uint32_t reflections;   /* 1: reflections are traced: */
-    uint32_t trace_sdf;     /* 1: of the SDF too */
-    uint32_t trace_nodes, trace_triangles; /* of the trees that rays are traced through; 0: none */
-    uint32_t trace_instances;              /* that rays meet */
-    uint32_t trace_levels; /* of nodes, of the deepest mesh's tree that rays are traced through; 0: none */
-    uint32_t trace_textures; /* small pictures of textures for them */
-    uint32_t trace_colors;   /* of these such as rays look up; the rest are means of roughness */
-    uint64_t trace_texels; /* 4 bytes each */
-    float specular_cutoff, glossiest; /* roughness from which they are not; the least of any surface */
-    float trace_distance;   /* longest ray, m */
-    uint64_t texture_bytes;         /* of their texels as compressed blocks */
-    uint64_t texture_bytes_decoded; /* and where the device takes no blocks */
-    uint32_t own_coats; /* 1: some coat has a map, or a normal that is not its base's */
-    uint32_t tints;     /* 1: what shines through some blended material has its colour */
-    uint32_t smooth_edges; /* 1: rungs that nobody gave are anti-aliased: MASU_AA_SMAA_HIGH, with a governor
-                              temporal */
+    uint64_t opaque[64];
 } masu_scene;
 
 /* Validates every offset, count, index and float of `blob` and its hash, and fills `*out`. Takes
@@ -262,17 +197,74 @@ typedef struct masu_scene {
 MASU_API MASU_MUST_USE masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes,
                                                    masu_scene *out, masu_detail *detail);
 
-/* Index of the SDF parameter with that name, or -1. Reads the blob. */
-MASU_API int32_t masu_scene_sdf_param(const masu_scene *scene, const char *name);
+/* The functions below describe what the blob contains; room that masu_desc.reserve adds is not
+ * counted. They take constant time unless stated otherwise. Functions that read the blob need it to
+ * be readable and unchanged. `scene` may be NULL: the result is then 0, -1 or "". */
 
-/* Names of the items of a scene. Indices start at 0. The result is "" if the item has no name or
- * does not exist. The names are in the blob, which must still be readable. */
-MASU_API const char *masu_scene_instance_name(const masu_scene *scene, uint32_t index);
-MASU_API const char *masu_scene_model_name(const masu_scene *scene, uint32_t index);
-MASU_API const char *masu_scene_light_name(const masu_scene *scene, uint32_t index);
-MASU_API const char *masu_scene_material_name(const masu_scene *scene, uint32_t index);
-/* The same for animation clip `clip` of a model. */
+typedef enum masu_scene_item {
+    MASU_SCENE_INSTANCE = 0,
+    MASU_SCENE_MODEL = 1, /* movable models, the scene's pooled copies included */
+    MASU_SCENE_LIGHT = 2, /* punctual lights */
+    MASU_SCENE_MATERIAL = 3,
+    MASU_SCENE_SDF_PARAM = 4, /* run-time parameters of the SDF */
+    MASU_SCENE_CAMERA_KEY = 5 /* keys of the camera path; they have no names */
+} masu_scene_item;
+
+/* Number of items of a kind; their indices are 0 to the result - 1. 0 for an unknown kind. */
+MASU_API uint32_t masu_scene_count(const masu_scene *scene, masu_scene_item item);
+
+/* Name of an item, "" if it has none or does not exist. Reads the blob and points into it. */
+MASU_API const char *masu_scene_name(const masu_scene *scene, masu_scene_item item, uint32_t index);
+
+/* Index of the first item with that name; -1 if there is none, or if `name` is NULL or "". Reads the
+ * blob; takes time proportional to the number of items. */
+MASU_API int32_t masu_scene_find(const masu_scene *scene, masu_scene_item item, const char *name);
+
+/* Number of animation clips of a model, 0 if the model does not exist; and the name of a clip, as
+ * masu_scene_name. Both read the blob and take time proportional to the clips of all models. */
+MASU_API uint32_t masu_scene_clip_count(const masu_scene *scene, uint32_t model);
 MASU_API const char *masu_scene_clip_name(const masu_scene *scene, uint32_t model, uint32_t clip);
+
+typedef enum masu_scene_feature_bits {
+    MASU_SCENE_HAS_SDF = 1,
+    MASU_SCENE_HAS_DYNAMIC_SDF = 2, /* the SDF depends on parameters or time */
+    MASU_SCENE_HAS_SHADOW_MAP = 4,  /* polygons cast sun shadows */
+    MASU_SCENE_HAS_REFLECTIONS = 8, /* traced ones, if a surface is smooth enough: see the class */
+    MASU_SCENE_HAS_TRANSPARENTS = 16,
+    MASU_SCENE_HAS_ANALYTIC_SKY = 32, /* the sky follows from the sun */
+    MASU_SCENE_HAS_FOG = 64,
+    MASU_SCENE_HAS_METERED_EXPOSURE = 128, /* the default of masu_exposure.metered is ON */
+    MASU_SCENE_HAS_DEFAULT_AA = 256        /* the default rungs use anti-aliasing */
+} masu_scene_feature_bits;
+
+/* The features that the scene uses: MASU_SCENE_HAS_*. */
+MASU_API uint32_t masu_scene_features(const masu_scene *scene);
+
+/* Triangles of all instances at the finest level of detail. */
+MASU_API uint64_t masu_scene_triangles(const masu_scene *scene);
+
+/* Bytes of all texels with their mips, without padding. compressed: 1 as BC blocks, 0 decoded, for a
+ * device without textureCompressionBC. */
+MASU_API uint64_t masu_scene_texture_bytes(const masu_scene *scene, int compressed);
+
+/* Cascades of the sun's shadow map, 0 to MASU_MAX_CASCADES; 0: no shadow map. `resolution`: NULL, or
+ * receives the texels along an edge of a cascade. They are what 0 stands for in
+ * rung.shadow_cascades and rung.shadow_resolution, and their upper bounds. */
+MASU_API uint32_t masu_scene_shadow_cascades(const masu_scene *scene, uint32_t *resolution);
+
+/* Distance from the camera up to which the shadow map reaches, metres: what 0 stands for in
+ * rung.shadow_distance. 0: no shadow map. */
+MASU_API float masu_scene_shadow_distance(const masu_scene *scene);
+
+/* Perceptual roughness, 0..1, from which on reflections are not traced: what 0 stands for in
+ * rung.specular_cutoff. 0 without MASU_SCENE_HAS_REFLECTIONS. */
+MASU_API float masu_scene_specular_cutoff(const masu_scene *scene);
+
+/* What the scene uses of everything that a limit bounds: masu_limits (masu_knobs.h) that are equal
+ * to it accept the scene, with default rungs and no reserve. `texture_bytes` is that of decoded
+ * texels; a device with textureCompressionBC needs less. Without a scene, all are 0. */
+struct masu_limits;
+MASU_API void masu_scene_usage(const masu_scene *scene, struct masu_limits *out);
 
 /* Classes of scenes by content. Each has its own built-in ladder (masu_desc.ladder). A world is a
  * scene of polygons with LODs and occluders. */
@@ -1338,7 +1330,7 @@ MASU_API MASU_MUST_USE masu_result masu_instance_set_transform(masu_renderer *re
                                                                masu_instance instance,
                                                                const float rows[12]);
 
-/* The instance with that index: first those of the scene, in the order of masu_scene_instance_name,
+/* The instance with that index: first those of the scene, in the order of MASU_SCENE_INSTANCE,
  * then those of copied models (desc.reserve). id 0 after the last one, and for an unused slot. */
 MASU_API masu_instance masu_instance_at(const masu_renderer *renderer, uint32_t index);
 
@@ -1375,7 +1367,7 @@ MASU_API MASU_MUST_USE masu_result masu_instance_show(masu_renderer *renderer,
 /* The first model with that name in the scene description; id 0 if there is none. */
 MASU_API masu_model masu_model_find(const masu_renderer *renderer, const char *name);
 
-/* The model with that index: first those of the scene, in the order of masu_scene_model_name, then
+/* The model with that index: first those of the scene, in the order of MASU_SCENE_MODEL, then
  * the slots of desc.reserve. id 0 after the last one, and for an unused slot. */
 MASU_API masu_model masu_model_at(const masu_renderer *renderer, uint32_t index);
 
@@ -1511,7 +1503,7 @@ typedef struct masu_punctual_light_state {
 MASU_API masu_punctual_light masu_punctual_light_find(const masu_renderer *renderer,
                                                       const char *name);
 
-/* The light with that index: first those of the scene, in the order of masu_scene_light_name, then
+/* The light with that index: first those of the scene, in the order of MASU_SCENE_LIGHT, then
  * those of desc.reserve.lights. id 0 after the last one, and for an unused slot. */
 MASU_API masu_punctual_light masu_punctual_light_at(const masu_renderer *renderer, uint32_t index);
 
@@ -1571,7 +1563,7 @@ typedef struct masu_material_state {
 /* The first material with that name in the scene; id 0 if there is none. */
 MASU_API masu_material masu_material_find(const masu_renderer *renderer, const char *name);
 
-/* The material with that index, in the order of masu_scene_material_name; id 0 after the last
+/* The material with that index, in the order of MASU_SCENE_MATERIAL; id 0 after the last
  * one. */
 MASU_API masu_material masu_material_at(const masu_renderer *renderer, uint32_t index);
 

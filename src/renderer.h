@@ -1,5 +1,5 @@
 /* renderer.h: a renderer, and who owns what of it. It lies at the start of the host block, and what
- * depends on the scene behind it: each owner takes its own arrays in masu.c's one walk.
+ * depends on the scene behind it: each owner takes its own arrays in api.c's one walk.
  *
  *   plan     what every frame is made of; nothing changes it after masu_init, but that the blob of the
  *            scene is forgotten once it is loaded
@@ -15,7 +15,7 @@
 #include "frame/bounds.h"
 #include "frame/camera.h"
 #include "frame/frame_data.h"
-#include "frame/frame_view.h"
+#include "frame/host_matrices.h"
 #include "frame/temporal.h"
 #include "frame/instances.h"
 #include "frame/materials.h"
@@ -30,7 +30,7 @@
 #include "frame/sun_sky.h"
 #include "frame/timeline.h"
 #include "frame/transparents.h"
-#include "frame/views.h"
+#include "frame/cameras.h"
 #include "frame/visible.h"
 #include "plan/draws.h"
 #include "plan/plan.h"

@@ -61,9 +61,9 @@ bool render_open(render *r, window *w, const char *path, const track *t) {
     masu_memory need;
     size_t bytes = 0;
     r->window = w;
-    void *blob = SDL_LoadFile(path, &bytes);
+    void *blob = r->blob = SDL_LoadFile(path, &bytes);
     if (!blob) return fprintf(stderr, "drive: %s\n", SDL_GetError()), false;
-    if (masu_scene_bind(blob, bytes, &r->scene, &detail)) return SDL_free(blob), failed(&detail);
+    if (masu_scene_bind(blob, bytes, &r->scene, &detail)) return failed(&detail);
     masu_desc desc = describe(r); /* the blocks are to be of the types that it would take itself */
     if (masu_memory_query(&desc, &need, &detail)) return failed(&detail);
     return window_blocks(w, &need, device_bytes, r->blocks) && overlay_open(&r->overlay, w) &&
@@ -88,7 +88,7 @@ void render_close(render *r) {
     masu_destroy(r->masu);
     for (int i = 0; i < MASU_ROLE_COUNT; i++) vkFreeMemory(w->device, r->blocks[i].memory, NULL);
     overlay_close(&r->overlay);
-    SDL_free((void *)r->scene.blob);
+    SDL_free(r->blob);
 }
 
 /* The model stands at `at`, its axes turned to these. The scene has turned its models already, by

@@ -8,6 +8,7 @@
 typedef struct render {
     window *window;
     masu_scene scene;
+    void *blob;                                /* of the scene */
     masu_device_block blocks[MASU_ROLE_COUNT]; /* allocated once, for every size of the window */
     masu_renderer *masu;
     float target_ms; /* of the governor */

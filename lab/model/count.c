@@ -101,7 +101,7 @@ static bool count(masu_session *s, const masu_count_desc *d, void (*progress)(co
         !compile(s, d->sheet, &out->sheet, error, error_size))
         return false;
     out->rung_count = out->drawn.desc.rung_count;
-    out->texture_bytes = (double)masu_scene_texture_bytes(&out->drawn.desc);
+    out->texture_bytes = (double)masu_desc_texture_bytes(&out->drawn.desc);
     snprintf(out->driver, sizeof out->driver, "%s", s->host.driver);
     uint32_t n = masu_count_passes(&out->drawn, passes);
     if (!masu_hook_begin(&s->host, passes, n, error, error_size)) return false;

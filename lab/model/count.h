@@ -7,7 +7,7 @@
 #ifndef MASU_MODEL_COUNT_H
 #define MASU_MODEL_COUNT_H
 
-#include "plan/frame.h"
+#include "plan/frame_plan.h"
 #include "headless.h"
 #include "plan/plan.h"
 #include "lab/model/spirv_tally.h"

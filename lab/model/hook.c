@@ -3,7 +3,7 @@
 
 #include "lab/model/spirv_reach.h"
 
-#include "plan/frame.h"
+#include "plan/frame_plan.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -13,7 +13,7 @@
 #define MASU_MODEL_ISSUED_H
 
 #include "lab/isa/isa.h"
-#include "plan/frame.h"
+#include "plan/frame_plan.h"
 
 typedef struct masu_issued {
     bool known; /* false: the rest says nothing */

@@ -7,6 +7,7 @@
 #include "image.h"
 #include "metric/flip.h"
 #include "metric/image.h"
+#include "scene/scene.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -61,9 +62,9 @@ masu_rung masu_baseline_rung(const masu_scene *scene, const char **march) {
                       .occlusion = MASU_OFF,
                       .lod_error = -1.0f,
                       .light_tiles = MASU_OFF};
-    *march = scene->sdf ? "auto" : "none";
-    if (!scene->sdf) return rung;
-    if (scene->sdf_march >> MASU_MARCH_PLAIN & 1u) {
+    *march = masu_scene_data_of(scene)->sdf ? "auto" : "none";
+    if (!masu_scene_data_of(scene)->sdf) return rung;
+    if (masu_scene_data_of(scene)->sdf_march >> MASU_MARCH_PLAIN & 1u) {
         rung.march = MASU_MARCH_PLAIN;
         *march = "plain";
     }
@@ -122,9 +123,9 @@ static bool find_entries(bench *w) {
     if (!masu_session_open(&d, &w->other, w->error, w->error_size)) return false;
     const masu_scene *scene = &w->other.scene;
     snprintf(out->driver, sizeof out->driver, "%s", w->other.host.driver);
-    w->textured = scene->textures != 0;
-    w->remembers = scene->reflections || scene->metered;
-    out->plain_count = scene->occlusion_radius > 0.0f ? 2 : 1;
+    w->textured = masu_scene_data_of(scene)->textures != 0;
+    w->remembers = masu_scene_data_of(scene)->reflections || masu_scene_data_of(scene)->metered;
+    out->plain_count = masu_scene_data_of(scene)->occlusion_radius > 0.0f ? 2 : 1;
     for (uint32_t e = 0; e < out->plain_count; e++) {
         w->rungs[e] = masu_baseline_rung(scene, &out->march);
         out->entries[e].plain = true;

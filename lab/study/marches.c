@@ -423,7 +423,9 @@ bool masu_bench_run(const masu_bench_desc *desc, masu_bench *out,
                            .no_renderer = true};
     if (!masu_session_open(&d, &b.s, error, error_size)) return false;
     snprintf(out->driver, sizeof out->driver, "%s", b.s.host.driver);
-    bool good = b.s.scene.sdf ? find_truth(&b, &out->compared) : failed(&b, "has no SDF");
+    bool good = (masu_scene_features(&b.s.scene) & MASU_SCENE_HAS_SDF)
+                    ? find_truth(&b, &out->compared)
+                    : failed(&b, "has no SDF");
     for (int v = 0; v < MASU_BENCH_VARIANTS && good; v++) {
         if (!desc->only || (desc->only >> v & 1)) good = look_at(&b, v);
     }

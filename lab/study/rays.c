@@ -2,6 +2,7 @@
 #include "lab/study/rays.h"
 
 #include "clock.h"
+#include "scene/scene.h"
 
 #include <math.h>
 #include <pthread.h>
@@ -35,7 +36,7 @@ static RTCScene mesh_of(masu_bench_rays *r, uint32_t mesh) {
     rtcSetGeometryBuildQuality(g, RTC_BUILD_QUALITY_HIGH);
     rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
     rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, r->view.vertices, 0,
-                               sizeof(masu_blob_vertex), r->scene.vertices);
+                               sizeof(masu_blob_vertex), masu_scene_data_of(&r->scene)->vertices);
     rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                r->view.trace_triangles + m->first_triangle, 0,
                                sizeof(masu_blob_trace_triangle), m->triangle_count);
@@ -47,7 +48,7 @@ static RTCScene mesh_of(masu_bench_rays *r, uint32_t mesh) {
 }
 
 static void add_instances(masu_bench_rays *r) {
-    for (uint32_t i = 0; i < r->scene.trace_instances; i++) {
+    for (uint32_t i = 0; i < masu_scene_data_of(&r->scene)->trace_instances; i++) {
         uint32_t mesh = r->view.instances[r->view.trace_instances[i]].mesh;
         double m[12];
         float columns[12];
@@ -65,7 +66,7 @@ static void add_instances(masu_bench_rays *r) {
 
 static bool add_flat(masu_bench_rays *r) {
     uint64_t count = 0;
-    for (uint32_t i = 0; i < r->scene.trace_instances; i++) {
+    for (uint32_t i = 0; i < masu_scene_data_of(&r->scene)->trace_instances; i++) {
         count +=
             r->view.trace_meshes[r->view.instances[r->view.trace_instances[i]].mesh].triangle_count;
     }
@@ -77,7 +78,7 @@ static bool add_flat(masu_bench_rays *r) {
     uint32_t *index = rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                               3 * sizeof(uint32_t), count);
     uint64_t at = 0;
-    for (uint32_t i = 0; i < r->scene.trace_instances; i++) {
+    for (uint32_t i = 0; i < masu_scene_data_of(&r->scene)->trace_instances; i++) {
         const masu_blob_trace_mesh *mesh =
             &r->view.trace_meshes[r->view.instances[r->view.trace_instances[i]].mesh];
         double m[12], p[3];
@@ -105,21 +106,21 @@ bool masu_bench_rays_open(const masu_scene *scene, const double anchor[3], bool 
                           masu_bench_rays *r, char *error, size_t error_size) {
     *r = (masu_bench_rays){.view = masu_scene_look(scene), .scene = *scene, .flat = flat};
     memcpy(r->anchor, anchor, sizeof r->anchor);
-    if (!scene->trace_instances) {
+    if (!masu_scene_data_of(scene)->trace_instances) {
         snprintf(error, error_size,
                  "nothing is traced: the scene was baked without \"reflections\"");
         return false;
     }
-    r->top_memory = malloc(masu_trace_top_bytes(scene->trace_instances));
-    r->meshes = calloc(scene->meshes, sizeof *r->meshes);
+    r->top_memory = malloc(masu_trace_top_bytes(masu_scene_data_of(scene)->trace_instances));
+    r->meshes = calloc(masu_scene_data_of(scene)->meshes, sizeof *r->meshes);
     r->device = rtcNewDevice(NULL);
     if (!r->top_memory || !r->meshes || !r->device) {
         snprintf(error, error_size, "out of memory, or Embree does not start");
         masu_bench_rays_close(r);
         return false;
     }
-    masu_trace_top_make(&r->top, r->top_memory, scene->trace_instances);
-    for (uint32_t i = 0; i < scene->trace_instances; i++) {
+    masu_trace_top_make(&r->top, r->top_memory, masu_scene_data_of(scene)->trace_instances);
+    for (uint32_t i = 0; i < masu_scene_data_of(scene)->trace_instances; i++) {
         masu_trace_root root = masu_trace_root_of(&r->view, i);
         masu_trace_top_set(&r->top, i, &root);
         (void)masu_trace_top_place(&r->top, i, r->view.instances[root.instance].transform);
@@ -140,7 +141,7 @@ bool masu_bench_rays_open(const masu_scene *scene, const double anchor[3], bool 
 
 void masu_bench_rays_close(masu_bench_rays *r) {
     if (r->embree) rtcReleaseScene(r->embree);
-    for (uint32_t i = 0; r->meshes && i < r->scene.meshes; i++) {
+    for (uint32_t i = 0; r->meshes && i < masu_scene_data_of(&r->scene)->meshes; i++) {
         if (r->meshes[i]) rtcReleaseScene(r->meshes[i]);
     }
     if (r->device) rtcReleaseDevice(r->device);

@@ -3,6 +3,7 @@
 #include "lab/study/rays.h"
 
 #include "clock.h"
+#include "scene/scene.h"
 #include "trace_rays_comp.spv.h"
 #include "trace_rays_counted_comp.spv.h"
 
@@ -92,10 +93,11 @@ bool masu_bench_gpu_open(masu_headless *host, const masu_bench_rays *rays, uint3
                          masu_bench_gpu *g, char *error, size_t error_size) {
     *g = (masu_bench_gpu){.host = host};
     masu_trace_static layout =
-        masu_trace_static_layout(rays->scene.trace_nodes, rays->scene.trace_triangles);
+        masu_trace_static_layout(masu_scene_data_of(&rays->scene)->trace_nodes,
+                                 masu_scene_data_of(&rays->scene)->trace_triangles);
     const uint64_t bytes[BUFFERS] = {
-        layout.bytes, masu_trace_frame_bytes(rays->scene.trace_instances),
-        (uint64_t)rays->scene.vertices * sizeof(masu_blob_vertex),
+        layout.bytes, masu_trace_frame_bytes(masu_scene_data_of(&rays->scene)->trace_instances),
+        (uint64_t)masu_scene_data_of(&rays->scene)->vertices * sizeof(masu_blob_vertex),
         (uint64_t)most * sizeof(masu_bench_ray), (uint64_t)most * sizeof(masu_bench_hit)};
     for (uint32_t i = 0; i < BUFFERS; i++) {
         if (!masu_headless_buffer_create(host, bytes[i], VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
@@ -106,9 +108,9 @@ bool masu_bench_gpu_open(masu_headless *host, const masu_bench_rays *rays, uint3
     unsigned char *out = g->buffer[STATIC].mapped;
     memcpy(out, layout.header, sizeof layout.header);
     memcpy(out + layout.nodes, rays->view.trace_nodes,
-           rays->scene.trace_nodes * sizeof *rays->view.trace_nodes);
+           masu_scene_data_of(&rays->scene)->trace_nodes * sizeof *rays->view.trace_nodes);
     memcpy(out + layout.triangles, rays->view.trace_triangles,
-           rays->scene.trace_triangles * sizeof *rays->view.trace_triangles);
+           masu_scene_data_of(&rays->scene)->trace_triangles * sizeof *rays->view.trace_triangles);
     masu_trace_top_write(&rays->top, g->buffer[FRAME].mapped);
     memcpy(g->buffer[VERTICES].mapped, rays->view.vertices, bytes[VERTICES]);
     return make_pipelines(g, error, error_size) && make_set(g, error, error_size);

@@ -181,7 +181,7 @@ static bool compare(bench *b, masu_session *s, uint32_t rung, row *r) {
     masu_plan_info plan;
     masu_plan_of(s->m, &plan);
     r->render = (VkExtent2D){plan.rungs[rung].render_width, plan.rungs[rung].render_height};
-    uint32_t frames = s->scene.reflections ? o->frames : 1;
+    uint32_t frames = (masu_scene_features(&s->scene) & MASU_SCENE_HAS_REFLECTIONS) ? o->frames : 1;
     masu_commands commands;
     masu_cli_progress("%s at %.2f", r->of->name, r->scale);
     for (uint32_t k = 0; k < frames; k++) {

@@ -7,6 +7,7 @@
 
 #include "lab/study/rays.h"
 #include "image.h"
+#include "scene/scene.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -157,7 +158,7 @@ static const masu_column columns[] = {
 
 static void add_row(masu_table *t, const bench *b, uint32_t kind, uint32_t backend) {
     const row *r = &b->rows[kind][backend];
-    const masu_scene *s = &b->scene;
+    const masu_scene_data *s = masu_scene_data_of(&b->scene);
     double own = r->rays ? r->rays / r->seconds * 1e-6 : 0;
     double embree = r->rays ? r->rays / r->embree_seconds * 1e-6 : 0;
     masu_trace_static layout = masu_trace_static_layout(s->trace_nodes, s->trace_triangles);
@@ -193,8 +194,9 @@ static int print(const bench *b) {
     masu_table_open(&t, columns, "n/a");
     for (uint32_t i = 0; i < KINDS * BACKENDS; i++) add_row(&t, b, i / BACKENDS, i % BACKENDS);
     fprintf(o->text, "%s: %u nodes, %u triangles, %u instances; %s\n", o->scene,
-            b->scene.trace_nodes, b->scene.trace_triangles, b->scene.trace_instances,
-            b->host.driver);
+            masu_scene_data_of(&b->scene)->trace_nodes,
+            masu_scene_data_of(&b->scene)->trace_triangles,
+            masu_scene_data_of(&b->scene)->trace_instances, b->host.driver);
     masu_table_print(&t, o->text);
     return masu_table_close(&t, o->csv);
 }
@@ -208,7 +210,7 @@ static bool open_scene(bench *b) {
         snprintf(b->error, sizeof b->error, "%s: %s", o->scene, detail.text);
         return false;
     }
-    if (!b->scene.camera_keys) {
+    if (!masu_scene_count(&b->scene, MASU_SCENE_CAMERA_KEY)) {
         snprintf(b->error, sizeof b->error, "%s: has no camera path", o->scene);
         return false;
     }

@@ -93,7 +93,8 @@ static bool open_all(bench *b) {
     d.desc.rung_count = 1;
     if (!masu_session_open(&d, &b->full, b->error, sizeof b->error)) return false;
     b->opened = 2;
-    if (!b->s.scene.reflections) return failed(b, "the scene asks for no reflections");
+    if (!(masu_scene_features(&b->s.scene) & MASU_SCENE_HAS_REFLECTIONS))
+        return failed(b, "the scene asks for no reflections");
     b->pixels = o->size.width * o->size.height;
     b->classes = calloc(b->pixels, 1);
     b->truth = calloc(b->pixels, 3 * sizeof *b->truth);
@@ -130,7 +131,7 @@ static bool find_truth(bench *b) {
     if (f) fclose(f);
     if (f && !found) return failed(b, "the file of the truth is not one of this size");
     if (!sum_up(b, given.rays, b->unfiltered, "unfiltered")) return false;
-    if (!masu_specular_classes(&b->full, b->s.scene.specular_cutoff, b->classes))
+    if (!masu_specular_classes(&b->full, masu_scene_specular_cutoff(&b->s.scene), b->classes))
         return failed(b, "no readback");
     if (!found && !sum_up(b, o->truth.rays, b->truth, "truth")) return false;
     if (!found && o->truth.path) {

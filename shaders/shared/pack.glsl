@@ -27,7 +27,7 @@
  *                   a    bits 0-6 x; without bit 7 a relief's (1 + 126 f) / 255
  *   depth, float:   near / view z; 0: nothing there
  *
- * 13 bits per axis leave a normal within 0.03 degrees. src/stats.c, masu_unpack_normal is the twin
+ * 13 bits per axis leave a normal within 0.03 degrees. src/api_stats.c, masu_unpack_normal is the twin
  * in C; of what emits, measure/texel.c.
  *
  * A coat mirrors sharply and has all 26 bits; what lies below it is within 0.3 degrees where it leans by 6, 0.8 at

@@ -3,7 +3,7 @@
  *   base                                                   base + size
  *   | renderer | instance rows | dirty flags | sets | ... |
  *
- * One walk of masu_arena_take calls (src/masu.c, lay_host) serves both the size query and init:
+ * One walk of masu_arena_take calls (src/api.c, lay_host) serves both the size query and init:
  * with base NULL the walk only counts, so the two cannot disagree. Nothing is ever given back: the
  * block is the caller's and ends as a whole. */
 #ifndef MASU_ARENA_H

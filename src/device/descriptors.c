@@ -87,7 +87,7 @@ static masu_result make_global_sets(masu_device *m, masu_detail *detail) {
  * whole. */
 static masu_result make_texture_sets(masu_device *m, masu_detail *detail) {
     masu_scene_view v = {0};
-    if (m->plan->scene.texture_sets) v = masu_scene_look(&m->plan->scene);
+    if (m->plan->scene.texture_sets) v = masu_scene_data_view(&m->plan->scene);
     for (uint32_t i = 0; i < m->plan->scene.texture_sets; i++) {
         const masu_blob_texture_set *from = &v.texture_sets[i];
         masu_result result = allocate_set(m, m->texture_layout, &m->texture_sets[i], detail);

@@ -41,7 +41,7 @@ static int keeps_images(const masu_frame_plan *plan) {
 uint32_t masu_load_chunks(const masu_frame_plan *plan) {
     uint32_t chunks = buffer_chunks(plan) + (keeps_images(plan) ? 1 : 0) + masu_ray_build_steps(plan);
     if (!plan->scene.texture_arrays) return chunks;
-    masu_scene_view v = masu_scene_look(&plan->scene);
+    masu_scene_view v = masu_scene_data_view(&plan->scene);
     return chunks + masu_texture_chunks(v.textures, plan->scene.texture_arrays, plan->compressed,
                                         plan->buffers[MASU_BUFFER_STAGING].bytes);
 }
@@ -90,7 +90,7 @@ static void move_texture(masu_device *m, VkCommandBuffer cmd, VkImage image, int
 /* One chunk of textures from `next` on. Rows of one texture that two chunks copy do not overlap:
  * they need no barrier between them. */
 static void record_textures(masu_device *m, VkCommandBuffer cmd, masu_texture_cursor *next) {
-    masu_scene_view v = masu_scene_look(&m->plan->scene);
+    masu_scene_view v = masu_scene_data_view(&m->plan->scene);
     masu_texture_region r;
     uint64_t used = 0, room = m->plan->buffers[MASU_BUFFER_STAGING].bytes;
     while (masu_texture_next(v.textures, m->plan->scene.texture_arrays, m->plan->compressed, room,
@@ -219,7 +219,7 @@ static void write_tables(const masu_scene_view *v, masu_chunk chunk, unsigned ch
 /* ---- A function for each LOADED of buffers.inc: all write a chunk of it ---------------------- */
 
 typedef struct source {
-    const masu_scene *scene;
+    const masu_scene_data *scene;
     const masu_scene_view *v;
 } source;
 
@@ -294,7 +294,7 @@ static void (*const loads[MASU_BUFFER_COUNT])(const source *s, masu_chunk chunk,
 #undef BUFFER
 };
 
-static void write_resident(const masu_scene *scene, const masu_scene_view *v, masu_chunk chunk,
+static void write_resident(const masu_scene_data *scene, const masu_scene_view *v, masu_chunk chunk,
                            unsigned char *to) {
     const source s = {scene, v};
     loads[chunk.buffer](&s, chunk, to);
@@ -340,14 +340,14 @@ uint64_t masu_load_bytes(const masu_device *m) {
     const masu_frame_plan *plan = m->plan;
     uint64_t bytes = 0;
     for (uint32_t b = 0; b < MASU_BUFFER_COUNT; b++) bytes += loaded_bytes(plan, b);
-    return bytes + masu_scene_texture_bytes(&plan->desc);
+    return bytes + masu_desc_texture_bytes(&plan->desc);
 }
 
 masu_load_step masu_load_next(masu_device *m) {
     masu_load_step step = {0};
     masu_scene_view v = {0}; /* without a scene there may still be tables */
     uint64_t most = m->plan->desc.load_step;
-    if (m->plan->desc.scene) v = masu_scene_look(m->plan->desc.scene);
+    if (m->plan->desc.scene) v = masu_scene_data_view(&m->plan->scene);
     if (!m->plan->staged) step.bytes = write_in_place(m, &v, most ? most : UINT64_MAX);
     int full = most && step.bytes; /* what is copied has a step of its own */
     if (!full && m->load_next < m->load_count) {

@@ -243,7 +243,7 @@ static masu_result create_texture(const masu_vk *vk, const masu_blob_texture *t,
 
 static masu_result create_textures(const masu_vk *vk, masu_frame_plan *plan, masu_detail *detail) {
     if (!plan->scene.texture_arrays) return MASU_OK;
-    masu_scene_view v = masu_scene_look(&plan->scene);
+    masu_scene_view v = masu_scene_data_view(&plan->scene);
     for (uint32_t i = 0; i < plan->scene.texture_arrays; i++) {
         masu_result result =
             create_texture(vk, &v.textures[i], plan->compressed, &plan->textures[i], detail);
@@ -384,8 +384,8 @@ static int is_unified(const masu_vk *vk, masu_frame_plan *plan) {
  * through it even where the host could write their memory. */
 static uint64_t texture_staging(const masu_frame_plan *plan) {
     if (!plan->scene.texture_arrays) return 0;
-    masu_scene_view v = masu_scene_look(&plan->scene);
-    uint64_t bytes = masu_scene_texture_bytes(&plan->desc);
+    masu_scene_view v = masu_scene_data_view(&plan->scene);
+    uint64_t bytes = masu_desc_texture_bytes(&plan->desc);
     for (uint32_t i = 0; i < plan->scene.texture_arrays; i++) {
         bytes += (uint64_t)v.textures[i].layers * v.textures[i].mips * MASU_BLOB_ALIGN;
     }

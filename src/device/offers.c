@@ -40,7 +40,7 @@ static void say(const masu_device *m, masu_log_level level, const char *field, c
 
 void masu_report_offers(const masu_device *m) {
     const masu_desc *d = &m->plan->desc;
-    const masu_scene *s = &m->plan->scene;
+    const masu_scene_data *s = &m->plan->scene;
     offers o;
     if (!d->log || !ask(m, &o)) return;
     if (o.blocks && !d->vulkan.texture_compression_bc && s->textures && !d->deny.compressed_textures) {

@@ -78,7 +78,7 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
     int sized = !m->plan->desc.resizable && !m->plan->desc.viewport_count;
     constants[8] = sized && output.width % MASU_GROUP == 0 && output.height % MASU_GROUP == 0;
     /* Nothing is left of the root, and of the lowest nodes nothing is entered. */
-    const masu_scene *scene = &m->plan->scene;
+    const masu_scene_data *scene = &m->plan->scene;
     constants[9] = masu_trace_top_levels(scene->trace_instances) + scene->trace_levels - 2;
     constants[10] = m->plan->desc.debug.share_rays == MASU_ON;
     constants[11] = scene->own_coats != 0;
@@ -540,7 +540,7 @@ static masu_result make_samplers(masu_device *m, masu_detail *detail) {
                                                  VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                                  VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT};
     if (!m->plan->scene.texture_sets) return MASU_OK;
-    masu_scene_view v = masu_scene_look(&m->plan->scene);
+    masu_scene_view v = masu_scene_data_view(&m->plan->scene);
     float most = m->vk.properties.limits.maxSamplerAnisotropy;
     float anisotropy = m->plan->desc.vulkan.max_anisotropy;
     for (uint32_t i = 0; i < m->plan->scene.texture_sets; i++) {

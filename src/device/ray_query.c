@@ -30,7 +30,7 @@ typedef struct build {
 /* Whether rays may go through some of a mesh. One geometry serves all of its triangles, since their
  * order is that of the tree: where one of its materials is a mask, or not seen from behind, the shader is asked about each
  * of them. */
-static int has_holes(const masu_scene *scene, const masu_scene_view *v, uint32_t mesh) {
+static int has_holes(const masu_scene_data *scene, const masu_scene_view *v, uint32_t mesh) {
     const masu_blob_mesh *m = &v->meshes[mesh];
     uint32_t holes = MASU_MATERIAL_IS_SINGLE | (masu_ray_masks(scene) ? MASU_MATERIAL_IS_MASK : 0);
     for (uint32_t p = 0; p < m->primitive_count; p++) {
@@ -41,7 +41,7 @@ static int has_holes(const masu_scene *scene, const masu_scene_view *v, uint32_t
 }
 
 /* Of a mesh, but for addresses. */
-static void describe_bottom(const masu_scene *scene, const masu_scene_view *v, uint32_t mesh,
+static void describe_bottom(const masu_scene_data *scene, const masu_scene_view *v, uint32_t mesh,
                             build *b) {
     const masu_blob_mesh *m = &v->meshes[mesh];
     uint32_t last = 0;
@@ -71,7 +71,7 @@ static void describe_bottom(const masu_scene *scene, const masu_scene_view *v, u
         .pGeometries = &b->geometry};
 }
 
-static void describe_top(const masu_scene *scene, build *b) {
+static void describe_top(const masu_scene_data *scene, build *b) {
     memset(b, 0, sizeof *b);
     b->geometry = (VkAccelerationStructureGeometryKHR){
         .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR,
@@ -98,7 +98,7 @@ static VkAccelerationStructureBuildSizesInfoKHR sizes_of(const masu_vk *vk, cons
 
 /* ---- The plan -------------------------------------------------------------------------------- */
 
-masu_result masu_ray_check(const masu_scene *scene, const masu_vk *vk, masu_detail *detail) {
+masu_result masu_ray_check(const masu_scene_data *scene, const masu_vk *vk, masu_detail *detail) {
     uint64_t triangles = TRIANGLES_MAX, instances = vk->rays.maxInstanceCount;
     if (vk->rays.maxPrimitiveCount < triangles) triangles = vk->rays.maxPrimitiveCount;
     if (scene->trace_triangles > triangles) {
@@ -127,7 +127,7 @@ void masu_ray_sizes(masu_frame_plan *plan, const masu_vk *vk) {
     uint64_t bytes = 0, scratch = 0, count = 0;
     build one;
     if (!plan->needs.query) return;
-    masu_scene_view v = masu_scene_look(&plan->scene);
+    masu_scene_view v = masu_scene_data_view(&plan->scene);
     for (uint32_t mesh = 0; mesh < plan->scene.meshes; mesh++) {
         if (!v.trace_meshes[mesh].node_count) continue;
         describe_bottom(&plan->scene, &v, mesh, &one);
@@ -173,7 +173,7 @@ masu_result masu_ray_create(masu_device *m, masu_detail *detail) {
     uint64_t offset = 0, bytes = 0;
     build b;
     if (!m->plan->needs.query) return MASU_OK;
-    masu_scene_view v = masu_scene_look(&m->plan->scene);
+    masu_scene_view v = masu_scene_data_view(&m->plan->scene);
     for (uint32_t mesh = 0; mesh < m->plan->scene.meshes; mesh++) {
         masu_ray_mesh *to = &m->ray_meshes[mesh];
         if (!v.trace_meshes[mesh].node_count) continue;
@@ -270,7 +270,7 @@ static uint32_t end_of_step(const masu_frame_plan *plan, const masu_scene_view *
 uint32_t masu_ray_build_steps(const masu_frame_plan *plan) {
     uint32_t steps = 0, mesh = 0;
     if (!plan->needs.query) return 0;
-    masu_scene_view v = masu_scene_look(&plan->scene);
+    masu_scene_view v = masu_scene_data_view(&plan->scene);
     do {
         mesh = end_of_step(plan, &v, mesh);
         steps++;
@@ -279,7 +279,7 @@ uint32_t masu_ray_build_steps(const masu_frame_plan *plan) {
 }
 
 void masu_ray_record_bottoms(masu_device *m, VkCommandBuffer cmd, uint32_t *next) {
-    masu_scene_view v = masu_scene_look(&m->plan->scene);
+    masu_scene_view v = masu_scene_data_view(&m->plan->scene);
     uint32_t mesh = *next;
     /* Of steps before this one, too. */
     VkPipelineStageFlags from =

@@ -21,10 +21,10 @@
 #define MASU_RAY_QUERY_H
 
 #include "device/device.h"
-#include "scene/view.h"
+#include "scene/blob_section.h"
 
 /* Whether the device's limits suffice. */
-masu_result masu_ray_check(const masu_scene *scene, const masu_vk *vk, masu_detail *detail);
+masu_result masu_ray_check(const masu_scene_data *scene, const masu_vk *vk, masu_detail *detail);
 
 /* Sizes of the buffers that only the driver knows. */
 void masu_ray_sizes(masu_frame_plan *plan, const masu_vk *vk);

@@ -158,7 +158,7 @@ static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep, int 
     const masu_vk *vk = &m->vk;
     int kept = m->plan->desc.resizable != 0; /* then the blob may be gone */
     masu_scene_view v = {0};
-    if (!kept) v = masu_scene_look(m->plan->desc.scene);
+    if (!kept) v = masu_scene_data_view(&m->plan->scene);
     VkPipelineLayout layout = m->layouts[pass];
     VkDeviceSize zero = 0;
     int sun = masu_is_cascade(pass), pick = pass == MASU_PASS_PICK;
@@ -463,7 +463,7 @@ static uint32_t poison_word(uint32_t kind) { return kind == 3 ? 0x3C007FC0u : ki
 /* Of the slot, to where shaders and rays read them. */
 static void copy_materials(masu_recorder *rec) {
     const masu_device *m = rec->m;
-    const masu_scene *scene = &m->plan->scene;
+    const masu_scene_data *scene = &m->plan->scene;
     VkBuffer from = m->objects.buffers[MASU_BUFFER_LIVE_MATERIALS];
     VkDeviceSize at = rec->flight * m->plan->buffers[MASU_BUFFER_LIVE_MATERIALS].stride;
     VkBufferCopy plain = {at, 0, scene->materials * sizeof(struct masu_material_data)};

@@ -102,7 +102,7 @@ static const pass_shaders of_pass[MASU_PASS_COUNT] = {
 };
 
 static masu_code scene_code(const masu_frame_plan *plan, uint32_t pass) {
-    masu_scene_view v = masu_scene_look(plan->desc.scene);
+    masu_scene_view v = masu_scene_data_view(&plan->scene);
     uint32_t section = masu_passes[pass].code;
     return (masu_code){v.code[section].words, {0}, v.code[section].count * sizeof(uint32_t), 0};
 }

@@ -5,7 +5,7 @@
 #include <string.h>
 
 void masu_animation_lay(masu_animation *a, masu_arena *arena, const masu_frame_plan *plan) {
-    const masu_scene *s = &plan->scene;
+    const masu_scene_data *s = &plan->scene;
     uint32_t nodes = s->model_nodes;
     memset(a, 0, sizeof *a);
     if (!s->clips) return;
@@ -88,7 +88,7 @@ masu_node_pose masu_pose_of(const float rows[12]) {
 
 void masu_animation_keep(masu_animation *a, const masu_frame_plan *plan,
                          const masu_scene_view *v) {
-    const masu_scene *s = &plan->scene;
+    const masu_scene_data *s = &plan->scene;
     if (!s->clips) return;
     memcpy(a->channels, v->channels, s->channels * sizeof *a->channels);
     memcpy(a->keys, v->keys, s->keys * sizeof *a->keys);

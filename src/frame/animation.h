@@ -11,7 +11,7 @@
 
 #include "base/arena.h"
 #include "plan/plan.h"
-#include "scene/view.h"
+#include "scene/blob_section.h"
 
 /* Translation, rotation (x, y, z, w), scale. */
 typedef struct masu_node_pose {

@@ -5,7 +5,7 @@
 #include <string.h>
 
 void masu_bounds_lay(masu_bounds *b, masu_arena *arena, const masu_frame_plan *plan) {
-    const masu_scene *s = &plan->scene;
+    const masu_scene_data *s = &plan->scene;
     b->meshes = masu_arena_take(arena, "mesh bounds", s->meshes, sizeof *b->meshes, 4);
     b->groups = masu_arena_take(arena, "groups", s->groups, sizeof *b->groups, 4);
     b->boxes = masu_arena_take(arena, "boxes", 6 * ((uint64_t)s->instances + MASU_BOX_PADDING),
@@ -60,7 +60,7 @@ static masu_cull_box around_all(const masu_bounds *b, uint32_t instances) {
 
 void masu_bounds_keep(masu_bounds *b, const masu_frame_plan *plan, const masu_instances *in,
                       const masu_scene_view *v) {
-    const masu_scene *scene = &plan->scene;
+    const masu_scene_data *scene = &plan->scene;
     b->box_stride = (uint64_t)scene->instances + MASU_BOX_PADDING;
     for (uint32_t k = 0; k < 3; k++) b->swept[0][k] = 1e30, b->swept[1][k] = -1e30;
     for (uint32_t mesh = 0; mesh < scene->meshes; mesh++) {
@@ -106,7 +106,7 @@ void masu_bounds_of(const masu_bounds *b, uint32_t instance, float box[6]) {
     for (uint32_t k = 0; k < 6; k++) box[k] = b->boxes[k * b->box_stride + position];
 }
 
-masu_cull_set masu_bounds_set(const masu_bounds *b, const masu_scene *scene) {
+masu_cull_set masu_bounds_set(const masu_bounds *b, const masu_scene_data *scene) {
     masu_cull_set set = {.nodes = b->groups,
                          .node_count = scene->groups,
                          .items = b->items,

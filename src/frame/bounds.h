@@ -32,6 +32,6 @@ void masu_bounds_move(masu_bounds *b, const masu_frame_plan *plan, const masu_in
 /* Middle and half size of an instance's box. */
 void masu_bounds_of(const masu_bounds *b, uint32_t instance, float box[6]);
 /* As masu_cull takes them. */
-masu_cull_set masu_bounds_set(const masu_bounds *b, const masu_scene *scene);
+masu_cull_set masu_bounds_set(const masu_bounds *b, const masu_scene_data *scene);
 
 #endif

@@ -3,7 +3,7 @@
 #define MASU_CAMERA_H
 
 #include "frame/frame_data.h"
-#include "scene/view.h"
+#include "scene/blob_section.h"
 
 typedef struct masu_camera_path {
     masu_blob_camera_key *keys; /* plan->scene.camera_keys of them */

@@ -4,7 +4,7 @@
 
 #include "frame/frame_data.h"
 #include "frame/handles.h"
-#include "scene/view.h"
+#include "scene/blob_section.h"
 
 enum {
     MASU_INSTANCE_HIDDEN = 0x80,

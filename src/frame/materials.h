@@ -9,7 +9,7 @@
 #include "frame/frame_data.h"
 #include "frame/handles.h"
 #include "scene/material.h"
-#include "scene/view.h"
+#include "scene/blob_section.h"
 
 /* What a ray finds besides the factors. */
 typedef struct masu_material_traced {

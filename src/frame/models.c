@@ -7,7 +7,7 @@
 #include <string.h>
 
 void masu_models_lay(masu_models *s, masu_arena *arena, const masu_frame_plan *plan) {
-    const masu_scene *scene = &plan->scene;
+    const masu_scene_data *scene = &plan->scene;
     s->models = masu_arena_take(arena, "models", scene->models, sizeof *s->models, 8);
     s->nodes = masu_arena_take(arena, "model nodes", scene->model_nodes, sizeof *s->nodes, 8);
     s->of_instance = masu_arena_take(arena, "models of instances",
@@ -43,7 +43,7 @@ static int place(masu_models *s, const masu_frame_plan *plan, uint32_t model) {
 
 void masu_models_keep(masu_models *s, masu_instances *in, const masu_frame_plan *plan,
                       const masu_scene_view *v) {
-    const masu_scene *scene = &plan->scene;
+    const masu_scene_data *scene = &plan->scene;
     s->handles = masu_handles_of(v->hash, MASU_HANDLE_MODEL, masu_own_models(plan),
                                  plan->reserve.models, s->lives);
     for (uint32_t i = 0; scene->models && i < scene->instances; i++)

@@ -3,7 +3,7 @@
 #define MASU_SDF_H
 
 #include "frame/frame_data.h"
-#include "scene/view.h"
+#include "scene/blob_section.h"
 
 typedef struct masu_sdf {
     masu_blob_sdf_param *params; /* plan->scene.sdf_params of them */

@@ -132,7 +132,7 @@ static masu_shadow_view shadow_view(const masu_bounds *bounds, const masu_frame_
 void masu_shadow_write(masu_shadow *s, const masu_bounds *bounds, masu_frame_data *f) {
     const masu_rung_plan *rp = masu_frame_rung_plan(f);
     const masu_rung *rung = masu_frame_rung(f);
-    const masu_scene *scene = &f->plan->scene;
+    const masu_scene_data *scene = &f->plan->scene;
     if (!f->plan->needs.shadow) return;
     masu_shadow_view view = shadow_view(bounds, f);
     struct masu_shadow_uniforms out;

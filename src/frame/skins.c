@@ -8,7 +8,7 @@
 #define ROUNDING 4e-6
 
 void masu_skins_lay(masu_skins *s, masu_arena *arena, const masu_frame_plan *plan) {
-    const masu_scene *scene = &plan->scene;
+    const masu_scene_data *scene = &plan->scene;
     uint64_t before = plan->needs.velocity ? scene->skinned_joints : 0;
     memset(s, 0, sizeof *s);
     if (!scene->skins) return;

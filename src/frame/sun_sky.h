@@ -5,7 +5,7 @@
 
 #include "frame/frame_data.h"
 #include "frame/sky.h"
-#include "scene/view.h"
+#include "scene/blob_section.h"
 
 typedef struct masu_sun_sky {
     masu_blob_environment environment;

@@ -97,7 +97,7 @@ static uint32_t level_of(const masu_visible *s, const masu_lod_view *view,
 /* Stage 1: the bit of a view in the marks of what it keeps. */
 static void mark(masu_visible *s, const masu_bounds *bounds, const masu_instances *in,
                  const masu_views *views, const masu_frame_data *f, uint32_t view) {
-    const masu_scene *scene = &f->plan->scene;
+    const masu_scene_data *scene = &f->plan->scene;
     masu_view_stats *counts = &s->slot_views[f->slot][view];
     uint8_t bit = (uint8_t)(1u << view);
     if (!masu_view_draws(f, view)) {

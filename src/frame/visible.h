@@ -2,7 +2,7 @@
 #ifndef MASU_VISIBLE_H
 #define MASU_VISIBLE_H
 
-#include "frame/views.h"
+#include "frame/cameras.h"
 
 typedef struct masu_visible {
     masu_blob_lod *lods; /* plan->scene.lods, where the plan has any */

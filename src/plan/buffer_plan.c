@@ -37,13 +37,13 @@ static uint64_t masu_slot_count(const masu_frame_plan *plan) {
 }
 
 static uint64_t masu_table_words(const masu_frame_plan *plan) {
-    const masu_scene *s = &plan->scene;
+    const masu_scene_data *s = &plan->scene;
     if (!plan->needs.scene) return 0;
     return (plan->needs.raster && s->coats ? MASU_TABLE_WORDS_ALL : MASU_TABLE_WORDS) +
            masu_blob_environment_texels(s->environment_size, s->environment_mips);
 }
 
-static uint64_t masu_probe_bytes(const masu_scene *s) {
+static uint64_t masu_probe_bytes(const masu_scene_data *s) {
     if (!s->probes) return 0;
     return sizeof(masu_blob_probes) +
            (masu_align_up(s->probe_words, 4) + (uint64_t)s->probes * MASU_PROBE_LIT_WORDS) *
@@ -64,7 +64,7 @@ static uint64_t most_words(const masu_frame_plan *plan, masu_image_extent extent
 }
 
 static uint64_t tile_words(const masu_frame_plan *plan, uint32_t rung, VkExtent2D grid) {
-    const masu_scene *s = &plan->scene;
+    const masu_scene_data *s = &plan->scene;
     uint64_t list = s->sdf_parts <= MASU_TILE_MASKED_MAX ? (s->sdf_parts + 31) / 32
                                                          : 1 + MASU_TILE_PARTS_MAX;
     (void)rung;
@@ -126,7 +126,7 @@ uint64_t masu_most_tiles(const masu_frame_plan *plan) {
 }
 
 static void lay_drawn(masu_frame_plan *plan) {
-    const masu_scene *s = &plan->scene;
+    const masu_scene_data *s = &plan->scene;
     masu_drawn_plan *d = &plan->drawn;
     uint64_t lists = (uint64_t)plan->views * plan->listed, next = lists;
     uint64_t forms = s->meshes + (plan->lods ? (uint64_t)s->lods : 0);
@@ -176,7 +176,7 @@ static uint64_t own_draws(const masu_frame_plan *plan) {
 }
 
 static uint64_t masu_draw_count(const masu_frame_plan *plan) {
-    const masu_scene *s = &plan->scene;
+    const masu_scene_data *s = &plan->scene;
     if (!s->instances) return 0;
     return own_draws(plan) + (uint64_t)s->transparents * s->transparent_sets +
            (plan->needs.picking ? plan->draws : 0);
@@ -257,7 +257,7 @@ static void lay_slots(const masu_frame_plan *plan, masu_buffer_plan *b, slot_kin
 void masu_size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
                        uint64_t storage_alignment) {
     const masu_needs *n = &plan->needs;
-    const masu_scene *s = &plan->scene;
+    const masu_scene_data *s = &plan->scene;
     masu_buffer_plan *buffer = plan->buffers;
     if (s->instances) {
         lay_drawn(plan);
@@ -306,7 +306,7 @@ static uint64_t range_of(const masu_frame_plan *plan, masu_buffer_id id, VkDescr
 
 void masu_bindings(const masu_frame_plan *plan, masu_binding out[]) {
     const masu_needs *n = &plan->needs;
-    const masu_scene *s = &plan->scene;
+    const masu_scene_data *s = &plan->scene;
     uint32_t count = 0;
 #define SIZE(elements, size) bytes = (size)
 #define ADD(NAME, stages, group, when, type, previous)                                             \

@@ -202,7 +202,7 @@ static void gather_images(masu_frame_plan *plan) {
 /* Whether a knob can change anything in the scene of a description: the column `use` of its row. What knobs of upscaling depend on is
  * decided per rung. */
 static int is_of_use(const masu_desc *d, uint32_t r, masu_knob_use use) {
-    const masu_scene *s = d->scene;
+    const masu_scene_data *s = masu_scene_data_of(d->scene);
     switch (use) {
     case MASU_USE_SDF: return s && s->sdf;
     case MASU_USE_POLYGONS: return s && s->instances;
@@ -211,7 +211,7 @@ static int is_of_use(const masu_desc *d, uint32_t r, masu_knob_use use) {
     case MASU_USE_AO: return s && s->occlusion_radius > 0.0f;
     case MASU_USE_SHADOWS: return s && s->shadow_cascades;
     case MASU_USE_LIGHTS: return s && s->lights;
-    case MASU_USE_SPECULAR: return masu_could_trace(s, &d->rungs[r]);
+    case MASU_USE_SPECULAR: return masu_could_trace(d->scene, &d->rungs[r]);
     case MASU_USE_ALWAYS:
     case MASU_USE_UPSCALED:
     case MASU_USE_SHARPEN:
@@ -268,8 +268,8 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
     masu_result result = masu_desc_check(d, detail);
     if (result) return result;
     if (d->scene) {
-        plan->scene = *d->scene;
-        d->scene = &plan->scene;
+        plan->scene = *masu_scene_data_of(d->scene);
+        d->scene = masu_scene_of(&plan->scene);
         result = masu_reserve_add(&d->reserve, &plan->scene, &plan->reserve, detail);
     }
     if (!result) result = masu_limits_check(d, detail);
@@ -277,33 +277,33 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
     masu_switches any = {0};
     for (uint32_t r = 0; r < d->rung_count; r++) (void)switches_of(d, r, &any);
     if (d->scene) {
-        if (!d->scene->sdf_occlusion && !d->scene->shadow_cascades && !any.ao)
+        if (!plan->scene.sdf_occlusion && !plan->scene.shadow_cascades && !any.ao)
             d->readback &= ~(uint32_t)MASU_READBACK_OCCLUSION;
-        if (!d->scene->shadow_cascades) d->readback &= ~(uint32_t)MASU_READBACK_SHADOW_MAP;
+        if (!plan->scene.shadow_cascades) d->readback &= ~(uint32_t)MASU_READBACK_SHADOW_MAP;
         plan->compressed = masu_takes_blocks(d);
     } else {
         d->readback = 0; /* the images that could be asked for are the scene's */
     }
     plan->needs = (masu_needs){.scene = d->scene != NULL,
-                               .raster = d->scene && d->scene->instances,
-                               .skins = d->scene && d->scene->skins,
-                               .sdf = d->scene && d->scene->sdf,
-                               .dynamic = d->scene && d->scene->sdf_dynamic,
-                               .anchored = d->scene && d->scene->sdf_anchored,
-                               .sdf_occlusion = d->scene && d->scene->sdf_occlusion,
-                               .probes = d->scene && d->scene->probes,
-                               .shadow = d->scene && d->scene->shadow_cascades,
-                               .transparents = d->scene && d->scene->transparents,
-                               .lights = d->scene && d->scene->lights,
-                               .surface = d->scene && d->scene->instances && d->scene->surfaces,
-                               .environment = d->scene && d->scene->environment_size,
-                               .sky = d->scene && (d->scene->analytic_sky || d->analytic_sky),
+                               .raster = d->scene && plan->scene.instances,
+                               .skins = d->scene && plan->scene.skins,
+                               .sdf = d->scene && plan->scene.sdf,
+                               .dynamic = d->scene && plan->scene.sdf_dynamic,
+                               .anchored = d->scene && plan->scene.sdf_anchored,
+                               .sdf_occlusion = d->scene && plan->scene.sdf_occlusion,
+                               .probes = d->scene && plan->scene.probes,
+                               .shadow = d->scene && plan->scene.shadow_cascades,
+                               .transparents = d->scene && plan->scene.transparents,
+                               .lights = d->scene && plan->scene.lights,
+                               .surface = d->scene && plan->scene.instances && plan->scene.surfaces,
+                               .environment = d->scene && plan->scene.environment_size,
+                               .sky = d->scene && (plan->scene.analytic_sky || d->analytic_sky),
                                .readback = d->readback,
                                .split = d->split,
                                .reflections = any.specular,
-                               .traced = any.specular && d->scene->trace_instances,
-                               .traced_sdf = any.specular && d->scene->trace_sdf,
-                               .query = any.specular && d->scene->trace_instances &&
+                               .traced = any.specular && plan->scene.trace_instances,
+                               .traced_sdf = any.specular && plan->scene.trace_sdf,
+                               .query = any.specular && plan->scene.trace_instances &&
                                         d->ray_query == MASU_ON,
                                .accumulate = d->debug.reference != 0,
                                .any_taa = wants(d, rung_has_taa),
@@ -330,14 +330,14 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
     /* The sun's: each cascade, else all of the scene. */
     uint32_t suns = plan->needs.shadow ? plan->cascades : d->debug.casters ? 1 : 0;
     plan->views = plan->needs.raster ? 1 + suns : 1;
-    plan->needs.occluders = d->scene && d->scene->placed_occluders > 0;
+    plan->needs.occluders = d->scene && plan->scene.placed_occluders > 0;
     for (uint32_t r = 0; r < d->rung_count; r++) {
-        plan->lods |= d->scene && d->scene->lods && d->rungs[r].lod_error > 0.0f;
+        plan->lods |= d->scene && plan->scene.lods && d->rungs[r].lod_error > 0.0f;
     }
     if (d->scene) {
-        plan->draws = d->scene->draws + (plan->lods ? d->scene->lod_draws : 0);
+        plan->draws = plan->scene.draws + (plan->lods ? plan->scene.lod_draws : 0);
         plan->listed = masu_own_instances(plan) + plan->reserve.listed;
-        if (plan->lods) plan->listed += d->scene->lod_instances + plan->reserve.lod_listed;
+        if (plan->lods) plan->listed += plan->scene.lod_instances + plan->reserve.lod_listed;
     }
     for (uint32_t r = 0; r < d->rung_count; r++) {
         masu_rung_plan *rp = &plan->rungs[r];
@@ -355,7 +355,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
         plan->needs.rung = &d->rungs[r];
 #ifdef MASU_LAB
         plan->needs.march = d->rungs[r].march;
-        if (plan->needs.sdf && !(d->scene->sdf_march & 1u << plan->needs.march)) {
+        if (plan->needs.sdf && !(plan->scene.sdf_march & 1u << plan->needs.march)) {
             return masu_fail(detail, MASU_ERROR_SCENE, "rungs[].march", plan->needs.march, 0,
                              "rungs[%u].march is %d, for which the blob has no code (bake with "
                              "--variants)",
@@ -373,16 +373,16 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
         plan->needs.taa = rung_has_taa(d, r);
         plan->needs.fine = rung_has_fine(d, r);
         plan->needs.occlusion = on->occlusion;
-        plan->needs.unculled = d->scene && (d->scene->max_primitives > MASU_CULL_ROUNDS ||
-                                            d->scene->max_instances > 64 * MASU_CULL_ROUNDS);
+        plan->needs.unculled = d->scene && (plan->scene.max_primitives > MASU_CULL_ROUNDS ||
+                                            plan->scene.max_instances > 64 * MASU_CULL_ROUNDS);
         if (plan->needs.occlusion && plan->needs.unculled) {
             if (d->rungs[r].occlusion == MASU_ON) {
                 return masu_fail(detail, MASU_ERROR_LIMIT, "rungs[].occlusion",
-                                 d->scene->max_instances, 64 * MASU_CULL_ROUNDS,
+                                 plan->scene.max_instances, 64 * MASU_CULL_ROUNDS,
                                  "rungs[%u].occlusion takes meshes of at most %d primitives and %d "
                                  "instances, the scene has one of %u or %u",
                                  r, MASU_CULL_ROUNDS, 64 * MASU_CULL_ROUNDS,
-                                 d->scene->max_primitives, d->scene->max_instances);
+                                 plan->scene.max_primitives, plan->scene.max_instances);
             }
             plan->needs.occlusion = 0;
         }

@@ -7,6 +7,7 @@
 #include "quality/governor_desc.h"
 #include "quality/knobs.h"
 #include "quality/ladder.h"
+#include "scene/scene.h"
 #include "shared/masu_shared.h"
 
 #include <math.h>
@@ -34,7 +35,9 @@ int masu_rung_resolves(const masu_desc *d, uint32_t r) {
 }
 
 int masu_could_trace(const masu_scene *scene, const masu_rung *rung) {
-    return scene && scene->reflections && scene->glossiest < rung->specular_cutoff;
+    if (!scene) return 0;
+    const masu_scene_data *s = masu_scene_data_of(scene);
+    return s->reflections && s->glossiest < rung->specular_cutoff;
 }
 
 static void fill(masu_switch *word, masu_switch with) {
@@ -83,7 +86,7 @@ static void resolve_sizes(masu_desc *d, uint32_t r) {
 /* What a device may lack the storage buffers for stays AUTO, which goes without where ON fails; what the scene has
  * no use for is off. */
 static void resolve_scene(const masu_desc *d, masu_rung *rung) {
-    if (!d->scene->placed_occluders) fill(&rung->occlusion, MASU_OFF);
+    if (!masu_scene_data_of(d->scene)->placed_occluders) fill(&rung->occlusion, MASU_OFF);
     if (!masu_could_trace(d->scene, rung)) fill(&rung->specular, MASU_OFF);
 }
 
@@ -98,7 +101,7 @@ masu_desc masu_desc_resolved(const masu_desc *desc) {
         d.rungs[0] = (masu_rung){.scale = 1.0f};
         d.rungs[1] = (masu_rung){.scale = 0.8f};
         d.rungs[2] = (masu_rung){.scale = 0.4f};
-        int smooth = d.scene && d.scene->smooth_edges && !frames_follow(&d);
+        int smooth = d.scene && masu_scene_data_of(d.scene)->smooth_edges && !frames_follow(&d);
         for (uint32_t r = 0; smooth && r < d.rung_count; r++) d.rungs[r].aa = MASU_AA_SMAA_HIGH;
     }
     for (uint32_t r = 0; r < d.rung_count && r < MASU_MAX_RUNGS; r++) {
@@ -107,7 +110,7 @@ masu_desc masu_desc_resolved(const masu_desc *desc) {
             d.rungs[r].specular_frames = SPECULAR_FRAMES_RESOLVED;
         masu_rung_defaults(&d.rungs[r]);
         if (d.rungs[r].specular_cutoff == 0.0f && d.scene)
-            d.rungs[r].specular_cutoff = d.scene->specular_cutoff;
+            d.rungs[r].specular_cutoff = masu_scene_specular_cutoff(d.scene);
         resolve_words(&d.rungs[r]);
         if (d.scene) resolve_scene(&d, &d.rungs[r]);
         if ((d.scene || d.source.view) && d.output.width && d.output.height) resolve_sizes(&d, r);

@@ -65,7 +65,7 @@ static void count_added(masu_draws *draws, const masu_frame_plan *plan, const ma
 }
 
 static void add_batches(masu_draws *draws, const masu_frame_plan *plan, const masu_scene_view *v) {
-    const masu_scene *scene = &plan->scene;
+    const masu_scene_data *scene = &plan->scene;
     uint32_t from = 0;
     for (uint32_t mesh = 0; mesh < scene->meshes; mesh++) {
         uint32_t first, first_lod,

@@ -8,7 +8,7 @@
 
 #include "base/arena.h"
 #include "plan/plan.h"
-#include "scene/view.h"
+#include "scene/blob_section.h"
 
 /* The ways to draw polygons with textures; those without have the pass's own pipeline. Alpha-tested ones
  * have theirs, so that only they lose the early depth test. */

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "scene/blob.h"
+#include "scene/scene.h"
 
 #include <stddef.h>
 #include <string.h>
@@ -26,9 +27,10 @@ const masu_limit *masu_limit_table(void) { return limits; }
 
 void masu_shadow_peak(const masu_desc *d, uint32_t *cascades, uint32_t *size) {
     *cascades = *size = 0;
-    for (uint32_t r = 0; r < d->rung_count && d->scene && d->scene->shadow_cascades; r++) {
-        uint32_t n = masu_at_most(d->rungs[r].shadow_cascades, d->scene->shadow_cascades);
-        uint32_t s = masu_at_most(d->rungs[r].shadow_resolution, d->scene->shadow_resolution);
+    uint32_t most, own = masu_scene_shadow_cascades(d->scene, &most);
+    for (uint32_t r = 0; r < d->rung_count && own; r++) {
+        uint32_t n = masu_at_most(d->rungs[r].shadow_cascades, own);
+        uint32_t s = masu_at_most(d->rungs[r].shadow_resolution, most);
         if (*cascades < n) *cascades = n;
         if (*size < s) *size = s;
     }
@@ -38,23 +40,22 @@ int masu_takes_blocks(const masu_desc *d) {
     return d->vulkan.texture_compression_bc && !d->deny.compressed_textures;
 }
 
-uint64_t masu_scene_texture_bytes(const masu_desc *d) {
+uint64_t masu_desc_texture_bytes(const masu_desc *d) {
     if (!d->scene) return 0;
-    return masu_takes_blocks(d) ? d->scene->texture_bytes : d->scene->texture_bytes_decoded;
+    return masu_scene_texture_bytes(d->scene, masu_takes_blocks(d));
 }
 
 /* What the scene has under the name of the limit, but for what its rungs or the device decide. */
 masu_limits masu_limits_needed(const masu_desc *d) {
     static const masu_limits none;
     if (!d->scene) return none;
-#define SCENE_HAS(name, ...) .name = d->scene->name,
-    masu_limits needed = {MASU_LIMITS(SCENE_HAS)};
-#undef SCENE_HAS
+    masu_limits needed;
+    masu_scene_usage(d->scene, &needed);
     uint32_t cascades, size;
     masu_shadow_peak(d, &cascades, &size);
     needed.shadow_cascades = cascades;
     needed.shadow_resolution = size;
-    needed.texture_bytes = masu_scene_texture_bytes(d);
+    needed.texture_bytes = masu_desc_texture_bytes(d);
     return needed;
 }
 
@@ -81,7 +82,7 @@ masu_result masu_limits_check(const masu_desc *d, masu_detail *detail) {
         if (!result) result = check(whats[i], value_of(&needed, i), limits[i].max, detail);
     }
     if (result || !d->scene) return result;
-    uint64_t sets = d->scene->transparent_sets;
+    uint64_t sets = masu_scene_data_of(d->scene)->transparent_sets;
     result = check("transparent texture sets", sets, MASU_TRANSPARENT_SETS_MAX, detail);
     if (result) return result;
     return check("transparents times their texture sets", needed.transparents * sets,

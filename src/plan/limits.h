@@ -23,6 +23,6 @@ void masu_shadow_peak(const masu_desc *d, uint32_t *cascades, uint32_t *size);
 
 /* Whether textures stay compressed blocks on the device, and bytes of the scene's texels then. */
 int masu_takes_blocks(const masu_desc *d);
-uint64_t masu_scene_texture_bytes(const masu_desc *d);
+uint64_t masu_desc_texture_bytes(const masu_desc *d);
 
 #endif

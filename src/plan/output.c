@@ -54,9 +54,10 @@ void masu_output_defaults(masu_desc *d) {
     if (d->dither == MASU_AUTO) d->dither = !t->storage && bits <= 8 ? MASU_ON : MASU_OFF;
     if (d->deep_color == MASU_AUTO) d->deep_color = bits > 8 ? MASU_ON : MASU_OFF;
     masu_exposure *e = &d->exposure;
-    if (e->metered == MASU_AUTO) e->metered = d->scene->metered ? MASU_ON : MASU_OFF;
-    if (e->brighten == 0.0f) e->brighten = d->scene->brighten;
-    if (e->darken == 0.0f) e->darken = d->scene->darken;
+    const masu_scene_data *s = masu_scene_data_of(d->scene);
+    if (e->metered == MASU_AUTO) e->metered = s->metered ? MASU_ON : MASU_OFF;
+    if (e->brighten == 0.0f) e->brighten = s->brighten;
+    if (e->darken == 0.0f) e->darken = s->darken;
     if (e->brighten == 0.0f) e->brighten = 1.0f;
     if (e->darken == 0.0f) e->darken = 3.0f;
     if (e->low == 0.0f) e->low = 0.1f;

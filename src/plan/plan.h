@@ -4,9 +4,10 @@
 #ifndef MASU_PLAN_H
 #define MASU_PLAN_H
 
-#include "plan/frame.h"
+#include "plan/frame_plan.h"
 #include "plan/limits.h"
 #include "plan/reserve.h"
+#include "scene/scene.h"
 #include "masu.h"
 
 /* Timestamps of a frame: one before the first pass and one after each; of the governor the first and
@@ -92,7 +93,7 @@ typedef struct masu_texture_plan {
 
 typedef struct masu_frame_plan {
     masu_desc desc; /* resolved; `scene` points to the copy below, or is NULL */
-    masu_scene scene; /* with the reserve: */
+    masu_scene_data scene; /* with the reserve: */
     masu_reserve_plan reserve;
     VkExtent2D whole; /* output that targets have; desc.output is that of the viewport looked at */
     VkExtent2D most; /* output that images are allocated for: desc.output, but after masu_resize */
@@ -143,7 +144,7 @@ void masu_plan_resize(masu_frame_plan *plan, VkExtent2D output);
 void masu_plan_look_at(masu_frame_plan *plan, uint32_t viewport);
 /* Bytes of MASU_BUFFER_JOINTS for one moment: of each skin a header, then the matrices. */
 #define MASU_SKIN_HEADER_BYTES 32u
-static inline uint64_t masu_joints_bytes(const masu_scene *s) {
+static inline uint64_t masu_joints_bytes(const masu_scene_data *s) {
     return s->skins * (uint64_t)MASU_SKIN_HEADER_BYTES + s->skinned_joints * (uint64_t)48;
 }
 

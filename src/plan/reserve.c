@@ -27,8 +27,9 @@ int masu_reserve_copies(const masu_scene_view *v, const masu_blob_model *model) 
 }
 
 /* What a copy of a model takes. Words of lists for each of its instances are added to `lists`: of meshes, of LODs. */
-static void size_of(const masu_scene *scene, const masu_scene_view *v, const masu_blob_model *model,
-                   masu_place_size *size, uint32_t *occluders, uint64_t lists[2]) {
+static void size_of(const masu_scene_data *scene, const masu_scene_view *v,
+                    const masu_blob_model *model, masu_place_size *size, uint32_t *occluders,
+                    uint64_t lists[2]) {
     uint32_t first;
     *size = (masu_place_size){.nodes = model->node_count};
     *occluders = 0;
@@ -58,9 +59,9 @@ static masu_result too_many(const char *what, uint64_t needed, uint64_t most, ma
                      (unsigned long long)needed, what, (unsigned long long)most);
 }
 
-static masu_result add_models(uint32_t models, masu_scene *scene, masu_reserve_plan *out,
+static masu_result add_models(uint32_t models, masu_scene_data *scene, masu_reserve_plan *out,
                               masu_detail *detail) {
-    const masu_scene_view v = masu_scene_look(scene);
+    const masu_scene_view v = masu_scene_data_view(scene);
     masu_place_size *place = &out->place;
     uint32_t most_occluders = 0, any = 0;
     uint64_t lists[2] = {0, 0};
@@ -95,8 +96,8 @@ static masu_result add_models(uint32_t models, masu_scene *scene, masu_reserve_p
     return MASU_OK;
 }
 
-masu_result masu_reserve_add(const masu_reserve *reserve, masu_scene *scene, masu_reserve_plan *out,
-                             masu_detail *detail) {
+masu_result masu_reserve_add(const masu_reserve *reserve, masu_scene_data *scene,
+                             masu_reserve_plan *out, masu_detail *detail) {
     *out = (masu_reserve_plan){.lights = reserve->lights};
     scene->lights += reserve->lights;
     if (!reserve->models || !scene->models) return MASU_OK;

@@ -3,12 +3,12 @@
  * A place holds a copy of any model that moves and has no skin: each is as large as the largest of them in
  * instances, nodes, blended primitives and traced instances. The counts of plan->scene are with all places; those
  * of the blob come first, then the places side by side. So all that is sized by a scene has room for them, and
- * without a reserve nothing changes. What is in which place is src/frame/added.h's. */
+ * without a reserve nothing changes. What is in which place is src/api_add.c's. */
 #ifndef MASU_PLAN_RESERVE_H
 #define MASU_PLAN_RESERVE_H
 
 #include "masu.h"
-#include "scene/view.h"
+#include "scene/scene.h"
 
 #define MASU_RESERVE_MODELS_MAX 16384u
 #define MASU_RESERVE_LIGHTS_MAX 4096u
@@ -31,7 +31,7 @@ typedef struct masu_reserve_plan {
 int masu_reserve_copies(const masu_scene_view *v, const masu_blob_model *model);
 
 /* Adds to `scene`, which is the blob's so far. Looks at the blob where there are places. */
-masu_result masu_reserve_add(const masu_reserve *reserve, masu_scene *scene, masu_reserve_plan *out,
-                             masu_detail *detail);
+masu_result masu_reserve_add(const masu_reserve *reserve, masu_scene_data *scene,
+                             masu_reserve_plan *out, masu_detail *detail);
 
 #endif

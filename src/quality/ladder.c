@@ -3,6 +3,7 @@
 
 #include "quality/ladder_devices.h"
 #include "quality/ladder_tables.h"
+#include "scene/scene.h"
 
 #include <string.h>
 
@@ -11,8 +12,9 @@
 /* Classes without traced reflections, which come first. */
 enum { KINDS = MASU_SCENE_POLYGONS_TRACED };
 
-masu_scene_class masu_scene_class_of(const masu_scene *s) {
-    if (!s) return MASU_SCENE_POLYGONS;
+masu_scene_class masu_scene_class_of(const masu_scene *scene) {
+    if (!scene) return MASU_SCENE_POLYGONS;
+    const masu_scene_data *s = masu_scene_data_of(scene);
     uint32_t kind = s->sdf ? s->instances ? MASU_SCENE_BOTH : MASU_SCENE_SDF
                     : s->lods && s->placed_occluders ? MASU_SCENE_WORLD
                                                      : MASU_SCENE_POLYGONS;

@@ -5,7 +5,7 @@
 #define MASU_SCENE_READER_H
 
 #include "base/error.h"
-#include "scene/view.h"
+#include "scene/blob_section.h"
 
 #include <math.h>
 

@@ -9,7 +9,7 @@
 #include <string.h>
 
 /* Every form of a mesh has draws of its own, and room for the numbers of its instances. */
-static void look_at_draws(const reader *r, masu_scene *out) {
+static void look_at_draws(const reader *r, masu_scene_data *out) {
     uint32_t from = 0, first_lod;
     for (uint32_t m = 0; m < out->meshes; m++) {
         uint32_t first, end = masu_scene_mesh_instances(&r->view, out->instances, m, from, &first);
@@ -31,26 +31,26 @@ static void look_at_draws(const reader *r, masu_scene *out) {
     }
 }
 
-/* What the public struct tells of a scene that has passed. */
-static void describe(const reader *r, uint64_t blob_bytes, uint64_t pairs, masu_scene *out) {
-    *out = (masu_scene){.blob = r->bytes,
-                        .blob_bytes = blob_bytes,
-                        .vertices = (uint32_t)r->counts[MASU_BLOB_VERTICES],
-                        .indices = (uint32_t)r->counts[MASU_BLOB_INDICES],
-                        .primitives = (uint32_t)r->counts[MASU_BLOB_PRIMITIVES],
-                        .meshes = (uint32_t)r->counts[MASU_BLOB_MESHES],
-                        .instances = (uint32_t)r->counts[MASU_BLOB_INSTANCES],
-                        .lods = (uint32_t)r->counts[MASU_BLOB_LODS],
-                        .materials = (uint32_t)r->counts[MASU_BLOB_MATERIALS],
-                        .groups = (uint32_t)r->counts[MASU_BLOB_GROUPS],
-                        .group_items = (uint32_t)r->counts[MASU_BLOB_GROUP_ITEMS],
-                        .models = (uint32_t)r->counts[MASU_BLOB_MODELS],
-                        .model_nodes = (uint32_t)r->counts[MASU_BLOB_MODEL_NODES],
-                        .occluders = (uint32_t)r->counts[MASU_BLOB_OCCLUDERS],
-                        .placed_occluders = (uint32_t)pairs,
-                        .camera_keys = (uint32_t)r->counts[MASU_BLOB_CAMERA_KEYS],
-                        .sdf = r->view.sdf != NULL,
-                        .sdf_params = (uint32_t)r->counts[MASU_BLOB_SDF_PARAMS]};
+/* Fills the numbers of a scene that has passed. */
+static void describe(const reader *r, uint64_t blob_bytes, uint64_t pairs, masu_scene_data *out) {
+    *out = (masu_scene_data){.blob = r->bytes,
+                             .blob_bytes = blob_bytes,
+                             .vertices = (uint32_t)r->counts[MASU_BLOB_VERTICES],
+                             .indices = (uint32_t)r->counts[MASU_BLOB_INDICES],
+                             .primitives = (uint32_t)r->counts[MASU_BLOB_PRIMITIVES],
+                             .meshes = (uint32_t)r->counts[MASU_BLOB_MESHES],
+                             .instances = (uint32_t)r->counts[MASU_BLOB_INSTANCES],
+                             .lods = (uint32_t)r->counts[MASU_BLOB_LODS],
+                             .materials = (uint32_t)r->counts[MASU_BLOB_MATERIALS],
+                             .groups = (uint32_t)r->counts[MASU_BLOB_GROUPS],
+                             .group_items = (uint32_t)r->counts[MASU_BLOB_GROUP_ITEMS],
+                             .models = (uint32_t)r->counts[MASU_BLOB_MODELS],
+                             .model_nodes = (uint32_t)r->counts[MASU_BLOB_MODEL_NODES],
+                             .occluders = (uint32_t)r->counts[MASU_BLOB_OCCLUDERS],
+                             .placed_occluders = (uint32_t)pairs,
+                             .camera_keys = (uint32_t)r->counts[MASU_BLOB_CAMERA_KEYS],
+                             .sdf = r->view.sdf != NULL,
+                             .sdf_params = (uint32_t)r->counts[MASU_BLOB_SDF_PARAMS]};
     if (r->view.sdf) masu_look_at_sdf(r, out);
     if (r->view.shadow && out->instances) { /* without polygons there is nothing to draw into it */
         out->shadow_cascades = r->view.shadow->cascades;
@@ -116,62 +116,13 @@ masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes, masu_scene *o
     if (!result) result = masu_check_trace(&r);
     if (!result) result = masu_check_skin_trees(&r);
     if (result) return result;
-    describe(&r, blob_bytes, pairs, out);
+    *out = (masu_scene){0};
+    describe(&r, blob_bytes, pairs, (masu_scene_data *)(void *)out);
     return MASU_OK;
 }
 
-masu_scene_view masu_scene_look(const masu_scene *scene) {
+masu_scene_view masu_scene_data_view(const masu_scene_data *scene) {
     reader r = {.bytes = scene->blob};
     (void)masu_read_sections(&r, scene->blob_bytes); /* has passed once on these bytes */
     return r.view;
-}
-
-int32_t masu_scene_sdf_param(const masu_scene *scene, const char *name) {
-    if (!scene || !scene->blob || !name) return -1;
-    masu_scene_view v = masu_scene_look(scene);
-    for (uint32_t i = 0; i < scene->sdf_params; i++) {
-        if (v.sdf_params[i].name != MASU_BLOB_NONE &&
-            !strcmp(v.names + v.sdf_params[i].name, name)) {
-            return (int32_t)i;
-        }
-    }
-    return -1;
-}
-
-/* A name of the blob, which has passed. */
-static const char *text_of(const masu_scene_view *v, uint32_t name) {
-    return name == MASU_BLOB_NONE ? "" : v->names + name;
-}
-
-const char *masu_scene_instance_name(const masu_scene *scene, uint32_t index) {
-    if (!scene || !scene->blob || index >= scene->instances) return "";
-    masu_scene_view v = masu_scene_look(scene);
-    return text_of(&v, v.instances[index].name);
-}
-
-const char *masu_scene_model_name(const masu_scene *scene, uint32_t index) {
-    if (!scene || !scene->blob || index >= scene->models) return "";
-    masu_scene_view v = masu_scene_look(scene);
-    return text_of(&v, v.models[index].name);
-}
-
-const char *masu_scene_clip_name(const masu_scene *scene, uint32_t model, uint32_t clip) {
-    if (!scene || !scene->blob || model >= scene->models) return "";
-    masu_scene_view v = masu_scene_look(scene);
-    for (uint32_t i = 0; i < scene->clips; i++) {
-        if (v.clips[i].model == v.models[model].like && !clip--) return text_of(&v, v.clips[i].name);
-    }
-    return "";
-}
-
-const char *masu_scene_material_name(const masu_scene *scene, uint32_t index) {
-    if (!scene || !scene->blob || index >= scene->materials) return "";
-    masu_scene_view v = masu_scene_look(scene);
-    return text_of(&v, v.materials[index].name);
-}
-
-const char *masu_scene_light_name(const masu_scene *scene, uint32_t index) {
-    if (!scene || !scene->blob || index >= scene->lights) return "";
-    masu_scene_view v = masu_scene_look(scene);
-    return text_of(&v, v.lights[index].name);
 }

@@ -20,7 +20,7 @@
 #ifndef MASU_TRACE_H
 #define MASU_TRACE_H
 
-#include "scene/view.h"
+#include "scene/blob_section.h"
 #include "scene/trace_tree.h"
 
 #define MASU_TRACE_WORSE 1.5

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-masu_trace_plan masu_trace_lay(const masu_scene *scene) {
+masu_trace_plan masu_trace_lay(const masu_scene_data *scene) {
     masu_trace_static s = masu_trace_static_layout(scene->trace_nodes, scene->trace_triangles);
     masu_trace_plan p = {
         .nodes = s.nodes / 16, .triangles = s.triangles / 16, .more = s.bytes / 16};
@@ -19,19 +19,21 @@ masu_trace_plan masu_trace_lay(const masu_scene *scene) {
     return p;
 }
 
-uint64_t masu_trace_scene_bytes(const masu_scene *scene) { return 16 * masu_trace_lay(scene).end; }
+uint64_t masu_trace_scene_bytes(const masu_scene_data *scene) {
+    return 16 * masu_trace_lay(scene).end;
+}
 
-uint64_t masu_trace_rows_at(const masu_scene *scene, int query) {
+uint64_t masu_trace_rows_at(const masu_scene_data *scene, int query) {
     return query ? 16 : masu_trace_frame_bytes(scene->trace_instances);
 }
 
-uint64_t masu_trace_slot_bytes(const masu_scene *scene, int query) {
+uint64_t masu_trace_slot_bytes(const masu_scene_data *scene, int query) {
     return masu_trace_rows_at(scene, query) +
            16 * (uint64_t)MASU_TRACE_ROWS * scene->trace_instances;
 }
 
 /* The picture of a material's map, or none. They are sorted. */
-static uint32_t picture_of(const masu_scene *scene, const masu_scene_view *v,
+static uint32_t picture_of(const masu_scene_data *scene, const masu_scene_view *v,
                            const masu_blob_material *m, uint32_t slot) {
     if (!(m->flags & 1u << slot)) return MASU_TRACE_NONE;
     uint32_t texture = v->texture_sets[m->texture_set].texture[slot];
@@ -50,7 +52,7 @@ static uint32_t picture_of(const masu_scene *scene, const masu_scene_view *v,
 
 /* Rays do not look up roughness and metallic: a material has the mean of its map, which as a picture's
  * smallest mip has what its normals do to it as well. */
-static void blur_surface(const masu_scene *scene, const masu_scene_view *v,
+static void blur_surface(const masu_scene_data *scene, const masu_scene_view *v,
                          const masu_blob_material *m, struct masu_trace_material *out) {
     uint32_t i = picture_of(scene, v, m, MASU_SLOT_SURFACE);
     if (i == MASU_TRACE_NONE) return;
@@ -61,7 +63,8 @@ static void blur_surface(const masu_scene *scene, const masu_scene_view *v,
     if (m->flags & MASU_MATERIAL_HAS_METAL) out->emissive[3] *= metallic * metallic;
 }
 
-struct masu_trace_material masu_trace_material_of(const masu_scene *scene, const masu_scene_view *v,
+struct masu_trace_material masu_trace_material_of(const masu_scene_data *scene,
+                                                  const masu_scene_view *v,
                                                   const masu_blob_material *m) {
     struct masu_trace_material out = {
         {m->base_color[0], m->base_color[1], m->base_color[2], m->roughness},
@@ -78,8 +81,8 @@ struct masu_trace_material masu_trace_material_of(const masu_scene *scene, const
 }
 
 /* One of the 16-byte elements. */
-static void element(const masu_scene *scene, const masu_scene_view *v, const masu_trace_plan *p,
-                    uint64_t i, uint32_t out[4]) {
+static void element(const masu_scene_data *scene, const masu_scene_view *v,
+                    const masu_trace_plan *p, uint64_t i, uint32_t out[4]) {
     memset(out, 0, 16);
     if (i < p->nodes) {
         masu_trace_static s = masu_trace_static_layout(scene->trace_nodes, scene->trace_triangles);
@@ -116,7 +119,7 @@ static void element(const masu_scene *scene, const masu_scene_view *v, const mas
     }
 }
 
-void masu_trace_write(const masu_scene *scene, const masu_scene_view *v, uint64_t offset,
+void masu_trace_write(const masu_scene_data *scene, const masu_scene_view *v, uint64_t offset,
                       uint64_t bytes, unsigned char *to) {
     masu_trace_plan p = masu_trace_lay(scene);
     for (uint64_t at = offset; at < offset + bytes;) {
@@ -129,6 +132,6 @@ void masu_trace_write(const masu_scene *scene, const masu_scene_view *v, uint64_
     }
 }
 
-uint32_t masu_ray_masks(const masu_scene *scene) {
+uint32_t masu_ray_masks(const masu_scene_data *scene) {
     return scene->trace_colors && scene->masks ? 1 : 0;
 }

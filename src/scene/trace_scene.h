@@ -11,7 +11,7 @@
 #define MASU_TRACE_SCENE_H
 
 #include "masu.h"
-#include "scene/view.h"
+#include "scene/scene.h"
 #include "shared/masu_shared.h"
 
 #define MASU_TRACE_ROWS 6u /* of four floats, of each traced instance */
@@ -21,25 +21,26 @@ typedef struct masu_trace_plan {
     uint64_t nodes, triangles, more, noise, materials, pictures, texels, end;
 } masu_trace_plan;
 
-masu_trace_plan masu_trace_lay(const masu_scene *scene);
+masu_trace_plan masu_trace_lay(const masu_scene_data *scene);
 
 /* Bytes of the first buffer, and of a slot of the second. With ray queries (ray_query.h) neither
  * has a tree: the plan's copy of the scene says that it has no nodes, and the header is followed by
  * the rows. */
-uint64_t masu_trace_scene_bytes(const masu_scene *scene);
-uint64_t masu_trace_slot_bytes(const masu_scene *scene, int query);
+uint64_t masu_trace_scene_bytes(const masu_scene_data *scene);
+uint64_t masu_trace_slot_bytes(const masu_scene_data *scene, int query);
 /* Where in a slot the rows begin. */
-uint64_t masu_trace_rows_at(const masu_scene *scene, int query);
+uint64_t masu_trace_rows_at(const masu_scene_data *scene, int query);
 
 /* Bytes [offset, offset + bytes) of the first buffer; both multiples of 16, but for the end. */
-void masu_trace_write(const masu_scene *scene, const masu_scene_view *v, uint64_t offset,
+void masu_trace_write(const masu_scene_data *scene, const masu_scene_view *v, uint64_t offset,
                       uint64_t bytes, unsigned char *to);
 
 /* A material of the scene, or one that differs from it in its factors, as rays know it. */
-struct masu_trace_material masu_trace_material_of(const masu_scene *scene, const masu_scene_view *v,
+struct masu_trace_material masu_trace_material_of(const masu_scene_data *scene,
+                                                  const masu_scene_view *v,
                                                   const masu_blob_material *m);
 
 /* 1: some of what is traced has holes: the permutation of the shader that looks them up. */
-uint32_t masu_ray_masks(const masu_scene *scene);
+uint32_t masu_ray_masks(const masu_scene_data *scene);
 
 #endif

@@ -27,8 +27,8 @@ static void check_frame(const masu_scene *scene) {
     desc.output = (VkExtent2D){64, 64};
     desc.targets = (masu_targets){.images = &image, .views = &view, .count = 1, .storage = 1};
     EXPECT(masu_compile(&desc, 256, 256, &plan, NULL) == MASU_OK);
-    EXPECT(plan.buffers[MASU_BUFFER_VERTICES].bytes <= scene->blob_bytes);
-    EXPECT(plan.buffers[MASU_BUFFER_INDICES].bytes <= scene->blob_bytes);
+    EXPECT(plan.buffers[MASU_BUFFER_VERTICES].bytes <= masu_scene_data_of(scene)->blob_bytes);
+    EXPECT(plan.buffers[MASU_BUFFER_INDICES].bytes <= masu_scene_data_of(scene)->blob_bytes);
 }
 
 static void bind(const uint8_t *blob, size_t size) {

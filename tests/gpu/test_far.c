@@ -1,9 +1,10 @@
 /* test_far.c: a scene of signed distance fields a million and ten million metres from the origin is
  * the picture that it is at the origin: coverage, depth, material and velocity. The scene is written
  * and baked here, with another offset each time; without anchors the same comparison fails. */
-#include "support/support.h"
+#include "scene/scene.h"
 #include "support/files.h"
 #include "support/floats.h"
+#include "support/support.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -193,7 +194,7 @@ static void the_plan_says_whether_it_is_anchored(void **state) {
         masu_session s;
         masu_plan_info plan;
         open_at(&s, i * 1000000, "");
-        assert_int_equal(s.scene.sdf_anchored, i);
+        assert_int_equal(masu_scene_data_of(&s.scene)->sdf_anchored, i);
         masu_plan_of(s.m, &plan);
         for (uint32_t p = 0; p < plan.pass_count; p++) {
             if (!strcmp(plan.passes[p].name, "update")) {

@@ -4,6 +4,7 @@
 #include "support/wrap.h"
 
 #include "alloc_count.h"
+#include "scene/scene.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -216,12 +217,12 @@ static void budgets_and_limits_are_refused_by_name(void **state) {
     assert_int_equal(masu_memory_query(&q, &need, &detail), MASU_ERROR_LIMIT);
     assert_string_equal(detail.what, "host_budget");
     q.host_budget = 0;
-    q.limits.vertices = s.scene.vertices;
+    q.limits.vertices = masu_scene_data_of(&s.scene)->vertices;
     assert_int_equal(masu_memory_query(&q, &need, &detail), MASU_OK);
     q.limits.vertices--;
     assert_int_equal(masu_memory_query(&q, &need, &detail), MASU_ERROR_LIMIT);
     assert_string_equal(detail.what, "limits.vertices");
-    assert_int_equal(detail.needed, s.scene.vertices);
+    assert_int_equal(detail.needed, masu_scene_data_of(&s.scene)->vertices);
     close_session(&s);
 }
 

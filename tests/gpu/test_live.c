@@ -79,7 +79,8 @@ static void what_comes_back_is_as_it_was(void **state) {
     masu_session s;
     masu_session_desc d = desc_of("test_live");
     open_session(&s, &d);
-    assert_int_equal(s.scene.models, 5); /* truck, two spare ones, lamp, pane */
+    assert_int_equal(masu_scene_count(&s.scene, MASU_SCENE_MODEL),
+                     5); /* truck, two spare ones, lamp, pane */
     draw_frames(&s, 0, pictures[0]);
     masu_model_state truck;
     assert_int_equal(masu_model_get(s.m, model_of(&s, "truck"), &truck), MASU_OK);

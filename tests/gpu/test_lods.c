@@ -84,8 +84,9 @@ static void compare_path(masu_session *s, uint32_t frames, int moving) {
             casters[way] +=
                 occlusion ? stats.views[1].visible_triangles : stats.views[1].triangles;
             if (way >= OCCLUSION)
-                assert_int_equal(stats.views[0].instances, s->scene.instances);
-            if (way == FINE) assert_int_equal(stats.triangles, s->scene.triangles);
+                assert_int_equal(stats.views[0].instances,
+                                 masu_scene_count(&s->scene, MASU_SCENE_INSTANCE));
+            if (way == FINE) assert_int_equal(stats.triangles, masu_scene_triangles(&s->scene));
             /* Both views draw the same forms. */
             if (way >= NEITHER) assert_int_equal(stats.views[1].triangles, stats.triangles);
         }
@@ -151,15 +152,15 @@ static void the_coarsest_form_is_the_last_one(void **state) {
     assert_int_equal(masu_scene_bind(bytes, size, &scene, NULL), MASU_OK);
     masu_scene_view v = masu_scene_look(&scene);
     uint64_t least = 0, occluders = 0;
-    for (uint32_t i = 0; i < s.scene.instances; i++) {
+    for (uint32_t i = 0; i < masu_scene_count(&s.scene, MASU_SCENE_INSTANCE); i++) {
         const masu_blob_mesh *mesh = &v.meshes[v.instances[i].mesh];
         uint32_t first = mesh->first_primitive, lods = 0;
-        for (uint32_t l = 0; l < s.scene.lods; l++) {
+        for (uint32_t l = 0; l < masu_scene_data_of(&s.scene)->lods; l++) {
             if (v.lods[l].mesh != v.instances[i].mesh) continue;
             first = v.lods[l].first_primitive;
             lods++;
         }
-        for (uint32_t o = 0; o < s.scene.occluders; o++)
+        for (uint32_t o = 0; o < masu_scene_data_of(&s.scene)->occluders; o++)
             occluders += v.occluders[o].mesh == v.instances[i].mesh && v.occluders[o].lods >= lods;
         for (uint32_t p = 0; p < mesh->primitive_count; p++)
             least += v.primitives[first + p].index_count / 3;
@@ -168,8 +169,8 @@ static void the_coarsest_form_is_the_last_one(void **state) {
     masu_camera c = {.position = {0, 0, 1000}, .forward = {0, 0, -1}, .fov_y = 1.0f};
     masu_stats_info stats = draw_frame(&s, &c, COARSE, 0);
     assert_int_equal(stats.triangles, least);
-    assert_true(least < s.scene.triangles / 4);
-    assert_true(occluders > 0 && occluders < s.scene.placed_occluders);
+    assert_true(least < masu_scene_triangles(&s.scene) / 4);
+    assert_true(occluders > 0 && occluders < masu_scene_data_of(&s.scene)->placed_occluders);
     stats = draw_frame(&s, &c, OCCLUSION, 0);
     assert_int_equal(stats.views[0].occluders, occluders);
     /* Behind the camera too: they may cast shadows. */
@@ -213,7 +214,7 @@ static void a_ladder_without_lods_has_none_of_it(void **state) {
                                                               .forward = {0, 0, -1},
                                                               .fov_y = 1.0f},
                                            with, 0);
-        assert_int_equal(stats.triangles < s.scene.triangles, with);
+        assert_int_equal(stats.triangles < masu_scene_triangles(&s.scene), with);
         close_session(&s);
     }
     assert_true(bytes[0] < bytes[1]);

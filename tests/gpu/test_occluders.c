@@ -3,9 +3,10 @@
  * and without. Scenes are random (boxes turned, stretched, sheared, mirrored and flat; eyes in, at and
  * between them; near planes that cut them open), or gaps that are narrower than a texel of the
  * atlas. */
-#include "support/support.h"
+#include "scene/scene.h"
 #include "support/files.h"
 #include "support/random.h"
+#include "support/support.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -23,7 +24,8 @@ static void open_scene(masu_session *s, uint32_t width, uint32_t height) {
     d.desc.rungs[OFF].occlusion = MASU_OFF;
     d.desc.readback = MASU_READBACK_ALBEDO | MASU_READBACK_DEPTH;
     open_session(s, &d);
-    assert_int_equal(s->scene.placed_occluders, WALLS + 1); /* and that of hollow0 */
+    assert_int_equal(masu_scene_data_of(&s->scene)->placed_occluders,
+                     WALLS + 1); /* and that of hollow0 */
 }
 
 static void place(masu_session *s, const char *kind, uint32_t i, const float rows[12]) {

@@ -26,7 +26,8 @@ static void *blob;
 static masu_scene scene;
 
 static world look_around(masu_session *s) {
-    world w = {.v = masu_scene_look(&scene), .instances = scene.instances};
+    world w = {.v = masu_scene_look(&scene),
+               .instances = masu_scene_count(&scene, MASU_SCENE_INSTANCE)};
     assert_in_range(w.instances, 0, MOST);
     for (uint32_t i = 0; i < w.instances; i++)
         assert_int_equal(masu_instance_get(s->m, masu_instance_at(s->m, i), &w.at[i]), MASU_OK);

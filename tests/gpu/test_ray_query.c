@@ -309,7 +309,7 @@ static void pose(uint32_t f, masu_camera *camera, float rows[12]) {
 
 /* All that is not the box, moved far out, where rays live relative to an anchor. */
 static void move_all(masu_session *s, const masu_scene_view *v, const double by[3]) {
-    for (uint32_t i = 0; i < s->scene.instances; i++) {
+    for (uint32_t i = 0; i < masu_scene_count(&s->scene, MASU_SCENE_INSTANCE); i++) {
         float rows[12];
         memcpy(rows, v->instances[i].transform, sizeof rows);
         for (uint32_t k = 0; k < 3; k++) rows[4 * k + 3] = (float)((double)rows[4 * k + 3] + by[k]);
@@ -332,13 +332,15 @@ static void trace_all(const char *scene, masu_switch way, uint32_t split, const 
     open_session(&s, &d);
     tap_open(&s.host);
     masu_scene_view v = masu_scene_look(&s.scene);
-    masu_blob_instance *instances = malloc(s.scene.instances * sizeof *instances);
-    memcpy(instances, v.instances, s.scene.instances * sizeof *instances);
+    masu_blob_instance *instances =
+        malloc(masu_scene_count(&s.scene, MASU_SCENE_INSTANCE) * sizeof *instances);
+    memcpy(instances, v.instances,
+           masu_scene_count(&s.scene, MASU_SCENE_INSTANCE) * sizeof *instances);
     v.instances = instances; /* the blob goes when the scene is loaded */
     assert_ok(masu_session_start(&s, error, sizeof error));
     assert_int_equal(tap.copies, 2);
     assert_int_equal(runs(s.m, "specular_query"), way == MASU_ON);
-    assert_int_equal(tap.before_builds, way == MASU_ON ? s.scene.meshes : 0);
+    assert_int_equal(tap.before_builds, way == MASU_ON ? masu_scene_data_of(&s.scene)->meshes : 0);
     assert_int_equal(tap.before_queries, way == MASU_ON ? 2 : 0);
     if (by) move_all(&s, &v, by);
     masu_instance box = masu_instance_find(s.m, "moving");
@@ -580,7 +582,7 @@ static void a_structure_that_cannot_be_made_leaves_nothing_behind(void **state) 
         structures_failed += !strcmp(wrap.failed_call, "vkCreateAccelerationStructureKHR");
         if (!strcmp(wrap.failed_call, "vkCreateShaderModule")) break;
     }
-    assert_int_equal(structures_failed, s.scene.meshes + 1);
+    assert_int_equal(structures_failed, masu_scene_data_of(&s.scene)->meshes + 1);
     wrap_reset();
     free(block);
     close_session(&s);

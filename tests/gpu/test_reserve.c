@@ -303,7 +303,7 @@ static void handles_of_what_is_gone_are_refused(void **state) {
     assert_int_equal(masu_model_at(s.m, 5).id, 0);
     assert_int_equal(add(&s, "lamp", kinds[1].at, &added), MASU_OK);
     assert_int_equal(masu_model_at(s.m, 5).id, added.id);
-    masu_instance bulb = masu_instance_at(s.m, s.scene.instances);
+    masu_instance bulb = masu_instance_at(s.m, masu_scene_count(&s.scene, MASU_SCENE_INSTANCE));
     masu_instance_state is;
     masu_punctual_light glow = masu_punctual_light_at(s.m, 1);
     masu_punctual_light_state light;
@@ -357,8 +357,8 @@ static void the_box_is_as_large_as_was_said(void **state) {
     masu_peaks(made.m, &peaks);
     assert_int_equal(peaks.host_bytes, need[1].host_bytes);
     assert_int_equal(peaks.device_bytes, need[1].device_bytes);
-    assert_int_equal(peaks.lights, s.scene.lights + 16);
-    assert_int_equal(peaks.models, s.scene.models + 8);
+    assert_int_equal(peaks.lights, masu_scene_count(&s.scene, MASU_SCENE_LIGHT) + 16);
+    assert_int_equal(peaks.models, masu_scene_count(&s.scene, MASU_SCENE_MODEL) + 8);
     printf("  8 models, 16 lights, live materials: %llu bytes host, %llu device\n",
            (unsigned long long)(need[1].host_bytes - need[0].host_bytes),
            (unsigned long long)(need[1].device_bytes - need[0].device_bytes));
@@ -373,7 +373,7 @@ static void the_box_is_as_large_as_was_said(void **state) {
     }
     assert_int_equal(named, 15);
     masu_desc tight = s.desc;
-    tight.limits.models = s.scene.models + 7;
+    tight.limits.models = masu_scene_count(&s.scene, MASU_SCENE_MODEL) + 7;
     assert_int_equal(masu_memory_query(&tight, &need[0], &detail), MASU_ERROR_LIMIT);
     assert_string_equal(detail.what, "limits.models");
     tight = s.desc;
@@ -482,7 +482,7 @@ static void what_would_change_a_pass_is_refused(void **state) {
     d.desc.live_materials = 1;
     open_session(&s, &d);
     was = material(&s, "wall", &of);
-    assert_int_equal(masu_material_at(s.m, s.scene.materials).id, 0);
+    assert_int_equal(masu_material_at(s.m, masu_scene_count(&s.scene, MASU_SCENE_MATERIAL)).id, 0);
 #define REFUSED(field, value, name)                                                                \
     do {                                                                                           \
         to = was;                                                                                  \

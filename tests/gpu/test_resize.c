@@ -1,6 +1,7 @@
 /* test_resize.c: another output size and other targets in the images that are there: the pictures are, byte
  * for byte, those of a renderer made for that size; nothing is allocated, built or loaded, the blob is gone
  * by then; what is refused leaves everything as it was; a hundred times, and memory is flat. */
+#include "scene/scene.h"
 #include "support/files.h"
 #include "support/support.h"
 #include "support/wrap.h"
@@ -205,7 +206,8 @@ static void a_hundred_resizes_take_nothing(void **state) {
     masu_desc own = desc_of(&s, W, H);
     own.governor.mode = MASU_GOVERNOR_ON;
     make_own(&s, &x, &own);
-    memset(s.blob, 0xEE, (size_t)s.scene.blob_bytes); /* it is not looked at again */
+    memset(s.blob, 0xEE,
+           (size_t)masu_scene_data_of(&s.scene)->blob_bytes); /* it is not looked at again */
     /* A leak is there in every round; what the driver's heap has kept by chance, some kilobytes, is not: of four rounds one
      * has to be without. Less than the smallest thing that could be left behind each time. */
     const int64_t most = 45 * (int64_t)(times() - 10);

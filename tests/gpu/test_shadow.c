@@ -107,7 +107,7 @@ static errors compare(const masu_camera *camera) {
             if (!shadow_point_at(&t, camera, depths, x, y, &p) || !p.faces || p.n_l < 0.005)
                 continue;
             double texel = shadow_texel(&t, camera, &p, (double)camera->near_distance, &cascade);
-            if (!(texel > 0) || p.z > 0.9 * (double)t.scene.shadow_distance) continue;
+            if (!(texel > 0) || p.z > 0.9 * (double)masu_scene_shadow_distance(&t.scene)) continue;
             double is = sun_share(seen, y * t.width + x);
             int truth = shadow_truth(&t, &p);
             e.looked++;

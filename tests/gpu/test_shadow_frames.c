@@ -1,6 +1,7 @@
 /* test_shadow_frames.c: the shadow map from frame to frame: texels that do not change while the
  * view moves, cascades that are not drawn in every frame, rungs with cascades of their own; far
  * from the origin; what a plan has of it and when it is refused. */
+#include "scene/scene.h"
 #include "support/files.h"
 #include "support/floats.h"
 #include "support/shadow.h"
@@ -65,8 +66,8 @@ static masu_cascade cascade_of(const masu_camera *c, uint32_t k) {
     }
     for (int i = 0; i < 3; i++) v.forward[i] = (double)(float)(v.forward[i] / sqrt(length));
     v.tan2 = x * x + y * y;
-    double depth = masu_shadow_split(0.125, (double)t.scene.shadow_distance,
-                                     (double)t.scene.shadow_lambda, k, 3);
+    double depth = masu_shadow_split(0.125, (double)masu_scene_shadow_distance(&t.scene),
+                                     (double)masu_scene_data_of(&t.scene)->shadow_lambda, k, 3);
     return masu_cascade_fit(&v, depth, 0, SIZE);
 }
 

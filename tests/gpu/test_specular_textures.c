@@ -161,8 +161,8 @@ static void a_mirror_shows_textures_as_they_are(void **state) {
     double mean;
     open_scene(NULL);
     double most = on_gpu(&s) ? 0.1 : 0.08; /* blocks are decoded within the errors that a format allows */
-    assert_int_equal(s.scene.trace_colors, 4);
-    assert_int_equal(s.scene.trace_textures, 5); /* and a mean of roughness */
+    assert_int_equal(masu_scene_data_of(&s.scene)->trace_colors, 4);
+    assert_int_equal(masu_scene_data_of(&s.scene)->trace_textures, 5); /* and a mean of roughness */
     /* The picture has all texels of the texture, 8 bits each. What is drawn directly has gone through
      * blocks, which are further off. */
     static const uint32_t repeat[2] = {0, 0};
@@ -204,7 +204,7 @@ static void textures_wrap_as_they_do_when_drawn(void **state) {
         char what[32];
         read_blob();
         masu_blob_texture_set *sets = find(MASU_BLOB_TEXTURE_SETS);
-        for (uint32_t i = 0; i < scene.texture_sets; i++) {
+        for (uint32_t i = 0; i < masu_scene_data_of(&scene)->texture_sets; i++) {
             sets[i].wrap[0] = wrap;
             sets[i].wrap[1] = 3 - wrap;
         }
@@ -282,7 +282,7 @@ static void through_holes_a_mirror_shows_what_is_behind(void **state) {
     /* Without the mask's flag there are none. */
     read_blob();
     masu_blob_material *materials = find(MASU_BLOB_MATERIALS);
-    for (uint32_t i = 0; i < scene.materials; i++)
+    for (uint32_t i = 0; i < masu_scene_count(&scene, MASU_SCENE_MATERIAL); i++)
         materials[i].flags &= ~(uint32_t)MASU_MATERIAL_IS_MASK;
     open_changed();
     look_both(6);
@@ -293,8 +293,9 @@ static void through_holes_a_mirror_shows_what_is_behind(void **state) {
 static void without_pictures_factors_are_seen(void **state) {
     (void)state;
     open_scene(scene_path("test_mirror_plain"));
-    assert_int_equal(s.scene.trace_colors, 0);
-    assert_int_equal(s.scene.trace_textures, 1); /* a mean of roughness, which no ray looks up */
+    assert_int_equal(masu_scene_data_of(&s.scene)->trace_colors, 0);
+    assert_int_equal(masu_scene_data_of(&s.scene)->trace_textures,
+                     1); /* a mean of roughness, which no ray looks up */
     look_both(-12);
     for (uint32_t i = 0; i < PIXELS; i++) {
         for (uint32_t k = 0; k < 3; k++)

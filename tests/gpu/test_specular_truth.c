@@ -491,7 +491,7 @@ static void materials_of_nan_give_finite_pixels(void **state) {
         uint32_t *raster = (uint32_t *)(void *)((unsigned char *)mapped + row_of("materials")->offset);
         uint32_t *traced = (uint32_t *)(void *)((unsigned char *)mapped + row_of("traced scene")->offset);
         traced += 4 * (size_t)traced[4 * traced[3]]; /* shaders/trace/scene.glsl */
-        uint32_t materials = s.scene.materials, given;
+        uint32_t materials = masu_scene_count(&s.scene, MASU_SCENE_MATERIAL), given;
         memcpy(&given, &raster[3], sizeof given);
         assert_int_equal(traced[3], given); /* a roughness: the right place */
         for (size_t b = 0; b < sizeof bits / sizeof *bits; b++) {

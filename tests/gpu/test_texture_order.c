@@ -31,7 +31,7 @@ static void change_materials(masu_session *s, int variant) {
         (masu_blob_material *)(void *)((uint8_t *)s->blob +
                                        ((const uint8_t *)v.materials - (const uint8_t *)s->blob));
     uint32_t ways[3] = {0, 0, 0};
-    for (uint32_t i = 0; i < s->scene.materials; i++) {
+    for (uint32_t i = 0; i < masu_scene_count(&s->scene, MASU_SCENE_MATERIAL); i++) {
         masu_blob_material *m = &materials[i];
         int maps = (m->flags & MASU_MATERIAL_HAS_MAPS) != 0;
         ways[maps ? 1 + !!(m->flags & MASU_MATERIAL_IS_MASK) : 0]++;
@@ -63,7 +63,7 @@ static void draw_variant(int variant, uint32_t readback) {
     masu_session s;
     uint64_t drawn[WAYS] = {0};
     open_variant(&s, variant, readback);
-    assert_int_equal(s.scene.masks, variant != PLAIN);
+    assert_int_equal(masu_scene_data_of(&s.scene)->masks, variant != PLAIN);
     for (uint32_t frame = 0; frame < frames(); frame++) {
         for (uint32_t way = WAYS; way-- > 0;) { /* NEITHER is what the others are compared with */
             masu_frame_desc f = {.rung = way, .time = 3.0 * frame / frames()};

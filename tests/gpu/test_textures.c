@@ -225,8 +225,8 @@ static void blocks_and_decoded_texels_give_one_picture(void **state) {
         masu_peaks(s.m, &peaks);
         assert_int_equal(peaks.textures, 3);
         assert_int_equal(peaks.texture_bytes, decoded || !s.host.compressed
-                                                  ? s.scene.texture_bytes_decoded
-                                                  : s.scene.texture_bytes);
+                                                  ? masu_scene_texture_bytes(&s.scene, 0)
+                                                  : masu_scene_texture_bytes(&s.scene, 1));
         assert_true(bytes[decoded] >= peaks.texture_bytes);
         close_session(&s);
     }
@@ -521,8 +521,8 @@ static void what_is_offered_and_not_enabled_is_told(void **state) {
         if (blocks) {
             char numbers[80];
             snprintf(numbers, sizeof numbers, "textures take %llu bytes, compressed %llu",
-                     (unsigned long long)s.scene.texture_bytes_decoded,
-                     (unsigned long long)s.scene.texture_bytes);
+                     (unsigned long long)masu_scene_texture_bytes(&s.scene, 0),
+                     (unsigned long long)masu_scene_texture_bytes(&s.scene, 1));
             assert_non_null(strstr(blocks, numbers));
             assert_non_null(strstr(logged, "2 vulkan.max_anisotropy is 0"));
         }

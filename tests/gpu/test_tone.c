@@ -1,11 +1,12 @@
 /* test_tone.c: tone curves, encodings and metered exposure on the GPU against tests/reference/tone.h,
  * which has them in double precision: by themselves on whatever they may be given, and in frames. */
 #include "reference/tone.h"
+#include "scene/scene.h"
 #include "shared/masu_shared.h"
-#include "support/support.h"
-#include "support/random.h"
-#include "support/floats.h"
 #include "support/compute.h"
+#include "support/floats.h"
+#include "support/random.h"
+#include "support/support.h"
 
 #include "tone_comp.spv.h"
 
@@ -286,7 +287,9 @@ static void a_scene_may_ask_for_it(void **state) {
         assert_true(masu_ref_meter(rgb[0], W * H, 3, 0.1, 0.1, &mean) > 0);
         double wanted = 2 * 0.18 / exp2(mean); /* the scene's factor is 2 */
         assert_float_equal(stats.exposure, off ? 0.0f : (float)wanted, 1e-3f * (float)wanted);
-        assert_true(s.scene.metered == 1 && s.scene.darken == 5 && s.scene.brighten == 0);
+        assert_true(masu_scene_data_of(&s.scene)->metered == 1 &&
+                    masu_scene_data_of(&s.scene)->darken == 5 &&
+                    masu_scene_data_of(&s.scene)->brighten == 0);
         close_session(&s);
     }
 }

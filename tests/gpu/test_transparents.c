@@ -8,8 +8,9 @@
 #include "support/random.h"
 #include "support/floats.h"
 
-#include "scene/blob.h"
 #include "image.h"
+#include "scene/blob.h"
+#include "scene/scene.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -236,7 +237,7 @@ static void panes_are_blended_the_farthest_first(void **state) {
     for (size_t c = 0; c < sizeof counts / sizeof *counts; c++) {
         random_panes(counts[c]);
         open_panes();
-        assert_int_equal(s.scene.transparents, counts[c]);
+        assert_int_equal(masu_scene_data_of(&s.scene)->transparents, counts[c]);
         double worst = 0;
         uint32_t compared, least = PIXELS;
         for (int turn = 0; turn < 4; turn++) {
@@ -432,9 +433,9 @@ static void panes_of_different_sets_take_turns(void **state) {
     d.desc.readback = MASU_READBACK_HDR;
     d.desc.rung_count = 1;
     open_session(&s, &d);
-    assert_int_equal(s.scene.transparents, 2);
-    assert_int_equal(s.scene.transparent_sets, 2);
-    assert_int_equal(s.scene.masks, 0);
+    assert_int_equal(masu_scene_data_of(&s.scene)->transparents, 2);
+    assert_int_equal(masu_scene_data_of(&s.scene)->transparent_sets, 2);
+    assert_int_equal(masu_scene_data_of(&s.scene)->masks, 0);
     for (int i = 0; i < 2; i++) {
         place("a", 0, 0, i ? 100 : 0, rows);
         place("b", 0, 0, i ? 0 : 100, rows);

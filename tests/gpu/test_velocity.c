@@ -2,10 +2,11 @@
  * point that the depth names is carried back by the same motions in plain C (for what changes in
  * itself by the C that masu-sdfc writes of the scene, compiled here), seen by the previous camera,
  * and compared in pixels. tests/scenes/test_velocity.sdf says how its parts move. */
-#include "support/support.h"
+#include "reference/vec.h"
+#include "scene/scene.h"
 #include "support/files.h"
 #include "support/floats.h"
-#include "reference/vec.h"
+#include "support/support.h"
 
 #include <dlfcn.h>
 #include <math.h>
@@ -186,7 +187,7 @@ static void take(masu_session *s, const moment *m, uint32_t cut, picture *p) {
     masu_readback_image image;
     masu_frame_desc frame = {
         .camera = &m->camera, .time = m->time, .cut = cut, .sdf_params = &m->radius};
-    frame.sdf_param_count = s->scene.sdf_params;
+    frame.sdf_param_count = masu_scene_count(&s->scene, MASU_SCENE_SDF_PARAM);
     if (!m->rests) place_instance(s, "box", m->rows);
     draw(s, &frame, &commands, NULL);
     if (!p) return;
@@ -200,7 +201,7 @@ static void take(masu_session *s, const moment *m, uint32_t cut, picture *p) {
 
 static int kind_at(const masu_session *s, const moment *m, vec p, double z) {
     double at[3] = {p.x, p.y, p.z}, radius = (double)m->radius;
-    if (!s->scene.sdf) return BOX;
+    if (!masu_scene_data_of(&s->scene)->sdf) return BOX;
     int part = nearest_part(&radius, m->time, at);
     return fabs(field(m, p, part + MOVER)) > 2e-3 * z ? BOX : part + MOVER;
 }

@@ -8,7 +8,7 @@
 #include <string.h>
 
 typedef struct walker {
-    const masu_scene *scene;
+    const masu_scene_data *scene;
     masu_scene_view view;
     const char *fault;
     uint32_t groups, items; /* met by a walk from the root */
@@ -67,7 +67,7 @@ static uint64_t count_blocks(const masu_blob_texture *t) {
 }
 
 static void read_sections(walker *w) {
-    const masu_scene *s = w->scene;
+    const masu_scene_data *s = w->scene;
     const masu_scene_view *v = &w->view;
     read_section(w, v->vertices, s->vertices, sizeof *v->vertices, "vertices");
     read_section(w, v->indices, s->indices, sizeof *v->indices, "indices");
@@ -130,7 +130,7 @@ static void read_map(walker *w, const masu_blob_material *m, uint32_t slot) {
 }
 
 static void read_textures(walker *w) {
-    const masu_scene *s = w->scene;
+    const masu_scene_data *s = w->scene;
     const masu_scene_view *v = &w->view;
     uint64_t layers = 0, bytes = 0, decoded = 0;
     int masks = 0, singles = 0;
@@ -404,7 +404,7 @@ static void read_looks(walker *w) {
 
 static void read_shadow(walker *w) {
     const masu_blob_shadow *s = w->view.shadow;
-    const masu_scene *out = w->scene;
+    const masu_scene_data *out = w->scene;
     int there = s && out->instances;
     expect(w, out->shadow_cascades == (there ? s->cascades : 0), "shadow_cascades");
     expect(w, out->shadow_resolution == (there ? s->resolution : 0), "shadow_resolution");
@@ -503,7 +503,9 @@ static void read_sdf(walker *w) {
         read_name(w, p->name);
         if (w->fault || p->name == MASU_BLOB_NONE) continue;
         const char *name = w->view.names + p->name;
-        int32_t found = masu_scene_sdf_param(w->scene, name); /* this one, or an earlier namesake */
+        if (!*name) continue; /* is no name to masu_scene_find */
+        /* This one, or an earlier namesake. */
+        int32_t found = masu_scene_find(masu_scene_of(w->scene), MASU_SCENE_SDF_PARAM, name);
         expect(w, found >= 0 && found <= (int32_t)i, "an SDF parameter is not found by its name");
         if (w->fault) return;
         expect(w, !strcmp(w->view.names + w->view.sdf_params[found].name, name),
@@ -512,7 +514,7 @@ static void read_sdf(walker *w) {
 }
 
 const char *masu_ref_walk_scene(const masu_scene *scene) {
-    walker w = {.scene = scene, .view = masu_scene_look(scene)};
+    walker w = {.scene = masu_scene_data_of(scene), .view = masu_scene_look(scene)};
     read_sections(&w);
     if (!w.fault) read_geometry(&w);
     if (!w.fault) read_textures(&w);

@@ -40,17 +40,18 @@ static void stand(const float t[12], double n[3]) {
 }
 
 static const char *unknown(const masu_scene *scene, const masu_scene_view *v) {
-    if (scene->sdf) return "an SDF";
-    if (scene->textures) return "textures";
-    if (scene->meso) return "small reliefs";
-    for (uint32_t i = 0; i < scene->materials; i++)
+    if (masu_scene_data_of(scene)->sdf) return "an SDF";
+    if (masu_scene_data_of(scene)->textures) return "textures";
+    if (masu_scene_data_of(scene)->meso) return "small reliefs";
+    for (uint32_t i = 0; i < masu_scene_count(scene, MASU_SCENE_MATERIAL); i++)
         if (v->materials[i].specular < 0.5f || v->materials[i].specular > 0.5f)
             return "specular factors";
-    if (scene->lights) return "punctual lights";
-    if (scene->probes) return "light probes";
-    if (scene->shadow_cascades) return "shadows";
-    if (scene->environment_size || v->environment->turbidity > 0) return "a sky of more than two colours";
-    if (scene->fog) return "fog";
+    if (masu_scene_count(scene, MASU_SCENE_LIGHT)) return "punctual lights";
+    if (masu_scene_data_of(scene)->probes) return "light probes";
+    if (masu_scene_shadow_cascades(scene, NULL)) return "shadows";
+    if (masu_scene_data_of(scene)->environment_size || v->environment->turbidity > 0)
+        return "a sky of more than two colours";
+    if (masu_scene_data_of(scene)->fog) return "fog";
     return v->reflections ? NULL : "no reflections";
 }
 
@@ -72,7 +73,8 @@ bool masu_ref_mirror_open(const masu_scene *scene, const masu_camera *camera, ui
     }
     if (!m->normals || !m->looks) {
         masu_ref_mirror_close(m);
-        snprintf(error, error_size, "no memory for %u triangles", (unsigned)scene->triangles);
+        snprintf(error, error_size, "no memory for %u triangles",
+                 (unsigned)masu_scene_triangles(scene));
         return false;
     }
     for (uint32_t i = 0; i < m->world.count; i++) {

@@ -24,7 +24,7 @@ static void place(const float rows[12], const float p[3], double out[3]) {
 }
 
 static void gather(const masu_scene *scene, const masu_scene_view *v, masu_ref_triangles *out) {
-    for (uint32_t i = 0; i < scene->instances; i++) {
+    for (uint32_t i = 0; i < masu_scene_count(scene, MASU_SCENE_INSTANCE); i++) {
         const masu_blob_mesh *mesh = &v->meshes[v->instances[i].mesh];
         for (uint32_t p = 0; p < mesh->primitive_count; p++) {
             const masu_blob_primitive *prim = &v->primitives[mesh->first_primitive + p];
@@ -89,8 +89,8 @@ static void split(masu_ref_triangles *s, uint32_t node, uint32_t *nodes) {
 int masu_ref_triangles_open(const masu_scene *scene, masu_ref_triangles *out) {
     masu_scene_view v = masu_scene_look(scene);
     memset(out, 0, sizeof *out);
-    out->triangles = malloc((size_t)(scene->triangles + 1) * sizeof *out->triangles);
-    out->nodes = malloc((size_t)(2 * scene->triangles + 1) * sizeof *out->nodes);
+    out->triangles = malloc((size_t)(masu_scene_triangles(scene) + 1) * sizeof *out->triangles);
+    out->nodes = malloc((size_t)(2 * masu_scene_triangles(scene) + 1) * sizeof *out->nodes);
     if (!out->triangles || !out->nodes) {
         masu_ref_triangles_close(out);
         return 0;

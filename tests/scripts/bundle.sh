@@ -10,7 +10,7 @@ make --no-print-directory bundle > "$folder/said" || { cat "$folder/said" && exi
 mv "$build/bundle" "$folder/bundle"
 bundle=$folder/bundle
 version=$(sed -n 's/^.define MASU_VERSION_[A-Z]* //p' include/masu.h | paste -sd.)
-for f in LICENSE Makefile CMakeLists.txt include/masu.h gen/packed.h src/masu.c; do
+for f in LICENSE Makefile CMakeLists.txt include/masu.h gen/packed.h src/api.c; do
     [ -f "$bundle/$f" ] || { echo "the bundle has no $f"; exit 1; }
 done
 [ "$(find "$bundle/src" -name '*.c' | wc -l)" = "$(find src -name '*.c' | wc -l)" ]

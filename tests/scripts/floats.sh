@@ -17,7 +17,7 @@ refuses() {
     fi
     grep -q -- '#error.*-mfpmath=sse -msse2' "$said" || { head -n 3 "$said"; exit 1; }
 }
-for file in src/masu.c src/frame/sky.c src/frame/shadow.c src/scene/cull.c src/scene/punctual_light.c \
+for file in src/api.c src/frame/sky.c src/frame/shadow.c src/scene/cull.c src/scene/punctual_light.c \
     src/quality/governor.c tools/generate/make_smaa_area.c tools/generate/make_split_sum.c \
     tools/generate/make_blue_noise.c tests/reference/fsr1.c; do
     refuses "$file"

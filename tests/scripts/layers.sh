@@ -127,8 +127,8 @@ printf '#include "scene/four.h"\nint masu_three(void) { return 3; }\n' > "$bad/s
 printf 'int masu_three(void);\nint masu_four(void) { return masu_three(); }\n' > "$bad/scene/four.c"
 touch "$bad/scene/four.h"
 printf '#include "base/low.h"\nint masu_low(void);\nint main(void) { return masu_low(); }\n' \
-    > "$bad/masu.c"
-for source in base/low frame/high scene/three scene/four masu; do
+    > "$bad/api.c"
+for source in base/low frame/high scene/three scene/four api; do
     mkdir -p "$folder/obj/$(dirname $source)"
     ${CC:-gcc} -std=c11 -I"$bad" -c "$bad/$source.c" -o "$folder/obj/$source.o" || failed=1
 done
@@ -167,7 +167,7 @@ expect 3 lab_users "$folder/tree"
 # ---- The rules -----------------------------------------------------------------------------------
 
 objects=${BUILD:-build}/obj/src
-[ -f "$objects/masu.o" ] || { echo "there are no objects in $objects" && failed=1; }
+[ -f "$objects/api.o" ] || { echo "there are no objects in $objects" && failed=1; }
 expect_none "upwards (layers: $LAYERS)" of src "$objects" upward
 expect_none 'modules on a circle of includes and calls' of src "$objects" circles
 expect_none "over $LONG lines without a reason ('Over 700 lines: why') at the head" \

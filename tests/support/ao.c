@@ -42,7 +42,7 @@ static RTCScene mesh_scene(RTCDevice device, const masu_scene_view *v, uint32_t 
 
 bool masu_ao_open(const masu_scene *scene, masu_ao_world *world, char *error, size_t error_size) {
     memset(world, 0, sizeof *world);
-    if (!scene->instances) return true;
+    if (!masu_scene_count(scene, MASU_SCENE_INSTANCE)) return true;
     masu_scene_view v = masu_scene_look(scene);
     RTCDevice device = rtcNewDevice("threads=1");
     if (!device) {
@@ -51,7 +51,7 @@ bool masu_ao_open(const masu_scene *scene, masu_ao_world *world, char *error, si
     }
     RTCScene all = rtcNewScene(device), of_mesh = NULL;
     uint32_t last = MASU_BLOB_NONE; /* instances are sorted by mesh */
-    for (uint32_t i = 0; i < scene->instances; i++) {
+    for (uint32_t i = 0; i < masu_scene_count(scene, MASU_SCENE_INSTANCE); i++) {
         const masu_blob_instance *placed = &v.instances[i];
         if (placed->mesh != last) {
             if (of_mesh) rtcReleaseScene(of_mesh);

@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "reference/scene_walk.h"
+#include "scene/scene.h"
 
 static unsigned char *edge; /* the first byte that may not be read */
 static size_t page_bytes;
@@ -52,8 +53,8 @@ masu_result support_bind(const unsigned char *bytes, size_t size, masu_scene *sc
         assert_true(strlen(detail->text) > 10 && !strchr(detail->text, '\n'));
         assert_int_equal(masu_scene_bind(at, size, scene, NULL), result);
     } else {
-        assert_ptr_equal(scene->blob, at);
-        assert_int_equal(scene->blob_bytes, size);
+        assert_ptr_equal(masu_scene_data_of(scene)->blob, at);
+        assert_int_equal(masu_scene_data_of(scene)->blob_bytes, size);
         const char *fault = masu_ref_walk_scene(scene);
         if (fault) fail_msg("accepted, but %s", fault);
     }

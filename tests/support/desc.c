@@ -5,7 +5,7 @@
 
 VkImage support_images[MASU_MAX_TARGETS];
 VkImageView support_views[MASU_MAX_TARGETS];
-masu_scene support_scene;
+masu_scene_data support_scene;
 
 static masu_desc desc_of(uint32_t width, uint32_t height) {
     masu_desc d;
@@ -22,7 +22,7 @@ static masu_desc desc_of(uint32_t width, uint32_t height) {
 
 masu_desc scene_desc(uint32_t parts, uint32_t width, uint32_t height) {
     masu_desc d = desc_of(width, height);
-    masu_scene *s = &support_scene;
+    masu_scene_data *s = &support_scene;
     memset(s, 0, sizeof *s);
     s->blob = s;
     if (parts & RASTER) {
@@ -37,7 +37,7 @@ masu_desc scene_desc(uint32_t parts, uint32_t width, uint32_t height) {
         s->sdf_march = 1u << MASU_MARCH_AUTO;
 #endif
     }
-    d.scene = s;
+    d.scene = masu_scene_of(s);
     return d;
 }
 
@@ -48,13 +48,13 @@ masu_desc source_desc(uint32_t width, uint32_t height) {
     return d;
 }
 
-masu_scene scene_of_class(uint32_t c) {
+masu_scene_data scene_of_class(uint32_t c) {
     uint32_t kind = c % 4;
-    masu_desc d = scene_desc(kind == MASU_SCENE_SDF    ? SDF
-                             : kind == MASU_SCENE_BOTH ? RASTER | SDF
-                                                       : RASTER,
-                             64, 48);
-    masu_scene s = *d.scene;
+    (void)scene_desc(kind == MASU_SCENE_SDF    ? SDF
+                     : kind == MASU_SCENE_BOTH ? RASTER | SDF
+                                               : RASTER,
+                     64, 48);
+    masu_scene_data s = support_scene;
     if (kind == MASU_SCENE_WORLD) s.lods = 2, s.placed_occluders = 3;
     if (c >= 4) s.reflections = 1, s.glossiest = 0.1f, s.specular_cutoff = 0.4f;
     return s;

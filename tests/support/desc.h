@@ -5,14 +5,14 @@
 
 #include <stdint.h>
 
-#include "masu.h"
+#include "scene/scene.h"
 
 #define FAKE(type, n) ((type)(uintptr_t)(0x1000 + (n)))
 
 /* What the descriptions below point to; written anew by each call, for a test to spoil. */
 extern VkImage support_images[MASU_MAX_TARGETS];
 extern VkImageView support_views[MASU_MAX_TARGETS];
-extern masu_scene support_scene;
+extern masu_scene_data support_scene;
 
 enum { RASTER = 1, SDF = 2 };
 
@@ -24,6 +24,6 @@ masu_desc scene_desc(uint32_t parts, uint32_t width, uint32_t height);
 masu_desc source_desc(uint32_t width, uint32_t height);
 
 /* A scene of that masu_scene_class. */
-masu_scene scene_of_class(uint32_t c);
+masu_scene_data scene_of_class(uint32_t c);
 
 #endif

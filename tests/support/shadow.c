@@ -2,8 +2,9 @@
 #include "support/files.h"
 #include "support/shadow.h"
 
-#include "scene/scene.h"
 #include "reference/vec.h"
+#include "scene/scene.h"
+#include "support/scene_data.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -33,7 +34,7 @@ void shadow_open(shadow_test *t, const char *name, uint32_t width, uint32_t heig
     for (int k = 0; k < 3; k++) t->sun[k] /= sqrt(length);
     assert_true(masu_ref_triangles_open(&t->scene, &t->world));
     free(blob);
-    t->scene.blob = NULL;
+    support_scene_data(&t->scene)->blob = NULL;
 }
 
 void shadow_close(shadow_test *t) {
@@ -124,13 +125,14 @@ double shadow_texel(const shadow_test *t, const masu_camera *c, const shadow_poi
     unit3(v.forward);
     v.tan2 = x * x + y * y;
     v.near_distance = near_distance;
-    uint32_t n = t->scene.shadow_cascades, size = t->scene.shadow_resolution;
-    double distance = (double)t->scene.shadow_distance;
+    uint32_t n = masu_scene_shadow_cascades(&t->scene, NULL),
+             size = masu_scene_data_of(&t->scene)->shadow_resolution;
+    double distance = (double)masu_scene_shadow_distance(&t->scene);
     if (rung->shadow_cascades && rung->shadow_cascades < n) n = rung->shadow_cascades;
     if (rung->shadow_resolution && rung->shadow_resolution < size) size = rung->shadow_resolution;
     for (uint32_t k = 0; k < n; k++) {
-        double depth =
-            masu_shadow_split(near_distance, distance, (double)t->scene.shadow_lambda, k, n);
+        double depth = masu_shadow_split(
+            near_distance, distance, (double)masu_scene_data_of(&t->scene)->shadow_lambda, k, n);
         masu_cascade cascade_k = masu_cascade_fit(&v, depth, 0, size);
         double d[3], far = 0;
         for (int i = 0; i < 3; i++) d[i] = p->at[i] - cascade_k.center[i];

@@ -11,8 +11,10 @@
 
 #include <cmocka.h>
 
+#include "scene/scene.h"
 #include "support/bind.h"
 #include "support/dry_renderer.h"
+#include "support/scene_data.h"
 
 #define PARTS (SUPPORT_ALL | SUPPORT_LIVE | SUPPORT_SKIN)
 
@@ -48,18 +50,18 @@ static void a_blob_tells_its_clips_and_skins(void **state) {
     masu_scene at;
     support_blob_write(&broken, PARTS);
     support_accepted(&broken, &at);
-    at.blob = broken.bytes;
-    assert_int_equal(at.clips, 2);
-    assert_int_equal(at.channels, 3);
-    assert_int_equal(at.keys, 6);
-    assert_int_equal(at.skins, 1);
-    assert_int_equal(at.joints, 2);
-    assert_int_equal(at.skin_vertices, 4);
-    assert_int_equal(at.skinned_vertices, 4);
-    assert_int_equal(at.skinned_joints, 2);
-    assert_int_equal(at.first_skinned, 7);
-    assert_int_equal(at.max_skinned, 4);
-    assert_int_equal(at.max_nodes, 2);
+    support_scene_data(&at)->blob = broken.bytes;
+    assert_int_equal(masu_scene_data_of(&at)->clips, 2);
+    assert_int_equal(masu_scene_data_of(&at)->channels, 3);
+    assert_int_equal(masu_scene_data_of(&at)->keys, 6);
+    assert_int_equal(masu_scene_data_of(&at)->skins, 1);
+    assert_int_equal(masu_scene_data_of(&at)->joints, 2);
+    assert_int_equal(masu_scene_data_of(&at)->skin_vertices, 4);
+    assert_int_equal(masu_scene_data_of(&at)->skinned_vertices, 4);
+    assert_int_equal(masu_scene_data_of(&at)->skinned_joints, 2);
+    assert_int_equal(masu_scene_data_of(&at)->first_skinned, 7);
+    assert_int_equal(masu_scene_data_of(&at)->max_skinned, 4);
+    assert_int_equal(masu_scene_data_of(&at)->max_nodes, 2);
     assert_string_equal(masu_scene_clip_name(&at, 2, 0), "bend");
     assert_string_equal(masu_scene_clip_name(&at, 2, 1), "glow");
     assert_string_equal(masu_scene_clip_name(&at, 2, 2), "");

@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "bench/settings.h"
+#include "scene/scene.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -36,7 +37,7 @@ static void check_names(uint32_t count) {
     }
 }
 
-static const masu_scene everything = {
+static const masu_scene_data everything = {
     .sdf = 1, .lods = 1, .placed_occluders = 1, .instances = 1, .lights = 1, .shadow_cascades = 4,
     .shadow_distance = 80};
 
@@ -54,10 +55,10 @@ static void names_are_unique_and_parents_come_first(void **state) {
     static const char *const passes[] = {"ao", "specular_guide", "cascade_0"};
     const masu_plan_info plan = plan_with(passes, 3);
     uint32_t few = masu_settings_make(true, settings);
-    masu_settings_fit(settings, few, &everything, &plan);
+    masu_settings_fit(settings, few, masu_scene_of(&everything), &plan);
     check_names(few);
     uint32_t all = masu_settings_make(false, settings);
-    masu_settings_fit(settings, all, &everything, &plan);
+    masu_settings_fit(settings, all, masu_scene_of(&everything), &plan);
     check_names(all);
     assert_true(few >= 8 && few < all && all <= MASU_SETTINGS_MOST);
     uint32_t scales = 0;
@@ -82,7 +83,7 @@ static void a_scene_of_nothing_leaves_what_is_done_to_pictures(void **state) {
     static const masu_scene scene;
     const masu_plan_info plan = plan_with(NULL, 0);
     uint32_t count = masu_settings_make(false, settings);
-    masu_settings_fit(settings, count, &scene, &plan);
+    masu_settings_fit(settings, count, masu_scene_of(&scene), &plan);
     check_names(count);
     check_dropped("march_steps=64", count, "no SDF");
     check_dropped("ao=off", count, "no ambient occlusion");
@@ -112,7 +113,7 @@ static void a_scene_of_everything_keeps_everything(void **state) {
     static const char *const passes[] = {"ao", "specular_guide", "cascade_0"};
     const masu_plan_info plan = plan_with(passes, 3);
     uint32_t count = masu_settings_make(false, settings), dropped = 0;
-    masu_settings_fit(settings, count, &everything, &plan);
+    masu_settings_fit(settings, count, masu_scene_of(&everything), &plan);
     check_names(count);
     for (uint32_t i = 0; i < count; i++) dropped += settings[i].dropped[0] != 0;
     /* SMAA HIGH and temporal at 1 and 0.5 are techniques and bundles; so is no sharpening, nothing at 1:
@@ -154,9 +155,9 @@ static void a_cutoff_that_is_the_scenes_own_is_the_base(void **state) {
     (void)state;
     static const char *const passes[] = {"specular_guide"};
     const masu_plan_info plan = plan_with(passes, 1);
-    const masu_scene scene = {.specular_cutoff = 0.5f};
+    const masu_scene_data scene = {.specular_cutoff = 0.5f};
     uint32_t count = masu_settings_make(false, settings);
-    masu_settings_fit(settings, count, &scene, &plan);
+    masu_settings_fit(settings, count, masu_scene_of(&scene), &plan);
     check_names(count);
     check_dropped("specular_cutoff=0.5", count, "the scene's value");
     assert_true(find(count, "specular_cutoff=0.25") < count);
@@ -167,9 +168,9 @@ static void cascades_that_are_the_scenes_own_are_the_base(void **state) {
     static const char *const passes[] = {"cascade_0"};
     const masu_plan_info plan = plan_with(passes, 1);
     for (uint32_t n = 1; n <= 3; n++) {
-        const masu_scene scene = {.shadow_cascades = n, .shadow_distance = 80};
+        const masu_scene_data scene = {.shadow_cascades = n, .shadow_distance = 80};
         uint32_t count = masu_settings_make(false, settings);
-        masu_settings_fit(settings, count, &scene, &plan);
+        masu_settings_fit(settings, count, masu_scene_of(&scene), &plan);
         check_names(count);
         if (n < 3)
             check_dropped("shadow_cascades=2", count, "no more of them");
@@ -238,12 +239,12 @@ static void names_are_read_again(void **state) {
     const masu_plan_info plan = plan_with(passes, 3);
     char error[600], name[MASU_SETTING_ID];
     masu_rung rung;
-    masu_scene scene = everything;
+    masu_scene_data scene = everything;
     scene.shadow_distance = 81.2345f;
     for (int quick = 0; quick < 2; quick++) {
         uint32_t count = masu_settings_make(quick, settings);
         check_names_read_again(count);
-        masu_settings_fit(settings, count, &scene, &plan);
+        masu_settings_fit(settings, count, masu_scene_of(&scene), &plan);
         check_names_read_again(count);
     }
     /* In any order; values of all kinds. */

@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-#include "plan/frame.h"
+#include "plan/frame_plan.h"
 #include "scene/code.h"
 #include "shared/masu_shared.h"
 #include "support/bind.h"

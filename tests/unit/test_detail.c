@@ -45,14 +45,14 @@ static void a_blob_with_detail_is_accepted_and_found(void **state) {
     masu_scene scene;
     support_blob_write(&blob, SUPPORT_ALL | SUPPORT_DETAIL);
     support_accepted(&blob, &scene);
-    assert_int_equal(scene.lods, 1);
-    assert_int_equal(scene.draws, 3); /* it adds none */
-    assert_int_equal(scene.triangles, 2 * (2 + 1) + 2);
+    assert_int_equal(masu_scene_data_of(&scene)->lods, 1);
+    assert_int_equal(masu_scene_data_of(&scene)->draws, 3); /* it adds none */
+    assert_int_equal(masu_scene_triangles(&scene), 2 * (2 + 1) + 2);
     assert_null(masu_ref_walk_scene(&scene));
     masu_scene_view view = masu_scene_look(&scene);
     uint32_t first;
-    assert_int_equal(masu_scene_mesh_lods(&view, scene.lods, 0, &first), 0);
-    assert_int_equal(masu_scene_mesh_lods(&view, scene.lods, 1, &first), 1);
+    assert_int_equal(masu_scene_mesh_lods(&view, masu_scene_data_of(&scene)->lods, 0, &first), 0);
+    assert_int_equal(masu_scene_mesh_lods(&view, masu_scene_data_of(&scene)->lods, 1, &first), 1);
     assert_int_equal(view.lods[first].first_primitive, 3);
 }
 
@@ -103,7 +103,7 @@ static void a_fourth_lod_is_refused(void **state) {
     masu_scene scene;
     support_blob_seal(blob.bytes, blob.size);
     support_accepted(&blob, &scene);
-    assert_int_equal(scene.lods, 3);
+    assert_int_equal(masu_scene_data_of(&scene)->lods, 3);
     write_lods(four, 4);
     AT(MESHES, masu_blob_mesh)[1].primitive_count = 0;
     assert_refused("lods", 3, "more than three");

@@ -82,13 +82,13 @@ static void known_devices_have_their_class(void **state) {
 static void every_rung_of_every_ladder_has_its_cost_on_every_class(void **state) {
     (void)state;
     for (uint32_t c = 0; c < MASU_SCENE_CLASSES; c++) {
-        masu_scene s = scene_of_class(c);
-        assert_int_equal(masu_scene_class_of(&s), c);
-        const masu_ladder *l = masu_ladder_for(&s);
-        assert_null(masu_ladder_costs_on(&s, MASU_DEVICE_OTHER));
-        assert_null(masu_ladder_costs_on(&s, MASU_DEVICE_CLASSES));
+        masu_scene_data s = scene_of_class(c);
+        assert_int_equal(masu_scene_class_of(masu_scene_of(&s)), c);
+        const masu_ladder *l = masu_ladder_for(masu_scene_of(&s));
+        assert_null(masu_ladder_costs_on(masu_scene_of(&s), MASU_DEVICE_OTHER));
+        assert_null(masu_ladder_costs_on(masu_scene_of(&s), MASU_DEVICE_CLASSES));
         for (int k = MASU_DEVICE_OTHER + 1; k < MASU_DEVICE_CLASSES; k++) {
-            const float *costs = masu_ladder_costs_on(&s, (masu_device_class)k);
+            const float *costs = masu_ladder_costs_on(masu_scene_of(&s), (masu_device_class)k);
             assert_non_null(costs);
             assert_true(costs[0] == 1.0f);
             double off = 0;
@@ -138,12 +138,12 @@ static void costs_of_its_class_keep_the_target_sooner(void **state) {
     (void)state;
     uint32_t all[2] = {0, 0}, all_lost[2] = {0, 0};
     for (uint32_t c = 0; c < MASU_SCENE_CLASSES; c++) {
-        masu_scene s = scene_of_class(c);
+        masu_scene_data s = scene_of_class(c);
         const masu_ladder *l = masu_ladder_of_class((masu_scene_class)c);
         if (!l->count) continue;
         uint32_t over[2] = {0, 0}, lost[2] = {0, 0};
         for (int k = MASU_DEVICE_OTHER + 1; k < MASU_DEVICE_CLASSES; k++) {
-            const float *truth = masu_ladder_costs_on(&s, (masu_device_class)k);
+            const float *truth = masu_ladder_costs_on(masu_scene_of(&s), (masu_device_class)k);
             for (uint32_t r = 1; r < l->count; r++) { /* a load for which this rung is right */
                 for (uint32_t seed = 0; seed < 4; seed++) {
                     for (int way = 0; way < 2; way++)

@@ -38,24 +38,24 @@ static void compile(const masu_desc *d) {
 static void scenes_have_the_class_of_what_they_are_made_of(void **state) {
     (void)state;
     for (uint32_t c = 0; c < MASU_SCENE_CLASSES; c++) {
-        masu_scene s = scene_of_class(c);
-        assert_int_equal(masu_scene_class_of(&s), c);
+        masu_scene_data s = scene_of_class(c);
+        assert_int_equal(masu_scene_class_of(masu_scene_of(&s)), c);
         const char *name = masu_scene_class_name((masu_scene_class)c);
         for (uint32_t k = 0; k < c; k++)
             assert_string_not_equal(name, masu_scene_class_name((masu_scene_class)k));
         /* Coarser forms or occluders alone make no world, nor do both with an SDF. */
         if (c % 4 == MASU_SCENE_WORLD) {
             s.lods = 0;
-            assert_int_equal(masu_scene_class_of(&s), c - 1);
+            assert_int_equal(masu_scene_class_of(masu_scene_of(&s)), c - 1);
             s.lods = 1, s.placed_occluders = 0;
-            assert_int_equal(masu_scene_class_of(&s), c - 1);
+            assert_int_equal(masu_scene_class_of(masu_scene_of(&s)), c - 1);
             s.placed_occluders = 1, s.sdf = 1;
-            assert_int_equal(masu_scene_class_of(&s), c + 2);
+            assert_int_equal(masu_scene_class_of(masu_scene_of(&s)), c + 2);
         }
         if (c >= 4) { /* nothing is glossy enough: the plan traces nothing either */
             s = scene_of_class(c);
             s.glossiest = s.specular_cutoff;
-            assert_int_equal(masu_scene_class_of(&s), c - 4);
+            assert_int_equal(masu_scene_class_of(masu_scene_of(&s)), c - 4);
         }
     }
     assert_int_equal(masu_scene_class_of(NULL), MASU_SCENE_POLYGONS);
@@ -68,14 +68,14 @@ static void tables_are_well_formed(void **state) {
     uint32_t measured = 0;
     for (uint32_t c = 0; c < MASU_SCENE_CLASSES; c++) {
         const masu_ladder *l = masu_ladder_of_class((masu_scene_class)c);
-        masu_scene s = scene_of_class(c);
+        masu_scene_data s = scene_of_class(c);
         s.shadow_cascades = 4, s.shadow_resolution = 512, s.shadow_distance = 50.0f;
         s.occlusion_radius = 1.0f;
         measured += l->count > 0;
         assert_true(l->count <= MASU_MAX_RUNGS);
         assert_true(!l->count || (l->from && strlen(l->from) > 20));
         masu_desc d = scene_desc(RASTER, 640, 360);
-        d.scene = &s;
+        d.scene = masu_scene_of(&s);
         d.rung_count = l->count;
         for (uint32_t r = 0; r < MASU_MAX_RUNGS; r++) {
             const masu_rung *rung = &l->rungs[r];
@@ -103,8 +103,8 @@ static void tables_are_well_formed(void **state) {
 static void every_class_has_the_nearest_ladder(void **state) {
     (void)state;
     for (uint32_t c = 0; c < MASU_SCENE_CLASSES; c++) {
-        masu_scene s = scene_of_class(c);
-        const masu_ladder *l = masu_ladder_for(&s),
+        masu_scene_data s = scene_of_class(c);
+        const masu_ladder *l = masu_ladder_for(masu_scene_of(&s)),
                           *own = masu_ladder_of_class((masu_scene_class)c);
         assert_true(l && l->count >= 1);
         if (own->count) assert_ptr_equal(l, own);
@@ -144,10 +144,10 @@ static void assert_three(const masu_desc *d) {
 static void the_switch_says_which_rungs(void **state) {
     (void)state;
     for (uint32_t c = 0; c < MASU_SCENE_CLASSES; c++) {
-        masu_scene s = scene_of_class(c);
-        const masu_ladder *l = masu_ladder_for(&s);
+        masu_scene_data s = scene_of_class(c);
+        const masu_ladder *l = masu_ladder_for(masu_scene_of(&s));
         masu_desc d = scene_desc(RASTER, 640, 360), is;
-        d.scene = &s;
+        d.scene = masu_scene_of(&s);
         is = masu_desc_resolved(&d);
         assert_three(&is);
         assert_int_equal(is.ladder, MASU_OFF);

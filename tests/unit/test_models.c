@@ -14,6 +14,7 @@
 #include "support/bind.h"
 #include "support/desc.h"
 #include "support/dry_renderer.h"
+#include "support/scene_data.h"
 
 /* ---- Rules of the blob ----------------------------------------------------------------------- */
 
@@ -41,17 +42,17 @@ static void a_blob_tells_its_models(void **state) {
     masu_scene scene;
     support_blob_write(&broken, SUPPORT_ALL | SUPPORT_LIVE);
     support_accepted(&broken, &scene);
-    assert_int_equal(scene.models, 3);
-    assert_int_equal(scene.model_nodes, 4);
-    scene.blob = broken.bytes;
-    assert_string_equal(masu_scene_model_name(&scene, 0), "plate");
-    assert_string_equal(masu_scene_model_name(&scene, 1), "");
-    assert_string_equal(masu_scene_model_name(&scene, 2), "lid");
-    assert_string_equal(masu_scene_model_name(&scene, 3), "");
-    assert_string_equal(masu_scene_instance_name(&scene, 2), "lid");
-    assert_string_equal(masu_scene_instance_name(&scene, 3), "");
-    assert_string_equal(masu_scene_light_name(&scene, 0), "");
-    assert_string_equal(masu_scene_model_name(NULL, 0), "");
+    assert_int_equal(masu_scene_count(&scene, MASU_SCENE_MODEL), 3);
+    assert_int_equal(masu_scene_data_of(&scene)->model_nodes, 4);
+    support_scene_data(&scene)->blob = broken.bytes;
+    assert_string_equal(masu_scene_name(&scene, MASU_SCENE_MODEL, 0), "plate");
+    assert_string_equal(masu_scene_name(&scene, MASU_SCENE_MODEL, 1), "");
+    assert_string_equal(masu_scene_name(&scene, MASU_SCENE_MODEL, 2), "lid");
+    assert_string_equal(masu_scene_name(&scene, MASU_SCENE_MODEL, 3), "");
+    assert_string_equal(masu_scene_name(&scene, MASU_SCENE_INSTANCE, 2), "lid");
+    assert_string_equal(masu_scene_name(&scene, MASU_SCENE_INSTANCE, 3), "");
+    assert_string_equal(masu_scene_name(&scene, MASU_SCENE_LIGHT, 0), "");
+    assert_string_equal(masu_scene_name(NULL, MASU_SCENE_MODEL, 0), "");
 }
 
 static void models_that_are_none_are_refused(void **state) {

@@ -28,6 +28,8 @@ static masu_governor_setting setting;
 static masu_governor_state learnt;
 static masu_detail detail;
 static masu_scene look;
+static uint32_t resolution;
+static masu_limits usage;
 static masu_commands commands;
 static masu_camera camera;
 static masu_light light;
@@ -67,13 +69,22 @@ static const float unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 /* Each function of the public header: an expression that is its result, or NO_RESULT. */
 #define CALLS(X)                                                                                   \
     X(masu_result_string, (masu_result_string(MASU_OK), NO_RESULT))                                \
-    X(masu_scene_bind, masu_scene_bind(P(0, scene.blob), scene.blob_bytes, P(1, &look), P(2, &detail))) \
-    X(masu_scene_sdf_param, (masu_scene_sdf_param(P(0, &scene), P(1, "a")), NO_RESULT))            \
-    X(masu_scene_instance_name, (masu_scene_instance_name(P(0, &scene), 0), NO_RESULT))            \
-    X(masu_scene_model_name, (masu_scene_model_name(P(0, &scene), 0), NO_RESULT))                  \
+    X(masu_scene_bind,                                                                             \
+      masu_scene_bind(P(0, masu_scene_data_of(&scene)->blob),                                      \
+                      masu_scene_data_of(&scene)->blob_bytes, P(1, &look), P(2, &detail)))         \
+    X(masu_scene_count, (masu_scene_count(P(0, &scene), MASU_SCENE_MODEL), NO_RESULT))             \
+    X(masu_scene_name, (masu_scene_name(P(0, &scene), MASU_SCENE_MODEL, 0), NO_RESULT))            \
+    X(masu_scene_find, (masu_scene_find(P(0, &scene), MASU_SCENE_MODEL, P(1, "a")), NO_RESULT))    \
+    X(masu_scene_clip_count, (masu_scene_clip_count(P(0, &scene), 0), NO_RESULT))                  \
     X(masu_scene_clip_name, (masu_scene_clip_name(P(0, &scene), 0, 0), NO_RESULT))                 \
-    X(masu_scene_light_name, (masu_scene_light_name(P(0, &scene), 0), NO_RESULT))                  \
-    X(masu_scene_material_name, (masu_scene_material_name(P(0, &scene), 0), NO_RESULT))            \
+    X(masu_scene_features, (masu_scene_features(P(0, &scene)), NO_RESULT))                         \
+    X(masu_scene_triangles, (masu_scene_triangles(P(0, &scene)), NO_RESULT))                       \
+    X(masu_scene_texture_bytes, (masu_scene_texture_bytes(P(0, &scene), 1), NO_RESULT))            \
+    X(masu_scene_shadow_cascades,                                                                  \
+      (masu_scene_shadow_cascades(P(0, &scene), P(1, &resolution)), NO_RESULT))                    \
+    X(masu_scene_shadow_distance, ((void)masu_scene_shadow_distance(P(0, &scene)), NO_RESULT))     \
+    X(masu_scene_specular_cutoff, ((void)masu_scene_specular_cutoff(P(0, &scene)), NO_RESULT))     \
+    X(masu_scene_usage, (masu_scene_usage(P(0, &scene), P(1, &usage)), NO_RESULT))                 \
     X(masu_scene_class_of, ((void)masu_scene_class_of(P(0, &scene)), NO_RESULT))                   \
     X(masu_scene_class_name, (masu_scene_class_name(MASU_SCENE_SDF), NO_RESULT))                   \
     X(masu_knob_table, (masu_knob_table(), NO_RESULT))                                             \
@@ -88,11 +99,12 @@ static const float unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     X(masu_destroy, (masu_destroy(P(0, &m)), NO_RESULT))                                           \
     X(masu_pipelines_destroy,                                                                      \
       (masu_pipelines_destroy(P(0, &desc.vulkan), P(1, &pool)), NO_RESULT))                        \
-    X(masu_resize,                                                                                 \
-      masu_resize(P(0, &m), (VkExtent2D){8, 8}, P(1, &desc.targets), P(2, &screen), P(3, &detail)))  \
+    X(masu_resize, masu_resize(P(0, &m), (VkExtent2D){8, 8}, P(1, &desc.targets), P(2, &screen),   \
+                               P(3, &detail)))                                                     \
     X(masu_desc_resolved, ((void)masu_desc_resolved(P(0, &desc)), NO_RESULT))                      \
     X(masu_ladder_of, masu_ladder_of(P(0, &scene), P(1, &desc), P(2, &from)))                      \
-    X(masu_memory_report, ((void)masu_memory_report(P(0, &m), P(1, rows_of_memory), 2), NO_RESULT)) \
+    X(masu_memory_report,                                                                          \
+      ((void)masu_memory_report(P(0, &m), P(1, rows_of_memory), 2), NO_RESULT))                    \
     X(masu_plan, masu_plan(P(0, &desc), P(1, &plan), P(2, &detail)))                               \
     X(masu_plan_of, (masu_plan_of(P(0, &m), P(1, &plan)), NO_RESULT))                              \
     X(masu_load, masu_load(P(0, &m), P(1, &commands)))                                             \
@@ -131,7 +143,8 @@ static const float unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     X(masu_punctual_light_at, ((void)masu_punctual_light_at(P(0, &m), 0), NO_RESULT))              \
     X(masu_punctual_light_get, masu_punctual_light_get(P(0, &m), LIGHT, P(1, &light_state)))       \
     X(masu_punctual_light_set, masu_punctual_light_set(P(0, &m), LIGHT, P(1, &light_state)))       \
-    X(masu_punctual_light_add, masu_punctual_light_add(P(0, &m), P(1, &light_state), P(2, &made_light))) \
+    X(masu_punctual_light_add,                                                                     \
+      masu_punctual_light_add(P(0, &m), P(1, &light_state), P(2, &made_light)))                    \
     X(masu_punctual_light_remove, masu_punctual_light_remove(P(0, &m), LIGHT))                     \
     X(masu_material_find, ((void)masu_material_find(P(0, &m), P(1, "a")), NO_RESULT))              \
     X(masu_material_at, ((void)masu_material_at(P(0, &m), 0), NO_RESULT))                          \
@@ -297,7 +310,7 @@ static void what_has_nothing_to_tell_says_so(void **state) {
     assert_int_equal(masu_memory_report(NULL, rows_of_memory, 2), 0);
     assert_true(masu_knob_get(NULL, &rung, 0) == 0.0);
     assert_int_equal(masu_knob_takes(NULL, 0.0), 0);
-    assert_int_equal(masu_scene_sdf_param(&(masu_scene){0}, "a"), -1);
+    assert_int_equal(masu_scene_find(&(masu_scene){0}, MASU_SCENE_SDF_PARAM, "a"), -1);
 }
 
 int main(void) {

@@ -1006,8 +1006,8 @@ static void only_what_is_coated_has_the_tables_of_coats(void **state) {
     (void)state;
     static masu_frame_plan plan;
     masu_desc d = scene_desc(RASTER | SDF, 100, 100);
-    masu_scene s = *d.scene;
-    d.scene = &s;
+    masu_scene_data s = *masu_scene_data_of(d.scene);
+    d.scene = masu_scene_of(&s);
     s.surfaces = 1;
     compile(&d, &plan);
     assert_int_equal(plan.buffers[MASU_BUFFER_TABLES].bytes, 4 * MASU_TABLE_WORDS);
@@ -1019,7 +1019,7 @@ static void only_what_is_coated_has_the_tables_of_coats(void **state) {
     assert_int_equal(plan.buffers[MASU_BUFFER_TABLES].bytes, 4 * MASU_TABLE_WORDS_ALL);
     assert_false(plan.needs.surface);
     d = scene_desc(SDF, 100, 100);
-    s = *d.scene;
+    s = *masu_scene_data_of(d.scene);
     d.scene = &s;
     s.surfaces = s.coats = 1;
     compile(&d, &plan);
@@ -1104,9 +1104,9 @@ static void a_small_relief_costs_its_curves_and_the_surface_image(void **state) 
     compile(&d, &plan);
     assert_false(plan.needs.surface);
     assert_int_equal(plan.buffers[MASU_BUFFER_MATERIALS].bytes, 2 * 48);
-    masu_scene scene = *d.scene;
+    masu_scene_data scene = *masu_scene_data_of(d.scene);
     scene.surfaces = scene.meso = 1;
-    d.scene = &scene;
+    d.scene = masu_scene_of(&scene);
     compile(&d, &plan);
     assert_true(plan.needs.surface);
     assert_int_equal(plan.buffers[MASU_BUFFER_MATERIALS].bytes, 2 * 48 + 96);
@@ -1447,7 +1447,7 @@ static void ray_queries_stand_in_for_the_own_tree(void **state) {
 /* What the custom index of an instance can say, or the device takes, whichever is less. */
 static void ray_queries_have_limits(void **state) {
     (void)state;
-    masu_scene s = {.trace_triangles = 1u << 24, .trace_instances = 7};
+    masu_scene_data s = {.trace_triangles = 1u << 24, .trace_instances = 7};
     masu_detail detail;
     masu_vk vk;
     memset(&vk, 0, sizeof vk);

@@ -24,7 +24,7 @@ static void compile(const masu_desc *d, masu_frame_plan *plan) {
 /* Of polygons and an SDF, mirrored in something of roughness 0.1. */
 static masu_desc mirrors(uint32_t parts) {
     masu_desc d = scene_desc(parts, 640, 360);
-    masu_scene *s = &support_scene;
+    masu_scene_data *s = &support_scene;
     s->reflections = 1;
     s->trace_instances = parts & RASTER ? 3 : 0;
     s->trace_nodes = s->trace_triangles = parts & RASTER ? 8 : 0;

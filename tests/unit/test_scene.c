@@ -26,20 +26,20 @@ static void a_full_blob_is_accepted_with_its_numbers(void **state) {
     masu_scene s;
     support_blob_write(&blob, SUPPORT_ALL);
     support_accepted(&blob, &s);
-    assert_int_equal(s.vertices, 11);
-    assert_int_equal(s.indices, 15);
-    assert_int_equal(s.primitives, 3);
-    assert_int_equal(s.meshes, 2);
-    assert_int_equal(s.instances, 3);
-    assert_int_equal(s.materials, 2);
-    assert_int_equal(s.camera_keys, 3);
-    assert_int_equal(s.sdf, 1);
-    assert_int_equal(s.sdf_params, 2);
-    assert_int_equal(s.sdf_parts, 1);
-    assert_int_equal(s.sdf_slots, 3);
-    assert_int_equal(s.sdf_dynamic, 1);
-    assert_int_equal(s.draws, 3);                   /* two of mesh 0, one of mesh 1 */
-    assert_int_equal(s.triangles, 2 * (2 + 1) + 2); /* mesh 0 is placed twice */
+    assert_int_equal(masu_scene_data_of(&s)->vertices, 11);
+    assert_int_equal(masu_scene_data_of(&s)->indices, 15);
+    assert_int_equal(masu_scene_data_of(&s)->primitives, 3);
+    assert_int_equal(masu_scene_data_of(&s)->meshes, 2);
+    assert_int_equal(masu_scene_count(&s, MASU_SCENE_INSTANCE), 3);
+    assert_int_equal(masu_scene_count(&s, MASU_SCENE_MATERIAL), 2);
+    assert_int_equal(masu_scene_count(&s, MASU_SCENE_CAMERA_KEY), 3);
+    assert_int_equal(masu_scene_data_of(&s)->sdf, 1);
+    assert_int_equal(masu_scene_count(&s, MASU_SCENE_SDF_PARAM), 2);
+    assert_int_equal(masu_scene_data_of(&s)->sdf_parts, 1);
+    assert_int_equal(masu_scene_data_of(&s)->sdf_slots, 3);
+    assert_int_equal(masu_scene_data_of(&s)->sdf_dynamic, 1);
+    assert_int_equal(masu_scene_data_of(&s)->draws, 3);                   /* two of mesh 0, one of mesh 1 */
+    assert_int_equal(masu_scene_triangles(&s), 2 * (2 + 1) + 2); /* mesh 0 is placed twice */
 }
 
 static void a_blob_of_any_parts_is_accepted_with_these_alone(void **state) {
@@ -48,16 +48,16 @@ static void a_blob_of_any_parts_is_accepted_with_these_alone(void **state) {
         masu_scene s;
         support_blob_write(&blob, parts);
         support_accepted(&blob, &s);
-        assert_int_equal(s.vertices, parts & SUPPORT_RASTER ? 11 : 0);
-        assert_int_equal(s.instances, parts & SUPPORT_RASTER ? 3 : 0);
-        assert_int_equal(s.draws, parts & SUPPORT_RASTER ? 3 : 0);
-        assert_int_equal(s.sdf, parts & SUPPORT_SDF ? 1 : 0);
-        assert_int_equal(s.sdf_params, parts & SUPPORT_SDF ? 2 : 0);
-        assert_int_equal(s.camera_keys, parts & SUPPORT_CAMERA ? 3 : 0);
-        assert_int_equal(s.sdf_parts, parts & SUPPORT_SDF ? 1 : 0);
-        assert_int_equal(s.sdf_slots, parts & SUPPORT_SDF ? 3 : 0);
+        assert_int_equal(masu_scene_data_of(&s)->vertices, parts & SUPPORT_RASTER ? 11 : 0);
+        assert_int_equal(masu_scene_count(&s, MASU_SCENE_INSTANCE), parts & SUPPORT_RASTER ? 3 : 0);
+        assert_int_equal(masu_scene_data_of(&s)->draws, parts & SUPPORT_RASTER ? 3 : 0);
+        assert_int_equal(masu_scene_data_of(&s)->sdf, parts & SUPPORT_SDF ? 1 : 0);
+        assert_int_equal(masu_scene_count(&s, MASU_SCENE_SDF_PARAM), parts & SUPPORT_SDF ? 2 : 0);
+        assert_int_equal(masu_scene_count(&s, MASU_SCENE_CAMERA_KEY), parts & SUPPORT_CAMERA ? 3 : 0);
+        assert_int_equal(masu_scene_data_of(&s)->sdf_parts, parts & SUPPORT_SDF ? 1 : 0);
+        assert_int_equal(masu_scene_data_of(&s)->sdf_slots, parts & SUPPORT_SDF ? 3 : 0);
         int variants = parts & SUPPORT_SDF && parts & SUPPORT_VARIANTS;
-        assert_int_equal(s.sdf_dynamic, variants);
+        assert_int_equal(masu_scene_data_of(&s)->sdf_dynamic, variants);
     }
 }
 
@@ -69,8 +69,8 @@ static void a_mesh_that_is_placed_nowhere_is_not_drawn(void **state) {
     instances[0].mesh = instances[1].mesh = 1;
     support_blob_seal(blob.bytes, blob.size);
     support_accepted(&blob, &s);
-    assert_int_equal(s.draws, 1);
-    assert_int_equal(s.triangles, 3 * 2);
+    assert_int_equal(masu_scene_data_of(&s)->draws, 1);
+    assert_int_equal(masu_scene_triangles(&s), 3 * 2);
 }
 
 static void instances_of_a_mesh_are_found_from_anywhere_before_them(void **state) {
@@ -97,23 +97,23 @@ static void sdf_parameters_are_found_by_their_names(void **state) {
     masu_scene s;
     support_blob_write(&blob, SUPPORT_ALL);
     support_accepted(&blob, &s);
-    assert_int_equal(masu_scene_sdf_param(&s, "radius"), 0);
-    assert_int_equal(masu_scene_sdf_param(&s, "bend"), 1);
-    assert_int_equal(masu_scene_sdf_param(&s, "steel"), -1); /* a name, but a material's */
-    assert_int_equal(masu_scene_sdf_param(&s, "radiu"), -1);
-    assert_int_equal(masu_scene_sdf_param(&s, "radius "), -1);
-    assert_int_equal(masu_scene_sdf_param(&s, ""), -1);
-    assert_int_equal(masu_scene_sdf_param(&s, NULL), -1);
-    assert_int_equal(masu_scene_sdf_param(NULL, "radius"), -1);
+    assert_int_equal(masu_scene_find(&s, MASU_SCENE_SDF_PARAM, "radius"), 0);
+    assert_int_equal(masu_scene_find(&s, MASU_SCENE_SDF_PARAM, "bend"), 1);
+    assert_int_equal(masu_scene_find(&s, MASU_SCENE_SDF_PARAM, "steel"), -1); /* a name, but a material's */
+    assert_int_equal(masu_scene_find(&s, MASU_SCENE_SDF_PARAM, "radiu"), -1);
+    assert_int_equal(masu_scene_find(&s, MASU_SCENE_SDF_PARAM, "radius "), -1);
+    assert_int_equal(masu_scene_find(&s, MASU_SCENE_SDF_PARAM, ""), -1);
+    assert_int_equal(masu_scene_find(&s, MASU_SCENE_SDF_PARAM, NULL), -1);
+    assert_int_equal(masu_scene_find(NULL, MASU_SCENE_SDF_PARAM, "radius"), -1);
     masu_blob_sdf_param *params = support_blob_find(&blob, MASU_BLOB_SDF_PARAMS);
     params[0].name = MASU_BLOB_NONE;
     support_blob_seal(blob.bytes, blob.size);
     support_accepted(&blob, &s);
-    assert_int_equal(masu_scene_sdf_param(&s, "radius"), -1);
-    assert_int_equal(masu_scene_sdf_param(&s, "bend"), 1);
+    assert_int_equal(masu_scene_find(&s, MASU_SCENE_SDF_PARAM, "radius"), -1);
+    assert_int_equal(masu_scene_find(&s, MASU_SCENE_SDF_PARAM, "bend"), 1);
     support_blob_write(&blob, SUPPORT_RASTER);
     support_accepted(&blob, &s);
-    assert_int_equal(masu_scene_sdf_param(&s, "radius"), -1);
+    assert_int_equal(masu_scene_find(&s, MASU_SCENE_SDF_PARAM, "radius"), -1);
 }
 
 /* ---- Damage ---------------------------------------------------------------------------------- */

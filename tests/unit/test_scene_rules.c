@@ -13,6 +13,7 @@
 
 #include <cmocka.h>
 
+#include "scene/scene.h"
 #include "support/bind.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
@@ -234,18 +235,19 @@ static void what_lights_a_scene_is_checked(void **state) {
     masu_scene scene;
     support_blob_seal(blob.bytes, blob.size);
     assert_int_equal(masu_scene_bind(blob.bytes, blob.size, &scene, NULL), MASU_OK);
-    assert_int_equal(scene.surfaces, 1); /* what is blended is in no G-buffer, */
-    assert_int_equal(scene.coats, 1);    /* but has a coat */
-    assert_int_equal(scene.blends, 1);
-    assert_int_equal(scene.meso, 1);
-    assert_int_equal(scene.lights, 2);
-    assert_int_equal(scene.probes, 2);
-    assert_int_equal(scene.probe_sets, 2);
-    assert_int_equal(scene.probe_words, 74);
-    assert_int_equal(scene.environment_size, 8);
-    assert_int_equal(scene.environment_mips, 2);
-    assert_int_equal(scene.analytic_sky, 1);
-    assert_int_equal(scene.fog, 1);
+    assert_int_equal(masu_scene_data_of(&scene)->surfaces,
+                     1);                                    /* what is blended is in no G-buffer, */
+    assert_int_equal(masu_scene_data_of(&scene)->coats, 1); /* but has a coat */
+    assert_int_equal(masu_scene_data_of(&scene)->blends, 1);
+    assert_int_equal(masu_scene_data_of(&scene)->meso, 1);
+    assert_int_equal(masu_scene_count(&scene, MASU_SCENE_LIGHT), 2);
+    assert_int_equal(masu_scene_data_of(&scene)->probes, 2);
+    assert_int_equal(masu_scene_data_of(&scene)->probe_sets, 2);
+    assert_int_equal(masu_scene_data_of(&scene)->probe_words, 74);
+    assert_int_equal(masu_scene_data_of(&scene)->environment_size, 8);
+    assert_int_equal(masu_scene_data_of(&scene)->environment_mips, 2);
+    assert_int_equal(masu_scene_data_of(&scene)->analytic_sky, 1);
+    assert_int_equal(masu_scene_data_of(&scene)->fog, 1);
 }
 
 static void a_section_of_an_unknown_kind_is_refused(void **state) {
@@ -351,9 +353,9 @@ static void what_rays_are_traced_through_is_checked(void **state) {
     support_blob_write(&blob, SUPPORT_ALL | SUPPORT_TRACE);
     masu_scene scene;
     assert_int_equal(masu_scene_bind(blob.bytes, blob.size, &scene, NULL), MASU_OK);
-    assert_int_equal(scene.trace_nodes, 3);
-    assert_int_equal(scene.trace_triangles, 4);
-    assert_int_equal(scene.trace_instances, 2);
+    assert_int_equal(masu_scene_data_of(&scene)->trace_nodes, 3);
+    assert_int_equal(masu_scene_data_of(&scene)->trace_triangles, 4);
+    assert_int_equal(masu_scene_data_of(&scene)->trace_instances, 2);
     assert_int_equal(bind_chain(MASU_TRACE_DEPTH_MAX), MASU_OK);
     assert_int_equal(bind_chain(MASU_TRACE_DEPTH_MAX + 1), MASU_ERROR_SCENE);
     assert_non_null(strstr(detail.text, "too deep"));
@@ -571,8 +573,8 @@ static void groups_below_64_levels_are_refused(void **state) {
         masu_scene scene;
         support_blob_seal(blob.bytes, blob.size);
         support_accepted(&blob, &scene);
-        assert_int_equal(scene.groups, levels);
-        assert_int_equal(scene.group_items, 2);
+        assert_int_equal(masu_scene_data_of(&scene)->groups, levels);
+        assert_int_equal(masu_scene_data_of(&scene)->group_items, 2);
     }
 }
 
@@ -621,8 +623,8 @@ static void occluders_outside_of_their_mesh_are_refused(void **state) {
     masu_scene scene;
     support_blob_write(&blob, SUPPORT_ALL);
     support_accepted(&blob, &scene);
-    assert_int_equal(scene.occluders, 2);
-    assert_int_equal(scene.placed_occluders, 3);
+    assert_int_equal(masu_scene_data_of(&scene)->occluders, 2);
+    assert_int_equal(masu_scene_data_of(&scene)->placed_occluders, 3);
 }
 
 static void a_mesh_outside_the_primitives_is_refused(void **state) {
@@ -910,8 +912,8 @@ static void an_anchored_sdf_needs_the_code_that_moves_it(void **state) {
         support_blob_recode(&blob);
         support_blob_seal(blob.bytes, blob.size);
         support_accepted(&blob, &scene);
-        assert_int_equal(scene.sdf_anchored, 1);
-        assert_int_equal(scene.sdf_dynamic, !constant);
+        assert_int_equal(masu_scene_data_of(&scene)->sdf_anchored, 1);
+        assert_int_equal(masu_scene_data_of(&scene)->sdf_dynamic, !constant);
     }
     REFUSED("update SPIR-V", 0, {
         AT(SDF, masu_blob_sdf)->anchored = 1;

@@ -12,6 +12,7 @@
 
 #include <cmocka.h>
 
+#include "scene/scene.h"
 #include "support/bind.h"
 
 #define WITH (SUPPORT_ALL | SUPPORT_TEXTURES)
@@ -60,13 +61,13 @@ static void textures_are_accepted_with_their_numbers(void **state) {
         support_blob_write(&blob, parts);
         support_accepted(&blob, &s);
         int with = parts & SUPPORT_TEXTURES && parts & SUPPORT_RASTER;
-        assert_int_equal(s.textures, with ? 4 : 0);
-        assert_int_equal(s.texture_arrays, with ? 3 : 0);
-        assert_int_equal(s.texture_sets, with ? 2 : 0);
-        assert_int_equal(s.masks, with);
-        assert_int_equal(s.texture_bytes, with ? 224 + 64 + 8 : 0);
+        assert_int_equal(masu_scene_data_of(&s)->textures, with ? 4 : 0);
+        assert_int_equal(masu_scene_data_of(&s)->texture_arrays, with ? 3 : 0);
+        assert_int_equal(masu_scene_data_of(&s)->texture_sets, with ? 2 : 0);
+        assert_int_equal(masu_scene_data_of(&s)->masks, with);
+        assert_int_equal(masu_scene_texture_bytes(&s, 1), with ? 224 + 64 + 8 : 0);
         /* 85 texels twice and 16 of four bytes; 18 + 3 + 1 of two. */
-        assert_int_equal(s.texture_bytes_decoded, with ? 4 * (2 * 85 + 16) + 2 * 22 : 0);
+        assert_int_equal(masu_scene_texture_bytes(&s, 0), with ? 4 * (2 * 85 + 16) + 2 * 22 : 0);
     }
 }
 

@@ -394,7 +394,7 @@ static void the_code_in_every_baked_scene_passes(void **state) {
             found++;
             spirv_free(&m);
         }
-        assert_true(scene.sdf ? found >= 4 : found == 0);
+        assert_true(masu_scene_data_of(&scene)->sdf ? found >= 4 : found == 0);
         modules += found;
         free(bytes);
     }

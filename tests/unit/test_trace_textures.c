@@ -114,12 +114,12 @@ static void bind(const masu_bake_content *c) {
 
 /* The picture of a map of the material with these flags set, or NULL. */
 static const masu_blob_trace_texture *picture_of(uint32_t slot, uint32_t width) {
-    for (uint32_t i = 0; i < scene.materials; i++) {
+    for (uint32_t i = 0; i < masu_scene_count(&scene, MASU_SCENE_MATERIAL); i++) {
         const masu_blob_material *m = &view.materials[i];
         if (!(m->flags & 1u << slot)) continue;
         uint32_t texture = view.texture_sets[m->texture_set].texture[slot];
         if (view.textures[texture].width != width) continue;
-        for (uint32_t k = 0; k < scene.trace_textures; k++) {
+        for (uint32_t k = 0; k < masu_scene_data_of(&scene)->trace_textures; k++) {
             const masu_blob_trace_texture *t = &view.trace_textures[k];
             if (t->texture == texture && t->layer == (m->layers >> 8 * slot & 255u)) return t;
         }
@@ -169,8 +169,9 @@ static void pictures_are_their_textures_made_small(void **state) {
         uint32_t side = sides[n];
         masu_bake_content c = make(side);
         bind(&c);
-        assert_int_equal(scene.trace_colors, 3); /* and none of the plane that is not traced */
-        assert_int_equal(scene.trace_textures, 4);
+        assert_int_equal(masu_scene_data_of(&scene)->trace_colors,
+                         3); /* and none of the plane that is not traced */
+        assert_int_equal(masu_scene_data_of(&scene)->trace_textures, 4);
         const masu_blob_trace_texture *noise = picture_of(MASU_SLOT_BASE, 128);
         const masu_blob_trace_texture *leaf = picture_of(MASU_SLOT_BASE, 64);
         const masu_blob_trace_texture *glow = picture_of(MASU_SLOT_EMISSIVE, 16);
@@ -211,13 +212,14 @@ static void roughness_and_metallic_are_their_means(void **state) {
     assert_float_equal(stored(t, 0, 0), mean[0], 0.008);
     assert_float_equal(stored(t, 0, 1), mean[1], 0.008);
     /* The glossiest is where the map is least. Other surfaces have a roughness of 0.5. */
-    print_message("glossiest %.4f of %.4f\n", (double)scene.glossiest, 0.5 * least);
-    assert_true(fabs((double)scene.glossiest - 0.5 * least) < 0.002);
+    print_message("glossiest %.4f of %.4f\n", (double)masu_scene_data_of(&scene)->glossiest,
+                  0.5 * least);
+    assert_true(fabs((double)masu_scene_data_of(&scene)->glossiest - 0.5 * least) < 0.002);
 
     /* And so materials go to the device. */
     masu_trace_plan plan = masu_trace_lay(&scene);
     uint32_t found[3] = {0};
-    for (uint32_t i = 0; i < scene.materials; i++) {
+    for (uint32_t i = 0; i < masu_scene_count(&scene, MASU_SCENE_MATERIAL); i++) {
         struct masu_trace_material m;
         masu_trace_write(&scene, &view, 16 * (plan.materials + 4 * i), sizeof m, (void *)&m);
         int rough = view.materials[i].flags & 1u << MASU_SLOT_SURFACE;
@@ -250,9 +252,9 @@ static void size_0_keeps_no_colours(void **state) {
     (void)state;
     masu_bake_content c = make(0);
     bind(&c);
-    assert_int_equal(scene.trace_colors, 0);
-    assert_int_equal(scene.trace_textures, 1);
-    assert_int_equal(scene.trace_texels, 1);
+    assert_int_equal(masu_scene_data_of(&scene)->trace_colors, 0);
+    assert_int_equal(masu_scene_data_of(&scene)->trace_textures, 1);
+    assert_int_equal(masu_scene_data_of(&scene)->trace_texels, 1);
     masu_bake_content_release(&c);
 }
 
@@ -292,7 +294,7 @@ static void assert_refused(const char *what, uint64_t element, int line) {
 static void rules_of_pictures_hold(void **state) {
     (void)state;
     good = make(16);
-    REFUSED("trace textures", 0, ROW[0].texture = scene.texture_arrays);
+    REFUSED("trace textures", 0, ROW[0].texture = masu_scene_data_of(&scene)->texture_arrays);
     REFUSED("trace textures", 3, ROW[3].texture = UINT32_MAX);
     REFUSED("trace textures", 1, ROW[1].layer = view.textures[ROW[1].texture].layers);
     REFUSED("trace textures", 1, ROW[1].layer = UINT32_MAX);
@@ -305,7 +307,8 @@ static void rules_of_pictures_hold(void **state) {
     REFUSED("trace textures", 0, ROW[0].first = 1);
     REFUSED("trace textures", 1, ROW[0].width *= 2);
     REFUSED("trace textures", 2, ROW[2].first--);
-    REFUSED("trace texels", scene.trace_texels, row_of(MASU_BLOB_TRACE_TEXELS)->count--);
+    REFUSED("trace texels", masu_scene_data_of(&scene)->trace_texels,
+            row_of(MASU_BLOB_TRACE_TEXELS)->count--);
     REFUSED("trace texels", ROW[3].first, row_of(MASU_BLOB_TRACE_TEXTURES)->count--);
     masu_bake_content_release(&good);
 

@@ -16,7 +16,7 @@
 #include "device/load.h"
 #include "scene/scene.h"
 #include "split_sum.h"
-#include "stats.h"
+#include "api_stats.h"
 #include "plan/plan.h"
 #include "support/desc.h"
 #include "support/dry_renderer.h"

@@ -69,7 +69,7 @@ static bool draw_reference(masu_radiance_bench *b) {
                             b->error_size)) {
         return false;
     }
-    if (!masu_specular_classes(&b->s, b->s.scene.specular_cutoff, b->classes))
+    if (!masu_specular_classes(&b->s, masu_scene_specular_cutoff(&b->s.scene), b->classes))
         return failed(b, "nothing to read back");
     return there || masu_image_save_pfm(b->d.reflections, b->reflections, size.width, size.height,
                                         3, b->error, b->error_size);

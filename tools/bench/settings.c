@@ -1,5 +1,6 @@
 /* settings.c: see settings.h. */
 #include "bench/settings.h"
+#include "scene/scene.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -206,13 +207,13 @@ static void refit_parent(masu_setting *s, const masu_setting *all, uint32_t coun
 
 /* Values that only a scene can give a meaning. */
 static void scene_values(masu_rung *rung, const masu_scene *scene, const char **why) {
-    if (scene->shadow_distance > 0.0f) rung->shadow_distance *= scene->shadow_distance;
-    if (rung->shadow_cascades && scene->shadow_cascades &&
-        rung->shadow_cascades >= scene->shadow_cascades) {
+    if (masu_scene_shadow_distance(scene) > 0.0f) rung->shadow_distance *= masu_scene_shadow_distance(scene);
+    if (rung->shadow_cascades && masu_scene_shadow_cascades(scene, NULL) &&
+        rung->shadow_cascades >= masu_scene_shadow_cascades(scene, NULL)) {
         *why = "the scene does not have more";
         rung->shadow_cascades = 0;
     }
-    if (!(fabsf(rung->specular_cutoff - scene->specular_cutoff) > 1e-6f)) {
+    if (!(fabsf(rung->specular_cutoff - masu_scene_specular_cutoff(scene)) > 1e-6f)) {
         if (rung->specular_cutoff > 0.0f) *why = "equal to the scene's value";
         rung->specular_cutoff = 0.0f;
     }

@@ -100,8 +100,11 @@ static bool plan_settings(sweep *w) {
     memcpy(&header, w->s.blob, sizeof header);
     w->hash = header.hash;
     w->motion =
-        (masu_motion){w->d->time, MASU_MOTION_STEP, w->d->frames, w->s.scene.reflections || w->s.scene.metered};
-    w->surfaces = w->s.scene.sdf || w->s.scene.instances;
+        (masu_motion){w->d->time, MASU_MOTION_STEP, w->d->frames,
+                      (masu_scene_features(&w->s.scene) & MASU_SCENE_HAS_REFLECTIONS) ||
+                          (masu_scene_features(&w->s.scene) & MASU_SCENE_HAS_METERED_EXPOSURE)};
+    w->surfaces = (masu_scene_features(&w->s.scene) & MASU_SCENE_HAS_SDF) ||
+                  masu_scene_count(&w->s.scene, MASU_SCENE_INSTANCE);
     w->depth_truth = masu_depth_has_truth(w->d->scene_path, &w->s.scene);
     snprintf(w->driver, sizeof w->driver, "%s", w->s.host.driver);
     w->setting_count = masu_settings_make(w->d->quick, w->settings);

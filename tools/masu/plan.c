@@ -2,6 +2,7 @@
  * what was left out and why. */
 #include "command/options.h"
 #include "masu/cmd.h"
+#include "scene/scene.h"
 
 #include "settings/knobs.h"
 #include "settings/setting.h"
@@ -120,19 +121,20 @@ static void print_memory(const masu_session *s, const masu_plan_info *p) {
 
 static int print_text(const masu_session *s, const masu_plan_info *p, const char *scene) {
     printf("%s on %s\n", scene, s->host.driver);
-    printf("scene: %u instances of %u meshes, %u draws, %llu triangles, %s\n", s->scene.instances,
-           s->scene.meshes, s->scene.draws, (unsigned long long)s->scene.triangles,
-           s->scene.sdf ? "an SDF" : "no SDF");
-    if (s->scene.textures) {
-        printf("textures: %u in %u arrays, %llu bytes as blocks, %llu decoded\n", s->scene.textures,
-               s->scene.texture_arrays, (unsigned long long)s->scene.texture_bytes,
-               (unsigned long long)s->scene.texture_bytes_decoded);
+    const masu_scene_data *content = masu_scene_data_of(&s->scene);
+    printf("scene: %u instances of %u meshes, %u draws, %llu triangles, %s\n", content->instances,
+           content->meshes, content->draws, (unsigned long long)content->triangles,
+           content->sdf ? "an SDF" : "no SDF");
+    if (content->textures) {
+        printf("textures: %u in %u arrays, %llu bytes as blocks, %llu decoded\n", content->textures,
+               content->texture_arrays, (unsigned long long)content->texture_bytes,
+               (unsigned long long)content->texture_bytes_decoded);
     }
-    if (s->scene.environment_size) {
-        printf("sky: image, %u texels per edge, %u mips\n", s->scene.environment_size,
-               s->scene.environment_mips);
+    if (content->environment_size) {
+        printf("sky: image, %u texels per edge, %u mips\n", content->environment_size,
+               content->environment_mips);
     } else {
-        printf("sky: %s\n", s->scene.analytic_sky ? "analytic" : "two colours");
+        printf("sky: %s\n", content->analytic_sky ? "analytic" : "two colours");
     }
     printf("class: %s", masu_scene_class_name(masu_scene_class_of(&s->scene)));
     masu_desc ladder;

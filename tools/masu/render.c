@@ -64,7 +64,7 @@ static void set_light(const masu_render_options *o, masu_light *light) {
 
 /* Every model that has clips plays its first one. */
 static bool animate(masu_session *s, double time, char *error, size_t size) {
-    for (uint32_t i = 0; i < s->scene.models; i++) {
+    for (uint32_t i = 0; i < masu_scene_count(&s->scene, MASU_SCENE_MODEL); i++) {
         masu_model model = masu_model_at(s->m, i);
         masu_clip_use use = {.loop = 1, .time = time, .weight = 1.0f};
         if (!masu_model_clips(s->m, model) || !masu_model_animate(s->m, model, &use, 1)) continue;

@@ -75,7 +75,8 @@ bool masu_picture_open(const masu_session_desc *d, uint32_t positions, masu_sess
 }
 
 uint32_t masu_picture_frames(const masu_session *s, uint32_t positions, uint32_t rays) {
-    if (!s->scene.reflections || rays <= positions) return 1;
+    if (!(masu_scene_features(&s->scene) & MASU_SCENE_HAS_REFLECTIONS) || rays <= positions)
+        return 1;
     return (rays + positions - 1) / positions;
 }
 

@@ -80,7 +80,8 @@ bool masu_view_of(const masu_scene *scene, const masu_camera *camera, double tim
     widen(blob.sdf->bounds_min, out->sdf_min);
     widen(blob.sdf->bounds_max, out->sdf_max);
     out->max_distance = (double)blob.sdf->max_distance;
-    for (uint32_t i = 0; i < scene->sdf_params && i < MASU_MAX_SDF_PARAMS; i++)
+    for (uint32_t i = 0;
+         i < masu_scene_count(scene, MASU_SCENE_SDF_PARAM) && i < MASU_MAX_SDF_PARAMS; i++)
         out->params[i] = (double)blob.sdf_params[i].value;
     return true;
 }

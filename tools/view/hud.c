@@ -100,15 +100,15 @@ static void polygon_lines(const masu_viewer *v, masu_lines *l) {
         say(l, MASU_INK, "%-14s%10llu%10llu%12llu", name, (unsigned long long)s->instances,
             (unsigned long long)s->draws, (unsigned long long)s->triangles);
     }
-    say(l, MASU_INK_DIM, "of %u instances, %llu triangles%s", v->scene.instances,
-        (unsigned long long)v->scene.triangles, v->scene.sdf ? " and an SDF" : "");
+    say(l, MASU_INK_DIM, "of %u instances, %llu triangles%s", masu_scene_count(&v->scene, MASU_SCENE_INSTANCE),
+        (unsigned long long)masu_scene_triangles(&v->scene), (masu_scene_features(&v->scene) & MASU_SCENE_HAS_SDF) ? " and an SDF" : "");
 }
 
 static void culling_lines(const masu_viewer *v, masu_lines *l) {
-    if (v->scene.instances) {
+    if (masu_scene_count(&v->scene, MASU_SCENE_INSTANCE)) {
         polygon_lines(v, l);
     } else {
-        say(l, MASU_INK_DIM, "no polygons%s", v->scene.sdf ? ", only an SDF" : "");
+        say(l, MASU_INK_DIM, "no polygons%s", (masu_scene_features(&v->scene) & MASU_SCENE_HAS_SDF) ? ", only an SDF" : "");
     }
     if (v->stats.lights)
         say(l, MASU_INK, "lights %u, in view %u", v->stats.lights, v->stats.lights_in_view);

@@ -58,7 +58,7 @@ static void scrub(masu_viewer *v, double seconds) {
 }
 
 static void toggle_path(masu_viewer *v) {
-    if (!v->scene.camera_keys) {
+    if (!masu_scene_count(&v->scene, MASU_SCENE_CAMERA_KEY)) {
         masu_viewer_note(v, "the scene has no camera path");
         return;
     }

@@ -29,10 +29,11 @@ static uint32_t list_rows(const masu_viewer *v, masu_menu_row rows[ROWS_MAX]) {
 
 /* What 0 stands for: where the row says "the scene's", that; else what it is resolved to, beside a past or without. */
 static double of_scene(const masu_viewer *v, const masu_knob *k) {
-    if (!strcmp(k->name, "shadow_distance")) return (double)v->scene.shadow_distance;
-    if (!strcmp(k->name, "shadow_resolution")) return v->scene.shadow_resolution;
-    if (!strcmp(k->name, "shadow_cascades")) return v->scene.shadow_cascades;
-    if (!strcmp(k->name, "specular_cutoff")) return (double)v->scene.specular_cutoff;
+    uint32_t resolution, cascades = masu_scene_shadow_cascades(&v->scene, &resolution);
+    if (!strcmp(k->name, "shadow_distance")) return (double)masu_scene_shadow_distance(&v->scene);
+    if (!strcmp(k->name, "shadow_resolution")) return resolution;
+    if (!strcmp(k->name, "shadow_cascades")) return cascades;
+    if (!strcmp(k->name, "specular_cutoff")) return (double)masu_scene_specular_cutoff(&v->scene);
     masu_desc plain = {.rung_count = 1, .rungs = {{.temporal = v->want.rungs[v->rung].temporal}}};
     plain = masu_desc_resolved(&plain);
     return masu_knob_get(k, &plain.rungs[0], 0);

@@ -45,13 +45,15 @@ static void name_it(const masu_viewer *v, const masu_pick_info *p, char *out, si
         return;
     }
     if (p->model.id && !masu_model_get(v->a.m, p->model, &model)) {
-        used = snprintf(out, size, "node %u of model '%.60s', ", p->node, masu_scene_model_name(&v->scene, model.index));
+        used = snprintf(out, size, "node %u of model '%.60s', ", p->node,
+                        masu_scene_name(&v->scene, MASU_SCENE_MODEL, model.index));
     }
     if (!p->instance.id || masu_instance_get(v->a.m, p->instance, &instance)) {
         snprintf(out + used, size - (size_t)used, "an edge of an instance");
         return;
     }
-    snprintf(out + used, size - (size_t)used, "instance '%.60s'", masu_scene_instance_name(&v->scene, instance.index));
+    snprintf(out + used, size - (size_t)used, "instance '%.60s'",
+             masu_scene_name(&v->scene, MASU_SCENE_INSTANCE, instance.index));
 }
 
 void masu_pick_take(masu_viewer *v, uint32_t slot) {

@@ -47,7 +47,7 @@ static bool read_scene(masu_viewer *v, const char *path, void **blob, masu_scene
 /* The path's camera where there is one, else one that looks at the middle from a few metres. */
 static void place_camera(masu_viewer *v) {
     masu_camera camera = {.position = {0.0, 1.7, 6.0}, .forward = {0.0f, -0.1f, -1.0f}, .fov_y = 1.0f};
-    bool has = v->scene.camera_keys && masu_camera_at(v->a.m, v->time, &camera) == MASU_OK;
+    bool has = masu_scene_count(&v->scene, MASU_SCENE_CAMERA_KEY) && masu_camera_at(v->a.m, v->time, &camera) == MASU_OK;
     masu_fly_from(&v->fly, &camera);
     v->on_path = has;
 }
@@ -233,7 +233,7 @@ bool masu_viewer_load(masu_viewer *v, const char *path) {
         free(old_blob);
         v->trouble[0] = '\0';
         v->path_end = masu_fly_path_end(v->a.m);
-        if (!scene.camera_keys) v->on_path = false;
+        if (!masu_scene_count(&scene, MASU_SCENE_CAMERA_KEY)) v->on_path = false;
         masu_viewer_note(v, "reloaded in %.0f ms %s", v->a.start_ms,
                          v->a.in_place ? "in the same blocks" : "in larger blocks");
         return v->show == MASU_SHOW_A || start_b(v);

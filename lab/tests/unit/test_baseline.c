@@ -8,6 +8,7 @@
 #include <cmocka.h>
 
 #include "lab/study/baseline.h"
+#include "scene/scene.h"
 
 #include <math.h>
 #include <string.h>
@@ -70,7 +71,7 @@ static void the_plain_renderer_takes_no_short_cut(void **state) {
     const uint32_t all = 1u << MASU_MARCH_AUTO | 1u << MASU_MARCH_PLAIN;
     static const uint32_t without = 1u << MASU_MARCH_AUTO;
     const struct {
-        masu_scene scene;
+        masu_scene_data scene;
         masu_march march;
         const char *name;
     } cases[] = {{{.sdf = 1, .sdf_march = all}, MASU_MARCH_PLAIN, "plain"},
@@ -79,7 +80,7 @@ static void the_plain_renderer_takes_no_short_cut(void **state) {
                  {{.instances = 2}, MASU_MARCH_AUTO, "none"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         const char *name;
-        masu_rung r = masu_baseline_rung(&cases[i].scene, &name);
+        masu_rung r = masu_baseline_rung(masu_scene_of(&cases[i].scene), &name);
         assert_int_equal(r.march, cases[i].march);
         assert_string_equal(name, cases[i].name);
         assert_true(r.frustum == MASU_OFF && r.occlusion == MASU_OFF && r.light_tiles == MASU_OFF);

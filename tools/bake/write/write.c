@@ -6,6 +6,7 @@
 #include "bake/write/stats.h"
 #include "cli/cli.h"
 #include "plan/draws.h"
+#include "scene/scene.h"
 
 /* The reader that will meet the blob is its judge: nothing is written that it, or every renderer,
  * would refuse. */
@@ -14,20 +15,21 @@ static bool accepted(const char *input, const masu_bake_buffer *blob) {
     masu_detail detail = {0};
     if (masu_scene_bind(blob->data, blob->bytes, &scene, &detail) != MASU_OK)
         return masu_cli_error("%s: %s", input, detail.text), false;
-    uint64_t draws = (uint64_t)scene.transparents * scene.transparent_sets;
-    if (scene.transparents > MASU_TRANSPARENTS_MAX) {
+    const masu_scene_data *s = masu_scene_data_of(&scene);
+    uint64_t draws = (uint64_t)s->transparents * s->transparent_sets;
+    if (s->transparents > MASU_TRANSPARENTS_MAX) {
         masu_cli_error("%s: found %u transparent draws, expected at most %u", input,
-                       scene.transparents, MASU_TRANSPARENTS_MAX);
+                       s->transparents, MASU_TRANSPARENTS_MAX);
         return false;
     }
-    if (scene.transparent_sets > MASU_TRANSPARENT_SETS_MAX) {
+    if (s->transparent_sets > MASU_TRANSPARENT_SETS_MAX) {
         masu_cli_error("%s: transparent draws use more than %u texture sets", input,
                        MASU_TRANSPARENT_SETS_MAX);
         return false;
     }
     if (draws <= MASU_TRANSPARENT_DRAWS_MAX) return true;
     masu_cli_error("%s: %u transparent draws times %u texture sets are %llu, expected at most %u",
-                   input, scene.transparents, scene.transparent_sets, (unsigned long long)draws,
+                   input, s->transparents, s->transparent_sets, (unsigned long long)draws,
                    MASU_TRANSPARENT_DRAWS_MAX);
     return false;
 }

@@ -1,6 +1,6 @@
-/* frame_view.c: see frame_view.h. All is taken from the uniforms that shaders read, so that it cannot be another
- * camera than theirs. */
-#include "frame/frame_view.h"
+/* host_matrices.c: see host_matrices.h. The matrices come from the uniforms that shaders read, so that
+ * the host and the shaders use the same camera. */
+#include "frame/host_matrices.h"
 
 #include "base/vec.h"
 #include "frame/temporal.h"

@@ -1,5 +1,5 @@
-/* view.c: see view.h. */
-#include "scene/view.h"
+/* blob_section.c: see blob_section.h. */
+#include "scene/blob_section.h"
 
 #include <string.h>
 

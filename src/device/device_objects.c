@@ -1,5 +1,5 @@
-/* lifetime.c: see lifetime.h. */
-#include "device/lifetime.h"
+/* device_objects.c: see device_objects.h. */
+#include "device/device_objects.h"
 
 #include "device/bind.h"
 #include "device/load.h"

@@ -1,8 +1,8 @@
-/* views.c: what a frame looks from: the camera, and the sun for each cascade of its shadow map (or, for
- * the numbers alone, for all of the scene). For each view the planes of frustum culling and what
- * stage 2 reads, and for the camera what the choice of LODs asks. In double precision and world space
- * up to where the numbers are written. */
-#include "frame/views.h"
+/* cameras.c: the views that a frame is culled for: the camera and the sun's view of each cascade (without
+ * a shadow map, for the statistics only, of the whole scene). Each has frustum planes and the input of
+ * occlusion culling; the camera also has that of LOD selection. Computed in double precision and world
+ * space up to the values that are stored. */
+#include "frame/cameras.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,7 @@
-/* views.h: what a frame looks from: the camera, and the sun for each cascade of its shadow map (or, for
- * the numbers alone, for all of the scene). */
-#ifndef MASU_VIEWS_H
-#define MASU_VIEWS_H
+/* cameras.h: the views that a frame is culled for: the camera and the sun's view of each cascade (without
+ * a shadow map, for the statistics only, of the whole scene). */
+#ifndef MASU_CAMERAS_H
+#define MASU_CAMERAS_H
 
 #include "frame/shadow.h"
 #include "scene/cull.h"

@@ -1,8 +1,8 @@
-/* frame.h: what the rows of the frame's tables are. The tables themselves are passes.inc, images.inc,
- * buffers.inc and axes.inc beside it; each says at its head what its columns mean. Here they become enums and
- * constant arrays; plan.c, buffers.c, push.c and src/device derive the rest. */
-#ifndef MASU_FRAME_H
-#define MASU_FRAME_H
+/* frame_plan.h: types for the rows of the frame's tables: passes.inc, images.inc, buffers.inc and
+ * axes.inc, each with a description of its columns at its head. Here they become enums and constant
+ * arrays; plan.c, buffer_plan.c, push.c and src/device derive the rest. */
+#ifndef MASU_FRAME_PLAN_H
+#define MASU_FRAME_PLAN_H
 
 #include "scene/blob.h"
 #include "masu.h"

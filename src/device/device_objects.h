@@ -1,6 +1,7 @@
-/* lifetime.h: the objects of the device from masu_init to masu_destroy. */
-#ifndef MASU_LIFETIME_H
-#define MASU_LIFETIME_H
+/* device_objects.h: creates the Vulkan objects of a renderer in masu_init and destroys them in
+ * masu_destroy. */
+#ifndef MASU_DEVICE_OBJECTS_H
+#define MASU_DEVICE_OBJECTS_H
 
 #include "base/arena.h"
 #include "device/device.h"

@@ -1,7 +1,7 @@
-/* view.h: a validated blob as C sees it: a pointer to each section, and what is asked of them together.
- * Nothing is checked here: reader.c and check_*.c have done so. */
-#ifndef MASU_SCENE_VIEW_H
-#define MASU_SCENE_VIEW_H
+/* blob_section.h: pointers to the sections of a validated blob, and lookups in them. reader.c and
+ * check_*.c have validated everything; nothing is checked here. */
+#ifndef MASU_BLOB_SECTION_H
+#define MASU_BLOB_SECTION_H
 
 #include "scene/blob.h"
 #include "scene/cull.h"

@@ -1,17 +1,18 @@
-/* masu.c: the public functions, but for what stats.c tells: the life of a renderer, and its frames. */
+/* api.c: the public functions for the life of a renderer (masu_init, masu_load, masu_destroy) and for
+ * its frames. The other api_*.c contain the rest of masu.h. */
 #include "base/error.h"
 #include "plan/compile.h"
 #include "device/capabilities.h"
-#include "device/lifetime.h"
+#include "device/device_objects.h"
 #include "device/load.h"
 #include "device/offers.h"
 #include "device/ray_query.h"
 #include "device/shaders.h"
 #include "quality/governor_desc.h"
-#include "governed.h"
+#include "api_governor.h"
 #include "renderer.h"
 #include "scene/scene.h"
-#include "stats.h"
+#include "api_stats.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -63,7 +64,7 @@ static masu_result check_host(const masu_frame_plan *plan, uint64_t needed, masu
 void masu_keep_scene(masu_renderer *m) {
     const masu_frame_plan *plan = &m->plan;
     if (!plan->desc.scene) return;
-    masu_scene_view v = masu_scene_look(plan->desc.scene);
+    masu_scene_view v = masu_scene_data_view(&plan->scene);
     masu_draws_make(&m->draws, plan, &v);
     masu_camera_path_keep(&m->camera, plan, &v);
     masu_sun_sky_keep(&m->sun_sky, &v);
@@ -81,7 +82,7 @@ void masu_keep_scene(masu_renderer *m) {
 
 void masu_write_scene(masu_renderer *m) {
     if (!m->plan.desc.scene) return;
-    masu_scene_view v = masu_scene_look(m->plan.desc.scene);
+    masu_scene_view v = masu_scene_data_view(&m->plan.scene);
     masu_visible_write_scene(&m->device, &m->draws, &v);
     masu_picking_write_scene(&m->device, &m->draws, &v);
     masu_occlusion_write_scene(&m->device, &m->draws, &v);
@@ -97,7 +98,7 @@ static masu_result make_plan(const masu_desc *desc, masu_vk *vk, masu_frame_plan
     memset(objects, 0, sizeof *objects);
     memset(textures, 0, MASU_TEXTURE_ARRAYS_MAX * sizeof *textures);
     if (!desc) return masu_fail_null(detail, "desc");
-    if (desc->scene && !desc->scene->blob) {
+    if (desc->scene && !masu_scene_data_of(desc->scene)->blob) {
         return masu_fail(detail, MASU_ERROR_ARGUMENT, "scene", 1, 0,
                          "scene was not filled by masu_scene_bind");
     }
@@ -207,7 +208,7 @@ static masu_result init(const masu_desc *desc, void *block, uint64_t block_bytes
     m->arena = arena;
     plan.textures = m->plan.textures; /* the walk has put them into the block */
     m->plan = plan;
-    m->plan.desc.scene = plan.desc.scene ? &m->plan.scene : NULL;
+    m->plan.desc.scene = plan.desc.scene ? masu_scene_of(&m->plan.scene) : NULL;
     m->device.vk = vk;
     m->device.plan = &m->plan;
     m->device.objects = objects;

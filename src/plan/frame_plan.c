@@ -1,7 +1,6 @@
-/* frame.c: the rows of passes.inc and images.inc as constant arrays, and what they say of when a pass runs.
- *
- * Adding a pass is adding a row to passes.inc and a shader. */
-#include "plan/frame.h"
+/* frame_plan.c: the rows of passes.inc and images.inc as constant arrays, and the conditions of passes.
+ * A pass is added as a row of passes.inc and a shader. */
+#include "plan/frame_plan.h"
 
 /* ---- Images ---------------------------------------------------------------------------------- */
 

@@ -1,5 +1,6 @@
-/* split.c: masu_split_of and masu_frame_view_of: what the host's own commands find between the parts of a frame. The rows
- * of the table where they go say which images are theirs, and in which layouts; here it is only told. */
+/* api_split.c: masu_split_of and masu_frame_view_of: images, layouts and matrices for commands that the
+ * host submits between the parts of a frame. The split points are rows of passes.inc, which list the
+ * images. */
 #include "base/error.h"
 #include "device/barriers.h"
 #include "plan/desc.h"

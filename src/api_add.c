@@ -1,8 +1,9 @@
-/* added.c: the public functions that add to a scene between frames and take away again: copies of models, and
- * punctual lights, in the places that desc.reserve has laid out (src/plan/reserve.h).
+/* api_add.c: the public functions that add objects to a scene between frames and remove them: copies of
+ * models and punctual lights, in the slots that desc.reserve provides (src/plan/reserve.h).
  *
- * A copy takes a place of each module that knows what instances show: instances, nodes, what is blended, what is
- * traced; and of its lights copies in the reserve of lights. All of that is checked before anything is taken. */
+ * A copy needs a slot in each module with data per instance (instances, nodes, transparents, traced
+ * instances), and one in the reserve of lights for each of its lights. All slots are checked before
+ * any is taken. */
 #include "base/error.h"
 #include "renderer.h"
 

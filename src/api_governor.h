@@ -1,7 +1,7 @@
-/* governed.h: what masu.c does with the governor of a renderer that has one: it is told of finished frames
- * and asked for the rung of the next. */
-#ifndef MASU_GOVERNED_H
-#define MASU_GOVERNED_H
+/* api_governor.h: how api.c uses the governor of a renderer: it passes on the times of finished frames
+ * and requests the rung of the next frame. */
+#ifndef MASU_API_GOVERNOR_H
+#define MASU_API_GOVERNOR_H
 
 #include "renderer.h"
 

@@ -1,8 +1,8 @@
-/* resize.c: masu_resize: another output size and other targets in the images that are there. They are
- * allocated for the largest output, and a pass of a smaller one uses their upper left part, as rungs of a
- * smaller scale always have; what depends on sizes stands in the recordings, which are made again. */
+/* api_resize.c: masu_resize: another output size and other targets for the existing images. Images are
+ * allocated for the largest output; passes of a smaller one use their upper left part, as rungs of a
+ * smaller scale do. Only recordings depend on sizes; they are recorded again. */
 #include "base/error.h"
-#include "governed.h"
+#include "api_governor.h"
 #include "device/record.h"
 #include "plan/compile.h"
 #include "plan/desc.h"

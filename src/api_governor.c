@@ -1,11 +1,11 @@
-/* governed.c: the public functions that tell the governor of times and change what it is to do, and what
- * masu_frame does with it (governed.h). */
-#include "governed.h"
+/* api_governor.c: the public functions of the governor (measured times, settings, state), and how
+ * masu_frame uses it (api_governor.h). */
+#include "api_governor.h"
 
 #include "base/error.h"
 #include "quality/governor_desc.h"
 #include "quality/governor_state.h"
-#include "stats.h"
+#include "api_stats.h"
 
 #include <string.h>
 

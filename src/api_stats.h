@@ -1,7 +1,7 @@
-/* stats.h: what a renderer tells of itself: statistics of a frame, peaks, the memory report, images read
+/* api_stats.h: what a renderer reports: statistics of a frame, peaks, the memory report, images read
  * back. The public functions are in masu.h. */
-#ifndef MASU_STATS_H
-#define MASU_STATS_H
+#ifndef MASU_API_STATS_H
+#define MASU_API_STATS_H
 
 #include "renderer.h"
 

@@ -1,5 +1,5 @@
-/* stats.c: see stats.h. */
-#include "stats.h"
+/* api_stats.c: see api_stats.h. */
+#include "api_stats.h"
 
 #include "plan/buffer_plan.h"
 #include "plan/desc.h"

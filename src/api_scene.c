@@ -1,5 +1,6 @@
-/* live.c: the public functions that ask and change the instances, models, punctual lights
- * and materials of a scene between frames (added.c: those that add and remove). What they change is the host's truth in src/frame/; masu_frame carries it to the GPU. */
+/* api_scene.c: the public functions that query and change instances, models, punctual lights and
+ * materials between frames (api_add.c adds and removes them). They change the host's copy in
+ * src/frame/; masu_frame uploads the changes. */
 #include "base/error.h"
 #include "renderer.h"
 
