@@ -65,7 +65,7 @@ missing() { grep -vxFf "$2" "$1" || true; }
 text=$(version_problem src/scene/blob.h)
 [ -z "$text" ] || problem "$text"
 version=$(sed -n 's/^#define MASU_BLOB_VERSION \([0-9]*\)u.*/\1/p' src/scene/blob.h)
-grep -q "\`version\` | $version;" docs/blob.md || problem "docs/blob.md: the version is not $version"
+grep "\`version\`" docs/blob.md | grep -qw "$version" || problem "docs/blob.md: the version is not $version"
 
 kinds src/scene/blob.h > "$folder/kinds"
 rows docs/blob.md > "$folder/rows"
