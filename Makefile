@@ -6,7 +6,6 @@
 
 .DEFAULT_GOAL := all
 .DELETE_ON_ERROR:
-.SECONDARY:
 .SUFFIXES:
 MAKEFLAGS += --no-builtin-rules
 
@@ -278,3 +277,10 @@ help: ## print this
 	@echo "make [TARGET] [config=release|debug|sanitize|coverage|lab] [CC=gcc|clang] [WERROR=1] [V=]"
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/\1 \2/p' $(filter Makefile %.mk,$(MAKEFILE_LIST)) | \
 	    while read -r target text; do printf '  %-14s %s\n' "$$target" "$$text"; done
+
+# Made by chains of pattern rules, and kept. (All of them by an empty list would make make itself slow: it looks at what
+# such files depend on again and again.)
+.SECONDARY: $(SPIRV:.opt.spv=.spv) $(CLASS_OBJECTS:shaders.o=packed.h) $(STIFF:.masu=.truth.c) $(EXTREME:.masu=.truth.c) \
+    $(call objects,$(foreach d,unit gpu fuzz support reference,$(wildcard tests/$(d)/*.c lab/tests/$(d)/*.c)) \
+    tests/driver_info.c $(wildcard examples/*.c tools/generate/*.c)) $(FUZZ_MAIN) \
+    $(addprefix $(MADE)/tools/make_,blue_noise split_sum smaa_area font textures)

@@ -1,10 +1,20 @@
 /* masu.h: the public interface of Masu and its reference manual. It includes masu_knobs.h (quality
  * settings and scene limits) and masu_study.h (settings for studies, which a port does not need).
- * To start, read "Life cycle" and examples/minimal.c.
+ * To start, read "Terms", "Life cycle" and examples/minimal.c.
  *
  * Masu renders baked scenes of polygons and signed distance fields (SDFs) within a fixed amount of
  * memory, whose size is available before the first frame. The host owns the Vulkan device, the
  * queue, the window and the frame loop.
+ *
+ * TERMS
+ *    blob        a scene as baked by masu-bake, one block of bytes (docs/blob.md)
+ *    rung        a quality level (masu_rung); its settings are knobs (masu_knobs.h)
+ *    ladder      the rungs of a renderer, from the best to the fastest
+ *    governor    selects the rung of each frame by the times of previous frames
+ *    slot        the data of one frame in flight; a fence of the host protects its reuse
+ *    cut         a frame that is unrelated to the previous one (masu_frame_desc.cut)
+ *    view z      distance from the camera along its forward direction, above 0 (view depth)
+ *    AUTO        the value 0 of a setting: the library selects
  *
  * LIFE CYCLE
  *
@@ -67,7 +77,8 @@
  *    the next frame must then set frame.cut.
  *
  * CHANGES
- *    other output size or targets         masu_resize, up to desc.output
+ *    output size up to desc.output,
+ *    or other targets                     masu_resize
  *    a larger output, another scene       masu_destroy and masu_init, in the same memory blocks if
  *                                         they are large enough; without a pause: masu_init of a
  *                                         second renderer in other blocks (masu_load)
@@ -149,8 +160,8 @@ typedef struct masu_detail {
     masu_result result;
     VkResult vulkan;  /* of the failed Vulkan call, else VK_SUCCESS */
     const char *what; /* static: a member of masu_desc, a section of the blob, a Vulkan function */
-    uint64_t needed;  /* limit and actual value; both 0 if they do not apply */
-    uint64_t given;
+    uint64_t needed; /* the value that the call needs and the value (or limit) that was given; */
+    uint64_t given;  /* both 0 if they do not apply */
     char text[200]; /* the complete message, one line: what, limit, needed, given */
 } masu_detail;
 
@@ -191,7 +202,9 @@ typedef struct masu_scene {
     uint32_t sdf_parts, sdf_slots, sdf_block_words;
     uint32_t sdf_dynamic;   /* 1: slots depend on parameters or time */
     uint32_t sdf_anchored;  /* 1: it keeps its precision far from the origin (docs/sdf.md) */
-    uint32_t sdf_march;     /* bit per masu_march that the blob has code for */
+#ifdef MASU_LAB
+    uint32_t sdf_march; /* bit per masu_march that the blob has code for */
+#endif
     uint32_t sdf_occlusion; /* 1: the SDF casts shadows or occludes ambient light */
     uint32_t max_instances, max_primitives; /* of one mesh */
     uint32_t shadow_cascades; /* of the sun's shadow map; 0: none. Scenes with instances only */
@@ -261,8 +274,8 @@ MASU_API const char *masu_scene_material_name(const masu_scene *scene, uint32_t 
 /* The same for animation clip `clip` of a model. */
 MASU_API const char *masu_scene_clip_name(const masu_scene *scene, uint32_t model, uint32_t clip);
 
-/* Classes of scenes by content. A quality ladder is measured per class (masu_desc.ladder). A world
- * has polygons only, with LODs and occluders. */
+/* Classes of scenes by content. Each has its own built-in ladder (masu_desc.ladder). A world is a
+ * scene of polygons with LODs and occluders. */
 typedef enum masu_scene_class {
     MASU_SCENE_POLYGONS = 0,
     MASU_SCENE_WORLD = 1,
@@ -294,17 +307,20 @@ MASU_API const char *masu_scene_class_name(masu_scene_class scene_class);
 #define MASU_MAX_CASCADES 4u
 #define MASU_MAX_REFRESH 64u
 
-/* Rungs, knobs, limits. It includes masu_study.h. */
+/* masu_rung (a quality level), masu_limits and the tables of their members. It includes
+ * masu_study.h. */
 #include "masu_knobs.h"
 
-/* Room for objects that the host adds at run time. masu_memory includes all of it; limits and peaks
- * treat its models and lights like those of the scene. 0: none, at no cost. */
+/* Capacities for objects that the host adds at run time. masu_memory includes their memory. Models
+ * and lights of the reserve count towards limits and peaks like those of the scene. 0: none, at no
+ * cost. */
 typedef struct masu_reserve {
     /* Slots for copies of movable models, in addition to the pooled copies of the scene
      * (masu_model_add), 0..16384. Any movable model without skins fits into a slot, so each slot
      * has the largest number of nodes, instances, transparent primitives and traced instances of
-     * any such model. It costs as much as the limits state for these, and for the occluders of its
-     * meshes if the scene has occluders. All slots together have at most 2^20 of each kind. */
+     * any such model. masu_limits states the cost of each of these; if the scene has occluders, the
+     * occluders of the meshes are added. All slots together have at most 2^20 items of each kind,
+     * for example instances. */
     uint32_t models;
     /* Punctual lights (masu_punctual_light_add), 0..4096; at most 4096 with those of the scene. */
     uint32_t lights;
@@ -354,13 +370,13 @@ typedef enum masu_readback_bits {
      *          then 0
      * The rounding to halves has a relative error of at most 2^-12. In a rung with temporal and
      * specular_fine, pixels that reflect more light than they scatter, at a roughness of at most
-     * 0.17, have the motion of the reflected image as far as the history of the reflections
-     * provides it; z is then that of the mirror plane at the position of the reflected image. Costs
-     * the previous frame's data, one more image, and one or two more passes. */
+     * 0.17, have the motion of the reflected image if the history of the reflections provides it; z
+     * then belongs to the mirror plane at the position of the reflected image. Costs the previous
+     * frame's data, one more image, and one or two more passes. */
     MASU_READBACK_VELOCITY = 16,
     /* 2 x 16-bit unorm: visibility of the sun, and of the ambient light. Only for scenes with a
-     * shadow map, SDF shadows, or ambient occlusion of either kind; ignored for other scenes. A
-     * rung that uses none leaves the image unchanged. */
+     * shadow map, SDF shadows, or ambient occlusion (of polygons or of the SDF); ignored for other
+     * scenes. A rung that uses none of these does not write the image. */
     MASU_READBACK_OCCLUSION = 32,
     /* float: depth along the sun's direction, 1 is closest to the sun, 0 is empty. Cascades are
      * stacked from top to bottom; four form a grid of 2x2, row by row. Only for scenes with a
@@ -407,7 +423,7 @@ typedef struct masu_pipelines {
         uint64_t key; /* hash of everything that the pipeline was created from */
         VkPipeline pipeline;
         uint32_t users;         /* references from existing renderers */
-    } rows[MASU_MAX_PIPELINES]; /* pipelines beyond them are destroyed with their renderer */
+    } rows[MASU_MAX_PIPELINES]; /* full: further pipelines are destroyed with their renderer */
 } masu_pipelines;
 
 typedef struct masu_vulkan {
@@ -471,15 +487,15 @@ typedef enum masu_tone {
                              towards white */
 } masu_tone;
 
-/* Auto-exposure: light.exposure times 0.18 / the geometric mean of the image's luminance. The mean
- * excludes the darkest and brightest pixels (`low`, `high`), black pixels and non-finite pixels. It
- * adapts over time by frame.time_step; at once in the first frame and after a cut. */
+/* Auto-exposure: exposure = light.exposure * 0.18 / (geometric mean of the image's luminance). The
+ * mean excludes the darkest and brightest pixels (`low`, `high`), black pixels and non-finite
+ * pixels. It adapts over time by frame.time_step; at once in the first frame and after a cut. */
 typedef struct masu_exposure {
     masu_switch metered; /* OFF: light.exposure only, without a pass or memory. AUTO: the scene's
                             setting */
     /* Adaptation rates, 1/s, up to 1e6: the remaining difference decreases by the factor e in
-     * 1 / rate seconds. brighten: the image has become darker; darken: it has become brighter.
-     * 0: the scene's, else 1 and 3, because eyes adapt faster to light. */
+     * 1 / rate seconds. brighten: rate after the scene has become darker; darken: rate after it has
+     * become brighter. 0: the scene's, else 1 and 3, because eyes adapt faster to light. */
     float brighten, darken;
     /* Fractions of the counted pixels to exclude, 0..1, sum less than 1. 0: 0.1 each; below 0:
      * none. */
@@ -520,23 +536,25 @@ typedef enum masu_governor_mode {
 /* Selects rungs by frame time. It assumes that rungs are sorted by falling quality, and selects the
  * lowest number that meets the target. Frame times are from two timestamps per frame, from
  * masu_frame_times or masu_frame_wall, or from both. Use both: the governor then detects incorrect
- * timestamps. All zero: no governor, at no cost. */
+ * timestamps. A rise is a change to a better rung; it has failed if that rung then misses the
+ * target. All zero: no governor, at no cost. */
 typedef struct masu_governor_desc {
     masu_governor_mode mode;
     float target_ms; /* GPU time of a frame, 1..1000 ms; 0: 16.67 */
     /* Fraction of the target that a better rung must leave free, in addition to a margin for the
-     * measured noise, 0..0.5; 0: 0.02; -1 up to 0: none. */
+     * measured noise, up to 0.5; 0: 0.02; below 0, down to -1: none. */
     float headroom;
     uint32_t best_rung;  /* lowest number to select */
     uint32_t worst_rung; /* highest number to select; 0: the last rung */
     uint32_t rung;       /* for MASU_GOVERNOR_FIXED */
     uint32_t wall_only;  /* flag: no timestamps, as on devices without them */
-    /* Frames for which a selected rung must be predicted to meet the target, and shortest time
-     * before a better rung follows, 1..600; 0: 24. */
+    /* In frames, 1..600; 0: 24. A better rung is selected only if it is predicted to meet the
+     * target for this long, and if the last change was at least this long ago. */
     uint32_t dwell;
-    /* Initial estimate of the relative cost of each rung, without the fixed part of a frame,
-     * 0..1e6. 0: from masu_desc.ladder: computed for the class of the GPU if there is one
-     * (masu_plan_info.computed_for), else measured on a CPU. Without a ladder: scale^2. */
+    /* Initial estimate of the relative cost of each rung, without the part of the frame time that
+     * all rungs have in common, 0..1e6. 0: the cost in the built-in ladder (masu_desc.ladder),
+     * computed for the class of the GPU (masu_plan_info.computed_for) if that is known, else
+     * measured on a CPU; without a ladder scale^2. */
     float costs[MASU_MAX_RUNGS];
     /* Flag: the GPU's clock does not follow its load. 0: after 1800 steady frames in a rung that
      * takes less than 0.92 of the target, the governor tries a better rung for 12 frames, if it is
@@ -717,7 +735,6 @@ MASU_API MASU_MUST_USE masu_result masu_resize(masu_renderer *renderer, VkExtent
  * (or source) or on the output size remain unresolved if those are missing. Resolve after the last
  * change: a resolved member no longer follows the member that its default depends on. These members
  * remain AUTO:
- *  - rungs[].march, whose AUTO is the fastest algorithm itself;
  *  - rungs[].specular and .occlusion, if the scene has a use for them: on a device with too few
  *    storage buffers AUTO disables the feature, and ON is an error in masu_init;
  *  - ray_query, half_floats, debug.share_rays, which depend on the device. */
@@ -817,8 +834,9 @@ typedef struct masu_governor_info {
     float overhead_ms; /* wall-clock time outside the timestamps; included in the predictions */
     float unit;        /* factor on GPU times; not 1 if the unit of the timestamps is wrong */
     /* Frame pacing: a frame of this rung that is submitted this long after its interval has begun
-     * is predicted to end within the interval. A host that delays its input by this time lowers the
-     * latency. The interval is target_ms, or `refreshes` refreshes if refresh_ms is not 0. */
+     * is predicted to end within the interval. A host that reads its input only after this time has
+     * a lower latency. The interval is target_ms, or `refreshes` refreshes if refresh_ms is not
+     * 0. */
     float start_delay_ms;
     /* Frame times used; frame times rejected as implausible or excluded (frame.unusual). */
     uint64_t samples, rejected;
@@ -837,7 +855,7 @@ typedef struct masu_governor_info {
 } masu_governor_info;
 
 /* The part of masu_governor_desc that can change between frames (masu_governor_set), with the same
- * units, ranges and defaults. `mode` must be ON or FIXED. */
+ * units, ranges and defaults. `mode` must be MASU_GOVERNOR_ON or _FIXED. */
 typedef struct masu_governor_setting {
     masu_governor_mode mode;
     float target_ms, headroom;
@@ -854,14 +872,14 @@ typedef struct masu_governor_state {
     uint32_t width, height;  /* output, pixels */
     uint32_t rung_count, rung;
     uint32_t held;            /* frames since `rung` was selected, at most 4096 */
-    uint32_t patience;        /* wait before the next rise, in dwells, 1..64 */
+    uint32_t patience;        /* wait before the next rise, in multiples of dwell, 1..64 */
     uint32_t wall_only;       /* 1: timestamps are implausible */
     uint32_t follows;         /* 1: the clock has followed the load in a trial */
     uint32_t trials;          /* failed trials since, 0..6 */
     double fixed_ms, load_ms; /* as in masu_governor_info */
     double fixed_variance, load_variance, covariance; /* ms^2 */
     double noise, overhead_ms, unit;                  /* as in masu_governor_info */
-    double settled_ms, mistake_ms; /* load when the rung settled; load at the last failed rise */
+    double settled_ms, mistake_ms; /* load_ms when the rung settled, and at the last failed rise */
     struct {
         double scale, prior;   /* from the description; they identify the rung */
         double cost, variance; /* estimated cost, variance of its relative error */
@@ -927,10 +945,10 @@ typedef struct masu_camera {
     float fov_y;         /* vertical field of view, radians, 0.001..3.1; unused with a window */
     float near_distance; /* metres, 1e-9..1e9; 0: the scene's. There is no far plane */
     /* Offset of the sample position in every pixel, in pixels of the render size, right and down,
-     * -1..1. It shifts the projection without rotating it. The average of frames with offsets all
-     * over a pixel is a supersampled image. Rungs with temporal add their own offsets of up to half
-     * a pixel. Velocities include the change of the offset. A change of its size re-renders all
-     * cascades with shadow_refresh above 1. */
+     * -1..1. It shifts the projection without rotating it. The average of frames whose offsets
+     * cover a pixel evenly is a supersampled image. Rungs with temporal add their own offsets of up
+     * to half a pixel. Velocities include the change of the offset. A change of the absolute value
+     * of the offset re-renders all cascades with shadow_refresh above 1. */
     float jitter[2];
     /* Off-centre projection: a window one metre ahead of the camera and perpendicular to `forward`.
      * Its sides, in metres to the right of the centre and above it, are tangents of angles. The
@@ -955,13 +973,14 @@ typedef struct masu_light {
     float sun_color[3];                  /* irradiance on a perpendicular surface / pi */
     float ambient[3];                    /* radiance */
     float sky_zenith[3], sky_horizon[3]; /* radiance */
-    /* Linear factor before the tone curve; 0: 1. Metered: in addition to that factor. */
+    /* Linear factor before the tone curve; 0: 1. With auto-exposure (masu_exposure) it is
+     * multiplied by the metered factor. */
     float exposure;
-    /* 0: gradient sky from the two colours, with the ambient light above. 1.5 (very clear) to 10
-     * (hazy): analytic sky from the sun, which also sets the ambient light; a sun_color of all zero
-     * is then the sun's colour after extinction in that air, sunsets included. Requires a scene
-     * with an analytic sky or desc.analytic_sky. A change of sun direction, turbidity or ground
-     * recomputes the sky, within one millisecond on the CPU. */
+    /* 0: gradient sky from sky_zenith and sky_horizon, with `ambient` as ambient light. 1.5 (very
+     * clear) to 10 (hazy): analytic sky from the sun direction, which also sets the ambient light;
+     * a sun_color of all zero then selects the sun's colour after extinction in the atmosphere, at
+     * sunset too. Requires a scene with an analytic sky or desc.analytic_sky. A change of sun
+     * direction, turbidity or ground recomputes the sky, within one millisecond on the CPU. */
     float turbidity;
     float ground[3]; /* albedo below the horizon of the analytic sky, 0..1 */
     /* Fog, for scenes that have it; ignored for others. Density at height y:
@@ -975,9 +994,9 @@ typedef struct masu_light {
 
 #define MASU_RUNG_AUTO UINT32_MAX
 
-/* Flags of particles. LIT: `color` is an albedo; without it, a radiance. The light is that of the
- * sun, times the shadow map's visibility of the centre, and ambient light, with isotropic
- * scattering as in thin smoke: color * (sun_color / 4 + ambient). ADDITIVE: additive blending,
+/* Flags of particles. LIT: `color` is an albedo; without the flag, a radiance. A lit particle
+ * scatters sun and ambient light evenly, as thin smoke does: color * (visibility * sun_color / 4 +
+ * ambient), with the visibility of its centre from the shadow map. ADDITIVE: additive blending,
  * which occludes nothing. */
 #define MASU_PARTICLE_LIT 1u
 #define MASU_PARTICLE_ADDITIVE 2u
@@ -1182,8 +1201,8 @@ typedef struct masu_frame_view {
     float output_projection[16];
     float jitter[2];     /* in `projection`: pixels of the render size, right and down */
     float near_distance; /* metres; a depth d is at a view z of near_distance / d */
-    /* Masu_light.exposure: factor before the tone curve. Metered: multiplied by the factor that the
-     * GPU determines (masu_stats_info.exposure). */
+    /* masu_light.exposure: factor before the tone curve. With auto-exposure the GPU multiplies it
+     * by the metered factor (masu_stats_info.exposure). */
     float exposure;
     uint32_t render_width, render_height, output_width, output_height; /* of the viewport, pixels */
 } masu_frame_view;
@@ -1583,7 +1602,7 @@ MASU_API MASU_MUST_USE masu_result masu_material_set(masu_renderer *renderer,
 typedef struct masu_plan_pass {
     /* Also the file name of the shader, the debug label and the timestamp's name. */
     const char *name;
-    uint32_t active; /* bit r: the pass runs in rung r */
+    uint32_t active; /* one bit per rung: bit r is 1 if the pass runs in rung r */
     const char *why; /* why the pass runs, or does not */
     const char *reads[12];
     const char *writes[6];
@@ -1621,7 +1640,7 @@ typedef struct masu_plan_info {
      * the host's. */
     const char *computed_for;
     masu_memory memory;
-    uint64_t left_out_bytes; /* image bytes that inactive passes save at this size */
+    uint64_t left_out_bytes; /* bytes of the images that this plan does not need */
 } masu_plan_info;
 
 /* The compiled frame of a description, without a renderer. Errors as masu_memory_query. */
@@ -1660,18 +1679,18 @@ typedef struct masu_stats_info {
     uint64_t shadow_unconverged; /* shadow rays that reached their step limit */
     uint64_t replaced;           /* non-finite pixel components that were replaced; should be 0 */
     uint64_t draws;              /* G-buffer draws with instances, before occlusion culling */
-    uint64_t triangles;          /* of these draws; with debug.counters after occlusion culling */
+    uint64_t triangles;          /* in `draws`; with debug.counters after occlusion culling */
     uint64_t transparents;       /* transparent primitives drawn, each with its own draw */
-    /* Drawn: not skipped, and inside the view as far as tested. */
+    /* Entries of this frame that were drawn: not skipped, and not culled against the view. */
     uint32_t particles, decals, lines;
     uint64_t occlusion_tests; /* with debug.counters */
-    /* Punctual lights of the scene; those that may light the view. */
+    /* Punctual lights of the scene; those whose bounding sphere intersects the view. */
     uint32_t lights, lights_in_view;
     /* Punctual lights, with debug.counters: pairs of light and pixel tested, those with a
      * contribution, and 16x16 tiles with more than 63 lights, whose pixels test all lights. */
     uint64_t light_tests, light_shaded, light_tiles_full;
-    /* Traced reflections, with debug.counters: 8x8 tiles with rays, rays, rays that hit a polygon
-     * and rays that hit the SDF, BVH nodes visited, SDF evaluations. */
+    /* Traced reflections, with debug.counters: number of 8x8 tiles with rays, rays, rays that hit a
+     * polygon, rays that hit the SDF, BVH nodes visited, SDF evaluations. */
     uint64_t specular_tiles, specular_rays, specular_hits, specular_sdf_hits;
     uint64_t specular_nodes, specular_evals;
     /* Rungs[].easu FAST, with debug.counters: uniform 8x8 blocks of the output that skip the
@@ -1681,7 +1700,7 @@ typedef struct masu_stats_info {
     float exposure; /* auto-exposure factor before the tone curve, with debug.counters; else 0 */
     uint32_t view_count;
     masu_view_stats views[MASU_MAX_VIEWS]; /* 0: the camera */
-    masu_governor_info governor; /* as of the frame that masu_frame returned last, in any slot */
+    masu_governor_info governor; /* at the frame that masu_frame returned last, in any slot */
 } masu_stats_info;
 
 /* Statistics of the slot's last frame. Call it after the wait for the slot's fence and before the

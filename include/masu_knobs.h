@@ -78,34 +78,38 @@ typedef enum masu_knob_use {
  *
  * NUMBER: `min` and `max` bound the value. 0 is always valid: it selects the default in the column
  * "0 is" unless the description defines another default; if that column is 0 too, the description
- * defines the meaning. WORD: the value is an enumerator of the type, and 0 is AUTO. */
+ * defines the meaning. WORD: the value is an enumerator of the type, and 0 is AUTO, which selects
+ * the value in the column "AUTO is"; if that is MASU_AUTO too, src/plan/desc.c has the rule. A switch
+ * whose AUTO and use are in its row needs no other code: passes read it as n->on.NAME and n->any.NAME
+ * (src/plan/frame_plan.h). */
 /* clang-format off */
 #define MASU_PRODUCT_KNOBS(NUMBER, WORD)                                                           \
     /*     type              name                  min   max   0 is  of use in  unit          */   \
+    /*     type              name                  AUTO is         of use in                  */   \
     /* Size and upscaling. All passes before upscaling run at the render size. */                  \
     NUMBER(float,            scale,                0,    1,    1,    ALWAYS,    "",                \
            "Render size / output size, per axis. Ignored with a source image.",                    \
            "Time and images of the passes before upscaling grow with its square.")                 \
-    WORD(  masu_switch,      upscale,                                UPSCALED,                     \
+    WORD(  masu_switch,      upscale,              MASU_AUTO,      UPSCALED,                       \
            "Upscaling by EASU or bilinear filter. AUTO: on if the render size differs from the"    \
            " output size; OFF is an error then.",                                                  \
            "One pass at the output size.")                                                         \
-    WORD(  masu_easu,        easu,                                   UPSCALED,                     \
+    WORD(  masu_easu,        easu,                 MASU_EASU_FULL, UPSCALED,                       \
            "Upscaling filter. AUTO: full.",                                                        \
            "Full takes the most time, then fast, then bilinear.")                                  \
-    WORD(  masu_switch,      sharpen,                                SHARPEN,                      \
+    WORD(  masu_switch,      sharpen,              MASU_AUTO,      SHARPEN,                        \
            "Sharpening by RCAS. AUTO: on after EASU (full or fast), off after bilinear.",          \
            "One pass at the output size.")                                                         \
     NUMBER(float,            sharpness,            -1,   64,   0.2,  SHARPENED, "stops",           \
            "Reduction of RCAS sharpening: each stop halves it (AMD's definition). Below 0: no"     \
            " reduction, the strongest sharpening.",                                                \
            "None.")                                                                                \
-    WORD(  masu_aa,          aa,                                     ALWAYS,                       \
+    WORD(  masu_aa,          aa,                   MASU_AA_OFF,    ALWAYS,                         \
            "Anti-aliasing filter before upscaling. AUTO: off.",                                    \
            "SMAA: two passes, only the first if the image has no edges. FXAA: one pass. Device"    \
            " bytes per pixel of the render size: SMAA 4.5, of which 4 can be shared with other"    \
            " images; FXAA 4, all shareable.")                                                      \
-    WORD(  masu_switch,      temporal,                               ALWAYS,                       \
+    WORD(  masu_switch,      temporal,             MASU_AUTO,      ALWAYS,                         \
            "Temporal anti-aliasing and upscaling with a jittered camera. Replaces aa and EASU,"    \
            " and RCAS unless sharpen is on. Scenes only. AUTO: on with a governor, at most one"    \
            " viewport and no split except AFTER_UPSCALE, in rungs with upscale, easu, sharpen and" \
@@ -114,7 +118,7 @@ typedef enum masu_knob_use {
            " pixel of the output, 4 per pixel of the render size. Transient device bytes: 16 per"  \
            " pixel of the render size, 8 of them for velocities.")                                 \
     /* Geometry. */                                                                                \
-    WORD(  masu_switch,      silhouettes,                            SDF,                          \
+    WORD(  masu_switch,      silhouettes,          MASU_OFF,       SDF,                            \
            "SDF edge anti-aliasing: averages four samples in pixels that contain an edge of the"   \
            " SDF. AUTO: off.",                                                                     \
            "Up to three more rays in each such pixel: at 1920x1080 they take 0.1 to 1 times as"    \
@@ -128,7 +132,7 @@ typedef enum masu_knob_use {
            " Below 0: always the full mesh.",                                                      \
            "Triangles: fewer with a larger error.")                                                \
     /* Screen-space ambient occlusion, at half the render size. */                                 \
-    WORD(  masu_switch,      ao,                                     AO,                           \
+    WORD(  masu_switch,      ao,                   MASU_ON,        AO,                             \
            "Screen-space ambient occlusion. AUTO: on.",                                            \
            "2 * ao_slices * ao_steps samples per texel at half the render size.")                  \
     NUMBER(uint32_t,         ao_slices,            1,    8,    2,    AO,        "",                \
@@ -153,7 +157,7 @@ typedef enum masu_knob_use {
            "Saves draws. A value above 1 keeps the shadow map from sharing memory with other"      \
            " images; each cascade with one doubles the number of recordings of the rung.")         \
     /* Traced reflections at half the render size: one ray per 2x2 pixels, then filters. */        \
-    WORD(  masu_switch,      specular,                               SPECULAR,                     \
+    WORD(  masu_switch,      specular,             MASU_AUTO,      SPECULAR,                       \
            "Traced reflections. AUTO: on if a surface is glossy enough and the device allows"      \
            " enough storage buffers.",                                                             \
            "The rays, and the passes and images of the filters.")                                  \

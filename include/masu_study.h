@@ -1,68 +1,68 @@
-/* masu_study.h: settings for studies, ladders and tests, which a port leaves at zero: alternative
- * algorithms with the same result, switches for single stages, counters. Part of masu.h, which
- * includes it through masu_knobs.h. */
+/* masu_study.h: settings for tests, measurements and debugging, which a port leaves at zero. A setting
+ * is here because a test, `masu bench`, a conformance suite or a reference image needs it; settings
+ * that only the laboratory needs require MASU_LAB. Part of masu.h, which includes it through
+ * masu_knobs.h. */
 #ifndef MASU_H
 #error "masu_study.h is a part of masu.h: include that"
 #endif
 #ifndef MASU_STUDY_PART_H
 #define MASU_STUDY_PART_H
 
-/* How the SDF is marched. All but AUTO are for comparison; those marked * need a blob baked with
- * --variants, else masu_init fails with MASU_ERROR_SCENE. */
+/* Algorithms of sphere tracing, for the laboratory (MASU_LAB). All others use AUTO. Those marked *
+ * need a blob of the laboratory's masu-bake --variants, else masu_init fails with
+ * MASU_ERROR_SCENE. */
+#ifdef MASU_LAB
 #define MASU_MARCH_WORDS(X)                                                                        \
-    X(MASU_MARCH_AUTO, 0, "auto", "the fast way, tile by tile with the parts that matter there")   \
-    X(MASU_MARCH_PLAIN, 1, "plain", "* each pixel by itself, in a compute shader")                 \
-    X(MASU_MARCH_FRAGMENT, 2, "fragment",                                                          \
-      "* each pixel by itself, in a fragment shader; only without polygons")                       \
-    X(MASU_MARCH_SEED, 3, "seed", "* two-phase checkerboard with capped, unchecked restarts")      \
-    X(MASU_MARCH_CONE8, 4, "cone8", "cones of 8x8 pixels alone")                                   \
-    X(MASU_MARCH_CONES, 5, "cones", "cones of 8x8, then of 4x4 pixels")                            \
-    X(MASU_MARCH_CHECKERBOARD, 6, "checkerboard",                                                  \
-      "* cones of 8x8 pixels, then a two-phase checkerboard with provably safe restarts")          \
-    X(MASU_MARCH_UNPRUNED, 7, "unpruned", "as auto, but every tile with all parts")
+    X(MASU_MARCH_AUTO, 0, "auto", "the product's: cones of 8x8, then of 4x4 pixels")               \
+    X(MASU_MARCH_PLAIN, 1, "plain", "* plain sphere tracing, one ray per pixel: the baseline")     \
+    X(MASU_MARCH_SEED, 2, "seed", "* two-phase checkerboard with capped, unchecked restarts")      \
+    X(MASU_MARCH_CONES, 3, "cones", "the same as auto")                                            \
+    X(MASU_MARCH_CHECKERBOARD, 4, "checkerboard",                                                  \
+      "* cones of 8x8 pixels, then a two-phase checkerboard with safe restarts")
 
 typedef enum masu_march { MASU_MARCH_WORDS(MASU_WORD_ENUM) } masu_march;
+
+#define MASU_LAB_KNOBS(NUMBER, WORD)                                                               \
+    WORD(  masu_march,       march,                MASU_MARCH_AUTO, SDF,                           \
+           "How the SDF is marched. AUTO: the product's march.",                                   \
+           "All others take longer (docs/design/05-sphere-tracing.md).")
+#else
+#define MASU_LAB_KNOBS(NUMBER, WORD)
+#endif
 
 /* Rows as in MASU_PRODUCT_KNOBS. They follow those rows in masu_rung. */
 /* clang-format off */
 #define MASU_STUDY_KNOBS(NUMBER, WORD)                                                             \
     /*     type              name                  min   max   0 is  of use in  unit          */   \
     /* These do not change the image. */                                                           \
-    WORD(  masu_switch,      frustum,                                POLYGONS,                     \
+    WORD(  masu_switch,      frustum,              MASU_ON,        POLYGONS,                       \
            "Frustum culling of instances; the image is the same. AUTO: on.",                       \
            "Tests on the CPU; saves draws.")                                                       \
-    WORD(  masu_switch,      occlusion,                              OCCLUDERS,                    \
+    WORD(  masu_switch,      occlusion,            MASU_AUTO,      OCCLUDERS,                      \
            "Occlusion culling of instances; the image is the same. AUTO: on if the scene has"      \
            " occluders.",                                                                          \
            "Passes that render the occluders and test against them; memory: limits.instances.")    \
-    WORD(  masu_switch,      light_tiles,                            LIGHTS,                       \
+    WORD(  masu_switch,      light_tiles,          MASU_ON,        LIGHTS,                         \
            "Tiled light culling: each pixel evaluates the punctual lights of its 16x16 tile only;" \
            " the image is the same. AUTO: on if the scene has punctual lights.",                   \
            "A pass over the tiles; saves shading time in scenes with many lights.")                \
-    WORD(  masu_switch,      fuse,                                   UPSCALED,                     \
-           "EASU (full) and RCAS in one pass where both run: the same picture. Ignored with"       \
-           " deep_color. AUTO: off.",                                                              \
-           "1.13 times the time of upscaling; saves the image between the two.")                   \
-    /* Another way to the same surface. */                                                         \
-    WORD(  masu_march,       march,                                  SDF,                          \
-           "How the SDF is marched. AUTO: the fast way.",                                          \
-           "All others took longer where they were measured (docs/design/11-march-measured.md).")  \
+    MASU_LAB_KNOBS(NUMBER, WORD)                                                                   \
     /* Stages of the reflection filter. */                                                         \
-    WORD(  masu_switch,      specular_reuse,                         SPECULAR,                     \
+    WORD(  masu_switch,      specular_reuse,       MASU_AUTO,      SPECULAR,                       \
            "Spatial reuse: each texel also weighs the ray hits of its neighbours while its"        \
            " history is short. AUTO: on; off with temporal.",                                      \
            "A pass of specular_reuse_taps samples per texel.")                                     \
-    WORD(  masu_switch,      specular_temporal,                      SPECULAR,                     \
+    WORD(  masu_switch,      specular_temporal,    MASU_ON,        SPECULAR,                       \
            "Temporal accumulation of reflections. AUTO: on.",                                      \
            "A pass, and persistent images.")                                                       \
-    WORD(  masu_switch,      specular_fine,                          SPECULAR,                     \
+    WORD(  masu_switch,      specular_fine,        MASU_ON,        SPECULAR,                       \
            "Full-resolution history for smooth surfaces, and for 2x2 pixels with more than one"    \
            " surface; requires specular_temporal. AUTO: on.",                                      \
            "A pass, and a persistent image.")                                                      \
-    WORD(  masu_switch,      specular_filter,                        SPECULAR,                     \
+    WORD(  masu_switch,      specular_filter,      MASU_ON,        SPECULAR,                       \
            "Spatial filter whose radius follows the remaining noise. AUTO: on.",                   \
            "A pass of specular_filter_taps samples per texel.")                                    \
-    WORD(  masu_switch,      specular_taa,                           SPECULAR,                     \
+    WORD(  masu_switch,      specular_taa,         MASU_AUTO,      SPECULAR,                       \
            "Second, short temporal accumulation against flicker; requires specular_temporal."      \
            " AUTO: on; off with temporal.",                                                        \
            "A pass, and a persistent image.")                                                      \
@@ -88,8 +88,8 @@ typedef struct masu_debug {
     uint32_t poison;
     /* Flag. Culls for one light-space view that contains the whole scene, for masu_view_stats. */
     uint32_t casters;
-    uint32_t ao_full;    /* not 0: ambient occlusion at each pixel instead of each fourth, */
-    uint32_t ao_nearest; /* and without the mean over 4x4 texels: both for comparison */
+    /* Flag. Screen-space ambient occlusion at full instead of half resolution, for comparison. */
+    uint32_t ao_full;
     /* Flag. Evaluates all SDF primitives of a tile instead of those that its block needs. The
      * result is bit-identical. */
     uint32_t all_terms;

@@ -95,7 +95,7 @@ lab-programs: $(LAB) $(BUILD)/bin/masu $(BUILD)/bin/masu-bake $(LAB_SUITES)
 MARCH_SCENES := $(patsubst scenes/%.sdf,$(BUILD)/march/%.masu,$(wildcard scenes/*.sdf))
 MARCH_SUITE  := $(patsubst %,$(BUILD)/scenes/extreme/%.masu,displace_sine rods)
 
-# lab_bake FOLDER: the scenes of FOLDER as prerequisites' first
+# lab_bake: the first prerequisite, a scene, with every march
 define lab_bake
 @mkdir -p $(@D)
 @echo "  BAKE    $< --variants"
@@ -148,7 +148,7 @@ else
 	done
 endif
 
-# Without MASU_ISA_DRIVERS the rows of other GPUs than RADV's stay unchanged.
+# Without MASU_ISA_DRIVERS only the rows of RADV's GPUs change.
 ISA_GPUS := vangogh,raven$(if $(MASU_ISA_DRIVERS),$(comma)skl$(comma)kbl$(comma)tgl$(comma)a630$(comma)a660)
 .PHONY: isa-table
 isa-table: $(LAB) $(SCENES)
@@ -166,7 +166,7 @@ ladders: $(LAB)
 	$(LAB) ladder $$files > $(BUILD)/ladder_tables.h && \
 	{ cmp -s $(BUILD)/ladder_tables.h src/quality/ladder_tables.h || cp $(BUILD)/ladder_tables.h src/quality/ladder_tables.h; }
 
-# forza at a moment at which a car is near, as in make bench.
+# forza at a time at which a car is close, as in make bench.
 ladder_device = $(firstword $(subst =, ,$(1)))=$(call ladder_scene,$(1))=$(LADDER_FOLDER)/$(lastword $(subst =, \
     ,$(1)))/ladder.json$(if $(filter %=forza,$(1)),=146.5)
 ladder-devices: $(LAB)

@@ -19,8 +19,7 @@
  * Where the SDF has an ambient occlusion of its own, the lesser of the two counts: what both see they
  * would count twice as a product (docs/design/18-ambient-occlusion.md has the errors).
  *
- * push.radius: radius, metres. push.multiplies: not 0: the occlusion image holds something already; push.nearest: not 0:
- * each pixel takes its own texel, for comparison; push.size: pixels per texel, 2, or 1 for comparison.
+ * push.radius: radius, metres. push.multiplies: not 0: the occlusion image holds something already; push.size: pixels per texel, 2, or 1 for comparison.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -159,10 +158,7 @@ void main()
             sum += seen;
         }
         vec4 ambient = vec4(1.0);
-        if (push.nearest != 0u) {
-            float own = texels[corner + EDGE + 1].w;
-            ambient = vec4(own < 0.0 ? 1.0 : own);
-        } else if (all_there && most - least <= even) {
+        if (all_there && most - least <= even) {
             ambient = vec4(sum * (1.0 / 16.0));
         } else if (!(least > open)) {
             ambient = filtered(texel, last, corner);

@@ -6,13 +6,12 @@
  * its bounding sphere lies outside one of the tile's four side planes, before the near plane or
  * behind the farthest raster depth of the tile: no ray of the tile can meet it then. Leaving it out
  * makes steps longer, never wrong. The list is in the order of the parts, whatever the order in
- * which invocations run. push.unpruned not 0: every tile gets all parts (for the report).
+ * which invocations run.
  * Compiled by masu-bake together with the scene's field.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-#include "push/classify.h"
 #include "shared/sdf_limits.h"
 #include "shared/types.h"
 #include "shared/counters.glsl"
@@ -146,18 +145,17 @@ void write_list(uint tile, uvec2 size, bool flat_seen)
     for (int w = 0; w < MASKS; w++) {
         count += uint(bitCount(masks[w]));
     }
-    bool keep_all = push.unpruned != 0u;
-    active_tile = count > 0u || flat_seen || keep_all;
+    active_tile = count > 0u || flat_seen;
     if (active_tile) {
         uint place = atomicAdd(masu_tiles_out[0], 1u);
         masu_tiles_out[uint(MASU_TILES_HEADER) + place] = tile;
     }
 #if MASU_SDF_MASKED
     for (int w = 0; w < MASU_LIST_WORDS; w++) {
-        masu_tiles_out[list + uint(w)] = keep_all ? 0xFFFFFFFFu : w < MASKS ? masks[min(w, MASKS - 1)] : 0u;
+        masu_tiles_out[list + uint(w)] = w < MASKS ? masks[min(w, MASKS - 1)] : 0u;
     }
 #else
-    bool all_parts = keep_all || count >= stride;
+    bool all_parts = count >= stride;
     masu_tiles_out[list] = all_parts ? MASU_TILE_ALL : count;
     if (all_parts || !active_tile) {
         return;

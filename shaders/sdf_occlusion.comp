@@ -9,7 +9,7 @@
  * left out when its bounding sphere stays clear of all that is asked around them. Shadows: the rays
  * of the segment towards the sun sweep a flat strip; outside is what is farther than the radii from
  * the strip's plane, or from the ray of the segment's middle. Ambient occlusion: the ball around the
- * segment. Half-spaces are in neither list: they count everywhere. push.unpruned not 0: all parts, for comparison. Leaving a part out makes steps longer, never
+ * segment. Half-spaces are in neither list: they count everywhere. Leaving a part out makes steps longer, never
  * wrong.
  */
 #version 440
@@ -191,14 +191,14 @@ void use_list(uint which)
 #if MASU_SDF_MASKED
     for (int w = 0; w < MASU_LIST_WORDS; w++) {
         uint bits = w < MASKS ? masks[which * uint(MASKS) + uint(min(w, MASKS - 1))] : 0u;
-        masu_list_bits[w] = push.unpruned != 0u ? 0xFFFFFFFFu : bits;
+        masu_list_bits[w] = bits;
     }
 #else
     uint count = 0u;
     for (int w = 0; w < MASKS; w++) {
         count += uint(bitCount(masks[which * uint(MASKS) + uint(w)]));
     }
-    masu_list_count = push.unpruned != 0u || count > uint(LIST_MOST) ? MASU_TILE_ALL : count;
+    masu_list_count = count > uint(LIST_MOST) ? MASU_TILE_ALL : count;
     masu_list_first = which * uint(LIST_MOST);
 #endif
 }

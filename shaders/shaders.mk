@@ -15,9 +15,11 @@
 # Vertex shaders are of 450: for 440 they declare a block for the position that has no cull distance.
 
 SCENE_SHADERS := update.comp classify.comp cone.comp march.comp march_plain.comp march_seed.comp \
-    march_checkerboard.comp march_fragment.frag sdf_velocity.comp sdf_occlusion.comp \
+    march_checkerboard.comp sdf_velocity.comp sdf_occlusion.comp \
     silhouettes.comp \
     specular_trace_sdf.comp
+# Of these, the marches that only the lab build has: masu-bake holds their text only with MASU_LAB.
+LAB_SCENE_SHADERS := march_plain.comp march_seed.comp march_checkerboard.comp
 
 SPIRV_TARGET := --target-env vulkan1.1
 STAGES       := comp vert frag
@@ -77,14 +79,13 @@ SPIRV         += $(foreach b,$(PERMUTATIONS),$(MADE)/gen/$(firstword $(subst :, 
 SPIRV_HEADERS := $(addprefix $(MADE)/gen/,$(sort $(shell grep -rhoE '\b[a-z0-9_]+\.spv\.h' --include='*.[ch]' tools tests examples)))
 # The slow ones first: nothing is compiled before the last of them is there.
 GENERATED     := $(patsubst %,$(MADE)/gen/%.h,blue_noise split_sum smaa_area permutations scene_sources packed)
-GENERATED     += $(TABLE_HEADERS)
 GENERATED     += $(SPIRV_HEADERS) $(SPIRV)
 
 # glslang's dependency file has no empty rules for included files; without them, the next make would fail after a file
-# is removed. Errors are printed with the lines of the source, not of its copy.
+# is removed. Errors are printed with the lines of the source, not of its copy. Shaders of lab/ have no copy.
 # $(1) the result without .spv (% for any), $(2) its source, $(3) macros or nothing
 define shader_rule
-$(MADE)/gen/$(1).spv: $(MADE)/gen/glsl/$(patsubst shaders/%,%,$(2)) | $(TABLE_HEADERS)
+$(MADE)/gen/$(1).spv: $(if $(filter lab/%,$(2)),,$(MADE)/gen/glsl/)$(patsubst shaders/%,%,$(2)) | $(MADE)/gen/glsl.stamp
 	@mkdir -p $$(@D)
 	@echo "  GLSL    $(if $(findstring %,$(1)),$(dir $(2))$$(<F),$(2))"
 	$$(V)compile="glslangValidator --quiet -V $(SPIRV_TARGET) $(addprefix -D,$(subst +, ,$(3)))"; \
@@ -154,8 +155,10 @@ $(MADE)/gen/scene_sources.h: $(SCENE_TEXTS) $(MADE)/gen/scene_texts.list
 	    echo '    const char *text;'; \
 	    echo '} masu_scene_sources[] = {'; \
 	    for f in $(SCENE_TEXTS); do \
-	        name=$${f#$(MADE)/gen/}; echo "    {\"$${name#glsl/}\","; \
+	        name=$${f#$(MADE)/gen/}; name=$${name#glsl/}; lab=; case " $(LAB_SCENE_SHADERS) " in *" $$name "*) lab=1; echo '#ifdef MASU_LAB' ;; esac; \
+	        echo "    {\"$$name\","; \
 	        sed -e 's/[\\"?]/\\&/g' -e 's/.*/     "&\\n"/' "$$f"; echo '     ""},'; \
+	        [ -z "$$lab" ] || echo '#endif'; \
 	    done; \
 	    echo '};'; \
 	    echo '#pragma GCC diagnostic pop'; } > $@

@@ -4,7 +4,7 @@
  * MASU_MOTION where the field changes: then also by how much the point has moved since the previous frame, as
  * far as its part moves, turns or grows as a whole (sdf_velocity.comp, step 1).
  *
- * push.steps: most steps of a ray; push.unpruned not 0: all parts for each, for comparison.
+ * push.steps: most steps of a ray.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

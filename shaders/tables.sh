@@ -6,6 +6,7 @@
 #                 that access images and buffers of reflections), polygons (passes that draw polygons or access draws)
 #   builds        lines NAME:FILE:MACRO+MACRO for make: each permutation, its source and its macros
 #   pushes        the names of the push-constant headers
+#   passes        the table of docs/passes.md
 #
 #   headers DIR   writes DIR/bindings.h (MASU_BIND_* of descriptor set 0), DIR/push/NAME.h (the struct of push constants
 #                 of a pass, for GLSL and C) and DIR/push_constants.h (all of them, for C). A file whose content would
@@ -17,13 +18,15 @@ cd "$(dirname "$0")/.."
 
 case ${1:-}:$# in
     headers:2) dir=$2 && mkdir -p "$dir/push" ;;
-    permutations:1 | parts:1 | builds:1 | pushes:1) dir= ;;
-    *) echo "usage: tables.sh permutations|parts|builds|pushes, tables.sh headers DIR" >&2; exit 2 ;;
+    permutations:1 | parts:1 | builds:1 | pushes:1 | passes:1) dir= ;;
+    *) echo "usage: tables.sh permutations|parts|builds|pushes|passes, tables.sh headers DIR" >&2; exit 2 ;;
 esac
 
-# Rows may span lines and hold comments: one row to a line, without comments.
+# Rows may span lines and hold comments: one row per line, without comments. Passes within #ifdef MASU_LAB are like any
+# other, but not part of the documentation.
+kind=$1
 rows() {
-    awk '
+    sed -e "$([ "$kind" != passes ] || echo '/^#ifdef/,/^#endif/d')" -e '/^#/d' "$1" | awk '
     { line = line " " $0 }
     END {
         while ((from = index(line, "/*")) > 0) {
@@ -38,9 +41,26 @@ rows() {
             if (depth || c != " ") row = row c
             if (!quoted && c == ")" && !--depth) { gsub(/ +/, " ", row); print row; row = "" }
         }
-    }' "$1"
+    }'
 }
 
+if [ "$1" = passes ]; then
+    cat << 'END'
+# Render passes
+
+[`src/plan/passes.inc`](../src/plan/passes.inc) lists the passes of a frame in execution order, one row per pass. This page is made from
+those rows by `make docs-tables`. Barriers, image layouts, descriptor sets, lifetimes, memory aliasing, labels and timestamps are derived
+from the same rows ([frame plan](design/01-frame.md)). `masu plan SCENE.masu` prints the passes that run for a scene, and why each of the
+others does not.
+
+*Latest depth* (*color*, *specular*) is the image of that class that the most recent pass of the rung has written; *previous* is the
+one before that. The last pass that writes color writes the target: it rounds to the target's steps, dithers if `desc.dither` is on, and
+encodes to sRGB, scRGB or HDR10.
+
+| pass | what it does | runs if | reads | writes |
+|---|---|---|---|---|
+END
+fi
 {
     rows src/plan/axes.inc
     rows src/plan/buffers.inc
@@ -72,6 +92,47 @@ function inside(s, word,    from, i, c, depth, quoted) {
         if (c == ")" && !depth--) return substr(s, from, i - from)
     }
     return ""
+}
+
+# The parts of s between commas that are in no brackets and no quotes.
+function split_list(s, out,    n, i, c, depth, quoted) {
+    n = 1; out[1] = ""
+    for (i = 1; i <= length(s); i++) {
+        c = substr(s, i, 1)
+        if (c == "\"") quoted = !quoted
+        if (!quoted && c == "(") depth++
+        if (!quoted && c == ")") depth--
+        if (!quoted && !depth && c == ",") { out[++n] = ""; continue }
+        out[n] = out[n] c
+    }
+    return n
+}
+
+# The texts of an expression, which are its possible values.
+function texts(s,    n, quoted, i, all) {
+    n = split(s, quoted, "\"")
+    for (i = 2; i <= n; i += 2) all = all (all == "" ? "" : "; or: ") quoted[i]
+    return all
+}
+
+# An access as docs/passes.md has it: READ_LATEST(DEPTH) becomes "latest depth".
+function resource(access,    name) {
+    name = access; sub(/^[A-Z_]*\(/, "", name); sub(/\).*/, "", name)
+    return (access ~ /_LATEST\(/ ? "latest " : access ~ /_BEFORE\(/ ? "previous " : "") tolower(name)
+}
+
+function describe_pass(row,    n, part, i, when, reads, writes, code) {
+    n = split_list(substr(row, 6, length(row) - 6), part)
+    split_list(inside(part[6], "WHEN"), when)
+    for (i = 9; i <= n; i++) {
+        code = trim(part[i])
+        if (code !~ /^(WRITE|WRITES|UPDATE|UPDATE_LATEST|COLOR|BLEND|DEPTH|DEPTH_PART|COPY_TO|BUILDS|HOST_COLOR)\(/)
+            reads = reads (reads == "" ? "" : ", ") resource(code)
+        if (code ~ /^(WRITE|WRITES|UPDATE|UPDATE_LATEST|COLOR|BLEND|DEPTH|DEPTH_PART|COPY_TO|COPY_BACK|COPY_BACK_LATEST|BUILDS|HOST_COLOR|PING_PONG)\(/)
+            writes = writes (writes == "" ? "" : ", ") (code ~ /^COPY_BACK/ ? "host memory" : resource(code))
+    }
+    while (sub(/host memory, host memory/, "host memory", writes)) {}
+    described[++describe_count] = "| `" trim(part[2]) "` | " texts(part[3]) " | " texts(when[2]) " | " reads " | " writes " |"
 }
 
 # A shader of several rows is of a part that all of them are of.
@@ -116,6 +177,7 @@ function add_shader(name, list,    n, words, i) {
 }
 
 /^PASS\(/ {
+    if (kind == "passes") describe_pass($0)
     split(substr($0, 6), head, ",")
     name = trim(head[2])
     file = name
@@ -132,10 +194,9 @@ function add_shader(name, list,    n, words, i) {
         file = trim(part[2])
         add_shader(file "_vert", part[3])
         add_shader(trim(part[4]) "_frag", part[5])
-    } else if (tail ~ /^\)?, *(SCENE|DRAW_SCENE)\(/) {
-        split(inside(tail, tail ~ /DRAW_SCENE\(/ ? "DRAW_SCENE" : "SCENE"), part, ",")
+    } else if (tail ~ /^\)?, *SCENE\(/) {
+        split(inside(tail, "SCENE"), part, ",")
         file = trim(part[1])
-        if (tail ~ /DRAW_SCENE\(/) add_shader("fullscreen_vert", "")
     }
     members = ""
     rest = inside($0, "PUSH")
@@ -159,6 +220,10 @@ function add_shader(name, list,    n, words, i) {
 END {
     if (failed) exit 1
     note = "/* Generated by shaders/tables.sh from src/plan/"
+    if (kind == "passes") {
+        for (i = 1; i <= describe_count; i++) print described[i]
+        exit
+    }
     if (kind == "pushes") {
         for (i = 1; i <= push_count; i++) print pushes[i]
         exit

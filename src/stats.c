@@ -44,7 +44,6 @@ static uint64_t stamp_ns(const masu_renderer *m, uint32_t slot, uint32_t from, u
 static int is_fixed_pass(uint32_t pass) {
     switch (masu_passes[pass].extent) {
     case MASU_EXTENT_OUTPUT:
-    case MASU_EXTENT_OUTPUT32:
     case MASU_EXTENT_OUTPUT_PAIRS:
     case MASU_EXTENT_OUTPUT_ODD:
     case MASU_EXTENT_ONE:

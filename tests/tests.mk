@@ -17,7 +17,7 @@ TESTS ?=
 wanted := $(foreach t,$(TESTS),%/$(t) %/test_$(t) %/fuzz_$(t) %/$(t).sh)
 only = $(if $(wanted),$(filter $(wanted),$(1)),$(1))
 
-test_programs = $(call only,$(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard $(1))))
+test_programs = $(call only,$(patsubst tests/%.c,$(BUILD)/tests/%,$(filter-out %/test_study_march.c %/test_baseline.c,$(wildcard $(1)))))
 GPU_TESTS    := $(call test_programs,tests/gpu/test_*.c)
 FUZZ_TESTS   := $(call test_programs,tests/fuzz/fuzz_*.c)
 # Those that look at texts and not at what is built say nothing new a second time: NESTED is set by tests/full.
@@ -140,7 +140,7 @@ device-report: scenes $(BUILD)/bin/masu $(SUITES) $(EXTREME) $(EXTREME:.masu=.tr
 
 # A blob of a kilobyte, in which most mutations hit something that is looked at, and a real
 # one.
-FUZZ_SEEDS_scene := $(patsubst %,$(BUILD)/tests/fuzz/%.masu,scene textures lods trace skins code)
+FUZZ_SEEDS_scene := $(patsubst %,$(BUILD)/tests/fuzz/%.masu,scene textures lods trace skins code lighting reflections)
 FUZZ_SEEDS_scene += $(firstword $(filter-out %/engine.masu,$(SCENES)) $(SCENES))
 
 $(BUILD)/tests/fuzz/seed_scene: $(BUILD)/obj/tests/fuzz/seed_scene.o $(TEST_ARCHIVES)
@@ -155,7 +155,11 @@ $(BUILD)/tests/fuzz/trace.masu: $(BUILD)/tests/fuzz/seed_scene
 	$(V)$< $@ 257
 $(BUILD)/tests/fuzz/skins.masu: $(BUILD)/tests/fuzz/seed_scene
 	$(V)$< $@ 1537
-# The code of an SDF alone, and each way to march it: most of such a blob's words are SPIR-V's.
+$(BUILD)/tests/fuzz/lighting.masu: $(BUILD)/tests/fuzz/seed_scene
+	$(V)$< $@ 129
+$(BUILD)/tests/fuzz/reflections.masu: $(BUILD)/tests/fuzz/seed_scene
+	$(V)$< $@ 4387
+# The code of an SDF alone: most of such a blob's words are SPIR-V's.
 $(BUILD)/tests/fuzz/code.masu: $(BUILD)/tests/fuzz/seed_scene
 	$(V)$< $@ 10
 $(BUILD)/tests/fuzz/fuzz_scene: | $(FUZZ_SEEDS_scene)

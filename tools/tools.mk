@@ -24,7 +24,7 @@ MASU_LIBS := -lvulkan -ljansson -lembree3 -lm -ldl -lpthread
 # ---- Programs ------------------------------------------------------------------------------------
 
 $(BUILD)/bin/masu: LIBS = $(MASU_LIBS)
-$(BUILD)/bin/masu: $(call objects,$(wildcard tools/masu/*.c)) $(KEEP_LOADED) $(MEASURE_ARCHIVES) $(BAKE_ARCHIVES)
+$(BUILD)/bin/masu: $(call objects,$(filter-out $(OF_LAB),$(wildcard tools/masu/*.c))) $(KEEP_LOADED) $(MEASURE_ARCHIVES) $(BAKE_ARCHIVES)
 	$(link)
 
 $(BUILD)/bin/masu-bake $(BUILD)/bin/masu-meso: LIBS = $(BAKE_LIBS)
@@ -65,9 +65,11 @@ $(BUILD)/suites/%.json: suites/%.json
 
 # Committed, for readers; tests/scripts/docs_tables.sh fails where they are not what the headers say.
 .PHONY: docs-tables
-docs-tables: $(BUILD)/bin/masu ## write docs/knobs.md: every knob of a rung, every limit
+docs-tables: $(BUILD)/bin/masu ## write docs/knobs.md and docs/passes.md from their tables
 	$(V)$(BUILD)/bin/masu plan --knobs=md > docs/knobs.md.new
 	$(V)mv docs/knobs.md.new docs/knobs.md
+	$(V)shaders/tables.sh passes > docs/passes.md.new
+	$(V)mv docs/passes.md.new docs/passes.md
 
 # ---- Scenes --------------------------------------------------------------------------------------
 

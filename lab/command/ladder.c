@@ -23,7 +23,7 @@ static const char *const constants[MASU_SCENE_CLASSES] = {
     "POLYGONS",        "WORLD",        "SDF",        "BOTH",
     "POLYGONS_TRACED", "WORLD_TRACED", "SDF_TRACED", "BOTH_TRACED"};
 
-/* The class of CLASS=..., and what follows; MASU_SCENE_CLASSES: the argument is wrong, which has been reported. */
+/* The class of CLASS=..., and in *rest the text behind it. MASU_SCENE_CLASSES: a wrong argument, already reported. */
 static uint32_t class_of(const char *argument, const char **rest) {
     const char *equals = strchr(argument, '=');
     uint32_t c = 0;
@@ -43,7 +43,7 @@ static uint32_t class_of(const char *argument, const char **rest) {
 
 /* ---- ladder_tables.h ------------------------------------------------------------------------- */
 
-/* What is built in has to be what any scene on any device can do. */
+/* A built-in ladder must work on every scene of its class and on every device. */
 static int check_baked(const char *path, const masu_ladder_file *l) {
     for (uint32_t r = 0; r < l->count; r++) {
         const masu_rung *rung = &l->rungs[r];
@@ -71,7 +71,7 @@ static int check_baked(const char *path, const masu_ladder_file *l) {
     return MASU_CLI_OK;
 }
 
-/* Files that do not say when they were measured were written then. */
+/* A file without a date was measured when it was written. */
 static void date_of(const char *path, const masu_ladder_file *l, char *out, size_t size) {
     struct stat s;
     struct tm utc;
@@ -165,7 +165,7 @@ static uint32_t cksum(const uint8_t *bytes, size_t count) {
     return ~crc;
 }
 
-/* SCENE.masu=LADDER.json, or with =SECONDS behind it: the moment of the scene. */
+/* Splits SCENE.masu=LADDER.json[=SECONDS]; SECONDS is the time of the scene. */
 static bool split(const char *argument, char scene[1024], char ladder[1024], double *time) {
     char text[2200], *end;
     if (snprintf(text, sizeof text, "%s", argument) >= (int)sizeof text) return false;
@@ -181,7 +181,7 @@ static bool split(const char *argument, char scene[1024], char ladder[1024], dou
     return snprintf(scene, 1024, "%s", text) < 1024 && snprintf(ladder, 1024, "%s", second + 1) < 1024;
 }
 
-/* Times are those of the sheet's CSV, to its digits. */
+/* Rounds as the CSV of the model sheet does. */
 static double shown(double ms) {
     char text[32];
     snprintf(text, sizeof text, "%.6g", ms);

@@ -245,7 +245,7 @@ static int run(masu_cli *cli) {
 const masu_cli_command lab_simulate = {
     .name = "simulate",
     .arguments = "[TRACE.csv...] [options], or --record SCENE.masu TRACE.csv [options]",
-    .summary = "the governor and rules of others on simulated GPUs",
+    .summary = "run the governor and other engines' controllers on simulated GPUs",
     .details =
         "over: frames longer than the budget. changes: of the scale. settle: frames from the model's\n"
         "event until 30 in a row keep the budget and the scale does not fall. oracle: the mean scale of\n"

@@ -91,7 +91,7 @@ typedef struct masu_baseline_point {
 
 typedef struct masu_baseline {
     char scene[128], driver[1024];
-    const char *march; /* the baseline's: "fragment", "plain", "auto" (the blob has no other),
+    const char *march; /* the baseline's: "plain", "auto" (the blob has no other),
                         * "none" (no SDF) */
     uint32_t entry_count, plain_count, point_count, messages;
     masu_baseline_entry entries[MASU_BASELINE_ENTRIES];

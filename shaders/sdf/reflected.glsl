@@ -95,7 +95,7 @@ bool use_parts_on(inout ray r, bool last)
     if (!(r.start < r.limit)) {
         return false;
     }
-    if (push.unpruned != 0u || MASU_SDF_LISTED_COUNT == 1) {
+    if (MASU_SDF_LISTED_COUNT == 1) {
         return true;
     }
     uint count = 0u;

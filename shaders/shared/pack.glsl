@@ -28,7 +28,7 @@
  *   depth, float:   near / view z; 0: nothing there
  *
  * 13 bits per axis leave a normal within 0.03 degrees. src/stats.c, masu_unpack_normal is the twin
- * in C; of what emits, bench/study/texel.c.
+ * in C; of what emits, measure/texel.c.
  *
  * A coat mirrors sharply and has all 26 bits; what lies below it is within 0.3 degrees where it leans by 6, 0.8 at
  * 30, 1.9 at 60; half of that in the mean. The other way round, or both in 13 bits, a polished coat would show steps.

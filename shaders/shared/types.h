@@ -28,9 +28,6 @@ typedef float masu_mat4[16]; /* column-major, as in GLSL */
  * maxComputeWorkGroupInvocations. */
 #define MASU_GROUP 8
 
-/* Pixels along an edge of the block of a workgroup of fsr1.comp. */
-#define MASU_FSR1_BLOCK 32
-
 /* Pixels along the edge of a screen tile: SDF term lists, light lists, reflections, SMAA. */
 #define MASU_TILE 16
 /* 32-bit values before the tile numbers in a buffer of tiles: 0..2 are the arguments of the indirect

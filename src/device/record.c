@@ -50,7 +50,6 @@ static VkExtent2D groups_of(const masu_recorder *rec, uint32_t pass, const masu_
     case MASU_EXTENT_TILE:
     case MASU_EXTENT_ONE: edge = 1; break;
     case MASU_EXTENT_OUTPUT_PAIRS: width = 2 * edge; break;
-    case MASU_EXTENT_OUTPUT32: edge = MASU_FSR1_BLOCK; break;
     case MASU_EXTENT_OUTPUT_ODD:
         return (VkExtent2D){push->sizes.render_width / edge + 1, push->sizes.render_height / edge + 1};
     default: break;
@@ -314,7 +313,7 @@ static void record_occluders(masu_recorder *rec) {
     }
 }
 
-/* One triangle over everything: the SDF as a fragment shader, or depths of an image of its set. */
+/* One triangle that covers the render area. */
 static void record_fullscreen(masu_recorder *rec, uint32_t pass, VkDescriptorSet set) {
     const masu_vk *vk = &rec->m->vk;
     masu_push_block push = push_of(rec, pass);
@@ -368,8 +367,7 @@ static void record_graphics(masu_recorder *rec, uint32_t pass, const VkDescripto
         if (pass == MASU_PASS_PARTICLES) /* the last draw */
             record_sprites(rec, pass, sets[pass], MASU_SPRITE_DRAWS + rec->m->plan->scene.transparents);
         if (pass == MASU_PASS_LINES) record_sprites(rec, pass, sets[pass], MASU_SPRITE_LINES);
-        if (pass == MASU_PASS_MARCH_FRAGMENT || pass == MASU_PASS_SPLIT_DEPTH)
-            record_fullscreen(rec, pass, sets[pass]);
+        if (pass == MASU_PASS_SPLIT_DEPTH) record_fullscreen(rec, pass, sets[pass]);
     }
     vk->CmdEndRenderPass(rec->cmd);
 }

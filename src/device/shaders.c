@@ -47,7 +47,7 @@ static int reads_unorm(const masu_frame_plan *plan, uint32_t pass) {
     return 1;
 }
 
-/* Of the axes COLOR, LAST and LAST8. */
+/* Of the axes COLOR and LAST. */
 static int color_form(const masu_frame_plan *plan, uint32_t pass, int last) {
     if (plan->deep) return 3;
     if (plan->needs.scene) return last ? 2 : 4;
@@ -94,7 +94,6 @@ typedef struct pass_shaders {
 #define DRAW(geometry, vertex, vertex_axes, fragment, fragment_axes)                               \
     0, MASU_SHADER_##vertex##_vert, MASU_SHADER_##fragment##_frag
 #define SCENE(file, section) 0, 0, 0
-#define DRAW_SCENE(file, section) 0, MASU_SHADER_fullscreen_vert, 0
 
 static const pass_shaders of_pass[MASU_PASS_COUNT] = {
 #define PASS(ID, name, purpose, kind, extent, when, push, shader, ...) [MASU_PASS_##ID] = {shader},

@@ -23,7 +23,6 @@ static int shows_the_same(const masu_rung *a, const masu_rung *b) {
     other.scale = a->scale;
     other.upscale = a->upscale;
     other.easu = a->easu;
-    other.fuse = a->fuse;
     other.sharpen = a->sharpen;
     other.sharpness = a->sharpness;
     return memcmp(a, &other, sizeof other) == 0;

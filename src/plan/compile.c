@@ -12,21 +12,19 @@
 
 /* ---- One rung -------------------------------------------------------------------------------- */
 
-static void resolve_switches(const masu_desc *d, uint32_t r, const masu_rung_plan *rp, masu_needs *needs) {
+static void resolve_upscaling(const masu_desc *d, uint32_t r, const masu_rung_plan *rp, masu_needs *needs) {
     const masu_rung *rung = &d->rungs[r];
     int same = rp->render_width == d->output.width && rp->render_height == d->output.height;
     needs->resolve = masu_rung_resolves(d, r);
-    needs->upscale = !needs->resolve && (rung->upscale == MASU_ON || !same);
+    needs->upscale = !needs->resolve && (needs->on.upscale || !same);
     needs->easu = rung->easu;
-    needs->sharpen = rung->sharpen == MASU_ON;
+    needs->sharpen = needs->on.sharpen;
     needs->fxaa = !needs->resolve && rung->aa == MASU_AA_FXAA;
     needs->smaa = !needs->resolve && rung->aa >= MASU_AA_SMAA_LOW;
-    needs->fused = needs->upscale && needs->sharpen && needs->easu == MASU_EASU_FULL &&
-                   rung->fuse == MASU_ON && !(d->scene && d->deep_color == MASU_ON);
     /* A rung of half the size stays one, whatever the output becomes. */
     int half = d->scene ? rung->scale == 0.5f
                         : 2 * rp->render_width == d->output.width && 2 * rp->render_height == d->output.height;
-    needs->twice = half && needs->upscale && !needs->fused && needs->easu == MASU_EASU_FULL && !d->debug.exact &&
+    needs->twice = half && needs->upscale && needs->easu == MASU_EASU_FULL && !d->debug.exact &&
                    d->half_floats != MASU_ON;
     /* An output that may become odd would have its last pixels a pixel elsewhere than in rungs of other sizes, whose past it goes on
      * from. */
@@ -94,7 +92,7 @@ static int keeps_access(const masu_frame_plan *plan, uint32_t pass, uint8_t reso
     case MASU_RESOURCE(MASU_BUFFER_PREVIOUS_VERTICES): return n->skins && n->velocity;
     case MASU_RESOURCE(MASU_BUFFER_PROBES): return n->probes;
     case MASU_RESOURCE(MASU_BUFFER_EXPOSURE): return n->metered;
-    case MASU_RESOURCE(MASU_BUFFER_LIGHT_TILES): return n->light_tiles;
+    case MASU_RESOURCE(MASU_BUFFER_LIGHT_TILES): return n->on.light_tiles;
     default: break;
     }
     if (masu_is_buffer(resource)) return 1;
@@ -201,30 +199,47 @@ static void gather_images(masu_frame_plan *plan) {
     }
 }
 
-/* Whether a rung has ambient occlusion in screen space, and whether any has. */
-static int rung_has_ao(const masu_desc *d, uint32_t r) {
-    return d->scene && d->scene->occlusion_radius > 0.0f && d->rungs[r].ao != MASU_OFF;
-}
-
-static int wants_ao(const masu_desc *d) {
-    for (uint32_t r = 0; r < d->rung_count; r++) {
-        if (rung_has_ao(d, r)) return 1;
+/* Whether a knob can change anything in the scene of a description: the column `use` of its row. What knobs of upscaling depend on is
+ * decided per rung. */
+static int is_of_use(const masu_desc *d, uint32_t r, masu_knob_use use) {
+    const masu_scene *s = d->scene;
+    switch (use) {
+    case MASU_USE_SDF: return s && s->sdf;
+    case MASU_USE_POLYGONS: return s && s->instances;
+    case MASU_USE_OCCLUDERS: return s && s->placed_occluders;
+    case MASU_USE_LODS: return s && s->lods;
+    case MASU_USE_AO: return s && s->occlusion_radius > 0.0f;
+    case MASU_USE_SHADOWS: return s && s->shadow_cascades;
+    case MASU_USE_LIGHTS: return s && s->lights;
+    case MASU_USE_SPECULAR: return masu_could_trace(s, &d->rungs[r]);
+    case MASU_USE_ALWAYS:
+    case MASU_USE_UPSCALED:
+    case MASU_USE_SHARPEN:
+    case MASU_USE_SHARPENED: break;
     }
-    return 0;
+    return 1;
 }
 
-/* The same of traced reflections. */
-static int rung_has_specular(const masu_desc *d, uint32_t r) {
-    return d->rungs[r].specular != MASU_OFF && masu_could_trace(d->scene, &d->rungs[r]);
+/* The switches that a rung has on where that is of use; with `any`, adds them to those that any rung has. */
+static masu_switches switches_of(const masu_desc *d, uint32_t r, masu_switches *any) {
+    masu_switches on;
+#define SET_masu_switch(name, use)                                                                 \
+    on.name = d->rungs[r].name != MASU_OFF && is_of_use(d, r, MASU_USE_##use);                     \
+    if (any) any->name |= on.name;
+#define SET_masu_easu(name, use)
+#define SET_masu_aa(name, use)
+#define SET_masu_march(name, use)
+#define SET_NUMBER(...)
+#define SET_WORD(type, name, zero, use, ...) SET_##type(name, use)
+    MASU_KNOBS(SET_NUMBER, SET_WORD)
+    return on;
 }
+
+static int rung_has_specular(const masu_desc *d, uint32_t r) { return switches_of(d, r, NULL).specular; }
 
 static int rung_has_taa(const masu_desc *d, uint32_t r) {
     return rung_has_specular(d, r) && !d->debug.reference &&
            d->rungs[r].specular_temporal != MASU_OFF && d->rungs[r].specular_taa != MASU_OFF;
-}
-
-static int rung_has_silhouettes(const masu_desc *d, uint32_t r) {
-    return d->scene && d->scene->sdf && d->rungs[r].silhouettes == MASU_ON;
 }
 
 static int rung_has_fine(const masu_desc *d, uint32_t r) {
@@ -244,13 +259,6 @@ static int wants(const masu_desc *d, int (*has)(const masu_desc *d, uint32_t r))
     return 0;
 }
 
-static int wants_specular(const masu_desc *d) {
-    for (uint32_t r = 0; r < d->rung_count; r++) {
-        if (rung_has_specular(d, r)) return 1;
-    }
-    return 0;
-}
-
 masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                          uint64_t storage_alignment, masu_frame_plan *plan, masu_detail *detail) {
     memset(plan, 0, sizeof *plan);
@@ -266,8 +274,10 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
     }
     if (!result) result = masu_limits_check(d, detail);
     if (result) return result;
+    masu_switches any = {0};
+    for (uint32_t r = 0; r < d->rung_count; r++) (void)switches_of(d, r, &any);
     if (d->scene) {
-        if (!d->scene->sdf_occlusion && !d->scene->shadow_cascades && !wants_ao(d))
+        if (!d->scene->sdf_occlusion && !d->scene->shadow_cascades && !any.ao)
             d->readback &= ~(uint32_t)MASU_READBACK_OCCLUSION;
         if (!d->scene->shadow_cascades) d->readback &= ~(uint32_t)MASU_READBACK_SHADOW_MAP;
         plan->compressed = masu_takes_blocks(d);
@@ -290,20 +300,20 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                .sky = d->scene && (d->scene->analytic_sky || d->analytic_sky),
                                .readback = d->readback,
                                .split = d->split,
-                               .reflections = wants_specular(d),
-                               .traced = wants_specular(d) && d->scene->trace_instances,
-                               .traced_sdf = wants_specular(d) && d->scene->trace_sdf,
-                               .query = wants_specular(d) && d->scene->trace_instances &&
+                               .reflections = any.specular,
+                               .traced = any.specular && d->scene->trace_instances,
+                               .traced_sdf = any.specular && d->scene->trace_sdf,
+                               .query = any.specular && d->scene->trace_instances &&
                                         d->ray_query == MASU_ON,
                                .accumulate = d->debug.reference != 0,
                                .any_taa = wants(d, rung_has_taa),
                                .any_fine = wants(d, rung_has_fine),
-                               .any_silhouettes = wants(d, rung_has_silhouettes),
+                               .any = any,
                                .any_resolved = wants(d, rung_has_resolved),
                                .picking = d->scene && d->picking,
                                .metered = d->scene && d->exposure.metered == MASU_ON,
                                .velocity = (d->readback & MASU_READBACK_VELOCITY) != 0 || (d->split & MASU_SPLIT_VELOCITY) != 0 ||
-                                           wants_specular(d) ||
+                                           any.specular ||
                                            wants(d, masu_rung_resolves),
                                .particles = d->scene && d->reserve.particles,
                                .decals = d->scene && d->reserve.decals,
@@ -343,30 +353,26 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                              d->output.height);
         }
         plan->needs.rung = &d->rungs[r];
+#ifdef MASU_LAB
         plan->needs.march = d->rungs[r].march;
-        if (plan->needs.sdf && plan->needs.raster && plan->needs.march == MASU_MARCH_FRAGMENT) {
-            return masu_fail(detail, MASU_ERROR_SCENE, "rungs[].march", plan->needs.march, 0,
-                             "rungs[%u].march is MASU_MARCH_FRAGMENT, which erases polygons: the "
-                             "scene has %u instances",
-                             r, d->scene->instances);
-        }
         if (plan->needs.sdf && !(d->scene->sdf_march & 1u << plan->needs.march)) {
             return masu_fail(detail, MASU_ERROR_SCENE, "rungs[].march", plan->needs.march, 0,
                              "rungs[%u].march is %d, for which the blob has no code (bake with "
                              "--variants)",
                              r, (int)plan->needs.march);
         }
-        resolve_switches(d, r, rp, &plan->needs);
-        plan->needs.ao = rung_has_ao(d, r);
-        plan->needs.specular = rung_has_specular(d, r);
+#endif
+        plan->needs.on = switches_of(d, r, NULL);
+        resolve_upscaling(d, r, rp, &plan->needs);
+        const masu_switches *on = &plan->needs.on;
+        plan->needs.specular = on->specular;
         int filtered = plan->needs.specular && !plan->needs.accumulate;
-        plan->needs.reuse = filtered && d->rungs[r].specular_reuse != MASU_OFF;
-        plan->needs.temporal = filtered && d->rungs[r].specular_temporal != MASU_OFF;
-        plan->needs.filter = filtered && d->rungs[r].specular_filter != MASU_OFF;
+        plan->needs.reuse = filtered && on->specular_reuse;
+        plan->needs.temporal = filtered && on->specular_temporal;
+        plan->needs.filter = filtered && on->specular_filter;
         plan->needs.taa = rung_has_taa(d, r);
         plan->needs.fine = rung_has_fine(d, r);
-        plan->needs.silhouettes = rung_has_silhouettes(d, r);
-        plan->needs.occlusion = plan->needs.occluders && d->rungs[r].occlusion != MASU_OFF;
+        plan->needs.occlusion = on->occlusion;
         plan->needs.unculled = d->scene && (d->scene->max_primitives > MASU_CULL_ROUNDS ||
                                             d->scene->max_instances > 64 * MASU_CULL_ROUNDS);
         if (plan->needs.occlusion && plan->needs.unculled) {
@@ -381,7 +387,6 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
             plan->needs.occlusion = 0;
         }
         plan->occlusion |= plan->needs.occlusion;
-        plan->needs.light_tiles = plan->needs.lights && d->rungs[r].light_tiles != MASU_OFF;
         resolve_shadow(plan, r);
         plan->needs.casters = plan->needs.occlusion && plan->views > 1;
         plan->needs.receiver_mask = plan->needs.casters && plan->needs.shadow &&

@@ -52,7 +52,7 @@ static int frames_follow(const masu_desc *d) {
 /* What `temporal` is at AUTO. A rung that says by what else it is resolved is resolved by that. */
 static masu_switch temporal_of(const masu_desc *d, const masu_rung *rung) {
     int silent = rung->upscale == MASU_AUTO && rung->easu == MASU_EASU_AUTO && rung->sharpen == MASU_AUTO &&
-                 rung->aa == MASU_AA_AUTO && rung->fuse == MASU_AUTO;
+                 rung->aa == MASU_AA_AUTO;
     return frames_follow(d) && silent ? MASU_ON : MASU_OFF;
 }
 
@@ -60,18 +60,8 @@ static masu_switch temporal_of(const masu_desc *d, const masu_rung *rung) {
  * docs/design/41-temporal.md. */
 #define SPECULAR_FRAMES_RESOLVED 8u
 
-/* Words that mean the same whatever is drawn. */
+/* What follows from another knob. */
 static void resolve_words(masu_rung *rung) {
-    if (rung->easu == MASU_EASU_AUTO) rung->easu = MASU_EASU_FULL;
-    if (rung->aa == MASU_AA_AUTO) rung->aa = MASU_AA_OFF;
-    fill(&rung->fuse, MASU_OFF);
-    fill(&rung->silhouettes, MASU_OFF);
-    fill(&rung->frustum, MASU_ON);
-    fill(&rung->ao, MASU_ON);
-    fill(&rung->light_tiles, MASU_ON);
-    fill(&rung->specular_temporal, MASU_ON);
-    fill(&rung->specular_fine, MASU_ON);
-    fill(&rung->specular_filter, MASU_ON);
     /* Many samples from one are a better mean than the neighbours' hits are, and a second mean over frames blurs what the
      * first has sharp: docs/design/41-temporal.md. */
     masu_switch alone = rung->temporal == MASU_ON ? MASU_OFF : MASU_ON;

@@ -31,14 +31,18 @@ int masu_has_image(const masu_needs *n, uint32_t image) {
 
 #define NO_SCENE "no scene: a source image is upscaled"
 #define NO_SDF "the scene has no SDF"
-#define NO_SPLIT "desc.split does not ask for it"
-#define NOTHING_KEPT "without specular_temporal nothing is kept"
+#define NO_SPLIT "desc.split does not request it"
+#define NOTHING_KEPT "no history without rung.specular_temporal"
 
-int masu_is_occluded(const masu_needs *n) { return n->sdf_occlusion || n->shadow || n->ao; }
+int masu_is_occluded(const masu_needs *n) { return n->sdf_occlusion || n->shadow || n->on.ao; }
 
-int masu_march_has_tiles(masu_march march) {
-    return march != MASU_MARCH_PLAIN && march != MASU_MARCH_SEED && march != MASU_MARCH_FRAGMENT;
-}
+#ifdef MASU_LAB
+int masu_march_has_tiles(const masu_needs *n) { return n->march != MASU_MARCH_PLAIN && n->march != MASU_MARCH_SEED; }
+int masu_march_has_blocks(const masu_needs *n) { return masu_march_has_tiles(n) && n->march != MASU_MARCH_CHECKERBOARD; }
+#else
+int masu_march_has_tiles(const masu_needs *n) { return n->sdf; }
+int masu_march_has_blocks(const masu_needs *n) { return n->sdf; }
+#endif
 
 static const char *no_occlusion(const masu_needs *n) {
     return !n->occluders  ? "the scene has no occluders"
@@ -47,7 +51,7 @@ static const char *no_occlusion(const masu_needs *n) {
 }
 
 static const char *no_march(const masu_needs *n) {
-    return n->sdf ? "rung.march asks for another way" : NO_SDF;
+    return n->sdf ? "rung.march selects another march" : NO_SDF;
 }
 
 /* Whether a rung has anything that reads velocities. */
@@ -61,12 +65,12 @@ static const char *no_velocity(const masu_needs *n, const char *other) {
     return wants_velocity(n) ? other : "nothing reads velocities";
 }
 
-static const char *no_skins(const masu_needs *n) { return n->scene ? "no model has skins" : NO_SCENE; }
+static const char *no_skins(const masu_needs *n) { return n->scene ? "the scene has no skinned meshes" : NO_SCENE; }
 
 static int has_skin_trees(const masu_needs *n) { return n->skins && n->traced && !n->query; }
 
 static const char *no_shadow_map(const masu_needs *n) {
-    return n->raster ? "the scene asks for no shadows of its polygons" : "the scene has no instances";
+    return n->raster ? "the scene has no shadow map" : "the scene has no instances";
 }
 
 static const char *no_specular(const masu_needs *n) {
@@ -80,13 +84,12 @@ static const char *no_filter(const masu_needs *n, const char *off) {
 }
 
 static const char *no_resolve(const masu_needs *n) {
-    return n->scene ? n->accumulate ? "debug.reference: one place in each pixel" : "rung.temporal is not on" : NO_SCENE;
+    return n->scene ? n->accumulate ? "debug.reference: one sample position per pixel" : "rung.temporal is not on" : NO_SCENE;
 }
 
 static const char *no_upscale(const masu_needs *n) {
-    return n->resolve   ? "temporal does it"
-           : n->fused   ? "fsr1 does it"
-           : n->upscale ? "rung.easu asks for another way"
+    return n->resolve   ? "temporal runs instead"
+           : n->upscale ? "rung.easu selects another filter"
                         : "render size is output size";
 }
 
@@ -132,7 +135,6 @@ static const char *no_upscale(const masu_needs *n) {
 #define COMP(file, axes) MASU_GEOMETRY_NONE, 0
 #define DRAW(geometry, ...) MASU_GEOMETRY_##geometry, 0
 #define SCENE(file, section) MASU_GEOMETRY_NONE, MASU_BLOB_##section##_SPIRV
-#define DRAW_SCENE(file, section) MASU_GEOMETRY_SCREEN, MASU_BLOB_##section##_SPIRV
 
 const masu_pass_row masu_passes[MASU_PASS_COUNT] = {
 #define PASS(ID, name, purpose, kind, extent, when, push, shader, ...)                             \
@@ -175,8 +177,7 @@ VkExtent2D masu_extent_of(masu_image_extent extent, VkExtent2D render, VkExtent2
         return (VkExtent2D){1, 1};
     if (extent == MASU_EXTENT_PICK) return (VkExtent2D){2, 2};
     if (extent == MASU_EXTENT_SHADOW) return (VkExtent2D){0, 0};
-    int shown = extent == MASU_EXTENT_OUTPUT || extent == MASU_EXTENT_OUTPUT32 ||
-                extent == MASU_EXTENT_OUTPUT_PAIRS || extent == MASU_EXTENT_OUTPUT_ODD;
+    int shown = extent == MASU_EXTENT_OUTPUT || extent == MASU_EXTENT_OUTPUT_PAIRS || extent == MASU_EXTENT_OUTPUT_ODD;
     VkExtent2D size = shown ? output : render;
     return (VkExtent2D){(size.width + block - 1) / block, (size.height + block - 1) / block};
 }

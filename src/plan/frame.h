@@ -46,7 +46,6 @@ typedef enum masu_image_class {
 typedef enum masu_image_extent {
     MASU_EXTENT_RENDER,
     MASU_EXTENT_OUTPUT,
-    MASU_EXTENT_OUTPUT32, /* the same, a workgroup for 32x32 pixels */
     MASU_EXTENT_OUTPUT_PAIRS, /* the same, an invocation for two pixels side by side */
     MASU_EXTENT_OUTPUT_ODD, /* the same, an invocation for the 2x2 pixels between four texels: one more each way than texels */
     MASU_EXTENT_HALF, /* a texel per 2x2 render pixels */
@@ -122,6 +121,17 @@ typedef struct masu_access {
 
 _Static_assert(MASU_BEFORE(MASU_CLASS_COUNT) <= 256, "an access names its resource in 8 bits");
 
+/* A flag for each switch among the knobs (masu_knobs.h). */
+#define MASU_FLAG_masu_switch(name) int name;
+#define MASU_FLAG_masu_easu(name)
+#define MASU_FLAG_masu_aa(name)
+#define MASU_FLAG_masu_march(name)
+#define MASU_FLAG_OF_NUMBER(...)
+#define MASU_FLAG_OF_WORD(type, name, ...) MASU_FLAG_##type(name)
+typedef struct masu_switches {
+    MASU_KNOBS(MASU_FLAG_OF_NUMBER, MASU_FLAG_OF_WORD)
+} masu_switches;
+
 /* What the scene and the description need, computed once; the `decide` of each row looks at nothing
  * else. */
 typedef struct masu_needs {
@@ -151,30 +161,29 @@ typedef struct masu_needs {
     int query;         /* polygons are found by ray queries of the device */
     int any_taa;        /* a rung has taa, */
     int any_fine;        /* fine */
-    int any_silhouettes; /* silhouettes */
     int any_resolved;    /* fine, and resolves over frames */
     int smoothing;     /* smaa */
     int picking;       /* the host may ask what is under a pixel */
     int metered;       /* the exposure follows the picture */
     int sprites;       /* frames may bring some of these: */
     int particles, decals, lines;
+    masu_switches any; /* a rung has the switch on, and the scene is one where that is of use */
     /* of one rung: */
+    masu_switches on;  /* the same of this rung */
     int upscale, sharpen, occlusion;
     int fxaa, smaa; /* at most one of them */
     int resolve;   /* over frames */
     int resolve_twice; /* the same to twice the size */
-    int fused;     /* upscale and sharpen in one pass */
-    int twice;     /* upscale in full to twice the size, not fused */
-    int ao;        /* ambient occlusion in screen space */
+    int twice;     /* upscale in full to twice the size */
     int casters;   /* occlusion, of a view of the sun too */
     int receiver_mask; /* and of cascades that every frame draws anew */
-    int silhouettes; /* of the SDF are smooth */
-    int light_tiles; /* lights are sorted into tiles */
     int specular;    /* reflections are traced */
     int reuse, temporal, fine, filter, taa; /* what is done to them */
     int accumulate;  /* for comparison: of all pixels, summed up over frames, unfiltered */
     const masu_rung *rung; /* itself; only while the plan is compiled */
+#ifdef MASU_LAB
     masu_march march;
+#endif
     masu_easu easu; /* never AUTO */
     uint32_t cascades; /* of the shadow map */
 } masu_needs;
@@ -244,8 +253,10 @@ int masu_is_occluded(const masu_needs *needs);
 
 static inline int masu_is_smaa(masu_aa aa) { return aa >= MASU_AA_SMAA_LOW; }
 
-/* Whether a way to march works on lists of parts by tile. */
-int masu_march_has_tiles(masu_march march);
+/* Whether the march of the SDF writes lists of parts per tile, and of the parts that matter per 4x4 block. Always so in the product:
+ * the lab build has other marches. */
+int masu_march_has_tiles(const masu_needs *needs);
+int masu_march_has_blocks(const masu_needs *needs);
 
 /* Whether the host's own commands are given what is known of the scene at each pixel, depth above all. */
 static inline int masu_split_shows_scene(uint32_t split) {

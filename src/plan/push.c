@@ -78,9 +78,14 @@ static uint32_t masu_smaa_diagonal_steps(masu_aa aa) {
 
 /* What is there of the march for passes behind it: 0 nothing, 1 the tiles' lists of parts, 2 what matters to blocks, too (with
  * debug.all_terms that is all of the tile). */
-static uint32_t masu_march_listed(masu_march march) {
-    if (!masu_march_has_tiles(march)) return 0;
-    return march == MASU_MARCH_CHECKERBOARD ? 1 : 2;
+static uint32_t march_listed(const masu_rung *r) {
+#ifdef MASU_LAB
+    masu_needs n = {.march = r->march};
+    return masu_march_has_blocks(&n) ? 2 : masu_march_has_tiles(&n) ? 1 : 0;
+#else
+    (void)r;
+    return 2;
+#endif
 }
 
 /* ---- Rows ------------------------------------------------------------------------------------ */

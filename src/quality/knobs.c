@@ -12,7 +12,9 @@
 
 #define WORD_ROW(name, value, word, text) {word, #name, text, value},
 static const masu_word switch_words[] = {MASU_SWITCH_WORDS(WORD_ROW)};
+#ifdef MASU_LAB
 static const masu_word march_words[] = {MASU_MARCH_WORDS(WORD_ROW)};
+#endif
 static const masu_word easu_words[] = {MASU_EASU_WORDS(WORD_ROW)};
 static const masu_word aa_words[] = {MASU_AA_WORDS(WORD_ROW)};
 
@@ -45,11 +47,12 @@ MASU_KNOB_USES(USE_TEXTS)
      .unit = is,                                                                                   \
      .text = does,                                                                                 \
      .cost = costs},
-#define WORD_ROW_OF(type, id, of, does, costs)                                                     \
+#define WORD_ROW_OF(type, id, becomes, of, does, costs)                                                     \
     {.name = #id,                                                                                  \
      .kind = MASU_KNOB_WORD,                                                                       \
      FIELD(type, id),                                                                              \
      .max = sizeof(WORDS_##type) / sizeof *(WORDS_##type) - 1,                                     \
+     .zero = (becomes),                                                                            \
      .use = MASU_USE_##of,                                                                         \
      .where = where_##of,                                                                          \
      .missing = missing_##of,                                                                      \
@@ -70,8 +73,7 @@ const masu_knob *masu_knob_table(void) { return knobs; }
 /* ---- Values ---------------------------------------------------------------------------------- */
 
 /* Enums of four bytes are read and written as numbers, too. */
-_Static_assert(sizeof(float) == 4 && sizeof(masu_switch) == 4 && sizeof(masu_march) == 4 &&
-                   sizeof(masu_easu) == 4 && sizeof(masu_aa) == 4,
+_Static_assert(sizeof(float) == 4 && sizeof(masu_switch) == 4 && sizeof(masu_easu) == 4 && sizeof(masu_aa) == 4,
                "every value of a knob has four bytes");
 
 double masu_knob_get(const masu_knob *k, const masu_rung *rung, uint32_t value) {

@@ -25,6 +25,7 @@
 
 #define MASU_BLOB_MAGIC 0x5553414Du /* the bytes 'M' 'A' 'S' 'U' */
 #define MASU_BLOB_VERSION 14u
+/* layout of version 14: 4261673116 (kinds of sections and their elements, tests/scripts/scene_forms.sh) */
 #define MASU_BLOB_ALIGN 16u
 #define MASU_BLOB_NONE 0xFFFFFFFFu /* "no name", "no parent" */
 #define MASU_BLOB_PART_SLOTS 8u    /* of an SDF's part, in front of all others: sphere, slope, form, first argument, material */
@@ -47,10 +48,9 @@ enum masu_blob_kind {
     MASU_BLOB_CONE8_SPIRV = 14,
     MASU_BLOB_CONE4_SPIRV = 15,
     MASU_BLOB_UPDATE_SPIRV = 16, /* present when slots depend on parameters, time or the anchor */
-    MASU_BLOB_PLAIN_SPIRV = 17,  /* from here on: only with --variants */
+    MASU_BLOB_PLAIN_SPIRV = 17,  /* these three: only in blobs of the lab build, with --variants */
     MASU_BLOB_SEED_SPIRV = 18,
-    MASU_BLOB_CHECKERBOARD_SPIRV = 19,
-    MASU_BLOB_FRAGMENT_SPIRV = 20, /* only without instances */
+    MASU_BLOB_CHECKERBOARD_SPIRV = 19, /* 20 is not used */
     MASU_BLOB_SLOTS = 21,          /* float: initial values of the SDF's slots; at least one */
     MASU_BLOB_UPDATE_PREVIOUS_SPIRV = 22, /* present when slots depend on parameters or time */
     MASU_BLOB_VELOCITY_SPIRV = 23,        /* present exactly when MARCH_SPIRV is */

@@ -8,8 +8,7 @@
 
 #include <string.h>
 
-#define COMPUTE 5u /* execution models */
-#define FRAGMENT 4u
+#define COMPUTE 5u /* the execution model GLCompute */
 
 #define AT(name) ((uint64_t)1 << MASU_BIND_##name)
 #define FIELD (AT(FRAME) | AT(COUNTERS) | AT(SLOTS) | AT(TILES))
@@ -19,23 +18,24 @@
 /* reads: of set 1, images with samplers from binding 0 on; raster_reads: the same of a scene with polygons; writes:
  * storage images behind them. rows: the other edge of a workgroup; of update the other count of invocations. */
 static const struct {
-    uint8_t kind, model, columns, rows, reads, raster_reads, writes, push;
+    uint8_t kind, columns, rows, reads, raster_reads, writes, push;
     uint64_t global; /* of set 0 */
 } rules[] = {
-    {MASU_BLOB_MARCH_SPIRV, COMPUTE, 8, 8, 1, 1, 3, PUSH(march), FIELD},
-    {MASU_BLOB_CLASSIFY_SPIRV, COMPUTE, 8, 8, 0, 1, 1, PUSH(classify), FIELD},
-    {MASU_BLOB_CONE8_SPIRV, COMPUTE, 8, 8, 0, 0, 1, PUSH(cone), FIELD},
-    {MASU_BLOB_CONE4_SPIRV, COMPUTE, 8, 8, 1, 1, 1, PUSH(cone), FIELD},
-    {MASU_BLOB_UPDATE_SPIRV, COMPUTE, 1, 1, 0, 0, 0, sizeof(struct masu_push), FIELD},
-    {MASU_BLOB_UPDATE_PREVIOUS_SPIRV, COMPUTE, 1, 1, 0, 0, 0, sizeof(struct masu_push), FIELD | AT(PREVIOUS)},
-    {MASU_BLOB_PLAIN_SPIRV, COMPUTE, 8, 8, 0, 1, 3, PUSH(march_plain), FIELD},
-    {MASU_BLOB_SEED_SPIRV, COMPUTE, 4, 8, 0, 1, 3, PUSH(march_seed), FIELD},
-    {MASU_BLOB_CHECKERBOARD_SPIRV, COMPUTE, 8, 8, 1, 1, 3, PUSH(march_checkerboard), FIELD},
-    {MASU_BLOB_FRAGMENT_SPIRV, FRAGMENT, 0, 0, 0, 0, 0, PUSH(march_fragment), AT(FRAME) | AT(SLOTS) | AT(TILES)},
-    {MASU_BLOB_VELOCITY_SPIRV, COMPUTE, 8, 8, 1, 2, 1, PUSH(sdf_velocity), FIELD | AT(PREVIOUS)},
-    {MASU_BLOB_SILHOUETTES_SPIRV, COMPUTE, 8, 8, 4, 5, 1, PUSH(silhouettes), FIELD | AT(EXPOSURE) | AT(TABLES) | AT(SKY)},
-    {MASU_BLOB_OCCLUSION_SPIRV, COMPUTE, 8, 8, 2, 2, 1, PUSH(sdf_occlusion), FIELD},
-    {MASU_BLOB_TRACE_SDF_SPIRV, COMPUTE, 8, 8, 2, 2, 1, PUSH(specular_trace_sdf), FIELD | AT(SPECULAR_TILES) | AT(PREVIOUS)},
+    {MASU_BLOB_MARCH_SPIRV, 8, 8, 1, 1, 3, PUSH(march), FIELD},
+    {MASU_BLOB_CLASSIFY_SPIRV, 8, 8, 0, 1, 1, sizeof(struct masu_push), FIELD},
+    {MASU_BLOB_CONE8_SPIRV, 8, 8, 0, 0, 1, PUSH(cone), FIELD},
+    {MASU_BLOB_CONE4_SPIRV, 8, 8, 1, 1, 1, PUSH(cone), FIELD},
+    {MASU_BLOB_UPDATE_SPIRV, 1, 1, 0, 0, 0, sizeof(struct masu_push), FIELD},
+    {MASU_BLOB_UPDATE_PREVIOUS_SPIRV, 1, 1, 0, 0, 0, sizeof(struct masu_push), FIELD | AT(PREVIOUS)},
+#ifdef MASU_LAB
+    {MASU_BLOB_PLAIN_SPIRV, 8, 8, 0, 1, 3, PUSH(march_plain), FIELD},
+    {MASU_BLOB_SEED_SPIRV, 4, 8, 0, 1, 3, PUSH(march_seed), FIELD},
+    {MASU_BLOB_CHECKERBOARD_SPIRV, 8, 8, 1, 1, 3, PUSH(march_checkerboard), FIELD},
+#endif
+    {MASU_BLOB_VELOCITY_SPIRV, 8, 8, 1, 2, 1, PUSH(sdf_velocity), FIELD | AT(PREVIOUS)},
+    {MASU_BLOB_SILHOUETTES_SPIRV, 8, 8, 4, 5, 1, PUSH(silhouettes), FIELD | AT(EXPOSURE) | AT(TABLES) | AT(SKY)},
+    {MASU_BLOB_OCCLUSION_SPIRV, 8, 8, 2, 2, 1, PUSH(sdf_occlusion), FIELD},
+    {MASU_BLOB_TRACE_SDF_SPIRV, 8, 8, 2, 2, 1, PUSH(specular_trace_sdf), FIELD | AT(SPECULAR_TILES) | AT(PREVIOUS)},
 };
 _Static_assert(MASU_BIND_COUNT <= 64, "a bit for each binding of set 0");
 
@@ -52,12 +52,12 @@ static masu_module_class bound_at(uint32_t rule, uint32_t raster, uint32_t set, 
 }
 
 static const char *check_interface(const masu_module *code, uint32_t rule, uint32_t raster) {
-    if (code->model != rules[rule].model) return "is for another stage than its pass";
+    if (code->model != COMPUTE) return "is for another stage than its pass";
     const uint32_t *size = code->local_size;
     int update = rules[rule].columns == 1 && size[0] == 64;
     if (!update && (size[0] != rules[rule].columns || size[1] != rules[rule].rows))
         return "has another local size than its pass";
-    if (size[2] != (rules[rule].columns ? 1u : 0u) || (update && size[1] != 1)) return "has another local size than its pass";
+    if (size[2] != 1 || (update && size[1] != 1)) return "has another local size than its pass";
     if (code->push_bytes > rules[rule].push) return "has more push constants than its pass";
     for (uint32_t k = 0; k < code->bound_count; k++) {
         const masu_module_bound *b = &code->bound[k];

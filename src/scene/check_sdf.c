@@ -37,9 +37,6 @@ masu_result masu_check_sdf(reader *r) {
     }
     if (s->anchored > 1) return bad(r, "sdf", 0, "anchored is neither 0 nor 1");
     if (s->block_words > MASU_BLOCK_WORDS_MAX) return bad(r, "sdf", 0, "words of a block are not 0 to 2");
-    if (s->has_raster && v->code[MASU_BLOB_FRAGMENT_SPIRV].words) {
-        return bad(r, "march_fragment SPIR-V", 0, "is there beside polygons, which it would erase");
-    }
     if (!v->slots) return bad(r, "slots", 0, "are missing");
     for (uint64_t i = 0; i < v->slot_count; i++) {
         if (!finite_all(&v->slots[i], 1)) return bad(r, "slots", i, "is not finite");
@@ -68,22 +65,22 @@ masu_result masu_check_sdf(reader *r) {
 }
 
 void masu_look_at_sdf(const reader *r, masu_scene *out) {
-    static const struct {
-        uint32_t kind;
-        masu_march march;
-    } variants[] = {{MASU_BLOB_PLAIN_SPIRV, MASU_MARCH_PLAIN},
-                    {MASU_BLOB_FRAGMENT_SPIRV, MASU_MARCH_FRAGMENT},
-                    {MASU_BLOB_SEED_SPIRV, MASU_MARCH_SEED},
-                    {MASU_BLOB_CHECKERBOARD_SPIRV, MASU_MARCH_CHECKERBOARD}};
     out->sdf_parts = r->view.sdf->part_count;
     out->sdf_block_words = r->view.sdf->block_words;
     out->sdf_slots = (uint32_t)r->counts[MASU_BLOB_SLOTS];
     out->sdf_dynamic = r->view.code[MASU_BLOB_UPDATE_PREVIOUS_SPIRV].words != NULL;
     out->sdf_anchored = r->view.sdf->anchored;
     out->sdf_occlusion = r->view.code[MASU_BLOB_OCCLUSION_SPIRV].words != NULL;
-    out->sdf_march = 1u << MASU_MARCH_AUTO | 1u << MASU_MARCH_CONE8 | 1u << MASU_MARCH_CONES |
-                     1u << MASU_MARCH_UNPRUNED;
+#ifdef MASU_LAB
+    static const struct {
+        uint32_t kind;
+        masu_march march;
+    } variants[] = {{MASU_BLOB_PLAIN_SPIRV, MASU_MARCH_PLAIN},
+                    {MASU_BLOB_SEED_SPIRV, MASU_MARCH_SEED},
+                    {MASU_BLOB_CHECKERBOARD_SPIRV, MASU_MARCH_CHECKERBOARD}};
+    out->sdf_march = 1u << MASU_MARCH_AUTO | 1u << MASU_MARCH_CONES;
     for (size_t i = 0; i < sizeof variants / sizeof *variants; i++) {
         if (r->view.code[variants[i].kind].words) out->sdf_march |= 1u << variants[i].march;
     }
+#endif
 }

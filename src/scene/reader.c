@@ -30,10 +30,11 @@ static const section_rule rules[MASU_BLOB_KIND_COUNT] = {
     CODE(MASU_BLOB_CONE8_SPIRV, "cone8 SPIR-V"),
     CODE(MASU_BLOB_CONE4_SPIRV, "cone4 SPIR-V"),
     CODE(MASU_BLOB_UPDATE_SPIRV, "update SPIR-V"),
+#ifdef MASU_LAB
     CODE(MASU_BLOB_PLAIN_SPIRV, "march_plain SPIR-V"),
     CODE(MASU_BLOB_SEED_SPIRV, "march_seed SPIR-V"),
     CODE(MASU_BLOB_CHECKERBOARD_SPIRV, "march_checkerboard SPIR-V"),
-    CODE(MASU_BLOB_FRAGMENT_SPIRV, "march_fragment SPIR-V"),
+#endif
     CODE(MASU_BLOB_UPDATE_PREVIOUS_SPIRV, "update_previous SPIR-V"),
     CODE(MASU_BLOB_VELOCITY_SPIRV, "velocity SPIR-V"),
     CODE(MASU_BLOB_SILHOUETTES_SPIRV, "silhouettes SPIR-V"),
@@ -179,6 +180,16 @@ static masu_scene_view view_of(const void *const start[MASU_BLOB_KIND_COUNT],
     return v;
 }
 
+/* Marches that only a library built with MASU_LAB can run. */
+static int is_of_lab(uint32_t kind) {
+#ifdef MASU_LAB
+    (void)kind;
+    return 0;
+#else
+    return kind == MASU_BLOB_PLAIN_SPIRV || kind == MASU_BLOB_SEED_SPIRV || kind == MASU_BLOB_CHECKERBOARD_SPIRV;
+#endif
+}
+
 masu_result masu_read_sections(reader *r, uint64_t given) {
     masu_blob_header h;
     memcpy(&h, r->bytes, sizeof h);
@@ -188,6 +199,7 @@ masu_result masu_read_sections(reader *r, uint64_t given) {
     for (uint32_t i = 0; i < h.section_count; i++) {
         masu_blob_section s;
         memcpy(&s, r->bytes + sizeof h + i * sizeof s, sizeof s);
+        if (is_of_lab(s.kind)) return bad(r, "section", i, "holds a march of the lab build: bake the scene without --variants");
         if (s.kind == 0 || s.kind >= MASU_BLOB_KIND_COUNT || !rules[s.kind].stride)
             return bad(r, "section", i, "unknown kind");
         if (start[s.kind]) return bad(r, "section", i, "appears twice");

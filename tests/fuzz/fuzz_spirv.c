@@ -3,6 +3,7 @@
 #include "expect.h"
 
 #include "scene/code.h"
+#include "spirv/spirv.h"
 #include "spirv/whole_vectors.h"
 
 static void read_again(uint32_t *words, size_t count) {

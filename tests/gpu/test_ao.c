@@ -1,5 +1,5 @@
 /* test_ao.c: ambient occlusion in screen space against the truth of scenes that have one in closed form
- * (a corner of three planes, a ball on a floor), that truth against the rays of masu study ao, and what
+ * (a corner of three planes, a ball on a floor), that truth against rays (tests/support/ao.h), and what
  * must hold whatever the error: planes hide nothing of themselves, a camera at rest sees a picture at
  * rest, nothing outside of the picture's rectangle is looked at, the SDF's own occlusion is kept, and
  * scenes that do not ask have none of it. */
@@ -142,7 +142,7 @@ static int surface_at(const masu_camera *c, double near, uint32_t i, surface *ou
 }
 
 typedef struct errors {
-    /* rays, none: root mean square of what masu study ao's truth is off by, and a 1 everywhere. */
+    /* rays, none: root mean square of what the truth by rays is off by, and a 1 everywhere. */
     double rmse, mean, worst, rays, none;
     uint32_t count;
 } errors;

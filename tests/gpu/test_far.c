@@ -188,7 +188,7 @@ static void the_plan_says_whether_it_is_anchored(void **state) {
     (void)state;
     static const char *const why[] = {
         "the SDF depends on parameters or time",
-        "the SDF reaches far from the origin: its space follows the eye"};
+        "the SDF has a floating origin"};
     for (int i = 0; i < 2; i++) {
         masu_session s;
         masu_plan_info plan;

@@ -1,6 +1,6 @@
 /* test_gltf_pictures.c: pictures of glTF files: each shows one thing that glTF can say. What must be seen is known from how
  * a file was made: parallelograms in world space, found and shaded here ray by ray in double precision
- * (bench/study/shade.h). Nothing of geometry or materials comes from what was baked.
+ * (measure/shade.h). Nothing of geometry or materials comes from what was baked.
  *
  * Compared is the lit picture before exposure. Pixels near an edge, whose neighbourhood lies on two faces, are left out. */
 #include "support/support.h"

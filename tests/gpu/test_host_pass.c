@@ -27,7 +27,7 @@ static masu_desc desc_of(const masu_session *s, uint32_t split) {
     d.rungs[1] = (masu_rung){.scale = 0.5f};
     d.rungs[2] = (masu_rung){.scale = 0.7f, .easu = MASU_EASU_FAST, .aa = MASU_AA_SMAA_LOW};
     d.rungs[3] = (masu_rung){.scale = 0.6f, .temporal = MASU_ON};
-    d.rungs[4] = (masu_rung){.scale = 0.9f, .fuse = MASU_ON, .aa = MASU_AA_FXAA};
+    d.rungs[4] = (masu_rung){.scale = 0.9f, .aa = MASU_AA_FXAA};
     return d;
 }
 

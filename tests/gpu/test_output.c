@@ -493,7 +493,7 @@ static void every_chain_makes_the_same_output(void **state) {
         {.scale = 0.5f, .aa = MASU_AA_FXAA, .easu = MASU_EASU_FAST},
         {.scale = 0.5f, .easu = MASU_EASU_FAST, .sharpen = MASU_OFF},
         {.scale = 0.5f, .easu = MASU_EASU_BILINEAR},
-        {.scale = 0.5f, .easu = MASU_EASU_FULL, .fuse = MASU_ON}};
+        {.scale = 0.5f, .easu = MASU_EASU_FULL}};
     static uint8_t rgba[KINDS][CHAINS][4 * SIDE * SIDE];
     for (int kind = 0; kind < KINDS; kind++) {
         masu_session_desc d = test_desc("test_both", SIDE, SIDE);

@@ -24,7 +24,7 @@ static masu_desc desc_of(masu_session *s, uint32_t width, uint32_t height) {
     d.rungs[1] = (masu_rung){.scale = 0.5f, .temporal = MASU_OFF};
     d.rungs[2] = (masu_rung){.scale = 0.7f, .easu = MASU_EASU_FAST, .aa = MASU_AA_FXAA};
     d.rungs[3] = (masu_rung){.scale = 0.6f, .temporal = MASU_ON};
-    d.rungs[4] = (masu_rung){.scale = 0.9f, .fuse = MASU_ON};
+    d.rungs[4] = (masu_rung){.scale = 0.9f};
     d.rungs[5] = (masu_rung){.scale = 1.0f, .temporal = MASU_ON};
     return d;
 }

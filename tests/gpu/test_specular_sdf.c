@@ -19,7 +19,7 @@
 enum { W = 96, H = 64, TEXELS = W * H, SLOTS = 1 << 17 };
 
 static struct {
-    uint32_t guide[2 * TEXELS], ray[2 * TEXELS], before[4 * TEXELS], hit[4 * TEXELS], all[4 * TEXELS];
+    uint32_t guide[2 * TEXELS], ray[2 * TEXELS], before[4 * TEXELS], hit[4 * TEXELS];
     float slots[SLOTS];
     double off[TEXELS], angle[TEXELS];
 } own;
@@ -181,9 +181,8 @@ static void make_rays(const stage *s, double rough, double inside, uint32_t ever
     }
 }
 
-static void trace(stage *s, bool all_parts) {
+static void trace(stage *s) {
     memcpy(own.hit, own.before, sizeof own.hit);
-    s->job.all_parts = all_parts;
     reflect_run(&s->job);
 }
 
@@ -271,7 +270,7 @@ static figures compare(const stage *s) {
 /* Compares with the truth and prints a row; asserts what every scene keeps. */
 static figures judge(stage *s, const char *name, double rough, uint32_t every) {
     make_rays(s, rough, 0, every);
-    trace(s, false);
+    trace(s);
     figures f = compare(s);
     double rays = f.rays;
     printf("| %s | %.2f | %u | %.1f | %.3f | %.4f | %.3f | %.2f | %u | %.1f | %.3f | %.2f |\n", name,
@@ -328,32 +327,11 @@ static void rays_past_many_parts_meet_the_first(void **unused) {
     close_stage(&s);
 }
 
-/* The parts on each ray give what all parts give, in fewer or as many steps. */
-static void leaving_parts_out_changes_nothing(void **unused) {
-    (void)unused;
-    stage s = open_stage("pebbles", &around);
-    make_rays(&s, 0.3, 0, 1);
-    trace(&s, true);
-    uint64_t evals = s.job.evals;
-    uint32_t other = 0;
-    memcpy(own.all, own.hit, sizeof own.all);
-    trace(&s, false);
-    assert_true(s.job.evals <= evals);
-    for (uint32_t i = 0; i < TEXELS; i++) {
-        float a = float_of_bits(own.all[4 * i]), b = float_of_bits(own.hit[4 * i]);
-        other += own.all[4 * i + 1] != own.hit[4 * i + 1] || fabsf(a - b) > 1e-3f * (1 + a);
-    }
-    printf("  %u of %d rays differ, %.1f and %.1f evaluations\n", other, TEXELS,
-           (double)evals / TEXELS, (double)s.job.evals / TEXELS);
-    assert_true(other * 500 <= TEXELS);
-    close_stage(&s);
-}
-
 static void who_begins_in_a_solid_has_met_it(void **unused) {
     (void)unused;
     stage s = open_stage("mirrors", &around);
     make_rays(&s, 0, 0.05, 1); /* two widths of a pixel at least, less than any part but the rod is thick */
-    trace(&s, false);
+    trace(&s);
     uint32_t inside = 0, met = 0, at_once = 0;
     for (uint32_t i = 0; i < TEXELS; i++) {
         if (own.guide[2 * i + 1] <= 7 || float_of_bits(own.before[4 * i]) >= 0) continue;
@@ -377,7 +355,7 @@ static void rays_without_steps_miss(void **unused) {
     stage s = open_stage("mirrors", &around);
     make_rays(&s, 0, 0, 1);
     s.job.steps = 3;
-    trace(&s, false);
+    trace(&s);
     figures f = compare(&s);
     uint32_t at_once = 0, hits = 0;
     for (uint32_t i = 0; i < TEXELS; i++) {
@@ -413,7 +391,7 @@ static void a_part_that_moves_says_by_how_much(void **unused) {
         found++;
     }
     assert_int_equal(found, 1);
-    trace(&s, false);
+    trace(&s);
     uint32_t still = 0, moving = 0;
     for (uint32_t i = 0; i < TEXELS; i++) {
         double v[3];
@@ -453,17 +431,17 @@ static void any_bits_give_finite_hits(void **unused) {
         state = 5;
         for (uint32_t k = 0; k < 2 * TEXELS; k++) own.guide[k] = random_word(&state), own.ray[k] = random_word(&state);
         for (uint32_t k = 0; k < 4 * TEXELS; k++) own.before[k] = random_word(&state);
-        trace(&s, false);
+        trace(&s);
         check_sane(&s, "bits");
         make_rays(&s, 0.3, 0, 1);
         uint32_t from = 8 * s.blob.sdf->part_count; /* what numbers parts and forms is made by masu-bake */
         for (uint32_t k = from; k < s.job.slot_count; k++)
             if (random_word(&state) % 3 == 0) own.slots[k] = senseless[random_word(&state) % 8];
-        trace(&s, false);
+        trace(&s);
         check_sane(&s, "slots");
         for (uint32_t k = 0; k < from; k++)
             if (k % 8 < 5) own.slots[k] = senseless[random_word(&state) % 8];
-        trace(&s, false);
+        trace(&s);
         check_sane(&s, "bounds");
         close_stage(&s);
     }
@@ -585,7 +563,6 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(hits_are_those_of_the_truth),
         cmocka_unit_test(rays_past_many_parts_meet_the_first),
-        cmocka_unit_test(leaving_parts_out_changes_nothing),
         cmocka_unit_test(who_begins_in_a_solid_has_met_it),
         cmocka_unit_test(rays_without_steps_miss),
         cmocka_unit_test(a_part_that_moves_says_by_how_much),

@@ -17,7 +17,7 @@ typedef struct job {
     float stops;
     masu_easu easu;
     VkFormat format; /* of the source; 0: R8G8B8A8_UNORM, which the renderer is not told */
-    masu_switch half, fuse;
+    masu_switch half;
     int shipped; /* not 0: as it is without debug.exact */
 } job;
 
@@ -51,8 +51,7 @@ static void run_gpu(const job *j, const void *texels, uint32_t beyond, uint8_t *
     d.rungs[0] = (masu_rung){.upscale = j->upscale,
                              .sharpen = j->sharpen,
                              .sharpness = j->stops > 0.0f ? j->stops : -1.0f,
-                             .easu = j->easu,
-                             .fuse = j->fuse};
+                             .easu = j->easu};
     draw_rungs_of(&s, &d, &out, NULL);
     masu_headless_source_destroy(&s.host, &source);
 }
@@ -106,7 +105,7 @@ static void is_the_reference_within_one_step(masu_easu easu, const char *name) {
         uint32_t worst = 0, texels = 0;
         for (size_t i = 0; i < SIZES; i++) {
             job j = {sizes[i][0], sizes[i][1], sizes[i][2], sizes[i][3], MASU_ON,  MASU_OFF,
-                     0,           easu,        0,           MASU_AUTO,   MASU_AUTO, 0};
+                     0,           easu,        0,           MASU_AUTO, 0};
             masu_pattern_fill((enum masu_pattern)pattern, 11 + (uint32_t)i, j.in_w, j.in_h, in);
             run_gpu(&j, in, i % 2 ? 0xFFFFFFFFu : 0xFF00FF00u, gpu);
             reference_upscale(&j, in, cpu);
@@ -219,7 +218,7 @@ static void rcas_is_the_scalar_reference_within_one_step(void **state) {
         uint32_t worst = 0;
         for (size_t i = 0; i < 4; i++) {
             job j = {61, 47,        61,       47, MASU_AUTO, MASU_ON, stops[i], MASU_EASU_AUTO,
-                     0,  MASU_AUTO, MASU_AUTO, 0};
+                     0,  MASU_AUTO, 0};
             masu_pattern_fill((enum masu_pattern)pattern, 5 + (uint32_t)i, j.in_w, j.in_h, in);
             run_gpu(&j, in, 0xFFFFFFFFu, gpu);
             reference_rcas(j.out_w, j.out_h, j.stops, in, cpu);
@@ -258,7 +257,7 @@ static void the_chain_is_easu_then_rcas_with_10_bits_between(void **state) {
         difference d = {0, 0, 0};
         for (size_t i = 0; i < SIZES; i++) {
             job j = {sizes[i][0], sizes[i][1], sizes[i][2], sizes[i][3], MASU_ON,   MASU_ON,
-                     0.2f,        0,           0,           MASU_AUTO,   MASU_AUTO, 0};
+                     0.2f,        0,           0,           MASU_AUTO, 0};
             masu_pattern_fill((enum masu_pattern)pattern, 3, j.in_w, j.in_h, in);
             run_gpu(&j, in, 0, gpu);
             reference_chain(&j, in, TEN_BITS, cpu);
@@ -278,7 +277,7 @@ static void the_chain_is_near_the_one_with_floats_between(void **state) {
         difference d = {0, 0, 0}, of_bytes = {0, 0, 0};
         for (size_t i = 0; i < SIZES; i++) {
             job j = {sizes[i][0], sizes[i][1], sizes[i][2], sizes[i][3], MASU_ON,   MASU_ON,
-                     0,           0,           0,           MASU_AUTO,   MASU_AUTO, 0};
+                     0,           0,           0,           MASU_AUTO, 0};
             masu_pattern_fill((enum masu_pattern)pattern, 3, j.in_w, j.in_h, in);
             run_gpu(&j, in, 0, gpu);
             reference_chain(&j, in, FLOATS, floats);
@@ -295,24 +294,6 @@ static void the_chain_is_near_the_one_with_floats_between(void **state) {
     }
 }
 
-static void the_two_in_one_pass_are_the_two_to_the_bit(void **state) {
-    (void)state;
-    static uint8_t in[MOST], two[MOST], one[MOST];
-    for (uint32_t pattern = 0; pattern < MASU_PATTERN_COUNT; pattern++) {
-        for (size_t i = 0; i < SIZES; i += 2) {
-            job j = {sizes[i][0],     sizes[i][1],    sizes[i][2],
-                     sizes[i][3],     MASU_ON,        MASU_ON,
-                     0.2f * (float)i, MASU_EASU_FULL, pattern % 2 ? VK_FORMAT_R8G8B8A8_UNORM : 0,
-                     MASU_AUTO,       MASU_OFF, 0};
-            masu_pattern_fill((enum masu_pattern)pattern, 3, j.in_w, j.in_h, in);
-            run_gpu(&j, in, 0xFFFFFFFFu, two);
-            j.fuse = MASU_ON;
-            run_gpu(&j, in, 0x00FF00FFu, one);
-            assert_int_equal(max_difference(one, two, (size_t)j.out_w * j.out_h * 4), 0);
-        }
-    }
-}
-
 /* In halves, too: 1/255 is none. What comes out is the nearest step of 8 bits. */
 static void constants_of_floats_come_out_as_the_nearest_byte(void **state) {
     (void)state;
@@ -322,25 +303,12 @@ static void constants_of_floats_come_out_as_the_nearest_byte(void **state) {
     static uint8_t gpu[MOST];
     for (size_t k = 0; k < 4; k++) {
         for (int easu = MASU_EASU_FULL; easu <= MASU_EASU_BILINEAR; easu++) {
-            for (int fuse = MASU_OFF; fuse <= MASU_ON; fuse++) {
-                job j = {20,
-                         20,
-                         37,
-                         41,
-                         MASU_ON,
-                         MASU_ON,
-                         0,
-                         (masu_easu)easu,
-                         VK_FORMAT_R16G16_SFLOAT,
-                         MASU_AUTO,
-                         (masu_switch)fuse, 0};
-                for (size_t i = 0; i < 20 * 20; i++) in[i] = halves[k] * 0x10001u;
-                run_gpu(&j, in, 0, gpu);
-                for (uint32_t i = 0; i < j.out_w * j.out_h; i++) {
-                    if (!(fabs(gpu[4 * i] - 255 * values[k]) <= 0.5 + 1e-6))
-                        fail_msg("%g, easu %d, fuse %d: %d", values[k], easu, fuse, gpu[4 * i]);
-                    assert_int_equal(gpu[4 * i + 2], 0);
-                }
+            job j = {20, 20, 37, 41, MASU_ON, MASU_ON, .easu = (masu_easu)easu, .format = VK_FORMAT_R16G16_SFLOAT};
+            for (size_t i = 0; i < 20 * 20; i++) in[i] = halves[k] * 0x10001u;
+            run_gpu(&j, in, 0, gpu);
+            for (uint32_t i = 0; i < j.out_w * j.out_h; i++) {
+                if (!(fabs(gpu[4 * i] - 255 * values[k]) <= 0.5 + 1e-6)) fail_msg("%g, easu %d: %d", values[k], easu, gpu[4 * i]);
+                assert_int_equal(gpu[4 * i + 2], 0);
             }
         }
     }
@@ -380,7 +348,7 @@ static void an_input_known_to_have_8_bits_gives_the_same_picture(void **state) {
     static uint8_t in[MOST], a[MOST], b[MOST];
     for (uint32_t pattern = 0; pattern < MASU_PATTERN_COUNT; pattern++) {
         for (int easu = MASU_EASU_FULL; easu <= MASU_EASU_BILINEAR; easu++) {
-            job j = {50, 30, 65, 39, MASU_ON, MASU_ON, 0, (masu_easu)easu, 0, MASU_AUTO, MASU_AUTO, 0};
+            job j = {50, 30, 65, 39, MASU_ON, MASU_ON, 0, (masu_easu)easu, 0, MASU_AUTO, 0};
             masu_pattern_fill((enum masu_pattern)pattern, 4, j.in_w, j.in_h, in);
             run_gpu(&j, in, 0, a);
             j.format = VK_FORMAT_R8G8B8A8_UNORM;
@@ -405,7 +373,6 @@ static void an_srgb_view_is_filtered_as_the_linear_numbers_it_gives(void **state
                  0,
                  (masu_easu)easu,
                  VK_FORMAT_R8G8B8A8_SRGB,
-                 MASU_AUTO,
                  MASU_AUTO, 0};
         masu_pattern_fill(MASU_PATTERN_PHOTO, 1, j.in_w, j.in_h, in);
         for (uint32_t i = 0; i < j.in_w * j.in_h; i++) {
@@ -439,7 +406,7 @@ static int looks_at(const job *j, int x, int y, int bad_x, int bad_y) {
 
 /* NaN, infinities and numbers out of range, as 16-bit floats: they count as 0 or 1, and touch no
  * more than the taps of EASU and, sharpened, the cross of RCAS around them. */
-static void assert_footprint(masu_switch half, masu_switch fuse) {
+static void assert_footprint(masu_switch half) {
     static const uint32_t bad[] = {0x7E00, 0xFE01, 0x7C00, 0xFC00, 0xC500, 0x70E2, 0x8001};
     static const float counts_as[] = {0, 0, 0, 0, 0, 1, 0};
     static uint32_t in[32 * 24];
@@ -447,7 +414,6 @@ static void assert_footprint(masu_switch half, masu_switch fuse) {
     static uint8_t base[MOST], gpu[MOST], cpu[MOST];
     for (int easu = MASU_EASU_FULL; easu <= MASU_EASU_BILINEAR; easu++) {
         if (half == MASU_ON && easu == MASU_EASU_BILINEAR) continue;
-        if (fuse == MASU_ON && easu != MASU_EASU_FULL) continue;
         for (int sharpen = 0; sharpen < 2; sharpen++) {
             job j = {32,
                      24,
@@ -458,8 +424,7 @@ static void assert_footprint(masu_switch half, masu_switch fuse) {
                      0,
                      (masu_easu)easu,
                      VK_FORMAT_R16G16_SFLOAT,
-                     half,
-                     fuse, 0};
+                     half, 0};
             j.shipped = sharpen;
             for (uint32_t i = 0; i < 32 * 24; i++) {
                 /* Half of it flat: fast EASU leaves there. */
@@ -500,9 +465,8 @@ static void assert_footprint(masu_switch half, masu_switch fuse) {
 
 static void a_bad_texel_stays_within_its_footprint(void **state) {
     (void)state;
-    assert_footprint(MASU_AUTO, MASU_AUTO);
-    assert_footprint(MASU_AUTO, MASU_ON);
-    if (s.host.float16) assert_footprint(MASU_ON, MASU_AUTO);
+    assert_footprint(MASU_AUTO);
+    if (s.host.float16) assert_footprint(MASU_ON);
 }
 
 /* ---- Floats of 16 bits ----------------------------------------------------------------------- */
@@ -536,7 +500,7 @@ static void halves_change_easu_by_this_much(void **state) {
             job j = {sizes[i][0], sizes[i][1], sizes[i][2],
                      sizes[i][3], MASU_ON,     MASU_OFF,
                      0,           easu,        i % 2 ? VK_FORMAT_R8G8B8A8_UNORM : 0,
-                     MASU_ON,     MASU_AUTO,   1};
+                     MASU_ON,   1};
             masu_pattern_fill(pattern, 11 + (uint32_t)i, j.in_w, j.in_h, in);
             run_gpu(&j, in, 0, gpu);
             /* What decides is in 32 bits in both: of full EASU the same edges are found. */
@@ -609,7 +573,6 @@ int main(void) {
         cmocka_unit_test(rcas_as_shipped_is_the_scalar_reference_within_one_step),
         cmocka_unit_test(the_chain_is_easu_then_rcas_with_10_bits_between),
         cmocka_unit_test(the_chain_is_near_the_one_with_floats_between),
-        cmocka_unit_test(the_two_in_one_pass_are_the_two_to_the_bit),
         cmocka_unit_test(constants_of_floats_come_out_as_the_nearest_byte),
         cmocka_unit_test(flat_pictures_stay_exactly_as_they_are),
         cmocka_unit_test(what_lies_beyond_the_valid_rectangle_is_never_read),

@@ -408,36 +408,6 @@ static void a_point_that_was_behind_the_camera_says_so(void **state) {
     close_session(&s);
 }
 
-/* Those without tiles look at all parts. The fragment shader takes no polygons. */
-static void every_way_to_march_has_velocities(void **state) {
-    (void)state;
-    static picture p;
-    static const masu_march marches[] = {MASU_MARCH_CONE8, MASU_MARCH_UNPRUNED, MASU_MARCH_PLAIN,
-                                         MASU_MARCH_SEED, MASU_MARCH_CHECKERBOARD};
-    assert_int_equal(shell("%s/bin/masu-bake tests/scenes/test_velocity.json -o %s --variants --quiet",
-                           build_dir(), baked_scene("variants")),
-                     0);
-    for (size_t i = 0; i < sizeof marches / sizeof *marches; i++) {
-        masu_session s;
-        masu_session_desc d = test_desc(NULL, W, H);
-        d.scene_path = baked_scene("variants");
-        d.desc.readback = MASU_READBACK_DEPTH | MASU_READBACK_VELOCITY;
-        d.desc.rung_count = 1;
-        d.desc.rungs[0].march = marches[i];
-        open_session(&s, &d);
-        moment was = start, now = start;
-        now.time += 0.1;
-        take(&s, &was, 0, NULL);
-        take(&s, &now, 0, &p);
-        errors e = compare(&s, &p, &now, &was);
-        /* The seed's march stops up to 0.1 m before a surface: its points are not on the parts. */
-        for (int k = 0; k < KINDS && marches[i] != MASU_MARCH_SEED; k++) {
-            assert_true(e.pixels[k] < 0.02);
-        }
-        close_session(&s);
-    }
-}
-
 /* A field by hand has no parts that move; its surface is followed along its normal all the same. */
 static void a_field_by_hand_is_followed_along_its_normal(void **state) {
     (void)state;
@@ -511,7 +481,6 @@ int main(void) {
         cmocka_unit_test(polygons_alone_have_velocities),
         cmocka_unit_test(a_cut_forgets_the_frame_before),
         cmocka_unit_test(a_point_that_was_behind_the_camera_says_so),
-        cmocka_unit_test(every_way_to_march_has_velocities),
         cmocka_unit_test(a_field_by_hand_is_followed_along_its_normal),
         cmocka_unit_test(who_does_not_ask_has_no_velocities),
     };

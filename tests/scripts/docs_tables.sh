@@ -1,5 +1,5 @@
 #!/bin/sh
-# docs/knobs.md is what the tables of knobs and limits say today, and the help shows the same rows.
+# docs/knobs.md and docs/passes.md are up to date with the tables they are generated from, and the help shows the same knobs.
 set -e
 masu=${BUILD:-build}/bin/masu
 folder=$(mktemp -d)
@@ -7,6 +7,11 @@ trap 'rm -rf "$folder"' EXIT
 "$masu" plan --knobs=md > "$folder/knobs.md"
 diff -u docs/knobs.md "$folder/knobs.md" || {
     echo "docs/knobs.md is not what include/masu_knobs.h says: make docs-tables"
+    exit 1
+}
+shaders/tables.sh passes > "$folder/passes.md"
+diff -u docs/passes.md "$folder/passes.md" || {
+    echo "docs/passes.md is out of date with src/plan/passes.inc: run make docs-tables"
     exit 1
 }
 "$masu" plan --knobs > "$folder/plan"

@@ -8,8 +8,8 @@
  * Rays are spread by the sunflower's spiral, turned for each point by a hash of its number, so that an
  * error of too few rays is noise and no pattern. With 256 rays a point's own error is some 0.01. The
  * structure owns Embree's scene; nothing of the blob is kept. */
-#ifndef MASU_BENCH_AO_H
-#define MASU_BENCH_AO_H
+#ifndef SUPPORT_AO_H
+#define SUPPORT_AO_H
 
 #include "measure/truth.h"
 

@@ -187,6 +187,10 @@ static const masu_blob_trace_mesh trace_meshes[] = {{0, 2, 0, 3, 2, 0}, {2, 1, 3
 static const masu_blob_reflections reflections[] = {{0.5f, 100.0f, 0.25f, 0}};
 static const uint32_t trace_instances[] = {1, 2};
 
+/* Two by one texels and one, with their mips. */
+static const masu_blob_trace_texture trace_textures[] = {{0, 0, 2, 1, 0, 0}, {2, 0, 1, 1, 3, 0}};
+static const uint32_t trace_texels[4] = {0xFF204060u, 0xFF806040u, 0xFF505050u, 0xFFFFFFFFu};
+
 static const masu_blob_model models[] = {
     {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, 0, 1, NAME_PLATE, 0, 0, {0}},
     {{1, 0, 0, 3, 0, 1, 0, 0, 0, 0, 1, -4}, 1, 1, MASU_BLOB_NONE, MASU_MODEL_HIDDEN, 0, {0}},
@@ -252,22 +256,20 @@ static void add(support_blob *blob, enum masu_blob_kind kind, const void *data, 
 #define ADD(kind, array) add(blob, kind, array, sizeof *(array), COUNT(array))
 
 static int is_code(uint32_t kind) {
-    return kind == MASU_BLOB_MARCH_SPIRV || (kind >= MASU_BLOB_CLASSIFY_SPIRV && kind <= MASU_BLOB_FRAGMENT_SPIRV) ||
+    return kind == MASU_BLOB_MARCH_SPIRV || (kind >= MASU_BLOB_CLASSIFY_SPIRV && kind <= MASU_BLOB_CHECKERBOARD_SPIRV) ||
            (kind >= MASU_BLOB_UPDATE_PREVIOUS_SPIRV && kind <= MASU_BLOB_OCCLUSION_SPIRV) ||
            kind == MASU_BLOB_TRACE_SDF_SPIRV || kind == MASU_BLOB_SILHOUETTES_SPIRV;
 }
 
 /* The smallest module that its pass could run: main returns. The record is filled in when all of the blob is there. */
 static void add_code(support_blob *blob, enum masu_blob_kind kind) {
-    int fragment = kind == MASU_BLOB_FRAGMENT_SPIRV;
     uint32_t update = kind == MASU_BLOB_UPDATE_SPIRV || kind == MASU_BLOB_UPDATE_PREVIOUS_SPIRV;
     uint32_t columns = update ? 1 : kind == MASU_BLOB_SEED_SPIRV ? 4 : 8;
     const uint32_t head[] = {0x07230203u, 0x00010300u, 0, 5, 0,
                              2u << 16 | 17, 1,    /* OpCapability Shader */
                              3u << 16 | 14, 0, 1, /* OpMemoryModel Logical GLSL450 */
-                             5u << 16 | 15, fragment ? 4u : 5u, 1, 0x6E69616Du, 0}; /* OpEntryPoint %1 "main" */
+                             5u << 16 | 15, 5, 1, 0x6E69616Du, 0}; /* OpEntryPoint %1 "main" */
     const uint32_t compute[] = {6u << 16 | 16, 1, 17, columns, update ? 1u : 8u, 1}; /* OpExecutionMode LocalSize */
-    const uint32_t pixels[] = {3u << 16 | 16, 1, 7};                                /* OriginUpperLeft */
     const uint32_t tail[] = {2u << 16 | 19, 2,          /* %2 = OpTypeVoid */
                              3u << 16 | 33, 3, 2,       /* %3 = OpTypeFunction %2 */
                              5u << 16 | 54, 2, 1, 0, 3, /* %1 = OpFunction %2 None %3 */
@@ -277,8 +279,8 @@ static void add_code(support_blob *blob, enum masu_blob_kind kind) {
     uint32_t words[64] = {0}, n = 0;
     memcpy(words, head, sizeof head);
     n += COUNT(head);
-    memcpy(words + n, fragment ? pixels : compute, fragment ? sizeof pixels : sizeof compute);
-    n += fragment ? COUNT(pixels) : COUNT(compute);
+    memcpy(words + n, compute, sizeof compute);
+    n += COUNT(compute);
     words[n] = MASU_MODULE_RECORD_FIRST;
     n += MASU_MODULE_RECORD_WORDS;
     memcpy(words + n, tail, sizeof tail);
@@ -314,11 +316,20 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
     if (detail) sections++;
     int lighting = parts & SUPPORT_RASTER && parts & SUPPORT_LIGHTING;
     if (lighting) sections += 6;
-    if (parts & SUPPORT_SDF && parts & SUPPORT_VARIANTS) sections += parts & SUPPORT_RASTER ? 6 : 7;
+#ifdef MASU_LAB
+    enum { VARIANT_SECTIONS = 6 };
+#else
+    enum { VARIANT_SECTIONS = 3 };
+#endif
+    if (parts & SUPPORT_SDF && parts & SUPPORT_VARIANTS) sections += VARIANT_SECTIONS;
     uint32_t with_textures = SUPPORT_RASTER | SUPPORT_TEXTURES;
     if ((parts & with_textures) == with_textures) sections += 4;
     int trace = parts & SUPPORT_RASTER && parts & SUPPORT_TRACE;
     if (trace) sections += 5;
+    int trace_textured = trace && parts & SUPPORT_TRACE_MORE && parts & SUPPORT_TEXTURES;
+    int trace_sdf = trace && parts & SUPPORT_TRACE_MORE && parts & SUPPORT_SDF;
+    if (trace_textured) sections += 2;
+    if (trace_sdf) sections += 1;
     int live = parts & SUPPORT_RASTER && parts & SUPPORT_LIVE;
     if (live) sections += 2;
     int skin = live && parts & SUPPORT_SKIN;
@@ -373,11 +384,12 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
         if (parts & SUPPORT_VARIANTS) {
             add_code(blob, MASU_BLOB_UPDATE_SPIRV);
             add_code(blob, MASU_BLOB_UPDATE_PREVIOUS_SPIRV);
+#ifdef MASU_LAB
             add_code(blob, MASU_BLOB_PLAIN_SPIRV);
             add_code(blob, MASU_BLOB_SEED_SPIRV);
             add_code(blob, MASU_BLOB_CHECKERBOARD_SPIRV);
+#endif
             add_code(blob, MASU_BLOB_OCCLUSION_SPIRV);
-            if (!(parts & SUPPORT_RASTER)) add_code(blob, MASU_BLOB_FRAGMENT_SPIRV);
         }
         ADD(MASU_BLOB_SLOTS, slots);
     }
@@ -403,6 +415,11 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
         ADD(MASU_BLOB_TRACE_INSTANCES, trace_instances);
         ADD(MASU_BLOB_REFLECTIONS, reflections);
     }
+    if (trace_textured) {
+        ADD(MASU_BLOB_TRACE_TEXTURES, trace_textures);
+        ADD(MASU_BLOB_TRACE_TEXELS, trace_texels);
+    }
+    if (trace_sdf) add_code(blob, MASU_BLOB_TRACE_SDF_SPIRV);
     if (live) {
         ADD(MASU_BLOB_MODELS, models);
         ADD(MASU_BLOB_MODEL_NODES, model_nodes);

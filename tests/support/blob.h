@@ -40,8 +40,7 @@ enum {
     SUPPORT_RASTER = 1, /* geometry, instances, materials */
     SUPPORT_SDF = 2,    /* field, parameters, slots, code */
     SUPPORT_CAMERA = 4,
-    SUPPORT_VARIANTS = 8, /* with an SDF: the code that a blob may have or lack; that of
-                             march_fragment only without SUPPORT_RASTER */
+    SUPPORT_VARIANTS = 8, /* with an SDF: the code that a blob may have or lack */
     SUPPORT_SHADOW = 16, /* the sun's shadow map */
     SUPPORT_ALL = 31,
     SUPPORT_TEXTURES = 32, /* with SUPPORT_RASTER: "steel" has maps, and is a mask */
@@ -49,6 +48,7 @@ enum {
     SUPPORT_TRACE = 256, /* with SUPPORT_RASTER: trees for rays. Not part of SUPPORT_ALL */
     SUPPORT_LIVE = 512, /* with SUPPORT_RASTER: models that move. Not part of SUPPORT_ALL */
     SUPPORT_SKIN = 1024, /* with SUPPORT_LIVE, without SUPPORT_DETAIL: mesh 1 bends, and has no occluder */
+    SUPPORT_TRACE_MORE = 4096, /* with SUPPORT_TRACE: rays sample textures, with SUPPORT_TEXTURES; they hit the SDF, with SUPPORT_SDF */
     SUPPORT_LONG_NAME = 2048, /* names are "", one of 255 bytes, "x" */
     SUPPORT_LIGHTING = 128 /* with SUPPORT_RASTER: a small relief, lights, probes, a sky from a picture */
 };

@@ -33,8 +33,9 @@ masu_desc scene_desc(uint32_t parts, uint32_t width, uint32_t height) {
     }
     if (parts & SDF) {
         s->sdf = 1, s->sdf_params = 2, s->sdf_parts = 5, s->sdf_slots = 7;
-        s->sdf_march = 1u << MASU_MARCH_AUTO | 1u << MASU_MARCH_CONE8 | 1u << MASU_MARCH_CONES |
-                       1u << MASU_MARCH_UNPRUNED;
+#ifdef MASU_LAB
+        s->sdf_march = 1u << MASU_MARCH_AUTO | 1u << MASU_MARCH_CONES;
+#endif
     }
     d.scene = s;
     return d;

@@ -218,7 +218,7 @@ static void run(bench *b, const reflect_job *job, const VkDeviceSize at[IMAGES])
                                       .output_width = job->width,
                                       .output_height = job->height}};
     struct masu_push_specular_trace_sdf own = {
-        .steps = job->steps, .unpruned = job->all_parts, .traced_size = 2};
+        .steps = job->steps, .traced_size = 2};
     memcpy(&push.own, &own, sizeof own);
     vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, b->pipeline);
     vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, b->layout, 0, 2, b->set, 0, NULL);

@@ -19,7 +19,7 @@ typedef struct reflect_job {
     const uint32_t *guide;      /* width * height * 2 */
     const uint32_t *ray;        /* the same */
     uint32_t *hit;              /* width * height * 4: before, and afterwards */
-    uint32_t steps, all_parts;  /* index.x, index.y */
+    uint32_t steps;
     uint64_t evals, sdf_hits, unconverged; /* out */
 } reflect_job;
 

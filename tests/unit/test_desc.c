@@ -125,7 +125,6 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
     SAME(debug.poison);
     SAME(debug.casters);
     SAME(debug.ao_full);
-    SAME(debug.ao_nearest);
     SAME(debug.all_terms);
     SAME(debug.share_rays);
     SAME(debug.no_bias);
@@ -144,7 +143,6 @@ static masu_rung default_rung(float scale, float sharpness) {
     return (masu_rung){.scale = scale,
                        .easu = MASU_EASU_FULL,
                        .sharpness = sharpness,
-                       .fuse = MASU_OFF,
                        .aa = MASU_AA_OFF,
                        .temporal = MASU_OFF,
                        .silhouettes = MASU_OFF,
@@ -373,8 +371,7 @@ static void words_are_resolved_by_the_rule_of_the_plan(void **state) {
             assert_false(masu_knob_differs(k, &is.rungs[r], &twice.rungs[r]));
             assert_false(masu_knob_differs(k, &is.rungs[r], &plan.desc.rungs[r]));
             if (k->kind != MASU_KNOB_WORD || masu_knob_get(k, &is.rungs[r], 0) != 0.0) continue;
-            if (strcmp(k->name, "march") && strcmp(k->name, "specular") &&
-                strcmp(k->name, "occlusion"))
+            if (strcmp(k->name, "specular") && strcmp(k->name, "occlusion"))
                 fail_msg("rungs[%u].%s is still AUTO", r, k->name);
         }
     }
@@ -406,23 +403,22 @@ static void words_are_resolved_by_the_rule_of_the_plan(void **state) {
 static void with_a_governor_many_samples_come_from_one(void **state) {
     (void)state;
     masu_desc d = scene_desc(RASTER | SDF, 640, 360);
-    d.rung_count = 8;
-    for (uint32_t r = 0; r < 8; r++) d.rungs[r] = (masu_rung){.scale = r ? 0.5f : 1.0f, .sharpness = 0.5f};
+    d.rung_count = 7;
+    for (uint32_t r = 0; r < 7; r++) d.rungs[r] = (masu_rung){.scale = r ? 0.5f : 1.0f, .sharpness = 0.5f};
     d.rungs[0].specular_frames = 24;
     d.rungs[2].upscale = MASU_ON;
     d.rungs[3].easu = MASU_EASU_FAST;
     d.rungs[4].sharpen = MASU_OFF;
     d.rungs[5].aa = MASU_AA_OFF;
-    d.rungs[6].fuse = MASU_OFF;
-    d.rungs[7].temporal = MASU_OFF;
+    d.rungs[6].temporal = MASU_OFF;
     masu_desc is = masu_desc_resolved(&d);
-    for (uint32_t r = 0; r < 8; r++) assert_int_equal(is.rungs[r].temporal, MASU_OFF);
+    for (uint32_t r = 0; r < 7; r++) assert_int_equal(is.rungs[r].temporal, MASU_OFF);
     static const masu_governor_mode modes[] = {MASU_GOVERNOR_ON, MASU_GOVERNOR_FIXED};
     for (uint32_t k = 0; k < 2; k++) {
         d.governor.mode = modes[k];
         is = masu_desc_resolved(&d);
         masu_desc twice = masu_desc_resolved(&is);
-        for (uint32_t r = 0; r < 8; r++) {
+        for (uint32_t r = 0; r < 7; r++) {
             assert_int_equal(is.rungs[r].temporal, r < 2 ? MASU_ON : MASU_OFF);
             assert_int_equal(twice.rungs[r].temporal, is.rungs[r].temporal);
             assert_int_equal(is.rungs[r].specular_frames, r == 0 ? 24 : r == 1 ? 8 : 32); /* a host's own stays */
@@ -662,6 +658,11 @@ static void tables_have_every_field_once(void **state) {
             assert_true(k->words[w].word[0] && !strncmp(k->words[w].name, "MASU_", 5));
         }
         if (k->words) assert_string_equal(k->words[0].word, "auto");
+        if (k->words && k->zero > 0.0) { /* the text states the value of the column */
+            char rule[64];
+            (void)snprintf(rule, sizeof rule, "AUTO: %s", k->words[(uint32_t)k->zero].word);
+            assert_non_null(strstr(k->text, rule));
+        }
         masu_rung rung = {.scale = 0.5f};
         masu_knob_set(k, &rung, k->values, 1.0); /* behind the last: nothing */
         assert_true(masu_knob_get(k, &rung, k->values) == 0.0 && rung.scale == 0.5f);
@@ -701,56 +702,6 @@ static void meshes_too_large_for_occlusion_are_a_limit(void **state) {
     }
 }
 
-static void a_march_that_the_blob_has_no_code_for_is_a_scene_error(void **state) {
-    (void)state;
-    static masu_frame_plan plan;
-    const uint32_t always = scene_desc(SDF, 64, 64).scene->sdf_march;
-    for (uint32_t parts = SDF; parts <= (RASTER | SDF); parts++) {
-        for (uint32_t march = 0; march <= MASU_MARCH_UNPRUNED; march++) {
-            masu_desc d = scene_desc(parts, 64, 64);
-            masu_detail detail;
-            d.rung_count = 2;
-            d.rungs[1].march = (masu_march)march;
-            if (always & 1u << march) {
-                compile(&d, &plan);
-                continue;
-            }
-            assert_int_equal(masu_compile(&d, 256, 64, &plan, &detail), MASU_ERROR_SCENE);
-            assert_string_equal(detail.what, "rungs[].march");
-            assert_non_null(strstr(detail.text, "rungs[1].march"));
-            support_scene.sdf_march |= 1u << march;
-            if (parts & RASTER && march == MASU_MARCH_FRAGMENT) continue; /* below */
-            compile(&d, &plan);
-            d.rung_count = 1; /* then it stands behind the count */
-            support_scene.sdf_march = always;
-            compile(&d, &plan);
-        }
-    }
-    masu_desc d = scene_desc(RASTER, 64, 64); /* without an SDF there is nothing to march */
-    d.rung_count = 1;
-    d.rungs[0].march = MASU_MARCH_SEED;
-    compile(&d, &plan);
-}
-
-/* Whatever code the blob has. */
-static void a_march_as_fragment_shader_beside_polygons_is_refused_in_one_line(void **state) {
-    (void)state;
-    static masu_frame_plan plan;
-    for (int code = 0; code < 2; code++) {
-        masu_desc d = scene_desc(RASTER | SDF, 64, 64);
-        masu_detail detail;
-        if (code) support_scene.sdf_march |= 1u << MASU_MARCH_FRAGMENT;
-        d.rung_count = 2;
-        d.rungs[1].march = MASU_MARCH_FRAGMENT;
-        assert_int_equal(masu_compile(&d, 256, 64, &plan, &detail), MASU_ERROR_SCENE);
-        assert_string_equal(detail.what, "rungs[].march");
-        assert_string_equal(detail.text, "rungs[1].march is MASU_MARCH_FRAGMENT, which erases "
-                                         "polygons: the scene has 3 instances");
-        d.rungs[1].march = MASU_MARCH_AUTO;
-        compile(&d, &plan);
-    }
-}
-
 static void a_rung_that_needs_upscaling_cannot_switch_it_off(void **state) {
     (void)state;
     BAD("rungs[].upscale", d.rungs[1].scale = 0.5f, d.rungs[1].upscale = MASU_OFF);
@@ -773,7 +724,6 @@ static void the_extremes_of_each_range_are_accepted(void **state) {
         }
     }
     d.rungs[0].scale = 1e-30f, d.rungs[1].scale = 1.0f;
-    d.rungs[0].march = d.rungs[1].march = MASU_MARCH_AUTO; /* the rest takes another blob */
     d.rungs[1].upscale = d.rungs[1].occlusion = MASU_OFF;
     d.rungs[0].shadow_distance = 1e9f, d.rungs[1].shadow_distance = 1e-30f;
     d.rungs[1].specular_cutoff = 1e-30f;
@@ -1007,8 +957,6 @@ int main(void) {
         cmocka_unit_test(ranges_are_those_of_shaders_and_blobs),
         cmocka_unit_test(tables_have_every_field_once),
         cmocka_unit_test(meshes_too_large_for_occlusion_are_a_limit),
-        cmocka_unit_test(a_march_that_the_blob_has_no_code_for_is_a_scene_error),
-        cmocka_unit_test(a_march_as_fragment_shader_beside_polygons_is_refused_in_one_line),
         cmocka_unit_test(a_rung_that_needs_upscaling_cannot_switch_it_off),
         cmocka_unit_test(the_extremes_of_each_range_are_accepted),
         cmocka_unit_test(refusals_say_what_was_given_and_what_is_allowed),

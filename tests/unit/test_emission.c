@@ -1,4 +1,4 @@
-/* test_emission.c: the two texels of what emits (bench/study/texel.h, the twin of shaders/shared/pack.glsl): how far rounding
+/* test_emission.c: the two texels of what emits (measure/texel.h, the twin of shaders/shared/pack.glsl): how far rounding
  * takes a material, which of them are lit, and that any texels give numbers in range. */
 #include <math.h>
 #include <setjmp.h>

@@ -90,7 +90,6 @@ static void tables_are_well_formed(void **state) {
                             MASU_LADDER_APART * (double)l->ratios[r] * (1 - 1e-5));
             if (r) assert_true(l->flips[r] > l->flips[r - 1]);
             /* What not every device or blob can do is not built in. */
-            assert_int_equal(rung->march, MASU_MARCH_AUTO);
             assert_true(rung->specular != MASU_ON && rung->occlusion != MASU_ON);
             assert_true(rung->scale > 0 && rung->upscale != MASU_OFF);
             assert_true(rung->shadow_distance <= 0 && rung->specular_cutoff <= 0);
@@ -351,7 +350,7 @@ static void what_a_scene_lacks_is_ignored(void **state) {
         compile(&d);
         plain = plan;
         d.rungs[0] = wish;
-        if (!(parts & SDF)) d.rungs[0].march_steps = 64, d.rungs[0].march = MASU_MARCH_PLAIN;
+        if (!(parts & SDF)) d.rungs[0].march_steps = 64;
         compile(&d);
         assert_memory_equal(&plan.rungs[0].active, &plain.rungs[0].active, sizeof plan.rungs[0].active);
         assert_int_equal(plan.recordings, plain.recordings);
@@ -448,7 +447,6 @@ static void what_is_written_reads_back_knob_for_knob(void **state) {
     assert_string_equal(f.settings[3], "s3");
     assert_true(fabs(f.rmses[2] - 2.5) < 1e-9 && f.width == 320 && f.height == 180);
     /* What it takes, masu_init takes too. */
-    d.rungs[0].march = d.rungs[1].march = d.rungs[2].march = d.rungs[3].march = MASU_MARCH_AUTO;
     for (uint32_t r = 0; r < 4; r++) d.rungs[r].upscale = MASU_AUTO;
     compile(&d);
 }

@@ -198,13 +198,12 @@ static const struct {
     {"cone.comp", "-DMASU_CONE_BLOCK=8", 1, 0, 1},
     {"cone.comp", "-DMASU_CONE_BLOCK=2", 1, 0, 1},
     {"march.comp", "-DMASU_PASS=1", 1, 0, 3}, /* the march, its refinement, the normal */
-    {"march_plain.comp", "-DMASU_PASS=1", 2, 0, 3},
-    {"march_seed.comp", "-DMASU_PASS=1", 2, 0, 3},
-    {"march_checkerboard.comp", "-DMASU_PASS=1", 1, 0, 3},
+    {"march_plain.comp", "-DMASU_LAB=1", 2, 0, 3},
+    {"march_seed.comp", "-DMASU_LAB=1", 2, 0, 3},
+    {"march_checkerboard.comp", "-DMASU_LAB=1", 1, 0, 3},
     {"sdf_occlusion.comp", "-DMASU_PASS=1", 1, 0, 6}, /* lists 3, rays and their march, samples */
     {"specular_trace_sdf.comp", "-DMASU_PASS=1", 1, 0, 2}, /* the march, the normal */
     {"specular_trace_sdf.comp", "-DMASU_MOTION=1", 1, 0, 3},
-    {"march_fragment.frag", "-DMASU_PASS=1", 1, 0, 3},
 };
 
 static int needs_a_field(const char *name) {

@@ -337,7 +337,7 @@ static void compile_shadow(masu_desc *d, uint32_t cascades, uint32_t size) {
 
 static void a_scene_without_shadows_has_none_of_it(void **state) {
     (void)state;
-    static const char *const why[] = {"the scene asks for no shadows of its polygons",
+    static const char *const why[] = {"the scene has no shadow map",
                                       "the scene has no instances"};
     for (int i = 0; i < 2; i++) {
         masu_desc d = scene_desc(i ? SDF : RASTER | SDF, 640, 480);
@@ -383,7 +383,7 @@ static void cascades_lie_side_by_side_in_one_image(void **state) {
             assert_int_equal(masu_has_pass(&plan.rungs[0].active, MASU_PASS_CASCADE_0 + k), k < n);
         assert_true(masu_has_pass(&plan.rungs[0].active, MASU_PASS_LIGHT_OCCLUDED));
         assert_string_equal(plan.why[MASU_PASS_LIGHT_OCCLUDED],
-                            "a scene is lit, and shadow says how much arrives");
+                            "a scene is lit, with the visibility from shadow");
         assert_true(plan.buffers[MASU_BUFFER_SHADOW].bytes >=
                     2 * sizeof(struct masu_shadow_uniforms));
     }

@@ -70,7 +70,7 @@ static void without_a_split_nothing_is_planned(void **state) {
         assert_false(runs(&plan, MASU_PASS_SPLIT_TONE));
         assert_false(runs(&plan, MASU_PASS_SPLIT_OUTPUT));
         assert_false(plan.images[MASU_IMAGE_SPLIT_DEPTH].used);
-        assert_string_equal(plan.why[MASU_PASS_SPLIT_TONE], "desc.split does not ask for it");
+        assert_string_equal(plan.why[MASU_PASS_SPLIT_TONE], "desc.split does not request it");
         for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
             const masu_image_plan *image = &plan.images[i];
             if (!image->used) continue;

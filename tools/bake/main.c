@@ -40,7 +40,9 @@ enum {
     OPTION_OUTPUT = 1,
     OPTION_STATS,
     OPTION_MODELS,
+#ifdef MASU_LAB
     OPTION_VARIANTS,
+#endif
     OPTION_BARE,
     OPTION_NO_TEXTURES,
     OPTION_TEXTURE_PATH,
@@ -101,7 +103,9 @@ static int run(masu_cli *cli) {
             if (!masu_cli_uint(cli, 1, 64, &o.threads)) return MASU_CLI_USAGE;
             break;
         case OPTION_BARE: o.bare = true; break;
+#ifdef MASU_LAB
         case OPTION_VARIANTS: o.variants = true; break;
+#endif
         case OPTION_STRICT: o.strict = true; break;
         case OPTION_MEMORY_LIMIT:
             if (!masu_cli_uint(cli, 0, INT32_MAX, &work.memory_mib)) return MASU_CLI_USAGE;
@@ -130,8 +134,9 @@ int main(int argc, char **argv) {
     static const masu_cli_option options[] = {
         {"output", "FILE", "where the blob goes; replaced only by a complete one", OPTION_OUTPUT,
          'o'},
-        {"variants", NULL, "add the other ways to march the SDF, for masu study march",
-         OPTION_VARIANTS, 0},
+#ifdef MASU_LAB
+        {"variants", NULL, "add the baseline marches of the SDF, for masu-lab study march", OPTION_VARIANTS, 0},
+#endif
         {"bare", NULL, "a MODEL alone: without ground, shadows, occlusion and reflections", OPTION_BARE, 0},
         {"no-textures", NULL, "ignore textures; materials keep their factors", OPTION_NO_TEXTURES,
          0},

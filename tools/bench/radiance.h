@@ -6,7 +6,7 @@
  * than the truth. What is done after the tone curve (anti-aliasing, sharpening) is not in it: such
  * settings have no HDR-FLIP, but the error of reflections that all others have.
  *
- * REFLECTIONS. relMSE (bench/study/specular.h) of pixels that trace, against as many rays a pixel as the
+ * REFLECTIONS. relMSE (measure/specular.h) of pixels that trace, against as many rays a pixel as the
  * truth has in all, through its middle. It is radiance of the whole pixel: what other knobs change
  * there is in it, too.
  *

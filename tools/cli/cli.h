@@ -99,7 +99,7 @@ int masu_cli_main(const masu_cli_program *program, int argc, char **argv);
 /* Its end by itself, for a child that leaves by exit(): returns the exit code. */
 int masu_cli_end(int exit_code);
 
-/* For a command that has commands of its own, `masu study march`: its run function calls this. */
+/* For a command that has commands of its own, `masu-lab study march`: its run function calls this. */
 int masu_cli_commands(masu_cli *cli, const char *summary, const masu_cli_command *const *commands);
 
 /* The next option's id, or MASU_CLI_ARGUMENT, _END or _EXIT. */

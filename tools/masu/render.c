@@ -202,9 +202,6 @@ static void turn(masu_desc *d, const masu_turned *t) {
     *d = masu_desc_resolved(d);
     for (uint32_t r = 0; r < d->rung_count; r++) {
         masu_rung *rung = &d->rungs[r];
-#ifdef MASU_LAB
-        if (t->march_given) rung->march = t->to.march;
-#endif
         if (t->cull_given) rung->frustum = t->cull < 2 ? MASU_ON : MASU_OFF;
         if (t->cull_given) rung->occlusion = t->cull % 2 ? MASU_OFF : MASU_ON;
         if (t->lod_given) rung->lod_error = t->to.lod_error;
@@ -331,11 +328,6 @@ static const masu_option rows[] = {
     MASU_KNOB(masu_render_options, turned.to, "aa", "MODE", "aa",
               "anti-aliasing; disables temporal upscaling (default off). MODE is one of\n"
               " " MASU_AA_WORDS(MASU_WORD_LIST)),
-#ifdef MASU_LAB
-    MASU_KNOB(masu_render_options, turned.to, "march", "WAY", "march",
-              "how the SDF is marched:" MASU_MARCH_WORDS(MASU_WORD_LIST) ";\n"
-              "all but auto need a blob baked with --variants (default auto)"),
-#endif
     MASU_CHOICE(masu_render_options, turned.cull, "cull", "STAGES", stages,
                 "culling stages: both, frustum, occlusion or none; the image is the same\n"),
     MASU_KNOB(masu_render_options, turned.to, "lod-error", "PIXELS", "lod_error",
@@ -371,12 +363,8 @@ static const masu_option rows[] = {
 /* What does not go together, and what is missing; an exit code. */
 static int check(const masu_render_options *o, const masu_given *given) {
     /* About what --truth has its own mind of. */
-    static const char *const decided[] = {"stats", "rung",      "setting", "aa",
-#ifdef MASU_LAB
-                                          "march",
-#endif
-                                          "cull",  "lod-error", "ladder",  "target-ms", "times",
-                                          "anisotropy", NULL};
+    static const char *const decided[] = {"stats",  "rung",      "setting", "aa",         "cull", "lod-error",
+                                          "ladder", "target-ms", "times",   "anisotropy", NULL};
     static const char *const moving[] = {"frames", "time-step", NULL};
     static const char *const choosing[] = {"ladder", "target-ms", NULL};
     const char *own = masu_first_given(given, rows, decided);
@@ -407,9 +395,6 @@ static int check(const masu_render_options *o, const masu_given *given) {
 static int describe(masu_render_options *o, const masu_given *given) {
     masu_desc *d = &o->d.desc;
     o->d.scene_path = given->arguments[0];
-#ifdef MASU_LAB
-    o->turned.march_given = masu_is_given(given, rows, "march");
-#endif
     o->turned.cull_given = masu_is_given(given, rows, "cull");
     o->turned.aa_given = masu_is_given(given, rows, "aa");
     o->turned.lod_given = masu_is_given(given, rows, "lod-error");

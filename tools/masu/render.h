@@ -6,7 +6,7 @@
 
 /* Options that turn one knob of every rung; those that are not given leave it as the ladder has it. */
 typedef struct masu_turned {
-    bool march_given, cull_given, lod_given, aa_given;
+    bool cull_given, lod_given, aa_given;
     uint32_t cull;
     masu_rung to;
 } masu_turned;

@@ -1,8 +1,8 @@
 /* motion.h: a scene in motion up to one moment, as `masu bench` draws what it compares.
  *
  * Nothing here owns the session. Functions that fail write one line to `error`. */
-#ifndef MASU_BENCH_MOTION_H
-#define MASU_BENCH_MOTION_H
+#ifndef MASU_MEASURE_MOTION_H
+#define MASU_MEASURE_MOTION_H
 
 #include "session.h"
 

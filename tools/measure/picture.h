@@ -15,8 +15,8 @@
  *
  * What stays approximate: docs/design/31-truth.md. Nothing here
  * owns the session. */
-#ifndef MASU_BENCH_PICTURE_H
-#define MASU_BENCH_PICTURE_H
+#ifndef MASU_MEASURE_PICTURE_H
+#define MASU_MEASURE_PICTURE_H
 
 #include "session.h"
 

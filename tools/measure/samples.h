@@ -3,8 +3,8 @@
  * Sample k of all things is of the same round: what the machine did meanwhile hit all of them, so
  * ratios are made round by round and their median is taken. Both clocks are kept: the wall's, from
  * masu_frame to the fence, and the device's timestamps. Owns nothing, allocates nothing. */
-#ifndef MASU_BENCH_SAMPLES_H
-#define MASU_BENCH_SAMPLES_H
+#ifndef MASU_MEASURE_SAMPLES_H
+#define MASU_MEASURE_SAMPLES_H
 
 #include <stdint.h>
 

@@ -7,8 +7,8 @@
  * and by nothing else; the picture that the GPU shows also has the driver's rounding in it
  * (lavapipe of Mesa 22.3 cuts halves off instead of rounding them: one step of 255 on every eighth
  * pixel of a sphere, which FLIP counts as 0.005 there). Pure functions. */
-#ifndef MASU_BENCH_SHADE_H
-#define MASU_BENCH_SHADE_H
+#ifndef MASU_MEASURE_SHADE_H
+#define MASU_MEASURE_SHADE_H
 
 #include "measure/truth.h"
 

@@ -3,8 +3,8 @@
  * The error is that of pixels that trace: relMSE = mean over them and r, g, b of (x - t)^2 / (t^2 + 0.01),
  * x and t linear radiance before exposure. Motion ends where the frames at rest are, so that one truth serves
  * all. Nothing here owns a session or a picture. */
-#ifndef MASU_BENCH_SPECULAR_H
-#define MASU_BENCH_SPECULAR_H
+#ifndef MASU_MEASURE_SPECULAR_H
+#define MASU_MEASURE_SPECULAR_H
 
 #include "session.h"
 

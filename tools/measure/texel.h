@@ -1,7 +1,7 @@
 /* texel.h: what the two texels of a surface in the G-buffer say of its look, as shaders/shared/pack.glsl has
  * it, in double precision. A material is albedo r g b, roughness, emissive r g b, metallic. Pure functions. */
-#ifndef MASU_BENCH_TEXEL_H
-#define MASU_BENCH_TEXEL_H
+#ifndef MASU_MEASURE_TEXEL_H
+#define MASU_MEASURE_TEXEL_H
 
 #include <stdbool.h>
 #include <stdint.h>

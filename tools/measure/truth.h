@@ -15,8 +15,8 @@
  * The rules that the picture shares: a field at or below the tolerance where the ray starts is a
  * hit at the start (a camera inside a solid sees it at the near plane); nothing is hit at or beyond
  * the limit, nor outside the bounds. A field that is not finite is a miss. */
-#ifndef MASU_BENCH_TRUTH_H
-#define MASU_BENCH_TRUTH_H
+#ifndef MASU_MEASURE_TRUTH_H
+#define MASU_MEASURE_TRUTH_H
 
 #include "measure/view_uniforms.h"
 

@@ -1,4 +1,4 @@
-/* view.c: see view.h. */
+/* view_uniforms.c: see view_uniforms.h. */
 #include "measure/view_uniforms.h"
 
 #include "scene/scene.h"

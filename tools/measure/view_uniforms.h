@@ -1,8 +1,8 @@
-/* view.h: one moment of a scene in double precision: what the runtime puts into its uniforms,
+/* view_uniforms.h: one moment of a scene in double precision: what the runtime puts into its uniforms,
  * read from the baked blob and a camera. The truth marches it, the shading lights it. A plain
  * struct; owns nothing. */
-#ifndef MASU_BENCH_VIEW_H
-#define MASU_BENCH_VIEW_H
+#ifndef MASU_VIEW_UNIFORMS_H
+#define MASU_VIEW_UNIFORMS_H
 
 #include "masu.h"
 

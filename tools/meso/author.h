@@ -16,7 +16,7 @@ typedef struct masu_meso_material {
     masu_meso_texel *texels; /* size * size */
     uint32_t size;
     masu_meso_texel mean;
-    double height; /* mean height of the surface as seen from above */
+    double height; /* mean height of the visible surface, from above */
     masu_meso_setup setup;
     masu_meso_view views[MASU_MESO_VIEWS_MAX];
     masu_meso_curves curves;

@@ -2,8 +2,8 @@
  * there is to be written is the library's table (masu_knob_table), so that none is forgotten.
  *
  * Owns nothing; nothing allocates. */
-#ifndef MASU_BENCH_KNOBS_H
-#define MASU_BENCH_KNOBS_H
+#ifndef MASU_SETTINGS_KNOBS_H
+#define MASU_SETTINGS_KNOBS_H
 
 #include "masu.h"
 

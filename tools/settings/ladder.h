@@ -4,8 +4,8 @@
  * Pure functions of their arguments; nothing allocates, nothing fails. A point whose time is not
  * finite and above 0, or whose error is not finite or is below 0, is no measurement: it is never
  * chosen and beats nothing. */
-#ifndef MASU_BENCH_LADDER_H
-#define MASU_BENCH_LADDER_H
+#ifndef MASU_SETTINGS_LADDER_H
+#define MASU_SETTINGS_LADDER_H
 
 #include <stdbool.h>
 #include <stdint.h>

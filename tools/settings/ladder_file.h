@@ -3,8 +3,8 @@
  * Strict: what is unknown, out of range or out of order is refused in one line, so that a ladder that is
  * read is one that masu_init takes on any scene whose blob has code for its marches. A knob that is not
  * named is 0. Nothing of the file's text is kept. */
-#ifndef MASU_BENCH_LADDER_FILE_H
-#define MASU_BENCH_LADDER_FILE_H
+#ifndef MASU_SETTINGS_LADDER_FILE_H
+#define MASU_SETTINGS_LADDER_FILE_H
 
 #include "settings/setting.h"
 

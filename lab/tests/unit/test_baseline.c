@@ -67,13 +67,13 @@ static void ratios_are_of_rounds(void **state) {
 
 static void the_plain_renderer_takes_no_short_cut(void **state) {
     (void)state;
-    const uint32_t all = 1u << MASU_MARCH_AUTO | 1u << MASU_MARCH_PLAIN | 1u << MASU_MARCH_FRAGMENT;
+    const uint32_t all = 1u << MASU_MARCH_AUTO | 1u << MASU_MARCH_PLAIN;
     static const uint32_t without = 1u << MASU_MARCH_AUTO;
     const struct {
         masu_scene scene;
         masu_march march;
         const char *name;
-    } cases[] = {{{.sdf = 1, .sdf_march = all}, MASU_MARCH_FRAGMENT, "fragment"},
+    } cases[] = {{{.sdf = 1, .sdf_march = all}, MASU_MARCH_PLAIN, "plain"},
                  {{.sdf = 1, .sdf_march = all, .instances = 2}, MASU_MARCH_PLAIN, "plain"},
                  {{.sdf = 1, .sdf_march = without}, MASU_MARCH_AUTO, "auto"},
                  {{.instances = 2}, MASU_MARCH_AUTO, "none"}};

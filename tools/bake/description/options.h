@@ -13,7 +13,7 @@ typedef struct masu_bake_options {
     /* build */
     masu_bake_textures textures; /* WANTED or OFF */
     const char *texture_path;    /* folders with ':' between, or NULL */
-    bool variants;               /* with the marching variants for comparisons */
+    bool variants;               /* with the baseline marches of the lab build */
     bool probes, probe_report;   /* also if the scene asks for none; judged by path tracing */
     uint32_t threads;            /* that trace probes; 0: all processors */
     bool strict; /* warnings are errors */

@@ -26,7 +26,6 @@ static const uint32_t strides[MASU_BLOB_KIND_COUNT] = {
     [MASU_BLOB_PLAIN_SPIRV] = sizeof(uint32_t),
     [MASU_BLOB_SEED_SPIRV] = sizeof(uint32_t),
     [MASU_BLOB_CHECKERBOARD_SPIRV] = sizeof(uint32_t),
-    [MASU_BLOB_FRAGMENT_SPIRV] = sizeof(uint32_t),
     [MASU_BLOB_UPDATE_PREVIOUS_SPIRV] = sizeof(uint32_t),
     [MASU_BLOB_VELOCITY_SPIRV] = sizeof(uint32_t),
     [MASU_BLOB_SILHOUETTES_SPIRV] = sizeof(uint32_t),

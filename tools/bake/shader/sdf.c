@@ -366,7 +366,6 @@ enum {
     UPDATED,
     DYNAMIC,
     VARIANT,
-    WITHOUT_RASTER,
     OCCLUSION,
     REFLECTED_STILL,
     REFLECTED_DYNAMIC
@@ -377,8 +376,7 @@ enum {
 static const struct {
     const char *source, *define /* or NULL */, *raw, *optimised;
     uint32_t kind;
-    int when; /* always; with slots that change, or with time; with --variants, and then only
-                 without polygons; with shadows or ambient occlusion; with reflections and slots that
+    int when; /* always; with slots that change, or with time; with --variants; with shadows or ambient occlusion; with reflections and slots that
                  change not, or do */
 } scene_shaders[] = {
     {"march.comp", NULL, "march.raw", "march.spv", MASU_BLOB_MARCH_SPIRV, ALWAYS},
@@ -390,11 +388,12 @@ static const struct {
     {"classify.comp", NULL, "class.raw", "class.spv", MASU_BLOB_CLASSIFY_SPIRV, ALWAYS},
     {"cone.comp", "-DMASU_CONE_BLOCK=8", "cone8.raw", "cone8.spv", MASU_BLOB_CONE8_SPIRV, ALWAYS},
     {"cone.comp", "-DMASU_CONE_BLOCK=4", "cone4.raw", "cone4.spv", MASU_BLOB_CONE4_SPIRV, ALWAYS},
-    {"march_plain.comp", NULL, "plain.raw", "plain.spv", MASU_BLOB_PLAIN_SPIRV, VARIANT},
-    {"march_seed.comp", NULL, "seed.raw", "seed.spv", MASU_BLOB_SEED_SPIRV, VARIANT},
-    {"march_checkerboard.comp", NULL, "check.raw", "check.spv", MASU_BLOB_CHECKERBOARD_SPIRV,
+#ifdef MASU_LAB
+    {"march_plain.comp", "-DMASU_LAB", "plain.raw", "plain.spv", MASU_BLOB_PLAIN_SPIRV, VARIANT},
+    {"march_seed.comp", "-DMASU_LAB", "seed.raw", "seed.spv", MASU_BLOB_SEED_SPIRV, VARIANT},
+    {"march_checkerboard.comp", "-DMASU_LAB", "check.raw", "check.spv", MASU_BLOB_CHECKERBOARD_SPIRV,
      VARIANT},
-    {"march_fragment.frag", NULL, "frag.raw", "frag.spv", MASU_BLOB_FRAGMENT_SPIRV, WITHOUT_RASTER},
+#endif
     {"sdf_occlusion.comp", NULL, "occl.raw", "occl.spv", MASU_BLOB_OCCLUSION_SPIRV, OCCLUSION},
     {"specular_trace_sdf.comp", NULL, "mirror.raw", "mirror.spv", MASU_BLOB_TRACE_SDF_SPIRV,
      REFLECTED_STILL},
@@ -402,13 +401,12 @@ static const struct {
      MASU_BLOB_TRACE_SDF_SPIRV, REFLECTED_DYNAMIC}};
 
 static bool wanted(int when, bool dynamic, bool anchored, bool occlusion, bool reflected,
-                   bool variants, bool has_raster) {
+                   bool variants) {
     if (when == UPDATED) return dynamic || anchored;
     if (when == DYNAMIC) return dynamic;
     if (when == OCCLUSION) return occlusion;
     if (when == REFLECTED_STILL) return reflected && !dynamic;
     if (when == REFLECTED_DYNAMIC) return reflected && dynamic;
-    if (when == WITHOUT_RASTER) return variants && !has_raster;
     return when == ALWAYS || variants;
 }
 
@@ -452,8 +450,7 @@ bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path,
                 (!darkens || write_occlusion(directory, occlusion));
     for (size_t i = 0; i < sizeof scene_shaders / sizeof *scene_shaders && good; i++) {
         bool anchored = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf)->anchored != 0;
-        if (!wanted(scene_shaders[i].when, dynamic, anchored, darkens, reflected, variants,
-                    has_raster))
+        if (!wanted(scene_shaders[i].when, dynamic, anchored, darkens, reflected, variants))
             continue;
         paths p = {masu_bake_join(directory, scene_shaders[i].source),
                    masu_bake_join(directory, scene_shaders[i].raw),

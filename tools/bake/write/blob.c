@@ -58,7 +58,6 @@ const char *masu_bake_kind_name(uint32_t kind) {
         [MASU_BLOB_PLAIN_SPIRV] = "plain_spirv",
         [MASU_BLOB_SEED_SPIRV] = "seed_spirv",
         [MASU_BLOB_CHECKERBOARD_SPIRV] = "checkerboard_spirv",
-        [MASU_BLOB_FRAGMENT_SPIRV] = "fragment_spirv",
         [MASU_BLOB_UPDATE_PREVIOUS_SPIRV] = "update_previous_spirv",
         [MASU_BLOB_VELOCITY_SPIRV] = "velocity_spirv",
         [MASU_BLOB_SILHOUETTES_SPIRV] = "silhouettes_spirv",
