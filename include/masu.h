@@ -778,7 +778,7 @@ MASU_API uint32_t masu_memory_report(const masu_renderer *renderer, masu_memory_
     X(MASU_GOVERNOR_REASON_BLIND, 11, "no recent measurements: the rung is kept")                  \
     X(MASU_GOVERNOR_REASON_FIXED, 12, "the rung is fixed")                                         \
     X(MASU_GOVERNOR_REASON_HOST, 13, "the host has selected the rung")                             \
-    X(MASU_GOVERNOR_REASON_UNUSUAL, 14, "the frame is excluded from timing: the rung is kept")     \
+    X(MASU_GOVERNOR_REASON_EXCLUDED, 14, "the frame is excluded from timing: the rung is kept")    \
     X(MASU_GOVERNOR_REASON_TRIAL, 15, "trial of a better rung: does the clock follow the load?")
 
 /* Why the rung was selected. */
@@ -830,7 +830,8 @@ typedef struct masu_governor_info {
      * a lower latency. The interval is target_ms, or `refreshes` refreshes if refresh_ms is not
      * 0. */
     float start_delay_ms;
-    /* Frame times used; frame times rejected as implausible or excluded (frame.unusual). */
+    /* Frame times used; frame times rejected as implausible, or excluded
+     * (frame.exclude_from_timing). */
     uint64_t samples, rejected;
     /* Used frame times above the target. If refresh_ms is not 0: frames that were presented more
      * than half a refresh late. */
@@ -1074,7 +1075,7 @@ typedef struct masu_frame_desc {
     /* Flag: excluded from timing, because its time does not predict the next frames (a level loads,
      * shaders compile, a debugger has stopped). The governor keeps its rung and counts the time as
      * `rejected` and not as `missed`. Affects the governor only. */
-    uint32_t unusual;
+    uint32_t exclude_from_timing;
     /* Objects of this frame, read during the call: at most desc.reserve of each. NULL if the count
      * is 0. */
     const masu_particle *particles;

@@ -377,7 +377,7 @@ masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_comm
                         &(masu_slot){.rung = f.desc.rung,
                                      .viewport = f.desc.viewport,
                                      .render = {rp->render_width, rp->render_height},
-                                     .unusual = f.desc.unusual != 0});
+                                     .exclude_from_timing = f.desc.exclude_from_timing != 0});
     if (m->governor) masu_governed_begin(m, &f, frame->rung);
     if (m->plan.desc.scene) masu_frame_view_write(&m->view, &f);
     const VkCommandBuffer *parts = pick_recording(m, &f);

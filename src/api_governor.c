@@ -35,13 +35,13 @@ void masu_governed_pick(masu_renderer *m, masu_frame_data *f) {
         masu_governor_sample_in(m->governor, &sample);
     }
     if (f->desc.rung != MASU_RUNG_AUTO) return;
-    f->desc.rung = f->desc.unusual ? masu_governor_hold(m->governor, f->number)
-                                   : masu_governor_pick(m->governor, f->number);
+    f->desc.rung = f->desc.exclude_from_timing ? masu_governor_hold(m->governor, f->number)
+                                               : masu_governor_pick(m->governor, f->number);
 }
 
 void masu_governed_begin(masu_renderer *m, const masu_frame_data *f, uint32_t given) {
     if (given != MASU_RUNG_AUTO && !f->desc.viewport)
-        masu_governor_override(m->governor, f->number, given, f->desc.unusual != 0);
+        masu_governor_override(m->governor, f->number, given, f->desc.exclude_from_timing != 0);
     if (f->cut && f->number) masu_governor_cut(m->governor, f->number);
 }
 

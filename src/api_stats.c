@@ -64,7 +64,7 @@ int masu_slot_sample(const masu_renderer *m, uint32_t slot, masu_governor_sample
                                   .rung = held->rung,
                                   .wall_ms = held->wall_ms,
                                   .cpu_ms = held->cpu_ms,
-                                  .unusual = held->unusual};
+                                  .exclude_from_timing = held->exclude_from_timing};
     /* None, never submitted, or not the governor's, whose are those of the first viewport. */
     if (held->frame == UINT64_MAX || held->viewport || !has_ended(m, slot)) return 0;
     if (stamps) out->gpu_ms = (double)stamp_ns(m, slot, 0, stamps - 1) * 1e-6;

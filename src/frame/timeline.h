@@ -9,7 +9,7 @@ typedef struct masu_slot {
     uint64_t frame; /* that it holds; UINT64_MAX: not used yet */
     uint32_t rung, viewport;
     VkExtent2D render; /* size of it */
-    int unusual;       /* its times say nothing of other frames' */
+    int exclude_from_timing; /* its times say nothing of other frames' */
     /* What the host has said; 0: nothing. */
     double wall_ms, cpu_ms;
     uint64_t submit_ns, done_ns;

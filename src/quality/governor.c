@@ -360,7 +360,7 @@ void masu_governor_sample_in(masu_governor *g, const masu_governor_sample *s) {
     g->any = 1;
     g->last = s->frame;
     int sure;
-    if (s->unusual || s->frame < g->since) {
+    if (s->exclude_from_timing || s->frame < g->since) {
         g->rejected++;
         return;
     }
@@ -606,9 +606,9 @@ static int begin(masu_governor *g, uint64_t frame) {
     return 1;
 }
 
-static void pace(masu_governor *g, uint64_t frame, int unusual) {
+static void pace(masu_governor *g, uint64_t frame, int excluded) {
     double ms = g->known ? masu_governor_upper(g, g->rung, masu_governor_lead(g, frame), 1, MARGIN_REST) : 0.0;
-    masu_pacing_choose(&g->pacing, frame, masu_largest(ms, g->trust.cpu), g->target, unusual);
+    masu_pacing_choose(&g->pacing, frame, masu_largest(ms, g->trust.cpu), g->target, excluded);
 }
 
 /* The host may have changed the mode or moved the range. */
@@ -651,12 +651,12 @@ uint32_t masu_governor_pick(masu_governor *g, uint64_t frame) {
 uint32_t masu_governor_hold(masu_governor *g, uint64_t frame) {
     if (g->mode == MASU_GOVERNOR_OFF || !begin(g, frame)) return g->rung;
     obey(g, frame);
-    if (g->mode == MASU_GOVERNOR_ON) g->reason = MASU_GOVERNOR_REASON_UNUSUAL;
+    if (g->mode == MASU_GOVERNOR_ON) g->reason = MASU_GOVERNOR_REASON_EXCLUDED;
     pace(g, frame, 1);
     return g->rung;
 }
 
-void masu_governor_override(masu_governor *g, uint64_t frame, uint32_t rung, int unusual) {
+void masu_governor_override(masu_governor *g, uint64_t frame, uint32_t rung, int excluded) {
     if (g->mode == MASU_GOVERNOR_OFF || rung >= g->count) return;
     if (g->mode == MASU_GOVERNOR_ON) {
         g->started = 1;
@@ -666,7 +666,7 @@ void masu_governor_override(masu_governor *g, uint64_t frame, uint32_t rung, int
         change(g, frame, rung, MASU_GOVERNOR_REASON_HOST);
         g->reason = MASU_GOVERNOR_REASON_HOST;
     }
-    pace(g, frame, unusual);
+    pace(g, frame, excluded);
 }
 
 void masu_governor_cut(masu_governor *g, uint64_t frame) { g->cut = frame; }

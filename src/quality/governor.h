@@ -106,7 +106,7 @@ void masu_governor_sample_in(masu_governor *g, const masu_governor_sample *sampl
 /* The rung for a frame; asked for again, the same one. */
 uint32_t masu_governor_pick(masu_governor *g, uint64_t frame);
 /* The host draws this frame at a rung of its own choice. */
-void masu_governor_override(masu_governor *g, uint64_t frame, uint32_t rung, int unusual);
+void masu_governor_override(masu_governor *g, uint64_t frame, uint32_t rung, int excluded);
 /* The same as masu_governor_pick for a frame whose times will say nothing: the rung stays. */
 uint32_t masu_governor_hold(masu_governor *g, uint64_t frame);
 /* From this frame on the picture has nothing to do with the one before: so may its cost. */

@@ -59,13 +59,13 @@ static void follow(masu_pacing *p, uint64_t frame, double ms, double target) {
     }
 }
 
-void masu_pacing_choose(masu_pacing *p, uint64_t frame, double ms, double target, int unusual) {
+void masu_pacing_choose(masu_pacing *p, uint64_t frame, double ms, double target, int excluded) {
     uint32_t at = (uint32_t)(frame % MASU_PACING_KEPT);
     if (p->refresh == 0.0 || p->kept[at].frame == frame + 1) return;
-    if (!unusual || !p->refreshes) follow(p, frame, ms, target);
+    if (!excluded || !p->refreshes) follow(p, frame, ms, target);
     p->kept[at].frame = frame + 1;
     p->kept[at].refreshes = p->refreshes;
-    p->kept[at].unusual = unusual != 0;
+    p->kept[at].excluded = excluded != 0;
 }
 
 /* Refreshes from the frame shown last to this one, as they were planned; 0: that is not known. Frames in
@@ -94,7 +94,7 @@ int masu_pacing_shown(masu_pacing *p, uint64_t frame, uint64_t ns, uint64_t refr
     if (p->shown && (frame <= p->shown_frame || ns <= p->shown_ns)) return 0;
     uint32_t at = (uint32_t)(frame % MASU_PACING_KEPT), refreshes = planned(p, frame);
     double ms = (double)(ns - p->shown_ns) * 1e-6;
-    int known = refreshes && p->kept[at].frame == frame + 1 && !p->kept[at].unusual;
+    int known = refreshes && p->kept[at].frame == frame + 1 && !p->kept[at].excluded;
     int late = known && ms > ((double)refreshes + 0.5) * p->refresh;
     if (known) p->late = p->late << 1 | (uint32_t)late;
     p->shown = 1;

@@ -2,8 +2,8 @@
  * shown later than that. A pure function of its own state: no clock, no Vulkan, no allocation; any values
  * may be given.
  *
- *   masu_pacing_choose(&p, frame, ms, target, unusual);  for each frame that is handed out
- *   masu_pacing_shown(&p, frame, ns, refresh_ns);     once the display has told
+ *   masu_pacing_choose(&p, frame, ms, target, excluded);  for each frame that is handed out
+ *   masu_pacing_shown(&p, frame, ns, refresh_ns);        once the display has told
  *
  * It rises when frames are expected to take longer for some frames in a row, or were late; it falls when
  * they have fitted into one less for a second, and later if that was a mistake before: so that it does not
@@ -22,7 +22,7 @@ typedef struct masu_pacing {
     uint32_t least;     /* that the target fits into */
     struct {
         uint64_t frame; /* + 1; 0: none */
-        uint32_t refreshes, unusual;
+        uint32_t refreshes, excluded;
     } kept[MASU_PACING_KEPT];
     uint64_t shown_frame, shown_ns; /* the newest that was told */
     int shown;
@@ -32,9 +32,9 @@ typedef struct masu_pacing {
     uint32_t patience;    /* the next waits so many times as long */
 } masu_pacing;
 
-/* `ms`: what the frame is expected to take; `target`: what frames are allowed to. `unusual`: it says
+/* `ms`: what the frame is expected to take; `target`: what frames are allowed to. `excluded`: it says
  * nothing. Asked again for a frame, it says the same. */
-void masu_pacing_choose(masu_pacing *p, uint64_t frame, double ms, double target, int unusual);
+void masu_pacing_choose(masu_pacing *p, uint64_t frame, double ms, double target, int excluded);
 /* When a frame was shown, by any clock that does not jump, and how long a refresh lasts; 0: it is no
  * longer known, and all that was is forgotten. 1: it was shown later than it should have been. */
 int masu_pacing_shown(masu_pacing *p, uint64_t frame, uint64_t ns, uint64_t refresh_ns);

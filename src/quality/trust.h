@@ -15,7 +15,7 @@ typedef struct masu_governor_sample {
                        was later, to its end */
     double fixed_ms; /* of gpu_ms: passes whose cost does not follow the rung */
     double cpu_ms;   /* what the host was busy with for it, without waiting */
-    int unusual;     /* its times say nothing of other frames' */
+    int exclude_from_timing; /* its times say nothing of other frames' */
 } masu_governor_sample;
 
 typedef struct masu_trust {

@@ -1,4 +1,4 @@
-/* test_governor_host.c: what a host asks of the governor of a renderer between frames: settings, unusual
+/* test_governor_host.c: what a host asks of the governor of a renderer between frames: settings, excluded
  * frames, times, a state kept over masu_destroy and masu_init. Times that decide are given by the test. */
 #include "renderer.h"
 #include "support/support.h"
@@ -17,9 +17,10 @@ static void open_governed(masu_session *s, uint32_t width, uint32_t height) {
 }
 
 /* A frame of `load` ms at scale 1, told by times. Returns its rung. */
-static uint32_t step(masu_session *s, double load, uint32_t unusual, double cpu, masu_stats_info *stats) {
+static uint32_t step(masu_session *s, double load, uint32_t excluded, double cpu,
+                     masu_stats_info *stats) {
     static uint64_t now = 1000000000;
-    masu_frame_desc f = {.rung = MASU_RUNG_AUTO, .unusual = unusual};
+    masu_frame_desc f = {.rung = MASU_RUNG_AUTO, .exclude_from_timing = excluded};
     masu_commands c;
     draw(s, &f, &c, NULL);
     assert_int_equal(masu_stats(s->m, c.slot, stats), MASU_OK);
@@ -87,7 +88,7 @@ static void unusual_frames_are_left_out(void **state) {
     open_governed(&s, W, H);
     steps(&s, 60, 12.0, &before);
     for (uint32_t i = 0; i < 20; i++) assert_int_equal(step(&s, 500.0, 1, 0.0, &stats), 0);
-    assert_int_equal(stats.governor.reason, MASU_GOVERNOR_REASON_UNUSUAL);
+    assert_int_equal(stats.governor.reason, MASU_GOVERNOR_REASON_EXCLUDED);
     steps(&s, 20, 12.0, &stats);
     assert_int_equal(stats.governor.missed, before.governor.missed);
     assert_int_equal(stats.governor.rejected, before.governor.rejected + 20);

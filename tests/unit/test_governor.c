@@ -300,7 +300,7 @@ static void it_stays_sound_under_a_million_samples(void **state) {
                                   .wall_ms = any_time(&random),
                                   .fixed_ms = any_time(&random),
                                   .cpu_ms = i % 4 ? 0.0 : any_time(&random),
-                                  .unusual = i % 50 == 0};
+                                  .exclude_from_timing = i % 50 == 0};
         if (support_random(&random) % 50 == 0) s.frame = support_random(&random) >> 40;
         masu_governor_sample_in(&g, &s);
         if (support_random(&random) % 1000 == 0) masu_governor_cut(&g, frame);

@@ -159,13 +159,16 @@ static void unusual_frames_say_nothing(void **state) {
         for (uint32_t i = 0; i < 50; i++, p.frame++) { /* a level is loaded */
             uint32_t rung = told ? masu_governor_hold(&g, p.frame) : masu_governor_pick(&g, p.frame);
             worst = rung > worst ? rung : worst;
-            masu_governor_sample k = {.frame = p.frame, .rung = rung, .gpu_ms = 300.0 + i, .unusual = (int)told};
+            masu_governor_sample k = {.frame = p.frame,
+                                      .rung = rung,
+                                      .gpu_ms = 300.0 + i,
+                                      .exclude_from_timing = (int)told};
             masu_governor_sample_in(&g, &k);
         }
         masu_governor_info after = report(&g);
         if (told) {
             assert_int_equal(worst, 0);
-            assert_int_equal(after.reason, MASU_GOVERNOR_REASON_UNUSUAL);
+            assert_int_equal(after.reason, MASU_GOVERNOR_REASON_EXCLUDED);
             assert_int_equal(after.rejected, before.rejected + 50);
             assert_int_equal(after.missed, before.missed);
             assert_true(after.load_ms == before.load_ms);
