@@ -580,7 +580,7 @@ typedef struct masu_desc {
     /* Flag: masu_material_set is available. Costs 60 host bytes per material, 48 device bytes per
      * material and frame in flight, and copying the latter in each frame; with reflections of
      * polygons 84 and 112 bytes. Scene only. */
-    uint32_t live_materials;
+    uint32_t mutable_materials;
     uint64_t host_budget;   /* bytes; 0: none. A larger plan is MASU_ERROR_LIMIT */
     uint64_t device_budget; /* bytes, all roles together; 0: none */
     masu_device_block device_blocks[MASU_ROLE_COUNT];
@@ -1533,7 +1533,7 @@ MASU_API MASU_MUST_USE masu_result masu_punctual_light_remove(masu_renderer *ren
 
 /* ---- Materials ------------------------------------------------------------------------------- */
 
-/* Handle of a material. Requires desc.live_materials. */
+/* Handle of a material. Requires desc.mutable_materials. */
 typedef struct masu_material {
     uint32_t id;
 } masu_material;
@@ -1569,7 +1569,7 @@ MASU_API masu_material masu_material_find(const masu_renderer *renderer, const c
 MASU_API masu_material masu_material_at(const masu_renderer *renderer, uint32_t index);
 
 /* State of a material; initially that of the scene. MASU_ERROR_ARGUMENT: a pointer is NULL, or the
- * handle is invalid. MASU_ERROR_STATE: desc.live_materials is 0. */
+ * handle is invalid. MASU_ERROR_STATE: desc.mutable_materials is 0. */
 MASU_API MASU_MUST_USE masu_result masu_material_get(masu_renderer *renderer,
                                                      masu_material material,
                                                      masu_material_state *out);
@@ -1585,7 +1585,7 @@ MASU_API MASU_MUST_USE masu_result masu_material_get(masu_renderer *renderer,
  *                         `specular` and `coat` if no opaque material of the scene has a
  *                         specular factor, a clear coat, mesoscale detail or an occlusion map;
  *                         `coat` if no material has a clear coat
- *   MASU_ERROR_STATE      desc.live_materials is 0 */
+ *   MASU_ERROR_STATE      desc.mutable_materials is 0 */
 MASU_API MASU_MUST_USE masu_result masu_material_set(masu_renderer *renderer,
                                                      masu_material material,
                                                      const masu_material_state *state);

@@ -217,10 +217,10 @@ masu_result masu_punctual_light_set(masu_renderer *m, masu_punctual_light light,
 /* ---- Materials ------------------------------------------------------------------------------- */
 
 static masu_result check_material(masu_renderer *m, masu_material material, uint32_t *index) {
-    if (m->plan.desc.live_materials)
+    if (m->plan.desc.mutable_materials)
         return masu_handle_check(&m->materials.handles, "material", material.id, index, &m->error);
-    return masu_fail(&m->error, MASU_ERROR_STATE, "live_materials", 1, 0,
-                     "materials are neither told nor changed: desc.live_materials is 0");
+    return masu_fail(&m->error, MASU_ERROR_STATE, "mutable_materials", 1, 0,
+                     "materials are neither told nor changed: desc.mutable_materials is 0");
 }
 
 masu_material masu_material_at(const masu_renderer *m, uint32_t index) {

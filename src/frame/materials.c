@@ -8,7 +8,7 @@
 #include <string.h>
 
 void masu_materials_lay(masu_materials *s, masu_arena *arena, const masu_frame_plan *plan) {
-    uint32_t count = plan->desc.live_materials ? plan->scene.materials : 0;
+    uint32_t count = plan->desc.mutable_materials ? plan->scene.materials : 0;
     memset(s, 0, sizeof *s);
     if (!count) return;
     s->now = masu_arena_take(arena, "live materials", count, sizeof *s->now, 16);
@@ -30,7 +30,7 @@ static masu_material_traced traced_of(const masu_frame_plan *plan, const masu_sc
 }
 
 void masu_materials_keep(masu_materials *s, const masu_frame_plan *plan, const masu_scene_view *v) {
-    uint32_t count = plan->desc.live_materials ? plan->scene.materials : 0;
+    uint32_t count = plan->desc.mutable_materials ? plan->scene.materials : 0;
     s->handles = masu_handles_of(v->hash, MASU_HANDLE_MATERIAL, count, 0, NULL);
     for (uint32_t i = 0; i < count; i++) {
         s->now[i] = masu_material_data_of(&v->materials[i]);

@@ -35,7 +35,7 @@ static masu_desc desc_of(const masu_scene *scene, masu_pipelines *pool) {
     d.targets.views = &target.view;
     d.targets.count = 1;
     d.resizable = 1;
-    d.live_materials = masu_scene_count(scene, MASU_SCENE_MATERIAL) > 0;
+    d.mutable_materials = masu_scene_count(scene, MASU_SCENE_MATERIAL) > 0;
     d.rung_count = 2;
     d.rungs[0] = (masu_rung){.scale = 0.8f, .aa = MASU_AA_SMAA_LOW};
     d.rungs[1] = (masu_rung){.scale = 0.7f, .temporal = MASU_ON};

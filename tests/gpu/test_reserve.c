@@ -148,7 +148,7 @@ static void room_that_is_not_used_changes_no_bit(void **state) {
     for (uint32_t i = 0; i < 3; i += whole_run() ? 1 : 2) { /* at least polygons, and an SDF */
         masu_session_desc with = desc_of(scenes[i], 3, i < 2 ? 4 : 0), without = desc_of(scenes[i], 0, 0);
         masu_session s;
-        with.desc.live_materials = 1;
+        with.desc.mutable_materials = 1;
         open_session(&s, &without);
         draw_frames(&s, pictures[0]);
         close_session(&s);
@@ -344,12 +344,12 @@ static void the_box_is_as_large_as_was_said(void **state) {
     masu_peak_info peaks;
     masu_detail detail;
     masu_session_desc d = desc_of("test_reserve", 8, 16);
-    d.desc.live_materials = 1;
+    d.desc.mutable_materials = 1;
     d.no_renderer = true; /* a plan with places looks at the blob, which is gone once it is loaded */
     open_session(&s, &d);
     masu_desc plain = s.desc;
     plain.reserve = (masu_reserve){.models = 0};
-    plain.live_materials = 0;
+    plain.mutable_materials = 0;
     assert_int_equal(masu_memory_query(&s.desc, &need[1], NULL), MASU_OK);
     assert_int_equal(masu_memory_query(&plain, &need[0], NULL), MASU_OK);
     own_renderer made;
@@ -426,7 +426,7 @@ static void what_is_painted_is_as_if_baked_so(void **state) {
     (void)state;
     masu_session live, baked;
     masu_session_desc d = desc_of("test_reserve", 0, 0), truth = desc_of("test_reserve_painted", 0, 0);
-    d.desc.live_materials = 1;
+    d.desc.mutable_materials = 1;
     open_session(&baked, &truth);
     draw_frames(&baked, pictures[2]);
     draw_frames(&baked, pictures[1]);
@@ -455,7 +455,7 @@ static void a_history_is_told(void **state) {
     masu_commands commands;
     for (uint32_t baked = 0; baked <= 1; baked++) {
         masu_session_desc d = desc_of(baked ? "test_reserve_painted" : "test_reserve", 0, 0);
-        d.desc.live_materials = !baked;
+        d.desc.mutable_materials = !baked;
         d.desc.rungs[0] = (masu_rung){.scale = 0.5f, .temporal = MASU_ON, .specular = MASU_OFF};
         open_session(&s, &d);
         for (uint32_t i = 0; i < 40; i++) {
@@ -479,7 +479,7 @@ static void what_would_change_a_pass_is_refused(void **state) {
     assert_int_equal(masu_material_find(s.m, "floor").id, 0);
     assert_int_equal(masu_material_get(s.m, of, &was), MASU_ERROR_STATE);
     close_session(&s);
-    d.desc.live_materials = 1;
+    d.desc.mutable_materials = 1;
     open_session(&s, &d);
     was = material(&s, "wall", &of);
     assert_int_equal(masu_material_at(s.m, masu_scene_count(&s.scene, MASU_SCENE_MATERIAL)).id, 0);

@@ -41,7 +41,7 @@ static void make(own_renderer *x, uint32_t scene) {
     d.vulkan.pipelines = &pool;
     d.output = (VkExtent2D){W, H};
     d.resizable = 1;
-    d.live_materials = 1;
+    d.mutable_materials = 1;
     d.governor.mode = MASU_GOVERNOR_ON;
     d.rung_count = 5;
     d.rungs[0] = (masu_rung){.scale = 1.0f, .aa = MASU_AA_SMAA_HIGH};

@@ -96,7 +96,7 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
     MASU_LIMITS(SAME_LIMIT)
     SAME(reserve.models);
     SAME(reserve.lights);
-    SAME(live_materials);
+    SAME(mutable_materials);
     SAME(vulkan.texture_compression_bc);
     SAME(vulkan.max_anisotropy);
     SAME(vulkan.ray_query);
@@ -260,7 +260,7 @@ static masu_desc full_desc(void) {
 #define SET_LIMIT(name, ...) d.limits.name = limit++;
     MASU_LIMITS(SET_LIMIT)
     d.reserve = (masu_reserve){.models = 12, .lights = 13};
-    d.live_materials = 1;
+    d.mutable_materials = 1;
     d.host_budget = 14;
     d.device_budget = 15;
     for (uint32_t k = 0; k < MASU_ROLE_COUNT; k++) {

@@ -220,7 +220,7 @@ static masu_frame_plan plan_with(uint32_t parts, masu_reserve reserve, uint32_t 
     masu_desc d = scene_desc(0, 1280, 720);
     d.scene = &of;
     d.reserve = reserve;
-    d.live_materials = live;
+    d.mutable_materials = live;
     if (masu_compile(&d, 64, 64, &plan, &detail)) fail_msg("%s", detail.text);
     return plan;
 }

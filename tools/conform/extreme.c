@@ -165,7 +165,7 @@ static bool looks(const masu_case *of) {
 void masu_extreme_describe(const masu_case *of, masu_desc *desc) {
     if (looks(of))
         desc->readback = MASU_READBACK_DEPTH | MASU_READBACK_HDR | MASU_READBACK_VELOCITY;
-    desc->live_materials = of->extreme.has_material;
+    desc->mutable_materials = of->extreme.has_material;
 }
 
 static bool set_material(masu_session *s, const masu_extreme *x, uint32_t number) {
