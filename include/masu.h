@@ -771,11 +771,11 @@ MASU_API uint32_t masu_memory_report(const masu_renderer *renderer, masu_memory_
     X(MASU_GOVERNOR_REASON_WAIT, 4, "a better rung fits, but the last change is too recent")       \
     X(MASU_GOVERNOR_REASON_DOWN, 5, "the previous rung was predicted to miss the target")          \
     X(MASU_GOVERNOR_REASON_JUMP, 6, "the load has jumped: the previous rung is too slow")          \
-    X(MASU_GOVERNOR_REASON_PANIC, 7, "two frames in a row have missed the target")                 \
+    X(MASU_GOVERNOR_REASON_EMERGENCY, 7, "two frames in a row have missed the target")             \
     X(MASU_GOVERNOR_REASON_UP, 8, "this better rung is predicted to meet the target")              \
     X(MASU_GOVERNOR_REASON_WORST, 9, "no rung meets the target: the cheapest one is used")         \
-    X(MASU_GOVERNOR_REASON_FUTILE, 10, "no rung meets the target; cheaper rungs save no time")     \
-    X(MASU_GOVERNOR_REASON_BLIND, 11, "no recent measurements: the rung is kept")                  \
+    X(MASU_GOVERNOR_REASON_NO_GAIN, 10, "no rung meets the target; cheaper rungs save no time")    \
+    X(MASU_GOVERNOR_REASON_STALE, 11, "no recent measurements: the rung is kept")                  \
     X(MASU_GOVERNOR_REASON_FIXED, 12, "the rung is fixed")                                         \
     X(MASU_GOVERNOR_REASON_HOST, 13, "the host has selected the rung")                             \
     X(MASU_GOVERNOR_REASON_EXCLUDED, 14, "the frame is excluded from timing: the rung is kept")    \
@@ -799,12 +799,12 @@ typedef enum masu_governor_source {
 /* Why the governor cannot reach the rung that it needs. */
 typedef enum masu_governor_lock {
     MASU_GOVERNOR_FREE = 0,
-    MASU_GOVERNOR_LOCKED_FIXED = 1,  /* the range contains one rung only */
-    MASU_GOVERNOR_LOCKED_WORST = 2,  /* the cheapest rung misses the target */
-    MASU_GOVERNOR_LOCKED_FUTILE = 3, /* over the target, and the rungs hardly differ in time */
-    MASU_GOVERNOR_LOCKED_BLIND = 4,  /* there are no recent samples */
-    MASU_GOVERNOR_LOCKED_CPU = 5     /* CPU bound: the host's own work exceeds the target, so the
-                                        rung is kept */
+    MASU_GOVERNOR_LOCKED_FIXED = 1,   /* the range contains one rung only */
+    MASU_GOVERNOR_LOCKED_WORST = 2,   /* the cheapest rung misses the target */
+    MASU_GOVERNOR_LOCKED_NO_GAIN = 3, /* over the target, and the rungs hardly differ in time */
+    MASU_GOVERNOR_LOCKED_STALE = 4,   /* there are no recent samples */
+    MASU_GOVERNOR_LOCKED_CPU = 5      /* CPU bound: the host's own work exceeds the target, so the
+                                         rung is kept */
 } masu_governor_lock;
 
 /* The state of the governor. */

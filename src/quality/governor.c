@@ -49,7 +49,7 @@
 #define RISES_MOST 0.15  /* by this one it does */
 #define FALL_AHEAD 0.75  /* of the dwell: so far ahead a slope is followed to choose a lower rung */
 #define LEAD_MOST 8.0    /* frames: farther than this no slope is followed to reach the present */
-#define BLIND_FRAMES 30u
+#define STALE_FRAMES 30u
 #define STEP_UP 1.5        /* a rise to less than this factor of cost is worth waiting for, */
 #define STEP_WAIT 5u       /* so many halves of the dwell */
 #define SETTLE_WAIT 8u     /* halves of the dwell: then the rung has settled */
@@ -72,7 +72,7 @@
 #define TRIALS_MOST 6u     /* so often */
 #define TRIALS_DOUBT 3u    /* failures in a row, and nothing is known of the clock any more */
 #define HOLD 8u /* frames: the least that a rung is kept for while the target is */
-#define FUTILE 1.05 /* rungs within this factor of the least time save nothing */
+#define NO_GAIN 1.05 /* rungs within this factor of the least time save nothing */
 
 #define NEVER UINT64_MAX
 
@@ -415,9 +415,10 @@ static uint32_t fall(const masu_governor *g, double lead, masu_governor_reason *
         if (g->cost[r] < g->cost[g->rung] && masu_governor_upper(g, r, last, 0, MARGIN) <= g->target) return r;
     }
     for (uint32_t r = g->best; r <= g->worst; r++) {
-        if (masu_governor_upper(g, r, last, 0, 0.0) > FUTILE * least) continue;
-        *reason = r < g->worst && g->cost[r] > 1.2 * g->cost[g->worst] ? MASU_GOVERNOR_REASON_FUTILE
-                                                                       : MASU_GOVERNOR_REASON_WORST;
+        if (masu_governor_upper(g, r, last, 0, 0.0) > NO_GAIN * least) continue;
+        *reason = r < g->worst && g->cost[r] > 1.2 * g->cost[g->worst]
+                      ? MASU_GOVERNOR_REASON_NO_GAIN
+                      : MASU_GOVERNOR_REASON_WORST;
         return r;
     }
     return g->worst;
@@ -516,7 +517,7 @@ static void try_clock(masu_governor *g, uint64_t frame, uint64_t still) {
     if (g->rung <= g->best || g->steady_clock || g->odd_count || moves(g) > 0.0 || g->noise > 0.05)
         return;
     if (!g->follows && g->settled_load < 0.0) return;
-    while (r > g->best && g->cost[r] < FUTILE * g->cost[g->rung]) r--;
+    while (r > g->best && g->cost[r] < NO_GAIN * g->cost[g->rung]) r--;
     if (masu_governor_predict(g, g->rung) > TRIAL_BUSY * g->target ||
         masu_governor_predict(g, r) > TRIAL_MOST * g->target)
         return;
@@ -543,22 +544,23 @@ static void choose(masu_governor *g, uint64_t frame) {
     }
     uint64_t held = frame - g->changed + g->held_before;
     uint64_t dwell = (uint64_t)(g->dwell > HOLD ? g->dwell : HOLD) * g->patience;
-    int over = masu_governor_upper(g, g->rung, lead, 1, keep) > g->target, panic = g->misses >= 2;
+    int over = masu_governor_upper(g, g->rung, lead, 1, keep) > g->target,
+        emergency = g->misses >= 2;
     masu_governor_reason why = g->jumped ? MASU_GOVERNOR_REASON_JUMP
                                : over    ? MASU_GOVERNOR_REASON_DOWN
-                                         : MASU_GOVERNOR_REASON_PANIC;
+                                         : MASU_GOVERNOR_REASON_EMERGENCY;
     g->jumped = 0;
     if (g->trial) {
         if (held < TRIAL_FRAMES && masu_governor_predict(g, g->rung) < TRIAL_MOST * g->target) return;
         end_trial(g, frame, over);
         if (over) return;
     }
-    if (over || panic) {
+    if (over || emergency) {
         uint32_t r = fall(g, lead, &why);
         g->misses = 0;
         g->urged = 0;
         if (r == g->rung || (r < g->rung && held < dwell)) {
-            g->reason = why == MASU_GOVERNOR_REASON_FUTILE ? why : MASU_GOVERNOR_REASON_WORST;
+            g->reason = why == MASU_GOVERNOR_REASON_NO_GAIN ? why : MASU_GOVERNOR_REASON_WORST;
             return;
         }
         if (r < g->rung) { /* what it has cost in quality has saved nothing */
@@ -622,21 +624,22 @@ static void obey(masu_governor *g, uint64_t frame) {
 
 static void decide(masu_governor *g, uint64_t frame) {
     if (!g->known || g->mode == MASU_GOVERNOR_FIXED) return;
-    if (frame > g->newest && frame - g->newest > BLIND_FRAMES)
-        g->reason = MASU_GOVERNOR_REASON_BLIND;
+    if (frame > g->newest && frame - g->newest > STALE_FRAMES)
+        g->reason = MASU_GOVERNOR_REASON_STALE;
     else
         choose(g, frame);
 }
 
 static masu_governor_lock lock_of(const masu_governor *g) {
     if (g->mode != MASU_GOVERNOR_FIXED && g->known) {
-        if (g->best == g->worst && g->reason != MASU_GOVERNOR_REASON_BLIND)
+        if (g->best == g->worst && g->reason != MASU_GOVERNOR_REASON_STALE)
             return MASU_GOVERNOR_LOCKED_FIXED;
         if (g->reason == MASU_GOVERNOR_REASON_WORST) return MASU_GOVERNOR_LOCKED_WORST;
-        if (g->reason == MASU_GOVERNOR_REASON_FUTILE) return MASU_GOVERNOR_LOCKED_FUTILE;
+        if (g->reason == MASU_GOVERNOR_REASON_NO_GAIN) return MASU_GOVERNOR_LOCKED_NO_GAIN;
     }
     if (g->trust.cpu > g->target) return MASU_GOVERNOR_LOCKED_CPU;
-    return g->reason == MASU_GOVERNOR_REASON_BLIND ? MASU_GOVERNOR_LOCKED_BLIND : MASU_GOVERNOR_FREE;
+    return g->reason == MASU_GOVERNOR_REASON_STALE ? MASU_GOVERNOR_LOCKED_STALE
+                                                   : MASU_GOVERNOR_FREE;
 }
 
 uint32_t masu_governor_pick(masu_governor *g, uint64_t frame) {

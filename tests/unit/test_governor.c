@@ -461,8 +461,8 @@ static void it_says_why(void **state) {
     assert_int_equal(feed(&g, &frame, 60, 12.0), 0);
     assert_int_equal(masu_governor_pick(&g, frame + 100), 0); /* no samples for long */
     masu_governor_report(&g, &info);
-    assert_int_equal(info.reason, MASU_GOVERNOR_REASON_BLIND);
-    assert_int_equal(info.locked, MASU_GOVERNOR_LOCKED_BLIND);
+    assert_int_equal(info.reason, MASU_GOVERNOR_REASON_STALE);
+    assert_int_equal(info.locked, MASU_GOVERNOR_LOCKED_STALE);
     for (int r = 0; r < 15; r++) {
         const char *text = masu_governor_reason_string((masu_governor_reason)r);
         assert_true(strlen(text) > 10 && strcmp(text, "unknown reason") != 0);
