@@ -1725,15 +1725,15 @@ MASU_API masu_result masu_readback(const masu_renderer *renderer, uint32_t slot,
                                    masu_readback_bits which, masu_readback_image *out);
 
 /* Kind of object at a pixel. */
-typedef enum masu_pick_what {
+typedef enum masu_pick_kind {
     MASU_PICK_NOTHING = 0, /* the frame had no query */
     MASU_PICK_SKY = 1,
     MASU_PICK_SDF = 2,
     MASU_PICK_INSTANCE = 3
-} masu_pick_what;
+} masu_pick_kind;
 
 typedef struct masu_pick_info {
-    masu_pick_what what;
+    masu_pick_kind kind;
     uint64_t frame; /* of the query */
     uint32_t x, y;  /* pixel of the query */
     /* MASU_PICK_INSTANCE: the instance; id 0, rarely, for polygons below the precision of

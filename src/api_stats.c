@@ -213,16 +213,16 @@ masu_result masu_pick(const masu_renderer *m, uint32_t slot, masu_pick_info *out
     float told[4]; /* depth, from the eye */
     memcpy(words, masu_buffer_pointer(&m->device, MASU_BUFFER_PICKED, slot), sizeof words);
     memcpy(told, words + 2, sizeof told);
-    out->what = words[0] == MASU_PICKED_INSTANCE ? MASU_PICK_INSTANCE
+    out->kind = words[0] == MASU_PICKED_INSTANCE ? MASU_PICK_INSTANCE
                 : words[0] == MASU_PICKED_SDF    ? MASU_PICK_SDF
                                                  : MASU_PICK_SKY;
     out->x = asked->x;
     out->y = asked->y;
-    if (out->what == MASU_PICK_SKY) return MASU_OK;
+    if (out->kind == MASU_PICK_SKY) return MASU_OK;
     out->depth = told[0];
     for (uint32_t k = 0; k < 3; k++) out->position[k] = asked->eye[k] + (double)told[1 + k];
     uint32_t i = words[1];
-    if (out->what != MASU_PICK_INSTANCE || i >= m->plan.scene.instances) return MASU_OK;
+    if (out->kind != MASU_PICK_INSTANCE || i >= m->plan.scene.instances) return MASU_OK;
     out->instance = masu_instance_at(m, i);
     uint32_t model = m->plan.scene.models ? m->models.of_instance[i] : MASU_BLOB_NONE;
     if (model == MASU_BLOB_NONE) return MASU_OK;

@@ -448,7 +448,7 @@ static uint32_t picked(const char *material, shot p) {
     draw(&s, &frame, &commands, NULL);
     assert_int_equal(masu_pick(s.m, commands.slot, &info), MASU_OK);
     close_session(&s);
-    return info.what;
+    return info.kind;
 }
 
 static void nor_by_a_click(void **state) {

@@ -154,12 +154,12 @@ static void check_pixel(masu_session *s, const world *w, const lens *l, const ma
     double z = depth > 0 ? l->near_distance / (double)depth : 1e30;
     uint32_t expected = truth.z < z * (1 + slack) ? truth.instance : UINT32_MAX; /* else the SDF, or the sky */
     uint32_t got = UINT32_MAX;
-    for (uint32_t i = 0; i < w->instances && info.what == MASU_PICK_INSTANCE; i++)
+    for (uint32_t i = 0; i < w->instances && info.kind == MASU_PICK_INSTANCE; i++)
         if (masu_instance_at(s->m, i).id == info.instance.id) got = i;
     t->pixels++;
-    t->sky += info.what == MASU_PICK_SKY;
-    t->sdf += info.what == MASU_PICK_SDF;
-    t->instances += info.what == MASU_PICK_INSTANCE;
+    t->sky += info.kind == MASU_PICK_SKY;
+    t->sdf += info.kind == MASU_PICK_SDF;
+    t->instances += info.kind == MASU_PICK_INSTANCE;
     if (got != UINT32_MAX) t->of[got]++;
     if (got != expected) {
         if (!is_near(w, l, px + 0.5, py + 0.5, got))
@@ -167,18 +167,19 @@ static void check_pixel(masu_session *s, const world *w, const lens *l, const ma
         t->edges++;
         return;
     }
-    if (info.what == MASU_PICK_INSTANCE && got == UINT32_MAX) { /* a sliver at an edge that only one of two rasters has */
+    /* A sliver at an edge that only one of the two rasters has. */
+    if (info.kind == MASU_PICK_INSTANCE && got == UINT32_MAX) {
         t->edges++;
         return;
     }
-    if (got == UINT32_MAX) assert_int_equal(info.what, depth > 0 ? MASU_PICK_SDF : MASU_PICK_SKY);
+    if (got == UINT32_MAX) assert_int_equal(info.kind, depth > 0 ? MASU_PICK_SDF : MASU_PICK_SKY);
     if (got != UINT32_MAX && truth.blended) {
         t->blended++;
         assert_true(info.depth > depth);
     } else {
         assert_true(info.depth == depth); /* to the bit */
     }
-    if (info.what == MASU_PICK_SKY) return;
+    if (info.kind == MASU_PICK_SKY) return;
     z = l->near_distance / (double)info.depth;
     vec p = vec_add(l->eye, vec_scale(along, z));
     vec off = vec_sub(p, (vec){info.position[0], info.position[1], info.position[2]});
@@ -284,7 +285,7 @@ static void a_model_and_its_node_are_named(void **state) {
     open_picking(&s, "test_live");
     masu_model truck = masu_model_find(s.m, "truck");
     masu_pick_info info = pick_at(&s, (masu_frame_desc){.time = 0}, 60, 38, &commands);
-    assert_int_equal(info.what, MASU_PICK_INSTANCE);
+    assert_int_equal(info.kind, MASU_PICK_INSTANCE);
     assert_int_equal(info.model.id, truck.id);
     masu_node_state node;
     assert_int_equal(masu_model_node_get(s.m, truck, info.node, &node), MASU_OK);
@@ -328,7 +329,7 @@ static void holes_of_a_mask_are_not_picked(void **state) {
         masu_pick_info info = pick_at(&s, (masu_frame_desc){.camera = &c}, x, y, &commands);
         float depth = ((const float *)read_image(&s, commands.slot, MASU_READBACK_DEPTH))[y * W + x];
         assert_true(info.depth == depth);
-        assert_int_equal(info.what, depth > 0 ? MASU_PICK_INSTANCE : MASU_PICK_SKY);
+        assert_int_equal(info.kind, depth > 0 ? MASU_PICK_INSTANCE : MASU_PICK_SKY);
         double at = 1.5 + ((x + 0.5) / W * 2 - 1) * tan(0.35) * W / H * 4;
         holes += depth == 0 && fabs(at) < 1 && y > 25 && y < 65;
         if (depth == 0) continue;
@@ -396,7 +397,7 @@ static void what_bends_is_picked_where_it_is(void **state) {
         } else {
             bent++;
             moved += info.model.id == bear.id;
-            assert_int_equal(info.what, MASU_PICK_INSTANCE);
+            assert_int_equal(info.kind, MASU_PICK_INSTANCE);
             assert_true(info.instance.id != masu_instance_at(s.m, rigid[0]).id &&
                         info.instance.id != masu_instance_at(s.m, rigid[1]).id);
             assert_int_not_equal(info.model.id, 0);
@@ -477,7 +478,7 @@ static void what_is_not_asked_is_not_told(void **state) {
     assert_int_equal(masu_pick(s.m, 0, &info), MASU_INCOMPLETE);
     draw(&s, &(masu_frame_desc){.time = 0}, &commands, without);
     assert_int_equal(masu_pick(s.m, commands.slot, &info), MASU_OK);
-    assert_int_equal(info.what, MASU_PICK_NOTHING);
+    assert_int_equal(info.kind, MASU_PICK_NOTHING);
     assert_int_equal(info.instance.id, 0);
     assert_int_equal(masu_pick(s.m, 9, &info), MASU_ERROR_ARGUMENT);
     masu_frame_desc beyond = {.pick = 1, .pick_x = 3, .pick_y = H};

@@ -40,8 +40,8 @@ static void name_it(const masu_viewer *v, const masu_pick_info *p, char *out, si
     masu_instance_state instance;
     masu_model_state model;
     int used = 0;
-    if (p->what != MASU_PICK_INSTANCE) {
-        snprintf(out, size, "%s", p->what == MASU_PICK_SDF ? "the SDF" : "the sky");
+    if (p->kind != MASU_PICK_INSTANCE) {
+        snprintf(out, size, "%s", p->kind == MASU_PICK_SDF ? "the SDF" : "the sky");
         return;
     }
     if (p->model.id && !masu_model_get(v->a.m, p->model, &model)) {
@@ -61,7 +61,7 @@ void masu_pick_take(masu_viewer *v, uint32_t slot) {
     char name[200];
     if (!v->picked.of_slot[slot]) return;
     v->picked.of_slot[slot] = false;
-    if (masu_pick(v->a.m, v->slot_of_a[slot], &p) || p.what == MASU_PICK_NOTHING) return;
+    if (masu_pick(v->a.m, v->slot_of_a[slot], &p) || p.kind == MASU_PICK_NOTHING) return;
     name_it(v, &p, name, sizeof name);
     if (p.depth > 0.0f)
         snprintf(v->picked.text, sizeof v->picked.text, "%s, depth %.3f m, at %.3f %.3f %.3f", name,
