@@ -409,7 +409,7 @@ typedef enum masu_split_bits {
 #define MASU_MAX_PIPELINES 384u
 typedef struct masu_pipelines {
     uint32_t count;       /* pipelines in the pool */
-    uint32_t made, taken; /* pipelines created and reused by all masu_init calls so far */
+    uint32_t created, reused; /* pipelines created and reused by all masu_init calls so far */
     VkSampler samplers[2];
     struct {
         uint64_t key; /* hash of everything that the pipeline was created from */

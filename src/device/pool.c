@@ -75,7 +75,7 @@ int masu_pool_take(masu_device *m, uint64_t key, VkPipeline *out) {
         if (pool->rows[i].key != key) continue;
         *out = pool->rows[i].pipeline;
         pool->rows[i].users++;
-        pool->taken++;
+        pool->reused++;
         note(m, out, key);
         return 1;
     }
@@ -85,7 +85,7 @@ int masu_pool_take(masu_device *m, uint64_t key, VkPipeline *out) {
 void masu_pool_made(masu_device *m, const VkPipeline *at, uint64_t key) {
     masu_pipelines *pool = pool_of(m);
     if (!pool) return;
-    pool->made++;
+    pool->created++;
     if (pool->count == MASU_MAX_PIPELINES) return;
     pool->rows[pool->count].key = key;
     pool->rows[pool->count].users = 1;

@@ -149,17 +149,17 @@ static void change_scenes(masu_session *device, const char *const names[3], cons
         if (i) end(device, &x[i - 1]); /* its block is free for the next */
         draw_next(device, &x[i], n++, NULL);
         if (i == 2) break;
-        uint32_t made = pool.made, taken = pool.taken;
+        uint32_t created = pool.created, reused = pool.reused;
         begin(device, &x[i + 1], &all[i + 1], blocks[(i + 1) % 2], bytes);
-        printf("  %s after %s: %u pipelines made, %u taken\n", names[i + 1], names[i], pool.made - made,
-               pool.taken - taken);
+        printf("  %s after %s: %u pipelines created, %u reused\n", names[i + 1], names[i],
+               pool.created - created, pool.reused - reused);
         draw_next(device, &x[i], n++, NULL);
         uint32_t built = load_in_steps(device, &x[i + 1], &x[i], &n);
         if (more->ray_query == MASU_ON && !i) assert_true(built > 2);
         unmake_own(device, &alone);
     }
     unmake_own(device, &alone);
-    assert_true(pool.taken > 15);
+    assert_true(pool.reused > 15);
     end(device, &x[2]);
     free(blocks[0]);
     free(blocks[1]);
