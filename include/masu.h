@@ -1633,7 +1633,7 @@ typedef struct masu_plan_info {
      * the host's. */
     const char *computed_for;
     masu_memory memory;
-    uint64_t left_out_bytes; /* bytes of the images that this plan does not need */
+    uint64_t saved_bytes; /* bytes of the images that this plan does not need */
 } masu_plan_info;
 
 /* The compiled frame of a description, without a renderer. Errors as masu_memory_query. */

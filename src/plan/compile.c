@@ -443,7 +443,7 @@ void masu_memory_export(const masu_frame_plan *plan, uint64_t host_bytes, masu_m
 }
 
 /* Bytes of the table's images that this plan does not have, at their size in this plan. */
-static uint64_t left_out_bytes(const masu_frame_plan *plan) {
+static uint64_t saved_bytes(const masu_frame_plan *plan) {
     VkExtent2D render = {0, 0};
     for (uint32_t r = 0; r < plan->desc.rung_count; r++) {
         const masu_rung_plan *rp = &plan->rungs[r];
@@ -502,5 +502,5 @@ void masu_plan_export(const masu_frame_plan *plan, const uint64_t *pipeline_ns,
                               image->offset,       image->first,              image->last,
                               masu_images[i].layers};
     }
-    out->left_out_bytes = left_out_bytes(plan);
+    out->saved_bytes = saved_bytes(plan);
 }

@@ -107,7 +107,7 @@ static void print_memory(const masu_session *s, const masu_plan_info *p) {
     printf("  transient images: unaliased %llu, aliased %llu, lower bound %llu bytes\n",
            (unsigned long long)m->transient_unaliased, (unsigned long long)m->transient_aliased,
            (unsigned long long)m->transient_lower_bound);
-    printf("  omitted images: %llu bytes\n", (unsigned long long)p->left_out_bytes);
+    printf("  omitted images: %llu bytes\n", (unsigned long long)p->saved_bytes);
     uint32_t n;
     masu_memory_row *rows = memory_rows(s, &n);
     printf("\n  %-22s %-7s %10s %12s %12s\n", "row", "kind", "count", "bytes", "offset");
@@ -218,10 +218,9 @@ static int print_json(const masu_session *s, const masu_plan_info *p, const char
     }
     json_t *root = json_pack("{s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:I, s:o}", "scene", scene,
                              "class", masu_scene_class_name(masu_scene_class_of(&s->scene)),
-                             "device",
-                             masu_json_device(&s->host), "rungs", rungs, "passes", passes, "images",
-                             images, "memory", masu_json_memory(&p->memory), "left_out_bytes",
-                             (json_int_t)p->left_out_bytes, "rows", rows_json(s));
+                             "device", masu_json_device(&s->host), "rungs", rungs, "passes", passes,
+                             "images", images, "memory", masu_json_memory(&p->memory),
+                             "left_out_bytes", (json_int_t)p->saved_bytes, "rows", rows_json(s));
     return masu_json_write(root, "-");
 }
 
