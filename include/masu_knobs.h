@@ -228,7 +228,7 @@ MASU_API void masu_knob_set(const masu_knob *knob, masu_rung *rung, uint32_t val
 
 /* 1 if masu_init accepts the value: 0, or a number from min to max, which must be an integer for
  * COUNT and WORD. */
-MASU_API int masu_knob_takes(const masu_knob *knob, double to);
+MASU_API int masu_knob_accepts(const masu_knob *knob, double to);
 
 /* Limits of a scene. Columns: name, the maximum for any scene (0: bounded by the blob format only),
  * cost per item.

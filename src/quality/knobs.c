@@ -98,7 +98,7 @@ void masu_knob_set(const masu_knob *k, masu_rung *rung, uint32_t value, double t
     }
 }
 
-int masu_knob_takes(const masu_knob *k, double to) {
+int masu_knob_accepts(const masu_knob *k, double to) {
     if (!k || !k->name) return 0;
     if (k->kind != MASU_KNOB_FLOAT && to != floor(to)) return 0;
     return (to >= k->min && to <= k->max) || to == 0.0;
@@ -133,7 +133,7 @@ masu_result masu_rung_check(const masu_rung *rung, uint32_t r, masu_detail *deta
     for (const masu_knob *k = knobs; k->name; k++) {
         for (uint32_t i = 0; i < k->values; i++) {
             double is = masu_knob_get(k, rung, i);
-            if (!masu_knob_takes(k, is)) return refuse(k, r, i, is, detail);
+            if (!masu_knob_accepts(k, is)) return refuse(k, r, i, is, detail);
         }
     }
     return MASU_OK;

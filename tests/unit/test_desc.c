@@ -223,7 +223,7 @@ static double some_value(const masu_knob *k, uint32_t n) {
     double floor_ = k->kind == MASU_KNOB_FLOAT || k->min > 1.0 ? k->min : 1.0;
     double value = k->kind == MASU_KNOB_FLOAT ? floor_ + (k->max - floor_) * (n + 1) / 17.0
                                               : floor_ + n % (uint32_t)(k->max - floor_ + 1.0);
-    assert_true(masu_knob_takes(k, value) && value != 0.0);
+    assert_true(masu_knob_accepts(k, value) && value != 0.0);
     return value;
 }
 
@@ -551,7 +551,7 @@ static void a_knob_out_of_its_range_is_named(void **state) {
         }
         for (uint32_t n = 0; n < count * 2 * k->values; n++) {
             uint32_t rung = n / count % 2, value = n / count / 2;
-            assert_false(masu_knob_takes(k, bad[n % count]));
+            assert_false(masu_knob_accepts(k, bad[n % count]));
             BAD(what, masu_knob_set(k, &d.rungs[rung], value, bad[n % count]));
         }
     }
@@ -650,8 +650,8 @@ static void tables_have_every_field_once(void **state) {
         assert_int_equal(k->offset, end);
         end += 4 * k->values;
         assert_true(k->text[0] && k->cost[0] && k->where[0] && k->min < k->max);
-        assert_true(masu_knob_takes(k, 0.0) && masu_knob_takes(k, k->zero));
-        assert_true(masu_knob_takes(k, k->min) && masu_knob_takes(k, k->max));
+        assert_true(masu_knob_accepts(k, 0.0) && masu_knob_accepts(k, k->zero));
+        assert_true(masu_knob_accepts(k, k->min) && masu_knob_accepts(k, k->max));
         assert_int_equal(k->kind == MASU_KNOB_WORD, k->words != NULL);
         for (uint32_t w = 0; w < k->word_count; w++) {
             assert_int_equal(k->words[w].value, w);

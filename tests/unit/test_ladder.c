@@ -414,7 +414,7 @@ static masu_rung any_rung(uint64_t *random) {
             double value = k->kind == MASU_KNOB_FLOAT
                                ? k->min + (k->max - k->min) * share
                                : (double)support_random_in(random, 0, (uint64_t)k->max);
-            masu_knob_set(k, &rung, i, masu_knob_takes(k, value) ? value : 0.0);
+            masu_knob_set(k, &rung, i, masu_knob_accepts(k, value) ? value : 0.0);
         }
     }
     return rung;

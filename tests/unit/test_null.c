@@ -90,7 +90,7 @@ static const float unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     X(masu_knob_table, (masu_knob_table(), NO_RESULT))                                             \
     X(masu_knob_get, ((void)masu_knob_get(P(0, KNOB), P(1, &rung), 0), NO_RESULT))                 \
     X(masu_knob_set, (masu_knob_set(P(0, KNOB), P(1, &rung), 0, 1.0), NO_RESULT))                  \
-    X(masu_knob_takes, (masu_knob_takes(P(0, KNOB), 1.0), NO_RESULT))                              \
+    X(masu_knob_accepts, (masu_knob_accepts(P(0, KNOB), 1.0), NO_RESULT))                          \
     X(masu_limit_table, (masu_limit_table(), NO_RESULT))                                           \
     X(masu_governor_reason_string,                                                                 \
       (masu_governor_reason_string(MASU_GOVERNOR_REASON_NONE), NO_RESULT))                         \
@@ -309,7 +309,7 @@ static void what_has_nothing_to_tell_says_so(void **state) {
     assert_int_equal(masu_memory_report(&m, NULL, 1000), count); /* counted alone */
     assert_int_equal(masu_memory_report(NULL, rows_of_memory, 2), 0);
     assert_true(masu_knob_get(NULL, &rung, 0) == 0.0);
-    assert_int_equal(masu_knob_takes(NULL, 0.0), 0);
+    assert_int_equal(masu_knob_accepts(NULL, 0.0), 0);
     assert_int_equal(masu_scene_find(&(masu_scene){0}, MASU_SCENE_SDF_PARAM, "a"), -1);
 }
 

@@ -156,7 +156,7 @@ static bool json_value(const masu_knob *k, const json_t *value, double *out) {
         if (!json_is_number(value)) return false;
         *out = json_number_value(value);
     }
-    return masu_knob_takes(k, *out) != 0;
+    return masu_knob_accepts(k, *out) != 0;
 }
 
 bool masu_knob_from_json(const masu_knob *k, const json_t *value, masu_rung *rung, char *error,
@@ -194,7 +194,7 @@ static const char *text_value(const masu_knob *k, const char *text, double *out)
         end += strspn(text, "0123456789");
         *out = strtod(text, NULL);
     }
-    return end > text && masu_knob_takes(k, *out) ? end : NULL;
+    return end > text && masu_knob_accepts(k, *out) ? end : NULL;
 }
 
 const char *masu_knob_from_text(const masu_knob *k, const char *text, masu_rung *rung) {

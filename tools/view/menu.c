@@ -64,7 +64,8 @@ static double stepped(const masu_viewer *v, const masu_knob *k, double now, int 
 static void put(masu_viewer *v, const masu_menu_row *row, double to) {
     masu_rung *rung = &v->want.rungs[v->rung];
     char text[32];
-    if (to == masu_knob_get(row->knob, rung, row->value) || !masu_knob_takes(row->knob, to)) return;
+    if (to == masu_knob_get(row->knob, rung, row->value) || !masu_knob_accepts(row->knob, to))
+        return;
     masu_knob_set(row->knob, rung, row->value, to);
     masu_knob_text(row->knob, rung, text, sizeof text);
     v->want.flips[v->rung] = 0.0f; /* it was measured of another setting */
