@@ -985,8 +985,6 @@ typedef struct masu_light {
     float fog_start;    /* metres from the camera, 0..1e9; the air is clear up to there */
 } masu_light;
 
-#define MASU_RUNG_AUTO UINT32_MAX
-
 /* Flags of particles. LIT: `color` is an albedo; without the flag, a radiance. A lit particle
  * scatters sun and ambient light evenly, as thin smoke does: color * (visibility * sun_color / 4 +
  * ambient), with the visibility of its centre from the shadow map. ADDITIVE: additive blending,
