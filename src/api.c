@@ -20,35 +20,35 @@
 /* ---- The host block -------------------------------------------------------------------------- */
 
 /* The one walk that sizes and lays out the host block. m is NULL when only counting. */
-static void lay_host(masu_arena *arena, const masu_frame_plan *plan, masu_renderer **m) {
+static void alloc_host(masu_arena *arena, const masu_frame_plan *plan, masu_renderer **m) {
     uint32_t arrays = plan->scene.texture_arrays;
-    masu_renderer *r = masu_arena_take(arena, "renderer", 1, sizeof *r, MASU_ARENA_ALIGNMENT);
+    masu_renderer *r = masu_arena_alloc(arena, "renderer", 1, sizeof *r, MASU_ARENA_ALIGNMENT);
     masu_renderer scrap; /* takes the NULLs of a counting walk */
     masu_renderer *to = r ? r : &scrap;
-    masu_texture_plan *textures = masu_arena_take(arena, "textures", arrays, sizeof *textures, 8);
+    masu_texture_plan *textures = masu_arena_alloc(arena, "textures", arrays, sizeof *textures, 8);
     if (r) {
         for (uint32_t i = 0; i < arrays; i++) textures[i] = plan->textures[i];
     }
     to->plan.textures = textures;
-    masu_device_lay(&to->device, arena, plan);
-    masu_draws_lay(&to->draws, arena, plan);
-    masu_history_lay(&to->history, arena, plan);
-    masu_camera_path_lay(&to->camera, arena, plan);
-    masu_sun_sky_lay(&to->sun_sky, arena, plan);
-    masu_sdf_lay(&to->sdf, arena, plan);
-    masu_instances_lay(&to->instances, arena, plan);
-    masu_bounds_lay(&to->bounds, arena, plan);
-    masu_models_lay(&to->models, arena, plan);
-    masu_lights_lay(&to->lights, arena, plan);
-    masu_materials_lay(&to->materials, arena, plan);
-    masu_visible_lay(&to->visible, arena, plan);
-    masu_picking_lay(&to->picking, arena, plan);
-    masu_occlusion_lay(&to->occlusion, arena, plan);
-    masu_transparents_lay(&to->transparents, arena, plan);
-    masu_sprites_lay(&to->sprites, arena, plan);
-    masu_reflections_lay(&to->reflections, arena, plan);
+    masu_device_alloc(&to->device, arena, plan);
+    masu_draws_alloc(&to->draws, arena, plan);
+    masu_history_alloc(&to->history, arena, plan);
+    masu_camera_path_alloc(&to->camera, arena, plan);
+    masu_sun_sky_alloc(&to->sun_sky, arena, plan);
+    masu_sdf_alloc(&to->sdf, arena, plan);
+    masu_instances_alloc(&to->instances, arena, plan);
+    masu_bounds_alloc(&to->bounds, arena, plan);
+    masu_models_alloc(&to->models, arena, plan);
+    masu_lights_alloc(&to->lights, arena, plan);
+    masu_materials_alloc(&to->materials, arena, plan);
+    masu_visible_alloc(&to->visible, arena, plan);
+    masu_picking_alloc(&to->picking, arena, plan);
+    masu_occlusion_alloc(&to->occlusion, arena, plan);
+    masu_transparents_alloc(&to->transparents, arena, plan);
+    masu_sprites_alloc(&to->sprites, arena, plan);
+    masu_reflections_alloc(&to->reflections, arena, plan);
     int governed = plan->desc.governor.mode != MASU_GOVERNOR_OFF;
-    to->governor = masu_arena_take(arena, "governor", governed, sizeof *to->governor, 8);
+    to->governor = masu_arena_alloc(arena, "governor", governed, sizeof *to->governor, 8);
     if (!governed) to->governor = NULL;
     if (m) *m = r;
 }
@@ -139,7 +139,7 @@ static masu_result plan_and_forget(const masu_desc *desc, masu_frame_plan *plan,
     masu_objects_destroy(&vk, plan, &objects);
     masu_arena arena;
     masu_arena_begin(&arena, NULL, 0);
-    lay_host(&arena, plan, NULL);
+    alloc_host(&arena, plan, NULL);
     *host_bytes = arena.used;
     plan->textures = NULL; /* they were on this stack */
     return check_host(plan, arena.used, detail);
@@ -191,7 +191,7 @@ static masu_result init(const masu_desc *desc, void *block, uint64_t block_bytes
     masu_arena arena;
     masu_renderer *m = NULL;
     masu_arena_begin(&arena, NULL, 0);
-    lay_host(&arena, &plan, NULL);
+    alloc_host(&arena, &plan, NULL);
     result = check_host(&plan, arena.used, detail);
     if (!result && arena.used > block_bytes) {
         result = masu_fail(detail, MASU_ERROR_MEMORY, "host block", arena.used, block_bytes,
@@ -203,7 +203,7 @@ static masu_result init(const masu_desc *desc, void *block, uint64_t block_bytes
         return result;
     }
     masu_arena_begin(&arena, block, block_bytes);
-    lay_host(&arena, &plan, &m);
+    alloc_host(&arena, &plan, &m);
     m->cookie = MASU_RENDERER_COOKIE;
     m->arena = arena;
     plan.textures = m->plan.textures; /* the walk has put them into the block */

@@ -9,8 +9,8 @@ void masu_arena_begin(masu_arena *arena, void *base, uint64_t size) {
     arena->size = size;
 }
 
-void *masu_arena_take(masu_arena *arena, const char *name, uint64_t count, uint64_t element_bytes,
-                      uint64_t alignment) {
+void *masu_arena_alloc(masu_arena *arena, const char *name, uint64_t count, uint64_t element_bytes,
+                       uint64_t alignment) {
     if (arena->used == UINT64_MAX) return NULL;
     uint64_t offset = (arena->used + alignment - 1) & ~(alignment - 1);
     if (offset < arena->used || (element_bytes && count > (UINT64_MAX - offset) / element_bytes)) {

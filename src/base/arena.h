@@ -3,7 +3,7 @@
  *   base                                                   base + size
  *   | renderer | instance rows | dirty flags | sets | ... |
  *
- * One walk of masu_arena_take calls (src/api.c, lay_host) serves both the size query and init:
+ * One walk of masu_arena_alloc calls (src/api.c, alloc_host) serves both the size query and init:
  * with base NULL the walk only counts, so the two cannot disagree. Nothing is ever given back: the
  * block is the caller's and ends as a whole. */
 #ifndef MASU_ARENA_H
@@ -34,7 +34,7 @@ void masu_arena_begin(masu_arena *arena, void *base, uint64_t size);
  * tells the whole need at the end of the walk), or when count * element_bytes overflows (used is
  * then UINT64_MAX for good). Zero elements take no bytes and give a non-NULL pointer while the
  * block lasts. */
-void *masu_arena_take(masu_arena *arena, const char *name, uint64_t count, uint64_t element_bytes,
-                      uint64_t alignment);
+void *masu_arena_alloc(masu_arena *arena, const char *name, uint64_t count, uint64_t element_bytes,
+                       uint64_t alignment);
 
 #endif

@@ -8,21 +8,21 @@
 #include "device/ray_query.h"
 #include "device/record.h"
 
-void masu_device_lay(masu_device *m, masu_arena *arena, const masu_frame_plan *plan) {
+void masu_device_alloc(masu_device *m, masu_arena *arena, const masu_frame_plan *plan) {
     uint64_t frames = (uint64_t)plan->desc.frames_in_flight * plan->recordings * plan->parts;
-    m->frames = masu_arena_take(arena, "command buffers", frames, sizeof *m->frames, 8);
-    m->loads =
-        masu_arena_take(arena, "load command buffers", masu_load_chunks(plan), sizeof *m->loads, 8);
+    m->frames = masu_arena_alloc(arena, "command buffers", frames, sizeof *m->frames, 8);
+    m->loads = masu_arena_alloc(arena, "load command buffers", masu_load_chunks(plan),
+                                sizeof *m->loads, 8);
     m->pass_sets =
-        masu_arena_take(arena, "descriptor sets", plan->pass_sets, sizeof *m->pass_sets, 8);
-    m->texture_sets = masu_arena_take(arena, "texture sets", plan->scene.texture_sets,
-                                      sizeof *m->texture_sets, 8);
-    m->pool_keys = masu_arena_take(arena, "pipeline keys",
-                                   plan->desc.vulkan.pipelines ? MASU_POOL_KEYS : 0,
-                                   sizeof *m->pool_keys, 8);
+        masu_arena_alloc(arena, "descriptor sets", plan->pass_sets, sizeof *m->pass_sets, 8);
+    m->texture_sets = masu_arena_alloc(arena, "texture sets", plan->scene.texture_sets,
+                                       sizeof *m->texture_sets, 8);
+    m->pool_keys =
+        masu_arena_alloc(arena, "pipeline keys", plan->desc.vulkan.pipelines ? MASU_POOL_KEYS : 0,
+                         sizeof *m->pool_keys, 8);
     m->ray_meshes =
-        masu_arena_take(arena, "bottom levels", plan->needs.query ? plan->scene.meshes : 0,
-                        sizeof *m->ray_meshes, 8);
+        masu_arena_alloc(arena, "bottom levels", plan->needs.query ? plan->scene.meshes : 0,
+                         sizeof *m->ray_meshes, 8);
 }
 
 masu_result masu_device_make(masu_device *m, const masu_draws *draws, masu_detail *detail) {

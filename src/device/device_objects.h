@@ -7,7 +7,7 @@
 #include "device/device.h"
 
 /* Arrays in the host block. */
-void masu_device_lay(masu_device *m, masu_arena *arena, const masu_frame_plan *plan);
+void masu_device_alloc(masu_device *m, masu_arena *arena, const masu_frame_plan *plan);
 
 /* vk, plan and objects are there; all else is made of them. What has been made when a step fails stays
  * for masu_device_destroy. */

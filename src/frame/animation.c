@@ -4,18 +4,18 @@
 #include <math.h>
 #include <string.h>
 
-void masu_animation_lay(masu_animation *a, masu_arena *arena, const masu_frame_plan *plan) {
+void masu_animation_alloc(masu_animation *a, masu_arena *arena, const masu_frame_plan *plan) {
     const masu_scene_data *s = &plan->scene;
     uint32_t nodes = s->model_nodes;
     memset(a, 0, sizeof *a);
     if (!s->clips) return;
-    a->clips = masu_arena_take(arena, "clips", s->clips, sizeof *a->clips, 8);
-    a->channels = masu_arena_take(arena, "channels", s->channels, sizeof *a->channels, 4);
-    a->keys = masu_arena_take(arena, "keys", s->keys, sizeof *a->keys, 4);
-    a->rest = masu_arena_take(arena, "rest poses", nodes, sizeof *a->rest, 8);
-    a->moved = masu_arena_take(arena, "moved nodes", nodes, sizeof *a->moved, 1);
-    a->poses = masu_arena_take(arena, "poses", s->max_nodes, sizeof *a->poses, 8);
-    a->locals = masu_arena_take(arena, "previous nodes", s->max_nodes, sizeof *a->locals, 4);
+    a->clips = masu_arena_alloc(arena, "clips", s->clips, sizeof *a->clips, 8);
+    a->channels = masu_arena_alloc(arena, "channels", s->channels, sizeof *a->channels, 4);
+    a->keys = masu_arena_alloc(arena, "keys", s->keys, sizeof *a->keys, 4);
+    a->rest = masu_arena_alloc(arena, "rest poses", nodes, sizeof *a->rest, 8);
+    a->moved = masu_arena_alloc(arena, "moved nodes", nodes, sizeof *a->moved, 1);
+    a->poses = masu_arena_alloc(arena, "poses", s->max_nodes, sizeof *a->poses, 8);
+    a->locals = masu_arena_alloc(arena, "previous nodes", s->max_nodes, sizeof *a->locals, 4);
 }
 
 /* ---- Poses and matrices ---------------------------------------------------------------------- */

@@ -35,7 +35,7 @@ typedef struct masu_animation {
     float (*locals)[12];   /* the same: as they were before, in case they must go back */
 } masu_animation;
 
-void masu_animation_lay(masu_animation *a, masu_arena *arena, const masu_frame_plan *plan);
+void masu_animation_alloc(masu_animation *a, masu_arena *arena, const masu_frame_plan *plan);
 void masu_animation_keep(masu_animation *a, const masu_frame_plan *plan, const masu_scene_view *v);
 
 /* Nodes of a copy rest as those that they are copied of. */

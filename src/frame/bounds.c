@@ -4,15 +4,15 @@
 #include <math.h>
 #include <string.h>
 
-void masu_bounds_lay(masu_bounds *b, masu_arena *arena, const masu_frame_plan *plan) {
+void masu_bounds_alloc(masu_bounds *b, masu_arena *arena, const masu_frame_plan *plan) {
     const masu_scene_data *s = &plan->scene;
-    b->meshes = masu_arena_take(arena, "mesh bounds", s->meshes, sizeof *b->meshes, 4);
-    b->groups = masu_arena_take(arena, "groups", s->groups, sizeof *b->groups, 4);
-    b->boxes = masu_arena_take(arena, "boxes", 6 * ((uint64_t)s->instances + MASU_BOX_PADDING),
-                               sizeof *b->boxes, 16);
-    b->items = masu_arena_take(arena, "box owners", s->instances, sizeof *b->items, 4);
-    b->positions = masu_arena_take(arena, "box positions", s->instances, sizeof *b->positions, 4);
-    b->moved = masu_arena_take(arena, "moved boxes", s->instances, sizeof *b->moved, 4);
+    b->meshes = masu_arena_alloc(arena, "mesh bounds", s->meshes, sizeof *b->meshes, 4);
+    b->groups = masu_arena_alloc(arena, "groups", s->groups, sizeof *b->groups, 4);
+    b->boxes = masu_arena_alloc(arena, "boxes", 6 * ((uint64_t)s->instances + MASU_BOX_PADDING),
+                                sizeof *b->boxes, 16);
+    b->items = masu_arena_alloc(arena, "box owners", s->instances, sizeof *b->items, 4);
+    b->positions = masu_arena_alloc(arena, "box positions", s->instances, sizeof *b->positions, 4);
+    b->moved = masu_arena_alloc(arena, "moved boxes", s->instances, sizeof *b->moved, 4);
 }
 
 /* It only grows: where an instance was it may come again, and a smaller one would gain nothing but a

@@ -22,7 +22,7 @@ typedef struct masu_bounds {
     double swept[2][3];    /* a box around all of them, wherever they have been */
 } masu_bounds;
 
-void masu_bounds_lay(masu_bounds *b, masu_arena *arena, const masu_frame_plan *plan);
+void masu_bounds_alloc(masu_bounds *b, masu_arena *arena, const masu_frame_plan *plan);
 void masu_bounds_keep(masu_bounds *b, const masu_frame_plan *plan, const masu_instances *in,
                       const masu_scene_view *v);
 /* After a transform has changed. */

@@ -10,9 +10,10 @@
 
 /* ---- The path -------------------------------------------------------------------------------- */
 
-void masu_camera_path_lay(masu_camera_path *path, masu_arena *arena, const masu_frame_plan *plan) {
+void masu_camera_path_alloc(masu_camera_path *path, masu_arena *arena,
+                            const masu_frame_plan *plan) {
     path->keys =
-        masu_arena_take(arena, "camera keys", plan->scene.camera_keys, sizeof *path->keys, 4);
+        masu_arena_alloc(arena, "camera keys", plan->scene.camera_keys, sizeof *path->keys, 4);
 }
 
 void masu_camera_path_keep(masu_camera_path *path, const masu_frame_plan *plan,

@@ -10,7 +10,7 @@ typedef struct masu_camera_path {
     float near_distance;        /* of cameras that have none */
 } masu_camera_path;
 
-void masu_camera_path_lay(masu_camera_path *path, masu_arena *arena, const masu_frame_plan *plan);
+void masu_camera_path_alloc(masu_camera_path *path, masu_arena *arena, const masu_frame_plan *plan);
 void masu_camera_path_keep(masu_camera_path *path, const masu_frame_plan *plan,
                            const masu_scene_view *v);
 /* masu_camera_at of the public header. */

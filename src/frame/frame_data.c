@@ -7,9 +7,9 @@
 #include <math.h>
 #include <string.h>
 
-void masu_history_lay(masu_history *history, masu_arena *arena, const masu_frame_plan *plan) {
-    history->previous = masu_arena_take(arena, "previous frame", plan->needs.velocity ? 1 : 0,
-                                        sizeof *history->previous, 16);
+void masu_history_alloc(masu_history *history, masu_arena *arena, const masu_frame_plan *plan) {
+    history->previous = masu_arena_alloc(arena, "previous frame", plan->needs.velocity ? 1 : 0,
+                                         sizeof *history->previous, 16);
 }
 
 masu_frame_data masu_frame_begin(const masu_frame_plan *plan, const masu_device *device,

@@ -35,7 +35,7 @@ typedef struct masu_history {
     struct masu_frame_uniforms *previous;
 } masu_history;
 
-void masu_history_lay(masu_history *history, masu_arena *arena, const masu_frame_plan *plan);
+void masu_history_alloc(masu_history *history, masu_arena *arena, const masu_frame_plan *plan);
 
 /* The next frame of a timeline, of which nothing has been found yet. */
 masu_frame_data masu_frame_begin(const masu_frame_plan *plan, const masu_device *device,

@@ -6,19 +6,20 @@
 #include <math.h>
 #include <string.h>
 
-void masu_instances_lay(masu_instances *in, masu_arena *arena, const masu_frame_plan *plan) {
+void masu_instances_alloc(masu_instances *in, masu_arena *arena, const masu_frame_plan *plan) {
     uint32_t count = plan->scene.instances, before = plan->needs.velocity ? count : 0;
-    in->now = masu_arena_take(arena, "instance transforms", count, sizeof *in->now, 16);
-    in->previous = masu_arena_take(arena, "previous transforms", before, sizeof *in->previous, 16);
-    in->names = masu_arena_take(arena, "instance names", count, sizeof *in->names, 8);
-    in->meshes = masu_arena_take(arena, "instance meshes", count, sizeof *in->meshes, 4);
-    in->flags = masu_arena_take(arena, "instance flags", count, sizeof *in->flags, 1);
+    in->now = masu_arena_alloc(arena, "instance transforms", count, sizeof *in->now, 16);
+    in->previous = masu_arena_alloc(arena, "previous transforms", before, sizeof *in->previous, 16);
+    in->names = masu_arena_alloc(arena, "instance names", count, sizeof *in->names, 8);
+    in->meshes = masu_arena_alloc(arena, "instance meshes", count, sizeof *in->meshes, 4);
+    in->flags = masu_arena_alloc(arena, "instance flags", count, sizeof *in->flags, 1);
     uint32_t reserve = plan->reserve.places.instances;
     in->of_mesh = NULL;
     if (!reserve) return;
-    in->of_mesh = masu_arena_take(arena, "reserve of meshes", plan->scene.meshes, sizeof *in->of_mesh, 4);
-    in->next = masu_arena_take(arena, "reserve lists", reserve, sizeof *in->next, 4);
-    in->lives = masu_arena_take(arena, "reserve instances", reserve, sizeof *in->lives, 4);
+    in->of_mesh =
+        masu_arena_alloc(arena, "reserve of meshes", plan->scene.meshes, sizeof *in->of_mesh, 4);
+    in->next = masu_arena_alloc(arena, "reserve lists", reserve, sizeof *in->next, 4);
+    in->lives = masu_arena_alloc(arena, "reserve instances", reserve, sizeof *in->lives, 4);
 }
 
 /* A transform must reach every slot, each when it is free; with the previous frame, once more: the slot

@@ -7,15 +7,15 @@
 #include <math.h>
 #include <string.h>
 
-void masu_materials_lay(masu_materials *s, masu_arena *arena, const masu_frame_plan *plan) {
+void masu_materials_alloc(masu_materials *s, masu_arena *arena, const masu_frame_plan *plan) {
     uint32_t count = plan->desc.mutable_materials ? plan->scene.materials : 0;
     memset(s, 0, sizeof *s);
     if (!count) return;
-    s->now = masu_arena_take(arena, "live materials", count, sizeof *s->now, 16);
-    s->traced = masu_arena_take(arena, "live traced materials", plan->needs.traced ? count : 0,
-                                sizeof *s->traced, 4);
-    s->flags = masu_arena_take(arena, "material flags", count, sizeof *s->flags, 4);
-    s->names = masu_arena_take(arena, "material names", count, sizeof *s->names, 8);
+    s->now = masu_arena_alloc(arena, "live materials", count, sizeof *s->now, 16);
+    s->traced = masu_arena_alloc(arena, "live traced materials", plan->needs.traced ? count : 0,
+                                 sizeof *s->traced, 4);
+    s->flags = masu_arena_alloc(arena, "material flags", count, sizeof *s->flags, 4);
+    s->names = masu_arena_alloc(arena, "material names", count, sizeof *s->names, 8);
 }
 
 /* As of a material whose factors are 1: what is left is the maps'. */

@@ -27,7 +27,7 @@ typedef struct masu_materials {
     uint32_t slot_changes[MASU_MAX_FLIGHT]; /* 1 + as of which the slot is; 0: nothing is in it */
 } masu_materials;
 
-void masu_materials_lay(masu_materials *s, masu_arena *arena, const masu_frame_plan *plan);
+void masu_materials_alloc(masu_materials *s, masu_arena *arena, const masu_frame_plan *plan);
 void masu_materials_keep(masu_materials *s, const masu_frame_plan *plan, const masu_scene_view *v);
 
 /* masu_material_find, _get and _set of the public header. */

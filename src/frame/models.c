@@ -6,15 +6,16 @@
 #include <math.h>
 #include <string.h>
 
-void masu_models_lay(masu_models *s, masu_arena *arena, const masu_frame_plan *plan) {
+void masu_models_alloc(masu_models *s, masu_arena *arena, const masu_frame_plan *plan) {
     const masu_scene_data *scene = &plan->scene;
-    s->models = masu_arena_take(arena, "models", scene->models, sizeof *s->models, 8);
-    s->nodes = masu_arena_take(arena, "model nodes", scene->model_nodes, sizeof *s->nodes, 8);
-    s->of_instance = masu_arena_take(arena, "models of instances",
-                                     scene->models ? scene->instances : 0, sizeof *s->of_instance, 4);
-    s->lives = masu_arena_take(arena, "reserve models", plan->reserve.models, sizeof *s->lives, 4);
-    masu_animation_lay(&s->animation, arena, plan);
-    masu_skins_lay(&s->skins, arena, plan);
+    s->models = masu_arena_alloc(arena, "models", scene->models, sizeof *s->models, 8);
+    s->nodes = masu_arena_alloc(arena, "model nodes", scene->model_nodes, sizeof *s->nodes, 8);
+    s->of_instance =
+        masu_arena_alloc(arena, "models of instances", scene->models ? scene->instances : 0,
+                         sizeof *s->of_instance, 4);
+    s->lives = masu_arena_alloc(arena, "reserve models", plan->reserve.models, sizeof *s->lives, 4);
+    masu_animation_alloc(&s->animation, arena, plan);
+    masu_skins_alloc(&s->skins, arena, plan);
 }
 
 static void multiply(const float a[12], const float b[12], float out[12]) {

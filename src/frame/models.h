@@ -27,7 +27,7 @@ typedef struct masu_models {
     masu_skins skins; /* bent by what the nodes are */
 } masu_models;
 
-void masu_models_lay(masu_models *s, masu_arena *arena, const masu_frame_plan *plan);
+void masu_models_alloc(masu_models *s, masu_arena *arena, const masu_frame_plan *plan);
 /* After the instances: those of models that start hidden are hidden here. */
 void masu_models_keep(masu_models *s, masu_instances *in, const masu_frame_plan *plan,
                       const masu_scene_view *v);

@@ -17,9 +17,9 @@ static uint32_t *drawn_words(const masu_device *device, uint32_t slot) {
 
 /* ---- Once per scene -------------------------------------------------------------------------- */
 
-void masu_occlusion_lay(masu_occlusion *o, masu_arena *arena, const masu_frame_plan *plan) {
+void masu_occlusion_alloc(masu_occlusion *o, masu_arena *arena, const masu_frame_plan *plan) {
     o->occluders =
-        masu_arena_take(arena, "occluders", plan->scene.occluders, sizeof *o->occluders, 4);
+        masu_arena_alloc(arena, "occluders", plan->scene.occluders, sizeof *o->occluders, 4);
 }
 
 void masu_occlusion_keep(masu_occlusion *o, const masu_frame_plan *plan, const masu_scene_view *v) {

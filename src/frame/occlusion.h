@@ -14,7 +14,7 @@ typedef struct masu_occlusion {
     uint32_t turns[MASU_MAX_VIEWS];  /* frames that have drawn the view, modulo 5 */
 } masu_occlusion;
 
-void masu_occlusion_lay(masu_occlusion *o, masu_arena *arena, const masu_frame_plan *plan);
+void masu_occlusion_alloc(masu_occlusion *o, masu_arena *arena, const masu_frame_plan *plan);
 void masu_occlusion_keep(masu_occlusion *o, const masu_frame_plan *plan, const masu_scene_view *v);
 /* What stays the same in every frame, to all slots. */
 void masu_occlusion_write_scene(const masu_device *device, const masu_draws *draws,

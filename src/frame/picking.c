@@ -9,10 +9,10 @@
 #define MARK 0x80u /* in the marks of visible.h, beside a bit for each view */
 _Static_assert(MASU_MAX_VIEWS <= 7, "marks have a bit for the picked pixel");
 
-void masu_picking_lay(masu_picking *p, masu_arena *arena, const masu_frame_plan *plan) {
-    p->group_states = masu_arena_take(arena, "group states of the picked pixel",
-                                      plan->needs.picking ? plan->scene.groups : 0,
-                                      sizeof *p->group_states, 1);
+void masu_picking_alloc(masu_picking *p, masu_arena *arena, const masu_frame_plan *plan) {
+    p->group_states =
+        masu_arena_alloc(arena, "group states of the picked pixel",
+                         plan->needs.picking ? plan->scene.groups : 0, sizeof *p->group_states, 1);
 }
 
 static unsigned char *draws_of(const masu_device *device, uint32_t slot) {

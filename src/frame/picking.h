@@ -22,7 +22,7 @@ typedef struct masu_picking {
     masu_picking_slot slots[MASU_MAX_FLIGHT];
 } masu_picking;
 
-void masu_picking_lay(masu_picking *p, masu_arena *arena, const masu_frame_plan *plan);
+void masu_picking_alloc(masu_picking *p, masu_arena *arena, const masu_frame_plan *plan);
 /* What does not change of the draw commands, to all slots. */
 void masu_picking_write_scene(const masu_device *device, const masu_draws *draws,
                               const masu_scene_view *v);

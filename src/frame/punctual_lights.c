@@ -7,11 +7,11 @@
 
 #include <string.h>
 
-void masu_lights_lay(masu_lights *l, masu_arena *arena, const masu_frame_plan *plan) {
+void masu_lights_alloc(masu_lights *l, masu_arena *arena, const masu_frame_plan *plan) {
     uint32_t count = plan->scene.lights;
-    l->states = masu_arena_take(arena, "punctual lights", count, sizeof *l->states, 8);
-    l->names = masu_arena_take(arena, "light names", count, sizeof *l->names, 8);
-    l->lives = masu_arena_take(arena, "reserve lights", plan->reserve.lights, sizeof *l->lives, 4);
+    l->states = masu_arena_alloc(arena, "punctual lights", count, sizeof *l->states, 8);
+    l->names = masu_arena_alloc(arena, "light names", count, sizeof *l->names, 8);
+    l->lives = masu_arena_alloc(arena, "reserve lights", plan->reserve.lights, sizeof *l->lives, 4);
 }
 
 void masu_lights_keep(masu_lights *l, const masu_frame_plan *plan, const masu_scene_view *v) {

@@ -20,7 +20,7 @@ typedef struct masu_lights {
     masu_handles handles;
 } masu_lights;
 
-void masu_lights_lay(masu_lights *l, masu_arena *arena, const masu_frame_plan *plan);
+void masu_lights_alloc(masu_lights *l, masu_arena *arena, const masu_frame_plan *plan);
 void masu_lights_keep(masu_lights *l, const masu_frame_plan *plan, const masu_scene_view *v);
 
 /* masu_punctual_light_find, _get and _set of the public header. */

@@ -9,15 +9,15 @@
 
 /* ---- Traced instances ------------------------------------------------------------------------ */
 
-void masu_reflections_lay(masu_reflections *s, masu_arena *arena, const masu_frame_plan *plan) {
+void masu_reflections_alloc(masu_reflections *s, masu_arena *arena, const masu_frame_plan *plan) {
     uint32_t traced = plan->needs.traced ? plan->scene.trace_instances : 0;
     uint64_t tree = traced && !plan->needs.query ? masu_trace_top_bytes(traced) : 0;
-    s->tree_memory = masu_arena_take(arena, "traced instances", tree, 1, 16);
-    s->traced = masu_arena_take(arena, "traced ids", traced, sizeof *s->traced, 4);
+    s->tree_memory = masu_arena_alloc(arena, "traced instances", tree, 1, 16);
+    s->traced = masu_arena_alloc(arena, "traced ids", traced, sizeof *s->traced, 4);
     if (plan->scene.skins)
-        s->bends = masu_arena_take(arena, "traced skins", traced, sizeof *s->bends, 1);
+        s->bends = masu_arena_alloc(arena, "traced skins", traced, sizeof *s->bends, 1);
     s->live =
-        masu_arena_take(arena, "traced flags", plan->needs.query ? traced : 0, sizeof *s->live, 1);
+        masu_arena_alloc(arena, "traced flags", plan->needs.query ? traced : 0, sizeof *s->live, 1);
 }
 
 void masu_reflections_keep(masu_reflections *s, const masu_frame_plan *plan,

@@ -22,7 +22,7 @@ typedef struct masu_reflections {
     int full_history;                       /* and a history of full resolution */
 } masu_reflections;
 
-void masu_reflections_lay(masu_reflections *s, masu_arena *arena, const masu_frame_plan *plan);
+void masu_reflections_alloc(masu_reflections *s, masu_arena *arena, const masu_frame_plan *plan);
 void masu_reflections_keep(masu_reflections *s, const masu_frame_plan *plan,
                            const masu_scene_view *v);
 

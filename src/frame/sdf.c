@@ -6,9 +6,9 @@
 #include <math.h>
 #include <string.h>
 
-void masu_sdf_lay(masu_sdf *sdf, masu_arena *arena, const masu_frame_plan *plan) {
+void masu_sdf_alloc(masu_sdf *sdf, masu_arena *arena, const masu_frame_plan *plan) {
     sdf->params =
-        masu_arena_take(arena, "SDF parameters", plan->scene.sdf_params, sizeof *sdf->params, 4);
+        masu_arena_alloc(arena, "SDF parameters", plan->scene.sdf_params, sizeof *sdf->params, 4);
 }
 
 void masu_sdf_keep(masu_sdf *sdf, const masu_frame_plan *plan, const masu_scene_view *v) {

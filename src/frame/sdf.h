@@ -10,7 +10,7 @@ typedef struct masu_sdf {
     float bounds[2][4];          /* min and 1/Lipschitz, max and longest ray */
 } masu_sdf;
 
-void masu_sdf_lay(masu_sdf *sdf, masu_arena *arena, const masu_frame_plan *plan);
+void masu_sdf_alloc(masu_sdf *sdf, masu_arena *arena, const masu_frame_plan *plan);
 void masu_sdf_keep(masu_sdf *sdf, const masu_frame_plan *plan, const masu_scene_view *v);
 
 /* Checks the parameters of a frame; these and the SDF's space, near the eye, into the uniforms. */

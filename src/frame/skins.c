@@ -7,16 +7,17 @@
 /* What a float may be off by where vertices are bent, of the size of what is bent. */
 #define ROUNDING 4e-6
 
-void masu_skins_lay(masu_skins *s, masu_arena *arena, const masu_frame_plan *plan) {
+void masu_skins_alloc(masu_skins *s, masu_arena *arena, const masu_frame_plan *plan) {
     const masu_scene_data *scene = &plan->scene;
     uint64_t before = plan->needs.velocity ? scene->skinned_joints : 0;
     memset(s, 0, sizeof *s);
     if (!scene->skins) return;
-    s->skins = masu_arena_take(arena, "skins", scene->skins, sizeof *s->skins, 4);
-    s->joints = masu_arena_take(arena, "joints", scene->joints, sizeof *s->joints, 4);
-    s->now = masu_arena_take(arena, "joint matrices", scene->skinned_joints, sizeof *s->now, 4);
-    s->previous = masu_arena_take(arena, "previous matrices", before, sizeof *s->previous, 4);
-    s->inside = masu_arena_take(arena, "nodes in their model", scene->max_nodes, sizeof *s->inside, 8);
+    s->skins = masu_arena_alloc(arena, "skins", scene->skins, sizeof *s->skins, 4);
+    s->joints = masu_arena_alloc(arena, "joints", scene->joints, sizeof *s->joints, 4);
+    s->now = masu_arena_alloc(arena, "joint matrices", scene->skinned_joints, sizeof *s->now, 4);
+    s->previous = masu_arena_alloc(arena, "previous matrices", before, sizeof *s->previous, 4);
+    s->inside =
+        masu_arena_alloc(arena, "nodes in their model", scene->max_nodes, sizeof *s->inside, 8);
 }
 
 void masu_skins_keep(masu_skins *s, const masu_frame_plan *plan, const masu_scene_view *v) {

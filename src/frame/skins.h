@@ -31,7 +31,7 @@ typedef struct masu_skins {
     double (*inside)[12];  /* from nodes of one model to it, while it is posed */
 } masu_skins;
 
-void masu_skins_lay(masu_skins *s, masu_arena *arena, const masu_frame_plan *plan);
+void masu_skins_alloc(masu_skins *s, masu_arena *arena, const masu_frame_plan *plan);
 void masu_skins_keep(masu_skins *s, const masu_frame_plan *plan, const masu_scene_view *v);
 
 /* The skins of a model: how many, and the first of them. */

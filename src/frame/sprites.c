@@ -13,9 +13,9 @@ _Static_assert(MASU_SPRITE_LIT == MASU_PARTICLE_LIT && MASU_SPRITE_ADDITIVE == M
                    MASU_SPRITE_ON_TOP == MASU_LINE_ON_TOP,
                "shaders know them by other names");
 
-void masu_sprites_lay(masu_sprites *s, masu_arena *arena, const masu_frame_plan *plan) {
-    s->order = masu_arena_take(arena, "particles sorted", 2 * (uint64_t)plan->desc.reserve.particles,
-                               sizeof *s->order, 4);
+void masu_sprites_alloc(masu_sprites *s, masu_arena *arena, const masu_frame_plan *plan) {
+    s->order = masu_arena_alloc(arena, "particles sorted",
+                                2 * (uint64_t)plan->desc.reserve.particles, sizeof *s->order, 4);
 }
 
 static masu_result check(const char *what, const void *array, uint32_t count, uint32_t room, masu_detail *detail) {

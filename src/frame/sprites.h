@@ -17,7 +17,7 @@ typedef struct masu_sprites {
     masu_sprite_counts slots[MASU_MAX_FLIGHT];
 } masu_sprites;
 
-void masu_sprites_lay(masu_sprites *s, masu_arena *arena, const masu_frame_plan *plan);
+void masu_sprites_alloc(masu_sprites *s, masu_arena *arena, const masu_frame_plan *plan);
 
 /* MASU_ERROR_LIMIT: more than desc.reserve. MASU_ERROR_ARGUMENT: NULL with a count. */
 masu_result masu_sprites_check(const masu_desc *d, const masu_frame_desc *frame, masu_detail *detail);

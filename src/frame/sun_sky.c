@@ -91,8 +91,8 @@ static masu_light scene_light(const masu_blob_environment *e) {
 
 masu_light masu_sun_sky_light(const masu_sun_sky *s) { return scene_light(&s->environment); }
 
-void masu_sun_sky_lay(masu_sun_sky *s, masu_arena *arena, const masu_frame_plan *plan) {
-    s->sky = masu_arena_take(arena, "sky", plan->needs.sky ? 1 : 0, sizeof *s->sky, 16);
+void masu_sun_sky_alloc(masu_sun_sky *s, masu_arena *arena, const masu_frame_plan *plan) {
+    s->sky = masu_arena_alloc(arena, "sky", plan->needs.sky ? 1 : 0, sizeof *s->sky, 16);
 }
 
 void masu_sun_sky_keep(masu_sun_sky *s, const masu_scene_view *v) {

@@ -14,7 +14,7 @@ typedef struct masu_sun_sky {
     uint64_t slot_updates[MASU_MAX_FLIGHT]; /* sky->sun_updates that the slot has; 0: a gradient */
 } masu_sun_sky;
 
-void masu_sun_sky_lay(masu_sun_sky *s, masu_arena *arena, const masu_frame_plan *plan);
+void masu_sun_sky_alloc(masu_sun_sky *s, masu_arena *arena, const masu_frame_plan *plan);
 void masu_sun_sky_keep(masu_sun_sky *s, const masu_scene_view *v);
 /* The scene's. */
 masu_light masu_sun_sky_light(const masu_sun_sky *s);

@@ -38,11 +38,11 @@ masu_back_to_front *masu_sort_back_to_front(masu_back_to_front *entries,
     return from;
 }
 
-void masu_transparents_lay(masu_transparents *s, masu_arena *arena, const masu_frame_plan *plan) {
+void masu_transparents_alloc(masu_transparents *s, masu_arena *arena, const masu_frame_plan *plan) {
     uint32_t count = plan->scene.transparents;
-    s->things = masu_arena_take(arena, "transparents", count, sizeof *s->things, 4);
+    s->things = masu_arena_alloc(arena, "transparents", count, sizeof *s->things, 4);
     s->order =
-        masu_arena_take(arena, "transparents sorted", 2 * (uint64_t)count, sizeof *s->order, 4);
+        masu_arena_alloc(arena, "transparents sorted", 2 * (uint64_t)count, sizeof *s->order, 4);
 }
 
 /* Which of the texture sets is a material's. */

@@ -31,7 +31,7 @@ typedef struct masu_transparents {
     uint32_t slot_count[MASU_MAX_FLIGHT]; /* drawn */
 } masu_transparents;
 
-void masu_transparents_lay(masu_transparents *s, masu_arena *arena, const masu_frame_plan *plan);
+void masu_transparents_alloc(masu_transparents *s, masu_arena *arena, const masu_frame_plan *plan);
 void masu_transparents_keep(masu_transparents *s, const masu_frame_plan *plan,
                             const masu_draws *draws, const masu_scene_view *v);
 /* Into a place of the reserve: what one instance shows, as of another. */

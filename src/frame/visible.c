@@ -28,15 +28,16 @@ _Static_assert(sizeof(VkDrawIndexedIndirectCommand) == MASU_DRAW_BYTES, "indirec
 
 /* ---- Once per scene -------------------------------------------------------------------------- */
 
-void masu_visible_lay(masu_visible *s, masu_arena *arena, const masu_frame_plan *plan) {
+void masu_visible_alloc(masu_visible *s, masu_arena *arena, const masu_frame_plan *plan) {
     uint64_t lods = plan->lods ? plan->scene.lods : 0;
     uint32_t instances = plan->scene.instances;
-    s->lods = masu_arena_take(arena, "LODs", lods, sizeof *s->lods, 4);
-    s->levels = masu_arena_take(arena, "instance LODs", lods ? instances : 0, sizeof *s->levels, 1);
+    s->lods = masu_arena_alloc(arena, "LODs", lods, sizeof *s->lods, 4);
+    s->levels =
+        masu_arena_alloc(arena, "instance LODs", lods ? instances : 0, sizeof *s->levels, 1);
     s->group_states =
-        masu_arena_take(arena, "group states", (uint64_t)plan->views * plan->scene.groups,
-                        sizeof *s->group_states, 1);
-    s->marks = masu_arena_take(arena, "instance marks", instances, sizeof *s->marks, 1);
+        masu_arena_alloc(arena, "group states", (uint64_t)plan->views * plan->scene.groups,
+                         sizeof *s->group_states, 1);
+    s->marks = masu_arena_alloc(arena, "instance marks", instances, sizeof *s->marks, 1);
 }
 
 void masu_visible_keep(masu_visible *s, const masu_frame_plan *plan, const masu_scene_view *v) {

@@ -12,7 +12,7 @@ typedef struct masu_visible {
     masu_view_stats slot_views[MASU_MAX_FLIGHT][MASU_MAX_VIEWS];
 } masu_visible;
 
-void masu_visible_lay(masu_visible *s, masu_arena *arena, const masu_frame_plan *plan);
+void masu_visible_alloc(masu_visible *s, masu_arena *arena, const masu_frame_plan *plan);
 void masu_visible_keep(masu_visible *s, const masu_frame_plan *plan, const masu_scene_view *v);
 /* A command for each draw of a view, but for how many instances it has; returns what follows. */
 VkDrawIndexedIndirectCommand *masu_draws_write(const masu_draws *draws, const masu_scene_view *v,

@@ -1,17 +1,17 @@
 /* draws.c: see draws.h. */
 #include "plan/draws.h"
 
-void masu_draws_lay(masu_draws *draws, masu_arena *arena, const masu_frame_plan *plan) {
+void masu_draws_alloc(masu_draws *draws, masu_arena *arena, const masu_frame_plan *plan) {
     uint64_t lods = plan->lods ? plan->scene.lods : 0;
     draws->batches =
-        masu_arena_take(arena, "batches", plan->scene.meshes + lods, sizeof *draws->batches, 8);
+        masu_arena_alloc(arena, "batches", plan->scene.meshes + lods, sizeof *draws->batches, 8);
     draws->added = NULL;
     if (plan->reserve.models) {
-        draws->added = masu_arena_take(arena, "reserve draws", plan->scene.meshes,
-                                       sizeof *draws->added, 4);
+        draws->added =
+            masu_arena_alloc(arena, "reserve draws", plan->scene.meshes, sizeof *draws->added, 4);
     }
-    draws->looks = masu_arena_take(arena, "draw looks", plan->desc.resizable ? plan->draws : 0,
-                                   sizeof *draws->looks, 4);
+    draws->looks = masu_arena_alloc(arena, "draw looks", plan->desc.resizable ? plan->draws : 0,
+                                    sizeof *draws->looks, 4);
 }
 
 /* A form of a mesh that has instances. */

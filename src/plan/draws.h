@@ -51,7 +51,7 @@ typedef struct masu_draws {
     uint32_t transparent_sets[MASU_TRANSPARENT_SETS_MAX];
 } masu_draws;
 
-void masu_draws_lay(masu_draws *draws, masu_arena *arena, const masu_frame_plan *plan);
+void masu_draws_alloc(masu_draws *draws, masu_arena *arena, const masu_frame_plan *plan);
 void masu_draws_make(masu_draws *draws, const masu_frame_plan *plan, const masu_scene_view *v);
 
 /* Of an instance's transform: its triangles turn the other way in the picture. */

@@ -90,8 +90,8 @@ void make_renderer_with(uint32_t parts, uint64_t staging, const masu_rung *rungs
     m.models.of_instance = models_of;
     masu_arena arena;
     masu_arena_begin(&arena, bent, sizeof bent);
-    masu_animation_lay(&m.models.animation, &arena, &m.plan);
-    masu_skins_lay(&m.models.skins, &arena, &m.plan);
+    masu_animation_alloc(&m.models.animation, &arena, &m.plan);
+    masu_skins_alloc(&m.models.skins, &arena, &m.plan);
     assert_true(arena.used <= sizeof bent);
     m.history.previous = &history;
     m.instances.previous = previous;

@@ -61,7 +61,7 @@ static void walk(masu_arena *arena, const row_set *set, void *base, uint64_t siz
     masu_arena_begin(arena, base, size);
     for (uint32_t i = 0; i < set->count; i++) {
         const row *r = &set->rows[i];
-        void *p = masu_arena_take(arena, row_names[i], r->count, r->element_bytes, r->alignment);
+        void *p = masu_arena_alloc(arena, row_names[i], r->count, r->element_bytes, r->alignment);
         if (pointers) pointers[i] = p;
     }
 }
@@ -182,13 +182,13 @@ static void nothing_takes_no_bytes_but_has_an_address(void **state) {
     (void)state;
     masu_arena arena;
     masu_arena_begin(&arena, block, 16);
-    assert_non_null(masu_arena_take(&arena, "all", 16, 1, 1));
-    assert_ptr_equal(masu_arena_take(&arena, "none", 0, 640, 16), block + 16);
-    assert_ptr_equal(masu_arena_take(&arena, "empty", 5, 0, 1), block + 16);
+    assert_non_null(masu_arena_alloc(&arena, "all", 16, 1, 1));
+    assert_ptr_equal(masu_arena_alloc(&arena, "none", 0, 640, 16), block + 16);
+    assert_ptr_equal(masu_arena_alloc(&arena, "empty", 5, 0, 1), block + 16);
     assert_int_equal(arena.used, 16);
     assert_true(arena.used <= arena.size);
-    assert_null(masu_arena_take(&arena, "one", 1, 1, 1));
-    assert_null(masu_arena_take(&arena, "none", 0, 1, 1)); /* the block has ended before */
+    assert_null(masu_arena_alloc(&arena, "one", 1, 1, 1));
+    assert_null(masu_arena_alloc(&arena, "none", 0, 1, 1)); /* the block has ended before */
 }
 
 static void the_report_keeps_the_first_rows(void **state) {
@@ -217,11 +217,11 @@ static void assert_overflows(uint64_t count, uint64_t element_bytes, uint64_t be
     for (int giving = 0; giving < 2; giving++) {
         fill_memory(BLOCK_BYTES);
         masu_arena_begin(&arena, giving ? block : NULL, giving ? BLOCK_BYTES : 0);
-        (void)masu_arena_take(&arena, "before", before, 1, 1);
-        assert_null(masu_arena_take(&arena, "too much", count, element_bytes, alignment));
+        (void)masu_arena_alloc(&arena, "before", before, 1, 1);
+        assert_null(masu_arena_alloc(&arena, "too much", count, element_bytes, alignment));
         assert_true(arena.used == UINT64_MAX);
         assert_false(arena.used <= arena.size);
-        assert_null(masu_arena_take(&arena, "after", 1, 1, 1));
+        assert_null(masu_arena_alloc(&arena, "after", 1, 1, 1));
         assert_true(arena.used == UINT64_MAX);
         assert_only_the_block_changed(BLOCK_BYTES);
     }
