@@ -61,23 +61,23 @@ static masu_result check_host(const masu_frame_plan *plan, uint64_t needed, masu
                      (unsigned long long)needed, (unsigned long long)budget);
 }
 
-void masu_keep_scene(masu_renderer *m) {
+void masu_copy_scene(masu_renderer *m) {
     const masu_frame_plan *plan = &m->plan;
     if (!plan->desc.scene) return;
     masu_scene_view v = masu_scene_data_view(&plan->scene);
     masu_draws_make(&m->draws, plan, &v);
-    masu_camera_path_keep(&m->camera, plan, &v);
-    masu_sun_sky_keep(&m->sun_sky, &v);
-    masu_sdf_keep(&m->sdf, plan, &v);
-    masu_instances_keep(&m->instances, plan, &v);
-    masu_bounds_keep(&m->bounds, plan, &m->instances, &v);
-    masu_models_keep(&m->models, &m->instances, plan, &v);
-    masu_lights_keep(&m->lights, plan, &v);
-    masu_materials_keep(&m->materials, plan, &v);
-    masu_visible_keep(&m->visible, plan, &v);
-    masu_occlusion_keep(&m->occlusion, plan, &v);
-    masu_transparents_keep(&m->transparents, plan, &m->draws, &v);
-    masu_reflections_keep(&m->reflections, plan, &v);
+    masu_camera_path_copy_scene(&m->camera, plan, &v);
+    masu_sun_sky_copy_scene(&m->sun_sky, &v);
+    masu_sdf_copy_scene(&m->sdf, plan, &v);
+    masu_instances_copy_scene(&m->instances, plan, &v);
+    masu_bounds_copy_scene(&m->bounds, plan, &m->instances, &v);
+    masu_models_copy_scene(&m->models, &m->instances, plan, &v);
+    masu_lights_copy_scene(&m->lights, plan, &v);
+    masu_materials_copy_scene(&m->materials, plan, &v);
+    masu_visible_copy_scene(&m->visible, plan, &v);
+    masu_occlusion_copy_scene(&m->occlusion, plan, &v);
+    masu_transparents_copy_scene(&m->transparents, plan, &m->draws, &v);
+    masu_reflections_copy_scene(&m->reflections, plan, &v);
 }
 
 void masu_write_scene(masu_renderer *m) {
@@ -214,7 +214,7 @@ static masu_result init(const masu_desc *desc, void *block, uint64_t block_bytes
     m->device.objects = objects;
     masu_timeline_start(&m->timeline);
     if (m->governor) masu_governed_start(m);
-    masu_keep_scene(m);
+    masu_copy_scene(m);
     result = masu_device_make(&m->device, &m->draws, detail);
     if (result) {
         masu_destroy(m);

@@ -104,7 +104,7 @@ masu_result masu_governor_set(masu_renderer *m, const masu_governor_setting *set
 
 masu_result masu_governor_save(masu_renderer *m, masu_governor_state *out) {
     masu_result result = check(m, out, "out");
-    if (!result) masu_governor_keep(m->governor, masu_governed_output(m), out);
+    if (!result) masu_governor_export_state(m->governor, masu_governed_output(m), out);
     return result;
 }
 
@@ -112,6 +112,6 @@ masu_result masu_governor_restore(masu_renderer *m, const masu_governor_state *s
     masu_result result = check(m, state, "state");
     if (!result) result = masu_governor_state_check(state, &m->error);
     if (!result)
-        masu_governor_take_over(m->governor, state, masu_governed_output(m), m->timeline.frame);
+        masu_governor_import_state(m->governor, state, masu_governed_output(m), m->timeline.frame);
     return result;
 }

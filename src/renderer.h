@@ -71,7 +71,7 @@ struct masu_renderer {
 };
 
 /* Copies what frames need later from the blob into the host block. */
-void masu_keep_scene(masu_renderer *m);
+void masu_copy_scene(masu_renderer *m);
 /* What of it does not change in the slots: draw commands and what culls them. */
 void masu_write_scene(masu_renderer *m);
 /* The steps of masu_frame that write a scene's frame to its slot. Checks come first: a frame that is

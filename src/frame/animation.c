@@ -86,8 +86,8 @@ masu_node_pose masu_pose_of(const float rows[12]) {
 
 /* ---- Clips ----------------------------------------------------------------------------------- */
 
-void masu_animation_keep(masu_animation *a, const masu_frame_plan *plan,
-                         const masu_scene_view *v) {
+void masu_animation_copy_scene(masu_animation *a, const masu_frame_plan *plan,
+                               const masu_scene_view *v) {
     const masu_scene_data *s = &plan->scene;
     if (!s->clips) return;
     memcpy(a->channels, v->channels, s->channels * sizeof *a->channels);

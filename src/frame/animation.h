@@ -36,7 +36,8 @@ typedef struct masu_animation {
 } masu_animation;
 
 void masu_animation_alloc(masu_animation *a, masu_arena *arena, const masu_frame_plan *plan);
-void masu_animation_keep(masu_animation *a, const masu_frame_plan *plan, const masu_scene_view *v);
+void masu_animation_copy_scene(masu_animation *a, const masu_frame_plan *plan,
+                               const masu_scene_view *v);
 
 /* Nodes of a copy rest as those that they are copied of. */
 void masu_animation_copy(masu_animation *a, const masu_frame_plan *plan, uint32_t from, uint32_t to,

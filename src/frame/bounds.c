@@ -58,8 +58,8 @@ static masu_cull_box around_all(const masu_bounds *b, uint32_t instances) {
     return all;
 }
 
-void masu_bounds_keep(masu_bounds *b, const masu_frame_plan *plan, const masu_instances *in,
-                      const masu_scene_view *v) {
+void masu_bounds_copy_scene(masu_bounds *b, const masu_frame_plan *plan, const masu_instances *in,
+                            const masu_scene_view *v) {
     const masu_scene_data *scene = &plan->scene;
     b->box_stride = (uint64_t)scene->instances + MASU_BOX_PADDING;
     for (uint32_t k = 0; k < 3; k++) b->swept[0][k] = 1e30, b->swept[1][k] = -1e30;

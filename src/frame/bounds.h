@@ -23,8 +23,8 @@ typedef struct masu_bounds {
 } masu_bounds;
 
 void masu_bounds_alloc(masu_bounds *b, masu_arena *arena, const masu_frame_plan *plan);
-void masu_bounds_keep(masu_bounds *b, const masu_frame_plan *plan, const masu_instances *in,
-                      const masu_scene_view *v);
+void masu_bounds_copy_scene(masu_bounds *b, const masu_frame_plan *plan, const masu_instances *in,
+                            const masu_scene_view *v);
 /* After a transform has changed. */
 void masu_bounds_move(masu_bounds *b, const masu_frame_plan *plan, const masu_instances *in,
                       uint32_t instance);

@@ -16,8 +16,8 @@ void masu_camera_path_alloc(masu_camera_path *path, masu_arena *arena,
         masu_arena_alloc(arena, "camera keys", plan->scene.camera_keys, sizeof *path->keys, 4);
 }
 
-void masu_camera_path_keep(masu_camera_path *path, const masu_frame_plan *plan,
-                           const masu_scene_view *v) {
+void masu_camera_path_copy_scene(masu_camera_path *path, const masu_frame_plan *plan,
+                                 const masu_scene_view *v) {
     path->near_distance = v->environment->near_distance;
     if (plan->scene.camera_keys)
         memcpy(path->keys, v->camera_keys, plan->scene.camera_keys * sizeof *v->camera_keys);

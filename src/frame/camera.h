@@ -11,8 +11,8 @@ typedef struct masu_camera_path {
 } masu_camera_path;
 
 void masu_camera_path_alloc(masu_camera_path *path, masu_arena *arena, const masu_frame_plan *plan);
-void masu_camera_path_keep(masu_camera_path *path, const masu_frame_plan *plan,
-                           const masu_scene_view *v);
+void masu_camera_path_copy_scene(masu_camera_path *path, const masu_frame_plan *plan,
+                                 const masu_scene_view *v);
 /* masu_camera_at of the public header. */
 masu_result masu_camera_path_at(const masu_camera_path *path, const masu_frame_plan *plan,
                                 double time, masu_camera *out);

@@ -29,7 +29,7 @@ static uint8_t frames_to_write(const masu_frame_plan *plan) {
 }
 
 /* Nothing is anywhere yet. */
-static void keep_reserve(masu_instances *in, const masu_frame_plan *plan) {
+static void init_reserve(masu_instances *in, const masu_frame_plan *plan) {
     for (uint32_t mesh = 0; mesh < plan->scene.meshes; mesh++) in->of_mesh[mesh] = MASU_BLOB_NONE;
     for (uint32_t i = in->own; i < plan->scene.instances; i++) {
         memset(&in->now[i], 0, sizeof in->now[i]);
@@ -40,8 +40,8 @@ static void keep_reserve(masu_instances *in, const masu_frame_plan *plan) {
     }
 }
 
-void masu_instances_keep(masu_instances *in, const masu_frame_plan *plan,
-                         const masu_scene_view *v) {
+void masu_instances_copy_scene(masu_instances *in, const masu_frame_plan *plan,
+                               const masu_scene_view *v) {
     in->own = masu_own_instances(plan);
     for (uint32_t i = 0; i < in->own; i++) {
         memcpy(&in->now[i], v->instances[i].transform, sizeof in->now[i]);
@@ -54,7 +54,7 @@ void masu_instances_keep(masu_instances *in, const masu_frame_plan *plan,
                                   plan->reserve.places.instances, in->lives);
     in->dirty_count = plan->scene.instances;
     in->hidden_count = in->changes = 0;
-    if (plan->reserve.places.instances) keep_reserve(in, plan);
+    if (plan->reserve.places.instances) init_reserve(in, plan);
 }
 
 void masu_instances_add(masu_instances *in, uint32_t instance, uint32_t mesh) {

@@ -31,7 +31,8 @@ typedef struct masu_instances {
 } masu_instances;
 
 void masu_instances_alloc(masu_instances *in, masu_arena *arena, const masu_frame_plan *plan);
-void masu_instances_keep(masu_instances *in, const masu_frame_plan *plan, const masu_scene_view *v);
+void masu_instances_copy_scene(masu_instances *in, const masu_frame_plan *plan,
+                               const masu_scene_view *v);
 
 static inline int masu_instance_dirty(const masu_instances *in, uint32_t instance) {
     return in->flags[instance] & MASU_INSTANCE_DIRTY;

@@ -29,7 +29,8 @@ static masu_material_traced traced_of(const masu_frame_plan *plan, const masu_sc
     return out;
 }
 
-void masu_materials_keep(masu_materials *s, const masu_frame_plan *plan, const masu_scene_view *v) {
+void masu_materials_copy_scene(masu_materials *s, const masu_frame_plan *plan,
+                               const masu_scene_view *v) {
     uint32_t count = plan->desc.mutable_materials ? plan->scene.materials : 0;
     s->handles = masu_handles_of(v->hash, MASU_HANDLE_MATERIAL, count, 0, NULL);
     for (uint32_t i = 0; i < count; i++) {

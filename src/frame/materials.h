@@ -28,7 +28,8 @@ typedef struct masu_materials {
 } masu_materials;
 
 void masu_materials_alloc(masu_materials *s, masu_arena *arena, const masu_frame_plan *plan);
-void masu_materials_keep(masu_materials *s, const masu_frame_plan *plan, const masu_scene_view *v);
+void masu_materials_copy_scene(masu_materials *s, const masu_frame_plan *plan,
+                               const masu_scene_view *v);
 
 /* masu_material_find, _get and _set of the public header. */
 /* UINT32_MAX: there is none. */

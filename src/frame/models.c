@@ -42,8 +42,8 @@ static int place(masu_models *s, const masu_frame_plan *plan, uint32_t model) {
     return finite & masu_skins_pose(&s->skins, plan, model, s->nodes, m->first_node, m->node_count);
 }
 
-void masu_models_keep(masu_models *s, masu_instances *in, const masu_frame_plan *plan,
-                      const masu_scene_view *v) {
+void masu_models_copy_scene(masu_models *s, masu_instances *in, const masu_frame_plan *plan,
+                            const masu_scene_view *v) {
     const masu_scene_data *scene = &plan->scene;
     s->handles = masu_handles_of(v->hash, MASU_HANDLE_MODEL, masu_own_models(plan),
                                  plan->reserve.models, s->lives);
@@ -56,8 +56,8 @@ void masu_models_keep(masu_models *s, masu_instances *in, const masu_frame_plan 
             .name = masu_scene_name_hash(v, from->name), .parent = from->parent, .instance = from->instance};
         memcpy(to->local, from->local, sizeof to->local);
     }
-    masu_animation_keep(&s->animation, plan, v);
-    masu_skins_keep(&s->skins, plan, v);
+    masu_animation_copy_scene(&s->animation, plan, v);
+    masu_skins_copy_scene(&s->skins, plan, v);
     for (uint32_t i = 0; i < masu_own_models(plan); i++) {
         const masu_blob_model *from = &v->models[i];
         masu_placed_model *to = &s->models[i];

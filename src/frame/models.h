@@ -29,8 +29,8 @@ typedef struct masu_models {
 
 void masu_models_alloc(masu_models *s, masu_arena *arena, const masu_frame_plan *plan);
 /* After the instances: those of models that start hidden are hidden here. */
-void masu_models_keep(masu_models *s, masu_instances *in, const masu_frame_plan *plan,
-                      const masu_scene_view *v);
+void masu_models_copy_scene(masu_models *s, masu_instances *in, const masu_frame_plan *plan,
+                            const masu_scene_view *v);
 
 uint32_t masu_models_find(const masu_models *s, const masu_frame_plan *plan, const char *name);
 /* Of a model's nodes, the first of that name; UINT32_MAX: none. */

@@ -22,7 +22,8 @@ void masu_occlusion_alloc(masu_occlusion *o, masu_arena *arena, const masu_frame
         masu_arena_alloc(arena, "occluders", plan->scene.occluders, sizeof *o->occluders, 4);
 }
 
-void masu_occlusion_keep(masu_occlusion *o, const masu_frame_plan *plan, const masu_scene_view *v) {
+void masu_occlusion_copy_scene(masu_occlusion *o, const masu_frame_plan *plan,
+                               const masu_scene_view *v) {
     uint32_t from = 0, first = 0, end = 0;
     for (uint32_t k = 0; k < plan->scene.occluders; k++) {
         uint32_t mesh = v->occluders[k].mesh;

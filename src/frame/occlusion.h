@@ -15,7 +15,8 @@ typedef struct masu_occlusion {
 } masu_occlusion;
 
 void masu_occlusion_alloc(masu_occlusion *o, masu_arena *arena, const masu_frame_plan *plan);
-void masu_occlusion_keep(masu_occlusion *o, const masu_frame_plan *plan, const masu_scene_view *v);
+void masu_occlusion_copy_scene(masu_occlusion *o, const masu_frame_plan *plan,
+                               const masu_scene_view *v);
 /* What stays the same in every frame, to all slots. */
 void masu_occlusion_write_scene(const masu_device *device, const masu_draws *draws,
                                 const masu_scene_view *v);

@@ -14,7 +14,7 @@ void masu_lights_alloc(masu_lights *l, masu_arena *arena, const masu_frame_plan 
     l->lives = masu_arena_alloc(arena, "reserve lights", plan->reserve.lights, sizeof *l->lives, 4);
 }
 
-void masu_lights_keep(masu_lights *l, const masu_frame_plan *plan, const masu_scene_view *v) {
+void masu_lights_copy_scene(masu_lights *l, const masu_frame_plan *plan, const masu_scene_view *v) {
     uint32_t own = masu_own_lights(plan);
     l->handles = masu_handles_of(v->hash, MASU_HANDLE_LIGHT, own, plan->reserve.lights, l->lives);
     for (uint32_t i = own; i < plan->scene.lights; i++) {

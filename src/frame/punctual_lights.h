@@ -21,7 +21,7 @@ typedef struct masu_lights {
 } masu_lights;
 
 void masu_lights_alloc(masu_lights *l, masu_arena *arena, const masu_frame_plan *plan);
-void masu_lights_keep(masu_lights *l, const masu_frame_plan *plan, const masu_scene_view *v);
+void masu_lights_copy_scene(masu_lights *l, const masu_frame_plan *plan, const masu_scene_view *v);
 
 /* masu_punctual_light_find, _get and _set of the public header. */
 /* UINT32_MAX: there is none. */

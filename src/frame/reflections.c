@@ -20,8 +20,8 @@ void masu_reflections_alloc(masu_reflections *s, masu_arena *arena, const masu_f
         masu_arena_alloc(arena, "traced flags", plan->needs.query ? traced : 0, sizeof *s->live, 1);
 }
 
-void masu_reflections_keep(masu_reflections *s, const masu_frame_plan *plan,
-                           const masu_scene_view *v) {
+void masu_reflections_copy_scene(masu_reflections *s, const masu_frame_plan *plan,
+                                 const masu_scene_view *v) {
     uint32_t count = plan->scene.trace_instances, own = masu_own_traced(plan);
     if (!plan->needs.traced) return;
     for (uint32_t i = 0; i < count; i++)

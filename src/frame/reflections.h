@@ -23,8 +23,8 @@ typedef struct masu_reflections {
 } masu_reflections;
 
 void masu_reflections_alloc(masu_reflections *s, masu_arena *arena, const masu_frame_plan *plan);
-void masu_reflections_keep(masu_reflections *s, const masu_frame_plan *plan,
-                           const masu_scene_view *v);
+void masu_reflections_copy_scene(masu_reflections *s, const masu_frame_plan *plan,
+                                 const masu_scene_view *v);
 
 /* Into a place of the reserve: a traced instance as another is traced, and away again. */
 void masu_reflections_copy(masu_reflections *s, const masu_frame_plan *plan, uint32_t place,

@@ -11,7 +11,7 @@ void masu_sdf_alloc(masu_sdf *sdf, masu_arena *arena, const masu_frame_plan *pla
         masu_arena_alloc(arena, "SDF parameters", plan->scene.sdf_params, sizeof *sdf->params, 4);
 }
 
-void masu_sdf_keep(masu_sdf *sdf, const masu_frame_plan *plan, const masu_scene_view *v) {
+void masu_sdf_copy_scene(masu_sdf *sdf, const masu_frame_plan *plan, const masu_scene_view *v) {
     if (plan->scene.sdf_params)
         memcpy(sdf->params, v->sdf_params, plan->scene.sdf_params * sizeof *v->sdf_params);
     if (!v->sdf) return;

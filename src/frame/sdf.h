@@ -11,7 +11,7 @@ typedef struct masu_sdf {
 } masu_sdf;
 
 void masu_sdf_alloc(masu_sdf *sdf, masu_arena *arena, const masu_frame_plan *plan);
-void masu_sdf_keep(masu_sdf *sdf, const masu_frame_plan *plan, const masu_scene_view *v);
+void masu_sdf_copy_scene(masu_sdf *sdf, const masu_frame_plan *plan, const masu_scene_view *v);
 
 /* Checks the parameters of a frame; these and the SDF's space, near the eye, into the uniforms. */
 masu_result masu_sdf_read(const masu_sdf *sdf, masu_frame_data *f, masu_detail *detail);

@@ -20,7 +20,7 @@ void masu_skins_alloc(masu_skins *s, masu_arena *arena, const masu_frame_plan *p
         masu_arena_alloc(arena, "nodes in their model", scene->max_nodes, sizeof *s->inside, 8);
 }
 
-void masu_skins_keep(masu_skins *s, const masu_frame_plan *plan, const masu_scene_view *v) {
+void masu_skins_copy_scene(masu_skins *s, const masu_frame_plan *plan, const masu_scene_view *v) {
     uint32_t matrix = 0, box = 0;
     for (uint32_t i = 0; i < plan->scene.joints; i++) s->joints[i] = v->joints[i];
     for (uint32_t i = 0; i < plan->scene.skins; i++) {

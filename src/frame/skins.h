@@ -32,7 +32,7 @@ typedef struct masu_skins {
 } masu_skins;
 
 void masu_skins_alloc(masu_skins *s, masu_arena *arena, const masu_frame_plan *plan);
-void masu_skins_keep(masu_skins *s, const masu_frame_plan *plan, const masu_scene_view *v);
+void masu_skins_copy_scene(masu_skins *s, const masu_frame_plan *plan, const masu_scene_view *v);
 
 /* The skins of a model: how many, and the first of them. */
 uint32_t masu_skins_of(const masu_skins *s, const masu_frame_plan *plan, uint32_t model,

@@ -95,7 +95,7 @@ void masu_sun_sky_alloc(masu_sun_sky *s, masu_arena *arena, const masu_frame_pla
     s->sky = masu_arena_alloc(arena, "sky", plan->needs.sky ? 1 : 0, sizeof *s->sky, 16);
 }
 
-void masu_sun_sky_keep(masu_sun_sky *s, const masu_scene_view *v) {
+void masu_sun_sky_copy_scene(masu_sun_sky *s, const masu_scene_view *v) {
     s->environment = *v->environment;
     if (!v->environment_map) return;
     for (uint32_t k = 0; k < 9; k++)

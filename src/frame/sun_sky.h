@@ -15,7 +15,7 @@ typedef struct masu_sun_sky {
 } masu_sun_sky;
 
 void masu_sun_sky_alloc(masu_sun_sky *s, masu_arena *arena, const masu_frame_plan *plan);
-void masu_sun_sky_keep(masu_sun_sky *s, const masu_scene_view *v);
+void masu_sun_sky_copy_scene(masu_sun_sky *s, const masu_scene_view *v);
 /* The scene's. */
 masu_light masu_sun_sky_light(const masu_sun_sky *s);
 

@@ -54,8 +54,9 @@ static uint32_t column_of(const masu_draws *draws, const masu_blob_material *mat
     return i;
 }
 
-static void keep_primitive(masu_transparent *t, const masu_draws *draws, uint32_t instance, int mirrored,
-                           const masu_blob_primitive *p, const masu_blob_material *material) {
+static void copy_primitive(masu_transparent *t, const masu_draws *draws, uint32_t instance,
+                           int mirrored, const masu_blob_primitive *p,
+                           const masu_blob_material *material) {
     *t = (masu_transparent){
         .draw = {p->index_count, 1, p->first_index, (int32_t)p->first_vertex, 0},
         .instance = instance,
@@ -74,8 +75,8 @@ static void keep_primitive(masu_transparent *t, const masu_draws *draws, uint32_
     for (uint32_t k = 0; k < 3; k++) t->center[k] = 0.5f * p->aabb_min[k] + 0.5f * p->aabb_max[k];
 }
 
-void masu_transparents_keep(masu_transparents *s, const masu_frame_plan *plan,
-                            const masu_draws *draws, const masu_scene_view *v) {
+void masu_transparents_copy_scene(masu_transparents *s, const masu_frame_plan *plan,
+                                  const masu_draws *draws, const masu_scene_view *v) {
     masu_transparent *next = s->things;
     if (!plan->needs.transparents) return;
     for (uint32_t i = 0; i < masu_own_instances(plan); i++) {
@@ -84,7 +85,8 @@ void masu_transparents_keep(masu_transparents *s, const masu_frame_plan *plan,
             const masu_blob_primitive *p = &v->primitives[mesh->first_primitive + k];
             const masu_blob_material *material = &v->materials[p->material];
             if (material->flags & MASU_MATERIAL_IS_BLEND)
-                keep_primitive(next++, draws, i, masu_is_mirrored(v->instances[i].transform), p, material);
+                copy_primitive(next++, draws, i, masu_is_mirrored(v->instances[i].transform), p,
+                               material);
         }
     }
     masu_transparent *end = s->things + plan->scene.transparents;

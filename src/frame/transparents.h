@@ -32,8 +32,8 @@ typedef struct masu_transparents {
 } masu_transparents;
 
 void masu_transparents_alloc(masu_transparents *s, masu_arena *arena, const masu_frame_plan *plan);
-void masu_transparents_keep(masu_transparents *s, const masu_frame_plan *plan,
-                            const masu_draws *draws, const masu_scene_view *v);
+void masu_transparents_copy_scene(masu_transparents *s, const masu_frame_plan *plan,
+                                  const masu_draws *draws, const masu_scene_view *v);
 /* Into a place of the reserve: what one instance shows, as of another. */
 void masu_transparents_copy(masu_transparents *s, const masu_frame_plan *plan, uint32_t place,
                             uint32_t from, uint32_t to);

@@ -40,7 +40,8 @@ void masu_visible_alloc(masu_visible *s, masu_arena *arena, const masu_frame_pla
     s->marks = masu_arena_alloc(arena, "instance marks", instances, sizeof *s->marks, 1);
 }
 
-void masu_visible_keep(masu_visible *s, const masu_frame_plan *plan, const masu_scene_view *v) {
+void masu_visible_copy_scene(masu_visible *s, const masu_frame_plan *plan,
+                             const masu_scene_view *v) {
     for (uint32_t l = 0; plan->lods && l < plan->scene.lods; l++) s->lods[l] = v->lods[l];
 }
 

@@ -13,7 +13,8 @@ typedef struct masu_visible {
 } masu_visible;
 
 void masu_visible_alloc(masu_visible *s, masu_arena *arena, const masu_frame_plan *plan);
-void masu_visible_keep(masu_visible *s, const masu_frame_plan *plan, const masu_scene_view *v);
+void masu_visible_copy_scene(masu_visible *s, const masu_frame_plan *plan,
+                             const masu_scene_view *v);
 /* A command for each draw of a view, but for how many instances it has; returns what follows. */
 VkDrawIndexedIndirectCommand *masu_draws_write(const masu_draws *draws, const masu_scene_view *v,
                                                VkDrawIndexedIndirectCommand *to);

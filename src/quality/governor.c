@@ -79,7 +79,7 @@
 /* ---- Init ------------------------------------------------------------------------------------ */
 
 /* What can be changed later of a description; what is out of range counts as 0. */
-static void take(masu_governor *g, const masu_governor_desc *desc) {
+static void apply_desc(masu_governor *g, const masu_governor_desc *desc) {
     g->mode = desc->mode;
     g->asked =
         desc->target_ms >= 1.0f && desc->target_ms <= 1000.0f ? (double)desc->target_ms : MASU_GOVERNOR_TARGET_MS;
@@ -98,7 +98,7 @@ void masu_governor_init(masu_governor *g, const masu_governor_desc *desc,
                         const masu_governor_rung *rungs, uint32_t count) {
     memset(g, 0, sizeof *g);
     g->count = count < 1 ? 1 : count > MASU_GOVERNOR_RUNGS ? MASU_GOVERNOR_RUNGS : count;
-    take(g, desc);
+    apply_desc(g, desc);
     for (uint32_t r = 0; r < g->count; r++) {
         double s = masu_within(rungs[r].scale, 0.01, 1.0);
         double cost = rungs[r].cost;
@@ -683,7 +683,7 @@ void masu_governor_shown(masu_governor *g, uint64_t frame, uint64_t ns, uint64_t
 
 void masu_governor_adjust(masu_governor *g, const masu_governor_desc *desc) {
     masu_governor old = *g;
-    take(g, desc);
+    apply_desc(g, desc);
     if (old.mode != g->mode && g->mode == MASU_GOVERNOR_ON)
         g->reason = g->known ? MASU_GOVERNOR_REASON_HOLD : MASU_GOVERNOR_REASON_START;
     if (old.asked == g->asked && old.headroom == g->headroom && old.best == g->best &&

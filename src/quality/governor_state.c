@@ -13,7 +13,8 @@
 
 /* ---- Kept ------------------------------------------------------------------------------------ */
 
-void masu_governor_keep(const masu_governor *g, VkExtent2D output, masu_governor_state *out) {
+void masu_governor_export_state(const masu_governor *g, VkExtent2D output,
+                                masu_governor_state *out) {
     memset(out, 0, sizeof *out);
     out->bytes = (uint32_t)sizeof *out;
     out->version = MASU_GOVERNOR_STATE_VERSION;
@@ -108,7 +109,7 @@ static int same(double a, double b) { return fabs(a - b) <= 1e-6 * fabs(b); }
 
 /* What was learnt of a rung goes to the one that was described alike: rungs are in the same order on both
  * sides, and of several alike each is taken once. Returns whether all of them are the same. */
-static int take_costs(masu_governor *g, const masu_governor_state *s) {
+static int import_costs(masu_governor *g, const masu_governor_state *s) {
     uint32_t from = 0, found = 0;
     for (uint32_t r = 0; r < g->count; r++) {
         for (uint32_t o = from; o < s->rung_count; o++) {
@@ -125,11 +126,11 @@ static int take_costs(masu_governor *g, const masu_governor_state *s) {
     return found == g->count && g->count == s->rung_count;
 }
 
-void masu_governor_take_over(masu_governor *g, const masu_governor_state *s, VkExtent2D output,
-                             uint64_t frame) {
+void masu_governor_import_state(masu_governor *g, const masu_governor_state *s, VkExtent2D output,
+                                uint64_t frame) {
     if (!s->known || g->mode == MASU_GOVERNOR_OFF) return;
     double pixels = (double)output.width * output.height / ((double)s->width * s->height);
-    int all = take_costs(g, s) && same(pixels, 1.0);
+    int all = import_costs(g, s) && same(pixels, 1.0);
     g->fixed = s->fixed_ms;
     g->load = masu_within(s->load_ms, 1e-6 * g->target, 1e9 * g->target);
     g->slope = g->trend = 0.0;

@@ -115,7 +115,7 @@ void make_renderer_with(uint32_t parts, uint64_t staging, const masu_rung *rungs
     m.transparents.order = order;
     m.device.load_count = masu_load_chunks(&m.plan);
     assert_true(m.device.load_count <= COUNT(load_handles));
-    masu_keep_scene(&m);
+    masu_copy_scene(&m);
     masu_write_scene(&m);
 }
 

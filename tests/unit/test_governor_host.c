@@ -194,10 +194,10 @@ static handed hand_over(double load, uint64_t seed, VkExtent2D size, int with) {
     start(&old, (masu_governor_desc){.dwell = 24});
     gpu p = gpu_of(load, seed);
     frames(&old, &p, 300);
-    masu_governor_keep(&old, hd, &s);
+    masu_governor_export_state(&old, hd, &s);
     assert_int_equal(masu_governor_state_check(&s, NULL), MASU_OK);
     start(&g, (masu_governor_desc){.dwell = 24});
-    if (with) masu_governor_take_over(&g, &s, size, 0);
+    if (with) masu_governor_import_state(&g, &s, size, 0);
     handed out = {.next = masu_governor_pick(&old, p.frame)};
     gpu q = gpu_of(load * pixels, seed + 1);
     q.fixed = 2.0 * 0.5 * (1.0 + pixels);
@@ -262,13 +262,13 @@ static void other_rungs_take_what_is_theirs(void **state) {
     gpu p = gpu_of(22.0, 4);
     frames(&old, &p, 300);
     old.cost[4] *= 1.1;
-    masu_governor_keep(&old, hd, &s);
+    masu_governor_export_state(&old, hd, &s);
     masu_governor_rung ladder[RUNGS], other[RUNGS];
     ladder_of(ladder);
     memcpy(other, ladder + 2, 6 * sizeof *other);
     other[4].scale = 0.53;
     masu_governor_init(&g, &(masu_governor_desc){.mode = MASU_GOVERNOR_ON}, other, 6);
-    masu_governor_take_over(&g, &s, hd, 0);
+    masu_governor_import_state(&g, &s, hd, 0);
     assert_true(g.cost[2] == old.cost[4]);
     assert_true(fabs(g.cost[4] - 0.53 * 0.53) < 1e-12);
     uint32_t first = masu_governor_pick(&g, 0);
@@ -276,10 +276,10 @@ static void other_rungs_take_what_is_theirs(void **state) {
     assert_true(!first || masu_governor_predict(&g, first - 1) > 0.9 * 16.67);
     /* One that has measured nothing says nothing. */
     start(&old, (masu_governor_desc){.dwell = 24});
-    masu_governor_keep(&old, hd, &s);
+    masu_governor_export_state(&old, hd, &s);
     assert_int_equal(masu_governor_state_check(&s, NULL), MASU_OK);
     start(&g, (masu_governor_desc){.dwell = 24});
-    masu_governor_take_over(&g, &s, hd, 0);
+    masu_governor_import_state(&g, &s, hd, 0);
     assert_int_equal(g.known, 0);
 }
 
@@ -292,7 +292,7 @@ static void garbage_is_no_state(void **state) {
     start(&old, (masu_governor_desc){.dwell = 24});
     gpu p = gpu_of(22.0, 4);
     frames(&old, &p, 300);
-    masu_governor_keep(&old, hd, &good);
+    masu_governor_export_state(&old, hd, &good);
     s = good;
     s.version++;
     assert_int_equal(masu_governor_state_check(&s, &detail), MASU_ERROR_VERSION);
@@ -326,7 +326,7 @@ static void garbage_is_no_state(void **state) {
         taken++;
         masu_governor g;
         start(&g, (masu_governor_desc){.best_rung = 1, .worst_rung = 5});
-        masu_governor_take_over(&g, &s, hd, 0);
+        masu_governor_import_state(&g, &s, hd, 0);
         gpu q = gpu_of(22.0, i);
         for (uint32_t f = 0; f < 8; f++) {
             uint32_t rung = frame(&g, &q);

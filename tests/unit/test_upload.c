@@ -145,7 +145,7 @@ static void without_a_scene_there_is_nothing_to_load(void **state) {
     make_renderer(SUPPORT_ALL, 0);
     memset(memory, NOISE, sizeof memory);
     m.plan.desc.scene = NULL;
-    masu_keep_scene(&m);
+    masu_copy_scene(&m);
     assert_int_equal(masu_load(&m, &commands), MASU_OK);
     for (size_t i = 0; i < ROOM; i++) assert_int_equal(memory[MASU_ROLE_DEVICE][i], NOISE);
     assert_int_equal(masu_load(NULL, &commands), MASU_ERROR_ARGUMENT);
@@ -270,7 +270,7 @@ static void a_moved_instance_reaches_as_many_slots_as_there_are(void **state) {
             m.plan.needs.velocity = velocity;
             m.plan.buffers[MASU_BUFFER_INSTANCES].stride = 2 * 4 * sizeof(struct masu_instance_data);
             masu_scene_view v = masu_scene_look(&scene);
-            masu_instances_keep(&m.instances, &m.plan, &v);
+            masu_instances_copy_scene(&m.instances, &m.plan, &v);
             for (uint32_t n = 0; n < flight + velocity; n++) {
                 assert_int_equal(m.instances.dirty_count, 3);
                 write_instances(0);
