@@ -362,7 +362,8 @@ masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_comm
         masu_log(&m->plan.desc, MASU_LOG_ERROR, m->error.text);
         return MASU_ERROR_ARGUMENT;
     }
-    if (frame->viewport < m->plan.desc.viewport_count) masu_plan_look_at(&m->plan, frame->viewport);
+    if (frame->viewport < m->plan.desc.viewport_count)
+        masu_plan_select_viewport(&m->plan, frame->viewport);
     masu_frame_data f = masu_frame_begin(&m->plan, &m->device, &m->draws, &m->timeline, frame);
     masu_result result = check_frame(m, frame);
     if (!result && m->governor) masu_governed_pick(m, &f);

@@ -104,7 +104,7 @@ static bool add_flat(masu_bench_rays *r) {
 
 bool masu_bench_rays_open(const masu_scene *scene, const double anchor[3], bool flat,
                           masu_bench_rays *r, char *error, size_t error_size) {
-    *r = (masu_bench_rays){.view = masu_scene_look(scene), .scene = *scene, .flat = flat};
+    *r = (masu_bench_rays){.view = masu_scene_view_of(scene), .scene = *scene, .flat = flat};
     memcpy(r->anchor, anchor, sizeof r->anchor);
     if (!masu_scene_data_of(scene)->trace_instances) {
         snprintf(error, error_size,

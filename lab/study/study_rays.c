@@ -107,7 +107,7 @@ static bool measure(bench *b, uint32_t kind, row *r) {
 
 static bool make_rays(bench *b) {
     uint32_t pixels = o->size.width * o->size.height;
-    masu_scene_view view = masu_scene_look(&b->scene);
+    masu_scene_view view = masu_scene_view_of(&b->scene);
     for (uint32_t k = 0; k < KINDS; k++) {
         b->in[k] = calloc(pixels, sizeof *b->in[k]);
         if (!b->in[k]) return false;
@@ -217,7 +217,7 @@ static bool open_scene(bench *b) {
     /* As far as a frame's anchor would be. */
     double anchor[3];
     for (uint32_t k = 0; k < 3; k++) {
-        double at = (double)masu_scene_look(&b->scene).camera_keys->position[k];
+        double at = (double)masu_scene_view_of(&b->scene).camera_keys->position[k];
         anchor[k] = 64.0 * round(at / 64.0);
     }
     char error[512];

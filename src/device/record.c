@@ -115,7 +115,7 @@ SAME_PLACE(material, blended);
 #define GRAPHICS_STAGES (VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT)
 
 /* How a material is drawn: 0 without textures, then as draws.h counts. The sun asks for no maps but the masks. */
-static uint32_t sweep_of(const masu_draw_look *material, uint32_t view) {
+static uint32_t sweep_of(const masu_draw_material *material, uint32_t view) {
     if (material->flags & MASU_MATERIAL_IS_BLEND) return UINT32_MAX; /* transparents.c; no shadow */
     if (!(material->flags & MASU_MATERIAL_HAS_MAPS)) return 0;
     if (material->flags & MASU_MATERIAL_IS_MASK) return 1 + MASU_TEXTURED_MASK;
@@ -126,7 +126,7 @@ static uint32_t sweep_of(const masu_draw_look *material, uint32_t view) {
  * is by half. */
 #define HALF_THERE (128u << MASU_MAP_CUTOFF_SHIFT)
 
-static uint32_t pick_sweep_of(masu_draw_look *material) {
+static uint32_t pick_sweep_of(masu_draw_material *material) {
     int blended = (material->flags & MASU_MATERIAL_IS_BLEND) != 0;
     int holes = blended || (material->flags & MASU_MATERIAL_IS_MASK);
     if (blended) material->flags = (material->flags & ~(0xFFu << MASU_MAP_CUTOFF_SHIFT)) | HALF_THERE;
@@ -136,7 +136,7 @@ static uint32_t pick_sweep_of(masu_draw_look *material) {
 /* A material's flags and layers into the push constants, and its textures bound where they are not
  * those of the draw before. */
 static void bind_maps(masu_recorder *rec, VkPipelineLayout layout,
-                      const masu_draw_look *material, struct masu_push_gbuffer *push,
+                      const masu_draw_material *material, struct masu_push_gbuffer *push,
                       uint32_t *bound) {
     push->flags = (material->flags & 0xFFFFFFu) | material->more_layers << MASU_MAP_OCCLUSION_SHIFT;
     push->coat_layer = material->more_layers >> 8 & 0xFFu;
@@ -191,20 +191,22 @@ static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep, int 
         const masu_batch *batch = &rec->draws->batches[b];
         push.instances = lists + batch->first_listed;
         for (uint32_t d = 0; d < batch->draw_count; d++) {
-            masu_draw_look look = kept ? rec->draws->looks[batch->first_draw + d]
-                                       : masu_draw_look_of(&v, batch->first_primitive + d);
-            int blended = (look.flags & MASU_MATERIAL_IS_BLEND) != 0;
-            if (batch->mirrored) look.flags &= ~(uint32_t)MASU_MATERIAL_IS_SINGLE;
-            if ((pick ? pick_sweep_of(&look) : sweep_of(&look, view)) != sweep) continue;
-            if (!sun && !pick && culled != ((look.flags & MASU_MATERIAL_IS_SINGLE) != 0)) continue;
+            masu_draw_material material =
+                kept ? rec->draws->materials[batch->first_draw + d]
+                     : masu_draw_material_of(&v, batch->first_primitive + d);
+            int blended = (material.flags & MASU_MATERIAL_IS_BLEND) != 0;
+            if (batch->mirrored) material.flags &= ~(uint32_t)MASU_MATERIAL_IS_SINGLE;
+            if ((pick ? pick_sweep_of(&material) : sweep_of(&material, view)) != sweep) continue;
+            if (!sun && !pick && culled != ((material.flags & MASU_MATERIAL_IS_SINGLE) != 0))
+                continue;
             if (pick) {
                 push.material = blended ? 1 : 0;
-                push.flags = look.flags;
+                push.flags = material.flags;
             } else if (!sun) {
-                push.material = look.material;
-                push.meso = look.meso;
+                push.material = material.material;
+                push.meso = material.meso;
             }
-            if (sweep) bind_maps(rec, layout, &look, &push, &bound);
+            if (sweep) bind_maps(rec, layout, &material, &push, &bound);
             memcpy(&block.own, &push, sizeof push);
             vk->CmdPushConstants(rec->cmd, layout, GRAPHICS_STAGES, 0, sizeof block, &block);
             vk->CmdDrawIndexedIndirect(rec->cmd, m->objects.buffers[MASU_BUFFER_DRAWS],
@@ -663,7 +665,7 @@ static masu_result record_frames(masu_device *m, const masu_draws *draws, masu_d
         for (uint32_t i = 0; i < viewports * each && !result; i++) {
             uint32_t v = i / each, f = i % each / own, t = i % own / rp->variants;
             uint32_t recording = v * m->plan->viewport_recordings + rp->first_recording + i % own;
-            masu_plan_look_at(m->plan, v);
+            masu_plan_select_viewport(m->plan, v);
             masu_recorder rec = {.m = m,
                                  .draws = draws,
                                  .parts = &m->frames[(f * recordings + recording) * m->plan->parts],
@@ -677,7 +679,7 @@ static masu_result record_frames(masu_device *m, const masu_draws *draws, masu_d
             rp->barriers = rec.barriers; /* of the last variant, which leaves nothing out */
         }
     }
-    masu_plan_look_at(m->plan, 0);
+    masu_plan_select_viewport(m->plan, 0);
     return result;
 }
 

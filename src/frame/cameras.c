@@ -144,7 +144,7 @@ static void add_outline(const outline *o, const sun_box *b, double margin, masu_
 /* ---- Stage 2 --------------------------------------------------------------------------------- */
 
 /* Depth is 1 at the side of the sun. */
-static void look_from_sun(const sun_box *b, const double eye[3], masu_occlusion_view *v) {
+static void set_sun_view(const sun_box *b, const double eye[3], masu_occlusion_view *v) {
     for (uint32_t row = 0; row < 3; row++) {
         double scale = 1.0 / (row == 2 ? b->behind + b->ahead : b->half[row]);
         double offset = row == 2 ? b->behind * scale : 0.0;
@@ -201,7 +201,7 @@ static void set_suns(masu_views *v, const masu_bounds *bounds, const masu_shadow
     all.half[0] = all.half[1] = fmax(all.half[0], all.half[1]);
     masu_occlusion_view shared = v->stage2[1];
     set_atlas(&shared, 1);
-    look_from_sun(&all, f->eye, &shared);
+    set_sun_view(&all, f->eye, &shared);
     double texel = 2.0 * all.half[0] / MASU_ATLAS_SUN, coarsest = shadow ? 0.0 : texel;
     for (uint32_t k = 0; k < suns && shadow; k++) {
         if (masu_view_draws(f, 1 + k)) coarsest = fmax(coarsest, texel_of(&s->cascades[k]));

@@ -50,7 +50,7 @@ masu_result masu_picking_read(masu_frame_data *f, masu_detail *detail) {
 }
 
 /* The pyramid of the block of 2x2 pixels and a pixel around it: pick.vert's matrix, halved across. */
-static void look_at_pixel(masu_cull_view *view, const masu_frame_data *f) {
+static void set_pixel_view(masu_cull_view *view, const masu_frame_data *f) {
     const masu_rung_plan *rp = masu_frame_rung_plan(f);
     const float *from = f->u.clip_from_rel;
     const double half[2] = {0.5 * (double)rp->render_width, 0.5 * (double)rp->render_height};
@@ -101,7 +101,7 @@ void masu_picking_write(masu_picking *p, masu_visible *visible, const masu_bound
         masu_cull_view view;
         masu_cull_set set = masu_bounds_set(bounds, &f->plan->scene);
         masu_cull_counts counts = {0, 0};
-        look_at_pixel(&view, f);
+        set_pixel_view(&view, f);
         masu_cull(&set, &view, p->group_states, visible->marks, MARK, &counts);
     }
     list(visible, f);

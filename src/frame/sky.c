@@ -445,8 +445,8 @@ static void look_around(const masu_sky *sky, double sun_y, double sign, sky_half
             to->direction[0] = flat * x;
             to->direction[1] = y;
             to->direction[2] = flat * sin(angle);
-            masu_sky_look(&sky->uniforms, (float)y, (float)x, (float)(flat * x * across + y * sun_y),
-                          light);
+            masu_sky_evaluate(&sky->uniforms, (float)y, (float)x,
+                              (float)(flat * x * across + y * sun_y), light);
             for (uint32_t c = 0; c < 3; c++)
                 to->light[c] = (double)light[c] * width * 2.0 * PI / RING_POINTS;
         }

@@ -30,7 +30,8 @@ static void look_up(const struct masu_sky_uniforms *sky, float y, float x, float
     }
 }
 
-void masu_sky_look(const struct masu_sky_uniforms *sky, float y, float x, float cosine, float out[3]) {
+void masu_sky_evaluate(const struct masu_sky_uniforms *sky, float y, float x, float cosine,
+                       float out[3]) {
     float terms[MASU_SKY_TERMS][3];
     look_up(sky, y, x, terms);
     float air = air_phase(cosine), haze = haze_phase(cosine, sky->sun[3]);
@@ -41,8 +42,8 @@ void masu_sky_radiance(const struct masu_sky_uniforms *sky, const float d[3], fl
     float flat = sqrtf(d[0] * d[0] + d[2] * d[2]);
     float x = flat > 1e-6f ? (d[0] * sky->azimuth[0] + d[2] * sky->azimuth[1]) / flat : 0.0f;
     float cosine = d[0] * sky->sun[0] + d[1] * sky->sun[1] + d[2] * sky->sun[2];
-    masu_sky_look(sky, fminf(fmaxf(d[1], -1.0f), 1.0f), fminf(fmaxf(x, -1.0f), 1.0f),
-                  fminf(fmaxf(cosine, -1.0f), 1.0f), out);
+    masu_sky_evaluate(sky, fminf(fmaxf(d[1], -1.0f), 1.0f), fminf(fmaxf(x, -1.0f), 1.0f),
+                      fminf(fmaxf(cosine, -1.0f), 1.0f), out);
 }
 
 /* What fog far away has for a colour, but for the phase functions. */

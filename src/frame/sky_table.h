@@ -12,7 +12,8 @@
 void masu_sky_radiance(const struct masu_sky_uniforms *sky, const float direction[3], float out[3]);
 
 /* Radiance at a sine of elevation, a cosine of azimuth from the sun, and a cosine to the sun, all -1..1. */
-void masu_sky_look(const struct masu_sky_uniforms *sky, float y, float x, float cosine, float out[3]);
+void masu_sky_evaluate(const struct masu_sky_uniforms *sky, float y, float x, float cosine,
+                       float out[3]);
 
 /* Fills `horizon` and `rough` by all the rest, which is filled before. */
 void masu_sky_tables(struct masu_sky_uniforms *sky);

@@ -413,7 +413,7 @@ void masu_plan_resize(masu_frame_plan *plan, VkExtent2D output) {
     }
 }
 
-void masu_plan_look_at(masu_frame_plan *plan, uint32_t viewport) {
+void masu_plan_select_viewport(masu_frame_plan *plan, uint32_t viewport) {
     const masu_viewport *v = &plan->desc.viewports[viewport];
     masu_plan_resize(plan, plan->desc.viewport_count ? (VkExtent2D){v->width, v->height} : plan->whole);
 }

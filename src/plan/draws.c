@@ -10,8 +10,8 @@ void masu_draws_alloc(masu_draws *draws, masu_arena *arena, const masu_frame_pla
         draws->added =
             masu_arena_alloc(arena, "reserve draws", plan->scene.meshes, sizeof *draws->added, 4);
     }
-    draws->looks = masu_arena_alloc(arena, "draw looks", plan->desc.resizable ? plan->draws : 0,
-                                    sizeof *draws->looks, 4);
+    draws->materials = masu_arena_alloc(arena, "draw looks", plan->desc.resizable ? plan->draws : 0,
+                                        sizeof *draws->materials, 4);
 }
 
 /* A form of a mesh that has instances. */
@@ -108,11 +108,11 @@ static void add_transparents(masu_draws *draws, const masu_frame_plan *plan,
     draws->transparent_count += plan->reserve.places.transparents;
 }
 
-masu_draw_look masu_draw_look_of(const masu_scene_view *v, uint32_t primitive) {
+masu_draw_material masu_draw_material_of(const masu_scene_view *v, uint32_t primitive) {
     uint32_t number = v->primitives[primitive].material;
     const masu_blob_material *of = &v->materials[number];
     int meso = of->meso != MASU_BLOB_NONE;
-    return (masu_draw_look){
+    return (masu_draw_material){
         .material = number,
         .flags = of->flags,
         .texture_set = of->texture_set,
@@ -128,7 +128,8 @@ void masu_draws_make(masu_draws *draws, const masu_frame_plan *plan, const masu_
     for (uint32_t b = 0; plan->desc.resizable && b < draws->batch_count; b++) {
         const masu_batch *batch = &draws->batches[b];
         for (uint32_t d = 0; d < batch->draw_count; d++)
-            draws->looks[batch->first_draw + d] = masu_draw_look_of(v, batch->first_primitive + d);
+            draws->materials[batch->first_draw + d] =
+                masu_draw_material_of(v, batch->first_primitive + d);
     }
     if (plan->needs.transparents) add_transparents(draws, plan, v);
 }

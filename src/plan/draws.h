@@ -33,18 +33,19 @@ typedef struct masu_batch {
 } masu_batch;
 
 /* How a draw is drawn: what recording it asks of its material. */
-typedef struct masu_draw_look {
+typedef struct masu_draw_material {
     uint32_t material;
     uint32_t flags; /* masu_blob_material_flags */
     uint32_t texture_set, layers, more_layers;
     float detail[2];
     uint32_t meso; /* element of the buffer of materials where its curves begin; 0: none */
-} masu_draw_look;
+} masu_draw_material;
 
 typedef struct masu_draws {
     masu_batch *batches;
     uint32_t *added; /* [mesh]: instances that may be added; of no length without a reserve */
-    masu_draw_look *looks; /* [draw]; of no length unless they are recorded again, when the blob is gone */
+    /* [draw]; of no length unless they are recorded again, when the blob is gone. */
+    masu_draw_material *materials;
     uint32_t batch_count, large_count; /* large: with room for over 64 instances */
     /* Slots of blended things, and the texture sets of each. */
     uint32_t transparent_count, transparent_set_count;
@@ -57,7 +58,7 @@ void masu_draws_make(masu_draws *draws, const masu_frame_plan *plan, const masu_
 /* Of an instance's transform: its triangles turn the other way in the picture. */
 int masu_is_mirrored(const float rows[12]);
 
-masu_draw_look masu_draw_look_of(const masu_scene_view *v, uint32_t primitive);
+masu_draw_material masu_draw_material_of(const masu_scene_view *v, uint32_t primitive);
 
 /* A part of the atlas of occluders: 0 is the camera's, 1 the sun's. */
 VkRect2D masu_atlas_part(uint32_t part);

@@ -141,7 +141,7 @@ static inline uint64_t masu_align_up(uint64_t v, uint64_t a) { return (v + a - 1
 /* Render sizes of another output, up to plan->most; passes, images and buffers stay what they are. */
 void masu_plan_resize(masu_frame_plan *plan, VkExtent2D output);
 /* The same of a viewport; where there are none, of the whole output. */
-void masu_plan_look_at(masu_frame_plan *plan, uint32_t viewport);
+void masu_plan_select_viewport(masu_frame_plan *plan, uint32_t viewport);
 /* Bytes of MASU_BUFFER_JOINTS for one moment: of each skin a header, then the matrices. */
 #define MASU_SKIN_HEADER_BYTES 32u
 static inline uint64_t masu_joints_bytes(const masu_scene_data *s) {

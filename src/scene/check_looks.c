@@ -234,7 +234,7 @@ static void note_set(const masu_blob_material *m, uint32_t sets[], uint32_t *cou
     if (i == *count && i <= MASU_TRANSPARENT_SETS_MAX) sets[(*count)++] = m->texture_set;
 }
 
-static void look_at_transparents(const reader *r, masu_scene_data *out) {
+static void describe_transparents(const reader *r, masu_scene_data *out) {
     uint32_t sets[MASU_TRANSPARENT_SETS_MAX + 1], count = 0;
     uint64_t things = 0;
     for (uint32_t m = 0, from = 0; m < out->meshes; m++) {
@@ -253,7 +253,7 @@ static void look_at_transparents(const reader *r, masu_scene_data *out) {
     out->transparent_sets = things && !count ? 1 : count;
 }
 
-void masu_look_at_looks(const reader *r, masu_scene_data *out) {
+void masu_describe_looks(const reader *r, masu_scene_data *out) {
     const uint32_t own = 1u << MASU_SLOT_COAT | MASU_MATERIAL_COAT_SMOOTH | MASU_MATERIAL_BASE_SMOOTH;
     for (uint32_t i = 0; i < out->materials; i++) {
         const masu_blob_material *m = &r->view.materials[i];
@@ -263,7 +263,7 @@ void masu_look_at_looks(const reader *r, masu_scene_data *out) {
         if (m->flags & MASU_MATERIAL_IS_TINTED) out->tints = 1;
         if (m->flags & MASU_MATERIAL_IS_BLEND) out->blends++;
     }
-    look_at_transparents(r, out);
+    describe_transparents(r, out);
     out->meso = (uint32_t)r->counts[MASU_BLOB_MESO];
     out->lights = (uint32_t)r->counts[MASU_BLOB_LIGHTS];
     if (r->view.probes) {

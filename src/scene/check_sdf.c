@@ -64,7 +64,7 @@ masu_result masu_check_sdf(reader *r) {
     return MASU_OK;
 }
 
-void masu_look_at_sdf(const reader *r, masu_scene_data *out) {
+void masu_describe_sdf(const reader *r, masu_scene_data *out) {
     out->sdf_parts = r->view.sdf->part_count;
     out->sdf_block_words = r->view.sdf->block_words;
     out->sdf_slots = (uint32_t)r->counts[MASU_BLOB_SLOTS];

@@ -176,7 +176,7 @@ masu_result masu_check_skin_trees(reader *r) {
     return MASU_OK;
 }
 
-void masu_look_at_skins(const reader *r, masu_scene_data *out) {
+void masu_describe_skins(const reader *r, masu_scene_data *out) {
     const masu_scene_view *v = &r->view;
     out->clips = (uint32_t)r->counts[MASU_BLOB_CLIPS];
     out->channels = (uint32_t)r->counts[MASU_BLOB_CHANNELS];

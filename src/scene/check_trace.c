@@ -175,7 +175,7 @@ static masu_result check_pictures(reader *r) {
     return MASU_OK;
 }
 
-void masu_look_at_trace(const reader *r, masu_scene_data *out) {
+void masu_describe_trace(const reader *r, masu_scene_data *out) {
     out->trace_nodes = (uint32_t)r->counts[MASU_BLOB_TRACE_NODES];
     out->trace_triangles = (uint32_t)r->counts[MASU_BLOB_TRACE_TRIANGLES];
     out->trace_instances = (uint32_t)r->counts[MASU_BLOB_TRACE_INSTANCES];

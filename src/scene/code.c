@@ -406,7 +406,7 @@ static const uint32_t *pointed(const walk *w, uint32_t type) {
     return is(pointer, OP_TYPE_POINTER) ? find(w, pointer[3]) : NULL;
 }
 
-static const char *look_at_resources(walk *w) {
+static const char *check_resources(walk *w) {
     for (uint32_t k = 0; k < w->out->bound_count; k++) {
         masu_module_bound *b = &w->out->bound[k];
         if (!b->class) return "a binding is of nothing";
@@ -450,7 +450,7 @@ static uint32_t struct_bytes(const walk *w, const uint32_t *type, int deeper) {
 }
 
 /* A constant of that name wins over the execution mode. */
-static const char *look_at_local_size(walk *w) {
+static const char *check_local_size(walk *w) {
     if (!w->workgroup_size) return NULL;
     const uint32_t *size = find(w, w->workgroup_size);
     if (!size) return NULL; /* of nothing that is there */
@@ -479,8 +479,8 @@ const char *masu_module_read(const uint32_t *words, uint64_t count, masu_module 
     problem = walk_once(&w, 1, at);
     if (problem) return problem;
     *at = count;
-    problem = look_at_resources(&w);
-    if (!problem) problem = look_at_local_size(&w);
+    problem = check_resources(&w);
+    if (!problem) problem = check_local_size(&w);
     if (!problem && w.push_type) {
         out->push_bytes = struct_bytes(&w, pointed(&w, w.push_type), 1);
         if (!out->push_bytes) problem = "push constants are not numbers of 32 bits within 128 bytes";

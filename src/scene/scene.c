@@ -9,7 +9,7 @@
 #include <string.h>
 
 /* Every form of a mesh has draws of its own, and room for the numbers of its instances. */
-static void look_at_draws(const reader *r, masu_scene_data *out) {
+static void describe_draws(const reader *r, masu_scene_data *out) {
     uint32_t from = 0, first_lod;
     for (uint32_t m = 0; m < out->meshes; m++) {
         uint32_t first, end = masu_scene_mesh_instances(&r->view, out->instances, m, from, &first);
@@ -51,7 +51,7 @@ static void describe(const reader *r, uint64_t blob_bytes, uint64_t pairs, masu_
                              .camera_keys = (uint32_t)r->counts[MASU_BLOB_CAMERA_KEYS],
                              .sdf = r->view.sdf != NULL,
                              .sdf_params = (uint32_t)r->counts[MASU_BLOB_SDF_PARAMS]};
-    if (r->view.sdf) masu_look_at_sdf(r, out);
+    if (r->view.sdf) masu_describe_sdf(r, out);
     if (r->view.shadow && out->instances) { /* without polygons there is nothing to draw into it */
         out->shadow_cascades = r->view.shadow->cascades;
         out->shadow_resolution = r->view.shadow->resolution;
@@ -70,10 +70,10 @@ static void describe(const reader *r, uint64_t blob_bytes, uint64_t pairs, masu_
         if (r->view.materials[i].flags & MASU_MATERIAL_IS_MASK) out->masks = 1;
         if (r->view.materials[i].flags & MASU_MATERIAL_IS_SINGLE) out->singles = 1;
     }
-    masu_look_at_looks(r, out);
-    masu_look_at_trace(r, out);
-    masu_look_at_skins(r, out);
-    look_at_draws(r, out);
+    masu_describe_looks(r, out);
+    masu_describe_trace(r, out);
+    masu_describe_skins(r, out);
+    describe_draws(r, out);
 }
 
 /* Names are hashed for each thing that has one: a long one that many share would be work without measure. */

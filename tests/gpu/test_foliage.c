@@ -22,7 +22,7 @@ static double mips[MIPS][TEXELS * TEXELS]; /* alpha; made from the first by plai
 
 /* Layer `layer` of the scene's masks: mip 0 as the blob has it. */
 static void read_mask(uint32_t layer) {
-    masu_scene_view v = masu_scene_look(&look);
+    masu_scene_view v = masu_scene_view_of(&look);
     const masu_blob_texture *t = v.textures;
     while (t->format != MASU_TEXTURE_BC3_SRGB) t++;
     assert_true(t->width == TEXELS && t->height == TEXELS && layer < t->layers);
@@ -114,7 +114,7 @@ static void foliage_covers_the_same_at_any_distance(void **state) {
     d.desc.rung_count = 1;
     open_session(&s, &d);
     for (uint32_t which = 0; which < 2; which++) {
-        masu_scene_view v = masu_scene_look(&look);
+        masu_scene_view v = masu_scene_view_of(&look);
         masu_instance instance = masu_instance_find(s.m, names[which]);
         masu_instance_state placed;
         assert_int_equal(masu_instance_get(s.m, instance, &placed), MASU_OK);

@@ -150,7 +150,7 @@ static void the_coarsest_form_is_the_last_one(void **state) {
         fail_msg("%s", error);
     }
     assert_int_equal(masu_scene_bind(bytes, size, &scene, NULL), MASU_OK);
-    masu_scene_view v = masu_scene_look(&scene);
+    masu_scene_view v = masu_scene_view_of(&scene);
     uint64_t least = 0, occluders = 0;
     for (uint32_t i = 0; i < masu_scene_count(&s.scene, MASU_SCENE_INSTANCE); i++) {
         const masu_blob_mesh *mesh = &v.meshes[v.instances[i].mesh];

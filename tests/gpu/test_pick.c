@@ -26,7 +26,7 @@ static void *blob;
 static masu_scene scene;
 
 static world look_around(masu_session *s) {
-    world w = {.v = masu_scene_look(&scene),
+    world w = {.v = masu_scene_view_of(&scene),
                .instances = masu_scene_count(&scene, MASU_SCENE_INSTANCE)};
     assert_in_range(w.instances, 0, MOST);
     for (uint32_t i = 0; i < w.instances; i++)

@@ -301,7 +301,7 @@ static void *open_room(masu_scene_view *v) {
     masu_scene scene;
     void *blob = read_file(scene_path("probe_room"), &bytes);
     assert_int_equal(masu_scene_bind(blob, bytes, &scene, NULL), MASU_OK);
-    *v = masu_scene_look(&scene);
+    *v = masu_scene_view_of(&scene);
     assert_non_null(v->probes);
     return blob;
 }

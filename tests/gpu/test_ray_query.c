@@ -331,7 +331,7 @@ static void trace_all(const char *scene, masu_switch way, uint32_t split, const 
     d.host.get_instance_proc_addr = tap_instance_proc;
     open_session(&s, &d);
     tap_open(&s.host);
-    masu_scene_view v = masu_scene_look(&s.scene);
+    masu_scene_view v = masu_scene_view_of(&s.scene);
     masu_blob_instance *instances =
         malloc(masu_scene_count(&s.scene, MASU_SCENE_INSTANCE) * sizeof *instances);
     memcpy(instances, v.instances,

@@ -104,7 +104,7 @@ static masu_scene_view blob_of(void **blob) {
     size_t bytes;
     *blob = read_file(scene_path("test_skin"), &bytes);
     assert_int_equal(masu_scene_bind(*blob, bytes, &scene, &detail), MASU_OK);
-    return masu_scene_look(&scene);
+    return masu_scene_view_of(&scene);
 }
 
 static void check_pose(masu_session *s, const char *name, const char *path, uint32_t clip,

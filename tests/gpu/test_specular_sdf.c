@@ -79,7 +79,7 @@ static stage open_stage(const char *name, const masu_camera *camera) {
     snprintf(file, sizeof file, "%s.truth.so", name);
     assert_ok(masu_truth_open(stiff_path(file), &s.truth, error, sizeof error));
     assert_ok(masu_view_of(&s.session.scene, camera, 0.0, 2 * W, 2 * H, &s.view, error, sizeof error));
-    s.blob = masu_scene_look(&s.session.scene);
+    s.blob = masu_scene_view_of(&s.session.scene);
     assert_non_null(s.blob.reflections);
     assert_true(2 * s.blob.slot_count <= SLOTS);
     struct masu_frame_uniforms *f = &s.job.frame;

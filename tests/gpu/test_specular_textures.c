@@ -130,7 +130,7 @@ static void read_blob(void) {
     free(blob);
     blob = read_file(scene_path(SCENE), &blob_bytes);
     assert_int_equal(masu_scene_bind(blob, blob_bytes, &scene, &detail), MASU_OK);
-    view = masu_scene_look(&scene);
+    view = masu_scene_view_of(&scene);
 }
 
 /* Opens the blob as it has been changed in place. */

@@ -26,7 +26,7 @@ static float depth[2][PIXELS], kept[VARIANTS][FRAMES][PIXELS];
 
 static void change_materials(masu_session *s, int variant) {
     masu_blob_header *header = s->blob;
-    masu_scene_view v = masu_scene_look(&s->scene);
+    masu_scene_view v = masu_scene_view_of(&s->scene);
     masu_blob_material *materials =
         (masu_blob_material *)(void *)((uint8_t *)s->blob +
                                        ((const uint8_t *)v.materials - (const uint8_t *)s->blob));

@@ -52,7 +52,7 @@ typedef struct mip {
 
 /* One mip of layer 0, decoded block by block; free .rgba. */
 static mip mip_of(uint32_t texture, uint32_t level) {
-    masu_scene_view v = masu_scene_look(&look);
+    masu_scene_view v = masu_scene_view_of(&look);
     const masu_blob_texture *t = &v.textures[texture];
     const unsigned char *at = v.texels + t->offset;
     uint32_t block_bytes = masu_blob_block_bytes(t->format);
@@ -280,7 +280,7 @@ static void a_mask_has_the_silhouette_of_its_alpha(void **state) {
         masu_frame_desc frame = {.camera = &camera};
         open_textured("test_texture_mask", decoded, 1.0f);
         const float *depth = draw_image(&s, &frame, MASU_READBACK_DEPTH, NULL);
-        masu_scene_view v = masu_scene_look(&look);
+        masu_scene_view v = masu_scene_view_of(&look);
         uint32_t texture = 0;
         while (v.textures[texture].format != MASU_TEXTURE_BC3_SRGB) texture++;
         mip m = mip_of(texture, 0);

@@ -514,7 +514,7 @@ static void read_sdf(walker *w) {
 }
 
 const char *masu_ref_walk_scene(const masu_scene *scene) {
-    walker w = {.scene = masu_scene_data_of(scene), .view = masu_scene_look(scene)};
+    walker w = {.scene = masu_scene_data_of(scene), .view = masu_scene_view_of(scene)};
     read_sections(&w);
     if (!w.fault) read_geometry(&w);
     if (!w.fault) read_textures(&w);

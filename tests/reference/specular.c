@@ -58,7 +58,7 @@ static const char *unknown(const masu_scene *scene, const masu_scene_view *v) {
 bool masu_ref_mirror_open(const masu_scene *scene, const masu_camera *camera, uint32_t width,
                           uint32_t height, masu_ref_mirror *m, char *error, size_t error_size) {
     memset(m, 0, sizeof *m);
-    masu_scene_view v = masu_scene_look(scene);
+    masu_scene_view v = masu_scene_view_of(scene);
     const char *what = unknown(scene, &v);
     if (what) {
         snprintf(error, error_size, "the scene has %s, which this truth does not know", what);

@@ -87,7 +87,7 @@ static void split(masu_ref_triangles *s, uint32_t node, uint32_t *nodes) {
 }
 
 int masu_ref_triangles_open(const masu_scene *scene, masu_ref_triangles *out) {
-    masu_scene_view v = masu_scene_look(scene);
+    masu_scene_view v = masu_scene_view_of(scene);
     memset(out, 0, sizeof *out);
     out->triangles = malloc((size_t)(masu_scene_triangles(scene) + 1) * sizeof *out->triangles);
     out->nodes = malloc((size_t)(2 * masu_scene_triangles(scene) + 1) * sizeof *out->nodes);

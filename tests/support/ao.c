@@ -43,7 +43,7 @@ static RTCScene mesh_scene(RTCDevice device, const masu_scene_view *v, uint32_t 
 bool masu_ao_open(const masu_scene *scene, masu_ao_world *world, char *error, size_t error_size) {
     memset(world, 0, sizeof *world);
     if (!masu_scene_count(scene, MASU_SCENE_INSTANCE)) return true;
-    masu_scene_view v = masu_scene_look(scene);
+    masu_scene_view v = masu_scene_view_of(scene);
     RTCDevice device = rtcNewDevice("threads=1");
     if (!device) {
         snprintf(error, error_size, "Embree cannot be started");

@@ -25,7 +25,7 @@ void shadow_open(shadow_test *t, const char *name, uint32_t width, uint32_t heig
     open_session(&t->s, &d);
     void *blob = read_file(baked_scene(name), &bytes);
     assert_int_equal(masu_scene_bind(blob, bytes, &t->scene, NULL), MASU_OK);
-    masu_scene_view v = masu_scene_look(&t->scene);
+    masu_scene_view v = masu_scene_view_of(&t->scene);
     double length = 0;
     for (int k = 0; k < 3; k++) {
         t->sun[k] = (double)v.environment->sun_direction[k];

@@ -49,7 +49,7 @@ static void a_blob_with_detail_is_accepted_and_found(void **state) {
     assert_int_equal(masu_scene_data_of(&scene)->draws, 3); /* it adds none */
     assert_int_equal(masu_scene_triangles(&scene), 2 * (2 + 1) + 2);
     assert_null(masu_ref_walk_scene(&scene));
-    masu_scene_view view = masu_scene_look(&scene);
+    masu_scene_view view = masu_scene_view_of(&scene);
     uint32_t first;
     assert_int_equal(masu_scene_mesh_lods(&view, masu_scene_data_of(&scene)->lods, 0, &first), 0);
     assert_int_equal(masu_scene_mesh_lods(&view, masu_scene_data_of(&scene)->lods, 1, &first), 1);

@@ -78,7 +78,7 @@ static void instances_of_a_mesh_are_found_from_anywhere_before_them(void **state
     masu_scene s;
     support_blob_write(&blob, SUPPORT_ALL);
     support_accepted(&blob, &s);
-    masu_scene_view view = masu_scene_look(&s);
+    masu_scene_view view = masu_scene_view_of(&s);
     uint32_t first = 99;
     assert_int_equal(masu_scene_mesh_instances(&view, 3, 0, 0, &first), 2);
     assert_int_equal(first, 0);

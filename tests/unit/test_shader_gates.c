@@ -380,7 +380,7 @@ static void the_code_in_every_baked_scene_passes(void **state) {
             fail_msg("%s", error);
         }
         if (masu_scene_bind(bytes, size, &scene, &detail)) fail_msg("%s: %s", path, detail.text);
-        masu_scene_view view = masu_scene_look(&scene);
+        masu_scene_view view = masu_scene_view_of(&scene);
         uint32_t found = 0;
         for (uint32_t kind = 0; kind < MASU_BLOB_KIND_COUNT; kind++) {
             char name[512];

@@ -109,7 +109,7 @@ static void bind(const masu_bake_content *c) {
     masu_bake_make_blob(c, &blob);
     if (masu_scene_bind(blob.data, blob.bytes, &scene, &detail) != MASU_OK)
         fail_msg("%s", detail.text);
-    view = masu_scene_look(&scene);
+    view = masu_scene_view_of(&scene);
 }
 
 /* The picture of a map of the material with these flags set, or NULL. */

@@ -29,7 +29,7 @@ static const float not_finite[] = {(float)NAN, (float)INFINITY, (float)-INFINITY
 
 static void assert_resident(const unsigned char *vertices, const unsigned char *indices,
                             const unsigned char *materials, const unsigned char *slots) {
-    masu_scene_view v = masu_scene_look(&scene);
+    masu_scene_view v = masu_scene_view_of(&scene);
     assert_memory_equal(vertices, v.vertices, 11 * sizeof *v.vertices);
     assert_memory_equal(indices, v.indices, 15 * sizeof *v.indices);
     const float expected[2][12] = {
@@ -122,7 +122,7 @@ static void chunks_of_probes_add_up_to_grid_data_and_room(void **state) {
         masu_commands commands;
         uint32_t submitted = 0;
         make_renderer(SUPPORT_ALL | SUPPORT_LIGHTING, staging);
-        masu_scene_view v = masu_scene_look(&scene);
+        masu_scene_view v = masu_scene_view_of(&scene);
         uint64_t bytes = m.plan.buffers[MASU_BUFFER_PROBES].bytes, data = v.probe_words * 4;
         assert_int_equal(v.probe_words, 74);
         assert_int_equal(bytes, sizeof *v.probes + (76 + 2 * MASU_PROBE_LIT_WORDS) * 4);
@@ -236,7 +236,7 @@ static void a_moved_instance_reaches_every_slot_once(void **state) {
     const uint64_t size = sizeof(struct masu_instance_data);
     static const float rows[12] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
     make_renderer(SUPPORT_ALL, 0);
-    masu_scene_view v = masu_scene_look(&scene);
+    masu_scene_view v = masu_scene_view_of(&scene);
     for (uint32_t slot = 0; slot < 2; slot++) { /* all, at first */
         write_instances(slot);
         for (uint32_t i = 0; i < 3; i++) {
@@ -269,7 +269,7 @@ static void a_moved_instance_reaches_as_many_slots_as_there_are(void **state) {
             m.plan.desc.frames_in_flight = flight;
             m.plan.needs.velocity = velocity;
             m.plan.buffers[MASU_BUFFER_INSTANCES].stride = 2 * 4 * sizeof(struct masu_instance_data);
-            masu_scene_view v = masu_scene_look(&scene);
+            masu_scene_view v = masu_scene_view_of(&scene);
             masu_instances_copy_scene(&m.instances, &m.plan, &v);
             for (uint32_t n = 0; n < flight + velocity; n++) {
                 assert_int_equal(m.instances.dirty_count, 3);

@@ -159,7 +159,7 @@ static void shaders_of_the_tree_have_none_left(void **state) {
         size_t bytes;
         void *blob = read_file(found.gl_pathv[k], &bytes);
         assert_int_equal(masu_scene_bind(blob, bytes, &scene, NULL), MASU_OK);
-        masu_scene_view view = masu_scene_look(&scene);
+        masu_scene_view view = masu_scene_view_of(&scene);
         for (uint32_t kind = 0; kind < MASU_BLOB_KIND_COUNT; kind++) {
             if (!view.code[kind].words) continue;
             assert_done(found.gl_pathv[k], view.code[kind].words, 4 * (size_t)view.code[kind].count);

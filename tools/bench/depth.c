@@ -264,7 +264,7 @@ static bool truth_file(const char *scene_path, char path[4096]) {
 bool masu_depth_has_truth(const char *scene_path, const masu_scene *scene) {
     char path[4096];
     return (masu_scene_features(scene) & MASU_SCENE_HAS_SDF) &&
-           !masu_scene_look(scene).sdf->has_raster && truth_file(scene_path, path);
+           !masu_scene_view_of(scene).sdf->has_raster && truth_file(scene_path, path);
 }
 
 static bool read_scene(masu_depth_bench *b) {

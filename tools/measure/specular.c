@@ -148,7 +148,7 @@ masu_specular_error masu_specular_compare(const float *rgb, const float *truth,
 }
 
 bool masu_specular_place(const masu_scene *scene, const char *name, float rows[12]) {
-    masu_scene_view v = masu_scene_look(scene);
+    masu_scene_view v = masu_scene_view_of(scene);
     for (uint32_t i = 0; i < masu_scene_count(scene, MASU_SCENE_INSTANCE); i++) {
         if (v.instances[i].name == MASU_BLOB_NONE) continue;
         if (strcmp(v.names + v.instances[i].name, name) != 0) continue;

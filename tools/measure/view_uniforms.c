@@ -46,7 +46,7 @@ static bool look(const masu_camera *c, masu_view *v) {
 bool masu_view_seen(const masu_scene *scene, const masu_camera *camera, uint32_t width,
                     uint32_t height, masu_view *out, char *error, size_t error_size) {
     memset(out, 0, sizeof *out);
-    masu_scene_view blob = masu_scene_look(scene);
+    masu_scene_view blob = masu_scene_view_of(scene);
     out->width = width;
     out->height = height;
     if (!look(camera, out)) {
@@ -68,7 +68,7 @@ bool masu_view_seen(const masu_scene *scene, const masu_camera *camera, uint32_t
 
 bool masu_view_of(const masu_scene *scene, const masu_camera *camera, double time, uint32_t width,
                   uint32_t height, masu_view *out, char *error, size_t error_size) {
-    masu_scene_view blob = masu_scene_look(scene);
+    masu_scene_view blob = masu_scene_view_of(scene);
     if (!blob.sdf || blob.sdf->has_raster) {
         snprintf(error, error_size, "%s",
                  blob.sdf ? "the scene has polygons, which the truth does not know"
