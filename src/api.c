@@ -65,7 +65,7 @@ void masu_copy_scene(masu_renderer *m) {
     const masu_frame_plan *plan = &m->plan;
     if (!plan->desc.scene) return;
     masu_scene_view v = masu_scene_data_view(&plan->scene);
-    masu_draws_make(&m->draws, plan, &v);
+    masu_draws_build(&m->draws, plan, &v);
     masu_camera_path_copy_scene(&m->camera, plan, &v);
     masu_sun_sky_copy_scene(&m->sun_sky, &v);
     masu_sdf_copy_scene(&m->sdf, plan, &v);
@@ -92,9 +92,9 @@ void masu_write_scene(masu_renderer *m) {
 
 /* A plan needs the driver's sizes, so images and buffers are created; the caller keeps or destroys
  * them. */
-static masu_result make_plan(const masu_desc *desc, masu_vk *vk, masu_frame_plan *plan,
-                             masu_texture_plan textures[MASU_TEXTURE_ARRAYS_MAX],
-                             masu_objects *objects, masu_detail *detail) {
+static masu_result create_plan(const masu_desc *desc, masu_vk *vk, masu_frame_plan *plan,
+                               masu_texture_plan textures[MASU_TEXTURE_ARRAYS_MAX],
+                               masu_objects *objects, masu_detail *detail) {
     memset(objects, 0, sizeof *objects);
     memset(textures, 0, MASU_TEXTURE_ARRAYS_MAX * sizeof *textures);
     if (!desc) return masu_fail_null(detail, "desc");
@@ -134,7 +134,7 @@ static masu_result plan_and_forget(const masu_desc *desc, masu_frame_plan *plan,
     masu_vk vk;
     masu_objects objects;
     masu_texture_plan textures[MASU_TEXTURE_ARRAYS_MAX];
-    masu_result result = make_plan(desc, &vk, plan, textures, &objects, detail);
+    masu_result result = create_plan(desc, &vk, plan, textures, &objects, detail);
     if (result) return result;
     masu_objects_destroy(&vk, plan, &objects);
     masu_arena arena;
@@ -186,7 +186,7 @@ static masu_result init(const masu_desc *desc, void *block, uint64_t block_bytes
                          (uintptr_t)block, "host block is NULL or not %u-byte aligned",
                          MASU_ARENA_ALIGNMENT);
     }
-    masu_result result = make_plan(desc, &vk, &plan, textures, &objects, detail);
+    masu_result result = create_plan(desc, &vk, &plan, textures, &objects, detail);
     if (result) return result;
     masu_arena arena;
     masu_renderer *m = NULL;
@@ -215,7 +215,7 @@ static masu_result init(const masu_desc *desc, void *block, uint64_t block_bytes
     masu_timeline_start(&m->timeline);
     if (m->governor) masu_governed_start(m);
     masu_copy_scene(m);
-    result = masu_device_make(&m->device, &m->draws, detail);
+    result = masu_device_create(&m->device, &m->draws, detail);
     if (result) {
         masu_destroy(m);
         return result;

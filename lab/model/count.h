@@ -58,7 +58,7 @@ typedef struct masu_count {
     uint32_t messages;    /* of the validation layer */
 } masu_count;
 
-/* Rows that get a pipeline layout, in order (src/device/pipelines.c, masu_make_pipelines). */
+/* Rows that get a pipeline layout, in order (src/device/pipelines.c, masu_create_pipelines). */
 uint32_t masu_count_passes(const masu_frame_plan *plan, uint32_t out[MASU_PASS_COUNT]);
 
 /* Halved until it may be drawn. */

@@ -119,7 +119,7 @@ bool masu_bench_rays_open(const masu_scene *scene, const double anchor[3], bool 
         masu_bench_rays_close(r);
         return false;
     }
-    masu_trace_top_make(&r->top, r->top_memory, masu_scene_data_of(scene)->trace_instances);
+    masu_trace_top_init(&r->top, r->top_memory, masu_scene_data_of(scene)->trace_instances);
     for (uint32_t i = 0; i < masu_scene_data_of(scene)->trace_instances; i++) {
         masu_trace_root root = masu_trace_root_of(&r->view, i);
         masu_trace_top_set(&r->top, i, &root);

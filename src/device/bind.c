@@ -30,7 +30,7 @@ void masu_name(const masu_device *m, VkObjectType type, uint64_t handle, const c
     (void)m->vk.SetDebugUtilsObjectNameEXT(m->vk.device, &info); /* a missing name harms nobody */
 }
 
-static masu_result take_host_block(masu_device *m, uint32_t role, masu_detail *detail) {
+static masu_result bind_host_block(masu_device *m, uint32_t role, masu_detail *detail) {
     const masu_device_block *given = &m->plan->desc.device_blocks[role];
     const masu_block_plan *need = &m->plan->blocks[role];
     const char *name = role_names[role];
@@ -84,7 +84,7 @@ masu_result masu_bind_memory(masu_device *m, masu_detail *detail) {
     for (uint32_t role = 0; role < MASU_ROLE_COUNT; role++) {
         if (!m->plan->blocks[role].bytes) continue;
         masu_result result = m->plan->desc.device_blocks[role].memory
-                                 ? take_host_block(m, role, detail)
+                                 ? bind_host_block(m, role, detail)
                                  : allocate_block(m, role, detail);
         if (result) return result;
     }
@@ -118,7 +118,7 @@ masu_result masu_bind_memory(masu_device *m, masu_detail *detail) {
     return MASU_OK;
 }
 
-static masu_result make_texture_views(masu_device *m, masu_detail *detail) {
+static masu_result create_texture_views(masu_device *m, masu_detail *detail) {
     for (uint32_t i = 0; i < m->plan->scene.texture_arrays; i++) {
         masu_texture_plan *t = &m->plan->textures[i];
         VkImageViewCreateInfo info = {.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
@@ -136,8 +136,8 @@ static masu_result make_texture_views(masu_device *m, masu_detail *detail) {
 }
 
 /* An image that is used for nothing that needs a view may not have one (valid usage 04441). */
-static masu_result make_view(masu_device *m, uint32_t image, VkFormat format, VkImageUsageFlags usage,
-                             VkImageView *view, masu_detail *detail) {
+static masu_result create_view(masu_device *m, uint32_t image, VkFormat format,
+                               VkImageUsageFlags usage, VkImageView *view, masu_detail *detail) {
     const VkImageUsageFlags copies = VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
     if (!(usage & ~copies)) return MASU_OK;
     int depth = format == VK_FORMAT_D32_SFLOAT;
@@ -159,16 +159,16 @@ static masu_result make_view(masu_device *m, uint32_t image, VkFormat format, Vk
     return MASU_OK;
 }
 
-masu_result masu_make_views(masu_device *m, masu_detail *detail) {
+masu_result masu_create_views(masu_device *m, masu_detail *detail) {
     for (uint32_t i = 0; i < MASU_IMAGE_COUNT; i++) {
         if (!m->objects.images[i]) continue;
         VkFormat format = masu_plan_format(m->plan, i), stored = masu_plan_store_format(m->plan, i);
         VkImageUsageFlags usage = m->plan->images[i].usage;
         VkImageUsageFlags apart = format == stored ? 0 : usage & VK_IMAGE_USAGE_STORAGE_BIT;
-        masu_result result = make_view(m, i, format, usage & ~apart, &m->views[i], detail);
-        if (!result && apart) result = make_view(m, i, stored, apart, &m->stores[i], detail);
+        masu_result result = create_view(m, i, format, usage & ~apart, &m->views[i], detail);
+        if (!result && apart) result = create_view(m, i, stored, apart, &m->stores[i], detail);
         if (result) return result;
     }
     m->views[MASU_IMAGE_SOURCE] = m->plan->desc.source.view;
-    return make_texture_views(m, detail);
+    return create_texture_views(m, detail);
 }

@@ -7,7 +7,7 @@
 
 /* Memory is allocated or taken from the host; what fails is named. */
 masu_result masu_bind_memory(masu_device *m, masu_detail *detail);
-masu_result masu_make_views(masu_device *m, masu_detail *detail);
+masu_result masu_create_views(masu_device *m, masu_detail *detail);
 
 /* Host pointer to a buffer's first byte, of a slot where it has slots. NULL where it is not
  * host-visible. */

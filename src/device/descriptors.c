@@ -13,7 +13,7 @@ int masu_has_global_sets(const masu_frame_plan *plan) {
     return plan->needs.scene || plan->needs.smoothing;
 }
 
-static masu_result make_pool(masu_device *m, masu_detail *detail) {
+static masu_result create_pool(masu_device *m, masu_detail *detail) {
     uint32_t flights = m->plan->desc.frames_in_flight, sets = m->plan->pass_sets;
     /* The last is of ray queries alone. */
     VkDescriptorPoolSize sizes[] = {
@@ -66,7 +66,7 @@ static void write_binding(masu_device *m, uint32_t flight, const masu_binding *r
     m->vk.UpdateDescriptorSets(m->vk.device, 1, &write, 0, NULL);
 }
 
-static masu_result make_global_sets(masu_device *m, masu_detail *detail) {
+static masu_result create_global_sets(masu_device *m, masu_detail *detail) {
     masu_binding rows[MASU_BIND_COUNT];
     masu_bindings(m->plan, rows);
     for (uint32_t f = 0; f < m->plan->desc.frames_in_flight && masu_has_global_sets(m->plan); f++) {
@@ -85,7 +85,7 @@ static masu_result make_global_sets(masu_device *m, masu_detail *detail) {
 
 /* A slot without a texture gets one of the others: the shader does not look at it, but a set must be
  * whole. */
-static masu_result make_texture_sets(masu_device *m, masu_detail *detail) {
+static masu_result create_texture_sets(masu_device *m, masu_detail *detail) {
     masu_scene_view v = {0};
     if (m->plan->scene.texture_sets) v = masu_scene_data_view(&m->plan->scene);
     for (uint32_t i = 0; i < m->plan->scene.texture_sets; i++) {
@@ -146,7 +146,7 @@ static void write_pass_set(masu_device *m, const masu_rung_plan *rp, uint32_t pa
     }
 }
 
-masu_result masu_make_pass_sets(masu_device *m, const masu_rung_plan *rp, uint32_t *next,
+masu_result masu_create_pass_sets(masu_device *m, const masu_rung_plan *rp, uint32_t *next,
                                   VkDescriptorSet sets[MASU_MAX_TARGETS][MASU_PASS_COUNT],
                                   masu_detail *detail) {
     for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
@@ -164,9 +164,9 @@ masu_result masu_make_pass_sets(masu_device *m, const masu_rung_plan *rp, uint32
     return MASU_OK;
 }
 
-masu_result masu_make_sets(masu_device *m, masu_detail *detail) {
-    masu_result result = make_pool(m, detail);
-    if (!result) result = make_global_sets(m, detail);
-    if (!result) result = make_texture_sets(m, detail);
+masu_result masu_create_sets(masu_device *m, masu_detail *detail) {
+    masu_result result = create_pool(m, detail);
+    if (!result) result = create_global_sets(m, detail);
+    if (!result) result = create_texture_sets(m, detail);
     return result;
 }

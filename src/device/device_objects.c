@@ -25,12 +25,12 @@ void masu_device_alloc(masu_device *m, masu_arena *arena, const masu_frame_plan 
                          sizeof *m->ray_meshes, 8);
 }
 
-masu_result masu_device_make(masu_device *m, const masu_draws *draws, masu_detail *detail) {
+masu_result masu_device_create(masu_device *m, const masu_draws *draws, masu_detail *detail) {
     m->load_count = masu_load_chunks(m->plan);
     masu_result result = masu_bind_memory(m, detail);
-    if (!result) result = masu_make_views(m, detail);
+    if (!result) result = masu_create_views(m, detail);
     if (!result) result = masu_ray_create(m, detail);
-    if (!result) result = masu_make_pipelines(m, detail);
+    if (!result) result = masu_create_pipelines(m, detail);
     if (!result) result = masu_record(m, draws, detail);
     return result;
 }
@@ -38,7 +38,7 @@ masu_result masu_device_make(masu_device *m, const masu_draws *draws, masu_detai
 void masu_device_destroy(masu_device *m) {
     const masu_vk *vk = &m->vk;
     VkDevice device = vk->device;
-    masu_pool_give(m);
+    masu_pool_release(m);
     vk->DestroyQueryPool(device, m->queries, vk->allocator);
     vk->DestroyCommandPool(device, m->command_pool, vk->allocator);
     vk->DestroyDescriptorPool(device, m->descriptor_pool, vk->allocator);

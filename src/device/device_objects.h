@@ -11,7 +11,7 @@ void masu_device_alloc(masu_device *m, masu_arena *arena, const masu_frame_plan 
 
 /* vk, plan and objects are there; all else is made of them. What has been made when a step fails stays
  * for masu_device_destroy. */
-masu_result masu_device_make(masu_device *m, const masu_draws *draws, masu_detail *detail);
+masu_result masu_device_create(masu_device *m, const masu_draws *draws, masu_detail *detail);
 void masu_device_destroy(masu_device *m);
 
 #endif

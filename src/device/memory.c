@@ -64,7 +64,7 @@ static uint64_t order_key(const masu_placement *item, uint32_t rule) {
 
 #define ORDER_RULES 4u
 
-static void make_order(const masu_placement *items, uint32_t n, uint32_t rule, uint32_t *order) {
+static void build_order(const masu_placement *items, uint32_t n, uint32_t rule, uint32_t *order) {
     for (uint32_t i = 0; i < n; i++) {
         uint32_t j = i;
         while (j > 0 && order_key(&items[order[j - 1]], rule) < order_key(&items[i], rule)) {
@@ -80,14 +80,14 @@ uint64_t masu_place(masu_placement *items, uint32_t n) {
     uint32_t best_rule = 0;
     uint64_t best = UINT64_MAX;
     for (uint32_t rule = 0; rule < ORDER_RULES; rule++) {
-        make_order(items, n, rule, order);
+        build_order(items, n, rule, order);
         uint64_t end = place_in_order(items, order, n);
         if (end < best) {
             best = end;
             best_rule = rule;
         }
     }
-    make_order(items, n, best_rule, order);
+    build_order(items, n, best_rule, order);
     return place_in_order(items, order, n);
 }
 

@@ -17,8 +17,8 @@
 #include <string.h>
 
 /* Unpacked into a block that is mapped and that nothing is in yet; the driver keeps what it needs. */
-static masu_result make_module(masu_device *m, masu_code code, VkShaderModule *module,
-                               masu_detail *detail) {
+static masu_result create_module(masu_device *m, masu_code code, VkShaderModule *module,
+                                 masu_detail *detail) {
     uint32_t role = masu_code_role(m->plan);
     const uint32_t *words = masu_code_read(&code, (uint32_t *)(void *)m->mapped[role]);
     if (!words)
@@ -100,7 +100,7 @@ static uint64_t key_of(const masu_device *m, uint32_t pass, const masu_code code
 
 /* What a plan has no buffer for takes no binding: devices need to have no more than four storage buffers
  * in a stage. */
-static masu_result make_global_layout(masu_device *m, masu_detail *detail) {
+static masu_result create_global_layout(masu_device *m, masu_detail *detail) {
     masu_binding rows[MASU_BIND_COUNT];
     VkDescriptorSetLayoutBinding bindings[MASU_BIND_COUNT];
     uint32_t count = 0;
@@ -128,7 +128,7 @@ static int draws_polygons(uint32_t pass) {
 }
 
 /* Set 2: the textures of a draw. */
-static masu_result make_texture_layout(masu_device *m, masu_detail *detail) {
+static masu_result create_texture_layout(masu_device *m, masu_detail *detail) {
     if (!m->plan->scene.texture_arrays) return MASU_OK;
     VkDescriptorSetLayoutBinding bindings[MASU_SLOT_COUNT];
     for (uint32_t i = 0; i < MASU_SLOT_COUNT; i++) {
@@ -148,7 +148,7 @@ static masu_result make_texture_layout(masu_device *m, masu_detail *detail) {
 }
 
 /* Set 1: reads first, then writes, in the order of the row. */
-static masu_result make_pass_layout(masu_device *m, uint32_t pass, masu_detail *detail) {
+static masu_result create_pass_layout(masu_device *m, uint32_t pass, masu_detail *detail) {
     const masu_rung_plan *rp = masu_first_rung(m->plan, pass);
     if (!rp) return MASU_OK;
     VkDescriptorSetLayoutBinding bindings[2 * MASU_PASS_ACCESSES]; /* what is read and written has two */
@@ -216,15 +216,15 @@ static void name_form(const masu_device *m, uint32_t pass, int last, VkPipeline 
     masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(pipeline), name);
 }
 
-static masu_result make_compute_form(masu_device *m, uint32_t pass, int last, VkPipeline *out,
-                                     masu_detail *detail) {
+static masu_result create_compute_form(masu_device *m, uint32_t pass, int last, VkPipeline *out,
+                                       masu_detail *detail) {
     VkShaderModule module = VK_NULL_HANDLE;
     VkBool32 constants[SPECIAL_COUNT];
     VkSpecializationInfo special = specialise(m, m->plan->desc.debug.counters != 0, constants);
     masu_code codes[2] = {masu_compute_code(m->plan, pass, last), {0}};
     uint64_t key = key_of(m, pass, codes, 0, constants);
-    if (masu_pool_take(m, key, out)) return MASU_OK;
-    masu_result result = make_module(m, codes[0], &module, detail);
+    if (masu_pool_acquire(m, key, out)) return MASU_OK;
+    masu_result result = create_module(m, codes[0], &module, detail);
     if (result) return result;
     VkComputePipelineCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
@@ -240,20 +240,20 @@ static masu_result make_compute_form(masu_device *m, uint32_t pass, int last, Vk
     m->pipeline_ns[pass] += now(m) - start;
     m->vk.DestroyShaderModule(m->vk.device, module, m->vk.allocator);
     if (MASU_FAILED(r, *out)) return masu_fail_vulkan(detail, r, "vkCreateComputePipelines");
-    masu_pool_made(m, out, key);
+    masu_pool_add(m, out, key);
     name_form(m, pass, last, *out);
     return MASU_OK;
 }
 
 /* The forms that its rungs ask for. */
-static masu_result make_compute(masu_device *m, uint32_t pass, masu_detail *detail) {
+static masu_result create_compute(masu_device *m, uint32_t pass, masu_detail *detail) {
     masu_result result = MASU_OK;
     for (uint32_t r = 0; r < m->plan->desc.rung_count && !result; r++) {
         const masu_rung_plan *rp = &m->plan->rungs[r];
         if (!masu_has_pass(&rp->active, pass)) continue;
         int last = masu_comes_last(rp, pass);
         VkPipeline *out = last ? &m->last[pass] : &m->pipelines[pass];
-        if (!*out) result = make_compute_form(m, pass, last, out, detail);
+        if (!*out) result = create_compute_form(m, pass, last, out, detail);
     }
     return result;
 }
@@ -263,7 +263,7 @@ static masu_result make_compute(masu_device *m, uint32_t pass, masu_detail *deta
 /* Attachments come in the layouts that the row's barriers put them in, and stay there: the render
  * pass itself does no transition, so that record.c remains the only place that thinks about them.
  * Only the render area is cleared: a cascade of the shadow map leaves the others alone. */
-static masu_result make_render_pass(masu_device *m, uint32_t pass, masu_detail *detail) {
+static masu_result create_render_pass(masu_device *m, uint32_t pass, masu_detail *detail) {
     VkAttachmentDescription attachments[MASU_PASS_ACCESSES];
     VkAttachmentReference colors[MASU_PASS_ACCESSES], depth = {0, VK_IMAGE_LAYOUT_UNDEFINED};
     VkImageView views[MASU_PASS_ACCESSES];
@@ -442,17 +442,18 @@ static VkResult create_graphics_pipeline(masu_device *m, uint32_t pass,
 }
 
 /* Times are added up per pass. */
-static masu_result make_pipeline(masu_device *m, uint32_t pass, int textured, VkBool32 masked, int culled,
-                                 VkPipeline *out, masu_detail *detail) {
+static masu_result create_pipeline(masu_device *m, uint32_t pass, int textured, VkBool32 masked,
+                                   int culled, VkPipeline *out, masu_detail *detail) {
     masu_draw_code code = masu_draw_code_of(m->plan, pass, textured);
     const masu_code codes[2] = {code.vertex, code.fragment};
     VkBool32 constants[SPECIAL_COUNT];
     (void)specialise(m, masked, constants);
     uint64_t key = key_of(m, pass, codes, textured | culled << 1, constants);
-    if (masu_pool_take(m, key, out)) return MASU_OK;
+    if (masu_pool_acquire(m, key, out)) return MASU_OK;
     VkShaderModule modules[2] = {VK_NULL_HANDLE, VK_NULL_HANDLE};
-    masu_result result = make_module(m, code.vertex, &modules[0], detail);
-    if (!result && code.fragment.bytes) result = make_module(m, code.fragment, &modules[1], detail);
+    masu_result result = create_module(m, code.vertex, &modules[0], detail);
+    if (!result && code.fragment.bytes)
+        result = create_module(m, code.fragment, &modules[1], detail);
     if (!result) {
         uint64_t start = now(m);
         VkResult r = create_graphics_pipeline(m, pass, modules, textured, masked, culled, out);
@@ -460,7 +461,7 @@ static masu_result make_pipeline(masu_device *m, uint32_t pass, int textured, Vk
         if (MASU_FAILED(r, *out))
             result = masu_fail_vulkan(detail, r, "vkCreateGraphicsPipelines");
         else
-            masu_pool_made(m, out, key);
+            masu_pool_add(m, out, key);
     }
     for (uint32_t i = 0; i < 2; i++)
         m->vk.DestroyShaderModule(m->vk.device, modules[i], m->vk.allocator);
@@ -468,11 +469,11 @@ static masu_result make_pipeline(masu_device *m, uint32_t pass, int textured, Vk
 }
 
 /* What has textures, and what has masks. */
-static masu_result make_textured(masu_device *m, uint32_t pass, masu_detail *detail) {
+static masu_result create_textured(masu_device *m, uint32_t pass, masu_detail *detail) {
     masu_result result = MASU_OK;
     for (uint32_t i = 0; i < MASU_TEXTURED_COUNT && !result; i++) {
         if (i == MASU_TEXTURED_MASK && !m->plan->scene.masks) continue;
-        result = make_pipeline(m, pass, 1, i == MASU_TEXTURED_MASK, 0, &m->textured[i], detail);
+        result = create_pipeline(m, pass, 1, i == MASU_TEXTURED_MASK, 0, &m->textured[i], detail);
         masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(m->textured[i]),
                   i == MASU_TEXTURED_MASK ? "gbuffer, masks" : "gbuffer, textured");
     }
@@ -480,62 +481,65 @@ static masu_result make_textured(masu_device *m, uint32_t pass, masu_detail *det
 }
 
 /* The same once more for what is not seen from behind. */
-static masu_result make_culled(masu_device *m, uint32_t pass, int textures, masu_detail *detail) {
+static masu_result create_culled(masu_device *m, uint32_t pass, int textures, masu_detail *detail) {
     static const char *const names[MASU_CULLED_COUNT] = {"gbuffer, culled", "gbuffer, textured, culled",
                                                          "gbuffer, masks, culled"};
     masu_result result = MASU_OK;
     for (uint32_t i = 0; i < MASU_CULLED_COUNT && !result && m->plan->scene.singles; i++) {
         int mask = i == 1 + MASU_TEXTURED_MASK;
         if ((i && !textures) || (mask && !m->plan->scene.masks)) continue;
-        result = make_pipeline(m, pass, i > 0, mask ? VK_TRUE : VK_FALSE, 1, &m->culled[i], detail);
+        result =
+            create_pipeline(m, pass, i > 0, mask ? VK_TRUE : VK_FALSE, 1, &m->culled[i], detail);
         masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(m->culled[i]), names[i]);
     }
     return result;
 }
 
 /* Through the holes of a mask the sun shines. */
-static masu_result make_masked_casters(masu_device *m, uint32_t pass, masu_detail *detail) {
+static masu_result create_masked_casters(masu_device *m, uint32_t pass, masu_detail *detail) {
     if (!m->plan->scene.masks) return MASU_OK;
-    masu_result result = make_pipeline(m, pass, 1, VK_TRUE, 0, &m->masked_casters, detail);
+    masu_result result = create_pipeline(m, pass, 1, VK_TRUE, 0, &m->masked_casters, detail);
     masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(m->masked_casters), "cascades, masks");
     return result;
 }
 
 /* Nor is one picked there, or what is blended where its map is clear. */
-static masu_result make_masked_picks(masu_device *m, uint32_t pass, masu_detail *detail) {
-    masu_result result = make_pipeline(m, pass, 1, VK_TRUE, 0, &m->masked_picks, detail);
+static masu_result create_masked_picks(masu_device *m, uint32_t pass, masu_detail *detail) {
+    masu_result result = create_pipeline(m, pass, 1, VK_TRUE, 0, &m->masked_picks, detail);
     masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(m->masked_picks), "pick, masks");
     return result;
 }
 
-static masu_result make_graphics(masu_device *m, uint32_t pass, masu_detail *detail) {
+static masu_result create_graphics(masu_device *m, uint32_t pass, masu_detail *detail) {
     masu_geometry geometry = masu_passes[pass].geometry;
     int textures = m->texture_layout != VK_NULL_HANDLE;
     /* Cascades share what the first one has. */
     if (geometry == MASU_GEOMETRY_CASCADE && pass != MASU_PASS_CASCADE_0) return MASU_OK;
-    masu_result result = make_render_pass(m, pass, detail);
+    masu_result result = create_render_pass(m, pass, detail);
     /* An empty scene clears. */
     if (geometry == MASU_GEOMETRY_POLYGONS && !m->plan->needs.raster) return result;
     /* One pipeline for all that is blended: in scenes with textures what has none passes by them. */
     int textured = geometry == MASU_GEOMETRY_BLENDED && textures;
-    if (!result) result = make_pipeline(m, pass, textured, VK_FALSE, 0, &m->pipelines[pass], detail);
+    if (!result)
+        result = create_pipeline(m, pass, textured, VK_FALSE, 0, &m->pipelines[pass], detail);
     if (!result && geometry == MASU_GEOMETRY_BLENDED && m->plan->scene.tints) {
-        result = make_pipeline(m, pass, textured, VK_TRUE, 0, &m->tints, detail);
+        result = create_pipeline(m, pass, textured, VK_TRUE, 0, &m->tints, detail);
         masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(m->tints), "transparents, tints");
     }
     if (!result && geometry == MASU_GEOMETRY_POLYGONS && textures)
-        result = make_textured(m, pass, detail);
-    if (!result && geometry == MASU_GEOMETRY_POLYGONS) result = make_culled(m, pass, textures, detail);
+        result = create_textured(m, pass, detail);
+    if (!result && geometry == MASU_GEOMETRY_POLYGONS)
+        result = create_culled(m, pass, textures, detail);
     if (!result && geometry == MASU_GEOMETRY_CASCADE && textures)
-        result = make_masked_casters(m, pass, detail);
+        result = create_masked_casters(m, pass, detail);
     if (!result && geometry == MASU_GEOMETRY_PICK && textures)
-        result = make_masked_picks(m, pass, detail);
+        result = create_masked_picks(m, pass, detail);
     return result;
 }
 
 /* Those that the scene's texture sets ask for: trilinear, and along the longer axis of a pixel's
  * footprint where the device was created for it. */
-static masu_result make_samplers(masu_device *m, masu_detail *detail) {
+static masu_result create_samplers(masu_device *m, masu_detail *detail) {
     static const VkSamplerAddressMode modes[] = {VK_SAMPLER_ADDRESS_MODE_REPEAT,
                                                  VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                                  VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT};
@@ -564,8 +568,8 @@ static masu_result make_samplers(masu_device *m, masu_detail *detail) {
 }
 
 /* A pool's, where there is one: layouts are compatible only with the same samplers. */
-static masu_result make_sampler(masu_device *m, uint32_t number, const VkSamplerCreateInfo *info,
-                                VkSampler *out, masu_detail *detail) {
+static masu_result create_sampler(masu_device *m, uint32_t number, const VkSamplerCreateInfo *info,
+                                  VkSampler *out, masu_detail *detail) {
     masu_pipelines *pool = m->plan->desc.vulkan.pipelines;
     if (pool && pool->samplers[number]) {
         *out = pool->samplers[number];
@@ -577,7 +581,7 @@ static masu_result make_sampler(masu_device *m, uint32_t number, const VkSampler
     return MASU_OK;
 }
 
-masu_result masu_make_pipelines(masu_device *m, masu_detail *detail) {
+masu_result masu_create_pipelines(masu_device *m, masu_detail *detail) {
     VkSamplerCreateInfo nearest = {.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
                                    .magFilter = VK_FILTER_NEAREST,
                                    .minFilter = VK_FILTER_NEAREST,
@@ -586,18 +590,18 @@ masu_result masu_make_pipelines(masu_device *m, masu_detail *detail) {
                                    .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE};
     VkSamplerCreateInfo linear = nearest;
     linear.magFilter = linear.minFilter = VK_FILTER_LINEAR;
-    masu_result result = make_sampler(m, 0, &nearest, &m->sampler, detail);
-    if (!result) result = make_sampler(m, 1, &linear, &m->linear, detail);
-    if (!result) result = make_global_layout(m, detail);
-    if (!result) result = make_texture_layout(m, detail);
-    if (!result) result = make_samplers(m, detail);
+    masu_result result = create_sampler(m, 0, &nearest, &m->sampler, detail);
+    if (!result) result = create_sampler(m, 1, &linear, &m->linear, detail);
+    if (!result) result = create_global_layout(m, detail);
+    if (!result) result = create_texture_layout(m, detail);
+    if (!result) result = create_samplers(m, detail);
     for (uint32_t p = 0; p < MASU_PASS_COUNT && !result; p++) {
         if (masu_passes[p].kind != MASU_PASS_GRAPHICS && masu_passes[p].kind != MASU_PASS_COMPUTE)
             continue;
-        result = make_pass_layout(m, p, detail);
+        result = create_pass_layout(m, p, detail);
         if (result || !m->layouts[p]) continue;
         int graphics = masu_passes[p].kind == MASU_PASS_GRAPHICS;
-        result = graphics ? make_graphics(m, p, detail) : make_compute(m, p, detail);
+        result = graphics ? create_graphics(m, p, detail) : create_compute(m, p, detail);
         if (!result && graphics)
             masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(m->pipelines[p]),
                       masu_passes[p].name);

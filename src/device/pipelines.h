@@ -5,6 +5,6 @@
 #include "device/device.h"
 
 /* Views come before. What has been made when a step fails is the caller's to destroy. */
-masu_result masu_make_pipelines(masu_device *m, masu_detail *detail);
+masu_result masu_create_pipelines(masu_device *m, masu_detail *detail);
 
 #endif

@@ -69,7 +69,7 @@ static void note(masu_device *m, const VkPipeline *at, uint64_t key) {
     }
 }
 
-int masu_pool_take(masu_device *m, uint64_t key, VkPipeline *out) {
+int masu_pool_acquire(masu_device *m, uint64_t key, VkPipeline *out) {
     masu_pipelines *pool = pool_of(m);
     for (uint32_t i = 0; pool && i < pool->count; i++) {
         if (pool->rows[i].key != key) continue;
@@ -82,7 +82,7 @@ int masu_pool_take(masu_device *m, uint64_t key, VkPipeline *out) {
     return 0;
 }
 
-void masu_pool_made(masu_device *m, const VkPipeline *at, uint64_t key) {
+void masu_pool_add(masu_device *m, const VkPipeline *at, uint64_t key) {
     masu_pipelines *pool = pool_of(m);
     if (!pool) return;
     pool->created++;
@@ -93,7 +93,7 @@ void masu_pool_made(masu_device *m, const VkPipeline *at, uint64_t key) {
     note(m, at, key);
 }
 
-void masu_pool_give(masu_device *m) {
+void masu_pool_release(masu_device *m) {
     masu_pipelines *pool = pool_of(m);
     if (!pool) return;
     for (uint32_t i = 0; i < MASU_POOL_KEYS; i++) {

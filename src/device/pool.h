@@ -21,10 +21,10 @@ uint64_t masu_pool_key(const masu_device *m, uint32_t pass, const masu_code code
                        const uint32_t *constants, uint32_t constant_count);
 
 /* Into *out, a pipeline of the device, if there is one of that key. */
-int masu_pool_take(masu_device *m, uint64_t key, VkPipeline *out);
+int masu_pool_acquire(masu_device *m, uint64_t key, VkPipeline *out);
 /* Adds a pipeline of the device that had to be made; where there is no room, it stays the renderer's. */
-void masu_pool_made(masu_device *m, const VkPipeline *at, uint64_t key);
+void masu_pool_add(masu_device *m, const VkPipeline *at, uint64_t key);
 /* The renderer uses none of the pool's pipelines and samplers any more. */
-void masu_pool_give(masu_device *m);
+void masu_pool_release(masu_device *m);
 
 #endif

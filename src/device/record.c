@@ -584,7 +584,7 @@ static masu_result record_split(masu_recorder *rec, uint32_t *part, masu_detail 
     return MASU_OK;
 }
 
-/* sets: the rung's, of this target; see masu_make_pass_sets for the order. */
+/* sets: the rung's, of this target; see masu_create_pass_sets for the order. */
 static masu_result record_frame(masu_recorder *rec, const VkDescriptorSet *sets,
                                 masu_detail *detail) {
     const masu_device *m = rec->m;
@@ -624,7 +624,7 @@ static masu_result record_frame(masu_recorder *rec, const VkDescriptorSet *sets,
 
 /* ---- All recordings -------------------------------------------------------------------------- */
 
-static masu_result make_command_buffers(masu_device *m, uint32_t frames, masu_detail *detail) {
+static masu_result create_command_buffers(masu_device *m, uint32_t frames, masu_detail *detail) {
     VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                     .queueFamilyIndex = m->plan->desc.vulkan.queue_family};
     VkResult r = m->vk.CreateCommandPool(m->vk.device, &pool, m->vk.allocator, &m->command_pool);
@@ -639,7 +639,7 @@ static masu_result make_command_buffers(masu_device *m, uint32_t frames, masu_de
     return r ? masu_fail_vulkan(detail, r, "vkAllocateCommandBuffers") : MASU_OK;
 }
 
-static masu_result make_queries(masu_device *m, masu_detail *detail) {
+static masu_result create_queries(masu_device *m, masu_detail *detail) {
     if (!masu_stamps(&m->plan->desc)) return MASU_OK;
     VkQueryPoolCreateInfo info = {.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
                                   .queryType = VK_QUERY_TYPE_TIMESTAMP,
@@ -659,7 +659,7 @@ static masu_result record_frames(masu_device *m, const masu_draws *draws, masu_d
         VkDescriptorSet sets[MASU_MAX_TARGETS][MASU_PASS_COUNT];
         memset(sets, 0, sizeof sets);
         masu_rung_plan *rp = &m->plan->rungs[r];
-        result = masu_make_pass_sets(m, rp, &next, sets, detail);
+        result = masu_create_pass_sets(m, rp, &next, sets, detail);
         uint32_t own = targets * rp->variants; /* of one frame in flight: [target][variant] */
         uint32_t viewports = d->viewport_count ? d->viewport_count : 1, each = d->frames_in_flight * own;
         for (uint32_t i = 0; i < viewports * each && !result; i++) {
@@ -685,10 +685,11 @@ static masu_result record_frames(masu_device *m, const masu_draws *draws, masu_d
 
 masu_result masu_record(masu_device *m, const masu_draws *draws, masu_detail *detail) {
     const masu_desc *d = &m->plan->desc;
-    masu_result result = masu_make_sets(m, detail);
-    if (!result) result = make_queries(m, detail);
+    masu_result result = masu_create_sets(m, detail);
+    if (!result) result = create_queries(m, detail);
     if (!result)
-        result = make_command_buffers(m, d->frames_in_flight * m->plan->recordings * m->plan->parts, detail);
+        result = create_command_buffers(
+            m, d->frames_in_flight * m->plan->recordings * m->plan->parts, detail);
     if (!result) result = record_frames(m, draws, detail);
     return result ? result : masu_load_record(m, detail);
 }

@@ -72,7 +72,7 @@ void masu_instances_remove(masu_instances *in, const masu_frame_plan *plan, uint
     masu_handle_turn(&in->handles, instance);
 }
 
-static void make_dirty(masu_instances *in, const masu_frame_plan *plan, uint32_t i) {
+static void mark_dirty(masu_instances *in, const masu_frame_plan *plan, uint32_t i) {
     if (!masu_instance_dirty(in, i)) in->dirty_count++;
     in->flags[i] = (uint8_t)((in->flags[i] & ~MASU_INSTANCE_DIRTY) | frames_to_write(plan));
 }
@@ -81,12 +81,12 @@ void masu_instances_place(masu_instances *in, const masu_frame_plan *plan, uint3
                           const float rows[12]) {
     in->changes += memcmp(&in->now[i], rows, sizeof in->now[i]) != 0;
     memcpy(&in->now[i], rows, sizeof in->now[i]);
-    make_dirty(in, plan, i);
+    mark_dirty(in, plan, i);
 }
 
 void masu_instances_touch(masu_instances *in, const masu_frame_plan *plan, uint32_t i) {
     in->changes++;
-    make_dirty(in, plan, i);
+    mark_dirty(in, plan, i);
 }
 
 void masu_instances_show(masu_instances *in, const masu_frame_plan *plan, uint32_t i, int shown) {
@@ -97,7 +97,7 @@ void masu_instances_show(masu_instances *in, const masu_frame_plan *plan, uint32
     else
         in->hidden_count++;
     in->changes++;
-    make_dirty(in, plan, i);
+    mark_dirty(in, plan, i);
 }
 
 uint32_t masu_instances_find(const masu_instances *in, const masu_frame_plan *plan,

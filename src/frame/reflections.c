@@ -32,7 +32,7 @@ void masu_reflections_copy_scene(masu_reflections *s, const masu_frame_plan *pla
             s->bends[i] |= v->trace_instances[i] == v->model_nodes[n].instance;
     }
     if (plan->needs.query) return;
-    masu_trace_top_make(&s->tree, s->tree_memory, count);
+    masu_trace_top_init(&s->tree, s->tree_memory, count);
     for (uint32_t i = 0; i < own; i++) {
         masu_trace_root root = masu_trace_root_of(v, i);
         masu_trace_top_set(&s->tree, i, &root);

@@ -157,8 +157,8 @@ typedef struct air_path {
 /* The ray from `height` upwards by the sine `mu`. Pieces grow with the cube of their number: density is
  * greatest near the ground. Within one, light is scattered and lost evenly (Hillaire, Physically
  * Based Sky, Atmosphere and Cloud Rendering in Frostbite, SIGGRAPH 2016 course, section 5.6.3). */
-static void make_path(double height, double mu, const double haze[3], uint32_t steps,
-                      uint32_t ground_steps, air_path *path) {
+static void build_path(double height, double mu, const double haze[3], uint32_t steps,
+                       uint32_t ground_steps, air_path *path) {
     double r = EARTH + height, b = r * mu;
     double to_ground = b * b - height * (EARTH + r);
     double top = EARTH + TOP;
@@ -235,7 +235,7 @@ static void series(masu_sky *sky, uint32_t i, uint32_t j, const double haze[3]) 
     for (uint32_t ring = 0; ring < 4; ring++) {
         air_path path;
         double mu = node[ring];
-        make_path(height, mu, haze, SERIES_STEPS, SERIES_STEPS, &path);
+        build_path(height, mu, haze, SERIES_STEPS, SERIES_STEPS, &path);
         for (uint32_t side = 0; side < 3; side++) {
             double cosine = cos(PI * (side + 0.5) / 3.0) * across * sqrt(1.0 - mu * mu);
             double share = weight[ring] / 6.0, light[3];
@@ -299,7 +299,7 @@ static void fill_row(masu_sky *sky, uint32_t row, const double haze[3], double s
     const double unit = MASU_SKY_SUN * PI;
     double mu = row_sine(row), light[3], more[3];
     air_path path;
-    make_path(EYE, mu, haze, STEPS, GROUND_STEPS, &path);
+    build_path(EYE, mu, haze, STEPS, GROUND_STEPS, &path);
     memset(out, 0, sizeof *out);
     sky->steps += AZIMUTHS * path.count;
     double across = positive_root(1.0 - mu * mu) * positive_root(1.0 - sun_y * sun_y);

@@ -280,7 +280,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
         if (!plan->scene.sdf_occlusion && !plan->scene.shadow_cascades && !any.ao)
             d->readback &= ~(uint32_t)MASU_READBACK_OCCLUSION;
         if (!plan->scene.shadow_cascades) d->readback &= ~(uint32_t)MASU_READBACK_SHADOW_MAP;
-        plan->compressed = masu_takes_blocks(d);
+        plan->compressed = masu_keeps_blocks(d);
     } else {
         d->readback = 0; /* the images that could be asked for are the scene's */
     }

@@ -122,7 +122,7 @@ masu_draw_material masu_draw_material_of(const masu_scene_view *v, uint32_t prim
         .meso = meso ? (uint32_t)(v->material_count + 2 * (uint64_t)of->meso) : 0};
 }
 
-void masu_draws_make(masu_draws *draws, const masu_frame_plan *plan, const masu_scene_view *v) {
+void masu_draws_build(masu_draws *draws, const masu_frame_plan *plan, const masu_scene_view *v) {
     if (draws->added) count_added(draws, plan, v);
     add_batches(draws, plan, v);
     for (uint32_t b = 0; plan->desc.resizable && b < draws->batch_count; b++) {

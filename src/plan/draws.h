@@ -53,7 +53,7 @@ typedef struct masu_draws {
 } masu_draws;
 
 void masu_draws_alloc(masu_draws *draws, masu_arena *arena, const masu_frame_plan *plan);
-void masu_draws_make(masu_draws *draws, const masu_frame_plan *plan, const masu_scene_view *v);
+void masu_draws_build(masu_draws *draws, const masu_frame_plan *plan, const masu_scene_view *v);
 
 /* Of an instance's transform: its triangles turn the other way in the picture. */
 int masu_is_mirrored(const float rows[12]);

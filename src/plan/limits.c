@@ -36,13 +36,13 @@ void masu_shadow_peak(const masu_desc *d, uint32_t *cascades, uint32_t *size) {
     }
 }
 
-int masu_takes_blocks(const masu_desc *d) {
+int masu_keeps_blocks(const masu_desc *d) {
     return d->vulkan.texture_compression_bc && !d->deny.compressed_textures;
 }
 
 uint64_t masu_desc_texture_bytes(const masu_desc *d) {
     if (!d->scene) return 0;
-    return masu_scene_texture_bytes(d->scene, masu_takes_blocks(d));
+    return masu_scene_texture_bytes(d->scene, masu_keeps_blocks(d));
 }
 
 /* What the scene has under the name of the limit, but for what its rungs or the device decide. */

@@ -22,7 +22,7 @@ static inline uint32_t masu_at_most(uint32_t wish, uint32_t has) {
 void masu_shadow_peak(const masu_desc *d, uint32_t *cascades, uint32_t *size);
 
 /* Whether textures stay compressed blocks on the device, and bytes of the scene's texels then. */
-int masu_takes_blocks(const masu_desc *d);
+int masu_keeps_blocks(const masu_desc *d);
 uint64_t masu_desc_texture_bytes(const masu_desc *d);
 
 #endif

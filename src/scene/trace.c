@@ -33,7 +33,7 @@ static void *take(unsigned char **memory, uint64_t count, uint64_t size) {
     return out;
 }
 
-void masu_trace_top_make(masu_trace_top *top, void *memory, uint32_t count) {
+void masu_trace_top_init(masu_trace_top *top, void *memory, uint32_t count) {
     unsigned char *at = memory;
     uint32_t nodes = masu_trace_tree_nodes(count);
     *top = (masu_trace_top){.count = count};

@@ -69,7 +69,7 @@ uint64_t masu_trace_top_bytes(uint32_t instances);
 
 /* `memory` is 16-byte aligned and has masu_trace_top_bytes(count). All instances are out of the
  * tree until they are placed. */
-void masu_trace_top_make(masu_trace_top *top, void *memory, uint32_t count);
+void masu_trace_top_init(masu_trace_top *top, void *memory, uint32_t count);
 
 /* Of traced instance k of a scene. */
 masu_trace_root masu_trace_root_of(const masu_scene_view *view, uint32_t traced);

@@ -278,7 +278,7 @@ static void set_world(const double anchor[3]) {
     memcpy(w.fixed + w.layout.triangles, w.triangles, w.triangle_count * sizeof *w.triangles);
     w.frame = calloc(1, masu_trace_frame_bytes(w.instance_count) + 64);
     w.top_memory = aligned_alloc(16, masu_trace_top_bytes(w.instance_count) + 16);
-    masu_trace_top_make(&w.top, w.top_memory, w.instance_count);
+    masu_trace_top_init(&w.top, w.top_memory, w.instance_count);
     for (uint32_t i = 0; i < w.instance_count; i++) {
         masu_trace_root root = {w.meshes[w.mesh_of[i]].box, w.meshes[w.mesh_of[i]].root, i};
         masu_trace_top_set(&w.top, i, &root);

@@ -238,7 +238,7 @@ static void make(uint32_t count, float reach) {
     memory = aligned_alloc(16, masu_trace_top_bytes(count) + 16);
     transforms = malloc((count + 1) * sizeof *transforms);
     memset(memory, 0xA5, masu_trace_top_bytes(count) + 16);
-    masu_trace_top_make(&top, memory, count);
+    masu_trace_top_init(&top, memory, count);
     for (uint32_t i = 0; i < count; i++) {
         masu_trace_root root = {{{-1, -2, -3}, {1, 0.5f, 4}}, 100 + i, 2 * i};
         masu_trace_top_set(&top, i, &root);
