@@ -277,12 +277,12 @@ static void add_to_block(masu_block_plan *block, uint64_t alignment, uint32_t ty
 
 /* Lays the buffers of one role at the end of a block. Staging and poison are created later and laid
  * then. */
-static void lay_buffers(masu_frame_plan *plan, masu_role role, masu_block_plan *block) {
+static void place_buffers(masu_frame_plan *plan, masu_role role, masu_block_plan *block) {
     for (uint32_t b = 0; b < MASU_BUFFER_COUNT; b++) {
         masu_buffer_plan *buffer = &plan->buffers[b];
         if (!buffer->bytes || buffer->role != role || b == MASU_BUFFER_POISON) continue;
         block->address |= (buffer->usage & VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT) != 0;
-        if (masu_buffers[b].of_loading) continue; /* lay_images */
+        if (masu_buffers[b].of_loading) continue; /* place_images */
         buffer->offset = masu_align_up(block->bytes, buffer->alignment);
         block->bytes = buffer->offset + buffer->memory_bytes;
         add_to_block(block, buffer->alignment, buffer->type_bits);
@@ -291,7 +291,7 @@ static void lay_buffers(masu_frame_plan *plan, masu_role role, masu_block_plan *
 
 /* What only masu_load needs lies where the transient images of frames will. Returns where it ends,
  * from `start` on. */
-static uint64_t lay_loading(masu_frame_plan *plan, uint64_t start, masu_block_plan *block) {
+static uint64_t place_loading(masu_frame_plan *plan, uint64_t start, masu_block_plan *block) {
     uint64_t end = start;
     for (uint32_t b = 0; b < MASU_BUFFER_COUNT; b++) {
         masu_buffer_plan *buffer = &plan->buffers[b];
@@ -304,7 +304,7 @@ static uint64_t lay_loading(masu_frame_plan *plan, uint64_t start, masu_block_pl
 }
 
 /* Textures stay as long as the renderer: behind one another, apart from buffers by the granularity. */
-static void lay_textures(const masu_vk *vk, masu_frame_plan *plan, masu_block_plan *block) {
+static void place_textures(const masu_vk *vk, masu_frame_plan *plan, masu_block_plan *block) {
     uint64_t granularity = vk->properties.limits.bufferImageGranularity;
     if (!plan->scene.texture_arrays) return;
     if (!granularity) granularity = 1;
@@ -318,7 +318,7 @@ static void lay_textures(const masu_vk *vk, masu_frame_plan *plan, masu_block_pl
     block->bytes = masu_align_up(block->bytes, granularity);
 }
 
-static void lay_images(const masu_vk *vk, masu_frame_plan *plan, masu_block_plan *block) {
+static void place_images(const masu_vk *vk, masu_frame_plan *plan, masu_block_plan *block) {
     masu_placement items[MASU_IMAGE_COUNT];
     uint32_t ids[MASU_IMAGE_COUNT], n = 0;
     uint64_t granularity = vk->properties.limits.bufferImageGranularity;
@@ -349,20 +349,20 @@ static void lay_images(const masu_vk *vk, masu_frame_plan *plan, masu_block_plan
         plan->images[ids[k]].offset = plan->transient_offset + items[k].offset;
     }
     uint64_t end = plan->transient_offset + plan->transient_aliased;
-    uint64_t loading = lay_loading(plan, plan->transient_offset, block);
+    uint64_t loading = place_loading(plan, plan->transient_offset, block);
     /* What follows (buffers of other roles on unified memory) must not share a granule with an
      * image. */
     block->bytes = masu_align_up(end > loading ? end : loading, start_alignment);
 }
 
-static void lay_out(const masu_vk *vk, masu_frame_plan *plan) {
+static void layout_blocks(const masu_vk *vk, masu_frame_plan *plan) {
     memset(plan->blocks, 0, sizeof plan->blocks);
     plan->transient_unaliased = 0;
     for (uint32_t role = 0; role < MASU_ROLE_COUNT; role++) {
         masu_block_plan *block = &plan->blocks[plan->unified ? MASU_ROLE_DEVICE : role];
-        lay_buffers(plan, (masu_role)role, block);
-        if (role == MASU_ROLE_DEVICE) lay_textures(vk, plan, block);
-        if (role == MASU_ROLE_DEVICE) lay_images(vk, plan, block);
+        place_buffers(plan, (masu_role)role, block);
+        if (role == MASU_ROLE_DEVICE) place_textures(vk, plan, block);
+        if (role == MASU_ROLE_DEVICE) place_images(vk, plan, block);
     }
     masu_block_plan *block = &plan->blocks[masu_code_role(plan)];
     uint64_t room = masu_code_room(plan);
@@ -374,7 +374,7 @@ static int is_unified(const masu_vk *vk, masu_frame_plan *plan) {
     VkPhysicalDeviceType type = vk->properties.deviceType;
     if (plan->desc.deny.unified_memory || type == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU) return 0;
     plan->unified = 1;
-    lay_out(vk, plan);
+    layout_blocks(vk, plan);
     const masu_block_plan *block = &plan->blocks[MASU_ROLE_DEVICE];
     uint32_t unused;
     return block->bytes && find_type(vk, block->type_bits, LOCAL | VISIBLE, block->bytes, &unused);
@@ -408,7 +408,7 @@ static masu_result create_staging(const masu_vk *vk, masu_frame_plan *plan, masu
     uint64_t most = plan->desc.load_step ? plan->desc.load_step : STAGING_BYTES;
     staging->bytes = resident < most ? resident : most;
     masu_result result = create_buffer(vk, plan, MASU_BUFFER_STAGING, objects, detail);
-    if (!result) lay_out(vk, plan);
+    if (!result) layout_blocks(vk, plan);
     return result;
 }
 
@@ -448,7 +448,7 @@ masu_result masu_objects_create(const masu_vk *vk, masu_frame_plan *plan, masu_o
     masu_result result = create_textures(vk, plan, detail);
     if (result) return result;
     plan->unified = is_unified(vk, plan);
-    lay_out(vk, plan);
+    layout_blocks(vk, plan);
     result = choose_type(vk, plan, MASU_ROLE_DEVICE, detail);
     if (!result) result = create_staging(vk, plan, objects, detail);
     if (!result) result = create_poison(vk, plan, objects, detail);

@@ -471,7 +471,7 @@ static void copy_materials(masu_recorder *rec) {
     VkBufferCopy plain = {at, 0, scene->materials * sizeof(struct masu_material_data)};
     m->vk.CmdCopyBuffer(rec->cmd, from, m->objects.buffers[MASU_BUFFER_MATERIALS], 1, &plain);
     if (!m->plan->needs.traced) return;
-    VkBufferCopy traced = {at + plain.size, 16 * masu_trace_lay(scene).materials,
+    VkBufferCopy traced = {at + plain.size, 16 * masu_trace_layout(scene).materials,
                            scene->materials * sizeof(struct masu_trace_material)};
     m->vk.CmdCopyBuffer(rec->cmd, from, m->objects.buffers[MASU_BUFFER_TRACE], 1, &traced);
 }

@@ -125,7 +125,7 @@ uint64_t masu_most_tiles(const masu_frame_plan *plan) {
     return tiles > glossy ? tiles : glossy;
 }
 
-static void lay_drawn(masu_frame_plan *plan) {
+static void layout_drawn(masu_frame_plan *plan) {
     const masu_scene_data *s = &plan->scene;
     masu_drawn_plan *d = &plan->drawn;
     uint64_t lists = (uint64_t)plan->views * plan->listed, next = lists;
@@ -152,7 +152,7 @@ static void lay_drawn(masu_frame_plan *plan) {
 }
 
 /* Nothing at all where nothing is reserved. */
-static void lay_sprites(masu_frame_plan *plan) {
+static void layout_sprites(masu_frame_plan *plan) {
     const masu_needs *n = &plan->needs;
     const masu_reserve *r = &plan->desc.reserve;
     masu_sprites_plan *s = &plan->sprites;
@@ -200,7 +200,7 @@ typedef struct readback_slot {
 } readback_slot;
 
 /* Images behind what there is, each 16-byte aligned for vkCmdCopyImageToBuffer. */
-static void lay_readback_images(const masu_frame_plan *plan, readback_slot *slot) {
+static void layout_readback_images(const masu_frame_plan *plan, readback_slot *slot) {
     for (uint32_t i = 0; i < MASU_READBACK_IMAGES; i++) {
         if (!(plan->desc.readback & 1u << i)) continue;
         slot->images[i] = slot->bytes;
@@ -216,7 +216,7 @@ static void lay_readback_images(const masu_frame_plan *plan, readback_slot *slot
 }
 
 /* Counters, timestamps, images. */
-static readback_slot lay_readback(const masu_frame_plan *plan) {
+static readback_slot layout_readback(const masu_frame_plan *plan) {
     readback_slot slot = {0};
     if (plan->desc.debug.counters)
         slot.bytes = masu_align_up(masu_counter_words(plan) * sizeof(uint32_t), 16);
@@ -224,11 +224,13 @@ static readback_slot lay_readback(const masu_frame_plan *plan) {
         slot.times = slot.bytes;
         slot.bytes = masu_align_up(slot.bytes + masu_stamps(&plan->desc) * sizeof(uint64_t), 16);
     }
-    lay_readback_images(plan, &slot);
+    layout_readback_images(plan, &slot);
     return slot;
 }
 
-static uint64_t masu_readback_bytes(const masu_frame_plan *plan) { return lay_readback(plan).bytes; }
+static uint64_t masu_readback_bytes(const masu_frame_plan *plan) {
+    return layout_readback(plan).bytes;
+}
 
 /* ---- All rows -------------------------------------------------------------------------------- */
 
@@ -245,8 +247,8 @@ static uint64_t masu_readback_bytes(const masu_frame_plan *plan) { return lay_re
 #define SCRATCH (ADDRESS | STORAGE)
 
 /* Slots begin where the device wants a binding to begin. */
-static void lay_slots(const masu_frame_plan *plan, masu_buffer_plan *b, slot_kind slots,
-                      uint64_t bytes, uint64_t alignment) {
+static void layout_slots(const masu_frame_plan *plan, masu_buffer_plan *b, slot_kind slots,
+                         uint64_t bytes, uint64_t alignment) {
     b->bytes = bytes;
     if (slots == SLOTS_ONCE || !bytes) return;
     uint64_t halves = slots == SLOTS_PREVIOUS ? masu_halves(plan) : 1;
@@ -260,13 +262,13 @@ void masu_size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
     const masu_scene_data *s = &plan->scene;
     masu_buffer_plan *buffer = plan->buffers;
     if (s->instances) {
-        lay_drawn(plan);
+        layout_drawn(plan);
         plan->transparent_draws = own_draws(plan);
         plan->pick_draws = plan->transparent_draws + (uint64_t)s->transparents * s->transparent_sets;
         if (plan->receiver_mask) plan->receiver_mask = seen_instances(plan);
     }
-    lay_sprites(plan);
-    readback_slot slot = lay_readback(plan);
+    layout_sprites(plan);
+    readback_slot slot = layout_readback(plan);
     plan->readback_times = slot.times;
     memcpy(plan->readback_offset, slot.images, sizeof slot.images);
     uint64_t alignment;
@@ -278,10 +280,11 @@ void masu_size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
         *buffer = (masu_buffer_plan){                                                              \
             .name = title, .role = MASU_ROLE_##part, .usage = (VkBufferUsageFlags)(use)};          \
         sized;                                                                                     \
-        alignment = buffer->usage & UNIFORM                                          ? uniform_alignment  \
-                    : buffer->usage & STORAGE || buffer->role != MASU_ROLE_READBACK ? storage_alignment  \
-                                                                                    : 1;                 \
-        lay_slots(plan, buffer, SLOTS_##slots, bytes, alignment);                                  \
+        alignment = buffer->usage & UNIFORM ? uniform_alignment                                    \
+                    : buffer->usage & STORAGE || buffer->role != MASU_ROLE_READBACK                \
+                        ? storage_alignment                                                        \
+                        : 1;                                                                       \
+        layout_slots(plan, buffer, SLOTS_##slots, bytes, alignment);                               \
     }
 #include "plan/buffers.inc"
 #undef BUFFER

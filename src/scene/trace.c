@@ -27,7 +27,7 @@ uint64_t masu_trace_top_bytes(uint32_t instances) {
            rounded(nodes * sizeof(masu_blob_trace_node)) + 3 * rounded(n * sizeof(uint32_t));
 }
 
-static void *take(unsigned char **memory, uint64_t count, uint64_t size) {
+static void *carve(unsigned char **memory, uint64_t count, uint64_t size) {
     void *out = *memory;
     *memory += rounded(count * size);
     return out;
@@ -37,13 +37,13 @@ void masu_trace_top_init(masu_trace_top *top, void *memory, uint32_t count) {
     unsigned char *at = memory;
     uint32_t nodes = masu_trace_tree_nodes(count);
     *top = (masu_trace_top){.count = count};
-    top->placed = take(&at, count, sizeof *top->placed);
-    top->boxes = take(&at, count, sizeof *top->boxes);
-    top->below = take(&at, nodes, sizeof *top->below);
-    top->tree = take(&at, nodes, sizeof *top->tree);
-    top->items = take(&at, count, sizeof *top->items);
-    top->order = take(&at, count, sizeof *top->order);
-    top->work = take(&at, count, sizeof *top->work);
+    top->placed = carve(&at, count, sizeof *top->placed);
+    top->boxes = carve(&at, count, sizeof *top->boxes);
+    top->below = carve(&at, nodes, sizeof *top->below);
+    top->tree = carve(&at, nodes, sizeof *top->tree);
+    top->items = carve(&at, count, sizeof *top->items);
+    top->order = carve(&at, count, sizeof *top->order);
+    top->work = carve(&at, count, sizeof *top->work);
     if (count) memset(top->placed, 0, count * sizeof *top->placed);
 }
 

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-masu_trace_plan masu_trace_lay(const masu_scene_data *scene) {
+masu_trace_plan masu_trace_layout(const masu_scene_data *scene) {
     masu_trace_static s = masu_trace_static_layout(scene->trace_nodes, scene->trace_triangles);
     masu_trace_plan p = {
         .nodes = s.nodes / 16, .triangles = s.triangles / 16, .more = s.bytes / 16};
@@ -20,7 +20,7 @@ masu_trace_plan masu_trace_lay(const masu_scene_data *scene) {
 }
 
 uint64_t masu_trace_scene_bytes(const masu_scene_data *scene) {
-    return 16 * masu_trace_lay(scene).end;
+    return 16 * masu_trace_layout(scene).end;
 }
 
 uint64_t masu_trace_rows_at(const masu_scene_data *scene, int query) {
@@ -121,7 +121,7 @@ static void element(const masu_scene_data *scene, const masu_scene_view *v,
 
 void masu_trace_write(const masu_scene_data *scene, const masu_scene_view *v, uint64_t offset,
                       uint64_t bytes, unsigned char *to) {
-    masu_trace_plan p = masu_trace_lay(scene);
+    masu_trace_plan p = masu_trace_layout(scene);
     for (uint64_t at = offset; at < offset + bytes;) {
         uint32_t words[4];
         uint64_t skip = at % 16, part = 16 - skip;

@@ -22,7 +22,7 @@ typedef struct masu_trace_plan {
     uint64_t nodes, triangles, more, noise, materials, pictures, texels, end;
 } masu_trace_plan;
 
-masu_trace_plan masu_trace_lay(const masu_scene_data *scene);
+masu_trace_plan masu_trace_layout(const masu_scene_data *scene);
 
 /* Bytes of the first buffer, and of a slot of the second. With ray queries (ray_query.h) neither
  * has a tree: the plan's copy of the scene says that it has no nodes, and the header is followed by

@@ -217,7 +217,7 @@ static void roughness_and_metallic_are_their_means(void **state) {
     assert_true(fabs((double)masu_scene_data_of(&scene)->glossiest - 0.5 * least) < 0.002);
 
     /* And so materials go to the device. */
-    masu_trace_plan plan = masu_trace_lay(&scene);
+    masu_trace_plan plan = masu_trace_layout(&scene);
     uint32_t found[3] = {0};
     for (uint32_t i = 0; i < masu_scene_count(&scene, MASU_SCENE_MATERIAL); i++) {
         struct masu_trace_material m;
