@@ -191,22 +191,20 @@ static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep, int 
         const masu_batch *batch = &rec->draws->batches[b];
         push.instances = lists + batch->first_listed;
         for (uint32_t d = 0; d < batch->draw_count; d++) {
-            masu_draw_material material =
-                kept ? rec->draws->materials[batch->first_draw + d]
-                     : masu_draw_material_of(&v, batch->first_primitive + d);
-            int blended = (material.flags & MASU_MATERIAL_IS_BLEND) != 0;
-            if (batch->mirrored) material.flags &= ~(uint32_t)MASU_MATERIAL_IS_SINGLE;
-            if ((pick ? pick_sweep_of(&material) : sweep_of(&material, view)) != sweep) continue;
-            if (!sun && !pick && culled != ((material.flags & MASU_MATERIAL_IS_SINGLE) != 0))
-                continue;
+            masu_draw_material drawn = kept ? rec->draws->materials[batch->first_draw + d]
+                                            : masu_draw_material_of(&v, batch->first_primitive + d);
+            int blended = (drawn.flags & MASU_MATERIAL_IS_BLEND) != 0;
+            if (batch->mirrored) drawn.flags &= ~(uint32_t)MASU_MATERIAL_IS_SINGLE;
+            if ((pick ? pick_sweep_of(&drawn) : sweep_of(&drawn, view)) != sweep) continue;
+            if (!sun && !pick && culled != ((drawn.flags & MASU_MATERIAL_IS_SINGLE) != 0)) continue;
             if (pick) {
                 push.material = blended ? 1 : 0;
-                push.flags = material.flags;
+                push.flags = drawn.flags;
             } else if (!sun) {
-                push.material = material.material;
-                push.meso = material.meso;
+                push.material = drawn.material;
+                push.meso = drawn.meso;
             }
-            if (sweep) bind_maps(rec, layout, &material, &push, &bound);
+            if (sweep) bind_maps(rec, layout, &drawn, &push, &bound);
             memcpy(&block.own, &push, sizeof push);
             vk->CmdPushConstants(rec->cmd, layout, GRAPHICS_STAGES, 0, sizeof block, &block);
             vk->CmdDrawIndexedIndirect(rec->cmd, m->objects.buffers[MASU_BUFFER_DRAWS],

@@ -416,9 +416,8 @@ static uint32_t fall(const masu_governor *g, double lead, masu_governor_reason *
     }
     for (uint32_t r = g->best; r <= g->worst; r++) {
         if (masu_governor_upper(g, r, last, 0, 0.0) > NO_GAIN * least) continue;
-        *reason = r < g->worst && g->cost[r] > 1.2 * g->cost[g->worst]
-                      ? MASU_GOVERNOR_REASON_NO_GAIN
-                      : MASU_GOVERNOR_REASON_WORST;
+        int is_dearer = r < g->worst && g->cost[r] > 1.2 * g->cost[g->worst];
+        *reason = is_dearer ? MASU_GOVERNOR_REASON_NO_GAIN : MASU_GOVERNOR_REASON_WORST;
         return r;
     }
     return g->worst;
@@ -544,8 +543,7 @@ static void choose(masu_governor *g, uint64_t frame) {
     }
     uint64_t held = frame - g->changed + g->held_before;
     uint64_t dwell = (uint64_t)(g->dwell > HOLD ? g->dwell : HOLD) * g->patience;
-    int over = masu_governor_upper(g, g->rung, lead, 1, keep) > g->target,
-        emergency = g->misses >= 2;
+    int over = masu_governor_upper(g, g->rung, lead, 1, keep) > g->target, urgent = g->misses >= 2;
     masu_governor_reason why = g->jumped ? MASU_GOVERNOR_REASON_JUMP
                                : over    ? MASU_GOVERNOR_REASON_DOWN
                                          : MASU_GOVERNOR_REASON_EMERGENCY;
@@ -555,7 +553,7 @@ static void choose(masu_governor *g, uint64_t frame) {
         end_trial(g, frame, over);
         if (over) return;
     }
-    if (over || emergency) {
+    if (over || urgent) {
         uint32_t r = fall(g, lead, &why);
         g->misses = 0;
         g->urged = 0;
