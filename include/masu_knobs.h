@@ -207,7 +207,7 @@ typedef struct masu_knob {
     masu_knob_kind kind;
     uint32_t offset;       /* of the member in masu_rung, bytes */
     uint32_t values;       /* 4 bytes each: 1, or MASU_MAX_CASCADES for a value per cascade */
-    double min, max, zero; /* range and default; WORD: first and last enumerator, what AUTO is or 0 */
+    double min, max, zero; /* range and default; WORD: first and last value, AUTO */
     masu_knob_use use;
     const char *where;   /* condition of use: "scenes with an SDF" */
     const char *missing; /* message if the condition does not hold: "the scene has no SDF" */
