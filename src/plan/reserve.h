@@ -8,7 +8,8 @@
 #define MASU_PLAN_RESERVE_H
 
 #include "masu.h"
-#include "scene/scene.h"
+#include "scene/blob_section.h"
+#include "scene/scene_data.h"
 
 #define MASU_RESERVE_MODELS_MAX 16384u
 #define MASU_RESERVE_LIGHTS_MAX 4096u

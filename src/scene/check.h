@@ -5,7 +5,7 @@
 
 #include "masu.h"
 #include "scene/reader.h"
-#include "scene/scene.h"
+#include "scene/scene_data.h"
 
 /* Vertices, primitives, meshes, their LODs, instances. */
 masu_result masu_check_geometry(reader *r);

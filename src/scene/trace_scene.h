@@ -11,7 +11,8 @@
 #define MASU_TRACE_SCENE_H
 
 #include "masu.h"
-#include "scene/scene.h"
+#include "scene/blob_section.h"
+#include "scene/scene_data.h"
 #include "shared/masu_shared.h"
 
 #define MASU_TRACE_ROWS 6u /* of four floats, of each traced instance */

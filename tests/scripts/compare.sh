@@ -103,11 +103,11 @@ convert -size 32x32 xc:white "PNG24:$folder/white.png"
 near 'RMSE of black and white' "$(value rmse "$folder/all.json")" 255 1e-9
 [ "$(convert "$folder/map.png" -format '%[fx:minima>0.9]' info:)" = 1 ] || fail 'black and white are alike in the map'
 
-refuses 1 '32x32, but' "$folder/0.png" "$folder/black.png"
+refuses 1 'black.png: found 32x32, expected 101x67' "$folder/0.png" "$folder/black.png"
 refuses 1 'none.png' "$folder/0.png" "$folder/none.png"
 refuses 1 '0.ppm' "$folder/0.ppm" "$folder/0.png"
-refuses 2 'needed' "$folder/0.png"
-refuses 2 'one reference' "$folder/0.png" "$folder/1.png" "$folder/2.png"
+refuses 2 'expected a reference' "$folder/0.png"
+refuses 2 'expected one reference' "$folder/0.png" "$folder/1.png" "$folder/2.png"
 refuses 2 'ppd' "$folder/0.png" "$folder/1.png" --ppd 0
 refuses 1 'none' "$folder/0.png" "$folder/1.png" --map "$folder/none/map.png"
 exit $failed

@@ -18,7 +18,7 @@ diff -u docs/passes.md "$folder/passes.md" || {
 "$masu" render --setting help > "$folder/setting"
 cmp "$folder/plan" "$folder/setting"
 rows=$(grep -c '^  [a-z]' "$folder/plan")
-[ "$rows" = "$(sed -n '/^## Knobs/,/^## Words/p; /^## Limits/,$p' docs/knobs.md | grep -c '^| `')" ]
+[ "$rows" = "$(sed -n '/^## Knobs/,/^## Values/p; /^## Limits/,$p' docs/knobs.md | grep -c '^| `')" ]
 [ "$rows" -ge 40 ]
 
 # What rungs cost on classes of GPUs is of the ladders that are kept.

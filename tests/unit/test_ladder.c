@@ -494,8 +494,8 @@ static void mistakes_are_named_in_one_line(void **state) {
          "previous rung, 1, found 1"},
         {"\"ratio\": 0.900", "\"ratio\": 0", "rungs[1]: ratio: expected a number"},
         {"\"ratio\": 0.900, ", "",
-         "rungs[1]: ratio: expected a number from 1e-06 to 1e+06, given "
-         "is nothing"},
+         "rungs[1]: ratio: expected a number from 1e-06 to 1e+06, found "
+         "nothing"},
         {"\"ratio\": 0.900", "\"ratio\": 0.99999999999", "rungs[1]: ratio"},
         {"\"flip\": 0.200", "\"flip\": 1.2", "rungs[1]: flip"},
         {"\"rmse\": 1.5", "\"rmse\": false", "rungs[1]: rmse"},
@@ -512,7 +512,7 @@ static void mistakes_are_named_in_one_line(void **state) {
     written(rungs, 9);
     expect_error("s8", "s8", "rungs: expected an array of 1 to 8 rungs, found 9");
     written(rungs, 0);
-    expect_error("[]", "[]", "given are 0");
+    expect_error("[]", "[]", "found 0");
     static masu_ladder_file f;
     char error[1024] = "";
     assert_false(masu_ladder_parse("l.json", "[]", 2, &f, error, sizeof error));

@@ -14,8 +14,8 @@
 static const masu_option rows[] = {
     MASU_HEADING("Scene"),
     MASU_TEXT(masu_viewer_options, json, "json", "FILE.json",
-              "scene description; baked again when it or a file that it names (.sdf, .glsl,\n"
-              "models) changes, and baked at the start if there is no SCENE.masu"),
+              "scene description; baked again when it or a file that it names (.sdf,\n"
+              ".glsl, models) changes, and baked at the start if there is no SCENE.masu"),
     MASU_TEXT(masu_viewer_options, bake, "bake", "COMMAND",
               "shell command of the baker, run as COMMAND FILE.json -o OUT.masu --quiet\n"
               "(default: masu-bake in the folder of this program)"),
