@@ -1,28 +1,34 @@
 /*
- * temporal_find.comp: reprojection. For each render pixel it finds the position in the history, the weight of the history
- * as a number of samples, and the range that its colour is clamped to. Start with docs/design/17-temporal-upscaling.md.
+ * temporal_find.comp: reprojection. For each render pixel it finds the position in the history,
+ * the weight of the history as a number of samples, and the range that its colour is clamped to.
+ * Start with docs/design/17-temporal-upscaling.md.
  *
- *   1. Position: the velocity at the pixel. If a silhouette passes through the 3x3 samples around it, the velocity of the
- *      nearest sample, so that an anti-aliased edge moves with its foreground. The jitter of both frames is subtracted.
- *   2. Disocclusion: is the same surface visible in the previous frame? The range of the four depths that the previous
- *      frame stored there must overlap the depth range of the 3x3 samples: the least stored depth is at most the greatest
- *      of the nine, and the greatest stored depth is at least the least of the nine (is_known). The tolerance grows with
- *      the slope of the surface. If the ranges do not overlap, the history is discarded. The test is skipped for static
- *      pixels while camera position and scene are unchanged.
- *   3. Colour clamp: the history of moving pixels is clamped to 1.25 standard deviations around the mean of the nine
- *      samples, and to their extremes (Salvi, "An excursion in temporal supersampling", GDC 2016). The history of static
- *      pixels is not clamped, and therefore converges. If the scene has changed and the means of history and samples
- *      differ, it is clamped to 0.6 standard deviations and has a weight of one sample.
- *   4. Weight: up to 28 samples for a static pixel, up to 8 while the camera or anything in the scene moves, because rule
- *      3 does not detect a soft shadow that moves. Each resampling between pixels blurs, so a pixel that moves by 1/16
- *      pixel or more has at most 2 samples (1.5 below full size). The weight falls with speed and with the change of
- *      view depth: a surface that comes closer was smaller in the history.
+ *   1. Position: the velocity at the pixel. If a silhouette passes through the 3x3 samples
+ *      around it, the velocity of the nearest sample, so that an anti-aliased edge moves with
+ *      its foreground. The change of the jitter is subtracted.
+ *   2. Disocclusion: is the same surface visible in the previous frame? The range of the four
+ *      depths that the previous frame stored there must overlap the depth range of the 3x3
+ *      samples: the least stored depth is at most the greatest of the nine, and the greatest
+ *      stored depth is at least the least of the nine (is_known). The tolerance grows with the
+ *      slope of the surface. If the ranges do not overlap, the history is discarded. The test is
+ *      skipped for static pixels while camera position and scene are unchanged.
+ *   3. Colour clamp: the history of moving pixels is clamped to 1.25 standard deviations around
+ *      the mean of the nine samples, and to their extremes (Salvi, "An excursion in temporal
+ *      supersampling", GDC 2016). The history of static pixels is not clamped, and therefore
+ *      converges. If the scene has changed and the means of history and samples differ, it is
+ *      clamped to 0.6 standard deviations and has a weight of one sample.
+ *   4. Weight: up to 28 samples for a static pixel, up to 8 while the camera or anything in the
+ *      scene moves, because rule 3 does not detect a soft shadow that moves. Each resampling
+ *      between pixels blurs, so a pixel that moves by 1/16 pixel or more has at most 2 samples
+ *      (1.5 below full size). The weight falls with speed and with the change of view depth: a
+ *      surface that comes closer was smaller in the history.
  *
  * upscale/found.glsl defines the two 32-bit values of the result.
  *
- * Push constants: output_* = the render size; push.history_* = used part of `history` / size of the image; push.moved_*,
- * push.depth_*, push.then_*: 1 / size of the images of velocity, of depth and of the previous depth; push.pixel_*: 1 / the
- * render size; push.shift: 1 if the render size is the output size, and an output pixel uses the result at its own position.
+ * Push constants: output_* = the render size; push.history_* = used part of `history` / size of
+ * the image; push.moved_*, push.depth_*, push.then_*: 1 / size of the images of velocity, of
+ * depth and of the previous depth; push.pixel_*: 1 / the render size; push.shift: 1 if the
+ * render size is the output size, and an output pixel uses the result at its own position.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
