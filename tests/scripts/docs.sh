@@ -80,10 +80,10 @@ unknown_targets() {
 }
 
 # unknown_commands FOLDER HELP: `masu COMMAND`, `masu-lab COMMAND` and `masu-lab study NAME` that the program does not
-# have, and options that the command does not; HELP is called with the words of a command and prints its help. masu-lab
-# is tested where LAB_PROGRAM names it (lab/tests/scripts/docs.sh).
+# have, and options that the command does not have, except in the pages that list what was removed. HELP is called with
+# the words of a command and prints its help. masu-lab is tested if LAB_PROGRAM names it (lab/tests/scripts/docs.sh).
 unknown_commands() {
-    code "$1" | sed 's/\$([^)]*)//g; s/ *[&|;]\+ */\n&/g' | awk -F '\t' '
+    code "$1" | grep -vE '^(CHANGELOG|lab/notes/removed)\.md' | sed 's/\$([^)]*)//g; s/ *[&|;]\+ */\n&/g' | awk -F '\t' '
         NF == 2 { file = $1 }
         { line = NF == 2 ? $2 : $0; sub(/^ *[&|;]* */, "", line)
           if (line ~ /^(build\/bin\/)?masu(-[a-z]+)? /) { sub(/^build\/bin\//, "", line); print file "\t" line } }' |
