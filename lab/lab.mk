@@ -72,6 +72,7 @@ $(BUILD)/obj/lab/tests/%.o: FOLDER_FLAGS := -D_POSIX_C_SOURCE=200809L -UNDEBUG -
 # Shaders that only the lab uses, as C (shaders/shaders.mk).
 LAB_SPIRV := $(addprefix $(MADE)/gen/,$(sort $(shell grep -rhoE '\b[a-z0-9_]+\.spv\.h' --include='*.[ch]' lab)))
 $(foreach d,lab/study lab/tests/gpu,$(foreach s,$(STAGES),$(eval $(call shader_rule,%_$(s),$(d)/%.$(s)))))
+.SECONDARY: $(LAB_SPIRV:.spv.h=.spv) $(LAB_SPIRV:.spv.h=.opt.spv)
 LAB_TESTS_SOURCES := $(wildcard lab/tests/*/*.c)
 $(call objects,$(LAB_SOURCES) $(LAB_TESTS_SOURCES)): | $(LAB_SPIRV)
 
