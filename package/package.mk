@@ -46,7 +46,7 @@ consumers-cross: all scenes bundle ## build the bundle for Windows, 64-bit Arm a
 # ---- Installing ----------------------------------------------------------------------------------
 
 root = $(DESTDIR)$(PREFIX)
-DOCUMENTS := README.md CHANGELOG.md LICENSE $(wildcard docs/*.md docs/*.jpg)
+DOCUMENTS := README.md ARCHITECTURE.md CONTRIBUTING.md CHANGELOG.md LICENSE $(wildcard docs/*.md docs/*.jpg)
 # What masu conform takes besides itself. Baking takes minutes and is nobody's surprise: scenes are installed
 # that are there.
 SMOKE_SCENES := $(sort $(shell sed -n 's/.*"scene": "\([^"]*\)".*/\1/p' suites/smoke.json))
