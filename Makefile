@@ -130,8 +130,8 @@ more = $(MAKE) --no-print-directory $(if $(findstring jobserver,$(MAKEFLAGS)),,-
 
 .PHONY: all lib tools scenes shaders
 all: lib tools $(EXAMPLES) ## build the library, the programs and the example (the default)
-lib: $(BUILD)/lib/libmasu.a $(SHARED) ## build build/lib/libmasu.a and libmasu.so alone: CLASSES="both sdf-traced"
-tools: $(addprefix $(BUILD)/bin/,masu masu-bake masu-sdfc masu-meso $(if $(HAVE_VIEW),masu-view)) $(SUITES) ## build build/bin/masu, masu-bake, masu-sdfc, masu-meso; masu-view where SDL2 is
+lib: $(BUILD)/lib/libmasu.a $(SHARED) ## build only build/lib/libmasu.a and libmasu.so: CLASSES="both sdf-traced"
+tools: $(addprefix $(BUILD)/bin/,masu masu-bake masu-sdfc masu-meso $(if $(HAVE_VIEW),masu-view)) $(SUITES) ## build build/bin/masu, masu-bake, masu-sdfc, masu-meso; masu-view if SDL2 is installed
 shaders: $(SPIRV) ## compile, validate and optimise all shaders
 scenes: $(SCENES) ## bake scenes/*.json to build/scenes/*.masu
 
@@ -149,7 +149,7 @@ demo-picture: $(BUILD)/bin/masu $(picture_of)
 	@echo "The picture is $(abspath $(picture))"
 
 view: deps-demo deps-view $(if $(filter forza,$(WORLD)),deps-worlds)
-view: ## install what is missing, build, bake, look at it in a window: WORLD=garden|engine|forza|city|... VIEW_ARGS=
+view: ## install what is missing, build, bake, open the scene in a window: WORLD=garden|engine|forza|city|... VIEW_ARGS=
 	+$(V)$(more) view-window
 
 # A scene with a description is baked again when that or its field changes; worlds take too long for that.
@@ -172,12 +172,12 @@ worlds: deps-build ## bake the worlds city and forza to build/worlds; installs t
 drive: deps-demo deps-view deps-worlds ## install what is missing, build, bake, play the game on forza: DRIVE_ARGS='-t 16'
 	+$(V)$(more) drive-built
 	$(V)$(BUILD)/examples/drive $(DRIVE_ARGS) $(BUILD)/worlds/forza.masu $(BUILD)/worlds/forza.track
-drive-long: deps-test deps-view deps-worlds ## a lap of forza by script, under the validation layer; pictures in build/drive-long
+drive-long: deps-test deps-view deps-worlds ## drive a scripted lap of forza under the validation layer; images in build/drive-long
 	+$(V)$(more) drive-built
 	$(V)BUILD='$(BUILD)' tests/drive_long.sh $(DRIVE_ARGS)
 drive-built: $(BUILD)/examples/drive $(BUILD)/worlds/forza.masu $(BUILD)/worlds/forza.track
 
-hostile: $(BUILD)/bin/masu-bake $(BUILD)/bin/masu ## bake all of assimp-testmodels, broken ones too: RENDER=1
+hostile: $(BUILD)/bin/masu-bake $(BUILD)/bin/masu ## bake all models of assimp-testmodels, including broken ones: RENDER=1
 	$(V)BUILD='$(BUILD)' config='$(config)' RENDER='$(RENDER)' tests/hostile.sh
 
 .PHONY: check check-built unit gpu stiff fuzz fuzz-all coverage
@@ -191,17 +191,17 @@ unit: all $(SCRIPT_SCENES) $(UNIT_TESTS) $(FUZZ_TESTS) ## run the tests that nee
 	$(V)$(RUN_TESTS) $(RUN_UNIT)
 
 gpu: | $(filter unit,$(MAKECMDGOALS)) # they use one folder for results
-gpu: all $(GPU_TESTS) $(DRIVER_INFO) ## run the tests that need one: DRIVERS=all TESTS=name
+gpu: all $(GPU_TESTS) $(DRIVER_INFO) ## run the tests that need a Vulkan driver: DRIVERS=all TESTS=name
 	$(V)$(RUN_TESTS) $(RUN_GPU)
 
-stiff: all $(BUILD)/tests/gpu/test_stiff $(DRIVER_INFO) ## print the march's errors on stiff scenes: DRIVERS=all
+stiff: all $(BUILD)/tests/gpu/test_stiff $(DRIVER_INFO) ## print the sphere tracer's errors on stress scenes: DRIVERS=all
 	$(V)$(RUN_TESTS) --gpu $(BUILD)/tests/gpu/test_stiff; code=$$?; \
 	    for f in $(BUILD)/test-results/*/test_stiff.log; do \
 	        echo; echo "$$f"; grep '^|\|^  figures' "$$f"; done; exit $$code
 
 fuzz: ## fuzz with clang's libFuzzer: FUZZ=name FUZZ_TIME=60
 	+$(V)$(more) config=fuzz CC=clang fuzz-$(FUZZ)
-fuzz-all: ## fuzz every target of tests/fuzz for so long each: FUZZ_TIME=600
+fuzz-all: ## fuzz every target of tests/fuzz: FUZZ_TIME=600 seconds each
 	+$(V)for f in $(FUZZ_ALL); do $(more) config=fuzz CC=clang fuzz-$$f FUZZ=$$f || exit 1; done
 
 # Two hours on a CPU driver. Pages stay in build/report. docs/report keeps ladders.txt, and of each scene the ladder and
@@ -218,7 +218,7 @@ bench_needs = $(BUILD)/bin/masu $(foreach s,$(BENCH),$(call bench_file,$(s)).mas
 bench_scene = $(BUILD)/bin/masu bench $(call bench_file,$(1)).masu $(BENCH_ARGS) \
     $(BENCH_ARGS_$(subst /,-,$(1)))
 REPORT := $(MADE)/report
-bench: $(bench_needs) ## error against run time: build/report/SCENE/index.html, and the ladder to docs/report: BENCH='engine worlds/city' BENCH_ARGS=
+bench: $(bench_needs) ## measure error against run time: build/report/SCENE/index.html; ladder in docs/report: BENCH='engine worlds/city' BENCH_ARGS=
 	$(V)mkdir -p $(REPORT)
 	$(V)$(foreach s,$(BENCH),$(call bench_scene,$(s)) --out $(REPORT)/$(subst /,-,$(s)) &&) true
 ifneq ($(config),lab)
@@ -230,7 +230,7 @@ endif
 bench_again = if [ -d $(2) ]; then rm -rf $(3) && $(call bench_scene,$(1)) --rungs-of $(2) --out $(3) && \
     $(BUILD)/bin/masu bench $(2) --against $(3); else echo "masu: there is no $(2)"; fi
 .PHONY: bench-again
-bench-again: $(bench_needs) ## measure the rungs of docs/report again, and compare error and time ratio: BENCH=
+bench-again: $(bench_needs) ## measure the rungs of docs/report again, compare error and time ratio: BENCH=
 	$(V)mkdir -p $(BUILD)/again
 	$(V)$(foreach s,$(BENCH),$(call bench_again,$(s),docs/report/$(subst /,-,$(s)),$(BUILD)/again/$(subst /,-,$(s))) &&) true
 
@@ -241,7 +241,7 @@ coverage: ## run the tests with gcov and print the lines executed of each file o
 
 .PHONY: sizes format format-check compdb
 CLASS_OBJECTS := $(ALL_CLASSES:%=$(BUILD)/classes/%/shaders.o)
-sizes: lib $(CLASS_OBJECTS) ## print the size of each object of the library, and of the library by class of scenes
+sizes: lib $(CLASS_OBJECTS) ## print the size of each object of the library, and of the library per scene class
 	$(V)size -t $(BUILD)/lib/libmasu.a
 	$(V)package/sizes.sh $(BUILD) $(ALL_CLASSES)
 .PHONY: sizes-table
@@ -261,7 +261,7 @@ format-check: ## fail if clang-format would change a file
 	    [ -z "$$bad" ] || { echo "make format would change:"; echo "$$bad"; exit 1; }
 
 .PHONY: analyse analyse-built
-analyse: deps-analyse ## install what is missing; what clang-tidy, cppcheck and gcc -fanalyzer say of src/
+analyse: deps-analyse ## install what is missing, run clang-tidy, cppcheck and gcc -fanalyzer on src/
 	+$(V)$(more) analyse-built
 analyse-built: $(GENERATED)
 	$(V)BUILD='$(BUILD)' MADE='$(MADE)' tools/analyse/analyse.sh $(ANALYSED)
@@ -271,9 +271,9 @@ compdb: ## write compile_commands.json (with bear)
 	+$(V)bear -- $(MAKE) --no-print-directory -B all $(UNIT_TESTS) $(GPU_TESTS)
 
 .PHONY: clean help
-clean: ## remove what was built, of all configurations; keeps build/drivers
+clean: ## remove the builds of all configurations; keeps build/drivers
 	$(V)[ ! -d build ] || find build -mindepth 1 -maxdepth 1 ! -name drivers -exec rm -rf {} +
-help: ## print this
+help: ## print this text
 	@echo "make [TARGET] [config=release|debug|sanitize|coverage|lab] [CC=gcc|clang] [WERROR=1] [V=]"
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/\1 \2/p' $(filter Makefile %.mk,$(MAKEFILE_LIST)) | \
 	    while read -r target text; do printf '  %-14s %s\n' "$$target" "$$text"; done

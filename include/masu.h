@@ -177,8 +177,8 @@ typedef void (*masu_log_fn)(void *user, masu_log_level level, const char *text);
 
 /* ---- Scenes ---------------------------------------------------------------------------------- */
 
-/* A validated scene, filled by masu_scene_bind. Copyable; its content is private. A zeroed one is an
- * empty scene for the functions below, and MASU_ERROR_ARGUMENT as masu_desc.scene. */
+/* A validated scene, filled by masu_scene_bind. Copyable; its content is private. A zeroed one is
+ * an empty scene for the functions below, and MASU_ERROR_ARGUMENT as masu_desc.scene. */
 typedef struct masu_scene {
     uint64_t opaque[64];
 } masu_scene;
@@ -216,8 +216,8 @@ MASU_API uint32_t masu_scene_count(const masu_scene *scene, masu_scene_item item
 /* Name of an item, "" if it has none or does not exist. Reads the blob and points into it. */
 MASU_API const char *masu_scene_name(const masu_scene *scene, masu_scene_item item, uint32_t index);
 
-/* Index of the first item with that name; -1 if there is none, or if `name` is NULL or "". Reads the
- * blob; takes time proportional to the number of items. */
+/* Index of the first item with that name; -1 if there is none, or if `name` is NULL or "". Reads
+ * the blob; takes time proportional to the number of items. */
 MASU_API int32_t masu_scene_find(const masu_scene *scene, masu_scene_item item, const char *name);
 
 /* Number of animation clips of a model, 0 if the model does not exist; and the name of a clip, as
@@ -243,12 +243,12 @@ MASU_API uint32_t masu_scene_features(const masu_scene *scene);
 /* Triangles of all instances at the finest level of detail. */
 MASU_API uint64_t masu_scene_triangles(const masu_scene *scene);
 
-/* Bytes of all texels with their mips, without padding. compressed: 1 as BC blocks, 0 decoded, for a
- * device without textureCompressionBC. */
+/* Bytes of all texels with their mips, without padding. compressed: 1 as BC blocks, 0 decoded, for
+ * a device without textureCompressionBC. */
 MASU_API uint64_t masu_scene_texture_bytes(const masu_scene *scene, int compressed);
 
-/* Cascades of the sun's shadow map, 0 to MASU_MAX_CASCADES; 0: no shadow map. `resolution`: NULL, or
- * receives the texels along an edge of a cascade. They are what 0 stands for in
+/* Cascades of the sun's shadow map, 0 to MASU_MAX_CASCADES; 0: no shadow map. `resolution`: NULL,
+ * or receives the texels along an edge of a cascade. They are what 0 stands for in
  * rung.shadow_cascades and rung.shadow_resolution, and their upper bounds. */
 MASU_API uint32_t masu_scene_shadow_cascades(const masu_scene *scene, uint32_t *resolution);
 

@@ -79,9 +79,9 @@ typedef enum masu_knob_use {
  * NUMBER: `min` and `max` bound the value. 0 is always valid: it selects the default in the column
  * "0 is" unless the description defines another default; if that column is 0 too, the description
  * defines the meaning. WORD: the value is an enumerator of the type, and 0 is AUTO, which selects
- * the value in the column "AUTO is"; if that is MASU_AUTO too, src/plan/desc.c has the rule. A switch
- * whose AUTO and use are in its row needs no other code: passes read it as n->on.NAME and n->any.NAME
- * (src/plan/frame_plan.h). */
+ * the value in the column "AUTO is"; if that is MASU_AUTO too, src/plan/desc.c has the rule. A
+ * switch whose AUTO and use are in its row needs no other code: passes read it as n->on.NAME and
+ * n->any.NAME (src/plan/frame_plan.h). */
 /* clang-format off */
 #define MASU_PRODUCT_KNOBS(NUMBER, WORD)                                                           \
     /*     type              name                  min   max   0 is  of use in  unit          */   \
@@ -207,7 +207,7 @@ typedef struct masu_knob {
     masu_knob_kind kind;
     uint32_t offset;       /* of the member in masu_rung, bytes */
     uint32_t values;       /* 4 bytes each: 1, or MASU_MAX_CASCADES for a value per cascade */
-    double min, max, zero; /* range and default. WORD: the first and last enumerator, and what AUTO is, or 0 */
+    double min, max, zero; /* range and default; WORD: first and last value, AUTO */
     masu_knob_use use;
     const char *where;   /* condition of use: "scenes with an SDF" */
     const char *missing; /* message if the condition does not hold: "the scene has no SDF" */

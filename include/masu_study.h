@@ -1,7 +1,7 @@
-/* masu_study.h: settings for tests, measurements and debugging, which a port leaves at zero. A setting
- * is here because a test, `masu bench`, a conformance suite or a reference image needs it; settings
- * that only the laboratory needs require MASU_LAB. Part of masu.h, which includes it through
- * masu_knobs.h. */
+/* masu_study.h: settings for tests, measurements and debugging, which a port leaves at zero. A
+ * setting is here because a test, `masu bench`, a conformance suite or a reference image needs it;
+ * settings that only the laboratory needs require MASU_LAB. Part of masu.h, which includes it
+ * through masu_knobs.h. */
 #ifndef MASU_H
 #error "masu_study.h is a part of masu.h: include that"
 #endif

@@ -17,11 +17,11 @@ lab-check: deps-test ## install what is missing, build, run the lab's tests on t
 	+$(V)$(lab_make) lab-check-built
 
 .PHONY: study isa-table ladders ladder-devices gallery
-study: tools scenes ## masu-lab study on its scenes: STUDY=march STUDY_SCENES='march/city' STUDY_ARGS=
-isa-table: tools scenes ## write lab/notes/isa.csv: every pipeline on the GPUs that the project is for
+study: tools scenes ## run masu-lab study on its scenes: STUDY=march STUDY_SCENES='march/city' STUDY_ARGS=
+isa-table: tools scenes ## write lab/notes/isa.csv: cost of every pipeline on the target GPUs
 ladders: $(GENERATED) ## write src/quality/ladder_tables.h from docs/report/*/ladder.json: LADDERS='both=engine ...'
-ladder-devices: tools $(foreach l,$(LADDERS),$(call ladder_scene,$(l))) ## write src/quality/ladder_devices.h by the cost model: MASU_ISA_DRIVERS=
-gallery: tools ## a page of all of assimp-testmodels and TORCS's tracks, build/gallery/index.html: MATCH='*OBJ*' SIZE=
+ladder-devices: tools $(foreach l,$(LADDERS),$(call ladder_scene,$(l))) ## write src/quality/ladder_devices.h from the cost model: MASU_ISA_DRIVERS=
+gallery: tools ## write build/gallery/index.html: all models of assimp-testmodels and tracks of TORCS: MATCH='*OBJ*' SIZE=
 study isa-table ladders ladder-devices gallery:
 	+$(V)$(lab_make) $@
 

@@ -22,7 +22,7 @@ PROGRAMS    := masu masu-bake masu-sdfc masu-meso
 MAN_PAGES   := $(PROGRAMS:%=$(BUILD)/man/%.1)
 COMPLETIONS := $(PROGRAMS:%=$(BUILD)/completion/%)
 .PHONY: man
-man: $(MAN_PAGES) $(COMPLETIONS) ## write build/man and build/completion, of what the programs say for --help
+man: $(MAN_PAGES) $(COMPLETIONS) ## write build/man and build/completion from the programs' --help texts
 
 $(MAN_PAGES): $(BUILD)/man/%.1: $(BUILD)/bin/% package/man.sh package/help.sh
 	@mkdir -p $(@D)
@@ -34,19 +34,19 @@ $(COMPLETIONS): $(BUILD)/completion/%: $(BUILD)/bin/% package/completion.sh pack
 # ---- The bundle ----------------------------------------------------------------------------------
 
 .PHONY: bundle
-bundle: $(BUILD)/lib/libmasu.a ## write build/bundle: the library's sources, to be built without a shader compiler
+bundle: $(BUILD)/lib/libmasu.a ## write build/bundle: sources of the library that build without a shader compiler
 	$(V)package/bundle.sh $(BUILD)/bundle $(BUILD)/obj $(MADE)/gen $(LIB_SOURCES)
 
 # Not part of the tests: compilers of several hundred MB.
 .PHONY: consumers-cross
-consumers-cross: all scenes bundle ## build the bundle for Windows, 64-bit Arm and 32-bit x86; compare what the last two compute
+consumers-cross: all scenes bundle ## build the bundle for Windows, 64-bit Arm and 32-bit x86; compare results on the last two
 	$(call install-packages,$(PACKAGES_cross))
 	$(V)tests/consumers/cross.sh $(BUILD)/bundle $(BUILD)/cross $(MADE)/scenes
 
 # ---- Installing ----------------------------------------------------------------------------------
 
 root = $(DESTDIR)$(PREFIX)
-DOCUMENTS := README.md CHANGELOG.md LICENSE $(wildcard docs/*.md docs/*.jpg)
+DOCUMENTS := README.md ARCHITECTURE.md CONTRIBUTING.md CHANGELOG.md LICENSE $(wildcard docs/*.md docs/*.jpg)
 # What masu conform takes besides itself. Baking takes minutes and is nobody's surprise: scenes are installed
 # that are there.
 SMOKE_SCENES := $(sort $(shell sed -n 's/.*"scene": "\([^"]*\)".*/\1/p' suites/smoke.json))
@@ -57,7 +57,7 @@ fill = sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' -e 's|@MAJOR@
 
 .PHONY: install install-lib install-tools install-data install-docs uninstall
 install: install-lib install-tools install-data install-docs ## install to DESTDIR/PREFIX, by default /usr/local
-install-lib: lib ## install header, libraries, and what pkg-config and CMake find them by
+install-lib: lib ## install headers, libraries, and files for pkg-config and CMake
 	$(V)install -d "$(root)/include" "$(root)/lib/pkgconfig" "$(root)/lib/cmake/masu"
 	$(V)install -m 644 $(PUBLIC_HEADERS) "$(root)/include"
 	$(V)install -m 644 $(BUILD)/lib/libmasu.a $(SHARED) "$(root)/lib"
@@ -72,7 +72,7 @@ install-tools: tools man ## install masu, masu-bake, masu-sdfc and masu-meso, th
 	$(V)install -m 755 $(PROGRAMS:%=$(BUILD)/bin/%) "$(root)/bin"
 	$(V)install -m 644 $(MAN_PAGES) "$(root)/share/man/man1"
 	$(V)install -m 644 $(COMPLETIONS) "$(root)/share/bash-completion/completions"
-install-data: $(SUITES) ## install the suites of masu conform, and the scenes of smoke that are baked
+install-data: $(SUITES) ## install the suites of masu conform, and the baked scenes of the suite smoke
 	$(V)install -d "$(root)/share/masu/suites"
 	$(V)install -m 644 $(SUITES) "$(root)/share/masu/suites"
 	$(V)missing=; for s in $(SMOKE_SCENES); do \
@@ -85,7 +85,7 @@ install-docs: ## install licence and documents to share/doc/masu
 	$(V)install -d "$(root)/share/doc/masu/docs"
 	$(V)install -m 644 $(filter-out docs/%,$(DOCUMENTS)) "$(root)/share/doc/masu"
 	$(V)install -m 644 $(filter docs/%,$(DOCUMENTS)) "$(root)/share/doc/masu/docs"
-uninstall: ## remove what install has put there
+uninstall: ## remove all installed files
 	$(V)cd "$(root)" && rm -f $(PUBLIC_HEADERS) $(addprefix lib/,libmasu.a libmasu.so libmasu.so.$(MAJOR) libmasu.so.$(VERSION))
 	$(V)cd "$(root)" && rm -f lib/pkgconfig/masu.pc lib/pkgconfig/masu-static.pc $(PROGRAMS:%=bin/%)
 	$(V)cd "$(root)" && rm -f $(PROGRAMS:%=share/man/man1/%.1) $(PROGRAMS:%=share/bash-completion/completions/%)

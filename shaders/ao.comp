@@ -12,7 +12,7 @@
  *   hidden(a0..a1) = |n_slice| (F(a0) - F(a1)),  4 F(a) = cos(2a - gamma) - 2a sin(gamma),
  *
  * which is their equation 7 with h = gamma + pi / 2 - alpha. Two changes pay, both measured against
- * rays (docs/design/18-ambient-occlusion.md):
+ * rays (docs/design/06-ambient-occlusion.md):
  *  - A sample hides what it adds to the horizon, weighted by its own distance (1 - t / radius: the
  *    truth's rule). Theirs pulls the sample's direction towards the lowest horizon, by the distance.
  *  - Elevation is measured from the pixel's own plane: the height above it over the way along the

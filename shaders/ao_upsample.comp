@@ -17,7 +17,7 @@
  * that from any weighting of them, and mostly they differ by the pattern alone.
  *
  * Where the SDF has an ambient occlusion of its own, the lesser of the two counts: what both see they
- * would count twice as a product (docs/design/18-ambient-occlusion.md has the errors).
+ * would count twice as a product (docs/design/06-ambient-occlusion.md has the errors).
  *
  * push.radius: radius, metres. push.multiplies: not 0: the occlusion image holds something already; push.size: pixels per texel, 2, or 1 for comparison.
  */

@@ -48,14 +48,14 @@ if [ "$1" = passes ]; then
     cat << 'END'
 # Render passes
 
-[`src/plan/passes.inc`](../src/plan/passes.inc) lists the passes of a frame in execution order, one row per pass. This page is made from
-those rows by `make docs-tables`. Barriers, image layouts, descriptor sets, lifetimes, memory aliasing, labels and timestamps are derived
-from the same rows ([frame plan](design/01-frame.md)). `masu plan SCENE.masu` prints the passes that run for a scene, and why each of the
-others does not.
+[`src/plan/passes.inc`](../src/plan/passes.inc) lists the passes of a frame in execution order, one row per pass.
+`make docs-tables` writes this page from those rows. Barriers, image layouts, descriptor sets, lifetimes, memory
+aliasing, labels and timestamps are derived from the same rows ([frame plan](design/01-frame.md)).
+`masu plan SCENE.masu` prints the passes that run for a scene, and why each of the others does not run.
 
-*Latest depth* (*color*, *specular*) is the image of that class that the most recent pass of the rung has written; *previous* is the
-one before that. The last pass that writes color writes the target: it rounds to the target's steps, dithers if `desc.dither` is on, and
-encodes to sRGB, scRGB or HDR10.
+*Latest depth* (*color*, *specular*) is the image of that class that the most recent pass of the rung has written;
+*previous* is the one before that. The last pass that writes color writes the target: it rounds to the target's steps,
+dithers if `desc.dither` is on, and encodes to sRGB, scRGB or HDR10.
 
 | pass | what it does | runs if | reads | writes |
 |---|---|---|---|---|

@@ -1,16 +1,16 @@
 /*
- * temporal.comp: anti-aliasing and upscaling in one, by samples of frames before. Of each pixel of the output it takes
- * the mean of this frame's samples near it and of its history, each by how many samples stand in it. The frame's
- * jitter has put its samples elsewhere than those before. docs/design/41-temporal.md has the measurements;
- * temporal_find.comp has asked where the history is, and how much of it counts.
+ * temporal.comp: temporal anti-aliasing and upscaling. For each output pixel it averages the history and the nearest
+ * samples of this frame, weighted by the number of samples in each. Start with docs/design/17-temporal-upscaling.md.
+ * temporal_find.comp has already found the position and the weight of the history.
  *
- * A pixel that has not yet a whole sample takes the rest from the four texels around, as bilinear filtering would.
+ * The jitter moves the samples within their pixels every frame, so the history gathers samples from the whole pixel. If
+ * the total weight is below 1, bilinear filtering of the four nearest texels supplies the remainder.
  *
- * Everything is display light, as an eye takes the mean of it (docs/design/31-truth.md); a: samples. upscale/mean.glsl says how it
- * is stored, upscale/history.glsl where it was.
+ * Colours are averaged in linear display light (docs/design/18-error-measurement.md); channel a counts samples.
+ * upscale/mean.glsl defines how the history is stored, upscale/history.glsl how it is read.
  *
  * Push constants: output_* = size to write; push.scale_* = input size * (1 / output size); push.texel_*: 1 / size of
- * the image of colour; the rest is history.glsl's.
+ * the image of colour; history.glsl documents the rest.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

@@ -1,28 +1,34 @@
 /*
- * temporal_find.comp: of each pixel of the render size, where the previous frame has shown it, how many samples of what it
- * was count, and within what it is held: all that temporal.comp need not ask again for each pixel of the output.
+ * temporal_find.comp: reprojection. For each render pixel it finds the position in the history,
+ * the weight of the history as a number of samples, and the range that its colour is clamped to.
+ * Start with docs/design/17-temporal-upscaling.md.
  *
- *   1. Where was it? By the velocity at the pixel; where a silhouette passes through the 3x3 samples around, by the
- *      nearest one's, so that a smooth edge moves with what it is the edge of. Without what the frames' jitter differs by.
- *   2. Is it the same thing? What rests in a world that does, before an eye that does, is. Else one of the four depths
- *      that the previous frame has kept there has to lie between the nearest and the farthest of the nine of now, as far
- *      as they were then; else the pixel begins anew. A surface that leans may differ by its slope.
- *   3. Has what it shows changed? History of what has moved across the screen is held within what the nine samples
- *      show: 1.25 standard deviations around their mean, and none of their extremes exceeded. (Salvi, "An excursion in
- *      temporal supersampling", GDC 2016.) What rests is not held, which is what makes it exact; but where the world has
- *      changed, and the mean of the history around is not that of the nine, it is, too, within 0.6, and counts as one
- *      sample.
- *   4. How much does it count? At rest as many samples as it has, up to 28, and up to 8 while the eye moves or anything
- *      in the world changes: a soft shadow that moves is not seen by rule 3. Each resampling between pixels blurs, so
- *      that what moves, by a sixteenth of a pixel or more, counts at most 2, below full size 1.5, and less the faster it moves
- *      and the more it grows: it was smaller then.
+ *   1. Position: the velocity at the pixel. If a silhouette passes through the 3x3 samples
+ *      around it, the velocity of the nearest sample, so that an anti-aliased edge moves with
+ *      its foreground. The change of the jitter is subtracted.
+ *   2. Disocclusion: is the same surface visible in the previous frame? The range of the four
+ *      depths that the previous frame stored there must overlap the depth range of the 3x3
+ *      samples: the least stored depth is at most the greatest of the nine, and the greatest
+ *      stored depth is at least the least of the nine (is_known). The tolerance grows with the
+ *      slope of the surface. If the ranges do not overlap, the history is discarded. The test is
+ *      skipped for static pixels while camera position and scene are unchanged.
+ *   3. Colour clamp: the history of moving pixels is clamped to 1.25 standard deviations around
+ *      the mean of the nine samples, and to their extremes (Salvi, "An excursion in temporal
+ *      supersampling", GDC 2016). The history of static pixels is not clamped, and therefore
+ *      converges. If the scene has changed and the means of history and samples differ, it is
+ *      clamped to 0.6 standard deviations and has a weight of one sample.
+ *   4. Weight: up to 28 samples for a static pixel, up to 8 while the camera or anything in the
+ *      scene moves, because rule 3 does not detect a soft shadow that moves. Each resampling
+ *      between pixels blurs, so a pixel that moves by 1/16 pixel or more has at most 2 samples
+ *      (1.5 below full size). The weight falls with speed and with the change of view depth: a
+ *      surface that comes closer was smaller in the history.
  *
- * What is found is two words, of upscale/found.glsl.
+ * upscale/found.glsl defines the two 32-bit values of the result.
  *
- * Push constants: output_* = the render size; push.history_* = size of the part of `history` that is shown / that of the
- * image; push.moved_*, push.depth_*, push.then_*: 1 / size of the images of velocities, of depths and of those before;
- * push.pixel_*: 1 / the render size; push.shift: 1 where the sizes of input and output are one, and a pixel of the output looks
- * at its own.
+ * Push constants: output_* = the render size; push.history_* = used part of `history` / size of
+ * the image; push.moved_*, push.depth_*, push.then_*: 1 / size of the images of velocity, of
+ * depth and of the previous depth; push.pixel_*: 1 / the render size; push.shift: 1 if the
+ * render size is the output size, and an output pixel uses the result at its own position.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -104,7 +110,7 @@ vec4 motion_at(ivec2 at, vec2 place, around a, vec2 size, out bool of_front)
     return vec4(moved.xy + frame.shifts.zw, moved.zw);
 }
 
-/* before: the share of the picture at which the previous frame has shown it. */
+/* Rule 2. before: position in the previous frame, 0..1. growth: relative change of view depth. */
 bool is_known(vec2 before, around a, float growth)
 {
     vec2 size = vec2(frame.temporal.xy);

@@ -42,7 +42,7 @@ struct cell {
 };
 
 /* One of the four pixels. A function, called four times, and no loop: what compilers make of a loop that they unroll is
- * counted as if each turn ran all of it (docs/design/33-model.md). */
+ * counted as if each turn ran all of it (docs/design/20-cost-model.md). */
 void resolve(cell c, ivec2 way)
 {
     ivec2 at = c.first + way;

@@ -21,7 +21,7 @@ test_programs = $(call only,$(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard $(1
 GPU_TESTS    := $(call test_programs,tests/gpu/test_*.c)
 FUZZ_TESTS   := $(call test_programs,tests/fuzz/fuzz_*.c)
 # Those that look at texts and not at what is built say nothing new a second time: NESTED is set by tests/full.
-TEXT_TESTS   := $(addprefix tests/scripts/,docs.sh docs_tables.sh layers.sh source_gates.sh install.sh bundle.sh exports.sh sizes.sh floats.sh)
+TEXT_TESTS   := $(addprefix tests/scripts/,dialect.sh docs.sh docs_tables.sh facts.sh layers.sh source_gates.sh install.sh bundle.sh exports.sh sizes.sh floats.sh)
 TEXT_TESTS   += $(BUILD)/tests/unit/test_shader_gates
 # Nor do those that take long for code that unit tests go through, or whose time goes by in a driver.
 LONG_TESTS   := $(addprefix tests/scripts/,bake_blocks.sh drive.sh meso.sh view.sh)
@@ -114,25 +114,25 @@ $(BUILD)/tests/gpu/test_conform: | $(EXTREME) $(EXTREME:.masu=.truth.so)
 
 # docs/stability.md: what the suite and the tests measure on each of the drivers.
 .PHONY: stability
-stability: scenes $(BUILD)/bin/masu $(SUITES) $(EXTREME) $(EXTREME:.masu=.truth.so) $(DRIVER_INFO) ## write docs/stability.md: extreme input, what must hold, what was measured, on three drivers
+stability: scenes $(BUILD)/bin/masu $(SUITES) $(EXTREME) $(EXTREME:.masu=.truth.so) $(DRIVER_INFO) ## write docs/stability.md: extreme inputs, conditions and measured values on three drivers
 	$(V)BUILD='$(BUILD)' MADE='$(MADE)' tests/stability.sh
 
 # Random rungs, cameras, scenes, sizes; the tests do a tenth of it.
 .PHONY: soak
-soak: scenes $(BUILD)/tests/gpu/test_soak $(DRIVER_INFO) ## 20,000 frames of everything at random, memory beside a bare loop's: SOAK_FRAMES= DRIVERS=
+soak: scenes $(BUILD)/tests/gpu/test_soak $(DRIVER_INFO) ## render 20,000 random frames, compare memory with a plain submission loop: SOAK_FRAMES= DRIVERS=
 	$(V)SOAK_FRAMES=$(or $(SOAK_FRAMES),20000) MASU_TEST_TIMEOUT=7200 $(RUN_TESTS) --gpu $(BUILD)/tests/gpu/test_soak; code=$$?; \
 	    cat $(BUILD)/test-results/*/test_soak.log; exit $$code
 
 # Some minutes: instrumented shaders are slow to compile.
 .PHONY: gpu-av
-gpu-av: scenes $(STIFF) $(BUILD)/tests/gpu/test_gpu_av $(DRIVER_INFO) ## every scene for two frames at two rungs under GPU-assisted validation and best practices: DRIVERS=
+gpu-av: scenes $(STIFF) $(BUILD)/tests/gpu/test_gpu_av $(DRIVER_INFO) ## render every scene under GPU-assisted validation and best practices: DRIVERS=
 	$(V)GPU_AV_SCENES='$(or $(GPU_AV_SCENES),$(SCENES) $(STIFF))' MASU_TEST_TIMEOUT=7200 \
 	    $(RUN_TESTS) --gpu $(BUILD)/tests/gpu/test_gpu_av; code=$$?; \
 	    grep -h ' messages' $(BUILD)/test-results/*/test_gpu_av.log; exit $$code
 
 # Whatever GPU the Vulkan loader finds: one folder to send in.
 .PHONY: device-report
-device-report: scenes $(BUILD)/bin/masu $(SUITES) $(EXTREME) $(EXTREME:.masu=.truth.so) $(GPU_TESTS) $(DRIVER_INFO) ## tests, suites, ladder, times of the GPU that is here to docs/devices/NAME: DRIVERS=any NAME= MINUTES=20
+device-report: scenes $(BUILD)/bin/masu $(SUITES) $(EXTREME) $(EXTREME:.masu=.truth.so) $(GPU_TESTS) $(DRIVER_INFO) ## write tests, suites, ladder and times of this machine's GPU to docs/devices/NAME: DRIVERS=any NAME= MINUTES=20
 	$(V)BUILD='$(BUILD)' MADE='$(MADE)' NAME='$(NAME)' MINUTES='$(or $(MINUTES),20)' \
 	    TESTS='$(GPU_TESTS)' tests/device_report.sh $(if $(filter-out system,$(DRIVERS)),$(DRIVERS),any)
 

@@ -22,7 +22,7 @@
  * it is h cos(a) at distance h under the angle a to the normal; what it lacks of that is occluded.
  * Five samples: two on the normal, three at 45 degrees around it. Their weights are the least-squares
  * fit to the truth (cosine-weighted, a hit at distance t counts 1 - t / radius) over four scenes;
- * docs/design/13-sdf-occlusion.md has the errors, also of the usual five samples on the normal.
+ * docs/design/06-ambient-occlusion.md has the errors, also of the usual five samples on the normal.
  *
  * The includer defines what of both there is, MASU_SHADOWS and MASU_AMBIENT_OCCLUSION, and their
  * constants. Positions are relative to the eye, as everywhere.

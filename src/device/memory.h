@@ -1,23 +1,21 @@
-/* memory.h: the device block.
+/* memory.h: the layout of device memory.
  *
- *   role device                                                     role upload           role
- *   readback | vertices | indices | ... | transient images, sharing bytes |  | frame | instances |
- *   | slot 0 | slot 1 |
+ *   device     | vertices | indices | ... | persistent images | transient images, aliased |
+ *   upload     | frame slot 0 | frame slot 1 | ... |
+ *   readback   | frame slot 0 | frame slot 1 | ... |
  *
- * On unified memory the three follow one another in ONE block. Sizes and alignments come from the
- * driver (vkGetImageMemoryRequirements on the real images), never from width * height * bytes:
- * drivers pad and tile.
+ * On unified memory the three roles follow one another in ONE block. Sizes and alignments are those
+ * that the driver reports for the real images (vkGetImageMemoryRequirements), never width * height *
+ * bytes: drivers pad and tile.
  *
- * Transient images share bytes when their lifetimes (rows of the frame table) do not meet. Placing
- * them is dynamic storage allocation, which is NP-hard; a few tens of images and first fit over
- * several orders come close, and the lower bound (largest set alive at once) is printed beside the
- * result.
+ * Transient images share memory if their lifetimes (rows of the pass table) do not overlap. Placing
+ * them optimally is dynamic storage allocation, which is NP-hard. With a few tens of images, first
+ * fit in several orders comes close; the plan prints the lower bound (the largest set alive at once)
+ * next to the result. Persistent images, whose content outlives the frame, share nothing: histories,
+ * and the shadow map if some cascades are not rendered in every frame.
  *
- * An image whose content outlives the frame (histories; the shadow map, where not every cascade is drawn in
- * every frame) stands in front of them and shares nothing.
- *
- * Memory types are a preference list, never an exclusion: an integrated GPU has one type that is
- * everything at once. */
+ * Memory types are a preference list, never an exclusion: an integrated GPU has one type with all
+ * properties. */
 #ifndef MASU_DEVICE_MEMORY_H
 #define MASU_DEVICE_MEMORY_H
 

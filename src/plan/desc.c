@@ -60,13 +60,13 @@ static masu_switch temporal_of(const masu_desc *d, const masu_rung *rung) {
 }
 
 /* Beside many samples from one a longer mean of the reflections alone blurs what that has sharp, and tells late:
- * docs/design/41-temporal.md. */
+ * docs/design/17-temporal-upscaling.md. */
 #define SPECULAR_FRAMES_RESOLVED 8u
 
 /* What follows from another knob. */
 static void resolve_words(masu_rung *rung) {
     /* Many samples from one are a better mean than the neighbours' hits are, and a second mean over frames blurs what the
-     * first has sharp: docs/design/41-temporal.md. */
+     * first has sharp: docs/design/17-temporal-upscaling.md. */
     masu_switch alone = rung->temporal == MASU_ON ? MASU_OFF : MASU_ON;
     fill(&rung->specular_reuse, alone);
     fill(&rung->specular_taa, alone);

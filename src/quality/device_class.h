@@ -1,5 +1,5 @@
 /* device_class.h: which of the classes of GPUs that the project's times are computed for a device belongs to, by
- * vendor and device id (docs/design/33-model.md). Pure; owns nothing, fails at nothing. */
+ * vendor and device id (docs/design/20-cost-model.md). Pure; owns nothing, fails at nothing. */
 #ifndef MASU_DEVICE_CLASS_H
 #define MASU_DEVICE_CLASS_H
 

@@ -9,7 +9,7 @@
  *
  * The model is   ms = fixed + cost[rung] * load   with the load moving by `slope` each frame. Fixed
  * part, load and slope are the state of a Kalman filter; costs begin at the prior (scale^2) and are
- * corrected by what each rung has measured. docs/design/35-governor.md has laws and measurements.
+ * corrected by what each rung has measured. docs/design/19-governor.md has laws and measurements.
  *
  * Any sample may be given: what cannot be a frame's time is left out, and the rung handed out is
  * one of best .. worst whatever comes in. */

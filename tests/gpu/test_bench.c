@@ -215,7 +215,7 @@ static void a_folder_has_rows_rungs_and_a_page(void **state) {
         check_markup("whole/plots/front.svg");
         check_markup("whole/plots/techniques.svg");
     } else {
-        assert_non_null(strstr(cli_err, "no gnuplot"));
+        assert_non_null(strstr(cli_err, "gnuplot not found"));
     }
     char *page = read_file(in_scratch("whole/index.html"), NULL);
     assert_non_null(strstr(page, "data:image/png;base64,iVBOR"));
@@ -632,7 +632,7 @@ static void rungs_of_no_use_are_refused(void **state) {
     assert_int_equal(bench("%s " SMALL " --rungs-of %s/none --out %s/y", scene_path("test_both"),
                            scratch, scratch),
                      1);
-    said("none: sweep.json");
+    said("none: cannot read sweep.json");
     assert_false(is_in_scratch("y"));
     assert_int_equal(bench("a.masu --out %s/y --steady -1", scratch), 2);
     said("steady");

@@ -4,7 +4,7 @@
  *
  * The scenes of scenes/ are baked here again with the options; the fields of the truth come from the
  * SDF compiler and go through the C compiler. The table of errors is printed
- * (docs/design/13-sdf-occlusion.md). */
+ * (docs/design/06-ambient-occlusion.md). */
 #include "support/support.h"
 #include "support/floats.h"
 #include "support/files.h"

@@ -1,7 +1,7 @@
 /* test_shadow.c: what the shadow map says of each pixel against rays towards the sun through the
  * scene's triangles in double precision: hard shadows by one ray to the sun's middle, the filter by
  * 256 over its disc; no acne, how much light leaks in at the foot of a caster, SDF and polygons
- * together. The figures are printed (docs/design/15-shadow-map.md). test_shadow_frames.c has what
+ * together. The figures are printed (docs/design/08-lights-shadows.md). test_shadow_frames.c has what
  * holds from frame to frame. */
 #include "support/files.h"
 #include "support/floats.h"

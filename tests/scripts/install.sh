@@ -38,7 +38,7 @@ sort > "$folder/expected" << END
 .$prefix/lib/libmasu.so.$version
 .$prefix/lib/pkgconfig/masu-static.pc
 .$prefix/lib/pkgconfig/masu.pc
-$(for f in README.md CHANGELOG.md LICENSE docs/*.md docs/*.jpg; do echo ".$prefix/share/doc/masu/$f"; done)
+$(for f in README.md ARCHITECTURE.md CONTRIBUTING.md CHANGELOG.md LICENSE docs/*.md docs/*.jpg; do echo ".$prefix/share/doc/masu/$f"; done)
 $(for p in masu masu-bake masu-meso masu-sdfc; do
     printf '%s\n' ".$prefix/share/man/man1/$p.1" ".$prefix/share/bash-completion/completions/$p"
 done)

@@ -3,7 +3,7 @@
  *
  * What a case claims stands in its row: the most that each figure may be (below 0: nothing), and why. A figure that
  * depends on what the march can do today says so, so that only a number changes when it can do
- * more. Each case prints one row of a table (`make stiff`, docs/design/11-march-measured.md). */
+ * more. Each case prints one row of a table (`make stiff`, docs/design/05-sphere-tracing.md). */
 #ifndef MASU_TEST_SUPPORT_STIFF_H
 #define MASU_TEST_SUPPORT_STIFF_H
 

@@ -101,7 +101,7 @@ static void a_bound_holds_all_that_is_reached(void **state) {
     assert_true(reached > 30000);
 }
 
-/* A camera like src/frame/upload.c's: clip rows of a picture of those tangents. */
+/* A camera like src/frame/camera.c's: clip rows of a picture of those tangents. */
 static void make_camera(float clip[16], double right[3], double up[3], double forward[3],
                         double tan_x, double tan_y) {
     double length;

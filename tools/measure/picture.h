@@ -13,7 +13,7 @@
  * out: over 64 it is 0.29 / 8 = 0.04 of a step. Where they do not, their mean is that one number,
  * and rounding it again changes nothing: the truth is then the picture's own 8 bits.
  *
- * What stays approximate: docs/design/31-truth.md. Nothing here
+ * What stays approximate: docs/design/18-error-measurement.md. Nothing here
  * owns the session. */
 #ifndef MASU_MEASURE_PICTURE_H
 #define MASU_MEASURE_PICTURE_H

@@ -10,7 +10,7 @@
 #include "bake/scene/content.h"
 
 /* Texels along the longer side of a picture, where the scene does not say; see
- * docs/design/22-reflected-textures.md for what that takes. 0: colours have no pictures. */
+ * docs/design/10-reflections.md for what that takes. 0: colours have no pictures. */
 #define MASU_BAKE_TRACE_SIDE 64u
 
 /* A picture while it grows. */
