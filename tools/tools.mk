@@ -89,7 +89,7 @@ $(foreach n,$(shell scenes/needs.sh scenes tests/scenes),$(eval $(call scene_rul
 
 # The hash of what masu-bake runs: it changes only if the program does, not if a comment of its sources does.
 $(MADE)/bin/masu-bake.code: $(MADE)/bin/masu-bake
-	$(V)objcopy --strip-debug -R .note.gnu.build-id $< $@.stripped
+	$(V)objcopy --strip-all -R .note.gnu.build-id $< $@.stripped
 	$(V)cksum < $@.stripped > $@.new && rm $@.stripped
 	$(V)$(call move_if_changed,$@.new,$@)
 
