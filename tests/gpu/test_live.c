@@ -144,8 +144,8 @@ static void what_is_shown_has_not_moved(void **state) {
     open_session(&s, &d);
     masu_commands commands;
     draw(&s, &(masu_frame_desc){.rung = 0}, &commands, NULL);
+    masu_model added = {0};
     for (uint32_t frame = 0; frame < 3; frame++) {
-        masu_model added;
         const float at[12] = {1, 0, 0, 0.5f, 0, 1, 0, 0.2f * (float)frame, 0, 0, 1, 2.0f};
         if (frame == 0)
             assert_int_equal(masu_model_add(s.m, model_of(&s, "truck"), at, &added), MASU_OK);

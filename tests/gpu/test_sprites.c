@@ -735,7 +735,8 @@ static void no_trail_stays(void **state) {
     const masu_decal d = {.rows = {2, 0, 0, 0, 0, 0.4f, 0, 0, 0, 0, 2, 0}, .color = {1, 0, 0}, .opacity = 1};
     masu_particle smoke_away = smoke;
     masu_decal d_away = d;
-    smoke_away.position[1] = d_away.rows[7] = 1000;
+    smoke_away.position[1] = 1000;
+    d_away.rows[7] = 1000;
     masu_session_desc desc = room_desc("test_pane");
     desc.desc.rungs[0] = (masu_rung){.scale = 0.75f, .temporal = MASU_ON};
     masu_commands commands;

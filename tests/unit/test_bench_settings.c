@@ -83,7 +83,7 @@ static void a_scene_of_nothing_leaves_what_is_done_to_pictures(void **state) {
     static const masu_scene scene;
     const masu_plan_info plan = plan_with(NULL, 0);
     uint32_t count = masu_settings_make(false, settings);
-    masu_settings_fit(settings, count, masu_scene_of(&scene), &plan);
+    masu_settings_fit(settings, count, &scene, &plan);
     check_names(count);
     check_dropped("march_steps=64", count, "no SDF");
     check_dropped("ao=off", count, "no screen-space ambient occlusion");

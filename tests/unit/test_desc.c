@@ -269,7 +269,7 @@ static masu_desc full_desc(void) {
     d.readback = 3;
     d.picking = 1;
     d.load_step = MASU_LOAD_STEP_MIN + 1;
-    d.debug = (masu_debug){1, 2, 3, 4, 5, 6, 7, 8, MASU_ON, 9, 10, 11, 12.0f};
+    d.debug = (masu_debug){1, 2, 3, 4, 5, 6, 7, MASU_ON, 9, 10, 11, 12.0f};
     d.deny.unified_memory = 1;
     d.log = no_log;
     d.log_user = &allocator;
@@ -333,7 +333,7 @@ static void output_follows_from_target_and_scene(void **state) {
     early.targets.storage = 0;
     early.scene = NULL;
     early = masu_desc_resolved(&early);
-    early.scene = &support_scene;
+    early.scene = masu_scene_of(&support_scene);
     early = masu_desc_resolved(&early);
     assert_int_equal(early.exposure.metered, MASU_ON);
     assert_int_equal(early.dither, MASU_ON);

@@ -1020,7 +1020,7 @@ static void only_what_is_coated_has_the_tables_of_coats(void **state) {
     assert_false(plan.needs.surface);
     d = scene_desc(SDF, 100, 100);
     s = *masu_scene_data_of(d.scene);
-    d.scene = &s;
+    d.scene = masu_scene_of(&s);
     s.surfaces = s.coats = 1;
     compile(&d, &plan);
     assert_int_equal(plan.buffers[MASU_BUFFER_TABLES].bytes, 4 * MASU_TABLE_WORDS);
