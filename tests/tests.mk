@@ -117,7 +117,7 @@ $(BUILD)/tests/gpu/test_conform: | $(EXTREME) $(EXTREME:.masu=.truth.so)
 stability: scenes $(BUILD)/bin/masu $(SUITES) $(EXTREME) $(EXTREME:.masu=.truth.so) $(DRIVER_INFO) ## write docs/stability.md: extreme inputs, conditions and measured values on three drivers
 	$(V)BUILD='$(BUILD)' MADE='$(MADE)' tests/stability.sh
 
-# Random rungs, cameras, scenes, sizes; the tests do a tenth of it.
+# Random rungs, cameras, scenes, sizes; the tests do a twentieth of it.
 .PHONY: soak
 soak: scenes $(BUILD)/tests/gpu/test_soak $(DRIVER_INFO) ## render 20,000 random frames, compare memory with a plain submission loop: SOAK_FRAMES= DRIVERS=
 	$(V)SOAK_FRAMES=$(or $(SOAK_FRAMES),20000) MASU_TEST_TIMEOUT=7200 $(RUN_TESTS) --gpu $(BUILD)/tests/gpu/test_soak; code=$$?; \

@@ -3,7 +3,7 @@
  * of the process does not grow but by what the driver takes for itself: beside it stands what it takes when a
  * recording is submitted as often and nothing of the library is called in between.
  *
- * SOAK_FRAMES: 2,000, and 20,000 with `make soak`. */
+ * SOAK_FRAMES: 1,000, and 20,000 with `make soak`. */
 #include "support/files.h"
 #include "support/random.h"
 #include "support/support.h"
@@ -150,7 +150,7 @@ static int64_t bare(uint32_t frames) {
 static void memory_is_flat_and_nothing_is_left_of_what_was(void **state) {
     (void)state;
     const char *asked = getenv("SOAK_FRAMES");
-    uint32_t frames = asked && atoi(asked) > 0 ? (uint32_t)atoi(asked) : 2000;
+    uint32_t frames = asked && atoi(asked) > 0 ? (uint32_t)atoi(asked) : 1000;
     uint32_t round = SCENES * SCENE_FRAMES;
     for (uint32_t i = 0; i < SCENES; i++) {
         masu_session_desc d = test_desc(scenes[i], W, H);

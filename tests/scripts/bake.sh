@@ -349,7 +349,7 @@ bounds_found=$(tr -d ' \n' < "$folder/stats.json" | sed 's/.*"bounds":\(\[\[.*\]
 
 # ---- scenes of the tree, as make has baked them: of every way to bake one; with the sanitizers one ---------
 
-again=(scenes/{engine,glass,mirrors,night,surfaces,textures}.json)
+again=(scenes/{glass,mirrors,night,surfaces,textures}.json)
 [ "${NESTED:-}" = '' ] || again=(scenes/textures.json)
 for file in "${again[@]}"; do
     accepts "$file" -o "$folder/out/again.masu" --texture-path "${MADE:-build}/textures"
