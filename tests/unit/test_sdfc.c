@@ -811,7 +811,7 @@ static void planted_faults_are_found(void **state) {
         if (!check_finds(cases[i].text, cases[i].fault, error, sizeof error)) {
             fail_msg("%s: fault %d was not found", cases[i].text, (int)cases[i].fault);
         }
-        assert_non_null(strstr(error, "x.sdf:1:6: part a: the "));
+        if (!strstr(error, "x.sdf:1:6: part a: ")) fail_msg("%s", error);
     }
 }
 
