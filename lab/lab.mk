@@ -72,7 +72,6 @@ $(BUILD)/obj/lab/tests/%.o: FOLDER_FLAGS := -D_POSIX_C_SOURCE=200809L -UNDEBUG -
 # Shaders that only the lab uses, as C (shaders/shaders.mk).
 LAB_SPIRV := $(addprefix $(MADE)/gen/,$(sort $(shell grep -rhoE '\b[a-z0-9_]+\.spv\.h' --include='*.[ch]' lab)))
 $(foreach d,lab/study lab/tests/gpu,$(foreach s,$(STAGES),$(eval $(call shader_rule,%_$(s),$(d)/%.$(s)))))
-.SECONDARY: $(LAB_SPIRV:.spv.h=.spv) $(LAB_SPIRV:.spv.h=.opt.spv)
 LAB_TESTS_SOURCES := $(wildcard lab/tests/*/*.c)
 $(call objects,$(LAB_SOURCES) $(LAB_TESTS_SOURCES)): | $(LAB_SPIRV)
 
@@ -95,6 +94,9 @@ lab-programs: $(LAB) $(BUILD)/bin/masu $(BUILD)/bin/masu-bake $(LAB_SUITES)
 # For masu-lab study march: each .sdf scene, and its double-precision truth beside it. For study baseline: engine.
 MARCH_SCENES := $(patsubst scenes/%.sdf,$(BUILD)/march/%.masu,$(wildcard scenes/*.sdf))
 MARCH_SUITE  := $(patsubst %,$(BUILD)/scenes/extreme/%.masu,displace_sine rods)
+# Kept, though made by chains of pattern rules.
+.SECONDARY: $(LAB_SPIRV:.spv.h=.spv) $(LAB_SPIRV:.spv.h=.opt.spv) $(MARCH_SCENES:.masu=.truth.c) \
+    $(MARCH_SUITE:.masu=.truth.c)
 
 # lab_bake: the first prerequisite, a scene, with every march
 define lab_bake
