@@ -85,7 +85,8 @@ ladder_scene = $(call bench_file,$(lastword $(subst =, ,$(1)))).masu
 bench_file = $(if $(filter march/%,$(1)),$(BUILD)/$(1),$(MADE)/$(if $(findstring /,$(1)),,$(if $(wildcard \
     scenes/$(1).json),scenes/,worlds/))$(1))
 
-include lab/lab.mk
+# Nothing above needs it: without lab/ its targets are missing, and no others.
+-include lab/lab.mk
 
 # Changes when the compiler or its flags do: then everything is compiled again.
 $(BUILD)/flags: force
