@@ -85,7 +85,8 @@ ladder_scene = $(call bench_file,$(lastword $(subst =, ,$(1)))).masu
 bench_file = $(if $(filter march/%,$(1)),$(BUILD)/$(1),$(MADE)/$(if $(findstring /,$(1)),,$(if $(wildcard \
     scenes/$(1).json),scenes/,worlds/))$(1))
 
-include lab/lab.mk
+# Without lab/, its targets and the worlds are missing, and nothing else.
+-include lab/lab.mk
 
 # Changes when the compiler or its flags do: then everything is compiled again.
 $(BUILD)/flags: force

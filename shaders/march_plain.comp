@@ -1,6 +1,7 @@
 /*
  * march_plain.comp: the baseline: every pixel by itself, from the near plane, all parts. Kept for
- * the report (masu study march); Compiled by masu-bake together with the scene's field. MASU_HAS_RASTER says whether polygons limit it.
+ * masu-lab study march. Compiled by masu-bake together with the scene's field. MASU_HAS_RASTER says
+ * whether polygons limit it.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

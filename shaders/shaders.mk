@@ -56,7 +56,7 @@ $(MADE)/gen/glsl.list: force
 move_if_changed = if cmp -s $(1) $(2); then rm $(1); else mv $(1) $(2); fi
 
 # Lines NAME_STAGE:FILE:MACRO+MACRO; those with macros have rules of their own. One more: rays for the tests
-# and for masu study, with counters.
+# and for masu-lab study, with counters.
 BUILDS       := $(shell shaders/tables.sh builds)
 PACKED       := $(foreach b,$(BUILDS),$(firstword $(subst :, ,$(b))))
 PERMUTATIONS := $(filter-out %:,$(BUILDS))
@@ -90,7 +90,7 @@ $(MADE)/gen/$(1).spv: $(if $(filter lab/%,$(2)),,$(MADE)/gen/glsl/)$(patsubst sh
 	@echo "  GLSL    $(if $(findstring %,$(1)),$(dir $(2))$$(<F),$(2))"
 	$$(V)compile="glslangValidator --quiet -V $(SPIRV_TARGET) $(addprefix -D,$(subst +, ,$(3)))"; \
 	    $$$$compile -I$(MADE)/gen/glsl -I$(MADE)/gen --depfile $$(@:.spv=.d) -o $$@ $$< > $$@.log || \
-	    { $$$$compile -Ishaders -I$(MADE)/gen -o $$@ $(dir $(2))$$(<F) || cat $$@.log; exit 1; }; rm -f $$@.log
+	    { $$$$compile -Ishaders -I$(MADE)/gen -o $$@ $(dir $(2))$$(<F) && cat $$@.log; exit 1; }; rm -f $$@.log
 	$$(V)sed -n 's/^[^:]*: *//p' $$(@:.spv=.d) | tr -s ' ' '\n' | \
 	    sed '1d; /./s/$$$$/:/' >> $$(@:.spv=.d)
 	$$(V)spirv-val $(SPIRV_TARGET) $$@

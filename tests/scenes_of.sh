@@ -1,10 +1,10 @@
 #!/bin/sh
 # scenes_of.sh: prints `KIND/TEST:SCENE,SCENE` for each test program and script that names baked scenes, for make: only
-# these are baked before the test runs. KIND is unit, gpu or scripts. A scene is named as "NAME" or NAME.masu. A test that
-# reads `scenes/*.masu` needs all of them: `*`.
+# these are baked before the test runs. KIND is unit, gpu or scripts. A scene is named as "NAME" or NAME.masu, or by a
+# suite that the test runs (--suite suites/NAME.json). A test that reads `scenes/*.masu` needs all of them: `*`.
 set -eu
 names=$(find scenes tests/scenes -maxdepth 1 -name '*.json' | sed 's|.*/||; s|\.json$||')
-find tests/unit tests/gpu tests/scripts lab/tests -name '*.c' -o -name '*.sh' 2> /dev/null | sort | xargs awk -v names="$names" '
+find tests/unit tests/gpu tests/scripts -name '*.c' -o -name '*.sh' | sort | xargs awk -v names="$names" '
 function finish(    text, n) {
     if (file == "") return
     text = all ? ",*" : ""
@@ -16,11 +16,20 @@ function finish(    text, n) {
 BEGIN { n = split(names, list, /[ \n]+/); for (i = 1; i <= n; i++) scene[list[i]] = 1 }
 FNR == 1 { finish(); file = FILENAME; all = 0; split("", found) }
 /scenes"?\/\*\.masu/ { all = 1 }
+match($0, /--suite suites\/[a-z0-9_]+\.json/) && !/--list/ {
+    suite = substr($0, RSTART + 8, RLENGTH - 8)
+    while ((getline line < suite) > 0)
+        if (match(line, /"scene": *"[^"]*"/)) {
+            split(substr(line, RSTART, RLENGTH), quoted, "\"")
+            if (quoted[4] in scene) found[quoted[4]] = 1
+        }
+    close(suite)
+}
 {
     line = $0
-    while (match(line, /["\/{,][a-z0-9_]+(["},]|\.masu)/)) {
-        word = substr(line, RSTART + 1, RLENGTH - 2)
-        sub(/\.masu?$/, "", word)
+    while (match(line, /["\/{,][a-z0-9_]+(["},]|\\"[^:]|\.masu)/)) { # \"NAME\": is a member of JSON
+        word = substr(line, RSTART + 1)
+        sub(/[^a-z0-9_].*/, "", word)
         if (word in scene) found[word] = 1
         line = substr(line, RSTART + 1)
     }

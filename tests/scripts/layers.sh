@@ -77,9 +77,12 @@ folder_circles() { folders "$1" | tsort 2>&1 > /dev/null | sed -n 's/^tsort: \([
 
 # lab_users ROOT: files outside of lab/ that include something of lab/, and makefiles that link its archive or objects
 lab_users() {
-    (cd "$1" && grep -rlE '^[[:space:]]*#[[:space:]]*include "([^"]*/)?lab/' --include='*.[chS]' --include='*.cpp' --include='*.inc' \
-        --include='*.glsl' --include='*.comp' --include='*.vert' --include='*.frag' . &&
-        grep -rlE 'libmasu-lab|obj/lab/|LAB_(SOURCES|ARCHIVE|LINKED)' --include='*.mk' --include=Makefile .) |
+    (cd "$1" || exit
+        grep -rlE '^[[:space:]]*#[[:space:]]*include "([^"]*/)?lab/' --exclude-dir=build --exclude-dir=.git \
+            --include='*.[chS]' --include='*.cpp' --include='*.inc' --include='*.glsl' --include='*.comp' \
+            --include='*.vert' --include='*.frag' .
+        grep -rlE 'libmasu-lab|obj/lab/|LAB_(SOURCES|ARCHIVE|LINKED)' --exclude-dir=build --exclude-dir=.git \
+            --include='*.mk' --include=Makefile .) |
         sed 's|^\./||' | grep -vE '^(lab|build)/' | sort
 }
 
@@ -163,6 +166,8 @@ printf '  #  include "../../lab/study/x.h"\n' > "$folder/tree/tests/x.h"
 printf '#include "slab/x.h"\n// "lab/x.h"\n' > "$folder/tree/tests/y.h"
 printf 'x: $(BUILD)/lib/libmasu-lab.a\n' | tee "$folder/tree/tools/tools.mk" > "$folder/tree/lab/lab.mk"
 expect 3 lab_users "$folder/tree"
+rm "$folder/tree/tools/one/x.c" "$folder/tree/tests/x.h" # what links is found without what includes
+expect 1 lab_users "$folder/tree"
 
 # ---- The rules -----------------------------------------------------------------------------------
 
