@@ -51,7 +51,7 @@ $(BUILD)/worlds/forza.masu: $(FORZA_RELIEFS)
 .PHONY: $(WORLDS:%=world-%)
 $(WORLDS:%=world-%): world-%: $(BUILD)/worlds/%.masu
 define world_rule
-$(BUILD)/worlds/$(1).masu: $(BUILD)/worlds/$(1)/$(1).json $(BUILD)/bin/masu-bake
+$(BUILD)/worlds/$(1).masu: $(BUILD)/worlds/$(1)/$(1).json $(BUILD)/bin/masu-bake.code
 	@echo "  BAKE    $$<"
 	$$(V)$(BUILD)/bin/masu-bake $$< -o $$@ --stats $$(@:.masu=.stats.json)
 endef
