@@ -75,6 +75,8 @@ static void wrong_command_lines_are_exit_code_2(void **state) {
     cli_complained("--aa: expected one of auto, off, fxaa, smaa-low");
     assert_int_equal(cli_run("render %s -o %s/x.png --setting scale=2", scene, scratch), 2);
     cli_complained("scale: expected a number from 0 to 1, found '2'");
+    assert_int_equal(cli_run("render %s -o %s/x.png --setting scale=0.5 --setting aa=fxaa", scene, scratch), 2);
+    cli_complained("join the values by '+'");
     assert_int_equal(cli_run("render %s -o %s/x.png --setting base --ladder auto", scene, scratch), 2);
     cli_complained("with --ladder");
     assert_int_equal(cli_run("upscale a.png --size 4x4"), 2);

@@ -24,14 +24,14 @@ word() { od -An -v -j "$1" -N "$2" -t "$3" "$folder/s.masu" | tr -s ' \n' ' '; }
 
 # The numbers of light N: 3 position, range, 3 colour, radius, 3 direction; type; inner, outer; parent
 light() {
-    local row count at=64
+    local row count stride=0 at=64
     count=$(word 24 4 u4)
     section=0
     for ((row = 0; row < count; row++, at += 24)); do
-        [ "$(word $at 4 u4)" = " 35 " ] && section=$(word $((at + 8)) 8 u8)
+        [ "$(word $at 4 u4)" = " 35 " ] && section=$(word $((at + 8)) 8 u8) && stride=$(word $((at + 4)) 4 u4)
     done
     [ "$section" != 0 ] || { echo none; return; }
-    at=$((section + 64 * $1))
+    at=$((section + stride * $1))
     floats=$(od -An -v -w4 -j $at -N 44 -t f4 "$folder/s.masu" | awk '{ printf "%.4g ", $1 }')
     echo "$floats|$(word $((at + 44)) 4 u4)|$(od -An -v -w4 -j $((at + 48)) -N 8 -t f4 "$folder/s.masu" |
         awk '{ printf "%.4g ", $1 }')|$(word $((at + 56)) 4 d4)"

@@ -24,8 +24,8 @@ version_problem() {
     sum=$(layout "$1")
     grep -q "layout of version $version: $sum " "$1" && return
     if grep -q "layout of version $version: " "$1"; then
-        echo "$1: sections or elements have changed: raise MASU_BLOB_VERSION to $((version + 1)), and write" \
-            "'layout of version $((version + 1)): $sum' behind it"
+        echo "$1: sections or elements have changed: raise MASU_BLOB_VERSION to $((version + 1)), unless this change" \
+            "has raised it to $version already, and write 'layout of version N: $sum' with its number behind it"
     else
         echo "$1: write 'layout of version $version: $sum' behind MASU_BLOB_VERSION"
     fi

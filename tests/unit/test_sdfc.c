@@ -325,7 +325,7 @@ static void values_are_those_of_the_formulas(void **state) {
     (void)state;
     const double params[2] = {0.5, 0.5};
     for (size_t i = 0; i < sizeof formulas / sizeof formulas[0]; i++) {
-        uint64_t seed = i;
+        uint64_t seed = 1; /* the same for all, so that a new row leaves the points of the others */
         int part = part_named(formulas[i].part), solid = 0;
         for (int n = 0; n < POINTS; n++) {
             double reach = n % 2 ? 2 : 12, p[3];

@@ -262,6 +262,10 @@ static bool print_knobs(masu_cli *cli, void *to) {
 static bool read_setting(masu_cli *cli, void *to) {
     masu_desc *desc = &((plan_options *)to)->d.desc;
     char error[600];
+    if (desc->rung_count) {
+        masu_cli_usage_error("--setting given twice: join the values by '+', as scale=0.5+aa=fxaa");
+        return false;
+    }
     desc->rung_count = 1;
     if (masu_setting_parse(cli->value, &desc->rungs[0], error, sizeof error)) return true;
     masu_cli_usage_error("%s", error);

@@ -263,6 +263,10 @@ static bool read_setting(masu_cli *cli, void *to) {
         cli->exit_code = MASU_CLI_OK;
         return false;
     }
+    if (desc->rung_count) {
+        masu_cli_usage_error("--setting given twice: join the values by '+', as scale=0.5+aa=fxaa");
+        return false;
+    }
     desc->rung_count = 1;
     if (masu_setting_parse(cli->value, &desc->rungs[0], error, sizeof error)) return true;
     masu_cli_usage_error("%s", error);

@@ -16,6 +16,7 @@ static sdfc_facts solid(double x, double y, double z, unsigned symmetric) {
     return f;
 }
 
+/* Also within a ball around the origin, of a solid whose box is centred there. */
 static sdfc_facts ball(sdfc_facts f, double radius) {
     f.radius = fmin(f.radius, radius);
     return f;
