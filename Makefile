@@ -147,7 +147,7 @@ picture := $(BUILD)/demo$(if $(filter-out garden,$(WORLD)),-$(WORLD)).png
 picture_of := $(BUILD)/$(if $(filter $(WORLDS),$(WORLD)),worlds,scenes)/$(WORLD).masu
 demo-picture: $(BUILD)/bin/masu $(picture_of)
 	$(V)$(BUILD)/bin/masu render $(picture_of) -o $(picture) --size $(SIZE) --time $(or $(TIME),$(TIME_$(WORLD)),0) $(DEMO_ARGS)
-	@echo "The picture is $(abspath $(picture))"
+	@echo "The image is $(abspath $(picture))"
 
 view: deps-demo deps-view $(if $(filter forza,$(WORLD)),deps-worlds)
 view: ## install what is missing, build, bake, open the scene in a window: WORLD=garden|engine|forza|city|... VIEW_ARGS=
