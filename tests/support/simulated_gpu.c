@@ -348,3 +348,17 @@ static uint32_t masu_choose(sim_state *s, uint64_t frame, double *scale) {
 }
 
 const sim_controller sim_masu = {"masu", masu_init_state, masu_take, masu_choose};
+
+sim_result sim_mean(const sim_model *p, const sim_controller *c, uint32_t seeds, double *over,
+                    double *changes) {
+    sim_result sum = {0};
+    *over = *changes = 0.0;
+    for (uint32_t seed = 1; seed <= seeds; seed++) {
+        sim_result r = sim_run(p, c, seed, NULL, NULL);
+        *over += (double)r.over / seeds;
+        *changes += (double)r.changes / seeds;
+        sum.mean_scale += r.mean_scale / seeds;
+        sum.invalid += r.invalid;
+    }
+    return sum;
+}

@@ -131,6 +131,10 @@ typedef struct sim_result {
  * NULL. */
 sim_result sim_run(const sim_model *p, const sim_controller *controller, uint64_t seed,
                        sim_frame *frames, sim_state *state);
+/* The mean of runs with the seeds 1 to `seeds`: frames over the budget, changes of rung, and of the
+ * result only mean_scale; `invalid` is the sum. */
+sim_result sim_mean(const sim_model *p, const sim_controller *controller, uint32_t seeds, double *over,
+                    double *changes);
 double sim_budget(const sim_model *p);
 /* The ladder of a model; returns how many rungs. */
 uint32_t sim_ladder(const sim_model *p, masu_governor_rung out[SIM_RUNGS]);

@@ -29,24 +29,10 @@ static const sim_model *named(const char *name) {
 /* ---- The standard model
  * ------------------------------------------------------------------------ */
 
-static sim_result mean_of(const sim_model *p, const sim_controller *c, uint32_t seeds, double *over,
-                            double *changes) {
-    sim_result sum = {0};
-    *over = *changes = 0.0;
-    for (uint32_t seed = 1; seed <= seeds; seed++) {
-        sim_result r = sim_run(p, c, seed, NULL, NULL);
-        *over += (double)r.over / seeds;
-        *changes += (double)r.changes / seeds;
-        sum.mean_scale += r.mean_scale / seeds;
-        sum.invalid += r.invalid;
-    }
-    return sum;
-}
-
 static void it_keeps_the_bar_on_the_standard_model(void **state) {
     (void)state;
     double over, changes;
-    sim_result r = mean_of(named("standard"), ours, SEEDS, &over, &changes);
+    sim_result r = sim_mean(named("standard"), ours, SEEDS, &over, &changes);
     if (over > 15.0 || changes > 32.0 || r.mean_scale < 0.68) {
         fail_msg("%.1f frames over the budget, %.1f changes, mean scale %.4f", over, changes,
                  r.mean_scale);

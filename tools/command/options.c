@@ -3,6 +3,7 @@
 
 #include "settings/knobs.h"
 #include "settings/ladder_file.h"
+#include "settings/setting.h"
 #include "image.h"
 
 #include <math.h>
@@ -168,6 +169,18 @@ int masu_use_ladder(const char *given, masu_desc *desc) {
     if (!masu_ladder_read(given, &file, error, sizeof error)) return masu_cli_error("%s", error);
     masu_ladder_give(&file, desc);
     return MASU_CLI_OK;
+}
+
+bool masu_read_setting(masu_cli *cli, masu_desc *desc) {
+    char error[600];
+    if (desc->rung_count) {
+        masu_cli_usage_error("--setting given twice: join the values by '+', as scale=0.5+aa=fxaa");
+        return false;
+    }
+    desc->rung_count = 1;
+    if (masu_setting_parse(cli->value, &desc->rungs[0], error, sizeof error)) return true;
+    masu_cli_usage_error("%s", error);
+    return false;
 }
 
 bool masu_read_names(const char *option, const char *list, const char *const *names, uint32_t count,

@@ -139,6 +139,10 @@ bool masu_is_given(const masu_given *given, const masu_option *rows, const char 
 const char *masu_first_given(const masu_given *given, const masu_option *rows,
                              const char *const *names);
 
+/* The value of --setting, which may be given once, as the only rung of the description. On false
+ * the error is printed. */
+bool masu_read_setting(masu_cli *cli, masu_desc *desc);
+
 /* "one,two": bit i of the i-th name, of at most 32. */
 bool masu_read_names(const char *option, const char *list, const char *const *names, uint32_t count,
                      uint32_t *bits);

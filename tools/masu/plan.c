@@ -5,7 +5,6 @@
 #include "scene/scene.h"
 
 #include "settings/knobs.h"
-#include "settings/setting.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -260,16 +259,7 @@ static bool print_knobs(masu_cli *cli, void *to) {
 
 /* The only rung of the plan. */
 static bool read_setting(masu_cli *cli, void *to) {
-    masu_desc *desc = &((plan_options *)to)->d.desc;
-    char error[600];
-    if (desc->rung_count) {
-        masu_cli_usage_error("--setting given twice: join the values by '+', as scale=0.5+aa=fxaa");
-        return false;
-    }
-    desc->rung_count = 1;
-    if (masu_setting_parse(cli->value, &desc->rungs[0], error, sizeof error)) return true;
-    masu_cli_usage_error("%s", error);
-    return false;
+    return masu_read_setting(cli, &((plan_options *)to)->d.desc);
 }
 
 static bool read_split(masu_cli *cli, void *to) {

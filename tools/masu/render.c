@@ -6,7 +6,6 @@
 #include "alloc_count.h"
 #include "measure/picture.h"
 #include "settings/knobs.h"
-#include "settings/setting.h"
 #include "clock.h"
 #include "image.h"
 
@@ -256,21 +255,12 @@ static bool read_truth(masu_cli *cli, void *to) {
 
 /* The one rung, or on `help` what it may be made of. */
 static bool read_setting(masu_cli *cli, void *to) {
-    masu_desc *desc = &((masu_render_options *)to)->d.desc;
-    char error[600];
     if (!strcmp(cli->value, "help")) {
         masu_knobs_print(stdout);
         cli->exit_code = MASU_CLI_OK;
         return false;
     }
-    if (desc->rung_count) {
-        masu_cli_usage_error("--setting given twice: join the values by '+', as scale=0.5+aa=fxaa");
-        return false;
-    }
-    desc->rung_count = 1;
-    if (masu_setting_parse(cli->value, &desc->rungs[0], error, sizeof error)) return true;
-    masu_cli_usage_error("%s", error);
-    return false;
+    return masu_read_setting(cli, &((masu_render_options *)to)->d.desc);
 }
 
 static bool read_sun(masu_cli *cli, void *to) {

@@ -20,20 +20,6 @@ static const sim_model *named(const char *name) {
     return p;
 }
 
-static sim_result mean_of(const sim_model *p, const sim_controller *c, uint32_t seeds, double *over,
-                            double *changes) {
-    sim_result sum = {0};
-    *over = *changes = 0.0;
-    for (uint32_t seed = 1; seed <= seeds; seed++) {
-        sim_result r = sim_run(p, c, seed, NULL, NULL);
-        *over += (double)r.over / seeds;
-        *changes += (double)r.changes / seeds;
-        sum.mean_scale += r.mean_scale / seeds;
-        sum.invalid += r.invalid;
-    }
-    return sum;
-}
-
 /* Beside every rival: not one of them misses fewer frames by more than four (a slow drift costs
  * those: it is followed with the least of margins), or changes less by more than four. */
 static void it_misses_fewer_frames_than_its_rivals(void **state) {
@@ -44,10 +30,10 @@ static void it_misses_fewer_frames_than_its_rivals(void **state) {
     (void)state;
     for (size_t i = 0; i < sizeof models / sizeof *models; i++) {
         double over, changes;
-        mean_of(named(models[i]), ours, 6, &over, &changes);
+        sim_mean(named(models[i]), ours, 6, &over, &changes);
         for (uint32_t k = 1; k < sim_controller_count; k++) {
             double rival, rival_changes;
-            mean_of(named(models[i]), sim_controllers[k], 6, &rival, &rival_changes);
+            sim_mean(named(models[i]), sim_controllers[k], 6, &rival, &rival_changes);
             if (over > rival + 4.0 || changes > rival_changes + 4.0) {
                 fail_msg("%s: %.1f over and %.1f changes, %s has %.1f and %.1f", models[i], over,
                          changes, sim_controllers[k]->name, rival, rival_changes);
