@@ -88,10 +88,12 @@ bench_file = $(if $(filter march/%,$(1)),$(BUILD)/$(1),$(MADE)/$(if $(findstring
 # Without lab/, its targets and the worlds are missing, and nothing else.
 -include lab/lab.mk
 
+# $(call keep_text,TEXT): writes TEXT to the target if its content differs; without a change the target keeps its time.
+keep_text = mkdir -p $(@D); echo '$(1)' | cmp -s - $@ || echo '$(1)' > $@
+
 # Changes when the compiler or its flags do: then everything is compiled again.
 $(BUILD)/flags: force
-	@mkdir -p $(@D)
-	@echo '$(CC) $(ALL_FLAGS)' | cmp -s - $@ || echo '$(CC) $(ALL_FLAGS)' > $@
+	@$(call keep_text,$(CC) $(ALL_FLAGS))
 
 $(BUILD)/obj/%.o: %.c $(BUILD)/flags | $(GENERATED)
 	@mkdir -p $(@D)
@@ -138,7 +140,7 @@ scenes: $(SCENES) ## bake scenes/*.json to build/scenes/*.masu
 
 .PHONY: demo demo-picture view view-window worlds hostile
 demo: deps-demo $(if $(filter forza,$(WORLD)),deps-worlds)
-demo: ## install what is missing, build, bake, render: WORLD=garden|engine|forza|city|... SIZE=1920x1080 TIME= DEMO_ARGS=
+demo: ## install missing packages, build, bake, render: WORLD=garden|engine|forza|city|... SIZE=1920x1080 TIME= DEMO_ARGS=
 	+$(V)$(more) demo-picture
 
 # At full size with smooth edges; what else is best is the scene's.
@@ -150,7 +152,7 @@ demo-picture: $(BUILD)/bin/masu $(picture_of)
 	@echo "The image is $(abspath $(picture))"
 
 view: deps-demo deps-view $(if $(filter forza,$(WORLD)),deps-worlds)
-view: ## install what is missing, build, bake, open the scene in a window: WORLD=garden|engine|forza|city|... VIEW_ARGS=
+view: ## install missing packages, build, bake, open the scene in a window: WORLD=garden|engine|forza|city|... VIEW_ARGS=
 	+$(V)$(more) view-window
 
 # A scene with a description is baked again when that or its field changes; worlds take too long for that.
@@ -170,7 +172,7 @@ worlds: deps-build ## bake the worlds city and forza to build/worlds; installs t
 	fi
 
 .PHONY: drive drive-long drive-built
-drive: deps-demo deps-view deps-worlds ## install what is missing, build, bake, play the game on forza: DRIVE_ARGS='-t 16'
+drive: deps-demo deps-view deps-worlds ## install missing packages, build, bake, play the game on forza: DRIVE_ARGS='-t 16'
 	+$(V)$(more) drive-built
 	$(V)$(BUILD)/examples/drive $(DRIVE_ARGS) $(BUILD)/worlds/forza.masu $(BUILD)/worlds/forza.track
 drive-long: deps-test deps-view deps-worlds ## drive a scripted lap of forza under the validation layer; images in build/drive-long
@@ -182,7 +184,7 @@ hostile: $(BUILD)/bin/masu-bake $(BUILD)/bin/masu ## bake all models of assimp-t
 	$(V)BUILD='$(BUILD)' config='$(config)' RENDER='$(RENDER)' tests/hostile.sh
 
 .PHONY: check check-built unit gpu stiff fuzz fuzz-all coverage
-check: deps-test ## install what is missing, build, run every test: DRIVERS=system, FULL=, LONG=
+check: deps-test ## install missing packages, build, run every test: DRIVERS=system, FULL=, LONG=
 	+$(V)$(more) check-built
 
 check-built: all $(SCRIPT_SCENES) $(UNIT_TESTS) $(GPU_TESTS) $(FUZZ_TESTS) $(DRIVER_INFO)
@@ -262,7 +264,7 @@ format-check: ## fail if clang-format would change a file
 	    [ -z "$$bad" ] || { echo "make format would change:"; echo "$$bad"; exit 1; }
 
 .PHONY: analyse analyse-built
-analyse: deps-analyse ## install what is missing, run clang-tidy, cppcheck and gcc -fanalyzer on src/
+analyse: deps-analyse ## install missing packages, run clang-tidy, cppcheck and gcc -fanalyzer on src/
 	+$(V)$(more) analyse-built
 analyse-built: $(GENERATED)
 	$(V)BUILD='$(BUILD)' MADE='$(MADE)' tools/analyse/analyse.sh $(ANALYSED)
@@ -281,7 +283,7 @@ help: ## print this text
 
 # Made by chains of pattern rules, and kept. (All of them by an empty list would make make itself slow: it looks at what
 # such files depend on again and again.)
-.SECONDARY: $(SPIRV:.opt.spv=.spv) $(CLASS_OBJECTS:shaders.o=packed.h) $(STIFF:.masu=.truth.c) $(EXTREME:.masu=.truth.c) \
-    $(call objects,$(foreach d,unit gpu fuzz support reference,$(wildcard tests/$(d)/*.c lab/tests/$(d)/*.c)) \
+.SECONDARY: $(SPIRV:.opt.spv=.spv) $(CLASS_OBJECTS:shaders.o=packed.h) $(STIFF:.masu=.truth.c) \
+    $(call objects,$(foreach d,unit gpu fuzz support reference,$(wildcard tests/$(d)/*.c)) \
     tests/driver_info.c $(wildcard examples/*.c tools/generate/*.c)) $(FUZZ_MAIN) \
     $(addprefix $(MADE)/tools/make_,blue_noise split_sum smaa_area font textures)

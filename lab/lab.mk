@@ -12,7 +12,7 @@ lab_make = $(more) config=lab BUILD='$(LAB_BUILD)' MADE='$(MADE)'
 .PHONY: lab lab-check
 lab: $(GENERATED) ## build build/lab/bin/masu-lab, and masu and masu-bake with every march
 	+$(V)$(lab_make) lab-programs
-lab-check: deps-test ## install what is missing, build, run the lab's tests on the system driver: TESTS=name
+lab-check: deps-test ## install missing packages, build, run the lab's tests on the system driver: TESTS=name
 	+$(V)$(more) tools scenes
 	+$(V)$(lab_make) lab-check-built
 
@@ -96,7 +96,7 @@ MARCH_SCENES := $(patsubst scenes/%.sdf,$(BUILD)/march/%.masu,$(wildcard scenes/
 MARCH_SUITE  := $(patsubst %,$(BUILD)/scenes/extreme/%.masu,displace_sine rods)
 # Kept, though made by chains of pattern rules.
 .SECONDARY: $(LAB_SPIRV:.spv.h=.spv) $(LAB_SPIRV:.spv.h=.opt.spv) $(MARCH_SCENES:.masu=.truth.c) \
-    $(MARCH_SUITE:.masu=.truth.c)
+    $(MARCH_SUITE:.masu=.truth.c) $(call objects,$(LAB_TESTS_SOURCES))
 
 # lab_bake: the first prerequisite, a scene, with every march
 define lab_bake
@@ -113,9 +113,7 @@ $(MARCH_SUITE): $(BUILD)/scenes/extreme/%.masu: tests/scenes/stiff/%.json tests/
 $(BUILD)/march/%.truth.c: scenes/%.sdf $(MADE)/bin/masu-sdfc
 	@mkdir -p $(@D)
 	$(V)$(MADE)/bin/masu-sdfc $< --c $@ --quiet
-$(BUILD)/scenes/extreme/%.truth.c: tests/scenes/stiff/%.sdf $(MADE)/bin/masu-sdfc
-	@mkdir -p $(@D)
-	$(V)$(MADE)/bin/masu-sdfc $< --c $@ --quiet
+$(eval $(call stiff_truth,$(BUILD)/scenes/extreme))
 
 # ---- Targets that run it -------------------------------------------------------------------------
 

@@ -49,8 +49,7 @@ $(patsubst %,$(MADE)/gen/glsl/%,$(patsubst shaders/%,%,$(GLSL_SOURCES))): $(MADE
 
 # The list changes when a source is added or removed.
 $(MADE)/gen/glsl.list: force
-	@mkdir -p $(@D)
-	@echo '$(GLSL_SOURCES)' | cmp -s - $@ || echo '$(GLSL_SOURCES)' > $@
+	@$(call keep_text,$(GLSL_SOURCES))
 
 # move_if_changed NEW,FILE
 move_if_changed = if cmp -s $(1) $(2); then rm $(1); else mv $(1) $(2); fi
@@ -129,8 +128,7 @@ $(MADE)/gen/packed.h: $(MADE)/tools/pack_spirv $(MADE)/gen/classes.list $(PACKED
 
 # Changes when CLASSES does.
 $(MADE)/gen/classes.list: force
-	@mkdir -p $(@D)
-	@echo '$(CLASSES)' | cmp -s - $@ || echo '$(CLASSES)' > $@
+	@$(call keep_text,$(CLASSES))
 
 # For `make sizes` and its test: the object that differs, of each class alone.
 $(BUILD)/classes/%/packed.h: $(MADE)/tools/pack_spirv $(PACKED:%=$(MADE)/gen/%.opt.spv)
@@ -165,8 +163,7 @@ $(MADE)/gen/scene_sources.h: $(SCENE_TEXTS) $(MADE)/gen/scene_texts.list
 
 # Changes when a text comes or goes.
 $(MADE)/gen/scene_texts.list: force
-	@mkdir -p $(@D)
-	@echo '$(SCENE_TEXTS)' | cmp -s - $@ || echo '$(SCENE_TEXTS)' > $@
+	@$(call keep_text,$(SCENE_TEXTS))
 
 # The tables of shaders/brdf and the tile of shaders/noise. Objects wait for what is generated, so these
 # programs have none; the tables take 5 s, and minutes without -O2.

@@ -77,35 +77,25 @@ $(BUILD)/tests/gpu/test_bench: | $(MADE)/stiff/blend.masu $(MADE)/stiff/blend.tr
 
 # ---- Stiff and extreme scenes, and their truths ---------------------------------------------------
 
-# Those of `masu conform --suite extreme` are in a folder of their own, as the suite names them; the tests use them, too.
-EXTREME := figures figures_far figures_far7 lipschitz_2 lipschitz_10 displace_sine lipschitz_100 lipschitz_1000
-EXTREME += rods ground grazing many
-STIFF := $(patsubst tests/scenes/stiff/%.json,%,$(wildcard tests/scenes/stiff/*.json))
-STIFF_OWN := $(filter-out $(EXTREME),$(STIFF))
-STIFF := $(STIFF:%=$(MADE)/stiff/%.masu)
-STIFF_OWN := $(STIFF_OWN:%=$(MADE)/stiff/%.masu)
-STIFF_SHARED := $(EXTREME:%=$(MADE)/stiff/%.masu)
-EXTREME := $(EXTREME:%=$(MADE)/scenes/extreme/%.masu)
-
-$(STIFF_OWN): $(MADE)/stiff/%.masu: tests/scenes/stiff/%.json tests/scenes/stiff/%.sdf $(MADE)/bin/masu-bake.code
+STIFF := $(patsubst tests/scenes/stiff/%.json,$(MADE)/stiff/%.masu,$(wildcard tests/scenes/stiff/*.json))
+$(STIFF): $(MADE)/stiff/%.masu: tests/scenes/stiff/%.json tests/scenes/stiff/%.sdf $(MADE)/bin/masu-bake.code
 	@mkdir -p $(@D)
 	@echo "  BAKE    $<"
 	$(V)$(SANITIZER_ENV) $(MADE)/bin/masu-bake $< -o $@ --quiet
 
-$(EXTREME): $(MADE)/scenes/extreme/%.masu: tests/scenes/stiff/%.json tests/scenes/stiff/%.sdf $(MADE)/bin/masu-bake.code
-	@mkdir -p $(@D)
-	@echo "  BAKE    $<"
-	$(V)$(SANITIZER_ENV) $(MADE)/bin/masu-bake $< -o $@ --quiet
-
+# $(1)/NAME.truth.c, the field of a stiff scene in double precision
 define stiff_truth
 $(1)/%.truth.c: tests/scenes/stiff/%.sdf $(MADE)/bin/masu-sdfc
 	@mkdir -p $$(@D)
 	$$(V)$(MADE)/bin/masu-sdfc $$< --c $$@ --quiet
 endef
 $(eval $(call stiff_truth,$(MADE)/stiff))
-$(eval $(call stiff_truth,$(MADE)/scenes/extreme))
 
-$(STIFF_SHARED) $(STIFF_SHARED:.masu=.truth.so): $(MADE)/stiff/%: $(MADE)/scenes/extreme/%
+# Those of `masu conform --suite extreme` are also in the folder that the suite names.
+EXTREME := figures figures_far figures_far7 lipschitz_2 lipschitz_10 displace_sine lipschitz_100 lipschitz_1000
+EXTREME += rods ground grazing many
+EXTREME := $(EXTREME:%=$(MADE)/scenes/extreme/%.masu)
+$(EXTREME) $(EXTREME:.masu=.truth.so): $(MADE)/scenes/extreme/%: $(MADE)/stiff/%
 	@mkdir -p $(@D)
 	$(V)ln -f $< $@ 2> /dev/null || cp -p $< $@
 
