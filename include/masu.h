@@ -260,9 +260,9 @@ MASU_API float masu_scene_shadow_distance(const masu_scene *scene);
  * rung.specular_cutoff. 0 without MASU_SCENE_HAS_REFLECTIONS. */
 MASU_API float masu_scene_specular_cutoff(const masu_scene *scene);
 
-/* What the scene uses of everything that a limit bounds: masu_limits (masu_knobs.h) that are equal
- * to it accept the scene, with default rungs and no reserve. `texture_bytes` is that of decoded
- * texels; a device with textureCompressionBC needs less. Without a scene, all are 0. */
+/* The smallest masu_limits (masu_knobs.h) that accept the scene, with default rungs and no reserve.
+ * `texture_bytes` is the size of decoded texels; a device with textureCompressionBC needs less. All
+ * members are 0 if `scene` is NULL. */
 struct masu_limits;
 MASU_API void masu_scene_usage(const masu_scene *scene, struct masu_limits *out);
 

@@ -1,10 +1,11 @@
-/* atomic_file.h: writes a file so that readers see the old contents or the new ones, never a part. The bytes go to a
- * temporary file beside the target, which is renamed to the target at the end. Start with masu_atomic_file_open.
+/* atomic_file.h: writes a file so that readers see the old contents or the new ones, never a part.
+ * The bytes go to a temporary file next to the target, which is renamed to the target at the end.
+ * Start with masu_atomic_file_open.
  *
- * The temporary file of X is X.PID-N.part, and its writer holds a lock on it (flock) until it is renamed or removed. A
- * writer that dies, by kill -9 or with the machine, leaves a stale file without a lock: the next writer of X removes it.
- * A locked file belongs to a running writer and stays. On a file system without such locks nothing is removed. The caller
- * owns the struct. */
+ * The temporary file of X is X.PID-N.part, and its writer holds a lock on it (flock) until it is
+ * renamed or removed. A writer that dies, by kill -9 or with the machine, leaves a stale file without
+ * a lock: the next writer of X removes it. A locked file belongs to a running writer and stays. On a
+ * file system without such locks nothing is removed. The caller owns the struct. */
 #ifndef MASU_PLATFORM_ATOMIC_FILE_H
 #define MASU_PLATFORM_ATOMIC_FILE_H
 

@@ -16,7 +16,8 @@
 #define MASU_COUNTER_LIGHT_TESTS 18
 #define MASU_COUNTER_LIGHT_SHADED 19
 #define MASU_COUNTER_LIGHT_TILES_FULL 20
-/* Reflections: tiles, rays, rays that hit polygons and the SDF, BVH nodes visited, SDF evaluations. */
+/* Reflections: tiles, rays, rays that hit polygons and the SDF, BVH nodes visited, SDF
+ * evaluations. */
 #define MASU_COUNTER_SPECULAR_TILES 21
 #define MASU_COUNTER_SPECULAR_RAYS 22
 #define MASU_COUNTER_SPECULAR_HITS 23

@@ -22,8 +22,8 @@
 #define MASU_CULL_INSTANCES 3u   /* number of instances */
 #define MASU_CULL_DRAWS 4u       /* number of draws per view */
 #define MASU_CULL_BATCH_COUNT 5u
-#define MASU_CULL_LISTS 6u       /* lists of visible instances, laid out as those of the frustum test */
-#define MASU_CULL_KEPT 7u        /* per view: count of instances in the frustum, then their numbers */
+#define MASU_CULL_LISTS 6u       /* lists of visible instances, as those of the frustum test */
+#define MASU_CULL_KEPT 7u        /* per view: count of instances in the frustum, then instances */
 #define MASU_CULL_BATCHES 8u     /* per batch: start of its list, first draw, draws, triangles */
 #define MASU_CULL_LARGE 9u       /* numbers of the batches with more than 64 instances */
 #define MASU_CULL_BOXES 10u      /* per instance: centre and half extents, world space */
@@ -42,7 +42,7 @@
 #define MASU_CULL_VIEW_NEAR 24u  /* smallest clip-space w that may be divided by */
 #define MASU_CULL_VIEW_MARGIN 25u /* texels: largest error of the rasterizer */
 #define MASU_CULL_VIEW_BLIND 26u /* within this depth a mesh may be clipped by the near plane */
-#define MASU_CULL_VIEW_BIAS 27u  /* depth by which the rasterizer may have moved an occluder's mesh */
+#define MASU_CULL_VIEW_BIAS 27u  /* depth by which the rasterizer may have moved an occluder */
 #define MASU_CULL_VIEW_TURN 28u  /* frames that have drawn the view, modulo 5 */
 #define MASU_CULL_VIEW_TRIMMED 29u /* not 0: culls casters that shadow no visible receiver */
 #define MASU_CULL_VIEW_REACH 30u /* atlas texels: radius of a shadow lookup around a point */

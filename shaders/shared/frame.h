@@ -8,7 +8,7 @@
 /* Bits of masu_frame_uniforms.temporal.z, for rung.temporal. Compared with >=: CHANGES is the
  * highest. */
 #define MASU_TEMPORAL_MOVES 1u   /* the camera has moved or turned since the last frame */
-#define MASU_TEMPORAL_CHANGES 2u /* the scene has changed in recent frames, or the camera has moved */
+#define MASU_TEMPORAL_CHANGES 2u /* the scene has changed of late, or the camera has moved */
 
 /* Bits of masu_frame_uniforms.history.w. */
 #define MASU_HISTORY_CUT 1u     /* a camera cut: the exposure adapts at once */
@@ -25,7 +25,7 @@ struct masu_frame_uniforms {
     masu_vec4 sun_direction; /* xyz unit vector towards the sun; w exposure (linear factor) */
     masu_vec4 sun_color;     /* rgb irradiance of the sun at normal incidence / pi; w unused */
     masu_vec4 ambient;       /* rgb radiance of the ambient light; of a sky its mean */
-    masu_vec4 sky_zenith;    /* rgb radiance straight up; w texels per edge of the environment map */
+    masu_vec4 sky_zenith;    /* rgb radiance straight up; w texels per edge of the sky map */
     masu_vec4 sky_horizon;   /* rgb radiance at and below the horizon; w mips of that map */
     masu_vec4 irradiance[9]; /* SH of irradiance / pi of the ambient light (light/ambient.glsl) */
     masu_vec4 fog;           /* rgb radiance of opaque fog; w density at the fog's height, 1/m */
@@ -52,14 +52,15 @@ struct masu_frame_uniforms {
                                 MASU_TEMPORAL_* bits; w pixel to pick: x, and y from bit 16 on */
     masu_vec4 sdf_params[MASU_SDF_PARAM_VEC4S];
     /* Members of rung.temporal. Baked scene shaders read the members above: append new ones. */
-    masu_vec4 shifts;        /* render pixels: xy offset of this frame's samples from pixel centres; zw
-                                difference of the jitter of both frames, to remove it from velocities */
-    /* Output of twice the render size: four texels have 2x2 output pixels between them. Per axis, of
-     * the first four texels: xy coordinates of their first pixel, and 2: 1 or 2; zw coordinates of the
+    masu_vec4 shifts;        /* render pixels: xy offset of the samples from pixel centres; zw
+                                difference of the jitter of both frames, which velocities must not
+                                include */
+    /* Output of twice the render size: four texels have 2x2 output pixels between them. For the
+     * first four texels: xy coordinates of their first pixel, -1 or 0, plus 2; zw coordinates of the
      * upper left texel, int: -3 to 0. */
     masu_uvec4 between;
-    /* Of the first and second output pixel between texels, by column and by row: x distance from the
-     * preceding texel; y static weight of the nearer texel; zw weights of the preceding and the
+    /* Of the first and second output pixel between texels, by column and by row: x distance from
+     * the preceding texel; y static weight of the nearer texel; zw weights of the preceding and the
      * following texel in motion. */
     masu_vec4 columns[2];
     masu_vec4 rows[2];

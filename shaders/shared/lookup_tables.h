@@ -4,8 +4,8 @@
 
 /* Directional albedos of the specular lobe (shaders/brdf/tables.glsl, written by
  * tools/generate/make_split_sum.c). A table has TABLE_SIZE nodes over sqrt(N.V) from 0 to 1, and
- * TABLE_ROWS rows over perceptual roughness from TABLE_SMOOTHEST to 1. Offsets are in 32-bit values,
- * each of which holds two unorm16 numbers unless noted:
+ * TABLE_ROWS rows over perceptual roughness from TABLE_SMOOTHEST to 1. Offsets are in 32-bit
+ * values, each of which holds two unorm16 numbers unless noted:
  *
  *   TABLE_LOSS           energy lost by a white lobe; weight of (1 - h.v)^5
  *   TABLE_AVERAGE        2 floats per row: the hemispherical averages of both

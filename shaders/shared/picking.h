@@ -1,5 +1,5 @@
-/* picking.h: the result of pick_tell for the host: kind, instance number, depth (near / view z), xyz
- * camera-relative position. */
+/* picking.h: the result of pick_tell for the host: kind, instance number, depth (near / view z),
+ * xyz camera-relative position. */
 #ifndef MASU_SHARED_PICKING_H
 #define MASU_SHARED_PICKING_H
 

@@ -8,8 +8,8 @@
  *   TILES_HEADER + k      number of the k-th active tile, in no particular order
  *   TILES_HEADER + tiles  lists of `stride` values. Up to TILE_MASKED_MAX parts in the scene: one
  *                         bit per part; otherwise a count and part numbers
- *   after the lists       per 4x4 pixel block, row by row: the distance at which its cone stopped, a
- *                         float, then the term masks of BLOCK_SPANS pieces of its rays
+ *   after the lists       per 4x4 pixel block, row by row: the distance at which its cone stopped,
+ *                         a float, then the term masks of BLOCK_SPANS pieces of its rays
  *                         (shaders/sdf/spans.glsl). The scene says how many values a mask has;
  *                         none if the whole field is one term
  *

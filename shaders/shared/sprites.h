@@ -4,7 +4,7 @@
 
 /* Head of the buffer; all values are integers:
  *
- *   SPRITE_DISPATCH   xyz arguments of the dispatch over the screen rectangle of the decals, w decals
+ *   SPRITE_DISPATCH   xyz arguments of the dispatch over the screen rectangle of decals, w decals
  *   SPRITE_PLACE      xy first pixel of that rectangle
  *   SPRITE_LINES      arguments of the line draw
  *   SPRITE_DRAWS + k  arguments of the particle draw before the k-th transparent draw; the last one
@@ -13,8 +13,8 @@
  * Arrays, at offsets that are push constants:
  *
  *   particle   PARTICLE_VEC4S: camera-relative centre, depth of the soft edge in m; half width,
- *              half height, cosine and sine of the rotation; colour, opacity; flags (integer), edge,
- *              0, 0
+ *              half height, cosine and sine of the rotation; colour, opacity; flags (integer),
+ *              edge, 0, 0
  *   line end   LINE_VEC4S per line: x and y in -1..1, depth, colour of 8 bits per channel and
  *              flags above it (integer)
  *   decal      DECAL_VEC4S: three rows of the matrix camera-relative -> box; colour, opacity;
