@@ -220,7 +220,7 @@ static void tracer(const char *name, const char *json, uint32_t materials, const
 
 static void round_ones_agree_with_the_tracer(void **state) {
     (void)state;
-    tracer("round", round_ones, 6, (const double[]){0, 0}, frames_of(1024));
+    tracer("round", round_ones, 6, (const double[]){0, 0}, frames_of(512));
 }
 
 static void sunny_ones_agree_with_the_tracer(void **state) {

@@ -539,7 +539,7 @@ static void many_things(void) {
 
 static void rays_hit_what_embree_hits(void **state) {
     (void)state;
-    uint32_t count = on_swiftshader() ? 20000 : 200000;
+    uint32_t count = trials(200000, 60000, 20000);
     uint32_t met = 0, differing = 0, wrong = 0, checked = 0, unlike = 0, missed = 0;
     uint32_t by_kind[10] = {0};
     ray *rays = malloc(count * sizeof *rays);
