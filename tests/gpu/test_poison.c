@@ -176,8 +176,9 @@ static uint32_t settle(bool gathers) {
  * as after a cut; all else is what it was in the next frame. */
 static void poison_each(const char *scene, const masu_rung *rung, uint32_t slack, uint32_t heals) {
     uint32_t cases = 0, longest = 0, pairs = 0;
-    /* Of the words every third, or one where hundreds of frames follow; LONG=1 takes all. */
-    uint32_t every = heals > 64 ? WORDS : 3;
+    /* Of the words every third; one of them where hundreds of frames follow, and on drivers after the first; LONG=1
+     * takes all. */
+    uint32_t every = long_run() ? 1 : heals > 64 || !whole_run() ? WORDS : 3;
     open_case(scene, rung);
     heals *= heals > 1 && on_gpu(&s) ? 3 : 1; /* an NVIDIA H200 takes some 16 frames for what others do in 8 */
     /* And is off by 26 after 24 frames in one case, where others are within 24. */
@@ -189,7 +190,7 @@ static void poison_each(const char *scene, const masu_rung *rung, uint32_t slack
             masu_access access = rp->access[p][a];
             if (!is_read(access.usage) || !is_poisoned(access.image)) continue;
             pairs++;
-            for (uint32_t w = long_run() ? 0 : (pairs + a) % every; w < WORDS; w += long_run() ? 1 : every) {
+            for (uint32_t w = (pairs + a) % every; w < WORDS; w += every) {
                 char what[160];
                 uint32_t frames = 0;
                 snprintf(what, sizeof what, "%s: %s of %s, which %s reads", scene, words[w].name,
