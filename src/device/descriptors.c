@@ -146,22 +146,47 @@ static void write_pass_set(masu_device *m, const masu_rung_plan *rp, uint32_t pa
     }
 }
 
-masu_result masu_create_pass_sets(masu_device *m, const masu_rung_plan *rp, uint32_t *next,
-                                  VkDescriptorSet sets[MASU_MAX_TARGETS][MASU_PASS_COUNT],
-                                  masu_detail *detail) {
-    for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
-        if (!masu_has_pass(&rp->active, p) || !masu_has_set(p)) continue;
-        uint32_t targets = m->plan->desc.targets.count, own = writes_target(rp, p) ? targets : 1;
-        for (uint32_t t = 0; t < own; t++) {
-            VkDescriptorSet *set = &m->pass_sets[(*next)++];
-            masu_result result = *set ? MASU_OK : allocate_set(m, m->pass_layouts[p], set, detail);
-            if (result) return result;
-            write_pass_set(m, rp, p, t, *set);
-            sets[t][p] = *set;
+/* Walks the sets in their order: `next` is the first set of a pass, `count` how many it has. */
+typedef struct set_cursor {
+    uint32_t rung, pass, next, count;
+} set_cursor;
+
+static int next_pass(const masu_frame_plan *plan, set_cursor *at) {
+    at->next += at->count;
+    for (; at->rung < plan->desc.rung_count; at->rung++, at->pass = 0) {
+        const masu_rung_plan *rp = &plan->rungs[at->rung];
+        while (at->pass < MASU_PASS_COUNT) {
+            uint32_t p = at->pass++;
+            if (!masu_has_pass(&rp->active, p) || !masu_has_set(p)) continue;
+            at->count = writes_target(rp, p) ? plan->targets_max : 1;
+            return 1;
         }
-        for (uint32_t t = own; t < targets; t++) sets[t][p] = sets[0][p];
     }
+    return 0;
+}
+
+masu_result masu_create_pass_sets(masu_device *m, masu_detail *detail) {
+    for (set_cursor at = {0}; next_pass(m->plan, &at);) {
+        for (uint32_t t = 0; t < at.count; t++) {
+            masu_result result = allocate_set(m, m->pass_layouts[at.pass - 1], &m->pass_sets[at.next + t], detail);
+            if (result) return result;
+        }
+    }
+    masu_write_pass_sets(m);
     return MASU_OK;
+}
+
+void masu_write_pass_sets(masu_device *m) {
+    for (set_cursor at = {0}; next_pass(m->plan, &at);) {
+        for (uint32_t t = 0; t < at.count && t < m->plan->desc.targets.count; t++)
+            write_pass_set(m, &m->plan->rungs[at.rung], at.pass - 1, t, m->pass_sets[at.next + t]);
+    }
+}
+
+void masu_find_pass_sets(const masu_device *m, uint32_t rung, uint32_t target, VkDescriptorSet sets[MASU_PASS_COUNT]) {
+    for (set_cursor at = {0}; next_pass(m->plan, &at);) {
+        if (at.rung == rung) sets[at.pass - 1] = m->pass_sets[at.next + (at.count > 1 ? target : 0)];
+    }
 }
 
 masu_result masu_create_sets(masu_device *m, masu_detail *detail) {

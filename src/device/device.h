@@ -23,6 +23,9 @@ typedef struct masu_device {
     masu_vk vk;
     masu_frame_plan *plan; /* the renderer's */
 
+    VkImage target_images[MASU_MAX_TARGETS]; /* the host's, which plan->desc.targets points to */
+    VkImageView target_views[MASU_MAX_TARGETS];
+
     /* bind.c */
     masu_objects objects;
     VkImageView views[MASU_IMAGE_COUNT]; /* whole images; source and target views are the host's */
@@ -57,8 +60,9 @@ typedef struct masu_device {
 
     /* record.c */
     VkCommandPool command_pool;
-    /* [flight][rung][target][variant][part]; plan->recordings of each flight, of plan->parts parts */
+    /* [flight][viewport][rung][target][variant][part]; plan->recordings of each flight, of plan->parts parts */
     VkCommandBuffer *frames;
+    uint8_t *recorded; /* [flight][viewport][rung][target], at its first variant: 1 if all variants are */
     VkQueryPool queries;     /* [flight][MASU_PASS_COUNT + 1] */
 
     /* load.c */

@@ -570,14 +570,14 @@ static masu_result create_samplers(masu_device *m, masu_detail *detail) {
 /* A pool's, where there is one: layouts are compatible only with the same samplers. */
 static masu_result create_sampler(masu_device *m, uint32_t number, const VkSamplerCreateInfo *info,
                                   VkSampler *out, masu_detail *detail) {
-    masu_pipelines *pool = m->plan->desc.vulkan.pipelines;
-    if (pool && pool->samplers[number]) {
-        *out = pool->samplers[number];
+    VkSampler *pooled = masu_pool_sampler(m, number);
+    if (pooled && *pooled) {
+        *out = *pooled;
         return MASU_OK;
     }
     VkResult r = m->vk.CreateSampler(m->vk.device, info, m->vk.allocator, out);
     if (MASU_FAILED(r, *out)) return masu_fail_vulkan(detail, r, "vkCreateSampler");
-    if (pool) pool->samplers[number] = *out;
+    if (pooled) *pooled = *out;
     return MASU_OK;
 }
 

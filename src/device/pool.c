@@ -7,7 +7,26 @@
 
 #include <string.h>
 
-static masu_pipelines *pool_of(const masu_device *m) { return m->plan->desc.vulkan.pipelines; }
+typedef struct masu_pool_row {
+    uint64_t key; /* hash of everything that the pipeline was created from */
+    VkPipeline pipeline;
+    uint32_t users; /* references from existing renderers */
+    uint32_t used;  /* `clock` when it was last taken or given back */
+} masu_pool_row;
+
+/* The content of a masu_pipelines. */
+typedef struct masu_pool {
+    masu_pipelines_info info; /* `used` is counted when it is asked for */
+    uint32_t clock;
+    VkSampler samplers[2];
+    masu_pool_row rows[MASU_MAX_PIPELINES];
+} masu_pool;
+
+_Static_assert(sizeof(masu_pool) <= sizeof(masu_pipelines), "a pool fits into what the host has");
+
+static masu_pool *pool_in(masu_pipelines *pipelines) { return (masu_pool *)(void *)pipelines; }
+
+static masu_pool *pool_of(const masu_device *m) { return pool_in(m->plan->desc.vulkan.pipelines); }
 
 /* ---- Keys ------------------------------------------------------------------------------------ */
 
@@ -70,44 +89,76 @@ static void note(masu_device *m, const VkPipeline *at, uint64_t key) {
 }
 
 int masu_pool_acquire(masu_device *m, uint64_t key, VkPipeline *out) {
-    masu_pipelines *pool = pool_of(m);
-    for (uint32_t i = 0; pool && i < pool->count; i++) {
-        if (pool->rows[i].key != key) continue;
-        *out = pool->rows[i].pipeline;
-        pool->rows[i].users++;
-        pool->reused++;
+    masu_pool *pool = pool_of(m);
+    for (uint32_t i = 0; pool && i < pool->info.count; i++) {
+        masu_pool_row *row = &pool->rows[i];
+        if (row->key != key) continue;
+        *out = row->pipeline;
+        row->users++;
+        row->used = ++pool->clock;
+        pool->info.reused++;
         note(m, out, key);
         return 1;
     }
     return 0;
 }
 
+/* A free row, or that of the pipeline that has been unused for the longest time; NULL: all are in use. */
+static masu_pool_row *make_room(const masu_device *m, masu_pool *pool) {
+    masu_pool_row *oldest = NULL;
+    if (pool->info.count < MASU_MAX_PIPELINES) return &pool->rows[pool->info.count++];
+    for (uint32_t i = 0; i < pool->info.count; i++) {
+        masu_pool_row *row = &pool->rows[i];
+        if (!row->users && (!oldest || pool->clock - row->used > pool->clock - oldest->used)) oldest = row;
+    }
+    if (!oldest) return NULL;
+    m->vk.DestroyPipeline(m->vk.device, oldest->pipeline, m->vk.allocator);
+    pool->info.evicted++;
+    return oldest;
+}
+
 void masu_pool_add(masu_device *m, const VkPipeline *at, uint64_t key) {
-    masu_pipelines *pool = pool_of(m);
+    masu_pool *pool = pool_of(m);
     if (!pool) return;
-    pool->created++;
-    if (pool->count == MASU_MAX_PIPELINES) return;
-    pool->rows[pool->count].key = key;
-    pool->rows[pool->count].users = 1;
-    pool->rows[pool->count++].pipeline = *at;
+    pool->info.created++;
+    masu_pool_row *row = make_room(m, pool);
+    if (!row) return;
+    *row = (masu_pool_row){key, *at, 1, ++pool->clock};
     note(m, at, key);
 }
 
 void masu_pool_release(masu_device *m) {
-    masu_pipelines *pool = pool_of(m);
+    masu_pool *pool = pool_of(m);
     if (!pool) return;
     for (uint32_t i = 0; i < MASU_POOL_KEYS; i++) {
         VkPipeline *from = place(m, i);
-        for (uint32_t row = 0; row < pool->count && *from && m->pool_keys[i]; row++) {
-            if (pool->rows[row].pipeline != *from) continue;
-            pool->rows[row].users--;
+        for (uint32_t r = 0; r < pool->info.count && *from && m->pool_keys[i]; r++) {
+            masu_pool_row *row = &pool->rows[r];
+            if (row->pipeline != *from) continue;
+            row->users--;
+            row->used = ++pool->clock;
             *from = VK_NULL_HANDLE;
         }
     }
-    m->sampler = m->linear = VK_NULL_HANDLE; /* the pool has them all along */
+    m->sampler = m->linear = VK_NULL_HANDLE; /* the pool keeps them */
 }
 
-void masu_pipelines_destroy(const masu_vulkan *vulkan, masu_pipelines *pool) {
+VkSampler *masu_pool_sampler(masu_device *m, uint32_t number) {
+    masu_pool *pool = pool_of(m);
+    return pool ? &pool->samplers[number] : NULL;
+}
+
+/* ---- What the host calls --------------------------------------------------------------------- */
+
+void masu_pipelines_info_of(const masu_pipelines *pipelines, masu_pipelines_info *out) {
+    const masu_pool *pool = (const masu_pool *)(const void *)pipelines;
+    if (!out) return;
+    *out = pool ? pool->info : (masu_pipelines_info){0};
+    for (uint32_t i = 0; i < out->count; i++) out->used += pool->rows[i].users != 0;
+}
+
+void masu_pipelines_destroy(const masu_vulkan *vulkan, masu_pipelines *pipelines) {
+    masu_pool *pool = pool_in(pipelines);
     if (!vulkan || !pool || !vulkan->get_instance_proc_addr || !vulkan->device) return;
     PFN_vkGetDeviceProcAddr device_proc = (PFN_vkGetDeviceProcAddr)vulkan->get_instance_proc_addr(
         vulkan->instance, "vkGetDeviceProcAddr");
@@ -116,9 +167,9 @@ void masu_pipelines_destroy(const masu_vulkan *vulkan, masu_pipelines *pool) {
         (PFN_vkDestroyPipeline)device_proc(vulkan->device, "vkDestroyPipeline");
     PFN_vkDestroySampler destroy_sampler =
         (PFN_vkDestroySampler)device_proc(vulkan->device, "vkDestroySampler");
-    for (uint32_t i = 0; destroy && i < pool->count && i < MASU_MAX_PIPELINES; i++)
+    for (uint32_t i = 0; destroy && i < pool->info.count; i++)
         destroy(vulkan->device, pool->rows[i].pipeline, vulkan->allocator);
     for (uint32_t i = 0; destroy_sampler && i < 2; i++)
         destroy_sampler(vulkan->device, pool->samplers[i], vulkan->allocator);
-    memset(pool, 0, sizeof *pool);
+    memset(pipelines, 0, sizeof *pipelines);
 }

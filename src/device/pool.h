@@ -22,9 +22,11 @@ uint64_t masu_pool_key(const masu_device *m, uint32_t pass, const masu_code code
 
 /* Into *out, a pipeline of the device, if there is one of that key. */
 int masu_pool_acquire(masu_device *m, uint64_t key, VkPipeline *out);
-/* Adds a pipeline of the device that had to be made; where there is no room, it stays the renderer's. */
+/* Adds a pipeline of the device that had to be made; if all of a full pool are in use, it stays the renderer's. */
 void masu_pool_add(masu_device *m, const VkPipeline *at, uint64_t key);
 /* The renderer uses none of the pool's pipelines and samplers any more. */
 void masu_pool_release(masu_device *m);
+/* The place of a sampler, 0 or 1, which may not exist yet; NULL without a pool. */
+VkSampler *masu_pool_sampler(masu_device *m, uint32_t number);
 
 #endif

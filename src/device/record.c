@@ -1,6 +1,6 @@
 /* record.c: the table becomes command buffers. One recording per (frame in flight, rung, target, and where a rung draws
- * cascades of the shadow map less often than every frame: set of those that it draws), made once in masu_init and
- * submitted again and again. A recording is one command buffer, or, where desc.split has the host's own commands in a
+ * cascades of the shadow map less often than every frame: set of those that it draws), made once in masu_init, or after
+ * a masu_resize, and submitted again and again. A recording is one command buffer, or, where desc.split has the host's own commands in a
  * frame, one more for each such row of the table. */
 #include "device/record.h"
 
@@ -582,7 +582,7 @@ static masu_result record_split(masu_recorder *rec, uint32_t *part, masu_detail 
     return MASU_OK;
 }
 
-/* sets: the rung's, of this target; see masu_create_pass_sets for the order. */
+/* sets: the rung's, of this target (masu_find_pass_sets). */
 static masu_result record_frame(masu_recorder *rec, const VkDescriptorSet *sets,
                                 masu_detail *detail) {
     const masu_device *m = rec->m;
@@ -623,7 +623,11 @@ static masu_result record_frame(masu_recorder *rec, const VkDescriptorSet *sets,
 /* ---- All recordings -------------------------------------------------------------------------- */
 
 static masu_result create_command_buffers(masu_device *m, uint32_t frames, masu_detail *detail) {
+    /* Recordings are replaced one by one, while others are pending. */
     VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+                                    .flags = m->plan->desc.resizable
+                                                 ? (VkCommandPoolCreateFlags)VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT
+                                                 : 0,
                                     .queueFamilyIndex = m->plan->desc.vulkan.queue_family};
     VkResult r = m->vk.CreateCommandPool(m->vk.device, &pool, m->vk.allocator, &m->command_pool);
     if (MASU_FAILED(r, m->command_pool)) return masu_fail_vulkan(detail, r, "vkCreateCommandPool");
@@ -647,35 +651,51 @@ static masu_result create_queries(masu_device *m, masu_detail *detail) {
     return MASU_FAILED(r, m->queries) ? masu_fail_vulkan(detail, r, "vkCreateQueryPool") : MASU_OK;
 }
 
-/* All of them, with the sets of passes as the targets are now. */
-static masu_result record_frames(masu_device *m, const masu_draws *draws, masu_detail *detail) {
-    const masu_desc *d = &m->plan->desc;
-    uint32_t rungs = d->rung_count, targets = d->targets.count, recordings = m->plan->recordings;
+/* The variants of a frame's recording: one for each set of cascades that it may draw. `again`: they may have been
+ * recorded before, or in part. */
+static masu_result record_variants(masu_device *m, const masu_draws *draws, masu_recording_id id, int again,
+                                   masu_detail *detail) {
+    masu_frame_plan *plan = m->plan;
+    masu_rung_plan *rp = &plan->rungs[id.rung];
+    uint32_t first = masu_recording_of(plan, id);
+    VkDescriptorSet sets[MASU_PASS_COUNT] = {VK_NULL_HANDLE};
     masu_result result = MASU_OK;
-    uint32_t next = 0;
-    for (uint32_t r = 0; r < rungs && !result; r++) {
-        VkDescriptorSet sets[MASU_MAX_TARGETS][MASU_PASS_COUNT];
-        memset(sets, 0, sizeof sets);
-        masu_rung_plan *rp = &m->plan->rungs[r];
-        result = masu_create_pass_sets(m, rp, &next, sets, detail);
-        uint32_t own = targets * rp->variants; /* of one frame in flight: [target][variant] */
-        uint32_t viewports = d->viewport_count ? d->viewport_count : 1, each = d->frames_in_flight * own;
-        for (uint32_t i = 0; i < viewports * each && !result; i++) {
-            uint32_t v = i / each, f = i % each / own, t = i % own / rp->variants;
-            uint32_t recording = v * m->plan->viewport_recordings + rp->first_recording + i % own;
-            masu_plan_select_viewport(m->plan, v);
-            masu_recorder rec = {.m = m,
-                                 .draws = draws,
-                                 .parts = &m->frames[(f * recordings + recording) * m->plan->parts],
-                                 .flight = f,
-                                 .viewport = v,
-                                 .rung = r,
-                                 .target = t,
-                                 .variant = i % rp->variants,
-                                 .rp = rp};
-            result = record_frame(&rec, sets[t], detail);
-            rp->barriers = rec.barriers; /* of the last variant, which leaves nothing out */
+    masu_find_pass_sets(m, id.rung, id.target, sets);
+    masu_plan_select_viewport(plan, id.viewport);
+    for (uint32_t v = 0; v < rp->variants && !result; v++) {
+        VkCommandBuffer *parts = &m->frames[(first + v) * plan->parts];
+        for (uint32_t p = 0; p < plan->parts && again && !result; p++) {
+            VkResult r = m->vk.ResetCommandBuffer(parts[p], 0);
+            if (r) result = masu_fail_vulkan(detail, r, "vkResetCommandBuffer");
         }
+        masu_recorder rec = {.m = m,
+                             .draws = draws,
+                             .parts = parts,
+                             .flight = id.flight,
+                             .viewport = id.viewport,
+                             .rung = id.rung,
+                             .target = id.target,
+                             .variant = v,
+                             .rp = rp};
+        if (!result) result = record_frame(&rec, sets, detail);
+        rp->barriers = rec.barriers; /* of the last variant, which leaves nothing out */
+    }
+    if (!result) m->recorded[first] = 1;
+    return result;
+}
+
+/* All recordings of a rung. */
+static masu_result record_rung(masu_device *m, const masu_draws *draws, uint32_t rung, int again,
+                               masu_detail *detail) {
+    const masu_desc *d = &m->plan->desc;
+    uint32_t viewports = d->viewport_count ? d->viewport_count : 1, flights = d->frames_in_flight;
+    masu_result result = MASU_OK;
+    for (uint32_t i = 0; i < viewports * flights * d->targets.count && !result; i++) {
+        masu_recording_id id = {.viewport = i / d->targets.count / flights,
+                                .flight = i / d->targets.count % flights,
+                                .rung = rung,
+                                .target = i % d->targets.count};
+        result = record_variants(m, draws, id, again, detail);
     }
     masu_plan_select_viewport(m->plan, 0);
     return result;
@@ -684,16 +704,22 @@ static masu_result record_frames(masu_device *m, const masu_draws *draws, masu_d
 masu_result masu_record(masu_device *m, const masu_draws *draws, masu_detail *detail) {
     const masu_desc *d = &m->plan->desc;
     masu_result result = masu_create_sets(m, detail);
+    if (!result) result = masu_create_pass_sets(m, detail);
     if (!result) result = create_queries(m, detail);
     if (!result)
         result = create_command_buffers(
             m, d->frames_in_flight * m->plan->recordings * m->plan->parts, detail);
-    if (!result) result = record_frames(m, draws, detail);
+    for (uint32_t r = 0; r < d->rung_count && !result; r++) result = record_rung(m, draws, r, 0, detail);
     return result ? result : masu_load_record(m, detail);
 }
 
-masu_result masu_record_again(masu_device *m, const masu_draws *draws, masu_detail *detail) {
-    VkResult r = m->vk.ResetCommandPool(m->vk.device, m->command_pool, 0);
-    if (r) return masu_fail_vulkan(detail, r, "vkResetCommandPool");
-    return record_frames(m, draws, detail);
+masu_result masu_record_again(masu_device *m, const masu_draws *draws, uint32_t rung, masu_detail *detail) {
+    memset(m->recorded, 0, (size_t)m->plan->desc.frames_in_flight * m->plan->recordings);
+    masu_write_pass_sets(m);
+    return record_rung(m, draws, rung, 1, detail);
+}
+
+masu_result masu_record_missing(masu_device *m, const masu_draws *draws, masu_recording_id id, masu_detail *detail) {
+    if (m->recorded[masu_recording_of(m->plan, id)]) return MASU_OK;
+    return record_variants(m, draws, id, 1, detail);
 }
