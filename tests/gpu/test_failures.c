@@ -390,6 +390,42 @@ static void blocks_of_the_host_are_checked(void **state) {
     s.desc = was;
 }
 
+/* ---- Waits ----------------------------------------------------------------------------------- */
+
+/* On a CPU driver, whose work stops with the process, a wait has no limit. On others it has, and nothing that may be in
+ * use is destroyed then. */
+static void a_wait_that_times_out_fails_cleanly(void **state) {
+    (void)state;
+    masu_detail detail;
+    masu_renderer *m;
+    masu_commands commands;
+    char error[ERROR_SIZE] = "";
+    wrap_reset();
+    assert_int_equal(try_init(&m, &detail), MASU_OK);
+    load_all(&s, m);
+    masu_headless was = s.host;
+    s.host.wait_ns = 0;
+    for (uint32_t i = 0; i < 3; i++) {
+        assert_int_equal(masu_frame(m, &(masu_frame_desc){0}, &commands), MASU_OK);
+        assert_ok(masu_headless_run(&s.host, commands.buffer, error, sizeof error));
+    }
+    s.host.properties.deviceType = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
+    int finished = 1;
+    for (uint32_t i = 0; i < 100 && finished; i++) { /* it may be faster than 120 looks at a fence */
+        assert_int_equal(masu_frame(m, &(masu_frame_desc){0}, &commands), MASU_OK);
+        finished = masu_headless_run(&s.host, commands.buffer, error, sizeof error);
+    }
+    assert_false(finished);
+    assert_non_null(strstr(error, "did not finish"));
+    assert_false(masu_headless_run(&s.host, commands.buffer, error, sizeof error));
+    masu_headless_target_destroy(&s.host, &s.targets[0]); /* these do nothing */
+    masu_headless_close(&s.host);
+    was.pending[0] = true;
+    s.host = was;
+    assert_ok(masu_headless_wait(&s.host, 0, error, sizeof error));
+    masu_destroy(m);
+}
+
 /* Neither plan nor query leaves anything behind. */
 static void any_call_of_a_query_may_fail(void **state) {
     (void)state;
@@ -471,6 +507,7 @@ int main(void) {
         cmocka_unit_test(nonsense_in_a_frame_is_refused_by_name),
         cmocka_unit_test(errors_of_live_calls_reach_the_log),
         cmocka_unit_test(blocks_of_the_host_are_checked),
+        cmocka_unit_test(a_wait_that_times_out_fails_cleanly),
         cmocka_unit_test(any_call_of_a_query_may_fail),
         cmocka_unit_test(extreme_transforms_stay_finite),
     };
