@@ -7,7 +7,7 @@
 #include "device/load.h"
 #include "device/offers.h"
 #include "device/ray_query.h"
-#include "device/record.h"
+#include "device/recordings.h"
 #include "device/shaders.h"
 #include "quality/governor_desc.h"
 #include "api_governor.h"

@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "api_governor.h"
 #include "device/device_objects.h"
-#include "device/record.h"
+#include "device/recordings.h"
 #include "plan/compile.h"
 #include "plan/desc.h"
 #include "quality/governor_state.h"

@@ -36,7 +36,7 @@ typedef struct masu_device {
 
     /* pipelines.c */
     VkSampler sampler, linear; /* nearest and linear, clamp to edge */
-    VkDescriptorSetLayout global_layout;
+    VkDescriptorSetLayout global_layouts[MASU_PASS_COUNT]; /* set 0: of the buffers that the pass declares */
     VkDescriptorSetLayout pass_layouts[MASU_PASS_COUNT];
     VkPipelineLayout layouts[MASU_PASS_COUNT];
     VkPipeline pipelines[MASU_PASS_COUNT];
@@ -54,11 +54,11 @@ typedef struct masu_device {
 
     /* descriptors.c */
     VkDescriptorPool descriptor_pool;
-    VkDescriptorSet global_sets[MASU_MAX_FLIGHT];
+    VkDescriptorSet global_sets[MASU_MAX_FLIGHT][MASU_PASS_COUNT];
     VkDescriptorSet *pass_sets;    /* plan->pass_sets of them, in the order that they are made in */
     VkDescriptorSet *texture_sets; /* one per texture set of the scene */
 
-    /* record.c */
+    /* recordings.c */
     VkCommandPool command_pool;
     /* [flight][viewport][rung][target][variant][part]; plan->recordings of each flight, of plan->parts parts */
     VkCommandBuffer *frames;

@@ -6,7 +6,7 @@
 #include "device/pipelines.h"
 #include "device/pool.h"
 #include "device/ray_query.h"
-#include "device/record.h"
+#include "device/recordings.h"
 
 void masu_device_alloc(masu_device *m, masu_arena *arena, const masu_frame_plan *plan) {
     uint64_t frames = (uint64_t)plan->desc.frames_in_flight * plan->recordings * plan->parts;
@@ -62,8 +62,8 @@ void masu_device_destroy(masu_device *m) {
         vk->DestroyRenderPass(device, m->render_passes[p], vk->allocator);
         vk->DestroyPipelineLayout(device, m->layouts[p], vk->allocator);
         vk->DestroyDescriptorSetLayout(device, m->pass_layouts[p], vk->allocator);
+        vk->DestroyDescriptorSetLayout(device, m->global_layouts[p], vk->allocator);
     }
-    vk->DestroyDescriptorSetLayout(device, m->global_layout, vk->allocator);
     vk->DestroySampler(device, m->sampler, vk->allocator);
     vk->DestroySampler(device, m->linear, vk->allocator);
     for (uint32_t i = 0; i < MASU_TEXTURED_COUNT; i++)

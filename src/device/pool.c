@@ -7,21 +7,6 @@
 
 #include <string.h>
 
-typedef struct masu_pool_row {
-    uint64_t key; /* hash of everything that the pipeline was created from */
-    VkPipeline pipeline;
-    uint32_t users; /* references from existing renderers */
-    uint32_t used;  /* `clock` when it was last taken or given back */
-} masu_pool_row;
-
-/* The content of a masu_pipelines. */
-typedef struct masu_pool {
-    masu_pipelines_info info; /* `used` is counted when it is asked for */
-    uint32_t clock;
-    VkSampler samplers[2];
-    masu_pool_row rows[MASU_MAX_PIPELINES];
-} masu_pool;
-
 _Static_assert(sizeof(masu_pool) <= sizeof(masu_pipelines), "a pool fits into what the host has");
 
 static masu_pool *pool_in(masu_pipelines *pipelines) { return (masu_pool *)(void *)pipelines; }
@@ -43,26 +28,27 @@ static uint64_t add_code(uint64_t key, const masu_code *code) {
     return key;
 }
 
-uint64_t masu_pool_key(const masu_device *m, uint32_t pass, const masu_code codes[2], int textured,
+uint64_t masu_pool_key(const masu_device *m, uint32_t pass, const masu_code codes[2], uint32_t form,
                        const uint32_t *constants, uint32_t constant_count) {
     uint64_t key = 0xCBF29CE484222325u;
-    key = add(add(key, pass), (uint64_t)textured | (m->texture_layout ? 2u : 0u));
-    key = add_code(add_code(key, &codes[0]), &codes[1]);
-    for (uint32_t i = 0; i < constant_count; i++) key = add(key, constants[i]);
-    masu_binding rows[MASU_BIND_COUNT];
-    masu_bindings(m->plan, rows);
-    for (uint32_t i = 0; i < MASU_BIND_COUNT; i++) {
-        if (!rows[i].bound) continue;
-        key = add(add(add(key, rows[i].binding), (uint64_t)rows[i].type), rows[i].stages);
+    uint32_t declared = masu_code_interface(&codes[0]).constants | masu_code_interface(&codes[1]).constants;
+    key = add_code(add_code(add(add(key, pass), form), &codes[0]), &codes[1]);
+    for (uint32_t i = 0; i < constant_count; i++) {
+        if (declared >> i & 1u) key = add(add(key, i), constants[i]);
     }
+    VkDescriptorSetLayoutBinding global[MASU_BIND_COUNT];
+    uint32_t count = masu_global_bindings(m->plan, pass, global);
+    for (uint32_t i = 0; i < count; i++)
+        key = add(add(add(key, global[i].binding), (uint64_t)global[i].descriptorType), global[i].stageFlags);
     const masu_rung_plan *rp = masu_first_rung(m->plan, pass);
     for (uint32_t a = 0; a < rp->access_count[pass]; a++) {
-        key = add(key, rp->access[pass][a].usage);
-        /* Attachments' formats are the table's; shaders know those of what they store. */
-        key = add(key, (uint64_t)masu_images[masu_is_buffer(rp->access[pass][a].image)
-                                                 ? 0
-                                                 : rp->access[pass][a].image]
-                           .format);
+        masu_access access = rp->access[pass][a];
+        int bound = masu_has_set(pass) && (masu_access_binds(access, 0) || masu_access_binds(access, 1));
+        int attached = access.usage == MASU_WRITE_COLOR || access.usage == MASU_BLEND_COLOR ||
+                       access.usage == MASU_WRITE_DEPTH || access.usage == MASU_UPDATE_DEPTH;
+        if (bound || attached) key = add(key, access.usage);
+        /* Shaders know the formats of what they store. */
+        if (attached) key = add(key, (uint64_t)masu_images[access.image].format);
     }
     return key ? key : 1;
 }
