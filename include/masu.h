@@ -36,9 +36,9 @@
  *
  * GUARANTEES
  *  - After masu_init the library calls no heap function and no vkAllocate*, vkCreate* or
- *    vkBegin/EndCommandBuffer. The exception is masu_resize, which records the command buffers
- *    again. Allocations of the driver inside vkQueueSubmit are not covered; `masu render --stats`
- *    counts them.
+ *    vkBegin/EndCommandBuffer. The exception is that masu_resize, and the first frames of each rung
+ *    after it, record command buffers again. Allocations of the driver inside vkQueueSubmit are not
+ *    covered; `masu render --stats` counts them.
  *  - A failed masu_init has destroyed everything that it created. A failed masu_frame has written
  *    nothing and has not advanced the frame number.
  *  - A renderer must be used by one thread at a time. Different renderers are independent.
@@ -63,7 +63,8 @@
  *  - Command buffers: primary, for `queue_family`, recorded in masu_init. Submit each one once per
  *    call that returns it, all to the same queue, in the order returned. Each starts with a full
  *    barrier against the previous frame. With desc.split a frame has several (masu_commands.parts).
- *  - Targets: views of host images of the output size.
+ *  - Targets: views of host images of at least the output size. Frames fill the output size from
+ *    the upper left corner; the other texels are undefined after each frame.
  *        storage targets   R8G8B8A8_UNORM or R16G16B16A16_SFLOAT, USAGE_STORAGE; written directly
  *        other targets     the formats of masu_targets (a swapchain's, for example),
  *                          USAGE_TRANSFER_DST; written by a blit, sRGB formats by a copy that needs
@@ -78,7 +79,7 @@
  *
  * CHANGES
  *    output size up to desc.output,
- *    or other targets                     masu_resize
+ *    other targets, or another number     masu_resize
  *    a larger output, another scene       masu_destroy and masu_init, in the same memory blocks if
  *                                         they are large enough; without a pause: masu_init of a
  *                                         second renderer in other blocks (masu_load)
@@ -340,7 +341,8 @@ typedef struct masu_device_block {
                               masu_role_need.device_address is 1 */
     VkDeviceSize offset;   /* bytes, a multiple of masu_memory.roles[].alignment */
     VkDeviceSize bytes;
-    void *mapped;         /* host pointer to `offset`; required for roles with host_visible 1 */
+    void *mapped;         /* host pointer to `offset`, aligned as it, at most to 64 bytes; required for
+                             roles with host_visible 1 */
     uint32_t memory_type; /* index; one of masu_memory.roles[].type_bits */
 } masu_device_block;
 
@@ -400,23 +402,28 @@ typedef enum masu_split_bits {
     MASU_SPLIT_ALL = 15
 } masu_split_bits;
 
+#define MASU_MAX_PIPELINES 384u
 /* A pool of pipelines that outlive a renderer and that several renderers share. masu_init takes
  * matching pipelines from the pool and adds those that it creates; masu_destroy leaves all in the
- * pool. A further scene or output size then creates only pipelines that are not in the pool. Zero
- * it at first; use it with one device and one build of the library. Renderers with the same pool
- * must not run masu_init or masu_destroy concurrently. The host owns the pool and destroys it with
+ * pool. A further scene or output size then creates only pipelines that are not in the pool. A full
+ * pool destroys the pipeline that has been unused by renderers for the longest time; if all of its
+ * MASU_MAX_PIPELINES are in use, further ones are destroyed with their renderer.
+ *
+ * Zero it at first; use it with one device and one build of the library. Its content is private
+ * (masu_pipelines_info_of). Renderers with the same pool must not run masu_init or masu_destroy
+ * concurrently. The host owns the pool, does not move it, and destroys it with
  * masu_pipelines_destroy. */
-#define MASU_MAX_PIPELINES 384u
 typedef struct masu_pipelines {
-    uint32_t count;       /* pipelines in the pool */
-    uint32_t created, reused; /* pipelines created and reused by all masu_init calls so far */
-    VkSampler samplers[2];
-    struct {
-        uint64_t key; /* hash of everything that the pipeline was created from */
-        VkPipeline pipeline;
-        uint32_t users;         /* references from existing renderers */
-    } rows[MASU_MAX_PIPELINES]; /* full: further pipelines are destroyed with their renderer */
+    uint64_t opaque[1160];
 } masu_pipelines;
+
+typedef struct masu_pipelines_info {
+    uint32_t count; /* pipelines in the pool */
+    uint32_t used;  /* of these, in use by renderers */
+    /* By all masu_init calls so far: pipelines created, and taken from the pool. */
+    uint32_t created, reused;
+    uint32_t evicted; /* destroyed to make room */
+} masu_pipelines_info;
 
 typedef struct masu_vulkan {
     PFN_vkGetInstanceProcAddr get_instance_proc_addr; /* required */
@@ -451,7 +458,7 @@ typedef enum masu_encoding {
 } masu_encoding;
 
 typedef struct masu_targets {
-    const VkImage *images;    /* `count` images of the output size */
+    const VkImage *images;    /* `count` images of at least the output size */
     const VkImageView *views; /* one per image; required for storage targets, else may be NULL */
     uint32_t count;           /* 1..8 */
     /* 8 bits: R8G8B8A8, B8G8R8A8, A8B8G8R8, each UNORM or SRGB (same bytes). 10 bits: A2B10G10R10,
@@ -639,7 +646,9 @@ typedef struct masu_desc {
     masu_governor_desc governor;
     masu_debug debug; /* for tests and studies (masu_study.h) */
     masu_deny deny;   /* device features to leave unused (masu_study.h) */
-    masu_log_fn log;  /* NULL: silent */
+    /* Receives what masu_init finds, and the error of each call that fails on a renderer, if the
+     * function is not const for it. NULL: silent. */
+    masu_log_fn log;
     void *log_user;
     /* Monotonic clock, ns, to measure the creation time of pipelines; NULL: not measured. */
     uint64_t (*clock_ns)(void *user);
@@ -705,19 +714,29 @@ MASU_API void masu_destroy(masu_renderer *renderer);
  * allowed. */
 MASU_API void masu_pipelines_destroy(const masu_vulkan *vulkan, masu_pipelines *pipelines);
 
-/* Changes the output size and the targets. Creates no pipeline, allocates and loads nothing, but
- * records the command buffers again (about a millisecond). Requires desc.resizable and a finished
- * masu_load; the blob is not read. The device must be idle.
+/* The counts of a pool; all 0 if `pipelines` is NULL. */
+MASU_API void masu_pipelines_info_of(const masu_pipelines *pipelines, masu_pipelines_info *out);
+
+/* Changes the output size and the targets, also their number. Creates no pipeline, allocates and
+ * loads nothing, and does not read the blob. Requires desc.resizable; allowed before, between and
+ * after the calls of masu_load. The frames of this renderer must have finished on the GPU; its own
+ * masu_load steps, frames and loads of other renderers may be running.
  *   `output`      1 x 1 to desc.output
- *   `targets`     same count, format, storage, layout and encoding as in masu_init; format, layout
- *                 and encoding may be 0 for these. The arrays are read during the call; the handles
- *                 must be valid until the next masu_resize or masu_destroy
+ *   `targets`     1 to MASU_MAX_TARGETS, with the format, storage, layout and encoding of masu_init;
+ *                 format, layout and encoding may be 0 for these. The arrays are read during the
+ *                 call; the handles must be valid until the next masu_resize or masu_destroy
  *   `viewports`   desc.viewport_count elements, or NULL if that is 0
  * The next frame is a cut. Frame numbers, slots, transforms and the governor's state continue.
+ *
+ * The call records the command buffers of the rung in use, 0.1 to 1 ms each. Those of another rung
+ * follow in masu_frame: the first frame of that rung in each slot and target records its own.
  *   MASU_ERROR_ARGUMENT   an argument contradicts the rules above
  *   MASU_ERROR_LIMIT      `output` is larger than desc.output: use masu_destroy and masu_init
- *   MASU_ERROR_STATE      desc.resizable is 0, there is no scene, or masu_load has not finished
- *   MASU_ERROR_VULKAN, _DEVICE_LOST   a Vulkan call failed: only masu_destroy is valid then */
+ *   MASU_ERROR_STATE      desc.resizable is 0, or there is no scene
+ *   MASU_ERROR_VULKAN     a Vulkan call failed. The new size and targets apply nevertheless;
+ *                         masu_frame records what is missing, or fails likewise
+ *   MASU_ERROR_DEVICE_LOST   only masu_destroy is of use: masu_load, masu_resize and masu_frame
+ *                         fail likewise from then on */
 MASU_API MASU_MUST_USE masu_result masu_resize(masu_renderer *renderer, VkExtent2D output,
                                                const masu_targets *targets,
                                                const masu_viewport *viewports, masu_detail *detail);
@@ -935,7 +954,8 @@ typedef struct masu_camera {
     double position[3];  /* world, metres */
     float forward[3];    /* need not be unit length */
     float up[3];         /* not parallel to forward; all zero: +Y */
-    float fov_y;         /* vertical field of view, radians, 0.001..3.1; unused with a window */
+    float fov_y;         /* vertical field of view, radians, 0.001..3.1; with a window it is unused,
+                            but must be finite */
     float near_distance; /* metres, 1e-9..1e9; 0: the scene's. There is no far plane */
     /* Offset of the sample position in every pixel, in pixels of the render size, right and down,
      * -1..1. It shifts the projection without rotating it. The average of frames whose offsets
@@ -1085,13 +1105,14 @@ typedef struct masu_frame_desc {
     uint32_t pick, pick_x, pick_y;
 } masu_frame_desc;
 
-/* Writes the uniforms of a frame and returns the command buffer to submit. Records and allocates
- * nothing. Call it when the slot is free: the frame that masu_frame returned frames_in_flight
+/* Writes the uniforms of a frame and returns the command buffer to submit. Allocates nothing, and
+ * records nothing except after masu_resize. Call it when the slot is free: the frame that masu_frame returned frames_in_flight
  * calls ago has finished on the GPU. commands->rung is the rung of the frame.
  *   MASU_ERROR_ARGUMENT   rung, target, camera, light or a parameter is out of range or not finite;
  *                         MASU_RUNG_AUTO without a governor; an array is NULL with a count above 0
  *   MASU_ERROR_LIMIT      more particles, decals or lines than desc.reserve
  *   MASU_ERROR_STATE      masu_load has not finished
+ *   MASU_ERROR_VULKAN, _DEVICE_LOST   as masu_resize, after it
  * After an error nothing has been written, and the frame number has not advanced. */
 MASU_API MASU_MUST_USE masu_result masu_frame(masu_renderer *renderer, const masu_frame_desc *frame,
                                               masu_commands *commands);
@@ -1310,14 +1331,18 @@ MASU_API MASU_MUST_USE masu_result masu_light_of(const masu_renderer *renderer, 
 /* ---- Instances and models -------------------------------------------------------------------- */
 
 /* HANDLES. id 0 is no object. All other ids are returned by the functions below; do not construct
- * them. A handle belongs to a scene and is valid in every renderer of the same blob, also after
+ * them. A handle of an object of the scene is valid in every renderer of the same blob, also after
  * masu_destroy and masu_init. A handle of another scene or of another kind is MASU_ERROR_ARGUMENT;
  * the probability that it passes for a valid one is (number of objects of its kind in the scene) /
- * 2^32. */
+ * 2^32.
+ *
+ * A handle of an object that was added belongs to its renderer. Once the object is removed, the
+ * handle is MASU_ERROR_ARGUMENT for good: no id is used twice. For that, a slot of desc.reserve
+ * holds at most 2^31 - 1 objects, one after the other, until masu_destroy; then it is retired. */
 
 /* Handle of an instance: a mesh with a transform. */
 typedef struct masu_instance {
-    uint32_t id;
+    uint64_t id;
 } masu_instance;
 
 /* The first instance with that name in the scene; id 0 if there is none. */
@@ -1336,7 +1361,7 @@ MASU_API masu_instance masu_instance_at(const masu_renderer *renderer, uint32_t 
 /* Handle of a movable model: one with "moving", "hidden" or "spare" in the scene description. Its
  * nodes are placed, shown and hidden together. */
 typedef struct masu_model {
-    uint32_t id;
+    uint64_t id;
 } masu_model;
 
 typedef struct masu_instance_state {
@@ -1480,10 +1505,11 @@ MASU_API MASU_MUST_USE masu_result masu_model_animate(masu_renderer *renderer, m
 
 /* Handle of a punctual light: a point light or a spot light. */
 typedef struct masu_punctual_light {
-    uint32_t id;
+    uint64_t id;
 } masu_punctual_light;
 
 typedef struct masu_punctual_light_state {
+    masu_instance instance; /* that the light is attached to; id 0: none */
     double position[3]; /* metres, world, or object space of `instance`; within 1e15 */
     float direction[3]; /* spot: direction of the light, same space; need not be unit length */
     /* Radiant intensity / pi, 0..1e9; 0: off. A white diffuse surface that faces the light at d
@@ -1495,7 +1521,6 @@ typedef struct masu_punctual_light_state {
     /* Spot: angles from the direction, radians, 0 <= inner <= outer <= pi: full intensity up to
      * inner, 0 from outer on. */
     float inner, outer;
-    masu_instance instance; /* that the light is attached to; id 0: none */
 } masu_punctual_light_state;
 
 /* The first light with that name in the scene; id 0 if there is none. */
@@ -1533,7 +1558,7 @@ MASU_API MASU_MUST_USE masu_result masu_punctual_light_remove(masu_renderer *ren
 
 /* Handle of a material. Requires desc.mutable_materials. */
 typedef struct masu_material {
-    uint32_t id;
+    uint64_t id;
 } masu_material;
 
 typedef enum masu_material_mode {

@@ -331,6 +331,7 @@ bool masu_headless_open(const masu_headless_desc *desc, masu_headless *host, cha
                         size_t error_size) {
     memset(host, 0, sizeof *host);
     host->desc = *desc;
+    host->wait_ns = MASU_HEADLESS_TIMEOUT_NS;
     if (!host->desc.get_instance_proc_addr)
         host->desc.get_instance_proc_addr = vkGetInstanceProcAddr;
     if (!create_instance(host, error, error_size) || !choose_device(host, error, error_size) ||
@@ -374,14 +375,25 @@ void masu_headless_settle(masu_headless *host) {
     }
 }
 
+#define WAITS 120u /* of a second: a stopped process loses one of them at most */
+
+VkResult masu_headless_wait_fence(const masu_headless *host, VkFence fence) {
+    bool cpu = host->properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+    VkResult r = VK_TIMEOUT;
+    for (uint32_t i = 0; r == VK_TIMEOUT && (i < WAITS || cpu); i += i < WAITS)
+        r = vkWaitForFences(host->device, 1, &fence, VK_TRUE, host->wait_ns / WAITS);
+    return r;
+}
+
 bool masu_headless_wait(masu_headless *host, uint32_t slot, char *error, size_t error_size) {
-    if (!host->pending[slot]) return true;
-    VkResult r =
-        vkWaitForFences(host->device, 1, &host->fences[slot], VK_TRUE, MASU_HEADLESS_TIMEOUT_NS);
+    if (!host->pending[slot] || !host->device) return true;
+    VkResult r = masu_headless_wait_fence(host, host->fences[slot]);
     if (r) host->lost = true;
     if (r == VK_TIMEOUT) {
         snprintf(error, error_size, "the GPU did not finish within %u s",
-                 (unsigned)(MASU_HEADLESS_TIMEOUT_NS / 1000000000u));
+                 (unsigned)(host->wait_ns / 1000000000u));
+        host->device = VK_NULL_HANDLE;
+        host->instance = VK_NULL_HANDLE;
         return false;
     }
     if (r) return masu_headless_fail(error, error_size, "vkWaitForFences", r);
@@ -395,6 +407,10 @@ bool masu_headless_submit(masu_headless *host, VkCommandBuffer commands, uint32_
     VkSubmitInfo submit = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
                            .commandBufferCount = 1,
                            .pCommandBuffers = &commands};
+    if (!host->device) {
+        snprintf(error, error_size, "the GPU did not finish earlier work");
+        return false;
+    }
     VkResult r = vkQueueSubmit(host->queue, 1, &submit, host->fences[slot]);
     if (r) return masu_headless_fail(error, error_size, "vkQueueSubmit", r);
     host->pending[slot] = true;

@@ -6,7 +6,8 @@
  *
  * It is what a port's own host does, kept small: of optional features it enables those that serve
  * textures and 16-bit floats, where they are offered, and no other extension but the validation layer's own, for labels
- * VK_EXT_debug_utils, and what ray queries take where they are asked for. Every wait has a timeout.
+ * VK_EXT_debug_utils, and what ray queries take where they are asked for. Every wait has a timeout,
+ * except on CPU drivers: there work is slow, stops with the process, and never hangs.
  * Functions that can fail return false and write one line without a newline to `error`. */
 #ifndef MASU_HEADLESS_H
 #define MASU_HEADLESS_H
@@ -17,8 +18,7 @@
 #include <vulkan/vulkan.h>
 
 #define MASU_HEADLESS_SLOTS 3u
-/* Longest wait for one submit. A software rasteriser under the GPU-assisted layer may take a minute
- * for a large frame. */
+/* Longest wait for one submit, on devices that are no CPU. */
 #define MASU_HEADLESS_TIMEOUT_NS ((uint64_t)120 * 1000000000u)
 
 typedef struct masu_headless_desc {
@@ -71,6 +71,7 @@ typedef struct masu_headless {
     bool float16;            /* shaderFloat16 is enabled, and VK_KHR_shader_float16_int8 */
     float most_anisotropy;   /* samplerAnisotropy is enabled: its limit; else 0 */
     bool lost;               /* a wait has timed out or the device is gone: nothing is waited for */
+    uint64_t wait_ns;        /* MASU_HEADLESS_TIMEOUT_NS, which tests replace */
     char first_message[512]; /* of the validation layer */
     char driver[1024]; /* "llvmpipe (...), lavapipe, Mesa 22.3.6 (LLVM 15.0.6), Vulkan 1.3.230" */
 } masu_headless;
@@ -86,7 +87,10 @@ void masu_headless_close(masu_headless *host);
 /* Submits; the slot's fence tells when it is done. The slot must not be pending. */
 bool masu_headless_submit(masu_headless *host, VkCommandBuffer commands, uint32_t slot, char *error,
                           size_t error_size);
-/* Waits until the slot is free; at once if nothing is pending. */
+/* Waits for a fence, up to the timeout: VK_TIMEOUT. Time during which the process is stopped does not count. */
+VkResult masu_headless_wait_fence(const masu_headless *host, VkFence fence);
+/* Waits until the slot is free; at once if nothing is pending. After a timeout `device` and `instance` are null:
+ * nothing that the device may still use is destroyed, so the process can only end. */
 bool masu_headless_wait(masu_headless *host, uint32_t slot, char *error, size_t error_size);
 /* Submit on slot 0 and wait. */
 bool masu_headless_run(masu_headless *host, VkCommandBuffer commands, char *error,

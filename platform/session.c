@@ -128,7 +128,7 @@ bool masu_session_open(const masu_session_desc *d, masu_session *s, char *error,
 
 void masu_session_close(masu_session *s) {
     masu_headless_settle(&s->host);
-    masu_destroy(s->m);
+    if (s->host.device) masu_destroy(s->m);
     s->m = NULL;
     for (uint32_t i = 0; i < MASU_MAX_TARGETS; i++)
         masu_headless_target_destroy(&s->host, &s->targets[i]);

@@ -116,8 +116,8 @@ $(MADE)/gen/%.spv.h: $(MADE)/gen/%.opt.spv
 	    od -An -v -tx4 -w32 $< | sed 's/ \([0-9a-f]*\)/0x\1,/g'; echo '};'; } > $@
 
 # The last permutations of a shader have all that others have, and come first.
-PACK_SOURCES := tools/generate/pack_spirv.c src/device/unpack.c
-$(MADE)/tools/pack_spirv: $(PACK_SOURCES) src/device/unpack.h
+PACK_SOURCES := tools/generate/pack_spirv.c src/device/unpack.c src/device/spirv_interface.c
+$(MADE)/tools/pack_spirv: $(PACK_SOURCES) src/device/unpack.h src/device/spirv_interface.h
 	@mkdir -p $(@D)
 	$(V)$(CC) -std=c11 $(WARNINGS) -O2 -Isrc $(PACK_SOURCES) -o $@
 # pack_for CLASSES: a word for each permutation, with a - before it where none of the classes has a use for it.

@@ -7,6 +7,7 @@
 #include "device/load.h"
 #include "device/offers.h"
 #include "device/ray_query.h"
+#include "device/recordings.h"
 #include "device/shaders.h"
 #include "quality/governor_desc.h"
 #include "api_governor.h"
@@ -212,6 +213,7 @@ static masu_result init(const masu_desc *desc, void *block, uint64_t block_bytes
     m->device.vk = vk;
     m->device.plan = &m->plan;
     m->device.objects = objects;
+    masu_set_targets(&m->device, &plan.desc.targets);
     masu_timeline_start(&m->timeline);
     if (m->governor) masu_governed_start(m);
     masu_copy_scene(m);
@@ -262,10 +264,19 @@ void masu_destroy(masu_renderer *m) {
     m->cookie = 0;
 }
 
+masu_result masu_check_lost(const masu_renderer *m, masu_detail *detail) {
+    if (!m->lost) return MASU_OK;
+    masu_result result = masu_fail(detail, MASU_ERROR_DEVICE_LOST, "device", 0, 0,
+                                   "the device was lost in an earlier call: only masu_destroy is of use");
+    if (detail) detail->vulkan = VK_ERROR_DEVICE_LOST;
+    return result;
+}
+
 masu_result masu_load(masu_renderer *m, masu_commands *commands) {
-    if (!m) return MASU_ERROR_ARGUMENT;
-    if (!commands) return masu_fail_null(&m->error, "commands");
+    if (!m || !commands) return masu_finish_null(m, "commands");
     memset(commands, 0, sizeof *commands);
+    masu_result result = masu_check_lost(m, &m->error);
+    if (result) return masu_finish(m, result);
     if (m->loaded) return MASU_OK;
     masu_load_step step = masu_load_next(&m->device);
     commands->buffer = commands->parts[0] = step.commands;
@@ -282,6 +293,7 @@ masu_result masu_load(masu_renderer *m, masu_commands *commands) {
 
 static masu_result check_frame(masu_renderer *m, const masu_frame_desc *frame) {
     const masu_desc *d = &m->plan.desc;
+    if (m->lost) return masu_check_lost(m, &m->error);
     if (!m->loaded) {
         return masu_fail(&m->error, MASU_ERROR_STATE, "masu_load", 1, 0,
                          "masu_frame was called before masu_load had returned MASU_OK");
@@ -347,31 +359,42 @@ masu_result masu_write_frame(masu_renderer *m, masu_frame_data *f) {
     return MASU_OK;
 }
 
+static masu_recording_id recording_id(const masu_frame_data *f) {
+    return (masu_recording_id){f->slot, f->desc.viewport, f->desc.rung, f->desc.target};
+}
+
 /* What is submitted: of the frame's slot, rung and target the recording that draws its cascades. */
 static const VkCommandBuffer *pick_recording(const masu_renderer *m, const masu_frame_data *f) {
     const masu_rung_plan *rp = masu_frame_rung_plan(f);
-    uint32_t recording = f->desc.viewport * m->plan.viewport_recordings + rp->first_recording +
-                         f->desc.target * rp->variants + masu_recording_variant(rp, f->cascades);
-    return &m->device.frames[(f->slot * m->plan.recordings + recording) * m->plan.parts];
+    uint32_t first = masu_recording_of(&m->plan, recording_id(f));
+    return &m->device.frames[(first + masu_recording_variant(rp, f->cascades)) * m->plan.parts];
+}
+
+/* After masu_resize. Nothing is written to the slot yet: a frame that fails has changed nothing. */
+static masu_result record_missing(masu_renderer *m, const masu_frame_data *f) {
+    masu_result result = masu_record_missing(&m->device, &m->draws, recording_id(f), &m->error);
+    m->lost |= result == MASU_ERROR_DEVICE_LOST;
+    return result;
+}
+
+/* What a frame without a scene ignores is checked all the same. */
+static masu_result check_plain_frame(masu_renderer *m, masu_frame_data *f) {
+    masu_result result = masu_frame_read_time(f, &m->error);
+    if (!result) result = masu_sdf_read(&m->sdf, f, &m->error);
+    return result ? result : masu_picking_read(f, &m->error);
 }
 
 masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_commands *commands) {
-    if (!m) return MASU_ERROR_ARGUMENT;
-    if (!frame || !commands) {
-        (void)masu_fail_null(&m->error, frame ? "commands" : "frame");
-        masu_log(&m->plan.desc, MASU_LOG_ERROR, m->error.text);
-        return MASU_ERROR_ARGUMENT;
-    }
+    if (!m || !frame || !commands) return masu_finish_null(m, frame ? "commands" : "frame");
     if (frame->viewport < m->plan.desc.viewport_count)
         masu_plan_select_viewport(&m->plan, frame->viewport);
     masu_frame_data f = masu_frame_begin(&m->plan, &m->device, &m->draws, &m->timeline, frame);
     masu_result result = check_frame(m, frame);
     if (!result && m->governor) masu_governed_pick(m, &f);
-    if (!result && m->plan.desc.scene) result = masu_write_frame(m, &f);
-    if (result) {
-        masu_log(&m->plan.desc, MASU_LOG_ERROR, m->error.text);
-        return result;
-    }
+    if (!result) result = record_missing(m, &f);
+    if (!result) result = m->plan.desc.scene ? masu_write_frame(m, &f) : check_plain_frame(m, &f);
+    if (result) return masu_finish(m, result);
+    m->rung = f.desc.rung;
     const masu_rung_plan *rp = &m->plan.rungs[f.desc.rung];
     masu_slot_begin(m, f.slot);
     masu_timeline_begin(&m->timeline, f.slot,

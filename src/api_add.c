@@ -9,10 +9,6 @@
 
 #include <string.h>
 
-static masu_result missing(masu_renderer *m, const char *what) {
-    return m ? masu_fail_null(&m->error, what) : MASU_ERROR_ARGUMENT;
-}
-
 static uint32_t place_of(const masu_renderer *m, uint32_t model) {
     return model - masu_own_models(&m->plan);
 }
@@ -24,7 +20,7 @@ static uint32_t instance_of(const masu_renderer *m, uint32_t model, uint32_t nod
 
 /* Whether a light is there and an instance of the model carries it. */
 static int carries(const masu_renderer *m, uint32_t model, uint32_t light) {
-    uint32_t carrier = m->lights.states[light].instance.id;
+    uint64_t carrier = m->lights.states[light].instance.id; /* its index + 1 */
     return masu_handle_lives(&m->lights.handles, light) && carrier &&
            m->models.of_instance[carrier - 1] == model;
 }
@@ -62,7 +58,7 @@ static void copy_instance(masu_renderer *m, uint32_t place, uint32_t from, uint3
     masu_reflections_copy(&m->reflections, &m->plan, place, from, to);
     for (uint32_t i = 0, light; i < m->plan.scene.lights; i++) {
         masu_punctual_light_state state = m->lights.states[i];
-        if (!masu_handle_lives(&m->lights.handles, i) || state.instance.id != from + 1) continue;
+        if (!masu_handle_lives(&m->lights.handles, i) || state.instance.id != (uint64_t)from + 1) continue;
         state.instance.id = masu_handle_at(&m->instances.handles, to);
         (void)masu_lights_add(&m->lights, &m->instances, &state, &light, NULL); /* there is room */
     }
@@ -94,16 +90,16 @@ masu_result masu_model_add(masu_renderer *m, masu_model like, const float rows[1
                            masu_model *out) {
     uint32_t i;
     if (out) *out = (masu_model){0};
-    if (!m || !rows || !out) return missing(m, rows ? "out" : "rows");
+    if (!m || !rows || !out) return masu_finish_null(m, rows ? "out" : "rows");
     masu_result result = masu_handle_check(&m->models.handles, "model", like.id, &i, &m->error);
-    if (result) return result;
+    if (result) return masu_finish(m, result);
     uint32_t added = masu_models_spare(&m->models, &m->plan, i);
     if (added == UINT32_MAX) result = copy_model(m, i, rows, &added);
     if (!result) { /* of a copy once more, now that it has instances */
         result = masu_models_move(&m->models, &m->instances, &m->bounds, &m->plan, added, rows,
                                   &m->error);
     }
-    if (result) return result;
+    if (result) return masu_finish(m, result);
     masu_models_show(&m->models, &m->instances, &m->plan, added, 1);
     *out = masu_model_at(m, added);
     return MASU_OK;
@@ -124,7 +120,7 @@ masu_result masu_model_remove(masu_renderer *m, masu_model model) {
     uint32_t i;
     if (!m) return MASU_ERROR_ARGUMENT;
     masu_result result = masu_handle_check(&m->models.handles, "model", model.id, &i, &m->error);
-    if (result) return result;
+    if (result) return masu_finish(m, result);
     if (i < masu_own_models(&m->plan)) { /* the scene's own stay its own */
         masu_models_show(&m->models, &m->instances, &m->plan, i, 0);
         return MASU_OK;
@@ -150,21 +146,21 @@ masu_result masu_punctual_light_add(masu_renderer *m, const masu_punctual_light_
                                     masu_punctual_light *out) {
     uint32_t light;
     if (out) *out = (masu_punctual_light){0};
-    if (!m || !state || !out) return missing(m, state ? "out" : "state");
+    if (!m || !state || !out) return masu_finish_null(m, state ? "out" : "state");
     masu_result result = masu_lights_add(&m->lights, &m->instances, state, &light, &m->error);
     if (!result) *out = masu_punctual_light_at(m, light);
-    return result;
+    return masu_finish(m, result);
 }
 
 masu_result masu_punctual_light_remove(masu_renderer *m, masu_punctual_light light) {
     uint32_t i;
     if (!m) return MASU_ERROR_ARGUMENT;
     masu_result result = masu_handle_check(&m->lights.handles, "light", light.id, &i, &m->error);
-    if (result) return result;
-    if (i < masu_own_lights(&m->plan)) {
-        return masu_fail(&m->error, MASU_ERROR_ARGUMENT, "light", 0, i,
-                         "light %u is the scene's own and stays: a colour of 0 puts it out", i);
+    if (!result && i < masu_own_lights(&m->plan)) {
+        result = masu_fail(&m->error, MASU_ERROR_ARGUMENT, "light", 0, i,
+                           "light %u is part of the scene and cannot be removed: set its color to 0", i);
     }
+    if (result) return masu_finish(m, result);
     masu_lights_remove(&m->lights, i);
     return MASU_OK;
 }

@@ -76,10 +76,10 @@ void masu_frame_presented(masu_renderer *m, uint64_t frame, uint64_t present_ns,
 
 static masu_result check(masu_renderer *m, const void *given, const char *what) {
     if (!m) return MASU_ERROR_ARGUMENT;
-    if (!given) return masu_fail(&m->error, MASU_ERROR_ARGUMENT, what, 1, 0, "%s is NULL", what);
+    if (!given) return masu_finish_null(m, what);
     if (m->governor) return MASU_OK;
-    return masu_fail(&m->error, MASU_ERROR_STATE, "governor.mode", MASU_GOVERNOR_ON,
-                     MASU_GOVERNOR_OFF, "there is no governor: governor.mode was OFF in masu_init");
+    return masu_finish(m, masu_fail(&m->error, MASU_ERROR_STATE, "governor.mode", MASU_GOVERNOR_ON, MASU_GOVERNOR_OFF,
+                                    "there is no governor: governor.mode was OFF in masu_init"));
 }
 
 masu_result masu_governor_set(masu_renderer *m, const masu_governor_setting *setting) {
@@ -93,11 +93,11 @@ masu_result masu_governor_set(masu_renderer *m, const masu_governor_setting *set
                             .rung = setting->rung,
                             .dwell = setting->dwell};
     if (d.mode == MASU_GOVERNOR_OFF) {
-        return masu_fail(&m->error, MASU_ERROR_ARGUMENT, "governor.mode", MASU_GOVERNOR_ON,
-                         MASU_GOVERNOR_OFF,
-                         "governor.mode is 0 (OFF), allowed are 1 (ON) and 2 (FIXED)");
+        return masu_finish(m, masu_fail(&m->error, MASU_ERROR_ARGUMENT, "governor.mode", MASU_GOVERNOR_ON,
+                                        MASU_GOVERNOR_OFF,
+                                        "governor.mode is 0 (OFF), allowed are 1 (ON) and 2 (FIXED)"));
     }
-    result = masu_governor_check(&d, m->plan.desc.rung_count, &m->error);
+    result = masu_finish(m, masu_governor_check(&d, m->plan.desc.rung_count, &m->error));
     if (!result) masu_governor_adjust(m->governor, &d);
     return result;
 }
@@ -110,7 +110,7 @@ masu_result masu_governor_save(masu_renderer *m, masu_governor_state *out) {
 
 masu_result masu_governor_restore(masu_renderer *m, const masu_governor_state *state) {
     masu_result result = check(m, state, "state");
-    if (!result) result = masu_governor_state_check(state, &m->error);
+    if (!result) result = masu_finish(m, masu_governor_state_check(state, &m->error));
     if (!result)
         masu_governor_import_state(m->governor, state, masu_governed_output(m), m->timeline.frame);
     return result;

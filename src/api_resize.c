@@ -1,9 +1,11 @@
 /* api_resize.c: masu_resize: another output size and other targets for the existing images. Images are
  * allocated for the largest output; passes of a smaller one use their upper left part, as rungs of a
- * smaller scale do. Only recordings depend on sizes; they are recorded again. */
+ * smaller scale do. Only recordings depend on sizes: those of the rung in use are recorded again, the
+ * others when a frame needs them. */
 #include "base/error.h"
 #include "api_governor.h"
-#include "device/record.h"
+#include "device/device_objects.h"
+#include "device/recordings.h"
 #include "plan/compile.h"
 #include "plan/desc.h"
 #include "quality/governor_state.h"
@@ -15,8 +17,8 @@ static masu_targets filled_in(const masu_targets *given, const masu_targets *now
     if (t.format == VK_FORMAT_UNDEFINED) t.format = now->format;
     if (t.final_layout == VK_IMAGE_LAYOUT_UNDEFINED) t.final_layout = now->final_layout;
     if (t.encoding == MASU_ENCODING_AUTO) t.encoding = now->encoding;
-    t.white = now->white;
-    t.peak = now->peak;
+    if (t.white == 0.0f) t.white = now->white;
+    if (t.peak == 0.0f) t.peak = now->peak;
     return t;
 }
 
@@ -28,7 +30,6 @@ static masu_result differs(masu_detail *detail, const char *what, uint64_t neede
 
 static masu_result check_targets(const masu_targets *now, const masu_targets *t,
                                  masu_detail *detail) {
-    if (t->count != now->count) return differs(detail, "targets.count", now->count, t->count);
     if (t->format != now->format)
         return differs(detail, "targets.format", (uint64_t)now->format, (uint64_t)t->format);
     if (!t->storage != !now->storage)
@@ -38,6 +39,11 @@ static masu_result check_targets(const masu_targets *now, const masu_targets *t,
                        (uint64_t)t->final_layout);
     if (t->encoding != now->encoding)
         return differs(detail, "targets.encoding", (uint64_t)now->encoding, (uint64_t)t->encoding);
+    if (t->white != now->white || t->peak != now->peak) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, t->white != now->white ? "targets.white" : "targets.peak", 0, 0,
+                         "masu_resize: targets.white and peak are %g and %g, those of masu_init were %g and %g",
+                         (double)t->white, (double)t->peak, (double)now->white, (double)now->peak);
+    }
     return MASU_OK;
 }
 
@@ -47,10 +53,6 @@ static masu_result check(const masu_renderer *m, VkExtent2D output, masu_targets
     if (!plan->desc.resizable || !plan->desc.scene) {
         return masu_fail(detail, MASU_ERROR_STATE, "resizable", 1, 0,
                          "masu_resize takes desc.resizable, and a scene");
-    }
-    if (!m->loaded) {
-        return masu_fail(detail, MASU_ERROR_STATE, "masu_load", 1, 0,
-                         "masu_resize was called before masu_load had returned MASU_OK");
     }
     *t = filled_in(t, &plan->desc.targets);
     masu_desc wanted = plan->desc;
@@ -71,17 +73,15 @@ static masu_result check(const masu_renderer *m, VkExtent2D output, masu_targets
                      output.width, output.height, plan->most.width, plan->most.height);
 }
 
-masu_result masu_resize(masu_renderer *m, VkExtent2D output, const masu_targets *targets,
-                        const masu_viewport *viewports, masu_detail *detail) {
-    if (!m || !targets) {
-        return masu_fail(detail, MASU_ERROR_ARGUMENT, m ? "targets" : "renderer", 1, 0,
-                         "masu_resize: %s is NULL", m ? "targets" : "renderer");
-    }
+static masu_result resize(masu_renderer *m, VkExtent2D output, const masu_targets *targets,
+                          const masu_viewport *viewports, masu_detail *detail) {
+    if (!targets) return masu_fail_null(detail, "targets");
     masu_targets t = *targets;
-    masu_result result = check(m, output, &t, viewports, detail);
+    masu_result result = masu_check_lost(m, detail);
+    if (!result) result = check(m, output, &t, viewports, detail);
     if (result) return result;
     VkExtent2D was = masu_governed_output(m);
-    m->plan.desc.targets = t;
+    masu_set_targets(&m->device, &t);
     m->plan.whole = output;
     for (uint32_t i = 0; i < m->plan.desc.viewport_count; i++)
         m->plan.desc.viewports[i] = viewports[i];
@@ -91,7 +91,18 @@ masu_result masu_resize(masu_renderer *m, VkExtent2D output, const masu_targets 
         masu_governor_scale(m->governor, pixels, m->timeline.frame);
     }
     m->timeline.cut = 1;
-    result = masu_record_again(&m->device, &m->draws, detail);
-    if (result) m->loaded = 0; /* no frame is handed out any more */
+    result = masu_record_again(&m->device, &m->draws, m->rung, detail);
+    m->lost |= result == MASU_ERROR_DEVICE_LOST;
+    return result;
+}
+
+masu_result masu_resize(masu_renderer *m, VkExtent2D output, const masu_targets *targets,
+                        const masu_viewport *viewports, masu_detail *detail) {
+    if (!m) return masu_fail_null(detail, "renderer");
+    masu_detail own = {.result = MASU_OK};
+    masu_result result = resize(m, output, targets, viewports, &own);
+    if (!result) return MASU_OK;
+    masu_log(&m->plan.desc, MASU_LOG_ERROR, own.text);
+    if (detail) *detail = own;
     return result;
 }

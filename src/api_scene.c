@@ -1,19 +1,14 @@
 /* api_scene.c: the public functions that query and change instances, models, punctual lights and
  * materials between frames (api_add.c adds and removes them). They change the host's copy in
  * src/frame/; masu_frame uploads the changes. */
-#include "base/error.h"
 #include "renderer.h"
 
 #include <string.h>
 
-static masu_result missing(masu_renderer *m, const char *what) {
-    return m ? masu_fail_null(&m->error, what) : MASU_ERROR_ARGUMENT;
-}
-
 /* ---- Instances ------------------------------------------------------------------------------- */
 
 static masu_result check_instance(masu_renderer *m, masu_instance instance, uint32_t *index) {
-    return masu_handle_check(&m->instances.handles, "instance", instance.id, index, &m->error);
+    return masu_finish(m, masu_handle_check(&m->instances.handles, "instance", instance.id, index, &m->error));
 }
 
 masu_instance masu_instance_at(const masu_renderer *m, uint32_t index) {
@@ -28,16 +23,16 @@ masu_instance masu_instance_find(const masu_renderer *m, const char *name) {
 masu_result masu_instance_set_transform(masu_renderer *m, masu_instance instance,
                                         const float rows[12]) {
     uint32_t i;
-    if (!m || !rows) return missing(m, "rows");
+    if (!m || !rows) return masu_finish_null(m, "rows");
     masu_result result = check_instance(m, instance, &i);
-    if (!result) result = masu_instances_set(&m->instances, &m->plan, i, rows, &m->error);
+    if (!result) result = masu_finish(m, masu_instances_set(&m->instances, &m->plan, i, rows, &m->error));
     if (!result) masu_bounds_move(&m->bounds, &m->plan, &m->instances, i);
     return result;
 }
 
 masu_result masu_instance_get(masu_renderer *m, masu_instance instance, masu_instance_state *out) {
     uint32_t i;
-    if (!m || !out) return missing(m, "out");
+    if (!m || !out) return masu_finish_null(m, "out");
     masu_result result = check_instance(m, instance, &i);
     if (result) return result;
     float box[6];
@@ -66,7 +61,7 @@ masu_result masu_instance_show(masu_renderer *m, masu_instance instance, uint32_
 /* ---- Models ---------------------------------------------------------------------------------- */
 
 static masu_result check_model(masu_renderer *m, masu_model model, uint32_t *index) {
-    return masu_handle_check(&m->models.handles, "model", model.id, index, &m->error);
+    return masu_finish(m, masu_handle_check(&m->models.handles, "model", model.id, index, &m->error));
 }
 
 masu_model masu_model_find(const masu_renderer *m, const char *name) {
@@ -80,7 +75,7 @@ masu_model masu_model_at(const masu_renderer *m, uint32_t index) {
 
 masu_result masu_model_get(masu_renderer *m, masu_model model, masu_model_state *out) {
     uint32_t i;
-    if (!m || !out) return missing(m, "out");
+    if (!m || !out) return masu_finish_null(m, "out");
     masu_result result = check_model(m, model, &i);
     if (result) return result;
     const masu_placed_model *of = &m->models.models[i];
@@ -92,10 +87,10 @@ masu_result masu_model_get(masu_renderer *m, masu_model model, masu_model_state 
 
 masu_result masu_model_set_transform(masu_renderer *m, masu_model model, const float rows[12]) {
     uint32_t i;
-    if (!m || !rows) return missing(m, "rows");
+    if (!m || !rows) return masu_finish_null(m, "rows");
     masu_result result = check_model(m, model, &i);
     if (result) return result;
-    return masu_models_move(&m->models, &m->instances, &m->bounds, &m->plan, i, rows, &m->error);
+    return masu_finish(m, masu_models_move(&m->models, &m->instances, &m->bounds, &m->plan, i, rows, &m->error));
 }
 
 masu_result masu_model_show(masu_renderer *m, masu_model model, uint32_t shown) {
@@ -117,9 +112,9 @@ uint32_t masu_model_node_find(const masu_renderer *m, masu_model model, const ch
 masu_result masu_model_node_get(masu_renderer *m, masu_model model, uint32_t node,
                                 masu_node_state *out) {
     uint32_t i;
-    if (!m || !out) return missing(m, "out");
+    if (!m || !out) return masu_finish_null(m, "out");
     masu_result result = check_model(m, model, &i);
-    if (!result) result = masu_models_check_node(&m->models, i, node, &m->error);
+    if (!result) result = masu_finish(m, masu_models_check_node(&m->models, i, node, &m->error));
     if (result) return result;
     uint32_t first = m->models.models[i].first_node;
     const masu_node *of = &m->models.nodes[first + node];
@@ -134,12 +129,12 @@ masu_result masu_model_node_get(masu_renderer *m, masu_model model, uint32_t nod
 masu_result masu_model_node_set(masu_renderer *m, masu_model model, uint32_t node,
                                 const float rows[12]) {
     uint32_t i;
-    if (!m || !rows) return missing(m, "rows");
+    if (!m || !rows) return masu_finish_null(m, "rows");
     masu_result result = check_model(m, model, &i);
-    if (!result) result = masu_models_check_node(&m->models, i, node, &m->error);
+    if (!result) result = masu_finish(m, masu_models_check_node(&m->models, i, node, &m->error));
     if (result) return result;
-    return masu_models_move_node(&m->models, &m->instances, &m->bounds, &m->plan, i, node, rows,
-                                 &m->error);
+    return masu_finish(m, masu_models_move_node(&m->models, &m->instances, &m->bounds, &m->plan, i, node, rows,
+                                 &m->error));
 }
 
 /* ---- Clips ----------------------------------------------------------------------------------- */
@@ -174,17 +169,17 @@ double masu_model_clip_duration(const masu_renderer *m, masu_model model, uint32
 masu_result masu_model_animate(masu_renderer *m, masu_model model, const masu_clip_use *uses,
                                uint32_t count) {
     uint32_t i;
-    if (!m || (count && !uses)) return missing(m, "uses");
+    if (!m || (count && !uses)) return masu_finish_null(m, "uses");
     masu_result result = check_model(m, model, &i);
     if (result) return result;
-    return masu_models_animate(&m->models, &m->instances, &m->bounds, &m->plan, i, uses, count,
-                               &m->error);
+    return masu_finish(m, masu_models_animate(&m->models, &m->instances, &m->bounds, &m->plan, i, uses, count,
+                               &m->error));
 }
 
 /* ---- Punctual lights ------------------------------------------------------------------------- */
 
 static masu_result check_light(masu_renderer *m, masu_punctual_light light, uint32_t *index) {
-    return masu_handle_check(&m->lights.handles, "light", light.id, index, &m->error);
+    return masu_finish(m, masu_handle_check(&m->lights.handles, "light", light.id, index, &m->error));
 }
 
 masu_punctual_light masu_punctual_light_at(const masu_renderer *m, uint32_t index) {
@@ -199,7 +194,7 @@ masu_punctual_light masu_punctual_light_find(const masu_renderer *m, const char 
 masu_result masu_punctual_light_get(masu_renderer *m, masu_punctual_light light,
                                     masu_punctual_light_state *out) {
     uint32_t i;
-    if (!m || !out) return missing(m, "out");
+    if (!m || !out) return masu_finish_null(m, "out");
     masu_result result = check_light(m, light, &i);
     if (!result) *out = masu_lights_get(&m->lights, &m->instances, i);
     return result;
@@ -208,19 +203,19 @@ masu_result masu_punctual_light_get(masu_renderer *m, masu_punctual_light light,
 masu_result masu_punctual_light_set(masu_renderer *m, masu_punctual_light light,
                                     const masu_punctual_light_state *state) {
     uint32_t i;
-    if (!m || !state) return missing(m, "state");
+    if (!m || !state) return masu_finish_null(m, "state");
     masu_result result = check_light(m, light, &i);
     if (result) return result;
-    return masu_lights_set(&m->lights, &m->instances, i, state, &m->error);
+    return masu_finish(m, masu_lights_set(&m->lights, &m->instances, i, state, &m->error));
 }
 
 /* ---- Materials ------------------------------------------------------------------------------- */
 
 static masu_result check_material(masu_renderer *m, masu_material material, uint32_t *index) {
     if (m->plan.desc.mutable_materials)
-        return masu_handle_check(&m->materials.handles, "material", material.id, index, &m->error);
-    return masu_fail(&m->error, MASU_ERROR_STATE, "mutable_materials", 1, 0,
-                     "materials are neither told nor changed: desc.mutable_materials is 0");
+        return masu_finish(m, masu_handle_check(&m->materials.handles, "material", material.id, index, &m->error));
+    return masu_finish(m, masu_fail(&m->error, MASU_ERROR_STATE, "mutable_materials", 1, 0,
+                                    "materials can be neither read nor changed: desc.mutable_materials is 0"));
 }
 
 masu_material masu_material_at(const masu_renderer *m, uint32_t index) {
@@ -234,7 +229,7 @@ masu_material masu_material_find(const masu_renderer *m, const char *name) {
 
 masu_result masu_material_get(masu_renderer *m, masu_material material, masu_material_state *out) {
     uint32_t i;
-    if (!m || !out) return missing(m, "out");
+    if (!m || !out) return masu_finish_null(m, "out");
     masu_result result = check_material(m, material, &i);
     if (!result) *out = masu_materials_get(&m->materials, i);
     return result;
@@ -243,8 +238,8 @@ masu_result masu_material_get(masu_renderer *m, masu_material material, masu_mat
 masu_result masu_material_set(masu_renderer *m, masu_material material,
                               const masu_material_state *state) {
     uint32_t i;
-    if (!m || !state) return missing(m, "state");
+    if (!m || !state) return masu_finish_null(m, "state");
     masu_result result = check_material(m, material, &i);
     if (result) return result;
-    return masu_materials_set(&m->materials, &m->plan, i, state, &m->error);
+    return masu_finish(m, masu_materials_set(&m->materials, &m->plan, i, state, &m->error));
 }

@@ -60,10 +60,9 @@ static masu_result check(masu_renderer *m, masu_split_bits which, uint32_t rung,
 
 masu_result masu_split_of(masu_renderer *m, masu_split_bits which, uint32_t rung, uint32_t viewport,
                           masu_split *out) {
-    if (!m) return MASU_ERROR_ARGUMENT;
-    if (!out) return masu_fail_null(&m->error, "out");
+    if (!m || !out) return masu_finish_null(m, "out");
     masu_result result = check(m, which, rung, viewport);
-    if (result) return result;
+    if (result) return masu_finish(m, result);
     masu_desc d = m->plan.desc;
     d.output = m->plan.whole;
     if (d.viewport_count)

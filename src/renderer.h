@@ -11,6 +11,7 @@
 #define MASU_RENDERER_H
 
 #include "base/arena.h"
+#include "base/error.h"
 #include "device/device.h"
 #include "frame/bounds.h"
 #include "frame/camera.h"
@@ -40,7 +41,8 @@
 
 struct masu_renderer {
     uint32_t cookie;
-    int loaded;
+    int loaded, lost; /* lost: a call found the device lost; only masu_destroy is of use */
+    uint32_t rung;    /* of the frame that was returned last; 0: there was none */
     masu_arena arena; /* rows for the report; its base is this struct */
     masu_detail error;
     masu_frame_plan plan;
@@ -69,6 +71,20 @@ struct masu_renderer {
     masu_sprites sprites;
     masu_reflections reflections;
 };
+
+/* The result of a public function whose error is in m->error: logs it. */
+static inline masu_result masu_finish(const masu_renderer *m, masu_result result) {
+    if (result < 0) masu_log(&m->plan.desc, MASU_LOG_ERROR, m->error.text);
+    return result;
+}
+
+/* The argument `what` is NULL, or the renderer is. */
+static inline masu_result masu_finish_null(masu_renderer *m, const char *what) {
+    return m ? masu_finish(m, masu_fail_null(&m->error, what)) : MASU_ERROR_ARGUMENT;
+}
+
+/* MASU_ERROR_DEVICE_LOST if an earlier call has found that. */
+masu_result masu_check_lost(const masu_renderer *m, masu_detail *detail);
 
 /* Copies what frames need later from the blob into the host block. */
 void masu_copy_scene(masu_renderer *m);

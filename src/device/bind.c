@@ -39,6 +39,11 @@ static masu_result bind_host_block(masu_device *m, uint32_t role, masu_detail *d
                          "%s: offset %llu is no multiple of %llu", name,
                          (unsigned long long)given->offset, (unsigned long long)need->alignment);
     }
+    if (given->bytes > UINT64_MAX - given->offset) {
+        return masu_fail(detail, MASU_ERROR_MEMORY, name, UINT64_MAX - given->offset, given->bytes,
+                         "%s: offset %llu and %llu bytes are more than 64 bits can address", name,
+                         (unsigned long long)given->offset, (unsigned long long)given->bytes);
+    }
     if (given->bytes < need->bytes) {
         return masu_fail(detail, MASU_ERROR_MEMORY, name, need->bytes, given->bytes,
                          "%s: %llu bytes are needed, %llu are given", name,
@@ -50,6 +55,11 @@ static masu_result bind_host_block(masu_device *m, uint32_t role, masu_detail *d
     if (need->host_visible && (!given->mapped || (flags & visible) != visible)) {
         return masu_fail(detail, MASU_ERROR_MEMORY, name, visible, flags,
                          "%s must be mapped, of a host-visible and coherent type", name);
+    }
+    uint64_t alignment = need->alignment < 64 ? need->alignment : 64; /* the least of vkMapMemory */
+    if (need->host_visible && (uintptr_t)given->mapped % alignment) {
+        return masu_fail(detail, MASU_ERROR_MEMORY, name, alignment, (uintptr_t)given->mapped,
+                         "%s: mapped is not aligned to %llu bytes", name, (unsigned long long)alignment);
     }
     m->memory[role] = given->memory;
     m->mapped[role] = need->host_visible ? given->mapped : NULL;

@@ -1,4 +1,4 @@
-/* descriptors.c: the descriptor pool, set 0 of what a scene's passes share, set 1 of a pass's images,
+/* descriptors.c: the descriptor pool, set 0 of a pass's buffers, set 1 of a pass's images,
  * and the sets of textures. */
 #include "device/descriptors.h"
 
@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "device/barriers.h"
+#include "device/shaders.h"
 #include "device/ray_query.h"
 #include "scene/scene.h"
 
@@ -15,16 +16,27 @@ int masu_has_global_sets(const masu_frame_plan *plan) {
 
 static masu_result create_pool(masu_device *m, masu_detail *detail) {
     uint32_t flights = m->plan->desc.frames_in_flight, sets = m->plan->pass_sets;
-    /* The last is of ray queries alone. */
+    uint32_t uniforms = 0, buffers = 0, structures = 0, globals = 0;
+    for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
+        VkDescriptorSetLayoutBinding bindings[MASU_BIND_COUNT];
+        uint32_t count = m->global_layouts[p] ? masu_global_bindings(m->plan, p, bindings) : 0;
+        globals += m->global_layouts[p] != VK_NULL_HANDLE;
+        for (uint32_t i = 0; i < count; i++) {
+            uniforms += bindings[i].descriptorType == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+            buffers += bindings[i].descriptorType == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+            structures += bindings[i].descriptorType == VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR;
+        }
+    }
+    /* None may be 0; the last is of ray queries alone. */
     VkDescriptorPoolSize sizes[] = {
-        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, MASU_BIND_COUNT * flights},
-        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, MASU_BIND_COUNT * flights},
+        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1 + uniforms * flights},
+        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1 + buffers * flights},
         {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
          MASU_PASS_ACCESSES * sets + MASU_SLOT_COUNT * m->plan->scene.texture_sets},
         {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, MASU_PASS_ACCESSES * sets},
-        {VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, flights}};
+        {VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1 + structures * flights}};
     VkDescriptorPoolCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-                                       .maxSets = flights + sets + m->plan->scene.texture_sets,
+                                       .maxSets = flights * globals + sets + m->plan->scene.texture_sets,
                                        .poolSizeCount = m->plan->needs.query ? 5 : 4,
                                        .pPoolSizes = sizes};
     VkResult r =
@@ -46,7 +58,7 @@ static masu_result allocate_set(masu_device *m, VkDescriptorSetLayout layout,
 
 /* A binding of one frame in flight. Code that reads a uniform buffer that the plan does not have is compiled
  * away, but a set must be whole: it gets the frame's. */
-static void write_binding(masu_device *m, uint32_t flight, const masu_binding *row) {
+static void write_binding(masu_device *m, uint32_t flight, VkDescriptorSet set, const masu_binding *row) {
     const masu_buffer_plan *b = &m->plan->buffers[row->buffer];
     VkDescriptorBufferInfo buffer = {m->objects.buffers[row->buffer],
                                      flight * b->stride + (row->previous ? b->stride / 2 : 0),
@@ -58,7 +70,7 @@ static void write_binding(masu_device *m, uint32_t flight, const masu_binding *r
     }
     if (!b->bytes) return; /* no pass of this plan looks at it */
     VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                  .dstSet = m->global_sets[flight],
+                                  .dstSet = set,
                                   .dstBinding = row->binding,
                                   .descriptorCount = 1,
                                   .descriptorType = row->type,
@@ -66,18 +78,24 @@ static void write_binding(masu_device *m, uint32_t flight, const masu_binding *r
     m->vk.UpdateDescriptorSets(m->vk.device, 1, &write, 0, NULL);
 }
 
-static masu_result create_global_sets(masu_device *m, masu_detail *detail) {
+/* One for each pass, of the buffers that it declares. */
+static masu_result create_global_sets(masu_device *m, uint32_t pass, masu_detail *detail) {
     masu_binding rows[MASU_BIND_COUNT];
+    VkDescriptorSetLayoutBinding bindings[MASU_BIND_COUNT];
+    uint32_t count = masu_global_bindings(m->plan, pass, bindings);
     masu_bindings(m->plan, rows);
-    for (uint32_t f = 0; f < m->plan->desc.frames_in_flight && masu_has_global_sets(m->plan); f++) {
-        masu_result result = allocate_set(m, m->global_layout, &m->global_sets[f], detail);
+    for (uint32_t f = 0; f < m->plan->desc.frames_in_flight; f++) {
+        VkDescriptorSet *set = &m->global_sets[f][pass];
+        masu_result result = allocate_set(m, m->global_layouts[pass], set, detail);
         if (result) return result;
-        for (uint32_t i = 0; i < MASU_BIND_COUNT; i++) {
-            if (!rows[i].bound || (rows[i].previous && !m->plan->needs.velocity)) continue;
-            if (rows[i].type == VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR)
-                masu_ray_bind(m, m->global_sets[f]);
+        for (uint32_t i = 0; i < count; i++) {
+            const masu_binding *row = rows;
+            while (row->binding != bindings[i].binding) row++;
+            if (row->previous && !m->plan->needs.velocity) continue;
+            if (row->type == VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR)
+                masu_ray_bind(m, *set);
             else
-                write_binding(m, f, &rows[i]);
+                write_binding(m, f, *set, row);
         }
     }
     return MASU_OK;
@@ -146,27 +164,54 @@ static void write_pass_set(masu_device *m, const masu_rung_plan *rp, uint32_t pa
     }
 }
 
-masu_result masu_create_pass_sets(masu_device *m, const masu_rung_plan *rp, uint32_t *next,
-                                  VkDescriptorSet sets[MASU_MAX_TARGETS][MASU_PASS_COUNT],
-                                  masu_detail *detail) {
-    for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
-        if (!masu_has_pass(&rp->active, p) || !masu_has_set(p)) continue;
-        uint32_t targets = m->plan->desc.targets.count, own = writes_target(rp, p) ? targets : 1;
-        for (uint32_t t = 0; t < own; t++) {
-            VkDescriptorSet *set = &m->pass_sets[(*next)++];
-            masu_result result = *set ? MASU_OK : allocate_set(m, m->pass_layouts[p], set, detail);
-            if (result) return result;
-            write_pass_set(m, rp, p, t, *set);
-            sets[t][p] = *set;
+/* Walks the sets in their order: `next` is the first set of a pass, `count` how many it has. */
+typedef struct set_cursor {
+    uint32_t rung, pass, next, count;
+} set_cursor;
+
+static int next_pass(const masu_frame_plan *plan, set_cursor *at) {
+    at->next += at->count;
+    for (; at->rung < plan->desc.rung_count; at->rung++, at->pass = 0) {
+        const masu_rung_plan *rp = &plan->rungs[at->rung];
+        while (at->pass < MASU_PASS_COUNT) {
+            uint32_t p = at->pass++;
+            if (!masu_has_pass(&rp->active, p) || !masu_has_set(p)) continue;
+            at->count = writes_target(rp, p) ? plan->targets_max : 1;
+            return 1;
         }
-        for (uint32_t t = own; t < targets; t++) sets[t][p] = sets[0][p];
     }
+    return 0;
+}
+
+masu_result masu_create_pass_sets(masu_device *m, masu_detail *detail) {
+    for (set_cursor at = {0}; next_pass(m->plan, &at);) {
+        for (uint32_t t = 0; t < at.count; t++) {
+            masu_result result = allocate_set(m, m->pass_layouts[at.pass - 1], &m->pass_sets[at.next + t], detail);
+            if (result) return result;
+        }
+    }
+    masu_write_pass_sets(m);
     return MASU_OK;
+}
+
+void masu_write_pass_sets(masu_device *m) {
+    for (set_cursor at = {0}; next_pass(m->plan, &at);) {
+        for (uint32_t t = 0; t < at.count && t < m->plan->desc.targets.count; t++)
+            write_pass_set(m, &m->plan->rungs[at.rung], at.pass - 1, t, m->pass_sets[at.next + t]);
+    }
+}
+
+void masu_find_pass_sets(const masu_device *m, uint32_t rung, uint32_t target, VkDescriptorSet sets[MASU_PASS_COUNT]) {
+    for (set_cursor at = {0}; next_pass(m->plan, &at);) {
+        if (at.rung == rung) sets[at.pass - 1] = m->pass_sets[at.next + (at.count > 1 ? target : 0)];
+    }
 }
 
 masu_result masu_create_sets(masu_device *m, masu_detail *detail) {
     masu_result result = create_pool(m, detail);
-    if (!result) result = create_global_sets(m, detail);
+    for (uint32_t p = 0; p < MASU_PASS_COUNT && !result; p++) {
+        if (m->global_layouts[p] && masu_has_global_sets(m->plan)) result = create_global_sets(m, p, detail);
+    }
     if (!result) result = create_texture_sets(m, detail);
     return result;
 }

@@ -8,11 +8,12 @@
 int masu_has_global_sets(const masu_frame_plan *plan);
 /* The pool, set 0 of each frame in flight, and the sets of textures. */
 masu_result masu_create_sets(masu_device *m, masu_detail *detail);
-/* Sets of all rungs, in the order (rung, pass, target); a pass that does not write the target has
- * one for all targets. `next` walks the device's array in that order. Fills sets[target][pass] of
- * one rung. */
-masu_result masu_create_pass_sets(masu_device *m, const masu_rung_plan *rp, uint32_t *next,
-                                  VkDescriptorSet sets[MASU_MAX_TARGETS][MASU_PASS_COUNT],
-                                  masu_detail *detail);
+/* Allocates and writes the sets of all passes, in the order (rung, pass, target). A pass that writes
+ * the target has a set for each of plan->targets_max targets; other passes have one for all. */
+masu_result masu_create_pass_sets(masu_device *m, masu_detail *detail);
+/* Writes the sets again for the targets of the description. No frame may be pending. */
+void masu_write_pass_sets(masu_device *m);
+/* Fills sets[pass] of a rung that draws to a target. */
+void masu_find_pass_sets(const masu_device *m, uint32_t rung, uint32_t target, VkDescriptorSet sets[MASU_PASS_COUNT]);
 
 #endif

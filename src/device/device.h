@@ -23,6 +23,9 @@ typedef struct masu_device {
     masu_vk vk;
     masu_frame_plan *plan; /* the renderer's */
 
+    VkImage target_images[MASU_MAX_TARGETS]; /* the host's, which plan->desc.targets points to */
+    VkImageView target_views[MASU_MAX_TARGETS];
+
     /* bind.c */
     masu_objects objects;
     VkImageView views[MASU_IMAGE_COUNT]; /* whole images; source and target views are the host's */
@@ -33,7 +36,7 @@ typedef struct masu_device {
 
     /* pipelines.c */
     VkSampler sampler, linear; /* nearest and linear, clamp to edge */
-    VkDescriptorSetLayout global_layout;
+    VkDescriptorSetLayout global_layouts[MASU_PASS_COUNT]; /* set 0: of the buffers that the pass declares */
     VkDescriptorSetLayout pass_layouts[MASU_PASS_COUNT];
     VkPipelineLayout layouts[MASU_PASS_COUNT];
     VkPipeline pipelines[MASU_PASS_COUNT];
@@ -51,14 +54,15 @@ typedef struct masu_device {
 
     /* descriptors.c */
     VkDescriptorPool descriptor_pool;
-    VkDescriptorSet global_sets[MASU_MAX_FLIGHT];
+    VkDescriptorSet global_sets[MASU_MAX_FLIGHT][MASU_PASS_COUNT];
     VkDescriptorSet *pass_sets;    /* plan->pass_sets of them, in the order that they are made in */
     VkDescriptorSet *texture_sets; /* one per texture set of the scene */
 
-    /* record.c */
+    /* recordings.c */
     VkCommandPool command_pool;
-    /* [flight][rung][target][variant][part]; plan->recordings of each flight, of plan->parts parts */
+    /* [flight][viewport][rung][target][variant][part]; plan->recordings of each flight, of plan->parts parts */
     VkCommandBuffer *frames;
+    uint8_t *recorded; /* [flight][viewport][rung][target], at its first variant: 1 if all variants are */
     VkQueryPool queries;     /* [flight][MASU_PASS_COUNT + 1] */
 
     /* load.c */

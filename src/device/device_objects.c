@@ -6,11 +6,13 @@
 #include "device/pipelines.h"
 #include "device/pool.h"
 #include "device/ray_query.h"
-#include "device/record.h"
+#include "device/recordings.h"
 
 void masu_device_alloc(masu_device *m, masu_arena *arena, const masu_frame_plan *plan) {
     uint64_t frames = (uint64_t)plan->desc.frames_in_flight * plan->recordings * plan->parts;
     m->frames = masu_arena_alloc(arena, "command buffers", frames, sizeof *m->frames, 8);
+    m->recorded = masu_arena_alloc(arena, "recorded", (uint64_t)plan->desc.frames_in_flight * plan->recordings,
+                                   sizeof *m->recorded, 1);
     m->loads = masu_arena_alloc(arena, "load command buffers", masu_load_chunks(plan),
                                 sizeof *m->loads, 8);
     m->pass_sets =
@@ -23,6 +25,17 @@ void masu_device_alloc(masu_device *m, masu_arena *arena, const masu_frame_plan 
     m->ray_meshes =
         masu_arena_alloc(arena, "bottom levels", plan->needs.query ? plan->scene.meshes : 0,
                          sizeof *m->ray_meshes, 8);
+}
+
+void masu_set_targets(masu_device *m, const masu_targets *targets) {
+    masu_targets to = *targets;
+    for (uint32_t t = 0; t < targets->count; t++) {
+        m->target_images[t] = targets->images[t];
+        m->target_views[t] = targets->views ? targets->views[t] : VK_NULL_HANDLE;
+    }
+    to.images = m->target_images;
+    to.views = m->target_views;
+    m->plan->desc.targets = to;
 }
 
 masu_result masu_device_create(masu_device *m, const masu_draws *draws, masu_detail *detail) {
@@ -49,8 +62,8 @@ void masu_device_destroy(masu_device *m) {
         vk->DestroyRenderPass(device, m->render_passes[p], vk->allocator);
         vk->DestroyPipelineLayout(device, m->layouts[p], vk->allocator);
         vk->DestroyDescriptorSetLayout(device, m->pass_layouts[p], vk->allocator);
+        vk->DestroyDescriptorSetLayout(device, m->global_layouts[p], vk->allocator);
     }
-    vk->DestroyDescriptorSetLayout(device, m->global_layout, vk->allocator);
     vk->DestroySampler(device, m->sampler, vk->allocator);
     vk->DestroySampler(device, m->linear, vk->allocator);
     for (uint32_t i = 0; i < MASU_TEXTURED_COUNT; i++)

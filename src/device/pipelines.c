@@ -79,7 +79,8 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
     constants[8] = sized && output.width % MASU_GROUP == 0 && output.height % MASU_GROUP == 0;
     /* Nothing is left of the root, and of the lowest nodes nothing is entered. */
     const masu_scene_data *scene = &m->plan->scene;
-    constants[9] = masu_trace_top_levels(scene->trace_instances) + scene->trace_levels - 2;
+    uint32_t levels = masu_trace_top_levels(scene->trace_instances) + scene->trace_levels - 2;
+    constants[9] = (uint32_t)masu_align_up(levels, 4); /* so that scenes of about the same size share pipelines */
     constants[10] = m->plan->desc.debug.share_rays == MASU_ON;
     constants[11] = scene->own_coats != 0;
     constants[12] = scene->tints != 0;
@@ -90,35 +91,22 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
 }
 
 /* 0 where there is no pool. */
-static uint64_t key_of(const masu_device *m, uint32_t pass, const masu_code codes[2], int textured,
+static uint64_t key_of(const masu_device *m, uint32_t pass, const masu_code codes[2], uint32_t form,
                        const VkBool32 constants[SPECIAL_COUNT]) {
     if (!m->plan->desc.vulkan.pipelines) return 0;
-    return masu_pool_key(m, pass, codes, textured, constants, SPECIAL_COUNT);
+    return masu_pool_key(m, pass, codes, form, constants, SPECIAL_COUNT);
 }
 
 /* ---- Layouts --------------------------------------------------------------------------------- */
 
-/* What a plan has no buffer for takes no binding: devices need to have no more than four storage buffers
- * in a stage. */
-static masu_result create_global_layout(masu_device *m, masu_detail *detail) {
-    masu_binding rows[MASU_BIND_COUNT];
-    VkDescriptorSetLayoutBinding bindings[MASU_BIND_COUNT];
-    uint32_t count = 0;
-    masu_bindings(m->plan, rows);
-    for (uint32_t i = 0; i < MASU_BIND_COUNT; i++) {
-        if (!rows[i].bound) continue;
-        bindings[count++] = (VkDescriptorSetLayoutBinding){rows[i].binding, rows[i].type, 1,
-                                                           rows[i].stages, NULL};
-    }
+static masu_result create_set_layout(masu_device *m, const VkDescriptorSetLayoutBinding *bindings, uint32_t count,
+                                     VkDescriptorSetLayout *out, masu_detail *detail) {
     VkDescriptorSetLayoutCreateInfo info = {.sType =
                                                 VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
                                             .bindingCount = count,
                                             .pBindings = bindings};
-    VkResult r =
-        m->vk.CreateDescriptorSetLayout(m->vk.device, &info, m->vk.allocator, &m->global_layout);
-    if (MASU_FAILED(r, m->global_layout))
-        return masu_fail_vulkan(detail, r, "vkCreateDescriptorSetLayout");
-    return MASU_OK;
+    VkResult r = m->vk.CreateDescriptorSetLayout(m->vk.device, &info, m->vk.allocator, out);
+    return MASU_FAILED(r, *out) ? masu_fail_vulkan(detail, r, "vkCreateDescriptorSetLayout") : MASU_OK;
 }
 
 static int draws_polygons(uint32_t pass) {
@@ -136,15 +124,7 @@ static masu_result create_texture_layout(masu_device *m, masu_detail *detail) {
             (VkDescriptorSetLayoutBinding){i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1,
                                            VK_SHADER_STAGE_FRAGMENT_BIT, NULL};
     }
-    VkDescriptorSetLayoutCreateInfo info = {.sType =
-                                                VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-                                            .bindingCount = MASU_SLOT_COUNT,
-                                            .pBindings = bindings};
-    VkResult r =
-        m->vk.CreateDescriptorSetLayout(m->vk.device, &info, m->vk.allocator, &m->texture_layout);
-    return MASU_FAILED(r, m->texture_layout)
-               ? masu_fail_vulkan(detail, r, "vkCreateDescriptorSetLayout")
-               : MASU_OK;
+    return create_set_layout(m, bindings, MASU_SLOT_COUNT, &m->texture_layout, detail);
 }
 
 /* Set 1: reads first, then writes, in the order of the row. */
@@ -170,15 +150,12 @@ static masu_result create_pass_layout(masu_device *m, uint32_t pass, masu_detail
             n++;
         }
     }
-    VkDescriptorSetLayoutCreateInfo info = {.sType =
-                                                VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-                                            .bindingCount = n,
-                                            .pBindings = bindings};
-    VkResult r = m->vk.CreateDescriptorSetLayout(m->vk.device, &info, m->vk.allocator,
-                                                 &m->pass_layouts[pass]);
-    if (MASU_FAILED(r, m->pass_layouts[pass]))
-        return masu_fail_vulkan(detail, r, "vkCreateDescriptorSetLayout");
-    VkDescriptorSetLayout sets[] = {m->global_layout, m->pass_layouts[pass], m->texture_layout};
+    VkDescriptorSetLayoutBinding global[MASU_BIND_COUNT];
+    uint32_t global_count = masu_global_bindings(m->plan, pass, global);
+    masu_result result = create_set_layout(m, bindings, n, &m->pass_layouts[pass], detail);
+    if (!result) result = create_set_layout(m, global, global_count, &m->global_layouts[pass], detail);
+    if (result) return result;
+    VkDescriptorSetLayout sets[] = {m->global_layouts[pass], m->pass_layouts[pass], m->texture_layout};
     VkPushConstantRange push = {VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(masu_push_block)};
     if (!compute) push.stageFlags = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
     VkPipelineLayoutCreateInfo layout = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
@@ -187,7 +164,7 @@ static masu_result create_pass_layout(masu_device *m, uint32_t pass, masu_detail
                                          .pSetLayouts = sets,
                                          .pushConstantRangeCount = 1,
                                          .pPushConstantRanges = &push};
-    r = m->vk.CreatePipelineLayout(m->vk.device, &layout, m->vk.allocator, &m->layouts[pass]);
+    VkResult r = m->vk.CreatePipelineLayout(m->vk.device, &layout, m->vk.allocator, &m->layouts[pass]);
     if (MASU_FAILED(r, m->layouts[pass]))
         return masu_fail_vulkan(detail, r, "vkCreatePipelineLayout");
     masu_name(m, VK_OBJECT_TYPE_PIPELINE_LAYOUT, MASU_HANDLE(m->layouts[pass]),
@@ -448,7 +425,8 @@ static masu_result create_pipeline(masu_device *m, uint32_t pass, int textured, 
     const masu_code codes[2] = {code.vertex, code.fragment};
     VkBool32 constants[SPECIAL_COUNT];
     (void)specialise(m, masked, constants);
-    uint64_t key = key_of(m, pass, codes, textured | culled << 1, constants);
+    uint32_t form = (uint32_t)textured | (culled ? 2u : 0u) | (masked ? 4u : 0u);
+    uint64_t key = key_of(m, pass, codes, form, constants);
     if (masu_pool_acquire(m, key, out)) return MASU_OK;
     VkShaderModule modules[2] = {VK_NULL_HANDLE, VK_NULL_HANDLE};
     masu_result result = create_module(m, code.vertex, &modules[0], detail);
@@ -570,14 +548,14 @@ static masu_result create_samplers(masu_device *m, masu_detail *detail) {
 /* A pool's, where there is one: layouts are compatible only with the same samplers. */
 static masu_result create_sampler(masu_device *m, uint32_t number, const VkSamplerCreateInfo *info,
                                   VkSampler *out, masu_detail *detail) {
-    masu_pipelines *pool = m->plan->desc.vulkan.pipelines;
-    if (pool && pool->samplers[number]) {
-        *out = pool->samplers[number];
+    VkSampler *pooled = masu_pool_sampler(m, number);
+    if (pooled && *pooled) {
+        *out = *pooled;
         return MASU_OK;
     }
     VkResult r = m->vk.CreateSampler(m->vk.device, info, m->vk.allocator, out);
     if (MASU_FAILED(r, *out)) return masu_fail_vulkan(detail, r, "vkCreateSampler");
-    if (pool) pool->samplers[number] = *out;
+    if (pooled) *pooled = *out;
     return MASU_OK;
 }
 
@@ -592,7 +570,6 @@ masu_result masu_create_pipelines(masu_device *m, masu_detail *detail) {
     linear.magFilter = linear.minFilter = VK_FILTER_LINEAR;
     masu_result result = create_sampler(m, 0, &nearest, &m->sampler, detail);
     if (!result) result = create_sampler(m, 1, &linear, &m->linear, detail);
-    if (!result) result = create_global_layout(m, detail);
     if (!result) result = create_texture_layout(m, detail);
     if (!result) result = create_samplers(m, detail);
     for (uint32_t p = 0; p < MASU_PASS_COUNT && !result; p++) {

@@ -7,7 +7,11 @@
 
 #include <string.h>
 
-static masu_pipelines *pool_of(const masu_device *m) { return m->plan->desc.vulkan.pipelines; }
+_Static_assert(sizeof(masu_pool) <= sizeof(masu_pipelines), "a pool fits into what the host has");
+
+static masu_pool *pool_in(masu_pipelines *pipelines) { return (masu_pool *)(void *)pipelines; }
+
+static masu_pool *pool_of(const masu_device *m) { return pool_in(m->plan->desc.vulkan.pipelines); }
 
 /* ---- Keys ------------------------------------------------------------------------------------ */
 
@@ -24,26 +28,27 @@ static uint64_t add_code(uint64_t key, const masu_code *code) {
     return key;
 }
 
-uint64_t masu_pool_key(const masu_device *m, uint32_t pass, const masu_code codes[2], int textured,
+uint64_t masu_pool_key(const masu_device *m, uint32_t pass, const masu_code codes[2], uint32_t form,
                        const uint32_t *constants, uint32_t constant_count) {
     uint64_t key = 0xCBF29CE484222325u;
-    key = add(add(key, pass), (uint64_t)textured | (m->texture_layout ? 2u : 0u));
-    key = add_code(add_code(key, &codes[0]), &codes[1]);
-    for (uint32_t i = 0; i < constant_count; i++) key = add(key, constants[i]);
-    masu_binding rows[MASU_BIND_COUNT];
-    masu_bindings(m->plan, rows);
-    for (uint32_t i = 0; i < MASU_BIND_COUNT; i++) {
-        if (!rows[i].bound) continue;
-        key = add(add(add(key, rows[i].binding), (uint64_t)rows[i].type), rows[i].stages);
+    uint32_t declared = masu_code_interface(&codes[0]).constants | masu_code_interface(&codes[1]).constants;
+    key = add_code(add_code(add(add(key, pass), form), &codes[0]), &codes[1]);
+    for (uint32_t i = 0; i < constant_count; i++) {
+        if (declared >> i & 1u) key = add(add(key, i), constants[i]);
     }
+    VkDescriptorSetLayoutBinding global[MASU_BIND_COUNT];
+    uint32_t count = masu_global_bindings(m->plan, pass, global);
+    for (uint32_t i = 0; i < count; i++)
+        key = add(add(add(key, global[i].binding), (uint64_t)global[i].descriptorType), global[i].stageFlags);
     const masu_rung_plan *rp = masu_first_rung(m->plan, pass);
     for (uint32_t a = 0; a < rp->access_count[pass]; a++) {
-        key = add(key, rp->access[pass][a].usage);
-        /* Attachments' formats are the table's; shaders know those of what they store. */
-        key = add(key, (uint64_t)masu_images[masu_is_buffer(rp->access[pass][a].image)
-                                                 ? 0
-                                                 : rp->access[pass][a].image]
-                           .format);
+        masu_access access = rp->access[pass][a];
+        int bound = masu_has_set(pass) && (masu_access_binds(access, 0) || masu_access_binds(access, 1));
+        int attached = access.usage == MASU_WRITE_COLOR || access.usage == MASU_BLEND_COLOR ||
+                       access.usage == MASU_WRITE_DEPTH || access.usage == MASU_UPDATE_DEPTH;
+        if (bound || attached) key = add(key, access.usage);
+        /* Shaders know the formats of what they store. */
+        if (attached) key = add(key, (uint64_t)masu_images[access.image].format);
     }
     return key ? key : 1;
 }
@@ -70,44 +75,76 @@ static void note(masu_device *m, const VkPipeline *at, uint64_t key) {
 }
 
 int masu_pool_acquire(masu_device *m, uint64_t key, VkPipeline *out) {
-    masu_pipelines *pool = pool_of(m);
-    for (uint32_t i = 0; pool && i < pool->count; i++) {
-        if (pool->rows[i].key != key) continue;
-        *out = pool->rows[i].pipeline;
-        pool->rows[i].users++;
-        pool->reused++;
+    masu_pool *pool = pool_of(m);
+    for (uint32_t i = 0; pool && i < pool->info.count; i++) {
+        masu_pool_row *row = &pool->rows[i];
+        if (row->key != key) continue;
+        *out = row->pipeline;
+        row->users++;
+        row->used = ++pool->clock;
+        pool->info.reused++;
         note(m, out, key);
         return 1;
     }
     return 0;
 }
 
+/* A free row, or that of the pipeline that has been unused for the longest time; NULL: all are in use. */
+static masu_pool_row *make_room(const masu_device *m, masu_pool *pool) {
+    masu_pool_row *oldest = NULL;
+    if (pool->info.count < MASU_MAX_PIPELINES) return &pool->rows[pool->info.count++];
+    for (uint32_t i = 0; i < pool->info.count; i++) {
+        masu_pool_row *row = &pool->rows[i];
+        if (!row->users && (!oldest || pool->clock - row->used > pool->clock - oldest->used)) oldest = row;
+    }
+    if (!oldest) return NULL;
+    m->vk.DestroyPipeline(m->vk.device, oldest->pipeline, m->vk.allocator);
+    pool->info.evicted++;
+    return oldest;
+}
+
 void masu_pool_add(masu_device *m, const VkPipeline *at, uint64_t key) {
-    masu_pipelines *pool = pool_of(m);
+    masu_pool *pool = pool_of(m);
     if (!pool) return;
-    pool->created++;
-    if (pool->count == MASU_MAX_PIPELINES) return;
-    pool->rows[pool->count].key = key;
-    pool->rows[pool->count].users = 1;
-    pool->rows[pool->count++].pipeline = *at;
+    pool->info.created++;
+    masu_pool_row *row = make_room(m, pool);
+    if (!row) return;
+    *row = (masu_pool_row){key, *at, 1, ++pool->clock};
     note(m, at, key);
 }
 
 void masu_pool_release(masu_device *m) {
-    masu_pipelines *pool = pool_of(m);
+    masu_pool *pool = pool_of(m);
     if (!pool) return;
     for (uint32_t i = 0; i < MASU_POOL_KEYS; i++) {
         VkPipeline *from = place(m, i);
-        for (uint32_t row = 0; row < pool->count && *from && m->pool_keys[i]; row++) {
-            if (pool->rows[row].pipeline != *from) continue;
-            pool->rows[row].users--;
+        for (uint32_t r = 0; r < pool->info.count && *from && m->pool_keys[i]; r++) {
+            masu_pool_row *row = &pool->rows[r];
+            if (row->pipeline != *from) continue;
+            row->users--;
+            row->used = ++pool->clock;
             *from = VK_NULL_HANDLE;
         }
     }
-    m->sampler = m->linear = VK_NULL_HANDLE; /* the pool has them all along */
+    m->sampler = m->linear = VK_NULL_HANDLE; /* the pool keeps them */
 }
 
-void masu_pipelines_destroy(const masu_vulkan *vulkan, masu_pipelines *pool) {
+VkSampler *masu_pool_sampler(masu_device *m, uint32_t number) {
+    masu_pool *pool = pool_of(m);
+    return pool ? &pool->samplers[number] : NULL;
+}
+
+/* ---- What the host calls --------------------------------------------------------------------- */
+
+void masu_pipelines_info_of(const masu_pipelines *pipelines, masu_pipelines_info *out) {
+    const masu_pool *pool = (const masu_pool *)(const void *)pipelines;
+    if (!out) return;
+    *out = pool ? pool->info : (masu_pipelines_info){0};
+    for (uint32_t i = 0; i < out->count; i++) out->used += pool->rows[i].users != 0;
+}
+
+void masu_pipelines_destroy(const masu_vulkan *vulkan, masu_pipelines *pipelines) {
+    masu_pool *pool = pool_in(pipelines);
     if (!vulkan || !pool || !vulkan->get_instance_proc_addr || !vulkan->device) return;
     PFN_vkGetDeviceProcAddr device_proc = (PFN_vkGetDeviceProcAddr)vulkan->get_instance_proc_addr(
         vulkan->instance, "vkGetDeviceProcAddr");
@@ -116,9 +153,9 @@ void masu_pipelines_destroy(const masu_vulkan *vulkan, masu_pipelines *pool) {
         (PFN_vkDestroyPipeline)device_proc(vulkan->device, "vkDestroyPipeline");
     PFN_vkDestroySampler destroy_sampler =
         (PFN_vkDestroySampler)device_proc(vulkan->device, "vkDestroySampler");
-    for (uint32_t i = 0; destroy && i < pool->count && i < MASU_MAX_PIPELINES; i++)
+    for (uint32_t i = 0; destroy && i < pool->info.count; i++)
         destroy(vulkan->device, pool->rows[i].pipeline, vulkan->allocator);
     for (uint32_t i = 0; destroy_sampler && i < 2; i++)
         destroy_sampler(vulkan->device, pool->samplers[i], vulkan->allocator);
-    memset(pool, 0, sizeof *pool);
+    memset(pipelines, 0, sizeof *pipelines);
 }

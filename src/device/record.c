@@ -1,13 +1,10 @@
-/* record.c: the table becomes command buffers. One recording per (frame in flight, rung, target, and where a rung draws
- * cascades of the shadow map less often than every frame: set of those that it draws), made once in masu_init and
- * submitted again and again. A recording is one command buffer, or, where desc.split has the host's own commands in a
- * frame, one more for each such row of the table. */
+/* record.c: the table becomes command buffers: one for a recording, or, where desc.split has the host's own commands in
+ * a frame, one more for each such row of the table. recordings.c says which recordings there are. */
 #include "device/record.h"
 
 #include "base/error.h"
 #include "device/barriers.h"
 #include "device/descriptors.h"
-#include "device/load.h"
 #include "device/ray_query.h"
 #include "plan/push.h"
 #include "scene/scene.h"
@@ -73,7 +70,7 @@ static void record_compute(masu_recorder *rec, uint32_t pass, VkDescriptorSet se
     vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
     if (masu_has_global_sets(rec->m->plan)) {
         vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, layout, MASU_SET_GLOBAL,
-                                  1, &rec->m->global_sets[rec->flight], 0, NULL);
+                                  1, &rec->m->global_sets[rec->flight][pass], 0, NULL);
     }
     vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, layout, MASU_SET_PASS, 1,
                               &set, 0, NULL);
@@ -172,7 +169,7 @@ static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep, int 
     if (!pipeline || ((sun || pick) && sweep == 1 + MASU_TEXTURED_OPAQUE)) return;
     vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
     vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, MASU_SET_GLOBAL, 1,
-                              &m->global_sets[rec->flight], 0, NULL);
+                              &m->global_sets[rec->flight][pass], 0, NULL);
     vk->CmdBindVertexBuffers(rec->cmd, 0, 1, &m->objects.buffers[MASU_BUFFER_VERTICES], &zero);
     if (sweep)
         vk->CmdBindVertexBuffers(rec->cmd, 1, 1, &m->objects.buffers[MASU_BUFFER_TEXCOORDS], &zero);
@@ -225,7 +222,7 @@ static void record_polygons(masu_recorder *rec, uint32_t pass) {
 /* One draw of what the vertex shader makes up of MASU_BUFFER_SPRITES, as many as the frame says. */
 static void record_sprites(masu_recorder *rec, uint32_t pass, VkDescriptorSet set, uint64_t command) {
     const masu_device *m = rec->m;
-    const VkDescriptorSet sets[] = {m->global_sets[rec->flight], set};
+    const VkDescriptorSet sets[] = {m->global_sets[rec->flight][pass], set};
     masu_push_block push = push_of(rec, pass);
     m->vk.CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, m->pipelines[pass]);
     m->vk.CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, m->layouts[pass],
@@ -236,7 +233,7 @@ static void record_sprites(masu_recorder *rec, uint32_t pass, VkDescriptorSet se
 }
 
 static void bind_transparents(masu_recorder *rec, VkDescriptorSet set, int tints) {
-    const VkDescriptorSet sets[] = {rec->m->global_sets[rec->flight], set};
+    const VkDescriptorSet sets[] = {rec->m->global_sets[rec->flight][MASU_PASS_TRANSPARENTS], set};
     VkPipeline pipeline = tints ? rec->m->tints : rec->m->pipelines[MASU_PASS_TRANSPARENTS];
     rec->m->vk.CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
     rec->m->vk.CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS,
@@ -293,7 +290,7 @@ static void record_occluders(masu_recorder *rec) {
     VkPipelineLayout layout = m->layouts[MASU_PASS_OCCLUDERS];
     m->vk.CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, m->pipelines[MASU_PASS_OCCLUDERS]);
     m->vk.CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, MASU_SET_GLOBAL, 1,
-                                &m->global_sets[rec->flight], 0, NULL);
+                                &m->global_sets[rec->flight][MASU_PASS_OCCLUDERS], 0, NULL);
     masu_push_block block = push_of(rec, MASU_PASS_OCCLUDERS);
     struct masu_push_occluders push;
     memcpy(&push, &block.own, sizeof push);
@@ -318,7 +315,7 @@ static void record_fullscreen(masu_recorder *rec, uint32_t pass, VkDescriptorSet
     const masu_vk *vk = &rec->m->vk;
     masu_push_block push = push_of(rec, pass);
     vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, rec->m->pipelines[pass]);
-    const VkDescriptorSet sets[] = {rec->m->global_sets[rec->flight], set};
+    const VkDescriptorSet sets[] = {rec->m->global_sets[rec->flight][pass], set};
     vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, rec->m->layouts[pass],
                               MASU_SET_GLOBAL, set ? 2 : 1, sets, 0, NULL);
     vk->CmdPushConstants(rec->cmd, rec->m->layouts[pass], GRAPHICS_STAGES, 0, sizeof push, &push);
@@ -582,9 +579,7 @@ static masu_result record_split(masu_recorder *rec, uint32_t *part, masu_detail 
     return MASU_OK;
 }
 
-/* sets: the rung's, of this target; see masu_create_pass_sets for the order. */
-static masu_result record_frame(masu_recorder *rec, const VkDescriptorSet *sets,
-                                masu_detail *detail) {
+masu_result masu_record_frame(masu_recorder *rec, const VkDescriptorSet *sets, masu_detail *detail) {
     const masu_device *m = rec->m;
     uint32_t part = 0;
     masu_result result = begin_part(rec, part, detail);
@@ -618,82 +613,4 @@ static masu_result record_frame(masu_recorder *rec, const VkDescriptorSet *sets,
     masu_leave_persistent(rec);
     record_epilogue(rec);
     return end_part(rec, detail);
-}
-
-/* ---- All recordings -------------------------------------------------------------------------- */
-
-static masu_result create_command_buffers(masu_device *m, uint32_t frames, masu_detail *detail) {
-    VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
-                                    .queueFamilyIndex = m->plan->desc.vulkan.queue_family};
-    VkResult r = m->vk.CreateCommandPool(m->vk.device, &pool, m->vk.allocator, &m->command_pool);
-    if (MASU_FAILED(r, m->command_pool)) return masu_fail_vulkan(detail, r, "vkCreateCommandPool");
-    VkCommandBufferAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-                                        .commandPool = m->command_pool,
-                                        .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
-                                        .commandBufferCount = frames};
-    r = m->vk.AllocateCommandBuffers(m->vk.device, &info, m->frames);
-    info.commandBufferCount = m->load_count;
-    if (!r && m->load_count) r = m->vk.AllocateCommandBuffers(m->vk.device, &info, m->loads);
-    return r ? masu_fail_vulkan(detail, r, "vkAllocateCommandBuffers") : MASU_OK;
-}
-
-static masu_result create_queries(masu_device *m, masu_detail *detail) {
-    if (!masu_stamps(&m->plan->desc)) return MASU_OK;
-    VkQueryPoolCreateInfo info = {.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
-                                  .queryType = VK_QUERY_TYPE_TIMESTAMP,
-                                  .queryCount =
-                                      m->plan->desc.frames_in_flight * (MASU_PASS_COUNT + 1)};
-    VkResult r = m->vk.CreateQueryPool(m->vk.device, &info, m->vk.allocator, &m->queries);
-    return MASU_FAILED(r, m->queries) ? masu_fail_vulkan(detail, r, "vkCreateQueryPool") : MASU_OK;
-}
-
-/* All of them, with the sets of passes as the targets are now. */
-static masu_result record_frames(masu_device *m, const masu_draws *draws, masu_detail *detail) {
-    const masu_desc *d = &m->plan->desc;
-    uint32_t rungs = d->rung_count, targets = d->targets.count, recordings = m->plan->recordings;
-    masu_result result = MASU_OK;
-    uint32_t next = 0;
-    for (uint32_t r = 0; r < rungs && !result; r++) {
-        VkDescriptorSet sets[MASU_MAX_TARGETS][MASU_PASS_COUNT];
-        memset(sets, 0, sizeof sets);
-        masu_rung_plan *rp = &m->plan->rungs[r];
-        result = masu_create_pass_sets(m, rp, &next, sets, detail);
-        uint32_t own = targets * rp->variants; /* of one frame in flight: [target][variant] */
-        uint32_t viewports = d->viewport_count ? d->viewport_count : 1, each = d->frames_in_flight * own;
-        for (uint32_t i = 0; i < viewports * each && !result; i++) {
-            uint32_t v = i / each, f = i % each / own, t = i % own / rp->variants;
-            uint32_t recording = v * m->plan->viewport_recordings + rp->first_recording + i % own;
-            masu_plan_select_viewport(m->plan, v);
-            masu_recorder rec = {.m = m,
-                                 .draws = draws,
-                                 .parts = &m->frames[(f * recordings + recording) * m->plan->parts],
-                                 .flight = f,
-                                 .viewport = v,
-                                 .rung = r,
-                                 .target = t,
-                                 .variant = i % rp->variants,
-                                 .rp = rp};
-            result = record_frame(&rec, sets[t], detail);
-            rp->barriers = rec.barriers; /* of the last variant, which leaves nothing out */
-        }
-    }
-    masu_plan_select_viewport(m->plan, 0);
-    return result;
-}
-
-masu_result masu_record(masu_device *m, const masu_draws *draws, masu_detail *detail) {
-    const masu_desc *d = &m->plan->desc;
-    masu_result result = masu_create_sets(m, detail);
-    if (!result) result = create_queries(m, detail);
-    if (!result)
-        result = create_command_buffers(
-            m, d->frames_in_flight * m->plan->recordings * m->plan->parts, detail);
-    if (!result) result = record_frames(m, draws, detail);
-    return result ? result : masu_load_record(m, detail);
-}
-
-masu_result masu_record_again(masu_device *m, const masu_draws *draws, masu_detail *detail) {
-    VkResult r = m->vk.ResetCommandPool(m->vk.device, m->command_pool, 0);
-    if (r) return masu_fail_vulkan(detail, r, "vkResetCommandPool");
-    return record_frames(m, draws, detail);
 }

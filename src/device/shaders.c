@@ -2,6 +2,7 @@
 #include "device/shaders.h"
 
 #include "base/error.h"
+#include "plan/buffer_plan.h"
 #include "scene/scene.h"
 #include "scene/trace_scene.h"
 
@@ -121,6 +122,38 @@ masu_draw_code masu_draw_code_of(const masu_frame_plan *plan, uint32_t pass, int
     if (masu_passes[pass].geometry == MASU_GEOMETRY_CASCADE && !textured)
         code.fragment = (masu_code){0};
     return code;
+}
+
+masu_interface masu_code_interface(const masu_code *code) {
+    return code->words ? masu_interface_of(code->words, code->bytes / sizeof *code->words) : code->packed.interface;
+}
+
+/* Bindings of set 0 that any form of a pass declares. */
+static uint64_t declared_bindings(const masu_frame_plan *plan, uint32_t pass) {
+    uint64_t bindings = 0;
+    for (int form = 0; form < 2; form++) { /* last or not, textured or not */
+        masu_draw_code draw = masu_draw_code_of(plan, pass, form);
+        masu_code compute = masu_compute_code(plan, pass, form);
+        bindings |= masu_code_interface(&draw.vertex).bindings | masu_code_interface(&draw.fragment).bindings |
+                    masu_code_interface(&compute).bindings;
+    }
+    return bindings;
+}
+
+uint32_t masu_global_bindings(const masu_frame_plan *plan, uint32_t pass,
+                              VkDescriptorSetLayoutBinding out[MASU_BIND_COUNT]) {
+    masu_binding rows[MASU_BIND_COUNT];
+    uint64_t declared = declared_bindings(plan, pass);
+    VkShaderStageFlags stages = masu_passes[pass].kind == MASU_PASS_COMPUTE
+                                    ? VK_SHADER_STAGE_COMPUTE_BIT
+                                    : VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
+    uint32_t count = 0;
+    masu_bindings(plan, rows);
+    for (uint32_t i = 0; i < MASU_BIND_COUNT; i++) {
+        if (!rows[i].bound || !(declared >> rows[i].binding & 1) || !(rows[i].stages & stages)) continue;
+        out[count++] = (VkDescriptorSetLayoutBinding){rows[i].binding, rows[i].type, 1, rows[i].stages & stages, NULL};
+    }
+    return count;
 }
 
 const uint32_t *masu_code_read(const masu_code *code, uint32_t *room) {

@@ -6,6 +6,7 @@
 #ifndef MASU_SHADERS_H
 #define MASU_SHADERS_H
 
+#include "bindings.h"
 #include "device/unpack.h"
 #include "plan/plan.h"
 
@@ -26,6 +27,13 @@ masu_code masu_compute_code(const masu_frame_plan *plan, uint32_t pass, int last
 
 /* Of a graphics pass; textured: for what has textures. */
 masu_draw_code masu_draw_code_of(const masu_frame_plan *plan, uint32_t pass, int textured);
+
+/* What it declares; of no code nothing. */
+masu_interface masu_code_interface(const masu_code *code);
+
+/* The bindings of set 0 that a pass has: those that its shaders declare, of buffers that the plan has. */
+uint32_t masu_global_bindings(const masu_frame_plan *plan, uint32_t pass,
+                              VkDescriptorSetLayoutBinding out[MASU_BIND_COUNT]);
 
 /* The words of a code that there is; room: for one that is packed, masu_code_room(plan) bytes. */
 const uint32_t *masu_code_read(const masu_code *code, uint32_t *room);

@@ -18,6 +18,8 @@
 #ifndef MASU_UNPACK_H
 #define MASU_UNPACK_H
 
+#include "device/spirv_interface.h"
+
 #include <stdint.h>
 
 /* How a word behind the first is coded. */
@@ -68,6 +70,7 @@ typedef struct masu_packed {
     uint32_t run, run_bytes; /* its bytes of the pack's runs */
     uint32_t own;            /* where its own part of the pool begins */
     uint32_t words;          /* 0: the library was built without it */
+    masu_interface interface;
 } masu_packed;
 
 /* Writes packed->words words. 0: the bytes are no packed module of that many; what was written is then worth

@@ -80,7 +80,7 @@
     X(GetBufferMemoryRequirements)                                                                 \
     X(GetImageMemoryRequirements)                                                                  \
     X(MapMemory)                                                                                   \
-    X(ResetCommandPool)                                                                            \
+    X(ResetCommandBuffer)                                                                          \
     X(UpdateDescriptorSets)
 
 #define MASU_VK_OPTIONAL(X)                                                                        \

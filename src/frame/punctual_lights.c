@@ -35,7 +35,7 @@ static void carry(const masu_instances *in, const masu_punctual_light_state *s, 
         direction[k] = (double)s->direction[k];
     }
     if (!s->instance.id) return;
-    const struct masu_instance_data *to = &in->now[s->instance.id - 1];
+    const struct masu_instance_data *to = &in->now[s->instance.id - 1]; /* states keep its index + 1 */
     const float *rows[3] = {to->row0, to->row1, to->row2};
     for (uint32_t k = 0; k < 3; k++) {
         const float *row = rows[k];
@@ -60,9 +60,9 @@ void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_fram
     for (uint32_t i = 0; i < lights; i++) {
         struct masu_punctual_light_data placed;
         double position[3], direction[3];
-        uint32_t carrier = l->states[i].instance.id;
+        uint64_t carrier = l->states[i].instance.id;
         if (!masu_handle_lives(&l->handles, i)) continue;
-        if (carrier && masu_instance_hidden(in, carrier - 1)) continue;
+        if (carrier && masu_instance_hidden(in, (uint32_t)carrier - 1)) continue;
         carry(in, &l->states[i], position, direction);
         for (uint32_t k = 0; k < 3; k++) position[k] -= f->eye[k];
         if (!masu_light_place(&l->states[i], position, direction, &placed)) continue;
@@ -87,47 +87,54 @@ masu_punctual_light_state masu_lights_get(const masu_lights *l, const masu_insta
                                           uint32_t light) {
     masu_punctual_light_state state = l->states[light];
     if (state.instance.id)
-        state.instance.id = masu_handle_at(&in->handles, state.instance.id - 1);
+        state.instance.id = masu_handle_at(&in->handles, (uint32_t)state.instance.id - 1);
     return state;
 }
 
-masu_result masu_lights_set(masu_lights *l, const masu_instances *in, uint32_t light,
-                            const masu_punctual_light_state *state, masu_detail *detail) {
+/* Checks a state that the host gives, and replaces the handle of its instance by an index + 1. */
+static masu_result take_state(const masu_instances *in, uint32_t light, masu_punctual_light_state *state,
+                              masu_detail *detail) {
     double value = 0.0;
     const char *wrong = masu_light_state_wrong(state, &value);
     if (wrong) {
         return masu_fail(detail, MASU_ERROR_ARGUMENT, "light", 0, 0, "light %u: %s (%g)", light,
                          wrong, value);
     }
-    masu_punctual_light_state *now = &l->states[light], to = *state;
-    if (to.instance.id) {
-        uint32_t carrier = masu_handle_index(&in->handles, to.instance.id);
-        if (carrier >= in->handles.count) {
-            return masu_fail(detail, MASU_ERROR_ARGUMENT, "instance", in->handles.count,
-                             to.instance.id,
-                             "light %u: instance handle %u is not of this renderer's scene, which "
-                             "has %u",
-                             light, to.instance.id, in->handles.count);
-        }
-        to.instance.id = carrier + 1;
+    uint64_t id = state->instance.id;
+    if (!id) return MASU_OK;
+    uint32_t carrier = masu_handle_index(&in->handles, id);
+    if (carrier == UINT32_MAX) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "instance", in->handles.count, id,
+                         "light %u: instance handle %llu is not of this renderer, or was removed",
+                         light, (unsigned long long)id);
     }
-    l->changes += memcmp(now, &to, sizeof to) != 0;
-    *now = to;
+    state->instance.id = (uint64_t)carrier + 1;
+    return MASU_OK;
+}
+
+masu_result masu_lights_set(masu_lights *l, const masu_instances *in, uint32_t light,
+                            const masu_punctual_light_state *state, masu_detail *detail) {
+    masu_punctual_light_state to = *state;
+    masu_result result = take_state(in, light, &to, detail);
+    if (result) return result;
+    l->changes += memcmp(&l->states[light], &to, sizeof to) != 0;
+    l->states[light] = to;
     return MASU_OK;
 }
 
 masu_result masu_lights_add(masu_lights *l, const masu_instances *in,
                             const masu_punctual_light_state *state, uint32_t *light,
                             masu_detail *detail) {
+    masu_punctual_light_state to = *state;
+    masu_result result = take_state(in, l->handles.count, &to, detail);
+    if (result) return result;
     *light = masu_handle_free(&l->handles);
     if (*light == UINT32_MAX) {
         return masu_fail(detail, MASU_ERROR_LIMIT, "reserve.lights", l->handles.reserve + (uint64_t)1,
                          l->handles.reserve, "reserve.lights: %u are needed, %u are given",
                          l->handles.reserve + 1, l->handles.reserve);
     }
-    memset(&l->states[*light], 0, sizeof l->states[*light]);
-    masu_result result = masu_lights_set(l, in, *light, state, detail);
-    if (result) return result;
+    l->states[*light] = to;
     masu_handle_turn(&l->handles, *light);
     l->changes++;
     return MASU_OK;

@@ -21,13 +21,12 @@ static masu_result check_color(masu_detail *detail, const char *what, const floa
 
 static masu_result check_sky(const masu_frame_plan *plan, const masu_light *light,
                              masu_detail *detail) {
-    if (light->turbidity == 0.0f) return MASU_OK;
+    masu_result result = check_color(detail, "light.ground", light->ground, 1.0f, "0 to 1");
+    if (result || light->turbidity == 0.0f) return result;
     if (!(light->turbidity >= MASU_SKY_TURBIDITY_MIN &&
           light->turbidity <= MASU_SKY_TURBIDITY_MAX)) {
         return bad(detail, "light.turbidity", light->turbidity, "0 and 1.5 to 10");
     }
-    masu_result result = check_color(detail, "light.ground", light->ground, 1.0f, "0 to 1");
-    if (result) return result;
     if (!plan->needs.sky) {
         return bad(detail, "light.turbidity", light->turbidity,
                    "others than 0 only with a scene that has an analytic sky, or desc.analytic_sky");

@@ -52,7 +52,7 @@ static void resolve_shadow(masu_frame_plan *plan, uint32_t r) {
     plan->images[MASU_IMAGE_SHADOW_MAP].persistent |= rp->slow != 0;
     plan->needs.cascades = rp->cascades;
     rp->first_recording = plan->recordings;
-    plan->recordings += rp->variants * plan->desc.targets.count;
+    plan->recordings += rp->variants * plan->targets_max;
 }
 
 /* Which resource an access of the table means in a rung: itself, or of a stand-in the image of the class that the
@@ -194,7 +194,7 @@ static void gather_images(masu_frame_plan *plan) {
                 if (masu_images[id].layers > 1) image->usage |= VK_IMAGE_USAGE_TRANSFER_DST_BIT; /* cleared by masu_load */
             }
             if (!masu_has_pass(&rp->active, p) || !masu_has_set(p)) continue;
-            plan->pass_sets += writes_target ? plan->desc.targets.count : 1;
+            plan->pass_sets += writes_target ? plan->targets_max : 1;
         }
     }
 }
@@ -324,6 +324,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
     plan->parts = 1 + ((d->split & MASU_SPLIT_BEFORE_TONE) != 0) +
                   ((d->split & MASU_SPLIT_AFTER_UPSCALE) != 0);
     plan->most = plan->whole = d->output;
+    plan->targets_max = d->resizable && d->scene ? MASU_MAX_TARGETS : d->targets.count;
     masu_output_plan(plan);
     if (plan->needs.query) plan->scene.trace_nodes = 0; /* the device has trees of its own */
     masu_shadow_peak(d, &plan->cascades, &plan->cascade_size);

@@ -3,6 +3,8 @@
 
 #include "base/error.h"
 
+#include <math.h>
+
 /* Formats that a target may have: bits of its least precise channel, how it is filled. */
 typedef struct target_format {
     VkFormat format;
@@ -138,13 +140,30 @@ static masu_result check_targets(const masu_desc *d, masu_detail *detail) {
     return MASU_OK;
 }
 
+/* Without a scene these are ignored, but no number that is none is let through. */
+static masu_result check_unused(const masu_desc *d, masu_detail *detail) {
+    const masu_exposure *e = &d->exposure;
+    const struct {
+        const char *name;
+        float value;
+    } numbers[] = {{"targets.white", d->targets.white}, {"targets.peak", d->targets.peak},
+                   {"exposure.brighten", e->brighten},  {"exposure.darken", e->darken},
+                   {"exposure.low", e->low},            {"exposure.high", e->high},
+                   {"exposure.min", e->min},            {"exposure.max", e->max}};
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        if (!isfinite(numbers[i].value))
+            return bad_float(detail, numbers[i].name, numbers[i].value, "allowed are finite numbers");
+    }
+    return MASU_OK;
+}
+
 masu_result masu_output_check(const masu_desc *d, masu_detail *detail) {
     masu_result result = check_targets(d, detail);
     if (result) return result;
     const masu_exposure *e = &d->exposure;
     if ((unsigned)d->tone > MASU_TONE_NEUTRAL)
         return bad(detail, "tone", MASU_TONE_NEUTRAL, (unsigned)d->tone, "no masu_tone");
-    if (!d->scene) return MASU_OK;
+    if (!d->scene) return check_unused(d, detail);
     if ((unsigned)e->metered > MASU_ON)
         return bad(detail, "exposure.metered", MASU_ON, (unsigned)e->metered, "no masu_switch");
     if (!(e->brighten > 0.0f && e->brighten <= 1e6f))

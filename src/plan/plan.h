@@ -129,6 +129,7 @@ typedef struct masu_frame_plan {
     uint64_t pick_draws; /* of the same: where those of the picked pixel begin */
     uint64_t receiver_mask; /* first word of MASU_BUFFER_SEEN that is of receivers; 0: it has none */
     uint32_t pass_sets; /* descriptor sets of set 1 over all rungs and targets */
+    uint32_t targets_max; /* targets that there may be: more than now only with desc.resizable */
     uint32_t recordings; /* of one frame in flight: viewports, their rungs, their targets, their variants */
     uint32_t viewport_recordings; /* of one viewport */
     uint32_t parts; /* command buffers of a recording: 1, and one more for each point where it is split */

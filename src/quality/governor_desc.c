@@ -24,17 +24,17 @@ masu_result masu_governor_check(const masu_governor_desc *g, uint32_t rungs, mas
         if (!(g->costs[r] >= 0.0f && g->costs[r] <= 1e6f))
             return bad(detail, "governor.costs", (double)g->costs[r], 0, 1e6);
     }
-    if (g->mode == MASU_GOVERNOR_OFF) return MASU_OK;
     if (g->target_ms != 0.0f && !(g->target_ms >= 1.0f && g->target_ms <= 1000.0f))
         return bad(detail, "governor.target_ms", (double)g->target_ms, 1, 1000);
     if (!(g->headroom <= 0.5f && g->headroom >= -1.0f))
         return bad(detail, "governor.headroom", (double)g->headroom, -1, 0.5);
+    if (g->dwell > 600) return bad(detail, "governor.dwell", g->dwell, 0, 600);
+    if (g->mode == MASU_GOVERNOR_OFF) return MASU_OK; /* the rungs may be those of another host */
     if (g->worst_rung >= rungs)
         return bad(detail, "governor.worst_rung", g->worst_rung, 0, rungs - 1);
     if (g->best_rung > (g->worst_rung ? g->worst_rung : rungs - 1))
         return bad(detail, "governor.best_rung", g->best_rung, 0,
                    g->worst_rung ? g->worst_rung : rungs - 1);
     if (g->rung >= rungs) return bad(detail, "governor.rung", g->rung, 0, rungs - 1);
-    if (g->dwell > 600) return bad(detail, "governor.dwell", g->dwell, 0, 600);
     return MASU_OK;
 }

@@ -32,13 +32,12 @@ const char *masu_light_state_wrong(const masu_punctual_light_state *s, double *v
     if (!(s->radius >= 1e-6f && s->radius <= 1e9f)) return "radius is not 1e-6 to 1e9 m";
     *value = (double)s->spot;
     if (s->spot > 1) return "spot is neither 0 nor 1";
-    if (!s->spot) return NULL;
     *value = (double)s->outer;
     if (!(s->outer >= 0.0f && s->outer <= 3.1415928f)) return "outer is not 0 to pi";
     *value = (double)s->inner;
     if (!(s->inner >= 0.0f && s->inner <= s->outer)) return "inner is not 0 to outer";
     *value = (double)direction;
-    return direction > 1e-15f ? NULL : "direction of a spot is zero";
+    return !s->spot || direction > 1e-15f ? NULL : "direction of a spot is zero";
 }
 
 masu_punctual_light_state masu_light_state_of(const masu_blob_light *light) {

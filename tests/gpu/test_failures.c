@@ -6,6 +6,7 @@
 #include "support/wrap.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -247,7 +248,15 @@ static void nonsense_in_a_frame_is_refused_by_name(void **state) {
     expect_frame_error(m, &f, "sun_direction");
     bad_light = l, bad_light.ambient[1] = NAN, expect_frame_error(m, &f, "light");
     bad_light = l, bad_light.exposure = -1, expect_frame_error(m, &f, "exposure");
+    /* Not only where another number makes them matter. */
+    bad_light = l, bad_light.ground[2] = NAN, expect_frame_error(m, &f, "light.ground");
+    bad_light = l, bad_light.fog_color[0] = INFINITY, expect_frame_error(m, &f, "light.fog_color");
+    bad_light = l, bad_light.fog_start = NAN, expect_frame_error(m, &f, "light.fog_start");
+    bad_light = l, bad_light.turbidity = NAN, expect_frame_error(m, &f, "light.turbidity");
     f.light = &l;
+    c.left = c.bottom = -1, c.right = c.top = 1, c.fov_y = NAN, expect_frame_error(m, &f, "camera.fov_y"), c = good;
+    uint32_t own = masu_scene_count(&s.scene, MASU_SCENE_SDF_PARAM);
+    f.sdf_params = params, f.sdf_param_count = own + 1, expect_frame_error(m, &f, "sdf_param_count");
     f.sdf_params = params, f.sdf_param_count = 300, expect_frame_error(m, &f, "sdf_param_count"),
     f.sdf_params = NULL;
     /* None of these has moved the frame number, and extreme but sane values work. */
@@ -272,6 +281,174 @@ static void nonsense_in_a_frame_is_refused_by_name(void **state) {
     assert_int_equal(masu_readback(m, 9, MASU_READBACK_DEPTH, &image), MASU_ERROR_ARGUMENT);
     masu_destroy(m);
     assert_int_equal(wrap.live, 0);
+}
+
+/* ---- The log, and blocks of the host --------------------------------------------------------- */
+
+static struct {
+    uint32_t errors;
+    char last[256];
+} logged;
+
+static void log_line(void *user, masu_log_level level, const char *text) {
+    (void)user;
+    if (level != MASU_LOG_ERROR) return;
+    logged.errors++;
+    snprintf(logged.last, sizeof logged.last, "%s", text);
+}
+
+#define LOGGED(call)                                                                               \
+    do {                                                                                           \
+        uint32_t before = logged.errors;                                                           \
+        assert_true((call) < 0);                                                                   \
+        if (logged.errors != before + 1) fail_msg("%s: %u lines", #call, logged.errors - before);  \
+        assert_string_equal(logged.last, masu_last_error(m)->text);                                \
+    } while (0)
+
+static void errors_of_live_calls_reach_the_log(void **state) {
+    (void)state;
+    static const float rows[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, bad[12] = {NAN};
+    masu_detail detail;
+    masu_renderer *m;
+    masu_commands commands;
+    masu_instance_state instance;
+    masu_model_state model;
+    masu_model added;
+    masu_node_state node;
+    masu_punctual_light_state light = {.radius = 1};
+    masu_punctual_light made;
+    masu_material_state material;
+    masu_split split;
+    masu_governor_state learnt;
+    wrap_reset();
+    s.desc.log = log_line;
+    assert_int_equal(try_init(&m, &detail), MASU_OK);
+    s.desc.log = NULL;
+    logged.errors = 0;
+    LOGGED(masu_load(m, NULL));
+    LOGGED(masu_frame(m, &(masu_frame_desc){0}, &commands)); /* not loaded */
+    LOGGED(masu_frame(m, NULL, &commands));
+    LOGGED(masu_split_of(m, MASU_SPLIT_BEFORE_TONE, 0, 0, &split));
+    LOGGED(masu_split_of(m, MASU_SPLIT_BEFORE_TONE, 0, 0, NULL));
+    LOGGED(masu_governor_set(m, &(masu_governor_setting){.mode = MASU_GOVERNOR_ON}));
+    LOGGED(masu_governor_save(m, &learnt));
+    LOGGED(masu_governor_restore(m, NULL));
+    LOGGED(masu_instance_get(m, (masu_instance){0}, &instance));
+    LOGGED(masu_instance_get(m, masu_instance_at(m, 0), NULL));
+    LOGGED(masu_instance_show(m, (masu_instance){0}, 0));
+    LOGGED(masu_instance_set_transform(m, (masu_instance){0}, rows));
+    LOGGED(masu_instance_set_transform(m, masu_instance_at(m, 0), bad));
+    LOGGED(masu_model_get(m, (masu_model){0}, &model));
+    LOGGED(masu_model_set_transform(m, (masu_model){0}, rows));
+    LOGGED(masu_model_show(m, (masu_model){0}, 1));
+    LOGGED(masu_model_add(m, (masu_model){0}, rows, &added));
+    LOGGED(masu_model_remove(m, (masu_model){0}));
+    LOGGED(masu_model_node_get(m, (masu_model){0}, 0, &node));
+    LOGGED(masu_model_node_set(m, (masu_model){0}, 0, rows));
+    LOGGED(masu_model_animate(m, (masu_model){0}, NULL, 0));
+    LOGGED(masu_punctual_light_get(m, (masu_punctual_light){0}, &light));
+    LOGGED(masu_punctual_light_set(m, (masu_punctual_light){0}, &light));
+    LOGGED(masu_punctual_light_add(m, &light, &made)); /* no reserve */
+    light.inner = NAN; /* of a light that is no spot */
+    LOGGED(masu_punctual_light_add(m, &light, &made));
+    assert_non_null(strstr(logged.last, "inner"));
+    LOGGED(masu_punctual_light_remove(m, (masu_punctual_light){0}));
+    LOGGED(masu_material_get(m, (masu_material){0}, &material));
+    LOGGED(masu_material_set(m, (masu_material){0}, NULL));
+    logged.errors = 0; /* masu_resize has a detail of its own */
+    assert_int_equal(masu_resize(m, (VkExtent2D){8, 8}, &s.desc.targets, NULL, &detail), MASU_ERROR_STATE);
+    assert_int_equal(logged.errors, 1);
+    assert_string_equal(logged.last, detail.text);
+    assert_int_equal(masu_resize(m, (VkExtent2D){8, 8}, NULL, NULL, NULL), MASU_ERROR_ARGUMENT);
+    assert_int_equal(logged.errors, 2);
+    masu_destroy(m);
+}
+
+static void blocks_of_the_host_are_checked(void **state) {
+    (void)state;
+    masu_detail detail;
+    masu_renderer *m;
+    masu_memory need;
+    masu_desc was = s.desc;
+    wrap_reset();
+    assert_int_equal(masu_memory_query(&s.desc, &need, NULL), MASU_OK);
+    assert_true(need.roles[0].host_visible && need.roles[0].alignment > 1); /* on a CPU driver */
+    masu_device_block *b = &s.desc.device_blocks[0];
+    b->memory = (VkDeviceMemory)(uintptr_t)64; /* nothing is called with it */
+    b->bytes = need.roles[0].bytes;
+    b->memory_type = need.roles[0].type;
+    b->mapped = (unsigned char *)block + 1;
+    assert_int_equal(try_init(&m, &detail), MASU_ERROR_MEMORY);
+    assert_non_null(strstr(detail.text, "mapped is not aligned"));
+    b->mapped = block;
+    b->offset = UINT64_MAX / need.roles[0].alignment * need.roles[0].alignment;
+    assert_int_equal(try_init(&m, &detail), MASU_ERROR_MEMORY);
+    assert_string_equal(detail.what, "device_blocks[MASU_ROLE_DEVICE]");
+    assert_int_equal(detail.given, b->bytes);
+    assert_true(detail.needed == UINT64_MAX - b->offset);
+    assert_int_equal(wrap.live, 0);
+    s.desc = was;
+}
+
+/* ---- Waits ----------------------------------------------------------------------------------- */
+
+/* On a CPU driver, whose work stops with the process, a wait has no limit. On others it has, and nothing that may be in
+ * use is destroyed then. */
+static void a_wait_that_times_out_fails_cleanly(void **state) {
+    (void)state;
+    masu_detail detail;
+    masu_renderer *m;
+    masu_commands commands;
+    char error[ERROR_SIZE] = "";
+    wrap_reset();
+    assert_int_equal(try_init(&m, &detail), MASU_OK);
+    load_all(&s, m);
+    masu_headless was = s.host;
+    s.host.wait_ns = 0;
+    for (uint32_t i = 0; i < 3; i++) {
+        assert_int_equal(masu_frame(m, &(masu_frame_desc){0}, &commands), MASU_OK);
+        assert_ok(masu_headless_run(&s.host, commands.buffer, error, sizeof error));
+    }
+    s.host.properties.deviceType = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
+    int finished = 1;
+    for (uint32_t i = 0; i < 100 && finished; i++) { /* it may be faster than 120 looks at a fence */
+        assert_int_equal(masu_frame(m, &(masu_frame_desc){0}, &commands), MASU_OK);
+        finished = masu_headless_run(&s.host, commands.buffer, error, sizeof error);
+    }
+    assert_false(finished);
+    assert_non_null(strstr(error, "did not finish"));
+    assert_false(masu_headless_run(&s.host, commands.buffer, error, sizeof error));
+    masu_headless_target_destroy(&s.host, &s.targets[0]); /* these do nothing */
+    masu_headless_close(&s.host);
+    was.pending[0] = true;
+    s.host = was;
+    assert_ok(masu_headless_wait(&s.host, 0, error, sizeof error));
+    masu_destroy(m);
+}
+
+/* Neither plan nor query leaves anything behind. */
+static void any_call_of_a_query_may_fail(void **state) {
+    (void)state;
+    static masu_plan_info plan;
+    masu_detail detail;
+    masu_memory need;
+    wrap_reset();
+    assert_int_equal(masu_memory_query(&s.desc, &need, NULL), MASU_OK);
+    uint64_t calls = wrap.setup_calls;
+    assert_true(calls > 5);
+    for (uint64_t k = 1; k <= calls; k++) {
+        for (int query = 0; query < 2; query++) {
+            wrap_reset();
+            wrap.fail_at = k;
+            wrap.fail_with = VK_ERROR_OUT_OF_DEVICE_MEMORY;
+            masu_result result = query ? masu_memory_query(&s.desc, &need, &detail)
+                                       : masu_plan(&s.desc, &plan, &detail);
+            assert_int_equal(result, MASU_ERROR_VULKAN);
+            assert_string_equal(detail.what, wrap.failed_call);
+            assert_int_equal(wrap.live, 0);
+        }
+    }
+    wrap_reset();
 }
 
 /* Singular, mirrored, huge and tiny transforms: a defined picture without a single replaced value.
@@ -328,6 +505,10 @@ int main(void) {
         cmocka_unit_test(what_the_device_lacks_is_named),
         cmocka_unit_test(a_device_that_does_not_filter_unorm_has_halves),
         cmocka_unit_test(nonsense_in_a_frame_is_refused_by_name),
+        cmocka_unit_test(errors_of_live_calls_reach_the_log),
+        cmocka_unit_test(blocks_of_the_host_are_checked),
+        cmocka_unit_test(a_wait_that_times_out_fails_cleanly),
+        cmocka_unit_test(any_call_of_a_query_may_fail),
         cmocka_unit_test(extreme_transforms_stay_finite),
     };
     return cmocka_run_group_tests_name("failures", tests, open_without_renderer, close_again);

@@ -336,6 +336,74 @@ static void handles_of_what_is_gone_are_refused(void **state) {
     close_session(&s);
 }
 
+/* Every call that takes a handle, with ids that are no object: all refuse them and change nothing. */
+static void refuse_everywhere(masu_renderer *m, uint64_t instance, uint64_t model, uint64_t light, uint64_t material) {
+    static const float rows[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    const masu_clip_use use = {.weight = 1};
+    masu_instance_state is;
+    masu_model_state ms;
+    masu_node_state ns;
+    masu_model added = {.id = 1};
+    masu_punctual_light_state carried = spot, ls;
+    masu_material_state mat = {.roughness = 1};
+    masu_instance i = {instance};
+    masu_model o = {model};
+    masu_punctual_light l = {light};
+    assert_int_equal(masu_instance_get(m, i, &is), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_instance_show(m, i, 1), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_instance_set_transform(m, i, rows), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_model_get(m, o, &ms), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_model_set_transform(m, o, rows), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_model_show(m, o, 1), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_model_add(m, o, rows, &added), MASU_ERROR_ARGUMENT);
+    assert_int_equal(added.id, 0);
+    assert_int_equal(masu_model_remove(m, o), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_model_node_find(m, o, "arm"), MASU_NODE_NONE);
+    assert_int_equal(masu_model_node_get(m, o, 0, &ns), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_model_node_set(m, o, 0, rows), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_model_clips(m, o), 0);
+    assert_int_equal(masu_model_clip_find(m, o, "swing"), MASU_CLIP_NONE);
+    assert_true(masu_model_clip_duration(m, o, 0) == 0.0);
+    assert_int_equal(masu_model_animate(m, o, NULL, 0), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_model_animate(m, o, &use, 1), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_punctual_light_get(m, l, &ls), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_punctual_light_set(m, l, &spot), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_punctual_light_remove(m, l), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_material_get(m, (masu_material){material}, &mat), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_material_set(m, (masu_material){material}, &mat), MASU_ERROR_ARGUMENT);
+    if (!instance) return; /* a light that is attached to none */
+    carried.instance = i;
+    masu_punctual_light none;
+    assert_int_equal(masu_punctual_light_set(m, masu_punctual_light_at(m, 0), &carried), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_punctual_light_add(m, &carried, &none), MASU_ERROR_ARGUMENT);
+}
+
+/* id 0 and removed ids, with and without a reserve, of which slots are free, taken and taken again. */
+static void no_object_is_refused_by_every_call(void **state) {
+    (void)state;
+    for (uint32_t reserve = 0; reserve < 3; reserve++) {
+        masu_session s;
+        masu_session_desc d = desc_of("test_reserve", reserve, reserve);
+        masu_model added;
+        masu_punctual_light light;
+        d.desc.mutable_materials = 1;
+        open_session(&s, &d);
+        refuse_everywhere(s.m, 0, 0, 0, 0);
+        refuse_everywhere(s.m, 1ull << 32, 1ull << 32, 1ull << 32, 1ull << 32);
+        for (uint32_t turn = 0; turn < 3 && reserve; turn++) {
+            assert_int_equal(add(&s, "truck", kinds[0].at, &added), MASU_OK);
+            masu_instance instance = masu_instance_at(s.m, masu_scene_count(&s.scene, MASU_SCENE_INSTANCE));
+            assert_true(instance.id != 0);
+            assert_int_equal(masu_punctual_light_add(s.m, &spot, &light), MASU_OK);
+            assert_int_equal(masu_punctual_light_remove(s.m, light), MASU_OK);
+            assert_int_equal(masu_model_remove(s.m, added), MASU_OK);
+            refuse_everywhere(s.m, instance.id, added.id, light.id, UINT64_MAX);
+        }
+        draw_frames(&s, pictures[0]);
+        close_session(&s);
+    }
+}
+
 /* The box is as large as was said, with and without; a smaller one is refused. */
 static void the_box_is_as_large_as_was_said(void **state) {
     (void)state;
@@ -515,6 +583,7 @@ int main(void) {
         cmocka_unit_test(rays_of_the_device_meet_copies),
         cmocka_unit_test(what_bends_is_not_copied),
         cmocka_unit_test(handles_of_what_is_gone_are_refused),
+        cmocka_unit_test(no_object_is_refused_by_every_call),
         cmocka_unit_test(the_box_is_as_large_as_was_said),
         cmocka_unit_test(what_is_painted_is_as_if_baked_so),
         cmocka_unit_test(a_history_is_told),

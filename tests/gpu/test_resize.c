@@ -7,6 +7,7 @@
 #include "support/wrap.h"
 
 #include <malloc.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -141,10 +142,15 @@ static void what_cannot_be_leaves_all_as_it_was(void **state) {
     assert_string_equal(detail.what, "output.width");
     masu_targets t = {.images = &x.target.image, .views = &x.target.view, .count = 1, .storage = 1};
     const VkExtent2D size = {W, H};
-    t.count = 2;
+    t.count = 0;
     assert_int_equal(masu_resize(x.m, size, &t, NULL, &detail), MASU_ERROR_ARGUMENT);
     assert_string_equal(detail.what, "targets.count");
-    t.count = 1, t.storage = 0;
+    t.count = MASU_MAX_TARGETS + 1;
+    assert_int_equal(masu_resize(x.m, size, &t, NULL, &detail), MASU_ERROR_ARGUMENT);
+    t.count = 1, t.white = (float)NAN;
+    assert_int_equal(masu_resize(x.m, size, &t, NULL, &detail), MASU_ERROR_ARGUMENT);
+    assert_string_equal(detail.what, "targets.white");
+    t.white = 0, t.storage = 0;
     assert_int_equal(masu_resize(x.m, size, &t, NULL, &detail), MASU_ERROR_ARGUMENT);
     assert_string_equal(detail.what, "targets.storage");
     t.storage = 1, t.format = VK_FORMAT_R16G16B16A16_SFLOAT;
@@ -222,14 +228,158 @@ static void a_hundred_resizes_take_nothing(void **state) {
     masu_stats_info stats;
     assert_int_equal(masu_stats(x.m, 0, &stats), MASU_OK);
     assert_true(stats.governor.samples > times() * 3 / 2 || masu_session_denied()); /* its knowledge has gone on */
-    /* A recording that fails half-way: no frame any more, and nothing is left behind. */
+    unmake_own(&s, &x);
+    close_session(&s);
+}
+
+/* ---- In any state ---------------------------------------------------------------------------- */
+
+/* A session without a renderer through the layer that counts, and a description. */
+static masu_desc open_wrapped(masu_session *s, const char *scene) {
+    masu_session_desc d = test_desc(scene, W, H);
+    wrap_reset();
+    d.host.get_instance_proc_addr = wrap_get_instance_proc_addr;
+    d.no_renderer = true;
+    open_session(s, &d);
+    return desc_of(s, W, H);
+}
+
+static uint64_t setups_of_a_frame(masu_session *s, own_renderer *x, uint32_t rung, uint32_t target, uint8_t *out) {
+    char error[ERROR_SIZE];
+    masu_commands commands;
+    uint64_t before = wrap.setup_calls;
+    assert_int_equal(masu_frame(x->m, &(masu_frame_desc){.rung = rung, .target = target}, &commands), MASU_OK);
+    uint64_t calls = wrap.setup_calls - before;
+    assert_ok(masu_headless_run(&s->host, commands.buffer, error, sizeof error));
+    if (!out) return calls;
+    assert_ok(masu_headless_target_read(&s->host, &x->target, error, sizeof error));
+    memcpy(out, x->target.mapped, (size_t)x->target.width * x->target.height * 4);
+    return calls;
+}
+
+/* The rung in use is recorded by masu_resize; another by its first frame in each slot, and then no more. */
+static void the_rung_in_use_is_recorded_first(void **state) {
+    (void)state;
+    masu_session s;
+    masu_desc own = open_wrapped(&s, "test_both");
+    own_renderer x;
+    masu_detail detail;
+    make_own(&s, &x, &own);
+    for (uint32_t i = 0; i < 4; i++) assert_int_equal(setups_of_a_frame(&s, &x, 2, 0, NULL), 0);
+    uint64_t before = wrap.setup_calls;
+    assert_int_equal(resize(&x, 80, 44, &detail), MASU_OK);
+    assert_int_equal(wrap.setup_calls - before, 2 * 3); /* slots; reset, begin, end */
+    for (uint32_t i = 0; i < 4; i++) assert_int_equal(setups_of_a_frame(&s, &x, 2, 0, NULL), 0);
+    for (uint32_t i = 0; i < 4; i++) assert_int_equal(setups_of_a_frame(&s, &x, 0, 0, NULL), i < 2 ? 3 : 0);
+    for (uint32_t i = 0; i < 2; i++) assert_int_equal(setups_of_a_frame(&s, &x, 2, 0, NULL), 0);
+    unmake_own(&s, &x);
+    close_session(&s);
+}
+
+/* Before a load, between its steps and after it, to more targets and to fewer, larger than what is drawn: the image is
+ * that of a renderer made for that size. */
+static void a_resize_is_allowed_in_any_state(void **state) {
+    (void)state;
+    enum { SMALL_W = 80, SMALL_H = 44 };
+    masu_session s;
+    masu_desc own = open_wrapped(&s, "test_texture_mask");
+    own_renderer fresh, x = {.m = NULL};
+    masu_detail detail;
+    masu_memory need;
+    masu_commands commands;
+    char error[ERROR_SIZE];
+    masu_desc fit = own;
+    fit.output = (VkExtent2D){SMALL_W, SMALL_H};
+    make_own(&s, &fresh, &fit);
+    (void)setups_of_a_frame(&s, &fresh, 1, 0, pixels[1]);
+    unmake_own(&s, &fresh);
+    for (uint32_t when = 0; when < 3; when++) {
+        make_target(&s, &x, W, H, 1);
+        masu_headless_target others[4];
+        VkImage images[5] = {x.target.image};
+        VkImageView views[5] = {x.target.view};
+        for (uint32_t t = 0; t < 4; t++) {
+            assert_ok(masu_headless_target_create(&s.host, W + t, H, VK_FORMAT_R8G8B8A8_UNORM, 1, &others[t], error,
+                                                  sizeof error));
+            images[1 + t] = others[t].image, views[1 + t] = others[t].view;
+        }
+        masu_desc d = own;
+        d.load_step = MASU_LOAD_STEP_MIN;
+        d.deny.unified_memory = 1;
+        d.targets.images = images, d.targets.views = views, d.targets.count = 2;
+        assert_int_equal(masu_memory_query(&d, &need, NULL), MASU_OK);
+        x.block = host_block(need.host_bytes);
+        if (masu_init(&d, x.block, need.host_bytes, &x.m, &detail)) fail_msg("%s", detail.text);
+        masu_targets t = {.images = images, .views = views, .count = 5, .storage = 1};
+        const VkExtent2D small = {SMALL_W, SMALL_H};
+        uint32_t steps = 0;
+        if (when == 0) assert_int_equal(masu_resize(x.m, small, &t, NULL, &detail), MASU_OK);
+        while (masu_load(x.m, &commands) == MASU_INCOMPLETE) {
+            if (commands.part_count) assert_ok(masu_headless_run(&s.host, commands.buffer, error, sizeof error));
+            if (when == 1 && ++steps == 3) assert_int_equal(masu_resize(x.m, small, &t, NULL, &detail), MASU_OK);
+        }
+        if (when == 1) assert_true(steps > 3);
+        if (when == 2) assert_int_equal(masu_resize(x.m, small, &t, NULL, &detail), MASU_OK);
+        memset(images, 0, sizeof images), memset(views, 0, sizeof views); /* read during the call only */
+        assert_int_equal(setups_of_a_frame(&s, &x, 1, 4, NULL), 3);
+        assert_ok(masu_headless_target_read(&s.host, &others[3], error, sizeof error));
+        for (uint32_t y = 0; y < SMALL_H; y++)
+            assert_memory_equal((uint8_t *)others[3].mapped + (size_t)4 * y * (W + 3), pixels[1] + (size_t)4 * y * SMALL_W,
+                                4 * SMALL_W);
+        images[0] = others[2].image, views[0] = others[2].view;
+        t.count = 1;
+        assert_int_equal(masu_resize(x.m, small, &t, NULL, &detail), MASU_OK);
+        assert_int_equal(masu_frame(x.m, &(masu_frame_desc){.target = 1}, &commands), MASU_ERROR_ARGUMENT);
+        (void)setups_of_a_frame(&s, &x, 1, 0, NULL);
+        assert_ok(masu_headless_target_read(&s.host, &others[2], error, sizeof error));
+        unmake_own(&s, &x);
+        for (uint32_t i = 0; i < 4; i++) masu_headless_target_destroy(&s.host, &others[i]);
+    }
+    assert_int_equal(s.host.messages, 0);
+    close_session(&s);
+}
+
+/* Each call of masu_resize, and of the frame that records what it has left, fails in turn. Every other call then works or
+ * fails; once nothing fails any more, the next frame is right. */
+static void what_fails_half_way_is_made_good(void **state) {
+    (void)state;
+    masu_session s;
+    masu_desc own = open_wrapped(&s, "test_both");
+    own_renderer x;
     masu_detail detail;
     masu_commands commands;
-    wrap.fail_at = wrap.setup_calls + 3;
-    wrap.fail_with = VK_ERROR_OUT_OF_DEVICE_MEMORY;
-    assert_int_equal(resize(&x, x.target.width, x.target.height, &detail), MASU_ERROR_VULKAN);
-    assert_int_equal(masu_frame(x.m, &(masu_frame_desc){.rung = 0}, &commands), MASU_ERROR_STATE);
-    wrap.fail_at = 0;
+    make_own(&s, &x, &own);
+    memset(s.blob, 0xEE, (size_t)masu_scene_data_of(&s.scene)->blob_bytes);
+    (void)setups_of_a_frame(&s, &x, 0, 0, NULL);
+    for (uint32_t k = 1; k <= 9; k++) {
+        masu_headless_target_destroy(&s.host, &x.target);
+        make_target(&s, &x, 96, 54, 1);
+        wrap.failed_call = NULL;
+        wrap.fail_at = wrap.setup_calls + k;
+        wrap.fail_with = VK_ERROR_OUT_OF_HOST_MEMORY;
+        masu_result result = resize(&x, 96, 54, &detail);
+        assert_int_equal(result, k <= 6 ? MASU_ERROR_VULKAN : MASU_OK);
+        if (result) assert_string_equal(detail.what, wrap.failed_call);
+        assert_int_equal(masu_load(x.m, &commands), MASU_OK); /* the blob is gone */
+        result = masu_frame(x.m, &(masu_frame_desc){.rung = 1}, &commands);
+        assert_int_equal(result, k > 6 ? MASU_ERROR_VULKAN : MASU_OK);
+        if (result) assert_int_equal(masu_last_error(x.m)->vulkan, VK_ERROR_OUT_OF_HOST_MEMORY);
+        wrap.fail_at = 0;
+        (void)setups_of_a_frame(&s, &x, 0, 0, pixels[k > 1]);
+        if (k > 1) assert_memory_equal(pixels[0], pixels[1], 96 * 54 * 4);
+        (void)setups_of_a_frame(&s, &x, 0, 0, NULL);
+        assert_int_equal(setups_of_a_frame(&s, &x, 0, 0, NULL), 0);
+    }
+    wrap.fail_at = wrap.setup_calls + 2;
+    wrap.fail_with = VK_ERROR_DEVICE_LOST;
+    wrap.persistent = true;
+    assert_int_equal(resize(&x, 96, 54, &detail), MASU_ERROR_DEVICE_LOST);
+    assert_int_equal(resize(&x, 96, 54, &detail), MASU_ERROR_DEVICE_LOST);
+    assert_int_equal(detail.vulkan, VK_ERROR_DEVICE_LOST);
+    assert_int_equal(masu_load(x.m, &commands), MASU_ERROR_DEVICE_LOST);
+    assert_int_equal(masu_frame(x.m, &(masu_frame_desc){.rung = 0}, &commands), MASU_ERROR_DEVICE_LOST);
+    assert_int_equal(wrap.calls_after_loss, 0);
+    wrap.fail_at = 0, wrap.persistent = false;
     unmake_own(&s, &x);
     close_session(&s);
 }
@@ -240,6 +390,9 @@ int main(void) {
         cmocka_unit_test(the_same_with_reflections_shadows_textures),
         cmocka_unit_test(what_cannot_be_leaves_all_as_it_was),
         cmocka_unit_test(a_hundred_resizes_take_nothing),
+        cmocka_unit_test(the_rung_in_use_is_recorded_first),
+        cmocka_unit_test(a_resize_is_allowed_in_any_state),
+        cmocka_unit_test(what_fails_half_way_is_made_good),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -24,6 +24,7 @@ masu_blob_camera_key keys[4];
 
 static support_blob blob;
 static VkCommandBuffer frame_handles[MASU_MAX_FLIGHT * MASU_MAX_RUNGS * MASU_MAX_TARGETS];
+static uint8_t recorded[MASU_MAX_FLIGHT * MASU_MAX_RUNGS * MASU_MAX_TARGETS];
 static VkCommandBuffer load_handles[16384];
 static struct masu_instance_data instances[4];
 static uint64_t instance_names[4];
@@ -81,6 +82,8 @@ void make_renderer_with(uint32_t parts, uint64_t staging, const masu_rung *rungs
     masu_timeline_start(&m.timeline);
     m.device.plan = &m.plan;
     m.device.frames = frames;
+    memset(recorded, 1, sizeof recorded);
+    m.device.recorded = recorded;
     m.device.loads = loads;
     m.instances.now = instances;
     m.instances.names = instance_names;

@@ -169,7 +169,7 @@ static VKAPI_ATTR void VKAPI_CALL image_requirements(VkDevice device, VkImage im
 /* Dispatchable objects without a device parameter: the real functions are kept at look-up. */
 static PFN_vkBeginCommandBuffer real_begin;
 static PFN_vkEndCommandBuffer real_end;
-static PFN_vkResetCommandPool real_reset;
+static PFN_vkResetCommandBuffer real_reset;
 static PFN_vkCmdPipelineBarrier real_barrier;
 static PFN_vkCmdFillBuffer real_fill;
 static PFN_vkCmdBeginDebugUtilsLabelEXT real_label;
@@ -221,9 +221,9 @@ static VKAPI_ATTR VkResult VKAPI_CALL end_CommandBuffer(VkCommandBuffer cmd) {
     return fails("vkEndCommandBuffer") ? wrap.fail_with : real_end(cmd);
 }
 
-static VKAPI_ATTR VkResult VKAPI_CALL reset_CommandPool(VkDevice device, VkCommandPool pool,
-                                                        VkCommandPoolResetFlags flags) {
-    return fails("vkResetCommandPool") ? wrap.fail_with : real_reset(device, pool, flags);
+static VKAPI_ATTR VkResult VKAPI_CALL reset_CommandBuffer(VkCommandBuffer cmd,
+                                                          VkCommandBufferResetFlags flags) {
+    return fails("vkResetCommandBuffer") ? wrap.fail_with : real_reset(cmd, flags);
 }
 
 static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr(VkDevice device,
@@ -248,7 +248,7 @@ static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr(VkDevice de
                   {"vkMapMemory", (PFN_vkVoidFunction)map_Memory},
                   {"vkBeginCommandBuffer", (PFN_vkVoidFunction)begin_CommandBuffer},
                   {"vkEndCommandBuffer", (PFN_vkVoidFunction)end_CommandBuffer},
-                  {"vkResetCommandPool", (PFN_vkVoidFunction)reset_CommandPool},
+                  {"vkResetCommandBuffer", (PFN_vkVoidFunction)reset_CommandBuffer},
                   {"vkGetBufferMemoryRequirements", (PFN_vkVoidFunction)buffer_requirements},
                   {"vkGetImageMemoryRequirements", (PFN_vkVoidFunction)image_requirements},
                   {"vkCmdPipelineBarrier", (PFN_vkVoidFunction)cmd_barrier},
@@ -257,7 +257,7 @@ static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr(VkDevice de
     real_fill = REAL(CmdFillBuffer);
     real_begin = REAL(BeginCommandBuffer);
     real_end = REAL(EndCommandBuffer);
-    real_reset = REAL(ResetCommandPool);
+    real_reset = REAL(ResetCommandBuffer);
     for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
         if (!strcmp(name, others[i].name)) return others[i].function;
     }

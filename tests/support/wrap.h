@@ -12,7 +12,7 @@
 
 typedef struct wrap_state {
     /* Counts. `setup` is every vkCreate*, vkAllocate*, vkBegin/EndCommandBuffer, vkBind*,
-     * vkMapMemory, vkResetCommandPool. */
+     * vkMapMemory, vkResetCommandBuffer. */
     uint64_t setup_calls, creates, destroys;
     int64_t live; /* created objects and allocations that are not destroyed yet */
     uint64_t

@@ -143,7 +143,7 @@ static void the_matrix_projects_as_a_camera_does(void **state) {
             double x = random_between(&random, -3.0, 3.0), y = random_between(&random, -3.0, 3.0);
             c.left = (float)x, c.right = (float)(x + random_between(&random, 0.5, 3.0));
             c.bottom = (float)y, c.top = (float)(y + random_between(&random, 0.5, 3.0));
-            c.fov_y = n % 2 ? 0.0f : (float)NAN;
+            c.fov_y = n % 2 ? 0.0f : 9.0f;
             tan_x = 0.5 * ((double)c.right - (double)c.left), tan_y = 0.5 * ((double)c.top - (double)c.bottom);
             left += 0.5 * ((double)c.right + (double)c.left) / tan_x;
             above -= 0.5 * ((double)c.top + (double)c.bottom) / tan_y;

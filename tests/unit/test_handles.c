@@ -1,5 +1,5 @@
-/* test_handles.c: handles of the public interface: each means one thing, and none of another scene or of
- * another kind is taken. */
+/* test_handles.c: handles of the public interface: each means one thing; none of another scene, of another kind
+ * or of a removed object is accepted. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -25,8 +25,6 @@ static void a_handle_is_its_index_and_back(void **state) {
             uint32_t count = counts[c], index;
             masu_handles h = masu_handles_of(scene, MASU_HANDLE_INSTANCE, count, 0, NULL);
             masu_detail detail;
-            assert_true(h.first >= 1);
-            assert_true((uint64_t)h.first + count <= 1ull << 32); /* 0 is in no range */
             assert_int_equal(masu_handle_check(&h, "thing", 0, &index, &detail),
                              MASU_ERROR_ARGUMENT);
             assert_string_equal(detail.what, "thing");
@@ -35,55 +33,70 @@ static void a_handle_is_its_index_and_back(void **state) {
             assert_int_equal(masu_handle_at(&h, UINT32_MAX), 0);
             const uint32_t looked_at[] = {0, 1, count / 2, count - 1};
             for (size_t k = 0; k < COUNT(looked_at); k++) {
-                uint32_t id = masu_handle_at(&h, looked_at[k]);
+                uint64_t id = masu_handle_at(&h, looked_at[k]);
                 if (looked_at[k] >= count) continue;
                 assert_true(id != 0);
                 assert_int_equal(masu_handle_check(&h, "thing", id, &index, NULL), MASU_OK);
                 assert_int_equal(index, looked_at[k]);
+                assert_int_not_equal(masu_handle_check(&h, "thing", id | 1ull << 32, &index, &detail), MASU_OK);
+                assert_int_equal(detail.given, id | 1ull << 32);
             }
-            if (count > 1u << 30) continue;
-            assert_int_not_equal(masu_handle_check(&h, "thing", h.first - 1, &index, &detail), 0);
-            assert_int_not_equal(masu_handle_check(&h, "thing", h.first + count, &index, &detail),
-                                 0);
-            assert_int_equal(detail.given, h.first + count);
         }
     }
 }
 
-/* Of the reserve each life has an id of its own, and that of the last life is refused; so many ids never meet 0. */
+/* The ids of a scene's own objects are the same whatever there is in reserve. */
+static void a_reserve_changes_no_id_of_the_scene(void **state) {
+    (void)state;
+    uint32_t lives[5];
+    masu_handles without = masu_handles_of(77, MASU_HANDLE_LIGHT, 4, 0, NULL);
+    masu_handles with = masu_handles_of(77, MASU_HANDLE_LIGHT, 4, 5, lives);
+    for (uint32_t i = 0; i < 4; i++)
+        assert_true(masu_handle_at(&without, i) == masu_handle_at(&with, i));
+}
+
+/* Each object in a slot of the reserve has an id of its own, none of which is accepted once it is removed; nor is 0,
+ * where a slot is free. A slot is used 2^31 - 1 times. */
 static void what_was_removed_is_refused(void **state) {
     (void)state;
+    enum { LIVES = 70000 };
     static const uint32_t reserves[] = {1, 3, 64, 16384, 1u << 20};
     static uint32_t lives[1u << 20];
     for (size_t c = 0; c < COUNT(reserves); c++) {
-        uint32_t reserve = reserves[c], own = 7, index;
+        uint32_t reserve = reserves[c], own = 7, index, last = own + reserve - 1;
         masu_handles h = masu_handles_of(c, MASU_HANDLE_MODEL, own, reserve, lives);
         masu_detail detail;
-        assert_true((uint64_t)h.first + own + (uint64_t)reserve * h.generations <= 1ull << 32);
-        assert_true(h.generations >= 1024);
         assert_int_equal(masu_handle_at(&h, own), 0);
         assert_int_equal(masu_handle_free(&h), own);
-        uint32_t last = own + reserve - 1, before = 0;
-        for (uint32_t life = 0; life < 100; life++) {
+        assert_int_equal(masu_handle_check(&h, "model", 0, &index, &detail), MASU_ERROR_ARGUMENT);
+        uint64_t first = 0, before = 0;
+        for (uint32_t life = 0; life < LIVES; life++) {
             masu_handle_turn(&h, last);
-            uint32_t id = masu_handle_at(&h, last);
-            assert_int_not_equal(id, 0);
-            assert_int_not_equal(id, before);
-            assert_int_equal(masu_handle_check(&h, "model", id, &index, &detail), MASU_OK);
+            uint64_t id = masu_handle_at(&h, last);
+            assert_true(id != 0 && id > before);
+            assert_int_equal(masu_handle_check(&h, "model", id, &index, NULL), MASU_OK);
             assert_int_equal(index, last);
             if (before) {
-                assert_int_equal(masu_handle_check(&h, "model", before, &index, &detail),
-                                 MASU_ERROR_ARGUMENT);
+                assert_int_equal(masu_handle_index(&h, before), UINT32_MAX);
+                assert_int_equal(masu_handle_index(&h, first), UINT32_MAX);
             }
             masu_handle_turn(&h, last);
             assert_int_equal(masu_handle_at(&h, last), 0);
-            assert_int_equal(masu_handle_check(&h, "model", id, &index, &detail), MASU_ERROR_ARGUMENT);
-            assert_non_null(strstr(detail.text, "removed"));
             before = id;
+            if (!life) first = id;
         }
+        assert_int_equal(masu_handle_check(&h, "model", before, &index, &detail), MASU_ERROR_ARGUMENT);
+        assert_non_null(strstr(detail.text, "removed"));
         for (uint32_t i = 0; i < own; i++) /* those of the scene go on */
             assert_int_equal(masu_handle_index(&h, masu_handle_at(&h, i)), i);
-        assert_int_not_equal(masu_handle_check(&h, "model", h.first - 1, &index, NULL), MASU_OK);
+        for (uint32_t i = 0; i < reserve; i++) lives[i] = UINT32_MAX - 3; /* one more object each */
+        assert_int_equal(masu_handle_free(&h), own);
+        masu_handle_turn(&h, own);
+        uint64_t id = masu_handle_at(&h, own);
+        assert_int_equal(masu_handle_index(&h, id), own);
+        masu_handle_turn(&h, own);
+        assert_int_equal(masu_handle_index(&h, id), UINT32_MAX);
+        assert_int_equal(masu_handle_free(&h), reserve > 1 ? own + 1 : UINT32_MAX); /* that slot is retired */
     }
 }
 
@@ -99,10 +112,10 @@ static void ranges_of_others_do_not_meet(void **state) {
     }
     for (uint32_t a = 0; a < ALL; a++) {
         for (uint32_t b = 0; b < ALL; b++) {
-            uint32_t first = masu_handle_index(&all[a], all[b].first);
-            uint32_t last = masu_handle_index(&all[a], all[b].first + 999);
+            uint32_t first = masu_handle_index(&all[a], masu_handle_at(&all[b], 0));
+            uint32_t last = masu_handle_index(&all[a], masu_handle_at(&all[b], 999));
             if (a != b && (first < 1000 || last < 1000))
-                fail_msg("%u: %u.., %u: %u..", a, all[a].first, b, all[b].first);
+                fail_msg("%u: from %u, %u: from %u", a, all[a].offset, b, all[b].offset);
         }
     }
 }
@@ -166,6 +179,7 @@ static void handles_of_another_scene_are_refused(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_handle_is_its_index_and_back),
+        cmocka_unit_test(a_reserve_changes_no_id_of_the_scene),
         cmocka_unit_test(what_was_removed_is_refused),
         cmocka_unit_test(ranges_of_others_do_not_meet),
         cmocka_unit_test(handles_of_another_scene_are_refused),

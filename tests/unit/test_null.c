@@ -23,6 +23,7 @@ enum { NO_RESULT = 1000, PARAMETERS_MAX = 8 };
 
 static masu_desc desc;
 static masu_pipelines pool;
+static masu_pipelines_info pool_info;
 static masu_viewport screen;
 static masu_governor_setting setting;
 static masu_governor_state learnt;
@@ -99,6 +100,7 @@ static const float unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     X(masu_destroy, (masu_destroy(P(0, &m)), NO_RESULT))                                           \
     X(masu_pipelines_destroy,                                                                      \
       (masu_pipelines_destroy(P(0, &desc.vulkan), P(1, &pool)), NO_RESULT))                        \
+    X(masu_pipelines_info_of, (masu_pipelines_info_of(P(0, &pool), P(1, &pool_info)), NO_RESULT))  \
     X(masu_resize, masu_resize(P(0, &m), (VkExtent2D){8, 8}, P(1, &desc.targets), P(2, &screen),   \
                                P(3, &detail)))                                                     \
     X(masu_desc_resolved, ((void)masu_desc_resolved(P(0, &desc)), NO_RESULT))                      \

@@ -228,8 +228,36 @@ static void noise_stays_inside(void **state) {
     end(&t);
 }
 
+/* What a module declares of its interface, and of its beginnings no word beyond them. */
+static void declarations_are_read(void **state) {
+    (void)state;
+    enum { DECORATE = 4 << 16 | 71, SPEC_ID = 1, BINDING = 33, SET = 34, TYPE_VOID = 2 << 16 | 19 };
+    static const uint32_t module[] = {
+        0x07230203u, 0x10300u, 0, 20, 0,
+        DECORATE, 3, SPEC_ID, 7,  DECORATE, 4, SPEC_ID, 31, DECORATE, 5, SPEC_ID, 32,
+        DECORATE, 6, BINDING, 5,  DECORATE, 6, SET, 0,      DECORATE, 7, SET, 1, DECORATE, 7, BINDING, 9,
+        DECORATE, 8, SET, 0,      DECORATE, 8, BINDING, 63, DECORATE, 9, BINDING, 2,
+        TYPE_VOID, 10, DECORATE, 11, SPEC_ID, 3};
+    enum { WORDS = sizeof module / sizeof *module };
+    masu_interface is = masu_interface_of(module, WORDS);
+    assert_int_equal(is.constants, 1u << 7 | 1u << 31);
+    assert_true(is.bindings == (1ull << 5 | 1ull << 63));
+    for (uint32_t n = 0; n <= WORDS; n++) {
+        walled part = wall_around(module, n * sizeof *module);
+        masu_interface less = masu_interface_of(part.at, n);
+        assert_int_equal(less.constants & ~is.constants, 0);
+        tear_down(&part);
+    }
+    const uint32_t bad[] = {0, 0, 0, 0, 0, 0xFFFF0047u, 1, 1, 1}, none[] = {0, 0, 0, 0, 0, 0, 1};
+    assert_int_equal(masu_interface_of(bad, 9).constants, 0);
+    assert_int_equal(masu_interface_of(none, 7).constants, 0);
+    /* The build has noted it for every shader: the tone curve is a constant of this one, reflections are not. */
+    assert_int_equal(find("tonemap_comp")->interface.constants >> 4 & 3, 2);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(declarations_are_read),
         cmocka_unit_test(every_shader_comes_back_to_the_byte),
         cmocka_unit_test(they_take_a_tenth),
         cmocka_unit_test(fewer_runs_are_refused),

@@ -309,8 +309,8 @@ static void a_bad_instance_or_transform_is_refused(void **state) {
     static const float good[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     make_renderer(SUPPORT_ALL, 0);
     for (uint32_t slot = 0; slot < 2; slot++) write_instances(slot);
-    const uint32_t first = masu_instance_at(&m, 0).id;
-    const uint32_t ids[] = {0, first - 1, first + 3, first + (1u << 31)};
+    const uint64_t first = masu_instance_at(&m, 0).id;
+    const uint64_t ids[] = {0, first - 1, first + 3, first + (1u << 31), first + (1ull << 32)};
     for (size_t i = 0; i < COUNT(ids); i++) {
         assert_int_equal(masu_instance_set_transform(&m, (masu_instance){ids[i]}, good),
                          MASU_ERROR_ARGUMENT);

@@ -661,7 +661,7 @@ bool masu_conform_open(masu_conform *c, char *error, size_t error_size) {
 void masu_conform_close(masu_conform *c) {
     if (c->calibrated) {
         masu_headless_settle(&c->calibration.host);
-        masu_destroy(c->calibration.m);
+        if (c->calibration.host.device) masu_destroy(c->calibration.m);
         c->calibration.m = NULL;
         masu_headless_source_destroy(&c->calibration.host, &c->source);
         masu_session_close(&c->calibration);

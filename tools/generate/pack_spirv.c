@@ -360,7 +360,8 @@ static void put_run(bytes *runs, size_t own, size_t length, uint32_t jump) {
 
 /* Greedy, but for one byte: where the next place has a run that saves more, it waits. */
 static void pack_module(const bytes *tokens, bytes *pool, bytes *runs, module *m) {
-    m->packed = (masu_packed){(uint32_t)runs->count, 0, (uint32_t)pool->count, m->count};
+    m->packed = (masu_packed){(uint32_t)runs->count, 0, (uint32_t)pool->count, m->count,
+                              masu_interface_of(m->words, m->count)};
     size_t end = 0, own = 0; /* of the last run from elsewhere; own bytes since */
     for (size_t i = 0; i < tokens->count;) {
         size_t from = 0, length = 0, later_from, later;
@@ -439,10 +440,11 @@ int main(int argc, char **argv) {
            "%u, %u};\n", pack.head_count, pack.pool_bytes, pack.run_bytes);
     for (uint32_t i = 0; i < count; i++) {
         const masu_packed *p = &modules[i].packed;
-        printf("#define MASU_PACKED_%s {%uu, %uu, %uu, %uu}\n", modules[i].name, p->run, p->run_bytes, p->own, p->words);
+        printf("#define MASU_PACKED_%s {%uu, %uu, %uu, %uu, {0x%xu, 0x%llxu}}\n", modules[i].name, p->run, p->run_bytes,
+               p->own, p->words, p->interface.constants, (unsigned long long)p->interface.bindings);
     }
     for (int i = 2; i < argc; i++)
-        if (*argv[i] == '-') printf("#define MASU_PACKED_%s {0u, 0u, 0u, 0u}\n", argv[i] + 1);
+        if (*argv[i] == '-') printf("#define MASU_PACKED_%s {0u, 0u, 0u, 0u, {0u, 0u}}\n", argv[i] + 1);
     printf("#define MASU_PACKED_EACH(X)");
     for (uint32_t i = 0; i < count; i++) printf(" \\\n    X(%s)", modules[i].name);
     printf("\n");

@@ -47,7 +47,7 @@ static bool upscale(const masu_session_desc *given, const uint8_t *rgba, uint32_
             snprintf(error, size, "the validation layer reported %u messages", s.host.messages);
             done = false;
         }
-        masu_destroy(s.m);
+        if (s.host.device) masu_destroy(s.m);
         s.m = NULL;
         masu_headless_source_destroy(&s.host, &source);
     }

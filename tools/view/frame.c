@@ -27,7 +27,7 @@ static bool masu_failed(masu_viewer *v, const masu_renderer *m) {
 static bool wait_for_slot(masu_viewer *v, uint32_t slot) {
     if (!v->pending[slot]) return true;
     bool seen = vkGetFenceStatus(v->host.device, v->fences[slot]) == VK_NOT_READY;
-    VkResult r = vkWaitForFences(v->host.device, 1, &v->fences[slot], VK_TRUE, MASU_HEADLESS_TIMEOUT_NS);
+    VkResult r = masu_headless_wait_fence(&v->host, v->fences[slot]);
     uint64_t now = masu_clock_ns(NULL);
     if (r) return vulkan_failed(v, "vkWaitForFences", r == VK_TIMEOUT ? VK_ERROR_DEVICE_LOST : r);
     r = vkResetFences(v->host.device, 1, &v->fences[slot]);
