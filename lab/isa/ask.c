@@ -80,7 +80,8 @@ bool masu_isa_ask(const masu_isa_gpu *gpu, const char *const *arguments, masu_is
     const char *text = (const char *)output.data, *pass = last_line(text, "at\t", line, sizeof line);
     bool good = false;
     if (r.end == MASU_BAKE_SIGNALED) {
-        masu_cli_error("%s: its compiler crashed (signal %d) at pass %s", gpu->name, r.code, pass ? pass : "none");
+        masu_cli_error("%s: its compiler was ended by %s at pass %s", gpu->name, masu_cli_signal(r.code),
+                       pass ? pass : "none");
     } else if (r.end == MASU_BAKE_TIMEOUT) {
         masu_cli_error("%s: its compiler took more than %d seconds, at pass %s", gpu->name, r.code,
                        pass ? pass : "none");

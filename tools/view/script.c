@@ -1,6 +1,7 @@
 /* script.c: see script.h. */
 #include "view/script.h"
 
+#include "cli/cli.h"
 #include "image.h"
 
 #include <errno.h>
@@ -195,7 +196,7 @@ static bool run(masu_viewer *v, const char *command) {
     fflush(NULL);
     int status = system(command);
     if (!status) return true;
-    snprintf(v->error, sizeof v->error, "run: exit code %d: %.300s", status, command);
+    snprintf(v->error, sizeof v->error, "run: %s: %.300s", masu_cli_status(status), command);
     return false;
 }
 
