@@ -40,7 +40,7 @@ echo '{"format": 1, "cases": [{"name": "a", "scene": "s", "size": [8, 8]}]}' > s
 echo '{"rungs": [{"setting": "base"}]}' > ladder.json
 "$bin/masu-bake" tri.obj --bare -o tri.masu --quiet || fail "tri.obj is not baked"
 printf '\211PNG\r\n\032\n' > image.png
-mkfifo fifo
+mkfifo fifo fifo.json fifo.png
 
 # ---- FIFOs ---------------------------------------------------------------------------------------
 
@@ -53,10 +53,10 @@ refuses 1 "$file" masu bench --ladder fifo
 refuses 1 "$file" masu conform --suite ./fifo --scenes .
 refuses 1 "$file" masu render tri.masu -o x.png --ladder fifo
 refuses 1 "$file" masu-bake fifo -o x.masu
-refuses 1 "$file" masu-bake fifo.json -o x.masu 2> /dev/null < <(ln -s fifo fifo.json)
+refuses 1 "$file" masu-bake fifo.json -o x.masu
 refuses 1 "$file" masu-sdfc fifo
 refuses 1 "$file" masu-meso fifo -o x
-refuses 1 "$file" masu-meso fifo.png --height 1 -o x < <(ln -s fifo fifo.png)
+refuses 1 "$file" masu-meso fifo.png --height 1 -o x
 refuses 1 'no program reads from this FIFO' masu render tri.masu -o fifo
 refuses 1 'no program reads from this FIFO' masu-bake tri.obj -o fifo
 refuses 1 'no program reads from this FIFO' masu-sdfc field.sdf --glsl fifo
@@ -75,6 +75,8 @@ done
 refuses 2 'expected one that ends in .masu' masu-bake tri.obj -o x.glb
 refuses 2 'expected one that ends in .masu' masu-bake scene.json -o scene.json
 [ ! -f "$bin/masu-view" ] || refuses 2 'expected one that ends in .png' masu-view tri.masu --frames 1 --screenshot x.bmp
+echo 'frame 1 screenshot x.jpg' > shot.script
+[ ! -f "$bin/masu-view" ] || refuses 1 'expected a name that ends in .png' masu-view tri.masu --script shot.script
 for option in "-o no/x.png" "-o x.png --stats no/x.json" "-o x.png --times no/x.csv"; do
     # shellcheck disable=SC2086
     refuses 1 '^masu render: no/x.*: cannot write: No such file' masu render tri.masu $option
