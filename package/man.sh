@@ -17,7 +17,16 @@ plain() {
 # the macro $1.
 body() {
     sed 1,2d | plain | awk -v macro="$1" '
-        /^[A-Z][a-z ]*:$/ { print ".fi"; sub(/:$/, ""); print macro " " toupper($0); print ".nf"; next }
+        /^[A-Z][a-z ]*:$/ {
+            print ".fi"
+            sub(/:$/, "")
+            # Groups of options, of which "Common" is the last, are subsections.
+            if (macro == ".SH" && !seen++ && $0 != "Options" && $0 != "Commands") { print ".SH OPTIONS"; grouped = 1 }
+            print (grouped ? ".SS" : macro) " " toupper($0)
+            if ($0 == "Common") grouped = 0
+            print ".nf"
+            next
+        }
         /^Usage: / { print ".fi"; print macro " SYNOPSIS"; print ".nf"; sub(/^Usage: /, "") }
         /^[^ ]/ && last == "" && options { print ".fi"; print macro " NOTES"; print ".nf"; options = 0 }
         /^ / { options = 1 }

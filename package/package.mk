@@ -18,7 +18,7 @@ $(SHARED): $(call objects,$(LIB_SOURCES))
 
 # ---- Manual pages, completion --------------------------------------------------------------------
 
-PROGRAMS    := masu masu-bake masu-sdfc masu-meso
+PROGRAMS    := masu masu-bake masu-sdfc masu-meso $(if $(HAVE_VIEW),masu-view)
 MAN_PAGES   := $(PROGRAMS:%=$(BUILD)/man/%.1)
 COMPLETIONS := $(PROGRAMS:%=$(BUILD)/completion/%)
 .PHONY: man
@@ -46,7 +46,12 @@ consumers-cross: all scenes bundle ## build the bundle for Windows, 64-bit Arm a
 # ---- Installing ----------------------------------------------------------------------------------
 
 root = $(DESTDIR)$(PREFIX)
-DOCUMENTS := README.md ARCHITECTURE.md CONTRIBUTING.md CHANGELOG.md LICENSE $(wildcard docs/*.md docs/*.jpg)
+DOCUMENTS := README.md ARCHITECTURE.md CONTRIBUTING.md CHANGELOG.md LICENSE $(wildcard docs/*.md docs/*.jpg docs/design/*.md)
+DOCUMENTS += docs/report/ladders.txt
+# The examples with what they are compiled from, next to the documents that link to them.
+EXAMPLE_FILES := $(wildcard examples/*.[ch] examples/*.frag examples/*.vert examples/shared/*.[ch] examples/drive/*.[ch])
+EXAMPLE_HOST  := $(foreach f,atomic_file file_kind headless headless_image image,$(wildcard platform/$(f).[ch]))
+EXAMPLE_SPIRV := $(MADE)/gen/host_pass_frag.spv.h $(MADE)/gen/host_pass_vert.spv.h
 # What masu conform takes besides itself. Baking takes minutes and is nobody's surprise: scenes are installed
 # that are there.
 SMOKE_SCENES := $(sort $(shell sed -n 's/.*"scene": "\([^"]*\)".*/\1/p' suites/smoke.json))
@@ -55,9 +60,17 @@ PUBLIC_HEADERS := include/masu.h include/masu_knobs.h include/masu_study.h
 fill = sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' -e 's|@MAJOR@|$(MAJOR)|' -e 's|@MINOR@|$(MINOR)|' \
     $(2) package/$(1) >
 
-.PHONY: install install-lib install-tools install-data install-docs uninstall
-install: install-lib install-tools install-data install-docs ## install to DESTDIR/PREFIX, by default /usr/local
-install-lib: lib ## install headers, libraries, and files for pkg-config and CMake
+.PHONY: install install-lib install-tools install-data install-docs install-examples uninstall
+install: install-lib install-tools install-data install-docs install-examples ## install to DESTDIR/PREFIX, by default /usr/local
+# Folders that others use too. Those that are not there yet are noted, for uninstall.
+SHARED_FOLDERS := . bin include lib lib/pkgconfig lib/cmake share share/doc share/man share/man/man1 \
+    share/bash-completion share/bash-completion/completions
+MADE_FOLDERS   := share/doc/masu/folders
+.PHONY: install-folders
+install-folders:
+	$(V)made=; for f in $(SHARED_FOLDERS); do [ -d "$(root)/$$f" ] || made="$$made $$f"; done; \
+	    install -d "$(root)/share/doc/masu" && for f in $$made; do echo $$f >> "$(root)/$(MADE_FOLDERS)"; done
+install-lib: lib install-folders ## install headers, libraries, and files for pkg-config and CMake
 	$(V)install -d "$(root)/include" "$(root)/lib/pkgconfig" "$(root)/lib/cmake/masu"
 	$(V)install -m 644 $(PUBLIC_HEADERS) "$(root)/include"
 	$(V)install -m 644 $(BUILD)/lib/libmasu.a $(SHARED) "$(root)/lib"
@@ -67,12 +80,12 @@ install-lib: lib ## install headers, libraries, and files for pkg-config and CMa
 	$(V)$(call fill,masu.pc.in,-e 's|@LIBRARY@|-l:libmasu.a -lm|' -e '/@PRIVATE@/d') "$(root)/lib/pkgconfig/masu-static.pc"
 	$(V)$(call fill,masu-config.cmake.in) "$(root)/lib/cmake/masu/masu-config.cmake"
 	$(V)$(call fill,masu-config-version.cmake.in) "$(root)/lib/cmake/masu/masu-config-version.cmake"
-install-tools: tools man ## install masu, masu-bake, masu-sdfc and masu-meso, their manual pages and completion
+install-tools: tools man install-folders ## install masu, masu-bake, masu-sdfc, masu-meso and masu-view (with SDL2), their manual pages and completion
 	$(V)install -d "$(root)/bin" "$(root)/share/man/man1" "$(root)/share/bash-completion/completions"
 	$(V)install -m 755 $(PROGRAMS:%=$(BUILD)/bin/%) "$(root)/bin"
 	$(V)install -m 644 $(MAN_PAGES) "$(root)/share/man/man1"
 	$(V)install -m 644 $(COMPLETIONS) "$(root)/share/bash-completion/completions"
-install-data: $(SUITES) ## install the suites of masu conform, and the baked scenes of the suite smoke
+install-data: $(SUITES) install-folders ## install the suites of masu conform, and the baked scenes of the suite smoke
 	$(V)install -d "$(root)/share/masu/suites"
 	$(V)install -m 644 $(SUITES) "$(root)/share/masu/suites"
 	$(V)missing=; for s in $(SMOKE_SCENES); do \
@@ -81,14 +94,27 @@ install-data: $(SUITES) ## install the suites of masu conform, and the baked sce
 	    else missing="$$missing $$s"; fi; \
 	done; [ -z "$$missing" ] || \
 	    echo "masu: not baked, so not installed:$$missing; 'make scenes install' gives masu conform its scenes"
-install-docs: ## install licence and documents to share/doc/masu
-	$(V)install -d "$(root)/share/doc/masu/docs"
-	$(V)install -m 644 $(filter-out docs/%,$(DOCUMENTS)) "$(root)/share/doc/masu"
-	$(V)install -m 644 $(filter docs/%,$(DOCUMENTS)) "$(root)/share/doc/masu/docs"
-uninstall: ## remove all installed files
+install-docs: install-folders ## install licence and documents to share/doc/masu
+	$(V)for f in $(DOCUMENTS); do \
+	    install -d "$(root)/share/doc/masu/$$(dirname $$f)" && install -m 644 $$f "$(root)/share/doc/masu/$$f" || exit 1; \
+	    case $$f in *.md) package/docs.sh $$f $(DOCUMENTS) $(EXAMPLE_FILES) > "$(root)/share/doc/masu/$$f" || exit 1;; esac; \
+	done
+install-examples: $(EXAMPLE_SPIRV) install-folders ## install the examples and what they are compiled from to share/doc/masu/examples
+	$(V)for f in $(EXAMPLE_FILES); do \
+	    install -d "$(root)/share/doc/masu/$$(dirname $$f)" && install -m 644 $$f "$(root)/share/doc/masu/$$f" || exit 1; \
+	done
+	$(V)install -d "$(root)/share/doc/masu/examples/platform"
+	$(V)install -m 644 $(EXAMPLE_HOST) "$(root)/share/doc/masu/examples/platform"
+	$(V)install -m 644 $(EXAMPLE_SPIRV) "$(root)/share/doc/masu/examples"
+	$(V)install -m 644 package/examples-Makefile "$(root)/share/doc/masu/examples/Makefile"
+INSTALLED_PROGRAMS := $(PROGRAMS) $(if $(HAVE_VIEW),,masu-view)
+uninstall: ## remove all installed files, and the folders that install has made
 	$(V)cd "$(root)" && rm -f $(PUBLIC_HEADERS) $(addprefix lib/,libmasu.a libmasu.so libmasu.so.$(MAJOR) libmasu.so.$(VERSION))
-	$(V)cd "$(root)" && rm -f lib/pkgconfig/masu.pc lib/pkgconfig/masu-static.pc $(PROGRAMS:%=bin/%)
-	$(V)cd "$(root)" && rm -f $(PROGRAMS:%=share/man/man1/%.1) $(PROGRAMS:%=share/bash-completion/completions/%)
+	$(V)cd "$(root)" && rm -f lib/pkgconfig/masu.pc lib/pkgconfig/masu-static.pc $(INSTALLED_PROGRAMS:%=bin/%)
+	$(V)cd "$(root)" && rm -f $(INSTALLED_PROGRAMS:%=share/man/man1/%.1) \
+	    $(INSTALLED_PROGRAMS:%=share/bash-completion/completions/%)
 	$(V)cd "$(root)" && rm -f $(SUITES:$(BUILD)/%=share/masu/%) $(SMOKE_SCENES:%=share/masu/scenes/%.masu)
-	$(V)cd "$(root)" && rm -rf lib/cmake/masu share/doc/masu
-	$(V)cd "$(root)" && rmdir share/masu/scenes share/masu/suites share/masu 2> /dev/null || true
+	$(V)cd "$(root)" && made=$$(sort -r $(MADE_FOLDERS) 2> /dev/null || true) && rm -rf lib/cmake/masu share/doc/masu && \
+	    for f in share/masu/scenes share/masu/suites share/masu $$made; do \
+	        [ "$$f" != . ] || f=; rmdir "$(root)/$$f" 2> /dev/null || true; \
+	    done

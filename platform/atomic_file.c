@@ -5,6 +5,7 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -75,7 +76,47 @@ void masu_atomic_file_remove_stale(const char *target) {
     free(path);
 }
 
+/* ---- Signals ---- */
+
+#define DRAFTS_MAX 8
+
+/* Files being written by this process. A child that it forks must not remove them. */
+static const char *volatile drafts[DRAFTS_MAX];
+static volatile pid_t drafts_owner;
+
+static void replace_draft(const char *old, const char *name) {
+    for (int i = 0; i < DRAFTS_MAX; i++) {
+        if (drafts[i] != old) continue;
+        drafts[i] = name;
+        return;
+    }
+}
+
+/* Async-signal-safe. The default action, which SA_RESETHAND restores, then ends the process. */
+static void remove_drafts(int number) {
+    for (int i = 0; i < DRAFTS_MAX && getpid() == drafts_owner; i++)
+        if (drafts[i]) (void)unlink(drafts[i]);
+    (void)raise(number);
+}
+
+void masu_atomic_file_catch_signals(void) {
+    static const int ending[] = {SIGINT, SIGTERM, SIGHUP};
+    struct sigaction action = {.sa_handler = remove_drafts, .sa_flags = (int)SA_RESETHAND}, before;
+    sigemptyset(&action.sa_mask);
+    for (size_t i = 0; i < sizeof ending / sizeof *ending; i++) {
+        if (sigaction(ending[i], NULL, &before) == 0 && before.sa_handler == SIG_DFL)
+            (void)sigaction(ending[i], &action, NULL);
+    }
+    (void)signal(SIGXFSZ, SIG_IGN); /* write() then fails with EFBIG */
+}
+
 /* ---- Drafts ---- */
+
+static void forget(masu_atomic_file *draft) {
+    if (draft->name) replace_draft(draft->name, NULL);
+    free(draft->name);
+    *draft = (masu_atomic_file){.file = -1, .name = NULL};
+}
 
 /* Its permissions follow the umask, which mkstemp's would not. */
 int masu_atomic_file_open(masu_atomic_file *draft, const char *target) {
@@ -86,6 +127,10 @@ int masu_atomic_file_open(masu_atomic_file *draft, const char *target) {
     masu_atomic_file_remove_stale(target);
     for (unsigned attempt = 0; attempt < ATTEMPTS && draft->file < 0 && problem == EEXIST; attempt++) {
         snprintf(draft->name, room, "%s.%ld-%u.part", target, (long)getpid(), attempt);
+        if (!attempt) {
+            drafts_owner = getpid();
+            replace_draft(NULL, draft->name);
+        }
         draft->file = open(draft->name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (draft->file < 0) {
             problem = errno;
@@ -95,8 +140,7 @@ int masu_atomic_file_open(masu_atomic_file *draft, const char *target) {
         }
     }
     if (draft->file >= 0) return 0;
-    free(draft->name);
-    draft->name = NULL;
+    forget(draft);
     return problem;
 }
 
@@ -122,9 +166,7 @@ int masu_atomic_file_commit(masu_atomic_file *draft, const char *target) {
     }
     /* Renamed before it is closed: as long as it has this name, the lock is held. */
     problem = close(draft->file) != 0 ? errno : 0;
-    draft->file = -1;
-    free(draft->name);
-    draft->name = NULL;
+    forget(draft);
     return problem;
 }
 
@@ -133,6 +175,5 @@ void masu_atomic_file_discard(masu_atomic_file *draft) {
         (void)unlink(draft->name);
         (void)close(draft->file);
     }
-    free(draft->name);
-    *draft = (masu_atomic_file){.file = -1, .name = NULL};
+    forget(draft);
 }

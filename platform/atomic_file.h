@@ -24,6 +24,10 @@ int masu_atomic_file_write(masu_atomic_file *draft, const void *bytes, size_t co
 /* Flushes the file to disk and renames it to the target. Returns 0, or errno; then neither file is there. */
 int masu_atomic_file_commit(masu_atomic_file *draft, const char *target);
 void masu_atomic_file_discard(masu_atomic_file *draft);
+/* For the start of a program: SIGINT, SIGTERM and SIGHUP remove the temporary files of this process and end
+ * it. Signals that are ignored or already handled stay so. A file beyond the size limit of the process makes
+ * the write fail instead of ending the process by SIGXFSZ. */
+void masu_atomic_file_catch_signals(void);
 /* Removes only the stale files of `target`. */
 void masu_atomic_file_remove_stale(const char *target);
 

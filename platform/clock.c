@@ -10,3 +10,12 @@ uint64_t masu_clock_ns(void *user) {
     clock_gettime(CLOCK_MONOTONIC, &t);
     return (uint64_t)t.tv_sec * 1000000000u + (uint64_t)t.tv_nsec;
 }
+
+bool masu_clock_advances(void) {
+    uint64_t start = masu_clock_ns(NULL);
+    for (int i = 0; i < 100; i++) {
+        if (masu_clock_ns(NULL) > start) return true;
+        (void)nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
+    }
+    return masu_clock_ns(NULL) > start;
+}

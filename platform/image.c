@@ -11,6 +11,7 @@
 
 #include "image.h"
 #include "atomic_file.h"
+#include "file_kind.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -112,11 +113,21 @@ static ssize_t read_up_to(int file, uint8_t *bytes, size_t count) {
     return (ssize_t)done;
 }
 
+bool masu_file_exists(const char *path) {
+    struct stat info;
+    return stat(path, &info) == 0;
+}
+
+bool masu_file_is_regular(const char *path) {
+    struct stat info;
+    return stat(path, &info) == 0 && S_ISREG(info.st_mode);
+}
+
 bool masu_file_read(const char *path, size_t limit, uint8_t **bytes, size_t *count, char *error,
                     size_t error_size) {
     *bytes = NULL;
     *count = 0;
-    int file = open(path, O_RDONLY);
+    int file = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC); /* a FIFO must not block */
     if (file < 0) {
         return fail(error, error_size, "%s: cannot open: %s", path, strerror(errno));
     }
@@ -159,11 +170,26 @@ static bool write_all(int file, const uint8_t *bytes, size_t count) {
     return true;
 }
 
+/* A FIFO without a reader fails with ENXIO instead of waiting for one. */
+static int open_straight(const char *path, char *error, size_t error_size) {
+    struct stat info;
+    int file = open(path, O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    if (file < 0) {
+        const char *why = strerror(errno);
+        bool lonely = errno == ENXIO && stat(path, &info) == 0 && S_ISFIFO(info.st_mode);
+        (void)fail(error, error_size, "%s: cannot write: %s", path,
+                   lonely ? "no program reads from this FIFO" : why);
+    } else {
+        (void)fcntl(file, F_SETFL, fcntl(file, F_GETFL) & ~O_NONBLOCK);
+    }
+    return file;
+}
+
 static bool write_straight(const char *path, const void *bytes, size_t count, char *error,
                            size_t error_size) {
-    int file = open(path, O_WRONLY);
+    int file = open_straight(path, error, error_size);
     if (file < 0) {
-        return fail(error, error_size, "%s: cannot write: %s", path, strerror(errno));
+        return false;
     }
     bool good = write_all(file, bytes, count);
     int why = errno;
@@ -203,10 +229,29 @@ static bool may_write(const char *path, bool *exists, bool *special, char *error
     return true;
 }
 
+bool masu_folder_make(const char *path, char *error, size_t error_size) {
+    char *at = strdup(path);
+    if (!at) return fail(error, error_size, "%s: out of memory", path);
+    bool good = true;
+    for (char *end = at; good && (end = strchr(end + 1, '/'));) {
+        *end = '\0';
+        good = mkdir(at, 0777) == 0 || errno == EEXIST;
+        *end = '/';
+    }
+    good = good && (mkdir(at, 0777) == 0 || errno == EEXIST);
+    int problem = good ? 0 : errno;
+    free(at);
+    struct stat info;
+    if (good && (stat(path, &info) != 0 || !S_ISDIR(info.st_mode))) problem = ENOTDIR;
+    if (!problem && access(path, W_OK | X_OK) != 0) problem = errno;
+    return !problem || fail(error, error_size, "%s: cannot create the folder or write to it: %s", path, strerror(problem));
+}
+
 bool masu_file_writable(const char *path, char *error, size_t error_size) {
     bool exists, special;
     if (!may_write(path, &exists, &special, error, error_size)) return false;
-    if (special) return true;
+    /* Left open: to close a FIFO would end the input of its reader. */
+    if (special) return open_straight(path, error, error_size) >= 0;
     char *resolved = exists ? realpath(path, NULL) : NULL;
     masu_atomic_file draft;
     int problem = masu_atomic_file_open(&draft, resolved ? resolved : path);
@@ -275,7 +320,8 @@ static bool png_is_whole(const char *path, const uint8_t *bytes, size_t count, c
                          size_t error_size) {
     static const uint8_t signature[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
     if (count < 8 || memcmp(bytes, signature, 8) != 0) {
-        return fail(error, error_size, "%s: is not a PNG file", path);
+        return fail(error, error_size, "%s: is not a PNG file%s", path,
+                    masu_file_hint(path, bytes, count, MASU_FILE_IMAGE));
     }
     for (size_t at = 8;;) {
         const uint8_t *chunk = bytes + at;
@@ -420,7 +466,8 @@ static bool decode_pfm(const char *path, const uint8_t *bytes, size_t count,
                        struct masu_image *image, char *error, size_t error_size) {
     struct pfm_header header;
     if (!parse_pfm(bytes, count, &header)) {
-        return fail(error, error_size, "%s: is not a PFM file", path);
+        return fail(error, error_size, "%s: is not a PFM file%s", path,
+                    masu_file_hint(path, bytes, count, MASU_FILE_IMAGE));
     }
     if (!size_is_allowed(path, header.width, header.height, error, error_size)) {
         return false;

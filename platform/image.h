@@ -8,7 +8,7 @@
  * Writes are atomic: the bytes go to a new file beside the target, which is then renamed over it. A
  * crash, a full disk or a failed write leaves the old file, or none, never half a file, and removes
  * the temporary one. A symbolic link is followed; something that is not a regular file (/dev/null,
- * a pipe) is written straight.
+ * a pipe with a reader) is written straight.
  *
  * Pixels are tightly packed, top row first. Memory comes from malloc: free with masu_image_free.
  */
@@ -62,14 +62,23 @@ bool masu_image_load_pfm(const char *path, struct masu_image *image, char *error
 bool masu_image_save_pfm(const char *path, const float *values, uint32_t width, uint32_t height,
                          uint32_t channels, char *error, size_t error_size);
 
-/* Whether a file could be written there at present; leaves nothing behind. */
+/* Whether there is something of this name. */
+bool masu_file_exists(const char *path);
+bool masu_file_is_regular(const char *path);
+
+/* Whether a file could be written there at present; leaves nothing behind. A FIFO needs a reader, and stays
+ * open. */
 bool masu_file_writable(const char *path, char *error, size_t error_size);
+
+/* Makes a folder and those above it; one that is there must be writable. */
+bool masu_folder_make(const char *path, char *error, size_t error_size);
 
 /* What the save functions end with, for other files (statistics, baked scenes). */
 bool masu_file_write(const char *path, const void *bytes, size_t count, char *error,
                      size_t error_size);
 
-/* The whole file in one malloc'ed block, at most limit bytes. An empty file is not an error. */
+/* The whole file in one malloc'ed block, at most limit bytes. An empty file is not an error; anything but a
+ * regular file is, without waiting for it. */
 bool masu_file_read(const char *path, size_t limit, uint8_t **bytes, size_t *count, char *error,
                     size_t error_size);
 

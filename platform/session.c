@@ -1,5 +1,6 @@
 /* session.c: see session.h. */
 #include "session.h"
+#include "file_kind.h"
 
 #include "clock.h"
 #include "image.h"
@@ -25,8 +26,11 @@ static bool open_scene(const masu_session_desc *d, masu_session *s, char *error,
     size_t count = 0;
     if (!masu_file_read(d->scene_path, SCENE_BYTES_MAX, &bytes, &count, error, size)) return false;
     s->blob = bytes; /* malloc aligns to 16 */
-    if (masu_scene_bind(s->blob, count, &s->scene, &s->detail))
-        return failed(s, d->scene_path, error, size);
+    if (masu_scene_bind(s->blob, count, &s->scene, &s->detail)) {
+        snprintf(error, size, "%s: %s%s", d->scene_path, s->detail.text,
+                 masu_file_hint(d->scene_path, s->blob, count, MASU_FILE_BLOB));
+        return false;
+    }
     s->desc.scene = &s->scene;
     return true;
 }

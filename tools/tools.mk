@@ -21,10 +21,17 @@ $(BUILD)/obj/tools/bake/texture/image.o: FOLDER_FLAGS += $$(pkg-config --cflags 
 BAKE_LIBS := -lassimp -ljansson -lmeshoptimizer -ldraco -lembree3 $$(pkg-config --libs MagickWand) -lm -lpthread -lstdc++
 MASU_LIBS := -lvulkan -ljansson -lembree3 -lm -ldl -lpthread
 
+# ---- Suites: beside the programs, where masu conform looks for them ------------------------------
+
+SUITES := $(patsubst %,$(BUILD)/%,$(wildcard suites/*.json))
+$(BUILD)/suites/%.json: suites/%.json
+	@mkdir -p $(@D)
+	$(V)cp $< $@
+
 # ---- Programs ------------------------------------------------------------------------------------
 
 $(BUILD)/bin/masu: LIBS = $(MASU_LIBS)
-$(BUILD)/bin/masu: $(call objects,$(wildcard tools/masu/*.c)) $(KEEP_LOADED) $(MEASURE_ARCHIVES) $(BAKE_ARCHIVES)
+$(BUILD)/bin/masu: $(call objects,$(wildcard tools/masu/*.c)) $(KEEP_LOADED) $(MEASURE_ARCHIVES) $(BAKE_ARCHIVES) | $(SUITES)
 	$(link)
 
 $(BUILD)/bin/masu-bake $(BUILD)/bin/masu-meso: LIBS = $(BAKE_LIBS)
@@ -33,7 +40,7 @@ $(BUILD)/bin/masu-bake: $(BUILD)/obj/tools/bake/main.o $(BAKE_ARCHIVES)
 $(BUILD)/bin/masu-meso: $(BUILD)/obj/tools/meso/main.o $(call tool_archive,meso) $(BAKE_ARCHIVES)
 	$(link)
 $(BUILD)/bin/masu-sdfc: LIBS = -lm
-$(BUILD)/bin/masu-sdfc: $(BUILD)/obj/tools/sdfc/main.o $(call tool_archive,sdfc) $(call tool_archive,cli)
+$(BUILD)/bin/masu-sdfc: $(BUILD)/obj/tools/sdfc/main.o $(call tool_archive,sdfc) $(call tool_archive,cli) $(PLATFORM)
 	$(link)
 
 # masu-view takes SDL2 and a font, which nothing else does: `make view` installs them, and without them the
@@ -53,13 +60,6 @@ $(MADE)/gen/view_font.h: $(MADE)/tools/make_font
 $(BUILD)/bin/masu-view: LIBS = $(MASU_LIBS) $$(pkg-config --libs sdl2)
 $(BUILD)/bin/masu-view: $(VIEW_OBJECTS) $(KEEP_LOADED) $(MEASURE_ARCHIVES) $(BAKE_ARCHIVES)
 	$(link)
-
-# ---- Suites: beside the programs, where masu conform looks for them ------------------------------
-
-SUITES := $(patsubst %,$(BUILD)/%,$(wildcard suites/*.json))
-$(BUILD)/suites/%.json: suites/%.json
-	@mkdir -p $(@D)
-	$(V)cp $< $@
 
 # ---- Tables in documents -------------------------------------------------------------------------
 

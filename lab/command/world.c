@@ -1,6 +1,7 @@
 /* world.c: `masu-lab world`: writes the folder of a world, ready for masu-bake; see lab/world/world.h. */
 #include "lab/command/commands.h"
 #include "lab/world/world.h"
+#include "image.h"
 
 #include <errno.h>
 #include <string.h>
@@ -20,7 +21,9 @@ static const char *path_of(const char *folder, const char *name) {
 
 FILE *masu_world_create(const char *folder, const char *name) {
     const char *path = path_of(folder, name);
-    FILE *file = path ? fopen(path, "w") : NULL;
+    bool regular = path && (!masu_file_exists(path) || masu_file_is_regular(path));
+    if (path && !regular) errno = EINVAL;
+    FILE *file = regular ? fopen(path, "w") : NULL;
     if (path && !file) masu_cli_error("cannot write %s: %s", path, strerror(errno));
     return file;
 }

@@ -56,6 +56,20 @@ static const char *last_line(const char *text, const char *start, char *out, siz
     return out;
 }
 
+/* Why a child failed: its error, wherever a driver's own text in front of it ends; else the last line that anything in
+ * it has printed, and how it ended. */
+static const char *reason_of(const char *text, int code, char *out, size_t size) {
+    static const char name[] = "masu-lab isa: ";
+    const char *found = NULL, *last = NULL;
+    for (const char *at = text; (at = strstr(at, name)); at += sizeof name - 1) found = at + sizeof name - 1;
+    for (const char *line = text; line && *line; line = strchr(line, '\n'), line += line != NULL)
+        if (*line != '\n' && strncmp(line, "at\t", 3) != 0) last = line;
+    if (found && *found != '\n') snprintf(out, size, "%.*s", (int)strcspn(found, "\n"), found);
+    else if (last) snprintf(out, size, "exit code %d: %.*s", code, (int)strcspn(last, "\n"), last);
+    else snprintf(out, size, "exit code %d without a message", code);
+    return out;
+}
+
 bool masu_isa_ask(const masu_isa_gpu *gpu, const char *const *arguments, masu_isa_rows *rows) {
     char error[2048], line[512];
     const char *directory = masu_bake_temporary_directory();
@@ -80,13 +94,14 @@ bool masu_isa_ask(const masu_isa_gpu *gpu, const char *const *arguments, masu_is
     const char *text = (const char *)output.data, *pass = last_line(text, "at\t", line, sizeof line);
     bool good = false;
     if (r.end == MASU_BAKE_SIGNALED) {
-        masu_cli_error("%s: its compiler crashed (signal %d) at pass %s", gpu->name, r.code, pass ? pass : "none");
+        masu_cli_error("%s: its compiler was ended by %s at pass %s", gpu->name, masu_cli_signal(r.code),
+                       pass ? pass : "none");
     } else if (r.end == MASU_BAKE_TIMEOUT) {
         masu_cli_error("%s: its compiler took more than %d seconds, at pass %s", gpu->name, r.code,
                        pass ? pass : "none");
     } else if (r.end != MASU_BAKE_EXITED || r.code) {
-        const char *why = last_line(text, "masu-lab isa: ", line, sizeof line);
-        masu_cli_error("%s: %s", gpu->name, why ? why : "its process failed");
+        char why[1024];
+        masu_cli_error("%s: %s", gpu->name, reason_of(text, r.code, why, sizeof why));
     } else {
         good = masu_isa_receive(text, rows);
         if (!good) masu_cli_error("%s: its rows cannot be read", gpu->name);

@@ -1,8 +1,12 @@
 /* trace.c: see trace.h. */
 #include "lab/simulate/trace.h"
 
+#include "image.h"
+
 #include <stdlib.h>
 #include <string.h>
+
+#define TRACE_BYTES_MAX ((size_t)1 << 30)
 
 bool sim_trace_parse(FILE *file, const char *path, sim_trace *out, char *error, size_t size) {
     char line[1024];
@@ -52,10 +56,14 @@ bool sim_trace_parse(FILE *file, const char *path, sim_trace *out, char *error, 
 }
 
 bool sim_trace_read(const char *path, sim_trace *out, char *error, size_t size) {
-    FILE *file = fopen(path, "r");
-    if (!file) return snprintf(error, size, "%s: cannot be opened", path), false;
-    bool good = sim_trace_parse(file, path, out, error, size);
-    fclose(file);
+    uint8_t *text;
+    size_t bytes;
+    if (!masu_file_read(path, TRACE_BYTES_MAX, &text, &bytes, error, size)) return false;
+    FILE *file = fmemopen(bytes ? (void *)text : (void *)(char[1]){0}, bytes ? bytes : 1, "r");
+    bool good = file && sim_trace_parse(file, path, out, error, size);
+    if (!file) snprintf(error, size, "%s: out of memory", path);
+    if (file) fclose(file);
+    free(text);
     return good;
 }
 

@@ -126,7 +126,7 @@ static bool sum_up(bench *b, uint32_t frames, float *rgb, const char *what) {
  * or none at all, and is not written over. */
 static bool find_truth(bench *b) {
     size_t floats = 3 * (size_t)b->pixels;
-    FILE *f = o->truth.path ? fopen(o->truth.path, "rb") : NULL;
+    FILE *f = o->truth.path && masu_file_is_regular(o->truth.path) ? fopen(o->truth.path, "rb") : NULL;
     bool found = f && fread(b->truth, sizeof *b->truth, floats, f) == floats && fgetc(f) == EOF;
     if (f) fclose(f);
     if (f && !found) return failed(b, "the file of the truth is not one of this size");

@@ -9,11 +9,13 @@
 #include "bench/report.h"
 #include "bench/sweep.h"
 
+#include <fcntl.h>
 #include <jansson.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -349,6 +351,46 @@ static void a_run_that_was_stopped_goes_on(void **state) {
     said("another sweep");
 }
 
+/* The rows of the text from `line` on as another build would have written them; at most `most` of them remain. */
+static void paint(char *line, uint32_t most) {
+    for (char *next; (next = strchr(line, '\n')); line = next + 1, most--) {
+        if (!most) break;
+        assert_true(next - line > 17 && next[-17] == ',');
+        memcpy(next - 16, "0123456789abcdef", 16);
+    }
+    *line = '\0';
+}
+
+/* One program measures into a folder, and one build of it. */
+static void rows_of_two_programs_are_refused(void **state) {
+    (void)state;
+    char path[256];
+    uint32_t count;
+    snprintf(path, sizeof path, "%s/whole", scratch);
+    int folder = open(path, O_RDONLY | O_DIRECTORY);
+    assert_int_equal(flock(folder, LOCK_EX | LOCK_NB), 0);
+    assert_int_equal(bench("%s " SMALL " --out %s/whole", scene_path("test_both"), scratch), 1);
+    said("another masu bench is writing to this folder");
+    close(folder);
+    free(rows_of("whole", &count));
+    char *text = read_file(in_scratch("whole/results.csv"), NULL);
+    char *changed = strdup(text), *last = strrchr(changed, ',') - 17; /* in the last row */
+    while (last[-1] != '\n') last--;
+    paint(last, 1);
+    write_text("whole/results.csv", changed);
+    assert_int_equal(bench("%s " SMALL " --out %s/whole", scene_path("test_both"), scratch), 1);
+    said("another build of the program: found 0123456789abcdef");
+    /* All by another build, and one that is still to be measured. */
+    strcpy(changed, text);
+    paint(strchr(changed, '\n') + 1, count - 1);
+    write_text("whole/results.csv", changed);
+    assert_int_equal(bench("%s " SMALL " --out %s/whole", scene_path("test_both"), scratch), 1);
+    said("another build of the program: found 0123456789abcdef");
+    write_text("whole/results.csv", text);
+    free(changed);
+    free(text);
+}
+
 static void shards_together_are_the_whole(void **state) {
     (void)state;
     const char *scene = scene_path("test_both");
@@ -670,8 +712,8 @@ static void wrong_command_lines_are_exit_code_2(void **state) {
     assert_int_equal(bench("%s/none.masu --out %s/x --quick", scratch, scratch), 1);
     said("none.masu");
     assert_false(is_in_scratch("x"));
-    assert_int_equal(bench("%s --out %s/no/such --quick", scene_path("test_both"), scratch), 1);
-    said("no/such");
+    assert_int_equal(bench("%s --out %s/whole/results.csv/such --quick", scene_path("test_both"), scratch), 1);
+    said("results.csv/such: cannot create the folder");
 }
 
 int main(void) {
@@ -679,6 +721,7 @@ int main(void) {
         cmocka_unit_test(a_folder_has_rows_rungs_and_a_page),
         cmocka_unit_test(two_folders_are_compared),
         cmocka_unit_test(a_run_that_was_stopped_goes_on),
+        cmocka_unit_test(rows_of_two_programs_are_refused),
         cmocka_unit_test(shards_together_are_the_whole),
         cmocka_unit_test(slow_shadows_are_timed_over_their_whole_period),
         cmocka_unit_test(reflections_have_an_error_of_their_own),

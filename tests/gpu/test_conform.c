@@ -45,6 +45,37 @@ static void a_part_of_the_smoke_suite_passes(void **state) {
     assert_string_equal(cli_err, "");
 }
 
+/* An untouched build has no warning: of memory, which each change of the library may add to. */
+static void memory_is_within_its_limits(void **state) {
+    (void)state;
+    const char *driver = getenv("MASU_TEST_DRIVER");
+    if (driver && strcmp(driver, "system") != 0) return; /* the limits are the worst of all drivers */
+    int code = conform("--suite suites/smoke.json --case 'memory.*'");
+    if (code) fail_msg("exit code %d\n%s%s", code, cli_out, cli_err);
+    cli_said(" 0 quality warnings, 0 not supported, 0 resource errors, 0 failed");
+}
+
+/* Whatever ends the run: files are complete and say which case it was. */
+static void a_run_that_is_killed_leaves_complete_reports(void **state) {
+    (void)state;
+    char text[8192];
+    write_suite("{\"name\": \"short\"}, {\"name\": \"long\", \"frames\": 100000}, {\"name\": \"never\"}");
+    int code = shell("timeout -s KILL 3 %s/bin/masu conform --scenes %s/scenes --suite %s/suite.json --junit %s/k.xml "
+                     "--csv %s/k.csv --table %s/k.md --images %s/new/images > /dev/null 2>&1; test $? = 137",
+                     build_dir(), made_dir(), scratch, scratch, scratch, scratch, scratch);
+    assert_int_equal(code, 0);
+    take_text("k.xml", text, sizeof text);
+    assert_non_null(strstr(text, "tests=\"3\" "));
+    assert_non_null(strstr(text, "message=\"the program ended during this case\" type=\"not run\""));
+    assert_non_null(strstr(text, "message=\"the run ended before this case\" type=\"not run\""));
+    assert_non_null(strstr(text, "</testsuites>\n"));
+    take_text("k.csv", text, sizeof text);
+    assert_non_null(strstr(text, "\"never\",\"test_both\",32,24,not run,"));
+    take_text("k.md", text, sizeof text);
+    assert_non_null(strstr(text, "| not run | never 32x24 "));
+    assert_true(is_in_scratch("new/images"));
+}
+
 /* A fifteenth of what docs/stability.md shows, a third of that on the drivers that CI sees second; each has another one. */
 static void a_part_of_the_extreme_suite_passes(void **state) {
     (void)state;
@@ -287,6 +318,8 @@ static void what_is_no_suite_is_refused_in_one_line(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_part_of_the_smoke_suite_passes),
+        cmocka_unit_test(memory_is_within_its_limits),
+        cmocka_unit_test(a_run_that_is_killed_leaves_complete_reports),
         cmocka_unit_test(a_part_of_the_extreme_suite_passes),
         cmocka_unit_test(extreme_cases_judge),
         cmocka_unit_test(extreme_frames_are_told),

@@ -66,11 +66,11 @@ END
 # ---- command line --------------------------------------------------------------------------------
 
 accepts --help
-says stdout '^Usage: masu-bake MODEL|SCENE.json -o X.masu'
+says stdout '^Usage: masu-bake MODEL|SCENE.json|FIELD.sdf -o X.masu'
 accepts -h
 accepts --version
 says stdout '^masu-bake [0-9]*\.[0-9]*\.[0-9]*$'
-refuses 2 'no MODEL or SCENE.json given'
+refuses 2 'no MODEL, SCENE.json or FIELD.sdf given'
 refuses 2 'no output given' tests/scenes/test_both.json
 refuses 2 'more than one input: b' a b "${x[@]}"
 refuses 2 'unknown option --outptu' --outptu=x a
@@ -97,8 +97,8 @@ refuses 1 'empty.json:1:' "$folder/empty.json" "${x[@]}"
 head -c 3000 /dev/urandom > "$folder/noise.glb"
 refuses 1 'cannot read .*noise.glb' "$folder/noise.glb" "${x[@]}"
 plain=tests/scenes/test_sphere_mesh.json # without an SDF, which takes two seconds to compile
-refuses 1 'cannot write /nowhere/x.masu: No such file' $plain -o /nowhere/x.masu
-refuses 1 "cannot write $folder/out: Is a directory" $plain -o "$folder/out"
+refuses 1 '/nowhere/x.masu: cannot write: No such file' $plain -o /nowhere/x.masu
+refuses 1 "$folder/out: cannot write: it is a directory" $plain -o "$folder/out"
 refuses 1 'cannot write /dev/full: No space' $plain -o /dev/full
 accepts $plain -o /dev/null
 [ -c /dev/null ] || fail "/dev/null was replaced"
@@ -244,9 +244,9 @@ tools=$folder/bin:$PATH
 for tool in glslangValidator spirv-val spirv-opt; do
     printf '#!/bin/sh\nkill -SEGV $$\n' > "$folder/bin/$tool"
     chmod +x "$folder/bin/$tool"
-    refuses 1 "field.glsl: $tool crashed (signal 11)" "$json" "${x[@]}"
+    refuses 1 "field.glsl: $tool was ended by signal 11 (SIGSEGV)" "$json" "${x[@]}"
     printf '#!/bin/sh\necho it is full\nexit 3\n' > "$folder/bin/$tool"
-    refuses 1 "$tool failed (status 3): it is full" "$json" "${x[@]}"
+    refuses 1 "$tool failed (exit code 3): it is full" "$json" "${x[@]}"
     printf '#!/bin/sh\nexit 0\n' > "$folder/bin/$tool"
     [ $tool = spirv-val ] || refuses 1 '' "$json" "${x[@]}"
     rm "$folder/bin/$tool"

@@ -10,7 +10,12 @@ trap 'rm -rf "$folder"' EXIT
 stage=$folder/stage
 prefix=/opt/masu
 
+# What others have there stays, empty folders too.
+mkdir -p "$stage/opt/others" "$stage/usr/share"
+find "$stage" | sort > "$folder/before"
 make --no-print-directory install DESTDIR="$stage" PREFIX=$prefix > "$folder/said"
+view=
+[ ! -f "${BUILD:-build}/bin/masu-view" ] || view=$(printf '\n%s' ".$prefix/bin/masu-view")
 smoke=$(sed -n 's/.*"scene": "\([^"]*\)".*/\1/p' suites/smoke.json | sort -u)
 scenes=
 for s in $smoke; do
@@ -26,7 +31,7 @@ sort > "$folder/expected" << END
 .$prefix/bin/masu
 .$prefix/bin/masu-bake
 .$prefix/bin/masu-meso
-.$prefix/bin/masu-sdfc
+.$prefix/bin/masu-sdfc$view
 .$prefix/include/masu.h
 .$prefix/include/masu_knobs.h
 .$prefix/include/masu_study.h
@@ -38,8 +43,18 @@ sort > "$folder/expected" << END
 .$prefix/lib/libmasu.so.$version
 .$prefix/lib/pkgconfig/masu-static.pc
 .$prefix/lib/pkgconfig/masu.pc
-$(for f in README.md ARCHITECTURE.md CONTRIBUTING.md CHANGELOG.md LICENSE docs/*.md docs/*.jpg; do echo ".$prefix/share/doc/masu/$f"; done)
-$(for p in masu masu-bake masu-meso masu-sdfc; do
+$(for f in README.md ARCHITECTURE.md CONTRIBUTING.md CHANGELOG.md LICENSE docs/*.md docs/*.jpg docs/design/*.md docs/report/ladders.txt; do
+    echo ".$prefix/share/doc/masu/$f"
+done)
+.$prefix/share/doc/masu/folders
+$(for f in examples/*.[ch] examples/*.frag examples/*.vert examples/shared/*.[ch] examples/drive/*.[ch] \
+    examples/Makefile examples/host_pass_frag.spv.h examples/host_pass_vert.spv.h; do
+    echo ".$prefix/share/doc/masu/$f"
+done)
+$(for f in atomic_file file_kind headless headless_image image; do
+    for e in c h; do [ ! -f platform/$f.$e ] || echo ".$prefix/share/doc/masu/examples/platform/$f.$e"; done
+done)
+$(for p in masu masu-bake masu-meso masu-sdfc ${view:+masu-view}; do
     printf '%s\n' ".$prefix/share/man/man1/$p.1" ".$prefix/share/bash-completion/completions/$p"
 done)
 .$prefix/share/masu/suites/extreme.json
@@ -100,6 +115,27 @@ if needs "$folder/static/consumer" || needs "$folder/by-default/consumer"; then 
 if by_cmake other -DWANT=other > "$folder/said"; then echo 'CMake finds a component other'; exit 1; fi
 grep -q 'components static and shared, not' "$folder/said"
 
+# ---- Documents and examples ----------------------------------------------------------------------
+
+doc=$stage$prefix/share/doc/masu
+(cd "$doc" && find . -name '*.md') | while read -r file; do
+    awk '/^```/ { fenced = !fenced; next } !fenced { gsub(/`[^`]*`/, ""); print }' "$doc/$file" |
+        grep -o '](\([^)]*\))' | sed 's/](\(.*\))/\1/; s/#.*//' | while read -r link; do
+        case $link in http://* | https://* | "") continue ;; esac
+        [ -e "$doc/$(dirname "$file")/$link" ] || echo "$file links to $link"
+    done
+done > "$folder/dead"
+[ ! -s "$folder/dead" ] || { echo 'installed documents have dead links:'; cat "$folder/dead"; exit 1; }
+grep -q '](../../../include/masu.h)' "$doc/README.md" || { echo 'README.md: no link to masu.h'; exit 1; }
+if [ "${config:-release}" = release ]; then # a sanitized library needs its examples sanitized, too
+    cp -r "$doc/examples" "$folder/examples"
+    make -C "$folder/examples" PREFIX="$stage$prefix" CC="${CC:-gcc}" CFLAGS=-O0 > "$folder/said" 2>&1 ||
+        { cat "$folder/said" && exit 1; }
+    for f in minimal split_screen host_pass; do
+        [ -x "$folder/examples/$f" ] || { echo "$f is not built from the prefix"; exit 1; }
+    done
+fi
+
 # ---- Manual pages and completion -----------------------------------------------------------------
 
 bin=$stage$prefix/bin
@@ -148,5 +184,10 @@ if (cd "$folder/empty" && "$folder/apart/bin/masu" conform) > "$folder/out" 2>&1
 grep -q 'no baked scenes .*make scenes install.*--scenes' "$folder/out"
 
 make --no-print-directory uninstall DESTDIR="$stage" PREFIX=$prefix
-left=$(find "$stage" ! -type d; find "$stage" -type d -name masu ! -path "$stage$prefix")
-[ -z "$left" ] || { echo "uninstall leaves $left"; exit 1; }
+find "$stage" | sort | diff "$folder/before" - || { echo 'uninstall leaves something, or takes more'; exit 1; }
+# Into folders that were there before: they stay.
+mkdir -p "$stage$prefix/bin" "$stage$prefix/share/man"
+find "$stage" | sort > "$folder/before"
+make --no-print-directory install-lib install-docs DESTDIR="$stage" PREFIX=$prefix > "$folder/said"
+make --no-print-directory uninstall DESTDIR="$stage" PREFIX=$prefix
+find "$stage" | sort | diff "$folder/before" - || { echo 'uninstall leaves something, or takes more'; exit 1; }

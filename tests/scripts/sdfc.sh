@@ -35,7 +35,7 @@ printf 'part a = sphere(1);\npart b = shpere(1);\n' > "$folder/bad.sdf"
 
 expect 2 'no IN.sdf given' "$sdfc"
 expect 2 'more than one input' "$sdfc" a b
-expect 1 'cannot read .*none.sdf: No such file' "$sdfc" "$folder/none.sdf"
+expect 1 'none.sdf: cannot open: No such file' "$sdfc" "$folder/none.sdf"
 expect 1 'bad.sdf:2:10: expected a shape, found "shpere"' "$sdfc" "$folder/bad.sdf"
 [ "$(sed -n 2,3p "$folder/stderr")" = "masu-sdfc: part b = shpere(1);
 masu-sdfc:          ^" ] || fail "the line and its caret: $(cat "$folder/stderr")"

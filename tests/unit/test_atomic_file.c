@@ -13,11 +13,14 @@
 #include <cmocka.h>
 
 #include <dirent.h>
+#include <errno.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "bake/base/file.h"
+#include "cli/cli.h"
 #include "atomic_file.h"
 #include "image.h"
 #include "support/files.h"
@@ -119,6 +122,59 @@ static void the_draft_of_a_running_maker_stays(void **state) {
     assert_holds("x.png", "old"); /* it came last */
 }
 
+static void write_a_draft_and_catch(int wait) {
+    masu_atomic_file_catch_signals();
+    write_a_draft(wait);
+}
+
+/* Each ends the maker as it would without a handler. */
+static void a_maker_that_is_ended_takes_its_draft_along(void **state) {
+    (void)state;
+    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        end(start(write_a_draft_and_catch), numbers[i]);
+        assert_int_equal(entries(scratch), 0);
+    }
+}
+
+static void write_too_much(int wait) {
+    char error[200];
+    static char bytes[1 << 16];
+    (void)wait;
+    setrlimit(RLIMIT_FSIZE, &(struct rlimit){4096, 4096});
+    masu_atomic_file_catch_signals();
+    (void)!write(200, "x", 1);
+    bool good = masu_file_write(in_scratch("x.png"), bytes, sizeof bytes, error, sizeof error);
+    _exit(good || !strstr(error, strerror(EFBIG)));
+}
+
+static void a_file_beyond_the_limit_is_an_error_and_leaves_nothing(void **state) {
+    (void)state;
+    end(start(write_too_much), 0);
+    assert_int_equal(entries(scratch), 0);
+}
+
+static void write_to(int wait) {
+    (void)wait;
+    (void)!write(200, "x", 1);
+    signal(SIGSEGV, SIG_DFL); /* the test program catches it */
+    kill(getpid(), SIGSEGV);
+}
+
+static void statuses_are_words(void **state) {
+    (void)state;
+    int status = 0;
+    maker m = start(write_to);
+    close(m.go);
+    assert_int_equal(waitpid(m.child, &status, 0), m.child);
+    char expected[64];
+    snprintf(expected, sizeof expected, "ended by signal %d (SIGSEGV)", SIGSEGV);
+    assert_string_equal(masu_cli_status(status), expected);
+    assert_string_equal(masu_cli_status(system("exit 3")), "exit code 3");
+    assert_string_equal(masu_cli_status(system("exit 139")), "exit code 139, which stands for signal 11 (SIGSEGV)");
+    assert_string_equal(masu_cli_signal(SIGTERM), "signal 15 (SIGTERM)");
+}
+
 /* Names that are like a draft's are somebody's. */
 static void what_is_no_draft_stays(void **state) {
     (void)state;
@@ -165,6 +221,9 @@ static void the_folder_of_a_killed_maker_is_removed_by_the_next_and_no_other(voi
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(the_draft_of_a_killed_maker_is_removed_by_the_next, make_scratch, remove_scratch),
+        cmocka_unit_test_setup_teardown(a_maker_that_is_ended_takes_its_draft_along, make_scratch, remove_scratch),
+        cmocka_unit_test_setup_teardown(a_file_beyond_the_limit_is_an_error_and_leaves_nothing, make_scratch, remove_scratch),
+        cmocka_unit_test_setup_teardown(statuses_are_words, make_scratch, remove_scratch),
         cmocka_unit_test_setup_teardown(the_draft_of_a_running_maker_stays, make_scratch, remove_scratch),
         cmocka_unit_test_setup_teardown(what_is_no_draft_stays, make_scratch, remove_scratch),
         cmocka_unit_test_setup_teardown(the_folder_of_a_killed_maker_is_removed_by_the_next_and_no_other, make_scratch,

@@ -2,6 +2,8 @@
  * which cases are chosen, what makes a verdict, and reports that other programs can read. */
 #include "cli/markup.h"
 #include "conform/report.h"
+#include "settings/knobs.h"
+#include "image.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -519,6 +521,57 @@ static void the_shipped_suites_are_good(void **state) {
     }
 }
 
+/* Out of the table, so that a new knob is not forgotten: every switch and every other choice is set by a case. */
+static void every_choice_is_in_a_suite(void **state) {
+    (void)state;
+    static const char *const files[] = {"suites/smoke.json", "suites/full.json", "suites/extreme.json"};
+    masu_suite suites[3];
+    for (int i = 0; i < 3; i++) {
+        uint8_t *text;
+        size_t bytes;
+        assert_true(masu_file_read(files[i], (size_t)4 << 20, &text, &bytes, error, sizeof error));
+        if (!masu_suite_parse(files[i], (const char *)text, bytes, &suites[i], error, sizeof error))
+            fail_msg("%s", error);
+        free(text);
+    }
+    const masu_rung none = {0};
+    for (const masu_knob *k = masu_knob_table(); k->name; k++) {
+        uint32_t cases = 0;
+        for (int i = 0; i < 3 && k->words; i++) {
+            for (uint32_t c = 0; c < suites[i].count; c++) {
+                const masu_case *of = &suites[i].cases[c];
+                for (uint32_t r = 0; r < of->rung_count; r++) cases += masu_knob_differs(k, &of->rungs[r], &none);
+            }
+        }
+        if (k->words && !cases) fail_msg("no case of a suite sets %s", k->name);
+    }
+    for (int i = 0; i < 3; i++) masu_suite_free(&suites[i]);
+}
+
+/* What was not run is an error in every report, with its reason; a complete file. */
+static void a_case_that_was_not_run_is_an_error(void **state) {
+    (void)state;
+    char *text = NULL;
+    size_t bytes = 0;
+    masu_conform_result results[2];
+    accepts(parse("{\"format\": 1, \"defaults\": {\"scene\": \"s\", \"size\": [8, 4]}, \"cases\": [{\"name\": \"a\"}, {\"name\": \"b\"}]}"));
+    masu_conform_not_run(&suite.cases[0], "the program ended\nduring this case", &results[0]);
+    masu_conform_not_run(&suite.cases[1], "", &results[1]);
+    results[1].verdict = MASU_VERDICT_PASS;
+    assert_true(masu_verdict_failed(MASU_VERDICT_NOT_RUN));
+    FILE *f = open_memstream(&text, &bytes);
+    masu_conform_junit(f, &suite, results, 2, "d");
+    masu_conform_csv(f, &suite, results, 2, "d");
+    masu_conform_sum(f, results, 2);
+    fclose(f);
+    assert_non_null(strstr(text, "tests=\"2\" failures=\"0\" errors=\"1\" skipped=\"0\""));
+    assert_non_null(strstr(text, "<error message=\"the program ended during this case\" type=\"not run\"/>"));
+    assert_non_null(strstr(text, "\"a\",\"s\",8,4,not run,"));
+    assert_non_null(strstr(text, "2 cases: 1 passed, 0 quality warnings, 0 not supported, 0 resource errors, 0 failed, 1 not run"));
+    free(text);
+    masu_suite_free(&suite);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_whole_case_is_read),
@@ -533,6 +586,8 @@ int main(void) {
         cmocka_unit_test(names_are_escaped),
         cmocka_unit_test(reports_count_what_there_is),
         cmocka_unit_test(the_shipped_suites_are_good),
+        cmocka_unit_test(every_choice_is_in_a_suite),
+        cmocka_unit_test(a_case_that_was_not_run_is_an_error),
     };
     return cmocka_run_group_tests_name("conform", tests, NULL, NULL);
 }

@@ -25,6 +25,8 @@
 #include "bake/build/build.h"
 #include "bake/write/write.h"
 #include "cli/cli.h"
+#include "file_kind.h"
+#include "image.h"
 #include "masu.h"
 
 #include <string.h>
@@ -84,7 +86,24 @@ static bool bake(const masu_bake_options *options) {
 
 static int bake_in_child(const void *options) { return bake(options) ? MASU_CLI_OK : MASU_CLI_FAILURE; }
 
+/* Found out before the work: *code is the exit code. */
+static bool can_write(const masu_bake_options *o, int *code) {
+    char error[4096];
+    if (o->output && !masu_file_named(o->output, ".masu", error, sizeof error)) {
+        *code = masu_cli_usage_error("--output: %s", error);
+        return false;
+    }
+    for (int i = 0; i < 2; i++) {
+        const char *path = i ? o->stats : o->output;
+        if (!path || masu_file_writable(path, error, sizeof error)) continue;
+        *code = masu_cli_error("%s", error);
+        return false;
+    }
+    return true;
+}
+
 static int run(masu_cli *cli) {
+    int code;
     masu_bake_options o = {.models_directory = ASSIMP_MODELS};
     masu_bake_supervised work = {.body = bake_in_child,
                                  .argument = &o,
@@ -119,9 +138,10 @@ static int run(masu_cli *cli) {
             break;
         case MASU_CLI_EXIT: return cli->exit_code;
         case MASU_CLI_END:
-            if (!o.input) return masu_cli_usage_error("no MODEL or SCENE.json given");
+            if (!o.input) return masu_cli_usage_error("no MODEL, SCENE.json or FIELD.sdf given");
             if (!o.output && !o.probe_report)
                 return masu_cli_usage_error("no output given; add -o X.masu");
+            if (!can_write(&o, &code)) return code;
             work.about = o.input;
             masu_bake_inside_also(o.texture_path);
             work.output = o.output;
@@ -160,13 +180,14 @@ int main(int argc, char **argv) {
         {NULL, NULL, NULL, 0, 0},
     };
     static const masu_cli_command command = {
-        .arguments = "MODEL|SCENE.json -o X.masu [options]",
-        .summary = "turns a model or a scene description into a .masu blob",
+        .arguments = "MODEL|SCENE.json|FIELD.sdf -o X.masu [options]",
+        .summary = "turns a model, a scene description or an SDF into a .masu blob",
         .options = options,
         .details =
             "A MODEL is a model file (.glb, .gltf, .obj, .ac, ...). It gets a "
             "camera\n"
-            "that frames it, a ground, sun and sky, shadows and reflections. A SCENE.json places models, a camera path, light "
+            "that frames it, a ground, sun and sky, shadows and reflections. A FIELD.sdf (docs/sdf.md) gets a\n"
+            "camera, sun and sky, shadows and ambient occlusion. A SCENE.json places models, a camera path, light "
             "and\n"
             "an SDF; docs/scene.md describes it. An SDF needs glslangValidator, spirv-val and\n"
             "spirv-opt. The same input gives the same bytes.\n\n"

@@ -2,6 +2,7 @@
 #include "bench/against.h"
 
 #include "bench/sweep.h"
+#include "image.h"
 
 #include <jansson.h>
 #include <math.h>
@@ -22,7 +23,8 @@ static bool fail(char *error, size_t size, const char *folder, const char *text)
 
 static json_t *load(const char *folder, const char *name, char *error, size_t error_size) {
     char path[4096];
-    json_t *root = masu_sweep_path(folder, name, path) ? json_load_file(path, 0, NULL) : NULL;
+    bool regular = masu_sweep_path(folder, name, path) && masu_file_is_regular(path);
+    json_t *root = regular ? json_load_file(path, 0, NULL) : NULL;
     if (json_is_object(root)) return root;
     json_decref(root);
     snprintf(error, error_size, "%.2000s: cannot read %s: expected a finished folder of masu bench",

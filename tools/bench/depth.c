@@ -256,9 +256,7 @@ bool masu_depth_measure(masu_depth_bench *b, const masu_rung *rungs, uint32_t co
 }
 
 static bool truth_file(const char *scene_path, char path[4096]) {
-    FILE *f = masu_truth_path(scene_path, path, 4096) ? fopen(path, "rb") : NULL;
-    if (f) fclose(f);
-    return f != NULL;
+    return masu_truth_path(scene_path, path, 4096) && masu_file_exists(path);
 }
 
 bool masu_depth_has_truth(const char *scene_path, const masu_scene *scene) {

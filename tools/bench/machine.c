@@ -5,6 +5,7 @@
 #include "bench/sweep.h"
 #include "image.h"
 
+#include <inttypes.h>
 #include <jansson.h>
 #include <sched.h>
 #include <stdio.h>
@@ -46,6 +47,19 @@ void masu_machine_here(const char *driver, masu_machine *out) {
     if (gmtime_r(&seconds, &utc)) strftime(out->date, sizeof out->date, "%Y-%m-%d %H:%M UTC", &utc);
 }
 
+void masu_machine_build(char out[17]) {
+    uint8_t *program;
+    size_t bytes;
+    uint64_t hash = 14695981039346656037u; /* FNV-1a */
+    out[0] = '\0';
+    if (!masu_file_read("/proc/self/exe", (size_t)1 << 30, &program, &bytes, NULL, 0)) return;
+    for (size_t i = 0; i < bytes; i++) hash = (hash ^ program[i]) * 1099511628211u;
+    free(program);
+    snprintf(out, 17, "%016" PRIx64, hash);
+}
+
+#define MACHINE_BYTES_MAX ((size_t)16 << 20)
+
 /* An empty array where there is no file. NULL: it is something else. */
 static json_t *load(const char *folder, char path[4096], char *error, size_t error_size) {
     json_error_t why;
@@ -53,10 +67,12 @@ static json_t *load(const char *folder, char path[4096], char *error, size_t err
         snprintf(error, error_size, "%.2000s: the path is too long", folder);
         return NULL;
     }
-    FILE *f = fopen(path, "r");
-    if (!f) return json_array();
-    json_t *list = json_loadf(f, 0, &why);
-    fclose(f);
+    uint8_t *text = NULL;
+    size_t bytes = 0;
+    if (!masu_file_exists(path)) return json_array();
+    if (!masu_file_read(path, MACHINE_BYTES_MAX, &text, &bytes, error, error_size)) return NULL;
+    json_t *list = json_loadb((const char *)text, bytes, 0, &why);
+    free(text);
     if (json_is_array(list)) return list;
     json_decref(list);
     snprintf(error, error_size, "%.2000s: expected a list of runs", path);

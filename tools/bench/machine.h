@@ -37,4 +37,7 @@ bool masu_machine_merge(const char *folder, const char *part, char *error, size_
 /* Run i, 0 the first. False: there are not as many, or no file. */
 bool masu_machine_read(const char *folder, uint32_t i, masu_machine *out);
 
+/* A hash of the running program's file; "" if the system does not say. */
+void masu_machine_build(char out[17]);
+
 #endif

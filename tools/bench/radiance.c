@@ -43,10 +43,8 @@ static void close_session(masu_radiance_bench *b) {
 static bool load(masu_radiance_bench *b, bool *there) {
     struct masu_image image;
     VkExtent2D size = b->d.session.desc.output;
-    FILE *f = fopen(b->d.reflections, "rb");
-    *there = f != NULL;
-    if (!f) return true;
-    fclose(f);
+    *there = masu_file_exists(b->d.reflections);
+    if (!*there) return true;
     if (!masu_image_load_pfm(b->d.reflections, &image, b->error, b->error_size)) return false;
     bool fits = image.width == size.width && image.height == size.height && image.channels == 3;
     if (fits) memcpy(b->reflections, image.values, 3 * sizeof(float) * b->pixels);

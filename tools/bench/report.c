@@ -70,7 +70,7 @@ static bool read_all(report *r) {
     char path[4096];
     uint32_t kept = 0;
     if (!masu_sweep_path(r->folder, "sweep.json", path)) return failed(r, "the path is too long");
-    r->sweep = json_load_file(path, 0, NULL);
+    r->sweep = masu_file_is_regular(path) ? json_load_file(path, 0, NULL) : NULL;
     if (!r->sweep) return failed(r, "cannot read sweep.json");
     r->rows = masu_sweep_rows(r->folder, &r->count, r->error, r->error_size);
     if (!r->rows) return false;

@@ -18,6 +18,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 /* At rest before flicker is measured, over how many differences; not timed before each turn. */
 enum { SETTLE_FRAMES = 24, FLICKER_FRAMES = 8, FAST_FRAMES = 8, WARM_FRAMES = 2, BATCH = MASU_MAX_RUNGS - 1 };
@@ -38,7 +39,8 @@ typedef struct sweep {
     masu_samples samples[MASU_MAX_RUNGS];
     uint64_t hash, start;
     uint32_t pending; /* still to be measured when the run began */
-    char driver[1024];
+    char driver[1024], build[17];
+    int lock; /* of the folder, an open file; -1: none */
     char *error;
     size_t error_size;
 } sweep;
@@ -133,12 +135,6 @@ static bool draw_truth(sweep *w, uint8_t *rgba) {
     return good;
 }
 
-static bool exists(const char *path) {
-    FILE *f = fopen(path, "rb");
-    if (f) fclose(f);
-    return f != NULL;
-}
-
 /* Beside the truth's picture: TRUTH.png, TRUTH.pfm, TRUTH.specular.pfm. */
 static bool beside(const char *picture, const char *suffix, char out[4096]) {
     size_t n = strlen(picture);
@@ -159,8 +155,8 @@ static bool load_radiance(sweep *w, const char *path) {
 /* Both of them, or both are drawn: a picture that is there stays, whatever is drawn beside it. */
 static bool read_or_draw(sweep *w, const char *picture, const char *radiance) {
     VkExtent2D size = w->d->size;
-    bool there = exists(picture);
-    if (there && exists(radiance)) {
+    bool there = masu_file_exists(picture);
+    if (there && masu_file_exists(radiance)) {
         return masu_picture_load(picture, size, w->truth, w->error, w->error_size) &&
                load_radiance(w, radiance);
     }
@@ -442,6 +438,7 @@ static bool run_batch(sweep *w, batch *b) {
     good = good && draw_alone(w, b) && look_behind(w, b);
     good = good && note_machine(w);
     for (uint32_t k = b->base_too ? 0 : 1; k < b->count && good; k++) {
+        memcpy(b->rows[k].build, w->build, sizeof w->build);
         good = masu_sweep_append(w->d->folder, MASU_SWEEP_RESULTS, &b->rows[k], w->error,
                                  w->error_size);
         w->out->measured += good;
@@ -533,8 +530,9 @@ static bool measure(sweep *w) {
     if (!rows) return false;
     if (!count) masu_machine_forget(w->d->folder);
     w->pending = mine(w, rows, count, list);
+    bool alone = !w->pending || masu_sweep_one_build(rows, count, w->build, w->d->folder, w->error, w->error_size);
     free(rows);
-    if (!w->pending) return true;
+    if (!w->pending || !alone) return alone;
     if (!find_truth(w) || !open_behind(w)) return false;
     w->start = masu_clock_ns(NULL);
     for (uint32_t i = 0; i < w->pending;) {
@@ -589,6 +587,8 @@ static bool steady(sweep *w, const masu_setting_list *list) {
         masu_sweep_steady_rows(w->d->folder, &there_count, w->error, w->error_size);
     bool good = rows && there;
     w->pending = good ? unsteady(w, list, rows, count, there, there_count, of) : 0;
+    good = good && (!w->pending ||
+                    masu_sweep_one_build(rows, count, w->build, w->d->folder, w->error, w->error_size));
     w->start = masu_clock_ns(NULL);
     for (uint32_t i = 0; i < w->pending && good;) {
         b.of[0] = 0;
@@ -611,9 +611,19 @@ static void begin(sweep *w, const masu_sweep_desc *desc, masu_sweep_result *out,
     w->error = error;
     w->error_size = error_size;
     w->pixels = desc->size.width * desc->size.height;
+    w->lock = -1;
+    masu_machine_build(w->build);
+}
+
+static bool end(sweep *w, bool good) {
+    if (w->lock >= 0) (void)close(w->lock);
+    w->lock = -1;
+    return good;
 }
 
 static bool begin_folder(sweep *w) {
+    w->lock = masu_sweep_lock(w->d->folder, w->error, w->error_size);
+    if (w->lock < 0) return false;
     const masu_sweep_about about = {.driver = w->driver,
                                     .depth = !w->surfaces     ? "nothing (no surfaces)"
                                              : w->depth_truth ? "the field in double precision"
@@ -630,7 +640,7 @@ bool masu_sweep_steady(const masu_sweep_desc *desc, const masu_setting_list *lis
     begin(&w, desc, out, error, error_size);
     bool good = plan_settings(&w) && begin_folder(&w) && steady(&w, list);
     close_session(&w);
-    return good;
+    return end(&w, good);
 }
 
 bool masu_sweep_run(const masu_sweep_desc *desc, masu_sweep_result *out, char *error,
@@ -650,5 +660,5 @@ bool masu_sweep_run(const masu_sweep_desc *desc, masu_sweep_result *out, char *e
     free(w.before);
     free(w.map);
     free(w.true_radiance);
-    return good;
+    return end(&w, good);
 }

@@ -5,10 +5,13 @@
 #include "image.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <jansson.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #define TEXT_MAX ((size_t)64 << 20)
 
@@ -82,11 +85,6 @@ static char *describe(const masu_sweep_desc *d, const masu_sweep_about *about) {
     return text;
 }
 
-static bool make_folder(const char *path, char *error, size_t error_size) {
-    if (!mkdir(path, 0777) || errno == EEXIST) return true;
-    return fail(error, error_size, path, strerror(errno));
-}
-
 static bool begin_with(const char *folder, const char *text, char *error, size_t error_size) {
     char json[4096], csv[4096], pictures[4096];
     if (!masu_sweep_path(folder, "pictures", pictures) ||
@@ -94,7 +92,7 @@ static bool begin_with(const char *folder, const char *text, char *error, size_t
         !masu_sweep_path(folder, "sweep.json", json)) {
         return fail(error, error_size, folder, "the path is too long");
     }
-    if (!make_folder(folder, error, error_size) || !make_folder(pictures, error, error_size))
+    if (!masu_folder_make(folder, error, error_size) || !masu_folder_make(pictures, error, error_size))
         return false;
     char *old = read_text(json);
     bool same = old && !strcmp(old, text), other = old && !same;
@@ -116,6 +114,30 @@ bool masu_sweep_begin(const masu_sweep_desc *d, const masu_sweep_about *about, c
     return good;
 }
 
+/* ---- One program ----------------------------------------------------------------------------- */
+
+bool masu_sweep_one_build(const masu_row *rows, uint32_t count, const char *build, const char *path, char *error,
+                          size_t error_size) {
+    for (uint32_t i = 0; i < count; i++) {
+        if (!strcmp(rows[i].build, build)) continue;
+        snprintf(error, error_size, "%.2000s: %s was measured by another build of the program: found %s, expected %s; use "
+                 "another folder, or remove this one", path, rows[i].setting,
+                 *rows[i].build ? rows[i].build : "an unknown one", *build ? build : "an unknown one");
+        return false;
+    }
+    return true;
+}
+
+int masu_sweep_lock(const char *folder, char *error, size_t error_size) {
+    if (!masu_folder_make(folder, error, error_size)) return -1;
+    int file = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (file >= 0 && (flock(file, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK)) return file;
+    bool busy = file >= 0;
+    fail(error, error_size, folder, busy ? "another masu bench is writing to this folder" : strerror(errno));
+    if (busy) (void)close(file);
+    return -1;
+}
+
 /* ---- results.csv, steady.csv ----------------------------------------------------------------- */
 
 static masu_row *rows_of(const char *folder, const char *name, uint32_t *count, char *error,
@@ -130,6 +152,10 @@ static masu_row *rows_of(const char *folder, const char *name, uint32_t *count, 
     masu_row *rows = text ? masu_rows_read(text, count, why, sizeof why) : calloc(1, sizeof *rows);
     if (!rows) fail(error, error_size, path, text ? why : "out of memory");
     free(text);
+    if (rows && *count && !masu_sweep_one_build(rows, *count, rows[0].build, path, error, error_size)) {
+        free(rows);
+        return NULL;
+    }
     return rows;
 }
 
@@ -163,12 +189,16 @@ masu_row *masu_sweep_rows(const char *folder, uint32_t *count, char *error, size
         free(rows);
         return NULL;
     }
-    for (uint32_t i = 0; i < *count; i++) {
+    bool good = !again_count || !*count ||
+                masu_sweep_one_build(again, again_count, rows[0].build, folder, error, error_size);
+    for (uint32_t i = 0; i < *count && good; i++) {
         const masu_row *row = masu_rows_find(again, again_count, rows[i].setting);
         if (row) take_times(&rows[i], row);
     }
     free(again);
-    return rows;
+    if (good) return rows;
+    free(rows);
+    return NULL;
 }
 
 static bool write_rows(const char *folder, const char *name, const masu_row *rows, uint32_t count,
@@ -190,17 +220,12 @@ static bool write_rows(const char *folder, const char *name, const masu_row *row
     return good;
 }
 
-static bool exists(const char *path) {
-    struct stat st;
-    return !stat(path, &st);
-}
-
 /* A clone of the project has the rows of its reports, but not their pictures. */
 static uint32_t keep_drawn(const char *folder, masu_row *rows, uint32_t count) {
     char path[4096];
     uint32_t kept = 0;
     for (uint32_t i = 0; i < count; i++) {
-        if (masu_sweep_picture(folder, rows[i].setting, "", path) && exists(path))
+        if (masu_sweep_picture(folder, rows[i].setting, "", path) && masu_file_exists(path))
             rows[kept++] = rows[i];
     }
     return kept;
@@ -220,7 +245,7 @@ static uint32_t keep_known(const masu_row *known, uint32_t known_count, masu_row
 static bool rewrite(const char *folder, const char *name, const masu_row *rows, uint32_t count,
                     char *error, size_t error_size) {
     char path[4096];
-    return (masu_sweep_path(folder, name, path) && !exists(path)) ||
+    return (masu_sweep_path(folder, name, path) && !masu_file_exists(path)) ||
            write_rows(folder, name, rows, count, error, error_size);
 }
 
@@ -247,7 +272,9 @@ bool masu_sweep_append(const char *folder, const char *name, const masu_row *row
     char path[4096];
     if (!masu_sweep_path(folder, name, path))
         return fail(error, error_size, folder, "the path is too long");
-    FILE *f = fopen(path, "a");
+    int file = open(path, O_WRONLY | O_APPEND | O_CREAT | O_NONBLOCK | O_CLOEXEC, 0666); /* no waiting for a FIFO */
+    FILE *f = file >= 0 ? fdopen(file, "a") : NULL;
+    if (!f && file >= 0) (void)close(file);
     if (!f) return fail(error, error_size, path, strerror(errno));
     bool good = !fseek(f, 0, SEEK_END) && (ftell(f) > 0 || masu_rows_header(f) > 0) &&
                 masu_rows_write(f, row) > 0;
@@ -287,6 +314,7 @@ static bool merge_part(const char *folder, const char *part, merged *all, char *
     masu_row *steady =
         rows ? masu_sweep_steady_rows(part, &steady_count, error, error_size) : NULL;
     bool good = steady != NULL;
+    good = good && (!all->count || masu_sweep_one_build(rows, n, all->rows[0].build, part, error, error_size));
     for (uint32_t i = 0; i < n && good; i++) {
         if (masu_rows_find(all->rows, all->count, rows[i].setting)) continue;
         if (all->count == MASU_SETTINGS_MOST)
@@ -305,7 +333,7 @@ static bool merge_part(const char *folder, const char *part, merged *all, char *
     static const char *const truths[] = {"truth.png", "truth.pfm", "truth.specular.pfm"};
     for (size_t i = 0; i < sizeof truths / sizeof *truths && good; i++) {
         good = masu_sweep_path(part, truths[i], from) && masu_sweep_path(folder, truths[i], to) &&
-               (exists(to) || !exists(from) || copy(from, to, error, error_size));
+               (masu_file_exists(to) || !masu_file_exists(from) || copy(from, to, error, error_size));
     }
     return good;
 }

@@ -9,19 +9,19 @@
 typedef struct column {
     const char *name;
     size_t offset;
-    bool text;
+    size_t text; /* its room; 0: a number */
 } column;
 
 static const column columns[] = {
-#define TEXT(name) {#name, offsetof(masu_row, name), true},
-#define NUMBER(name) {#name, offsetof(masu_row, name), false},
-    MASU_ROW_TEXTS(TEXT) MASU_ROW_NUMBERS(NUMBER)
+#define TEXT(name) {#name, offsetof(masu_row, name), sizeof((masu_row *)0)->name},
+#define NUMBER(name) {#name, offsetof(masu_row, name), 0},
+    MASU_ROW_TEXTS(TEXT) MASU_ROW_NUMBERS(NUMBER) TEXT(build)
 #undef TEXT
 #undef NUMBER
 };
 
-/* The last two came later. */
-enum { COLUMNS = sizeof columns / sizeof *columns, COLUMNS_BEFORE = COLUMNS - 2 };
+/* The last came later, and before it the two in front of it. */
+enum { COLUMNS = sizeof columns / sizeof *columns, COLUMNS_BEFORE = COLUMNS - 1, COLUMNS_FIRST = COLUMNS - 3 };
 
 int masu_rows_header(FILE *f) {
     for (uint32_t c = 0; c < COLUMNS; c++) {
@@ -36,7 +36,7 @@ int masu_rows_write(FILE *f, const masu_row *row) {
         double number = 0.0;
         if (!columns[c].text) memcpy(&number, at, sizeof number);
         int n =
-            columns[c].text ? fprintf(f, "%s%s", comma, at) : fprintf(f, "%s%.9g", comma, number);
+            columns[c].text ? fprintf(f, "%s%s", comma, *at ? at : "unknown") : fprintf(f, "%s%.9g", comma, number);
         if (n < 0) return -1;
     }
     return fprintf(f, "\n");
@@ -60,7 +60,7 @@ static bool parse(const char *line, uint32_t count, masu_row *out) {
         char *to = (char *)out + columns[c].offset, *end;
         if (!n || (line[n] == ',') != (c + 1 < count)) return false;
         if (columns[c].text) {
-            if (!is_name(line, n)) return false;
+            if (!is_name(line, n) || n >= columns[c].text) return false;
             memcpy(to, line, n);
         } else {
             double number = strtod(line, &end);
@@ -69,6 +69,7 @@ static bool parse(const char *line, uint32_t count, masu_row *out) {
         }
         line += n + (line[n] == ',');
     }
+    if (!strcmp(out->build, "unknown")) out->build[0] = '\0';
     return true;
 }
 
@@ -76,10 +77,10 @@ double masu_row_error(const masu_row *row) {
     return isfinite(row->rest_flip) ? 0.5 * (row->flip + row->rest_flip) : row->flip;
 }
 
-/* How many columns it names: all, or all that there were before. 0: neither. */
+/* How many columns it names: all, or all that there once were. 0: neither. */
 static uint32_t columns_of(const char *text, size_t n) {
     uint32_t c = 0;
-    for (; c < COLUMNS && (n || c != COLUMNS_BEFORE); c++) {
+    for (; c < COLUMNS && (n || (c != COLUMNS_BEFORE && c != COLUMNS_FIRST)); c++) {
         size_t length = strlen(columns[c].name) + (c != 0);
         if (n < length || (c && *text != ',') ||
             strncmp(text + (c != 0), columns[c].name, length - (c != 0)) != 0) {

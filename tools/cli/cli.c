@@ -2,12 +2,17 @@
 #define _POSIX_C_SOURCE 200809L
 #include "cli/cli.h"
 
+#include "atomic_file.h"
+
 #include <errno.h>
+#include <fcntl.h>
 #include <math.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 enum { OPTION_HELP = -10, OPTION_VERSION = -11, OPTION_QUIET = -12 };
@@ -316,7 +321,45 @@ bool masu_cli_choice(const masu_cli *cli, const char *const *names, uint32_t *in
     return false;
 }
 
+/* ---- signals ---- */
+
+const char *masu_cli_signal(int number) {
+    static const struct {
+        int number;
+        const char *name;
+    } names[] = {{SIGHUP, "HUP"},   {SIGINT, "INT"},   {SIGQUIT, "QUIT"}, {SIGILL, "ILL"},
+                 {SIGTRAP, "TRAP"}, {SIGABRT, "ABRT"}, {SIGBUS, "BUS"},   {SIGFPE, "FPE"},
+                 {SIGKILL, "KILL"}, {SIGSEGV, "SEGV"}, {SIGPIPE, "PIPE"}, {SIGALRM, "ALRM"},
+                 {SIGTERM, "TERM"}, {SIGXCPU, "XCPU"}, {SIGXFSZ, "XFSZ"}, {SIGSYS, "SYS"},
+                 {SIGUSR1, "USR1"}, {SIGUSR2, "USR2"}};
+    static char text[40];
+    snprintf(text, sizeof text, "signal %d", number);
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        if (names[i].number == number) snprintf(text, sizeof text, "signal %d (SIG%s)", number, names[i].name);
+    }
+    return text;
+}
+
+const char *masu_cli_status(int status) {
+    static char text[80];
+    int code = WIFEXITED(status) ? WEXITSTATUS(status) : 0;
+    if (WIFSIGNALED(status)) snprintf(text, sizeof text, "ended by %s", masu_cli_signal(WTERMSIG(status)));
+    else if (code > 128 && code < 128 + 32) /* as a shell reports the end of its command */
+        snprintf(text, sizeof text, "exit code %d, which stands for %s", code, masu_cli_signal(code - 128));
+    else snprintf(text, sizeof text, "exit code %d", code);
+    return text;
+}
+
 /* ---- main ---- */
+
+/* A stream that was closed would give its number to the next file that is opened, and what is printed would go
+ * there. The modes are such that its use still fails. */
+static void keep_streams(void) {
+    for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; stream++) {
+        if (fcntl(stream, F_GETFD) >= 0 || errno != EBADF) continue;
+        if (open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY) != stream) abort();
+    }
+}
 
 /* "help a b" as "a b --help", behind the word `help`, which has been read. */
 static void turn_help(masu_cli *cli) {
@@ -362,6 +405,8 @@ int masu_cli_end(int exit_code) {
 
 int masu_cli_main(const masu_cli_program *program, int argc, char **argv) {
     masu_cli cli = {.program = program, .argc = argc, .next = 1, .argv = argv};
+    keep_streams();
+    masu_atomic_file_catch_signals();
     snprintf(state.name, sizeof state.name, "%s", program->name);
     cli.command = program->commands[0];
     int exit_code = cli.command->name ? masu_cli_commands(&cli, program->summary, program->commands)

@@ -93,7 +93,8 @@ struct masu_cli {
 };
 
 /* The body of main: finds the command, runs it, clears the progress line, and makes a failed write
- * to stdout (a full disk) exit code 1. */
+ * to stdout (a full disk, a closed one) exit code 1. A signal that ends the program removes its
+ * temporary files (atomic_file.h). */
 int masu_cli_main(const masu_cli_program *program, int argc, char **argv);
 
 /* Its end by itself, for a child that leaves by exit(): returns the exit code. */
@@ -123,6 +124,12 @@ void masu_cli_plain(char *text);
  * usage form adds "(see NAME --help)". */
 int masu_cli_error(const char *format, ...) MASU_CLI_PRINTF(1, 2);
 int masu_cli_usage_error(const char *format, ...) MASU_CLI_PRINTF(1, 2);
+
+/* "signal 11 (SIGSEGV)", for messages; valid until the next call. */
+const char *masu_cli_signal(int number);
+
+/* A status of waitpid or system: "ended by signal 11 (SIGSEGV)", "exit code 3"; valid until the next call. */
+const char *masu_cli_status(int status);
 
 /* "NAME: warning: ...", with --quiet too. */
 void masu_cli_warn(const char *format, ...) MASU_CLI_PRINTF(1, 2);

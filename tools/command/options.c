@@ -4,6 +4,7 @@
 #include "settings/knobs.h"
 #include "settings/ladder_file.h"
 #include "settings/setting.h"
+#include "file_kind.h"
 #include "image.h"
 
 #include <math.h>
@@ -23,9 +24,13 @@ static bool read_size(const masu_cli *cli, VkExtent2D *size) {
     return false;
 }
 
-static bool read_file(masu_cli *cli, const char **path) {
+static bool read_file(masu_cli *cli, const char **path, const char *end) {
     char error[4096];
     *path = cli->value;
+    if (end && !masu_file_named(cli->value, end, error, sizeof error)) {
+        cli->exit_code = masu_cli_usage_error("%s: %s", cli->option, error);
+        return false;
+    }
     if (masu_file_writable(cli->value, error, sizeof error)) return true;
     cli->exit_code = masu_cli_error("%s", error);
     return false;
@@ -55,8 +60,9 @@ static bool read_row(masu_cli *cli, const masu_option *row, void *options) {
     case MASU_TAKE_SIZE: return read_size(cli, to);
     case MASU_TAKE_OUTPUT:
         if (!strcmp(cli->value, "-")) return *(const char **)to = cli->value, true;
-        return read_file(cli, to);
-    case MASU_TAKE_FILE: return read_file(cli, to);
+        return read_file(cli, to, NULL);
+    case MASU_TAKE_FILE: return read_file(cli, to, NULL);
+    case MASU_TAKE_PNG: return read_file(cli, to, ".png");
     case MASU_TAKE_CHOICE: return masu_cli_choice(cli, row->names, to);
     case MASU_TAKE_KNOB: return read_knob(cli, row->knob, to);
     case MASU_TAKE_OWN: return row->read(cli, options);

@@ -40,20 +40,20 @@ json_t *masu_json_memory(const masu_memory *m) {
                      (json_int_t)m->transient_lower_bound, "roles", roles);
 }
 
+int masu_text_write(const char *path, const char *text, size_t bytes) {
+    char error[4096];
+    if (!strcmp(path, "-")) return fwrite(text, 1, bytes, stdout), MASU_CLI_OK; /* masu_cli_end looks at it */
+    if (masu_file_write(path, text, bytes, error, sizeof error)) return MASU_CLI_OK;
+    return masu_cli_error("%s", error);
+}
+
 int masu_json_write(json_t *json, const char *path) {
     char *text = json_dumps(json, JSON_INDENT(2));
     json_decref(json);
     if (!text) return masu_cli_error("%s: out of memory for the JSON text", path);
-    int code = MASU_CLI_OK;
-    if (!strcmp(path, "-")) {
-        printf("%s\n", text);
-    } else {
-        char error[512];
-        size_t n = strlen(text);
-        text[n] = '\n'; /* over the terminator: the file needs none */
-        if (!masu_file_write(path, text, n + 1, error, sizeof error))
-            code = masu_cli_error("%s", error);
-    }
+    size_t n = strlen(text);
+    text[n] = '\n'; /* over the terminator: the file needs none */
+    int code = masu_text_write(path, text, n + 1);
     free(text);
     return code;
 }

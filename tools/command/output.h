@@ -7,6 +7,7 @@
 #include "session.h"
 
 #include <jansson.h>
+#include <stddef.h>
 
 /* Prints a validation message to stderr as a warning. A command that had any ends with
  * masu_finish_validation, which makes its exit code 1. */
@@ -17,6 +18,8 @@ int masu_finish_validation(const masu_headless *host, int code);
 json_t *masu_json_device(const masu_headless *host);
 json_t *masu_json_memory(const masu_memory *memory);
 
+/* Writes a file atomically, or to stdout for "-". Returns an exit code, having reported a failure. */
+int masu_text_write(const char *path, const char *text, size_t bytes);
 /* Prints to a file atomically, or to stdout for "-". Returns an exit code, having reported a
  * failure. Takes the reference. */
 int masu_json_write(json_t *json, const char *path);

@@ -72,11 +72,13 @@ void masu_conform_sum(FILE *f, const masu_conform_result *results, uint32_t n) {
     masu_conform_tally(results, n, t);
     fprintf(f,
             "%u case%s: %u passed, %u quality warning%s, %u not supported, %u resource error%s, "
-            "%u failed in %.1f s\n",
+            "%u failed",
             n, n == 1 ? "" : "s", t[MASU_VERDICT_PASS], t[MASU_VERDICT_WARNING],
             t[MASU_VERDICT_WARNING] == 1 ? "" : "s", t[MASU_VERDICT_UNSUPPORTED],
             t[MASU_VERDICT_RESOURCE], t[MASU_VERDICT_RESOURCE] == 1 ? "" : "s",
-            t[MASU_VERDICT_FAIL], seconds(results, n));
+            t[MASU_VERDICT_FAIL]);
+    if (t[MASU_VERDICT_NOT_RUN]) fprintf(f, ", %u not run", t[MASU_VERDICT_NOT_RUN]);
+    fprintf(f, " in %.1f s\n", seconds(results, n));
 }
 
 /* ---- Files ----------------------------------------------------------------------------------- */
@@ -193,7 +195,8 @@ static void property(FILE *f, const char *name, const char *value) {
 static void junit_case(FILE *f, const masu_suite *suite, const masu_conform_result *r) {
     static const char *const tags[MASU_VERDICT_COUNT] = {[MASU_VERDICT_UNSUPPORTED] = "skipped",
                                                          [MASU_VERDICT_RESOURCE] = "error",
-                                                         [MASU_VERDICT_FAIL] = "failure"};
+                                                         [MASU_VERDICT_FAIL] = "failure",
+                                                         [MASU_VERDICT_NOT_RUN] = "error"};
     char name[200], token[256];
     snprintf(name, sizeof name, "%s (%ux%u)", r->of->name, r->of->width, r->of->height);
     fputs("    <testcase classname=\"conform\"", f);
@@ -232,7 +235,7 @@ void masu_conform_junit(FILE *f, const masu_suite *suite, const masu_conform_res
     fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n  <testsuite", f);
     attribute(f, "name", suite->file);
     fprintf(f, " tests=\"%u\" failures=\"%u\" errors=\"%u\" skipped=\"%u\" time=\"%.3f\">\n", n,
-            t[MASU_VERDICT_FAIL], t[MASU_VERDICT_RESOURCE], t[MASU_VERDICT_UNSUPPORTED],
+            t[MASU_VERDICT_FAIL], t[MASU_VERDICT_RESOURCE] + t[MASU_VERDICT_NOT_RUN], t[MASU_VERDICT_UNSUPPORTED],
             seconds(results, n));
     fputs("    <properties>\n", f);
     property(f, "suite", hash);

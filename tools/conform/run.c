@@ -607,6 +607,11 @@ static bool supported(const masu_conform *c, const masu_case *of, masu_conform_r
 }
 
 static void run(masu_conform *c, const masu_case *of, masu_conform_result *r) {
+    bool timed = (of->governed.on && !of->governed.told) || masu_bound_is_set(&of->bounds[MASU_MEASURE_MS_RATIO]);
+    if (timed && c->clock_stopped) {
+        find(r, MASU_VERDICT_FAIL, "%s", MASU_CLOCK_STOPPED);
+        return;
+    }
     if (!supported(c, of, r) || !open_session(c, of, &(way){.first = true}, r)) return;
     masu_session *s = &c->session;
     uint8_t *picture = NULL;
@@ -634,11 +639,19 @@ static void run(masu_conform *c, const masu_case *of, masu_conform_result *r) {
     judge_all(r, validated);
 }
 
-void masu_conform_run(masu_conform *c, const masu_case *of, masu_conform_result *out) {
-    uint64_t start = masu_clock_ns(NULL);
+void masu_conform_not_run(const masu_case *of, const char *why, masu_conform_result *out) {
     memset(out, 0, sizeof *out);
     out->of = of;
+    out->verdict = MASU_VERDICT_NOT_RUN;
     for (int m = 0; m < MASU_MEASURE_COUNT; m++) out->values[m] = MASU_UNKNOWN;
+    snprintf(out->why, sizeof out->why, "%s", why);
+    for (char *p = out->why; *p; p++) *p = (unsigned char)*p < ' ' ? ' ' : *p;
+}
+
+void masu_conform_run(masu_conform *c, const masu_case *of, masu_conform_result *out) {
+    uint64_t start = masu_clock_ns(NULL);
+    masu_conform_not_run(of, "", out);
+    out->verdict = MASU_VERDICT_PASS;
     run(c, of, out);
     for (char *p = out->why; *p; p++) *p = (unsigned char)*p < ' ' ? ' ' : *p;
     out->seconds = (double)(masu_clock_ns(NULL) - start) / 1e9;
@@ -650,6 +663,7 @@ bool masu_conform_open(masu_conform *c, char *error, size_t error_size) {
     d.ray_query = c->ray_query != MASU_OFF;
     d.validate = d.gpu_av = false;
     if (!masu_headless_open(&d, host, error, error_size)) return false;
+    c->clock_stopped = !masu_clock_advances();
     snprintf(c->driver, sizeof c->driver, "%s", host->driver);
     c->most_pixels = host->properties.limits.maxImageDimension2D;
     c->offers = (host->ray_query ? MASU_NEEDS_RAY_QUERY : 0) |

@@ -36,6 +36,7 @@ typedef struct masu_conform {
     masu_headless kept;   /* open all the time, or the loader would load the driver anew for each case: NVIDIA's 580.159 can be
                              loaded some 30 times by one process, and is not found after that */
     uint32_t offers;      /* as masu_case.needs */
+    bool clock_stopped; /* nothing can be timed */
     bool calibrated;
     masu_session calibration;
     masu_headless_source source;
@@ -49,6 +50,8 @@ typedef struct masu_conform {
 bool masu_conform_open(masu_conform *c, char *error, size_t error_size);
 void masu_conform_close(masu_conform *c);
 
+/* A result without a run: all that is known of the case, and why it was not run. */
+void masu_conform_not_run(const masu_case *of, const char *why, masu_conform_result *out);
 /* Never fails itself: whatever goes wrong is the verdict. */
 void masu_conform_run(masu_conform *c, const masu_case *of, masu_conform_result *out);
 

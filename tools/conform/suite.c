@@ -28,12 +28,12 @@ static const struct {
 
 const char *masu_verdict_name(masu_verdict verdict) {
     static const char *const names[MASU_VERDICT_COUNT] = {
-        "pass", "quality warning", "not supported", "resource error", "fail"};
+        "pass", "quality warning", "not supported", "resource error", "fail", "not run"};
     return verdict < MASU_VERDICT_COUNT ? names[verdict] : "?";
 }
 
 bool masu_verdict_failed(masu_verdict verdict) {
-    return verdict == MASU_VERDICT_FAIL || verdict == MASU_VERDICT_RESOURCE;
+    return verdict >= MASU_VERDICT_RESOURCE;
 }
 
 const char *masu_measure_name(masu_measure measure) { return measures[measure].name; }

@@ -22,7 +22,8 @@ typedef enum masu_verdict {
     MASU_VERDICT_UNSUPPORTED = 2, /* the device lacks a feature or the size: nothing was judged */
     MASU_VERDICT_RESOURCE = 3,    /* a memory budget is too small, or memory was not to be had */
     MASU_VERDICT_FAIL = 4,
-    MASU_VERDICT_COUNT = 5
+    MASU_VERDICT_NOT_RUN = 5, /* the run ended before this case, or during it */
+    MASU_VERDICT_COUNT = 6
 } masu_verdict;
 
 const char *masu_verdict_name(masu_verdict verdict); /* "pass", "resource error" */

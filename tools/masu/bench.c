@@ -6,6 +6,10 @@
 #include "measure/picture.h"
 #include "bench/report.h"
 #include "bench/sweep.h"
+#include "bench/sweep_files.h"
+#include "clock.h"
+#include "file_kind.h"
+#include "image.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -41,7 +45,8 @@ static int report(const options *o) {
 
 static int merge(const options *o) {
     char error[4096];
-    if (!masu_sweep_merge(o->sweep.folder, o->given.arguments, o->given.count, error, sizeof error))
+    int lock = masu_sweep_lock(o->sweep.folder, error, sizeof error); /* until the process ends */
+    if (lock < 0 || !masu_sweep_merge(o->sweep.folder, o->given.arguments, o->given.count, error, sizeof error))
         return masu_cli_error("%s", error);
     return report(o);
 }
@@ -52,13 +57,14 @@ static int against(const options *o) {
     if (o->given.count != 1) return masu_cli_usage_error("--against: expected one folder to compare with it");
     if (!masu_against_compare(o->given.arguments[0], o->against, &result, error, sizeof error))
         return masu_cli_error("%s", error);
-    bool to_file = o->csv && strcmp(o->csv, "-") != 0;
-    FILE *f = to_file ? fopen(o->csv, "w") : stdout;
-    if (!f) return masu_cli_error("%s: cannot write", o->csv);
-    bool good = masu_against_print(f, &result, o->csv != NULL) >= 0;
-    if (to_file) good = !fclose(f) && good;
-    return good ? MASU_CLI_OK
-                : masu_cli_error("%s: cannot write", to_file ? o->csv : "standard output");
+    char *text = NULL;
+    size_t bytes = 0;
+    FILE *f = open_memstream(&text, &bytes);
+    bool good = f && masu_against_print(f, &result, o->csv != NULL) >= 0;
+    good = f && !fclose(f) && good;
+    int code = good ? masu_text_write(o->csv ? o->csv : "-", text, bytes) : masu_cli_error("out of memory");
+    free(text);
+    return code;
 }
 
 /* The rungs again, and those that have come up in place of what was not as quick as it looked. */
@@ -97,6 +103,7 @@ static int sweep(options *o) {
     if (!d->runs) d->runs = d->quick ? 2 : 9;
     if (!d->frames) d->frames = d->quick ? 8 : 32;
     if (!o->steady) d->steady = d->quick ? 0.0 : 60.0;
+    if (!masu_clock_advances()) return masu_cli_error("%s", MASU_CLOCK_STOPPED);
     bool good = masu_sweep_run(&o->sweep, &result, error, sizeof error);
     if (good && d->shards == 1 && d->steady > 0.0)
         good = steady(o, &timed, &result.messages, error, sizeof error);
@@ -166,7 +173,7 @@ static const masu_option rows[] = {
     MASU_TEXT(options, against, "against", "DIR2",
               "compare every rung of DIR with the same setting in DIR2: difference of\n"
               "error and of time ratio, and the largest differences"),
-    MASU_TEXT(options, csv, "csv", "FILE", "with --against: write CSV there; '-' is stdout"),
+    MASU_OUTPUT(options, csv, "csv", "FILE", "with --against: write CSV there; '-' is stdout"),
     MASU_FLAG(options, ladder, "ladder", "print the measured ladders LADDER.json..."),
     MASU_HEADING("Device"),
     MASU_DEVICE_ROWS(options, sweep.host),
@@ -213,6 +220,11 @@ static int run(masu_cli *cli) {
     if (o.merge) return merge(&o);
     if (o.given.count > 1)
         return masu_cli_usage_error("unexpected argument '%s': expected one scene", o.given.arguments[1]);
+    char error[4096];
+    if (o.truth.path && !masu_file_named(o.truth.path, ".png", error, sizeof error))
+        return masu_cli_usage_error("--truth: %s", error);
+    if (o.truth.path && !masu_file_exists(o.truth.path) && !masu_file_writable(o.truth.path, error, sizeof error))
+        return masu_cli_error("%s", error);
     return sweep(&o);
 }
 

@@ -83,8 +83,8 @@ static int compare(const char *const files[2], const options *o) {
 }
 
 static const masu_option rows[] = {
-    MASU_FILE(options, map, "map", "FILE.png",
-              "write FLIP per pixel as a grey image; black is no difference"),
+    MASU_PNG(options, map, "map",
+             "write FLIP per pixel as a grey image; black is no difference"),
     MASU_REAL(options, ppd, "ppd", "N", 1.0, 1000.0,
               "pixels per degree of the viewer's field of view, 1 to 1000\n"
               "(default 67.02: a 4K screen at 0.7 m)"),

@@ -5,6 +5,7 @@
 #include "command/options.h"
 
 #include "conform/report.h"
+#include "file_kind.h"
 #include "image.h"
 
 #include <stdio.h>
@@ -26,22 +27,33 @@ typedef struct options {
 typedef void (*writer)(FILE *f, const masu_suite *suite, const masu_conform_result *results,
                        uint32_t n, const char *driver);
 
-/* A whole file at once; "-" is stdout. */
+/* One report, whole; "-" is stdout. */
 static int write_file(const char *path, writer write, const masu_suite *suite,
                       const masu_conform_result *results, uint32_t n, const char *driver) {
-    char *text = NULL, error[512];
+    char *text = NULL;
     size_t bytes = 0;
-    if (!strcmp(path, "-")) {
-        write(stdout, suite, results, n, driver);
-        return MASU_CLI_OK;
-    }
     FILE *f = open_memstream(&text, &bytes);
     if (!f) return masu_cli_error("%s: out of memory", path);
     write(f, suite, results, n, driver);
-    int code = fclose(f) ? masu_cli_error("%s: out of memory", path) : MASU_CLI_OK;
-    if (!code && !masu_file_write(path, text, bytes, error, sizeof error))
-        code = masu_cli_error("%s", error);
+    int code = fclose(f) ? masu_cli_error("%s: out of memory", path) : masu_text_write(path, text, bytes);
     free(text);
+    return code;
+}
+
+/* All reports, before each case and at the end: whatever ends the run, the files are complete and say which case it was.
+ * Standard output, devices and pipes get the last version only. */
+static int write_reports(const options *o, const masu_suite *suite, const masu_conform_result *results, uint32_t n,
+                         const char *driver, bool last) {
+    const struct {
+        const char *path;
+        writer write;
+    } reports[] = {{o->junit, masu_conform_junit}, {o->csv, masu_conform_csv}, {o->table, masu_conform_table}};
+    int code = MASU_CLI_OK;
+    for (size_t i = 0; i < sizeof reports / sizeof *reports; i++) {
+        const char *path = reports[i].path;
+        bool file = path && strcmp(path, "-") != 0 && (!masu_file_exists(path) || masu_file_is_regular(path));
+        if (path && (last || file)) code |= write_file(path, reports[i].write, suite, results, n, driver);
+    }
     return code;
 }
 
@@ -68,10 +80,40 @@ static char *command_of(const options *o) {
     return NULL;
 }
 
-static int run_cases(const options *o, const masu_suite *suite, const bool *marks,
-                     masu_conform_result *results, uint32_t count) {
+/* Scenes of these cases that are not in the folder: one line. */
+static void warn_of_missing(const options *o, const masu_conform_result *results, uint32_t n) {
+    char names[200] = "";
+    uint32_t missing = 0, most = 0;
+    for (uint32_t i = 0; i < n; i++) {
+        char path[MASU_DATA_PATH];
+        bool seen = false;
+        for (uint32_t k = 0; k < i && !seen; k++) seen = !strcmp(results[k].of->scene, results[i].of->scene);
+        if (seen) continue;
+        most++;
+        snprintf(path, sizeof path, "%.3000s/%.1000s.masu", o->scene_folder, results[i].of->scene);
+        if (masu_file_exists(path)) continue;
+        size_t used = strlen(names);
+        snprintf(names + used, sizeof names - used, "%s%s", missing ? ", " : "", results[i].of->scene);
+        missing++;
+    }
+    if (missing)
+        masu_cli_warn("%u of %u scenes are not baked in %s (%s): `make scenes` in Masu's source tree bakes them", missing,
+                      most, o->scene_folder, names);
+}
+
+/* Every case was not run, for this reason. */
+static int none_run(const options *o, const masu_suite *suite, masu_conform_result *results, uint32_t n,
+                    const char *why) {
+    for (uint32_t i = 0; i < n; i++) masu_conform_not_run(results[i].of, why, &results[i]);
+    (void)write_reports(o, suite, results, n, "", true);
+    return masu_cli_error("%s", why);
+}
+
+static int run_cases(const options *o, const masu_suite *suite, masu_conform_result *results, uint32_t n) {
     static masu_conform c;
-    char error[1024];
+    char error[4096];
+    if (o->images && (!masu_folder_make(o->images, error, sizeof error)))
+        return none_run(o, suite, results, n, error);
     c = (masu_conform){.suite = suite,
                        .scenes = o->scene_folder,
                        .images = o->images,
@@ -79,30 +121,32 @@ static int run_cases(const options *o, const masu_suite *suite, const bool *mark
                        .runs = o->runs};
     masu_headless_desc asked = o->host; /* each case asks for ray queries by itself */
     masu_use_rays(o->rays, &c.ray_query, &asked);
-    if (!masu_conform_open(&c, error, sizeof error)) return masu_cli_error("%s", error);
+    warn_of_missing(o, results, n);
+    int code = write_reports(o, suite, results, n, "", false); /* a driver may crash when it is opened */
+    if (code) return code;
+    if (!masu_conform_open(&c, error, sizeof error)) return none_run(o, suite, results, n, error);
     char *command = command_of(o);
-    uint32_t n = 0;
     bool failed = false;
     bool quiet = masu_cli_quiet();
     if (!quiet) printf("%s, %08x\n%s\n", suite->file, suite->hash, c.driver);
-    for (uint32_t i = 0; i < suite->count && command; i++) {
-        if (!marks[i]) continue;
-        masu_cli_progress("case %u of %u: %s", n + 1, count, suite->cases[i].name);
-        masu_conform_run(&c, &suite->cases[i], &results[n]);
-        masu_cli_progress_clear();
-        if (!quiet || results[n].verdict) masu_conform_print(stdout, suite, &results[n], command);
+    for (uint32_t i = 0; i < n && command && !code; i++) {
+        const masu_case *of = results[i].of;
+        masu_cli_progress("case %u of %u: %s", i + 1, n, of->name);
+        masu_conform_not_run(of, "the program ended during this case", &results[i]);
         fflush(stdout);
-        failed = failed || masu_verdict_failed(results[n].verdict);
-        n++;
+        code = write_reports(o, suite, results, n, c.driver, false);
+        if (code) break;
+        masu_conform_run(&c, of, &results[i]);
+        masu_cli_progress_clear();
+        if (!quiet || results[i].verdict) masu_conform_print(stdout, suite, &results[i], command);
+        failed = failed || masu_verdict_failed(results[i].verdict);
     }
     masu_conform_close(&c);
-    int code = command ? MASU_CLI_OK : masu_cli_error("out of memory");
+    if (!command) code = masu_cli_error("out of memory");
     free(command);
     if (code) return code;
     if (!quiet) masu_conform_sum(stdout, results, n);
-    if (o->junit) code = write_file(o->junit, masu_conform_junit, suite, results, n, c.driver);
-    if (o->csv) code |= write_file(o->csv, masu_conform_csv, suite, results, n, c.driver);
-    if (o->table) code |= write_file(o->table, masu_conform_table, suite, results, n, c.driver);
+    code = write_reports(o, suite, results, n, c.driver, true);
     return code || failed ? MASU_CLI_FAILURE : MASU_CLI_OK;
 }
 
@@ -130,8 +174,9 @@ static int conform(const options *o) {
     if (!masu_file_read(o->suite_file, SUITE_BYTES_MAX, &text, &bytes, error, sizeof error))
         return masu_cli_error("%s", error);
     bool good = masu_suite_parse(o->suite_name, (const char *)text, bytes, &suite, error, sizeof error);
+    const char *hint = good ? "" : masu_file_hint(o->suite_file, text, bytes, MASU_FILE_SUITE);
     free(text);
-    if (!good) return masu_cli_error("%s", error);
+    if (!good) return masu_cli_error("%s%s", error, hint);
     uint32_t count = 0;
     bool *marks = calloc(suite.count, sizeof *marks);
     masu_conform_result *results = calloc(suite.count, sizeof *results);
@@ -143,7 +188,10 @@ static int conform(const options *o) {
             if (marks[i]) printf("%-36s %ux%u %s\n", c->name, c->width, c->height, c->scene);
         }
     } else if (!code) {
-        code = run_cases(o, &suite, marks, results, count);
+        uint32_t n = 0;
+        for (uint32_t i = 0; i < suite.count; i++)
+            if (marks[i]) masu_conform_not_run(&suite.cases[i], "the run ended before this case", &results[n++]);
+        code = run_cases(o, &suite, results, n);
     }
     free(results);
     free(marks);
@@ -216,7 +264,7 @@ static const masu_option rows[] = {
                 "write the results with all measurements; '-' is stdout"),
     MASU_OUTPUT(options, table, "table", "FILE.md",
                 "write rows of a Markdown table: input, limits, measurements; '-' is stdout"),
-    MASU_TEXT(options, images, "images", "DIR", "write the image of every case as PNG"),
+    MASU_TEXT(options, images, "images", "DIR", "write the image of every case as PNG; the folder is created"),
     MASU_HEADING("Device"),
     MASU_RAYS_ROW(options, rays),
     MASU_DEVICE_ROWS(options, host),

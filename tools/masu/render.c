@@ -283,14 +283,14 @@ static const char *const stages[] = {"both", "frustum", "occlusion", "none", NUL
 
 static const masu_option rows[] = {
     MASU_HEADING("Output"),
-    {MASU_ROW(masu_render_options, output, MASU_TAKE_TEXT, "output", "FILE.png",
+    {MASU_ROW(masu_render_options, output, MASU_TAKE_PNG, "output", "FILE.png",
               "write the last frame; with '####' in the name, every frame, numbered"),
      .letter = 'o'},
     MASU_OUTPUT_SIZE_ROW(masu_render_options, d.desc.output),
-    MASU_TEXT(masu_render_options, stats, "stats", "FILE.json",
-              "write times, counts, memory and allocations; '-' is stdout"),
-    MASU_TEXT(masu_render_options, times, "times", "FILE.csv",
-              "write time, rung and governor reason of every frame"),
+    MASU_OUTPUT(masu_render_options, stats, "stats", "FILE.json",
+                "write times, counts, memory and allocations; '-' is stdout"),
+    MASU_OUTPUT(masu_render_options, times, "times", "FILE.csv",
+                "write time, rung and governor reason of every frame; '-' is stdout"),
     MASU_HEADING("Frames"),
     MASU_UINT(masu_render_options, frames, "frames", 1, FRAMES_MAX,
               "number of frames along the scene's camera path"),
@@ -431,6 +431,8 @@ static int run(masu_cli *cli) {
     code = check(&o, &given);
     if (!code) code = describe(&o, &given);
     if (code) return code;
+    if ((o.stats || o.times || o.target_ms > 0.0) && !masu_clock_advances())
+        return masu_cli_error("%s", MASU_CLOCK_STOPPED);
     o.d.host.allocator = o.stats ? &allocator : NULL;
     masu_cli_progress("building pipelines");
     if (o.positions && !masu_picture_open(&o.d, o.positions, &s, error, sizeof error))

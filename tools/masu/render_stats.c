@@ -165,8 +165,10 @@ int masu_render_stats(const masu_session *s, const masu_render_options *o, const
 /* ---- The governor ---------------------------------------------------------------------------- */
 
 int masu_render_times(const masu_session *s, const masu_render_options *o, const masu_sample *samples) {
-    FILE *f = fopen(o->times, "w");
-    if (!f) return masu_cli_error("%s: cannot write", o->times);
+    char *text = NULL;
+    size_t bytes = 0;
+    FILE *f = open_memstream(&text, &bytes);
+    if (!f) return masu_cli_error("%s: out of memory", o->times);
     fprintf(f, "frame,time,rung,scale,gpu_ms,wall_ms,reason\n");
     for (uint32_t i = 0; i < o->frames; i++) {
         fprintf(f, "%" PRIu32 ",%.4f,%" PRIu32 ",%.4f,%.4f,%.4f,\"%s\"\n", i,
@@ -174,7 +176,9 @@ int masu_render_times(const masu_session *s, const masu_render_options *o, const
                 (double)s->desc.rungs[samples[i].rung].scale, samples[i].gpu_ms, samples[i].wall_ms,
                 samples[i].reason);
     }
-    return fclose(f) ? masu_cli_error("%s: cannot write", o->times) : MASU_CLI_OK;
+    int code = fclose(f) ? masu_cli_error("%s: out of memory", o->times) : masu_text_write(o->times, text, bytes);
+    free(text);
+    return code;
 }
 
 void masu_render_governor(const masu_session *s, const masu_render_options *o, const masu_sample *samples,

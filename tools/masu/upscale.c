@@ -3,6 +3,7 @@
 #include "masu/cmd.h"
 #include "command/options.h"
 
+#include "file_kind.h"
 #include "image.h"
 
 #include <stdio.h>
@@ -113,7 +114,7 @@ static int upscale_file(const masu_session_desc *given, const char *from, const 
 
 static const masu_option rows[] = {
     MASU_HEADING("Output"),
-    {MASU_ROW(options, output, MASU_TAKE_FILE, "output", "FILE.png",
+    {MASU_ROW(options, output, MASU_TAKE_PNG, "output", "FILE.png",
               "write the result there, instead of the second argument"),
      .letter = 'o'},
     MASU_OUTPUT_SIZE_ROW(options, d.desc.output),
@@ -149,6 +150,9 @@ static int run(masu_cli *cli) {
     if (!given.count || !to) return masu_cli_usage_error("expected an input and an output file: IN.png OUT.png");
     if (!o.d.desc.output.width && rung->aa <= MASU_AA_OFF)
         return masu_cli_usage_error("expected --size WxH or --aa MODE");
+    char error[4096];
+    if (!o.output && !masu_file_named(to, ".png", error, sizeof error)) return masu_cli_usage_error("%s", error);
+    if (!masu_file_writable(to, error, sizeof error)) return masu_cli_error("%s", error);
     if (o.no_rcas) rung->sharpen = MASU_OFF;
     return upscale_file(&o.d, given.arguments[0], to);
 }

@@ -182,11 +182,7 @@ bool masu_picture_find(const masu_session_desc *d, masu_picture_want *t, uint8_t
     static masu_session s; /* may not move, and is large */
     VkExtent2D size = d->desc.output;
     t->messages = 0;
-    FILE *f = t->path ? fopen(t->path, "rb") : NULL;
-    if (f) {
-        fclose(f);
-        return masu_picture_load(t->path, size, rgba, error, error_size);
-    }
+    if (t->path && masu_file_exists(t->path)) return masu_picture_load(t->path, size, rgba, error, error_size);
     if (!masu_picture_open(d, t->positions, &s, error, error_size)) return false;
     masu_frame_desc frame = {.time = t->time};
     bool good =

@@ -1,6 +1,8 @@
 /* truth.c: see truth.h. */
 #include "measure/truth.h"
 
+#include "image.h"
+
 #include <dlfcn.h>
 #include <float.h>
 #include <math.h>
@@ -30,6 +32,10 @@ bool masu_truth_open(const char *path, masu_truth *t, char *error, size_t size) 
     memset(t, 0, sizeof *t);
     char name[4096]; /* dlopen searches the system for a name without a slash */
     snprintf(name, sizeof name, "%s%s", strchr(path, '/') ? "" : "./", path);
+    if (!masu_file_is_regular(name)) { /* dlopen would wait for a FIFO */
+        snprintf(error, size, "%s: is not a regular file", path);
+        return false;
+    }
     t->library = dlopen(name, RTLD_NOW | RTLD_LOCAL);
     if (!t->library) {
         const char *why = dlerror();

@@ -16,7 +16,7 @@ static int run(masu_cli *cli) {
     masu_meso_material made = {0};
     int code;
     if (!masu_meso_request_read(cli, &r, &code)) return code;
-    bool good = masu_meso_request_patch(&r, &patch) && masu_meso_author(&patch, &r.options, &made) &&
+    bool good = masu_meso_can_write(r.output) && masu_meso_request_patch(&r, &patch) && masu_meso_author(&patch, &r.options, &made) &&
                 masu_meso_write_curves(r.output, &made) && masu_meso_write_maps(r.output, &made);
     if (good && !masu_cli_quiet()) {
         printf("%s: error of the fit, relative to the mean radiance: mean texel %.3f, single texels %.3f, "

@@ -1,5 +1,6 @@
 /* request.c: see request.h. */
 #include "meso/request.h"
+#include "file_kind.h"
 
 #include <string.h>
 #include <strings.h>
@@ -43,6 +44,11 @@ static bool has_end(const char *path, const char *end) {
 
 bool masu_meso_request_patch(const masu_meso_request *r, masu_meso_patch *patch) {
     if (r->make) return masu_meso_make(r->make, r->detail, r->seed, patch);
+    masu_file_kind kind = masu_file_kind_of(r->input, NULL, 0);
+    if (kind && kind != MASU_FILE_IMAGE && kind != MASU_FILE_MODEL) {
+        masu_cli_error("%s: is no relief%s", r->input, masu_file_hint(r->input, NULL, 0, MASU_FILE_UNKNOWN));
+        return false;
+    }
     return has_end(r->input, ".png") ? masu_meso_read_heights(r->input, &r->file, patch)
                                      : masu_meso_read_model(r->input, &r->file, patch);
 }

@@ -69,6 +69,17 @@ bool masu_meso_write_curves(const char *name, const masu_meso_material *made) {
 /* ---- maps ---- */
 
 enum { MAP_COLOR, MAP_NORMAL, MAP_ROUGH, MAP_AO, MAPS };
+static const char *const ends[MAPS + 1] = {"_color.png", "_normal.png", "_rough.png", "_ao.png", ".json"};
+
+bool masu_meso_can_write(const char *name) {
+    char error[4096];
+    for (int i = 0; i <= MAPS; i++) {
+        if (masu_file_writable(path_of(name, ends[i]), error, sizeof error)) continue;
+        masu_cli_error("%s", error);
+        return false;
+    }
+    return true;
+}
 
 static void encode(const masu_meso_texel *t, int map, uint8_t rgba[4]) {
     for (int k = 0; k < 3; k++) {
@@ -84,7 +95,6 @@ static void encode(const masu_meso_texel *t, int map, uint8_t rgba[4]) {
 }
 
 bool masu_meso_write_maps(const char *name, const masu_meso_material *made) {
-    static const char *const ends[MAPS] = {"_color.png", "_normal.png", "_rough.png", "_ao.png"};
     size_t texels = (size_t)made->size * made->size;
     uint8_t *rgba = malloc(texels * 4);
     if (!rgba) exit(masu_cli_error("out of memory"));

@@ -9,6 +9,8 @@
 
 #include "meso/author.h"
 
+/* Before the work: whether all of them could be written. */
+bool masu_meso_can_write(const char *name);
 bool masu_meso_write_curves(const char *name, const masu_meso_material *made);
 bool masu_meso_write_maps(const char *name, const masu_meso_material *made);
 

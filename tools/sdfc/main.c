@@ -2,8 +2,9 @@
  * docs/sdf.md. Without outputs it only checks. */
 #include "cli/cli.h"
 #include "sdfc/sdfc.h"
+#include "file_kind.h"
+#include "image.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,27 +17,25 @@
 enum { OPTION_GLSL = 1, OPTION_C, OPTION_TABLE, OPTION_PAIRS, OPTION_ANCHORED };
 
 static bool read_text(const char *path, char **text, size_t *bytes) {
-    FILE *file = fopen(path, "rb");
-    *text = malloc(MASU_SDFC_SOURCE_MAX + 1);
-    if (!file || !*text) {
-        masu_cli_error("cannot read %s: %s", path, strerror(errno));
-        if (file) fclose(file);
-        return false;
-    }
-    *bytes = fread(*text, 1, MASU_SDFC_SOURCE_MAX + 1, file);
-    bool good = !ferror(file);
-    if (!good) masu_cli_error("cannot read %s: %s", path, strerror(errno));
-    fclose(file);
-    return good;
+    char error[4096];
+    uint8_t *read = NULL;
+    bool good = masu_file_read(path, MASU_SDFC_SOURCE_MAX, &read, bytes, error, sizeof error);
+    if (!good) masu_cli_error("%s", error);
+    *text = (char *)read;
+    const char *hint = good ? masu_file_hint(path, read, *bytes, MASU_FILE_SDF) : "";
+    if (!*hint) return good;
+    masu_cli_error("%s: is not an SDF%s", path, hint);
+    return false;
 }
 
+/* Before the work, whether each file could be written; after it, text by text. */
 static bool write_text(const char *path, const char *text) {
-    if (!path) return true;
-    FILE *file = fopen(path, "wb");
-    bool good = file && fwrite(text, 1, strlen(text), file) == strlen(text);
-    if (file && fclose(file) != 0) good = false;
-    if (!good) masu_cli_error("cannot write %s: %s", path, strerror(errno));
-    return good;
+    char error[4096];
+    if (!path || (text ? masu_file_write(path, text, strlen(text), error, sizeof error)
+                       : masu_file_writable(path, error, sizeof error)))
+        return true;
+    masu_cli_error("%s", error);
+    return false;
 }
 
 /* Each line by itself, since a message of the command line is one line. */
@@ -58,7 +57,8 @@ static int compile(const char *input, const char *glsl, const char *c, const cha
     char *text = NULL, error[4096];
     size_t bytes = 0;
     masu_sdfc_result result;
-    bool good = read_text(input, &text, &bytes);
+    bool good = read_text(input, &text, &bytes) && write_text(glsl, NULL) && write_text(c, NULL) &&
+                write_text(table, NULL);
     if (good) {
         masu_cli_progress("checking %s", input);
         good = masu_sdfc_compile_with(text, bytes, input, options, &result, error, sizeof error);

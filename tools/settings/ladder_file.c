@@ -3,6 +3,7 @@
 
 #include "settings/knobs.h"
 #include "cli/cli.h"
+#include "file_kind.h"
 #include "image.h"
 
 #include <stdarg.h>
@@ -162,6 +163,9 @@ bool masu_ladder_read(const char *path, masu_ladder_file *out, char *error, size
     size_t bytes = 0;
     if (!masu_file_read(path, 1u << 20, &text, &bytes, error, error_size)) return false;
     bool good = masu_ladder_parse(path, (const char *)text, bytes, out, error, error_size);
+    size_t used = good ? 0 : strlen(error);
+    if (!good && used < error_size)
+        snprintf(error + used, error_size - used, "%s", masu_file_hint(path, text, bytes, MASU_FILE_LADDER));
     free(text);
     return good;
 }

@@ -8,7 +8,9 @@
  * .glsl. */
 #include "view/viewer.h"
 
+#include "cli/cli.h"
 #include "clock.h"
+#include "image.h"
 
 #include <errno.h>
 #include <jansson.h>
@@ -68,7 +70,7 @@ static void watch_description(masu_baker *b, const char *json) {
     if (slash && (size_t)(slash - json) + 2 < sizeof folder)
         snprintf(folder, sizeof folder, "%.*s", (int)(slash - json) + 1, json);
     watch(b, json);
-    json_t *root = json_load_file(json, 0, NULL);
+    json_t *root = masu_file_is_regular(json) ? json_load_file(json, 0, NULL) : NULL;
     watch_named(b, folder, root);
     json_decref(root);
 }
@@ -148,7 +150,7 @@ static bool ended(masu_viewer *v, bool wait, bool *good) {
     *good = r > 0 && WIFEXITED(status) && !WEXITSTATUS(status);
     if (*good) return true;
     read_complaint(b->log, v->error, sizeof v->error);
-    if (!*v->error) snprintf(v->error, sizeof v->error, "the baker failed without a message");
+    if (!*v->error) snprintf(v->error, sizeof v->error, "the baker failed: %s", masu_cli_status(status));
     return true;
 }
 

@@ -3,6 +3,7 @@
 
 #include "settings/setting.h"
 #include "command/options.h"
+#include "clock.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -39,8 +40,8 @@ static const masu_option rows[] = {
               "time of the first frame (default 0)"),
     MASU_UINT(masu_viewer_options, frames, "frames", 1, 1000000000,
               "number of frames for --screenshot and --quit, with a fixed step of 1/60 s"),
-    MASU_FILE(masu_viewer_options, screenshot, "screenshot", "FILE.png",
-              "write frame number --frames to a file"),
+    MASU_PNG(masu_viewer_options, screenshot, "screenshot",
+             "write frame number --frames to a file"),
     MASU_FLAG(masu_viewer_options, quit, "quit", "exit after --frames frames"),
     MASU_FLAG(masu_viewer_options, no_timestamps, "no-timestamps",
               "do not time passes, which avoids a barrier around each"),
@@ -127,6 +128,7 @@ static int run(masu_cli *cli) {
         return masu_cli_usage_error("--setting cannot be combined with --ladder, --rung or --target-ms");
     if ((o.screenshot || o.quit) && !o.frames)
         return masu_cli_usage_error("%s needs --frames", o.screenshot ? "--screenshot" : "--quit");
+    if (!masu_clock_advances()) return masu_cli_error("%s", MASU_CLOCK_STOPPED);
     return view(&o);
 }
 

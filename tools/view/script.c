@@ -1,6 +1,8 @@
 /* script.c: see script.h. */
 #include "view/script.h"
 
+#include "cli/cli.h"
+#include "file_kind.h"
 #include "image.h"
 
 #include <errno.h>
@@ -75,7 +77,7 @@ static bool read_text(masu_script_line *line) {
     case ACT_RESIZE:
         return sscanf(line->text, "%dx%d %c", &line->x, &line->y, &end) == 2 && line->x >= 1 && line->y >= 1 &&
                line->x <= 16384 && line->y <= 16384;
-    case ACT_SCREENSHOT:
+    case ACT_SCREENSHOT: return *line->text && masu_file_named(line->text, ".png", NULL, 0);
     case ACT_RUN: return *line->text != '\0';
     default: return *line->text == '\0';
     }
@@ -95,7 +97,7 @@ static bool read_line(char *text, masu_script_line *line, const char **wrong) {
     for (int a = 0; a < ACTS; a++) {
         if (strcmp(act_names[a], word) != 0) continue;
         line->act = (masu_act)a;
-        *wrong = "wrong or missing argument of the action";
+        *wrong = a == ACT_SCREENSHOT ? "expected a name that ends in .png" : "wrong or missing argument of the action";
         return read_text(line);
     }
     *wrong = "unknown action";
@@ -195,7 +197,7 @@ static bool run(masu_viewer *v, const char *command) {
     fflush(NULL);
     int status = system(command);
     if (!status) return true;
-    snprintf(v->error, sizeof v->error, "run: exit code %d: %.300s", status, command);
+    snprintf(v->error, sizeof v->error, "run: %s: %.300s", masu_cli_status(status), command);
     return false;
 }
 

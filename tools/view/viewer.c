@@ -3,6 +3,7 @@
 
 #include "settings/setting.h"
 #include "clock.h"
+#include "file_kind.h"
 #include "image.h"
 #include "view/stage.h"
 
@@ -36,7 +37,8 @@ static bool read_scene(masu_viewer *v, const char *path, void **blob, masu_scene
     masu_detail detail = {0};
     if (!masu_file_read(path, SCENE_BYTES_MAX, &bytes, &count, v->error, sizeof v->error)) return false;
     if (masu_scene_bind(bytes, count, scene, &detail)) {
-        snprintf(v->error, sizeof v->error, "%s: %s", path, detail.text);
+        snprintf(v->error, sizeof v->error, "%s: %s%s", path, detail.text,
+                 masu_file_hint(path, bytes, count, MASU_FILE_BLOB));
         free(bytes);
         return false;
     }

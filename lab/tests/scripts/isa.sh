@@ -57,4 +57,13 @@ refuses 2 'unknown option --drawn' isa "$scene" --gpu vangogh --drawn 64x48
 refuses 1 'cannot' isa "$folder/none.masu" --gpu vangogh
 MASU_ISA_DRIVERS='' refuses 1 'MASU_ISA_DRIVERS is to name the folder' isa "$scene" --gpu tgl
 MASU_ISA_DRIVERS=$folder refuses 1 "has no $folder/libvulkan_intel.so" isa "$scene" --gpu kbl
+# What a driver says that ends the child, and no more.
+printf '#include <stdio.h>\n#include <stdlib.h>\nint vk_icdNegotiateLoaderICDInterfaceVersion(unsigned *v) {
+    (void)v; fputs("driver: this chip is not known\\n", stderr); exit(7); }\n' > "$folder/driver.c"
+mkdir "$folder/drivers"
+: > "$folder/shim.c"
+if gcc -shared -fPIC "$folder/driver.c" -o "$folder/drivers/libvulkan_intel.so" 2> /dev/null; then
+    gcc -shared -fPIC "$folder/shim.c" -o "$folder/drivers/libintel_noop_drm_shim.so"
+    MASU_ISA_DRIVERS=$folder/drivers refuses 1 'kbl: exit code 7: driver: this chip is not known' isa "$scene" --gpu kbl
+fi
 exit $failed

@@ -126,7 +126,7 @@ static masu_bake_result collect(pid_t child, int fd, unsigned seconds, masu_bake
     }
     if (ending) {
         int number = ending;
-        masu_cli_error("interrupted by signal %d", number);
+        masu_cli_error("interrupted by %s", masu_cli_signal(number));
         exit(128 + number);
     }
     if (timed_out) return (masu_bake_result){MASU_BAKE_TIMEOUT, (int)seconds};

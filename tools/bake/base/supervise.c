@@ -41,16 +41,16 @@ static int report(const masu_bake_supervised *w, int status, bool timed_out, int
     masu_atomic_file_remove_stale(w->output ? w->output : "");
     masu_bake_sweep_temporary();
     if (heard) {
-        masu_cli_error("interrupted by signal %d", heard);
+        masu_cli_error("interrupted by %s", masu_cli_signal(heard));
         return 128 + heard;
     }
     if (timed_out)
         masu_cli_error("%s: took more than %u seconds (--time-limit)", w->about, w->seconds);
     else if (w->memory_mib && !MASU_BAKE_SANITIZED)
-        masu_cli_error("%s: baking was ended by signal %d, with %u MiB to use (--memory-limit)", w->about, WTERMSIG(status),
-                       w->memory_mib);
+        masu_cli_error("%s: baking was ended by %s, with %u MiB to use (--memory-limit)", w->about,
+                       masu_cli_signal(WTERMSIG(status)), w->memory_mib);
     else
-        masu_cli_error("%s: baking was ended by signal %d", w->about, WTERMSIG(status));
+        masu_cli_error("%s: baking was ended by %s", w->about, masu_cli_signal(WTERMSIG(status)));
     return MASU_CLI_FAILURE;
 }
 

@@ -99,7 +99,7 @@ static bool build_scene(const masu_bake_description *d, const masu_bake_options 
     if (d->sdf.source) {
         add_sdf(&d->sdf, content);
         /* Models say better than an endless world's bounds what the camera should look at. */
-        if (masu_bake_box_is_empty(&bounds)) bounds = d->sdf.bounds;
+        if (masu_bake_box_is_empty(&bounds)) bounds = d->sdf.framed;
     }
     if (d->first_look && !masu_bake_box_is_empty(&bounds)) {
         const char *problem = masu_bake_make_first_look(&bounds, content, &first);
@@ -134,7 +134,7 @@ static bool build_probes(const masu_bake_description *d, const masu_bake_options
                (unsigned long long)done.probes, (unsigned long long)done.invalid,
                (unsigned long long)done.bytes, (unsigned long long)done.rays,
                (unsigned long long)done.triangles, done.seconds,
-               (double)done.rays / done.seconds * 1e-6);
+               done.seconds > 0 ? (double)done.rays / done.seconds * 1e-6 : 0.0);
     }
     if (good && options->probe_report)
         masu_bake_report_probes(content, &probes, trace, REPORT_POINTS, REPORT_RAYS);

@@ -117,6 +117,7 @@ typedef struct masu_bake_sdf_param {
 } masu_bake_sdf_param;
 
 typedef struct masu_bake_sdf {
+    masu_bake_box framed; /* what the default camera sees; a scene's: the bounds */
     const char *source; /* NULL: no SDF */
     masu_bake_box bounds;
     double lipschitz, max_distance;

@@ -1,6 +1,8 @@
 /* read.c: a scene description as a whole; see description.h. */
 #include "bake/base/file.h"
 #include "bake/description/reader.h"
+#include "cli/cli.h"
+#include "file_kind.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -89,7 +91,14 @@ bool masu_bake_read(const masu_bake_options *options, masu_bake_description *out
                                    .look = masu_bake_default_look(),
                                    .probes = masu_bake_probe_defaults(),
                                    .reflections = masu_bake_reflection_defaults()};
+    masu_file_kind kind = masu_file_kind_of(options->input, NULL, 0);
+    if (kind && kind != MASU_FILE_DESCRIPTION && kind != MASU_FILE_MODEL && kind != MASU_FILE_SDF) {
+        masu_cli_error("%s: is no model, scene description or SDF%s", options->input,
+                       masu_file_hint(options->input, NULL, 0, MASU_FILE_UNKNOWN));
+        return false;
+    }
     if (is_scene(options->input)) return read_scene(options, out);
+    if (masu_bake_is_sdf(options->input)) return masu_bake_describe_sdf(options, out);
     describe_model(options->input, out);
     out->first_look = out->reflections.wanted = !options->bare;
     return true;

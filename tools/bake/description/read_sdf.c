@@ -1,9 +1,12 @@
 /* read_sdf.c: what a scene says of its SDF. The field itself, in GLSL or in the language of
  * docs/sdf.md, is a file that is named here and compiled when the scene is built. */
 #include "bake/description/reader.h"
+#include "bake/base/file.h"
 
+#include "sdfc/sdfc.h"
 #include "shared/masu_shared.h"
 
+#include <math.h>
 #include <string.h>
 
 #define PARAMS_MAX 256 /* MASU_SDF_PARAMS_MAX of the march shader */
@@ -136,5 +139,81 @@ bool masu_bake_read_sdf(const masu_bake_json *scene, masu_bake_reader *r) {
     if (!masu_bake_json_has(&sdf, "anchored"))
         out->anchored = masu_bake_is_sdf(source) && reaches_far(&out->bounds);
     out->source = masu_bake_path(r, source);
+    out->framed = out->bounds;
     return true;
+}
+
+/* ---- a .sdf alone ---- */
+
+#define UNBOUNDED_RADII 20 /* an endless part is drawn to this distance, in radii of what the camera sees */
+#define UNBOUNDED_EXTENT 5 /* metres that the camera sees of a field that is endless along an axis */
+
+static double *axis_of(masu_bake_vec3 *v, int axis) { return axis == 0 ? &v->x : axis == 1 ? &v->y : &v->z; }
+
+/* The box of the bounded parts, or of `all`; per axis what is finite. */
+static masu_bake_box framed_box(const masu_sdfc_result *field, bool all) {
+    masu_bake_box box = {{HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
+    for (int axis = 0; axis < 3; axis++) {
+        double *low = axis_of(&box.low, axis), *high = axis_of(&box.high, axis);
+        for (uint32_t i = 0; i < field->part_count; i++) {
+            const masu_sdfc_part *part = &field->parts[i];
+            if (!all && part->radius < 0) continue;
+            if (isfinite(part->low[axis])) *low = fmin(*low, part->low[axis]);
+            if (isfinite(part->high[axis])) *high = fmax(*high, part->high[axis]);
+        }
+        if (!all || *low < *high) continue;
+        double middle = isfinite(*low) ? *low : isfinite(*high) ? *high : 0;
+        *low = middle - UNBOUNDED_EXTENT;
+        *high = middle + UNBOUNDED_EXTENT;
+    }
+    return box;
+}
+
+static void frame_field(const masu_sdfc_result *field, const masu_bake_options *options, masu_bake_description *out) {
+    masu_bake_sdf *sdf = &out->sdf;
+    sdf->framed = framed_box(field, false);
+    if (masu_bake_box_is_empty(&sdf->framed)) sdf->framed = framed_box(field, true);
+    double radius = fmax(masu_bake_length(masu_bake_sub(sdf->framed.high, sdf->framed.low)) / 2, 1e-3);
+    sdf->bounds = sdf->framed;
+    for (uint32_t i = 0; i < field->part_count; i++) {
+        for (int axis = 0; axis < 3; axis++) {
+            double low = field->parts[i].low[axis], high = field->parts[i].high[axis];
+            double *most = axis_of(&sdf->bounds.high, axis), *least = axis_of(&sdf->bounds.low, axis);
+            double far_low = *axis_of(&sdf->framed.low, axis) - UNBOUNDED_RADII * radius;
+            double far_high = *axis_of(&sdf->framed.high, axis) + UNBOUNDED_RADII * radius;
+            *least = fmin(*least, isfinite(low) ? low : far_low);
+            *most = fmax(*most, isfinite(high) ? high : far_high);
+        }
+    }
+    const masu_bake_vec3 margin = {radius * 1e-3, radius * 1e-3, radius * 1e-3};
+    sdf->bounds.low = masu_bake_sub(sdf->bounds.low, margin);
+    sdf->bounds.high = masu_bake_mad(sdf->bounds.high, margin, 1);
+    sdf->max_distance = 3 * masu_bake_length(masu_bake_sub(sdf->bounds.high, sdf->bounds.low));
+    sdf->anchored = reaches_far(&sdf->bounds);
+    sdf->occlusion = (masu_bake_occlusion){.shadows = !options->bare,
+                                           .ambient = !options->bare,
+                                           .sun_radius = 0.27 * (MASU_BAKE_PI / 180.0),
+                                           .distance = sdf->max_distance,
+                                           .radius = fmin(radius * 0.4, 1e6),
+                                           .strength = 1};
+}
+
+bool masu_bake_describe_sdf(const masu_bake_options *options, masu_bake_description *out) {
+    masu_bake_buffer text = {0};
+    masu_sdfc_result field = {0};
+    const masu_sdfc_options quick = {.pairs = UINT32_MAX}; /* its claims are tested when it is built */
+    char error[4096];
+    if (!masu_bake_read_file(options->input, MASU_SDFC_SOURCE_MAX, &text)) return false;
+    bool good = masu_sdfc_compile_with((const char *)text.data, text.bytes, options->input, &quick, &field, error,
+                                       sizeof error);
+    if (good) {
+        out->sdf.lipschitz = 1; /* replaced by the compiler's */
+        out->sdf.source = masu_bake_take_text(&out->pool, options->input);
+        frame_field(&field, options, out);
+    } else {
+        masu_bake_report_lines(error, false);
+    }
+    masu_sdfc_release(&field);
+    masu_bake_release(&text);
+    return good;
 }

@@ -27,6 +27,9 @@ bool masu_bake_read_detail(const masu_bake_json *scene, masu_bake_reader *r);
 bool masu_bake_read_probes(const masu_bake_json *scene, masu_bake_reader *r);
 bool masu_bake_read_reflections(const masu_bake_json *scene, masu_bake_reader *r);
 
+/* A .sdf without a scene: where its parts are decides what is drawn and what the camera sees. */
+bool masu_bake_describe_sdf(const masu_bake_options *options, masu_bake_description *out);
+
 /* A model's "material" and "materials". */
 bool masu_bake_read_materials(const masu_bake_json *model, masu_bake_reader *r,
                               masu_bake_model *out);

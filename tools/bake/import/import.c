@@ -115,7 +115,7 @@ static void report_lines(const char *path, masu_bake_buffer *text) {
 static bool report_end(const char *path, masu_bake_result result) {
     switch (result.end) {
     case MASU_BAKE_SIGNALED:
-        masu_cli_error("cannot read %s: the importer crashed (signal %d)", path, result.code);
+        masu_cli_error("cannot read %s: the importer crashed: %s", path, masu_cli_signal(result.code));
         break;
     case MASU_BAKE_TIMEOUT:
         masu_cli_error("cannot read %s: the importer took more than %d seconds", path, result.code);
@@ -124,7 +124,7 @@ static bool report_end(const char *path, masu_bake_result result) {
         masu_cli_error("cannot start the importer: %s", strerror(result.code));
         break;
     case MASU_BAKE_EXITED:
-        masu_cli_error("cannot read %s: the importer gave up (status %d)", path, result.code);
+        masu_cli_error("cannot read %s: the importer gave up (exit code %d)", path, result.code);
         break;
     }
     return false;

@@ -80,7 +80,7 @@ bool masu_bake_is_sdf(const char *path) {
 }
 
 /* Every line of a message by itself: "file:1:2: expected ...", the line, the caret. */
-static void report_lines(const char *text, bool warnings) {
+void masu_bake_report_lines(const char *text, bool warnings) {
     while (*text) {
         int length = (int)strcspn(text, "\n");
         if (warnings)
@@ -142,12 +142,12 @@ static bool compile_scene(const char *path, masu_bake_content *content, masu_bak
     good = masu_sdfc_compile_with((const char *)own.data, own.bytes, path, &options, scene, error,
                                   sizeof error);
     if (good) {
-        report_lines(scene->warnings, true);
+        masu_bake_report_lines(scene->warnings, true);
         take_params(scene, content);
         take_parts(scene, content, dynamic);
         masu_bake_append_text(out, scene->glsl);
     } else {
-        report_lines(error, false);
+        masu_bake_report_lines(error, false);
     }
     masu_bake_release(&own);
     return good;
@@ -251,7 +251,7 @@ static bool run_tool(const char *const *arguments, const char *package, const ch
     } else if (result.end == MASU_BAKE_EXITED && result.code == MASU_BAKE_CANNOT_START) {
         masu_cli_error("cannot run %s; is it installed? (package %s)", arguments[0], package);
     } else if (result.end == MASU_BAKE_SIGNALED) {
-        masu_cli_error("%s: %s crashed (signal %d)", glsl_path, arguments[0], result.code);
+        masu_cli_error("%s: %s was ended by %s", glsl_path, arguments[0], masu_cli_signal(result.code));
     } else if (result.end == MASU_BAKE_TIMEOUT) {
         masu_cli_error("%s: %s took more than %d seconds", glsl_path, arguments[0], result.code);
     } else if (result.end == MASU_BAKE_NO_CHILD) {
@@ -261,7 +261,7 @@ static bool run_tool(const char *const *arguments, const char *package, const ch
     } else if (!good) {
         hide_directory(text, directory);
         text[strcspn(text, "\n")] = '\0';
-        masu_cli_error("%s: %s failed (status %d): %s", glsl_path, arguments[0], result.code, text);
+        masu_cli_error("%s: %s failed (exit code %d): %s", glsl_path, arguments[0], result.code, text);
     }
     masu_bake_release(&output);
     return good;

@@ -30,6 +30,9 @@ bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path,
 /* Whether a source is a file in the language of docs/sdf.md. */
 bool masu_bake_is_sdf(const char *path);
 
+/* Prints each line of the SDF compiler's messages as an error or a warning. */
+void masu_bake_report_lines(const char *text, bool warnings);
+
 /* "MASU_PARAM_" and the name in upper case, cut at `room`. */
 void masu_bake_param_macro(const char *name, char *out, size_t room);
 

@@ -6,11 +6,13 @@
 #include "cli/cli.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <wand/MagickWand.h>
 
@@ -61,11 +63,15 @@ static void give_up(int fd, const char *why) {
 
 static FILE *open_regular(const char *path, off_t *bytes) {
     struct stat about;
-    FILE *file = fopen(path, "rb");
-    if (!file) return NULL;
-    if (fstat(fileno(file), &about) != 0 || !S_ISREG(about.st_mode)) {
-        fclose(file);
-        errno = EINVAL;
+    int fd = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC); /* a FIFO must not block */
+    if (fd < 0) return NULL;
+    bool regular = fstat(fd, &about) == 0 && S_ISREG(about.st_mode);
+    FILE *file = regular ? fdopen(fd, "rb") : NULL;
+    if (!file) {
+        if (!regular) errno = EINVAL;
+        int cause = errno;
+        close(fd);
+        errno = cause;
         return NULL;
     }
     *bytes = about.st_size;

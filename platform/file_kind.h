@@ -1,0 +1,31 @@
+/* file_kind.h: recognises the files of Masu's programs, for hints to who gave one to the wrong program. */
+#ifndef MASU_PLATFORM_FILE_KIND_H
+#define MASU_PLATFORM_FILE_KIND_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef enum masu_file_kind {
+    MASU_FILE_UNKNOWN,
+    MASU_FILE_BLOB,        /* a baked scene, .masu */
+    MASU_FILE_DESCRIPTION, /* of a scene, .json */
+    MASU_FILE_SDF,
+    MASU_FILE_GLSL,
+    MASU_FILE_MODEL,
+    MASU_FILE_IMAGE,
+    MASU_FILE_SUITE, /* of masu conform */
+    MASU_FILE_LADDER /* of masu bench */
+} masu_file_kind;
+
+/* By content where it is given, else by the end of the name. `bytes` NULL: reads the start of the file. */
+masu_file_kind masu_file_kind_of(const char *path, const void *bytes, size_t count);
+
+/* "; a scene description: `masu-bake FILE.json -o X.masu` bakes it, ...", for the end of a message that rejects
+ * the file; "" for the kind that was expected and for unknown ones. */
+const char *masu_file_hint(const char *path, const void *bytes, size_t count, masu_file_kind expected);
+
+/* Whether a file of one format, ".png", may be written under that name: it ends so, or has no such end at all, or is
+ * a device or a pipe. On false one line is written to `error`. */
+bool masu_file_named(const char *path, const char *end, char *error, size_t error_size);
+
+#endif
