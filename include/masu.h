@@ -793,7 +793,7 @@ MASU_API uint32_t masu_memory_report(const masu_renderer *renderer, masu_memory_
     X(MASU_GOVERNOR_REASON_EMERGENCY, 7, "two frames in a row have missed the target")             \
     X(MASU_GOVERNOR_REASON_UP, 8, "this better rung is predicted to meet the target")              \
     X(MASU_GOVERNOR_REASON_WORST, 9, "no rung meets the target: the cheapest one is used")         \
-    X(MASU_GOVERNOR_REASON_NO_GAIN, 10, "no rung meets the target; cheaper rungs save no time")    \
+    X(MASU_GOVERNOR_REASON_NO_GAIN, 10, "cheaper rungs save no time, or it is measured if they do") \
     X(MASU_GOVERNOR_REASON_STALE, 11, "no recent measurements: the rung is kept")                  \
     X(MASU_GOVERNOR_REASON_FIXED, 12, "the rung is fixed")                                         \
     X(MASU_GOVERNOR_REASON_HOST, 13, "the host has selected the rung")                             \
@@ -864,6 +864,10 @@ typedef struct masu_governor_info {
      * after 4 frames in a row that do not fit, or 4 late ones of 16. It falls by one after 60
      * frames that would fit, later after a failed fall. 0: refresh_ms is unknown. */
     uint32_t refreshes;
+    /* Wall-clock times are whole multiples of this: the host waits for the display's refresh before
+     * it measures, so they hide how much of a refresh a frame needs. 0: they are not. Pass the time
+     * at which the GPU finished (masu_frame_times), or enable timestamps. */
+    float vsync_ms;
 } masu_governor_info;
 
 /* The part of masu_governor_desc that can change between frames (masu_governor_set), with the same

@@ -113,7 +113,7 @@ typedef struct masu_debug {
 } masu_debug;
 
 /* Leaves device features unused although they are available: to test the fallback, or to work
- * around a driver bug. Flags: 0 or not 0. */
+ * around a driver bug. Flags (0 or not 0), unless noted. */
 typedef struct masu_deny {
     /* Separate device blocks per role, even if one memory type could serve all. */
     uint32_t unified_memory;
@@ -122,6 +122,9 @@ typedef struct masu_deny {
     /* Stores the history of rung.temporal in 16-bit floats, even if the device filters
      * R16G16B16A16_UNORM. Bright colours then have an error of a tenth of an 8-bit step. */
     uint32_t unorm16;
+    /* Numbers: largest width and height of the shadow map, and most storage buffers per shader
+     * stage, even if the device has more. 0: the limits of the device. */
+    uint32_t image_size, storage_buffers;
 } masu_deny;
 
 #endif

@@ -97,7 +97,8 @@ bool masu_session_open(const masu_session_desc *d, masu_session *s, char *error,
     host.labels = host.labels || d->desc.debug.labels;
     host.deny = host.deny || masu_session_denied();
     if (host.deny) {
-        s->desc.deny = (masu_deny){.unified_memory = 1, .compressed_textures = 1, .unorm16 = 1};
+        s->desc.deny = (masu_deny){
+            .unified_memory = 1, .compressed_textures = 1, .unorm16 = 1, .image_size = 4096};
         s->desc.debug.timestamps = 0;
         s->desc.governor.wall_only = 1;
     }

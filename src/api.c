@@ -241,6 +241,12 @@ static void log_box(const masu_renderer *m) {
             &m->plan.desc, MASU_LOG_WARNING,
             "debug.labels: VK_EXT_debug_utils is not enabled on the instance, there are no labels");
     }
+    uint32_t few = m->plan.desc.deny.storage_buffers;
+    if (!few) return;
+    snprintf(text, sizeof text,
+             "the device has %u storage buffers in a shader stage: traced reflections or occlusion culling are off",
+             few);
+    masu_log(&m->plan.desc, MASU_LOG_WARNING, text);
 }
 
 masu_result masu_init(const masu_desc *desc, void *block, uint64_t block_bytes, masu_renderer **out,

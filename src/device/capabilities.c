@@ -10,11 +10,16 @@
 
 /* ---- Storage buffers ------------------------------------------------------------------------- */
 
-/* Rungs that leave reflections to us go without where there are too few. */
-static masu_result drop_specular(masu_desc *desc, const masu_frame_plan *plan,
-                                 const VkPhysicalDeviceLimits *limits, masu_detail *detail) {
-    uint32_t has = limits->maxPerStageDescriptorStorageBuffers;
-    uint32_t needed = masu_plain_buffers(plan) + masu_group_buffers(plan, MASU_BINDING_TRACING);
+static uint32_t buffers_of(const masu_desc *desc, const VkPhysicalDeviceLimits *limits) {
+    uint32_t has = limits->maxPerStageDescriptorStorageBuffers, most = desc->deny.storage_buffers;
+    return most && most < has ? most : has;
+}
+
+/* Rungs that leave reflections to us go without where there are too few: *dropped. */
+static masu_result drop_specular(masu_desc *desc, const masu_frame_plan *plan, uint32_t has,
+                                 int *dropped, masu_detail *detail) {
+    uint32_t needed = masu_compute_buffers(plan, MASU_BINDING_PLAIN) +
+                      masu_compute_buffers(plan, MASU_BINDING_TRACING);
     if (!plan->needs.reflections || has >= needed) return MASU_OK;
     for (uint32_t r = 0; r < desc->rung_count; r++) {
         if (desc->rungs[r].specular == MASU_ON) {
@@ -24,6 +29,7 @@ static masu_result drop_specular(masu_desc *desc, const masu_frame_plan *plan,
                              "has %u",
                              r, needed, has);
         }
+        *dropped |= desc->rungs[r].specular != MASU_OFF;
         desc->rungs[r].specular = MASU_OFF;
     }
     return MASU_OK;
@@ -97,22 +103,20 @@ static int filters_unorm16(const masu_vk *vk) {
 }
 
 /* Vulkan promises four storage buffers in a stage: rungs that leave culling by occluders to us go
- * without it where there are no more. */
-static masu_result drop_occlusion(masu_desc *desc, const masu_frame_plan *plan,
-                                  const VkPhysicalDeviceLimits *limits, masu_detail *detail) {
-    uint32_t has = limits->maxPerStageDescriptorStorageBuffers;
-    uint32_t plain = masu_plain_buffers(plan);
-    uint32_t needed = plain + masu_group_buffers(plan, MASU_BINDING_CULLING);
+ * without it where there are no more: *dropped. */
+static masu_result drop_occlusion(masu_desc *desc, const masu_frame_plan *plan, uint32_t has,
+                                  int *dropped, masu_detail *detail) {
+    uint32_t plain = masu_compute_buffers(plan, MASU_BINDING_PLAIN);
+    uint32_t needed = plain + masu_compute_buffers(plan, MASU_BINDING_CULLING);
     if (has < plain) {
+        char names[256];
+        masu_name_buffers(plan, MASU_BINDING_PLAIN, names, sizeof names);
         return masu_fail(detail, MASU_ERROR_DEVICE, "maxPerStageDescriptorStorageBuffers", plain,
-                         has,
-                         "the scene's lights, probes, skins, metered exposure or silhouettes, SMAA, or decals need %u storage "
-                         "buffers in a stage, the "
-                         "device has %u",
-                         plain, has);
+                         has, "the scene needs %u storage buffers in a stage (%s), the device has %u",
+                         plain, names, has);
     }
     if (plan->needs.reflections && desc_traces(desc))
-        needed += masu_group_buffers(plan, MASU_BINDING_TRACING);
+        needed += masu_compute_buffers(plan, MASU_BINDING_TRACING);
     if (!plan->occlusion || has >= needed) return MASU_OK;
     for (uint32_t r = 0; r < desc->rung_count; r++) {
         if (desc->rungs[r].occlusion == MASU_ON) {
@@ -122,6 +126,7 @@ static masu_result drop_occlusion(masu_desc *desc, const masu_frame_plan *plan,
                              "has %u",
                              r, needed, has);
         }
+        *dropped |= desc->rungs[r].occlusion != MASU_OFF;
         desc->rungs[r].occlusion = MASU_OFF;
     }
     return MASU_OK;
@@ -171,17 +176,23 @@ static masu_result check_vertex_stage(const masu_frame_plan *plan, const VkPhysi
                      needed, has);
 }
 
-static masu_result check_shadow_map(const masu_frame_plan *plan,
-                                    const VkPhysicalDeviceLimits *limits, masu_detail *detail) {
+/* The largest side of a shadow map. */
+static uint32_t widest_map(const VkPhysicalDeviceLimits *limits) {
+    uint32_t most = limits->maxImageDimension2D;
+    if (most > limits->maxFramebufferWidth) most = limits->maxFramebufferWidth;
+    return most < limits->maxFramebufferHeight ? most : limits->maxFramebufferHeight;
+}
+
+static masu_result check_shadow_map(const masu_frame_plan *plan, masu_detail *detail) {
     VkExtent2D map = masu_plan_extent(plan, MASU_EXTENT_SHADOW, plan->desc.output);
     uint32_t widest = map.width > map.height ? map.width : map.height;
-    if (widest > limits->maxImageDimension2D || widest > limits->maxFramebufferWidth ||
-        widest > limits->maxFramebufferHeight) {
+    uint32_t most = plan->desc.deny.image_size;
+    if (widest > most) {
         return masu_fail(
-            detail, MASU_ERROR_DEVICE, "maxImageDimension2D", widest, limits->maxImageDimension2D,
+            detail, MASU_ERROR_DEVICE, "maxImageDimension2D", widest, most,
             "the shadow map's %u cascades of %u texels make an image of %ux%u, the "
             "device's may be %u",
-            plan->cascades, plan->cascade_size, map.width, map.height, limits->maxImageDimension2D);
+            plan->cascades, plan->cascade_size, map.width, map.height, most);
     }
     return MASU_OK;
 }
@@ -191,7 +202,7 @@ masu_result masu_capabilities_check(const masu_frame_plan *plan, const masu_vk *
     const VkPhysicalDeviceLimits *limits = &vk->properties.limits;
     masu_result result = check_ranges(plan, limits, detail);
     if (!result) result = check_vertex_stage(plan, limits, detail);
-    return result ? result : check_shadow_map(plan, limits, detail);
+    return result ? result : check_shadow_map(plan, detail);
 }
 
 /* ---- Open choices ---------------------------------------------------------------------------- */
@@ -223,8 +234,13 @@ masu_result masu_capabilities_fit(masu_desc *desc, const masu_frame_plan *plan, 
     const VkPhysicalDeviceLimits *limits = &vk->properties.limits;
     *computed_for = own_rungs(desc, plan, masu_device_class_of(&vk->properties));
     if (vk->queue_family.timestampValidBits == 0) desc->governor.wall_only = 1;
-    masu_result result = drop_specular(desc, plan, limits, detail);
-    if (!result) result = drop_occlusion(desc, plan, limits, detail);
+    uint32_t has = buffers_of(desc, limits);
+    int dropped = 0;
+    masu_result result = drop_specular(desc, plan, has, &dropped, detail);
+    if (!result) result = drop_occlusion(desc, plan, has, &dropped, detail);
+    desc->deny.storage_buffers = dropped ? has : 0; /* the plan gives it as the reason */
+    uint32_t widest = widest_map(limits);
+    if (!desc->deny.image_size || desc->deny.image_size > widest) desc->deny.image_size = widest;
     if (!result) result = choose_ray_query(desc, plan, vk, detail);
     if (!result) result = choose_half_floats(desc, vk, detail);
     if (!filters_unorm16(vk)) desc->deny.unorm16 = 1;

@@ -31,10 +31,9 @@ typedef struct masu_binding {
 /* All of them, in the order of the rows; out has room for MASU_BIND_COUNT. */
 void masu_bindings(const masu_frame_plan *plan, masu_binding out[]);
 
-/* Storage buffers that a compute shader may find in set 0: of the plan's own, without those of a group; all
- * those that a group adds. */
-uint32_t masu_plain_buffers(const masu_frame_plan *plan);
-uint32_t masu_group_buffers(const masu_frame_plan *plan, masu_binding_group group);
+/* Storage buffers of a group that the plan binds in compute shaders, and their names, separated by commas. */
+uint32_t masu_compute_buffers(const masu_frame_plan *plan, masu_binding_group group);
+void masu_name_buffers(const masu_frame_plan *plan, masu_binding_group group, char *out, size_t size);
 /* Those of the vertex stage. */
 uint32_t masu_vertex_buffers(const masu_frame_plan *plan);
 

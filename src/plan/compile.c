@@ -315,6 +315,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                .velocity = (d->readback & MASU_READBACK_VELOCITY) != 0 || (d->split & MASU_SPLIT_VELOCITY) != 0 ||
                                            any.specular ||
                                            wants(d, masu_rung_resolves),
+                               .few_buffers = d->deny.storage_buffers != 0,
                                .particles = d->scene && d->reserve.particles,
                                .decals = d->scene && d->reserve.decals,
                                .lines = d->scene && d->reserve.lines,

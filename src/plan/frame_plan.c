@@ -46,7 +46,8 @@ int masu_march_has_blocks(const masu_needs *n) { return n->sdf; }
 static const char *no_occlusion(const masu_needs *n) {
     return !n->occluders  ? "the scene has no occluders"
            : n->unculled  ? "a mesh has too many primitives or instances"
-                          : "rung.occlusion is off, or the device has too few storage buffers";
+           : n->few_buffers ? "rung.occlusion is off, or the device has too few storage buffers"
+                            : "rung.occlusion is off";
 }
 
 static const char *no_march(const masu_needs *n) {
@@ -73,7 +74,9 @@ static const char *no_shadow_map(const masu_needs *n) {
 }
 
 static const char *no_specular(const masu_needs *n) {
-    return n->scene ? "nothing is glossy enough to trace, or rung.specular is off" : NO_SCENE;
+    return !n->scene       ? NO_SCENE
+           : n->few_buffers ? "rung.specular is off, or the device has too few storage buffers"
+                            : "nothing is glossy enough to trace, or rung.specular is off";
 }
 
 static const char *no_filter(const masu_needs *n, const char *off) {

@@ -165,6 +165,7 @@ typedef struct masu_needs {
     int smoothing;     /* smaa */
     int picking;       /* the host may ask what is under a pixel */
     int metered;       /* the exposure follows the picture */
+    int few_buffers;   /* storage buffers of the device: rungs do without something that was AUTO */
     int sprites;       /* frames may bring some of these: */
     int particles, decals, lines;
     masu_switches any; /* a rung has the switch on, and the scene is one where that is of use */

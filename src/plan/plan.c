@@ -29,9 +29,13 @@ const masu_rung_plan *masu_first_rung(const masu_frame_plan *plan, uint32_t pass
 
 /* ---- The shadow map -------------------------------------------------------------------------- */
 
-/* One below the other, but for four: up to 2048 a square is within the size that every device
- * has. */
-static uint32_t cascade_columns(const masu_frame_plan *plan) { return plan->cascades == 4 ? 2 : 1; }
+/* Four cascades are arranged in a square, fewer in a column. A column of three that is too high for
+ * the device's images becomes a square with an empty quarter. */
+static uint32_t cascade_columns(const masu_frame_plan *plan) {
+    uint32_t most = plan->desc.deny.image_size;
+    int is_high = plan->cascades == 3 && most && 3 * plan->cascade_size > most;
+    return plan->cascades == 4 || is_high ? 2 : 1;
+}
 
 VkOffset2D masu_cascade_place(const masu_frame_plan *plan, uint32_t cascade) {
     uint32_t columns = cascade_columns(plan);

@@ -26,6 +26,7 @@ void masu_governor_report(const masu_governor *g, masu_governor_info *out) {
     out->cpu_ms = (float)g->trust.cpu;
     out->refresh_ms = (float)g->pacing.refresh;
     out->refreshes = g->pacing.refreshes;
+    out->vsync_ms = (float)g->trust.vsync;
     out->noise = (float)g->noise;
     out->overhead_ms = (float)g->trust.overhead;
     out->unit = (float)g->trust.unit;

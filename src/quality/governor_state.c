@@ -147,6 +147,8 @@ void masu_governor_import_state(masu_governor *g, const masu_governor_state *s, 
     g->odd_count = g->misses = 0;
     g->newest = g->since = frame;
     g->known = 1;
+    memset(&g->survey, 0, sizeof g->survey);
+    memset(&g->spikes, 0, sizeof g->spikes);
     g->follows = s->follows != 0;
     g->trials = s->trials;
     g->trial_ended = frame;
@@ -180,6 +182,8 @@ void masu_governor_scale(masu_governor *g, double pixels, uint64_t frame) {
     p[0][2] = p[2][0] = p[1][2] = p[2][1] = 0.0;
     p[2][2] = 1e-4 * g->load * g->load;
     masu_governor_forget_mistakes(g);
+    memset(&g->survey, 0, sizeof g->survey);
+    memset(&g->spikes, 0, sizeof g->spikes);
     g->settled_load = -1.0;
     g->odd_count = 0;
     g->misses = 0;

@@ -12,6 +12,12 @@
 #define FROZEN_SAMPLES 4u  /* the same GPU time to the bit, while the wall moves */
 #define SCALE_RANGE 64.0   /* a wall time so far from the target says nothing of units */
 #define LATE 1.1           /* of the host's own work: a wall no longer is that of a host that came late */
+#define VSYNC_RANGE 0.015 /* of a refresh: how far times may be from whole ones */
+#define VSYNC_STEPS 32u   /* times that must fit, */
+#define VSYNC_TURNS 4u    /* with so many changes of the multiple */
+#define VSYNC_ODD 2u      /* times in a row that do not fit end it */
+#define VSYNC_WEIGHT 0.05 /* of a new time in the refresh interval */
+#define VSYNC_MOST 16.0   /* largest multiple */
 #define CPU_WEIGHT 0.25    /* of a new time of the host's work in what is taken for it, */
 #define CPU_STEP 0.1       /* and how far one may be from that, as part of it */
 
@@ -71,6 +77,31 @@ static void follow_overhead(masu_trust *t, double target, double gpu, double wal
     t->overhead_known = 1;
 }
 
+/* A single multiple could be any constant load, so the multiple must change. */
+static void find_vsync(masu_trust *t, double wall) {
+    double k = t->step > 0.0 ? floor(wall / t->step + 0.5) : 0.0;
+    double parts = wall < t->step ? floor(t->step / wall + 0.5) : 0.0;
+    if (k < 1.0 && parts <= VSYNC_MOST && fabs(t->step - parts * wall) <= VSYNC_RANGE * wall) {
+        t->step = wall; /* the candidate was several refreshes */
+        t->multiple = 0;
+        k = 1.0;
+    }
+    if (!(k >= 1.0 && k <= VSYNC_MOST && fabs(wall - k * t->step) <= VSYNC_RANGE * t->step)) {
+        if (t->step > 0.0 && ++t->odd < VSYNC_ODD) return;
+        t->step = wall;
+        t->steps = t->turns = t->odd = 0;
+        t->multiple = 1;
+        t->vsync = 0.0;
+        return;
+    }
+    t->odd = 0;
+    t->step += VSYNC_WEIGHT * (wall / k - t->step);
+    t->turns += t->multiple != (uint32_t)k && t->turns < VSYNC_TURNS;
+    t->multiple = (uint32_t)k;
+    if (t->steps < VSYNC_STEPS) t->steps++;
+    t->vsync = t->steps >= VSYNC_STEPS && t->turns >= VSYNC_TURNS ? t->step : 0.0;
+}
+
 double masu_trust_time(masu_trust *t, double target, const masu_governor_sample *s, int *sure) {
     double wall = masu_is_time(s->wall_ms) ? s->wall_ms : 0.0;
     /* A host that is busy longer than the GPU finds the fence signalled long ago: its wall is its own
@@ -78,6 +109,7 @@ double masu_trust_time(masu_trust *t, double target, const masu_governor_sample 
     int late = wall > 0.0 && masu_is_time(s->cpu_ms) && wall <= LATE * s->cpu_ms;
     follow_cpu(t, target, s->cpu_ms);
     if (!late) find_unit(t, target, s->gpu_ms, wall);
+    if (wall > 0.0) find_vsync(t, wall);
     double gpu = s->gpu_ms * t->unit;
     if (!masu_is_time(gpu)) gpu = 0.0;
     int frozen = is_frozen(t, s->gpu_ms, wall, s->rung);

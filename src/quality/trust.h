@@ -28,6 +28,13 @@ typedef struct masu_trust {
     uint32_t unit_count;
     double frozen_gpu, frozen_wall;
     uint32_t frozen, frozen_rung;
+    /* Wall times in whole refreshes: the host waits for the display before it measures. */
+    double vsync;         /* refresh interval, ms; 0: not found */
+    double step;          /* candidate for it */
+    uint32_t steps;       /* times that are multiples of it */
+    uint32_t turns;       /* changes of the multiple */
+    uint32_t odd;         /* times in a row that are none */
+    uint32_t multiple;    /* of the last time */
     double cpu; /* the host's own work for a frame, ms, without single long ones; 0: not known */
 } masu_trust;
 

@@ -448,18 +448,41 @@ static void what_exceeds_a_limit_is_named(void **state) {
         assert_int_equal(t.s.detail.result, cases[i].result);
         assert_string_equal(t.s.detail.what, cases[i].what);
     }
-    bake("large", 0, 0, ", \"shadows\": {\"cascades\": 3, \"resolution\": 8192}", "");
     char error[ERROR_SIZE];
     masu_session_desc d = test_desc(NULL, W, H);
-    d.scene_path = baked_scene("large");
-    if (masu_session_open(&d, &t.s, error, sizeof error)) { /* an image of 24,576 texels */
-        assert_true(t.s.host.properties.limits.maxImageDimension2D >= 3 * 8192);
-        close_session(&t.s);
-        return;
-    }
+    d.scene_path = baked_scene("still");
+    d.desc.deny.image_size = 2 * SIZE - 1; /* a texel too few for a square of cascades */
+    assert_false(masu_session_open(&d, &t.s, error, sizeof error));
     assert_int_equal(t.s.detail.result, MASU_ERROR_DEVICE);
     assert_string_equal(t.s.detail.what, "maxImageDimension2D");
-    assert_int_equal(t.s.detail.needed, 3 * 8192);
+    assert_int_equal(t.s.detail.needed, 2 * SIZE);
+    assert_int_equal(t.s.detail.given, 2 * SIZE - 1);
+}
+
+/* The three cascades need no image of three times their size. */
+static void small_images_hold_the_cascades_in_a_square(void **state) {
+    (void)state;
+    static uint8_t images[2][W * H * 4];
+    for (uint32_t i = 0; i < 2; i++) {
+        masu_plan_info plan;
+        masu_commands commands;
+        masu_session_desc d = test_desc(NULL, W, H);
+        d.scene_path = baked_scene("still");
+        d.desc.deny.image_size = i ? 2 * SIZE : 0;
+        open_session(&t.s, &d);
+        assert_int_equal(masu_plan(&t.s.desc, &plan, NULL), MASU_OK);
+        uint32_t found = 0;
+        for (uint32_t k = 0; k < plan.image_count; k++) {
+            if (strcmp(plan.images[k].name, "shadow_map")) continue;
+            found = 1;
+            assert_int_equal(plan.images[k].width, i ? 2 * SIZE : SIZE);
+            assert_int_equal(plan.images[k].height, i ? 2 * SIZE : 3 * SIZE);
+        }
+        assert_true(found);
+        draw(&t.s, &(masu_frame_desc){.camera = &home, .cut = 1}, &commands, images[i]);
+        close_session(&t.s);
+    }
+    assert_memory_equal(images[0], images[1], sizeof images[0]);
 }
 
 int main(void) {
@@ -475,6 +498,7 @@ int main(void) {
         cmocka_unit_test(a_caster_however_far_leaves_the_others_their_shadows),
         cmocka_unit_test(only_scenes_that_ask_have_any_of_it),
         cmocka_unit_test(what_exceeds_a_limit_is_named),
+        cmocka_unit_test(small_images_hold_the_cascades_in_a_square),
     };
     return cmocka_run_group_tests_name("shadow_frames", tests, make_scratch, remove_scratch);
 }

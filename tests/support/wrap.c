@@ -271,6 +271,8 @@ static VKAPI_ATTR void VKAPI_CALL get_properties(VkPhysicalDevice device,
     vkGetPhysicalDeviceProperties(device, out);
     if (wrap.api_version) out->apiVersion = wrap.api_version;
     if (wrap.max_image) out->limits.maxImageDimension2D = wrap.max_image;
+    if (wrap.max_storage_buffers)
+        out->limits.maxPerStageDescriptorStorageBuffers = wrap.max_storage_buffers;
     if (wrap.max_groups) out->limits.maxComputeWorkGroupCount[0] = wrap.max_groups;
     if (wrap.max_framebuffer) out->limits.maxFramebufferHeight = wrap.max_framebuffer;
     if (wrap.fake_memory) {

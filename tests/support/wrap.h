@@ -30,6 +30,7 @@ typedef struct wrap_state {
     bool no_compute;         /* queue families without compute */
     bool no_timestamps;
     uint32_t max_image;           /* maxImageDimension2D; 0: the truth */
+    uint32_t max_storage_buffers; /* maxPerStageDescriptorStorageBuffers; 0: the truth */
     uint32_t max_groups;          /* maxComputeWorkGroupCount along x; 0: the truth */
     uint32_t max_framebuffer;     /* maxFramebufferHeight; 0: the truth */
     const char *unknown_function; /* not found */

@@ -48,13 +48,14 @@ static json_t *governor_json(const masu_governor_info *g) {
     json_t *predicted = json_array();
     for (uint32_t r = 0; r < g->rung_count; r++)
         json_array_append_new(predicted, json_real((double)g->predicted_ms[r]));
-    return json_pack("{s:f, s:I, s:I, s:I, s:I, s:i, s:s, s:i, s:s, s:f, s:f, s:f, s:f, s:o}",
+    return json_pack("{s:f, s:I, s:I, s:I, s:I, s:i, s:s, s:i, s:s, s:f, s:f, s:f, s:f, s:f, s:o}",
                      "target_ms", (double)g->target_ms, "samples", (json_int_t)g->samples, "rejected",
                      (json_int_t)g->rejected, "missed", (json_int_t)g->missed, "changes",
                      (json_int_t)g->changes, "rung", (int)g->rung, "reason", g->reason_text, "locked",
                      (int)g->locked, "source", sources[g->source], "fixed_ms", (double)g->fixed_ms,
                      "load_ms", (double)g->load_ms, "noise", (double)g->noise, "start_delay_ms",
-                     (double)g->start_delay_ms, "predicted_ms", predicted);
+                     (double)g->start_delay_ms, "vsync_ms", (double)g->vsync_ms, "predicted_ms",
+                     predicted);
 }
 
 static json_t *passes_json(const masu_sample *samples, uint32_t n, const masu_plan_info *plan,
@@ -204,6 +205,8 @@ void masu_render_governor(const masu_session *s, const masu_render_options *o, c
                (double)s->desc.rungs[r].scale, frames, (double)g->predicted_ms[r],
                r == g->rung ? " <" : "");
     }
+    if (g->vsync_ms > 0.0f)
+        printf("  times are multiples of %.2f ms: they include the wait for the display\n", (double)g->vsync_ms);
     printf("  last: rung %" PRIu32 ": %s%s\n", g->rung, g->reason_text,
            g->locked ? " (locked: it cannot change to the rung that it wants)" : "");
 }

@@ -1,0 +1,346 @@
+/* governor_model.c: the model of frame times: a Kalman filter for fixed part, load and slope, and the
+ * cost of each rung. governor.c selects a rung by its predictions; trust.c selects the clock.
+ *
+ * Only bounded variances accumulate, so nothing winds up at the ends of the ladder. */
+#include "quality/governor_model.h"
+
+#include "shared/floats.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---- Constants: all are times in frames, deviations, or parts ---------------------------------- */
+
+#define PAUSE 1e3 /* ms: longer is rather a pause than a frame */
+#define NOISE_FIRST 0.02
+#define NOISE_LEAST 0.003 /* timers are no better */
+#define NOISE_MOST 0.5
+#define NOISE_WINDOW 64u
+#define FIXED_PRIOR 0.1   /* of the first time, as is its deviation */
+#define LOAD_DRIFT 0.0025 /* relative deviation of what a load changes by from frame to frame, */
+#define SLOPE_DRIFT 0.009 /* and of what its slope does, while it moves */
+#define REST 0.04         /* of both, while it does not */
+#define TREND_WEIGHT 0.2  /* of the last innovation in their mean */
+#define TREND_REST 0.7    /* deviations: below it a mean of white noise is at rest, */
+#define TREND_MOVES 1.1   /* and from here on the load moves for certain; */
+#define TREND_MOST 6.0    /* the faster, the looser the filter, up to this factor */
+#define SLOPE_MOST 0.5    /* of the load in a frame: more is a jump and no slope */
+/* Of a prior cost, relative. Not more: costs would take from a moving load what is the load's. */
+#define COST_DEVIATION 0.005
+#define COST_RANGE 4.0    /* how far a cost may come from its prior, as a factor */
+#define GATE 3.0          /* deviations: what is farther is odd, */
+#define GATE_LEAST 0.2    /* unless it is nearer than this part of what is expected */
+#define ODD_AGREE 1.5     /* factor within which odd samples say the same */
+#define ODD_FAR 4.0       /* factor: without a wall to confirm it, odd samples of so much */
+#define ODD_FAR_COUNT 3u  /* more need as many that agree, */
+#define ODD_NEAR_COUNT 8u /* of so much less, as many; */
+#define ODD_LIE_COUNT 90u /* and less than a frame can take: a timer that has stopped is likelier */
+#define LEAST_TIME 0.02   /* of the target, and half of the fixed part: what a frame can take */
+#define ODD_PAUSE_COUNT 8u
+#define LEAD_MOST 8.0    /* frames: farther than this no slope is followed to reach the present */
+#define RISE_FOLLOWS 0.8   /* the same of one that was over the target just after a rise */
+
+#define NEVER UINT64_MAX
+
+void masu_governor_model_init(masu_governor *g) {
+    for (uint32_t r = 0; r < g->count; r++) {
+        g->cost[r] = g->prior[r];
+        g->cost_variance[r] = COST_DEVIATION * COST_DEVIATION;
+    }
+    g->noise = NOISE_FIRST;
+    g->cut = NEVER;
+    masu_trust_start(&g->trust);
+}
+
+/* ---- The filter ------------------------------------------------------------------------------ */
+
+/* 0: at rest; 1: the load moves; more: the filter is late. */
+static double late(const masu_governor *g) {
+    return masu_within((fabs(g->trend) - TREND_REST) / (TREND_MOVES - TREND_REST), 0.0, TREND_MOST);
+}
+
+double masu_governor_moves(const masu_governor *g) { return masu_within(late(g), 0.0, 1.0); }
+
+/* Timers that count in coarse steps give the same time again and again; real ones never do. The
+ * step is the least difference that is seen; a time is then off by a variance of a twelfth of
+ * its square. */
+static void follow_grain(masu_governor *g, double raw) {
+    double d = fabs(raw - g->raw);
+    if (d > 0.0 && (g->grain == 0.0 || d < g->grain)) g->grain = d;
+    g->repeats += ((d > 0.0 ? 0.0 : 1.0) - g->repeats) / 32.0;
+    if (g->repeats < 0.05) g->grain = 0.0;
+    g->raw = raw;
+}
+
+/* Variance of one sample of this time. */
+static double sample_variance(const masu_governor *g, double ms) {
+    double r = g->noise * ms;
+    return r * r + g->grain * g->grain / 12.0;
+}
+
+/* The load is where this time says; how it moves is forgotten, the fixed part is kept. */
+static void restart(masu_governor *g, uint32_t rung, double ms) {
+    double c = g->cost[rung], variance = g->p[0][0];
+    g->fixed = masu_within(g->fixed, 0.0, 0.5 * ms);
+    g->load = (ms - g->fixed) / c;
+    g->slope = 0.0;
+    memset(g->p, 0, sizeof g->p);
+    g->p[0][0] = variance;
+    g->p[0][1] = g->p[1][0] = -variance / c;
+    g->p[1][1] = (variance + sample_variance(g, ms)) / (c * c);
+    g->p[2][2] = 1e-4 * g->load * g->load;
+    g->trend = 0.0;
+    g->odd_count = 0;
+    g->settled_load = -1.0;
+}
+
+/* Samples of a rung that was just changed to contradict the model: with the load as it was, two
+ * rungs and their times give both parts. Returns 0 if they do not, because the load has moved as
+ * well. */
+static int refit(masu_governor *g, uint32_t rung, double ms) {
+    uint32_t other = g->fitted;
+    double c = g->cost[rung], step = g->cost[other] - c;
+    if (other == rung || fabs(step) < 0.05 * (g->cost[other] + c)) return 0;
+    double load = (g->fixed + g->cost[other] * g->load - ms) / step;
+    double noise = 3.0 * sqrt(2.0 * sample_variance(g, ms)) / fabs(step);
+    if (!(load >= -noise)) return 0;
+    load = masu_largest(load, 0.01 * g->target);
+    double fixed = ms - c * load;
+    if (!(fixed >= 0.0)) return 0;
+    restart(g, rung, ms);
+    g->fixed = fixed;
+    g->load = load;
+    double d = 2.0 * sqrt(sample_variance(g, ms)) * (g->cost[other] + c) / fabs(step);
+    g->p[0][0] = d * d;
+    g->p[0][1] = g->p[1][0] = -g->p[0][0] / c;
+    g->p[1][1] = (g->p[0][0] + sample_variance(g, ms)) / (c * c);
+    return 1;
+}
+
+static void start(masu_governor *g, uint32_t rung, double ms) {
+    g->fixed = FIXED_PRIOR * ms;
+    g->p[0][0] = g->fixed * g->fixed;
+    restart(g, rung, ms);
+    g->known = 1;
+}
+
+/* Second differences of three samples in a row at one rung know nothing of level and slope, and
+ * have 6 times the variance of one. Their mean size, not the root of a mean square: outliers
+ * count less. */
+static void follow_noise(masu_governor *g, uint32_t rung, double ms) {
+    if (g->before_count && g->before_rung != rung) g->before_count = 0;
+    /* The steps of a coarse timer are no noise, nor is it at rest while it stands still. */
+    if (g->grain > 0.0 || (g->before_count && g->before[0] == ms)) return;
+    if (g->before_count >= 2) {
+        double d = fabs(ms - 2.0 * g->before[0] + g->before[1]) / ms * (1.2533 / 2.4495);
+        g->noise_samples += g->noise_samples < NOISE_WINDOW;
+        uint32_t n = g->noise_samples + 8 < NOISE_WINDOW ? g->noise_samples + 8 : NOISE_WINDOW;
+        g->noise += (masu_within(d, 0.0, 3.0 * g->noise) - g->noise) / (double)n;
+        g->noise = masu_within(g->noise, NOISE_LEAST, NOISE_MOST);
+    }
+    g->before[1] = g->before[0];
+    g->before[0] = ms;
+    g->before_rung = rung;
+    if (g->before_count < 2) g->before_count++;
+}
+
+/* Time update: constant slope, and what it and the load may drift by. */
+static void advance(masu_governor *g, double frames) {
+    double(*p)[3] = g->p;
+    double q = REST + (1.0 - REST) * late(g);
+    double size = masu_largest(g->load, 0.02 * g->target);
+    g->load += g->slope * frames;
+    p[1][1] += 2.0 * frames * p[1][2] + frames * frames * p[2][2];
+    p[0][1] += frames * p[0][2];
+    p[1][2] += frames * p[2][2];
+    double load = LOAD_DRIFT * size * q, slope = SLOPE_DRIFT * size * q;
+    p[1][1] += frames * load * load;
+    p[2][2] += frames * slope * slope;
+    p[1][0] = p[0][1];
+    p[2][1] = p[1][2];
+}
+
+/* Measurement update with value = h . state + noise of this variance. */
+static void correct(masu_governor *g, const double h[3], double innovation, double variance) {
+    double ph[3], k[3], s = variance;
+    for (int i = 0; i < 3; i++) {
+        ph[i] = g->p[i][0] * h[0] + g->p[i][1] * h[1] + g->p[i][2] * h[2];
+        s += h[i] * ph[i];
+    }
+    if (!(s > 1e-30)) return;
+    for (int i = 0; i < 3; i++) k[i] = ph[i] / s;
+    g->fixed += k[0] * innovation;
+    g->load += k[1] * innovation;
+    g->slope += k[2] * innovation;
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) g->p[i][j] -= k[i] * ph[j];
+    }
+}
+
+/* A sample that nothing explains. Returns 1 once enough of them have said the same. */
+static int is_certain(masu_governor *g, const masu_governor_sample *s, double ms, double expected,
+                      int sure) {
+    int sign = ms > expected ? 1 : -1;
+    double load = ms / g->cost[s->rung];
+    uint32_t needed = 2;
+    if (!sure && ms > ODD_FAR * expected) needed = ODD_FAR_COUNT;
+    if (!sure && ms * ODD_FAR < expected) {
+        int can_be = ms >= masu_largest(0.5 * g->fixed, LEAST_TIME * g->target);
+        needed = can_be ? ODD_NEAR_COUNT : ODD_LIE_COUNT;
+    }
+    if (ms > PAUSE && ms > ODD_FAR * expected) needed = ODD_PAUSE_COUNT;
+    int same = g->odd_count && g->odd_sign == sign && load < ODD_AGREE * g->odd_load &&
+               load * ODD_AGREE > g->odd_load;
+    g->odd_count = same ? g->odd_count + 1 : 1;
+    g->odd_sign = sign;
+    g->odd_load = load;
+    return g->odd_count >= needed;
+}
+
+/* What passes at output size have taken says what the fixed part is, roughly: they are not all
+ * of it, and not all of them are fixed. */
+static void follow_fixed(masu_governor *g, const masu_governor_sample *s, double ms) {
+    static const double h[3] = {1.0, 0.0, 0.0};
+    double fixed = s->fixed_ms * g->trust.unit;
+    if (!(fixed > 0.0 && fixed <= ms) || g->trust.source != MASU_GOVERNOR_SOURCE_GPU) return;
+    fixed += g->trust.overhead;
+    double d = 0.1 * fixed + 0.02 * g->target;
+    correct(g, h, fixed - g->fixed, d * d);
+}
+
+static void follow(masu_governor *g, const masu_governor_sample *s, double ms, int sure) {
+    double c = g->cost[s->rung], own = sample_variance(g, ms);
+    double frames = s->frame > g->newest ? (double)(s->frame - g->newest) : 0.0;
+    double load = g->load, p[3][3];
+    uint64_t newest = g->newest;
+    memcpy(p, g->p, sizeof p);
+    advance(g, masu_within(frames, 0.0, 60.0));
+    g->newest = s->frame;
+    if (g->cut <= s->frame) {
+        g->cut = NEVER;
+        restart(g, s->rung, ms);
+        g->jumped = 1;
+        return;
+    }
+    double expected = g->fixed + c * g->load, innovation = ms - expected;
+    const double h[3] = {1.0, c, 0.0};
+    double state = g->p[0][0] + 2.0 * c * g->p[0][1] + c * c * g->p[1][1];
+    double pixel = c * g->load, rung = pixel * pixel * g->cost_variance[s->rung];
+    double variance = masu_largest(state, 0.0) + rung + own, deviation = sqrt(variance);
+    if (ms < ODD_FAR * expected && ms * ODD_FAR > expected) follow_noise(g, s->rung, ms);
+    if (fabs(innovation) > masu_largest(GATE * deviation, GATE_LEAST * expected)) {
+        if (is_certain(g, s, ms, expected, sure)) {
+            /* At a new rung the cost may be wrong; at the old one the load has changed. */
+            if (s->rung == g->fitted) masu_survey_forget(&g->survey);
+            masu_survey_sample(&g->survey, s->frame, s->rung, ms);
+            if (!refit(g, s->rung, ms)) restart(g, s->rung, ms);
+            g->fitted = s->rung;
+            g->jumped = 1;
+            return;
+        }
+        g->load = load; /* as if it had not come */
+        g->newest = newest;
+        memcpy(g->p, p, sizeof p);
+        return;
+    }
+    g->odd_count = 0;
+    g->fitted = s->rung;
+    masu_survey_sample(&g->survey, s->frame, s->rung, ms);
+    follow_grain(g, g->trust.source == MASU_GOVERNOR_SOURCE_GPU ? s->gpu_ms * g->trust.unit : ms);
+    g->trend += TREND_WEIGHT * (innovation / deviation - g->trend);
+    correct(g, h, innovation, own + rung);
+    /* What the rung's own cost is to blame for. Its covariance with the load is left out: while it
+     * matters, just after the first visit, the two are still apart. */
+    double share = rung / variance;
+    if (pixel > 0.0) {
+        double cost = c * (1.0 + share * innovation / pixel);
+        g->cost[s->rung] =
+            masu_within(cost, g->prior[s->rung] / COST_RANGE, g->prior[s->rung] * COST_RANGE);
+    }
+    g->cost_variance[s->rung] *= 1.0 - share;
+    follow_fixed(g, s, ms);
+    g->fixed = masu_within(g->fixed, 0.0, ms);
+    g->load = masu_within(g->load, 1e-6 * g->target, 1e9 * g->target);
+    double most = SLOPE_MOST * masu_largest(g->load, 0.02 * g->target);
+    g->slope = masu_within(g->slope, -most, most);
+}
+
+/* A frame over the target just after a rise, and a few frames later the same rung takes much less: loads
+ * seldom fall just then, clocks that follow them rise. */
+static void watch_clock(masu_governor *g, const masu_governor_sample *s, double ms) {
+    if (s->rung != g->seen_rung) {
+        g->seen_ms = s->rung < g->seen_rung && ms > g->target ? ms : 0.0;
+        g->seen_frame = s->frame;
+        g->seen_rung = s->rung;
+    } else if (ms < RISE_FOLLOWS * g->seen_ms && s->frame - g->seen_frame <= MASU_GOVERNOR_TRIAL) {
+        g->seen_ms = 0.0;
+        if (!g->steady_clock) g->follows = 1;
+    }
+}
+
+static int is_sound(const masu_governor *g) {
+    double sum =
+        g->fixed + g->load + g->slope + g->noise + g->trend + g->trust.overhead + g->trust.distrust + g->grain;
+    for (int i = 0; i < 3; i++) {
+        if (!(g->p[i][i] >= 0.0)) return 0;
+        for (int j = 0; j < 3; j++) sum += g->p[i][j];
+    }
+    return sum - sum == 0.0; /* neither infinite nor NaN */
+}
+
+void masu_governor_sample_in(masu_governor *g, const masu_governor_sample *s) {
+    if (g->mode == MASU_GOVERNOR_OFF || s->rung >= g->count || (g->any && s->frame <= g->last)) {
+        g->rejected++;
+        return;
+    }
+    g->any = 1;
+    g->last = s->frame;
+    int sure;
+    if (s->exclude_from_timing || s->frame < g->since) {
+        g->rejected++;
+        return;
+    }
+    double ms = masu_trust_time(&g->trust, g->target, s, &sure);
+    if (!(ms > 0.0) || !g->warm) { /* drivers still compile in the first frame */
+        g->warm = g->warm || ms > 0.0;
+        g->rejected++;
+        return;
+    }
+    watch_clock(g, s, ms);
+    g->samples++;
+    if (g->pacing.refresh == 0.0) g->missed += ms > g->target; /* else the display tells */
+    if (s->rung == g->rung && s->frame >= g->changed)
+        g->misses = ms > g->target ? g->misses + (g->misses < 1000) : 0;
+    if (!g->known) {
+        g->newest = s->frame;
+        g->fitted = s->rung;
+        start(g, s->rung, ms);
+        return;
+    }
+    follow(g, s, ms, sure);
+    if (is_sound(g)) return;
+    g->trust.overhead = g->trust.distrust = g->grain = 0.0;
+    g->noise = NOISE_FIRST;
+    start(g, s->rung, ms);
+}
+
+/* ---- Predictions ------------------------------------------------------------------------------- */
+
+/* What a frame `lead` frames past the newest sample takes at a rung, and `margin` deviations more.
+ * falls: a load that falls is followed too; else it is taken as it is. */
+double masu_governor_upper(const masu_governor *g, uint32_t rung, double lead, int falls, double margin) {
+    double c = g->cost[rung], slope = g->slope < 0.0 && !falls ? 0.0 : g->slope;
+    double load = masu_largest(g->load + slope * lead, 0.0), mean = g->fixed + c * load;
+    double v = g->p[0][0] + 2.0 * c * g->p[0][1] + c * c * g->p[1][1] + sample_variance(g, mean) +
+               c * load * c * load * g->cost_variance[rung];
+    return mean + margin * sqrt(masu_largest(v, 0.0));
+}
+
+double masu_governor_predict(const masu_governor *g, uint32_t rung) {
+    if (!g->known || rung >= g->count) return 0.0;
+    return g->fixed + g->cost[rung] * g->load;
+}
+
+double masu_governor_lead(const masu_governor *g, uint64_t frame) {
+    return masu_within(frame > g->newest ? (double)(frame - g->newest) : 0.0, 0.0, LEAD_MOST);
+}
