@@ -970,6 +970,25 @@ static void repetitions_are_the_union_of_their_copies(void **state) {
     if (compared < 300) fail_msg("only %d of 600 compile", compared);
 }
 
+static void the_bounds_of_a_blend_are_those_of_equal_operands(void **state) {
+    (void)state;
+    static const struct {
+        const char *text;
+        double radius;
+    } cases[] = {
+        {"part a = smooth_union(1, sphere(1), sphere(1));", 1.25},
+        {"part a = smooth_union(1, sphere(1), sphere(1), sphere(1));", 1.390625},
+        {"part a = smooth_union(1, sphere(1), sphere(1), sphere(1), sphere(1), sphere(1), sphere(1), sphere(1), "
+         "sphere(1), sphere(1), sphere(1));", 1.7222},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        masu_sdfc_result result;
+        assert_compiles(cases[i].text, strlen(cases[i].text), &result);
+        if (fabs(result.parts[0].radius - cases[i].radius) > 1e-5) fail_msg("%s: %g", cases[i].text, result.parts[0].radius);
+        masu_sdfc_release(&result);
+    }
+}
+
 static void depth_is_limited(void **state) {
     (void)state;
     char text[20000], error[256];
@@ -1072,6 +1091,7 @@ int main(void) {
         cmocka_unit_test(the_least_roughness_of_what_is_lit_is_known),
         cmocka_unit_test(mistakes_name_their_place),
         cmocka_unit_test(repetitions_are_the_union_of_their_copies),
+        cmocka_unit_test(the_bounds_of_a_blend_are_those_of_equal_operands),
         cmocka_unit_test(depth_is_limited),
         cmocka_unit_test(size_is_limited),
         cmocka_unit_test(planted_faults_are_found),

@@ -110,6 +110,14 @@ static bool levelled(const sdfc *c, const sdfc_shape *s) {
     return false;
 }
 
+/* By how many times k smooth minima of n operands, one after the other, lie below the least of these: most if all are
+ * equal. A step lowers y k below the least to (y + (1 - y)^2 / 4) k, which increases with y on 0..1 and stays below 1. */
+static double lowered(int n) {
+    double y = 0;
+    for (int i = 1; i < n; i++) y += (1 - y) * (1 - y) / 4;
+    return y;
+}
+
 static sdfc_facts joined(sdfc *c, sdfc_shape *s) {
     bool level = levelled(c, s);
     bool is_union = s->kind == SDFC_KIND_UNION || s->kind == SDFC_KIND_SMOOTH_UNION;
@@ -152,7 +160,7 @@ static sdfc_facts joined(sdfc *c, sdfc_shape *s) {
     /* outside several boxes at once, one of the distances is 1 / sqrt(n) of the whole */
     if (!is_union && !is_cut && boxes > 1) f.growth /= sqrt(fmin(boxes, 3));
     if (s->kind == SDFC_KIND_SMOOTH_UNION) {
-        sdfc_widen(&f, (s->children - 1) * 0.25 * sdfc_size_of(c, s->number[0]) / f.growth);
+        sdfc_widen(&f, lowered(s->children) * sdfc_size_of(c, s->number[0]) / f.growth);
     }
     if (s->kind == SDFC_KIND_SMOOTH_UNION || s->kind == SDFC_KIND_SMOOTH_INTERSECTION ||
         s->kind == SDFC_KIND_SMOOTH_DIFFERENCE) {
