@@ -1,5 +1,5 @@
 #!/bin/bash
-# GLSL blocks in .sdf scenes: masu-bake runs them on the CPU and refuses one that is steeper than its
+# GLSL blocks in .sdf scenes, and sources of GLSL: masu-bake runs them on the CPU and refuses one that is steeper than its
 # author says, with the two points. blocks.sdf has each instruction that such code may hold.
 set -u
 cd "$(dirname "$0")/../.." || exit 1
@@ -76,6 +76,54 @@ refuses "time" "$(block 1 'return length(p) * (1.0 + 0.5 * abs(sin(masu_time()))
 refuses "within an operator" "part a = union(sphere(0.2), scale(2, $(
     block 1 'return 1.5 * (length(p) - 1.0);' | sed -n 's/part a = \(.*\);$/\1/p')));
 param k = 1 [1, 2];"
+
+refuses "4.123 as 4.1" "$(block 4.1 'return p.y - 2.0 * sin(2.0 * p.x) * sin(2.0 * p.z);')"
+# Spikes in a millionth of the bounds: found where a decision of the code leads.
+at='float d = length(p - vec3(0.5, 0.3, -0.2));'
+refuses "a spike by max" "$(block 1 "$at return length(p) - 1.0 + max(0.0, 29.0 * (0.02 - d));")"
+refuses "a spike by if" "$(block 1 "$at float f = p.y; if (d < 0.01) f += 29.0 * (0.01 - d); return f;")"
+refuses "a spike by smoothstep" "$(block 1 "$at return p.y + 0.5 * (1.0 - smoothstep(0.0, 0.02, d));")"
+refuses "a spike by exp" "$(block 1 "$at return p.y + exp(-4000.0 * d * d);")"
+
+# Sources of GLSL are tested within their bounds in the same way.
+surface='void masu_sdf_surface(vec3 p, inout masu_surface s) { s.albedo = vec3(0.5); }'
+
+# source LIPSCHITZ GLSL: bakes it; exit code in $code
+source_of() {
+    local bounds='"bounds": [[-2, -2, -2], [2, 2, 2]]' params='"params": [{"name": "k", "value": 1, "min": 1, "max": 2}]'
+    echo "{\"sdf\": {\"source\": \"f.glsl\", \"lipschitz\": $1, $bounds, $params}}" > "$folder/f.json"
+    printf 'float masu_sdf(vec3 p) { %s }\n%s\n' "$2" "$surface" > "$folder/f.glsl"
+    rm -f "$folder/f.masu"
+    "$bake" "$folder/f.json" -o "$folder/f.masu" > "$folder/stdout" 2> "$folder/stderr"
+    code=$?
+}
+
+accepts_source() {
+    source_of "$2" "$3"
+    [ $code = 0 ] && [ ! -s "$folder/stderr" ] && [ -s "$folder/f.masu" ] ||
+        fail "source, $1: exit code $code: $(cat "$folder/stderr")"
+}
+
+refuses_source() {
+    source_of "$2" "$3"
+    [ $code = 1 ] && [ ! -e "$folder/f.masu" ] && [ "$(wc -l < "$folder/stderr")" = 1 ] &&
+        grep -q "f.glsl: the field is steeper than its lipschitz constant $2: f(.*) = .*, f(.*) = .* apart" "$folder/stderr" ||
+        fail "source, $1: exit code $code: $(cat "$folder/stderr")"
+}
+
+waves='return p.y - 2.0 * sin(2.0 * p.x) * sin(2.0 * p.z);'
+accepts_source "steep outside of the bounds" 1 'return length(p) - 1.0 + 9.0 * max(0.0, p.x - 2.01);'
+refuses_source "waves" 1 "$waves"
+refuses_source "a parameter, not at its default" 1 'return masu_param(MASU_PARAM_K) * (length(p) - 1.0);'
+refuses_source "a spike" 1 "$at return length(p) - 1.0 + max(0.0, 29.0 * (0.02 - d));"
+
+source_of '"auto"' "$waves"
+found=$(sed -nE 's/.*lipschitz ([0-9.]+) \(steepest slope found: ([0-9.]+)\)$/\1 \2/p' "$folder/stdout")
+[ $code = 0 ] && [ "$found" = "4.329 4.123" ] || fail "auto: exit code $code, $found: $(cat "$folder/stderr")"
+source_of '"auto"' 'return mod(p.x, 1.0) - 0.5;'
+[ $code = 1 ] && grep -q 'the field jumps by 1 at' "$folder/stderr" || fail "auto, a jump: $(cat "$folder/stderr")"
+source_of '"automatic"' "$waves"
+[ $code = 1 ] && grep -q 'must be a number or "auto"' "$folder/stderr" || fail "automatic: $(cat "$folder/stderr")"
 
 bake "$(block 1 'float s = 0.0; for (int i = 0; i < 1000000; i++) s += p.x; return s;')"
 [ $code = 0 ] || fail "a long loop: exit code $code: $(cat "$folder/stderr")"

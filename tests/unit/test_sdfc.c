@@ -523,6 +523,9 @@ static void blocks_have_bits_for_what_can_be_left_out(void **state) {
         /* the neighbour is looked at too */
         {"part a = repeat((9, 0, 0), union(translate((2, 0, 0), sphere(1)), translate((-2, 0, 0), sphere(1))));", 1, 2},
         {"part a = repeat((9, 0, 9), union(sphere(1), box((1, 2, 3))));", 1, 2},
+        {"part a = repeat((2, 0, 3), union(translate((2, 0, 1), sphere(1)), translate((0.5, 0, 0), box((1, 2, 3)))));", 1, 2},
+        {"part a = repeat_limited((2, 0, 3), (5, 1, 9), union(translate((2, 0, 1), sphere(1)), box((1, 2, 3))));", 1, 2},
+        {"part a = repeat((2, 0, 0), torus(1.4, 0.1)); part b = polar(5, box((3, 1, 0.1)));", 1, 0},
         /* a cut that is left out in one cell would make it nearer than the cells that are not looked at */
         {"part a = repeat((4, 0, 4), intersection(box((1.9, 1.9, 1.9)),"
          " translate((0, 0.2, 0), plane((-0.5, 0.7071, 0.5), 0))));", 0, 0},
@@ -702,9 +705,18 @@ static void mistakes_name_their_place(void **state) {
         {"let a = 1 / 0;", "x.sdf:1:13: expected a divisor, found 0"},
         {"let a = $;", "x.sdf:1:9: expected a statement, found \"$\""},
         {"let a = 1e99;", "x.sdf:1:9: expected a number of at most 1e30"},
-        {"part a = repeat((2, 0, 0), translate((0.6, 0, 0), sphere(0.5)));",
-         "x.sdf:1:10: repeat: expected a shape within its cell, or symmetric in it: it extends "
-         "1.1 from the centre along x, the cell 1"},
+        {"part a = repeat((2, 0, 0), translate((0.6, 0, 0), sphere(3.1)));",
+         "x.sdf:1:10: repeat: the shape reaches 3.7 from the centre of its cell along x: expected at most 3.6, 1.8 times "
+         "the period"},
+        {"part a = repeat_limited((0, 0, 2), (1, 1, 5), torus(4, 0.1));",
+         "x.sdf:1:10: repeat_limited: the shape reaches 4.1 from the centre of its cell along z: expected at most 4, 2 "
+         "times the period"},
+        {"part a = repeat((2, 0, 0), difference(plane((0, 1, 0), 0), sphere(0.5)));",
+         "x.sdf:1:10: repeat: the shape reaches inf from the centre of its cell along x: expected at most 4"},
+        {"part a = polar(20, box((3, 1, 0.1)));",
+         "x.sdf:1:10: polar: the shape covers 180 degrees on either side of +x: expected at most 144"},
+        {"part a = polar(20, translate((3, 0, 0.4), box((0.2, 0.2, 1))));",
+         "x.sdf:1:10: polar: the shape covers 26.57 degrees on either side of +x: expected at most 14.4"},
         {"part a = twist(1, plane((0, 1, 0), 0));",
          "x.sdf:1:10: twist: expected a bounded shape and a bounded rate"},
         {"part a = rotate((0, 0, 0), 1, sphere(1));",
@@ -725,6 +737,254 @@ static void mistakes_name_their_place(void **state) {
             fail_msg("%s\nis answered by\n%s", cases[i].text, good ? "success" : error);
         }
         assert_null(result.glsl);
+        masu_sdfc_release(&result);
+    }
+}
+
+/* ---- repetitions, compared with the union of their copies ---- */
+
+/* Runs the parts of a text in double precision; false: the text is rejected. */
+typedef struct runner {
+    sdfc *c;
+    char error[1024];
+} runner;
+
+static bool start_runner(runner *r, const char *text) {
+    sdfc *c = r->c = calloc(1, sizeof *c);
+    assert_non_null(c);
+    *c = (sdfc){.text = text, .bytes = strlen(text), .name = "x.sdf", .error = r->error,
+                .error_size = sizeof r->error, .time_expr = -1};
+    if (setjmp(c->failed)) {
+        sdfc_free(r->c);
+        return false;
+    }
+    sdfc_lex(c);
+    sdfc_parse(c);
+    int variables = 0;
+    for (int i = 0; i < c->part_count; i++) {
+        sdfc_lower(c, &c->parts[i]);
+        variables += c->parts[i].program.variable_count;
+    }
+    c->variables = calloc((size_t)variables, sizeof *c->variables);
+    c->values = calloc((size_t)c->expr_count, sizeof *c->values);
+    const double params[1] = {0};
+    sdfc_evaluate(c, params, 0, c->values);
+    return true;
+}
+
+static double run_part(const runner *r, int part, const double p[3]) {
+    return sdfc_run(r->c, &r->c->parts[part].program, p, NULL);
+}
+
+typedef struct writer {
+    char text[4096];
+    size_t length;
+    uint64_t seed;
+} writer;
+
+static void put(writer *w, const char *format, ...) {
+    va_list list;
+    va_start(list, format);
+    int n = vsnprintf(w->text + w->length, sizeof w->text - w->length, format, list);
+    va_end(list);
+    assert_true(n >= 0 && (size_t)n < sizeof w->text - w->length);
+    w->length += (size_t)n;
+}
+
+static int whole(writer *w, int from, int to) {
+    return (int)fmin(floor(random_between(&w->seed, from, to + 1)), to);
+}
+static double size(writer *w, double from, double to) { return random_between(&w->seed, from, to); }
+
+static void put_solid(writer *w, int depth) {
+    double a = size(w, 0.1, 1.3), b = size(w, 0.05, 0.4), c = size(w, 0.1, 1.3);
+    int form = whole(w, 0, depth > 0 ? 20 : 10);
+    switch (form) {
+    case 0: put(w, "sphere(%.3f)", a); return;
+    case 1: put(w, "torus(%.3f, %.3f)", a, b); return;
+    case 2: put(w, "box((%.3f, %.3f, %.3f))", a, b, c); return;
+    case 3: put(w, "rotate((1, 0, 0), pi / 2, torus(%.3f, %.3f))", a, b); return;
+    case 4: put(w, "box_frame((%.3f, %.3f, %.3f), %.3f)", a, c, a, b / 4); return;
+    case 5: put(w, "capsule((0, 0, 0), (%.3f, %.3f, 0), %.3f)", a, c, b); return;
+    case 6: put(w, "link(%.3f, %.3f, %.3f)", a, c, b / 2); return;
+    case 7: put(w, "cone(%.3f, %.3f, %.3f)", a, c, b); return;
+    case 8: put(w, "octahedron(%.3f)", a); return;
+    case 9: put(w, "tri_prism(%.3f, %.3f)", a, b); return;
+    case 10: put(w, "ellipsoid((%.3f, %.3f, %.3f))", a, c, b); return;
+    case 11: put(w, "translate((%.3f, %.3f, %.3f), ", size(w, -0.6, 0.6), b, size(w, -0.6, 0.6)); break;
+    case 12: put(w, "rotate((%d, 1, 0), %.3f, ", whole(w, 0, 1), a); break;
+    case 13: put(w, "mirror((1, 0, 0), "); break;
+    case 14: put(w, "onion(%.3f, ", b / 3); break;
+    case 15: put(w, "repeat_limited((%.3f, 0, %.3f), (%d, 1, %d), ", a, a + c, whole(w, 1, 4), whole(w, 1, 3)); break;
+    case 16: put(w, "scale((1, 2, %.3f), ", a); break;
+    case 17: put(w, "union("); break;
+    case 18: put(w, "difference("); break;
+    case 19: put(w, "smooth_union(%.3f, ", b); break;
+    default: put(w, "intersection("); break;
+    }
+    put_solid(w, depth - 1);
+    if (form >= 17) {
+        put(w, ", ");
+        put_solid(w, depth - 1);
+    }
+    put(w, ")");
+}
+
+typedef struct rows {
+    double period[3];
+    int count[3]; /* 0: without end */
+    int around;   /* > 0: copies around y instead */
+} rows;
+
+/* The least value of all copies of part 1 that can be near. */
+static double union_of_copies(const runner *r, const rows *of, const double p[3]) {
+    double least = 1e30;
+    for (int i = 0; i < of->around; i++) {
+        double a = 2 * PI * i / of->around, q[3] = {p[0] * cos(a) + p[2] * sin(a), p[1], p[2] * cos(a) - p[0] * sin(a)};
+        least = fmin(least, run_part(r, 1, q));
+    }
+    if (of->around) return least;
+    int from[3] = {0, 0, 0}, to[3] = {0, 0, 0};
+    for (int k = 0; k < 3; k++) {
+        if (of->period[k] == 0) continue;
+        int near = (int)floor(p[k] / of->period[k]);
+        from[k] = of->count[k] ? 0 : near - 2;
+        to[k] = of->count[k] ? of->count[k] - 1 : near + 3;
+    }
+    for (int x = from[0]; x <= to[0]; x++) {
+        for (int y = from[1]; y <= to[1]; y++) {
+            for (int z = from[2]; z <= to[2]; z++) {
+                const int cell[3] = {x, y, z};
+                double q[3];
+                for (int k = 0; k < 3; k++) {
+                    q[k] = p[k] - of->period[k] * (cell[k] - (of->count[k] ? (of->count[k] - 1) / 2.0 : 0));
+                }
+                least = fmin(least, run_part(r, 1, q));
+            }
+        }
+    }
+    return least;
+}
+
+static void put_rows(writer *w, rows *of, int form) {
+    *of = (rows){{0}, {0}, 0};
+    if (form == 2) {
+        of->around = whole(w, 2, 14);
+        put(w, "polar(%d, ", of->around);
+        return;
+    }
+    for (int k = 0; k < 3; k++) {
+        if (whole(w, 0, 2) > (k == 1 ? 0 : 1)) continue;
+        of->period[k] = floor(size(w, 500, 3000)) / 1000;
+        of->count[k] = form == 1 ? whole(w, 1, 6) : 0;
+    }
+    put(w, form ? "repeat_limited((%.3f, %.3f, %.3f), " : "repeat((%.3f, %.3f, %.3f), ", of->period[0], of->period[1],
+        of->period[2]);
+    if (form) put(w, "(%d, %d, %d), ", of->count[0] ? of->count[0] : 1, of->count[1] ? of->count[1] : 1, of->count[2] ? of->count[2] : 1);
+}
+
+/* Solid where the union is, nothing else solid, no solid nearer than f / L, and the constant holds. */
+static void compare_copies(const char *text, const runner *r, const rows *of, uint64_t *seed) {
+    double L = r->c->shapes[r->c->parts[0].shape].facts.lipschitz;
+    for (int n = 0; n < 150; n++) {
+        double p[3], q[3], way[3], reach = n % 2 ? 2 : 6;
+        for (int k = 0; k < 3; k++) {
+            p[k] = random_between(seed, -reach, reach);
+            way[k] = random_between(seed, -1, 1);
+            if (n % 8 == 0) p[k] = of->period[k] * round(2 * p[k]) / 2 + 1e-7 * way[k]; /* where the selection changes */
+        }
+        double f = run_part(r, 0, p), u = union_of_copies(r, of, p);
+        for (int k = 0; k < 3 && n % 3 == 2; k++) { /* to where the union falls */
+            memcpy(q, p, sizeof q);
+            q[k] += 1e-5;
+            way[k] = u - union_of_copies(r, of, q) + 1e-12 * way[k];
+        }
+        double length = len(way[0], way[1], way[2]);
+        if (fabs(u) > 1e-9 && fabs(f) > 1e-9 && (f < 0) != (u < 0)) {
+            fail_msg("%s: %.17g at (%.17g, %.17g, %.17g), the union of the copies %.17g", text, f, p[0], p[1], p[2], u);
+        }
+        double step = n % 3 ? f / L : pow(10, random_between(seed, -6, 0));
+        for (int k = 0; k < 3; k++) q[k] = p[k] + way[k] / length * step * 0.999999;
+        double g = run_part(r, 0, q);
+        if (fabs(f - g) > L * apart(p, q) * (1 + 1e-9) + 1e-9) {
+            fail_msg("%s: %.17g at (%.17g, %.17g, %.17g), %.17g at (%.17g, %.17g, %.17g), constant %g", text, f, p[0],
+                     p[1], p[2], g, q[0], q[1], q[2], L);
+        }
+        if (n % 3 && f > 1e-6 && union_of_copies(r, of, q) < -1e-9) {
+            fail_msg("%s: %.17g at (%.17g, %.17g, %.17g), but (%.17g, %.17g, %.17g) is solid", text, f, p[0], p[1], p[2],
+                     q[0], q[1], q[2]);
+        }
+    }
+}
+
+static void repetitions_are_the_union_of_their_copies(void **state) {
+    (void)state;
+    static const struct {
+        const char *text, *child;
+        rows rows;
+    } cases[] = {
+        {"repeat((2, 0, 2), ", "torus(1.4, 0.1)", {{2, 0, 2}, {0}, 0}},
+        {"repeat((2, 0, 2), ", "translate((0.6, 0, 0), sphere(0.6))", {{2, 0, 2}, {0}, 0}},
+        {"repeat((1, 0, 0), ", "translate((0.7, 0, 0), sphere(0.1))", {{1, 0, 0}, {0}, 0}},
+        {"repeat_limited((2, 0, 2), (3, 1, 2), ", "torus(1.4, 0.1)", {{2, 0, 2}, {3, 1, 2}, 0}},
+        {"repeat_limited((1, 1, 1), (2, 4, 3), ", "translate((0, 1, 4), torus(3, 0.1))", {{1, 1, 1}, {2, 4, 3}, 0}},
+        {"polar(12, ", "translate((3, 0, 0), torus(2, 0.1))", {{0}, {0}, 12}},
+        {"polar(6, ", "translate((-3, 0, 0), sphere(0.3))", {{0}, {0}, 6}},
+        {"polar(5, ", "box((3, 1, 0.1))", {{0}, {0}, 5}},
+        {"polar(12, ", "union(torus(2, 0.1), translate((2, 0, 0), sphere(0.3)))", {{0}, {0}, 12}},
+    };
+    enum { CASES = sizeof cases / sizeof *cases };
+    int compared = 0;
+    static writer w;
+    w.seed = 49;
+    for (int i = 0; i < CASES + 600; i++) {
+        static char child[4096];
+        static runner r;
+        rows of;
+        w.length = 0;
+        if (i < CASES) {
+            snprintf(child, sizeof child, "%s", cases[i].child);
+        } else {
+            if (i % 3 == 2) put(&w, "translate((%.3f, 0, 0), ", size(&w, -1, 3));
+            put_solid(&w, 2);
+            if (i % 3 == 2) put(&w, ")");
+            memcpy(child, w.text, w.length + 1);
+        }
+        w.length = 0;
+        put(&w, "part a = ");
+        if (i < CASES) {
+            of = cases[i].rows;
+            put(&w, "%s", cases[i].text);
+        } else {
+            put_rows(&w, &of, i % 3);
+        }
+        put(&w, "%s); part b = %s;", child, child);
+        if (!start_runner(&r, w.text)) {
+            if (i < CASES || !(strstr(r.error, "reaches") || strstr(r.error, "covers"))) fail_msg("%s: %s", w.text, r.error);
+            continue;
+        }
+        compare_copies(w.text, &r, &of, &w.seed);
+        sdfc_free(r.c);
+        compared++;
+    }
+    if (compared < 300) fail_msg("only %d of 600 compile", compared);
+}
+
+static void the_bounds_of_a_blend_are_those_of_equal_operands(void **state) {
+    (void)state;
+    static const struct {
+        const char *text;
+        double radius;
+    } cases[] = {
+        {"part a = smooth_union(1, sphere(1), sphere(1));", 1.25},
+        {"part a = smooth_union(1, sphere(1), sphere(1), sphere(1));", 1.390625},
+        {"part a = smooth_union(1, sphere(1), sphere(1), sphere(1), sphere(1), sphere(1), sphere(1), sphere(1), "
+         "sphere(1), sphere(1), sphere(1));", 1.7222},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        masu_sdfc_result result;
+        assert_compiles(cases[i].text, strlen(cases[i].text), &result);
+        if (fabs(result.parts[0].radius - cases[i].radius) > 1e-5) fail_msg("%s: %g", cases[i].text, result.parts[0].radius);
         masu_sdfc_release(&result);
     }
 }
@@ -830,6 +1090,8 @@ int main(void) {
         cmocka_unit_test(the_same_text_gives_the_same_result),
         cmocka_unit_test(the_least_roughness_of_what_is_lit_is_known),
         cmocka_unit_test(mistakes_name_their_place),
+        cmocka_unit_test(repetitions_are_the_union_of_their_copies),
+        cmocka_unit_test(the_bounds_of_a_blend_are_those_of_equal_operands),
         cmocka_unit_test(depth_is_limited),
         cmocka_unit_test(size_is_limited),
         cmocka_unit_test(planted_faults_are_found),

@@ -54,6 +54,7 @@ void sdfc_analyse(sdfc *c, int shape) {
         if (!isfinite(f.center[i])) f.radius = SDFC_INFINITY;
     }
     if (!(f.radius <= 1e15)) f.radius = SDFC_INFINITY;
+    f.rising &= f.symmetric;
     s.facts = f;
     c->shapes[shape] = s;
 }

@@ -1,7 +1,10 @@
 /* analyse_operator.c: the facts of shapes made of others; see analyse.c. */
 #include "sdfc/facts.h"
 
+#include <limits.h>
 #include <string.h>
+
+#define PI 3.14159265358979323846
 
 /* ---- turning ---- */
 
@@ -107,6 +110,14 @@ static bool levelled(const sdfc *c, const sdfc_shape *s) {
     return false;
 }
 
+/* By how many times k smooth minima of n operands, one after the other, lie below the least of these: most if all are
+ * equal. A step lowers y k below the least to (y + (1 - y)^2 / 4) k, which increases with y on 0..1 and stays below 1. */
+static double lowered(int n) {
+    double y = 0;
+    for (int i = 1; i < n; i++) y += (1 - y) * (1 - y) / 4;
+    return y;
+}
+
 static sdfc_facts joined(sdfc *c, sdfc_shape *s) {
     bool level = levelled(c, s);
     bool is_union = s->kind == SDFC_KIND_UNION || s->kind == SDFC_KIND_SMOOTH_UNION;
@@ -127,6 +138,7 @@ static sdfc_facts joined(sdfc *c, sdfc_shape *s) {
         }
         f.lipschitz = fmax(f.lipschitz, g.lipschitz);
         f.symmetric &= g.symmetric;
+        f.rising &= is_cut ? 0 : g.rising;
         if (is_union) {
             sdfc_join(&f, &g);
             f.growth = fmin(f.growth, g.growth);
@@ -148,7 +160,7 @@ static sdfc_facts joined(sdfc *c, sdfc_shape *s) {
     /* outside several boxes at once, one of the distances is 1 / sqrt(n) of the whole */
     if (!is_union && !is_cut && boxes > 1) f.growth /= sqrt(fmin(boxes, 3));
     if (s->kind == SDFC_KIND_SMOOTH_UNION) {
-        sdfc_widen(&f, (s->children - 1) * 0.25 * sdfc_size_of(c, s->number[0]) / f.growth);
+        sdfc_widen(&f, lowered(s->children) * sdfc_size_of(c, s->number[0]) / f.growth);
     }
     if (s->kind == SDFC_KIND_SMOOTH_UNION || s->kind == SDFC_KIND_SMOOTH_INTERSECTION ||
         s->kind == SDFC_KIND_SMOOTH_DIFFERENCE) {
@@ -251,15 +263,39 @@ static void keep_box(sdfc_shape *s, const sdfc_box *b) {
     }
 }
 
-/* extra: 0-2 what is done on each axis: 0 nothing, 1 a fold (the shape is its own mirror image, so
- * the nearest cell is enough), 2 the own cell and its nearer neighbour; 3 the least that the cells
- * not looked at can say; 4-9 the box of the shape in its cell; 10: the shape must be joined with it
- * so that the former is true. */
+/* How many copies in a row are evaluated: those in the nearest cells. `h` is how far the shape reaches from the middle
+ * of its cell.
+ *
+ * 1 suffices if the field is even and does not decrease with the distance from the middle: the nearest copy has the
+ * least value. It also suffices for an even field within its cell. In general the copies in the m nearest cells have
+ * all of the solid if h <= m / 2 periods, since the middle of any other cell is at least that far. The field of
+ * these copies:
+ *
+ *   even       continuous: where one copy replaces another in the selection, both have the same value. With the same
+ *              constant as the shape, and zero at the surface, it never exceeds L times the distance.
+ *   otherwise  the minimum with L (m / 2 periods - h), the least that the other copies can have, if the shape's field
+ *              is at least L times the distance to its box. A step there is at most that long: hence GAP.
+ *
+ * All copies of a row need neither. 0: not possible. */
+#define GAP 0.2
+
+static int cells_of(bool even, bool rising, double h, double period, int row) {
+    double room = period * (1 + 1e-9);
+    if (even && (rising || h <= room / 2)) return 1;
+    for (int m = 2; m <= SDFC_CELLS_MAX; m *= 2) {
+        if (row <= m || h <= (even ? m / 2 * room : (m / 2 - GAP) * room)) return m;
+    }
+    return 0;
+}
+
+/* extra: 0-2 how many cells are evaluated on each axis, 0: it does not repeat; 3 the least that the cells which are not
+ * evaluated can have, INFINITY: no minimum with it is needed; 4-9 the box of the shape in its cell; 10: the shape must
+ * be joined with it so that the former is true; 11 as 3, for the selection of terms. */
 static void repeat_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
     int *n = s->number;
     bool limited = s->kind == SDFC_KIND_REPEAT_LIMITED;
     sdfc_box cell = f->box;
-    double rest = SDFC_INFINITY, times = 1;
+    double rest = SDFC_INFINITY, others = SDFC_INFINITY;
     for (int i = 0; i < 3; i++) {
         s->extra[i] = 0;
         if (sdfc_is(c, n[i], 0) || (limited && s->whole[i] == 1)) {
@@ -272,58 +308,131 @@ static void repeat_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
             sdfc_fail(c, s->token, "%s: expected periods above 0, or 0 for none",
                       sdfc_kind_names[s->kind]);
         }
-        bool mirrored = f->symmetric >> i & 1;
+        bool even = f->symmetric >> i & 1;
         double h = sdfc_corner(&f->box, i);
-        if (!mirrored && !(h <= period / 2 * (1 + 1e-9))) {
+        int row = limited ? s->whole[i] : INT_MAX;
+        int cells = cells_of(even, f->rising >> i & 1, h, period, row);
+        if (!cells) {
+            double most = (SDFC_CELLS_MAX / 2 - (even ? 0 : GAP)) * period;
             sdfc_fail(c, s->token,
-                      "%s: expected a shape within its cell, or symmetric in it: it extends %g "
-                      "from the centre along %c, the cell %g",
-                      sdfc_kind_names[s->kind], h, 'x' + i, period / 2);
+                      "%s: the shape reaches %g from the centre of its cell along %c: expected at most %g, "
+                      "%g times the period",
+                      sdfc_kind_names[s->kind], h, 'x' + i, most, most / period);
         }
-        s->extra[i] = mirrored ? 1 : 2;
-        if (!mirrored) {
-            rest = fmin(rest, period - h);
-            times *= 2;
-            f->cost *= 2;
-            f->symmetric &= ~(1u << i);
+        s->extra[i] = cells;
+        f->cost *= cells;
+        f->rising &= ~(1u << i);
+        if (cells > 1 && cells < row) {
+            others = fmin(others, cells / 2 * period - h);
+            if (!even) rest = fmin(rest, cells / 2 * period - h);
         }
+        if (!even) f->symmetric &= ~(1u << i);
         double far = limited ? sdfc_high(c, n[i]) * 0.5 * (s->whole[i] - 1) : SDFC_INFINITY;
         f->box.low[i] -= far;
         f->box.high[i] += far;
         n[3 + i] = sdfc_apply1(c, SDFC_rcp, n[i]);
     }
     sdfc_sphere_of_box(f);
+    bool capped = isfinite(rest);
     s->extra[3] = rest * f->lipschitz;
-    s->extra[10] = times > 1 && f->growth < f->lipschitz;
+    s->extra[10] = capped && f->growth < f->lipschitz;
     keep_box(s, &cell);
-    if (times > 1) f->growth = f->lipschitz;
+    if (capped) f->growth = f->lipschitz;
+    s->extra[11] = fmin(others * f->growth, 1e30);
 }
 
-/* extra: 0: 0 nothing, 1 a fold, 2 two sectors, 3 two that are not all; 1 2 cosine and sine of
- * half a sector; 4-10 as above, with the wedge of the sector */
+/* The half-angle around +x of the wedge with its edge on the y axis that holds the box; pi: it holds points on -x. */
+static double angle_of_box(const sdfc_box *b) {
+    double most = 0;
+    if (b->low[2] <= 0 && b->high[2] >= 0 && b->low[0] <= 0) return PI;
+    for (int i = 0; i < 4; i++) {
+        double x = i & 1 ? b->high[0] : b->low[0], z = i & 2 ? b->high[2] : b->low[2];
+        most = fmax(most, fabs(atan2(z, x)));
+    }
+    return most;
+}
+
+static double angle_of_sphere(const sdfc_facts *f) {
+    double d = hypot(f->center[0], f->center[2]);
+    if (!(f->radius < d)) return f->radius <= 0 ? 0 : PI;
+    return fmin(fabs(atan2(f->center[2], f->center[0])) + asin(f->radius / d), PI);
+}
+
+static double angle_of(const sdfc_facts *f) { return fmin(angle_of_box(&f->box), angle_of_sphere(f)); }
+
+/* Does not change with a turn about y. */
+static bool is_round(const sdfc *c, int shape) {
+    const sdfc_shape *s = &c->shapes[shape];
+    switch (s->kind) {
+    case SDFC_KIND_SPHERE:
+    case SDFC_KIND_TORUS:
+    case SDFC_KIND_CYLINDER:
+    case SDFC_KIND_CONE: return true;
+    case SDFC_KIND_PLANE:
+    case SDFC_KIND_TRANSLATE:
+        if (!sdfc_is(c, s->number[0], 0) || !sdfc_is(c, s->number[2], 0)) return false;
+        break;
+    case SDFC_KIND_UNION:
+    case SDFC_KIND_INTERSECTION:
+    case SDFC_KIND_DIFFERENCE:
+    case SDFC_KIND_SMOOTH_UNION:
+    case SDFC_KIND_SMOOTH_INTERSECTION:
+    case SDFC_KIND_SMOOTH_DIFFERENCE:
+    case SDFC_KIND_ONION:
+    case SDFC_KIND_ROUND: break;
+    default: return false;
+    }
+    for (int i = 0; i < s->children; i++) {
+        if (!is_round(c, s->child[i])) return false;
+    }
+    return true;
+}
+
+/* All copies of a sector's solid in the sector itself are the sector's own. */
+static bool keeps_to_sector(const sdfc *c, int shape, double half) {
+    const sdfc_shape *s = &c->shapes[shape];
+    if (angle_of(&s->facts) <= half + 1e-9 || is_round(c, shape)) return true;
+    if (s->kind != SDFC_KIND_UNION) return false;
+    for (int i = 0; i < s->children; i++) {
+        if (!(c->shapes[s->child[i]].facts.symmetric & 4) || !keeps_to_sector(c, s->child[i], half)) return false;
+    }
+    return true;
+}
+
+/* extra: 0: 0 nothing, 1 a fold, 2 two sectors, 3 two that are not all, 4 several copies, 5 several after a fold; 1 2
+ * cosine and sine of half a sector, or of the wedge that holds the shape; 3 the sine of the angle from there to the
+ * nearest middle of a sector that is not evaluated; 4-10 as above, with that wedge; 11 the number of copies
+ *
+ * After a fold into half a sector, the copies that can reach it are evaluated: the result is continuous, with the
+ * constant of the shape, and never exceeds L times the distance. */
 static void polar_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
     int count = s->whole[0];
-    const double pi = 3.14159265358979323846;
-    double half = pi / count;
+    double half = PI / count, angle = angle_of(f), wedge = fmax(angle, half);
+    bool even = f->symmetric & 4, fits = angle <= half + 1e-9;
+    double copies = even ? fmin(count, ceil(angle / half - 1e-9)) : count;
     keep_box(s, &f->box);
-    s->extra[1] = cos(half);
-    s->extra[2] = sin(half);
-    s->extra[0] = count == 1 ? 0 : f->symmetric & 4 ? 1 : count == 2 ? 2 : 3;
+    if (count == 1)
+        s->extra[0] = 0;
+    else if (even)
+        s->extra[0] = keeps_to_sector(c, s->child[0], half) ? 1 : 5;
+    else
+        s->extra[0] = count == 2 ? 2 : fits || (count > 4 && angle <= 2 * (1 - GAP) * half) ? 3 : 4;
+    if (s->extra[0] >= 4 && copies > SDFC_COPIES_MAX) {
+        sdfc_fail(c, s->token,
+                  "polar: the shape covers %.4g degrees on either side of +x: expected at most %.4g", angle * 180 / PI,
+                  (even ? SDFC_COPIES_MAX : 2 * (1 - GAP)) * half * 180 / PI);
+    }
+    s->extra[1] = fits ? cos(half) : cos(wedge);
+    s->extra[2] = fits ? sin(half) : sin(wedge);
+    s->extra[3] = fits ? sin(half) : sin(fmin(2 * half - wedge, PI / 2));
+    s->extra[11] = copies;
     if (s->extra[0] == 3) {
-        double widest = sdfc_corner(&f->box, 2);
-        bool box_fits = f->box.low[0] >= 0 && widest * cos(half) <= f->box.low[0] * sin(half);
-        double side = fabs(f->center[2]) * cos(half) - f->center[0] * sin(half) + f->radius;
-        if (!box_fits && !(side <= 1e-9)) {
-            sdfc_fail(c, s->token,
-                      "polar: expected a shape within its sector of %g degrees around +x, or "
-                      "symmetric in z",
-                      360.0 / count);
-        }
+        bool box_fits = angle_of_box(&f->box) <= wedge + 1e-9;
         s->extra[10] = f->growth < f->lipschitz || !box_fits;
         f->growth = f->lipschitz;
         sdfc_sphere_of_box(f); /* it is the box that the shape is joined with */
     }
-    if (s->extra[0] >= 2) f->cost *= 2;
+    if (s->extra[0] >= 2) f->cost *= s->extra[0] >= 4 ? copies : 2;
     if (count > 1) {
         double r = sdfc_reach(f, 0, 2);
         f->radius += hypot(f->center[0], f->center[2]);
@@ -331,6 +440,7 @@ static void polar_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
         f->box.low[0] = f->box.low[2] = -r;
         f->box.high[0] = f->box.high[2] = r;
         f->symmetric &= 2;
+        f->rising &= s->extra[0] == 3 ? 0 : 2;
         if (s->extra[0] == 3) sdfc_sphere_of_box(f);
     }
 }
@@ -385,6 +495,7 @@ static void kaleidoscope_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
     f->radius = r;
     memset(f->center, 0, sizeof f->center);
     f->symmetric = 7;
+    f->rising = 0;
     f->cost += 8.0 * levels;
 }
 
@@ -424,7 +535,7 @@ sdfc_facts sdfc_operator_facts(sdfc *c, sdfc_shape *s) {
     case SDFC_KIND_TWIST:
     case SDFC_KIND_BEND: bend_facts(c, s, &f); break;
     case SDFC_KIND_ELONGATE: elongate_facts(c, s, &f); break;
-    case SDFC_KIND_ONION:
+    case SDFC_KIND_ONION: f.rising = 0; /* fallthrough */
     case SDFC_KIND_ROUND: sdfc_widen(&f, sdfc_size_of(c, n[0]) / f.growth); break;
     case SDFC_KIND_DISPLACE: {
         double a = sdfc_most(c, n[0]),
@@ -447,6 +558,7 @@ sdfc_facts sdfc_operator_facts(sdfc *c, sdfc_shape *s) {
         f.lipschitz = fmax(f.lipschitz, g->lipschitz);
         f.growth = fmin(f.growth, g->growth);
         f.symmetric &= g->symmetric;
+        f.rising &= g->rising;
         sdfc_join(&f, g);
         n[0] = sdfc_apply2(c, SDFC_min, sdfc_apply2(c, SDFC_max, n[0], sdfc_number(c, 0)),
                            sdfc_number(c, 1));

@@ -98,7 +98,29 @@ static sdfc_facts mandelbulb_facts(sdfc *c, const sdfc_shape *s) {
     return f; /* lowering joins it with its ball: growth 1 */
 }
 
-sdfc_facts sdfc_primitive_facts(sdfc *c, sdfc_shape *s) {
+/* The axes along which the field does not decrease with the distance from the middle. Of convex solids the distance
+ * is a convex function, which on an axis of symmetry has its minimum at 0; formulas of the rest. */
+static unsigned rising(int kind, const double least[3]) {
+    bool sized = least[0] >= 0 && least[1] >= 0;
+    switch (kind) {
+    case SDFC_KIND_SPHERE:
+    case SDFC_KIND_BOX:
+    case SDFC_KIND_ROUNDED_BOX:
+    case SDFC_KIND_CAPSULE:
+    case SDFC_KIND_CYLINDER:
+    case SDFC_KIND_PLANE:
+    case SDFC_KIND_ELLIPSOID: return 7;
+    case SDFC_KIND_CONE: return sized && least[0] > 0 && least[2] >= 0 ? 5 : 0;
+    case SDFC_KIND_OCTAHEDRON: return least[0] >= 0 ? 7 : 0;
+    case SDFC_KIND_HEX_PRISM:
+    case SDFC_KIND_TRI_PRISM: return sized ? 7 : 0;
+    case SDFC_KIND_TORUS: return 2;
+    case SDFC_KIND_LINK: return 4;
+    default: return 0;
+    }
+}
+
+static sdfc_facts facts_of(sdfc *c, sdfc_shape *s) {
     int *n = s->number;
     double a = 0, b = 0, d = 0;
     if (s->kind != SDFC_KIND_MENGER && s->kind != SDFC_KIND_SIERPINSKI &&
@@ -148,4 +170,12 @@ sdfc_facts sdfc_primitive_facts(sdfc *c, sdfc_shape *s) {
     case SDFC_KIND_USER: return user_facts(c, s);
     default: return f;
     }
+}
+
+sdfc_facts sdfc_primitive_facts(sdfc *c, sdfc_shape *s) {
+    double least[3]; /* before facts_of replaces them */
+    for (int i = 0; i < 3; i++) least[i] = sdfc_low(c, s->number[i]);
+    sdfc_facts f = facts_of(c, s);
+    f.rising = rising(s->kind, least);
+    return f;
 }

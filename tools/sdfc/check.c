@@ -28,7 +28,8 @@ static void note_cell(uint64_t *cells, int op, const double *a, double result) {
     switch (op) {
     case SDFC_fold:
     case SDFC_fold_row:
-    case SDFC_beside_row: cell = floor((a[0] - result) * a[2] * 2 + 0.5); break;
+    case SDFC_beside_row:
+    case SDFC_window_row: cell = floor((a[0] - result) * a[2] * 2 + 0.5); break;
     case SDFC_beside: cell = a[0] < 0; break;
     case SDFC_polar_angle: cell = floor(result * 1e6 + 0.5); break;
     default: return;
@@ -45,7 +46,7 @@ static double run_function(const sdfc *c, const sdfc_program *p, int function, d
     v[2] = z;
     for (int k = 0; k < f->count; k++) {
         const sdfc_instr *i = &f->instrs[k];
-        int count = i->op == SDFC_CALL_MIN ? 6 : sdfc_ops[i->op].operands;
+        int count = i->op == SDFC_CALL_MIN ? 12 : sdfc_ops[i->op].operands;
         double a[SDFC_OPERANDS_MAX], r = 1e30;
         for (int j = 0; j < count; j++) {
             a[j] = i->operand[j] >= 0 ? v[i->operand[j]] : c->values[p->args[~i->operand[j]]];
@@ -54,8 +55,8 @@ static double run_function(const sdfc *c, const sdfc_program *p, int function, d
             for (int n = 0; n < i->points; n++) {
                 double q[3];
                 for (int j = 0; j < 3; j++) {
-                    bool other = i->select[j] && (n >> (i->select[j] - 1) & 1);
-                    q[j] = a[2 * j + other];
+                    int cell = i->select[j] ? n >> (i->select[j] - 1) & ((1 << i->bits[j]) - 1) : 0;
+                    q[j] = a[4 * j + cell];
                 }
                 double d = run_function(c, p, i->aux, q[0], q[1], q[2], cells);
                 r = d < r ? d : r;

@@ -113,24 +113,30 @@ static void put_dot(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p, 
 
 /* Whether other cells of a repetition can be left out by how far off they are. */
 static bool has_reach(const sdfc_writer *w, const sdfc_program *p, const sdfc_instr *i) {
-    return w->glsl && w->c->exprs[p->args[~i->operand[9]]].value > 0;
+    return w->glsl && w->c->exprs[p->args[~i->operand[15]]].value > 0;
 }
 
-/* Which axes' neighbours are farther than what the own cell holds; of all cells not looked at, whether they may
+static void put_bound(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p, const sdfc_instr *i, int variable,
+                      int axis, const char *sign, unsigned bits) {
+    PUT(w, "            skip |= v%d + MASU_SDF_MARGIN * ", variable);
+    sdfc_put_operand(w, g, p, i->operand[17]);
+    PUT(w, " < (");
+    sdfc_put_operand(w, g, p, i->operand[12 + axis]);
+    PUT(w, " %s abs(", sign);
+    sdfc_put_operand(w, g, p, i->operand[4 * axis]);
+    PUT(w, ")) * ");
+    sdfc_put_operand(w, g, p, i->operand[15]);
+    PUT(w, " ? %uu : 0u;\n", bits);
+}
+
+/* Which axes' neighbours are farther than what the own cell holds; of all cells not evaluated, whether they may
  * matter in the ball: then nothing is left out. */
 static void put_skips(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p, const sdfc_instr *i, int variable) {
     PUT(w, "        if (i == 0u) {\n");
     for (int k = 0; k < 3; k++) {
-        if (!i->select[k]) continue;
-        PUT(w, "            skip |= v%d + MASU_SDF_MARGIN * ", variable);
-        sdfc_put_operand(w, g, p, i->operand[11]);
-        PUT(w, " < (");
-        sdfc_put_operand(w, g, p, i->operand[6 + k]);
-        PUT(w, " - abs(");
-        sdfc_put_operand(w, g, p, i->operand[2 * k]);
-        PUT(w, ")) * ");
-        sdfc_put_operand(w, g, p, i->operand[9]);
-        PUT(w, " ? %du : 0u;\n", 1u << (i->select[k] - 1));
+        unsigned bit = i->select[k] ? 1u << (i->select[k] - 1) : 0;
+        if (i->bits[k] > 0) put_bound(w, g, p, i, variable, k, "-", bit | (i->bits[k] == 2 ? 2 * bit : 0));
+        if (i->bits[k] == 2) put_bound(w, g, p, i, variable, k, "+", 2 * bit);
     }
     PUT(w, "        }\n");
 }
@@ -157,12 +163,16 @@ static void put_call_min(sdfc_writer *w, int group, const sdfc_group *g, const s
         PUT(w, w->glsl ? "    MASU_LOOP for (uint i = 0u; i < %du; i++) {\n" : "    for (int i = 0; i < %d; i++) {\n", i->points);
     for (int k = 0; k < 3; k++) {
         PUT(w, "        real p%d = ", k);
-        if (i->select[k]) {
-            PUT(w, w->glsl ? "(i & %du) != 0u ? " : "(i & %d) != 0 ? ", 1 << (i->select[k] - 1));
-            sdfc_put_operand(w, g, p, i->operand[2 * k + 1]);
+        for (int cell = (1 << i->bits[k]) - 1; cell > 0; cell--) {
+            int shift = i->select[k] - 1;
+            if (i->bits[k] == 1)
+                PUT(w, w->glsl ? "(i & %du) != 0u ? " : "(i & %d) != 0 ? ", 1 << shift);
+            else
+                PUT(w, w->glsl ? "(i >> %du & 3u) == %du ? " : "(i >> %d & 3) == %d ? ", shift, cell);
+            sdfc_put_operand(w, g, p, i->operand[4 * k + cell]);
             PUT(w, " : ");
         }
-        sdfc_put_operand(w, g, p, i->operand[2 * k]);
+        sdfc_put_operand(w, g, p, i->operand[4 * k]);
         PUT(w, ";\n");
     }
     PUT(w, "        v%d = min(v%d, masu_shape_%d_%d(p0, p1, p2, base%s));\n", variable, variable, group,
@@ -176,9 +186,9 @@ static void put_call_min(sdfc_writer *w, int group, const sdfc_group *g, const s
     unsigned bits = w->glsl && g->term_count ? bits_of(p, i->aux) : 0;
     if (!bits) return;
     PUT(w, "    MASU_KEEP_ALL(v%d + MASU_SDF_MARGIN * ", variable);
-    sdfc_put_operand(w, g, p, i->operand[11]);
+    sdfc_put_operand(w, g, p, i->operand[17]);
     PUT(w, " > ");
-    sdfc_put_operand(w, g, p, i->operand[10]);
+    sdfc_put_operand(w, g, p, i->operand[16]);
     PUT(w, ", 0x%xu)\n", bits);
 }
 

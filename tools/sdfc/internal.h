@@ -17,7 +17,9 @@
 #endif
 
 #define SDFC_INFINITY ((double)INFINITY) /* <math.h>'s is a float */
-#define SDFC_OPERANDS_MAX 12
+#define SDFC_OPERANDS_MAX 18
+#define SDFC_COPIES_MAX 16 /* around an axis, the same */
+#define SDFC_CELLS_MAX 4 /* copies in a row that a repetition evaluates */
 #define SDFC_EXPRS_MAX (1 << 20)
 #define SDFC_SHAPES_MAX (1 << 17)
 #define SDFC_SYMBOLS_MAX 4096
@@ -40,7 +42,7 @@ enum sdfc_op {
 #include "sdfc/library.inc"
 #undef T
 #undef F
-    SDFC_CALL_MIN, /* the least of a function's values at up to 8 points */
+    SDFC_CALL_MIN, /* the least of a function's values at up to 64 points: of up to 4 coordinates on each axis */
     SDFC_CALL_USER,
     SDFC_OP_COUNT
 };
@@ -94,12 +96,13 @@ typedef struct sdfc_box {
 /* What is known of a field f whatever the parameters and the time:
  *   |f(p) - f(q)| <= lipschitz |p - q|
  *   f(p) >= growth * distance(p, box), and the same for the sphere
- *   f does not change when p is mirrored in an axis of `symmetric` (bits 1 2 4) */
+ *   f does not change when p is mirrored in an axis of `symmetric` (bits 1 2 4)
+ *   f does not decrease with |p_i| on the axes of `rising`, which are some of these */
 typedef struct sdfc_facts {
     double lipschitz, growth;
     sdfc_box box;
     double center[3], radius; /* INFINITY: unbounded */
-    unsigned symmetric;
+    unsigned symmetric, rising;
     bool user;     /* holds a glsl block: cannot be run here */
     bool estimate; /* f / lipschitz only nearly never exceeds the distance */
     bool truth;    /* has C */
@@ -138,11 +141,12 @@ extern const char *const sdfc_kind_patterns[SDFC_KIND_COUNT];
 typedef struct sdfc_instr {
     int32_t op;
     int32_t aux;                        /* CALL_MIN: the function, CALL_USER: the block */
-    int32_t select[3];                  /* CALL_MIN: which bit of the point's number chooses */
-    int32_t points;                     /* CALL_MIN; operands 6..8, of each axis: 9 * (this -
-                                           |the own coordinate|) is the least value of its other
-                                           cells; 10: the least of cells that are not looked at; 11: the
-                                           constant of the values per metre of the world */
+    int32_t select[3];                  /* CALL_MIN: the first bit of the point's number that chooses, from 1; 0: none */
+    int32_t bits[3];                    /* CALL_MIN: how many bits choose: 0, 1 or 2 */
+    int32_t points;                     /* CALL_MIN; operands 4 axis + 0..3: the coordinates, nearest cell first; 12..14, of
+                                           each axis: 15 * (this - |the own coordinate|) is the least value of its other
+                                           cells, with + of all but the second; 16: the least of cells that are not
+                                           evaluated; 17: the constant of the values per metre of the world */
     int32_t operand[SDFC_OPERANDS_MAX]; /* >= 0: a variable, < 0: argument ~operand */
 } sdfc_instr;
 

@@ -306,30 +306,39 @@ static int lower_repeat(lowering *l, const sdfc_shape *s, point p) {
     }
     p = settled(l, p);
     memcpy(p.offset, rest.offset, sizeof p.offset);
-    int in[3] = {p.x, p.y, p.z}, own[3], beside[3], bits = 0, bit[3] = {0, 0, 0};
+    int in[3] = {p.x, p.y, p.z}, cell[3][SDFC_CELLS_MAX], bits = 0;
     for (int i = 0; i < 3; i++) {
-        own[i] = beside[i] = in[i];
+        for (int k = 0; k < SDFC_CELLS_MAX; k++) cell[i][k] = in[i];
         if (s->extra[i] == 0) continue;
         int period = argument(l, s->number[i]), inverse = argument(l, s->number[3 + i]);
         int half = 0, shift = 0;
         if (limited) {
             half = constant(l, (s->whole[i] - 1) / 2.0);
             shift = constant(l, s->whole[i] % 2 ? 0 : 0.5); /* where the middle of a cell is */
-            own[i] = OP(l, fold_row, in[i], period, inverse, half, shift);
+            if (s->extra[i] < 4) cell[i][0] = OP(l, fold_row, in[i], period, inverse, half, shift);
         } else {
-            own[i] = OP(l, fold, in[i], period, inverse);
+            cell[i][0] = OP(l, fold, in[i], period, inverse);
         }
-        if (s->extra[i] != 2) continue;
-        bit[i] = ++bits;
-        beside[i] = limited ? OP(l, beside_row, in[i], period, inverse, half, shift)
-                            : OP(l, beside, own[i], period);
+        bits += s->extra[i] == 4 ? 2 : s->extra[i] == 2;
+        if (s->extra[i] == 2) {
+            cell[i][1] = limited ? OP(l, beside_row, in[i], period, inverse, half, shift)
+                                 : OP(l, beside, cell[i][0], period);
+        }
+        for (int k = 0; k < 4 && limited && s->extra[i] == 4; k++) {
+            cell[i][k] = OP(l, window_row, in[i], period, inverse, half, shift, constant(l, k));
+        }
+        static const int steps[] = {0, 1, -1, 2};
+        for (int k = 1; k < 4 && !limited && s->extra[i] == 4; k++) {
+            int by = sdfc_apply(l->c, SDFC_mul, s->number[i], sdfc_number(l->c, steps[k]), 0);
+            cell[i][k] = OP(l, beside, cell[i][0], argument(l, by));
+        }
     }
     unsigned folded = l->folded;
     bool at_fold = l->at_fold;
     for (int i = 0; i < 3; i++) l->folded |= s->extra[i] == 1 ? 1u << i : 0;
     l->at_fold = !folded; /* one fold inside of another: whose axes they are is not followed */
     if (!bits) {
-        point q = {own[0], own[1], own[2], {p.offset[0], p.offset[1], p.offset[2]}};
+        point q = {cell[0][0], cell[1][0], cell[2][0], {p.offset[0], p.offset[1], p.offset[2]}};
         int d = lower(l, s->child[0], q);
         l->folded = folded, l->at_fold = at_fold;
         return d;
@@ -342,25 +351,27 @@ static int lower_repeat(lowering *l, const sdfc_shape *s, point p) {
     int reach[6];
     for (int i = 0; i < 3; i++) {
         double corner = fmax(fabs(child->box.low[i]), fabs(child->box.high[i]));
-        int e = isfinite(corner) && s->extra[i] == 2
+        bool sorted = s->extra[i] == 2 || (s->extra[i] == 4 && !limited);
+        int e = isfinite(corner) && sorted
                     ? sdfc_apply(l->c, SDFC_sub, s->number[i], sdfc_number(l->c, corner), 0)
                     : sdfc_number(l->c, -1e30);
         reach[i] = argument(l, e);
     }
     reach[3] = constant(l, l->stretch > 0 ? child->growth : 0);
-    reach[4] = constant(l, s->extra[3]);
+    reach[4] = constant(l, s->extra[11]);
     reach[5] = constant(l, child->lipschitz * fmax(l->stretch, 1e-30));
     sdfc_instr *call = add_instr(l, SDFC_CALL_MIN);
     call->aux = function;
     call->points = 1 << bits;
-    memcpy(call->operand + 6, reach, sizeof reach);
-    for (int i = 0; i < 3; i++) {
-        call->operand[2 * i] = own[i];
-        call->operand[2 * i + 1] = beside[i];
-        call->select[i] = bit[i];
+    memcpy(call->operand + 12, reach, sizeof reach);
+    memcpy(call->operand, cell, sizeof cell);
+    for (int i = 0, first = 1; i < 3; i++) {
+        call->bits[i] = s->extra[i] == 4 ? 2 : s->extra[i] == 2;
+        call->select[i] = call->bits[i] ? first : 0;
+        first += call->bits[i];
     }
     int d = last_variable(l);
-    return capped(l, d, constant(l, s->extra[3]), &s->facts, p);
+    return isfinite(s->extra[3]) ? capped(l, d, constant(l, s->extra[3]), &s->facts, p) : d;
 }
 
 /* Into half a sector around +x, of a shape that is its own mirror image in z: reflections alone, each of which halves the
@@ -386,9 +397,50 @@ static point fold_sectors(lowering *l, int count, point p) {
     return p;
 }
 
+/* The least of a function's values at two points of the same y. */
+static int least_of_two(lowering *l, int function, point q, point r) {
+    int none = constant(l, 0);
+    sdfc_instr *call = add_instr(l, SDFC_CALL_MIN);
+    *call = (sdfc_instr){.op = SDFC_CALL_MIN,
+                         .aux = function,
+                         .points = 2,
+                         .select = {1, 0, 1},
+                         .bits = {1, 0, 1},
+                         .operand = {q.x, r.x, q.x, q.x, q.y, q.y, q.y, q.y, q.z, r.z, q.z, q.z}};
+    for (int i = 12; i < SDFC_OPERANDS_MAX; i++) call->operand[i] = none;
+    return last_variable(l);
+}
+
+/* The copies next to +x, as many as the analysis found. */
+static int lower_copies(lowering *l, const sdfc_shape *s, point p) {
+    const double pi = 3.14159265358979323846;
+    int copies = (int)s->extra[11], d = 0;
+    if (s->extra[0] == 5) p = fold_sectors(l, s->whole[0], p);
+    double stretch = l->stretch;
+    l->stretch = 0;
+    int function = child_function(l, s->child[0], false, s, p.offset);
+    l->stretch = stretch;
+    for (int i = 0; i < copies; i += 2) {
+        point q[2] = {p, p};
+        for (int k = 0; k < 2 && i + k < copies; k++) { /* sectors 0, 1, -1, 2, ... */
+            int n = i + k, sector = n % 2 ? (n + 1) / 2 : -n / 2;
+            double a = 2 * pi * sector / s->whole[0];
+            int cosine = constant(l, cos(a)), sine = constant(l, sin(a)), minus = constant(l, -sin(a));
+            if (!sector) continue;
+            q[k].x = OP(l, dot2, p.x, p.z, cosine, sine);
+            q[k].z = OP(l, dot2, p.x, p.z, minus, cosine);
+        }
+        if (i + 1 == copies) q[1] = q[0];
+        int e = least_of_two(l, function, q[0], q[1]);
+        d = i ? OP(l, min, d, e) : e;
+    }
+    return d;
+}
+
 static int lower_polar(lowering *l, const sdfc_shape *s, point p) {
     if (s->extra[0] == 0) return lower(l, s->child[0], p);
     if (s->extra[0] == 1) return lower_whole(l, s->child[0], fold_sectors(l, s->whole[0], p));
+    if (s->extra[0] >= 4) return lower_copies(l, s, p);
     int sector = constant(l, 6.283185307179586 / s->whole[0]);
     int zero = constant(l, 0), one = constant(l, 1);
     int a = OP(l, polar_angle, p.x, p.z, sector, zero);
@@ -399,16 +451,9 @@ static int lower_polar(lowering *l, const sdfc_shape *s, point p) {
     l->stretch = 0;
     int function = child_function(l, s->child[0], s->extra[10] != 0, s, p.offset);
     l->stretch = stretch;
-    int none = constant(l, 0);
-    sdfc_instr *call = add_instr(l, SDFC_CALL_MIN);
-    *call = (sdfc_instr){.op = SDFC_CALL_MIN,
-                         .aux = function,
-                         .points = 2,
-                         .select = {1, 0, 1},
-                         .operand = {q.x, r.x, p.y, p.y, q.z, r.z, none, none, none, none, none, none}};
-    int d = last_variable(l);
+    int d = least_of_two(l, function, q, r);
     if (s->extra[0] == 2) return d;
-    int edge = OP(l, mul, OP(l, len2, p.x, p.z), constant(l, s->extra[2] * s->facts.lipschitz));
+    int edge = OP(l, mul, OP(l, len2, p.x, p.z), constant(l, s->extra[3] * s->facts.lipschitz));
     return capped(l, d, edge, &s->facts, p);
 }
 

@@ -120,7 +120,7 @@ typedef struct masu_bake_sdf {
     masu_bake_box framed; /* what the default camera sees; a scene's: the bounds */
     const char *source; /* NULL: no SDF */
     masu_bake_box bounds;
-    double lipschitz, max_distance;
+    double lipschitz /* 0: measured */, max_distance;
     bool anchored;
     masu_bake_occlusion occlusion;
     masu_bake_sdf_param *params;

@@ -111,6 +111,17 @@ static bool read_ambient_occlusion(const masu_bake_json *sdf, masu_bake_occlusio
                              masu_bake_json_number(&ambient, "strength", 0, 1, &out->strength));
 }
 
+/* 0: "auto" */
+static bool read_lipschitz(const masu_bake_json *sdf, double *out) {
+    masu_bake_json member = masu_bake_json_member(sdf, "lipschitz");
+    if (member.value && json_is_string(member.value)) {
+        *out = 0;
+        return strcmp(json_string_value(member.value), "auto") == 0 ||
+               masu_bake_json_wrong(&member, "must be a number or \"auto\"");
+    }
+    return masu_bake_json_number(sdf, "lipschitz", 1e-3, 1e6, out);
+}
+
 bool masu_bake_read_sdf(const masu_bake_json *scene, masu_bake_reader *r) {
     static const char *const members[] = {"source", "bounds",   "lipschitz", "max_distance",
                                           "params", "anchored", "shadows",   "ambient_occlusion",
@@ -126,7 +137,7 @@ bool masu_bake_read_sdf(const masu_bake_json *scene, masu_bake_reader *r) {
         return false;
     if (!bounds.value) return masu_bake_json_wrong(&sdf, "needs \"bounds\": [[x,y,z],[x,y,z]]");
     if (!masu_bake_json_box(&bounds, &out->bounds) ||
-        !masu_bake_json_number(&sdf, "lipschitz", 1e-3, 1e6, &out->lipschitz) ||
+        !read_lipschitz(&sdf, &out->lipschitz) ||
         !masu_bake_json_number(&sdf, "max_distance", 1e-3, 1e15, &out->max_distance) ||
         !masu_bake_json_boolean(&sdf, "anchored", &out->anchored) ||
         !read_shadows(&sdf, out->max_distance, &out->occlusion) ||

@@ -410,24 +410,70 @@ static bool wanted(int when, bool dynamic, bool anchored, bool occlusion, bool r
     return when == ALWAYS || variants;
 }
 
-/* Right after the march, which has said what does not compile: a block that is too steep is refused before
+/* A source of GLSL as one part. A parameter without a range has its value only. */
+static void source_as_part(const masu_bake_content *content, masu_sdfc_result *scene) {
+    const masu_blob_sdf *sdf = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, const masu_blob_sdf);
+    masu_sdfc_part *part = scene->parts = masu_bake_allocate(sizeof *scene->parts);
+    memset(part, 0, sizeof *part);
+    part->user = true;
+    part->lipschitz = (double)sdf->lipschitz;
+    for (int i = 0; i < 3; i++) {
+        part->low[i] = (double)sdf->bounds_min[i];
+        part->high[i] = (double)sdf->bounds_max[i];
+    }
+    scene->part_count = 1;
+    scene->param_count = (uint32_t)masu_bake_count(content, MASU_BLOB_SDF_PARAMS);
+    scene->params = masu_bake_allocate((scene->param_count + 1) * sizeof *scene->params);
+    for (uint32_t i = 0; i < scene->param_count; i++) {
+        const masu_blob_sdf_param *p = &MASU_BAKE_ARRAY(content, MASU_BLOB_SDF_PARAMS, const masu_blob_sdf_param)[i];
+        bool ranges = p->minimum > -1e30f && p->maximum < 1e30f;
+        memset(&scene->params[i], 0, sizeof scene->params[i]);
+        scene->params[i].value = (double)p->value;
+        scene->params[i].minimum = (double)(ranges ? p->minimum : p->value);
+        scene->params[i].maximum = (double)(ranges ? p->maximum : p->value);
+    }
+}
+
+/* The least constant that masu-bake takes, and how much above the steepest slope that was found. */
+#define LEAST_LIPSCHITZ 1e-3
+#define AUTO_MARGIN 1.05
+
+static bool take_steepest(masu_bake_content *content, double steepest, const char *path) {
+    double lipschitz = fmax(steepest * AUTO_MARGIN, LEAST_LIPSCHITZ);
+    if (!(lipschitz <= 1e6)) {
+        masu_cli_error("%s: the steepest slope found is %.4g: expected at most 1e6", path, steepest);
+        return false;
+    }
+    MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf)->lipschitz = (float)lipschitz;
+    if (!masu_cli_quiet()) printf("%s: lipschitz %.4g (steepest slope found: %.4g)\n", path, lipschitz, steepest);
+    return true;
+}
+
+/* Right after the march, which has said what does not compile: a field that is too steep is refused before
  * the other shaders take their time. */
-static bool try_blocks(const masu_sdfc_result *scene, const char *directory, char *include_here,
-                       char *include_scene, const char *path) {
+static bool try_blocks(masu_bake_content *content, masu_sdfc_result *scene, const char *directory,
+                       char *include_here, char *include_scene, const char *path) {
     masu_bake_buffer spirv = {0};
+    bool source = !masu_bake_is_sdf(path);
+    bool measures = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, const masu_blob_sdf)->lipschitz == 0;
+    double steepest = 0;
+    if (source) source_as_part(content, scene);
+    if (!source && measures) MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf)->lipschitz = 1;
     if (!masu_bake_try_needed(scene)) return true;
     paths p = {masu_bake_join(directory, "try.comp"),
                masu_bake_join(directory, "try.raw"),
                masu_bake_join(directory, "try.spv"),
                include_here,
                include_scene,
-               NULL,
+               source ? "-DMASU_TRY_FIELD" : NULL,
                "comp"};
     masu_cli_progress("trying %s", path);
     bool good =
         run_tools(&p, false, directory, path, NULL) &&
         masu_bake_read_file(p.optimised, SPIRV_MAX, &spirv) &&
-        masu_bake_try(scene, (const uint32_t *)(const void *)spirv.data, spirv.bytes / 4, path);
+        masu_bake_try(scene, (const uint32_t *)(const void *)spirv.data, spirv.bytes / 4, path,
+                      source && measures ? &steepest : NULL) &&
+        (!source || !measures || take_steepest(content, steepest, path));
     masu_bake_release(&spirv);
     free(p.source);
     free(p.raw);
@@ -469,7 +515,7 @@ bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path,
                                          .moves = dynamic};
         good = run_tools(&p, has_raster, directory, glsl_path, &counts) &&
                take_spirv(content, scene_shaders[i].kind, p.optimised, glsl_path) &&
-               (i > 0 || try_blocks(&scene, directory, include_here, include_scene, glsl_path));
+               (i > 0 || try_blocks(content, &scene, directory, include_here, include_scene, glsl_path));
         free(p.source);
         free(p.raw);
         free(p.optimised);

@@ -32,6 +32,7 @@ struct masu_bake_machine {
     uint32_t *where; /* by id: word of a label or function */
     uint32_t *binding;
     cell *cells;
+    double *decisions; /* by id */
     char *error;
     size_t error_size;
 };
@@ -178,9 +179,11 @@ masu_bake_machine *masu_bake_machine_make(const uint32_t *words, size_t count, c
         m->where = calloc(n, sizeof *m->where);
         m->binding = calloc(n, sizeof *m->binding);
         m->cells = calloc(CELLS_MAX, sizeof *m->cells);
+        m->decisions = malloc(n * sizeof *m->decisions);
+        for (size_t i = 0; i < n && m->decisions; i++) m->decisions[i] = (double)NAN;
         m->cell_count = 1;
     }
-    if (!m || !m->types || !m->of || !m->at || !m->where || !m->binding || !m->cells) {
+    if (!m || !m->types || !m->of || !m->at || !m->where || !m->binding || !m->cells || !m->decisions) {
         snprintf(error, error_size, "no memory");
     } else if (load(m)) {
         return m;
@@ -197,6 +200,7 @@ void masu_bake_machine_free(masu_bake_machine *m) {
     free(m->where);
     free(m->binding);
     free(m->cells);
+    free(m->decisions);
     free(m);
 }
 
@@ -209,6 +213,19 @@ cell *masu_bake_machine_buffer(masu_bake_machine *m, uint32_t binding, size_t *c
     *count = 0;
     return NULL;
 }
+
+const double *masu_bake_machine_decisions(const masu_bake_machine *m, size_t *count) {
+    *count = m->bound;
+    return m->decisions;
+}
+
+/* Of a vector the component that is nearest to deciding otherwise. */
+static void decide(masu_bake_machine *m, uint32_t id, uint32_t i, double by) {
+    if (i == 0 || fabs(by) < fabs(m->decisions[id])) m->decisions[id] = by;
+}
+
+/* Where x is between two sides, above 0, or outside. */
+static double between(double x, double a, double b) { return fmin(x - fmin(a, b), fmax(a, b) - x); }
 
 /* ---- GLSL.std.450 ---------------------------------------------------------------------------- */
 
@@ -309,6 +326,11 @@ static bool extended(masu_bake_machine *m, const uint32_t *w, uint32_t count) {
             bool more[3] = {5 < count, 6 < count, 7 < count};
             if (!component(op, a[0][i], more[1] ? a[1][i] : zero, more[2] ? a[2][i] : zero, &r[i]))
                 return refuse(m, "GLSL.std.450 instruction", op);
+            double x = a[0][i].f, y = a[1][i].f;
+            if (op == 37 || op == 79 || op == 40 || op == 80 || op == 48) decide(m, w[2], i, x - y);
+            if (op == 27 || op == 29) decide(m, w[2], i, x + 1); /* a peak: 0 nearly everywhere */
+            if (op == 43 || op == 81) decide(m, w[2], i, between(x, y, a[2][i].f));
+            if (op == 49) decide(m, w[2], i, between(a[2][i].f, x, y));
         }
         return true;
     }
@@ -555,9 +577,11 @@ static bool evaluate(masu_bake_machine *m, uint32_t op, const uint32_t *w, uint3
         return true;
     }
     default:
-        for (uint32_t i = 0; i < n; i++)
+        for (uint32_t i = 0; i < n; i++) {
+            if (op >= 180 && op <= 191 && a && b) decide(m, w[2], i, a[i].f - b[i].f);
             if (!a || !arithmetic(op, a[i], b ? b[i] : a[i], &r[i]))
                 return refuse(m, "instruction", op);
+        }
         return true;
     }
 }

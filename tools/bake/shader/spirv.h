@@ -29,6 +29,10 @@ void masu_bake_machine_free(masu_bake_machine *machine);
 masu_bake_cell *masu_bake_machine_buffer(masu_bake_machine *machine, uint32_t binding,
                                          size_t *count);
 
+/* Of each id: by how much its comparison, minimum, maximum, clamp or step decided as it did in the last run that came
+ * there, above or below 0 by the side; NAN: nothing was decided there. *count: how many ids. */
+const double *masu_bake_machine_decisions(const masu_bake_machine *machine, size_t *count);
+
 /* False, with one line in `error`: out of budget, an index outside of its array, an instruction that
  * is not known. */
 bool masu_bake_machine_run(masu_bake_machine *machine, char *error, size_t error_size);

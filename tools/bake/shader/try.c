@@ -9,6 +9,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum {
@@ -16,6 +17,10 @@ enum {
     ENVIRONMENTS = 8,
     SECONDS = 60,
     HALVINGS = 20,
+    BEST = 8,       /* pairs of an environment that are climbed from */
+    CLIMBS = 30,    /* steps from each */
+    SITES = 64,     /* decisions that are searched for their other side */
+    SEARCHES = 120, /* steps for each */
     BIND_SLOTS = 0,
     BIND_INPUT = 1,
     BIND_RESULT = 2
@@ -38,14 +43,34 @@ const char masu_bake_try_source[] =
     "float masu_param(int i) { return params[i]; }\n"
     "float masu_time() { return time; }\n"
     "float masu_slot(uint i) { return slots[i]; }\n"
+    "vec3 masu_normal = vec3(0.0);\n"
+    "#include \"shared/counters.h\"\n"
+    "void masu_count(uint counter, uint n) {}\n"
+    "uint masu_part_bits(int word) { return 0xFFFFFFFFu; }\n"
+    "#define MASU_LOOP\n"
+    "#include \"sdf/terms.glsl\"\n"
     "void masu_slot_write(uint i, float v) { slots[i] = v; }\n"
     "uint masu_part_count() { return 1u; }\n"
     "uint masu_part_at(uint i) { return i; }\n"
     "#include \"sdf_scene.glsl\"\n"
     "void main() {\n"
+    "#ifdef MASU_TRY_FIELD\n"
+    "    result = masu_sdf(vec3(point[0], point[1], point[2]));\n"
+    "#else\n"
     "    masu_sdf_update();\n"
     "    result = masu_sdf_part(part, vec3(point[0], point[1], point[2]));\n"
+    "#endif\n"
     "}\n";
+
+typedef struct start {
+    double p[3], slope;
+} start;
+
+/* A minimum, comparison, ... of the code that decided one way at all points: the one where it was nearest to the other. */
+typedef struct site {
+    bool below, above;
+    double nearest, p[3];
+} site;
 
 typedef struct trial {
     const masu_sdfc_result *scene;
@@ -54,9 +79,16 @@ typedef struct trial {
     const masu_sdfc_part *part;
     masu_bake_machine *machine;
     masu_bake_cell *slots, *input, *result;
+    const double *decisions;
+    site *sites;
+    size_t site_count;
     uint64_t random;
     double center[3], half[3], size;
-    char text[1024]; /* 'E' or 'W', then the message; "": nothing to say */
+    start best[BEST];
+    bool measures;
+    double steepest;
+    double jump[3], jumps_by; /* where a jump was found, and how large it is */
+    char text[1024]; /* 'E' or 'W', then the message; 'S', then the steepest slope; "": nothing to say */
 } trial;
 
 static double unit(trial *t) {
@@ -66,11 +98,37 @@ static double unit(trial *t) {
     return (double)((z ^ z >> 31) >> 11) / 9007199254740992.0;
 }
 
+static bool is_source(const trial *t) { return !t->part->name[0]; }
+
+/* "part a: its glsl" */
+static const char *subject(const trial *t, char text[128]) {
+    if (is_source(t))
+        snprintf(text, 128, "the field");
+    else
+        snprintf(text, 128, "part %s: its glsl", t->part->name);
+    return text;
+}
+
+static bool is_inside(const trial *t, const double p[3]) {
+    for (int i = 0; i < 3; i++)
+        if (!(fabs(p[i] - t->center[i]) <= t->half[i])) return false;
+    return true;
+}
+
+/* A source of GLSL is only evaluated within its bounds. */
 static void any_point(trial *t, double out[3]) {
     static const double scales[] = {0.3, 1, 1.2, 4};
-    double scale = scales[(int)(unit(t) * 4)];
-    for (int i = 0; i < 3; i++)
-        out[i] = t->center[i] + (2 * unit(t) - 1) * scale * (t->half[i] + 0.1 * t->size);
+    double scale = scales[(int)(unit(t) * 4)], more = is_source(t) ? 0 : 0.1 * t->size;
+    if (is_source(t)) scale = fmin(scale, 1);
+    for (int i = 0; i < 3; i++) out[i] = t->center[i] + (2 * unit(t) - 1) * scale * (t->half[i] + more);
+}
+
+/* Around p, as far as `length` along each axis, within the bounds. */
+static void near_point(trial *t, const double p[3], double length, double out[3]) {
+    for (int i = 0; i < 3; i++) {
+        out[i] = p[i] + (2 * unit(t) - 1) * length;
+        out[i] = fmin(fmax(out[i], t->center[i] - t->half[i]), t->center[i] + t->half[i]);
+    }
 }
 
 static void set_part(trial *t, uint32_t part) {
@@ -87,6 +145,7 @@ static void set_part(trial *t, uint32_t part) {
 }
 
 static void set_environment(trial *t, int environment) {
+    memset(t->best, 0, sizeof t->best);
     if (!t->input) return;
     t->input[1].f = environment == 0 ? 0 : 100 * unit(t);
     for (uint32_t i = 0; i < t->scene->param_count; i++) {
@@ -99,17 +158,30 @@ static void set_environment(trial *t, int environment) {
     }
 }
 
+static void note_decisions(trial *t, const double p[3]) {
+    for (size_t i = 0; i < t->site_count; i++) {
+        site *s = &t->sites[i];
+        double by = t->decisions[i];
+        if (!isfinite(by) || (s->below && s->above)) continue;
+        if ((!s->below && !s->above) || fabs(by) < s->nearest) {
+            s->nearest = fabs(by);
+            memcpy(s->p, p, sizeof s->p);
+        }
+        *(by < 0 ? &s->below : &s->above) = true;
+    }
+}
+
 /* False: it cannot be run, and the text says why. */
 static bool field(trial *t, const double p[3], double *f) {
-    char error[256];
+    char error[256], what[128];
     for (int i = 0; i < 3 && t->input; i++) t->input[2 + i].f = p[i];
     if (!masu_bake_machine_run(t->machine, error, sizeof error)) {
-        snprintf(t->text, sizeof t->text,
-                 "Wpart %s: its glsl was not tested, since it cannot run on the CPU: %s",
-                 t->part->name, error);
+        snprintf(t->text, sizeof t->text, "W%s was not tested, since it cannot run on the CPU: %s", subject(t, what),
+                 error);
         return false;
     }
-    *f = t->result->f * t->part->lipschitz;
+    note_decisions(t, p);
+    *f = is_source(t) ? t->result->f : t->result->f * t->part->lipschitz;
     return true;
 }
 
@@ -118,22 +190,32 @@ static double distance(const double p[3], const double q[3]) {
                 (p[2] - q[2]) * (p[2] - q[2]));
 }
 
+static double slope(const double p[3], double fp, const double q[3], double fq) {
+    double apart = distance(p, q);
+    return isfinite(fp) && isfinite(fq) && apart > 0 ? fabs(fp - fq) / apart : 0;
+}
+
 static bool keeps(trial *t, const double p[3], double fp, const double q[3], double fq) {
+    double apart = distance(p, q), L = t->part->lipschitz;
+    char what[128];
     if (!isfinite(fp) || !isfinite(fq)) return true; /* a miss there */
-    double allowed = t->part->lipschitz * distance(p, q) * (1 + SLACK);
-    allowed += 1e-2 * SLACK * SLACK * (t->size + fabs(fp) + fabs(fq)) * fmax(t->part->lipschitz, 1);
-    if (fabs(fp - fq) <= allowed) return true;
+    double rounding = 1e-2 * SLACK * SLACK * (t->size + fabs(fp) + fabs(fq));
+    if (t->measures) {
+        if (apart > 1e4 * rounding) t->steepest = fmax(t->steepest, fabs(fp - fq) / apart);
+        return true;
+    }
+    if (fabs(fp - fq) <= L * apart * (1 + SLACK) + rounding * fmax(L, 1)) return true;
     snprintf(t->text, sizeof t->text,
-             "Epart %s: its glsl is steeper than its lipschitz constant %.9g: f(%.9g, %.9g, %.9g) "
+             "E%s is steeper than its lipschitz constant %.9g: f(%.9g, %.9g, %.9g) "
              "= %.9g, f(%.9g, %.9g, %.9g) = %.9g, %.9g apart, at time %.9g",
-             t->part->name, t->part->lipschitz, p[0], p[1], p[2], fp, q[0], q[1], q[2], fq,
-             distance(p, q), t->input ? t->input[1].f : 0.0);
+             subject(t, what), L, p[0], p[1], p[2], fp, q[0], q[1], q[2], fq, apart, t->input ? t->input[1].f : 0.0);
     return false;
 }
 
 /* Of the halves of a pair one is as steep as the whole or steeper: going there again and again finds
- * a jump that no random pair is near enough to. */
+ * a jump that no random pair is near enough to. The slope of a jump doubles with each halving. */
 static bool narrow(trial *t, double p[3], double fp, double q[3], double fq) {
+    double early = 0;
     for (int i = 0; i < HALVINGS; i++) {
         double m[3], fm;
         for (int k = 0; k < 3; k++) m[k] = 0.5 * (p[k] + q[k]);
@@ -141,8 +223,28 @@ static bool narrow(trial *t, double p[3], double fp, double q[3], double fq) {
         bool first = fabs(fp - fm) > fabs(fm - fq);
         memcpy(first ? q : p, m, sizeof m);
         *(first ? &fq : &fp) = fm;
+        if (i == HALVINGS - 5) early = slope(p, fp, q, fq);
+    }
+    if (early > 0 && slope(p, fp, q, fq) > 8 * early && fabs(fp - fq) > 1e-3 * t->size) {
+        t->jumps_by = fabs(fp - fq);
+        memcpy(t->jump, p, sizeof t->jump);
     }
     return true;
+}
+
+/* Exactly the constant is the slope of the box that a block is joined with: nothing to climb from. */
+static bool is_flat(const trial *t, double steep) {
+    return !t->measures && fabs(steep / t->part->lipschitz - 1) < 1e-6;
+}
+
+static void keep_start(trial *t, const double p[3], double steep) {
+    int least = 0;
+    if (is_flat(t, steep) || !is_inside(t, p)) return;
+    for (int i = 1; i < BEST; i++)
+        if (t->best[i].slope < t->best[least].slope) least = i;
+    if (!(steep > t->best[least].slope)) return;
+    t->best[least].slope = steep;
+    memcpy(t->best[least].p, p, 3 * sizeof *p);
 }
 
 static bool try_pair(trial *t) {
@@ -150,11 +252,96 @@ static bool try_pair(trial *t) {
     any_point(t, p);
     any_point(t, q);
     if (how < 0.6) {
-        double n = fmax(distance(p, q), 1e-30);
+        double n = fmax(distance(p, q), length);
         for (int i = 0; i < 3; i++) q[i] = p[i] + (q[i] - p[i]) / n * length;
     }
     if (!field(t, p, &fp) || !field(t, q, &fq) || !keeps(t, p, fp, q, fq)) return false;
-    return how < 0.9 || narrow(t, p, fp, q, fq);
+    if (how < 0.6) keep_start(t, p, slope(p, fp, q, fq));
+    return how < 0.75 || narrow(t, p, fp, q, fq);
+}
+
+/* The slope at p: of the pair along the gradient. */
+static bool slope_at(trial *t, const double p[3], double *steep) {
+    double f, h = 1e-4 * t->size, way[3], n = 0, q[3], fq;
+    *steep = 0;
+    if (!field(t, p, &f)) return false;
+    for (int i = 0; i < 3; i++) {
+        memcpy(q, p, sizeof q);
+        q[i] += p[i] > t->center[i] ? -h : h;
+        if (!field(t, q, &fq)) return false;
+        way[i] = (fq - f) / (q[i] - p[i]);
+        n += way[i] * way[i];
+    }
+    if (!isfinite(n) || !(n > 0)) return true;
+    for (int i = 0; i < 3; i++) q[i] = p[i] + way[i] / sqrt(n) * h;
+    for (int i = 0; i < 3 && is_source(t) && !is_inside(t, q); i++) q[i] = 2 * p[i] - q[i];
+    if (is_source(t) && !is_inside(t, q)) return true;
+    if (!field(t, q, &fq)) return false;
+    *steep = slope(p, f, q, fq);
+    if (is_flat(t, *steep)) *steep = 0;
+    return keeps(t, p, f, q, fq);
+}
+
+static bool climb(trial *t, const double from[3], double step) {
+    double p[3], q[3], best, steep;
+    memcpy(p, from, sizeof p);
+    if (!slope_at(t, p, &best)) return false;
+    for (int i = 0; i < CLIMBS; i++) {
+        near_point(t, p, step, q);
+        if (!slope_at(t, q, &steep)) return false;
+        if (steep > best) {
+            best = steep;
+            memcpy(p, q, sizeof p);
+        } else {
+            step *= 0.85;
+        }
+    }
+    return true;
+}
+
+/* Towards the other side of a decision, which may hold a part of the field that no random point came upon. */
+static bool search(trial *t, const site *s, size_t id) {
+    const bool above = s->above;
+    double p[3], q[3], f, best = (double)INFINITY, step = 0.25 * t->size;
+    memcpy(p, s->p, sizeof p);
+    for (int i = 0; i < SEARCHES; i++) {
+        near_point(t, p, step, q);
+        if (!field(t, q, &f)) return false;
+        double by = t->decisions[id];
+        if (!isfinite(by)) continue;
+        if ((by >= 0) != above) { /* found: a pair across, and what is there */
+            double fp;
+            if (!field(t, p, &fp) || !keeps(t, p, fp, q, f) || !narrow(t, p, fp, (double[3]){q[0], q[1], q[2]}, f))
+                return false;
+            return climb(t, q, fmin(step, 0.02 * t->size));
+        }
+        if (fabs(by) < best) {
+            best = fabs(by);
+            memcpy(p, q, sizeof p);
+        } else {
+            step *= 0.9;
+        }
+    }
+    return true;
+}
+
+static bool try_environment(trial *t, uint32_t pairs) {
+    for (uint32_t n = 0; n <= pairs; n++)
+        if (!try_pair(t)) return false;
+    for (int i = 0; i < BEST; i++)
+        if (t->best[i].slope > 0 && !climb(t, t->best[i].p, 0.05 * t->size)) return false;
+    return true;
+}
+
+static bool search_all(trial *t) {
+    int searched = 0;
+    for (size_t i = 0; i < t->site_count && searched < SITES; i++) {
+        site s = t->sites[i];
+        if (s.below == s.above) continue;
+        searched++;
+        if (!search(t, &s, i)) return false;
+    }
+    return true;
 }
 
 static bool try_parts(trial *t) {
@@ -165,11 +352,13 @@ static bool try_parts(trial *t) {
         for (uint32_t k = 0; k < s->part_count; k++)
             alike += s->parts[k].shape == s->parts[i].shape;
         set_part(t, i);
+        memset(t->sites, 0, t->site_count * sizeof *t->sites);
         for (int e = 0; e < ENVIRONMENTS; e++) {
             set_environment(t, e);
-            for (uint32_t n = 0; n <= PAIRS / ENVIRONMENTS / alike; n++)
-                if (!try_pair(t)) return false;
+            if (!try_environment(t, PAIRS / ENVIRONMENTS / alike)) return false;
         }
+        set_environment(t, 0);
+        if (!search_all(t)) return false;
     }
     return true;
 }
@@ -186,9 +375,17 @@ static void body(void *argument, int fd) {
         t->slots = masu_bake_machine_buffer(t->machine, BIND_SLOTS, &count);
         t->input = masu_bake_machine_buffer(t->machine, BIND_INPUT, &count);
         t->result = masu_bake_machine_buffer(t->machine, BIND_RESULT, &count);
+        t->decisions = masu_bake_machine_decisions(t->machine, &t->site_count);
+        t->sites = masu_bake_allocate(t->site_count * sizeof *t->sites);
         for (uint32_t i = 0; t->slots && i < t->scene->slot_count; i++)
             t->slots[i].f = (double)t->scene->slots[i];
-        (void)try_parts(t);
+        if (try_parts(t) && t->measures && t->jumps_by > 0)
+            snprintf(t->text, sizeof t->text,
+                     "Ethe field jumps by %.3g at (%.6g, %.6g, %.6g): \"lipschitz\": \"auto\" needs a continuous field",
+                     t->jumps_by, t->jump[0], t->jump[1], t->jump[2]);
+        else if (t->measures && !t->text[0])
+            snprintf(t->text, sizeof t->text, "S%.17g", t->steepest);
+        free(t->sites);
         masu_bake_machine_free(t->machine);
     }
     masu_bake_send(fd, t->text, strlen(t->text));
@@ -201,22 +398,26 @@ bool masu_bake_try_needed(const masu_sdfc_result *scene) {
 }
 
 bool masu_bake_try(const masu_sdfc_result *scene, const uint32_t *words, size_t count,
-                   const char *path) {
+                   const char *path, double *steepest) {
     static trial t;
     masu_bake_buffer said = {0};
     memset(&t, 0, sizeof t);
     t.scene = scene;
     t.words = words;
     t.count = count;
+    t.measures = steepest != NULL;
     t.random = 0x6D617375;
     masu_bake_result result = masu_bake_fork(body, &t, SECONDS, &said);
     masu_bake_append(&said, "", 1);
     const char *text = (const char *)said.data;
-    bool ended = result.end == MASU_BAKE_EXITED && result.code == 0;
+    bool ended = result.end == MASU_BAKE_EXITED && result.code == 0, measured = ended && text[0] == 'S';
     if (!ended) masu_cli_warn("%s: its glsl was not tested, since the test did not finish", path);
     if (ended && text[0] == 'W') masu_cli_warn("%s: %s", path, text + 1);
     if (ended && text[0] == 'E') masu_cli_error("%s: %s", path, text + 1);
-    bool good = !(ended && text[0] == 'E');
+    if (measured) *steepest = strtod(text + 1, NULL);
+    if (steepest && !measured && !(ended && text[0] == 'E'))
+        masu_cli_error("%s: \"lipschitz\": \"auto\" needs a field that runs on the CPU: state a number", path);
+    bool good = !(ended && text[0] == 'E') && (!steepest || measured);
     masu_bake_release(&said);
     return good;
 }

@@ -1,7 +1,6 @@
-/* try.h: GLSL blocks of a .sdf scene, tried: does the field of each part that holds one keep to
- * the Lipschitz constant that its author has stated? masu-sdfc proves and tries what
- * it has written itself; of a block it has only the text. masu-bake compiles it anyway, and runs the
- * SPIR-V on random pairs of points (spirv.h). */
+/* try.h: tests whether fields of hand-written GLSL keep to their Lipschitz constant: blocks of a .sdf scene, of which
+ * masu-sdfc only has the text, and sources of GLSL. masu-bake compiles them anyway, and runs the SPIR-V on the CPU
+ * (spirv.h). */
 #ifndef MASU_BAKE_TRY_H
 #define MASU_BAKE_TRY_H
 
@@ -17,9 +16,10 @@ extern const char masu_bake_try_source[];
 /* Whether any part holds a block. */
 bool masu_bake_try_needed(const masu_sdfc_result *scene);
 
-/* Tries all such parts with that module, in a child process. False: the message is out. A module
- * that cannot be run is a warning: its parts are believed. */
+/* Tests all such parts with that module, in a child process. A source of GLSL is one part without a name, tested within
+ * its bounds. False: the message is out. A module that cannot be run is a warning: its constants are believed.
+ * *steepest, if not NULL: the constants are ignored, and this becomes the steepest slope that was found. */
 bool masu_bake_try(const masu_sdfc_result *scene, const uint32_t *words, size_t count,
-                   const char *path);
+                   const char *path, double *steepest);
 
 #endif
