@@ -60,6 +60,9 @@ warns 1 'C/somewhere/else/gradient.png: No such file'
 bakes "$scene" --texture-path "/nowhere:$pictures"
 warns 0
 [ "$(counts textures)" = 1 ] || fail "the texture path is not looked at"
+quad '"base_color_map": "C/somewhere/else/GRADIENT.PNG"'
+bakes "$scene" --texture-path "/nowhere:$pictures"
+warns 0
 
 # 64 x 64, 7 mips: 8 bytes a block, 341 + 1 + 1 blocks. With alpha 16 bytes.
 quad "\"base_color_map\": \"$pictures/gradient.png\""

@@ -501,6 +501,120 @@ static void cubic_keys_are_cut_into_lines(void **state) {
     }
 }
 
+/* Several keys at one time are a step: the last one holds from that time on. */
+static void repeated_key_times_are_steps(void **state) {
+    (void)state;
+    static const float moves[18] = {0, 0, 0, 2, 0, 0, 9, 9, 9, 4, 0, 0, 6, 0, 0, 8, 0, 0};
+    static const float times[6] = {0, 1, 1, 1, 2, 2};
+    static const char *const how[] = {"LINEAR", "STEP"};
+    for (int i = 0; i < 2; i++) {
+        begin_quad();
+        int t = floats(times, "SCALAR", 6, 1), m = floats(moves, "VEC3", 6, 3);
+        import_as(finish("\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":%d},\"indices\":%d}]}],\"nodes\":[{\"mesh\":0}],"
+                         "\"animations\":[{\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,\"path\":\"translation\"}}],"
+                         "\"samplers\":[{\"input\":%d,\"output\":%d,\"interpolation\":\"%s\"}]}]",
+                         quad_positions, quad_indices, t, m, how[i]),
+                  (masu_bake_wanted){.moving = true});
+        assert_string_equal(heard, "");
+        const masu_blob_key *k = MASU_BAKE_ARRAY(&piece, MASU_BLOB_KEYS, masu_blob_key);
+        uint64_t count = masu_bake_count(&piece, MASU_BLOB_KEYS);
+        assert_int_equal(count, 5);
+        assert_true(k[1].time < 1 && k[1].time > 0.999f);
+        assert_near((double)k[1].value[0], i ? 0 : 2, 0);
+        assert_near((double)k[2].time, 1, 0);
+        assert_near((double)k[2].value[0], 4, 0);
+        assert_near((double)k[count - 1].time, 2, 0);
+        assert_near((double)k[count - 1].value[0], 8, 0);
+    }
+}
+
+/* ---- Files of exporters ---------------------------------------------------------------------- */
+
+#define TRIANGLE                                                                                                       \
+    "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,"          \
+    "\"type\":\"VEC3\",\"count\":3}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"                  \
+    "\"nodes\":[{\"mesh\":0}]}"
+
+static const float corner[9] = {0, 0, 0, 5, 0, 0, 0, 5, 0};
+
+static const char *triangle_of(const char *uri) {
+    char text[2048];
+    int wrote = snprintf(text, sizeof text, "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"uri\":\"%s\",\"byteLength\":36}]," TRIANGLE, uri);
+    assert_true(wrote > 0 && (size_t)wrote < sizeof text);
+    return write_text("x.gltf", text);
+}
+
+/* What is not below a node of the scene counts for nothing (UniGLTF writes such nodes). */
+static void nodes_outside_of_the_scene_are_ignored(void **state) {
+    (void)state;
+    static const char *const graphs[] = {
+        "\"nodes\":[{\"children\":[1],\"translation\":[100,0,0]},{\"mesh\":0,\"translation\":[3,0,0]}],\"scenes\":[{\"nodes\":[1]}]",
+        "\"nodes\":[{\"children\":[1,1]},{\"mesh\":0,\"translation\":[3,0,0]},{\"children\":[1]}],\"scenes\":[{\"nodes\":[1]}]",
+        "\"nodes\":[{\"children\":[0]},{\"mesh\":0,\"translation\":[3,0,0]}],\"scenes\":[{\"nodes\":[1]}]",
+    };
+    for (size_t i = 0; i < sizeof graphs / sizeof *graphs; i++) {
+        begin_quad();
+        import_quietly(finish("\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":%d},\"indices\":%d}]}],%s", quad_positions,
+                              quad_indices, graphs[i]));
+        assert_int_equal(masu_bake_count(&piece, MASU_BLOB_INSTANCES), 1);
+        assert_near((double)MASU_BAKE_INSTANCES(&piece)[0].transform[3], 3, 0);
+    }
+}
+
+static void data_uris_of_all_forms(void **state) {
+    (void)state;
+    static const char *const heads[] = {"data:,",
+                                        "data:application/octet-stream,",
+                                        "DATA:application/gltf-buffer;charset=UTF-8,",
+                                        "data:;base64,",
+                                        "data:application/octet-stream;charset=utf-8;base64,",
+                                        "Data:application/octet-stream;BASE64,"};
+    static const char base64[] = "AAAAAAAAAAAAAAAAAACgQAAAAAAAAAAAAAAAAAAAoEAAAAAA";
+    for (size_t i = 0; i < sizeof heads / sizeof *heads; i++) {
+        char uri[512] = "";
+        add(uri, sizeof uri, "%s", heads[i]);
+        for (size_t k = 0; i < 3 && k < sizeof corner; k++) { /* letters as they are, everything else in hexadecimal */
+            unsigned char c = ((const unsigned char *)corner)[k];
+            add(uri, sizeof uri, c >= 'A' && c <= 'Z' ? "%c" : k & 1 ? "%%%02x" : "%%%02X", c);
+        }
+        if (i == 3) add(uri, sizeof uri, "%s", base64);
+        if (i == 4) add(uri, sizeof uri, "%.10s%%41%s", base64, base64 + 11); /* a letter in hexadecimal, too */
+        if (i == 5) add(uri, sizeof uri, "%.24s\\r\\n%s", base64, base64 + 24);
+        import_quietly(triangle_of(uri));
+        vertex_at(5, 0, 0, 0);
+        vertex_at(0, 5, 0, 0);
+    }
+    refused(triangle_of("data:nothing"), NULL, "a data: URI without a comma");
+    refused(triangle_of("data:;base64,AAAA!"), NULL, "a data: URI with a '!'");
+    refused(triangle_of("data:,%00%0"), NULL, "\"byteLength\" is 36, and there are 3 bytes");
+}
+
+static void files_named_on_other_machines(void **state) {
+    (void)state;
+    static const char *const uris[] = {"a%20B.bin",
+                                       "A b.BIN",
+                                       ".\\\\A%20b.BIN",
+                                       "C:\\\\models\\\\a B.bin",
+                                       "c:/models/A B.bin",
+                                       "file:///C:/models/a%20B.bin",
+                                       "/home/somebody/a B.bin"};
+    write_bytes("a B.bin", corner, sizeof corner);
+    for (size_t i = 0; i < sizeof uris / sizeof *uris; i++) {
+        import_quietly(triangle_of(uris[i]));
+        vertex_at(0, 5, 0, 0);
+    }
+    refused(triangle_of("D:\\\\gone.bin"), NULL, "there is no file");
+}
+
+static void older_versions_are_refused(void **state) {
+    (void)state;
+    static const char *const texts[] = {"{\"asset\":{\"version\":\"1.0\"},\"meshes\":{}}", "{\"asset\":{\"version\":1.1},\"meshes\":{}}",
+                                        "{\"meshes\":{},\"scenes\":{}}"};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) refused(write_text("x.gltf", texts[i]), NULL, "glTF 1");
+    static const uint32_t head[5] = {0x46546C67, 1, 22, 2, 0};
+    refused(write_bytes("x.glb", head, sizeof head), NULL, "glTF 1");
+}
+
 /* ---- Files that are wrong -------------------------------------------------------------------- */
 
 static void names_with_percent_signs(void **state) {
@@ -511,7 +625,7 @@ static void names_with_percent_signs(void **state) {
                                         "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"type\":\"VEC3\",\"count\":3}],"
                                         "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"nodes\":[{\"mesh\":0}]}"));
     vertex_at(0, 5, 0, 0);
-    refused(write_text("x.gltf", "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"uri\":\"c%20d.bin\",\"byteLength\":36}]}"), NULL, "c d.bin");
+    refused(write_text("x.gltf", "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"uri\":\"c%20d.bin\",\"byteLength\":36}]}"), NULL, "there is no file");
     refused(write_text("x.gltf", "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"uri\":\"http://x/y.bin\",\"byteLength\":36}]}"), NULL, "is not a file in the model's folder");
 }
 
@@ -537,8 +651,8 @@ static void hostile_files_are_refused(void **state) {
     accessor(view(corners, 48, 0), FLOAT, "VEC3", 4, ",\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":0,\"componentType\":5125,\"byteOffset\":12},\"values\":{\"bufferView\":0}}");
     refused(finish("%s", mesh), NULL, "\"sparse\" changes element 1073741824 of 4");
     begin_quad();
-    refused(finish("\"nodes\":[{\"children\":[1]},{\"children\":[0]}],\"scenes\":[{\"nodes\":[0]}]"), NULL, "nodes[0] is a root and below a node");
-    refused(finish("\"nodes\":[{\"children\":[1,1]},{}]"), NULL, "nodes[1] is a child of two nodes");
+    refused(finish("\"nodes\":[{\"children\":[1]},{\"children\":[0]}],\"scenes\":[{\"nodes\":[0]}]"), NULL, "nodes[0] is twice in the scene");
+    refused(finish("\"nodes\":[{\"children\":[1,1]},{}]"), NULL, "nodes[1] is twice in the scene");
     refused(finish("\"nodes\":[{\"mesh\":3}]"), NULL, "nodes[0]: \"mesh\": index 3 of 0 elements");
     refused(finish("\"nodes\":[{}],\"skins\":[{\"joints\":[-1]}]"), NULL, "joints[0] is not a node");
     size_t bytes;
@@ -571,6 +685,11 @@ int main(void) {
         cmocka_unit_test(lights_in_candela),
         cmocka_unit_test(skins_rest_as_their_joints_have_them),
         cmocka_unit_test(cubic_keys_are_cut_into_lines),
+        cmocka_unit_test(repeated_key_times_are_steps),
+        cmocka_unit_test(nodes_outside_of_the_scene_are_ignored),
+        cmocka_unit_test(data_uris_of_all_forms),
+        cmocka_unit_test(files_named_on_other_machines),
+        cmocka_unit_test(older_versions_are_refused),
         cmocka_unit_test(names_with_percent_signs),
         cmocka_unit_test(what_a_file_requires),
         cmocka_unit_test(hostile_files_are_refused),

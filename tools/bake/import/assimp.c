@@ -4,13 +4,14 @@
 #include "bake/base/file.h"
 #include "bake/import/acc.h"
 #include "bake/import/gltf.h"
+#include "bake/import/stl.h"
 
 #include <assimp/cimport.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <string.h>
 
-#define ACC_MAX ((size_t)512 << 20)
+#define DIALECT_MAX ((size_t)512 << 20)
 
 static void report(masu_import *m) {
     masu_bake_buffer *w = m->warnings;
@@ -125,13 +126,6 @@ static void note_remark(const char *text, char *user) {
     masu_bake_release(&line);
 }
 
-/* False after an error, or where the file is of an older glTF. */
-static bool read_gltf(masu_gltf *g) {
-    if (masu_gltf_read(g)) return true;
-    if (!g->old && !masu_gltf_failed(g)) masu_bake_append_text(g->error, "not a glTF file");
-    return false;
-}
-
 static const struct aiScene *read_assimp(const char *path, masu_bake_buffer *warnings, masu_bake_buffer *error) {
     struct aiPropertyStore *properties = aiCreatePropertyStore();
     if (properties) {
@@ -144,10 +138,18 @@ static const struct aiScene *read_assimp(const char *path, masu_bake_buffer *war
     aiAttachLogStream(&log);
     const struct aiScene *scene;
     masu_bake_buffer whole = {0}, text = {0};
-    if (masu_bake_is_acc(path) && masu_bake_read_file(path, ACC_MAX, &whole)) {
-        masu_bake_strip_acc((const char *)whole.data, whole.bytes, &text);
+    const char *dialect = NULL; /* of a format that the library knows, as text that it reads */
+    if ((masu_bake_is_acc(path) || masu_bake_is_stl(path)) && masu_bake_read_file(path, DIALECT_MAX, &whole)) {
+        if (masu_bake_is_acc(path)) {
+            masu_bake_strip_acc((const char *)whole.data, whole.bytes, &text);
+            dialect = "ac";
+        } else if (masu_bake_lower_stl((const char *)whole.data, whole.bytes, &text)) {
+            dialect = "stl";
+        }
+    }
+    if (dialect) {
         scene = aiImportFileFromMemoryWithProperties((const char *)text.data, (unsigned)text.bytes,
-                                                     flags, "ac", properties);
+                                                     flags, dialect, properties);
     } else {
         static masu_import_files files; /* the library keeps it */
         files.model = path;
@@ -167,9 +169,9 @@ void masu_bake_read_model(const char *path, const masu_bake_wanted *wanted, masu
                           masu_bake_buffer *warnings, masu_bake_buffer *error) {
     masu_gltf g = {.path = path, .variant = wanted->variant, .wanted = wanted->textures, .piece = piece,
                    .warnings = warnings, .error = error};
-    bool ours = masu_gltf_is_named(path) && read_gltf(&g);
-    const struct aiScene *scene = ours ? &g.scene : NULL;
-    if (!ours && error->bytes) return;
+    bool ours = masu_gltf_is_file(path);
+    const struct aiScene *scene = &g.scene;
+    if (ours && !masu_gltf_read(&g)) return;
     if (!ours && wanted->variant) masu_bake_append_text(warnings, "variants need a glTF 2 file\n");
     if (!ours && !(scene = read_assimp(path, warnings, error))) return;
     masu_import m = {.source = scene,

@@ -92,6 +92,7 @@ typedef struct masu_import {
     /* Of a model that has skins, or that moves and has clips: */
     bool live;
     uint32_t crowded, unbound; /* vertices of more than four joints, of none */
+    uint32_t unordered;        /* keys before the previous one */
     uint32_t lost_joints;      /* that are no nodes */
     masu_bake_buffer nodes; /* masu_import_node */
     masu_bake_content bent; /* meshes with bones, as they are bound: their mesh_parts are of it */

@@ -10,7 +10,6 @@
  * What has no counterpart is brought near: glass of KHR_materials_transmission is thin, and what shines through has
  * its base colour; unlit surfaces emit their colour; specular and glossiness become metallic and
  * roughness, as the appendix of that extension has it. */
-#include "bake/base/inside.h"
 #include "bake/import/gltf.h"
 
 #include <stdio.h>
@@ -37,13 +36,14 @@ static uint32_t add_image(masu_gltf *g, json_int_t index) {
     const char *uri = masu_gltf_string(g, image, "uri");
     if (!masu_gltf_index(g, image, "bufferView", g->view_count, &view)) return MASU_BLOB_NONE;
     const char *called = masu_gltf_name_of(g, "images", (size_t)index, image);
-    if (uri && strncmp(uri, "data:", 5) != 0) {
-        const char *path = masu_gltf_path(g, uri);
+    if (uri && !masu_gltf_is_data(uri)) {
+        bool outside = false;
+        const char *path = masu_gltf_path(g, uri, &outside);
         if (!path) {
             masu_gltf_note_one(g, "images that are not files in the model's folder: ignored", uri);
             return MASU_BLOB_NONE;
         }
-        about.outside = !masu_bake_inside(g->path, path);
+        about.outside = outside;
         return masu_bake_add_image(g->piece, path, &about, NULL);
     }
     if (uri ? !masu_gltf_fetch(g, uri, &bytes) : view >= 0 && !masu_gltf_view(g, view, &bytes, &stride))

@@ -2,6 +2,7 @@
  * text of what is wrong. */
 #define _POSIX_C_SOURCE 200809L
 #include "bake/texture/image.h"
+#include "bake/base/file.h"
 #include "bake/base/process.h"
 #include "cli/cli.h"
 
@@ -78,11 +79,13 @@ static FILE *find(const job *j, off_t *bytes) {
     FILE *file = j->image->outside ? NULL : open_regular(j->name, bytes);
     int cause = j->image->outside ? EACCES : errno;
     const char *slash = strrchr(j->name, '/'), *base = slash ? slash + 1 : j->name;
-    char path[4096];
     for (const char *at = j->directories; !file && at && *at;) {
         size_t length = strcspn(at, ":");
-        int wrote = snprintf(path, sizeof path, "%.*s/%s", (int)length, at, base);
-        if (wrote > 0 && (size_t)wrote < sizeof path) file = open_regular(path, bytes);
+        masu_bake_buffer path = {0};
+        masu_bake_append(&path, at, length);
+        masu_bake_append(&path, "/", 1);
+        if (masu_bake_append_spelling(&path, base)) file = open_regular((const char *)path.data, bytes);
+        masu_bake_release(&path);
         at += length + (at[length] == ':');
     }
     if (!file) errno = cause;
