@@ -217,6 +217,12 @@ bakes "$folder/torcs/tracks/road/short/short.acc"
 warns 0
 [ "$(counts textures)" = 1 ] || fail "a texture that tracks share is not found"
 
+# Larger pictures are reduced, which is said once.
+convert -size 5000x3 xc:red "$folder/wide.png"
+quad '"base_color_map": "wide.png", "roughness_map": "wide.png"'
+bakes "$scene"
+warns 1 'wide.png: 5000 x 3 texels, reduced to 4096 x 2'
+
 # A picture that is not read is named, with what would be.
 printf '\253KTX 20\273\r\n\032\n0123456789' > "$folder/basis.ktx2"
 quad '"base_color_map": "basis.ktx2"'

@@ -14,6 +14,7 @@
 
 #include "bake/import/gltf.h"
 #include "bake/import/import.h"
+#include "bake/texture/texture.h"
 #include "cli/cli.h"
 #include "support/files.h"
 #include "support/gltf_file.h"
@@ -392,7 +393,7 @@ static void factors_of_materials(void **state) {
     m = only("\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.25,0.5,0.125,1]},\"extensions\":{\"KHR_materials_unlit\":{}}");
     assert_near((double)m->emissive[1], 0.5, 0);
     assert_near((double)m->specular, 0, 0);
-    m = only("\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.25,0.5,0.125,1],\"metallicFactor\":0},\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":0.9}}");
+    m = only("\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.25,0.5,0.125,1],\"metallicFactor\":0,\"roughnessFactor\":0},\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":0.9}}");
     assert_near((double)m->opacity, 1 - 0.9, 1e-6); /* the colour is that of what shines through */
     assert_int_equal(MASU_BAKE_MAPS_OF(&piece)->alpha, MASU_BAKE_ALPHA_BLEND);
     assert_int_equal(MASU_BAKE_MAPS_OF(&piece)->tinted, 1);
@@ -421,6 +422,125 @@ static void what_is_not_read_is_told(void **state) {
     import_warned(finish("\"meshes\":[{\"name\":\"quad\",\"primitives\":[{\"attributes\":{\"POSITION\":%d},\"indices\":%d},{\"attributes\":{\"POSITION\":%d},\"mode\":1}]}],\"nodes\":[{\"mesh\":0}]",
                          quad_positions, quad_indices, quad_positions),
                   "1 primitives are lines: skipped (first: quad)");
+}
+
+/* The material after its textures have been made, with the warnings of both. */
+static const masu_blob_material *finished(const char *path) {
+    import_as(path, (masu_bake_wanted){0});
+    masu_cli_hear_warnings(hear, NULL);
+    assert_true(masu_bake_make_textures(&piece, NULL));
+    masu_cli_hear_warnings(NULL, NULL);
+    return material(0);
+}
+
+/* A map that is left out: an emission that it was meant for is dark; what is unlit has its factor. */
+static void without_its_map_a_material_has_its_factor(void **state) {
+    (void)state;
+#define EMISSION(texture) "{\"emissiveFactor\":[1,0.5,0.25],\"emissiveTexture\":{" texture "}"
+#define BASE(texture) "{\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,0.25,0.125,1],\"baseColorTexture\":{" texture "}}"
+#define UNLIT ",\"extensions\":{\"KHR_materials_unlit\":{}}}"
+    static const struct {
+        const char *about;
+        double emits;
+        const char *warning;
+    } cases[] = {
+        {EMISSION("\"index\":1,\"texCoord\":0") ",\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":1,\"texCoord\":1}}}", 0, "use other coordinates"},
+        {EMISSION("\"index\":2") "}", 0, "have no supported image"},
+        {EMISSION("\"index\":3") "}", 0, "gone.png"},
+        {EMISSION("\"index\":4") "}", 0, "are not files"},
+        {EMISSION("\"index\":1,\"texCoord\":1") "}", 1, ""},
+        {BASE("\"index\":2") UNLIT, 0.5, "have no supported image"},
+        {BASE("\"index\":3") UNLIT, 0.5, "gone.png"},
+        {BASE("\"index\":4") UNLIT, 0.5, "are not files"},
+        {BASE("\"index\":1,\"texCoord\":1") UNLIT, 0.5, ""},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char attributes[128], rest[2048];
+        begin_mapped(attributes, sizeof attributes);
+        snprintf(rest, sizeof rest,
+                 ",\"images\":[{\"bufferView\":%d,\"mimeType\":\"image/webp\"},{\"uri\":\"gone.png\"},{\"uri\":\"http://there/is/none.png\"}],"
+                 "\"textures\":[{\"source\":0},{\"source\":0},{},{\"source\":1},{\"source\":2}],\"materials\":[%s]",
+                 view(webp, sizeof webp, 0), cases[i].about);
+        const masu_blob_material *m = finished(finish_quad(attributes, ",\"material\":0", rest));
+        if (!strstr(heard, cases[i].warning)) fail_msg("case %zu: %s", i, heard);
+        if (!*cases[i].warning) assert_string_equal(heard, "");
+        assert_near((double)m->emissive[0], cases[i].emits, 0);
+        assert_near((double)m->emissive[1], cases[i].emits / 2, 0);
+    }
+}
+
+/* 1 + strength (visibility - 1), in the texels. */
+static void occlusion_has_a_strength(void **state) {
+    (void)state;
+    static const struct {
+        const char *strength;
+        int value;
+    } cases[] = {{"", 51}, {",\"strength\":1", 51}, {",\"strength\":0.25", 204}, {",\"strength\":0", 255}};
+    unsigned char image[64] = "P5 4 4 255\n";
+    memset(image + 11, 51, 16);
+    write_bytes("dark.pgm", image, 27);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char attributes[128], rest[512];
+        begin_mapped(attributes, sizeof attributes);
+        snprintf(rest, sizeof rest,
+                 ",\"images\":[{\"uri\":\"dark.pgm\"}],\"textures\":[{\"source\":0}],\"materials\":[{\"occlusionTexture\":{\"index\":0,\"texCoord\":1%s}}]",
+                 cases[i].strength);
+        finished(finish_quad(attributes, ",\"material\":0", rest));
+        assert_string_equal(heard, "");
+        assert_int_equal(masu_bake_count(&piece, MASU_BLOB_TEXTURES), 1);
+        assert_int_equal(piece.section[MASU_BLOB_TEXELS].data[0], cases[i].value); /* an end of a block of BC4 */
+    }
+}
+
+/* What is beyond what a blob holds, or drawn as something simpler, is told. */
+static void clamped_and_simplified_values_are_told(void **state) {
+    (void)state;
+#define EXTENSION(name, members) "{\"extensions\":{\"KHR_materials_" name "\":{" members "}}}"
+#define DIELECTRIC(name, members) "{\"pbrMetallicRoughness\":{\"metallicFactor\":0},\"extensions\":{\"KHR_materials_" name "\":{" members "}}}"
+    static const char *const cases[][2] = {
+        {DIELECTRIC("ior", "\"ior\":0"), "1 materials reflect more than 0.08 at normal incidence"},
+        {DIELECTRIC("ior", "\"ior\":2.4"), "1 materials reflect more than 0.08 at normal incidence"},
+        {DIELECTRIC("specular", "\"specularColorFactor\":[9,9,9]"), "1 materials reflect more than 0.08 at normal incidence"},
+        {DIELECTRIC("transmission", "\"transmissionFactor\":1"), "1 materials transmit light and are rough"},
+        {"{\"alphaMode\":\"MASK\",\"pbrMetallicRoughness\":{\"metallicFactor\":0},\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1}}}",
+         "1 materials transmit light and are alpha-tested"},
+        {EXTENSION("clearcoat", "\"clearcoatFactor\":3"), "1 materials have a \"clearcoatFactor\" beyond 0 to 1: clamped"},
+        {"{\"pbrMetallicRoughness\":{\"baseColorFactor\":[2,1,1,1]}}", "1 materials have a \"baseColorFactor\" beyond 0 to 1: clamped"},
+        {"{\"pbrMetallicRoughness\":{\"roughnessFactor\":-1}}", "1 materials have a \"roughnessFactor\" beyond 0 to 1: clamped"},
+        {"{\"alphaMode\":\"MASK\",\"alphaCutoff\":1.5}", "1 materials have a \"alphaCutoff\" beyond 0 to 1: clamped"},
+        {"{\"emissiveFactor\":[1,1,1],\"extensions\":{\"KHR_materials_emissive_strength\":{\"emissiveStrength\":1e6}}}",
+         "1 materials have a \"emissiveFactor\" beyond 0 to 65504: clamped"},
+        {EXTENSION("pbrSpecularGlossiness", "\"diffuseFactor\":[0.5,0.1,0.1,1],\"specularFactor\":[0.1,0.1,0.5]"),
+         "1 materials have a specular colour that metallic and roughness can only approximate"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char rest[1024];
+        begin_quad();
+        snprintf(rest, sizeof rest, ",\"materials\":[%s]", cases[i][0]);
+        import_warned(finish_quad("", ",\"material\":0", rest), cases[i][1]);
+    }
+    begin_quad();
+    finished(finish_quad("", ",\"material\":0",
+                         ",\"materials\":[{\"name\":\"lamp\",\"emissiveFactor\":[1,1,1],\"extensions\":{\"KHR_materials_emissive_strength\":{\"emissiveStrength\":40}}}]"));
+    assert_non_null(strstr(heard, "material \"lamp\": emission of up to 40: opaque surfaces emit at most 16"));
+}
+
+/* PLY and OBJ have colours at vertices too; theirs are of a screen (sRGB). */
+static void colours_of_vertices_in_other_formats(void **state) {
+    (void)state;
+#define PLY(rows) "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n" \
+                  "property uchar green\nproperty uchar blue\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n" rows "3 0 1 2\n"
+    const double half = pow((188 / 255.0 + 0.055) / 1.055, 2.4);
+    import_quietly(write_text("one.ply", PLY("0 0 0 255 188 0\n1 0 0 255 188 0\n0 1 0 255 188 0\n")));
+    assert_near((double)material(0)->base_color[0], 1, 1e-5);
+    assert_near((double)material(0)->base_color[1], half, 1e-4);
+    assert_near((double)material(0)->base_color[2], 0, 1e-5);
+    import_warned(write_text("many.ply", PLY("0 0 0 255 0 0\n1 0 0 0 255 0\n0 1 0 0 0 255\n")), "1 triangles have colours at their vertices");
+    assert_near((double)material(0)->base_color[1], 1 / 3.0, 1e-4);
+    import_quietly(write_text("two.obj", "v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\nv 5 0 0 0 0 1\nv 6 0 0 0 0 1\nv 5 1 0 0 0 1\nf 1 2 3\nf 4 5 6\n"));
+    assert_int_equal(masu_bake_count(&piece, MASU_BLOB_PRIMITIVES), 2);
+    assert_near((double)material(0)->base_color[0] + (double)material(1)->base_color[0], 1, 1e-5);
+    assert_near((double)material(0)->base_color[2] + (double)material(1)->base_color[2], 1, 1e-5);
 }
 
 static void variants_by_name(void **state) {
@@ -681,6 +801,10 @@ int main(void) {
         cmocka_unit_test(colours_of_vertices_become_materials),
         cmocka_unit_test(factors_of_materials),
         cmocka_unit_test(what_is_not_read_is_told),
+        cmocka_unit_test(without_its_map_a_material_has_its_factor),
+        cmocka_unit_test(occlusion_has_a_strength),
+        cmocka_unit_test(clamped_and_simplified_values_are_told),
+        cmocka_unit_test(colours_of_vertices_in_other_formats),
         cmocka_unit_test(variants_by_name),
         cmocka_unit_test(lights_in_candela),
         cmocka_unit_test(skins_rest_as_their_joints_have_them),

@@ -5,6 +5,7 @@
 #include "bake/import/acc.h"
 #include "bake/import/gltf.h"
 #include "bake/import/stl.h"
+#include "bake/import/vertex_color.h"
 
 #include <assimp/cimport.h>
 #include <assimp/config.h>
@@ -26,6 +27,12 @@ static void report(masu_import *m) {
                            (const char *)m->textures.data,
                            m->texture_count > MASU_IMPORT_NAMES_MAX ? ", ..." : "");
     }
+    if (m->mixed) masu_import_format(w, "%llu " MASU_IMPORT_COLORS_MIXED "\n", (unsigned long long)m->mixed);
+    if (m->clamped) masu_import_format(w, "%llu " MASU_IMPORT_COLORS_CLAMPED "\n", (unsigned long long)m->clamped);
+    if (m->translucent) {
+        masu_import_format(w, "%u meshes have vertex colours with alpha: the alpha is ignored\n",
+                           m->translucent);
+    }
     if (m->invisible) {
         masu_import_format(w, "%u materials have an opacity of 0: treated as opaque\n",
                            m->invisible);
@@ -44,6 +51,9 @@ static void report(masu_import *m) {
     if (m->other_lights) {
         masu_import_format(w, "%u lights are neither point nor spot lights: ignored\n",
                            m->other_lights);
+    }
+    if (!m->given && m->source->mNumLights) {
+        masu_import_format(w, "%u lights: ignored, since their units are not known\n", m->source->mNumLights);
     }
     if (!m->moving && (m->skins || m->source->mNumAnimations)) {
         masu_bake_append_text(w,
@@ -64,7 +74,7 @@ static void convert(masu_import *m, masu_bake_buffer *error) {
     m->mesh_done = allocate_zeroed(meshes, sizeof *m->mesh_done);
     m->mesh_used = allocate_zeroed(meshes, sizeof *m->mesh_used);
     m->sets = allocate_zeroed(meshes, sizeof *m->sets);
-    m->material = allocate_zeroed(s->mNumMaterials, sizeof *m->material);
+    m->material = allocate_zeroed((size_t)s->mNumMaterials + 1, sizeof *m->material);
     bool finished = true;
     if (s->mRootNode)
         finished = masu_import_walk(m, true);

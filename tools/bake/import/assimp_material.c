@@ -12,7 +12,7 @@
 #include <string.h>
 #include <strings.h>
 
-static double decode_srgb(double c) {
+double masu_import_decode_srgb(double c) {
     return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4);
 }
 
@@ -245,7 +245,7 @@ static void convert_color(const struct aiMaterial *from, masu_blob_material *to,
     bool found = linear || get_color(from, KEY(AI_MATKEY_COLOR_DIFFUSE), c);
     for (int i = 0; found && i < 3; i++) {
         double value = (double)masu_import_clamped(c[i], 0, 1);
-        to->base_color[i] = masu_import_clamped(linear ? value : decode_srgb(value), 0, 1);
+        to->base_color[i] = masu_import_clamped(linear ? value : masu_import_decode_srgb(value), 0, 1);
     }
     if (found) *alpha = c[3];
     double intensity = 1;
@@ -258,12 +258,12 @@ static void convert_color(const struct aiMaterial *from, masu_blob_material *to,
             fmax(c[0], fmax(c[1], c[2])) <= fmax(diffuse[0], fmax(diffuse[1], diffuse[2]))) {
             for (int i = 0; i < 3; i++) {
                 to->base_color[i] = masu_import_clamped(
-                    decode_srgb((double)masu_import_clamped(c[i] + diffuse[i], 0, 1)), 0, 1);
+                    masu_import_decode_srgb((double)masu_import_clamped(c[i] + diffuse[i], 0, 1)), 0, 1);
             }
             return;
         }
         for (int i = 0; i < 3; i++) {
-            double value = linear ? c[i] : decode_srgb((double)masu_import_clamped(c[i], 0, 1));
+            double value = linear ? c[i] : masu_import_decode_srgb((double)masu_import_clamped(c[i], 0, 1));
             to->emissive[i] = masu_import_clamped(value * intensity, 0, 65504);
         }
     }
@@ -291,21 +291,19 @@ static void convert_shine(const struct aiMaterial *from, masu_blob_material *to)
     }
 }
 
-uint32_t masu_import_material(masu_import *m, unsigned index) {
-    masu_blob_material to = masu_bake_default_material();
+const masu_import_given *masu_import_read_material(masu_import *m, unsigned index) {
     const struct aiScene *s = m->source;
-    if (m->given) {
-        const masu_import_given *given = &m->given[index];
-        return masu_bake_mapped_material(m->piece, &given->material, &given->maps, given->name);
-    }
-    if (index >= s->mNumMaterials || !s->mMaterials || !s->mMaterials[index]) {
-        return masu_bake_material(m->piece, &to, "");
-    }
-    if (m->material[index]) return m->material[index] - 1;
+    if (m->given) return &m->given[index];
+    if (index >= s->mNumMaterials || !s->mMaterials || !s->mMaterials[index]) index = s->mNumMaterials;
+    if (m->material[index]) return m->material[index];
+    masu_import_given *made = m->material[index] = masu_bake_allocate(sizeof *made);
+    *made = (masu_import_given){masu_bake_default_material(), masu_bake_no_maps(), ""};
+    if (index == s->mNumMaterials) return made;
+    masu_blob_material *to = &made->material;
     const struct aiMaterial *from = s->mMaterials[index];
     double alpha = 1, opacity = 1;
-    convert_color(from, &to, &alpha);
-    convert_shine(from, &to);
+    convert_color(from, to, &alpha);
+    convert_shine(from, to);
     get_factor(from, KEY(AI_MATKEY_OPACITY), &opacity);
     /* Many files of Collada and 3DS say 0 where they mean that nothing shines through. */
     if (opacity <= 0 || alpha <= 0) {
@@ -313,20 +311,29 @@ uint32_t masu_import_material(masu_import *m, unsigned index) {
         opacity = opacity <= 0 ? 1 : opacity;
         alpha = alpha <= 0 ? 1 : alpha;
     }
-    masu_bake_maps maps = convert_maps(m, from);
+    made->maps = convert_maps(m, from);
     /* One number under two names in some formats, so not their product. */
     alpha = alpha < opacity ? alpha : opacity;
-    if (maps.alpha != MASU_BAKE_ALPHA_OPAQUE && maps.alpha != MASU_BAKE_ALPHA_MASK &&
-        alpha < 0.999) {
-        maps.alpha = MASU_BAKE_ALPHA_BLEND;
-        to.opacity = masu_import_clamped(alpha, 0, 1);
+    if (made->maps.alpha != MASU_BAKE_ALPHA_OPAQUE && made->maps.alpha != MASU_BAKE_ALPHA_MASK && alpha < 0.999) {
+        made->maps.alpha = MASU_BAKE_ALPHA_BLEND;
+        to->opacity = masu_import_clamped(alpha, 0, 1);
     }
     note_textures(m, from);
     struct aiString name = {0};
     aiGetMaterialString(from, AI_MATKEY_NAME, &name);
-    name.data[masu_import_length(&name) < (int)sizeof name.data ? masu_import_length(&name)
-                                                                : (int)sizeof name.data - 1] = '\0';
-    uint32_t result = masu_bake_mapped_material(m->piece, &to, &maps, name.data);
-    m->material[index] = result + 1;
-    return result;
+    size_t length = (size_t)masu_import_length(&name);
+    char *text = masu_bake_allocate(length + 1);
+    memcpy(text, name.data, length);
+    text[length] = '\0';
+    made->name = text;
+    return made;
+}
+
+uint32_t masu_import_material(masu_import *m, unsigned index, const double *color) {
+    const masu_import_given *from = masu_import_read_material(m, index);
+    masu_blob_material to = from->material;
+    bool none = color && strcmp(from->name, AI_DEFAULT_MATERIAL_NAME) == 0; /* the file has none: colours are all there is */
+    for (int k = 0; k < 3 && color; k++)
+        to.base_color[k] = masu_import_clamped((none ? 1 : (double)to.base_color[k]) * color[k], 0, 1);
+    return masu_bake_mapped_material(m->piece, &to, &from->maps, from->name);
 }

@@ -142,6 +142,10 @@ static bool add_light(masu_gltf *g, const json_t *node, const struct aiNode *at)
         !masu_gltf_number(g, light, "range", &range) || !masu_gltf_number(g, spot, "innerConeAngle", &inner) ||
         !masu_gltf_number(g, spot, "outerConeAngle", &outer))
         return false;
+    if (!(range >= 0 && range <= 1e9) || (spot && !(outer > 0 && outer <= MASU_BAKE_PI / 2 + 1e-6 && inner >= 0 && inner <= outer)) ||
+        !(intensity >= 0 && fmin(color[0], fmin(color[1], color[2])) >= 0 &&
+          intensity * fmax(color[0], fmax(color[1], color[2])) <= MASU_BAKE_PI * 1e9))
+        masu_gltf_note_one(g, "lights have a colour, range or angle out of range: clamped", at->mName.data);
     struct aiLight *made = masu_gltf_take(g, 1, sizeof *made);
     made->mName = at->mName;
     made->mType = type && !strcmp(type, "point")  ? aiLightSource_POINT
@@ -190,6 +194,7 @@ static bool add_instances(masu_gltf *g, const json_t *about, struct aiNode *node
     const json_t *attributes = masu_gltf_object(g, about, "attributes");
     const float *values[3] = {NULL, NULL, NULL};
     uint32_t count = 0;
+    size_t known = 0;
     for (int a = 0; a < 3; a++) {
         json_int_t index = -1;
         uint32_t own = 0;
@@ -199,6 +204,9 @@ static bool add_instances(masu_gltf *g, const json_t *about, struct aiNode *node
         if (count && own != count) return masu_gltf_fail(g, "EXT_mesh_gpu_instancing: %s has %u, others %u", names[a], own, count);
         count = own;
     }
+    for (int a = 0; a < 3; a++) known += json_object_get(attributes, names[a]) != NULL;
+    if (json_object_size(attributes) > known)
+        masu_gltf_note_one(g, "nodes have attributes of instances other than their transforms: ignored", node->mName.data);
     if (!count) return !attributes || masu_gltf_fail(g, "EXT_mesh_gpu_instancing has no attributes");
     static const char what[] = "instances";
     if (count > INSTANCES_MAX) return masu_gltf_fail(g, "more than 4 million %s", what);

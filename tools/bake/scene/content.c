@@ -156,6 +156,7 @@ masu_bake_maps masu_bake_no_maps(void) {
     for (int i = 0; i < MASU_BAKE_MAPS; i++) maps.image[i] = MASU_BLOB_NONE;
     maps.cutoff = 0.5f;
     maps.normal_scale = 1;
+    maps.occlusion = 1;
     return maps;
 }
 

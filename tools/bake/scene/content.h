@@ -93,8 +93,11 @@ typedef struct masu_bake_maps {
     uint8_t relief;                  /* MASU_BAKE_RELIEF_* */
     uint8_t relief_of;               /* MASU_BAKE_RELIEF_OF_* */
     uint8_t tinted;                  /* with ALPHA_BLEND: what shines through has the base colour */
-    uint8_t reserved[2];             /* no padding: it is compared as bytes */
+    uint8_t unlit;                   /* emission is the base colour: without its picture, the factor */
+    uint8_t dark;                    /* emission was meant for a map that the importer left out */
     float cutoff, normal_scale;      /* normal_scale: of heights their strength */
+    float occlusion;                 /* strength of the occlusion map, 0..1 */
+    /* no padding: it is compared as bytes */
 } masu_bake_maps;
 
 uint32_t masu_bake_stride(uint32_t kind); /* sizeof the section's element; 1 for NAMES */

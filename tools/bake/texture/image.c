@@ -17,6 +17,7 @@
 
 typedef struct head {
     uint32_t width, height; /* 0: text follows */
+    uint32_t whole[2];      /* as in masu_bake_picture */
 } head;
 
 const char *masu_bake_image_format(const unsigned char *data, size_t bytes, const char *name) {
@@ -55,7 +56,7 @@ typedef struct job {
 } job;
 
 static void give_up(int fd, const char *why) {
-    head h = {0, 0};
+    head h = {0};
     masu_bake_send(fd, &h, sizeof h);
     masu_bake_send(fd, why, strlen(why));
 }
@@ -178,7 +179,11 @@ static void send_texels(MagickWand *wand, int sizes, bool solid, int fd) {
         return;
     }
     for (size_t i = 0; i < w * h && (solid || !MagickGetImageAlphaChannel(wand)); i++) texels[4 * i + 3] = 255;
-    head answer = {(uint32_t)w, (uint32_t)h};
+    head answer = {(uint32_t)w, (uint32_t)h, {0, 0}};
+    if (width > MASU_TEXTURE_SIZE_MAX || height > MASU_TEXTURE_SIZE_MAX) {
+        answer.whole[0] = (uint32_t)width;
+        answer.whole[1] = (uint32_t)height;
+    }
     masu_bake_send(fd, &answer, sizeof answer);
     masu_bake_send(fd, texels, w * h * 4);
 }
@@ -241,10 +246,10 @@ bool masu_bake_read_image(const masu_bake_content *content, uint32_t image, cons
     const masu_bake_image *about = &MASU_BAKE_IMAGES(content)[image];
     const char *name = (const char *)content->image_text.data + about->name;
     job j = {content, about, name, directories, sizes};
-    *picture = (masu_bake_picture){0, 0, {0}};
+    *picture = (masu_bake_picture){0};
     masu_bake_buffer *out = &picture->rgba;
     masu_bake_result result = masu_bake_fork(read_in_child, &j, MASU_BAKE_IMAGE_SECONDS, out);
-    head h = {0, 0};
+    head h = {0};
     bool good = false;
     if (result.end == MASU_BAKE_TIMEOUT) {
         warn(name, "decoding took too long");
@@ -269,5 +274,7 @@ bool masu_bake_read_image(const masu_bake_content *content, uint32_t image, cons
     out->bytes -= sizeof h;
     picture->width = h.width;
     picture->height = h.height;
+    picture->whole_width = h.whole[0];
+    picture->whole_height = h.whole[1];
     return true;
 }

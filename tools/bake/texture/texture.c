@@ -19,6 +19,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define EMISSION_MAX 16.0f /* shaders/shared/pack.glsl: masu_emissive_range */
+
 /* What to make; compared as bytes. */
 typedef struct request {
     uint32_t slot;
@@ -27,7 +29,7 @@ typedef struct request {
     uint8_t gloss, alpha;
     uint8_t relief, clamped[2]; /* of a picture of normals or heights; what it does at its edge counts for heights */
     uint8_t reserved;
-    float cutoff, normal_scale, roughness;
+    float cutoff, normal_scale, roughness, occlusion;
 } request;
 
 typedef struct texture {
@@ -48,16 +50,27 @@ typedef struct maker {
     const char *directories;
     int sizes;
     bool *failed; /* by image: warned of once */
+    bool *reduced;
     texture *textures;
     uint32_t count, capacity;
     uint32_t *order;
 } maker;
 
+static const char *name_of(const maker *m, uint32_t image) {
+    const masu_bake_content *c = m->content;
+    return (const char *)c->image_text.data + MASU_BAKE_IMAGES(c)[image].name;
+}
+
 static bool read_picture(maker *m, uint32_t image, masu_bake_picture *picture) {
-    *picture = (masu_bake_picture){0, 0, {0}};
+    *picture = (masu_bake_picture){0};
     if (image == MASU_BLOB_NONE || m->failed[image]) return false;
     bool good = masu_bake_read_image(m->content, image, m->directories, m->sizes, picture);
     m->failed[image] = !good;
+    if (good && !m->sizes && !m->reduced[image] && picture->whole_width) {
+        m->reduced[image] = true;
+        masu_cli_warn("texture %s: %u x %u texels, reduced to %u x %u", name_of(m, image), picture->whole_width,
+                      picture->whole_height, picture->width, picture->height);
+    }
     return good;
 }
 
@@ -191,11 +204,6 @@ static void finish(texture *t, float *level, float *normals) {
 }
 
 /* ---- the three kinds ---- */
-
-static const char *name_of(const maker *m, uint32_t image) {
-    const masu_bake_content *c = m->content;
-    return (const char *)c->image_text.data + MASU_BAKE_IMAGES(c)[image].name;
-}
 
 /* What alpha is meant for, where the model does not say: nothing where no texel is under the cut-off,
  * else a mask, if the picture looks like one. Never blending: it costs a draw for each thing, and an order that meshes
@@ -333,6 +341,7 @@ static void make_surface(maker *m, texture *t) {
                                 : 1;
                 }
                 if (has[0] && t->wanted.gloss) to[0] = 1 - to[0];
+                if (t->wanted.slot == MASU_SLOT_OCCLUSION) to[0] = 1 - t->wanted.occlusion * (1 - to[0]);
                 to[2] = to[3] = 1;
             }
         }
@@ -424,6 +433,7 @@ static void request_all(maker *m, const masu_bake_maps *maps, const masu_blob_ma
         case MASU_SLOT_OCCLUSION:
             r.image[0] = maps->image[MASU_BAKE_OCCLUSION];
             r.channel[0] = maps->channel[MASU_BAKE_OCCLUSION];
+            r.occlusion = maps->occlusion;
             break;
         case MASU_SLOT_COAT:
             if (!(material->coat > 0)) break;
@@ -559,11 +569,16 @@ static void point(maker *m, masu_blob_material *material, const masu_bake_maps *
         }
         if (t->absolute) material->roughness = 1;
     }
-    /* An emissive factor is often white and meant for its map: without the map it would be a lamp. */
-    if (maps->image[MASU_BAKE_EMISSIVE] != MASU_BLOB_NONE &&
+    /* An emissive factor is often white and meant for its map: without the map it would be a lamp. Only an unlit
+     * material keeps it, since it is its colour. */
+    if ((maps->image[MASU_BAKE_EMISSIVE] != MASU_BLOB_NONE || maps->dark) && !maps->unlit &&
         slots[MASU_SLOT_EMISSIVE] == MASU_BLOB_NONE) {
         memset(material->emissive, 0, sizeof material->emissive);
     }
+    float emission = fmaxf(material->emissive[0], fmaxf(material->emissive[1], material->emissive[2]));
+    if (emission > EMISSION_MAX && !(flags & MASU_MATERIAL_IS_BLEND))
+        masu_cli_warn("material \"%s\": emission of up to %g: opaque surfaces emit at most %g",
+                      masu_bake_name_text(m->content, material->name), (double)emission, (double)EMISSION_MAX);
     if (maps->additive && flags & MASU_MATERIAL_IS_BLEND) flags |= MASU_MATERIAL_IS_ADDITIVE;
     if (maps->tinted && flags & MASU_MATERIAL_IS_BLEND) flags |= MASU_MATERIAL_IS_TINTED;
     if (maps->single) flags |= MASU_MATERIAL_IS_SINGLE;
@@ -593,6 +608,8 @@ bool masu_bake_make_textures(masu_bake_content *content, const char *directories
     uint32_t(*slots)[MASU_SLOT_COUNT] = masu_bake_allocate(materials * sizeof *slots);
     m.failed = masu_bake_allocate(images);
     memset(m.failed, 0, images);
+    m.reduced = masu_bake_allocate(images);
+    memset(m.reduced, 0, images);
     uint32_t arrays = 0, made = 0;
     for (m.sizes = 0; m.sizes < MASU_BAKE_SIZES; m.sizes++) {
         forget(&m);
@@ -623,6 +640,7 @@ bool masu_bake_make_textures(masu_bake_content *content, const char *directories
     free(m.textures);
     free(m.order);
     free(m.failed);
+    free(m.reduced);
     free(slots);
     return good;
 }
