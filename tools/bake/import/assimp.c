@@ -49,7 +49,7 @@ static void report(masu_import *m) {
             m->unmapped);
     }
     if (m->other_lights) {
-        masu_import_format(w, "%u lights are neither point nor spot lights: ignored\n",
+        masu_import_format(w, "%u lights have a transform that is not finite: ignored\n",
                            m->other_lights);
     }
     if (!m->given && m->source->mNumLights) {

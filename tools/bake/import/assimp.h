@@ -90,7 +90,7 @@ typedef struct masu_import {
     uint64_t mixed, clamped; /* triangles, of vertex colours: vertex_color.h */
     uint32_t translucent;    /* meshes whose vertex colours have an alpha */
     uint32_t invisible;    /* materials with an opacity of 0 */
-    uint32_t other_lights; /* neither points nor spots, or of no use */
+    uint32_t other_lights; /* that shine from or to nowhere */
     bool full, moving;
     /* Of a model that has skins, or that moves and has clips: */
     bool live;

@@ -4,6 +4,7 @@
  * Skins, clips and lights find nodes by name in an aiScene, so names are made unique here: the first of a name
  * keeps it, others get their number behind it; who has none is called "nodes[3]". */
 #include "bake/import/gltf.h"
+#include "bake/scene/sun.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -142,15 +143,20 @@ static bool add_light(masu_gltf *g, const json_t *node, const struct aiNode *at)
         !masu_gltf_number(g, light, "range", &range) || !masu_gltf_number(g, spot, "innerConeAngle", &inner) ||
         !masu_gltf_number(g, spot, "outerConeAngle", &outer))
         return false;
+    bool directional = type && !strcmp(type, "directional");
+    if (!directional && !(type && (!strcmp(type, "point") || !strcmp(type, "spot")))) {
+        masu_gltf_note_one(g, "lights have an unknown type: ignored", at->mName.data);
+        return true;
+    }
     if (!(range >= 0 && range <= 1e9) || (spot && !(outer > 0 && outer <= MASU_BAKE_PI / 2 + 1e-6 && inner >= 0 && inner <= outer)) ||
         !(intensity >= 0 && fmin(color[0], fmin(color[1], color[2])) >= 0 &&
-          intensity * fmax(color[0], fmax(color[1], color[2])) <= MASU_BAKE_PI * 1e9))
+          intensity * fmax(color[0], fmax(color[1], color[2])) <= MASU_BAKE_PI * (directional ? MASU_BAKE_SUN_COLOR_MAX : 1e9)))
         masu_gltf_note_one(g, "lights have a colour, range or angle out of range: clamped", at->mName.data);
     struct aiLight *made = masu_gltf_take(g, 1, sizeof *made);
     made->mName = at->mName;
-    made->mType = type && !strcmp(type, "point")  ? aiLightSource_POINT
-                  : type && !strcmp(type, "spot") ? aiLightSource_SPOT
-                                                  : aiLightSource_DIRECTIONAL;
+    made->mType = directional                 ? aiLightSource_DIRECTIONAL
+                  : strcmp(type, "spot") == 0 ? aiLightSource_SPOT
+                                              : aiLightSource_POINT;
     made->mDirection.z = -1;
     made->mColorDiffuse = (struct aiColor3D){(float)(color[0] * intensity), (float)(color[1] * intensity),
                                              (float)(color[2] * intensity)};

@@ -3,6 +3,7 @@
  * is judged by the runtime's own reader, masu_scene_bind. */
 #include "bake/scene/check.h"
 #include "bake/scene/camera.h"
+#include "bake/scene/sun.h"
 #include "scene/punctual_light.h"
 #include "scene/skin.h"
 
@@ -287,5 +288,6 @@ const char *masu_bake_check(const masu_bake_content *piece) {
     if (!problem) problem = check_clips(piece);
     if (!problem) problem = check_skins(piece);
     if (!problem) problem = masu_bake_check_cameras(piece);
+    if (!problem) problem = masu_bake_check_suns(piece);
     return problem;
 }

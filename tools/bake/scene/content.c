@@ -82,6 +82,7 @@ void masu_bake_content_release(masu_bake_content *content) {
     masu_bake_release(&content->image_text);
     masu_bake_release(&content->image_data);
     masu_bake_release(&content->cameras);
+    masu_bake_release(&content->suns);
     masu_bake_release(&content->traced);
     masu_bake_release(&content->pictures);
     masu_bake_release(&content->picture_texels);
