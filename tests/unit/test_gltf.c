@@ -492,6 +492,40 @@ static void occlusion_has_a_strength(void **state) {
     }
 }
 
+/* A texture whose coordinates stay in 0..1 along an axis does not repeat there: its far edge would bleed in. */
+static void textures_that_are_shown_once_are_clamped(void **state) {
+    (void)state;
+    static const struct {
+        float u, v;       /* the far corner */
+        const char *more; /* of the texture */
+        uint32_t wrap[2];
+    } cases[] = {{1, 1, "", {1, 1}},
+                 {4, 1, "", {0, 1}},
+                 {1, 1.5f, "", {1, 0}},
+                 {0.5f, 1.0001f, "", {1, 1}},
+                 {-0.5f, 1, "", {0, 1}},
+                 {1, 1, ",\"sampler\":0", {2, 1}},
+                 {1, 1, "detail", {0, 1}}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        const float uv[8] = {0, 0, cases[i].u, 0, cases[i].u, cases[i].v, 0, cases[i].v};
+        bool detail = !strcmp(cases[i].more, "detail");
+        char attributes[64], rest[1024];
+        begin_quad();
+        snprintf(attributes, sizeof attributes, ",\"TEXCOORD_0\":%d", floats(uv, "VEC2", 4, 2));
+        snprintf(rest, sizeof rest,
+                 ",\"images\":[{\"bufferView\":%d,\"mimeType\":\"image/webp\"}],\"samplers\":[{\"wrapS\":33648}],\"textures\":[{\"source\":0%s}],"
+                 "\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}%s}]",
+                 view(webp, sizeof webp, 0), detail ? "" : cases[i].more,
+                 detail ? ",\"normalTexture\":{\"index\":0,\"extensions\":{\"KHR_texture_transform\":{\"scale\":[8,1]}}}" : "");
+        finished(finish_quad(attributes, ",\"material\":0", rest));
+        assert_string_equal(heard, "");
+        const masu_blob_texture_set *set = MASU_BAKE_ARRAY(&piece, MASU_BLOB_TEXTURE_SETS, masu_blob_texture_set);
+        for (int k = 0; k < 2; k++) {
+            if (set->wrap[k] != cases[i].wrap[k]) fail_msg("case %zu, axis %d: wrap %u", i, k, set->wrap[k]);
+        }
+    }
+}
+
 /* What is beyond what a blob holds, or drawn as something simpler, is told. */
 static void clamped_and_simplified_values_are_told(void **state) {
     (void)state;
@@ -803,6 +837,7 @@ int main(void) {
         cmocka_unit_test(what_is_not_read_is_told),
         cmocka_unit_test(without_its_map_a_material_has_its_factor),
         cmocka_unit_test(occlusion_has_a_strength),
+        cmocka_unit_test(textures_that_are_shown_once_are_clamped),
         cmocka_unit_test(clamped_and_simplified_values_are_told),
         cmocka_unit_test(colours_of_vertices_in_other_formats),
         cmocka_unit_test(variants_by_name),

@@ -19,6 +19,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define SHOWN_ONCE_SLACK 0.001f /* exporters round coordinates */
 #define EMISSION_MAX 16.0f /* shaders/shared/pack.glsl: masu_emissive_range */
 
 /* What to make; compared as bytes. */
@@ -601,10 +602,37 @@ static void forget(maker *m) {
     m->count = 0;
 }
 
+/* Along an axis on which coordinates stay in 0..1 a texture is shown once: clamped, its edge does not take colour from
+ * the opposite one. Not where a detail repeats it more often. */
+static void clamp_what_is_shown_once(masu_bake_content *content) {
+    size_t materials = (size_t)masu_bake_count(content, MASU_BLOB_MATERIALS);
+    const float *texcoords = MASU_BAKE_ARRAY(content, MASU_BLOB_TEXCOORDS, const float);
+    if (!masu_bake_count(content, MASU_BLOB_TEXCOORDS)) return;
+    bool(*repeats)[2] = masu_bake_allocate(materials * sizeof *repeats);
+    memset(repeats, 0, materials * sizeof *repeats);
+    for (uint64_t i = 0; i < masu_bake_count(content, MASU_BLOB_PRIMITIVES); i++) {
+        const masu_blob_primitive *p = &MASU_BAKE_PRIMITIVES(content)[i];
+        for (uint32_t v = 0; v < p->vertex_count; v++) {
+            for (int k = 0; k < 2; k++) {
+                float at = texcoords[2 * ((size_t)p->first_vertex + v) + (size_t)k];
+                if (!(at >= -SHOWN_ONCE_SLACK && at <= 1 + SHOWN_ONCE_SLACK)) repeats[p->material][k] = true;
+            }
+        }
+    }
+    for (size_t i = 0; i < materials; i++) {
+        masu_bake_maps *maps = &MASU_BAKE_MAPS_OF(content)[i];
+        for (int k = 0; k < 2; k++) {
+            if (!repeats[i][k] && maps->wrap[k] == 0 && MASU_BAKE_MATERIALS(content)[i].detail[k] == 1) maps->wrap[k] = 1;
+        }
+    }
+    free(repeats);
+}
+
 bool masu_bake_make_textures(masu_bake_content *content, const char *directories) {
     size_t materials = (size_t)masu_bake_count(content, MASU_BLOB_MATERIALS);
     size_t images = content->images.bytes / sizeof(masu_bake_image);
     maker m = {.content = content, .directories = directories};
+    clamp_what_is_shown_once(content);
     uint32_t(*slots)[MASU_SLOT_COUNT] = masu_bake_allocate(materials * sizeof *slots);
     m.failed = masu_bake_allocate(images);
     memset(m.failed, 0, images);
