@@ -3,12 +3,11 @@
  * of them a pixel has to ask. No shadows: a wall in between hides nothing.
  *
  *   reaches = color * window * cone / max(d^2, radius^2)
- *   window  = (1 - (d / range)^4)^2, 0 from the range on (Karis, Real Shading in Unreal Engine 4,
- *             SIGGRAPH 2013): an inverse square that ends, so that a light is nobody's business
- *             beyond its range
- *   cone    = smoothstep between the outer and the inner angle. Of the angle a to the axis its
- *             versine 1 - cos(a) = |l + axis|^2 / 2 is compared: cosines of narrow cones have no
- *             digits left
+ *   window  = 1 - (d / range)^4, 0 from the range on: an inverse square that ends, so that a light
+ *             is culled beyond its range
+ *   cone    = t^2, t = (cos(a) - cos(outer)) / (cos(inner) - cos(outer)) clamped to 0..1. Of the
+ *             angle a to the axis its versine 1 - cos(a) = |l + axis|^2 / 2 is compared: cosines of
+ *             narrow cones have no digits left. Both are those of glTF's KHR_lights_punctual
  *   color   is radiant intensity / pi, as the sun's is irradiance / pi: a white matt surface that
  *             faces the light at distance d has the radiance color / d^2
  *
@@ -73,7 +72,7 @@ bool masu_light_reaches(masu_punctual_light_data light, vec3 rel, out vec3 l, ou
     vec3 chord = l + light.axis.xyz;
     float t = clamp((light.axis.w - 0.5 * dot(chord, chord)) * light.cone.x, 0.0, 1.0);
     float window = 1.0 - share * share;
-    float strength = window * window * (t * t * (3.0 - 2.0 * t)) / max(squared, light.color.w);
+    float strength = window * (t * t) / max(squared, light.color.w);
     color = light.color.rgb * strength;
     return strength > 0.0 && masu_finite(color);
 }

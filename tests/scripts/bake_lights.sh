@@ -12,9 +12,9 @@ fail() {
     failures=$((failures + 1))
 }
 
-# bakes MODELS LIGHTS
+# bakes MODELS LIGHTS [MEMBERS]
 bakes() {
-    printf '{"models": [%s], "lights": [%s]}' "$1" "$2" > "$folder/s.json"
+    printf '{"models": [%s], "lights": [%s]%s}' "$1" "$2" "${3:-}" > "$folder/s.json"
     "$bin/masu-bake" "$folder/s.json" -o "$folder/s.masu" --stats "$folder/s.stats" --quiet \
         2> "$folder/err" || fail "$2: is refused: $(cat "$folder/err")"
 }
@@ -22,14 +22,29 @@ bakes() {
 # word OFFSET BYTES FORMAT: one number of the blob
 word() { od -An -v -j "$1" -N "$2" -t "$3" "$folder/s.masu" | tr -s ' \n' ' '; }
 
-# The numbers of light N: 3 position, range, 3 colour, radius, 3 direction; type; inner, outer; parent
-light() {
-    local row count stride=0 at=64
+# section KIND: its first byte and the bytes of an element, in $section and $stride
+section() {
+    local row count at=64
     count=$(word 24 4 u4)
     section=0
     for ((row = 0; row < count; row++, at += 24)); do
-        [ "$(word $at 4 u4)" = " 35 " ] && section=$(word $((at + 8)) 8 u8) && stride=$(word $((at + 4)) 4 u4)
+        [ "$(word $at 4 u4)" = " $1 " ] && section=$(word $((at + 8)) 8 u8) && stride=$(word $((at + 4)) 4 u4)
     done
+}
+
+# sun_is NUMBERS: direction and colour of the environment
+sun_is() {
+    local found
+    section 8
+    found=$({ od -An -v -w4 -j $((section)) -N 12 -t f4 "$folder/s.masu"
+        od -An -v -w4 -j $((section + 16)) -N 12 -t f4 "$folder/s.masu"; } | awk '{ printf "%s%.4g", n++ ? " " : "", ($1 * $1 < 1e-12 ? 0 : $1) }')
+    [ "$found" = "$1" ] || fail "the sun is $found, not $1"
+}
+
+# The numbers of light N: 3 position, range, 3 colour, radius, 3 direction; type; inner, outer; parent
+light() {
+    local at
+    section 35
     [ "$section" != 0 ] || { echo none; return; }
     at=$((section + stride * $1))
     floats=$(od -An -v -w4 -j $at -N 44 -t f4 "$folder/s.masu" | awk '{ printf "%.4g ", $1 }')
@@ -107,14 +122,14 @@ cat > "$folder/lamps.gltf" << END
  "extensions": {"KHR_lights_punctual": {"lights": [
     {"type": "point", "color": [1, 0.5, 0], "intensity": 31.415926535, "range": 5},
     {"type": "spot", "intensity": 3.1415926535, "spot": {"innerConeAngle": 0.2, "outerConeAngle": 0.4}},
-    {"type": "directional", "intensity": 3}]}},
+    {"type": "directional", "intensity": 3, "color": [0.5, 1, 0]}]}},
  "nodes": [{"mesh": 0, "name": "body", "translation": [10, 0, 0], "children": [1]},
            {"name": "mount", "translation": [0, 0, 2], "children": [2]},
            {"name": "beam", "rotation": [0, 1, 0, 0], "translation": [1, 0, 0],
             "extensions": {"KHR_lights_punctual": {"light": 1}}},
            {"name": "bulb", "translation": [0, 3, 0],
             "extensions": {"KHR_lights_punctual": {"light": 0}}},
-           {"name": "sky", "extensions": {"KHR_lights_punctual": {"light": 2}}}],
+           {"name": "sky", "rotation": [-0.70710678, 0, 0, 0.70710678], "extensions": {"KHR_lights_punctual": {"light": 2}}}],
  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
  "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
                 "min": [0, 0, 0], "max": [1, 1, 0]}],
@@ -123,7 +138,23 @@ cat > "$folder/lamps.gltf" << END
 END
 # The beam is of the body, in its space; a half turn about y points it along +z.
 bakes '{"file": "lamps.gltf"}' ''
-grep -q '1 lights are neither point nor spot lights' "$folder/err" || fail "no word of the sun"
+[ ! -s "$folder/err" ] || fail "lamps.gltf: $(cat "$folder/err")"
+# Its directional light, turned by its node, is the sun: 3 lux, half of it red. A scene's own sun stays, and of two
+# one is enough; both are said.
+sun_is '0 1 0 0.4775 0.9549 0'
+bakes '{"file": "lamps.gltf", "rotate": [0, 0, -90], "lights": 2}' ''
+sun_is '1 0 0 0.9549 1.91 0'
+bakes '{"file": "lamps.gltf"}' '' ', "sun": {"direction": [0, 0, 1], "color": [1, 1, 1], "intensity": 2}'
+sun_is '0 0 1 2 2 2'
+grep -q 'directional light "sky": ignored, since the scene has a sun' "$folder/err" || fail "no word of the sun"
+bakes '{"file": "lamps.gltf"}' '' ', "sun": {"shadows": {}}'
+sun_is '0 1 0 0.4775 0.9549 0'
+bakes '{"file": "lamps.gltf"}, {"file": "lamps.gltf"}' ''
+sun_is '0 1 0 0.4775 0.9549 0'
+grep -q 'directional light "sky": ignored, since the scene has another one' "$folder/err" || fail "no word of the second sun"
+"$bin/masu-bake" "$folder/lamps.gltf" -o "$folder/s.masu" --strict --quiet || fail "lamps.gltf alone"
+sun_is '0 1 0 0.4775 0.9549 0'
+bakes '{"file": "lamps.gltf"}' ''
 is 1 '0 3 0 5 10 5 0 0.01 0 0 0 | 0 |0 0 | -1 '
 is 0 '1 0 2 10 1 1 1 0.01 0 0 1 | 1 |0.2 0.4 | 0 '
 # Placed: what stands alone moves, what is carried stays in its instance's space.

@@ -60,6 +60,9 @@ warns 1 'C/somewhere/else/gradient.png: No such file'
 bakes "$scene" --texture-path "/nowhere:$pictures"
 warns 0
 [ "$(counts textures)" = 1 ] || fail "the texture path is not looked at"
+quad '"base_color_map": "C/somewhere/else/GRADIENT.PNG"'
+bakes "$scene" --texture-path "/nowhere:$pictures"
+warns 0
 
 # 64 x 64, 7 mips: 8 bytes a block, 341 + 1 + 1 blocks. With alpha 16 bytes.
 quad "\"base_color_map\": \"$pictures/gradient.png\""
@@ -213,6 +216,12 @@ sed 's/shiny.png/shared.png/' "$folder/quad.acc" > "$folder/torcs/tracks/road/sh
 bakes "$folder/torcs/tracks/road/short/short.acc"
 warns 0
 [ "$(counts textures)" = 1 ] || fail "a texture that tracks share is not found"
+
+# Larger pictures are reduced, which is said once.
+convert -size 5000x3 xc:red "$folder/wide.png"
+quad '"base_color_map": "wide.png", "roughness_map": "wide.png"'
+bakes "$scene"
+warns 1 'wide.png: 5000 x 3 texels, reduced to 4096 x 2'
 
 # A picture that is not read is named, with what would be.
 printf '\253KTX 20\273\r\n\032\n0123456789' > "$folder/basis.ktx2"

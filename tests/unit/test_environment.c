@@ -16,6 +16,7 @@
 #include <cmocka.h>
 
 #include "bake/light/environment.h"
+#include "cli/cli.h"
 #include "image.h"
 #include "support/files.h"
 #include "support/random.h"
@@ -186,6 +187,33 @@ static void texels_hold_nine_bits(void **state) {
     }
 }
 
+static char heard[256];
+
+static void hear(void *user, const char *text) {
+    (void)user;
+    snprintf(heard, sizeof heard, "%s", text);
+}
+
+/* A texel holds radiances up to 65408; what is above is clamped, and said. */
+static void what_no_texel_holds_is_told(void **state) {
+    (void)state;
+    float rgb[3 * 8];
+    for (int i = 0; i < 3 * 8; i++) rgb[i] = 1;
+    rgb[4] = 70000;
+    masu_bake_panorama p = {.width = 4, .height = 2, .rgb = rgb, .factor = 1, .name = "sun.hdr"};
+    masu_bake_content content = {0};
+    masu_cli_hear_warnings(hear, NULL);
+    masu_bake_add_environment(&p, 8, &content);
+    if (!strstr(heard, "sun.hdr: 1 of 8 pixels are above 65408: clamped (the largest is 70000)")) fail_msg("heard: %s", heard);
+    heard[0] = '\0';
+    p.factor = 0.5;
+    forget(&content);
+    masu_bake_add_environment(&p, 8, &content);
+    masu_cli_hear_warnings(NULL, NULL);
+    assert_string_equal(heard, "");
+    forget(&content);
+}
+
 static void a_square_covers_all_directions(void **state) {
     (void)state;
     for (int i = 0; i < 1000; i++) {
@@ -294,6 +322,7 @@ int main(void) {
         cmocka_unit_test(mips_are_the_picture_averaged_by_the_lobe),
         cmocka_unit_test(irradiance_is_that_of_the_picture),
         cmocka_unit_test(texels_hold_nine_bits),
+        cmocka_unit_test(what_no_texel_holds_is_told),
         cmocka_unit_test(a_square_covers_all_directions),
         cmocka_unit_test(a_picture_is_turned_and_scaled),
         cmocka_unit_test(radiance_files_are_read_and_damaged_ones_refused),

@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "bake/build/first_look.h"
+#include "bake/build/look.h"
 #include "bake/scene/piece.h"
 
 #define ASPECT (16.0 / 9)
@@ -96,7 +97,24 @@ static void the_model_fills_the_frame(void **state) {
     }
 }
 
+/* The near plane of a scene that says nothing: a centimetre whatever the scene's size, so that no wall before the
+ * camera is cut away; less where the whole scene is small. */
+static void the_near_plane_is_near(void **state) {
+    (void)state;
+    static const double cases[][2] = {{1e5, 0.01}, {100, 0.01}, {1, 0.01}, {0.1, 0.02 * 0.1}, {0.001, 0.02 * 0.001}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        double side = cases[i][0] / sqrt(3);
+        masu_bake_box bounds = {masu_bake_v3(-side, -side, -side), masu_bake_v3(side, side, side)};
+        masu_bake_content content = {0};
+        masu_bake_look look = masu_bake_default_look();
+        masu_bake_build_look(&look, &bounds, &content);
+        double near = (double)MASU_BAKE_ARRAY(&content, MASU_BLOB_ENVIRONMENT, masu_blob_environment)->near_distance;
+        if (!(fabs(near - cases[i][1]) <= 1e-6 * cases[i][1])) fail_msg("%g for a radius of %g", near, cases[i][0]);
+        masu_bake_content_release(&content);
+    }
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(the_model_fills_the_frame)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(the_model_fills_the_frame), cmocka_unit_test(the_near_plane_is_near)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

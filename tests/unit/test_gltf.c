@@ -14,6 +14,7 @@
 
 #include "bake/import/gltf.h"
 #include "bake/import/import.h"
+#include "bake/texture/texture.h"
 #include "cli/cli.h"
 #include "support/files.h"
 #include "support/gltf_file.h"
@@ -392,7 +393,7 @@ static void factors_of_materials(void **state) {
     m = only("\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.25,0.5,0.125,1]},\"extensions\":{\"KHR_materials_unlit\":{}}");
     assert_near((double)m->emissive[1], 0.5, 0);
     assert_near((double)m->specular, 0, 0);
-    m = only("\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.25,0.5,0.125,1],\"metallicFactor\":0},\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":0.9}}");
+    m = only("\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.25,0.5,0.125,1],\"metallicFactor\":0,\"roughnessFactor\":0},\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":0.9}}");
     assert_near((double)m->opacity, 1 - 0.9, 1e-6); /* the colour is that of what shines through */
     assert_int_equal(MASU_BAKE_MAPS_OF(&piece)->alpha, MASU_BAKE_ALPHA_BLEND);
     assert_int_equal(MASU_BAKE_MAPS_OF(&piece)->tinted, 1);
@@ -421,6 +422,159 @@ static void what_is_not_read_is_told(void **state) {
     import_warned(finish("\"meshes\":[{\"name\":\"quad\",\"primitives\":[{\"attributes\":{\"POSITION\":%d},\"indices\":%d},{\"attributes\":{\"POSITION\":%d},\"mode\":1}]}],\"nodes\":[{\"mesh\":0}]",
                          quad_positions, quad_indices, quad_positions),
                   "1 primitives are lines: skipped (first: quad)");
+}
+
+/* The material after its textures have been made, with the warnings of both. */
+static const masu_blob_material *finished(const char *path) {
+    import_as(path, (masu_bake_wanted){0});
+    masu_cli_hear_warnings(hear, NULL);
+    assert_true(masu_bake_make_textures(&piece, NULL));
+    masu_cli_hear_warnings(NULL, NULL);
+    return material(0);
+}
+
+/* A map that is left out: an emission that it was meant for is dark; what is unlit has its factor. */
+static void without_its_map_a_material_has_its_factor(void **state) {
+    (void)state;
+#define EMISSION(texture) "{\"emissiveFactor\":[1,0.5,0.25],\"emissiveTexture\":{" texture "}"
+#define BASE(texture) "{\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,0.25,0.125,1],\"baseColorTexture\":{" texture "}}"
+#define UNLIT ",\"extensions\":{\"KHR_materials_unlit\":{}}}"
+    static const struct {
+        const char *about;
+        double emits;
+        const char *warning;
+    } cases[] = {
+        {EMISSION("\"index\":1,\"texCoord\":0") ",\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":1,\"texCoord\":1}}}", 0, "use other coordinates"},
+        {EMISSION("\"index\":2") "}", 0, "have no supported image"},
+        {EMISSION("\"index\":3") "}", 0, "gone.png"},
+        {EMISSION("\"index\":4") "}", 0, "are not files"},
+        {EMISSION("\"index\":1,\"texCoord\":1") "}", 1, ""},
+        {BASE("\"index\":2") UNLIT, 0.5, "have no supported image"},
+        {BASE("\"index\":3") UNLIT, 0.5, "gone.png"},
+        {BASE("\"index\":4") UNLIT, 0.5, "are not files"},
+        {BASE("\"index\":1,\"texCoord\":1") UNLIT, 0.5, ""},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char attributes[128], rest[2048];
+        begin_mapped(attributes, sizeof attributes);
+        snprintf(rest, sizeof rest,
+                 ",\"images\":[{\"bufferView\":%d,\"mimeType\":\"image/webp\"},{\"uri\":\"gone.png\"},{\"uri\":\"http://there/is/none.png\"}],"
+                 "\"textures\":[{\"source\":0},{\"source\":0},{},{\"source\":1},{\"source\":2}],\"materials\":[%s]",
+                 view(webp, sizeof webp, 0), cases[i].about);
+        const masu_blob_material *m = finished(finish_quad(attributes, ",\"material\":0", rest));
+        if (!strstr(heard, cases[i].warning)) fail_msg("case %zu: %s", i, heard);
+        if (!*cases[i].warning) assert_string_equal(heard, "");
+        assert_near((double)m->emissive[0], cases[i].emits, 0);
+        assert_near((double)m->emissive[1], cases[i].emits / 2, 0);
+    }
+}
+
+/* 1 + strength (visibility - 1), in the texels. */
+static void occlusion_has_a_strength(void **state) {
+    (void)state;
+    static const struct {
+        const char *strength;
+        int value;
+    } cases[] = {{"", 51}, {",\"strength\":1", 51}, {",\"strength\":0.25", 204}, {",\"strength\":0", 255}};
+    unsigned char image[64] = "P5 4 4 255\n";
+    memset(image + 11, 51, 16);
+    write_bytes("dark.pgm", image, 27);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char attributes[128], rest[512];
+        begin_mapped(attributes, sizeof attributes);
+        snprintf(rest, sizeof rest,
+                 ",\"images\":[{\"uri\":\"dark.pgm\"}],\"textures\":[{\"source\":0}],\"materials\":[{\"occlusionTexture\":{\"index\":0,\"texCoord\":1%s}}]",
+                 cases[i].strength);
+        finished(finish_quad(attributes, ",\"material\":0", rest));
+        assert_string_equal(heard, "");
+        assert_int_equal(masu_bake_count(&piece, MASU_BLOB_TEXTURES), 1);
+        assert_int_equal(piece.section[MASU_BLOB_TEXELS].data[0], cases[i].value); /* an end of a block of BC4 */
+    }
+}
+
+/* A texture whose coordinates stay in 0..1 along an axis does not repeat there: its far edge would bleed in. */
+static void textures_that_are_shown_once_are_clamped(void **state) {
+    (void)state;
+    static const struct {
+        float u, v;       /* the far corner */
+        const char *more; /* of the texture */
+        uint32_t wrap[2];
+    } cases[] = {{1, 1, "", {1, 1}},
+                 {4, 1, "", {0, 1}},
+                 {1, 1.5f, "", {1, 0}},
+                 {0.5f, 1.0001f, "", {1, 1}},
+                 {-0.5f, 1, "", {0, 1}},
+                 {1, 1, ",\"sampler\":0", {2, 1}},
+                 {1, 1, "detail", {0, 1}}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        const float uv[8] = {0, 0, cases[i].u, 0, cases[i].u, cases[i].v, 0, cases[i].v};
+        bool detail = !strcmp(cases[i].more, "detail");
+        char attributes[64], rest[1024];
+        begin_quad();
+        snprintf(attributes, sizeof attributes, ",\"TEXCOORD_0\":%d", floats(uv, "VEC2", 4, 2));
+        snprintf(rest, sizeof rest,
+                 ",\"images\":[{\"bufferView\":%d,\"mimeType\":\"image/webp\"}],\"samplers\":[{\"wrapS\":33648}],\"textures\":[{\"source\":0%s}],"
+                 "\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}%s}]",
+                 view(webp, sizeof webp, 0), detail ? "" : cases[i].more,
+                 detail ? ",\"normalTexture\":{\"index\":0,\"extensions\":{\"KHR_texture_transform\":{\"scale\":[8,1]}}}" : "");
+        finished(finish_quad(attributes, ",\"material\":0", rest));
+        assert_string_equal(heard, "");
+        const masu_blob_texture_set *set = MASU_BAKE_ARRAY(&piece, MASU_BLOB_TEXTURE_SETS, masu_blob_texture_set);
+        for (int k = 0; k < 2; k++) {
+            if (set->wrap[k] != cases[i].wrap[k]) fail_msg("case %zu, axis %d: wrap %u", i, k, set->wrap[k]);
+        }
+    }
+}
+
+/* What is beyond what a blob holds, or drawn as something simpler, is told. */
+static void clamped_and_simplified_values_are_told(void **state) {
+    (void)state;
+#define EXTENSION(name, members) "{\"extensions\":{\"KHR_materials_" name "\":{" members "}}}"
+#define DIELECTRIC(name, members) "{\"pbrMetallicRoughness\":{\"metallicFactor\":0},\"extensions\":{\"KHR_materials_" name "\":{" members "}}}"
+    static const char *const cases[][2] = {
+        {DIELECTRIC("ior", "\"ior\":0"), "1 materials reflect more than 0.08 at normal incidence"},
+        {DIELECTRIC("ior", "\"ior\":2.4"), "1 materials reflect more than 0.08 at normal incidence"},
+        {DIELECTRIC("specular", "\"specularColorFactor\":[9,9,9]"), "1 materials reflect more than 0.08 at normal incidence"},
+        {DIELECTRIC("transmission", "\"transmissionFactor\":1"), "1 materials transmit light and are rough"},
+        {"{\"alphaMode\":\"MASK\",\"pbrMetallicRoughness\":{\"metallicFactor\":0},\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1}}}",
+         "1 materials transmit light and are alpha-tested"},
+        {EXTENSION("clearcoat", "\"clearcoatFactor\":3"), "1 materials have a \"clearcoatFactor\" beyond 0 to 1: clamped"},
+        {"{\"pbrMetallicRoughness\":{\"baseColorFactor\":[2,1,1,1]}}", "1 materials have a \"baseColorFactor\" beyond 0 to 1: clamped"},
+        {"{\"pbrMetallicRoughness\":{\"roughnessFactor\":-1}}", "1 materials have a \"roughnessFactor\" beyond 0 to 1: clamped"},
+        {"{\"alphaMode\":\"MASK\",\"alphaCutoff\":1.5}", "1 materials have a \"alphaCutoff\" beyond 0 to 1: clamped"},
+        {"{\"emissiveFactor\":[1,1,1],\"extensions\":{\"KHR_materials_emissive_strength\":{\"emissiveStrength\":1e6}}}",
+         "1 materials have a \"emissiveFactor\" beyond 0 to 65504: clamped"},
+        {EXTENSION("pbrSpecularGlossiness", "\"diffuseFactor\":[0.5,0.1,0.1,1],\"specularFactor\":[0.1,0.1,0.5]"),
+         "1 materials have a specular colour that metallic and roughness can only approximate"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char rest[1024];
+        begin_quad();
+        snprintf(rest, sizeof rest, ",\"materials\":[%s]", cases[i][0]);
+        import_warned(finish_quad("", ",\"material\":0", rest), cases[i][1]);
+    }
+    begin_quad();
+    finished(finish_quad("", ",\"material\":0",
+                         ",\"materials\":[{\"name\":\"lamp\",\"emissiveFactor\":[1,1,1],\"extensions\":{\"KHR_materials_emissive_strength\":{\"emissiveStrength\":40}}}]"));
+    assert_non_null(strstr(heard, "material \"lamp\": emission of up to 40: opaque surfaces emit at most 16"));
+}
+
+/* PLY and OBJ have colours at vertices too; theirs are of a screen (sRGB). */
+static void colours_of_vertices_in_other_formats(void **state) {
+    (void)state;
+#define PLY(rows) "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n" \
+                  "property uchar green\nproperty uchar blue\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n" rows "3 0 1 2\n"
+    const double half = pow((188 / 255.0 + 0.055) / 1.055, 2.4);
+    import_quietly(write_text("one.ply", PLY("0 0 0 255 188 0\n1 0 0 255 188 0\n0 1 0 255 188 0\n")));
+    assert_near((double)material(0)->base_color[0], 1, 1e-5);
+    assert_near((double)material(0)->base_color[1], half, 1e-4);
+    assert_near((double)material(0)->base_color[2], 0, 1e-5);
+    import_warned(write_text("many.ply", PLY("0 0 0 255 0 0\n1 0 0 0 255 0\n0 1 0 0 0 255\n")), "1 triangles have colours at their vertices");
+    assert_near((double)material(0)->base_color[1], 1 / 3.0, 1e-4);
+    import_quietly(write_text("two.obj", "v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\nv 5 0 0 0 0 1\nv 6 0 0 0 0 1\nv 5 1 0 0 0 1\nf 1 2 3\nf 4 5 6\n"));
+    assert_int_equal(masu_bake_count(&piece, MASU_BLOB_PRIMITIVES), 2);
+    assert_near((double)material(0)->base_color[0] + (double)material(1)->base_color[0], 1, 1e-5);
+    assert_near((double)material(0)->base_color[2] + (double)material(1)->base_color[2], 1, 1e-5);
 }
 
 static void variants_by_name(void **state) {
@@ -501,6 +655,120 @@ static void cubic_keys_are_cut_into_lines(void **state) {
     }
 }
 
+/* Several keys at one time are a step: the last one holds from that time on. */
+static void repeated_key_times_are_steps(void **state) {
+    (void)state;
+    static const float moves[18] = {0, 0, 0, 2, 0, 0, 9, 9, 9, 4, 0, 0, 6, 0, 0, 8, 0, 0};
+    static const float times[6] = {0, 1, 1, 1, 2, 2};
+    static const char *const how[] = {"LINEAR", "STEP"};
+    for (int i = 0; i < 2; i++) {
+        begin_quad();
+        int t = floats(times, "SCALAR", 6, 1), m = floats(moves, "VEC3", 6, 3);
+        import_as(finish("\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":%d},\"indices\":%d}]}],\"nodes\":[{\"mesh\":0}],"
+                         "\"animations\":[{\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,\"path\":\"translation\"}}],"
+                         "\"samplers\":[{\"input\":%d,\"output\":%d,\"interpolation\":\"%s\"}]}]",
+                         quad_positions, quad_indices, t, m, how[i]),
+                  (masu_bake_wanted){.moving = true});
+        assert_string_equal(heard, "");
+        const masu_blob_key *k = MASU_BAKE_ARRAY(&piece, MASU_BLOB_KEYS, masu_blob_key);
+        uint64_t count = masu_bake_count(&piece, MASU_BLOB_KEYS);
+        assert_int_equal(count, 5);
+        assert_true(k[1].time < 1 && k[1].time > 0.999f);
+        assert_near((double)k[1].value[0], i ? 0 : 2, 0);
+        assert_near((double)k[2].time, 1, 0);
+        assert_near((double)k[2].value[0], 4, 0);
+        assert_near((double)k[count - 1].time, 2, 0);
+        assert_near((double)k[count - 1].value[0], 8, 0);
+    }
+}
+
+/* ---- Files of exporters ---------------------------------------------------------------------- */
+
+#define TRIANGLE                                                                                                       \
+    "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,"          \
+    "\"type\":\"VEC3\",\"count\":3}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"                  \
+    "\"nodes\":[{\"mesh\":0}]}"
+
+static const float corner[9] = {0, 0, 0, 5, 0, 0, 0, 5, 0};
+
+static const char *triangle_of(const char *uri) {
+    char text[2048];
+    int wrote = snprintf(text, sizeof text, "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"uri\":\"%s\",\"byteLength\":36}]," TRIANGLE, uri);
+    assert_true(wrote > 0 && (size_t)wrote < sizeof text);
+    return write_text("x.gltf", text);
+}
+
+/* What is not below a node of the scene counts for nothing (UniGLTF writes such nodes). */
+static void nodes_outside_of_the_scene_are_ignored(void **state) {
+    (void)state;
+    static const char *const graphs[] = {
+        "\"nodes\":[{\"children\":[1],\"translation\":[100,0,0]},{\"mesh\":0,\"translation\":[3,0,0]}],\"scenes\":[{\"nodes\":[1]}]",
+        "\"nodes\":[{\"children\":[1,1]},{\"mesh\":0,\"translation\":[3,0,0]},{\"children\":[1]}],\"scenes\":[{\"nodes\":[1]}]",
+        "\"nodes\":[{\"children\":[0]},{\"mesh\":0,\"translation\":[3,0,0]}],\"scenes\":[{\"nodes\":[1]}]",
+    };
+    for (size_t i = 0; i < sizeof graphs / sizeof *graphs; i++) {
+        begin_quad();
+        import_quietly(finish("\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":%d},\"indices\":%d}]}],%s", quad_positions,
+                              quad_indices, graphs[i]));
+        assert_int_equal(masu_bake_count(&piece, MASU_BLOB_INSTANCES), 1);
+        assert_near((double)MASU_BAKE_INSTANCES(&piece)[0].transform[3], 3, 0);
+    }
+}
+
+static void data_uris_of_all_forms(void **state) {
+    (void)state;
+    static const char *const heads[] = {"data:,",
+                                        "data:application/octet-stream,",
+                                        "DATA:application/gltf-buffer;charset=UTF-8,",
+                                        "data:;base64,",
+                                        "data:application/octet-stream;charset=utf-8;base64,",
+                                        "Data:application/octet-stream;BASE64,"};
+    static const char base64[] = "AAAAAAAAAAAAAAAAAACgQAAAAAAAAAAAAAAAAAAAoEAAAAAA";
+    for (size_t i = 0; i < sizeof heads / sizeof *heads; i++) {
+        char uri[512] = "";
+        add(uri, sizeof uri, "%s", heads[i]);
+        for (size_t k = 0; i < 3 && k < sizeof corner; k++) { /* letters as they are, everything else in hexadecimal */
+            unsigned char c = ((const unsigned char *)corner)[k];
+            add(uri, sizeof uri, c >= 'A' && c <= 'Z' ? "%c" : k & 1 ? "%%%02x" : "%%%02X", c);
+        }
+        if (i == 3) add(uri, sizeof uri, "%s", base64);
+        if (i == 4) add(uri, sizeof uri, "%.10s%%41%s", base64, base64 + 11); /* a letter in hexadecimal, too */
+        if (i == 5) add(uri, sizeof uri, "%.24s\\r\\n%s", base64, base64 + 24);
+        import_quietly(triangle_of(uri));
+        vertex_at(5, 0, 0, 0);
+        vertex_at(0, 5, 0, 0);
+    }
+    refused(triangle_of("data:nothing"), NULL, "a data: URI without a comma");
+    refused(triangle_of("data:;base64,AAAA!"), NULL, "a data: URI with a '!'");
+    refused(triangle_of("data:,%00%0"), NULL, "\"byteLength\" is 36, and there are 3 bytes");
+}
+
+static void files_named_on_other_machines(void **state) {
+    (void)state;
+    static const char *const uris[] = {"a%20B.bin",
+                                       "A b.BIN",
+                                       ".\\\\A%20b.BIN",
+                                       "C:\\\\models\\\\a B.bin",
+                                       "c:/models/A B.bin",
+                                       "file:///C:/models/a%20B.bin",
+                                       "/home/somebody/a B.bin"};
+    write_bytes("a B.bin", corner, sizeof corner);
+    for (size_t i = 0; i < sizeof uris / sizeof *uris; i++) {
+        import_quietly(triangle_of(uris[i]));
+        vertex_at(0, 5, 0, 0);
+    }
+    refused(triangle_of("D:\\\\gone.bin"), NULL, "there is no file");
+}
+
+static void older_versions_are_refused(void **state) {
+    (void)state;
+    static const char *const texts[] = {"{\"asset\":{\"version\":\"1.0\"},\"meshes\":{}}", "{\"asset\":{\"version\":1.1},\"meshes\":{}}",
+                                        "{\"meshes\":{},\"scenes\":{}}"};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) refused(write_text("x.gltf", texts[i]), NULL, "glTF 1");
+    static const uint32_t head[5] = {0x46546C67, 1, 22, 2, 0};
+    refused(write_bytes("x.glb", head, sizeof head), NULL, "glTF 1");
+}
+
 /* ---- Files that are wrong -------------------------------------------------------------------- */
 
 static void names_with_percent_signs(void **state) {
@@ -511,7 +779,7 @@ static void names_with_percent_signs(void **state) {
                                         "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"type\":\"VEC3\",\"count\":3}],"
                                         "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"nodes\":[{\"mesh\":0}]}"));
     vertex_at(0, 5, 0, 0);
-    refused(write_text("x.gltf", "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"uri\":\"c%20d.bin\",\"byteLength\":36}]}"), NULL, "c d.bin");
+    refused(write_text("x.gltf", "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"uri\":\"c%20d.bin\",\"byteLength\":36}]}"), NULL, "there is no file");
     refused(write_text("x.gltf", "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"uri\":\"http://x/y.bin\",\"byteLength\":36}]}"), NULL, "is not a file in the model's folder");
 }
 
@@ -537,8 +805,8 @@ static void hostile_files_are_refused(void **state) {
     accessor(view(corners, 48, 0), FLOAT, "VEC3", 4, ",\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":0,\"componentType\":5125,\"byteOffset\":12},\"values\":{\"bufferView\":0}}");
     refused(finish("%s", mesh), NULL, "\"sparse\" changes element 1073741824 of 4");
     begin_quad();
-    refused(finish("\"nodes\":[{\"children\":[1]},{\"children\":[0]}],\"scenes\":[{\"nodes\":[0]}]"), NULL, "nodes[0] is a root and below a node");
-    refused(finish("\"nodes\":[{\"children\":[1,1]},{}]"), NULL, "nodes[1] is a child of two nodes");
+    refused(finish("\"nodes\":[{\"children\":[1]},{\"children\":[0]}],\"scenes\":[{\"nodes\":[0]}]"), NULL, "nodes[0] is twice in the scene");
+    refused(finish("\"nodes\":[{\"children\":[1,1]},{}]"), NULL, "nodes[1] is twice in the scene");
     refused(finish("\"nodes\":[{\"mesh\":3}]"), NULL, "nodes[0]: \"mesh\": index 3 of 0 elements");
     refused(finish("\"nodes\":[{}],\"skins\":[{\"joints\":[-1]}]"), NULL, "joints[0] is not a node");
     size_t bytes;
@@ -567,10 +835,20 @@ int main(void) {
         cmocka_unit_test(colours_of_vertices_become_materials),
         cmocka_unit_test(factors_of_materials),
         cmocka_unit_test(what_is_not_read_is_told),
+        cmocka_unit_test(without_its_map_a_material_has_its_factor),
+        cmocka_unit_test(occlusion_has_a_strength),
+        cmocka_unit_test(textures_that_are_shown_once_are_clamped),
+        cmocka_unit_test(clamped_and_simplified_values_are_told),
+        cmocka_unit_test(colours_of_vertices_in_other_formats),
         cmocka_unit_test(variants_by_name),
         cmocka_unit_test(lights_in_candela),
         cmocka_unit_test(skins_rest_as_their_joints_have_them),
         cmocka_unit_test(cubic_keys_are_cut_into_lines),
+        cmocka_unit_test(repeated_key_times_are_steps),
+        cmocka_unit_test(nodes_outside_of_the_scene_are_ignored),
+        cmocka_unit_test(data_uris_of_all_forms),
+        cmocka_unit_test(files_named_on_other_machines),
+        cmocka_unit_test(older_versions_are_refused),
         cmocka_unit_test(names_with_percent_signs),
         cmocka_unit_test(what_a_file_requires),
         cmocka_unit_test(hostile_files_are_refused),

@@ -37,11 +37,25 @@ static void names_of_other_machines(void **state) {
     leads("m/x.dae", ".\\maps\\a c.png", "m/maps/a c.png");
     leads("m/x.dae", "C:\\textures\\a b.png", "m/a b.png");
     leads("m/x.dae", "/home/somebody/a%20b.png", "m/a b.png");
+    leads("m/x.dae", "file:///C:/textures/a%20b.png", "m/a b.png");
     leads("m/x.dae", "gone%20.png", "m/gone%20.png");
     leads("m/x.dae", "C:\\gone.png", "m/C:/gone.png");
     leads("m/x.dae", "/gone/gone.png", "/gone/gone.png");
     leads("m/x.dae", "%2Fetc%2Fpasswd", "m/%2Fetc%2Fpasswd"); /* no way out */
     leads("m/x.dae", "/", "/");
+}
+
+static void names_in_other_case(void **state) {
+    (void)state;
+    leads("m/x.dae", "A B.PNG", "m/a b.png");
+    leads("m/x.dae", "Maps/A C.png", "m/maps/a c.png");
+    leads("m/x.dae", "MAPS\\a%20C.PNG", "m/maps/a c.png");
+    leads("m/x.dae", "C:\\Textures\\A B.PNG", "m/a b.png");
+    leads("m/x.dae", "MAPS/D\xC3\x84" "CH\xD0\x96.PNG", "m/maps/d\xC3\xA4" "ch\xD0\xB6.png"); /* beyond ASCII */
+    leads("m/x.dae", "../M/a b.png", "m/a b.png"); /* the last part, in the model's own folder */
+    leads("m/x.dae", "Twice.png", "m/TWICE.png");  /* the first of two, in byte order */
+    leads("m/x.dae", "twice.png", "m/twice.png");
+    leads("t/tracks/road/r/r.acc", "TREE.RGB", "t/data/textures/tree.rgb");
 }
 
 static void tracks_have_textures_in_common(void **state) {
@@ -74,6 +88,9 @@ static int make_folders(void **state) {
                                           "t/data/textures"};
     static const char *const files[] = {"m/a b.png",
                                         "m/maps/a c.png",
+                                        "m/maps/d\xC3\xA4" "ch\xD0\xB6.png",
+                                        "m/twice.png",
+                                        "m/TWICE.png",
                                         "m/50%.png",
                                         "m/9%20.png",
                                         "t/tracks/road/r/own.rgb",
@@ -95,6 +112,7 @@ static int make_folders(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(names_of_other_machines),
+        cmocka_unit_test(names_in_other_case),
         cmocka_unit_test(tracks_have_textures_in_common),
     };
     return cmocka_run_group_tests(tests, make_folders, remove_scratch);

@@ -193,6 +193,42 @@ static void blocks_are_near_their_picture(void **state) {
     }
 }
 
+/* The colour of texel 0 of a block of BC1, exactly. */
+static void first_color(const unsigned char *b, int four, double out[3]) {
+    uint32_t ends[2] = {b[0] | (uint32_t)b[1] << 8, b[2] | (uint32_t)b[3] << 8}, index = b[4] & 3;
+    for (int k = 0; k < 3; k++) {
+        double e[2];
+        for (int i = 0; i < 2; i++) {
+            uint32_t c = k == 1 ? ends[i] >> 5 & 63 : ends[i] >> (k ? 0 : 11) & 31;
+            e[i] = k == 1 ? c << 2 | c >> 4 : c << 3 | c >> 2;
+        }
+        out[k] = index < 2 ? e[index] : four || ends[0] > ends[1] ? (index == 2 ? 2 * e[0] + e[1] : e[0] + 2 * e[1]) / 3 : (e[0] + e[1]) / 2;
+    }
+}
+
+/* The best that endpoints of 5, 6 and 5 bits and their thirds can do is 4/3; greys stay grey. */
+static void solid_blocks_are_as_near_as_can_be(void **state) {
+    (void)state;
+    uint64_t seed = 23;
+    for (int i = 0; i < 256 + 4000; i++) {
+        uint8_t texels[64];
+        unsigned char out[16];
+        for (int k = 0; k < 4; k++) texels[k] = i < 256 && k < 3 ? (uint8_t)i : (uint8_t)support_random_in(&seed, 0, 255);
+        for (int t = 1; t < 16; t++) memcpy(texels + 4 * t, texels, 4);
+        for (int form = 0; form < 2; form++) {
+            double got[3];
+            assert_int_equal(masu_texel_blocks(form ? MASU_TEXTURE_BC3_SRGB : MASU_TEXTURE_BC1_SRGB, texels, 4, 4, out), form ? 16 : 8);
+            first_color(out + 8 * form, form, got);
+            for (int k = 0; k < 3; k++) {
+                if (!(fabs(got[k] - texels[k]) <= 1.4)) fail_msg("%d %d %d, channel %d: %g", texels[0], texels[1], texels[2], k, got[k]);
+                if (i < 256 && !(fabs(got[k] - got[0]) <= 1)) fail_msg("grey %d: %g %g %g", i, got[0], got[1], got[2]);
+            }
+            for (int t = 1; t < 4; t++) assert_int_equal(out[8 * form + 4 + t], out[8 * form + 4]);
+            assert_int_equal(out[8 * form + 4] & 3, out[8 * form + 4] >> 6);
+        }
+    }
+}
+
 /* Blocks by hand, texels from the definition of the format. */
 static void blocks_decode_as_the_formats_say(void **state) {
     (void)state;
@@ -330,6 +366,7 @@ int main(void) {
         cmocka_unit_test(what_cannot_be_seen_does_not_bleed_into_colour),
         cmocka_unit_test(lost_normals_become_roughness),
         cmocka_unit_test(blocks_are_near_their_picture),
+        cmocka_unit_test(solid_blocks_are_as_near_as_can_be),
         cmocka_unit_test(blocks_decode_as_the_formats_say),
         cmocka_unit_test(blocks_at_an_odd_edge_hold_what_is_there),
         cmocka_unit_test(chunks_of_any_size_copy_every_texel_once),

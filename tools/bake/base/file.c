@@ -7,11 +7,13 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <locale.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <wctype.h>
 
 static struct {
     pid_t owner; /* forked children inherit this state and must not act on it */
@@ -74,6 +76,79 @@ char *masu_bake_directory_of(const char *path) {
     memcpy(directory, slash ? path : ".", length);
     directory[length] = '\0';
     return directory;
+}
+
+/* The next character of a UTF-8 text, in lower case. A byte that is no part of one is compared as it is. */
+static uint32_t next_letter(const char **at, locale_t letters) {
+    const unsigned char *c = (const unsigned char *)*at;
+    uint32_t bytes = *c >= 0xF0 ? 4 : *c >= 0xE0 ? 3 : *c >= 0xC0 ? 2 : 1, code = bytes > 1 ? *c & (0x7Fu >> bytes) : *c;
+    for (uint32_t i = 1; i < bytes; i++) {
+        if ((c[i] & 0xC0) != 0x80) {
+            bytes = 1;
+            code = 0x110000u + *c;
+            break;
+        }
+        code = code << 6 | (c[i] & 0x3Fu);
+    }
+    *at += bytes;
+    if (letters != (locale_t)0 && code < 0x110000u) return (uint32_t)towlower_l((wint_t)code, letters);
+    return code >= 'A' && code <= 'Z' ? code + 32 : code;
+}
+
+static bool same_letters(const char *a, const char *b, locale_t letters) {
+    while (*a && *b) {
+        if (next_letter(&a, letters) != next_letter(&b, letters)) return false;
+    }
+    return *a == *b;
+}
+
+/* The entry of a folder with these letters, or NULL; free() it. */
+static char *find_entry(const char *folder, const char *name) {
+    DIR *directory = opendir(folder);
+    locale_t letters = newlocale(LC_CTYPE_MASK, "C.UTF-8", (locale_t)0); /* without it: of ASCII only */
+    char *found = NULL;
+    for (struct dirent *entry; directory && (entry = readdir(directory));) {
+        if (!same_letters(entry->d_name, name, letters) || (found && strcmp(found, entry->d_name) < 0)) continue;
+        free(found);
+        found = masu_bake_allocate(strlen(entry->d_name) + 1);
+        memcpy(found, entry->d_name, strlen(entry->d_name) + 1);
+    }
+    if (letters != (locale_t)0) freelocale(letters);
+    if (directory) closedir(directory);
+    return found;
+}
+
+bool masu_bake_append_spelling(masu_bake_buffer *path, const char *name) {
+    size_t before = path->bytes;
+    bool good = *name && *name != '/';
+    while (good && *name) {
+        size_t at = path->bytes, length = strcspn(name, "/");
+        masu_bake_append(path, name, length);
+        masu_bake_append(path, "", 1);
+        if (access((const char *)path->data, F_OK) != 0) {
+            path->bytes = at;
+            masu_bake_append(path, at ? "" : ".", at ? 1 : 2);
+            char *wanted = masu_bake_allocate(length + 1);
+            memcpy(wanted, name, length);
+            wanted[length] = '\0';
+            char *found = find_entry((const char *)path->data, wanted);
+            free(wanted);
+            path->bytes = at;
+            good = found != NULL;
+            if (found) masu_bake_append(path, found, strlen(found) + 1);
+            free(found);
+            if (!found) break;
+        }
+        path->bytes--;
+        name += length;
+        for (bool first = true; *name == '/'; name++, first = false) {
+            if (first) masu_bake_append(path, "/", 1);
+        }
+    }
+    if (!good) path->bytes = before;
+    masu_bake_append(path, "", 1);
+    path->bytes--;
+    return good;
 }
 
 #define TEMPORARY "masu-bake-"

@@ -11,6 +11,7 @@
 #include "bake/scene/camera.h"
 #include "bake/scene/groups.h"
 #include "bake/scene/skin.h"
+#include "bake/scene/sun.h"
 #include "bake/texture/texture.h"
 #include "bake/texture/trace_texture.h"
 #include "cli/cli.h"
@@ -86,6 +87,22 @@ static bool take_camera(const masu_bake_description *d, const masu_bake_content 
     return true;
 }
 
+/* The first directional light of the models, where the scene has no sun of its own. */
+static void take_sun(const masu_bake_description *d, const masu_bake_content *content, masu_bake_look *look) {
+    for (uint32_t i = 0; i < masu_bake_sun_count(content); i++) {
+        const masu_bake_sun *sun = &MASU_BAKE_SUNS(content)[i];
+        if (i > 0 || d->look.own_sun) {
+            masu_cli_warn("%s: directional light \"%s\": ignored, since the scene has %s", d->file, sun->name,
+                          d->look.own_sun ? "a sun" : "another one");
+            continue;
+        }
+        look->sun_direction = masu_bake_v3f(sun->direction);
+        look->sun_color = masu_bake_v3f(sun->color);
+        look->sun_intensity = 1;
+        look->own_sun_color = true;
+    }
+}
+
 /* What is shown, and what it is shown in. */
 static bool build_scene(const masu_bake_description *d, const masu_bake_options *options,
                         masu_bake_reflections *reflections, masu_bake_content *content,
@@ -112,6 +129,7 @@ static bool build_scene(const masu_bake_description *d, const masu_bake_options 
         first.look.keys = &key;
         first.look.key_count = 1;
     }
+    take_sun(d, content, &first.look);
     masu_bake_build_look(&first.look, &bounds, content);
     if (!add_environment_map(&d->environment, content)) return false;
     return !d->sdf.source || masu_bake_compile_march(content, d->sdf.source, &d->sdf.occlusion,

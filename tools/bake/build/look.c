@@ -2,6 +2,9 @@
  * the box of what it shows what it leaves open; see build.h. */
 #include "bake/build/look.h"
 
+/* Depth is n / z in a float: its relative precision is that of the float wherever the near plane is. */
+#define NEAR 0.01
+
 static double box_radius(const masu_bake_box *box) {
     if (masu_bake_box_is_empty(box)) return 1.0;
     masu_bake_vec3 extent = masu_bake_sub(box->high, box->low);
@@ -49,7 +52,7 @@ static void add_shadow(const masu_bake_look *l, const masu_bake_box *bounds,
 
 static void add_environment(const masu_bake_look *l, const masu_bake_box *bounds,
                             masu_bake_content *content) {
-    double near = l->near > 0 ? l->near : fmin(fmax(box_radius(bounds) * 0.02, 1e-6), 1e6);
+    double near = l->near > 0 ? l->near : fmin(box_radius(bounds) * 0.02, NEAR);
     masu_bake_vec3 sun = l->sun_color;
     if (l->turbidity > 0 && !l->own_sun_color) sun = masu_bake_v3(0, 0, 0);
     masu_blob_environment e = {.exposure = (float)l->exposure,

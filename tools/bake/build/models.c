@@ -7,6 +7,7 @@
 #include "bake/mesh/drop.h"
 #include "bake/mesh/occluders.h"
 #include "bake/scene/camera.h"
+#include "bake/scene/sun.h"
 #include "bake/scene/groups.h"
 #include "bake/scene/live.h"
 #include "bake/scene/skin.h"
@@ -207,6 +208,8 @@ static bool place(model_builder *b, const masu_bake_model *model, const char *na
                                          name);
     if (problem) return masu_bake_wrong(b->description, model->where, "gives %s", problem);
     masu_bake_place_cameras(content, &from->piece, &placement, name);
+    if (*like == MASU_BLOB_NONE && model->lights > 0) /* not of its pooled copies */
+        masu_bake_place_suns(content, &from->piece, &placement, model->lights);
     from->residence = v->residence;
     if (!model->moving || masu_bake_count(content, MASU_BLOB_INSTANCES) == first) return true;
     uint32_t made = masu_bake_add_model(content, &from->piece, first, &placement, translation, name,

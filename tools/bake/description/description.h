@@ -85,11 +85,11 @@ typedef struct masu_bake_look {
     const char *camera;           /* of a model, instead of keys; or NULL */
     double fov_y;                 /* degrees, of that one */
     bool own_fov_y;               /* the scene says so */
-    double near;                  /* metres; 0: by the scene's size */
+    double near;                  /* metres; 0: by default */
     masu_bake_vec3 sun_direction; /* towards the sun */
     masu_bake_vec3 sun_color;
     double sun_intensity;
-    bool own_sun_color;
+    bool own_sun, own_sun_color; /* the scene says something of it */
     bool shadows;
     masu_blob_shadow shadow;
     double shadow_distance; /* metres; 0: by the scene's size */

@@ -118,6 +118,9 @@ static bool read_sun(const masu_bake_json *scene, masu_bake_look *l) {
         !read_shadows(&sun, l)) {
         return false;
     }
+    l->own_sun = masu_bake_json_has(&sun, "direction") || masu_bake_json_has(&sun, "azimuth") ||
+                 masu_bake_json_has(&sun, "elevation") || masu_bake_json_has(&sun, "color") ||
+                 masu_bake_json_has(&sun, "intensity");
     l->own_sun_color = masu_bake_json_has(&sun, "color") || masu_bake_json_has(&sun, "intensity");
     bool angles = masu_bake_json_has(&sun, "azimuth") || masu_bake_json_has(&sun, "elevation");
     if (masu_bake_json_has(&sun, "direction")) {

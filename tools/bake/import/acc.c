@@ -10,10 +10,11 @@
 #include "bake/import/acc.h"
 
 #include <string.h>
+#include <strings.h>
 
 bool masu_bake_is_acc(const char *path) {
     size_t length = strlen(path);
-    return length > 4 && strcmp(path + length - 4, ".acc") == 0;
+    return length > 4 && strcasecmp(path + length - 4, ".acc") == 0;
 }
 
 /* Whether a line is a texture that is not the base. A name stands in quotes or has no spaces. */

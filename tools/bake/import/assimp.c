@@ -4,13 +4,15 @@
 #include "bake/base/file.h"
 #include "bake/import/acc.h"
 #include "bake/import/gltf.h"
+#include "bake/import/stl.h"
+#include "bake/import/vertex_color.h"
 
 #include <assimp/cimport.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <string.h>
 
-#define ACC_MAX ((size_t)512 << 20)
+#define DIALECT_MAX ((size_t)512 << 20)
 
 static void report(masu_import *m) {
     masu_bake_buffer *w = m->warnings;
@@ -24,6 +26,12 @@ static void report(masu_import *m) {
         masu_import_format(w, "unsupported textures: %s%s\n",
                            (const char *)m->textures.data,
                            m->texture_count > MASU_IMPORT_NAMES_MAX ? ", ..." : "");
+    }
+    if (m->mixed) masu_import_format(w, "%llu " MASU_IMPORT_COLORS_MIXED "\n", (unsigned long long)m->mixed);
+    if (m->clamped) masu_import_format(w, "%llu " MASU_IMPORT_COLORS_CLAMPED "\n", (unsigned long long)m->clamped);
+    if (m->translucent) {
+        masu_import_format(w, "%u meshes have vertex colours with alpha: the alpha is ignored\n",
+                           m->translucent);
     }
     if (m->invisible) {
         masu_import_format(w, "%u materials have an opacity of 0: treated as opaque\n",
@@ -41,8 +49,11 @@ static void report(masu_import *m) {
             m->unmapped);
     }
     if (m->other_lights) {
-        masu_import_format(w, "%u lights are neither point nor spot lights: ignored\n",
+        masu_import_format(w, "%u lights have a transform that is not finite: ignored\n",
                            m->other_lights);
+    }
+    if (!m->given && m->source->mNumLights) {
+        masu_import_format(w, "%u lights: ignored, since their units are not known\n", m->source->mNumLights);
     }
     if (!m->moving && (m->skins || m->source->mNumAnimations)) {
         masu_bake_append_text(w,
@@ -63,7 +74,7 @@ static void convert(masu_import *m, masu_bake_buffer *error) {
     m->mesh_done = allocate_zeroed(meshes, sizeof *m->mesh_done);
     m->mesh_used = allocate_zeroed(meshes, sizeof *m->mesh_used);
     m->sets = allocate_zeroed(meshes, sizeof *m->sets);
-    m->material = allocate_zeroed(s->mNumMaterials, sizeof *m->material);
+    m->material = allocate_zeroed((size_t)s->mNumMaterials + 1, sizeof *m->material);
     bool finished = true;
     if (s->mRootNode)
         finished = masu_import_walk(m, true);
@@ -125,13 +136,6 @@ static void note_remark(const char *text, char *user) {
     masu_bake_release(&line);
 }
 
-/* False after an error, or where the file is of an older glTF. */
-static bool read_gltf(masu_gltf *g) {
-    if (masu_gltf_read(g)) return true;
-    if (!g->old && !masu_gltf_failed(g)) masu_bake_append_text(g->error, "not a glTF file");
-    return false;
-}
-
 static const struct aiScene *read_assimp(const char *path, masu_bake_buffer *warnings, masu_bake_buffer *error) {
     struct aiPropertyStore *properties = aiCreatePropertyStore();
     if (properties) {
@@ -144,10 +148,18 @@ static const struct aiScene *read_assimp(const char *path, masu_bake_buffer *war
     aiAttachLogStream(&log);
     const struct aiScene *scene;
     masu_bake_buffer whole = {0}, text = {0};
-    if (masu_bake_is_acc(path) && masu_bake_read_file(path, ACC_MAX, &whole)) {
-        masu_bake_strip_acc((const char *)whole.data, whole.bytes, &text);
+    const char *dialect = NULL; /* of a format that the library knows, as text that it reads */
+    if ((masu_bake_is_acc(path) || masu_bake_is_stl(path)) && masu_bake_read_file(path, DIALECT_MAX, &whole)) {
+        if (masu_bake_is_acc(path)) {
+            masu_bake_strip_acc((const char *)whole.data, whole.bytes, &text);
+            dialect = "ac";
+        } else if (masu_bake_lower_stl((const char *)whole.data, whole.bytes, &text)) {
+            dialect = "stl";
+        }
+    }
+    if (dialect) {
         scene = aiImportFileFromMemoryWithProperties((const char *)text.data, (unsigned)text.bytes,
-                                                     flags, "ac", properties);
+                                                     flags, dialect, properties);
     } else {
         static masu_import_files files; /* the library keeps it */
         files.model = path;
@@ -167,9 +179,9 @@ void masu_bake_read_model(const char *path, const masu_bake_wanted *wanted, masu
                           masu_bake_buffer *warnings, masu_bake_buffer *error) {
     masu_gltf g = {.path = path, .variant = wanted->variant, .wanted = wanted->textures, .piece = piece,
                    .warnings = warnings, .error = error};
-    bool ours = masu_gltf_is_named(path) && read_gltf(&g);
-    const struct aiScene *scene = ours ? &g.scene : NULL;
-    if (!ours && error->bytes) return;
+    bool ours = masu_gltf_is_file(path);
+    const struct aiScene *scene = &g.scene;
+    if (ours && !masu_gltf_read(&g)) return;
     if (!ours && wanted->variant) masu_bake_append_text(warnings, "variants need a glTF 2 file\n");
     if (!ours && !(scene = read_assimp(path, warnings, error))) return;
     masu_import m = {.source = scene,

@@ -6,6 +6,7 @@
  *   assimp_mesh.c       aiMesh      -> one or more primitives (bake/mesh/triangles.c filters and welds)
  *   assimp_nodes.c      aiNode with meshes -> an instance; nodes that show the same set of meshes share
  *                       one mesh; aiLight -> a light of the nearest node above that is an instance
+ *   vertex_color.c      colours of vertices -> materials
  *   assimp_skin.c       aiNode, aiBone, aiAnimation of models that move: nodes, skins, clips
  *   assimp_text.c       its strings, and lines of text
  *
@@ -81,17 +82,20 @@ typedef struct masu_import {
     masu_import_range *mesh_parts; /* by aiMesh: its range of parts */
     bool *mesh_done, *mesh_used;
     masu_import_set **sets; /* by aiMesh: sets that begin with it */
-    uint32_t *material;     /* by aiMaterial: index + 1, 0: not converted */
+    masu_import_given **material; /* by aiMaterial, and behind them the default one; NULL: not read */
     masu_bake_buffer textures;
     masu_import_loss losses[MASU_LOSSES];
     uint64_t triangles;
     uint32_t texture_count, bad_nodes, skins, unmapped, turned;
+    uint64_t mixed, clamped; /* triangles, of vertex colours: vertex_color.h */
+    uint32_t translucent;    /* meshes whose vertex colours have an alpha */
     uint32_t invisible;    /* materials with an opacity of 0 */
-    uint32_t other_lights; /* neither points nor spots, or of no use */
+    uint32_t other_lights; /* that shine from or to nowhere */
     bool full, moving;
     /* Of a model that has skins, or that moves and has clips: */
     bool live;
     uint32_t crowded, unbound; /* vertices of more than four joints, of none */
+    uint32_t unordered;        /* keys before the previous one */
     uint32_t lost_joints;      /* that are no nodes */
     masu_bake_buffer nodes; /* masu_import_node */
     masu_bake_content bent; /* meshes with bones, as they are bound: their mesh_parts are of it */
@@ -110,8 +114,12 @@ float masu_import_clamped(double value, double low, double high);
 
 /* ---- the others ---- */
 
-/* The piece's number of a material; one that there is not is the default one. */
-uint32_t masu_import_material(masu_import *m, unsigned index);
+/* A material, read once; one that there is not is the default one. */
+const masu_import_given *masu_import_read_material(masu_import *m, unsigned index);
+/* The piece's number of it, times a colour of vertices (linear, or NULL). */
+uint32_t masu_import_material(masu_import *m, unsigned index, const double *color);
+/* Of a colour that was chosen on a screen, the linear one. */
+double masu_import_decode_srgb(double c);
 /* Converts an aiMesh, once. */
 void masu_import_mesh(masu_import *m, unsigned index);
 void masu_import_report_losses(masu_import *m);

@@ -3,6 +3,7 @@
 #include "bake/import/assimp_file.h"
 #include "bake/base/inside.h"
 #include "bake/import/assimp.h"
+#include "bake/import/picture_path.h"
 
 #include <assimp/types.h>
 #include <stdio.h>
@@ -45,10 +46,21 @@ static void close_file(struct aiFileIO *io, struct aiFile *file) {
     free(file);
 }
 
-static struct aiFile *open_file(struct aiFileIO *io, const char *path, const char *mode) {
-    masu_import_files *files = (masu_import_files *)(void *)io->UserData;
+/* The library puts the model's folder before a name, and looks for variants of it that are not there: what is behind
+ * the folder is the name that the file says. */
+static const char *find(const masu_import_files *files, const char *path, masu_bake_buffer *out) {
     struct stat about;
-    if (!path || !mode || mode[0] != 'r' || stat(path, &about) != 0 || !S_ISREG(about.st_mode)) return NULL;
+    const char *slash = strrchr(files->model, '/');
+    size_t folder = slash ? (size_t)(slash - files->model) + 1 : 0;
+    if (stat(path, &about) == 0) return path;
+    if (strncmp(path, "./", 2) == 0 && strncmp(files->model, "./", 2) != 0) path += 2;
+    (void)masu_bake_picture_path(files->model, strncmp(path, files->model, folder) == 0 ? path + folder : path, out);
+    return (const char *)out->data;
+}
+
+static struct aiFile *open_found(masu_import_files *files, const char *path) {
+    struct stat about;
+    if (stat(path, &about) != 0 || !S_ISREG(about.st_mode)) return NULL;
     if (!masu_bake_inside(files->model, path)) {
         if (!files->warned)
             masu_import_format(files->warnings,
@@ -69,6 +81,15 @@ static struct aiFile *open_file(struct aiFileIO *io, const char *path, const cha
                             .SeekProc = go_to,
                             .FlushProc = nothing,
                             .UserData = (aiUserData)(void *)opened};
+    return file;
+}
+
+static struct aiFile *open_file(struct aiFileIO *io, const char *path, const char *mode) {
+    masu_import_files *files = (masu_import_files *)(void *)io->UserData;
+    masu_bake_buffer found = {0};
+    if (!path || !mode || mode[0] != 'r') return NULL;
+    struct aiFile *file = open_found(files, find(files, path, &found));
+    masu_bake_release(&found);
     return file;
 }
 

@@ -1,19 +1,18 @@
 /* assimp_material.c: materials and the names of their pictures; see assimp.h.
  *
- * glTF factors are linear; the colours of older formats (OBJ, AC3D) were chosen on a screen and are
- * decoded from sRGB. A specular exponent n becomes the roughness (2 / (n + 2))^(1/4), at which GGX has
+ * Of glTF none of this is used (gltf_material.c). A base colour is linear; the colours of older formats (OBJ, AC3D)
+ * were chosen on a screen and are decoded from sRGB. A specular exponent n becomes the roughness (2 / (n + 2))^(1/4), at which GGX has
  * the same lobe width. */
 #include "bake/import/assimp.h"
 #include "bake/import/picture_path.h"
 
-#include <assimp/GltfMaterial.h>
 #include <assimp/ObjMaterial.h>
 #include <assimp/material.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
-static double decode_srgb(double c) {
+double masu_import_decode_srgb(double c) {
     return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4);
 }
 
@@ -142,19 +141,6 @@ static bool alpha_covers(const masu_import *m, const struct aiMaterial *from) {
 
 static void convert_alpha(const masu_import *m, const struct aiMaterial *from, masu_bake_maps *maps) {
     if (alpha_covers(m, from)) maps->alpha = MASU_BAKE_ALPHA_COVERS;
-    struct aiString mode = {0};
-    double cutoff = 0.5;
-    if (aiGetMaterialString(from, AI_MATKEY_GLTF_ALPHAMODE, &mode) == aiReturn_SUCCESS) {
-        mode.data[masu_import_length(&mode) < (int)sizeof mode.data ? masu_import_length(&mode)
-                                                                    : (int)sizeof mode.data - 1] =
-            0;
-        maps->alpha = strcmp(mode.data, "MASK") == 0    ? MASU_BAKE_ALPHA_MASK
-                      : strcmp(mode.data, "BLEND") == 0 ? MASU_BAKE_ALPHA_BLEND
-                                                        : MASU_BAKE_ALPHA_OPAQUE;
-    }
-    if (get_factor(from, KEY(AI_MATKEY_GLTF_ALPHACUTOFF), &cutoff)) {
-        maps->cutoff = masu_import_clamped(cutoff, 0, 1);
-    }
 }
 
 /* OBJ's -bm, the height of 3DS and FBX. */
@@ -181,10 +167,8 @@ static masu_bake_maps convert_maps(masu_import *m, const struct aiMaterial *from
         {MASU_BAKE_OPACITY, aiTextureType_OPACITY, 0},
         {MASU_BAKE_OCCLUSION, aiTextureType_AMBIENT_OCCLUSION, 0},
     };
-    /* glTF has both in one picture: green and blue. */
-    static const map_request packed[] = {{MASU_BAKE_ROUGHNESS, aiTextureType_UNKNOWN, 1},
-                                         {MASU_BAKE_METALLIC, aiTextureType_UNKNOWN, 2},
-                                         {MASU_BAKE_ROUGHNESS, aiTextureType_DIFFUSE_ROUGHNESS, 1},
+    /* Both in one picture: green and blue, as in glTF. */
+    static const map_request packed[] = {{MASU_BAKE_ROUGHNESS, aiTextureType_DIFFUSE_ROUGHNESS, 1},
                                          {MASU_BAKE_METALLIC, aiTextureType_METALNESS, 2}};
     static const map_request apart[] = {{MASU_BAKE_ROUGHNESS, aiTextureType_DIFFUSE_ROUGHNESS, 0},
                                         {MASU_BAKE_METALLIC, aiTextureType_METALNESS, 0}};
@@ -195,29 +179,12 @@ static masu_bake_maps convert_maps(masu_import *m, const struct aiMaterial *from
     for (size_t i = 0; i < sizeof requests / sizeof *requests; i++) {
         if (take_map(m, from, &requests[i], &maps) && requests[i].map == MASU_BAKE_NORMAL) relief = requests[i].type;
     }
-    struct aiString mode = {0};
-    bool gltf = aiGetMaterialString(from, AI_MATKEY_GLTF_ALPHAMODE, &mode) == aiReturn_SUCCESS;
-    if (gltf || same_texture(from, aiTextureType_DIFFUSE_ROUGHNESS, aiTextureType_METALNESS)) {
-        for (size_t i = 0; i < 4; i++) take_map(m, from, &packed[i], &maps);
-        /* What Assimp calls a light map is glTF's occlusion; of other formats it is baked light. */
-        static const map_request lightmap = {MASU_BAKE_OCCLUSION, aiTextureType_LIGHTMAP, 0};
-        if (gltf) take_map(m, from, &lightmap, &maps);
-    } else {
-        for (size_t i = 0; i < 2; i++) take_map(m, from, &apart[i], &maps);
-    }
-    double scale = 1;
-    ai_real value = 0;
-    unsigned count = 1;
-    if (aiGetMaterialFloatArray(from, _AI_MATKEY_GLTF_SCALE_BASE, aiTextureType_NORMALS, 0, &value,
-                                &count) == aiReturn_SUCCESS &&
-        count == 1) {
-        scale = (double)value;
-    }
-    if (!gltf && relief != aiTextureType_NONE) {
+    bool both = same_texture(from, aiTextureType_DIFFUSE_ROUGHNESS, aiTextureType_METALNESS);
+    for (size_t i = 0; i < 2; i++) take_map(m, from, both ? &packed[i] : &apart[i], &maps);
+    if (relief != aiTextureType_NONE) {
         maps.relief = relief == aiTextureType_HEIGHT ? MASU_BAKE_RELIEF_NAMED_HEIGHTS : MASU_BAKE_RELIEF_NAMED_NORMALS;
-        scale = bump_strength(from, relief);
+        maps.normal_scale = masu_import_clamped(bump_strength(from, relief), -16, 16);
     }
-    maps.normal_scale = masu_import_clamped(scale, -16, 16);
     return maps;
 }
 
@@ -235,10 +202,8 @@ static bool is_used(const struct aiMaterial *m, int type) {
     case aiTextureType_EMISSION_COLOR:
     case aiTextureType_OPACITY:
     case aiTextureType_AMBIENT_OCCLUSION:
-    case aiTextureType_UNKNOWN:
     case aiTextureType_DIFFUSE_ROUGHNESS:
-    case aiTextureType_METALNESS:
-    case aiTextureType_LIGHTMAP: return true;
+    case aiTextureType_METALNESS: return true;
     default: return false;
     }
 }
@@ -275,12 +240,12 @@ static void convert_color(const struct aiMaterial *from, masu_blob_material *to,
     bool linear = get_color(from, KEY(AI_MATKEY_BASE_COLOR), c);
     if (get_factor(from, KEY(AI_MATKEY_GLOSSINESS_FACTOR), &gloss) &&
         get_color(from, KEY(AI_MATKEY_COLOR_DIFFUSE), c)) {
-        linear = true; /* glTF's specular-glossiness extension keeps its colour there */
+        linear = true; /* of a specular-glossiness material */
     }
     bool found = linear || get_color(from, KEY(AI_MATKEY_COLOR_DIFFUSE), c);
     for (int i = 0; found && i < 3; i++) {
         double value = (double)masu_import_clamped(c[i], 0, 1);
-        to->base_color[i] = masu_import_clamped(linear ? value : decode_srgb(value), 0, 1);
+        to->base_color[i] = masu_import_clamped(linear ? value : masu_import_decode_srgb(value), 0, 1);
     }
     if (found) *alpha = c[3];
     double intensity = 1;
@@ -293,20 +258,15 @@ static void convert_color(const struct aiMaterial *from, masu_blob_material *to,
             fmax(c[0], fmax(c[1], c[2])) <= fmax(diffuse[0], fmax(diffuse[1], diffuse[2]))) {
             for (int i = 0; i < 3; i++) {
                 to->base_color[i] = masu_import_clamped(
-                    decode_srgb((double)masu_import_clamped(c[i] + diffuse[i], 0, 1)), 0, 1);
+                    masu_import_decode_srgb((double)masu_import_clamped(c[i] + diffuse[i], 0, 1)), 0, 1);
             }
             return;
         }
         for (int i = 0; i < 3; i++) {
-            double value = linear ? c[i] : decode_srgb((double)masu_import_clamped(c[i], 0, 1));
+            double value = linear ? c[i] : masu_import_decode_srgb((double)masu_import_clamped(c[i], 0, 1));
             to->emissive[i] = masu_import_clamped(value * intensity, 0, 65504);
         }
     }
-}
-
-static bool is_gltf(const struct aiMaterial *from) {
-    struct aiString mode;
-    return aiGetMaterialString(from, AI_MATKEY_GLTF_ALPHAMODE, &mode) == aiReturn_SUCCESS;
 }
 
 static void convert_shine(const struct aiMaterial *from, masu_blob_material *to) {
@@ -329,29 +289,21 @@ static void convert_shine(const struct aiMaterial *from, masu_blob_material *to)
     if (to->coat > 0 && get_factor(from, KEY(AI_MATKEY_CLEARCOAT_ROUGHNESS_FACTOR), &value)) {
         to->coat_roughness = masu_import_clamped(value, 0, 1);
     }
-    /* glTF's KHR_materials_specular: a share of the usual reflectance. What has a glossiness too is of the
-     * older extension, and means a colour. */
-    if (get_factor(from, KEY(AI_MATKEY_SPECULAR_FACTOR), &value) && is_gltf(from) &&
-        !get_factor(from, KEY(AI_MATKEY_GLOSSINESS_FACTOR), &(double){0})) {
-        to->specular = masu_import_clamped(0.5 * value, 0, 1);
-    }
 }
 
-uint32_t masu_import_material(masu_import *m, unsigned index) {
-    masu_blob_material to = masu_bake_default_material();
+const masu_import_given *masu_import_read_material(masu_import *m, unsigned index) {
     const struct aiScene *s = m->source;
-    if (m->given) {
-        const masu_import_given *given = &m->given[index];
-        return masu_bake_mapped_material(m->piece, &given->material, &given->maps, given->name);
-    }
-    if (index >= s->mNumMaterials || !s->mMaterials || !s->mMaterials[index]) {
-        return masu_bake_material(m->piece, &to, "");
-    }
-    if (m->material[index]) return m->material[index] - 1;
+    if (m->given) return &m->given[index];
+    if (index >= s->mNumMaterials || !s->mMaterials || !s->mMaterials[index]) index = s->mNumMaterials;
+    if (m->material[index]) return m->material[index];
+    masu_import_given *made = m->material[index] = masu_bake_allocate(sizeof *made);
+    *made = (masu_import_given){masu_bake_default_material(), masu_bake_no_maps(), ""};
+    if (index == s->mNumMaterials) return made;
+    masu_blob_material *to = &made->material;
     const struct aiMaterial *from = s->mMaterials[index];
     double alpha = 1, opacity = 1;
-    convert_color(from, &to, &alpha);
-    convert_shine(from, &to);
+    convert_color(from, to, &alpha);
+    convert_shine(from, to);
     get_factor(from, KEY(AI_MATKEY_OPACITY), &opacity);
     /* Many files of Collada and 3DS say 0 where they mean that nothing shines through. */
     if (opacity <= 0 || alpha <= 0) {
@@ -359,20 +311,29 @@ uint32_t masu_import_material(masu_import *m, unsigned index) {
         opacity = opacity <= 0 ? 1 : opacity;
         alpha = alpha <= 0 ? 1 : alpha;
     }
-    masu_bake_maps maps = convert_maps(m, from);
+    made->maps = convert_maps(m, from);
     /* One number under two names in some formats, so not their product. */
     alpha = alpha < opacity ? alpha : opacity;
-    if (maps.alpha != MASU_BAKE_ALPHA_OPAQUE && maps.alpha != MASU_BAKE_ALPHA_MASK &&
-        alpha < 0.999) {
-        maps.alpha = MASU_BAKE_ALPHA_BLEND;
-        to.opacity = masu_import_clamped(alpha, 0, 1);
+    if (made->maps.alpha != MASU_BAKE_ALPHA_OPAQUE && made->maps.alpha != MASU_BAKE_ALPHA_MASK && alpha < 0.999) {
+        made->maps.alpha = MASU_BAKE_ALPHA_BLEND;
+        to->opacity = masu_import_clamped(alpha, 0, 1);
     }
     note_textures(m, from);
     struct aiString name = {0};
     aiGetMaterialString(from, AI_MATKEY_NAME, &name);
-    name.data[masu_import_length(&name) < (int)sizeof name.data ? masu_import_length(&name)
-                                                                : (int)sizeof name.data - 1] = '\0';
-    uint32_t result = masu_bake_mapped_material(m->piece, &to, &maps, name.data);
-    m->material[index] = result + 1;
-    return result;
+    size_t length = (size_t)masu_import_length(&name);
+    char *text = masu_bake_allocate(length + 1);
+    memcpy(text, name.data, length);
+    text[length] = '\0';
+    made->name = text;
+    return made;
+}
+
+uint32_t masu_import_material(masu_import *m, unsigned index, const double *color) {
+    const masu_import_given *from = masu_import_read_material(m, index);
+    masu_blob_material to = from->material;
+    bool none = color && strcmp(from->name, AI_DEFAULT_MATERIAL_NAME) == 0; /* the file has none: colours are all there is */
+    for (int k = 0; k < 3 && color; k++)
+        to.base_color[k] = masu_import_clamped((none ? 1 : (double)to.base_color[k]) * color[k], 0, 1);
+    return masu_bake_mapped_material(m->piece, &to, &from->maps, from->name);
 }

@@ -1,5 +1,6 @@
 /* assimp_mesh.c: meshes, and what of them cannot be drawn; see assimp.h. */
 #include "bake/import/assimp.h"
+#include "bake/import/vertex_color.h"
 #include "bake/mesh/triangles.h"
 
 #include <assimp/material.h>
@@ -102,6 +103,49 @@ static float *texcoords_of(masu_import *m, const struct aiMesh *mesh) {
     return out;
 }
 
+/* Triangles of one material, times a colour (or NULL). */
+static void add_part(masu_import *m, const struct aiMesh *mesh, bool bent, masu_bake_triangles *part, const double *color,
+                     masu_bake_losses *lost) {
+    part->material = masu_import_material(m, mesh->mMaterialIndex, color);
+    if (bent)
+        masu_import_bent_mesh(m, mesh, part, lost);
+    else if (!masu_bake_add_triangles(m->piece, part, lost))
+        m->full = true;
+}
+
+/* A part for each colour. Of glTF it is done already (gltf_mesh.c). */
+static void add_colored(masu_import *m, const struct aiMesh *mesh, bool bent, const masu_bake_triangles *all,
+                        masu_bake_losses *lost) {
+    masu_bake_pool pool = {0};
+    masu_import_colors colors;
+    uint32_t triangles = (uint32_t)(all->index_count / 3);
+    float *linear = masu_bake_take(&pool, (size_t)mesh->mNumVertices * 4 * sizeof *linear);
+    bool alpha = false;
+    for (size_t i = 0; i < mesh->mNumVertices; i++) {
+        const struct aiColor4D *c = &mesh->mColors[0][i];
+        const ai_real rgb[3] = {c->r, c->g, c->b};
+        for (int k = 0; k < 3; k++) linear[4 * i + (size_t)k] = (float)masu_import_decode_srgb((double)rgb[k]);
+        linear[4 * i + 3] = 1;
+        alpha = alpha || c->a < 0.999f;
+    }
+    m->translucent += alpha;
+    masu_import_group_colors(&pool, linear, mesh->mNumVertices, all->indices, triangles, true, &colors);
+    m->mixed += colors.exact ? 0 : triangles;
+    m->clamped += colors.clamped;
+    for (uint32_t g = 0; g < colors.count && !m->full; g++) {
+        const masu_import_color *c = &colors.groups[g];
+        masu_bake_buffer indices = {0};
+        for (uint32_t i = 0; i < c->count; i++)
+            masu_bake_append(&indices, all->indices + 3 * (size_t)colors.triangles[c->first + i], 3 * sizeof(uint32_t));
+        masu_bake_triangles part = *all;
+        part.indices = (const uint32_t *)(const void *)indices.data;
+        part.index_count = 3 * (size_t)c->count;
+        add_part(m, mesh, bent, &part, c->color, lost);
+        masu_bake_release(&indices);
+    }
+    masu_bake_pool_release(&pool);
+}
+
 void masu_import_mesh(masu_import *m, unsigned index) {
     const struct aiMesh *mesh = m->source->mMeshes[index];
     if (m->mesh_done[index] || !mesh) return;
@@ -123,8 +167,7 @@ void masu_import_mesh(masu_import *m, unsigned index) {
         }
     }
     _Static_assert(sizeof(struct aiVector3D) == 3 * sizeof(float), "Assimp built for double");
-    uint32_t material = masu_import_material(m, mesh->mMaterialIndex);
-    const masu_bake_maps *maps = &MASU_BAKE_MAPS_OF(m->piece)[material];
+    const masu_bake_maps *maps = &masu_import_read_material(m, mesh->mMaterialIndex)->maps;
     float *texcoords = NULL;
     if (m->wanted == MASU_BAKE_TEXTURES_FORCED || masu_bake_has_maps(maps)) {
         texcoords = texcoords_of(m, mesh);
@@ -137,13 +180,12 @@ void masu_import_mesh(masu_import *m, unsigned index) {
         .index_count = indices.bytes / sizeof(uint32_t),
         .texcoords = texcoords,
         .repeats = !maps->wrap[0] && !maps->wrap[1],
-        .material = material,
     };
     masu_bake_losses lost = {0};
-    if (to == &m->bent)
-        masu_import_bent_mesh(m, mesh, &triangles, &lost);
-    else if (!masu_bake_add_triangles(m->piece, &triangles, &lost))
-        m->full = true;
+    if (mesh->mColors[0] && triangles.index_count)
+        add_colored(m, mesh, to == &m->bent, &triangles, &lost);
+    else
+        add_part(m, mesh, to == &m->bent, &triangles, NULL, &lost);
     masu_bake_release(&indices);
     free(texcoords);
     note_losses(m, mesh, &lost);

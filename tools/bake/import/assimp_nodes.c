@@ -1,6 +1,7 @@
 /* assimp_nodes.c: nodes become instances, with the lights that hang on them; see assimp.h. */
 #include "bake/import/assimp.h"
 #include "bake/scene/camera.h"
+#include "bake/scene/sun.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -104,9 +105,24 @@ static bool convert_light(const struct aiLight *from, const masu_bake_affine *sp
     return true;
 }
 
+/* It shines along -z of its node; its units are lux. */
+static void convert_sun(masu_import *m, const struct aiLight *from, const masu_bake_affine *world) {
+    const masu_bake_vec3 origin = {0, 0, 0};
+    const ai_real color[3] = {from->mColorDiffuse.r, from->mColorDiffuse.g, from->mColorDiffuse.b};
+    masu_bake_vec3 back = {-(double)from->mDirection.x, -(double)from->mDirection.y, -(double)from->mDirection.z};
+    masu_bake_vec3 direction = masu_bake_sub(masu_bake_apply(world, back), masu_bake_apply(world, origin));
+    double irradiance[3];
+    char name[sizeof from->mName.data + 1];
+    size_t length = (size_t)masu_import_length(&from->mName);
+    memcpy(name, from->mName.data, length);
+    name[length] = '\0';
+    for (int k = 0; k < 3; k++) irradiance[k] = (double)color[k] / MASU_BAKE_PI;
+    masu_bake_add_sun(m->piece, name, direction, irradiance);
+}
+
 /* Lights of glTF alone are in known units. An aiScene ties a light to the node of its name. */
 static void convert_lights(masu_import *m, const struct aiNode *node, const masu_bake_affine *space,
-                           uint32_t instance) {
+                           const masu_bake_affine *world, uint32_t instance) {
     const struct aiScene *s = m->source;
     int length = masu_import_length(&node->mName);
     if (!m->ranges || !s->mLights || length == 0) return;
@@ -114,6 +130,10 @@ static void convert_lights(masu_import *m, const struct aiNode *node, const masu
         const struct aiLight *from = s->mLights[i];
         if (!from || masu_import_length(&from->mName) != length ||
             memcmp(from->mName.data, node->mName.data, (size_t)length) != 0) {
+            continue;
+        }
+        if (from->mType == aiLightSource_DIRECTIONAL) {
+            convert_sun(m, from, world);
             continue;
         }
         masu_blob_light light = {.parent = instance, .range = m->ranges[i]};
@@ -220,7 +240,7 @@ bool masu_import_walk(masu_import *m, bool convert) {
             bool shows = make_instance(m, &v, &world, &instance);
             if (shows) space = masu_bake_identity();
             if (m->live) kept = keep_node(m, &v, &own, &world, shows ? instance : MASU_BLOB_NONE);
-            convert_lights(m, v.node, &space, instance);
+            convert_lights(m, v.node, &space, &world, instance);
             convert_cameras(m, v.node, &world);
         }
         unsigned children = v.node->mChildren ? v.node->mNumChildren : 0;

@@ -284,7 +284,7 @@ static void make_skins(masu_import *m, masu_bake_buffer *instances) {
 /* A channel, its keys beside it until channels are sorted. */
 typedef struct track {
     masu_blob_channel channel;
-    uint32_t order;
+    uint32_t order, unordered;
     masu_bake_buffer keys;
 } track;
 
@@ -302,7 +302,20 @@ static void add_key(track *t, double time, const double value[4], int components
     for (int k = 0; k < components; k++)
         key.value[k] = (float)(turns ? value[k] / sqrt(square) : value[k]);
     const masu_blob_key *keys = (const masu_blob_key *)(const void *)t->keys.data;
-    if (count && !(key.time > keys[count - 1].time)) return;
+    if (count && !(key.time > keys[count - 1].time)) {
+        /* Several keys at one time are a step: the first holds until just before, the last one from then on. */
+        masu_blob_key *last = (masu_blob_key *)(void *)t->keys.data + count - 1;
+        float before = nextafterf(key.time, -INFINITY);
+        if (key.time < last->time) {
+            t->unordered++;
+            return;
+        }
+        if (!(before >= 0) || (count > 1 && !(before > last[-1].time))) {
+            *last = key;
+            return;
+        }
+        last->time = before;
+    }
     masu_bake_append(&t->keys, &key, sizeof key);
 }
 
@@ -384,7 +397,10 @@ static void make_clip(masu_import *m, const struct aiAnimation *from) {
         clip.channel_count++;
         NODES(m)[channel.node].needed = true;
     }
-    for (size_t i = 0; i < count; i++) masu_bake_release(&all[i].keys);
+    for (size_t i = 0; i < count; i++) {
+        m->unordered += all[i].unordered;
+        masu_bake_release(&all[i].keys);
+    }
     masu_bake_release(&tracks);
     if (clip.channel_count) masu_bake_append(&c->section[MASU_BLOB_CLIPS], &clip, sizeof clip);
 }
@@ -431,6 +447,10 @@ static void report_live(masu_import *m) {
         masu_import_format(m->warnings,
                            "%u vertices of skins have no joint: they follow their node\n",
                            m->unbound);
+    }
+    if (m->unordered) {
+        masu_import_format(m->warnings, "%u keys of animations are before the previous key: ignored\n",
+                           m->unordered);
     }
     if (m->lost_joints) {
         masu_import_format(m->warnings, "%u joints are not nodes of the file: they are static\n",

@@ -1,6 +1,5 @@
 /* gltf.c: a glTF file is opened: its containers and buffers, what it requires, and notes of what is not read;
  * see gltf.h. */
-#include "bake/base/inside.h"
 #include "bake/import/gltf.h"
 #include "bake/import/picture_path.h"
 
@@ -80,23 +79,21 @@ void *masu_gltf_take(masu_gltf *g, size_t count, size_t size) {
 
 /* ---- files and data: URIs ---- */
 
-/* Has a scheme: letters and a colon. One letter is a drive of another system, and no file here either. */
-static bool has_scheme(const char *uri) {
+bool masu_gltf_is_data(const char *uri) { return strncasecmp(uri, "data:", 5) == 0; }
+
+/* Whether a URI can name a file: its scheme is file, or it has none. One letter before a colon is a drive (C:\). */
+static bool is_file(const char *uri) {
     size_t n = strspn(uri, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789+-.");
-    return n && uri[n] == ':';
+    return *uri && (n < 2 || uri[n] != ':' || strncasecmp(uri, "file:", 5) == 0);
 }
 
-const char *masu_gltf_path(masu_gltf *g, const char *uri) {
-    if (!g->path || has_scheme(uri) || !*uri) return NULL;
-    const char *slash = strrchr(g->path, '/');
-    size_t folder = slash && *uri != '/' ? (size_t)(slash - g->path) + 1 : 0;
-    char *out = masu_gltf_take(g, folder + strlen(uri) + 1, 1);
-    memcpy(out, g->path, folder);
-    while (strncmp(uri, "./", 2) == 0) uri += 2;
-    memcpy(out + folder, uri, strlen(uri) + 1);
-    if (strchr(uri, '%') && access(out, F_OK) == 0) return out; /* a name with a % of its own */
-    masu_bake_resolve_uri(out + folder, uri);
-    return out;
+const char *masu_gltf_path(masu_gltf *g, const char *uri, bool *outside) {
+    masu_bake_buffer path = {0};
+    if (!g->path || !is_file(uri)) return NULL;
+    *outside = !masu_bake_picture_path(g->path, uri, &path);
+    const char *kept = masu_bake_take_text(&g->pool, (const char *)path.data);
+    masu_bake_release(&path);
+    return kept;
 }
 
 static bool read_whole(masu_gltf *g, const char *path, masu_gltf_bytes *out) {
@@ -121,31 +118,34 @@ static int digit64(char c) {
     return c == '+' || c == '-' ? 62 : c == '/' || c == '_' ? 63 : -1;
 }
 
+/* The bytes behind the comma have %-escapes (RFC 2397), of base64 too. Line breaks within base64 are passed over. */
 static bool decode_data(masu_gltf *g, const char *uri, masu_gltf_bytes *out) {
     const char *comma = strchr(uri, ',');
-    if (!comma || comma - uri < 7 || strncmp(comma - 7, ";base64", 7) != 0)
-        return masu_gltf_fail(g, "a data: URI that is not base64");
-    unsigned char *data = masu_gltf_take(g, strlen(comma) / 4 * 3 + 4, 1);
+    if (!comma) return masu_gltf_fail(g, "a data: URI without a comma");
+    bool base64 = comma - uri >= 7 && strncasecmp(comma - 7, ";base64", 7) == 0;
+    unsigned char *data = masu_gltf_take(g, strlen(comma) + 1, 1);
+    size_t length = masu_bake_resolve_escapes(data, comma + 1), bytes = 0;
     unsigned bits = 0, held = 0;
-    size_t bytes = 0;
-    for (const char *at = comma + 1; *at && *at != '='; at++) {
-        int digit = digit64(*at);
-        if (digit < 0) return masu_gltf_fail(g, "a data: URI with a '%c'", *at);
+    for (size_t i = 0; base64 && i < length && data[i] != '='; i++) { /* in place: four characters become three */
+        if (strchr(" \t\r\n", data[i]) && data[i]) continue;
+        int digit = digit64((char)data[i]);
+        if (digit < 0) return masu_gltf_fail(g, "a data: URI with a '%c'", data[i]);
         held = held << 6 | (unsigned)digit;
         bits += 6;
         if (bits < 8) continue;
         bits -= 8;
         data[bytes++] = (unsigned char)(held >> bits);
     }
-    *out = (masu_gltf_bytes){data, bytes};
+    *out = (masu_gltf_bytes){data, base64 ? bytes : length};
     return true;
 }
 
 bool masu_gltf_fetch(masu_gltf *g, const char *uri, masu_gltf_bytes *out) {
-    if (strncmp(uri, "data:", 5) == 0) return decode_data(g, uri, out);
-    const char *path = masu_gltf_path(g, uri);
+    bool outside = false;
+    if (masu_gltf_is_data(uri)) return decode_data(g, uri, out);
+    const char *path = masu_gltf_path(g, uri, &outside);
     if (!path) return masu_gltf_fail(g, "%.100s is not a file in the model's folder", uri);
-    if (!masu_bake_inside(g->path, path))
+    if (outside)
         return masu_gltf_fail(
             g, "%.100s is outside of the model's folder (--texture-path adds folders)", uri);
     return read_whole(g, path, out);
@@ -183,13 +183,16 @@ static uint32_t word_at(const unsigned char *p) {
     return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
 }
 
+static bool refuse_first(masu_gltf *g) {
+    return masu_gltf_fail(g, "a glTF 1 file, expected glTF 2: convert it");
+}
+
 /* The chunks of a .glb: JSON, then bytes. */
 static bool open_glb(masu_gltf *g, masu_gltf_bytes *text) {
     const unsigned char *data = g->file.data;
     size_t bytes = g->file.bytes;
     if (bytes < GLB_HEAD + CHUNK_HEAD) return masu_gltf_fail(g, "the file ends in its header");
-    g->old = word_at(data + 4) == 1;
-    if (g->old) return false;
+    if (word_at(data + 4) == 1) return refuse_first(g);
     if (word_at(data + 4) != 2)
         return masu_gltf_fail(g, "container: found version %u, expected 2", word_at(data + 4));
     if (word_at(data + 8) > bytes)
@@ -294,13 +297,14 @@ static void note_extensions(masu_gltf *g, const json_t *in, const char *name, in
 
 static bool check_version(masu_gltf *g) {
     const json_t *asset = masu_gltf_object(g, g->root, "asset");
-    g->old = json_is_number(json_object_get(asset, "version")); /* as some of glTF 1 have it */
-    const char *version = asset && !g->old ? masu_gltf_string(g, asset, "version") : NULL;
+    const json_t *number = json_object_get(asset, "version");
+    /* glTF 1 has numbers, or none at all; its elements are members of objects. */
+    if (json_is_number(number) ? json_number_value(number) < 2 : !number && json_is_object(json_object_get(g->root, "meshes")))
+        return refuse_first(g);
+    const char *version = asset ? masu_gltf_string(g, asset, "version") : NULL;
     const char *least = asset ? masu_gltf_string(g, asset, "minVersion") : NULL;
-    if (g->old || masu_gltf_failed(g)) return false;
-    g->old = (!version && json_is_object(json_object_get(g->root, "meshes"))) ||
-             (version && strncmp(version, "1.", 2) == 0);
-    if (g->old) return false;
+    if (masu_gltf_failed(g)) return false;
+    if (version && strncmp(version, "1.", 2) == 0) return refuse_first(g);
     if (!version || strncmp(version, "2.", 2) != 0)
         return masu_gltf_fail(g, "found glTF version \"%s\", expected 2.0", version ? version : "");
     return !least || strcmp(least, "2.0") == 0 ||
@@ -359,9 +363,14 @@ static bool read_all(masu_gltf *g) {
     return !masu_gltf_failed(g);
 }
 
-bool masu_gltf_is_named(const char *path) {
+bool masu_gltf_is_file(const char *path) {
     const char *dot = strrchr(path, '.');
-    return dot && (strcasecmp(dot, ".gltf") == 0 || strcasecmp(dot, ".glb") == 0);
+    char head[4] = {0};
+    if (dot && (strcasecmp(dot, ".gltf") == 0 || strcasecmp(dot, ".glb") == 0)) return true;
+    FILE *file = fopen(path, "rb");
+    bool is_glb = file && fread(head, 1, sizeof head, file) == sizeof head && memcmp(head, "glTF", 4) == 0;
+    if (file) fclose(file);
+    return is_glb;
 }
 
 bool masu_gltf_read_bytes(masu_gltf *g, const unsigned char *data, size_t bytes) {

@@ -67,7 +67,6 @@ typedef struct masu_gltf {
     masu_gltf_bytes file, chunk; /* the binary one of a .glb */
     masu_gltf_bytes *buffers, *views; /* views: those that have been unpacked */
     size_t buffer_count, view_count;
-    bool old; /* glTF 1 */
     char where[192]; /* what is being read, for errors */
     masu_gltf_note *notes;
     json_int_t variant_index; /* -1: none */
@@ -85,10 +84,9 @@ typedef struct masu_gltf {
     struct aiScene scene;
 } masu_gltf;
 
-/* Whether a file is glTF, by its name. */
-bool masu_gltf_is_named(const char *path);
-/* Reads all of it; g holds path, variant, wanted, piece, warnings and error. False: one line in error, or it is
- * `old`, which Assimp may try. */
+/* Whether a file is glTF, by its name or its first bytes (.vrm, ...). */
+bool masu_gltf_is_file(const char *path);
+/* Reads all of it; g holds path, variant, wanted, piece, warnings and error. False: one line in error. */
 bool masu_gltf_read(masu_gltf *g);
 /* The same of bytes. */
 bool masu_gltf_read_bytes(masu_gltf *g, const unsigned char *data, size_t bytes);
@@ -108,8 +106,9 @@ void masu_gltf_at(masu_gltf *g, const char *array, size_t index, const json_t *o
 const char *masu_gltf_name_of(masu_gltf *g, const char *array, size_t index, const json_t *object);
 /* The bytes of a URI: of data, or of a file beside the model. False: they are not there. */
 bool masu_gltf_fetch(masu_gltf *g, const char *uri, masu_gltf_bytes *out);
-/* The path of a URI without a scheme, '%20' resolved; of the pool. NULL: it is none. */
-const char *masu_gltf_path(masu_gltf *g, const char *uri);
+/* The path of a URI, where picture_path.h finds it; of the pool. NULL: it is of no file. outside: it must not be read. */
+const char *masu_gltf_path(masu_gltf *g, const char *uri, bool *outside);
+bool masu_gltf_is_data(const char *uri);
 void *masu_gltf_take(masu_gltf *g, size_t count, size_t size);
 
 /* ---- gltf_json.c: absent members leave the output; others of a wrong type fail ---- */

@@ -1,6 +1,6 @@
 /* gltf_clip.c: animations of a glTF file become aiAnimations, whose keys are linear; see gltf.h.
  *
- * A step becomes two keys, one float apart in time. A cubic spline is cut into lines that are off by no more than
+ * A step becomes two keys, one float apart in time (as do several keys at one time: assimp_skin.c). A cubic spline is cut into lines that are off by no more than
  * ERROR of the range of its values (of a rotation: of a unit quaternion). */
 #include "bake/import/gltf.h"
 
@@ -90,7 +90,7 @@ static void make_keys(keys *k, const float *times, uint32_t count, const float *
     if (how == CUBIC) find_error(values, count, n, k);
     for (uint32_t i = 0; i < count; i++) {
         const float *at = values + (size_t)i * n * (how == CUBIC ? 3 : 1);
-        if (how == STEP && i) {
+        if (how == STEP && i && times[i] > times[i - 1]) {
             load(value, at - n, n);
             add_key(k, (double)nextafterf(times[i], -INFINITY), value);
         }

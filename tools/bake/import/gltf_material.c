@@ -7,10 +7,9 @@
  * A coat has the mesh's normal where it names no picture, and one picture of normals is what a surface has: coat and base
  * have the same one, or only one of them has any; of two different ones the coat's is left out, with a note.
  *
- * What has no counterpart is brought near: glass of KHR_materials_transmission is thin, and what shines through has
+ * What has no counterpart is brought near, and a note says so: glass of KHR_materials_transmission is thin, and what shines through has
  * its base colour; unlit surfaces emit their colour; specular and glossiness become metallic and
  * roughness, as the appendix of that extension has it. */
-#include "bake/base/inside.h"
 #include "bake/import/gltf.h"
 
 #include <stdio.h>
@@ -37,13 +36,14 @@ static uint32_t add_image(masu_gltf *g, json_int_t index) {
     const char *uri = masu_gltf_string(g, image, "uri");
     if (!masu_gltf_index(g, image, "bufferView", g->view_count, &view)) return MASU_BLOB_NONE;
     const char *called = masu_gltf_name_of(g, "images", (size_t)index, image);
-    if (uri && strncmp(uri, "data:", 5) != 0) {
-        const char *path = masu_gltf_path(g, uri);
+    if (uri && !masu_gltf_is_data(uri)) {
+        bool outside = false;
+        const char *path = masu_gltf_path(g, uri, &outside);
         if (!path) {
             masu_gltf_note_one(g, "images that are not files in the model's folder: ignored", uri);
             return MASU_BLOB_NONE;
         }
-        about.outside = !masu_bake_inside(g->path, path);
+        about.outside = outside;
         return masu_bake_add_image(g->piece, path, &about, NULL);
     }
     if (uri ? !masu_gltf_fetch(g, uri, &bytes) : view >= 0 && !masu_gltf_view(g, view, &bytes, &stride))
@@ -234,6 +234,25 @@ static void note_texture(masu_gltf *g, const json_t *of, const char *member) {
     masu_gltf_note_one(g, what, g->where);
 }
 
+/* `name`: of the factor, for the note. */
+static float limited(masu_gltf *g, double value, double low, double high, const char *name) {
+    char what[128];
+    snprintf(what, sizeof what, "materials have a \"%s\" beyond %g to %g: clamped", name, low, high);
+    if (!(value >= low && value <= high)) masu_gltf_note_one(g, what, g->where);
+    return masu_import_clamped(value, low, high);
+}
+
+/* Of a colour, with one note. */
+static void limit_all(masu_gltf *g, double *values, int count, double high, const char *name) {
+    double least = 0, most = 0;
+    for (int k = 0; k < count; k++) {
+        least = fmin(least, values[k]);
+        most = fmax(most, values[k]);
+    }
+    (void)limited(g, least < 0 ? least : most, 0, high, name);
+    for (int k = 0; k < count; k++) values[k] = (double)masu_import_clamped(values[k], 0, high);
+}
+
 static bool read_metallic(masu_gltf *g, const json_t *about, masu_gltf_material *out, maps *m) {
     const json_t *pbr = masu_gltf_object(g, about, "pbrMetallicRoughness");
     double color[4] = {1, 1, 1, 1}, metallic = 1, roughness = 1;
@@ -245,12 +264,15 @@ static bool read_metallic(masu_gltf *g, const json_t *about, masu_gltf_material 
         !read_texture(g, pbr, "metallicRoughnessTexture", &m->all[MASU_BAKE_ROUGHNESS]))
         return false;
     m->all[MASU_BAKE_METALLIC] = m->all[MASU_BAKE_ROUGHNESS];
-    for (int k = 0; k < 3; k++) to->base_color[k] = masu_import_clamped(color[k], 0, 1);
-    out->alpha = (double)masu_import_clamped(color[3], 0, 1);
-    to->metallic = masu_import_clamped(metallic, 0, 1);
-    to->roughness = masu_import_clamped(roughness, 0, 1);
+    limit_all(g, color, 4, 1, "baseColorFactor");
+    for (int k = 0; k < 3; k++) to->base_color[k] = (float)color[k];
+    out->alpha = color[3];
+    to->metallic = limited(g, metallic, 0, 1, "metallicFactor");
+    to->roughness = limited(g, roughness, 0, 1, "roughnessFactor");
     return true;
 }
+
+#define APPROXIMATED 0.02 /* differences of reflectance up to this are not worth a note */
 
 static double brightness(const double c[3]) {
     return sqrt(0.299 * c[0] * c[0] + 0.587 * c[1] * c[1] + 0.114 * c[2] * c[2]);
@@ -277,9 +299,9 @@ static bool read_glossiness(masu_gltf *g, const json_t *about, masu_gltf_materia
         !read_texture(g, pbr, "specularGlossinessTexture", &m->all[MASU_BAKE_ROUGHNESS]))
         return false;
     m->all[MASU_BAKE_METALLIC].image = MASU_BLOB_NONE;
-    for (int k = 0; k < 3; k++) specular[k] = (double)masu_import_clamped(specular[k], 0, 1);
-    for (int k = 0; k < 4; k++) diffuse[k] = (double)masu_import_clamped(diffuse[k], 0, 1);
-    double rest = 1 - fmax(specular[0], fmax(specular[1], specular[2])), metallic = 0;
+    limit_all(g, specular, 3, 1, "specularFactor");
+    limit_all(g, diffuse, 4, 1, "diffuseFactor");
+    double rest = 1 - fmax(specular[0], fmax(specular[1], specular[2])), metallic = 0, worst = 0;
     bool pictured = m->all[MASU_BAKE_ROUGHNESS].image != MASU_BLOB_NONE;
     if (pictured) { /* the factor is that of a picture */
         masu_gltf_note_one(
@@ -293,10 +315,15 @@ static bool read_glossiness(masu_gltf *g, const json_t *about, masu_gltf_materia
         double from_specular = (specular[k] - 0.04 * (1 - metallic)) / fmax(metallic, 1e-6);
         double share = metallic * metallic;
         to->base_color[k] = masu_import_clamped(from_diffuse * (1 - share) + from_specular * share, 0, 1);
+        double got = (double)to->base_color[k] * (1 - metallic) * 0.96;
+        double got_specular = 0.04 * (1 - metallic) + (double)to->base_color[k] * metallic;
+        worst = fmax(worst, fmax(fabs(got - diffuse[k] * rest), fabs(got_specular - specular[k])));
     }
+    if (worst > APPROXIMATED && !pictured)
+        masu_gltf_note_one(g, "materials have a specular colour that metallic and roughness can only approximate", g->where);
     out->alpha = diffuse[3];
     to->metallic = (float)metallic;
-    to->roughness = pictured ? 1 : masu_import_clamped(1 - gloss, 0, 1);
+    to->roughness = pictured ? 1 : 1 - limited(g, gloss, 0, 1, "glossinessFactor");
     out->given.maps.gloss = pictured;
     return true;
 }
@@ -307,7 +334,7 @@ static bool read_alpha(masu_gltf *g, const json_t *about, masu_gltf_material *ou
     if (!masu_gltf_number(g, about, "alphaCutoff", &cutoff)) return false;
     masu_bake_maps *maps = &out->given.maps;
     out->blends = mode && strcmp(mode, "BLEND") == 0;
-    maps->cutoff = masu_import_clamped(cutoff, 0, 1);
+    maps->cutoff = limited(g, cutoff, 0, 1, "alphaCutoff");
     if (g->wanted == MASU_BAKE_TEXTURES_OFF) return !masu_gltf_failed(g);
     maps->alpha = mode && strcmp(mode, "MASK") == 0 ? MASU_BAKE_ALPHA_MASK
                   : out->blends                     ? MASU_BAKE_ALPHA_BLEND
@@ -322,8 +349,9 @@ static bool read_emission(masu_gltf *g, const json_t *about, masu_gltf_material 
         !masu_gltf_number(g, strong, "emissiveStrength", &strength) ||
         !read_texture(g, about, "emissiveTexture", &m->all[MASU_BAKE_EMISSIVE]))
         return false;
-    for (int k = 0; k < 3; k++)
-        out->given.material.emissive[k] = masu_import_clamped(color[k] * strength, 0, 65504);
+    for (int k = 0; k < 3; k++) color[k] *= strength;
+    limit_all(g, color, 3, 65504, "emissiveFactor");
+    for (int k = 0; k < 3; k++) out->given.material.emissive[k] = (float)color[k];
     return true;
 }
 
@@ -344,7 +372,10 @@ static bool read_specular(masu_gltf *g, const json_t *about, masu_blob_material 
     if (!specular && !refraction) return true;
     double root = (index - 1) / (index + 1), share = 0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2];
     double reflectance = index > 0 ? root * root : 1; /* 0 stands for infinity */
-    to->specular = masu_import_clamped(reflectance * share * factor / 0.08, 0, 1);
+    double specular_share = reflectance * share * factor / 0.08;
+    if (!(specular_share >= 0 && specular_share <= 1 + 1e-6) && to->metallic < 1)
+        masu_gltf_note_one(g, "materials reflect more than 0.08 at normal incidence (ior, specular factors): clamped", g->where);
+    to->specular = masu_import_clamped(specular_share, 0, 1);
     return true;
 }
 
@@ -379,7 +410,7 @@ static bool read_normals(masu_gltf *g, const json_t *about, masu_gltf_material *
         !masu_gltf_number(g, above ? masu_gltf_object(g, above, "clearcoatNormalTexture") : NULL, "scale", &scale[1]))
         return false;
     settle_normals(g, out, m, &coat, scale);
-    out->given.maps.normal_scale = masu_import_clamped(scale[0], -16, 16);
+    out->given.maps.normal_scale = limited(g, scale[0], -16, 16, "normalTexture.scale");
     return !masu_gltf_failed(g);
 }
 
@@ -389,9 +420,9 @@ static bool read_coat(masu_gltf *g, const json_t *about, masu_blob_material *to,
     if (!masu_gltf_number(g, coat, "clearcoatFactor", &factor) ||
         !masu_gltf_number(g, coat, "clearcoatRoughnessFactor", &roughness))
         return false;
-    to->coat = masu_import_clamped(factor, 0, 1);
+    to->coat = limited(g, factor, 0, 1, "clearcoatFactor");
     if (!(to->coat > 0)) return true;
-    to->coat_roughness = masu_import_clamped(roughness, 0, 1);
+    to->coat_roughness = limited(g, roughness, 0, 1, "clearcoatRoughnessFactor");
     return read_texture(g, coat, "clearcoatTexture", &m->all[MASU_BAKE_COAT]) &&
            read_texture(g, coat, "clearcoatRoughnessTexture", &m->all[MASU_BAKE_COAT_ROUGHNESS]);
 }
@@ -403,8 +434,14 @@ static bool read_transmission(masu_gltf *g, const json_t *about, masu_gltf_mater
     double factor = 0;
     if (!masu_gltf_number(g, through, "transmissionFactor", &factor)) return false;
     note_texture(g, through, "transmissionTexture");
-    factor = (double)masu_import_clamped(factor, 0, 1) * (1 - (double)to->metallic);
-    if (!(factor > 0) || out->given.maps.alpha == MASU_BAKE_ALPHA_MASK) return true;
+    factor = (double)limited(g, factor, 0, 1, "transmissionFactor") * (1 - (double)to->metallic);
+    if (!(factor > 0)) return true;
+    if (out->given.maps.alpha == MASU_BAKE_ALPHA_MASK) {
+        masu_gltf_note_one(g, "materials transmit light and are alpha-tested: drawn without transmission", g->where);
+        return true;
+    }
+    if (to->roughness > 0)
+        masu_gltf_note_one(g, "materials transmit light and are rough: what is behind them is drawn sharp", g->where);
     out->alpha = (out->blends ? out->alpha : 1) * (1 - factor);
     out->given.maps.tinted = 1;
     out->blends = true;
@@ -420,6 +457,7 @@ static void make_unlit(masu_gltf_material *out, maps *m) {
     to->metallic = to->specular = to->coat = 0;
     to->roughness = 1;
     out->unlit = true;
+    out->given.maps.unlit = 1;
     m->all[MASU_BAKE_NORMAL].image = m->all[MASU_BAKE_ROUGHNESS].image = MASU_BLOB_NONE;
     m->all[MASU_BAKE_METALLIC].image = m->all[MASU_BAKE_OCCLUSION].image = MASU_BLOB_NONE;
     m->all[MASU_BAKE_COAT].image = m->all[MASU_BAKE_COAT_ROUGHNESS].image = MASU_BLOB_NONE;
@@ -438,11 +476,12 @@ static bool read_material(masu_gltf *g, const json_t *about, masu_gltf_material 
         !read_texture(g, about, "occlusionTexture", &m.all[MASU_BAKE_OCCLUSION]) ||
         !masu_gltf_number(g, masu_gltf_object(g, about, "occlusionTexture"), "strength", &strength))
         return false;
-    if (!near(strength, 1) && m.all[MASU_BAKE_OCCLUSION].image != MASU_BLOB_NONE)
-        masu_gltf_note_one(g, "occlusion maps have a strength, which is not supported", g->where);
+    out->given.maps.occlusion = limited(g, strength, 0, 1, "occlusionTexture.strength");
     out->given.maps.single = !json_is_true(json_object_get(about, "doubleSided"));
     if (masu_gltf_extension(g, about, "KHR_materials_unlit")) make_unlit(out, &m);
     settle(g, &m, out);
+    out->given.maps.dark = json_object_get(about, "emissiveTexture") && g->wanted != MASU_BAKE_TEXTURES_OFF &&
+                           out->given.maps.image[MASU_BAKE_EMISSIVE] == MASU_BLOB_NONE;
     return !masu_gltf_failed(g);
 }
 

@@ -1,18 +1,15 @@
 /* gltf_mesh.c: primitives of a glTF file become aiMeshes; see gltf.h.
  *
- * A vertex has no room for a colour (blob.h), so COLOR_0 goes into materials: a primitive of one colour gets a
- * material of that colour; one of several is cut into parts of one colour each. Up to PARTS_MAX colours that do
- * not change within a triangle are kept as they are; beyond, triangles take the mean of their corners, and like
- * ones together. A note says where that happens.
+ * COLOR_0 becomes materials (vertex_color.h).
  *
  * Morph weights are those of the rest pose. Where normals are missing, faces are flat, as glTF wants it. */
 #include "bake/import/gltf.h"
+#include "bake/import/vertex_color.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define PARTS_MAX 64u
 #define VERTICES_MAX ((uint32_t)INT32_MAX / 4)
 #define JOINT_SETS 4
 
@@ -134,7 +131,8 @@ static void note_attributes(masu_gltf *g, const source *s, const masu_gltf_mater
         char what[96];
         bool joints = strncmp(key, "JOINTS_", 7) == 0 || strncmp(key, "WEIGHTS_", 8) == 0;
         if (!strcmp(key, "POSITION") || !strcmp(key, "NORMAL") || !strcmp(key, "TANGENT") ||
-            !strcmp(key, "COLOR_0") || !strncmp(key, "TEXCOORD_", 9) || (joints && skinned))
+            !strcmp(key, "COLOR_0") || !strncmp(key, "TEXCOORD_", 9) ||
+            (joints && skinned && strtol(strchr(key, '_') + 1, NULL, 10) < JOINT_SETS))
             continue;
         snprintf(what, sizeof what, "primitives have %.48s, which is not supported", key);
         masu_gltf_note_one(g, what, s->name);
@@ -307,79 +305,17 @@ static unsigned add_mesh(masu_gltf *g, const vertices *v, const struct aiMesh *l
     return (unsigned)(g->meshes.bytes / sizeof mesh - 1);
 }
 
-typedef struct key {
-    float color[4];
-    uint32_t triangle;
-} key;
-
-static int by_color(const void *a, const void *b) {
-    const key *x = a, *y = b;
-    int order = memcmp(x->color, y->color, sizeof x->color);
-    return order ? order : x->triangle < y->triangle ? -1 : x->triangle > y->triangle;
-}
-
-static float level_of(float c, double levels) {
-    double s = sqrt((double)masu_import_clamped((double)c, 0, 1));
-    return (float)(floor(s * levels + 0.5) / levels);
-}
-
-/* Triangles in the order of their colours, of `levels` in each channel (0: as they are). Returns how many colours. */
-static uint32_t sort_colors(const key *means, uint32_t count, double levels, key *out) {
-    uint32_t colors = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        out[i] = means[i];
-        for (int k = 0; k < 4 && levels > 0; k++) out[i].color[k] = level_of(means[i].color[k], levels);
-    }
-    qsort(out, count, sizeof *out, by_color);
-    for (uint32_t i = 0; i < count; i++)
-        colors += !i || memcmp(out[i].color, out[i - 1].color, sizeof out->color) != 0;
-    return colors;
-}
-
-/* The mean colour of each triangle; whether all are of one colour each. */
-static bool mean_colors(const vertices *v, uint32_t triangles, key *means) {
-    bool plain = true;
-    for (uint32_t i = 0; i < triangles; i++) {
-        const uint32_t *corner = v->indices + 3 * (size_t)i;
-        means[i] = (key){{0}, i};
-        if (corner[0] >= v->count || corner[1] >= v->count || corner[2] >= v->count) continue;
-        for (int k = 0; k < 4; k++) {
-            float c[3];
-            for (int j = 0; j < 3; j++) {
-                c[j] = masu_import_clamped((double)v->colors[4 * (size_t)corner[j] + (size_t)k], 0, 1);
-            }
-            plain = plain && fabsf(c[0] - c[1]) < 1.0f / 1024 && fabsf(c[0] - c[2]) < 1.0f / 1024;
-            means[i].color[k] = c[0] == c[1] && c[0] == c[2] ? c[0] : (c[0] + c[1] + c[2]) / 3;
-        }
-    }
-    return plain;
-}
-
 /* A mesh for each colour. */
 static void add_parts(masu_gltf *g, const vertices *v, const struct aiMesh *like, json_int_t material,
                       uint32_t triangles, masu_bake_buffer *numbers, const char *name) {
-    key *means = masu_gltf_take(g, triangles, sizeof *means), *sorted = masu_gltf_take(g, triangles, sizeof *sorted);
-    uint32_t *list = masu_gltf_take(g, triangles, sizeof *list);
-    bool plain = mean_colors(v, triangles, means);
-    if (!g->materials[material < 0 ? g->material_count : (size_t)material].blends) {
-        for (uint32_t i = 0; i < triangles; i++) means[i].color[3] = 1; /* alpha counts for nothing */
-    }
-    double levels = 128;
-    bool exact = sort_colors(means, triangles, 0, sorted) <= PARTS_MAX;
-    while (!exact && levels > 1 && sort_colors(means, triangles, levels, sorted) > PARTS_MAX) levels /= 2;
-    if (!exact || !plain) {
-        masu_gltf_note_many(g, triangles,
-                            "triangles have colours at their vertices: each is of one colour, like ones of the same",
-                            name);
-    }
-    for (uint32_t i = 0, next; i < triangles; i = next) {
-        double sum[4] = {0, 0, 0, 0}, color[4];
-        for (next = i; next < triangles && !memcmp(sorted[next].color, sorted[i].color, sizeof sorted->color); next++) {
-            list[next] = sorted[next].triangle;
-            for (int k = 0; k < 4; k++) sum[k] += (double)means[list[next]].color[k];
-        }
-        for (int k = 0; k < 4; k++) color[k] = exact ? (double)sorted[i].color[k] : sum[k] / (next - i);
-        unsigned number = add_mesh(g, v, like, list + i, next - i, masu_gltf_given(g, material, color));
+    masu_import_colors colors;
+    bool blends = g->materials[material < 0 ? g->material_count : (size_t)material].blends;
+    masu_import_group_colors(&g->pool, v->colors, v->count, v->indices, triangles, !blends, &colors);
+    if (!colors.exact) masu_gltf_note_many(g, triangles, MASU_IMPORT_COLORS_MIXED, name);
+    if (colors.clamped) masu_gltf_note_many(g, colors.clamped, MASU_IMPORT_COLORS_CLAMPED, name);
+    for (uint32_t i = 0; i < colors.count; i++) {
+        const masu_import_color *c = &colors.groups[i];
+        unsigned number = add_mesh(g, v, like, colors.triangles + c->first, c->count, masu_gltf_given(g, material, c->color));
         masu_bake_append(numbers, &number, sizeof number);
     }
 }

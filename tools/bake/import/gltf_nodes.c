@@ -4,6 +4,7 @@
  * Skins, clips and lights find nodes by name in an aiScene, so names are made unique here: the first of a name
  * keeps it, others get their number behind it; who has none is called "nodes[3]". */
 #include "bake/import/gltf.h"
+#include "bake/scene/sun.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -89,8 +90,6 @@ static bool link_children(masu_gltf *g, size_t index, const json_t *node, bool *
         json_int_t number = json_is_integer(child) ? json_integer_value(child) : -1;
         if (number < 0 || (size_t)number >= g->node_count)
             return masu_gltf_fail(g, "children[%zu] is not a node", i);
-        if (is_child[number])
-            return masu_gltf_fail(g, "nodes[%lld] is a child of two nodes", (long long)number);
         is_child[number] = true;
         to->mChildren[to->mNumChildren++] = &g->nodes[number];
     }
@@ -109,15 +108,11 @@ static bool find_roots(masu_gltf *g, const bool *is_child, struct aiNode *root) 
     if (scene) (void)masu_gltf_string(g, scene, "name");
     const json_t *nodes = scene ? masu_gltf_array(g, scene, "nodes") : NULL;
     root->mChildren = masu_gltf_take(g, scene ? json_array_size(nodes) : g->node_count, sizeof *root->mChildren);
-    bool *taken = masu_gltf_take(g, g->node_count, 1);
     for (size_t i = 0; i < json_array_size(nodes); i++) {
         const json_t *node = json_array_get(nodes, i);
         json_int_t number = json_is_integer(node) ? json_integer_value(node) : -1;
         if (number < 0 || (size_t)number >= g->node_count)
             return masu_gltf_fail(g, "\"nodes\"[%zu] is not a node", i);
-        if (is_child[number] || taken[number])
-            return masu_gltf_fail(g, "nodes[%lld] is a root and below a node, or a root twice", (long long)number);
-        taken[number] = true;
         root->mChildren[root->mNumChildren++] = &g->nodes[number];
     }
     for (size_t i = 0; i < g->node_count && !scene; i++) {
@@ -148,11 +143,20 @@ static bool add_light(masu_gltf *g, const json_t *node, const struct aiNode *at)
         !masu_gltf_number(g, light, "range", &range) || !masu_gltf_number(g, spot, "innerConeAngle", &inner) ||
         !masu_gltf_number(g, spot, "outerConeAngle", &outer))
         return false;
+    bool directional = type && !strcmp(type, "directional");
+    if (!directional && !(type && (!strcmp(type, "point") || !strcmp(type, "spot")))) {
+        masu_gltf_note_one(g, "lights have an unknown type: ignored", at->mName.data);
+        return true;
+    }
+    if (!(range >= 0 && range <= 1e9) || (spot && !(outer > 0 && outer <= MASU_BAKE_PI / 2 + 1e-6 && inner >= 0 && inner <= outer)) ||
+        !(intensity >= 0 && fmin(color[0], fmin(color[1], color[2])) >= 0 &&
+          intensity * fmax(color[0], fmax(color[1], color[2])) <= MASU_BAKE_PI * (directional ? MASU_BAKE_SUN_COLOR_MAX : 1e9)))
+        masu_gltf_note_one(g, "lights have a colour, range or angle out of range: clamped", at->mName.data);
     struct aiLight *made = masu_gltf_take(g, 1, sizeof *made);
     made->mName = at->mName;
-    made->mType = type && !strcmp(type, "point")  ? aiLightSource_POINT
-                  : type && !strcmp(type, "spot") ? aiLightSource_SPOT
-                                                  : aiLightSource_DIRECTIONAL;
+    made->mType = directional                 ? aiLightSource_DIRECTIONAL
+                  : strcmp(type, "spot") == 0 ? aiLightSource_SPOT
+                                              : aiLightSource_POINT;
     made->mDirection.z = -1;
     made->mColorDiffuse = (struct aiColor3D){(float)(color[0] * intensity), (float)(color[1] * intensity),
                                              (float)(color[2] * intensity)};
@@ -196,6 +200,7 @@ static bool add_instances(masu_gltf *g, const json_t *about, struct aiNode *node
     const json_t *attributes = masu_gltf_object(g, about, "attributes");
     const float *values[3] = {NULL, NULL, NULL};
     uint32_t count = 0;
+    size_t known = 0;
     for (int a = 0; a < 3; a++) {
         json_int_t index = -1;
         uint32_t own = 0;
@@ -205,6 +210,9 @@ static bool add_instances(masu_gltf *g, const json_t *about, struct aiNode *node
         if (count && own != count) return masu_gltf_fail(g, "EXT_mesh_gpu_instancing: %s has %u, others %u", names[a], own, count);
         count = own;
     }
+    for (int a = 0; a < 3; a++) known += json_object_get(attributes, names[a]) != NULL;
+    if (json_object_size(attributes) > known)
+        masu_gltf_note_one(g, "nodes have attributes of instances other than their transforms: ignored", node->mName.data);
     if (!count) return !attributes || masu_gltf_fail(g, "EXT_mesh_gpu_instancing has no attributes");
     static const char what[] = "instances";
     if (count > INSTANCES_MAX) return masu_gltf_fail(g, "more than 4 million %s", what);
@@ -276,6 +284,16 @@ static bool check_skins(masu_gltf *g) {
 
 /* ---- the whole ---- */
 
+/* The last `count` nodes of a stack: the first one of them comes off it first. */
+static void reverse(masu_bake_buffer *stack, size_t count) {
+    struct aiNode **at = (struct aiNode **)(void *)(stack->data + stack->bytes) - count;
+    for (size_t i = 0; i < count / 2; i++) {
+        struct aiNode *node = at[i];
+        at[i] = at[count - 1 - i];
+        at[count - 1 - i] = node;
+    }
+}
+
 bool masu_gltf_read_nodes(masu_gltf *g) {
     g->node_count = masu_gltf_count(g, "nodes");
     g->mesh_count = masu_gltf_count(g, "meshes");
@@ -296,15 +314,29 @@ bool masu_gltf_read_nodes(masu_gltf *g) {
     }
     g->where[0] = '\0';
     if (!check_skins(g) || !find_roots(g, is_child, root)) return false;
-    /* Depth first, with a stack of our own. A node is below one other at most, and roots below none: no cycle. */
-    struct aiNode **stack = masu_gltf_take(g, g->node_count + 1, sizeof *stack);
-    size_t top = 0;
-    for (unsigned i = root->mNumChildren; i > 0; i--) stack[top++] = root->mChildren[i - 1];
-    while (top) {
-        struct aiNode *node = stack[--top];
-        for (unsigned i = node->mNumChildren; i > 0; i--) stack[top++] = node->mChildren[i - 1];
-        if (!fill_node(g, (size_t)(node - g->nodes))) return false;
+    /* Depth first, with a stack of our own. What is shown is a tree: each node is reached once. Exporters leave nodes
+     * outside of the scene whose children are in it; these are not reached. */
+    bool *reached = masu_gltf_take(g, g->node_count, 1);
+    masu_bake_buffer stack = {0};
+    masu_bake_append(&stack, root->mChildren, root->mNumChildren * sizeof(struct aiNode *));
+    reverse(&stack, root->mNumChildren);
+    bool good = true;
+    while (good && stack.bytes) {
+        struct aiNode *node;
+        stack.bytes -= sizeof node;
+        memcpy(&node, stack.data + stack.bytes, sizeof node);
+        size_t index = (size_t)(node - g->nodes);
+        if (reached[index]) {
+            good = masu_gltf_fail(g, "nodes[%zu] is twice in the scene: as a root, or a child of two nodes", index);
+            break;
+        }
+        reached[index] = true;
+        masu_bake_append(&stack, node->mChildren, node->mNumChildren * sizeof node);
+        reverse(&stack, node->mNumChildren);
+        good = fill_node(g, index);
     }
+    masu_bake_release(&stack);
+    if (!good) return false;
     g->scene.mRootNode = root->mNumChildren == 1 ? root->mChildren[0] : root;
     return true;
 }

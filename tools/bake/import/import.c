@@ -1,6 +1,6 @@
 /* import.c: a model is read in a child process; see import.h.
  *
- * What travels through the pipe: for each kind of section, for pictures, cameras, warnings and the error,
+ * What travels through the pipe: for each kind of section, for pictures, cameras, suns, warnings and the error,
  * a uint64 of bytes and the bytes; then END, which proves that the child got that far. */
 #define _POSIX_C_SOURCE 200809L
 #include "bake/import/import.h"
@@ -60,6 +60,7 @@ static void import_in_child(void *argument, int fd) {
     send_buffer(fd, &piece.image_text);
     send_buffer(fd, &piece.image_data);
     send_buffer(fd, &piece.cameras);
+    send_buffer(fd, &piece.suns);
     send_buffer(fd, &warnings);
     send_buffer(fd, &error);
     masu_bake_send(fd, &(uint64_t){END}, sizeof(uint64_t));
@@ -96,7 +97,7 @@ static bool take_piece(const masu_bake_buffer *from, masu_bake_content *piece,
     uint64_t end = 0;
     return take_buffer(&r, &piece->maps) && take_buffer(&r, &piece->images) &&
            take_buffer(&r, &piece->image_text) && take_buffer(&r, &piece->image_data) &&
-           take_buffer(&r, &piece->cameras) &&
+           take_buffer(&r, &piece->cameras) && take_buffer(&r, &piece->suns) &&
            take_buffer(&r, warnings) && take_buffer(&r, error) && take(&r, &end, sizeof end) &&
            end == END && r.left == 0;
 }

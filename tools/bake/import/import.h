@@ -3,7 +3,7 @@
  *   import.c   runs the reader in a child process and checks what comes back
  *   assimp.c   the reader: Assimp's scene to ours
  *   gltf.c     our reader of glTF, whose scene has Assimp's form
- *   acc.c      a dialect that Assimp does not know
+ *   acc.c, stl.c   dialects that Assimp does not know
  *   picture_path.c   where pictures are that models name
  *
  * Model files are hostile: the importing library is large, and asserts, overruns and endless loops

@@ -1,11 +1,13 @@
 /* picture_path.c: see picture_path.h. */
 #define _XOPEN_SOURCE 700
 #include "bake/import/picture_path.h"
+#include "bake/base/file.h"
 #include "bake/base/inside.h"
 #include "bake/import/acc.h"
 
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <unistd.h>
 
 static int hex(char c) {
@@ -15,11 +17,27 @@ static int hex(char c) {
                                   : -1;
 }
 
+/* The byte of "%20" at `from`, or -1. */
+static int escape_at(const char *from) {
+    int high = *from == '%' ? hex(from[1]) : -1, low = high >= 0 ? hex(from[2]) : -1;
+    return low >= 0 ? high * 16 + low : -1;
+}
+
+size_t masu_bake_resolve_escapes(unsigned char *to, const char *from) {
+    size_t bytes = 0;
+    for (; *from; from++) {
+        int escape = escape_at(from);
+        to[bytes++] = escape >= 0 ? (unsigned char)escape : (unsigned char)*from;
+        if (escape >= 0) from += 2;
+    }
+    return bytes;
+}
+
 void masu_bake_resolve_uri(char *to, const char *from) {
     for (; *from; from++) {
-        int high = *from == '%' ? hex(from[1]) : -1, low = high >= 0 ? hex(from[2]) : -1;
-        if (low >= 0 && (high || low)) {
-            *to++ = (char)(high * 16 + low);
+        int escape = escape_at(from);
+        if (escape > 0) {
+            *to++ = (char)escape;
             from += 2;
         } else {
             *to++ = *from == '\\' ? '/' : *from;
@@ -33,10 +51,16 @@ static const char *last_part(const char *path) {
     return slash ? slash + 1 : path;
 }
 
-/* Puts "FOLDER/NAME" into `out` and says whether it is there. folder_bytes: with its '/', or 0. */
-static bool is_there(const char *folder, size_t folder_bytes, const char *name, masu_bake_buffer *out) {
+/* Puts "FOLDER/NAME" into `out`, in any_case as it is spelled there, and says whether it is there. folder_bytes: with
+ * its '/', or 0. */
+static bool is_there(const char *folder, size_t folder_bytes, const char *name, bool any_case, masu_bake_buffer *out) {
     out->bytes = 0;
     masu_bake_append(out, folder, folder_bytes);
+    if (any_case) {
+        if (!masu_bake_append_spelling(out, name)) return false;
+        masu_bake_append(out, "", 1);
+        return true;
+    }
     masu_bake_append(out, name, strlen(name) + 1);
     return *name && access((const char *)out->data, F_OK) == 0;
 }
@@ -51,8 +75,8 @@ static bool step_up(const char *path, size_t *bytes, const char *wanted) {
 }
 
 /* The same of what the model may name. */
-static bool is_own(const char *model, size_t folder_bytes, const char *name, masu_bake_buffer *out) {
-    return is_there(model, folder_bytes, name, out) && masu_bake_inside(model, (const char *)out->data);
+static bool is_own(const char *model, size_t folder_bytes, const char *name, bool any_case, masu_bake_buffer *out) {
+    return is_there(model, folder_bytes, name, any_case, out) && masu_bake_inside(model, (const char *)out->data);
 }
 
 /* In the shared folder of the TORCS installation that the model is of. */
@@ -69,15 +93,24 @@ static bool is_shared(const char *model, const char *name, masu_bake_buffer *out
         masu_bake_buffer folder = {0};
         masu_bake_append(&folder, path, is_car ? car : track);
         masu_bake_append_text(&folder, "/data/textures/");
-        found = is_there((const char *)folder.data, folder.bytes, last_part(name), out);
+        found = is_there((const char *)folder.data, folder.bytes, last_part(name), false, out) ||
+                is_there((const char *)folder.data, folder.bytes, last_part(name), true, out);
         masu_bake_release(&folder);
     }
     free(path);
     return found;
 }
 
+/* The path of a file: URI ("file:///C:/a", "file://host/a", "file:a"), or the name as it is. */
+static const char *without_scheme(const char *name) {
+    if (strncasecmp(name, "file:", 5) != 0) return name;
+    name += 5;
+    return strncmp(name, "//", 2) == 0 ? name + 2 + strcspn(name + 2, "/") : name;
+}
+
 bool masu_bake_picture_path(const char *model, const char *name, masu_bake_buffer *out) {
     masu_bake_buffer plain = {0}, resolved = {0};
+    name = without_scheme(name);
     while (strncmp(name, "./", 2) == 0 || strncmp(name, ".\\", 2) == 0) name += 2;
     masu_bake_append(&plain, name, strlen(name) + 1);
     masu_bake_append(&resolved, name, strlen(name) + 1);
@@ -87,10 +120,15 @@ bool masu_bake_picture_path(const char *model, const char *name, masu_bake_buffe
     }
     masu_bake_resolve_uri(other, other);
     size_t beside = (size_t)(last_part(model) - model), folder = *own == '/' ? 0 : beside;
-    bool may = is_own(model, folder, own, out) || (*other != '/' && is_own(model, folder, other, out)) ||
-               is_own(model, beside, last_part(other), out) || is_shared(model, other, out);
+    bool may = false;
+    for (int any_case = 0; any_case < 2 && !may; any_case++) {
+        may = (!(any_case && *own == '/') && is_own(model, folder, own, any_case, out)) ||
+              (*other != '/' && is_own(model, folder, other, any_case, out)) ||
+              is_own(model, beside, last_part(other), any_case, out);
+    }
+    may = may || is_shared(model, other, out);
     if (!may) {
-        (void)is_there(model, folder, own, out);
+        (void)is_there(model, folder, own, false, out);
         may = masu_bake_inside(model, (const char *)out->data);
     }
     masu_bake_release(&plain);

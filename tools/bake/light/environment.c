@@ -134,6 +134,7 @@ static bool ends_in(const char *path, const char *end) {
 bool masu_bake_load_panorama(const char *path, masu_bake_panorama *out) {
     memset(out, 0, sizeof *out);
     out->factor = 1;
+    out->name = path;
     bool good = false;
     if (ends_in(path, ".pfm")) {
         good = read_pfm(path, out);
@@ -418,8 +419,23 @@ static void project(const masu_bake_panorama *p, float sh[9][4]) {
         for (uint32_t c = 0; c < 3; c++) sh[k][c] = (float)(scale[k] * sum[k][c]);
 }
 
+static void warn_of_clamped(const masu_bake_panorama *p) {
+    size_t count = 0, pixels = (size_t)p->width * p->height;
+    double most = 0;
+    for (size_t i = 0; i < pixels; i++) {
+        const float *c = p->rgb + 3 * i;
+        double own = p->factor * (double)fmaxf(c[0], fmaxf(c[1], c[2]));
+        count += own > RADIANCE_MAX;
+        most = fmax(most, own);
+    }
+    if (count)
+        masu_cli_warn("%s: %zu of %zu pixels are above %g: clamped (the largest is %g)", p->name ? p->name : "environment",
+                      count, pixels, RADIANCE_MAX, most);
+}
+
 void masu_bake_add_environment(const masu_bake_panorama *p, uint32_t size,
                                masu_bake_content *content) {
+    warn_of_clamped(p);
     masu_blob_environment_map map = {.size = size};
     masu_bake_buffer *texels = &content->section[MASU_BLOB_ENVIRONMENT_TEXELS];
     pyramid source;

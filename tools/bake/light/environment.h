@@ -13,6 +13,7 @@ typedef struct masu_bake_panorama {
     float *rgb;    /* finite, >= 0 */
     double turn;   /* radians: azimuth of the picture's middle, from +Z towards +X */
     double factor; /* on radiance */
+    const char *name; /* for warnings, or NULL */
 } masu_bake_panorama;
 
 /* On false the error has been reported. free() rgb. */
@@ -21,7 +22,7 @@ bool masu_bake_load_panorama(const char *path, masu_bake_panorama *out);
 /* Radiance of a unit direction, bilinear between the picture's pixels. */
 void masu_bake_panorama_at(const masu_bake_panorama *p, const double direction[3], double out[3]);
 
-/* Adds both sections. size: as in the blob. */
+/* Adds both sections. size: as in the blob. A warning counts the pixels above what a texel holds. */
 void masu_bake_add_environment(const masu_bake_panorama *p, uint32_t size,
                                masu_bake_content *content);
 

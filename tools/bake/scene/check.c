@@ -3,6 +3,7 @@
  * is judged by the runtime's own reader, masu_scene_bind. */
 #include "bake/scene/check.h"
 #include "bake/scene/camera.h"
+#include "bake/scene/sun.h"
 #include "scene/punctual_light.h"
 #include "scene/skin.h"
 
@@ -140,7 +141,7 @@ static const char *check_maps(const masu_bake_content *c) {
         }
         if (m->gloss > 1 || m->additive > 1 || m->single > 1 || m->alpha > MASU_BAKE_ALPHA_COVERS || m->relief > 2 ||
             m->wrap[0] > 2 || m->wrap[1] > 2 || !in_range(&m->cutoff, 1, 0, 1) ||
-            !in_range(&m->normal_scale, 1, -16, 16)) {
+            !in_range(&m->normal_scale, 1, -16, 16) || !in_range(&m->occlusion, 1, 0, 1)) {
             return "a map out of range";
         }
     }
@@ -287,5 +288,6 @@ const char *masu_bake_check(const masu_bake_content *piece) {
     if (!problem) problem = check_clips(piece);
     if (!problem) problem = check_skins(piece);
     if (!problem) problem = masu_bake_check_cameras(piece);
+    if (!problem) problem = masu_bake_check_suns(piece);
     return problem;
 }

@@ -82,6 +82,7 @@ void masu_bake_content_release(masu_bake_content *content) {
     masu_bake_release(&content->image_text);
     masu_bake_release(&content->image_data);
     masu_bake_release(&content->cameras);
+    masu_bake_release(&content->suns);
     masu_bake_release(&content->traced);
     masu_bake_release(&content->pictures);
     masu_bake_release(&content->picture_texels);
@@ -156,6 +157,7 @@ masu_bake_maps masu_bake_no_maps(void) {
     for (int i = 0; i < MASU_BAKE_MAPS; i++) maps.image[i] = MASU_BLOB_NONE;
     maps.cutoff = 0.5f;
     maps.normal_scale = 1;
+    maps.occlusion = 1;
     return maps;
 }
 

@@ -9,6 +9,7 @@
  *   check.c     the rules of blob.h, before a piece from another process is trusted
  *   groups.c    what is culled together
  *   camera.c    cameras of model files
+ *   sun.c       their directional lights
  *
  * Whoever declares a content owns it, and releases it.
  * Running out of memory ends the program with a message; nothing else here can fail unless it says
@@ -28,6 +29,7 @@ typedef struct masu_bake_content {
     masu_bake_buffer image_text; /* their names, each with its NUL */
     masu_bake_buffer image_data; /* files that lie inside a model */
     masu_bake_buffer cameras;    /* masu_bake_camera: bake/scene/camera.h */
+    masu_bake_buffer suns;       /* masu_bake_sun: bake/scene/sun.h */
     float sdf_glossiest;         /* least roughness of the SDF's surfaces */
     masu_bake_buffer
         traced; /* what the scene says of the first so many instances: bake/mesh/bvh.h */
@@ -93,8 +95,11 @@ typedef struct masu_bake_maps {
     uint8_t relief;                  /* MASU_BAKE_RELIEF_* */
     uint8_t relief_of;               /* MASU_BAKE_RELIEF_OF_* */
     uint8_t tinted;                  /* with ALPHA_BLEND: what shines through has the base colour */
-    uint8_t reserved[2];             /* no padding: it is compared as bytes */
+    uint8_t unlit;                   /* emission is the base colour: without its picture, the factor */
+    uint8_t dark;                    /* emission was meant for a map that the importer left out */
     float cutoff, normal_scale;      /* normal_scale: of heights their strength */
+    float occlusion;                 /* strength of the occlusion map, 0..1 */
+    /* no padding: it is compared as bytes */
 } masu_bake_maps;
 
 uint32_t masu_bake_stride(uint32_t kind); /* sizeof the section's element; 1 for NAMES */

@@ -66,7 +66,10 @@ static void apply_override(const masu_bake_override *o, masu_blob_material *to,
     if (o->meso) to->meso = v->meso;
     if (o->detail) memcpy(to->detail, v->detail, sizeof v->detail);
     if (o->opacity) to->opacity = v->opacity;
-    if (o->emissive) memcpy(to->emissive, v->emissive, sizeof v->emissive);
+    if (o->emissive) {
+        memcpy(to->emissive, v->emissive, sizeof v->emissive);
+        maps->dark = 0;
+    }
     for (int i = 0; i < MASU_BAKE_MAPS; i++) {
         if (!o->map[i]) continue;
         maps->image[i] = o->maps.image[i];
@@ -74,6 +77,7 @@ static void apply_override(const masu_bake_override *o, masu_blob_material *to,
         own[i] = true;
     }
     if (o->map[MASU_BAKE_ROUGHNESS]) maps->gloss = 0;
+    if (o->map[MASU_BAKE_OCCLUSION]) maps->occlusion = 1;
     if (o->map[MASU_BAKE_NORMAL] && maps->relief) { /* the strength was of another picture */
         maps->relief = 0;
         maps->normal_scale = 1;

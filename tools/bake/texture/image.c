@@ -2,6 +2,7 @@
  * text of what is wrong. */
 #define _POSIX_C_SOURCE 200809L
 #include "bake/texture/image.h"
+#include "bake/base/file.h"
 #include "bake/base/process.h"
 #include "cli/cli.h"
 
@@ -18,6 +19,7 @@
 
 typedef struct head {
     uint32_t width, height; /* 0: text follows */
+    uint32_t whole[2];      /* as in masu_bake_picture */
 } head;
 
 const char *masu_bake_image_format(const unsigned char *data, size_t bytes, const char *name) {
@@ -56,7 +58,7 @@ typedef struct job {
 } job;
 
 static void give_up(int fd, const char *why) {
-    head h = {0, 0};
+    head h = {0};
     masu_bake_send(fd, &h, sizeof h);
     masu_bake_send(fd, why, strlen(why));
 }
@@ -84,11 +86,13 @@ static FILE *find(const job *j, off_t *bytes) {
     FILE *file = j->image->outside ? NULL : open_regular(j->name, bytes);
     int cause = j->image->outside ? EACCES : errno;
     const char *slash = strrchr(j->name, '/'), *base = slash ? slash + 1 : j->name;
-    char path[4096];
     for (const char *at = j->directories; !file && at && *at;) {
         size_t length = strcspn(at, ":");
-        int wrote = snprintf(path, sizeof path, "%.*s/%s", (int)length, at, base);
-        if (wrote > 0 && (size_t)wrote < sizeof path) file = open_regular(path, bytes);
+        masu_bake_buffer path = {0};
+        masu_bake_append(&path, at, length);
+        masu_bake_append(&path, "/", 1);
+        if (masu_bake_append_spelling(&path, base)) file = open_regular((const char *)path.data, bytes);
+        masu_bake_release(&path);
         at += length + (at[length] == ':');
     }
     if (!file) errno = cause;
@@ -181,7 +185,11 @@ static void send_texels(MagickWand *wand, int sizes, bool solid, int fd) {
         return;
     }
     for (size_t i = 0; i < w * h && (solid || !MagickGetImageAlphaChannel(wand)); i++) texels[4 * i + 3] = 255;
-    head answer = {(uint32_t)w, (uint32_t)h};
+    head answer = {(uint32_t)w, (uint32_t)h, {0, 0}};
+    if (width > MASU_TEXTURE_SIZE_MAX || height > MASU_TEXTURE_SIZE_MAX) {
+        answer.whole[0] = (uint32_t)width;
+        answer.whole[1] = (uint32_t)height;
+    }
     masu_bake_send(fd, &answer, sizeof answer);
     masu_bake_send(fd, texels, w * h * 4);
 }
@@ -244,10 +252,10 @@ bool masu_bake_read_image(const masu_bake_content *content, uint32_t image, cons
     const masu_bake_image *about = &MASU_BAKE_IMAGES(content)[image];
     const char *name = (const char *)content->image_text.data + about->name;
     job j = {content, about, name, directories, sizes};
-    *picture = (masu_bake_picture){0, 0, {0}};
+    *picture = (masu_bake_picture){0};
     masu_bake_buffer *out = &picture->rgba;
     masu_bake_result result = masu_bake_fork(read_in_child, &j, MASU_BAKE_IMAGE_SECONDS, out);
-    head h = {0, 0};
+    head h = {0};
     bool good = false;
     if (result.end == MASU_BAKE_TIMEOUT) {
         warn(name, "decoding took too long");
@@ -272,5 +280,7 @@ bool masu_bake_read_image(const masu_bake_content *content, uint32_t image, cons
     out->bytes -= sizeof h;
     picture->width = h.width;
     picture->height = h.height;
+    picture->whole_width = h.whole[0];
+    picture->whole_height = h.whole[1];
     return true;
 }

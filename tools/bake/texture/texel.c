@@ -92,11 +92,76 @@ static void gather(const uint8_t *rgba, uint32_t width, uint32_t height, uint32_
     }
 }
 
+/* For a value of 8 bits the two ends of 5 or 6 bits whose mean (2 a + b) / 3 is nearest; of equals the nearest ends,
+ * which decoders of little precision like best. */
+typedef struct ends {
+    uint8_t a, b;
+    float value;
+} ends;
+
+static float expanded(uint32_t c, uint32_t bits) { return (float)(c << (8 - bits) | c >> (2 * bits - 8)); }
+
+/* The nearest to `wanted` that is not far from `other`. */
+static ends find_ends(float wanted, float other, uint32_t bits) {
+    ends best = {0, 0, 0};
+    float least = 1e9f;
+    for (uint32_t a = 0; a < 1u << bits; a++) {
+        for (uint32_t b = 0; b < 1u << bits; b++) {
+            float value = (2 * expanded(a, bits) + expanded(b, bits)) / 3;
+            float error = fmaxf(fabsf(value - wanted), 1.35f * fabsf(value - other)) + 1e-4f * fabsf((float)a - (float)b);
+            if (!(error < least)) continue;
+            least = error;
+            best = (ends){(uint8_t)a, (uint8_t)b, value};
+        }
+    }
+    return best;
+}
+
+/* Red and blue, green, and green beside an equal red and blue, so that greys have no tint. */
+static const ends *ends_of(int kind) {
+    static ends tables[3][256];
+    static bool filled;
+    for (uint32_t v = 0; v < 256 && !filled; v++) {
+        tables[0][v] = find_ends((float)v, (float)v, 5);
+        tables[1][v] = find_ends((float)v, (float)v, 6);
+        tables[2][v] = find_ends((float)v, tables[0][v].value, 6);
+    }
+    filled = true;
+    return tables[kind];
+}
+
+/* A block of one colour. */
+static void solid_block(const uint8_t rgb[3], unsigned char out[8]) {
+    bool grey = rgb[0] == rgb[1] && rgb[1] == rgb[2];
+    ends r = ends_of(0)[rgb[0]], g = ends_of(grey ? 2 : 1)[rgb[1]], b = ends_of(0)[rgb[2]];
+    uint32_t first = (uint32_t)r.a << 11 | (uint32_t)g.a << 5 | b.a, second = (uint32_t)r.b << 11 | (uint32_t)g.b << 5 | b.b;
+    /* The larger end is the first one: else there is no mean of thirds. */
+    uint32_t index = first == second ? 0 : first > second ? 2 : 3;
+    uint32_t high = first > second ? first : second, low = first > second ? second : first;
+    const unsigned char block[8] = {(unsigned char)high, (unsigned char)(high >> 8), (unsigned char)low, (unsigned char)(low >> 8),
+                                    (unsigned char)(index * 85), (unsigned char)(index * 85), (unsigned char)(index * 85),
+                                    (unsigned char)(index * 85)};
+    memcpy(out, block, sizeof block);
+}
+
+static bool is_solid(const uint8_t texels[64]) {
+    for (int i = 4; i < 64; i++) {
+        if (i % 4 != 3 && texels[i] != texels[i % 4]) return false;
+    }
+    return true;
+}
+
 static void compress(uint32_t format, const uint8_t texels[64], unsigned char *out) {
     uint8_t part[32];
     switch (format) {
-    case MASU_TEXTURE_BC1_SRGB: stb_compress_dxt_block(out, texels, 0, STB_DXT_HIGHQUAL); break;
-    case MASU_TEXTURE_BC3_SRGB: stb_compress_dxt_block(out, texels, 1, STB_DXT_HIGHQUAL); break;
+    case MASU_TEXTURE_BC1_SRGB:
+        stb_compress_dxt_block(out, texels, 0, STB_DXT_HIGHQUAL);
+        if (is_solid(texels)) solid_block(texels, out);
+        break;
+    case MASU_TEXTURE_BC3_SRGB:
+        stb_compress_dxt_block(out, texels, 1, STB_DXT_HIGHQUAL);
+        if (is_solid(texels)) solid_block(texels, out + 8);
+        break;
     case MASU_TEXTURE_BC4:
         for (int i = 0; i < 16; i++) part[i] = texels[4 * i];
         stb_compress_bc4_block(out, part);

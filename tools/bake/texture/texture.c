@@ -19,6 +19,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define SHOWN_ONCE_SLACK 0.001f /* exporters round coordinates */
+#define EMISSION_MAX 16.0f /* shaders/shared/pack.glsl: masu_emissive_range */
+
 /* What to make; compared as bytes. */
 typedef struct request {
     uint32_t slot;
@@ -27,7 +30,7 @@ typedef struct request {
     uint8_t gloss, alpha;
     uint8_t relief, clamped[2]; /* of a picture of normals or heights; what it does at its edge counts for heights */
     uint8_t reserved;
-    float cutoff, normal_scale, roughness;
+    float cutoff, normal_scale, roughness, occlusion;
 } request;
 
 typedef struct texture {
@@ -48,16 +51,27 @@ typedef struct maker {
     const char *directories;
     int sizes;
     bool *failed; /* by image: warned of once */
+    bool *reduced;
     texture *textures;
     uint32_t count, capacity;
     uint32_t *order;
 } maker;
 
+static const char *name_of(const maker *m, uint32_t image) {
+    const masu_bake_content *c = m->content;
+    return (const char *)c->image_text.data + MASU_BAKE_IMAGES(c)[image].name;
+}
+
 static bool read_picture(maker *m, uint32_t image, masu_bake_picture *picture) {
-    *picture = (masu_bake_picture){0, 0, {0}};
+    *picture = (masu_bake_picture){0};
     if (image == MASU_BLOB_NONE || m->failed[image]) return false;
     bool good = masu_bake_read_image(m->content, image, m->directories, m->sizes, picture);
     m->failed[image] = !good;
+    if (good && !m->sizes && !m->reduced[image] && picture->whole_width) {
+        m->reduced[image] = true;
+        masu_cli_warn("texture %s: %u x %u texels, reduced to %u x %u", name_of(m, image), picture->whole_width,
+                      picture->whole_height, picture->width, picture->height);
+    }
     return good;
 }
 
@@ -191,11 +205,6 @@ static void finish(texture *t, float *level, float *normals) {
 }
 
 /* ---- the three kinds ---- */
-
-static const char *name_of(const maker *m, uint32_t image) {
-    const masu_bake_content *c = m->content;
-    return (const char *)c->image_text.data + MASU_BAKE_IMAGES(c)[image].name;
-}
 
 /* What alpha is meant for, where the model does not say: nothing where no texel is under the cut-off,
  * else a mask, if the picture looks like one. Never blending: it costs a draw for each thing, and an order that meshes
@@ -333,6 +342,7 @@ static void make_surface(maker *m, texture *t) {
                                 : 1;
                 }
                 if (has[0] && t->wanted.gloss) to[0] = 1 - to[0];
+                if (t->wanted.slot == MASU_SLOT_OCCLUSION) to[0] = 1 - t->wanted.occlusion * (1 - to[0]);
                 to[2] = to[3] = 1;
             }
         }
@@ -424,6 +434,7 @@ static void request_all(maker *m, const masu_bake_maps *maps, const masu_blob_ma
         case MASU_SLOT_OCCLUSION:
             r.image[0] = maps->image[MASU_BAKE_OCCLUSION];
             r.channel[0] = maps->channel[MASU_BAKE_OCCLUSION];
+            r.occlusion = maps->occlusion;
             break;
         case MASU_SLOT_COAT:
             if (!(material->coat > 0)) break;
@@ -559,11 +570,16 @@ static void point(maker *m, masu_blob_material *material, const masu_bake_maps *
         }
         if (t->absolute) material->roughness = 1;
     }
-    /* An emissive factor is often white and meant for its map: without the map it would be a lamp. */
-    if (maps->image[MASU_BAKE_EMISSIVE] != MASU_BLOB_NONE &&
+    /* An emissive factor is often white and meant for its map: without the map it would be a lamp. Only an unlit
+     * material keeps it, since it is its colour. */
+    if ((maps->image[MASU_BAKE_EMISSIVE] != MASU_BLOB_NONE || maps->dark) && !maps->unlit &&
         slots[MASU_SLOT_EMISSIVE] == MASU_BLOB_NONE) {
         memset(material->emissive, 0, sizeof material->emissive);
     }
+    float emission = fmaxf(material->emissive[0], fmaxf(material->emissive[1], material->emissive[2]));
+    if (emission > EMISSION_MAX && !(flags & MASU_MATERIAL_IS_BLEND))
+        masu_cli_warn("material \"%s\": emission of up to %g: opaque surfaces emit at most %g",
+                      masu_bake_name_text(m->content, material->name), (double)emission, (double)EMISSION_MAX);
     if (maps->additive && flags & MASU_MATERIAL_IS_BLEND) flags |= MASU_MATERIAL_IS_ADDITIVE;
     if (maps->tinted && flags & MASU_MATERIAL_IS_BLEND) flags |= MASU_MATERIAL_IS_TINTED;
     if (maps->single) flags |= MASU_MATERIAL_IS_SINGLE;
@@ -586,13 +602,42 @@ static void forget(maker *m) {
     m->count = 0;
 }
 
+/* Along an axis on which coordinates stay in 0..1 a texture is shown once: clamped, its edge does not take colour from
+ * the opposite one. Not where a detail repeats it more often. */
+static void clamp_what_is_shown_once(masu_bake_content *content) {
+    size_t materials = (size_t)masu_bake_count(content, MASU_BLOB_MATERIALS);
+    const float *texcoords = MASU_BAKE_ARRAY(content, MASU_BLOB_TEXCOORDS, const float);
+    if (!masu_bake_count(content, MASU_BLOB_TEXCOORDS)) return;
+    bool(*repeats)[2] = masu_bake_allocate(materials * sizeof *repeats);
+    memset(repeats, 0, materials * sizeof *repeats);
+    for (uint64_t i = 0; i < masu_bake_count(content, MASU_BLOB_PRIMITIVES); i++) {
+        const masu_blob_primitive *p = &MASU_BAKE_PRIMITIVES(content)[i];
+        for (uint32_t v = 0; v < p->vertex_count; v++) {
+            for (int k = 0; k < 2; k++) {
+                float at = texcoords[2 * ((size_t)p->first_vertex + v) + (size_t)k];
+                if (!(at >= -SHOWN_ONCE_SLACK && at <= 1 + SHOWN_ONCE_SLACK)) repeats[p->material][k] = true;
+            }
+        }
+    }
+    for (size_t i = 0; i < materials; i++) {
+        masu_bake_maps *maps = &MASU_BAKE_MAPS_OF(content)[i];
+        for (int k = 0; k < 2; k++) {
+            if (!repeats[i][k] && maps->wrap[k] == 0 && MASU_BAKE_MATERIALS(content)[i].detail[k] == 1) maps->wrap[k] = 1;
+        }
+    }
+    free(repeats);
+}
+
 bool masu_bake_make_textures(masu_bake_content *content, const char *directories) {
     size_t materials = (size_t)masu_bake_count(content, MASU_BLOB_MATERIALS);
     size_t images = content->images.bytes / sizeof(masu_bake_image);
     maker m = {.content = content, .directories = directories};
+    clamp_what_is_shown_once(content);
     uint32_t(*slots)[MASU_SLOT_COUNT] = masu_bake_allocate(materials * sizeof *slots);
     m.failed = masu_bake_allocate(images);
     memset(m.failed, 0, images);
+    m.reduced = masu_bake_allocate(images);
+    memset(m.reduced, 0, images);
     uint32_t arrays = 0, made = 0;
     for (m.sizes = 0; m.sizes < MASU_BAKE_SIZES; m.sizes++) {
         forget(&m);
@@ -623,6 +668,7 @@ bool masu_bake_make_textures(masu_bake_content *content, const char *directories
     free(m.textures);
     free(m.order);
     free(m.failed);
+    free(m.reduced);
     free(slots);
     return good;
 }

@@ -1,0 +1,34 @@
+/* vertex_color.h: colours of vertices become materials, since a vertex has no room for a colour (blob.h).
+ *
+ * The triangles of a mesh are grouped by colour; each group gets a material of its colour. Up to 64 colours that do not
+ * change within a triangle are kept exactly. Else a triangle has the mean of its corners, and similar ones are drawn
+ * in one colour, which importers report. */
+#ifndef MASU_BAKE_VERTEX_COLOR_H
+#define MASU_BAKE_VERTEX_COLOR_H
+
+#include "bake/base/buffer.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#define MASU_IMPORT_COLORS_MIXED "triangles have colours at their vertices: each is of one colour, like ones of the same"
+#define MASU_IMPORT_COLORS_CLAMPED "triangles have colours at their vertices beyond 0 to 1: clamped"
+
+typedef struct masu_import_color {
+    double color[4];       /* linear, with alpha */
+    uint32_t first, count; /* of `triangles` */
+} masu_import_color;
+
+typedef struct masu_import_colors {
+    masu_import_color *groups;
+    uint32_t count;
+    uint32_t *triangles; /* their numbers, in the order of the groups */
+    bool exact;          /* each triangle has its own colour */
+    uint32_t clamped;    /* triangles with a colour beyond 0 to 1 */
+} masu_import_colors;
+
+/* colors: linear, 4 for each vertex. opaque: alpha counts for nothing. What is returned is of the pool. */
+void masu_import_group_colors(masu_bake_pool *pool, const float *colors, uint32_t vertices, const uint32_t *indices,
+                              uint32_t triangles, bool opaque, masu_import_colors *out);
+
+#endif
