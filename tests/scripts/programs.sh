@@ -165,6 +165,8 @@ grep -q '^"a","s",8,8,not run,' r.csv || fail "r.csv: $(cat r.csv)"
 grep -q '^| not run | a 8x8 ' r.md || fail "r.md: $(cat r.md)"
 python3 -c 'import sys, xml.dom.minidom; xml.dom.minidom.parse(sys.argv[1])' r.xml 2> /dev/null || ! command -v python3 > /dev/null ||
     fail "r.xml is no XML"
+refuses 1 '1 of 1 scenes are not baked in i (s): .make scenes' masu conform --suite suite.json --scenes i --junit r.xml
+grep -q '<error message="1 of 1 scenes' r.xml || fail "r.xml does not say why: $(cat r.xml)"
 refuses 1 'tri.obj/x: cannot create the folder' masu conform --suite suite.json --scenes scenes --images tri.obj/x
 
 # The programs find the suites that the build has put beside them, also if masu alone was built.

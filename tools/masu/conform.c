@@ -80,8 +80,8 @@ static char *command_of(const options *o) {
     return NULL;
 }
 
-/* Scenes of these cases that are not in the folder: one line. */
-static void warn_of_missing(const options *o, const masu_conform_result *results, uint32_t n) {
+/* Scenes of these cases that are not in the folder: a warning. False: there is none of them, and `error` says so. */
+static bool has_scenes(const options *o, const masu_conform_result *results, uint32_t n, char *error, size_t size) {
     char names[200] = "";
     uint32_t missing = 0, most = 0;
     for (uint32_t i = 0; i < n; i++) {
@@ -97,8 +97,10 @@ static void warn_of_missing(const options *o, const masu_conform_result *results
         missing++;
     }
     if (missing)
-        masu_cli_warn("%u of %u scenes are not baked in %s (%s): `make scenes` in Masu's source tree bakes them", missing,
-                      most, o->scene_folder, names);
+        snprintf(error, size, "%u of %u scenes are not baked in %.2000s (%s): `make scenes` in Masu's source tree bakes them",
+                 missing, most, o->scene_folder, names);
+    if (missing && missing < most) masu_cli_warn("%s", error);
+    return !missing || missing < most;
 }
 
 /* Every case was not run, for this reason. */
@@ -121,7 +123,7 @@ static int run_cases(const options *o, const masu_suite *suite, masu_conform_res
                        .runs = o->runs};
     masu_headless_desc asked = o->host; /* each case asks for ray queries by itself */
     masu_use_rays(o->rays, &c.ray_query, &asked);
-    warn_of_missing(o, results, n);
+    if (!has_scenes(o, results, n, error, sizeof error)) return none_run(o, suite, results, n, error);
     int code = write_reports(o, suite, results, n, "", false); /* a driver may crash when it is opened */
     if (code) return code;
     if (!masu_conform_open(&c, error, sizeof error)) return none_run(o, suite, results, n, error);
