@@ -1,6 +1,7 @@
-/* recordings.c: which recordings there are. One per (frame in flight, viewport, rung, target, and where a rung draws
- * cascades of the shadow map less often than every frame: set of those that it draws). masu_init makes them, after
- * masu_resize the first frame that needs one; they are submitted again and again. */
+/* recordings.c: which recordings there are. One per (frame in flight, viewport, rung, target,
+ * and where a rung draws cascades of the shadow map less often than every frame: set of those
+ * that it draws). masu_init makes them, after masu_resize the first frame that needs one; they
+ * are submitted again and again. */
 #include "device/recordings.h"
 
 #include "base/error.h"
@@ -41,8 +42,8 @@ static masu_result create_queries(masu_device *m, masu_detail *detail) {
     return MASU_FAILED(r, m->queries) ? masu_fail_vulkan(detail, r, "vkCreateQueryPool") : MASU_OK;
 }
 
-/* The variants of a frame's recording: one for each set of cascades that it may draw. `again`: they may have been
- * recorded before, or in part. */
+/* The variants of a frame's recording: one for each set of cascades that it may draw. `again`:
+ * they may have been recorded before, or in part. */
 static masu_result record_variants(masu_device *m, const masu_draws *draws, masu_recording_id id,
                                    int again, masu_detail *detail) {
     masu_frame_plan *plan = m->plan;

@@ -19,8 +19,9 @@ static inline uint32_t masu_recording_of(const masu_frame_plan *plan, masu_recor
 /* Descriptor sets, queries, recordings of frames and of loading; pipelines come before. */
 masu_result masu_record(masu_device *m, const masu_draws *draws, masu_detail *detail);
 
-/* Discards the recordings of frames, of which none may be pending, and records those of a rung for
- * plan and targets as they now are. masu_record_missing records the others, also what a failure leaves out. */
+/* Discards the recordings of frames, of which none may be pending, and records those of a rung
+ * for plan and targets as they now are. masu_record_missing records the others, also what a
+ * failure leaves out. */
 masu_result masu_record_again(masu_device *m, const masu_draws *draws, uint32_t rung,
                               masu_detail *detail);
 

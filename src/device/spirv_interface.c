@@ -1,4 +1,5 @@
-/* spirv_interface.c: see spirv_interface.h. Numbers are those of the SPIR-V specification, sections 3.20 and 3.49.8. */
+/* spirv_interface.c: see spirv_interface.h. Numbers are those of the SPIR-V specification,
+ * sections 3.20 and 3.49.8. */
 #include "device/spirv_interface.h"
 
 #include <stddef.h>
@@ -13,7 +14,8 @@ enum {
     DESCRIPTOR_SET = 34
 };
 
-/* The next OpDecorate with a number behind it, from *at on; NULL: there is none. All stand before the first type. */
+/* The next OpDecorate with a number behind it, from *at on; NULL: there is none. All stand
+ * before the first type. */
 static const uint32_t *next_decoration(const uint32_t *words, uint64_t count, uint64_t *at) {
     while (*at < count) {
         const uint32_t *op = words + *at;
