@@ -341,8 +341,8 @@ typedef struct masu_device_block {
                               masu_role_need.device_address is 1 */
     VkDeviceSize offset;   /* bytes, a multiple of masu_memory.roles[].alignment */
     VkDeviceSize bytes;
-    void *mapped;         /* host pointer to `offset`, aligned as it, at most to 64 bytes; required for
-                             roles with host_visible 1 */
+    void *mapped; /* host pointer to `offset`, aligned like it, but at most to 64 bytes; required
+                     for roles with host_visible 1 */
     uint32_t memory_type; /* index; one of masu_memory.roles[].type_bits */
 } masu_device_block;
 
@@ -600,8 +600,9 @@ typedef struct masu_desc {
      * Without a scene a count is MASU_ERROR_ARGUMENT. */
     uint32_t viewport_count;
     masu_viewport viewports[MASU_MAX_VIEWPORTS];
-    /* Flag: masu_resize may change the output size, up to `output`. Costs 32 host bytes per draw of
-     * a G-buffer pass, LODs included, and a bounds test in the last pass. Scene only. */
+    /* Flag: masu_resize may change the output size, up to `output`, and the targets. Costs 32 host
+     * bytes per draw of a G-buffer pass, LODs included, a bounds test in the last pass, and command
+     * buffers and descriptor sets for MASU_MAX_TARGETS targets. Scene only. */
     uint32_t resizable;
     /* Ray-tracing backend for reflections of polygons: VK_KHR_ray_query, or the built-in compute
      * BVH, which needs no device feature. The image is the same.
@@ -722,9 +723,10 @@ MASU_API void masu_pipelines_info_of(const masu_pipelines *pipelines, masu_pipel
  * after the calls of masu_load. The frames of this renderer must have finished on the GPU; its own
  * masu_load steps, frames and loads of other renderers may be running.
  *   `output`      1 x 1 to desc.output
- *   `targets`     1 to MASU_MAX_TARGETS, with the format, storage, layout and encoding of masu_init;
- *                 format, layout and encoding may be 0 for these. The arrays are read during the
- *                 call; the handles must be valid until the next masu_resize or masu_destroy
+ *   `targets`     1 to MASU_MAX_TARGETS images with the format, storage, layout, encoding, white
+ *                 and peak of masu_init; all but storage may be 0 for these. The arrays are read
+ *                 during the call; the handles must be valid until the next masu_resize or
+ *                 masu_destroy
  *   `viewports`   desc.viewport_count elements, or NULL if that is 0
  * The next frame is a cut. Frame numbers, slots, transforms and the governor's state continue.
  *
@@ -1110,8 +1112,9 @@ typedef struct masu_frame_desc {
 } masu_frame_desc;
 
 /* Writes the uniforms of a frame and returns the command buffer to submit. Allocates nothing, and
- * records nothing except after masu_resize. Call it when the slot is free: the frame that masu_frame returned frames_in_flight
- * calls ago has finished on the GPU. commands->rung is the rung of the frame.
+ * records nothing except after masu_resize. Call it when the slot is free: the frame that
+ * masu_frame returned frames_in_flight calls ago has finished on the GPU. commands->rung is the
+ * rung of the frame.
  *   MASU_ERROR_ARGUMENT   rung, target, camera, light or a parameter is out of range or not finite;
  *                         MASU_RUNG_AUTO without a governor; an array is NULL with a count above 0
  *   MASU_ERROR_LIMIT      more particles, decals or lines than desc.reserve
@@ -1523,7 +1526,7 @@ typedef struct masu_punctual_light_state {
     float radius;  /* of the source, metres, 1e-6..1e9: smallest distance d for the falloff */
     uint32_t spot; /* 0: point, 1: spot */
     /* Spot: angles from the direction, radians, 0 <= inner <= outer <= pi: full intensity up to
-     * inner, 0 from outer on. */
+     * inner, 0 from outer on. A point does not use them, but they are checked. */
     float inner, outer;
 } masu_punctual_light_state;
 

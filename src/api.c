@@ -1,7 +1,8 @@
 /* api.c: the public functions for the life of a renderer (masu_init, masu_load, masu_destroy) and for
  * its frames. The other api_*.c contain the rest of masu.h. */
+#include "api_governor.h"
+#include "api_stats.h"
 #include "base/error.h"
-#include "plan/compile.h"
 #include "device/capabilities.h"
 #include "device/device_objects.h"
 #include "device/load.h"
@@ -9,11 +10,10 @@
 #include "device/ray_query.h"
 #include "device/recordings.h"
 #include "device/shaders.h"
+#include "plan/compile.h"
 #include "quality/governor_desc.h"
-#include "api_governor.h"
 #include "renderer.h"
 #include "scene/scene.h"
-#include "api_stats.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -272,8 +272,9 @@ void masu_destroy(masu_renderer *m) {
 
 masu_result masu_check_lost(const masu_renderer *m, masu_detail *detail) {
     if (!m->lost) return MASU_OK;
-    masu_result result = masu_fail(detail, MASU_ERROR_DEVICE_LOST, "device", 0, 0,
-                                   "the device was lost in an earlier call: only masu_destroy is of use");
+    masu_result result =
+        masu_fail(detail, MASU_ERROR_DEVICE_LOST, "device", 0, 0,
+                  "the device was lost in an earlier call: only masu_destroy is of use");
     if (detail) detail->vulkan = VK_ERROR_DEVICE_LOST;
     return result;
 }

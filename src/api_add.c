@@ -58,7 +58,8 @@ static void copy_instance(masu_renderer *m, uint32_t place, uint32_t from, uint3
     masu_reflections_copy(&m->reflections, &m->plan, place, from, to);
     for (uint32_t i = 0, light; i < m->plan.scene.lights; i++) {
         masu_punctual_light_state state = m->lights.states[i];
-        if (!masu_handle_lives(&m->lights.handles, i) || state.instance.id != (uint64_t)from + 1) continue;
+        if (!masu_handle_lives(&m->lights.handles, i) || state.instance.id != (uint64_t)from + 1)
+            continue;
         state.instance.id = masu_handle_at(&m->instances.handles, to);
         (void)masu_lights_add(&m->lights, &m->instances, &state, &light, NULL); /* there is room */
     }
@@ -157,8 +158,9 @@ masu_result masu_punctual_light_remove(masu_renderer *m, masu_punctual_light lig
     if (!m) return MASU_ERROR_ARGUMENT;
     masu_result result = masu_handle_check(&m->lights.handles, "light", light.id, &i, &m->error);
     if (!result && i < masu_own_lights(&m->plan)) {
-        result = masu_fail(&m->error, MASU_ERROR_ARGUMENT, "light", 0, i,
-                           "light %u is part of the scene and cannot be removed: set its color to 0", i);
+        result =
+            masu_fail(&m->error, MASU_ERROR_ARGUMENT, "light", 0, i,
+                      "light %u is part of the scene and cannot be removed: set its color to 0", i);
     }
     if (result) return masu_finish(m, result);
     masu_lights_remove(&m->lights, i);

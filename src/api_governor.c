@@ -78,7 +78,8 @@ static masu_result check(masu_renderer *m, const void *given, const char *what) 
     if (!m) return MASU_ERROR_ARGUMENT;
     if (!given) return masu_finish_null(m, what);
     if (m->governor) return MASU_OK;
-    return masu_finish(m, masu_fail(&m->error, MASU_ERROR_STATE, "governor.mode", MASU_GOVERNOR_ON, MASU_GOVERNOR_OFF,
+    return masu_finish(m, masu_fail(&m->error, MASU_ERROR_STATE, "governor.mode", MASU_GOVERNOR_ON,
+                                    MASU_GOVERNOR_OFF,
                                     "there is no governor: governor.mode was OFF in masu_init"));
 }
 
@@ -93,9 +94,10 @@ masu_result masu_governor_set(masu_renderer *m, const masu_governor_setting *set
                             .rung = setting->rung,
                             .dwell = setting->dwell};
     if (d.mode == MASU_GOVERNOR_OFF) {
-        return masu_finish(m, masu_fail(&m->error, MASU_ERROR_ARGUMENT, "governor.mode", MASU_GOVERNOR_ON,
-                                        MASU_GOVERNOR_OFF,
-                                        "governor.mode is 0 (OFF), allowed are 1 (ON) and 2 (FIXED)"));
+        return masu_finish(m,
+                           masu_fail(&m->error, MASU_ERROR_ARGUMENT, "governor.mode",
+                                     MASU_GOVERNOR_ON, MASU_GOVERNOR_OFF,
+                                     "governor.mode is 0 (OFF), allowed are 1 (ON) and 2 (FIXED)"));
     }
     result = masu_finish(m, masu_governor_check(&d, m->plan.desc.rung_count, &m->error));
     if (!result) masu_governor_adjust(m->governor, &d);

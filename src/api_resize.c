@@ -2,8 +2,8 @@
  * allocated for the largest output; passes of a smaller one use their upper left part, as rungs of a
  * smaller scale do. Only recordings depend on sizes: those of the rung in use are recorded again, the
  * others when a frame needs them. */
-#include "base/error.h"
 #include "api_governor.h"
+#include "base/error.h"
 #include "device/device_objects.h"
 #include "device/recordings.h"
 #include "plan/compile.h"
@@ -40,9 +40,11 @@ static masu_result check_targets(const masu_targets *now, const masu_targets *t,
     if (t->encoding != now->encoding)
         return differs(detail, "targets.encoding", (uint64_t)now->encoding, (uint64_t)t->encoding);
     if (t->white != now->white || t->peak != now->peak) {
-        return masu_fail(detail, MASU_ERROR_ARGUMENT, t->white != now->white ? "targets.white" : "targets.peak", 0, 0,
-                         "masu_resize: targets.white and peak are %g and %g, those of masu_init were %g and %g",
-                         (double)t->white, (double)t->peak, (double)now->white, (double)now->peak);
+        return masu_fail(
+            detail, MASU_ERROR_ARGUMENT, t->white != now->white ? "targets.white" : "targets.peak",
+            0, 0,
+            "masu_resize: targets.white and peak are %g and %g, those of masu_init were %g and %g",
+            (double)t->white, (double)t->peak, (double)now->white, (double)now->peak);
     }
     return MASU_OK;
 }

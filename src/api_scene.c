@@ -8,7 +8,8 @@
 /* ---- Instances ------------------------------------------------------------------------------- */
 
 static masu_result check_instance(masu_renderer *m, masu_instance instance, uint32_t *index) {
-    return masu_finish(m, masu_handle_check(&m->instances.handles, "instance", instance.id, index, &m->error));
+    return masu_finish(
+        m, masu_handle_check(&m->instances.handles, "instance", instance.id, index, &m->error));
 }
 
 masu_instance masu_instance_at(const masu_renderer *m, uint32_t index) {
@@ -25,7 +26,8 @@ masu_result masu_instance_set_transform(masu_renderer *m, masu_instance instance
     uint32_t i;
     if (!m || !rows) return masu_finish_null(m, "rows");
     masu_result result = check_instance(m, instance, &i);
-    if (!result) result = masu_finish(m, masu_instances_set(&m->instances, &m->plan, i, rows, &m->error));
+    if (!result)
+        result = masu_finish(m, masu_instances_set(&m->instances, &m->plan, i, rows, &m->error));
     if (!result) masu_bounds_move(&m->bounds, &m->plan, &m->instances, i);
     return result;
 }
@@ -61,7 +63,8 @@ masu_result masu_instance_show(masu_renderer *m, masu_instance instance, uint32_
 /* ---- Models ---------------------------------------------------------------------------------- */
 
 static masu_result check_model(masu_renderer *m, masu_model model, uint32_t *index) {
-    return masu_finish(m, masu_handle_check(&m->models.handles, "model", model.id, index, &m->error));
+    return masu_finish(m,
+                       masu_handle_check(&m->models.handles, "model", model.id, index, &m->error));
 }
 
 masu_model masu_model_find(const masu_renderer *m, const char *name) {
@@ -90,7 +93,8 @@ masu_result masu_model_set_transform(masu_renderer *m, masu_model model, const f
     if (!m || !rows) return masu_finish_null(m, "rows");
     masu_result result = check_model(m, model, &i);
     if (result) return result;
-    return masu_finish(m, masu_models_move(&m->models, &m->instances, &m->bounds, &m->plan, i, rows, &m->error));
+    return masu_finish(
+        m, masu_models_move(&m->models, &m->instances, &m->bounds, &m->plan, i, rows, &m->error));
 }
 
 masu_result masu_model_show(masu_renderer *m, masu_model model, uint32_t shown) {
@@ -133,8 +137,8 @@ masu_result masu_model_node_set(masu_renderer *m, masu_model model, uint32_t nod
     masu_result result = check_model(m, model, &i);
     if (!result) result = masu_finish(m, masu_models_check_node(&m->models, i, node, &m->error));
     if (result) return result;
-    return masu_finish(m, masu_models_move_node(&m->models, &m->instances, &m->bounds, &m->plan, i, node, rows,
-                                 &m->error));
+    return masu_finish(m, masu_models_move_node(&m->models, &m->instances, &m->bounds, &m->plan, i,
+                                                node, rows, &m->error));
 }
 
 /* ---- Clips ----------------------------------------------------------------------------------- */
@@ -172,14 +176,15 @@ masu_result masu_model_animate(masu_renderer *m, masu_model model, const masu_cl
     if (!m || (count && !uses)) return masu_finish_null(m, "uses");
     masu_result result = check_model(m, model, &i);
     if (result) return result;
-    return masu_finish(m, masu_models_animate(&m->models, &m->instances, &m->bounds, &m->plan, i, uses, count,
-                               &m->error));
+    return masu_finish(m, masu_models_animate(&m->models, &m->instances, &m->bounds, &m->plan, i,
+                                              uses, count, &m->error));
 }
 
 /* ---- Punctual lights ------------------------------------------------------------------------- */
 
 static masu_result check_light(masu_renderer *m, masu_punctual_light light, uint32_t *index) {
-    return masu_finish(m, masu_handle_check(&m->lights.handles, "light", light.id, index, &m->error));
+    return masu_finish(m,
+                       masu_handle_check(&m->lights.handles, "light", light.id, index, &m->error));
 }
 
 masu_punctual_light masu_punctual_light_at(const masu_renderer *m, uint32_t index) {
@@ -213,9 +218,11 @@ masu_result masu_punctual_light_set(masu_renderer *m, masu_punctual_light light,
 
 static masu_result check_material(masu_renderer *m, masu_material material, uint32_t *index) {
     if (m->plan.desc.mutable_materials)
-        return masu_finish(m, masu_handle_check(&m->materials.handles, "material", material.id, index, &m->error));
-    return masu_finish(m, masu_fail(&m->error, MASU_ERROR_STATE, "mutable_materials", 1, 0,
-                                    "materials can be neither read nor changed: desc.mutable_materials is 0"));
+        return masu_finish(
+            m, masu_handle_check(&m->materials.handles, "material", material.id, index, &m->error));
+    return masu_finish(
+        m, masu_fail(&m->error, MASU_ERROR_STATE, "mutable_materials", 1, 0,
+                     "materials can be neither read nor changed: desc.mutable_materials is 0"));
 }
 
 masu_material masu_material_at(const masu_renderer *m, uint32_t index) {

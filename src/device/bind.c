@@ -59,7 +59,8 @@ static masu_result bind_host_block(masu_device *m, uint32_t role, masu_detail *d
     uint64_t alignment = need->alignment < 64 ? need->alignment : 64; /* the least of vkMapMemory */
     if (need->host_visible && (uintptr_t)given->mapped % alignment) {
         return masu_fail(detail, MASU_ERROR_MEMORY, name, alignment, (uintptr_t)given->mapped,
-                         "%s: mapped is not aligned to %llu bytes", name, (unsigned long long)alignment);
+                         "%s: mapped is not aligned to %llu bytes", name,
+                         (unsigned long long)alignment);
     }
     m->memory[role] = given->memory;
     m->mapped[role] = need->host_visible ? given->mapped : NULL;

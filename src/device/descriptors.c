@@ -6,8 +6,8 @@
 
 #include "base/error.h"
 #include "device/barriers.h"
-#include "device/shaders.h"
 #include "device/ray_query.h"
+#include "device/shaders.h"
 #include "scene/scene.h"
 
 int masu_has_global_sets(const masu_frame_plan *plan) {
@@ -24,7 +24,8 @@ static masu_result create_pool(masu_device *m, masu_detail *detail) {
         for (uint32_t i = 0; i < count; i++) {
             uniforms += bindings[i].descriptorType == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
             buffers += bindings[i].descriptorType == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-            structures += bindings[i].descriptorType == VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR;
+            structures +=
+                bindings[i].descriptorType == VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR;
         }
     }
     /* None may be 0; the last is of ray queries alone. */
@@ -36,7 +37,8 @@ static masu_result create_pool(masu_device *m, masu_detail *detail) {
         {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, MASU_PASS_ACCESSES * sets},
         {VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1 + structures * flights}};
     VkDescriptorPoolCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-                                       .maxSets = flights * globals + sets + m->plan->scene.texture_sets,
+                                       .maxSets =
+                                           flights * globals + sets + m->plan->scene.texture_sets,
                                        .poolSizeCount = m->plan->needs.query ? 5 : 4,
                                        .pPoolSizes = sizes};
     VkResult r =
@@ -58,7 +60,8 @@ static masu_result allocate_set(masu_device *m, VkDescriptorSetLayout layout,
 
 /* A binding of one frame in flight. Code that reads a uniform buffer that the plan does not have is compiled
  * away, but a set must be whole: it gets the frame's. */
-static void write_binding(masu_device *m, uint32_t flight, VkDescriptorSet set, const masu_binding *row) {
+static void write_binding(masu_device *m, uint32_t flight, VkDescriptorSet set,
+                          const masu_binding *row) {
     const masu_buffer_plan *b = &m->plan->buffers[row->buffer];
     VkDescriptorBufferInfo buffer = {m->objects.buffers[row->buffer],
                                      flight * b->stride + (row->previous ? b->stride / 2 : 0),
@@ -186,7 +189,8 @@ static int next_pass(const masu_frame_plan *plan, set_cursor *at) {
 masu_result masu_create_pass_sets(masu_device *m, masu_detail *detail) {
     for (set_cursor at = {0}; next_pass(m->plan, &at);) {
         for (uint32_t t = 0; t < at.count; t++) {
-            masu_result result = allocate_set(m, m->pass_layouts[at.pass - 1], &m->pass_sets[at.next + t], detail);
+            masu_result result =
+                allocate_set(m, m->pass_layouts[at.pass - 1], &m->pass_sets[at.next + t], detail);
             if (result) return result;
         }
     }
@@ -201,16 +205,19 @@ void masu_write_pass_sets(masu_device *m) {
     }
 }
 
-void masu_find_pass_sets(const masu_device *m, uint32_t rung, uint32_t target, VkDescriptorSet sets[MASU_PASS_COUNT]) {
+void masu_find_pass_sets(const masu_device *m, uint32_t rung, uint32_t target,
+                         VkDescriptorSet sets[MASU_PASS_COUNT]) {
     for (set_cursor at = {0}; next_pass(m->plan, &at);) {
-        if (at.rung == rung) sets[at.pass - 1] = m->pass_sets[at.next + (at.count > 1 ? target : 0)];
+        if (at.rung == rung)
+            sets[at.pass - 1] = m->pass_sets[at.next + (at.count > 1 ? target : 0)];
     }
 }
 
 masu_result masu_create_sets(masu_device *m, masu_detail *detail) {
     masu_result result = create_pool(m, detail);
     for (uint32_t p = 0; p < MASU_PASS_COUNT && !result; p++) {
-        if (m->global_layouts[p] && masu_has_global_sets(m->plan)) result = create_global_sets(m, p, detail);
+        if (m->global_layouts[p] && masu_has_global_sets(m->plan))
+            result = create_global_sets(m, p, detail);
     }
     if (!result) result = create_texture_sets(m, detail);
     return result;

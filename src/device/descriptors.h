@@ -14,6 +14,7 @@ masu_result masu_create_pass_sets(masu_device *m, masu_detail *detail);
 /* Writes the sets again for the targets of the description. No frame may be pending. */
 void masu_write_pass_sets(masu_device *m);
 /* Fills sets[pass] of a rung that draws to a target. */
-void masu_find_pass_sets(const masu_device *m, uint32_t rung, uint32_t target, VkDescriptorSet sets[MASU_PASS_COUNT]);
+void masu_find_pass_sets(const masu_device *m, uint32_t rung, uint32_t target,
+                         VkDescriptorSet sets[MASU_PASS_COUNT]);
 
 #endif

@@ -11,7 +11,8 @@
 void masu_device_alloc(masu_device *m, masu_arena *arena, const masu_frame_plan *plan) {
     uint64_t frames = (uint64_t)plan->desc.frames_in_flight * plan->recordings * plan->parts;
     m->frames = masu_arena_alloc(arena, "command buffers", frames, sizeof *m->frames, 8);
-    m->recorded = masu_arena_alloc(arena, "recorded", (uint64_t)plan->desc.frames_in_flight * plan->recordings,
+    m->recorded = masu_arena_alloc(arena, "recorded",
+                                   (uint64_t)plan->desc.frames_in_flight * plan->recordings,
                                    sizeof *m->recorded, 1);
     m->loads = masu_arena_alloc(arena, "load command buffers", masu_load_chunks(plan),
                                 sizeof *m->loads, 8);

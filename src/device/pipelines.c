@@ -80,7 +80,8 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
     /* Nothing is left of the root, and of the lowest nodes nothing is entered. */
     const masu_scene_data *scene = &m->plan->scene;
     uint32_t levels = masu_trace_top_levels(scene->trace_instances) + scene->trace_levels - 2;
-    constants[9] = (uint32_t)masu_align_up(levels, 4); /* so that scenes of about the same size share pipelines */
+    constants[9] = (uint32_t)masu_align_up(
+        levels, 4); /* so that scenes of about the same size share pipelines */
     constants[10] = m->plan->desc.debug.share_rays == MASU_ON;
     constants[11] = scene->own_coats != 0;
     constants[12] = scene->tints != 0;
@@ -99,14 +100,16 @@ static uint64_t key_of(const masu_device *m, uint32_t pass, const masu_code code
 
 /* ---- Layouts --------------------------------------------------------------------------------- */
 
-static masu_result create_set_layout(masu_device *m, const VkDescriptorSetLayoutBinding *bindings, uint32_t count,
-                                     VkDescriptorSetLayout *out, masu_detail *detail) {
+static masu_result create_set_layout(masu_device *m, const VkDescriptorSetLayoutBinding *bindings,
+                                     uint32_t count, VkDescriptorSetLayout *out,
+                                     masu_detail *detail) {
     VkDescriptorSetLayoutCreateInfo info = {.sType =
                                                 VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
                                             .bindingCount = count,
                                             .pBindings = bindings};
     VkResult r = m->vk.CreateDescriptorSetLayout(m->vk.device, &info, m->vk.allocator, out);
-    return MASU_FAILED(r, *out) ? masu_fail_vulkan(detail, r, "vkCreateDescriptorSetLayout") : MASU_OK;
+    return MASU_FAILED(r, *out) ? masu_fail_vulkan(detail, r, "vkCreateDescriptorSetLayout")
+                                : MASU_OK;
 }
 
 static int draws_polygons(uint32_t pass) {
@@ -153,9 +156,11 @@ static masu_result create_pass_layout(masu_device *m, uint32_t pass, masu_detail
     VkDescriptorSetLayoutBinding global[MASU_BIND_COUNT];
     uint32_t global_count = masu_global_bindings(m->plan, pass, global);
     masu_result result = create_set_layout(m, bindings, n, &m->pass_layouts[pass], detail);
-    if (!result) result = create_set_layout(m, global, global_count, &m->global_layouts[pass], detail);
+    if (!result)
+        result = create_set_layout(m, global, global_count, &m->global_layouts[pass], detail);
     if (result) return result;
-    VkDescriptorSetLayout sets[] = {m->global_layouts[pass], m->pass_layouts[pass], m->texture_layout};
+    VkDescriptorSetLayout sets[] = {m->global_layouts[pass], m->pass_layouts[pass],
+                                    m->texture_layout};
     VkPushConstantRange push = {VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(masu_push_block)};
     if (!compute) push.stageFlags = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
     VkPipelineLayoutCreateInfo layout = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
@@ -164,7 +169,8 @@ static masu_result create_pass_layout(masu_device *m, uint32_t pass, masu_detail
                                          .pSetLayouts = sets,
                                          .pushConstantRangeCount = 1,
                                          .pPushConstantRanges = &push};
-    VkResult r = m->vk.CreatePipelineLayout(m->vk.device, &layout, m->vk.allocator, &m->layouts[pass]);
+    VkResult r =
+        m->vk.CreatePipelineLayout(m->vk.device, &layout, m->vk.allocator, &m->layouts[pass]);
     if (MASU_FAILED(r, m->layouts[pass]))
         return masu_fail_vulkan(detail, r, "vkCreatePipelineLayout");
     masu_name(m, VK_OBJECT_TYPE_PIPELINE_LAYOUT, MASU_HANDLE(m->layouts[pass]),

@@ -31,7 +31,8 @@ static uint64_t add_code(uint64_t key, const masu_code *code) {
 uint64_t masu_pool_key(const masu_device *m, uint32_t pass, const masu_code codes[2], uint32_t form,
                        const uint32_t *constants, uint32_t constant_count) {
     uint64_t key = 0xCBF29CE484222325u;
-    uint32_t declared = masu_code_interface(&codes[0]).constants | masu_code_interface(&codes[1]).constants;
+    uint32_t declared =
+        masu_code_interface(&codes[0]).constants | masu_code_interface(&codes[1]).constants;
     key = add_code(add_code(add(add(key, pass), form), &codes[0]), &codes[1]);
     for (uint32_t i = 0; i < constant_count; i++) {
         if (declared >> i & 1u) key = add(add(key, i), constants[i]);
@@ -39,11 +40,13 @@ uint64_t masu_pool_key(const masu_device *m, uint32_t pass, const masu_code code
     VkDescriptorSetLayoutBinding global[MASU_BIND_COUNT];
     uint32_t count = masu_global_bindings(m->plan, pass, global);
     for (uint32_t i = 0; i < count; i++)
-        key = add(add(add(key, global[i].binding), (uint64_t)global[i].descriptorType), global[i].stageFlags);
+        key = add(add(add(key, global[i].binding), (uint64_t)global[i].descriptorType),
+                  global[i].stageFlags);
     const masu_rung_plan *rp = masu_first_rung(m->plan, pass);
     for (uint32_t a = 0; a < rp->access_count[pass]; a++) {
         masu_access access = rp->access[pass][a];
-        int bound = masu_has_set(pass) && (masu_access_binds(access, 0) || masu_access_binds(access, 1));
+        int bound =
+            masu_has_set(pass) && (masu_access_binds(access, 0) || masu_access_binds(access, 1));
         int attached = access.usage == MASU_WRITE_COLOR || access.usage == MASU_BLEND_COLOR ||
                        access.usage == MASU_WRITE_DEPTH || access.usage == MASU_UPDATE_DEPTH;
         if (bound || attached) key = add(key, access.usage);
@@ -95,7 +98,8 @@ static masu_pool_row *make_room(const masu_device *m, masu_pool *pool) {
     if (pool->info.count < MASU_MAX_PIPELINES) return &pool->rows[pool->info.count++];
     for (uint32_t i = 0; i < pool->info.count; i++) {
         masu_pool_row *row = &pool->rows[i];
-        if (!row->users && (!oldest || pool->clock - row->used > pool->clock - oldest->used)) oldest = row;
+        if (!row->users && (!oldest || pool->clock - row->used > pool->clock - oldest->used))
+            oldest = row;
     }
     if (!oldest) return NULL;
     m->vk.DestroyPipeline(m->vk.device, oldest->pipeline, m->vk.allocator);

@@ -289,8 +289,8 @@ static void record_occluders(masu_recorder *rec) {
     const masu_device *m = rec->m;
     VkPipelineLayout layout = m->layouts[MASU_PASS_OCCLUDERS];
     m->vk.CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, m->pipelines[MASU_PASS_OCCLUDERS]);
-    m->vk.CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, MASU_SET_GLOBAL, 1,
-                                &m->global_sets[rec->flight][MASU_PASS_OCCLUDERS], 0, NULL);
+    m->vk.CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, MASU_SET_GLOBAL,
+                                1, &m->global_sets[rec->flight][MASU_PASS_OCCLUDERS], 0, NULL);
     masu_push_block block = push_of(rec, MASU_PASS_OCCLUDERS);
     struct masu_push_occluders push;
     memcpy(&push, &block.own, sizeof push);
@@ -579,7 +579,8 @@ static masu_result record_split(masu_recorder *rec, uint32_t *part, masu_detail 
     return MASU_OK;
 }
 
-masu_result masu_record_frame(masu_recorder *rec, const VkDescriptorSet *sets, masu_detail *detail) {
+masu_result masu_record_frame(masu_recorder *rec, const VkDescriptorSet *sets,
+                              masu_detail *detail) {
     const masu_device *m = rec->m;
     uint32_t part = 0;
     masu_result result = begin_part(rec, part, detail);

@@ -1,6 +1,7 @@
-/* recordings.c: which recordings there are. One per (frame in flight, viewport, rung, target, and where a rung draws
- * cascades of the shadow map less often than every frame: set of those that it draws). masu_init makes them, after
- * masu_resize the first frame that needs one; they are submitted again and again. */
+/* recordings.c: which recordings there are. One per (frame in flight, viewport, rung, target,
+ * and where a rung draws cascades of the shadow map less often than every frame: set of those
+ * that it draws). masu_init makes them, after masu_resize the first frame that needs one; they
+ * are submitted again and again. */
 #include "device/recordings.h"
 
 #include "base/error.h"
@@ -13,11 +14,12 @@
 
 static masu_result create_command_buffers(masu_device *m, uint32_t frames, masu_detail *detail) {
     /* Recordings are replaced one by one, while others are pending. */
-    VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
-                                    .flags = m->plan->desc.resizable
-                                                 ? (VkCommandPoolCreateFlags)VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT
-                                                 : 0,
-                                    .queueFamilyIndex = m->plan->desc.vulkan.queue_family};
+    VkCommandPoolCreateInfo pool = {
+        .sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+        .flags = m->plan->desc.resizable
+                     ? (VkCommandPoolCreateFlags)VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT
+                     : 0,
+        .queueFamilyIndex = m->plan->desc.vulkan.queue_family};
     VkResult r = m->vk.CreateCommandPool(m->vk.device, &pool, m->vk.allocator, &m->command_pool);
     if (MASU_FAILED(r, m->command_pool)) return masu_fail_vulkan(detail, r, "vkCreateCommandPool");
     VkCommandBufferAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
@@ -40,10 +42,10 @@ static masu_result create_queries(masu_device *m, masu_detail *detail) {
     return MASU_FAILED(r, m->queries) ? masu_fail_vulkan(detail, r, "vkCreateQueryPool") : MASU_OK;
 }
 
-/* The variants of a frame's recording: one for each set of cascades that it may draw. `again`: they may have been
- * recorded before, or in part. */
-static masu_result record_variants(masu_device *m, const masu_draws *draws, masu_recording_id id, int again,
-                                   masu_detail *detail) {
+/* The variants of a frame's recording: one for each set of cascades that it may draw. `again`:
+ * they may have been recorded before, or in part. */
+static masu_result record_variants(masu_device *m, const masu_draws *draws, masu_recording_id id,
+                                   int again, masu_detail *detail) {
     masu_frame_plan *plan = m->plan;
     masu_rung_plan *rp = &plan->rungs[id.rung];
     uint32_t first = masu_recording_of(plan, id);
@@ -98,17 +100,20 @@ masu_result masu_record(masu_device *m, const masu_draws *draws, masu_detail *de
     if (!result)
         result = create_command_buffers(
             m, d->frames_in_flight * m->plan->recordings * m->plan->parts, detail);
-    for (uint32_t r = 0; r < d->rung_count && !result; r++) result = record_rung(m, draws, r, 0, detail);
+    for (uint32_t r = 0; r < d->rung_count && !result; r++)
+        result = record_rung(m, draws, r, 0, detail);
     return result ? result : masu_load_record(m, detail);
 }
 
-masu_result masu_record_again(masu_device *m, const masu_draws *draws, uint32_t rung, masu_detail *detail) {
+masu_result masu_record_again(masu_device *m, const masu_draws *draws, uint32_t rung,
+                              masu_detail *detail) {
     memset(m->recorded, 0, (size_t)m->plan->desc.frames_in_flight * m->plan->recordings);
     masu_write_pass_sets(m);
     return record_rung(m, draws, rung, 1, detail);
 }
 
-masu_result masu_record_missing(masu_device *m, const masu_draws *draws, masu_recording_id id, masu_detail *detail) {
+masu_result masu_record_missing(masu_device *m, const masu_draws *draws, masu_recording_id id,
+                                masu_detail *detail) {
     if (m->recorded[masu_recording_of(m->plan, id)]) return MASU_OK;
     return record_variants(m, draws, id, 1, detail);
 }

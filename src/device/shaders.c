@@ -125,7 +125,8 @@ masu_draw_code masu_draw_code_of(const masu_frame_plan *plan, uint32_t pass, int
 }
 
 masu_interface masu_code_interface(const masu_code *code) {
-    return code->words ? masu_interface_of(code->words, code->bytes / sizeof *code->words) : code->packed.interface;
+    return code->words ? masu_interface_of(code->words, code->bytes / sizeof *code->words)
+                       : code->packed.interface;
 }
 
 /* Bindings of set 0 that any form of a pass declares. */
@@ -134,7 +135,8 @@ static uint64_t declared_bindings(const masu_frame_plan *plan, uint32_t pass) {
     for (int form = 0; form < 2; form++) { /* last or not, textured or not */
         masu_draw_code draw = masu_draw_code_of(plan, pass, form);
         masu_code compute = masu_compute_code(plan, pass, form);
-        bindings |= masu_code_interface(&draw.vertex).bindings | masu_code_interface(&draw.fragment).bindings |
+        bindings |= masu_code_interface(&draw.vertex).bindings |
+                    masu_code_interface(&draw.fragment).bindings |
                     masu_code_interface(&compute).bindings;
     }
     return bindings;
@@ -150,8 +152,10 @@ uint32_t masu_global_bindings(const masu_frame_plan *plan, uint32_t pass,
     uint32_t count = 0;
     masu_bindings(plan, rows);
     for (uint32_t i = 0; i < MASU_BIND_COUNT; i++) {
-        if (!rows[i].bound || !(declared >> rows[i].binding & 1) || !(rows[i].stages & stages)) continue;
-        out[count++] = (VkDescriptorSetLayoutBinding){rows[i].binding, rows[i].type, 1, rows[i].stages & stages, NULL};
+        if (!rows[i].bound || !(declared >> rows[i].binding & 1) || !(rows[i].stages & stages))
+            continue;
+        out[count++] = (VkDescriptorSetLayoutBinding){rows[i].binding, rows[i].type, 1,
+                                                      rows[i].stages & stages, NULL};
     }
     return count;
 }

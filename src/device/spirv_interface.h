@@ -1,5 +1,6 @@
-/* spirv_interface.h: what a SPIR-V module declares of the interface of its pipeline. The build notes it for each
- * module of the library (tools/generate/pack_spirv.c); of a scene's code masu_init reads it. */
+/* spirv_interface.h: what a SPIR-V module declares of the interface of its pipeline. The build
+ * notes it for each module of the library (tools/generate/pack_spirv.c); of a scene's code
+ * masu_init reads it. */
 #ifndef MASU_SPIRV_INTERFACE_H
 #define MASU_SPIRV_INTERFACE_H
 

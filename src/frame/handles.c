@@ -10,8 +10,8 @@ static uint64_t mix(uint64_t v) {
     return v ^ v >> 31;
 }
 
-masu_handles masu_handles_of(uint64_t scene, masu_handle_kind kind, uint32_t count, uint32_t reserve,
-                             uint32_t *lives) {
+masu_handles masu_handles_of(uint64_t scene, masu_handle_kind kind, uint32_t count,
+                             uint32_t reserve, uint32_t *lives) {
     uint32_t offset = (uint32_t)(mix(mix(scene) + (uint64_t)kind) % UINT32_MAX);
     for (uint32_t i = 0; i < reserve; i++) lives[i] = 0;
     return (masu_handles){offset, count + reserve, reserve, lives};

@@ -1,13 +1,14 @@
 /* handles.h: the ids of the public interface. This is the only place that makes and checks them.
  *
- * The low 32 bits of an id are 1 + an index that is shifted by an offset, which follows from the hash
- * of the scene and the kind. They are never 0, so id 0 is no object. A handle of another scene or of
- * another kind passes by chance only, at `count` / 2^32. Renderers of the same scene have the same ids.
+ * The low 32 bits of an id are 1 + an index that is shifted by an offset, which follows from the
+ * hash of the scene and the kind. They are never 0, so id 0 is no object. A handle of another
+ * scene or of another kind passes by chance only, at `count` / 2^32. Renderers of the same scene
+ * have the same ids.
  *
- * RESERVE. Objects that are added and removed have the last `reserve` indices. `lives` counts how often
- * an object has come to a slot and gone from it: an odd number is alive. The high 32 bits of the id are
- * the number of objects that the slot has had before. A slot is used 2^31 - 1 times, then it is retired,
- * so no id is ever used twice in a renderer. */
+ * RESERVE. Objects that are added and removed have the last `reserve` indices. `lives` counts
+ * how often an object has come to a slot and gone from it: an odd number is alive. The high 32
+ * bits of the id are the number of objects that the slot has had before. A slot is used 2^31 - 1
+ * times, then it is retired, so no id is ever used twice in a renderer. */
 #ifndef MASU_HANDLES_H
 #define MASU_HANDLES_H
 
@@ -31,8 +32,8 @@ typedef struct masu_handles {
 
 /* `scene` is the hash of the blob; `count` is without the reserve. `lives` is zeroed here and kept;
  * NULL without a reserve. */
-masu_handles masu_handles_of(uint64_t scene, masu_handle_kind kind, uint32_t count, uint32_t reserve,
-                             uint32_t *lives);
+masu_handles masu_handles_of(uint64_t scene, masu_handle_kind kind, uint32_t count,
+                             uint32_t reserve, uint32_t *lives);
 
 /* Whether an index is in use: those outside of the reserve always are. */
 static inline int masu_handle_lives(const masu_handles *handles, uint32_t index) {

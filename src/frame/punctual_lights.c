@@ -35,7 +35,8 @@ static void carry(const masu_instances *in, const masu_punctual_light_state *s, 
         direction[k] = (double)s->direction[k];
     }
     if (!s->instance.id) return;
-    const struct masu_instance_data *to = &in->now[s->instance.id - 1]; /* states keep its index + 1 */
+    const struct masu_instance_data *to =
+        &in->now[s->instance.id - 1]; /* states keep its index + 1 */
     const float *rows[3] = {to->row0, to->row1, to->row2};
     for (uint32_t k = 0; k < 3; k++) {
         const float *row = rows[k];
@@ -92,8 +93,8 @@ masu_punctual_light_state masu_lights_get(const masu_lights *l, const masu_insta
 }
 
 /* Checks a state that the host gives, and replaces the handle of its instance by an index + 1. */
-static masu_result take_state(const masu_instances *in, uint32_t light, masu_punctual_light_state *state,
-                              masu_detail *detail) {
+static masu_result take_state(const masu_instances *in, uint32_t light,
+                              masu_punctual_light_state *state, masu_detail *detail) {
     double value = 0.0;
     const char *wrong = masu_light_state_wrong(state, &value);
     if (wrong) {

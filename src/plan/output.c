@@ -146,13 +146,18 @@ static masu_result check_unused(const masu_desc *d, masu_detail *detail) {
     const struct {
         const char *name;
         float value;
-    } numbers[] = {{"targets.white", d->targets.white}, {"targets.peak", d->targets.peak},
-                   {"exposure.brighten", e->brighten},  {"exposure.darken", e->darken},
-                   {"exposure.low", e->low},            {"exposure.high", e->high},
-                   {"exposure.min", e->min},            {"exposure.max", e->max}};
+    } numbers[] = {{"targets.white", d->targets.white},
+                   {"targets.peak", d->targets.peak},
+                   {"exposure.brighten", e->brighten},
+                   {"exposure.darken", e->darken},
+                   {"exposure.low", e->low},
+                   {"exposure.high", e->high},
+                   {"exposure.min", e->min},
+                   {"exposure.max", e->max}};
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
         if (!isfinite(numbers[i].value))
-            return bad_float(detail, numbers[i].name, numbers[i].value, "allowed are finite numbers");
+            return bad_float(detail, numbers[i].name, numbers[i].value,
+                             "allowed are finite numbers");
     }
     return MASU_OK;
 }

@@ -310,9 +310,11 @@ static void nonsense_in_a_frame_is_refused_by_name(void **state) {
     bad_light = l, bad_light.fog_start = NAN, expect_frame_error(m, &f, "light.fog_start");
     bad_light = l, bad_light.turbidity = NAN, expect_frame_error(m, &f, "light.turbidity");
     f.light = &l;
-    c.left = c.bottom = -1, c.right = c.top = 1, c.fov_y = NAN, expect_frame_error(m, &f, "camera.fov_y"), c = good;
+    c.left = c.bottom = -1, c.right = c.top = 1, c.fov_y = NAN,
+    expect_frame_error(m, &f, "camera.fov_y"), c = good;
     uint32_t own = masu_scene_count(&s.scene, MASU_SCENE_SDF_PARAM);
-    f.sdf_params = params, f.sdf_param_count = own + 1, expect_frame_error(m, &f, "sdf_param_count");
+    f.sdf_params = params, f.sdf_param_count = own + 1,
+    expect_frame_error(m, &f, "sdf_param_count");
     f.sdf_params = params, f.sdf_param_count = 300, expect_frame_error(m, &f, "sdf_param_count"),
     f.sdf_params = NULL;
     /* None of these has moved the frame number, and extreme but sane values work. */
@@ -405,14 +407,15 @@ static void errors_of_live_calls_reach_the_log(void **state) {
     LOGGED(masu_punctual_light_get(m, (masu_punctual_light){0}, &light));
     LOGGED(masu_punctual_light_set(m, (masu_punctual_light){0}, &light));
     LOGGED(masu_punctual_light_add(m, &light, &made)); /* no reserve */
-    light.inner = NAN; /* of a light that is no spot */
+    light.inner = NAN;                                 /* of a light that is no spot */
     LOGGED(masu_punctual_light_add(m, &light, &made));
     assert_non_null(strstr(logged.last, "inner"));
     LOGGED(masu_punctual_light_remove(m, (masu_punctual_light){0}));
     LOGGED(masu_material_get(m, (masu_material){0}, &material));
     LOGGED(masu_material_set(m, (masu_material){0}, NULL));
     logged.errors = 0; /* masu_resize has a detail of its own */
-    assert_int_equal(masu_resize(m, (VkExtent2D){8, 8}, &s.desc.targets, NULL, &detail), MASU_ERROR_STATE);
+    assert_int_equal(masu_resize(m, (VkExtent2D){8, 8}, &s.desc.targets, NULL, &detail),
+                     MASU_ERROR_STATE);
     assert_int_equal(logged.errors, 1);
     assert_string_equal(logged.last, detail.text);
     assert_int_equal(masu_resize(m, (VkExtent2D){8, 8}, NULL, NULL, NULL), MASU_ERROR_ARGUMENT);
@@ -467,7 +470,8 @@ static void a_wait_that_times_out_fails_cleanly(void **state) {
     }
     s.host.properties.deviceType = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
     int finished = 1;
-    for (uint32_t i = 0; i < 100 && finished; i++) { /* it may be faster than 120 looks at a fence */
+    for (uint32_t i = 0; i < 100 && finished;
+         i++) { /* it may be faster than 120 looks at a fence */
         assert_int_equal(masu_frame(m, &(masu_frame_desc){0}, &commands), MASU_OK);
         finished = masu_headless_run(&s.host, commands.buffer, error, sizeof error);
     }

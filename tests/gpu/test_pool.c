@@ -62,12 +62,14 @@ static void what_is_known_is_not_made_again(void **state) {
         draw_scene(&s, scenes[i], w, h, 0, pixels[0]);
         draw_scene(&s, scenes[i], w, h, 1, pixels[1]);
         assert_memory_equal(pixels[0], pixels[1], (size_t)w * h * 4);
-        printf("  %s: %u pipelines created, %u reused\n", scenes[i], told().created - before.created,
-               told().reused - before.reused);
+        printf("  %s: %u pipelines created, %u reused\n", scenes[i],
+               told().created - before.created, told().reused - before.reused);
         uint32_t made = told().created - before.created;
         if (i == 0) assert_int_equal(told().reused, 0);
         if (i == 1 || i == 2 || i == 4) assert_int_equal(made, 0); /* all of it is known */
-        if (i == 5) assert_true(made <= 6); /* it has more features; what it shares with the others is known */
+        if (i == 5)
+            assert_true(made <=
+                        6); /* it has more features; what it shares with the others is known */
     }
     assert_int_equal(told().count, told().created);
     masu_pipelines_destroy(&s.desc.vulkan, &pool);
@@ -102,10 +104,13 @@ static void a_full_pool_makes_room(void **state) {
         masu_pool *in = (masu_pool *)(void *)&pool;
         in->info.count = MASU_MAX_PIPELINES;
         in->clock = MASU_MAX_PIPELINES;
-        for (uint32_t i = 0; i < MASU_MAX_PIPELINES; i++) /* of no pipeline, which may be destroyed */
-            in->rows[i] = (masu_pool_row){.key = 1 + i, .users = i < USED || all_used, .used = MASU_MAX_PIPELINES - i};
+        for (uint32_t i = 0; i < MASU_MAX_PIPELINES;
+             i++) /* of no pipeline, which may be destroyed */
+            in->rows[i] = (masu_pool_row){
+                .key = 1 + i, .users = i < USED || all_used, .used = MASU_MAX_PIPELINES - i};
         for (uint32_t again = 0; again < 2; again++) {
-            if (masu_init(&s.desc, block, need.host_bytes, &m, &detail)) fail_msg("%s", detail.text);
+            if (masu_init(&s.desc, block, need.host_bytes, &m, &detail))
+                fail_msg("%s", detail.text);
             masu_destroy(m);
         }
         uint32_t made = told().created / (all_used ? 2 : 1);
@@ -115,7 +120,8 @@ static void a_full_pool_makes_room(void **state) {
         assert_int_equal(told().count, MASU_MAX_PIPELINES);
         assert_int_equal(told().used, all_used ? MASU_MAX_PIPELINES : USED);
         for (uint32_t i = 0; i < MASU_MAX_PIPELINES; i++)
-            assert_int_equal(in->rows[i].key <= MASU_MAX_PIPELINES, all_used || i < MASU_MAX_PIPELINES - made);
+            assert_int_equal(in->rows[i].key <= MASU_MAX_PIPELINES,
+                             all_used || i < MASU_MAX_PIPELINES - made);
         assert_int_equal(wrap.live - live, (all_used ? 0 : made) + 2);
         masu_pipelines_destroy(&s.desc.vulkan, &pool);
         assert_int_equal(wrap.live, live);

@@ -337,7 +337,8 @@ static void handles_of_what_is_gone_are_refused(void **state) {
 }
 
 /* Every call that takes a handle, with ids that are no object: all refuse them and change nothing. */
-static void refuse_everywhere(masu_renderer *m, uint64_t instance, uint64_t model, uint64_t light, uint64_t material) {
+static void refuse_everywhere(masu_renderer *m, uint64_t instance, uint64_t model, uint64_t light,
+                              uint64_t material) {
     static const float rows[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     const masu_clip_use use = {.weight = 1};
     masu_instance_state is;
@@ -374,7 +375,8 @@ static void refuse_everywhere(masu_renderer *m, uint64_t instance, uint64_t mode
     if (!instance) return; /* a light that is attached to none */
     carried.instance = i;
     masu_punctual_light none;
-    assert_int_equal(masu_punctual_light_set(m, masu_punctual_light_at(m, 0), &carried), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_punctual_light_set(m, masu_punctual_light_at(m, 0), &carried),
+                     MASU_ERROR_ARGUMENT);
     assert_int_equal(masu_punctual_light_add(m, &carried, &none), MASU_ERROR_ARGUMENT);
 }
 
@@ -392,7 +394,8 @@ static void no_object_is_refused_by_every_call(void **state) {
         refuse_everywhere(s.m, 1ull << 32, 1ull << 32, 1ull << 32, 1ull << 32);
         for (uint32_t turn = 0; turn < 3 && reserve; turn++) {
             assert_int_equal(add(&s, "truck", kinds[0].at, &added), MASU_OK);
-            masu_instance instance = masu_instance_at(s.m, masu_scene_count(&s.scene, MASU_SCENE_INSTANCE));
+            masu_instance instance =
+                masu_instance_at(s.m, masu_scene_count(&s.scene, MASU_SCENE_INSTANCE));
             assert_true(instance.id != 0);
             assert_int_equal(masu_punctual_light_add(s.m, &spot, &light), MASU_OK);
             assert_int_equal(masu_punctual_light_remove(s.m, light), MASU_OK);

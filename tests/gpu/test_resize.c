@@ -244,11 +244,13 @@ static masu_desc open_wrapped(masu_session *s, const char *scene) {
     return desc_of(s, W, H);
 }
 
-static uint64_t setups_of_a_frame(masu_session *s, own_renderer *x, uint32_t rung, uint32_t target, uint8_t *out) {
+static uint64_t setups_of_a_frame(masu_session *s, own_renderer *x, uint32_t rung, uint32_t target,
+                                  uint8_t *out) {
     char error[ERROR_SIZE];
     masu_commands commands;
     uint64_t before = wrap.setup_calls;
-    assert_int_equal(masu_frame(x->m, &(masu_frame_desc){.rung = rung, .target = target}, &commands), MASU_OK);
+    assert_int_equal(
+        masu_frame(x->m, &(masu_frame_desc){.rung = rung, .target = target}, &commands), MASU_OK);
     uint64_t calls = wrap.setup_calls - before;
     assert_ok(masu_headless_run(&s->host, commands.buffer, error, sizeof error));
     if (!out) return calls;
@@ -270,7 +272,8 @@ static void the_rung_in_use_is_recorded_first(void **state) {
     assert_int_equal(resize(&x, 80, 44, &detail), MASU_OK);
     assert_int_equal(wrap.setup_calls - before, 2 * 3); /* slots; reset, begin, end */
     for (uint32_t i = 0; i < 4; i++) assert_int_equal(setups_of_a_frame(&s, &x, 2, 0, NULL), 0);
-    for (uint32_t i = 0; i < 4; i++) assert_int_equal(setups_of_a_frame(&s, &x, 0, 0, NULL), i < 2 ? 3 : 0);
+    for (uint32_t i = 0; i < 4; i++)
+        assert_int_equal(setups_of_a_frame(&s, &x, 0, 0, NULL), i < 2 ? 3 : 0);
     for (uint32_t i = 0; i < 2; i++) assert_int_equal(setups_of_a_frame(&s, &x, 2, 0, NULL), 0);
     unmake_own(&s, &x);
     close_session(&s);
@@ -299,8 +302,8 @@ static void a_resize_is_allowed_in_any_state(void **state) {
         VkImage images[5] = {x.target.image};
         VkImageView views[5] = {x.target.view};
         for (uint32_t t = 0; t < 4; t++) {
-            assert_ok(masu_headless_target_create(&s.host, W + t, H, VK_FORMAT_R8G8B8A8_UNORM, 1, &others[t], error,
-                                                  sizeof error));
+            assert_ok(masu_headless_target_create(&s.host, W + t, H, VK_FORMAT_R8G8B8A8_UNORM, 1,
+                                                  &others[t], error, sizeof error));
             images[1 + t] = others[t].image, views[1 + t] = others[t].view;
         }
         masu_desc d = own;
@@ -315,21 +318,25 @@ static void a_resize_is_allowed_in_any_state(void **state) {
         uint32_t steps = 0;
         if (when == 0) assert_int_equal(masu_resize(x.m, small, &t, NULL, &detail), MASU_OK);
         while (masu_load(x.m, &commands) == MASU_INCOMPLETE) {
-            if (commands.part_count) assert_ok(masu_headless_run(&s.host, commands.buffer, error, sizeof error));
-            if (when == 1 && ++steps == 3) assert_int_equal(masu_resize(x.m, small, &t, NULL, &detail), MASU_OK);
+            if (commands.part_count)
+                assert_ok(masu_headless_run(&s.host, commands.buffer, error, sizeof error));
+            if (when == 1 && ++steps == 3)
+                assert_int_equal(masu_resize(x.m, small, &t, NULL, &detail), MASU_OK);
         }
         if (when == 1) assert_true(steps > 3);
         if (when == 2) assert_int_equal(masu_resize(x.m, small, &t, NULL, &detail), MASU_OK);
-        memset(images, 0, sizeof images), memset(views, 0, sizeof views); /* read during the call only */
+        memset(images, 0, sizeof images),
+            memset(views, 0, sizeof views); /* read during the call only */
         assert_int_equal(setups_of_a_frame(&s, &x, 1, 4, NULL), 3);
         assert_ok(masu_headless_target_read(&s.host, &others[3], error, sizeof error));
         for (uint32_t y = 0; y < SMALL_H; y++)
-            assert_memory_equal((uint8_t *)others[3].mapped + (size_t)4 * y * (W + 3), pixels[1] + (size_t)4 * y * SMALL_W,
-                                4 * SMALL_W);
+            assert_memory_equal((uint8_t *)others[3].mapped + (size_t)4 * y * (W + 3),
+                                pixels[1] + (size_t)4 * y * SMALL_W, 4 * SMALL_W);
         images[0] = others[2].image, views[0] = others[2].view;
         t.count = 1;
         assert_int_equal(masu_resize(x.m, small, &t, NULL, &detail), MASU_OK);
-        assert_int_equal(masu_frame(x.m, &(masu_frame_desc){.target = 1}, &commands), MASU_ERROR_ARGUMENT);
+        assert_int_equal(masu_frame(x.m, &(masu_frame_desc){.target = 1}, &commands),
+                         MASU_ERROR_ARGUMENT);
         (void)setups_of_a_frame(&s, &x, 1, 0, NULL);
         assert_ok(masu_headless_target_read(&s.host, &others[2], error, sizeof error));
         unmake_own(&s, &x);
@@ -377,7 +384,8 @@ static void what_fails_half_way_is_made_good(void **state) {
     assert_int_equal(resize(&x, 96, 54, &detail), MASU_ERROR_DEVICE_LOST);
     assert_int_equal(detail.vulkan, VK_ERROR_DEVICE_LOST);
     assert_int_equal(masu_load(x.m, &commands), MASU_ERROR_DEVICE_LOST);
-    assert_int_equal(masu_frame(x.m, &(masu_frame_desc){.rung = 0}, &commands), MASU_ERROR_DEVICE_LOST);
+    assert_int_equal(masu_frame(x.m, &(masu_frame_desc){.rung = 0}, &commands),
+                     MASU_ERROR_DEVICE_LOST);
     assert_int_equal(wrap.calls_after_loss, 0);
     wrap.fail_at = 0, wrap.persistent = false;
     unmake_own(&s, &x);

@@ -15,6 +15,7 @@
 #include "settings/knobs.h"
 #include "frame/transparents.h"
 #include "plan/compile.h"
+#include "quality/governor_desc.h"
 #include "scene/blob.h"
 #include "support/desc.h"
 
@@ -939,6 +940,30 @@ static void every_result_has_its_text(void **state) {
     assert_string_equal(masu_result_string(MASU_RESULT_FORCE_32), unknown);
 }
 
+/* A number is checked even where nothing makes it matter: without a scene, or without a governor. */
+static void an_unused_number_is_checked_too(void **state) {
+    (void)state;
+    masu_desc d = source_desc(320, 200);
+    float *const numbers[] = {&d.targets.white, &d.targets.peak,  &d.exposure.brighten, &d.exposure.darken,
+                              &d.exposure.low,  &d.exposure.high, &d.exposure.min,      &d.exposure.max};
+    static const char *const names[] = {"targets.white", "targets.peak",  "exposure.brighten", "exposure.darken",
+                                        "exposure.low",  "exposure.high", "exposure.min",      "exposure.max"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        *numbers[i] = (float)NAN;
+        assert_refused(&d, MASU_ERROR_ARGUMENT, names[i]);
+        *numbers[i] = 0.0f;
+    }
+    masu_detail detail;
+    masu_governor_desc g = {.target_ms = (float)NAN};
+    assert_int_equal(masu_governor_check(&g, 3, &detail), MASU_ERROR_ARGUMENT);
+    assert_string_equal(detail.what, "governor.target_ms");
+    g = (masu_governor_desc){.headroom = (float)INFINITY};
+    assert_int_equal(masu_governor_check(&g, 3, &detail), MASU_ERROR_ARGUMENT);
+    assert_string_equal(detail.what, "governor.headroom");
+    g = (masu_governor_desc){.mode = MASU_GOVERNOR_OFF};
+    assert_int_equal(masu_governor_check(&g, 3, &detail), MASU_OK);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_zero_becomes_its_documented_default),
@@ -967,6 +992,7 @@ int main(void) {
         cmocka_unit_test(what_no_device_is_needed_for_is_refused_without_one),
         cmocka_unit_test(a_missing_vulkan_handle_is_named),
         cmocka_unit_test(a_missing_callback_of_the_allocator_is_named),
+        cmocka_unit_test(an_unused_number_is_checked_too),
         cmocka_unit_test(every_result_has_its_text),
     };
     return cmocka_run_group_tests_name("desc", tests, NULL, NULL);

@@ -38,7 +38,8 @@ static void a_handle_is_its_index_and_back(void **state) {
                 assert_true(id != 0);
                 assert_int_equal(masu_handle_check(&h, "thing", id, &index, NULL), MASU_OK);
                 assert_int_equal(index, looked_at[k]);
-                assert_int_not_equal(masu_handle_check(&h, "thing", id | 1ull << 32, &index, &detail), MASU_OK);
+                assert_int_not_equal(
+                    masu_handle_check(&h, "thing", id | 1ull << 32, &index, &detail), MASU_OK);
                 assert_int_equal(detail.given, id | 1ull << 32);
             }
         }
@@ -85,7 +86,8 @@ static void what_was_removed_is_refused(void **state) {
             before = id;
             if (!life) first = id;
         }
-        assert_int_equal(masu_handle_check(&h, "model", before, &index, &detail), MASU_ERROR_ARGUMENT);
+        assert_int_equal(masu_handle_check(&h, "model", before, &index, &detail),
+                         MASU_ERROR_ARGUMENT);
         assert_non_null(strstr(detail.text, "removed"));
         for (uint32_t i = 0; i < own; i++) /* those of the scene go on */
             assert_int_equal(masu_handle_index(&h, masu_handle_at(&h, i)), i);
@@ -96,7 +98,8 @@ static void what_was_removed_is_refused(void **state) {
         assert_int_equal(masu_handle_index(&h, id), own);
         masu_handle_turn(&h, own);
         assert_int_equal(masu_handle_index(&h, id), UINT32_MAX);
-        assert_int_equal(masu_handle_free(&h), reserve > 1 ? own + 1 : UINT32_MAX); /* that slot is retired */
+        assert_int_equal(masu_handle_free(&h),
+                         reserve > 1 ? own + 1 : UINT32_MAX); /* that slot is retired */
     }
 }
 

@@ -233,11 +233,11 @@ static void declarations_are_read(void **state) {
     (void)state;
     enum { DECORATE = 4 << 16 | 71, SPEC_ID = 1, BINDING = 33, SET = 34, TYPE_VOID = 2 << 16 | 19 };
     static const uint32_t module[] = {
-        0x07230203u, 0x10300u, 0, 20, 0,
-        DECORATE, 3, SPEC_ID, 7,  DECORATE, 4, SPEC_ID, 31, DECORATE, 5, SPEC_ID, 32,
-        DECORATE, 6, BINDING, 5,  DECORATE, 6, SET, 0,      DECORATE, 7, SET, 1, DECORATE, 7, BINDING, 9,
-        DECORATE, 8, SET, 0,      DECORATE, 8, BINDING, 63, DECORATE, 9, BINDING, 2,
-        TYPE_VOID, 10, DECORATE, 11, SPEC_ID, 3};
+        0x07230203u, 0x10300u, 0, 20,      0,  DECORATE, 3, SPEC_ID, 7, DECORATE,  4,  SPEC_ID,
+        31,          DECORATE, 5, SPEC_ID, 32, DECORATE, 6, BINDING, 5, DECORATE,  6,  SET,
+        0,           DECORATE, 7, SET,     1,  DECORATE, 7, BINDING, 9, DECORATE,  8,  SET,
+        0,           DECORATE, 8, BINDING, 63, DECORATE, 9, BINDING, 2, TYPE_VOID, 10, DECORATE,
+        11,          SPEC_ID,  3};
     enum { WORDS = sizeof module / sizeof *module };
     masu_interface is = masu_interface_of(module, WORDS);
     assert_int_equal(is.constants, 1u << 7 | 1u << 31);

@@ -440,11 +440,13 @@ int main(int argc, char **argv) {
            "%u, %u};\n", pack.head_count, pack.pool_bytes, pack.run_bytes);
     for (uint32_t i = 0; i < count; i++) {
         const masu_packed *p = &modules[i].packed;
-        printf("#define MASU_PACKED_%s {%uu, %uu, %uu, %uu, {0x%xu, 0x%llxu}}\n", modules[i].name, p->run, p->run_bytes,
-               p->own, p->words, p->interface.constants, (unsigned long long)p->interface.bindings);
+        printf("#define MASU_PACKED_%s {%uu, %uu, %uu, %uu, {0x%xu, 0x%llxu}}\n", modules[i].name,
+               p->run, p->run_bytes, p->own, p->words, p->interface.constants,
+               (unsigned long long)p->interface.bindings);
     }
     for (int i = 2; i < argc; i++)
-        if (*argv[i] == '-') printf("#define MASU_PACKED_%s {0u, 0u, 0u, 0u, {0u, 0u}}\n", argv[i] + 1);
+        if (*argv[i] == '-')
+            printf("#define MASU_PACKED_%s {0u, 0u, 0u, 0u, {0u, 0u}}\n", argv[i] + 1);
     printf("#define MASU_PACKED_EACH(X)");
     for (uint32_t i = 0; i < count; i++) printf(" \\\n    X(%s)", modules[i].name);
     printf("\n");
