@@ -990,8 +990,10 @@ typedef struct masu_camera {
 typedef struct masu_light {
     float sun_direction[3];              /* towards the sun; need not be unit length */
     float sun_color[3];                  /* irradiance on a perpendicular surface / pi */
-    float ambient[3];                    /* radiance */
-    float sky_zenith[3], sky_horizon[3]; /* radiance */
+    /* Radiance. An environment map of the scene replaces all three: they must then be zero, or as
+     * masu_light_of returns them. */
+    float ambient[3];
+    float sky_zenith[3], sky_horizon[3];
     /* Linear factor before the tone curve; 0: 1. With auto-exposure (masu_exposure) it is
      * multiplied by the metered factor. */
     float exposure;
@@ -1002,7 +1004,7 @@ typedef struct masu_light {
      * direction, turbidity or ground recomputes the sky, within one millisecond on the CPU. */
     float turbidity;
     float ground[3]; /* albedo below the horizon of the analytic sky, 0..1 */
-    /* Fog, for scenes that have it; ignored for others. Density at height y:
+    /* Fog, for scenes that have it; for others fog_density must be 0. Density at height y:
      * fog_density * exp(-fog_falloff * (y - fog_height)). */
     float fog_color[3]; /* radiance of thick fog, 0..1e9; all 0: that of the sky at the horizon */
     float fog_density;  /* 1/m, 0..1e6; 0: none */

@@ -48,6 +48,27 @@ static masu_result check_fog(const masu_light *light, masu_detail *detail) {
     return MASU_OK;
 }
 
+/* Members that have no effect in this scene: black, or as masu_light_of returns them. */
+static masu_result check_unused(const masu_frame_plan *plan, const masu_blob_environment *scene,
+                                const masu_light *light, masu_detail *detail) {
+    const struct {
+        const char *what;
+        const float *given, *own;
+    } colors[] = {{"light.ambient", light->ambient, scene->ambient},
+                  {"light.sky_zenith", light->sky_zenith, scene->sky_zenith},
+                  {"light.sky_horizon", light->sky_horizon, scene->sky_horizon}};
+    for (uint32_t i = 0; plan->needs.environment && i < 9; i++) {
+        uint32_t k = i % 3;
+        float given = colors[i / 3].given[k];
+        if (given == 0.0f || given == colors[i / 3].own[k]) continue;
+        return masu_fail_element(detail, colors[i / 3].what, k, (double)given,
+                                 "0 and the scene's own, whose environment map replaces it");
+    }
+    if (light->fog_density > 0.0f && !plan->scene.fog)
+        return bad(detail, "light.fog_density", light->fog_density, "0 with a scene that has no fog");
+    return MASU_OK;
+}
+
 static masu_result check_colors(const masu_light *light, masu_detail *detail) {
     masu_result result =
         check_color(detail, "light.sun_color", light->sun_color, 1e9f, "0 to 1e9");
@@ -135,6 +156,7 @@ masu_result masu_sun_sky_read(const masu_sun_sky *s, masu_frame_data *f, masu_de
     masu_result result = check_colors(&light, detail);
     if (!result) result = check_sky(f->plan, &light, detail);
     if (!result) result = check_fog(&light, detail);
+    if (!result) result = check_unused(f->plan, &s->environment, &light, detail);
     if (result) return result;
     f->light = light;
     write_light(s, f);

@@ -47,9 +47,12 @@ static void fill(masu_switch *word, masu_switch with) {
 /* Whether frames follow each other, as many samples from one need: that is what a governor is for, and of several
  * viewports each would cut the other's history off. What a host draws before the tone curve has no velocity and would
  * leave trails; what asks for velocities may have a history of its own. */
+static int are_interrupted(const masu_desc *d) {
+    return d->viewport_count > 1 || (d->split & ~(uint32_t)MASU_SPLIT_AFTER_UPSCALE) != 0;
+}
+
 static int frames_follow(const masu_desc *d) {
-    return d->scene && d->governor.mode != MASU_GOVERNOR_OFF && d->viewport_count <= 1 && !d->debug.reference &&
-           !(d->split & ~(uint32_t)MASU_SPLIT_AFTER_UPSCALE);
+    return d->scene && d->governor.mode != MASU_GOVERNOR_OFF && !d->debug.reference && !are_interrupted(d);
 }
 
 /* What `temporal` is at AUTO. A rung that says by what else it is resolved is resolved by that. */
@@ -95,13 +98,20 @@ masu_desc masu_desc_resolved(const masu_desc *desc) {
     memset(&d, 0, sizeof d);
     if (desc) d = *desc;
     if (d.frames_in_flight == 0) d.frames_in_flight = 2;
+    int given = d.rung_count != 0;
     masu_ladder_defaults(&d);
+    int smooth = d.scene && masu_scene_data_of(d.scene)->smooth_edges && !frames_follow(&d);
+    /* Built-in rungs follow the rule of AUTO. */
+    for (uint32_t r = 0; !given && are_interrupted(&d) && r < d.rung_count; r++) {
+        if (d.rungs[r].temporal != MASU_ON) continue;
+        d.rungs[r].temporal = MASU_OFF;
+        if (smooth) d.rungs[r].aa = MASU_AA_SMAA_HIGH;
+    }
     if (d.rung_count == 0) {
         d.rung_count = 3;
         d.rungs[0] = (masu_rung){.scale = 1.0f};
         d.rungs[1] = (masu_rung){.scale = 0.8f};
         d.rungs[2] = (masu_rung){.scale = 0.4f};
-        int smooth = d.scene && masu_scene_data_of(d.scene)->smooth_edges && !frames_follow(&d);
         for (uint32_t r = 0; smooth && r < d.rung_count; r++) d.rungs[r].aa = MASU_AA_SMAA_HIGH;
     }
     for (uint32_t r = 0; r < d.rung_count && r < MASU_MAX_RUNGS; r++) {

@@ -396,6 +396,7 @@ static void a_bad_light_is_named(void **state) {
     }
     BAD_LIGHT("light.sun_direction", l.sun_direction[1] = 0.0f);
     BAD_LIGHT("light.fog_density", l.fog_density = -1.0f);
+    BAD_LIGHT("light.fog_density", l.fog_density = 0.1f); /* the scene has no fog */
     BAD_LIGHT("light.fog_height", l.fog_height = 2e9f);
     BAD_LIGHT("light.fog_falloff", l.fog_falloff = -1.0f);
     BAD_LIGHT("light.fog_start", l.fog_start = -1.0f);
@@ -403,6 +404,29 @@ static void a_bad_light_is_named(void **state) {
     BAD_LIGHT("light.turbidity", l.turbidity = 1.0f);
     BAD_LIGHT("light.ground", (l.turbidity = 2.0f, l.ground[1] = 2.0f));
     BAD_LIGHT("light.turbidity", l.turbidity = 2.0f); /* the scene has no such sky */
+}
+
+/* An environment map is the sky and the ambient light: black, and what masu_light_of says, change nothing. */
+static void a_light_that_an_environment_map_replaces_is_named(void **state) {
+    (void)state;
+    make_renderer(SUPPORT_ALL, 0);
+    m.plan.needs.environment = 1;
+    for (uint32_t i = 0; i < 3; i++) {
+        masu_light l = good_light();
+        float *colors[] = {l.ambient, l.sky_zenith, l.sky_horizon};
+        static const char *const names[] = {"light.ambient", "light.sky_zenith", "light.sky_horizon"};
+        for (uint32_t k = 0; k < 3; k++) memset(colors[k], 0, sizeof l.ambient);
+        masu_frame_desc f = {.light = &l};
+        assert_int_equal(write_frame(&f, 0, &detail), MASU_OK);
+        colors[i][2] = 0.375f;
+        assert_frame_refused(&f, names[i]);
+        assert_non_null(strstr(detail.text, "[2] is 0.375"));
+    }
+    masu_light own;
+    assert_int_equal(masu_light_of(&m, &own), MASU_OK);
+    own.exposure = 2.0f;
+    masu_frame_desc f = {.light = &own};
+    assert_int_equal(write_frame(&f, 0, &detail), MASU_OK);
 }
 
 static void the_text_has_what_is_given(void **state) {
@@ -625,6 +649,7 @@ int main(void) {
         cmocka_unit_test(a_bad_camera_is_named),
         cmocka_unit_test(a_bad_window_is_named),
         cmocka_unit_test(a_bad_light_is_named),
+        cmocka_unit_test(a_light_that_an_environment_map_replaces_is_named),
         cmocka_unit_test(the_text_has_what_is_given),
         cmocka_unit_test(a_bad_sdf_parameter_is_named),
         cmocka_unit_test(the_extremes_of_each_range_are_accepted),

@@ -169,6 +169,19 @@ static void the_switch_says_which_rungs(void **state) {
         for (uint32_t r = 0; r < l->count; r++) {
             assert_true(info.rungs[r].ratio == l->ratios[r] && info.rungs[r].flip == l->flips[r]);
         }
+        for (uint32_t k = 0; k < 2; k++) { /* as `temporal` at AUTO: not with several views, or host passes */
+            d.split = k ? MASU_SPLIT_BEFORE_TONE : 0;
+            d.viewport_count = k ? 0 : 2;
+            is = masu_desc_resolved(&d);
+            assert_ladder(&is, l);
+            for (uint32_t r = 0; r < l->count; r++) assert_int_equal(is.rungs[r].temporal, MASU_OFF);
+        }
+        d.viewport_count = 0;
+        d.split = MASU_SPLIT_AFTER_UPSCALE;
+        is = masu_desc_resolved(&d);
+        for (uint32_t r = 0; r < l->count; r++)
+            assert_int_equal(is.rungs[r].temporal == MASU_ON, l->rungs[r].temporal == MASU_ON);
+        d.split = 0;
         d.governor.mode = MASU_GOVERNOR_FIXED;
         is = masu_desc_resolved(&d);
         assert_ladder(&is, l);
