@@ -231,9 +231,9 @@ static double f_twist(double x, double y, double z) {
     double c = cos(2 * y), s = sin(2 * y);
     return ref_box(c * x + s * z, y, c * z - s * x, 0.5, 2, 0.5);
 }
+/* along an arc about (0, 2) */
 static double f_bend(double x, double y, double z) {
-    double c = cos(0.5 * x), s = sin(0.5 * x);
-    return ref_box(c * x + s * y, c * y - s * x, z, 2, 0.2, 0.5);
+    return ref_box(2 * atan2(x, 2 - y), 2 - hypot(x, 2 - y), z, 2, 0.2, 0.5);
 }
 static double f_elongate(double x, double y, double z) {
     double w = z > 1 ? z - 1 : z < -1 ? z + 1 : 0;
@@ -719,6 +719,10 @@ static void mistakes_name_their_place(void **state) {
          "x.sdf:1:10: polar: the shape covers 26.57 degrees on either side of +x: expected at most 14.4"},
         {"part a = twist(1, plane((0, 1, 0), 0));",
          "x.sdf:1:10: twist: expected a bounded shape and a bounded rate"},
+        {"part a = bend(2, box((1.6, 0.1, 1)));",
+         "x.sdf:1:10: bend: x reaches 1.6, which the rate turns by 3.2: expected at most 3.14"},
+        {"part a = bend(1, box((1.6, 1, 1)));",
+         "x.sdf:1:10: bend: y times the rate reaches 1: expected at most 0.99, inside the centre of the arc"},
         {"part a = rotate((0, 0, 0), 1, sphere(1));",
          "x.sdf:1:10: rotate: expected an axis that is not zero"},
         {"part a = glsl { return 1.0; ", "x.sdf:1:15: expected a \"}\" for this \"{\""},
@@ -989,6 +993,28 @@ static void the_bounds_of_a_blend_are_those_of_equal_operands(void **state) {
     }
 }
 
+static void a_bend_is_as_steep_as_its_inner_side(void **state) {
+    (void)state;
+    static const struct {
+        const char *text;
+        double lipschitz;
+    } cases[] = {
+        {"part a = bend(0.8333, box((1.4, 0.3, 0.3)));", 1 / (1 - 0.8333 * 0.3)},
+        {"part a = bend(-0.8333, box((1.4, 0.3, 0.3)));", 1 / (1 - 0.8333 * 0.3)},
+        {"part a = bend(0.01, box((200, 0.3, 0.3)));", 1 / (1 - 0.01 * 0.3)},
+        {"part a = bend(0.5, translate((0, -0.4, 0), box((1.4, 0.3, 0.3))));", 1},
+        {"part a = bend(0, box((1, 1, 1)));", 1},
+        {"param k = 0 [-0.5, 0.2]; part a = bend(k, box((1, 0.3, 1)));", 1 / (1 - 0.5 * 0.3)},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        masu_sdfc_result result;
+        assert_compiles(cases[i].text, strlen(cases[i].text), &result);
+        double found = result.parts[0].lipschitz / cases[i].lipschitz;
+        if (!(found > 1 - 1e-9 && found < 1.0011)) fail_msg("%s: %g", cases[i].text, result.parts[0].lipschitz);
+        masu_sdfc_release(&result);
+    }
+}
+
 static void depth_is_limited(void **state) {
     (void)state;
     char text[20000], error[256];
@@ -1092,6 +1118,7 @@ int main(void) {
         cmocka_unit_test(mistakes_name_their_place),
         cmocka_unit_test(repetitions_are_the_union_of_their_copies),
         cmocka_unit_test(the_bounds_of_a_blend_are_those_of_equal_operands),
+        cmocka_unit_test(a_bend_is_as_steep_as_its_inner_side),
         cmocka_unit_test(depth_is_limited),
         cmocka_unit_test(size_is_limited),
         cmocka_unit_test(planted_faults_are_found),

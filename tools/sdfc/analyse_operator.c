@@ -447,19 +447,18 @@ static void polar_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
 
 /* ---- bending ---- */
 
-/* Around an axis the map is a shear that grows with the distance, so the constant holds near the
+/* Around an axis a twist is a shear that grows with the distance, so the constant holds near the
  * shape only. Further out than `margin` the distance to the cylinder around the shape takes over:
  * max(cylinder, min(field / constant, margin)). extra: 0 constant, 1 margin, 2 radius, 3 4 middle
  * and half length of the cylinder */
-static void bend_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
-    int a = 0, b = s->kind == SDFC_KIND_TWIST ? 2 : 1, axis = 3 - a - b;
+static void twist_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
+    int a = 0, b = 2, axis = 1;
     double radius = sdfc_reach(f, a, b), k = sdfc_most(c, s->number[0]);
     if (!isfinite(radius) || !isfinite(k)) {
-        sdfc_fail(c, s->token, "%s: expected a bounded shape and a bounded rate",
-                  sdfc_kind_names[s->kind]);
+        sdfc_fail(c, s->token, "twist: expected a bounded shape and a bounded rate");
     }
     double margin = fmax(radius * 0.25, 1e-3), shear = k * (radius + margin);
-    double stretch = s->kind == SDFC_KIND_TWIST ? (shear + sqrt(shear * shear + 4)) / 2 : 1 + shear;
+    double stretch = (shear + sqrt(shear * shear + 4)) / 2;
     f->lipschitz *= stretch * (1 + 1e-12);
     f->growth = f->lipschitz;
     f->symmetric = 0;
@@ -471,6 +470,70 @@ static void bend_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
     s->extra[2] = radius;
     s->extra[3] = ends ? (f->box.low[axis] + f->box.high[axis]) / 2 : 0;
     s->extra[4] = ends ? (f->box.high[axis] - f->box.low[axis]) / 2 : 1e30;
+    sdfc_sphere_of_box(f);
+}
+
+/* The box of what a bend by k leaves of a box whose x is within +-x: of one k from the corners and the ends of the arc, of
+ * an interval from the length of the arc. */
+static void bend_box(sdfc_box *b, double x, double low, double high) {
+    double most = fmax(fabs(low), fabs(high)), thick = sdfc_corner(b, 1);
+    double y[2] = {b->low[1], b->high[1]}, reach = x * (1 + most * thick);
+    if (low < high || most < 1e-6) {
+        b->low[1] -= low < 0 ? reach : 0;
+        b->high[1] += high > 0 ? reach : 0;
+    } else {
+        double angle = most * x, sagitta = 2 * sin(angle / 2) * sin(angle / 2) / most;
+        double inner = low > 0 ? y[1] : -y[0], outer = low > 0 ? y[0] : -y[1];
+        double end = sagitta + cos(angle) * (cos(angle) > 0 ? inner : outer);
+        reach = (1 / most - outer) * sin(fmin(angle, PI / 2));
+        if (low > 0)
+            b->high[1] = fmax(y[1], end);
+        else
+            b->low[1] = fmin(y[0], -end);
+    }
+    for (int i = 0; i < 2; i++) {
+        double slack = 1e-9 * (reach + fabs(b->low[i]) + fabs(b->high[i]));
+        if (i == 0) b->low[0] = -reach, b->high[0] = reach;
+        b->low[i] -= slack;
+        b->high[i] += slack;
+    }
+}
+
+/* Along an arc of radius 1 / k: stretched by 1 / (1 - k y), y across the arc, least at its inner side. `outside` is
+ * the distance to the arc that the shape fills, which the box of that completes. Where it exceeds `margin`, which may be
+ * small, it takes over: max(L outside, min(field, L (2 margin - outside))). extra: 0 L, 1 2 L margin, 2 3 middle and half
+ * thickness across, 4 5 along z */
+static void bend_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
+    int *n = s->number;
+    double x = sdfc_corner(&f->box, 0), low = sdfc_low(c, n[0]), high = sdfc_high(c, n[0]), most = sdfc_most(c, n[0]);
+    if (!isfinite(sdfc_reach(f, 0, 1)) || !isfinite(most)) {
+        sdfc_fail(c, s->token, "bend: expected a bounded shape and a bounded rate");
+    }
+    double y[2] = {f->box.low[1], f->box.high[1]};
+    double inner = fmax(fmax(low * y[0], low * y[1]), fmax(high * y[0], high * y[1]));
+    if (!(most * x <= 3.14)) {
+        sdfc_fail(c, s->token, "bend: x reaches %g, which the rate turns by %g: expected at most 3.14", x, most * x);
+    }
+    if (!(inner <= 0.99)) {
+        sdfc_fail(c, s->token, "bend: y times the rate reaches %g: expected at most 0.99, inside the centre of the arc", inner);
+    }
+    double margin = fmin(0.25 * fmax(sdfc_reach(f, 0, 1), 1e-3), 1e-3 * (1 - fmax(inner, 0)) / fmax(most, 1e-9));
+    f->lipschitz *= fmax(1, 1 / (1 - inner - most * margin)) * (1 + 1e-12);
+    f->growth = f->lipschitz;
+    f->symmetric = 0;
+    bool ends = isfinite(f->box.low[2]) && isfinite(f->box.high[2]);
+    s->extra[0] = f->lipschitz;
+    s->extra[1] = 2 * margin * f->lipschitz;
+    s->extra[2] = (y[0] + y[1]) / 2;
+    s->extra[3] = (y[1] - y[0]) / 2;
+    s->extra[4] = ends ? (f->box.low[2] + f->box.high[2]) / 2 : 0;
+    s->extra[5] = ends ? (f->box.high[2] - f->box.low[2]) / 2 : 1e30;
+    n[0] = sdfc_apply1(c, SDFC_nonzero, n[0]);
+    int angle = sdfc_apply2(c, SDFC_mul, n[0], sdfc_number(c, x));
+    n[1] = sdfc_apply1(c, SDFC_cos, angle);
+    n[2] = sdfc_apply1(c, SDFC_sin, angle);
+    n[3] = sdfc_apply2(c, SDFC_mul, n[2], sdfc_apply1(c, SDFC_rcp, n[0]));
+    bend_box(&f->box, x, low, high);
     sdfc_sphere_of_box(f);
 }
 
@@ -532,7 +595,7 @@ sdfc_facts sdfc_operator_facts(sdfc *c, sdfc_shape *s) {
     case SDFC_KIND_REPEAT:
     case SDFC_KIND_REPEAT_LIMITED: repeat_facts(c, s, &f); break;
     case SDFC_KIND_POLAR: polar_facts(c, s, &f); break;
-    case SDFC_KIND_TWIST:
+    case SDFC_KIND_TWIST: twist_facts(c, s, &f); break;
     case SDFC_KIND_BEND: bend_facts(c, s, &f); break;
     case SDFC_KIND_ELONGATE: elongate_facts(c, s, &f); break;
     case SDFC_KIND_ONION: f.rising = 0; /* fallthrough */

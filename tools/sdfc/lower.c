@@ -457,18 +457,36 @@ static int lower_polar(lowering *l, const sdfc_shape *s, point p) {
     return capped(l, d, edge, &s->facts, p);
 }
 
+/* Boxes without an end are as wide as fp32 can square. */
+static int outside_box(lowering *l, const sdfc_box *b, point p) {
+    int e[6];
+    for (int i = 0; i < 3; i++) {
+        bool ends = isfinite(b->low[i]) && isfinite(b->high[i]);
+        e[i] = constant(l, ends ? (b->low[i] + b->high[i]) / 2 : 0);
+        e[3 + i] = constant(l, ends ? (b->high[i] - b->low[i]) / 2 : 1e30);
+    }
+    return OP(l, around_box, p.x, p.y, p.z, e[0], e[1], e[2], e[3], e[4], e[5]);
+}
+
 static int lower_bend(lowering *l, const sdfc_shape *s, point p) {
-    bool twist = s->kind == SDFC_KIND_TWIST;
-    int rate = argument(l, s->number[0]);
-    /* turned by the coordinate along the axis (twist) or across it (bend) */
-    int a = OP(l, mul, twist ? p.y : p.x, rate);
-    int u = p.x, v = twist ? p.z : p.y;
-    int turned_u = OP(l, turn_x, u, v, a), turned_v = OP(l, turn_z, u, v, a);
-    point q = {turned_u, twist ? p.y : turned_v, twist ? turned_v : p.z, {0}};
+    int k = argument(l, s->number[0]);
+    int along = OP(l, arc_along, p.x, p.y, k), across = OP(l, arc_across, p.x, p.y, k);
+    int d = lower_whole(l, s->child[0], (point){along, across, p.z, {0}});
+    int e[7];
+    for (int i = 0; i < 3; i++) e[i] = argument(l, s->number[1 + i]);
+    for (int i = 0; i < 4; i++) e[3 + i] = constant(l, s->extra[2 + i]);
+    int outside = OP(l, around_arc, p.x, p.y, p.z, across, e[0], e[1], e[2], e[3], e[4], e[5], e[6]);
+    outside = OP(l, max, outside, outside_box(l, &s->facts.box, p));
+    int shell = OP(l, mul, outside, constant(l, s->extra[0]));
+    return OP(l, max, shell, OP(l, min, d, OP(l, sub, constant(l, s->extra[1]), shell)));
+}
+
+static int lower_twist(lowering *l, const sdfc_shape *s, point p) {
+    int a = OP(l, mul, p.y, argument(l, s->number[0]));
+    point q = {OP(l, turn_x, p.x, p.z, a), p.y, OP(l, turn_z, p.x, p.z, a), {0}};
     int d = lower_whole(l, s->child[0], q);
-    int along = twist ? p.y : p.z;
     int radius = constant(l, s->extra[2]), middle = constant(l, s->extra[3]);
-    int outside = OP(l, around_cylinder, u, along, v, radius, middle, constant(l, s->extra[4]));
+    int outside = OP(l, around_cylinder, p.x, p.y, p.z, radius, middle, constant(l, s->extra[4]));
     int shell = OP(l, mul, outside, constant(l, s->extra[0]));
     return OP(l, max, shell, OP(l, min, d, constant(l, s->extra[1])));
 }
@@ -616,13 +634,7 @@ static int lower_user(lowering *l, const sdfc_shape *s, point p) {
     call->operand[0] = p.x;
     call->operand[1] = p.y;
     call->operand[2] = p.z;
-    int d = last_variable(l), e[6];
-    const sdfc_box *b = &s->facts.box;
-    for (int i = 0; i < 3; i++) {
-        e[i] = constant(l, (b->low[i] + b->high[i]) / 2);
-        e[3 + i] = constant(l, (b->high[i] - b->low[i]) / 2);
-    }
-    int outside = OP(l, around_box, p.x, p.y, p.z, e[0], e[1], e[2], e[3], e[4], e[5]);
+    int d = last_variable(l), outside = outside_box(l, &s->facts.box, p);
     return OP(l, max, d, OP(l, mul, outside, constant(l, s->facts.lipschitz)));
 }
 
@@ -729,7 +741,7 @@ static int lower(lowering *l, int shape, point p) {
     case SDFC_KIND_REPEAT:
     case SDFC_KIND_REPEAT_LIMITED: return lower_repeat(l, s, p);
     case SDFC_KIND_POLAR: return lower_polar(l, s, p);
-    case SDFC_KIND_TWIST:
+    case SDFC_KIND_TWIST: return lower_twist(l, s, p);
     case SDFC_KIND_BEND: return lower_bend(l, s, p);
     case SDFC_KIND_ELONGATE: {
         int x = OP(l, elongate, p.x, argument(l, n[0]));
