@@ -713,6 +713,11 @@ static void nodes_outside_of_the_scene_are_ignored(void **state) {
         assert_int_equal(masu_bake_count(&piece, MASU_BLOB_INSTANCES), 1);
         assert_near((double)MASU_BAKE_INSTANCES(&piece)[0].transform[3], 3, 0);
     }
+    begin_quad();
+    import_warned(finish("\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":%d},\"indices\":%d}]}],"
+                         "\"nodes\":[{\"mesh\":0},{\"mesh\":0,\"name\":\"spare\"}],\"scenes\":[{\"nodes\":[0]}]",
+                         quad_positions, quad_indices),
+                  "1 nodes with meshes are not in the scene: left out (first: spare)");
 }
 
 static void data_uris_of_all_forms(void **state) {

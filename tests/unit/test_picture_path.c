@@ -88,7 +88,7 @@ static int make_folders(void **state) {
                                           "t/data/textures"};
     static const char *const files[] = {"m/a b.png",
                                         "m/maps/a c.png",
-                                        "m/maps/d\xC3\xA4" "ch\xD0\xB6.png",
+                                        "m/maps/d\303\244ch\320\266.png",
                                         "m/twice.png",
                                         "m/TWICE.png",
                                         "m/50%.png",

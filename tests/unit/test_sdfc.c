@@ -1101,6 +1101,30 @@ static void planted_faults_are_found(void **state) {
     }
 }
 
+/* Where a camera is inside a part it sees nothing: the part is named, at the time of the key. */
+static void cameras_inside_of_parts_are_told(void **state) {
+    (void)state;
+    static const char text[] = "part wall = translate((time, 0, 0), box((0.5, 1, 1)));\n"
+                               "part floor = plane((0, 1, 0), -2);\n";
+    static const struct {
+        masu_sdfc_camera camera;
+        const char *warning;
+    } cases[] = {{{{0, 0, 0}, 0}, "the camera at (0, 0, 0), 0 s, is inside part \"wall\""},
+                 {{{0, 0, 0}, 3}, ""},
+                 {{{3.2, 0.5, 0}, 3}, "inside part \"wall\""},
+                 {{{0.51, 0, 0}, 0}, ""},
+                 {{{9, -2.5, 9}, 0}, "inside part \"floor\""}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        masu_sdfc_options options = {.pairs = UINT32_MAX, .cameras = &cases[i].camera, .camera_count = 1};
+        masu_sdfc_result result;
+        char error[1024];
+        if (!masu_sdfc_compile_with(text, sizeof text - 1, "x.sdf", &options, &result, error, sizeof error)) fail_msg("%s", error);
+        if (!strstr(result.warnings, cases[i].warning) || !*cases[i].warning != !*result.warnings)
+            fail_msg("case %zu: %s", i, result.warnings);
+        masu_sdfc_release(&result);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(values_are_those_of_the_formulas),
@@ -1121,6 +1145,7 @@ int main(void) {
         cmocka_unit_test(a_bend_is_as_steep_as_its_inner_side),
         cmocka_unit_test(depth_is_limited),
         cmocka_unit_test(size_is_limited),
+        cmocka_unit_test(cameras_inside_of_parts_are_told),
         cmocka_unit_test(planted_faults_are_found),
     };
     return cmocka_run_group_tests(tests, load_features, unload_features);

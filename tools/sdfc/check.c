@@ -280,6 +280,36 @@ static void check_mirrors(sdfc *c, const sdfc_part *part, int shape, bool *seen)
     for (int i = 0; i < s->children; i++) check_mirrors(c, part, c->shapes[shape].child[i], seen);
 }
 
+/* Room for the variables of each part's program, and for the expressions. */
+static void take_room(sdfc *c) {
+    int variables = 0;
+    for (int i = 0; i < c->part_count; i++) {
+        int own = c->parts[i].program.variable_count;
+        if (own > variables) variables = own;
+    }
+    if (!c->variables) c->variables = sdfc_take(c, (size_t)variables, sizeof *c->variables);
+    if (!c->values) c->values = sdfc_take(c, (size_t)c->expr_count, sizeof *c->values);
+}
+
+void sdfc_check_cameras(sdfc *c, const masu_sdfc_camera *cameras, uint32_t count) {
+    checker k = {.c = c, .random = 0x6D617375};
+    take_room(c);
+    set_environment(&k, 0);
+    for (int i = 0; i < c->part_count; i++) {
+        const sdfc_part *part = &c->parts[i];
+        if (c->shapes[part->shape].facts.user) continue; /* its text is GLSL */
+        for (uint32_t n = 0; n < count; n++) {
+            const double *p = cameras[n].position;
+            sdfc_evaluate(c, k.params, cameras[n].time, c->values);
+            uint64_t cells = 0;
+            if (!(sdfc_run(c, &part->program, p, &cells) < 0)) continue;
+            sdfc_warn(c, part->token, "the camera at (%g, %g, %g), %g s, is inside part \"%s\"", p[0], p[1], p[2],
+                      cameras[n].time, part->name);
+            break;
+        }
+    }
+}
+
 void sdfc_check(sdfc *c, uint32_t pairs) {
     free(c->scratch);
     c->scratch = NULL;
@@ -288,17 +318,14 @@ void sdfc_check(sdfc *c, uint32_t pairs) {
     free(seen);
     c->scratch = NULL;
     checker k = {.c = c, .random = 0x6D617375};
-    int variables = 0;
     double operations = 0;
     for (int i = 0; i < c->part_count; i++) {
         const sdfc_part *p = &c->parts[i];
         double share = fmax((double)pairs / c->groups[p->group].part_count, ENVIRONMENTS);
         operations += 3 * share * c->shapes[p->shape].facts.cost * 4;
-        if (p->program.variable_count > variables) variables = p->program.variable_count;
     }
     double thin = operations > OPERATIONS_MAX ? OPERATIONS_MAX / operations : 1;
-    c->variables = sdfc_take(c, (size_t)variables, sizeof *c->variables);
-    c->values = sdfc_take(c, (size_t)c->expr_count, sizeof *c->values);
+    take_room(c);
     int environments = c->dynamic_count ? ENVIRONMENTS : 1;
     if (c->cost * 8 * ENVIRONMENTS > OPERATIONS_MAX) environments = 1;
     for (int e = 0; e < environments; e++) {

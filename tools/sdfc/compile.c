@@ -111,7 +111,8 @@ static void fill_result(sdfc *c, masu_sdfc_result *out) {
     out->warnings = taken(&c->warnings);
 }
 
-static void compile(sdfc *c, uint32_t pairs, masu_sdfc_result *out) {
+static void compile(sdfc *c, const masu_sdfc_options *options, masu_sdfc_result *out) {
+    uint32_t pairs = options ? options->pairs : 0;
     sdfc_lex(c);
     sdfc_parse(c);
     for (int i = 0; i < 3 && c->anchored; i++) c->anchor_expr[i] = sdfc_anchor_expr(c, i);
@@ -119,6 +120,7 @@ static void compile(sdfc *c, uint32_t pairs, masu_sdfc_result *out) {
     sdfc_group_parts(c);
     sdfc_assign_slots(c);
     if (pairs != UINT32_MAX) sdfc_check(c, pairs ? pairs : 20000);
+    if (options && options->camera_count) sdfc_check_cameras(c, options->cameras, options->camera_count);
     sdfc_assign_terms(c);
     sdfc_emit(c);
     fill_result(c, out);
@@ -151,7 +153,7 @@ bool masu_sdfc_compile_with(const char *text, size_t bytes, const char *name,
         masu_sdfc_release(out);
         return false;
     }
-    compile(c, options ? options->pairs : 0, out);
+    compile(c, options, out);
     sdfc_free(c);
     return true;
 }

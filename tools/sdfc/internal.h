@@ -356,6 +356,8 @@ uint32_t sdfc_term_word(const sdfc *c, int word); /* the bits of terms in it */
 uint32_t sdfc_block_words(const sdfc *c);        /* of all bits, or of places in a list; 0: nothing to choose */
 void sdfc_emit(sdfc *c);
 void sdfc_check(sdfc *c, uint32_t pairs);
+/* Warns of parts that a camera is inside of. */
+void sdfc_check_cameras(sdfc *c, const masu_sdfc_camera *cameras, uint32_t count);
 void sdfc_free_program(sdfc_program *p); /* what it holds */
 void sdfc_free(sdfc *c);                 /* and all it has taken */
 double sdfc_run(const sdfc *c, const sdfc_program *p, const double p3[3], uint64_t *cells);

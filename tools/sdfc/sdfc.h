@@ -72,9 +72,16 @@ typedef struct masu_sdfc_result {
     double glossiest; /* least roughness that a part which does not shine may have; 1: all do */
 } masu_sdfc_result;
 
+/* A point of a camera's path. */
+typedef struct masu_sdfc_camera {
+    double position[3], time;
+} masu_sdfc_camera;
+
 typedef struct masu_sdfc_options {
     uint32_t pairs; /* tried per distinct shape; 0: 20000. UINT32_MAX: none */
     bool anchored;  /* the GLSL takes points relative to masu_anchor() */
+    const masu_sdfc_camera *cameras; /* a warning names each part that one of them is inside of, parameters at their */
+    uint32_t camera_count;           /* defaults */
 } masu_sdfc_options;
 
 /* False: `error` holds "name:line:column: message", the line and a caret. The result is then empty.

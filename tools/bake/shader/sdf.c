@@ -124,6 +124,32 @@ static bool has_terms(const masu_bake_buffer *text) {
     return false;
 }
 
+#define PATH_STEPS 4u /* from key to key */
+
+/* Points of the camera's path inside the SDF's bounds; free() them. */
+static masu_sdfc_camera *path_of(const masu_bake_content *content, uint32_t *count) {
+    const masu_blob_sdf *sdf = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, const masu_blob_sdf);
+    const masu_blob_camera_key *keys = MASU_BAKE_ARRAY(content, MASU_BLOB_CAMERA_KEYS, const masu_blob_camera_key);
+    uint32_t key_count = (uint32_t)masu_bake_count(content, MASU_BLOB_CAMERA_KEYS);
+    masu_sdfc_camera *out = masu_bake_allocate((size_t)key_count * PATH_STEPS * sizeof *out);
+    *count = 0;
+    for (uint32_t i = 0; i < key_count; i++) {
+        const masu_blob_camera_key *a = &keys[i], *b = &keys[i + 1 < key_count ? i + 1 : i];
+        for (uint32_t step = 0; step < (a == b ? 1 : PATH_STEPS); step++) {
+            double t = (double)step / PATH_STEPS;
+            masu_sdfc_camera *c = &out[*count];
+            bool inside = true;
+            for (int k = 0; k < 3; k++) {
+                c->position[k] = (double)a->position[k] * (1 - t) + (double)b->position[k] * t;
+                inside = inside && c->position[k] >= (double)sdf->bounds_min[k] && c->position[k] <= (double)sdf->bounds_max[k];
+            }
+            c->time = (double)a->time * (1 - t) + (double)b->time * t;
+            *count += inside;
+        }
+    }
+    return out;
+}
+
 /* `scene` is the caller's to release, whatever is returned. */
 static bool compile_scene(const char *path, masu_bake_content *content, masu_bake_buffer *out,
                           bool *dynamic, masu_sdfc_result *scene) {
@@ -139,8 +165,11 @@ static bool compile_scene(const char *path, masu_bake_content *content, masu_bak
     }
     masu_sdfc_options options = {
         .anchored = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf)->anchored != 0};
+    masu_sdfc_camera *cameras = path_of(content, &options.camera_count);
+    options.cameras = cameras;
     good = masu_sdfc_compile_with((const char *)own.data, own.bytes, path, &options, scene, error,
                                   sizeof error);
+    free(cameras);
     if (good) {
         masu_bake_report_lines(scene->warnings, true);
         take_params(scene, content);
