@@ -13,7 +13,7 @@
 #include "support/floats.h"
 #include "support/wrap.h"
 
-#include "device/record.h"
+#include "device/recordings.h"
 #include "renderer.h"
 
 #include <stdio.h>
@@ -101,7 +101,7 @@ static void record_again(const char *pass, uint32_t resource, uint32_t word) {
         fill_bytes = i->bytes & ~(uint64_t)3;
     }
     fill_word = word;
-    assert_int_equal(masu_record_again(&s.m->device, &s.m->draws, &detail), MASU_OK);
+    assert_int_equal(masu_record_again(&s.m->device, &s.m->draws, 0, &detail), MASU_OK);
 }
 
 static const char *name_of(uint32_t resource) {

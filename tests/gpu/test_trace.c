@@ -11,6 +11,7 @@
  * whether it is hit, and to a hundredth of its length where). Whatever does not stand is an error;
  * there may be none. A crack between triangles would hide in that rule, so closed meshes are asked
  * by themselves: from inside no ray gets out. */
+#include "support/files.h"
 #include "support/support.h"
 #include "support/random.h"
 #include "support/compute.h"

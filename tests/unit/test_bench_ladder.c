@@ -263,7 +263,7 @@ static void a_table_of_before_is_read(void **state) {
     assert_true(fread(text, 1, sizeof text - 1, f) > 0);
     fclose(f);
     for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n")) {
-        for (int k = 0; k < 2; k++) *strrchr(line, ',') = 0;
+        for (int k = 0; k < 3; k++) *strrchr(line, ',') = 0;
         strcat(strcat(old, line), "\n");
     }
     uint32_t count;
