@@ -128,7 +128,8 @@ bool masu_bake_picture_path(const char *model, const char *name, masu_bake_buffe
     }
     may = may || is_shared(model, other, out);
     if (!may) {
-        (void)is_there(model, folder, own, false, out);
+        bool escaped = !is_there(model, folder, own, false, out) && is_there(model, folder, other, false, out);
+        if (!escaped) (void)is_there(model, folder, own, false, out);
         may = masu_bake_inside(model, (const char *)out->data);
     }
     masu_bake_release(&plain);
