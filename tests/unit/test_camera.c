@@ -496,7 +496,7 @@ static void whatever_is_accepted_makes_finite_uniforms(void **state) {
     uint32_t accepted = 0;
 #define PICK values[support_random(&random) % COUNT(values)]
     make_renderer(SUPPORT_ALL, 0);
-    for (int n = 0; n < (int)trials(200000, 200000, 20000); n++) {
+    for (int n = 0; n < (int)trials(200000, 50000, 20000); n++) {
         masu_camera c = good_camera();
         masu_light l = good_light();
         float given[2] = {PICK, PICK};
