@@ -244,7 +244,8 @@ static void log_box(const masu_renderer *m) {
     uint32_t few = m->plan.desc.deny.storage_buffers;
     if (!few) return;
     snprintf(text, sizeof text,
-             "the device has %u storage buffers in a shader stage: traced reflections or occlusion culling are off",
+             "%u storage buffers in a shader stage are too few: traced reflections or occlusion "
+             "culling are off",
              few);
     masu_log(&m->plan.desc, MASU_LOG_WARNING, text);
 }

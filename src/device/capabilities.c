@@ -3,9 +3,12 @@
 
 #include "base/error.h"
 #include "device/ray_query.h"
+#include "device/shaders.h"
 #include "plan/buffer_plan.h"
 #include "quality/ladder.h"
 
+#include <stddef.h>
+#include <stdio.h>
 #include <string.h>
 
 /* ---- Storage buffers ------------------------------------------------------------------------- */
@@ -15,22 +18,42 @@ static uint32_t buffers_of(const masu_desc *desc, const VkPhysicalDeviceLimits *
     return most && most < has ? most : has;
 }
 
-/* Rungs that leave reflections to us go without where there are too few: *dropped. */
-static masu_result drop_specular(masu_desc *desc, const masu_frame_plan *plan, uint32_t has,
-                                 int *dropped, masu_detail *detail) {
-    uint32_t needed = masu_compute_buffers(plan, MASU_BINDING_PLAIN) +
-                      masu_compute_buffers(plan, MASU_BINDING_TRACING);
-    if (!plan->needs.reflections || has >= needed) return MASU_OK;
-    for (uint32_t r = 0; r < desc->rung_count; r++) {
-        if (desc->rungs[r].specular == MASU_ON) {
-            return masu_fail(detail, MASU_ERROR_DEVICE, "maxPerStageDescriptorStorageBuffers",
-                             needed, has,
-                             "rungs[%u].specular needs %u storage buffers in a stage, the device "
-                             "has %u",
-                             r, needed, has);
-        }
-        *dropped |= desc->rungs[r].specular != MASU_OFF;
-        desc->rungs[r].specular = MASU_OFF;
+typedef struct masu_most {
+    uint32_t buffers;
+    const char *pass;
+} masu_most;
+
+/* The pass of which a stage binds most storage buffers, of those that bind one of the group; PLAIN:
+ * of those that bind none of tracing and culling, which no rung can do without. */
+static masu_most most_buffers(const masu_frame_plan *plan, masu_binding_group group) {
+    const uint32_t optional = 1u << MASU_BINDING_TRACING | 1u << MASU_BINDING_CULLING;
+    masu_most most = {0, ""};
+    for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
+        uint32_t groups, count;
+        if (!masu_first_rung(plan, p)) continue;
+        count = masu_storage_buffers(plan, p, &groups);
+        if (group == MASU_BINDING_PLAIN ? groups & optional : !(groups >> group & 1)) continue;
+        if (count > most.buffers) most = (masu_most){count, masu_passes[p].name};
+    }
+    return most;
+}
+
+static masu_result too_few(const char *what, masu_most most, uint32_t has, masu_detail *detail) {
+    return masu_fail(detail, MASU_ERROR_DEVICE, "maxPerStageDescriptorStorageBuffers", most.buffers,
+                     has, "%s needs %u storage buffers in a stage of the pass %s, the device has %u",
+                     what, most.buffers, most.pass, has);
+}
+
+/* Turns a feature off in rungs that leave it to us: *dropped. */
+static masu_result drop(masu_desc *desc, size_t member, const char *name, masu_most most,
+                        uint32_t has, int *dropped, masu_detail *detail) {
+    for (uint32_t r = 0; r < desc->rung_count && has < most.buffers; r++) {
+        masu_switch *is = (masu_switch *)(void *)((unsigned char *)&desc->rungs[r] + member);
+        char what[48];
+        snprintf(what, sizeof what, "rungs[%u].%s", r, name);
+        if (*is == MASU_ON) return too_few(what, most, has, detail);
+        *dropped |= *is != MASU_OFF;
+        *is = MASU_OFF;
     }
     return MASU_OK;
 }
@@ -102,34 +125,22 @@ static int filters_unorm16(const masu_vk *vk) {
     return (p.optimalTilingFeatures & wanted) == wanted;
 }
 
-/* Vulkan promises four storage buffers in a stage: rungs that leave culling by occluders to us go
- * without it where there are no more: *dropped. */
-static masu_result drop_occlusion(masu_desc *desc, const masu_frame_plan *plan, uint32_t has,
-                                  int *dropped, masu_detail *detail) {
-    uint32_t plain = masu_compute_buffers(plan, MASU_BINDING_PLAIN);
-    uint32_t needed = plain + masu_compute_buffers(plan, MASU_BINDING_CULLING);
-    if (has < plain) {
-        char names[256];
-        masu_name_buffers(plan, MASU_BINDING_PLAIN, names, sizeof names);
-        return masu_fail(detail, MASU_ERROR_DEVICE, "maxPerStageDescriptorStorageBuffers", plain,
-                         has, "the scene needs %u storage buffers in a stage (%s), the device has %u",
-                         plain, names, has);
+/* Vulkan guarantees four storage buffers in a stage. Where there are fewer than a feature binds,
+ * rungs that leave it to us go without it. */
+static masu_result fit_buffers(masu_desc *desc, const masu_frame_plan *plan, uint32_t has,
+                               int *dropped, masu_detail *detail) {
+    masu_most plain = most_buffers(plan, MASU_BINDING_PLAIN);
+    if (has < plain.buffers) return too_few("the scene", plain, has, detail);
+    masu_result result = MASU_OK;
+    if (plan->needs.reflections) {
+        result = drop(desc, offsetof(masu_rung, specular), "specular",
+                      most_buffers(plan, MASU_BINDING_TRACING), has, dropped, detail);
     }
-    if (plan->needs.reflections && desc_traces(desc))
-        needed += masu_compute_buffers(plan, MASU_BINDING_TRACING);
-    if (!plan->occlusion || has >= needed) return MASU_OK;
-    for (uint32_t r = 0; r < desc->rung_count; r++) {
-        if (desc->rungs[r].occlusion == MASU_ON) {
-            return masu_fail(detail, MASU_ERROR_DEVICE, "maxPerStageDescriptorStorageBuffers",
-                             needed, has,
-                             "rungs[%u].occlusion needs %u storage buffers in a stage, the device "
-                             "has %u",
-                             r, needed, has);
-        }
-        *dropped |= desc->rungs[r].occlusion != MASU_OFF;
-        desc->rungs[r].occlusion = MASU_OFF;
+    if (!result && plan->occlusion) {
+        result = drop(desc, offsetof(masu_rung, occlusion), "occlusion",
+                      most_buffers(plan, MASU_BINDING_CULLING), has, dropped, detail);
     }
-    return MASU_OK;
+    return result;
 }
 
 /* What grows with the scene and is bound whole, and the widest dispatch over instances. */
@@ -165,17 +176,6 @@ static masu_result check_ranges(const masu_frame_plan *plan, const VkPhysicalDev
     return MASU_OK;
 }
 
-/* Of the vertex stage only frames that bring something ask more than Vulkan promises. */
-static masu_result check_vertex_stage(const masu_frame_plan *plan, const VkPhysicalDeviceLimits *limits,
-                                      masu_detail *detail) {
-    uint32_t needed = masu_vertex_buffers(plan), has = limits->maxPerStageDescriptorStorageBuffers;
-    if (!plan->needs.sprites || has >= needed) return MASU_OK;
-    return masu_fail(detail, MASU_ERROR_DEVICE, "maxPerStageDescriptorStorageBuffers", needed, has,
-                     "reserve: the scene and particles or lines need %u storage buffers in the vertex stage, the "
-                     "device has %u",
-                     needed, has);
-}
-
 /* The largest side of a shadow map. */
 static uint32_t widest_map(const VkPhysicalDeviceLimits *limits) {
     uint32_t most = limits->maxImageDimension2D;
@@ -201,7 +201,6 @@ masu_result masu_capabilities_check(const masu_frame_plan *plan, const masu_vk *
                                     masu_detail *detail) {
     const VkPhysicalDeviceLimits *limits = &vk->properties.limits;
     masu_result result = check_ranges(plan, limits, detail);
-    if (!result) result = check_vertex_stage(plan, limits, detail);
     return result ? result : check_shadow_map(plan, detail);
 }
 
@@ -236,8 +235,7 @@ masu_result masu_capabilities_fit(masu_desc *desc, const masu_frame_plan *plan, 
     if (vk->queue_family.timestampValidBits == 0) desc->governor.wall_only = 1;
     uint32_t has = buffers_of(desc, limits);
     int dropped = 0;
-    masu_result result = drop_specular(desc, plan, has, &dropped, detail);
-    if (!result) result = drop_occlusion(desc, plan, has, &dropped, detail);
+    masu_result result = fit_buffers(desc, plan, has, &dropped, detail);
     desc->deny.storage_buffers = dropped ? has : 0; /* the plan gives it as the reason */
     uint32_t widest = widest_map(limits);
     if (!desc->deny.image_size || desc->deny.image_size > widest) desc->deny.image_size = widest;

@@ -160,6 +160,31 @@ uint32_t masu_global_bindings(const masu_frame_plan *plan, uint32_t pass,
     return count;
 }
 
+uint32_t masu_storage_buffers(const masu_frame_plan *plan, uint32_t pass, uint32_t *groups) {
+    static const VkShaderStageFlags stages[] = {VK_SHADER_STAGE_VERTEX_BIT,
+                                                VK_SHADER_STAGE_FRAGMENT_BIT,
+                                                VK_SHADER_STAGE_COMPUTE_BIT};
+    VkDescriptorSetLayoutBinding bound[MASU_BIND_COUNT];
+    masu_binding rows[MASU_BIND_COUNT];
+    uint32_t most = 0, count = masu_global_bindings(plan, pass, bound);
+    masu_bindings(plan, rows);
+    *groups = 0;
+    for (uint32_t k = 0; k < sizeof stages / sizeof *stages; k++) {
+        uint32_t here = 0;
+        for (uint32_t i = 0; i < count; i++) {
+            here += bound[i].descriptorType == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER &&
+                    (bound[i].stageFlags & stages[k]);
+        }
+        if (here > most) most = here;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        for (uint32_t r = 0; r < MASU_BIND_COUNT; r++) {
+            if (rows[r].bound && rows[r].binding == bound[i].binding) *groups |= 1u << rows[r].group;
+        }
+    }
+    return most;
+}
+
 const uint32_t *masu_code_read(const masu_code *code, uint32_t *room) {
     if (code->words) return code->words;
     return masu_unpack(&masu_pack_of_all, &code->packed, room) ? room : NULL;

@@ -35,6 +35,10 @@ masu_interface masu_code_interface(const masu_code *code);
 uint32_t masu_global_bindings(const masu_frame_plan *plan, uint32_t pass,
                               VkDescriptorSetLayoutBinding out[MASU_BIND_COUNT]);
 
+/* Most storage buffers that a stage of a pass binds (all are in set 0), and bit n of *groups for
+ * each masu_binding_group n that it binds one of. */
+uint32_t masu_storage_buffers(const masu_frame_plan *plan, uint32_t pass, uint32_t *groups);
+
 /* The words of a code that there is; room: for one that is packed, masu_code_room(plan) bytes. */
 const uint32_t *masu_code_read(const masu_code *code, uint32_t *room);
 

@@ -5,7 +5,6 @@
 #include "scene/punctual_light.h"
 #include "scene/trace_scene.h"
 
-#include <stdio.h>
 #include <string.h>
 
 /* ---- Rows as they are ------------------------------------------------------------------------ */
@@ -341,38 +340,4 @@ void masu_bindings(const masu_frame_plan *plan, masu_binding out[]) {
 #include "plan/buffers.inc"
 #undef BUFFER
 #undef SIZE
-}
-
-/* Storage buffers of a stage in the layout of set 0, which all pipelines share. group < 0: any. */
-static uint32_t storage_buffers(const masu_frame_plan *plan, VkShaderStageFlags stage, int group) {
-    masu_binding bindings[MASU_BIND_COUNT];
-    uint32_t count = 0;
-    masu_bindings(plan, bindings);
-    for (uint32_t i = 0; i < MASU_BIND_COUNT; i++) {
-        count += bindings[i].bound && bindings[i].type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER &&
-                 (bindings[i].stages & stage) && (group < 0 || bindings[i].group == (masu_binding_group)group);
-    }
-    return count;
-}
-
-uint32_t masu_vertex_buffers(const masu_frame_plan *plan) { return storage_buffers(plan, VERTEX_STAGE, -1); }
-
-uint32_t masu_compute_buffers(const masu_frame_plan *plan, masu_binding_group group) {
-    return storage_buffers(plan, COMPUTE, (int)group);
-}
-
-void masu_name_buffers(const masu_frame_plan *plan, masu_binding_group group, char *out, size_t size) {
-    masu_binding bindings[MASU_BIND_COUNT];
-    size_t used = 0;
-    masu_bindings(plan, bindings);
-    out[0] = 0;
-    for (uint32_t i = 0; i < MASU_BIND_COUNT; i++) {
-        const char *name = masu_buffers[bindings[i].buffer].name;
-        if (!bindings[i].bound || bindings[i].type != VK_DESCRIPTOR_TYPE_STORAGE_BUFFER ||
-            !(bindings[i].stages & COMPUTE) || bindings[i].group != group)
-            continue;
-        int n = snprintf(out + used, size - used, "%s%s", used ? ", " : "", name);
-        if (n < 0 || (size_t)n >= size - used) return;
-        used += (size_t)n;
-    }
 }

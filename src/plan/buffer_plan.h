@@ -31,12 +31,6 @@ typedef struct masu_binding {
 /* All of them, in the order of the rows; out has room for MASU_BIND_COUNT. */
 void masu_bindings(const masu_frame_plan *plan, masu_binding out[]);
 
-/* Storage buffers of a group that the plan binds in compute shaders, and their names, separated by commas. */
-uint32_t masu_compute_buffers(const masu_frame_plan *plan, masu_binding_group group);
-void masu_name_buffers(const masu_frame_plan *plan, masu_binding_group group, char *out, size_t size);
-/* Those of the vertex stage. */
-uint32_t masu_vertex_buffers(const masu_frame_plan *plan);
-
 /* Over all rungs, the most tiles that a list may have of what is dispatched by lists: SDF, reflections, SMAA. */
 uint64_t masu_most_tiles(const masu_frame_plan *plan);
 

@@ -66,6 +66,21 @@ static void unmade(uint64_t n) {
 
 CREATES(WRAP_CREATE)
 
+static VKAPI_ATTR VkResult VKAPI_CALL
+create_counted_set_layout(VkDevice device, const VkDescriptorSetLayoutCreateInfo *info,
+                          const VkAllocationCallbacks *allocator, VkDescriptorSetLayout *out) {
+    for (uint32_t stage = 1; stage <= VK_SHADER_STAGE_COMPUTE_BIT; stage *= 2) {
+        uint32_t count = 0;
+        for (uint32_t i = 0; i < info->bindingCount; i++) {
+            const VkDescriptorSetLayoutBinding *b = &info->pBindings[i];
+            if (b->descriptorType == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER && (b->stageFlags & stage))
+                count += b->descriptorCount;
+        }
+        if (count > wrap.most_storage_buffers) wrap.most_storage_buffers = count;
+    }
+    return create_DescriptorSetLayout(device, info, allocator, out);
+}
+
 #define WRAP_PIPELINES(Kind)                                                                       \
     static VKAPI_ATTR VkResult VKAPI_CALL create_##Kind##Pipelines(                                \
         VkDevice device, VkPipelineCache cache, uint32_t n,                                        \
@@ -229,6 +244,8 @@ static VKAPI_ATTR VkResult VKAPI_CALL reset_CommandBuffer(VkCommandBuffer cmd,
 static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr(VkDevice device,
                                                                      const char *name) {
     if (wrap.unknown_function && !strcmp(name, wrap.unknown_function)) return NULL;
+    if (!strcmp(name, "vkCreateDescriptorSetLayout"))
+        return (PFN_vkVoidFunction)create_counted_set_layout;
 #define RETURN_CREATE(Name, Info, Handle)                                                          \
     if (!strcmp(name, "vkCreate" #Name)) return (PFN_vkVoidFunction)create_##Name;                 \
     if (!strcmp(name, "vkDestroy" #Name)) return (PFN_vkVoidFunction)destroy_##Name;

@@ -38,6 +38,7 @@ typedef struct wrap_state {
      * 2: an APU: as 1, and a third type that is both. Behind all stands the driver's type 0. */
     int fake_memory;
     uint32_t allocate_calls;
+    uint32_t most_storage_buffers; /* in a stage of a set layout that was created */
     /* What the last recording began and ended with, and what is in between. */
     VkPipelineStageFlags first_barrier_from, first_barrier_to;
     bool host_barrier, counter_barrier;
