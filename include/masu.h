@@ -36,9 +36,10 @@
  *
  * GUARANTEES
  *  - After masu_init the library calls no heap function and no vkAllocate*, vkCreate* or
- *    vkBegin/EndCommandBuffer. The exception is that masu_resize, and the first frames of each rung
- *    after it, record command buffers again. Allocations of the driver inside vkQueueSubmit are not
- *    covered; `masu render --stats` counts them.
+ *    vkBegin/EndCommandBuffer. The exception is that masu_resize, and the first frame of each rung
+ *    after it (in each slot, target and viewport, whenever that is), record command buffers again.
+ *    Allocations of the driver inside vkQueueSubmit are not covered; `masu render --stats` counts
+ *    them.
  *  - A failed masu_init has destroyed everything that it created. A failed masu_frame has written
  *    nothing and has not advanced the frame number.
  *  - A renderer must be used by one thread at a time. Different renderers are independent.
@@ -647,8 +648,8 @@ typedef struct masu_desc {
     masu_governor_desc governor;
     masu_debug debug; /* for tests and studies (masu_study.h) */
     masu_deny deny;   /* device features to leave unused (masu_study.h) */
-    /* Receives what masu_init finds, and the error of each call that fails on a renderer, if the
-     * function is not const for it. NULL: silent. */
+    /* Receives the messages of masu_init, and the error of each failed call that takes a renderer
+     * which is not const. NULL: silent. */
     masu_log_fn log;
     void *log_user;
     /* Monotonic clock, ns, to measure the creation time of pipelines; NULL: not measured. */
@@ -730,7 +731,7 @@ MASU_API void masu_pipelines_info_of(const masu_pipelines *pipelines, masu_pipel
  *   `viewports`   desc.viewport_count elements, or NULL if that is 0
  * The next frame is a cut. Frame numbers, slots, transforms and the governor's state continue.
  *
- * The call records the command buffers of the rung in use, 0.1 to 1 ms each. Those of another rung
+ * The call records the command buffers of the rung in use. Those of another rung
  * follow in masu_frame: the first frame of that rung in each slot and target records its own.
  *   MASU_ERROR_ARGUMENT   an argument contradicts the rules above
  *   MASU_ERROR_LIMIT      `output` is larger than desc.output: use masu_destroy and masu_init
@@ -795,7 +796,7 @@ MASU_API uint32_t masu_memory_report(const masu_renderer *renderer, masu_memory_
     X(MASU_GOVERNOR_REASON_EMERGENCY, 7, "two frames in a row have missed the target")             \
     X(MASU_GOVERNOR_REASON_UP, 8, "this better rung is predicted to meet the target")              \
     X(MASU_GOVERNOR_REASON_WORST, 9, "no rung meets the target: the cheapest one is used")         \
-    X(MASU_GOVERNOR_REASON_NO_GAIN, 10, "cheaper rungs save no time, or it is measured if they do") \
+    X(MASU_GOVERNOR_REASON_NO_GAIN, 10, "cheaper rungs save no time, or a survey measures it")     \
     X(MASU_GOVERNOR_REASON_STALE, 11, "no recent measurements: the rung is kept")                  \
     X(MASU_GOVERNOR_REASON_FIXED, 12, "the rung is fixed")                                         \
     X(MASU_GOVERNOR_REASON_HOST, 13, "the host has selected the rung")                             \
@@ -867,7 +868,7 @@ typedef struct masu_governor_info {
      * frames that would fit, later after a failed fall. 0: refresh_ms is unknown. */
     uint32_t refreshes;
     /* Wall-clock times are whole multiples of this: the host waits for the display's refresh before
-     * it measures, so they hide how much of a refresh a frame needs. 0: they are not. Pass the time
+     * it measures, so they hide how much of a refresh a frame needs. 0: not detected. Pass the time
      * at which the GPU finished (masu_frame_times), or enable timestamps. */
     float vsync_ms;
 } masu_governor_info;

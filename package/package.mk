@@ -116,5 +116,5 @@ uninstall: ## remove all installed files, and the folders that install has made
 	$(V)cd "$(root)" && rm -f $(SUITES:$(BUILD)/%=share/masu/%) $(SMOKE_SCENES:%=share/masu/scenes/%.masu)
 	$(V)cd "$(root)" && made=$$(sort -r $(MADE_FOLDERS) 2> /dev/null || true) && rm -rf lib/cmake/masu share/doc/masu && \
 	    for f in share/masu/scenes share/masu/suites share/masu $$made; do \
-	        [ "$$f" != . ] || f=; rmdir "$(root)/$$f" 2> /dev/null || true; \
+	        rmdir "./$$f" 2> /dev/null || true; \
 	    done

@@ -127,10 +127,6 @@ int masu_atomic_file_open(masu_atomic_file *draft, const char *target) {
     masu_atomic_file_remove_stale(target);
     for (unsigned attempt = 0; attempt < ATTEMPTS && draft->file < 0 && problem == EEXIST; attempt++) {
         snprintf(draft->name, room, "%s.%ld-%u.part", target, (long)getpid(), attempt);
-        if (!attempt) {
-            drafts_owner = getpid();
-            replace_draft(NULL, draft->name);
-        }
         draft->file = open(draft->name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (draft->file < 0) {
             problem = errno;
@@ -139,7 +135,13 @@ int masu_atomic_file_open(masu_atomic_file *draft, const char *target) {
             draft->file = -1;
         }
     }
-    if (draft->file >= 0) return 0;
+    if (draft->file >= 0) {
+        if (drafts_owner != getpid()) /* those of the parent are not ours */
+            for (int i = 0; i < DRAFTS_MAX; i++) drafts[i] = NULL;
+        drafts_owner = getpid();
+        replace_draft(NULL, draft->name);
+        return 0;
+    }
     forget(draft);
     return problem;
 }

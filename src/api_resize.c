@@ -40,11 +40,11 @@ static masu_result check_targets(const masu_targets *now, const masu_targets *t,
     if (t->encoding != now->encoding)
         return differs(detail, "targets.encoding", (uint64_t)now->encoding, (uint64_t)t->encoding);
     if (t->white != now->white || t->peak != now->peak) {
-        return masu_fail(
-            detail, MASU_ERROR_ARGUMENT, t->white != now->white ? "targets.white" : "targets.peak",
-            0, 0,
-            "masu_resize: targets.white and peak are %g and %g, those of masu_init were %g and %g",
-            (double)t->white, (double)t->peak, (double)now->white, (double)now->peak);
+        int white = t->white != now->white;
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, white ? "targets.white" : "targets.peak", 0, 0,
+                         "masu_resize: targets.%s is %g, masu_init was given %g",
+                         white ? "white" : "peak", (double)(white ? t->white : t->peak),
+                         (double)(white ? now->white : now->peak));
     }
     return MASU_OK;
 }
@@ -54,7 +54,8 @@ static masu_result check(const masu_renderer *m, VkExtent2D output, masu_targets
     const masu_frame_plan *plan = &m->plan;
     if (!plan->desc.resizable || !plan->desc.scene) {
         return masu_fail(detail, MASU_ERROR_STATE, "resizable", 1, 0,
-                         "masu_resize takes desc.resizable, and a scene");
+                         plan->desc.scene ? "masu_resize requires desc.resizable"
+                                          : "masu_resize requires a scene");
     }
     *t = filled_in(t, &plan->desc.targets);
     masu_desc wanted = plan->desc;

@@ -7,7 +7,8 @@
  *             is culled beyond its range
  *   cone    = t^2, t = (cos(a) - cos(outer)) / (cos(inner) - cos(outer)) clamped to 0..1. Of the
  *             angle a to the axis its versine 1 - cos(a) = |l + axis|^2 / 2 is compared: cosines of
- *             narrow cones have no digits left. Both are those of glTF's KHR_lights_punctual
+ *             narrow cones have no digits left. Window and cone are those of glTF's
+ *             KHR_lights_punctual
  *   color   is radiant intensity / pi, as the sun's is irradiance / pi: a white matt surface that
  *             faces the light at distance d has the radiance color / d^2
  *

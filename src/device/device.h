@@ -36,8 +36,8 @@ typedef struct masu_device {
 
     /* pipelines.c */
     VkSampler sampler, linear; /* nearest and linear, clamp to edge */
-    VkDescriptorSetLayout
-        global_layouts[MASU_PASS_COUNT]; /* set 0: of the buffers that the pass declares */
+    /* Set 0: of the buffers that the pass declares. */
+    VkDescriptorSetLayout global_layouts[MASU_PASS_COUNT];
     VkDescriptorSetLayout pass_layouts[MASU_PASS_COUNT];
     VkPipelineLayout layouts[MASU_PASS_COUNT];
     VkPipeline pipelines[MASU_PASS_COUNT];
@@ -63,8 +63,8 @@ typedef struct masu_device {
     VkCommandPool command_pool;
     /* [flight][viewport][rung][target][variant][part]; plan->recordings of each flight, of plan->parts parts */
     VkCommandBuffer *frames;
-    uint8_t *
-        recorded; /* [flight][viewport][rung][target], at its first variant: 1 if all variants are */
+    /* [flight][viewport][rung][target], at its first variant: 1 if all variants are recorded */
+    uint8_t *recorded;
     VkQueryPool queries;     /* [flight][MASU_PASS_COUNT + 1] */
 
     /* load.c */

@@ -9,7 +9,7 @@
 /* Arrays in the host block. */
 void masu_device_alloc(masu_device *m, masu_arena *arena, const masu_frame_plan *plan);
 
-/* Copies the handles of the host's targets, and makes them those of the plan. */
+/* Copies the handles of the host's targets, and points the plan's targets at the copies. */
 void masu_set_targets(masu_device *m, const masu_targets *targets);
 
 /* vk, plan and objects are there; all else is made of them. What has been made when a step fails stays

@@ -3,7 +3,7 @@
  * the pool, the pool its pipelines; several renderers may use one at a time.
  *
  * A key says what a pipeline was made of: its pass and code, the constants and bindings that the
- * code declares, what it is drawn to. What else differs between scenes does not count. Layouts
+ * code declares, what it is drawn to. Other differences between scenes do not count. Layouts
  * and render passes are each renderer's own, and compatible where the keys agree (specification,
  * "Pipeline Layout Compatibility", "Render Pass Compatibility"); samplers stand in layouts, so
  * they are the pool's too. */

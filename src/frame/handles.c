@@ -46,7 +46,7 @@ masu_result masu_handle_check(const masu_handles *handles, const char *what, uin
     if (*index != UINT32_MAX) return MASU_OK;
     if (!id) {
         return masu_fail(detail, MASU_ERROR_ARGUMENT, what, handles->count, id,
-                         "%s handle 0 is no object; this renderer has %u", what, handles->count);
+                         "%s handle 0 means none, an object is required", what);
     }
     if (handles->reserve) {
         return masu_fail(detail, MASU_ERROR_ARGUMENT, what, handles->count, id,

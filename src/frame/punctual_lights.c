@@ -5,6 +5,8 @@
 #include "base/error.h"
 #include "scene/punctual_light.h"
 
+#include <stddef.h>
+#include <stdio.h>
 #include <string.h>
 
 void masu_lights_alloc(masu_lights *l, masu_arena *arena, const masu_frame_plan *plan) {
@@ -93,21 +95,21 @@ masu_punctual_light_state masu_lights_get(const masu_lights *l, const masu_insta
 }
 
 /* Checks a state that the host gives, and replaces the handle of its instance by an index + 1. */
-static masu_result take_state(const masu_instances *in, uint32_t light,
+static masu_result take_state(const masu_instances *in, const char *name,
                               masu_punctual_light_state *state, masu_detail *detail) {
     double value = 0.0;
     const char *wrong = masu_light_state_wrong(state, &value);
     if (wrong) {
-        return masu_fail(detail, MASU_ERROR_ARGUMENT, "light", 0, 0, "light %u: %s (%g)", light,
-                         wrong, value);
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "light", 0, 0, "%s: %s (%g)", name, wrong,
+                         value);
     }
     uint64_t id = state->instance.id;
     if (!id) return MASU_OK;
     uint32_t carrier = masu_handle_index(&in->handles, id);
     if (carrier == UINT32_MAX) {
         return masu_fail(detail, MASU_ERROR_ARGUMENT, "instance", in->handles.count, id,
-                         "light %u: instance handle %llu is not of this renderer, or was removed",
-                         light, (unsigned long long)id);
+                         "%s: instance handle %llu is not of this renderer, or was removed", name,
+                         (unsigned long long)id);
     }
     state->instance.id = (uint64_t)carrier + 1;
     return MASU_OK;
@@ -116,9 +118,13 @@ static masu_result take_state(const masu_instances *in, uint32_t light,
 masu_result masu_lights_set(masu_lights *l, const masu_instances *in, uint32_t light,
                             const masu_punctual_light_state *state, masu_detail *detail) {
     masu_punctual_light_state to = *state;
-    masu_result result = take_state(in, light, &to, detail);
+    char name[24];
+    snprintf(name, sizeof name, "light %u", light);
+    masu_result result = take_state(in, name, &to, detail);
     if (result) return result;
-    l->changes += memcmp(&l->states[light], &to, sizeof to) != 0;
+    /* Padding at the end may differ in equal states. */
+    const size_t members = offsetof(masu_punctual_light_state, outer) + sizeof to.outer;
+    l->changes += memcmp(&l->states[light], &to, members) != 0;
     l->states[light] = to;
     return MASU_OK;
 }
@@ -127,7 +133,7 @@ masu_result masu_lights_add(masu_lights *l, const masu_instances *in,
                             const masu_punctual_light_state *state, uint32_t *light,
                             masu_detail *detail) {
     masu_punctual_light_state to = *state;
-    masu_result result = take_state(in, l->handles.count, &to, detail);
+    masu_result result = take_state(in, "the new light", &to, detail);
     if (result) return result;
     *light = masu_handle_free(&l->handles);
     if (*light == UINT32_MAX) {

@@ -44,13 +44,13 @@ static void fill(masu_switch *word, masu_switch with) {
     if (*word == MASU_AUTO) *word = with;
 }
 
-/* Whether frames follow each other, as many samples from one need: that is what a governor is for, and of several
- * viewports each would cut the other's history off. What a host draws before the tone curve has no velocity and would
+/* Several viewports cut each other's history off. What a host draws before the tone curve has no velocity and would
  * leave trails; what asks for velocities may have a history of its own. */
 static int are_interrupted(const masu_desc *d) {
     return d->viewport_count > 1 || (d->split & ~(uint32_t)MASU_SPLIT_AFTER_UPSCALE) != 0;
 }
 
+/* Whether frames follow each other, as accumulated samples need: that is what a governor is for. */
 static int frames_follow(const masu_desc *d) {
     return d->scene && d->governor.mode != MASU_GOVERNOR_OFF && !d->debug.reference && !are_interrupted(d);
 }

@@ -140,7 +140,7 @@ static masu_result check_targets(const masu_desc *d, masu_detail *detail) {
     return MASU_OK;
 }
 
-/* Without a scene these are ignored, but no number that is none is let through. */
+/* Without a scene these are unused, but must be finite. */
 static masu_result check_unused(const masu_desc *d, masu_detail *detail) {
     const masu_exposure *e = &d->exposure;
     const struct {

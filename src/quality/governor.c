@@ -35,8 +35,8 @@
 #define TRIAL_MOST 1.25 /* and one is tried that is expected to take at most so much of it, */
 #define TRIAL_WAIT 1800u /* frames at rest until then where nothing is known of the clock, */
 #define TRIAL_AGAIN 300u /* or after one that failed where clocks have followed: both double, */
-#define TRIAL_FOLLOWS                                                                              \
-    0.96                /* of what was expected: a time that is less shows a clock that followed */
+/* Of the expected time: a shorter time shows that the clock has followed. */
+#define TRIAL_FOLLOWS 0.96
 #define TRIALS_MOST 6u  /* so often */
 #define TRIALS_DOUBT 3u /* failures in a row, and nothing is known of the clock any more */
 #define HOLD 8u         /* frames: the least that a rung is kept for while the target is */
@@ -47,10 +47,10 @@
 #define SURVEY_MOST 1.25 /* times the cheapest's time: rungs predicted below it are measured, */
 #define SURVEY_FIXED 0.5 /* all, if so much of the cheapest's time is fixed */
 #define SURVEY_REST 16u  /* frames of a steady load before a survey */
-#define SURVEY_SLOPE                                                                               \
-    0.05 /* change of the load in a dwell up to which it was steady before a fall */
-#define SURVEY_RANGE 1.15      /* factor of time within which the answer holds, */
-#define SURVEY_RANGE_FITS 1.08 /* if it meets the target */
+#define SURVEY_SLOPE 0.05 /* change of the load in a dwell up to which it counts as steady */
+/* Factors of the time within which the survey's answer holds: above the target, and below it. */
+#define SURVEY_RANGE 1.15
+#define SURVEY_RANGE_FITS 1.08
 
 _Static_assert(MASU_SURVEY_RUNGS == MASU_GOVERNOR_RUNGS, "a survey of every rung");
 

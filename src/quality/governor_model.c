@@ -38,7 +38,7 @@
 #define LEAST_TIME 0.02   /* of the target, and half of the fixed part: what a frame can take */
 #define ODD_PAUSE_COUNT 8u
 #define LEAD_MOST 8.0    /* frames: farther than this no slope is followed to reach the present */
-#define RISE_FOLLOWS 0.8   /* the same of one that was over the target just after a rise */
+#define RISE_FOLLOWS 0.8   /* of the first time after a rise: a time below shows a clock that follows */
 
 #define NEVER UINT64_MAX
 

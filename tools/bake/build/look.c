@@ -52,7 +52,7 @@ static void add_shadow(const masu_bake_look *l, const masu_bake_box *bounds,
 
 static void add_environment(const masu_bake_look *l, const masu_bake_box *bounds,
                             masu_bake_content *content) {
-    double near = l->near > 0 ? l->near : fmin(box_radius(bounds) * 0.02, NEAR);
+    double near = l->near > 0 ? l->near : fmax(fmin(box_radius(bounds) * 0.02, NEAR), 1e-6);
     masu_bake_vec3 sun = l->sun_color;
     if (l->turbidity > 0 && !l->own_sun_color) sun = masu_bake_v3(0, 0, 0);
     masu_blob_environment e = {.exposure = (float)l->exposure,

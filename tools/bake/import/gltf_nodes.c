@@ -286,6 +286,7 @@ static bool check_skins(masu_gltf *g) {
 
 /* The last `count` nodes of a stack: the first one of them comes off it first. */
 static void reverse(masu_bake_buffer *stack, size_t count) {
+    if (count < 2) return;
     struct aiNode **at = (struct aiNode **)(void *)(stack->data + stack->bytes) - count;
     for (size_t i = 0; i < count / 2; i++) {
         struct aiNode *node = at[i];

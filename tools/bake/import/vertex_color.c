@@ -38,7 +38,7 @@ static uint32_t sort_colors(const key *means, uint32_t count, double levels, key
 
 /* The mean colour of each triangle; whether all are of one colour each. */
 static bool mean_colors(const float *colors, uint32_t vertices, const uint32_t *indices, uint32_t triangles,
-                        key *means, uint32_t *clamped) {
+                        bool opaque, key *means, uint32_t *clamped) {
     bool plain = true;
     for (uint32_t i = 0; i < triangles; i++) {
         const uint32_t *corner = indices + 3 * (size_t)i;
@@ -52,6 +52,7 @@ static bool mean_colors(const float *colors, uint32_t vertices, const uint32_t *
                 beyond = beyond || !(own >= 0 && own <= 1 + 1e-6f);
                 c[j] = masu_import_clamped((double)own, 0, 1);
             }
+            if (k == 3 && opaque) c[0] = c[1] = c[2] = 1;
             plain = plain && fabsf(c[0] - c[1]) < 1.0f / 1024 && fabsf(c[0] - c[2]) < 1.0f / 1024;
             means[i].color[k] = c[0] == c[1] && c[0] == c[2] ? c[0] : (c[0] + c[1] + c[2]) / 3;
         }
@@ -64,8 +65,7 @@ void masu_import_group_colors(masu_bake_pool *pool, const float *colors, uint32_
                               uint32_t triangles, bool opaque, masu_import_colors *out) {
     key *means = masu_bake_take(pool, triangles * sizeof *means), *sorted = masu_bake_take(pool, triangles * sizeof *sorted);
     *out = (masu_import_colors){.triangles = masu_bake_take(pool, triangles * sizeof *out->triangles)};
-    bool plain = mean_colors(colors, vertices, indices, triangles, means, &out->clamped);
-    for (uint32_t i = 0; i < triangles && opaque; i++) means[i].color[3] = 1;
+    bool plain = mean_colors(colors, vertices, indices, triangles, opaque, means, &out->clamped);
     double levels = 128;
     uint32_t count = sort_colors(means, triangles, 0, sorted);
     bool kept = count <= GROUPS_MAX;
