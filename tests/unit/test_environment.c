@@ -64,6 +64,7 @@ static const uint32_t *texels_of(const masu_bake_content *content) {
 static void forget(masu_bake_content *content) {
     free(content->section[MASU_BLOB_ENVIRONMENT_MAP].data);
     free(content->section[MASU_BLOB_ENVIRONMENT_TEXELS].data);
+    memset(content, 0, sizeof *content);
 }
 
 /* Average over a GGX lobe that is seen from above, weighted by the cosine. */
