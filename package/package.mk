@@ -114,7 +114,7 @@ uninstall: ## remove all installed files, and the folders that install has made
 	$(V)cd "$(root)" && rm -f $(INSTALLED_PROGRAMS:%=share/man/man1/%.1) \
 	    $(INSTALLED_PROGRAMS:%=share/bash-completion/completions/%)
 	$(V)cd "$(root)" && rm -f $(SUITES:$(BUILD)/%=share/masu/%) $(SMOKE_SCENES:%=share/masu/scenes/%.masu)
-	$(V)cd "$(root)" && made=$$(sort -r $(MADE_FOLDERS) 2> /dev/null || true) && rm -rf lib/cmake/masu share/doc/masu && \
+	$(V)cd "$(root)" && here=$$(pwd) && made=$$(sort -r $(MADE_FOLDERS) 2> /dev/null || true) && rm -rf lib/cmake/masu share/doc/masu && \
 	    for f in share/masu/scenes share/masu/suites share/masu $$made; do \
-	        rmdir "./$$f" 2> /dev/null || true; \
+	        [ "$$f" != . ] || f=; rmdir "$$here/$$f" 2> /dev/null || true; \
 	    done
