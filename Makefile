@@ -62,7 +62,7 @@ LINK_FLAGS  = $(filter -fsanitize=% --coverage,$(CONFIG_$(config))) $(LDFLAGS)
 $(BUILD)/obj/src/%.o: FOLDER_FLAGS := -fPIC -fvisibility=hidden
 $(BUILD)/obj/platform/%.o $(BUILD)/obj/tools/%.o $(BUILD)/obj/examples/%.o: FOLDER_FLAGS := -D_POSIX_C_SOURCE=200809L
 $(BUILD)/obj/tests/%.o: FOLDER_FLAGS := -D_POSIX_C_SOURCE=200809L -UNDEBUG
-# What runs long is in tests/support and tests/reference; the tests themselves take longer to compile than to run.
+# Tests take longer to compile than to run; slow code is in tests/support and tests/reference, compiled as all else.
 ifeq ($(config),release)
 $(BUILD)/obj/tests/unit/%.o $(BUILD)/obj/tests/gpu/%.o: FOLDER_FLAGS += -O1 -g1
 endif

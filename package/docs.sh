@@ -27,8 +27,8 @@ printf '%s\n' "$@" | awk -v file="$file" '
         }
         return 0
     }
-    { installed[$0] = 1; split($0, parts, "/"); folder = ""
-      for (i = 1; i < split($0, parts, "/"); i++) { folder = folder (i > 1 ? "/" : "") parts[i]; installed[folder] = 1 } }
+    { installed[$0] = 1; count = split($0, parts, "/"); folder = ""
+      for (i = 1; i < count; i++) { folder = folder (i > 1 ? "/" : "") parts[i]; installed[folder] = 1 } }
     END {
         folder = file
         if (!sub("/[^/]*$", "", folder)) folder = "."

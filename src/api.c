@@ -385,7 +385,7 @@ static masu_result record_missing(masu_renderer *m, const masu_frame_data *f) {
     return result;
 }
 
-/* What a frame without a scene ignores is checked all the same. */
+/* A frame without a scene ignores these members, but they must be valid. */
 static masu_result check_plain_frame(masu_renderer *m, masu_frame_data *f) {
     masu_result result = masu_frame_read_time(f, &m->error);
     if (!result) result = masu_sdf_read(&m->sdf, f, &m->error);

@@ -77,23 +77,28 @@ static void what_is_known_is_not_made_again(void **state) {
     close_session(&s);
 }
 
+/* A session of test_both without a renderer, whose objects are counted, with the pool. Returns how many live. */
+static int64_t open_counted(masu_session *s) {
+    masu_session_desc d = desc_of("test_both", W, H, 1);
+    wrap_reset();
+    d.host.get_instance_proc_addr = wrap_get_instance_proc_addr;
+    d.no_renderer = true;
+    open_session(s, &d);
+    s->desc.scene = &s->scene;
+    s->desc.vulkan.pipelines = &pool;
+    return wrap.live;
+}
+
 /* A full pool makes room: of what no renderer uses, what has been unused for the longest time goes. If all of it is in
  * use, nothing is added. */
 static void a_full_pool_makes_room(void **state) {
     (void)state;
     enum { USED = 10 };
     masu_session s;
-    masu_session_desc d = desc_of("test_both", W, H, 1);
     masu_memory need;
     masu_renderer *m;
     masu_detail detail;
-    wrap_reset();
-    d.host.get_instance_proc_addr = wrap_get_instance_proc_addr;
-    d.no_renderer = true;
-    open_session(&s, &d);
-    int64_t live = wrap.live;
-    s.desc.scene = &s.scene;
-    s.desc.vulkan.pipelines = &pool;
+    int64_t live = open_counted(&s);
     s.desc.rung_count = 1;
     assert_int_equal(masu_memory_query(&s.desc, &need, &detail), MASU_OK);
     void *block = host_block(need.host_bytes);
@@ -133,18 +138,11 @@ static void a_full_pool_makes_room(void **state) {
 static void failures_lose_nothing(void **state) {
     (void)state;
     masu_session s;
-    masu_session_desc d = desc_of("test_both", W, H, 1);
     masu_memory need;
     masu_renderer *m;
     masu_detail detail;
     memset(&pool, 0, sizeof pool);
-    wrap_reset();
-    d.host.get_instance_proc_addr = wrap_get_instance_proc_addr;
-    d.no_renderer = true;
-    open_session(&s, &d);
-    int64_t live = wrap.live;
-    s.desc.scene = &s.scene;
-    s.desc.vulkan.pipelines = &pool;
+    int64_t live = open_counted(&s);
     assert_int_equal(masu_memory_query(&s.desc, &need, &detail), MASU_OK);
     void *block = host_block(need.host_bytes);
     assert_int_equal(masu_init(&s.desc, block, need.host_bytes, &m, &detail), MASU_OK);

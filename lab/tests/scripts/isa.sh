@@ -57,7 +57,7 @@ refuses 2 'unknown option --drawn' isa "$scene" --gpu vangogh --drawn 64x48
 refuses 1 'cannot' isa "$folder/none.masu" --gpu vangogh
 MASU_ISA_DRIVERS='' refuses 1 'MASU_ISA_DRIVERS is to name the folder' isa "$scene" --gpu tgl
 MASU_ISA_DRIVERS=$folder refuses 1 "has no $folder/libvulkan_intel.so" isa "$scene" --gpu kbl
-# What a driver says that ends the child, and no more.
+# If a driver ends the child, the error is the driver's message alone.
 printf '#include <stdio.h>\n#include <stdlib.h>\nint vk_icdNegotiateLoaderICDInterfaceVersion(unsigned *v) {
     (void)v; fputs("driver: this chip is not known\\n", stderr); exit(7); }\n' > "$folder/driver.c"
 mkdir "$folder/drivers"

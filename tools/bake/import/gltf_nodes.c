@@ -338,7 +338,8 @@ bool masu_gltf_read_nodes(masu_gltf *g) {
     }
     masu_bake_release(&stack);
     if (!good) return false;
-    for (size_t i = 0; i < g->node_count && masu_gltf_count(g, "scenes") == 1; i++) {
+    size_t only = masu_gltf_count(g, "scenes") == 1 ? g->node_count : 0;
+    for (size_t i = 0; i < only; i++) {
         if (!reached[i] && json_object_get(masu_gltf_element(g, "nodes", (json_int_t)i), "mesh"))
             masu_gltf_note_one(g, "nodes with meshes are not in the scene: left out", g->nodes[i].mName.data);
     }
