@@ -177,8 +177,8 @@ wrong ': sun.shadows.cascades: expected a whole number' \
 wrong ':1:.*NaN' "{\"models\": [$sphere}], \"sun\": {\"shadows\": {\"distance\": NaN}}}"
 wrong ': sun.shadows.size: unknown key' \
     "{\"models\": [$sphere}], \"sun\": {\"shadows\": {\"size\": 3}}}"
-wrong ': sun.shadows: expected an object, found true' \
-    "{\"models\": [$sphere}], \"sun\": {\"shadows\": true}}"
+wrong ': sun.shadows: expected an object, true or false, found a number' \
+    "{\"models\": [$sphere}], \"sun\": {\"shadows\": 1}}"
 wrong ': exposure: expected a number' "{\"models\": [$sphere}], \"exposure\": 0}"
 wrong ': exposure.darken: expected a number' "{\"models\": [$sphere}], \"exposure\": {\"darken\": -1}}"
 wrong ': exposure.speed: unknown key' "{\"models\": [$sphere}], \"exposure\": {\"speed\": 1}}"
@@ -198,8 +198,8 @@ wrong ': sdf.params\[0\]: value 3 is not between min 0 and max 1' \
 wrong ': sdf.params\[1\]: another parameter has the same constant MASU_PARAM_AB' \
     "{\"sdf\": {\"source\": \"good.glsl\", $bounds,
       \"params\": [{\"name\": \"ab\", \"value\": 0}, {\"name\": \"AB\", \"value\": 0}]}}"
-wrong ': sdf.shadows: expected an object, found true' \
-    "{\"sdf\": {\"source\": \"good.glsl\", $bounds, \"shadows\": true}}"
+wrong ': sdf.shadows: expected an object, true or false, found a string' \
+    "{\"sdf\": {\"source\": \"good.glsl\", $bounds, \"shadows\": \"soft\"}}"
 wrong ': sdf.shadows.radius: unknown key' \
     "{\"sdf\": {\"source\": \"good.glsl\", $bounds, \"shadows\": {\"radius\": 1}}}"
 wrong ': sdf.shadows.sun_radius: expected a number from 0 to 20, found 21' \
@@ -289,6 +289,24 @@ bounds_found=$(tr -d ' \n' < "$folder/stats.json" | sed 's/.*"bounds":\(\[\[.*\]
 for name in outer inner mirrored triangle paint; do
     grep -q -a "$name" "$folder/out/x.masu" || fail "the name $name is not in the blob"
 done
+
+# What --describe writes is baked to the same bytes: a model with a ground, a flat one, a field.
+echo 'f 1 2 3 4' | cat <(printf 'v %s 0 %s\n' 0 0 0 9 9 9 9 0) - > "$folder/flat.obj"
+echo 'part ball = sphere(0.7);' > "$folder/ball.sdf"
+mkdir -p "$folder/out"
+for input in nodes.gltf flat.obj ball.sdf; do
+    accepts "$folder/$input" "${x[@]}"
+    cp "$folder/out/x.masu" "$folder/out/alone.masu"
+    accepts "$folder/$input" --describe -o "$folder/out/told.json"
+    accepts "$folder/out/told.json" "${x[@]}"
+    cmp -s "$folder/out/x.masu" "$folder/out/alone.masu" || fail "$input: its description gives another blob"
+    (cd "$folder" && "$bake" "$input" --describe) | grep -q "\"$input\"" || fail "$input: is not named in its description"
+done
+grep -q '"sdf"' "$folder/out/told.json" || fail "no SDF in: $(cat "$folder/out/told.json")"
+refuses 1 'told.json: is a scene description already' "$folder/out/told.json" --describe
+refuses 2 'found a name that ends in .masu, expected one that ends in .json' "$folder/nodes.gltf" --describe "${x[@]}"
+refuses 2 'bakes nothing: remove --stats' "$folder/nodes.gltf" --describe --stats "$folder/stats.json"
+rm -f "$folder/out/told.json" "$folder/out/alone.masu"
 
 # The same with NaN in a corner of one of two triangles, then in both.
 nan=AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAwH8AAAAA

@@ -19,7 +19,7 @@ echo '{"sdf": {"source": "s.sdf", "bounds": [[-2, -2, -2], [2, 2, 2]]}}' > "$fol
 bake() {
     printf '%s\n' "$1" > "$folder/s.sdf"
     rm -f "$folder/s.masu"
-    "$bake" "$folder/s.json" -o "$folder/s.masu" --quiet > "$folder/stdout" 2> "$folder/stderr"
+    "$bake" --bare "$folder/s.json" -o "$folder/s.masu" --quiet > "$folder/stdout" 2> "$folder/stderr"
     code=$?
 }
 
@@ -94,7 +94,7 @@ source_of() {
     echo "{\"sdf\": {\"source\": \"f.glsl\", \"lipschitz\": $1, $bounds, $params}}" > "$folder/f.json"
     printf 'float masu_sdf(vec3 p) { %s }\n%s\n' "$2" "$surface" > "$folder/f.glsl"
     rm -f "$folder/f.masu"
-    "$bake" "$folder/f.json" -o "$folder/f.masu" > "$folder/stdout" 2> "$folder/stderr"
+    "$bake" --bare "$folder/f.json" -o "$folder/f.masu" > "$folder/stdout" 2> "$folder/stderr"
     code=$?
 }
 

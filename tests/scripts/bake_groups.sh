@@ -19,7 +19,7 @@ model() { printf '{"mesh": {"box": {}}%s}' "$1"; }
 # bakes MODELS: groups and items in $groups and $items
 bakes() {
     printf '{"models": [%s]}' "$1" > "$folder/s.json"
-    "$bin/masu-bake" "$folder/s.json" -o "$folder/s.masu" --stats "$folder/s.stats" --quiet \
+    "$bin/masu-bake" "$folder/s.json" --bare -o "$folder/s.masu" --stats "$folder/s.stats" --quiet \
         2> "$folder/err" || fail "$1: is refused: $(cat "$folder/err")"
     groups=$(sed -n '/"groups"/,/}/s/.*"count": \([0-9]*\).*/\1/p' "$folder/s.stats")
     items=$(sed -n '/"group_items"/,/}/s/.*"count": \([0-9]*\).*/\1/p' "$folder/s.stats")
@@ -34,7 +34,7 @@ has() {
 # refuses PATTERN MODELS
 refuses() {
     printf '{"models": [%s]}' "$2" > "$folder/s.json"
-    if "$bin/masu-bake" "$folder/s.json" -o "$folder/s.masu" 2> "$folder/err"; then
+    if "$bin/masu-bake" "$folder/s.json" --bare -o "$folder/s.masu" 2> "$folder/err"; then
         fail "$2: is accepted"
     fi
     grep -q -e "$1" "$folder/err" || fail "\"$1\" is not in: $(cat "$folder/err")"

@@ -15,7 +15,7 @@ fail() {
 # bakes MODELS LIGHTS [MEMBERS]
 bakes() {
     printf '{"models": [%s], "lights": [%s]%s}' "$1" "$2" "${3:-}" > "$folder/s.json"
-    "$bin/masu-bake" "$folder/s.json" -o "$folder/s.masu" --stats "$folder/s.stats" --quiet \
+    "$bin/masu-bake" "$folder/s.json" --bare -o "$folder/s.masu" --stats "$folder/s.stats" --quiet \
         2> "$folder/err" || fail "$2: is refused: $(cat "$folder/err")"
 }
 
@@ -63,7 +63,7 @@ is() {
 refuses() {
     printf '{"models": [%s], "lights": [%s]}' "$box" "$2" > "$folder/s.json"
     rm -f "$folder/s.masu"
-    if "$bin/masu-bake" "$folder/s.json" -o "$folder/s.masu" 2> "$folder/err"; then
+    if "$bin/masu-bake" "$folder/s.json" --bare -o "$folder/s.masu" 2> "$folder/err"; then
         fail "$2: is accepted"
     fi
     [ "$(wc -l < "$folder/err")" = 1 ] || fail "$2: not one line: $(cat "$folder/err")"

@@ -54,7 +54,7 @@ END
 # begin_slow: in the background; waits until the compiler runs; $parent and $tool are the processes
 begin_slow() {
     rm -f "$folder/tool"
-    PATH=$folder/slow:$PATH "$bake" "$folder/scene.json" -o "$folder/out/x.masu" "$@" 2> "$folder/stderr" &
+    PATH=$folder/slow:$PATH "$bake" "$folder/scene.json" --bare -o "$folder/out/x.masu" "$@" 2> "$folder/stderr" &
     parent=$!
     for _ in $(seq 300); do
         [ -s "$folder/tool" ] && break
@@ -75,14 +75,14 @@ gone "$tool" || fail "time: the compiler runs on"
 nothing_left time
 
 if [ "${config:-}" != sanitize ]; then # whose shadow is address space
-    "$bake" "$folder/scene.json" -o "$folder/out/x.masu" --memory-limit 16 2> "$folder/stderr"
+    "$bake" "$folder/scene.json" --bare -o "$folder/out/x.masu" --memory-limit 16 2> "$folder/stderr"
     code=$?
     [ $code = 1 ] || fail "memory: exit code $code"
     [ "$(wc -l < "$folder/stderr")" = 1 ] || fail "memory: not one line: $(cat "$folder/stderr")"
     nothing_left memory
 fi
 [ ! -e "$folder/out/x.masu" ] || fail "limits: there is output"
-"$bake" "$folder/scene.json" -o "$folder/out/x.masu" --memory-limit 0 --time-limit 0 --quiet 2> "$folder/stderr" ||
+"$bake" "$folder/scene.json" --bare -o "$folder/out/x.masu" --memory-limit 0 --time-limit 0 --quiet 2> "$folder/stderr" ||
     fail "no limits: $(cat "$folder/stderr")"
 
 # ---- signals -------------------------------------------------------------------------------------
@@ -107,7 +107,7 @@ gone "$tool" || fail "kill -9: the compiler runs on"
 begin_slow
 running=$(ls "$TMPDIR")
 [ "$(wc -w <<< "$running")" = 1 ] && [ "$running" != "$dead" ] || fail "kill -9: beside the running one there is $running"
-"$bake" "$folder/scene.json" -o "$folder/out/x.masu" --quiet 2> "$folder/stderr" || fail "beside: $(cat "$folder/stderr")"
+"$bake" "$folder/scene.json" --bare -o "$folder/out/x.masu" --quiet 2> "$folder/stderr" || fail "beside: $(cat "$folder/stderr")"
 [ "$(ls "$TMPDIR")" = "$running" ] || fail "beside: $running is not what is left: $(ls "$TMPDIR")"
 kill $parent
 wait $parent

@@ -46,7 +46,7 @@ cat > "$folder/s.json" << 'END'
             {"file": "t.obj", "translate": [4, 0, 0], "material": {"roughness": 0.1}},
             {"mesh": {"box": {}}}, {"mesh": {"box": {}}, "translate": [0, 4, 0]}]}
 END
-"$bake" "$folder/s.json" -o "$folder/x.masu" --stats "$folder/x.stats" --quiet || fail "shared meshes"
+"$bake" "$folder/s.json" --bare -o "$folder/x.masu" --stats "$folder/x.stats" --quiet || fail "shared meshes"
 [ "$(count_of "$folder/x.stats" meshes)" = 3 ] || fail "meshes are not shared: $(cat "$folder/x.stats")"
 [ "$(count_of "$folder/x.stats" instances)" = 6 ] || fail "instances"
 [ "$(count_of "$folder/x.stats" indices)" = 60 ] || fail "indices are not shared"

@@ -22,7 +22,7 @@ scene() {
 # refuses PATTERN PROBES
 refuses() {
     scene "$2"
-    "$bin/masu-bake" "$folder/s.json" -o "$folder/s.masu" 2> "$folder/err" && fail "$2: is accepted"
+    "$bin/masu-bake" "$folder/s.json" --bare -o "$folder/s.masu" 2> "$folder/err" && fail "$2: is accepted"
     grep -q -e "$1" "$folder/err" || fail "\"$1\" is not in: $(cat "$folder/err")"
     [ "$(wc -l < "$folder/err")" = 1 ] || fail "$2: not one line: $(cat "$folder/err")"
 }
@@ -48,7 +48,7 @@ refuses 'probes.suns: 17 suns, at most 16' "{\"suns\": [$(printf '{"azimuth": %d
 small='{"counts": [3, 2, 3], "rays": 64, "suns": [{"azimuth": 0}, {"azimuth": 90}]}'
 scene "$small"
 for run in 1 2 3; do
-    "$bin/masu-bake" "$folder/s.json" -o "$folder/$run.masu" --threads "$run" --stats "$folder/stats" --quiet ||
+    "$bin/masu-bake" "$folder/s.json" --bare -o "$folder/$run.masu" --threads "$run" --stats "$folder/stats" --quiet ||
         fail "run $run"
 done
 cmp "$folder/1.masu" "$folder/2.masu" && cmp "$folder/1.masu" "$folder/3.masu" || fail "threads change the blob"
@@ -58,7 +58,7 @@ count=$(sed -n '/"probe_data"/,/}/s/.*"count": \([0-9]*\).*/\1/p' "$folder/stats
 
 # Without a word about probes there are none, but the option makes them.
 printf '{"models": [{"mesh": {"box": {}}}]}' > "$folder/s.json"
-"$bin/masu-bake" "$folder/s.json" -o "$folder/none.masu" --stats "$folder/stats" --quiet || fail "no probes"
+"$bin/masu-bake" "$folder/s.json" --bare -o "$folder/none.masu" --stats "$folder/stats" --quiet || fail "no probes"
 [ "$(sed -n '/"probes"/,/}/s/.*"count": \([0-9]*\).*/\1/p' "$folder/stats")" = 0 ] || fail "probes unasked"
 
 scene "$small"

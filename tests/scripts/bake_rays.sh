@@ -16,7 +16,7 @@ fail() {
 # bakes TEXT: meshes, instances, triangles in $meshes, $instances, $triangles
 bakes() {
     printf '%s' "$1" > "$folder/s.json"
-    "$bin/masu-bake" "$folder/s.json" -o "$folder/s.masu" --stats "$folder/s.stats" --quiet \
+    "$bin/masu-bake" "$folder/s.json" --bare -o "$folder/s.masu" --stats "$folder/s.stats" --quiet \
         2> "$folder/err" || fail "$1: is refused: $(cat "$folder/err")"
     for name in meshes instances triangles nodes depth; do
         value=$(sed -n '/"reflections"/,/}/s/.*"'$name'": \([0-9]*\).*/\1/p' "$folder/s.stats")
@@ -64,9 +64,17 @@ cmp -s "$folder/s.masu" "$folder/t.masu" || fail "the same scene gives other byt
 
 bakes "{\"models\": [{$box, \"traced\": false}], \"reflections\": {}}"
 grep -q "no instance is traced" "$folder/err" || fail "nothing is said of a scene without rays"
+# Without --bare a scene has reflections, unless it says otherwise; and shadows and ambient occlusion.
+for told in '' ', "reflections": true' ', "reflections": false'; do
+    printf '{"models": [{%s}]%s}' "$box" "$told" > "$folder/s.json"
+    "$bin/masu-bake" "$folder/s.json" -o "$folder/s.masu" --stats "$folder/s.stats" --quiet || fail "$told: is refused"
+    grep -q '"triangles": 12' <(sed -n '/"reflections"/,/}/p' "$folder/s.stats")
+    case $?$told in 0*false | 1 | 1*true) fail "reflections of a scene that says '$told'" ;; esac
+done
+
 refuses 'smalest: unknown key' "{\"models\": [{$box}], \"reflections\": {\"smalest\": 1}}"
 refuses 'smallest' "{\"models\": [{$box}], \"reflections\": {\"smallest\": -1}}"
-refuses 'reflections' "{\"models\": [{$box}], \"reflections\": true}"
+refuses 'reflections' "{\"models\": [{$box}], \"reflections\": 1}"
 refuses 'traced' "{\"models\": [{$box, \"traced\": 1}], \"reflections\": {}}"
 
 [ "$failures" = 0 ] || exit 1

@@ -17,7 +17,7 @@ fail() {
 bake() {
     printf 'param p = 0.9 [0, 1];\nmaterial unused { roughness 0 }\nmaterial m { %s }\npart a : m = sphere(1);\n' "$1" > "$folder/s.sdf"
     printf '{"sdf": {"source": "s.sdf", "bounds": [[-1,-1,-1],[1,1,1]]}%s}' "${2-, \"reflections\": {\}}" > "$folder/s.json"
-    "$bin/masu-bake" "$folder/s.json" -o "$folder/s.masu" --stats "$folder/stats" --quiet 2> "$folder/err" ||
+    "$bin/masu-bake" "$folder/s.json" --bare -o "$folder/s.masu" --stats "$folder/stats" --quiet 2> "$folder/err" ||
         fail "$1: $(cat "$folder/err")"
     [ ! -s "$folder/err" ] || fail "$1: $(cat "$folder/err")"
 }
@@ -39,7 +39,7 @@ grep -A1 '"specular_trace_sdf_spirv"' "$folder/stats" | grep -q '"count": [1-9]'
 
 # A model beside it of which none is traced is worth a word.
 printf '{"models": [{"mesh": {"box": {}}, "traced": false}], "sdf": {"source": "s.sdf", "bounds": [[-1,-1,-1],[1,1,1]]}, "reflections": {}}' > "$folder/s.json"
-"$bin/masu-bake" "$folder/s.json" -o "$folder/s.masu" --quiet 2> "$folder/err" || fail "a box beside it"
+"$bin/masu-bake" "$folder/s.json" --bare -o "$folder/s.masu" --quiet 2> "$folder/err" || fail "a box beside it"
 grep -q 'no instance is traced' "$folder/err" || fail "no word about the box"
 
 [ "$failures" = 0 ] || exit 1

@@ -295,7 +295,7 @@ warns 1 'gone.png: No such file'
 # refuses PATTERN MEMBERS
 refuses() {
     quad "$2"
-    "$bake" "$scene" -o "$folder/y.masu" > /dev/null 2> "$folder/stderr" && fail "$2: accepted"
+    "$bake" "$scene" --bare -o "$folder/y.masu" > /dev/null 2> "$folder/stderr" && fail "$2: accepted"
     grep -q -e "models\[0\]\.material.*$1" "$folder/stderr" || fail "$2: $(cat "$folder/stderr")"
     [ "$(wc -l < "$folder/stderr")" = 1 ] || fail "$2: not one line"
 }
@@ -328,11 +328,11 @@ pane='{"mesh": {"plane": {}}, "material": {"opacity": 0.5}}'
 panes=$pane
 for ((i = 0; i < 12; i++)); do panes="$panes, $panes"; done
 printf '{"models": [%s]}' "$panes" > "$scene"
-"$bake" "$scene" -o "$folder/y.masu" --quiet 2> "$folder/stderr" ||
+"$bake" "$scene" --bare -o "$folder/y.masu" --quiet 2> "$folder/stderr" ||
     fail "4096 panes: $(cat "$folder/stderr")"
 printf '{"models": [%s, %s]}' "$panes" "$pane" > "$scene"
 rm -f "$folder/y.masu"
-"$bake" "$scene" -o "$folder/y.masu" --quiet 2> "$folder/stderr" && fail "4097 panes: accepted"
+"$bake" "$scene" --bare -o "$folder/y.masu" --quiet 2> "$folder/stderr" && fail "4097 panes: accepted"
 grep -q 'found 4097 transparent draws, expected at most 4096' "$folder/stderr" || fail "$(cat "$folder/stderr")"
 [ "$(wc -l < "$folder/stderr")" = 1 ] || fail "4097 panes: not one line"
 [ ! -e "$folder/y.masu" ] || fail "4097 panes: wrote its output"

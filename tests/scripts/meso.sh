@@ -87,18 +87,18 @@ scene() {
 }
 maps='"base_color_map": "g r_color.png", "normal_map": "g r_normal.png", "roughness_map": "g r_rough.png", "occlusion_map": "g r_ao.png"'
 scene "$maps, \"meso\": \"g r.json\""
-expect 0 '' "$bake" "$folder/scene.json" -o "$folder/a.masu" --quiet
+expect 0 '' "$bake" "$folder/scene.json" --bare -o "$folder/a.masu" --quiet
 scene "$maps, \"meso\": $(cat "$folder/g r.json")"
-expect 0 '' "$bake" "$folder/scene.json" -o "$folder/b.masu" --quiet
+expect 0 '' "$bake" "$folder/scene.json" --bare -o "$folder/b.masu" --quiet
 cmp -s "$folder/a.masu" "$folder/b.masu" || fail "a file and its text give two scenes"
 scene "$maps"
-expect 0 '' "$bake" "$folder/scene.json" -o "$folder/c.masu" --quiet
+expect 0 '' "$bake" "$folder/scene.json" --bare -o "$folder/c.masu" --quiet
 cmp -s "$folder/a.masu" "$folder/c.masu" && fail "the curves are not in the scene"
 scene '"meso": "none.json"'
-expect 1 'none.json' "$bake" "$folder/scene.json" -o "$folder/d.masu"
+expect 1 'none.json' "$bake" "$folder/scene.json" --bare -o "$folder/d.masu"
 scene '"meso": {"tilt": [0, 0, 0]}'
-expect 1 'needs "rough"' "$bake" "$folder/scene.json" -o "$folder/d.masu"
+expect 1 'needs "rough"' "$bake" "$folder/scene.json" --bare -o "$folder/d.masu"
 scene "\"meso\": $(sed 's/"alpha": [^,]*/"alpha": 9/' "$folder/g r.json")"
-expect 1 'alpha' "$bake" "$folder/scene.json" -o "$folder/d.masu"
+expect 1 'alpha' "$bake" "$folder/scene.json" --bare -o "$folder/d.masu"
 
 [ $failures = 0 ] || exit 1

@@ -77,7 +77,7 @@ json() {
     echo "{\"sdf\": {\"source\": \"$1\", \"bounds\": [[-2, -2, -2], [2, 2, 2]] $2}}" > "$folder/s.json"
 }
 json good.sdf ''
-run "$bake" "$folder/s.json" -o "$folder/s.masu" --stats "$folder/stats.json"
+run "$bake" "$folder/s.json" --bare -o "$folder/s.masu" --stats "$folder/stats.json"
 [ $code = 0 ] || fail "baking good.sdf: $(cat "$folder/stderr")"
 tr -d ' \n' < "$folder/stats.json" | grep -q '"sdf_params":{"count":1' || fail "no parameter in the blob"
 json bad.sdf ''

@@ -13,6 +13,7 @@
 
 #include "bake/build/first_look.h"
 #include "bake/build/look.h"
+#include "bake/build/parts.h"
 #include "bake/scene/piece.h"
 
 #define ASPECT (16.0 / 9)
@@ -71,15 +72,16 @@ static void the_model_fills_the_frame(void **state) {
                 if (scales[s] < 1 && p == 2) continue; /* floats of a thousand metres are no model of a centimetre */
                 const double *e = things[n].size, *at = places[p];
                 masu_bake_content content = {0};
-                masu_bake_first_look look;
+                masu_bake_description d = {.reflections = {.wanted = true}};
                 place_shape(&content, masu_bake_v3(e[0], e[1], e[2]), scales[s],
                             masu_bake_v3(at[0], at[1], at[2]));
                 masu_bake_affine identity = masu_bake_identity();
                 masu_bake_box bounds = masu_bake_bounds(&content, &identity);
-                assert_null(masu_bake_make_first_look(&bounds, &content, &look));
-                assert_int_equal(look.look.key_count, 1);
+                masu_bake_make_first_look(&bounds, &content, &d);
+                assert_true(masu_bake_build_models(&d, 0, MASU_BAKE_TEXTURES_OFF, &content));
+                assert_int_equal(d.look.key_count, 1);
                 double most[2];
-                project(&content, 1, look.look.keys, most);
+                project(&content, 1, d.look.keys, most);
                 assert_true(fmax(most[0], most[1]) > 0.85 && fmax(most[0], most[1]) < 0.92);
                 assert_int_equal(masu_bake_count(&content, MASU_BLOB_INSTANCES), things[n].ground ? 2 : 1);
                 masu_bake_box all = masu_bake_bounds(&content, &identity);
@@ -88,9 +90,10 @@ static void the_model_fills_the_frame(void **state) {
                     assert_true(gap > 0 && gap < 0.002 * scales[s] * fmax(e[0], fmax(e[1], e[2])));
                     assert_true(all.high.y == bounds.high.y && all.low.x < bounds.low.x);
                 }
-                assert_true(look.look.shadows && look.reflections.wanted && look.look.smooth_edges);
-                assert_true(look.look.shadow_distance > 0 && look.look.occlusion_radius > 0);
-                assert_true(look.look.sun_direction.y > 0.3);
+                assert_true(d.look.shadows && d.look.occlusion && d.reflections.wanted && d.look.smooth_edges);
+                assert_true(d.look.shadow_distance > 0 && d.look.occlusion_radius > 0);
+                assert_true(d.look.sun_direction.y > 0.3);
+                masu_bake_description_release(&d);
                 masu_bake_content_release(&content);
             }
         }

@@ -23,6 +23,7 @@
 #include "bake/base/process.h"
 #include "bake/base/supervise.h"
 #include "bake/build/build.h"
+#include "bake/write/describe.h"
 #include "bake/write/write.h"
 #include "cli/cli.h"
 #include "file_kind.h"
@@ -46,6 +47,7 @@ enum {
     OPTION_VARIANTS,
 #endif
     OPTION_BARE,
+    OPTION_DESCRIBE,
     OPTION_NO_TEXTURES,
     OPTION_TEXTURE_PATH,
     OPTION_PROBES,
@@ -76,7 +78,8 @@ static bool bake(const masu_bake_options *options) {
     masu_cli_hear_warnings(keep_warning, &report.warnings);
     bool good = masu_bake_read(options, &description) &&
                 masu_bake_build(&description, options, &content, &report) && is_clean(options) &&
-                masu_bake_write(options, &content, &report, started);
+                (options->describe ? masu_bake_write_scene(options, &description, &content)
+                                   : masu_bake_write(options, &content, &report, started));
     masu_cli_hear_warnings(NULL, NULL);
     masu_bake_release(&report.warnings);
     masu_bake_content_release(&content);
@@ -89,7 +92,7 @@ static int bake_in_child(const void *options) { return bake(options) ? MASU_CLI_
 /* Found out before the work: *code is the exit code. */
 static bool can_write(const masu_bake_options *o, int *code) {
     char error[4096];
-    if (o->output && !masu_file_named(o->output, ".masu", error, sizeof error)) {
+    if (o->output && !masu_file_named(o->output, o->describe ? ".json" : ".masu", error, sizeof error)) {
         *code = masu_cli_usage_error("--output: %s", error);
         return false;
     }
@@ -122,6 +125,7 @@ static int run(masu_cli *cli) {
             if (!masu_cli_uint(cli, 1, 64, &o.threads)) return MASU_CLI_USAGE;
             break;
         case OPTION_BARE: o.bare = true; break;
+        case OPTION_DESCRIBE: o.describe = true; break;
 #ifdef MASU_LAB
         case OPTION_VARIANTS: o.variants = true; break;
 #endif
@@ -139,7 +143,9 @@ static int run(masu_cli *cli) {
         case MASU_CLI_EXIT: return cli->exit_code;
         case MASU_CLI_END:
             if (!o.input) return masu_cli_usage_error("no MODEL, SCENE.json or FIELD.sdf given");
-            if (!o.output && !o.probe_report)
+            if (o.describe && (o.stats || o.probes))
+                return masu_cli_usage_error("--describe bakes nothing: remove %s", o.stats ? "--stats" : "--probes");
+            if (!o.output && !o.probe_report && !o.describe)
                 return masu_cli_usage_error("no output given; add -o X.masu");
             if (!can_write(&o, &code)) return code;
             work.about = o.input;
@@ -157,7 +163,10 @@ int main(int argc, char **argv) {
 #ifdef MASU_LAB
         {"variants", NULL, "add the baseline marches of the SDF, for masu-lab study march", OPTION_VARIANTS, 0},
 #endif
-        {"bare", NULL, "a MODEL alone: without ground, shadows, occlusion and reflections", OPTION_BARE, 0},
+        {"bare", NULL, "without the ground, shadows, ambient occlusion and reflections that the\n"
+         "input does not ask for", OPTION_BARE, 0},
+        {"describe", NULL, "write the scene description that a MODEL or FIELD.sdf gets, to -o SCENE.json or\n"
+         "stdout, and bake nothing", OPTION_DESCRIBE, 0},
         {"no-textures", NULL, "ignore textures; materials keep their factors", OPTION_NO_TEXTURES,
          0},
         {"texture-path", "DIR:...", "folders to search for textures that are not at the model's path",

@@ -157,6 +157,16 @@ bool masu_bake_json_boolean(const masu_bake_json *at, const char *name, bool *ou
     return true;
 }
 
+bool masu_bake_json_feature(const masu_bake_json *at, const char *name, masu_bake_json *out, bool *wanted) {
+    masu_bake_json member = masu_bake_json_member(at, name);
+    *out = (masu_bake_json){0};
+    if (!member.value) return true;
+    if (json_is_boolean(member.value)) return masu_bake_json_boolean(at, name, wanted);
+    if (!json_is_object(member.value)) return wrong_type(&member, "an object, true or false");
+    *out = member;
+    return *wanted = true;
+}
+
 bool masu_bake_json_string(const masu_bake_json *at, const char *name, const char **out) {
     masu_bake_json member = masu_bake_json_member(at, name);
     if (!member.value) return true;

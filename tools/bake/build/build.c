@@ -22,6 +22,9 @@
 
 #define REPORT_POINTS 1024u
 #define REPORT_RAYS 4096u
+/* More triangles than these are not traced unless the scene asks for it: the tree of more takes
+ * seconds to bake, and an integrated GPU has hardly the time to walk it. */
+#define TRACED_TRIANGLES_MAX 500000u
 
 static void make_detail(const masu_bake_description *d, masu_bake_content *content,
                         masu_bake_report *report) {
@@ -88,7 +91,8 @@ static bool take_camera(const masu_bake_description *d, const masu_bake_content 
 }
 
 /* The first directional light of the models, where the scene has no sun of its own. */
-static void take_sun(const masu_bake_description *d, const masu_bake_content *content, masu_bake_look *look) {
+static void take_sun(masu_bake_description *d, const masu_bake_content *content) {
+    masu_bake_look *look = &d->look;
     for (uint32_t i = 0; i < masu_bake_sun_count(content); i++) {
         const masu_bake_sun *sun = &MASU_BAKE_SUNS(content)[i];
         if (i > 0 || d->look.own_sun) {
@@ -99,19 +103,19 @@ static void take_sun(const masu_bake_description *d, const masu_bake_content *co
         look->sun_direction = masu_bake_v3f(sun->direction);
         look->sun_color = masu_bake_v3f(sun->color);
         look->sun_intensity = 1;
-        look->own_sun_color = true;
+        look->own_sun_color = look->sun_of_model = true;
     }
 }
 
-/* What is shown, and what it is shown in. */
-static bool build_scene(const masu_bake_description *d, const masu_bake_options *options,
-                        masu_bake_reflections *reflections, masu_bake_content *content,
-                        masu_bake_report *report) {
-    masu_bake_first_look first = {.look = d->look};
-    if (!masu_bake_build_models(d, options->textures, content)) return false;
+/* What is shown, and what it is shown in. It completes the description by what depends on the models. */
+static bool build_scene(masu_bake_description *d, const masu_bake_options *options,
+                        masu_bake_content *content, masu_bake_report *report) {
+    if (!masu_bake_build_models(d, 0, options->textures, content)) return false;
     make_detail(d, content, report);
     masu_bake_affine identity = masu_bake_identity();
     masu_bake_box bounds = report->bounds = masu_bake_bounds(content, &identity);
+    if (d->default_reflections && masu_bake_count(content, MASU_BLOB_INDICES) / 3 > TRACED_TRIANGLES_MAX)
+        d->reflections.wanted = false;
     if (!masu_bake_build_lights(d, content)) return false;
     if (d->sdf.source) {
         add_sdf(&d->sdf, content);
@@ -119,18 +123,22 @@ static bool build_scene(const masu_bake_description *d, const masu_bake_options 
         if (masu_bake_box_is_empty(&bounds)) bounds = d->sdf.framed;
     }
     if (d->first_look && !masu_bake_box_is_empty(&bounds)) {
-        const char *problem = masu_bake_make_first_look(&bounds, content, &first);
-        if (problem) return masu_bake_wrong(d, "", "gives %s", problem);
-        *reflections = first.reflections;
+        size_t placed = d->model_count;
+        masu_bake_make_first_look(&bounds, content, d);
+        if (!masu_bake_build_models(d, placed, options->textures, content)) return false;
     }
-    masu_blob_camera_key key;
     if (d->look.camera) {
-        if (!take_camera(d, content, &key)) return false;
-        first.look.keys = &key;
-        first.look.key_count = 1;
+        d->look.keys = masu_bake_take(&d->pool, sizeof *d->look.keys);
+        d->look.key_count = 1;
+        if (!take_camera(d, content, d->look.keys)) return false;
     }
-    take_sun(d, content, &first.look);
-    masu_bake_build_look(&first.look, &bounds, content);
+    take_sun(d, content);
+    masu_bake_build_look(&d->look, &bounds, content);
+    return true;
+}
+
+static bool build_sky_and_field(const masu_bake_description *d, const masu_bake_options *options,
+                                masu_bake_content *content) {
     if (!add_environment_map(&d->environment, content)) return false;
     return !d->sdf.source || masu_bake_compile_march(content, d->sdf.source, &d->sdf.occlusion,
                                                      d->reflections.wanted, options->variants);
@@ -160,20 +168,20 @@ static bool build_probes(const masu_bake_description *d, const masu_bake_options
     return good;
 }
 
-bool masu_bake_build(const masu_bake_description *d, const masu_bake_options *options,
+bool masu_bake_build(masu_bake_description *d, const masu_bake_options *options,
                      masu_bake_content *content, masu_bake_report *report) {
-    masu_bake_reflections reflections = d->reflections;
-    content->pictures_wanted = reflections.wanted;
-    content->picture_side = reflections.texture_size;
-    if (!build_scene(d, options, &reflections, content, report)) return false;
-    report->reflected = reflections.wanted;
+    if (!build_scene(d, options, content, report)) return false;
+    if (options->describe) return true;
+    if (!build_sky_and_field(d, options, content)) return false;
+    content->pictures_wanted = report->reflected = d->reflections.wanted;
+    content->picture_side = d->reflections.texture_size;
     if (!masu_bake_make_textures(content, options->texture_path)) return false;
     masu_bake_gather_skins(content);
     masu_bake_sort_instances(content);
     masu_bake_groups(content);
     masu_bake_sort_occluders(content);
     masu_bake_drop_occluders(content);
-    if (!masu_bake_make_bvh(content, &reflections, &report->reflections)) return false;
+    if (!masu_bake_make_bvh(content, &d->reflections, &report->reflections)) return false;
     masu_bake_trace_textures(content);
     if (content->names_cut)
         masu_cli_warn("%u names of the scene are longer than %u bytes and were truncated",

@@ -5,9 +5,7 @@
  * The camera's direction is given; where it stands is then exact. In axes of the camera a point (x, y, z), z
  * into the picture, is within the frame if |x - cx| <= a (z - cz) and |y - cy| <= b (z - cz), for the half angles'
  * tangents a and b. The four bounds are planes, the point that meets most of each is found in one pass over the
- * vertices, and the nearest cz that satisfies all follows.
- *
- * Can fail: a ground that the scene has no room for (see masu_bake_place). */
+ * vertices, and the nearest cz that satisfies all follows. */
 #include "bake/build/first_look.h"
 #include "bake/mesh/shape.h"
 
@@ -17,7 +15,6 @@
 #define ASPECT (16.0 / 9) /* of the picture that it is made for: in narrower ones a wide model is cut off */
 #define FLAT 0.12         /* height / the shorter side of what is a place, not a thing: no ground, seen from higher up */
 #define GROUND_RADII 60   /* half a side of the ground, in radii of the model: it ends in the haze */
-#define TRACED_TRIANGLES_MAX 500000u /* more take seconds to bake and hardly an integrated GPU would trace them */
 
 typedef struct axes {
     masu_bake_vec3 right, up, forward;
@@ -91,30 +88,38 @@ static masu_blob_camera_key frame(const masu_bake_content *c, const masu_bake_bo
 }
 
 /* Just under the model: what lies on it, as soles and tyres do, must not flicker through. */
-static const char *add_ground(const masu_bake_box *box, masu_bake_content *content) {
+static void add_ground(const masu_bake_box *box, masu_bake_description *d) {
     masu_bake_vec3 e = extent_of(box);
-    double radius = fmax(masu_bake_length(e) / 2, 1e-3);
+    double radius = fmax(masu_bake_length(e) / 2, 1e-3), side = 2 * GROUND_RADII * radius;
     masu_bake_vec3 center = masu_bake_mad(box->low, e, 0.5);
     center.y = box->low.y - radius * 1e-3;
-    masu_bake_content piece = {0};
-    masu_bake_plane(&piece, 2 * GROUND_RADII * radius, 2 * GROUND_RADII * radius, 0);
-    masu_bake_override grey = {.base_color = true, .roughness = true, .metallic = true, .specular = true};
+    masu_bake_model *models = masu_bake_take(&d->pool, (d->model_count + 1) * sizeof *models);
+    masu_bake_shape *shapes = masu_bake_take(&d->pool, (d->shape_count + 1) * sizeof *shapes);
+    masu_bake_material_change *grey = masu_bake_take(&d->pool, sizeof *grey);
     const float color[3] = {0.16f, 0.16f, 0.165f};
-    memcpy(grey.value.base_color, color, sizeof color);
-    grey.value.roughness = 0.28f;
-    grey.value.specular = 0.5f;
-    masu_bake_overrides overrides = {&grey, 1};
-    masu_bake_residence residence = {0};
-    masu_bake_affine placement = masu_bake_translation(center);
-    const char *problem =
-        masu_bake_place(content, &piece, &residence, &placement, &overrides, "ground");
-    masu_bake_content_release(&piece);
-    return problem;
+    grey->value = (masu_bake_override){.base_color = true, .roughness = true, .metallic = true, .specular = true};
+    memcpy(grey->value.value.base_color, color, sizeof color);
+    grey->value.value.roughness = 0.28f;
+    grey->value.value.specular = 0.5f;
+    if (d->model_count) memcpy(models, d->models, d->model_count * sizeof *models);
+    if (d->shape_count) memcpy(shapes, d->shapes, d->shape_count * sizeof *shapes);
+    shapes[d->shape_count] = (masu_bake_shape){MASU_BAKE_PLANE, {side, 0, side}, 0, 1};
+    models[d->model_count] = (masu_bake_model){.where = "",
+                                               .shape = (uint32_t)d->shape_count,
+                                               .name = "ground",
+                                               .lights = 1,
+                                               .placement = masu_bake_identity(),
+                                               .translation = center,
+                                               .changes = grey,
+                                               .change_count = 1};
+    d->models = models;
+    d->shapes = shapes;
+    d->model_count++;
+    d->shape_count++;
 }
 
-static void set_light(const masu_bake_box *box, bool flat, masu_bake_first_look *out) {
-    masu_bake_look *l = &out->look;
-    const float *p = out->key.position;
+static void set_light(const masu_bake_box *box, bool flat, masu_bake_look *l) {
+    const float *p = l->keys[0].position;
     masu_bake_vec3 e = extent_of(box), center = masu_bake_mad(box->low, e, 0.5);
     double radius = fmax(masu_bake_length(e) / 2, 1e-3);
     /* From the left of the camera and above it: form is seen by its shade. */
@@ -129,6 +134,7 @@ static void set_light(const masu_bake_box *box, bool flat, masu_bake_first_look 
     l->shadow = (masu_blob_shadow){.cascades = flat ? 3 : 2, .resolution = 2048, .lambda = 0.5f};
     l->shadow_distance = masu_bake_length(masu_bake_sub(center, masu_bake_v3f(p))) +
                          radius * (flat ? 1.0 : 2.5);
+    l->occlusion = true;
     l->occlusion_radius = radius * 0.2;
     l->smooth_edges = true;
     if (flat) return;
@@ -138,19 +144,16 @@ static void set_light(const masu_bake_box *box, bool flat, masu_bake_first_look 
     l->fog_start = l->shadow_distance;
 }
 
-const char *masu_bake_make_first_look(const masu_bake_box *bounds, masu_bake_content *content,
-                                      masu_bake_first_look *out) {
+void masu_bake_make_first_look(const masu_bake_box *bounds, const masu_bake_content *content,
+                               masu_bake_description *d) {
     bool flat = is_flat(bounds);
     double radius = fmax(masu_bake_length(extent_of(bounds)) / 2, 1e-3);
-    out->look = masu_bake_default_look();
-    out->key = frame(content, bounds, out->look.fov_y,
-                     masu_bake_v3(0.62, flat ? 0.85 : 0.38, 1.0));
-    out->look.keys = &out->key;
-    out->look.key_count = 1;
-    set_light(bounds, flat, out);
-    out->reflections = masu_bake_reflection_defaults();
-    out->reflections.smallest = radius * 2 * MASU_BAKE_TRACED_SHARE; /* the ground is not to count */
-    out->reflections.wanted =
-        masu_bake_count(content, MASU_BLOB_INDICES) / 3 <= TRACED_TRIANGLES_MAX;
-    return flat ? NULL : add_ground(bounds, content);
+    d->look = masu_bake_default_look();
+    d->look.keys = masu_bake_take(&d->pool, sizeof *d->look.keys);
+    d->look.key_count = 1;
+    d->look.keys[0] = frame(content, bounds, d->look.fov_y,
+                            masu_bake_v3(0.62, flat ? 0.85 : 0.38, 1.0));
+    set_light(bounds, flat, &d->look);
+    d->reflections.smallest = radius * 2 * MASU_BAKE_TRACED_SHARE; /* the ground is not to count */
+    if (!flat) add_ground(bounds, d);
 }

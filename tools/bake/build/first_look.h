@@ -4,14 +4,10 @@
 
 #include "bake/description/description.h"
 
-/* After the model has been placed, which is all that there is: replaces camera, light and reflections, and lays a
- * ground under what stands free. `bounds`: of the model, not empty. Returns NULL or what is wrong. */
-typedef struct masu_bake_first_look {
-    masu_bake_look look; /* its one key is the next */
-    masu_blob_camera_key key;
-    masu_bake_reflections reflections;
-} masu_bake_first_look;
-const char *masu_bake_make_first_look(const masu_bake_box *bounds, masu_bake_content *content,
-                                      masu_bake_first_look *out);
+/* After the model has been placed, which is all of the content: replaces the description's camera and
+ * light, limits its reflections, and adds a ground to its models under what stands free. `bounds`: of
+ * the model, not empty. */
+void masu_bake_make_first_look(const masu_bake_box *bounds, const masu_bake_content *content,
+                               masu_bake_description *d);
 
 #endif

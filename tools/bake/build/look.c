@@ -72,9 +72,8 @@ static void add_environment(const masu_bake_look *l, const masu_bake_box *bounds
     masu_bake_store(
         masu_bake_v3(sun.x * l->sun_intensity, sun.y * l->sun_intensity, sun.z * l->sun_intensity),
         e.sun_color);
-    if (l->occlusion_radius > 0)
-        e.occlusion_radius =
-            fmaxf((float)l->occlusion_radius, 1e-3f); /* as the blob's check rounds */
+    double reach = l->occlusion_radius > 0 ? l->occlusion_radius : fmin(box_radius(bounds) * 0.2, 1);
+    if (l->occlusion) e.occlusion_radius = fmaxf((float)reach, 1e-3f); /* as the blob's check rounds */
     masu_bake_store(l->ambient, e.ambient);
     masu_bake_store(l->zenith, e.sky_zenith);
     masu_bake_store(l->horizon, e.sky_horizon);

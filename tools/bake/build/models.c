@@ -294,11 +294,11 @@ static bool add_occluder(const model_builder *b, const masu_bake_model *model, u
     return true;
 }
 
-bool masu_bake_build_models(const masu_bake_description *d, masu_bake_textures textures,
+bool masu_bake_build_models(const masu_bake_description *d, size_t start, masu_bake_textures textures,
                             masu_bake_content *content) {
     model_builder b = {.description = d, .content = content, .textures = textures};
     bool good = true;
-    for (size_t i = 0; good && i < d->model_count; i++) {
+    for (size_t i = start; good && i < d->model_count; i++) {
         const masu_bake_model *model = &d->models[i];
         uint64_t first = masu_bake_count(content, MASU_BLOB_INSTANCES);
         loaded_model *from = fetch(&b, model);

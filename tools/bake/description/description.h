@@ -25,7 +25,8 @@
 #include "bake/shader/sdf.h"
 
 #define MASU_BAKE_SPARE_MAX 4096u
-#define MASU_BAKE_FOV_Y 40.0 /* degrees, where the scene says nothing */
+#define MASU_BAKE_FOV_Y 40.0        /* degrees, where the scene says nothing */
+#define MASU_BAKE_SUN_RADIUS 0.27   /* degrees, of shadows of the SDF, where the scene says nothing */
 
 /* What a model's materials are changed to: the values, and what has no number in the scene yet. */
 typedef struct masu_bake_material_change {
@@ -90,6 +91,7 @@ typedef struct masu_bake_look {
     masu_bake_vec3 sun_color;
     double sun_intensity;
     bool own_sun, own_sun_color; /* the scene says something of it */
+    bool sun_of_model;           /* it is a directional light of a file */
     bool shadows;
     masu_blob_shadow shadow;
     double shadow_distance; /* metres; 0: by the scene's size */
@@ -100,7 +102,8 @@ typedef struct masu_bake_look {
     double brighten, darken; /* of a metered exposure, 1/s; 0: the renderer's default */
     masu_bake_vec3 fog_color;
     double fog_density, fog_height, fog_falloff, fog_start;
-    double occlusion_radius; /* of ambient occlusion, metres; 0: none */
+    bool occlusion;          /* screen-space, of ambient light */
+    double occlusion_radius; /* metres; 0: by the scene's size */
     bool smooth_edges;
 } masu_bake_look;
 
@@ -130,6 +133,7 @@ typedef struct masu_bake_sdf {
 typedef struct masu_bake_description {
     const char *file; /* that was read */
     bool first_look;  /* camera, light, ground and reflections by the model's shape (build/first_look.h) */
+    bool default_reflections; /* the scene says nothing of them: none for very many triangles */
     masu_bake_model *models;
     size_t model_count;
     masu_bake_shape *shapes; /* different ones */

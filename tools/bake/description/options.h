@@ -9,7 +9,7 @@ typedef struct masu_bake_options {
     /* read */
     const char *input;            /* a scene's .json, or a model */
     const char *models_directory; /* what "@assimp/" stands for */
-    bool bare;                    /* a model gets no ground, no shadows, no reflections */
+    bool bare;                    /* no ground, shadows, occlusion, reflections that are not asked for */
     /* build */
     masu_bake_textures textures; /* WANTED or OFF */
     const char *texture_path;    /* folders with ':' between, or NULL */
@@ -17,8 +17,9 @@ typedef struct masu_bake_options {
     bool probes, probe_report;   /* also if the scene asks for none; judged by path tracing */
     uint32_t threads;            /* that trace probes; 0: all processors */
     bool strict; /* warnings are errors */
+    bool describe; /* stops at what a scene description of the input says */
     /* write */
-    const char *output; /* the blob; NULL: none is written */
+    const char *output; /* the blob, or the description; NULL: no blob, the description to stdout */
     const char *stats;  /* or NULL */
 } masu_bake_options;
 

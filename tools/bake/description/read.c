@@ -67,7 +67,7 @@ static bool read_scene(const masu_bake_options *options, masu_bake_description *
     masu_bake_json scene = {.file = options->input};
     if (!masu_bake_json_load(options->input, &scene.value)) return false;
     char *directory = masu_bake_directory_of(options->input);
-    masu_bake_reader reader = {directory, options->models_directory, out};
+    masu_bake_reader reader = {directory, options->models_directory, options->bare, out};
     bool good = read_members(&scene, &reader);
     free(directory);
     json_decref(scene.value);
@@ -97,10 +97,14 @@ bool masu_bake_read(const masu_bake_options *options, masu_bake_description *out
                        masu_file_hint(options->input, NULL, 0, MASU_FILE_UNKNOWN));
         return false;
     }
-    if (is_scene(options->input)) return read_scene(options, out);
+    if (is_scene(options->input)) {
+        if (!options->describe) return read_scene(options, out);
+        masu_cli_error("%s: is a scene description already; --describe needs a model or a .sdf file", options->input);
+        return false;
+    }
     if (masu_bake_is_sdf(options->input)) return masu_bake_describe_sdf(options, out);
     describe_model(options->input, out);
-    out->first_look = out->reflections.wanted = !options->bare;
+    out->first_look = out->reflections.wanted = out->default_reflections = !options->bare;
     return true;
 }
 

@@ -101,9 +101,11 @@ bool masu_bake_read_probes(const masu_bake_json *scene, masu_bake_reader *r) {
 bool masu_bake_read_reflections(const masu_bake_json *scene, masu_bake_reader *r) {
     masu_bake_reflections *out = &r->out->reflections;
     static const char *const members[] = {"smallest", "cutoff", "distance", "texture_size", NULL};
-    masu_bake_json at = masu_bake_json_member(scene, "reflections");
+    masu_bake_json at;
     double side = out->texture_size;
-    out->wanted = at.value != NULL;
+    out->wanted = !r->bare;
+    if (!masu_bake_json_feature(scene, "reflections", &at, &out->wanted)) return false;
+    r->out->default_reflections = !masu_bake_json_has(scene, "reflections");
     bool good =
         !at.value || (masu_bake_json_object(&at, members) &&
                       masu_bake_json_number(&at, "smallest", 0, 1e9, &out->smallest) &&

@@ -84,13 +84,16 @@ static bool reaches_far(const masu_bake_box *box) {
     return fmax(-low, fmax(box->high.x, fmax(box->high.y, box->high.z))) > MASU_ANCHOR_FROM;
 }
 
-static bool read_shadows(const masu_bake_json *sdf, double max_distance, masu_bake_occlusion *out) {
+static bool read_shadows(const masu_bake_json *sdf, const masu_bake_reader *r) {
+    masu_bake_occlusion *out = &r->out->sdf.occlusion;
     static const char *const members[] = {"sun_radius", "distance", NULL};
-    masu_bake_json shadows = masu_bake_json_member(sdf, "shadows");
-    double degrees = 0.27;
-    out->shadows = shadows.value != NULL;
-    out->distance = max_distance;
-    if (!out->shadows) return true;
+    masu_bake_json shadows;
+    double degrees = MASU_BAKE_SUN_RADIUS;
+    out->shadows = !r->bare;
+    out->distance = r->out->sdf.max_distance;
+    out->sun_radius = degrees * (MASU_BAKE_PI / 180.0);
+    if (!masu_bake_json_feature(sdf, "shadows", &shadows, &out->shadows)) return false;
+    if (!shadows.value) return true;
     if (!masu_bake_json_object(&shadows, members) ||
         !masu_bake_json_number(&shadows, "sun_radius", 0, 20, &degrees) ||
         !masu_bake_json_number(&shadows, "distance", 1e-3, 1e15, &out->distance)) {
@@ -100,13 +103,15 @@ static bool read_shadows(const masu_bake_json *sdf, double max_distance, masu_ba
     return true;
 }
 
-static bool read_ambient_occlusion(const masu_bake_json *sdf, masu_bake_occlusion *out) {
+static bool read_ambient_occlusion(const masu_bake_json *sdf, const masu_bake_reader *r) {
+    masu_bake_occlusion *out = &r->out->sdf.occlusion;
     static const char *const members[] = {"radius", "strength", NULL};
-    masu_bake_json ambient = masu_bake_json_member(sdf, "ambient_occlusion");
-    out->ambient = ambient.value != NULL;
+    masu_bake_json ambient;
+    out->ambient = !r->bare;
     out->radius = 1;
     out->strength = 1;
-    return !out->ambient || (masu_bake_json_object(&ambient, members) &&
+    if (!masu_bake_json_feature(sdf, "ambient_occlusion", &ambient, &out->ambient)) return false;
+    return !ambient.value || (masu_bake_json_object(&ambient, members) &&
                              masu_bake_json_number(&ambient, "radius", 1e-3, 1e6, &out->radius) &&
                              masu_bake_json_number(&ambient, "strength", 0, 1, &out->strength));
 }
@@ -140,8 +145,7 @@ bool masu_bake_read_sdf(const masu_bake_json *scene, masu_bake_reader *r) {
         !read_lipschitz(&sdf, &out->lipschitz) ||
         !masu_bake_json_number(&sdf, "max_distance", 1e-3, 1e15, &out->max_distance) ||
         !masu_bake_json_boolean(&sdf, "anchored", &out->anchored) ||
-        !read_shadows(&sdf, out->max_distance, &out->occlusion) ||
-        !read_ambient_occlusion(&sdf, &out->occlusion) || !read_params(&sdf, r)) {
+        !read_shadows(&sdf, r) || !read_ambient_occlusion(&sdf, r) || !read_params(&sdf, r)) {
         return false;
     }
     if (!source) return masu_bake_json_wrong(&sdf, "needs \"source\", a GLSL or .sdf file");
@@ -203,7 +207,7 @@ static void frame_field(const masu_sdfc_result *field, const masu_bake_options *
     sdf->anchored = reaches_far(&sdf->bounds);
     sdf->occlusion = (masu_bake_occlusion){.shadows = !options->bare,
                                            .ambient = !options->bare,
-                                           .sun_radius = 0.27 * (MASU_BAKE_PI / 180.0),
+                                           .sun_radius = MASU_BAKE_SUN_RADIUS * (MASU_BAKE_PI / 180.0),
                                            .distance = sdf->max_distance,
                                            .radius = fmin(radius * 0.4, 1e6),
                                            .strength = 1};

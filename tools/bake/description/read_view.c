@@ -85,11 +85,12 @@ static bool read_camera(const masu_bake_json *scene, masu_bake_reader *r) {
 
 static bool read_shadows(const masu_bake_json *sun, masu_bake_look *l) {
     static const char *const members[] = {"cascades", "resolution", "distance", "lambda", NULL};
-    masu_bake_json shadows = masu_bake_json_member(sun, "shadows");
-    if (!shadows.value) return true;
     masu_blob_shadow *out = &l->shadow;
-    *out = (masu_blob_shadow){.cascades = 3, .resolution = 1024};
     double lambda = 0.75;
+    masu_bake_json shadows;
+    if (!masu_bake_json_feature(sun, "shadows", &shadows, &l->shadows)) return false;
+    *out = (masu_blob_shadow){.cascades = 3, .resolution = 1024, .lambda = (float)lambda};
+    if (!shadows.value) return true;
     if (!masu_bake_json_object(&shadows, members) ||
         !masu_bake_json_whole(&shadows, "cascades", 1, MASU_SHADOW_CASCADES_MAX, &out->cascades) ||
         !masu_bake_json_whole(&shadows, "resolution", MASU_SHADOW_SIZE_MIN, MASU_SHADOW_SIZE_MAX,
@@ -99,14 +100,16 @@ static bool read_shadows(const masu_bake_json *sun, masu_bake_look *l) {
         return false;
     }
     out->lambda = (float)lambda;
-    return l->shadows = true;
+    return true;
 }
 
-static bool read_sun(const masu_bake_json *scene, masu_bake_look *l) {
+static bool read_sun(const masu_bake_json *scene, const masu_bake_reader *r) {
+    masu_bake_look *l = &r->out->look;
     static const char *const members[] = {"direction", "azimuth", "elevation", "color",
                                           "intensity", "shadows", NULL};
     masu_bake_json sun = masu_bake_json_member(scene, "sun");
-    if (!sun.value) return true;
+    l->shadows = !r->bare;
+    if (!sun.value) return read_shadows(&sun, l);
     double azimuth = 60, elevation = 50;
     masu_bake_vec3 direction = l->sun_direction;
     if (!masu_bake_json_object(&sun, members) ||
@@ -165,11 +168,10 @@ static bool read_sky(const masu_bake_json *scene, masu_bake_look *l) {
 
 static bool read_occlusion(const masu_bake_json *scene, masu_bake_look *l) {
     static const char *const members[] = {"radius", NULL};
-    masu_bake_json occlusion = masu_bake_json_member(scene, "ambient_occlusion");
-    if (!occlusion.value) return true;
-    l->occlusion_radius = 1;
-    return masu_bake_json_object(&occlusion, members) &&
-           masu_bake_json_number(&occlusion, "radius", 1e-3, 1e6, &l->occlusion_radius);
+    masu_bake_json occlusion;
+    if (!masu_bake_json_feature(scene, "ambient_occlusion", &occlusion, &l->occlusion)) return false;
+    return !occlusion.value || (masu_bake_json_object(&occlusion, members) &&
+                                masu_bake_json_number(&occlusion, "radius", 1e-3, 1e6, &l->occlusion_radius));
 }
 
 /* A number is the exposure; an object asks for a metered one. And whether edges are smooth. */
@@ -213,7 +215,8 @@ static bool read_fog(const masu_bake_json *scene, masu_bake_look *l) {
 
 bool masu_bake_read_look(const masu_bake_json *scene, masu_bake_reader *r) {
     masu_bake_look *l = &r->out->look;
-    return read_camera(scene, r) && read_sun(scene, l) && read_sky(scene, l) &&
+    l->occlusion = !r->bare && r->out->model_count > 0; /* a field has its own, which is exact */
+    return read_camera(scene, r) && read_sun(scene, r) && read_sky(scene, l) &&
            read_fog(scene, l) && read_occlusion(scene, l) &&
            masu_bake_json_vec3(scene, "ambient", 0, RADIANCE_MAX, &l->ambient) &&
            read_exposure(scene, l);
