@@ -307,14 +307,15 @@ MASU_API const char *masu_scene_class_name(masu_scene_class scene_class);
 
 /* Capacities for objects that the host adds at run time. masu_memory includes their memory. Models
  * and lights of the reserve count towards limits and peaks like those of the scene. 0: none, at no
- * cost. */
+ * cost. Without a scene all members are unused; so is `models` if the scene has no movable model
+ * without skins. */
 typedef struct masu_reserve {
     /* Slots for copies of movable models, in addition to the pooled copies of the scene
      * (masu_model_add), 0..16384. Any movable model without skins fits into a slot, so each slot
      * has the largest number of nodes, instances, transparent primitives and traced instances of
      * any such model. masu_limits states the cost of each of these; if the scene has occluders, the
-     * occluders of the meshes are added. All slots together have at most 2^20 items of each kind,
-     * for example instances. */
+     * occluders of the meshes are added, and 8 bytes with desc.picking. All slots together have at
+     * most 2^20 items of each kind, for example instances. */
     uint32_t models;
     /* Punctual lights (masu_punctual_light_add), 0..4096; at most 4096 with those of the scene. */
     uint32_t lights;
@@ -478,7 +479,7 @@ typedef struct masu_targets {
 } masu_targets;
 
 /* Tone curve: maps radiance times exposure to the output. ACES ends at white. NEUTRAL ends at
- * white, with LINEAR and PQ at the peak. */
+ * white, with LINEAR and PQ at the peak. Scene only. */
 typedef enum masu_tone {
     MASU_TONE_AUTO = 0,   /* ACES */
     MASU_TONE_NONE = 1,   /* linear, clipped at white; with LINEAR and PQ at 10000 nits */
@@ -489,7 +490,8 @@ typedef enum masu_tone {
 
 /* Auto-exposure: exposure = light.exposure * 0.18 / (geometric mean of the image's luminance). The
  * mean excludes the darkest and brightest pixels (`low`, `high`), black pixels and non-finite
- * pixels. It adapts over time by frame.time_step; at once in the first frame and after a cut. */
+ * pixels. It adapts over time by frame.time_step; at once in the first frame and after a cut. With
+ * `metered` off the other members are checked, but unused. Scene only. */
 typedef struct masu_exposure {
     masu_switch metered; /* OFF: light.exposure only, without a pass or memory. AUTO: the scene's
                             setting */
@@ -537,7 +539,10 @@ typedef enum masu_governor_mode {
  * lowest number that meets the target. Frame times are from two timestamps per frame, from
  * masu_frame_times or masu_frame_wall, or from both. Use both: the governor then detects incorrect
  * timestamps. A rise is a change to a better rung; it has failed if that rung then misses the
- * target. All zero: no governor, at no cost. */
+ * target. All zero: no governor, at no cost.
+ *
+ * Unused, but checked: with mode OFF all other members (masu_plan_info still reports `costs`); with
+ * FIXED headroom, best_rung, worst_rung, dwell and steady_clock; with ON `rung`. */
 typedef struct masu_governor_desc {
     masu_governor_mode mode;
     float target_ms; /* GPU time of a frame, 1..1000 ms; 0: 16.67 */
@@ -567,23 +572,23 @@ typedef struct masu_governor_desc {
 typedef struct masu_desc {
     masu_vulkan vulkan;
     const masu_scene *scene; /* NULL: upscaling of `source` only. Read during the call */
-    masu_source source;      /* required without a scene, not allowed with one */
+    masu_source source;      /* required without a scene; with one it must be all zero */
     VkExtent2D output;       /* pixels, 1..16384 and within the device's maxImageDimension2D */
     masu_targets targets;
     uint32_t frames_in_flight; /* 1..3; 0: 2 */
     /* Quality levels; masu_frame_desc.rung selects one per frame. Sort them by falling quality;
      * only the governor relies on it. */
-    uint32_t rung_count; /* 0..8; 0: by `ladder` */
-    masu_rung rungs[MASU_MAX_RUNGS];
+    uint32_t rung_count; /* 0..8; 0: by `ladder`, and rungs[0] must be all zero */
+    masu_rung rungs[MASU_MAX_RUNGS]; /* those from rung_count on are unused */
     /* The rungs if rung_count is 0. ON: up to eight built-in rungs, measured for the scene's class
      * (masu_ladder_of), with their flips, and with their times for governor.costs of 0. OFF, and
      * without a scene: three rungs of scale 1.0 (no upscaling), 0.8 and 0.4 (EASU, RCAS). AUTO: ON
-     * with a governor, else OFF. */
+     * with a governor, else OFF. Unused if rung_count is not 0. */
     masu_switch ladder;
     /* Error of each rung, reported by masu_plan_info: FLIP with stationary and moving camera, 0..1;
-     * 0: unknown. Does not affect rendering. */
+     * 0: unknown. Does not affect rendering. Built-in rungs replace them. */
     float flips[MASU_MAX_RUNGS];
-    masu_limits limits; /* largest scene to accept */
+    masu_limits limits; /* largest scene to accept. Scene only */
     masu_reserve reserve;
     /* Flag: masu_material_set is available. Costs 60 host bytes per material, 48 device bytes per
      * material and frame in flight, and copying the latter in each frame; with reflections of
@@ -592,13 +597,14 @@ typedef struct masu_desc {
     uint64_t host_budget;   /* bytes; 0: none. A larger plan is MASU_ERROR_LIMIT */
     uint64_t device_budget; /* bytes, all roles together; 0: none */
     masu_device_block device_blocks[MASU_ROLE_COUNT];
-    /* Flag: frames may set light.turbidity although the scene has no analytic sky. */
+    /* Flag: frames may set light.turbidity although the scene has no analytic sky. No effect with
+     * an environment map. Scene only. */
     uint32_t analytic_sky;
     /* Several views of the scene: each frame renders viewports[masu_frame_desc.viewport] with its
-     * own camera and rung. 0..4; 0: one view, all of the output. Each viewport must be inside the
-     * output; with storage targets it must start at 0, 0 (each may have its own target). Viewports
-     * may overlap: a later frame covers an earlier one. Costs a set of recordings per viewport.
-     * Without a scene a count is MASU_ERROR_ARGUMENT. */
+     * own camera and rung. 0..4; 0: one view, all of the output; viewports[0] must then be all
+     * zero. Each viewport must be inside the output; with storage targets it must start at 0, 0
+     * (each may have its own target). Viewports may overlap: a later frame covers an earlier one.
+     * Costs a set of recordings per viewport. Without a scene a count is MASU_ERROR_ARGUMENT. */
     uint32_t viewport_count;
     masu_viewport viewports[MASU_MAX_VIEWPORTS];
     /* Flag: masu_resize may change the output size, up to `output`, and the targets. Costs 32 host
@@ -619,7 +625,8 @@ typedef struct masu_desc {
      *          integrated GPU (CPUs emulate it); 32 in MASU_EASU_FULL
      *   ON     16 in both, which changes full EASU by up to 2/255; else MASU_ERROR_DEVICE. With
      *          debug.exact 32
-     *   OFF    32 */
+     *   OFF    32
+     * No effect if no rung upscales by EASU. */
     masu_switch half_floats;
     masu_exposure exposure;
     masu_tone tone;
@@ -631,7 +638,7 @@ typedef struct masu_desc {
     /* 16-bit floats instead of 10 bits for images between tone curve and target, which takes twice
      * the bytes. AUTO: on for targets of more than 8 bits. OFF limits such targets to a precision
      * of 8 bits, and is an error for floating-point storage targets and encodings other than SRGB.
-     * ON is an error for 8-bit storage targets and for SRGB formats. */
+     * ON is an error for 8-bit storage targets and for SRGB formats. Scene only. */
     masu_switch deep_color;
     uint32_t readback; /* masu_readback_bits. Scene only */
     uint32_t split;    /* masu_split_bits; 0: a frame is one command buffer */
@@ -992,7 +999,8 @@ typedef struct masu_light {
     float sun_direction[3];              /* towards the sun; need not be unit length */
     float sun_color[3];                  /* irradiance on a perpendicular surface / pi */
     /* Radiance. An environment map of the scene replaces all three: they must then be zero, or as
-     * masu_light_of returns them. */
+     * masu_light_of returns them. An analytic sky (turbidity) replaces them too; the values are
+     * then unused. */
     float ambient[3];
     float sky_zenith[3], sky_horizon[3];
     /* Linear factor before the tone curve; 0: 1. With auto-exposure (masu_exposure) it is
@@ -1001,10 +1009,11 @@ typedef struct masu_light {
     /* 0: gradient sky from sky_zenith and sky_horizon, with `ambient` as ambient light. 1.5 (very
      * clear) to 10 (hazy): analytic sky from the sun direction, which also sets the ambient light;
      * a sun_color of all zero then selects the sun's colour after extinction in the atmosphere, at
-     * sunset too. Requires a scene with an analytic sky or desc.analytic_sky. A change of sun
-     * direction, turbidity or ground recomputes the sky, within one millisecond on the CPU. */
+     * sunset too. Requires a scene with an analytic sky or desc.analytic_sky; with an environment
+     * map it must be 0. A change of sun direction, turbidity or ground recomputes the sky, within
+     * one millisecond on the CPU. */
     float turbidity;
-    float ground[3]; /* albedo below the horizon of the analytic sky, 0..1 */
+    float ground[3]; /* albedo below the horizon of the analytic sky, 0..1; else unused */
     /* Fog, for scenes that have it; for others fog_density must be 0. Density at height y:
      * fog_density * exp(-fog_falloff * (y - fog_height)). */
     float fog_color[3]; /* radiance of thick fog, 0..1e9; all 0: that of the sky at the horizon */
@@ -1037,7 +1046,7 @@ typedef struct masu_particle {
     /* Metres before a surface or the near plane over which it fades out, which hides the line of
      * intersection; 0: no fade. */
     float soft;
-    uint32_t flags; /* MASU_PARTICLE_* */
+    uint32_t flags; /* MASU_PARTICLE_*; other bits are ignored, as in decals and lines */
 } masu_particle;
 
 #define MASU_DECAL_ROUND 1u      /* an ellipse in x and y of the box; else a rectangle */
@@ -1076,6 +1085,7 @@ typedef struct masu_line {
 
 #define MASU_RUNG_AUTO UINT32_MAX
 
+/* Without a scene camera, light and cut are unused. */
 typedef struct masu_frame_desc {
     const masu_camera *camera; /* NULL: the scene's camera path at `time` */
     const masu_light *light;   /* NULL: the scene's */
@@ -1095,7 +1105,7 @@ typedef struct masu_frame_desc {
      * rungs[].temporal is on (AUTO is, with a governor), this frame must be a cut, because cascades
      * or history are missing. */
     uint32_t cut;
-    const float *sdf_params;  /* `sdf_param_count` values; NULL: the scene's defaults */
+    const float *sdf_params;  /* `sdf_param_count` values; NULL with a count of 0: the defaults */
     uint32_t sdf_param_count; /* at most the scene's count; further parameters keep their defaults.
                                  Values are clamped to their declared range; a non-finite value is
                                  MASU_ERROR_ARGUMENT */
@@ -1589,7 +1599,7 @@ typedef struct masu_material_state {
     /* 0..1: dielectric reflectance at normal incidence / 0.08; default 0.5. */
     float specular;
     float coat;              /* weight of the clear coat, 0..1 */
-    float coat_roughness;    /* perceptual, 0..1 */
+    float coat_roughness;    /* perceptual, 0..1; unused while `coat` is 0 */
     masu_material_mode mode; /* read only */
     float cutoff;            /* read only */
 } masu_material_state;
@@ -1770,8 +1780,8 @@ typedef struct masu_pick_info {
     uint64_t frame; /* of the query */
     uint32_t x, y;  /* pixel of the query */
     /* MASU_PICK_INSTANCE: the instance; id 0, rarely, for polygons below the precision of
-     * rasterisation. The movable model and the index of its node; id 0 and MASU_NODE_NONE for other
-     * instances. */
+     * rasterisation, and for a copy that was removed after the query. The movable model and the
+     * index of its node; id 0 and MASU_NODE_NONE for other instances. */
     masu_instance instance;
     masu_model model;
     uint32_t node;

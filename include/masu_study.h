@@ -73,7 +73,8 @@ typedef enum masu_march { MASU_MARCH_WORDS(MASU_WORD_ENUM) } masu_march;
            "Time of its pass grows in proportion.")
 /* clang-format on */
 
-/* For tests and studies. Flags: 0 or not 0. */
+/* For tests and studies. Flags: 0 or not 0. Members for a feature that the scene or the rung lacks
+ * have no effect. */
 typedef struct masu_debug {
     /* Flag. GPU time of each pass (masu_stats_info.pass_ns). A full barrier surrounds each pass. */
     uint32_t timestamps;
@@ -99,7 +100,8 @@ typedef struct masu_debug {
     /* Flag. Disables the mip bias of rungs, which is log2(scale), with temporal log2(scale) - 2. */
     uint32_t no_bias;
     /* Flag. Reflection reference: traces a ray at each pixel, weights it exactly, does not filter,
-     * and averages all frames of an unchanged scene. A cut restarts the average. */
+     * and averages all frames of an unchanged scene. A cut restarts the average. Turns off
+     * rung.temporal. */
     uint32_t reference;
     /* Flag. Full EASU and RCAS give the same bits on every driver for inputs of 8 or 10 bits:
      * inputs are rounded to the nearest step, no operation is contracted or reordered, divisions

@@ -241,12 +241,13 @@ static void log_box(const masu_renderer *m) {
             &m->plan.desc, MASU_LOG_WARNING,
             "debug.labels: VK_EXT_debug_utils is not enabled on the instance, there are no labels");
     }
-    uint32_t few = m->plan.desc.deny.storage_buffers;
+    uint32_t few = m->plan.desc.deny.storage_buffers, dropped = few & MASU_DROPPED_ANY;
     if (!few) return;
-    snprintf(text, sizeof text,
-             "%u storage buffers in a shader stage are too few: traced reflections or occlusion "
-             "culling are off",
-             few);
+    snprintf(text, sizeof text, "%u storage buffers in a shader stage are too few: rungs lack %s",
+             few & ~MASU_DROPPED_ANY,
+             dropped == MASU_DROPPED_ANY        ? "traced reflections and occlusion culling"
+             : dropped == MASU_DROPPED_SPECULAR ? "traced reflections"
+                                                : "occlusion culling");
     masu_log(&m->plan.desc, MASU_LOG_WARNING, text);
 }
 
@@ -360,7 +361,7 @@ masu_result masu_write_frame(masu_renderer *m, masu_frame_data *f) {
     masu_instances_write(&m->instances, f);
 
     masu_visible_write(&m->visible, &m->bounds, &m->instances, &m->views, f);
-    masu_picking_write(&m->picking, &m->visible, &m->bounds, f);
+    masu_picking_write(&m->picking, &m->visible, &m->bounds, &m->instances, f);
     masu_transparents_write(&m->transparents, &m->instances, &m->visible, f);
     masu_sprites_write(&m->sprites, &m->transparents, f);
     masu_occlusion_write(&m->occlusion, &m->visible, &m->instances, &m->views, f);
@@ -397,11 +398,18 @@ masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_comm
     if (frame->viewport < m->plan.desc.viewport_count)
         masu_plan_select_viewport(&m->plan, frame->viewport);
     masu_frame_data f = masu_frame_begin(&m->plan, &m->device, &m->draws, &m->timeline, frame);
+    masu_timeline timeline = m->timeline;
+    masu_governor governor = {0};
+    if (m->governor) governor = *m->governor;
     masu_result result = check_frame(m, frame);
     if (!result && m->governor) masu_governed_pick(m, &f);
     if (!result) result = record_missing(m, &f);
     if (!result) result = m->plan.desc.scene ? masu_write_frame(m, &f) : check_plain_frame(m, &f);
-    if (result) return masu_finish(m, result);
+    if (result) { /* the next attempt gets the times of this slot again */
+        m->timeline = timeline;
+        if (m->governor) *m->governor = governor;
+        return masu_finish(m, result);
+    }
     m->rung = f.desc.rung;
     const masu_rung_plan *rp = &m->plan.rungs[f.desc.rung];
     masu_slot_begin(m, f.slot);

@@ -83,6 +83,7 @@ static masu_result copy_model(masu_renderer *m, uint32_t like, const float rows[
         m->models.of_instance[instance++] = model;
     }
     masu_handle_turn(&m->models.handles, model);
+    if (m->plan.needs.picking) m->picking.added[place] = m->timeline.frame;
     *added = model;
     return MASU_OK;
 }

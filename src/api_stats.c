@@ -223,8 +223,12 @@ masu_result masu_pick(const masu_renderer *m, uint32_t slot, masu_pick_info *out
     for (uint32_t k = 0; k < 3; k++) out->position[k] = asked->eye[k] + (double)told[1 + k];
     uint32_t i = words[1];
     if (out->kind != MASU_PICK_INSTANCE || i >= m->plan.scene.instances) return MASU_OK;
-    out->instance = masu_instance_at(m, i);
     uint32_t model = m->plan.scene.models ? m->models.of_instance[i] : MASU_BLOB_NONE;
+    uint32_t own = masu_own_models(&m->plan);
+    /* The slot's copy of that frame is gone: the present one was added later. */
+    if (model != MASU_BLOB_NONE && model >= own && out->frame < m->picking.added[model - own])
+        return MASU_OK;
+    out->instance = masu_instance_at(m, i);
     if (model == MASU_BLOB_NONE) return MASU_OK;
     out->model = masu_model_at(m, model);
     out->node = node_of(&m->models, model, i);

@@ -53,8 +53,10 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_PREVIOUS, std140) uniform Prev
 bool masu_before = false;
 uint masu_first_slot();
 
+/* 0 for an index without a parameter, as in the C of blocks. */
 float masu_param(int i)
 {
+    if (uint(i) >= uint(MASU_SDF_PARAMS_MAX)) return 0.0;
     return masu_before ? previous.sdf_params[i >> 2][i & 3] : frame.sdf_params[i >> 2][i & 3];
 }
 
@@ -65,6 +67,7 @@ float masu_time()
 #else
 float masu_param(int i)
 {
+    if (uint(i) >= uint(MASU_SDF_PARAMS_MAX)) return 0.0;
     return frame.sdf_params[i >> 2][i & 3];
 }
 

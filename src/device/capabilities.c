@@ -44,15 +44,15 @@ static masu_result too_few(const char *what, masu_most most, uint32_t has, masu_
                      what, most.buffers, most.pass, has);
 }
 
-/* Turns a feature off in rungs that leave it to us: *dropped. */
+/* Turns a feature off in rungs that leave it to us: `bit` in *dropped. */
 static masu_result drop(masu_desc *desc, size_t member, const char *name, masu_most most,
-                        uint32_t has, int *dropped, masu_detail *detail) {
+                        uint32_t has, uint32_t bit, uint32_t *dropped, masu_detail *detail) {
     for (uint32_t r = 0; r < desc->rung_count && has < most.buffers; r++) {
         masu_switch *is = (masu_switch *)(void *)((unsigned char *)&desc->rungs[r] + member);
         char what[48];
         snprintf(what, sizeof what, "rungs[%u].%s", r, name);
         if (*is == MASU_ON) return too_few(what, most, has, detail);
-        *dropped |= *is != MASU_OFF;
+        if (*is != MASU_OFF) *dropped |= bit;
         *is = MASU_OFF;
     }
     return MASU_OK;
@@ -128,17 +128,19 @@ static int filters_unorm16(const masu_vk *vk) {
 /* Vulkan guarantees four storage buffers in a stage. Where there are fewer than a feature binds,
  * rungs that leave it to us go without it. */
 static masu_result fit_buffers(masu_desc *desc, const masu_frame_plan *plan, uint32_t has,
-                               int *dropped, masu_detail *detail) {
+                               uint32_t *dropped, masu_detail *detail) {
     masu_most plain = most_buffers(plan, MASU_BINDING_PLAIN);
     if (has < plain.buffers) return too_few("the scene", plain, has, detail);
     masu_result result = MASU_OK;
     if (plan->needs.reflections) {
         result = drop(desc, offsetof(masu_rung, specular), "specular",
-                      most_buffers(plan, MASU_BINDING_TRACING), has, dropped, detail);
+                      most_buffers(plan, MASU_BINDING_TRACING), has, MASU_DROPPED_SPECULAR, dropped,
+                      detail);
     }
     if (!result && plan->occlusion) {
         result = drop(desc, offsetof(masu_rung, occlusion), "occlusion",
-                      most_buffers(plan, MASU_BINDING_CULLING), has, dropped, detail);
+                      most_buffers(plan, MASU_BINDING_CULLING), has, MASU_DROPPED_OCCLUSION, dropped,
+                      detail);
     }
     return result;
 }
@@ -234,9 +236,9 @@ masu_result masu_capabilities_fit(masu_desc *desc, const masu_frame_plan *plan, 
     *computed_for = own_rungs(desc, plan, masu_device_class_of(&vk->properties));
     if (vk->queue_family.timestampValidBits == 0) desc->governor.wall_only = 1;
     uint32_t has = buffers_of(desc, limits);
-    int dropped = 0;
+    uint32_t dropped = 0;
     masu_result result = fit_buffers(desc, plan, has, &dropped, detail);
-    desc->deny.storage_buffers = dropped ? has : 0; /* the plan gives it as the reason */
+    desc->deny.storage_buffers = dropped ? has | dropped : 0; /* the plan gives it as the reason */
     uint32_t widest = widest_map(limits);
     if (!desc->deny.image_size || desc->deny.image_size > widest) desc->deny.image_size = widest;
     if (!result) result = choose_ray_query(desc, plan, vk, detail);

@@ -208,6 +208,7 @@ void masu_write_pass_sets(masu_device *m) {
 void masu_find_pass_sets(const masu_device *m, uint32_t rung, uint32_t target,
                          VkDescriptorSet sets[MASU_PASS_COUNT]) {
     for (set_cursor at = {0}; next_pass(m->plan, &at);) {
+        if (at.rung > rung) break;
         if (at.rung == rung)
             sets[at.pass - 1] = m->pass_sets[at.next + (at.count > 1 ? target : 0)];
     }

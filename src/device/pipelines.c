@@ -554,14 +554,14 @@ static masu_result create_samplers(masu_device *m, masu_detail *detail) {
 /* A pool's, where there is one: layouts are compatible only with the same samplers. */
 static masu_result create_sampler(masu_device *m, uint32_t number, const VkSamplerCreateInfo *info,
                                   VkSampler *out, masu_detail *detail) {
-    VkSampler *pooled = masu_pool_sampler(m, number);
-    if (pooled && *pooled) {
-        *out = *pooled;
+    VkSampler pooled = masu_pool_sampler(m, number);
+    if (pooled) {
+        *out = pooled;
         return MASU_OK;
     }
     VkResult r = m->vk.CreateSampler(m->vk.device, info, m->vk.allocator, out);
     if (MASU_FAILED(r, *out)) return masu_fail_vulkan(detail, r, "vkCreateSampler");
-    if (pooled) *pooled = *out;
+    masu_pool_add_sampler(m, number, *out);
     return MASU_OK;
 }
 

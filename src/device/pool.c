@@ -133,9 +133,14 @@ void masu_pool_release(masu_device *m) {
     m->sampler = m->linear = VK_NULL_HANDLE; /* the pool keeps them */
 }
 
-VkSampler *masu_pool_sampler(masu_device *m, uint32_t number) {
+VkSampler masu_pool_sampler(const masu_device *m, uint32_t number) {
+    const masu_pool *pool = pool_of(m);
+    return pool ? pool->samplers[number] : VK_NULL_HANDLE;
+}
+
+void masu_pool_add_sampler(masu_device *m, uint32_t number, VkSampler sampler) {
     masu_pool *pool = pool_of(m);
-    return pool ? &pool->samplers[number] : NULL;
+    if (pool) pool->samplers[number] = sampler;
 }
 
 /* ---- What the host calls --------------------------------------------------------------------- */

@@ -12,8 +12,10 @@
 
 #include "device/device.h"
 #include "device/shaders.h"
+#include "scene/scene_data.h"
 
-typedef struct masu_pool_row {
+/* The host's memory has another type (masu_pipelines). */
+typedef struct MASU_MAY_ALIAS masu_pool_row {
     uint64_t key; /* hash of everything that the pipeline was created from */
     VkPipeline pipeline;
     uint32_t users; /* references from existing renderers */
@@ -21,7 +23,7 @@ typedef struct masu_pool_row {
 } masu_pool_row;
 
 /* The content of a masu_pipelines. */
-typedef struct masu_pool {
+typedef struct MASU_MAY_ALIAS masu_pool {
     masu_pipelines_info info; /* `used` is counted when it is asked for */
     uint32_t clock;
     VkSampler samplers[2];
@@ -44,7 +46,9 @@ int masu_pool_acquire(masu_device *m, uint64_t key, VkPipeline *out);
 void masu_pool_add(masu_device *m, const VkPipeline *at, uint64_t key);
 /* The renderer uses none of the pool's pipelines and samplers any more. */
 void masu_pool_release(masu_device *m);
-/* The place of a sampler, 0 or 1, which may not exist yet; NULL without a pool. */
-VkSampler *masu_pool_sampler(masu_device *m, uint32_t number);
+/* Sampler 0 or 1 of the pool: VK_NULL_HANDLE: it has none yet, or there is no pool. */
+VkSampler masu_pool_sampler(const masu_device *m, uint32_t number);
+/* Gives the pool a sampler, if there is one. */
+void masu_pool_add_sampler(masu_device *m, uint32_t number, VkSampler sampler);
 
 #endif

@@ -132,6 +132,11 @@ masu_interface masu_code_interface(const masu_code *code) {
 /* Bindings of set 0 that any form of a pass declares. */
 static uint64_t declared_bindings(const masu_frame_plan *plan, uint32_t pass) {
     uint64_t bindings = 0;
+    if (masu_passes[pass].code) { /* of the scene, in one form: it is read, so read it once */
+        masu_code vertex = permutation(plan, pass, of_pass[pass].vertex, 0, 0);
+        masu_code own = scene_code(plan, pass);
+        return masu_code_interface(&vertex).bindings | masu_code_interface(&own).bindings;
+    }
     for (int form = 0; form < 2; form++) { /* last or not, textured or not */
         masu_draw_code draw = masu_draw_code_of(plan, pass, form);
         masu_code compute = masu_compute_code(plan, pass, form);

@@ -11,7 +11,8 @@ enum {
     OP_DECORATE = 71,
     SPEC_ID = 1,
     BINDING = 33,
-    DESCRIPTOR_SET = 34
+    DESCRIPTOR_SET = 34,
+    SET_0_MAX = 128
 };
 
 /* The next OpDecorate with a number behind it, from *at on; NULL: there is none. All stand
@@ -28,20 +29,31 @@ static const uint32_t *next_decoration(const uint32_t *words, uint64_t count, ui
     return NULL;
 }
 
-static int is_in_set_0(const uint32_t *words, uint64_t count, uint32_t id) {
-    const uint32_t *op;
-    for (uint64_t at = HEADER; (op = next_decoration(words, count, &at));) {
-        if (op[1] == id && op[2] == DESCRIPTOR_SET) return op[3] == 0;
+/* The variables of set 0. A module that Masu can bind has at most one per binding, and few aliases. */
+typedef struct variables {
+    uint32_t count; /* beyond SET_0_MAX: too many to tell */
+    uint32_t ids[SET_0_MAX];
+} variables;
+
+static int is_in_set_0(const variables *v, uint32_t id) {
+    for (uint32_t i = 0; i < v->count && i < SET_0_MAX; i++) {
+        if (v->ids[i] == id) return 1;
     }
-    return 0;
+    return v->count > SET_0_MAX;
 }
 
 masu_interface masu_interface_of(const uint32_t *words, uint64_t count) {
     masu_interface is = {0, 0};
+    variables v = {.count = 0};
     const uint32_t *op;
     for (uint64_t at = HEADER; (op = next_decoration(words, count, &at));) {
         if (op[2] == SPEC_ID && op[3] < 32) is.constants |= 1u << op[3];
-        if (op[2] == BINDING && op[3] < 64 && is_in_set_0(words, count, op[1]))
+        if (op[2] != DESCRIPTOR_SET || op[3] != 0 || v.count > SET_0_MAX) continue;
+        if (v.count < SET_0_MAX) v.ids[v.count] = op[1];
+        v.count++;
+    }
+    for (uint64_t at = HEADER; (op = next_decoration(words, count, &at));) {
+        if (op[2] == BINDING && op[3] < 64 && is_in_set_0(&v, op[1]))
             is.bindings |= (uint64_t)1 << op[3];
     }
     return is;

@@ -13,6 +13,8 @@ void masu_picking_alloc(masu_picking *p, masu_arena *arena, const masu_frame_pla
     p->group_states =
         masu_arena_alloc(arena, "group states of the picked pixel",
                          plan->needs.picking ? plan->scene.groups : 0, sizeof *p->group_states, 1);
+    p->added = masu_arena_alloc(arena, "first frames of copies",
+                                plan->needs.picking ? plan->reserve.models : 0, sizeof *p->added, 8);
 }
 
 static unsigned char *draws_of(const masu_device *device, uint32_t slot) {
@@ -67,8 +69,15 @@ static void set_pixel_view(masu_cull_view *view, const masu_frame_data *f) {
     masu_cull_camera(view, clip, f->eye, f->u.forward[3]);
 }
 
+static void list_one(const masu_visible *visible, const masu_frame_data *f, const masu_batch *mesh,
+                     uint32_t i, uint32_t *ids, uint32_t *kept) {
+    if ((visible->marks[i] & (MARK | 1u)) != (MARK | 1u)) return;
+    uint32_t level = f->plan->lods ? visible->levels[i] : 0;
+    ids[mesh[level].first_listed + kept[level]++] = i;
+}
+
 /* Those near the pixel, into the lists and counts of their forms; without: no counts. */
-static void list(const masu_visible *visible, const masu_frame_data *f) {
+static void list(const masu_visible *visible, const masu_instances *in, const masu_frame_data *f) {
     VkDrawIndexedIndirectCommand *draws =
         (VkDrawIndexedIndirectCommand *)(void *)draws_of(f->device, f->slot);
     uint32_t *ids = (uint32_t *)(void *)masu_frame_slot(f, MASU_BUFFER_DRAWN) + f->plan->drawn.picks;
@@ -77,11 +86,11 @@ static void list(const masu_visible *visible, const masu_frame_data *f) {
         uint32_t kept[1 + MASU_BLOB_LODS_MAX] = {0};
         uint32_t end = mesh->first_instance + mesh->instance_count;
         forms = 1 + mesh->lod_count;
-        for (uint32_t i = mesh->first_instance; f->desc.pick && i < end; i++) {
-            if ((visible->marks[i] & (MARK | 1u)) != (MARK | 1u)) continue;
-            uint32_t level = f->plan->lods ? visible->levels[i] : 0;
-            ids[mesh[level].first_listed + kept[level]++] = i;
-        }
+        for (uint32_t i = mesh->first_instance; f->desc.pick && i < end; i++)
+            list_one(visible, f, mesh, i, ids, kept);
+        for (uint32_t i = masu_instances_added(in, mesh->mesh); f->desc.pick && i != MASU_BLOB_NONE;
+             i = masu_instances_next(in, i))
+            list_one(visible, f, mesh, i, ids, kept);
         for (uint32_t level = 0; level < forms; level++) {
             const masu_batch *batch = &mesh[level];
             for (uint32_t d = 0; d < batch->draw_count; d++)
@@ -91,7 +100,7 @@ static void list(const masu_visible *visible, const masu_frame_data *f) {
 }
 
 void masu_picking_write(masu_picking *p, masu_visible *visible, const masu_bounds *bounds,
-                        const masu_frame_data *f) {
+                        const masu_instances *in, const masu_frame_data *f) {
     if (!f->plan->needs.picking) return;
     masu_picking_slot *slot = &p->slots[f->slot];
     *slot = (masu_picking_slot){f->desc.pick != 0, f->desc.pick_x, f->desc.pick_y, {0, 0, 0}};
@@ -104,5 +113,5 @@ void masu_picking_write(masu_picking *p, masu_visible *visible, const masu_bound
         set_pixel_view(&view, f);
         masu_cull(&set, &view, p->group_states, visible->marks, MARK, &counts);
     }
-    list(visible, f);
+    list(visible, in, f);
 }

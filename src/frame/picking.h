@@ -18,6 +18,7 @@ typedef struct masu_picking_slot {
 } masu_picking_slot;
 
 typedef struct masu_picking {
+    uint64_t *added; /* [reserve.models]: the first frame of the copy in the slot */
     uint8_t *group_states; /* [group], of masu_cull */
     masu_picking_slot slots[MASU_MAX_FLIGHT];
 } masu_picking;
@@ -31,6 +32,6 @@ void masu_picking_write_scene(const masu_device *device, const masu_draws *draws
 masu_result masu_picking_read(masu_frame_data *f, masu_detail *detail);
 /* After masu_visible_write. */
 void masu_picking_write(masu_picking *p, masu_visible *visible, const masu_bounds *bounds,
-                        const masu_frame_data *f);
+                        const masu_instances *in, const masu_frame_data *f);
 
 #endif

@@ -49,10 +49,14 @@ static void set_origin(const masu_sdf *sdf, masu_frame_data *f) {
 
 masu_result masu_sdf_read(const masu_sdf *sdf, masu_frame_data *f, masu_detail *detail) {
     uint32_t params = f->plan->scene.sdf_params;
-    uint32_t given = f->desc.sdf_params ? f->desc.sdf_param_count : 0;
+    uint32_t given = f->desc.sdf_param_count;
     if (given > params) {
         return masu_fail(detail, MASU_ERROR_ARGUMENT, "sdf_param_count", params, given,
                          "sdf_param_count is %u, the scene has %u", given, params);
+    }
+    if (given && !f->desc.sdf_params) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "sdf_params", given, 0,
+                         "sdf_params is NULL, needed is an array: sdf_param_count is %u", given);
     }
     for (uint32_t i = 0; i < params; i++) {
         const masu_blob_sdf_param *p = &sdf->params[i];

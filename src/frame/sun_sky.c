@@ -64,6 +64,9 @@ static masu_result check_unused(const masu_frame_plan *plan, const masu_blob_env
         return masu_fail_element(detail, colors[i / 3].what, k, (double)given,
                                  "0 and the scene's own, whose environment map replaces it");
     }
+    if (plan->needs.environment && light->turbidity != 0.0f && light->turbidity != scene->turbidity)
+        return bad(detail, "light.turbidity", light->turbidity,
+                   "0 with a scene whose environment map replaces the sky");
     if (light->fog_density > 0.0f && !plan->scene.fog)
         return bad(detail, "light.fog_density", light->fog_density, "0 with a scene that has no fog");
     return MASU_OK;

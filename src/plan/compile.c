@@ -265,7 +265,8 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
     plan->computed_for = "";
     plan->desc = masu_desc_resolved(desc);
     masu_desc *d = &plan->desc;
-    masu_result result = masu_desc_check(d, detail);
+    masu_result result = desc ? masu_desc_check_given(desc, detail) : MASU_OK;
+    if (!result) result = masu_desc_check(d, detail);
     if (result) return result;
     if (d->scene) {
         plan->scene = *masu_scene_data_of(d->scene);
@@ -315,7 +316,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                .velocity = (d->readback & MASU_READBACK_VELOCITY) != 0 || (d->split & MASU_SPLIT_VELOCITY) != 0 ||
                                            any.specular ||
                                            wants(d, masu_rung_resolves),
-                               .few_buffers = d->deny.storage_buffers != 0,
+                               .dropped = d->deny.storage_buffers & MASU_DROPPED_ANY,
                                .particles = d->scene && d->reserve.particles,
                                .decals = d->scene && d->reserve.decals,
                                .lines = d->scene && d->reserve.lines,

@@ -211,6 +211,28 @@ static masu_result check_split(const masu_desc *d, masu_detail *detail) {
     return MASU_OK;
 }
 
+static masu_result without_effect(const char *what, uint32_t count, const char *counted,
+                                  masu_detail *detail) {
+    return masu_fail(detail, MASU_ERROR_ARGUMENT, what, 1, count,
+                     "%s is %u, but %s[0] is not zero: count it, or leave it zero", what, count, counted);
+}
+
+masu_result masu_desc_check_given(const masu_desc *given, masu_detail *detail) {
+    static const masu_rung no_rung;
+    static const masu_viewport no_viewport;
+    const masu_source *s = &given->source;
+    if (!given->rung_count && memcmp(&given->rungs[0], &no_rung, sizeof no_rung) != 0)
+        return without_effect("rung_count", 0, "rungs", detail);
+    if (!given->viewport_count && memcmp(&given->viewports[0], &no_viewport, sizeof no_viewport) != 0)
+        return without_effect("viewport_count", 0, "viewports", detail);
+    if (given->scene && !s->view && (s->width || s->height || s->format)) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "source", 0, s->width,
+                         "scene and source exclude each other: source is %ux%u, format %d", s->width,
+                         s->height, (int)s->format);
+    }
+    return MASU_OK;
+}
+
 masu_result masu_desc_check(const masu_desc *d, masu_detail *detail) {
     const masu_targets *t = &d->targets;
     if (d->rung_count > MASU_MAX_RUNGS) {

@@ -14,6 +14,9 @@ int masu_rung_resolves(const masu_desc *d, uint32_t r);
 /* Whether a surface of the scene is glossy enough for a rung to trace its reflections. */
 int masu_could_trace(const masu_scene *scene, const masu_rung *rung);
 
+/* Of a description as the host gives it, not resolved. MASU_ERROR_ARGUMENT: a member would silently
+ * have no effect, because another one is 0. */
+masu_result masu_desc_check_given(const masu_desc *given, masu_detail *detail);
 /* MASU_ERROR_ARGUMENT: a field is missing or out of its range, and the detail names it. */
 masu_result masu_desc_check(const masu_desc *d, masu_detail *detail);
 

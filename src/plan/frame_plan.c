@@ -46,7 +46,8 @@ int masu_march_has_blocks(const masu_needs *n) { return n->sdf; }
 static const char *no_occlusion(const masu_needs *n) {
     return !n->occluders  ? "the scene has no occluders"
            : n->unculled  ? "a mesh has too many primitives or instances"
-           : n->few_buffers ? "rung.occlusion is off, or the device has too few storage buffers"
+           : n->dropped & MASU_DROPPED_OCCLUSION
+                 ? "rung.occlusion is off, or the device has too few storage buffers"
                             : "rung.occlusion is off";
 }
 
@@ -75,7 +76,8 @@ static const char *no_shadow_map(const masu_needs *n) {
 
 static const char *no_specular(const masu_needs *n) {
     return !n->scene       ? NO_SCENE
-           : n->few_buffers ? "rung.specular is off, or the device has too few storage buffers"
+           : n->dropped & MASU_DROPPED_SPECULAR
+                 ? "rung.specular is off, or the device has too few storage buffers"
                             : "nothing is glossy enough to trace, or rung.specular is off";
 }
 

@@ -134,6 +134,12 @@ typedef struct masu_switches {
 
 /* What the scene and the description need, computed once; the `decide` of each row looks at nothing
  * else. */
+/* Features that the device has too few storage buffers for. Until the plan is compiled again they are
+ * added to desc.deny.storage_buffers, which is then less than 64. */
+#define MASU_DROPPED_SPECULAR (1u << 30)
+#define MASU_DROPPED_OCCLUSION (1u << 31)
+#define MASU_DROPPED_ANY (MASU_DROPPED_SPECULAR | MASU_DROPPED_OCCLUSION)
+
 typedef struct masu_needs {
     int scene;         /* a scene is drawn (else: upscaling of a source image) */
     int raster;        /* it has instances */
@@ -165,7 +171,7 @@ typedef struct masu_needs {
     int smoothing;     /* smaa */
     int picking;       /* the host may ask what is under a pixel */
     int metered;       /* the exposure follows the picture */
-    int few_buffers;   /* storage buffers of the device: rungs do without something that was AUTO */
+    uint32_t dropped;  /* MASU_DROPPED_*: what rungs with AUTO lack, for want of storage buffers */
     int sprites;       /* frames may bring some of these: */
     int particles, decals, lines;
     masu_switches any; /* a rung has the switch on, and the scene is one where that is of use */

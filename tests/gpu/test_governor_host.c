@@ -66,6 +66,26 @@ static void settings_count_from_the_next_frame_on(void **state) {
     close_session(&s);
 }
 
+/* Neither the governor nor the times of a slot: the next attempt uses them. */
+static void a_frame_that_fails_uses_no_time(void **state) {
+    (void)state;
+    masu_session s;
+    masu_stats_info stats;
+    open_governed(&s, W, H);
+    steps(&s, 4, 12.0, &stats);
+    masu_governor governor = *s.m->governor;
+    masu_timeline timeline = s.m->timeline;
+    masu_commands c;
+    masu_frame_desc bad = {.rung = MASU_RUNG_AUTO, .time = (double)NAN};
+    assert_int_equal(masu_frame(s.m, &bad, &c), MASU_ERROR_ARGUMENT);
+    assert_memory_equal(s.m->governor, &governor, sizeof governor);
+    assert_memory_equal(&s.m->timeline, &timeline, sizeof timeline);
+    uint64_t samples = stats.governor.samples;
+    steps(&s, 1, 12.0, &stats);
+    assert_int_equal(stats.governor.samples, samples + 1);
+    close_session(&s);
+}
+
 /* What was not handed out was not shown. */
 static void a_frame_to_come_has_not_been_presented(void **state) {
     (void)state;
@@ -158,6 +178,7 @@ static void without_a_governor_it_is_said(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(settings_count_from_the_next_frame_on),
+        cmocka_unit_test(a_frame_that_fails_uses_no_time),
         cmocka_unit_test(a_frame_to_come_has_not_been_presented),
         cmocka_unit_test(unusual_frames_are_left_out),
         cmocka_unit_test(the_hosts_own_work_is_said),

@@ -218,18 +218,21 @@ static void set_rungs(masu_session_desc *d) {
     d->desc.rungs[1] = (masu_rung){.scale = 0.5f, .specular = specular};
 }
 
-static void open_picking(masu_session *s, const char *name) {
+static void open_reserve(masu_session *s, const char *name, uint32_t models) {
     masu_session_desc d = test_desc(name, W, H);
     masu_detail detail;
     size_t bytes;
     blob = read_file(scene_path(name), &bytes);
     if (masu_scene_bind(blob, bytes, &scene, &detail)) fail_msg("%s", detail.text);
     d.desc.picking = 1;
+    d.desc.reserve.models = models;
     d.desc.readback = MASU_READBACK_DEPTH;
     set_rungs(&d);
     d.desc.debug.poison = 1;
     open_session(s, &d);
 }
+
+static void open_picking(masu_session *s, const char *name) { open_reserve(s, name, 0); }
 
 static uint32_t index_of(masu_session *s, const char *name) {
     masu_instance_state state;
@@ -295,6 +298,41 @@ static void a_model_and_its_node_are_named(void **state) {
     assert_int_equal(info.instance.id, masu_instance_find(s.m, "floor").id);
     assert_int_equal(info.model.id, 0);
     assert_int_equal(info.node, MASU_NODE_NONE);
+    close_picking(&s);
+}
+
+/* A copy that has come to the slot of another one since the query is not what was seen. */
+static void a_copy_that_came_later_is_not_named(void **state) {
+    (void)state;
+    const float far_off[12] = {1, 0, 0, 0, 0, 1, 0, 900, 0, 0, 1, 0};
+    float rows[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    masu_session s;
+    masu_commands commands;
+    masu_pick_info info;
+    masu_model copies[3];
+    masu_camera c;
+    open_reserve(&s, "test_reserve", 2);
+    masu_model block = masu_model_find(s.m, "block");
+    assert_int_equal(masu_camera_at(s.m, 0, &c), MASU_OK);
+    double length = sqrt((double)(c.forward[0] * c.forward[0] + c.forward[1] * c.forward[1] + c.forward[2] * c.forward[2]));
+    for (uint32_t k = 0; k < 3; k++)
+        rows[4 * k + 3] = (float)(c.position[k] + 3 * (double)c.forward[k] / length);
+    assert_int_equal(masu_model_add(s.m, block, rows, &copies[0]), MASU_OK);
+    assert_int_equal(masu_model_add(s.m, block, far_off, &copies[1]), MASU_OK);
+    masu_model now = pick_at(&s, (masu_frame_desc){.time = 0}, W / 2, H / 2, &commands).model;
+    assert_int_equal(now.id, copies[0].id);
+    assert_int_equal(masu_model_remove(s.m, copies[1]), MASU_OK); /* another slot changes nothing */
+    assert_int_equal(masu_model_add(s.m, block, far_off, &copies[1]), MASU_OK);
+    assert_int_equal(masu_pick(s.m, commands.slot, &info), MASU_OK);
+    assert_int_equal(info.model.id, copies[0].id);
+    assert_int_equal(masu_model_remove(s.m, copies[0]), MASU_OK);
+    assert_int_equal(masu_model_add(s.m, block, rows, &copies[2]), MASU_OK);
+    assert_int_equal(masu_pick(s.m, commands.slot, &info), MASU_OK);
+    assert_int_equal(info.kind, MASU_PICK_INSTANCE);
+    assert_int_equal(info.instance.id, 0);
+    assert_int_equal(info.model.id, 0);
+    now = pick_at(&s, (masu_frame_desc){.time = 0}, W / 2, H / 2, &commands).model;
+    assert_int_equal(now.id, copies[2].id);
     close_picking(&s);
 }
 
@@ -504,6 +542,7 @@ int main(void) {
         cmocka_unit_test(polygons_sdf_and_sky_are_told_apart),
         cmocka_unit_test(what_moves_hides_and_shines_through_is_found),
         cmocka_unit_test(a_model_and_its_node_are_named),
+        cmocka_unit_test(a_copy_that_came_later_is_not_named),
         cmocka_unit_test(a_smaller_rung_picks_its_own_pixels),
         cmocka_unit_test(lods_and_culling_change_nothing),
         cmocka_unit_test(holes_of_a_mask_are_not_picked),

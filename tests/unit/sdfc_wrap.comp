@@ -10,7 +10,7 @@ layout(set = 0, binding = 0, std430) buffer Slots { float slots[]; };
 layout(set = 0, binding = 1, std430) buffer Params { float time; uint count; float params[256]; };
 layout(set = 0, binding = 2, std430) readonly buffer Points { vec4 points[]; };
 layout(set = 0, binding = 3, std430) buffer Result { vec4 result[]; };
-float masu_param(int i) { return params[i]; }
+float masu_param(int i) { return uint(i) < 256u ? params[i] : 0.0; }
 float masu_time() { return time; }
 float masu_anchor(int axis) { return 0.0; }
 float masu_slot(uint i) { return slots[i]; }

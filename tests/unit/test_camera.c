@@ -422,6 +422,14 @@ static void a_light_that_an_environment_map_replaces_is_named(void **state) {
         assert_frame_refused(&f, names[i]);
         assert_non_null(strstr(detail.text, "[2] is 0.375"));
     }
+    masu_light hazy = good_light();
+    memset(hazy.ambient, 0, sizeof hazy.ambient);
+    memset(hazy.sky_zenith, 0, sizeof hazy.sky_zenith);
+    memset(hazy.sky_horizon, 0, sizeof hazy.sky_horizon);
+    hazy.turbidity = 3.0f;
+    m.plan.needs.sky = 1; /* desc.analytic_sky: half of the light would be the map's */
+    assert_frame_refused(&(masu_frame_desc){.light = &hazy}, "light.turbidity");
+    m.plan.needs.sky = 0;
     masu_light own;
     assert_int_equal(masu_light_of(&m, &own), MASU_OK);
     own.exposure = 2.0f;
@@ -612,9 +620,13 @@ static void sdf_parameters_are_defaulted_and_clamped(void **state) {
         assert_true(u.sdf_params[0][1] == cases[i].expected[1]);
         assert_true(u.sdf_params[0][2] == 0.0f);
     }
-    masu_frame_desc none = {.sdf_param_count = 7}; /* NULL: the defaults, whatever the count */
+    masu_frame_desc none = {.sdf_param_count = 0};
     write_good(&none, 0);
     assert_true(uniforms(0).sdf_params[0][0] == 0.5f);
+    for (uint32_t count = 1; count <= 3; count++) { /* one less than there are, all, one more */
+        none.sdf_param_count = count;
+        assert_frame_refused(&none, count <= 2 ? "sdf_params" : "sdf_param_count");
+    }
 }
 
 static void a_frame_is_written_to_its_slot_alone(void **state) {

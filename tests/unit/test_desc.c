@@ -940,6 +940,26 @@ static void every_result_has_its_text(void **state) {
     assert_string_equal(masu_result_string(MASU_RESULT_FORCE_32), unknown);
 }
 
+/* Arrays without their count, and a source beside a scene, would silently have no effect. */
+static void what_would_have_no_effect_is_refused(void **state) {
+    (void)state;
+    masu_desc d = scene_desc(RASTER, 640, 480);
+    d.rung_count = 0;
+    memset(d.rungs, 0, sizeof d.rungs);
+    masu_frame_plan plan;
+    compile(&d, &plan);
+    d.rungs[0].aa = MASU_AA_FXAA;
+    assert_refused(&d, MASU_ERROR_ARGUMENT, "rung_count");
+    d.rung_count = 1;
+    compile(&d, &plan);
+    d.viewports[0] = (masu_viewport){0, 0, 320, 480};
+    assert_refused(&d, MASU_ERROR_ARGUMENT, "viewport_count");
+    d.viewport_count = 1;
+    compile(&d, &plan);
+    d.source = (masu_source){VK_NULL_HANDLE, 64, 64, VK_FORMAT_UNDEFINED};
+    assert_refused(&d, MASU_ERROR_ARGUMENT, "source");
+}
+
 /* A number is checked even where nothing makes it matter: without a scene, or without a governor. */
 static void an_unused_number_is_checked_too(void **state) {
     (void)state;
@@ -989,6 +1009,7 @@ int main(void) {
         cmocka_unit_test(refusals_say_what_was_given_and_what_is_allowed),
         cmocka_unit_test(a_scene_beyond_a_limit_is_refused_with_both_numbers),
         cmocka_unit_test(more_transparents_than_can_be_recorded_are_refused),
+        cmocka_unit_test(what_would_have_no_effect_is_refused),
         cmocka_unit_test(what_no_device_is_needed_for_is_refused_without_one),
         cmocka_unit_test(a_missing_vulkan_handle_is_named),
         cmocka_unit_test(a_missing_callback_of_the_allocator_is_named),

@@ -725,6 +725,9 @@ static void mistakes_name_their_place(void **state) {
          "x.sdf:1:10: bend: y times the rate reaches 1: expected at most 0.99, inside the centre of the arc"},
         {"part a = rotate((0, 0, 0), 1, sphere(1));",
          "x.sdf:1:10: rotate: expected an axis that is not zero"},
+        {"param k = 0.5 [0, 1]; part a = glsl { return length(p) - masu_param(1); } bounds (-1, -1, -1), (1, 1, 1) "
+         "lipschitz 1;",
+         "x.sdf:1:32: masu_param(1): the scene has 1 parameter, counted from 0"},
         {"part a = glsl { return 1.0; ", "x.sdf:1:15: expected a \"}\" for this \"{\""},
         {"for i in 0..9 { part a = sphere(1);", "x.sdf:1:36: expected param, let, shape, material, "
                                                 "part or for, found the end of the text"},

@@ -124,32 +124,31 @@ static int run_cases(const options *o, const masu_suite *suite, masu_conform_res
     masu_headless_desc asked = o->host; /* each case asks for ray queries by itself */
     masu_use_rays(o->rays, &c.ray_query, &asked);
     if (!has_scenes(o, results, n, error, sizeof error)) return none_run(o, suite, results, n, error);
-    int code = write_reports(o, suite, results, n, "", false); /* a driver may crash when it is opened */
-    if (code) return code;
+    int written = write_reports(o, suite, results, n, "", false); /* a driver may crash when it is opened */
+    if (written) return written;
     if (!masu_conform_open(&c, error, sizeof error)) return none_run(o, suite, results, n, error);
     char *command = command_of(o);
     bool failed = false;
     bool quiet = masu_cli_quiet();
     if (!quiet) printf("%s, %08x\n%s\n", suite->file, suite->hash, c.driver);
-    for (uint32_t i = 0; i < n && command && !code; i++) {
+    for (uint32_t i = 0; i < n && command; i++) {
         const masu_case *of = results[i].of;
         masu_cli_progress("case %u of %u: %s", i + 1, n, of->name);
         masu_conform_not_run(of, "the program ended during this case", &results[i]);
         fflush(stdout);
-        code = write_reports(o, suite, results, n, c.driver, false);
-        if (code) break;
+        /* The disk is full, for example: the cases still run and are printed. */
+        if (!written) written = write_reports(o, suite, results, n, c.driver, false);
         masu_conform_run(&c, of, &results[i]);
         masu_cli_progress_clear();
         if (!quiet || results[i].verdict) masu_conform_print(stdout, suite, &results[i], command);
         failed = failed || masu_verdict_failed(results[i].verdict);
     }
     masu_conform_close(&c);
-    if (!command) code = masu_cli_error("out of memory");
+    if (!command) return masu_cli_error("out of memory");
     free(command);
-    if (code) return code;
     if (!quiet) masu_conform_sum(stdout, results, n);
-    code = write_reports(o, suite, results, n, c.driver, true);
-    return code || failed ? MASU_CLI_FAILURE : MASU_CLI_OK;
+    if (!written) written = write_reports(o, suite, results, n, c.driver, true);
+    return written || failed ? MASU_CLI_FAILURE : MASU_CLI_OK;
 }
 
 static int mark(const options *o, const masu_suite *suite, bool *marks, uint32_t *count) {

@@ -66,7 +66,7 @@ void sdfc_emit(sdfc *c) {
     for (int i = 0; i < c->part_count; i++) {
         if (c->shapes[c->parts[i].shape].facts.truth) continue;
         sdfc_warn(c, c->parts[i].token,
-                  "part %s has GLSL without C: it is not tested, and missing from the C reference",
+                  "part %s has GLSL without C: it is missing from the C reference",
                   c->parts[i].name);
     }
     sdfc_writer w = {c, &c->glsl, true};

@@ -91,7 +91,7 @@ void sdfc_put_c(sdfc_writer *w) {
     PUT(w, "\n};\nstatic _Thread_local double slot[%u];\n", c->slot_count);
     PUT(w, "static _Thread_local double now[PARAMS + 1]; /* parameters and time of the slots */\n"
            "static _Thread_local int ready;\n\n"
-           "static double masu_param(int i) { return now[i]; }\n"
+           "static double masu_param(int i) { return i >= 0 && i < PARAMS ? now[i] : 0.0; }\n"
            "static double masu_time(void) { return now[PARAMS]; }\n\n");
     sdfc_put_users(w);
     sdfc_put_bytes(c, w->out, sdfc_c_prelude, strlen(sdfc_c_prelude));

@@ -125,6 +125,7 @@ typedef struct sdfc_shape {
 typedef struct sdfc_user {
     uint32_t glsl_offset, glsl_length, c_offset, c_length;
     bool has_c;
+    int token; /* of the block, for messages */
 } sdfc_user;
 
 enum {
@@ -297,6 +298,8 @@ typedef struct sdfc {
 
 void sdfc_lex(sdfc *c);
 /* Reports at a token and gives up; "expected WHAT, found THE TOKEN" */
+/* Rejects masu_param(n) of a block if n is a literal without a parameter. */
+void sdfc_check_blocks(sdfc *c);
 SDFC_NORETURN void sdfc_fail(sdfc *c, int token, const char *format, ...) SDFC_PRINTF(3, 4);
 SDFC_NORETURN void sdfc_expected(sdfc *c, int token, const char *format, ...) SDFC_PRINTF(3, 4);
 void sdfc_warn(sdfc *c, int token, const char *format, ...) SDFC_PRINTF(3, 4);

@@ -28,12 +28,17 @@ static bool read_text(const char *path, char **text, size_t *bytes) {
     return false;
 }
 
-/* Before the work, whether each file could be written; after it, text by text. */
+/* Before the work. */
+static bool is_writable(const char *path) {
+    char error[4096];
+    if (!path || masu_file_writable(path, error, sizeof error)) return true;
+    masu_cli_error("%s", error);
+    return false;
+}
+
 static bool write_text(const char *path, const char *text) {
     char error[4096];
-    if (!path || (text ? masu_file_write(path, text, strlen(text), error, sizeof error)
-                       : masu_file_writable(path, error, sizeof error)))
-        return true;
+    if (!path || masu_file_write(path, text, strlen(text), error, sizeof error)) return true;
     masu_cli_error("%s", error);
     return false;
 }
@@ -57,8 +62,8 @@ static int compile(const char *input, const char *glsl, const char *c, const cha
     char *text = NULL, error[4096];
     size_t bytes = 0;
     masu_sdfc_result result;
-    bool good = read_text(input, &text, &bytes) && write_text(glsl, NULL) && write_text(c, NULL) &&
-                write_text(table, NULL);
+    bool good = read_text(input, &text, &bytes) && is_writable(glsl) && is_writable(c) &&
+                is_writable(table);
     if (good) {
         masu_cli_progress("checking %s", input);
         good = masu_sdfc_compile_with(text, bytes, input, options, &result, error, sizeof error);

@@ -521,6 +521,7 @@ static void parse_statements(sdfc *c, bool in_loop) {
 void sdfc_parse(sdfc *c) {
     parse_statements(c, false);
     if (c->part_count == 0) sdfc_expected(c, c->at, "a part");
+    sdfc_check_blocks(c);
     int grey = -1;
     for (int i = 0; i < c->part_count; i++) {
         if (c->parts[i].material >= 0) continue;

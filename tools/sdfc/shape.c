@@ -40,6 +40,39 @@ static long whole_most(int kind, int place) {
     }
 }
 
+/* Digits of a literal argument of masu_param at `at`, which is behind the name; -1: there is none. */
+static long literal_index(const char *text, uint32_t at, uint32_t end) {
+    long n = 0;
+    uint32_t digits = 0;
+    while (at < end && text[at] == ' ') at++;
+    if (at == end || text[at++] != '(') return -1;
+    while (at < end && text[at] == ' ') at++;
+    for (; at < end && text[at] >= '0' && text[at] <= '9' && digits < 9; at++, digits++)
+        n = 10 * n + (text[at] - '0');
+    while (at < end && text[at] == ' ') at++;
+    return digits && at < end && text[at] == ')' ? n : -1;
+}
+
+static void check_code(sdfc *c, const sdfc_user *user, uint32_t offset, uint32_t length) {
+    static const char name[] = "masu_param";
+    const uint32_t size = sizeof name - 1;
+    for (uint32_t i = 0; i + size <= length; i++) {
+        if (memcmp(c->text + offset + i, name, size) != 0) continue;
+        long index = literal_index(c->text, offset + i + size, offset + length);
+        if (index < c->param_count) continue;
+        sdfc_fail(c, user->token, "masu_param(%ld): the scene has %d parameter%s, counted from 0", index,
+                  c->param_count, c->param_count == 1 ? "" : "s");
+    }
+}
+
+void sdfc_check_blocks(sdfc *c) {
+    for (int i = 0; i < c->user_count; i++) {
+        const sdfc_user user = c->users[i];
+        check_code(c, &user, user.glsl_offset, user.glsl_length);
+        if (user.has_c) check_code(c, &user, user.c_offset, user.c_length);
+    }
+}
+
 /* glsl { ... } bounds (low), (high) lipschitz L c { ... } */
 static int parse_user(sdfc *c, int token) {
     sdfc_shape s = {.kind = SDFC_KIND_USER, .token = token};
@@ -48,7 +81,8 @@ static int parse_user(sdfc *c, int token) {
     s.user = c->user_count++;
     const sdfc_token *block = &c->tokens[c->at];
     if (block->kind != TOKEN_RAW) sdfc_expected(c, c->at, "a block of GLSL in braces");
-    sdfc_user user = {.glsl_offset = block->offset, .glsl_length = block->length};
+    sdfc_user user = {.glsl_offset = block->offset, .glsl_length = block->length,
+                      .token = token};
     sdfc_next(c);
     if (!sdfc_word(c, "bounds")) sdfc_expected(c, c->at, "\"bounds\"");
     sdfc_parse_vector(c, s.number);

@@ -29,7 +29,8 @@ static bool wait_for_slot(masu_viewer *v, uint32_t slot) {
     bool seen = vkGetFenceStatus(v->host.device, v->fences[slot]) == VK_NOT_READY;
     VkResult r = masu_headless_wait_fence(&v->host, v->fences[slot]);
     uint64_t now = masu_clock_ns(NULL);
-    if (r) return vulkan_failed(v, "vkWaitForFences", r == VK_TIMEOUT ? VK_ERROR_DEVICE_LOST : r);
+    if (r == VK_TIMEOUT) masu_viewer_give_up(v);
+    if (r) return vulkan_failed(v, "vkWaitForFences", r);
     r = vkResetFences(v->host.device, 1, &v->fences[slot]);
     if (r) return vulkan_failed(v, "vkResetFences", r);
     v->pending[slot] = false;

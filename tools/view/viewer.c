@@ -1,6 +1,7 @@
 /* viewer.c: see viewer.h: what is made, in which order, and in which order it ends. */
 #include "view/viewer.h"
 
+#include "cli/cli.h"
 #include "settings/setting.h"
 #include "clock.h"
 #include "file_kind.h"
@@ -23,8 +24,17 @@ void masu_viewer_note(masu_viewer *v, const char *format, ...) {
     v->stale_overlay = true;
 }
 
+/* Objects that the GPU still uses cannot be destroyed, and waiting for it has no end. */
+void masu_viewer_give_up(const masu_viewer *v) {
+    (void)masu_cli_error("the GPU did not finish within %u s", (unsigned)(v->host.wait_ns / 1000000000u));
+    fflush(NULL);
+    _Exit(MASU_CLI_FAILURE);
+}
+
 void masu_viewer_settle(masu_viewer *v) {
     if (!v->host.device) return;
+    for (uint32_t i = 0; i < MASU_WINDOW_FLIGHT; i++)
+        if (v->pending[i] && masu_headless_wait_fence(&v->host, v->fences[i]) == VK_TIMEOUT) masu_viewer_give_up(v);
     if (vkDeviceWaitIdle(v->host.device) == VK_ERROR_DEVICE_LOST) v->lost = true;
     for (uint32_t i = 0; i < MASU_WINDOW_FLIGHT; i++) v->slot_known[i] = false;
 }

@@ -154,6 +154,8 @@ void masu_viewer_close(masu_viewer *v);
 
 /* Waits until nothing is drawn. */
 void masu_viewer_settle(masu_viewer *v);
+/* Ends the program: a frame exceeded the time limit of a wait. */
+_Noreturn void masu_viewer_give_up(const masu_viewer *v);
 
 /* Makes A anew from v->want, and B where it is shown. True with v->trouble set: refused, and v->want is
  * as it was. */

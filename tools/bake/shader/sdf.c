@@ -487,7 +487,10 @@ static bool try_blocks(masu_bake_content *content, masu_sdfc_result *scene, cons
     bool measures = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, const masu_blob_sdf)->lipschitz == 0;
     double steepest = 0;
     if (source) source_as_part(content, scene);
-    if (!source && measures) MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf)->lipschitz = 1;
+    if (!source && measures) {
+        MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf)->lipschitz = 1;
+        if (!masu_cli_quiet()) printf("%s: lipschitz 1: each part is divided by its own constant\n", path);
+    }
     if (!masu_bake_try_needed(scene)) return true;
     paths p = {masu_bake_join(directory, "try.comp"),
                masu_bake_join(directory, "try.raw"),

@@ -35,6 +35,7 @@ struct masu_bake_machine {
     double *decisions; /* by id */
     char *error;
     size_t error_size;
+    uint64_t steps; /* instructions of all runs */
 };
 
 enum {
@@ -625,6 +626,8 @@ static uint32_t chosen(const masu_bake_machine *m, const uint32_t *w, uint32_t c
     return w[2];
 }
 
+uint64_t masu_bake_machine_steps(const masu_bake_machine *m) { return m->steps; }
+
 bool masu_bake_machine_run(masu_bake_machine *m, char *error, size_t error_size) {
     struct {
         size_t back;
@@ -634,7 +637,7 @@ bool masu_bake_machine_run(masu_bake_machine *m, char *error, size_t error_size)
     size_t i = enter(m, m->main, NULL);
     m->error = error;
     m->error_size = error_size;
-    for (uint32_t budget = BUDGET; budget > 0; budget--) {
+    for (uint32_t budget = BUDGET; budget > 0; budget--, m->steps++) {
         const uint32_t *w = m->words + i;
         uint32_t op = w[0] & 0xFFFF, count = w[0] >> 16;
         i += count;

@@ -33,6 +33,9 @@ masu_bake_cell *masu_bake_machine_buffer(masu_bake_machine *machine, uint32_t bi
  * there, above or below 0 by the side; NAN: nothing was decided there. *count: how many ids. */
 const double *masu_bake_machine_decisions(const masu_bake_machine *machine, size_t *count);
 
+/* Instructions that all runs so far have executed. */
+uint64_t masu_bake_machine_steps(const masu_bake_machine *machine);
+
 /* False, with one line in `error`: out of budget, an index outside of its array, an instruction that
  * is not known. */
 bool masu_bake_machine_run(masu_bake_machine *machine, char *error, size_t error_size);
