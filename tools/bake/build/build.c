@@ -8,6 +8,7 @@
 #include "bake/build/look.h"
 #include "bake/build/parts.h"
 #include "bake/light/environment.h"
+#include "bake/light/picture_sun.h"
 #include "bake/scene/camera.h"
 #include "bake/scene/groups.h"
 #include "bake/scene/skin.h"
@@ -49,14 +50,11 @@ static void add_sdf(const masu_bake_sdf *sdf, masu_bake_content *content) {
     masu_bake_append(&content->section[MASU_BLOB_SDF], &out, sizeof out);
 }
 
-static bool add_environment_map(const masu_bake_environment *e, masu_bake_content *content) {
-    masu_bake_panorama panorama;
+static bool load_panorama(const masu_bake_environment *e, masu_bake_panorama *out) {
     if (!e->file) return true;
-    if (!masu_bake_load_panorama(e->file, &panorama)) return false;
-    panorama.turn = e->rotate * (MASU_BAKE_PI / 180);
-    panorama.factor = e->scale;
-    masu_bake_add_environment(&panorama, e->size, content);
-    free(panorama.rgb);
+    if (!masu_bake_load_panorama(e->file, out)) return false;
+    out->turn = e->rotate * (MASU_BAKE_PI / 180);
+    out->factor = e->scale;
     return true;
 }
 
@@ -88,7 +86,8 @@ static bool take_camera(const masu_bake_description *d, const masu_bake_content 
 }
 
 /* The first directional light of the models, where the scene has no sun of its own. */
-static void take_sun(const masu_bake_description *d, const masu_bake_content *content, masu_bake_look *look) {
+static bool take_sun(const masu_bake_description *d, const masu_bake_content *content, masu_bake_look *look) {
+    bool taken = false;
     for (uint32_t i = 0; i < masu_bake_sun_count(content); i++) {
         const masu_bake_sun *sun = &MASU_BAKE_SUNS(content)[i];
         if (i > 0 || d->look.own_sun) {
@@ -99,8 +98,30 @@ static void take_sun(const masu_bake_description *d, const masu_bake_content *co
         look->sun_direction = masu_bake_v3f(sun->direction);
         look->sun_color = masu_bake_v3f(sun->color);
         look->sun_intensity = 1;
-        look->own_sun_color = true;
+        look->own_sun_color = taken = true;
     }
+    return taken;
+}
+
+/* The sun of the environment map becomes that of the scene. One that the description has replaces it; where that is
+ * black, or the sun is a light of a model, the map keeps its sun and is the only source of its light. */
+static void take_panorama_sun(const masu_bake_environment *e, masu_bake_panorama *p, bool sun_of_model,
+                              masu_bake_look *look) {
+    const masu_bake_vec3 *own = &look->sun_color;
+    bool black = !(look->sun_intensity > 0) || (own->x == 0 && own->y == 0 && own->z == 0);
+    masu_bake_picture_sun sun;
+    if (!p->rgb || sun_of_model || (look->own_sun && black)) return;
+    bool found = masu_bake_cut_sun(p, &sun);
+    if (found && !masu_cli_quiet()) {
+        printf("%s: its sun, %.3g %.3g %.3g towards %.3f %.3f %.3f, is %s\n", e->file, sun.color[0], sun.color[1],
+               sun.color[2], sun.direction[0], sun.direction[1], sun.direction[2],
+               look->own_sun ? "replaced by the scene's" : "the scene's");
+    }
+    if (look->own_sun) return;
+    look->sun_intensity = found ? 1 : 0;
+    if (!found) return;
+    look->sun_direction = masu_bake_v3(sun.direction[0], sun.direction[1], sun.direction[2]);
+    look->sun_color = masu_bake_v3(sun.color[0], sun.color[1], sun.color[2]);
 }
 
 /* What is shown, and what it is shown in. */
@@ -129,9 +150,13 @@ static bool build_scene(const masu_bake_description *d, const masu_bake_options 
         first.look.keys = &key;
         first.look.key_count = 1;
     }
-    take_sun(d, content, &first.look);
+    masu_bake_panorama panorama = {0};
+    if (!load_panorama(&d->environment, &panorama)) return false;
+    bool sun_of_model = take_sun(d, content, &first.look);
+    take_panorama_sun(&d->environment, &panorama, sun_of_model, &first.look);
     masu_bake_build_look(&first.look, &bounds, content);
-    if (!add_environment_map(&d->environment, content)) return false;
+    if (panorama.rgb) masu_bake_add_environment(&panorama, d->environment.size, content);
+    free(panorama.rgb);
     return !d->sdf.source || masu_bake_compile_march(content, d->sdf.source, &d->sdf.occlusion,
                                                      d->reflections.wanted, options->variants);
 }
