@@ -143,17 +143,20 @@ vec3 masu_sky_rough(vec3 direction)
     return mix(low, high, part.y);
 }
 
-/* The sun as it is drawn. Of its true size it would be two pixels wide and bright enough to swamp the
- * tone curve, so a soft glow says where the light comes from; around an analytic sky's disc there is
- * its aureole already. */
+/* The sun as it is drawn. In front of a gradient a disc of its true size would be two pixels wide and bright enough to
+ * swamp the tone curve, so a soft glow shows where the light comes from. The analytic sky and an environment map, whose
+ * own sun the baker has removed, have the aureole: they get the disc, of less than its true radiance. */
 vec3 masu_sun_disc(vec3 direction)
 {
     float towards = clamp(dot(direction, frame.sun_direction.xyz), 0.0, 1.0);
-    if (masu_sky_is_analytic()) {
-        /* Of the horizon's near side nothing is seen. */
-        float above = smoothstep(-0.003, 0.003, direction.y);
+    bool analytic = masu_sky_is_analytic();
+    if (analytic || masu_has_environment) {
         float disc = smoothstep(0.99994, 0.99998, towards);
-        return masu_sky_tables.disc.rgb * (disc * above);
+        if (!analytic) {
+            return frame.sun_color.rgb * (MASU_SKY_DISC * disc);
+        }
+        /* The ground covers the part below the horizon. */
+        return masu_sky_tables.disc.rgb * (disc * smoothstep(-0.003, 0.003, direction.y));
     }
     return frame.sun_color.rgb * (0.25 * masu_pow(towards, 350.0) + 0.05 * masu_pow(towards, 12.0));
 }

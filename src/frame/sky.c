@@ -25,9 +25,6 @@
  * integral to the next as the sun sets. */
 #define AIR_PENUMBRA 0.010
 #define DISC_RADIUS 0.0047
-/* Radiance of the disc as drawn, of irradiance / pi. Its own would be 45000 times that, and near the
- * end of half floats. */
-#define DISC_DRAWN 40.0
 /* What is left without any sun: a display's night, not nature's. */
 #define NIGHT 1.5e-4
 
@@ -567,7 +564,7 @@ static void sun_disc(masu_sky *sky, const double haze[3], double sun_y) {
     sun_light(&eye, clamped(middle, -1.0, 1.0), haze, 1e-6, light);
     for (uint32_t c = 0; c < 3; c++) {
         sky->sun_color[c] = (float)(MASU_SKY_SUN * seen * light[c]);
-        sky->uniforms.disc[c] = (float)(DISC_DRAWN * MASU_SKY_SUN * light[c]);
+        sky->uniforms.disc[c] = (float)((double)MASU_SKY_DISC * MASU_SKY_SUN * light[c]);
     }
 }
 

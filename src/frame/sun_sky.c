@@ -121,8 +121,7 @@ void masu_sun_sky_alloc(masu_sun_sky *s, masu_arena *arena, const masu_frame_pla
 void masu_sun_sky_copy_scene(masu_sun_sky *s, const masu_scene_view *v) {
     s->environment = *v->environment;
     if (!v->environment_map) return;
-    for (uint32_t k = 0; k < 9; k++)
-        memcpy(s->environment_sh[k], v->environment_map->sh[k], sizeof s->environment_sh[k]);
+    memcpy(s->environment_sh, v->environment_map->sh, sizeof s->environment_sh);
 }
 
 /* The masu_light as it is, and the irradiance of a sky that is not analytic. */
@@ -136,9 +135,11 @@ static void write_light(const masu_sun_sky *s, masu_frame_data *f) {
     memcpy(u->sky_horizon, light->sky_horizon, sizeof light->sky_horizon);
     memcpy(u->irradiance[0], light->ambient, sizeof light->ambient);
     if (f->plan->needs.environment) {
-        for (uint32_t k = 0; k < 9; k++)
-            memcpy(u->irradiance[k], s->environment_sh[k], sizeof s->environment_sh[k]);
-        memcpy(u->ambient, s->environment_sh[0], sizeof s->environment_sh[0]);
+        memcpy(u->irradiance, s->environment_sh, sizeof u->irradiance);
+        /* The mean of all directions: band 0, which the lobe has too. */
+        for (uint32_t k = 0; k < 3; k++)
+            u->ambient[k] = s->environment_sh[0][k] +
+                            s->environment_sh[k][3] * (0.25f + MASU_SKY_ROUND * MASU_SKY_ROUND / 12.0f);
         u->sky_zenith[3] = (float)f->plan->scene.environment_size;
         u->sky_horizon[3] = (float)f->plan->scene.environment_mips;
     }

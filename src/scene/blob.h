@@ -24,8 +24,8 @@
 #include <stdint.h>
 
 #define MASU_BLOB_MAGIC 0x5553414Du /* the bytes 'M' 'A' 'S' 'U' */
-#define MASU_BLOB_VERSION 14u
-/* layout of version 14: 4261673116 (kinds of sections and their elements, tests/scripts/scene_forms.sh) */
+#define MASU_BLOB_VERSION 15u
+/* layout of version 15: 4261673116 (kinds of sections and their elements, tests/scripts/scene_forms.sh) */
 #define MASU_BLOB_ALIGN 16u
 #define MASU_BLOB_NONE 0xFFFFFFFFu /* "no name", "no parent" */
 #define MASU_BLOB_PART_SLOTS 8u    /* of an SDF's part, in front of all others: sphere, slope, form, first argument, material */
@@ -394,7 +394,9 @@ typedef struct masu_blob_environment_map {
     uint32_t size; /* a power of two, 8..1024 */
     uint32_t mips; /* 2..8, the smallest no less than 4 texels */
     uint32_t reserved[2];
-    float sh[9][4]; /* rgb: irradiance / pi by the normal, order 2 */
+    float sh[9][4]; /* rgb: irradiance / pi by the normal, order 2. Fourth component: a lobe (shared/sky.h), in 0 to 2
+                       its colour, >= 0, in 3 to 5 its direction, of a length up to 1; in 6 to 8 the
+                       colour of Legendre's P4 of y */
 } masu_blob_environment_map;
 
 /* An array of images of one format and size. Texels: layer after layer, each the whole mip chain

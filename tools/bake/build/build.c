@@ -8,6 +8,7 @@
 #include "bake/build/look.h"
 #include "bake/build/parts.h"
 #include "bake/light/environment.h"
+#include "bake/light/picture_sun.h"
 #include "bake/scene/camera.h"
 #include "bake/scene/groups.h"
 #include "bake/scene/skin.h"
@@ -52,14 +53,11 @@ static void add_sdf(const masu_bake_sdf *sdf, masu_bake_content *content) {
     masu_bake_append(&content->section[MASU_BLOB_SDF], &out, sizeof out);
 }
 
-static bool add_environment_map(const masu_bake_environment *e, masu_bake_content *content) {
-    masu_bake_panorama panorama;
+static bool load_panorama(const masu_bake_environment *e, masu_bake_panorama *out) {
     if (!e->file) return true;
-    if (!masu_bake_load_panorama(e->file, &panorama)) return false;
-    panorama.turn = e->rotate * (MASU_BAKE_PI / 180);
-    panorama.factor = e->scale;
-    masu_bake_add_environment(&panorama, e->size, content);
-    free(panorama.rgb);
+    if (!masu_bake_load_panorama(e->file, out)) return false;
+    out->turn = e->rotate * (MASU_BAKE_PI / 180);
+    out->factor = e->scale;
     return true;
 }
 
@@ -107,6 +105,26 @@ static void take_sun(masu_bake_description *d, const masu_bake_content *content)
     }
 }
 
+/* The sun of the environment map becomes that of the scene. One that the description has replaces it; where that is
+ * black, or the sun is a light of a model, the map keeps its sun and is the only source of its light. */
+static void take_panorama_sun(const masu_bake_environment *e, masu_bake_panorama *p, masu_bake_look *look) {
+    const masu_bake_vec3 *own = &look->sun_color;
+    bool black = !(look->sun_intensity > 0) || (own->x == 0 && own->y == 0 && own->z == 0);
+    masu_bake_picture_sun sun;
+    if (!p->rgb || look->sun_of_model || (look->own_sun && black)) return;
+    bool found = masu_bake_cut_sun(p, &sun);
+    if (found && !masu_cli_quiet()) {
+        printf("%s: its sun, %.3g %.3g %.3g towards %.3f %.3f %.3f, is %s\n", e->file, sun.color[0], sun.color[1],
+               sun.color[2], sun.direction[0], sun.direction[1], sun.direction[2],
+               look->own_sun ? "replaced by the scene's" : "the scene's");
+    }
+    if (look->own_sun) return;
+    look->sun_intensity = found ? 1 : 0;
+    if (!found) return;
+    look->sun_direction = masu_bake_v3(sun.direction[0], sun.direction[1], sun.direction[2]);
+    look->sun_color = masu_bake_v3(sun.color[0], sun.color[1], sun.color[2]);
+}
+
 /* What is shown, and what it is shown in. It completes the description by what depends on the models. */
 static bool build_scene(masu_bake_description *d, const masu_bake_options *options,
                         masu_bake_content *content, masu_bake_report *report) {
@@ -132,14 +150,14 @@ static bool build_scene(masu_bake_description *d, const masu_bake_options *optio
         d->look.key_count = 1;
         if (!take_camera(d, content, d->look.keys)) return false;
     }
+    masu_bake_panorama panorama = {0};
+    if (!load_panorama(&d->environment, &panorama)) return false;
     take_sun(d, content);
+    take_panorama_sun(&d->environment, &panorama, &d->look);
     masu_bake_build_look(&d->look, &bounds, content);
-    return true;
-}
-
-static bool build_sky_and_field(const masu_bake_description *d, const masu_bake_options *options,
-                                masu_bake_content *content) {
-    if (!add_environment_map(&d->environment, content)) return false;
+    if (panorama.rgb) masu_bake_add_environment(&panorama, d->environment.size, content);
+    free(panorama.rgb);
+    if (options->describe) return true;
     return !d->sdf.source || masu_bake_compile_march(content, d->sdf.source, &d->sdf.occlusion,
                                                      d->reflections.wanted, options->variants);
 }
@@ -172,7 +190,6 @@ bool masu_bake_build(masu_bake_description *d, const masu_bake_options *options,
                      masu_bake_content *content, masu_bake_report *report) {
     if (!build_scene(d, options, content, report)) return false;
     if (options->describe) return true;
-    if (!build_sky_and_field(d, options, content)) return false;
     content->pictures_wanted = report->reflected = d->reflections.wanted;
     content->picture_side = d->reflections.texture_size;
     if (!masu_bake_make_textures(content, options->texture_path)) return false;

@@ -8,6 +8,7 @@
 #include "bake/light/environment.h"
 
 #include "bake/base/file.h"
+#include "bake/light/picture_light.h"
 #include "cli/cli.h"
 #include "image.h"
 
@@ -18,7 +19,7 @@
 
 #define SAMPLES 512
 #define BYTES_MAX (512u * 1024u * 1024u)
-#define RADIANCE_MAX 65408.0 /* of 9995 texels */
+#define RADIANCE_MAX MASU_BAKE_RADIANCE_MAX
 #define PI MASU_BAKE_PI
 
 /* ---- Files ----------------------------------------------------------------------------------- */
@@ -184,6 +185,16 @@ static void octahedral_square(const double d[3], double out[2]) {
     }
     out[0] = 0.5 * u + 0.5;
     out[1] = 0.5 * v + 0.5;
+}
+
+void masu_bake_panorama_pixel(const masu_bake_panorama *p, uint32_t x, uint32_t y, double direction[3],
+                              double *solid_angle) {
+    double up = cos(PI * (y + 0.5) / p->height), flat = sqrt(fmax(1 - up * up, 0));
+    double azimuth = p->turn + (0.5 - (x + 0.5) / p->width) * 2 * PI;
+    direction[0] = flat * sin(azimuth);
+    direction[1] = up;
+    direction[2] = flat * cos(azimuth);
+    *solid_angle = (cos(PI * y / p->height) - cos(PI * (y + 1.0) / p->height)) * 2 * PI / p->width;
 }
 
 void masu_bake_panorama_at(const masu_bake_panorama *p, const double d[3], double out[3]) {
@@ -387,38 +398,6 @@ static void blur(const pyramid *p, const lobe_sample *lobe, uint32_t n, const do
     }
 }
 
-/* Irradiance / pi by the normal (Ramamoorthi and Hanrahan, SIGGRAPH 2001), over src/frame/sky.h's basis. */
-static void project(const masu_bake_panorama *p, float sh[9][4]) {
-    static const double scale[9] = {0.25,      0.5,       0.5,      0.5,      15.0 / 16,
-                                    15.0 / 16, 15.0 / 16, 5.0 / 64, 15.0 / 64};
-    double sum[9][3] = {{0}}, light[3];
-    for (uint32_t y = 0; y < p->height; y++) {
-        double top = cos(PI * y / p->height), bottom = cos(PI * (y + 1.0) / p->height);
-        double up = cos(PI * (y + 0.5) / p->height), flat = sqrt(fmax(1 - up * up, 0));
-        for (uint32_t x = 0; x < p->width; x++) {
-            double azimuth = p->turn + (0.5 - (x + 0.5) / p->width) * 2 * PI;
-            const double d[3] = {flat * sin(azimuth), up, flat * cos(azimuth)};
-            const double basis[9] = {1,
-                                     d[0],
-                                     d[1],
-                                     d[2],
-                                     d[0] * d[1],
-                                     d[1] * d[2],
-                                     d[2] * d[0],
-                                     3 * up * up - 1,
-                                     d[0] * d[0] - d[2] * d[2]};
-            const float *pixel = p->rgb + 3 * ((size_t)y * p->width + x);
-            for (uint32_t c = 0; c < 3; c++)
-                light[c] = fmin(p->factor * (double)pixel[c], RADIANCE_MAX) * (top - bottom) * 2 /
-                           p->width;
-            for (uint32_t k = 0; k < 9; k++)
-                for (uint32_t c = 0; c < 3; c++) sum[k][c] += basis[k] * light[c];
-        }
-    }
-    for (uint32_t k = 0; k < 9; k++)
-        for (uint32_t c = 0; c < 3; c++) sh[k][c] = (float)(scale[k] * sum[k][c]);
-}
-
 static void warn_of_clamped(const masu_bake_panorama *p) {
     size_t count = 0, pixels = (size_t)p->width * p->height;
     double most = 0;
@@ -443,7 +422,7 @@ void masu_bake_add_environment(const masu_bake_panorama *p, uint32_t size,
     /* Of four texels an edge, bilinear, even roughness 1 would be 3 % off. */
     while (map.mips < 8 && (map.mips < 2 || size >> map.mips >= 8)) map.mips++;
     make_pyramid(p, size, &source);
-    project(p, map.sh);
+    masu_bake_fit_irradiance(p, &map);
     for (uint32_t mip = 0; mip < map.mips; mip++) {
         uint32_t edge = size >> mip;
         uint32_t n = mip ? make_lobe((double)mip / (map.mips - 1), size, lobe) : 0;

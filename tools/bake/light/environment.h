@@ -19,6 +19,13 @@ typedef struct masu_bake_panorama {
 /* On false the error has been reported. free() rgb. */
 bool masu_bake_load_panorama(const char *path, masu_bake_panorama *out);
 
+/* Largest radiance of a texel of the blob. */
+#define MASU_BAKE_RADIANCE_MAX 65408.0
+
+/* Direction of the middle of a pixel, and the solid angle that it covers. */
+void masu_bake_panorama_pixel(const masu_bake_panorama *p, uint32_t x, uint32_t y, double direction[3],
+                              double *solid_angle);
+
 /* Radiance of a unit direction, bilinear between the picture's pixels. */
 void masu_bake_panorama_at(const masu_bake_panorama *p, const double direction[3], double out[3]);
 
