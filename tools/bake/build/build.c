@@ -8,6 +8,7 @@
 #include "bake/build/look.h"
 #include "bake/build/parts.h"
 #include "bake/light/environment.h"
+#include "bake/mesh/rise.h"
 #include "bake/scene/camera.h"
 #include "bake/scene/groups.h"
 #include "bake/scene/skin.h"
@@ -168,6 +169,7 @@ bool masu_bake_build(const masu_bake_description *d, const masu_bake_options *op
     if (!build_scene(d, options, &reflections, content, report)) return false;
     report->reflected = reflections.wanted;
     if (!masu_bake_make_textures(content, options->texture_path)) return false;
+    masu_bake_measure_rise(content);
     masu_bake_gather_skins(content);
     masu_bake_sort_instances(content);
     masu_bake_groups(content);
