@@ -1065,7 +1065,7 @@ typedef struct masu_decal {
     /* Perceptual, 0..1; 0: that of the surface. Smooth decals reflect by ray tracing, if the scene
      * has reflections. */
     float roughness;
-    float metallic; /* 0..1 */
+    float metallic; /* 0..1; below 0: that of the surface */
     float edge;     /* fraction of the half width over which it fades out at its edge, 0..1 */
     /* Angle between z axis and surface normal, radians, 0..pi: full effect up to inner, none from
      * outer on. Both 0: 1.05 and 1.4. */

@@ -124,9 +124,10 @@ typedef struct masu_deny {
     /* Stores the history of rung.temporal in 16-bit floats, even if the device filters
      * R16G16B16A16_UNORM. Bright colours then have an error of a tenth of an 8-bit step. */
     uint32_t unorm16;
-    /* Numbers: largest width and height of the shadow map, and most storage buffers per shader
-     * stage, even if the device has more. 0: the limits of the device. */
-    uint32_t image_size, storage_buffers;
+    /* Numbers: largest width and height of the shadow map, most storage buffers per shader stage,
+     * and most colour attachments (at least 4), even if the device has more. 0: the limits of the
+     * device. */
+    uint32_t image_size, storage_buffers, color_attachments;
 } masu_deny;
 
 #endif

@@ -21,6 +21,7 @@ layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D depth_image;
 layout(set = MASU_SET_PASS, binding = 1, rgba8) uniform image2D albedo_image;
 layout(set = MASU_SET_PASS, binding = 2, r32ui) uniform uimage2D normal_image;
+layout(set = MASU_SET_PASS, binding = 3, rgba16f) uniform image2D hdr_image; /* defined where the surface emits */
 
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SPRITES, std430) readonly buffer Sprites
 {
@@ -30,6 +31,8 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SPRITES, std430) readonly buff
 #define INVOCATIONS (MASU_GROUP * MASU_GROUP)
 #define WORDS (MASU_DECALS_MAX / 32)
 shared uint touched[WORDS];
+
+const float dielectric = 0.04; /* reflectance at normal incidence */
 
 /* How much of a decal is at a point relative to the eye, where the surface has the normal n. */
 float painted(uint at, vec3 rel, vec3 n, vec4 look)
@@ -47,6 +50,19 @@ float painted(uint at, vec3 rel, vec3 n, vec4 look)
     return edge * clamp((dot(axis.xyz, n) - place.z) * place.w, 0.0, 1.0);
 }
 
+/* Mixes paint into a surface as light would be: its diffuse albedo, a (1 - m), and its reflectance at normal incidence,
+ * a m + 0.04 (1 - m). Metallic is weighted by albedo, which mixes the diffuse part exactly: black paint on metal stays metal
+ * until it is nearly black. The albedo makes up for the rest, so that the sum of both parts is exact. */
+void cover(inout masu_surface s, vec3 paint, float metallic, float share)
+{
+    float own = (1.0 - share) * (masu_brightest(s.albedo) + 1.0 / 256.0);
+    float other = share * (masu_brightest(paint) + 1.0 / 256.0);
+    float before = mix(s.metallic, metallic, share);
+    s.metallic = (s.metallic * own + metallic * other) / (own + other);
+    s.albedo = mix(s.albedo, paint, share) + dielectric * (s.metallic - before);
+    s.emissive *= 1.0 - share;
+}
+
 void paint(ivec2 at, uvec2 size, uint words)
 {
     float depth = texelFetch(depth_image, at, 0).r;
@@ -60,6 +76,9 @@ void paint(ivec2 at, uvec2 size, uint words)
     vec3 rel = masu_pixel_ray(uvec2(at), size) * (frame.forward.w / depth);
     vec3 n = masu_unpack_normal(packed_normal);
     masu_surface s = masu_unpack_look(imageLoad(albedo_image, at), packed_normal);
+    if (!masu_emission_packed && masu_has_emission(packed_normal)) {
+        s.emissive = imageLoad(hdr_image, at).rgb;
+    }
     bool changed = false;
     for (uint w = 0u; w < uint(WORDS); w++) {
         if (w >= words) {
@@ -75,21 +94,26 @@ void paint(ivec2 at, uvec2 size, uint words)
             if (share > 0.0) {
                 changed = true;
                 if ((floatBitsToUint(look.w) & MASU_SPRITE_KEEP_COLOR) == 0u) {
-                    s.albedo = mix(s.albedo, color.rgb, share);
-                    s.metallic = mix(s.metallic, look.y, share);
-                    s.emissive *= 1.0 - share;
+                    cover(s, color.rgb, look.y >= 0.0 ? look.y : s.metallic, share);
                 }
                 s.roughness = mix(s.roughness, look.x >= 0.0 ? look.x : s.roughness, share);
             }
         }
     }
     if (changed) {
+        /* The texel has 16 steps of metallic: without what albedo makes up for, soft edges have rings. */
+        float steps = floor(masu_sane_unit(s.metallic) * 15.0 + 0.5) / 15.0;
+        s.albedo += dielectric * (steps - s.metallic);
+        s.metallic = steps;
         uint kept = packed_normal & (0x3FFFFFFu | MASU_SURFACE_MORE << 30);
         uint look;
         vec4 albedo;
         masu_pack_look(s, albedo, look);
         MASU_STORE_UNORM(albedo_image, at, albedo);
         MASU_STORE_UINT(normal_image, at, kept | look);
+        if (!masu_emission_packed && masu_has_emission(look)) {
+            MASU_STORE_HALF(hdr_image, at, vec4(masu_emitted(s), 1.0));
+        }
     }
 }
 

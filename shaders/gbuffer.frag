@@ -17,6 +17,11 @@ layout(location = 2) out vec4 out_surface;
 #else
 #define MASU_VELOCITY_LOCATION 2
 #endif
+#ifdef MASU_MOTION
+#define MASU_HDR_LOCATION (MASU_VELOCITY_LOCATION + 1)
+#else
+#define MASU_HDR_LOCATION MASU_VELOCITY_LOCATION
+#endif
 
 #ifdef MASU_MOTION
 #include "shared/globals.glsl"
@@ -51,6 +56,8 @@ layout(location = 1) in vec3 in_rel;
 
 layout(location = 0) out vec4 out_albedo;
 layout(location = 1) out uint out_normal;
+/* Attached for emitting materials only: dropped elsewhere. */
+layout(location = MASU_HDR_LOCATION) out vec4 out_hdr;
 
 #ifdef MASU_SURFACE
 #include "brdf/meso.glsl"
@@ -136,6 +143,7 @@ void main()
     }
 #endif
     masu_pack_texels(n, s, out_albedo, out_normal);
+    out_hdr = vec4(masu_emitted(s), 1.0);
 #if defined(MASU_TEXTURES) && defined(MASU_SURFACE)
     if (two) {
         s.lean = masu_lean_of(masu_unpack_normal(out_normal), masu_normalize(below, even));

@@ -50,7 +50,7 @@ layout(set = MASU_SET_PASS, binding = MASU_AT_SURFACE) uniform sampler2D surface
 #else
 #define MASU_AT_HDR MASU_AT_SURFACE
 #endif
-layout(set = MASU_SET_PASS, binding = MASU_AT_HDR, rgba16f) uniform writeonly image2D hdr_image;
+layout(set = MASU_SET_PASS, binding = MASU_AT_HDR, rgba16f) uniform image2D hdr_image;
 
 /* How much arrives of the sun and of the ambient light. */
 vec2 arriving(uvec2 at)
@@ -66,6 +66,9 @@ vec2 arriving(uvec2 at)
 masu_surface surface_at(ivec2 at, vec4 albedo, uint normal)
 {
     masu_surface s = masu_unpack_look(albedo, normal);
+    if (!masu_emission_packed && masu_has_emission(normal)) { /* elsewhere hdr is undefined */
+        s.emissive = imageLoad(hdr_image, at).rgb;
+    }
 #ifdef MASU_SURFACE
     if ((masu_unpack_flags(normal) & MASU_SURFACE_MORE) != 0u) {
         masu_unpack_surface(texelFetch(surface_image, at, 0), s);

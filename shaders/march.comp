@@ -24,6 +24,7 @@ layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D cone_image;
 layout(set = MASU_SET_PASS, binding = 1, rgba8) uniform writeonly image2D albedo_image;
 layout(set = MASU_SET_PASS, binding = 2, r32ui) uniform writeonly uimage2D normal_image;
 layout(set = MASU_SET_PASS, binding = 3, r32f) uniform image2D depth_image;
+layout(set = MASU_SET_PASS, binding = 4, rgba16f) uniform writeonly image2D hdr_image;
 
 #define MASU_RELAXED
 #define MASU_SDF_KEEP

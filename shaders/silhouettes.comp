@@ -296,11 +296,10 @@ ivec2 like_at(ivec2 at, vec2 place, float depth, bool sdf, float width, out floa
     return like;
 }
 
-/* What light.comp makes of texels without lamps and probes: `around` of what comes from everywhere, `sun` of the sun. */
-void light_up(vec4 albedo, uint normal, vec3 v, out vec3 around, out vec3 sun)
+/* What light.comp makes of a surface without lamps, probes and emission: `around` of what comes from everywhere, `sun` of the sun. */
+void light_up(masu_surface s, uint normal, vec3 v, out vec3 around, out vec3 sun)
 {
-    masu_surface s = masu_unpack_look(albedo, normal);
-    around = s.emissive;
+    around = vec3(0.0);
     sun = vec3(0.0);
     if (masu_is_unlit_texel(normal)) {
         return;
@@ -316,7 +315,7 @@ void light_up(vec4 albedo, uint normal, vec3 v, out vec3 around, out vec3 sun)
 }
 
 /* What is met at t, by the light of a pixel; by its own if none shows its kind (!found). In a loop, so that light is compiled
- * once: first what that pixel shows. */
+ * once: first what that pixel shows. The emission of that pixel is not known any more: if it emits, it emits what is met. */
 vec3 lit_like(ivec2 like, bool found, vec3 direction, float t, uint met_albedo, uint met_normal)
 {
     vec3 hdr = texelFetch(hdr_image, like, 0).rgb;
@@ -329,13 +328,21 @@ vec3 lit_like(ivec2 like, bool found, vec3 direction, float t, uint met_albedo, 
         hdr = max(hdr - air * (1.0 - left_there), 0.0) / max(left_there, 1e-3);
         left = masu_fog_left(masu_air_depth(direction, t));
     }
+    masu_surface met_surface = masu_unpack_met(unpackUnorm4x8(met_albedo), met_normal);
+    if (found && masu_has_emission(texelFetch(normal_image, like, 0).r)) {
+        hdr = max(hdr - met_surface.emissive, 0.0);
+    }
     vec3 around, sun, there = vec3(0.0);
     float seen = 1.0;
     MASU_LOOP for (int k = 0; k < 2; k++) {
         bool first = k == 0 && found;
-        vec4 albedo = first ? texelFetch(albedo_image, like, 0) : unpackUnorm4x8(met_albedo);
-        uint normal = first ? texelFetch(normal_image, like, 0).r : met_normal;
-        light_up(albedo, normal, -direction, around, sun);
+        masu_surface s = met_surface;
+        uint normal = met_normal;
+        if (first) {
+            normal = texelFetch(normal_image, like, 0).r;
+            s = masu_unpack_look(texelFetch(albedo_image, like, 0), normal);
+        }
+        light_up(s, normal, -direction, around, sun);
         if (first) {
             /* How much of the sun is seen there: between the pixel's light without and with. All, if it faces away from the sun. */
             float more = masu_luminance(sun);
@@ -347,6 +354,7 @@ vec3 lit_like(ivec2 like, bool found, vec3 direction, float t, uint met_albedo, 
     vec3 here = around + seen * sun;
     /* Where no light is known of, as at night by lamps alone, there is nothing to tell one from the other by. */
     here = found ? hdr * clamp((here + 1e-6) / (there + 1e-6), 0.125, 8.0) : here;
+    here += met_surface.emissive;
     return here * left + air * (1.0 - left);
 }
 
@@ -375,7 +383,9 @@ vec3 radiance_at(ivec2 at, vec2 place)
     }
     vec4 albedo;
     uint normal;
-    texels_at(r, m.t, m.half_space >= 0, uint(max(m.half_space, 0)), albedo, normal);
+    vec3 n;
+    masu_surface s = surface_met(r, m.t, m.half_space >= 0, uint(max(m.half_space, 0)), n);
+    masu_pack_met(n, s, albedo, normal);
     return lit_like(like, off < 1e30, r.direction, m.t, packUnorm4x8(albedo), normal);
 }
 

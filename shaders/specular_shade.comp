@@ -58,7 +58,7 @@ struct met {
 met met_sdf(uvec4 hit)
 {
     met m;
-    m.surface = masu_unpack_look(unpackUnorm4x8(hit.w), hit.z);
+    m.surface = masu_unpack_met(unpackUnorm4x8(hit.w), hit.z);
     m.normal = masu_unpack_normal(hit.z);
     return m;
 }

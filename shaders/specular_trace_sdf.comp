@@ -73,7 +73,7 @@ uvec4 hit_of(reflected m, float t, bool known, inout uint evals)
     masu_sdf_part_surface(part, p, s);
     vec4 albedo;
     uint normal;
-    masu_pack_texels(n, s, albedo, normal);
+    masu_pack_met(n, s, albedo, normal);
     return uvec4(floatBitsToUint(max(t - m.apex, 0.0)), masu_pack_sdf_motion(moved(part, p)), normal, packUnorm4x8(albedo));
 }
 

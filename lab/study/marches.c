@@ -5,6 +5,7 @@
 #include "clock.h"
 #include "image.h"
 #include "metric/image.h"
+#include "shared/masu_shared.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -232,7 +233,9 @@ static uint64_t pair(bench *b, const gbuffer *g) {
         masu_unpack_normal(texel, n);
         if (hit && truly) s->normal_angle = angle_between(n, truth->normal);
         if (hit) {
-            masu_shade_texel(&b->view, ray.direction, texel_at(&g->albedo, x, y), texel, radiance);
+            double material[8] = {0}; /* the emission of the part that is truly there: hdr is lit by now */
+            if (truly && texel >> 30 & MASU_SURFACE_EMISSIVE) b->truth.material(truth->part, material);
+            masu_shade_texel(&b->view, ray.direction, texel_at(&g->albedo, x, y), texel, material + 4, radiance);
         } else {
             masu_shade_sky(&b->view, ray.direction, radiance);
         }

@@ -7,12 +7,9 @@
  *   3.2); 4095 is 0
  *                   bits 26-29        metallic, 0..15
  *                   bits 30-31        MASU_SURFACE_* flags
- *   With MASU_SURFACE_EMISSIVE bits 26-29 say what albedo holds instead:
- *                   0     rgb sqrt of radiance / 16: it is not lit (masu_is_unlit)
- *                   15    the same and a roughness: it is black, no metal, and lit
- *                   1-14  roughness, and a word: bits 0-4, 5-9, 10-14 sqrt of albedo; 15 metal;
- *                         16-22 fourth root of the brightest channel's radiance / 16; 23-31 what the
- *                         other two have of it, sqrt, 13 steps each: (13 channel + next) 13 + last
+ *   With MASU_SURFACE_EMISSIVE the pixel of hdr holds the emitted radiance until light.comp has run, and bits 26-29:
+ *                   0     it is not lit (masu_is_unlit)
+ *                   1-15  metallic, 0..14
  *   surface, rgba8, where MASU_SURFACE_MORE is set (else: specular 0.5, no coat, no relief):
  *                   r    specular
  *                   g    clear coat, 4 bits, and its roughness, 4 bits; of a small relief, which has no
@@ -28,16 +25,21 @@
  *   depth, float:   near / view z; 0: nothing there
  *
  * 13 bits per axis leave a normal within 0.03 degrees. src/api_stats.c, masu_unpack_normal is the twin
- * in C; of what emits, measure/texel.c.
+ * in C; of surfaces with emission, measure/texel.c.
  *
  * A coat mirrors sharply and has all 26 bits; what lies below it is within 0.3 degrees where it leans by 6, 0.8 at
  * 30, 1.9 at 60; half of that in the mean. The other way round, or both in 13 bits, a polished coat would show steps.
  *
- * What emits and is lit has 36 bits where two colours, roughness and metallic would take 60. Most of it is
- * black (lamps, screens) and loses nothing. Of the rest the radiance is within 3 % at 1 and 6 % at 1/16, its hue
- * within 1/24 and the albedo within 1/62 of the square root's range, roughness within 1/26. The other ways:
- * a word more per pixel in the picture and in what rays meet, or a fifth attachment where four are
- * promised.
+ * Emission has no place in the two texels. Ray hits (specular_hit, silhouettes.comp) have nothing else; there, and in
+ * the G-buffer of devices with too few colour attachments (masu_emission_packed), both emission and base share 36 bits
+ * (masu_pack_met). With MASU_SURFACE_EMISSIVE bits 26-29 specify what albedo holds then:
+ *                   0     rgb sqrt of radiance / 16: it is not lit
+ *                   15    the same and a roughness: it is black, no metal, and lit
+ *                   1-14  roughness, and a 32-bit value: bits 0-4, 5-9, 10-14 sqrt of albedo; 15 metal;
+ *                         16-22 fourth root of the brightest channel's radiance / 16; 23-31 the other
+ *                         two relative to it, sqrt, 13 steps each: (13 channel + next) 13 + last
+ * Black surfaces (lamps, screens) lose nothing. Of others the radiance is within 3 % at 1 and 6 % at 1/16, its hue
+ * within 1/24 and the albedo within 1/62 of the square root's range, roughness within 1/26.
  */
 #ifndef MASU_PACK_GLSL
 #define MASU_PACK_GLSL
@@ -45,13 +47,16 @@
 #include "shared/materials.h"
 #include "shared/guard.glsl"
 
-const float masu_emissive_range = 16.0;
+const float masu_emissive_range = 16.0;         /* of the 36 bits */
+const float masu_emissive_most = 65504.0;       /* of hdr */
 const float masu_emissive_least = 1.0 / 1024.0; /* what shines less than that does not */
+
+layout(constant_id = 15) const bool masu_emission_packed = false;
 
 struct masu_surface {
     vec3 albedo;   /* linear, 0..1 */
     float roughness; /* perceptual, 0..1 */
-    vec3 emissive; /* linear radiance, 0..16: added to what the surface sends of the light on it */
+    vec3 emissive; /* linear radiance, 0..65504: added to what the surface sends of the light on it */
     float metallic;
     float specular;       /* reflectance of a dielectric at normal incidence / 0.08, 0..1 */
     float coat;           /* clear coat, 0..1 */
@@ -108,7 +113,12 @@ float masu_brightest(vec3 color)
 
 bool masu_is_emissive(masu_surface s)
 {
-    return masu_brightest(masu_sane(s.emissive, 0.0, masu_emissive_range)) >= masu_emissive_least;
+    return masu_brightest(masu_sane(s.emissive, 0.0, masu_emissive_most)) >= masu_emissive_least;
+}
+
+vec3 masu_emitted(masu_surface s)
+{
+    return masu_sane(s.emissive, 0.0, masu_emissive_most);
 }
 
 /* It shines and has neither colour nor gloss: what falls on it is not seen. No light, shadow or reflection of
@@ -143,24 +153,54 @@ void masu_pack_shining(vec3 glow, vec3 albedo, float roughness, masu_surface s, 
     look = MASU_SURFACE_EMISSIVE << 30 | (unlit ? 0u : colored ? 1u + uint(roughness * 13.0 + 0.5) : 15u) << 26;
 }
 
-/* The texel of albedo, and the bits of the normal's texel that are not its direction. */
+/* The texel of albedo, and the bits of the normal's texel that are not its direction, without emission of its own. */
+void masu_pack_plain(masu_surface s, out vec4 texel, out uint look)
+{
+    texel = vec4(sqrt(masu_sane_unit(s.albedo)), masu_sane_unit(s.roughness));
+    look = uint(masu_sane_unit(s.metallic) * 15.0 + 0.5) << 26;
+}
+
+/* ... of a ray hit, which has no other place for emission. */
+void masu_pack_met_look(masu_surface s, out vec4 texel, out uint look)
+{
+    vec3 glow = masu_emissive_range * masu_sane_unit(s.emissive * (1.0 / masu_emissive_range));
+    if (masu_brightest(glow) >= masu_emissive_least) {
+        masu_pack_shining(glow, masu_sane_unit(s.albedo), masu_sane_unit(s.roughness), s, texel, look);
+    } else {
+        masu_pack_plain(s, texel, look);
+    }
+}
+
+/* ... of the G-buffer. Where the flag EMISSIVE is set hdr takes masu_emitted(s). */
 void masu_pack_look(masu_surface s, out vec4 texel, out uint look)
 {
-    vec3 albedo = masu_sane_unit(s.albedo), glow = masu_emissive_range * masu_sane_unit(s.emissive * (1.0 / masu_emissive_range));
-    float roughness = masu_sane_unit(s.roughness);
-    if (masu_brightest(glow) >= masu_emissive_least) {
-        masu_pack_shining(glow, albedo, roughness, s, texel, look);
-    } else {
-        texel = vec4(sqrt(albedo), roughness);
-        look = uint(masu_sane_unit(s.metallic) * 15.0 + 0.5) << 26;
+    if (masu_emission_packed) {
+        masu_pack_met_look(s, texel, look);
+        return;
     }
+    masu_pack_plain(s, texel, look);
+    if (masu_is_emissive(s)) {
+        uint metal = masu_is_unlit(s) ? 0u : 1u + uint(masu_sane_unit(s.metallic) * 14.0 + 0.5);
+        look = MASU_SURFACE_EMISSIVE << 30 | metal << 26;
+    }
+}
+
+uint masu_pack_oct(vec3 n)
+{
+    uvec2 q = uvec2(round(masu_oct_encode(n) * 4095.0) + 4095.0);
+    return q.x | q.y << 13;
 }
 
 void masu_pack_texels(vec3 n, masu_surface s, out vec4 albedo, out uint normal)
 {
-    uvec2 q = uvec2(round(masu_oct_encode(n) * 4095.0) + 4095.0);
     masu_pack_look(s, albedo, normal);
-    normal |= q.x | q.y << 13;
+    normal |= masu_pack_oct(n);
+}
+
+void masu_pack_met(vec3 n, masu_surface s, out vec4 albedo, out uint normal)
+{
+    masu_pack_met_look(s, albedo, normal);
+    normal |= masu_pack_oct(n);
 }
 
 #ifdef MASU_SURFACE
@@ -297,15 +337,32 @@ void masu_unpack_shining(vec4 texel, uint form, inout masu_surface s)
     s.emissive = glow * (level * level * masu_emissive_range);
 }
 
-/* What the two texels say, but for the normal. */
-masu_surface masu_unpack_look(vec4 texel, uint normal)
+bool masu_has_emission(uint normal)
+{
+    return (masu_unpack_flags(normal) & MASU_SURFACE_EMISSIVE) != 0u;
+}
+
+/* Surface of a ray hit's two texels, without the normal. */
+masu_surface masu_unpack_met(vec4 texel, uint normal)
 {
     masu_surface s = masu_plain_surface(texel.rgb * texel.rgb, texel.a);
     uint form = normal >> 26 & 15u;
     s.metallic = float(form) / 15.0;
-    if ((masu_unpack_flags(normal) & MASU_SURFACE_EMISSIVE) != 0u) {
+    if (masu_has_emission(normal)) {
         masu_unpack_shining(texel, form, s);
     }
+    return s;
+}
+
+/* ... of the G-buffer's, without emission unless that is packed: it is in hdr. */
+masu_surface masu_unpack_look(vec4 texel, uint normal)
+{
+    if (masu_emission_packed) {
+        return masu_unpack_met(texel, normal);
+    }
+    masu_surface s = masu_plain_surface(texel.rgb * texel.rgb, texel.a);
+    uint form = normal >> 26 & 15u;
+    s.metallic = masu_has_emission(normal) ? max(float(form) - 1.0, 0.0) / 14.0 : float(form) / 15.0;
     return s;
 }
 

@@ -42,6 +42,7 @@ masu_use masu_use_of(masu_usage usage, masu_pass_kind kind) {
         return (masu_use){1, shader, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT,
                           VK_IMAGE_LAYOUT_UNDEFINED, 1};
     case MASU_WRITE_COLOR:
+    case MASU_UPDATE_COLOR:
         return (masu_use){1, VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT,
                           VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT,
                           VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, 1};

@@ -241,6 +241,9 @@ masu_result masu_capabilities_fit(masu_desc *desc, const masu_frame_plan *plan, 
     desc->deny.storage_buffers = dropped ? has | dropped : 0; /* the plan gives it as the reason */
     uint32_t widest = widest_map(limits);
     if (!desc->deny.image_size || desc->deny.image_size > widest) desc->deny.image_size = widest;
+    uint32_t attachments = limits->maxColorAttachments;
+    if (!desc->deny.color_attachments || desc->deny.color_attachments > attachments)
+        desc->deny.color_attachments = attachments;
     if (!result) result = choose_ray_query(desc, plan, vk, detail);
     if (!result) result = choose_half_floats(desc, vk, detail);
     if (!filters_unorm16(vk)) desc->deny.unorm16 = 1;

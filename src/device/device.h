@@ -49,6 +49,8 @@ typedef struct masu_device {
     VkDescriptorSetLayout texture_layout; /* null without textures, as are the next three */
     VkPipeline textured[MASU_TEXTURED_COUNT], masked_casters, masked_picks, tints;
     VkPipeline culled[MASU_CULLED_COUNT]; /* null where nothing is seen from one side only */
+    /* Of the subpass of emitting materials: by masu_draw_kind, two-sided, then culled. */
+    VkPipeline emitting[2 * MASU_CULLED_COUNT];
     VkSampler samplers[MASU_SAMPLER_COUNT]; /* wrap of u + 3 * wrap of v; those that sets ask for */
     uint64_t pipeline_ns[MASU_PASS_COUNT];
     uint64_t *pool_keys; /* pool.c: MASU_POOL_KEYS of them, or of no length */

@@ -71,6 +71,8 @@ void masu_device_destroy(masu_device *m) {
         vk->DestroyPipeline(device, m->textured[i], vk->allocator);
     for (uint32_t i = 0; i < MASU_CULLED_COUNT; i++)
         vk->DestroyPipeline(device, m->culled[i], vk->allocator);
+    for (uint32_t i = 0; i < 2 * MASU_CULLED_COUNT; i++)
+        vk->DestroyPipeline(device, m->emitting[i], vk->allocator);
     vk->DestroyPipeline(device, m->masked_casters, vk->allocator);
     vk->DestroyPipeline(device, m->masked_picks, vk->allocator);
     vk->DestroyPipeline(device, m->tints, vk->allocator);

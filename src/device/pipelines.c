@@ -35,15 +35,15 @@ static uint64_t now(const masu_device *m) {
     return m->plan->desc.clock_ns ? m->plan->desc.clock_ns(m->plan->desc.clock_user) : 0;
 }
 
-/* Constants 0 to 14 of all shaders, of which each has those it declares: of compute shaders whether counters
+/* Constants 0 to 15 of all shaders, of which each has those it declares: of compute shaders whether counters
  * are kept, of others whether masks are cut; whether the sky may be the analytic one; whether there is fog;
  * whether the sky is from a picture; whether reflections are traced; the tone curve; the target's
  * encoding; whether the last pass rounds to its steps or changes the order of its channels; whether the output
  * is whole groups of invocations; how many nodes a ray may have to come back to; whether a tile's rays
  * are shared by its invocations; whether coats have maps or normals of their own; whether
  * anything colours what shines through it; whether the output keeps its size; whether
- * means over frames are halves. */
-enum { SPECIAL_COUNT = 15 };
+ * means over frames are halves; whether albedo texels hold emission. */
+enum { SPECIAL_COUNT = 16 };
 
 static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
                                        VkBool32 constants[SPECIAL_COUNT]) {
@@ -62,7 +62,8 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
         {11, 11 * sizeof *constants, sizeof *constants},
         {12, 12 * sizeof *constants, sizeof *constants},
         {13, 13 * sizeof *constants, sizeof *constants},
-        {14, 14 * sizeof *constants, sizeof *constants}};
+        {14, 14 * sizeof *constants, sizeof *constants},
+        {15, 15 * sizeof *constants, sizeof *constants}};
     constants[0] = first;
     constants[1] = m->plan->needs.sky != 0;
     constants[2] = m->plan->scene.fog != 0;
@@ -87,6 +88,7 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
     constants[12] = scene->tints != 0;
     constants[13] = sized;
     constants[14] = (VkBool32)masu_has_half_means(m->plan);
+    constants[15] = m->plan->needs.emission_packed != 0;
     return (VkSpecializationInfo){SPECIAL_COUNT, entries, SPECIAL_COUNT * sizeof *constants,
                                   constants};
 }
@@ -243,20 +245,41 @@ static masu_result create_compute(masu_device *m, uint32_t pass, masu_detail *de
 
 /* ---- Graphics -------------------------------------------------------------------------------- */
 
+static uint32_t color_attachments(const masu_device *m, uint32_t pass) {
+    const masu_rung_plan *rp = masu_first_rung(m->plan, pass);
+    uint32_t count = 0;
+    for (uint32_t a = 0; a < rp->access_count[pass]; a++) {
+        masu_usage usage = (masu_usage)rp->access[pass][a].usage;
+        count += usage == MASU_WRITE_COLOR || usage == MASU_BLEND_COLOR || usage == MASU_UPDATE_COLOR;
+    }
+    return count;
+}
+
+/* gbuffer.frag writes emission behind all else, whether there is anything that emits or not. Unless the device has too few
+ * attachments, that output has one, which is unused. */
+static int has_unused_emission(const masu_device *m, uint32_t pass) {
+    return masu_passes[pass].geometry == MASU_GEOMETRY_POLYGONS && !m->plan->needs.emissive &&
+           color_attachments(m, pass) < m->plan->desc.deny.color_attachments;
+}
+
 /* Attachments come in the layouts that the row's barriers put them in, and stay there: the render
  * pass itself does no transition, so that record.c remains the only place that thinks about them.
- * Only the render area is cleared: a cascade of the shadow map leaves the others alone. */
+ * Only the render area is cleared: a cascade of the shadow map leaves the others alone.
+ * A second subpass, of emitting materials, has one attachment more. That takes no independentBlend, a feature that
+ * hosts may have left off and write masks of one attachment would need. */
 static masu_result create_render_pass(masu_device *m, uint32_t pass, masu_detail *detail) {
     VkAttachmentDescription attachments[MASU_PASS_ACCESSES];
     VkAttachmentReference colors[MASU_PASS_ACCESSES], depth = {0, VK_IMAGE_LAYOUT_UNDEFINED};
     VkImageView views[MASU_PASS_ACCESSES];
-    uint32_t n = 0, color_count = 0, width = 0, height = 0;
+    uint32_t n = 0, color_count = 0, emission = 0, width = 0, height = 0;
     const masu_rung_plan *rp = masu_first_rung(m->plan, pass);
     for (uint32_t a = 0; a < rp->access_count[pass]; a++) {
         masu_access access = rp->access[pass][a];
         int is_depth = access.usage == MASU_WRITE_DEPTH || access.usage == MASU_UPDATE_DEPTH;
         int blended = access.usage == MASU_BLEND_COLOR;
-        if (!is_depth && !blended && access.usage != MASU_WRITE_COLOR) continue;
+        int part = access.usage == MASU_UPDATE_COLOR;
+        if (!is_depth && !blended && !part && access.usage != MASU_WRITE_COLOR) continue;
+        emission += part;
         VkImageLayout layout = is_depth ? VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL
                                         : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
         if (is_depth) {
@@ -268,6 +291,7 @@ static masu_result create_render_pass(masu_device *m, uint32_t pass, masu_detail
             (VkAttachmentDescription){.format = masu_images[access.image].format,
                                       .samples = VK_SAMPLE_COUNT_1_BIT,
                                       .loadOp = blended ? VK_ATTACHMENT_LOAD_OP_LOAD
+                                                : part  ? VK_ATTACHMENT_LOAD_OP_DONT_CARE
                                                         : VK_ATTACHMENT_LOAD_OP_CLEAR,
                                       .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
                                       .stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE,
@@ -283,11 +307,33 @@ static masu_result create_render_pass(masu_device *m, uint32_t pass, masu_detail
                                     .pColorAttachments = colors,
                                     .pDepthStencilAttachment =
                                         depth.layout == VK_IMAGE_LAYOUT_UNDEFINED ? NULL : &depth};
+    int apart = emission && masu_has_emission_subpass(m->plan);
+    VkAttachmentReference base[MASU_PASS_ACCESSES];
+    memcpy(base, colors, sizeof base);
+    VkSubpassDescription subpasses[] = {subpass, subpass};
+    if (apart || (!emission && has_unused_emission(m, pass))) {
+        base[apart ? color_count - 1 : color_count] = (VkAttachmentReference){VK_ATTACHMENT_UNUSED, VK_IMAGE_LAYOUT_UNDEFINED};
+        subpasses[0].colorAttachmentCount = apart ? color_count : color_count + 1;
+        subpasses[0].pColorAttachments = base;
+    }
+    const VkPipelineStageFlags drawn = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT |
+                                       VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT |
+                                       VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT;
+    const VkAccessFlags writes = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
+    VkSubpassDependency order = {.srcSubpass = 0,
+                                 .dstSubpass = 1,
+                                 .srcStageMask = drawn,
+                                 .dstStageMask = drawn,
+                                 .srcAccessMask = writes,
+                                 .dstAccessMask = writes | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT,
+                                 .dependencyFlags = VK_DEPENDENCY_BY_REGION_BIT};
     VkRenderPassCreateInfo info = {.sType = VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO,
                                    .attachmentCount = n,
                                    .pAttachments = attachments,
-                                   .subpassCount = 1,
-                                   .pSubpasses = &subpass};
+                                   .subpassCount = apart ? 2 : 1,
+                                   .pSubpasses = subpasses,
+                                   .dependencyCount = apart ? 1 : 0,
+                                   .pDependencies = &order};
     VkResult r =
         m->vk.CreateRenderPass(m->vk.device, &info, m->vk.allocator, &m->render_passes[pass]);
     if (MASU_FAILED(r, m->render_passes[pass]))
@@ -305,16 +351,6 @@ static masu_result create_render_pass(masu_device *m, uint32_t pass, masu_detail
                : MASU_OK;
 }
 
-static uint32_t color_attachments(const masu_device *m, uint32_t pass) {
-    const masu_rung_plan *rp = masu_first_rung(m->plan, pass);
-    uint32_t count = 0;
-    for (uint32_t a = 0; a < rp->access_count[pass]; a++) {
-        masu_usage usage = (masu_usage)rp->access[pass][a].usage;
-        count += usage == MASU_WRITE_COLOR || usage == MASU_BLEND_COLOR;
-    }
-    return count;
-}
-
 /* Whether it is drawn over what is there. */
 static int blends_color(const masu_device *m, uint32_t pass) {
     const masu_rung_plan *rp = masu_first_rung(m->plan, pass);
@@ -325,10 +361,10 @@ static int blends_color(const masu_device *m, uint32_t pass) {
 }
 
 /* textured: with texture coordinates; masked: with the discard of masks, of what is blended: it multiplies;
- * culled: not from behind. */
+ * culled: not from behind; emitting: in the second subpass. */
 static VkResult create_graphics_pipeline(masu_device *m, uint32_t pass,
                                          const VkShaderModule modules[2], int textured,
-                                         VkBool32 masked, int culled, VkPipeline *out) {
+                                         VkBool32 masked, int culled, int emitting, VkPipeline *out) {
     masu_geometry geometry = masu_passes[pass].geometry;
     int polygons = draws_polygons(pass); /* else what the vertex shader makes up */
     int blends = blends_color(m, pass);
@@ -381,9 +417,9 @@ static VkResult create_graphics_pipeline(masu_device *m, uint32_t pass,
         .depthTestEnable = depths ? VK_TRUE : VK_FALSE,
         .depthWriteEnable = depths ? VK_TRUE : VK_FALSE,
         .depthCompareOp = VK_COMPARE_OP_GREATER};
-    VkPipelineColorBlendAttachmentState blend[4];
+    VkPipelineColorBlendAttachmentState blend[5];
     memset(blend, 0, sizeof blend);
-    for (uint32_t i = 0; i < 4; i++) {
+    for (uint32_t i = 0; i < 5; i++) {
         blend[i].colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
                                   VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
     }
@@ -400,7 +436,7 @@ static VkResult create_graphics_pipeline(masu_device *m, uint32_t pass,
     }
     VkPipelineColorBlendStateCreateInfo blending = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
-        .attachmentCount = color_attachments(m, pass),
+        .attachmentCount = color_attachments(m, pass) + (uint32_t)has_unused_emission(m, pass),
         .pAttachments = blend};
     VkDynamicState dynamic[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
     VkPipelineDynamicStateCreateInfo dynamics = {
@@ -419,19 +455,21 @@ static VkResult create_graphics_pipeline(masu_device *m, uint32_t pass,
                                          .pColorBlendState = &blending,
                                          .pDynamicState = &dynamics,
                                          .layout = m->layouts[pass],
-                                         .renderPass = m->render_passes[pass]};
+                                         .renderPass = m->render_passes[pass],
+                                         .subpass = emitting ? 1 : 0};
     return m->vk.CreateGraphicsPipelines(m->vk.device, m->plan->desc.vulkan.pipeline_cache, 1, &info,
                                          m->vk.allocator, out);
 }
 
 /* Times are added up per pass. */
 static masu_result create_pipeline(masu_device *m, uint32_t pass, int textured, VkBool32 masked,
-                                   int culled, VkPipeline *out, masu_detail *detail) {
+                                   int culled, int emitting, VkPipeline *out, masu_detail *detail) {
     masu_draw_code code = masu_draw_code_of(m->plan, pass, textured);
     const masu_code codes[2] = {code.vertex, code.fragment};
     VkBool32 constants[SPECIAL_COUNT];
     (void)specialise(m, masked, constants);
-    uint32_t form = (uint32_t)textured | (culled ? 2u : 0u) | (masked ? 4u : 0u);
+    uint32_t form = (uint32_t)textured | (culled ? 2u : 0u) | (masked ? 4u : 0u) | (emitting ? 8u : 0u);
+    if (masu_passes[pass].geometry == MASU_GEOMETRY_POLYGONS && masu_has_emission_subpass(m->plan)) form |= 16u;
     uint64_t key = key_of(m, pass, codes, form, constants);
     if (masu_pool_acquire(m, key, out)) return MASU_OK;
     VkShaderModule modules[2] = {VK_NULL_HANDLE, VK_NULL_HANDLE};
@@ -440,7 +478,7 @@ static masu_result create_pipeline(masu_device *m, uint32_t pass, int textured, 
         result = create_module(m, code.fragment, &modules[1], detail);
     if (!result) {
         uint64_t start = now(m);
-        VkResult r = create_graphics_pipeline(m, pass, modules, textured, masked, culled, out);
+        VkResult r = create_graphics_pipeline(m, pass, modules, textured, masked, culled, emitting, out);
         m->pipeline_ns[pass] += now(m) - start;
         if (MASU_FAILED(r, *out))
             result = masu_fail_vulkan(detail, r, "vkCreateGraphicsPipelines");
@@ -457,7 +495,7 @@ static masu_result create_textured(masu_device *m, uint32_t pass, masu_detail *d
     masu_result result = MASU_OK;
     for (uint32_t i = 0; i < MASU_TEXTURED_COUNT && !result; i++) {
         if (i == MASU_TEXTURED_MASK && !m->plan->scene.masks) continue;
-        result = create_pipeline(m, pass, 1, i == MASU_TEXTURED_MASK, 0, &m->textured[i], detail);
+        result = create_pipeline(m, pass, 1, i == MASU_TEXTURED_MASK, 0, 0, &m->textured[i], detail);
         masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(m->textured[i]),
                   i == MASU_TEXTURED_MASK ? "gbuffer, masks" : "gbuffer, textured");
     }
@@ -473,8 +511,22 @@ static masu_result create_culled(masu_device *m, uint32_t pass, int textures, ma
         int mask = i == 1 + MASU_TEXTURED_MASK;
         if ((i && !textures) || (mask && !m->plan->scene.masks)) continue;
         result =
-            create_pipeline(m, pass, i > 0, mask ? VK_TRUE : VK_FALSE, 1, &m->culled[i], detail);
+            create_pipeline(m, pass, i > 0, mask ? VK_TRUE : VK_FALSE, 1, 0, &m->culled[i], detail);
         masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(m->culled[i]), names[i]);
+    }
+    return result;
+}
+
+/* Once more for what emits, of the kinds of which anything does. */
+static masu_result create_emitting(masu_device *m, uint32_t pass, masu_detail *detail) {
+    masu_result result = MASU_OK;
+    uint32_t sides = m->plan->scene.singles ? 2 : 1;
+    for (uint32_t i = 0; i < sides * MASU_CULLED_COUNT && !result && masu_has_emission_subpass(m->plan); i++) {
+        uint32_t kind = i % MASU_CULLED_COUNT;
+        if (!(m->plan->scene.emissions >> kind & 1u)) continue;
+        VkBool32 mask = kind == 1 + MASU_TEXTURED_MASK ? VK_TRUE : VK_FALSE;
+        result = create_pipeline(m, pass, kind > 0, mask, i >= MASU_CULLED_COUNT, 1, &m->emitting[i], detail);
+        masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(m->emitting[i]), "gbuffer, emitting");
     }
     return result;
 }
@@ -482,14 +534,14 @@ static masu_result create_culled(masu_device *m, uint32_t pass, int textures, ma
 /* Through the holes of a mask the sun shines. */
 static masu_result create_masked_casters(masu_device *m, uint32_t pass, masu_detail *detail) {
     if (!m->plan->scene.masks) return MASU_OK;
-    masu_result result = create_pipeline(m, pass, 1, VK_TRUE, 0, &m->masked_casters, detail);
+    masu_result result = create_pipeline(m, pass, 1, VK_TRUE, 0, 0, &m->masked_casters, detail);
     masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(m->masked_casters), "cascades, masks");
     return result;
 }
 
 /* Nor is one picked there, or what is blended where its map is clear. */
 static masu_result create_masked_picks(masu_device *m, uint32_t pass, masu_detail *detail) {
-    masu_result result = create_pipeline(m, pass, 1, VK_TRUE, 0, &m->masked_picks, detail);
+    masu_result result = create_pipeline(m, pass, 1, VK_TRUE, 0, 0, &m->masked_picks, detail);
     masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(m->masked_picks), "pick, masks");
     return result;
 }
@@ -505,15 +557,17 @@ static masu_result create_graphics(masu_device *m, uint32_t pass, masu_detail *d
     /* One pipeline for all that is blended: in scenes with textures what has none passes by them. */
     int textured = geometry == MASU_GEOMETRY_BLENDED && textures;
     if (!result)
-        result = create_pipeline(m, pass, textured, VK_FALSE, 0, &m->pipelines[pass], detail);
+        result = create_pipeline(m, pass, textured, VK_FALSE, 0, 0, &m->pipelines[pass], detail);
     if (!result && geometry == MASU_GEOMETRY_BLENDED && m->plan->scene.tints) {
-        result = create_pipeline(m, pass, textured, VK_TRUE, 0, &m->tints, detail);
+        result = create_pipeline(m, pass, textured, VK_TRUE, 0, 0, &m->tints, detail);
         masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(m->tints), "transparents, tints");
     }
     if (!result && geometry == MASU_GEOMETRY_POLYGONS && textures)
         result = create_textured(m, pass, detail);
     if (!result && geometry == MASU_GEOMETRY_POLYGONS)
         result = create_culled(m, pass, textures, detail);
+    if (!result && geometry == MASU_GEOMETRY_POLYGONS)
+        result = create_emitting(m, pass, detail);
     if (!result && geometry == MASU_GEOMETRY_CASCADE && textures)
         result = create_masked_casters(m, pass, detail);
     if (!result && geometry == MASU_GEOMETRY_PICK && textures)

@@ -47,7 +47,7 @@ uint64_t masu_pool_key(const masu_device *m, uint32_t pass, const masu_code code
         masu_access access = rp->access[pass][a];
         int bound =
             masu_has_set(pass) && (masu_access_binds(access, 0) || masu_access_binds(access, 1));
-        int attached = access.usage == MASU_WRITE_COLOR || access.usage == MASU_BLEND_COLOR ||
+        int attached = access.usage == MASU_WRITE_COLOR || access.usage == MASU_BLEND_COLOR || access.usage == MASU_UPDATE_COLOR ||
                        access.usage == MASU_WRITE_DEPTH || access.usage == MASU_UPDATE_DEPTH;
         if (bound || attached) key = add(key, access.usage);
         /* Shaders know the formats of what they store. */
@@ -67,6 +67,8 @@ static VkPipeline *place(masu_device *m, uint32_t i) {
     i -= MASU_TEXTURED_COUNT;
     if (i < MASU_CULLED_COUNT) return &m->culled[i];
     i -= MASU_CULLED_COUNT;
+    if (i < 2 * MASU_CULLED_COUNT) return &m->emitting[i];
+    i -= 2 * MASU_CULLED_COUNT;
     return i == 0 ? &m->masked_casters : i == 1 ? &m->masked_picks : &m->tints;
 }
 

@@ -7,6 +7,7 @@
 #include "device/descriptors.h"
 #include "device/ray_query.h"
 #include "plan/push.h"
+#include "scene/material.h"
 #include "scene/scene.h"
 #include "scene/trace_scene.h"
 #include "shared/masu_shared.h"
@@ -96,6 +97,8 @@ SAME_PLACE(layers);
 SAME_PLACE(detail_u);
 SAME_PLACE(detail_v);
 SAME_PLACE(instances);
+_Static_assert(offsetof(struct masu_push_cascade, rise) == offsetof(struct masu_push_gbuffer, meso),
+               "a cascade has no meso, and a rise there");
 #undef SAME_PLACE
 #define SAME_PLACE(member, of_pick)                                                                \
     _Static_assert(offsetof(struct masu_push_pick, of_pick) ==                                     \
@@ -114,9 +117,8 @@ SAME_PLACE(material, blended);
 /* How a material is drawn: 0 without textures, then as draws.h counts. The sun asks for no maps but the masks. */
 static uint32_t sweep_of(const masu_draw_material *material, uint32_t view) {
     if (material->flags & MASU_MATERIAL_IS_BLEND) return UINT32_MAX; /* transparents.c; no shadow */
-    if (!(material->flags & MASU_MATERIAL_HAS_MAPS)) return 0;
-    if (material->flags & MASU_MATERIAL_IS_MASK) return 1 + MASU_TEXTURED_MASK;
-    return view ? 0 : 1 + MASU_TEXTURED_OPAQUE;
+    uint32_t kind = masu_draw_kind(material->flags);
+    return view && kind == 1 + MASU_TEXTURED_OPAQUE ? 0 : kind;
 }
 
 /* The same of what is picked: whatever has holes is asked for its map, and what is blended is there where its map
@@ -149,8 +151,9 @@ static void bind_maps(masu_recorder *rec, VkPipelineLayout layout,
 /* One draw per primitive of each form of a placed mesh, for one view; instances of one mesh are neighbours, so one
  * draw serves them all; visible.c says which, in commands that lie in the order of batches whatever the
  * order of drawing. A sweep draws what shares a pipeline: without textures, with, and masks last, so
- * that most of what they would hide or shade in vain is known already. */
-static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep, int culled) {
+ * that most of what they would hide or shade in vain is known already. Emitting materials have sweeps of their own where
+ * they have a subpass. */
+static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep, int culled, int emitting) {
     const masu_device *m = rec->m;
     const masu_vk *vk = &m->vk;
     int kept = m->plan->desc.resizable != 0; /* then the blob may be gone */
@@ -160,7 +163,9 @@ static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep, int 
     VkDeviceSize zero = 0;
     int sun = masu_is_cascade(pass), pick = pass == MASU_PASS_PICK;
     uint32_t bound = MASU_BLOB_NONE, view = sun ? 1 + pass - MASU_PASS_CASCADE_0 : 0;
-    VkPipeline pipeline = culled ? m->culled[sweep]
+    int apart = pass == MASU_PASS_GBUFFER && masu_has_emission_subpass(m->plan);
+    VkPipeline pipeline = emitting ? m->emitting[(culled ? MASU_CULLED_COUNT : 0) + sweep]
+                          : culled ? m->culled[sweep]
                           : !sweep ? m->pipelines[sun ? MASU_PASS_CASCADE_0 : pass]
                           : sun  ? m->masked_casters
                           : pick ? m->masked_picks
@@ -193,11 +198,14 @@ static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep, int 
             int blended = (drawn.flags & MASU_MATERIAL_IS_BLEND) != 0;
             if (batch->mirrored) drawn.flags &= ~(uint32_t)MASU_MATERIAL_IS_SINGLE;
             if ((pick ? pick_sweep_of(&drawn) : sweep_of(&drawn, view)) != sweep) continue;
+            if (apart && emitting != (drawn.emits != 0)) continue;
             if (!sun && !pick && culled != ((drawn.flags & MASU_MATERIAL_IS_SINGLE) != 0)) continue;
-            if (pick) {
+            if (sun) {
+                memcpy(&push.meso, &drawn.rise, sizeof push.meso); /* where a cascade has its rise */
+            } else if (pick) {
                 push.material = blended ? 1 : 0;
                 push.flags = drawn.flags;
-            } else if (!sun) {
+            } else {
                 push.material = drawn.material;
                 push.meso = drawn.meso;
             }
@@ -215,8 +223,12 @@ static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep, int 
 static void record_polygons(masu_recorder *rec, uint32_t pass) {
     uint32_t sweeps = rec->m->texture_layout ? 1 + MASU_TEXTURED_COUNT : 1;
     int sides = rec->m->plan->scene.singles && masu_passes[pass].geometry == MASU_GEOMETRY_POLYGONS ? 2 : 1;
-    for (uint32_t sweep = 0; sweep < sweeps; sweep++)
-        for (int side = 0; side < sides; side++) record_sweep(rec, pass, sweep, side);
+    int subpasses = pass == MASU_PASS_GBUFFER && masu_has_emission_subpass(rec->m->plan) ? 2 : 1;
+    for (int emitting = 0; emitting < subpasses; emitting++) {
+        if (emitting) rec->m->vk.CmdNextSubpass(rec->cmd, VK_SUBPASS_CONTENTS_INLINE);
+        for (uint32_t sweep = 0; sweep < sweeps; sweep++)
+            for (int side = 0; side < sides; side++) record_sweep(rec, pass, sweep, side, emitting);
+    }
 }
 
 /* One draw of what the vertex shader makes up of MASU_BUFFER_SPRITES, as many as the frame says. */
@@ -338,7 +350,7 @@ static VkRect2D render_area(const masu_recorder *rec, uint32_t pass) {
 static void record_graphics(masu_recorder *rec, uint32_t pass, const VkDescriptorSet *sets) {
     const masu_vk *vk = &rec->m->vk;
     uint32_t objects = masu_is_cascade(pass) ? MASU_PASS_CASCADE_0 : pass;
-    VkClearValue clear[5];
+    VkClearValue clear[6];
     memset(clear, 0, sizeof clear); /* depth 0 is infinitely far */
     VkRect2D area = render_area(rec, pass);
     VkViewport viewport = {(float)area.offset.x,
@@ -351,7 +363,7 @@ static void record_graphics(masu_recorder *rec, uint32_t pass, const VkDescripto
                                    .renderPass = rec->m->render_passes[objects],
                                    .framebuffer = rec->m->framebuffers[objects],
                                    .renderArea = area,
-                                   .clearValueCount = 5,
+                                   .clearValueCount = 6,
                                    .pClearValues = clear};
     vk->CmdBeginRenderPass(rec->cmd, &begin, VK_SUBPASS_CONTENTS_INLINE);
     if (rec->m->pipelines[objects]) { /* else it only clears */

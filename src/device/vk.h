@@ -42,6 +42,7 @@
     X(CmdDrawIndexedIndirect)                                                                      \
     X(CmdEndRenderPass)                                                                            \
     X(CmdFillBuffer)                                                                               \
+    X(CmdNextSubpass)                                                                              \
     X(CmdPipelineBarrier)                                                                          \
     X(CmdPushConstants)                                                                            \
     X(CmdResetQueryPool)                                                                           \

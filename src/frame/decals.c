@@ -94,7 +94,7 @@ static void write_decal(const masu_decal *d, const masu_sprite_eye *eye, double 
     }
     v[15] = masu_clamped(d->opacity, 0.0f, 1.0f);
     v[16] = d->roughness > 0.0f ? masu_clamped(d->roughness, 0.0f, 1.0f) : -1.0f;
-    v[17] = masu_clamped(d->metallic, 0.0f, 1.0f);
+    v[17] = d->metallic >= 0.0f ? masu_clamped(d->metallic, 0.0f, 1.0f) : -1.0f;
     v[18] = masu_clamped(d->edge, 0.0f, 1.0f);
     memcpy(&v[19], &flags, sizeof flags);
     for (uint32_t i = 0; i < 3; i++) v[20 + i] = (float)((double)d->rows[4 * i + 2] / sqrt(length));

@@ -98,6 +98,7 @@ static int keeps_access(const masu_frame_plan *plan, uint32_t pass, uint8_t reso
     if (masu_is_buffer(resource)) return 1;
     if (usage == MASU_READ_BACK && !(masu_images[resource].readback & plan->desc.readback)) return 0;
     if (!is_given(plan, pass, resource, usage)) return 0;
+    if (usage == MASU_UPDATE_COLOR) return n->emissive;
     if (pass == MASU_PASS_SPECULAR_COMPOSITE && !is_composed(n, resource)) return 0;
     return masu_has_image(n, resource);
 }
@@ -157,6 +158,7 @@ static VkImageUsageFlags usage_flag(masu_usage usage) {
     case MASU_UPDATE: return VK_IMAGE_USAGE_STORAGE_BIT;
     case MASU_PING_PONG: return VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
     case MASU_WRITE_COLOR:
+    case MASU_UPDATE_COLOR:
     case MASU_BLEND_COLOR: return VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
     case MASU_WRITE_DEPTH:
     case MASU_UPDATE_DEPTH: return VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
@@ -321,6 +323,10 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                .decals = d->scene && d->reserve.decals,
                                .lines = d->scene && d->reserve.lines,
                                .blit = !d->targets.storage};
+    int emits = plan->needs.raster && (plan->scene.emissions || d->mutable_materials);
+    uint32_t attachments = 3u + (plan->needs.surface != 0) + (plan->needs.velocity != 0);
+    plan->needs.emission_packed = emits && d->deny.color_attachments && attachments > d->deny.color_attachments;
+    plan->needs.emissive = emits && !plan->needs.emission_packed;
     plan->needs.sprites = plan->needs.particles || plan->needs.decals || plan->needs.lines;
     for (uint32_t r = 0; r < d->rung_count; r++) plan->needs.smoothing |= masu_is_smaa(d->rungs[r].aa);
     plan->parts = 1 + ((d->split & MASU_SPLIT_BEFORE_TONE) != 0) +

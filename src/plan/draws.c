@@ -1,6 +1,8 @@
 /* draws.c: see draws.h. */
 #include "plan/draws.h"
 
+#include "scene/material.h"
+
 void masu_draws_alloc(masu_draws *draws, masu_arena *arena, const masu_frame_plan *plan) {
     uint64_t lods = plan->lods ? plan->scene.lods : 0;
     draws->batches =
@@ -115,10 +117,12 @@ masu_draw_material masu_draw_material_of(const masu_scene_view *v, uint32_t prim
     return (masu_draw_material){
         .material = number,
         .flags = of->flags,
+        .emits = (uint32_t)masu_material_emits(of),
         .texture_set = of->texture_set,
         .layers = of->layers,
         .more_layers = of->more_layers,
         .detail = {of->detail[0], of->detail[1]},
+        .rise = v->primitives[primitive].rise,
         .meso = meso ? (uint32_t)(v->material_count + 2 * (uint64_t)of->meso) : 0};
 }
 

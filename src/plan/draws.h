@@ -12,7 +12,7 @@
 
 /* The ways to draw polygons with textures; those without have the pass's own pipeline. Alpha-tested ones
  * have theirs, so that only they lose the early depth test. */
-enum { MASU_TEXTURED_OPAQUE, MASU_TEXTURED_MASK, MASU_TEXTURED_COUNT };
+enum { MASU_TEXTURED_OPAQUE, MASU_TEXTURED_MASK, MASU_TEXTURED_COUNT }; /* 1 + these: masu_draw_kind */
 /* Of what is not seen from behind: without textures, then the same. */
 #define MASU_CULLED_COUNT (1u + MASU_TEXTURED_COUNT)
 
@@ -36,8 +36,10 @@ typedef struct masu_batch {
 typedef struct masu_draw_material {
     uint32_t material;
     uint32_t flags; /* masu_blob_material_flags */
+    uint32_t emits; /* flag: masu_material_emits */
     uint32_t texture_set, layers, more_layers;
     float detail[2];
+    float rise;    /* masu_blob_primitive.rise */
     uint32_t meso; /* element of the buffer of materials where its curves begin; 0: none */
 } masu_draw_material;
 

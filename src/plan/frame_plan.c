@@ -116,6 +116,7 @@ static const char *no_upscale(const masu_needs *n) {
 #define UPDATE(id) IMAGE_ACCESS(id, UPDATE)
 #define PING_PONG(id) IMAGE_ACCESS(id, PING_PONG)
 #define COLOR(id) IMAGE_ACCESS(id, WRITE_COLOR)
+#define COLOR_PART(id) IMAGE_ACCESS(id, UPDATE_COLOR)
 #define BLEND(id) IMAGE_ACCESS(id, BLEND_COLOR)
 #define DEPTH(id) IMAGE_ACCESS(id, WRITE_DEPTH)
 #define DEPTH_PART(id) IMAGE_ACCESS(id, UPDATE_DEPTH)

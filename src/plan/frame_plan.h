@@ -94,6 +94,7 @@ typedef enum masu_usage {
     MASU_PING_PONG,   /* of an image of two layers: one sampled, with the mean of the texels around a place, the other storage,
                        * whole sub-rectangle; two bindings */
     MASU_WRITE_COLOR, /* colour attachment, cleared first */
+    MASU_UPDATE_COLOR, /* the same, not cleared: pixels that are not drawn are undefined */
     MASU_BLEND_COLOR, /* the same of which earlier content is kept, and blended with */
     MASU_WRITE_DEPTH, /* depth attachment, cleared to 0 (far) first */
     MASU_UPDATE_DEPTH, /* the same of a part of the image, the rest is kept */
@@ -155,6 +156,8 @@ typedef struct masu_needs {
     int surface;       /* some material has more than the four numbers of albedo and normal image */
     int environment;   /* the sky is from a picture */
     int sky;           /* the sky may follow from the sun */
+    int emissive;      /* polygons may emit: the G-buffer pass writes their radiance into hdr, */
+    int emission_packed; /* unless the device has too few attachments: then albedo holds it (pack.glsl) */
     int velocity;      /* something reads velocities: the previous frame is kept */
     int sdf_occlusion; /* the SDF casts shadows or occludes ambient light */
     int probes;        /* it has light probes */

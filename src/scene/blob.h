@@ -25,7 +25,7 @@
 
 #define MASU_BLOB_MAGIC 0x5553414Du /* the bytes 'M' 'A' 'S' 'U' */
 #define MASU_BLOB_VERSION 15u
-/* layout of version 15: 4261673116 (kinds of sections and their elements, tests/scripts/scene_forms.sh) */
+/* layout of version 15: 2621088106 (kinds of sections and their elements, tests/scripts/scene_forms.sh) */
 #define MASU_BLOB_ALIGN 16u
 #define MASU_BLOB_NONE 0xFFFFFFFFu /* "no name", "no parent" */
 #define MASU_BLOB_PART_SLOTS 8u    /* of an SDF's part, in front of all others: sphere, slope, form, first argument, material */
@@ -163,7 +163,9 @@ typedef struct masu_blob_primitive {
     uint32_t material;
     float aabb_min[3]; /* object space */
     float aabb_max[3];
-    uint32_t reserved;
+    /* Object space: most by which the smooth surface of the vertex normals rises above the triangles;
+     * 0: faceted. The shadow map draws the primitive that much thinner. */
+    float rise;
 } masu_blob_primitive;
 
 typedef struct masu_blob_mesh {

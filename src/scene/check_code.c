@@ -21,16 +21,16 @@ static const struct {
     uint8_t kind, columns, rows, reads, raster_reads, writes, push;
     uint64_t global; /* of set 0 */
 } rules[] = {
-    {MASU_BLOB_MARCH_SPIRV, 8, 8, 1, 1, 3, PUSH(march), FIELD},
+    {MASU_BLOB_MARCH_SPIRV, 8, 8, 1, 1, 4, PUSH(march), FIELD},
     {MASU_BLOB_CLASSIFY_SPIRV, 8, 8, 0, 1, 1, sizeof(struct masu_push), FIELD},
     {MASU_BLOB_CONE8_SPIRV, 8, 8, 0, 0, 1, PUSH(cone), FIELD},
     {MASU_BLOB_CONE4_SPIRV, 8, 8, 1, 1, 1, PUSH(cone), FIELD},
     {MASU_BLOB_UPDATE_SPIRV, 1, 1, 0, 0, 0, sizeof(struct masu_push), FIELD},
     {MASU_BLOB_UPDATE_PREVIOUS_SPIRV, 1, 1, 0, 0, 0, sizeof(struct masu_push), FIELD | AT(PREVIOUS)},
 #ifdef MASU_LAB
-    {MASU_BLOB_PLAIN_SPIRV, 8, 8, 0, 1, 3, PUSH(march_plain), FIELD},
-    {MASU_BLOB_SEED_SPIRV, 4, 8, 0, 1, 3, PUSH(march_seed), FIELD},
-    {MASU_BLOB_CHECKERBOARD_SPIRV, 8, 8, 1, 1, 3, PUSH(march_checkerboard), FIELD},
+    {MASU_BLOB_PLAIN_SPIRV, 8, 8, 0, 1, 4, PUSH(march_plain), FIELD},
+    {MASU_BLOB_SEED_SPIRV, 4, 8, 0, 1, 4, PUSH(march_seed), FIELD},
+    {MASU_BLOB_CHECKERBOARD_SPIRV, 8, 8, 1, 1, 4, PUSH(march_checkerboard), FIELD},
 #endif
     {MASU_BLOB_VELOCITY_SPIRV, 8, 8, 1, 2, 1, PUSH(sdf_velocity), FIELD | AT(PREVIOUS)},
     {MASU_BLOB_SILHOUETTES_SPIRV, 8, 8, 4, 5, 1, PUSH(silhouettes), FIELD | AT(EXPOSURE) | AT(TABLES) | AT(SKY)},

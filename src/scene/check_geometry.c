@@ -19,6 +19,9 @@ static masu_result check_primitive(reader *r, uint64_t i) {
     if (!finite_all(p->aabb_min, 3) || !finite_all(p->aabb_max, 3)) {
         return bad(r, "primitives", i, "bounds are not finite");
     }
+    if (!(p->rise >= 0.0f) || !finite_all(&p->rise, 1)) {
+        return bad(r, "primitives", i, "the rise of its surface is negative or not finite");
+    }
     for (uint32_t k = 0; k < p->index_count; k++) {
         uint32_t index = r->view.indices[p->first_index + k];
         if (index >= p->vertex_count) {

@@ -42,7 +42,7 @@ enum { DECORATION_SPEC_ID = 1, DECORATION_BUILT_IN = 11, DECORATION_BINDING = 33
 enum { BUILT_IN_WORKGROUP_SIZE = 25 };
 enum { CLASS_CONSTANT = 0, CLASS_UNIFORM = 2, CLASS_PUSH = 9, CLASS_STORAGE = 12 };
 enum { MODE_LOCAL_SIZE = 17 };
-#define SPEC_IDS 11u /* device/pipelines.c */
+#define SPEC_IDS 16u /* device/pipelines.c */
 
 /* Where instructions may stand: ranks do not fall. */
 enum { RANK_CAPABILITY, RANK_IMPORT, RANK_MODEL, RANK_ENTRY, RANK_MODE, RANK_DEBUG, RANK_DECORATION, RANK_GLOBAL, RANK_FUNCTION };

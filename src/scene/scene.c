@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "scene/check.h"
+#include "scene/material.h"
 #include "scene/reader.h"
 #include "scene/texture.h"
 
@@ -69,6 +70,8 @@ static void describe(const reader *r, uint64_t blob_bytes, uint64_t pairs, masu_
     for (uint32_t i = 0; i < out->materials; i++) {
         if (r->view.materials[i].flags & MASU_MATERIAL_IS_MASK) out->masks = 1;
         if (r->view.materials[i].flags & MASU_MATERIAL_IS_SINGLE) out->singles = 1;
+        if (masu_material_emits(&r->view.materials[i]))
+            out->emissions |= 1u << masu_draw_kind(r->view.materials[i].flags);
     }
     masu_describe_looks(r, out);
     masu_describe_trace(r, out);

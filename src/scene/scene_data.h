@@ -67,6 +67,7 @@ typedef struct MASU_MAY_ALIAS masu_scene_data {
     uint64_t texture_bytes_decoded; /* of the same texels decoded */
     uint32_t masks;                 /* flag: a material is alpha-tested */
     uint32_t singles;               /* flag: a material is single-sided */
+    uint32_t emissions; /* bit per masu_draw_kind (material.h) of which an opaque material emits */
     uint32_t surfaces;  /* opaque materials with a specular factor, a coat, mesoscale detail or an
                          * occlusion map */
     uint32_t coats;     /* materials with a clear coat */

@@ -135,6 +135,7 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
     SAME(deny.unorm16);
     SAME(deny.image_size);
     SAME(deny.storage_buffers);
+    SAME(deny.color_attachments);
     SAME(log);
     SAME(log_user);
     SAME(clock_ns);

@@ -1,5 +1,6 @@
-/* test_emission.c: the two texels of what emits (measure/texel.h, the twin of shaders/shared/pack.glsl): how far rounding
- * takes a material, which of them are lit, and that any texels give numbers in range. */
+/* test_emission.c: the two texels of surfaces that emit (measure/texel.h, the twin of shaders/shared/pack.glsl), of ray
+ * hits and of the G-buffer: how far rounding takes a material, which of them are lit, and that any texels give numbers in
+ * range. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -21,9 +22,9 @@ static double any(void) { return random_unit(&state_of); }
 static uint32_t round_trip(const double m[8], double out[8]) {
     uint8_t albedo[4];
     uint32_t normal;
-    masu_texel_pack(m, albedo, &normal);
+    masu_texel_pack_met(m, albedo, &normal);
     assert_int_equal(normal & 0x3FFFFFF, 0);
-    masu_texel_unpack(albedo, normal, out);
+    masu_texel_unpack_met(albedo, normal, out);
     return normal;
 }
 
@@ -94,13 +95,37 @@ static void any_texels_are_materials(void **state) {
         uint8_t texel[4];
         double m[8];
         memcpy(texel, &word, sizeof texel);
-        masu_texel_unpack(texel, normal, m);
+        masu_texel_unpack_met(texel, normal, m);
         for (int k = 0; k < 8; k++) assert_true(m[k] >= 0 && m[k] <= (k >= 4 && k < 7 ? 33 : 1));
     }
 }
 
+/* Emission costs the G-buffer nothing: base colour and roughness keep 8 bits, metallic 15 of 16 steps. */
+static void the_gbuffer_keeps_the_base_beside_emission(void **state) {
+    (void)state;
+    for (int i = 0; i < 20000; i++) {
+        double m[8], out[8];
+        uint8_t albedo[4];
+        uint32_t normal;
+        for (int k = 0; k < 8; k++) m[k] = any();
+        m[4] = 0.01 + 60000 * any();
+        masu_texel_pack(m, albedo, &normal);
+        masu_texel_unpack(albedo, normal, out);
+        assert_true(normal >> 30 & MASU_SURFACE_EMISSIVE);
+        assert_false(masu_texel_is_unlit(normal));
+        for (int c = 0; c < 3; c++) assert_true(fabs(sqrt(m[c]) - sqrt(out[c])) < 0.501 / 255);
+        assert_true(fabs(m[3] - out[3]) < 0.501 / 255 && fabs(m[7] - out[7]) < 0.501 / 14);
+    }
+    const double lamp[8] = {0, 0, 0, 1, 3, 2, 1, 0};
+    uint8_t albedo[4];
+    uint32_t normal;
+    masu_texel_pack(lamp, albedo, &normal);
+    assert_true(masu_texel_is_unlit(normal));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_gbuffer_keeps_the_base_beside_emission),
         cmocka_unit_test(what_emits_and_is_lit_is_rounded_so_far),
         cmocka_unit_test(what_is_black_keeps_eight_bits),
         cmocka_unit_test(what_is_lit),

@@ -45,7 +45,7 @@ static const char *usage_text(uint8_t usage) {
         [MASU_WRITE] = "w",         [MASU_UPDATE] = "u",      [MASU_PING_PONG] = "rw",    [MASU_WRITE_COLOR] = "c",
         [MASU_WRITE_DEPTH] = "d",   [MASU_WRITE_COPY] = "to", [MASU_READ_BUFFER] = "rb",
         [MASU_WRITE_BUFFER] = "wb", [MASU_UPDATE_DEPTH] = "ud",
-        [MASU_BLEND_COLOR] = "b",   [MASU_READ_STRUCTURE] = "rs", [MASU_WRITE_STRUCTURE] = "ws",
+        [MASU_BLEND_COLOR] = "b",   [MASU_UPDATE_COLOR] = "uc", [MASU_READ_STRUCTURE] = "rs", [MASU_WRITE_STRUCTURE] = "ws",
     };
     return texts[usage];
 }

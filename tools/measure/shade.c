@@ -132,15 +132,17 @@ void masu_shade_surface(const masu_view *view, const double direction[3], const 
     uint32_t look;
     masu_texel_pack(material, albedo, &look);
     masu_texel_unpack(albedo, look, rounded);
+    for (int c = 4; c < 7; c++) rounded[c] = clamped(material[c], 0, 65504);
     masu_shade_exact(view, direction, n, rounded, out, mirrored);
     for (int c = 0; c < 3; c++) out[c] += mirrored[c];
 }
 
 void masu_shade_texel(const masu_view *view, const double direction[3], const uint8_t albedo[4],
-                      uint32_t normal, double out[3]) {
+                      uint32_t normal, const double emission[3], double out[3]) {
     double material[8], n[3], mirrored[3];
     float unpacked[3];
     masu_texel_unpack(albedo, normal, material);
+    for (int c = 0; c < 3; c++) material[4 + c] = emission[c];
     masu_unpack_normal(normal, unpacked);
     for (int i = 0; i < 3; i++) n[i] = (double)unpacked[i];
     masu_shade_exact(view, direction, n, material, out, mirrored);

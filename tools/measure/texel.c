@@ -49,6 +49,25 @@ void masu_texel_unpack(const uint8_t texel[4], uint32_t normal, double m[8]) {
     uint32_t form = normal >> 26 & 15;
     bool shines = (normal >> 30 & MASU_SURFACE_EMISSIVE) != 0;
     memset(m, 0, 8 * sizeof *m);
+    for (int c = 0; c < 3; c++) {
+        double root = texel[c] / 255.0;
+        m[c] = root * root;
+    }
+    m[3] = texel[3] / 255.0;
+    m[7] = !shines ? form / 15.0 : form ? (form - 1) / 14.0 : 0;
+}
+
+void masu_texel_pack(const double m[8], uint8_t texel[4], uint32_t *normal) {
+    for (int c = 0; c < 3; c++) texel[c] = (uint8_t)level_of(sqrt(clamped(m[c], 0, 1)), 255);
+    texel[3] = (uint8_t)level_of(m[3], 255);
+    uint32_t metal = masu_texel_unlit(m) ? 0 : 1 + level_of(m[7], 14);
+    *normal = emits(m) ? MASU_SURFACE_EMISSIVE << 30 | metal << 26 : level_of(m[7], 15) << 26;
+}
+
+void masu_texel_unpack_met(const uint8_t texel[4], uint32_t normal, double m[8]) {
+    uint32_t form = normal >> 26 & 15;
+    bool shines = (normal >> 30 & MASU_SURFACE_EMISSIVE) != 0;
+    memset(m, 0, 8 * sizeof *m);
     if (shines && form > 0 && form < 15) {
         unpack_word(texel, form, m);
         return;
@@ -61,7 +80,7 @@ void masu_texel_unpack(const uint8_t texel[4], uint32_t normal, double m[8]) {
     m[7] = shines ? 0 : form / 15.0;
 }
 
-void masu_texel_pack(const double m[8], uint8_t texel[4], uint32_t *normal) {
+void masu_texel_pack_met(const double m[8], uint8_t texel[4], uint32_t *normal) {
     bool shines = emits(m), black = !(brightest_of(m) > 0) && !(m[7] >= 0.5);
     for (int c = 0; c < 3; c++)
         texel[c] = (uint8_t)level_of(sqrt(clamped(shines ? m[4 + c] / range : m[c], 0, 1)), 255);

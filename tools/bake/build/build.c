@@ -9,6 +9,7 @@
 #include "bake/build/parts.h"
 #include "bake/light/environment.h"
 #include "bake/light/picture_sun.h"
+#include "bake/mesh/rise.h"
 #include "bake/scene/camera.h"
 #include "bake/scene/groups.h"
 #include "bake/scene/skin.h"
@@ -193,6 +194,7 @@ bool masu_bake_build(masu_bake_description *d, const masu_bake_options *options,
     content->pictures_wanted = report->reflected = d->reflections.wanted;
     content->picture_side = d->reflections.texture_size;
     if (!masu_bake_make_textures(content, options->texture_path)) return false;
+    masu_bake_measure_rise(content);
     masu_bake_gather_skins(content);
     masu_bake_sort_instances(content);
     masu_bake_groups(content);
