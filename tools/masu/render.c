@@ -1,9 +1,10 @@
-/* render.c: `masu render`: frames of a baked scene to PNG, headless, with measured times,
+/* render.c: `masu render`: frames of a baked scene to image files, headless, with measured times,
  * counts and memory. */
 #include "command/options.h"
 #include "masu/render.h"
 
 #include "alloc_count.h"
+#include "measure/linear.h"
 #include "measure/picture.h"
 #include "settings/knobs.h"
 #include "clock.h"
@@ -31,19 +32,44 @@ static bool output_name(const char *pattern, uint32_t frame, char *out, size_t s
     return n > 0 && (size_t)n < size;
 }
 
-static int save(masu_session *s, const masu_render_options *o, uint32_t frame) {
+/* What the file's name asks for. linear: three floats a pixel of `size`; rgba: of the output. */
+static int write_image(const masu_session *s, const char *path, const uint8_t *rgba, const float *linear,
+                       VkExtent2D size) {
+    char error[1024];
+    VkExtent2D out = s->desc.output;
+    bool good = masu_image_is_linear(path)
+                    ? masu_image_save_linear(path, linear, size.width, size.height, error, sizeof error)
+                    : masu_image_save_png(path, rgba, out.width, out.height, 0, error, sizeof error);
+    return good ? MASU_CLI_OK : masu_cli_error("%s", error);
+}
+
+static VkExtent2D render_size(const masu_session *s, uint32_t rung) {
+    masu_plan_info plan;
+    masu_plan_of(s->m, &plan);
+    return (VkExtent2D){plan.rungs[rung].render_width, plan.rungs[rung].render_height};
+}
+
+/* Linear light is read before upscaling. */
+static int save_linear(masu_session *s, const char *name, const masu_commands *commands) {
+    VkExtent2D size = render_size(s, commands->rung);
+    float *linear = malloc(3 * sizeof *linear * size.width * size.height);
+    int code = linear && masu_linear_read(s, commands->slot, size, linear)
+                   ? write_image(s, name, NULL, linear, size)
+                   : masu_cli_error("%s: no linear light to read back", name);
+    free(linear);
+    return code;
+}
+
+static int save(masu_session *s, const masu_render_options *o, uint32_t frame, const masu_commands *commands) {
     char error[1024], name[4096];
     bool each = strchr(o->output, '#') != NULL;
     if (!each && frame + 1 < o->frames) return MASU_CLI_OK;
     if (!output_name(o->output, frame, name, sizeof name))
         return masu_cli_error("--output: the file name is too long");
+    if (masu_image_is_linear(name)) return save_linear(s, name, commands);
     if (!masu_headless_target_read(&s->host, &s->targets[0], error, sizeof error))
         return masu_cli_error("%s", error);
-    if (!masu_image_save_png(name, s->targets[0].mapped, s->targets[0].width, s->targets[0].height,
-                             0, error, sizeof error)) {
-        return masu_cli_error("%s", error);
-    }
-    return MASU_CLI_OK;
+    return write_image(s, name, s->targets[0].mapped, NULL, s->desc.output);
 }
 
 /* The sun's place by angles as in scenes; a sky that follows from it. */
@@ -74,8 +100,8 @@ static bool animate(masu_session *s, double time, char *error, size_t size) {
 }
 
 static bool measure(masu_session *s, const masu_render_options *o, uint32_t frame,
-                    masu_vk_alloc_counts *counts, masu_sample *out, masu_stats_info *stats, char *error,
-                    size_t size) {
+                    masu_vk_alloc_counts *counts, masu_sample *out, masu_stats_info *stats,
+                    masu_commands *drawn, char *error, size_t size) {
     masu_light light;
     bool own_light = o->own_sun || o->turbidity > 0.0 || o->exposure > 0.0;
     if (own_light && masu_light_of(s->m, &light)) {
@@ -110,6 +136,7 @@ static bool measure(masu_session *s, const masu_render_options *o, uint32_t fram
     out->driver_callbacks = counts->allocations + counts->reallocations - callbacks;
     (void)masu_stats(s->m, commands.slot, stats);
     out->gpu_ms = (double)stats->gpu_ns / 1e6;
+    *drawn = commands;
     out->rung = commands.rung;
     out->reason = stats->governor.reason_text;
     for (uint32_t p = 0; p < stats->pass_count; p++)
@@ -138,16 +165,20 @@ static int render_truth(masu_session *s, const masu_render_options *o) {
     if (own_light && masu_light_of(s->m, &light)) return masu_cli_error("--sun, --turbidity and --exposure: the scene has no light");
     if (own_light) set_light(o, &light);
     VkExtent2D size = s->desc.output;
-    uint8_t *rgba = malloc(4 * (size_t)size.width * size.height);
-    if (!rgba) return masu_cli_error("out of memory for an image of %ux%u", size.width, size.height);
+    size_t pixels = (size_t)size.width * size.height;
+    uint8_t *rgba = malloc(4 * pixels);
+    float *linear = malloc(3 * sizeof *linear * pixels);
     masu_frame_desc frame = {.light = own_light ? &light : NULL, .time = o->time};
     uint32_t rays = o->rays ? o->rays : MASU_PICTURE_RAYS;
-    bool good = masu_picture_truth(s, &frame, o->positions, rays, rgba, masu_cli_progress_text, error,
-                                   sizeof error) &&
-                masu_image_save_png(o->output, rgba, size.width, size.height, 0, error, sizeof error);
+    snprintf(error, sizeof error, "out of memory for an image of %ux%u", size.width, size.height);
+    bool good = rgba && linear &&
+                masu_picture_truth(s, &frame, o->positions, rays,
+                                   &(masu_picture_means){.linear = linear, .display = rgba},
+                                   masu_cli_progress_text, error, sizeof error);
+    int code = good ? write_image(s, o->output, rgba, linear, size) : masu_cli_error("%s", error);
     free(rgba);
-    if (!good) return masu_cli_error("%s", error);
-    if (masu_cli_quiet()) return MASU_CLI_OK;
+    free(linear);
+    if (code || masu_cli_quiet()) return code;
     masu_cli_progress_clear();
     fprintf(stderr, "masu: ground truth: %u samples per pixel, %u frame%s each\n", o->positions,
             masu_picture_frames(s, o->positions, rays),
@@ -165,15 +196,16 @@ static int render_frames(masu_session *s, const masu_render_options *o,
     int code = samples ? MASU_CLI_OK : masu_cli_error("out of memory for %u frames", o->frames);
     memset(&stats, 0, sizeof stats);
     masu_sample warm_up;
-    if (!code && o->stats && !measure(s, o, 0, counts, &warm_up, &stats, error, sizeof error)) {
+    masu_commands commands;
+    if (!code && o->stats && !measure(s, o, 0, counts, &warm_up, &stats, &commands, error, sizeof error)) {
         code = masu_cli_error("%s", error);
     }
     for (uint32_t i = 0; i < o->frames && !code; i++) {
         masu_cli_progress(o->rays ? "ray %u of %u per pixel" : "frame %u of %u", i + 1, o->frames);
-        if (!measure(s, o, i, counts, &samples[i], &stats, error, sizeof error)) {
+        if (!measure(s, o, i, counts, &samples[i], &stats, &commands, error, sizeof error)) {
             code = masu_cli_error("%s", error);
         } else if (o->output) {
-            code = save(s, o, i);
+            code = save(s, o, i, &commands);
         }
     }
     if (!code && o->stats)
@@ -283,8 +315,10 @@ static const char *const stages[] = {"both", "frustum", "occlusion", "none", NUL
 
 static const masu_option rows[] = {
     MASU_HEADING("Output"),
-    {MASU_ROW(masu_render_options, output, MASU_TAKE_PNG, "output", "FILE.png",
-              "write the last frame; with '####' in the name, every frame, numbered"),
+    {MASU_ROW(masu_render_options, output, MASU_TAKE_IMAGE, "output", "FILE",
+              "write the last frame; with '####' in the name, every frame, numbered.\n"
+              "FILE.png: 8 bits of sRGB; FILE.pfm, FILE.exr: scene-linear RGB before\n"
+              "exposure and tone curve, at the render size"),
      .letter = 'o'},
     MASU_OUTPUT_SIZE_ROW(masu_render_options, d.desc.output),
     MASU_OUTPUT(masu_render_options, stats, "stats", "FILE.json",
@@ -397,6 +431,7 @@ static int describe(masu_render_options *o, const masu_given *given) {
     d->analytic_sky = o->turbidity > 0.0;
     d->vulkan.max_anisotropy = (float)o->anisotropy;
     if (o->dither) d->dither = MASU_ON;
+    if (o->output && masu_image_is_linear(o->output)) d->readback = MASU_READBACK_HDR;
     if (o->split) d->deny.unified_memory = 1;
     d->debug = (masu_debug){.timestamps = o->stats != NULL,
                             .counters = o->stats != NULL || o->rays,
@@ -450,8 +485,8 @@ static int run(masu_cli *cli) {
 
 const masu_cli_command masu_cmd_render = {
     .name = "render",
-    .arguments = "SCENE.masu -o OUT.png [options]",
-    .summary = "render a baked scene to PNG",
+    .arguments = "SCENE.masu -o OUT.png|OUT.pfm|OUT.exr [options]",
+    .summary = "render a baked scene to an image",
     .details = "With --stats, an extra first frame is rendered and not counted. Wall time is measured from\n"
                "masu_frame to the fence. GPU times are timestamps with a full barrier around each pass;\n"
                "\"timestamps_plausible\" reports whether they agree with the wall time.\n\n"
