@@ -4,6 +4,7 @@
 #include "support/cli.h"
 
 #include "image.h"
+#include "measure/linear.h"
 #include "reference/fsr1.h"
 #include "reference/patterns.h"
 #include "reference/smaa.h"
@@ -287,6 +288,32 @@ static void a_setting_is_drawn_by_its_name(void **state) {
     }
 }
 
+/* Both formats have the same floats; what they are is the image that the PNG shows. */
+static void linear_light_is_written_in_both_formats(void **state) {
+    (void)state;
+    static const char *const ends[] = {"exr", "pfm", "png"};
+    struct masu_image images[3];
+    char name[256], error[ERROR_SIZE];
+    for (int k = 0; k < 3; k++) {
+        snprintf(name, sizeof name, "%s/linear.%s", scratch, ends[k]);
+        assert_int_equal(cli_run("render %s -o %s --size 64x48 --tone none --exposure 0.5", scene_path("test_both"), name), 0);
+        assert_ok(masu_image_load(name, &images[k], error, sizeof error));
+        assert_int_equal(images[k].width, 64);
+        assert_int_equal(images[k].height, 48);
+    }
+    assert_memory_equal(images[0].values, images[1].values, 3 * 64 * 48 * sizeof(float));
+    for (uint32_t i = 0; i < 3 * 64 * 48; i++) {
+        int shown = masu_srgb_encoded(0.5f * images[0].values[i]), have = images[2].rgba[i / 3 * 4 + i % 3];
+        assert_true(abs(shown - have) <= 1);
+    }
+    for (int k = 0; k < 3; k++) masu_image_free(&images[k]);
+    assert_int_equal(cli_run("render %s -o %s/half.pfm --size 64x48 --setting scale=0.5", scene_path("test_both"), scratch), 0);
+    snprintf(name, sizeof name, "%s/half.pfm", scratch);
+    assert_ok(masu_image_load(name, &images[0], error, sizeof error));
+    assert_int_equal(images[0].width, 32);
+    masu_image_free(&images[0]);
+}
+
 /* All that has followed from it, too: reflections have the means of pictures without a past. */
 static void other_anti_aliasing_takes_a_past_out_of_a_rung(void **state) {
     (void)state;
@@ -433,6 +460,7 @@ int main(void) {
         cmocka_unit_test(render_writes_the_picture_and_its_numbers_under_validation),
         cmocka_unit_test(ladders_are_read_and_shown),
         cmocka_unit_test(a_setting_is_drawn_by_its_name),
+        cmocka_unit_test(linear_light_is_written_in_both_formats),
         cmocka_unit_test(other_anti_aliasing_takes_a_past_out_of_a_rung),
         cmocka_unit_test(plan_says_what_is_in_and_what_was_left_out),
         cmocka_unit_test(the_governor_reports_what_it_has_done),

@@ -275,7 +275,7 @@ static void tone_curves_are_those_of_the_pass(void **state) {
             masu_frame_desc f = {.camera = &camera, .light = &light, .cut = 1};
             masu_commands commands;
             draw(&s, &f, &commands, picture);
-            assert_true(masu_linear_read(&s, commands.slot, s.desc.output, linear));
+            assert_true(masu_linear_read(s.m, commands.slot, s.desc.output, linear));
             masu_linear_show(&s, linear, PIXELS, masu_linear_exposure(&s, commands.slot, &light), linear);
             masu_srgb_encode(linear, PIXELS, shown);
             for (uint32_t p = 0; p < 4 * PIXELS; p++) {

@@ -53,7 +53,7 @@ static VkExtent2D render_size(const masu_session *s, uint32_t rung) {
 static int save_linear(masu_session *s, const char *name, const masu_commands *commands) {
     VkExtent2D size = render_size(s, commands->rung);
     float *linear = malloc(3 * sizeof *linear * size.width * size.height);
-    int code = linear && masu_linear_read(s, commands->slot, size, linear)
+    int code = linear && masu_linear_read(s->m, commands->slot, size, linear)
                    ? write_image(s, name, NULL, linear, size)
                    : masu_cli_error("%s: no linear light to read back", name);
     free(linear);

@@ -6,9 +6,9 @@
 #include <math.h>
 #include <string.h>
 
-bool masu_linear_read(masu_session *s, uint32_t slot, VkExtent2D size, float *rgb) {
+bool masu_linear_read(const masu_renderer *m, uint32_t slot, VkExtent2D size, float *rgb) {
     masu_readback_image image;
-    if (masu_readback(s->m, slot, MASU_READBACK_HDR, &image)) return false;
+    if (masu_readback(m, slot, MASU_READBACK_HDR, &image)) return false;
     if (image.width != size.width || image.height != size.height) return false;
     for (uint32_t y = 0; y < image.height; y++) {
         const uint8_t *row = (const uint8_t *)image.pixels + (size_t)y * image.row_bytes;

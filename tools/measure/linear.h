@@ -8,8 +8,8 @@
 #include "session.h"
 
 /* The HDR image of a slot's last frame; infinity is the largest half, NaN is 0. `size`: the render size. False: the
- * session does not read it back, or it has another size. */
-bool masu_linear_read(masu_session *s, uint32_t slot, VkExtent2D size, float *rgb);
+ * renderer does not read it back, or it has another size. */
+bool masu_linear_read(const masu_renderer *m, uint32_t slot, VkExtent2D size, float *rgb);
 
 /* Exposure of the slot's last frame: `light`'s, or the scene's if it is NULL; with auto-exposure (metered) the factor
  * that the frame was shown with, which needs debug.counters. */

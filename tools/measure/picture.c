@@ -103,7 +103,7 @@ static bool add_position(masu_session *s, const masu_light *light, sums *sum, ch
     const size_t pixels = (size_t)s->desc.output.width * s->desc.output.height;
     const uint32_t slot = masu_specular_slot(s);
     const double exposure = masu_linear_exposure(s, slot, light);
-    if (!masu_linear_read(s, slot, s->desc.output, sum->one)) {
+    if (!masu_linear_read(s->m, slot, s->desc.output, sum->one)) {
         snprintf(error, error_size, "no radiance to read back");
         return false;
     }
