@@ -147,8 +147,6 @@ demo: deps-demo $(if $(filter forza,$(WORLD)),deps-worlds)
 demo: ## install missing packages, build, bake, render: WORLD=garden|engine|forza|city|... SIZE=1920x1080 TIME= DEMO_ARGS=
 	+$(V)$(more) demo-picture
 
-# At full size with smooth edges; what else is best is the scene's.
-DEMO_ARGS ?= --setting aa=smaa-high+silhouettes=on
 picture := $(BUILD)/demo$(if $(filter-out garden,$(WORLD)),-$(WORLD)).png
 picture_of := $(BUILD)/$(if $(filter $(WORLDS),$(WORLD)),worlds,scenes)/$(WORLD).masu
 demo-picture: $(BUILD)/bin/masu $(picture_of)

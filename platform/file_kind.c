@@ -54,6 +54,7 @@ static masu_file_kind kind_of_content(const char *text, size_t count) {
     if (starts(text, count, "MASU")) return MASU_FILE_BLOB;
     if (starts(text, count, "\x89PNG") || starts(text, count, "\xFF\xD8\xFF") || starts(text, count, "GIF8"))
         return MASU_FILE_IMAGE;
+    if (starts(text, count, "v/1\x01")) return MASU_FILE_IMAGE; /* OpenEXR */
     if (starts(text, count, "glTF")) return MASU_FILE_MODEL;
     if (text[strspn(text, " \t\r\n\xEF\xBB\xBF")] != '{') return MASU_FILE_UNKNOWN;
     if (has_member(text, "\"asset\"", '{')) return MASU_FILE_MODEL;
@@ -92,7 +93,7 @@ const char *masu_file_hint(const char *path, const void *bytes, size_t count, ma
     case MASU_FILE_SDF: return "; an SDF: `masu-bake FILE.sdf -o X.masu` bakes it, `masu-sdfc` checks it";
     case MASU_FILE_GLSL: return "; GLSL: a scene description names it as the source of its SDF";
     case MASU_FILE_MODEL: return "; a model: `masu-bake MODEL -o X.masu` bakes it";
-    case MASU_FILE_IMAGE: return "; an image, for `masu compare` and `masu upscale` (PNG)";
+    case MASU_FILE_IMAGE: return "; an image, for `masu compare` and `masu upscale` (PNG, PFM, OpenEXR)";
     case MASU_FILE_SUITE: return "; a suite, for `masu conform --suite FILE.json`";
     case MASU_FILE_LADDER: return "; a quality ladder, for --ladder FILE.json";
     case MASU_FILE_UNKNOWN: break;
@@ -100,13 +101,31 @@ const char *masu_file_hint(const char *path, const void *bytes, size_t count, ma
     return "";
 }
 
-bool masu_file_named(const char *path, const char *end, char *error, size_t error_size) {
+/* Whether `dot` is one of the ends, which have a space between them. */
+static bool is_one_of(const char *dot, const char *ends_of) {
+    size_t n = strlen(dot);
+    for (const char *at = ends_of; *at;) {
+        size_t length = strcspn(at, " ");
+        if (length == n && !strncasecmp(at, dot, n)) return true;
+        at += length + (at[length] == ' ');
+    }
+    return false;
+}
+
+bool masu_file_named(const char *path, const char *ends_of, char *error, size_t error_size) {
     struct stat about;
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
     const char *dot = strrchr(name, '.');
     bool special = stat(path, &about) == 0 && !S_ISREG(about.st_mode);
-    if (special || !dot || dot == name || !strcasecmp(dot, end)) return true;
-    snprintf(error, error_size, "%s: found a name that ends in %s, expected one that ends in %s, the only format that "
-             "can be written", path, dot, end);
+    if (special || !dot || dot == name || is_one_of(dot, ends_of)) return true;
+    char list[64] = "";
+    for (const char *at = ends_of; *at;) {
+        size_t length = strcspn(at, " "), used = strlen(list);
+        const char *between = !used ? "" : at[length] ? ", " : " or ";
+        snprintf(list + used, sizeof list - used, "%s%.*s", between, (int)length, at);
+        at += length + (at[length] == ' ');
+    }
+    snprintf(error, error_size, "%s: found a name that ends in %s, expected one that ends in %s, the only format%s that "
+             "can be written", path, dot, list, strchr(ends_of, ' ') ? "s" : "");
     return false;
 }

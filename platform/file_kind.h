@@ -24,8 +24,8 @@ masu_file_kind masu_file_kind_of(const char *path, const void *bytes, size_t cou
  * the file; "" for the kind that was expected and for unknown ones. */
 const char *masu_file_hint(const char *path, const void *bytes, size_t count, masu_file_kind expected);
 
-/* Whether a file of one format, ".png", may be written under that name: it ends so, or has no such end at all, or is
- * a device or a pipe. On false one line is written to `error`. */
-bool masu_file_named(const char *path, const char *end, char *error, size_t error_size);
+/* Whether a file of these formats, ".png .pfm", may be written under that name: it has one of these ends, or no such
+ * end at all, or is a device or a pipe. On false one line is written to `error`. */
+bool masu_file_named(const char *path, const char *ends_of, char *error, size_t error_size);
 
 #endif

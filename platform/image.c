@@ -1,5 +1,5 @@
 /*
- * image.c: see image.h. Order: files, then PNG, then PFM.
+ * image.c: see image.h. Order: files, then PNG, then PFM. exr.c: OpenEXR.
  *
  * stb does the PNG coding. It trusts chunk lengths more than a stranger's file deserves and ignores
  * checksums, so a file is first walked chunk by chunk here; only one that is whole, and within the
@@ -12,6 +12,7 @@
 #include "image.h"
 #include "atomic_file.h"
 #include "file_kind.h"
+#include "image_parts.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -19,6 +20,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -55,12 +57,10 @@ static void *bounded_realloc(void *block, size_t bytes) {
 
 _Static_assert(MASU_IMAGE_SIDE_MAX == STBI_MAX_DIMENSIONS, "one limit, stated twice");
 
-/* Always false, so that a failing branch is one statement. */
-#if defined(__GNUC__)
-__attribute__((format(printf, 3, 4)))
-#endif
-static bool
-fail(char *error, size_t error_size, const char *format, ...) {
+#define fail masu_image_fail
+#define size_is_allowed masu_image_size_allowed
+
+bool masu_image_fail(char *error, size_t error_size, const char *format, ...) {
     if (error && error_size) {
         va_list arguments;
         va_start(arguments, format);
@@ -76,7 +76,7 @@ void masu_image_free(struct masu_image *image) {
     *image = (struct masu_image){0};
 }
 
-static bool size_is_allowed(const char *path, uint32_t width, uint32_t height, char *error,
+bool masu_image_size_allowed(const char *path, uint32_t width, uint32_t height, char *error,
                             size_t error_size) {
     if (width == 0 || height == 0) {
         return fail(error, error_size, "%s: the image is empty (%ux%u)", path, width, height);
@@ -541,6 +541,42 @@ bool masu_image_save_pfm(const char *path, const float *values, uint32_t width, 
         }
     }
     bool good = masu_file_write(path, bytes, count, error, error_size);
+    free(bytes);
+    return good;
+}
+
+/* ---- Any format ---- */
+
+bool masu_image_inflate(const uint8_t *from, size_t count, uint8_t *to, size_t bytes) {
+    return count <= INT32_MAX && bytes <= INT32_MAX &&
+           stbi_zlib_decode_buffer((char *)to, (int)bytes, (const char *)from, (int)count) == (int)bytes;
+}
+
+bool masu_image_is_linear(const char *path) {
+    size_t n = strlen(path);
+    return n > 4 && (!strcasecmp(path + n - 4, ".pfm") || !strcasecmp(path + n - 4, ".exr"));
+}
+
+bool masu_image_save_linear(const char *path, const float *values, uint32_t width, uint32_t height,
+                            char *error, size_t error_size) {
+    size_t n = strlen(path);
+    return n > 4 && !strcasecmp(path + n - 4, ".exr")
+               ? masu_image_save_exr(path, values, width, height, error, error_size)
+               : masu_image_save_pfm(path, values, width, height, 3, error, error_size);
+}
+
+bool masu_image_load(const char *path, struct masu_image *image, char *error, size_t error_size) {
+    *image = (struct masu_image){0};
+    uint8_t *bytes;
+    size_t count;
+    if (!masu_file_read(path, MASU_IMAGE_FILE_BYTES_MAX, &bytes, &count, error, error_size)) {
+        return false;
+    }
+    struct pfm_header header;
+    bool good = masu_image_is_exr(bytes, count) ? masu_image_decode_exr(path, bytes, count, image, error, error_size)
+                : parse_pfm(bytes, count, &header) || (count > 2 && !memcmp(bytes, "PF", 2))
+                    ? decode_pfm(path, bytes, count, image, error, error_size)
+                    : masu_image_decode_png(path, bytes, count, image, error, error_size);
     free(bytes);
     return good;
 }

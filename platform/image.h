@@ -1,5 +1,5 @@
 /*
- * image.h: pictures in files: 8-bit RGBA as PNG, floats as PFM.
+ * image.h: images in files: 8-bit RGBA as PNG, floats as PFM and OpenEXR.
  *
  * Host side only; the library itself does no I/O. Every function returns true on success. On
  * failure it returns false, leaves its output empty, and writes one line, without a newline, that
@@ -61,6 +61,24 @@ bool masu_image_load_pfm(const char *path, struct masu_image *image, char *error
                          size_t error_size);
 bool masu_image_save_pfm(const char *path, const float *values, uint32_t width, uint32_t height,
                          uint32_t channels, char *error, size_t error_size);
+
+/* OpenEXR, scan lines of one part. Read: channels R, G, B of half, float or integer (else Y as one channel);
+ * no compression, RLE, ZIPS, ZIP. Written: R, G, B as 32-bit floats without compression. */
+bool masu_image_decode_exr(const char *path, const uint8_t *bytes, size_t count, struct masu_image *image,
+                           char *error, size_t error_size);
+bool masu_image_save_exr(const char *path, const float *values, uint32_t width, uint32_t height, char *error,
+                         size_t error_size);
+
+/* Ends of the names of images that programs write: linear light (scene-linear RGB of BT.709 before exposure
+ * and tone curve) in PFM and OpenEXR, 8 bits of sRGB in PNG. */
+#define MASU_IMAGE_ENDS ".png .pfm .exr"
+/* Whether a file of that name has linear light. */
+bool masu_image_is_linear(const char *path);
+/* Three floats a pixel, in the format that the name says: .exr, else PFM. */
+bool masu_image_save_linear(const char *path, const float *values, uint32_t width, uint32_t height,
+                            char *error, size_t error_size);
+/* PNG to rgba, PFM and OpenEXR to values, recognised by their content. */
+bool masu_image_load(const char *path, struct masu_image *image, char *error, size_t error_size);
 
 /* Whether there is something of this name. */
 bool masu_file_exists(const char *path);

@@ -42,7 +42,7 @@ while read -r file; do
         if [ "$peak" -gt $largest ]; then largest=$peak largest_file=$file; fi
         if [ ! -s "$folder/x.masu" ]; then
             wrong "no output"
-        elif [ "${RENDER:-}" ] && ! timeout 60 "$masu" render "$folder/x.masu" \
+        elif [ "${RENDER:-}" ] && ! timeout 60 "$masu" render "$folder/x.masu" --frame \
             -o "$folder/x.png" --size 64x64 --quiet > "$folder/stdout" 2> "$folder/render"; then
             wrong "does not render: $(head -c 200 "$folder/render")"
         elif grep -q 'warning:' "$folder/stderr"; then

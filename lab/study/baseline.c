@@ -189,6 +189,7 @@ static bool open_plain(bench *w, uint32_t k, masu_march march) {
     d.desc.rungs[0].frustum = d.desc.rungs[0].occlusion = MASU_AUTO;
     d.desc.rungs[0].light_tiles = MASU_AUTO;
     d.desc.rungs[0].march = march;
+    d.desc.readback = MASU_READBACK_HDR;
     if (w->plain_for) close_session(w, &w->other);
     w->plain_for = 0;
     if (!masu_session_open(&d, &w->other, w->error, w->error_size)) return false;
@@ -209,7 +210,7 @@ static bool draw_plain(bench *w, uint32_t k, masu_march march, masu_baseline_err
     snprintf(text, sizeof text, "%u samples", k);
     say(w, "plain", text);
     return open_plain(w, k, march) &&
-           masu_picture_truth(&w->other, &frame, k, k, w->picture, NULL, w->error, w->error_size) &&
+           masu_picture_truth(&w->other, &frame, k, k, &(masu_picture_means){.display = w->picture}, NULL, w->error, w->error_size) &&
            compare(w, w->picture, out);
 }
 

@@ -4,6 +4,8 @@
 #include "support/cli.h"
 
 #include "image.h"
+#include "measure/linear.h"
+#include "metric/image.h"
 #include "reference/fsr1.h"
 #include "reference/patterns.h"
 #include "reference/smaa.h"
@@ -55,10 +57,10 @@ static void wrong_command_lines_are_exit_code_2(void **state) {
     cli_complained("--bogus");
     assert_int_equal(cli_run("render %s -o %s/x.png --reference=0", scene, scratch), 2);
     cli_complained("reference");
-    assert_int_equal(cli_run("render %s -o %s/x.png --reference --frames 2", scene, scratch), 2);
+    assert_int_equal(cli_run("render %s -o %s/x.png --frame=1 --frames 2", scene, scratch), 2);
     cli_complained("--frames");
-    assert_int_equal(cli_run("render %s -o %s/#.png --reference", scene, scratch), 2);
-    cli_complained("without '#'");
+    assert_int_equal(cli_run("render %s --video %s/x.y4m", scene, scratch), 2);
+    cli_complained("--video needs --frames");
     assert_int_equal(cli_run("render %s -o %s/x.png --frames 0", scene, scratch), 2);
     cli_complained("frames");
     assert_int_equal(cli_run("render %s -o %s/x.png --exposure bright", scene, scratch), 2);
@@ -147,7 +149,7 @@ static void an_unknown_device_lists_those_that_are_there(void **state) {
     cli_complained("nonesuch");
     assert_non_null(strstr(cli_err, "0 '"));
     assert_int_equal(
-        cli_run("render %s -o %s/x.png --device 0 --size 16x16 --quiet", scene_path("test_both"), scratch),
+        cli_run("render %s -o %s/x.png --device 0 --frame --size 16x16 --quiet", scene_path("test_both"), scratch),
         0);
 }
 
@@ -250,7 +252,7 @@ static void ladders_are_read_and_shown(void **state) {
                      0);
     assert_non_null(strstr(cli_out, "rung 1, scale 0.500:     0 frames"));
     assert_null(strstr(cli_out, "rung 2"));
-    assert_int_equal(cli_run("render %s -o %s/l.png --rung 1 --size 32x24 --ladder auto", scene, scratch), 0);
+    assert_int_equal(cli_run("render %s -o %s/l.png --frame --rung 1 --size 32x24 --ladder auto", scene, scratch), 0);
     assert_int_equal(cli_run("render %s -o %s/l.png --rung 2 --size 32x24 --ladder %s/l.json --quiet",
                           scene, scratch, scratch),
                      2);
@@ -278,13 +280,103 @@ static void a_setting_is_drawn_by_its_name(void **state) {
         for (int k = 0; k < 2; k++) {
             snprintf(name, sizeof name, "%s/setting%d.png", scratch, k);
             assert_int_equal(
-                cli_run("render %s -o %s --size 64x48 --time 1 %s", scene, name, pairs[i][k]), 0);
+                cli_run("render %s -o %s --frame --size 64x48 --time 1 %s", scene, name, pairs[i][k]), 0);
             assert_ok(masu_image_load_png(name, &images[k], error, sizeof error));
         }
         assert_memory_equal(images[0].rgba, images[1].rgba, 4 * 64 * 48);
         masu_image_free(&images[0]);
         masu_image_free(&images[1]);
     }
+}
+
+/* Both formats have the same floats; what they are is the image that the PNG shows. */
+static void linear_light_is_written_in_both_formats(void **state) {
+    (void)state;
+    static const char *const ends[] = {"exr", "pfm", "png"};
+    struct masu_image images[3];
+    char name[256], error[ERROR_SIZE];
+    for (int k = 0; k < 3; k++) {
+        snprintf(name, sizeof name, "%s/linear.%s", scratch, ends[k]);
+        assert_int_equal(cli_run("render %s -o %s --frame --size 64x48 --tone none --exposure 0.5", scene_path("test_both"), name), 0);
+        assert_ok(masu_image_load(name, &images[k], error, sizeof error));
+        assert_int_equal(images[k].width, 64);
+        assert_int_equal(images[k].height, 48);
+    }
+    assert_memory_equal(images[0].values, images[1].values, 3 * 64 * 48 * sizeof(float));
+    for (uint32_t i = 0; i < 3 * 64 * 48; i++) {
+        int shown = masu_srgb_encoded(0.5f * images[0].values[i]), have = images[2].rgba[i / 3 * 4 + i % 3];
+        assert_true(abs(shown - have) <= 1);
+    }
+    for (int k = 0; k < 3; k++) masu_image_free(&images[k]);
+    assert_int_equal(cli_run("render %s -o %s/half.pfm --frame --size 64x48 --setting scale=0.5", scene_path("test_both"), scratch), 0);
+    snprintf(name, sizeof name, "%s/half.pfm", scratch);
+    assert_ok(masu_image_load(name, &images[0], error, sizeof error));
+    assert_int_equal(images[0].width, 32);
+    masu_image_free(&images[0]);
+}
+
+/* A still of an edge has grey levels that no raw frame has, and is the raw frame where it is flat. */
+static void without_options_the_still_is_settled(void **state) {
+    (void)state;
+    enum { W = 64, H = 48 };
+    static const char *const ways[] = {"--frame", "", "--truth=16"};
+    struct masu_image images[3];
+    char name[256], error[ERROR_SIZE];
+    double off[3] = {0};
+    for (int k = 0; k < 3; k++) {
+        snprintf(name, sizeof name, "%s/still%d.png", scratch, k);
+        assert_int_equal(cli_run("render %s -o %s --size 64x48 %s", scene_path("test_both"), name, ways[k]), 0);
+        assert_ok(masu_image_load_png(name, &images[k], error, sizeof error));
+        if (k == 1) assert_non_null(strstr(cli_err, "masu: still: "));
+    }
+    for (int k = 0; k < 2; k++) off[k] = masu_metric_rmse(images[k].rgba, images[2].rgba, W, H);
+    print_message("  RMSE of 255: raw frame %.2f, still %.2f\n", 255 * off[0], 255 * off[1]);
+    assert_true(off[0] > 0.005 && off[1] < 0.6 * off[0]);
+    for (int k = 0; k < 3; k++) masu_image_free(&images[k]);
+}
+
+static void sequences_are_numbered_files_and_video(void **state) {
+    (void)state;
+    enum { W = 16, H = 12, FRAME = 6 + 3 * W * H };
+    static uint8_t file[4096];
+    const char *scene = scene_path("test_live"), *town = scene_path("test_town");
+    char name[256], error[ERROR_SIZE];
+    struct masu_image image, other;
+    assert_int_equal(cli_run("render %s --video %s/v.y4m -o %s/v#.png --frames 3 --time-step 0.04 --size 16x12",
+                             scene, scratch, scratch), 0);
+    snprintf(name, sizeof name, "%s/v.y4m", scratch);
+    FILE *f = fopen(name, "rb");
+    assert_non_null(f);
+    size_t count = fread(file, 1, sizeof file, f);
+    (void)fclose(f);
+    static const char header[] = "YUV4MPEG2 W16 H12 F25:1 Ip A1:1 C444 XCOLORRANGE=LIMITED\n";
+    assert_int_equal(count, sizeof header - 1 + 3 * FRAME);
+    assert_memory_equal(file, header, sizeof header - 1);
+    snprintf(name, sizeof name, "%s/v2.png", scratch);
+    assert_ok(masu_image_load_png(name, &image, error, sizeof error));
+    const uint8_t *planes = file + count - 3 * W * H;
+    for (uint32_t i = 0; i < W * H; i++) { /* BT.709, limited range, back to R and B */
+        double y = (planes[i] - 16) / 219.0, cb = (planes[W * H + i] - 128) / 224.0, cr = (planes[2 * W * H + i] - 128) / 224.0;
+        assert_true(fabs(255 * (y + 1.5748 * cr) - image.rgba[4 * i]) < 3);
+        assert_true(fabs(255 * (y + 1.8556 * cb) - image.rgba[4 * i + 2]) < 3);
+    }
+    masu_image_free(&image);
+    /* The truth of a later frame is that of its moment. */
+    assert_int_equal(cli_run("render %s -o %s/v#.png --truth=2 --frames 2 --time 1 --time-step 0.5 --size 16x12", town, scratch), 0);
+    assert_int_equal(cli_run("render %s -o %s/one.png --truth=2 --time 1.5 --size 16x12", town, scratch), 0);
+    snprintf(name, sizeof name, "%s/v1.png", scratch);
+    assert_ok(masu_image_load_png(name, &image, error, sizeof error));
+    snprintf(name, sizeof name, "%s/one.png", scratch);
+    assert_ok(masu_image_load_png(name, &other, error, sizeof error));
+    double same = masu_metric_rmse(image.rgba, other.rgba, W, H); /* noise of reflections goes by the frame's number */
+    masu_image_free(&image);
+    snprintf(name, sizeof name, "%s/v0.png", scratch);
+    assert_ok(masu_image_load_png(name, &image, error, sizeof error));
+    double apart = masu_metric_rmse(image.rgba, other.rgba, W, H);
+    print_message("  RMSE of 255: the same moment %.2f, half a second before %.2f\n", 255 * same, 255 * apart);
+    assert_true(same < 0.5 * apart);
+    masu_image_free(&image);
+    masu_image_free(&other);
 }
 
 /* All that has followed from it, too: reflections have the means of pictures without a past. */
@@ -433,6 +525,9 @@ int main(void) {
         cmocka_unit_test(render_writes_the_picture_and_its_numbers_under_validation),
         cmocka_unit_test(ladders_are_read_and_shown),
         cmocka_unit_test(a_setting_is_drawn_by_its_name),
+        cmocka_unit_test(linear_light_is_written_in_both_formats),
+        cmocka_unit_test(without_options_the_still_is_settled),
+        cmocka_unit_test(sequences_are_numbered_files_and_video),
         cmocka_unit_test(other_anti_aliasing_takes_a_past_out_of_a_rung),
         cmocka_unit_test(plan_says_what_is_in_and_what_was_left_out),
         cmocka_unit_test(the_governor_reports_what_it_has_done),

@@ -68,7 +68,7 @@ static void find_truth(const char *scene, const float *ball, const masu_light *l
     assert_ok(masu_picture_open(&d, PLACES, &s, error, sizeof error));
     if (ball) move_instance(&s, "ball", ball[0], ball[1], ball[2], 1.0f);
     masu_frame_desc f = {.light = light};
-    assert_ok(masu_picture_truth(&s, &f, PLACES, 1, truth.rgba, NULL, error, sizeof error));
+    assert_ok(masu_picture_truth(&s, &f, PLACES, 1, &(masu_picture_means){.display = truth.rgba}, NULL, error, sizeof error));
     close_session(&s);
 }
 

@@ -5,6 +5,7 @@
 #include "support/support.h"
 #include "support/files.h"
 
+#include "measure/linear.h"
 #include "measure/picture.h"
 
 #include <math.h>
@@ -19,6 +20,7 @@ enum { SIZE = 96, PIXELS = SIZE * SIZE, PLACES = 64 };
 #define FOV 0.7
 
 static uint8_t picture[4 * PIXELS];
+static float radiance[3 * PIXELS];
 
 /* The camera rolled by an angle, and with it the edge. */
 static masu_camera rolled(double angle) {
@@ -84,9 +86,9 @@ static void places_are_even(void **state) {
 static void eight_bits_come_back(void **state) {
     (void)state;
     for (uint32_t v = 0; v < 256; v++)
-        assert_int_equal(masu_picture_encoded(masu_picture_decoded((uint8_t)v)), v);
-    assert_int_equal(masu_picture_encoded(2.0f), 255);
-    assert_int_equal(masu_picture_encoded(nanf("")), 0);
+        assert_int_equal(masu_srgb_encoded(masu_srgb_decoded((uint8_t)v)), v);
+    assert_int_equal(masu_srgb_encoded(2.0f), 255);
+    assert_int_equal(masu_srgb_encoded(nanf("")), 0);
 }
 
 /* Lit pixels of the box's half, and of the SDF's; rows that count. */
@@ -175,7 +177,7 @@ static void velocities_hold_the_jitter(void **state) {
 }
 
 /* Along an axis 64 places are right to half of a 64th, along others to four of them at worst. On
- * top the picture's 8 bits, at half of a step on either side, and what the raster snaps. */
+ * top what the raster snaps. */
 static void an_edge_is_as_wide_as_it_covers(void **state) {
     (void)state;
     static const double angles[] = {0, 0.12, 0.5, 0.785398, 1.570796};
@@ -189,15 +191,15 @@ static void an_edge_is_as_wide_as_it_covers(void **state) {
         plane_of(angles[i], x, y);
         masu_camera camera = rolled(angles[i]);
         masu_frame_desc f = {.camera = &camera};
-        assert_ok(masu_picture_truth(&s, &f, PLACES, 1, picture, NULL, error, sizeof error));
+        assert_ok(masu_picture_truth(&s, &f, PLACES, 1, &(masu_picture_means){.linear = radiance}, NULL, error, sizeof error));
         for (uint32_t p = 0; p < PIXELS; p++)
-            white = fmax(white, (double)masu_picture_decoded(picture[4 * p + 1]));
-        assert_true(white > 0.2 && white < 0.9);
+            white = fmax(white, (double)radiance[3 * p + 1]);
+        assert_true(white > 0.01);
         for (uint32_t p = 0; p < PIXELS; p++) {
             double v = at(y, p % SIZE + 0.5, p / SIZE + 0.5);
             double covered = share(x, p % SIZE, p / SIZE);
             if (fabs(v) < 3 * hypot(y[0], y[1])) continue;
-            double off = (double)masu_picture_decoded(picture[4 * p + 1]) / white - covered;
+            double off = (double)radiance[3 * p + 1] / white - covered;
             worst[v < 0] = fmax(worst[v < 0], fabs(off));
             if (covered > 1e-6 && covered < 1 - 1e-6) sum[v < 0] += off * off, count[v < 0]++;
         }
@@ -213,6 +215,77 @@ static void an_edge_is_as_wide_as_it_covers(void **state) {
         }
     }
     close_session(&s);
+}
+
+/* A surface four times as bright as white: the mean of linear light keeps what the mean of display light has clipped. */
+static void light_beyond_white_is_averaged_before_clipping(void **state) {
+    (void)state;
+    enum { BRIGHT = 4 };
+    masu_session s;
+    masu_light light;
+    char error[ERROR_SIZE];
+    masu_session_desc d = test_desc("test_truth", SIZE, SIZE);
+    d.desc.tone = MASU_TONE_NONE;
+    assert_ok(masu_picture_open(&d, PLACES, &s, error, sizeof error));
+    double grid = ldexp(64.0, -(int)s.host.properties.limits.subPixelPrecisionBits), x[3], y[3], white = 0;
+    plane_of(0.12, x, y);
+    masu_camera camera = rolled(0.12);
+    assert_int_equal(masu_light_of(s.m, &light), MASU_OK);
+    masu_frame_desc f = {.camera = &camera, .light = &light};
+    const masu_picture_means means = {.linear = radiance, .display = picture};
+    for (int pass = 0; pass < 2; pass++) { /* the first finds the surface's radiance */
+        assert_ok(masu_picture_truth(&s, &f, pass ? PLACES : 1, 1, &means, NULL, error, sizeof error));
+        if (pass) break;
+        for (uint32_t p = 0; p < PIXELS; p++) white = fmax(white, (double)radiance[3 * p + 1]);
+        assert_true(white > 0.01);
+        light.exposure = (float)(BRIGHT / white);
+    }
+    uint32_t counted = 0;
+    for (uint32_t p = 0; p < PIXELS; p++) {
+        double v = at(y, p % SIZE + 0.5, p / SIZE + 0.5), covered = share(x, p % SIZE, p / SIZE);
+        if (fabs(v) < 3 * hypot(y[0], y[1])) continue;
+        double slack = (5.0 + (v > 0 ? grid : 0.0)) / 64;
+        double shown = (double)masu_srgb_decoded(picture[4 * p + 1]);
+        assert_true(fabs((double)radiance[3 * p + 1] / white - covered) < slack);
+        assert_true(fabs(shown - covered) < slack + 0.01);
+        counted += covered > 0.05 && covered < 0.95;
+    }
+    close_session(&s);
+    print_message("  %u pixels partly covered\n", counted);
+    assert_true(counted > SIZE / 4);
+}
+
+/* measure/linear.c is the tone curve's pass, to one step of rounding. */
+static void tone_curves_are_those_of_the_pass(void **state) {
+    (void)state;
+    static const masu_tone tones[] = {MASU_TONE_ACES, MASU_TONE_NEUTRAL};
+    static uint8_t shown[4 * PIXELS];
+    static float linear[3 * PIXELS];
+    for (size_t t = 0; t < sizeof tones / sizeof *tones; t++) {
+        masu_session s;
+        masu_session_desc d = test_desc("test_truth", SIZE, SIZE);
+        d.desc.tone = tones[t];
+        d.desc.readback = MASU_READBACK_HDR;
+        d.desc.rung_count = 1;
+        open_session(&s, &d);
+        masu_light light = {.sun_direction = {0, 1, 0}, .sky_zenith = {0.1f, 0.6f, 8}, .sky_horizon = {3, 0.6f, 0.02f}};
+        masu_camera camera = {.forward = {0, 0.6f, 1}, .fov_y = 1.2f, .near_distance = 0.1f};
+        int steps = 0;
+        for (light.exposure = 0.25f; light.exposure < 5.0f; light.exposure *= 4.0f) {
+            masu_frame_desc f = {.camera = &camera, .light = &light, .cut = 1};
+            masu_commands commands;
+            draw(&s, &f, &commands, picture);
+            assert_true(masu_linear_read(s.m, commands.slot, s.desc.output, linear));
+            masu_linear_show(&s, linear, PIXELS, masu_linear_exposure(&s, commands.slot, &light), linear);
+            masu_srgb_encode(linear, PIXELS, shown);
+            for (uint32_t p = 0; p < 4 * PIXELS; p++) {
+                int off = abs((int)shown[p] - (int)picture[p]);
+                steps = off > steps ? off : steps;
+            }
+        }
+        close_session(&s);
+        assert_true(steps <= 1);
+    }
 }
 
 /* Whether a neighbour across an edge with that normal lies outside of the picture. */
@@ -251,8 +324,8 @@ static void a_silhouette_is_as_wide_as_it_covers(int bright) {
             draw(&s, &f, &commands, plain);
             double dark = 1;
             for (uint32_t p = 0; p < PIXELS; p++) {
-                white = fmax(white, (double)masu_picture_decoded(plain[4 * p + 1]));
-                dark = fmin(dark, (double)masu_picture_decoded(plain[4 * p + 1]));
+                white = fmax(white, (double)masu_srgb_decoded(plain[4 * p + 1]));
+                dark = fmin(dark, (double)masu_srgb_decoded(plain[4 * p + 1]));
             }
             assert_true(white - dark > 0.2);
             for (uint32_t p = 0; p < PIXELS; p++) {
@@ -264,8 +337,8 @@ static void a_silhouette_is_as_wide_as_it_covers(int bright) {
                     assert_int_equal(picture[4 * p + 1], plain[4 * p + 1]);
                     continue;
                 }
-                double shown = ((double)masu_picture_decoded(picture[4 * p + 1]) - dark) / (white - dark);
-                double alone = ((double)masu_picture_decoded(plain[4 * p + 1]) - dark) / (white - dark);
+                double shown = ((double)masu_srgb_decoded(picture[4 * p + 1]) - dark) / (white - dark);
+                double alone = ((double)masu_srgb_decoded(plain[4 * p + 1]) - dark) / (white - dark);
                 double off = (bright ? 1 - shown : shown) - covered;
                 double was = (bright ? 1 - alone : alone) - covered;
                 if (on_rim(p, x)) { /* the side of the edge that it would be known by may lie outside of the picture */
@@ -364,7 +437,7 @@ static void silhouettes_go_towards_the_truth(void **state) {
         masu_frame_desc f = {.time = 0.8, .cut = 1};
         masu_session_desc d = test_desc(scenes[i], SIZE, SIZE);
         assert_ok(masu_picture_open(&d, 16, &s, error, sizeof error));
-        assert_true(masu_picture_truth(&s, &f, 16, 16, truth, NULL, error, sizeof error));
+        assert_true(masu_picture_truth(&s, &f, 16, 16, &(masu_picture_means){.display = truth}, NULL, error, sizeof error));
         close_session(&s);
         d.desc.rung_count = 2;
         d.desc.rungs[0] = (masu_rung){.silhouettes = MASU_ON};
@@ -392,6 +465,8 @@ int main(void) {
         cmocka_unit_test(a_jitter_moves_all_alike),
         cmocka_unit_test(velocities_hold_the_jitter),
         cmocka_unit_test(an_edge_is_as_wide_as_it_covers),
+        cmocka_unit_test(light_beyond_white_is_averaged_before_clipping),
+        cmocka_unit_test(tone_curves_are_those_of_the_pass),
         cmocka_unit_test(silhouettes_before_the_dark),
         cmocka_unit_test(silhouettes_before_what_is_too_bright),
         cmocka_unit_test(silhouettes_stand_beside_everything_else),

@@ -103,6 +103,36 @@ convert -size 32x32 xc:white "PNG24:$folder/white.png"
 near 'RMSE of black and white' "$(value rmse "$folder/all.json")" 255 1e-9
 [ "$(convert "$folder/map.png" -format '%[fx:minima>0.9]' info:)" = 1 ] || fail 'black and white are alike in the map'
 
+# Linear light: a compressed OpenEXR as ImageMagick reads it; two flat images two hundredths apart, whose numbers are
+# known; one spot of another brightness is found where it is.
+convert "$folder/0.png" -set colorspace RGB -compress Zip "$folder/0.exr"
+convert "$folder/0.exr" "$folder/0.pfm"
+"$masu" compare "$folder/0.exr" "$folder/0.pfm" --json "$folder/exr.json" || fail 'compare 0.exr 0.pfm'
+near 'an OpenEXR and its PFM' "$(value relative_rmse "$folder/exr.json")" 0 2e-4
+near 'their mean ratio' "$(value mean_ratio "$folder/exr.json")" 1 1e-4
+convert -size 64x36 xc:'rgb(50%,50%,50%)' -set colorspace RGB "$folder/flat.pfm"
+convert -size 64x36 xc:'rgb(51%,51%,51%)' -set colorspace RGB "$folder/more.pfm"
+convert -size 64x36 xc:black -set colorspace RGB "$folder/none.pfm"
+convert "$folder/flat.pfm" -fill 'rgb(75%,75%,75%)' -draw 'rectangle 8,12 11,15' "$folder/spot.pfm"
+"$masu" compare "$folder/flat.pfm" "$folder/more.pfm" --json "$folder/flat.json" || fail 'compare flat more'
+[ "$(value patch_z2 "$folder/flat.json")" = null ] || fail 'z without standard errors'
+"$masu" compare "$folder/flat.pfm" "$folder/more.pfm" --error "$folder/none.pfm" --json "$folder/flat.json"
+near 'mean ratio' "$(value mean_ratio "$folder/flat.json")" 1.02 1e-4
+near 'relative RMSE' "$(value relative_rmse "$folder/flat.json")" 0.02 1e-4
+near 'relMSE' "$(value relmse "$folder/flat.json")" 0.00038462 1e-6
+near '95th percentile of patches' "$(value patch_p95 "$folder/flat.json")" 0.02 1e-4
+near 'z^2 of two tolerances' "$(value patch_z2 "$folder/flat.json")" 4 0.02
+"$masu" compare "$folder/flat.pfm" "$folder/more.pfm" --error "$folder/flat.pfm" --json "$folder/flat.json"
+near 'z^2 of large errors' "$(value patch_z2 "$folder/flat.json")" 0.0064 1e-3 # (.01 / hypot(.5 / sqrt(16), .005))^2
+"$masu" compare "$folder/flat.pfm" "$folder/spot.pfm" --json "$folder/spot.json" || fail 'compare flat spot'
+near 'the patch of the spot' "$(value patch_worst_index "$folder/spot.json")" $((3 * 16 + 2)) 0
+near 'its ratio' "$(value patch_worst "$folder/spot.json")" 0.5 1e-3
+
+refuses 1 'expected linear light' "$folder/0.png" "$folder/0.pfm"
+refuses 1 'flat.pfm: found 64x36, expected 101x67' "$folder/0.pfm" "$folder/flat.pfm"
+cp "$folder/flat.json" "$folder/flat.ref"
+refuses 1 'not a stored reference' "$folder/flat.ref" "$folder/flat.pfm"
+refuses 2 'linear light' "$folder/0.png" "$folder/1.png" --error "$folder/0.pfm"
 refuses 1 'black.png: found 32x32, expected 101x67' "$folder/0.png" "$folder/black.png"
 refuses 1 'none.png' "$folder/0.png" "$folder/none.png"
 refuses 1 '0.ppm' "$folder/0.ppm" "$folder/0.png"

@@ -67,8 +67,8 @@ grep -q 'fifo.png.*regular file' stderr || fail "a FIFO as a texture: $(cat stde
 
 # ---- Outputs -------------------------------------------------------------------------------------
 
-for name in x.jpg x.exr x.masu; do
-    refuses 2 'ends in .*, expected one that ends in .png' masu render tri.masu -o $name
+for name in x.jpg x.hdr x.masu; do
+    refuses 2 'ends in .*, expected one that ends in .png, .pfm or .exr, the only formats' masu render tri.masu -o $name
     refuses 2 'expected one that ends in .png' masu upscale image.png $name --size 8x8
     refuses 2 'expected one that ends in .png' masu compare image.png image.png --map $name
 done

@@ -125,12 +125,11 @@ static bool plan_settings(sweep *w) {
 
 static bool draw_truth(sweep *w, uint8_t *rgba) {
     masu_session_desc d = session_of(w);
-    d.desc.readback = MASU_READBACK_HDR;
     if (!masu_picture_open(&d, w->d->positions, &w->s, w->error, w->error_size)) return false;
     w->opened = true;
     masu_frame_desc frame = {.time = w->d->time};
-    bool good = masu_picture_truth_hdr(&w->s, &frame, w->d->positions, w->d->rays, rgba,
-                                       w->true_radiance, w->d->progress, w->error, w->error_size);
+    const masu_picture_means means = {.linear = w->true_radiance, .display = rgba};
+    bool good = masu_picture_truth(&w->s, &frame, w->d->positions, w->d->rays, &means, w->d->progress, w->error, w->error_size);
     close_session(w);
     return good;
 }

@@ -63,6 +63,7 @@ static bool read_row(masu_cli *cli, const masu_option *row, void *options) {
         return read_file(cli, to, NULL);
     case MASU_TAKE_FILE: return read_file(cli, to, NULL);
     case MASU_TAKE_PNG: return read_file(cli, to, ".png");
+    case MASU_TAKE_IMAGE: return read_file(cli, to, MASU_IMAGE_ENDS);
     case MASU_TAKE_CHOICE: return masu_cli_choice(cli, row->names, to);
     case MASU_TAKE_KNOB: return read_knob(cli, row->knob, to);
     case MASU_TAKE_OWN: return row->read(cli, options);

@@ -18,6 +18,7 @@ typedef enum masu_take {
     MASU_TAKE_SIZE,   /* VkExtent2D that a PNG may have: 16384 a side and 64 Mi pixels */
     MASU_TAKE_FILE,   /* const char *: will be written; whether it can be is found out at once */
     MASU_TAKE_PNG,    /* the same, with a name that ends in .png */
+    MASU_TAKE_IMAGE,  /* the same, with a name that ends in one of MASU_IMAGE_ENDS */
     MASU_TAKE_OUTPUT, /* as MASU_TAKE_FILE, or "-" for stdout */
     MASU_TAKE_CHOICE, /* uint32_t: which of the names */
     MASU_TAKE_KNOB,   /* masu_rung: that knob, with the words and the range of MASU_KNOBS */
@@ -56,6 +57,8 @@ typedef struct masu_option {
     { MASU_ROW(type, member, MASU_TAKE_FILE, name, value, help) }
 #define MASU_PNG(type, member, name, help)                                                         \
     { MASU_ROW(type, member, MASU_TAKE_PNG, name, "FILE.png", help) }
+#define MASU_IMAGE(type, member, name, help)                                                       \
+    { MASU_ROW(type, member, MASU_TAKE_IMAGE, name, "FILE", help) }
 #define MASU_OUTPUT(type, member, name, value, help)                                               \
     { MASU_ROW(type, member, MASU_TAKE_OUTPUT, name, value, help) }
 #define MASU_CHOICE(type, member, name, value, names_, help)                                       \

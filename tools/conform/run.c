@@ -538,8 +538,8 @@ static const uint8_t *truth_of(masu_conform *c, const masu_case *of, masu_confor
     masu_frame_desc frame = frame_at(of, of->frames - 1);
     frame.camera = of->extreme.has_camera ? &of->extreme.camera : NULL;
     frame.light = of->extreme.has_light ? &of->extreme.light : NULL;
-    bool good = masu_picture_truth(s, &frame, of->positions, of->rays, rgba, masu_cli_progress_text, error,
-                                   sizeof error);
+    bool good = masu_picture_truth(s, &frame, of->positions, of->rays, &(masu_picture_means){.display = rgba},
+                                   masu_cli_progress_text, error, sizeof error);
     close_session(c, r);
     masu_truth_picture *more =
         good ? realloc(c->truths, (c->truth_count + 1) * sizeof *more) : NULL;

@@ -1,9 +1,11 @@
-/* render.c: `masu render`: frames of a baked scene to PNG, headless, with measured times,
+/* render.c: `masu render`: frames of a baked scene to image files, headless, with measured times,
  * counts and memory. */
 #include "command/options.h"
 #include "masu/render.h"
+#include "masu/video.h"
 
 #include "alloc_count.h"
+#include "measure/linear.h"
 #include "measure/picture.h"
 #include "settings/knobs.h"
 #include "clock.h"
@@ -16,6 +18,9 @@
 
 #define PI 3.14159265358979323846
 #define FRAMES_MAX 100000u
+#define STILL_FRAMES_MIN 16u /* temporal anti-aliasing has seen each part of a pixel */
+#define STILL_FRAMES_MAX 64u
+#define STILL_CHANGE 0.25
 #define REFERENCE_RAYS 1024u /* per pixel: below it the truth's own noise is seen */
 
 /* ---- Frames ---------------------------------------------------------------------------------- */
@@ -31,19 +36,52 @@ static bool output_name(const char *pattern, uint32_t frame, char *out, size_t s
     return n > 0 && (size_t)n < size;
 }
 
-static int save(masu_session *s, const masu_render_options *o, uint32_t frame) {
+/* What the file's name asks for. linear: three floats a pixel of `size`; rgba: of the output. */
+static int write_image(const masu_session *s, const char *path, const uint8_t *rgba, const float *linear,
+                       VkExtent2D size) {
+    char error[1024];
+    VkExtent2D out = s->desc.output;
+    bool good = masu_image_is_linear(path)
+                    ? masu_image_save_linear(path, linear, size.width, size.height, error, sizeof error)
+                    : masu_image_save_png(path, rgba, out.width, out.height, 0, error, sizeof error);
+    return good ? MASU_CLI_OK : masu_cli_error("%s", error);
+}
+
+static VkExtent2D render_size(const masu_session *s, uint32_t rung) {
+    masu_plan_info plan;
+    masu_plan_of(s->m, &plan);
+    return (VkExtent2D){plan.rungs[rung].render_width, plan.rungs[rung].render_height};
+}
+
+/* Linear light is read before upscaling. */
+static int save_linear(masu_session *s, const char *name, const masu_commands *commands) {
+    VkExtent2D size = render_size(s, commands->rung);
+    float *linear = malloc(3 * sizeof *linear * size.width * size.height);
+    int code = linear && masu_linear_read(s->m, commands->slot, size, linear)
+                   ? write_image(s, name, NULL, linear, size)
+                   : masu_cli_error("%s: no linear light to read back", name);
+    free(linear);
+    return code;
+}
+
+/* Writes image number `frame` if it is asked for: each into a video or a numbered file, else the last. */
+static int save(masu_session *s, const masu_render_options *o, masu_video *video, uint32_t frame,
+                const masu_commands *commands) {
     char error[1024], name[4096];
-    bool each = strchr(o->output, '#') != NULL;
-    if (!each && frame + 1 < o->frames) return MASU_CLI_OK;
-    if (!output_name(o->output, frame, name, sizeof name))
+    bool each = o->output && strchr(o->output, '#') != NULL, file = o->output && (each || frame + 1 == o->frames);
+    if (!file && !o->video) return MASU_CLI_OK;
+    if (file && !output_name(o->output, frame, name, sizeof name))
         return masu_cli_error("--output: the file name is too long");
+    if (file && masu_image_is_linear(name)) {
+        int code = save_linear(s, name, commands);
+        if (code || !o->video) return code;
+        file = false;
+    }
     if (!masu_headless_target_read(&s->host, &s->targets[0], error, sizeof error))
         return masu_cli_error("%s", error);
-    if (!masu_image_save_png(name, s->targets[0].mapped, s->targets[0].width, s->targets[0].height,
-                             0, error, sizeof error)) {
+    if (o->video && !masu_video_frame(video, s->targets[0].mapped, error, sizeof error))
         return masu_cli_error("%s", error);
-    }
-    return MASU_CLI_OK;
+    return file ? write_image(s, name, s->targets[0].mapped, NULL, s->desc.output) : MASU_CLI_OK;
 }
 
 /* The sun's place by angles as in scenes; a sky that follows from it. */
@@ -74,8 +112,8 @@ static bool animate(masu_session *s, double time, char *error, size_t size) {
 }
 
 static bool measure(masu_session *s, const masu_render_options *o, uint32_t frame,
-                    masu_vk_alloc_counts *counts, masu_sample *out, masu_stats_info *stats, char *error,
-                    size_t size) {
+                    masu_vk_alloc_counts *counts, masu_sample *out, masu_stats_info *stats,
+                    masu_commands *drawn, char *error, size_t size) {
     masu_light light;
     bool own_light = o->own_sun || o->turbidity > 0.0 || o->exposure > 0.0;
     if (own_light && masu_light_of(s->m, &light)) {
@@ -83,11 +121,12 @@ static bool measure(masu_session *s, const masu_render_options *o, uint32_t fram
         return false;
     }
     if (own_light) set_light(o, &light);
+    const uint32_t rays = o->rays ? o->rays : 1, image = o->still ? 0 : frame / rays;
     masu_frame_desc f = {.light = own_light ? &light : NULL,
-                         .time = o->time + (double)frame * o->time_step,
+                         .time = o->time + (double)(o->first + image) * o->time_step,
                          .time_step = o->rays ? MASU_PICTURE_STEP : (float)o->time_step,
                          .rung = o->target_ms > 0.0 ? MASU_RUNG_AUTO : o->rung,
-                         .cut = o->rays && !frame}; /* the sum begins with the first one that counts */
+                         .cut = o->rays && frame % rays == 0}; /* the sum begins with the first one that counts */
     if (o->animate && !animate(s, f.time, error, size)) return false;
     masu_commands commands;
     uint64_t callbacks = counts->allocations + counts->reallocations;
@@ -110,6 +149,7 @@ static bool measure(masu_session *s, const masu_render_options *o, uint32_t fram
     out->driver_callbacks = counts->allocations + counts->reallocations - callbacks;
     (void)masu_stats(s->m, commands.slot, stats);
     out->gpu_ms = (double)stats->gpu_ns / 1e6;
+    *drawn = commands;
     out->rung = commands.rung;
     out->reason = stats->governor.reason_text;
     for (uint32_t p = 0; p < stats->pass_count; p++)
@@ -130,51 +170,135 @@ static void report_rays(const masu_session *s, const masu_render_options *o, con
             100.0 * (double)stats->specular_rays / pixels);
 }
 
-/* The picture without shortcuts. */
-static int render_truth(masu_session *s, const masu_render_options *o) {
+/* One ground truth, into the files that ask for it. */
+static int truth_frame(masu_session *s, const masu_render_options *o, const masu_light *light, uint32_t frame,
+                       masu_video *video, uint8_t *rgba, float *linear) {
+    char error[1024], name[4096] = "";
+    const bool file = o->output && (strchr(o->output, '#') || frame + 1 == o->frames);
+    masu_frame_desc f = {.light = light, .time = o->time + (double)(o->first + frame) * o->time_step};
+    if (file && !output_name(o->output, frame, name, sizeof name))
+        return masu_cli_error("--output: the file name is too long");
+    if (!file && !o->video) return MASU_CLI_OK;
+    if (o->animate && !animate(s, f.time, error, sizeof error)) return masu_cli_error("%s", error);
+    if (!masu_picture_truth(s, &f, o->positions, o->rays ? o->rays : MASU_PICTURE_RAYS,
+                            &(masu_picture_means){.linear = linear, .display = rgba}, masu_cli_progress_text, error,
+                            sizeof error) ||
+        (o->video && !masu_video_frame(video, rgba, error, sizeof error))) {
+        return masu_cli_error("%s", error);
+    }
+    return file ? write_image(s, name, rgba, linear, s->desc.output) : MASU_CLI_OK;
+}
+
+/* The image without shortcuts. */
+static int render_truth(masu_session *s, const masu_render_options *o, masu_video *video) {
     masu_light light;
-    char error[1024];
     bool own_light = o->own_sun || o->turbidity > 0.0 || o->exposure > 0.0;
     if (own_light && masu_light_of(s->m, &light)) return masu_cli_error("--sun, --turbidity and --exposure: the scene has no light");
     if (own_light) set_light(o, &light);
     VkExtent2D size = s->desc.output;
-    uint8_t *rgba = malloc(4 * (size_t)size.width * size.height);
-    if (!rgba) return masu_cli_error("out of memory for an image of %ux%u", size.width, size.height);
-    masu_frame_desc frame = {.light = own_light ? &light : NULL, .time = o->time};
-    uint32_t rays = o->rays ? o->rays : MASU_PICTURE_RAYS;
-    bool good = masu_picture_truth(s, &frame, o->positions, rays, rgba, masu_cli_progress_text, error,
-                                   sizeof error) &&
-                masu_image_save_png(o->output, rgba, size.width, size.height, 0, error, sizeof error);
+    size_t pixels = (size_t)size.width * size.height;
+    uint8_t *rgba = malloc(4 * pixels);
+    float *linear = malloc(3 * sizeof *linear * pixels);
+    int code = rgba && linear ? MASU_CLI_OK
+                              : masu_cli_error("out of memory for an image of %ux%u", size.width, size.height);
+    for (uint32_t i = 0; i < o->frames && !code; i++)
+        code = truth_frame(s, o, own_light ? &light : NULL, i, video, rgba, linear);
     free(rgba);
-    if (!good) return masu_cli_error("%s", error);
-    if (masu_cli_quiet()) return MASU_CLI_OK;
+    free(linear);
+    if (code || masu_cli_quiet()) return code;
+    const uint32_t frames = masu_picture_frames(s, o->positions, o->rays ? o->rays : MASU_PICTURE_RAYS);
     masu_cli_progress_clear();
-    fprintf(stderr, "masu: ground truth: %u samples per pixel, %u frame%s each\n", o->positions,
-            masu_picture_frames(s, o->positions, rays),
-            masu_picture_frames(s, o->positions, rays) == 1 ? "" : "s");
+    fprintf(stderr, "masu: ground truth: %u samples per pixel, %u frame%s each\n", o->positions, frames,
+            frames == 1 ? "" : "s");
     return MASU_CLI_OK;
 }
 
+/* ---- The settled still ----------------------------------------------------------------------- */
+
+/* Mean difference of two images, of 255, over blocks of 4x4 pixels, in which the noise of dithering averages out. */
+static double change(const uint8_t *a, const uint8_t *b, uint32_t width, uint32_t height) {
+    double sum = 0.0;
+    uint64_t blocks = 0;
+    for (uint32_t y = 0; y < height; y += 4) {
+        for (uint32_t x = 0; x < width; x += 4, blocks++) {
+            int off[3] = {0}, count = 0;
+            for (uint32_t v = y; v < y + 4 && v < height; v++) {
+                for (uint32_t u = x; u < x + 4 && u < width; u++, count++) {
+                    const size_t at = 4 * ((size_t)v * width + u);
+                    for (size_t c = 0; c < 3; c++) off[c] += a[at + c] - b[at + c];
+                }
+            }
+            for (int c = 0; c < 3; c++) sum += abs(off[c]) / (3.0 * count);
+        }
+    }
+    return sum / (double)blocks;
+}
+
+/* Frames of one moment until they change by less than a quarter of a step; linear light is their mean. */
+static int render_still(masu_session *s, const masu_render_options *o, masu_vk_alloc_counts *counts) {
+    const uint32_t width = s->desc.output.width, height = s->desc.output.height;
+    const size_t bytes = 4 * (size_t)width * height;
+    const bool is_linear = masu_image_is_linear(o->output);
+    const VkExtent2D size = render_size(s, o->rung);
+    const size_t values = 3 * (size_t)size.width * size.height;
+    uint8_t *before = malloc(bytes);
+    float *linear = is_linear ? calloc(2 * values, sizeof *linear) : NULL;
+    masu_sample sample;
+    masu_commands commands;
+    masu_stats_info stats;
+    char error[1024];
+    int code = before && (linear || !is_linear) ? MASU_CLI_OK : masu_cli_error("out of memory for an image of %ux%u", width, height);
+    double moved = HUGE_VAL;
+    uint32_t n = 0;
+    while (!code && n < STILL_FRAMES_MAX && (n < STILL_FRAMES_MIN || moved >= STILL_CHANGE)) {
+        masu_cli_progress("frame %u of at most %u", n + 1, STILL_FRAMES_MAX);
+        if (!measure(s, o, n, counts, &sample, &stats, &commands, error, sizeof error) ||
+            !masu_headless_target_read(&s->host, &s->targets[0], error, sizeof error)) {
+            code = masu_cli_error("%s", error);
+        } else if (linear && !masu_linear_read(s->m, commands.slot, size, linear + values)) {
+            code = masu_cli_error("%s: no linear light to read back", o->output);
+        } else {
+            if (n) moved = change(before, s->targets[0].mapped, width, height);
+            memcpy(before, s->targets[0].mapped, bytes);
+            for (size_t i = 0; linear && i < values; i++) linear[i] += linear[values + i];
+            n++;
+        }
+    }
+    for (size_t i = 0; linear && i < values; i++) linear[i] /= (float)(n ? n : 1);
+    if (!code) code = write_image(s, o->output, before, linear, size);
+    free(before);
+    free(linear);
+    if (code || masu_cli_quiet()) return code;
+    masu_cli_progress_clear();
+    fprintf(stderr, "masu: still: %u frames, the last changed by %.2f of 255\n", n, moved);
+    return MASU_CLI_OK;
+}
+
+/* ---- A sequence ------------------------------------------------------------------------------ */
+
 /* With statistics a first frame is drawn and not counted: drivers compile at the first use of a
  * pipeline. */
-static int render_frames(masu_session *s, const masu_render_options *o,
+static int render_frames(masu_session *s, const masu_render_options *o, masu_video *video,
                          masu_vk_alloc_counts *counts) {
-    masu_sample *samples = calloc(o->frames, sizeof *samples);
+    const uint32_t rays = o->rays ? o->rays : 1;
+    masu_sample *samples = calloc(o->frames, sizeof *samples), other;
     masu_stats_info stats;
     char error[1024];
     int code = samples ? MASU_CLI_OK : masu_cli_error("out of memory for %u frames", o->frames);
     memset(&stats, 0, sizeof stats);
     masu_sample warm_up;
-    if (!code && o->stats && !measure(s, o, 0, counts, &warm_up, &stats, error, sizeof error)) {
+    masu_commands commands;
+    if (!code && o->stats && !measure(s, o, 0, counts, &warm_up, &stats, &commands, error, sizeof error)) {
         code = masu_cli_error("%s", error);
     }
-    for (uint32_t i = 0; i < o->frames && !code; i++) {
-        masu_cli_progress(o->rays ? "ray %u of %u per pixel" : "frame %u of %u", i + 1, o->frames);
-        if (!measure(s, o, i, counts, &samples[i], &stats, error, sizeof error)) {
+    for (uint64_t i = 0; i < (uint64_t)o->frames * rays && !code; i++) {
+        const uint32_t image = (uint32_t)(i / rays), ray = (uint32_t)(i % rays);
+        if (o->rays) masu_cli_progress("image %u of %u: ray %u of %u per pixel", image + 1, o->frames, ray + 1, rays);
+        else masu_cli_progress("frame %u of %u", image + 1, o->frames);
+        if (!measure(s, o, (uint32_t)i, counts, ray ? &other : &samples[image], &stats, &commands, error, sizeof error))
             code = masu_cli_error("%s", error);
-        } else if (o->output) {
-            code = save(s, o, i);
-        }
+        else if (ray + 1 == rays)
+            code = save(s, o, video, image, &commands);
     }
     if (!code && o->stats)
         code = masu_render_stats(s, o, samples, o->frames, &stats);
@@ -247,6 +371,11 @@ static bool read_reference(masu_cli *cli, void *to) {
     return !cli->value || masu_cli_uint(cli, 1, FRAMES_MAX, &o->rays);
 }
 
+static bool read_first(masu_cli *cli, void *to) {
+    masu_render_options *o = to;
+    return !cli->value || masu_cli_uint(cli, 0, FRAMES_MAX, &o->first);
+}
+
 static bool read_truth(masu_cli *cli, void *to) {
     masu_render_options *o = to;
     o->positions = MASU_PICTURE_POSITIONS;
@@ -283,24 +412,31 @@ static const char *const stages[] = {"both", "frustum", "occlusion", "none", NUL
 
 static const masu_option rows[] = {
     MASU_HEADING("Output"),
-    {MASU_ROW(masu_render_options, output, MASU_TAKE_PNG, "output", "FILE.png",
-              "write the last frame; with '####' in the name, every frame, numbered"),
+    {MASU_ROW(masu_render_options, output, MASU_TAKE_IMAGE, "output", "FILE",
+              "write the settled still; with --frames the last frame, or with '####' in the\n"
+              "name every frame, numbered. FILE.png: 8 bits of sRGB; FILE.pfm, FILE.exr:\n"
+              "scene-linear RGB before exposure and tone curve, at the render size"),
      .letter = 'o'},
+    MASU_OUTPUT(masu_render_options, video, "video", "FILE.y4m",
+                "write every frame as uncompressed video (YUV4MPEG2); '-' is stdout"),
     MASU_OUTPUT_SIZE_ROW(masu_render_options, d.desc.output),
     MASU_OUTPUT(masu_render_options, stats, "stats", "FILE.json",
                 "write times, counts, memory and allocations; '-' is stdout"),
     MASU_OUTPUT(masu_render_options, times, "times", "FILE.csv",
                 "write time, rung and governor reason of every frame; '-' is stdout"),
     MASU_HEADING("Frames"),
+    MASU_OWN("frame", "[=N]", read_first,
+             "render one raw frame, number N of the camera path (default 0), instead of the\n"
+             "settled still"),
     MASU_UINT(masu_render_options, frames, "frames", 1, FRAMES_MAX,
-              "number of frames along the scene's camera path"),
+              "render this number of raw frames along the scene's camera path"),
     MASU_REAL(masu_render_options, time, "time", "SECONDS", -1e9, 1e9,
               "time of the first frame (default 0)"),
     MASU_REAL(masu_render_options, time_step, "time-step", "SECONDS", 0.0, 1e6,
               "time between frames"),
     MASU_FLAG(masu_render_options, animate, "animate",
               "loop the first animation clip of every model"),
-    MASU_HEADING("Reference images of one moment"),
+    MASU_HEADING("Reference images"),
     MASU_OWN("truth", "[=N]", read_truth,
              "ground truth: average N full-size samples per pixel (default 64), with the\n"
              "most exact settings and 1024 reflection rays in all"),
@@ -359,29 +495,23 @@ static int check(const masu_render_options *o, const masu_given *given) {
     /* About what --truth has its own mind of. */
     static const char *const decided[] = {"stats",  "rung",      "setting", "aa",         "cull", "lod-error",
                                           "ladder", "target-ms", "times",   "anisotropy", NULL};
-    static const char *const moving[] = {"frames", "time-step", NULL};
     static const char *const choosing[] = {"ladder", "target-ms", NULL};
     const char *own = masu_first_given(given, rows, decided);
-    const char *move = masu_first_given(given, rows, moving);
     if (o->positions && own)
         return masu_cli_usage_error("--truth cannot be combined with --%s: it uses the most exact settings", own);
-    if ((o->rays || o->positions) && move) {
-        return masu_cli_usage_error("%s cannot be combined with --%s: it renders one moment",
-                                    o->positions ? "--truth" : "--reference", move);
-    }
+    if (masu_is_given(given, rows, "frame") && masu_is_given(given, rows, "frames"))
+        return masu_cli_usage_error("--frame cannot be combined with --frames: it renders one frame");
+    if (o->video && !masu_is_given(given, rows, "frames")) return masu_cli_usage_error("--video needs --frames");
+    if (o->video && !(o->time_step > 0.0)) return masu_cli_usage_error("--video needs a --time-step above 0");
     const char *choice = masu_first_given(given, rows, choosing);
     if (masu_is_given(given, rows, "setting") && choice)
         return masu_cli_usage_error("--setting cannot be combined with --%s: it renders one rung", choice);
     if (!given->count) return masu_cli_usage_error("no scene given: expected SCENE.masu");
-    if (!o->output && !o->stats && !o->times && !(o->target_ms > 0.0))
-        return masu_cli_usage_error("expected at least one of --output, --stats, --times, --target-ms");
+    if (!o->output && !o->video && !o->stats && !o->times && !(o->target_ms > 0.0))
+        return masu_cli_usage_error("expected at least one of --output, --video, --stats, --times, --target-ms");
     if (o->target_ms > 0.0 && o->rays)
         return masu_cli_usage_error("--target-ms and --reference cannot be combined");
-    if ((o->rays || o->positions) && strchr(o->output ? o->output : "", '#')) {
-        return masu_cli_usage_error("%s writes one image: expected --output without '#', found %s",
-                                    o->positions ? "--truth" : "--reference", o->output);
-    }
-    if (o->positions && !o->output) return masu_cli_usage_error("--truth needs --output");
+    if (o->positions && !o->output && !o->video) return masu_cli_usage_error("--truth needs --output or --video");
     return MASU_CLI_OK;
 }
 
@@ -392,11 +522,18 @@ static int describe(masu_render_options *o, const masu_given *given) {
     o->turned.cull_given = masu_is_given(given, rows, "cull");
     o->turned.aa_given = masu_is_given(given, rows, "aa");
     o->turned.lod_given = masu_is_given(given, rows, "lod-error");
-    if (o->rays) o->frames = o->rays, o->time_step = 0.0;
+    static const char *const raw[] = {"frame", "frames", "stats", "times", "target-ms", "reference", "truth", NULL};
+    static const char *const own_rung[] = {"setting", "rung", "ladder", "target-ms", "aa", "reference", "truth", NULL};
+    o->still = o->output && !masu_first_given(given, rows, raw);
+    if ((o->still || o->video) && !masu_first_given(given, rows, own_rung)) {
+        d->rung_count = 1;
+        d->rungs[0].temporal = MASU_ON;
+    }
     d->tone = (masu_tone)o->tone;
     d->analytic_sky = o->turbidity > 0.0;
     d->vulkan.max_anisotropy = (float)o->anisotropy;
-    if (o->dither) d->dither = MASU_ON;
+    if (o->dither || o->still || o->video) d->dither = MASU_ON;
+    if (o->output && masu_image_is_linear(o->output)) d->readback = MASU_READBACK_HDR;
     if (o->split) d->deny.unified_memory = 1;
     d->debug = (masu_debug){.timestamps = o->stats != NULL,
                             .counters = o->stats != NULL || o->rays,
@@ -442,7 +579,16 @@ static int run(masu_cli *cli) {
         masu_cli_progress_clear();
         fprintf(stderr, "masu: %s\n", s.host.driver);
     }
-    code = o.positions ? render_truth(&s, &o) : render_frames(&s, &o, &counts);
+    masu_video video = {0};
+    code = MASU_CLI_OK;
+    if (o.video && !masu_video_open(&video, o.video, o.d.desc.output.width, o.d.desc.output.height, o.time_step, error,
+                                    sizeof error))
+        code = masu_cli_error("%s", error);
+    if (!code)
+        code = o.positions ? render_truth(&s, &o, &video)
+               : o.still   ? render_still(&s, &o, &counts)
+                           : render_frames(&s, &o, &video, &counts);
+    if (!masu_video_close(&video, error, sizeof error) && !code) code = masu_cli_error("%s", error);
     code = masu_finish_validation(&s.host, code);
     masu_session_close(&s);
     return code;
@@ -450,9 +596,12 @@ static int run(masu_cli *cli) {
 
 const masu_cli_command masu_cmd_render = {
     .name = "render",
-    .arguments = "SCENE.masu -o OUT.png [options]",
-    .summary = "render a baked scene to PNG",
-    .details = "With --stats, an extra first frame is rendered and not counted. Wall time is measured from\n"
+    .arguments = "SCENE.masu -o OUT.png|OUT.pfm|OUT.exr [options]",
+    .summary = "render a baked scene to an image",
+    .details = "Without --frame, --frames, --truth, --reference, --stats, --times or --target-ms the image is the\n"
+               "settled still: frames of one moment, with temporal anti-aliasing if no rung is chosen, until an\n"
+               "image of 16 frames or more changes by less than 0.25 of 255, or 64 frames. It is dithered.\n\n"
+               "With --stats, an extra first frame is rendered and not counted. Wall time is measured from\n"
                "masu_frame to the fence. GPU times are timestamps with a full barrier around each pass;\n"
                "\"timestamps_plausible\" reports whether they agree with the wall time.\n\n"
                "Exit codes:\n"
@@ -460,7 +609,9 @@ const masu_cli_command masu_cmd_render = {
                "  1  rendering failed, a file could not be read or written, or --validate reported a message\n"
                "  2  the command line is wrong\n\n"
                "Examples:\n"
-               "  masu render engine.masu -o frame.png --size 1280x720\n"
+               "  masu render engine.masu -o still.png --size 1280x720\n"
+               "  masu render engine.masu -o frame.exr --frame=30\n"
+               "  masu render engine.masu --frames 300 --video - | ffmpeg -i - engine.mp4\n"
                "  masu render engine.masu -o frame.png --setting scale=0.5+aa=fxaa\n"
                "  masu render engine.masu --target-ms 33 --frames 300 --size 640x360\n",
     .run = run};

@@ -14,9 +14,11 @@ typedef struct masu_turned {
 typedef struct masu_render_options {
     masu_session_desc d;
     masu_turned turned;
-    const char *output, *stats, *times, *ladder;
+    const char *output, *video, *stats, *times, *ladder;
     double target_ms; /* of the governor; 0: there is none */
     uint32_t frames, rung, ray_way, tone;
+    uint32_t first;     /* number of the first frame */
+    bool still;         /* frames at rest until the image has settled */
     uint32_t rays;      /* per pixel of the reference, a frame each; 0: no reference */
     uint32_t positions; /* of each pixel in the truth; 0: no truth */
     double time, time_step;

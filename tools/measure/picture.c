@@ -1,6 +1,7 @@
 /* picture.c: see picture.h. */
 #include "measure/picture.h"
 
+#include "measure/linear.h"
 #include "measure/specular.h"
 #include "image.h"
 #include "shared/masu_shared.h"
@@ -21,18 +22,6 @@ void masu_picture_place(uint32_t i, uint32_t n, float out[2]) {
     double half = 0.5 / (double)n;
     out[0] = (float)((double)i / (double)n + half - 0.5);
     out[1] = (float)(fmin(mirrored(i) + half, 1.0) - 0.5);
-}
-
-/* IEC 61966-2-1. */
-float masu_picture_decoded(uint8_t encoded) {
-    double v = (double)encoded / 255.0;
-    return (float)(v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4));
-}
-
-uint8_t masu_picture_encoded(float linear) {
-    double v = linear > 0.0f ? fmin((double)linear, 1.0) : 0.0;
-    v = v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1.0 / 2.4) - 0.055;
-    return (uint8_t)(255.0 * v + 0.5);
 }
 
 /* The march is AUTO's, and not the plain one: it finds surfaces to 0.002 of a pixel, with steps
@@ -71,7 +60,13 @@ bool masu_picture_open(const masu_session_desc *d, uint32_t positions, masu_sess
      * no anisotropy is needed, which a CPU driver has at forty times the price. */
     own.desc.vulkan.max_anisotropy = 0.0f;
     own.desc.debug.mip_bias = -0.5f * log2f((float)positions);
-    return masu_session_open(&own, s, error, error_size);
+    own.desc.readback |= MASU_READBACK_HDR;
+    own.no_renderer = true;
+    if (!masu_session_open(&own, s, error, error_size)) return false;
+    if (masu_linear_is_metered(s)) s->desc.debug.counters = 1; /* masu_linear_exposure */
+    if (masu_session_start(s, error, error_size)) return true;
+    masu_session_close(s);
+    return false;
 }
 
 uint32_t masu_picture_frames(const masu_session *s, uint32_t positions, uint32_t rays) {
@@ -90,16 +85,6 @@ static bool draw_position(masu_session *s, masu_frame_desc frame, uint32_t frame
         if (!masu_session_frame(s, &frame, k + 1 == frames, &commands, error, error_size))
             return false;
     }
-    return masu_headless_target_read(&s->host, &s->targets[0], error, error_size);
-}
-
-static bool add_radiance(masu_session *s, size_t pixels, float *one, float *sum, char *error,
-                         size_t error_size) {
-    if (!masu_specular_read(s, one)) {
-        snprintf(error, error_size, "no radiance to read back");
-        return false;
-    }
-    for (size_t i = 0; i < 3 * pixels; i++) sum[i] += one[i];
     return true;
 }
 
@@ -109,56 +94,64 @@ static void say_position(uint32_t i, uint32_t of, void (*progress)(const char *t
     if (progress) progress(text);
 }
 
-bool masu_picture_truth(masu_session *s, const masu_frame_desc *frame, uint32_t positions,
-                        uint32_t rays, uint8_t *rgba, void (*progress)(const char *text),
-                        char *error, size_t error_size) {
-    return masu_picture_truth_hdr(s, frame, positions, rays, rgba, NULL, progress, error,
-                                  error_size);
+/* Sums of all positions; `one` has room for an image. */
+typedef struct sums {
+    float *linear, *display, *one;
+} sums;
+
+static bool add_position(masu_session *s, const masu_light *light, sums *sum, char *error, size_t error_size) {
+    const size_t pixels = (size_t)s->desc.output.width * s->desc.output.height;
+    const uint32_t slot = masu_specular_slot(s);
+    const double exposure = masu_linear_exposure(s, slot, light);
+    if (!masu_linear_read(s->m, slot, s->desc.output, sum->one)) {
+        snprintf(error, error_size, "no radiance to read back");
+        return false;
+    }
+    for (size_t i = 0; i < 3 * pixels; i++) sum->linear[i] += sum->one[i];
+    masu_linear_show(s, sum->one, pixels, exposure, sum->one);
+    for (size_t i = 0; i < 3 * pixels; i++) sum->display[i] += sum->one[i];
+    return true;
 }
 
-bool masu_picture_truth_hdr(masu_session *s, const masu_frame_desc *frame, uint32_t positions,
-                            uint32_t rays, uint8_t *rgba, float *radiance,
-                            void (*progress)(const char *text), char *error,
-                            size_t error_size) {
-    size_t pixels = (size_t)s->desc.output.width * s->desc.output.height;
-    uint32_t frames = masu_picture_frames(s, positions, rays);
-    masu_frame_desc own = *frame;
+static bool add_positions(masu_session *s, masu_frame_desc frame, uint32_t positions, uint32_t rays, sums *sum,
+                          void (*progress)(const char *text), char *error, size_t error_size) {
     masu_camera camera;
-    float decoded[256];
-    if (frame->camera) {
-        camera = *frame->camera;
-    } else if (masu_camera_at(s->m, frame->time, &camera)) {
+    if (frame.camera) {
+        camera = *frame.camera;
+    } else if (masu_camera_at(s->m, frame.time, &camera)) {
         snprintf(error, error_size, "the scene has no camera");
         return false;
     }
-    for (uint32_t v = 0; v < 256; v++) decoded[v] = masu_picture_decoded((uint8_t)v);
-    float *sum = calloc(3 * pixels * (radiance ? 2 : 1), sizeof *sum), *one = sum + 3 * pixels;
-    if (!sum) {
+    frame.camera = &camera;
+    frame.rung = 0;
+    frame.time_step = MASU_PICTURE_STEP;
+    for (uint32_t i = 0; i < positions; i++) {
+        say_position(i, positions, progress);
+        masu_picture_place(i, positions, camera.jitter);
+        if (!draw_position(s, frame, masu_picture_frames(s, positions, rays), error, error_size) ||
+            !add_position(s, frame.light, sum, error, error_size)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool masu_picture_truth(masu_session *s, const masu_frame_desc *frame, uint32_t positions, uint32_t rays,
+                        const masu_picture_means *out, void (*progress)(const char *text), char *error,
+                        size_t error_size) {
+    const size_t pixels = (size_t)s->desc.output.width * s->desc.output.height, values = 3 * pixels;
+    sums sum = {calloc(3 * values, sizeof(float)), NULL, NULL};
+    if (!sum.linear) {
         snprintf(error, error_size, "out of memory");
         return false;
     }
-    if (radiance) memset(radiance, 0, 3 * pixels * sizeof *radiance);
-    own.camera = &camera;
-    own.rung = 0;
-    own.time_step = MASU_PICTURE_STEP;
-    bool good = true;
-    for (uint32_t i = 0; i < positions && good; i++) {
-        say_position(i, positions, progress);
-        masu_picture_place(i, positions, camera.jitter);
-        good = draw_position(s, own, frames, error, error_size);
-        const uint8_t *from = s->targets[0].mapped;
-        for (size_t p = 0; p < pixels && good; p++) {
-            for (size_t k = 0; k < 3; k++) sum[3 * p + k] += decoded[from[4 * p + k]];
-        }
-        good = good && (!radiance || add_radiance(s, pixels, one, radiance, error, error_size));
-    }
-    for (size_t i = 0; i < 3 * pixels && good && radiance; i++) radiance[i] /= (float)positions;
-    for (size_t p = 0; p < pixels && good; p++) {
-        for (size_t k = 0; k < 3; k++)
-            rgba[4 * p + k] = masu_picture_encoded(sum[3 * p + k] / (float)positions);
-        rgba[4 * p + 3] = 255;
-    }
-    free(sum);
+    sum.display = sum.linear + values;
+    sum.one = sum.display + values;
+    bool good = add_positions(s, *frame, positions, rays, &sum, progress, error, error_size);
+    for (size_t i = 0; i < 2 * values && good; i++) sum.linear[i] /= (float)positions;
+    if (good && out->linear) memcpy(out->linear, sum.linear, values * sizeof(float));
+    if (good && out->display) masu_srgb_encode(sum.display, pixels, out->display);
+    free(sum.linear);
     return good;
 }
 
@@ -186,7 +179,8 @@ bool masu_picture_find(const masu_session_desc *d, masu_picture_want *t, uint8_t
     if (!masu_picture_open(d, t->positions, &s, error, error_size)) return false;
     masu_frame_desc frame = {.time = t->time};
     bool good =
-        masu_picture_truth(&s, &frame, t->positions, t->rays, rgba, t->progress, error, error_size);
+        masu_picture_truth(&s, &frame, t->positions, t->rays, &(masu_picture_means){.display = rgba}, t->progress,
+                           error, error_size);
     masu_session_close(&s);
     t->messages = s.host.messages;
     return good && (!t->path || masu_image_save_png(t->path, rgba, size.width, size.height, 0,

@@ -1,17 +1,17 @@
 /* picture.h: the truth of a whole picture: what it would be with no shortcut, and a picture
  * to compare.
  *
- * The truth is the mean of many full renders at the output's size, each with the projection moved
+ * The ground truth is the mean of many full renders at the output's size, each with the projection moved
  * by a part of a pixel, so that each pixel gets the mean over its square (a box filter). All that
- * a rung may trade for time is at its most exact. The mean is that of display light: after
- * exposure and tone curve, before the sRGB encoding. So does an eye that stands too far from a
- * display of many times the pixels to tell them apart, and that display is what a picture is to
- * look like. In a mean of radiance, before the tone curve, a lamp that covers a tenth of a pixel
- * makes it white: edges of bright things stay jagged whatever the number of renders.
+ * a rung may trade for time is at its most exact. The renders are read as 16-bit floats, whose rounding,
+ * at most 0.05 %, averages out. There are two means:
  *
- * The renders are read as 8 bits of sRGB. Where they differ, what each is rounded by averages
- * out: over 64 it is 0.29 / 8 = 0.04 of a step. Where they do not, their mean is that one number,
- * and rounding it again changes nothing: the truth is then the picture's own 8 bits.
+ * LINEAR LIGHT, before exposure, tone curve and clipping: what a camera's sensor measures, and what a
+ * reference of linear light is compared with. A lamp that covers a tenth of a pixel can make it white.
+ *
+ * DISPLAY LIGHT, after exposure and tone curve, before the sRGB encoding: a display of many times the
+ * pixels, seen from afar. Edges of bright surfaces stay smooth. Temporal anti-aliasing and the SDF's edges
+ * aim at this mean, so 8-bit images are judged by it.
  *
  * What stays approximate: docs/design/18-error-measurement.md. Nothing here
  * owns the session. */
@@ -43,20 +43,17 @@ bool masu_picture_open(const masu_session_desc *d, uint32_t positions, masu_sess
  * reflections. */
 uint32_t masu_picture_frames(const masu_session *s, uint32_t positions, uint32_t rays);
 
-/* Draws the truth of a frame. rgba: width * height * 4 bytes, sRGB-encoded. The camera of `frame`
- * may be NULL, the scene's then; its rung, time step and cut are not looked at. progress may be
- * NULL. The session is one of masu_picture_open for as many positions, with storage targets of 8
- * bits. */
-bool masu_picture_truth(masu_session *s, const masu_frame_desc *frame, uint32_t positions,
-                        uint32_t rays, uint8_t *rgba, void (*progress)(const char *text),
-                        char *error, size_t error_size);
+/* What is wanted of a ground truth; NULL: nothing. Images of 8 bits are sRGB, 4 bytes a pixel. */
+typedef struct masu_picture_means {
+    float *linear;    /* mean of linear light, 3 floats a pixel */
+    uint8_t *display; /* mean of display light */
+} masu_picture_means;
 
-/* The same, and the mean of radiance before exposure and tone curve, 3 floats a pixel, if `radiance`
- * is not NULL. The session reads back MASU_READBACK_HDR then. */
-bool masu_picture_truth_hdr(masu_session *s, const masu_frame_desc *frame, uint32_t positions,
-                            uint32_t rays, uint8_t *rgba, float *radiance,
-                            void (*progress)(const char *text), char *error,
-                            size_t error_size);
+/* Draws the ground truth of a frame. The camera of `frame` may be NULL, the scene's then; its rung, time step and cut
+ * are ignored. progress may be NULL. The session is one of masu_picture_open for as many positions. */
+bool masu_picture_truth(masu_session *s, const masu_frame_desc *frame, uint32_t positions, uint32_t rays,
+                        const masu_picture_means *out, void (*progress)(const char *text), char *error,
+                        size_t error_size);
 
 /* A session of a scene whose pictures are compared with the truth: a storage target, textures without
  * anisotropy, which a CPU driver has at forty times the price. */
@@ -79,9 +76,5 @@ bool masu_picture_find(const masu_session_desc *d, masu_picture_want *truth, uin
 /* A PNG of that size. rgba: 4 * width * height bytes. */
 bool masu_picture_load(const char *path, VkExtent2D size, uint8_t *rgba, char *error,
                        size_t error_size);
-
-/* Mean of display light, and back: 8 bits of sRGB to 0..1, and to the nearest 8 bits. */
-float masu_picture_decoded(uint8_t encoded);
-uint8_t masu_picture_encoded(float linear);
 
 #endif

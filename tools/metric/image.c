@@ -97,3 +97,32 @@ double masu_metric_ssim(const uint8_t *a, const uint8_t *b, uint32_t width, uint
     free(planes);
     return mean / ((double)(width - 2 * edge_x) * (double)(height - 2 * edge_y));
 }
+
+/* ---- Linear light ---------------------------------------------------------------------------- */
+
+masu_relative_error masu_metric_relative(const float *reference, const float *test, uint32_t pixels) {
+    masu_relative_error e = {0};
+    double squares = 0.0, sum = 0.0, relative = 0.0;
+    uint64_t count = 0;
+    for (size_t i = 0; i < pixels; i++) {
+        double d[3], t[3];
+        for (size_t c = 0; c < 3; c++) {
+            t[c] = (double)reference[3 * i + c];
+            d[c] = (double)test[3 * i + c] - t[c];
+        }
+        if (!isfinite(d[0] + d[1] + d[2])) {
+            e.left_out++;
+            continue;
+        }
+        count += 3;
+        for (int c = 0; c < 3; c++) {
+            squares += d[c] * d[c];
+            sum += t[c];
+            relative += d[c] * d[c] / (t[c] * t[c] + 0.01);
+        }
+    }
+    if (!count) return e;
+    e.rmse = squares > 0.0 ? sqrt(squares * (double)count) / fabs(sum) : 0.0;
+    e.relmse = relative / (double)count;
+    return e;
+}

@@ -1,4 +1,4 @@
-/* image.h: how far two 8-bit pictures are apart: difference, RMSE, PSNR, SSIM.
+/* image.h: how far two 8-bit pictures are apart: difference, RMSE, PSNR, SSIM; relative errors of linear light.
  *
  * Pictures are RGBA8, tightly packed, top row first, display-encoded; alpha is ignored. Nothing
  * here keeps anything; only masu_metric_ssim allocates, and frees again before it returns. */
@@ -23,5 +23,13 @@ double masu_metric_psnr(double rmse);
  * that lie inside the picture; a picture narrower than a window has one window per pixel, its edge
  * repeated. 1: equal. NAN: no memory. */
 double masu_metric_ssim(const uint8_t *a, const uint8_t *b, uint32_t width, uint32_t height);
+
+/* Linear light, 3 floats a pixel; pixels that are not finite in either image are left out. */
+typedef struct masu_relative_error {
+    double rmse;   /* root of the mean squared difference, divided by the mean of the reference */
+    double relmse; /* mean of (x - t)^2 / (t^2 + 0.01), as measure/specular.h */
+    uint64_t left_out;
+} masu_relative_error;
+masu_relative_error masu_metric_relative(const float *reference, const float *test, uint32_t pixels);
 
 #endif

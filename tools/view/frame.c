@@ -4,8 +4,10 @@
 
 #include "clock.h"
 #include "image.h"
+#include "measure/linear.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define OVERLAY_NS 100000000u /* numbers that change faster cannot be read */
@@ -130,12 +132,26 @@ bool masu_viewer_frame(masu_viewer *v) {
     return !r || r == VK_ERROR_OUT_OF_DATE_KHR || vulkan_failed(v, "vkQueuePresentKHR", r);
 }
 
+/* Of A's last frame, without what the viewer draws over it. */
+static bool save_linear(masu_viewer *v, const char *path) {
+    const masu_plan_rung *rung = &v->plan.rungs[v->a.last.rung];
+    VkExtent2D size = {rung->render_width, rung->render_height};
+    float *linear = malloc(3 * sizeof *linear * size.width * size.height);
+    masu_viewer_settle(v);
+    bool good = linear && masu_linear_read(v->a.m, v->a.last.slot, size, linear);
+    if (!good) snprintf(v->error, sizeof v->error, "%s: no linear light to read back", path);
+    good = good && masu_image_save_linear(path, linear, size.width, size.height, v->error, sizeof v->error);
+    free(linear);
+    return good;
+}
+
 bool masu_viewer_screenshot(masu_viewer *v, const char *path) {
     masu_headless_target *t = &v->compose.shown;
     if (!v->frames) {
         snprintf(v->error, sizeof v->error, "%s: no frame is rendered yet", path);
         return false;
     }
+    if (masu_image_is_linear(path)) return save_linear(v, path);
     return masu_headless_target_read(&v->host, t, v->error, sizeof v->error) &&
            masu_image_save_png(path, t->mapped, t->width, t->height, 0, v->error, sizeof v->error);
 }

@@ -128,6 +128,7 @@ static bool start_a(masu_viewer *v) {
     masu_desc d = v->want;
     complete(v, &d);
     d.picking = 1;
+    if (v->o->screenshot && masu_image_is_linear(v->o->screenshot)) d.readback = MASU_READBACK_HDR;
     v->cut = true;
     v->stale_overlay = true;
     v->difference.known = false;
