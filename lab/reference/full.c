@@ -8,17 +8,24 @@ enum { ROULETTE_FROM = 3, STEPS_MOST = 4096 };
 
 static double power(double a, double b) { return a > 0 ? a * a / (a * a + b * b) : 0; }
 
-static bool is_open(const ref_tracer *t, const ref_hit *hit, ref_vec l, double far) {
+static bool is_open(const ref_tracer *t, const ref_hit *hit, ref_vec l) {
     if (!(ref_dot(l, hit->ng) > 0)) return false;
-    ref_vec from = ref_world_leave(t->world, hit, l);
-    return !ref_world_occluded(t->world, from, l, far, REF_RAY_NO_BLENDS);
+    return !ref_world_occluded(t->world, ref_world_leave(t->world, hit, l), l, HUGE_VAL, REF_RAY_NO_BLENDS);
+}
+
+/* To a point of another surface; aimed from where the ray starts, or a distant grazing one would occlude itself. */
+static bool sees(const ref_tracer *t, const ref_hit *hit, ref_vec p) {
+    ref_vec l = ref_sub(p, hit->p), from = ref_world_leave(t->world, hit, l), to = ref_sub(p, from);
+    double d = ref_length(to), far = d * (1 - 1e-5) - 2e-6;
+    if (!(ref_dot(l, hit->ng) > 0) || !(far > 0)) return false;
+    return !ref_world_occluded(t->world, from, ref_scale(to, 1 / d), far, REF_RAY_NO_BLENDS);
 }
 
 static void sample_map(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, ref_random *r, ref_lobes *out) {
     double pdf;
     ref_vec l = ref_sky_sample(t->sky, r, &pdf);
     ref_lobes f = ref_bsdf_eval(b, l, r);
-    if (!(ref_max(ref_lobes_sum(&f)) > 0) || !is_open(t, hit, l, HUGE_VAL)) return;
+    if (!(ref_max(ref_lobes_sum(&f)) > 0) || !is_open(t, hit, l)) return;
     double mis = power(pdf, t->bsdf_samples ? ref_bsdf_pdf(b, l) : 0);
     ref_vec sky = ref_scale(ref_sky_at(t->sky, l), mis / pdf);
     for (int i = 0; i < REF_LOBES; i++) out->of[i] = ref_add(out->of[i], ref_mul(f.of[i], sky));
@@ -51,8 +58,7 @@ static void sample_emitter(const ref_tracer *t, const ref_hit *hit, const ref_bs
     if (!(cosine > 1e-9)) return;
     if (s->materials[k->material].flags & MASU_MATERIAL_IS_SINGLE && facing > 0) return;
     ref_lobes f = ref_bsdf_eval(b, l, r);
-    double far = d * (1 - 1e-5) - 2e-6;
-    if (!(ref_max(ref_lobes_sum(&f)) > 0) || !(far > 0) || !is_open(t, hit, l, far)) return;
+    if (!(ref_max(ref_lobes_sum(&f)) > 0) || !sees(t, hit, p)) return;
     double pdf = s->emitter_pdf[triangle] * d2 / cosine;
     double mis = power(pdf, t->bsdf_samples ? ref_bsdf_pdf(b, l) : 0);
     ref_vec light = ref_scale(ref_world_emission(t->world, triangle, u, v), mis / pdf);

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #define SMOOTHEST 0.045
-enum { ROWS = 96, COLUMNS = 96, STEPS = 96 };
+enum { ROWS = 48, COLUMNS = 64, STEPS = 64 };
 
 static bool separable;
 static pthread_once_t tables_once = PTHREAD_ONCE_INIT;
@@ -143,7 +143,7 @@ static void make_tables(void) {
     for (int i = 0; i < ROWS; i++) {
         double roughness = SMOOTHEST + (1 - SMOOTHEST) * i / (ROWS - 1.0);
         for (int k = 0; k < COLUMNS; k++)
-            table[i][k] = ref_ggx_integrate(roughness, cosine_of(k), k < 24 ? STEPS : STEPS / 2);
+            table[i][k] = ref_ggx_integrate(roughness, cosine_of(k), k < COLUMNS / 4 ? STEPS : STEPS / 2);
         average[i] = average_of(table[i]);
         fit_line(table[i], line[i]);
     }
