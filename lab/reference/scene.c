@@ -193,10 +193,11 @@ static bool read_triangles(ref_scene *s, const double *matrices, double time, bo
 
 static bool read_lights(ref_scene *s, const double *matrices) {
     const masu_blob_light *from = s->blob.section[MASU_BLOB_LIGHTS];
+    uint8_t *hidden = hidden_instances(&s->blob);
     s->lights = calloc(s->blob.count[MASU_BLOB_LIGHTS] + 1, sizeof *s->lights);
-    if (!s->lights) return false;
-    for (uint64_t i = 0; i < s->blob.count[MASU_BLOB_LIGHTS]; i++) {
+    for (uint64_t i = 0; s->lights && hidden && i < s->blob.count[MASU_BLOB_LIGHTS]; i++) {
         bool spot = from[i].type == MASU_LIGHT_SPOT;
+        if (from[i].parent != MASU_BLOB_NONE && hidden[from[i].parent]) continue;
         ref_light *l = &s->lights[s->light_count++];
         *l = (ref_light){ref_of(from[i].position), ref_of(from[i].color), ref_of(from[i].direction),
                          (double)from[i].range, (double)from[i].radius, (double)from[i].inner,
@@ -206,7 +207,9 @@ static bool read_lights(ref_scene *s, const double *matrices) {
         l->position = ref_transform(m, l->position);
         l->direction = ref_unit(ref_transform_direction(m, l->direction));
     }
-    return true;
+    bool good = s->lights && hidden;
+    free(hidden);
+    return good;
 }
 
 /* Triangles by the light that they send, an emission map counted as white. */
