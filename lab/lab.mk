@@ -67,6 +67,8 @@ LAB_ARCHIVE := $(BUILD)/lib/libmasu-lab.a
 LAB_LINKED  := $(LAB_ARCHIVE) $(call tool_archive,meso) $(MEASURE_ARCHIVES) $(BAKE_ARCHIVES)
 
 $(BUILD)/obj/lab/%.o: FOLDER_FLAGS := -D_POSIX_C_SOURCE=200809L -I.
+# Sums that are the same for any flags of the machine.
+$(BUILD)/obj/lab/reference/%.o: FOLDER_FLAGS := -D_POSIX_C_SOURCE=200809L -I. -ffp-contract=off
 $(BUILD)/obj/lab/tests/%.o: FOLDER_FLAGS := -D_POSIX_C_SOURCE=200809L -UNDEBUG -I.
 
 # Shaders that only the lab uses, as C (shaders/shaders.mk).

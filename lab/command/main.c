@@ -8,7 +8,8 @@
 
 int main(int argc, char **argv) {
     static const masu_cli_command *const commands[] = {
-        &lab_study, &lab_model, &lab_isa, &lab_simulate, &lab_meso, &lab_world, &lab_ladder, NULL};
+        &lab_study, &lab_model, &lab_isa, &lab_simulate, &lab_meso, &lab_world, &lab_ladder,
+        &lab_reference, NULL};
     static const masu_cli_program program = {
         .name = "masu-lab",
         .version = VERSION_TEXT(MASU_VERSION_MAJOR, MASU_VERSION_MINOR, MASU_VERSION_PATCH),

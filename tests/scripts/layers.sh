@@ -1,7 +1,7 @@
 #!/bin/bash
 # The layers of the sources: a file of src/ includes and calls only what is in its own folder or below, there are no
 # cycles of files in src/ and of folders in tools/, no file is too long, tools/ has no files of its own, and nothing
-# outside lab/ includes or links anything of lab/. Each rule is first shown something that breaks it.
+# outside lab/ includes or links anything of lab/, and lab/reference includes nothing of shaders/ and src/frame. Each rule is first shown something that breaks it.
 #
 # A node is a module, x.c with x.h. Includes are read from the text, calls from the object files.
 #
@@ -84,6 +84,13 @@ lab_users() {
         grep -rlE 'libmasu-lab|obj/lab/|LAB_(SOURCES|ARCHIVE|LINKED)' --exclude-dir=build --exclude-dir=.git \
             --include='*.mk' --include=Makefile .) |
         sed 's|^\./||' | grep -vE '^(lab|build)/' | sort
+}
+
+# shared_code ROOT: includes of lab/reference beyond its own files, the blob's layout and validation, the SDF compiler and
+# file helpers: the path tracer that judges the renderer shares no shading, no light and no camera with it
+shared_code() {
+    (cd "$1" && grep -rnE '^[[:space:]]*#[[:space:]]*include "' --include='*.[ch]' lab/reference) |
+        grep -vE '"(lab/reference/[a-z_]+\.h|scene/blob\.h|masu\.h|image\.h|file_kind\.h|sdfc/sdfc\.h|bake/base/process\.h)"'
 }
 
 # loose FOLDER: sources directly in it
@@ -169,6 +176,12 @@ expect 3 lab_users "$folder/tree"
 rm "$folder/tree/tools/one/x.c" "$folder/tree/tests/x.h" # what links is found without what includes
 expect 1 lab_users "$folder/tree"
 
+mkdir -p "$folder/tree/lab/reference"
+printf '#include "brdf/bsdf.glsl"\n#include "shared/masu_shared.h"\n#include "frame/camera.h"\n#include <math.h>\n' \
+    > "$folder/tree/lab/reference/x.c"
+printf '#include "lab/reference/x.h"\n#include "scene/blob.h"\n#include "lab/study/x.h"\n' > "$folder/tree/lab/reference/y.h"
+expect 4 shared_code "$folder/tree"
+
 # ---- The rules -----------------------------------------------------------------------------------
 
 objects=${BUILD:-build}/obj/src
@@ -179,6 +192,7 @@ expect_none "over $LONG lines without a reason ('Over 700 lines: why') at the he
     long_files src shaders tools lab
 expect_none 'folders of tools/ on a circle of includes' folder_circles tools
 expect_none 'these include or link something of lab/' lab_users .
+expect_none 'lab/reference includes what the renderer is made of, or what no rule allows' shared_code .
 [ ! -e "${BUILD:-build}/obj/lab" ] || { echo "the product's build has objects of lab/" && failed=1; }
 expect_none 'sources directly in tools/' loose tools
 exit $failed

@@ -1,0 +1,169 @@
+/* bsdf.c: see bsdf.h. */
+#include "lab/reference/bsdf.h"
+
+#include <string.h>
+
+#define SMOOTHEST 0.045
+
+/* cosine: with the base's normal; over: with the coat's, which decides what the coat returns and covers. */
+static ref_returned returned(const ref_bsdf *b, ref_albedo base, ref_albedo covered, ref_albedo coat) {
+    double c = b->s.coat, through = 1 - c * b->line[0], less = c * b->line[1];
+    ref_returned r = {.white = through * base.white - less * covered.covered,
+                      .weight = through * base.weight - less * covered.covered_weight,
+                      .coat = c * (0.04 * coat.white + 0.96 * coat.weight)};
+    r.lost = fmax(1 - r.white - r.coat, 0);
+    return r;
+}
+
+static ref_returned returned_at(const ref_bsdf *b, double cosine, double over) {
+    return returned(b, ref_ggx_albedo(b->s.roughness, cosine), ref_ggx_albedo(b->s.roughness, over),
+                    ref_ggx_albedo(b->s.coat_roughness, over));
+}
+
+/* Light that leaves after several bounces, as a factor of what is lost. */
+static double rest_of(double f0, double f90, double white) {
+    double f = f0 + (f90 - f0) / 21;
+    return f * f * white / (1 - f * (1 - white));
+}
+
+/* Part of the light that the dielectric's layers return before the colour below. */
+static double matte(const ref_bsdf *b, const ref_returned *r) {
+    double f0 = b->matte.f0.x;
+    return r->coat + f0 * r->white + (b->matte.f90 - f0) * r->weight + b->matte_rest * r->lost;
+}
+
+static double below(const ref_bsdf *b, const ref_returned *r) { return fmax(1 - matte(b, r), 0); }
+
+void ref_bsdf_make(ref_bsdf *b, const ref_surface *s, ref_vec v, bool walk) {
+    memset(b, 0, sizeof *b);
+    b->walk = walk;
+    b->s = *s;
+    b->s.roughness = ref_clamp(s->roughness, SMOOTHEST, 1);
+    b->s.coat_roughness = ref_clamp(s->coat_roughness, SMOOTHEST, 1);
+    b->base = ref_frame_of(s->normal);
+    b->over = ref_frame_of(s->coat_normal);
+    b->v = ref_to(&b->base, v);
+    b->v.z = ref_clamp(b->v.z, 1e-4, 1);
+    b->v_over = ref_to(&b->over, v);
+    b->v_over.z = ref_clamp(b->v_over.z, 1e-4, 1);
+    b->alpha = b->s.roughness * b->s.roughness;
+    b->coat_alpha = b->s.coat_roughness * b->s.coat_roughness;
+    if (s->coat > 0) ref_ggx_coat_line(b->s.coat_roughness, &b->line[0], &b->line[1]);
+    double f0 = 0.08 * ref_clamp(s->specular, 0, 1), m = ref_clamp(s->metallic, 0, 1);
+    b->matte = (ref_fresnel){ref_splat(f0), fmin(50 * f0, 1)};
+    b->metal = (ref_fresnel){s->albedo, fmin(50 * ref_max(s->albedo), 1)};
+    b->mixed = (ref_fresnel){ref_mix(b->matte.f0, b->metal.f0, m),
+                             b->matte.f90 + m * (b->metal.f90 - b->matte.f90)};
+    ref_albedo average = ref_ggx_average(b->s.roughness);
+    b->matte_rest = rest_of(f0, b->matte.f90, average.white);
+    ref_vec a = s->albedo;
+    ref_vec metal_rest = ref_v(rest_of(a.x, b->metal.f90, average.white), rest_of(a.y, b->metal.f90, average.white),
+                               rest_of(a.z, b->metal.f90, average.white));
+    b->rest_color = ref_mix(ref_splat(b->matte_rest), metal_rest, m);
+    b->all = returned(b, average, average, ref_ggx_average(b->s.coat_roughness));
+    b->seen = returned_at(b, b->v.z, b->v_over.z);
+    ref_lobes albedo = ref_bsdf_albedo(b);
+    double sum = 0;
+    for (int i = 0; i < REF_LOBES; i++) {
+        b->pick[i] = ref_luminance(albedo.of[i]);
+        if (b->walk && i == REF_BASE) b->pick[i] += ref_luminance(b->rest_color) * b->seen.lost;
+        sum += b->pick[i];
+    }
+    /* Every lobe that there is gets some: an estimate of an albedo may be too low. */
+    for (int i = 0; i < REF_LOBES; i++) {
+        bool there = i == REF_BASE || (i == REF_COAT ? s->coat > 0 : true);
+        b->pick[i] = sum > 0 ? 0.9 * b->pick[i] / sum : 0;
+        if (there) b->pick[i] += 0.1 / (s->coat > 0 ? 3 : 2);
+    }
+    if (!(sum > 0)) {
+        b->pick[REF_BASE] = b->pick[REF_SOFT] = 0.5;
+        b->pick[REF_COAT] = 0;
+    }
+    double all = b->pick[0] + b->pick[1] + b->pick[2];
+    for (int i = 0; i < REF_LOBES; i++) b->pick[i] /= all;
+}
+
+ref_lobes ref_bsdf_albedo(const ref_bsdf *b) {
+    ref_lobes out;
+    const ref_returned *s = &b->seen;
+    out.of[REF_BASE] = ref_add(ref_scale(b->mixed.f0, s->white - s->weight), ref_splat(b->mixed.f90 * s->weight));
+    out.of[REF_COAT] = ref_splat(s->coat);
+    ref_vec diffuse = ref_scale(b->s.albedo, (1 - ref_clamp(b->s.metallic, 0, 1)) * below(b, s));
+    out.of[REF_SOFT] = ref_add(diffuse, ref_scale(b->rest_color, s->lost));
+    return out;
+}
+
+static double through_coat(const ref_bsdf *b, double l_over) {
+    double steep = ref_schlick(fmin(l_over, b->v_over.z));
+    return fmax(1 - b->s.coat * (b->line[0] + b->line[1] * steep), 0);
+}
+
+static ref_vec mirror_of(const ref_bsdf *b, ref_vec l, ref_random *r) {
+    ref_vec h = ref_unit(ref_add(b->v, l));
+    ref_vec f = ref_fresnel_at(&b->mixed, ref_dot(b->v, h));
+    ref_vec once = ref_scale(f, ref_ggx_lobe(b->alpha, b->v, l));
+    if (!b->walk) return once;
+    double m = ref_clamp(b->s.metallic, 0, 1);
+    bool metal = false; /* a walk stays within one of the two shares */
+    if (m > 0) metal = ref_draw(r) < m;
+    return ref_add(once, ref_walk_multiple(b->alpha, metal ? &b->metal : &b->matte, b->v, l, r));
+}
+
+ref_lobes ref_bsdf_eval(const ref_bsdf *b, ref_vec light, ref_random *r) {
+    ref_lobes out;
+    memset(&out, 0, sizeof out);
+    ref_vec l = ref_to(&b->base, light), over = ref_to(&b->over, light);
+    if (b->s.coat > 0 && over.z > 0) {
+        ref_vec h = ref_unit(ref_add(b->v_over, over));
+        double f = 0.04 + 0.96 * ref_schlick(ref_dot(b->v_over, h));
+        out.of[REF_COAT] = ref_splat(b->s.coat * f * ref_ggx_lobe(b->coat_alpha, b->v_over, over));
+    }
+    if (!(l.z > 0)) return out;
+    double open = b->s.coat > 0 ? through_coat(b, ref_clamp(over.z, 0, 1)) : 1;
+    out.of[REF_BASE] = ref_scale(mirror_of(b, l, r), open);
+    ref_returned lit = returned_at(b, l.z, ref_clamp(over.z, 0, 1));
+    double diffuse = (1 - ref_clamp(b->s.metallic, 0, 1)) * below(b, &b->seen) * below(b, &lit) /
+                     fmax(below(b, &b->all), 1e-6);
+    ref_vec soft = ref_scale(b->s.albedo, diffuse);
+    if (!b->walk) {
+        double rest = b->seen.lost * lit.lost / fmax(b->all.lost, 1e-6);
+        soft = ref_add(soft, ref_scale(b->rest_color, rest));
+    }
+    out.of[REF_SOFT] = ref_scale(soft, l.z / REF_PI);
+    return out;
+}
+
+double ref_bsdf_pdf(const ref_bsdf *b, ref_vec light) {
+    ref_vec l = ref_to(&b->base, light), over = ref_to(&b->over, light);
+    double pdf = 0;
+    if (l.z > 0) pdf += b->pick[REF_BASE] * ref_ggx_pdf(b->alpha, b->v, l);
+    if (over.z > 0 && b->pick[REF_COAT] > 0) pdf += b->pick[REF_COAT] * ref_ggx_pdf(b->coat_alpha, b->v_over, over);
+    if (l.z > 0) pdf += b->pick[REF_SOFT] * l.z / REF_PI;
+    return pdf;
+}
+
+/* The half vectors of v and of a direction below the horizon count for nothing: they are drawn and lost. */
+bool ref_bsdf_sample(const ref_bsdf *b, ref_random *r, ref_vec *l, ref_lobes *weight) {
+    double which = ref_draw(r);
+    double u1 = ref_draw(r);
+    double u2 = ref_draw(r);
+    ref_vec w;
+    if (which < b->pick[REF_BASE]) {
+        ref_vec n = ref_ggx_normal(b->alpha, b->v, u1, u2);
+        w = ref_reflect(b->v, n);
+        *l = ref_from(&b->base, w);
+    } else if (which < b->pick[REF_BASE] + b->pick[REF_COAT]) {
+        ref_vec n = ref_ggx_normal(b->coat_alpha, b->v_over, u1, u2);
+        w = ref_reflect(b->v_over, n);
+        *l = ref_from(&b->over, w);
+    } else {
+        w = ref_cosine_sample(u1, u2);
+        *l = ref_from(&b->base, w);
+    }
+    if (!(w.z > 0)) return false;
+    double pdf = ref_bsdf_pdf(b, *l);
+    if (!(pdf > 0)) return false;
+    *weight = ref_bsdf_eval(b, *l, r);
+    for (int i = 0; i < REF_LOBES; i++) weight->of[i] = ref_scale(weight->of[i], 1 / pdf);
+    return true;
+}

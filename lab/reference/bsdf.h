@@ -1,0 +1,61 @@
+/* bsdf.h: how a surface of the reference scatters light.
+ *
+ *   design   the closed model that Masu promises: GGX, what it loses by a product (Kulla and Conty 2017, the square
+ *            of Hill 2018), diffuse light below by a product (Kelemen and Szirmay-Kalos 2001), and a clear coat
+ *            that lets 1 - c (a + b max(s(v), s(l))) through
+ *   physics  the same layers, but the light between facets by a random walk: no closed form for what a
+ *            single bounce loses
+ *
+ * A lobe is a part of it, since Masu lights them differently: mirror of the base, mirror of the coat, and
+ * soft: all that has no direction left. */
+#ifndef LAB_REFERENCE_BSDF_H
+#define LAB_REFERENCE_BSDF_H
+
+#include "lab/reference/ggx.h"
+
+typedef struct ref_surface {
+    ref_vec albedo, emissive;
+    double roughness, metallic, specular; /* specular: f0 / 0.08 */
+    double coat, coat_roughness;
+    double occlusion; /* of the material's map */
+    ref_vec normal, coat_normal; /* unit, towards the viewer */
+} ref_surface;
+
+enum { REF_BASE, REF_COAT, REF_SOFT, REF_LOBES };
+typedef struct ref_lobes {
+    ref_vec of[REF_LOBES];
+} ref_lobes;
+
+static inline ref_vec ref_lobes_sum(const ref_lobes *l) {
+    return ref_add(ref_add(l->of[REF_BASE], l->of[REF_COAT]), l->of[REF_SOFT]);
+}
+
+typedef struct ref_returned {
+    double white, weight, coat, lost;
+} ref_returned;
+
+typedef struct ref_bsdf {
+    bool walk;
+    ref_surface s;
+    ref_frame base, over;
+    ref_vec v, v_over; /* in the two frames */
+    double alpha, coat_alpha, line[2];
+    ref_fresnel mixed, metal, matte; /* mixed: of the single bounce of both shares */
+    ref_returned all, seen;
+    ref_vec rest_color; /* of metal and dielectric together */
+    double matte_rest;
+    double pick[REF_LOBES]; /* probability of sampling each */
+} ref_bsdf;
+
+/* v: towards the viewer, unit. */
+void ref_bsdf_make(ref_bsdf *b, const ref_surface *s, ref_vec v, bool walk);
+/* f times the cosine, of light from l. `r` is drawn from in walks only. */
+ref_lobes ref_bsdf_eval(const ref_bsdf *b, ref_vec l, ref_random *r);
+/* Density of ref_bsdf_sample; of a walk an estimate, which weights two strategies as well. */
+double ref_bsdf_pdf(const ref_bsdf *b, ref_vec l);
+/* A direction and f times the cosine over its density; false: nothing is scattered that way. */
+bool ref_bsdf_sample(const ref_bsdf *b, ref_random *r, ref_vec *l, ref_lobes *weight);
+/* Part of the light from everywhere that each lobe returns. */
+ref_lobes ref_bsdf_albedo(const ref_bsdf *b);
+
+#endif

@@ -1,0 +1,150 @@
+/* full.c: all light paths: a path tracer with next-event estimation and multiple importance sampling (power heuristic);
+ * see tracer.h. */
+#include "lab/reference/tracer.h"
+
+#include <string.h>
+
+enum { ROULETTE_FROM = 3, STEPS_MOST = 4096 };
+
+static double power(double a, double b) { return a > 0 ? a * a / (a * a + b * b) : 0; }
+
+static bool is_open(const ref_tracer *t, const ref_hit *hit, ref_vec l) {
+    if (!(ref_dot(l, hit->ng) > 0)) return false;
+    return !ref_world_occluded(t->world, ref_world_leave(t->world, hit, l), l, HUGE_VAL, REF_RAY_NO_BLENDS);
+}
+
+/* To a point of another surface; aimed from where the ray starts, or a distant grazing one would occlude itself. */
+static bool sees(const ref_tracer *t, const ref_hit *hit, ref_vec p) {
+    ref_vec l = ref_sub(p, hit->p), from = ref_world_leave(t->world, hit, l), to = ref_sub(p, from);
+    double d = ref_length(to), far = d * (1 - 1e-5) - 2e-6;
+    if (!(ref_dot(l, hit->ng) > 0) || !(far > 0)) return false;
+    return !ref_world_occluded(t->world, from, ref_scale(to, 1 / d), far, REF_RAY_NO_BLENDS);
+}
+
+static void sample_map(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, ref_random *r, ref_lobes *out) {
+    double pdf;
+    ref_vec l = ref_sky_sample(t->sky, r, &pdf);
+    ref_lobes f = ref_bsdf_eval(b, l, r);
+    if (!(ref_max(ref_lobes_sum(&f)) > 0) || !is_open(t, hit, l)) return;
+    double mis = power(pdf, t->bsdf_samples ? ref_bsdf_pdf(b, l) : 0);
+    ref_vec sky = ref_scale(ref_sky_at(t->sky, l), mis / pdf);
+    for (int i = 0; i < REF_LOBES; i++) out->of[i] = ref_add(out->of[i], ref_mul(f.of[i], sky));
+}
+
+static void sample_emitter(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, ref_random *r, ref_lobes *out) {
+    const ref_scene *s = t->world->scene;
+    double which = ref_draw(r);
+    double u = ref_draw(r);
+    double v = ref_draw(r);
+    uint32_t low = 0, high = s->emitter_count - 1;
+    while (low < high) {
+        uint32_t middle = (low + high) / 2;
+        if (s->emitters[middle].cumulative > which)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    uint32_t triangle = s->emitters[low].triangle;
+    const ref_triangle *k = &s->triangles[triangle];
+    if (u + v > 1) u = 1 - u, v = 1 - v;
+    ref_vec a = s->positions[k->vertex[0]];
+    ref_vec e1 = ref_sub(s->positions[k->vertex[1]], a), e2 = ref_sub(s->positions[k->vertex[2]], a);
+    ref_vec p = ref_along(ref_along(a, u, e1), v, e2), n = ref_unit(ref_cross(e1, e2));
+    ref_vec to = ref_sub(p, hit->p);
+    double d2 = ref_dot(to, to), d = sqrt(d2);
+    if (!(d > 0)) return;
+    ref_vec l = ref_scale(to, 1 / d);
+    double facing = ref_dot(n, l), cosine = fabs(facing);
+    if (!(cosine > 1e-9)) return;
+    if (s->materials[k->material].flags & MASU_MATERIAL_IS_SINGLE && facing > 0) return;
+    ref_lobes f = ref_bsdf_eval(b, l, r);
+    if (!(ref_max(ref_lobes_sum(&f)) > 0) || !sees(t, hit, p)) return;
+    double pdf = s->emitter_pdf[triangle] * d2 / cosine;
+    double mis = power(pdf, t->bsdf_samples ? ref_bsdf_pdf(b, l) : 0);
+    ref_vec light = ref_scale(ref_world_emission(t->world, triangle, u, v), mis / pdf);
+    for (int i = 0; i < REF_LOBES; i++) out->of[i] = ref_add(out->of[i], ref_mul(f.of[i], light));
+}
+
+/* Of emission that a scattered ray meets: how much, beside samples of the emitters. */
+static double emission_weight(const ref_tracer *t, const ref_hit *hit, ref_vec d, double travelled, double pdf, bool camera) {
+    const ref_scene *s = t->world->scene;
+    if (camera || !t->light_samples || hit->triangle == REF_SDF || !s->emitter_count) return 1;
+    double cosine = fabs(ref_dot(hit->ng, d));
+    double other = cosine > 1e-9 ? s->emitter_pdf[hit->triangle] * travelled * travelled / cosine : 0;
+    return t->bsdf_samples ? power(pdf, other) : 0;
+}
+
+ref_vec ref_full(const ref_tracer *t, ref_vec from, ref_vec d, ref_random *r) {
+    ref_vec sum = ref_splat(0), left = ref_splat(1), start = from;
+    ref_lobes w = {{ref_splat(1), ref_splat(0), ref_splat(0)}};
+    bool map = ref_sky_is_map(t->sky) && t->sky_samples, mirror = true;
+    double pdf = 0;
+    uint32_t bounce = 0;
+    for (uint32_t step = 0; step < STEPS_MOST; step++) {
+        ref_hit hit;
+        ref_look look;
+        ref_bsdf b;
+        bool camera = bounce == 0;
+        ref_vec all = ref_mul(left, ref_lobes_sum(&w)), v = ref_scale(d, -1);
+        if (!ref_world_trace(t->world, from, d, HUGE_VAL, REF_RAY_ONE_SIDED, &hit)) {
+            double mis = camera || !map ? 1 : t->bsdf_samples ? power(pdf, ref_sky_pdf(t->sky, d)) : 0;
+            ref_vec seen = camera ? ref_sky_seen(t, d) : ref_sky_at(t->sky, d);
+            ref_vec soft = t->physics ? seen : ref_sky_soft(t->sky, d);
+            double air = mirror ? ref_air_left(t, start, d, HUGE_VAL) : 1;
+            seen = ref_through_air(t, seen, d, air, 1);
+            ref_vec mirrored = ref_mul(ref_add(w.of[REF_BASE], w.of[REF_COAT]), seen);
+            ref_vec light = ref_add(mirrored, ref_mul(w.of[REF_SOFT], soft));
+            return ref_add(sum, ref_scale(ref_mul(left, light), mis));
+        }
+        ref_world_look(t->world, &hit, v, &look);
+        double travelled = ref_length(ref_sub(hit.p, start));
+        double air = mirror ? ref_air_left(t, start, d, travelled) : 1;
+        if (air < 1) {
+            sum = ref_add(sum, ref_mul(all, ref_scale(ref_air_color(t, d), 1 - air)));
+            left = ref_scale(left, air);
+            all = ref_scale(all, air);
+        }
+        ref_bsdf_make(&b, &look.s, v, t->physics);
+        ref_pane pane = {ref_splat(0), 1, 1, 1};
+        if (look.flags & MASU_MATERIAL_IS_BLEND) {
+            pane = ref_pane_of(&look, &b);
+            double through = ref_clamp(ref_max(pane.behind), 0.1, 0.9), u = ref_draw(r);
+            if (u < through) {
+                left = ref_mul(left, ref_scale(pane.behind, 1 / through));
+                from = ref_world_leave(t->world, &hit, d);
+                continue;
+            }
+            all = ref_scale(all, 1 / (1 - through));
+            left = ref_scale(left, 1 / (1 - through));
+        }
+        double seen = emission_weight(t, &hit, d, travelled, pdf, camera) * pane.soft;
+        sum = ref_add(sum, ref_mul(all, ref_scale(look.s.emissive, seen)));
+        if (ref_is_unlit(&look.s)) return sum;
+        ref_lobes lit;
+        memset(&lit, 0, sizeof lit);
+        ref_sun_light(t, &hit, &b, r, &lit);
+        ref_punctual_light(t, &hit, &b, r, &lit);
+        if (bounce < t->bounces) {
+            if (map) sample_map(t, &hit, &b, r, &lit);
+            if (t->world->scene->emitter_count && t->light_samples) sample_emitter(t, &hit, &b, r, &lit);
+        }
+        ref_vec mirrored = ref_scale(ref_add(lit.of[REF_BASE], lit.of[REF_COAT]), pane.mirror);
+        sum = ref_add(sum, ref_mul(all, ref_along(mirrored, pane.soft, lit.of[REF_SOFT])));
+        if (bounce++ >= t->bounces || !ref_bsdf_sample(&b, r, &d, &w)) return sum;
+        pdf = ref_bsdf_pdf(&b, d);
+        w.of[REF_BASE] = ref_scale(w.of[REF_BASE], pane.mirror);
+        w.of[REF_COAT] = ref_scale(w.of[REF_COAT], pane.mirror);
+        w.of[REF_SOFT] = ref_scale(w.of[REF_SOFT], pane.soft);
+        mirror = ref_max(w.of[REF_BASE]) + ref_max(w.of[REF_COAT]) > ref_max(w.of[REF_SOFT]);
+        left = all;
+        ref_vec next = ref_mul(left, ref_lobes_sum(&w));
+        if (!(ref_dot(d, hit.ng) > 0) || !(ref_max(next) > 0)) return sum;
+        if (bounce >= ROULETTE_FROM) {
+            double survive = fmin(ref_max(next), 0.95), u = ref_draw(r);
+            if (u >= survive) return sum;
+            left = ref_scale(left, 1 / survive);
+        }
+        from = start = ref_world_leave(t->world, &hit, d);
+    }
+    return sum;
+}
