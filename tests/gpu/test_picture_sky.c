@@ -79,7 +79,7 @@ static void open_picture(void) {
 static const uint16_t *render(double height, double distance, double x, double y, double z, double tangent) {
     static masu_camera camera;
     masu_commands commands;
-    camera = (masu_camera){.position = {0, (float)height, (float)distance}, .forward = {(float)x, (float)y, (float)z},
+    camera = (masu_camera){.position = {0, height, distance}, .forward = {(float)x, (float)y, (float)z},
                            .fov_y = (float)(2 * atan(tangent))};
     masu_frame_desc frame = {.camera = &camera};
     draw(&s, &frame, &commands, NULL);
