@@ -104,29 +104,32 @@ float masu_bend_lookup(masu_surface s, vec3 n, vec3 v, inout vec3 direction, ino
 masu_mirrored masu_mirrored_sky(masu_surface s, vec3 n, vec3 v, vec2 kept)
 {
     masu_mirrored m = masu_mirrored(vec3(0.0), vec3(0.0), 0.0, kept.x);
-    vec3 mirrored = reflect(-v, n);
+    vec3 normal = n;
+#ifdef MASU_SURFACE
+    if (masu_own_coats) {
+        normal = masu_below(n, s.lean);
+    }
+#endif
+    vec3 mirrored = reflect(-v, normal);
     float roughness = s.roughness;
+    if (masu_has_environment) {
+        m.even = masu_bend_lookup(s, normal, v, mirrored, roughness);
+    }
 #ifdef MASU_SURFACE
     /* In a loop: the code for the sky would stand here twice. */
+    float part = kept.x;
     [[dont_unroll]] for (int i = 0; i < 2; i++) {
-        float part = i == 0 ? kept.x : s.coat > 0.0 ? kept.y : 0.0;
         m.coat = vec3(0.0);
-        vec3 normal = masu_own_coats && i == 0 ? masu_below(n, s.lean) : n;
-        mirrored = reflect(-v, normal);
-        roughness = i == 0 ? s.roughness : s.coat_roughness;
         if (part > 0.0) {
-            if (masu_has_environment && i == 0) {
-                m.even = masu_bend_lookup(s, normal, v, mirrored, roughness);
-            }
             m.coat = part * masu_ambient_mirror(mirrored, roughness);
         }
         m.base = i == 0 ? m.coat : m.base;
+        part = s.coat > 0.0 ? kept.y : 0.0;
+        mirrored = reflect(-v, n);
+        roughness = s.coat_roughness;
     }
 #else
     if (kept.x > 0.0) {
-        if (masu_has_environment) {
-            m.even = masu_bend_lookup(s, n, v, mirrored, roughness);
-        }
         m.base = kept.x * masu_ambient_mirror(mirrored, roughness);
     }
 #endif

@@ -1,5 +1,6 @@
-/* test_picture_sky.c: a picture with a sun as the sky: what spheres of several materials send to the camera, against
- * integrals of the surface model (tests/reference/brdf.h) over the picture, and whose sun it is. */
+/* test_picture_sky.c: a picture with a sun as the sky: what spheres of several materials send to
+ * the camera, against integrals of the surface model (tests/reference/brdf.h) over the picture, and
+ * whose sun it is. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -48,19 +49,26 @@ static void paint(void) {
 
 static void bake(const char *sun_json) {
     static const char *const materials[SPHERES] = {
-        "[1, 1, 1], \"roughness\": 1, \"specular\": 0", "[1, 1, 1], \"roughness\": 0.75, \"metallic\": 1",
-        "[1, 1, 1], \"roughness\": 1, \"metallic\": 1", "[0, 0, 0], \"roughness\": 0.75", "[0, 0, 0], \"roughness\": 1"};
+        "[1, 1, 1], \"roughness\": 1, \"specular\": 0",
+        "[1, 1, 1], \"roughness\": 0.75, \"metallic\": 1",
+        "[1, 1, 1], \"roughness\": 1, \"metallic\": 1", "[0, 0, 0], \"roughness\": 0.75",
+        "[0, 0, 0], \"roughness\": 1"};
     char json[4096], error[256];
-    size_t at = (size_t)snprintf(json, sizeof json, "{%s \"environment\": {\"file\": \"sunny.pfm\", \"size\": 128}, "
-                                 "\"models\": [", sun_json);
+    size_t at = (size_t)snprintf(json, sizeof json,
+                                 "{%s \"environment\": {\"file\": \"sunny.pfm\", \"size\": 128}, "
+                                 "\"models\": [",
+                                 sun_json);
     for (int i = 0; i < SPHERES; i++) {
         at += (size_t)snprintf(json + at, sizeof json - at,
-                               "%s{\"mesh\": {\"sphere\": {\"radius\": 0.45, \"subdivisions\": 5}}, \"translate\": [%d, 0, 0], "
-                               "\"material\": {\"base_color\": %s}}", i ? ", " : "", i - SPHERES / 2, materials[i]);
+                               "%s{\"mesh\": {\"sphere\": {\"radius\": 0.45, \"subdivisions\": "
+                               "5}}, \"translate\": [%d, 0, 0], "
+                               "\"material\": {\"base_color\": %s}}",
+                               i ? ", " : "", i - SPHERES / 2, materials[i]);
     }
     snprintf(json + at, sizeof json - at, "]}");
     paint();
-    assert_ok(masu_image_save_pfm(in_scratch("sunny.pfm"), rgb, WIDE, HIGH, 3, error, sizeof error));
+    assert_ok(
+        masu_image_save_pfm(in_scratch("sunny.pfm"), rgb, WIDE, HIGH, 3, error, sizeof error));
     bake_scene("sunny", json);
 }
 
@@ -76,20 +84,25 @@ static void open_picture(void) {
 #define DISTANCE 20.0
 #define TANGENT 0.07
 
-static const uint16_t *render(double height, double distance, double x, double y, double z, double tangent) {
+static const uint16_t *render(double height, double distance, double x, double y, double z,
+                              double tangent) {
     static masu_camera camera;
     masu_commands commands;
-    camera = (masu_camera){.position = {0, (float)height, (float)distance}, .forward = {(float)x, (float)y, (float)z},
+    camera = (masu_camera){.position = {0, height, distance},
+                           .forward = {(float)x, (float)y, (float)z},
                            .fov_y = (float)(2 * atan(tangent))};
     masu_frame_desc frame = {.camera = &camera};
     draw(&s, &frame, &commands, NULL);
     return read_image(&s, commands.slot, MASU_READBACK_HDR);
 }
 
-static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static double dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 /* What a surface of normal n sends towards v: a sum over the picture, 2 x 2 pixels at a time. */
-static void shade(const brdf_surface *surface, const double n[3], const double v[3], double out[3]) {
+static void shade(const brdf_surface *surface, const double n[3], const double v[3],
+                  double out[3]) {
     double across[3] = {n[1], -n[0], 0}, up[3], view[3];
     double length = sqrt(dot(across, across));
     if (length < 1e-6) across[0] = length = 1;
@@ -106,7 +119,9 @@ static void shade(const brdf_surface *surface, const double n[3], const double v
             brdf_eval(masu_split_sum, surface, view, l, f);
             for (int c = 0; c < 3; c++) {
                 const float *p = rgb + 3 * (y * WIDE + x) + c;
-                double light = ((double)p[0] + (double)p[3] + (double)p[3 * WIDE] + (double)p[3 * WIDE + 3]) / 4;
+                double light =
+                    ((double)p[0] + (double)p[3] + (double)p[3 * WIDE] + (double)p[3 * WIDE + 3]) /
+                    4;
                 out[c] += f[c] / PI * light * solid_angle;
             }
         }
@@ -114,17 +129,20 @@ static void shade(const brdf_surface *surface, const double n[3], const double v
 }
 
 /* RMS of ln(image / integral) over pixels of a sphere whose N.V is within a range. */
-static double error_of(const uint16_t *hdr, int sphere, const brdf_surface *surface, double least, double most) {
+static double error_of(const uint16_t *hdr, int sphere, const brdf_surface *surface, double least,
+                       double most) {
     double square = 0, counted = 0;
     uint32_t met = 0;
     for (uint32_t i = 0; i < W * H; i++) {
-        double d[3] = {((i % W + 0.5) / W * 2 - 1) * TANGENT * W / H, (1 - (i / W + 0.5) / H * 2) * TANGENT, -1};
+        double d[3] = {((i % W + 0.5) / W * 2 - 1) * TANGENT * W / H,
+                       (1 - (i / W + 0.5) / H * 2) * TANGENT, -1};
         const double eye[3] = {SPHERES / 2 - sphere, 0, DISTANCE};
         double length = sqrt(dot(d, d)), n[3], v[3], want[3];
         for (int k = 0; k < 3; k++) d[k] /= length;
         double half = dot(eye, d), root = half * half - dot(eye, eye) + 0.45 * 0.45;
         if (!(root > 0)) continue;
-        for (int k = 0; k < 3; k++) n[k] = (eye[k] + (-half - sqrt(root)) * d[k]) / 0.45, v[k] = -d[k];
+        for (int k = 0; k < 3; k++)
+            n[k] = (eye[k] + (-half - sqrt(root)) * d[k]) / 0.45, v[k] = -d[k];
         if (!(dot(n, v) > least && dot(n, v) < most) || met++ % 3) continue;
         shade(surface, n, v, want);
         for (int c = 0; c < 3; c++) {
@@ -136,9 +154,9 @@ static double error_of(const uint16_t *hdr, int sphere, const brdf_surface *surf
     return sqrt(square / counted);
 }
 
-/* With order 2 of the whole picture and lookups in the mirror direction the matt sphere is off by 18 and 24 %, the rims
- * of metal by 51 and 50 %, those of the dielectric by 62 and 85 %. With the sun cut and no bent lookups the rims are off by
- * 13 and 11, 22 and 18 %. */
+/* With order 2 of the whole picture and lookups in the mirror direction the matt sphere is off by
+ * 18 and 24 %, the rims of metal by 51 and 50 %, those of the dielectric by 62 and 85 %. With the
+ * sun cut and no bent lookups the rims are off by 13 and 11, 22 and 18 %. */
 static void spheres_are_what_the_picture_sends(void **state) {
     (void)state;
     static const struct {
@@ -158,7 +176,8 @@ static void spheres_are_what_the_picture_sends(void **state) {
     for (int k = 0; k < 3; k++) assert_true(fabs((double)light.sun_direction[k] - sun[k]) < 0.01);
     const uint16_t *hdr = render(0, DISTANCE, 0, 0, -1, TANGENT);
     for (int i = 0; i < SPHERES; i++) {
-        double all = error_of(hdr, i, &cases[i].surface, 0.4, 1), rim = error_of(hdr, i, &cases[i].surface, 0.15, 0.4);
+        double all = error_of(hdr, i, &cases[i].surface, 0.4, 1),
+               rim = error_of(hdr, i, &cases[i].surface, 0.15, 0.4);
         print_message("sphere %d: off by %.4f, at the rim by %.4f\n", i, all, rim);
         assert_true(all <= cases[i].inner && rim <= cases[i].rim);
     }
@@ -170,12 +189,14 @@ static void look_at_sun(double *middle, double *beside) {
     const uint16_t *hdr = render(9, 0, sun[0], sun[1], sun[2], 0.2);
     *middle = 0;
     for (uint32_t y = H / 2 - 4; y < H / 2 + 4; y++)
-        for (uint32_t x = W / 2 - 4; x < W / 2 + 4; x++) *middle = fmax(*middle, half_float(hdr[4 * (y * W + x)]));
+        for (uint32_t x = W / 2 - 4; x < W / 2 + 4; x++)
+            *middle = fmax(*middle, half_float(hdr[4 * (y * W + x)]));
     *beside = half_float(hdr[4 * (H / 2 * W + W / 2 + 21)]);
 }
 
-/* The picture's sun is the scene's unless the description has one, which replaces it; a black one leaves the picture as
- * it is. Around the disc there is the picture's own aureole and nothing more. */
+/* The picture's sun is the scene's unless the description has one, which replaces it; a black one
+ * leaves the picture as it is. Around the disc there is the picture's own aureole and nothing more.
+ */
 static void a_scene_has_one_sun(void **state) {
     (void)state;
     static const struct {
@@ -191,7 +212,8 @@ static void a_scene_has_one_sun(void **state) {
         open_picture();
         assert_int_equal(masu_light_of(s.m, &light), MASU_OK);
         look_at_sun(&middle, &beside);
-        print_message("sun %g, towards it %g, beside it %g\n", (double)light.sun_color[0], middle, beside);
+        print_message("sun %g, towards it %g, beside it %g\n", (double)light.sun_color[0], middle,
+                      beside);
         assert_true(fabs((double)light.sun_color[0] - cases[i].color) <= 0.05);
         assert_true(middle > cases[i].least && middle < cases[i].most);
         assert_true(beside > 0.68 && beside < 0.75);

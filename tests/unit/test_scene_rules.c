@@ -220,6 +220,8 @@ static void what_lights_a_scene_is_checked(void **state) {
     LIT("environment map", 0, MAP[0].size = 4);
     LIT("environment map", 0, MAP[0].mips = 3); /* of 2 texels */
     LIT("environment map", 0, MAP[0].mips = 0);
+    LIT("environment map", 1, MAP[0].sh[1][3] = -0.1f);
+    LIT("environment map", 0, MAP[0].sh[4][3] = 1.1f);
     LIT("environment texels", 80, MAP[0].size = 16);
     LIT("environment map", 0, support_blob_drop(&blob, MASU_BLOB_ENVIRONMENT_TEXELS));
     LIT("environment", 0, SKY[0].turbidity = 1.0f);

@@ -1,10 +1,12 @@
 /* picture_light.c: see picture_light.h. Start at masu_bake_fit_irradiance.
  *
- * Order 2 (Ramamoorthi and Hanrahan, SIGGRAPH 2001) leaves the bands 4, 6, ... of the irradiance: the odd ones above 1
- * are zero. They are largest around a bright source, so that one lobe takes most of them: the clamped cosine with a
- * rounded corner that the analytic sky has (src/frame/sky.c, shared/sky.h). The shader evaluates it for every sky, and
- * Legendre's P4 along the vertical too. For each of many directions of the lobe all coefficients are fitted by least squares, of the
- * error relative to the irradiance: an absolute one is most visible on the dark side. */
+ * Order 2 (Ramamoorthi and Hanrahan, SIGGRAPH 2001) leaves the bands 4, 6, ... of the irradiance:
+ * the odd ones above 1 are zero. They are largest around a bright source, so that one lobe takes
+ * most of them: the clamped cosine with a rounded corner that the analytic sky has
+ * (src/frame/sky.c, shared/sky.h). The shader evaluates it for every sky, and Legendre's P4 along
+ * the vertical too. For each of many directions of the lobe all coefficients are fitted by least
+ * squares, of the error relative to the irradiance: an absolute one is most visible on the dark
+ * side. */
 #include "bake/light/picture_light.h"
 
 #include "cli/cli.h"
@@ -41,7 +43,9 @@ typedef struct fit {
 
 typedef double coefficients[FUNCTIONS][3];
 
-static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static double dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 static double lobe(double cosine) {
     double corner = fmax(cosine + W, 0);
@@ -61,9 +65,11 @@ static void functions(const double n[3], const double toward[3], double out[FUNC
     out[LOBE] = lobe(dot(n, toward));
 }
 
-/* Points spread evenly: the i-th of `count` over the sphere's upper part, down to the height `low`. */
+/* Points spread evenly: the i-th of `count` over the sphere's upper part, down to the height `low`.
+ */
 static void spread(uint32_t i, uint32_t count, double low, double out[3]) {
-    double y = 1 - (1 - low) * (i + 0.5) / count, flat = sqrt(fmax(1 - y * y, 0)), turn = 2.399963229728653 * i;
+    double y = 1 - (1 - low) * (i + 0.5) / count, flat = sqrt(fmax(1 - y * y, 0)),
+           turn = 2.399963229728653 * i;
     out[0] = flat * cos(turn);
     out[1] = y;
     out[2] = flat * sin(turn);
@@ -73,7 +79,8 @@ static void spread(uint32_t i, uint32_t count, double low, double out[3]) {
 
 /* A small image is sampled at more points than it has pixels. */
 static void fill_cells(const masu_bake_panorama *p, fit *f) {
-    uint32_t across = (4 * CELL_ROWS - 1) / p->width + 1, down = (2 * CELL_ROWS - 1) / p->height + 1;
+    uint32_t across = (4 * CELL_ROWS - 1) / p->width + 1,
+             down = (2 * CELL_ROWS - 1) / p->height + 1;
     masu_bake_panorama grid = *p;
     grid.width *= across;
     grid.height *= down;
@@ -87,7 +94,8 @@ static void fill_cells(const masu_bake_panorama *p, fit *f) {
                 const float *pixel = p->rgb + 3 * ((size_t)y * p->width + x);
                 for (uint32_t c = 0; c < 3; c++) light[c] = p->factor * (double)pixel[c];
             }
-            size_t row = (size_t)y * CELL_ROWS / grid.height, column = (size_t)x * 2 * CELL_ROWS / grid.width;
+            size_t row = (size_t)y * CELL_ROWS / grid.height,
+                   column = (size_t)x * 2 * CELL_ROWS / grid.width;
             cell *to = &f->cells[row * 2 * CELL_ROWS + column];
             for (uint32_t c = 0; c < 3; c++) {
                 light[c] = fmin(light[c], MASU_BAKE_RADIANCE_MAX) * solid_angle / PI;
@@ -109,7 +117,8 @@ static void integrate(fit *f) {
         spread(i, NORMALS, -1, f->normal[i]);
         for (uint32_t j = 0; j < CELLS; j++) {
             double cosine = dot(f->normal[i], f->cells[j].direction);
-            for (uint32_t c = 0; c < 3 && cosine > 0; c++) f->light[i][c] += cosine * f->cells[j].light[c];
+            for (uint32_t c = 0; c < 3 && cosine > 0; c++)
+                f->light[i][c] += cosine * f->cells[j].light[c];
         }
         for (uint32_t c = 0; c < 3; c++) mean += f->light[i][c] / NORMALS;
     }
@@ -138,7 +147,8 @@ static void set_up(const fit *f, const double direction[3], equations *e) {
     }
 }
 
-/* Cholesky's decomposition of the first `count` equations, whose functions are independent for any direction. */
+/* Cholesky's decomposition of the first `count` equations, whose functions are independent for any
+ * direction. */
 static void decompose(const equations *e, uint32_t count, double lower[FUNCTIONS][FUNCTIONS]) {
     for (uint32_t j = 0; j < count; j++) {
         for (uint32_t k = 0; k <= j; k++) {
@@ -150,8 +160,8 @@ static void decompose(const equations *e, uint32_t count, double lower[FUNCTIONS
 }
 
 /* One channel; returns the squared error. */
-static double solve(const equations *e, uint32_t count, double lower[FUNCTIONS][FUNCTIONS], uint32_t channel,
-                    coefficients out) {
+static double solve(const equations *e, uint32_t count, double lower[FUNCTIONS][FUNCTIONS],
+                    uint32_t channel, coefficients out) {
     double v[FUNCTIONS], left = e->square[channel];
     for (uint32_t j = 0; j < count; j++) {
         v[j] = e->right[j][channel];
@@ -161,7 +171,8 @@ static double solve(const equations *e, uint32_t count, double lower[FUNCTIONS][
     }
     for (uint32_t j = FUNCTIONS; j-- > 0;) {
         out[j][channel] = j < count ? v[j] : 0;
-        for (uint32_t k = j + 1; k < count && j < count; k++) out[j][channel] -= lower[k][j] * out[k][channel];
+        for (uint32_t k = j + 1; k < count && j < count; k++)
+            out[j][channel] -= lower[k][j] * out[k][channel];
         if (j < count) out[j][channel] /= lower[j][j];
     }
     return left;
@@ -227,11 +238,14 @@ void masu_bake_fit_irradiance(const masu_bake_panorama *p, masu_blob_environment
     bool shines = all[LOBE][0] > 0 || all[LOBE][1] > 0 || all[LOBE][2] > 0;
     for (uint32_t k = 0; k < HARMONICS; k++) {
         for (uint32_t c = 0; c < 3; c++) out->sh[k][c] = (float)all[k][c];
-        out->sh[k][3] = (float)(k < 3 ? all[LOBE][k] : k < 6 ? (shines ? direction[k - 3] : 0) : all[RING][k - 6]);
+        out->sh[k][3] = (float)(k < 3   ? all[LOBE][k]
+                                : k < 6 ? (shines ? direction[k - 3] : 0)
+                                        : all[RING][k - 6]);
     }
 }
 
-void masu_bake_irradiance_at(const masu_blob_environment_map *map, const double normal[3], double out[3]) {
+void masu_bake_irradiance_at(const masu_blob_environment_map *map, const double normal[3],
+                             double out[3]) {
     const float(*sh)[4] = map->sh;
     const double direction[3] = {(double)sh[3][3], (double)sh[4][3], (double)sh[5][3]};
     double b[FUNCTIONS];

@@ -1,5 +1,5 @@
-/* picture_sun.c: see picture_sun.h. The candidate is the spot around the brightest pixel; masu_bake_cut_sun has the
- * conditions. */
+/* picture_sun.c: see picture_sun.h. The candidate is the spot around the brightest pixel;
+ * masu_bake_cut_sun has the conditions. */
 #include "bake/light/picture_sun.h"
 
 #include "bake/scene/sun.h"
@@ -13,20 +13,21 @@
 #define DEGREE (PI / 180)
 /* A sun has this share of all light, */
 #define SHARE_MIN 0.1
-/* and this share of the light of its surroundings within the cone: softer sources are lamps and windows, which the
- * harmonics and mips resolve. */
+/* and this share of the light of its surroundings within the cone: softer sources are lamps and
+ * windows, which the harmonics and mips resolve. */
 #define CONE (1.5 * DEGREE)
 #define FOCUS_MIN 0.9
 #define SURROUNDINGS (6 * DEGREE)
 /* The background of the surroundings is the median of the ring beyond. */
 #define BACKGROUND (12 * DEGREE)
-/* Pixels of the cone are lowered to the median of this ring: the sky between the sun and its aureole has no hole. */
+/* Pixels of the cone are lowered to the median of this ring: the sky between the sun and its
+ * aureole has no hole. */
 #define RIM (3 * DEGREE)
 
 enum { RED, GREEN, BLUE, LUMINANCE, CHANNELS };
 
 typedef struct pixel {
-    double angle;           /* from the centre */
+    double angle; /* from the centre */
     double direction[3];
     double solid_angle;
     double light[CHANNELS]; /* radiance */
@@ -40,7 +41,8 @@ static void read_pixel(const masu_bake_panorama *p, const float *rgb, double lig
 }
 
 /* All pixels whose centres are within an angle of the centre. */
-static void visit_disc(const masu_bake_panorama *p, const double centre[3], double radius, visitor visit, void *context) {
+static void visit_disc(const masu_bake_panorama *p, const double centre[3], double radius,
+                       visitor visit, void *context) {
     double polar = acos(fmin(fmax(centre[1], -1), 1)), row_height = PI / p->height;
     for (uint32_t y = 0; y < p->height; y++) {
         if (fabs((y + 0.5) * row_height - polar) > radius) continue;
@@ -79,8 +81,8 @@ static int by_value(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-static void median_of_ring(const masu_bake_panorama *p, const double centre[3], double inner, double outer,
-                           double out[CHANNELS]) {
+static void median_of_ring(const masu_bake_panorama *p, const double centre[3], double inner,
+                           double outer, double out[CHANNELS]) {
     ring r = {.inner = inner};
     visit_disc(p, centre, outer, add_to_ring, &r);
     double *all = malloc((r.count + 1) * CHANNELS * sizeof *all);
@@ -169,7 +171,8 @@ bool masu_bake_cut_sun(masu_bake_panorama *p, masu_bake_picture_sun *out) {
     /* A pixel wider than the cone says nothing of the size of what it shows. */
     if (!(total > 0) || PI / p->height > CONE || 2 * PI / p->width > CONE) return false;
     spot s = measure(p, centre);
-    /* Of an overexposed sun the brightest pixel is anywhere on its disc: once more around the middle. */
+    /* Of an overexposed sun the brightest pixel is anywhere on its disc: once more around the
+     * middle. */
     memcpy(centre, s.toward, sizeof centre);
     if (!normalize(centre)) return false;
     s = measure(p, centre);

@@ -1,5 +1,6 @@
-/* picture_sun.h: finds the sun of a panorama and removes it from the pixels. A spot of one degree with most of the light
- * is beyond what order-2 harmonics and prefiltered mips resolve; as a directional light it is exact. */
+/* picture_sun.h: finds the sun of a panorama and removes it from the pixels. A spot of one degree
+ * with most of the light is beyond what order-2 harmonics and prefiltered mips resolve; as a
+ * directional light it is exact. */
 #ifndef MASU_BAKE_PICTURE_SUN_H
 #define MASU_BAKE_PICTURE_SUN_H
 
