@@ -104,7 +104,7 @@ MARCH_SUITE  := $(patsubst %,$(BUILD)/scenes/extreme/%.masu,displace_sine rods)
 define lab_bake
 @mkdir -p $(@D)
 @echo "  BAKE    $< --variants"
-$(V)$(BUILD)/bin/masu-bake $< -o $@ --variants --quiet
+$(V)$(BAKE_ENV) $(BUILD)/bin/masu-bake $< -o $@ --variants --quiet
 endef
 $(MARCH_SCENES): $(BUILD)/march/%.masu: scenes/%.json scenes/%.sdf $(BUILD)/bin/masu-bake
 	$(lab_bake)

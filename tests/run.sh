@@ -51,6 +51,7 @@ not_second_lavapipe+="test_trace "
 export LP_NUM_THREADS=${LP_NUM_THREADS-0}
 export LONG=${LONG:-} BUILD=$build MADE=${MADE:-$build} MASU_EXPECT_DIR=tests/expect
 export CMOCKA_MESSAGE_OUTPUT=stdout
+export PATH=$PWD/tests/cached:$PATH
 # Scripts that call make again start from a clean slate, not inside the make that runs this.
 unset MAKEFLAGS MFLAGS MAKELEVEL MAKEOVERRIDES
 

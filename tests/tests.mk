@@ -6,6 +6,7 @@
 #   tests/full/NAME.sh        the same, with FULL=1 only
 #   tests/fuzz/fuzz_NAME.c    LLVMFuzzerTestOneInput; its seeds are the files of FUZZ_SEEDS_NAME: small ones in
 #                             tests/fuzz/corpus/NAME, or what tests/fuzz/seed_NAME.c writes
+#   tests/cached/*            in the PATH of tests, before the tools of the same name
 #   tests/support/*.c         what several tests need
 #   tests/reference/*.c       what shaders do, again: in C, in double precision
 #   tests/scenes/NAME.json    a scene for tests, baked to $(BUILD)/scenes
@@ -81,7 +82,7 @@ STIFF := $(patsubst tests/scenes/stiff/%.json,$(MADE)/stiff/%.masu,$(wildcard te
 $(STIFF): $(MADE)/stiff/%.masu: tests/scenes/stiff/%.json tests/scenes/stiff/%.sdf $(MADE)/bin/masu-bake.code
 	@mkdir -p $(@D)
 	@echo "  BAKE    $<"
-	$(V)$(SANITIZER_ENV) $(MADE)/bin/masu-bake $< -o $@ --quiet
+	$(V)$(BAKE_ENV) $(MADE)/bin/masu-bake $< -o $@ --quiet
 
 # $(1)/NAME.truth.c, the field of a stiff scene in double precision
 define stiff_truth
@@ -177,9 +178,12 @@ fuzz-%: $(BUILD)/obj/tests/fuzz/fuzz_%.o $(TEST_ARCHIVES) $(FUZZ_SEEDS_$(FUZZ))
 
 # Leaks inside drivers and Assimp are theirs.
 SANITIZER_ENV := LSAN_OPTIONS=suppressions=$(CURDIR)/tests/lsan.supp:print_suppressions=0
+# Tests' scenes share SDFs; their modules are optimised and checked once (tests/cached).
+SPIRV_CACHE   := MASU_SPIRV_CACHE='$(abspath $(MADE))/cache/spirv'
+BAKE_ENV      := $(SANITIZER_ENV) $(SPIRV_CACHE) PATH="$(CURDIR)/tests/cached:$$PATH"
 
 fuzz_seeds = SEEDS_$(notdir $(1))='$(FUZZ_SEEDS_$(patsubst fuzz_%,%,$(notdir $(1))))'
-RUN_TESTS  = $(SANITIZER_ENV) CC='$(CC)' CXX='$(CXX)' BUILD='$(BUILD)' MADE='$(MADE)' config='$(config)' \
+RUN_TESTS  = $(SANITIZER_ENV) $(SPIRV_CACHE) CC='$(CC)' CXX='$(CXX)' BUILD='$(BUILD)' MADE='$(MADE)' config='$(config)' \
     WERROR='$(WERROR)' DRIVERS='$(DRIVERS)' LONG='$(LONG)' $(foreach t,$(FUZZ_TESTS),$(call fuzz_seeds,$(t))) \
     tests/run.sh
 RUN_UNIT   = --unit $(UNIT_TESTS) --script $(SCRIPT_TESTS) --fuzz $(FUZZ_TESTS)

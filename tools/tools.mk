@@ -83,7 +83,7 @@ $(MADE)/scenes/$(basename $(notdir $(firstword $(subst :, ,$(1))))).masu: $(firs
     $(MADE)/bin/masu-bake.code $(MADE)/textures/made
 	@mkdir -p $$(@D)
 	@echo "  BAKE    $$<"
-	$$(V)$$(SANITIZER_ENV) $(MADE)/bin/masu-bake $$< -o $$@ --texture-path $(MADE)/textures
+	$$(V)$$(BAKE_ENV) $(MADE)/bin/masu-bake $$< -o $$@ --texture-path $(MADE)/textures
 endef
 $(foreach n,$(shell scenes/needs.sh scenes tests/scenes),$(eval $(call scene_rule,$(n))))
 
