@@ -136,8 +136,9 @@ bake "$(for i in $(seq 1 9); do
     for k in $(seq 1 9); do sides+=" e += max(p.x - $i.0 - 0.1 * $k.0, 0.0);"; done
     spike=0.0
     [ "$i" != 9 ] || spike='max(0.0, 29.0 * (0.02 - d))'
-    echo "part p$i = translate(($((3 * i)), 0, 0), glsl { $at float e = 0.0;$sides return length(p) - 1.0 + $spike" \
-        "+ 0.0 * e; } bounds (-1, -1, -1), (1, 1, 1) lipschitz 1 c { return 0; });"
+    echo "part p$i = translate(($((3 * i)), 0, 0), glsl { $at float e = 0.0;$sides" \
+        "return max(length(p) - 1.0 + $spike, 0.1 * e - 50.0); } bounds (-1, -1, -1), (1, 1, 1) lipschitz 1" \
+        "c { return 0; });"
 done)"
 [ $code = 1 ] && grep -q 'part p9: its glsl is steeper' "$folder/stderr" ||
     fail "a spike in the last of several parts: exit code $code: $(head -2 "$folder/stderr")"
