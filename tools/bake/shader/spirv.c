@@ -199,15 +199,8 @@ masu_bake_machine *masu_bake_machine_make(const uint32_t *words, size_t count, c
 
 void masu_bake_machine_free(masu_bake_machine *m) {
     if (!m) return;
-    free(m->types);
-    free(m->of);
-    free(m->at);
-    free(m->where);
-    free(m->binding);
-    free(m->cells);
-    free(m->decisions);
-    free(m->decided);
-    free(m);
+    void *const all[] = {m->types, m->of, m->at, m->where, m->binding, m->cells, m->decisions, m->decided, m};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
 }
 
 cell *masu_bake_machine_buffer(masu_bake_machine *m, uint32_t binding, size_t *count) {
