@@ -130,4 +130,25 @@ bake "$(block 1 'float s = 0.0; for (int i = 0; i < 1000000; i++) s += p.x; retu
 grep -q 'warning: .*part a: its glsl was not tested, .*it does not end within' "$folder/stderr" ||
     fail "a long loop: $(cat "$folder/stderr")"
 
+# Decisions of other parts do not take the place of a part's own: a spike in the last one.
+bake "$(for i in $(seq 1 9); do
+    sides=''
+    for k in $(seq 1 9); do sides+=" e += max(p.x - $i.0 - 0.1 * $k.0, 0.0);"; done
+    spike=0.0
+    [ "$i" != 9 ] || spike='max(0.0, 29.0 * (0.02 - d))'
+    echo "part p$i = translate(($((3 * i)), 0, 0), glsl { $at float e = 0.0;$sides" \
+        "return max(length(p) - 1.0 + $spike, 0.1 * e - 50.0); } bounds (-1, -1, -1), (1, 1, 1) lipschitz 1" \
+        "c { return 0; });"
+done)"
+[ $code = 1 ] && grep -q 'part p9: its glsl is steeper' "$folder/stderr" ||
+    fail "a spike in the last of several parts: exit code $code: $(head -2 "$folder/stderr")"
+
+# A camera inside of a block or of a source.
+view='"camera": {"fov_y": 50, "keys": [{"position": [0, 0.5, 0.1], "target": [0, 0, -1]}]}'
+echo "{\"sdf\": {\"source\": \"f.glsl\", \"bounds\": [[-2, -2, -2], [2, 2, 2]]}, $view}" > "$folder/v.json"
+printf 'float masu_sdf(vec3 p) { return length(p) - 1.0; }\n%s\n' "$surface" > "$folder/f.glsl"
+"$bake" "$folder/v.json" -o "$folder/v.masu" --quiet 2> "$folder/stderr"
+grep -q 'f.glsl: the camera at (0, 0.5, 0.1), 0 s, is inside the field' "$folder/stderr" ||
+    fail "a camera inside of a source: $(cat "$folder/stderr")"
+
 [ $failures = 0 ]

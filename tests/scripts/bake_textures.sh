@@ -181,6 +181,19 @@ material "$(printf 'norm normals.png\nbump heights.png')"
 bakes "$folder/quad.obj"
 warns 1 'unsupported textures: heights.png'
 
+# More than 8 bits of a channel, if a value needs them, and highlights of old formats.
+printf 'P5\n2 1\n65535\n\x12\x34\xff\xff' > "$folder/deep.pgm"
+printf 'P5\n2 1\n65535\n\x12\x12\xff\xff' > "$folder/plain.pgm"
+material 'map_Kd deep.pgm'
+bakes "$folder/quad.obj"
+warns 1 'texture .*deep.pgm: 16 bits per channel, reduced to 8'
+material 'map_Kd plain.pgm'
+bakes "$folder/quad.obj"
+warns 0
+material 'Ks 0.4 0.4 0.4'
+bakes "$folder/quad.obj"
+warns 1 '1 materials have Phong highlights: .* the specular colour is ignored'
+
 # Alpha: a mask where the picture looks like one, or has been given for it; of gloss nothing is a hole.
 convert -size 64x64 gradient:'gray(10%)-gray(70%)' "$folder/gloss.png"
 convert "$pictures/checker.png" -resize 64x64! "$folder/gloss.png" -alpha off -compose CopyOpacity -composite "$folder/shiny.png"

@@ -33,6 +33,12 @@ static void report(masu_import *m) {
         masu_import_format(w, "%u meshes have vertex colours with alpha: the alpha is ignored\n",
                            m->translucent);
     }
+    if (m->phong) {
+        masu_import_format(w,
+                           "%u materials have Phong highlights: the exponent becomes the roughness, the specular "
+                           "colour is ignored\n",
+                           m->phong);
+    }
     if (m->invisible) {
         masu_import_format(w, "%u materials have an opacity of 0: treated as opaque\n",
                            m->invisible);

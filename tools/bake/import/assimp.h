@@ -88,6 +88,7 @@ typedef struct masu_import {
     uint64_t triangles;
     uint32_t texture_count, bad_nodes, skins, unmapped, turned;
     uint64_t mixed, clamped; /* triangles, of vertex colours: vertex_color.h */
+    uint32_t phong;          /* materials with a specular exponent or colour */
     uint32_t translucent;    /* meshes whose vertex colours have an alpha */
     uint32_t invisible;    /* materials with an opacity of 0 */
     uint32_t other_lights; /* that shine from or to nowhere */

@@ -291,6 +291,25 @@ static void convert_shine(const struct aiMaterial *from, masu_blob_material *to)
     }
 }
 
+/* Whether a highlight of an older format is only approximated. So have materials that Assimp adds, which
+ * have no name or this one. */
+static bool has_phong(const struct aiMaterial *from) {
+    double exponent = 0, c[4] = {0, 0, 0, 0}, value;
+    struct aiString name = {0};
+    aiGetMaterialString(from, AI_MATKEY_NAME, &name);
+    int length = masu_import_length(&name);
+    if (!length) return false;
+    if (length == (int)strlen(AI_DEFAULT_MATERIAL_NAME) &&
+        memcmp(name.data, AI_DEFAULT_MATERIAL_NAME, strlen(AI_DEFAULT_MATERIAL_NAME)) == 0)
+        return false;
+    if (get_factor(from, KEY(AI_MATKEY_ROUGHNESS_FACTOR), &value) ||
+        get_factor(from, KEY(AI_MATKEY_GLOSSINESS_FACTOR), &value))
+        return false;
+    get_factor(from, KEY(AI_MATKEY_SHININESS), &exponent);
+    get_color(from, KEY(AI_MATKEY_COLOR_SPECULAR), c);
+    return exponent > 0 || c[0] > 0 || c[1] > 0 || c[2] > 0;
+}
+
 const masu_import_given *masu_import_read_material(masu_import *m, unsigned index) {
     const struct aiScene *s = m->source;
     if (m->given) return &m->given[index];
@@ -304,6 +323,7 @@ const masu_import_given *masu_import_read_material(masu_import *m, unsigned inde
     double alpha = 1, opacity = 1;
     convert_color(from, to, &alpha);
     convert_shine(from, to);
+    m->phong += has_phong(from);
     get_factor(from, KEY(AI_MATKEY_OPACITY), &opacity);
     /* Many files of Collada and 3DS say 0 where they mean that nothing shines through. */
     if (opacity <= 0 || alpha <= 0) {

@@ -500,13 +500,17 @@ static bool try_blocks(masu_bake_content *content, masu_sdfc_result *scene, cons
                source ? "-DMASU_TRY_FIELD" : NULL,
                "comp"};
     masu_cli_progress("trying %s", path);
+    masu_sdfc_options options = {0};
+    masu_sdfc_camera *cameras = path_of(content, &options.camera_count);
+    options.cameras = cameras;
     bool good =
         run_tools(&p, false, directory, path, NULL) &&
         masu_bake_read_file(p.optimised, SPIRV_MAX, &spirv) &&
-        masu_bake_try(scene, (const uint32_t *)(const void *)spirv.data, spirv.bytes / 4, path,
+        masu_bake_try(scene, (const uint32_t *)(const void *)spirv.data, spirv.bytes / 4, &options, path,
                       source && measures ? &steepest : NULL) &&
         (!source || !measures || take_steepest(content, steepest, path));
     masu_bake_release(&spirv);
+    free(cameras);
     free(p.source);
     free(p.raw);
     free(p.optimised);

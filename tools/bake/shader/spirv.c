@@ -32,7 +32,9 @@ struct masu_bake_machine {
     uint32_t *where; /* by id: word of a label or function */
     uint32_t *binding;
     cell *cells;
-    double *decisions; /* by id */
+    double *decisions; /* by id; NAN: not decided in this run */
+    uint32_t *decided; /* ids of the others */
+    size_t decided_count;
     char *error;
     size_t error_size;
     uint64_t steps; /* instructions of all runs */
@@ -181,10 +183,12 @@ masu_bake_machine *masu_bake_machine_make(const uint32_t *words, size_t count, c
         m->binding = calloc(n, sizeof *m->binding);
         m->cells = calloc(CELLS_MAX, sizeof *m->cells);
         m->decisions = malloc(n * sizeof *m->decisions);
+        m->decided = malloc(n * sizeof *m->decided);
         for (size_t i = 0; i < n && m->decisions; i++) m->decisions[i] = (double)NAN;
         m->cell_count = 1;
     }
-    if (!m || !m->types || !m->of || !m->at || !m->where || !m->binding || !m->cells || !m->decisions) {
+    if (!m || !m->types || !m->of || !m->at || !m->where || !m->binding || !m->cells || !m->decisions ||
+        !m->decided) {
         snprintf(error, error_size, "no memory");
     } else if (load(m)) {
         return m;
@@ -195,14 +199,8 @@ masu_bake_machine *masu_bake_machine_make(const uint32_t *words, size_t count, c
 
 void masu_bake_machine_free(masu_bake_machine *m) {
     if (!m) return;
-    free(m->types);
-    free(m->of);
-    free(m->at);
-    free(m->where);
-    free(m->binding);
-    free(m->cells);
-    free(m->decisions);
-    free(m);
+    void *const all[] = {m->types, m->of, m->at, m->where, m->binding, m->cells, m->decisions, m->decided, m};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
 }
 
 cell *masu_bake_machine_buffer(masu_bake_machine *m, uint32_t binding, size_t *count) {
@@ -215,6 +213,11 @@ cell *masu_bake_machine_buffer(masu_bake_machine *m, uint32_t binding, size_t *c
     return NULL;
 }
 
+const uint32_t *masu_bake_machine_decided(const masu_bake_machine *m, size_t *count) {
+    *count = m->decided_count;
+    return m->decided;
+}
+
 const double *masu_bake_machine_decisions(const masu_bake_machine *m, size_t *count) {
     *count = m->bound;
     return m->decisions;
@@ -222,6 +225,10 @@ const double *masu_bake_machine_decisions(const masu_bake_machine *m, size_t *co
 
 /* Of a vector the component that is nearest to deciding otherwise. */
 static void decide(masu_bake_machine *m, uint32_t id, uint32_t i, double by) {
+    if (isnan(m->decisions[id])) {
+        m->decisions[id] = (double)INFINITY;
+        m->decided[m->decided_count++] = id;
+    }
     if (i == 0 || fabs(by) < fabs(m->decisions[id])) m->decisions[id] = by;
 }
 
@@ -637,6 +644,7 @@ bool masu_bake_machine_run(masu_bake_machine *m, char *error, size_t error_size)
     size_t i = enter(m, m->main, NULL);
     m->error = error;
     m->error_size = error_size;
+    while (m->decided_count) m->decisions[m->decided[--m->decided_count]] = (double)NAN;
     for (uint32_t budget = BUDGET; budget > 0; budget--, m->steps++) {
         const uint32_t *w = m->words + i;
         uint32_t op = w[0] & 0xFFFF, count = w[0] >> 16;

@@ -15,7 +15,7 @@
 enum {
     PAIRS = 4000,
     ENVIRONMENTS = 8,
-    SECONDS = 120,
+    SECONDS = 600,
     RUNS = 60000,   /* of the field, at most, that all of the below are */
     HALVINGS = 20,
     BEST = 8,       /* pairs of an environment that are climbed from */
@@ -26,9 +26,9 @@ enum {
     BIND_INPUT = 1,
     BIND_RESULT = 2
 };
-/* Instructions of all forms of parts together, in equal shares: some 20 s. By instructions and not by
+/* Instructions of all forms of parts together, in equal shares: some seconds. By instructions and not by
  * time, so that a scene is always judged alike. */
-#define WORK_MAX 2e9
+#define WORK_MAX 5e8
 #define FAR_AWAY 40.0 /* what stands for the size of something endless */
 #define SLACK 1e-5
 
@@ -78,6 +78,7 @@ typedef struct site {
 
 typedef struct trial {
     const masu_sdfc_result *scene;
+    const masu_sdfc_options *cameras;
     const uint32_t *words;
     size_t count;
     const masu_sdfc_part *part;
@@ -165,9 +166,11 @@ static void set_environment(trial *t, int environment) {
 }
 
 static void note_decisions(trial *t, const double p[3]) {
-    for (size_t i = 0; i < t->site_count; i++) {
-        site *s = &t->sites[i];
-        double by = t->decisions[i];
+    size_t count;
+    const uint32_t *ids = masu_bake_machine_decided(t->machine, &count);
+    for (size_t i = 0; i < count; i++) {
+        site *s = &t->sites[ids[i]];
+        double by = t->decisions[ids[i]];
         if (!isfinite(by) || (s->below && s->above)) continue;
         if ((!s->below && !s->above) || fabs(by) < s->nearest) {
             s->nearest = fabs(by);
@@ -401,6 +404,28 @@ static bool is_first(const masu_sdfc_result *s, uint32_t part, uint32_t *alike) 
     return true;
 }
 
+/* "W", then that a camera of the path is inside one of the parts, which masu-sdfc cannot tell. */
+static bool try_cameras(trial *t) {
+    const masu_sdfc_result *s = t->scene;
+    char what[128];
+    for (uint32_t i = 0; i < s->part_count; i++) {
+        if (!s->parts[i].user) continue;
+        set_part(t, i);
+        set_environment(t, 0);
+        for (uint32_t k = 0; k < t->cameras->camera_count; k++) {
+            const masu_sdfc_camera *c = &t->cameras->cameras[k];
+            double f;
+            if (t->input) t->input[1].f = c->time;
+            if (!field(t, c->position, &f)) return false;
+            if (!(f < -1e-6) || t->text[0]) continue;
+            snprintf(t->text, sizeof t->text, "Wthe camera at (%g, %g, %g), %g s, is inside %s", c->position[0],
+                     c->position[1], c->position[2], c->time,
+                     is_source(t) ? "the field" : (snprintf(what, sizeof what, "part \"%s\"", t->part->name), what));
+        }
+    }
+    return true;
+}
+
 static bool try_parts(trial *t) {
     const masu_sdfc_result *s = t->scene;
     uint32_t forms = 0, alike;
@@ -413,7 +438,8 @@ static bool try_parts(trial *t) {
         for (uint32_t k = i, n = 0; k < s->part_count; k++)
             if (s->parts[k].shape == s->parts[i].shape && !try_part(t, k, n++, alike)) return false;
     }
-    if (t->least_portion < 1) {
+    if (!try_cameras(t)) return false;
+    if (t->least_portion < 1 && !t->text[0]) {
         snprintf(t->text, sizeof t->text,
                  "W%u forms of parts with glsl share a limit of %.0e instructions: some were tested at %.2g %% of "
                  "the points",
@@ -457,11 +483,12 @@ bool masu_bake_try_needed(const masu_sdfc_result *scene) {
 }
 
 bool masu_bake_try(const masu_sdfc_result *scene, const uint32_t *words, size_t count,
-                   const char *path, double *steepest) {
+                   const masu_sdfc_options *cameras, const char *path, double *steepest) {
     static trial t;
     masu_bake_buffer said = {0};
     memset(&t, 0, sizeof t);
     t.scene = scene;
+    t.cameras = cameras;
     t.words = words;
     t.count = count;
     t.measures = steepest != NULL;

@@ -18,8 +18,9 @@ bool masu_bake_try_needed(const masu_sdfc_result *scene);
 
 /* Tests all such parts with that module, in a child process. A source of GLSL is one part without a name, tested within
  * its bounds. False: the message is out. A module that cannot be run is a warning: its constants are believed.
+ * Of cameras->cameras, the first one inside such a part is a warning, with parameters at their defaults.
  * *steepest, if not NULL: the constants are ignored, and this becomes the steepest slope that was found. */
 bool masu_bake_try(const masu_sdfc_result *scene, const uint32_t *words, size_t count,
-                   const char *path, double *steepest);
+                   const masu_sdfc_options *cameras, const char *path, double *steepest);
 
 #endif

@@ -19,7 +19,7 @@
 
 typedef struct head {
     uint32_t width, height; /* 0: text follows */
-    uint32_t whole[2];      /* as in masu_bake_picture */
+    uint32_t whole[2], bits; /* as in masu_bake_picture */
 } head;
 
 const char *masu_bake_image_format(const unsigned char *data, size_t bytes, const char *name) {
@@ -171,7 +171,8 @@ static void complain(MagickWand *wand, int fd) {
 /* solid: has no alpha. ImageMagick gives what was in its memory for that of some of these, of a TGA of 24 bits. */
 static void send_texels(MagickWand *wand, int sizes, bool solid, int fd) {
     size_t width = MagickGetImageWidth(wand), height = MagickGetImageHeight(wand);
-    size_t w = width, h = height;
+    size_t w = width, h = height, bits = MagickGetImageDepth(wand);
+    if (bits > 8) bits = MagickGetImageChannelDepth(wand, AllChannels); /* that its values need */
     choose_size(sizes, &w, &h);
     unsigned char *texels = malloc(w * h * 4);
     if (!texels) {
@@ -185,7 +186,7 @@ static void send_texels(MagickWand *wand, int sizes, bool solid, int fd) {
         return;
     }
     for (size_t i = 0; i < w * h && (solid || !MagickGetImageAlphaChannel(wand)); i++) texels[4 * i + 3] = 255;
-    head answer = {(uint32_t)w, (uint32_t)h, {0, 0}};
+    head answer = {(uint32_t)w, (uint32_t)h, {0, 0}, bits > 8 ? (uint32_t)bits : 0};
     if (width > MASU_TEXTURE_SIZE_MAX || height > MASU_TEXTURE_SIZE_MAX) {
         answer.whole[0] = (uint32_t)width;
         answer.whole[1] = (uint32_t)height;
@@ -282,5 +283,6 @@ bool masu_bake_read_image(const masu_bake_content *content, uint32_t image, cons
     picture->height = h.height;
     picture->whole_width = h.whole[0];
     picture->whole_height = h.whole[1];
+    picture->bits = h.bits;
     return true;
 }

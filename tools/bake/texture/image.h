@@ -20,6 +20,7 @@ typedef struct masu_bake_picture {
     uint32_t width, height;
     masu_bake_buffer rgba; /* 4 bytes per texel, as the file encodes them */
     uint32_t whole_width, whole_height; /* of the file, if it is larger than MASU_TEXTURE_SIZE_MAX; else 0 */
+    uint32_t bits; /* of a channel, if its values need more than 8; else 0 */
 } masu_bake_picture;
 
 /* The name of the reader for these bytes ("PNG"), or NULL. */

@@ -67,11 +67,15 @@ static bool read_picture(maker *m, uint32_t image, masu_bake_picture *picture) {
     if (image == MASU_BLOB_NONE || m->failed[image]) return false;
     bool good = masu_bake_read_image(m->content, image, m->directories, m->sizes, picture);
     m->failed[image] = !good;
-    if (good && !m->sizes && !m->reduced[image] && picture->whole_width) {
-        m->reduced[image] = true;
+    if (!good || m->reduced[image]) return good;
+    bool smaller = !m->sizes && picture->whole_width;
+    m->reduced[image] = smaller || picture->bits;
+    if (smaller) {
         masu_cli_warn("texture %s: %u x %u texels, reduced to %u x %u", name_of(m, image), picture->whole_width,
                       picture->whole_height, picture->width, picture->height);
     }
+    if (picture->bits)
+        masu_cli_warn("texture %s: %u bits per channel, reduced to 8", name_of(m, image), picture->bits);
     return good;
 }
 
