@@ -655,6 +655,33 @@ static int lower_capsule(lowering *l, const sdfc_shape *s, point p) {
     return plain(l, SDFC_capsule, s, p, 8);
 }
 
+/* A large sphere whose surface passes by the origin, as a ground does: that is where the camera is. Farther from the origin
+ * the plain form is as exact. */
+static bool is_ground(const lowering *l, const sdfc_shape *moved) {
+    const sdfc_shape *s = &l->c->shapes[moved->child[0]];
+    const sdfc_expr *exprs = l->c->exprs;
+    if (s->kind != SDFC_KIND_SPHERE || exprs[s->number[0]].op != SDFC_CONST) return false;
+    double r = exprs[s->number[0]].value, squared = 0;
+    for (int i = 0; i < 3; i++) {
+        if (exprs[moved->number[i]].op != SDFC_CONST) return false;
+        squared += exprs[moved->number[i]].value * exprs[moved->number[i]].value;
+    }
+    return r >= 64 && fabs(sqrt(squared) - r) < r / 8;
+}
+
+/* Its distance; the centre is the first three arguments, as those of a translation are. */
+static int lower_ground(lowering *l, const sdfc_shape *moved, point p) {
+    int radius = l->c->shapes[moved->child[0]].number[0], c[3];
+    double r = l->c->exprs[radius].value, k = -r * r;
+    for (int i = 0; i < 3; i++) {
+        double at = l->c->exprs[moved->number[i]].value;
+        k += at * at;
+        c[i] = argument(l, moved->number[i]);
+    }
+    int excess = constant(l, k);
+    return OP(l, ground_sphere, p.x, p.y, p.z, c[0], c[1], c[2], excess, argument(l, radius));
+}
+
 static int lower_primitive(lowering *l, const sdfc_shape *s, point p) {
     switch (s->kind) {
     case SDFC_KIND_SPHERE: return plain(l, SDFC_sphere, s, p, 1);
@@ -724,6 +751,10 @@ static int lower(lowering *l, int shape, point p) {
     switch (s->kind) {
     case SDFC_KIND_TRANSLATE: {
         if (has_offset(&p)) return lower(l, first, moved_offset(l, p, n));
+        if (is_ground(l, s)) {
+            if (root) add_root_step(l, SDFC_KIND_TRANSLATE, next, 3);
+            return lower_ground(l, s, p);
+        }
         int x = OP(l, sub, p.x, argument(l, n[0])), y = OP(l, sub, p.y, argument(l, n[1]));
         int z = OP(l, sub, p.z, argument(l, n[2]));
         if (root) add_root_step(l, SDFC_KIND_TRANSLATE, next, 3);
