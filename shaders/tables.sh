@@ -126,9 +126,9 @@ function describe_pass(row,    n, part, i, when, reads, writes, code) {
     split_list(inside(part[6], "WHEN"), when)
     for (i = 9; i <= n; i++) {
         code = trim(part[i])
-        if (code !~ /^(WRITE|WRITES|UPDATE|UPDATE_LATEST|COLOR|BLEND|DEPTH|DEPTH_PART|COPY_TO|BUILDS|HOST_COLOR)\(/)
+        if (code !~ /^(WRITE|WRITES|UPDATE|UPDATE_LATEST|COLOR|COLOR_PART|BLEND|DEPTH|DEPTH_PART|COPY_TO|BUILDS|HOST_COLOR)\(/)
             reads = reads (reads == "" ? "" : ", ") resource(code)
-        if (code ~ /^(WRITE|WRITES|UPDATE|UPDATE_LATEST|COLOR|BLEND|DEPTH|DEPTH_PART|COPY_TO|COPY_BACK|COPY_BACK_LATEST|BUILDS|HOST_COLOR|PING_PONG)\(/)
+        if (code ~ /^(WRITE|WRITES|UPDATE|UPDATE_LATEST|COLOR|COLOR_PART|BLEND|DEPTH|DEPTH_PART|COPY_TO|COPY_BACK|COPY_BACK_LATEST|BUILDS|HOST_COLOR|PING_PONG)\(/)
             writes = writes (writes == "" ? "" : ", ") (code ~ /^COPY_BACK/ ? "host memory" : resource(code))
     }
     while (sub(/host memory, host memory/, "host memory", writes)) {}

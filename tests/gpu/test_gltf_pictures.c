@@ -71,6 +71,8 @@ static const shot ahead = {{1, 0.5, 3}, {1, 0.5, 0}};
 static const shot in_the_glare = {{-0.23, -1.22, 2.13}, {1, 0.5, 0}}; /* the sun is mirrored in the middle */
 static const shot behind = {{1, 0.5, -3}, {1, 0.5, 0}};
 
+static bool few_attachments; /* as of a device with four for the colours of a pass */
+
 static const uint16_t *photograph(masu_session *s, const char *path, shot p, masu_view *view) {
     static unsigned made;
     char json[1024], name[32], error[ERROR_SIZE];
@@ -92,6 +94,7 @@ static const uint16_t *photograph(masu_session *s, const char *path, shot p, mas
     d.desc.readback = MASU_READBACK_HDR;
     d.desc.picking = 1;
     d.desc.rung_count = 1;
+    if (few_attachments) d.desc.readback |= MASU_READBACK_VELOCITY, d.desc.deny.color_attachments = 4;
     open_session(s, &d);
     assert_ok(masu_file_read(baked_scene(name), 1u << 30, &blob, &bytes, error, sizeof error));
     assert_int_equal(masu_scene_bind(blob, bytes, &scene, &detail), MASU_OK);
@@ -227,6 +230,17 @@ static void emission_is_added(void **state) {
     const char *bright = CLAY ",\"emissiveFactor\":[1,0.5,0.025],\"extensions\":{\"KHR_materials_emissive_strength\":{\"emissiveStrength\":4000}}";
     f.look[4] = 4000, f.look[5] = 2000, f.look[6] = 100;
     compare(quad_of(bright), ahead, &f, 1, 0.001);
+}
+
+/* With too few attachments emission shares the albedo texel, and both are rounded. */
+static void emission_needs_no_fifth_attachment(void **state) {
+    (void)state;
+    face f = flat(0, 0, 0, 2, 1, 0.5, 0.4, 0.3, 0.75);
+    f.look[4] = 4, f.look[5] = 2, f.look[6] = 0.1;
+    few_attachments = true;
+    compare(quad_of(CLAY ",\"emissiveFactor\":[1,0.5,0.025],\"extensions\":{\"KHR_materials_emissive_strength\":{\"emissiveStrength\":4},"
+                    "\"KHR_materials_specular\":{\"specularFactor\":0.99}}"), ahead, &f, 1, 0.08);
+    few_attachments = false;
 }
 
 /* A lamp behind black glass: the glass still shines. And black chalk, which does nothing but emit. */
@@ -585,6 +599,7 @@ static void skins_stand_as_their_joints_have_them(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(emission_needs_no_fifth_attachment),
         cmocka_unit_test(emission_is_added),
         cmocka_unit_test(what_is_black_and_emits_still_mirrors),
         cmocka_unit_test(what_is_unlit_sends_its_colour),

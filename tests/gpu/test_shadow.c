@@ -231,6 +231,37 @@ static void balls_boxes_and_sheets_have_no_acne(void **state) {
     }
 }
 
+/* Up to its terminator a smooth ball is in the sun, whatever its triangles are turned to: no saw-teeth. */
+static void smooth_balls_are_lit_to_their_terminator(void **state) {
+    (void)state;
+    uint32_t looked = 0, dark = 0;
+    begin();
+    finish("smooth", "{\"mesh\": {\"sphere\": {\"radius\": 2, \"subdivisions\": 2}}}", 1024, "");
+    shadow_open(&t, "smooth", W, H, NULL);
+    for (int k = 0; k < 6; k++) {
+        shadow_sun(&t, 60 + 40 * k, 15 + 10 * k);
+        shadow_draw(&t, &above, 0);
+        const uint32_t *seen = shadow_image(&t, MASU_READBACK_OCCLUSION);
+        const uint32_t *normals = shadow_image(&t, MASU_READBACK_NORMAL);
+        const float *depths = shadow_image(&t, MASU_READBACK_DEPTH);
+        for (uint32_t i = 0; i < W * H; i++) {
+            shadow_point p;
+            float n[3];
+            if (!shadow_point_at(&t, &above, depths, i % W, i / W, &p) || p.faces) continue;
+            masu_unpack_normal(normals[i], n);
+            double n_l = 0;
+            for (int c = 0; c < 3; c++) n_l += (double)n[c] * t.sun[c];
+            if (n_l < 0.01) continue;
+            looked++; /* turned away from the sun, and its surface is not */
+            dark += sun_share(seen, i) < 0.9;
+        }
+    }
+    shadow_close(&t);
+    print_message("  %u of %u pixels of averted triangles of a lit surface are dark\n", dark, looked);
+    assert_true(looked > 300);
+    assert_true(dark * 50 < looked);
+}
+
 /* ---- Light that leaks in --------------------------------------------------------------------- */
 
 /* Behind a sheet and a box that stand on the ground: how far from the foot the first shadow is. */
@@ -363,6 +394,7 @@ static void sdf_and_polygons_shadow_each_other(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_plane_has_no_acne_under_any_sun),
+        cmocka_unit_test(smooth_balls_are_lit_to_their_terminator),
         cmocka_unit_test(balls_boxes_and_sheets_have_no_acne),
         cmocka_unit_test(shadows_begin_at_the_foot_of_their_caster),
         cmocka_unit_test(a_sheet_above_the_ground_casts_from_a_few_texels_on),

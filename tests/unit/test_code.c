@@ -229,7 +229,7 @@ static void a_resource_that_the_pass_does_not_bind_is_refused(void **state) {
                                                binding == MASU_BIND_COUNTERS
                                            ? class == MASU_MODULE_STORAGE
                                            : 0
-                            : set == 1 ? binding == 0 ? class == MASU_MODULE_SAMPLED : binding <= 3 && class == MASU_MODULE_IMAGE
+                            : set == 1 ? binding == 0 ? class == MASU_MODULE_SAMPLED : binding <= 4 && class == MASU_MODULE_IMAGE
                                        : 0;
                 if (known)
                     assert_int_equal(bound(), MASU_OK);

@@ -3,7 +3,7 @@
  * what each reads and writes, how large and how long-lived each image is. (What is refused:
  * test_desc.c.)
  *
- * Frames are compared as text, one word per pass: light(r:albedo r:normal r:depth w:hdr).
+ * Frames are compared as text, one word per pass: light(r:albedo r:normal r:depth u:hdr).
  * r sampled, w written, u updated, c colour and d depth attachment, from and to of a copy; rb and
  * wb a buffer that is read or written.
  */
@@ -137,11 +137,11 @@ static void every_row_of_the_table_fits_what_is_derived_from_it(void **state) {
 #define CLASSIFY_ALONE "classify(rb:slots w:scene_depth wb:tiles) "
 #define CONE8 "cone8(rb:tiles w:cone8) "
 #define CONE4 "cone4(r:cone8 wb:tiles w:cone4) "
-#define MARCH "march(r:cone4 rb:tiles u:albedo u:normal u:scene_depth) "
+#define MARCH "march(r:cone4 rb:tiles u:albedo u:normal u:scene_depth u:hdr) "
 #define MARCH_ON_RASTER CLASSIFY_ON_RASTER CONE8 CONE4 MARCH
 #define MARCH_ALONE CLASSIFY_ALONE CONE8 CONE4 MARCH
-#define LIGHT_RASTER "light(r:albedo r:normal r:depth w:hdr) "
-#define LIGHT_SDF "light(r:albedo r:normal r:scene_depth w:hdr) "
+#define LIGHT_RASTER "light(r:albedo r:normal r:depth u:hdr) "
+#define LIGHT_SDF "light(r:albedo r:normal r:scene_depth u:hdr) "
 #define TONEMAP "tonemap(r:hdr w:target)"
 
 /* ---- Sizes of rungs -------------------------------------------------------------------------- */
@@ -276,7 +276,7 @@ static void light_probes_cost_only_scenes_that_have_them(void **state) {
     static masu_frame_plan plan;
     masu_desc d = scene_desc(RASTER, 64, 64);
     d.rung_count = 1;
-    assert_frame(&d, 0, GBUFFER "light(r:albedo r:normal r:depth w:hdr) " TONEMAP);
+    assert_frame(&d, 0, GBUFFER "light(r:albedo r:normal r:depth u:hdr) " TONEMAP);
     assert_string_equal(why_of(&d, MASU_PASS_PROBES), "the scene has no light probes");
     compile(&d, &plan);
     uint64_t sets = plan.pass_sets;
@@ -286,7 +286,7 @@ static void light_probes_cost_only_scenes_that_have_them(void **state) {
     support_scene.probe_sets = 2;
     support_scene.probe_words = 6 * 2 * MASU_PROBE_WORDS;
     assert_frame(&d, 0,
-                 GBUFFER "probes(wb:probes) light(rb:probes r:albedo r:normal r:depth w:hdr) " TONEMAP);
+                 GBUFFER "probes(wb:probes) light(rb:probes r:albedo r:normal r:depth u:hdr) " TONEMAP);
     assert_string_equal(why_of(&d, MASU_PASS_PROBES), "the scene has light probes");
     compile(&d, &plan);
     assert_true(plan.needs.probes);
@@ -746,7 +746,7 @@ static void what_is_reserved_has_passes_and_nothing_else_has(void **state) {
     }
     d.reserve = (masu_reserve){.decals = 7};
     assert_frame(&d, 0,
-                 GBUFFER MARCH_ON_RASTER "decals(r:scene_depth u:albedo u:normal) " LIGHT_SDF TONEMAP);
+                 GBUFFER MARCH_ON_RASTER "decals(r:scene_depth u:albedo u:normal u:hdr) " LIGHT_SDF TONEMAP);
     compile(&d, &plan);
     assert_int_equal(plan.buffers[MASU_BUFFER_SPRITES].stride, 64 * ((16 * (3 + 7 * 7) + 63) / 64));
     d.reserve = (masu_reserve){.lines = 7};
@@ -772,7 +772,7 @@ static void sdf_occlusion_comes_between_march_and_light_if_asked(void **state) {
     (void)state;
     static masu_frame_plan plan;
     static const char *const light =
-        "light_occluded(r:albedo r:normal r:scene_depth r:occlusion w:hdr) ";
+        "light_occluded(r:albedo r:normal r:scene_depth r:occlusion u:hdr) ";
     char expected[512];
     masu_desc d = scene_desc(RASTER | SDF, 64, 64);
     d.readback = MASU_READBACK_OCCLUSION;
@@ -798,7 +798,7 @@ static void ao_comes_after_all_that_writes_occlusion(void **state) {
     (void)state;
     static masu_frame_plan plan;
     static const char ao[] = "ao(r:depth r:normal w:ao) ao_upsample(r:depth r:normal r:ao u:occlusion) ";
-    static const char light[] = "light_occluded(r:albedo r:normal r:depth r:occlusion w:hdr) ";
+    static const char light[] = "light_occluded(r:albedo r:normal r:depth r:occlusion u:hdr) ";
     char expected[512];
     masu_desc d = scene_desc(RASTER, 101, 60);
     d.readback = MASU_READBACK_OCCLUSION;
@@ -827,7 +827,7 @@ static void ao_comes_after_all_that_writes_occlusion(void **state) {
     d.rungs[1].scale = 1;
     d.rungs[1].ao = MASU_OFF;
     (void)snprintf(expected, sizeof expected, "%s%s%s", GBUFFER,
-                   "light(r:albedo r:normal r:depth w:hdr) readback() ", TONEMAP);
+                   "light(r:albedo r:normal r:depth u:hdr) readback() ", TONEMAP);
     assert_frame(&d, 1, expected);
     d.rungs[0].ao = MASU_OFF;
     compile(&d, &plan);
@@ -840,7 +840,7 @@ static void ao_comes_after_all_that_writes_occlusion(void **state) {
                    "sdf_occlusion(r:scene_depth r:normal rb:slots w:occlusion) ",
                    "ao(r:scene_depth r:normal w:ao) "
                    "ao_upsample(r:scene_depth r:normal r:ao u:occlusion) ",
-                   "light_occluded(r:albedo r:normal r:scene_depth r:occlusion w:hdr) ", TONEMAP);
+                   "light_occluded(r:albedo r:normal r:scene_depth r:occlusion u:hdr) ", TONEMAP);
     assert_frame(&d, 0, expected);
 }
 
@@ -897,6 +897,33 @@ static void in_every_frame_the_last_colour_writer_alone_writes_the_target(void *
     }
 }
 
+/* hdr is attached to the G-buffer pass where polygons may emit, unless that takes more attachments than there are. */
+static void emission_goes_into_hdr(void **state) {
+    (void)state;
+    static masu_frame_plan plan;
+    masu_desc d = scene_desc(RASTER, 100, 50);
+    support_scene.emissions = 1;
+    assert_frame(&d, 0, "gbuffer(c:albedo c:normal uc:hdr d:depth) " LIGHT_RASTER TONEMAP);
+    compile(&d, &plan);
+    assert_int_equal(masu_has_emission_subpass(&plan), 1);
+    support_scene.emissions = 0;
+    d.mutable_materials = 1; /* a material may begin to */
+    assert_frame(&d, 0, "gbuffer(c:albedo c:normal uc:hdr d:depth) " LIGHT_RASTER TONEMAP);
+    compile(&d, &plan);
+    assert_int_equal(masu_has_emission_subpass(&plan), 0);
+    d.mutable_materials = 0;
+    support_scene.emissions = 1;
+    support_scene.surfaces = 1;
+    d.readback = MASU_READBACK_VELOCITY;
+    for (uint32_t most = 4; most < 6; most++) {
+        d.deny.color_attachments = most;
+        compile(&d, &plan);
+        assert_int_equal(plan.needs.emissive, most == 5);
+        assert_int_equal(plan.needs.emission_packed, most == 4);
+    }
+    support_scene.emissions = support_scene.surfaces = 0;
+}
+
 /* ---- Images and buffers ---------------------------------------------------------------------- */
 
 static void assert_image(const masu_frame_plan *plan, masu_image_id id, uint32_t first,
@@ -933,7 +960,7 @@ static void images_live_from_their_first_to_their_last_pass(void **state) {
                  STORAGE | SAMPLED);
     assert_image(&plan, MASU_IMAGE_CONE4, MASU_PASS_CONE4, MASU_PASS_MARCH, 480, 270,
                  STORAGE | SAMPLED);
-    assert_image(&plan, MASU_IMAGE_HDR, MASU_PASS_LIGHT, MASU_PASS_TONEMAP, 1920, 1080,
+    assert_image(&plan, MASU_IMAGE_HDR, MASU_PASS_MARCH, MASU_PASS_TONEMAP, 1920, 1080,
                  STORAGE | SAMPLED);
     /* The first rung has none of these: they are as large as the largest rung that has. */
     assert_image(&plan, MASU_IMAGE_LDR, MASU_PASS_TONEMAP, MASU_PASS_EASU, 1536, 864,
@@ -973,7 +1000,7 @@ static void images_are_as_large_as_the_largest_rung_in_any_order(void **state) {
     d.rungs[1].scale = 0.9f;
     d.rungs[2].scale = 0.5f;
     compile(&d, &plan);
-    assert_image(&plan, MASU_IMAGE_HDR, MASU_PASS_LIGHT, MASU_PASS_TONEMAP, 900, 9,
+    assert_image(&plan, MASU_IMAGE_HDR, MASU_PASS_MARCH, MASU_PASS_TONEMAP, 900, 9,
                  STORAGE | SAMPLED);
     assert_image(&plan, MASU_IMAGE_UPSCALED, MASU_PASS_EASU, MASU_PASS_RCAS, 1000, 10,
                  STORAGE | SAMPLED);
@@ -1306,7 +1333,7 @@ static void lights_add_a_pass_and_two_buffers(void **state) {
         assert_string_equal(frame_text(&plan, 0),
                             GBUFFER MARCH_ON_RASTER
                             "light_tiles(r:scene_depth wb:lights) "
-                            "light(rb:lights r:albedo r:normal r:scene_depth w:hdr) " TONEMAP);
+                            "light(rb:lights r:albedo r:normal r:scene_depth u:hdr) " TONEMAP);
         assert_string_equal(frame_text(&plan, 1), GBUFFER MARCH_ON_RASTER LIGHT_SDF TONEMAP);
         assert_int_equal(plan.buffers[MASU_BUFFER_LIGHTS].stride,
                          masu_align_up(16 + sizeof(struct masu_punctual_light_data) * cases[i].lights, 64));
@@ -1508,6 +1535,7 @@ int main(void) {
         cmocka_unit_test(sdf_occlusion_comes_between_march_and_light_if_asked),
         cmocka_unit_test(ao_comes_after_all_that_writes_occlusion),
         cmocka_unit_test(in_every_frame_the_last_colour_writer_alone_writes_the_target),
+        cmocka_unit_test(emission_goes_into_hdr),
         cmocka_unit_test(images_live_from_their_first_to_their_last_pass),
         cmocka_unit_test(readback_and_blits_lengthen_lives),
         cmocka_unit_test(images_are_as_large_as_the_largest_rung_in_any_order),

@@ -134,6 +134,25 @@ static bool any_timed(const sdfc *c, const int *exprs, int count) {
     return false;
 }
 
+/* A sphere that may be a ground: one that is no larger loses nothing by the plain form. */
+static bool is_large(const sdfc *c, const sdfc_shape *s) {
+    const sdfc_expr *radius = &c->exprs[s->number[0]];
+    return s->kind == SDFC_KIND_SPHERE && radius->op == SDFC_CONST && radius->value >= 64;
+}
+
+/* Whether a moved shape is a large sphere whose surface passes by the origin: that is where the camera is. Farther from the
+ * origin the plain form is as exact. */
+static bool is_ground(const sdfc *c, const sdfc_shape *moved) {
+    const sdfc_shape *s = &c->shapes[moved->child[0]];
+    if (!is_large(c, s)) return false;
+    double r = c->exprs[s->number[0]].value, squared = 0;
+    for (int i = 0; i < 3; i++) {
+        if (c->exprs[moved->number[i]].op != SDFC_CONST) return false;
+        squared += c->exprs[moved->number[i]].value * c->exprs[moved->number[i]].value;
+    }
+    return fabs(sqrt(squared) - r) < r / 8;
+}
+
 /* Which forms hand an offset on, instead of having it added first. A turn or a factor that changes
  * is known to 24 bits only: more bits of its product with the offset would say nothing. */
 static bool hands_offset_on(const sdfc *c, const sdfc_shape *s) {
@@ -154,6 +173,7 @@ static bool hands_offset_on(const sdfc *c, const sdfc_shape *s) {
     case SDFC_KIND_SMOOTH_UNION:
     case SDFC_KIND_SMOOTH_INTERSECTION:
     case SDFC_KIND_SMOOTH_DIFFERENCE: return true;
+    case SDFC_KIND_SPHERE: return is_large(c, s);
     case SDFC_KIND_SCALE: /* which looks at the point again where it may be 0 */
         return s->extra[0] == 0 && !any_timed(c, s->number, 3);
     default: return false;
@@ -655,9 +675,24 @@ static int lower_capsule(lowering *l, const sdfc_shape *s, point p) {
     return plain(l, SDFC_capsule, s, p, 8);
 }
 
+/* The distance to a large sphere with its centre at `c`, expressions. */
+static int lower_ground(lowering *l, const int c[3], int radius, point p) {
+    int at[3], k = sdfc_apply(l->c, SDFC_neg, sdfc_apply(l->c, SDFC_mul, radius, radius, 0), 0, 0);
+    for (int i = 0; i < 3; i++) {
+        k = sdfc_apply(l->c, SDFC_add, k, sdfc_apply(l->c, SDFC_mul, c[i], c[i], 0), 0);
+        at[i] = argument(l, c[i]); /* in the places of a translation's */
+    }
+    int excess = argument(l, k);
+    return OP(l, ground_sphere, p.x, p.y, p.z, at[0], at[1], at[2], excess, argument(l, radius));
+}
+
 static int lower_primitive(lowering *l, const sdfc_shape *s, point p) {
     switch (s->kind) {
-    case SDFC_KIND_SPHERE: return plain(l, SDFC_sphere, s, p, 1);
+    case SDFC_KIND_SPHERE: {
+        if (!has_offset(&p)) return plain(l, SDFC_sphere, s, p, 1);
+        const int c[3] = {against(l, &p, 0), against(l, &p, 1), against(l, &p, 2)};
+        return lower_ground(l, c, s->number[0], p);
+    }
     case SDFC_KIND_BOX: return plain(l, SDFC_box, s, p, 3);
     case SDFC_KIND_ROUNDED_BOX: {
         int r = argument(l, s->number[3]), h[3];
@@ -724,6 +759,10 @@ static int lower(lowering *l, int shape, point p) {
     switch (s->kind) {
     case SDFC_KIND_TRANSLATE: {
         if (has_offset(&p)) return lower(l, first, moved_offset(l, p, n));
+        if (is_ground(l->c, s)) {
+            if (root) add_root_step(l, SDFC_KIND_TRANSLATE, next, 3);
+            return lower_ground(l, n, l->c->shapes[first].number[0], p);
+        }
         int x = OP(l, sub, p.x, argument(l, n[0])), y = OP(l, sub, p.y, argument(l, n[1]));
         int z = OP(l, sub, p.z, argument(l, n[2]));
         if (root) add_root_step(l, SDFC_KIND_TRANSLATE, next, 3);

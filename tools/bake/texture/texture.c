@@ -20,7 +20,6 @@
 #include <string.h>
 
 #define SHOWN_ONCE_SLACK 0.001f /* exporters round coordinates */
-#define EMISSION_MAX 16.0f /* shaders/shared/pack.glsl: masu_emissive_range */
 
 /* What to make; compared as bytes. */
 typedef struct request {
@@ -580,10 +579,6 @@ static void point(maker *m, masu_blob_material *material, const masu_bake_maps *
         slots[MASU_SLOT_EMISSIVE] == MASU_BLOB_NONE) {
         memset(material->emissive, 0, sizeof material->emissive);
     }
-    float emission = fmaxf(material->emissive[0], fmaxf(material->emissive[1], material->emissive[2]));
-    if (emission > EMISSION_MAX && !(flags & MASU_MATERIAL_IS_BLEND))
-        masu_cli_warn("material \"%s\": emission of up to %g: opaque surfaces emit at most %g",
-                      masu_bake_name_text(m->content, material->name), (double)emission, (double)EMISSION_MAX);
     if (maps->additive && flags & MASU_MATERIAL_IS_BLEND) flags |= MASU_MATERIAL_IS_ADDITIVE;
     if (maps->tinted && flags & MASU_MATERIAL_IS_BLEND) flags |= MASU_MATERIAL_IS_TINTED;
     if (maps->single) flags |= MASU_MATERIAL_IS_SINGLE;
