@@ -22,6 +22,7 @@ typedef struct masu_recorder {
     uint32_t flight, viewport, rung, target, variant;
     masu_rung_plan *rp;
     masu_use states[MASU_RESOURCE_END]; /* images, then the buffers that rows name */
+    uint8_t written[MASU_RESOURCE_END]; /* by a pass of this frame; of buffers */
     uint32_t barriers;
 } masu_recorder;
 

@@ -1,0 +1,166 @@
+/*
+ * test_reference.c: the renderer against stored images of the path tracer of lab/reference, which shares no code with it
+ * and follows the light paths and the closed material model that docs/scene.md promises. Each scene is rendered with the
+ * most exact settings and compared by patches (tools/measure/patches.h): what a wrong light, a missing shadow or a wrong
+ * lobe changes is a patch's mean, not a pixel. lab/reference/stored.sh makes the images.
+ */
+#include "support/files.h"
+#include "support/support.h"
+
+#include "measure/patches.h"
+#include "measure/picture.h"
+#include "image.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { W = 128, H = 72, POSITIONS = 16 };
+
+/* Relative error of a patch that counts as much as noise; ratio of the means; 95th percentile of patches; mean square of
+ * the patches' errors over tolerance and noise, without the largest tenth. */
+#define TOLERANCE 0.01
+#define RATIO 0.008
+#define P95 0.035
+#define TRIMMED 1.02
+
+typedef struct row {
+    const char *scene;
+    double time;
+    uint32_t rays;   /* of reflections from a pixel; 0: one each position */
+    double ratio, p95, trimmed; /* limits; 0: those above. A wider one has its reason in the row */
+    bool animate, baked; /* baked: by this program, from sky_scene */
+} row;
+
+static const row rows[] = {
+    /* Diffuse light of a sky from a picture is of order 2, without an edge where the sun sets */
+    {.scene = "reference_sky", .baked = true, .ratio = 0.015, .p95 = 0.12, .trimmed = 5},
+    {.scene = "test_shadows"},
+    {.scene = "reference_rows"},
+    {.scene = "reference_emission"},
+    {.scene = "reference_masks"},
+    {.scene = "reference_lights"},
+    {.scene = "reference_air"},
+    {.scene = "test_fog"},
+    {.scene = "glass"},
+    {.scene = "test_pane_maps"},
+    {.scene = "test_pane"},
+    {.scene = "night"},
+    /* A mirror of roughness 0: the reference has the least lobe, whose tail takes 0.8 % of bright small lamps */
+    {.scene = "test_reflections", .rays = 128, .ratio = 0.015, .p95 = 0.15},
+    {.scene = "test_skin", .time = 0.5, .animate = true, .rays = 64},
+    {.scene = "test_swing", .time = 0.3, .animate = true, .rays = 64},
+    {.scene = "test_foliage"},
+    {.scene = "test_texture_mask"},
+    {.scene = "test_texture_normals"},
+    {.scene = "test_texture_quad"},
+    {.scene = "test_town"},
+    {.scene = "test_trace", .rays = 128},
+    {.scene = "test_lods"},
+    /* Glints of the sun from mirror to mirror: few pixels, half of whose light 16 positions find or miss */
+    {.scene = "mirrors", .rays = 128, .ratio = 0.06},
+    {.scene = "probe_open"},
+    {.scene = "city"},
+    {.scene = "blobs"},
+    {.scene = "spheres"},
+    {.scene = "rods"},
+    {.scene = "tunnel"},
+};
+enum { ROWS = sizeof rows / sizeof *rows };
+
+static masu_session s;
+static float radiance[3 * W * H];
+static uint8_t rgba[4 * W * H];
+
+/* A panorama with a strong sun over a bright sky and a dark ground; then a scene of eight materials in it. */
+static void write_sky(const char *path) {
+    enum { WIDE = 64, HIGH = 32 };
+    static float rgb[3 * WIDE * HIGH];
+    char error[ERROR_SIZE];
+    for (int y = 0; y < HIGH; y++) {
+        double up = cos(3.14159265358979 * (y + 0.5) / HIGH);
+        for (int x = 0; x < WIDE; x++) {
+            bool sun = (x == 22 || x == 23) && (y == 8 || y == 9);
+            double level = sun ? 60 : up > 0 ? 0.35 + 0.3 * up : 0.12;
+            for (int c = 0; c < 3; c++)
+                rgb[3 * (y * WIDE + x) + c] = (float)(level * (sun ? 1 - 0.1 * c : up > 0 ? 0.7 + 0.25 * c : 1 - 0.2 * c));
+        }
+    }
+    assert_ok(masu_image_save_pfm(path, rgb, WIDE, HIGH, 3, error, sizeof error));
+}
+
+static const char *sky_scene(void) {
+    static char json[4096];
+    size_t at = (size_t)snprintf(json, sizeof json, "{\"models\": [\n");
+    for (int i = 0; i < 8; i++)
+        at += (size_t)snprintf(json + at, sizeof json - at,
+                               "%s{\"mesh\": {\"sphere\": {\"radius\": 0.45, \"subdivisions\": 4}}, \"translate\": "
+                               "[%g, %g, 0], \"material\": {\"base_color\": [0.8, 0.7, 0.6], \"roughness\": %g, "
+                               "\"metallic\": %d}}",
+                               i ? ",\n" : "", i % 4 - 1.5, i < 4 ? 0.5 : -0.5, 0.25 * (i % 4 + 1), i < 4);
+    snprintf(json + at, sizeof json - at,
+             "],\n\"camera\": {\"fov_y\": 30, \"keys\": [{\"position\": [0, 0, 4.5], \"target\": [0, 0, 0]}]},\n"
+             "\"sun\": {\"intensity\": 0}, \"environment\": {\"file\": \"sky.pfm\"}}\n");
+    return json;
+}
+
+static void animate(double time) {
+    for (uint32_t i = 0; i < masu_scene_count(&s.scene, MASU_SCENE_MODEL); i++) {
+        masu_model model = masu_model_at(s.m, i);
+        masu_clip_use use = {.loop = 1, .time = time, .weight = 1.0f};
+        if (masu_model_clips(s.m, model)) assert_int_equal(masu_model_animate(s.m, model, &use, 1), MASU_OK);
+    }
+}
+
+static double or_else(double limit, double otherwise) { return limit > 0 ? limit : otherwise; }
+
+static void compare(const masu_session_desc *d, const row *r) {
+    char error[ERROR_SIZE], path[256];
+    masu_reference reference;
+    masu_patch patches[MASU_PATCHES];
+    masu_session_desc own = *d;
+    masu_frame_desc frame = {.time = r->time};
+    snprintf(path, sizeof path, "tests/reference/%s.ref", r->scene);
+    assert_ok(masu_reference_load(path, &reference, error, sizeof error));
+    assert_true(reference.width == W && reference.height == H);
+    masu_reference_free(&reference);
+    own.desc.readback = MASU_READBACK_HDR;
+    assert_ok(masu_picture_open(&own, POSITIONS, &s, error, sizeof error));
+    if (r->animate) animate(r->time);
+    assert_ok(masu_picture_truth_hdr(&s, &frame, POSITIONS, r->rays, rgba, radiance, NULL, error, sizeof error));
+    close_session(&s);
+    masu_patches_of(radiance, NULL, W, H, patches);
+    masu_patch_judgement j = masu_patches_judge(reference.patches, patches, TOLERANCE);
+    printf("%s: mean %.4f of the reference, p95 %.4f, trimmed z^2 %.3f, worst patch %u,%u by %.3f\n", r->scene, j.ratio,
+           j.p95, j.trimmed, j.worst % MASU_PATCH_COLUMNS, j.worst / MASU_PATCH_COLUMNS, j.worst_by);
+    double ratio = or_else(r->ratio, RATIO), p95 = or_else(r->p95, P95), trimmed = or_else(r->trimmed, TRIMMED);
+    if (!(fabs(j.ratio - 1) <= ratio) || !(j.p95 <= p95) || !(j.trimmed <= trimmed))
+        fail_msg("%s differs from its reference: expected a mean of 1 +- %.3f, p95 <= %.3f, trimmed z^2 <= %.2f", r->scene,
+                 ratio, p95, trimmed);
+}
+
+static void a_scene_is_as_the_reference_has_it(void **state) {
+    const row *r = *state;
+    masu_session_desc d = test_desc(r->baked ? NULL : r->scene, W, H);
+    if (r->baked) {
+        write_sky(in_scratch("sky.pfm"));
+        bake_scene("sky", sky_scene());
+        d.scene_path = in_scratch("sky.masu");
+    }
+    compare(&d, r);
+}
+
+/* "--sky": prints the scene, and writes its panorama to sky.pfm, for lab/reference/stored.sh. */
+int main(int argc, char **argv) {
+    if (argc > 1 && !strcmp(argv[1], "--sky")) {
+        write_sky("sky.pfm");
+        return fputs(sky_scene(), stdout) < 0;
+    }
+    struct CMUnitTest tests[ROWS];
+    for (size_t i = 0; i < ROWS; i++) {
+        row *r = (row *)(uintptr_t)&rows[i]; /* cmocka's state is not const */
+        tests[i] = (struct CMUnitTest){rows[i].scene, a_scene_is_as_the_reference_has_it, NULL, NULL, r};
+    }
+    return cmocka_run_group_tests(tests, make_scratch, remove_scratch);
+}
