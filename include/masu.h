@@ -290,7 +290,7 @@ MASU_API const char *masu_scene_class_name(masu_scene_class scene_class);
 
 /* ---- Description ----------------------------------------------------------------------------- */
 
-#define MASU_MAX_RUNGS 8u
+#define MASU_MAX_RUNGS 12u
 #define MASU_MAX_PARTS 3u /* of a frame (masu_desc.split) */
 #define MASU_MAX_TARGETS 8u
 #define MASU_MAX_FLIGHT 3u
@@ -535,6 +535,11 @@ typedef enum masu_governor_mode {
     MASU_GOVERNOR_FIXED = 2 /* MASU_RUNG_AUTO: `rung`; frame times are still measured */
 } masu_governor_mode;
 
+/* Bits of masu_governor_desc.keep. */
+#define MASU_KEEP_REFLECTIONS 1u /* rungs[].specular */
+#define MASU_KEEP_OCCLUSION 2u   /* rungs[].ao */
+#define MASU_KEEP_ALL 3u
+
 /* Selects rungs by frame time. It assumes that rungs are sorted by falling quality, and selects the
  * lowest number that meets the target. Frame times are from two timestamps per frame, from
  * masu_frame_times or masu_frame_wall, or from both. Use both: the governor then detects incorrect
@@ -566,6 +571,10 @@ typedef struct masu_governor_desc {
      * predicted to take at most 1.25 of the target, to detect whether the clock rises. Each failed
      * trial makes the next one rarer. */
     uint32_t steady_clock;
+    /* Features that no rung may disable: MASU_KEEP_*, of any mode. A built-in ladder omits its rungs
+     * without one of them; a rung of masu_desc.rungs with that feature OFF is MASU_ERROR_ARGUMENT.
+     * A scene or device that does not support a feature still renders without it. */
+    uint32_t keep;
 } masu_governor_desc;
 
 /* Everything that masu_init needs. "Scene only": ignored without a scene, unless noted. */
@@ -578,9 +587,9 @@ typedef struct masu_desc {
     uint32_t frames_in_flight; /* 1..3; 0: 2 */
     /* Quality levels; masu_frame_desc.rung selects one per frame. Sort them by falling quality;
      * only the governor relies on it. */
-    uint32_t rung_count; /* 0..8; 0: by `ladder`, and rungs[0] must be all zero */
+    uint32_t rung_count; /* 0..12; 0: by `ladder`, and rungs[0] must be all zero */
     masu_rung rungs[MASU_MAX_RUNGS]; /* those from rung_count on are unused */
-    /* The rungs if rung_count is 0. ON: up to eight built-in rungs, measured for the scene's class
+    /* The rungs if rung_count is 0. ON: up to twelve built-in rungs, measured for the scene's class
      * (masu_ladder_of), with their flips, and with their times for governor.costs of 0. OFF, and
      * without a scene: three rungs of scale 1.0 (no upscaling), 0.8 and 0.4 (EASU, RCAS). AUTO: ON
      * with a governor, else OFF. Unused if rung_count is not 0. */
@@ -763,7 +772,7 @@ MASU_API masu_desc masu_desc_resolved(const masu_desc *desc);
 
 /* Writes the built-in ladder of the scene's class, or of the most similar measured class, into
  * rung_count, rungs, flips and governor.costs of `desc`, for a host that changes it before
- * masu_init. Knobs for features that the scene lacks have no effect. `from`: scene, size, driver
+ * masu_init. Rungs that governor.keep of `desc` forbids are omitted. Knobs for features that the scene lacks have no effect. `from`: scene, size, driver
  * and date of the measurement (static string); may be NULL. MASU_ERROR_ARGUMENT: `scene` or `desc`
  * is NULL. */
 MASU_API MASU_MUST_USE masu_result masu_ladder_of(const masu_scene *scene, masu_desc *desc,

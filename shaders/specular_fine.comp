@@ -8,7 +8,8 @@
  * A ray counts by what it is worth (specular_rays.comp).
  *
  * In motion the four are up to four frames old, and what is reflected has moved by another amount for each:
- * a mean is short then, the shorter the smoother the surface, and held to the colours of the 3x3 rays.
+ * a mean is short then, the shorter the smoother the surface, and held to the colours of the 3x3 rays. So is one that has
+ * just begun, while the scene changes: what has passed by in a mirror has left its colour in the pixels not traced since.
  *
  * push.frames: how far back the mean reaches, 1/60 s.
  */
@@ -180,10 +181,13 @@ void main()
             /* A ray a quarter as often: the mean of a surface that has no other reaches back four times as far. */
             float reach = max(float(push.frames) * (g.mixed ? 1.0 : 0.25), 1.0);
             bool moving = masu_is_moving(moved);
+            bool young = masu_age_frames(age.x) < 8.0;
             vec3 least = vec3(0.0);
             vec3 most = vec3(masu_most_radiance);
-            if (moving) {
+            if (moving || (young && frame.temporal.z >= MASU_TEMPORAL_CHANGES)) {
                 colors_around(ivec2(texel), least, most);
+            }
+            if (moving) {
                 own = min(own, g.mixed ? 4.0 : 100.0 * g.roughness * g.roughness);
             }
             float share = max(1.0 / (own + 1.0), masu_time_share(reach));

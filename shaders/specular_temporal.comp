@@ -49,6 +49,12 @@ layout(set = MASU_SET_PASS, binding = 10, rg32ui) uniform writeonly uimage2D age
 /* Deviations of a mean over 3x3 that are still noise, and how fast the history forgets beyond. */
 const float surprise = 3.0;
 const float forget = 0.5;
+/* Motions of a 3x3 that differ by so many pixels, and by that share of the larger one, are of several things. An outline
+ * passes there: so many frames count, of a surface that moves itself more, whose history is held to less anyway. */
+const float apart_pixels = 0.05;
+const float apart_share = 0.5;
+const float most_outline = 3.0;
+const float most_outline_moving = 8.0;
 /* Frames in a mean from which on it takes the texel's own rays alone. What neighbours have met (specular_reuse)
  * is seen from here without asking what lies between, which no number of frames makes right; it is for the first
  * few. */
@@ -83,8 +89,9 @@ struct past {
 
 struct present {
     vec3 mean, sigma; /* YCoCg, of 3x3 */
-    vec2 motion;
+    vec2 motion;   /* the mean; of several, that of the nearest thing, whose outline moves with it */
     float motions;
+    bool several;  /* things that move apart */
     float far;
 };
 
@@ -155,6 +162,10 @@ present gather(here h)
     float nearness = 0.0;
     r.motion = vec2(0.0);
     r.motions = 0.0;
+    vec2 least = vec2(65504.0);
+    vec2 most = vec2(-65504.0);
+    vec2 front = vec2(0.0);
+    float front_far = masu_huge;
     ivec2 last = ivec2(pc.output_width, pc.output_height) - 1;
     masu_flat flat_here = masu_flat_through(h.point, h.g.normal);
     [[dont_unroll]] for (int k = 0; k < 9; k++) {
@@ -175,14 +186,25 @@ present gather(here h)
         nearness += masu_rcp(max(masu_sane(light.a, 0.0, 65504.0), 1e-4));
         uint moved = texelFetch(motion_image, at, 0).r;
         if (moved != masu_unmoved) {
-            r.motion += masu_sane(vec4(unpackHalf2x16(moved), 0.0, 0.0), -65504.0, 65504.0).xy;
+            vec2 motion = masu_sane(vec4(unpackHalf2x16(moved), 0.0, 0.0), -65504.0, 65504.0).xy;
+            r.motion += motion;
             r.motions += 1.0;
+            least = min(least, motion);
+            most = max(most, motion);
+            float far = texelFetch(own_light_image, at, 0).a;
+            if (far < front_far) {
+                front_far = far;
+                front = motion;
+            }
         }
     }
     count = max(count, 1.0);
     r.mean = sum / count;
     r.sigma = sqrt(max(squares / count - r.mean * r.mean, 0.0));
-    r.motion /= max(r.motions, 1.0);
+    vec2 jitter = masu_unjittered(vec2(0.0), vec2(pc.render_width, pc.render_height));
+    vec2 larger = max(abs(least + jitter), abs(most + jitter));
+    r.several = any(greaterThan(most - least, apart_pixels + apart_share * larger));
+    r.motion = r.several ? front : r.motion / max(r.motions, 1.0);
     r.far = count / max(nearness, 1e-9);
     return r;
 }
@@ -300,6 +322,10 @@ void main()
                     float off = mix(b.off, a.off, surface);
                     float trust = masu_exp2(-forget * max(off - surprise, 0.0));
                     frames = mix(b.age, a.age, surface) * trust;
+                    if (now.several) {
+                        bool moves = masu_is_moving(masu_unjittered(velocity.xy, size));
+                        frames = min(frames, moves ? most_outline_moving : most_outline);
+                    }
                     /* The clamp, along the line to the present mean. */
                     vec3 wide = clamp_width * max(now.sigma, old_sigma * vec3(1.0, chroma_width, chroma_width)) + 1e-3 + 0.02 * now.mean.x;
                     vec3 from = masu_ycocg(history.rgb) - now.mean;

@@ -224,7 +224,8 @@ static const char *own_rungs(masu_desc *desc, const masu_frame_plan *plan, masu_
     for (uint32_t r = 0; r < desc->rung_count && costs; r++) {
         if (given.costs[r] != 0.0f) continue;
         /* On the scale of the measured ones, which the host sees. */
-        desc->governor.costs[r] = costs[r] * masu_ladder_for(scene)->ratios[0];
+        const masu_ladder *l = masu_ladder_for(scene);
+        desc->governor.costs[r] = costs[masu_ladder_kept(l, given.keep, r)] * l->ratios[0];
         computed_for = masu_device_class_name(device_class);
     }
     return computed_for;

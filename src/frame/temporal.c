@@ -131,7 +131,7 @@ void masu_temporal_read(masu_temporal *t, const masu_history *history, const mas
     const masu_rung_plan *rp = masu_frame_rung_plan(f);
     int kept = t->kept && !f->cut;
     if (!kept) t->changed = 0;
-    t->kept = has_resolve(f);
+    t->kept = has_resolve(f) || masu_has_pass(&rp->active, MASU_PASS_SPECULAR_TEMPORAL);
     if (!t->kept) return;
     uint64_t sprites = sprites_of(&f->desc);
     const float size[2] = {(float)rp->render_width, (float)rp->render_height};
@@ -151,8 +151,8 @@ void masu_temporal_read(masu_temporal *t, const masu_history *history, const mas
         f->u.temporal[2] = (t->changed || eye_moves(&f->u, history->previous) ? MASU_TEMPORAL_CHANGES : 0) |
                            (view_moves(&f->u, history->previous) ? MASU_TEMPORAL_MOVES : 0);
     }
-    t->size[0] = rp->render_width;
-    t->size[1] = rp->render_height;
+    t->size[0] = has_resolve(f) ? rp->render_width : 0;
+    t->size[1] = has_resolve(f) ? rp->render_height : 0;
     t->lights = lights->changes;
     t->materials = materials->changes;
     t->instances = in->changes;

@@ -233,6 +233,21 @@ masu_result masu_desc_check_given(const masu_desc *given, masu_detail *detail) {
     return MASU_OK;
 }
 
+/* Reflections that a scene cannot have are OFF in every resolved rung. */
+static masu_result check_keep(const masu_desc *d, masu_detail *detail) {
+    uint32_t keep = d->governor.keep;
+    if (keep & ~MASU_KEEP_ALL) return bad_range(detail, "governor.keep", keep, 0, MASU_KEEP_ALL);
+    for (uint32_t r = 0; r < d->rung_count; r++) {
+        if (!masu_could_trace(d->scene, &d->rungs[r])) keep &= ~MASU_KEEP_REFLECTIONS;
+        uint32_t off = masu_rung_drops(&d->rungs[r], keep);
+        if (!off) continue;
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "governor.keep", 0, keep, "rungs[%u].%s is OFF, but governor.keep has %s",
+                         r, off & MASU_KEEP_REFLECTIONS ? "specular" : "ao",
+                         off & MASU_KEEP_REFLECTIONS ? "MASU_KEEP_REFLECTIONS" : "MASU_KEEP_OCCLUSION");
+    }
+    return MASU_OK;
+}
+
 masu_result masu_desc_check(const masu_desc *d, masu_detail *detail) {
     const masu_targets *t = &d->targets;
     if (d->rung_count > MASU_MAX_RUNGS) {
@@ -315,7 +330,8 @@ masu_result masu_desc_check(const masu_desc *d, masu_detail *detail) {
                          "load_step is %llu bytes, allowed are 0 and %u or more",
                          (unsigned long long)d->load_step, MASU_LOAD_STEP_MIN);
     }
-    masu_result result = check_split(d, detail);
+    masu_result result = check_keep(d, detail);
+    if (!result) result = check_split(d, detail);
     if (!result) result = check_viewports(d, detail);
     if (!result) result = check_reserve(d, detail);
     return result ? result : masu_output_check(d, detail);

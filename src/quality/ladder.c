@@ -63,21 +63,40 @@ const float *masu_ladder_costs_on(const masu_scene *scene, masu_device_class dev
     return costs[0] > 0.0f ? costs : NULL;
 }
 
-/* Measured without a governor, with which AUTO of temporal would be another thing. */
-static void give(const masu_ladder *l, masu_desc *desc) {
-    desc->rung_count = l->count;
-    memcpy(desc->rungs, l->rungs, sizeof desc->rungs);
-    for (uint32_t r = 0; r < l->count; r++) {
-        if (desc->rungs[r].temporal == MASU_AUTO) desc->rungs[r].temporal = MASU_OFF;
+uint32_t masu_rung_drops(const masu_rung *rung, uint32_t keep) {
+    uint32_t off = (rung->specular == MASU_OFF ? MASU_KEEP_REFLECTIONS : 0) |
+                   (rung->ao == MASU_OFF ? MASU_KEEP_OCCLUSION : 0);
+    return off & keep;
+}
+
+uint32_t masu_ladder_kept(const masu_ladder *l, uint32_t keep, uint32_t nth) {
+    uint32_t r = 0;
+    for (; r < l->count; r++) {
+        if (!masu_rung_drops(&l->rungs[r], keep) && !nth--) break;
     }
-    memcpy(desc->flips, l->flips, sizeof desc->flips);
+    return r;
+}
+
+/* Measured without a governor, with which AUTO of temporal would be another thing. costs: takes the rungs' times. */
+static void give(const masu_ladder *l, masu_desc *desc, float costs[MASU_MAX_RUNGS]) {
+    uint32_t r = 0;
+    memset(desc->rungs, 0, sizeof desc->rungs);
+    memset(desc->flips, 0, sizeof desc->flips);
+    memset(costs, 0, MASU_MAX_RUNGS * sizeof *costs);
+    for (desc->rung_count = 0; (r = masu_ladder_kept(l, desc->governor.keep, desc->rung_count)) < l->count;
+         desc->rung_count++) {
+        masu_rung *to = &desc->rungs[desc->rung_count];
+        *to = l->rungs[r];
+        if (to->temporal == MASU_AUTO) to->temporal = MASU_OFF;
+        desc->flips[desc->rung_count] = l->flips[r];
+        costs[desc->rung_count] = l->ratios[r];
+    }
 }
 
 masu_result masu_ladder_of(const masu_scene *scene, masu_desc *desc, const char **from) {
     const masu_ladder *l = masu_ladder_for(scene);
     if (!scene || !desc || !l) return MASU_ERROR_ARGUMENT;
-    give(l, desc);
-    memcpy(desc->governor.costs, l->ratios, sizeof desc->governor.costs);
+    give(l, desc, desc->governor.costs);
     if (from) *from = l->from;
     return MASU_OK;
 }
@@ -88,8 +107,9 @@ void masu_ladder_defaults(masu_desc *desc) {
     if (desc->rung_count || desc->ladder != MASU_ON) return;
     const masu_ladder *l = masu_ladder_for(desc->scene);
     if (!desc->scene || desc->source.view || !l) return;
-    give(l, desc);
-    for (uint32_t r = 0; r < l->count; r++) {
-        if (desc->governor.costs[r] == 0.0f) desc->governor.costs[r] = l->ratios[r];
+    float costs[MASU_MAX_RUNGS];
+    give(l, desc, costs);
+    for (uint32_t r = 0; r < desc->rung_count; r++) {
+        if (desc->governor.costs[r] == 0.0f) desc->governor.costs[r] = costs[r];
     }
 }

@@ -22,6 +22,12 @@ const masu_ladder *masu_ladder_of_class(masu_scene_class scene_class);
 /* That of the scene's class, or of the nearest class that has one; NULL: no class has. */
 const masu_ladder *masu_ladder_for(const masu_scene *scene);
 
+/* The number in the ladder of its nth rung that has all features of `keep`, MASU_KEEP_*; count: there is none. */
+uint32_t masu_ladder_kept(const masu_ladder *l, uint32_t keep, uint32_t nth);
+
+/* The features of `keep` that a rung disables. */
+uint32_t masu_rung_drops(const masu_rung *rung, uint32_t keep);
+
 /* The costs of its rungs on GPUs of a class, beside each other, as ratios are: computed of the instructions
  * that the class's own compiler makes, while ratios were measured on the driver that `from` names. NULL:
  * nobody has computed them. */

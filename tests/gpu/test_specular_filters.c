@@ -66,6 +66,18 @@ static const char panels[] =
     "\"sun\": {\"azimuth\": 0, \"elevation\": 45, \"intensity\": 0}, \"ambient\": [0.5, 0.5, 0.5],"
     "\"sky\": {\"zenith\": [0.5, 0.5, 0.5], \"horizon\": [0.5, 0.5, 0.5]}, \"reflections\": {\"cutoff\": 0.5}}";
 
+/* A red box that glides over a smooth metal floor, before a grey wall. */
+#define GLIDE(roughness)                                                                             \
+    "{\"models\": [{\"mesh\": {\"plane\": {\"size_x\": 14, \"size_z\": 14}}, \"material\": {\"base_color\": "       \
+    "[0.8, 0.8, 0.8], \"metallic\": 1, \"roughness\": " roughness "}},"                                \
+    "{\"mesh\": {\"box\": {\"size\": [14, 6, 0.2]}}, \"translate\": [0, 2, -3],"                         \
+    "\"material\": {\"base_color\": [0, 0, 0], \"emissive\": [0.4, 0.4, 0.45], \"roughness\": 1}},"      \
+    "{\"name\": \"moving\", \"mesh\": {\"box\": {\"size\": [0.8, 0.8, 0.8]}}, \"translate\": [0, 1, 0],"     \
+    "\"material\": {\"base_color\": [0, 0, 0], \"emissive\": [0.8, 0.1, 0.05], \"roughness\": 1}}],"     \
+    "\"camera\": {\"fov_y\": 30, \"keys\": [{\"position\": [0, 2.5, 9], \"target\": [0, 0.2, 0]}]},"       \
+    "\"sun\": {\"azimuth\": 0, \"elevation\": 45, \"intensity\": 0}, \"ambient\": [0, 0, 0],"            \
+    "\"reflections\": {\"cutoff\": 0.5}}"
+
 /* A fence of square bars seen edge on, whose faces are a pixel wide and look left and right by turns; one
  * side of the world is warm and bright. */
 enum { BARS = 36 };
@@ -97,6 +109,8 @@ static int make_scenes(void **state) {
     bake_scene("filters", spheres);
     bake_scene("furnace", furnace);
     bake_scene("panels", panels);
+    bake_scene("glide_smooth", GLIDE("0.05"));
+    bake_scene("glide_rough", GLIDE("0.2"));
     return 0;
 }
 
@@ -385,6 +399,41 @@ static void the_history_of_another_surface_is_not_taken_up(void **state) {
     assert_true(10 * kept[SAME] > 9 * count[SAME]);
 }
 
+/* The box after 40 frames of motion, or at rest there. */
+static void glide(const char *scene, bool moves, float *rgb) {
+    enum { STEPS = 40 };
+    masu_session_desc d = desc_of(scene);
+    open_session(&s, &d);
+    for (uint32_t k = 0; k < STEPS; k++) {
+        masu_commands commands;
+        float x = moves ? 1.0f - 0.06f * (float)(STEPS - 1 - k) : 1.0f;
+        move_instance(&s, "moving", x, 1, 0, 1);
+        masu_frame_desc f = {.time_step = 1.0f / 60.0f, .cut = k == 0};
+        draw(&s, &f, &commands, NULL);
+    }
+    assert_true(masu_specular_read(&s, rgb));
+    close_session(&s);
+}
+
+/* Neither the floor nor what stands behind the box moves: that its reflection has gone only rays tell. */
+static void what_glides_over_a_mirror_leaves_no_trail(void **state) {
+    (void)state;
+    static const char *const names[] = {"glide_smooth", "glide_rough"};
+    static const uint32_t allowed[] = {50, 130};
+    for (uint32_t k = 0; k < 2; k++) {
+        uint32_t off = 0, red = 0;
+        glide(names[k], false, other);
+        glide(names[k], true, picture);
+        for (uint32_t i = PIXELS / 2; i < PIXELS; i++) {
+            red += other[3 * i] > 2 * other[3 * i + 1];
+            off += fabsf(picture[3 * i] - other[3 * i]) > 0.04f || fabsf(picture[3 * i + 1] - other[3 * i + 1]) > 0.04f;
+        }
+        printf("%s: %u pixels of the trail, %u of the reflection\n", names[k], off, red);
+        assert_true(red > 60);
+        assert_true(off <= allowed[k]);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_ray_for_four_pixels_and_the_filters_are_worth_many_rays_for_each),
@@ -395,6 +444,7 @@ int main(void) {
         cmocka_unit_test(a_white_world_stays_white),
         cmocka_unit_test(what_other_images_left_behind_is_not_seen),
         cmocka_unit_test(the_history_of_another_surface_is_not_taken_up),
+        cmocka_unit_test(what_glides_over_a_mirror_leaves_no_trail),
     };
     return cmocka_run_group_tests_name("specular_filters", tests, make_scenes, remove_scratch);
 }

@@ -33,7 +33,7 @@ static void check_names(uint32_t count) {
         assert_true(find(count, s->parent) < i || i == 0);
         assert_int_equal(strspn(s->id, good), strlen(s->id));
         assert_true(strlen(s->id) + 1 < MASU_SETTING_ID);
-        assert_true(s->rung.scale >= 0.4f && s->rung.scale <= 1.0f);
+        assert_true(s->rung.scale >= 0.2f && s->rung.scale <= 1.0f);
     }
 }
 
@@ -63,7 +63,7 @@ static void names_are_unique_and_parents_come_first(void **state) {
     assert_true(few >= 8 && few < all && all <= MASU_SETTINGS_MOST);
     uint32_t scales = 0;
     for (uint32_t i = 0; i < all; i++) scales += !strcmp(settings[i].technique, "scale");
-    assert_int_equal(scales, 10); /* 15/16 to 7/16, and 0.4 */
+    assert_int_equal(scales, 14); /* 15/16 to 7/16, 0.4, and 0.35 to 0.2 */
     assert_true(find(all, "scale=0.4") < all);
     assert_true(find(all, "scale=0.5+easu=fast") < all);
     assert_true(find(all, "shadow_refresh=1-2-4-8") < all);
@@ -128,7 +128,7 @@ static void a_scene_of_everything_keeps_everything(void **state) {
     check_dropped("sharpen=off+aa=smaa-high", count, "nothing is sharpened");
     check_dropped("sharpen=off+march_steps=128", count, "nothing is sharpened");
     check_dropped("sharpen=off+shadow_cascades=2", count, "nothing is sharpened");
-    if (count - dropped > 116) fail_msg("%u settings", count - dropped);
+    if (count - dropped > 124) fail_msg("%u settings", count - dropped);
     for (const masu_knob *k = masu_knob_table(); k->name; k++) {
         uint32_t turned = 0;
         for (uint32_t i = 1; i < count; i++)
@@ -140,6 +140,7 @@ static void a_scene_of_everything_keeps_everything(void **state) {
                                         "specular_frames=16",
                                         "specular_frames=64",
                                         "scale=0.9375+sharpen=off",
+                                        "scale=0.2+temporal=on",
                                         "scale=0.4375+sharpen=off",
                                         "scale=0.4+sharpen=off+aa=smaa-high",
                                         "scale=0.625+sharpen=off+march_steps=128",

@@ -256,6 +256,52 @@ static void a_host_may_take_it_and_change_it(void **state) {
     }
 }
 
+static void no_rung_drops_a_feature_to_keep(void **state) {
+    (void)state;
+    uint32_t omitted = 0;
+    for (uint32_t c = 0; c < MASU_SCENE_CLASSES; c++) {
+        masu_scene_data s = scene_of_class(c);
+        const masu_ladder *l = masu_ladder_for(masu_scene_of(&s));
+        for (uint32_t keep = 0; keep <= MASU_KEEP_ALL; keep++) {
+            masu_desc d = scene_desc(RASTER, 640, 360);
+            d.scene = masu_scene_of(&s);
+            d.ladder = MASU_ON;
+            d.governor.keep = keep;
+            masu_desc is = masu_desc_resolved(&d);
+            uint32_t n = 0;
+            for (uint32_t r = 0; r < l->count; r++) {
+                const masu_rung *rung = &l->rungs[r];
+                if ((keep & MASU_KEEP_REFLECTIONS && rung->specular == MASU_OFF) ||
+                    (keep & MASU_KEEP_OCCLUSION && rung->ao == MASU_OFF)) {
+                    omitted++;
+                    continue;
+                }
+                assert_true(is.rungs[n].scale == rung->scale && is.flips[n] == l->flips[r]);
+                assert_true(is.governor.costs[n] == l->ratios[r]);
+                n++;
+            }
+            assert_true(n > 0 && n == is.rung_count);
+            assert_true(n == MASU_MAX_RUNGS || is.governor.costs[n] == 0.0f);
+            compile(&d);
+            /* And the host's own. */
+            d.rung_count = 2;
+            d.rungs[1].ao = keep & MASU_KEEP_OCCLUSION ? MASU_OFF : MASU_AUTO;
+            d.rungs[1].specular = keep == MASU_KEEP_REFLECTIONS ? MASU_OFF : MASU_AUTO;
+            masu_detail detail;
+            int wrong = keep & MASU_KEEP_OCCLUSION || (keep && c >= 4);
+            assert_int_equal(masu_compile(&d, 256, 64, &plan, &detail), wrong ? MASU_ERROR_ARGUMENT : MASU_OK);
+            if (wrong) assert_string_equal(detail.what, "governor.keep");
+            if (wrong) assert_non_null(strstr(detail.text, keep & MASU_KEEP_OCCLUSION ? "rungs[1].ao" : "rungs[1].specular"));
+        }
+    }
+    assert_true(omitted > 0);
+    masu_desc d = scene_desc(RASTER, 640, 360);
+    masu_detail detail;
+    d.governor.keep = MASU_KEEP_ALL + 1;
+    assert_int_equal(masu_compile(&d, 256, 64, &plan, &detail), MASU_ERROR_ARGUMENT);
+    assert_string_equal(detail.what, "governor.keep");
+}
+
 /* ---- Every scene, every ladder --------------------------------------------------------------- */
 
 /* A plan of the whole ladder has for each image the largest that one of its rungs needs, not the
@@ -390,7 +436,8 @@ static size_t written(const masu_rung *rungs, uint32_t count) {
         n += (size_t)snprintf(text + n, sizeof text - n,
                               "%s{\"setting\": \"s%u\", \"ratio\": %.3f, \"wall_ms\": 5.0, "
                               "\"gpu_ms\": 0.0, \"flip\": %.3f, \"rmse\": %u.5, \"knobs\": {",
-                              r ? ", " : "", r, 1.0 - 0.1 * r, 0.1 + 0.1 * r, r);
+                              r ? ", " : "", r, r < 8 ? 1.0 - 0.1 * r : 0.3 - 0.02 * r,
+                              r < 8 ? 0.1 + 0.1 * r : 0.8 + 0.01 * r, r);
         for (const masu_knob *k = masu_knob_table(); k->name; k++) {
             char value[64];
             masu_knob_json(k, &rungs[r], value, sizeof value);
@@ -480,7 +527,7 @@ static void expect_error(const char *find, const char *replace, const char *says
 
 static void mistakes_are_named_in_one_line(void **state) {
     (void)state;
-    static const masu_rung rungs[9] = {{.scale = 1.0f}, {.scale = 0.5f}};
+    static const masu_rung rungs[MASU_MAX_RUNGS + 1] = {{.scale = 1.0f}, {.scale = 0.5f}};
     static const struct {
         const char *find, *replace, *says;
     } rows[] = {
@@ -522,8 +569,8 @@ static void mistakes_are_named_in_one_line(void **state) {
     written(rungs, 2);
     for (size_t i = 0; i < COUNT(rows); i++)
         expect_error(rows[i].find, rows[i].replace, rows[i].says);
-    written(rungs, 9);
-    expect_error("s8", "s8", "rungs: expected an array of 1 to 8 rungs, found 9");
+    written(rungs, MASU_MAX_RUNGS + 1);
+    expect_error("s8", "s8", "rungs: expected an array of 1 to 12 rungs, found 13");
     written(rungs, 0);
     expect_error("[]", "[]", "found 0");
     static masu_ladder_file f;
@@ -583,6 +630,7 @@ int main(void) {
         cmocka_unit_test(the_switch_says_which_rungs),
         cmocka_unit_test(what_the_host_gives_wins),
         cmocka_unit_test(a_host_may_take_it_and_change_it),
+        cmocka_unit_test(no_rung_drops_a_feature_to_keep),
         cmocka_unit_test(every_ladder_fits_every_baked_scene),
         cmocka_unit_test(what_a_scene_lacks_is_ignored),
         cmocka_unit_test(what_is_written_reads_back_knob_for_knob),

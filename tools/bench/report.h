@@ -19,7 +19,7 @@ typedef struct masu_report_result {
  * its ladder.json. False: `error` holds one line. */
 bool masu_report_rungs(const char *folder, masu_setting_list *out, char *error, size_t error_size);
 
-/* What to time again: the first seven rungs that have no times in steady.csv. Where there are fewer, those
+/* What to time again: the first eleven rungs that have no times in steady.csv. Where there are fewer, those
  * follow that would take their places if they were not as quick as they look. None: the ladder is
  * steady. */
 bool masu_report_unsteady(const char *folder, masu_setting_list *out, char *error,

@@ -12,8 +12,8 @@
 
 /* One knob, or a few that make one technique. Fields that are 0 are the base's; shadow_distance is
  * a part of the scene's. At which render sizes: the output's, half of it, and in `masu bench
- * --quick`. Bundles are at a few sizes, with SIXTEENTHS at all. */
-enum { WHOLE = 1, HALF = 2, QUICK = 4, STRUCTURAL = 8, SAME = 16, SIXTEENTHS = 32 };
+ * --quick`. Bundles are at a few sizes, with SIXTEENTHS at all down to 0.4, with SMALL at a few below. */
+enum { WHOLE = 1, HALF = 2, QUICK = 4, STRUCTURAL = 8, SAME = 16, SIXTEENTHS = 32, SMALL = 64 };
 
 typedef struct technique {
     const char *name;
@@ -79,7 +79,7 @@ static const technique techniques[] = {
 /* What a port might choose together. The plain one, nothing but the base, is at every size. */
 static const technique bundles[] = {
     {"full", 0, {.aa = MASU_AA_SMAA_HIGH}},
-    {"temporal", 0, {.temporal = MASU_ON}},
+    {"temporal", SMALL, {.temporal = MASU_ON}},
     /* What a mean over each pixel is, RCAS leads away from: most rungs are of this kind. */
     {"soft", SIXTEENTHS, {.sharpen = MASU_OFF}},
     {"soft aa", 0, {.sharpen = MASU_OFF, .aa = MASU_AA_SMAA_HIGH}},
@@ -161,6 +161,7 @@ static void add_knob(list *l, const masu_knob *k) {
 uint32_t masu_settings_make(bool quick, masu_setting out[MASU_SETTINGS_MOST]) {
     static const float quick_scales[] = {1.0f, 0.75f, 0.5f, 0.4f};
     static const float bundle_scales[] = {1.0f, 0.875f, 0.75f, 0.625f, 0.5f, 0.4f};
+    static const float small_scales[] = {0.35f, 0.3f, 0.25f, 0.2f};
     const technique base = {.name = "base"}, scale = {.name = "scale"};
     const masu_rung half = rung_of(&base.rung, 0.5f);
     list l = {out, 0};
@@ -171,6 +172,8 @@ uint32_t masu_settings_make(bool quick, masu_setting out[MASU_SETTINGS_MOST]) {
     } else {
         for (int i = 15; i >= 7; i--) add(&l, &scale, (float)i / 16.0f, &masu_setting_base);
         add(&l, &scale, 0.4f, &masu_setting_base);
+        for (size_t i = 0; i < COUNT(small_scales); i++)
+            add(&l, &scale, small_scales[i], &masu_setting_base);
     }
     for (size_t t = 0; t < COUNT(techniques); t++) {
         const technique *one = &techniques[t];
@@ -190,6 +193,8 @@ uint32_t masu_settings_make(bool quick, masu_setting out[MASU_SETTINGS_MOST]) {
         /* Those that are not eighths: bundle_scales has the others. */
         for (int i = 15; i >= 7 && one->when & SIXTEENTHS; i -= 2)
             add_bundle(&l, one, (float)i / 16.0f);
+        for (size_t i = 0; i < COUNT(small_scales) && one->when & SMALL && !quick; i++)
+            add_bundle(&l, one, small_scales[i]);
     }
     return l.count;
 }

@@ -1,7 +1,7 @@
 /* sweep.h: `masu bench`'s measuring: every setting of one scene, its picture beside the truth
  * and its time beside the base setting's.
  *
- * HOW. Settings are measured by sevens: a renderer has eight rungs, of which the first is always
+ * HOW. Settings are measured by elevens: a renderer has twelve rungs, of which the first is always
  * the base setting. All of its rungs take turns, the first round is dropped, and a setting's time
  * is given beside the base's of the same renderer: what the machine does meanwhile hits both. A
  * sample is a frame of the scene at rest, waited for, with a full barrier around each pass; where
@@ -55,7 +55,7 @@ typedef struct masu_sweep_desc {
     uint32_t positions, rays; /* of the truth */
     uint32_t frames;          /* in motion before a picture is taken */
     uint32_t runs;            /* timed ones of each setting, at least 1 */
-    double steady;            /* seconds that seven rungs are timed again, see masu_sweep_steady */
+    double steady;            /* seconds that eleven rungs are timed again, see masu_sweep_steady */
     uint32_t shard, shards;   /* settings shard, shard + shards, ... */
     const masu_setting_list *only; /* NULL or empty: all settings; else these and the base */
     const char *like;              /* NULL, or a folder whose sweep must be one with this */
@@ -76,7 +76,7 @@ typedef struct masu_sweep_result {
 bool masu_sweep_run(const masu_sweep_desc *desc, masu_sweep_result *out, char *error,
                     size_t error_size);
 
-/* Times those settings again that have a row, but no times of this kind yet: by sevens, with the base,
+/* Times those settings again that have a row, but no times of this kind yet: by elevens, with the base,
  * for desc->steady seconds or desc->runs rounds, whichever is more, but not more than
  * MASU_SWEEP_RUNS_MAX rounds. out->measured: how many. */
 bool masu_sweep_steady(const masu_sweep_desc *desc, const masu_setting_list *list,

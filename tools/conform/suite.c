@@ -341,7 +341,7 @@ static bool check_case(const masu_suite_place *at, masu_case *c) {
     if (c->rung_count ==
         1) { /* eight rungs from the full size to 0.4, as masu render --target-ms --ladder off */
         masu_rung first = c->rungs[0];
-        c->rung_count = MASU_MAX_RUNGS;
+        c->rung_count = 8;
         for (uint32_t r = 0; r < c->rung_count; r++) {
             c->rungs[r] = first;
             c->rungs[r].scale = (float)pow(0.4, r / (double)(c->rung_count - 1));

@@ -156,7 +156,7 @@ static const masu_option rows[] = {
     MASU_UINT(options, sweep.runs, "runs", 1, MASU_SWEEP_RUNS_MAX,
               "timed frames per setting (default 9)"),
     MASU_REAL(options, sweep.steady, "steady", "SECONDS", 0.0, 3600.0,
-              "after the sweep, time the rungs again: at least so long per group of seven\n"
+              "after the sweep, time the rungs again: at least so long per group of eleven\n"
               "rungs; 0 disables it (default 60)"),
     MASU_TEXT(options, rungs_of, "rungs-of", "DIR2",
               "measure only the base setting and the rungs of that folder's ladder, to\n"

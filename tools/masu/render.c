@@ -313,7 +313,7 @@ static int render_frames(masu_session *s, const masu_render_options *o, masu_vid
 
 /* Eight rungs from the full size to 0.4 of it, each 13 % smaller than the one before. */
 static void make_ladder(masu_desc *d) {
-    d->rung_count = MASU_MAX_RUNGS;
+    d->rung_count = 8;
     for (uint32_t r = 0; r < d->rung_count; r++) {
         double scale = pow(0.4, r / (double)(d->rung_count - 1));
         d->rungs[r] = (masu_rung){.scale = (float)scale, .sharpness = r ? 0.2f : 0.0f};
