@@ -93,7 +93,7 @@ const char *masu_file_hint(const char *path, const void *bytes, size_t count, ma
     case MASU_FILE_SDF: return "; an SDF: `masu-bake FILE.sdf -o X.masu` bakes it, `masu-sdfc` checks it";
     case MASU_FILE_GLSL: return "; GLSL: a scene description names it as the source of its SDF";
     case MASU_FILE_MODEL: return "; a model: `masu-bake MODEL -o X.masu` bakes it";
-    case MASU_FILE_IMAGE: return "; an image, for `masu compare` and `masu upscale` (PNG, PFM, OpenEXR)";
+    case MASU_FILE_IMAGE: return "; an image, for `masu compare` (PNG, PFM, OpenEXR) and `masu upscale` (PNG)";
     case MASU_FILE_SUITE: return "; a suite, for `masu conform --suite FILE.json`";
     case MASU_FILE_LADDER: return "; a quality ladder, for --ladder FILE.json";
     case MASU_FILE_UNKNOWN: break;

@@ -342,8 +342,19 @@ static void a_run_that_was_stopped_goes_on(void **state) {
     check_rows("whole", 10);
     free(rows);
     free(old);
-    assert_int_equal(bench("%s " SMALL " --out %s/whole", scene_path("test_both"), scratch), 0);
+    /* Stills of the rungs, by a reference of the same moment: the first rung has its light. */
+    assert_int_equal(cli_run("render %s -o %s/golden.exr --truth=16 --time 1 --size 128x72", scene_path("test_both"),
+                             scratch), 0);
+    assert_int_equal(bench("%s " SMALL " --out %s/whole --golden %s/golden.exr", scene_path("test_both"), scratch,
+                           scratch), 0);
     assert_non_null(strstr(cli_out, " 0 settings measured"));
+    text = read_file(in_scratch("whole/reference.csv"), NULL);
+    const char *row = strchr(text, '\n');
+    double ratio = 0, p95 = 1;
+    assert_true(row && sscanf(row, "\n%*[^,],%lf,%lf", &ratio, &p95) == 2);
+    print_message("  first rung: mean ratio %.4f, p95 of patches %.4f\n", ratio, p95);
+    assert_true(fabs(ratio - 1) < 0.008 && p95 < 0.05);
+    free(text);
     assert_int_equal(bench("%s " SMALL " --time 2 --out %s/whole", scene_path("test_both"), scratch),
                      1);
     said("another sweep");

@@ -55,6 +55,27 @@ static void memory_is_within_its_limits(void **state) {
     cli_said(" 0 quality warnings, 0 not supported, 0 resource errors, 0 failed");
 }
 
+/* A golden file of the scene itself passes; another sun fails by the patches; files that are not there are named. */
+static void cases_are_judged_by_golden_files(void **state) {
+    (void)state;
+    const char *scene = scene_path("test_both");
+    assert_int_equal(cli_run("render %s -o %s/golden.exr --truth=16 --size 32x24 --quiet", scene, scratch), 0);
+    assert_int_equal(cli_run("render %s -o %s/dim.pfm --truth=16 --sun 60,20 --size 32x24 --quiet", scene, scratch), 0);
+    assert_int_equal(cli_run("render %s -o %s/golden.png --frame --size 32x24 --quiet", scene, scratch), 0);
+    write_suite("{\"name\": \"good\", \"error\": {\"against\": \"reference\", \"golden\": \"golden.exr\","
+                " \"positions\": 16, \"mean_off\": 0.008, \"patch_p95\": 0.08}},"
+                "{\"name\": \"image\", \"error\": {\"against\": \"reference\", \"golden\": \"golden.png\", \"pixels\": 0}}");
+    if (planted("")) fail_msg("%s%s", cli_out, cli_err);
+    write_suite("{\"name\": \"dim\", \"error\": {\"against\": \"reference\", \"golden\": \"dim.pfm\","
+                " \"positions\": 16, \"mean_off\": 0.008, \"patch_p95\": 0.08, \"patch_z2\": 2}},"
+                "{\"name\": \"none\", \"error\": {\"against\": \"reference\", \"golden\": \"none.ref\", \"mean_off\": 1}}");
+    assert_int_equal(planted(""), 1);
+    cli_said("mean_off is 0.");
+    cli_said("patch_p95 is 0.");
+    cli_said("patch_z2 is ");
+    cli_said("none.ref: cannot open");
+}
+
 /* Whatever ends the run: files are complete and say which case it was. */
 static void a_run_that_is_killed_leaves_complete_reports(void **state) {
     (void)state;
@@ -318,6 +339,7 @@ static void what_is_no_suite_is_refused_in_one_line(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_part_of_the_smoke_suite_passes),
+        cmocka_unit_test(cases_are_judged_by_golden_files),
         cmocka_unit_test(memory_is_within_its_limits),
         cmocka_unit_test(a_run_that_is_killed_leaves_complete_reports),
         cmocka_unit_test(a_part_of_the_extreme_suite_passes),

@@ -1,13 +1,12 @@
 /* run.c: see run.h. */
 #include "conform/run.h"
+#include "conform/golden.h"
 
 #include "alloc_count.h"
 #include "measure/picture.h"
 #include "cli/cli.h"
 #include "clock.h"
 #include "image.h"
-#include "metric/flip.h"
-#include "metric/image.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -123,6 +122,7 @@ static masu_session_desc describe(const masu_conform *c, const masu_case *of, co
     d.desc.debug.poison = w->poison;
     d.desc.debug.counters = counts(of);
     masu_extreme_describe(of, &d.desc);
+    if (masu_case_linear(of)) d.desc.readback |= MASU_READBACK_HDR;
     if (w->first) {
         d.desc.host_budget = budget(&of->bounds[MASU_MEASURE_HOST_BYTES]);
         d.desc.device_budget = budget(&of->bounds[MASU_MEASURE_DEVICE_BYTES]);
@@ -462,22 +462,6 @@ static void time_case(masu_conform *c, const masu_case *of, masu_conform_result 
 
 /* ---- Pictures -------------------------------------------------------------------------------- */
 
-static uint32_t differing(const uint8_t *a, const uint8_t *b, const masu_case *of,
-                          uint32_t *steps) {
-    uint32_t pixels = 0;
-    *steps = 0;
-    for (size_t i = 0; i < (size_t)of->width * of->height; i++) {
-        uint32_t most = 0;
-        for (size_t k = 0; k < 4; k++) {
-            uint32_t step = (uint32_t)abs(a[4 * i + k] - b[4 * i + k]);
-            most = step > most ? step : most;
-        }
-        pixels += most != 0;
-        *steps = most > *steps ? most : *steps;
-    }
-    return pixels;
-}
-
 static void draw_ways(masu_conform *c, const masu_case *of, const uint8_t *picture,
                       masu_conform_result *r) {
     static const char *const names[] = MASU_SAME_NAMES;
@@ -501,7 +485,7 @@ static void draw_ways(masu_conform *c, const masu_case *of, const uint8_t *pictu
         uint8_t *own = draw_frames(c, of, r, false);
         close_session(c, r);
         if (!own) return;
-        uint32_t pixels = differing(picture, own, of, &steps);
+        uint32_t pixels = masu_golden_differing(picture, own, of, &steps);
         free(own);
         if (!pixels) continue;
         find(r, MASU_VERDICT_FAIL, "same: %s: %u of %u pixels differ, by at most %u of 255",
@@ -554,20 +538,23 @@ static const uint8_t *truth_of(masu_conform *c, const masu_case *of, masu_confor
     return rgba;
 }
 
-static void compare(const uint8_t *truth, const uint8_t *picture, const masu_case *of,
-                    masu_conform_result *r) {
-    masu_flip flip;
-    uint32_t steps = 0, pixels = differing(truth, picture, of, &steps);
-    double rmse = masu_metric_rmse(truth, picture, of->width, of->height);
-    r->values[MASU_MEASURE_PIXELS] = pixels;
-    r->values[MASU_MEASURE_STEPS] = steps;
-    r->values[MASU_MEASURE_RMSE] = 255.0 * rmse;
-    r->values[MASU_MEASURE_PSNR] = masu_metric_psnr(rmse);
-    r->values[MASU_MEASURE_SSIM] = masu_metric_ssim(truth, picture, of->width, of->height);
-    if (masu_metric_flip(truth, picture, of->width, of->height, 0, NULL, &flip)) {
-        r->values[MASU_MEASURE_FLIP] = flip.mean;
-        r->values[MASU_MEASURE_FLIP_P99] = flip.p99;
-    }
+/* Linear light: after the case's frames, in the same session. */
+static void compare_with_golden(masu_conform *c, const masu_case *of, masu_conform_result *r) {
+    char path[4096], error[1024];
+    masu_frame_desc frame = frame_at(of, of->frames - 1);
+    if (!masu_extreme_frame(&c->session, of, of->frames - 1, &frame, error, sizeof error) ||
+        !masu_golden_judge(masu_golden_path(c->suite, of, path), of, &c->session, &frame, r->values, error, sizeof error))
+        find(r, MASU_VERDICT_FAIL, "reference: %s", error);
+}
+
+static void compare_with_picture(masu_conform *c, const masu_case *of, const uint8_t *picture, masu_conform_result *r) {
+    char path[4096], error[1024];
+    uint8_t *golden = malloc(4 * (size_t)of->width * of->height);
+    if (golden && masu_picture_load(masu_golden_path(c->suite, of, path), (VkExtent2D){of->width, of->height}, golden,
+                                    error, sizeof error))
+        masu_golden_compare(golden, picture, of, r->values);
+    else find(r, MASU_VERDICT_FAIL, "reference: %s", golden ? error : "out of memory");
+    free(golden);
 }
 
 static void compare_with_other(masu_conform *c, const masu_case *of, const uint8_t *picture,
@@ -577,7 +564,7 @@ static void compare_with_other(masu_conform *c, const masu_case *of, const uint8
     if (!open_session(c, other, &(way){0}, r)) return;
     uint8_t *rgba = draw_frames(c, other, r, false);
     close_session(c, r);
-    if (rgba) compare(rgba, picture, of, r);
+    if (rgba) masu_golden_compare(rgba, picture, of, r->values);
     free(rgba);
 }
 
@@ -626,14 +613,16 @@ static void run(masu_conform *c, const masu_case *of, masu_conform_result *r) {
         picture = draw_frames(c, of, r, true);
         if (picture && masu_bound_is_set(&of->bounds[MASU_MEASURE_MS_RATIO])) time_case(c, of, r);
     }
+    if (picture && masu_case_linear(of)) compare_with_golden(c, of, r);
     close_session(c, r);
     if (!picture && !of->governed.on) return;
     if (picture && c->images) save(c, of, picture, r);
     if (picture && of->same) draw_ways(c, of, picture, r);
     if (picture && of->other >= 0) compare_with_other(c, of, picture, r);
-    if (picture && of->against && of->other < 0) {
+    if (picture && of->golden && !masu_case_linear(of)) compare_with_picture(c, of, picture, r);
+    if (picture && of->against && of->other < 0 && !of->golden) {
         const uint8_t *truth = truth_of(c, of, r);
-        if (truth) compare(truth, picture, of, r);
+        if (truth) masu_golden_compare(truth, picture, of, r->values);
     }
     free(picture);
     judge_all(r, validated);

@@ -151,6 +151,8 @@ static bool read_error(const masu_suite_place *at, const json_t *value, masu_cas
     json_object_foreach((json_t *)(uintptr_t)value, key, member) {
         bool good = !strcmp(key, "against")
                         ? masu_suite_string(at, "error.against", member, &c->against)
+                    : !strcmp(key, "golden")
+                        ? masu_suite_string(at, "error.golden", member, &c->golden)
                     : !strcmp(key, "positions")
                         ? masu_suite_count(at, "error.positions", member, 1, 4096, &c->positions)
                     : !strcmp(key, "rays")
@@ -300,10 +302,31 @@ static bool check_extreme(const masu_suite_place *at, const masu_case *c) {
     return true;
 }
 
+bool masu_case_linear(const masu_case *c) {
+    const char *end = c->golden ? strrchr(c->golden, '.') : NULL;
+    return end && (!strcmp(end, ".ref") || !strcmp(end, ".pfm") || !strcmp(end, ".exr"));
+}
+
+/* Linear light has limits of patches, 8-bit images have the others. */
+static bool check_golden(const masu_suite_place *at, const masu_case *c) {
+    const bool reference = c->against && !strcmp(c->against, "reference"), linear = masu_case_linear(c);
+    const char *end = c->golden ? strrchr(c->golden, '.') : NULL;
+    if (reference != (c->golden != NULL))
+        return masu_suite_wrong(at, "error.golden", "expected 'against': 'reference' with a file, found one of the two");
+    if (c->golden && !linear && (!end || strcmp(end, ".png") != 0))
+        return masu_suite_wrong(at, "error.golden", "expected a file .ref, .pfm, .exr or .png, found '%.60s'", c->golden);
+    for (int m = MASU_MEASURE_RMSE; m <= MASU_MEASURE_PATCH_Z2; m++) {
+        if (masu_bound_is_set(&c->bounds[m]) && (m >= MASU_MEASURE_MEAN_OFF) != linear)
+            return masu_suite_wrong(at, "error", "%s needs %s", masu_measure_name((masu_measure)m),
+                                    linear ? "an image of 8 bits" : "a golden file of linear light");
+    }
+    return true;
+}
+
 /* What keys alone do not show. */
 static bool check_case(const masu_suite_place *at, masu_case *c) {
     bool compares = false;
-    for (int m = MASU_MEASURE_RMSE; m <= MASU_MEASURE_PIXELS; m++)
+    for (int m = MASU_MEASURE_RMSE; m <= MASU_MEASURE_PATCH_Z2; m++)
         compares = compares || masu_bound_is_set(&c->bounds[m]);
     if (!c->scene)
         return masu_suite_wrong(at, "scene", "expected the name of a scene, found nothing");
@@ -315,10 +338,10 @@ static bool check_case(const masu_suite_place *at, masu_case *c) {
     if (compares != (c->against != NULL)) {
         return masu_suite_wrong(at, compares ? "error.against" : "error",
                                 compares
-                                    ? "expected 'truth' or the name of a case, found nothing"
+                                    ? "expected 'truth', 'reference' or the name of a case, found nothing"
                                     : "expected a limit with 'against', found none");
     }
-    if (!check_extreme(at, c)) return false;
+    if (!check_extreme(at, c) || !check_golden(at, c)) return false;
     masu_governed *g = &c->governed;
     if (!g->on && (c->measured || (c->rung_count > 1 && !c->extreme.cycle)))
         return masu_suite_wrong(at, "ladder",
@@ -425,7 +448,7 @@ static bool find_others(masu_suite_place *at) {
     for (uint32_t i = 0; i < s->count; i++) {
         masu_case *c = &s->cases[i];
         at->case_name = c->name;
-        if (!c->against || !strcmp(c->against, "truth")) continue;
+        if (!c->against || c->golden || !strcmp(c->against, "truth")) continue;
         for (uint32_t k = 0; k < s->count && c->other < 0; k++) {
             const masu_case *o = &s->cases[k];
             if (k != i && !o->governed.on && o->width == c->width && o->height == c->height &&

@@ -67,6 +67,9 @@ bool masu_verdict_failed(masu_verdict verdict);      /* makes the exit code 1 */
     X(FLIP_P99, flip_p99, "error", 0)                                                              \
     X(STEPS, steps, "error", 0)   /* largest difference of a channel */                            \
     X(PIXELS, pixels, "error", 0) /* that differ at all */                                         \
+    X(MEAN_OFF, mean_off, "error", 0)   /* |ratio of the means - 1|; these three against a reference */ \
+    X(PATCH_P95, patch_p95, "error", 0) /* measure/patches.h */                                    \
+    X(PATCH_Z2, patch_z2, "error", 0)                                                              \
     X(HITMISS_PCT, hitmiss_pct, "field", 0) /* the march against its field: docs/conform.md */      \
     X(LOST_PCT, lost_pct, "field", 0)                                                              \
     X(DEPTH_P50, depth_p50, "field", 0)                                                            \
@@ -142,11 +145,15 @@ typedef struct masu_case {
     uint32_t needs;
     uint32_t flight;
     masu_bound bounds[MASU_MEASURE_COUNT], least[MASU_MEASURE_COUNT];
-    const char *against;      /* "truth", or the name of a case */
+    const char *against;      /* "truth", "reference", or the name of a case */
+    const char *golden;       /* file of "reference", from the suite's folder; NULL: none */
     int32_t other;            /* that case's number; -1: none */
     uint32_t positions, rays; /* of the truth */
     masu_extreme extreme;
 } masu_case;
+
+/* Whether the golden file is linear light, which is compared by patches; else it is a PNG. */
+bool masu_case_linear(const masu_case *c);
 
 /* There is a limit of the group `field`. */
 bool masu_case_field(const masu_case *c);

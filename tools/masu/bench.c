@@ -3,6 +3,7 @@
 #include "masu/bench.h"
 
 #include "bench/against.h"
+#include "bench/golden.h"
 #include "measure/picture.h"
 #include "bench/report.h"
 #include "bench/sweep.h"
@@ -20,7 +21,7 @@ typedef struct options {
     masu_truth_options truth;
     masu_setting_list only;
     masu_given given;
-    const char *against, *rungs_of, *csv;
+    const char *against, *rungs_of, *csv, *golden;
     bool merge, ladder, steady; /* --steady is given */
 } options;
 
@@ -107,6 +108,7 @@ static int sweep(options *o) {
     bool good = masu_sweep_run(&o->sweep, &result, error, sizeof error);
     if (good && d->shards == 1 && d->steady > 0.0)
         good = steady(o, &timed, &result.messages, error, sizeof error);
+    if (good && o->golden) good = masu_golden_rungs(d, o->golden, &result.messages, error, sizeof error);
     masu_cli_progress_clear();
     if (!good) return masu_cli_error("%s", error);
     if (!masu_cli_quiet()) {
@@ -150,6 +152,9 @@ static const masu_option rows[] = {
     MASU_SIZE(options, sweep.size, "size", "output size (default 640x360)"),
     MASU_MOMENT_ROW(options, sweep.time),
     MASU_TRUTH_ROWS(options, truth),
+    MASU_TEXT(options, golden, "golden", "FILE",
+              "linear reference of the scene (.ref, .pfm, .exr): judge 128x72 stills of the\n"
+              "rungs at rest by it, into DIR/reference.csv"),
     MASU_UINT(options, sweep.frames, "frames", 1, 10000,
               "frames in motion before the measured image, for settings with history\n"
               "(default 32)"),
@@ -194,6 +199,8 @@ static int check(const options *o) {
                                     : o->merge        ? "--merge"
                                     : o->rungs_of     ? "--rungs-of"
                                                       : "--out");
+    if (o->golden && (apart || o->ladder || o->sweep.shards > 1))
+        return masu_cli_usage_error("--golden cannot be combined with --shard, --merge, --against or --ladder");
     if (o->csv && !o->against) return masu_cli_usage_error("--csv needs --against");
     return MASU_CLI_OK;
 }
@@ -241,6 +248,7 @@ const masu_cli_command masu_cmd_bench = {
         "  steady.csv         the rungs timed again\n"
         "  ladder.json        the rungs, from the Pareto front\n"
         "  index.html         report with tables, plots and images\n"
+        "  reference.csv      with --golden: ratios of patches of each rung at rest\n"
         "  truth.png          ground truth, unless --truth names a file (64 samples per pixel)\n"
         "  plots/             plots, if gnuplot is installed\n"
         "\n"
