@@ -259,7 +259,7 @@ static uint32_t color_attachments(const masu_device *m, uint32_t pass) {
  * attachments, that output has one, which is unused. */
 static int has_unused_emission(const masu_device *m, uint32_t pass) {
     return masu_passes[pass].geometry == MASU_GEOMETRY_POLYGONS && !m->plan->needs.emissive &&
-           color_attachments(m, pass) < m->plan->desc.deny.color_attachments;
+           color_attachments(m, pass) < m->vk.properties.limits.maxColorAttachments;
 }
 
 /* Attachments come in the layouts that the row's barriers put them in, and stay there: the render
