@@ -36,7 +36,7 @@ drivers=${DRIVERS:-system}
 jobs=${MASU_TEST_JOBS:-$(nproc)}
 # Tests of programs, of what a layer says of shaders, and of the host's part alone: the answers hardly depend on the driver, so of several drivers
 # the first that is there runs them.
-once=" test_bench test_cli test_gpu_av test_soak "
+once=" test_bench test_cli test_gpu_av test_reference test_soak "
 # Of all three drivers these are run by two. What the host decides, what is the same picture with and without it, and the means
 # of filters, shadow maps and lamps by both lavapipes: the third takes four times as long. What memory, queues and rays' sums do
 # to a driver, rays through SDFs and trees, and what is stored for other targets, by one lavapipe and the third.

@@ -1,9 +1,9 @@
-/* reference.c: `masu-lab reference`: an image of a scene by the path tracer of lab/reference, which shares nothing
- * with the renderer. */
-#include "lab/command/commands.h"
-#include "lab/reference/render.h"
+/* reference.c: `masu-lab reference`: an image of a scene by the path tracer of lab/reference,
+ * which shares nothing with the renderer. */
 #include "bake/light/environment.h"
 #include "image.h"
+#include "lab/command/commands.h"
+#include "lab/reference/render.h"
 #include "measure/patches.h"
 
 #include <math.h>
@@ -30,36 +30,47 @@ static bool read_sun(masu_cli *cli, void *to) {
 
 static const masu_option rows[] = {
     MASU_HEADING("Output"),
-    {MASU_ROW(options, output, MASU_TAKE_FILE, "output", "FILE.pfm", "linear image before exposure"), .letter = 'o'},
+    {MASU_ROW(options, output, MASU_TAKE_FILE, "output", "FILE.pfm",
+              "linear image before exposure"),
+     .letter = 'o'},
     MASU_FILE(options, errors, "error", "FILE.pfm", "standard error of each value"),
     MASU_FILE(options, store, "store", "FILE.ref",
               "image as half floats with means and errors of 144 patches, for tests"),
     MASU_OUTPUT_SIZE_ROW(options, size),
     MASU_FLAG(options, progress, "progress", "report the progress if stderr is no terminal, too"),
     MASU_HEADING("Scene"),
-    MASU_REAL(options, time, "time", "SECONDS", -1e9, 1e9, "time in the scene and on its camera path"),
+    MASU_REAL(options, time, "time", "SECONDS", -1e9, 1e9,
+              "time in the scene and on its camera path"),
     MASU_FLAG(options, animate, "animate", "loop the first animation clip of every model"),
-    MASU_OWN("sun", "AZIMUTH,ELEVATION", read_sun, "sun position in degrees (default: the scene's)"),
+    MASU_OWN("sun", "AZIMUTH,ELEVATION", read_sun,
+             "sun position in degrees (default: the scene's)"),
     MASU_TEXT(options, sdf, "sdf", "FILE.sdf", "source of the scene's signed distance field"),
-    MASU_TEXT(options, sky, "sky", "FILE.hdr",
-              "panorama (.hdr, .pfm) instead of the scene's sky: the file of an environment map, or\n"
-              "an image of an analytic sky"),
-    MASU_REAL(options, turn, "sky-rotate", "DEGREES", -360, 360, "azimuth of the panorama's centre"),
+    MASU_TEXT(
+        options, sky, "sky", "FILE.hdr",
+        "panorama (.hdr, .pfm) instead of the scene's sky: the file of an environment map, or\n"
+        "an image of an analytic sky"),
+    MASU_REAL(options, turn, "sky-rotate", "DEGREES", -360, 360,
+              "azimuth of the panorama's centre"),
     MASU_REAL(options, scale, "sky-scale", "FACTOR", 1e-6, 1e6, "factor for its radiance"),
     MASU_HEADING("Light"),
-    MASU_FLAG(options, physics, "physics",
-              "random walks between facets and shadows of all lights instead of Masu's closed model"),
+    MASU_FLAG(
+        options, physics, "physics",
+        "random walks between facets and shadows of all lights instead of Masu's closed model"),
     MASU_CHOICE(options, transport, "transport", "PATHS", transports,
                 "direct: the light paths that Masu promises; full: all of them; auto: full with\n"
                 "--physics and with light probes\n"),
     MASU_UINT(options, bounces, "bounces", 0, 1000, "most bounces of a path (full)"),
-    MASU_REAL(options, sun_radius, "sun-radius", "DEGREES", 0, 20, "radius of the sun's disc; 0: a point"),
-    MASU_UINT(options, fields_shadow, "sdf-shadows", 0, 1, "1: the field casts shadows (default: if the scene has any)"),
-    MASU_FLAG(options, separable, "separable", "uncorrelated masking of microfacets, as Cycles has it"),
+    MASU_REAL(options, sun_radius, "sun-radius", "DEGREES", 0, 20,
+              "radius of the sun's disc; 0: a point"),
+    MASU_UINT(options, fields_shadow, "sdf-shadows", 0, 1,
+              "1: the field casts shadows (default: if the scene has any)"),
+    MASU_FLAG(options, separable, "separable",
+              "uncorrelated masking of microfacets, as Cycles has it"),
     MASU_HEADING("Samples"),
     MASU_UINT(options, paths, "paths", 1, 100000000, "paths per pixel"),
     MASU_UINT(options, seed, "seed", 0, UINT32_MAX, "another seed gives other noise"),
-    MASU_UINT(options, threads, "threads", 1, 64, "threads; the image does not depend on them (default: all)"),
+    MASU_UINT(options, threads, "threads", 1, 64,
+              "threads; the image does not depend on them (default: all)"),
     {.name = NULL}};
 
 static void report(double share) { masu_cli_progress("%.0f %% of the image", 100 * share); }
@@ -74,22 +85,30 @@ static void report_line(double share) {
 
 static void command_line(const options *o, const char *scene, char *text, size_t size) {
     const char *slash = strrchr(scene, '/'), *sdf = o->sdf ? strrchr(o->sdf, '/') : NULL;
-    size_t at = (size_t)snprintf(text, size, "masu-lab reference %s --size %ux%u --paths %u --seed %u --time %g",
-                                 slash ? slash + 1 : scene, o->size.width, o->size.height, o->paths, o->seed, o->time);
+    size_t at = (size_t)snprintf(
+        text, size, "masu-lab reference %s --size %ux%u --paths %u --seed %u --time %g",
+        slash ? slash + 1 : scene, o->size.width, o->size.height, o->paths, o->seed, o->time);
     if (o->sdf) at += (size_t)snprintf(text + at, size - at, " --sdf %s", sdf ? sdf + 1 : o->sdf);
     if (o->animate) at += (size_t)snprintf(text + at, size - at, " --animate");
     if (o->physics) at += (size_t)snprintf(text + at, size - at, " --physics");
-    if (o->transport) at += (size_t)snprintf(text + at, size - at, " --transport %s", transports[o->transport]);
+    if (o->transport)
+        at += (size_t)snprintf(text + at, size - at, " --transport %s", transports[o->transport]);
     if (o->sun_radius > 0) snprintf(text + at, size - at, " --sun-radius %g", o->sun_radius);
 }
 
-static bool save(const options *o, const char *scene, const ref_image *image, char *error, size_t size) {
+static bool save(const options *o, const char *scene, const ref_image *image, char *error,
+                 size_t size) {
     masu_reference *r = calloc(1, sizeof *r);
     bool good = r != NULL;
-    if (o->output) good = good && masu_image_save_pfm(o->output, image->mean, image->width, image->height, 3, error, size);
-    if (o->errors) good = good && masu_image_save_pfm(o->errors, image->error, image->width, image->height, 3, error, size);
+    if (o->output)
+        good = good && masu_image_save_pfm(o->output, image->mean, image->width, image->height, 3,
+                                           error, size);
+    if (o->errors)
+        good = good && masu_image_save_pfm(o->errors, image->error, image->width, image->height, 3,
+                                           error, size);
     if (good && o->store) {
-        *r = (masu_reference){.width = image->width, .height = image->height, .pixels = image->mean};
+        *r =
+            (masu_reference){.width = image->width, .height = image->height, .pixels = image->mean};
         command_line(o, scene, r->command, sizeof r->command);
         masu_patches_of(image->mean, image->error, image->width, image->height, r->patches);
         good = masu_reference_save(o->store, r, error, size);
@@ -105,7 +124,8 @@ static void warn(const options *o, const ref_scene *s) {
         masu_cli_warn("the analytic sky is left out: give an image of it by --sky");
 }
 
-static int render(const options *o, const char *path, ref_scene *scene, const ref_field *field, ref_sky *sky) {
+static int render(const options *o, const char *path, ref_scene *scene, const ref_field *field,
+                  ref_sky *sky) {
     char error[1024];
     const masu_blob_environment *e = scene->environment;
     ref_world world;
@@ -128,20 +148,27 @@ static int render(const options *o, const char *path, ref_scene *scene, const re
                       (o->fields_shadow == 2 && scene->blob.section[MASU_BLOB_OCCLUSION_SPIRV]);
     if (o->own_sun) {
         double azimuth = o->sun[0] * REF_PI / 180, elevation = o->sun[1] * REF_PI / 180;
-        t.sun_direction = ref_v(cos(elevation) * sin(azimuth), sin(elevation), cos(elevation) * cos(azimuth));
+        t.sun_direction =
+            ref_v(cos(elevation) * sin(azimuth), sin(elevation), cos(elevation) * cos(azimuth));
     }
     ref_render r = {.tracer = &t,
                     .camera = ref_camera_at(&scene->blob, o->time),
                     .paths = o->paths,
                     .threads = o->threads,
                     .seed = o->seed,
-                    .progress = isatty(2) ? report : o->progress ? report_line : NULL};
+                    .progress = isatty(2)     ? report
+                                : o->progress ? report_line
+                                              : NULL};
     ref_image image = {o->size.width, o->size.height, NULL, NULL};
     t.eye = r.camera.eye;
-    masu_cli_progress("building the tree of %llu triangles", (unsigned long long)scene->triangle_count);
-    if (!ref_world_open(scene, field, t.eye, &world, error, sizeof error)) return masu_cli_error("%s", error);
+    masu_cli_progress("building the tree of %llu triangles",
+                      (unsigned long long)scene->triangle_count);
+    if (!ref_world_open(scene, field, t.eye, &world, error, sizeof error))
+        return masu_cli_error("%s", error);
     bool good = ref_render_image(&r, &image);
-    if (!good) snprintf(error, sizeof error, "out of memory for an image of %ux%u", o->size.width, o->size.height);
+    if (!good)
+        snprintf(error, sizeof error, "out of memory for an image of %ux%u", o->size.width,
+                 o->size.height);
     masu_cli_progress_clear();
     good = good && save(o, path, &image, error, sizeof error);
     ref_image_free(&image);
@@ -152,14 +179,17 @@ static int render(const options *o, const char *path, ref_scene *scene, const re
 static int open_sky(const options *o, const ref_scene *scene, ref_sky *sky, float **pixels) {
     const masu_blob_environment_map *map = scene->blob.section[MASU_BLOB_ENVIRONMENT_MAP];
     const masu_blob_environment *e = scene->environment;
-    *sky = (ref_sky){.zenith = ref_of(e->sky_zenith), .horizon = ref_of(e->sky_horizon), .ambient = ref_of(e->ambient)};
+    *sky = (ref_sky){.zenith = ref_of(e->sky_zenith),
+                     .horizon = ref_of(e->sky_horizon),
+                     .ambient = ref_of(e->ambient)};
     if (map) {
         sky->octahedron = scene->blob.section[MASU_BLOB_ENVIRONMENT_TEXELS];
         sky->size = map->size;
     }
     if (o->sky) {
         masu_bake_panorama p = {.turn = 0, .factor = 1, .name = o->sky};
-        if (!masu_bake_load_panorama(o->sky, &p)) return MASU_CLI_FAILURE; /* it has been reported */
+        if (!masu_bake_load_panorama(o->sky, &p))
+            return MASU_CLI_FAILURE; /* it has been reported */
         sky->octahedron = NULL;
         sky->panorama = *pixels = p.rgb;
         sky->width = p.width;
@@ -184,12 +214,14 @@ static int run_reference(const options *o, const char *path) {
     bool has_field = false;
     int code = MASU_CLI_OK;
     if (scene.sdf && !o->sdf)
-        code = masu_cli_error("%s: the scene has a signed distance field: give its source by --sdf FILE.sdf", path);
+        code = masu_cli_error(
+            "%s: the scene has a signed distance field: give its source by --sdf FILE.sdf", path);
     if (!scene.sdf && o->sdf) code = masu_cli_error("--sdf: %s has no signed distance field", path);
     if (!code && scene.sdf) {
         masu_cli_progress("compiling %s", o->sdf);
         has_field = ref_field_open(o->sdf, scene.sdf, scene.blob.section[MASU_BLOB_SDF_PARAMS],
-                                   (uint32_t)scene.blob.count[MASU_BLOB_SDF_PARAMS], o->time, &field, error, sizeof error);
+                                   (uint32_t)scene.blob.count[MASU_BLOB_SDF_PARAMS], o->time,
+                                   &field, error, sizeof error);
         if (!has_field) code = masu_cli_error("%s", error);
     }
     memset(&sky, 0, sizeof sky);
@@ -223,7 +255,8 @@ const masu_cli_command lab_reference = {
     .name = "reference",
     .arguments = "SCENE.masu -o X.pfm [options]",
     .summary = "render a scene by a path tracer that shares nothing with the renderer",
-    .details = "The default is the model that Masu promises: a difference from `masu render` is a bug, or\n"
+    .details = "The default is the model that Masu promises: a difference from `masu render` is a "
+               "bug, or\n"
                "an approximation. --physics shows how far that model is from what it stands for.\n"
                "The result is the same for any number of threads.\n",
     .run = run};

@@ -5,8 +5,10 @@
 
 #define SMOOTHEST 0.045
 
-/* cosine: with the base's normal; over: with the coat's, which decides what the coat returns and covers. */
-static ref_returned returned(const ref_bsdf *b, ref_albedo base, ref_albedo covered, ref_albedo coat) {
+/* cosine: with the base's normal; over: with the coat's, which decides what the coat returns and
+ * covers. */
+static ref_returned returned(const ref_bsdf *b, ref_albedo base, ref_albedo covered,
+                             ref_albedo coat) {
     double c = b->s.coat, through = 1 - c * b->line[0], less = c * b->line[1];
     ref_returned r = {.white = through * base.white - less * covered.covered,
                       .weight = through * base.weight - less * covered.covered_weight,
@@ -57,8 +59,9 @@ void ref_bsdf_make(ref_bsdf *b, const ref_surface *s, ref_vec v, bool walk) {
     ref_albedo average = ref_ggx_average(b->s.roughness);
     b->matte_rest = rest_of(f0, b->matte.f90, average.white);
     ref_vec a = s->albedo;
-    ref_vec metal_rest = ref_v(rest_of(a.x, b->metal.f90, average.white), rest_of(a.y, b->metal.f90, average.white),
-                               rest_of(a.z, b->metal.f90, average.white));
+    ref_vec metal_rest =
+        ref_v(rest_of(a.x, b->metal.f90, average.white), rest_of(a.y, b->metal.f90, average.white),
+              rest_of(a.z, b->metal.f90, average.white));
     b->rest_color = ref_mix(ref_splat(b->matte_rest), metal_rest, m);
     b->all = returned(b, average, average, ref_ggx_average(b->s.coat_roughness));
     b->seen = returned_at(b, b->v.z, b->v_over.z);
@@ -86,7 +89,8 @@ void ref_bsdf_make(ref_bsdf *b, const ref_surface *s, ref_vec v, bool walk) {
 ref_lobes ref_bsdf_albedo(const ref_bsdf *b) {
     ref_lobes out;
     const ref_returned *s = &b->seen;
-    out.of[REF_BASE] = ref_add(ref_scale(b->mixed.f0, s->white - s->weight), ref_splat(b->mixed.f90 * s->weight));
+    out.of[REF_BASE] =
+        ref_add(ref_scale(b->mixed.f0, s->white - s->weight), ref_splat(b->mixed.f90 * s->weight));
     out.of[REF_COAT] = ref_splat(s->coat);
     ref_vec diffuse = ref_scale(b->s.albedo, (1 - ref_clamp(b->s.metallic, 0, 1)) * below(b, s));
     out.of[REF_SOFT] = ref_add(diffuse, ref_scale(b->rest_color, s->lost));
@@ -137,12 +141,14 @@ double ref_bsdf_pdf(const ref_bsdf *b, ref_vec light) {
     ref_vec l = ref_to(&b->base, light), over = ref_to(&b->over, light);
     double pdf = 0;
     if (l.z > 0) pdf += b->pick[REF_BASE] * ref_ggx_pdf(b->alpha, b->v, l);
-    if (over.z > 0 && b->pick[REF_COAT] > 0) pdf += b->pick[REF_COAT] * ref_ggx_pdf(b->coat_alpha, b->v_over, over);
+    if (over.z > 0 && b->pick[REF_COAT] > 0)
+        pdf += b->pick[REF_COAT] * ref_ggx_pdf(b->coat_alpha, b->v_over, over);
     if (l.z > 0) pdf += b->pick[REF_SOFT] * l.z / REF_PI;
     return pdf;
 }
 
-/* The half vectors of v and of a direction below the horizon count for nothing: they are drawn and lost. */
+/* The half vectors of v and of a direction below the horizon count for nothing: they are drawn
+ * and lost. */
 bool ref_bsdf_sample(const ref_bsdf *b, ref_random *r, ref_vec *l, ref_lobes *weight) {
     double which = ref_draw(r);
     double u1 = ref_draw(r);

@@ -1,13 +1,12 @@
 /* bsdf.h: how a surface of the reference scatters light.
  *
- *   design   the closed model that Masu promises: GGX, what it loses by a product (Kulla and Conty 2017, the square
- *            of Hill 2018), diffuse light below by a product (Kelemen and Szirmay-Kalos 2001), and a clear coat
- *            that lets 1 - c (a + b max(s(v), s(l))) through
- *   physics  the same layers, but the light between facets by a random walk: no closed form for what a
- *            single bounce loses
+ *   design   the closed model that Masu promises: GGX; what it loses by a product (Kulla and
+ *            Conty 2017, with the square of Hill 2018); diffuse light below by a product (Kelemen
+ *            and Szirmay-Kalos 2001); a clear coat that lets 1 - c (a + b max(s(v), s(l))) through
+ *   physics  the same layers, but the light between facets by a random walk
  *
- * A lobe is a part of it, since Masu lights them differently: mirror of the base, mirror of the coat, and
- * soft: all that has no direction left. */
+ * The result is split into lobes, since Masu lights them differently: mirror of the base, mirror of
+ * the coat, and soft: all that has no direction left. */
 #ifndef LAB_REFERENCE_BSDF_H
 #define LAB_REFERENCE_BSDF_H
 
@@ -17,7 +16,7 @@ typedef struct ref_surface {
     ref_vec albedo, emissive;
     double roughness, metallic, specular; /* specular: f0 / 0.08 */
     double coat, coat_roughness;
-    double occlusion; /* of the material's map */
+    double occlusion;            /* of the material's map */
     ref_vec normal, coat_normal; /* unit, towards the viewer */
 } ref_surface;
 

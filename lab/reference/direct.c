@@ -5,14 +5,17 @@
 
 enum { LAYERS_MOST = 64 };
 
-/* docs/scene.md, "Reflections": all of it is traced up to 3/4 of the cut-off, nothing from the cut-off on. */
+/* docs/scene.md, "Reflections": all of it is traced up to 3/4 of the cut-off, nothing from the
+ * cut-off on. */
 static double traced_share(double roughness, double cutoff) {
     double x = cutoff > 0 ? ref_clamp((roughness - 0.75 * cutoff) / (0.25 * cutoff), 0, 1) : 1;
     return 1 - x * x * (3 - 2 * x);
 }
 
-/* An occluder at the distance t within the radius counts by 1 - t / radius. One cosine-weighted ray. */
-static double open_to_sky(const ref_tracer *t, const ref_hit *hit, const ref_surface *s, ref_random *r) {
+/* An occluder at the distance t within the radius counts by 1 - t / radius. One cosine-weighted
+ * ray. */
+static double open_to_sky(const ref_tracer *t, const ref_hit *hit, const ref_surface *s,
+                          ref_random *r) {
     if (!(t->occlusion_radius > 0)) return 1;
     double u = ref_draw(r);
     double v = ref_draw(r);
@@ -37,22 +40,25 @@ typedef struct around {
 } around;
 
 /* Light of the sky and of traced reflections from l, by the lobes of w. */
-static void add_around(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, const around *a, ref_vec l,
-                       const ref_lobes *w, double mis, ref_random *r, ref_lobes *out) {
+static void add_around(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, const around *a,
+                       ref_vec l, const ref_lobes *w, double mis, ref_random *r, ref_lobes *out) {
     ref_vec soft = ref_scale(ref_sky_soft(t->sky, l), a->open * mis);
     double roughness[2] = {b->s.roughness, b->s.coat_roughness};
     out->of[REF_SOFT] = ref_add(out->of[REF_SOFT], ref_mul(w->of[REF_SOFT], soft));
     for (int i = 0; i < 2; i++) {
         if (!(ref_max(w->of[i]) > 0) || a->share[i] >= 1) continue;
-        ref_vec sky = ref_scale(untraced_sky(t, l, roughness[i]), a->open * mis * (1 - a->share[i]));
+        ref_vec sky =
+            ref_scale(untraced_sky(t, l, roughness[i]), a->open * mis * (1 - a->share[i]));
         out->of[i] = ref_add(out->of[i], ref_mul(w->of[i], sky));
     }
-    ref_vec traced = ref_add(ref_scale(w->of[REF_BASE], a->share[0]), ref_scale(w->of[REF_COAT], a->share[1]));
+    ref_vec traced =
+        ref_add(ref_scale(w->of[REF_BASE], a->share[0]), ref_scale(w->of[REF_COAT], a->share[1]));
     if (!(ref_max(traced) > 0)) return;
     ref_vec from = ref_world_leave(t->world, hit, l), seen;
     if (mis < 1) { /* two strategies for the sky, one for what is in front of it */
         ref_hit by;
-        if (!ref_world_trace(t->world, from, l, HUGE_VAL, REF_RAY_NO_BLENDS | REF_RAY_ONE_SIDED, &by)) {
+        if (!ref_world_trace(t->world, from, l, HUGE_VAL, REF_RAY_NO_BLENDS | REF_RAY_ONE_SIDED,
+                             &by)) {
             double left = ref_air_left(t, from, l, HUGE_VAL);
             seen = ref_scale(ref_through_air(t, ref_sky_at(t->sky, l), l, left, 1), mis);
         } else {
@@ -65,8 +71,8 @@ static void add_around(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *
 }
 
 /* Light of the sky by a sample of the map, beside that of the BSDF. */
-static void sample_map(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, const around *a, ref_random *r,
-                       ref_lobes *out) {
+static void sample_map(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, const around *a,
+                       ref_random *r, ref_lobes *out) {
     double pdf;
     ref_vec l = ref_sky_sample(t->sky, r, &pdf);
     ref_lobes f = ref_bsdf_eval(b, l, r);
@@ -78,20 +84,23 @@ static void sample_map(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *
     if (any && ref_dot(l, hit->ng) > 0)
         seen = !ref_world_occluded(t->world, ref_world_leave(t->world, hit, l), l, HUGE_VAL,
                                    REF_RAY_NO_BLENDS | REF_RAY_ONE_SIDED);
-    out->of[REF_SOFT] = ref_add(out->of[REF_SOFT], ref_scale(ref_mul(f.of[REF_SOFT], sky), a->open));
+    out->of[REF_SOFT] =
+        ref_add(out->of[REF_SOFT], ref_scale(ref_mul(f.of[REF_SOFT], sky), a->open));
     for (int i = 0; i < 2; i++) {
         double part = (1 - a->share[i]) * a->open + a->share[i] * seen;
         out->of[i] = ref_add(out->of[i], ref_scale(ref_mul(f.of[i], sky), part));
     }
 }
 
-static ref_lobes shade(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, ref_random *r, int depth, bool pane) {
+static ref_lobes shade(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, ref_random *r,
+                       int depth, bool pane) {
     ref_lobes out, w;
     around a = {{0, 0}, b->s.occlusion};
     ref_vec l;
     memset(&out, 0, sizeof out);
     ref_sun_light(t, hit, b, r, &out);
-    if (!pane) ref_punctual_light(t, hit, b, r, &out); /* which transparent surfaces do not receive */
+    if (!pane)
+        ref_punctual_light(t, hit, b, r, &out); /* which transparent surfaces do not receive */
     if (!depth && !pane) {
         a.share[0] = traced_share(b->s.roughness, t->cutoff);
         a.share[1] = traced_share(b->s.coat_roughness, t->cutoff);

@@ -24,19 +24,22 @@ static bool compile(ref_field *f, const char *text, char *error, size_t size) {
     snprintf(source, sizeof source, "%s/field.c", f->folder);
     snprintf(object, sizeof object, "%s/field.so", f->folder);
     if (!masu_file_write(source, text, strlen(text), error, size)) return false;
-    const char *arguments[] = {"cc", "-std=c11", "-O2", "-w", "-ffp-contract=off", "-shared", "-fPIC",
-                               "-o", object,     source, "-lm", NULL};
+    const char *arguments[] = {"cc",      "-std=c11", "-O2", "-w",   "-ffp-contract=off",
+                               "-shared", "-fPIC",    "-o",  object, source,
+                               "-lm",     NULL};
     masu_bake_buffer output = {0};
     masu_bake_result result = masu_bake_run(arguments, SECONDS, &output);
     bool good = result.end == MASU_BAKE_EXITED && result.code == 0;
     if (!good) {
         masu_bake_append(&output, "", 1);
         output.data[strcspn((char *)output.data, "\n")] = 0;
-        snprintf(error, size, "the C compiler (cc) cannot compile the field: %.200s", (char *)output.data);
+        snprintf(error, size, "the C compiler (cc) cannot compile the field: %.200s",
+                 (char *)output.data);
     }
     masu_bake_release(&output);
     if (good) f->library = dlopen(object, RTLD_NOW | RTLD_LOCAL);
-    if (good && !f->library) snprintf(error, size, "cannot load the compiled field: %.200s", dlerror());
+    if (good && !f->library)
+        snprintf(error, size, "cannot load the compiled field: %.200s", dlerror());
     return f->library != NULL;
 }
 
@@ -47,8 +50,8 @@ static bool find(const ref_field *f, const char *name, void *to) {
     return symbol != NULL;
 }
 
-bool ref_field_open(const char *source, const masu_blob_sdf *sdf, const masu_blob_sdf_param *params, uint32_t param_count,
-                    double time, ref_field *f, char *error, size_t size) {
+bool ref_field_open(const char *source, const masu_blob_sdf *sdf, const masu_blob_sdf_param *params,
+                    uint32_t param_count, double time, ref_field *f, char *error, size_t size) {
     uint8_t *text = NULL;
     size_t bytes;
     masu_sdfc_result made;
@@ -60,23 +63,26 @@ bool ref_field_open(const char *source, const masu_blob_sdf *sdf, const masu_blo
     f->longest = (double)sdf->max_distance;
     for (uint32_t i = 0; i < param_count && i < 256; i++) f->params[i] = (double)params[i].value;
     masu_sdfc_options options = {.pairs = UINT32_MAX};
-    bool good = masu_file_read(source, SOURCE_MOST, &text, &bytes, error, size) &&
-                masu_sdfc_compile_with((const char *)text, bytes, source, &options, &made, error, size);
+    bool good =
+        masu_file_read(source, SOURCE_MOST, &text, &bytes, error, size) &&
+        masu_sdfc_compile_with((const char *)text, bytes, source, &options, &made, error, size);
     if (good && (made.param_count != param_count || made.part_count != sdf->part_count)) {
         snprintf(error, size,
-                 "%s: not the source of this scene's field: expected %u parts and %u parameters, found %u and %u",
+                 "%s: not the source of this scene's field: expected %u parts and %u parameters, "
+                 "found %u and %u",
                  source, sdf->part_count, param_count, made.part_count, made.param_count);
         good = false;
     }
     for (uint32_t i = 0; good && i < made.part_count; i++) {
         if (made.parts[i].truth) continue;
-        snprintf(error, size, "%s: the part %s is GLSL and has no C: the reference cannot trace it", source,
-                 made.parts[i].name);
+        snprintf(error, size, "%s: the part %s is GLSL and has no C: the reference cannot trace it",
+                 source, made.parts[i].name);
         good = false;
     }
     good = good && compile(f, made.c, error, size);
-    if (good && (!find(f, "masu_truth_step", &f->step) || !find(f, "masu_truth_distance", &f->distance) ||
-                 !find(f, "masu_truth_part", &f->part) || !find(f, "masu_truth_material", &f->material))) {
+    if (good &&
+        (!find(f, "masu_truth_step", &f->step) || !find(f, "masu_truth_distance", &f->distance) ||
+         !find(f, "masu_truth_part", &f->part) || !find(f, "masu_truth_material", &f->material))) {
         snprintf(error, size, "%s: the compiled field lacks a function", source);
         good = false;
     }
@@ -143,9 +149,10 @@ double ref_field_trace(const ref_field *f, ref_vec from, ref_vec d, double far) 
 
 ref_vec ref_field_normal(const ref_field *f, ref_vec p) {
     double h = 1e-6 * extent(p);
-    ref_vec g = ref_v(distance_at(f, ref_v(p.x + h, p.y, p.z)) - distance_at(f, ref_v(p.x - h, p.y, p.z)),
-                      distance_at(f, ref_v(p.x, p.y + h, p.z)) - distance_at(f, ref_v(p.x, p.y - h, p.z)),
-                      distance_at(f, ref_v(p.x, p.y, p.z + h)) - distance_at(f, ref_v(p.x, p.y, p.z - h)));
+    ref_vec g =
+        ref_v(distance_at(f, ref_v(p.x + h, p.y, p.z)) - distance_at(f, ref_v(p.x - h, p.y, p.z)),
+              distance_at(f, ref_v(p.x, p.y + h, p.z)) - distance_at(f, ref_v(p.x, p.y - h, p.z)),
+              distance_at(f, ref_v(p.x, p.y, p.z + h)) - distance_at(f, ref_v(p.x, p.y, p.z - h)));
     return ref_unit(g);
 }
 

@@ -1,5 +1,5 @@
-/* field.h: a scene's signed distance field in double precision: the C that masu-sdfc generates from its .sdf source,
- * compiled by the system's compiler when it is opened, and sphere-traced. */
+/* field.h: a scene's signed distance field in double precision: the C that masu-sdfc generates
+ * from its .sdf source, compiled by the system's compiler when it is opened, and sphere-traced. */
 #ifndef LAB_REFERENCE_FIELD_H
 #define LAB_REFERENCE_FIELD_H
 
@@ -21,8 +21,9 @@ typedef struct ref_field {
 } ref_field;
 
 /* source: a .sdf file. sdf, params: of the blob; the parameters have their default values. */
-bool ref_field_open(const char *source, const masu_blob_sdf *sdf, const masu_blob_sdf_param *params, uint32_t param_count,
-                    double time, ref_field *out, char *error, size_t error_size);
+bool ref_field_open(const char *source, const masu_blob_sdf *sdf, const masu_blob_sdf_param *params,
+                    uint32_t param_count, double time, ref_field *out, char *error,
+                    size_t error_size);
 void ref_field_close(ref_field *f);
 
 /* Distance of the first surface within `far`; HUGE_VAL: none. `from` is outside of the surface. */

@@ -4,7 +4,8 @@
 
 #include <math.h>
 
-double ref_fog_left(double density, double falloff, double height, double climb, double start, double length) {
+double ref_fog_left(double density, double falloff, double height, double climb, double start,
+                    double length) {
     double s = length - start, k = falloff * climb;
     if (!(density > 0) || !(s > 0)) return 1;
     double first = density * exp(-falloff * (height + climb * start));

@@ -1,5 +1,5 @@
-/* full.c: all light paths: a path tracer with next-event estimation and multiple importance sampling (power heuristic);
- * see tracer.h. */
+/* full.c: all light paths: a path tracer with next-event estimation and multiple importance
+ * sampling (power heuristic); see tracer.h. */
 #include "lab/reference/tracer.h"
 
 #include <string.h>
@@ -10,10 +10,12 @@ static double power(double a, double b) { return a > 0 ? a * a / (a * a + b * b)
 
 static bool is_open(const ref_tracer *t, const ref_hit *hit, ref_vec l) {
     if (!(ref_dot(l, hit->ng) > 0)) return false;
-    return !ref_world_occluded(t->world, ref_world_leave(t->world, hit, l), l, HUGE_VAL, REF_RAY_NO_BLENDS);
+    return !ref_world_occluded(t->world, ref_world_leave(t->world, hit, l), l, HUGE_VAL,
+                               REF_RAY_NO_BLENDS);
 }
 
-/* To a point of another surface; aimed from where the ray starts, or a distant grazing one would occlude itself. */
+/* To a point of another surface; aimed from where the ray starts, or a distant grazing one would
+ * occlude itself. */
 static bool sees(const ref_tracer *t, const ref_hit *hit, ref_vec p) {
     ref_vec l = ref_sub(p, hit->p), from = ref_world_leave(t->world, hit, l), to = ref_sub(p, from);
     double d = ref_length(to), far = d * (1 - 1e-5) - 2e-6;
@@ -21,7 +23,8 @@ static bool sees(const ref_tracer *t, const ref_hit *hit, ref_vec p) {
     return !ref_world_occluded(t->world, from, ref_scale(to, 1 / d), far, REF_RAY_NO_BLENDS);
 }
 
-static void sample_map(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, ref_random *r, ref_lobes *out) {
+static void sample_map(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, ref_random *r,
+                       ref_lobes *out) {
     double pdf;
     ref_vec l = ref_sky_sample(t->sky, r, &pdf);
     ref_lobes f = ref_bsdf_eval(b, l, r);
@@ -31,7 +34,8 @@ static void sample_map(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *
     for (int i = 0; i < REF_LOBES; i++) out->of[i] = ref_add(out->of[i], ref_mul(f.of[i], sky));
 }
 
-static void sample_emitter(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, ref_random *r, ref_lobes *out) {
+static void sample_emitter(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b,
+                           ref_random *r, ref_lobes *out) {
     const ref_scene *s = t->world->scene;
     double which = ref_draw(r);
     double u = ref_draw(r);
@@ -48,7 +52,8 @@ static void sample_emitter(const ref_tracer *t, const ref_hit *hit, const ref_bs
     const ref_triangle *k = &s->triangles[triangle];
     if (u + v > 1) u = 1 - u, v = 1 - v;
     ref_vec a = s->positions[k->vertex[0]];
-    ref_vec e1 = ref_sub(s->positions[k->vertex[1]], a), e2 = ref_sub(s->positions[k->vertex[2]], a);
+    ref_vec e1 = ref_sub(s->positions[k->vertex[1]], a),
+            e2 = ref_sub(s->positions[k->vertex[2]], a);
     ref_vec p = ref_along(ref_along(a, u, e1), v, e2), n = ref_unit(ref_cross(e1, e2));
     ref_vec to = ref_sub(p, hit->p);
     double d2 = ref_dot(to, to), d = sqrt(d2);
@@ -66,11 +71,13 @@ static void sample_emitter(const ref_tracer *t, const ref_hit *hit, const ref_bs
 }
 
 /* Of emission that a scattered ray meets: how much, beside samples of the emitters. */
-static double emission_weight(const ref_tracer *t, const ref_hit *hit, ref_vec d, double travelled, double pdf, bool camera) {
+static double emission_weight(const ref_tracer *t, const ref_hit *hit, ref_vec d, double travelled,
+                              double pdf, bool camera) {
     const ref_scene *s = t->world->scene;
     if (camera || !t->light_samples || hit->triangle == REF_SDF || !s->emitter_count) return 1;
     double cosine = fabs(ref_dot(hit->ng, d));
-    double other = cosine > 1e-9 ? s->emitter_pdf[hit->triangle] * travelled * travelled / cosine : 0;
+    double other =
+        cosine > 1e-9 ? s->emitter_pdf[hit->triangle] * travelled * travelled / cosine : 0;
     return t->bsdf_samples ? power(pdf, other) : 0;
 }
 
@@ -87,7 +94,9 @@ ref_vec ref_full(const ref_tracer *t, ref_vec from, ref_vec d, ref_random *r) {
         bool camera = bounce == 0;
         ref_vec all = ref_mul(left, ref_lobes_sum(&w)), v = ref_scale(d, -1);
         if (!ref_world_trace(t->world, from, d, HUGE_VAL, REF_RAY_ONE_SIDED, &hit)) {
-            double mis = camera || !map ? 1 : t->bsdf_samples ? power(pdf, ref_sky_pdf(t->sky, d)) : 0;
+            double mis = camera || !map    ? 1
+                         : t->bsdf_samples ? power(pdf, ref_sky_pdf(t->sky, d))
+                                           : 0;
             ref_vec seen = camera ? ref_sky_seen(t, d) : ref_sky_at(t->sky, d);
             ref_vec soft = t->physics ? seen : ref_sky_soft(t->sky, d);
             double air = mirror ? ref_air_left(t, start, d, HUGE_VAL) : 1;
@@ -126,7 +135,8 @@ ref_vec ref_full(const ref_tracer *t, ref_vec from, ref_vec d, ref_random *r) {
         ref_punctual_light(t, &hit, &b, r, &lit);
         if (bounce < t->bounces) {
             if (map) sample_map(t, &hit, &b, r, &lit);
-            if (t->world->scene->emitter_count && t->light_samples) sample_emitter(t, &hit, &b, r, &lit);
+            if (t->world->scene->emitter_count && t->light_samples)
+                sample_emitter(t, &hit, &b, r, &lit);
         }
         ref_vec mirrored = ref_scale(ref_add(lit.of[REF_BASE], lit.of[REF_COAT]), pane.mirror);
         sum = ref_add(sum, ref_mul(all, ref_along(mirrored, pane.soft, lit.of[REF_SOFT])));

@@ -15,7 +15,8 @@ static const ref_material *material_of(const ref_world *w, uint32_t triangle) {
     return &w->scene->materials[w->scene->triangles[triangle].material];
 }
 
-static void texcoord_at(const ref_scene *s, const ref_triangle *t, double u, double v, double out[2]) {
+static void texcoord_at(const ref_scene *s, const ref_triangle *t, double u, double v,
+                        double out[2]) {
     for (int k = 0; k < 2; k++) {
         double a = (double)s->texcoords[2 * (size_t)t->vertex[0] + (size_t)k];
         double b = (double)s->texcoords[2 * (size_t)t->vertex[1] + (size_t)k];
@@ -24,12 +25,14 @@ static void texcoord_at(const ref_scene *s, const ref_triangle *t, double u, dou
     }
 }
 
-static void map_at(const ref_world *w, uint32_t triangle, int slot, double u, double v, double out[4]) {
+static void map_at(const ref_world *w, uint32_t triangle, int slot, double u, double v,
+                   double out[4]) {
     const ref_material *m = material_of(w, triangle);
     double at[2];
     texcoord_at(w->scene, &w->scene->triangles[triangle], u, v, at);
     bool plain = slot == MASU_SLOT_BASE || slot == MASU_SLOT_EMISSIVE;
-    ref_texture_at(m->map[slot], at[0] * (plain ? 1 : m->detail[0]), at[1] * (plain ? 1 : m->detail[1]), m->wrap, out);
+    ref_texture_at(m->map[slot], at[0] * (plain ? 1 : m->detail[0]),
+                   at[1] * (plain ? 1 : m->detail[1]), m->wrap, out);
 }
 
 /* Called by Embree for each candidate: what is not there for this ray. */
@@ -45,7 +48,8 @@ static void filter(const struct RTCFilterFunctionNArguments *a) {
     if (m->flags & MASU_MATERIAL_IS_SINGLE && c->flags & REF_RAY_ONE_SIDED) {
         const ref_triangle *t = &c->world->scene->triangles[triangle];
         const ref_vec *p = c->world->scene->positions;
-        ref_vec n = ref_cross(ref_sub(p[t->vertex[1]], p[t->vertex[0]]), ref_sub(p[t->vertex[2]], p[t->vertex[0]]));
+        ref_vec n = ref_cross(ref_sub(p[t->vertex[1]], p[t->vertex[0]]),
+                              ref_sub(p[t->vertex[2]], p[t->vertex[0]]));
         ref_vec d = ref_v((double)ray->dir_x, (double)ray->dir_y, (double)ray->dir_z);
         if (ref_dot(n, d) > 0) there = false;
     }
@@ -57,8 +61,8 @@ static void filter(const struct RTCFilterFunctionNArguments *a) {
     if (!there) a->valid[0] = 0;
 }
 
-bool ref_world_open(const ref_scene *scene, const ref_field *field, ref_vec center, ref_world *w, char *error,
-                    size_t size) {
+bool ref_world_open(const ref_scene *scene, const ref_field *field, ref_vec center, ref_world *w,
+                    char *error, size_t size) {
     *w = (ref_world){.scene = scene, .field = field, .center = center};
     if (!scene->triangle_count) return true;
     w->positions = malloc((scene->vertex_count * 3 + 4) * sizeof(float));
@@ -77,16 +81,17 @@ bool ref_world_open(const ref_scene *scene, const ref_field *field, ref_vec cent
     w->embree = rtcNewScene(w->device);
     rtcSetSceneFlags(w->embree, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
     RTCGeometry g = rtcNewGeometry(w->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, w->positions, 0, 3 * sizeof(float),
-                               scene->vertex_count);
-    rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, scene->triangles, 0, sizeof(ref_triangle),
-                               scene->triangle_count);
+    rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, w->positions, 0,
+                               3 * sizeof(float), scene->vertex_count);
+    rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, scene->triangles, 0,
+                               sizeof(ref_triangle), scene->triangle_count);
     rtcCommitGeometry(g);
     rtcAttachGeometry(w->embree, g);
     rtcReleaseGeometry(g);
     rtcCommitScene(w->embree);
     if (rtcGetDeviceError(w->device) == RTC_ERROR_NONE) return true;
-    snprintf(error, size, "Embree cannot build its tree of %llu triangles", (unsigned long long)scene->triangle_count);
+    snprintf(error, size, "Embree cannot build its tree of %llu triangles",
+             (unsigned long long)scene->triangle_count);
     ref_world_close(w);
     return false;
 }
@@ -121,8 +126,10 @@ static struct RTCRay ray_of(const ref_world *w, ref_vec from, ref_vec d, double 
 static void refine(const ref_scene *s, ref_vec from, ref_vec d, ref_hit *hit) {
     const ref_triangle *t = &s->triangles[hit->triangle];
     ref_vec a = s->positions[t->vertex[0]];
-    ref_vec e1 = ref_sub(s->positions[t->vertex[1]], a), e2 = ref_sub(s->positions[t->vertex[2]], a);
-    ref_vec n = ref_cross(e1, e2), pv = ref_cross(d, e2), tv = ref_sub(from, a), qv = ref_cross(tv, e1);
+    ref_vec e1 = ref_sub(s->positions[t->vertex[1]], a),
+            e2 = ref_sub(s->positions[t->vertex[2]], a);
+    ref_vec n = ref_cross(e1, e2), pv = ref_cross(d, e2), tv = ref_sub(from, a),
+            qv = ref_cross(tv, e1);
     double det = ref_dot(e1, pv);
     hit->ng = ref_unit(n);
     hit->back = ref_dot(n, d) > 0;
@@ -137,7 +144,8 @@ static void refine(const ref_scene *s, ref_vec from, ref_vec d, ref_hit *hit) {
     }
 }
 
-bool ref_world_trace(const ref_world *w, ref_vec from, ref_vec d, double far, unsigned flags, ref_hit *hit) {
+bool ref_world_trace(const ref_world *w, ref_vec from, ref_vec d, double far, unsigned flags,
+                     ref_hit *hit) {
     bool found = false;
     hit->t = far;
     if (w->embree && !(flags & REF_RAY_NO_TRIANGLES)) {
@@ -146,7 +154,10 @@ bool ref_world_trace(const ref_world *w, ref_vec from, ref_vec d, double far, un
         r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
         rtcIntersect1(w->embree, &c.base, &r);
         if (r.hit.geomID != RTC_INVALID_GEOMETRY_ID) {
-            *hit = (ref_hit){.t = (double)r.ray.tfar, .u = (double)r.hit.u, .v = (double)r.hit.v, .triangle = r.hit.primID};
+            *hit = (ref_hit){.t = (double)r.ray.tfar,
+                             .u = (double)r.hit.u,
+                             .v = (double)r.hit.v,
+                             .triangle = r.hit.primID};
             refine(w->scene, from, d, hit);
             found = true;
         }
@@ -191,28 +202,35 @@ ref_vec ref_world_emission(const ref_world *w, uint32_t triangle, double u, doub
     return ref_mul(m->emissive, ref_v(texel[0], texel[1], texel[2]));
 }
 
-/* n turned until v sees it: normals of coarse meshes and maps may point away. least: its cosine then. */
+/* n turned until v sees it: normals of coarse meshes and maps may point away. least: its cosine
+ * then. */
 static ref_vec facing(ref_vec n, ref_vec v, double least) {
     double short_by = least - ref_dot(n, v);
     return short_by > 0 ? ref_unit(ref_along(n, short_by, v)) : n;
 }
 
-/* glTF's tangent space: unit gradients of u and v on the plane of n; +y of the map is up, against v. */
+/* glTF's tangent space: unit gradients of u and v on the plane of n; +y of the map is up,
+ * against v. */
 static ref_vec bent(const ref_world *w, const ref_hit *hit, ref_vec n) {
     const ref_scene *s = w->scene;
     const ref_triangle *t = &s->triangles[hit->triangle];
     double texel[4], uv[3][2];
     map_at(w, hit->triangle, MASU_SLOT_NORMAL, hit->u, hit->v, texel);
-    double x = ref_clamp((texel[0] * 255 - 128) / 127, -1, 1), y = ref_clamp((texel[1] * 255 - 128) / 127, -1, 1);
+    double x = ref_clamp((texel[0] * 255 - 128) / 127, -1, 1),
+           y = ref_clamp((texel[1] * 255 - 128) / 127, -1, 1);
     double z = sqrt(fmax(1 - x * x - y * y, 0));
     for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 2; k++) uv[i][k] = (double)s->texcoords[2 * (size_t)t->vertex[i] + (size_t)k];
+        for (int k = 0; k < 2; k++)
+            uv[i][k] = (double)s->texcoords[2 * (size_t)t->vertex[i] + (size_t)k];
     ref_vec a = s->positions[t->vertex[0]];
-    ref_vec e1 = ref_sub(s->positions[t->vertex[1]], a), e2 = ref_sub(s->positions[t->vertex[2]], a);
+    ref_vec e1 = ref_sub(s->positions[t->vertex[1]], a),
+            e2 = ref_sub(s->positions[t->vertex[2]], a);
     ref_vec p1 = ref_cross(e2, n), p2 = ref_cross(n, e1);
     double side = ref_dot(p1, e1) < 0 ? -1 : 1;
-    ref_vec along_u = ref_add(ref_scale(p1, uv[1][0] - uv[0][0]), ref_scale(p2, uv[2][0] - uv[0][0]));
-    ref_vec along_v = ref_add(ref_scale(p1, uv[1][1] - uv[0][1]), ref_scale(p2, uv[2][1] - uv[0][1]));
+    ref_vec along_u =
+        ref_add(ref_scale(p1, uv[1][0] - uv[0][0]), ref_scale(p2, uv[2][0] - uv[0][0]));
+    ref_vec along_v =
+        ref_add(ref_scale(p1, uv[1][1] - uv[0][1]), ref_scale(p2, uv[2][1] - uv[0][1]));
     double lu = ref_length(along_u), lv = ref_length(along_v);
     ref_vec out = ref_scale(n, z);
     if (lu > 0) out = ref_along(out, side * x / lu, along_u);

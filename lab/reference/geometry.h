@@ -1,4 +1,5 @@
-/* geometry.h: what rays of the reference meet: triangles by Embree and the signed distance field. */
+/* geometry.h: what rays of the reference meet: triangles by Embree and the signed distance
+ * field. */
 #ifndef LAB_REFERENCE_GEOMETRY_H
 #define LAB_REFERENCE_GEOMETRY_H
 
@@ -26,24 +27,26 @@ typedef struct ref_world {
 #define REF_SDF UINT32_MAX
 typedef struct ref_hit {
     double t, u, v;
-    ref_vec p, ng;      /* ng: unit, towards where the ray comes from */
-    uint32_t triangle;  /* REF_SDF: the field's */
-    bool back;          /* of a triangle: clockwise */
+    ref_vec p, ng;     /* ng: unit, towards where the ray comes from */
+    uint32_t triangle; /* REF_SDF: the field's */
+    bool back;         /* of a triangle: clockwise */
 } ref_hit;
 
 /* center: floats of Embree are exact near it; the camera. */
-bool ref_world_open(const ref_scene *scene, const ref_field *field, ref_vec center, ref_world *out, char *error,
-                    size_t error_size);
+bool ref_world_open(const ref_scene *scene, const ref_field *field, ref_vec center, ref_world *out,
+                    char *error, size_t error_size);
 void ref_world_close(ref_world *w);
 
 /* The nearest surface within `far`; alpha-tested ones are not there in their holes. */
-bool ref_world_trace(const ref_world *w, ref_vec from, ref_vec direction, double far, unsigned flags, ref_hit *hit);
-bool ref_world_occluded(const ref_world *w, ref_vec from, ref_vec direction, double far, unsigned flags);
+bool ref_world_trace(const ref_world *w, ref_vec from, ref_vec direction, double far,
+                     unsigned flags, ref_hit *hit);
+bool ref_world_occluded(const ref_world *w, ref_vec from, ref_vec direction, double far,
+                        unsigned flags);
 /* Where a ray towards d leaves the surface from. */
 ref_vec ref_world_leave(const ref_world *w, const ref_hit *hit, ref_vec d);
 
-/* The material at a hit, its normals on the side that the ray v (away from the surface) comes from. cover: alpha of the
- * map. */
+/* The material at a hit, its normals on the side that the ray v (away from the surface) comes
+ * from. cover: alpha of the map. */
 typedef struct ref_look {
     ref_surface s;
     uint32_t flags;

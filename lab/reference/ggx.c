@@ -68,8 +68,8 @@ double ref_ggx_pdf(double alpha, ref_vec v, ref_vec l) {
 
 /* ---- Integrals ------------------------------------------------------------------------------- */
 
-/* Over visible normals at the midpoints of equal shares, as ref_ggx_normal lays them out; radii shrink outwards,
- * where the reflection sets and the integrand ends. */
+/* Over visible normals at the midpoints of equal shares, as ref_ggx_normal lays them out; radii
+ * shrink outwards, where the reflection sets and the integrand ends. */
 ref_albedo ref_ggx_integrate(double roughness, double cosine, int steps) {
     double alpha = roughness * roughness, mu = fmax(cosine, 1e-6);
     ref_vec v = ref_v(sqrt(fmax(1 - mu * mu, 0)), 0, mu);
@@ -143,7 +143,8 @@ static void make_tables(void) {
     for (int i = 0; i < ROWS; i++) {
         double roughness = SMOOTHEST + (1 - SMOOTHEST) * i / (ROWS - 1.0);
         for (int k = 0; k < COLUMNS; k++)
-            table[i][k] = ref_ggx_integrate(roughness, cosine_of(k), k < COLUMNS / 4 ? STEPS : STEPS / 2);
+            table[i][k] =
+                ref_ggx_integrate(roughness, cosine_of(k), k < COLUMNS / 4 ? STEPS : STEPS / 2);
         average[i] = average_of(table[i]);
         fit_line(table[i], line[i]);
     }
@@ -210,7 +211,8 @@ ref_vec ref_walk_multiple(double alpha, const ref_fresnel *f, ref_vec v, ref_vec
         if (i > 0) {
             ref_vec h = ref_unit(ref_add(back, l));
             double phase = ref_ggx_pdf(alpha, back, l), open = pow(share_below(height), out);
-            sum = ref_add(sum, ref_scale(ref_mul(weight, ref_fresnel_at(f, ref_dot(back, h))), phase * open));
+            sum = ref_add(
+                sum, ref_scale(ref_mul(weight, ref_fresnel_at(f, ref_dot(back, h))), phase * open));
         }
         double u1 = ref_draw(r);
         double u2 = ref_draw(r);
@@ -223,7 +225,8 @@ ref_vec ref_walk_multiple(double alpha, const ref_fresnel *f, ref_vec v, ref_vec
     return sum;
 }
 
-bool ref_walk_sample(double alpha, const ref_fresnel *f, ref_vec v, ref_random *r, ref_vec *l, ref_vec *weight) {
+bool ref_walk_sample(double alpha, const ref_fresnel *f, ref_vec v, ref_random *r, ref_vec *l,
+                     ref_vec *weight) {
     ref_vec w = ref_scale(v, -1);
     double height = 1;
     *weight = ref_splat(1);

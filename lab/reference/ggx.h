@@ -1,5 +1,6 @@
-/* ggx.h: the GGX microfacet lobe with height-correlated Smith masking, its directional albedo and the
- * tables of it, and the random walk between its facets. Directions are in the surface's frame, z up. */
+/* ggx.h: the GGX microfacet lobe with height-correlated Smith masking, its directional albedo
+ * and the tables of it, and the random walk between its facets. Directions are in the surface's
+ * frame, z up. */
 #ifndef LAB_REFERENCE_GGX_H
 #define LAB_REFERENCE_GGX_H
 
@@ -7,7 +8,8 @@
 
 #include <stdbool.h>
 
-/* Uncorrelated masking G1(v) G1(l), as Cycles has it; for comparisons with it. Set before any table. */
+/* Uncorrelated masking G1(v) G1(l), as Cycles has it; for comparisons with it. Set before any
+ * table. */
 void ref_ggx_use_separable(bool on);
 
 double ref_schlick(double cosine); /* (1 - cosine)^5 */
@@ -20,8 +22,9 @@ ref_vec ref_ggx_normal(double alpha, ref_vec v, double u1, double u2);
 /* Density over l of the reflection of v at such a normal. */
 double ref_ggx_pdf(double alpha, ref_vec v, ref_vec l);
 
-/* Of a direction, or averages 2 Int mu dmu: the lobe with Fresnel term 1 (white) and (1 - h.v)^5 (weight),
- * and both times max((1 - v.z)^5, (1 - l.z)^5): what a clear coat above covers of them. */
+/* Of a direction, or averages 2 Int mu dmu: the lobe with Fresnel term 1 (white) and (1 - h.v)^5
+ * (weight), and both times max((1 - v.z)^5, (1 - l.z)^5): what a clear coat above covers of
+ * them. */
 typedef struct ref_albedo {
     double white, weight, covered, covered_weight;
 } ref_albedo;
@@ -42,10 +45,11 @@ typedef struct ref_fresnel {
 } ref_fresnel;
 ref_vec ref_fresnel_at(const ref_fresnel *f, double cosine);
 
-/* Random walk between facets (Heitz, Hanika, d'Eon, Dachsbacher 2016). The light of l that leaves towards v
- * after two and more bounces, times l.z: one estimate. */
+/* Random walk between facets (Heitz, Hanika, d'Eon, Dachsbacher 2016). The light of l that
+ * leaves towards v after two and more bounces, times l.z: one estimate. */
 ref_vec ref_walk_multiple(double alpha, const ref_fresnel *f, ref_vec v, ref_vec l, ref_random *r);
 /* A direction that a walk from v leaves by, and its weight; false: it did not leave. */
-bool ref_walk_sample(double alpha, const ref_fresnel *f, ref_vec v, ref_random *r, ref_vec *l, ref_vec *weight);
+bool ref_walk_sample(double alpha, const ref_fresnel *f, ref_vec v, ref_random *r, ref_vec *l,
+                     ref_vec *weight);
 
 #endif

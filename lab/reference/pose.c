@@ -17,7 +17,8 @@ ref_vec ref_transform(const double m[12], ref_vec p) {
     return ref_add(ref_transform_direction(m, p), ref_v(m[3], m[7], m[11]));
 }
 
-/* By the cofactors: the inverse transpose times the determinant, of mirrored and flattened matrices too. */
+/* By the cofactors: the inverse transpose times the determinant, of mirrored and flattened
+ * matrices too. */
 ref_vec ref_transform_normal(const double m[12], ref_vec n) {
     ref_vec a = ref_v(m[0], m[4], m[8]), b = ref_v(m[1], m[5], m[9]), c = ref_v(m[2], m[6], m[10]);
     ref_vec bc = ref_cross(b, c), ca = ref_cross(c, a), ab = ref_cross(a, b);
@@ -98,7 +99,8 @@ static node_pose pose_of(const double m[12]) {
     return p;
 }
 
-static void sample(const masu_blob_key *keys, const masu_blob_channel *c, double t, node_pose *pose) {
+static void sample(const masu_blob_key *keys, const masu_blob_channel *c, double t,
+                   node_pose *pose) {
     const masu_blob_key *k = keys + c->first_key;
     uint32_t i = 0;
     while (i + 1 < c->key_count && (double)k[i + 1].time <= t) i++;
@@ -123,7 +125,8 @@ static void sample(const masu_blob_key *keys, const masu_blob_channel *c, double
     for (int j = 0; j < 3; j++) to3[j] = a * (double)k[i].value[j] + b * (double)k[next].value[j];
 }
 
-static void animate_node(const ref_blob *blob, const masu_blob_model *m, uint32_t node, double time, double local[12]) {
+static void animate_node(const ref_blob *blob, const masu_blob_model *m, uint32_t node, double time,
+                         double local[12]) {
     const masu_blob_clip *clips = blob->section[MASU_BLOB_CLIPS];
     const masu_blob_channel *channels = blob->section[MASU_BLOB_CHANNELS];
     for (uint64_t i = 0; i < blob->count[MASU_BLOB_CLIPS]; i++) {
@@ -144,14 +147,16 @@ static void animate_node(const ref_blob *blob, const masu_blob_model *m, uint32_
 }
 
 /* From the nodes' spaces to the model's. */
-static void pose_model(const ref_blob *blob, const masu_blob_model *m, double time, bool animate, double *matrices) {
+static void pose_model(const ref_blob *blob, const masu_blob_model *m, double time, bool animate,
+                       double *matrices) {
     const masu_blob_model_node *nodes = blob->section[MASU_BLOB_MODEL_NODES];
     for (uint32_t n = 0; n < m->node_count; n++) {
         const masu_blob_model_node *node = &nodes[m->first_node + n];
         double *to = matrices + 12 * (size_t)n;
         doubles_of(node->local, to);
         if (animate) animate_node(blob, m, n, time, to);
-        if (node->parent != MASU_BLOB_NONE) multiply(matrices + 12 * (size_t)(node->parent - m->first_node), to, to);
+        if (node->parent != MASU_BLOB_NONE)
+            multiply(matrices + 12 * (size_t)(node->parent - m->first_node), to, to);
     }
 }
 
@@ -159,7 +164,8 @@ void ref_pose_instances(const ref_blob *blob, double time, bool animate, double 
     const masu_blob_instance *instances = blob->section[MASU_BLOB_INSTANCES];
     const masu_blob_model *models = blob->section[MASU_BLOB_MODELS];
     const masu_blob_model_node *nodes = blob->section[MASU_BLOB_MODEL_NODES];
-    for (uint64_t i = 0; i < blob->count[MASU_BLOB_INSTANCES]; i++) doubles_of(instances[i].transform, matrices + 12 * i);
+    for (uint64_t i = 0; i < blob->count[MASU_BLOB_INSTANCES]; i++)
+        doubles_of(instances[i].transform, matrices + 12 * i);
     for (uint64_t i = 0; animate && i < blob->count[MASU_BLOB_MODELS]; i++) {
         double whole[12], *posed = calloc(models[i].node_count, 12 * sizeof *posed);
         if (!posed) return;
@@ -167,19 +173,23 @@ void ref_pose_instances(const ref_blob *blob, double time, bool animate, double 
         pose_model(blob, &models[i], time, true, posed);
         for (uint32_t n = 0; n < models[i].node_count; n++) {
             uint32_t instance = nodes[models[i].first_node + n].instance;
-            if (instance != MASU_BLOB_NONE) multiply(whole, posed + 12 * (size_t)n, matrices + 12 * (size_t)instance);
+            if (instance != MASU_BLOB_NONE)
+                multiply(whole, posed + 12 * (size_t)n, matrices + 12 * (size_t)instance);
         }
         free(posed);
     }
 }
 
-bool ref_pose_skin(const ref_blob *blob, uint32_t index, double time, bool animate, ref_vec *positions,
-                   ref_vec *normals) {
+bool ref_pose_skin(const ref_blob *blob, uint32_t index, double time, bool animate,
+                   ref_vec *positions, ref_vec *normals) {
     const masu_blob_skin *skin = (const masu_blob_skin *)blob->section[MASU_BLOB_SKINS] + index;
-    const masu_blob_model *m = (const masu_blob_model *)blob->section[MASU_BLOB_MODELS] + skin->model;
-    const masu_blob_joint *joints = (const masu_blob_joint *)blob->section[MASU_BLOB_JOINTS] + skin->first_joint;
+    const masu_blob_model *m =
+        (const masu_blob_model *)blob->section[MASU_BLOB_MODELS] + skin->model;
+    const masu_blob_joint *joints =
+        (const masu_blob_joint *)blob->section[MASU_BLOB_JOINTS] + skin->first_joint;
     const masu_blob_skin_vertex *from =
-        (const masu_blob_skin_vertex *)blob->section[MASU_BLOB_SKIN_VERTICES] + skin->first_skin_vertex;
+        (const masu_blob_skin_vertex *)blob->section[MASU_BLOB_SKIN_VERTICES] +
+        skin->first_skin_vertex;
     double whole[12], *nodes = calloc(m->node_count, 12 * sizeof *nodes);
     double *bones = calloc(skin->joint_count, 12 * sizeof *bones);
     bool good = nodes && bones;
@@ -200,7 +210,8 @@ bool ref_pose_skin(const ref_blob *blob, uint32_t index, double time, bool anima
             }
             ref_octahedral(from[v].rest.normal, normal);
             positions[v] = ref_transform(sum, ref_of(from[v].rest.position));
-            normals[v] = ref_unit(ref_transform_normal(sum, ref_v(normal[0], normal[1], normal[2])));
+            normals[v] =
+                ref_unit(ref_transform_normal(sum, ref_v(normal[0], normal[1], normal[2])));
         }
     }
     free(nodes);

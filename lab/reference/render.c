@@ -18,7 +18,8 @@ ref_camera ref_camera_at(const ref_blob *blob, double time) {
         share = (time - (double)k[i].time) / ((double)k[next].time - (double)k[i].time);
     ref_camera c;
     c.eye = ref_mix(ref_of(k[i].position), ref_of(k[next].position), share);
-    c.forward = ref_unit(ref_sub(ref_mix(ref_of(k[i].target), ref_of(k[next].target), share), c.eye));
+    c.forward =
+        ref_unit(ref_sub(ref_mix(ref_of(k[i].target), ref_of(k[next].target), share), c.eye));
     c.right = ref_cross(c.forward, ref_v(0, 1, 0));
     c.right = ref_length(c.right) > 1e-9 ? ref_unit(c.right) : ref_v(1, 0, 0);
     c.up = ref_cross(c.right, c.forward);
@@ -50,14 +51,16 @@ static void pixel(const ref_render *r, ref_image *image, uint32_t x, uint32_t y)
         ref_random random = ref_random_at(r->seed, at, i);
         double px = ref_draw(&random);
         double py = ref_draw(&random);
-        ref_vec d = ref_camera_ray(&r->camera, (x + px) / image->width, (y + py) / image->height, aspect);
+        ref_vec d =
+            ref_camera_ray(&r->camera, (x + px) / image->width, (y + py) / image->height, aspect);
         ref_vec light = ref_radiance(r->tracer, d, &random);
         add(light.x, &sum[0], &square[0]);
         add(light.y, &sum[1], &square[1]);
         add(light.z, &sum[2], &square[2]);
     }
     for (size_t k = 0; k < 3; k++) {
-        double mean = sum[k] / n, variance = n > 1 ? fmax(square[k] / n - mean * mean, 0) / (n - 1) : 0;
+        double mean = sum[k] / n,
+               variance = n > 1 ? fmax(square[k] / n - mean * mean, 0) / (n - 1) : 0;
         image->mean[3 * at + k] = (float)mean;
         image->error[3 * at + k] = (float)sqrt(variance);
     }

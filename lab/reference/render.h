@@ -29,8 +29,8 @@ typedef struct ref_render {
     void (*progress)(double share); /* or NULL; called by one thread */
 } ref_render;
 
-/* A box filter over each pixel. The same bits for any number of threads: paths of a pixel are summed in their order
- * by one thread. False: out of memory. */
+/* A box filter over each pixel. The same bits for any number of threads: paths of a pixel are
+ * summed in their order by one thread. False: out of memory. */
 bool ref_render_image(const ref_render *r, ref_image *image);
 void ref_image_free(ref_image *image);
 

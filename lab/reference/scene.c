@@ -20,7 +20,8 @@ static bool out_of_memory(char *error, size_t size) {
 static bool read_blob(const char *path, ref_blob *blob, char *error, size_t size) {
     masu_scene scene;
     masu_detail detail = {.text = ""};
-    if (!masu_file_read(path, (size_t)1 << 32, &blob->bytes, &blob->size, error, size)) return false;
+    if (!masu_file_read(path, (size_t)1 << 32, &blob->bytes, &blob->size, error, size))
+        return false;
     if (masu_scene_bind(blob->bytes, blob->size, &scene, &detail)) {
         snprintf(error, size, "%s: %.400s%s", path, detail.text,
                  masu_file_hint(path, blob->bytes, blob->size, MASU_FILE_BLOB));
@@ -37,13 +38,15 @@ static bool read_blob(const char *path, ref_blob *blob, char *error, size_t size
 
 /* ---- Materials ------------------------------------------------------------------------------- */
 
-static const ref_texture *texture_of(ref_scene *s, uint32_t texture, uint32_t layer, uint32_t *keys) {
+static const ref_texture *texture_of(ref_scene *s, uint32_t texture, uint32_t layer,
+                                     uint32_t *keys) {
     const masu_blob_texture *textures = s->blob.section[MASU_BLOB_TEXTURES];
     for (uint64_t i = 0; i < s->texture_count; i++) {
         if (keys[i] == (texture << 8 | layer)) return &s->textures[i];
     }
     ref_texture *t = &s->textures[s->texture_count];
-    if (!ref_texture_decode(&textures[texture], s->blob.section[MASU_BLOB_TEXELS], layer, t)) return NULL;
+    if (!ref_texture_decode(&textures[texture], s->blob.section[MASU_BLOB_TEXELS], layer, t))
+        return NULL;
     keys[s->texture_count++] = texture << 8 | layer;
     return t;
 }
@@ -63,17 +66,18 @@ static bool read_materials(ref_scene *s) {
         if (!blend)
             emissive = ref_v(fmin(emissive.x, EMISSIVE_MOST), fmin(emissive.y, EMISSIVE_MOST),
                              fmin(emissive.z, EMISSIVE_MOST));
-        s->materials[i] = (ref_material){.flags = m->flags,
-                                         .base = ref_of(m->base_color),
-                                         .emissive = emissive,
-                                         .roughness = (double)m->roughness,
-                                         .metallic = (double)m->metallic,
-                                         .specular = (double)m->specular,
-                                         .coat = (double)m->coat,
-                                         .coat_roughness = (double)m->coat_roughness,
-                                         .opacity = (double)m->opacity,
-                                         .cutoff = (m->flags >> MASU_MATERIAL_CUTOFF_SHIFT & 0xFF) / 255.0,
-                                         .detail = {(double)m->detail[0], (double)m->detail[1]}};
+        s->materials[i] =
+            (ref_material){.flags = m->flags,
+                           .base = ref_of(m->base_color),
+                           .emissive = emissive,
+                           .roughness = (double)m->roughness,
+                           .metallic = (double)m->metallic,
+                           .specular = (double)m->specular,
+                           .coat = (double)m->coat,
+                           .coat_roughness = (double)m->coat_roughness,
+                           .opacity = (double)m->opacity,
+                           .cutoff = (m->flags >> MASU_MATERIAL_CUTOFF_SHIFT & 0xFF) / 255.0,
+                           .detail = {(double)m->detail[0], (double)m->detail[1]}};
         s->blends = s->blends || blend;
         s->masks = s->masks || (m->flags & MASU_MATERIAL_IS_MASK);
         s->meso = s->meso || m->meso != MASU_BLOB_NONE;
@@ -115,8 +119,9 @@ static uint32_t skin_of(const ref_blob *b, uint32_t instance) {
     return 0;
 }
 
-static bool add_primitive(ref_scene *s, const masu_blob_primitive *p, const double m[12], const ref_vec *skinned,
-                          const ref_vec *skinned_normals, uint32_t skin_first) {
+static bool add_primitive(ref_scene *s, const masu_blob_primitive *p, const double m[12],
+                          const ref_vec *skinned, const ref_vec *skinned_normals,
+                          uint32_t skin_first) {
     const masu_blob_vertex *vertices = s->blob.section[MASU_BLOB_VERTICES];
     const uint32_t *indices = s->blob.section[MASU_BLOB_INDICES];
     const float *texcoords = s->blob.section[MASU_BLOB_TEXCOORDS];
@@ -127,14 +132,18 @@ static bool add_primitive(ref_scene *s, const masu_blob_primitive *p, const doub
         uint64_t at = s->vertex_count++;
         double n[3];
         ref_octahedral(v->normal, n);
-        s->positions[at] = skinned ? skinned[p->first_vertex - skin_first + i] : ref_transform(m, ref_of(v->position));
+        s->positions[at] = skinned ? skinned[p->first_vertex - skin_first + i]
+                                   : ref_transform(m, ref_of(v->position));
         s->normals[at] = skinned ? skinned_normals[p->first_vertex - skin_first + i]
                                  : ref_unit(ref_transform_normal(m, ref_v(n[0], n[1], n[2])));
-        if (texcoords) memcpy(s->texcoords + 2 * at, texcoords + 2 * (size_t)(p->first_vertex + i), 2 * sizeof(float));
+        if (texcoords)
+            memcpy(s->texcoords + 2 * at, texcoords + 2 * (size_t)(p->first_vertex + i),
+                   2 * sizeof(float));
     }
     for (uint32_t i = 0; i + 2 < p->index_count; i += 3) {
         ref_triangle *t = &s->triangles[s->triangle_count++];
-        for (int k = 0; k < 3; k++) t->vertex[k] = (uint32_t)first + indices[p->first_index + i + (uint32_t)k];
+        for (int k = 0; k < 3; k++)
+            t->vertex[k] = (uint32_t)first + indices[p->first_index + i + (uint32_t)k];
         t->material = p->material;
     }
     return true;
@@ -142,20 +151,24 @@ static bool add_primitive(ref_scene *s, const masu_blob_primitive *p, const doub
 
 static bool add_instance(ref_scene *s, uint32_t i, const double m[12], double time, bool animate) {
     const masu_blob_instance *instances = s->blob.section[MASU_BLOB_INSTANCES];
-    const masu_blob_mesh *mesh = (const masu_blob_mesh *)s->blob.section[MASU_BLOB_MESHES] + instances[i].mesh;
+    const masu_blob_mesh *mesh =
+        (const masu_blob_mesh *)s->blob.section[MASU_BLOB_MESHES] + instances[i].mesh;
     const masu_blob_primitive *primitives = s->blob.section[MASU_BLOB_PRIMITIVES];
     uint32_t skin = animate ? skin_of(&s->blob, i) : 0, first = 0;
     ref_vec *positions = NULL, *normals = NULL;
     bool good = true;
     if (skin) {
-        const masu_blob_skin *k = (const masu_blob_skin *)s->blob.section[MASU_BLOB_SKINS] + (skin - 1);
+        const masu_blob_skin *k =
+            (const masu_blob_skin *)s->blob.section[MASU_BLOB_SKINS] + (skin - 1);
         first = k->first_vertex;
         positions = calloc(k->vertex_count, sizeof *positions);
         normals = calloc(k->vertex_count, sizeof *normals);
-        good = positions && normals && ref_pose_skin(&s->blob, skin - 1, time, animate, positions, normals);
+        good = positions && normals &&
+               ref_pose_skin(&s->blob, skin - 1, time, animate, positions, normals);
     }
     for (uint32_t p = 0; good && p < mesh->primitive_count; p++)
-        good = add_primitive(s, &primitives[mesh->first_primitive + p], m, positions, normals, first);
+        good =
+            add_primitive(s, &primitives[mesh->first_primitive + p], m, positions, normals, first);
     free(positions);
     free(normals);
     return good;
@@ -179,8 +192,10 @@ static bool read_triangles(ref_scene *s, const double *matrices, double time, bo
         s->positions = calloc(vertices + 1, sizeof *s->positions);
         s->normals = calloc(vertices + 1, sizeof *s->normals);
         s->triangles = calloc(triangles + 1, sizeof *s->triangles);
-        if (s->blob.section[MASU_BLOB_TEXCOORDS]) s->texcoords = calloc(vertices + 1, 2 * sizeof *s->texcoords);
-        good = s->positions && s->normals && s->triangles && (s->texcoords || !s->blob.section[MASU_BLOB_TEXCOORDS]);
+        if (s->blob.section[MASU_BLOB_TEXCOORDS])
+            s->texcoords = calloc(vertices + 1, 2 * sizeof *s->texcoords);
+        good = s->positions && s->normals && s->triangles &&
+               (s->texcoords || !s->blob.section[MASU_BLOB_TEXCOORDS]);
     }
     for (uint64_t i = 0; good && i < count; i++) {
         if (!hidden[i]) good = add_instance(s, (uint32_t)i, matrices + 12 * i, time, animate);
@@ -199,8 +214,9 @@ static bool read_lights(ref_scene *s, const double *matrices) {
         bool spot = from[i].type == MASU_LIGHT_SPOT;
         if (from[i].parent != MASU_BLOB_NONE && hidden[from[i].parent]) continue;
         ref_light *l = &s->lights[s->light_count++];
-        *l = (ref_light){ref_of(from[i].position), ref_of(from[i].color), ref_of(from[i].direction),
-                         (double)from[i].range, (double)from[i].radius, (double)from[i].inner,
+        *l = (ref_light){ref_of(from[i].position),         ref_of(from[i].color),
+                         ref_of(from[i].direction),        (double)from[i].range,
+                         (double)from[i].radius,           (double)from[i].inner,
                          spot ? (double)from[i].outer : -1};
         if (from[i].parent == MASU_BLOB_NONE) continue;
         const double *m = matrices + 12 * (size_t)from[i].parent;
@@ -226,7 +242,8 @@ static bool read_emitters(ref_scene *s) {
         const ref_triangle *t = &s->triangles[i];
         double power = ref_luminance(s->materials[t->material].emissive);
         ref_vec a = s->positions[t->vertex[0]];
-        ref_vec cross = ref_cross(ref_sub(s->positions[t->vertex[1]], a), ref_sub(s->positions[t->vertex[2]], a));
+        ref_vec cross = ref_cross(ref_sub(s->positions[t->vertex[1]], a),
+                                  ref_sub(s->positions[t->vertex[2]], a));
         double area = 0.5 * ref_length(cross);
         if (!(power > 0) || !(area > 0)) continue;
         sum += power * area;
@@ -240,7 +257,8 @@ static bool read_emitters(ref_scene *s) {
     return true;
 }
 
-bool ref_scene_open(const char *path, double time, bool animate, ref_scene *s, char *error, size_t size) {
+bool ref_scene_open(const char *path, double time, bool animate, ref_scene *s, char *error,
+                    size_t size) {
     memset(s, 0, sizeof *s);
     if (!read_blob(path, &s->blob, error, size)) return false;
     s->environment = s->blob.section[MASU_BLOB_ENVIRONMENT];

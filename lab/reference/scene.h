@@ -1,6 +1,6 @@
-/* scene.h: a baked scene as the reference path tracer reads it: world-space triangles at one moment, materials
- * with decoded textures, lights. Written from docs/blob.md; of the library only the blob's layout and
- * its validation are used. */
+/* scene.h: a baked scene as the reference path tracer reads it: world-space triangles at one
+ * moment, materials with decoded textures, lights. Written from docs/blob.md; of the library
+ * only the blob's layout and its validation are used. */
 #ifndef LAB_REFERENCE_SCENE_H
 #define LAB_REFERENCE_SCENE_H
 
@@ -70,18 +70,22 @@ typedef struct ref_scene {
     bool probes, masks, blends, meso;
 } ref_scene;
 
-/* `animate`: every model plays its first clip, looped, at `time`; else the pose is that of the blob. */
-bool ref_scene_open(const char *path, double time, bool animate, ref_scene *out, char *error, size_t error_size);
+/* `animate`: every model plays its first clip, looped, at `time`; else the pose is that of the
+ * blob. */
+bool ref_scene_open(const char *path, double time, bool animate, ref_scene *out, char *error,
+                    size_t error_size);
 void ref_scene_close(ref_scene *scene);
 
 /* rgba of a map, bilinear at full size; sRGB becomes linear before filtering. */
-void ref_texture_at(const ref_texture *t, double u, double v, const uint32_t wrap[2], double out[4]);
+void ref_texture_at(const ref_texture *t, double u, double v, const uint32_t wrap[2],
+                    double out[4]);
 
 /* The rows of the 3x4 matrix of each instance at a moment, 12 doubles each; parts of pose.c. */
 void ref_pose_instances(const ref_blob *blob, double time, bool animate, double *matrices);
-/* Positions and normals of a skin, in the space of its model's transform; `model`: that transform. */
-bool ref_pose_skin(const ref_blob *blob, uint32_t skin, double time, bool animate, ref_vec *positions,
-                   ref_vec *normals);
+/* Positions and normals of a skin, in the space of its model's transform; `model`: that
+ * transform. */
+bool ref_pose_skin(const ref_blob *blob, uint32_t skin, double time, bool animate,
+                   ref_vec *positions, ref_vec *normals);
 void ref_octahedral(const int16_t packed[2], double out[3]);
 ref_vec ref_transform(const double m[12], ref_vec p);
 ref_vec ref_transform_direction(const double m[12], ref_vec d);

@@ -1,14 +1,15 @@
-/* shade.c: light from the sun and from punctual lights, the sky and the air before it, and transparent
- * surfaces: what both kinds of path share; see tracer.h. */
-#include "lab/reference/tracer.h"
+/* shade.c: light from the sun and from punctual lights, the sky and the air before it, and
+ * transparent surfaces: what both kinds of path share; see tracer.h. */
 #include "lab/reference/fog.h"
+#include "lab/reference/tracer.h"
 
 #include <string.h>
 
 enum { LAYERS_MOST = 64 };
 
 bool ref_is_unlit(const ref_surface *s) {
-    return ref_max(s->emissive) > 0 && !(ref_max(s->albedo) > 0) && s->roughness >= 1 && !(s->coat > 0);
+    return ref_max(s->emissive) > 0 && !(ref_max(s->albedo) > 0) && s->roughness >= 1 &&
+           !(s->coat > 0);
 }
 
 static void add(ref_lobes *to, const ref_lobes *from, ref_vec color) {
@@ -19,7 +20,8 @@ ref_pane ref_pane_of(const ref_look *look, const ref_bsdf *b) {
     ref_pane p = {ref_splat(1), look->opacity, 1, 1};
     ref_lobes albedo = ref_bsdf_albedo(b);
     ref_vec mirror = ref_add(albedo.of[REF_BASE], albedo.of[REF_COAT]);
-    double mirrored = ref_clamp((mirror.x + mirror.y + mirror.z) / 3, 0, 1), through = 1 - look->opacity;
+    double mirrored = ref_clamp((mirror.x + mirror.y + mirror.z) / 3, 0, 1),
+           through = 1 - look->opacity;
     ref_vec hue = ref_splat(1);
     if (look->flags & MASU_MATERIAL_IS_TINTED) {
         double most = ref_max(look->s.albedo);
@@ -36,12 +38,14 @@ ref_pane ref_pane_of(const ref_look *look, const ref_bsdf *b) {
 }
 
 /* What reaches a surface from a light at `far` along l. */
-static ref_vec visible(const ref_tracer *t, const ref_hit *hit, ref_vec l, double far, bool shadows) {
+static ref_vec visible(const ref_tracer *t, const ref_hit *hit, ref_vec l, double far,
+                       bool shadows) {
     ref_vec left = ref_splat(1);
     if (!shadows) return left;
     if (!(ref_dot(l, hit->ng) > 0)) return ref_splat(0);
     ref_vec from = ref_world_leave(t->world, hit, l);
-    unsigned flags = (t->polygons_shadow ? 0u : REF_RAY_NO_TRIANGLES) | (t->field_shadows ? 0u : REF_RAY_NO_SDF);
+    unsigned flags =
+        (t->polygons_shadow ? 0u : REF_RAY_NO_TRIANGLES) | (t->field_shadows ? 0u : REF_RAY_NO_SDF);
     if (!t->physics || !t->world->scene->blends)
         return ref_splat(!ref_world_occluded(t->world, from, l, far, flags | REF_RAY_NO_BLENDS));
     for (int i = 0; i < LAYERS_MOST; i++) {
@@ -61,7 +65,8 @@ static ref_vec visible(const ref_tracer *t, const ref_hit *hit, ref_vec l, doubl
 }
 
 /* Adds the sun's light by lobe. */
-void ref_sun_light(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, ref_random *r, ref_lobes *out) {
+void ref_sun_light(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, ref_random *r,
+                   ref_lobes *out) {
     ref_vec l = t->sun_direction;
     if (!(ref_max(t->sun_color) > 0)) return;
     if (t->sun_radius > 0) {
@@ -84,25 +89,29 @@ ref_vec ref_light_at(const ref_light *light, ref_vec p, ref_vec *l) {
     if (!(share < 1)) return ref_splat(0);
     double window = 1 - share * share * share * share;
     if (light->outer >= 0) {
-        double c = -ref_dot(*l, light->direction), inner = cos(light->inner), outer = cos(light->outer);
+        double c = -ref_dot(*l, light->direction), inner = cos(light->inner),
+               outer = cos(light->outer);
         double x = inner > outer ? ref_clamp((c - outer) / (inner - outer), 0, 1) : c >= outer;
         cone = x * x;
     }
     return ref_scale(light->color, window * cone / fmax(d2, light->radius * light->radius));
 }
 
-void ref_punctual_light(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, ref_random *r, ref_lobes *out) {
+void ref_punctual_light(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, ref_random *r,
+                        ref_lobes *out) {
     const ref_scene *s = t->world->scene;
     for (uint32_t i = 0; i < s->light_count; i++) {
         ref_vec l, color = ref_light_at(&s->lights[i], hit->p, &l);
         if (!(ref_max(color) > 0)) continue;
         double far = ref_length(ref_sub(s->lights[i].position, hit->p));
-        if (t->physics && far > s->lights[i].radius) { /* a disc of the source's radius that faces the point */
+        if (t->physics &&
+            far > s->lights[i].radius) { /* a disc of the source's radius that faces the point */
             ref_frame f = ref_frame_of(l);
             double u = ref_draw(r);
             double v = ref_draw(r);
             double wide = s->lights[i].radius * sqrt(u);
-            l = ref_unit(ref_from(&f, ref_v(wide * cos(2 * REF_PI * v), wide * sin(2 * REF_PI * v), far)));
+            l = ref_unit(
+                ref_from(&f, ref_v(wide * cos(2 * REF_PI * v), wide * sin(2 * REF_PI * v), far)));
         }
         ref_lobes f = ref_bsdf_eval(b, l, r);
         if (!(ref_max(ref_lobes_sum(&f)) > 0)) continue;
@@ -117,15 +126,18 @@ double ref_air_left(const ref_tracer *t, ref_vec from, ref_vec d, double far) {
     const masu_blob_environment *e = t->environment;
     if (!(e->fog_density > 0)) return 1;
     double start = fmax((double)e->fog_start - ref_length(ref_sub(from, t->eye)), 0);
-    return ref_fog_left((double)e->fog_density, (double)e->fog_falloff, from.y - (double)e->fog_height, d.y, start, far);
+    return ref_fog_left((double)e->fog_density, (double)e->fog_falloff,
+                        from.y - (double)e->fog_height, d.y, start, far);
 }
 
-/* docs/scene.md: its own colour, or the sky's at the horizon below the ray, brighter towards the sun. */
+/* docs/scene.md: its own colour, or the sky's at the horizon below the ray, brighter towards the
+ * sun. */
 ref_vec ref_air_color(const ref_tracer *t, ref_vec d) {
     ref_vec own = ref_of(t->environment->fog_color);
     if (ref_max(own) > 0) return own;
     double towards = ref_clamp(ref_dot(d, t->sun_direction), 0, 1);
-    return ref_along(ref_sky_at(t->sky, ref_unit(ref_v(d.x, 0, d.z))), 0.05 * pow(towards, 12), t->sun_color);
+    return ref_along(ref_sky_at(t->sky, ref_unit(ref_v(d.x, 0, d.z))), 0.05 * pow(towards, 12),
+                     t->sun_color);
 }
 
 /* Masu draws the sun as two glows of fixed size. */

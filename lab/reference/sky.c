@@ -39,7 +39,8 @@ static ref_vec octahedron_at(const ref_sky *s, ref_vec d) {
     int64_t i = (int64_t)floor(u), k = (int64_t)floor(v);
     double pu = u - floor(u), pv = v - floor(v);
     ref_vec top = ref_mix(octahedron_texel(s, i, k), octahedron_texel(s, i + 1, k), pu);
-    return ref_mix(top, ref_mix(octahedron_texel(s, i, k + 1), octahedron_texel(s, i + 1, k + 1), pu), pv);
+    return ref_mix(
+        top, ref_mix(octahedron_texel(s, i, k + 1), octahedron_texel(s, i + 1, k + 1), pu), pv);
 }
 
 static ref_vec pixel(const ref_sky *s, double column, double row) {
@@ -54,7 +55,8 @@ static ref_vec panorama_at(const ref_sky *s, ref_vec d) {
     double x = (0.5 - (azimuth - s->turn) / (2 * REF_PI)) * s->width - 0.5;
     double y = polar / REF_PI * s->height - 0.5, px = x - floor(x), py = y - floor(y);
     ref_vec top = ref_mix(pixel(s, floor(x), floor(y)), pixel(s, floor(x) + 1, floor(y)), px);
-    ref_vec low = ref_mix(pixel(s, floor(x), floor(y) + 1), pixel(s, floor(x) + 1, floor(y) + 1), px);
+    ref_vec low =
+        ref_mix(pixel(s, floor(x), floor(y) + 1), pixel(s, floor(x) + 1, floor(y) + 1), px);
     return ref_scale(ref_mix(top, low, py), s->factor);
 }
 
@@ -64,7 +66,9 @@ ref_vec ref_sky_at(const ref_sky *s, ref_vec d) {
     return ref_mix(s->horizon, s->zenith, sqrt(ref_clamp(d.y, 0, 1)));
 }
 
-ref_vec ref_sky_soft(const ref_sky *s, ref_vec d) { return ref_sky_is_map(s) ? ref_sky_at(s, d) : s->ambient; }
+ref_vec ref_sky_soft(const ref_sky *s, ref_vec d) {
+    return ref_sky_is_map(s) ? ref_sky_at(s, d) : s->ambient;
+}
 
 /* ---- Distribution ---------------------------------------------------------------------------- */
 
@@ -84,7 +88,8 @@ static double solid_angle(const ref_sky *s, uint32_t row) {
 static double cell(const ref_sky *s, uint32_t column, uint32_t row) {
     double sum = 0;
     for (int i = 0; i < POINTS * POINTS; i++) {
-        ref_vec d = direction_at(s, column + (i % POINTS) * (1.0 / (POINTS - 1)), row + (i / POINTS) * (1.0 / (POINTS - 1)));
+        ref_vec d = direction_at(s, column + (i % POINTS) * (1.0 / (POINTS - 1)),
+                                 row + (i / POINTS) * (1.0 / (POINTS - 1)));
         sum += ref_luminance(ref_sky_at(s, d));
     }
     return sum * solid_angle(s, row);
@@ -102,11 +107,13 @@ bool ref_sky_prepare(ref_sky *s) {
     for (uint32_t y = 0; y < s->grid_height; y++) {
         double *row = s->columns + (size_t)y * s->grid_width, sum = 0;
         for (uint32_t x = 0; x < s->grid_width; x++) row[x] = sum += cell(s, x, y);
-        for (uint32_t x = 0; x < s->grid_width; x++) row[x] = sum > 0 ? row[x] / sum : (x + 1.0) / s->grid_width;
+        for (uint32_t x = 0; x < s->grid_width; x++)
+            row[x] = sum > 0 ? row[x] / sum : (x + 1.0) / s->grid_width;
         s->rows[y] = sum + (y ? s->rows[y - 1] : 0);
     }
     double all = s->rows[s->grid_height - 1];
-    for (uint32_t y = 0; y < s->grid_height; y++) s->rows[y] = all > 0 ? s->rows[y] / all : (y + 1.0) / s->grid_height;
+    for (uint32_t y = 0; y < s->grid_height; y++)
+        s->rows[y] = all > 0 ? s->rows[y] / all : (y + 1.0) / s->grid_height;
     return true;
 }
 
@@ -129,7 +136,9 @@ static uint32_t find(const double *shares, uint32_t count, double u) {
     return low;
 }
 
-static double share(const double *shares, uint32_t i) { return shares[i] - (i ? shares[i - 1] : 0); }
+static double share(const double *shares, uint32_t i) {
+    return shares[i] - (i ? shares[i - 1] : 0);
+}
 
 double ref_sky_pdf(const ref_sky *s, ref_vec d) {
     double azimuth = atan2(d.x, d.z) - s->turn, polar = acos(ref_clamp(d.y / ref_length(d), -1, 1));

@@ -1,5 +1,5 @@
-/* sky.h: light from outside of the scene: a gradient, the blob's environment map, or a panorama; and
- * importance sampling of the last two. */
+/* sky.h: light from outside of the scene: a gradient, the blob's environment map, or a panorama;
+ * and importance sampling of the last two. */
 #ifndef LAB_REFERENCE_SKY_H
 #define LAB_REFERENCE_SKY_H
 
@@ -11,8 +11,8 @@
 
 typedef struct ref_sky {
     ref_vec zenith, horizon, ambient;
-    /* A map: radiance over the octahedron (texels of the blob's mip 0), or over latitude and longitude; neither:
-     * the gradient */
+    /* A map: radiance over the octahedron (texels of the blob's mip 0), or over latitude and
+     * longitude; neither: the gradient */
     const uint32_t *octahedron;
     uint32_t size;
     const float *panorama; /* rows from the zenith down, 3 floats a pixel */

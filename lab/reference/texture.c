@@ -1,5 +1,5 @@
-/* texture.c: decodes the block-compressed textures of a blob and looks them up. The formats are those of
- * the Khronos Data Format Specification, chapters S3TC and RGTC. */
+/* texture.c: decodes the block-compressed textures of a blob and looks them up. The formats are
+ * those of the Khronos Data Format Specification, chapters S3TC and RGTC. */
 #include "lab/reference/texture.h"
 
 #include <stdlib.h>
@@ -7,7 +7,8 @@
 
 static void decode_color(const uint8_t *block, bool opaque, uint8_t out[64]) {
     uint32_t c0 = block[0] | (uint32_t)block[1] << 8, c1 = block[2] | (uint32_t)block[3] << 8;
-    uint32_t bits = block[4] | (uint32_t)block[5] << 8 | (uint32_t)block[6] << 16 | (uint32_t)block[7] << 24;
+    uint32_t bits =
+        block[4] | (uint32_t)block[5] << 8 | (uint32_t)block[6] << 16 | (uint32_t)block[7] << 24;
     uint32_t ends[2] = {c0, c1};
     double palette[4][3];
     for (int e = 0; e < 2; e++) {
@@ -32,11 +33,13 @@ static void decode_channel(const uint8_t *block, int channel, uint8_t out[64]) {
     double palette[8] = {block[0], block[1], 0, 0, 0, 0, 0, 255};
     for (int i = 0; i < 6; i++) bits |= (uint64_t)block[2 + i] << 8 * i;
     int inner = block[0] > block[1] ? 7 : 5;
-    for (int i = 1; i < inner; i++) palette[i + 1] = ((inner - i) * palette[0] + i * palette[1]) / inner;
+    for (int i = 1; i < inner; i++)
+        palette[i + 1] = ((inner - i) * palette[0] + i * palette[1]) / inner;
     for (int i = 0; i < 16; i++) out[4 * i + channel] = (uint8_t)(palette[bits >> 3 * i & 7] + 0.5);
 }
 
-bool ref_texture_decode(const masu_blob_texture *t, const uint8_t *texels, uint32_t layer, ref_texture *out) {
+bool ref_texture_decode(const masu_blob_texture *t, const uint8_t *texels, uint32_t layer,
+                        ref_texture *out) {
     uint32_t bytes = masu_blob_block_bytes(t->format), across = (t->width + 3) / 4;
     const uint8_t *from = texels + t->offset + masu_blob_texture_bytes(t) / t->layers * layer;
     *out = (ref_texture){t->width, t->height, malloc(4 * (size_t)t->width * t->height),
@@ -51,11 +54,13 @@ bool ref_texture_decode(const masu_blob_texture *t, const uint8_t *texels, uint3
                 decode_color(block + 8, false, texel);
                 decode_channel(block, 3, texel);
             }
-            if (t->format == MASU_TEXTURE_BC4 || t->format == MASU_TEXTURE_BC5) decode_channel(block, 0, texel);
+            if (t->format == MASU_TEXTURE_BC4 || t->format == MASU_TEXTURE_BC5)
+                decode_channel(block, 0, texel);
             if (t->format == MASU_TEXTURE_BC5) decode_channel(block + 8, 1, texel);
             for (uint32_t i = 0; i < 16; i++) {
                 uint32_t x = 4 * bx + i % 4, y = 4 * by + i / 4;
-                if (x < t->width && y < t->height) memcpy(out->rgba + 4 * ((size_t)y * t->width + x), texel + 4 * i, 4);
+                if (x < t->width && y < t->height)
+                    memcpy(out->rgba + 4 * ((size_t)y * t->width + x), texel + 4 * i, 4);
             }
         }
     }
@@ -77,13 +82,15 @@ static double linear_of(uint8_t byte) {
     return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4);
 }
 
-void ref_texture_at(const ref_texture *t, double u, double v, const uint32_t wrap[2], double out[4]) {
+void ref_texture_at(const ref_texture *t, double u, double v, const uint32_t wrap[2],
+                    double out[4]) {
     double x = u * t->width - 0.5, y = v * t->height - 0.5;
     double px = x - floor(x), py = y - floor(y);
     memset(out, 0, 4 * sizeof *out);
     for (int i = 0; i < 4; i++) {
         double weight = (i & 1 ? px : 1 - px) * (i & 2 ? py : 1 - py);
-        uint32_t tx = wrapped(x + (i & 1), t->width, wrap[0]), ty = wrapped(y + (i >> 1), t->height, wrap[1]);
+        uint32_t tx = wrapped(x + (i & 1), t->width, wrap[0]),
+                 ty = wrapped(y + (i >> 1), t->height, wrap[1]);
         const uint8_t *texel = t->rgba + 4 * ((size_t)ty * t->width + tx);
         for (int k = 0; k < 4; k++)
             out[k] += weight * (t->srgb && k < 3 ? linear_of(texel[k]) : texel[k] / 255.0);

@@ -5,6 +5,7 @@
 #include "lab/reference/scene.h"
 
 /* Full size; free() rgba. False: out of memory. */
-bool ref_texture_decode(const masu_blob_texture *t, const uint8_t *texels, uint32_t layer, ref_texture *out);
+bool ref_texture_decode(const masu_blob_texture *t, const uint8_t *texels, uint32_t layer,
+                        ref_texture *out);
 
 #endif

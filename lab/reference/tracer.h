@@ -1,14 +1,15 @@
 /* tracer.h: the radiance along one path.
  *
  *   full     all light paths: what the scene looks like
- *   direct   the light paths that Masu promises (docs/scene.md): sun with shadows, punctual lights without, sky and
- *            ambient light, occluded within the radius of ambient occlusion only, and one mirror reflection where
- *            the scene traces reflections; no light between diffuse surfaces */
+ *   direct   the light paths that Masu promises (docs/scene.md): sun with shadows, punctual lights
+ *            without, sky and ambient light, occluded within the radius of ambient occlusion only,
+ *            and one mirror reflection where the scene traces reflections; no light between
+ *            diffuse surfaces */
 #ifndef LAB_REFERENCE_TRACER_H
 #define LAB_REFERENCE_TRACER_H
 
-#include "lab/reference/sky.h"
 #include "lab/reference/geometry.h"
+#include "lab/reference/sky.h"
 
 typedef struct ref_tracer {
     const ref_world *world;
@@ -18,8 +19,8 @@ typedef struct ref_tracer {
     bool polygons_shadow, field_shadows;
     bool sky_samples, light_samples; /* strategies beside sampling the BSDF; for tests. Both true */
     bool bsdf_samples;
-    uint32_t bounces;  /* most surfaces of a path after the first */
-    double sun_radius; /* half angle, radians; 0: a delta light */
+    uint32_t bounces;                 /* most surfaces of a path after the first */
+    double sun_radius;                /* half angle, radians; 0: a delta light */
     ref_vec sun_direction, sun_color; /* irradiance / pi */
     ref_vec eye;
     double occlusion_radius; /* of ambient occlusion, direct only; 0: none */
@@ -34,21 +35,25 @@ ref_vec ref_radiance(const ref_tracer *t, ref_vec d, ref_random *r);
 ref_vec ref_light_at(const ref_light *light, ref_vec p, ref_vec *l);
 
 /* Parts of shade.c, air.c. */
-void ref_sun_light(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, ref_random *r, ref_lobes *out);
-void ref_punctual_light(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, ref_random *r, ref_lobes *out);
+void ref_sun_light(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, ref_random *r,
+                   ref_lobes *out);
+void ref_punctual_light(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, ref_random *r,
+                        ref_lobes *out);
 bool ref_is_unlit(const ref_surface *s);
-/* Fog along a segment that begins at `from` in direction d: the part of the light that is left. far: HUGE_VAL for
- * the sky. */
+/* Fog along a segment that begins at `from` in direction d: the part of the light that is left.
+ * far: HUGE_VAL for the sky. */
 double ref_air_left(const ref_tracer *t, ref_vec from, ref_vec d, double far);
 ref_vec ref_air_color(const ref_tracer *t, ref_vec d);
 /* The sky as the camera sees it, with the glow around the sun. */
 ref_vec ref_sky_seen(const ref_tracer *t, ref_vec d);
 /* color behind `left` of air, of a layer that covers `alpha`. */
-static inline ref_vec ref_through_air(const ref_tracer *t, ref_vec color, ref_vec d, double left, double alpha) {
+static inline ref_vec ref_through_air(const ref_tracer *t, ref_vec color, ref_vec d, double left,
+                                      double alpha) {
     if (left >= 1) return color;
     return ref_along(ref_scale(color, left), (1 - left) * alpha, ref_air_color(t, d));
 }
-/* Transparent surfaces: what of the light behind is left, how the soft part is dimmed, what of all is covered. */
+/* Transparent surfaces: what of the light behind is left, how the soft part is dimmed, what of
+ * all is covered. */
 typedef struct ref_pane {
     ref_vec behind;
     double soft, mirror, taken;

@@ -1,5 +1,5 @@
-/* vec.h: vectors of three doubles, frames around a direction, and the random numbers of the reference
- * path tracer. */
+/* vec.h: vectors of three doubles, frames around a direction, and the random numbers of the
+ * reference path tracer. */
 #ifndef LAB_REFERENCE_VEC_H
 #define LAB_REFERENCE_VEC_H
 
@@ -17,9 +17,15 @@ static inline ref_vec ref_splat(double s) { return (ref_vec){s, s, s}; }
 static inline ref_vec ref_of(const float f[3]) {
     return (ref_vec){(double)f[0], (double)f[1], (double)f[2]};
 }
-static inline ref_vec ref_add(ref_vec a, ref_vec b) { return ref_v(a.x + b.x, a.y + b.y, a.z + b.z); }
-static inline ref_vec ref_sub(ref_vec a, ref_vec b) { return ref_v(a.x - b.x, a.y - b.y, a.z - b.z); }
-static inline ref_vec ref_mul(ref_vec a, ref_vec b) { return ref_v(a.x * b.x, a.y * b.y, a.z * b.z); }
+static inline ref_vec ref_add(ref_vec a, ref_vec b) {
+    return ref_v(a.x + b.x, a.y + b.y, a.z + b.z);
+}
+static inline ref_vec ref_sub(ref_vec a, ref_vec b) {
+    return ref_v(a.x - b.x, a.y - b.y, a.z - b.z);
+}
+static inline ref_vec ref_mul(ref_vec a, ref_vec b) {
+    return ref_v(a.x * b.x, a.y * b.y, a.z * b.z);
+}
 static inline ref_vec ref_scale(ref_vec a, double s) { return ref_v(a.x * s, a.y * s, a.z * s); }
 /* a + s b */
 static inline ref_vec ref_along(ref_vec a, double s, ref_vec b) {
@@ -63,9 +69,9 @@ static inline ref_vec ref_from(const ref_frame *f, ref_vec w) {
 }
 
 /* ---- Random numbers --------------------------------------------------------------------------
- * SplitMix64 (Steele, Lea, Flood 2014) from a counter that begins at a hash of pixel and sample: a path's
- * numbers depend on nothing else, so any number of threads draws the same ones. Draw one per statement:
- * C leaves the order of two calls in one expression open. */
+ * SplitMix64 (Steele, Lea, Flood 2014) from a counter that begins at a hash of pixel and sample:
+ * a path's numbers depend on nothing else, so any number of threads draws the same ones. Draw
+ * one per statement: C leaves the order of two calls in one expression open. */
 
 typedef struct ref_random {
     uint64_t state;

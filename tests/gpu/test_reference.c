@@ -1,15 +1,16 @@
 /*
- * test_reference.c: the renderer against stored images of the path tracer of lab/reference, which shares no code with it
- * and follows the light paths and the closed material model that docs/scene.md promises. Each scene is rendered with the
- * most exact settings and compared by patches (tools/measure/patches.h): what a wrong light, a missing shadow or a wrong
- * lobe changes is a patch's mean, not a pixel. lab/reference/stored.sh makes the images.
+ * test_reference.c: the renderer against stored images of the path tracer of lab/reference,
+ * which shares no code with it and follows the light paths and the closed material model that
+ * docs/scene.md promises. Each scene is rendered with the most exact settings and compared by
+ * patches (tools/measure/patches.h): what a wrong light, a missing shadow or a wrong lobe
+ * changes is a patch's mean, not a pixel. lab/reference/stored.sh makes the images.
  */
 #include "support/files.h"
 #include "support/support.h"
 
+#include "image.h"
 #include "measure/patches.h"
 #include "measure/picture.h"
-#include "image.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -18,8 +19,9 @@
 
 enum { W = 128, H = 72, POSITIONS = 16 };
 
-/* Relative error of a patch that counts as much as noise; ratio of the means; 95th percentile of patches; mean square of
- * the patches' errors over tolerance and noise, without the largest tenth. */
+/* Relative error of a patch that counts as much as noise; ratio of the means; 95th percentile of
+ * patches; mean square of the patches' errors over tolerance and noise, without the largest
+ * tenth. */
 #define TOLERANCE 0.01
 #define RATIO 0.008
 #define P95 0.035
@@ -28,9 +30,9 @@ enum { W = 128, H = 72, POSITIONS = 16 };
 typedef struct row {
     const char *scene;
     double time;
-    uint32_t rays;   /* of reflections from a pixel; 0: one each position */
+    uint32_t rays;              /* of reflections from a pixel; 0: one each position */
     double ratio, p95, trimmed; /* limits; 0: those above. A wider one has its reason in the row */
-    bool animate, baked; /* baked: by this program, from sky_scene */
+    bool animate, baked;        /* baked: by this program, from sky_scene */
 } row;
 
 static const row rows[] = {
@@ -47,7 +49,8 @@ static const row rows[] = {
     {.scene = "test_pane_maps"},
     {.scene = "test_pane"},
     {.scene = "night"},
-    /* A mirror of roughness 0: the reference has the least lobe, whose tail takes 0.8 % of bright small lamps */
+    /* A mirror of roughness 0: the reference has the least lobe, whose tail takes 0.8 % of
+     * bright small lamps */
     {.scene = "test_reflections", .rays = 128, .ratio = 0.015, .p95 = 0.15},
     {.scene = "test_skin", .time = 0.5, .animate = true, .rays = 64},
     {.scene = "test_swing", .time = 0.3, .animate = true, .rays = 64},
@@ -58,7 +61,8 @@ static const row rows[] = {
     {.scene = "test_town"},
     {.scene = "test_trace", .rays = 128},
     {.scene = "test_lods"},
-    /* Glints of the sun from mirror to mirror: few pixels, half of whose light 16 positions find or miss */
+    /* Glints of the sun from mirror to mirror: few pixels, half of whose light 16 positions find
+     * or miss */
     {.scene = "mirrors", .rays = 128, .ratio = 0.06},
     {.scene = "probe_open"},
     {.scene = "city"},
@@ -73,7 +77,8 @@ static masu_session s;
 static float radiance[3 * W * H];
 static uint8_t rgba[4 * W * H];
 
-/* A panorama with a strong sun over a bright sky and a dark ground; then a scene of eight materials in it. */
+/* A panorama with a strong sun over a bright sky and a dark ground; then a scene of eight
+ * materials in it. */
 static void write_sky(const char *path) {
     enum { WIDE = 64, HIGH = 32 };
     static float rgb[3 * WIDE * HIGH];
@@ -84,7 +89,9 @@ static void write_sky(const char *path) {
             bool sun = (x == 22 || x == 23) && (y == 8 || y == 9);
             double level = sun ? 60 : up > 0 ? 0.35 + 0.3 * up : 0.12;
             for (int c = 0; c < 3; c++)
-                rgb[3 * (y * WIDE + x) + c] = (float)(level * (sun ? 1 - 0.1 * c : up > 0 ? 0.7 + 0.25 * c : 1 - 0.2 * c));
+                rgb[3 * (y * WIDE + x) + c] = (float)(level * (sun      ? 1 - 0.1 * c
+                                                               : up > 0 ? 0.7 + 0.25 * c
+                                                                        : 1 - 0.2 * c));
         }
     }
     assert_ok(masu_image_save_pfm(path, rgb, WIDE, HIGH, 3, error, sizeof error));
@@ -94,13 +101,15 @@ static const char *sky_scene(void) {
     static char json[4096];
     size_t at = (size_t)snprintf(json, sizeof json, "{\"models\": [\n");
     for (int i = 0; i < 8; i++)
-        at += (size_t)snprintf(json + at, sizeof json - at,
-                               "%s{\"mesh\": {\"sphere\": {\"radius\": 0.45, \"subdivisions\": 4}}, \"translate\": "
-                               "[%g, %g, 0], \"material\": {\"base_color\": [0.8, 0.7, 0.6], \"roughness\": %g, "
-                               "\"metallic\": %d}}",
-                               i ? ",\n" : "", i % 4 - 1.5, i < 4 ? 0.5 : -0.5, 0.25 * (i % 4 + 1), i < 4);
+        at += (size_t)snprintf(
+            json + at, sizeof json - at,
+            "%s{\"mesh\": {\"sphere\": {\"radius\": 0.45, \"subdivisions\": 4}}, \"translate\": "
+            "[%g, %g, 0], \"material\": {\"base_color\": [0.8, 0.7, 0.6], \"roughness\": %g, "
+            "\"metallic\": %d}}",
+            i ? ",\n" : "", i % 4 - 1.5, i < 4 ? 0.5 : -0.5, 0.25 * (i % 4 + 1), i < 4);
     snprintf(json + at, sizeof json - at,
-             "],\n\"camera\": {\"fov_y\": 30, \"keys\": [{\"position\": [0, 0, 4.5], \"target\": [0, 0, 0]}]},\n"
+             "],\n\"camera\": {\"fov_y\": 30, \"keys\": [{\"position\": [0, 0, 4.5], \"target\": "
+             "[0, 0, 0]}]},\n"
              "\"sun\": {\"intensity\": 0}, \"environment\": {\"file\": \"sky.pfm\"}}\n");
     return json;
 }
@@ -109,7 +118,8 @@ static void animate(double time) {
     for (uint32_t i = 0; i < masu_scene_count(&s.scene, MASU_SCENE_MODEL); i++) {
         masu_model model = masu_model_at(s.m, i);
         masu_clip_use use = {.loop = 1, .time = time, .weight = 1.0f};
-        if (masu_model_clips(s.m, model)) assert_int_equal(masu_model_animate(s.m, model, &use, 1), MASU_OK);
+        if (masu_model_clips(s.m, model))
+            assert_int_equal(masu_model_animate(s.m, model, &use, 1), MASU_OK);
     }
 }
 
@@ -128,16 +138,21 @@ static void compare(const masu_session_desc *d, const row *r) {
     own.desc.readback = MASU_READBACK_HDR;
     assert_ok(masu_picture_open(&own, POSITIONS, &s, error, sizeof error));
     if (r->animate) animate(r->time);
-    assert_ok(masu_picture_truth_hdr(&s, &frame, POSITIONS, r->rays, rgba, radiance, NULL, error, sizeof error));
+    assert_ok(masu_picture_truth_hdr(&s, &frame, POSITIONS, r->rays, rgba, radiance, NULL, error,
+                                     sizeof error));
     close_session(&s);
     masu_patches_of(radiance, NULL, W, H, patches);
     masu_patch_judgement j = masu_patches_judge(reference.patches, patches, TOLERANCE);
-    printf("%s: mean %.4f of the reference, p95 %.4f, trimmed z^2 %.3f, worst patch %u,%u by %.3f\n", r->scene, j.ratio,
-           j.p95, j.trimmed, j.worst % MASU_PATCH_COLUMNS, j.worst / MASU_PATCH_COLUMNS, j.worst_by);
-    double ratio = or_else(r->ratio, RATIO), p95 = or_else(r->p95, P95), trimmed = or_else(r->trimmed, TRIMMED);
+    printf(
+        "%s: mean %.4f of the reference, p95 %.4f, trimmed z^2 %.3f, worst patch %u,%u by %.3f\n",
+        r->scene, j.ratio, j.p95, j.trimmed, j.worst % MASU_PATCH_COLUMNS,
+        j.worst / MASU_PATCH_COLUMNS, j.worst_by);
+    double ratio = or_else(r->ratio, RATIO), p95 = or_else(r->p95, P95),
+           trimmed = or_else(r->trimmed, TRIMMED);
     if (!(fabs(j.ratio - 1) <= ratio) || !(j.p95 <= p95) || !(j.trimmed <= trimmed))
-        fail_msg("%s differs from its reference: expected a mean of 1 +- %.3f, p95 <= %.3f, trimmed z^2 <= %.2f", r->scene,
-                 ratio, p95, trimmed);
+        fail_msg("%s differs from its reference: expected a mean of 1 +- %.3f, p95 <= %.3f, "
+                 "trimmed z^2 <= %.2f",
+                 r->scene, ratio, p95, trimmed);
 }
 
 static void a_scene_is_as_the_reference_has_it(void **state) {
@@ -160,7 +175,8 @@ int main(int argc, char **argv) {
     struct CMUnitTest tests[ROWS];
     for (size_t i = 0; i < ROWS; i++) {
         row *r = (row *)(uintptr_t)&rows[i]; /* cmocka's state is not const */
-        tests[i] = (struct CMUnitTest){rows[i].scene, a_scene_is_as_the_reference_has_it, NULL, NULL, r};
+        tests[i] =
+            (struct CMUnitTest){rows[i].scene, a_scene_is_as_the_reference_has_it, NULL, NULL, r};
     }
     return cmocka_run_group_tests(tests, make_scratch, remove_scratch);
 }

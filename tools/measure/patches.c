@@ -17,7 +17,8 @@ void masu_patches_of(const float *pixels, const float *errors, uint32_t width, u
                      masu_patch out[MASU_PATCHES]) {
     for (uint32_t i = 0; i < MASU_PATCHES; i++) {
         uint32_t column = i % MASU_PATCH_COLUMNS, row = i / MASU_PATCH_COLUMNS;
-        uint32_t x0 = column * width / MASU_PATCH_COLUMNS, x1 = (column + 1) * width / MASU_PATCH_COLUMNS;
+        uint32_t x0 = column * width / MASU_PATCH_COLUMNS,
+                 x1 = (column + 1) * width / MASU_PATCH_COLUMNS;
         uint32_t y0 = row * height / MASU_PATCH_ROWS, y1 = (row + 1) * height / MASU_PATCH_ROWS;
         double sum[3] = {0}, square[3] = {0}, count = (double)(x1 - x0) * (y1 - y0);
         for (uint32_t y = y0; y < y1; y++) {
@@ -50,11 +51,13 @@ static uint16_t half_of(float value) {
 }
 
 static float float_of(uint16_t half) {
-    double part = half & 1023, size = half >> 10 & 31 ? ldexp(1024 + part, (half >> 10 & 31) - 25) : ldexp(part, -24);
+    double part = half & 1023,
+           size = half >> 10 & 31 ? ldexp(1024 + part, (half >> 10 & 31) - 25) : ldexp(part, -24);
     return (float)(half & 0x8000 ? -size : size);
 }
 
-bool masu_reference_save(const char *path, const masu_reference *r, char *error, size_t error_size) {
+bool masu_reference_save(const char *path, const masu_reference *r, char *error,
+                         size_t error_size) {
     size_t values = 3 * (size_t)r->width * r->height;
     size_t bytes = 2048 + 2 * values + sizeof r->patches;
     uint8_t *file = malloc(bytes);
@@ -62,8 +65,9 @@ bool masu_reference_save(const char *path, const masu_reference *r, char *error,
         snprintf(error, error_size, "%s: out of memory", path);
         return false;
     }
-    size_t at = (size_t)snprintf((char *)file, 2048, "masu-reference 1\nsize %ux%u\ncommand %s\nend\n", r->width,
-                                 r->height, r->command);
+    size_t at =
+        (size_t)snprintf((char *)file, 2048, "masu-reference 1\nsize %ux%u\ncommand %s\nend\n",
+                         r->width, r->height, r->command);
     for (size_t i = 0; i < values; i++) {
         uint16_t half = half_of(r->pixels[i]);
         file[at++] = (uint8_t)half;
@@ -80,7 +84,8 @@ static bool broken(const char *path, const char *what, char *error, size_t error
     return false;
 }
 
-static bool parse(const char *path, const uint8_t *file, size_t count, masu_reference *r, char *error, size_t size) {
+static bool parse(const char *path, const uint8_t *file, size_t count, masu_reference *r,
+                  char *error, size_t size) {
     static const char end[] = "\nend\n";
     char head[2048];
     size_t most = count < sizeof head - 1 ? count : sizeof head - 1;
@@ -89,12 +94,14 @@ static bool parse(const char *path, const uint8_t *file, size_t count, masu_refe
     char *stop = strstr(head, end), *command = strstr(head, "\ncommand ");
     if (!stop || sscanf(head, "masu-reference 1\nsize %5ux%5u\n", &r->width, &r->height) != 2)
         return broken(path, "no header", error, size);
-    if (r->width < MASU_PATCH_COLUMNS || r->height < MASU_PATCH_ROWS || r->width > SIDE_MOST || r->height > SIDE_MOST)
+    if (r->width < MASU_PATCH_COLUMNS || r->height < MASU_PATCH_ROWS || r->width > SIDE_MOST ||
+        r->height > SIDE_MOST)
         return broken(path, "sides beyond 16x9 to 4096", error, size);
     *stop = 0;
     if (command) snprintf(r->command, sizeof r->command, "%s", command + 9);
     size_t values = 3 * (size_t)r->width * r->height, at = (size_t)(stop - head) + sizeof end - 1;
-    if (count != at + 2 * values + sizeof r->patches) return broken(path, "wrong length", error, size);
+    if (count != at + 2 * values + sizeof r->patches)
+        return broken(path, "wrong length", error, size);
     r->pixels = malloc(values * sizeof *r->pixels);
     if (!r->pixels) return broken(path, "out of memory", error, size);
     for (size_t i = 0; i < values; i++)
@@ -126,8 +133,8 @@ static int rising(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-masu_patch_judgement masu_patches_judge(const masu_patch reference[MASU_PATCHES], const masu_patch image[MASU_PATCHES],
-                                        double tolerance) {
+masu_patch_judgement masu_patches_judge(const masu_patch reference[MASU_PATCHES],
+                                        const masu_patch image[MASU_PATCHES], double tolerance) {
     masu_patch_judgement out = {.ratio = 1};
     double squares[3 * MASU_PATCHES], off[MASU_PATCHES], mean[3] = {0}, other = 0, all = 0;
     for (int i = 0; i < MASU_PATCHES; i++) {

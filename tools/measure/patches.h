@@ -1,10 +1,10 @@
-/* patches.h: compares a linear image with a stored reference: an image with noise, whose errors are known. Whole patches
- * are compared: their noise is small, and a wrong light shows in their means where the error of a single pixel
- * hides it.
+/* patches.h: compares a linear image with a stored reference: an image with noise, whose errors
+ * are known. Whole patches are compared: their noise is small, and a wrong light shows in their
+ * means where the error of a single pixel hides it.
  *
- * A stored reference (.ref) is a text header, one "name value" a line, that ends with the line "end"; then
- * 3 half floats a pixel, top row first, and for each of the 144 patches 3 means and 3 standard errors as
- * floats, all little-endian. */
+ * A stored reference (.ref) is a text header, one "name value" a line, that ends with the line
+ * "end"; then 3 half floats a pixel, top row first, and for each of the 144 patches 3 means and
+ * 3 standard errors as floats, all little-endian. */
 #ifndef MASU_MEASURE_PATCHES_H
 #define MASU_MEASURE_PATCHES_H
 
@@ -12,7 +12,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { MASU_PATCH_COLUMNS = 16, MASU_PATCH_ROWS = 9, MASU_PATCHES = MASU_PATCH_COLUMNS * MASU_PATCH_ROWS };
+enum {
+    MASU_PATCH_COLUMNS = 16,
+    MASU_PATCH_ROWS = 9,
+    MASU_PATCHES = MASU_PATCH_COLUMNS * MASU_PATCH_ROWS
+};
 
 typedef struct masu_patch {
     float mean[3], error[3];
@@ -25,7 +29,8 @@ typedef struct masu_reference {
     masu_patch patches[MASU_PATCHES];
 } masu_reference;
 
-/* Means of an image's patches. errors: standard error of each value of `pixels`, independent of the others; NULL: 0. */
+/* Means of an image's patches. errors: standard error of each value of `pixels`, independent of
+ * the others; NULL: 0. */
 void masu_patches_of(const float *pixels, const float *errors, uint32_t width, uint32_t height,
                      masu_patch out[MASU_PATCHES]);
 
@@ -34,16 +39,16 @@ bool masu_reference_load(const char *path, masu_reference *out, char *error, siz
 void masu_reference_free(masu_reference *r);
 
 typedef struct masu_patch_judgement {
-    double ratio;   /* of the means of both images: 1 if they agree */
-    double p95;     /* 95th percentile over patches of |ratio - 1| beyond three standard errors */
-    double trimmed; /* mean square of z over the nine tenths of the patches with the least; 1 or below: noise and tolerance */
+    double ratio; /* of the means of both images: 1 if they agree */
+    double p95;   /* 95th percentile over patches of |ratio - 1| beyond three standard errors */
+    double trimmed; /* mean square of z of the least nine tenths; 1: noise and tolerance */
     uint32_t worst; /* patch with the largest |ratio - 1|, and that number: */
     double worst_by;
 } masu_patch_judgement;
 
-/* tolerance: relative error of a patch that counts as much as noise, 0.01. Dark patches count by a hundredth of the
- * image's mean. */
-masu_patch_judgement masu_patches_judge(const masu_patch reference[MASU_PATCHES], const masu_patch image[MASU_PATCHES],
-                                        double tolerance);
+/* tolerance: relative error of a patch that counts as much as noise, 0.01. Dark patches count by
+ * a hundredth of the image's mean. */
+masu_patch_judgement masu_patches_judge(const masu_patch reference[MASU_PATCHES],
+                                        const masu_patch image[MASU_PATCHES], double tolerance);
 
 #endif

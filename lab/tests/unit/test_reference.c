@@ -1,6 +1,7 @@
 /*
- * test_reference.c: the reference path tracer (lab/reference) against closed forms and tabulated integrals, since what is
- * to judge the renderer has to be judged first. Expected values are quadratures or formulas that use none of its code.
+ * test_reference.c: the reference path tracer (lab/reference) against closed forms and tabulated
+ * integrals, since what is to judge the renderer has to be judged first. Expected values are
+ * quadratures or formulas that use none of its code.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -29,7 +30,8 @@ static ref_vec tilted(double cosine) { return ref_v(sqrt(1 - cosine * cosine), 0
 
 /* ---- Lobes ----------------------------------------------------------------------------------- */
 
-/* Directional albedo of height-correlated GGX: 1e7 visible normals a point, and by quadrature over light directions. */
+/* Directional albedo of height-correlated GGX: 1e7 visible normals a point, and by quadrature
+ * over light directions. */
 static const struct {
     double roughness, white[5], weight[5], average;
 } lobes[] = {
@@ -74,11 +76,19 @@ static double sampled(const ref_surface *s, double cosine, bool walk, int paths,
 }
 
 static ref_surface metal(double f0, double roughness) {
-    return (ref_surface){.albedo = ref_splat(f0), .roughness = roughness, .metallic = 1, .specular = .5,
-                         .normal = {0, 0, 1}, .coat_normal = {0, 0, 1}, .occlusion = 1};
+    return (ref_surface){.albedo = ref_splat(f0),
+                         .roughness = roughness,
+                         .metallic = 1,
+                         .specular = .5,
+                         .normal = {0, 0, 1},
+                         .coat_normal = {0, 0, 1},
+                         .occlusion = 1};
 }
 static ref_surface lambert(double albedo) {
-    return (ref_surface){.albedo = ref_splat(albedo), .roughness = 1, .normal = {0, 0, 1}, .coat_normal = {0, 0, 1},
+    return (ref_surface){.albedo = ref_splat(albedo),
+                         .roughness = 1,
+                         .normal = {0, 0, 1},
+                         .coat_normal = {0, 0, 1},
                          .occlusion = 1};
 }
 
@@ -86,9 +96,12 @@ static const double rows_of[3] = {.2, .6, 1};
 static const double closed[3][5] = {{.7187, .6072, .5151, .5001, .4996},
                                     {.5164, .4774, .4525, .4502, .4554},
                                     {.4311, .3697, .3161, .2858, .2661}};
-static const double walked[2][3][5] = {
-    {{.9484, .9219, .9030, .9000, .8999}, {.9024, .8926, .8842, .8824, .8837}, {.8807, .8592, .8337, .8147, .8006}},
-    {{.7442, .6109, .5156, .5003, .4997}, {.5286, .4932, .4622, .4546, .4574}, {.4551, .4011, .3449, .3080, .2827}}};
+static const double walked[2][3][5] = {{{.9484, .9219, .9030, .9000, .8999},
+                                        {.9024, .8926, .8842, .8824, .8837},
+                                        {.8807, .8592, .8337, .8147, .8006}},
+                                       {{.7442, .6109, .5156, .5003, .4997},
+                                        {.5286, .4932, .4622, .4546, .4574},
+                                        {.4551, .4011, .3449, .3080, .2827}}};
 
 static void the_closed_model_has_its_albedo(void **state) {
     (void)state;
@@ -118,7 +131,9 @@ static void the_random_walk_has_its_albedo(void **state) {
                 for (int n = 0; n < paths; n++) {
                     ref_random r = ref_random_at(9, (uint64_t)k, (uint64_t)n);
                     ref_vec l, weight;
-                    double value = ref_walk_sample(alpha, &f, tilted(cosines[k]), &r, &l, &weight) ? weight.x : 0;
+                    double value = ref_walk_sample(alpha, &f, tilted(cosines[k]), &r, &l, &weight)
+                                       ? weight.x
+                                       : 0;
                     sum += value;
                     square += value * value;
                 }
@@ -140,7 +155,8 @@ static void what_is_white_returns_all_light(void **state) {
     for (int i = 0; i < 3; i++) {
         for (int k = 0; k < 5; k++) {
             double error;
-            ref_surface kinds[4] = {metal(1, rows_of[i]), lambert(1), metal(1, rows_of[i]), metal(1, rows_of[i])};
+            ref_surface kinds[4] = {metal(1, rows_of[i]), lambert(1), metal(1, rows_of[i]),
+                                    metal(1, rows_of[i])};
             kinds[2].metallic = 0;
             kinds[3].metallic = 0.4;
             kinds[3].coat = 0.8;
@@ -153,7 +169,8 @@ static void what_is_white_returns_all_light(void **state) {
             for (int n = 0; n < 200; n++) {
                 ref_random r = ref_random_at(2, 0, (uint64_t)n);
                 ref_vec l, weight;
-                assert_true(ref_walk_sample(rows_of[i] * rows_of[i], &white, tilted(cosines[k]), &r, &l, &weight));
+                assert_true(ref_walk_sample(rows_of[i] * rows_of[i], &white, tilted(cosines[k]), &r,
+                                            &l, &weight));
                 assert_true(weight.x == 1);
             }
         }
@@ -187,7 +204,8 @@ static stage *clear(void) {
                           .emitter_pdf = s.pdf,
                           .environment = &s.environment};
     for (int i = 0; i < 4; i++)
-        s.materials[i] = (ref_material){.base = ref_splat(1), .roughness = 1, .opacity = 1, .detail = {1, 1}};
+        s.materials[i] =
+            (ref_material){.base = ref_splat(1), .roughness = 1, .opacity = 1, .detail = {1, 1}};
     s.tracer = (ref_tracer){.world = &s.world,
                             .sky = &s.sky,
                             .physics = true,
@@ -211,8 +229,10 @@ static void quad(stage *s, ref_vec a, ref_vec b, ref_vec c, ref_vec d, uint32_t 
         s->normals[first + (uint32_t)i] = n;
     }
     s->scene.vertex_count += 4;
-    s->triangles[s->scene.triangle_count++] = (ref_triangle){{first, first + 1, first + 2}, material};
-    s->triangles[s->scene.triangle_count++] = (ref_triangle){{first, first + 2, first + 3}, material};
+    s->triangles[s->scene.triangle_count++] =
+        (ref_triangle){{first, first + 1, first + 2}, material};
+    s->triangles[s->scene.triangle_count++] =
+        (ref_triangle){{first, first + 2, first + 3}, material};
 }
 
 static void sphere(stage *s, ref_vec center, double radius, uint32_t rings, uint32_t material) {
@@ -230,9 +250,12 @@ static void sphere(stage *s, ref_vec center, double radius, uint32_t rings, uint
     for (uint32_t i = 0; i < rings; i++) {
         for (uint32_t k = 0; k < segments; k++) {
             uint32_t a = first + i * segments + k, b = first + i * segments + (k + 1) % segments;
-            if (i) s->triangles[s->scene.triangle_count++] = (ref_triangle){{a, b, a + segments}, material};
+            if (i)
+                s->triangles[s->scene.triangle_count++] =
+                    (ref_triangle){{a, b, a + segments}, material};
             if (i + 1 < rings)
-                s->triangles[s->scene.triangle_count++] = (ref_triangle){{b, b + segments, a + segments}, material};
+                s->triangles[s->scene.triangle_count++] =
+                    (ref_triangle){{b, b + segments, a + segments}, material};
         }
     }
 }
@@ -244,7 +267,9 @@ static void set_up(stage *s) {
         const ref_triangle *t = &s->triangles[i];
         double power = ref_luminance(s->materials[t->material].emissive);
         ref_vec a = s->positions[t->vertex[0]];
-        double area = ref_length(ref_cross(ref_sub(s->positions[t->vertex[1]], a), ref_sub(s->positions[t->vertex[2]], a))) / 2;
+        double area = ref_length(ref_cross(ref_sub(s->positions[t->vertex[1]], a),
+                                           ref_sub(s->positions[t->vertex[2]], a))) /
+                      2;
         if (!(power > 0)) continue;
         sum += power * area;
         s->pdf[i] = power;
@@ -285,7 +310,8 @@ static double tilted_square(stage *s, double degrees, int paths, double *error) 
     double a = degrees * REF_PI / 180;
     ref_vec n = ref_v(sin(a), cos(a), 0), side = ref_v(cos(a), -sin(a), 0), z = ref_v(0, 0, 1);
     s->scene.vertex_count = s->scene.triangle_count = 0;
-    quad(s, ref_add(side, z), ref_sub(side, z), ref_sub(ref_scale(side, -1), z), ref_sub(z, side), 0);
+    quad(s, ref_add(side, z), ref_sub(side, z), ref_sub(ref_scale(side, -1), z), ref_sub(z, side),
+         0);
     set_up(s);
     double found = seen(s, ref_scale(n, 2), ref_splat(0), paths, error);
     take_down(s);
@@ -311,8 +337,10 @@ static void matt_surfaces_under_skies(void **state) {
         }
         for (int i = 0; i < 7; i++) {
             double error, found = tilted_square(s, tilts[i], kind == 0 ? 40000 : 6000, &error);
-            /* Of a step between two rows of the picture a bilinear lookup makes a ramp as wide as one of them. */
-            check(found, expected[kind][i], fmax(error, kind ? 2e-4 : 1e-5), "irradiance under a sky");
+            /* Of a step between two rows of the picture a bilinear lookup makes a ramp as wide
+             * as one of them. */
+            check(found, expected[kind][i], fmax(error, kind ? 2e-4 : 1e-5),
+                  "irradiance under a sky");
         }
     }
 }
@@ -322,14 +350,19 @@ static void a_map_is_sampled_as_it_is_looked_up(void **state) {
     enum { W = 16, H = 8 };
     static float maps[3][3 * W * H];
     for (int i = 0; i < 3; i++) maps[0][i] = 1;
-    for (int i = 0; i < 3; i++) maps[1][3 * (1 * W + 5) + i] = 100; /* one pixel, its row at 34 degrees */
-    for (int i = 0; i < 3 * W; i++) maps[2][i] = 1;                 /* the top row */
+    for (int i = 0; i < 3; i++)
+        maps[1][3 * (1 * W + 5) + i] = 100;         /* one pixel, its row at 34 degrees */
+    for (int i = 0; i < 3 * W; i++) maps[2][i] = 1; /* the top row */
     for (int m = 0; m < 3; m++) {
         for (int rough = 0; rough < 2; rough++) {
             double found[3], error[3];
             for (int way = 0; way < 3; way++) {
                 stage *s = clear();
-                s->sky = (ref_sky){.panorama = maps[m], .width = m ? W : 1, .height = m ? H : 1, .factor = 1, .turn = 0.7};
+                s->sky = (ref_sky){.panorama = maps[m],
+                                   .width = m ? W : 1,
+                                   .height = m ? H : 1,
+                                   .factor = 1,
+                                   .turn = 0.7};
                 s->tracer.physics = false;
                 s->tracer.bsdf_samples = way != 1;
                 s->tracer.sky_samples = way != 0;
@@ -350,7 +383,8 @@ static void ground(stage *s) {
 
 static void area_lights(void **state) {
     (void)state;
-    static const double high[6][2] = {{0, 1.9635}, {.5, 1.7928}, {1, 1.4050}, {2, .6942}, {4, .1756}, {8, .02801}};
+    static const double high[6][2] = {{0, 1.9635}, {.5, 1.7928}, {1, 1.4050},
+                                      {2, .6942},  {4, .1756},   {8, .02801}};
     static const double low[4][2] = {{.6, 8.1849}, {1, 1.9680}, {2, .2600}, {4, .03298}};
     static const double square[6][3] = {{0, 0, 6.5682}, {.5, 0, 5.9743}, {1, 0, 4.4310},
                                         {2, 0, 1.4729}, {0, 1, 3.6803},  {2, 2, .4766}};
@@ -360,10 +394,16 @@ static void area_lights(void **state) {
         s->materials[1].base = ref_splat(0);
         s->materials[1].emissive = ref_splat(10);
         if (kind < 2) sphere(s, ref_v(0, kind ? .25 : 2, 0), .5, 64, 1);
-        if (kind == 2) quad(s, ref_v(-1, 1.5, -.5), ref_v(1, 1.5, -.5), ref_v(1, 1.5, .5), ref_v(-1, 1.5, .5), 1);
+        if (kind == 2)
+            quad(s, ref_v(-1, 1.5, -.5), ref_v(1, 1.5, -.5), ref_v(1, 1.5, .5), ref_v(-1, 1.5, .5),
+                 1);
         set_up(s);
         for (int i = 0; i < (kind == 1 ? 4 : 6); i++) {
-            double error, x = kind == 2 ? square[i][0] : kind ? low[i][0] : high[i][0], z = kind == 2 ? square[i][1] : 0;
+            double error,
+                x = kind == 2 ? square[i][0]
+                    : kind    ? low[i][0]
+                              : high[i][0],
+                z = kind == 2 ? square[i][1] : 0;
             double expected = kind == 2 ? square[i][2] : kind ? low[i][1] : high[i][1];
             /* From the side, below the light. */
             double found = seen(s, ref_v(x, .05, z + 3), ref_v(x, 0, z), 20000, &error);
@@ -402,9 +442,11 @@ static void a_closed_box_is_a_geometric_series(void **state) {
 
 static void thin_glass_lets_through_what_it_does_not_mirror(void **state) {
     (void)state;
-    static const double angles[6] = {0, 30, 45, 60, 75, 85}, schlick[6] = {.0400, .0400, .0421, .0700, .2547, .6485};
+    static const double angles[6] = {0, 30, 45, 60, 75, 85},
+                        schlick[6] = {.0400, .0400, .0421, .0700, .2547, .6485};
     for (int i = 0; i < 6; i++) {
-        ref_look look = {.s = metal(1, 0), .flags = MASU_MATERIAL_IS_BLEND, .cover = 1, .opacity = 0};
+        ref_look look = {
+            .s = metal(1, 0), .flags = MASU_MATERIAL_IS_BLEND, .cover = 1, .opacity = 0};
         ref_bsdf b;
         look.s.metallic = 0;
         ref_bsdf_make(&b, &look.s, tilted(cos(angles[i] * REF_PI / 180)), false);
@@ -421,11 +463,17 @@ static void fog_and_punctual_lights(void **state) {
     check(ref_fog_left(.05, .2, 10, -.3, 0, 30), .5658, 0, "falling ray");
     check(ref_fog_left(.05, .2, 1.7, .3, 5, HUGE_VAL), .6444, 0, "ray into the sky");
     assert_true(ref_fog_left(.05, 0, 1.7, .3, 0, HUGE_VAL) == 0);
-    /* White plane, light at height h, range 20, radius 0.5: 4 cos / max(d^2, 0.25), KHR_lights_punctual's window. */
-    static const double points[8][3] = {{2, 0, .9999}, {2, 1, .71510}, {2, 2, .35341}, {2, 4, .08922},
-                                        {2, 8, .013854}, {2, 18, .000441}, {.3, 0, 16.0}, {.3, .3, 11.3137}};
+    /* White plane, light at height h, range 20, radius 0.5: 4 cos / max(d^2, 0.25),
+     * KHR_lights_punctual's window. */
+    static const double points[8][3] = {{2, 0, .9999},  {2, 1, .71510},   {2, 2, .35341},
+                                        {2, 4, .08922}, {2, 8, .013854},  {2, 18, .000441},
+                                        {.3, 0, 16.0},  {.3, .3, 11.3137}};
     for (int i = 0; i < 8; i++) {
-        ref_light light = {.position = {0, points[i][0], 0}, .color = {4, 4, 4}, .range = 20, .radius = .5, .outer = -1};
+        ref_light light = {.position = {0, points[i][0], 0},
+                           .color = {4, 4, 4},
+                           .range = 20,
+                           .radius = .5,
+                           .outer = -1};
         ref_vec l, color = ref_light_at(&light, ref_v(points[i][1], 0, 0), &l);
         check(color.x * l.y, points[i][2], 2e-7, "point light");
     }
@@ -445,8 +493,8 @@ static void the_place_of_a_scene_does_not_matter(void **state) {
     for (int i = 0; i < 2; i++) {
         ref_vec away = ref_v(i * 1e4, 0, i * -7e3);
         stage *s = clear();
-        quad(s, ref_add(away, ref_v(-2, 0, 2)), ref_add(away, ref_v(2, 0, 2)), ref_add(away, ref_v(2, 0, -2)),
-             ref_add(away, ref_v(-2, 0, -2)), 0);
+        quad(s, ref_add(away, ref_v(-2, 0, 2)), ref_add(away, ref_v(2, 0, 2)),
+             ref_add(away, ref_v(2, 0, -2)), ref_add(away, ref_v(-2, 0, -2)), 0);
         sphere(s, ref_add(away, ref_v(0, .5, 0)), .5, 24, 1);
         s->tracer.sun_color = ref_splat(1);
         s->tracer.sun_direction = ref_unit(ref_v(1, 1, 1));
@@ -511,14 +559,16 @@ static void threads_do_not_change_the_image(void **state) {
 
 static void the_camera_is_that_of_the_renderer(void **state) {
     (void)state;
-    masu_blob_camera_key keys[2] = {{.time = 0, .position = {0, 0, 0}, .target = {0, 0, -1}, .fov_y = 1.0f},
-                                    {.time = 2, .position = {2, 0, 0}, .target = {2, 0, -1}, .fov_y = 1.0f}};
+    masu_blob_camera_key keys[2] = {
+        {.time = 0, .position = {0, 0, 0}, .target = {0, 0, -1}, .fov_y = 1.0f},
+        {.time = 2, .position = {2, 0, 0}, .target = {2, 0, -1}, .fov_y = 1.0f}};
     ref_blob blob;
     memset(&blob, 0, sizeof blob);
     blob.section[MASU_BLOB_CAMERA_KEYS] = keys;
     blob.count[MASU_BLOB_CAMERA_KEYS] = 2;
     ref_camera c = ref_camera_at(&blob, 1);
-    ref_vec d = ref_camera_ray(&c, 1, 0, 2); /* right upper corner of an image twice as wide as high */
+    ref_vec d =
+        ref_camera_ray(&c, 1, 0, 2); /* right upper corner of an image twice as wide as high */
     assert_true(fabs(c.eye.x - 1) < 1e-12);
     assert_true(fabs(d.x / -d.z - 2 * tan(.5)) < 1e-6 && fabs(d.y / -d.z - tan(.5)) < 1e-6);
 }
@@ -529,7 +579,11 @@ static void stored_references(void **state) {
     (void)state;
     enum { W = 128, H = 72 };
     static float pixels[3 * W * H], errors[3 * W * H];
-    masu_reference r = {.width = W, .height = H, .command = "masu-lab reference x.masu", .pixels = pixels}, back;
+    masu_reference r = {.width = W,
+                        .height = H,
+                        .command = "masu-lab reference x.masu",
+                        .pixels = pixels},
+                   back;
     char error[256];
     for (int i = 0; i < 3 * W * H; i++) {
         pixels[i] = (float)(i % 97) * 0.01f + (float)(i / W) * 1e-4f;
@@ -538,7 +592,8 @@ static void stored_references(void **state) {
     masu_patches_of(pixels, errors, W, H, r.patches);
     assert_true(fabs((double)r.patches[0].error[0] - 0.01 / 8) < 1e-7); /* 64 pixels */
     assert_true(masu_reference_save("build/test-results/reference.ref", &r, error, sizeof error));
-    assert_true(masu_reference_load("build/test-results/reference.ref", &back, error, sizeof error));
+    assert_true(
+        masu_reference_load("build/test-results/reference.ref", &back, error, sizeof error));
     assert_memory_equal(back.patches, r.patches, sizeof r.patches);
     assert_string_equal(back.command, r.command);
     for (int i = 0; i < 3 * W * H; i++)
