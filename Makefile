@@ -9,7 +9,7 @@
 .SUFFIXES:
 MAKEFLAGS += --no-builtin-rules
 
-# glibc keeps what drivers, optimisers and bakers free: else a quarter of their time goes into the kernel and into lists.
+# glibc keeps what lavapipe frees, instead of mapping it anew: test_tone, with nothing cached, takes 7 s and not 9 to 10.
 ifndef GLIBC_TUNABLES
 empty :=
 export GLIBC_TUNABLES := $(subst $(empty) ,:,$(addprefix glibc.malloc.,tcache_count=65535 mxfast=0 \
