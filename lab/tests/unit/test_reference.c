@@ -16,6 +16,7 @@
 #include "lab/reference/fog.h"
 #include "lab/reference/render.h"
 #include "measure/patches.h"
+#include "support/files.h"
 
 static const double cosines[5] = {.1, .25, .5, .75, 1};
 
@@ -591,9 +592,8 @@ static void stored_references(void **state) {
     }
     masu_patches_of(pixels, errors, W, H, r.patches);
     assert_true(fabs((double)r.patches[0].error[0] - 0.01 / 8) < 1e-7); /* 64 pixels */
-    assert_true(masu_reference_save("build/test-results/reference.ref", &r, error, sizeof error));
-    assert_true(
-        masu_reference_load("build/test-results/reference.ref", &back, error, sizeof error));
+    assert_true(masu_reference_save(in_scratch("reference.ref"), &r, error, sizeof error));
+    assert_true(masu_reference_load(in_scratch("reference.ref"), &back, error, sizeof error));
     assert_memory_equal(back.patches, r.patches, sizeof r.patches);
     assert_string_equal(back.command, r.command);
     for (int i = 0; i < 3 * W * H; i++)
@@ -629,5 +629,5 @@ int main(void) {
         cmocka_unit_test(the_camera_is_that_of_the_renderer),
         cmocka_unit_test(stored_references),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, make_scratch, remove_scratch);
 }
