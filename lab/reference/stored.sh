@@ -19,7 +19,7 @@ if [ "$wanted" = "  " ] || [[ $wanted == *" reference_sky "* ]]; then
     folder=$(mktemp -d)
     trap 'rm -rf "$folder"' EXIT
     (cd "$folder" && "$OLDPWD/${BUILD:-build}/tests/gpu/test_reference" --sky > sky.json)
-    "${BUILD:-build}/bin/masu-bake" "$folder/sky.json" -o "$folder/sky.masu" --quiet
+    "${BUILD:-build}/bin/masu-bake" "$folder/sky.json" --bare -o "$folder/sky.masu" --quiet
     "$lab" reference "$folder/sky.masu" --sky "$folder/sky.pfm" --store tests/reference/reference_sky.ref --size 128x72 \
         --paths 512
 fi

@@ -307,6 +307,7 @@ static bool write_scene(city *c, const char *folder) {
     key(c->out, 30, high, 216, -24);
     fputs(
         "      {\"time\": 31, \"position\": [150, 130, 205], \"target\": [0, 20, 0]}\n    ]\n  },\n"
+        "  \"ambient_occlusion\": false, \"reflections\": false,\n"
         "  \"sun\": {\"azimuth\": 130, \"elevation\": 48, \"color\": [1, 0.92, 0.8], "
         "\"intensity\": 1.2,\n"
         "          \"shadows\": {\"cascades\": 4, \"resolution\": 1024, \"distance\": 400}},\n"

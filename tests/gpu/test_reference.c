@@ -75,7 +75,6 @@ enum { ROWS = sizeof rows / sizeof *rows };
 
 static masu_session s;
 static float radiance[3 * W * H];
-static uint8_t rgba[4 * W * H];
 
 /* A panorama with a strong sun over a bright sky and a dark ground; then a scene of eight
  * materials in it. */
@@ -135,11 +134,10 @@ static void compare(const masu_session_desc *d, const row *r) {
     assert_ok(masu_reference_load(path, &reference, error, sizeof error));
     assert_true(reference.width == W && reference.height == H);
     masu_reference_free(&reference);
-    own.desc.readback = MASU_READBACK_HDR;
     assert_ok(masu_picture_open(&own, POSITIONS, &s, error, sizeof error));
     if (r->animate) animate(r->time);
-    assert_ok(masu_picture_truth_hdr(&s, &frame, POSITIONS, r->rays, rgba, radiance, NULL, error,
-                                     sizeof error));
+    assert_ok(masu_picture_truth(&s, &frame, POSITIONS, r->rays, &(masu_picture_means){.linear = radiance},
+                                 NULL, error, sizeof error));
     close_session(&s);
     masu_patches_of(radiance, NULL, W, H, patches);
     masu_patch_judgement j = masu_patches_judge(reference.patches, patches, TOLERANCE);
