@@ -81,8 +81,8 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
     /* Nothing is left of the root, and of the lowest nodes nothing is entered. */
     const masu_scene_data *scene = &m->plan->scene;
     uint32_t levels = masu_trace_top_levels(scene->trace_instances) + scene->trace_levels - 2;
-    /* Scenes of similar sizes share pipelines, for at most 2 KB of shared memory more. */
-    constants[9] = (uint32_t)masu_align_up(levels, 8);
+    constants[9] = (uint32_t)masu_align_up(
+        levels, 4); /* so that scenes of about the same size share pipelines */
     constants[10] = m->plan->desc.debug.share_rays == MASU_ON;
     constants[11] = scene->own_coats != 0;
     constants[12] = scene->tints != 0;
