@@ -19,7 +19,7 @@ fail() {
 
 # run ARGUMENT...: masu-bake with its exit code in $code, its streams in stdout and stderr
 run() {
-    "$bake" --bare "$@" > "$folder/stdout" 2> "$folder/stderr"
+    "$bake" "$@" > "$folder/stdout" 2> "$folder/stderr"
     code=$?
 }
 accepts() {

@@ -239,11 +239,11 @@ static void a_bad_case_is_named_with_its_key(void **state) {
          "cannot be combined with error, same and ms_ratio"},
         {"\"ladder\": [{}, {}]", "ladder: expected 'governed'"},
         {"\"ladder\": \"auto\"", "ladder: expected 'governed'"},
-        {"\"ladder\": \"best\"", "ladder: expected 'auto' or an array of 1 to 8 rungs"},
+        {"\"ladder\": \"best\"", "ladder: expected 'auto' or an array of 1 to 12 rungs"},
         {"\"ladder\": \"auto\", \"governed\": {\"target_ms\": 9, \"worst_rung\": 1, "
          "\"best_rung\": 2}",
          "governed.worst_rung: expected 2 to 7, found 1"},
-        {"\"ladder\": []", "ladder: expected 'auto' or an array of 1 to 8 rungs, found 0"},
+        {"\"ladder\": []", "ladder: expected 'auto' or an array of 1 to 12 rungs, found 0"},
         {"\"ladder\": [{},{},{},{},{},{},{},{},{}]", "found 9"},
         {"\"sizes\": [[1, 2]]", "sizes: cannot be combined with 'size'"},
     };
