@@ -155,8 +155,8 @@ static void velocities_are_the_same_without_culling(void **state) {
 static void bake_shadows(void) {
     assert_int_equal(
         shell("sed -e 's#\"../../scenes/#\"'\"$PWD\"'/scenes/#' "
-              "-e 's#\"sun\": {#\"sun\": {\"shadows\": {\"cascades\": 3, "
-              "\"resolution\": 192, \"distance\": 90}, #' "
+              "-e 's#\"shadows\": false#\"shadows\": {\"cascades\": 3, "
+              "\"resolution\": 192, \"distance\": 90}#' "
               "tests/scenes/test_town.json > %s/town.json",
               scratch),
         0);

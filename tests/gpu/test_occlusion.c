@@ -24,7 +24,7 @@ static masu_session s;
 
 /* ---- Scenes ---------------------------------------------------------------------------------- */
 
-/* NAME.json, of scenes/ or of tests/scenes/, with more members of its "sdf". */
+/* NAME.json, of scenes/ or of tests/scenes/, with more members of its "sdf", instead of what turns them off. */
 static void bake_with(const char *name, const char *options) {
     static char json[1 << 15];
     char path[256], root[1024];
@@ -32,9 +32,13 @@ static void bake_with(const char *name, const char *options) {
     snprintf(path, sizeof path, "%s/%s.json", folder, name);
     if (access(path, R_OK)) snprintf(path, sizeof path, "%s/%s.json", folder = "tests/scenes", name);
     char *text = read_file(path, NULL);
-    static const char before[] = "\"source\": \"";
-    char *source = strstr(text, before);
+    static const char before[] = "\"source\": \"", off[] = "\"shadows\": false, \"ambient_occlusion\": false";
+    char *source = strstr(text, before), *last = strstr(source, off);
     assert_non_null(source);
+    assert_non_null(last);
+    memset(last, ' ', strlen(off));
+    while (*last != ',') last--;
+    *last = ' ';
     assert_non_null(getcwd(root, sizeof root));
     snprintf(json, sizeof json, "%.*s%s%s%s/%s/%s", (int)(source - text), text, options, before, root,
              folder, source + strlen(before));
