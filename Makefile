@@ -73,11 +73,6 @@ $(BUILD)/obj/tests/%.o: FOLDER_FLAGS := -D_POSIX_C_SOURCE=200809L -UNDEBUG
 ifeq ($(config),release)
 $(BUILD)/obj/tests/unit/%.o $(BUILD)/obj/tests/gpu/%.o: FOLDER_FLAGS += -O1 -g1
 endif
-# With sanitizers that is true of the programs, too: clang needs a third of the time without its optimiser.
-ifeq ($(config),sanitize)
-$(foreach f,tests/unit tests/fuzz tests/support examples tools/view tools/masu tools/command tools/bench tools/conform,$(eval \
-    $(BUILD)/obj/$(f)/%.o: FOLDER_FLAGS += -O0))
-endif
 
 # ---- Rules ---------------------------------------------------------------------------------------
 

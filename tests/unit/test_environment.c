@@ -237,7 +237,7 @@ static void a_sun_is_cut_out_of_the_picture(void **state) {
         double azimuth, elevation, turn, second, bound;
     } cases[] = {{40, 35, 0, 0, 0.01},   {0, 90, 0, 0, 0.01},    {10, -89.6, 0, 0, 0.01}, {180, 10, 0, 0, 0.01},
                  {179.5, 60, 2, 0, 0.01}, {-70, -20, -3, 0, 0.01}, {90, 0.2, 1, 0, 0.01},   {40, 50, 0, 6000, 0.08}};
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i += whole_run() ? 1 : 3) {
         masu_bake_picture_sun sun;
         double error, off = 0, most = 0;
         double e = cases[i].elevation * PI / 180, a = cases[i].azimuth * PI / 180 + cases[i].turn;
