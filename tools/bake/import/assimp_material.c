@@ -291,10 +291,10 @@ static void convert_shine(const struct aiMaterial *from, masu_blob_material *to)
     }
 }
 
-/* Whether a highlight of an older format is only approximated. So have materials that Assimp adds, which
- * have no name or this one. */
+/* Whether a highlight of an older format loses its colour; its exponent becomes the roughness. Materials that Assimp
+ * adds, which have no name or this one, have a colour, too. */
 static bool has_phong(const struct aiMaterial *from) {
-    double exponent = 0, c[4] = {0, 0, 0, 0}, value;
+    double c[4] = {0, 0, 0, 0}, value;
     struct aiString name = {0};
     aiGetMaterialString(from, AI_MATKEY_NAME, &name);
     int length = masu_import_length(&name);
@@ -305,9 +305,8 @@ static bool has_phong(const struct aiMaterial *from) {
     if (get_factor(from, KEY(AI_MATKEY_ROUGHNESS_FACTOR), &value) ||
         get_factor(from, KEY(AI_MATKEY_GLOSSINESS_FACTOR), &value))
         return false;
-    get_factor(from, KEY(AI_MATKEY_SHININESS), &exponent);
     get_color(from, KEY(AI_MATKEY_COLOR_SPECULAR), c);
-    return exponent > 0 || c[0] > 0 || c[1] > 0 || c[2] > 0;
+    return c[0] > 0 || c[1] > 0 || c[2] > 0;
 }
 
 const masu_import_given *masu_import_read_material(masu_import *m, unsigned index) {
