@@ -242,9 +242,9 @@ static void a_bad_case_is_named_with_its_key(void **state) {
         {"\"ladder\": \"best\"", "ladder: expected 'auto' or an array of 1 to 12 rungs"},
         {"\"ladder\": \"auto\", \"governed\": {\"target_ms\": 9, \"worst_rung\": 1, "
          "\"best_rung\": 2}",
-         "governed.worst_rung: expected 2 to 7, found 1"},
+         "governed.worst_rung: expected 2 to 11, found 1"},
         {"\"ladder\": []", "ladder: expected 'auto' or an array of 1 to 12 rungs, found 0"},
-        {"\"ladder\": [{},{},{},{},{},{},{},{},{}]", "found 9"},
+        {"\"ladder\": [{},{},{},{},{},{},{},{},{},{},{},{},{}]", "found 13"},
         {"\"sizes\": [[1, 2]]", "sizes: cannot be combined with 'size'"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) refuses(parse_case(bad[i][0]), bad[i][1]);
