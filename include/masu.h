@@ -571,8 +571,8 @@ typedef struct masu_governor_desc {
      * predicted to take at most 1.25 of the target, to detect whether the clock rises. Each failed
      * trial makes the next one rarer. */
     uint32_t steady_clock;
-    /* Features that no rung may disable: MASU_KEEP_*, of any mode. A built-in ladder omits its rungs
-     * without one of them; a rung of masu_desc.rungs with that feature OFF is MASU_ERROR_ARGUMENT.
+    /* Features that no rung may disable: MASU_KEEP_*, of any mode. A built-in ladder omits its
+     * rungs without one of them; a rung of masu_desc.rungs with that feature OFF is MASU_ERROR_ARGUMENT.
      * A scene or device that does not support a feature still renders without it. */
     uint32_t keep;
 } masu_governor_desc;
@@ -772,9 +772,9 @@ MASU_API masu_desc masu_desc_resolved(const masu_desc *desc);
 
 /* Writes the built-in ladder of the scene's class, or of the most similar measured class, into
  * rung_count, rungs, flips and governor.costs of `desc`, for a host that changes it before
- * masu_init. Rungs that governor.keep of `desc` forbids are omitted. Knobs for features that the scene lacks have no effect. `from`: scene, size, driver
- * and date of the measurement (static string); may be NULL. MASU_ERROR_ARGUMENT: `scene` or `desc`
- * is NULL. */
+ * masu_init. Rungs that governor.keep of `desc` forbids are omitted. Knobs for features that the
+ * scene lacks have no effect. `from`: scene, size, driver and date of the measurement (static
+ * string); may be NULL. MASU_ERROR_ARGUMENT: `scene` or `desc` is NULL. */
 MASU_API MASU_MUST_USE masu_result masu_ladder_of(const masu_scene *scene, masu_desc *desc,
                                                   const char **from);
 

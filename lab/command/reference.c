@@ -117,7 +117,7 @@ static bool save(const options *o, const char *scene, const ref_image *image, ch
     return good;
 }
 
-/* What the scene has and the reference does not judge. */
+/* Features of the scene that the reference does not judge. */
 static void warn(const options *o, const ref_scene *s) {
     if (s->meso) masu_cli_warn("mesoscale detail of materials is left out");
     if ((double)s->environment->turbidity > 0 && !o->sky)

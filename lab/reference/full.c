@@ -70,7 +70,7 @@ static void sample_emitter(const ref_tracer *t, const ref_hit *hit, const ref_bs
     for (int i = 0; i < REF_LOBES; i++) out->of[i] = ref_add(out->of[i], ref_mul(f.of[i], light));
 }
 
-/* Of emission that a scattered ray meets: how much, beside samples of the emitters. */
+/* MIS weight of emission that a scattered ray meets, beside samples of the emitters. */
 static double emission_weight(const ref_tracer *t, const ref_hit *hit, ref_vec d, double travelled,
                               double pdf, bool camera) {
     const ref_scene *s = t->world->scene;

@@ -11,9 +11,9 @@ typedef struct ref_camera {
     double tangent;                  /* of half of the vertical field of view */
 } ref_camera;
 
-/* Of the scene's path at a moment. */
+/* The camera of the scene's path at a time. */
 ref_camera ref_camera_at(const ref_blob *blob, double time);
-/* Of a point of the image; x to the right, y down, both 0..1. Unit. */
+/* Unit direction through a point of the image; x to the right, y down, both 0..1. */
 ref_vec ref_camera_ray(const ref_camera *c, double x, double y, double aspect);
 
 typedef struct ref_image {

@@ -37,7 +37,7 @@ ref_pane ref_pane_of(const ref_look *look, const ref_bsdf *b) {
     return p;
 }
 
-/* What reaches a surface from a light at `far` along l. */
+/* Light that reaches a surface from a light source at the distance `far` along l. */
 static ref_vec visible(const ref_tracer *t, const ref_hit *hit, ref_vec l, double far,
                        bool shadows) {
     ref_vec left = ref_splat(1);

@@ -34,7 +34,7 @@ ref_vec ref_sky_at(const ref_sky *s, ref_vec d);
 /* The same, of `ambient` where there is no map: what surfaces without a mirror get in Masu. */
 ref_vec ref_sky_soft(const ref_sky *s, ref_vec d);
 
-/* Of maps: a direction; its density. */
+/* Samples an environment map: a direction, and its probability density. */
 ref_vec ref_sky_sample(const ref_sky *s, ref_random *r, double *pdf);
 double ref_sky_pdf(const ref_sky *s, ref_vec d);
 

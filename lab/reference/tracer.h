@@ -31,7 +31,7 @@ typedef struct ref_tracer {
 /* From the camera along d, unit. */
 ref_vec ref_radiance(const ref_tracer *t, ref_vec d, ref_random *r);
 
-/* What a punctual light sends to p: irradiance / pi of a facing surface. *l: towards it, unit. */
+/* Irradiance / pi by a punctual light at p, on a surface that faces it. *l: towards it, unit. */
 ref_vec ref_light_at(const ref_light *light, ref_vec p, ref_vec *l);
 
 /* Parts of shade.c, air.c. */

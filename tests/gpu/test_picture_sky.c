@@ -100,7 +100,7 @@ static double dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* What a surface of normal n sends towards v: a sum over the picture, 2 x 2 pixels at a time. */
+/* Radiance of a surface of normal n towards v: a sum over the picture, 2 x 2 pixels at a time. */
 static void shade(const brdf_surface *surface, const double n[3], const double v[3],
                   double out[3]) {
     double across[3] = {n[1], -n[0], 0}, up[3], view[3];

@@ -19,10 +19,8 @@
 
 enum { W = 128, H = 72, POSITIONS = 16 };
 
-/* Relative error of a patch that counts as much as noise; ratio of the means; 95th percentile of
- * patches; mean square of the patches' errors over tolerance and noise, without the largest
- * tenth. */
-#define TOLERANCE 0.01
+/* Ratio of the means; 95th percentile of patches; mean square of the patches' errors over tolerance
+ * and noise, without the largest tenth. */
 #define RATIO 0.008
 #define P95 0.035
 #define TRIMMED 1.02
@@ -36,8 +34,8 @@ typedef struct row {
 } row;
 
 static const row rows[] = {
-    /* Diffuse light of a sky from a picture is of order 2, without an edge where the sun sets */
-    {.scene = "reference_sky", .baked = true, .ratio = 0.015, .p95 = 0.12, .trimmed = 5},
+    /* The scene's own sun is black, so the picture keeps its sun, which rough lookups blur */
+    {.scene = "reference_sky", .baked = true, .p95 = 0.08, .trimmed = 1.3},
     {.scene = "test_shadows"},
     {.scene = "reference_rows"},
     {.scene = "reference_emission"},
@@ -140,7 +138,7 @@ static void compare(const masu_session_desc *d, const row *r) {
                                  NULL, error, sizeof error));
     close_session(&s);
     masu_patches_of(radiance, NULL, W, H, patches);
-    masu_patch_judgement j = masu_patches_judge(reference.patches, patches, TOLERANCE);
+    masu_patch_judgement j = masu_patches_judge(reference.patches, patches);
     printf(
         "%s: mean %.4f of the reference, p95 %.4f, trimmed z^2 %.3f, worst patch %u,%u by %.3f\n",
         r->scene, j.ratio, j.p95, j.trimmed, j.worst % MASU_PATCH_COLUMNS,

@@ -256,7 +256,7 @@ static void a_sun_is_cut_out_of_the_picture(void **state) {
     }
 }
 
-/* What is no sun: nothing at all, nothing bright, too large, too weak, too coarse to tell. The pixels stay as they are. */
+/* Pictures without a sun: black, evenly bright, a source too large or too weak, too few pixels. They are unchanged. */
 static void what_is_no_sun_stays_in_the_picture(void **state) {
     (void)state;
     static const struct {

@@ -301,7 +301,7 @@ static void surfaces_are_those_worked_out_by_hand(void **state) {
     /* Turned away from the sun: no red. */
     masu_shade_surface(&v, (double[3]){0, 1, 0}, (double[3]){0, -1, 0}, m, out);
     near(out[0], 0, 0);
-    /* What it emits is added. */
+    /* Emission is added. */
     double sun;
     masu_shade_surface(&v, (double[3]){0, -1, 0}, (double[3]){0, 1, 0}, m, out);
     sun = out[0];

@@ -11,7 +11,6 @@
 #include <stdlib.h>
 
 enum { WIDTH = 128, HEIGHT = 72, STILL_FRAMES = 64 };
-#define TOLERANCE 0.01 /* of a patch: counts as much as a standard error */
 
 static bool draw_rung(const masu_sweep_desc *d, const char *name, masu_patch patches[MASU_PATCHES], uint32_t *messages,
                       char *error, size_t error_size) {
@@ -46,7 +45,7 @@ bool masu_golden_rungs(const masu_sweep_desc *d, const char *path, uint32_t *mes
         if (d->progress) d->progress("rungs at rest against the reference");
         good = draw_rung(d, rungs.id[i], drawn, messages, error, error_size);
         if (!good) break;
-        const masu_patch_judgement j = masu_patches_judge(golden, drawn, TOLERANCE);
+        const masu_patch_judgement j = masu_patches_judge(golden, drawn);
         good = fprintf(f, "%s,%.6g,%.6g,%.6g,%.6g\n", rungs.id[i], j.ratio, j.p95, j.trimmed, j.worst_by) > 0;
     }
     const bool closed = f && !fclose(f);

@@ -9,7 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define TOLERANCE 0.01 /* of a patch: counts as much as a standard error */
 
 const char *masu_golden_path(const masu_suite *suite, const masu_case *of, char path[4096]) {
     const char *slash = strrchr(suite->file, '/');
@@ -25,7 +24,7 @@ bool masu_golden_judge(const char *path, const masu_case *of, masu_session *s, c
         !masu_rest_patches(s, *frame, of->positions, drawn, error, error_size)) {
         return false;
     }
-    const masu_patch_judgement j = masu_patches_judge(golden, drawn, TOLERANCE);
+    const masu_patch_judgement j = masu_patches_judge(golden, drawn);
     values[MASU_MEASURE_MEAN_OFF] = fabs(j.ratio - 1.0);
     values[MASU_MEASURE_PATCH_P95] = j.p95;
     values[MASU_MEASURE_PATCH_Z2] = j.trimmed;

@@ -11,9 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
-#define TOLERANCE 0.01 /* of a patch: counts as much as a standard error */
 
 typedef struct linear {
     uint32_t width, height;
@@ -22,17 +20,12 @@ typedef struct linear {
     masu_patch patches[MASU_PATCHES];
 } linear;
 
-static bool is_reference(const char *path) {
-    size_t n = strlen(path);
-    return n > 4 && !strcasecmp(path + n - 4, ".ref");
-}
-
-bool masu_compare_is_linear(const char *path) { return is_reference(path) || masu_image_is_linear(path); }
+bool masu_compare_is_linear(const char *path) { return masu_reference_is_named(path) || masu_image_is_linear(path); }
 
 /* One channel counts as three. */
 static bool load(const char *path, linear *out, char *error, size_t size) {
     memset(out, 0, sizeof *out);
-    if (is_reference(path)) {
+    if (masu_reference_is_named(path)) {
         masu_reference r;
         if (!masu_reference_load(path, &r, error, size)) return false;
         *out = (linear){.width = r.width, .height = r.height, .rgb = r.pixels, .noisy = true};
@@ -92,7 +85,7 @@ static bool save_map(const char *path, const float *map, const linear *as, char 
 static int report(const masu_compare_options *o, const linear images[2], const masu_relative_error *e,
                   const masu_flip *flip) {
     const bool noisy = images[0].noisy || images[1].noisy;
-    const masu_patch_judgement j = masu_patches_judge(images[0].patches, images[1].patches, TOLERANCE);
+    const masu_patch_judgement j = masu_patches_judge(images[0].patches, images[1].patches);
     if (e->left_out) masu_cli_warn("%llu pixels are not finite and are left out", (unsigned long long)e->left_out);
     if (o->json) {
         json_t *root = json_pack("{s:f, s:f, s:f, s:f, s:f, s:i, s:f, s:f, s:f}", "relative_rmse", e->rmse, "relmse",

@@ -36,7 +36,7 @@ static bool output_name(const char *pattern, uint32_t frame, char *out, size_t s
     return n > 0 && (size_t)n < size;
 }
 
-/* What the file's name asks for. linear: three floats a pixel of `size`; rgba: of the output. */
+/* Writes the format that the file's name selects. linear: three floats a pixel of `size`; rgba: of the output. */
 static int write_image(const masu_session *s, const char *path, const uint8_t *rgba, const float *linear,
                        VkExtent2D size) {
     char error[1024];

@@ -7,8 +7,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 enum { BYTES_MOST = 1 << 28, SIDE_MOST = 4096 };
+#define TOLERANCE 0.01 /* relative error of a patch that counts as much as a standard error */
 #define DARK 0.01 /* of the image's mean: what is darker counts as this bright */
 
 /* ---- Patches --------------------------------------------------------------------------------- */
@@ -121,6 +123,11 @@ bool masu_reference_load(const char *path, masu_reference *r, char *error, size_
     return good;
 }
 
+bool masu_reference_is_named(const char *path) {
+    const size_t n = strlen(path);
+    return n > 4 && !strcasecmp(path + n - 4, ".ref");
+}
+
 void masu_reference_free(masu_reference *r) {
     free(r->pixels);
     r->pixels = NULL;
@@ -134,7 +141,7 @@ static int rising(const void *a, const void *b) {
 }
 
 masu_patch_judgement masu_patches_judge(const masu_patch reference[MASU_PATCHES],
-                                        const masu_patch image[MASU_PATCHES], double tolerance) {
+                                        const masu_patch image[MASU_PATCHES]) {
     masu_patch_judgement out = {.ratio = 1};
     double squares[3 * MASU_PATCHES], off[MASU_PATCHES], mean[3] = {0}, other = 0, all = 0;
     for (int i = 0; i < MASU_PATCHES; i++) {
@@ -152,7 +159,7 @@ masu_patch_judgement masu_patches_judge(const masu_patch reference[MASU_PATCHES]
             double r = (double)reference[i].mean[c], d = (double)image[i].mean[c] - r;
             double base = fmax(fabs(r), fmax(DARK * all / 3, 1e-9));
             double s = hypot((double)reference[i].error[c], (double)image[i].error[c]);
-            double z = d / hypot(s, tolerance * base);
+            double z = d / hypot(s, TOLERANCE * base);
             squares[3 * i + c] = z * z;
             off[i] = fmax(off[i], fmax(fabs(d) - 3 * s, 0) / base);
             worst = fmax(worst, fabs(d) / base);

@@ -37,6 +37,7 @@ void masu_patches_of(const float *pixels, const float *errors, uint32_t width, u
 bool masu_reference_save(const char *path, const masu_reference *r, char *error, size_t error_size);
 bool masu_reference_load(const char *path, masu_reference *out, char *error, size_t error_size);
 void masu_reference_free(masu_reference *r);
+bool masu_reference_is_named(const char *path); /* ends in .ref, in any case */
 
 typedef struct masu_patch_judgement {
     double ratio; /* of the means of both images: 1 if they agree */
@@ -46,9 +47,9 @@ typedef struct masu_patch_judgement {
     double worst_by;
 } masu_patch_judgement;
 
-/* tolerance: relative error of a patch that counts as much as noise, 0.01. Dark patches count by
+/* A relative error of 0.01 of a patch counts as much as a standard error. Dark patches count by
  * a hundredth of the image's mean. */
 masu_patch_judgement masu_patches_judge(const masu_patch reference[MASU_PATCHES],
-                                        const masu_patch image[MASU_PATCHES], double tolerance);
+                                        const masu_patch image[MASU_PATCHES]);
 
 #endif

@@ -94,6 +94,17 @@ static void say_position(uint32_t i, uint32_t of, void (*progress)(const char *t
     if (progress) progress(text);
 }
 
+bool masu_picture_camera(masu_session *s, masu_frame_desc *frame, masu_camera *camera, char *error, size_t error_size) {
+    if (frame->camera) {
+        *camera = *frame->camera;
+    } else if (masu_camera_at(s->m, frame->time, camera)) {
+        snprintf(error, error_size, "the scene has no camera");
+        return false;
+    }
+    frame->camera = camera;
+    return true;
+}
+
 /* Sums of all positions; `one` has room for an image. */
 typedef struct sums {
     float *linear, *display, *one;
@@ -116,13 +127,7 @@ static bool add_position(masu_session *s, const masu_light *light, sums *sum, ch
 static bool add_positions(masu_session *s, masu_frame_desc frame, uint32_t positions, uint32_t rays, sums *sum,
                           void (*progress)(const char *text), char *error, size_t error_size) {
     masu_camera camera;
-    if (frame.camera) {
-        camera = *frame.camera;
-    } else if (masu_camera_at(s->m, frame.time, &camera)) {
-        snprintf(error, error_size, "the scene has no camera");
-        return false;
-    }
-    frame.camera = &camera;
+    if (!masu_picture_camera(s, &frame, &camera, error, error_size)) return false;
     frame.rung = 0;
     frame.time_step = MASU_PICTURE_STEP;
     for (uint32_t i = 0; i < positions; i++) {

@@ -33,6 +33,9 @@
  * (root mean square), at worst 4. */
 void masu_picture_place(uint32_t i, uint32_t n, float out[2]);
 
+/* Makes `camera`, whose jitter changes, the frame's: a copy of its own, or the scene's. */
+bool masu_picture_camera(masu_session *s, masu_frame_desc *frame, masu_camera *camera, char *error, size_t error_size);
+
 /* As masu_session_open, with one rung that takes no shortcut, and mips as `positions` of a pixel
  * want them. Of d->desc what concerns rungs, anisotropy and debug is set here, but for validation
  * and labels. */
@@ -43,7 +46,7 @@ bool masu_picture_open(const masu_session_desc *d, uint32_t positions, masu_sess
  * reflections. */
 uint32_t masu_picture_frames(const masu_session *s, uint32_t positions, uint32_t rays);
 
-/* What is wanted of a ground truth; NULL: nothing. Images of 8 bits are sRGB, 4 bytes a pixel. */
+/* Results of a ground truth; NULL: not wanted. Images of 8 bits are sRGB, 4 bytes a pixel. */
 typedef struct masu_picture_means {
     float *linear;    /* mean of linear light, 3 floats a pixel */
     uint8_t *display; /* mean of display light */

@@ -8,7 +8,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 static bool add_frame(masu_session *s, const masu_frame_desc *frame, VkExtent2D *size, float **sum, char *error,
                       size_t error_size) {
@@ -32,13 +31,7 @@ bool masu_rest_patches(masu_session *s, masu_frame_desc frame, uint32_t count, m
     masu_camera camera;
     VkExtent2D size = {0, 0};
     float *sum = NULL;
-    if (frame.camera) {
-        camera = *frame.camera;
-    } else if (masu_camera_at(s->m, frame.time, &camera)) {
-        snprintf(error, error_size, "the scene has no camera");
-        return false;
-    }
-    frame.camera = &camera;
+    if (!masu_picture_camera(s, &frame, &camera, error, error_size)) return false;
     bool good = true;
     for (uint32_t i = 0; i < count && good; i++) {
         masu_picture_place(i, count, camera.jitter);
@@ -56,8 +49,7 @@ bool masu_rest_patches(masu_session *s, masu_frame_desc frame, uint32_t count, m
 }
 
 bool masu_rest_load(const char *path, masu_patch out[MASU_PATCHES], char *error, size_t error_size) {
-    const size_t n = strlen(path);
-    if (n > 4 && !strcasecmp(path + n - 4, ".ref")) {
+    if (masu_reference_is_named(path)) {
         masu_reference r;
         if (!masu_reference_load(path, &r, error, error_size)) return false;
         memcpy(out, r.patches, sizeof r.patches);

@@ -601,11 +601,11 @@ static void stored_references(void **state) {
     masu_reference_free(&back);
     static masu_patch image[MASU_PATCHES];
     masu_patches_of(pixels, NULL, W, H, image);
-    masu_patch_judgement j = masu_patches_judge(r.patches, image, .01);
+    masu_patch_judgement j = masu_patches_judge(r.patches, image);
     assert_true(fabs(j.ratio - 1) < 1e-9 && j.p95 == 0 && j.trimmed == 0);
     for (int i = 0; i < 3 * W * H; i++) pixels[i] *= 1.05f;
     masu_patches_of(pixels, NULL, W, H, image);
-    j = masu_patches_judge(r.patches, image, .01);
+    j = masu_patches_judge(r.patches, image);
     assert_true(fabs(j.ratio - 1.05) < 1e-4 && j.p95 > .035 && j.trimmed > 1.02);
     assert_false(masu_reference_load("lab/README.md", &back, error, sizeof error));
     assert_non_null(strstr(error, "not a stored reference"));

@@ -126,7 +126,7 @@ static void take_panorama_sun(const masu_bake_environment *e, masu_bake_panorama
     look->sun_color = masu_bake_v3(sun.color[0], sun.color[1], sun.color[2]);
 }
 
-/* What is shown, and what it is shown in. It completes the description by what depends on the models. */
+/* Models, SDF, camera and light. Completes the description by the members that depend on the models. */
 static bool build_scene(masu_bake_description *d, const masu_bake_options *options,
                         masu_bake_content *content, masu_bake_report *report) {
     if (!masu_bake_build_models(d, 0, options->textures, content)) return false;

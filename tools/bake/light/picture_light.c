@@ -178,7 +178,7 @@ static double solve(const equations *e, uint32_t count, double lower[FUNCTIONS][
     return left;
 }
 
-/* Of a lobe of that direction, whose colour is not negative. */
+/* The error left by a lobe of that direction, whose colour is not negative. */
 static double fit_all(const fit *f, const double direction[3], coefficients out) {
     equations e;
     double lower[FUNCTIONS][FUNCTIONS], error = 0;

@@ -365,7 +365,7 @@ static bool search_all(trial *t, uint32_t k, uint32_t alike) {
     return true;
 }
 
-/* What part of RUNS the share of a form allows. */
+/* The part of RUNS that the share of a form allows. */
 static bool set_portion(trial *t, uint32_t forms) {
     double f, before = (double)masu_bake_machine_steps(t->machine);
     t->portion = 1;

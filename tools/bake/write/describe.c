@@ -63,6 +63,16 @@ static void put_member(masu_bake_buffer *out, const char *before, float value) {
     put_float(out, value);
 }
 
+/* A feature with one setting, or false. `before` has its name. */
+static void put_feature(masu_bake_buffer *out, const char *before, bool on, const char *setting, double value) {
+    masu_bake_append_text(out, before);
+    if (on) {
+        put(out, "{\"%s\": ", setting);
+        put_double(out, value);
+    }
+    masu_bake_append_text(out, on ? "}" : "false");
+}
+
 /* As the description's folder sees it. */
 static bool put_path(const masu_bake_options *options, const char *path, masu_bake_buffer *out) {
     char *directory = options->output ? masu_bake_directory_of(options->output) : NULL;
@@ -126,20 +136,9 @@ static bool put_field(const masu_bake_options *options, const masu_bake_sdf *sdf
     put_doubles(out, sdf->bounds.high);
     masu_bake_append_text(out, "],\n    \"max_distance\": ");
     put_double(out, sdf->max_distance);
-    masu_bake_append_text(out, ",\n    \"shadows\": ");
-    if (sdf->occlusion.shadows) {
-        masu_bake_append_text(out, "{\"distance\": ");
-        put_double(out, sdf->occlusion.distance);
-        masu_bake_append_text(out, "}");
-    } else
-        masu_bake_append_text(out, "false");
-    masu_bake_append_text(out, ",\n    \"ambient_occlusion\": ");
-    if (sdf->occlusion.ambient) {
-        masu_bake_append_text(out, "{\"radius\": ");
-        put_double(out, sdf->occlusion.radius);
-        masu_bake_append_text(out, "}");
-    } else
-        masu_bake_append_text(out, "false");
+    const masu_bake_occlusion *o = &sdf->occlusion;
+    put_feature(out, ",\n    \"shadows\": ", o->shadows, "distance", o->distance);
+    put_feature(out, ",\n    \"ambient_occlusion\": ", o->ambient, "radius", o->radius);
     masu_bake_append_text(out, "\n  },\n");
     return true;
 }
@@ -207,15 +206,7 @@ static void put_air(const masu_bake_content *content, masu_bake_buffer *out) {
 }
 
 static void put_reflections(const masu_bake_reflections *r, masu_bake_buffer *out) {
-    masu_bake_append_text(out, "  \"reflections\": ");
-    if (!r->wanted)
-        masu_bake_append_text(out, "false");
-    else if (r->smallest >= 0) {
-        masu_bake_append_text(out, "{\"smallest\": ");
-        put_double(out, r->smallest);
-        masu_bake_append_text(out, "}");
-    } else
-        masu_bake_append_text(out, "{}");
+    put_feature(out, "  \"reflections\": ", r->wanted, "smallest", r->smallest);
     masu_bake_append_text(out, "\n}\n");
 }
 
