@@ -315,5 +315,7 @@ if [ "$(wc -l <<< "$slowest")" -gt 1 ]; then
 fi
 
 [ $((skipped + known)) = 0 ] || echo "$skipped skipped, $known known faults of drivers"
+[ $((passed + failed + skipped + known)) -gt 0 ] ||
+    echo "no test of that name is of this kind: 'make unit' runs tests without a driver, 'make gpu' those with one"
 echo "$passed passed, $failed failed" | tee "$results/summary"
 [ "$failed" = 0 ] && [ "$passed" -gt 0 ]

@@ -123,8 +123,10 @@ masu_result masu_lights_set(masu_lights *l, const masu_instances *in, uint32_t l
     masu_result result = take_state(in, name, &to, detail);
     if (result) return result;
     /* Padding at the end may differ in equal states. */
-    const size_t members = offsetof(masu_punctual_light_state, outer) + sizeof to.outer;
-    l->changes += memcmp(&l->states[light], &to, members) != 0;
+    enum { MEMBERS = offsetof(masu_punctual_light_state, outer) + sizeof(to.outer) };
+    _Static_assert(sizeof to - MEMBERS < _Alignof(masu_punctual_light_state),
+                   "a member follows `outer`: name the last one");
+    l->changes += memcmp(&l->states[light], &to, MEMBERS) != 0;
     l->states[light] = to;
     return MASU_OK;
 }

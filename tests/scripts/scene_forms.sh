@@ -49,6 +49,20 @@ undocumented() {
     done
 }
 
+# strides DOC: of the table of sections in DOC, a line `kind stride` for each kind.
+strides() {
+    sed -n '/^| kind | name /,/^$/s/^| \([0-9, ]*\) | [^|]* | \([0-9]*\) |.*/\1|\2/p' "$1" |
+        awk -F '|' '{ n = split($1, kinds, ", "); for (i = 1; i <= n; i++) print kinds[i], $2 }'
+}
+
+# seeded_strides DIRECTORY: the same of the blobs there.
+seeded_strides() {
+    for blob in "$1"/*.masu; do
+        count=$(od -An -tu4 -j24 -N4 "$blob" | tr -d ' ')
+        od -An -v -tu4 -w24 -j64 -N$((count * 24)) "$blob" | awk '{ print $1, $2 }'
+    done | sort -nu
+}
+
 # seeded DIRECTORY: the kinds of sections in the blobs there.
 seeded() {
     for blob in "$1"/*.masu; do
@@ -91,6 +105,13 @@ for kind in $(missing "$folder/needed" "$folder/seeded"); do
         "$(sed -n "s/^ *\(MASU_BLOB_[A-Z0-9_]*\) = $kind,.*/\1/p" src/scene/blob.h)"
 done
 
+seeded_strides "$folder/seeds" > "$folder/strides"
+strides docs/blob.md > "$folder/written"
+while read -r kind stride; do
+    problem "docs/blob.md: elements of sections of kind $kind have $stride bytes, which the table of sections does not say"
+done < <(missing "$folder/strides" "$folder/written")
+[ "$problems" = 0 ] || exit 1
+
 # ---- That it would be found ----------------------------------------------------------------------
 
 # finds WHAT EXPECTED FOUND
@@ -108,6 +129,9 @@ kinds "$folder/section.h" > "$folder/more"
 finds "a section without a row" 99 "$(missing "$folder/more" "$folder/kinds")"
 echo 'static const char *const members[] = {"source", "ghost", NULL};' > "$folder/read.c"
 finds "a member without words" ghost "$(members "$folder/read.c" | undocumented docs/scene.md)"
+sed 's/^| 35 | lights | [0-9]* /| 35 | lights | 1 /' docs/blob.md > "$folder/short.md"
+strides "$folder/short.md" > "$folder/other"
+finds "another stride" 35 "$(missing "$folder/strides" "$folder/other" | cut -d' ' -f1)"
 rm "$folder"/seeds/1537.masu # skins
 seeded "$folder/seeds" > "$folder/fewer"
 finds "a kind without a seed" 49 "$(missing "$folder/seeded" "$folder/fewer" | head -n 1)"
