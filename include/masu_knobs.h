@@ -162,8 +162,8 @@ typedef enum masu_knob_use {
            " enough storage buffers.",                                                             \
            "The rays, and the passes and images of the filters.")                                  \
     NUMBER(float,            specular_cutoff,      0,    1,    0,    SPECULAR,  "",                \
-           "Perceptual roughness at and above which surfaces reflect the sky or light probes"      \
-           " instead; from 3/4 of it on, both are blended. 0: the scene's.",                       \
+           "Perceptual roughness from which on surfaces reflect the sky or light probes and trace" \
+           " no rays; between 3/4 of it and it, both are blended. 0: the scene's.",                \
            "More pixels trace rays with a higher cutoff.")                                         \
     NUMBER(uint32_t,         specular_frames,      1,    240,  32,   SPECULAR,  "frames",          \
            "Length of the temporal accumulation of reflections, in frames of 1/60 s. 0: 32, or 8"  \

@@ -242,7 +242,7 @@ static void values_of(const masu_knob *k, char *out, size_t size) {
         return;
     }
     numbers_text(k, numbers, sizeof numbers);
-    int n = k->values > 1 ? snprintf(out, size, "%u of ", k->values) : 0;
+    int n = k->values > 1 ? snprintf(out, size, "%u values of ", k->values) : 0;
     snprintf(out + n, size - (size_t)n, "%s%s%s", numbers, k->unit[0] ? " " : "", k->unit);
 }
 
