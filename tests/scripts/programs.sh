@@ -136,6 +136,8 @@ if [ "${config:-}" != sanitize ]; then
     grep -q 'limited.masu: File too large' stderr || fail "limit of file size: $(cat stderr)"
     (ulimit -f 2; exec "$bin/masu-sdfc" field.sdf --glsl limited.glsl --quiet) 2> stderr && fail "a limit of 2 KiB is not noticed"
     grep -q 'limited.glsl: cannot write: File too large' stderr || fail "limit of file size: $(cat stderr)"
+    text=$(ulimit -f 0; exec "$bin/masu-bake" field.sdf --bare -o limited.masu --quiet 2>&1) && fail "a limit of 0 bytes is not noticed"
+    [[ $text = *': File too large' ]] || fail "limit of file size, a short text: $text"
 fi
 [ -z "$(left)" ] || fail "left: $(left)"
 

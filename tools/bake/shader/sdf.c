@@ -43,7 +43,10 @@ static bool write_text(const char *directory, const char *name, const void *text
     FILE *file = fopen(path, "wb");
     bool good = file && fwrite(text, 1, bytes, file) == bytes;
     int cause = errno;
-    if (file && fclose(file) != 0) good = false;
+    if (file && fclose(file) != 0 && good) { /* a short text is written here */
+        cause = errno;
+        good = false;
+    }
     if (!good) masu_cli_error("cannot write %s: %s", path, strerror(cause));
     free(path);
     return good;
