@@ -199,7 +199,9 @@ check: deps-test ## install missing packages, build, run every test: DRIVERS=sys
 check-built: all $(SCRIPT_SCENES) $(UNIT_TESTS) $(GPU_TESTS) $(FUZZ_TESTS) $(DRIVER_INFO)
 	$(V)$(RUN_TESTS) $(RUN_UNIT) $(RUN_GPU)
 
-unit: all $(SCRIPT_SCENES) $(UNIT_TESTS) $(FUZZ_TESTS) ## run the tests that need no Vulkan driver: TESTS=name
+# Scripts run programs, and so does test_shader_gates; other tests without a driver are linked with what they test.
+unit: $(if $(TESTS),$(if $(SCRIPT_TESTS)$(filter %/test_shader_gates,$(UNIT_TESTS)),all),all)
+unit: $(SCRIPT_SCENES) $(UNIT_TESTS) $(FUZZ_TESTS) ## run the tests that need no Vulkan driver: TESTS=name
 	$(V)$(RUN_TESTS) $(RUN_UNIT)
 
 gpu: | $(filter unit,$(MAKECMDGOALS)) # they use one folder for results
