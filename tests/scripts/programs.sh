@@ -167,6 +167,16 @@ grep -q '^"a","s",8,8,not run,' r.csv || fail "r.csv: $(cat r.csv)"
 grep -q '^| not run | a 8x8 ' r.md || fail "r.md: $(cat r.md)"
 python3 -c 'import sys, xml.dom.minidom; xml.dom.minidom.parse(sys.argv[1])' r.xml 2> /dev/null || ! command -v python3 > /dev/null ||
     fail "r.xml is no XML"
+# A driver that crashes when it is opened; test_conform.c has an end during a case.
+echo 'void abort(void); void *vk_icdGetInstanceProcAddr(void *i, const char *name) { (void)i; (void)name; abort(); return 0; }' > crash.c
+if [ "${config:-}" != sanitize ] && ${CC:-gcc} -shared -fPIC crash.c -o crash.so 2> /dev/null; then
+    printf '{"file_format_version": "1.0.0", "ICD": {"library_path": "%s/crash.so", "api_version": "1.1.0"}}' "$folder" > crash.json
+    rm r.xml r.csv r.md
+    (VK_ICD_FILENAMES=$folder/crash.json VK_DRIVER_FILES=$folder/crash.json exec "$bin/masu" conform --suite suite.json \
+        --scenes scenes --junit r.xml --csv r.csv --table r.md > stdout 2>&1) 2> /dev/null && fail "the driver does not crash"
+    grep -q 'type="not run"' r.xml && grep -q '</testsuites>' r.xml && grep -q ',not run,' r.csv && grep -q '^| not run ' r.md ||
+        fail "after a crash of the driver: $(cat r.xml r.csv r.md)"
+fi
 refuses 1 '1 of 1 scenes are not baked in i (s): .make scenes' masu conform --suite suite.json --scenes i --junit r.xml
 grep -q '<error message="1 of 1 scenes' r.xml || fail "r.xml does not say why: $(cat r.xml)"
 refuses 1 'tri.obj/x: cannot create the folder' masu conform --suite suite.json --scenes scenes --images tri.obj/x
