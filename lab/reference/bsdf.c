@@ -26,7 +26,7 @@ static ref_returned returned_at(const ref_bsdf *b, double cosine, double over) {
 /* Light that leaves after several bounces, as a factor of what is lost. */
 static double rest_of(double f0, double f90, double white) {
     double f = f0 + (f90 - f0) / 21;
-    return f * f * white / (1 - f * (1 - white));
+    return f * f * (1.35 - 0.35 * f) * white / (1 - f * (1 - white));
 }
 
 /* Part of the light that the dielectric's layers return before the colour below. */

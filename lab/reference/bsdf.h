@@ -1,7 +1,7 @@
 /* bsdf.h: how a surface of the reference scatters light.
  *
  *   design   the closed model that Masu promises: GGX; what it loses by a product (Kulla and
- *            Conty 2017, with the square of Hill 2018); diffuse light below by a product (Kelemen
+ *            Conty 2017, coloured as in shaders/brdf); diffuse light below by a product (Kelemen
  *            and Szirmay-Kalos 2001); a clear coat that lets 1 - c (a + b max(s(v), s(l))) through
  *   physics  the same layers by random walks: between facets, through the layers, between layers
  *
