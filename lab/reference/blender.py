@@ -3,8 +3,8 @@
     blender -b --factory-startup --python-exit-code 1 -P lab/reference/blender.py -- MASU-BAKE MASU-LAB TABLE.csv
 
 Writes each scene twice, as glTF for masu-bake and into Blender, renders both and compares the means of 144 patches.
-Fails if a scene's mean, or the root mean square of its patches' errors, is off by more than 2 %. Both have the same model
-of materials: Lambert, and metals whose microfacets have uncorrelated masking and scatter once (masu-lab reference
+Fails if a scene's mean, or the root mean square of its patches' errors, is off by more than 2 %. Both have the same
+model of materials: Lambert, and metals whose microfacets have uncorrelated masking and scatter once (masu-lab reference
 --cycles; Blender: Principled, metallic 1, distribution GGX). Written for Blender 3.4."""
 import json, math, os, struct, subprocess, sys, tempfile, zlib
 import bpy
@@ -328,8 +328,8 @@ def compare(out, scene):
 
 
 with open(TABLE, "w") as out:
-    print("# make reference-blender: the reference over Blender %s, %dx%d, %d paths; 144 patches of three colours, those "
-          "darker than 2 %% of the mean left out; noise: standard error of a patch, RMS" %
+    print("# make reference-blender: the reference over Blender %s, %dx%d, %d paths; 144 patches of three colours, "
+          "those darker than 2 %% of the mean left out; noise: standard error of a patch, RMS" %
           (bpy.app.version_string, WIDTH, HEIGHT, PATHS), file=out)
     print("scene,patches,mean_ratio,rms_error,p95_error,worst_error,noise_reference,noise_blender", file=out)
     good = [compare(out, s) for s in (room, metals, mixes, pictures, panes)]
