@@ -35,6 +35,9 @@ PACKAGES_plots := gnuplot-nox
 PACKAGES_isa := meson ninja-build bison flex python3-mako libdrm-dev libexpat1-dev libelf-dev zlib1g-dev libncurses-dev
 PACKAGES_isa += pkgconf g++ glslang-tools curl ca-certificates
 
+# for `make reference-blender`
+PACKAGES_blender := blender python3-numpy
+
 # to build the library for other machines and run a part of it there (make consumers-cross). Never installed by itself
 PACKAGES_cross := gcc-mingw-w64-x86-64 gcc-aarch64-linux-gnu libc6-dev-arm64-cross
 PACKAGES_cross += gcc-i686-linux-gnu libc6-dev-i386-cross qemu-user

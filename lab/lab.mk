@@ -30,6 +30,12 @@ isa-drivers: ## build Intel's and Adreno's compilers for MASU_ISA_DRIVERS=build/
 	$(call install-packages,$(PACKAGES_isa))
 	$(V)lab/isa/drivers.sh build/isa-drivers
 
+.PHONY: reference-blender
+reference-blender: lab $(BUILD)/bin/masu-bake ## write lab/notes/reference_blender.csv: the reference path tracer beside Blender's Cycles (half an hour)
+	$(call install-packages,$(PACKAGES_blender))
+	$(V)blender -b --factory-startup --python-exit-code 1 -P lab/reference/blender.py -- \
+	    $(BUILD)/bin/masu-bake $(LAB_BUILD)/bin/masu-lab lab/notes/reference_blender.csv
+
 # ---- Worlds: written by masu-lab and baked like any scene. Not part of `all` or of the tests. ----
 
 $(LAB_BUILD)/bin/masu-lab: force | $(GENERATED)

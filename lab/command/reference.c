@@ -3,9 +3,11 @@
 #include "bake/light/environment.h"
 #include "image.h"
 #include "lab/command/commands.h"
+#include "lab/reference/model_error.h"
 #include "lab/reference/render.h"
 #include "measure/patches.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,11 +15,11 @@
 #include <unistd.h>
 
 typedef struct options {
-    const char *output, *errors, *store, *sdf, *sky;
+    const char *output, *errors, *store, *sdf, *sky, *model_error;
     VkExtent2D size;
     uint32_t paths, threads, seed, bounces, transport, fields_shadow;
     double time, sun[2], sun_radius, turn, scale;
-    bool physics, animate, own_sun, progress, separable;
+    bool physics, animate, own_sun, progress, cycles;
 } options;
 
 static const char *const transports[] = {"auto", "direct", "full", NULL};
@@ -36,6 +38,8 @@ static const masu_option rows[] = {
     MASU_FILE(options, errors, "error", "FILE.pfm", "standard error of each value"),
     MASU_FILE(options, store, "store", "FILE.ref",
               "image as half floats with means and errors of 144 patches, for tests"),
+    MASU_FILE(options, model_error, "model-error", "FILE.csv",
+              "without a scene: light that the model of materials and --physics return"),
     MASU_OUTPUT_SIZE_ROW(options, size),
     MASU_FLAG(options, progress, "progress", "report the progress if stderr is no terminal, too"),
     MASU_HEADING("Scene"),
@@ -64,8 +68,8 @@ static const masu_option rows[] = {
               "radius of the sun's disc; 0: a point"),
     MASU_UINT(options, fields_shadow, "sdf-shadows", 0, 1,
               "1: the field casts shadows (default: if the scene has any)"),
-    MASU_FLAG(options, separable, "separable",
-              "uncorrelated masking of microfacets, as Cycles has it"),
+    MASU_FLAG(options, cycles, "cycles",
+              "microfacets of Blender's Cycles: uncorrelated masking, one bounce between them"),
     MASU_HEADING("Samples"),
     MASU_UINT(options, paths, "paths", 1, 100000000, "paths per pixel"),
     MASU_UINT(options, seed, "seed", 0, UINT32_MAX, "another seed gives other noise"),
@@ -237,17 +241,28 @@ static int run_reference(const options *o, const char *path) {
     return code;
 }
 
+static int write_model_error(const options *o) {
+    FILE *file = fopen(o->model_error, "w");
+    if (!file) return masu_cli_error("%s: %s", o->model_error, strerror(errno));
+    fprintf(file, "# masu-lab reference --model-error FILE.csv --paths %u --seed %u\n", o->paths,
+            o->seed);
+    ref_model_error(file, o->paths, o->seed);
+    if (fclose(file)) return masu_cli_error("%s: %s", o->model_error, strerror(errno));
+    return MASU_CLI_OK;
+}
+
 static int run(masu_cli *cli) {
     long cores = sysconf(_SC_NPROCESSORS_ONLN);
     options o = {.size = {640, 360}, .paths = 64, .bounces = 16, .scale = 1, .fields_shadow = 2};
     masu_given given = {.most = 1, .excess = "expected one scene"};
     int code;
     if (!masu_options_read(cli, rows, &o, &given, &code)) return code;
+    if (o.model_error && !given.count) return write_model_error(&o);
     if (!given.count) return masu_cli_usage_error("no scene given: expected SCENE.masu");
     if (!o.output && !o.store && !o.errors)
         return masu_cli_usage_error("expected at least one of --output, --error, --store");
     if (!o.threads) o.threads = cores > 0 && cores < 64 ? (uint32_t)cores : 1;
-    ref_ggx_use_separable(o.separable);
+    ref_ggx_use_cycles(o.cycles);
     return run_reference(&o, given.arguments[0]);
 }
 

@@ -3,7 +3,8 @@
 
 #include <string.h>
 
-#define SMOOTHEST 0.045
+#define SMOOTHEST 0.045 /* Masu's */
+#define SMOOTHEST_WALKED 0.01
 
 /* cosine: with the base's normal; over: with the coat's, which decides what the coat returns and
  * covers. */
@@ -13,7 +14,7 @@ static ref_returned returned(const ref_bsdf *b, ref_albedo base, ref_albedo cove
     ref_returned r = {.white = through * base.white - less * covered.covered,
                       .weight = through * base.weight - less * covered.covered_weight,
                       .coat = c * (0.04 * coat.white + 0.96 * coat.weight)};
-    r.lost = fmax(1 - r.white - r.coat, 0);
+    if (!ref_ggx_is_cycles()) r.lost = fmax(1 - r.white - r.coat, 0);
     return r;
 }
 
@@ -25,7 +26,7 @@ static ref_returned returned_at(const ref_bsdf *b, double cosine, double over) {
 /* Light that leaves after several bounces, as a factor of what is lost. */
 static double rest_of(double f0, double f90, double white) {
     double f = f0 + (f90 - f0) / 21;
-    return f * f * white / (1 - f * (1 - white));
+    return f * f * (1.35 - 0.35 * f) * white / (1 - f * (1 - white));
 }
 
 /* Part of the light that the dielectric's layers return before the colour below. */
@@ -38,10 +39,10 @@ static double below(const ref_bsdf *b, const ref_returned *r) { return fmax(1 - 
 
 void ref_bsdf_make(ref_bsdf *b, const ref_surface *s, ref_vec v, bool walk) {
     memset(b, 0, sizeof *b);
-    b->walk = walk;
+    b->walk = walk && !ref_ggx_is_cycles();
     b->s = *s;
-    b->s.roughness = ref_clamp(s->roughness, SMOOTHEST, 1);
-    b->s.coat_roughness = ref_clamp(s->coat_roughness, SMOOTHEST, 1);
+    b->s.roughness = ref_clamp(s->roughness, b->walk ? SMOOTHEST_WALKED : SMOOTHEST, 1);
+    b->s.coat_roughness = ref_clamp(s->coat_roughness, b->walk ? SMOOTHEST_WALKED : SMOOTHEST, 1);
     b->base = ref_frame_of(s->normal);
     b->over = ref_frame_of(s->coat_normal);
     b->v = ref_to(&b->base, v);
@@ -102,19 +103,15 @@ static double through_coat(const ref_bsdf *b, double l_over) {
     return fmax(1 - b->s.coat * (b->line[0] + b->line[1] * steep), 0);
 }
 
-static ref_vec mirror_of(const ref_bsdf *b, ref_vec l, ref_random *r) {
+static ref_vec mirror_of(const ref_bsdf *b, ref_vec l) {
     ref_vec h = ref_unit(ref_add(b->v, l));
     ref_vec f = ref_fresnel_at(&b->mixed, ref_dot(b->v, h));
-    ref_vec once = ref_scale(f, ref_ggx_lobe(b->alpha, b->v, l));
-    if (!b->walk) return once;
-    double m = ref_clamp(b->s.metallic, 0, 1);
-    bool metal = false; /* a walk stays within one of the two shares */
-    if (m > 0) metal = ref_draw(r) < m;
-    return ref_add(once, ref_walk_multiple(b->alpha, metal ? &b->metal : &b->matte, b->v, l, r));
+    return ref_scale(f, ref_ggx_lobe(b->alpha, b->v, l));
 }
 
 ref_lobes ref_bsdf_eval(const ref_bsdf *b, ref_vec light, ref_random *r) {
     ref_lobes out;
+    if (b->walk) return ref_layers_eval(b, light, r);
     memset(&out, 0, sizeof out);
     ref_vec l = ref_to(&b->base, light), over = ref_to(&b->over, light);
     if (b->s.coat > 0 && over.z > 0) {
@@ -124,15 +121,12 @@ ref_lobes ref_bsdf_eval(const ref_bsdf *b, ref_vec light, ref_random *r) {
     }
     if (!(l.z > 0)) return out;
     double open = b->s.coat > 0 ? through_coat(b, ref_clamp(over.z, 0, 1)) : 1;
-    out.of[REF_BASE] = ref_scale(mirror_of(b, l, r), open);
+    out.of[REF_BASE] = ref_scale(mirror_of(b, l), open);
     ref_returned lit = returned_at(b, l.z, ref_clamp(over.z, 0, 1));
     double diffuse = (1 - ref_clamp(b->s.metallic, 0, 1)) * below(b, &b->seen) * below(b, &lit) /
                      fmax(below(b, &b->all), 1e-6);
-    ref_vec soft = ref_scale(b->s.albedo, diffuse);
-    if (!b->walk) {
-        double rest = b->seen.lost * lit.lost / fmax(b->all.lost, 1e-6);
-        soft = ref_add(soft, ref_scale(b->rest_color, rest));
-    }
+    double rest = b->seen.lost * lit.lost / fmax(b->all.lost, 1e-6);
+    ref_vec soft = ref_along(ref_scale(b->s.albedo, diffuse), rest, b->rest_color);
     out.of[REF_SOFT] = ref_scale(soft, l.z / REF_PI);
     return out;
 }

@@ -1,9 +1,9 @@
 /* bsdf.h: how a surface of the reference scatters light.
  *
  *   design   the closed model that Masu promises: GGX; what it loses by a product (Kulla and
- *            Conty 2017, with the square of Hill 2018); diffuse light below by a product (Kelemen
+ *            Conty 2017, coloured as in shaders/brdf); diffuse light below by a product (Kelemen
  *            and Szirmay-Kalos 2001); a clear coat that lets 1 - c (a + b max(s(v), s(l))) through
- *   physics  the same layers, but the light between facets by a random walk
+ *   physics  the same layers by random walks: between facets, through the layers, between layers
  *
  * The result is split into lobes, since Masu lights them differently: mirror of the base, mirror of
  * the coat, and soft: all that has no direction left. */
@@ -50,6 +50,10 @@ typedef struct ref_bsdf {
 void ref_bsdf_make(ref_bsdf *b, const ref_surface *s, ref_vec v, bool walk);
 /* f times the cosine, of light from l. `r` is drawn from in walks only. */
 ref_lobes ref_bsdf_eval(const ref_bsdf *b, ref_vec l, ref_random *r);
+/* Physics mode: the same, and a direction that a walk leaves by with f times the cosine over its
+ * density, at most 1. */
+ref_lobes ref_layers_eval(const ref_bsdf *b, ref_vec l, ref_random *r);
+bool ref_layers_sample(const ref_bsdf *b, ref_random *r, ref_vec *l, ref_vec *weight);
 /* Density of ref_bsdf_sample; of a walk an estimate, which weights two strategies as well. */
 double ref_bsdf_pdf(const ref_bsdf *b, ref_vec l);
 /* A direction and f times the cosine over its density; false: nothing is scattered that way. */

@@ -11,6 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#define EMISSIVE_MOST 65504.0
 enum { SOURCE_MOST = 4 << 20, SECONDS = 120, STEPS_MOST = 4000 };
 
 static bool compile(ref_field *f, const char *text, char *error, size_t size) {
@@ -172,7 +173,8 @@ void ref_field_surface(const ref_field *f, ref_vec p, ref_surface *s) {
     memset(s, 0, sizeof *s);
     s->albedo = ref_v(ref_clamp(m[0], 0, 1), ref_clamp(m[1], 0, 1), ref_clamp(m[2], 0, 1));
     s->roughness = ref_clamp(m[3], 0, 1);
-    s->emissive = ref_v(ref_clamp(m[4], 0, 16), ref_clamp(m[5], 0, 16), ref_clamp(m[6], 0, 16));
+    s->emissive = ref_v(ref_clamp(m[4], 0, EMISSIVE_MOST), ref_clamp(m[5], 0, EMISSIVE_MOST),
+                        ref_clamp(m[6], 0, EMISSIVE_MOST));
     s->metallic = ref_clamp(m[7], 0, 1);
     s->specular = 0.5;
     s->occlusion = 1;

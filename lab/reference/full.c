@@ -8,19 +8,18 @@ enum { ROULETTE_FROM = 3, STEPS_MOST = 4096 };
 
 static double power(double a, double b) { return a > 0 ? a * a / (a * a + b * b) : 0; }
 
-static bool is_open(const ref_tracer *t, const ref_hit *hit, ref_vec l) {
-    if (!(ref_dot(l, hit->ng) > 0)) return false;
-    return !ref_world_occluded(t->world, ref_world_leave(t->world, hit, l), l, HUGE_VAL,
-                               REF_RAY_NO_BLENDS);
+static ref_vec to_sky(const ref_tracer *t, const ref_hit *hit, ref_vec l) {
+    if (!(ref_dot(l, hit->ng) > 0)) return ref_splat(0);
+    return ref_unoccluded(t, ref_world_leave(t->world, hit, l), l, HUGE_VAL, 0);
 }
 
 /* To a point of another surface; aimed from where the ray starts, or a distant grazing one would
  * occlude itself. */
-static bool sees(const ref_tracer *t, const ref_hit *hit, ref_vec p) {
+static ref_vec to_point(const ref_tracer *t, const ref_hit *hit, ref_vec p) {
     ref_vec l = ref_sub(p, hit->p), from = ref_world_leave(t->world, hit, l), to = ref_sub(p, from);
     double d = ref_length(to), far = d * (1 - 1e-5) - 2e-6;
-    if (!(ref_dot(l, hit->ng) > 0) || !(far > 0)) return false;
-    return !ref_world_occluded(t->world, from, ref_scale(to, 1 / d), far, REF_RAY_NO_BLENDS);
+    if (!(ref_dot(l, hit->ng) > 0) || !(far > 0)) return ref_splat(0);
+    return ref_unoccluded(t, from, ref_scale(to, 1 / d), far, 0);
 }
 
 static void sample_map(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, ref_random *r,
@@ -28,9 +27,9 @@ static void sample_map(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *
     double pdf;
     ref_vec l = ref_sky_sample(t->sky, r, &pdf);
     ref_lobes f = ref_bsdf_eval(b, l, r);
-    if (!(ref_max(ref_lobes_sum(&f)) > 0) || !is_open(t, hit, l)) return;
+    if (!(ref_max(ref_lobes_sum(&f)) > 0)) return;
     double mis = power(pdf, t->bsdf_samples ? ref_bsdf_pdf(b, l) : 0);
-    ref_vec sky = ref_scale(ref_sky_at(t->sky, l), mis / pdf);
+    ref_vec sky = ref_scale(ref_mul(to_sky(t, hit, l), ref_sky_at(t->sky, l)), mis / pdf);
     for (int i = 0; i < REF_LOBES; i++) out->of[i] = ref_add(out->of[i], ref_mul(f.of[i], sky));
 }
 
@@ -63,10 +62,11 @@ static void sample_emitter(const ref_tracer *t, const ref_hit *hit, const ref_bs
     if (!(cosine > 1e-9)) return;
     if (s->materials[k->material].flags & MASU_MATERIAL_IS_SINGLE && facing > 0) return;
     ref_lobes f = ref_bsdf_eval(b, l, r);
-    if (!(ref_max(ref_lobes_sum(&f)) > 0) || !sees(t, hit, p)) return;
+    if (!(ref_max(ref_lobes_sum(&f)) > 0)) return;
     double pdf = s->emitter_pdf[triangle] * d2 / cosine;
     double mis = power(pdf, t->bsdf_samples ? ref_bsdf_pdf(b, l) : 0);
-    ref_vec light = ref_scale(ref_world_emission(t->world, triangle, u, v), mis / pdf);
+    ref_vec light = ref_mul(to_point(t, hit, p), ref_world_emission(t->world, triangle, u, v));
+    light = ref_scale(light, mis / pdf);
     for (int i = 0; i < REF_LOBES; i++) out->of[i] = ref_add(out->of[i], ref_mul(f.of[i], light));
 }
 

@@ -7,20 +7,31 @@
 #define SMOOTHEST 0.045
 enum { ROWS = 48, COLUMNS = 64, STEPS = 64 };
 
-static bool separable;
+static bool cycles;
 static pthread_once_t tables_once = PTHREAD_ONCE_INIT;
 static ref_albedo table[ROWS][COLUMNS], average[ROWS];
 static double line[ROWS][2];
 
-void ref_ggx_use_separable(bool on) { separable = on; }
+void ref_ggx_use_cycles(bool on) { cycles = on; }
+bool ref_ggx_is_cycles(void) { return cycles; }
 
 double ref_schlick(double cosine) {
     double f = 1 - ref_clamp(cosine, 0, 1), f2 = f * f;
     return f2 * f2 * f;
 }
 
+/* Unpolarised, at a dielectric of index 1.5; less 0.04, over 0.96. */
+static double dielectric(double cosine) {
+    double c = ref_clamp(cosine, 0, 1), g = sqrt(1.25 + c * c), a = (g - c) / (g + c);
+    double b = (c * (g + c) - 1) / (c * (g - c) + 1);
+    return (0.5 * a * a * (1 + b * b) - 0.04) / 0.96;
+}
+
+/* From 0 at normal incidence to 1 at a grazing one: what raises f0 to f90. */
+static double steepness(double cosine) { return cycles ? dielectric(cosine) : ref_schlick(cosine); }
+
 ref_vec ref_fresnel_at(const ref_fresnel *f, double cosine) {
-    double s = ref_schlick(cosine);
+    double s = steepness(cosine);
     return ref_add(ref_scale(f->f0, 1 - s), ref_splat(f->f90 * s));
 }
 
@@ -38,7 +49,7 @@ static double density(double alpha, ref_vec h) {
 
 static double masking(double alpha, double v, double l) {
     double a = ref_ggx_lambda(alpha, v), b = ref_ggx_lambda(alpha, l);
-    return separable ? 1 / ((1 + a) * (1 + b)) : 1 / (1 + a + b);
+    return cycles ? 1 / ((1 + a) * (1 + b)) : 1 / (1 + a + b);
 }
 
 double ref_ggx_lobe(double alpha, ref_vec v, ref_vec l) {
@@ -82,7 +93,7 @@ ref_albedo ref_ggx_integrate(double roughness, double cosine, int steps) {
             double v_h = ref_dot(v, h), l_z = 2 * v_h * h.z - mu;
             if (!(l_z > 0) || !(v_h > 0)) continue;
             double share = own * masking(alpha, mu, l_z) * wide / ((double)steps * steps);
-            double s = ref_schlick(v_h), t = ref_schlick(fmin(mu, l_z));
+            double s = steepness(v_h), t = ref_schlick(fmin(mu, l_z));
             sum.white += share;
             sum.weight += share * s;
             sum.covered += share * t;
@@ -142,9 +153,13 @@ static void fit_line(const ref_albedo *row, double out[2]) {
 static void make_tables(void) {
     for (int i = 0; i < ROWS; i++) {
         double roughness = SMOOTHEST + (1 - SMOOTHEST) * i / (ROWS - 1.0);
-        for (int k = 0; k < COLUMNS; k++)
+        for (int k = 0; k < COLUMNS; k++) {
             table[i][k] =
                 ref_ggx_integrate(roughness, cosine_of(k), k < COLUMNS / 4 ? STEPS : STEPS / 2);
+            /* Smooth lobes lose nearly nothing: less than nothing would cancel out in the average
+             * what they lose at grazing angles. */
+            table[i][k].white = fmin(table[i][k].white, 1);
+        }
         average[i] = average_of(table[i]);
         fit_line(table[i], line[i]);
     }

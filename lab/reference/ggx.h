@@ -8,9 +8,11 @@
 
 #include <stdbool.h>
 
-/* Uncorrelated masking G1(v) G1(l), as Cycles has it; for comparisons with it. Set before any
- * table. */
-void ref_ggx_use_separable(bool on);
+/* The microfacets of Blender's Cycles (Principled, metallic 1, distribution GGX), for comparisons
+ * with it: uncorrelated masking G1(v) G1(l), no light between facets, and the Fresnel term of a
+ * dielectric of index 1.5 scaled to begin at f0. Set before any table. */
+void ref_ggx_use_cycles(bool on);
+bool ref_ggx_is_cycles(void);
 
 double ref_schlick(double cosine); /* (1 - cosine)^5 */
 /* Heitz, JCGT 3-2, 2014: Lambda; of directions below the horizon too (then negative). */

@@ -10,7 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define EMISSIVE_MOST 16.0 /* what is not transparent emits at most this (docs/scene.md) */
 
 static bool out_of_memory(char *error, size_t size) {
     snprintf(error, size, "out of memory for the scene of the reference");
@@ -61,15 +60,10 @@ static bool read_materials(ref_scene *s) {
     bool good = keys && s->materials && s->textures;
     for (uint64_t i = 0; good && i < count; i++) {
         const masu_blob_material *m = &from[i];
-        bool blend = (m->flags & MASU_MATERIAL_IS_BLEND) != 0;
-        ref_vec emissive = ref_of(m->emissive);
-        if (!blend)
-            emissive = ref_v(fmin(emissive.x, EMISSIVE_MOST), fmin(emissive.y, EMISSIVE_MOST),
-                             fmin(emissive.z, EMISSIVE_MOST));
         s->materials[i] =
             (ref_material){.flags = m->flags,
                            .base = ref_of(m->base_color),
-                           .emissive = emissive,
+                           .emissive = ref_of(m->emissive),
                            .roughness = (double)m->roughness,
                            .metallic = (double)m->metallic,
                            .specular = (double)m->specular,
@@ -78,7 +72,7 @@ static bool read_materials(ref_scene *s) {
                            .opacity = (double)m->opacity,
                            .cutoff = (m->flags >> MASU_MATERIAL_CUTOFF_SHIFT & 0xFF) / 255.0,
                            .detail = {(double)m->detail[0], (double)m->detail[1]}};
-        s->blends = s->blends || blend;
+        s->blends = s->blends || (m->flags & MASU_MATERIAL_IS_BLEND);
         s->masks = s->masks || (m->flags & MASU_MATERIAL_IS_MASK);
         s->meso = s->meso || m->meso != MASU_BLOB_NONE;
         if (!(m->flags & MASU_MATERIAL_HAS_MAPS)) continue;

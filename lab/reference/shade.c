@@ -37,15 +37,8 @@ ref_pane ref_pane_of(const ref_look *look, const ref_bsdf *b) {
     return p;
 }
 
-/* Light that reaches a surface from a light source at the distance `far` along l. */
-static ref_vec visible(const ref_tracer *t, const ref_hit *hit, ref_vec l, double far,
-                       bool shadows) {
+ref_vec ref_unoccluded(const ref_tracer *t, ref_vec from, ref_vec l, double far, unsigned flags) {
     ref_vec left = ref_splat(1);
-    if (!shadows) return left;
-    if (!(ref_dot(l, hit->ng) > 0)) return ref_splat(0);
-    ref_vec from = ref_world_leave(t->world, hit, l);
-    unsigned flags =
-        (t->polygons_shadow ? 0u : REF_RAY_NO_TRIANGLES) | (t->field_shadows ? 0u : REF_RAY_NO_SDF);
     if (!t->physics || !t->world->scene->blends)
         return ref_splat(!ref_world_occluded(t->world, from, l, far, flags | REF_RAY_NO_BLENDS));
     for (int i = 0; i < LAYERS_MOST; i++) {
@@ -58,10 +51,20 @@ static ref_vec visible(const ref_tracer *t, const ref_hit *hit, ref_vec l, doubl
         ref_bsdf b;
         ref_bsdf_make(&b, &look.s, v, false);
         left = ref_mul(left, ref_pane_of(&look, &b).behind);
-        far -= next.t;
         from = ref_world_leave(t->world, &next, l);
+        far -= next.t + ref_length(ref_sub(from, next.p));
     }
     return ref_splat(0);
+}
+
+/* Light that reaches a surface from a light source at the distance `far` along l. */
+static ref_vec visible(const ref_tracer *t, const ref_hit *hit, ref_vec l, double far,
+                       bool shadows) {
+    if (!shadows) return ref_splat(1);
+    if (!(ref_dot(l, hit->ng) > 0)) return ref_splat(0);
+    unsigned flags =
+        (t->polygons_shadow ? 0u : REF_RAY_NO_TRIANGLES) | (t->field_shadows ? 0u : REF_RAY_NO_SDF);
+    return ref_unoccluded(t, ref_world_leave(t->world, hit, l), l, far, flags);
 }
 
 /* Adds the sun's light by lobe. */

@@ -59,6 +59,9 @@ typedef struct ref_pane {
     double soft, mirror, taken;
 } ref_pane;
 ref_pane ref_pane_of(const ref_look *look, const ref_bsdf *b);
+/* Part of the light from the distance `far` along l that arrives: transparent surfaces dim it in
+ * physics mode only. */
+ref_vec ref_unoccluded(const ref_tracer *t, ref_vec from, ref_vec l, double far, unsigned flags);
 
 ref_vec ref_direct(const ref_tracer *t, ref_vec from, ref_vec d, ref_random *r, int depth);
 ref_vec ref_full(const ref_tracer *t, ref_vec from, ref_vec d, ref_random *r);

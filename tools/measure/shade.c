@@ -74,7 +74,7 @@ static double lost(albedo a) { return fmax(1 - a.white, 0); }
 /* Colour of what leaves after more than one bounce. */
 static double rest_color(double f0, double f90, double average_lost) {
     double f = f0 + (f90 - f0) / 21;
-    return f * f * (1 - average_lost) / (1 - f * average_lost);
+    return f * f * (1.35 - 0.35 * f) * (1 - average_lost) / (1 - f * average_lost);
 }
 
 /* What the dielectric's share returns before its light reaches the base colour. */
