@@ -5,6 +5,10 @@
  * in it (Schied et al., "Spatiotemporal Variance-Guided Filtering", HPG 2017). So the filter goes away by
  * itself as the mean becomes better.
  *
+ * Fewer than five frames do not average out a ray that has met a lamp by chance: a firefly. Its luma is limited to the mean of its
+ * eight neighbours and some deviations of theirs, more of them with each frame; in the first frame it is also weighed as without
+ * rung.temporal, which has no frames to take a mean of.
+ *
  * Its radius is that of the lobe's picture on the surface (filter.glsl). The pattern is turned by the place
  * and not by the frame: what it leaves does not flicker.
  *
@@ -36,8 +40,9 @@ layout(set = MASU_SET_PASS, binding = 3, rgba16f) uniform writeonly image2D smoo
 
 const float widest = 12.0; /* texels */
 
-/* Deviation of the luma of a texel, from its 3x3: where no temporal accumulation tells, or too few frames. */
-float spread_around(ivec2 texel, masu_guide g, vec3 point, float width)
+/* Mean and deviation of the luma of the eight texels around one: where no temporal accumulation tells, or too few frames. Not of
+ * the texel itself: a firefly would vouch for itself. */
+vec2 spread_around(ivec2 texel, masu_guide g, vec3 point, float width)
 {
     ivec2 last = ivec2(pc.output_width, pc.output_height) - 1;
     float sum = 0.0;
@@ -46,7 +51,7 @@ float spread_around(ivec2 texel, masu_guide g, vec3 point, float width)
     masu_flat flat_here = masu_flat_through(point, g.normal);
     [[dont_unroll]] for (int k = 0; k < 9; k++) {
         ivec2 at = texel + ivec2(k % 3 - 1, k / 3 - 1);
-        if (any(lessThan(at, ivec2(0))) || any(greaterThan(at, last))) {
+        if (k == 4 || any(lessThan(at, ivec2(0))) || any(greaterThan(at, last))) {
             continue;
         }
         masu_guide o = masu_unpack_guide(texelFetch(guide_image, at, 0).rg);
@@ -58,8 +63,10 @@ float spread_around(ivec2 texel, masu_guide g, vec3 point, float width)
         squares += y * y;
         count += 1.0;
     }
-    count = max(count, 1.0);
-    return masu_sqrt(squares / count - (sum / count) * (sum / count));
+    if (!(count > 0.0)) {
+        return vec2(65504.0, 0.0);
+    }
+    return vec2(sum / count, masu_sqrt(squares / count - (sum / count) * (sum / count)));
 }
 
 void main()
@@ -84,12 +91,16 @@ void main()
                     far = masu_age_far(age);
                     frames = max(masu_age_frames(age), 1.0);
                 }
-                float sigma;
+                float luma_width = max(push.luma_width, 2.0 / (frames * frames)), sigma;
                 if (push.temporal != 0u && frames > 4.0) {
                     sigma = masu_sqrt(masu_sane(own.a, 0.0, 65504.0) - y * y) *
                             masu_rsqrt(min(frames, 2.0 / masu_time_share(float(push.frames))));
                 } else {
-                    sigma = spread_around(ivec2(texel), g, point, width);
+                    vec2 spread = spread_around(ivec2(texel), g, point, width);
+                    sigma = spread.y;
+                    float most = spread.x + frames * (frames + 1.0) * sigma;
+                    color *= y > most ? most / y : 1.0;
+                    y = min(y, most);
                 }
                 float curvature = masu_guide_curvature(guide_image, ivec2(texel), g, point);
                 float radius = masu_specular_reach(g, point, far, curvature);
@@ -116,7 +127,7 @@ void main()
                     }
                     float off = masu_specular_off(flat_here, uvec2(at), o) * narrow;
                     vec3 other = masu_tamed(texelFetch(light_image, at, 0).rgb);
-                    float luma = abs(masu_luma(other) - y) / (push.luma_width * sigma + 1e-4);
+                    float luma = abs(masu_luma(other) - y) / (luma_width * sigma + 1e-4);
                     float alike = masu_pow(max(dot(o.normal, g.normal), 0.0), 64.0);
                     float weight = alike * masu_exp2(-2.0 * off * off - luma - 2.0 * share);
                     sum += weight * vec4(other, 1.0);

@@ -23,6 +23,12 @@
  *      (1.5 below full size). The weight falls with speed and with the change of view depth: a
  *      surface that comes closer was smaller in the history.
  *
+ *   5. Missed surfaces: samples may miss a surface thinner than a pixel for frames. If the
+ *      previous frame had a thin surface here (temporal_keep.comp), its velocity brings it here,
+ *      and nothing as near is among the 3x3 samples, then the pixel keeps the surface's history
+ *      if that differs from the samples: not clamped to them, with the weight of a moving pixel.
+ *      Otherwise the frames that hit it would be averaged with histories that have lost it.
+ *
  * upscale/found.glsl defines the two 32-bit values of the result.
  *
  * Push constants: output_* = the render size; push.history_* = used part of `history` / size of
@@ -37,8 +43,8 @@
 #include "shared/globals.glsl"
 #include "shared/store.glsl"
 #include "shared/motion.glsl"
-#include "upscale/corners.glsl"
 #include "upscale/found.glsl"
+#include "upscale/corners.glsl"
 #include "upscale/mean.glsl"
 
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
@@ -83,17 +89,7 @@ around depths_around(ivec2 at, ivec2 size)
     found.nearest = masu_most_of(c);
     found.farthest = masu_least_of(c);
     found.slope = min(abs(c.left - c.own), abs(c.right - c.own)) + min(abs(c.above - c.own), abs(c.below - c.own));
-    /* Of several the one that the pixel has a side in common with. None lies beyond the picture: what is repeated there is
-     * the pixel, or has a side in common with it. */
-    uint way = masu_found_way(1, 1);
-    way = c.diagonal.z == found.nearest ? masu_found_way(-1, 1) : way;
-    way = c.diagonal.y == found.nearest ? masu_found_way(1, -1) : way;
-    way = c.diagonal.x == found.nearest ? masu_found_way(-1, -1) : way;
-    way = c.below == found.nearest ? masu_found_way(0, 1) : way;
-    way = c.above == found.nearest ? masu_found_way(0, -1) : way;
-    way = c.right == found.nearest ? masu_found_way(1, 0) : way;
-    way = c.left == found.nearest ? masu_found_way(-1, 0) : way;
-    found.way = c.own == found.nearest ? masu_found_way(0, 0) : way;
+    found.way = masu_way_to(c, found.nearest);
     return found;
 }
 
@@ -110,17 +106,35 @@ vec4 motion_at(ivec2 at, vec2 place, around a, vec2 size, out bool of_front)
     return vec4(moved.xy + frame.shifts.zw, moved.zw);
 }
 
-/* Rule 2. before: position in the previous frame, 0..1. growth: relative change of view depth. */
-bool is_known(vec2 before, around a, float growth)
+/* The four depths that the previous frame stored around a position in it, 0..1. */
+vec4 depths_before(vec2 before)
 {
     vec2 size = vec2(frame.temporal.xy);
     vec2 place = (before - 0.5 * previous.jitter.zw) * size;
     vec2 inside = min(max(place, vec2(1.0)), size - 1.0); /* of a size of 1 it is the same texel four times */
-    vec4 depths = textureGather(old_depth_image, inside * vec2(push.then_x, push.then_y));
+    return textureGather(old_depth_image, inside * vec2(push.then_x, push.then_y));
+}
+
+/* Rule 2. growth: relative change of view depth. */
+bool is_known(vec4 depths, around a, float growth)
+{
     /* Distances are those of `depths`, times `now`, and those of now, times `then`; NaN is not known. */
     float then = previous.forward.w, now = frame.forward.w * (1.0 + growth);
     float off = (same_depth * a.nearest + 2.0 * a.slope) * then;
     return masu_least_of(depths) * now <= a.nearest * then + off && masu_most_of(depths) * now >= a.farthest * then - off;
+}
+
+/* Whether a depth of the previous frame lies in front of all that this frame's samples show. */
+bool is_gone(float depth, around a)
+{
+    return depth * frame.forward.w > (1.0 + apart) * a.nearest * previous.forward.w;
+}
+
+/* Rule 5: of such a depth the bits of masu_thin; 0: its surface is not thin. */
+uint thin_of(float depth)
+{
+    uint bits = floatBitsToUint(depth) & masu_thin_bits;
+    return (bits & masu_thin_lives) != 0u ? bits : 0u;
 }
 
 colors colors_around(ivec2 at, ivec2 last)
@@ -141,9 +155,10 @@ colors colors_around(ivec2 at, ivec2 last)
     return c;
 }
 
-/* Whether the history around is no longer what the nine samples show. Of light: the mean of squares is that of the roots,
- * squared, and their variance; light deviates by as much as a root that is a deviation off the mean. */
-bool is_other(vec2 before, colors c)
+/* Whether the history around is no longer what the nine samples show; off: by how much it is brighter. Of light: the mean of
+ * squares is that of the roots, squared, and their variance; light deviates by as much as a root that is a deviation off the
+ * mean. */
+bool is_other(vec2 before, colors c, out vec3 off)
 {
     vec2 shown = vec2(push.history_x, push.history_y), half_texel = 0.5 * shown * vec2(push.pixel_x, push.pixel_y);
     vec2 inside = min(max(before * shown, half_texel), max(shown - 2.0 * half_texel, half_texel));
@@ -154,7 +169,8 @@ bool is_other(vec2 before, colors c)
         sum += textureLod(history_image, vec3(corner, masu_layer_before()), 0.0).rgb;
     }
     vec3 mean = c.mean * c.mean + c.deviation * c.deviation;
-    return any(greaterThan(abs(0.25 * sum - mean), c.deviation * (2.0 * c.mean + c.deviation) + unseen));
+    off = 0.25 * sum - mean;
+    return any(greaterThan(abs(off), c.deviation * (2.0 * c.mean + c.deviation) + unseen));
 }
 
 uvec2 found_at(ivec2 at, vec2 size)
@@ -170,22 +186,45 @@ uvec2 found_at(ivec2 at, vec2 size)
     bool there = frame.temporal.x != 0u && moved.w > 0.0 && all(greaterThanEqual(before, vec2(0.0))) &&
                  all(lessThanEqual(before, vec2(1.0)));
     /* Where nothing has moved it is what it was, though this frame's samples may miss it: a wire. */
-    if (!there || !((rests && !changes) || is_known(before, a, moved.z))) {
-        return uvec2(0u);
-    }
-    if (rests && !changes) {
+    if (there && rests && !changes) {
         return masu_found(masu_found_stays, most_at_rest, vec3(0.0), vec3(1.0));
     }
+    vec4 depths = depths_before(before);
+    bool gone = is_gone(masu_most_of(depths), a);
+    uint thin = gone && there && frame.temporal.xy == uvec2(size) ? thin_of(masu_most_of(depths)) : 0u;
+    vec2 moved_thin = masu_thin_motion(thin);
+    if (thin != 0u) {
+        vec2 left = (place + frame.shifts.xy + moved_thin) * vec2(push.pixel_x, push.pixel_y);
+        vec2 texel = clamp((left - 0.5 * previous.jitter.zw) * size, vec2(0.0), size - 1.0);
+        float depth = texelFetch(old_depth_image, ivec2(texel), 0).r;
+        bool within = all(greaterThanEqual(left, vec2(0.0))) && all(lessThanEqual(left, vec2(1.0)));
+        thin = within && is_gone(depth, a) ? thin_of(depth) : 0u;
+        before = thin != 0u ? left : before;
+    }
+    bool known = there && is_known(depths, a, moved.z);
+    if (!known && thin == 0u) {
+        return uvec2(0u);
+    }
     colors c = colors_around(at, ivec2(size) - 1);
-    bool other = rests && changes && is_other(before, c);
+    vec3 off = vec3(0.0);
+    bool other = ((rests && changes) || thin != 0u) && is_other(before, c, off);
+    float most = push.shift > 0.0 ? most_moving_whole : most_moving;
+    if (thin != 0u && other) {
+        vec3 least = mix(vec3(0.0), c.least * c.least, greaterThan(off, vec3(0.0))); /* the cubic overshoots beside it */
+        return masu_found_thin(thin, most / (1.0 + per_pixel * length(moved_thin)), least);
+    }
+    if (!known) {
+        return uvec2(0u);
+    }
+    other = other || (rests && gone); /* what has left may show a little */
     vec3 within = (rests ? deviations_at_rest : deviations) * c.deviation;
-    vec3 least = max(c.least, c.mean - within), most = min(c.most, c.mean + within);
-    float moving = (push.shift > 0.0 ? most_moving_whole : most_moving) / (1.0 + per_growth * abs(moved.z) + per_pixel * speed);
+    vec3 low = max(c.least, c.mean - within), high = min(c.most, c.mean + within);
+    float moving = most / (1.0 + per_growth * abs(moved.z) + per_pixel * speed);
     float resting = changes ? most_changing : most_at_rest;
     float count = other ? most_other : mix(resting, moving, min(16.0 * speed, 1.0));
     bool held = other || !rests;
-    return masu_found(of_front ? a.way : masu_found_linear, count, held ? least * least : vec3(0.0),
-                      held ? most * most : vec3(1.0));
+    return masu_found(of_front ? a.way : masu_found_linear, count, held ? low * low : vec3(0.0),
+                      held ? high * high : vec3(1.0));
 }
 
 void main()

@@ -1,6 +1,8 @@
 /*
  * temporal_keep.comp: of each pixel the nearest depth of 3x3, for the next frame's temporal_find.comp: a pixel that a
- * silhouette is near belongs to what is in front.
+ * silhouette is near belongs to what is in front. If that is a surface one pixel wide, which the next frame's samples may
+ * miss, the lowest bits of the depth hold its velocity (masu_thin in upscale/found.glsl): all of it that remains then. A
+ * surface that this frame has missed is kept on, a little in front of what the samples show instead.
  *
  * Push constants: output_* = the render size; push.depth_*: 1 / size of the image of depths.
  */
@@ -8,22 +10,52 @@
 #extension GL_GOOGLE_include_directive : require
 #include "push/temporal_keep.h"
 #include "shared/types.h"
-#include "shared/push.glsl"
+#include "shared/frame.h"
+#include "shared/globals.glsl"
 #include "shared/store.glsl"
+#include "upscale/found.glsl"
 #include "upscale/corners.glsl"
 
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D depth_image;
-layout(set = MASU_SET_PASS, binding = 1, r32f) uniform writeonly image2D kept_image;
+layout(set = MASU_SET_PASS, binding = 1) uniform usampler2D found_image;
+layout(set = MASU_SET_PASS, binding = 2) uniform sampler2D velocity_image;
+layout(set = MASU_SET_PASS, binding = 3, r32f) uniform writeonly image2D kept_image;
+
+const float apart = 0.1; /* of the nearest depth: a silhouette, as in temporal_find.comp */
+const float in_front = 1.2;
+
+/* The bits of masu_thin of the texel `at`; 0 if it is not one pixel wide, or stands still. */
+uint thin_at(ivec2 at, float depth, vec2 size, vec2 texel)
+{
+    vec4 before = masu_corner(depth_image, vec2(at), size, texel);
+    vec4 after = masu_corner(depth_image, vec2(at) + 1.0, size, texel);
+    vec2 beside = vec2(max(before.x, after.z), max(before.z, after.x));
+    vec4 moved = texelFetch(velocity_image, at, 0);
+    moved.xy += frame.shifts.zw;
+    float speed = max(abs(moved.x), abs(moved.y));
+    bool thin = min(beside.x, beside.y) < (1.0 - apart) * depth && moved.w > 0.0;
+    return thin && speed > 0.02 && speed <= masu_thin_fastest ? masu_thin(moved.xy, masu_thin_lives) : 0u;
+}
 
 void main()
 {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    ivec2 size = ivec2(pc.output_width, pc.output_height);
-    if (all(lessThan(at, size))) {
-        vec2 texel = vec2(push.depth_x, push.depth_y);
-        float nearest = masu_most_of(masu_corners_of(depth_image, vec2(at), vec2(size), texel));
-        MASU_STORE_SAFE(kept_image, at, vec4(nearest));
+    vec2 size = vec2(pc.output_width, pc.output_height), texel = vec2(push.depth_x, push.depth_y);
+    if (any(greaterThanEqual(vec2(at), size))) {
+        return;
     }
+    masu_corners c = masu_corners_of(depth_image, vec2(at), size, texel);
+    float nearest = masu_most_of(c);
+    uint thin = 0u;
+    uvec2 found = texelFetch(found_image, at, 0).xy;
+    if (masu_is_missed(found)) {
+        thin = masu_thin_of(found) - 1u;
+        nearest = max(in_front * nearest, 1e-6);
+    } else if (nearest - masu_least_of(c) > apart * nearest) {
+        thin = thin_at(at + masu_found_beside(masu_way_to(c, nearest)), nearest, size, texel);
+    }
+    uint replaced = (thin & masu_thin_lives) != 0u ? masu_thin_bits : masu_thin_lives;
+    MASU_STORE_SAFE(kept_image, at, vec4(uintBitsToFloat((floatBitsToUint(nearest) & ~replaced) | (thin & replaced))));
 }

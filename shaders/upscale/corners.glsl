@@ -40,6 +40,21 @@ float masu_most_of(masu_corners c)
     return max(max(masu_most_of(c.diagonal), masu_most_of(vec4(c.left, c.right, c.above, c.below))), c.own);
 }
 
+/* The way to the nearest, of found.glsl: of several the one that the pixel has a side in common with. None lies beyond the
+ * picture: what is repeated there is the pixel, or has a side in common with it. */
+uint masu_way_to(masu_corners c, float nearest)
+{
+    uint way = masu_found_way(1, 1);
+    way = c.diagonal.z == nearest ? masu_found_way(-1, 1) : way;
+    way = c.diagonal.y == nearest ? masu_found_way(1, -1) : way;
+    way = c.diagonal.x == nearest ? masu_found_way(-1, -1) : way;
+    way = c.below == nearest ? masu_found_way(0, 1) : way;
+    way = c.above == nearest ? masu_found_way(0, -1) : way;
+    way = c.right == nearest ? masu_found_way(1, 0) : way;
+    way = c.left == nearest ? masu_found_way(-1, 0) : way;
+    return c.own == nearest ? masu_found_way(0, 0) : way;
+}
+
 float masu_least_of(masu_corners c)
 {
     return min(min(masu_least_of(c.diagonal), masu_least_of(vec4(c.left, c.right, c.above, c.below))), c.own);

@@ -5,15 +5,18 @@
  *                      float, of 2^-15 to 1; the rest of it cut off. Black is 2^-15, a tenth of a step of 8 bits
  *       bits 27 to 31  how many samples it counts at most: bits 21 to 25 of that float, of 5/32 to 28; 0: there is none
  *   y   bits 0 to 26   the same of the most; the rest of it rounded up
- *       bits 27 to 31  where it was. 0: by the velocity at the place; 31: in the same place; else by that of a texel beside,
- *                      bits 27 and 28 of which say how far to the right, 1 to 3 less 2, and bits 29 and 30 how far below, 0 to
- *                      2 less 1
+ *       bits 27 to 31  where it was. 0: by the velocity at the place; 31: in the same place; 30: by a velocity that stands in
+ *                      this value; else by that of a texel beside, bits 27 and 28 of which say how far to the right, 1 to 3
+ *                      less 2, and bits 29 and 30 how far below, 0 to 2 less 1
+ *
+ * 30 is a thin surface that this frame's samples have missed (temporal_find.comp, rule 5). It is not clamped from above: the
+ * lowest 5 bits of the three colours of y, which are white with and without them, hold the 15 of masu_thin.
  */
 #ifndef MASU_FOUND_GLSL
 #define MASU_FOUND_GLSL
 
 const float masu_found_most = 28.0;
-const uint masu_found_linear = 0u, masu_found_stays = 31u;
+const uint masu_found_linear = 0u, masu_found_missed = 30u, masu_found_stays = 31u;
 
 /* The texel whose velocity is that of the pixel: -1, 0 or 1 to the right and below. */
 uint masu_found_way(int right, int below)
@@ -38,6 +41,39 @@ uvec2 masu_found(uint way, float count, vec3 least, vec3 most)
 {
     uint level = (floatBitsToUint(clamp(count, 0.15625, masu_found_most)) - 0x3E000000u + 0x100000u) >> 21;
     return uvec2(masu_found_color(least, 0u) | level << 27, masu_found_color(most, 0x3FFFFu) | way << 27);
+}
+
+/* A thin surface, as the lowest 15 bits of its depth in `history_depth` and as the lowest of `found` hold it: bits 0 to 2 how
+ * many frames may miss it, 0: it is not thin; bits 3 to 8 and 9 to 14 its velocity, quarters of a pixel of the render size. */
+const uint masu_thin_lives = 7u, masu_thin_bits = 0x7FFFu;
+const float masu_thin_fastest = 7.75; /* pixels of the render size */
+
+uint masu_thin(vec2 moved, uint lives)
+{
+    uvec2 quarters = uvec2(moved * 4.0 + 32.5);
+    return lives | quarters.x << 3 | quarters.y << 9;
+}
+
+vec2 masu_thin_motion(uint thin)
+{
+    return vec2(uvec2(thin >> 3, thin >> 9) & 63u) * 0.25 - 8.0;
+}
+
+/* What `found` says of a missed surface, and back. */
+uvec2 masu_found_thin(uint thin, float count, vec3 least)
+{
+    uvec2 found = masu_found(masu_found_missed, count, least, vec3(1.0));
+    return uvec2(found.x, found.y | (thin & 31u) | (thin >> 5 & 31u) << 9 | thin >> 10 << 18);
+}
+
+uint masu_thin_of(uvec2 found)
+{
+    return (found.y & 31u) | (found.y >> 9 & 31u) << 5 | (found.y >> 18 & 31u) << 10;
+}
+
+bool masu_is_missed(uvec2 found)
+{
+    return found.y >> 27 == masu_found_missed;
 }
 
 bool masu_is_found(uvec2 found)

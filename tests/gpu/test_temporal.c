@@ -47,6 +47,11 @@ static double rms(const uint8_t *x, const uint8_t *y) {
     return sqrt(sum / (3.0 * PIXELS));
 }
 
+static double linear_of(uint8_t byte) {
+    const double v = byte / 255.0;
+    return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
+}
+
 /* The truth of a scene, whose ball may stand elsewhere. The one that was found last is not found again. */
 static struct {
     const char *scene;
@@ -167,6 +172,38 @@ static void in_motion_it_is_no_worse(void **state) {
         double with = rms(a.rgba, truth.rgba), without = rms(b.rgba, truth.rgba);
         print_message("  scale %.2f: rms %.2f of 255, without a past %.2f\n", (double)scales[i], with, without);
         assert_true(with < 0.8 * without);
+        close_session(&s);
+    }
+}
+
+/* A white rod half a pixel wide passes a wall at 1.3 pixels a frame: most frames of half size miss it. Its light in linear steps of
+ * display, less the wall's, is its area of pixels, (1 - wall) each. Twelve frames after it has gone,
+ * nothing is left. */
+static void a_thin_rod_in_motion_keeps_its_light(void **state) {
+    (void)state;
+    const double pixel = 2.0 * 10.0 * tan(20.0 * acos(-1.0) / 180.0) / SIZE; /* metres, where the rod is */
+    for (uint32_t half = 0; half < 2; half++) {
+        masu_session s;
+        masu_session_desc d = temporal_desc("test_rod", half ? 0.5f : 1.0f);
+        double sum = 0.0, expected = 0.0;
+        open_session(&s, &d);
+        /* There, back and there again: in 40 frames the jitter hits it too often or too seldom. */
+        for (int k = 0; k < 144; k++) {
+            const int way = k < 48 ? k : k < 96 ? 96 - k : k - 96;
+            move_instance(&s, "rod", (float)(1.3 * pixel * (way - 24)), 0.0f, 0.0f, 1.0f);
+            frames(&s, 1, (masu_frame_desc){0}, a.rgba);
+            for (uint32_t y = 30; y < 66 && k >= 8; y++) {
+                const double wall = linear_of(a.rgba[4 * (SIZE * y + 2)]);
+                for (uint32_t x = 0; x < SIZE; x++) sum += linear_of(a.rgba[4 * (SIZE * y + x)]) - wall;
+                expected += 0.5 * (1.0 - wall);
+            }
+        }
+        print_message("  scale %.1f: %.3f of the rod's light\n", half ? 0.5 : 1.0, sum / expected);
+        assert_true(sum > 0.8 * expected && sum < 1.2 * expected);
+        move_instance(&s, "rod", 0.0f, 0.0f, -20.0f, 1.0f);
+        frames(&s, 12, (masu_frame_desc){0}, a.rgba);
+        frames(&s, 40, (masu_frame_desc){0}, b.rgba);
+        assert_in_range(max_difference(a.rgba, b.rgba, BYTES), 0, 2);
         close_session(&s);
     }
 }
@@ -407,9 +444,9 @@ static void twice_the_size_is_the_same(void **state) {
             }
             print_message("  scale %.3f, resizable %u, halves %u: %u of %d bytes differ, by %u at most\n",
                           (double)ways[k].scale, ways[k].resizable, ways[k].halves, others, BYTES, most);
-            /* Halves are coarser: up to a tenth of a step of what is shown. While the view moves it is sharpened more: on
-             * SwiftShader one byte of one step becomes two. */
-            assert_true(most <= (i ? 1 : 2) && twos <= (i ? 0 : 1));
+            /* Halves are coarser: up to a tenth of a step of what is shown. While the view moves, the history of a thin surface
+             * that the samples miss is kept if it differs by more than a threshold, which a texel or two are at. */
+            assert_true(most <= (i ? 1 : 8) && twos <= (i ? 0 : 48));
             assert_true(others < (ways[k].halves ? BYTES / 5 : BYTES / 50));
         }
     }
@@ -635,6 +672,7 @@ int main(void) {
         cmocka_unit_test(a_frame_left_out_without_a_cut_shows_no_old_memory),
         cmocka_unit_test(at_rest_it_comes_near_the_truth),
         cmocka_unit_test(in_motion_it_is_no_worse),
+        cmocka_unit_test(a_thin_rod_in_motion_keeps_its_light),
         cmocka_unit_test(a_change_of_scale_keeps_the_past), /* of the same truth */
         cmocka_unit_test(what_leaves_leaves_no_ghost),
         cmocka_unit_test(smoke_leaves_no_trail),
