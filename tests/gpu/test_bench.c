@@ -5,6 +5,8 @@
 #include "support/support.h"
 #include "support/cli.h"
 
+#include "image.h"
+#include "metric/image.h"
 #include "settings/ladder.h"
 #include "bench/report.h"
 #include "bench/sweep.h"
@@ -159,6 +161,32 @@ static void check_rows(const char *folder, uint32_t least) {
     free(rows);
 }
 
+static uint8_t *picture_at_rest(const char *folder, const char *setting, struct masu_image *size) {
+    char path[512], error[1024];
+    snprintf(path, sizeof path, "%s/%s/pictures/%s.rest.png", scratch, folder, setting);
+    if (!masu_file_exists(path)) snprintf(path, sizeof path, "%s/%s/pictures/%s.png", scratch, folder, setting);
+    if (!masu_image_load_png(path, size, error, sizeof error)) fail_msg("%s", error);
+    return size->rgba;
+}
+
+/* Those that are no jump from the one before. */
+static uint32_t without_jumps(const char *folder, const masu_row *rows, uint32_t *rungs, uint32_t n) {
+    uint32_t kept = 0;
+    struct masu_image before = {0}, shown = {0};
+    for (uint32_t i = 0; i < n; i++) {
+        const uint8_t *pixels = picture_at_rest(folder, rows[rungs[i]].setting, &shown);
+        if (i && masu_metric_difference(pixels, before.rgba, shown.width, shown.height) > MASU_LADDER_STEP) {
+            masu_image_free(&shown);
+            continue;
+        }
+        masu_image_free(&before);
+        before = shown;
+        rungs[kept++] = rungs[i];
+    }
+    masu_image_free(&before);
+    return kept;
+}
+
 /* The rungs of ladder.json are those of the rows, each with all knobs. */
 static void check_ladder(const char *folder) {
     uint32_t count, rungs[MASU_SETTINGS_MOST];
@@ -178,6 +206,7 @@ static void check_ladder(const char *folder) {
     }
     uint32_t n = masu_ladder_rungs(points, count, MASU_LADDER_APART, MASU_LADDER_BETTER,
                                    MASU_MAX_RUNGS, rungs);
+    n = without_jumps(folder, rows, rungs, n);
     assert_true(n >= 1);
     assert_int_equal(json_array_size(list), n);
     double before = HUGE_VAL;
