@@ -312,7 +312,11 @@ static int write_costs(const char *scene, const char *folder, double time) {
     uint32_t count = 0, part[MASU_MAX_RUNGS];
     size_t bytes = 0;
     masu_row *rows = masu_sweep_rows(folder, &count, error, sizeof error);
-    if (!rows) return masu_cli_error("%s", error);
+    if (rows && !count) snprintf(error, sizeof error, "%.2000s: no setting is measured", folder);
+    if (!rows || !count) {
+        free(rows);
+        return masu_cli_error("%s", error);
+    }
     FILE *f = open_memstream(&text, &bytes);
     int code = f && masu_sweep_path(folder, MASU_COSTS, path) && masu_sweep_path(folder, "costs.json", part_path)
                    ? MASU_CLI_OK
