@@ -86,8 +86,8 @@ include packages.mk shaders/shaders.mk src/src.mk platform/platform.mk tools/too
 
 # Classes of scenes, and the folder that each one's ladder was measured into; folders that do not exist are skipped. A
 # class without a folder has the ladder of the nearest class: worlds-city shows a place in the shade, where two cascades
-# instead of four cost no quality; city_shadows and forza have no rungs by computed costs yet.
-LADDERS ?= polygons=textures both=engine polygons-traced=mirrors both-traced=wet_city
+# instead of four cost no quality; forza has no rungs by computed costs yet.
+LADDERS ?= polygons=textures sdf=city_shadows both=engine polygons-traced=mirrors both-traced=wet_city
 LADDER_FOLDER ?= docs/report
 ladder_scene = $(call bench_file,$(lastword $(subst =, ,$(1)))).masu
 # A name is that of a scene or of a world; where both have it, the scene's: worlds/city is the other. The folder march

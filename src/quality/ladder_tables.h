@@ -29,6 +29,31 @@ static const masu_ladder measured[MASU_SCENE_CLASSES] = {
               0.0535685f, 0.0684168f, 0.0800478f, 0.0980399f,
               0.107431f, 0.123323f},
         },
+    [MASU_SCENE_SDF] =
+        {.from = "city_shadows.masu, 640x360, "
+         "llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe, Mesa 22.3.6 (LLVM 15.0.6), Vulkan 1.3.230, "
+         "by computed costs, 2026-11-28",
+         .count = 11,
+         .rungs = {
+              {.scale = 1.0f, .sharpness = 0.2f, .temporal = MASU_ON},
+              {.scale = 0.875f, .sharpness = 0.2f, .temporal = MASU_ON},
+              {.scale = 0.75f, .sharpness = 0.2f, .temporal = MASU_ON},
+              {.scale = 0.625f, .sharpness = 0.2f, .temporal = MASU_ON},
+              {.scale = 0.5f, .sharpness = 0.2f, .temporal = MASU_ON},
+              {.scale = 0.4f, .sharpness = 0.2f, .temporal = MASU_ON},
+              {.scale = 0.35f, .sharpness = 0.2f, .temporal = MASU_ON},
+              {.scale = 0.3f, .sharpness = 0.2f, .temporal = MASU_ON},
+              {.scale = 0.25f, .sharpness = 0.2f, .temporal = MASU_ON},
+              {.scale = 0.22f, .sharpness = 0.2f, .temporal = MASU_ON},
+              {.scale = 0.2f, .sharpness = 0.2f, .temporal = MASU_ON},
+         },
+         .ratios = {1.05604f, 0.812456f, 0.603204f, 0.42489f,
+              0.277825f, 0.188414f, 0.149365f, 0.116695f,
+              0.0886084f, 0.073888f, 0.0648196f},
+         .flips = {0.0108876f, 0.0127294f, 0.0143037f, 0.0173312f,
+              0.0214066f, 0.0272012f, 0.031357f, 0.0387377f,
+              0.0472198f, 0.0565669f, 0.0654268f},
+        },
     [MASU_SCENE_BOTH] =
         {.from = "engine.masu, 640x360, "
          "llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe, Mesa 22.3.6 (LLVM 15.0.6), Vulkan 1.3.230, "
