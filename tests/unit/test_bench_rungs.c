@@ -1,5 +1,5 @@
-/* test_bench_rungs.c: which settings of a folder of `masu bench` become rungs, from pictures and costs that are made
- * here: no rung is a jump from the one before, and none is dominated on a class of GPUs. */
+/* test_bench_rungs.c: which settings of a folder of `masu bench` become rungs, from pictures and costs
+ * that are made here: no rung is a jump from the one before, and none is dominated on a class of GPUs. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -26,7 +26,8 @@ enum { SIDE = 8 };
 static const struct {
     const char *setting;
     uint8_t motion, rest;
-} made[] = {{"base", 100, 100}, {"scale=0.75", 180, 102}, {"scale=0.5", 101, 120}, {"scale=0.4", 103, 105}};
+} made[] = {
+    {"base", 100, 100}, {"scale=0.75", 180, 102}, {"scale=0.5", 101, 120}, {"scale=0.4", 103, 105}};
 enum { MADE = sizeof made / sizeof *made };
 
 static void make_picture(const char *setting, const char *suffix, uint8_t gray) {
@@ -34,17 +35,21 @@ static void make_picture(const char *setting, const char *suffix, uint8_t gray) 
     char name[256], error[512];
     memset(rgba, gray, sizeof rgba);
     snprintf(name, sizeof name, "f/pictures/%s%s.png", setting, suffix);
-    if (!masu_image_save_png(in_scratch(name), rgba, SIDE, SIDE, 0, error, sizeof error)) fail_msg("%s", error);
+    if (!masu_image_save_png(in_scratch(name), rgba, SIDE, SIDE, 0, error, sizeof error))
+        fail_msg("%s", error);
 }
 
 static void make_folder(void) {
     mkdir(in_scratch("f"), 0777);
     mkdir(in_scratch("f/pictures"), 0777);
     (void)remove(in_scratch("f/" MASU_COSTS));
-    FILE *sweep = fopen(in_scratch("f/sweep.json"), "w"), *rows = fopen(in_scratch("f/results.csv"), "w");
+    FILE *sweep = fopen(in_scratch("f/sweep.json"), "w"),
+         *rows = fopen(in_scratch("f/results.csv"), "w");
     assert_true(sweep && rows);
-    fprintf(sweep, "{\"scene\": \"a.masu\", \"hash\": \"0\", \"driver\": \"D\", \"depth\": \"-\", \"width\": %d, \"height\": "
-                   "%d, \"time\": 1.0, \"dropped\": [], \"settings\": [",
+    fprintf(sweep,
+            "{\"scene\": \"a.masu\", \"hash\": \"0\", \"driver\": \"D\", \"depth\": \"-\", "
+            "\"width\": %d, \"height\": "
+            "%d, \"time\": 1.0, \"dropped\": [], \"settings\": [",
             SIDE, SIDE);
     assert_true(masu_rows_header(rows) > 0);
     for (int i = 0; i < MADE; i++) {
@@ -56,8 +61,8 @@ static void make_folder(void) {
         row.ratio = row.gpu_ratio = 1.0 - 0.2 * i;
         row.flip = row.rest_flip = 0.1 * (i + 1);
         assert_true(masu_rows_write(rows, &row) > 0);
-        fprintf(sweep, "%s{\"setting\": \"%s\", \"knobs\": {\"scale\": %g}}", i ? ", " : "", made[i].setting,
-                1.0 - 0.1 * i);
+        fprintf(sweep, "%s{\"setting\": \"%s\", \"knobs\": {\"scale\": %g}}", i ? ", " : "",
+                made[i].setting, 1.0 - 0.1 * i);
         make_picture(made[i].setting, "", made[i].motion);
         if (made[i].rest != made[i].motion) make_picture(made[i].setting, ".rest", made[i].rest);
     }
@@ -72,7 +77,8 @@ static void expect(const char *const *settings, const double *steps, uint32_t co
     masu_ladder_file l;
     snprintf(path, sizeof path, "%s", in_scratch("f"));
     if (!masu_report_write(path, &result, error, sizeof error)) fail_msg("%s", error);
-    if (!masu_ladder_read(in_scratch("f/ladder.json"), &l, error, sizeof error)) fail_msg("%s", error);
+    if (!masu_ladder_read(in_scratch("f/ladder.json"), &l, error, sizeof error))
+        fail_msg("%s", error);
     assert_int_equal(l.count, count);
     assert_int_equal(result.rungs, count);
     for (uint32_t i = 0; i < count; i++) {
@@ -109,7 +115,8 @@ static void what_a_class_of_gpus_has_nearer_and_cheaper_is_no_rung(void **state)
     make_folder();
     make_picture("scale=0.4", ".rest", 101);
     /* On one class 0.75 costs more than the base; of 0.5 there are no costs. */
-    write_text("f/" MASU_COSTS, MASU_COSTS_HEADER "\nbase,9,9,9,9,9\nscale=0.75,8,8,9.5,8,8\nscale=0.4,5,5,5,5,5\n");
+    write_text("f/" MASU_COSTS,
+               MASU_COSTS_HEADER "\nbase,9,9,9,9,9\nscale=0.75,8,8,9.5,8,8\nscale=0.4,5,5,5,5,5\n");
     expect(settings, steps, 2);
     masu_ladder_file l;
     assert_true(masu_ladder_read(in_scratch("f/ladder.json"), &l, error, sizeof error));
