@@ -564,7 +564,7 @@ typedef struct masu_governor_desc {
     /* Initial estimate of the relative cost of each rung, without the part of the frame time that
      * all rungs have in common, 0..1e6. 0: the cost in the built-in ladder (masu_desc.ladder),
      * computed for the class of the GPU (masu_plan_info.computed_for) if that is known, else
-     * measured on a CPU; without a ladder scale^2. */
+     * the mean of the classes; without a ladder scale^2. */
     float costs[MASU_MAX_RUNGS];
     /* Flag: the GPU's clock does not follow its load. 0: after 1800 steady frames in a rung that
      * takes less than 0.92 of the target, the governor tries a better rung for 12 frames, if it is
@@ -1681,7 +1681,7 @@ typedef struct masu_plan_info {
     masu_plan_image images[MASU_MAX_RESOURCES];
     masu_plan_rung rungs[MASU_MAX_RUNGS];
     /* Class of GPUs, by vendor and device id, whose instruction counts gave the ratios of the
-     * built-in ladder: "Xe80", "UHD620", "Vega8", "Deck", "low mobile". "": measured on a CPU, or
+     * built-in ladder: "Xe80", "UHD620", "Vega8", "Deck", "low mobile". "": their mean, or
      * the host's. */
     const char *computed_for;
     masu_memory memory;

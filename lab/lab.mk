@@ -16,13 +16,14 @@ lab-check: deps-test ## install missing packages, build, run the lab's tests on 
 	+$(V)$(more) tools $(sort $(foreach t,$(shell tests/scenes_of.sh lab/tests),$(call scenes_of_test,$(t))))
 	+$(V)$(lab_make) lab-check-built
 
-.PHONY: study isa-table ladders ladder-devices gallery
+.PHONY: study isa-table ladders ladder-costs ladder-devices gallery
 study: tools scenes ## run masu-lab study on its scenes: STUDY=march STUDY_SCENES='march/city' STUDY_ARGS=
 isa-table: tools scenes ## write lab/notes/isa.csv: cost of every pipeline on the target GPUs
 ladders: $(GENERATED) ## write src/quality/ladder_tables.h from docs/report/*/ladder.json: LADDERS='both=engine ...'
+ladder-costs: tools $(foreach l,$(LADDERS),$(call ladder_scene,$(l))) ## choose the rungs of build/report/* by their costs on the target GPUs: MASU_ISA_DRIVERS=
 ladder-devices: tools $(foreach l,$(LADDERS),$(call ladder_scene,$(l))) ## write src/quality/ladder_devices.h from the cost model: MASU_ISA_DRIVERS=
 gallery: tools ## write build/gallery/index.html: all models of assimp-testmodels and tracks of TORCS: MATCH='*OBJ*' SIZE=
-study isa-table ladders ladder-devices gallery:
+study isa-table ladders ladder-costs ladder-devices gallery:
 	+$(V)$(lab_make) $@
 
 .PHONY: isa-drivers
@@ -165,7 +166,7 @@ isa-table: $(LAB) $(SCENES)
 	$(V)test -n '$(MASU_ISA_DRIVERS)' || awk -F, '$$2 ~ /^(skl|kbl|tgl|a630|a660)$$/' lab/notes/isa.csv >> $(BUILD)/isa.csv
 	$(V)mv $(BUILD)/isa.csv lab/notes/isa.csv
 
-.PHONY: ladders ladder-devices
+.PHONY: ladders ladder-costs ladder-devices
 ladders: $(LAB)
 	$(V)files=; for l in $(LADDERS); do \
 	    f=$(LADDER_FOLDER)/$${l#*=}/ladder.json; \
@@ -174,6 +175,15 @@ ladders: $(LAB)
 	[ "$$files" ] || { echo "masu: no ladder is measured; see make bench" >&2; exit 1; }; \
 	$(LAB) ladder $$files > $(BUILD)/ladder_tables.h && \
 	{ cmp -s $(BUILD)/ladder_tables.h src/quality/ladder_tables.h || cp $(BUILD)/ladder_tables.h src/quality/ladder_tables.h; }
+
+# From what make bench has left in build/report; merging a folder into itself chooses its rungs anew.
+ladder_folder = $(MADE)/report/$(lastword $(subst =, ,$(1)))
+ladder_costs = $(LAB) ladder --costs $(call ladder_scene,$(1))=$(call ladder_folder,$(1))$(if $(filter \
+    %=forza,$(1)),=146.5) && $(MADE)/bin/masu bench --merge $(call ladder_folder,$(1)) --out $(call ladder_folder,$(1)) && \
+    tools/bench/keep.sh $(call ladder_folder,$(1)) docs/report/$(lastword $(subst =, ,$(1)))
+ladder-costs: $(LAB)
+	$(V)$(foreach l,$(LADDERS),$(call ladder_costs,$(l)) &&) true
+	$(V)$(MADE)/bin/masu bench --ladder docs/report/*/ladder.json > docs/report/ladders.txt
 
 # forza at a time at which a car is close, as in make bench.
 ladder_device = $(firstword $(subst =, ,$(1)))=$(call ladder_scene,$(1))=$(LADDER_FOLDER)/$(lastword $(subst =, \

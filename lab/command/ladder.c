@@ -1,9 +1,12 @@
 /* ladder.c: `masu-lab ladder`: writes the ladders that the library is built with: src/quality/ladder_tables.h from
- * ladders that `masu bench` has measured, and src/quality/ladder_devices.h from the cost model (lab/model). */
+ * ladders that `masu bench` has measured, and src/quality/ladder_devices.h from the cost model (lab/model). With --costs
+ * it computes the costs by which `masu bench` then chooses rungs. */
 #include "lab/command/commands.h"
 #include "lab/model/ask.h"
 #include "lab/model/write.h"
 
+#include "bench/costs.h"
+#include "bench/sweep.h"
 #include "image.h"
 #include "settings/knobs.h"
 #include "settings/ladder.h"
@@ -16,7 +19,7 @@
 #include <time.h>
 
 typedef struct options {
-    bool devices;
+    bool devices, costs;
 } options;
 
 static const char *const constants[MASU_SCENE_CLASSES] = {
@@ -44,17 +47,19 @@ static uint32_t class_of(const char *argument, const char **rest) {
 /* ---- ladder_tables.h ------------------------------------------------------------------------- */
 
 /* A built-in ladder must work on every scene of its class and on every device. */
+static const char *not_built_in(const masu_rung *rung) {
+    return rung->march != MASU_MARCH_AUTO ? "march needs a blob baked with --variants"
+           : rung->specular == MASU_ON    ? "specular on fails on devices with few storage buffers"
+           : rung->occlusion == MASU_ON   ? "occlusion on fails on devices with few storage buffers"
+           : rung->upscale == MASU_OFF    ? "upscale off fails at scales below 1"
+           : rung->shadow_distance > 0.0f ? "shadow_distance depends on the scene"
+           : rung->specular_cutoff > 0.0f ? "specular_cutoff depends on the scene"
+                                          : NULL;
+}
+
 static int check_baked(const char *path, const masu_ladder_file *l) {
     for (uint32_t r = 0; r < l->count; r++) {
-        const masu_rung *rung = &l->rungs[r];
-        const char *why =
-            rung->march != MASU_MARCH_AUTO ? "march needs a blob baked with --variants"
-            : rung->specular == MASU_ON    ? "specular on fails on devices with few storage buffers"
-            : rung->occlusion == MASU_ON   ? "occlusion on fails on devices with few storage buffers"
-            : rung->upscale == MASU_OFF    ? "upscale off fails at scales below 1"
-            : rung->shadow_distance > 0.0f ? "shadow_distance depends on the scene"
-            : rung->specular_cutoff > 0.0f ? "specular_cutoff depends on the scene"
-                                           : NULL;
+        const char *why = not_built_in(&l->rungs[r]);
         if (why) return masu_cli_error("%s: rungs[%u]: not allowed in built-in ladders: %s", path, r, why);
         if (r && l->ratios[r - 1] < MASU_LADDER_APART * l->ratios[r] * (1.0 - 1e-6)) {
             return masu_cli_error("%s: rungs[%u]: ratio: expected at least %.2f times less than the "
@@ -188,16 +193,11 @@ static double shown(double ms) {
     return strtod(text, NULL);
 }
 
-static int print_device_class(uint32_t scene_class, const char *scene, const char *ladder, double time) {
-    static const char *const devices[MASU_MODEL_CLASSES] = {"XE80", "UHD620", "VEGA8", "DECK", "MOBILE"};
+/* What each rung of the ladder takes on each class, computed; *m is freed by the caller. */
+static int model(const char *scene, const char *ladder, double time, masu_model_sheet **out) {
     static masu_issued issued[MASU_MODEL_CLASSES];
     const VkExtent2D size = {1920, 1080};
     char error[4096];
-    uint8_t *bytes = NULL;
-    size_t count = 0;
-    if (!masu_file_read(ladder, 1u << 20, &bytes, &count, error, sizeof error)) return masu_cli_error("%s", error);
-    uint32_t sum = cksum(bytes, count);
-    free(bytes);
     memset(issued, 0, sizeof issued);
     int code = masu_model_ask("tgl,kbl,raven,vangogh,a630", scene, ladder, size, issued);
     if (code) return code;
@@ -212,20 +212,34 @@ static int print_device_class(uint32_t scene_class, const char *scene, const cha
                                .progress = masu_cli_progress_text};
     bool good = masu_model_run(&d, m, NULL, error, sizeof error);
     masu_cli_progress_clear();
-    if (good) {
-        const char *last = strrchr(scene, '/');
-        printf("    [MASU_SCENE_%s] = { /* %s, ladder.json %u */\n", constants[scene_class], last ? last + 1 : scene,
-               sum);
-        for (uint32_t k = 0; k < MASU_MODEL_CLASSES; k++) {
-            printf("        [MASU_DEVICE_%s] = {", devices[k]);
-            for (uint32_t r = 0; r < m->rung_count; r++)
-                printf("%s%.4ff", r ? ", " : "", shown(m->rungs[r].realistic[k]) / shown(m->rungs[0].realistic[k]));
-            printf("},\n");
-        }
-        printf("    },\n");
-    }
+    *out = m;
+    if (good) return MASU_CLI_OK;
     free(m);
-    return good ? MASU_CLI_OK : masu_cli_error("%s", error);
+    return masu_cli_error("%s", error);
+}
+
+static int print_device_class(uint32_t scene_class, const char *scene, const char *ladder, double time) {
+    static const char *const devices[MASU_MODEL_CLASSES] = {"XE80", "UHD620", "VEGA8", "DECK", "MOBILE"};
+    char error[4096];
+    uint8_t *bytes = NULL;
+    size_t count = 0;
+    if (!masu_file_read(ladder, 1u << 20, &bytes, &count, error, sizeof error)) return masu_cli_error("%s", error);
+    uint32_t sum = cksum(bytes, count);
+    free(bytes);
+    masu_model_sheet *m = NULL;
+    int code = model(scene, ladder, time, &m);
+    if (code) return code;
+    const char *last = strrchr(scene, '/');
+    printf("    [MASU_SCENE_%s] = { /* %s, ladder.json %u */\n", constants[scene_class], last ? last + 1 : scene, sum);
+    for (uint32_t k = 0; k < MASU_MODEL_CLASSES; k++) {
+        printf("        [MASU_DEVICE_%s] = {", devices[k]);
+        for (uint32_t r = 0; r < m->rung_count; r++)
+            printf("%s%.4ff", r ? ", " : "", shown(m->rungs[r].realistic[k]) / shown(m->rungs[0].realistic[k]));
+        printf("},\n");
+    }
+    printf("    },\n");
+    free(m);
+    return MASU_CLI_OK;
 }
 
 static int print_devices(const masu_given *given) {
@@ -254,25 +268,124 @@ static int print_devices(const masu_given *given) {
     return MASU_CLI_OK;
 }
 
+/* ---- costs.csv ------------------------------------------------------------------------------- */
+
+_Static_assert(MASU_COSTS_CLASSES == MASU_MODEL_CLASSES, "a column for each class of the model");
+
+/* Settings that change time alone are for comparison. */
+static bool may_be_rung(const masu_rung *rung) {
+    return !not_built_in(rung) && rung->frustum != MASU_OFF && rung->occlusion != MASU_OFF &&
+           rung->light_tiles != MASU_OFF;
+}
+
+/* A ladder.json of a part of the rows, for the model: its times and errors are nobody's. */
+static bool write_part(const char *path, const masu_row *rows, const uint32_t *part, uint32_t count, char *error,
+                       size_t error_size) {
+    char *text = NULL;
+    size_t bytes = 0;
+    FILE *f = open_memstream(&text, &bytes);
+    if (!f) return snprintf(error, error_size, "out of memory"), false;
+    fprintf(f, "{\"scene\": \"costs\", \"driver\": \"none\", \"clock\": \"none\", \"width\": 1, \"height\": 1, "
+               "\"error\": \"flip\", \"rungs\": [");
+    bool good = true;
+    for (uint32_t i = 0; i < count && good; i++) {
+        masu_rung rung;
+        good = masu_setting_parse(rows[part[i]].setting, &rung, error, error_size);
+        fprintf(f, "%s{\"setting\": \"%s\", \"ratio\": %u, \"flip\": 0, \"knobs\": {", i ? ", " : "",
+                rows[part[i]].setting, count - i);
+        for (const masu_knob *k = masu_knob_table(); k->name && good; k++) {
+            char value[64];
+            masu_knob_json(k, &rung, value, sizeof value);
+            fprintf(f, "%s\"%s\": %s", k == masu_knob_table() ? "" : ", ", k->name, value);
+        }
+        fprintf(f, "}}");
+    }
+    fprintf(f, "]}\n");
+    good = !fclose(f) && good && masu_file_write(path, text, bytes, error, error_size);
+    free(text);
+    return good;
+}
+
+/* Twelve settings at a time, as a ladder has at most. */
+static int write_costs(const char *scene, const char *folder, double time) {
+    char path[4096], part_path[4096], error[4096], *text = NULL;
+    uint32_t count = 0, part[MASU_MAX_RUNGS];
+    size_t bytes = 0;
+    masu_row *rows = masu_sweep_rows(folder, &count, error, sizeof error);
+    if (rows && !count) snprintf(error, sizeof error, "%.2000s: no setting is measured", folder);
+    if (!rows || !count) {
+        free(rows);
+        return masu_cli_error("%s", error);
+    }
+    FILE *f = open_memstream(&text, &bytes);
+    int code = f && masu_sweep_path(folder, MASU_COSTS, path) && masu_sweep_path(folder, "costs.json", part_path)
+                   ? MASU_CLI_OK
+                   : masu_cli_error("%s: out of memory, or the path is too long", folder);
+    if (!code) fprintf(f, MASU_COSTS_HEADER "\n");
+    for (uint32_t i = 0; i < count && !code;) {
+        uint32_t n = 0;
+        masu_rung rung;
+        masu_model_sheet *m = NULL;
+        for (; i < count && n < MASU_MAX_RUNGS; i++) {
+            if (masu_setting_parse(rows[i].setting, &rung, error, sizeof error) && may_be_rung(&rung)) part[n++] = i;
+        }
+        if (!n) break;
+        if (!write_part(part_path, rows, part, n, error, sizeof error)) code = masu_cli_error("%s", error);
+        if (!code) code = model(scene, part_path, time, &m);
+        for (uint32_t k = 0; k < n && !code; k++) {
+            fprintf(f, "%s", rows[part[k]].setting);
+            for (uint32_t c = 0; c < MASU_MODEL_CLASSES; c++) fprintf(f, ",%.6g", m->rungs[k].realistic[c]);
+            fprintf(f, "\n");
+        }
+        free(m);
+    }
+    (void)remove(part_path);
+    if (f && fclose(f) && !code) code = masu_cli_error("out of memory");
+    if (!code && !masu_file_write(path, text, bytes, error, sizeof error)) code = masu_cli_error("%s", error);
+    free(text);
+    free(rows);
+    return code;
+}
+
+static int write_all_costs(const masu_given *given) {
+    char scene[1024], folder[1024];
+    double time;
+    for (uint32_t i = 0; i < given->count; i++) {
+        if (!split(given->arguments[i], scene, folder, &time)) {
+            return masu_cli_usage_error("--costs: expected SCENE.masu=DIR[=SECONDS], found '%s'", given->arguments[i]);
+        }
+        int code = write_costs(scene, folder, time);
+        if (code) return code;
+    }
+    return MASU_CLI_OK;
+}
+
 static const masu_option rows[] = {
     MASU_FLAG(options, devices, "devices",
               "print ladder_devices.h instead: the cost of each rung on the model's five classes of GPU,\n"
               "relative to the first rung"),
+    MASU_FLAG(options, costs, "costs",
+              "write costs.csv into each DIR of masu bench: the cost of each setting on these classes, in ms;\n"
+              "masu bench then chooses no rung that another setting dominates on one of them"),
     {.name = NULL}};
 
 static int run(masu_cli *cli) {
-    options o = {false};
+    options o = {false, false};
     masu_given given = {.most = MASU_SCENE_CLASSES, .excess = "a ladder for each class of scenes"};
     int code;
     if (!masu_options_read(cli, rows, &o, &given, &code)) return code;
     if (!given.count) return masu_cli_usage_error("no ladder is given");
-    return o.devices ? print_devices(&given) : print_tables(&given);
+    if (o.devices && o.costs) return masu_cli_usage_error("--devices cannot be combined with --costs");
+    return o.costs ? write_all_costs(&given) : o.devices ? print_devices(&given) : print_tables(&given);
 }
 
 const masu_cli_command lab_ladder = {
     .name = "ladder",
-    .arguments = "CLASS=LADDER.json... , or --devices CLASS=SCENE.masu=LADDER.json[=SECONDS]...",
+    .arguments = "CLASS=LADDER.json...\n"
+                 "       masu-lab ladder --devices CLASS=SCENE.masu=LADDER.json[=SECONDS]...\n"
+                 "       masu-lab ladder --costs SCENE.masu=DIR[=SECONDS]...",
     .summary = "print the ladders that the library is built with, src/quality/ladder_tables.h",
     .details = "LADDER.json is one that masu bench has measured. A class is polygons, world, sdf, both, or one of\n"
-               "them with -traced; each class takes one ladder. --devices needs MASU_ISA_DRIVERS, as masu-lab isa.\n",
+               "them with -traced; each class takes one ladder. --devices and --costs need MASU_ISA_DRIVERS, as masu-lab\n"
+               "isa.\n",
     .run = run};

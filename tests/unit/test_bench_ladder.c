@@ -155,6 +155,41 @@ static void hardly_better_is_no_reason_to_take_longer(void **state) {
     }
 }
 
+/* With several costs: what is left is dominated by nothing in any column, and what went is in one. */
+static void what_another_dominates_by_any_cost_is_excluded(void **state) {
+    (void)state;
+    enum { COLUMNS = 3 };
+    static masu_ladder_point p[POINTS], left[POINTS];
+    static double costs[POINTS * COLUMNS];
+    uint32_t gone = 0, stay = 0;
+    for (uint64_t seed = 1; seed <= CLOUDS; seed++) {
+        uint64_t r = seed;
+        uint32_t n = cloud(seed, p);
+        for (uint32_t i = 0; i < n; i++) { /* alike in all columns, so that some are on all fronts */
+            for (uint32_t c = 0; c < COLUMNS; c++)
+                costs[i * COLUMNS + c] = 2.0 - p[i].error + 0.2 * (double)support_random_in(&r, 0, 100) / 100;
+            if (support_random_in(&r, 0, 30) == 0) costs[i * COLUMNS + 1] = 0.0;
+        }
+        memcpy(left, p, sizeof p);
+        masu_ladder_exclude(left, n, costs, COLUMNS);
+        for (uint32_t i = 0; i < n; i++) {
+            bool whole = usable(p[i]) && costs[i * COLUMNS + 1] > 0.0, dominated = false;
+            for (uint32_t k = 0; k < n; k++) {
+                if (!usable(p[k]) || !(costs[k * COLUMNS + 1] > 0.0)) continue;
+                for (uint32_t c = 0; c < COLUMNS; c++) {
+                    dominated |= costs[k * COLUMNS + c] <= costs[i * COLUMNS + c] && p[k].error <= p[i].error &&
+                                 (costs[k * COLUMNS + c] < costs[i * COLUMNS + c] || p[k].error < p[i].error);
+                }
+            }
+            assert_int_equal(usable(left[i]), whole && !dominated);
+            if (usable(left[i])) assert_true(!(left[i].time < p[i].time) && !(left[i].time > p[i].time));
+            gone += whole && dominated;
+            stay += whole && !dominated;
+        }
+    }
+    assert_true(gone > 100 && stay > 100);
+}
+
 static void ties_are_broken_and_points_that_are_none_left_out(void **state) {
     (void)state;
     const masu_ladder_point equal[] = {{1, 1}, {1, 1}, {1, 1}}, zero = {1, 0};
@@ -312,6 +347,7 @@ int main(void) {
         cmocka_unit_test(nothing_is_left_out_without_need),
         cmocka_unit_test(the_nearest_neighbours_go_first),
         cmocka_unit_test(hardly_better_is_no_reason_to_take_longer),
+        cmocka_unit_test(what_another_dominates_by_any_cost_is_excluded),
         cmocka_unit_test(ties_are_broken_and_points_that_are_none_left_out),
         cmocka_unit_test(rows_come_back_as_they_were_written),
         cmocka_unit_test(a_table_of_before_is_read),

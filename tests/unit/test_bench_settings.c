@@ -63,7 +63,7 @@ static void names_are_unique_and_parents_come_first(void **state) {
     assert_true(few >= 8 && few < all && all <= MASU_SETTINGS_MOST);
     uint32_t scales = 0;
     for (uint32_t i = 0; i < all; i++) scales += !strcmp(settings[i].technique, "scale");
-    assert_int_equal(scales, 14); /* 15/16 to 7/16, 0.4, and 0.35 to 0.2 */
+    assert_int_equal(scales, 16); /* 15/16 to 7/16, 0.4, and 0.35 to 0.2 */
     assert_true(find(all, "scale=0.4") < all);
     assert_true(find(all, "scale=0.5+easu=fast") < all);
     assert_true(find(all, "shadow_refresh=1-2-4-8") < all);
@@ -96,10 +96,11 @@ static void a_scene_of_nothing_leaves_what_is_done_to_pictures(void **state) {
     check_dropped("shadow_distance=0.5", count, "no shadow map");
     check_dropped("specular_cutoff=0.25", count, "no reflections");
     check_dropped("specular_frames=64", count, "no reflections");
-    /* What is left of the bundles: the cheap one at 0.4 has fast EASU and no RCAS, the middle one
-     * FXAA, which is there already at full size. */
+    /* What is left of the bundles: the cheap one at 0.4 has fast EASU and no RCAS, the lean one is temporal. */
     assert_true(find(count, "scale=0.4+easu=fast+sharpen=off") < count);
-    assert_true(find(count, "scale=0.75+aa=fxaa") < count);
+    check_dropped("scale=0.75+temporal=on+march_steps=128+lod_error=2+ao_slices=1+ao_steps=4+shadow_refresh=2-4-8-8+"
+                  "specular_reuse_taps=4+specular_filter_taps=6",
+                  count, "");
     for (uint32_t i = 0; i < count; i++) {
         if (settings[i].dropped[0]) continue;
         const masu_rung *r = &settings[i].rung;
@@ -128,7 +129,7 @@ static void a_scene_of_everything_keeps_everything(void **state) {
     check_dropped("sharpen=off+aa=smaa-high", count, "nothing is sharpened");
     check_dropped("sharpen=off+march_steps=128", count, "nothing is sharpened");
     check_dropped("sharpen=off+shadow_cascades=2", count, "nothing is sharpened");
-    if (count - dropped > 124) fail_msg("%u settings", count - dropped);
+    if (count - dropped > 136) fail_msg("%u settings", count - dropped);
     for (const masu_knob *k = masu_knob_table(); k->name; k++) {
         uint32_t turned = 0;
         for (uint32_t i = 1; i < count; i++)
@@ -140,7 +141,10 @@ static void a_scene_of_everything_keeps_everything(void **state) {
                                         "specular_frames=16",
                                         "specular_frames=64",
                                         "scale=0.9375+sharpen=off",
+                                        "scale=0.28+temporal=on",
                                         "scale=0.2+temporal=on",
+                                        "scale=0.22+temporal=on+march_steps=128+lod_error=2+ao_slices=1+ao_steps=4+"
+                                        "shadow_refresh=2-4-8-8+specular_reuse_taps=4+specular_filter_taps=6",
                                         "scale=0.4375+sharpen=off",
                                         "scale=0.4+sharpen=off+aa=smaa-high",
                                         "scale=0.625+sharpen=off+march_steps=128",

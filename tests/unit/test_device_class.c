@@ -133,10 +133,10 @@ static uint32_t play(const masu_ladder *l, const float *truth, const float *prio
     return over;
 }
 
-/* Of the governor: what it makes of costs that are right. */
-static void costs_of_its_class_keep_the_target_sooner(void **state) {
+/* Of the governor, on a GPU that behaves as computed: what it makes of the mean of the classes, which a GPU of no class
+ * has as well, and of the costs of its own. Costs from a CPU driver were wrong for up to 71 frames. */
+static void a_first_estimate_misses_a_few_frames_at_most(void **state) {
     (void)state;
-    uint32_t all[2] = {0, 0}, all_lost[2] = {0, 0};
     for (uint32_t c = 0; c < MASU_SCENE_CLASSES; c++) {
         masu_scene_data s = scene_of_class(c);
         const masu_ladder *l = masu_ladder_of_class((masu_scene_class)c);
@@ -153,21 +153,19 @@ static void costs_of_its_class_keep_the_target_sooner(void **state) {
             }
         }
         double runs = 4.0 * 5.0 * (l->count - 1);
-        print_message("  %-16s of 600 frames over the target: measured on a CPU %5.1f, computed %4.1f; rungs lost a "
-                      "frame: %.3f, %.3f\n",
+        print_message("  %-16s of 600 frames over the target: by the mean of the classes %4.1f, by its own %4.1f; rungs "
+                      "lost a frame: %.3f, %.3f\n",
                       masu_scene_class_name((masu_scene_class)c), over[0] / runs, over[1] / runs,
                       lost[0] / runs / 600, lost[1] / runs / 600);
-        for (int way = 0; way < 2; way++) all[way] += over[way], all_lost[way] += lost[way];
+        for (int way = 0; way < 2; way++) assert_true(over[way] / runs <= 4.0 && lost[way] / runs / 600 <= 0.25);
     }
-    assert_true(all[1] < all[0]);
-    assert_true(all_lost[1] <= all_lost[0]);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(known_devices_have_their_class),
         cmocka_unit_test(every_rung_of_every_ladder_has_its_cost_on_every_class),
-        cmocka_unit_test(costs_of_its_class_keep_the_target_sooner),
+        cmocka_unit_test(a_first_estimate_misses_a_few_frames_at_most),
     };
     return cmocka_run_group_tests_name("device class", tests, NULL, NULL);
 }

@@ -1,10 +1,11 @@
 #!/bin/sh
-# keep.sh FROM TO: copies what the tree keeps of a folder of `masu bench`: ladder.json, and results.csv with the times of
-# steady.csv, the second and longer measurement of the rungs. `masu bench --rungs-of TO` and `--against` read these two.
+# keep.sh FROM TO: copies what the tree keeps of a folder of `masu bench`: ladder.json, costs.csv, and results.csv with the
+# times of steady.csv, the second and longer measurement of the rungs. `masu bench --rungs-of TO` and `--against` read these two.
 set -eu
 from=$1 to=$2
 mkdir -p "$to"
 cp "$from/ladder.json" "$to/ladder.json"
+[ ! -f "$from/costs.csv" ] || cp "$from/costs.csv" "$to/costs.csv"
 [ -f "$from/steady.csv" ] || { cp "$from/results.csv" "$to/results.csv"; exit; }
 awk -F, 'NR == FNR { again[$1] = $0; next } FNR > 1 && $1 in again { print again[$1]; next } { print }' \
     "$from/steady.csv" "$from/results.csv" > "$to/results.csv.new"

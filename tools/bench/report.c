@@ -3,6 +3,7 @@
 #include "bench/report.h"
 
 #include "settings/ladder.h"
+#include "bench/costs.h"
 #include "bench/machine.h"
 #include "measure/picture.h"
 #include "bench/plot.h"
@@ -11,6 +12,7 @@
 #include "cli/markup.h"
 #include "image.h"
 #include "metric/flip.h"
+#include "metric/image.h"
 #include "settings/ladder_file.h"
 
 #include <jansson.h>
@@ -28,6 +30,7 @@ typedef struct report {
     double *ratios; /* of the clock that the ladder goes by */
     masu_ladder_point *points;
     uint32_t *front, *rungs;
+    double steps[MASU_MAX_RUNGS]; /* mean change at rest from the rung before, of 255; NAN: not known */
     VkExtent2D size;
     FILE *page;
     char *error;
@@ -88,6 +91,10 @@ static bool read_all(report *r) {
     return (pixels && pixels <= MASU_IMAGE_PIXELS_MAX) || failed(r, "sweep.json has no size");
 }
 
+static const char *clock_of(const masu_report_result *result) {
+    return result->by_costs ? "computed costs" : result->by_timestamps ? "timestamps" : "wall";
+}
+
 static double least_ratio(const report *r, const masu_row *row) {
     return r->out->by_timestamps ? row->gpu_least_ratio : row->least_ratio;
 }
@@ -98,10 +105,65 @@ static bool flickers(const report *r, const masu_row *row) {
     return row->flicker > MASU_LADDER_FLICKER + (base ? base->flicker : 0.0);
 }
 
-static void find_rungs(report *r) {
+static bool load_rest(const report *r, uint32_t row, uint8_t *out) {
+    static const char *const suffixes[] = {MASU_SWEEP_REST, ""};
+    char path[4096], error[4096];
+    for (int i = 0; i < 2; i++) {
+        if (masu_sweep_picture(r->folder, r->rows[row].setting, suffixes[i], path) && masu_file_exists(path))
+            return masu_picture_load(path, r->size, out, error, sizeof error);
+    }
+    return false;
+}
+
+/* Leaves out rungs that are too far from the one before; folders without pictures keep theirs. */
+static bool limit_steps(report *r) {
+    const size_t bytes = 4 * (size_t)r->size.width * r->size.height;
+    uint8_t *before = malloc(bytes), *shown = malloc(bytes);
+    uint32_t kept = 0;
+    bool good = (before && shown) || failed(r, "out of memory"), known = false;
+    for (uint32_t i = 0; i < r->rung_count && good; i++) {
+        const bool there = load_rest(r, r->rungs[i], shown);
+        const double step =
+            i && known && there ? masu_metric_difference(shown, before, r->size.width, r->size.height) : (double)NAN;
+        if (step > MASU_LADDER_STEP) continue;
+        r->steps[kept] = step;
+        r->rungs[kept++] = r->rungs[i];
+        known = there;
+        if (there) memcpy(before, shown, bytes);
+    }
+    r->rung_count = kept;
+    free(before);
+    free(shown);
+    return good;
+}
+
+static bool find_rungs(report *r) {
     r->front_count = masu_ladder_front(r->points, r->count, r->front);
     r->rung_count = masu_ladder_rungs(r->points, r->count, MASU_LADDER_APART, MASU_LADDER_BETTER,
                                       MASU_MAX_RUNGS, r->rungs);
+    return limit_steps(r);
+}
+
+/* Where costs on classes of GPUs are known, they say which settings are worth having, and their geometric mean over the
+ * classes, relative to the base's, stands for the time that was measured here. */
+static bool go_by_costs(report *r) {
+    const uint32_t n = MASU_COSTS_CLASSES;
+    double *costs = calloc(r->count, sizeof *costs * n);
+    bool good = costs || failed(r, "out of memory");
+    good = good && masu_costs_read(r->folder, r->rows, r->count, costs, &r->out->by_costs, r->error, r->error_size);
+    const masu_row *base = masu_rows_find(r->rows, r->count, "base");
+    const double *of_base = good && base ? &costs[n * (size_t)(base - r->rows)] : NULL;
+    if (good && r->out->by_costs && (!of_base || !(of_base[0] > 0.0)))
+        good = failed(r, MASU_COSTS " has no costs of the base");
+    for (uint32_t i = 0; i < r->count && good && r->out->by_costs; i++) {
+        double sum = 0.0;
+        for (uint32_t c = 0; c < n; c++) sum += log(costs[n * i + c] / of_base[c]);
+        r->ratios[i] = exp(sum / n);
+        if (r->points[i].time > 0.0) r->points[i].time = r->ratios[i];
+    }
+    if (good && r->out->by_costs) masu_ladder_exclude(r->points, r->count, costs, n);
+    free(costs);
+    return good;
 }
 
 /* Timestamps count where all of them fit the wall clock; times of two clocks are never mixed. */
@@ -120,11 +182,11 @@ static bool find_ladder(report *r) {
         const json_t *same = json_object_get(setting_of(r, r->rows[i].setting), "same_picture");
         if (json_is_true(same) || flickers(r, &r->rows[i])) r->points[i].time = 0.0;
     }
-    find_rungs(r);
     r->out->by_timestamps = stamps;
-    r->out->rungs = r->rung_count;
     for (uint32_t i = 0; i < r->count; i++)
         r->out->unsteady += !(fabs(least_ratio(r, &r->rows[i]) / r->ratios[i] - 1.0) <= 0.1);
+    if (!go_by_costs(r) || !find_rungs(r)) return false;
+    r->out->rungs = r->rung_count;
     return true;
 }
 
@@ -136,10 +198,11 @@ static bool write_ladder(report *r) {
     for (uint32_t i = 0; i < r->rung_count; i++) {
         const masu_row *row = &r->rows[r->rungs[i]];
         json_t *knobs = json_object_get(setting_of(r, row->setting), "knobs");
-        json_array_append_new(
-            rungs, json_pack("{s:s, s:f, s:f, s:f, s:f, s:f, s:O}", "setting", row->setting,
-                             "ratio", r->ratios[r->rungs[i]], "wall_ms", row->wall_min, "gpu_ms",
-                             row->gpu_min, "flip", masu_row_error(row), "rmse", row->rmse, "knobs", knobs));
+        json_t *rung = json_pack("{s:s, s:f, s:f, s:f, s:f, s:f, s:O}", "setting", row->setting, "ratio",
+                                 r->ratios[r->rungs[i]], "wall_ms", row->wall_min, "gpu_ms", row->gpu_min, "flip",
+                                 masu_row_error(row), "rmse", row->rmse, "knobs", knobs);
+        if (isfinite(r->steps[i])) json_object_set_new(rung, "step", json_real(r->steps[i]));
+        json_array_append_new(rungs, rung);
     }
     char date[32] = "unknown"; /* of the last run that added rows */
     masu_machine machine;
@@ -149,7 +212,7 @@ static bool write_ladder(report *r) {
         "{s:s, s:s, s:s, s:s, s:i, s:i, s:f, s:s, s:s, s:o}", "date", date, "scene", text_of(r->sweep, "scene"),
         "hash", text_of(r->sweep, "hash"), "driver", text_of(r->sweep, "driver"), "width",
         (int)r->size.width, "height", (int)r->size.height, "time", number_of(r, "time"), "clock",
-        r->out->by_timestamps ? "timestamps" : "wall", "error", "flip", "rungs", rungs);
+        clock_of(r->out), "error", "flip", "rungs", rungs);
     char *text = root ? json_dumps(root, JSON_INDENT(2)) : NULL;
     bool good = text && masu_sweep_path(r->folder, "ladder.json", path);
     if (!good) failed(r, "out of memory");
@@ -284,7 +347,9 @@ static void put_note(report *r) {
                 r->steady_count);
     }
     masu_markup(f, "<li>The ladder uses %s.</li>\n",
-            r->out->by_timestamps ? "the device's timestamps, which agree with the wall clock"
+            r->out->by_costs ? "the mean of the costs that are computed for classes of GPUs (costs.csv); so does every "
+                               "ratio here but that of minima"
+            : r->out->by_timestamps ? "the device's timestamps, which agree with the wall clock"
                                   : "the wall clock: some timestamps disagree with it");
     fputs("<li><b>How to read it</b>: find the rung with an acceptable error, and the time that it saves; then "
           "the technique that saves the most time for the least FLIP. Differences below 0.001 are "
@@ -394,7 +459,7 @@ static void put_ladder(report *r) {
     FILE *f = r->page;
     fputs(
         "<h2>The ladder</h2>\n<p>Rungs from the Pareto front in falling quality; neighbours differ in time "
-        "by at least 4 %. ladder.json has all their knobs; the table of all settings has all "
+        "by at least 4 %, and with a stationary camera by at most 3 of 255 on average. ladder.json has all their knobs; the table of all settings has all "
         "columns.</p>\n<div class=\"wide\"><table>\n",
         f);
     put_columns(f, true);
@@ -544,7 +609,7 @@ bool masu_report_rungs(const char *folder, masu_setting_list *out, char *error, 
 }
 
 /* Each round leaves out what it has found; without an end there would be at most count of them. */
-static void find_unsteady(report *r, masu_setting_list *out) {
+static bool find_unsteady(report *r, masu_setting_list *out) {
     const uint32_t most = MASU_MAX_RUNGS - 1;
     for (;;) {
         uint32_t before = out->count;
@@ -554,8 +619,8 @@ static void find_unsteady(report *r, masu_setting_list *out) {
             memcpy(out->id[out->count++], id, MASU_SETTING_ID);
             r->points[r->rungs[i]].time = 0.0;
         }
-        if (out->count == before) return;
-        find_rungs(r);
+        if (out->count == before) return true;
+        if (!find_rungs(r)) return false;
     }
 }
 
@@ -565,7 +630,7 @@ bool masu_report_unsteady(const char *folder, masu_setting_list *out, char *erro
     report r = {.folder = folder, .out = &result, .error = error, .error_size = error_size};
     memset(out, 0, sizeof *out);
     bool good = read_all(&r) && find_ladder(&r);
-    if (good) find_unsteady(&r, out);
+    good = good && (result.by_costs || find_unsteady(&r, out));
     release(&r);
     return good;
 }
@@ -578,7 +643,7 @@ bool masu_report_write(const char *folder, masu_report_result *out, char *error,
     if (good) {
         masu_plot plot = {.folder = folder,
                           .title = text_of(r.sweep, "scene"),
-                          .clock = out->by_timestamps ? "timestamps" : "wall clock",
+                          .clock = clock_of(out),
                           .rows = r.rows,
                           .ratios = r.ratios,
                           .row_count = r.count,

@@ -86,14 +86,17 @@ static const technique bundles[] = {
     {"soft steps", 0, {.sharpen = MASU_OFF, .march_steps = 128}},
     /* Of a world, whose shadow map takes a part of the frame that a smaller picture does not make less. */
     {"soft cascades", 0, {.sharpen = MASU_OFF, .shadow_cascades = 2}},
-    {"middle",
-     0,
-     {.aa = MASU_AA_FXAA,
+    /* Less of everything, nothing dropped: below the scales at which a smaller picture still makes a frame cheaper. */
+    {"lean",
+     SMALL,
+     {.temporal = MASU_ON,
+      .march_steps = 128,
+      .lod_error = 2.0f,
       .ao_slices = 1,
       .ao_steps = 4,
       .specular_reuse_taps = 4,
       .specular_filter_taps = 6,
-      EACH(1, 2, 4, 8)}},
+      EACH(2, 4, 8, 8)}},
     {"cheap",
      QUICK,
      {.easu = MASU_EASU_FAST,
@@ -161,7 +164,7 @@ static void add_knob(list *l, const masu_knob *k) {
 uint32_t masu_settings_make(bool quick, masu_setting out[MASU_SETTINGS_MOST]) {
     static const float quick_scales[] = {1.0f, 0.75f, 0.5f, 0.4f};
     static const float bundle_scales[] = {1.0f, 0.875f, 0.75f, 0.625f, 0.5f, 0.4f};
-    static const float small_scales[] = {0.35f, 0.3f, 0.25f, 0.2f};
+    static const float small_scales[] = {0.35f, 0.3f, 0.28f, 0.25f, 0.22f, 0.2f};
     const technique base = {.name = "base"}, scale = {.name = "scale"};
     const masu_rung half = rung_of(&base.rung, 0.5f);
     list l = {out, 0};

@@ -252,6 +252,9 @@ static bool compare(sweep *w, uint32_t rung, const masu_setting *s, uint64_t *ne
     if (!depends_on_motion(w, &s->rung)) return true;
     if (!find_flip(w, w->before, &flip)) return false;
     row->rest_flip = flip.mean;
+    if (!masu_sweep_picture(w->d->folder, s->id, MASU_SWEEP_REST, path) ||
+        !masu_image_save_png(path, w->before, size.width, size.height, 0, w->error, w->error_size))
+        return false;
     const masu_motion fast = {w->d->time, 1.0 / 8.0, FAST_FRAMES, w->motion.remembers};
     if (!masu_motion_draw(&w->s, &fast, rung, &s->rung, next, w->error, w->error_size) || !read_back(w) ||
         !find_flip(w, shown, &flip))

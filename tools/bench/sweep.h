@@ -27,7 +27,7 @@
  * THE FOLDER. sweep.json: what is measured, and how; a run is only resumed if it is the same.
  * machine.json: on what and when, see machine.h.
  * results.csv: a row as soon as it is known. steady.csv: rows of rungs, with the times measured
- * again. pictures/SETTING.png. truth.png; its radiance in truth.pfm, the reference of reflections in
+ * again. pictures/SETTING.png, and SETTING.rest.png if it is another at rest. truth.png; its radiance in truth.pfm, the reference of reflections in
  * truth.specular.pfm. All is written whole or not at all, but for the last row. */
 #ifndef MASU_BENCH_SWEEP_H
 #define MASU_BENCH_SWEEP_H
@@ -39,6 +39,7 @@
 
 #define MASU_SWEEP_RESULTS "results.csv"
 #define MASU_SWEEP_STEADY "steady.csv"
+#define MASU_SWEEP_REST ".rest"
 
 /* Names of settings, as the rungs of a ladder. */
 typedef struct masu_setting_list {

@@ -319,10 +319,14 @@ static bool merge_part(const char *folder, const char *part, merged *all, char *
         if (masu_rows_find(all->rows, all->count, rows[i].setting)) continue;
         if (all->count == MASU_SETTINGS_MOST)
             good = fail(error, error_size, part, "too many settings");
-        if (good && (!masu_sweep_picture(part, rows[i].setting, "", from) ||
-                     !masu_sweep_picture(folder, rows[i].setting, "", to)))
-            good = fail(error, error_size, part, "the path of an image is too long");
-        good = good && (!strcmp(from, to) || copy(from, to, error, error_size));
+        for (int k = 0; k < 2 && good; k++) { /* not every setting has another picture at rest */
+            const char *suffix = k ? MASU_SWEEP_REST : "";
+            if (!masu_sweep_picture(part, rows[i].setting, suffix, from) ||
+                !masu_sweep_picture(folder, rows[i].setting, suffix, to))
+                good = fail(error, error_size, part, "the path of an image is too long");
+            else if (strcmp(from, to) != 0 && (!k || masu_file_exists(from)))
+                good = copy(from, to, error, error_size);
+        }
         if (!good) break;
         const masu_row *again = masu_rows_find(steady, steady_count, rows[i].setting);
         all->rows[all->count++] = rows[i];

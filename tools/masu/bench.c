@@ -40,7 +40,10 @@ static int report(const options *o) {
     if (masu_cli_quiet()) return MASU_CLI_OK;
     printf("%s: %u of %u settings, %u rungs chosen by %s; report: %s/index.html\n", o->sweep.folder,
            result.rows, result.settings, result.rungs,
-           result.by_timestamps ? "timestamps" : "the wall clock", o->sweep.folder);
+           result.by_costs        ? "computed costs"
+           : result.by_timestamps ? "timestamps"
+                                  : "the wall clock",
+           o->sweep.folder);
     return MASU_CLI_OK;
 }
 
@@ -249,6 +252,8 @@ const masu_cli_command masu_cmd_bench = {
         "  ladder.json        the rungs, from the Pareto front\n"
         "  index.html         report with tables, plots and images\n"
         "  reference.csv      with --golden: ratios of patches of each rung at rest\n"
+        "  costs.csv          if it is there, costs of settings on GPUs (masu-lab ladder --costs): the\n"
+        "                     rungs are chosen by these instead of times\n"
         "  truth.png          ground truth, unless --truth names a file (64 samples per pixel)\n"
         "  plots/             plots, if gnuplot is installed\n"
         "\n"

@@ -8,11 +8,12 @@
 static void print_table(const char *path, const masu_ladder_file *l) {
     printf("%s: %s at %ux%u, by %s%s%s\n  %s\n", path, l->scene, l->width, l->height, l->clock,
            l->date[0] ? ", " : "", l->date, l->driver);
-    printf("  rung   time    FLIP    RMSE  setting\n");
+    printf("  rung   time    FLIP    RMSE  step  setting\n");
     for (uint32_t r = 0; r < l->count; r++) {
-        char rmse[24] = "-";
+        char rmse[24] = "-", step[24] = "-";
         if (l->rmses[r] >= 0.0) snprintf(rmse, sizeof rmse, "%.2f", l->rmses[r]);
-        printf("  %4u  %.3f  %.4f  %6s  %s\n", r, l->ratios[r], l->flips[r], rmse, l->settings[r]);
+        if (l->steps[r] >= 0.0) snprintf(step, sizeof step, "%.2f", l->steps[r]);
+        printf("  %4u  %.3f  %.4f  %6s  %4s  %s\n", r, l->ratios[r], l->flips[r], rmse, step, l->settings[r]);
     }
 }
 

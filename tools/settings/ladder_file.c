@@ -87,18 +87,20 @@ static bool read_knobs(const place *at, const json_t *knobs, masu_rung *rung) {
 
 static bool read_rung(const place *at, const json_t *value, masu_ladder_file *out) {
     static const char *const keys[] = {"setting", "ratio", "wall_ms", "gpu_ms",
-                                       "flip",    "rmse",  "knobs",   NULL};
+                                       "flip",    "rmse",  "step",    "knobs", NULL};
     int r = at->rung;
     char is[80];
     if (!json_is_object(value))
         return wrong(at, "expected an object, found %s", masu_json_given(value, is, sizeof is));
-    out->rmses[r] = -1.0;
+    out->rmses[r] = out->steps[r] = -1.0;
     if (!known_keys(at, value, keys) ||
         !read_text(at, value, "setting", out->settings[r], sizeof out->settings[r]) ||
         !read_number(at, value, "ratio", 1e-6, 1e6, &out->ratios[r]) ||
         !read_number(at, value, "flip", 0, 1, &out->flips[r]) ||
         (json_object_get(value, "rmse") &&
          !read_number(at, value, "rmse", 0, 255, &out->rmses[r])) ||
+        (json_object_get(value, "step") &&
+         !read_number(at, value, "step", 0, 255, &out->steps[r])) ||
         !read_knobs(at, json_object_get(value, "knobs"), &out->rungs[r])) {
         return false;
     }

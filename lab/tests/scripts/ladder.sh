@@ -26,7 +26,7 @@ files=()
 while IFS= read -r pair; do
     files+=("${pair%%=*}=docs/report/${pair#*=}/ladder.json")
 done < <(sed -n '/^LADDERS ?=/,/[^\\]$/p' Makefile | grep -oE '[a-z-]+=[a-z_-]+')
-[ ${#files[@]} -ge 6 ] || fail "the Makefile has ${#files[@]} ladders"
+[ ${#files[@]} -ge 5 ] || fail "the Makefile has ${#files[@]} ladders"
 "$lab" ladder "${files[@]}" > "$folder/tables.h" || fail 'masu-lab ladder fails'
 cmp "$folder/tables.h" src/quality/ladder_tables.h || fail 'other tables than src/quality/ladder_tables.h (make ladders)'
 
@@ -57,5 +57,8 @@ refuses 2 'no ladder is given'
 refuses 2 'expected CLASS=FILE' "$folder/good.json"
 refuses 2 'expected CLASS=FILE' many="$folder/good.json"
 refuses 2 'two ladders of one class' sdf="$folder/good.json" sdf="$folder/good.json"
+refuses 2 '--devices cannot be combined with --costs' --devices --costs "a.masu=$folder"
+refuses 2 'expected SCENE.masu=DIR' --costs a.masu
+refuses 1 'no setting is measured' --costs "a.masu=$folder"
 refuses 2 'expected CLASS=SCENE.masu=LADDER.json' --devices sdf="$folder/good.json"
 exit $failed
