@@ -34,18 +34,22 @@ require=${MASU_REQUIRE_DRIVERS:-}
 drivers=${DRIVERS:-system}
 [ "$drivers" != all ] || drivers="system lavapipe-25 swiftshader"
 jobs=${MASU_TEST_JOBS:-$(nproc)}
-# Tests of programs, of what a layer says of shaders, and of the host's part alone: the answers hardly depend on the driver, so of several drivers
-# the first that is there runs them.
+# Tests of programs, of what a validation layer says of shaders, and of the host alone hardly depend on the driver: the
+# first driver that is there runs them.
 once=" test_bench test_cli test_gpu_av test_reference test_soak "
-# Of all three drivers these are run by two. What the host decides, what is the same picture with and without it, and the means
-# of filters, shadow maps and lamps by both lavapipes: the third takes four times as long. What memory, queues and rays' sums do
-# to a driver, rays through SDFs and trees, and what is stored for other targets, by one lavapipe and the third.
-not_swiftshader=" test_culling test_fixed_memory test_frame test_governor test_governor_host test_host_pass test_ladder test_lights "
-not_swiftshader+="test_live test_skin test_texture_order test_transparents "
-not_swiftshader+="test_load test_lods test_occluders test_pick test_pool test_reinit test_reserve test_resize test_shadow "
-not_swiftshader+="test_shadow_frames test_specular_filters test_sprites test_viewports test_window "
-not_second_lavapipe=" test_failures test_far test_faults test_occlusion test_output test_poison test_specular_sdf test_terms "
-not_second_lavapipe+="test_trace "
+# Of all three drivers the first runs every test. The others leave out what stands here, which LONG=1 runs too.
+# lavapipe 25: decisions of the host; means over many rays and filters; what tests/full/denied.sh runs on it.
+not_lavapipe_25=" test_ao test_failures test_far test_faults test_fixed_memory test_frame test_governor test_governor_host "
+not_lavapipe_25+="test_host_pass test_ladder test_live test_load test_occlusion test_output test_pick test_poison test_reserve "
+not_lavapipe_25+="test_resize test_shadow test_shadow_frames test_specular_filters test_specular_sdf test_specular_truth "
+not_lavapipe_25+="test_stiff test_terms test_trace test_truth test_upscale "
+# SwiftShader takes four times as long to draw: test_conform draws every pass there, test_poison gives each pass hostile
+# bits, test_stiff marches.
+not_swiftshader=" test_ao test_culling test_failures test_fixed_memory test_frame test_gltf_pictures test_governor "
+not_swiftshader+="test_governor_host test_host_pass test_ladder test_lights test_live test_load test_lods test_occluders "
+not_swiftshader+="test_occlusion test_pick test_pool test_reinit test_reserve test_resize test_shadow test_shadow_frames test_skin "
+not_swiftshader+="test_specular_filters test_specular_sdf test_specular_textures test_specular_truth test_sprites test_temporal "
+not_swiftshader+="test_terms test_texture_order test_transparents test_truth test_viewports test_window "
 
 # A rasteriser's own threads are in the way of the programs beside it: a tenth of the time.
 export LP_NUM_THREADS=${LP_NUM_THREADS-0}
@@ -287,7 +291,7 @@ if [ "${programs[gpu]}" ]; then
         for program in ${programs[gpu]}; do
             [[ -z $LONG && $driver != "$first" && $once == *" ${program##*/} "* ]] && continue
             if [[ -z $LONG && $drivers == "system lavapipe-25 swiftshader" && $first == system ]]; then
-                [[ $driver == lavapipe-25 && $not_second_lavapipe == *" ${program##*/} "* ]] && continue
+                [[ $driver == lavapipe-25 && $not_lavapipe_25 == *" ${program##*/} "* ]] && continue
                 [[ $driver == swiftshader && $not_swiftshader == *" ${program##*/} "* ]] && continue
             fi
             start gpu "$driver" "$program"

@@ -26,8 +26,9 @@ TEXT_TESTS   := $(addprefix tests/scripts/,dialect.sh docs.sh docs_tables.sh fac
 TEXT_TESTS   += $(BUILD)/tests/unit/test_shader_gates
 # Nor do those that take long for code that unit tests go through, or whose time goes by in a driver.
 LONG_TESTS   := $(addprefix tests/scripts/,bake_blocks.sh drive.sh meso.sh view.sh)
-# Nor sums in double precision, which touch no memory but their own variables.
-SUM_TESTS    := $(addprefix $(BUILD)/tests/unit/,test_brdf test_sequence test_sky test_vndf)
+# Nor sums and simulated loads, which touch no memory but their own variables.
+SUM_TESTS    := $(addprefix $(BUILD)/tests/unit/test_,brdf camera cull environment governor governor_host governor_loads \
+    ladder masks sequence sky vndf)
 once_is_enough = $(filter-out $(if $(NESTED),$(TEXT_TESTS) $(LONG_TESTS) $(SUM_TESTS)),$(1))
 UNIT_TESTS   := $(call once_is_enough,$(call test_programs,tests/unit/test_*.c))
 SCRIPT_TESTS := $(call only,$(call once_is_enough,$(wildcard tests/scripts/*.sh $(if $(FULL),tests/full/*.sh))))
