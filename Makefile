@@ -37,7 +37,7 @@ CXX    := $(if $(filter default,$(origin CXX)),g++,$(CXX))
 PREFIX ?= /usr/local
 DESTDIR ?=
 WORLD  ?= garden
-SIZE   ?= 1920x1080
+SIZE   ?= 1280x720
 DRIVERS ?= system
 FULL   ?=
 LONG   ?=
@@ -150,7 +150,7 @@ scenes: $(SCENES) ## bake scenes/*.json to build/scenes/*.masu
 
 .PHONY: demo demo-picture view view-window worlds hostile
 demo: deps-demo $(if $(filter forza,$(WORLD)),deps-worlds)
-demo: ## install missing packages, build, bake, render: WORLD=garden|engine|forza|city|... SIZE=1920x1080 TIME= DEMO_ARGS=
+demo: ## install missing packages, build, bake, render: WORLD=garden|engine|forza|city|... SIZE=1280x720 TIME= DEMO_ARGS=
 	+$(V)$(more) demo-picture
 
 picture := $(BUILD)/demo$(if $(filter-out garden,$(WORLD)),-$(WORLD)).png
