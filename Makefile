@@ -44,7 +44,7 @@ LONG   ?=
 
 # ---- Flags ---------------------------------------------------------------------------------------
 
-CONFIG_release  := -O2 -g -DNDEBUG
+CONFIG_release  := -O2 -g1 -DNDEBUG
 # The laboratory (lab/lab.mk), and what of the product only it has, under the define MASU_LAB.
 CONFIG_lab      := $(CONFIG_release) -DMASU_LAB
 CONFIG_debug    := -O0 -g3
@@ -72,6 +72,11 @@ $(BUILD)/obj/tests/%.o: FOLDER_FLAGS := -D_POSIX_C_SOURCE=200809L -UNDEBUG
 # Tests take longer to compile than to run; slow code is in tests/support and tests/reference, compiled as all else.
 ifeq ($(config),release)
 $(BUILD)/obj/tests/unit/%.o $(BUILD)/obj/tests/gpu/%.o: FOLDER_FLAGS += -O1 -g1
+endif
+# So does, with the sanitizers, everything that no test spends its time in: a quarter of the time to compile.
+ifeq ($(config),sanitize)
+$(foreach f,examples src tools/bench tools/command tools/conform tools/masu tools/measure tools/view \
+    tools/bake/description tools/bake/import tools/bake/write,$(BUILD)/obj/$(f)/%.o): FOLDER_FLAGS += -O0
 endif
 
 # ---- Rules ---------------------------------------------------------------------------------------

@@ -37,7 +37,7 @@ static uint32_t differing(double share) {
 
 static void all_marches_find_the_same_surface(void **state) {
     (void)state;
-    static const char *const scenes[] = {"spheres", "blobs", "city"};
+    static const char *const scenes[] = {"blobs", "spheres", "city"};
     static const struct {
         masu_march march;
         const char *name;
@@ -45,7 +45,7 @@ static void all_marches_find_the_same_surface(void **state) {
     } marches[] = {{MASU_MARCH_PLAIN, "plain", 0.01, 0.04}, /* it stops a tenth of a pixel before a surface: far away at grazing angles */
                    {MASU_MARCH_CHECKERBOARD, "checkerboard", 0.01, 0.01},
                    {MASU_MARCH_SEED, "seed", 0.1, 0.05}};
-    for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
+    for (size_t i = 0; i < (long_run() ? sizeof scenes / sizeof *scenes : 1); i++) {
         if (shell("%s/bin/masu-bake scenes/%s.json -o %s --variants --quiet", build_dir(), scenes[i], baked_scene(scenes[i])))
             fail_msg("%s is not baked", scenes[i]);
         draw_march(scenes[i], MASU_MARCH_AUTO, own);
