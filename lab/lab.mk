@@ -22,7 +22,7 @@ isa-table: tools scenes ## write lab/notes/isa.csv: cost of every pipeline on th
 ladders: $(GENERATED) ## write src/quality/ladder_tables.h from docs/report/*/ladder.json: LADDERS='both=engine ...'
 ladder-costs: tools $(foreach l,$(LADDERS),$(call ladder_scene,$(l))) ## choose the rungs of build/report/* by their costs on the target GPUs: MASU_ISA_DRIVERS=
 ladder-devices: tools $(foreach l,$(LADDERS),$(call ladder_scene,$(l))) ## write src/quality/ladder_devices.h from the cost model: MASU_ISA_DRIVERS=
-gallery: tools ## write build/gallery/index.html: all models of assimp-testmodels and tracks of TORCS: MATCH='*OBJ*' SIZE=
+gallery: tools ## write build/gallery/index.html: all models of assimp-testmodels and tracks of TORCS: MATCH='*OBJ*' SIZE= PATHS=32
 study isa-table ladders ladder-costs ladder-devices gallery:
 	+$(V)$(lab_make) $@
 
@@ -193,9 +193,9 @@ ladder-devices: $(LAB)
 	$(V)cp $(BUILD)/ladder_devices.h src/quality/ladder_devices.h
 
 .PHONY: gallery
-gallery:
+gallery: $(if $(PATHS),$(LAB))
 	$(V)BUILD='$(MADE)' SIZE='$(if $(filter command line,$(origin SIZE)),$(SIZE),480x270)' MATCH='$(or $(MATCH),*)' \
-	    lab/gallery/gallery.sh $(MADE)/gallery $(or $(MODELS),/usr/share/assimp/models) $(TORCS)/tracks
+	    PATHS='$(or $(PATHS),0)' lab/gallery/gallery.sh $(MADE)/gallery $(or $(MODELS),/usr/share/assimp/models) $(TORCS)/tracks
 
 # ---- Tests: lab/tests/{unit,gpu,fuzz,scripts}, as in tests/tests.mk ------------------------------
 

@@ -5,6 +5,7 @@
 #include "lab/command/commands.h"
 #include "lab/reference/model_error.h"
 #include "lab/reference/render.h"
+#include "measure/linear.h"
 #include "measure/patches.h"
 
 #include <errno.h>
@@ -32,8 +33,9 @@ static bool read_sun(masu_cli *cli, void *to) {
 
 static const masu_option rows[] = {
     MASU_HEADING("Output"),
-    {MASU_ROW(options, output, MASU_TAKE_FILE, "output", "FILE.pfm",
-              "linear image before exposure"),
+    {MASU_ROW(options, output, MASU_TAKE_FILE, "output", "FILE",
+              "FILE.pfm: linear image before exposure; FILE.png: 8 bits of sRGB, with the scene's\n"
+              "exposure and the filmic tone curve"),
      .letter = 'o'},
     MASU_FILE(options, errors, "error", "FILE.pfm", "standard error of each value"),
     MASU_FILE(options, store, "store", "FILE.ref",
@@ -100,11 +102,37 @@ static void command_line(const options *o, const char *scene, char *text, size_t
     if (o->sun_radius > 0) snprintf(text + at, size - at, " --sun-radius %g", o->sun_radius);
 }
 
-static bool save(const options *o, const char *scene, const ref_image *image, char *error,
-                 size_t size) {
+static bool is_png(const char *path) {
+    const char *end = strrchr(path, '.');
+    return end && !strcmp(end, ".png");
+}
+
+/* With the curve of shaders/shared/tone.glsl. */
+static bool save_png(const char *path, const ref_image *image, double exposure, char *error,
+                     size_t size) {
+    const size_t pixels = (size_t)image->width * image->height;
+    float *shown = malloc(3 * pixels * sizeof *shown);
+    uint8_t *rgba = malloc(4 * pixels);
+    bool good = shown && rgba;
+    if (!good) snprintf(error, size, "out of memory for %s", path);
+    for (size_t i = 0; good && i < 3 * pixels; i++) {
+        double x = fmin(fmax((double)image->mean[i] * exposure, 0), 1e4);
+        shown[i] = (float)fmin(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 1);
+    }
+    if (good) masu_srgb_encode(shown, pixels, rgba);
+    good = good && masu_image_save_png(path, rgba, image->width, image->height, 0, error, size);
+    free(rgba);
+    free(shown);
+    return good;
+}
+
+static bool save(const options *o, const char *scene, double exposure, const ref_image *image,
+                 char *error, size_t size) {
     masu_reference *r = calloc(1, sizeof *r);
     bool good = r != NULL;
-    if (o->output)
+    if (o->output && is_png(o->output))
+        good = good && save_png(o->output, image, exposure, error, size);
+    else if (o->output)
         good = good && masu_image_save_pfm(o->output, image->mean, image->width, image->height, 3,
                                            error, size);
     if (o->errors)
@@ -126,6 +154,8 @@ static void warn(const options *o, const ref_scene *s) {
     if (s->meso) masu_cli_warn("mesoscale detail of materials is left out");
     if ((double)s->environment->turbidity > 0 && !o->sky)
         masu_cli_warn("the analytic sky is left out: give an image of it by --sky");
+    if (o->output && is_png(o->output) && (double)s->environment->metered > 0)
+        masu_cli_warn("auto-exposure is left out");
 }
 
 static int render(const options *o, const char *path, ref_scene *scene, const ref_field *field,
@@ -174,7 +204,7 @@ static int render(const options *o, const char *path, ref_scene *scene, const re
         snprintf(error, sizeof error, "out of memory for an image of %ux%u", o->size.width,
                  o->size.height);
     masu_cli_progress_clear();
-    good = good && save(o, path, &image, error, sizeof error);
+    good = good && save(o, path, (double)e->exposure, &image, error, sizeof error);
     ref_image_free(&image);
     ref_world_close(&world);
     return good ? MASU_CLI_OK : masu_cli_error("%s", error);
@@ -268,7 +298,7 @@ static int run(masu_cli *cli) {
 
 const masu_cli_command lab_reference = {
     .name = "reference",
-    .arguments = "SCENE.masu -o X.pfm [options]",
+    .arguments = "SCENE.masu -o X.pfm|X.png [options]",
     .summary = "render a scene by a path tracer that shares nothing with the renderer",
     .details = "The default is the model that Masu promises: a difference from `masu render` is a "
                "bug, or\n"

@@ -5,16 +5,31 @@
 #   gallery.sh OUT FOLDER...     OUT: a new or empty folder for index.html, the pictures, counts.txt
 #
 # SIZE (480x270) of the pictures, MATCH a pattern (find -path) of the models, JOBS (all processors) at once.
-# NO_PICTURES=1 only bakes.
+# NO_PICTURES=1 only bakes. PATHS=N, not 0: each row is the reference of N paths a pixel, the settled still, one raw frame.
 set -u
 cd "$(dirname "$0")/../.." || exit 1
 bake=$(realpath "${BUILD:-build}/bin/masu-bake")
 masu=$(realpath "${BUILD:-build}/bin/masu")
+lab=$(realpath -m "${BUILD:-build}/lab/bin/masu-lab")
+paths=${PATHS:-0}
 size=${SIZE:-480x270}
 
 . tests/outcome.sh
 
 html() { sed 's/&/\&amp;/g; s/</\&lt;/g; s/>/\&gt;/g'; }
+
+# beside NUMBER FILE: the other two images of the row, or why there is no reference
+beside() {
+    local at=$out/$1 sdf=()
+    case $2 in
+    *.sdf) sdf=(--sdf "$2") ;;
+    *.json) mapfile -t sdf < <(sed -n 's|.*"source": *"\([^"]*\.sdf\)".*|--sdf\n'"${2%/*}"'/\1|p' "$2") ;;
+    esac
+    "$lab" reference "$at.masu" -o "$at.ref.png" --paths "$paths" --size "$size" --quiet "${sdf[@]}" 2>> "$at.err" &&
+        echo "<img src=\"$1.ref.png\" loading=\"lazy\" alt=\"reference\">"
+    "$masu" render "$at.masu" -o "$at.raw.png" --frame --size "$size" --quiet 2>> "$at.err" &&
+        echo "<img src=\"$1.raw.png\" loading=\"lazy\" alt=\"raw frame\">"
+}
 
 # one NUMBER FILE NAME: a row of the page in OUT/NUMBER.row, its outcome in OUT/NUMBER.outcome
 one() {
@@ -28,7 +43,10 @@ one() {
         echo "<figure>"
         if [ $code = 0 ] && [ ! "${NO_PICTURES:-}" ]; then
             if timeout 300 "$masu" render "$at.masu" -o "$at.png" --size "$size" --quiet > /dev/null 2>> "$at.err"; then
+                [ "$paths" = 0 ] || beside "$number" "$file" > "$at.beside"
+                grep -s ref.png "$at.beside"
                 echo "<img src=\"$number.png\" loading=\"lazy\" alt=\"\">"
+                grep -s raw.png "$at.beside"
             else
                 echo "WRONG: does not render" > "$at.outcome"
             fi
@@ -73,8 +91,9 @@ rm -f "$out/list"
 cat "$out"/[0-9]*.outcome 2> /dev/null | sort | uniq -c | sort -rn > "$out/counts.txt"
 {
     echo '<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>Models of strangers</title>'
-    echo '<style>body{font:14px sans-serif;background:#ddd}figure{display:inline-block;vertical-align:top;margin:6px;width:480px;'
-    echo 'background:#fff;overflow-wrap:anywhere}img{width:480px;display:block}figcaption{padding:6px}small{color:#a30}</style>'
+    echo '<style>body{font:14px sans-serif;background:#ddd}figure{display:inline-block;vertical-align:top;margin:6px;'
+    echo "width:$((paths ? 1440 : 480))px;"
+    echo 'background:#fff;overflow-wrap:anywhere}img{width:480px;float:left}figcaption{clear:both;padding:6px}small{color:#a30}</style>'
     echo '<h1>Models of strangers</h1><pre>'
     html < "$out/counts.txt"
     cut -d ' ' -f 1 "$out"/[0-9]*.took 2> /dev/null | sort -n | awk '{ t[NR] = $1 } END { if (NR)
@@ -86,7 +105,7 @@ cat "$out"/[0-9]*.outcome 2> /dev/null | sort | uniq -c | sort -rn > "$out/count
     cat "$out"/[0-9]*.row 2> /dev/null
     echo '</html>'
 } > "$out/index.html"
-rm -f "$out"/[0-9]*.{row,outcome,took,peak,err}
+rm -f "$out"/[0-9]*.{row,outcome,took,peak,err,beside}
 cat "$out/counts.txt"
 echo "The page is $out/index.html"
 ! grep -q WRONG "$out/counts.txt"

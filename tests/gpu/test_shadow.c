@@ -262,6 +262,56 @@ static void smooth_balls_are_lit_to_their_terminator(void **state) {
     assert_true(dark * 50 < looked);
 }
 
+/* Half a spider's leg: eight sides around a radius of 5 cm, smooth, with a knee between two long parts. */
+static void write_leg(const char *name) {
+    FILE *file = fopen(in_scratch(name), "w");
+    assert_non_null(file);
+    for (int ring = 0; ring < 3; ring++) {
+        const double slope = 0.4 * (1 - ring), length = hypot(1, slope);
+        for (int side = 0; side < 8; side++) {
+            const double up = cos(side * 0.785398163397), across = sin(side * 0.785398163397);
+            const double n[3] = {-slope / length * up, 1 / length * up, across};
+            fprintf(file, "v %.6f %.6f %.6f\nvn %.6f %.6f %.6f\n", 2 * (ring - 1) + 0.05 * n[0],
+                    (ring == 1 ? 1.4 : 0.6) + 0.05 * n[1], 0.05 * n[2], n[0], n[1], n[2]);
+        }
+    }
+    for (int ring = 0; ring < 2; ring++) {
+        for (int side = 0; side < 8; side++) {
+            const int a = 8 * ring + side + 1, b = 8 * ring + (side + 1) % 8 + 1;
+            fprintf(file, "f %d//%d %d//%d %d//%d %d//%d\n", a, a, b, b, b + 8, b + 8, a + 8, a + 8);
+        }
+    }
+    assert_int_equal(fclose(file), 0);
+}
+
+/* What smooths terminators takes no more than a tenth of a leg's radius off its shadow. */
+static void thin_smooth_casters_keep_their_shadow(void **state) {
+    (void)state;
+    double dark = 0, truth = 0;
+    write_leg("leg.obj");
+    begin();
+    add("{\"file\": \"leg.obj\"}, ");
+    finish("leg", GROUND, 2048, "");
+    shadow_open(&t, "leg", W, H, NULL);
+    for (int k = 0; k < 3; k++) {
+        shadow_sun(&t, 20 * k - 20, 50);
+        shadow_draw(&t, &above, 0);
+        const uint32_t *seen = shadow_image(&t, MASU_READBACK_OCCLUSION);
+        const float *depths = shadow_image(&t, MASU_READBACK_DEPTH);
+        for (uint32_t i = 0; i < W * H; i++) {
+            shadow_point p;
+            if (!shadow_point_at(&t, &above, depths, i % W, i / W, &p) || p.at[1] > 0.01) continue;
+            if (fabs(p.at[0]) > 4 || fabs(p.at[2]) > 3) continue;
+            dark += 1 - sun_share(seen, i);
+            truth += !shadow_truth(&t, &p);
+        }
+    }
+    shadow_close(&t);
+    print_message("  the shadow of a leg is %.3f of what it should be\n", dark / truth);
+    assert_true(truth > 200);
+    assert_true(dark > 0.88 * truth && dark < 1.05 * truth);
+}
+
 /* ---- Light that leaks in --------------------------------------------------------------------- */
 
 /* Behind a sheet and a box that stand on the ground: how far from the foot the first shadow is. */
@@ -395,6 +445,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_plane_has_no_acne_under_any_sun),
         cmocka_unit_test(smooth_balls_are_lit_to_their_terminator),
+        cmocka_unit_test(thin_smooth_casters_keep_their_shadow),
         cmocka_unit_test(balls_boxes_and_sheets_have_no_acne),
         cmocka_unit_test(shadows_begin_at_the_foot_of_their_caster),
         cmocka_unit_test(a_sheet_above_the_ground_casts_from_a_few_texels_on),

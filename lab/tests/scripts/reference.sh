@@ -1,0 +1,30 @@
+#!/bin/bash
+# masu-lab reference -o X.png: exposure, filmic curve and sRGB of a sky of one colour.
+set -u
+cd "$(dirname "$0")/../../.." || exit 1
+lab=$(realpath "${BUILD:-build}/bin/masu-lab")
+bin=$(realpath "${MADE:-build}/bin")
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+failures=0
+
+fail() {
+    echo "FAILED: $*"
+    failures=$((failures + 1))
+}
+
+# Radiance .18, .36 and .09 with exposure 2: the curve makes .5036, .7250 and .2669 of them, and sRGB 188, 221 and 141.
+cat > "$folder/sky.json" << 'END'
+{
+  "models": [{"mesh": {"sphere": {"radius": 1}}, "translate": [0, -50, 0]}],
+  "camera": {"fov_y": 40, "near": 0.1, "keys": [{"time": 0, "position": [0, 0, 0], "target": [0, 1, -1]}]},
+  "sky": {"zenith": [0.18, 0.36, 0.09], "horizon": [0.18, 0.36, 0.09]},
+  "sun": {"intensity": 0},
+  "exposure": 2
+}
+END
+"$bin/masu-bake" "$folder/sky.json" -o "$folder/sky.masu" --bare --quiet || fail "masu-bake"
+"$lab" reference "$folder/sky.masu" -o "$folder/sky.png" --paths 1 --size 16x16 --quiet || fail "masu-lab reference"
+colour=$(convert "$folder/sky.png" -depth 8 rgb:- | od -An -v -tu1 -w3 | sort -u | xargs)
+[ "$colour" = "188 221 141" ] || fail "the sky is $colour"
+[ $failures = 0 ]
