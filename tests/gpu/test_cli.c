@@ -236,7 +236,7 @@ static void ladders_are_read_and_shown(void **state) {
     write_ladder("bad.json", "1.5", "");
     assert_int_equal(cli_run("bench --ladder %s/l.json", scratch), 0);
     assert_non_null(strstr(cli_out, "a.masu at 32x24, by wall, 2026-01-02"));
-    assert_non_null(strstr(cli_out, "     1  0.500  0.2500    5.00  scale=0.5"));
+    assert_non_null(strstr(cli_out, "     1  0.500  0.2500    5.00     -  scale=0.5"));
     assert_int_equal(cli_run("bench --ladder %s/bad.json", scratch), 1);
     cli_complained("rungs[1]: ratio: expected less than the previous rung, 1, found 1.5");
     assert_int_equal(cli_run("bench --ladder"), 2);
