@@ -5,9 +5,10 @@
  * in it (Schied et al., "Spatiotemporal Variance-Guided Filtering", HPG 2017). So the filter goes away by
  * itself as the mean becomes better.
  *
- * Fewer than five frames do not average out a ray that has met a lamp by chance: a firefly. Its luma is limited to the mean of its
- * eight neighbours and some deviations of theirs, more of them with each frame; in the first frame it is also weighed as without
- * rung.temporal, which has no frames to take a mean of.
+ * Fewer than five frames do not average out a ray that has met a lamp by chance: a firefly. Its
+ * luma is limited to the mean of its eight neighbours and some deviations of theirs, more of them
+ * with each frame; in the first frame it is also weighed as without rung.temporal, which has no
+ * frames to take a mean of.
  *
  * Its radius is that of the lobe's picture on the surface (filter.glsl). The pattern is turned by the place
  * and not by the frame: what it leaves does not flicker.
@@ -40,8 +41,8 @@ layout(set = MASU_SET_PASS, binding = 3, rgba16f) uniform writeonly image2D smoo
 
 const float widest = 12.0; /* texels */
 
-/* Mean and deviation of the luma of the eight texels around one: where no temporal accumulation tells, or too few frames. Not of
- * the texel itself: a firefly would vouch for itself. */
+/* Mean and deviation of the luma of the eight texels around one: where no temporal accumulation
+ * tells, or too few frames. Not of the texel itself: a firefly would vouch for itself. */
 vec2 spread_around(ivec2 texel, masu_guide g, vec3 point, float width)
 {
     ivec2 last = ivec2(pc.output_width, pc.output_height) - 1;

@@ -128,9 +128,10 @@ masu_albedo masu_albedo_of(masu_bsdf b, float cosine, float over)
     return masu_albedo_from(b, base, covered, coat);
 }
 
-/* Colour of what leaves after more than one bounce, as a factor of what is lost (Kulla and Conty). lost: the
- * average. The square of f (Hill, "A Multi-Faceted Exploration", part 4, 2018) leaves metals of f 0.5 up to
- * 8 % too dark beside random walks between facets; the second factor, 1 at f 1, half as much. */
+/* Colour of what leaves after more than one bounce, as a factor of what is lost (Kulla and Conty).
+ * lost: the average. The square of f (Hill, "A Multi-Faceted Exploration", part 4, 2018) leaves
+ * metals of f 0.5 up to 8 % too dark beside random walks between facets; the second factor, 1 at f
+ * 1, half as much. */
 vec3 masu_rest_color(vec3 f0, float f90, float lost)
 {
     vec3 f = f0 + (f90 - f0) * (1.0 / 21.0);

@@ -40,8 +40,9 @@ float masu_most_of(masu_corners c)
     return max(max(masu_most_of(c.diagonal), masu_most_of(vec4(c.left, c.right, c.above, c.below))), c.own);
 }
 
-/* The way to the nearest, of found.glsl: of several the one that the pixel has a side in common with. None lies beyond the
- * picture: what is repeated there is the pixel, or has a side in common with it. */
+/* The way to the nearest, of found.glsl: of several the one that the pixel has a side in common
+ * with. None lies beyond the picture: what is repeated there is the pixel, or has a side in common
+ * with it. */
 uint masu_way_to(masu_corners c, float nearest)
 {
     uint way = masu_found_way(1, 1);

@@ -1,16 +1,20 @@
 /*
- * found.glsl: what temporal_find.comp tells temporal.comp and temporal_twice.comp of a pixel's history, in two words:
+ * found.glsl: the result of temporal_find.comp for a pixel, which temporal.comp and
+ * temporal_twice.comp read: two 32-bit values.
  *
- *   x   bits 0 to 26   of red, green and blue, 9 bits each, the least that it may be: display light, bits 18 to 26 of the
- *                      float, of 2^-15 to 1; the rest of it cut off. Black is 2^-15, a tenth of a step of 8 bits
- *       bits 27 to 31  how many samples it counts at most: bits 21 to 25 of that float, of 5/32 to 28; 0: there is none
- *   y   bits 0 to 26   the same of the most; the rest of it rounded up
- *       bits 27 to 31  where it was. 0: by the velocity at the place; 31: in the same place; 30: by a velocity that stands in
- *                      this value; else by that of a texel beside, bits 27 and 28 of which say how far to the right, 1 to 3
- *                      less 2, and bits 29 and 30 how far below, 0 to 2 less 1
+ *   x   bits 0 to 26   lower limit of the history's red, green and blue, 9 bits each, display-linear:
+ *                      bits 18 to 26 of the float, which is 2^-15 to 1, rounded down. Black is
+ *                      2^-15, a tenth of a step of 8 bits
+ *       bits 27 to 31  limit of the history weight, in samples: bits 21 to 25 of the float, which is
+ *                      5/32 to 28; 0: no history
+ *   y   bits 0 to 26   upper limit, in the same form, rounded up
+ *       bits 27 to 31  velocity that leads to the history. 0: of this texel; 31: none (same
+ *                      position); 30: stored in this value (thin surface, below); else of another
+ *                      texel: bits 27 and 28 hold its offset to the right (-1 to 1) plus 2, bits 29
+ *                      and 30 its offset downwards plus 1
  *
- * 30 is a thin surface that this frame's samples have missed (temporal_find.comp, rule 5). It is not clamped from above: the
- * lowest 5 bits of the three colours of y, which are white with and without them, hold the 15 of masu_thin.
+ * 30 marks a thin surface that this frame's samples have missed (temporal_find.comp, rule 5). It has
+ * no upper limit, so the lowest 5 bits of the three colours of y hold the 15 bits of masu_thin.
  */
 #ifndef MASU_FOUND_GLSL
 #define MASU_FOUND_GLSL
@@ -43,8 +47,9 @@ uvec2 masu_found(uint way, float count, vec3 least, vec3 most)
     return uvec2(masu_found_color(least, 0u) | level << 27, masu_found_color(most, 0x3FFFFu) | way << 27);
 }
 
-/* A thin surface, as the lowest 15 bits of its depth in `history_depth` and as the lowest of `found` hold it: bits 0 to 2 how
- * many frames may miss it, 0: it is not thin; bits 3 to 8 and 9 to 14 its velocity, quarters of a pixel of the render size. */
+/* A thin surface, as the lowest 15 bits of its depth in `history_depth` and as the lowest of
+ * `found` hold it: bits 0 to 2 how many frames may miss it, 0: it is not thin; bits 3 to 8 and 9 to
+ * 14 its velocity, quarters of a pixel of the render size. */
 const uint masu_thin_lives = 7u, masu_thin_bits = 0x7FFFu;
 const float masu_thin_fastest = 7.75; /* pixels of the render size */
 

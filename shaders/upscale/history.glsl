@@ -71,7 +71,8 @@ masu_past masu_history(uvec2 found, vec2 middle, ivec2 texel, vec2 inside, vec2 
         vec2 beside = min(vec2(texel + masu_found_beside(found)), vec2(push.last_x, push.last_y));
         vec2 uv = ((masu_found_is_beside(found) ? beside : inside) + 0.5) * vec2(push.moved_x, push.moved_y);
         vec2 moved = textureLod(velocity_image, uv, 0.0).xy;
-        before += (masu_is_missed(found) ? masu_thin_motion(masu_thin_of(found)) : moved + frame.shifts.zw) * steps;
+        before += (masu_is_missed(found) ? masu_thin_motion(masu_thin_of(found))
+                                         : moved + frame.shifts.zw) * steps;
     }
     masu_past old = masu_history_at(before);
     old.mean.a = masu_mean_count(old.mean);
