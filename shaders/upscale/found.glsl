@@ -13,8 +13,8 @@
  *                      texel: bits 27 and 28 hold its offset to the right (-1 to 1) plus 2, bits 29
  *                      and 30 its offset downwards plus 1
  *
- * 30 marks a thin surface that this frame's samples have missed (temporal_find.comp, rule 5). It has
- * no upper limit, so the lowest 5 bits of the three colours of y hold the 15 bits of masu_thin.
+ * 30 marks a thin surface that this frame's samples have missed (temporal_find.comp, rule 5). It
+ * has no upper limit, so the lowest 5 bits of the three colours of y hold the 15 bits of masu_thin.
  */
 #ifndef MASU_FOUND_GLSL
 #define MASU_FOUND_GLSL
@@ -22,7 +22,7 @@
 const float masu_found_most = 28.0;
 const uint masu_found_linear = 0u, masu_found_missed = 30u, masu_found_stays = 31u;
 
-/* The texel whose velocity is that of the pixel: -1, 0 or 1 to the right and below. */
+/* Offset of the texel whose velocity the pixel uses: -1, 0 or 1 to the right and downwards. */
 uint masu_found_way(int right, int below)
 {
     return uint(right + 2) | uint(below + 1) << 2;
@@ -33,14 +33,16 @@ ivec2 masu_found_beside(uint way)
     return ivec2(way & 3u, way >> 2) - ivec2(2, 1);
 }
 
-/* Bits 18 to 26 of floats of 0 to 1: exponents of less than 112 are that; rounded up by `up` of 2^18 - 1. */
+/* Bits 18 to 26 of floats in 0 to 1; smaller exponents than 112 become 112. up: 2^18 - 1 rounds up,
+ * 0 down. */
 uint masu_found_color(vec3 light, uint up)
 {
     uvec3 bits = (floatBitsToUint(max(light, vec3(1.0 / 32768.0))) + up - 0x38000000u) >> 18;
     return bits.r | bits.g << 9 | bits.b << 18;
 }
 
-/* count: to the nearest that there is, 5/32 to the most. least, most: display light, 0 to 1. */
+/* count: rounded to a value that can be stored, 5/32 to masu_found_most. least, most:
+ * display-linear, 0 to 1. */
 uvec2 masu_found(uint way, float count, vec3 least, vec3 most)
 {
     uint level = (floatBitsToUint(clamp(count, 0.15625, masu_found_most)) - 0x3E000000u + 0x100000u) >> 21;
@@ -64,7 +66,7 @@ vec2 masu_thin_motion(uint thin)
     return vec2(uvec2(thin >> 3, thin >> 9) & 63u) * 0.25 - 8.0;
 }
 
-/* What `found` says of a missed surface, and back. */
+/* Stores a missed thin surface in `found`; masu_thin_of reads it. */
 uvec2 masu_found_thin(uint thin, float count, vec3 least)
 {
     uvec2 found = masu_found(masu_found_missed, count, least, vec3(1.0));
@@ -91,7 +93,7 @@ bool masu_has_stayed(uvec2 found)
     return found.y >= masu_found_stays << 27;
 }
 
-/* Of what has not stayed: whether its velocity is that of a texel beside, and where that lies. */
+/* For pixels that have moved: whether they use the velocity of another texel, and its offset. */
 bool masu_found_is_beside(uvec2 found)
 {
     return found.y >= 1u << 27;
@@ -107,7 +109,8 @@ vec3 masu_found_light(uint word)
     return uintBitsToFloat((uvec3(word << 18, word << 9, word) & 0x7FC0000u) | 0x38000000u);
 }
 
-/* light: as it may be; a: samples, as many as count. */
+/* Clamps light to the limits of `found`, and the number of samples in a to the limit of the
+ * weight. */
 vec4 masu_found_held(uvec2 found, vec4 light)
 {
     float count = uintBitsToFloat((found.x >> 27 << 21) + 0x3E000000u);

@@ -12,7 +12,8 @@ enum { TARGETS = sizeof targets / sizeof *targets };
 
 static void take_rung(masu_viewer *v, uint32_t rung) {
     if (rung >= v->want.rung_count) {
-        masu_viewer_note(v, "rung %u does not exist: expected 0 to %u", rung, v->want.rung_count - 1);
+        masu_viewer_note(v, "rung %u does not exist: expected 0 to %u", rung,
+                         v->want.rung_count - 1);
         return;
     }
     v->rung = rung;

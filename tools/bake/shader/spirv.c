@@ -187,8 +187,8 @@ masu_bake_machine *masu_bake_machine_make(const uint32_t *words, size_t count, c
         for (size_t i = 0; i < n && m->decisions; i++) m->decisions[i] = (double)NAN;
         m->cell_count = 1;
     }
-    if (!m || !m->types || !m->of || !m->at || !m->where || !m->binding || !m->cells || !m->decisions ||
-        !m->decided) {
+    if (!m || !m->types || !m->of || !m->at || !m->where || !m->binding || !m->cells ||
+        !m->decisions || !m->decided) {
         snprintf(error, error_size, "no memory");
     } else if (load(m)) {
         return m;
@@ -199,7 +199,8 @@ masu_bake_machine *masu_bake_machine_make(const uint32_t *words, size_t count, c
 
 void masu_bake_machine_free(masu_bake_machine *m) {
     if (!m) return;
-    void *const all[] = {m->types, m->of, m->at, m->where, m->binding, m->cells, m->decisions, m->decided, m};
+    void *const all[] = {m->types, m->of,        m->at,      m->where, m->binding,
+                         m->cells, m->decisions, m->decided, m};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
 }
 
