@@ -241,8 +241,8 @@ void masu_hud_draw(masu_viewer *v) {
         }
         draw_lines(c, &lines);
         banner(c, c->height - h - h / 2, MASU_INK_DIM,
-               "F1 overlay  Tab knobs  1-8 rung  0 governor  F2 split  B store B  F3 difference  P path  "
-               "Space pause  F12 screenshot  Esc exit");
+               "F1 overlay  Tab knobs  1-8 PgUp PgDn rung  0 governor  F2 split  B store B  "
+               "F3 difference  P path  Space pause  F12 screenshot  Esc exit");
     }
     if (v->show == MASU_SHOW_SPLIT) draw_split(v);
     if (v->show == MASU_SHOW_MAP) draw_difference(v);

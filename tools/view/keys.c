@@ -104,6 +104,8 @@ bool masu_key_pressed(masu_viewer *v, SDL_Keycode key, uint16_t modifiers) {
     if (key >= SDLK_1 && key <= SDLK_8) return take_rung(v, (uint32_t)(key - SDLK_1)), true;
     switch (key) {
     case SDLK_ESCAPE: v->quit = true; return true;
+    case SDLK_PAGEUP: return take_rung(v, v->rung > 0 ? v->rung - 1 : 0), true;
+    case SDLK_PAGEDOWN: return take_rung(v, v->rung + 1), true;
     case SDLK_0: govern(v, true); return true;
     case SDLK_g: govern(v, !v->governed); return true;
     case SDLK_PLUS:
