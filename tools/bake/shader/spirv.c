@@ -1,9 +1,9 @@
 /* spirv.c: see spirv.h.
  *
- * Every value is a row of cells: a vector its components, a matrix its columns, an array or struct
- * its members one after the other. An id's row lies at a fixed place in one array of cells, as the
- * variables do; a pointer is the number of a cell. There is no recursion in SPIR-V shaders, so that
- * fixed places are enough. Numbers of instructions are those of the Khronos specification. */
+ * Every value is a row of cells: components of a vector, columns of a matrix, members of an array
+ * or struct. The row of an id and each variable have a fixed position in one array of cells, which
+ * is enough because SPIR-V shaders have no recursion. A pointer is the number of a cell.
+ * Instructions have the numbers of the Khronos specification. */
 #include "bake/shader/spirv.h"
 
 #include <math.h>
