@@ -60,6 +60,7 @@ void main()
         thin = thin_at(at + masu_found_beside(masu_way_to(c, nearest)), nearest, size, texel);
     }
     uint replaced = (thin & masu_thin_lives) != 0u ? masu_thin_bits : masu_thin_lives;
-    uint kept = (floatBitsToUint(nearest) & ~replaced) | (thin & replaced);
-    MASU_STORE_SAFE(kept_image, at, vec4(uintBitsToFloat(kept)));
+    MASU_STORE_SAFE(kept_image, at,
+                    vec4(uintBitsToFloat((floatBitsToUint(nearest) & ~replaced) |
+                                         (thin & replaced))));
 }

@@ -146,8 +146,8 @@ static void a_scene_of_everything_keeps_everything(void **state) {
         "scale=0.9375+sharpen=off",
         "scale=0.28+temporal=on",
         "scale=0.2+temporal=on",
-        "scale=0.22+temporal=on+march_steps=128+lod_error=2+ao_slices=1+ao_steps=4+"
-        "shadow_refresh=2-4-8-8+specular_reuse_taps=4+specular_filter_taps=6",
+        ("scale=0.22+temporal=on+march_steps=128+lod_error=2+ao_slices=1+ao_steps=4+"
+         "shadow_refresh=2-4-8-8+specular_reuse_taps=4+specular_filter_taps=6"),
         "scale=0.4375+sharpen=off",
         "scale=0.4+sharpen=off+aa=smaa-high",
         "scale=0.625+sharpen=off+march_steps=128",

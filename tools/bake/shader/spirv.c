@@ -1,9 +1,8 @@
 /* spirv.c: see spirv.h.
  *
  * Every value is a row of cells: components of a vector, columns of a matrix, members of an array
- * or struct. The row of an id and each variable have a fixed position in one array of cells, which
- * is enough because SPIR-V shaders have no recursion. A pointer is the number of a cell.
- * Instructions have the numbers of the Khronos specification. */
+ * or struct. Rows and variables have fixed positions in one array of cells, since SPIR-V shaders
+ * have no recursion; a pointer is an index. Instruction numbers are those of the specification. */
 #include "bake/shader/spirv.h"
 
 #include <math.h>
