@@ -59,7 +59,10 @@ static bool build(view *v) {
     v->m = NULL, v->block = NULL, v->frame = 0, v->inits++;
     if (masu_memory_query(&desc, &need, &detail)) return failed(&detail);
     v->block = aligned_alloc(64, (need.host_bytes + 63) / 64 * 64);
-    if (!v->block) return fprintf(stderr, "loop: out of memory for %llu bytes\n", (unsigned long long)need.host_bytes), false;
+    if (!v->block)
+        return fprintf(stderr, "loop: out of memory for %llu bytes\n",
+                       (unsigned long long)need.host_bytes),
+               false;
     if (masu_init(&desc, v->block, need.host_bytes, &v->m, &detail)) return failed(&detail);
     while ((result = masu_load(v->m, &load)) == MASU_INCOMPLETE) {
         if (!window_run(&v->window, load.buffer)) return false;

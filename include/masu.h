@@ -572,8 +572,9 @@ typedef struct masu_governor_desc {
      * trial makes the next one rarer. */
     uint32_t steady_clock;
     /* Features that no rung may disable: MASU_KEEP_*, of any mode. A built-in ladder omits its
-     * rungs without one of them; a rung of masu_desc.rungs with that feature OFF is MASU_ERROR_ARGUMENT.
-     * A scene or device that does not support a feature still renders without it. */
+     * rungs without one of them; a rung of masu_desc.rungs with that feature OFF is
+     * MASU_ERROR_ARGUMENT. A scene or device that does not support a feature still renders without
+     * it. */
     uint32_t keep;
 } masu_governor_desc;
 

@@ -1,7 +1,9 @@
-/* exr.c: OpenEXR files of one part, scan lines, without compression or with RLE, ZIPS or ZIP (OpenEXR
- * "File Layout" of the Academy Software Foundation). Written: 32-bit floats B, G, R without compression.
+/* exr.c: OpenEXR files of one part, scan lines, without compression or with RLE, ZIPS or ZIP
+ * (OpenEXR "File Layout" of the Academy Software Foundation). Written: 32-bit floats B, G, R
+ * without compression.
  *
- * A file is untrusted: every read of the header and of a chunk is bounded by the bytes that are left. */
+ * A file is untrusted: every read of the header and of a chunk is bounded by the bytes that are
+ * left. */
 #include "image.h"
 #include "image_parts.h"
 
@@ -11,7 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAGIC = 20000630, VERSION = 2, TILED = 0x200, DEEP = 0x800, PARTS = 0x1000, CHANNELS_MAX = 64 };
+enum { MAGIC = 20000630, VERSION = 2, TILED = 0x200, DEEP = 0x800, PARTS = 0x1000 };
+enum { CHANNELS_MAX = 64 };
 enum { COMPRESSION_NONE, COMPRESSION_RLE, COMPRESSION_ZIPS, COMPRESSION_ZIP, COMPRESSIONS_READ };
 enum { SAMPLE_UINT, SAMPLE_HALF, SAMPLE_FLOAT };
 
@@ -76,13 +79,14 @@ static void put_header(writer *w, uint32_t width, uint32_t height) {
     put_number(w, 0, 1);
 }
 
-bool masu_image_save_exr(const char *path, const float *values, uint32_t width, uint32_t height, char *error,
-                         size_t error_size) {
+bool masu_image_save_exr(const char *path, const float *values, uint32_t width, uint32_t height,
+                         char *error, size_t error_size) {
     enum { HEADER_MAX = 512 };
     if (!masu_image_size_allowed(path, width, height, error, error_size)) return false;
     const size_t row = (size_t)width * 12, chunk = row + 8;
     uint8_t *bytes = malloc(HEADER_MAX + (8 + chunk) * height);
-    if (!bytes) return masu_image_fail(error, error_size, "%s: out of memory for the OpenEXR file", path);
+    if (!bytes)
+        return masu_image_fail(error, error_size, "%s: out of memory for the OpenEXR file", path);
     writer w = {bytes};
     put_header(&w, width, height);
     const size_t first = (size_t)(w.at - bytes) + 8 * (size_t)height;
@@ -143,7 +147,8 @@ static bool take_number(reader *r, uint32_t *out) {
 
 static bool take_text(reader *r, const char **out) {
     size_t left = (size_t)(r->end - r->at);
-    const uint8_t *end = left ? memchr(r->at, 0, left < NAME_MAX_BYTES ? left : NAME_MAX_BYTES) : NULL;
+    const uint8_t *end =
+        left ? memchr(r->at, 0, left < NAME_MAX_BYTES ? left : NAME_MAX_BYTES) : NULL;
     if (!end) return false;
     *out = (const char *)r->at;
     r->at = end + 1;
@@ -157,7 +162,8 @@ static bool read_channels(reader value, exr_header *h) {
     while (value.at < value.end && *value.at) {
         const char *name;
         const uint8_t *p;
-        if (!take_text(&value, &name) || !take(&value, 16, &p) || h->channel_count == CHANNELS_MAX) return false;
+        if (!take_text(&value, &name) || !take(&value, 16, &p) || h->channel_count == CHANNELS_MAX)
+            return false;
         exr_channel *c = &h->channels[h->channel_count++];
         *c = (exr_channel){number_of(p), -1};
         if (c->type > SAMPLE_FLOAT || number_of(p + 8) != 1 || number_of(p + 12) != 1) return false;
@@ -178,7 +184,8 @@ static bool read_window(reader value, exr_header *h) {
     for (int i = 0; i < 4; i++) {
         if (!take_number(&value, &v[i])) return false;
     }
-    int64_t width = (int64_t)(int32_t)v[2] - (int32_t)v[0] + 1, height = (int64_t)(int32_t)v[3] - (int32_t)v[1] + 1;
+    int64_t width = (int64_t)(int32_t)v[2] - (int32_t)v[0] + 1,
+            height = (int64_t)(int32_t)v[3] - (int32_t)v[1] + 1;
     h->left = (int32_t)v[0];
     h->top = (int32_t)v[1];
     h->width = width > 0 && width < 1 << 30 ? (uint32_t)width : 0;
@@ -192,9 +199,12 @@ static bool read_header(reader *r, exr_header *h) {
         const char *name, *type;
         const uint8_t *p;
         uint32_t bytes;
-        if (!take_text(r, &name) || !take_text(r, &type) || !take_number(r, &bytes) || !take(r, bytes, &p)) return false;
+        if (!take_text(r, &name) || !take_text(r, &type) || !take_number(r, &bytes) ||
+            !take(r, bytes, &p))
+            return false;
         reader value = {p, p + bytes};
-        if (!strcmp(name, "channels") && (h->channel_count || !read_channels(value, h))) return false;
+        if (!strcmp(name, "channels") && (h->channel_count || !read_channels(value, h)))
+            return false;
         if (!strcmp(name, "dataWindow") && !read_window(value, h)) return false;
         if (!strcmp(name, "compression") && bytes) h->compression = *p, h->has_compression = true;
     }
@@ -228,9 +238,11 @@ static void undo_prediction(const uint8_t *from, size_t bytes, uint8_t *to, uint
     }
 }
 
-static bool unpack(const exr_header *h, const uint8_t *from, size_t count, uint8_t *scratch, uint8_t *to, size_t bytes) {
+static bool unpack(const exr_header *h, const uint8_t *from, size_t count, uint8_t *scratch,
+                   uint8_t *to, size_t bytes) {
     uint8_t last = 0;
-    if (count == bytes) return memcpy(to, from, bytes), true; /* stored where compression gains nothing */
+    /* Stored where compression gains nothing. */
+    if (count == bytes) return memcpy(to, from, bytes), true;
     if (h->compression == COMPRESSION_NONE || count > bytes) return false;
     bool good = h->compression == COMPRESSION_RLE ? unpack_runs(from, count, scratch, bytes)
                                                   : masu_image_inflate(from, count, scratch, bytes);
@@ -239,7 +251,8 @@ static bool unpack(const exr_header *h, const uint8_t *from, size_t count, uint8
 }
 
 static float half_value(uint32_t bits) {
-    uint32_t sign = (bits & 0x8000u) << 16, exponent = bits >> 10 & 31u, mantissa = bits & 0x3FFu, out;
+    uint32_t sign = (bits & 0x8000u) << 16, exponent = bits >> 10 & 31u, mantissa = bits & 0x3FFu,
+             out;
     if (exponent == 0) {
         float value = (float)mantissa * 0x1p-24f;
         return sign ? -value : value;
@@ -275,7 +288,8 @@ static bool read_chunks(reader *r, const exr_header *h, uint8_t *scratch, float 
     const uint32_t chunks = (h->height + rows - 1) / rows;
     const size_t row = h->row * h->width;
     const uint8_t *p;
-    if (!take(r, 8 * (size_t)chunks, &p)) return false; /* the table of offsets: chunks say where they belong */
+    /* The table of offsets: chunks say where they belong. */
+    if (!take(r, 8 * (size_t)chunks, &p)) return false;
     for (uint32_t i = 0; i < chunks; i++) {
         uint32_t y, bytes;
         if (!take_number(r, &y) || !take_number(r, &bytes) || !take(r, bytes, &p)) return false;
@@ -290,21 +304,26 @@ static bool read_chunks(reader *r, const exr_header *h, uint8_t *scratch, float 
     return true;
 }
 
-bool masu_image_is_exr(const uint8_t *bytes, size_t count) { return count >= 8 && number_of(bytes) == MAGIC; }
+bool masu_image_is_exr(const uint8_t *bytes, size_t count) {
+    return count >= 8 && number_of(bytes) == MAGIC;
+}
 
 /* One line about what this reader cannot read; NULL: nothing. */
 static const char *unread(uint32_t flags, const exr_header *h) {
     if ((flags & 0xFF) != VERSION) return "found another version of OpenEXR, expected 2";
     if (flags & TILED) return "found tiles, expected scan lines";
-    if (flags & (DEEP | PARTS)) return "found deep data or several parts, expected one part of scan lines";
+    if (flags & (DEEP | PARTS))
+        return "found deep data or several parts, expected one part of scan lines";
     if (!h->has_channels) return "found no channels R, G, B or Y without subsampling";
-    if (!h->has_window || !h->has_compression) return "the header has no dataWindow or no compression";
-    if (h->compression >= COMPRESSIONS_READ) return "found another compression, expected none, RLE, ZIPS or ZIP";
+    if (!h->has_window || !h->has_compression)
+        return "the header has no dataWindow or no compression";
+    if (h->compression >= COMPRESSIONS_READ)
+        return "found another compression, expected none, RLE, ZIPS or ZIP";
     return NULL;
 }
 
-bool masu_image_decode_exr(const char *path, const uint8_t *bytes, size_t count, struct masu_image *image, char *error,
-                           size_t error_size) {
+bool masu_image_decode_exr(const char *path, const uint8_t *bytes, size_t count,
+                           struct masu_image *image, char *error, size_t error_size) {
     *image = (struct masu_image){0};
     if (!masu_image_is_exr(bytes, count)) {
         return masu_image_fail(error, error_size, "%s: is not an OpenEXR file%s", path,
@@ -315,24 +334,28 @@ bool masu_image_decode_exr(const char *path, const uint8_t *bytes, size_t count,
     memset(&h, 0, sizeof h);
     uint32_t flags = number_of(bytes + 4);
     bool whole = read_header(&r, &h);
-    const char *why = whole || flags & (TILED | DEEP | PARTS) ? unread(flags, &h) : "the header is damaged";
+    const char *why =
+        whole || flags & (TILED | DEEP | PARTS) ? unread(flags, &h) : "the header is damaged";
     if (why) return masu_image_fail(error, error_size, "%s: %s", path, why);
     if (!masu_image_size_allowed(path, h.width, h.height, error, error_size)) return false;
     size_t channels = h.color ? 3 : 1, row = h.row * h.width;
     if (row * h.height > MASU_IMAGE_FILE_BYTES_MAX || row * 16 > INT32_MAX)
-        return masu_image_fail(error, error_size, "%s: found %u channels of %ux%u, more than can be read", path,
+        return masu_image_fail(error, error_size,
+                               "%s: found %u channels of %ux%u, more than can be read", path,
                                h.channel_count, h.width, h.height);
     float *values = calloc(channels * h.width * h.height, sizeof *values);
     uint8_t *scratch = malloc(2 * row * 16);
     bool good = values && scratch;
     if (!good) (void)masu_image_fail(error, error_size, "%s: out of memory", path);
     else if (!read_chunks(&r, &h, scratch, values))
-        good = masu_image_fail(error, error_size, "%s: the OpenEXR file is truncated or damaged", path);
+        good = masu_image_fail(error, error_size, "%s: the OpenEXR file is truncated or damaged",
+                               path);
     free(scratch);
     if (!good) {
         free(values);
         return false;
     }
-    *image = (struct masu_image){.width = h.width, .height = h.height, .channels = (uint32_t)channels, .values = values};
+    *image = (struct masu_image){
+        .width = h.width, .height = h.height, .channels = (uint32_t)channels, .values = values};
     return true;
 }

@@ -87,10 +87,12 @@ void masu_headless_close(masu_headless *host);
 /* Submits; the slot's fence tells when it is done. The slot must not be pending. */
 bool masu_headless_submit(masu_headless *host, VkCommandBuffer commands, uint32_t slot, char *error,
                           size_t error_size);
-/* Waits for a fence, up to the timeout: VK_TIMEOUT. Time during which the process is stopped does not count. */
+/* Waits for a fence, up to the timeout: VK_TIMEOUT. Time during which the process is stopped does
+ * not count. */
 VkResult masu_headless_wait_fence(const masu_headless *host, VkFence fence);
-/* Waits until the slot is free; at once if nothing is pending. After a timeout `device` and `instance` are null:
- * nothing that the device may still use is destroyed, so the process can only end. */
+/* Waits until the slot is free; at once if nothing is pending. After a timeout `device` and
+ * `instance` are null: nothing that the device may still use is destroyed, so the process can only
+ * end. */
 bool masu_headless_wait(masu_headless *host, uint32_t slot, char *error, size_t error_size);
 /* Submit on slot 0 and wait. */
 bool masu_headless_run(masu_headless *host, VkCommandBuffer commands, char *error,

@@ -244,7 +244,8 @@ bool masu_folder_make(const char *path, char *error, size_t error_size) {
     struct stat info;
     if (good && (stat(path, &info) != 0 || !S_ISDIR(info.st_mode))) problem = ENOTDIR;
     if (!problem && access(path, W_OK | X_OK) != 0) problem = errno;
-    return !problem || fail(error, error_size, "%s: cannot create the folder or write to it: %s", path, strerror(problem));
+    return !problem || fail(error, error_size, "%s: cannot create the folder or write to it: %s",
+                            path, strerror(problem));
 }
 
 bool masu_file_writable(const char *path, char *error, size_t error_size) {
@@ -549,7 +550,8 @@ bool masu_image_save_pfm(const char *path, const float *values, uint32_t width, 
 
 bool masu_image_inflate(const uint8_t *from, size_t count, uint8_t *to, size_t bytes) {
     return count <= INT32_MAX && bytes <= INT32_MAX &&
-           stbi_zlib_decode_buffer((char *)to, (int)bytes, (const char *)from, (int)count) == (int)bytes;
+           stbi_zlib_decode_buffer((char *)to, (int)bytes, (const char *)from, (int)count) ==
+               (int)bytes;
 }
 
 bool masu_image_is_linear(const char *path) {
@@ -573,7 +575,8 @@ bool masu_image_load(const char *path, struct masu_image *image, char *error, si
         return false;
     }
     struct pfm_header header;
-    bool good = masu_image_is_exr(bytes, count) ? masu_image_decode_exr(path, bytes, count, image, error, error_size)
+    bool good = masu_image_is_exr(bytes, count)
+                    ? masu_image_decode_exr(path, bytes, count, image, error, error_size)
                 : parse_pfm(bytes, count, &header) || (count > 2 && !memcmp(bytes, "PF", 2))
                     ? decode_pfm(path, bytes, count, image, error, error_size)
                     : masu_image_decode_png(path, bytes, count, image, error, error_size);

@@ -62,15 +62,16 @@ bool masu_image_load_pfm(const char *path, struct masu_image *image, char *error
 bool masu_image_save_pfm(const char *path, const float *values, uint32_t width, uint32_t height,
                          uint32_t channels, char *error, size_t error_size);
 
-/* OpenEXR, scan lines of one part. Read: channels R, G, B of half, float or integer (else Y as one channel);
- * no compression, RLE, ZIPS, ZIP. Written: R, G, B as 32-bit floats without compression. */
-bool masu_image_decode_exr(const char *path, const uint8_t *bytes, size_t count, struct masu_image *image,
-                           char *error, size_t error_size);
-bool masu_image_save_exr(const char *path, const float *values, uint32_t width, uint32_t height, char *error,
-                         size_t error_size);
+/* OpenEXR, scan lines of one part. Read: channels R, G, B of half, float or integer (else Y as one
+ * channel); no compression, RLE, ZIPS, ZIP. Written: R, G, B as 32-bit floats without
+ * compression. */
+bool masu_image_decode_exr(const char *path, const uint8_t *bytes, size_t count,
+                           struct masu_image *image, char *error, size_t error_size);
+bool masu_image_save_exr(const char *path, const float *values, uint32_t width, uint32_t height,
+                         char *error, size_t error_size);
 
-/* Ends of the names of images that programs write: linear light (scene-linear RGB of BT.709 before exposure
- * and tone curve) in PFM and OpenEXR, 8 bits of sRGB in PNG. */
+/* Ends of the names of images that programs write: linear light (scene-linear RGB of BT.709 before
+ * exposure and tone curve) in PFM and OpenEXR, 8 bits of sRGB in PNG. */
 #define MASU_IMAGE_ENDS ".png .pfm .exr"
 /* Whether a file of that name has linear light. */
 bool masu_image_is_linear(const char *path);
@@ -84,8 +85,8 @@ bool masu_image_load(const char *path, struct masu_image *image, char *error, si
 bool masu_file_exists(const char *path);
 bool masu_file_is_regular(const char *path);
 
-/* Whether a file could be written there at present; leaves nothing behind. A FIFO needs a reader, and stays
- * open. */
+/* Whether a file could be written there at present; leaves nothing behind. A FIFO needs a reader,
+ * and stays open. */
 bool masu_file_writable(const char *path, char *error, size_t error_size);
 
 /* Makes a folder and those above it; one that is there must be writable. */
@@ -95,8 +96,8 @@ bool masu_folder_make(const char *path, char *error, size_t error_size);
 bool masu_file_write(const char *path, const void *bytes, size_t count, char *error,
                      size_t error_size);
 
-/* The whole file in one malloc'ed block, at most limit bytes. An empty file is not an error; anything but a
- * regular file is, without waiting for it. */
+/* The whole file in one malloc'ed block, at most limit bytes. An empty file is not an error;
+ * anything but a regular file is, without waiting for it. */
 bool masu_file_read(const char *path, size_t limit, uint8_t **bytes, size_t *count, char *error,
                     size_t error_size);
 

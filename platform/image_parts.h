@@ -13,7 +13,8 @@ __attribute__((format(printf, 3, 4)))
 bool masu_image_fail(char *error, size_t error_size, const char *format, ...);
 
 /* Whether an image of that size is read or written at all. */
-bool masu_image_size_allowed(const char *path, uint32_t width, uint32_t height, char *error, size_t error_size);
+bool masu_image_size_allowed(const char *path, uint32_t width, uint32_t height, char *error,
+                             size_t error_size);
 
 /* A zlib stream of exactly `bytes` bytes. */
 bool masu_image_inflate(const uint8_t *from, size_t count, uint8_t *to, size_t bytes);

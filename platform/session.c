@@ -40,7 +40,8 @@ static bool open_targets(const masu_session_desc *d, masu_session *s, char *erro
     uint32_t count = d->target_count ? d->target_count : 1;
     uint32_t most = s->host.properties.limits.maxImageDimension2D;
     if (s->desc.output.width > most || s->desc.output.height > most) {
-        snprintf(error, size, "size: found %ux%u pixels, expected at most %u per side on this device",
+        snprintf(error, size,
+                 "size: found %ux%u pixels, expected at most %u per side on this device",
                  s->desc.output.width, s->desc.output.height, most);
         return false;
     }

@@ -19,7 +19,8 @@
  * Where the SDF has an ambient occlusion of its own, the lesser of the two counts: what both see they
  * would count twice as a product (docs/design/06-ambient-occlusion.md has the errors).
  *
- * push.radius: radius, metres. push.multiplies: not 0: the occlusion image holds something already; push.size: pixels per texel, 2, or 1 for comparison.
+ * push.radius: radius, metres. push.multiplies: not 0: the occlusion image holds something already;
+ * push.size: pixels per texel, 2, or 1 for comparison.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

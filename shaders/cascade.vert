@@ -8,10 +8,11 @@
  * rasteriser's slope bias, which has a bound only with an optional feature: culling by occluders must
  * know how far a mesh may lie behind its occluder (src/frame/occlusion.c), or what is culled would show.
  *
- * The triangles of a smooth mesh lie below its surface, by push.rise at most. Light that grazes the surface is cut off by
- * the triangles beside, in saw-teeth along the terminator: so vertices are drawn below the surface by as much (the terminator
- * of Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II, 2021, from the caster's side: a shadow map does not
- * know which triangle a receiver is of). Shadows begin that much farther inside at contacts.
+ * The triangles of a smooth mesh lie below its surface, by push.rise at most. Light that grazes the
+ * surface is cut off by the triangles beside, in saw-teeth along the terminator: so vertices are
+ * drawn below the surface by as much (the terminator of Hanika, "Hacking the Shadow Terminator",
+ * Ray Tracing Gems II, 2021, from the caster's side: a shadow map does not know which triangle a
+ * receiver is of). Shadows begin that much farther inside at contacts.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -47,7 +48,8 @@ void main()
     masu_instance_data m = instances[masu_instance_id()];
     uint k = min(push.cascade, uint(MASU_CASCADES_MAX - 1));
     vec3 thinner = position - push.rise * masu_oct_decode(oct_normal);
-    precise vec3 at = masu_point_seen_from(m, thinner, shadow.origin_hi[k].xyz, shadow.origin_lo[k].xyz);
+    precise vec3 at = masu_point_seen_from(m, thinner, shadow.origin_hi[k].xyz,
+                                           shadow.origin_lo[k].xyz);
     precise float x = dot(shadow.row0[k].xyz, at);
     precise float y = dot(shadow.row1[k].xyz, at);
     precise float z = dot(shadow.row2[k].xyz, at) + shadow.rect[k].w;

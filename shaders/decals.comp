@@ -21,7 +21,8 @@ layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D depth_image;
 layout(set = MASU_SET_PASS, binding = 1, rgba8) uniform image2D albedo_image;
 layout(set = MASU_SET_PASS, binding = 2, r32ui) uniform uimage2D normal_image;
-layout(set = MASU_SET_PASS, binding = 3, rgba16f) uniform image2D hdr_image; /* defined where the surface emits */
+/* Defined only at pixels that emit. */
+layout(set = MASU_SET_PASS, binding = 3, rgba16f) uniform image2D hdr_image;
 
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SPRITES, std430) readonly buffer Sprites
 {
@@ -50,9 +51,10 @@ float painted(uint at, vec3 rel, vec3 n, vec4 look)
     return edge * clamp((dot(axis.xyz, n) - place.z) * place.w, 0.0, 1.0);
 }
 
-/* Mixes paint into a surface as light would be: its diffuse albedo, a (1 - m), and its reflectance at normal incidence,
- * a m + 0.04 (1 - m). Metallic is weighted by albedo, which mixes the diffuse part exactly: black paint on metal stays metal
- * until it is nearly black. The albedo makes up for the rest, so that the sum of both parts is exact. */
+/* Mixes paint into a surface as light would be: its diffuse albedo, a (1 - m), and its reflectance
+ * at normal incidence, a m + 0.04 (1 - m). Metallic is weighted by albedo, which mixes the diffuse
+ * part exactly: black paint on metal stays metal until it is nearly black. The albedo makes up for
+ * the rest, so that the sum of both parts is exact. */
 void cover(inout masu_surface s, vec3 paint, float metallic, float share)
 {
     float own = (1.0 - share) * (masu_brightest(s.albedo) + 1.0 / 256.0);
@@ -101,7 +103,8 @@ void paint(ivec2 at, uvec2 size, uint words)
         }
     }
     if (changed) {
-        /* The texel has 16 steps of metallic: without what albedo makes up for, soft edges have rings. */
+        /* The texel has 16 steps of metallic: without what albedo makes up for, soft edges have
+         * rings. */
         float steps = floor(masu_sane_unit(s.metallic) * 15.0 + 0.5) / 15.0;
         s.albedo += dielectric * (steps - s.metallic);
         s.metallic = steps;

@@ -34,7 +34,8 @@ layout(set = MASU_SET_PASS, binding = MASU_FIRST_WRITE + 1, r32ui)
     uniform writeonly uimage2D normal_image;
 layout(set = MASU_SET_PASS, binding = MASU_FIRST_WRITE + 2, r32f)
     uniform writeonly image2D depth_image;
-layout(set = MASU_SET_PASS, binding = MASU_FIRST_WRITE + 3, rgba16f) uniform writeonly image2D hdr_image;
+layout(set = MASU_SET_PASS, binding = MASU_FIRST_WRITE + 3, rgba16f)
+    uniform writeonly image2D hdr_image;
 
 #include "sdf/hit.glsl"
 

@@ -9,8 +9,8 @@
  * left out when its bounding sphere stays clear of all that is asked around them. Shadows: the rays
  * of the segment towards the sun sweep a flat strip; outside is what is farther than the radii from
  * the strip's plane, or from the ray of the segment's middle. Ambient occlusion: the ball around the
- * segment. Half-spaces are in neither list: they count everywhere. Leaving a part out makes steps longer, never
- * wrong.
+ * segment. Half-spaces are in neither list: they count everywhere. Leaving a part out makes steps
+ * longer, never wrong.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

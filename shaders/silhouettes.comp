@@ -296,7 +296,8 @@ ivec2 like_at(ivec2 at, vec2 place, float depth, bool sdf, float width, out floa
     return like;
 }
 
-/* What light.comp makes of a surface without lamps, probes and emission: `around` of what comes from everywhere, `sun` of the sun. */
+/* What light.comp makes of a surface without lamps, probes and emission: `around` of what comes
+ * from everywhere, `sun` of the sun. */
 void light_up(masu_surface s, uint normal, vec3 v, out vec3 around, out vec3 sun)
 {
     around = vec3(0.0);
@@ -315,7 +316,8 @@ void light_up(masu_surface s, uint normal, vec3 v, out vec3 around, out vec3 sun
 }
 
 /* What is met at t, by the light of a pixel; by its own if none shows its kind (!found). In a loop, so that light is compiled
- * once: first what that pixel shows. The emission of that pixel is not known any more: if it emits, it emits what is met. */
+ * once: first what that pixel shows. The emission of that pixel is not known any more: if it emits,
+ * it emits what is met. */
 vec3 lit_like(ivec2 like, bool found, vec3 direction, float t, uint met_albedo, uint met_normal)
 {
     vec3 hdr = texelFetch(hdr_image, like, 0).rgb;

@@ -189,7 +189,8 @@ void pixel(uvec2 at, uvec2 texel, uint number)
         /* By what the surface is, not by what is seen in it: the dark parts of a mirrored column move as the bright ones do. */
         vec3 scattered = p.surface.albedo * (1.0 - p.surface.metallic);
         scattered += p.surface.coat > 0.0 ? b.f0 : vec3(0.0);
-        if (push.resolved != 0u && whole && fine > 0.5 && !masu_has_emission(p.normal) && masu_luma(mirrors) > masu_luma(scattered)) {
+        if (push.resolved != 0u && whole && fine > 0.5 && !masu_has_emission(p.normal) &&
+            masu_luma(mirrors) > masu_luma(scattered)) {
             follow(at, texel, p.depth, n);
         }
 #endif

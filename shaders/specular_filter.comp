@@ -1,20 +1,21 @@
 /*
- * specular_filter.comp: the spatial filter of the same surface, as far as noise is left. Facts: a
- * neighbour counts by how near it lies to the plane, how its normal leans, and how far its luma is off,
- * measured in deviations of what temporal accumulation still has of noise: its variance divided by the frames
- * in it (Schied et al., "Spatiotemporal Variance-Guided Filtering", HPG 2017). So the filter goes away by
- * itself as the mean becomes better.
+ * specular_filter.comp: spatial filter of reflections, as wide as the remaining noise needs. A
+ * neighbour is weighted by its distance from the surface's plane, by the angle between the normals,
+ * and by the difference of luma in standard deviations of the temporal mean: its variance divided
+ * by the number of accumulated frames (Schied et al., "Spatiotemporal Variance-Guided Filtering",
+ * HPG 2017). The filter therefore disappears as the mean converges.
  *
- * Fewer than five frames do not average out a ray that has met a lamp by chance: a firefly. Its luma is limited to the mean of its
- * eight neighbours and some deviations of theirs, more of them with each frame; in the first frame it is also weighed as without
- * rung.temporal, which has no frames to take a mean of.
+ * Fireflies: fewer than five frames do not average out a ray that has hit a lamp. Its luma is
+ * limited to the mean of the eight neighbours plus some of their standard deviations, more with
+ * each frame. In the first frame it is also weighted as without rung.temporal, since there is no
+ * mean yet.
  *
- * Its radius is that of the lobe's picture on the surface (filter.glsl). The pattern is turned by the place
- * and not by the frame: what it leaves does not flicker.
+ * The radius is the size of the lobe's footprint on the surface (filter.glsl). The sample pattern
+ * is rotated by position and not by frame, so that the remaining noise does not flicker.
  *
- * push.taps: neighbours; push.luma_width: deviations by which a neighbour's luma is off, and its weight halved: fewer before
- * rung.temporal, which takes a mean itself; push.temporal: not 0: there is a temporal accumulation; push.frames: how far
- * back it reaches, 1/60 s.
+ * push.taps: number of neighbours; push.luma_width: difference of luma, in standard deviations,
+ * that halves a neighbour's weight (smaller with rung.temporal, which averages too); push.temporal:
+ * not 0 with temporal accumulation; push.frames: length of the accumulation, 1/60 s.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -40,8 +41,9 @@ layout(set = MASU_SET_PASS, binding = 3, rgba16f) uniform writeonly image2D smoo
 
 const float widest = 12.0; /* texels */
 
-/* Mean and deviation of the luma of the eight texels around one: where no temporal accumulation tells, or too few frames. Not of
- * the texel itself: a firefly would vouch for itself. */
+/* Mean and standard deviation of the luma of the eight neighbours, for pixels without temporal
+ * accumulation or with few frames. The texel itself is excluded: a firefly would raise its own
+ * limit. */
 vec2 spread_around(ivec2 texel, masu_guide g, vec3 point, float width)
 {
     ivec2 last = ivec2(pc.output_width, pc.output_height) - 1;

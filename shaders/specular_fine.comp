@@ -8,8 +8,9 @@
  * A ray counts by what it is worth (specular_rays.comp).
  *
  * In motion the four are up to four frames old, and what is reflected has moved by another amount for each:
- * a mean is short then, the shorter the smoother the surface, and held to the colours of the 3x3 rays. So is one that has
- * just begun, while the scene changes: what has passed by in a mirror has left its colour in the pixels not traced since.
+ * a mean is short then, the shorter the smoother the surface, and held to the colours of the 3x3
+ * rays. So is one that has just begun, while the scene changes: what has passed by in a mirror has
+ * left its colour in the pixels not traced since.
  *
  * push.frames: how far back the mean reaches, 1/60 s.
  */

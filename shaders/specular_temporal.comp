@@ -49,8 +49,9 @@ layout(set = MASU_SET_PASS, binding = 10, rg32ui) uniform writeonly uimage2D age
 /* Deviations of a mean over 3x3 that are still noise, and how fast the history forgets beyond. */
 const float surprise = 3.0;
 const float forget = 0.5;
-/* Motions of a 3x3 that differ by so many pixels, and by that share of the larger one, are of several things. An outline
- * passes there: so many frames count, of a surface that moves itself more, whose history is held to less anyway. */
+/* Motions of a 3x3 that differ by so many pixels, and by that share of the larger one, are of
+ * several things. An outline passes there: so many frames count, of a surface that moves itself
+ * more, whose history is held to less anyway. */
 const float apart_pixels = 0.05;
 const float apart_share = 0.5;
 const float most_outline = 3.0;
@@ -89,7 +90,7 @@ struct past {
 
 struct present {
     vec3 mean, sigma; /* YCoCg, of 3x3 */
-    vec2 motion;   /* the mean; of several, that of the nearest thing, whose outline moves with it */
+    vec2 motion;   /* the mean; at an outline, the motion of the nearest surface */
     float motions;
     bool several;  /* things that move apart */
     float far;

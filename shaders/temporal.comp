@@ -1,13 +1,16 @@
 /*
- * temporal.comp: temporal anti-aliasing and upscaling. For each output pixel it averages the history and the nearest
- * samples of this frame, weighted by the number of samples in each. Start with docs/design/17-temporal-upscaling.md.
- * temporal_find.comp has already found the position and the weight of the history.
+ * temporal.comp: temporal anti-aliasing and upscaling. For each output pixel it averages the
+ * history and the nearest samples of this frame, weighted by the number of samples in each. Start
+ * with docs/design/17-temporal-upscaling.md. temporal_find.comp has already found the position and
+ * the weight of the history.
  *
- * The jitter moves the samples within their pixels every frame, so the history gathers samples from the whole pixel. If
- * the total weight is below 1, bilinear filtering of the four nearest texels supplies the remainder.
+ * The jitter moves the samples within their pixels every frame, so the history gathers samples from
+ * the whole pixel. If the total weight is below 1, bilinear filtering of the four nearest texels
+ * supplies the remainder.
  *
- * Colours are averaged in linear display light (docs/design/18-error-measurement.md); channel a counts samples.
- * upscale/mean.glsl defines how the history is stored, upscale/history.glsl how it is read.
+ * Colours are averaged in linear display light (docs/design/18-error-measurement.md); channel a
+ * counts samples. upscale/mean.glsl defines how the history is stored, upscale/history.glsl how it
+ * is read.
  *
  * Push constants: output_* = size to write; push.scale_* = input size * (1 / output size); push.texel_*: 1 / size of
  * the image of colour; history.glsl documents the rest.

@@ -155,9 +155,9 @@ colors colors_around(ivec2 at, ivec2 last)
     return c;
 }
 
-/* Whether the history around is no longer what the nine samples show; off: by how much it is brighter. Of light: the mean of
- * squares is that of the roots, squared, and their variance; light deviates by as much as a root that is a deviation off the
- * mean. */
+/* Whether the history around is no longer what the nine samples show; off: by how much it is
+ * brighter. Of light: the mean of squares is that of the roots, squared, and their variance; light
+ * deviates by as much as a root that is a deviation off the mean. */
 bool is_other(vec2 before, colors c, out vec3 off)
 {
     vec2 shown = vec2(push.history_x, push.history_y), half_texel = 0.5 * shown * vec2(push.pixel_x, push.pixel_y);
@@ -191,7 +191,8 @@ uvec2 found_at(ivec2 at, vec2 size)
     }
     vec4 depths = depths_before(before);
     bool gone = is_gone(masu_most_of(depths), a);
-    uint thin = gone && there && frame.temporal.xy == uvec2(size) ? thin_of(masu_most_of(depths)) : 0u;
+    uint thin = gone && there && frame.temporal.xy == uvec2(size) ? thin_of(masu_most_of(depths))
+                                                                   : 0u;
     vec2 moved_thin = masu_thin_motion(thin);
     if (thin != 0u) {
         vec2 left = (place + frame.shifts.xy + moved_thin) * vec2(push.pixel_x, push.pixel_y);
@@ -210,7 +211,8 @@ uvec2 found_at(ivec2 at, vec2 size)
     bool other = ((rests && changes) || thin != 0u) && is_other(before, c, off);
     float most = push.shift > 0.0 ? most_moving_whole : most_moving;
     if (thin != 0u && other) {
-        vec3 least = mix(vec3(0.0), c.least * c.least, greaterThan(off, vec3(0.0))); /* the cubic overshoots beside it */
+        /* The cubic filter overshoots below it. */
+        vec3 least = mix(vec3(0.0), c.least * c.least, greaterThan(off, vec3(0.0)));
         return masu_found_thin(thin, most / (1.0 + per_pixel * length(moved_thin)), least);
     }
     if (!known) {

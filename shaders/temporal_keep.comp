@@ -1,8 +1,9 @@
 /*
  * temporal_keep.comp: of each pixel the nearest depth of 3x3, for the next frame's temporal_find.comp: a pixel that a
- * silhouette is near belongs to what is in front. If that is a surface one pixel wide, which the next frame's samples may
- * miss, the lowest bits of the depth hold its velocity (masu_thin in upscale/found.glsl): all of it that remains then. A
- * surface that this frame has missed is kept on, a little in front of what the samples show instead.
+ * silhouette is near belongs to what is in front. If that is a surface one pixel wide, which the
+ * next frame's samples may miss, the lowest bits of the depth hold its velocity (masu_thin in
+ * upscale/found.glsl): all of it that remains then. A surface that this frame has missed is kept
+ * on, a little in front of what the samples show instead.
  *
  * Push constants: output_* = the render size; push.depth_*: 1 / size of the image of depths.
  */
@@ -36,7 +37,9 @@ uint thin_at(ivec2 at, float depth, vec2 size, vec2 texel)
     moved.xy += frame.shifts.zw;
     float speed = max(abs(moved.x), abs(moved.y));
     bool thin = min(beside.x, beside.y) < (1.0 - apart) * depth && moved.w > 0.0;
-    return thin && speed > 0.02 && speed <= masu_thin_fastest ? masu_thin(moved.xy, masu_thin_lives) : 0u;
+    return thin && speed > 0.02 && speed <= masu_thin_fastest
+               ? masu_thin(moved.xy, masu_thin_lives)
+               : 0u;
 }
 
 void main()
@@ -57,5 +60,7 @@ void main()
         thin = thin_at(at + masu_found_beside(masu_way_to(c, nearest)), nearest, size, texel);
     }
     uint replaced = (thin & masu_thin_lives) != 0u ? masu_thin_bits : masu_thin_lives;
-    MASU_STORE_SAFE(kept_image, at, vec4(uintBitsToFloat((floatBitsToUint(nearest) & ~replaced) | (thin & replaced))));
+    MASU_STORE_SAFE(kept_image, at,
+                    vec4(uintBitsToFloat((floatBitsToUint(nearest) & ~replaced) |
+                                         (thin & replaced))));
 }

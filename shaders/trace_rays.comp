@@ -1,7 +1,8 @@
 /*
- * trace_rays.comp: a list of rays, each by itself: what `masu-lab study rays` measures and tests ask. No pass of a
- * frame. A ray is origin and t_min, direction and t_max; an answer is t, triangle, instance and what was
- * looked at, then weights. push.x rays; push.y 1: any hit will do, and the answer has nothing but t.
+ * trace_rays.comp: a list of rays, each by itself: what `masu-lab study rays` measures and tests
+ * ask. No pass of a frame. A ray is origin and t_min, direction and t_max; an answer is t,
+ * triangle, instance and what was looked at, then weights. push.x rays; push.y 1: any hit will do,
+ * and the answer has nothing but t.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

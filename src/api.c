@@ -1,5 +1,5 @@
-/* api.c: the public functions for the life of a renderer (masu_init, masu_load, masu_destroy) and for
- * its frames. The other api_*.c contain the rest of masu.h. */
+/* api.c: the public functions for the life of a renderer (masu_init, masu_load, masu_destroy) and
+ * for its frames. The other api_*.c contain the rest of masu.h. */
 #include "api_governor.h"
 #include "api_stats.h"
 #include "base/error.h"

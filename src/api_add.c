@@ -1,5 +1,6 @@
-/* api_add.c: the public functions that add objects to a scene between frames and remove them: copies of
- * models and punctual lights, in the slots that desc.reserve provides (src/plan/reserve.h).
+/* api_add.c: the public functions that add objects to a scene between frames and remove them:
+ * copies of models and punctual lights, in the slots that desc.reserve provides
+ * (src/plan/reserve.h).
  *
  * A copy needs a slot in each module with data per instance (instances, nodes, transparents, traced
  * instances), and one in the reserve of lights for each of its lights. All slots are checked before

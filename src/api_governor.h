@@ -1,5 +1,5 @@
-/* api_governor.h: how api.c uses the governor of a renderer: it passes on the times of finished frames
- * and requests the rung of the next frame. */
+/* api_governor.h: how api.c uses the governor of a renderer: it passes on the times of finished
+ * frames and requests the rung of the next frame. */
 #ifndef MASU_API_GOVERNOR_H
 #define MASU_API_GOVERNOR_H
 

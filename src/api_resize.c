@@ -1,7 +1,7 @@
-/* api_resize.c: masu_resize: another output size and other targets for the existing images. Images are
- * allocated for the largest output; passes of a smaller one use their upper left part, as rungs of a
- * smaller scale do. Only recordings depend on sizes: those of the rung in use are recorded again, the
- * others when a frame needs them. */
+/* api_resize.c: masu_resize: another output size and other targets for the existing images. Images
+ * are allocated for the largest output; passes of a smaller one use their upper left part, as rungs
+ * of a smaller scale do. Only recordings depend on sizes: those of the rung in use are recorded
+ * again, the others when a frame needs them. */
 #include "api_governor.h"
 #include "base/error.h"
 #include "device/device_objects.h"
@@ -41,8 +41,8 @@ static masu_result check_targets(const masu_targets *now, const masu_targets *t,
         return differs(detail, "targets.encoding", (uint64_t)now->encoding, (uint64_t)t->encoding);
     if (t->white != now->white || t->peak != now->peak) {
         int white = t->white != now->white;
-        return masu_fail(detail, MASU_ERROR_ARGUMENT, white ? "targets.white" : "targets.peak", 0, 0,
-                         "masu_resize: targets.%s is %g, masu_init was given %g",
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, white ? "targets.white" : "targets.peak", 0,
+                         0, "masu_resize: targets.%s is %g, masu_init was given %g",
                          white ? "white" : "peak", (double)(white ? t->white : t->peak),
                          (double)(white ? now->white : now->peak));
     }

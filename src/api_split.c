@@ -1,6 +1,6 @@
-/* api_split.c: masu_split_of and masu_frame_view_of: images, layouts and matrices for commands that the
- * host submits between the parts of a frame. The split points are rows of passes.inc, which list the
- * images. */
+/* api_split.c: masu_split_of and masu_frame_view_of: images, layouts and matrices for commands that
+ * the host submits between the parts of a frame. The split points are rows of passes.inc, which
+ * list the images. */
 #include "base/error.h"
 #include "device/barriers.h"
 #include "plan/desc.h"

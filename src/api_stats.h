@@ -1,5 +1,5 @@
-/* api_stats.h: what a renderer reports: statistics of a frame, peaks, the memory report, images read
- * back. The public functions are in masu.h. */
+/* api_stats.h: what a renderer reports: statistics of a frame, peaks, the memory report, images
+ * read back. The public functions are in masu.h. */
 #ifndef MASU_API_STATS_H
 #define MASU_API_STATS_H
 

@@ -72,8 +72,10 @@ bool track_read(track *t, const char *path) {
     fclose(in);
     if (good) measure(t);
     if (good && t->length > 1 && t->length < 1e6) return true;
-    return fprintf(stderr, "drive: %s: expected a track of version 1 with 8 to %d points and 1 to %d cars\n",
-                   path, TRACK_POINTS, TRACK_CARS), false;
+    fprintf(stderr,
+            "drive: %s: expected a track of version 1 with 8 to %d points and 1 to %d cars\n", path,
+            TRACK_POINTS, TRACK_CARS);
+    return false;
 }
 
 static track_place between(const track *t, int i, double share, double side) {

@@ -16,7 +16,8 @@ static bool take_buffer(window *w, VkDeviceSize bytes, overlay_buffer *b) {
     VkMemoryPropertyFlags wanted = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
     uint32_t type = 0; /* Vulkan promises that there is one */
     vkGetPhysicalDeviceMemoryProperties(w->gpu, &has);
-    if (vkCreateBuffer(w->device, &info, NULL, &b->buffer)) return fprintf(stderr, "cannot create the overlay's buffer\n"), false;
+    if (vkCreateBuffer(w->device, &info, NULL, &b->buffer))
+        return fprintf(stderr, "cannot create the overlay's buffer\n"), false;
     vkGetBufferMemoryRequirements(w->device, b->buffer, &need);
     while (!(need.memoryTypeBits >> type & 1) || (has.memoryTypes[type].propertyFlags & wanted) != wanted) type++;
     return window_memory(w, type, need.size, &b->memory, &b->mapped) &&

@@ -45,5 +45,7 @@ bool script_resize(const script_line *line, window *w) {
 }
 
 bool script_unknown(const script_line *line) {
-    return fprintf(stderr, "script: unknown command: %s %s %s\n", line->verb, line->value, line->how), false;
+    return fprintf(stderr, "script: unknown command: %s %s %s\n", line->verb, line->value,
+                   line->how),
+           false;
 }

@@ -5,7 +5,7 @@
 #include "command/options.h"
 #include "command/output.h"
 
-extern const masu_cli_command lab_study, lab_model, lab_isa, lab_simulate, lab_meso, lab_world, lab_ladder,
-    lab_reference;
+extern const masu_cli_command lab_study, lab_model, lab_isa, lab_simulate, lab_meso, lab_world,
+    lab_ladder, lab_reference;
 
 #endif

@@ -37,9 +37,11 @@ static json_t *rows_json(const masu_isa_rows *rows) {
     json_t *list = json_array();
     for (uint32_t i = 0; i < rows->count; i++) {
         const masu_isa_row *r = &rows->row[i];
-        json_t *o = json_pack("{s:s, s:s, s:i}", "pipeline", r->pipeline, "stage", r->stage, "lanes", (int)r->lanes);
+        json_t *o = json_pack("{s:s, s:s, s:i}", "pipeline", r->pipeline, "stage", r->stage,
+                              "lanes", (int)r->lanes);
         for (int k = 0; k < MASU_ISA_FIELD_COUNT; k++)
-            json_object_set_new(o, masu_isa_field_names[k], isnan(r->value[k]) ? json_null() : json_real(r->value[k]));
+            json_object_set_new(o, masu_isa_field_names[k],
+                                isnan(r->value[k]) ? json_null() : json_real(r->value[k]));
         json_array_append_new(list, o);
     }
     return list;
@@ -48,12 +50,14 @@ static json_t *rows_json(const masu_isa_rows *rows) {
 static int list_gpus(void) {
     for (uint32_t i = 0; i < masu_isa_gpu_count; i++) {
         const masu_isa_gpu *g = &masu_isa_gpus[i];
-        printf("  %-10s %-30s %s\n", g->name, g->what, g->driver == MASU_ISA_RADV ? "RADV" : "MASU_ISA_DRIVERS");
+        printf("  %-10s %-30s %s\n", g->name, g->what,
+               g->driver == MASU_ISA_RADV ? "RADV" : "MASU_ISA_DRIVERS");
     }
     return MASU_CLI_OK;
 }
 
-static int ask_all(const options *o, const masu_isa_gpu *const *gpus, uint32_t count, const char *const *arguments) {
+static int ask_all(const options *o, const masu_isa_gpu *const *gpus, uint32_t count,
+                   const char *const *arguments) {
     static masu_isa_rows rows;
     masu_table table;
     json_t *all = json_object();
@@ -80,16 +84,19 @@ static int ask_all(const options *o, const masu_isa_gpu *const *gpus, uint32_t c
 }
 
 static const masu_option rows[] = {
-    MASU_TEXT(options, gpus, "gpu", "GPU[,GPU...]", "the GPUs whose compilers are asked; --gpu=help lists them"),
+    MASU_TEXT(options, gpus, "gpu", "GPU[,GPU...]",
+              "the GPUs whose compilers are asked; --gpu=help lists them"),
     MASU_OUTPUT_SIZE_ROW(options, desc.output),
     MASU_LADDER_ROW(options, ladder, "1, 0.8 and 0.4 of the size (default off)"),
-    MASU_UINT(options, desc.frames_in_flight, "frames-in-flight", 1, MASU_MAX_FLIGHT, "1 to 3 (default 2)"),
+    MASU_UINT(options, desc.frames_in_flight, "frames-in-flight", 1, MASU_MAX_FLIGHT,
+              "1 to 3 (default 2)"),
     MASU_UINT(options, desc.reserve.particles, "particles", 0, 65536,
               "reserve room for that many particles of each frame (default 0)"),
     MASU_UINT(options, desc.reserve.decals, "decals", 0, 1024, "the same for decals"),
     MASU_UINT(options, desc.reserve.lines, "lines", 0, 65536, "the same for debug lines"),
     MASU_FLAG(options, json, "json", "print JSON"),
-    MASU_FILE(options, csv, "csv", "FILE", "write every stage of every pipeline as CSV; - is standard output"),
+    MASU_FILE(options, csv, "csv", "FILE",
+              "write every stage of every pipeline as CSV; - is standard output"),
     {.name = NULL}};
 
 static int run(masu_cli *cli) {
@@ -111,8 +118,10 @@ static int run(masu_cli *cli) {
 const masu_cli_command lab_isa = {
     .name = "isa",
     .arguments = "SCENE.masu --gpu GPU[,GPU...] [options]",
-    .summary = "compile every pipeline with GPUs' own compilers: registers, waves, instructions, spills",
-    .details = "Starts a process for each GPU, in which the GPU's driver compiles all pipelines of the frame plan\n"
-               "and runs nothing. RADV's GPUs need Mesa only. Intel's and Adreno's need the folder of drivers that\n"
-               "`make isa-drivers` builds, named by the environment variable MASU_ISA_DRIVERS.\n",
+    .summary =
+        "compile every pipeline with GPUs' own compilers: registers, waves, instructions, spills",
+    .details =
+        "Starts a process for each GPU, in which the GPU's driver compiles all pipelines of the frame plan\n"
+        "and runs nothing. RADV's GPUs need Mesa only. Intel's and Adreno's need the folder of drivers that\n"
+        "`make isa-drivers` builds, named by the environment variable MASU_ISA_DRIVERS.\n",
     .run = run};

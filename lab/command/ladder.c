@@ -1,6 +1,7 @@
-/* ladder.c: `masu-lab ladder`: writes the ladders that the library is built with: src/quality/ladder_tables.h from
- * ladders that `masu bench` has measured, and src/quality/ladder_devices.h from the cost model (lab/model). With --costs
- * it computes the costs by which `masu bench` then chooses rungs. */
+/* ladder.c: `masu-lab ladder`: writes the ladders that the library is built with:
+ * src/quality/ladder_tables.h from ladders that `masu bench` has measured, and
+ * src/quality/ladder_devices.h from the cost model (lab/model). With --costs it computes the costs
+ * by which `masu bench` then chooses rungs. */
 #include "lab/command/commands.h"
 #include "lab/model/ask.h"
 #include "lab/model/write.h"
@@ -26,21 +27,24 @@ static const char *const constants[MASU_SCENE_CLASSES] = {
     "POLYGONS",        "WORLD",        "SDF",        "BOTH",
     "POLYGONS_TRACED", "WORLD_TRACED", "SDF_TRACED", "BOTH_TRACED"};
 
-/* The class of CLASS=..., and in *rest the text behind it. MASU_SCENE_CLASSES: a wrong argument, already reported. */
+/* The class of CLASS=..., and in *rest the text behind it. MASU_SCENE_CLASSES: a wrong argument,
+ * already reported. */
 static uint32_t class_of(const char *argument, const char **rest) {
     const char *equals = strchr(argument, '=');
     uint32_t c = 0;
     for (; equals && c < MASU_SCENE_CLASSES; c++) {
         const char *name = masu_scene_class_name((masu_scene_class)c);
-        if (strlen(name) == (size_t)(equals - argument) && !strncmp(name, argument, strlen(name))) break;
+        if (strlen(name) == (size_t)(equals - argument) && !strncmp(name, argument, strlen(name)))
+            break;
     }
     if (equals && c < MASU_SCENE_CLASSES) {
         *rest = equals + 1;
         return c;
     }
-    masu_cli_usage_error("expected CLASS=FILE, with a class of polygons, world, sdf, both, or one of them with -traced: "
-                         "found '%s'",
-                         argument);
+    masu_cli_usage_error(
+        "expected CLASS=FILE, with a class of polygons, world, sdf, both, or one of them with -traced: "
+        "found '%s'",
+        argument);
     return MASU_SCENE_CLASSES;
 }
 
@@ -60,11 +64,14 @@ static const char *not_built_in(const masu_rung *rung) {
 static int check_baked(const char *path, const masu_ladder_file *l) {
     for (uint32_t r = 0; r < l->count; r++) {
         const char *why = not_built_in(&l->rungs[r]);
-        if (why) return masu_cli_error("%s: rungs[%u]: not allowed in built-in ladders: %s", path, r, why);
+        if (why)
+            return masu_cli_error("%s: rungs[%u]: not allowed in built-in ladders: %s", path, r,
+                                  why);
         if (r && l->ratios[r - 1] < MASU_LADDER_APART * l->ratios[r] * (1.0 - 1e-6)) {
-            return masu_cli_error("%s: rungs[%u]: ratio: expected at least %.2f times less than the "
-                                  "previous rung, %.6g, found %.6g",
-                                  path, r, MASU_LADDER_APART, l->ratios[r - 1], l->ratios[r]);
+            return masu_cli_error(
+                "%s: rungs[%u]: ratio: expected at least %.2f times less than the "
+                "previous rung, %.6g, found %.6g",
+                path, r, MASU_LADDER_APART, l->ratios[r - 1], l->ratios[r]);
         }
         if (r && !((float)l->flips[r] > (float)l->flips[r - 1])) {
             return masu_cli_error(
@@ -136,9 +143,11 @@ static int print_tables(const masu_given *given) {
     for (uint32_t i = 0; i < given->count; i++) {
         uint32_t c = class_of(given->arguments[i], &path);
         if (c == MASU_SCENE_CLASSES) return MASU_CLI_USAGE;
-        if (paths[c]) return masu_cli_usage_error("two ladders of one class: '%s' and '%s'", paths[c], path);
+        if (paths[c])
+            return masu_cli_usage_error("two ladders of one class: '%s' and '%s'", paths[c], path);
         paths[c] = path;
-        if (!masu_ladder_read(path, &ladders[c], error, sizeof error)) return masu_cli_error("%s", error);
+        if (!masu_ladder_read(path, &ladders[c], error, sizeof error))
+            return masu_cli_error("%s", error);
         int code = check_baked(path, &ladders[c]);
         if (code) return code;
     }
@@ -165,7 +174,8 @@ static uint32_t cksum(const uint8_t *bytes, size_t count) {
         uint32_t byte = i < count ? bytes[i] : length & 0xFF;
         if (i >= count) length >>= 8;
         crc ^= byte << 24;
-        for (int bit = 0; bit < 8; bit++) crc = crc & 0x80000000u ? crc << 1 ^ 0x04C11DB7u : crc << 1;
+        for (int bit = 0; bit < 8; bit++)
+            crc = crc & 0x80000000u ? crc << 1 ^ 0x04C11DB7u : crc << 1;
     }
     return ~crc;
 }
@@ -183,7 +193,8 @@ static bool split(const char *argument, char scene[1024], char ladder[1024], dou
         *time = strtod(third + 1, &end);
         if (end == third + 1 || *end) return false;
     }
-    return snprintf(scene, 1024, "%s", text) < 1024 && snprintf(ladder, 1024, "%s", second + 1) < 1024;
+    return snprintf(scene, 1024, "%s", text) < 1024 &&
+           snprintf(ladder, 1024, "%s", second + 1) < 1024;
 }
 
 /* Rounds as the CSV of the model sheet does. */
@@ -218,12 +229,15 @@ static int model(const char *scene, const char *ladder, double time, masu_model_
     return masu_cli_error("%s", error);
 }
 
-static int print_device_class(uint32_t scene_class, const char *scene, const char *ladder, double time) {
-    static const char *const devices[MASU_MODEL_CLASSES] = {"XE80", "UHD620", "VEGA8", "DECK", "MOBILE"};
+static int print_device_class(uint32_t scene_class, const char *scene, const char *ladder,
+                              double time) {
+    static const char *const devices[MASU_MODEL_CLASSES] = {"XE80", "UHD620", "VEGA8", "DECK",
+                                                            "MOBILE"};
     char error[4096];
     uint8_t *bytes = NULL;
     size_t count = 0;
-    if (!masu_file_read(ladder, 1u << 20, &bytes, &count, error, sizeof error)) return masu_cli_error("%s", error);
+    if (!masu_file_read(ladder, 1u << 20, &bytes, &count, error, sizeof error))
+        return masu_cli_error("%s", error);
     uint32_t sum = cksum(bytes, count);
     free(bytes);
     masu_model_sheet *m = NULL;
@@ -234,7 +248,8 @@ static int print_device_class(uint32_t scene_class, const char *scene, const cha
     for (uint32_t k = 0; k < MASU_MODEL_CLASSES; k++) {
         printf("        [MASU_DEVICE_%s] = {", devices[k]);
         for (uint32_t r = 0; r < m->rung_count; r++)
-            printf("%s%.4ff", r ? ", " : "", shown(m->rungs[r].realistic[k]) / shown(m->rungs[0].realistic[k]));
+            printf("%s%.4ff", r ? ", " : "",
+                   shown(m->rungs[r].realistic[k]) / shown(m->rungs[0].realistic[k]));
         printf("},\n");
     }
     printf("    },\n");
@@ -249,19 +264,22 @@ static int print_devices(const masu_given *given) {
     for (uint32_t i = 0; i < given->count; i++) {
         if (class_of(given->arguments[i], &rest) == MASU_SCENE_CLASSES) return MASU_CLI_USAGE;
         if (!split(rest, scene, ladder, &time)) {
-            return masu_cli_usage_error("--devices: expected CLASS=SCENE.masu=LADDER.json[=SECONDS], found '%s'",
-                                        given->arguments[i]);
+            return masu_cli_usage_error(
+                "--devices: expected CLASS=SCENE.masu=LADDER.json[=SECONDS], found '%s'",
+                given->arguments[i]);
         }
     }
-    printf("/* ladder_devices.h: what the rungs of ladder_tables.h cost on classes of GPUs, relative to the first rung; part of\n"
-           " * ladder.c. COMPUTED by the cost model from the instructions that the GPUs' own compilers emit (masu-lab model\n"
-           " * --isa), not measured on any of them. Written by `make ladder-devices`: not to be edited. */\n"
-           "/* clang-format off */\n"
-           "#ifndef MASU_LADDER_DEVICES_H\n#define MASU_LADDER_DEVICES_H\n\n"
-           "static const float computed[MASU_SCENE_CLASSES][MASU_DEVICE_CLASSES][MASU_MAX_RUNGS] = {\n");
+    printf(
+        "/* ladder_devices.h: what the rungs of ladder_tables.h cost on classes of GPUs, relative to the first rung; part of\n"
+        " * ladder.c. COMPUTED by the cost model from the instructions that the GPUs' own compilers emit (masu-lab model\n"
+        " * --isa), not measured on any of them. Written by `make ladder-devices`: not to be edited. */\n"
+        "/* clang-format off */\n"
+        "#ifndef MASU_LADDER_DEVICES_H\n#define MASU_LADDER_DEVICES_H\n\n"
+        "static const float computed[MASU_SCENE_CLASSES][MASU_DEVICE_CLASSES][MASU_MAX_RUNGS] = {\n");
     for (uint32_t i = 0; i < given->count; i++) {
         uint32_t c = class_of(given->arguments[i], &rest);
-        int code = split(rest, scene, ladder, &time) ? print_device_class(c, scene, ladder, time) : MASU_CLI_USAGE;
+        int code = split(rest, scene, ladder, &time) ? print_device_class(c, scene, ladder, time)
+                                                     : MASU_CLI_USAGE;
         if (code) return code;
     }
     printf("};\n\n#endif\n");
@@ -279,20 +297,22 @@ static bool may_be_rung(const masu_rung *rung) {
 }
 
 /* A ladder.json of a part of the rows, for the model: its times and errors are nobody's. */
-static bool write_part(const char *path, const masu_row *rows, const uint32_t *part, uint32_t count, char *error,
-                       size_t error_size) {
+static bool write_part(const char *path, const masu_row *rows, const uint32_t *part, uint32_t count,
+                       char *error, size_t error_size) {
     char *text = NULL;
     size_t bytes = 0;
     FILE *f = open_memstream(&text, &bytes);
     if (!f) return snprintf(error, error_size, "out of memory"), false;
-    fprintf(f, "{\"scene\": \"costs\", \"driver\": \"none\", \"clock\": \"none\", \"width\": 1, \"height\": 1, "
-               "\"error\": \"flip\", \"rungs\": [");
+    fprintf(
+        f,
+        "{\"scene\": \"costs\", \"driver\": \"none\", \"clock\": \"none\", \"width\": 1, \"height\": 1, "
+        "\"error\": \"flip\", \"rungs\": [");
     bool good = true;
     for (uint32_t i = 0; i < count && good; i++) {
         masu_rung rung;
         good = masu_setting_parse(rows[part[i]].setting, &rung, error, error_size);
-        fprintf(f, "%s{\"setting\": \"%s\", \"ratio\": %u, \"flip\": 0, \"knobs\": {", i ? ", " : "",
-                rows[part[i]].setting, count - i);
+        fprintf(f, "%s{\"setting\": \"%s\", \"ratio\": %u, \"flip\": 0, \"knobs\": {",
+                i ? ", " : "", rows[part[i]].setting, count - i);
         for (const masu_knob *k = masu_knob_table(); k->name && good; k++) {
             char value[64];
             masu_knob_json(k, &rung, value, sizeof value);
@@ -318,7 +338,8 @@ static int write_costs(const char *scene, const char *folder, double time) {
         return masu_cli_error("%s", error);
     }
     FILE *f = open_memstream(&text, &bytes);
-    int code = f && masu_sweep_path(folder, MASU_COSTS, path) && masu_sweep_path(folder, "costs.json", part_path)
+    int code = f && masu_sweep_path(folder, MASU_COSTS, path) &&
+                       masu_sweep_path(folder, "costs.json", part_path)
                    ? MASU_CLI_OK
                    : masu_cli_error("%s: out of memory, or the path is too long", folder);
     if (!code) fprintf(f, MASU_COSTS_HEADER "\n");
@@ -327,21 +348,26 @@ static int write_costs(const char *scene, const char *folder, double time) {
         masu_rung rung;
         masu_model_sheet *m = NULL;
         for (; i < count && n < MASU_MAX_RUNGS; i++) {
-            if (masu_setting_parse(rows[i].setting, &rung, error, sizeof error) && may_be_rung(&rung)) part[n++] = i;
+            if (masu_setting_parse(rows[i].setting, &rung, error, sizeof error) &&
+                may_be_rung(&rung))
+                part[n++] = i;
         }
         if (!n) break;
-        if (!write_part(part_path, rows, part, n, error, sizeof error)) code = masu_cli_error("%s", error);
+        if (!write_part(part_path, rows, part, n, error, sizeof error))
+            code = masu_cli_error("%s", error);
         if (!code) code = model(scene, part_path, time, &m);
         for (uint32_t k = 0; k < n && !code; k++) {
             fprintf(f, "%s", rows[part[k]].setting);
-            for (uint32_t c = 0; c < MASU_MODEL_CLASSES; c++) fprintf(f, ",%.6g", m->rungs[k].realistic[c]);
+            for (uint32_t c = 0; c < MASU_MODEL_CLASSES; c++)
+                fprintf(f, ",%.6g", m->rungs[k].realistic[c]);
             fprintf(f, "\n");
         }
         free(m);
     }
     (void)remove(part_path);
     if (f && fclose(f) && !code) code = masu_cli_error("out of memory");
-    if (!code && !masu_file_write(path, text, bytes, error, sizeof error)) code = masu_cli_error("%s", error);
+    if (!code && !masu_file_write(path, text, bytes, error, sizeof error))
+        code = masu_cli_error("%s", error);
     free(text);
     free(rows);
     return code;
@@ -352,7 +378,8 @@ static int write_all_costs(const masu_given *given) {
     double time;
     for (uint32_t i = 0; i < given->count; i++) {
         if (!split(given->arguments[i], scene, folder, &time)) {
-            return masu_cli_usage_error("--costs: expected SCENE.masu=DIR[=SECONDS], found '%s'", given->arguments[i]);
+            return masu_cli_usage_error("--costs: expected SCENE.masu=DIR[=SECONDS], found '%s'",
+                                        given->arguments[i]);
         }
         int code = write_costs(scene, folder, time);
         if (code) return code;
@@ -361,12 +388,14 @@ static int write_all_costs(const masu_given *given) {
 }
 
 static const masu_option rows[] = {
-    MASU_FLAG(options, devices, "devices",
-              "print ladder_devices.h instead: the cost of each rung on the model's five classes of GPU,\n"
-              "relative to the first rung"),
-    MASU_FLAG(options, costs, "costs",
-              "write costs.csv into each DIR of masu bench: the cost of each setting on these classes, in ms;\n"
-              "masu bench then chooses no rung that another setting dominates on one of them"),
+    MASU_FLAG(
+        options, devices, "devices",
+        "print ladder_devices.h instead: the cost of each rung on the model's five classes of GPU,\n"
+        "relative to the first rung"),
+    MASU_FLAG(
+        options, costs, "costs",
+        "write costs.csv into each DIR of masu bench: the cost of each setting on these classes, in ms;\n"
+        "masu bench then chooses no rung that another setting dominates on one of them"),
     {.name = NULL}};
 
 static int run(masu_cli *cli) {
@@ -375,8 +404,11 @@ static int run(masu_cli *cli) {
     int code;
     if (!masu_options_read(cli, rows, &o, &given, &code)) return code;
     if (!given.count) return masu_cli_usage_error("no ladder is given");
-    if (o.devices && o.costs) return masu_cli_usage_error("--devices cannot be combined with --costs");
-    return o.costs ? write_all_costs(&given) : o.devices ? print_devices(&given) : print_tables(&given);
+    if (o.devices && o.costs)
+        return masu_cli_usage_error("--devices cannot be combined with --costs");
+    return o.costs     ? write_all_costs(&given)
+           : o.devices ? print_devices(&given)
+                       : print_tables(&given);
 }
 
 const masu_cli_command lab_ladder = {
@@ -385,7 +417,8 @@ const masu_cli_command lab_ladder = {
                  "       masu-lab ladder --devices CLASS=SCENE.masu=LADDER.json[=SECONDS]...\n"
                  "       masu-lab ladder --costs SCENE.masu=DIR[=SECONDS]...",
     .summary = "print the ladders that the library is built with, src/quality/ladder_tables.h",
-    .details = "LADDER.json is one that masu bench has measured. A class is polygons, world, sdf, both, or one of\n"
-               "them with -traced; each class takes one ladder. --devices and --costs need MASU_ISA_DRIVERS, as masu-lab\n"
-               "isa.\n",
+    .details =
+        "LADDER.json is one that masu bench has measured. A class is polygons, world, sdf, both, or one of\n"
+        "them with -traced; each class takes one ladder. --devices and --costs need MASU_ISA_DRIVERS, as masu-lab\n"
+        "isa.\n",
     .run = run};

@@ -1,5 +1,5 @@
-/* simulate.c: `masu-lab simulate`: the governor and the rules of other engines on simulated GPUs, as a
- * table, as CSV, as plots. Needs no device. */
+/* simulate.c: `masu-lab simulate`: the governor and the rules of other engines on simulated GPUs,
+ * as a table, as CSV, as plots. Needs no device. */
 #include "command/options.h"
 #include "lab/simulate/record.h"
 #include "lab/study/table.h"

@@ -1,4 +1,5 @@
-/* world.c: `masu-lab world`: writes the folder of a world, ready for masu-bake; see lab/world/world.h. */
+/* world.c: `masu-lab world`: writes the folder of a world, ready for masu-bake; see
+ * lab/world/world.h. */
 #include "lab/command/commands.h"
 #include "lab/world/world.h"
 #include "image.h"

@@ -41,7 +41,8 @@ int masu_isa_child(const char *scene_path, const char *ladder, masu_desc *desc) 
     good = good && masu_isa_compile(desc, say_pass, &rows, error, sizeof error);
     free(bytes);
     if (!good) return masu_cli_error("%s", error);
-    return masu_isa_send(&rows, stdout) ? MASU_CLI_OK : masu_cli_error("cannot write to standard output");
+    return masu_isa_send(&rows, stdout) ? MASU_CLI_OK
+                                        : masu_cli_error("cannot write to standard output");
 }
 
 /* ---- The parent ------------------------------------------------------------------------------ */
@@ -56,12 +57,13 @@ static const char *last_line(const char *text, const char *start, char *out, siz
     return out;
 }
 
-/* Why a child failed: its error, wherever a driver's own text in front of it ends; else the last line that anything in
- * it has printed, and how it ended. */
+/* Why a child failed: its error, wherever a driver's own text in front of it ends; else the last
+ * line that anything in it has printed, and how it ended. */
 static const char *reason_of(const char *text, int code, char *out, size_t size) {
     static const char name[] = "masu-lab isa: ";
     const char *found = NULL, *last = NULL;
-    for (const char *at = text; (at = strstr(at, name)); at += sizeof name - 1) found = at + sizeof name - 1;
+    for (const char *at = text; (at = strstr(at, name)); at += sizeof name - 1)
+        found = at + sizeof name - 1;
     for (const char *line = text; line && *line; line = strchr(line, '\n'), line += line != NULL)
         if (*line != '\n' && strncmp(line, "at\t", 3) != 0) last = line;
     if (found && *found != '\n') snprintf(out, size, "%.*s", (int)strcspn(found, "\n"), found);
@@ -91,11 +93,12 @@ bool masu_isa_ask(const masu_isa_gpu *gpu, const char *const *arguments, masu_is
     masu_isa_gpu_leave();
     free(icd);
     masu_bake_append(&output, "", 1);
-    const char *text = (const char *)output.data, *pass = last_line(text, "at\t", line, sizeof line);
+    const char *text = (const char *)output.data,
+               *pass = last_line(text, "at\t", line, sizeof line);
     bool good = false;
     if (r.end == MASU_BAKE_SIGNALED) {
-        masu_cli_error("%s: its compiler was ended by %s at pass %s", gpu->name, masu_cli_signal(r.code),
-                       pass ? pass : "none");
+        masu_cli_error("%s: its compiler was ended by %s at pass %s", gpu->name,
+                       masu_cli_signal(r.code), pass ? pass : "none");
     } else if (r.end == MASU_BAKE_TIMEOUT) {
         masu_cli_error("%s: its compiler took more than %d seconds, at pass %s", gpu->name, r.code,
                        pass ? pass : "none");
@@ -110,7 +113,8 @@ bool masu_isa_ask(const masu_isa_gpu *gpu, const char *const *arguments, masu_is
     return good;
 }
 
-uint32_t masu_isa_list(const char *option, const char *list, const masu_isa_gpu *out[MASU_ISA_GPUS]) {
+uint32_t masu_isa_list(const char *option, const char *list,
+                       const masu_isa_gpu *out[MASU_ISA_GPUS]) {
     uint32_t n = 0;
     for (const char *at = list;; at++) {
         char name[32];
@@ -118,7 +122,8 @@ uint32_t masu_isa_list(const char *option, const char *list, const masu_isa_gpu 
         snprintf(name, sizeof name, "%.*s", (int)(length < 31 ? length : 31), at);
         const masu_isa_gpu *gpu = masu_isa_gpu_find(name);
         if (!gpu) {
-            masu_cli_usage_error("%s: there is no GPU '%s'; `masu-lab isa --gpu=help` lists them", option, name);
+            masu_cli_usage_error("%s: there is no GPU '%s'; `masu-lab isa --gpu=help` lists them",
+                                 option, name);
             return 0;
         }
         if (n == MASU_ISA_GPUS) {
@@ -130,4 +135,3 @@ uint32_t masu_isa_list(const char *option, const char *list, const masu_isa_gpu 
         if (!*at) return n;
     }
 }
-

@@ -53,12 +53,13 @@ masu_meso_pair masu_meso_compare(const masu_meso_study *study, uint32_t view) {
     const masu_meso_view *m = &study->made.views[view];
     const masu_meso_curves *c = &study->made.curves;
     masu_meso_vec3 v = masu_meso_from_above(m->angle, 0);
-    masu_meso_surface s = {{study->made.mean.normal[0], study->made.mean.normal[1], study->made.mean.normal[2]},
-                           {1, 1, 1},
-                           study->made.mean.roughness,
-                           study->made.mean.ao,
-                           1,
-                           1};
+    masu_meso_surface s = {
+        {study->made.mean.normal[0], study->made.mean.normal[1], study->made.mean.normal[2]},
+        {1, 1, 1},
+        study->made.mean.roughness,
+        study->made.mean.ao,
+        1,
+        1};
     masu_meso_bend(c, v, masu_bake_v3(0, 1, 0), &s);
     double y = 1 - v.y, open = y * (c->ao[0] + y * (c->ao[1] + y * c->ao[2]));
     masu_meso_pair p = {.x = v.y};

@@ -143,7 +143,8 @@ static void judge_texels(masu_meso_study *study, const masu_meso_tracer *tracer,
     lights.side = 3;
     uint32_t fine = masu_meso_level_size[0], numbers = lights.light_count * 3;
     size_t all = (size_t)fine * fine * numbers;
-    double *want = masu_meso_allocated(all, sizeof *want), *reduced = masu_meso_allocated(all, sizeof *reduced);
+    double *want = masu_meso_allocated(all, sizeof *want),
+           *reduced = masu_meso_allocated(all, sizeof *reduced);
     double *got = masu_meso_allocated(all, sizeof *got);
     masu_meso_shader shader = {&study->made.table, study->made.curves, 0, false};
     for (uint32_t i = 0; i < MASU_MESO_JUDGED * AZIMUTHS; i++) {
@@ -151,8 +152,8 @@ static void judge_texels(masu_meso_study *study, const masu_meso_tracer *tracer,
         masu_meso_vec3 v = masu_meso_from_above(angle, azimuth);
         masu_cli_progress("texels at %g degrees", angle);
         lights.seed = setup->seed + 99991 * (i + 1);
-        masu_meso_look_along(tracer, patch, &lights, angle, azimuth, study->made.height, MASU_MESO_SKY,
-                             fine, want);
+        masu_meso_look_along(tracer, patch, &lights, angle, azimuth, study->made.height,
+                             MASU_MESO_SKY, fine, want);
         for (uint32_t m = 0; m < MASU_MESO_LEVELS; m++) {
             uint32_t size = masu_meso_level_size[m];
             masu_meso_texel *mip = masu_meso_mip(&study->made, size);

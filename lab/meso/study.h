@@ -1,5 +1,5 @@
-/* study.h: how close the material that masu-meso makes of a patch comes to ray tracing: it is compared with new
- * rays, under other lights than those of the fit. */
+/* study.h: how close the material that masu-meso makes of a patch comes to ray tracing: it is
+ * compared with new rays, under other lights than those of the fit. */
 #ifndef LAB_MESO_STUDY_H
 #define LAB_MESO_STUDY_H
 

@@ -1,5 +1,5 @@
-/* write.h: `masu-lab model`: computes the model sheet (count.h, sheet.h) and writes it as text, as CSV, and as a
- * part of an XHTML page. Each output says that its times are computed. */
+/* write.h: `masu-lab model`: computes the model sheet (count.h, sheet.h) and writes it as text, as
+ * CSV, and as a part of an XHTML page. Each output says that its times are computed. */
 #ifndef MASU_MODEL_WRITE_H
 #define MASU_MODEL_WRITE_H
 
@@ -18,7 +18,8 @@ typedef struct masu_model_desc {
     void (*progress)(const char *text); /* may be NULL */
 } masu_model_desc;
 
-/* The default size of the frames that are counted: a quarter of the pixels, because a CPU driver is slow. */
+/* The default size of the frames that are counted: a quarter of the pixels, because a CPU driver is
+ * slow. */
 VkExtent2D masu_model_drawn(VkExtent2D size);
 
 /* Draws, counts, computes. `messages`: of the validation layer; may be NULL. False: `error`

@@ -1,6 +1,6 @@
-/* controllers.c: the rules of other engines, written from their descriptions. They see what they see in those
- * engines: a time per frame, and not the scale at which it was measured. Their scales are continuous and are snapped
- * to the ladder, so that the number of changes is comparable. */
+/* controllers.c: the rules of other engines, written from their descriptions. They see what they
+ * see in those engines: a time per frame, and not the scale at which it was measured. Their scales
+ * are continuous and are snapped to the ladder, so that the number of changes is comparable. */
 #include "lab/simulate/controllers.h"
 
 #include <math.h>
@@ -119,8 +119,10 @@ static void unreal_take(sim_state *s, const masu_governor_sample *k) {
 
 static const sim_controller three_state = {"three_state", three_init, three_take, three_choose};
 static const sim_controller filament = {"filament", rival_init, filament_take_0, rival_choose};
-static const sim_controller filament_10 = {"filament_10", rival_init, filament_take_10, rival_choose};
+static const sim_controller filament_10 = {"filament_10", rival_init, filament_take_10,
+                                           rival_choose};
 static const sim_controller unreal = {"unreal", rival_init, unreal_take, rival_choose};
 
-const sim_controller *const sim_controllers[] = {&sim_masu, &three_state, &filament, &filament_10, &unreal};
+const sim_controller *const sim_controllers[] = {&sim_masu, &three_state, &filament, &filament_10,
+                                                 &unreal};
 const uint32_t sim_controller_count = sizeof sim_controllers / sizeof *sim_controllers;

@@ -1,5 +1,5 @@
-/* controllers.h: the controllers that `masu-lab simulate` compares: the library's governor first, then the rules of
- * other engines. */
+/* controllers.h: the controllers that `masu-lab simulate` compares: the library's governor first,
+ * then the rules of other engines. */
 #ifndef LAB_CONTROLLERS_H
 #define LAB_CONTROLLERS_H
 

@@ -1,5 +1,6 @@
-/* record.c: records the frame times of a scene along its path, for `masu-lab simulate`: each moment is drawn at
- * every scale in turn, so that what else the machine does falls on all of them alike. */
+/* record.c: records the frame times of a scene along its path, for `masu-lab simulate`: each moment
+ * is drawn at every scale in turn, so that what else the machine does falls on all of them
+ * alike. */
 #include "lab/simulate/record.h"
 
 #include "clock.h"
@@ -68,7 +69,8 @@ int masu_simulate_record_run(const masu_simulate_record *r) {
     for (uint32_t c = 0; c < SCALES; c++)
         d.desc.rungs[c] = (masu_rung){.scale = scales[c], .sharpness = c ? 0.2f : 0.0f};
     masu_cli_progress("building pipelines");
-    if (!masu_file_writable(r->name, error, sizeof error) || !masu_session_open(&d, &s, error, sizeof error))
+    if (!masu_file_writable(r->name, error, sizeof error) ||
+        !masu_session_open(&d, &s, error, sizeof error))
         return masu_cli_error("%s", error);
     FILE *f = fopen(r->name, "w");
     int code = f ? record(&s, r, f) : masu_cli_error("%s: %s", r->name, strerror(errno));

@@ -1,5 +1,5 @@
-/* trace.h: reads the recorded frame times of a scene, CSV as `masu-lab simulate --record` writes it: a line
- * "frame,1,0.88,..." of scales, then a line per frame. */
+/* trace.h: reads the recorded frame times of a scene, CSV as `masu-lab simulate --record` writes
+ * it: a line "frame,1,0.88,..." of scales, then a line per frame. */
 #ifndef LAB_TRACE_H
 #define LAB_TRACE_H
 

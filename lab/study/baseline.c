@@ -210,7 +210,8 @@ static bool draw_plain(bench *w, uint32_t k, masu_march march, masu_baseline_err
     snprintf(text, sizeof text, "%u samples", k);
     say(w, "plain", text);
     return open_plain(w, k, march) &&
-           masu_picture_truth(&w->other, &frame, k, k, &(masu_picture_means){.display = w->picture}, NULL, w->error, w->error_size) &&
+           masu_picture_truth(&w->other, &frame, k, k, &(masu_picture_means){.display = w->picture},
+                              NULL, w->error, w->error_size) &&
            compare(w, w->picture, out);
 }
 

@@ -1,7 +1,8 @@
 /*
  * easu_gather.comp: EASU with its texels read as AMD's own shader reads them, four gathers for each
- * channel: what `masu-lab study upscale` compares easu.comp with. No pass of a frame. It takes an input
- * that fills its image: at the border of a part of one, a gather would return what lies beyond.
+ * channel: what `masu-lab study upscale` compares easu.comp with. No pass of a frame. It takes an
+ * input that fills its image: at the border of a part of one, a gather would return what lies
+ * beyond.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

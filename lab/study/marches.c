@@ -233,9 +233,12 @@ static uint64_t pair(bench *b, const gbuffer *g) {
         masu_unpack_normal(texel, n);
         if (hit && truly) s->normal_angle = angle_between(n, truth->normal);
         if (hit) {
-            double material[8] = {0}; /* the emission of the part that is truly there: hdr is lit by now */
-            if (truly && texel >> 30 & MASU_SURFACE_EMISSIVE) b->truth.material(truth->part, material);
-            masu_shade_texel(&b->view, ray.direction, texel_at(&g->albedo, x, y), texel, material + 4, radiance);
+            /* The emission of the part that is truly there: hdr is lit by now. */
+            double material[8] = {0};
+            if (truly && texel >> 30 & MASU_SURFACE_EMISSIVE)
+                b->truth.material(truth->part, material);
+            masu_shade_texel(&b->view, ray.direction, texel_at(&g->albedo, x, y), texel,
+                             material + 4, radiance);
         } else {
             masu_shade_sky(&b->view, ray.direction, radiance);
         }

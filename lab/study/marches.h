@@ -11,7 +11,13 @@
 #include "metric/march.h"
 #include "session.h"
 
-enum { MASU_BENCH_PLAIN, MASU_BENCH_SEED, MASU_BENCH_MASU, MASU_BENCH_CHECKERBOARD, MASU_BENCH_VARIANTS };
+enum {
+    MASU_BENCH_PLAIN,
+    MASU_BENCH_SEED,
+    MASU_BENCH_MASU,
+    MASU_BENCH_CHECKERBOARD,
+    MASU_BENCH_VARIANTS
+};
 
 /* "plain", "seed", "masu", "checkerboard" */
 extern const char *const masu_bench_names[MASU_BENCH_VARIANTS];
@@ -36,7 +42,8 @@ typedef struct masu_bench_row {
     double spread;      /* median / least of the wall times: how busy the machine was */
     uint32_t plausible; /* frames whose timestamps fit the wall clock */
     masu_march_errors errors; /* the rest with a truth only */
-    double rmse, ssim; /* of the frame's G-buffer against the truth, both shaded by measure/shade.h */
+    /* Of the frame's G-buffer against the truth, both shaded by measure/shade.h. */
+    double rmse, ssim;
     masu_flip flip;
     masu_flip shown; /* of the picture that the GPU made: the driver's rounding is in it too */
 } masu_bench_row;

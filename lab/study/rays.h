@@ -1,6 +1,6 @@
 /* rays.h: the traced triangles of a scene, three times: as the buffers of
- * shaders/trace/bvh.glsl, as a compute program that walks them, and as Embree's own. For `masu-lab study
- * rays`.
+ * shaders/trace/bvh.glsl, as a compute program that walks them, and as Embree's own. For `masu-lab
+ * study rays`.
  *
  * All in world space minus an anchor. Functions that can fail return false and write one line to
  * `error`. */

@@ -1,4 +1,5 @@
-/* study.c: `masu-lab study`: the table of studies and the one command line of them all; see study.h. */
+/* study.c: `masu-lab study`: the table of studies and the one command line of them all; see
+ * study.h. */
 #include "lab/study/study.h"
 
 #include "lab/command/commands.h"
@@ -29,7 +30,8 @@ static int run_study(masu_cli *cli) {
                       : study->scenes_max == 1 ? "expected one"
                                                : "expected at most 64 scenes";
     if (!masu_options_read(cli, study->options, o, &o->given, &code)) return code;
-    if (o->given.count < study->scenes_min) return masu_cli_usage_error("no scene given: expected SCENE.masu");
+    if (o->given.count < study->scenes_min)
+        return masu_cli_usage_error("no scene given: expected SCENE.masu");
     o->scene = o->given.arguments[0];
     o->stride |= 1; /* an even one would only see pixels of one parity */
     o->host.message = masu_print_message;
@@ -68,8 +70,9 @@ bool masu_study_read_scales(masu_cli *cli, uint32_t most, double *scales, uint32
         if (*end != ',') break;
         at = end;
     }
-    masu_cli_usage_error("%s: expected 1 to %u numbers above 0 and at most 1, for example 1,0.8,0.4; found '%s'",
-                         cli->option, most, cli->value);
+    masu_cli_usage_error(
+        "%s: expected 1 to %u numbers above 0 and at most 1, for example 1,0.8,0.4; found '%s'",
+        cli->option, most, cli->value);
     return false;
 }
 

@@ -1,6 +1,7 @@
-/* study.h: `masu-lab study NAME`: each study answers one question about the renderer by measuring. A study is a row:
- * its name, its purpose, its options, and the function that runs it, in a file study_NAME.c. This header has what the
- * studies share: options, command line, tables. Except for images that must be identical, a study only reports. */
+/* study.h: `masu-lab study NAME`: each study answers one question about the renderer by measuring.
+ * A study is a row: its name, its purpose, its options, and the function that runs it, in a file
+ * study_NAME.c. This header has what the studies share: options, command line, tables. Except for
+ * images that must be identical, a study only reports. */
 #ifndef LAB_STUDY_H
 #define LAB_STUDY_H
 

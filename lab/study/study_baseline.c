@@ -1,5 +1,5 @@
-/* study_baseline.c: `masu-lab study baseline`: settings beside a baseline renderer, at their own errors and at
- * equal error: the command line of lab/study/baseline.h, and its tables. */
+/* study_baseline.c: `masu-lab study baseline`: settings beside a baseline renderer, at their own
+ * errors and at equal error: the command line of lab/study/baseline.h, and its tables. */
 #include "lab/study/study.h"
 
 #include "settings/ladder_file.h"

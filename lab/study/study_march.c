@@ -1,5 +1,5 @@
-/* study_march.c: `masu-lab study march`: the ways of marching a scene's SDF compared: evaluations, time, and error
- * against the double-precision truth. */
+/* study_march.c: `masu-lab study march`: the ways of marching a scene's SDF compared: evaluations,
+ * time, and error against the double-precision truth. */
 #include "lab/study/study.h"
 
 #include "lab/study/marches.h"

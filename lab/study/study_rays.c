@@ -1,8 +1,8 @@
-/* study_rays.c: `masu-lab study rays`: rays per second through a scene's own trees in a compute shader,
- * beside Embree with the same triangles, transforms and rays. Both take turns, and of the runs the least
- * time counts, on the wall from submit to fence; beside it the time of all threads of this process,
- * which on a software driver is the work itself, whatever else the machine does. Rays: those of the
- * camera, and those of rough reflections from what these have hit. */
+/* study_rays.c: `masu-lab study rays`: rays per second through a scene's own trees in a compute
+ * shader, beside Embree with the same triangles, transforms and rays. Both take turns, and of the
+ * runs the least time counts, on the wall from submit to fence; beside it the time of all threads
+ * of this process, which on a software driver is the work itself, whatever else the machine does.
+ * Rays: those of the camera, and those of rough reflections from what these have hit. */
 #include "lab/study/study.h"
 
 #include "lab/study/rays.h"

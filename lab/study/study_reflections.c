@@ -1,6 +1,6 @@
-/* study_reflections.c: `masu-lab study reflections`: what each filter of reflections buys: the error of frames at
- * rest, with the camera in motion, with an object in motion, and after it has jumped, each beside the mean of
- * very many rays per pixel; flicker; and time of the passes.
+/* study_reflections.c: `masu-lab study reflections`: what each filter of reflections buys: the
+ * error of frames at rest, with the camera in motion, with an object in motion, and after it has
+ * jumped, each beside the mean of very many rays per pixel; flicker; and time of the passes.
  *
  * One renderer with a rung for each set of filters, and one that traces every pixel and adds up. Its first
  * frames are what unfiltered rays would bring, later ones after a cut are the truth: no ray is in both. Times
@@ -126,7 +126,8 @@ static bool sum_up(bench *b, uint32_t frames, float *rgb, const char *what) {
  * or none at all, and is not written over. */
 static bool find_truth(bench *b) {
     size_t floats = 3 * (size_t)b->pixels;
-    FILE *f = o->truth.path && masu_file_is_regular(o->truth.path) ? fopen(o->truth.path, "rb") : NULL;
+    FILE *f =
+        o->truth.path && masu_file_is_regular(o->truth.path) ? fopen(o->truth.path, "rb") : NULL;
     bool found = f && fread(b->truth, sizeof *b->truth, floats, f) == floats && fgetc(f) == EOF;
     if (f) fclose(f);
     if (f && !found) return failed(b, "the file of the truth is not one of this size");

@@ -1,4 +1,5 @@
-/* study_temporal.c: `masu-lab study temporal`: the command line of lab/study/temporal.h, and its table. */
+/* study_temporal.c: `masu-lab study temporal`: the command line of lab/study/temporal.h, and its
+ * table. */
 #include "lab/study/study.h"
 
 #include "measure/picture.h"
@@ -138,9 +139,10 @@ const masu_study masu_study_temporal = {
     .options = rows,
     .given = &given.study,
     .run = run,
-    .details = "Ways: without, a rung that sets nothing but its scale; temporal, the same rung with temporal=on.\n"
-               "The table shows FLIP of the last frame against the ground truth of masu render --truth. The camera\n"
-               "follows the scene's path and ends at the time of the still frame. Flicker is the mean difference of\n"
-               "the last two frames, of 255; in slow motion less that of the two ground truths. Figures are means of\n"
-               "several images whose jitter sequences start at different positions, because a single image is off\n"
-               "by up to 4 %.\n"};
+    .details =
+        "Ways: without, a rung that sets nothing but its scale; temporal, the same rung with temporal=on.\n"
+        "The table shows FLIP of the last frame against the ground truth of masu render --truth. The camera\n"
+        "follows the scene's path and ends at the time of the still frame. Flicker is the mean difference of\n"
+        "the last two frames, of 255; in slow motion less that of the two ground truths. Figures are means of\n"
+        "several images whose jitter sequences start at different positions, because a single image is off\n"
+        "by up to 4 %.\n"};

@@ -72,7 +72,7 @@ static bool find_truths(study *w) {
            save(w, "truth", w->truth);
 }
 
-/* ---- Images ----------------------------------------------------------------------------------- */
+/* ---- Images ---------------------------------------------------------------------------------- */
 
 /* 5: the sequence's bases are 2 and 3. */
 static uint32_t frames_of(const study *w, masu_past_motion motion) {

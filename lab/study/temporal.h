@@ -1,9 +1,10 @@
-/* temporal.h: images with and without temporal upscaling, of a stationary and of a moving camera, against ground
- * truth: what `rung.temporal` gains over one frame by itself.
+/* temporal.h: images with and without temporal upscaling, of a stationary and of a moving camera,
+ * against ground truth: what `rung.temporal` gains over one frame by itself.
  *
  * All ways see the same scene and end at the same moment. Flicker is the mean absolute difference, of 255, of the last
- * two frames: at rest as it is, in slow motion less that of the two ground truths. The error of an image of few samples
- * depends by 4 % on where the last samples were, so figures are means over several starts of the jitter sequence. */
+ * two frames: at rest as it is, in slow motion less that of the two ground truths. The error of an
+ * image of few samples depends by 4 % on where the last samples were, so figures are means over
+ * several starts of the jitter sequence. */
 #ifndef LAB_TEMPORAL_H
 #define LAB_TEMPORAL_H
 

@@ -1,5 +1,6 @@
 /* upscale.h: a chain of compute shaders from one picture to another, as the frame's passes are
- * bound but outside of the library: what `masu-lab study upscale` puts beside the library's own rungs.
+ * bound but outside of the library: what `masu-lab study upscale` puts beside the library's own
+ * rungs.
  *
  * A stage reads binding 0 of set 1 (the stage before, clamped to its edge, nearest texel), writes
  * binding 1; set 0 has nothing but the counters; push constants are those of the frame. The chain

@@ -1,5 +1,6 @@
-/* world.h: what `masu-lab world` writes. A world is a folder: a scene for masu-bake (docs/scene.md) and the
- * models that it places and that do not exist elsewhere. The same arguments give the same bytes.
+/* world.h: what `masu-lab world` writes. A world is a folder: a scene for masu-bake (docs/scene.md)
+ * and the models that it places and that do not exist elsewhere. The same arguments give the same
+ * bytes.
  *
  *   world.c        the program
  *   city.c   a city on several decks, from parts

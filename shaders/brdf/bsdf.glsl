@@ -1,35 +1,38 @@
 /*
- * bsdf.glsl: how a surface scatters light; the one function for polygons, SDF hits and rays.
+ * bsdf.glsl: how a surface scatters light: one function for polygons, SDF hits and ray hits.
  *
  *   f = coat + through(v, l) * specular + rest + diffuse
  *
  *   specular  GGX with height-correlated Smith masking (Heitz, JCGT 3-2, 2014), alpha = roughness^2,
  *             Schlick's Fresnel term from f0 to f90
- *   rest      what that lobe loses, since it knows no second bounce: a product of what is lost of v and
- *             of l (Kulla and Conty, "Revisiting Physically Based Shading at Imageworks", 2017)
- *   diffuse   gets what all of that leaves: again a product of what is left of v and of l (Kelemen and
- *             Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF Model", 2001)
+ *   rest      multiple scattering between facets, which the lobe lacks: the product of its losses for
+ *             v and for l (Kulla and Conty, "Revisiting Physically Based Shading at Imageworks",
+ *             2017)
+ *   diffuse   receives the remaining energy: the product of the remainders for v and for l (Kelemen
+ *             and Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF Model", 2001)
  *   coat      the same lobe with f0 = 0.04; only with MASU_SURFACE
  *
- * Reciprocal, and what is white returns all light from every direction at every roughness, as exactly as
- * the tables are (tables.glsl): the two products make up by construction for whatever the lobes lack.
+ * The function is reciprocal. A white surface returns all light from every direction at every
+ * roughness, within the error of the tables (tables.glsl), because the two products return by
+ * construction the energy that the lobes lack.
  *
- * Metallic is a blend of two surfaces. A dielectric has f0 = 0.08 * specular and the base colour below;
- * a metal has the base colour as f0 and nothing below. Below an f0 of 0.02, which no material has, f90
- * falls too, so that specular 0 and black metals do not shine at grazing angles.
+ * Metallic is a blend of two surfaces. A dielectric has f0 = 0.08 * specular and the base colour
+ * below; a metal has the base colour as f0 and nothing below. Below an f0 of 0.02, which no real
+ * material has, f90 falls too, so that specular 0 and black metals have no grazing reflection.
  *
- * The coat lets through = 1 - coat * (a + b * max(s(v), s(l))), s(w) = (1 - N.w)^5. The larger of both
- * is symmetric, and exact for a mirror, where both are one; and since a and b stand outside of the
- * integral, one table over N.v and the base's roughness serves all coats. a + b s is nowhere below what
- * the coat reflects (make_split_sum.c), so that no more light leaves than came; what it exceeds that by
- * goes to `rest` and `diffuse`. Rejected: 1 - F(h.v), which needs no table more but lets through more than is left
- * where the base is rougher than its coat; the product of both directions' shares, which a mirror loses light by.
+ * The coat transmits through = 1 - coat * (a + b * max(s(v), s(l))), s(w) = (1 - N.w)^5. The
+ * maximum is symmetric, and exact for a mirror, where s(v) = s(l). Since a and b are outside of the
+ * integral, one table over N.v and the base's roughness serves all coats. a + b s is at least the
+ * coat's reflectance (make_split_sum.c), so that energy is conserved; the difference goes to `rest`
+ * and `diffuse`. Rejected: 1 - F(h.v), which needs no extra table but transmits too much if the
+ * base is rougher than the coat; the product of both directions' shares, which darkens mirrors.
  *
- * A coat may have a normal of its own (masu_own_coats): smooth lacquer over a relief. Its lobe, what it lets through
- * and what of all light it returns then go by its own cosines, all else by the base's. Both are the same to the
- * bit where the normals are. What is covered is tabled over the base's cosine and asked for by the coat's;
- * that and the means over the hemisphere, which count one normal, leave white dielectrics 0.977 to 0.998 of the
- * light with 20 degrees between the two, metals 0.83 to 1.02 (tests/unit/test_brdf.c).
+ * A coat may have a separate normal (masu_own_coats): smooth lacquer over a relief. Its lobe, its
+ * transmission and its albedo then use the coat's cosines, the other terms the base's. With equal
+ * normals the result is bit-identical. The table of covered light has the base's cosine as its
+ * argument but is read with the coat's, and the hemispherical means assume one normal. With 20
+ * degrees between the normals, white dielectrics therefore return 0.977 to 0.998 of the light,
+ * metals 0.83 to 1.02 (tests/unit/test_brdf.c).
  *
  * All in fp32, finite for any bit pattern.
  */
@@ -42,8 +45,8 @@
 #include "shared/guard.glsl"
 #include "shared/pack.glsl"
 
-/* Of a direction, or on average over all: what comes back of a lobe whose Fresnel term is 1 (white), or
- * Schlick's (1 - h.v)^5 (weight); what the coat returns. */
+/* Directional albedo, or its mean over all directions: of a lobe whose Fresnel term is 1 (white) or
+ * Schlick's (1 - h.v)^5 (weight), and of the coat. */
 struct masu_albedo {
     float white;
     float weight;
@@ -94,14 +97,14 @@ float masu_lost(masu_albedo a)
     return max(1.0 - a.white - a.coat, 0.0);
 }
 
-/* What the dielectric's share returns before its light reaches the base colour. */
+/* Reflectance of the dielectric's share above the base colour. */
 float masu_matte(masu_bsdf b, masu_albedo a)
 {
     return a.coat + b.matte_f0 * a.white + b.matte_slope * a.weight + b.matte_rest * masu_lost(a);
 }
 
-/* From the tables' numbers, of a direction or averages. The base's: loss and B, X and XB; of the coat
- * loss and B. */
+/* From the tables' numbers, of a direction or averages. The base's: loss and B, X and XB; of the
+ * coat loss and B. */
 masu_albedo masu_albedo_from(masu_bsdf b, vec2 base, vec2 covered, vec2 coat)
 {
 #ifdef MASU_SURFACE
@@ -128,9 +131,10 @@ masu_albedo masu_albedo_of(masu_bsdf b, float cosine, float over)
     return masu_albedo_from(b, base, covered, coat);
 }
 
-/* Colour of what leaves after more than one bounce, as a factor of what is lost (Kulla and Conty). lost: the
- * average. The square of f (Hill, "A Multi-Faceted Exploration", part 4, 2018) leaves metals of f 0.5 up to
- * 8 % too dark beside random walks between facets; the second factor, 1 at f 1, half as much. */
+/* Colour of multiple scattering, as a factor of the lost energy (Kulla and Conty). lost: the mean
+ * loss. With the square of f alone (Hill, "A Multi-Faceted Exploration", part 4, 2018), metals of f
+ * 0.5 are up to 8 % darker than random walks between facets. The second factor, which is 1 at f =
+ * 1, halves this error. */
 vec3 masu_rest_color(vec3 f0, float f90, float lost)
 {
     vec3 f = f0 + (f90 - f0) * (1.0 / 21.0);
@@ -211,8 +215,8 @@ bool masu_bsdf_lit(masu_bsdf b, vec3 l, out float n_l, out float over)
     return n_l > 0.0 || over > 0.0;
 }
 
-/* f * N.L * pi of light from l, unit: what is mirrored, after however many bounces, and what comes from
- * below. */
+/* f * N.L * pi for light from l, unit: specular light, including multiple scattering, and diffuse
+ * light. */
 void masu_bsdf_parts(masu_bsdf b, vec3 l, out vec3 mirrored, out vec3 below)
 {
     mirrored = vec3(0.0);
@@ -223,7 +227,7 @@ void masu_bsdf_parts(masu_bsdf b, vec3 l, out vec3 mirrored, out vec3 below)
     }
     vec3 sum = l + b.v;
     vec3 h = masu_normalize(sum, b.n);
-    /* h.v is half of the sum's length: the same whichever of the two is called v, to the last bit. */
+    /* h.v is half of the length of l + v, and bit-identical if l and v are exchanged. */
     float s = masu_schlick(0.5 * sqrt(dot(sum, sum)));
     vec3 specular = (b.f0 + (b.f90 - b.f0) * s) * masu_ggx(b.n, h, b.alpha, n_l, b.n_v);
 #ifdef MASU_SURFACE
@@ -259,19 +263,19 @@ vec3 masu_bsdf_eval(masu_bsdf b, vec3 l)
     return mirrored + below;
 }
 
-/* Of light from everywhere: the factor of irradiance / pi, */
+/* Factors of ambient light: of irradiance / pi, */
 vec3 masu_bsdf_diffuse(masu_bsdf b)
 {
     return b.ambient;
 }
 
-/* of what a lobe of the surface's roughness would gather around the mirror direction, */
+/* of radiance prefiltered by the surface's roughness around the mirror direction, */
 vec3 masu_bsdf_specular(masu_bsdf b)
 {
     return b.f0 * b.seen.white + (b.f90 - b.f0) * b.seen.weight;
 }
 
-/* and of the same with the coat's roughness. The three of a white surface are 1 together. */
+/* and of radiance prefiltered by the coat's roughness. Their sum is 1 for a white surface. */
 float masu_bsdf_coat(masu_bsdf b)
 {
     return b.seen.coat;

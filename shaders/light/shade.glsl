@@ -79,12 +79,13 @@ struct masu_mirrored {
     float kept; /* of the base */
 };
 
-/* Mips of an environment map are prefiltered for a viewer above the surface. At grazing angles the lobe of a rough surface
- * is closer to the normal, and the part that Schlick's (1 - h.v)^5 weighs is about half as rough and stays close to the
- * mirror direction. One lookup serves both parts, fitted to integrals over six maps: log RMS at N.V 0.15 to 0.4,
- * roughness 0.75 and 1, of white metal 24 and 12 % instead of 62 and 57, of black dielectric 33 and 36 instead of 68, 75.
- * direction: in the mirror direction, out the lookup's, of any length; roughness: out the lookup's. Returns the share of
- * the f0 term that gathers the irradiance instead. */
+/* Mips of an environment map are prefiltered for a viewer above the surface. At grazing angles the
+ * lobe of a rough surface is closer to the normal, and the part that Schlick's (1 - h.v)^5 weighs
+ * is about half as rough and stays close to the mirror direction. One lookup serves both parts,
+ * fitted to integrals over six maps: log RMS at N.V 0.15 to 0.4, roughness 0.75 and 1, of white
+ * metal 24 and 12 % instead of 62 and 57, of black dielectric 33 and 36 instead of 68, 75.
+ * direction: in the mirror direction, out the lookup's, of any length; roughness: out the lookup's.
+ * Returns the share of the f0 term that gathers the irradiance instead. */
 float masu_bend_lookup(masu_surface s, vec3 n, vec3 v, inout vec3 direction, inout float roughness)
 {
     float r = masu_sane(s.roughness, 0.0, 1.0);

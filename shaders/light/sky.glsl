@@ -143,9 +143,10 @@ vec3 masu_sky_rough(vec3 direction)
     return mix(low, high, part.y);
 }
 
-/* The sun as it is drawn. In front of a gradient a disc of its true size would be two pixels wide and bright enough to
- * swamp the tone curve, so a soft glow shows where the light comes from. The analytic sky and an environment map, whose
- * own sun the baker has removed, have the aureole: they get the disc, of less than its true radiance. */
+/* The sun as it is drawn. In front of a gradient a disc of its true size would be two pixels wide
+ * and bright enough to swamp the tone curve, so a soft glow shows where the light comes from. The
+ * analytic sky and an environment map, whose own sun the baker has removed, have the aureole: they
+ * get the disc, of less than its true radiance. */
 vec3 masu_sun_disc(vec3 direction)
 {
     float towards = clamp(dot(direction, frame.sun_direction.xyz), 0.0, 1.0);

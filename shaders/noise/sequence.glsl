@@ -1,27 +1,27 @@
 /*
- * sequence.glsl: two numbers of 0..1 for each pixel and frame: over frames a sequence that fills
- * the unit square evenly, over pixels blue noise.
+ * sequence.glsl: two quasi-random values in 0..1 per pixel and frame. Start with masu_noise2.
  *
- * Over frames: R2, multiples of 1/g and 1/g^2, g^3 = g + 1, without their integer parts (M.
- * Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018). Each run of
- * consecutive frames is as even as any other, whichever it begins with, which a history that begins
- * anywhere needs; Sobol's points are even from multiples of powers of two on only. Over pixels:
- * shifted, round the square, by the tile's two numbers (Cranley and Patterson 1976), which differ
- * the most between neighbours; a common step leaves them as they are. tests/unit/test_sequence.c
- * measures it against others.
+ * Over frames they are a low-discrepancy sequence: R2, the fractional parts of n/g and n/g^2 with
+ * g^3 = g + 1 (M. Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018). A
+ * history may begin at any frame, so every run of consecutive frames must fill the unit square
+ * evenly. R2 does that; Sobol points do so only from multiples of powers of two.
  *
- * The products are integers, which wrap as the square does: frame 4e9 is as precise as frame 1. In
- * floats nothing would be left of the 24 bits after some 1e6 frames.
+ * Over pixels they are blue noise: the point is shifted by the pixel's two values of a blue-noise
+ * tile, modulo 1 (Cranley and Patterson 1976). tests/unit/test_sequence.c measures the error of
+ * this sequence and of four others.
  *
- * Written without vector arithmetic: tests compile it as C.
+ * The products are 32-bit integers that wrap around, so frame 4e9 is as precise as frame 1. A float
+ * would have no fractional bits left after about 1e6 frames.
+ *
+ * There is no vector arithmetic here, because tests compile this file as C.
  */
 #ifndef MASU_SEQUENCE_GLSL
 #define MASU_SEQUENCE_GLSL
 
 #include "shared/lookup_tables.h"
 
-/* Every bit of x changes half of the result's (C. Wellons, "Prospecting for Hash Functions", 2018:
- * lowbias32). A bijection; 0 is 0. */
+/* Integer hash: each bit of x flips half of the bits of the result on average (lowbias32 of
+ * C. Wellons, "Prospecting for Hash Functions", 2018). A bijection; 0 is mapped to 0. */
 uint masu_hash(uint x)
 {
     x = (x ^ (x >> 16)) * 0x7FEB352Du;
@@ -29,8 +29,8 @@ uint masu_hash(uint x)
     return x ^ (x >> 16);
 }
 
-/* Where in the tile of tools/generate/make_blue_noise.c a pixel's word stands. Uses that must not know of
- * each other, as two bounces, have different keys: the tile lies elsewhere for each. */
+/* Index of a pixel's value in the tile of tools/generate/make_blue_noise.c. key: shifts the tile,
+ * so that two uses with different keys, such as two bounces, are uncorrelated. */
 uint masu_noise_index(uint x, uint y, uint key)
 {
     uint shift = masu_hash(key), mask = uint(MASU_BLUE_NOISE_SIZE - 1);
@@ -43,7 +43,8 @@ vec2 masu_unit2(uint x, uint y)
     return vec2(u * (1.0 / 16777216.0), v * (1.0 / 16777216.0));
 }
 
-/* noise_word: the tile's; frame: 0, 1, 2 ... and round again after 2^32. Below 1. */
+/* noise_word: the value at masu_noise_index; frame: 0, 1, 2, ..., wraps after 2^32. Results are
+ * below 1. */
 vec2 masu_noise2(uint noise_word, uint frame)
 {
     uint x = (noise_word << 16) + frame * 0xC13FA9A9u; /* 2^32 / g */
@@ -51,18 +52,21 @@ vec2 masu_noise2(uint noise_word, uint frame)
     return masu_unit2(x, y);
 }
 
-/* Which turn of four frames a frame is, and in which four: its number with the last two bits turned back by one more in each four
- * and in each sixteen. The last two bits of a frame's own number say in which quarter of a pixel rung.temporal looks in it, across:
- * what had its turn by these would see one quarter alone, and edges in mirrors were dotted. So it sees all in four turns, and all
- * of 16 places in 16. Turned back, it waits for five frames at most, within sixteen; forward for seven. */
+/* Order in which the four pixels of a 2x2 block are traced: bits 0 and 1 of the result select the
+ * pixel, the other bits count groups of four frames. The last two bits of the frame number are
+ * decremented by one more in each group of 4 and of 16 frames. Without that, the order would have
+ * the same period as the jitter of rung.temporal: a pixel would always be sampled in the same
+ * quarter, and edges in mirrors would be dotted. With it a pixel gets all four quarters in 4 of its
+ * samples and all 16 jitter positions in 16. A pixel waits for at most five frames (seven if the
+ * bits were incremented). */
 uint masu_turn(uint frame)
 {
     return (frame & 0xFFFFFFFCu) | ((frame - (frame >> 2) - (frame >> 4)) & 3u);
 }
 
-/* frame: masu_turn's. Where pixels take turns, and each has every fourth frame. Every fourth of R2's points lies within a
- * strip: 4/g is 3.02. These are multiples of (1 + 1/g) / 4 and (1 + 1/g^2) / 4, of which every fourth is R2, and all of them
- * are as even as R2. */
+/* masu_noise2 for pixels that are traced every fourth frame. frame: the result of masu_turn. Every
+ * fourth point of R2 is in a narrow strip, because 4/g is 3.02. These are multiples of (1 + 1/g) /
+ * 4 and (1 + 1/g^2) / 4: every fourth point is one of R2, and all together are as even as R2. */
 vec2 masu_turn_noise2(uint noise_word, uint frame)
 {
     uint x = (noise_word << 16) + frame * 0x704FEA6Au;

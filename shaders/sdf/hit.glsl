@@ -1,5 +1,6 @@
 /*
- * hit.glsl: what a hit writes. The including shader has declared albedo_image, normal_image and hdr_image.
+ * hit.glsl: what a hit writes. The including shader has declared albedo_image, normal_image and
+ * hdr_image.
  */
 #ifndef MASU_HIT_GLSL
 #define MASU_HIT_GLSL

@@ -56,8 +56,9 @@ struct masu_frame_uniforms {
                                 difference of the jitter of both frames, which velocities must not
                                 include */
     /* Output of twice the render size: between the centres of 2x2 texels there are 2x2 output
-     * pixels. For the first 2x2 texels of the image: xy 2 + the coordinates of the upper left output
-     * pixel, 1 or 2; zw coordinates of the upper left texel, -3 to 0, as the bits of an int. */
+     * pixels. For the first 2x2 texels of the image: xy 2 + the coordinates of the upper left
+     * output pixel, 1 or 2; zw coordinates of the upper left texel, -3 to 0, as the bits of an
+     * int. */
     masu_uvec4 between;
     /* Of the first and second output pixel between texels, by column and by row: x distance from
      * the preceding texel; y static weight of the nearer texel; zw weights of the preceding and the

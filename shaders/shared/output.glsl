@@ -1,20 +1,21 @@
 /*
- * output.glsl: how colour passes store what they make. Compute; a source of set 0 only where
- * MASU_OUTPUT says that the picture is a scene's.
+ * output.glsl: how compute passes store colour after the tone curve: MASU_STORE_COLOR. The last
+ * pass of a rung converts to the encoding of the target.
  *
- * Between tone curve and target the picture is display-encoded, as EASU and RCAS want it: sRGB in
- * 0..1; for targets that go beyond white, SMPTE ST 2084 of nits, in 0..1 too. The pass that comes last
- * in its rung (output_flags of the push constants) stores what the target wants: in linear encoding it
- * decodes, else it rounds to the target's steps, where output_steps says so. Nothing before it does: EASU
- * and RCAS would sharpen the noise.
+ * Between the tone curve and the target, images are display-encoded for EASU and RCAS: sRGB in
+ * 0..1, or SMPTE ST 2084 of nits, also in 0..1, for targets brighter than white. The last pass of a
+ * rung (output_flags of the push constants) stores the target's encoding: linear light, or values
+ * that are quantised and dithered to output_steps. Earlier passes do not dither, because EASU and
+ * RCAS would sharpen the noise.
  *
- * Dither: a step s of the target is taken with the share of the pixels that lies between: floor(v s +
- * u), u evenly in 0..1. Its mean is v, and a v that is a step stays one whatever u is: 0 and 1 do.
- * (Triangular noise has a variance that does not depend on v, but is there in black and white too.)
- * u is that of dither.glsl.
+ * Dither: floor(v s + u) for a target of s steps, with u of dither.glsl, uniform in 0..1. The mean
+ * is v, and a v that is exactly a step is unchanged for every u, so black and white have no
+ * noise. (Triangular noise has a variance that does not depend on v, but also affects black and
+ * white.)
  *
- * MASU_OUTPUT: of a scene. MASU_DEEP: images are rgba16f. MASU_TEN: what is stored is not the last, and has
- * 10 bits: RCAS makes up to seven times as much of what rounding has lost before it. Else: rgba8.
+ * MASU_OUTPUT: the image is of a scene; only then set 0 is used. MASU_DEEP: images are rgba16f.
+ * MASU_TEN: an intermediate image with 10 bits, because RCAS amplifies earlier rounding errors up
+ * to seven times. Otherwise images are rgba8.
  */
 #ifndef MASU_OUTPUT_GLSL
 #define MASU_OUTPUT_GLSL
@@ -39,21 +40,22 @@
 #include "shared/tone.glsl"
 
 layout(constant_id = 6) const uint masu_encoding = MASU_OUTPUT_SRGB;
-layout(constant_id = 7) const bool masu_finishes = true; /* false: what comes last rounds and swaps nothing */
+/* false: the last pass does not round or swap */
+layout(constant_id = 7) const bool masu_finishes = true;
 
 bool masu_is_last()
 {
     return (pc.output_flags & MASU_OUTPUT_LAST) != 0u;
 }
 
-/* To the steps of the target; 0: as it is. */
+/* Quantises v to the steps of the target; steps 0: returns v. */
 float masu_rounded(float v, uint steps, uint noise)
 {
     bool dither = (pc.output_flags & MASU_OUTPUT_DITHER) != 0u;
     float u = dither ? float(noise >> 8) * (1.0 / 16777216.0) : 0.5;
     float s = float(max(steps, 1u));
     precise float scaled = masu_sane(v, 0.0, 1.0) * s;
-    /* A step that came back from 8 bits or a half may lie an ulp below itself. */
+    /* A step that was stored in 8 bits or a half may be one ulp too low. */
     float near = floor(scaled + 0.5);
     float down = abs(scaled - near) < 1e-3 ? near : floor(scaled + u);
     return steps == 0u ? v : min(down, s) / s;
@@ -63,11 +65,12 @@ vec3 masu_stepped(vec3 v, uvec2 at)
 {
     uvec3 noise = masu_dither(at);
     uint steps = pc.output_steps;
-    return vec3(masu_rounded(v.r, steps & 1023u, noise.r), masu_rounded(v.g, steps >> 10 & 1023u, noise.g),
+    return vec3(masu_rounded(v.r, steps & 1023u, noise.r),
+                masu_rounded(v.g, steps >> 10 & 1023u, noise.g),
                 masu_rounded(v.b, steps >> 20 & 1023u, noise.b));
 }
 
-/* What to store of display-encoded colour. */
+/* The value to store for a display-encoded colour. */
 vec3 masu_output(vec3 v, uvec2 at)
 {
     if (!masu_is_last()) {
@@ -84,8 +87,8 @@ vec3 masu_output(vec3 v, uvec2 at)
 }
 
 #ifdef MASU_DEEP
-/* v of at least 0 and less than 65504 rounded to what a half holds: some drivers cut off the rest, and a
- * step of 10 bits less half of one is no longer that step. Below 2^-14 halves are finer than needed. */
+/* Rounds v, in 0 to 65504, to the nearest half: some drivers truncate, and a truncated step of 10
+ * bits would become the step below. Below 2^-14 the rounding is finer than necessary. */
 vec3 masu_nearest_half(vec3 v)
 {
     uvec3 bits = floatBitsToUint(v) + 0xFFFu + (floatBitsToUint(v) >> 13 & 1u);
@@ -99,7 +102,7 @@ vec3 masu_nearest_half(vec3 v)
 #define MASU_STORE_FILTERED(img, p, v) MASU_STORE_SAFE(img, p, vec4(masu_output(v, uvec2(p)), 1.0))
 #endif
 
-#else /* of a source image, or not the last: as it is */
+#else /* from a source image, or an intermediate image: stored unchanged */
 
 #include "shared/push.glsl"
 
@@ -114,17 +117,19 @@ vec3 masu_nearest_half(vec3 v)
 #define MASU_STORE_FILTERED(img, p, v) MASU_STORE_SAFE(img, p, uvec4(masu_ten_bits(v)))
 #endif
 
-/* For passes of the size of the output. Whether it is made of whole workgroups, as 720, 1080 and 2160 rows
- * are: then no invocation lies outside. */
+/* For passes at the output size: whether the output is a multiple of the workgroup size (720, 1080
+ * and 2160 rows are), so that no invocation is outside. */
 layout(constant_id = 8) const bool masu_whole_groups = false;
-layout(constant_id = 13) const bool masu_fixed_output = false; /* images of that size are never larger than the picture */
+/* Images of the output size are never larger than the output. */
+layout(constant_id = 13) const bool masu_fixed_output = false;
 
 bool masu_is_outside(uvec2 at)
 {
     return !masu_whole_groups && any(greaterThanEqual(at, uvec2(pc.output_width, pc.output_height)));
 }
 
-/* MASU_STORE_FILTERED: for a mean of fetched texels of 0..1, at a pixel of the picture: nothing is left to guard. */
+/* MASU_STORE_FILTERED: for a weighted mean of texels in 0..1, at a pixel inside the output: it
+ * needs no guard. */
 #if defined(MASU_DEEP) || defined(MASU_EXACT)
 #undef MASU_STORE_FILTERED
 #define MASU_STORE_FILTERED MASU_STORE_COLOR

@@ -7,7 +7,8 @@
  *   3.2); 4095 is 0
  *                   bits 26-29        metallic, 0..15
  *                   bits 30-31        MASU_SURFACE_* flags
- *   With MASU_SURFACE_EMISSIVE the pixel of hdr holds the emitted radiance until light.comp has run, and bits 26-29:
+ *   With MASU_SURFACE_EMISSIVE the pixel of hdr holds the emitted radiance until light.comp has
+ *   run, and bits 26-29:
  *                   0     it is not lit (masu_is_unlit)
  *                   1-15  metallic, 0..14
  *   surface, rgba8, where MASU_SURFACE_MORE is set (else: specular 0.5, no coat, no relief):
@@ -24,22 +25,26 @@
  *                   a    bits 0-6 x; without bit 7 a relief's (1 + 126 f) / 255
  *   depth, float:   near / view z; 0: nothing there
  *
- * 13 bits per axis leave a normal within 0.03 degrees. src/api_stats.c, masu_unpack_normal is the twin
- * in C; of surfaces with emission, measure/texel.c.
+ * 13 bits per axis leave a normal within 0.03 degrees. src/api_stats.c, masu_unpack_normal is the
+ * twin in C; of surfaces with emission, measure/texel.c.
  *
  * A coat mirrors sharply and has all 26 bits; what lies below it is within 0.3 degrees where it leans by 6, 0.8 at
  * 30, 1.9 at 60; half of that in the mean. The other way round, or both in 13 bits, a polished coat would show steps.
  *
- * Emission has no place in the two texels. Ray hits (specular_hit, silhouettes.comp) have nothing else; there, and in
- * the G-buffer of devices with too few colour attachments (masu_emission_packed), both emission and base share 36 bits
- * (masu_pack_met). With MASU_SURFACE_EMISSIVE bits 26-29 specify what albedo holds then:
+ * Emission has no place in the two texels. Ray hits (specular_hit, silhouettes.comp) have nothing
+ * else; there, and in the G-buffer of devices with too few colour attachments
+ * (masu_emission_packed), both emission and base share 36 bits (masu_pack_met). With
+ * MASU_SURFACE_EMISSIVE bits 26-29 specify what albedo holds then:
  *                   0     rgb sqrt of radiance / 16: it is not lit
  *                   15    the same and a roughness: it is black, no metal, and lit
- *                   1-14  roughness, and a 32-bit value: bits 0-4, 5-9, 10-14 sqrt of albedo; 15 metal;
- *                         16-22 fourth root of the brightest channel's radiance / 16; 23-31 the other
- *                         two relative to it, sqrt, 13 steps each: (13 channel + next) 13 + last
- * Black surfaces (lamps, screens) lose nothing. Of others the radiance is within 3 % at 1 and 6 % at 1/16, its hue
- * within 1/24 and the albedo within 1/62 of the square root's range, roughness within 1/26.
+ *                   1-14  roughness, and a 32-bit value:
+ *                         bits 0-4, 5-9, 10-14 sqrt of albedo; 15 metal;
+ *                         16-22 fourth root of the brightest channel's radiance / 16; 23-31 the
+ *                         other two relative to it, sqrt, 13 steps each: (13 channel + next) 13 +
+ *                         last
+ * Black surfaces (lamps, screens) lose nothing. Of others the radiance is within 3 % at 1 and 6 %
+ * at 1/16, its hue within 1/24 and the albedo within 1/62 of the square root's range, roughness
+ * within 1/26.
  */
 #ifndef MASU_PACK_GLSL
 #define MASU_PACK_GLSL
@@ -56,7 +61,7 @@ layout(constant_id = 15) const bool masu_emission_packed = false;
 struct masu_surface {
     vec3 albedo;   /* linear, 0..1 */
     float roughness; /* perceptual, 0..1 */
-    vec3 emissive; /* linear radiance, 0..65504: added to what the surface sends of the light on it */
+    vec3 emissive; /* linear radiance, 0..65504, added to the reflected light */
     float metallic;
     float specular;       /* reflectance of a dielectric at normal incidence / 0.08, 0..1 */
     float coat;           /* clear coat, 0..1 */
@@ -153,7 +158,8 @@ void masu_pack_shining(vec3 glow, vec3 albedo, float roughness, masu_surface s, 
     look = MASU_SURFACE_EMISSIVE << 30 | (unlit ? 0u : colored ? 1u + uint(roughness * 13.0 + 0.5) : 15u) << 26;
 }
 
-/* The texel of albedo, and the bits of the normal's texel that are not its direction, without emission of its own. */
+/* The texel of albedo, and the bits of the normal's texel that are not its direction, without
+ * emission of its own. */
 void masu_pack_plain(masu_surface s, out vec4 texel, out uint look)
 {
     texel = vec4(sqrt(masu_sane_unit(s.albedo)), masu_sane_unit(s.roughness));
@@ -165,7 +171,8 @@ void masu_pack_met_look(masu_surface s, out vec4 texel, out uint look)
 {
     vec3 glow = masu_emissive_range * masu_sane_unit(s.emissive * (1.0 / masu_emissive_range));
     if (masu_brightest(glow) >= masu_emissive_least) {
-        masu_pack_shining(glow, masu_sane_unit(s.albedo), masu_sane_unit(s.roughness), s, texel, look);
+        masu_pack_shining(glow, masu_sane_unit(s.albedo), masu_sane_unit(s.roughness), s,
+                          texel, look);
     } else {
         masu_pack_plain(s, texel, look);
     }
@@ -362,7 +369,8 @@ masu_surface masu_unpack_look(vec4 texel, uint normal)
     }
     masu_surface s = masu_plain_surface(texel.rgb * texel.rgb, texel.a);
     uint form = normal >> 26 & 15u;
-    s.metallic = masu_has_emission(normal) ? max(float(form) - 1.0, 0.0) / 14.0 : float(form) / 15.0;
+    s.metallic = masu_has_emission(normal) ? max(float(form) - 1.0, 0.0) / 14.0
+                                           : float(form) / 15.0;
     return s;
 }
 

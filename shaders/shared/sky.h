@@ -19,8 +19,8 @@
 #define MASU_SKY_ROUGH_AZIMUTHS 9
 /* The lobe that approximates the aureole in the sky's irradiance (src/frame/sky.c). */
 #define MASU_SKY_ROUND (1.0f / 3.0f)
-/* Radiance of the sun's disc as rendered, by its irradiance on a facing surface / pi. The true factor is 45,000, which is
- * close to the end of half floats. */
+/* Radiance of the sun's disc as rendered, by its irradiance on a facing surface / pi. The true
+ * factor is 45,000, which is close to the end of half floats. */
 #define MASU_SKY_DISC 40.0f
 
 /* The radiance of a term is 2^(c0 + c1 x + c2 x^2), x = cosine of the azimuth from the sun, and

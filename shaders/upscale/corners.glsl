@@ -1,7 +1,7 @@
 /*
- * corners.glsl: the 3x3 texels around one, of an image of one channel, by four fetches: of the four corners of the texel.
- * Beyond the part of the image that holds a picture the last row or column is repeated; of a size of 1 it is the same
- * texel nine times.
+ * corners.glsl: reads the 3x3 texels around a texel of a one-channel image by four gathers, one at
+ * each corner of the texel. Outside of the used part of the image, the last row or column is
+ * repeated; with a size of 1 all nine are the same texel.
  */
 #ifndef MASU_CORNERS_GLSL
 #define MASU_CORNERS_GLSL
@@ -16,8 +16,8 @@ vec4 masu_corner(sampler2D image, vec2 corner, vec2 size, vec2 texel)
     return textureGather(image, min(corner, size - 1.0) * texel);
 }
 
-/* size: of the part of the image that holds a picture; texel: 1 / size of the image. A corner that would lie beyond the last
- * column or row moves in by one: what of it lies outward is the same then. */
+/* size: the used part of the image; texel: 1 / size of the image. A corner beyond the last column
+ * or row is moved inwards by one, which repeats that column or row. */
 masu_corners masu_corners_of(sampler2D image, vec2 at, vec2 size, vec2 texel)
 {
     vec4 a = masu_corner(image, at, size, texel), b = masu_corner(image, at + vec2(1.0, 0.0), size, texel);
@@ -40,8 +40,9 @@ float masu_most_of(masu_corners c)
     return max(max(masu_most_of(c.diagonal), masu_most_of(vec4(c.left, c.right, c.above, c.below))), c.own);
 }
 
-/* The way to the nearest, of found.glsl: of several the one that the pixel has a side in common with. None lies beyond the
- * picture: what is repeated there is the pixel, or has a side in common with it. */
+/* Offset of the texel with the depth `nearest`, as found.glsl stores it. If several have it, a
+ * direct neighbour is preferred to a diagonal one. The result is never outside of the image,
+ * because a repeated texel equals the pixel or a direct neighbour. */
 uint masu_way_to(masu_corners c, float nearest)
 {
     uint way = masu_found_way(1, 1);

@@ -145,8 +145,9 @@ void masu_barrier_before(masu_recorder *rec, uint32_t pass) {
         /* A storage target need not be an attachment: the host knows what it can be. */
         if (id == MASU_IMAGE_TARGET && usage == MASU_HOST_COLOR) next.layout = VK_IMAGE_LAYOUT_GENERAL;
         if (masu_is_buffer(id)) {
-            /* A buffer. Its first use in a frame is behind the barrier at the frame's top. A second reader of what the frame
-             * has written may be a stage to which it is not visible yet. */
+            /* A buffer. Its first use in a frame is behind the barrier at the frame's top. A second
+             * reader of what the frame has written may be a stage to which it is not visible
+             * yet. */
             int unseen = rec->written[id] && (next.stages & ~now->stages) != 0;
             if (next.writes) rec->written[id] = 1;
             if (now->used && (now->writes || next.writes || unseen)) {

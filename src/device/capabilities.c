@@ -40,7 +40,8 @@ static masu_most most_buffers(const masu_frame_plan *plan, masu_binding_group gr
 
 static masu_result too_few(const char *what, masu_most most, uint32_t has, masu_detail *detail) {
     return masu_fail(detail, MASU_ERROR_DEVICE, "maxPerStageDescriptorStorageBuffers", most.buffers,
-                     has, "%s needs %u storage buffers in a stage of the pass %s, the device has %u",
+                     has,
+                     "%s needs %u storage buffers in a stage of the pass %s, the device has %u",
                      what, most.buffers, most.pass, has);
 }
 
@@ -139,8 +140,8 @@ static masu_result fit_buffers(masu_desc *desc, const masu_frame_plan *plan, uin
     }
     if (!result && plan->occlusion) {
         result = drop(desc, offsetof(masu_rung, occlusion), "occlusion",
-                      most_buffers(plan, MASU_BINDING_CULLING), has, MASU_DROPPED_OCCLUSION, dropped,
-                      detail);
+                      most_buffers(plan, MASU_BINDING_CULLING), has, MASU_DROPPED_OCCLUSION,
+                      dropped, detail);
     }
     return result;
 }

@@ -8,8 +8,9 @@
 int masu_has_global_sets(const masu_frame_plan *plan);
 /* The pool, set 0 of each frame in flight, and the sets of textures. */
 masu_result masu_create_sets(masu_device *m, masu_detail *detail);
-/* Allocates and writes the sets of all passes, in the order (rung, pass, target). A pass that writes
- * the target has a set for each of plan->targets_max targets; other passes have one for all. */
+/* Allocates and writes the sets of all passes, in the order (rung, pass, target). A pass that
+ * writes the target has a set for each of plan->targets_max targets; other passes have one for
+ * all. */
 masu_result masu_create_pass_sets(masu_device *m, masu_detail *detail);
 /* Writes the sets again for the targets of the description. No frame may be pending. */
 void masu_write_pass_sets(masu_device *m);

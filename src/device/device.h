@@ -63,7 +63,8 @@ typedef struct masu_device {
 
     /* recordings.c */
     VkCommandPool command_pool;
-    /* [flight][viewport][rung][target][variant][part]; plan->recordings of each flight, of plan->parts parts */
+    /* [flight][viewport][rung][target][variant][part]; plan->recordings of each flight, of
+     * plan->parts parts */
     VkCommandBuffer *frames;
     /* [flight][viewport][rung][target], at its first variant: 1 if all variants are recorded */
     uint8_t *recorded;

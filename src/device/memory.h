@@ -5,14 +5,14 @@
  *   readback   | frame slot 0 | frame slot 1 | ... |
  *
  * On unified memory the three roles follow one another in ONE block. Sizes and alignments are those
- * that the driver reports for the real images (vkGetImageMemoryRequirements), never width * height *
- * bytes: drivers pad and tile.
+ * that the driver reports for the real images (vkGetImageMemoryRequirements), never width * height
+ * * bytes: drivers pad and tile.
  *
  * Transient images share memory if their lifetimes (rows of the pass table) do not overlap. Placing
  * them optimally is dynamic storage allocation, which is NP-hard. With a few tens of images, first
- * fit in several orders comes close; the plan prints the lower bound (the largest set alive at once)
- * next to the result. Persistent images, whose content outlives the frame, share nothing: histories,
- * and the shadow map if some cascades are not rendered in every frame.
+ * fit in several orders comes close; the plan prints the lower bound (the largest set alive at
+ * once) next to the result. Persistent images, whose content outlives the frame, share nothing:
+ * histories, and the shadow map if some cascades are not rendered in every frame.
  *
  * Memory types are a preference list, never an exclusion: an integrated GPU has one type with all
  * properties. */

@@ -35,14 +35,14 @@ static uint64_t now(const masu_device *m) {
     return m->plan->desc.clock_ns ? m->plan->desc.clock_ns(m->plan->desc.clock_user) : 0;
 }
 
-/* Constants 0 to 15 of all shaders, of which each has those it declares: of compute shaders whether counters
- * are kept, of others whether masks are cut; whether the sky may be the analytic one; whether there is fog;
- * whether the sky is from a picture; whether reflections are traced; the tone curve; the target's
- * encoding; whether the last pass rounds to its steps or changes the order of its channels; whether the output
- * is whole groups of invocations; how many nodes a ray may have to come back to; whether a tile's rays
- * are shared by its invocations; whether coats have maps or normals of their own; whether
- * anything colours what shines through it; whether the output keeps its size; whether
- * means over frames are halves; whether albedo texels hold emission. */
+/* Constants 0 to 15 of all shaders, of which each has those it declares: of compute shaders whether
+ * counters are kept, of others whether masks are cut; whether the sky may be the analytic one;
+ * whether there is fog; whether the sky is from a picture; whether reflections are traced; the tone
+ * curve; the target's encoding; whether the last pass rounds to its steps or changes the order of
+ * its channels; whether the output is whole groups of invocations; how many nodes a ray may have to
+ * come back to; whether a tile's rays are shared by its invocations; whether coats have maps or
+ * normals of their own; whether anything colours what shines through it; whether the output keeps
+ * its size; whether means over frames are halves; whether albedo texels hold emission. */
 enum { SPECIAL_COUNT = 16 };
 
 static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
@@ -250,13 +250,14 @@ static uint32_t color_attachments(const masu_device *m, uint32_t pass) {
     uint32_t count = 0;
     for (uint32_t a = 0; a < rp->access_count[pass]; a++) {
         masu_usage usage = (masu_usage)rp->access[pass][a].usage;
-        count += usage == MASU_WRITE_COLOR || usage == MASU_BLEND_COLOR || usage == MASU_UPDATE_COLOR;
+        count +=
+            usage == MASU_WRITE_COLOR || usage == MASU_BLEND_COLOR || usage == MASU_UPDATE_COLOR;
     }
     return count;
 }
 
-/* gbuffer.frag writes emission behind all else, whether there is anything that emits or not. Unless the device has too few
- * attachments, that output has one, which is unused. */
+/* gbuffer.frag writes emission behind all else, whether there is anything that emits or not. Unless
+ * the device has too few attachments, that output has one, which is unused. */
 static int has_unused_emission(const masu_device *m, uint32_t pass) {
     return masu_passes[pass].geometry == MASU_GEOMETRY_POLYGONS && !m->plan->needs.emissive &&
            color_attachments(m, pass) < m->vk.properties.limits.maxColorAttachments;
@@ -265,8 +266,8 @@ static int has_unused_emission(const masu_device *m, uint32_t pass) {
 /* Attachments come in the layouts that the row's barriers put them in, and stay there: the render
  * pass itself does no transition, so that record.c remains the only place that thinks about them.
  * Only the render area is cleared: a cascade of the shadow map leaves the others alone.
- * A second subpass, of emitting materials, has one attachment more. That takes no independentBlend, a feature that
- * hosts may have left off and write masks of one attachment would need. */
+ * A second subpass, of emitting materials, has one attachment more. That takes no independentBlend,
+ * a feature that hosts may have left off and write masks of one attachment would need. */
 static masu_result create_render_pass(masu_device *m, uint32_t pass, masu_detail *detail) {
     VkAttachmentDescription attachments[MASU_PASS_ACCESSES];
     VkAttachmentReference colors[MASU_PASS_ACCESSES], depth = {0, VK_IMAGE_LAYOUT_UNDEFINED};
@@ -312,20 +313,23 @@ static masu_result create_render_pass(masu_device *m, uint32_t pass, masu_detail
     memcpy(base, colors, sizeof base);
     VkSubpassDescription subpasses[] = {subpass, subpass};
     if (apart || (!emission && has_unused_emission(m, pass))) {
-        base[apart ? color_count - 1 : color_count] = (VkAttachmentReference){VK_ATTACHMENT_UNUSED, VK_IMAGE_LAYOUT_UNDEFINED};
+        base[apart ? color_count - 1 : color_count] =
+            (VkAttachmentReference){VK_ATTACHMENT_UNUSED, VK_IMAGE_LAYOUT_UNDEFINED};
         subpasses[0].colorAttachmentCount = apart ? color_count : color_count + 1;
         subpasses[0].pColorAttachments = base;
     }
     const VkPipelineStageFlags drawn = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT |
                                        VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT |
                                        VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT;
-    const VkAccessFlags writes = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
+    const VkAccessFlags writes =
+        VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
     VkSubpassDependency order = {.srcSubpass = 0,
                                  .dstSubpass = 1,
                                  .srcStageMask = drawn,
                                  .dstStageMask = drawn,
                                  .srcAccessMask = writes,
-                                 .dstAccessMask = writes | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT,
+                                 .dstAccessMask =
+                                     writes | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT,
                                  .dependencyFlags = VK_DEPENDENCY_BY_REGION_BIT};
     VkRenderPassCreateInfo info = {.sType = VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO,
                                    .attachmentCount = n,
@@ -364,7 +368,8 @@ static int blends_color(const masu_device *m, uint32_t pass) {
  * culled: not from behind; emitting: in the second subpass. */
 static VkResult create_graphics_pipeline(masu_device *m, uint32_t pass,
                                          const VkShaderModule modules[2], int textured,
-                                         VkBool32 masked, int culled, int emitting, VkPipeline *out) {
+                                         VkBool32 masked, int culled, int emitting,
+                                         VkPipeline *out) {
     masu_geometry geometry = masu_passes[pass].geometry;
     int polygons = draws_polygons(pass); /* else what the vertex shader makes up */
     int blends = blends_color(m, pass);
@@ -468,8 +473,10 @@ static masu_result create_pipeline(masu_device *m, uint32_t pass, int textured, 
     const masu_code codes[2] = {code.vertex, code.fragment};
     VkBool32 constants[SPECIAL_COUNT];
     (void)specialise(m, masked, constants);
-    uint32_t form = (uint32_t)textured | (culled ? 2u : 0u) | (masked ? 4u : 0u) | (emitting ? 8u : 0u);
-    if (masu_passes[pass].geometry == MASU_GEOMETRY_POLYGONS && masu_has_emission_subpass(m->plan)) form |= 16u;
+    uint32_t form =
+        (uint32_t)textured | (culled ? 2u : 0u) | (masked ? 4u : 0u) | (emitting ? 8u : 0u);
+    if (masu_passes[pass].geometry == MASU_GEOMETRY_POLYGONS && masu_has_emission_subpass(m->plan))
+        form |= 16u;
     uint64_t key = key_of(m, pass, codes, form, constants);
     if (masu_pool_acquire(m, key, out)) return MASU_OK;
     VkShaderModule modules[2] = {VK_NULL_HANDLE, VK_NULL_HANDLE};
@@ -478,7 +485,8 @@ static masu_result create_pipeline(masu_device *m, uint32_t pass, int textured, 
         result = create_module(m, code.fragment, &modules[1], detail);
     if (!result) {
         uint64_t start = now(m);
-        VkResult r = create_graphics_pipeline(m, pass, modules, textured, masked, culled, emitting, out);
+        VkResult r =
+            create_graphics_pipeline(m, pass, modules, textured, masked, culled, emitting, out);
         m->pipeline_ns[pass] += now(m) - start;
         if (MASU_FAILED(r, *out))
             result = masu_fail_vulkan(detail, r, "vkCreateGraphicsPipelines");
@@ -495,7 +503,8 @@ static masu_result create_textured(masu_device *m, uint32_t pass, masu_detail *d
     masu_result result = MASU_OK;
     for (uint32_t i = 0; i < MASU_TEXTURED_COUNT && !result; i++) {
         if (i == MASU_TEXTURED_MASK && !m->plan->scene.masks) continue;
-        result = create_pipeline(m, pass, 1, i == MASU_TEXTURED_MASK, 0, 0, &m->textured[i], detail);
+        result =
+            create_pipeline(m, pass, 1, i == MASU_TEXTURED_MASK, 0, 0, &m->textured[i], detail);
         masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(m->textured[i]),
                   i == MASU_TEXTURED_MASK ? "gbuffer, masks" : "gbuffer, textured");
     }
@@ -521,11 +530,13 @@ static masu_result create_culled(masu_device *m, uint32_t pass, int textures, ma
 static masu_result create_emitting(masu_device *m, uint32_t pass, masu_detail *detail) {
     masu_result result = MASU_OK;
     uint32_t sides = m->plan->scene.singles ? 2 : 1;
-    for (uint32_t i = 0; i < sides * MASU_CULLED_COUNT && !result && masu_has_emission_subpass(m->plan); i++) {
+    for (uint32_t i = 0;
+         i < sides * MASU_CULLED_COUNT && !result && masu_has_emission_subpass(m->plan); i++) {
         uint32_t kind = i % MASU_CULLED_COUNT;
         if (!(m->plan->scene.emissions >> kind & 1u)) continue;
         VkBool32 mask = kind == 1 + MASU_TEXTURED_MASK ? VK_TRUE : VK_FALSE;
-        result = create_pipeline(m, pass, kind > 0, mask, i >= MASU_CULLED_COUNT, 1, &m->emitting[i], detail);
+        result = create_pipeline(m, pass, kind > 0, mask, i >= MASU_CULLED_COUNT, 1,
+                                 &m->emitting[i], detail);
         masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(m->emitting[i]), "gbuffer, emitting");
     }
     return result;

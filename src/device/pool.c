@@ -47,8 +47,9 @@ uint64_t masu_pool_key(const masu_device *m, uint32_t pass, const masu_code code
         masu_access access = rp->access[pass][a];
         int bound =
             masu_has_set(pass) && (masu_access_binds(access, 0) || masu_access_binds(access, 1));
-        int attached = access.usage == MASU_WRITE_COLOR || access.usage == MASU_BLEND_COLOR || access.usage == MASU_UPDATE_COLOR ||
-                       access.usage == MASU_WRITE_DEPTH || access.usage == MASU_UPDATE_DEPTH;
+        int attached = access.usage == MASU_WRITE_COLOR || access.usage == MASU_BLEND_COLOR ||
+                       access.usage == MASU_UPDATE_COLOR || access.usage == MASU_WRITE_DEPTH ||
+                       access.usage == MASU_UPDATE_DEPTH;
         if (bound || attached) key = add(key, access.usage);
         /* Shaders know the formats of what they store. */
         if (attached) key = add(key, (uint64_t)masu_images[access.image].format);
@@ -94,7 +95,8 @@ int masu_pool_acquire(masu_device *m, uint64_t key, VkPipeline *out) {
     return 0;
 }
 
-/* A free row, or that of the pipeline that has been unused for the longest time; NULL: all are in use. */
+/* A free row, or that of the pipeline that has been unused for the longest time; NULL: all are in
+ * use. */
 static masu_pool_row *make_room(const masu_device *m, masu_pool *pool) {
     masu_pool_row *oldest = NULL;
     if (pool->info.count < MASU_MAX_PIPELINES) return &pool->rows[pool->info.count++];

@@ -1,5 +1,6 @@
-/* record.c: the table becomes command buffers: one for a recording, or, where desc.split has the host's own commands in
- * a frame, one more for each such row of the table. recordings.c says which recordings there are. */
+/* record.c: the table becomes command buffers: one for a recording, or, where desc.split has the
+ * host's own commands in a frame, one more for each such row of the table. recordings.c says which
+ * recordings there are. */
 #include "device/record.h"
 
 #include "base/error.h"
@@ -151,9 +152,10 @@ static void bind_maps(masu_recorder *rec, VkPipelineLayout layout,
 /* One draw per primitive of each form of a placed mesh, for one view; instances of one mesh are neighbours, so one
  * draw serves them all; visible.c says which, in commands that lie in the order of batches whatever the
  * order of drawing. A sweep draws what shares a pipeline: without textures, with, and masks last, so
- * that most of what they would hide or shade in vain is known already. Emitting materials have sweeps of their own where
- * they have a subpass. */
-static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep, int culled, int emitting) {
+ * that most of what they would hide or shade in vain is known already. Emitting materials have
+ * sweeps of their own where they have a subpass. */
+static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep, int culled,
+                         int emitting) {
     const masu_device *m = rec->m;
     const masu_vk *vk = &m->vk;
     int kept = m->plan->desc.resizable != 0; /* then the blob may be gone */
@@ -201,7 +203,7 @@ static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep, int 
             if (apart && emitting != (drawn.emits != 0)) continue;
             if (!sun && !pick && culled != ((drawn.flags & MASU_MATERIAL_IS_SINGLE) != 0)) continue;
             if (sun) {
-                memcpy(&push.meso, &drawn.rise, sizeof push.meso); /* where a cascade has its rise */
+                memcpy(&push.meso, &drawn.rise, sizeof push.meso); /* a cascade reads rise there */
             } else if (pick) {
                 push.material = blended ? 1 : 0;
                 push.flags = drawn.flags;

@@ -184,7 +184,8 @@ uint32_t masu_storage_buffers(const masu_frame_plan *plan, uint32_t pass, uint32
     }
     for (uint32_t i = 0; i < count; i++) {
         for (uint32_t r = 0; r < MASU_BIND_COUNT; r++) {
-            if (rows[r].bound && rows[r].binding == bound[i].binding) *groups |= 1u << rows[r].group;
+            if (rows[r].bound && rows[r].binding == bound[i].binding)
+                *groups |= 1u << rows[r].group;
         }
     }
     return most;

@@ -31,7 +31,8 @@ masu_draw_code masu_draw_code_of(const masu_frame_plan *plan, uint32_t pass, int
 /* What it declares; of no code nothing. */
 masu_interface masu_code_interface(const masu_code *code);
 
-/* The bindings of set 0 that a pass has: those that its shaders declare, of buffers that the plan has. */
+/* The bindings of set 0 that a pass has: those that its shaders declare, of buffers that the plan
+ * has. */
 uint32_t masu_global_bindings(const masu_frame_plan *plan, uint32_t pass,
                               VkDescriptorSetLayoutBinding out[MASU_BIND_COUNT]);
 

@@ -29,7 +29,8 @@ static const uint32_t *next_decoration(const uint32_t *words, uint64_t count, ui
     return NULL;
 }
 
-/* The variables of set 0. A module that Masu can bind has at most one per binding, and few aliases. */
+/* The variables of set 0. A module that Masu can bind has at most one per binding, and few
+ * aliases. */
 typedef struct variables {
     uint32_t count; /* beyond SET_0_MAX: too many to tell */
     uint32_t ids[SET_0_MAX];

@@ -11,8 +11,9 @@ typedef struct masu_interface {
     uint64_t bindings;  /* of descriptor set 0: bit n is binding n, below 64 */
 } masu_interface;
 
-/* Total: nothing outside of the words is read, whatever they are. Linear in the decorations. A module
- * with more than 128 variables in set 0 counts as one that declares each of its bindings there. */
+/* Total: nothing outside of the words is read, whatever they are. Linear in the decorations. A
+ * module with more than 128 variables in set 0 counts as one that declares each of its bindings
+ * there. */
 masu_interface masu_interface_of(const uint32_t *words, uint64_t count);
 
 #endif

@@ -1,7 +1,7 @@
-/* cameras.c: the views that a frame is culled for: the camera and the sun's view of each cascade (without
- * a shadow map, for the statistics only, of the whole scene). Each has frustum planes and the input of
- * occlusion culling; the camera also has that of LOD selection. Computed in double precision and world
- * space up to the values that are stored. */
+/* cameras.c: the views that a frame is culled for: the camera and the sun's view of each cascade
+ * (without a shadow map, for the statistics only, of the whole scene). Each has frustum planes and
+ * the input of occlusion culling; the camera also has that of LOD selection. Computed in double
+ * precision and world space up to the values that are stored. */
 #include "frame/cameras.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
-/* cameras.h: the views that a frame is culled for: the camera and the sun's view of each cascade (without
- * a shadow map, for the statistics only, of the whole scene). */
+/* cameras.h: the views that a frame is culled for: the camera and the sun's view of each cascade
+ * (without a shadow map, for the statistics only, of the whole scene). */
 #ifndef MASU_CAMERAS_H
 #define MASU_CAMERAS_H
 

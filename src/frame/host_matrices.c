@@ -1,5 +1,5 @@
-/* host_matrices.c: see host_matrices.h. The matrices come from the uniforms that shaders read, so that
- * the host and the shaders use the same camera. */
+/* host_matrices.c: see host_matrices.h. The matrices come from the uniforms that shaders read, so
+ * that the host and the shaders use the same camera. */
 #include "frame/host_matrices.h"
 
 #include "base/vec.h"

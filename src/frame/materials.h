@@ -1,6 +1,7 @@
 /* materials.h: factors of materials that the host changes while frames go on: its truth, copied to a slot that has not
  * seen the last change. At the top of each frame the device copies the slot to where shaders read materials, and to
- * where rays do: frames in flight each have their own. All of it is of no length without desc.mutable_materials.
+ * where rays do: frames in flight each have their own. All of it is of no length without
+ * desc.mutable_materials.
  *
  * What pipelines and recordings know of a material, its flags, maps and cut-off, stays as the scene has it. */
 #ifndef MASU_MATERIALS_H

@@ -13,8 +13,9 @@ void masu_picking_alloc(masu_picking *p, masu_arena *arena, const masu_frame_pla
     p->group_states =
         masu_arena_alloc(arena, "group states of the picked pixel",
                          plan->needs.picking ? plan->scene.groups : 0, sizeof *p->group_states, 1);
-    p->added = masu_arena_alloc(arena, "first frames of copies",
-                                plan->needs.picking ? plan->reserve.models : 0, sizeof *p->added, 8);
+    p->added =
+        masu_arena_alloc(arena, "first frames of copies",
+                         plan->needs.picking ? plan->reserve.models : 0, sizeof *p->added, 8);
 }
 
 static unsigned char *draws_of(const masu_device *device, uint32_t slot) {

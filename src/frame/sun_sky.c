@@ -68,7 +68,8 @@ static masu_result check_unused(const masu_frame_plan *plan, const masu_blob_env
         return bad(detail, "light.turbidity", light->turbidity,
                    "0 with a scene whose environment map replaces the sky");
     if (light->fog_density > 0.0f && !plan->scene.fog)
-        return bad(detail, "light.fog_density", light->fog_density, "0 with a scene that has no fog");
+        return bad(detail, "light.fog_density", light->fog_density,
+                   "0 with a scene that has no fog");
     return MASU_OK;
 }
 
@@ -138,8 +139,9 @@ static void write_light(const masu_sun_sky *s, masu_frame_data *f) {
         memcpy(u->irradiance, s->environment_sh, sizeof u->irradiance);
         /* The mean of all directions: band 0, which the lobe has too. */
         for (uint32_t k = 0; k < 3; k++)
-            u->ambient[k] = s->environment_sh[0][k] +
-                            s->environment_sh[k][3] * (0.25f + MASU_SKY_ROUND * MASU_SKY_ROUND / 12.0f);
+            u->ambient[k] =
+                s->environment_sh[0][k] +
+                s->environment_sh[k][3] * (0.25f + MASU_SKY_ROUND * MASU_SKY_ROUND / 12.0f);
         u->sky_zenith[3] = (float)f->plan->scene.environment_size;
         u->sky_horizon[3] = (float)f->plan->scene.environment_mips;
     }

@@ -9,7 +9,7 @@
 
 typedef struct masu_sun_sky {
     masu_blob_environment environment;
-    float environment_sh[9][4];             /* of an environment map: masu_blob_environment_map.sh */
+    float environment_sh[9][4]; /* of an environment map: masu_blob_environment_map.sh */
     masu_sky *sky;                          /* of no length where the plan has no analytic sky */
     uint64_t slot_updates[MASU_MAX_FLIGHT]; /* sky->sun_updates that the slot has; 0: a gradient */
 } masu_sun_sky;

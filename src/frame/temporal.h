@@ -1,6 +1,6 @@
-/* temporal.h: what a rung with `temporal`, or with temporal accumulation of reflections, knows of the frames before:
- * where in its pixels each looks, what the previous one has left, whether anything but the camera has changed since.
- * Host state of a few words; nothing here fails. */
+/* temporal.h: what a rung with `temporal`, or with temporal accumulation of reflections, knows of
+ * the frames before: where in its pixels each looks, what the previous one has left, whether
+ * anything but the camera has changed since. Host state of a few words; nothing here fails. */
 #ifndef MASU_TEMPORAL_H
 #define MASU_TEMPORAL_H
 

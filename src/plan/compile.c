@@ -12,7 +12,8 @@
 
 /* ---- One rung -------------------------------------------------------------------------------- */
 
-static void resolve_upscaling(const masu_desc *d, uint32_t r, const masu_rung_plan *rp, masu_needs *needs) {
+static void resolve_upscaling(const masu_desc *d, uint32_t r, const masu_rung_plan *rp,
+                              masu_needs *needs) {
     const masu_rung *rung = &d->rungs[r];
     int same = rp->render_width == d->output.width && rp->render_height == d->output.height;
     needs->resolve = masu_rung_resolves(d, r);
@@ -201,8 +202,8 @@ static void gather_images(masu_frame_plan *plan) {
     }
 }
 
-/* Whether a knob can change anything in the scene of a description: the column `use` of its row. What knobs of upscaling depend on is
- * decided per rung. */
+/* Whether a knob can change anything in the scene of a description: the column `use` of its row.
+ * What knobs of upscaling depend on is decided per rung. */
 static int is_of_use(const masu_desc *d, uint32_t r, masu_knob_use use) {
     const masu_scene_data *s = masu_scene_data_of(d->scene);
     switch (use) {
@@ -222,7 +223,8 @@ static int is_of_use(const masu_desc *d, uint32_t r, masu_knob_use use) {
     return 1;
 }
 
-/* The switches that a rung has on where that is of use; with `any`, adds them to those that any rung has. */
+/* The switches that a rung has on where that is of use; with `any`, adds them to those that any
+ * rung has. */
 static masu_switches switches_of(const masu_desc *d, uint32_t r, masu_switches *any) {
     masu_switches on;
 #define SET_masu_switch(name, use)                                                                 \
@@ -237,7 +239,9 @@ static masu_switches switches_of(const masu_desc *d, uint32_t r, masu_switches *
     return on;
 }
 
-static int rung_has_specular(const masu_desc *d, uint32_t r) { return switches_of(d, r, NULL).specular; }
+static int rung_has_specular(const masu_desc *d, uint32_t r) {
+    return switches_of(d, r, NULL).specular;
+}
 
 static int rung_has_taa(const masu_desc *d, uint32_t r) {
     return rung_has_specular(d, r) && !d->debug.reference &&
@@ -325,7 +329,8 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                .blit = !d->targets.storage};
     int emits = plan->needs.raster && (plan->scene.emissions || d->mutable_materials);
     uint32_t attachments = 3u + (plan->needs.surface != 0) + (plan->needs.velocity != 0);
-    plan->needs.emission_packed = emits && d->deny.color_attachments && attachments > d->deny.color_attachments;
+    plan->needs.emission_packed =
+        emits && d->deny.color_attachments && attachments > d->deny.color_attachments;
     plan->needs.emissive = emits && !plan->needs.emission_packed;
     plan->needs.sprites = plan->needs.particles || plan->needs.decals || plan->needs.lines;
     for (uint32_t r = 0; r < d->rung_count; r++) plan->needs.smoothing |= masu_is_smaa(d->rungs[r].aa);

@@ -44,15 +44,16 @@ static void fill(masu_switch *word, masu_switch with) {
     if (*word == MASU_AUTO) *word = with;
 }
 
-/* Several viewports cut each other's history off. What a host draws before the tone curve has no velocity and would
- * leave trails; what asks for velocities may have a history of its own. */
+/* Several viewports cut each other's history off. What a host draws before the tone curve has no
+ * velocity and would leave trails; what asks for velocities may have a history of its own. */
 static int are_interrupted(const masu_desc *d) {
     return d->viewport_count > 1 || (d->split & ~(uint32_t)MASU_SPLIT_AFTER_UPSCALE) != 0;
 }
 
 /* Whether frames follow each other, as accumulated samples need: that is what a governor is for. */
 static int frames_follow(const masu_desc *d) {
-    return d->scene && d->governor.mode != MASU_GOVERNOR_OFF && !d->debug.reference && !are_interrupted(d);
+    return d->scene && d->governor.mode != MASU_GOVERNOR_OFF && !d->debug.reference &&
+           !are_interrupted(d);
 }
 
 /* What `temporal` is at AUTO. A rung that says by what else it is resolved is resolved by that. */
@@ -214,7 +215,8 @@ static masu_result check_split(const masu_desc *d, masu_detail *detail) {
 static masu_result without_effect(const char *what, uint32_t count, const char *counted,
                                   masu_detail *detail) {
     return masu_fail(detail, MASU_ERROR_ARGUMENT, what, 1, count,
-                     "%s is %u, but %s[0] is not zero: count it, or leave it zero", what, count, counted);
+                     "%s is %u, but %s[0] is not zero: count it, or leave it zero", what, count,
+                     counted);
 }
 
 masu_result masu_desc_check_given(const masu_desc *given, masu_detail *detail) {
@@ -223,12 +225,13 @@ masu_result masu_desc_check_given(const masu_desc *given, masu_detail *detail) {
     const masu_source *s = &given->source;
     if (!given->rung_count && memcmp(&given->rungs[0], &no_rung, sizeof no_rung) != 0)
         return without_effect("rung_count", 0, "rungs", detail);
-    if (!given->viewport_count && memcmp(&given->viewports[0], &no_viewport, sizeof no_viewport) != 0)
+    if (!given->viewport_count &&
+        memcmp(&given->viewports[0], &no_viewport, sizeof no_viewport) != 0)
         return without_effect("viewport_count", 0, "viewports", detail);
     if (given->scene && !s->view && (s->width || s->height || s->format)) {
         return masu_fail(detail, MASU_ERROR_ARGUMENT, "source", 0, s->width,
-                         "scene and source exclude each other: source is %ux%u, format %d", s->width,
-                         s->height, (int)s->format);
+                         "scene and source exclude each other: source is %ux%u, format %d",
+                         s->width, s->height, (int)s->format);
     }
     return MASU_OK;
 }
@@ -241,9 +244,11 @@ static masu_result check_keep(const masu_desc *d, masu_detail *detail) {
         if (!masu_could_trace(d->scene, &d->rungs[r])) keep &= ~MASU_KEEP_REFLECTIONS;
         uint32_t off = masu_rung_drops(&d->rungs[r], keep);
         if (!off) continue;
-        return masu_fail(detail, MASU_ERROR_ARGUMENT, "governor.keep", 0, keep, "rungs[%u].%s is OFF, but governor.keep has %s",
-                         r, off & MASU_KEEP_REFLECTIONS ? "specular" : "ao",
-                         off & MASU_KEEP_REFLECTIONS ? "MASU_KEEP_REFLECTIONS" : "MASU_KEEP_OCCLUSION");
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "governor.keep", 0, keep,
+                         "rungs[%u].%s is OFF, but governor.keep has %s", r,
+                         off & MASU_KEEP_REFLECTIONS ? "specular" : "ao",
+                         off & MASU_KEEP_REFLECTIONS ? "MASU_KEEP_REFLECTIONS"
+                                                     : "MASU_KEEP_OCCLUSION");
     }
     return MASU_OK;
 }

@@ -12,7 +12,8 @@
 
 /* The ways to draw polygons with textures; those without have the pass's own pipeline. Alpha-tested ones
  * have theirs, so that only they lose the early depth test. */
-enum { MASU_TEXTURED_OPAQUE, MASU_TEXTURED_MASK, MASU_TEXTURED_COUNT }; /* 1 + these: masu_draw_kind */
+/* 1 + these: masu_draw_kind */
+enum { MASU_TEXTURED_OPAQUE, MASU_TEXTURED_MASK, MASU_TEXTURED_COUNT };
 /* Of what is not seen from behind: without textures, then the same. */
 #define MASU_CULLED_COUNT (1u + MASU_TEXTURED_COUNT)
 

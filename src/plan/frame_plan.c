@@ -1,5 +1,5 @@
-/* frame_plan.c: the rows of passes.inc and images.inc as constant arrays, and the conditions of passes.
- * A pass is added as a row of passes.inc and a shader. */
+/* frame_plan.c: the rows of passes.inc and images.inc as constant arrays, and the conditions of
+ * passes. A pass is added as a row of passes.inc and a shader. */
 #include "plan/frame_plan.h"
 
 /* ---- Images ---------------------------------------------------------------------------------- */
@@ -36,8 +36,12 @@ int masu_has_image(const masu_needs *n, uint32_t image) {
 int masu_is_occluded(const masu_needs *n) { return n->sdf_occlusion || n->shadow || n->on.ao; }
 
 #ifdef MASU_LAB
-int masu_march_has_tiles(const masu_needs *n) { return n->march != MASU_MARCH_PLAIN && n->march != MASU_MARCH_SEED; }
-int masu_march_has_blocks(const masu_needs *n) { return masu_march_has_tiles(n) && n->march != MASU_MARCH_CHECKERBOARD; }
+int masu_march_has_tiles(const masu_needs *n) {
+    return n->march != MASU_MARCH_PLAIN && n->march != MASU_MARCH_SEED;
+}
+int masu_march_has_blocks(const masu_needs *n) {
+    return masu_march_has_tiles(n) && n->march != MASU_MARCH_CHECKERBOARD;
+}
 #else
 int masu_march_has_tiles(const masu_needs *n) { return n->sdf; }
 int masu_march_has_blocks(const masu_needs *n) { return n->sdf; }
@@ -66,7 +70,9 @@ static const char *no_velocity(const masu_needs *n, const char *other) {
     return wants_velocity(n) ? other : "nothing reads velocities";
 }
 
-static const char *no_skins(const masu_needs *n) { return n->scene ? "the scene has no skinned meshes" : NO_SCENE; }
+static const char *no_skins(const masu_needs *n) {
+    return n->scene ? "the scene has no skinned meshes" : NO_SCENE;
+}
 
 static int has_skin_trees(const masu_needs *n) { return n->skins && n->traced && !n->query; }
 
@@ -88,7 +94,9 @@ static const char *no_filter(const masu_needs *n, const char *off) {
 }
 
 static const char *no_resolve(const masu_needs *n) {
-    return n->scene ? n->accumulate ? "debug.reference: one sample position per pixel" : "rung.temporal is not on" : NO_SCENE;
+    return n->scene ? n->accumulate ? "debug.reference: one sample position per pixel"
+                                    : "rung.temporal is not on"
+                    : NO_SCENE;
 }
 
 static const char *no_upscale(const masu_needs *n) {
@@ -182,7 +190,8 @@ VkExtent2D masu_extent_of(masu_image_extent extent, VkExtent2D render, VkExtent2
         return (VkExtent2D){1, 1};
     if (extent == MASU_EXTENT_PICK) return (VkExtent2D){2, 2};
     if (extent == MASU_EXTENT_SHADOW) return (VkExtent2D){0, 0};
-    int shown = extent == MASU_EXTENT_OUTPUT || extent == MASU_EXTENT_OUTPUT_PAIRS || extent == MASU_EXTENT_OUTPUT_ODD;
+    int shown = extent == MASU_EXTENT_OUTPUT || extent == MASU_EXTENT_OUTPUT_PAIRS ||
+                extent == MASU_EXTENT_OUTPUT_ODD;
     VkExtent2D size = shown ? output : render;
     return (VkExtent2D){(size.width + block - 1) / block, (size.height + block - 1) / block};
 }

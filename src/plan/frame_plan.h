@@ -135,8 +135,8 @@ typedef struct masu_switches {
 
 /* What the scene and the description need, computed once; the `decide` of each row looks at nothing
  * else. */
-/* Features that the device has too few storage buffers for. Until the plan is compiled again they are
- * added to desc.deny.storage_buffers, which is then less than 64. */
+/* Features that the device has too few storage buffers for. Until the plan is compiled again they
+ * are added to desc.deny.storage_buffers, which is then less than 64. */
 #define MASU_DROPPED_SPECULAR (1u << 30)
 #define MASU_DROPPED_OCCLUSION (1u << 31)
 #define MASU_DROPPED_ANY (MASU_DROPPED_SPECULAR | MASU_DROPPED_OCCLUSION)
@@ -157,7 +157,7 @@ typedef struct masu_needs {
     int environment;   /* the sky is from a picture */
     int sky;           /* the sky may follow from the sun */
     int emissive;      /* polygons may emit: the G-buffer pass writes their radiance into hdr, */
-    int emission_packed; /* unless the device has too few attachments: then albedo holds it (pack.glsl) */
+    int emission_packed; /* into albedo (pack.glsl): the device has too few attachments */
     int velocity;      /* something reads velocities: the previous frame is kept */
     int sdf_occlusion; /* the SDF casts shadows or occludes ambient light */
     int probes;        /* it has light probes */
@@ -263,8 +263,8 @@ int masu_is_occluded(const masu_needs *needs);
 
 static inline int masu_is_smaa(masu_aa aa) { return aa >= MASU_AA_SMAA_LOW; }
 
-/* Whether the march of the SDF writes lists of parts per tile, and of the parts that matter per 4x4 block. Always so in the product:
- * the lab build has other marches. */
+/* Whether the march of the SDF writes lists of parts per tile, and of the parts that matter per 4x4
+ * block. Always so in the product: the lab build has other marches. */
 int masu_march_has_tiles(const masu_needs *needs);
 int masu_march_has_blocks(const masu_needs *needs);
 

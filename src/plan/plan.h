@@ -203,8 +203,8 @@ int masu_comes_last(const masu_rung_plan *rung, uint32_t pass);
 /* Texel bytes of the formats of the table. */
 uint32_t masu_format_bytes(VkFormat format);
 
-/* Whether the G-buffer pass draws emitting materials in a second subpass, the only one that has hdr attached. Where
- * materials may begin to emit at run time, all are drawn with it in one. */
+/* Whether the G-buffer pass draws emitting materials in a second subpass, the only one that has hdr
+ * attached. Where materials may begin to emit at run time, all are drawn with it in one. */
 static inline int masu_has_emission_subpass(const masu_frame_plan *plan) {
     return plan->needs.emissive && !plan->desc.mutable_materials;
 }

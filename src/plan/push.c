@@ -13,7 +13,8 @@ static int is_temporal(const masu_push_input *in) {
 
 /* Fewer pixels than are shown: mips as fine as the output's pixels ask for, since what EASU gets blurred it
  * cannot bring back. The mean over frames is of samples all over a pixel, each of which may look at a part of it alone:
- * two mips finer have the least error at rest, and at full size in motion (docs/design/17-temporal-upscaling.md). */
+ * two mips finer have the least error at rest, and at full size in motion
+ * (docs/design/17-temporal-upscaling.md). */
 static float masu_mip_bias(const masu_push_input *in) {
     const masu_desc *d = &in->plan->desc;
     const masu_rung *rung = &d->rungs[in->rung];

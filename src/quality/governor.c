@@ -189,7 +189,7 @@ static double rises(const masu_governor *g) {
            masu_within((part - RISES_LEAST) / (RISES_MOST - RISES_LEAST), 0.0, 1.0);
 }
 
-/* ---- The survey ------------------------------------------------------------------------------- */
+/* ---- The survey ------------------------------------------------------------------------------ */
 
 /* The next rung to measure; `low` if there is none: it is the answer then. */
 static uint32_t next_to_measure(masu_governor *g) {
@@ -232,7 +232,7 @@ static int survey(masu_governor *g, uint64_t frame) {
     return 1;
 }
 
-/* ---- Clocks that follow the load --------------------------------------------------------------- */
+/* ---- Clocks that follow the load ------------------------------------------------------------- */
 
 /* A trial ends: the rung is kept if it takes no longer than it may by now, whatever the reason. */
 static void end_trial(masu_governor *g, uint64_t frame, int over) {

@@ -1,5 +1,5 @@
-/* governor_model.c: the model of frame times: a Kalman filter for fixed part, load and slope, and the
- * cost of each rung. governor.c selects a rung by its predictions; trust.c selects the clock.
+/* governor_model.c: the model of frame times: a Kalman filter for fixed part, load and slope, and
+ * the cost of each rung. governor.c selects a rung by its predictions; trust.c selects the clock.
  *
  * Only bounded variances accumulate, so nothing winds up at the ends of the ladder. */
 #include "quality/governor_model.h"
@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-/* ---- Constants: all are times in frames, deviations, or parts ---------------------------------- */
+/* ---- Constants: all are times in frames, deviations, or parts -------------------------------- */
 
 #define PAUSE 1e3 /* ms: longer is rather a pause than a frame */
 #define NOISE_FIRST 0.02
@@ -38,7 +38,7 @@
 #define LEAST_TIME 0.02   /* of the target, and half of the fixed part: what a frame can take */
 #define ODD_PAUSE_COUNT 8u
 #define LEAD_MOST 8.0    /* frames: farther than this no slope is followed to reach the present */
-#define RISE_FOLLOWS 0.8   /* of the first time after a rise: a time below shows a clock that follows */
+#define RISE_FOLLOWS 0.8   /* of the first time after a rise: less shows a clock that follows */
 
 #define NEVER UINT64_MAX
 
@@ -265,8 +265,8 @@ static void follow(masu_governor *g, const masu_governor_sample *s, double ms, i
     g->slope = masu_within(g->slope, -most, most);
 }
 
-/* A frame over the target just after a rise, and a few frames later the same rung takes much less: loads
- * seldom fall just then, clocks that follow them rise. */
+/* A frame over the target just after a rise, and a few frames later the same rung takes much less:
+ * loads seldom fall just then, clocks that follow them rise. */
 static void watch_clock(masu_governor *g, const masu_governor_sample *s, double ms) {
     if (s->rung != g->seen_rung) {
         g->seen_ms = s->rung < g->seen_rung && ms > g->target ? ms : 0.0;
@@ -279,8 +279,8 @@ static void watch_clock(masu_governor *g, const masu_governor_sample *s, double 
 }
 
 static int is_sound(const masu_governor *g) {
-    double sum =
-        g->fixed + g->load + g->slope + g->noise + g->trend + g->trust.overhead + g->trust.distrust + g->grain;
+    double sum = g->fixed + g->load + g->slope + g->noise + g->trend + g->trust.overhead +
+                 g->trust.distrust + g->grain;
     for (int i = 0; i < 3; i++) {
         if (!(g->p[i][i] >= 0.0)) return 0;
         for (int j = 0; j < 3; j++) sum += g->p[i][j];
@@ -324,11 +324,12 @@ void masu_governor_sample_in(masu_governor *g, const masu_governor_sample *s) {
     start(g, s->rung, ms);
 }
 
-/* ---- Predictions ------------------------------------------------------------------------------- */
+/* ---- Predictions ----------------------------------------------------------------------------- */
 
 /* What a frame `lead` frames past the newest sample takes at a rung, and `margin` deviations more.
  * falls: a load that falls is followed too; else it is taken as it is. */
-double masu_governor_upper(const masu_governor *g, uint32_t rung, double lead, int falls, double margin) {
+double masu_governor_upper(const masu_governor *g, uint32_t rung, double lead, int falls,
+                           double margin) {
     double c = g->cost[rung], slope = g->slope < 0.0 && !falls ? 0.0 : g->slope;
     double load = masu_largest(g->load + slope * lead, 0.0), mean = g->fixed + c * load;
     double v = g->p[0][0] + 2.0 * c * g->p[0][1] + c * c * g->p[1][1] + sample_variance(g, mean) +

@@ -47,7 +47,7 @@ MASU_KNOB_USES(USE_TEXTS)
      .unit = is,                                                                                   \
      .text = does,                                                                                 \
      .cost = costs},
-#define WORD_ROW_OF(type, id, becomes, of, does, costs)                                                     \
+#define WORD_ROW_OF(type, id, becomes, of, does, costs)                                            \
     {.name = #id,                                                                                  \
      .kind = MASU_KNOB_WORD,                                                                       \
      FIELD(type, id),                                                                              \
@@ -73,7 +73,8 @@ const masu_knob *masu_knob_table(void) { return knobs; }
 /* ---- Values ---------------------------------------------------------------------------------- */
 
 /* Enums of four bytes are read and written as numbers, too. */
-_Static_assert(sizeof(float) == 4 && sizeof(masu_switch) == 4 && sizeof(masu_easu) == 4 && sizeof(masu_aa) == 4,
+_Static_assert(sizeof(float) == 4 && sizeof(masu_switch) == 4 && sizeof(masu_easu) == 4 &&
+                   sizeof(masu_aa) == 4,
                "every value of a knob has four bytes");
 
 double masu_knob_get(const masu_knob *k, const masu_rung *rung, uint32_t value) {

@@ -77,13 +77,15 @@ uint32_t masu_ladder_kept(const masu_ladder *l, uint32_t keep, uint32_t nth) {
     return r;
 }
 
-/* Measured without a governor, with which AUTO of temporal would be another thing. costs: takes the rungs' times. */
+/* Measured without a governor, with which AUTO of temporal would be another thing. costs: takes the
+ * rungs' times. */
 static void give(const masu_ladder *l, masu_desc *desc, float costs[MASU_MAX_RUNGS]) {
     uint32_t r = 0;
     memset(desc->rungs, 0, sizeof desc->rungs);
     memset(desc->flips, 0, sizeof desc->flips);
     memset(costs, 0, MASU_MAX_RUNGS * sizeof *costs);
-    for (desc->rung_count = 0; (r = masu_ladder_kept(l, desc->governor.keep, desc->rung_count)) < l->count;
+    for (desc->rung_count = 0;
+         (r = masu_ladder_kept(l, desc->governor.keep, desc->rung_count)) < l->count;
          desc->rung_count++) {
         masu_rung *to = &desc->rungs[desc->rung_count];
         *to = l->rungs[r];

@@ -32,8 +32,8 @@ typedef struct masu_pacing {
     uint32_t patience;    /* the next waits so many times as long */
 } masu_pacing;
 
-/* `ms`: what the frame is expected to take; `target`: what frames are allowed to. `excluded`: it says
- * nothing. Asked again for a frame, it says the same. */
+/* `ms`: what the frame is expected to take; `target`: what frames are allowed to. `excluded`: it
+ * says nothing. Asked again for a frame, it says the same. */
 void masu_pacing_choose(masu_pacing *p, uint64_t frame, double ms, double target, int excluded);
 /* When a frame was shown, by any clock that does not jump, and how long a refresh lasts; 0: it is no
  * longer known, and all that was is forgotten. 1: it was shown later than it should have been. */

@@ -1,6 +1,6 @@
-/* spikes.h: loads that rise for a few frames again and again: garbage collection, streaming, work of
- * the system. Without this module each spike causes a fall, and a rise follows before the next one.
- * After three similar spikes the rung that meets the target during a spike is kept in between.
+/* spikes.h: loads that rise for a few frames again and again: garbage collection, streaming, work
+ * of the system. Without this module each spike causes a fall, and a rise follows before the next
+ * one. After three similar spikes the rung that meets the target during a spike is kept in between.
  *
  * A pure function of its own state. docs/design/19-governor.md, "Periodic spikes". */
 #ifndef MASU_SPIKES_H

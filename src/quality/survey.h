@@ -1,8 +1,8 @@
 /* survey.h: compares measured times of rungs with each other. From the costs of the ladder alone, a
- * load that no rung changes (CPU time, the display, a pass that all rungs share) looks like one that
- * has just grown. A survey therefore measures: the cheapest rung first, then better ones, until the
- * best rung is found that takes at most MASU_SURVEY_GAIN times as long. It is kept until the load
- * changes.
+ * load that no rung changes (CPU time, the display, a pass that all rungs share) looks like one
+ * that has just grown. A survey therefore measures: the cheapest rung first, then better ones,
+ * until the best rung is found that takes at most MASU_SURVEY_GAIN times as long. It is kept until
+ * the load changes.
  *
  * A pure function of its own state. docs/design/19-governor.md, "Survey". */
 #ifndef MASU_SURVEY_H

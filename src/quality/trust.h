@@ -1,6 +1,7 @@
 /* trust.h: what is believed of a frame's times. Two clocks may tell of it, that of the GPU by timestamps
  * and the host's ("the wall"), and either may lie, stand still, have a wrong unit or be missing. A pure
- * function of its own state; any values may be given. docs/design/19-governor.md, "Clock selection". */
+ * function of its own state; any values may be given. docs/design/19-governor.md, "Clock
+ * selection". */
 #ifndef MASU_TRUST_H
 #define MASU_TRUST_H
 

@@ -163,8 +163,8 @@ typedef struct masu_blob_primitive {
     uint32_t material;
     float aabb_min[3]; /* object space */
     float aabb_max[3];
-    /* Object space: most by which the smooth surface of the vertex normals rises above the triangles;
-     * 0: faceted. The shadow map draws the primitive that much thinner. */
+    /* Object space: most by which the smooth surface of the vertex normals rises above the
+     * triangles; 0: faceted. The shadow map draws the primitive that much thinner. */
     float rise;
 } masu_blob_primitive;
 
@@ -396,9 +396,9 @@ typedef struct masu_blob_environment_map {
     uint32_t size; /* a power of two, 8..1024 */
     uint32_t mips; /* 2..8, the smallest no less than 4 texels */
     uint32_t reserved[2];
-    float sh[9][4]; /* rgb: irradiance / pi by the normal, order 2. Fourth component: a lobe (shared/sky.h), in 0 to 2
-                       its colour, >= 0, in 3 to 5 its direction, of a length up to 1; in 6 to 8 the
-                       colour of Legendre's P4 of y */
+    float sh[9][4]; /* rgb: irradiance / pi by the normal, order 2. Fourth component: of 0 to 2 the
+                       colour of a lobe (shared/sky.h), >= 0; of 3 to 5 its direction, of a length
+                       up to 1; of 6 to 8 the colour of Legendre's P4 of y */
 } masu_blob_environment_map;
 
 /* An array of images of one format and size. Texels: layer after layer, each the whole mip chain

@@ -26,16 +26,19 @@ static const struct {
     {MASU_BLOB_CONE8_SPIRV, 8, 8, 0, 0, 1, PUSH(cone), FIELD},
     {MASU_BLOB_CONE4_SPIRV, 8, 8, 1, 1, 1, PUSH(cone), FIELD},
     {MASU_BLOB_UPDATE_SPIRV, 1, 1, 0, 0, 0, sizeof(struct masu_push), FIELD},
-    {MASU_BLOB_UPDATE_PREVIOUS_SPIRV, 1, 1, 0, 0, 0, sizeof(struct masu_push), FIELD | AT(PREVIOUS)},
+    {MASU_BLOB_UPDATE_PREVIOUS_SPIRV, 1, 1, 0, 0, 0, sizeof(struct masu_push),
+     FIELD | AT(PREVIOUS)},
 #ifdef MASU_LAB
     {MASU_BLOB_PLAIN_SPIRV, 8, 8, 0, 1, 4, PUSH(march_plain), FIELD},
     {MASU_BLOB_SEED_SPIRV, 4, 8, 0, 1, 4, PUSH(march_seed), FIELD},
     {MASU_BLOB_CHECKERBOARD_SPIRV, 8, 8, 1, 1, 4, PUSH(march_checkerboard), FIELD},
 #endif
     {MASU_BLOB_VELOCITY_SPIRV, 8, 8, 1, 2, 1, PUSH(sdf_velocity), FIELD | AT(PREVIOUS)},
-    {MASU_BLOB_SILHOUETTES_SPIRV, 8, 8, 4, 5, 1, PUSH(silhouettes), FIELD | AT(EXPOSURE) | AT(TABLES) | AT(SKY)},
+    {MASU_BLOB_SILHOUETTES_SPIRV, 8, 8, 4, 5, 1, PUSH(silhouettes),
+     FIELD | AT(EXPOSURE) | AT(TABLES) | AT(SKY)},
     {MASU_BLOB_OCCLUSION_SPIRV, 8, 8, 2, 2, 1, PUSH(sdf_occlusion), FIELD},
-    {MASU_BLOB_TRACE_SDF_SPIRV, 8, 8, 2, 2, 1, PUSH(specular_trace_sdf), FIELD | AT(SPECULAR_TILES) | AT(PREVIOUS)},
+    {MASU_BLOB_TRACE_SDF_SPIRV, 8, 8, 2, 2, 1, PUSH(specular_trace_sdf),
+     FIELD | AT(SPECULAR_TILES) | AT(PREVIOUS)},
 };
 _Static_assert(MASU_BIND_COUNT <= 64, "a bit for each binding of set 0");
 

@@ -193,9 +193,11 @@ static masu_result check_environment(reader *r) {
     float length2 = 0.0f;
     for (uint32_t k = 0; k < 3; k++) {
         length2 += map->sh[3 + k][3] * map->sh[3 + k][3];
-        if (map->sh[k][3] < 0.0f) return bad(r, "environment map", k, "the lobe's color is negative");
+        if (map->sh[k][3] < 0.0f)
+            return bad(r, "environment map", k, "the lobe's color is negative");
     }
-    if (!(length2 <= 1.01f)) return bad(r, "environment map", 0, "the lobe's direction is longer than 1");
+    if (!(length2 <= 1.01f))
+        return bad(r, "environment map", 0, "the lobe's direction is longer than 1");
     return MASU_OK;
 }
 

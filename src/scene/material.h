@@ -13,7 +13,8 @@ static inline struct masu_material_data masu_material_data_of(const masu_blob_ma
     return d;
 }
 
-/* Opaque, and emits at least what the shaders take for emission (masu_emissive_least, pack.glsl). */
+/* Opaque, and emits at least what the shaders take for emission (masu_emissive_least,
+ * pack.glsl). */
 static inline int masu_material_emits(const masu_blob_material *m) {
     const float least = 1.0f / 1024.0f;
     if (m->flags & MASU_MATERIAL_IS_BLEND) return 0;

@@ -186,7 +186,8 @@ static int is_of_lab(uint32_t kind) {
     (void)kind;
     return 0;
 #else
-    return kind == MASU_BLOB_PLAIN_SPIRV || kind == MASU_BLOB_SEED_SPIRV || kind == MASU_BLOB_CHECKERBOARD_SPIRV;
+    return kind == MASU_BLOB_PLAIN_SPIRV || kind == MASU_BLOB_SEED_SPIRV ||
+           kind == MASU_BLOB_CHECKERBOARD_SPIRV;
 #endif
 }
 
@@ -199,7 +200,9 @@ masu_result masu_read_sections(reader *r, uint64_t given) {
     for (uint32_t i = 0; i < h.section_count; i++) {
         masu_blob_section s;
         memcpy(&s, r->bytes + sizeof h + i * sizeof s, sizeof s);
-        if (is_of_lab(s.kind)) return bad(r, "section", i, "holds a march of the lab build: bake the scene without --variants");
+        if (is_of_lab(s.kind))
+            return bad(r, "section", i,
+                       "holds a march of the lab build: bake the scene without --variants");
         if (s.kind == 0 || s.kind >= MASU_BLOB_KIND_COUNT || !rules[s.kind].stride)
             return bad(r, "section", i, "unknown kind");
         if (start[s.kind]) return bad(r, "section", i, "appears twice");

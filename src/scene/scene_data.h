@@ -1,5 +1,5 @@
-/* scene_data.h: the content of a masu_scene: what a validated scene contains, as numbers. scene.c fills
- * it, scene_query.c has the public queries. */
+/* scene_data.h: the content of a masu_scene: what a validated scene contains, as numbers. scene.c
+ * fills it, scene_query.c has the public queries. */
 #ifndef MASU_SCENE_DATA_H
 #define MASU_SCENE_DATA_H
 

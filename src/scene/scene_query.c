@@ -1,4 +1,5 @@
-/* scene_query.c: the public queries of a validated scene. Nothing here allocates or keeps anything. */
+/* scene_query.c: the public queries of a validated scene. Nothing here allocates or keeps
+ * anything. */
 #include "scene/scene.h"
 
 #include <string.h>
@@ -61,7 +62,8 @@ int32_t masu_scene_find(const masu_scene *scene, masu_scene_item item, const cha
     return -1;
 }
 
-/* ---- Clips: they belong to the first of the models that have the same meshes at the same nodes -- */
+/* ---- Clips: they belong to the first of the models that have the same meshes at the same nodes
+ * -- */
 
 uint32_t masu_scene_clip_count(const masu_scene *scene, uint32_t model) {
     const masu_scene_data *s = data_of(scene);

@@ -11,8 +11,8 @@
  * surface area heuristic a ray pays in proportion to the areas of the nodes' boxes; when the usual
  * box (masu_trace_tree_fit) has grown to MASU_TRACE_WORSE times what it was when the tree was
  * built, the tree is built again: rays then pay half as much again, and a build costs as much as
- * nine fits (docs/design/09-ray-tracing.md). A crowd that mixes is built again once in some frames, one
- * that stays in order never.
+ * nine fits (docs/design/09-ray-tracing.md). A crowd that mixes is built again once in some frames,
+ * one that stays in order never.
  *
  * Memory is the caller's: masu_trace_top_bytes of it, kept as long as the tree. Nothing here
  * allocates or fails. An instance whose transform is not finite, or has no inverse of a sane size,

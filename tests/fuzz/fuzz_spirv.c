@@ -1,5 +1,5 @@
-/* fuzz_spirv.c: any bytes as a SPIR-V module, for what reads modules: masu_scene_bind, and the loads of whole vectors.
- * A module with whole vectors can be read again. */
+/* fuzz_spirv.c: any bytes as a SPIR-V module, for what reads modules: masu_scene_bind, and the
+ * loads of whole vectors. A module with whole vectors can be read again. */
 #include "expect.h"
 
 #include "scene/code.h"

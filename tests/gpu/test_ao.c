@@ -1,8 +1,8 @@
 /* test_ao.c: ambient occlusion in screen space against the truth of scenes that have one in closed form
- * (a corner of three planes, a ball on a floor), that truth against rays (tests/support/ao.h), and what
- * must hold whatever the error: planes hide nothing of themselves, a camera at rest sees a picture at
- * rest, nothing outside of the picture's rectangle is looked at, the SDF's own occlusion is kept, and
- * scenes that do not ask have none of it. */
+ * (a corner of three planes, a ball on a floor), that truth against rays (tests/support/ao.h), and
+ * what must hold whatever the error: planes hide nothing of themselves, a camera at rest sees a
+ * picture at rest, nothing outside of the picture's rectangle is looked at, the SDF's own occlusion
+ * is kept, and scenes that do not ask have none of it. */
 #include "support/files.h"
 #include "support/floats.h"
 #include "support/shadow.h"

@@ -164,18 +164,21 @@ static void check_rows(const char *folder, uint32_t least) {
 static uint8_t *picture_at_rest(const char *folder, const char *setting, struct masu_image *size) {
     char path[512], error[1024];
     snprintf(path, sizeof path, "%s/%s/pictures/%s.rest.png", scratch, folder, setting);
-    if (!masu_file_exists(path)) snprintf(path, sizeof path, "%s/%s/pictures/%s.png", scratch, folder, setting);
+    if (!masu_file_exists(path))
+        snprintf(path, sizeof path, "%s/%s/pictures/%s.png", scratch, folder, setting);
     if (!masu_image_load_png(path, size, error, sizeof error)) fail_msg("%s", error);
     return size->rgba;
 }
 
 /* Those that are no jump from the one before. */
-static uint32_t without_jumps(const char *folder, const masu_row *rows, uint32_t *rungs, uint32_t n) {
+static uint32_t without_jumps(const char *folder, const masu_row *rows, uint32_t *rungs,
+                              uint32_t n) {
     uint32_t kept = 0;
     struct masu_image before = {0}, shown = {0};
     for (uint32_t i = 0; i < n; i++) {
         const uint8_t *pixels = picture_at_rest(folder, rows[rungs[i]].setting, &shown);
-        if (i && masu_metric_difference(pixels, before.rgba, shown.width, shown.height) > MASU_LADDER_STEP) {
+        if (i && masu_metric_difference(pixels, before.rgba, shown.width, shown.height) >
+                     MASU_LADDER_STEP) {
             masu_image_free(&shown);
             continue;
         }
@@ -323,7 +326,8 @@ static void reflections_have_an_error_of_their_own(void **state) {
     free(rows);
 }
 
-/* One row makes a page. The field in double precision is beside this scene, and is what depth is compared with. */
+/* One row makes a page. The field in double precision is beside this scene, and is what depth is
+ * compared with. */
 static void one_row_is_a_page_and_depth_is_compared_with_the_field(void **state) {
     (void)state;
     char path[512];
@@ -372,10 +376,12 @@ static void a_run_that_was_stopped_goes_on(void **state) {
     free(rows);
     free(old);
     /* Stills of the rungs, by a reference of the same moment: the first rung has its light. */
-    assert_int_equal(cli_run("render %s -o %s/golden.exr --truth=16 --time 1 --size 128x72", scene_path("test_both"),
-                             scratch), 0);
-    assert_int_equal(bench("%s " SMALL " --out %s/whole --golden %s/golden.exr", scene_path("test_both"), scratch,
-                           scratch), 0);
+    assert_int_equal(cli_run("render %s -o %s/golden.exr --truth=16 --time 1 --size 128x72",
+                             scene_path("test_both"), scratch),
+                     0);
+    assert_int_equal(bench("%s " SMALL " --out %s/whole --golden %s/golden.exr",
+                           scene_path("test_both"), scratch, scratch),
+                     0);
     assert_non_null(strstr(cli_out, " 0 settings measured"));
     text = read_file(in_scratch("whole/reference.csv"), NULL);
     const char *row = strchr(text, '\n');
@@ -391,7 +397,8 @@ static void a_run_that_was_stopped_goes_on(void **state) {
     said("another sweep");
 }
 
-/* The rows of the text from `line` on as another build would have written them; at most `most` of them remain. */
+/* The rows of the text from `line` on as another build would have written them; at most `most` of
+ * them remain. */
 static void paint(char *line, uint32_t most) {
     for (char *next; (next = strchr(line, '\n')); line = next + 1, most--) {
         if (!most) break;
@@ -765,7 +772,8 @@ static void wrong_command_lines_are_exit_code_2(void **state) {
     assert_int_equal(bench("%s/none.masu --out %s/x --quick", scratch, scratch), 1);
     said("none.masu");
     assert_false(is_in_scratch("x"));
-    assert_int_equal(bench("%s --out %s/whole/results.csv/such --quick", scene_path("test_both"), scratch), 1);
+    assert_int_equal(
+        bench("%s --out %s/whole/results.csv/such --quick", scene_path("test_both"), scratch), 1);
     said("results.csv/such: cannot create the folder");
 }
 

@@ -19,7 +19,8 @@
 
 static void help_and_version_are_there_for_every_command(void **state) {
     (void)state;
-    static const char *const commands[] = {"", "render", "upscale", "compare", "plan", "bench", "conform"};
+    static const char *const commands[] = {"",     "render", "upscale", "compare",
+                                           "plan", "bench",  "conform"};
     for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
         assert_int_equal(cli_run("%s --help", commands[i]), 0);
         assert_true(strlen(cli_out) > 200);
@@ -77,7 +78,8 @@ static void wrong_command_lines_are_exit_code_2(void **state) {
     cli_complained("--aa: expected one of auto, off, fxaa, smaa-low");
     assert_int_equal(cli_run("render %s -o %s/x.png --setting scale=2", scene, scratch), 2);
     cli_complained("scale: expected a number from 0 to 1, found '2'");
-    assert_int_equal(cli_run("render %s -o %s/x.png --setting scale=0.5 --setting aa=fxaa", scene, scratch), 2);
+    assert_int_equal(
+        cli_run("render %s -o %s/x.png --setting scale=0.5 --setting aa=fxaa", scene, scratch), 2);
     cli_complained("join the values by '+'");
     assert_int_equal(cli_run("render %s -o %s/x.png --setting base --ladder auto", scene, scratch), 2);
     cli_complained("with --ladder");
@@ -148,9 +150,9 @@ static void an_unknown_device_lists_those_that_are_there(void **state) {
                      1);
     cli_complained("nonesuch");
     assert_non_null(strstr(cli_err, "0 '"));
-    assert_int_equal(
-        cli_run("render %s -o %s/x.png --device 0 --frame --size 16x16 --quiet", scene_path("test_both"), scratch),
-        0);
+    assert_int_equal(cli_run("render %s -o %s/x.png --device 0 --frame --size 16x16 --quiet",
+                             scene_path("test_both"), scratch),
+                     0);
 }
 
 static void render_writes_the_picture_and_its_numbers_under_validation(void **state) {
@@ -252,7 +254,9 @@ static void ladders_are_read_and_shown(void **state) {
                      0);
     assert_non_null(strstr(cli_out, "rung 1, scale 0.500:     0 frames"));
     assert_null(strstr(cli_out, "rung 2"));
-    assert_int_equal(cli_run("render %s -o %s/l.png --frame --rung 1 --size 32x24 --ladder auto", scene, scratch), 0);
+    assert_int_equal(cli_run("render %s -o %s/l.png --frame --rung 1 --size 32x24 --ladder auto",
+                             scene, scratch),
+                     0);
     assert_int_equal(cli_run("render %s -o %s/l.png --rung 2 --size 32x24 --ladder %s/l.json --quiet",
                           scene, scratch, scratch),
                      2);
@@ -279,8 +283,9 @@ static void a_setting_is_drawn_by_its_name(void **state) {
         struct masu_image images[2];
         for (int k = 0; k < 2; k++) {
             snprintf(name, sizeof name, "%s/setting%d.png", scratch, k);
-            assert_int_equal(
-                cli_run("render %s -o %s --frame --size 64x48 --time 1 %s", scene, name, pairs[i][k]), 0);
+            assert_int_equal(cli_run("render %s -o %s --frame --size 64x48 --time 1 %s", scene,
+                                     name, pairs[i][k]),
+                             0);
             assert_ok(masu_image_load_png(name, &images[k], error, sizeof error));
         }
         assert_memory_equal(images[0].rgba, images[1].rgba, 4 * 64 * 48);
@@ -297,25 +302,31 @@ static void linear_light_is_written_in_both_formats(void **state) {
     char name[256], error[ERROR_SIZE];
     for (int k = 0; k < 3; k++) {
         snprintf(name, sizeof name, "%s/linear.%s", scratch, ends[k]);
-        assert_int_equal(cli_run("render %s -o %s --frame --size 64x48 --tone none --exposure 0.5", scene_path("test_both"), name), 0);
+        assert_int_equal(cli_run("render %s -o %s --frame --size 64x48 --tone none --exposure 0.5",
+                                 scene_path("test_both"), name),
+                         0);
         assert_ok(masu_image_load(name, &images[k], error, sizeof error));
         assert_int_equal(images[k].width, 64);
         assert_int_equal(images[k].height, 48);
     }
     assert_memory_equal(images[0].values, images[1].values, 3 * 64 * 48 * sizeof(float));
     for (uint32_t i = 0; i < 3 * 64 * 48; i++) {
-        int shown = masu_srgb_encoded(0.5f * images[0].values[i]), have = images[2].rgba[i / 3 * 4 + i % 3];
+        int shown = masu_srgb_encoded(0.5f * images[0].values[i]),
+            have = images[2].rgba[i / 3 * 4 + i % 3];
         assert_true(abs(shown - have) <= 1);
     }
     for (int k = 0; k < 3; k++) masu_image_free(&images[k]);
-    assert_int_equal(cli_run("render %s -o %s/half.pfm --frame --size 64x48 --setting scale=0.5", scene_path("test_both"), scratch), 0);
+    assert_int_equal(cli_run("render %s -o %s/half.pfm --frame --size 64x48 --setting scale=0.5",
+                             scene_path("test_both"), scratch),
+                     0);
     snprintf(name, sizeof name, "%s/half.pfm", scratch);
     assert_ok(masu_image_load(name, &images[0], error, sizeof error));
     assert_int_equal(images[0].width, 32);
     masu_image_free(&images[0]);
 }
 
-/* A still of an edge has grey levels that no raw frame has, and is the raw frame where it is flat. */
+/* A still of an edge has grey levels that no raw frame has, and is the raw frame where it is
+ * flat. */
 static void without_options_the_still_is_settled(void **state) {
     (void)state;
     enum { W = 64, H = 48 };
@@ -325,7 +336,8 @@ static void without_options_the_still_is_settled(void **state) {
     double off[3] = {0};
     for (int k = 0; k < 3; k++) {
         snprintf(name, sizeof name, "%s/still%d.png", scratch, k);
-        assert_int_equal(cli_run("render %s -o %s --size 64x48 %s", scene_path("test_both"), name, ways[k]), 0);
+        assert_int_equal(
+            cli_run("render %s -o %s --size 64x48 %s", scene_path("test_both"), name, ways[k]), 0);
         assert_ok(masu_image_load_png(name, &images[k], error, sizeof error));
         if (k == 1) assert_non_null(strstr(cli_err, "masu: still: "));
     }
@@ -342,8 +354,10 @@ static void sequences_are_numbered_files_and_video(void **state) {
     const char *scene = scene_path("test_live"), *town = scene_path("test_town");
     char name[256], error[ERROR_SIZE];
     struct masu_image image, other;
-    assert_int_equal(cli_run("render %s --video %s/v.y4m -o %s/v#.png --frames 3 --time-step 0.04 --size 16x12",
-                             scene, scratch, scratch), 0);
+    assert_int_equal(
+        cli_run("render %s --video %s/v.y4m -o %s/v#.png --frames 3 --time-step 0.04 --size 16x12",
+                scene, scratch, scratch),
+        0);
     snprintf(name, sizeof name, "%s/v.y4m", scratch);
     FILE *f = fopen(name, "rb");
     assert_non_null(f);
@@ -356,24 +370,31 @@ static void sequences_are_numbered_files_and_video(void **state) {
     assert_ok(masu_image_load_png(name, &image, error, sizeof error));
     const uint8_t *planes = file + count - 3 * W * H;
     for (uint32_t i = 0; i < W * H; i++) { /* BT.709, limited range, back to R and B */
-        double y = (planes[i] - 16) / 219.0, cb = (planes[W * H + i] - 128) / 224.0, cr = (planes[2 * W * H + i] - 128) / 224.0;
+        double y = (planes[i] - 16) / 219.0, cb = (planes[W * H + i] - 128) / 224.0,
+               cr = (planes[2 * W * H + i] - 128) / 224.0;
         assert_true(fabs(255 * (y + 1.5748 * cr) - image.rgba[4 * i]) < 3);
         assert_true(fabs(255 * (y + 1.8556 * cb) - image.rgba[4 * i + 2]) < 3);
     }
     masu_image_free(&image);
     /* The truth of a later frame is that of its moment. */
-    assert_int_equal(cli_run("render %s -o %s/v#.png --truth=2 --frames 2 --time 1 --time-step 0.5 --size 16x12", town, scratch), 0);
-    assert_int_equal(cli_run("render %s -o %s/one.png --truth=2 --time 1.5 --size 16x12", town, scratch), 0);
+    assert_int_equal(
+        cli_run("render %s -o %s/v#.png --truth=2 --frames 2 --time 1 --time-step 0.5 --size 16x12",
+                town, scratch),
+        0);
+    assert_int_equal(
+        cli_run("render %s -o %s/one.png --truth=2 --time 1.5 --size 16x12", town, scratch), 0);
     snprintf(name, sizeof name, "%s/v1.png", scratch);
     assert_ok(masu_image_load_png(name, &image, error, sizeof error));
     snprintf(name, sizeof name, "%s/one.png", scratch);
     assert_ok(masu_image_load_png(name, &other, error, sizeof error));
-    double same = masu_metric_rmse(image.rgba, other.rgba, W, H); /* noise of reflections goes by the frame's number */
+    /* Noise of reflections goes by the frame's number. */
+    double same = masu_metric_rmse(image.rgba, other.rgba, W, H);
     masu_image_free(&image);
     snprintf(name, sizeof name, "%s/v0.png", scratch);
     assert_ok(masu_image_load_png(name, &image, error, sizeof error));
     double apart = masu_metric_rmse(image.rgba, other.rgba, W, H);
-    print_message("  RMSE of 255: the same moment %.2f, half a second before %.2f\n", 255 * same, 255 * apart);
+    print_message("  RMSE of 255: the same moment %.2f, half a second before %.2f\n", 255 * same,
+                  255 * apart);
     assert_true(same < 0.5 * apart);
     masu_image_free(&image);
     masu_image_free(&other);

@@ -49,26 +49,34 @@ static void a_part_of_the_smoke_suite_passes(void **state) {
 static void memory_is_within_its_limits(void **state) {
     (void)state;
     const char *driver = getenv("MASU_TEST_DRIVER");
-    if (driver && strcmp(driver, "system") != 0) return; /* the limits are the worst of all drivers */
+    /* The limits are the worst of all drivers. */
+    if (driver && strcmp(driver, "system") != 0) return;
     int code = conform("--suite suites/smoke.json --case 'memory.*'");
     if (code) fail_msg("exit code %d\n%s%s", code, cli_out, cli_err);
     cli_said(" 0 quality warnings, 0 not supported, 0 resource errors, 0 failed");
 }
 
-/* A golden file of the scene itself passes; another sun fails by the patches; files that are not there are named. */
+/* A golden file of the scene itself passes; another sun fails by the patches; files that are not
+ * there are named. */
 static void cases_are_judged_by_golden_files(void **state) {
     (void)state;
     const char *scene = scene_path("test_both");
-    assert_int_equal(cli_run("render %s -o %s/golden.exr --truth=16 --size 32x24 --quiet", scene, scratch), 0);
-    assert_int_equal(cli_run("render %s -o %s/dim.pfm --truth=16 --sun 60,20 --size 32x24 --quiet", scene, scratch), 0);
-    assert_int_equal(cli_run("render %s -o %s/golden.png --frame --size 32x24 --quiet", scene, scratch), 0);
-    write_suite("{\"name\": \"good\", \"error\": {\"against\": \"reference\", \"golden\": \"golden.exr\","
-                " \"positions\": 16, \"mean_off\": 0.008, \"patch_p95\": 0.08}},"
-                "{\"name\": \"image\", \"error\": {\"against\": \"reference\", \"golden\": \"golden.png\", \"pixels\": 0}}");
+    assert_int_equal(
+        cli_run("render %s -o %s/golden.exr --truth=16 --size 32x24 --quiet", scene, scratch), 0);
+    assert_int_equal(cli_run("render %s -o %s/dim.pfm --truth=16 --sun 60,20 --size 32x24 --quiet",
+                             scene, scratch),
+                     0);
+    assert_int_equal(
+        cli_run("render %s -o %s/golden.png --frame --size 32x24 --quiet", scene, scratch), 0);
+    write_suite(
+        "{\"name\": \"good\", \"error\": {\"against\": \"reference\", \"golden\": \"golden.exr\","
+        " \"positions\": 16, \"mean_off\": 0.008, \"patch_p95\": 0.08}},"
+        "{\"name\": \"image\", \"error\": {\"against\": \"reference\", \"golden\": \"golden.png\", \"pixels\": 0}}");
     if (planted("")) fail_msg("%s%s", cli_out, cli_err);
-    write_suite("{\"name\": \"dim\", \"error\": {\"against\": \"reference\", \"golden\": \"dim.pfm\","
-                " \"positions\": 16, \"mean_off\": 0.008, \"patch_p95\": 0.08, \"patch_z2\": 2}},"
-                "{\"name\": \"none\", \"error\": {\"against\": \"reference\", \"golden\": \"none.ref\", \"mean_off\": 1}}");
+    write_suite(
+        "{\"name\": \"dim\", \"error\": {\"against\": \"reference\", \"golden\": \"dim.pfm\","
+        " \"positions\": 16, \"mean_off\": 0.008, \"patch_p95\": 0.08, \"patch_z2\": 2}},"
+        "{\"name\": \"none\", \"error\": {\"against\": \"reference\", \"golden\": \"none.ref\", \"mean_off\": 1}}");
     assert_int_equal(planted(""), 1);
     cli_said("mean_off is 0.");
     cli_said("patch_p95 is 0.");
@@ -80,14 +88,17 @@ static void cases_are_judged_by_golden_files(void **state) {
 static void a_run_that_is_killed_leaves_complete_reports(void **state) {
     (void)state;
     char text[8192];
-    write_suite("{\"name\": \"short\"}, {\"name\": \"long\", \"frames\": 100000}, {\"name\": \"never\"}");
-    int code = shell("timeout -s KILL 3 %s/bin/masu conform --scenes %s/scenes --suite %s/suite.json --junit %s/k.xml "
-                     "--csv %s/k.csv --table %s/k.md --images %s/new/images > /dev/null 2>&1; test $? = 137",
-                     build_dir(), made_dir(), scratch, scratch, scratch, scratch, scratch);
+    write_suite(
+        "{\"name\": \"short\"}, {\"name\": \"long\", \"frames\": 100000}, {\"name\": \"never\"}");
+    int code = shell(
+        "timeout -s KILL 3 %s/bin/masu conform --scenes %s/scenes --suite %s/suite.json --junit %s/k.xml "
+        "--csv %s/k.csv --table %s/k.md --images %s/new/images > /dev/null 2>&1; test $? = 137",
+        build_dir(), made_dir(), scratch, scratch, scratch, scratch, scratch);
     assert_int_equal(code, 0);
     take_text("k.xml", text, sizeof text);
     assert_non_null(strstr(text, "tests=\"3\" "));
-    assert_non_null(strstr(text, "message=\"the program ended during this case\" type=\"not run\""));
+    assert_non_null(
+        strstr(text, "message=\"the program ended during this case\" type=\"not run\""));
     assert_non_null(strstr(text, "message=\"the run ended before this case\" type=\"not run\""));
     assert_non_null(strstr(text, "</testsuites>\n"));
     take_text("k.csv", text, sizeof text);

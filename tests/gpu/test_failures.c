@@ -181,8 +181,8 @@ static void what_the_device_lacks_is_named(void **state) {
     wrap_reset();
 }
 
-/* What is asked of a device is what the largest layout has: with as many storage buffers nothing is left out, with one
- * fewer reflections are, and the plan says why. */
+/* What is asked of a device is what the largest layout has: with as many storage buffers nothing is
+ * left out, with one fewer reflections are, and the plan says why. */
 static void storage_buffers_are_counted_as_they_are_bound(void **state) {
     (void)state;
     static const char *const scenes[] = {"test_reflections", "test_reserve", "test_skin"};
@@ -212,7 +212,8 @@ static void storage_buffers_are_counted_as_they_are_bound(void **state) {
         wrap.max_storage_buffers = bound - 1;
         assert_int_equal(masu_plan(&own.desc, &plan, &detail), MASU_OK);
         assert_false(pass_of(&plan, "specular_composite")->active);
-        assert_non_null(strstr(pass_of(&plan, "specular_composite")->why, "too few storage buffers"));
+        assert_non_null(
+            strstr(pass_of(&plan, "specular_composite")->why, "too few storage buffers"));
         /* Occlusion culling needs fewer of them: it stays. */
         assert_int_equal(pass_of(&plan, "cull")->active, culls);
         own.desc.rung_count = 1;
@@ -446,8 +447,8 @@ static void blocks_of_the_host_are_checked(void **state) {
 
 /* ---- Waits ----------------------------------------------------------------------------------- */
 
-/* On a CPU driver, whose work stops with the process, a wait has no limit. On others it has, and nothing that may be in
- * use is destroyed then. */
+/* On a CPU driver, whose work stops with the process, a wait has no limit. On others it has, and
+ * nothing that may be in use is destroyed then. */
 static void a_wait_that_times_out_fails_cleanly(void **state) {
     (void)state;
     masu_detail detail;

@@ -205,21 +205,27 @@ static void the_plan_says_whether_it_is_anchored(void **state) {
     }
 }
 
-/* A ground of 3 km: normals as exact as those of a small ball, where the scene has a floating origin and where it has none.
- * In single precision the difference of two lengths turns them by up to 20 degrees near the camera. */
+/* A ground of 3 km: normals as exact as those of a small ball, where the scene has a floating
+ * origin and where it has none. In single precision the difference of two lengths turns them by up
+ * to 20 degrees near the camera. */
 static void a_large_ball_is_a_smooth_ground(void **state) {
     (void)state;
     static float depths[W * H];
-    const masu_camera c = {.position = {0, 1.7, 0}, .forward = {0, -0.2f, -1}, .fov_y = 0.9f, .near_distance = 0.1f};
-    write_text("ball.sdf", "material m { albedo 0.5; roughness 1 } part ground : m = translate((0, -3000, 0), sphere(3000));\n");
+    const masu_camera c = {
+        .position = {0, 1.7, 0}, .forward = {0, -0.2f, -1}, .fov_y = 0.9f, .near_distance = 0.1f};
+    write_text(
+        "ball.sdf",
+        "material m { albedo 0.5; roughness 1 } part ground : m = translate((0, -3000, 0), sphere(3000));\n");
     for (int anchored = 0; anchored < 2; anchored++) {
         char json[256];
         masu_session s;
         masu_commands commands;
         double worst = 0;
         uint32_t hits = 0;
-        snprintf(json, sizeof json, "{\"camera\": {\"near\": 0.1}, \"sdf\": {\"source\": \"ball.sdf\", \"bounds\": "
-                 "[[-200, -9, -200], [200, 9, 200]], \"max_distance\": 150, \"anchored\": %s}}", anchored ? "true" : "false");
+        snprintf(json, sizeof json,
+                 "{\"camera\": {\"near\": 0.1}, \"sdf\": {\"source\": \"ball.sdf\", \"bounds\": "
+                 "[[-200, -9, -200], [200, 9, 200]], \"max_distance\": 150, \"anchored\": %s}}",
+                 anchored ? "true" : "false");
         bake_scene(anchored ? "ball1" : "ball0", json);
         masu_session_desc d = test_desc(NULL, W, H);
         d.scene_path = baked_scene(anchored ? "ball1" : "ball0");
@@ -233,8 +239,10 @@ static void a_large_ball_is_a_smooth_ground(void **state) {
         for (uint32_t i = 0; i < W * H; i++) {
             if (!(depths[i] > 0)) continue;
             float n[3];
-            double z = (double)depths[i], x = ((i % W + 0.5) / W * 2 - 1) * tan_y * W / H * z, y = (1 - (i / W + 0.5) / H * 2) * tan_y * z;
-            double at[3] = {x, 1.7 + (y - 0.2 * z) / length, -(z + 0.2 * y) / length}, away = 0, size = 0;
+            double z = (double)depths[i], x = ((i % W + 0.5) / W * 2 - 1) * tan_y * W / H * z,
+                   y = (1 - (i / W + 0.5) / H * 2) * tan_y * z;
+            double at[3] = {x, 1.7 + (y - 0.2 * z) / length, -(z + 0.2 * y) / length}, away = 0,
+                   size = 0;
             masu_unpack_normal(normals[i], n);
             at[1] += 3000;
             for (int k = 0; k < 3; k++) size += at[k] * at[k];
@@ -243,7 +251,8 @@ static void a_large_ball_is_a_smooth_ground(void **state) {
             hits++;
         }
         close_session(&s);
-        print_message("  %s: %u hits, normals within %.5f\n", anchored ? "anchored" : "plain", hits, worst);
+        print_message("  %s: %u hits, normals within %.5f\n", anchored ? "anchored" : "plain", hits,
+                      worst);
         assert_true(hits > W * H / 4 && worst < 0.002);
     }
 }

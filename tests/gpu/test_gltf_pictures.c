@@ -94,7 +94,8 @@ static const uint16_t *photograph(masu_session *s, const char *path, shot p, mas
     d.desc.readback = MASU_READBACK_HDR;
     d.desc.picking = 1;
     d.desc.rung_count = 1;
-    if (few_attachments) d.desc.readback |= MASU_READBACK_VELOCITY, d.desc.deny.color_attachments = 4;
+    if (few_attachments)
+        d.desc.readback |= MASU_READBACK_VELOCITY, d.desc.deny.color_attachments = 4;
     open_session(s, &d);
     assert_ok(masu_file_read(baked_scene(name), 1u << 30, &blob, &bytes, error, sizeof error));
     assert_int_equal(masu_scene_bind(blob, bytes, &scene, &detail), MASU_OK);
@@ -227,7 +228,8 @@ static void emission_is_added(void **state) {
     f.look[4] = 4, f.look[5] = 2, f.look[6] = 0.1;
     compare(quad_of(strong), ahead, &f, 1, 0);
     compare(quad_of(strong), ahead, &f, 1, 0.001);
-    const char *bright = CLAY ",\"emissiveFactor\":[1,0.5,0.025],\"extensions\":{\"KHR_materials_emissive_strength\":{\"emissiveStrength\":4000}}";
+    const char *bright = CLAY
+        ",\"emissiveFactor\":[1,0.5,0.025],\"extensions\":{\"KHR_materials_emissive_strength\":{\"emissiveStrength\":4000}}";
     f.look[4] = 4000, f.look[5] = 2000, f.look[6] = 100;
     compare(quad_of(bright), ahead, &f, 1, 0.001);
 }
@@ -238,8 +240,12 @@ static void emission_needs_no_fifth_attachment(void **state) {
     face f = flat(0, 0, 0, 2, 1, 0.5, 0.4, 0.3, 0.75);
     f.look[4] = 4, f.look[5] = 2, f.look[6] = 0.1;
     few_attachments = true;
-    compare(quad_of(CLAY ",\"emissiveFactor\":[1,0.5,0.025],\"extensions\":{\"KHR_materials_emissive_strength\":{\"emissiveStrength\":4},"
-                    "\"KHR_materials_specular\":{\"specularFactor\":0.99}}"), ahead, &f, 1, 0.08);
+    compare(
+        quad_of(
+            CLAY
+            ",\"emissiveFactor\":[1,0.5,0.025],\"extensions\":{\"KHR_materials_emissive_strength\":{\"emissiveStrength\":4},"
+            "\"KHR_materials_specular\":{\"specularFactor\":0.99}}"),
+        ahead, &f, 1, 0.08);
     few_attachments = false;
 }
 
@@ -304,7 +310,9 @@ static void weak_maps_of_emission_shine(void **state) {
     quarter(f);
     for (int i = 0; i < 4; i++)
         for (int c = 0; c < 3; c++) f[i].look[4 + c] = linear(colors[i][c]);
-    compare(mapped("glow.png", CLAY ",\"emissiveFactor\":[1,1,1],\"emissiveTexture\":{\"index\":0,\"texCoord\":1}"), ahead, f, 4, 0.001);
+    compare(mapped("glow.png", CLAY
+                   ",\"emissiveFactor\":[1,1,1],\"emissiveTexture\":{\"index\":0,\"texCoord\":1}"),
+            ahead, f, 4, 0.001);
 }
 
 /* ---- Coats and glass ------------------------------------------------------------------------- */

@@ -1,5 +1,6 @@
-/* test_governor_host.c: what a host asks of the governor of a renderer between frames: settings, excluded
- * frames, times, a state kept over masu_destroy and masu_init. Times that decide are given by the test. */
+/* test_governor_host.c: what a host asks of the governor of a renderer between frames: settings,
+ * excluded frames, times, a state kept over masu_destroy and masu_init. Times that decide are given
+ * by the test. */
 #include "renderer.h"
 #include "support/support.h"
 

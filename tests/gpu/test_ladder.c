@@ -135,7 +135,8 @@ static void a_rung_is_the_picture_of_that_rung_given_by_hand(void **state) {
             d.desc.rung_count = 1;
             d.desc.rungs[0] = own.rungs[r];
             open_session(&s, &d);
-            for (uint32_t k = 0; k <= r; k++) draw_all(&s, 1, given); /* temporal jitter goes by the frame's number */
+            /* Temporal jitter goes by the frame's number. */
+            for (uint32_t k = 0; k <= r; k++) draw_all(&s, 1, given);
             close_session(&s);
             assert_int_equal(max_difference(baked + r * BYTES, given, BYTES), 0);
         }

@@ -24,7 +24,8 @@ static masu_session s;
 
 /* ---- Scenes ---------------------------------------------------------------------------------- */
 
-/* NAME.json, of scenes/ or of tests/scenes/, with more members of its "sdf", instead of what turns them off. */
+/* NAME.json, of scenes/ or of tests/scenes/, with more members of its "sdf", instead of what turns
+ * them off. */
 static void bake_with(const char *name, const char *options) {
     static char json[1 << 15];
     char path[256], root[1024];
@@ -32,7 +33,8 @@ static void bake_with(const char *name, const char *options) {
     snprintf(path, sizeof path, "%s/%s.json", folder, name);
     if (access(path, R_OK)) snprintf(path, sizeof path, "%s/%s.json", folder = "tests/scenes", name);
     char *text = read_file(path, NULL);
-    static const char before[] = "\"source\": \"", off[] = "\"shadows\": false, \"ambient_occlusion\": false";
+    static const char before[] = "\"source\": \"",
+                      off[] = "\"shadows\": false, \"ambient_occlusion\": false";
     char *source = strstr(text, before), *last = strstr(source, off);
     assert_non_null(source);
     assert_non_null(last);
@@ -133,7 +135,8 @@ static const struct {
               {"city", 0.27, 0.05, 0.9, 0.05, 0.4, LONG_RUN},        {"city", 2, 0.03, 0.3, 0.05, 0.4, EVERYWHERE},
               {"blobs", 0.27, 0.03, 0.5, 0.06, 0.4, LONG_RUN},   {"blobs", 2, 0.03, 0.3, 0.06, 0.4, LONG_RUN},
               {"tunnel", 0.27, 0.02, 0.3, 0.05, 0.4, EVERYWHERE},
-              /* So many parts that each block of pixels lists a few of them: one that is missing in a list is an error here. */
+              /* So many parts that each block of pixels lists a few of them: one that is missing in
+               * a list is an error here. */
               {"parts300", 1, 0.03, 0.3, 0.06, 0.4, EVERYWHERE}};
 
 static void the_error_against_the_truth_is_as_stated(void **state) {
@@ -150,8 +153,8 @@ static void the_error_against_the_truth_is_as_stated(void **state) {
         bake_with(name, options);
         if (shell("test -e %s/%s.so || { %s/bin/masu-sdfc %s/%s.sdf --c %s/%s.c --quiet && "
                   "%s -std=c11 -O2 -w -shared -fPIC -o %s/%s.so %s/%s.c -lm; }",
-                  scratch, name, build_dir(), strcmp(name, "parts300") ? "scenes" : "tests/scenes", name, scratch, name, cc && *cc ? cc : "cc", scratch, name, scratch,
-                  name))
+                  scratch, name, build_dir(), strcmp(name, "parts300") ? "scenes" : "tests/scenes",
+                  name, scratch, name, cc && *cc ? cc : "cc", scratch, name, scratch, name))
             fail_msg("no truth of %s", name);
         masu_truth truth;
         masu_view view;
@@ -167,7 +170,8 @@ static void the_error_against_the_truth_is_as_stated(void **state) {
         look_at(name, &camera, &view);
         /* Each evaluation of 300 parts takes as long as a hundred of the others. */
         uint32_t stride = strcmp(name, "parts300") ? trials(5, 7, 7) : trials(5, 8, 8);
-        compare(&truth, &view, tan(stated[i].radius * 3.14159265358979 / 180), stride, &sun, &ambient);
+        compare(&truth, &view, tan(stated[i].radius * 3.14159265358979 / 180), stride, &sun,
+                &ambient);
         close_session(&s);
         masu_truth_close(&truth);
         print_message("%-8s %.2f: sun %.3f most %.2f wrong %u of %u, ambient %.3f most %.2f of %u, "

@@ -314,7 +314,8 @@ static void a_copy_that_came_later_is_not_named(void **state) {
     open_reserve(&s, "test_reserve", 2);
     masu_model block = masu_model_find(s.m, "block");
     assert_int_equal(masu_camera_at(s.m, 0, &c), MASU_OK);
-    double length = sqrt((double)(c.forward[0] * c.forward[0] + c.forward[1] * c.forward[1] + c.forward[2] * c.forward[2]));
+    double length = sqrt((double)(c.forward[0] * c.forward[0] + c.forward[1] * c.forward[1] +
+                                  c.forward[2] * c.forward[2]));
     for (uint32_t k = 0; k < 3; k++)
         rows[4 * k + 3] = (float)(c.position[k] + 3 * (double)c.forward[k] / length);
     assert_int_equal(masu_model_add(s.m, block, rows, &copies[0]), MASU_OK);

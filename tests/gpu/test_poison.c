@@ -175,11 +175,12 @@ static uint32_t settle(bool gathers) {
 /* slack: beyond what the picture at rest differs from itself; heals: frames. What gathers over frames may gather anew,
  * as after a cut; all else is what it was in the next frame. */
 static void poison_each(const char *scene, const masu_rung *rung, uint32_t slack, uint32_t heals) {
-    static bool done[MASU_PASS_COUNT][MASU_RESOURCE(MASU_BUFFER_COUNT)]; /* with the scene of reflections */
+    /* With the scene of reflections. */
+    static bool done[MASU_PASS_COUNT][MASU_RESOURCE(MASU_BUFFER_COUNT)];
     const bool reflects = strcmp(scene, "test_reflections") == 0;
     uint32_t cases = 0, longest = 0, pairs = 0;
-    /* Of the words every third; one of them where hundreds of frames follow, and on drivers after the first; LONG=1
-     * takes all. */
+    /* Of the words every third; one of them where hundreds of frames follow, and on drivers after
+     * the first; LONG=1 takes all. */
     uint32_t every = long_run() ? 1 : heals > 64 || !whole_run() ? WORDS : 3;
     open_case(scene, rung);
     heals *= heals > 1 && on_gpu(&s) ? 3 : 1; /* an NVIDIA H200 takes some 16 frames for what others do in 8 */
@@ -192,7 +193,8 @@ static void poison_each(const char *scene, const masu_rung *rung, uint32_t slack
             masu_access access = rp->access[p][a];
             if (!is_read(access.usage) || !is_poisoned(access.image)) continue;
             pairs++;
-            /* With a past they take longest: on drivers after the first, what only that case has. */
+            /* With a past they take longest: on drivers after the first, what only that case
+             * has. */
             if (reflects && done[p][access.image] && !whole_run()) continue;
             done[p][access.image] |= reflects;
             for (uint32_t w = (pairs + a) % every; w < WORDS; w += every) {
@@ -272,10 +274,14 @@ static void inputs_of_lights(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(inputs_of_lists_of_parts),  cmocka_unit_test(inputs_of_temporal_passes),
-        cmocka_unit_test(inputs_of_reflections), cmocka_unit_test(inputs_of_reflections_with_a_past),
-        cmocka_unit_test(inputs_of_upscaling_and_smaa), cmocka_unit_test(inputs_of_shadows_and_occlusion),
-        cmocka_unit_test(inputs_of_the_meter), cmocka_unit_test(inputs_of_lights),
+        cmocka_unit_test(inputs_of_lists_of_parts),
+        cmocka_unit_test(inputs_of_temporal_passes),
+        cmocka_unit_test(inputs_of_reflections),
+        cmocka_unit_test(inputs_of_reflections_with_a_past),
+        cmocka_unit_test(inputs_of_upscaling_and_smaa),
+        cmocka_unit_test(inputs_of_shadows_and_occlusion),
+        cmocka_unit_test(inputs_of_the_meter),
+        cmocka_unit_test(inputs_of_lights),
     };
     return cmocka_run_group_tests_name("poison", tests, NULL, NULL);
 }

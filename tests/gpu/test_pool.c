@@ -77,7 +77,8 @@ static void what_is_known_is_not_made_again(void **state) {
     close_session(&s);
 }
 
-/* A session of test_both without a renderer, whose objects are counted, with the pool. Returns how many live. */
+/* A session of test_both without a renderer, whose objects are counted, with the pool. Returns how
+ * many live. */
 static int64_t open_counted(masu_session *s) {
     masu_session_desc d = desc_of("test_both", W, H, 1);
     wrap_reset();
@@ -89,8 +90,8 @@ static int64_t open_counted(masu_session *s) {
     return wrap.live;
 }
 
-/* A full pool makes room: of what no renderer uses, what has been unused for the longest time goes. If all of it is in
- * use, nothing is added. */
+/* A full pool makes room: of what no renderer uses, what has been unused for the longest time goes.
+ * If all of it is in use, nothing is added. */
 static void a_full_pool_makes_room(void **state) {
     (void)state;
     enum { USED = 10 };

@@ -134,8 +134,9 @@ static void compare(const masu_session_desc *d, const row *r) {
     masu_reference_free(&reference);
     assert_ok(masu_picture_open(&own, POSITIONS, &s, error, sizeof error));
     if (r->animate) animate(r->time);
-    assert_ok(masu_picture_truth(&s, &frame, POSITIONS, r->rays, &(masu_picture_means){.linear = radiance},
-                                 NULL, error, sizeof error));
+    assert_ok(masu_picture_truth(&s, &frame, POSITIONS, r->rays,
+                                 &(masu_picture_means){.linear = radiance}, NULL, error,
+                                 sizeof error));
     close_session(&s);
     masu_patches_of(radiance, NULL, W, H, patches);
     masu_patch_judgement j = masu_patches_judge(reference.patches, patches);

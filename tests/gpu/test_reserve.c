@@ -336,7 +336,8 @@ static void handles_of_what_is_gone_are_refused(void **state) {
     close_session(&s);
 }
 
-/* Every call that takes a handle, with ids that are no object: all refuse them and change nothing. */
+/* Every call that takes a handle, with ids that are no object: all refuse them and change
+ * nothing. */
 static void refuse_everywhere(masu_renderer *m, uint64_t instance, uint64_t model, uint64_t light,
                               uint64_t material) {
     static const float rows[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
@@ -380,7 +381,8 @@ static void refuse_everywhere(masu_renderer *m, uint64_t instance, uint64_t mode
     assert_int_equal(masu_punctual_light_add(m, &carried, &none), MASU_ERROR_ARGUMENT);
 }
 
-/* id 0 and removed ids, with and without a reserve, of which slots are free, taken and taken again. */
+/* id 0 and removed ids, with and without a reserve, of which slots are free, taken and taken
+ * again. */
 static void no_object_is_refused_by_every_call(void **state) {
     (void)state;
     for (uint32_t reserve = 0; reserve < 3; reserve++) {

@@ -259,7 +259,8 @@ static uint64_t setups_of_a_frame(masu_session *s, own_renderer *x, uint32_t run
     return calls;
 }
 
-/* The rung in use is recorded by masu_resize; another by its first frame in each slot, and then no more. */
+/* The rung in use is recorded by masu_resize; another by its first frame in each slot, and then no
+ * more. */
 static void the_rung_in_use_is_recorded_first(void **state) {
     (void)state;
     masu_session s;
@@ -279,8 +280,8 @@ static void the_rung_in_use_is_recorded_first(void **state) {
     close_session(&s);
 }
 
-/* Before a load, between its steps and after it, to more targets and to fewer, larger than what is drawn: the image is
- * that of a renderer made for that size. */
+/* Before a load, between its steps and after it, to more targets and to fewer, larger than what is
+ * drawn: the image is that of a renderer made for that size. */
 static void a_resize_is_allowed_in_any_state(void **state) {
     (void)state;
     enum { SMALL_W = 80, SMALL_H = 44 };
@@ -346,8 +347,8 @@ static void a_resize_is_allowed_in_any_state(void **state) {
     close_session(&s);
 }
 
-/* Each call of masu_resize, and of the frame that records what it has left, fails in turn. Every other call then works or
- * fails; once nothing fails any more, the next frame is right. */
+/* Each call of masu_resize, and of the frame that records what it has left, fails in turn. Every
+ * other call then works or fails; once nothing fails any more, the next frame is right. */
 static void what_fails_half_way_is_made_good(void **state) {
     (void)state;
     masu_session s;

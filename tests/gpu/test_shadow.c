@@ -1,8 +1,8 @@
 /* test_shadow.c: what the shadow map says of each pixel against rays towards the sun through the
  * scene's triangles in double precision: hard shadows by one ray to the sun's middle, the filter by
  * 256 over its disc; no acne, how much light leaks in at the foot of a caster, SDF and polygons
- * together. The figures are printed (docs/design/08-lights-shadows.md). test_shadow_frames.c has what
- * holds from frame to frame. */
+ * together. The figures are printed (docs/design/08-lights-shadows.md). test_shadow_frames.c has
+ * what holds from frame to frame. */
 #include "support/files.h"
 #include "support/floats.h"
 #include "support/shadow.h"
@@ -231,7 +231,8 @@ static void balls_boxes_and_sheets_have_no_acne(void **state) {
     }
 }
 
-/* Up to its terminator a smooth ball is in the sun, whatever its triangles are turned to: no saw-teeth. */
+/* Up to its terminator a smooth ball is in the sun, whatever its triangles are turned to: no
+ * saw-teeth. */
 static void smooth_balls_are_lit_to_their_terminator(void **state) {
     (void)state;
     uint32_t looked = 0, dark = 0;
@@ -257,7 +258,8 @@ static void smooth_balls_are_lit_to_their_terminator(void **state) {
         }
     }
     shadow_close(&t);
-    print_message("  %u of %u pixels of averted triangles of a lit surface are dark\n", dark, looked);
+    print_message("  %u of %u pixels of averted triangles of a lit surface are dark\n", dark,
+                  looked);
     assert_true(looked > 300);
     assert_true(dark * 50 < looked);
 }

@@ -312,7 +312,8 @@ static void another_render_size_keeps_the_history_and_a_cut_does_not(void **stat
     assert_true(errors[0] < 0.8 * errors[2] && errors[1] < 0.8 * errors[2]);
 }
 
-/* Without a history each ray of a rough surface is seen. A firefly: twice as bright as all that the truth has around. */
+/* Without a history each ray of a rough surface is seen. A firefly: twice as bright as all that the
+ * truth has around. */
 static void the_first_frame_has_few_fireflies(void **state) {
     (void)state;
     masu_session_desc d = desc_of("filters");
@@ -323,13 +324,15 @@ static void the_first_frame_has_few_fireflies(void **state) {
     uint32_t fireflies = 0;
     assert_int_equal(masu_camera_at(s.m, 0.8, &camera), MASU_OK);
     for (uint32_t k = 0; k < 16; k++) { /* other rays in each */
-        draw(&s, &(masu_frame_desc){.camera = &camera, .time_step = 1.0f / 60.0f, .cut = 1}, &commands, NULL);
+        draw(&s, &(masu_frame_desc){.camera = &camera, .time_step = 1.0f / 60.0f, .cut = 1},
+             &commands, NULL);
         assert_true(masu_specular_read(&s, picture));
         for (uint32_t p = 0; p < PIXELS; p++) {
             const int x = (int)(p % W), y = (int)(p / W);
             float most = 0.0f;
             if (x < 2 || y < 2 || x > (int)W - 3 || y > (int)H - 3) continue;
-            for (int n = 0; n < 25; n++) most = fmaxf(most, truth[3 * ((y + n / 5 - 2) * (int)W + x + n % 5 - 2)]);
+            for (int n = 0; n < 25; n++)
+                most = fmaxf(most, truth[3 * ((y + n / 5 - 2) * (int)W + x + n % 5 - 2)]);
             fireflies += picture[3 * p] > 2.0f * most;
         }
     }
@@ -441,7 +444,8 @@ static void glide(const char *scene, bool moves, float *rgb) {
     close_session(&s);
 }
 
-/* Neither the floor nor what stands behind the box moves: that its reflection has gone only rays tell. */
+/* Neither the floor nor what stands behind the box moves: that its reflection has gone only rays
+ * tell. */
 static void what_glides_over_a_mirror_leaves_no_trail(void **state) {
     (void)state;
     static const char *const names[] = {"glide_smooth", "glide_rough"};
@@ -452,7 +456,8 @@ static void what_glides_over_a_mirror_leaves_no_trail(void **state) {
         glide(names[k], true, picture);
         for (uint32_t i = PIXELS / 2; i < PIXELS; i++) {
             red += other[3 * i] > 2 * other[3 * i + 1];
-            off += fabsf(picture[3 * i] - other[3 * i]) > 0.04f || fabsf(picture[3 * i + 1] - other[3 * i + 1]) > 0.04f;
+            off += fabsf(picture[3 * i] - other[3 * i]) > 0.04f ||
+                   fabsf(picture[3 * i + 1] - other[3 * i + 1]) > 0.04f;
         }
         printf("%s: %u pixels of the trail, %u of the reflection\n", names[k], off, red);
         assert_true(red > 60);

@@ -264,11 +264,14 @@ static double painted(const masu_decal *d, const double at[3], const float n[3])
     return edge * fmax(0, fmin(1, facing));
 }
 
-/* A decal's share of a surface: colour and metallic so that what it scatters is mixed, and what it scatters and mirrors. */
+/* A decal's share of a surface: colour and metallic so that what it scatters is mixed, and what it
+ * scatters and mirrors. */
 static void cover(const masu_decal *d, double share, double surface[5]) {
     double own = fmax(surface[0], fmax(surface[1], surface[2])) + 1 / 256.0;
-    double other = fmax((double)d->color[0], fmax((double)d->color[1], (double)d->color[2])) + 1 / 256.0;
-    double to = d->metallic < 0 ? surface[4] : (double)d->metallic, before = surface[4] + (to - surface[4]) * share;
+    double other =
+        fmax((double)d->color[0], fmax((double)d->color[1], (double)d->color[2])) + 1 / 256.0;
+    double to = d->metallic < 0 ? surface[4] : (double)d->metallic,
+           before = surface[4] + (to - surface[4]) * share;
     own *= 1 - share, other *= share;
     surface[4] = (own * surface[4] + other * to) / (own + other);
     for (uint32_t c = 0; c < 3; c++)
@@ -314,7 +317,8 @@ static void compare_decals(const masu_decal *decals, uint32_t count, uint32_t to
         assert_int_equal(before.normal[i] & ~(15u << 26), after.normal[i] & ~(15u << 26));
         double metal = (after.normal[i] >> 26 & 15) / 15.0;
         assert_true(fabs(metal - want[4]) <= 0.51 / 15);
-        for (uint32_t c = 0; c < 3; c++) want[c] = fmax(0, fmin(1, want[c] + 0.04 * (metal - want[4])));
+        for (uint32_t c = 0; c < 3; c++)
+            want[c] = fmax(0, fmin(1, want[c] + 0.04 * (metal - want[4])));
         for (uint32_t c = 0; c < 4; c++) {
             double is = after.albedo[4 * i + c] / 255.0, ought = c < 3 ? sqrt(want[c]) : want[c];
             if (fabs(is - ought) > 2.6 / 255) fail_msg("pixel %u, channel %u: %g, not %g", i, c, is, ought);
@@ -375,15 +379,19 @@ static void later_decals_lie_over_earlier_ones(void **state) {
 }
 
 /* sRGB of linear light, 0..255. */
-static double display(double x) { return 255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * pow(fmin(x, 1), 1 / 2.4) - 0.055); }
+static double display(double x) {
+    return 255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * pow(fmin(x, 1), 1 / 2.4) - 0.055);
+}
 
-/* Towards the middle of soft dark paint on polished metal, of what the bare metal shows there the share only falls: a ring is
- * where it rises. */
+/* Towards the middle of soft dark paint on polished metal, of what the bare metal shows there the
+ * share only falls: a ring is where it rises. */
 static void soft_edges_on_metal_have_no_rings(void **state) {
     (void)state;
-    bake_scene("metal_floor", "{\"models\": [{\"mesh\": {\"plane\": {\"size_x\": 40, \"size_z\": 40}}, \"rotate\": [90, 0, 0], "
-                              "\"material\": {\"base_color\": [0.7, 0.7, 0.7], \"roughness\": 0.6, \"metallic\": 0.8}}], "
-                              "\"sun\": {\"azimuth\": 30, \"elevation\": 50, \"intensity\": 2}, \"ambient\": [0.3, 0.35, 0.45]}");
+    bake_scene(
+        "metal_floor",
+        "{\"models\": [{\"mesh\": {\"plane\": {\"size_x\": 40, \"size_z\": 40}}, \"rotate\": [90, 0, 0], "
+        "\"material\": {\"base_color\": [0.7, 0.7, 0.7], \"roughness\": 0.6, \"metallic\": 0.8}}], "
+        "\"sun\": {\"azimuth\": 30, \"elevation\": 50, \"intensity\": 2}, \"ambient\": [0.3, 0.35, 0.45]}");
     masu_session_desc d = room_desc(NULL);
     d.scene_path = baked_scene("metal_floor");
     open_session(&s, &d);
@@ -393,7 +401,12 @@ static void soft_edges_on_metal_have_no_rings(void **state) {
     render((masu_frame_desc){.camera = &camera}, bare);
     for (uint32_t form = 0; form < 4; form++) {
         const float color = colors[form % 2];
-        masu_decal soft = {.rows = {2.2f, 0, 0, 0, 0, 9, 0, 0, 0, 0, 9, 0}, .color = {color, color, color}, .opacity = 0.7f, .edge = 1, .outer = 3.2f, .inner = 3.1f};
+        masu_decal soft = {.rows = {2.2f, 0, 0, 0, 0, 9, 0, 0, 0, 0, 9, 0},
+                           .color = {color, color, color},
+                           .opacity = 0.7f,
+                           .edge = 1,
+                           .outer = 3.2f,
+                           .inner = 3.1f};
         if (form / 2) soft.metallic = -1;
         render((masu_frame_desc){.camera = &camera, .decals = &soft, .decal_count = 1}, picture);
         double least = 1, ring = 0;
@@ -403,7 +416,8 @@ static void soft_edges_on_metal_have_no_rings(void **state) {
             ring = fmax(ring, is - least * was);
             least = fmin(least, is / was);
         }
-        print_message("colour %g, %s: rings of %.2f / 255\n", (double)color, form / 2 ? "metal kept" : "no metal", ring);
+        print_message("colour %g, %s: rings of %.2f / 255\n", (double)color,
+                      form / 2 ? "metal kept" : "no metal", ring);
         rings = fmax(rings, ring);
     }
     close_session(&s);
@@ -446,7 +460,8 @@ static void what_is_painted_shines_no_more(void **state) {
             double middle = (double)picture[4 * (SIDE / 2 * SIDE + SIDE / 2) + k], edge = (double)picture[4 * (SIDE / 2 * SIDE + 2) + k];
             double shines = 2.0 / (1u << k);
             assert_true(fabs(edge - shines) < 0.001 * shines); /* beside it */
-            if (fabs(middle - (1 - 0.5 * half) * shines) > 0.001 * shines) fail_msg("half %d, channel %u: %g of %g", half, k, middle, shines);
+            if (fabs(middle - (1 - 0.5 * half) * shines) > 0.001 * shines)
+                fail_msg("half %d, channel %u: %g of %g", half, k, middle, shines);
         }
     }
     close_session(&s);

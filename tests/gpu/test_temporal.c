@@ -74,7 +74,8 @@ static void find_truth(const char *scene, const float *ball, const masu_light *l
     assert_ok(masu_picture_open(&d, places, &s, error, sizeof error));
     if (ball) move_instance(&s, "ball", ball[0], ball[1], ball[2], 1.0f);
     masu_frame_desc f = {.light = light};
-    assert_ok(masu_picture_truth(&s, &f, places, 1, &(masu_picture_means){.display = truth.rgba}, NULL, error, sizeof error));
+    assert_ok(masu_picture_truth(&s, &f, places, 1, &(masu_picture_means){.display = truth.rgba},
+                                 NULL, error, sizeof error));
     close_session(&s);
 }
 
@@ -176,12 +177,13 @@ static void in_motion_it_is_no_worse(void **state) {
     }
 }
 
-/* A white rod half a pixel wide passes a wall at 1.3 pixels a frame: most frames of half size miss it. Its light in linear steps of
- * display, less the wall's, is its area of pixels, (1 - wall) each. Twelve frames after it has gone,
- * nothing is left. */
+/* A white rod half a pixel wide passes a wall at 1.3 pixels a frame: most frames of half size miss
+ * it. Its light in linear steps of display, less the wall's, is its area of pixels, (1 - wall)
+ * each. Twelve frames after it has gone, nothing is left. */
 static void a_thin_rod_in_motion_keeps_its_light(void **state) {
     (void)state;
-    const double pixel = 2.0 * 10.0 * tan(20.0 * acos(-1.0) / 180.0) / SIZE; /* metres, where the rod is */
+    /* Metres, where the rod is. */
+    const double pixel = 2.0 * 10.0 * tan(20.0 * acos(-1.0) / 180.0) / SIZE;
     for (uint32_t half = 0; half < 2; half++) {
         masu_session s;
         masu_session_desc d = temporal_desc("test_rod", half ? 0.5f : 1.0f);
@@ -194,7 +196,8 @@ static void a_thin_rod_in_motion_keeps_its_light(void **state) {
             frames(&s, 1, (masu_frame_desc){0}, a.rgba);
             for (uint32_t y = 30; y < 66 && k >= 8; y++) {
                 const double wall = linear_of(a.rgba[4 * (SIZE * y + 2)]);
-                for (uint32_t x = 0; x < SIZE; x++) sum += linear_of(a.rgba[4 * (SIZE * y + x)]) - wall;
+                for (uint32_t x = 0; x < SIZE; x++)
+                    sum += linear_of(a.rgba[4 * (SIZE * y + x)]) - wall;
                 expected += 0.5 * (1.0 - wall);
             }
         }
@@ -444,8 +447,9 @@ static void twice_the_size_is_the_same(void **state) {
             }
             print_message("  scale %.3f, resizable %u, halves %u: %u of %d bytes differ, by %u at most\n",
                           (double)ways[k].scale, ways[k].resizable, ways[k].halves, others, BYTES, most);
-            /* Halves are coarser: up to a tenth of a step of what is shown. While the view moves, the history of a thin surface
-             * that the samples miss is kept if it differs by more than a threshold, which a texel or two are at. */
+            /* Halves are coarser: up to a tenth of a step of what is shown. While the view moves,
+             * the history of a thin surface that the samples miss is kept if it differs by more
+             * than a threshold, which a texel or two are at. */
             assert_true(most <= (i ? 1 : 8) && twos <= (i ? 0 : 48));
             assert_true(others < (ways[k].halves ? BYTES / 5 : BYTES / 50));
         }

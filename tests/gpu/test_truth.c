@@ -191,7 +191,8 @@ static void an_edge_is_as_wide_as_it_covers(void **state) {
         plane_of(angles[i], x, y);
         masu_camera camera = rolled(angles[i]);
         masu_frame_desc f = {.camera = &camera};
-        assert_ok(masu_picture_truth(&s, &f, PLACES, 1, &(masu_picture_means){.linear = radiance}, NULL, error, sizeof error));
+        assert_ok(masu_picture_truth(&s, &f, PLACES, 1, &(masu_picture_means){.linear = radiance},
+                                     NULL, error, sizeof error));
         for (uint32_t p = 0; p < PIXELS; p++)
             white = fmax(white, (double)radiance[3 * p + 1]);
         assert_true(white > 0.01);
@@ -217,7 +218,8 @@ static void an_edge_is_as_wide_as_it_covers(void **state) {
     close_session(&s);
 }
 
-/* A surface four times as bright as white: the mean of linear light keeps what the mean of display light has clipped. */
+/* A surface four times as bright as white: the mean of linear light keeps what the mean of display
+ * light has clipped. */
 static void light_beyond_white_is_averaged_before_clipping(void **state) {
     (void)state;
     enum { BRIGHT = 4 };
@@ -227,14 +229,16 @@ static void light_beyond_white_is_averaged_before_clipping(void **state) {
     masu_session_desc d = test_desc("test_truth", SIZE, SIZE);
     d.desc.tone = MASU_TONE_NONE;
     assert_ok(masu_picture_open(&d, PLACES, &s, error, sizeof error));
-    double grid = ldexp(64.0, -(int)s.host.properties.limits.subPixelPrecisionBits), x[3], y[3], white = 0;
+    double grid = ldexp(64.0, -(int)s.host.properties.limits.subPixelPrecisionBits), x[3], y[3],
+           white = 0;
     plane_of(0.12, x, y);
     masu_camera camera = rolled(0.12);
     assert_int_equal(masu_light_of(s.m, &light), MASU_OK);
     masu_frame_desc f = {.camera = &camera, .light = &light};
     const masu_picture_means means = {.linear = radiance, .display = picture};
     for (int pass = 0; pass < 2; pass++) { /* the first finds the surface's radiance */
-        assert_ok(masu_picture_truth(&s, &f, pass ? PLACES : 1, 1, &means, NULL, error, sizeof error));
+        assert_ok(
+            masu_picture_truth(&s, &f, pass ? PLACES : 1, 1, &means, NULL, error, sizeof error));
         if (pass) break;
         for (uint32_t p = 0; p < PIXELS; p++) white = fmax(white, (double)radiance[3 * p + 1]);
         assert_true(white > 0.01);
@@ -268,7 +272,9 @@ static void tone_curves_are_those_of_the_pass(void **state) {
         d.desc.readback = MASU_READBACK_HDR;
         d.desc.rung_count = 1;
         open_session(&s, &d);
-        masu_light light = {.sun_direction = {0, 1, 0}, .sky_zenith = {0.1f, 0.6f, 8}, .sky_horizon = {3, 0.6f, 0.02f}};
+        masu_light light = {.sun_direction = {0, 1, 0},
+                            .sky_zenith = {0.1f, 0.6f, 8},
+                            .sky_horizon = {3, 0.6f, 0.02f}};
         masu_camera camera = {.forward = {0, 0.6f, 1}, .fov_y = 1.2f, .near_distance = 0.1f};
         int steps = 0;
         for (light.exposure = 0.25f; light.exposure < 5.0f; light.exposure *= 4.0f) {
@@ -276,7 +282,8 @@ static void tone_curves_are_those_of_the_pass(void **state) {
             masu_commands commands;
             draw(&s, &f, &commands, picture);
             assert_true(masu_linear_read(s.m, commands.slot, s.desc.output, linear));
-            masu_linear_show(&s, linear, PIXELS, masu_linear_exposure(&s, commands.slot, &light), linear);
+            masu_linear_show(&s, linear, PIXELS, masu_linear_exposure(&s, commands.slot, &light),
+                             linear);
             masu_srgb_encode(linear, PIXELS, shown);
             for (uint32_t p = 0; p < 4 * PIXELS; p++) {
                 int off = abs((int)shown[p] - (int)picture[p]);
@@ -337,8 +344,10 @@ static void a_silhouette_is_as_wide_as_it_covers(int bright) {
                     assert_int_equal(picture[4 * p + 1], plain[4 * p + 1]);
                     continue;
                 }
-                double shown = ((double)masu_srgb_decoded(picture[4 * p + 1]) - dark) / (white - dark);
-                double alone = ((double)masu_srgb_decoded(plain[4 * p + 1]) - dark) / (white - dark);
+                double shown =
+                    ((double)masu_srgb_decoded(picture[4 * p + 1]) - dark) / (white - dark);
+                double alone =
+                    ((double)masu_srgb_decoded(plain[4 * p + 1]) - dark) / (white - dark);
                 double off = (bright ? 1 - shown : shown) - covered;
                 double was = (bright ? 1 - alone : alone) - covered;
                 if (on_rim(p, x)) { /* the side of the edge that it would be known by may lie outside of the picture */
@@ -437,7 +446,8 @@ static void silhouettes_go_towards_the_truth(void **state) {
         masu_frame_desc f = {.time = 0.8, .cut = 1};
         masu_session_desc d = test_desc(scenes[i], SIZE, SIZE);
         assert_ok(masu_picture_open(&d, 16, &s, error, sizeof error));
-        assert_true(masu_picture_truth(&s, &f, 16, 16, &(masu_picture_means){.display = truth}, NULL, error, sizeof error));
+        assert_true(masu_picture_truth(&s, &f, 16, 16, &(masu_picture_means){.display = truth},
+                                       NULL, error, sizeof error));
         close_session(&s);
         d.desc.rung_count = 2;
         d.desc.rungs[0] = (masu_rung){.silhouettes = MASU_ON};

@@ -303,11 +303,19 @@ static void constants_of_floats_come_out_as_the_nearest_byte(void **state) {
     static uint8_t gpu[MOST];
     for (size_t k = 0; k < 4; k++) {
         for (int easu = MASU_EASU_FULL; easu <= MASU_EASU_BILINEAR; easu++) {
-            job j = {20, 20, 37, 41, MASU_ON, MASU_ON, .easu = (masu_easu)easu, .format = VK_FORMAT_R16G16_SFLOAT};
+            job j = {20,
+                     20,
+                     37,
+                     41,
+                     MASU_ON,
+                     MASU_ON,
+                     .easu = (masu_easu)easu,
+                     .format = VK_FORMAT_R16G16_SFLOAT};
             for (size_t i = 0; i < 20 * 20; i++) in[i] = halves[k] * 0x10001u;
             run_gpu(&j, in, 0, gpu);
             for (uint32_t i = 0; i < j.out_w * j.out_h; i++) {
-                if (!(fabs(gpu[4 * i] - 255 * values[k]) <= 0.5 + 1e-6)) fail_msg("%g, easu %d: %d", values[k], easu, gpu[4 * i]);
+                if (!(fabs(gpu[4 * i] - 255 * values[k]) <= 0.5 + 1e-6))
+                    fail_msg("%g, easu %d: %d", values[k], easu, gpu[4 * i]);
                 assert_int_equal(gpu[4 * i + 2], 0);
             }
         }

@@ -135,8 +135,8 @@ static returned returned_over(const model *m, double mu, double over) {
 
 static returned returned_of(const model *m, double mu) { return returned_over(m, mu, mu); }
 
-/* Interreflection between facets: F^2 (1.35 - 0.35 F) E / (1 - F (1 - E)), F being Schlick's average over the
- * hemisphere. */
+/* Interreflection between facets: F^2 (1.35 - 0.35 F) E / (1 - F (1 - E)), F being Schlick's
+ * average over the hemisphere. */
 static double rest_color(double f0, double f90, double lost) {
     double f = f0 * 20 / 21 + f90 / 21;
     return f * f * (1.35 - 0.35 * f) * (1 - lost) / (1 - f * lost);

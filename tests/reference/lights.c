@@ -13,7 +13,8 @@ static double angle_between(const double a[3], const double b[3]) {
     return atan2(sqrt(dot3(c, c)), dot3(a, b));
 }
 
-/* Share of a spot's light at an angle from its axis: KHR_lights_punctual, "Inner and Outer Cone Angles". */
+/* Share of a spot's light at an angle from its axis: KHR_lights_punctual, "Inner and Outer Cone
+ * Angles". */
 static double cone_share(const masu_ref_light *light, double angle) {
     if (light->outer >= PI) return 1.0;
     if (angle >= light->outer) return 0.0;
@@ -33,7 +34,8 @@ int masu_ref_light_reaches(const masu_ref_light *light, const double at[3], doub
         color[k] = 0.0;
     }
     if (!(distance < light->range) || !(distance > 0.0)) return 0;
-    double window = 1.0 - pow(distance / light->range, 4.0); /* KHR_lights_punctual, "Range Property" */
+    /* KHR_lights_punctual, "Range Property". */
+    double window = 1.0 - pow(distance / light->range, 4.0);
     double nearest = fmax(distance, light->radius);
     double share = cone_share(light, angle_between(away, light->axis));
     double strength = window * share / (nearest * nearest);

@@ -5,8 +5,9 @@
  * Monte Carlo. Apart from the shaders in what can be: half vectors are drawn from the distribution of
  * normals itself, not from that of the visible ones, by a plain random generator; Smith's masking is
  * written by its Lambda; rays meet triangles in world space, in a tree of their own
- * (reference/triangles.h); light is that of tools/measure/shade.h. Alike are the formulas that define the
- * surface (shaders/brdf/bsdf.glsl), and where a ray begins: an eighth of the pixel's width off its surface.
+ * (reference/triangles.h); light is that of tools/measure/shade.h. Alike are the formulas that
+ * define the surface (shaders/brdf/bsdf.glsl), and where a ray begins: an eighth of the pixel's
+ * width off its surface.
  *
  * Of scenes without textures and punctual lights, under a sky of two colours: masu_ref_mirror_open refuses
  * others. No shadow map either: the sun arrives everywhere. What leaves after more than one bounce between

@@ -142,7 +142,8 @@ frame 0 key F1          # full
 frame 0 key F1          # off
 frame 0 key Space
 frame 3 screenshot rung0.png
-frame 3 key 3
+frame 3 key PageDown
+frame 3 key PageDown
 frame 5 screenshot rung2.png
 frame 5 key F2
 frame 7 screenshot split.png
@@ -154,7 +155,8 @@ frame 9 button left up
 frame 11 screenshot split_left.png
 frame 11 key F3
 frame 14 screenshot map.png
-frame 14 key 1
+frame 14 key 2
+frame 14 key PageUp
 frame 18 screenshot map_none.png
 frame 18 key F3
 frame 18 key Tab        # knobs; scale is the first

@@ -109,7 +109,8 @@ static const masu_blob_material mapped[] = {
      .roughness = 0.4f,
      .metallic = 0.9f,
      .name = NAME_STEEL,
-     .flags = 7 | MASU_MATERIAL_HAS_METAL | MASU_MATERIAL_IS_MASK | 128 << MASU_MATERIAL_CUTOFF_SHIFT,
+     .flags =
+         7 | MASU_MATERIAL_HAS_METAL | MASU_MATERIAL_IS_MASK | 128 << MASU_MATERIAL_CUTOFF_SHIFT,
      .layers = 1,
      .specular = 0.5f,
      .opacity = 1.0f,
@@ -269,7 +270,8 @@ static void add(support_blob *blob, enum masu_blob_kind kind, const void *data, 
 #define ADD(kind, array) add(blob, kind, array, sizeof *(array), COUNT(array))
 
 static int is_code(uint32_t kind) {
-    return kind == MASU_BLOB_MARCH_SPIRV || (kind >= MASU_BLOB_CLASSIFY_SPIRV && kind <= MASU_BLOB_CHECKERBOARD_SPIRV) ||
+    return kind == MASU_BLOB_MARCH_SPIRV ||
+           (kind >= MASU_BLOB_CLASSIFY_SPIRV && kind <= MASU_BLOB_CHECKERBOARD_SPIRV) ||
            (kind >= MASU_BLOB_UPDATE_PREVIOUS_SPIRV && kind <= MASU_BLOB_OCCLUSION_SPIRV) ||
            kind == MASU_BLOB_TRACE_SDF_SPIRV || kind == MASU_BLOB_SILHOUETTES_SPIRV;
 }

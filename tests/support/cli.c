@@ -20,8 +20,8 @@ void take_text(const char *name, char *text, size_t size) {
 int cli_run_list(const char *command, const char *format, va_list list) {
     char arguments[2048];
     assert_true(vsnprintf(arguments, sizeof arguments, format, list) < (int)sizeof arguments);
-    int code = shell("%s/bin/%s %s %s >%s/out 2>%s/err </dev/null", build_dir(), cli_program, command,
-                     arguments, scratch, scratch);
+    int code = shell("%s/bin/%s %s %s >%s/out 2>%s/err </dev/null", build_dir(), cli_program,
+                     command, arguments, scratch, scratch);
     take_text("out", cli_out, sizeof cli_out);
     take_text("err", cli_err, sizeof cli_err);
     return code;

@@ -154,8 +154,8 @@ void bake_scene(const char *name, const char *json) {
         snprintf(kept, sizeof kept, "%s/%016llx.masu", folder, (unsigned long long)hash_of_inputs(name));
         if (access(kept, R_OK) == 0 && shell("cp %s %s/%s.masu", kept, scratch, name) == 0) return;
     }
-    if (shell("%s/bin/masu-bake %s/%s -o %s/%s.masu --bare --quiet", build_dir(), scratch, file, scratch,
-              name))
+    if (shell("%s/bin/masu-bake %s/%s -o %s/%s.masu --bare --quiet", build_dir(), scratch, file,
+              scratch, name))
         fail_msg("%s cannot be baked", file);
     /* Whole or not at all: another driver's run may look for it now. */
     if (*kept)

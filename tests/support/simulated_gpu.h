@@ -1,6 +1,7 @@
-/* simulated_gpu.h: simulated GPUs and scenes, on which a controller of resolution is run. Deterministic: a model, a
- * controller and a seed give the same frames with every compiler. The governor's tests use them, and so does
- * `masu-lab simulate`, which has other engines' controllers and recorded traces (lab/simulate).
+/* simulated_gpu.h: simulated GPUs and scenes, on which a controller of resolution is run.
+ * Deterministic: a model, a controller and a seed give the same frames with every compiler. The
+ * governor's tests use them, and so does `masu-lab simulate`, which has other engines' controllers
+ * and recorded traces (lab/simulate).
  *
  *   true ms = clock(f) * (fixed + load(f) * s^exponent) * (1 + noise * (u - 0.5))
  *
@@ -36,7 +37,8 @@ typedef enum sim_lie {
     SIM_GARBAGE /* any of these, and any bits */
 } sim_lie;
 
-/* Times of a recorded scene: a row per frame, a column per scale (lab/simulate/trace.h reads one). */
+/* Times of a recorded scene: a row per frame, a column per scale (lab/simulate/trace.h reads
+ * one). */
 typedef struct sim_trace {
     char name[64];
     uint32_t frames, columns;
@@ -133,8 +135,8 @@ sim_result sim_run(const sim_model *p, const sim_controller *controller, uint64_
                        sim_frame *frames, sim_state *state);
 /* The mean of runs with the seeds 1 to `seeds`: frames over the budget, changes of rung, and of the
  * result only mean_scale; `invalid` is the sum. */
-sim_result sim_mean(const sim_model *p, const sim_controller *controller, uint32_t seeds, double *over,
-                    double *changes);
+sim_result sim_mean(const sim_model *p, const sim_controller *controller, uint32_t seeds,
+                    double *over, double *changes);
 double sim_budget(const sim_model *p);
 /* The ladder of a model; returns how many rungs. */
 uint32_t sim_ladder(const sim_model *p, masu_governor_rung out[SIM_RUNGS]);

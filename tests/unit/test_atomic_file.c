@@ -1,6 +1,7 @@
 /*
- * test_atomic_file.c: drafts of files (platform/atomic_file.h) and folders for scratch (bake/base/file.h): what a maker that is killed
- * leaves is gone when the next one comes; what a running one holds stays.
+ * test_atomic_file.c: drafts of files (platform/atomic_file.h) and folders for scratch
+ * (bake/base/file.h): what a maker that is killed leaves is gone when the next one comes; what a
+ * running one holds stays.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -82,7 +83,9 @@ static void end(maker m, int number) {
 
 static void write_a_draft(int wait) {
     masu_atomic_file draft;
-    if (masu_atomic_file_open(&draft, in_scratch("x.png")) || masu_atomic_file_write(&draft, "old", 3)) _exit(1);
+    if (masu_atomic_file_open(&draft, in_scratch("x.png")) ||
+        masu_atomic_file_write(&draft, "old", 3))
+        _exit(1);
     begun_and_told(wait);
     _exit(masu_atomic_file_commit(&draft, in_scratch("x.png")) != 0);
 }
@@ -171,7 +174,8 @@ static void statuses_are_words(void **state) {
     snprintf(expected, sizeof expected, "ended by signal %d (SIGSEGV)", SIGSEGV);
     assert_string_equal(masu_cli_status(status), expected);
     assert_string_equal(masu_cli_status(system("exit 3")), "exit code 3");
-    assert_string_equal(masu_cli_status(system("exit 139")), "exit code 139, which stands for signal 11 (SIGSEGV)");
+    assert_string_equal(masu_cli_status(system("exit 139")),
+                        "exit code 139, which stands for signal 11 (SIGSEGV)");
     assert_string_equal(masu_cli_signal(SIGTERM), "signal 15 (SIGTERM)");
 }
 
@@ -220,14 +224,19 @@ static void the_folder_of_a_killed_maker_is_removed_by_the_next_and_no_other(voi
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(the_draft_of_a_killed_maker_is_removed_by_the_next, make_scratch, remove_scratch),
-        cmocka_unit_test_setup_teardown(a_maker_that_is_ended_takes_its_draft_along, make_scratch, remove_scratch),
-        cmocka_unit_test_setup_teardown(a_file_beyond_the_limit_is_an_error_and_leaves_nothing, make_scratch, remove_scratch),
-        cmocka_unit_test_setup_teardown(statuses_are_words, make_scratch, remove_scratch),
-        cmocka_unit_test_setup_teardown(the_draft_of_a_running_maker_stays, make_scratch, remove_scratch),
-        cmocka_unit_test_setup_teardown(what_is_no_draft_stays, make_scratch, remove_scratch),
-        cmocka_unit_test_setup_teardown(the_folder_of_a_killed_maker_is_removed_by_the_next_and_no_other, make_scratch,
+        cmocka_unit_test_setup_teardown(the_draft_of_a_killed_maker_is_removed_by_the_next,
+                                        make_scratch, remove_scratch),
+        cmocka_unit_test_setup_teardown(a_maker_that_is_ended_takes_its_draft_along, make_scratch,
                                         remove_scratch),
+        cmocka_unit_test_setup_teardown(a_file_beyond_the_limit_is_an_error_and_leaves_nothing,
+                                        make_scratch, remove_scratch),
+        cmocka_unit_test_setup_teardown(statuses_are_words, make_scratch, remove_scratch),
+        cmocka_unit_test_setup_teardown(the_draft_of_a_running_maker_stays, make_scratch,
+                                        remove_scratch),
+        cmocka_unit_test_setup_teardown(what_is_no_draft_stays, make_scratch, remove_scratch),
+        cmocka_unit_test_setup_teardown(
+            the_folder_of_a_killed_maker_is_removed_by_the_next_and_no_other, make_scratch,
+            remove_scratch),
     };
     return cmocka_run_group_tests_name("draft", tests, NULL, NULL);
 }

@@ -155,7 +155,8 @@ static void hardly_better_is_no_reason_to_take_longer(void **state) {
     }
 }
 
-/* With several costs: what is left is dominated by nothing in any column, and what went is in one. */
+/* With several costs: what is left is dominated by nothing in any column, and what went is in
+ * one. */
 static void what_another_dominates_by_any_cost_is_excluded(void **state) {
     (void)state;
     enum { COLUMNS = 3 };
@@ -165,9 +166,11 @@ static void what_another_dominates_by_any_cost_is_excluded(void **state) {
     for (uint64_t seed = 1; seed <= CLOUDS; seed++) {
         uint64_t r = seed;
         uint32_t n = cloud(seed, p);
-        for (uint32_t i = 0; i < n; i++) { /* alike in all columns, so that some are on all fronts */
+        /* Alike in all columns, so that some are on all fronts. */
+        for (uint32_t i = 0; i < n; i++) {
             for (uint32_t c = 0; c < COLUMNS; c++)
-                costs[i * COLUMNS + c] = 2.0 - p[i].error + 0.2 * (double)support_random_in(&r, 0, 100) / 100;
+                costs[i * COLUMNS + c] =
+                    2.0 - p[i].error + 0.2 * (double)support_random_in(&r, 0, 100) / 100;
             if (support_random_in(&r, 0, 30) == 0) costs[i * COLUMNS + 1] = 0.0;
         }
         memcpy(left, p, sizeof p);
@@ -177,12 +180,15 @@ static void what_another_dominates_by_any_cost_is_excluded(void **state) {
             for (uint32_t k = 0; k < n; k++) {
                 if (!usable(p[k]) || !(costs[k * COLUMNS + 1] > 0.0)) continue;
                 for (uint32_t c = 0; c < COLUMNS; c++) {
-                    dominated |= costs[k * COLUMNS + c] <= costs[i * COLUMNS + c] && p[k].error <= p[i].error &&
-                                 (costs[k * COLUMNS + c] < costs[i * COLUMNS + c] || p[k].error < p[i].error);
+                    dominated |= costs[k * COLUMNS + c] <= costs[i * COLUMNS + c] &&
+                                 p[k].error <= p[i].error &&
+                                 (costs[k * COLUMNS + c] < costs[i * COLUMNS + c] ||
+                                  p[k].error < p[i].error);
                 }
             }
             assert_int_equal(usable(left[i]), whole && !dominated);
-            if (usable(left[i])) assert_true(!(left[i].time < p[i].time) && !(left[i].time > p[i].time));
+            if (usable(left[i]))
+                assert_true(!(left[i].time < p[i].time) && !(left[i].time > p[i].time));
             gone += whole && dominated;
             stay += whole && !dominated;
         }

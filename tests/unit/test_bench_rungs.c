@@ -1,5 +1,6 @@
-/* test_bench_rungs.c: which settings of a folder of `masu bench` become rungs, from pictures and costs
- * that are made here: no rung is a jump from the one before, and none is dominated on a class of GPUs. */
+/* test_bench_rungs.c: which settings of a folder of `masu bench` become rungs, from pictures and
+ * costs that are made here: no rung is a jump from the one before, and none is dominated on a class
+ * of GPUs. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -406,7 +406,8 @@ static void a_bad_light_is_named(void **state) {
     BAD_LIGHT("light.turbidity", l.turbidity = 2.0f); /* the scene has no such sky */
 }
 
-/* An environment map is the sky and the ambient light: black, and what masu_light_of says, change nothing. */
+/* An environment map is the sky and the ambient light: black, and what masu_light_of says, change
+ * nothing. */
 static void a_light_that_an_environment_map_replaces_is_named(void **state) {
     (void)state;
     make_renderer(SUPPORT_ALL, 0);
@@ -414,7 +415,8 @@ static void a_light_that_an_environment_map_replaces_is_named(void **state) {
     for (uint32_t i = 0; i < 3; i++) {
         masu_light l = good_light();
         float *colors[] = {l.ambient, l.sky_zenith, l.sky_horizon};
-        static const char *const names[] = {"light.ambient", "light.sky_zenith", "light.sky_horizon"};
+        static const char *const names[] = {"light.ambient", "light.sky_zenith",
+                                            "light.sky_horizon"};
         for (uint32_t k = 0; k < 3; k++) memset(colors[k], 0, sizeof l.ambient);
         masu_frame_desc f = {.light = &l};
         assert_int_equal(write_frame(&f, 0, &detail), MASU_OK);

@@ -224,12 +224,13 @@ static void a_resource_that_the_pass_does_not_bind_is_refused(void **state) {
                 march->count = count + MASU_MODULE_RECORD_WORDS;
                 memcpy(blob.bytes + blob.size, words, 4 * march->count);
                 blob.size += 4 * march->count;
-                int known = set == 0 ? binding == MASU_BIND_FRAME                                                ? class == MASU_MODULE_UNIFORMS
-                                       : binding == MASU_BIND_SLOTS || binding == MASU_BIND_TILES ||
+                int known = set == 0   ? binding == MASU_BIND_FRAME ? class == MASU_MODULE_UNIFORMS
+                                         : binding == MASU_BIND_SLOTS || binding == MASU_BIND_TILES ||
                                                binding == MASU_BIND_COUNTERS
-                                           ? class == MASU_MODULE_STORAGE
-                                           : 0
-                            : set == 1 ? binding == 0 ? class == MASU_MODULE_SAMPLED : binding <= 4 && class == MASU_MODULE_IMAGE
+                                             ? class == MASU_MODULE_STORAGE
+                                             : 0
+                            : set == 1 ? binding == 0 ? class == MASU_MODULE_SAMPLED
+                                                      : binding <= 4 && class == MASU_MODULE_IMAGE
                                        : 0;
                 if (known)
                     assert_int_equal(bound(), MASU_OK);

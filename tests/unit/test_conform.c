@@ -132,7 +132,8 @@ static void extreme_input_is_read(void **state) {
         {ONE("\"extreme\": 1"), "extreme: expected an object"},
         {ONE("\"extreme\": {\"more\": 1}"), "extreme.more: unknown key"},
         {ONE("\"extreme\": {\"camera\": {\"fov\": 180}}"), "camera.fov: expected a number"},
-        {ONE("\"extreme\": {\"camera\": {\"position\": [1, 2]}}"), "expected an array of 3 numbers"},
+        {ONE("\"extreme\": {\"camera\": {\"position\": [1, 2]}}"),
+         "expected an array of 3 numbers"},
         {ONE("\"extreme\": {\"camera\": {\"far\": 1}}"), "camera.far: unknown key"},
         {ONE("\"extreme\": {\"light\": {\"moon\": 1}}"), "light.moon: unknown key"},
         {ONE("\"extreme\": {\"material\": {\"gloss\": 1}}"), "material.gloss: unknown key"},
@@ -140,9 +141,12 @@ static void extreme_input_is_read(void **state) {
         {ONE("\"extreme\": {\"cycle\": true}"), "extreme.cycle: expected a ladder"},
         {ONE("\"extreme\": {\"other_camera\": {}}"), "other_camera: expected a 'camera' as well"},
         {ONE("\"field\": {\"lost_pct\": 0}"), "field: expected extreme.camera"},
-        {ONE("\"extreme\": {\"camera\": {}}, \"move\": 1, \"field\": {\"lost_pct\": 0}"), "without 'move'"},
-        {ONE("\"extreme\": {\"cut\": true}, \"governed\": {\"target_ms\": 5}"), "extreme: cannot be combined with 'governed'"},
-        {ONE("\"extreme\": {\"material\": {}}, \"error\": {\"against\": \"truth\", \"flip\": 1}"), "no ground truth"},
+        {ONE("\"extreme\": {\"camera\": {}}, \"move\": 1, \"field\": {\"lost_pct\": 0}"),
+         "without 'move'"},
+        {ONE("\"extreme\": {\"cut\": true}, \"governed\": {\"target_ms\": 5}"),
+         "extreme: cannot be combined with 'governed'"},
+        {ONE("\"extreme\": {\"material\": {}}, \"error\": {\"against\": \"truth\", \"flip\": 1}"),
+         "no ground truth"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) refuses(parse(bad[i][0]), bad[i][1]);
 }
@@ -172,7 +176,8 @@ static void what_is_no_suite_is_refused(void **state) {
     refuses(parse("{\"format\": 1, \"cases\": []}"), "cases: expected an array");
     refuses(parse("{\"format\": 1, \"cases\": {\"a\": 1}}"), "cases: expected an array");
     refuses(parse("{\"format\": 1, \"cases\": [3]}"), "cases[0]: expected an object, found 3");
-    refuses(parse("{\"format\": 1, \"cases\": [{}]}"), "cases[0]': name: expected a non-empty string");
+    refuses(parse("{\"format\": 1, \"cases\": [{}]}"),
+            "cases[0]': name: expected a non-empty string");
     refuses(parse("{\"format\": 1, \"casse\": []}"), "casse: unknown key");
     refuses(parse("{\"format\": 1, \"format\": 1, \"cases\": []}"), "duplicate");
     refuses(parse("{\"format\": 1, \"defaults\": {\"frames\": 0}, \"cases\": []}"),
@@ -185,8 +190,7 @@ static void a_bad_case_is_named_with_its_key(void **state) {
     static const char *const bad[][2] = {
         {"\"scale\": 1", "case 'one': scale: unknown key"},
         {"\"rung\": {\"scael\": 1}", "case 'one': rung.scael: unknown key"},
-        {"\"rung\": {\"scale\": 1.5}",
-         "rung.scale: expected a number from 0 to 1, found 1.5"},
+        {"\"rung\": {\"scale\": 1.5}", "rung.scale: expected a number from 0 to 1, found 1.5"},
         {"\"rung\": {\"scale\": \"half\"}",
          "rung.scale: expected a number from 0 to 1, found 'half'"},
         {"\"rung\": {\"aa\": \"smaa\"}",
@@ -198,8 +202,7 @@ static void a_bad_case_is_named_with_its_key(void **state) {
         {"\"rung\": {\"shadow_refresh\": [1, 2]}", "expected an array of 4 whole numbers"},
         {"\"rung\": 3", "rung: expected an object, found 3"},
         {"\"frames\": -1", "frames: expected a whole number from 1 to 100000, found -1"},
-        {"\"time\": null",
-         "time: expected a number from -1000000000 to 1000000000, found null"},
+        {"\"time\": null", "time: expected a number from -1000000000 to 1000000000, found null"},
         {"\"validate\": 1", "validate: expected true or false, found 1"},
         {"\"flight\": 4", "flight: expected a whole number from 1 to 3, found 4"},
         {"\"same\": \"again\"", "same: expected an array, found 'again'"},
@@ -210,26 +213,28 @@ static void a_bad_case_is_named_with_its_key(void **state) {
         {"\"at_least\": {\"host_bytes\": 1}", "at_least.host_bytes: unknown key"},
         {"\"budget\": {\"host_bytes\": \"1 MB\"}", "budget.host_bytes: expected a number"},
         {"\"budget\": {\"host_bytes\": {}}", "budget.host_bytes: expected warn, fail, or both"},
-        {"\"budget\": {\"host_bytes\": {\"most\": 1}}",
-         "budget.host_bytes.most: unknown key"},
+        {"\"budget\": {\"host_bytes\": {\"most\": 1}}", "budget.host_bytes.most: unknown key"},
         {"\"budget\": {\"host_bytes\": {\"warn\": 5, \"fail\": 4}}",
          "warn is 5, beyond fail, which is 4"},
         {"\"at_least\": {\"draws\": {\"warn\": 4, \"fail\": 5}}",
          "warn is 4, beyond fail, which is 5"},
-        {"\"error\": {\"flip\": 1}", "error.against: expected 'truth', 'reference' or the name of a case"},
+        {"\"error\": {\"flip\": 1}",
+         "error.against: expected 'truth', 'reference' or the name of a case"},
         {"\"error\": {\"against\": \"truth\"}", "expected a limit with 'against'"},
         {"\"error\": {\"against\": \"reference\", \"mean_off\": 1}", "error.golden: expected"},
-        {"\"error\": {\"against\": \"truth\", \"golden\": \"a.ref\", \"flip\": 1}", "error.golden: expected"},
-        {"\"error\": {\"against\": \"reference\", \"golden\": \"a.jpg\", \"flip\": 1}", ".exr or .png, found 'a.jpg'"},
-        {"\"error\": {\"against\": \"reference\", \"golden\": \"a.ref\", \"flip\": 1}", "flip needs an image of 8 bits"},
+        {"\"error\": {\"against\": \"truth\", \"golden\": \"a.ref\", \"flip\": 1}",
+         "error.golden: expected"},
+        {"\"error\": {\"against\": \"reference\", \"golden\": \"a.jpg\", \"flip\": 1}",
+         ".exr or .png, found 'a.jpg'"},
+        {"\"error\": {\"against\": \"reference\", \"golden\": \"a.ref\", \"flip\": 1}",
+         "flip needs an image of 8 bits"},
         {"\"error\": {\"against\": \"truth\", \"patch_p95\": 1}", "patch_p95 needs a golden file"},
         {"\"error\": {\"against\": \"one\", \"flip\": 1}", "found 'one'"},
         {"\"error\": {\"against\": \"none\", \"flip\": 1}", "found 'none'"},
         {"\"error\": {\"against\": \"truth\", \"psnr\": {\"warn\": 20, \"fail\": 30}}",
          "beyond fail"},
         {"\"error\": {\"against\": \"truth\", \"positions\": 0, \"flip\": 1}", "error.positions"},
-        {"\"governed\": {}",
-         "governed.target_ms: expected a number from 1 to 1000, found nothing"},
+        {"\"governed\": {}", "governed.target_ms: expected a number from 1 to 1000, found nothing"},
         {"\"governed\": {\"target_ms\": 9, \"speed\": 1}", "governed.speed: unknown key"},
         {"\"governed\": {\"target_ms\": 9, \"worst_rung\": 1, \"best_rung\": 2}",
          "governed.worst_rung"},
@@ -526,10 +531,12 @@ static void the_shipped_suites_are_good(void **state) {
     }
 }
 
-/* Out of the table, so that a new knob is not forgotten: every switch and every other choice is set by a case. */
+/* Out of the table, so that a new knob is not forgotten: every switch and every other choice is set
+ * by a case. */
 static void every_choice_is_in_a_suite(void **state) {
     (void)state;
-    static const char *const files[] = {"suites/smoke.json", "suites/full.json", "suites/extreme.json"};
+    static const char *const files[] = {"suites/smoke.json", "suites/full.json",
+                                        "suites/extreme.json"};
     masu_suite suites[3];
     for (int i = 0; i < 3; i++) {
         uint8_t *text;
@@ -545,7 +552,8 @@ static void every_choice_is_in_a_suite(void **state) {
         for (int i = 0; i < 3 && k->words; i++) {
             for (uint32_t c = 0; c < suites[i].count; c++) {
                 const masu_case *of = &suites[i].cases[c];
-                for (uint32_t r = 0; r < of->rung_count; r++) cases += masu_knob_differs(k, &of->rungs[r], &none);
+                for (uint32_t r = 0; r < of->rung_count; r++)
+                    cases += masu_knob_differs(k, &of->rungs[r], &none);
             }
         }
         if (k->words && !cases) fail_msg("no case of a suite sets %s", k->name);
@@ -559,7 +567,8 @@ static void a_case_that_was_not_run_is_an_error(void **state) {
     char *text = NULL;
     size_t bytes = 0;
     masu_conform_result results[2];
-    accepts(parse("{\"format\": 1, \"defaults\": {\"scene\": \"s\", \"size\": [8, 4]}, \"cases\": [{\"name\": \"a\"}, {\"name\": \"b\"}]}"));
+    accepts(parse(
+        "{\"format\": 1, \"defaults\": {\"scene\": \"s\", \"size\": [8, 4]}, \"cases\": [{\"name\": \"a\"}, {\"name\": \"b\"}]}"));
     masu_conform_not_run(&suite.cases[0], "the program ended\nduring this case", &results[0]);
     masu_conform_not_run(&suite.cases[1], "", &results[1]);
     results[1].verdict = MASU_VERDICT_PASS;
@@ -570,9 +579,12 @@ static void a_case_that_was_not_run_is_an_error(void **state) {
     masu_conform_sum(f, results, 2);
     fclose(f);
     assert_non_null(strstr(text, "tests=\"2\" failures=\"0\" errors=\"1\" skipped=\"0\""));
-    assert_non_null(strstr(text, "<error message=\"the program ended during this case\" type=\"not run\"/>"));
+    assert_non_null(
+        strstr(text, "<error message=\"the program ended during this case\" type=\"not run\"/>"));
     assert_non_null(strstr(text, "\"a\",\"s\",8,4,not run,"));
-    assert_non_null(strstr(text, "2 cases: 1 passed, 0 quality warnings, 0 not supported, 0 resource errors, 0 failed, 1 not run"));
+    assert_non_null(strstr(
+        text,
+        "2 cases: 1 passed, 0 quality warnings, 0 not supported, 0 resource errors, 0 failed, 1 not run"));
     free(text);
     masu_suite_free(&suite);
 }

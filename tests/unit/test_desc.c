@@ -408,7 +408,8 @@ static void with_a_governor_many_samples_come_from_one(void **state) {
     (void)state;
     masu_desc d = scene_desc(RASTER | SDF, 640, 360);
     d.rung_count = 7;
-    for (uint32_t r = 0; r < 7; r++) d.rungs[r] = (masu_rung){.scale = r ? 0.5f : 1.0f, .sharpness = 0.5f};
+    for (uint32_t r = 0; r < 7; r++)
+        d.rungs[r] = (masu_rung){.scale = r ? 0.5f : 1.0f, .sharpness = 0.5f};
     d.rungs[0].specular_frames = 24;
     d.rungs[2].upscale = MASU_ON;
     d.rungs[3].easu = MASU_EASU_FAST;
@@ -961,14 +962,17 @@ static void what_would_have_no_effect_is_refused(void **state) {
     assert_refused(&d, MASU_ERROR_ARGUMENT, "source");
 }
 
-/* A number is checked even where nothing makes it matter: without a scene, or without a governor. */
+/* A number is checked even where nothing makes it matter: without a scene, or without a
+ * governor. */
 static void an_unused_number_is_checked_too(void **state) {
     (void)state;
     masu_desc d = source_desc(320, 200);
-    float *const numbers[] = {&d.targets.white, &d.targets.peak,  &d.exposure.brighten, &d.exposure.darken,
-                              &d.exposure.low,  &d.exposure.high, &d.exposure.min,      &d.exposure.max};
-    static const char *const names[] = {"targets.white", "targets.peak",  "exposure.brighten", "exposure.darken",
-                                        "exposure.low",  "exposure.high", "exposure.min",      "exposure.max"};
+    float *const numbers[] = {&d.targets.white,   &d.targets.peak, &d.exposure.brighten,
+                              &d.exposure.darken, &d.exposure.low, &d.exposure.high,
+                              &d.exposure.min,    &d.exposure.max};
+    static const char *const names[] = {"targets.white",   "targets.peak", "exposure.brighten",
+                                        "exposure.darken", "exposure.low", "exposure.high",
+                                        "exposure.min",    "exposure.max"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         *numbers[i] = (float)NAN;
         assert_refused(&d, MASU_ERROR_ARGUMENT, names[i]);

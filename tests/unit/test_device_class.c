@@ -133,8 +133,9 @@ static uint32_t play(const masu_ladder *l, const float *truth, const float *prio
     return over;
 }
 
-/* Of the governor, on a GPU that behaves as computed: what it makes of the mean of the classes, which a GPU of no class
- * has as well, and of the costs of its own. Costs from a CPU driver were wrong for up to 71 frames. */
+/* Of the governor, on a GPU that behaves as computed: what it makes of the mean of the classes,
+ * which a GPU of no class has as well, and of the costs of its own. Costs from a CPU driver were
+ * wrong for up to 71 frames. */
 static void a_first_estimate_misses_a_few_frames_at_most(void **state) {
     (void)state;
     for (uint32_t c = 0; c < MASU_SCENE_CLASSES; c++) {
@@ -153,11 +154,13 @@ static void a_first_estimate_misses_a_few_frames_at_most(void **state) {
             }
         }
         double runs = 4.0 * 5.0 * (l->count - 1);
-        print_message("  %-16s of 600 frames over the target: by the mean of the classes %4.1f, by its own %4.1f; rungs "
-                      "lost a frame: %.3f, %.3f\n",
-                      masu_scene_class_name((masu_scene_class)c), over[0] / runs, over[1] / runs,
-                      lost[0] / runs / 600, lost[1] / runs / 600);
-        for (int way = 0; way < 2; way++) assert_true(over[way] / runs <= 4.0 && lost[way] / runs / 600 <= 0.25);
+        print_message(
+            "  %-16s of 600 frames over the target: by the mean of the classes %4.1f, by its own %4.1f; rungs "
+            "lost a frame: %.3f, %.3f\n",
+            masu_scene_class_name((masu_scene_class)c), over[0] / runs, over[1] / runs,
+            lost[0] / runs / 600, lost[1] / runs / 600);
+        for (int way = 0; way < 2; way++)
+            assert_true(over[way] / runs <= 4.0 && lost[way] / runs / 600 <= 0.25);
     }
 }
 

@@ -1,6 +1,6 @@
-/* test_emission.c: the two texels of surfaces that emit (measure/texel.h, the twin of shaders/shared/pack.glsl), of ray
- * hits and of the G-buffer: how far rounding takes a material, which of them are lit, and that any texels give numbers in
- * range. */
+/* test_emission.c: the two texels of surfaces that emit (measure/texel.h, the twin of
+ * shaders/shared/pack.glsl), of ray hits and of the G-buffer: how far rounding takes a material,
+ * which of them are lit, and that any texels give numbers in range. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -100,7 +100,8 @@ static void any_texels_are_materials(void **state) {
     }
 }
 
-/* Emission costs the G-buffer nothing: base colour and roughness keep 8 bits, metallic 15 of 16 steps. */
+/* Emission costs the G-buffer nothing: base colour and roughness keep 8 bits, metallic 15 of 16
+ * steps. */
 static void the_gbuffer_keeps_the_base_beside_emission(void **state) {
     (void)state;
     for (int i = 0; i < 20000; i++) {

@@ -154,7 +154,8 @@ static void light_on(const masu_bake_panorama *p, double normals[COUNT][3], doub
             const double *n = normals[k];
             double cosine = d[0] * n[0] + d[1] * n[1] + d[2] * n[2];
             if (!(cosine > 0)) continue;
-            for (int c = 0; c < 3; c++) out[k][c] += cosine * solid_angle / PI * (double)p->rgb[3 * i + (uint32_t)c];
+            for (int c = 0; c < 3; c++)
+                out[k][c] += cosine * solid_angle / PI * (double)p->rgb[3 * i + (uint32_t)c];
         }
     }
 }
@@ -229,14 +230,15 @@ static void irradiance_is_that_of_the_picture(void **state) {
     assert_true(error <= 0.35);
 }
 
-/* Wherever it stands: at the zenith and the nadir, across the picture's edge, below the horizon, and with another one
- * beside it, which stays in the picture. */
+/* Wherever it stands: at the zenith and the nadir, across the picture's edge, below the horizon,
+ * and with another one beside it, which stays in the picture. */
 static void a_sun_is_cut_out_of_the_picture(void **state) {
     (void)state;
     static const struct {
         double azimuth, elevation, turn, second, bound;
-    } cases[] = {{40, 35, 0, 0, 0.01},   {0, 90, 0, 0, 0.01},    {10, -89.6, 0, 0, 0.01}, {180, 10, 0, 0, 0.01},
-                 {179.5, 60, 2, 0, 0.01}, {-70, -20, -3, 0, 0.01}, {90, 0.2, 1, 0, 0.01},   {40, 50, 0, 6000, 0.08}};
+    } cases[] = {{40, 35, 0, 0, 0.01},  {0, 90, 0, 0, 0.01},     {10, -89.6, 0, 0, 0.01},
+                 {180, 10, 0, 0, 0.01}, {179.5, 60, 2, 0, 0.01}, {-70, -20, -3, 0, 0.01},
+                 {90, 0.2, 1, 0, 0.01}, {40, 50, 0, 6000, 0.08}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i += whole_run() ? 1 : 3) {
         masu_bake_picture_sun sun;
         double error, off = 0, most = 0;
@@ -248,15 +250,16 @@ static void a_sun_is_cut_out_of_the_picture(void **state) {
         assert_true(cut_and_fit(cases[i].turn, &sun, &error));
         for (int k = 0; k < 3; k++) off += pow(sun.direction[k] - to[k], 2);
         for (uint32_t k = 0; k < WIDE * HIGH * 3; k++) most = fmax(most, (double)pixels[k]);
-        print_message("sun %zu: %.2f degrees off, irradiance %.4f, brightest left %.2f\n", i, sqrt(off) * 180 / PI, error,
-                      most);
+        print_message("sun %zu: %.2f degrees off, irradiance %.4f, brightest left %.2f\n", i,
+                      sqrt(off) * 180 / PI, error, most);
         assert_true(sqrt(off) < 1 * PI / 180); /* a pixel is 1.4 degrees */
         assert_true(error <= cases[i].bound);
         assert_true(cases[i].second > 0 ? most > 5000 : most < 3);
     }
 }
 
-/* Pictures without a sun: black, evenly bright, a source too large or too weak, too few pixels. They are unchanged. */
+/* Pictures without a sun: black, evenly bright, a source too large or too weak, too few pixels.
+ * They are unchanged. */
 static void what_is_no_sun_stays_in_the_picture(void **state) {
     (void)state;
     static const struct {
@@ -284,7 +287,8 @@ static void what_is_no_sun_stays_in_the_picture(void **state) {
             some_normal(i, 12, n);
             masu_bake_irradiance_at(&map, n, got);
             integrate(&p, n, 1, truth);
-            if (!(fabs(got[0] / truth[0] - 1) < 0.15)) fail_msg("%ux%u: %g instead of %g", width, width, got[0], truth[0]);
+            if (!(fabs(got[0] / truth[0] - 1) < 0.15))
+                fail_msg("%ux%u: %g instead of %g", width, width, got[0], truth[0]);
         }
     }
 }
@@ -352,7 +356,8 @@ static void what_no_texel_holds_is_told(void **state) {
     masu_bake_content content = {0};
     masu_cli_hear_warnings(hear, NULL);
     masu_bake_add_environment(&p, 8, &content);
-    if (!strstr(heard, "sun.hdr: 1 of 8 pixels are above 65408: clamped (the largest is 70000)")) fail_msg("heard: %s", heard);
+    if (!strstr(heard, "sun.hdr: 1 of 8 pixels are above 65408: clamped (the largest is 70000)"))
+        fail_msg("heard: %s", heard);
     heard[0] = '\0';
     p.factor = 0.5;
     forget(&content);

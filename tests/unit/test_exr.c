@@ -1,5 +1,6 @@
-/* test_exr.c: OpenEXR files. Floats come back bit for bit, compressed files of other writers are read, damaged ones
- * are refused with one line. tests/scripts/compare.sh exchanges files with ImageMagick. */
+/* test_exr.c: OpenEXR files. Floats come back bit for bit, compressed files of other writers are
+ * read, damaged ones are refused with one line. tests/scripts/compare.sh exchanges files with
+ * ImageMagick. */
 #ifndef _XOPEN_SOURCE
 #define _XOPEN_SOURCE 700
 #endif
@@ -67,7 +68,8 @@ static void add(made *m, const void *bytes, size_t count) {
 }
 
 static void add_number(made *m, uint32_t value) {
-    uint8_t bytes[4] = {(uint8_t)value, (uint8_t)(value >> 8), (uint8_t)(value >> 16), (uint8_t)(value >> 24)};
+    uint8_t bytes[4] = {(uint8_t)value, (uint8_t)(value >> 8), (uint8_t)(value >> 16),
+                        (uint8_t)(value >> 24)};
     add(m, bytes, 4);
 }
 
@@ -117,7 +119,8 @@ static void run_lengths_are_read(void **state) {
     (void)state;
     struct masu_image image;
     made m = run_lengths();
-    if (!masu_image_decode_exr("a.exr", m.bytes, m.count, &image, error, sizeof error)) fail_msg("%s", error);
+    if (!masu_image_decode_exr("a.exr", m.bytes, m.count, &image, error, sizeof error))
+        fail_msg("%s", error);
     assert_int_equal(image.width, 4);
     assert_int_equal(image.channels, 3);
     for (int i = 0; i < 12; i++) assert_true(image.values[i] == 1.0f);
@@ -159,7 +162,8 @@ static void damaged_files_are_refused_or_read(void **state) {
             uint8_t *changed = malloc(m.count);
             memcpy(changed, m.bytes, m.count);
             changed[i] ^= (uint8_t)(1 << bit);
-            if (masu_image_decode_exr("a.exr", changed, m.count, &image, error, sizeof error)) masu_image_free(&image);
+            if (masu_image_decode_exr("a.exr", changed, m.count, &image, error, sizeof error))
+                masu_image_free(&image);
             free(changed);
         }
     }

@@ -90,7 +90,8 @@ static void the_model_fills_the_frame(void **state) {
                     assert_true(gap > 0 && gap < 0.002 * scales[s] * fmax(e[0], fmax(e[1], e[2])));
                     assert_true(all.high.y == bounds.high.y && all.low.x < bounds.low.x);
                 }
-                assert_true(d.look.shadows && d.look.occlusion && d.reflections.wanted && d.look.smooth_edges);
+                assert_true(d.look.shadows && d.look.occlusion && d.reflections.wanted &&
+                            d.look.smooth_edges);
                 assert_true(d.look.shadow_distance > 0 && d.look.occlusion_radius > 0);
                 assert_true(d.look.sun_direction.y > 0.3);
                 masu_bake_description_release(&d);
@@ -100,24 +101,29 @@ static void the_model_fills_the_frame(void **state) {
     }
 }
 
-/* The near plane of a scene that says nothing: a centimetre whatever the scene's size, so that no wall before the
- * camera is cut away; less where the whole scene is small. */
+/* The near plane of a scene that says nothing: a centimetre whatever the scene's size, so that no
+ * wall before the camera is cut away; less where the whole scene is small. */
 static void the_near_plane_is_near(void **state) {
     (void)state;
-    static const double cases[][2] = {{1e5, 0.01}, {100, 0.01}, {1, 0.01}, {0.1, 0.02 * 0.1}, {0.001, 0.02 * 0.001}};
+    static const double cases[][2] = {
+        {1e5, 0.01}, {100, 0.01}, {1, 0.01}, {0.1, 0.02 * 0.1}, {0.001, 0.02 * 0.001}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         double side = cases[i][0] / sqrt(3);
         masu_bake_box bounds = {masu_bake_v3(-side, -side, -side), masu_bake_v3(side, side, side)};
         masu_bake_content content = {0};
         masu_bake_look look = masu_bake_default_look();
         masu_bake_build_look(&look, &bounds, &content);
-        double near = (double)MASU_BAKE_ARRAY(&content, MASU_BLOB_ENVIRONMENT, masu_blob_environment)->near_distance;
-        if (!(fabs(near - cases[i][1]) <= 1e-6 * cases[i][1])) fail_msg("%g for a radius of %g", near, cases[i][0]);
+        double near =
+            (double)MASU_BAKE_ARRAY(&content, MASU_BLOB_ENVIRONMENT, masu_blob_environment)
+                ->near_distance;
+        if (!(fabs(near - cases[i][1]) <= 1e-6 * cases[i][1]))
+            fail_msg("%g for a radius of %g", near, cases[i][0]);
         masu_bake_content_release(&content);
     }
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(the_model_fills_the_frame), cmocka_unit_test(the_near_plane_is_near)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(the_model_fills_the_frame),
+                                       cmocka_unit_test(the_near_plane_is_near)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -433,7 +433,8 @@ static const masu_blob_material *finished(const char *path) {
     return material(0);
 }
 
-/* A map that is left out: an emission that it was meant for is dark; what is unlit has its factor. */
+/* A map that is left out: an emission that it was meant for is dark; what is unlit has its
+ * factor. */
 static void without_its_map_a_material_has_its_factor(void **state) {
     (void)state;
 #define EMISSION(texture) "{\"emissiveFactor\":[1,0.5,0.25],\"emissiveTexture\":{" texture "}"
@@ -488,11 +489,13 @@ static void occlusion_has_a_strength(void **state) {
         finished(finish_quad(attributes, ",\"material\":0", rest));
         assert_string_equal(heard, "");
         assert_int_equal(masu_bake_count(&piece, MASU_BLOB_TEXTURES), 1);
-        assert_int_equal(piece.section[MASU_BLOB_TEXELS].data[0], cases[i].value); /* an end of a block of BC4 */
+        /* An end of a block of BC4. */
+        assert_int_equal(piece.section[MASU_BLOB_TEXELS].data[0], cases[i].value);
     }
 }
 
-/* A texture whose coordinates stay in 0..1 along an axis does not repeat there: its far edge would bleed in. */
+/* A texture whose coordinates stay in 0..1 along an axis does not repeat there: its far edge would
+ * bleed in. */
 static void textures_that_are_shown_once_are_clamped(void **state) {
     (void)state;
     static const struct {
@@ -728,12 +731,14 @@ static void data_uris_of_all_forms(void **state) {
     for (size_t i = 0; i < sizeof heads / sizeof *heads; i++) {
         char uri[512] = "";
         add(uri, sizeof uri, "%s", heads[i]);
-        for (size_t k = 0; i < 3 && k < sizeof corner; k++) { /* letters as they are, everything else in hexadecimal */
+        /* Letters as they are, everything else in hexadecimal. */
+        for (size_t k = 0; i < 3 && k < sizeof corner; k++) {
             unsigned char c = ((const unsigned char *)corner)[k];
             add(uri, sizeof uri, c >= 'A' && c <= 'Z' ? "%c" : k & 1 ? "%%%02x" : "%%%02X", c);
         }
         if (i == 3) add(uri, sizeof uri, "%s", base64);
-        if (i == 4) add(uri, sizeof uri, "%.10s%%41%s", base64, base64 + 11); /* a letter in hexadecimal, too */
+        /* A letter in hexadecimal, too. */
+        if (i == 4) add(uri, sizeof uri, "%.10s%%41%s", base64, base64 + 11);
         if (i == 5) add(uri, sizeof uri, "%.24s\\r\\n%s", base64, base64 + 24);
         import_quietly(triangle_of(uri));
         vertex_at(5, 0, 0, 0);

@@ -1,6 +1,6 @@
-/* test_governor.c: the governor on simulated GPUs (tests/support/simulated_gpu.h): what it promises on each of
- * them, what it does with samples that are none, its modes. Counts of frames and of changes, no
- * times. */
+/* test_governor.c: the governor on simulated GPUs (tests/support/simulated_gpu.h): what it promises
+ * on each of them, what it does with samples that are none, its modes. Counts of frames and of
+ * changes, no times. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -193,7 +193,8 @@ static void spikes_that_come_back_cost_three_falls(void **state) {
     if (sum > runs) fail_msg("%u changes in %u runs", sum, runs);
 }
 
-/* With vertical synchronisation: the best rung whose frames need as few refreshes as the cheapest's. */
+/* With vertical synchronisation: the best rung whose frames need as few refreshes as the
+ * cheapest's. */
 static void vertical_synchronisation_is_reported(void **state) {
     static const struct {
         double load;

@@ -1,5 +1,5 @@
-/* test_handles.c: handles of the public interface: each means one thing; none of another scene, of another kind
- * or of a removed object is accepted. */
+/* test_handles.c: handles of the public interface: each means one thing; none of another scene, of
+ * another kind or of a removed object is accepted. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -56,8 +56,8 @@ static void a_reserve_changes_no_id_of_the_scene(void **state) {
         assert_true(masu_handle_at(&without, i) == masu_handle_at(&with, i));
 }
 
-/* Each object in a slot of the reserve has an id of its own, none of which is accepted once it is removed; nor is 0,
- * where a slot is free. A slot is used 2^31 - 1 times. */
+/* Each object in a slot of the reserve has an id of its own, none of which is accepted once it is
+ * removed; nor is 0, where a slot is free. A slot is used 2^31 - 1 times. */
 static void what_was_removed_is_refused(void **state) {
     (void)state;
     enum { LIVES = 70000 };

@@ -113,9 +113,10 @@ static void on_every_class_of_gpus_a_worse_rung_is_cheaper(void **state) {
             assert_non_null(costs);
             for (uint32_t r = 1; r < l->count; r++) {
                 if (!(costs[r] < costs[r - 1]))
-                    fail_msg("%s on %s: rung %u costs %.4f, rung %u %.4f", masu_scene_class_name((masu_scene_class)c),
-                             masu_device_class_name((masu_device_class)k), r - 1, (double)costs[r - 1], r,
-                             (double)costs[r]);
+                    fail_msg("%s on %s: rung %u costs %.4f, rung %u %.4f",
+                             masu_scene_class_name((masu_scene_class)c),
+                             masu_device_class_name((masu_device_class)k), r - 1,
+                             (double)costs[r - 1], r, (double)costs[r]);
             }
         }
     }
@@ -128,7 +129,8 @@ static void report_of(const masu_ladder *l, const char *file, char out[512]) {
     snprintf(out, 512, "docs/report/%.*s%s%s", (int)n, l->from, *file ? "/" : "", file);
 }
 
-/* Of all that was measured, not of the ladder alone: nothing is nearer and on one of the classes cheaper than a rung. */
+/* Of all that was measured, not of the ladder alone: nothing is nearer and on one of the classes
+ * cheaper than a rung. */
 static void no_setting_dominates_a_rung_on_a_class_of_gpus(void **state) {
     (void)state;
     for (uint32_t c = 0; c < MASU_SCENE_CLASSES; c++) {
@@ -146,7 +148,8 @@ static void no_setting_dominates_a_rung_on_a_class_of_gpus(void **state) {
         if (!rows) fail_msg("%s", error);
         double *costs = calloc(count + 1, sizeof *costs * MASU_COSTS_CLASSES);
         assert_non_null(costs);
-        if (!masu_costs_read(path, rows, count, costs, &there, error, sizeof error)) fail_msg("%s", error);
+        if (!masu_costs_read(path, rows, count, costs, &there, error, sizeof error))
+            fail_msg("%s", error);
         if (!there) fail_msg("%s: no " MASU_COSTS, path);
         for (uint32_t r = 0; r < f.count; r++) {
             const masu_row *rung = masu_rows_find(rows, count, f.settings[r]);
@@ -159,8 +162,8 @@ static void no_setting_dominates_a_rung_on_a_class_of_gpus(void **state) {
                     compared += other > 0.0;
                     if (masu_ladder_dominates((masu_ladder_point){other, masu_row_error(&rows[i])},
                                               (masu_ladder_point){own, masu_row_error(rung)}))
-                        fail_msg("%s: rung %u, %s, is dominated by %s on class %u", path, r, f.settings[r],
-                                 rows[i].setting, k);
+                        fail_msg("%s: rung %u, %s, is dominated by %s on class %u", path, r,
+                                 f.settings[r], rows[i].setting, k);
                 }
             }
         }
@@ -181,7 +184,8 @@ static void no_step_between_rungs_is_a_jump(void **state) {
         if (!masu_ladder_read(path, &f, error, sizeof error)) fail_msg("%s", error);
         for (uint32_t r = 1; r < f.count; r++) {
             if (!(f.steps[r] > 0.0)) fail_msg("%s: rung %u has no step", path, r);
-            if (f.steps[r] > MASU_LADDER_STEP) fail_msg("%s: rung %u changes %.2f of 255", path, r, f.steps[r]);
+            if (f.steps[r] > MASU_LADDER_STEP)
+                fail_msg("%s: rung %u changes %.2f of 255", path, r, f.steps[r]);
         }
     }
 }
@@ -255,12 +259,14 @@ static void the_switch_says_which_rungs(void **state) {
         for (uint32_t r = 0; r < l->count; r++) {
             assert_true(info.rungs[r].ratio == l->ratios[r] && info.rungs[r].flip == l->flips[r]);
         }
-        for (uint32_t k = 0; k < 2; k++) { /* as `temporal` at AUTO: not with several views, or host passes */
+        /* As `temporal` at AUTO: not with several views, or host passes. */
+        for (uint32_t k = 0; k < 2; k++) {
             d.split = k ? MASU_SPLIT_BEFORE_TONE : 0;
             d.viewport_count = k ? 0 : 2;
             is = masu_desc_resolved(&d);
             assert_ladder(&is, l);
-            for (uint32_t r = 0; r < l->count; r++) assert_int_equal(is.rungs[r].temporal, MASU_OFF);
+            for (uint32_t r = 0; r < l->count; r++)
+                assert_int_equal(is.rungs[r].temporal, MASU_OFF);
         }
         d.viewport_count = 0;
         d.split = MASU_SPLIT_AFTER_UPSCALE;
@@ -356,7 +362,8 @@ static void no_rung_drops_a_feature_to_keep(void **state) {
         [MASU_KEEP_ALL] = {0, 3, 4, 4, 4},
     };
     for (uint32_t keep = 0; keep <= MASU_KEEP_ALL; keep++) {
-        for (uint32_t n = 0; n < 5; n++) assert_int_equal(masu_ladder_kept(&made, keep, n), kept[keep][n]);
+        for (uint32_t n = 0; n < 5; n++)
+            assert_int_equal(masu_ladder_kept(&made, keep, n), kept[keep][n]);
     }
     uint32_t omitted = 0;
     for (uint32_t c = 0; c < MASU_SCENE_CLASSES; c++) {
@@ -389,12 +396,16 @@ static void no_rung_drops_a_feature_to_keep(void **state) {
             d.rungs[1].specular = keep == MASU_KEEP_REFLECTIONS ? MASU_OFF : MASU_AUTO;
             masu_detail detail;
             int wrong = keep & MASU_KEEP_OCCLUSION || (keep && c >= 4);
-            assert_int_equal(masu_compile(&d, 256, 64, &plan, &detail), wrong ? MASU_ERROR_ARGUMENT : MASU_OK);
+            assert_int_equal(masu_compile(&d, 256, 64, &plan, &detail),
+                             wrong ? MASU_ERROR_ARGUMENT : MASU_OK);
             if (wrong) assert_string_equal(detail.what, "governor.keep");
-            if (wrong) assert_non_null(strstr(detail.text, keep & MASU_KEEP_OCCLUSION ? "rungs[1].ao" : "rungs[1].specular"));
+            if (wrong)
+                assert_non_null(strstr(
+                    detail.text, keep & MASU_KEEP_OCCLUSION ? "rungs[1].ao" : "rungs[1].specular"));
         }
     }
-    assert_int_equal(omitted, 0); /* reflections all at once are a jump: no built-in ladder drops them */
+    /* Reflections all at once are a jump: no built-in ladder drops them. */
+    assert_int_equal(omitted, 0);
     masu_desc d = scene_desc(RASTER, 640, 360);
     masu_detail detail;
     d.governor.keep = MASU_KEEP_ALL + 1;

@@ -51,7 +51,8 @@ static void names_in_other_case(void **state) {
     leads("m/x.dae", "Maps/A C.png", "m/maps/a c.png");
     leads("m/x.dae", "MAPS\\a%20C.PNG", "m/maps/a c.png");
     leads("m/x.dae", "C:\\Textures\\A B.PNG", "m/a b.png");
-    leads("m/x.dae", "MAPS/D\xC3\x84" "CH\xD0\x96.PNG", "m/maps/d\xC3\xA4" "ch\xD0\xB6.png"); /* beyond ASCII */
+    /* Beyond ASCII. */
+    leads("m/x.dae", "MAPS/D\xC3\x84" "CH\xD0\x96.PNG", "m/maps/d\xC3\xA4" "ch\xD0\xB6.png");
     leads("m/x.dae", "../M/a b.png", "m/a b.png"); /* the last part, in the model's own folder */
     leads("m/x.dae", "Twice.png", "m/TWICE.png");  /* the first of two, in byte order */
     leads("m/x.dae", "twice.png", "m/twice.png");

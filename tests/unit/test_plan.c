@@ -41,11 +41,15 @@ static void compile(const masu_desc *d, masu_frame_plan *plan) {
 
 static const char *usage_text(uint8_t usage) {
     static const char *const texts[] = {
-        [MASU_USE_NONE] = "?",      [MASU_READ] = "r",        [MASU_READ_LINEAR] = "rl",    [MASU_READ_COPY] = "from", [MASU_READ_BACK] = "from",
-        [MASU_WRITE] = "w",         [MASU_UPDATE] = "u",      [MASU_PING_PONG] = "rw",    [MASU_WRITE_COLOR] = "c",
-        [MASU_WRITE_DEPTH] = "d",   [MASU_WRITE_COPY] = "to", [MASU_READ_BUFFER] = "rb",
-        [MASU_WRITE_BUFFER] = "wb", [MASU_UPDATE_DEPTH] = "ud",
-        [MASU_BLEND_COLOR] = "b",   [MASU_UPDATE_COLOR] = "uc", [MASU_READ_STRUCTURE] = "rs", [MASU_WRITE_STRUCTURE] = "ws",
+        [MASU_USE_NONE] = "?",        [MASU_READ] = "r",
+        [MASU_READ_LINEAR] = "rl",    [MASU_READ_COPY] = "from",
+        [MASU_READ_BACK] = "from",    [MASU_WRITE] = "w",
+        [MASU_UPDATE] = "u",          [MASU_PING_PONG] = "rw",
+        [MASU_WRITE_COLOR] = "c",     [MASU_WRITE_DEPTH] = "d",
+        [MASU_WRITE_COPY] = "to",     [MASU_READ_BUFFER] = "rb",
+        [MASU_WRITE_BUFFER] = "wb",   [MASU_UPDATE_DEPTH] = "ud",
+        [MASU_BLEND_COLOR] = "b",     [MASU_UPDATE_COLOR] = "uc",
+        [MASU_READ_STRUCTURE] = "rs", [MASU_WRITE_STRUCTURE] = "ws",
     };
     return texts[usage];
 }
@@ -286,7 +290,8 @@ static void light_probes_cost_only_scenes_that_have_them(void **state) {
     support_scene.probe_sets = 2;
     support_scene.probe_words = 6 * 2 * MASU_PROBE_WORDS;
     assert_frame(&d, 0,
-                 GBUFFER "probes(wb:probes) light(rb:probes r:albedo r:normal r:depth u:hdr) " TONEMAP);
+                 GBUFFER
+                 "probes(wb:probes) light(rb:probes r:albedo r:normal r:depth u:hdr) " TONEMAP);
     assert_string_equal(why_of(&d, MASU_PASS_PROBES), "the scene has light probes");
     compile(&d, &plan);
     assert_true(plan.needs.probes);
@@ -402,7 +407,8 @@ static void twice_the_size_has_a_pass_of_its_own(void **state) {
     assert_string_equal(why_of(&d, MASU_PASS_EASU), "easu_twice runs instead");
     d.debug.exact = 1;
     assert_frame(&d, 0, "easu(r:source w:upscaled) rcas(r:upscaled w:target)");
-    assert_string_equal(why_of(&d, MASU_PASS_EASU_TWICE), "the output does not have twice the render size");
+    assert_string_equal(why_of(&d, MASU_PASS_EASU_TWICE),
+                        "the output does not have twice the render size");
     d.debug.exact = 0;
     d.half_floats = MASU_ON;
     assert_frame(&d, 0, "easu(r:source w:upscaled) rcas(r:upscaled w:target)");
@@ -567,7 +573,8 @@ static void temporal_stands_in_for_anti_aliasing_and_upscaling(void **state) {
     "tonemap(r:hdr w:ldr) temporal_find(r:ldr r:depth rl:velocity r:history_depth rl:history w:found) " pass                \
     "(r:ldr r:found rl:velocity rw:history w:"
     assert_non_null(strstr(frame_text(&plan, 0), FOUND_BY("temporal_twice")));
-    assert_non_null(strstr(frame_text(&plan, 0), "w:target) temporal_keep(r:depth r:found r:velocity w:history_depth)"));
+    assert_non_null(strstr(frame_text(&plan, 0),
+                           "w:target) temporal_keep(r:depth r:found r:velocity w:history_depth)"));
     assert_non_null(strstr(frame_text(&plan, 1), FOUND_BY("temporal")));
     assert_non_null(strstr(frame_text(&plan, 1), " rcas(r:upscaled w:target)"));
     assert_null(strstr(frame_text(&plan, 0), "smaa"));
@@ -695,7 +702,8 @@ static void what_is_blended_comes_over_the_light_if_there_is_any(void **state) {
     masu_desc d = scene_desc(RASTER, 64, 64);
     compile(&d, &without);
     assert_int_equal(without.images[MASU_IMAGE_HDR].usage & VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, 0);
-    assert_string_equal(without.why[MASU_PASS_TRANSPARENTS], "the scene has no transparent materials");
+    assert_string_equal(without.why[MASU_PASS_TRANSPARENTS],
+                        "the scene has no transparent materials");
     d = scene_desc(RASTER, 64, 64);
     support_scene.blends = 2; /* materials that nothing has */
     compile(&d, &with);
@@ -746,7 +754,8 @@ static void what_is_reserved_has_passes_and_nothing_else_has(void **state) {
     }
     d.reserve = (masu_reserve){.decals = 7};
     assert_frame(&d, 0,
-                 GBUFFER MARCH_ON_RASTER "decals(r:scene_depth u:albedo u:normal u:hdr) " LIGHT_SDF TONEMAP);
+                 GBUFFER MARCH_ON_RASTER
+                 "decals(r:scene_depth u:albedo u:normal u:hdr) " LIGHT_SDF TONEMAP);
     compile(&d, &plan);
     assert_int_equal(plan.buffers[MASU_BUFFER_SPRITES].stride, 64 * ((16 * (3 + 7 * 7) + 63) / 64));
     d.reserve = (masu_reserve){.lines = 7};
@@ -897,7 +906,8 @@ static void in_every_frame_the_last_colour_writer_alone_writes_the_target(void *
     }
 }
 
-/* hdr is attached to the G-buffer pass where polygons may emit, unless that takes more attachments than there are. */
+/* hdr is attached to the G-buffer pass where polygons may emit, unless that takes more attachments
+ * than there are. */
 static void emission_goes_into_hdr(void **state) {
     (void)state;
     static masu_frame_plan plan;
@@ -1270,11 +1280,16 @@ static void images_that_are_used_and_those_left_out_are_all_images(void **state)
     uint64_t saved[2], all;
     masu_desc d = source_desc(1000, 500);
     all = image_bytes(d, (masu_rung){.sharpen = MASU_OFF}, &saved[0]) + saved[0];
-    assert_int_equal(image_bytes(d, (masu_rung){.sharpen = MASU_OFF, .aa = MASU_AA_FXAA}, &saved[1]) + saved[1], all);
+    assert_int_equal(
+        image_bytes(d, (masu_rung){.sharpen = MASU_OFF, .aa = MASU_AA_FXAA}, &saved[1]) + saved[1],
+        all);
     assert_int_equal(saved[0] - saved[1], 4 * 1000 * 500); /* smooth */
     d = scene_desc(RASTER | SDF, 100, 100);
     all = image_bytes(d, (masu_rung){.scale = 1}, &saved[0]) + saved[0];
-    assert_int_equal(image_bytes(d, (masu_rung){.silhouettes = MASU_ON, .aa = MASU_AA_FXAA}, &saved[1]) + saved[1], all);
+    assert_int_equal(
+        image_bytes(d, (masu_rung){.silhouettes = MASU_ON, .aa = MASU_AA_FXAA}, &saved[1]) +
+            saved[1],
+        all);
     assert_int_equal(saved[0] - saved[1], 2 * 4 * 100 * 100); /* silhouettes, ldr */
     d = scene_desc(RASTER, 100, 100); /* neither scene_depth nor the march's two */
     assert_int_equal(image_bytes(d, (masu_rung){.scale = 1}, &saved[1]) + saved[1], all);
@@ -1335,8 +1350,9 @@ static void lights_add_a_pass_and_two_buffers(void **state) {
                             "light_tiles(r:scene_depth wb:lights) "
                             "light(rb:lights r:albedo r:normal r:scene_depth u:hdr) " TONEMAP);
         assert_string_equal(frame_text(&plan, 1), GBUFFER MARCH_ON_RASTER LIGHT_SDF TONEMAP);
-        assert_int_equal(plan.buffers[MASU_BUFFER_LIGHTS].stride,
-                         masu_align_up(16 + sizeof(struct masu_punctual_light_data) * cases[i].lights, 64));
+        assert_int_equal(
+            plan.buffers[MASU_BUFFER_LIGHTS].stride,
+            masu_align_up(16 + sizeof(struct masu_punctual_light_data) * cases[i].lights, 64));
         assert_int_equal(plan.buffers[MASU_BUFFER_LIGHTS].bytes,
                          2 * plan.buffers[MASU_BUFFER_LIGHTS].stride);
         assert_int_equal(plan.buffers[MASU_BUFFER_LIGHT_TILES].bytes, 7 * 4 * 4 * cases[i].words);

@@ -38,7 +38,8 @@ static void a_full_blob_is_accepted_with_its_numbers(void **state) {
     assert_int_equal(masu_scene_data_of(&s)->sdf_parts, 1);
     assert_int_equal(masu_scene_data_of(&s)->sdf_slots, 3);
     assert_int_equal(masu_scene_data_of(&s)->sdf_dynamic, 1);
-    assert_int_equal(masu_scene_data_of(&s)->draws, 3);                   /* two of mesh 0, one of mesh 1 */
+    /* Two of mesh 0, one of mesh 1. */
+    assert_int_equal(masu_scene_data_of(&s)->draws, 3);
     assert_int_equal(masu_scene_triangles(&s), 2 * (2 + 1) + 2); /* mesh 0 is placed twice */
 }
 
@@ -53,7 +54,8 @@ static void a_blob_of_any_parts_is_accepted_with_these_alone(void **state) {
         assert_int_equal(masu_scene_data_of(&s)->draws, parts & SUPPORT_RASTER ? 3 : 0);
         assert_int_equal(masu_scene_data_of(&s)->sdf, parts & SUPPORT_SDF ? 1 : 0);
         assert_int_equal(masu_scene_count(&s, MASU_SCENE_SDF_PARAM), parts & SUPPORT_SDF ? 2 : 0);
-        assert_int_equal(masu_scene_count(&s, MASU_SCENE_CAMERA_KEY), parts & SUPPORT_CAMERA ? 3 : 0);
+        assert_int_equal(masu_scene_count(&s, MASU_SCENE_CAMERA_KEY),
+                         parts & SUPPORT_CAMERA ? 3 : 0);
         assert_int_equal(masu_scene_data_of(&s)->sdf_parts, parts & SUPPORT_SDF ? 1 : 0);
         assert_int_equal(masu_scene_data_of(&s)->sdf_slots, parts & SUPPORT_SDF ? 3 : 0);
         int variants = parts & SUPPORT_SDF && parts & SUPPORT_VARIANTS;
@@ -99,7 +101,8 @@ static void sdf_parameters_are_found_by_their_names(void **state) {
     support_accepted(&blob, &s);
     assert_int_equal(masu_scene_find(&s, MASU_SCENE_SDF_PARAM, "radius"), 0);
     assert_int_equal(masu_scene_find(&s, MASU_SCENE_SDF_PARAM, "bend"), 1);
-    assert_int_equal(masu_scene_find(&s, MASU_SCENE_SDF_PARAM, "steel"), -1); /* a name, but a material's */
+    /* A name, but a material's. */
+    assert_int_equal(masu_scene_find(&s, MASU_SCENE_SDF_PARAM, "steel"), -1);
     assert_int_equal(masu_scene_find(&s, MASU_SCENE_SDF_PARAM, "radiu"), -1);
     assert_int_equal(masu_scene_find(&s, MASU_SCENE_SDF_PARAM, "radius "), -1);
     assert_int_equal(masu_scene_find(&s, MASU_SCENE_SDF_PARAM, ""), -1);

@@ -80,7 +80,8 @@ static void ungroup(void) {
 }
 
 
-/* Whether this build knows a kind of section: only the lab build knows its marches, and no build kind 20. */
+/* Whether this build knows a kind of section: only the lab build knows its marches, and no build
+ * kind 20. */
 static int is_in_build(uint32_t kind) {
 #ifdef MASU_LAB
     return kind != 20;
@@ -852,7 +853,8 @@ static void code_compiled_for_other_instances_is_refused(void **state) {
 #ifndef MASU_LAB
 static void marches_of_the_lab_build_are_refused(void **state) {
     (void)state;
-    static const uint32_t kinds[] = {MASU_BLOB_PLAIN_SPIRV, MASU_BLOB_SEED_SPIRV, MASU_BLOB_CHECKERBOARD_SPIRV};
+    static const uint32_t kinds[] = {MASU_BLOB_PLAIN_SPIRV, MASU_BLOB_SEED_SPIRV,
+                                     MASU_BLOB_CHECKERBOARD_SPIRV};
     for (size_t i = 0; i < COUNT(kinds); i++) {
         uint64_t section = write_with(MASU_BLOB_OCCLUSION_SPIRV); /* the order of kinds stays */
         ROW(OCCLUSION_SPIRV)->kind = kinds[i];

@@ -890,7 +890,8 @@ static void put_rows(writer *w, rows *of, int form) {
     if (form) put(w, "(%d, %d, %d), ", of->count[0] ? of->count[0] : 1, of->count[1] ? of->count[1] : 1, of->count[2] ? of->count[2] : 1);
 }
 
-/* Solid where the union is, nothing else solid, no solid nearer than f / L, and the constant holds. */
+/* Solid where the union is, nothing else solid, no solid nearer than f / L, and the constant
+ * holds. */
 static void compare_copies(const char *text, const runner *r, const rows *of, uint64_t *seed) {
     double L = r->c->shapes[r->c->parts[0].shape].facts.lipschitz;
     for (int n = 0; n < 150; n++) {
@@ -898,7 +899,8 @@ static void compare_copies(const char *text, const runner *r, const rows *of, ui
         for (int k = 0; k < 3; k++) {
             p[k] = random_between(seed, -reach, reach);
             way[k] = random_between(seed, -1, 1);
-            if (n % 8 == 0) p[k] = of->period[k] * round(2 * p[k]) / 2 + 1e-7 * way[k]; /* where the selection changes */
+            /* Where the selection changes. */
+            if (n % 8 == 0) p[k] = of->period[k] * round(2 * p[k]) / 2 + 1e-7 * way[k];
         }
         double f = run_part(r, 0, p), u = union_of_copies(r, of, p);
         for (int k = 0; k < 3 && n % 3 == 2; k++) { /* to where the union falls */

@@ -202,7 +202,9 @@ static void first_color(const unsigned char *b, int four, double out[3]) {
             uint32_t c = k == 1 ? ends[i] >> 5 & 63 : ends[i] >> (k ? 0 : 11) & 31;
             e[i] = k == 1 ? c << 2 | c >> 4 : c << 3 | c >> 2;
         }
-        out[k] = index < 2 ? e[index] : four || ends[0] > ends[1] ? (index == 2 ? 2 * e[0] + e[1] : e[0] + 2 * e[1]) / 3 : (e[0] + e[1]) / 2;
+        out[k] = index < 2                   ? e[index]
+                 : four || ends[0] > ends[1] ? (index == 2 ? 2 * e[0] + e[1] : e[0] + 2 * e[1]) / 3
+                                             : (e[0] + e[1]) / 2;
     }
 }
 
@@ -213,15 +215,21 @@ static void solid_blocks_are_as_near_as_can_be(void **state) {
     for (int i = 0; i < 256 + 4000; i++) {
         uint8_t texels[64];
         unsigned char out[16];
-        for (int k = 0; k < 4; k++) texels[k] = i < 256 && k < 3 ? (uint8_t)i : (uint8_t)support_random_in(&seed, 0, 255);
+        for (int k = 0; k < 4; k++)
+            texels[k] = i < 256 && k < 3 ? (uint8_t)i : (uint8_t)support_random_in(&seed, 0, 255);
         for (int t = 1; t < 16; t++) memcpy(texels + 4 * t, texels, 4);
         for (int form = 0; form < 2; form++) {
             double got[3];
-            assert_int_equal(masu_texel_blocks(form ? MASU_TEXTURE_BC3_SRGB : MASU_TEXTURE_BC1_SRGB, texels, 4, 4, out), form ? 16 : 8);
+            assert_int_equal(masu_texel_blocks(form ? MASU_TEXTURE_BC3_SRGB : MASU_TEXTURE_BC1_SRGB,
+                                               texels, 4, 4, out),
+                             form ? 16 : 8);
             first_color(out + 8 * form, form, got);
             for (int k = 0; k < 3; k++) {
-                if (!(fabs(got[k] - texels[k]) <= 1.4)) fail_msg("%d %d %d, channel %d: %g", texels[0], texels[1], texels[2], k, got[k]);
-                if (i < 256 && !(fabs(got[k] - got[0]) <= 1)) fail_msg("grey %d: %g %g %g", i, got[0], got[1], got[2]);
+                if (!(fabs(got[k] - texels[k]) <= 1.4))
+                    fail_msg("%d %d %d, channel %d: %g", texels[0], texels[1], texels[2], k,
+                             got[k]);
+                if (i < 256 && !(fabs(got[k] - got[0]) <= 1))
+                    fail_msg("grey %d: %g %g %g", i, got[0], got[1], got[2]);
             }
             for (int t = 1; t < 4; t++) assert_int_equal(out[8 * form + 4 + t], out[8 * form + 4]);
             assert_int_equal(out[8 * form + 4] & 3, out[8 * form + 4] >> 6);

@@ -221,7 +221,8 @@ static void roughness_and_metallic_are_their_means(void **state) {
     uint32_t found[3] = {0};
     for (uint32_t i = 0; i < masu_scene_count(&scene, MASU_SCENE_MATERIAL); i++) {
         struct masu_trace_material m;
-        masu_trace_write(masu_scene_data_of(&scene), &view, 16 * (plan.materials + 4 * i), sizeof m, (void *)&m);
+        masu_trace_write(masu_scene_data_of(&scene), &view, 16 * (plan.materials + 4 * i), sizeof m,
+                         (void *)&m);
         int rough = view.materials[i].flags & 1u << MASU_SLOT_SURFACE;
         assert_float_equal(m.base_color[3], rough ? 0.5 * mean[0] : 0.5, 0.005);
         assert_float_equal(m.emissive[3], rough ? 0.8 * mean[1] : 0.8, 0.008);
@@ -231,12 +232,13 @@ static void roughness_and_metallic_are_their_means(void **state) {
             const masu_blob_trace_texture *p = &view.trace_textures[m.maps[k]];
             assert_int_equal(p->texture,
                              view.texture_sets[view.materials[i].texture_set].texture[slot]);
-            masu_trace_write(masu_scene_data_of(&scene), &view, 16 * (plan.pictures + m.maps[k]), 16, (void *)words);
+            masu_trace_write(masu_scene_data_of(&scene), &view, 16 * (plan.pictures + m.maps[k]),
+                             16, (void *)words);
             assert_int_equal(words[0], p->first);
             assert_int_equal(words[1], p->width | p->height << 16);
             uint32_t last = p->first + (uint32_t)masu_blob_trace_texels(p->width, p->height) - 1;
-            masu_trace_write(masu_scene_data_of(&scene), &view, 16 * plan.texels + 4 * (uint64_t)last, 4,
-                             (void *)words);
+            masu_trace_write(masu_scene_data_of(&scene), &view,
+                             16 * plan.texels + 4 * (uint64_t)last, 4, (void *)words);
             assert_int_equal(words[0], view.trace_texels[last]);
             found[k]++;
         }

@@ -330,7 +330,8 @@ static void a_texel_is_shaded_as_the_surface_it_holds(void **state) {
     masu_shade_texel(&v, down, albedo, up_z | 6u << 26, (double[3]){0}, a);
     masu_shade_surface(&v, down, n, m, b);
     for (int i = 0; i < 3; i++) near(a[i], b[i], 1e-12);
-    masu_shade_texel(&v, down, (uint8_t[4]){0, 0, 0, 255}, up_z | 1u << 30, (double[3]){100, 16, 0}, a);
+    masu_shade_texel(&v, down, (uint8_t[4]){0, 0, 0, 255}, up_z | 1u << 30, (double[3]){100, 16, 0},
+                     a);
     near(a[0], 100, 1e-12);
     near(a[2], 0, 0);
 }

@@ -251,7 +251,8 @@ static void declarations_are_read(void **state) {
     const uint32_t bad[] = {0, 0, 0, 0, 0, 0xFFFF0047u, 1, 1, 1}, none[] = {0, 0, 0, 0, 0, 0, 1};
     assert_int_equal(masu_interface_of(bad, 9).constants, 0);
     assert_int_equal(masu_interface_of(none, 7).constants, 0);
-    /* The build has noted it for every shader: the tone curve is a constant of this one, reflections are not. */
+    /* The build has noted it for every shader: the tone curve is a constant of this one,
+     * reflections are not. */
     assert_int_equal(find("tonemap_comp")->interface.constants >> 4 & 3, 2);
 }
 

@@ -92,7 +92,8 @@ static int bake_in_child(const void *options) { return bake(options) ? MASU_CLI_
 /* Found out before the work: *code is the exit code. */
 static bool can_write(const masu_bake_options *o, int *code) {
     char error[4096];
-    if (o->output && !masu_file_named(o->output, o->describe ? ".json" : ".masu", error, sizeof error)) {
+    if (o->output &&
+        !masu_file_named(o->output, o->describe ? ".json" : ".masu", error, sizeof error)) {
         *code = masu_cli_usage_error("--output: %s", error);
         return false;
     }
@@ -144,7 +145,8 @@ static int run(masu_cli *cli) {
         case MASU_CLI_END:
             if (!o.input) return masu_cli_usage_error("no MODEL, SCENE.json or FIELD.sdf given");
             if (o.describe && (o.stats || o.probes))
-                return masu_cli_usage_error("--describe bakes nothing: remove %s", o.stats ? "--stats" : "--probes");
+                return masu_cli_usage_error("--describe bakes nothing: remove %s",
+                                            o.stats ? "--stats" : "--probes");
             if (!o.output && !o.probe_report && !o.describe)
                 return masu_cli_usage_error("no output given; add -o X.masu");
             if (!can_write(&o, &code)) return code;
@@ -161,16 +163,21 @@ int main(int argc, char **argv) {
         {"output", "FILE", "where the blob goes; replaced only by a complete one", OPTION_OUTPUT,
          'o'},
 #ifdef MASU_LAB
-        {"variants", NULL, "add the baseline marches of the SDF, for masu-lab study march", OPTION_VARIANTS, 0},
+        {"variants", NULL, "add the baseline marches of the SDF, for masu-lab study march",
+         OPTION_VARIANTS, 0},
 #endif
-        {"bare", NULL, "without the ground, shadows, ambient occlusion and reflections that the\n"
-         "input does not ask for", OPTION_BARE, 0},
-        {"describe", NULL, "write the scene description that a MODEL or FIELD.sdf gets, to -o SCENE.json or\n"
-         "stdout, and bake nothing", OPTION_DESCRIBE, 0},
+        {"bare", NULL,
+         "without the ground, shadows, ambient occlusion and reflections that the\n"
+         "input does not ask for",
+         OPTION_BARE, 0},
+        {"describe", NULL,
+         "write the scene description that a MODEL or FIELD.sdf gets, to -o SCENE.json or\n"
+         "stdout, and bake nothing",
+         OPTION_DESCRIBE, 0},
         {"no-textures", NULL, "ignore textures; materials keep their factors", OPTION_NO_TEXTURES,
          0},
-        {"texture-path", "DIR:...", "folders to search for textures that are not at the model's path",
-         OPTION_TEXTURE_PATH, 0},
+        {"texture-path", "DIR:...",
+         "folders to search for textures that are not at the model's path", OPTION_TEXTURE_PATH, 0},
         {"probes", NULL, "bake light probes even if the scene has none", OPTION_PROBES, 0},
         {"probe-report", NULL,
          "bake light probes and print their error against path tracing;\nneeds no -o",
@@ -181,8 +188,10 @@ int main(int argc, char **argv) {
          OPTION_STRICT, 0},
         {"stats", "FILE", "write counts, bytes, bounds, warnings, seconds and peak memory as JSON",
          OPTION_STATS, 0},
-        {"memory-limit", "MIB", "address space limit, 0: none; default: half of the machine's\n"
-         "memory, at least 4096", OPTION_MEMORY_LIMIT, 0},
+        {"memory-limit", "MIB",
+         "address space limit, 0: none; default: half of the machine's\n"
+         "memory, at least 4096",
+         OPTION_MEMORY_LIMIT, 0},
         {"time-limit", "SECONDS", "time limit, 0: none; default: 3600", OPTION_TIME_LIMIT, 0},
         {"models", "DIR", "folder that \"@assimp/\" in a scene stands for\n(" ASSIMP_MODELS ")",
          OPTION_MODELS, 0},

@@ -32,7 +32,8 @@ static json_t *load(const char *folder, const char *name, char *error, size_t er
     return NULL;
 }
 
-/* What a folder was measured on. A folder of docs/report has no sweep.json (keep.sh): its ladder.json says less. */
+/* What a folder was measured on. A folder of docs/report has no sweep.json (keep.sh): its
+ * ladder.json says less. */
 static json_t *about(const char *folder, bool *whole, char *error, size_t error_size) {
     json_t *sweep = load(folder, "sweep.json", error, error_size);
     *whole = sweep != NULL;
@@ -45,10 +46,11 @@ bool masu_against_same(const char *here, const char *there, char *error, size_t 
     json_t *b = a ? about(there, &whole_b, error, error_size) : NULL;
     bool good = b != NULL;
     for (size_t i = 0; i < sizeof same_keys / sizeof *same_keys && good; i++) {
-        const json_t *of_a = json_object_get(a, same_keys[i]), *of_b = json_object_get(b, same_keys[i]);
+        const json_t *of_a = json_object_get(a, same_keys[i]),
+                     *of_b = json_object_get(b, same_keys[i]);
         if (json_equal(of_a, of_b) || (!of_a && !whole_a) || (!of_b && !whole_b)) continue;
-        snprintf(error, error_size, "%.2000s: \"%s\" in %s differs from %.2000s", there, same_keys[i],
-                 whole_b ? "sweep.json" : "ladder.json", here);
+        snprintf(error, error_size, "%.2000s: \"%s\" in %s differs from %.2000s", there,
+                 same_keys[i], whole_b ? "sweep.json" : "ladder.json", here);
         good = false;
     }
     json_decref(a);

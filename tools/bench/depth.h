@@ -6,8 +6,8 @@
  *
  * The reference is the scene's field in double precision (truth.h), where NAME.truth.so lies
  * beside the scene and it has no polygons; else the frame of the same size with the most steps, no
- * culling and no LODs. The latter cannot see what that march gets wrong itself: `masu-lab study march`
- * can.
+ * culling and no LODs. The latter cannot see what that march gets wrong itself: `masu-lab study
+ * march` can.
  *
  * A masu_depth_bench is allocated by masu_depth_open. Functions that fail write one line to
  * `error`. */

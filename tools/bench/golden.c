@@ -12,10 +12,11 @@
 
 enum { WIDTH = 128, HEIGHT = 72, STILL_FRAMES = 64 };
 
-static bool draw_rung(const masu_sweep_desc *d, const char *name, masu_patch patches[MASU_PATCHES], uint32_t *messages,
-                      char *error, size_t error_size) {
+static bool draw_rung(const masu_sweep_desc *d, const char *name, masu_patch patches[MASU_PATCHES],
+                      uint32_t *messages, char *error, size_t error_size) {
     static masu_session s; /* may not move, and is large */
-    masu_session_desc of = masu_picture_session(d->scene_path, (VkExtent2D){WIDTH, HEIGHT}, &d->host);
+    masu_session_desc of =
+        masu_picture_session(d->scene_path, (VkExtent2D){WIDTH, HEIGHT}, &d->host);
     of.desc.readback = MASU_READBACK_HDR;
     of.desc.rung_count = 1;
     if (!masu_setting_parse(name, &of.desc.rungs[0], error, error_size) ||
@@ -36,7 +37,8 @@ bool masu_golden_rungs(const masu_sweep_desc *d, const char *path, uint32_t *mes
     char file[4096], *text = NULL;
     size_t bytes = 0;
     if (!masu_rest_load(path, golden, error, error_size) ||
-        !masu_report_rungs(d->folder, &rungs, error, error_size) || !masu_sweep_path(d->folder, "reference.csv", file)) {
+        !masu_report_rungs(d->folder, &rungs, error, error_size) ||
+        !masu_sweep_path(d->folder, "reference.csv", file)) {
         return false;
     }
     FILE *f = open_memstream(&text, &bytes);
@@ -46,7 +48,8 @@ bool masu_golden_rungs(const masu_sweep_desc *d, const char *path, uint32_t *mes
         good = draw_rung(d, rungs.id[i], drawn, messages, error, error_size);
         if (!good) break;
         const masu_patch_judgement j = masu_patches_judge(golden, drawn);
-        good = fprintf(f, "%s,%.6g,%.6g,%.6g,%.6g\n", rungs.id[i], j.ratio, j.p95, j.trimmed, j.worst_by) > 0;
+        good = fprintf(f, "%s,%.6g,%.6g,%.6g,%.6g\n", rungs.id[i], j.ratio, j.p95, j.trimmed,
+                       j.worst_by) > 0;
     }
     const bool closed = f && !fclose(f);
     good = good && closed && masu_file_write(file, text, bytes, error, error_size);

@@ -6,9 +6,9 @@
  * than the truth. What is done after the tone curve (anti-aliasing, sharpening) is not in it: such
  * settings have no HDR-FLIP, but the error of reflections that all others have.
  *
- * REFLECTIONS. relMSE (measure/specular.h) of pixels that trace, against as many rays a pixel as the
- * truth has in all, through its middle. It is radiance of the whole pixel: what other knobs change
- * there is in it, too.
+ * REFLECTIONS. relMSE (measure/specular.h) of pixels that trace, against as many rays a pixel as
+ * the truth has in all, through its middle. It is radiance of the whole pixel: what other knobs
+ * change there is in it, too.
  *
  * A masu_radiance_bench is allocated by masu_radiance_open. Functions that fail write one line to
  * `error`. */

@@ -30,7 +30,8 @@ typedef struct report {
     double *ratios; /* of the clock that the ladder goes by */
     masu_ladder_point *points;
     uint32_t *front, *rungs;
-    double steps[MASU_MAX_RUNGS]; /* mean change at rest from the rung before, of 255; NAN: not known */
+    /* Mean change at rest from the rung before, of 255; NAN: not known. */
+    double steps[MASU_MAX_RUNGS];
     VkExtent2D size;
     FILE *page;
     char *error;
@@ -109,7 +110,8 @@ static bool load_rest(const report *r, uint32_t row, uint8_t *out) {
     static const char *const suffixes[] = {MASU_SWEEP_REST, ""};
     char path[4096], error[4096];
     for (int i = 0; i < 2; i++) {
-        if (masu_sweep_picture(r->folder, r->rows[row].setting, suffixes[i], path) && masu_file_exists(path))
+        if (masu_sweep_picture(r->folder, r->rows[row].setting, suffixes[i], path) &&
+            masu_file_exists(path))
             return masu_picture_load(path, r->size, out, error, sizeof error);
     }
     return false;
@@ -124,7 +126,9 @@ static bool limit_steps(report *r) {
     for (uint32_t i = 0; i < r->rung_count && good; i++) {
         const bool there = load_rest(r, r->rungs[i], shown);
         const double step =
-            i && known && there ? masu_metric_difference(shown, before, r->size.width, r->size.height) : (double)NAN;
+            i && known && there
+                ? masu_metric_difference(shown, before, r->size.width, r->size.height)
+                : (double)NAN;
         if (step > MASU_LADDER_STEP) continue;
         r->steps[kept] = step;
         r->rungs[kept++] = r->rungs[i];
@@ -144,13 +148,15 @@ static bool find_rungs(report *r) {
     return limit_steps(r);
 }
 
-/* Where costs on classes of GPUs are known, they say which settings are worth having, and their geometric mean over the
- * classes, relative to the base's, stands for the time that was measured here. */
+/* Where costs on classes of GPUs are known, they say which settings are worth having, and their
+ * geometric mean over the classes, relative to the base's, stands for the time that was measured
+ * here. */
 static bool go_by_costs(report *r) {
     const uint32_t n = MASU_COSTS_CLASSES;
     double *costs = calloc(r->count, sizeof *costs * n);
     bool good = costs || failed(r, "out of memory");
-    good = good && masu_costs_read(r->folder, r->rows, r->count, costs, &r->out->by_costs, r->error, r->error_size);
+    good = good && masu_costs_read(r->folder, r->rows, r->count, costs, &r->out->by_costs, r->error,
+                                   r->error_size);
     const masu_row *base = masu_rows_find(r->rows, r->count, "base");
     const double *of_base = good && base ? &costs[n * (size_t)(base - r->rows)] : NULL;
     if (good && r->out->by_costs && (!of_base || !(of_base[0] > 0.0)))
@@ -198,9 +204,10 @@ static bool write_ladder(report *r) {
     for (uint32_t i = 0; i < r->rung_count; i++) {
         const masu_row *row = &r->rows[r->rungs[i]];
         json_t *knobs = json_object_get(setting_of(r, row->setting), "knobs");
-        json_t *rung = json_pack("{s:s, s:f, s:f, s:f, s:f, s:f, s:O}", "setting", row->setting, "ratio",
-                                 r->ratios[r->rungs[i]], "wall_ms", row->wall_min, "gpu_ms", row->gpu_min, "flip",
-                                 masu_row_error(row), "rmse", row->rmse, "knobs", knobs);
+        json_t *rung =
+            json_pack("{s:s, s:f, s:f, s:f, s:f, s:f, s:O}", "setting", row->setting, "ratio",
+                      r->ratios[r->rungs[i]], "wall_ms", row->wall_min, "gpu_ms", row->gpu_min,
+                      "flip", masu_row_error(row), "rmse", row->rmse, "knobs", knobs);
         if (isfinite(r->steps[i])) json_object_set_new(rung, "step", json_real(r->steps[i]));
         json_array_append_new(rungs, rung);
     }
@@ -314,47 +321,57 @@ static void put_machines(report *r) {
 /* What one must know to read the tables, in eight lines. */
 static void put_note(report *r) {
     FILE *f = r->page;
-    masu_markup(f, "<ul>\n<li>The <b>base</b> setting has all knobs at their defaults, at full size. The name "
-               "of a setting lists the knobs that differ. Ratios are times divided by the time of the base.</li>\n");
-    masu_markup(f,
-            "<li>The <b>ground truth</b> is the average of %.0f full-size frames with jittered samples "
-            "and the most exact settings (masu render --truth). The image of a setting is the last of "
-            "at most %.0f frames in motion.</li>\n",
-            number_of(r, "positions"), number_of(r, "frames"));
-    fputs("<li><b>FLIP</b> is the perceived difference from the ground truth at 67 pixels per degree: 0 is "
-          "none, 1 is the maximum. The table has its mean and 99th percentile in motion along the path, its "
-          "mean with a stationary camera, and its mean for frames an eighth of a second apart. The "
-          "<b>error</b>, which orders the ladder, is the mean of FLIP in motion and stationary, if both are "
-          "measured. HDR-FLIP is the maximum over all exposures, before the tone curve.</li>\n"
-          "<li><b>RMSE</b> and flicker are out of 255. Flicker is the mean difference of successive "
-          "frames with a stationary camera.</li>\n<li><b>hit/miss</b> and <b>depth</b> compare surfaces with ",
-          f);
+    masu_markup(
+        f,
+        "<ul>\n<li>The <b>base</b> setting has all knobs at their defaults, at full size. The name "
+        "of a setting lists the knobs that differ. Ratios are times divided by the time of the base.</li>\n");
+    masu_markup(
+        f,
+        "<li>The <b>ground truth</b> is the average of %.0f full-size frames with jittered samples "
+        "and the most exact settings (masu render --truth). The image of a setting is the last of "
+        "at most %.0f frames in motion.</li>\n",
+        number_of(r, "positions"), number_of(r, "frames"));
+    fputs(
+        "<li><b>FLIP</b> is the perceived difference from the ground truth at 67 pixels per degree: 0 is "
+        "none, 1 is the maximum. The table has its mean and 99th percentile in motion along the path, its "
+        "mean with a stationary camera, and its mean for frames an eighth of a second apart. The "
+        "<b>error</b>, which orders the ladder, is the mean of FLIP in motion and stationary, if both are "
+        "measured. HDR-FLIP is the maximum over all exposures, before the tone curve.</li>\n"
+        "<li><b>RMSE</b> and flicker are out of 255. Flicker is the mean difference of successive "
+        "frames with a stationary camera.</li>\n<li><b>hit/miss</b> and <b>depth</b> compare surfaces with ",
+        f);
     masu_markup(r->page, "%s", text_of(r->sweep, "depth"));
-    fputs(" at the same size: pixels where only one of the two shows the sky, and the distance of all other "
-          "surfaces in pixel widths at that depth. <b>relMSE</b> compares pixels with traced reflections "
-          "with many rays. A dash: the setting has no such value.</li>\n",
-          f);
-    masu_markup(f,
-            "<li><b>Times</b>: %.0f runs of each setting, interleaved with the base; the first round "
-            "is dropped. The ratio is the median of the ratios per round; the ratio of minima is next to "
-            "it. If the two differ a lot, the machine was busy: they differ by more than 10 %% in %u "
-            "of %u rows.</li>\n",
-            number_of(r, "runs"), r->out->unsteady, r->out->rows);
+    fputs(
+        " at the same size: pixels where only one of the two shows the sky, and the distance of all other "
+        "surfaces in pixel widths at that depth. <b>relMSE</b> compares pixels with traced reflections "
+        "with many rays. A dash: the setting has no such value.</li>\n",
+        f);
+    masu_markup(
+        f,
+        "<li><b>Times</b>: %.0f runs of each setting, interleaved with the base; the first round "
+        "is dropped. The ratio is the median of the ratios per round; the ratio of minima is next to "
+        "it. If the two differ a lot, the machine was busy: they differ by more than 10 %% in %u "
+        "of %u rows.</li>\n",
+        number_of(r, "runs"), r->out->unsteady, r->out->rows);
     if (r->steady_count) {
-        masu_markup(f,
-                "<li>The best of many noisy times is biased. So %u settings, including the rungs, were "
-                "timed again separately and for longer (steady.csv). Their rows show these times.</li>\n",
-                r->steady_count);
+        masu_markup(
+            f,
+            "<li>The best of many noisy times is biased. So %u settings, including the rungs, were "
+            "timed again separately and for longer (steady.csv). Their rows show these times.</li>\n",
+            r->steady_count);
     }
-    masu_markup(f, "<li>The ladder uses %s.</li>\n",
-            r->out->by_costs ? "the mean of the costs that are computed for classes of GPUs (costs.csv); so does every "
-                               "ratio here but that of minima"
-            : r->out->by_timestamps ? "the device's timestamps, which agree with the wall clock"
-                                  : "the wall clock: some timestamps disagree with it");
-    fputs("<li><b>How to read it</b>: find the rung with an acceptable error, and the time that it saves; then "
-          "the technique that saves the most time for the least FLIP. Differences below 0.001 are "
-          "noise if reflections are traced.</li>\n</ul>\n",
-          f);
+    masu_markup(
+        f, "<li>The ladder uses %s.</li>\n",
+        r->out->by_costs
+            ? "the mean of the costs that are computed for classes of GPUs (costs.csv); so does every "
+              "ratio here but that of minima"
+        : r->out->by_timestamps ? "the device's timestamps, which agree with the wall clock"
+                                : "the wall clock: some timestamps disagree with it");
+    fputs(
+        "<li><b>How to read it</b>: find the rung with an acceptable error, and the time that it saves; then "
+        "the technique that saves the most time for the least FLIP. Differences below 0.001 are "
+        "noise if reflections are traced.</li>\n</ul>\n",
+        f);
 }
 
 static void put_head(report *r) {
@@ -458,9 +475,9 @@ static void put_row(report *r, uint32_t i, const char *label, bool brief, bool m
 static void put_ladder(report *r) {
     FILE *f = r->page;
     fputs(
-        "<h2>The ladder</h2>\n<p>Rungs from the Pareto front in falling quality; neighbours differ in time "
-        "by at least 4 %, and with a stationary camera by at most 3 of 255 on average. ladder.json has all their knobs; the table of all settings has all "
-        "columns.</p>\n<div class=\"wide\"><table>\n",
+        "<h2>The ladder</h2>\n<p>Rungs from the Pareto front in falling quality; neighbours "
+        "differ in time by at least 4 %, and with a stationary camera by at most 3 of 255 on average. "
+        "ladder.json has all their knobs; the table of all settings has all columns.</p>\n<div class=\"wide\"><table>\n",
         f);
     put_columns(f, true);
     for (uint32_t i = 0; i < r->rung_count; i++) {
@@ -531,7 +548,8 @@ static void put_all(report *r) {
 static bool put_pictures(report *r) {
     char path[4096];
     fputs("<h2>Images</h2>\n<h3>Ground truth</h3>\n<p class=\"pair\">", r->page);
-    if (!masu_sweep_path(r->folder, "truth.png", path) || !put_image(r, path, "image/png", "ground truth"))
+    if (!masu_sweep_path(r->folder, "truth.png", path) ||
+        !put_image(r, path, "image/png", "ground truth"))
         return false;
     fputs("</p>\n", r->page);
     for (uint32_t i = 0; i < r->rung_count; i++) {
@@ -586,10 +604,12 @@ static void release(report *r) {
 static bool kept_rungs(const char *folder, masu_setting_list *out, char *error, size_t error_size) {
     char path[4096];
     masu_ladder_file ladder;
-    if (!masu_sweep_path(folder, "ladder.json", path) || !masu_ladder_read(path, &ladder, error, error_size))
+    if (!masu_sweep_path(folder, "ladder.json", path) ||
+        !masu_ladder_read(path, &ladder, error, error_size))
         return false;
     out->count = ladder.count;
-    for (uint32_t i = 0; i < ladder.count; i++) memcpy(out->id[i], ladder.settings[i], MASU_SETTING_ID);
+    for (uint32_t i = 0; i < ladder.count; i++)
+        memcpy(out->id[i], ladder.settings[i], MASU_SETTING_ID);
     return true;
 }
 

@@ -16,13 +16,13 @@ typedef struct masu_report_result {
     bool by_costs;      /* instead of times the costs of costs.h */
 } masu_report_result;
 
-/* The rungs that ladder.json has or would have now, in order. Of a folder without sweep.json (docs/report) those of
- * its ladder.json. False: `error` holds one line. */
+/* The rungs that ladder.json has or would have now, in order. Of a folder without sweep.json
+ * (docs/report) those of its ladder.json. False: `error` holds one line. */
 bool masu_report_rungs(const char *folder, masu_setting_list *out, char *error, size_t error_size);
 
-/* What to time again, where the ladder goes by times: the first eleven rungs that have no times in steady.csv. Where there are fewer, those
- * follow that would take their places if they were not as quick as they look. None: the ladder is
- * steady. */
+/* What to time again, where the ladder goes by times: the first eleven rungs that have no times in
+ * steady.csv. Where there are fewer, those follow that would take their places if they were not as
+ * quick as they look. None: the ladder is steady. */
 bool masu_report_unsteady(const char *folder, masu_setting_list *out, char *error,
                           size_t error_size);
 

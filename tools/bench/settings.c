@@ -12,7 +12,8 @@
 
 /* One knob, or a few that make one technique. Fields that are 0 are the base's; shadow_distance is
  * a part of the scene's. At which render sizes: the output's, half of it, and in `masu bench
- * --quick`. Bundles are at a few sizes, with SIXTEENTHS at all down to 0.4, with SMALL at a few below. */
+ * --quick`. Bundles are at a few sizes, with SIXTEENTHS at all down to 0.4, with SMALL at a few
+ * below. */
 enum { WHOLE = 1, HALF = 2, QUICK = 4, STRUCTURAL = 8, SAME = 16, SIXTEENTHS = 32, SMALL = 64 };
 
 typedef struct technique {
@@ -86,7 +87,8 @@ static const technique bundles[] = {
     {"soft steps", 0, {.sharpen = MASU_OFF, .march_steps = 128}},
     /* Of a world, whose shadow map takes a part of the frame that a smaller picture does not make less. */
     {"soft cascades", 0, {.sharpen = MASU_OFF, .shadow_cascades = 2}},
-    /* Less of everything, nothing dropped: below the scales at which a smaller picture still makes a frame cheaper. */
+    /* Less of everything, nothing dropped: below the scales at which a smaller picture still makes
+     * a frame cheaper. */
     {"lean",
      SMALL,
      {.temporal = MASU_ON,
@@ -215,7 +217,8 @@ static void refit_parent(masu_setting *s, const masu_setting *all, uint32_t coun
 
 /* Values that only a scene can give a meaning. */
 static void scene_values(masu_rung *rung, const masu_scene *scene, const char **why) {
-    if (masu_scene_shadow_distance(scene) > 0.0f) rung->shadow_distance *= masu_scene_shadow_distance(scene);
+    if (masu_scene_shadow_distance(scene) > 0.0f)
+        rung->shadow_distance *= masu_scene_shadow_distance(scene);
     if (rung->shadow_cascades && masu_scene_shadow_cascades(scene, NULL) &&
         rung->shadow_cascades >= masu_scene_shadow_cascades(scene, NULL)) {
         *why = "the scene does not have more";

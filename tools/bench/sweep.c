@@ -129,7 +129,8 @@ static bool draw_truth(sweep *w, uint8_t *rgba) {
     w->opened = true;
     masu_frame_desc frame = {.time = w->d->time};
     const masu_picture_means means = {.linear = w->true_radiance, .display = rgba};
-    bool good = masu_picture_truth(&w->s, &frame, w->d->positions, w->d->rays, &means, w->d->progress, w->error, w->error_size);
+    bool good = masu_picture_truth(&w->s, &frame, w->d->positions, w->d->rays, &means,
+                                   w->d->progress, w->error, w->error_size);
     close_session(w);
     return good;
 }
@@ -532,7 +533,8 @@ static bool measure(sweep *w) {
     if (!rows) return false;
     if (!count) masu_machine_forget(w->d->folder);
     w->pending = mine(w, rows, count, list);
-    bool alone = !w->pending || masu_sweep_one_build(rows, count, w->build, w->d->folder, w->error, w->error_size);
+    bool alone = !w->pending ||
+                 masu_sweep_one_build(rows, count, w->build, w->d->folder, w->error, w->error_size);
     free(rows);
     if (!w->pending || !alone) return alone;
     if (!find_truth(w) || !open_behind(w)) return false;
@@ -589,8 +591,8 @@ static bool steady(sweep *w, const masu_setting_list *list) {
         masu_sweep_steady_rows(w->d->folder, &there_count, w->error, w->error_size);
     bool good = rows && there;
     w->pending = good ? unsteady(w, list, rows, count, there, there_count, of) : 0;
-    good = good && (!w->pending ||
-                    masu_sweep_one_build(rows, count, w->build, w->d->folder, w->error, w->error_size));
+    good = good && (!w->pending || masu_sweep_one_build(rows, count, w->build, w->d->folder,
+                                                        w->error, w->error_size));
     w->start = masu_clock_ns(NULL);
     for (uint32_t i = 0; i < w->pending && good;) {
         b.of[0] = 0;

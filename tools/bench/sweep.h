@@ -27,8 +27,9 @@
  * THE FOLDER. sweep.json: what is measured, and how; a run is only resumed if it is the same.
  * machine.json: on what and when, see machine.h.
  * results.csv: a row as soon as it is known. steady.csv: rows of rungs, with the times measured
- * again. pictures/SETTING.png, and SETTING.rest.png if it is another at rest. truth.png; its radiance in truth.pfm, the reference of reflections in
- * truth.specular.pfm. All is written whole or not at all, but for the last row. */
+ * again. pictures/SETTING.png, and SETTING.rest.png if it is another at rest. truth.png; its
+ * radiance in truth.pfm, the reference of reflections in truth.specular.pfm. All is written whole
+ * or not at all, but for the last row. */
 #ifndef MASU_BENCH_SWEEP_H
 #define MASU_BENCH_SWEEP_H
 
@@ -77,8 +78,8 @@ typedef struct masu_sweep_result {
 bool masu_sweep_run(const masu_sweep_desc *desc, masu_sweep_result *out, char *error,
                     size_t error_size);
 
-/* Times those settings again that have a row, but no times of this kind yet: by elevens, with the base,
- * for desc->steady seconds or desc->runs rounds, whichever is more, but not more than
+/* Times those settings again that have a row, but no times of this kind yet: by elevens, with the
+ * base, for desc->steady seconds or desc->runs rounds, whichever is more, but not more than
  * MASU_SWEEP_RUNS_MAX rounds. out->measured: how many. */
 bool masu_sweep_steady(const masu_sweep_desc *desc, const masu_setting_list *list,
                        masu_sweep_result *out, char *error, size_t error_size);

@@ -92,15 +92,17 @@ static bool begin_with(const char *folder, const char *text, char *error, size_t
         !masu_sweep_path(folder, "sweep.json", json)) {
         return fail(error, error_size, folder, "the path is too long");
     }
-    if (!masu_folder_make(folder, error, error_size) || !masu_folder_make(pictures, error, error_size))
+    if (!masu_folder_make(folder, error, error_size) ||
+        !masu_folder_make(pictures, error, error_size))
         return false;
     char *old = read_text(json);
     bool same = old && !strcmp(old, text), other = old && !same;
     free(old);
     if (other) {
-        return fail(error, error_size, folder,
-                    "contains another sweep (scene, size, time, runs, driver or settings differ, see "
-                    "sweep.json): use another folder, or remove this one");
+        return fail(
+            error, error_size, folder,
+            "contains another sweep (scene, size, time, runs, driver or settings differ, see "
+            "sweep.json): use another folder, or remove this one");
     }
     return same || masu_file_write(json, text, strlen(text), error, error_size);
 }
@@ -116,13 +118,16 @@ bool masu_sweep_begin(const masu_sweep_desc *d, const masu_sweep_about *about, c
 
 /* ---- One program ----------------------------------------------------------------------------- */
 
-bool masu_sweep_one_build(const masu_row *rows, uint32_t count, const char *build, const char *path, char *error,
-                          size_t error_size) {
+bool masu_sweep_one_build(const masu_row *rows, uint32_t count, const char *build, const char *path,
+                          char *error, size_t error_size) {
     for (uint32_t i = 0; i < count; i++) {
         if (!strcmp(rows[i].build, build)) continue;
-        snprintf(error, error_size, "%.2000s: %s was measured by another build of the program: found %s, expected %s; use "
-                 "another folder, or remove this one", path, rows[i].setting,
-                 *rows[i].build ? rows[i].build : "an unknown one", *build ? build : "an unknown one");
+        snprintf(
+            error, error_size,
+            "%.2000s: %s was measured by another build of the program: found %s, expected %s; use "
+            "another folder, or remove this one",
+            path, rows[i].setting, *rows[i].build ? rows[i].build : "an unknown one",
+            *build ? build : "an unknown one");
         return false;
     }
     return true;
@@ -133,7 +138,8 @@ int masu_sweep_lock(const char *folder, char *error, size_t error_size) {
     int file = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (file >= 0 && (flock(file, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK)) return file;
     bool busy = file >= 0;
-    fail(error, error_size, folder, busy ? "another masu bench is writing to this folder" : strerror(errno));
+    fail(error, error_size, folder,
+         busy ? "another masu bench is writing to this folder" : strerror(errno));
     if (busy) (void)close(file);
     return -1;
 }
@@ -152,7 +158,8 @@ static masu_row *rows_of(const char *folder, const char *name, uint32_t *count, 
     masu_row *rows = text ? masu_rows_read(text, count, why, sizeof why) : calloc(1, sizeof *rows);
     if (!rows) fail(error, error_size, path, text ? why : "out of memory");
     free(text);
-    if (rows && *count && !masu_sweep_one_build(rows, *count, rows[0].build, path, error, error_size)) {
+    if (rows && *count &&
+        !masu_sweep_one_build(rows, *count, rows[0].build, path, error, error_size)) {
         free(rows);
         return NULL;
     }
@@ -272,7 +279,8 @@ bool masu_sweep_append(const char *folder, const char *name, const masu_row *row
     char path[4096];
     if (!masu_sweep_path(folder, name, path))
         return fail(error, error_size, folder, "the path is too long");
-    int file = open(path, O_WRONLY | O_APPEND | O_CREAT | O_NONBLOCK | O_CLOEXEC, 0666); /* no waiting for a FIFO */
+    /* No waiting for a FIFO. */
+    int file = open(path, O_WRONLY | O_APPEND | O_CREAT | O_NONBLOCK | O_CLOEXEC, 0666);
     FILE *f = file >= 0 ? fdopen(file, "a") : NULL;
     if (!f && file >= 0) (void)close(file);
     if (!f) return fail(error, error_size, path, strerror(errno));
@@ -314,7 +322,8 @@ static bool merge_part(const char *folder, const char *part, merged *all, char *
     masu_row *steady =
         rows ? masu_sweep_steady_rows(part, &steady_count, error, error_size) : NULL;
     bool good = steady != NULL;
-    good = good && (!all->count || masu_sweep_one_build(rows, n, all->rows[0].build, part, error, error_size));
+    good = good && (!all->count ||
+                    masu_sweep_one_build(rows, n, all->rows[0].build, part, error, error_size));
     for (uint32_t i = 0; i < n && good; i++) {
         if (masu_rows_find(all->rows, all->count, rows[i].setting)) continue;
         if (all->count == MASU_SETTINGS_MOST)
@@ -336,8 +345,9 @@ static bool merge_part(const char *folder, const char *part, merged *all, char *
     free(steady);
     static const char *const truths[] = {"truth.png", "truth.pfm", "truth.specular.pfm"};
     for (size_t i = 0; i < sizeof truths / sizeof *truths && good; i++) {
-        good = masu_sweep_path(part, truths[i], from) && masu_sweep_path(folder, truths[i], to) &&
-               (masu_file_exists(to) || !masu_file_exists(from) || copy(from, to, error, error_size));
+        good =
+            masu_sweep_path(part, truths[i], from) && masu_sweep_path(folder, truths[i], to) &&
+            (masu_file_exists(to) || !masu_file_exists(from) || copy(from, to, error, error_size));
     }
     return good;
 }
@@ -367,9 +377,11 @@ bool masu_sweep_merge(const char *folder, const char *const *parts, uint32_t par
         good = masu_sweep_path(parts[i], "sweep.json", path);
         char *own = good ? read_text(path) : NULL;
         if (!own) {
-            good = fail(error, error_size, parts[i], "no sweep.json: expected a folder of masu bench");
+            good =
+                fail(error, error_size, parts[i], "no sweep.json: expected a folder of masu bench");
         } else if (text && strcmp(text, own) != 0) {
-            good = fail(error, error_size, parts[i], "contains another sweep than the first folder");
+            good =
+                fail(error, error_size, parts[i], "contains another sweep than the first folder");
         }
         if (!good || text) {
             free(own);

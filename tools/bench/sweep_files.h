@@ -19,12 +19,13 @@ typedef struct masu_sweep_about {
 bool masu_sweep_begin(const masu_sweep_desc *desc, const masu_sweep_about *about, char *error,
                       size_t error_size);
 
-/* Makes the folder and locks it for this process until the result, a file, is closed. -1: another process holds it. */
+/* Makes the folder and locks it for this process until the result, a file, is closed. -1: another
+ * process holds it. */
 int masu_sweep_lock(const char *folder, char *error, size_t error_size);
 
 /* Whether all rows were measured by that build of the program. */
-bool masu_sweep_one_build(const masu_row *rows, uint32_t count, const char *build, const char *path, char *error,
-                          size_t error_size);
+bool masu_sweep_one_build(const masu_row *rows, uint32_t count, const char *build, const char *path,
+                          char *error, size_t error_size);
 
 /* The rows of results.csv that have a picture in the folder. It then has no others, nor what was torn;
  * steady.csv has none but of these. No file is no error. Freed by free(). */

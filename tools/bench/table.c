@@ -21,7 +21,11 @@ static const column columns[] = {
 };
 
 /* The last came later, and before it the two in front of it. */
-enum { COLUMNS = sizeof columns / sizeof *columns, COLUMNS_BEFORE = COLUMNS - 1, COLUMNS_FIRST = COLUMNS - 3 };
+enum {
+    COLUMNS = sizeof columns / sizeof *columns,
+    COLUMNS_BEFORE = COLUMNS - 1,
+    COLUMNS_FIRST = COLUMNS - 3
+};
 
 int masu_rows_header(FILE *f) {
     for (uint32_t c = 0; c < COLUMNS; c++) {
@@ -35,8 +39,8 @@ int masu_rows_write(FILE *f, const masu_row *row) {
         const char *at = (const char *)row + columns[c].offset, *comma = c ? "," : "";
         double number = 0.0;
         if (!columns[c].text) memcpy(&number, at, sizeof number);
-        int n =
-            columns[c].text ? fprintf(f, "%s%s", comma, *at ? at : "unknown") : fprintf(f, "%s%.9g", comma, number);
+        int n = columns[c].text ? fprintf(f, "%s%s", comma, *at ? at : "unknown")
+                                : fprintf(f, "%s%.9g", comma, number);
         if (n < 0) return -1;
     }
     return fprintf(f, "\n");

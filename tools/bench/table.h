@@ -45,7 +45,8 @@ typedef struct masu_row {
 #define MASU_ROW_TEXT(name) char name[MASU_SETTING_ID];
 #define MASU_ROW_NUMBER(name) double name;
     MASU_ROW_TEXTS(MASU_ROW_TEXT) MASU_ROW_NUMBERS(MASU_ROW_NUMBER)
-    char build[17]; /* the last column: of the program that measured (masu_machine_build); "": not known */
+    /* The last column: of the program that measured (masu_machine_build); "": not known. */
+    char build[17];
 #undef MASU_ROW_TEXT
 #undef MASU_ROW_NUMBER
 } masu_row;
@@ -61,8 +62,9 @@ bool masu_setting_is_name(const char *text);
 /* What a ladder goes by: the mean of FLIP in motion along the path and at rest, where both are known. */
 double masu_row_error(const masu_row *row);
 
-/* All rows of `text`, of which the last line may be torn; a header and rows may lack the last column, or the last three. NULL and
- * an `error` of one line: another header, a bad row before the last, or no memory. Freed by free(). No row is no error. */
+/* All rows of `text`, of which the last line may be torn; a header and rows may lack the last
+ * column, or the last three. NULL and an `error` of one line: another header, a bad row before the
+ * last, or no memory. Freed by free(). No row is no error. */
 masu_row *masu_rows_read(const char *text, uint32_t *count, char *error, size_t error_size);
 
 /* The row of that setting, or NULL. */

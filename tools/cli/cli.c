@@ -335,7 +335,8 @@ const char *masu_cli_signal(int number) {
     static char text[40];
     snprintf(text, sizeof text, "signal %d", number);
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        if (names[i].number == number) snprintf(text, sizeof text, "signal %d (SIG%s)", number, names[i].name);
+        if (names[i].number == number)
+            snprintf(text, sizeof text, "signal %d (SIG%s)", number, names[i].name);
     }
     return text;
 }
@@ -343,17 +344,19 @@ const char *masu_cli_signal(int number) {
 const char *masu_cli_status(int status) {
     static char text[80];
     int code = WIFEXITED(status) ? WEXITSTATUS(status) : 0;
-    if (WIFSIGNALED(status)) snprintf(text, sizeof text, "ended by %s", masu_cli_signal(WTERMSIG(status)));
+    if (WIFSIGNALED(status))
+        snprintf(text, sizeof text, "ended by %s", masu_cli_signal(WTERMSIG(status)));
     else if (code > 128 && code < 128 + 32) /* as a shell reports the end of its command */
-        snprintf(text, sizeof text, "exit code %d, which stands for %s", code, masu_cli_signal(code - 128));
+        snprintf(text, sizeof text, "exit code %d, which stands for %s", code,
+                 masu_cli_signal(code - 128));
     else snprintf(text, sizeof text, "exit code %d", code);
     return text;
 }
 
 /* ---- main ---- */
 
-/* A stream that was closed would give its number to the next file that is opened, and what is printed would go
- * there. The modes are such that its use still fails. */
+/* A stream that was closed would give its number to the next file that is opened, and what is
+ * printed would go there. The modes are such that its use still fails. */
 static void keep_streams(void) {
     for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; stream++) {
         if (fcntl(stream, F_GETFD) >= 0 || errno != EBADF) continue;

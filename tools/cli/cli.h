@@ -100,7 +100,8 @@ int masu_cli_main(const masu_cli_program *program, int argc, char **argv);
 /* Its end by itself, for a child that leaves by exit(): returns the exit code. */
 int masu_cli_end(int exit_code);
 
-/* For a command that has commands of its own, `masu-lab study march`: its run function calls this. */
+/* For a command that has commands of its own, `masu-lab study march`: its run function calls
+ * this. */
 int masu_cli_commands(masu_cli *cli, const char *summary, const masu_cli_command *const *commands);
 
 /* The next option's id, or MASU_CLI_ARGUMENT, _END or _EXIT. */
@@ -128,7 +129,8 @@ int masu_cli_usage_error(const char *format, ...) MASU_CLI_PRINTF(1, 2);
 /* "signal 11 (SIGSEGV)", for messages; valid until the next call. */
 const char *masu_cli_signal(int number);
 
-/* A status of waitpid or system: "ended by signal 11 (SIGSEGV)", "exit code 3"; valid until the next call. */
+/* A status of waitpid or system: "ended by signal 11 (SIGSEGV)", "exit code 3"; valid until the
+ * next call. */
 const char *masu_cli_status(int status);
 
 /* "NAME: warning: ...", with --quiet too. */

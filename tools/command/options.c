@@ -19,8 +19,8 @@ enum { ROWS_MAX = 64, HELP_MAX = 640 }; /* as many rows as masu_given has bits *
 static bool read_size(const masu_cli *cli, VkExtent2D *size) {
     if (!masu_cli_extent(cli, MASU_IMAGE_SIDE_MAX, &size->width, &size->height)) return false;
     if ((uint64_t)size->width * size->height <= MASU_IMAGE_PIXELS_MAX) return true;
-    masu_cli_usage_error("%s: expected at most %u pixels, found %s", cli->option, MASU_IMAGE_PIXELS_MAX,
-                         cli->value);
+    masu_cli_usage_error("%s: expected at most %u pixels, found %s", cli->option,
+                         MASU_IMAGE_PIXELS_MAX, cli->value);
     return false;
 }
 
@@ -109,7 +109,8 @@ bool masu_options_read(masu_cli *cli, const masu_option *rows, void *options, ma
         size_t length = strlen(row->help);
         bool broken = length && row->help[length - 1] == '\n';
         if (*value)
-            snprintf(help[count], HELP_MAX, "%s%s(default %s)", row->help, broken ? "" : " ", value);
+            snprintf(help[count], HELP_MAX, "%s%s(default %s)", row->help, broken ? "" : " ",
+                     value);
         else
             snprintf(help[count], HELP_MAX, "%.*s", (int)(length - broken), row->help);
         list[count] =

@@ -1,7 +1,7 @@
-/* options.h: the options of every command of `masu` and `masu-lab` as rows of a table: the help text, how
- * the value is read, and its member in the command's struct. masu_options_read reads them all. The help
- * prints the defaults that it finds in that struct, so the two cannot disagree. Rows shared by several
- * commands are defined here. */
+/* options.h: the options of every command of `masu` and `masu-lab` as rows of a table: the help
+ * text, how the value is read, and its member in the command's struct. masu_options_read reads them
+ * all. The help prints the defaults that it finds in that struct, so the two cannot disagree. Rows
+ * shared by several commands are defined here. */
 #ifndef MASU_OPTIONS_H
 #define MASU_OPTIONS_H
 
@@ -69,7 +69,7 @@ typedef struct masu_option {
     { .name = (name_), .value = (value_), .help = (help_), .take = MASU_TAKE_OWN, .read = (read_) }
 
 /* A heading in the help: the rows up to the next heading are printed below it. */
-#define MASU_HEADING(heading)                                                                        \
+#define MASU_HEADING(heading)                                                                      \
     { .name = "", .help = (heading), .take = MASU_TAKE_FLAG }
 
 /* Of every command that opens a device: `host` is a masu_headless_desc. */
@@ -105,7 +105,8 @@ void masu_use_rays(uint32_t way, masu_switch *ray_query, masu_headless_desc *hos
 int masu_use_ladder(const char *given, masu_desc *desc);
 
 #define MASU_MOMENT_ROW(type, member)                                                              \
-    MASU_REAL(type, member, "time", "SECONDS", -1e9, 1e9, "time in the scene and on its camera path")
+    MASU_REAL(type, member, "time", "SECONDS", -1e9, 1e9,                                          \
+              "time in the scene and on its camera path")
 
 /* The values of a knob, for its help: MASU_AA_WORDS(MASU_WORD_LIST). */
 #define MASU_WORD_LIST(name, value, word, text) " " word

@@ -42,7 +42,8 @@ json_t *masu_json_memory(const masu_memory *m) {
 
 int masu_text_write(const char *path, const char *text, size_t bytes) {
     char error[4096];
-    if (!strcmp(path, "-")) return fwrite(text, 1, bytes, stdout), MASU_CLI_OK; /* masu_cli_end looks at it */
+    /* masu_cli_end reports a failure of stdout. */
+    if (!strcmp(path, "-")) return fwrite(text, 1, bytes, stdout), MASU_CLI_OK;
     if (masu_file_write(path, text, bytes, error, sizeof error)) return MASU_CLI_OK;
     return masu_cli_error("%s", error);
 }

@@ -1,5 +1,5 @@
-/* output.h: what the commands of `masu` and `masu-lab` print in the same way: messages of the validation layer,
- * the device and its memory as JSON, JSON files. */
+/* output.h: what the commands of `masu` and `masu-lab` print in the same way: messages of the
+ * validation layer, the device and its memory as JSON, JSON files. */
 #ifndef MASU_COMMAND_OUTPUT_H
 #define MASU_COMMAND_OUTPUT_H
 
@@ -18,7 +18,8 @@ int masu_finish_validation(const masu_headless *host, int code);
 json_t *masu_json_device(const masu_headless *host);
 json_t *masu_json_memory(const masu_memory *memory);
 
-/* Writes a file atomically, or to stdout for "-". Returns an exit code, having reported a failure. */
+/* Writes a file atomically, or to stdout for "-". Returns an exit code, having reported a
+ * failure. */
 int masu_text_write(const char *path, const char *text, size_t bytes);
 /* Prints to a file atomically, or to stdout for "-". Returns an exit code, having reported a
  * failure. Takes the reference. */

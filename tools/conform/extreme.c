@@ -276,7 +276,8 @@ bool masu_field_compare(const masu_session *s, uint32_t slot, const char *scene_
     size_t pixels = (size_t)view->width * view->height;
     if (masu_readback(s->m, slot, MASU_READBACK_DEPTH, &image) || image.width != view->width ||
         image.height != view->height) {
-        snprintf(error, error_size, "field: expected a depth image of %ux%u", view->width, view->height);
+        snprintf(error, error_size, "field: expected a depth image of %ux%u", view->width,
+                 view->height);
         return false;
     }
     if (!masu_truth_path(scene_path, path, sizeof path)) {

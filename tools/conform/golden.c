@@ -13,12 +13,14 @@
 const char *masu_golden_path(const masu_suite *suite, const masu_case *of, char path[4096]) {
     const char *slash = strrchr(suite->file, '/');
     if (!of->golden) return NULL;
-    snprintf(path, 4096, "%.*s%s", slash ? (int)(slash - suite->file) + 1 : 0, suite->file, of->golden);
+    snprintf(path, 4096, "%.*s%s", slash ? (int)(slash - suite->file) + 1 : 0, suite->file,
+             of->golden);
     return path;
 }
 
-bool masu_golden_judge(const char *path, const masu_case *of, masu_session *s, const masu_frame_desc *frame,
-                       double values[MASU_MEASURE_COUNT], char *error, size_t error_size) {
+bool masu_golden_judge(const char *path, const masu_case *of, masu_session *s,
+                       const masu_frame_desc *frame, double values[MASU_MEASURE_COUNT], char *error,
+                       size_t error_size) {
     static masu_patch golden[MASU_PATCHES], drawn[MASU_PATCHES];
     if (!masu_rest_load(path, golden, error, error_size) ||
         !masu_rest_patches(s, *frame, of->positions, drawn, error, error_size)) {

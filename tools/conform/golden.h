@@ -1,5 +1,5 @@
-/* golden.h: images compared: with another image, or a case with a file ("against": "reference", "golden": FILE):
- * linear light by the means of patches, or an 8-bit image. */
+/* golden.h: images compared: with another image, or a case with a file ("against": "reference",
+ * "golden": FILE): linear light by the means of patches, or an 8-bit image. */
 #ifndef MASU_CONFORM_GOLDEN_H
 #define MASU_CONFORM_GOLDEN_H
 
@@ -9,13 +9,15 @@
 /* The golden file of a case, NULL if it has none; "folder of the suite/name". */
 const char *masu_golden_path(const masu_suite *suite, const masu_case *of, char path[4096]);
 
-/* After the frames of a case, whose last one is `frame`: draws of->positions frames of its moment and judges their mean
- * by the golden file. Fills the measures mean_off, patch_p95 and patch_z2. */
-bool masu_golden_judge(const char *path, const masu_case *of, masu_session *s, const masu_frame_desc *frame,
-                       double values[MASU_MEASURE_COUNT], char *error, size_t error_size);
+/* After the frames of a case, whose last one is `frame`: draws of->positions frames of its moment
+ * and judges their mean by the golden file. Fills the measures mean_off, patch_p95 and patch_z2. */
+bool masu_golden_judge(const char *path, const masu_case *of, masu_session *s,
+                       const masu_frame_desc *frame, double values[MASU_MEASURE_COUNT], char *error,
+                       size_t error_size);
 
 /* Pixels of two images of the case's size that differ, and by how much at most. */
-uint32_t masu_golden_differing(const uint8_t *a, const uint8_t *b, const masu_case *of, uint32_t *steps);
+uint32_t masu_golden_differing(const uint8_t *a, const uint8_t *b, const masu_case *of,
+                               uint32_t *steps);
 
 /* Fills the measures of 8-bit images. */
 void masu_golden_compare(const uint8_t *truth, const uint8_t *picture, const masu_case *of,

@@ -235,8 +235,8 @@ void masu_conform_junit(FILE *f, const masu_suite *suite, const masu_conform_res
     fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n  <testsuite", f);
     attribute(f, "name", suite->file);
     fprintf(f, " tests=\"%u\" failures=\"%u\" errors=\"%u\" skipped=\"%u\" time=\"%.3f\">\n", n,
-            t[MASU_VERDICT_FAIL], t[MASU_VERDICT_RESOURCE] + t[MASU_VERDICT_NOT_RUN], t[MASU_VERDICT_UNSUPPORTED],
-            seconds(results, n));
+            t[MASU_VERDICT_FAIL], t[MASU_VERDICT_RESOURCE] + t[MASU_VERDICT_NOT_RUN],
+            t[MASU_VERDICT_UNSUPPORTED], seconds(results, n));
     fputs("    <properties>\n", f);
     property(f, "suite", hash);
     property(f, "driver", driver);

@@ -28,8 +28,8 @@ void masu_conform_csv(FILE *f, const masu_suite *suite, const masu_conform_resul
 void masu_conform_table(FILE *f, const masu_suite *suite, const masu_conform_result *results,
                         uint32_t n, const char *driver);
 
-/* One testsuite: fail is a failure, a resource error and a case that was not run an error, not supported is skipped; a quality
- * warning passes and says so. */
+/* One testsuite: fail is a failure, a resource error and a case that was not run an error, not
+ * supported is skipped; a quality warning passes and says so. */
 void masu_conform_junit(FILE *f, const masu_suite *suite, const masu_conform_result *results,
                         uint32_t n, const char *driver);
 

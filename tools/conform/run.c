@@ -149,7 +149,8 @@ static void check_memory(masu_session *s, masu_conform_result *r) {
     q.host_budget = need.host_bytes;
     q.device_budget = need.device_bytes;
     if (masu_memory_query(&q, &need, &detail))
-        find(r, MASU_VERDICT_FAIL, "a budget of exactly the required size is rejected: %s", detail.text);
+        find(r, MASU_VERDICT_FAIL, "a budget of exactly the required size is rejected: %s",
+             detail.text);
     q.host_budget--;
     if (masu_memory_query(&q, &need, &detail) != MASU_ERROR_LIMIT ||
         strcmp(detail.what, "host_budget"))
@@ -522,8 +523,9 @@ static const uint8_t *truth_of(masu_conform *c, const masu_case *of, masu_confor
     masu_frame_desc frame = frame_at(of, of->frames - 1);
     frame.camera = of->extreme.has_camera ? &of->extreme.camera : NULL;
     frame.light = of->extreme.has_light ? &of->extreme.light : NULL;
-    bool good = masu_picture_truth(s, &frame, of->positions, of->rays, &(masu_picture_means){.display = rgba},
-                                   masu_cli_progress_text, error, sizeof error);
+    bool good = masu_picture_truth(s, &frame, of->positions, of->rays,
+                                   &(masu_picture_means){.display = rgba}, masu_cli_progress_text,
+                                   error, sizeof error);
     close_session(c, r);
     masu_truth_picture *more =
         good ? realloc(c->truths, (c->truth_count + 1) * sizeof *more) : NULL;
@@ -543,15 +545,18 @@ static void compare_with_golden(masu_conform *c, const masu_case *of, masu_confo
     char path[4096], error[1024];
     masu_frame_desc frame = frame_at(of, of->frames - 1);
     if (!masu_extreme_frame(&c->session, of, of->frames - 1, &frame, error, sizeof error) ||
-        !masu_golden_judge(masu_golden_path(c->suite, of, path), of, &c->session, &frame, r->values, error, sizeof error))
+        !masu_golden_judge(masu_golden_path(c->suite, of, path), of, &c->session, &frame, r->values,
+                           error, sizeof error))
         find(r, MASU_VERDICT_FAIL, "reference: %s", error);
 }
 
-static void compare_with_picture(masu_conform *c, const masu_case *of, const uint8_t *picture, masu_conform_result *r) {
+static void compare_with_picture(masu_conform *c, const masu_case *of, const uint8_t *picture,
+                                 masu_conform_result *r) {
     char path[4096], error[1024];
     uint8_t *golden = malloc(4 * (size_t)of->width * of->height);
-    if (golden && masu_picture_load(masu_golden_path(c->suite, of, path), (VkExtent2D){of->width, of->height}, golden,
-                                    error, sizeof error))
+    if (golden &&
+        masu_picture_load(masu_golden_path(c->suite, of, path), (VkExtent2D){of->width, of->height},
+                          golden, error, sizeof error))
         masu_golden_compare(golden, picture, of, r->values);
     else find(r, MASU_VERDICT_FAIL, "reference: %s", golden ? error : "out of memory");
     free(golden);
@@ -587,14 +592,16 @@ static bool supported(const masu_conform *c, const masu_case *of, masu_conform_r
             find(r, MASU_VERDICT_UNSUPPORTED, "the device has no %s", names[i]);
     }
     if (of->width > c->most_pixels || of->height > c->most_pixels) {
-        find(r, MASU_VERDICT_UNSUPPORTED, "size: found %ux%u, expected at most %u per side on this device",
-             of->width, of->height, c->most_pixels);
+        find(r, MASU_VERDICT_UNSUPPORTED,
+             "size: found %ux%u, expected at most %u per side on this device", of->width,
+             of->height, c->most_pixels);
     }
     return r->verdict == MASU_VERDICT_PASS;
 }
 
 static void run(masu_conform *c, const masu_case *of, masu_conform_result *r) {
-    bool timed = (of->governed.on && !of->governed.told) || masu_bound_is_set(&of->bounds[MASU_MEASURE_MS_RATIO]);
+    bool timed = (of->governed.on && !of->governed.told) ||
+                 masu_bound_is_set(&of->bounds[MASU_MEASURE_MS_RATIO]);
     if (timed && c->clock_stopped) {
         find(r, MASU_VERDICT_FAIL, "%s", MASU_CLOCK_STOPPED);
         return;

@@ -309,16 +309,22 @@ bool masu_case_linear(const masu_case *c) {
 
 /* Linear light has limits of patches, 8-bit images have the others. */
 static bool check_golden(const masu_suite_place *at, const masu_case *c) {
-    const bool reference = c->against && !strcmp(c->against, "reference"), linear = masu_case_linear(c);
+    const bool reference = c->against && !strcmp(c->against, "reference"),
+               linear = masu_case_linear(c);
     const char *end = c->golden ? strrchr(c->golden, '.') : NULL;
     if (reference != (c->golden != NULL))
-        return masu_suite_wrong(at, "error.golden", "expected 'against': 'reference' with a file, found one of the two");
+        return masu_suite_wrong(
+            at, "error.golden",
+            "expected 'against': 'reference' with a file, found one of the two");
     if (c->golden && !linear && (!end || strcmp(end, ".png") != 0))
-        return masu_suite_wrong(at, "error.golden", "expected a file .ref, .pfm, .exr or .png, found '%.60s'", c->golden);
+        return masu_suite_wrong(at, "error.golden",
+                                "expected a file .ref, .pfm, .exr or .png, found '%.60s'",
+                                c->golden);
     for (int m = MASU_MEASURE_RMSE; m <= MASU_MEASURE_PATCH_Z2; m++) {
         if (masu_bound_is_set(&c->bounds[m]) && (m >= MASU_MEASURE_MEAN_OFF) != linear)
             return masu_suite_wrong(at, "error", "%s needs %s", masu_measure_name((masu_measure)m),
-                                    linear ? "an image of 8 bits" : "a golden file of linear light");
+                                    linear ? "an image of 8 bits"
+                                           : "a golden file of linear light");
     }
     return true;
 }
@@ -336,10 +342,10 @@ static bool check_case(const masu_suite_place *at, masu_case *c) {
     if (!c->width)
         return masu_suite_wrong(at, "size", "expected width and height, found nothing");
     if (compares != (c->against != NULL)) {
-        return masu_suite_wrong(at, compares ? "error.against" : "error",
-                                compares
-                                    ? "expected 'truth', 'reference' or the name of a case, found nothing"
-                                    : "expected a limit with 'against', found none");
+        return masu_suite_wrong(
+            at, compares ? "error.against" : "error",
+            compares ? "expected 'truth', 'reference' or the name of a case, found nothing"
+                     : "expected a limit with 'against', found none");
     }
     if (!check_extreme(at, c) || !check_golden(at, c)) return false;
     masu_governed *g = &c->governed;

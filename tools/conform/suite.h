@@ -67,7 +67,8 @@ bool masu_verdict_failed(masu_verdict verdict);      /* makes the exit code 1 */
     X(FLIP_P99, flip_p99, "error", 0)                                                              \
     X(STEPS, steps, "error", 0)   /* largest difference of a channel */                            \
     X(PIXELS, pixels, "error", 0) /* that differ at all */                                         \
-    X(MEAN_OFF, mean_off, "error", 0)   /* |ratio of the means - 1|; these three against a reference */ \
+    /* These three are against a reference; |ratio of the means - 1|: */                            \
+    X(MEAN_OFF, mean_off, "error", 0)                                                              \
     X(PATCH_P95, patch_p95, "error", 0) /* measure/patches.h */                                    \
     X(PATCH_Z2, patch_z2, "error", 0)                                                              \
     X(HITMISS_PCT, hitmiss_pct, "field", 0) /* the march against its field: docs/conform.md */      \

@@ -1,5 +1,6 @@
-/* bench.c: `masu bench`: measures every quality level of a scene, error against run time: the command line of
- * bench/sweep.h, which measures, and of bench/report.h, which writes rungs, plots and a page. */
+/* bench.c: `masu bench`: measures every quality level of a scene, error against run time: the
+ * command line of bench/sweep.h, which measures, and of bench/report.h, which writes rungs, plots
+ * and a page. */
 #include "masu/bench.h"
 
 #include "bench/against.h"
@@ -33,8 +34,9 @@ static int report(const options *o) {
         return masu_cli_error("%s", error);
     masu_cli_progress_clear();
     if (result.unsteady > result.rows / 10) {
-        masu_cli_warn("%s: noisy times: %u of %u settings vary by more than 10 %%; rerun on an idle machine",
-                      o->sweep.folder, result.unsteady, result.rows);
+        masu_cli_warn(
+            "%s: noisy times: %u of %u settings vary by more than 10 %%; rerun on an idle machine",
+            o->sweep.folder, result.unsteady, result.rows);
     }
     if (!result.plots) masu_cli_warn("gnuplot not found: no plots written");
     if (masu_cli_quiet()) return MASU_CLI_OK;
@@ -50,7 +52,8 @@ static int report(const options *o) {
 static int merge(const options *o) {
     char error[4096];
     int lock = masu_sweep_lock(o->sweep.folder, error, sizeof error); /* until the process ends */
-    if (lock < 0 || !masu_sweep_merge(o->sweep.folder, o->given.arguments, o->given.count, error, sizeof error))
+    if (lock < 0 ||
+        !masu_sweep_merge(o->sweep.folder, o->given.arguments, o->given.count, error, sizeof error))
         return masu_cli_error("%s", error);
     return report(o);
 }
@@ -58,7 +61,8 @@ static int merge(const options *o) {
 static int against(const options *o) {
     masu_against result;
     char error[8192];
-    if (o->given.count != 1) return masu_cli_usage_error("--against: expected one folder to compare with it");
+    if (o->given.count != 1)
+        return masu_cli_usage_error("--against: expected one folder to compare with it");
     if (!masu_against_compare(o->given.arguments[0], o->against, &result, error, sizeof error))
         return masu_cli_error("%s", error);
     char *text = NULL;
@@ -66,7 +70,8 @@ static int against(const options *o) {
     FILE *f = open_memstream(&text, &bytes);
     bool good = f && masu_against_print(f, &result, o->csv != NULL) >= 0;
     good = f && !fclose(f) && good;
-    int code = good ? masu_text_write(o->csv ? o->csv : "-", text, bytes) : masu_cli_error("out of memory");
+    int code = good ? masu_text_write(o->csv ? o->csv : "-", text, bytes)
+                    : masu_cli_error("out of memory");
     free(text);
     return code;
 }
@@ -111,7 +116,8 @@ static int sweep(options *o) {
     bool good = masu_sweep_run(&o->sweep, &result, error, sizeof error);
     if (good && d->shards == 1 && d->steady > 0.0)
         good = steady(o, &timed, &result.messages, error, sizeof error);
-    if (good && o->golden) good = masu_golden_rungs(d, o->golden, &result.messages, error, sizeof error);
+    if (good && o->golden)
+        good = masu_golden_rungs(d, o->golden, &result.messages, error, sizeof error);
     masu_cli_progress_clear();
     if (!good) return masu_cli_error("%s", error);
     if (!masu_cli_quiet()) {
@@ -193,7 +199,8 @@ static int check(const options *o) {
     if (o->rungs_of && apart)
         return masu_cli_usage_error("--rungs-of cannot be combined with --against or --merge");
     if (o->steady && (apart || o->sweep.shards > 1))
-        return masu_cli_usage_error("--steady cannot be combined with --shard, --merge or --against");
+        return masu_cli_usage_error(
+            "--steady cannot be combined with --shard, --merge or --against");
     if (o->rungs_of && o->sweep.folder && !strcmp(o->rungs_of, o->sweep.folder))
         return masu_cli_usage_error("--rungs-of and --out: expected two folders, found one folder");
     if (o->ladder && (apart || o->rungs_of || o->sweep.folder))
@@ -203,7 +210,8 @@ static int check(const options *o) {
                                     : o->rungs_of     ? "--rungs-of"
                                                       : "--out");
     if (o->golden && (apart || o->ladder || o->sweep.shards > 1))
-        return masu_cli_usage_error("--golden cannot be combined with --shard, --merge, --against or --ladder");
+        return masu_cli_usage_error(
+            "--golden cannot be combined with --shard, --merge, --against or --ladder");
     if (o->csv && !o->against) return masu_cli_usage_error("--csv needs --against");
     return MASU_CLI_OK;
 }
@@ -229,11 +237,13 @@ static int run(masu_cli *cli) {
     if (!o.sweep.folder) return masu_cli_usage_error("--out DIR is missing");
     if (o.merge) return merge(&o);
     if (o.given.count > 1)
-        return masu_cli_usage_error("unexpected argument '%s': expected one scene", o.given.arguments[1]);
+        return masu_cli_usage_error("unexpected argument '%s': expected one scene",
+                                    o.given.arguments[1]);
     char error[4096];
     if (o.truth.path && !masu_file_named(o.truth.path, ".png", error, sizeof error))
         return masu_cli_usage_error("--truth: %s", error);
-    if (o.truth.path && !masu_file_exists(o.truth.path) && !masu_file_writable(o.truth.path, error, sizeof error))
+    if (o.truth.path && !masu_file_exists(o.truth.path) &&
+        !masu_file_writable(o.truth.path, error, sizeof error))
         return masu_cli_error("%s", error);
     return sweep(&o);
 }

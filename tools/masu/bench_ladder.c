@@ -13,7 +13,8 @@ static void print_table(const char *path, const masu_ladder_file *l) {
         char rmse[24] = "-", step[24] = "-";
         if (l->rmses[r] >= 0.0) snprintf(rmse, sizeof rmse, "%.2f", l->rmses[r]);
         if (l->steps[r] >= 0.0) snprintf(step, sizeof step, "%.2f", l->steps[r]);
-        printf("  %4u  %.3f  %.4f  %6s  %4s  %s\n", r, l->ratios[r], l->flips[r], rmse, step, l->settings[r]);
+        printf("  %4u  %.3f  %.4f  %6s  %4s  %s\n", r, l->ratios[r], l->flips[r], rmse, step,
+               l->settings[r]);
     }
 }
 

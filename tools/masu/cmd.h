@@ -1,4 +1,5 @@
-/* cmd.h: the commands of `masu`, one file NAME.c each. Their options are rows of command/options.h. */
+/* cmd.h: the commands of `masu`, one file NAME.c each. Their options are rows of
+ * command/options.h. */
 #ifndef MASU_CMD_H
 #define MASU_CMD_H
 

@@ -1,6 +1,6 @@
-/* compare.c: `masu compare`: the error of one image against another, by the metrics that all benches
- * use (metric/image.h, metric/flip.h). tests/scripts/compare.sh checks them against other programs.
- * Needs no device. */
+/* compare.c: `masu compare`: the error of one image against another, by the metrics that all
+ * benches use (metric/image.h, metric/flip.h). tests/scripts/compare.sh checks them against other
+ * programs. Needs no device. */
 #include "masu/cmd.h"
 #include "masu/compare.h"
 #include "command/options.h"
@@ -57,8 +57,9 @@ static int compare(const char *const files[2], const masu_compare_options *o) {
     bool good = masu_image_load_png(files[0], &images[0], error, sizeof error) &&
                 masu_image_load_png(files[1], &images[1], error, sizeof error);
     if (good && (images[0].width != images[1].width || images[0].height != images[1].height)) {
-        snprintf(error, sizeof error, "%.1500s: found %ux%u, expected %ux%u as in %.1500s", files[1],
-                 images[1].width, images[1].height, images[0].width, images[0].height, files[0]);
+        snprintf(error, sizeof error, "%.1500s: found %ux%u, expected %ux%u as in %.1500s",
+                 files[1], images[1].width, images[1].height, images[0].width, images[0].height,
+                 files[0]);
         good = false;
     }
     float *map = NULL;
@@ -84,7 +85,8 @@ static const masu_option rows[] = {
     MASU_REAL(masu_compare_options, ppd, "ppd", "N", 1.0, 1000.0,
               "pixels per degree of the viewer's field of view, 1 to 1000\n"
               "(default 67.02: a 4K screen at 0.7 m)"),
-    MASU_OUTPUT(masu_compare_options, json, "json", "FILE", "write the metrics there as JSON, and print no text; '-' is stdout"),
+    MASU_OUTPUT(masu_compare_options, json, "json", "FILE",
+                "write the metrics there as JSON, and print no text; '-' is stdout"),
     MASU_TEXT(masu_compare_options, errors, "error", "FILE",
               "standard error of each value of the reference, linear light (.pfm, .exr)"),
     {.name = NULL}};
@@ -94,7 +96,8 @@ static int run(masu_cli *cli) {
     masu_given given = {.most = 2, .excess = "expected one reference and one image"};
     int code;
     if (!masu_options_read(cli, rows, &o, &given, &code)) return code;
-    if (given.count < 2) return masu_cli_usage_error("expected a reference and an image: REFERENCE IMAGE");
+    if (given.count < 2)
+        return masu_cli_usage_error("expected a reference and an image: REFERENCE IMAGE");
     if (masu_compare_is_linear(given.arguments[0]) || masu_compare_is_linear(given.arguments[1]))
         return masu_compare_linear(given.arguments, &o);
     if (o.errors) return masu_cli_usage_error("--error needs images of linear light (.pfm, .exr)");
@@ -104,20 +107,22 @@ static int run(masu_cli *cli) {
 const masu_cli_command masu_cmd_compare = {
     .name = "compare",
     .arguments = "REFERENCE IMAGE [options]",
-    .summary = "print the error of an image against a reference: RMSE, PSNR, SSIM, FLIP, ratios of patches",
-    .details = "Both images must have the same size. PNGs are read as sRGB; alpha is ignored. SSIM is computed on\n"
-               "luma.\n\n"
-               "Linear light (PFM, OpenEXR, a .ref of `masu-lab reference`): relative RMSE (of the reference's\n"
-               "mean), relMSE, HDR-FLIP, and statistics of 16x9 patches: the ratio of the means, the 95th\n"
-               "percentile of |patch ratio - 1| beyond three standard errors, and with --error or a .ref the\n"
-               "mean of z^2 over the nine tenths of the patches with the least, z = difference / sqrt(standard\n"
-               "error^2 + (1 % of the patch)^2). Limits for equal images: 0.8 %, 3.5 %, 1.02.\n\n"
-               "Exit codes:\n"
-               "  0  success, for any error\n"
-               "  1  a file could not be read or written, or the sizes differ\n"
-               "  2  the command line is wrong\n\n"
-               "Examples:\n"
-               "  masu compare reference.png frame.png\n"
-               "  masu compare reference.exr frame.exr --error sigma.pfm\n"
-               "  masu compare reference.png frame.png --map flip.png --json -\n",
+    .summary =
+        "print the error of an image against a reference: RMSE, PSNR, SSIM, FLIP, ratios of patches",
+    .details =
+        "Both images must have the same size. PNGs are read as sRGB; alpha is ignored. SSIM is computed on\n"
+        "luma.\n\n"
+        "Linear light (PFM, OpenEXR, a .ref of `masu-lab reference`): relative RMSE (of the reference's\n"
+        "mean), relMSE, HDR-FLIP, and statistics of 16x9 patches: the ratio of the means, the 95th\n"
+        "percentile of |patch ratio - 1| beyond three standard errors, and with --error or a .ref the\n"
+        "mean of z^2 over the nine tenths of the patches with the least, z = difference / sqrt(standard\n"
+        "error^2 + (1 % of the patch)^2). Limits for equal images: 0.8 %, 3.5 %, 1.02.\n\n"
+        "Exit codes:\n"
+        "  0  success, for any error\n"
+        "  1  a file could not be read or written, or the sizes differ\n"
+        "  2  the command line is wrong\n\n"
+        "Examples:\n"
+        "  masu compare reference.png frame.png\n"
+        "  masu compare reference.exr frame.exr --error sigma.pfm\n"
+        "  masu compare reference.png frame.png --map flip.png --json -\n",
     .run = run};

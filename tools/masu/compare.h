@@ -1,4 +1,5 @@
-/* compare.h: the two kinds of images that `masu compare` reads: 8 bits of sRGB, and linear light. */
+/* compare.h: the two kinds of images that `masu compare` reads: 8 bits of sRGB, and linear
+ * light. */
 #ifndef MASU_CMD_COMPARE_H
 #define MASU_CMD_COMPARE_H
 

@@ -35,24 +35,29 @@ static int write_file(const char *path, writer write, const masu_suite *suite,
     FILE *f = open_memstream(&text, &bytes);
     if (!f) return masu_cli_error("%s: out of memory", path);
     write(f, suite, results, n, driver);
-    int code = fclose(f) ? masu_cli_error("%s: out of memory", path) : masu_text_write(path, text, bytes);
+    int code =
+        fclose(f) ? masu_cli_error("%s: out of memory", path) : masu_text_write(path, text, bytes);
     free(text);
     return code;
 }
 
-/* All reports, before each case and at the end: whatever ends the run, the files are complete and say which case it was.
- * Standard output, devices and pipes get the last version only. */
-static int write_reports(const options *o, const masu_suite *suite, const masu_conform_result *results, uint32_t n,
-                         const char *driver, bool last) {
+/* All reports, before each case and at the end: whatever ends the run, the files are complete and
+ * say which case it was. Standard output, devices and pipes get the last version only. */
+static int write_reports(const options *o, const masu_suite *suite,
+                         const masu_conform_result *results, uint32_t n, const char *driver,
+                         bool last) {
     const struct {
         const char *path;
         writer write;
-    } reports[] = {{o->junit, masu_conform_junit}, {o->csv, masu_conform_csv}, {o->table, masu_conform_table}};
+    } reports[] = {
+        {o->junit, masu_conform_junit}, {o->csv, masu_conform_csv}, {o->table, masu_conform_table}};
     int code = MASU_CLI_OK;
     for (size_t i = 0; i < sizeof reports / sizeof *reports; i++) {
         const char *path = reports[i].path;
-        bool file = path && strcmp(path, "-") != 0 && (!masu_file_exists(path) || masu_file_is_regular(path));
-        if (path && (last || file)) code |= write_file(path, reports[i].write, suite, results, n, driver);
+        bool file = path && strcmp(path, "-") != 0 &&
+                    (!masu_file_exists(path) || masu_file_is_regular(path));
+        if (path && (last || file))
+            code |= write_file(path, reports[i].write, suite, results, n, driver);
     }
     return code;
 }
@@ -80,38 +85,45 @@ static char *command_of(const options *o) {
     return NULL;
 }
 
-/* Scenes of these cases that are not in the folder: a warning. False: there is none of them, and `error` says so. */
-static bool has_scenes(const options *o, const masu_conform_result *results, uint32_t n, char *error, size_t size) {
+/* Scenes of these cases that are not in the folder: a warning. False: there is none of them, and
+ * `error` says so. */
+static bool has_scenes(const options *o, const masu_conform_result *results, uint32_t n,
+                       char *error, size_t size) {
     char names[200] = "";
     uint32_t missing = 0, most = 0;
     for (uint32_t i = 0; i < n; i++) {
         char path[MASU_DATA_PATH];
         bool seen = false;
-        for (uint32_t k = 0; k < i && !seen; k++) seen = !strcmp(results[k].of->scene, results[i].of->scene);
+        for (uint32_t k = 0; k < i && !seen; k++)
+            seen = !strcmp(results[k].of->scene, results[i].of->scene);
         if (seen) continue;
         most++;
         snprintf(path, sizeof path, "%.3000s/%.1000s.masu", o->scene_folder, results[i].of->scene);
         if (masu_file_exists(path)) continue;
         size_t used = strlen(names);
-        snprintf(names + used, sizeof names - used, "%s%s", missing ? ", " : "", results[i].of->scene);
+        snprintf(names + used, sizeof names - used, "%s%s", missing ? ", " : "",
+                 results[i].of->scene);
         missing++;
     }
     if (missing)
-        snprintf(error, size, "%u of %u scenes are not baked in %.2000s (%s): `make scenes` in Masu's source tree bakes them",
-                 missing, most, o->scene_folder, names);
+        snprintf(
+            error, size,
+            "%u of %u scenes are not baked in %.2000s (%s): `make scenes` in Masu's source tree bakes them",
+            missing, most, o->scene_folder, names);
     if (missing && missing < most) masu_cli_warn("%s", error);
     return !missing || missing < most;
 }
 
 /* Every case was not run, for this reason. */
-static int none_run(const options *o, const masu_suite *suite, masu_conform_result *results, uint32_t n,
-                    const char *why) {
+static int none_run(const options *o, const masu_suite *suite, masu_conform_result *results,
+                    uint32_t n, const char *why) {
     for (uint32_t i = 0; i < n; i++) masu_conform_not_run(results[i].of, why, &results[i]);
     (void)write_reports(o, suite, results, n, "", true);
     return masu_cli_error("%s", why);
 }
 
-static int run_cases(const options *o, const masu_suite *suite, masu_conform_result *results, uint32_t n) {
+static int run_cases(const options *o, const masu_suite *suite, masu_conform_result *results,
+                     uint32_t n) {
     static masu_conform c;
     char error[4096];
     if (o->images && (!masu_folder_make(o->images, error, sizeof error)))
@@ -123,8 +135,10 @@ static int run_cases(const options *o, const masu_suite *suite, masu_conform_res
                        .runs = o->runs};
     masu_headless_desc asked = o->host; /* each case asks for ray queries by itself */
     masu_use_rays(o->rays, &c.ray_query, &asked);
-    if (!has_scenes(o, results, n, error, sizeof error)) return none_run(o, suite, results, n, error);
-    int written = write_reports(o, suite, results, n, "", false); /* a driver may crash when it is opened */
+    if (!has_scenes(o, results, n, error, sizeof error))
+        return none_run(o, suite, results, n, error);
+    /* A driver may crash when it is opened. */
+    int written = write_reports(o, suite, results, n, "", false);
     if (written) return written;
     if (!masu_conform_open(&c, error, sizeof error)) return none_run(o, suite, results, n, error);
     char *command = command_of(o);
@@ -191,7 +205,9 @@ static int conform(const options *o) {
     } else if (!code) {
         uint32_t n = 0;
         for (uint32_t i = 0; i < suite.count; i++)
-            if (marks[i]) masu_conform_not_run(&suite.cases[i], "the run ended before this case", &results[n++]);
+            if (marks[i])
+                masu_conform_not_run(&suite.cases[i], "the run ended before this case",
+                                     &results[n++]);
         code = run_cases(o, &suite, results, n);
     }
     free(results);
@@ -227,9 +243,10 @@ static int find_scenes(options *o) {
         return MASU_CLI_OK;
     }
     if (masu_data_folder("scenes", o->scene_folder)) return MASU_CLI_OK;
-    return masu_cli_error("no baked scenes found in %s: run `make scenes install` in Masu's source tree, "
-                          "or use --scenes DIR",
-                          o->scene_folder);
+    return masu_cli_error(
+        "no baked scenes found in %s: run `make scenes install` in Masu's source tree, "
+        "or use --scenes DIR",
+        o->scene_folder);
 }
 
 /* ---- Command line ---------------------------------------------------------------------------- */
@@ -255,17 +272,20 @@ static const masu_option rows[] = {
     MASU_TEXT(options, glob, "case", "GLOB", "run only cases whose name matches, e.g. 'memory.*'"),
     MASU_OWN("fraction", "I,N", read_fraction,
              "run only every N-th of these cases, from the I-th (0 to N - 1)"),
-    MASU_TEXT(options, replay, "replay", "TOKEN", "run only the case of this token, as a failure prints it"),
+    MASU_TEXT(options, replay, "replay", "TOKEN",
+              "run only the case of this token, as a failure prints it"),
     MASU_FLAG(options, list, "list", "print the names of the cases and run none"),
     MASU_UINT(options, runs, "runs", 1, 999,
               "timed frames per round, in up to four rounds, of cases with a time limit\n"),
     MASU_HEADING("Output"),
-    MASU_OUTPUT(options, junit, "junit", "FILE.xml", "write the results as JUnit XML; '-' is stdout"),
+    MASU_OUTPUT(options, junit, "junit", "FILE.xml",
+                "write the results as JUnit XML; '-' is stdout"),
     MASU_OUTPUT(options, csv, "csv", "FILE.csv",
                 "write the results with all measurements; '-' is stdout"),
     MASU_OUTPUT(options, table, "table", "FILE.md",
                 "write rows of a Markdown table: input, limits, measurements; '-' is stdout"),
-    MASU_TEXT(options, images, "images", "DIR", "write the image of every case as PNG; the folder is created"),
+    MASU_TEXT(options, images, "images", "DIR",
+              "write the image of every case as PNG; the folder is created"),
     MASU_HEADING("Device"),
     MASU_RAYS_ROW(options, rays),
     MASU_DEVICE_ROWS(options, host),
@@ -278,7 +298,9 @@ static int run(masu_cli *cli) {
     int code;
     if (!masu_options_read(cli, rows, &o, &given, &code)) return code;
     const char *part = masu_first_given(&given, rows, parts);
-    if (o.replay && part) return masu_cli_usage_error("--replay names one case: it cannot be combined with --%s", part);
+    if (o.replay && part)
+        return masu_cli_usage_error("--replay names one case: it cannot be combined with --%s",
+                                    part);
     o.rays_given = masu_is_given(&given, rows, "rays");
     code = find_suite(&o);
     if (!code && !o.list) code = find_scenes(&o);

@@ -278,7 +278,8 @@ static const masu_option rows[] = {
     MASU_OUTPUT_SIZE_ROW(plan_options, d.desc.output),
     MASU_LADDER_ROW(plan_options, ladder, "scales 1, 0.8, 0.4 (default off)"),
     MASU_HEADING("Memory"),
-    MASU_OWN("setting", "NAME", read_setting, "one rung instead of a ladder: scale=0.5+aa=fxaa; --knobs lists the knobs"),
+    MASU_OWN("setting", "NAME", read_setting,
+             "one rung instead of a ladder: scale=0.5+aa=fxaa; --knobs lists the knobs"),
     MASU_UINT(plan_options, d.desc.frames_in_flight, "frames-in-flight", 1, MASU_MAX_FLIGHT,
               "frames recorded ahead of the GPU: 1 to 3 (default 2)"),
     MASU_OWN("split-memory", NULL, read_split,
@@ -301,7 +302,8 @@ static int run(masu_cli *cli) {
     int code;
     if (!masu_options_read(cli, rows, &o, &given, &code)) return code;
     if (!given.count) return masu_cli_usage_error("no scene given: expected SCENE.masu");
-    if (o.ladder && masu_is_given(&given, rows, "setting")) return masu_cli_usage_error("--setting plans one rung: no --ladder");
+    if (o.ladder && masu_is_given(&given, rows, "setting"))
+        return masu_cli_usage_error("--setting plans one rung: no --ladder");
     o.d.scene_path = given.arguments[0];
     return plan(&o);
 }

@@ -36,14 +36,16 @@ static bool output_name(const char *pattern, uint32_t frame, char *out, size_t s
     return n > 0 && (size_t)n < size;
 }
 
-/* Writes the format that the file's name selects. linear: three floats a pixel of `size`; rgba: of the output. */
-static int write_image(const masu_session *s, const char *path, const uint8_t *rgba, const float *linear,
-                       VkExtent2D size) {
+/* Writes the format that the file's name selects. linear: three floats a pixel of `size`; rgba: of
+ * the output. */
+static int write_image(const masu_session *s, const char *path, const uint8_t *rgba,
+                       const float *linear, VkExtent2D size) {
     char error[1024];
     VkExtent2D out = s->desc.output;
-    bool good = masu_image_is_linear(path)
-                    ? masu_image_save_linear(path, linear, size.width, size.height, error, sizeof error)
-                    : masu_image_save_png(path, rgba, out.width, out.height, 0, error, sizeof error);
+    bool good =
+        masu_image_is_linear(path)
+            ? masu_image_save_linear(path, linear, size.width, size.height, error, sizeof error)
+            : masu_image_save_png(path, rgba, out.width, out.height, 0, error, sizeof error);
     return good ? MASU_CLI_OK : masu_cli_error("%s", error);
 }
 
@@ -64,11 +66,13 @@ static int save_linear(masu_session *s, const char *name, const masu_commands *c
     return code;
 }
 
-/* Writes image number `frame` if it is asked for: each into a video or a numbered file, else the last. */
+/* Writes image number `frame` if it is asked for: each into a video or a numbered file, else the
+ * last. */
 static int save(masu_session *s, const masu_render_options *o, masu_video *video, uint32_t frame,
                 const masu_commands *commands) {
     char error[1024], name[4096];
-    bool each = o->output && strchr(o->output, '#') != NULL, file = o->output && (each || frame + 1 == o->frames);
+    bool each = o->output && strchr(o->output, '#') != NULL,
+         file = o->output && (each || frame + 1 == o->frames);
     if (!file && !o->video) return MASU_CLI_OK;
     if (file && !output_name(o->output, frame, name, sizeof name))
         return masu_cli_error("--output: the file name is too long");
@@ -126,7 +130,8 @@ static bool measure(masu_session *s, const masu_render_options *o, uint32_t fram
                          .time = o->time + (double)(o->first + image) * o->time_step,
                          .time_step = o->rays ? MASU_PICTURE_STEP : (float)o->time_step,
                          .rung = o->target_ms > 0.0 ? MASU_RUNG_AUTO : o->rung,
-                         .cut = o->rays && frame % rays == 0}; /* the sum begins with the first one that counts */
+                         /* The sum begins with the first one that counts. */
+                         .cut = o->rays && frame % rays == 0};
     if (o->animate && !animate(s, f.time, error, size)) return false;
     masu_commands commands;
     uint64_t callbacks = counts->allocations + counts->reallocations;
@@ -163,26 +168,28 @@ static void report_rays(const masu_session *s, const masu_render_options *o, con
     masu_plan_of(s->m, &plan);
     const masu_plan_rung *r = &plan.rungs[o->rung];
     double pixels = (double)r->render_width * (double)r->render_height;
-    if (!stats->specular_rays) masu_cli_warn("--reference: no pixel of the image traces reflections");
+    if (!stats->specular_rays)
+        masu_cli_warn("--reference: no pixel of the image traces reflections");
     if (masu_cli_quiet()) return;
     masu_cli_progress_clear();
-    fprintf(stderr, "masu: reference: %u rays per reflecting pixel, %.1f %% of the image\n", o->rays,
-            100.0 * (double)stats->specular_rays / pixels);
+    fprintf(stderr, "masu: reference: %u rays per reflecting pixel, %.1f %% of the image\n",
+            o->rays, 100.0 * (double)stats->specular_rays / pixels);
 }
 
 /* One ground truth, into the files that ask for it. */
-static int truth_frame(masu_session *s, const masu_render_options *o, const masu_light *light, uint32_t frame,
-                       masu_video *video, uint8_t *rgba, float *linear) {
+static int truth_frame(masu_session *s, const masu_render_options *o, const masu_light *light,
+                       uint32_t frame, masu_video *video, uint8_t *rgba, float *linear) {
     char error[1024], name[4096] = "";
     const bool file = o->output && (strchr(o->output, '#') || frame + 1 == o->frames);
-    masu_frame_desc f = {.light = light, .time = o->time + (double)(o->first + frame) * o->time_step};
+    masu_frame_desc f = {.light = light,
+                         .time = o->time + (double)(o->first + frame) * o->time_step};
     if (file && !output_name(o->output, frame, name, sizeof name))
         return masu_cli_error("--output: the file name is too long");
     if (!file && !o->video) return MASU_CLI_OK;
     if (o->animate && !animate(s, f.time, error, sizeof error)) return masu_cli_error("%s", error);
     if (!masu_picture_truth(s, &f, o->positions, o->rays ? o->rays : MASU_PICTURE_RAYS,
-                            &(masu_picture_means){.linear = linear, .display = rgba}, masu_cli_progress_text, error,
-                            sizeof error) ||
+                            &(masu_picture_means){.linear = linear, .display = rgba},
+                            masu_cli_progress_text, error, sizeof error) ||
         (o->video && !masu_video_frame(video, rgba, error, sizeof error))) {
         return masu_cli_error("%s", error);
     }
@@ -193,29 +200,33 @@ static int truth_frame(masu_session *s, const masu_render_options *o, const masu
 static int render_truth(masu_session *s, const masu_render_options *o, masu_video *video) {
     masu_light light;
     bool own_light = o->own_sun || o->turbidity > 0.0 || o->exposure > 0.0;
-    if (own_light && masu_light_of(s->m, &light)) return masu_cli_error("--sun, --turbidity and --exposure: the scene has no light");
+    if (own_light && masu_light_of(s->m, &light))
+        return masu_cli_error("--sun, --turbidity and --exposure: the scene has no light");
     if (own_light) set_light(o, &light);
     VkExtent2D size = s->desc.output;
     size_t pixels = (size_t)size.width * size.height;
     uint8_t *rgba = malloc(4 * pixels);
     float *linear = malloc(3 * sizeof *linear * pixels);
-    int code = rgba && linear ? MASU_CLI_OK
-                              : masu_cli_error("out of memory for an image of %ux%u", size.width, size.height);
+    int code = rgba && linear
+                   ? MASU_CLI_OK
+                   : masu_cli_error("out of memory for an image of %ux%u", size.width, size.height);
     for (uint32_t i = 0; i < o->frames && !code; i++)
         code = truth_frame(s, o, own_light ? &light : NULL, i, video, rgba, linear);
     free(rgba);
     free(linear);
     if (code || masu_cli_quiet()) return code;
-    const uint32_t frames = masu_picture_frames(s, o->positions, o->rays ? o->rays : MASU_PICTURE_RAYS);
+    const uint32_t frames =
+        masu_picture_frames(s, o->positions, o->rays ? o->rays : MASU_PICTURE_RAYS);
     masu_cli_progress_clear();
-    fprintf(stderr, "masu: ground truth: %u samples per pixel, %u frame%s each\n", o->positions, frames,
-            frames == 1 ? "" : "s");
+    fprintf(stderr, "masu: ground truth: %u samples per pixel, %u frame%s each\n", o->positions,
+            frames, frames == 1 ? "" : "s");
     return MASU_CLI_OK;
 }
 
 /* ---- The settled still ----------------------------------------------------------------------- */
 
-/* Mean difference of two images, of 255, over blocks of 4x4 pixels, in which the noise of dithering averages out. */
+/* Mean difference of two images, of 255, over blocks of 4x4 pixels, in which the noise of dithering
+ * averages out. */
 static double change(const uint8_t *a, const uint8_t *b, uint32_t width, uint32_t height) {
     double sum = 0.0;
     uint64_t blocks = 0;
@@ -234,8 +245,10 @@ static double change(const uint8_t *a, const uint8_t *b, uint32_t width, uint32_
     return sum / (double)blocks;
 }
 
-/* Frames of one moment until they change by less than a quarter of a step; linear light is their mean. */
-static int render_still(masu_session *s, const masu_render_options *o, masu_vk_alloc_counts *counts) {
+/* Frames of one moment until they change by less than a quarter of a step; linear light is their
+ * mean. */
+static int render_still(masu_session *s, const masu_render_options *o,
+                        masu_vk_alloc_counts *counts) {
     const uint32_t width = s->desc.output.width, height = s->desc.output.height;
     const size_t bytes = 4 * (size_t)width * height;
     const bool is_linear = masu_image_is_linear(o->output);
@@ -247,7 +260,9 @@ static int render_still(masu_session *s, const masu_render_options *o, masu_vk_a
     masu_commands commands;
     masu_stats_info stats;
     char error[1024];
-    int code = before && (linear || !is_linear) ? MASU_CLI_OK : masu_cli_error("out of memory for an image of %ux%u", width, height);
+    int code = before && (linear || !is_linear)
+                   ? MASU_CLI_OK
+                   : masu_cli_error("out of memory for an image of %ux%u", width, height);
     double moved = HUGE_VAL;
     uint32_t n = 0;
     while (!code && n < STILL_FRAMES_MAX && (n < STILL_FRAMES_MIN || moved >= STILL_CHANGE)) {
@@ -288,14 +303,18 @@ static int render_frames(masu_session *s, const masu_render_options *o, masu_vid
     memset(&stats, 0, sizeof stats);
     masu_sample warm_up;
     masu_commands commands;
-    if (!code && o->stats && !measure(s, o, 0, counts, &warm_up, &stats, &commands, error, sizeof error)) {
+    if (!code && o->stats &&
+        !measure(s, o, 0, counts, &warm_up, &stats, &commands, error, sizeof error)) {
         code = masu_cli_error("%s", error);
     }
     for (uint64_t i = 0; i < (uint64_t)o->frames * rays && !code; i++) {
         const uint32_t image = (uint32_t)(i / rays), ray = (uint32_t)(i % rays);
-        if (o->rays) masu_cli_progress("image %u of %u: ray %u of %u per pixel", image + 1, o->frames, ray + 1, rays);
+        if (o->rays)
+            masu_cli_progress("image %u of %u: ray %u of %u per pixel", image + 1, o->frames,
+                              ray + 1, rays);
         else masu_cli_progress("frame %u of %u", image + 1, o->frames);
-        if (!measure(s, o, (uint32_t)i, counts, ray ? &other : &samples[image], &stats, &commands, error, sizeof error))
+        if (!measure(s, o, (uint32_t)i, counts, ray ? &other : &samples[image], &stats, &commands,
+                     error, sizeof error))
             code = masu_cli_error("%s", error);
         else if (ray + 1 == rays)
             code = save(s, o, video, image, &commands);
@@ -493,25 +512,33 @@ static const masu_option rows[] = {
 /* What does not go together, and what is missing; an exit code. */
 static int check(const masu_render_options *o, const masu_given *given) {
     /* About what --truth has its own mind of. */
-    static const char *const decided[] = {"stats",  "rung",      "setting", "aa",         "cull", "lod-error",
-                                          "ladder", "target-ms", "times",   "anisotropy", NULL};
+    static const char *const decided[] = {"stats", "rung",       "setting", "aa",
+                                          "cull",  "lod-error",  "ladder",  "target-ms",
+                                          "times", "anisotropy", NULL};
     static const char *const choosing[] = {"ladder", "target-ms", NULL};
     const char *own = masu_first_given(given, rows, decided);
     if (o->positions && own)
-        return masu_cli_usage_error("--truth cannot be combined with --%s: it uses the most exact settings", own);
+        return masu_cli_usage_error(
+            "--truth cannot be combined with --%s: it uses the most exact settings", own);
     if (masu_is_given(given, rows, "frame") && masu_is_given(given, rows, "frames"))
-        return masu_cli_usage_error("--frame cannot be combined with --frames: it renders one frame");
-    if (o->video && !masu_is_given(given, rows, "frames")) return masu_cli_usage_error("--video needs --frames");
-    if (o->video && !(o->time_step > 0.0)) return masu_cli_usage_error("--video needs a --time-step above 0");
+        return masu_cli_usage_error(
+            "--frame cannot be combined with --frames: it renders one frame");
+    if (o->video && !masu_is_given(given, rows, "frames"))
+        return masu_cli_usage_error("--video needs --frames");
+    if (o->video && !(o->time_step > 0.0))
+        return masu_cli_usage_error("--video needs a --time-step above 0");
     const char *choice = masu_first_given(given, rows, choosing);
     if (masu_is_given(given, rows, "setting") && choice)
-        return masu_cli_usage_error("--setting cannot be combined with --%s: it renders one rung", choice);
+        return masu_cli_usage_error("--setting cannot be combined with --%s: it renders one rung",
+                                    choice);
     if (!given->count) return masu_cli_usage_error("no scene given: expected SCENE.masu");
     if (!o->output && !o->video && !o->stats && !o->times && !(o->target_ms > 0.0))
-        return masu_cli_usage_error("expected at least one of --output, --video, --stats, --times, --target-ms");
+        return masu_cli_usage_error(
+            "expected at least one of --output, --video, --stats, --times, --target-ms");
     if (o->target_ms > 0.0 && o->rays)
         return masu_cli_usage_error("--target-ms and --reference cannot be combined");
-    if (o->positions && !o->output && !o->video) return masu_cli_usage_error("--truth needs --output or --video");
+    if (o->positions && !o->output && !o->video)
+        return masu_cli_usage_error("--truth needs --output or --video");
     return MASU_CLI_OK;
 }
 
@@ -522,8 +549,10 @@ static int describe(masu_render_options *o, const masu_given *given) {
     o->turned.cull_given = masu_is_given(given, rows, "cull");
     o->turned.aa_given = masu_is_given(given, rows, "aa");
     o->turned.lod_given = masu_is_given(given, rows, "lod-error");
-    static const char *const raw[] = {"frame", "frames", "stats", "times", "target-ms", "reference", "truth", NULL};
-    static const char *const own_rung[] = {"setting", "rung", "ladder", "target-ms", "aa", "reference", "truth", NULL};
+    static const char *const raw[] = {"frame",     "frames",    "stats", "times",
+                                      "target-ms", "reference", "truth", NULL};
+    static const char *const own_rung[] = {"setting", "rung",      "ladder", "target-ms",
+                                           "aa",      "reference", "truth",  NULL};
     o->still = o->output && !masu_first_given(given, rows, raw);
     if ((o->still || o->video) && !masu_first_given(given, rows, own_rung)) {
         d->rung_count = 1;
@@ -581,8 +610,8 @@ static int run(masu_cli *cli) {
     }
     masu_video video = {0};
     code = MASU_CLI_OK;
-    if (o.video && !masu_video_open(&video, o.video, o.d.desc.output.width, o.d.desc.output.height, o.time_step, error,
-                                    sizeof error))
+    if (o.video && !masu_video_open(&video, o.video, o.d.desc.output.width, o.d.desc.output.height,
+                                    o.time_step, error, sizeof error))
         code = masu_cli_error("%s", error);
     if (!code)
         code = o.positions ? render_truth(&s, &o, &video)
@@ -598,20 +627,21 @@ const masu_cli_command masu_cmd_render = {
     .name = "render",
     .arguments = "SCENE.masu -o OUT.png|OUT.pfm|OUT.exr [options]",
     .summary = "render a baked scene to an image",
-    .details = "Without --frame, --frames, --truth, --reference, --stats, --times or --target-ms the image is the\n"
-               "settled still: frames of one moment, with temporal anti-aliasing if no rung is chosen, until an\n"
-               "image of 16 frames or more changes by less than 0.25 of 255, or 64 frames. It is dithered.\n\n"
-               "With --stats, an extra first frame is rendered and not counted. Wall time is measured from\n"
-               "masu_frame to the fence. GPU times are timestamps with a full barrier around each pass;\n"
-               "\"timestamps_plausible\" reports whether they agree with the wall time.\n\n"
-               "Exit codes:\n"
-               "  0  success\n"
-               "  1  rendering failed, a file could not be read or written, or --validate reported a message\n"
-               "  2  the command line is wrong\n\n"
-               "Examples:\n"
-               "  masu render engine.masu -o still.png --size 1280x720\n"
-               "  masu render engine.masu -o frame.exr --frame=30\n"
-               "  masu render engine.masu --frames 300 --video - | ffmpeg -i - engine.mp4\n"
-               "  masu render engine.masu -o frame.png --setting scale=0.5+aa=fxaa\n"
-               "  masu render engine.masu --target-ms 33 --frames 300 --size 640x360\n",
+    .details =
+        "Without --frame, --frames, --truth, --reference, --stats, --times or --target-ms the image is the\n"
+        "settled still: frames of one moment, with temporal anti-aliasing if no rung is chosen, until an\n"
+        "image of 16 frames or more changes by less than 0.25 of 255, or 64 frames. It is dithered.\n\n"
+        "With --stats, an extra first frame is rendered and not counted. Wall time is measured from\n"
+        "masu_frame to the fence. GPU times are timestamps with a full barrier around each pass;\n"
+        "\"timestamps_plausible\" reports whether they agree with the wall time.\n\n"
+        "Exit codes:\n"
+        "  0  success\n"
+        "  1  rendering failed, a file could not be read or written, or --validate reported a message\n"
+        "  2  the command line is wrong\n\n"
+        "Examples:\n"
+        "  masu render engine.masu -o still.png --size 1280x720\n"
+        "  masu render engine.masu -o frame.exr --frame=30\n"
+        "  masu render engine.masu --frames 300 --video - | ffmpeg -i - engine.mp4\n"
+        "  masu render engine.masu -o frame.png --setting scale=0.5+aa=fxaa\n"
+        "  masu render engine.masu --target-ms 33 --frames 300 --size 640x360\n",
     .run = run};

@@ -177,7 +177,8 @@ int masu_render_times(const masu_session *s, const masu_render_options *o, const
                 (double)s->desc.rungs[samples[i].rung].scale, samples[i].gpu_ms, samples[i].wall_ms,
                 samples[i].reason);
     }
-    int code = fclose(f) ? masu_cli_error("%s: out of memory", o->times) : masu_text_write(o->times, text, bytes);
+    int code = fclose(f) ? masu_cli_error("%s: out of memory", o->times)
+                         : masu_text_write(o->times, text, bytes);
     free(text);
     return code;
 }
@@ -193,11 +194,12 @@ void masu_render_governor(const masu_session *s, const masu_render_options *o, c
     }
     if (masu_cli_quiet()) return;
     masu_cli_progress_clear();
-    printf("governor: target %.2f ms, %" PRIu32 " of %" PRIu32 " frames over it in wall time, %" PRIu64
-           " rung changes, mean scale %.3f\n",
+    printf("governor: target %.2f ms, %" PRIu32 " of %" PRIu32
+           " frames over it in wall time, %" PRIu64 " rung changes, mean scale %.3f\n",
            o->target_ms, over, o->frames, g->changes, scale);
-    printf("  times from %s; model: %.2f ms fixed, %.2f ms that depend on the rung, noise %.1f %%\n",
-           sources[g->source], (double)g->fixed_ms, (double)g->load_ms, 100.0 * (double)g->noise);
+    printf(
+        "  times from %s; model: %.2f ms fixed, %.2f ms that depend on the rung, noise %.1f %%\n",
+        sources[g->source], (double)g->fixed_ms, (double)g->load_ms, 100.0 * (double)g->noise);
     for (uint32_t r = 0; r < g->rung_count; r++) {
         uint32_t frames = 0;
         for (uint32_t i = 0; i < o->frames; i++) frames += samples[i].rung == r;
@@ -206,7 +208,8 @@ void masu_render_governor(const masu_session *s, const masu_render_options *o, c
                r == g->rung ? " <" : "");
     }
     if (g->vsync_ms > 0.0f)
-        printf("  times are multiples of %.2f ms: they include the wait for the display\n", (double)g->vsync_ms);
+        printf("  times are multiples of %.2f ms: they include the wait for the display\n",
+               (double)g->vsync_ms);
     printf("  last: rung %" PRIu32 ": %s%s\n", g->rung, g->reason_text,
            g->locked ? " (locked: it cannot change to the rung that it wants)" : "");
 }

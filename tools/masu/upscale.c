@@ -30,8 +30,9 @@ static bool upscale(const masu_session_desc *given, const uint8_t *rgba, uint32_
     if (!masu_session_open(&d, &s, error, size)) return false;
     uint32_t most = s.host.properties.limits.maxImageDimension2D;
     if (width > most || height > most) {
-        snprintf(error, size, "input: found %ux%u pixels, expected at most %u per side on this device",
-                 width, height, most);
+        snprintf(error, size,
+                 "input: found %ux%u pixels, expected at most %u per side on this device", width,
+                 height, most);
     } else if (masu_headless_source_create(&s.host, rgba, width, height, width, height, 0, &source,
                                            error, size)) {
         s.desc.source = (masu_source){source.view, width, height,
@@ -146,12 +147,15 @@ static int run(masu_cli *cli) {
     if (!masu_options_read(cli, rows, &o, &given, &code)) return code;
     const char *to = o.output ? o.output : given.arguments[1];
     if (o.output && given.count > 1)
-        return masu_cli_usage_error("unexpected argument '%s': the output is --output", given.arguments[1]);
-    if (!given.count || !to) return masu_cli_usage_error("expected an input and an output file: IN.png OUT.png");
+        return masu_cli_usage_error("unexpected argument '%s': the output is --output",
+                                    given.arguments[1]);
+    if (!given.count || !to)
+        return masu_cli_usage_error("expected an input and an output file: IN.png OUT.png");
     if (!o.d.desc.output.width && rung->aa <= MASU_AA_OFF)
         return masu_cli_usage_error("expected --size WxH or --aa MODE");
     char error[4096];
-    if (!o.output && !masu_file_named(to, ".png", error, sizeof error)) return masu_cli_usage_error("%s", error);
+    if (!o.output && !masu_file_named(to, ".png", error, sizeof error))
+        return masu_cli_usage_error("%s", error);
     if (!masu_file_writable(to, error, sizeof error)) return masu_cli_error("%s", error);
     if (o.no_rcas) rung->sharpen = MASU_OFF;
     return upscale_file(&o.d, given.arguments[0], to);
@@ -161,14 +165,15 @@ const masu_cli_command masu_cmd_upscale = {
     .name = "upscale",
     .arguments = "IN.png OUT.png --size WxH|--aa MODE [options]",
     .summary = "upscale an image with FSR1 (EASU, RCAS) or anti-alias it with SMAA or FXAA",
-    .details = "The input must be display-encoded (sRGB), as FSR1 expects. Alpha goes through the same passes\n"
-               "as a separate image. With --aa and no --size, or with --size equal to the input's size, only\n"
-               "anti-aliasing runs.\n\n"
-               "Exit codes:\n"
-               "  0  success\n"
-               "  1  a pass failed, or a file could not be read or written\n"
-               "  2  the command line is wrong\n\n"
-               "Examples:\n"
-               "  masu upscale small.png large.png --size 1920x1080\n"
-               "  masu upscale jagged.png smooth.png --aa smaa-high\n",
+    .details =
+        "The input must be display-encoded (sRGB), as FSR1 expects. Alpha goes through the same passes\n"
+        "as a separate image. With --aa and no --size, or with --size equal to the input's size, only\n"
+        "anti-aliasing runs.\n\n"
+        "Exit codes:\n"
+        "  0  success\n"
+        "  1  a pass failed, or a file could not be read or written\n"
+        "  2  the command line is wrong\n\n"
+        "Examples:\n"
+        "  masu upscale small.png large.png --size 1920x1080\n"
+        "  masu upscale jagged.png smooth.png --aa smaa-high\n",
     .run = run};

@@ -11,13 +11,15 @@ static bool failed(const masu_video *v, char *error, size_t size) {
     return false;
 }
 
-bool masu_video_open(masu_video *v, const char *path, uint32_t width, uint32_t height, double seconds, char *error,
-                     size_t error_size) {
+bool masu_video_open(masu_video *v, const char *path, uint32_t width, uint32_t height,
+                     double seconds, char *error, size_t error_size) {
     const bool standard = !strcmp(path, "-");
-    *v = (masu_video){.path = standard ? "standard output" : path, .width = width, .height = height};
+    *v =
+        (masu_video){.path = standard ? "standard output" : path, .width = width, .height = height};
     v->planes = malloc(3 * (size_t)width * height);
     if (!v->planes) {
-        snprintf(error, error_size, "%s: out of memory for a frame of %ux%u", v->path, width, height);
+        snprintf(error, error_size, "%s: out of memory for a frame of %ux%u", v->path, width,
+                 height);
         return false;
     }
     v->file = standard ? stdout : fopen(path, "wb");
@@ -26,8 +28,8 @@ bool masu_video_open(masu_video *v, const char *path, uint32_t width, uint32_t h
     const bool whole = fabs(rate - round(rate)) < 1e-6 * rate && rate < 1e6;
     const unsigned long above = whole ? (unsigned long)round(rate) : 1000000ul;
     const unsigned long below = whole ? 1ul : (unsigned long)fmax(round(seconds * 1e6), 1.0);
-    return fprintf(v->file, "YUV4MPEG2 W%u H%u F%lu:%lu Ip A1:1 C444 XCOLORRANGE=LIMITED\n", width, height, above,
-                   below) > 0 ||
+    return fprintf(v->file, "YUV4MPEG2 W%u H%u F%lu:%lu Ip A1:1 C444 XCOLORRANGE=LIMITED\n", width,
+                   height, above, below) > 0 ||
            failed(v, error, error_size);
 }
 
@@ -46,7 +48,8 @@ bool masu_video_frame(masu_video *v, const uint8_t *rgba, char *error, size_t er
 }
 
 bool masu_video_close(masu_video *v, char *error, size_t error_size) {
-    bool good = !v->file || (v->file == stdout ? fflush(v->file) : fclose(v->file)) == 0 || failed(v, error, error_size);
+    bool good = !v->file || (v->file == stdout ? fflush(v->file) : fclose(v->file)) == 0 ||
+                failed(v, error, error_size);
     free(v->planes);
     *v = (masu_video){0};
     return good;

@@ -1,4 +1,5 @@
-/* video.h: uncompressed video (YUV4MPEG2, 4:4:4, BT.709 limited range) to a file, a pipe or stdout. */
+/* video.h: uncompressed video (YUV4MPEG2, 4:4:4, BT.709 limited range) to a file, a pipe or
+ * stdout. */
 #ifndef MASU_CMD_VIDEO_H
 #define MASU_CMD_VIDEO_H
 
@@ -15,8 +16,8 @@ typedef struct masu_video {
 } masu_video;
 
 /* path: "-" is stdout. seconds: between frames, above 0. */
-bool masu_video_open(masu_video *v, const char *path, uint32_t width, uint32_t height, double seconds, char *error,
-                     size_t error_size);
+bool masu_video_open(masu_video *v, const char *path, uint32_t width, uint32_t height,
+                     double seconds, char *error, size_t error_size);
 /* sRGB, 4 bytes a pixel. */
 bool masu_video_frame(masu_video *v, const uint8_t *rgba, char *error, size_t error_size);
 /* False: what was written last has not arrived. Harmless on a zeroed struct. */

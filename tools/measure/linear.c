@@ -17,7 +17,8 @@ bool masu_linear_read(const masu_renderer *m, uint32_t slot, VkExtent2D size, fl
             memcpy(texel, row + 8 * (size_t)x, sizeof texel);
             for (int c = 0; c < 3; c++) {
                 float value = masu_texel_half(texel[c]);
-                if (!isfinite(value)) value = value > 0.0f ? 65504.0f : 0.0f; /* as the tone curve takes them */
+                /* As the tone curve takes them. */
+                if (!isfinite(value)) value = value > 0.0f ? 65504.0f : 0.0f;
                 *rgb++ = value;
             }
         }
@@ -25,7 +26,9 @@ bool masu_linear_read(const masu_renderer *m, uint32_t slot, VkExtent2D size, fl
     return true;
 }
 
-bool masu_linear_is_metered(const masu_session *s) { return masu_desc_resolved(&s->desc).exposure.metered == MASU_ON; }
+bool masu_linear_is_metered(const masu_session *s) {
+    return masu_desc_resolved(&s->desc).exposure.metered == MASU_ON;
+}
 
 double masu_linear_exposure(masu_session *s, uint32_t slot, const masu_light *light) {
     masu_stats_info stats;
@@ -37,7 +40,9 @@ double masu_linear_exposure(masu_session *s, uint32_t slot, const masu_light *li
 }
 
 /* Narkowicz's fit of ACES: shaders/shared/tone.glsl. */
-static double filmic(double x) { return fmin(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 1.0); }
+static double filmic(double x) {
+    return fmin(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 1.0);
+}
 
 /* Khronos PBR Neutral, ending at white. */
 static void neutral(double x[3]) {
@@ -46,11 +51,13 @@ static void neutral(double x[3]) {
     for (int c = 0; c < 3; c++) x[c] = fmax(x[c] - offset, 0.0);
     const double peak = fmax(x[0], fmax(x[1], x[2]));
     if (peak < start) return;
-    const double bent = 1.0 - room * room / (peak + room - start), gray = 1.0 - 1.0 / (0.15 * (peak - bent) + 1.0);
+    const double bent = 1.0 - room * room / (peak + room - start),
+                 gray = 1.0 - 1.0 / (0.15 * (peak - bent) + 1.0);
     for (int c = 0; c < 3; c++) x[c] = (1.0 - gray) * x[c] * bent / peak + gray * bent;
 }
 
-void masu_linear_show(const masu_session *s, const float *rgb, size_t pixels, double exposure, float *shown) {
+void masu_linear_show(const masu_session *s, const float *rgb, size_t pixels, double exposure,
+                      float *shown) {
     const masu_tone tone = masu_desc_resolved(&s->desc).tone;
     for (size_t p = 0; p < pixels; p++) {
         double x[3];

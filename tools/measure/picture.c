@@ -94,7 +94,8 @@ static void say_position(uint32_t i, uint32_t of, void (*progress)(const char *t
     if (progress) progress(text);
 }
 
-bool masu_picture_camera(masu_session *s, masu_frame_desc *frame, masu_camera *camera, char *error, size_t error_size) {
+bool masu_picture_camera(masu_session *s, masu_frame_desc *frame, masu_camera *camera, char *error,
+                         size_t error_size) {
     if (frame->camera) {
         *camera = *frame->camera;
     } else if (masu_camera_at(s->m, frame->time, camera)) {
@@ -110,7 +111,8 @@ typedef struct sums {
     float *linear, *display, *one;
 } sums;
 
-static bool add_position(masu_session *s, const masu_light *light, sums *sum, char *error, size_t error_size) {
+static bool add_position(masu_session *s, const masu_light *light, sums *sum, char *error,
+                         size_t error_size) {
     const size_t pixels = (size_t)s->desc.output.width * s->desc.output.height;
     const uint32_t slot = masu_specular_slot(s);
     const double exposure = masu_linear_exposure(s, slot, light);
@@ -124,8 +126,9 @@ static bool add_position(masu_session *s, const masu_light *light, sums *sum, ch
     return true;
 }
 
-static bool add_positions(masu_session *s, masu_frame_desc frame, uint32_t positions, uint32_t rays, sums *sum,
-                          void (*progress)(const char *text), char *error, size_t error_size) {
+static bool add_positions(masu_session *s, masu_frame_desc frame, uint32_t positions, uint32_t rays,
+                          sums *sum, void (*progress)(const char *text), char *error,
+                          size_t error_size) {
     masu_camera camera;
     if (!masu_picture_camera(s, &frame, &camera, error, error_size)) return false;
     frame.rung = 0;
@@ -141,9 +144,9 @@ static bool add_positions(masu_session *s, masu_frame_desc frame, uint32_t posit
     return true;
 }
 
-bool masu_picture_truth(masu_session *s, const masu_frame_desc *frame, uint32_t positions, uint32_t rays,
-                        const masu_picture_means *out, void (*progress)(const char *text), char *error,
-                        size_t error_size) {
+bool masu_picture_truth(masu_session *s, const masu_frame_desc *frame, uint32_t positions,
+                        uint32_t rays, const masu_picture_means *out,
+                        void (*progress)(const char *text), char *error, size_t error_size) {
     const size_t pixels = (size_t)s->desc.output.width * s->desc.output.height, values = 3 * pixels;
     sums sum = {calloc(3 * values, sizeof(float)), NULL, NULL};
     if (!sum.linear) {
@@ -180,12 +183,13 @@ bool masu_picture_find(const masu_session_desc *d, masu_picture_want *t, uint8_t
     static masu_session s; /* may not move, and is large */
     VkExtent2D size = d->desc.output;
     t->messages = 0;
-    if (t->path && masu_file_exists(t->path)) return masu_picture_load(t->path, size, rgba, error, error_size);
+    if (t->path && masu_file_exists(t->path))
+        return masu_picture_load(t->path, size, rgba, error, error_size);
     if (!masu_picture_open(d, t->positions, &s, error, error_size)) return false;
     masu_frame_desc frame = {.time = t->time};
     bool good =
-        masu_picture_truth(&s, &frame, t->positions, t->rays, &(masu_picture_means){.display = rgba}, t->progress,
-                           error, error_size);
+        masu_picture_truth(&s, &frame, t->positions, t->rays,
+                           &(masu_picture_means){.display = rgba}, t->progress, error, error_size);
     masu_session_close(&s);
     t->messages = s.host.messages;
     return good && (!t->path || masu_image_save_png(t->path, rgba, size.width, size.height, 0,

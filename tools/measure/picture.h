@@ -1,17 +1,18 @@
 /* picture.h: the truth of a whole picture: what it would be with no shortcut, and a picture
  * to compare.
  *
- * The ground truth is the mean of many full renders at the output's size, each with the projection moved
- * by a part of a pixel, so that each pixel gets the mean over its square (a box filter). All that
- * a rung may trade for time is at its most exact. The renders are read as 16-bit floats, whose rounding,
- * at most 0.05 %, averages out. There are two means:
+ * The ground truth is the mean of many full renders at the output's size, each with the projection
+ * moved by a part of a pixel, so that each pixel gets the mean over its square (a box filter). All
+ * that a rung may trade for time is at its most exact. The renders are read as 16-bit floats, whose
+ * rounding, at most 0.05 %, averages out. There are two means:
  *
- * LINEAR LIGHT, before exposure, tone curve and clipping: what a camera's sensor measures, and what a
- * reference of linear light is compared with. A lamp that covers a tenth of a pixel can make it white.
+ * LINEAR LIGHT, before exposure, tone curve and clipping: what a camera's sensor measures, and what
+ * a reference of linear light is compared with. A lamp that covers a tenth of a pixel can make it
+ * white.
  *
- * DISPLAY LIGHT, after exposure and tone curve, before the sRGB encoding: a display of many times the
- * pixels, seen from afar. Edges of bright surfaces stay smooth. Temporal anti-aliasing and the SDF's edges
- * aim at this mean, so 8-bit images are judged by it.
+ * DISPLAY LIGHT, after exposure and tone curve, before the sRGB encoding: a display of many times
+ * the pixels, seen from afar. Edges of bright surfaces stay smooth. Temporal anti-aliasing and the
+ * SDF's edges aim at this mean, so 8-bit images are judged by it.
  *
  * What stays approximate: docs/design/18-error-measurement.md. Nothing here
  * owns the session. */
@@ -34,7 +35,8 @@
 void masu_picture_place(uint32_t i, uint32_t n, float out[2]);
 
 /* Makes `camera`, whose jitter changes, the frame's: a copy of its own, or the scene's. */
-bool masu_picture_camera(masu_session *s, masu_frame_desc *frame, masu_camera *camera, char *error, size_t error_size);
+bool masu_picture_camera(masu_session *s, masu_frame_desc *frame, masu_camera *camera, char *error,
+                         size_t error_size);
 
 /* As masu_session_open, with one rung that takes no shortcut, and mips as `positions` of a pixel
  * want them. Of d->desc what concerns rungs, anisotropy and debug is set here, but for validation
@@ -52,11 +54,12 @@ typedef struct masu_picture_means {
     uint8_t *display; /* mean of display light */
 } masu_picture_means;
 
-/* Draws the ground truth of a frame. The camera of `frame` may be NULL, the scene's then; its rung, time step and cut
- * are ignored. progress may be NULL. The session is one of masu_picture_open for as many positions. */
-bool masu_picture_truth(masu_session *s, const masu_frame_desc *frame, uint32_t positions, uint32_t rays,
-                        const masu_picture_means *out, void (*progress)(const char *text), char *error,
-                        size_t error_size);
+/* Draws the ground truth of a frame. The camera of `frame` may be NULL, the scene's then; its rung,
+ * time step and cut are ignored. progress may be NULL. The session is one of masu_picture_open for
+ * as many positions. */
+bool masu_picture_truth(masu_session *s, const masu_frame_desc *frame, uint32_t positions,
+                        uint32_t rays, const masu_picture_means *out,
+                        void (*progress)(const char *text), char *error, size_t error_size);
 
 /* A session of a scene whose pictures are compared with the truth: a storage target, textures without
  * anisotropy, which a CPU driver has at forty times the price. */

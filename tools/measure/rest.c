@@ -9,13 +9,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool add_frame(masu_session *s, const masu_frame_desc *frame, VkExtent2D *size, float **sum, char *error,
-                      size_t error_size) {
+static bool add_frame(masu_session *s, const masu_frame_desc *frame, VkExtent2D *size, float **sum,
+                      char *error, size_t error_size) {
     masu_commands commands;
     masu_plan_info plan;
     if (!masu_session_frame(s, frame, true, &commands, error, error_size)) return false;
     masu_plan_of(s->m, &plan);
-    *size = (VkExtent2D){plan.rungs[commands.rung].render_width, plan.rungs[commands.rung].render_height};
+    *size = (VkExtent2D){plan.rungs[commands.rung].render_width,
+                         plan.rungs[commands.rung].render_height};
     const size_t values = 3 * (size_t)size->width * size->height;
     if (!*sum) *sum = calloc(2 * values, sizeof **sum);
     if (!*sum || !masu_linear_read(s->m, commands.slot, *size, *sum + values)) {
@@ -26,8 +27,8 @@ static bool add_frame(masu_session *s, const masu_frame_desc *frame, VkExtent2D 
     return true;
 }
 
-bool masu_rest_patches(masu_session *s, masu_frame_desc frame, uint32_t count, masu_patch out[MASU_PATCHES],
-                       char *error, size_t error_size) {
+bool masu_rest_patches(masu_session *s, masu_frame_desc frame, uint32_t count,
+                       masu_patch out[MASU_PATCHES], char *error, size_t error_size) {
     masu_camera camera;
     VkExtent2D size = {0, 0};
     float *sum = NULL;
@@ -38,7 +39,8 @@ bool masu_rest_patches(masu_session *s, masu_frame_desc frame, uint32_t count, m
         good = add_frame(s, &frame, &size, &sum, error, error_size);
     }
     if (good && (size.width < MASU_PATCH_COLUMNS || size.height < MASU_PATCH_ROWS)) {
-        snprintf(error, error_size, "found %ux%u, expected at least 16x9 pixels for patches", size.width, size.height);
+        snprintf(error, error_size, "found %ux%u, expected at least 16x9 pixels for patches",
+                 size.width, size.height);
         good = false;
     }
     const size_t values = 3 * (size_t)size.width * size.height;
@@ -48,7 +50,8 @@ bool masu_rest_patches(masu_session *s, masu_frame_desc frame, uint32_t count, m
     return good;
 }
 
-bool masu_rest_load(const char *path, masu_patch out[MASU_PATCHES], char *error, size_t error_size) {
+bool masu_rest_load(const char *path, masu_patch out[MASU_PATCHES], char *error,
+                    size_t error_size) {
     if (masu_reference_is_named(path)) {
         masu_reference r;
         if (!masu_reference_load(path, &r, error, error_size)) return false;
@@ -61,7 +64,9 @@ bool masu_rest_load(const char *path, masu_patch out[MASU_PATCHES], char *error,
     bool good = image.values && image.channels == 3 && image.width >= MASU_PATCH_COLUMNS &&
                 image.height >= MASU_PATCH_ROWS;
     if (good) masu_patches_of(image.values, NULL, image.width, image.height, out);
-    else snprintf(error, error_size, "%.900s: expected linear light of three channels and at least 16x9 pixels", path);
+    else
+        snprintf(error, error_size,
+                 "%.900s: expected linear light of three channels and at least 16x9 pixels", path);
     masu_image_free(&image);
     return good;
 }

@@ -1,18 +1,19 @@
-/* rest.h: a setting at rest in linear light: the mean of several frames of one moment, as patches. */
+/* rest.h: a setting at rest in linear light: the mean of several frames of one moment, as
+ * patches. */
 #ifndef MASU_MEASURE_REST_H
 #define MASU_MEASURE_REST_H
 
 #include "measure/patches.h"
 #include "session.h"
 
-/* Draws `count` frames of one moment, each with the projection shifted by a part of a pixel, and averages their linear
- * light. The camera of `frame` may be NULL, the scene's then. The session reads back MASU_READBACK_HDR. False: one line
- * in `error`. */
-bool masu_rest_patches(masu_session *s, masu_frame_desc frame, uint32_t count, masu_patch out[MASU_PATCHES],
-                       char *error, size_t error_size);
+/* Draws `count` frames of one moment, each with the projection shifted by a part of a pixel, and
+ * averages their linear light. The camera of `frame` may be NULL, the scene's then. The session
+ * reads back MASU_READBACK_HDR. False: one line in `error`. */
+bool masu_rest_patches(masu_session *s, masu_frame_desc frame, uint32_t count,
+                       masu_patch out[MASU_PATCHES], char *error, size_t error_size);
 
-/* The patches of a file of linear light: a stored reference (.ref), with its standard errors, or PFM or OpenEXR,
- * without. */
+/* The patches of a file of linear light: a stored reference (.ref), with its standard errors, or
+ * PFM or OpenEXR, without. */
 bool masu_rest_load(const char *path, masu_patch out[MASU_PATCHES], char *error, size_t error_size);
 
 #endif

@@ -23,7 +23,8 @@ void masu_shade_open_sky(const masu_view *view, const double direction[3], doubl
  * the rest, sun and ambient light, and what it emits. */
 void masu_shade_exact(const masu_view *view, const double direction[3], const double normal[3],
                       const double material[8], double lit[3], double mirrored[3]);
-/* A texel of MASU_READBACK_ALBEDO and one of _NORMAL, and the emission beside them, as light.comp reads them. */
+/* A texel of MASU_READBACK_ALBEDO and one of _NORMAL, and the emission beside them, as light.comp
+ * reads them. */
 void masu_shade_texel(const masu_view *view, const double direction[3], const uint8_t albedo[4],
                       uint32_t normal, const double emission[3], double out[3]);
 /* Exposure, tone curve, sRGB encoding, 8 bits. */

@@ -9,7 +9,8 @@
 /* It shines and has neither colour nor gloss: nothing of what falls on it is seen. */
 bool masu_texel_unlit(const double material[8]);
 bool masu_texel_is_unlit(uint32_t normal);
-/* The surface of a texel of MASU_READBACK_ALBEDO and one of _NORMAL. They hold no emission, so it is 0. */
+/* The surface of a texel of MASU_READBACK_ALBEDO and one of _NORMAL. They hold no emission, so it
+ * is 0. */
 void masu_texel_unpack(const uint8_t albedo[4], uint32_t normal, double material[8]);
 /* To texels; of the normal the six bits that are not its direction. */
 void masu_texel_pack(const double material[8], uint8_t albedo[4], uint32_t *normal);

@@ -1,6 +1,6 @@
-/* view_uniforms.h: one moment of a scene in double precision: what the runtime puts into its uniforms,
- * read from the baked blob and a camera. The truth marches it, the shading lights it. A plain
- * struct; owns nothing. */
+/* view_uniforms.h: one moment of a scene in double precision: what the runtime puts into its
+ * uniforms, read from the baked blob and a camera. The truth marches it, the shading lights it. A
+ * plain struct; owns nothing. */
 #ifndef MASU_VIEW_UNIFORMS_H
 #define MASU_VIEW_UNIFORMS_H
 

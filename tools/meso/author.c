@@ -6,8 +6,9 @@
 
 #include "cli/cli.h"
 
-/* Texels that the fit looks at one by one, and those of the map itself, of which it looks at the mean: with
- * FIT_SIDE rays and more to a side. With fewer as many fewer, but at least a sixth: a draft is one in both. */
+/* Texels that the fit looks at one by one, and those of the map itself, of which it looks at the
+ * mean: with FIT_SIDE rays and more to a side. With fewer as many fewer, but at least a sixth: a
+ * draft is one in both. */
 #define FIT_TEXELS 144u
 #define FINE_TEXELS 256u
 #define FIT_SIDE 96u
@@ -72,7 +73,8 @@ static void pick_texels(const masu_meso_material *made, const masu_meso_tracer *
     uint32_t fine_count = fit_share(FINE_TEXELS, options->side);
     double *all = masu_meso_allocated((size_t)SIDE * SIDE * numbers, sizeof *all);
     masu_meso_look_along(tracer, patch, &lights, 0, 0, made->height, MASU_MESO_SKY, SIDE, all);
-    masu_meso_texel *texels = masu_meso_allocated(texel_count, sizeof *texels), *mip = masu_meso_mip(made, SIDE);
+    masu_meso_texel *texels = masu_meso_allocated(texel_count, sizeof *texels),
+                    *mip = masu_meso_mip(made, SIDE);
     double *near = masu_meso_allocated((size_t)texel_count * numbers, sizeof *near);
     for (uint32_t t = 0; t < texel_count; t++) {
         uint32_t from = t * 1021 / texel_count;
@@ -97,7 +99,8 @@ static void pick_texels(const masu_meso_material *made, const masu_meso_tracer *
     memcpy(samples->near_light, lights.light, lights.light_count * sizeof *lights.light);
 }
 
-bool masu_meso_author(const masu_meso_patch *patch, const masu_meso_options *options, masu_meso_material *made) {
+bool masu_meso_author(const masu_meso_patch *patch, const masu_meso_options *options,
+                      masu_meso_material *made) {
     *made = (masu_meso_material){.size = options->size};
     masu_cli_progress("building the patch of %u triangles", patch->triangle_count);
     masu_meso_tracer *tracer = masu_meso_tracer_create(patch);

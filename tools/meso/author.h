@@ -1,5 +1,6 @@
-/* author.h: makes a material of a relief patch: its map of texels, the measurement of its appearance by view
- * angle, and the curves fitted to that measurement. Start with masu_meso_author. */
+/* author.h: makes a material of a relief patch: its map of texels, the measurement of its
+ * appearance by view angle, and the curves fitted to that measurement. Start with
+ * masu_meso_author. */
 #ifndef MASU_MESO_AUTHOR_H
 #define MASU_MESO_AUTHOR_H
 
@@ -25,7 +26,8 @@ typedef struct masu_meso_material {
 } masu_meso_material;
 
 /* False after an error message. Free in both cases. */
-bool masu_meso_author(const masu_meso_patch *patch, const masu_meso_options *options, masu_meso_material *made);
+bool masu_meso_author(const masu_meso_patch *patch, const masu_meso_options *options,
+                      masu_meso_material *made);
 void masu_meso_material_free(masu_meso_material *made);
 
 /* The mip level of `size` texels an edge of made->texels; the caller frees it. */

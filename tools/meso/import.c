@@ -63,8 +63,9 @@ static bool take(const char *path, const masu_bake_content *piece, const masu_me
     double height = (box.high.y - box.low.y) / tile;
     double reach = fmax(box.high.x - box.low.x, box.high.z - box.low.z) / tile;
     if (!(height <= MASU_MESO_HEIGHT_MAX) || !(reach <= 2)) {
-        masu_cli_error("%s: expected at most %g periods high and 2 wide, found %g and %g: use --tile", path,
-                       MASU_MESO_HEIGHT_MAX, height, reach);
+        masu_cli_error(
+            "%s: expected at most %g periods high and 2 wide, found %g and %g: use --tile", path,
+            MASU_MESO_HEIGHT_MAX, height, reach);
         return false;
     }
     for (uint64_t i = 0; i < masu_bake_count(piece, MASU_BLOB_INSTANCES); i++) {

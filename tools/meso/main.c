@@ -1,5 +1,5 @@
-/* main.c: the program masu-meso: makes the maps and the angle-dependent curves of a material from a patch of
- * relief. docs/meso.md is its manual. */
+/* main.c: the program masu-meso: makes the maps and the angle-dependent curves of a material from a
+ * patch of relief. docs/meso.md is its manual. */
 #include <stdio.h>
 
 #include "cli/cli.h"
@@ -16,12 +16,14 @@ static int run(masu_cli *cli) {
     masu_meso_material made = {0};
     int code;
     if (!masu_meso_request_read(cli, &r, &code)) return code;
-    bool good = masu_meso_can_write(r.output) && masu_meso_request_patch(&r, &patch) && masu_meso_author(&patch, &r.options, &made) &&
+    bool good = masu_meso_can_write(r.output) && masu_meso_request_patch(&r, &patch) &&
+                masu_meso_author(&patch, &r.options, &made) &&
                 masu_meso_write_curves(r.output, &made) && masu_meso_write_maps(r.output, &made);
     if (good && !masu_cli_quiet()) {
-        printf("%s: error of the fit, relative to the mean radiance: mean texel %.3f, single texels %.3f, "
-               "filtered texels %.3f\n",
-               r.output, made.misfit.far, made.misfit.near, made.misfit.filtered);
+        printf(
+            "%s: error of the fit, relative to the mean radiance: mean texel %.3f, single texels %.3f, "
+            "filtered texels %.3f\n",
+            r.output, made.misfit.far, made.misfit.near, made.misfit.filtered);
     }
     masu_meso_patch_free(&patch);
     masu_meso_material_free(&made);
@@ -31,17 +33,19 @@ static int run(masu_cli *cli) {
 int main(int argc, char **argv) {
     static const masu_cli_command command = {
         .arguments = "(RELIEF.png --height H | RELIEF.obj | --make NAME) -o NAME [options]",
-        .summary = "measure a relief by ray tracing and fit the angle-dependent curves of a material",
+        .summary =
+            "measure a relief by ray tracing and fit the angle-dependent curves of a material",
         .options = masu_meso_request_options,
-        .details = "Writes NAME.json, NAME_color.png, NAME_normal.png, NAME_rough.png and NAME_ao.png.\n"
-                   "docs/meso.md describes them.\n\n"
-                   "Exit codes:\n"
-                   "  0  success\n"
-                   "  1  the relief is not usable, or a file could not be read or written\n"
-                   "  2  the command line is wrong\n\n"
-                   "Examples:\n"
-                   "  masu-meso --make gravel -o gravel\n"
-                   "  masu-meso bricks.png --height 0.05 -o bricks\n",
+        .details =
+            "Writes NAME.json, NAME_color.png, NAME_normal.png, NAME_rough.png and NAME_ao.png.\n"
+            "docs/meso.md describes them.\n\n"
+            "Exit codes:\n"
+            "  0  success\n"
+            "  1  the relief is not usable, or a file could not be read or written\n"
+            "  2  the command line is wrong\n\n"
+            "Examples:\n"
+            "  masu-meso --make gravel -o gravel\n"
+            "  masu-meso bricks.png --height 0.05 -o bricks\n",
         .run = run,
     };
     static const masu_cli_command *const commands[] = {&command, NULL};

@@ -26,8 +26,8 @@
  * The forms of tilt, roughness and AO are those presented for Gran Turismo 7 (Polyphony Digital,
  * CEDEC+KYUSHU / CEDEC 2022), as is f but for one term: there it is clamp01(N.L - alpha (1 - AO) + 1/2).
  * With a free factor of N.L the fits to radiance came out at 0 for asphalt, gravel and grass, so it is
- * left out; offset, (V.L)^3, D, specular and S are measured additions. docs/design/04-surfaces.md has
- * the table. */
+ * left out; offset, (V.L)^3, D, specular and S are measured additions. docs/design/04-surfaces.md
+ * has the table. */
 #ifndef MASU_MESO_MODEL_H
 #define MASU_MESO_MODEL_H
 

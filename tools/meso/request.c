@@ -24,7 +24,8 @@ enum {
     {"output", "NAME", "prefix of the names of all output files", OPTION_OUTPUT, 'o'}, \
     {"make", "NAME", "generate the relief: asphalt, gravel or grass", OPTION_MAKE, 0}, \
     {"height", "H", "with RELIEF.png: height of white above black, in periods", OPTION_HEIGHT, 0}, \
-    {"tile", "W", "with a model: edge length of its period (default: its extent in x)", OPTION_TILE, 0}, \
+    {"tile", "W", "with a model: edge length of its period (default: its extent in x)",            \
+     OPTION_TILE, 0},                                                                              \
     {"roughness", "R", "facet roughness of a relief file (default 0.5)", OPTION_ROUGHNESS, 0}, \
     {"albedo", "A", "with RELIEF.png: albedo of the relief (default 0.5)", OPTION_ALBEDO, 0}, \
     {"size", "N", "texels per edge of the maps, a power of two (default 256)", OPTION_SIZE, 0}, \
@@ -35,7 +36,9 @@ enum {
 
 const masu_cli_option masu_meso_request_options[] = {COMMON_OPTIONS, {NULL, NULL, NULL, 0, 0}};
 const masu_cli_option masu_meso_study_options[] = {
-    COMMON_OPTIONS, {"no-plots", NULL, "do not call gnuplot", OPTION_NO_PLOTS, 0}, {NULL, NULL, NULL, 0, 0}};
+    COMMON_OPTIONS,
+    {"no-plots", NULL, "do not call gnuplot", OPTION_NO_PLOTS, 0},
+    {NULL, NULL, NULL, 0, 0}};
 
 static bool has_end(const char *path, const char *end) {
     size_t n = strlen(path), m = strlen(end);
@@ -46,7 +49,8 @@ bool masu_meso_request_patch(const masu_meso_request *r, masu_meso_patch *patch)
     if (r->make) return masu_meso_make(r->make, r->detail, r->seed, patch);
     masu_file_kind kind = masu_file_kind_of(r->input, NULL, 0);
     if (kind && kind != MASU_FILE_IMAGE && kind != MASU_FILE_MODEL) {
-        masu_cli_error("%s: is no relief%s", r->input, masu_file_hint(r->input, NULL, 0, MASU_FILE_UNKNOWN));
+        masu_cli_error("%s: is no relief%s", r->input,
+                       masu_file_hint(r->input, NULL, 0, MASU_FILE_UNKNOWN));
         return false;
     }
     return has_end(r->input, ".png") ? masu_meso_read_heights(r->input, &r->file, patch)
@@ -54,8 +58,10 @@ bool masu_meso_request_patch(const masu_meso_request *r, masu_meso_patch *patch)
 }
 
 static int check(masu_meso_request *r) {
-    if (r->make && r->input) return masu_cli_usage_error("expected a relief file or --make, not both");
-    if (!r->make && !r->input) return masu_cli_usage_error("no relief given: expected a file or --make NAME");
+    if (r->make && r->input)
+        return masu_cli_usage_error("expected a relief file or --make, not both");
+    if (!r->make && !r->input)
+        return masu_cli_usage_error("no relief given: expected a file or --make NAME");
     if (!r->output) return masu_cli_usage_error("no output given: -o NAME");
     if (r->input && has_end(r->input, ".png") && !r->has_height) {
         return masu_cli_usage_error(

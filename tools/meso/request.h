@@ -1,5 +1,5 @@
-/* request.h: the command line of masu-meso: which relief, how it is measured, and the name of the output.
- * `masu-lab meso` reads the same options. */
+/* request.h: the command line of masu-meso: which relief, how it is measured, and the name of the
+ * output. `masu-lab meso` reads the same options. */
 #ifndef MASU_MESO_REQUEST_H
 #define MASU_MESO_REQUEST_H
 
@@ -8,7 +8,8 @@
 #include "meso/input.h"
 
 typedef struct masu_meso_request {
-    const char *input, *output, *make; /* a file or the name of a built-in relief; the output's name */
+    /* A file or the name of a built-in relief; the output's name. */
+    const char *input, *output, *make;
     masu_meso_input file;
     bool has_height;
     masu_meso_options options;

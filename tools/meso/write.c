@@ -69,7 +69,8 @@ bool masu_meso_write_curves(const char *name, const masu_meso_material *made) {
 /* ---- maps ---- */
 
 enum { MAP_COLOR, MAP_NORMAL, MAP_ROUGH, MAP_AO, MAPS };
-static const char *const ends[MAPS + 1] = {"_color.png", "_normal.png", "_rough.png", "_ao.png", ".json"};
+static const char *const ends[MAPS + 1] = {"_color.png", "_normal.png", "_rough.png", "_ao.png",
+                                           ".json"};
 
 bool masu_meso_can_write(const char *name) {
     char error[4096];

@@ -100,7 +100,8 @@ double masu_metric_ssim(const uint8_t *a, const uint8_t *b, uint32_t width, uint
 
 /* ---- Linear light ---------------------------------------------------------------------------- */
 
-masu_relative_error masu_metric_relative(const float *reference, const float *test, uint32_t pixels) {
+masu_relative_error masu_metric_relative(const float *reference, const float *test,
+                                         uint32_t pixels) {
     masu_relative_error e = {0};
     double squares = 0.0, sum = 0.0, relative = 0.0;
     uint64_t count = 0;

@@ -1,4 +1,5 @@
-/* image.h: how far two 8-bit pictures are apart: difference, RMSE, PSNR, SSIM; relative errors of linear light.
+/* image.h: how far two 8-bit pictures are apart: difference, RMSE, PSNR, SSIM; relative errors of
+ * linear light.
  *
  * Pictures are RGBA8, tightly packed, top row first, display-encoded; alpha is ignored. Nothing
  * here keeps anything; only masu_metric_ssim allocates, and frees again before it returns. */
@@ -30,6 +31,7 @@ typedef struct masu_relative_error {
     double relmse; /* mean of (x - t)^2 / (t^2 + 0.01), as measure/specular.h */
     uint64_t left_out;
 } masu_relative_error;
-masu_relative_error masu_metric_relative(const float *reference, const float *test, uint32_t pixels);
+masu_relative_error masu_metric_relative(const float *reference, const float *test,
+                                         uint32_t pixels);
 
 #endif

@@ -110,8 +110,9 @@ static bool levelled(const sdfc *c, const sdfc_shape *s) {
     return false;
 }
 
-/* By how many times k smooth minima of n operands, one after the other, lie below the least of these: most if all are
- * equal. A step lowers y k below the least to (y + (1 - y)^2 / 4) k, which increases with y on 0..1 and stays below 1. */
+/* By how many times k smooth minima of n operands, one after the other, lie below the least of
+ * these: most if all are equal. A step lowers y k below the least to (y + (1 - y)^2 / 4) k, which
+ * increases with y on 0..1 and stays below 1. */
 static double lowered(int n) {
     double y = 0;
     for (int i = 1; i < n; i++) y += (1 - y) * (1 - y) / 4;
@@ -263,18 +264,20 @@ static void keep_box(sdfc_shape *s, const sdfc_box *b) {
     }
 }
 
-/* How many copies in a row are evaluated: those in the nearest cells. `h` is how far the shape reaches from the middle
- * of its cell.
+/* How many copies in a row are evaluated: those in the nearest cells. `h` is how far the shape
+ * reaches from the middle of its cell.
  *
- * 1 suffices if the field is even and does not decrease with the distance from the middle: the nearest copy has the
- * least value. It also suffices for an even field within its cell. In general the copies in the m nearest cells have
- * all of the solid if h <= m / 2 periods, since the middle of any other cell is at least that far. The field of
- * these copies:
+ * 1 suffices if the field is even and does not decrease with the distance from the middle: the
+ * nearest copy has the least value. It also suffices for an even field within its cell. In general
+ * the copies in the m nearest cells have all of the solid if h <= m / 2 periods, since the middle
+ * of any other cell is at least that far. The field of these copies:
  *
- *   even       continuous: where one copy replaces another in the selection, both have the same value. With the same
- *              constant as the shape, and zero at the surface, it never exceeds L times the distance.
- *   otherwise  the minimum with L (m / 2 periods - h), the least that the other copies can have, if the shape's field
- *              is at least L times the distance to its box. A step there is at most that long: hence GAP.
+ *   even       continuous: where one copy replaces another in the selection, both have the same
+ *              value. With the same constant as the shape, and zero at the surface, it never exceeds
+ *              L times the distance.
+ *   otherwise  the minimum with L (m / 2 periods - h), the least that the other copies can have, if
+ *              the shape's field is at least L times the distance to its box. A step there is at
+ *              most that long: hence GAP.
  *
  * All copies of a row need neither. 0: not possible. */
 #define GAP 0.2
@@ -288,9 +291,10 @@ static int cells_of(bool even, bool rising, double h, double period, int row) {
     return 0;
 }
 
-/* extra: 0-2 how many cells are evaluated on each axis, 0: it does not repeat; 3 the least that the cells which are not
- * evaluated can have, INFINITY: no minimum with it is needed; 4-9 the box of the shape in its cell; 10: the shape must
- * be joined with it so that the former is true; 11 as 3, for the selection of terms. */
+/* extra: 0-2 how many cells are evaluated on each axis, 0: it does not repeat; 3 the least that the
+ * cells which are not evaluated can have, INFINITY: no minimum with it is needed; 4-9 the box of
+ * the shape in its cell; 10: the shape must be joined with it so that the former is true; 11 as 3,
+ * for the selection of terms. */
 static void repeat_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
     int *n = s->number;
     bool limited = s->kind == SDFC_KIND_REPEAT_LIMITED;
@@ -314,10 +318,11 @@ static void repeat_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
         int cells = cells_of(even, f->rising >> i & 1, h, period, row);
         if (!cells) {
             double most = (SDFC_CELLS_MAX / 2 - (even ? 0 : GAP)) * period;
-            sdfc_fail(c, s->token,
-                      "%s: the shape reaches %g from the centre of its cell along %c: expected at most %g, "
-                      "%g times the period",
-                      sdfc_kind_names[s->kind], h, 'x' + i, most, most / period);
+            sdfc_fail(
+                c, s->token,
+                "%s: the shape reaches %g from the centre of its cell along %c: expected at most %g, "
+                "%g times the period",
+                sdfc_kind_names[s->kind], h, 'x' + i, most, most / period);
         }
         s->extra[i] = cells;
         f->cost *= cells;
@@ -341,7 +346,8 @@ static void repeat_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
     s->extra[11] = fmin(others * f->growth, 1e30);
 }
 
-/* The half-angle around +x of the wedge with its edge on the y axis that holds the box; pi: it holds points on -x. */
+/* The half-angle around +x of the wedge with its edge on the y axis that holds the box; pi: it
+ * holds points on -x. */
 static double angle_of_box(const sdfc_box *b) {
     double most = 0;
     if (b->low[2] <= 0 && b->high[2] >= 0 && b->low[0] <= 0) return PI;
@@ -358,7 +364,9 @@ static double angle_of_sphere(const sdfc_facts *f) {
     return fmin(fabs(atan2(f->center[2], f->center[0])) + asin(f->radius / d), PI);
 }
 
-static double angle_of(const sdfc_facts *f) { return fmin(angle_of_box(&f->box), angle_of_sphere(f)); }
+static double angle_of(const sdfc_facts *f) {
+    return fmin(angle_of_box(&f->box), angle_of_sphere(f));
+}
 
 /* Does not change with a turn about y. */
 static bool is_round(const sdfc *c, int shape) {
@@ -394,17 +402,19 @@ static bool keeps_to_sector(const sdfc *c, int shape, double half) {
     if (angle_of(&s->facts) <= half + 1e-9 || is_round(c, shape)) return true;
     if (s->kind != SDFC_KIND_UNION) return false;
     for (int i = 0; i < s->children; i++) {
-        if (!(c->shapes[s->child[i]].facts.symmetric & 4) || !keeps_to_sector(c, s->child[i], half)) return false;
+        if (!(c->shapes[s->child[i]].facts.symmetric & 4) || !keeps_to_sector(c, s->child[i], half))
+            return false;
     }
     return true;
 }
 
-/* extra: 0: 0 nothing, 1 a fold, 2 two sectors, 3 two that are not all, 4 several copies, 5 several after a fold; 1 2
- * cosine and sine of half a sector, or of the wedge that holds the shape; 3 the sine of the angle from there to the
- * nearest middle of a sector that is not evaluated; 4-10 as above, with that wedge; 11 the number of copies
+/* extra: 0: 0 nothing, 1 a fold, 2 two sectors, 3 two that are not all, 4 several copies, 5 several
+ * after a fold; 1 2 cosine and sine of half a sector, or of the wedge that holds the shape; 3 the
+ * sine of the angle from there to the nearest middle of a sector that is not evaluated; 4-10 as
+ * above, with that wedge; 11 the number of copies
  *
- * After a fold into half a sector, the copies that can reach it are evaluated: the result is continuous, with the
- * constant of the shape, and never exceeds L times the distance. */
+ * After a fold into half a sector, the copies that can reach it are evaluated: the result is
+ * continuous, with the constant of the shape, and never exceeds L times the distance. */
 static void polar_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
     int count = s->whole[0];
     double half = PI / count, angle = angle_of(f), wedge = fmax(angle, half);
@@ -418,9 +428,10 @@ static void polar_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
     else
         s->extra[0] = count == 2 ? 2 : fits || (count > 4 && angle <= 2 * (1 - GAP) * half) ? 3 : 4;
     if (s->extra[0] >= 4 && copies > SDFC_COPIES_MAX) {
-        sdfc_fail(c, s->token,
-                  "polar: the shape covers %.4g degrees on either side of +x: expected at most %.4g", angle * 180 / PI,
-                  (even ? SDFC_COPIES_MAX : 2 * (1 - GAP)) * half * 180 / PI);
+        sdfc_fail(
+            c, s->token,
+            "polar: the shape covers %.4g degrees on either side of +x: expected at most %.4g",
+            angle * 180 / PI, (even ? SDFC_COPIES_MAX : 2 * (1 - GAP)) * half * 180 / PI);
     }
     s->extra[1] = fits ? cos(half) : cos(wedge);
     s->extra[2] = fits ? sin(half) : sin(wedge);
@@ -473,8 +484,8 @@ static void twist_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
     sdfc_sphere_of_box(f);
 }
 
-/* The box of what a bend by k leaves of a box whose x is within +-x: of one k from the corners and the ends of the arc, of
- * an interval from the length of the arc. */
+/* The box of what a bend by k leaves of a box whose x is within +-x: of one k from the corners and
+ * the ends of the arc, of an interval from the length of the arc. */
 static void bend_box(sdfc_box *b, double x, double low, double high) {
     double most = fmax(fabs(low), fabs(high)), thick = sdfc_corner(b, 1);
     double y[2] = {b->low[1], b->high[1]}, reach = x * (1 + most * thick);
@@ -499,25 +510,33 @@ static void bend_box(sdfc_box *b, double x, double low, double high) {
     }
 }
 
-/* Along an arc of radius 1 / k: stretched by 1 / (1 - k y), y across the arc, least at its inner side. `outside` is
- * the distance to the arc that the shape fills, which the box of that completes. Where it exceeds `margin`, which may be
- * small, it takes over: max(L outside, min(field, L (2 margin - outside))). extra: 0 L, 1 2 L margin, 2 3 middle and half
- * thickness across, 4 5 along z */
+/* Along an arc of radius 1 / k: stretched by 1 / (1 - k y), y across the arc, least at its inner
+ * side. `outside` is the distance to the arc that the shape fills, which the box of that completes.
+ * Where it exceeds `margin`, which may be small, it takes over: max(L outside, min(field, L (2
+ * margin - outside))). extra: 0 L, 1 2 L margin, 2 3 middle and half thickness across, 4 5 along
+ * z */
 static void bend_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
     int *n = s->number;
-    double x = sdfc_corner(&f->box, 0), low = sdfc_low(c, n[0]), high = sdfc_high(c, n[0]), most = sdfc_most(c, n[0]);
+    double x = sdfc_corner(&f->box, 0), low = sdfc_low(c, n[0]), high = sdfc_high(c, n[0]),
+           most = sdfc_most(c, n[0]);
     if (!isfinite(sdfc_reach(f, 0, 1)) || !isfinite(most)) {
         sdfc_fail(c, s->token, "bend: expected a bounded shape and a bounded rate");
     }
     double y[2] = {f->box.low[1], f->box.high[1]};
     double inner = fmax(fmax(low * y[0], low * y[1]), fmax(high * y[0], high * y[1]));
     if (!(most * x <= 3.14)) {
-        sdfc_fail(c, s->token, "bend: x reaches %g, which the rate turns by %g: expected at most 3.14", x, most * x);
+        sdfc_fail(c, s->token,
+                  "bend: x reaches %g, which the rate turns by %g: expected at most 3.14", x,
+                  most * x);
     }
     if (!(inner <= 0.99)) {
-        sdfc_fail(c, s->token, "bend: y times the rate reaches %g: expected at most 0.99, inside the centre of the arc", inner);
+        sdfc_fail(
+            c, s->token,
+            "bend: y times the rate reaches %g: expected at most 0.99, inside the centre of the arc",
+            inner);
     }
-    double margin = fmin(0.25 * fmax(sdfc_reach(f, 0, 1), 1e-3), 1e-3 * (1 - fmax(inner, 0)) / fmax(most, 1e-9));
+    double margin = fmin(0.25 * fmax(sdfc_reach(f, 0, 1), 1e-3),
+                         1e-3 * (1 - fmax(inner, 0)) / fmax(most, 1e-9));
     f->lipschitz *= fmax(1, 1 / (1 - inner - most * margin)) * (1 + 1e-12);
     f->growth = f->lipschitz;
     f->symmetric = 0;

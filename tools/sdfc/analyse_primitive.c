@@ -98,8 +98,9 @@ static sdfc_facts mandelbulb_facts(sdfc *c, const sdfc_shape *s) {
     return f; /* lowering joins it with its ball: growth 1 */
 }
 
-/* The axes along which the field does not decrease with the distance from the middle. Of convex solids the distance
- * is a convex function, which on an axis of symmetry has its minimum at 0; formulas of the rest. */
+/* The axes along which the field does not decrease with the distance from the middle. Of convex
+ * solids the distance is a convex function, which on an axis of symmetry has its minimum at 0;
+ * formulas of the rest. */
 static unsigned rising(int kind, const double least[3]) {
     bool sized = least[0] >= 0 && least[1] >= 0;
     switch (kind) {

@@ -303,8 +303,8 @@ void sdfc_check_cameras(sdfc *c, const masu_sdfc_camera *cameras, uint32_t count
             sdfc_evaluate(c, k.params, cameras[n].time, c->values);
             uint64_t cells = 0;
             if (!(sdfc_run(c, &part->program, p, &cells) < 0)) continue;
-            sdfc_warn(c, part->token, "the camera at (%g, %g, %g), %g s, is inside part \"%s\"", p[0], p[1], p[2],
-                      cameras[n].time, part->name);
+            sdfc_warn(c, part->token, "the camera at (%g, %g, %g), %g s, is inside part \"%s\"",
+                      p[0], p[1], p[2], cameras[n].time, part->name);
             break;
         }
     }

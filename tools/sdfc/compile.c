@@ -120,7 +120,8 @@ static void compile(sdfc *c, const masu_sdfc_options *options, masu_sdfc_result 
     sdfc_group_parts(c);
     sdfc_assign_slots(c);
     if (pairs != UINT32_MAX) sdfc_check(c, pairs ? pairs : 20000);
-    if (options && options->camera_count) sdfc_check_cameras(c, options->cameras, options->camera_count);
+    if (options && options->camera_count)
+        sdfc_check_cameras(c, options->cameras, options->camera_count);
     sdfc_assign_terms(c);
     sdfc_emit(c);
     fill_result(c, out);

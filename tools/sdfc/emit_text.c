@@ -116,8 +116,9 @@ static bool has_reach(const sdfc_writer *w, const sdfc_program *p, const sdfc_in
     return w->glsl && w->c->exprs[p->args[~i->operand[15]]].value > 0;
 }
 
-static void put_bound(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p, const sdfc_instr *i, int variable,
-                      int axis, const char *sign, unsigned bits) {
+static void put_bound(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p,
+                      const sdfc_instr *i, int variable, int axis, const char *sign,
+                      unsigned bits) {
     PUT(w, "            skip |= v%d + MASU_SDF_MARGIN * ", variable);
     sdfc_put_operand(w, g, p, i->operand[17]);
     PUT(w, " < (");
@@ -129,13 +130,14 @@ static void put_bound(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p
     PUT(w, " ? %uu : 0u;\n", bits);
 }
 
-/* Which axes' neighbours are farther than what the own cell holds; of all cells not evaluated, whether they may
- * matter in the ball: then nothing is left out. */
+/* Which axes' neighbours are farther than what the own cell holds; of all cells not evaluated,
+ * whether they may matter in the ball: then nothing is left out. */
 static void put_skips(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p, const sdfc_instr *i, int variable) {
     PUT(w, "        if (i == 0u) {\n");
     for (int k = 0; k < 3; k++) {
         unsigned bit = i->select[k] ? 1u << (i->select[k] - 1) : 0;
-        if (i->bits[k] > 0) put_bound(w, g, p, i, variable, k, "-", bit | (i->bits[k] == 2 ? 2 * bit : 0));
+        if (i->bits[k] > 0)
+            put_bound(w, g, p, i, variable, k, "-", bit | (i->bits[k] == 2 ? 2 * bit : 0));
         if (i->bits[k] == 2) put_bound(w, g, p, i, variable, k, "+", 2 * bit);
     }
     PUT(w, "        }\n");
@@ -168,7 +170,8 @@ static void put_call_min(sdfc_writer *w, int group, const sdfc_group *g, const s
             if (i->bits[k] == 1)
                 PUT(w, w->glsl ? "(i & %du) != 0u ? " : "(i & %d) != 0 ? ", 1 << shift);
             else
-                PUT(w, w->glsl ? "(i >> %du & 3u) == %du ? " : "(i >> %d & 3) == %d ? ", shift, cell);
+                PUT(w, w->glsl ? "(i >> %du & 3u) == %du ? " : "(i >> %d & 3) == %d ? ", shift,
+                    cell);
             sdfc_put_operand(w, g, p, i->operand[4 * k + cell]);
             PUT(w, " : ");
         }

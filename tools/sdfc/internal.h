@@ -42,7 +42,8 @@ enum sdfc_op {
 #include "sdfc/library.inc"
 #undef T
 #undef F
-    SDFC_CALL_MIN, /* the least of a function's values at up to 64 points: of up to 4 coordinates on each axis */
+    /* The least of a function's values at up to 64 points: up to 4 coordinates on each axis. */
+    SDFC_CALL_MIN,
     SDFC_CALL_USER,
     SDFC_OP_COUNT
 };
@@ -142,12 +143,15 @@ extern const char *const sdfc_kind_patterns[SDFC_KIND_COUNT];
 typedef struct sdfc_instr {
     int32_t op;
     int32_t aux;                        /* CALL_MIN: the function, CALL_USER: the block */
-    int32_t select[3];                  /* CALL_MIN: the first bit of the point's number that chooses, from 1; 0: none */
+    int32_t select[3];                  /* CALL_MIN: the first bit of the point's number that
+                                           chooses, from 1; 0: none */
     int32_t bits[3];                    /* CALL_MIN: how many bits choose: 0, 1 or 2 */
-    int32_t points;                     /* CALL_MIN; operands 4 axis + 0..3: the coordinates, nearest cell first; 12..14, of
-                                           each axis: 15 * (this - |the own coordinate|) is the least value of its other
-                                           cells, with + of all but the second; 16: the least of cells that are not
-                                           evaluated; 17: the constant of the values per metre of the world */
+    int32_t points;                     /* CALL_MIN; operands 4 axis + 0..3: the coordinates,
+                                           nearest cell first; 12..14, for each axis: 15 * (this -
+                                           |the own coordinate|) is the least value of its other
+                                           cells, with + of all except the second; 16: the least of
+                                           cells that are not evaluated; 17: the constant of the
+                                           values per metre of the world */
     int32_t operand[SDFC_OPERANDS_MAX]; /* >= 0: a variable, < 0: argument ~operand */
 } sdfc_instr;
 

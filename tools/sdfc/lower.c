@@ -140,8 +140,8 @@ static bool is_large(const sdfc *c, const sdfc_shape *s) {
     return s->kind == SDFC_KIND_SPHERE && radius->op == SDFC_CONST && radius->value >= 64;
 }
 
-/* Whether a moved shape is a large sphere whose surface passes by the origin: that is where the camera is. Farther from the
- * origin the plain form is as exact. */
+/* Whether a moved shape is a large sphere whose surface passes by the origin: that is where the
+ * camera is. Farther from the origin the plain form is as exact. */
 static bool is_ground(const sdfc *c, const sdfc_shape *moved) {
     const sdfc_shape *s = &c->shapes[moved->child[0]];
     if (!is_large(c, s)) return false;
@@ -445,7 +445,8 @@ static int lower_copies(lowering *l, const sdfc_shape *s, point p) {
         for (int k = 0; k < 2 && i + k < copies; k++) { /* sectors 0, 1, -1, 2, ... */
             int n = i + k, sector = n % 2 ? (n + 1) / 2 : -n / 2;
             double a = 2 * pi * sector / s->whole[0];
-            int cosine = constant(l, cos(a)), sine = constant(l, sin(a)), minus = constant(l, -sin(a));
+            int cosine = constant(l, cos(a)), sine = constant(l, sin(a)),
+                minus = constant(l, -sin(a));
             if (!sector) continue;
             q[k].x = OP(l, dot2, p.x, p.z, cosine, sine);
             q[k].z = OP(l, dot2, p.x, p.z, minus, cosine);
@@ -495,7 +496,8 @@ static int lower_bend(lowering *l, const sdfc_shape *s, point p) {
     int e[7];
     for (int i = 0; i < 3; i++) e[i] = argument(l, s->number[1 + i]);
     for (int i = 0; i < 4; i++) e[3 + i] = constant(l, s->extra[2 + i]);
-    int outside = OP(l, around_arc, p.x, p.y, p.z, across, e[0], e[1], e[2], e[3], e[4], e[5], e[6]);
+    int outside =
+        OP(l, around_arc, p.x, p.y, p.z, across, e[0], e[1], e[2], e[3], e[4], e[5], e[6]);
     outside = OP(l, max, outside, outside_box(l, &s->facts.box, p));
     int shell = OP(l, mul, outside, constant(l, s->extra[0]));
     return OP(l, max, shell, OP(l, min, d, OP(l, sub, constant(l, s->extra[1]), shell)));

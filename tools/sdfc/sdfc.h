@@ -80,8 +80,9 @@ typedef struct masu_sdfc_camera {
 typedef struct masu_sdfc_options {
     uint32_t pairs; /* tried per distinct shape; 0: 20000. UINT32_MAX: none */
     bool anchored;  /* the GLSL takes points relative to masu_anchor() */
-    const masu_sdfc_camera *cameras; /* a warning names each part that one of them is inside of, parameters at their */
-    uint32_t camera_count;           /* defaults */
+    /* A warning names each part that contains a camera, with parameters at their defaults. */
+    const masu_sdfc_camera *cameras;
+    uint32_t camera_count;
 } masu_sdfc_options;
 
 /* False: `error` holds "name:line:column: message", the line and a caret. The result is then empty.

@@ -40,7 +40,8 @@ static long whole_most(int kind, int place) {
     }
 }
 
-/* Digits of a literal argument of masu_param at `at`, which is behind the name; -1: there is none. */
+/* Digits of a literal argument of masu_param at `at`, which is behind the name; -1: there is
+ * none. */
 static long literal_index(const char *text, uint32_t at, uint32_t end) {
     long n = 0;
     uint32_t digits = 0;
@@ -60,8 +61,8 @@ static void check_code(sdfc *c, const sdfc_user *user, uint32_t offset, uint32_t
         if (memcmp(c->text + offset + i, name, size) != 0) continue;
         long index = literal_index(c->text, offset + i + size, offset + length);
         if (index < c->param_count) continue;
-        sdfc_fail(c, user->token, "masu_param(%ld): the scene has %d parameter%s, counted from 0", index,
-                  c->param_count, c->param_count == 1 ? "" : "s");
+        sdfc_fail(c, user->token, "masu_param(%ld): the scene has %d parameter%s, counted from 0",
+                  index, c->param_count, c->param_count == 1 ? "" : "s");
     }
 }
 

@@ -248,7 +248,8 @@ static void values_of(const masu_knob *k, char *out, size_t size) {
 
 void masu_knobs_print(FILE *to) {
     char values[200], zero[40], text[1024];
-    fprintf(to, "Knobs of a rung, with their names in settings (scale=0.5+aa=fxaa), ladder.json and suites:\n");
+    fprintf(to, "Knobs of a rung, with their names in settings (scale=0.5+aa=fxaa), "
+                "ladder.json and suites:\n");
     for (const masu_knob *k = masu_knob_table(); k->name; k++) {
         values_of(k, values, sizeof values);
         zero_text(k, zero, sizeof zero);

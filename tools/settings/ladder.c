@@ -27,7 +27,8 @@ static bool on_front(const masu_ladder_point *points, uint32_t n, uint32_t i) {
     return true;
 }
 
-static bool beaten(const masu_ladder_point *points, uint32_t n, const double *costs, uint32_t columns, uint32_t i) {
+static bool beaten(const masu_ladder_point *points, uint32_t n, const double *costs,
+                   uint32_t columns, uint32_t i) {
     for (uint32_t k = 0; k < n; k++) {
         for (uint32_t c = 0; c < columns && fabs(points[k].time) > 0.0; c++) {
             const masu_ladder_point own = {costs[i * columns + c], points[i].error};
@@ -38,14 +39,16 @@ static bool beaten(const masu_ladder_point *points, uint32_t n, const double *co
     return false;
 }
 
-void masu_ladder_exclude(masu_ladder_point *points, uint32_t n, const double *costs, uint32_t columns) {
+void masu_ladder_exclude(masu_ladder_point *points, uint32_t n, const double *costs,
+                         uint32_t columns) {
     for (uint32_t i = 0; i < n; i++) {
         bool whole = measured(points[i]);
         for (uint32_t c = 0; c < columns; c++) whole = whole && costs[i * columns + c] > 0.0;
         if (!whole) points[i].time = 0.0;
     }
     for (uint32_t i = 0; i < n; i++) { /* a time below 0: beaten, and still beats others */
-        if (measured(points[i]) && beaten(points, n, costs, columns, i)) points[i].time = -points[i].time;
+        if (measured(points[i]) && beaten(points, n, costs, columns, i))
+            points[i].time = -points[i].time;
     }
     for (uint32_t i = 0; i < n; i++) points[i].time = fmax(points[i].time, 0.0);
 }

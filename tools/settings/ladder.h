@@ -31,10 +31,12 @@ typedef struct masu_ladder_point {
 /* a is at least as good in both and better in one. */
 bool masu_ladder_dominates(masu_ladder_point a, masu_ladder_point b);
 
-/* Points that also have `columns` costs each, costs[point * columns + column]: those that another one dominates by one
- * of the columns, and those with a cost that is not above 0, lose their time, and are no measurement. In every column
- * the cost of those that are left then falls as the error rises. */
-void masu_ladder_exclude(masu_ladder_point *points, uint32_t n, const double *costs, uint32_t columns);
+/* Points that also have `columns` costs each, costs[point * columns + column]: those that another
+ * one dominates by one of the columns, and those with a cost that is not above 0, lose their time,
+ * and are no measurement. In every column the cost of those that are left then falls as the error
+ * rises. */
+void masu_ladder_exclude(masu_ladder_point *points, uint32_t n, const double *costs,
+                         uint32_t columns);
 
 /* Indices of the points that no other dominates, by rising time and falling error; of equal points
  * the first. `out` has room for n. Returns how many there are. */

@@ -37,7 +37,8 @@ static bool read_text(const place *at, const json_t *object, const char *key, ch
     char is[80];
     const json_t *value = json_object_get(object, key);
     if (!json_is_string(value) || !json_string_length(value))
-        return wrong(at, "%s: expected a string, found %s", key, masu_json_given(value, is, sizeof is));
+        return wrong(at, "%s: expected a string, found %s", key,
+                     masu_json_given(value, is, sizeof is));
     snprintf(out, size, "%s", json_string_value(value));
     for (char *c = out; *c; c++) {
         if (*c < ' ' || *c == 127 || strchr("\"\\*?", *c)) *c = '.';
@@ -75,7 +76,8 @@ static bool read_knobs(const place *at, const json_t *knobs, masu_rung *rung) {
     json_t *value;
     char error[300], is[80];
     if (!json_is_object(knobs))
-        return wrong(at, "knobs: expected an object, found %s", masu_json_given(knobs, is, sizeof is));
+        return wrong(at, "knobs: expected an object, found %s",
+                     masu_json_given(knobs, is, sizeof is));
     json_object_foreach((json_t *)(uintptr_t)knobs, key, value) {
         const masu_knob *k = masu_knob_find(key, strlen(key));
         if (!k) return wrong(at, "%.60s: unknown knob", key);
@@ -167,7 +169,8 @@ bool masu_ladder_read(const char *path, masu_ladder_file *out, char *error, size
     bool good = masu_ladder_parse(path, (const char *)text, bytes, out, error, error_size);
     size_t used = good ? 0 : strlen(error);
     if (!good && used < error_size)
-        snprintf(error + used, error_size - used, "%s", masu_file_hint(path, text, bytes, MASU_FILE_LADDER));
+        snprintf(error + used, error_size - used, "%s",
+                 masu_file_hint(path, text, bytes, MASU_FILE_LADDER));
     free(text);
     return good;
 }

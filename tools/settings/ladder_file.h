@@ -20,7 +20,8 @@ typedef struct masu_ladder_file {
     double ratios[MASU_MAX_RUNGS]; /* falling */
     double flips[MASU_MAX_RUNGS];
     double rmses[MASU_MAX_RUNGS]; /* below 0: not said */
-    double steps[MASU_MAX_RUNGS]; /* mean change at rest from the previous rung, of 255; below 0: not said */
+    /* Mean change at rest from the previous rung, of 255; below 0: unknown. */
+    double steps[MASU_MAX_RUNGS];
 } masu_ladder_file;
 
 /* `name` is the file's, for messages. On false `error` holds one line, and *out is undefined. */

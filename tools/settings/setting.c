@@ -34,7 +34,7 @@ void masu_setting_name(const masu_rung *rung, char out[MASU_SETTING_ID]) {
     }
 }
 
-/* ---- Names read ------------------------------------------------------------------------------- */
+/* ---- Names read ------------------------------------------------------------------------------ */
 
 static bool wrong(const char *name, char *error, size_t error_size, const char *format, ...) {
     char text[360];
@@ -57,9 +57,12 @@ static bool read_part(const char *name, const char **at, masu_rung *rung, uint64
     int part = (int)strcspn(*at, "+");
     if (part > 60) part = 60;
     const masu_knob *k = (*at)[length] == '=' ? masu_knob_find(*at, length) : NULL;
-    if (!k) return wrong(name, error, error_size, "expected KNOB=VALUE with a known knob, found '%.*s'", part, *at);
+    if (!k)
+        return wrong(name, error, error_size, "expected KNOB=VALUE with a known knob, found '%.*s'",
+                     part, *at);
     uint64_t bit = 1ull << (k - masu_knob_table());
-    if (*seen & bit) return wrong(name, error, error_size, "'%.*s': the knob is already set", part, *at);
+    if (*seen & bit)
+        return wrong(name, error, error_size, "'%.*s': the knob is already set", part, *at);
     *seen |= bit;
     const char *value = *at + length + 1, *end = masu_knob_from_text(k, value, rung);
     if (!end || (*end && *end != '+')) {

@@ -150,7 +150,8 @@ static bool ended(masu_viewer *v, bool wait, bool *good) {
     *good = r > 0 && WIFEXITED(status) && !WEXITSTATUS(status);
     if (*good) return true;
     read_complaint(b->log, v->error, sizeof v->error);
-    if (!*v->error) snprintf(v->error, sizeof v->error, "the baker failed: %s", masu_cli_status(status));
+    if (!*v->error)
+        snprintf(v->error, sizeof v->error, "the baker failed: %s", masu_cli_status(status));
     return true;
 }
 
@@ -159,7 +160,8 @@ static bool make_folder(masu_viewer *v) {
     const char *root = getenv("TMPDIR");
     snprintf(b->folder, sizeof b->folder, "%.900s/masu-view-XXXXXX", root && *root ? root : "/tmp");
     if (!mkdtemp(b->folder)) {
-        snprintf(v->error, sizeof v->error, "%s: cannot create the folder: %s", b->folder, strerror(errno));
+        snprintf(v->error, sizeof v->error, "%s: cannot create the folder: %s", b->folder,
+                 strerror(errno));
         b->folder[0] = '\0';
         return false;
     }

@@ -140,7 +140,8 @@ static bool save_linear(masu_viewer *v, const char *path) {
     masu_viewer_settle(v);
     bool good = linear && masu_linear_read(v->a.m, v->a.last.slot, size, linear);
     if (!good) snprintf(v->error, sizeof v->error, "%s: no linear light to read back", path);
-    good = good && masu_image_save_linear(path, linear, size.width, size.height, v->error, sizeof v->error);
+    good = good &&
+           masu_image_save_linear(path, linear, size.width, size.height, v->error, sizeof v->error);
     free(linear);
     return good;
 }

@@ -54,7 +54,8 @@ static void frame_lines(const masu_viewer *v, masu_lines *l) {
     char gpu_text[32] = "-"; /* not known yet */
     if (v->stats.gpu_ns) snprintf(gpu_text, sizeof gpu_text, "%.2f ms", gpu);
     if (v->wall_ms > 0.0 && !v->scripted)
-        say(l, MASU_INK, "%.1f fps   %.2f ms/frame   GPU %s", 1000.0 / v->wall_ms, v->wall_ms, gpu_text);
+        say(l, MASU_INK, "%.1f fps   %.2f ms/frame   GPU %s", 1000.0 / v->wall_ms, v->wall_ms,
+            gpu_text);
     else
         say(l, MASU_INK, "frame %llu   GPU %s", (unsigned long long)v->frames, gpu_text);
     VkExtent2D o = {v->a.target.width, v->a.target.height};
@@ -100,15 +101,18 @@ static void polygon_lines(const masu_viewer *v, masu_lines *l) {
         say(l, MASU_INK, "%-14s%10llu%10llu%12llu", name, (unsigned long long)s->instances,
             (unsigned long long)s->draws, (unsigned long long)s->triangles);
     }
-    say(l, MASU_INK_DIM, "of %u instances, %llu triangles%s", masu_scene_count(&v->scene, MASU_SCENE_INSTANCE),
-        (unsigned long long)masu_scene_triangles(&v->scene), (masu_scene_features(&v->scene) & MASU_SCENE_HAS_SDF) ? " and an SDF" : "");
+    say(l, MASU_INK_DIM, "of %u instances, %llu triangles%s",
+        masu_scene_count(&v->scene, MASU_SCENE_INSTANCE),
+        (unsigned long long)masu_scene_triangles(&v->scene),
+        (masu_scene_features(&v->scene) & MASU_SCENE_HAS_SDF) ? " and an SDF" : "");
 }
 
 static void culling_lines(const masu_viewer *v, masu_lines *l) {
     if (masu_scene_count(&v->scene, MASU_SCENE_INSTANCE)) {
         polygon_lines(v, l);
     } else {
-        say(l, MASU_INK_DIM, "no polygons%s", (masu_scene_features(&v->scene) & MASU_SCENE_HAS_SDF) ? ", only an SDF" : "");
+        say(l, MASU_INK_DIM, "no polygons%s",
+            (masu_scene_features(&v->scene) & MASU_SCENE_HAS_SDF) ? ", only an SDF" : "");
     }
     if (v->stats.lights)
         say(l, MASU_INK, "lights %u, in view %u", v->stats.lights, v->stats.lights_in_view);
@@ -204,7 +208,8 @@ static void draw_difference(masu_viewer *v) {
     char name[MASU_SETTING_ID], text[MASU_SETTING_ID + 128];
     int h = c->font->height;
     masu_viewer_setting(v, &v->reference, name);
-    if (d->failed) snprintf(text, sizeof text, "out of memory for FLIP at %ux%u", c->width, c->height);
+    if (d->failed)
+        snprintf(text, sizeof text, "out of memory for FLIP at %ux%u", c->width, c->height);
     else if (!d->known) snprintf(text, sizeof text, "FLIP of rung %u against B (%.80s): computing", v->rung, name);
     else
         snprintf(text, sizeof text, "FLIP of rung %u against B (%.80s): mean %.4f, 99 %% below %.3f, max %.3f",
@@ -236,8 +241,8 @@ void masu_hud_draw(masu_viewer *v) {
         }
         draw_lines(c, &lines);
         banner(c, c->height - h - h / 2, MASU_INK_DIM,
-               "F1 overlay  Tab knobs  1-8 rung  0 governor  F2 split  B store B  F3 difference  P path  "
-               "Space pause  F12 screenshot  Esc exit");
+               "F1 overlay  Tab knobs  1-8 PgUp PgDn rung  0 governor  F2 split  B store B  "
+               "F3 difference  P path  Space pause  F12 screenshot  Esc exit");
     }
     if (v->show == MASU_SHOW_SPLIT) draw_split(v);
     if (v->show == MASU_SHOW_MAP) draw_difference(v);

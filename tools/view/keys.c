@@ -12,7 +12,8 @@ enum { TARGETS = sizeof targets / sizeof *targets };
 
 static void take_rung(masu_viewer *v, uint32_t rung) {
     if (rung >= v->want.rung_count) {
-        masu_viewer_note(v, "rung %u does not exist: expected 0 to %u", rung, v->want.rung_count - 1);
+        masu_viewer_note(v, "rung %u does not exist: expected 0 to %u", rung,
+                         v->want.rung_count - 1);
         return;
     }
     v->rung = rung;
@@ -103,6 +104,8 @@ bool masu_key_pressed(masu_viewer *v, SDL_Keycode key, uint16_t modifiers) {
     if (key >= SDLK_1 && key <= SDLK_8) return take_rung(v, (uint32_t)(key - SDLK_1)), true;
     switch (key) {
     case SDLK_ESCAPE: v->quit = true; return true;
+    case SDLK_PAGEUP: return take_rung(v, v->rung > 0 ? v->rung - 1 : 0), true;
+    case SDLK_PAGEDOWN: return take_rung(v, v->rung + 1), true;
     case SDLK_0: govern(v, true); return true;
     case SDLK_g: govern(v, !v->governed); return true;
     case SDLK_PLUS:

@@ -22,7 +22,8 @@ static const masu_option rows[] = {
               "(default: masu-bake in the folder of this program)"),
     MASU_HEADING("Window"),
     MASU_SIZE(masu_viewer_options, size, "size", "size of the window in pixels"),
-    MASU_FLAG(masu_viewer_options, no_vsync, "no-vsync", "present without waiting for vertical blanks"),
+    MASU_FLAG(masu_viewer_options, no_vsync, "no-vsync",
+              "present without waiting for vertical blanks"),
     MASU_HEADING("Quality"),
     MASU_UINT(masu_viewer_options, rung, "rung", 0, MASU_MAX_RUNGS - 1,
               "start with this rung, without the governor"),
@@ -41,7 +42,7 @@ static const masu_option rows[] = {
     MASU_UINT(masu_viewer_options, frames, "frames", 1, 1000000000,
               "number of frames for --screenshot and --quit, with a fixed step of 1/60 s"),
     MASU_IMAGE(masu_viewer_options, screenshot, "screenshot",
-             "write frame number --frames to a file: .png, or linear light as .pfm, .exr"),
+               "write frame number --frames to a file: .png, or linear light as .pfm, .exr"),
     MASU_FLAG(masu_viewer_options, quit, "quit", "exit after --frames frames"),
     MASU_FLAG(masu_viewer_options, no_timestamps, "no-timestamps",
               "do not time passes, which avoids a barrier around each"),
@@ -108,8 +109,8 @@ static int view(const masu_viewer_options *o) {
         return masu_cli_error("the validation layer reported %u message%s", messages,
                               messages == 1 ? "" : "s");
     if (!masu_cli_quiet() && (o->script || o->frames))
-        fprintf(stderr, "masu-view: %llu frames in %llu loop iterations\n", (unsigned long long)frames,
-                (unsigned long long)turns);
+        fprintf(stderr, "masu-view: %llu frames in %llu loop iterations\n",
+                (unsigned long long)frames, (unsigned long long)turns);
     return MASU_CLI_OK;
 }
 
@@ -122,10 +123,12 @@ static int run(masu_cli *cli) {
     o.rung_given = masu_is_given(&given, rows, "rung");
     masu_switch ignored;
     masu_use_rays(o.rays, &ignored, &o.host);
-    if (!o.scene && !o.json) return masu_cli_usage_error("no scene given: expected SCENE.masu or --json FILE.json");
+    if (!o.scene && !o.json)
+        return masu_cli_usage_error("no scene given: expected SCENE.masu or --json FILE.json");
     if (o.bake && !o.json) return masu_cli_usage_error("--bake needs --json");
     if (o.setting && (o.ladder || o.rung_given || masu_is_given(&given, rows, "target-ms")))
-        return masu_cli_usage_error("--setting cannot be combined with --ladder, --rung or --target-ms");
+        return masu_cli_usage_error(
+            "--setting cannot be combined with --ladder, --rung or --target-ms");
     if ((o.screenshot || o.quit) && !o.frames)
         return masu_cli_usage_error("%s needs --frames", o.screenshot ? "--screenshot" : "--quit");
     if (!masu_clock_advances()) return masu_cli_error("%s", MASU_CLOCK_STOPPED);
@@ -137,28 +140,30 @@ int main(int argc, char **argv) {
         .arguments = "SCENE.masu [options]\n"
                      "       masu-view --json FILE.json [options]",
         .summary = "show a baked scene in a window",
-        .details = "Keys:\n"
-                   "  W A S D, Q E          move the camera; Shift: faster; mouse wheel: speed\n"
-                   "  right mouse button    turn the camera\n"
-                   "  P, Space              camera path on, off; pause\n"
-                   "  Left, Right, Home     time backward, forward, 0; Shift: larger steps\n"
-                   "  1 to 8                rung of the ladder\n"
-                   "  0; G; + and -         governor on; governor on, off; its target\n"
-                   "  Tab or M              knobs: arrow keys select and change, Backspace: the default\n"
-                   "  F1                    overlay: off, short, full\n"
-                   "  F2                    split screen: A, the current setting, and B, a stored one\n"
-                   "  [ ], left mouse       move the dividing line; without split screen: pick an object\n"
-                   "  B                     store the current setting as B (at first the best rung)\n"
-                   "  F3                    FLIP of A against B\n"
-                   "  F11, F12, Esc         full screen; screenshot; exit\n"
-                   "A game controller also moves the camera.\n\n"
-                   "Exit codes:\n"
-                   "  0  success\n"
-                   "  1  the scene, the device or a file failed, or --validate reported a message\n"
-                   "  2  the command line is wrong\n\n"
-                   "Examples:\n"
-                   "  masu-view engine.masu\n"
-                   "  masu-view --json scenes/engine.json --setting scale=0.5\n",
+        .details =
+            "Keys:\n"
+            "  W A S D, Q E          move the camera; Shift: faster; mouse wheel: speed\n"
+            "  right mouse button    turn the camera\n"
+            "  P, Space              camera path on, off; pause\n"
+            "  Left, Right, Home     time backward, forward, 0; Shift: larger steps\n"
+            "  1 to 8                rung 0 to 7 of the ladder\n"
+            "  Page Up, Page Down    the next better, the next cheaper rung\n"
+            "  0; G; + and -         governor on; governor on, off; its target\n"
+            "  Tab or M              knobs: arrow keys select and change, Backspace: the default\n"
+            "  F1                    overlay: off, short, full\n"
+            "  F2                    split screen: A, the current setting, and B, a stored one\n"
+            "  [ ], left mouse       move the dividing line; without split screen: pick an object\n"
+            "  B                     store the current setting as B (at first the best rung)\n"
+            "  F3                    FLIP of A against B\n"
+            "  F11, F12, Esc         full screen; screenshot; exit\n"
+            "A game controller also moves the camera.\n\n"
+            "Exit codes:\n"
+            "  0  success\n"
+            "  1  the scene, the device or a file failed, or --validate reported a message\n"
+            "  2  the command line is wrong\n\n"
+            "Examples:\n"
+            "  masu-view engine.masu\n"
+            "  masu-view --json scenes/engine.json --setting scale=0.5\n",
         .run = run};
     static const masu_cli_command *const commands[] = {&command, NULL};
     static const masu_cli_program program = {

@@ -97,7 +97,8 @@ static bool read_line(char *text, masu_script_line *line, const char **wrong) {
     for (int a = 0; a < ACTS; a++) {
         if (strcmp(act_names[a], word) != 0) continue;
         line->act = (masu_act)a;
-        *wrong = a == ACT_SCREENSHOT ? "expected a name that ends in .png" : "wrong or missing argument of the action";
+        *wrong = a == ACT_SCREENSHOT ? "expected a name that ends in .png"
+                                     : "wrong or missing argument of the action";
         return read_text(line);
     }
     *wrong = "unknown action";

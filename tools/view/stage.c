@@ -61,7 +61,8 @@ static bool fit_blocks(masu_stage *s, const masu_memory *need, char *error, size
     s->block_bytes = (need->host_bytes + align - 1) / align * align;
     s->block = aligned_alloc((size_t)align, (size_t)s->block_bytes);
     if (s->block) return true;
-    snprintf(error, size, "out of memory for a host block of %llu bytes", (unsigned long long)s->block_bytes);
+    snprintf(error, size, "out of memory for a host block of %llu bytes",
+             (unsigned long long)s->block_bytes);
     s->block_bytes = 0;
     return false;
 }
@@ -132,7 +133,8 @@ bool masu_stage_resize(masu_stage *s, VkExtent2D output, char *error, size_t siz
     uint64_t begin = masu_clock_ns(NULL);
     masu_headless_target old = s->target;
     if (!s->m || output.width > s->desc.output.width || output.height > s->desc.output.height) {
-        snprintf(error, size, "output size %ux%u is larger than planned", output.width, output.height);
+        snprintf(error, size, "output size %ux%u is larger than planned", output.width,
+                 output.height);
         return false;
     }
     /* The old one may go when nothing refers to it. */

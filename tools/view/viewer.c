@@ -26,7 +26,8 @@ void masu_viewer_note(masu_viewer *v, const char *format, ...) {
 
 /* Objects that the GPU still uses cannot be destroyed, and waiting for it has no end. */
 void masu_viewer_give_up(const masu_viewer *v) {
-    (void)masu_cli_error("the GPU did not finish within %u s", (unsigned)(v->host.wait_ns / 1000000000u));
+    (void)masu_cli_error("the GPU did not finish within %u s",
+                         (unsigned)(v->host.wait_ns / 1000000000u));
     fflush(NULL);
     _Exit(MASU_CLI_FAILURE);
 }
@@ -34,7 +35,8 @@ void masu_viewer_give_up(const masu_viewer *v) {
 void masu_viewer_settle(masu_viewer *v) {
     if (!v->host.device) return;
     for (uint32_t i = 0; i < MASU_WINDOW_FLIGHT; i++)
-        if (v->pending[i] && masu_headless_wait_fence(&v->host, v->fences[i]) == VK_TIMEOUT) masu_viewer_give_up(v);
+        if (v->pending[i] && masu_headless_wait_fence(&v->host, v->fences[i]) == VK_TIMEOUT)
+            masu_viewer_give_up(v);
     if (vkDeviceWaitIdle(v->host.device) == VK_ERROR_DEVICE_LOST) v->lost = true;
     for (uint32_t i = 0; i < MASU_WINDOW_FLIGHT; i++) v->slot_known[i] = false;
 }
@@ -59,7 +61,8 @@ static bool read_scene(masu_viewer *v, const char *path, void **blob, masu_scene
 /* The path's camera where there is one, else one that looks at the middle from a few metres. */
 static void place_camera(masu_viewer *v) {
     masu_camera camera = {.position = {0.0, 1.7, 6.0}, .forward = {0.0f, -0.1f, -1.0f}, .fov_y = 1.0f};
-    bool has = masu_scene_count(&v->scene, MASU_SCENE_CAMERA_KEY) && masu_camera_at(v->a.m, v->time, &camera) == MASU_OK;
+    bool has = masu_scene_count(&v->scene, MASU_SCENE_CAMERA_KEY) &&
+               masu_camera_at(v->a.m, v->time, &camera) == MASU_OK;
     masu_fly_from(&v->fly, &camera);
     v->on_path = has;
 }
@@ -197,7 +200,8 @@ bool masu_viewer_resize(masu_viewer *v) {
     const masu_headless_target *is = &v->a.target;
     if (!now.width || (v->a.m && is->width == now.width && is->height == now.height)) return true;
     if (!masu_canvas_resize(&v->canvas, now.width, now.height)) {
-        snprintf(v->error, sizeof v->error, "out of memory for an overlay of %ux%u", now.width, now.height);
+        snprintf(v->error, sizeof v->error, "out of memory for an overlay of %ux%u", now.width,
+                 now.height);
         return false;
     }
     if (!masu_compose_resize(&v->compose, now, v->error, sizeof v->error)) return false;
@@ -322,8 +326,8 @@ bool masu_viewer_open(masu_viewer *v) {
     want_given(v);
     v->reference = v->want.rungs[0];
     if (v->rung >= v->want.rung_count) {
-        snprintf(v->error, sizeof v->error, "--rung: expected 0 to %u, found %u", v->want.rung_count - 1,
-                 v->rung);
+        snprintf(v->error, sizeof v->error, "--rung: expected 0 to %u, found %u",
+                 v->want.rung_count - 1, v->rung);
         return false;
     }
     if (!masu_window_open(&v->window, title, v->o->size, v->error, sizeof v->error) || !open_device(v))

@@ -1,5 +1,6 @@
-/* fuzz_tally.c: any bytes as a SPIR-V module, for the cost model: the cost of its instructions, what specialization
- * constants leave of them, and the counters that are added. A module with counters can be read again. */
+/* fuzz_tally.c: any bytes as a SPIR-V module, for the cost model: the cost of its instructions,
+ * what specialization constants leave of them, and the counters that are added. A module with
+ * counters can be read again. */
 #include "fuzz/expect.h"
 
 #include "lab/model/spirv_reach.h"
@@ -16,8 +17,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         const uint32_t value = 1;
         const VkSpecializationMapEntry entry = {.constantID = 0, .size = sizeof value};
         const VkSpecializationInfo special = {1, &entry, sizeof value, &value};
-        masu_spirv_cost all = masu_spirv_cost_straight(&m), some = masu_spirv_cost_reached(&m, NULL);
-        EXPECT(masu_spirv_cost_reached(&m, &special).plain != UINT32_MAX || all.plain || some.plain);
+        masu_spirv_cost all = masu_spirv_cost_straight(&m),
+                        some = masu_spirv_cost_reached(&m, NULL);
+        EXPECT(masu_spirv_cost_reached(&m, &special).plain != UINT32_MAX || all.plain ||
+               some.plain);
         spirv_free(&m);
     }
     if (masu_tally_make(words, count, 3, 64, &tally)) {

@@ -1,5 +1,5 @@
-/* fuzz_trace.c: any bytes as a trace of `masu-lab simulate`. What is accepted has scales that fall and times that a
- * controller can be run on. */
+/* fuzz_trace.c: any bytes as a trace of `masu-lab simulate`. What is accepted has scales that fall
+ * and times that a controller can be run on. */
 #include "fuzz/expect.h"
 
 #include "lab/simulate/trace.h"

@@ -1,6 +1,7 @@
-/* test_baseline.c: `masu-lab study baseline`: the baseline traces a ray a pixel where Masu traces one in
- * four, its mean over many samples is the truth, the samples of equal error are what they are
- * called, frames before count for more at rest than in motion, and what is no setting is refused. */
+/* test_baseline.c: `masu-lab study baseline`: the baseline traces a ray a pixel where Masu traces
+ * one in four, its mean over many samples is the truth, the samples of equal error are what they
+ * are called, frames before count for more at rest than in motion, and what is no setting is
+ * refused. */
 #include "support/support.h"
 #include "support/cli.h"
 

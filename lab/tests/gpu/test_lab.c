@@ -1,5 +1,5 @@
-/* test_lab.c: the program masu-lab from outside: help of every command, and the studies upscale, rays and image on
- * small scenes. Times are not looked at. */
+/* test_lab.c: the program masu-lab from outside: help of every command, and the studies upscale,
+ * rays and image on small scenes. Times are not looked at. */
 #include "support/cli.h"
 #include "support/support.h"
 
@@ -10,8 +10,8 @@
 static void help_and_version_are_there_for_every_command(void **state) {
     (void)state;
     static const char *const commands[] = {
-        "",     "study", "model",       "isa",        "simulate",    "meso",          "world",
-        "ladder", "study march", "study image", "study rays", "study baseline", "study reflections", "study temporal",
+        "", "study", "model", "isa", "simulate", "meso", "world", "ladder", "study march",
+        "study image", "study rays", "study baseline", "study reflections", "study temporal",
         "study upscale", "world city", "world forza"};
     for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
         assert_int_equal(cli_run("%s --help", commands[i]), 0);
@@ -53,7 +53,8 @@ static void the_upscale_study_has_a_line_for_each_case(void **state) {
         assert_int_equal(sscanf(row, "\",%lf,%lf,%lf,%lf", &least, &median, &ratio, &gpu), 4);
         assert_true(least > 0 && median >= least && ratio > 0 && (i || ratio == 1));
     }
-    assert_int_equal(cli_run("study upscale --only easu,bilinear --from 32x24 --size 64x48 --runs 1"), 0);
+    assert_int_equal(
+        cli_run("study upscale --only easu,bilinear --from 32x24 --size 64x48 --runs 1"), 0);
     assert_non_null(strstr(cli_out, "\n  easu  "));
     assert_non_null(strstr(cli_out, "\n  bilinear  "));
     assert_null(strstr(cli_out, "\n  gather  "));
@@ -74,9 +75,10 @@ static void the_rays_study_agrees_with_embree(void **state) {
     static const char *const flat[] = {"", "--flat"};
     for (int i = 0; i < 2; i++) {
         unsigned rays = 0, mismatches = 9;
-        assert_int_equal(cli_run("study rays %s --size 96x64 --runs 2 --quiet --validate --csv - %s",
-                              scene_path("test_trace"), flat[i]),
-                         0);
+        assert_int_equal(
+            cli_run("study rays %s --size 96x64 --runs 2 --quiet --validate --csv - %s",
+                    scene_path("test_trace"), flat[i]),
+            0);
         assert_int_equal(strncmp(cli_out, "scene,kind,backend,rays,mrays_s,embree_mrays_s,ratio,"
                                            "mismatches,hits,given_up,", 78), 0);
         const char *row = strstr(cli_out, "primary,compute,");

@@ -1,5 +1,6 @@
-/* test_marches.c: the marches of the lab build find the surfaces that the product's march finds: `plain`, the baseline; `checkerboard`,
- * whose restarts are safe; and `seed`, whose restarts are not, to the tenth of a metre that its rule allows. */
+/* test_marches.c: the marches of the lab build find the surfaces that the product's march finds:
+ * `plain`, the baseline; `checkerboard`, whose restarts are safe; and `seed`, whose restarts are
+ * not, to the tenth of a metre that its rule allows. */
 #include "support/support.h"
 #include "support/files.h"
 
@@ -25,7 +26,8 @@ static void draw_march(const char *name, masu_march march, float *depths) {
     close_session(&s);
 }
 
-/* Pixels where only one march has a surface, or theirs differ by more than that part of the distance. Depth is near / distance. */
+/* Pixels where only one march has a surface, or theirs differ by more than that part of the
+ * distance. Depth is near / distance. */
 static uint32_t differing(double share) {
     uint32_t count = 0;
     for (uint32_t i = 0; i < PIXELS; i++) {
@@ -46,13 +48,15 @@ static void all_marches_find_the_same_surface(void **state) {
                    {MASU_MARCH_CHECKERBOARD, "checkerboard", 0.01, 0.01},
                    {MASU_MARCH_SEED, "seed", 0.1, 0.05}};
     for (size_t i = 0; i < (long_run() ? sizeof scenes / sizeof *scenes : 1); i++) {
-        if (shell("%s/bin/masu-bake scenes/%s.json -o %s --variants --quiet", build_dir(), scenes[i], baked_scene(scenes[i])))
+        if (shell("%s/bin/masu-bake scenes/%s.json -o %s --variants --quiet", build_dir(),
+                  scenes[i], baked_scene(scenes[i])))
             fail_msg("%s is not baked", scenes[i]);
         draw_march(scenes[i], MASU_MARCH_AUTO, own);
         for (size_t k = 0; k < sizeof marches / sizeof *marches; k++) {
             draw_march(scenes[i], marches[k].march, other);
             uint32_t count = differing(marches[k].share);
-            print_message("  %-8s %-12s %u of %d pixels differ\n", scenes[i], marches[k].name, count, PIXELS);
+            print_message("  %-8s %-12s %u of %d pixels differ\n", scenes[i], marches[k].name,
+                          count, PIXELS);
             assert_true(count <= marches[k].most * PIXELS);
         }
     }

@@ -1,5 +1,6 @@
-/* test_model.c: `masu-lab model` on a driver: shaders with counters count what they run, bytes of known
- * passes are those that follow from sizes, sums are sums, and rungs have the rows that they run. */
+/* test_model.c: `masu-lab model` on a driver: shaders with counters count what they run, bytes of
+ * known passes are those that follow from sizes, sums are sums, and rungs have the rows that they
+ * run. */
 #include "support/support.h"
 #include "plan/compile.h"
 

@@ -38,8 +38,9 @@ static int bench(const char *arguments) { return cli_run("study march %s --quiet
 static int make_truth(void **state) {
     if (make_scratch(state)) return 1;
     write_text("sphere.c", sphere_text);
-    if (shell("%s/bin/masu-bake tests/scenes/test_sphere_sdf.json -o %s/test_sphere_sdf.masu --variants --quiet",
-              build_dir(), scratch))
+    if (shell(
+            "%s/bin/masu-bake tests/scenes/test_sphere_sdf.json -o %s/test_sphere_sdf.masu --variants --quiet",
+            build_dir(), scratch))
         return 1;
     return shell("%s -shared -fPIC -O2 -o %s/sphere.so %s/sphere.c -lm", c_compiler(), scratch,
                  scratch);
@@ -156,7 +157,8 @@ static void what_is_missing_is_said(void **state) {
 static void a_choice_of_ways_is_drawn_and_may_go_untimed(void **state) {
     (void)state;
     char arguments[1024];
-    snprintf(arguments, sizeof arguments, "%s --size 32x24 --runs 0 --only masu,seed --csv %s/c.csv",
+    snprintf(arguments, sizeof arguments,
+             "%s --size 32x24 --runs 0 --only masu,seed --csv %s/c.csv",
              in_scratch("test_sphere_sdf.masu"), scratch);
     if (bench(arguments)) fail_msg("%s", cli_err);
     take_text("c.csv", cli_out, sizeof cli_out);
@@ -164,7 +166,8 @@ static void a_choice_of_ways_is_drawn_and_may_go_untimed(void **state) {
     assert_true(number("seed", "evals_per_px") > 1);
     assert_string_equal(csv_field(cli_out, "masu", "ms"), "n/a");
     assert_string_equal(csv_field(cli_out, "plain", "evals_per_px"), "n/a");
-    snprintf(arguments, sizeof arguments, "%s --only masu,seeds", in_scratch("test_sphere_sdf.masu"));
+    snprintf(arguments, sizeof arguments, "%s --only masu,seeds",
+             in_scratch("test_sphere_sdf.masu"));
     assert_int_equal(bench(arguments), 2);
     assert_non_null(strstr(cli_err, "\"seeds\""));
 }

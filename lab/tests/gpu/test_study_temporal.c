@@ -1,5 +1,5 @@
-/* test_study_temporal.c: `masu-lab study temporal`: with history an image has a lower error than without; rows and CSV
- * are as requested, and mistakes are reported. */
+/* test_study_temporal.c: `masu-lab study temporal`: with history an image has a lower error than
+ * without; rows and CSV are as requested, and mistakes are reported. */
 #include "support/cli.h"
 #include "support/files.h"
 #include "support/support.h"

@@ -1,5 +1,6 @@
-/* test_upscale_chain.c: the chain of compute shaders of `masu-lab study upscale`: fast EASU with counters, outside of a
- * frame, counts the 8x8 tiles that leave early as the scalar transcription in tests/reference/fsr1.c does. */
+/* test_upscale_chain.c: the chain of compute shaders of `masu-lab study upscale`: fast EASU with
+ * counters, outside of a frame, counts the 8x8 tiles that leave early as the scalar transcription
+ * in tests/reference/fsr1.c does. */
 #include "support/support.h"
 
 #include "reference/fsr1.h"
@@ -93,6 +94,7 @@ static void fast_easu_counts_the_tiles_that_leave_early(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(fast_easu_counts_the_tiles_that_leave_early)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(fast_easu_counts_the_tiles_that_leave_early)};
     return cmocka_run_group_tests(tests, open_group, close_group);
 }

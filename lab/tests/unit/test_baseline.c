@@ -1,5 +1,5 @@
-/* test_baseline.c: what `masu-lab study baseline` is made of, without a device: the search for the least
- * count of samples, medians over rounds, and what the baseline is. */
+/* test_baseline.c: what `masu-lab study baseline` is made of, without a device: the search for the
+ * least count of samples, medians over rounds, and what the baseline is. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

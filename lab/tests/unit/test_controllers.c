@@ -1,5 +1,5 @@
-/* test_controllers.c: the governor compared with the rules of other engines, on simulated GPUs and on recorded
- * scenes. */
+/* test_controllers.c: the governor compared with the rules of other engines, on simulated GPUs and
+ * on recorded scenes. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,5 +1,5 @@
-/* test_marches.c: the marches that only the lab build has, in the frame plan: which passes each of them runs, what it tells the shaders,
- * and that a blob without its code is an error. */
+/* test_marches.c: the marches that only the lab build has, in the frame plan: which passes each of
+ * them runs, what it tells the shaders, and that a blob without its code is an error. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -49,7 +49,8 @@ static void each_march_has_its_passes(void **state) {
             assert_int_equal(runs(MASU_PASS_CONE8), cases[i].tiles);
             assert_int_equal(runs(MASU_PASS_CONE4), cases[i].blocks);
             assert_int_equal(runs(MASU_PASS_MARCH), cases[i].blocks);
-            assert_int_equal(runs(MASU_PASS_MARCH_CHECKERBOARD), cases[i].pass == MASU_PASS_MARCH_CHECKERBOARD);
+            assert_int_equal(runs(MASU_PASS_MARCH_CHECKERBOARD),
+                             cases[i].pass == MASU_PASS_MARCH_CHECKERBOARD);
             assert_int_equal(runs(MASU_PASS_MARCH_PLAIN), cases[i].pass == MASU_PASS_MARCH_PLAIN);
             assert_int_equal(runs(MASU_PASS_MARCH_SEED), cases[i].pass == MASU_PASS_MARCH_SEED);
             assert_int_equal(masu_push_of(&plan, 0, cases[i].pass, 0).own.word[0], 77);
@@ -59,7 +60,8 @@ static void each_march_has_its_passes(void **state) {
 
 static void a_march_without_code_in_the_blob_is_a_scene_error(void **state) {
     (void)state;
-    static const masu_march marches[] = {MASU_MARCH_PLAIN, MASU_MARCH_SEED, MASU_MARCH_CHECKERBOARD};
+    static const masu_march marches[] = {MASU_MARCH_PLAIN, MASU_MARCH_SEED,
+                                         MASU_MARCH_CHECKERBOARD};
     for (size_t i = 0; i < sizeof marches / sizeof *marches; i++) {
         masu_desc d = desc_of(SDF, marches[i]);
         support_scene.sdf_march = BIT(AUTO);

@@ -1,6 +1,6 @@
-/* test_meso_study.c: the curves that masu-meso fits come at least twice as close to ray tracing as plain normal mapping,
- * for asphalt, gravel and grass at every view angle of the comparison; a mip of one texel keeps the light of the map
- * within 5 %. */
+/* test_meso_study.c: the curves that masu-meso fits come at least twice as close to ray tracing as
+ * plain normal mapping, for asphalt, gravel and grass at every view angle of the comparison; a mip
+ * of one texel keeps the light of the map within 5 %. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -28,7 +28,8 @@ static void curves_are_twice_as_near_as_plain_maps(void **state) {
         if (name - masu_meso_made >= (int)trials(8, 2, 1)) break;
         masu_meso_patch p;
         assert_true(masu_meso_make(*name, 2, 1, &p));
-        masu_meso_options options = {.size = 64, .side = trials(64, 64, 32), .sky_rays = trials(16, 16, 8), .seed = 1};
+        masu_meso_options options = {
+            .size = 64, .side = trials(64, 64, 32), .sky_rays = trials(16, 16, 8), .seed = 1};
         assert_true(masu_meso_study_run(&p, &options, &study));
         double angle = 0, gain = masu_meso_study_gain(&study, &angle);
         double kept = 0, between = 0;

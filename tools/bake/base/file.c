@@ -78,10 +78,12 @@ char *masu_bake_directory_of(const char *path) {
     return directory;
 }
 
-/* The next character of a UTF-8 text, in lower case. A byte that is no part of one is compared as it is. */
+/* The next character of a UTF-8 text, in lower case. A byte that is no part of one is compared as
+ * it is. */
 static uint32_t next_letter(const char **at, locale_t letters) {
     const unsigned char *c = (const unsigned char *)*at;
-    uint32_t bytes = *c >= 0xF0 ? 4 : *c >= 0xE0 ? 3 : *c >= 0xC0 ? 2 : 1, code = bytes > 1 ? *c & (0x7Fu >> bytes) : *c;
+    uint32_t bytes = *c >= 0xF0 ? 4 : *c >= 0xE0 ? 3 : *c >= 0xC0 ? 2 : 1;
+    uint32_t code = bytes > 1 ? *c & (0x7Fu >> bytes) : *c;
     for (uint32_t i = 1; i < bytes; i++) {
         if ((c[i] & 0xC0) != 0x80) {
             bytes = 1;
@@ -91,7 +93,8 @@ static uint32_t next_letter(const char **at, locale_t letters) {
         code = code << 6 | (c[i] & 0x3Fu);
     }
     *at += bytes;
-    if (letters != (locale_t)0 && code < 0x110000u) return (uint32_t)towlower_l((wint_t)code, letters);
+    if (letters != (locale_t)0 && code < 0x110000u)
+        return (uint32_t)towlower_l((wint_t)code, letters);
     return code >= 'A' && code <= 'Z' ? code + 32 : code;
 }
 
@@ -105,10 +108,13 @@ static bool same_letters(const char *a, const char *b, locale_t letters) {
 /* The entry of a folder with these letters, or NULL; free() it. */
 static char *find_entry(const char *folder, const char *name) {
     DIR *directory = opendir(folder);
-    locale_t letters = newlocale(LC_CTYPE_MASK, "C.UTF-8", (locale_t)0); /* without it: of ASCII only */
+    /* Without it: of ASCII only. */
+    locale_t letters = newlocale(LC_CTYPE_MASK, "C.UTF-8", (locale_t)0);
     char *found = NULL;
     for (struct dirent *entry; directory && (entry = readdir(directory));) {
-        if (!same_letters(entry->d_name, name, letters) || (found && strcmp(found, entry->d_name) < 0)) continue;
+        if (!same_letters(entry->d_name, name, letters) ||
+            (found && strcmp(found, entry->d_name) < 0))
+            continue;
         free(found);
         found = masu_bake_allocate(strlen(entry->d_name) + 1);
         memcpy(found, entry->d_name, strlen(entry->d_name) + 1);
@@ -188,7 +194,8 @@ const char *masu_bake_temporary_directory(void) {
             return NULL;
         }
         temporary.lock = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-        if (temporary.lock >= 0 && masu_atomic_file_lock(temporary.lock, path)) return temporary.directory = path;
+        if (temporary.lock >= 0 && masu_atomic_file_lock(temporary.lock, path))
+            return temporary.directory = path;
         if (temporary.lock >= 0) close(temporary.lock); /* swept while it was new */
         free(path);
     }

@@ -24,9 +24,10 @@ void masu_bake_sweep_temporary(void);
 
 /* "DIRECTORY/NAME"; free() it. */
 char *masu_bake_join(const char *directory, const char *name);
-/* Appends `name`, a relative path, to `path`, a folder with its '/' or nothing, as it is spelled there: where nothing
- * has that name, letters may be of another case (Windows), and of several such files the first in byte order is
- * taken. With a NUL that is not counted. False: there is no such file, and the path is unchanged. */
+/* Appends `name`, a relative path, to `path`, a folder with its '/' or nothing, as it is spelled
+ * there: where nothing has that name, letters may be of another case (Windows), and of several such
+ * files the first in byte order is taken. With a NUL that is not counted. False: there is no such
+ * file, and the path is unchanged. */
 bool masu_bake_append_spelling(masu_bake_buffer *path, const char *name);
 /* The directory of a path, "." if it has none; free() it. */
 char *masu_bake_directory_of(const char *path);

@@ -157,7 +157,8 @@ bool masu_bake_json_boolean(const masu_bake_json *at, const char *name, bool *ou
     return true;
 }
 
-bool masu_bake_json_feature(const masu_bake_json *at, const char *name, masu_bake_json *out, bool *wanted) {
+bool masu_bake_json_feature(const masu_bake_json *at, const char *name, masu_bake_json *out,
+                            bool *wanted) {
     masu_bake_json member = masu_bake_json_member(at, name);
     *out = (masu_bake_json){0};
     if (!member.value) return true;

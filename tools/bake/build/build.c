@@ -95,8 +95,8 @@ static void take_sun(masu_bake_description *d, const masu_bake_content *content)
     for (uint32_t i = 0; i < masu_bake_sun_count(content); i++) {
         const masu_bake_sun *sun = &MASU_BAKE_SUNS(content)[i];
         if (i > 0 || d->look.own_sun) {
-            masu_cli_warn("%s: directional light \"%s\": ignored, since the scene has %s", d->file, sun->name,
-                          d->look.own_sun ? "a sun" : "another one");
+            masu_cli_warn("%s: directional light \"%s\": ignored, since the scene has %s", d->file,
+                          sun->name, d->look.own_sun ? "a sun" : "another one");
             continue;
         }
         look->sun_direction = masu_bake_v3f(sun->direction);
@@ -106,17 +106,19 @@ static void take_sun(masu_bake_description *d, const masu_bake_content *content)
     }
 }
 
-/* The sun of the environment map becomes that of the scene. One that the description has replaces it; where that is
- * black, or the sun is a light of a model, the map keeps its sun and is the only source of its light. */
-static void take_panorama_sun(const masu_bake_environment *e, masu_bake_panorama *p, masu_bake_look *look) {
+/* The sun of the environment map becomes that of the scene. One that the description has replaces
+ * it; where that is black, or the sun is a light of a model, the map keeps its sun and is the only
+ * source of its light. */
+static void take_panorama_sun(const masu_bake_environment *e, masu_bake_panorama *p,
+                              masu_bake_look *look) {
     const masu_bake_vec3 *own = &look->sun_color;
     bool black = !(look->sun_intensity > 0) || (own->x == 0 && own->y == 0 && own->z == 0);
     masu_bake_picture_sun sun;
     if (!p->rgb || look->sun_of_model || (look->own_sun && black)) return;
     bool found = masu_bake_cut_sun(p, &sun);
     if (found && !masu_cli_quiet()) {
-        printf("%s: its sun, %.3g %.3g %.3g towards %.3f %.3f %.3f, is %s\n", e->file, sun.color[0], sun.color[1],
-               sun.color[2], sun.direction[0], sun.direction[1], sun.direction[2],
+        printf("%s: its sun, %.3g %.3g %.3g towards %.3f %.3f %.3f, is %s\n", e->file, sun.color[0],
+               sun.color[1], sun.color[2], sun.direction[0], sun.direction[1], sun.direction[2],
                look->own_sun ? "replaced by the scene's" : "the scene's");
     }
     if (look->own_sun) return;
@@ -126,14 +128,16 @@ static void take_panorama_sun(const masu_bake_environment *e, masu_bake_panorama
     look->sun_color = masu_bake_v3(sun.color[0], sun.color[1], sun.color[2]);
 }
 
-/* Models, SDF, camera and light. Completes the description by the members that depend on the models. */
+/* Models, SDF, camera and light. Completes the description by the members that depend on the
+ * models. */
 static bool build_scene(masu_bake_description *d, const masu_bake_options *options,
                         masu_bake_content *content, masu_bake_report *report) {
     if (!masu_bake_build_models(d, 0, options->textures, content)) return false;
     make_detail(d, content, report);
     masu_bake_affine identity = masu_bake_identity();
     masu_bake_box bounds = report->bounds = masu_bake_bounds(content, &identity);
-    if (d->default_reflections && masu_bake_count(content, MASU_BLOB_INDICES) / 3 > TRACED_TRIANGLES_MAX)
+    if (d->default_reflections &&
+        masu_bake_count(content, MASU_BLOB_INDICES) / 3 > TRACED_TRIANGLES_MAX)
         d->reflections.wanted = false;
     if (!masu_bake_build_lights(d, content)) return false;
     if (d->sdf.source) {

@@ -23,9 +23,9 @@ typedef struct masu_bake_report {
     masu_bake_buffer warnings; /* the texts of all, each with its NUL */
 } masu_bake_report;
 
-/* False after reporting. It completes the description by what depends on the models' shapes: the view of
- * a model without a scene, the sun of a file. With options->describe that is all, and the content has
- * geometry and view alone. */
+/* False after reporting. It completes the description by what depends on the models' shapes: the
+ * view of a model without a scene, the sun of a file. With options->describe that is all, and the
+ * content has geometry and view alone. */
 bool masu_bake_build(masu_bake_description *d, const masu_bake_options *options,
                      masu_bake_content *content, masu_bake_report *report);
 

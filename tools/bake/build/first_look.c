@@ -97,7 +97,8 @@ static void add_ground(const masu_bake_box *box, masu_bake_description *d) {
     masu_bake_shape *shapes = masu_bake_take(&d->pool, (d->shape_count + 1) * sizeof *shapes);
     masu_bake_material_change *grey = masu_bake_take(&d->pool, sizeof *grey);
     const float color[3] = {0.16f, 0.16f, 0.165f};
-    grey->value = (masu_bake_override){.base_color = true, .roughness = true, .metallic = true, .specular = true};
+    grey->value = (masu_bake_override){
+        .base_color = true, .roughness = true, .metallic = true, .specular = true};
     memcpy(grey->value.value.base_color, color, sizeof color);
     grey->value.value.roughness = 0.28f;
     grey->value.value.specular = 0.5f;

@@ -2,7 +2,8 @@
  * the box of what it shows what it leaves open; see build.h. */
 #include "bake/build/look.h"
 
-/* Depth is n / z in a float: its relative precision is that of the float wherever the near plane is. */
+/* Depth is n / z in a float: its relative precision is that of the float wherever the near plane
+ * is. */
 #define NEAR 0.01
 
 static double box_radius(const masu_bake_box *box) {
@@ -72,8 +73,10 @@ static void add_environment(const masu_bake_look *l, const masu_bake_box *bounds
     masu_bake_store(
         masu_bake_v3(sun.x * l->sun_intensity, sun.y * l->sun_intensity, sun.z * l->sun_intensity),
         e.sun_color);
-    double reach = l->occlusion_radius > 0 ? l->occlusion_radius : fmin(box_radius(bounds) * 0.2, 1);
-    if (l->occlusion) e.occlusion_radius = fmaxf((float)reach, 1e-3f); /* as the blob's check rounds */
+    double reach =
+        l->occlusion_radius > 0 ? l->occlusion_radius : fmin(box_radius(bounds) * 0.2, 1);
+    /* Rounded as the check of the blob does. */
+    if (l->occlusion) e.occlusion_radius = fmaxf((float)reach, 1e-3f);
     masu_bake_store(l->ambient, e.ambient);
     masu_bake_store(l->zenith, e.sky_zenith);
     masu_bake_store(l->horizon, e.sky_horizon);

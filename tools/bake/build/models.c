@@ -294,8 +294,8 @@ static bool add_occluder(const model_builder *b, const masu_bake_model *model, u
     return true;
 }
 
-bool masu_bake_build_models(const masu_bake_description *d, size_t start, masu_bake_textures textures,
-                            masu_bake_content *content) {
+bool masu_bake_build_models(const masu_bake_description *d, size_t start,
+                            masu_bake_textures textures, masu_bake_content *content) {
     model_builder b = {.description = d, .content = content, .textures = textures};
     bool good = true;
     for (size_t i = start; good && i < d->model_count; i++) {

@@ -26,7 +26,8 @@
 
 #define MASU_BAKE_SPARE_MAX 4096u
 #define MASU_BAKE_FOV_Y 40.0        /* degrees, where the scene says nothing */
-#define MASU_BAKE_SUN_RADIUS 0.27   /* degrees, of shadows of the SDF, where the scene says nothing */
+/* Degrees, of shadows of the SDF, where the scene says nothing. */
+#define MASU_BAKE_SUN_RADIUS 0.27
 
 /* What a model's materials are changed to: the values, and what has no number in the scene yet. */
 typedef struct masu_bake_material_change {

@@ -9,7 +9,8 @@ typedef struct masu_bake_options {
     /* read */
     const char *input;            /* a scene's .json, or a model */
     const char *models_directory; /* what "@assimp/" stands for */
-    bool bare;                    /* no ground, shadows, occlusion, reflections that are not asked for */
+    /* No ground, shadows, occlusion, reflections that are not asked for. */
+    bool bare;
     /* build */
     masu_bake_textures textures; /* WANTED or OFF */
     const char *texture_path;    /* folders with ':' between, or NULL */

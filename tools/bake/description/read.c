@@ -99,7 +99,9 @@ bool masu_bake_read(const masu_bake_options *options, masu_bake_description *out
     }
     if (is_scene(options->input)) {
         if (!options->describe) return read_scene(options, out);
-        masu_cli_error("%s: is a scene description already; --describe needs a model or a .sdf file", options->input);
+        masu_cli_error(
+            "%s: is a scene description already; --describe needs a model or a .sdf file",
+            options->input);
         return false;
     }
     if (masu_bake_is_sdf(options->input)) return masu_bake_describe_sdf(options, out);

@@ -160,10 +160,14 @@ bool masu_bake_read_sdf(const masu_bake_json *scene, masu_bake_reader *r) {
 
 /* ---- a .sdf alone ---- */
 
-#define UNBOUNDED_RADII 20 /* an endless part is drawn to this distance, in radii of what the camera sees */
-#define UNBOUNDED_EXTENT 5 /* metres that the camera sees of a field that is endless along an axis */
+/* An endless part is drawn to this distance, in radii of what the camera sees. */
+#define UNBOUNDED_RADII 20
+/* Metres that the camera sees of a field that is endless along an axis. */
+#define UNBOUNDED_EXTENT 5
 
-static double *axis_of(masu_bake_vec3 *v, int axis) { return axis == 0 ? &v->x : axis == 1 ? &v->y : &v->z; }
+static double *axis_of(masu_bake_vec3 *v, int axis) {
+    return axis == 0 ? &v->x : axis == 1 ? &v->y : &v->z;
+}
 
 /* The box of the bounded parts, or of `all`; per axis what is finite. */
 static masu_bake_box framed_box(const masu_sdfc_result *field, bool all) {
@@ -184,16 +188,19 @@ static masu_bake_box framed_box(const masu_sdfc_result *field, bool all) {
     return box;
 }
 
-static void frame_field(const masu_sdfc_result *field, const masu_bake_options *options, masu_bake_description *out) {
+static void frame_field(const masu_sdfc_result *field, const masu_bake_options *options,
+                        masu_bake_description *out) {
     masu_bake_sdf *sdf = &out->sdf;
     sdf->framed = framed_box(field, false);
     if (masu_bake_box_is_empty(&sdf->framed)) sdf->framed = framed_box(field, true);
-    double radius = fmax(masu_bake_length(masu_bake_sub(sdf->framed.high, sdf->framed.low)) / 2, 1e-3);
+    double radius =
+        fmax(masu_bake_length(masu_bake_sub(sdf->framed.high, sdf->framed.low)) / 2, 1e-3);
     sdf->bounds = sdf->framed;
     for (uint32_t i = 0; i < field->part_count; i++) {
         for (int axis = 0; axis < 3; axis++) {
             double low = field->parts[i].low[axis], high = field->parts[i].high[axis];
-            double *most = axis_of(&sdf->bounds.high, axis), *least = axis_of(&sdf->bounds.low, axis);
+            double *most = axis_of(&sdf->bounds.high, axis),
+                   *least = axis_of(&sdf->bounds.low, axis);
             double far_low = *axis_of(&sdf->framed.low, axis) - UNBOUNDED_RADII * radius;
             double far_high = *axis_of(&sdf->framed.high, axis) + UNBOUNDED_RADII * radius;
             *least = fmin(*least, isfinite(low) ? low : far_low);
@@ -205,22 +212,24 @@ static void frame_field(const masu_sdfc_result *field, const masu_bake_options *
     sdf->bounds.high = masu_bake_mad(sdf->bounds.high, margin, 1);
     sdf->max_distance = 3 * masu_bake_length(masu_bake_sub(sdf->bounds.high, sdf->bounds.low));
     sdf->anchored = reaches_far(&sdf->bounds);
-    sdf->occlusion = (masu_bake_occlusion){.shadows = !options->bare,
-                                           .ambient = !options->bare,
-                                           .sun_radius = MASU_BAKE_SUN_RADIUS * (MASU_BAKE_PI / 180.0),
-                                           .distance = sdf->max_distance,
-                                           .radius = fmin(radius * 0.4, 1e6),
-                                           .strength = 1};
+    sdf->occlusion =
+        (masu_bake_occlusion){.shadows = !options->bare,
+                              .ambient = !options->bare,
+                              .sun_radius = MASU_BAKE_SUN_RADIUS * (MASU_BAKE_PI / 180.0),
+                              .distance = sdf->max_distance,
+                              .radius = fmin(radius * 0.4, 1e6),
+                              .strength = 1};
 }
 
 bool masu_bake_describe_sdf(const masu_bake_options *options, masu_bake_description *out) {
     masu_bake_buffer text = {0};
     masu_sdfc_result field = {0};
-    const masu_sdfc_options quick = {.pairs = UINT32_MAX}; /* its claims are tested when it is built */
+    /* Its claims are tested when it is built. */
+    const masu_sdfc_options quick = {.pairs = UINT32_MAX};
     char error[4096];
     if (!masu_bake_read_file(options->input, MASU_SDFC_SOURCE_MAX, &text)) return false;
-    bool good = masu_sdfc_compile_with((const char *)text.data, text.bytes, options->input, &quick, &field, error,
-                                       sizeof error);
+    bool good = masu_sdfc_compile_with((const char *)text.data, text.bytes, options->input, &quick,
+                                       &field, error, sizeof error);
     if (good) {
         out->sdf.lipschitz = 1; /* replaced by the compiler's */
         out->sdf.source = masu_bake_take_text(&out->pool, options->input);

@@ -169,9 +169,11 @@ static bool read_sky(const masu_bake_json *scene, masu_bake_look *l) {
 static bool read_occlusion(const masu_bake_json *scene, masu_bake_look *l) {
     static const char *const members[] = {"radius", NULL};
     masu_bake_json occlusion;
-    if (!masu_bake_json_feature(scene, "ambient_occlusion", &occlusion, &l->occlusion)) return false;
-    return !occlusion.value || (masu_bake_json_object(&occlusion, members) &&
-                                masu_bake_json_number(&occlusion, "radius", 1e-3, 1e6, &l->occlusion_radius));
+    if (!masu_bake_json_feature(scene, "ambient_occlusion", &occlusion, &l->occlusion))
+        return false;
+    return !occlusion.value ||
+           (masu_bake_json_object(&occlusion, members) &&
+            masu_bake_json_number(&occlusion, "radius", 1e-3, 1e6, &l->occlusion_radius));
 }
 
 /* A number is the exposure; an object asks for a metered one. And whether edges are smooth. */

@@ -9,7 +9,8 @@
 typedef struct masu_bake_reader {
     const char *directory;        /* of the scene's file: relative names start there */
     const char *models_directory; /* what "@assimp/" stands for */
-    bool bare;                    /* shadows, occlusion and reflections only where they are asked for */
+    /* Shadows, occlusion and reflections only where they are asked for. */
+    bool bare;
     masu_bake_description *out;
 } masu_bake_reader;
 

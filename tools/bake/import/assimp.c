@@ -27,17 +27,21 @@ static void report(masu_import *m) {
                            (const char *)m->textures.data,
                            m->texture_count > MASU_IMPORT_NAMES_MAX ? ", ..." : "");
     }
-    if (m->mixed) masu_import_format(w, "%llu " MASU_IMPORT_COLORS_MIXED "\n", (unsigned long long)m->mixed);
-    if (m->clamped) masu_import_format(w, "%llu " MASU_IMPORT_COLORS_CLAMPED "\n", (unsigned long long)m->clamped);
+    if (m->mixed)
+        masu_import_format(w, "%llu " MASU_IMPORT_COLORS_MIXED "\n", (unsigned long long)m->mixed);
+    if (m->clamped)
+        masu_import_format(w, "%llu " MASU_IMPORT_COLORS_CLAMPED "\n",
+                           (unsigned long long)m->clamped);
     if (m->translucent) {
         masu_import_format(w, "%u meshes have vertex colours with alpha: the alpha is ignored\n",
                            m->translucent);
     }
     if (m->phong) {
-        masu_import_format(w,
-                           "%u materials have Phong highlights: the exponent becomes the roughness, the specular "
-                           "colour is ignored\n",
-                           m->phong);
+        masu_import_format(
+            w,
+            "%u materials have Phong highlights: the exponent becomes the roughness, the specular "
+            "colour is ignored\n",
+            m->phong);
     }
     if (m->invisible) {
         masu_import_format(w, "%u materials have an opacity of 0: treated as opaque\n",
@@ -59,7 +63,8 @@ static void report(masu_import *m) {
                            m->other_lights);
     }
     if (!m->given && m->source->mNumLights) {
-        masu_import_format(w, "%u lights: ignored, since their units are not known\n", m->source->mNumLights);
+        masu_import_format(w, "%u lights: ignored, since their units are not known\n",
+                           m->source->mNumLights);
     }
     if (!m->moving && (m->skins || m->source->mNumAnimations)) {
         masu_bake_append_text(w,
@@ -155,7 +160,8 @@ static const struct aiScene *read_assimp(const char *path, masu_bake_buffer *war
     const struct aiScene *scene;
     masu_bake_buffer whole = {0}, text = {0};
     const char *dialect = NULL; /* of a format that the library knows, as text that it reads */
-    if ((masu_bake_is_acc(path) || masu_bake_is_stl(path)) && masu_bake_read_file(path, DIALECT_MAX, &whole)) {
+    if ((masu_bake_is_acc(path) || masu_bake_is_stl(path)) &&
+        masu_bake_read_file(path, DIALECT_MAX, &whole)) {
         if (masu_bake_is_acc(path)) {
             masu_bake_strip_acc((const char *)whole.data, whole.bytes, &text);
             dialect = "ac";

@@ -82,7 +82,8 @@ typedef struct masu_import {
     masu_import_range *mesh_parts; /* by aiMesh: its range of parts */
     bool *mesh_done, *mesh_used;
     masu_import_set **sets; /* by aiMesh: sets that begin with it */
-    masu_import_given **material; /* by aiMaterial, and behind them the default one; NULL: not read */
+    /* By aiMaterial, and behind them the default one; NULL: not read. */
+    masu_import_given **material;
     masu_bake_buffer textures;
     masu_import_loss losses[MASU_LOSSES];
     uint64_t triangles;

@@ -46,15 +46,16 @@ static void close_file(struct aiFileIO *io, struct aiFile *file) {
     free(file);
 }
 
-/* The library puts the model's folder before a name, and looks for variants of it that are not there: what is behind
- * the folder is the name that the file says. */
+/* The library puts the model's folder before a name, and looks for variants of it that are not
+ * there: what is behind the folder is the name that the file says. */
 static const char *find(const masu_import_files *files, const char *path, masu_bake_buffer *out) {
     struct stat about;
     const char *slash = strrchr(files->model, '/');
     size_t folder = slash ? (size_t)(slash - files->model) + 1 : 0;
     if (stat(path, &about) == 0) return path;
     if (strncmp(path, "./", 2) == 0 && strncmp(files->model, "./", 2) != 0) path += 2;
-    (void)masu_bake_picture_path(files->model, strncmp(path, files->model, folder) == 0 ? path + folder : path, out);
+    (void)masu_bake_picture_path(
+        files->model, strncmp(path, files->model, folder) == 0 ? path + folder : path, out);
     return (const char *)out->data;
 }
 

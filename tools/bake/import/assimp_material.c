@@ -1,8 +1,8 @@
 /* assimp_material.c: materials and the names of their pictures; see assimp.h.
  *
- * Of glTF none of this is used (gltf_material.c). A base colour is linear; the colours of older formats (OBJ, AC3D)
- * were chosen on a screen and are decoded from sRGB. A specular exponent n becomes the roughness (2 / (n + 2))^(1/4), at which GGX has
- * the same lobe width. */
+ * Of glTF none of this is used (gltf_material.c). A base colour is linear; the colours of older
+ * formats (OBJ, AC3D) were chosen on a screen and are decoded from sRGB. A specular exponent n
+ * becomes the roughness (2 / (n + 2))^(1/4), at which GGX has the same lobe width. */
 #include "bake/import/assimp.h"
 #include "bake/import/picture_path.h"
 
@@ -245,7 +245,8 @@ static void convert_color(const struct aiMaterial *from, masu_blob_material *to,
     bool found = linear || get_color(from, KEY(AI_MATKEY_COLOR_DIFFUSE), c);
     for (int i = 0; found && i < 3; i++) {
         double value = (double)masu_import_clamped(c[i], 0, 1);
-        to->base_color[i] = masu_import_clamped(linear ? value : masu_import_decode_srgb(value), 0, 1);
+        to->base_color[i] =
+            masu_import_clamped(linear ? value : masu_import_decode_srgb(value), 0, 1);
     }
     if (found) *alpha = c[3];
     double intensity = 1;
@@ -258,12 +259,14 @@ static void convert_color(const struct aiMaterial *from, masu_blob_material *to,
             fmax(c[0], fmax(c[1], c[2])) <= fmax(diffuse[0], fmax(diffuse[1], diffuse[2]))) {
             for (int i = 0; i < 3; i++) {
                 to->base_color[i] = masu_import_clamped(
-                    masu_import_decode_srgb((double)masu_import_clamped(c[i] + diffuse[i], 0, 1)), 0, 1);
+                    masu_import_decode_srgb((double)masu_import_clamped(c[i] + diffuse[i], 0, 1)),
+                    0, 1);
             }
             return;
         }
         for (int i = 0; i < 3; i++) {
-            double value = linear ? c[i] : masu_import_decode_srgb((double)masu_import_clamped(c[i], 0, 1));
+            double value =
+                linear ? c[i] : masu_import_decode_srgb((double)masu_import_clamped(c[i], 0, 1));
             to->emissive[i] = masu_import_clamped(value * intensity, 0, 65504);
         }
     }
@@ -291,8 +294,8 @@ static void convert_shine(const struct aiMaterial *from, masu_blob_material *to)
     }
 }
 
-/* Whether a highlight of an older format loses its colour; its exponent becomes the roughness. Materials that Assimp
- * adds, which have no name or this one, have a colour, too. */
+/* Whether a highlight of an older format loses its colour; its exponent becomes the roughness.
+ * Materials that Assimp adds, which have no name or this one, have a colour, too. */
 static bool has_phong(const struct aiMaterial *from) {
     double c[4] = {0, 0, 0, 0}, value;
     struct aiString name = {0};
@@ -312,7 +315,8 @@ static bool has_phong(const struct aiMaterial *from) {
 const masu_import_given *masu_import_read_material(masu_import *m, unsigned index) {
     const struct aiScene *s = m->source;
     if (m->given) return &m->given[index];
-    if (index >= s->mNumMaterials || !s->mMaterials || !s->mMaterials[index]) index = s->mNumMaterials;
+    if (index >= s->mNumMaterials || !s->mMaterials || !s->mMaterials[index])
+        index = s->mNumMaterials;
     if (m->material[index]) return m->material[index];
     masu_import_given *made = m->material[index] = masu_bake_allocate(sizeof *made);
     *made = (masu_import_given){masu_bake_default_material(), masu_bake_no_maps(), ""};
@@ -333,7 +337,8 @@ const masu_import_given *masu_import_read_material(masu_import *m, unsigned inde
     made->maps = convert_maps(m, from);
     /* One number under two names in some formats, so not their product. */
     alpha = alpha < opacity ? alpha : opacity;
-    if (made->maps.alpha != MASU_BAKE_ALPHA_OPAQUE && made->maps.alpha != MASU_BAKE_ALPHA_MASK && alpha < 0.999) {
+    if (made->maps.alpha != MASU_BAKE_ALPHA_OPAQUE && made->maps.alpha != MASU_BAKE_ALPHA_MASK &&
+        alpha < 0.999) {
         made->maps.alpha = MASU_BAKE_ALPHA_BLEND;
         to->opacity = masu_import_clamped(alpha, 0, 1);
     }
@@ -351,8 +356,10 @@ const masu_import_given *masu_import_read_material(masu_import *m, unsigned inde
 uint32_t masu_import_material(masu_import *m, unsigned index, const double *color) {
     const masu_import_given *from = masu_import_read_material(m, index);
     masu_blob_material to = from->material;
-    bool none = color && strcmp(from->name, AI_DEFAULT_MATERIAL_NAME) == 0; /* the file has none: colours are all there is */
+    /* The file has none: colours are all there is. */
+    bool none = color && strcmp(from->name, AI_DEFAULT_MATERIAL_NAME) == 0;
     for (int k = 0; k < 3 && color; k++)
-        to.base_color[k] = masu_import_clamped((none ? 1 : (double)to.base_color[k]) * color[k], 0, 1);
+        to.base_color[k] =
+            masu_import_clamped((none ? 1 : (double)to.base_color[k]) * color[k], 0, 1);
     return masu_bake_mapped_material(m->piece, &to, &from->maps, from->name);
 }

@@ -104,8 +104,8 @@ static float *texcoords_of(masu_import *m, const struct aiMesh *mesh) {
 }
 
 /* Triangles of one material, times a colour (or NULL). */
-static void add_part(masu_import *m, const struct aiMesh *mesh, bool bent, masu_bake_triangles *part, const double *color,
-                     masu_bake_losses *lost) {
+static void add_part(masu_import *m, const struct aiMesh *mesh, bool bent,
+                     masu_bake_triangles *part, const double *color, masu_bake_losses *lost) {
     part->material = masu_import_material(m, mesh->mMaterialIndex, color);
     if (bent)
         masu_import_bent_mesh(m, mesh, part, lost);
@@ -114,8 +114,8 @@ static void add_part(masu_import *m, const struct aiMesh *mesh, bool bent, masu_
 }
 
 /* A part for each colour. Of glTF it is done already (gltf_mesh.c). */
-static void add_colored(masu_import *m, const struct aiMesh *mesh, bool bent, const masu_bake_triangles *all,
-                        masu_bake_losses *lost) {
+static void add_colored(masu_import *m, const struct aiMesh *mesh, bool bent,
+                        const masu_bake_triangles *all, masu_bake_losses *lost) {
     masu_bake_pool pool = {0};
     masu_import_colors colors;
     uint32_t triangles = (uint32_t)(all->index_count / 3);
@@ -124,19 +124,22 @@ static void add_colored(masu_import *m, const struct aiMesh *mesh, bool bent, co
     for (size_t i = 0; i < mesh->mNumVertices; i++) {
         const struct aiColor4D *c = &mesh->mColors[0][i];
         const ai_real rgb[3] = {c->r, c->g, c->b};
-        for (int k = 0; k < 3; k++) linear[4 * i + (size_t)k] = (float)masu_import_decode_srgb((double)rgb[k]);
+        for (int k = 0; k < 3; k++)
+            linear[4 * i + (size_t)k] = (float)masu_import_decode_srgb((double)rgb[k]);
         linear[4 * i + 3] = 1;
         alpha = alpha || c->a < 0.999f;
     }
     m->translucent += alpha;
-    masu_import_group_colors(&pool, linear, mesh->mNumVertices, all->indices, triangles, true, &colors);
+    masu_import_group_colors(&pool, linear, mesh->mNumVertices, all->indices, triangles, true,
+                             &colors);
     m->mixed += colors.exact ? 0 : triangles;
     m->clamped += colors.clamped;
     for (uint32_t g = 0; g < colors.count && !m->full; g++) {
         const masu_import_color *c = &colors.groups[g];
         masu_bake_buffer indices = {0};
         for (uint32_t i = 0; i < c->count; i++)
-            masu_bake_append(&indices, all->indices + 3 * (size_t)colors.triangles[c->first + i], 3 * sizeof(uint32_t));
+            masu_bake_append(&indices, all->indices + 3 * (size_t)colors.triangles[c->first + i],
+                             3 * sizeof(uint32_t));
         masu_bake_triangles part = *all;
         part.indices = (const uint32_t *)(const void *)indices.data;
         part.index_count = 3 * (size_t)c->count;

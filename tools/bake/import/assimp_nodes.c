@@ -109,8 +109,10 @@ static bool convert_light(const struct aiLight *from, const masu_bake_affine *sp
 static void convert_sun(masu_import *m, const struct aiLight *from, const masu_bake_affine *world) {
     const masu_bake_vec3 origin = {0, 0, 0};
     const ai_real color[3] = {from->mColorDiffuse.r, from->mColorDiffuse.g, from->mColorDiffuse.b};
-    masu_bake_vec3 back = {-(double)from->mDirection.x, -(double)from->mDirection.y, -(double)from->mDirection.z};
-    masu_bake_vec3 direction = masu_bake_sub(masu_bake_apply(world, back), masu_bake_apply(world, origin));
+    masu_bake_vec3 back = {-(double)from->mDirection.x, -(double)from->mDirection.y,
+                           -(double)from->mDirection.z};
+    masu_bake_vec3 direction =
+        masu_bake_sub(masu_bake_apply(world, back), masu_bake_apply(world, origin));
     double irradiance[3];
     char name[sizeof from->mName.data + 1];
     size_t length = (size_t)masu_import_length(&from->mName);

@@ -303,7 +303,8 @@ static void add_key(track *t, double time, const double value[4], int components
         key.value[k] = (float)(turns ? value[k] / sqrt(square) : value[k]);
     const masu_blob_key *keys = (const masu_blob_key *)(const void *)t->keys.data;
     if (count && !(key.time > keys[count - 1].time)) {
-        /* Several keys at one time are a step: the first holds until just before, the last one from then on. */
+        /* Several keys at one time are a step: the first holds until just before, the last one from
+         * then on. */
         masu_blob_key *last = (masu_blob_key *)(void *)t->keys.data + count - 1;
         float before = nextafterf(key.time, -INFINITY);
         if (key.time < last->time) {
@@ -449,7 +450,8 @@ static void report_live(masu_import *m) {
                            m->unbound);
     }
     if (m->unordered) {
-        masu_import_format(m->warnings, "%u keys of animations are before the previous key: ignored\n",
+        masu_import_format(m->warnings,
+                           "%u keys of animations are before the previous key: ignored\n",
                            m->unordered);
     }
     if (m->lost_joints) {

@@ -81,7 +81,8 @@ void *masu_gltf_take(masu_gltf *g, size_t count, size_t size) {
 
 bool masu_gltf_is_data(const char *uri) { return strncasecmp(uri, "data:", 5) == 0; }
 
-/* Whether a URI can name a file: its scheme is file, or it has none. One letter before a colon is a drive (C:\). */
+/* Whether a URI can name a file: its scheme is file, or it has none. One letter before a colon is a
+ * drive (C:\). */
 static bool is_file(const char *uri) {
     size_t n = strspn(uri, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789+-.");
     return *uri && (n < 2 || uri[n] != ':' || strncasecmp(uri, "file:", 5) == 0);
@@ -118,7 +119,8 @@ static int digit64(char c) {
     return c == '+' || c == '-' ? 62 : c == '/' || c == '_' ? 63 : -1;
 }
 
-/* The bytes behind the comma have %-escapes (RFC 2397), of base64 too. Line breaks within base64 are passed over. */
+/* The bytes behind the comma have %-escapes (RFC 2397), of base64 too. Line breaks within base64
+ * are passed over. */
 static bool decode_data(masu_gltf *g, const char *uri, masu_gltf_bytes *out) {
     const char *comma = strchr(uri, ',');
     if (!comma) return masu_gltf_fail(g, "a data: URI without a comma");
@@ -126,7 +128,8 @@ static bool decode_data(masu_gltf *g, const char *uri, masu_gltf_bytes *out) {
     unsigned char *data = masu_gltf_take(g, strlen(comma) + 1, 1);
     size_t length = masu_bake_resolve_escapes(data, comma + 1), bytes = 0;
     unsigned bits = 0, held = 0;
-    for (size_t i = 0; base64 && i < length && data[i] != '='; i++) { /* in place: four characters become three */
+    /* In place: four characters become three. */
+    for (size_t i = 0; base64 && i < length && data[i] != '='; i++) {
         if (strchr(" \t\r\n", data[i]) && data[i]) continue;
         int digit = digit64((char)data[i]);
         if (digit < 0) return masu_gltf_fail(g, "a data: URI with a '%c'", data[i]);
@@ -299,7 +302,8 @@ static bool check_version(masu_gltf *g) {
     const json_t *asset = masu_gltf_object(g, g->root, "asset");
     const json_t *number = json_object_get(asset, "version");
     /* glTF 1 has numbers, or none at all; its elements are members of objects. */
-    if (json_is_number(number) ? json_number_value(number) < 2 : !number && json_is_object(json_object_get(g->root, "meshes")))
+    if (json_is_number(number) ? json_number_value(number) < 2
+                               : !number && json_is_object(json_object_get(g->root, "meshes")))
         return refuse_first(g);
     const char *version = asset ? masu_gltf_string(g, asset, "version") : NULL;
     const char *least = asset ? masu_gltf_string(g, asset, "minVersion") : NULL;
@@ -368,7 +372,8 @@ bool masu_gltf_is_file(const char *path) {
     char head[4] = {0};
     if (dot && (strcasecmp(dot, ".gltf") == 0 || strcasecmp(dot, ".glb") == 0)) return true;
     FILE *file = fopen(path, "rb");
-    bool is_glb = file && fread(head, 1, sizeof head, file) == sizeof head && memcmp(head, "glTF", 4) == 0;
+    bool is_glb =
+        file && fread(head, 1, sizeof head, file) == sizeof head && memcmp(head, "glTF", 4) == 0;
     if (file) fclose(file);
     return is_glb;
 }

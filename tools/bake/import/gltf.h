@@ -86,7 +86,8 @@ typedef struct masu_gltf {
 
 /* Whether a file is glTF, by its name or its first bytes (.vrm, ...). */
 bool masu_gltf_is_file(const char *path);
-/* Reads all of it; g holds path, variant, wanted, piece, warnings and error. False: one line in error. */
+/* Reads all of it; g holds path, variant, wanted, piece, warnings and error. False: one line in
+ * error. */
 bool masu_gltf_read(masu_gltf *g);
 /* The same of bytes. */
 bool masu_gltf_read_bytes(masu_gltf *g, const unsigned char *data, size_t bytes);
@@ -106,7 +107,8 @@ void masu_gltf_at(masu_gltf *g, const char *array, size_t index, const json_t *o
 const char *masu_gltf_name_of(masu_gltf *g, const char *array, size_t index, const json_t *object);
 /* The bytes of a URI: of data, or of a file beside the model. False: they are not there. */
 bool masu_gltf_fetch(masu_gltf *g, const char *uri, masu_gltf_bytes *out);
-/* The path of a URI, where picture_path.h finds it; of the pool. NULL: it is of no file. outside: it must not be read. */
+/* The path of a URI, where picture_path.h finds it; of the pool. NULL: it is of no file. outside:
+ * it must not be read. */
 const char *masu_gltf_path(masu_gltf *g, const char *uri, bool *outside);
 bool masu_gltf_is_data(const char *uri);
 void *masu_gltf_take(masu_gltf *g, size_t count, size_t size);

@@ -1,7 +1,8 @@
 /* gltf_clip.c: animations of a glTF file become aiAnimations, whose keys are linear; see gltf.h.
  *
- * A step becomes two keys, one float apart in time (as do several keys at one time: assimp_skin.c). A cubic spline is cut into lines that are off by no more than
- * ERROR of the range of its values (of a rotation: of a unit quaternion). */
+ * A step becomes two keys, one float apart in time (as do several keys at one time: assimp_skin.c).
+ * A cubic spline is cut into lines that are off by no more than ERROR of the range of its values
+ * (of a rotation: of a unit quaternion). */
 #include "bake/import/gltf.h"
 
 #include <stdlib.h>

@@ -7,9 +7,9 @@
  * A coat has the mesh's normal where it names no picture, and one picture of normals is what a surface has: coat and base
  * have the same one, or only one of them has any; of two different ones the coat's is left out, with a note.
  *
- * What has no counterpart is brought near, and a note says so: glass of KHR_materials_transmission is thin, and what shines through has
- * its base colour; unlit surfaces emit their colour; specular and glossiness become metallic and
- * roughness, as the appendix of that extension has it. */
+ * What has no counterpart is brought near, and a note says so: glass of KHR_materials_transmission
+ * is thin, and what shines through has its base colour; unlit surfaces emit their colour; specular
+ * and glossiness become metallic and roughness, as the appendix of that extension has it. */
 #include "bake/import/gltf.h"
 
 #include <stdio.h>
@@ -237,7 +237,8 @@ static void note_texture(masu_gltf *g, const json_t *of, const char *member) {
 /* `name`: of the factor, for the note. */
 static float limited(masu_gltf *g, double value, double low, double high, const char *name) {
     char what[128];
-    snprintf(what, sizeof what, "materials have a \"%s\" beyond %g to %g: clamped", name, low, high);
+    snprintf(what, sizeof what, "materials have a \"%s\" beyond %g to %g: clamped", name, low,
+             high);
     if (!(value >= low && value <= high)) masu_gltf_note_one(g, what, g->where);
     return masu_import_clamped(value, low, high);
 }
@@ -320,7 +321,9 @@ static bool read_glossiness(masu_gltf *g, const json_t *about, masu_gltf_materia
         worst = fmax(worst, fmax(fabs(got - diffuse[k] * rest), fabs(got_specular - specular[k])));
     }
     if (worst > APPROXIMATED && !pictured)
-        masu_gltf_note_one(g, "materials have a specular colour that metallic and roughness can only approximate", g->where);
+        masu_gltf_note_one(
+            g, "materials have a specular colour that metallic and roughness can only approximate",
+            g->where);
     out->alpha = diffuse[3];
     to->metallic = (float)metallic;
     to->roughness = pictured ? 1 : 1 - limited(g, gloss, 0, 1, "glossinessFactor");
@@ -374,7 +377,10 @@ static bool read_specular(masu_gltf *g, const json_t *about, masu_blob_material 
     double reflectance = index > 0 ? root * root : 1; /* 0 stands for infinity */
     double specular_share = reflectance * share * factor / 0.08;
     if (!(specular_share >= 0 && specular_share <= 1 + 1e-6) && to->metallic < 1)
-        masu_gltf_note_one(g, "materials reflect more than 0.08 at normal incidence (ior, specular factors): clamped", g->where);
+        masu_gltf_note_one(
+            g,
+            "materials reflect more than 0.08 at normal incidence (ior, specular factors): clamped",
+            g->where);
     to->specular = masu_import_clamped(specular_share, 0, 1);
     return true;
 }
@@ -437,11 +443,15 @@ static bool read_transmission(masu_gltf *g, const json_t *about, masu_gltf_mater
     factor = (double)limited(g, factor, 0, 1, "transmissionFactor") * (1 - (double)to->metallic);
     if (!(factor > 0)) return true;
     if (out->given.maps.alpha == MASU_BAKE_ALPHA_MASK) {
-        masu_gltf_note_one(g, "materials transmit light and are alpha-tested: drawn without transmission", g->where);
+        masu_gltf_note_one(
+            g, "materials transmit light and are alpha-tested: drawn without transmission",
+            g->where);
         return true;
     }
     if (to->roughness > 0)
-        masu_gltf_note_one(g, "materials transmit light and are rough: what is behind them is drawn sharp", g->where);
+        masu_gltf_note_one(
+            g, "materials transmit light and are rough: what is behind them is drawn sharp",
+            g->where);
     out->alpha = (out->blends ? out->alpha : 1) * (1 - factor);
     out->given.maps.tinted = 1;
     out->blends = true;
@@ -480,7 +490,8 @@ static bool read_material(masu_gltf *g, const json_t *about, masu_gltf_material 
     out->given.maps.single = !json_is_true(json_object_get(about, "doubleSided"));
     if (masu_gltf_extension(g, about, "KHR_materials_unlit")) make_unlit(out, &m);
     settle(g, &m, out);
-    out->given.maps.dark = json_object_get(about, "emissiveTexture") && g->wanted != MASU_BAKE_TEXTURES_OFF &&
+    out->given.maps.dark = json_object_get(about, "emissiveTexture") &&
+                           g->wanted != MASU_BAKE_TEXTURES_OFF &&
                            out->given.maps.image[MASU_BAKE_EMISSIVE] == MASU_BLOB_NONE;
     return !masu_gltf_failed(g);
 }

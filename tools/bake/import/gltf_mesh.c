@@ -310,12 +310,14 @@ static void add_parts(masu_gltf *g, const vertices *v, const struct aiMesh *like
                       uint32_t triangles, masu_bake_buffer *numbers, const char *name) {
     masu_import_colors colors;
     bool blends = g->materials[material < 0 ? g->material_count : (size_t)material].blends;
-    masu_import_group_colors(&g->pool, v->colors, v->count, v->indices, triangles, !blends, &colors);
+    masu_import_group_colors(&g->pool, v->colors, v->count, v->indices, triangles, !blends,
+                             &colors);
     if (!colors.exact) masu_gltf_note_many(g, triangles, MASU_IMPORT_COLORS_MIXED, name);
     if (colors.clamped) masu_gltf_note_many(g, colors.clamped, MASU_IMPORT_COLORS_CLAMPED, name);
     for (uint32_t i = 0; i < colors.count; i++) {
         const masu_import_color *c = &colors.groups[i];
-        unsigned number = add_mesh(g, v, like, colors.triangles + c->first, c->count, masu_gltf_given(g, material, c->color));
+        unsigned number = add_mesh(g, v, like, colors.triangles + c->first, c->count,
+                                   masu_gltf_given(g, material, c->color));
         masu_bake_append(numbers, &number, sizeof number);
     }
 }

@@ -148,10 +148,14 @@ static bool add_light(masu_gltf *g, const json_t *node, const struct aiNode *at)
         masu_gltf_note_one(g, "lights have an unknown type: ignored", at->mName.data);
         return true;
     }
-    if (!(range >= 0 && range <= 1e9) || (spot && !(outer > 0 && outer <= MASU_BAKE_PI / 2 + 1e-6 && inner >= 0 && inner <= outer)) ||
+    if (!(range >= 0 && range <= 1e9) ||
+        (spot &&
+         !(outer > 0 && outer <= MASU_BAKE_PI / 2 + 1e-6 && inner >= 0 && inner <= outer)) ||
         !(intensity >= 0 && fmin(color[0], fmin(color[1], color[2])) >= 0 &&
-          intensity * fmax(color[0], fmax(color[1], color[2])) <= MASU_BAKE_PI * (directional ? MASU_BAKE_SUN_COLOR_MAX : 1e9)))
-        masu_gltf_note_one(g, "lights have a colour, range or angle out of range: clamped", at->mName.data);
+          intensity * fmax(color[0], fmax(color[1], color[2])) <=
+              MASU_BAKE_PI * (directional ? MASU_BAKE_SUN_COLOR_MAX : 1e9)))
+        masu_gltf_note_one(g, "lights have a colour, range or angle out of range: clamped",
+                           at->mName.data);
     struct aiLight *made = masu_gltf_take(g, 1, sizeof *made);
     made->mName = at->mName;
     made->mType = directional                 ? aiLightSource_DIRECTIONAL
@@ -212,7 +216,9 @@ static bool add_instances(masu_gltf *g, const json_t *about, struct aiNode *node
     }
     for (int a = 0; a < 3; a++) known += json_object_get(attributes, names[a]) != NULL;
     if (json_object_size(attributes) > known)
-        masu_gltf_note_one(g, "nodes have attributes of instances other than their transforms: ignored", node->mName.data);
+        masu_gltf_note_one(
+            g, "nodes have attributes of instances other than their transforms: ignored",
+            node->mName.data);
     if (!count) return !attributes || masu_gltf_fail(g, "EXT_mesh_gpu_instancing has no attributes");
     static const char what[] = "instances";
     if (count > INSTANCES_MAX) return masu_gltf_fail(g, "more than 4 million %s", what);
@@ -315,8 +321,9 @@ bool masu_gltf_read_nodes(masu_gltf *g) {
     }
     g->where[0] = '\0';
     if (!check_skins(g) || !find_roots(g, is_child, root)) return false;
-    /* Depth first, with a stack of our own. What is shown is a tree: each node is reached once. Exporters leave nodes
-     * outside of the scene whose children are in it; these are not reached. */
+    /* Depth first, with a stack of our own. What is shown is a tree: each node is reached once.
+     * Exporters leave nodes outside of the scene whose children are in it; these are not
+     * reached. */
     bool *reached = masu_gltf_take(g, g->node_count, 1);
     masu_bake_buffer stack = {0};
     masu_bake_append(&stack, root->mChildren, root->mNumChildren * sizeof(struct aiNode *));
@@ -328,7 +335,8 @@ bool masu_gltf_read_nodes(masu_gltf *g) {
         memcpy(&node, stack.data + stack.bytes, sizeof node);
         size_t index = (size_t)(node - g->nodes);
         if (reached[index]) {
-            good = masu_gltf_fail(g, "nodes[%zu] is twice in the scene: as a root, or a child of two nodes", index);
+            good = masu_gltf_fail(
+                g, "nodes[%zu] is twice in the scene: as a root, or a child of two nodes", index);
             break;
         }
         reached[index] = true;
@@ -341,7 +349,8 @@ bool masu_gltf_read_nodes(masu_gltf *g) {
     size_t only = masu_gltf_count(g, "scenes") == 1 ? g->node_count : 0;
     for (size_t i = 0; i < only; i++) {
         if (!reached[i] && json_object_get(masu_gltf_element(g, "nodes", (json_int_t)i), "mesh"))
-            masu_gltf_note_one(g, "nodes with meshes are not in the scene: left out", g->nodes[i].mName.data);
+            masu_gltf_note_one(g, "nodes with meshes are not in the scene: left out",
+                               g->nodes[i].mName.data);
     }
     g->scene.mRootNode = root->mNumChildren == 1 ? root->mChildren[0] : root;
     return true;

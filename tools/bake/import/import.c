@@ -1,7 +1,8 @@
 /* import.c: a model is read in a child process; see import.h.
  *
- * What travels through the pipe: for each kind of section, for pictures, cameras, suns, warnings and the error,
- * a uint64 of bytes and the bytes; then END, which proves that the child got that far. */
+ * What travels through the pipe: for each kind of section, for pictures, cameras, suns, warnings
+ * and the error, a uint64 of bytes and the bytes; then END, which proves that the child got that
+ * far. */
 #define _POSIX_C_SOURCE 200809L
 #include "bake/import/import.h"
 #include "bake/base/process.h"
@@ -116,7 +117,8 @@ static void report_lines(const char *path, masu_bake_buffer *text) {
 static bool report_end(const char *path, masu_bake_result result) {
     switch (result.end) {
     case MASU_BAKE_SIGNALED:
-        masu_cli_error("cannot read %s: the importer crashed: %s", path, masu_cli_signal(result.code));
+        masu_cli_error("cannot read %s: the importer crashed: %s", path,
+                       masu_cli_signal(result.code));
         break;
     case MASU_BAKE_TIMEOUT:
         masu_cli_error("cannot read %s: the importer took more than %d seconds", path, result.code);

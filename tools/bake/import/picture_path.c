@@ -51,9 +51,10 @@ static const char *last_part(const char *path) {
     return slash ? slash + 1 : path;
 }
 
-/* Puts "FOLDER/NAME" into `out`, in any_case as it is spelled there, and says whether it is there. folder_bytes: with
- * its '/', or 0. */
-static bool is_there(const char *folder, size_t folder_bytes, const char *name, bool any_case, masu_bake_buffer *out) {
+/* Puts "FOLDER/NAME" into `out`, in any_case as it is spelled there, and says whether it is there.
+ * folder_bytes: with its '/', or 0. */
+static bool is_there(const char *folder, size_t folder_bytes, const char *name, bool any_case,
+                     masu_bake_buffer *out) {
     out->bytes = 0;
     masu_bake_append(out, folder, folder_bytes);
     if (any_case) {
@@ -75,8 +76,10 @@ static bool step_up(const char *path, size_t *bytes, const char *wanted) {
 }
 
 /* The same of what the model may name. */
-static bool is_own(const char *model, size_t folder_bytes, const char *name, bool any_case, masu_bake_buffer *out) {
-    return is_there(model, folder_bytes, name, any_case, out) && masu_bake_inside(model, (const char *)out->data);
+static bool is_own(const char *model, size_t folder_bytes, const char *name, bool any_case,
+                   masu_bake_buffer *out) {
+    return is_there(model, folder_bytes, name, any_case, out) &&
+           masu_bake_inside(model, (const char *)out->data);
 }
 
 /* In the shared folder of the TORCS installation that the model is of. */
@@ -128,7 +131,8 @@ bool masu_bake_picture_path(const char *model, const char *name, masu_bake_buffe
     }
     may = may || is_shared(model, other, out);
     if (!may) {
-        bool escaped = !is_there(model, folder, own, false, out) && is_there(model, folder, other, false, out);
+        bool escaped =
+            !is_there(model, folder, own, false, out) && is_there(model, folder, other, false, out);
         if (!escaped) (void)is_there(model, folder, own, false, out);
         may = masu_bake_inside(model, (const char *)out->data);
     }

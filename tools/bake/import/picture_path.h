@@ -1,6 +1,6 @@
-/* picture_path.h: where a file lies that a model file names: a picture, a glTF buffer. Names are of other machines as
- * often as not: with other separators, as a URI, with folders that are not here. All places that are looked at by
- * themselves are here:
+/* picture_path.h: where a file lies that a model file names: a picture, a glTF buffer. Names are of
+ * other machines as often as not: with other separators, as a URI, with folders that are not here.
+ * All places that are looked at by themselves are here:
  *
  *   1. the name as it is, below the model's folder
  *   2. the same with "%20" resolved

@@ -1,4 +1,5 @@
-/* stl.c: see stl.h. Exporters for Windows write SOLID, FACET NORMAL and VERTEX; names keep their case. */
+/* stl.c: see stl.h. Exporters for Windows write SOLID, FACET NORMAL and VERTEX; names keep their
+ * case. */
 #include "bake/import/stl.h"
 
 #include <stdint.h>
@@ -18,12 +19,14 @@ static bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c ==
 static bool is_binary(const char *text, size_t bytes) {
     if (bytes < BINARY_HEAD) return false;
     const unsigned char *count = (const unsigned char *)text + BINARY_HEAD - 4;
-    uint64_t facets = (uint64_t)count[0] | (uint64_t)count[1] << 8 | (uint64_t)count[2] << 16 | (uint64_t)count[3] << 24;
+    uint64_t facets = (uint64_t)count[0] | (uint64_t)count[1] << 8 | (uint64_t)count[2] << 16 |
+                      (uint64_t)count[3] << 24;
     return bytes == BINARY_HEAD + facets * BINARY_FACET;
 }
 
 static bool is_keyword(const char *word, size_t length) {
-    static const char *const words[] = {"solid", "facet", "normal", "outer", "loop", "vertex", "endloop", "endfacet", "endsolid"};
+    static const char *const words[] = {"solid",  "facet",   "normal",   "outer",   "loop",
+                                        "vertex", "endloop", "endfacet", "endsolid"};
     for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
         if (strlen(words[i]) == length && strncasecmp(words[i], word, length) == 0) return true;
     }
@@ -41,7 +44,8 @@ bool masu_bake_lower_stl(const char *text, size_t bytes, masu_bake_buffer *out) 
     memcpy(to, text + first, bytes - first);
     for (size_t at = 0; at < bytes - first;) {
         size_t end = at;
-        bool named = strncasecmp(to + at, "solid", 5) == 0 || strncasecmp(to + at, "endsolid", 8) == 0;
+        bool named =
+            strncasecmp(to + at, "solid", 5) == 0 || strncasecmp(to + at, "endsolid", 8) == 0;
         while (to[end] && !is_space(to[end])) end++;
         for (size_t i = at; i < end && is_keyword(to + at, end - at); i++) {
             changed = changed || (to[i] >= 'A' && to[i] <= 'Z');

@@ -23,12 +23,14 @@ static float level_of(float c, double levels) {
     return (float)(floor(s * levels + 0.5) / levels);
 }
 
-/* Triangles in the order of their colours, of `levels` in each channel (0: as they are). Returns how many colours. */
+/* Triangles in the order of their colours, of `levels` in each channel (0: as they are). Returns
+ * how many colours. */
 static uint32_t sort_colors(const key *means, uint32_t count, double levels, key *out) {
     uint32_t colors = 0;
     for (uint32_t i = 0; i < count; i++) {
         out[i] = means[i];
-        for (int k = 0; k < 4 && levels > 0; k++) out[i].color[k] = level_of(means[i].color[k], levels);
+        for (int k = 0; k < 4 && levels > 0; k++)
+            out[i].color[k] = level_of(means[i].color[k], levels);
     }
     qsort(out, count, sizeof *out, by_color);
     for (uint32_t i = 0; i < count; i++)
@@ -37,8 +39,8 @@ static uint32_t sort_colors(const key *means, uint32_t count, double levels, key
 }
 
 /* The mean colour of each triangle; whether all are of one colour each. */
-static bool mean_colors(const float *colors, uint32_t vertices, const uint32_t *indices, uint32_t triangles,
-                        bool opaque, key *means, uint32_t *clamped) {
+static bool mean_colors(const float *colors, uint32_t vertices, const uint32_t *indices,
+                        uint32_t triangles, bool opaque, key *means, uint32_t *clamped) {
     bool plain = true;
     for (uint32_t i = 0; i < triangles; i++) {
         const uint32_t *corner = indices + 3 * (size_t)i;
@@ -61,10 +63,13 @@ static bool mean_colors(const float *colors, uint32_t vertices, const uint32_t *
     return plain;
 }
 
-void masu_import_group_colors(masu_bake_pool *pool, const float *colors, uint32_t vertices, const uint32_t *indices,
-                              uint32_t triangles, bool opaque, masu_import_colors *out) {
-    key *means = masu_bake_take(pool, triangles * sizeof *means), *sorted = masu_bake_take(pool, triangles * sizeof *sorted);
-    *out = (masu_import_colors){.triangles = masu_bake_take(pool, triangles * sizeof *out->triangles)};
+void masu_import_group_colors(masu_bake_pool *pool, const float *colors, uint32_t vertices,
+                              const uint32_t *indices, uint32_t triangles, bool opaque,
+                              masu_import_colors *out) {
+    key *means = masu_bake_take(pool, triangles * sizeof *means),
+        *sorted = masu_bake_take(pool, triangles * sizeof *sorted);
+    *out =
+        (masu_import_colors){.triangles = masu_bake_take(pool, triangles * sizeof *out->triangles)};
     bool plain = mean_colors(colors, vertices, indices, triangles, opaque, means, &out->clamped);
     double levels = 128;
     uint32_t count = sort_colors(means, triangles, 0, sorted);
@@ -78,12 +83,15 @@ void masu_import_group_colors(masu_bake_pool *pool, const float *colors, uint32_
     for (uint32_t i = 0, next; i < triangles; i = next) {
         masu_import_color *to = &out->groups[out->count++];
         double sum[4] = {0, 0, 0, 0};
-        for (next = i; next < triangles && !memcmp(sorted[next].color, sorted[i].color, sizeof sorted->color); next++) {
+        for (next = i;
+             next < triangles && !memcmp(sorted[next].color, sorted[i].color, sizeof sorted->color);
+             next++) {
             out->triangles[next] = sorted[next].triangle;
             for (int k = 0; k < 4; k++) sum[k] += (double)means[sorted[next].triangle].color[k];
         }
         to->first = i;
         to->count = next - i;
-        for (int k = 0; k < 4; k++) to->color[k] = kept ? (double)sorted[i].color[k] : sum[k] / (next - i);
+        for (int k = 0; k < 4; k++)
+            to->color[k] = kept ? (double)sorted[i].color[k] : sum[k] / (next - i);
     }
 }

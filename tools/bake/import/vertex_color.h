@@ -1,8 +1,9 @@
-/* vertex_color.h: colours of vertices become materials, since a vertex has no room for a colour (blob.h).
+/* vertex_color.h: colours of vertices become materials, since a vertex has no room for a colour
+ * (blob.h).
  *
- * The triangles of a mesh are grouped by colour; each group gets a material of its colour. Up to 64 colours that do not
- * change within a triangle are kept exactly. Else a triangle has the mean of its corners, and similar ones are drawn
- * in one colour, which importers report. */
+ * The triangles of a mesh are grouped by colour; each group gets a material of its colour. Up to 64
+ * colours that do not change within a triangle are kept exactly. Else a triangle has the mean of
+ * its corners, and similar ones are drawn in one colour, which importers report. */
 #ifndef MASU_BAKE_VERTEX_COLOR_H
 #define MASU_BAKE_VERTEX_COLOR_H
 
@@ -11,7 +12,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define MASU_IMPORT_COLORS_MIXED "triangles have colours at their vertices: each is of one colour, like ones of the same"
+#define MASU_IMPORT_COLORS_MIXED                                                                   \
+    "triangles have colours at their vertices: each is of one colour, like ones of the same"
 #define MASU_IMPORT_COLORS_CLAMPED "triangles have colours at their vertices beyond 0 to 1: clamped"
 
 typedef struct masu_import_color {
@@ -27,8 +29,10 @@ typedef struct masu_import_colors {
     uint32_t clamped;    /* triangles with a colour beyond 0 to 1 */
 } masu_import_colors;
 
-/* colors: linear, 4 for each vertex. opaque: alpha counts for nothing. What is returned is of the pool. */
-void masu_import_group_colors(masu_bake_pool *pool, const float *colors, uint32_t vertices, const uint32_t *indices,
-                              uint32_t triangles, bool opaque, masu_import_colors *out);
+/* colors: linear, 4 for each vertex. opaque: alpha counts for nothing. What is returned is of the
+ * pool. */
+void masu_import_group_colors(masu_bake_pool *pool, const float *colors, uint32_t vertices,
+                              const uint32_t *indices, uint32_t triangles, bool opaque,
+                              masu_import_colors *out);
 
 #endif

@@ -187,8 +187,8 @@ static void octahedral_square(const double d[3], double out[2]) {
     out[1] = 0.5 * v + 0.5;
 }
 
-void masu_bake_panorama_pixel(const masu_bake_panorama *p, uint32_t x, uint32_t y, double direction[3],
-                              double *solid_angle) {
+void masu_bake_panorama_pixel(const masu_bake_panorama *p, uint32_t x, uint32_t y,
+                              double direction[3], double *solid_angle) {
     double up = cos(PI * (y + 0.5) / p->height), flat = sqrt(fmax(1 - up * up, 0));
     double azimuth = p->turn + (0.5 - (x + 0.5) / p->width) * 2 * PI;
     direction[0] = flat * sin(azimuth);
@@ -408,8 +408,8 @@ static void warn_of_clamped(const masu_bake_panorama *p) {
         most = fmax(most, own);
     }
     if (count)
-        masu_cli_warn("%s: %zu of %zu pixels are above %g: clamped (the largest is %g)", p->name ? p->name : "environment",
-                      count, pixels, RADIANCE_MAX, most);
+        masu_cli_warn("%s: %zu of %zu pixels are above %g: clamped (the largest is %g)",
+                      p->name ? p->name : "environment", count, pixels, RADIANCE_MAX, most);
 }
 
 void masu_bake_add_environment(const masu_bake_panorama *p, uint32_t size,

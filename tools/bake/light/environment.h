@@ -23,13 +23,14 @@ bool masu_bake_load_panorama(const char *path, masu_bake_panorama *out);
 #define MASU_BAKE_RADIANCE_MAX 65408.0
 
 /* Direction of the middle of a pixel, and the solid angle that it covers. */
-void masu_bake_panorama_pixel(const masu_bake_panorama *p, uint32_t x, uint32_t y, double direction[3],
-                              double *solid_angle);
+void masu_bake_panorama_pixel(const masu_bake_panorama *p, uint32_t x, uint32_t y,
+                              double direction[3], double *solid_angle);
 
 /* Radiance of a unit direction, bilinear between the picture's pixels. */
 void masu_bake_panorama_at(const masu_bake_panorama *p, const double direction[3], double out[3]);
 
-/* Adds both sections. size: as in the blob. A warning counts the pixels above what a texel holds. */
+/* Adds both sections. size: as in the blob. A warning counts the pixels above what a texel
+ * holds. */
 void masu_bake_add_environment(const masu_bake_panorama *p, uint32_t size,
                                masu_bake_content *content);
 

@@ -95,7 +95,8 @@ typedef struct masu_bake_maps {
     uint8_t relief;                  /* MASU_BAKE_RELIEF_* */
     uint8_t relief_of;               /* MASU_BAKE_RELIEF_OF_* */
     uint8_t tinted;                  /* with ALPHA_BLEND: what shines through has the base colour */
-    uint8_t unlit;                   /* emission is the base colour: without its picture, the factor */
+    /* Emission is the base colour: without its picture, the factor. */
+    uint8_t unlit;
     uint8_t dark;                    /* emission was meant for a map that the importer left out */
     float cutoff, normal_scale;      /* normal_scale: of heights their strength */
     float occlusion;                 /* strength of the occlusion map, 0..1 */

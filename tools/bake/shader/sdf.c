@@ -132,7 +132,8 @@ static bool has_terms(const masu_bake_buffer *text) {
 /* Points of the camera's path inside the SDF's bounds; free() them. */
 static masu_sdfc_camera *path_of(const masu_bake_content *content, uint32_t *count) {
     const masu_blob_sdf *sdf = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, const masu_blob_sdf);
-    const masu_blob_camera_key *keys = MASU_BAKE_ARRAY(content, MASU_BLOB_CAMERA_KEYS, const masu_blob_camera_key);
+    const masu_blob_camera_key *keys =
+        MASU_BAKE_ARRAY(content, MASU_BLOB_CAMERA_KEYS, const masu_blob_camera_key);
     uint32_t key_count = (uint32_t)masu_bake_count(content, MASU_BLOB_CAMERA_KEYS);
     masu_sdfc_camera *out = masu_bake_allocate((size_t)key_count * PATH_STEPS * sizeof *out);
     *count = 0;
@@ -144,7 +145,8 @@ static masu_sdfc_camera *path_of(const masu_bake_content *content, uint32_t *cou
             bool inside = true;
             for (int k = 0; k < 3; k++) {
                 c->position[k] = (double)a->position[k] * (1 - t) + (double)b->position[k] * t;
-                inside = inside && c->position[k] >= (double)sdf->bounds_min[k] && c->position[k] <= (double)sdf->bounds_max[k];
+                inside = inside && c->position[k] >= (double)sdf->bounds_min[k] &&
+                         c->position[k] <= (double)sdf->bounds_max[k];
             }
             c->time = (double)a->time * (1 - t) + (double)b->time * t;
             *count += inside;
@@ -162,7 +164,8 @@ static bool compile_scene(const char *path, masu_bake_content *content, masu_bak
     masu_cli_progress("compiling %s", path);
     bool good = masu_bake_count(content, MASU_BLOB_SDF_PARAMS) == 0;
     if (!good) {
-        masu_cli_error("%s: a .sdf file declares its own parameters: remove \"params\" from the scene", path);
+        masu_cli_error(
+            "%s: a .sdf file declares its own parameters: remove \"params\" from the scene", path);
         masu_bake_release(&own);
         return false;
     }
@@ -283,7 +286,8 @@ static bool run_tool(const char *const *arguments, const char *package, const ch
     } else if (result.end == MASU_BAKE_EXITED && result.code == MASU_BAKE_CANNOT_START) {
         masu_cli_error("cannot run %s; is it installed? (package %s)", arguments[0], package);
     } else if (result.end == MASU_BAKE_SIGNALED) {
-        masu_cli_error("%s: %s was ended by %s", glsl_path, arguments[0], masu_cli_signal(result.code));
+        masu_cli_error("%s: %s was ended by %s", glsl_path, arguments[0],
+                       masu_cli_signal(result.code));
     } else if (result.end == MASU_BAKE_TIMEOUT) {
         masu_cli_error("%s: %s took more than %d seconds", glsl_path, arguments[0], result.code);
     } else if (result.end == MASU_BAKE_NO_CHILD) {
@@ -293,7 +297,8 @@ static bool run_tool(const char *const *arguments, const char *package, const ch
     } else if (!good) {
         hide_directory(text, directory);
         text[strcspn(text, "\n")] = '\0';
-        masu_cli_error("%s: %s failed (exit code %d): %s", glsl_path, arguments[0], result.code, text);
+        masu_cli_error("%s: %s failed (exit code %d): %s", glsl_path, arguments[0], result.code,
+                       text);
     }
     masu_bake_release(&output);
     return good;
@@ -408,8 +413,8 @@ enum {
 static const struct {
     const char *source, *define /* or NULL */, *raw, *optimised;
     uint32_t kind;
-    int when; /* always; with slots that change, or with time; with --variants; with shadows or ambient occlusion; with reflections and slots that
-                 change not, or do */
+    int when; /* always; with slots that change, or with time; with --variants; with shadows or
+                 ambient occlusion; with reflections and slots that are constant, or change */
 } scene_shaders[] = {
     {"march.comp", NULL, "march.raw", "march.spv", MASU_BLOB_MARCH_SPIRV, ALWAYS},
     {"update.comp", NULL, "update.raw", "update.spv", MASU_BLOB_UPDATE_SPIRV, UPDATED},
@@ -423,8 +428,8 @@ static const struct {
 #ifdef MASU_LAB
     {"march_plain.comp", "-DMASU_LAB", "plain.raw", "plain.spv", MASU_BLOB_PLAIN_SPIRV, VARIANT},
     {"march_seed.comp", "-DMASU_LAB", "seed.raw", "seed.spv", MASU_BLOB_SEED_SPIRV, VARIANT},
-    {"march_checkerboard.comp", "-DMASU_LAB", "check.raw", "check.spv", MASU_BLOB_CHECKERBOARD_SPIRV,
-     VARIANT},
+    {"march_checkerboard.comp", "-DMASU_LAB", "check.raw", "check.spv",
+     MASU_BLOB_CHECKERBOARD_SPIRV, VARIANT},
 #endif
     {"sdf_occlusion.comp", NULL, "occl.raw", "occl.spv", MASU_BLOB_OCCLUSION_SPIRV, OCCLUSION},
     {"specular_trace_sdf.comp", NULL, "mirror.raw", "mirror.spv", MASU_BLOB_TRACE_SDF_SPIRV,
@@ -457,7 +462,8 @@ static void source_as_part(const masu_bake_content *content, masu_sdfc_result *s
     scene->param_count = (uint32_t)masu_bake_count(content, MASU_BLOB_SDF_PARAMS);
     scene->params = masu_bake_allocate((scene->param_count + 1) * sizeof *scene->params);
     for (uint32_t i = 0; i < scene->param_count; i++) {
-        const masu_blob_sdf_param *p = &MASU_BAKE_ARRAY(content, MASU_BLOB_SDF_PARAMS, const masu_blob_sdf_param)[i];
+        const masu_blob_sdf_param *p =
+            &MASU_BAKE_ARRAY(content, MASU_BLOB_SDF_PARAMS, const masu_blob_sdf_param)[i];
         bool ranges = p->minimum > -1e30f && p->maximum < 1e30f;
         memset(&scene->params[i], 0, sizeof scene->params[i]);
         scene->params[i].value = (double)p->value;
@@ -473,16 +479,18 @@ static void source_as_part(const masu_bake_content *content, masu_sdfc_result *s
 static bool take_steepest(masu_bake_content *content, double steepest, const char *path) {
     double lipschitz = fmax(steepest * AUTO_MARGIN, LEAST_LIPSCHITZ);
     if (!(lipschitz <= 1e6)) {
-        masu_cli_error("%s: the steepest slope found is %.4g: expected at most 1e6", path, steepest);
+        masu_cli_error("%s: the steepest slope found is %.4g: expected at most 1e6", path,
+                       steepest);
         return false;
     }
     MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf)->lipschitz = (float)lipschitz;
-    if (!masu_cli_quiet()) printf("%s: lipschitz %.4g (steepest slope found: %.4g)\n", path, lipschitz, steepest);
+    if (!masu_cli_quiet())
+        printf("%s: lipschitz %.4g (steepest slope found: %.4g)\n", path, lipschitz, steepest);
     return true;
 }
 
-/* Right after the march, which has said what does not compile: a field that is too steep is refused before
- * the other shaders take their time. */
+/* Right after the march, which has said what does not compile: a field that is too steep is refused
+ * before the other shaders take their time. */
 static bool try_blocks(masu_bake_content *content, masu_sdfc_result *scene, const char *directory,
                        char *include_here, char *include_scene, const char *path) {
     masu_bake_buffer spirv = {0};
@@ -492,7 +500,8 @@ static bool try_blocks(masu_bake_content *content, masu_sdfc_result *scene, cons
     if (source) source_as_part(content, scene);
     if (!source && measures) {
         MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf)->lipschitz = 1;
-        if (!masu_cli_quiet()) printf("%s: lipschitz 1: each part is divided by its own constant\n", path);
+        if (!masu_cli_quiet())
+            printf("%s: lipschitz 1: each part is divided by its own constant\n", path);
     }
     if (!masu_bake_try_needed(scene)) return true;
     paths p = {masu_bake_join(directory, "try.comp"),
@@ -506,12 +515,11 @@ static bool try_blocks(masu_bake_content *content, masu_sdfc_result *scene, cons
     masu_sdfc_options options = {0};
     masu_sdfc_camera *cameras = path_of(content, &options.camera_count);
     options.cameras = cameras;
-    bool good =
-        run_tools(&p, false, directory, path, NULL) &&
-        masu_bake_read_file(p.optimised, SPIRV_MAX, &spirv) &&
-        masu_bake_try(scene, (const uint32_t *)(const void *)spirv.data, spirv.bytes / 4, &options, path,
-                      source && measures ? &steepest : NULL) &&
-        (!source || !measures || take_steepest(content, steepest, path));
+    bool good = run_tools(&p, false, directory, path, NULL) &&
+                masu_bake_read_file(p.optimised, SPIRV_MAX, &spirv) &&
+                masu_bake_try(scene, (const uint32_t *)(const void *)spirv.data, spirv.bytes / 4,
+                              &options, path, source && measures ? &steepest : NULL) &&
+                (!source || !measures || take_steepest(content, steepest, path));
     masu_bake_release(&spirv);
     free(cameras);
     free(p.source);
@@ -554,7 +562,8 @@ bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path,
                                          .moves = dynamic};
         good = run_tools(&p, has_raster, directory, glsl_path, &counts) &&
                take_spirv(content, scene_shaders[i].kind, p.optimised, glsl_path) &&
-               (i > 0 || try_blocks(content, &scene, directory, include_here, include_scene, glsl_path));
+               (i > 0 ||
+                try_blocks(content, &scene, directory, include_here, include_scene, glsl_path));
         free(p.source);
         free(p.raw);
         free(p.optimised);

@@ -1,9 +1,8 @@
 /* spirv.c: see spirv.h.
  *
- * Every value is a row of cells: a vector its components, a matrix its columns, an array or struct
- * its members one after the other. An id's row lies at a fixed place in one array of cells, as the
- * variables do; a pointer is the number of a cell. There is no recursion in SPIR-V shaders, so that
- * fixed places are enough. Numbers of instructions are those of the Khronos specification. */
+ * Every value is a row of cells: components of a vector, columns of a matrix, members of an array
+ * or struct. Rows and variables have fixed positions in one array of cells, since SPIR-V shaders
+ * have no recursion; a pointer is an index. Instruction numbers are those of the specification. */
 #include "bake/shader/spirv.h"
 
 #include <math.h>
@@ -187,8 +186,8 @@ masu_bake_machine *masu_bake_machine_make(const uint32_t *words, size_t count, c
         for (size_t i = 0; i < n && m->decisions; i++) m->decisions[i] = (double)NAN;
         m->cell_count = 1;
     }
-    if (!m || !m->types || !m->of || !m->at || !m->where || !m->binding || !m->cells || !m->decisions ||
-        !m->decided) {
+    if (!m || !m->types || !m->of || !m->at || !m->where || !m->binding || !m->cells ||
+        !m->decisions || !m->decided) {
         snprintf(error, error_size, "no memory");
     } else if (load(m)) {
         return m;
@@ -199,7 +198,8 @@ masu_bake_machine *masu_bake_machine_make(const uint32_t *words, size_t count, c
 
 void masu_bake_machine_free(masu_bake_machine *m) {
     if (!m) return;
-    void *const all[] = {m->types, m->of, m->at, m->where, m->binding, m->cells, m->decisions, m->decided, m};
+    void *const all[] = {m->types, m->of,        m->at,      m->where, m->binding,
+                         m->cells, m->decisions, m->decided, m};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
 }
 

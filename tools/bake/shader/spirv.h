@@ -29,8 +29,8 @@ void masu_bake_machine_free(masu_bake_machine *machine);
 masu_bake_cell *masu_bake_machine_buffer(masu_bake_machine *machine, uint32_t binding,
                                          size_t *count);
 
-/* Of each id: by how much its comparison, minimum, maximum, clamp or step decided as it did in the last run, above or
- * below 0 by the side; NAN: nothing was decided there. *count: how many ids. */
+/* Of each id: by how much its comparison, minimum, maximum, clamp or step decided as it did in the
+ * last run, above or below 0 by the side; NAN: nothing was decided there. *count: how many ids. */
 const double *masu_bake_machine_decisions(const masu_bake_machine *machine, size_t *count);
 /* The ids that decided something in the last run, in order. */
 const uint32_t *masu_bake_machine_decided(const masu_bake_machine *machine, size_t *count);

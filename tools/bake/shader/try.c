@@ -26,8 +26,8 @@ enum {
     BIND_INPUT = 1,
     BIND_RESULT = 2
 };
-/* Instructions of all forms of parts together, in equal shares: some seconds. By instructions and not by
- * time, so that a scene is always judged alike. */
+/* Instructions of all forms of parts together, in equal shares: some seconds. By instructions and
+ * not by time, so that a scene is always judged alike. */
 #define WORK_MAX 5e8
 #define FAR_AWAY 40.0 /* what stands for the size of something endless */
 #define SLACK 1e-5
@@ -70,7 +70,8 @@ typedef struct start {
     double p[3], slope;
 } start;
 
-/* A minimum, comparison, ... of the code that decided one way at all points: the one where it was nearest to the other. */
+/* A minimum, comparison, ... of the code that decided one way at all points: the one where it was
+ * nearest to the other. */
 typedef struct site {
     bool below, above;
     double nearest, p[3];
@@ -90,12 +91,14 @@ typedef struct trial {
     uint64_t random;
     double center[3], half[3], size;
     start best[BEST];
-    double portion; /* of the pairs, climbs and searches: 1, or less if the form would exceed its share */
+    /* Of the pairs, climbs and searches: 1, or less if the form would exceed its share. */
+    double portion;
     double least_portion;
     bool measures;
     double steepest;
     double jump[3], jumps_by; /* where a jump was found, and how large it is */
-    char text[1024]; /* 'E' or 'W', then the message; 'S', then the steepest slope; "": nothing to say */
+    /* 'E' or 'W', then the message; 'S', then the steepest slope; "": nothing to say. */
+    char text[1024];
 } trial;
 
 static double unit(trial *t) {
@@ -127,7 +130,8 @@ static void any_point(trial *t, double out[3]) {
     static const double scales[] = {0.3, 1, 1.2, 4};
     double scale = scales[(int)(unit(t) * 4)], more = is_source(t) ? 0 : 0.1 * t->size;
     if (is_source(t)) scale = fmin(scale, 1);
-    for (int i = 0; i < 3; i++) out[i] = t->center[i] + (2 * unit(t) - 1) * scale * (t->half[i] + more);
+    for (int i = 0; i < 3; i++)
+        out[i] = t->center[i] + (2 * unit(t) - 1) * scale * (t->half[i] + more);
 }
 
 /* Around p, as far as `length` along each axis, within the bounds. */
@@ -185,8 +189,8 @@ static bool field(trial *t, const double p[3], double *f) {
     char error[256], what[128];
     for (int i = 0; i < 3 && t->input; i++) t->input[2 + i].f = p[i];
     if (!masu_bake_machine_run(t->machine, error, sizeof error)) {
-        snprintf(t->text, sizeof t->text, "W%s was not tested, since it cannot run on the CPU: %s", subject(t, what),
-                 error);
+        snprintf(t->text, sizeof t->text, "W%s was not tested, since it cannot run on the CPU: %s",
+                 subject(t, what), error);
         return false;
     }
     note_decisions(t, p);
@@ -217,7 +221,8 @@ static bool keeps(trial *t, const double p[3], double fp, const double q[3], dou
     snprintf(t->text, sizeof t->text,
              "E%s is steeper than its lipschitz constant %.9g: f(%.9g, %.9g, %.9g) "
              "= %.9g, f(%.9g, %.9g, %.9g) = %.9g, %.9g apart, at time %.9g",
-             subject(t, what), L, p[0], p[1], p[2], fp, q[0], q[1], q[2], fq, apart, t->input ? t->input[1].f : 0.0);
+             subject(t, what), L, p[0], p[1], p[2], fp, q[0], q[1], q[2], fq, apart,
+             t->input ? t->input[1].f : 0.0);
     return false;
 }
 
@@ -241,7 +246,8 @@ static bool narrow(trial *t, double p[3], double fp, double q[3], double fq) {
     return true;
 }
 
-/* Exactly the constant is the slope of the box that a block is joined with: nothing to climb from. */
+/* Exactly the constant is the slope of the box that a block is joined with: nothing to climb
+ * from. */
 static bool is_flat(const trial *t, double steep) {
     return !t->measures && fabs(steep / t->part->lipschitz - 1) < 1e-6;
 }
@@ -308,7 +314,8 @@ static bool climb(trial *t, const double from[3], double step) {
     return true;
 }
 
-/* Towards the other side of a decision, which may hold a part of the field that no random point came upon. */
+/* Towards the other side of a decision, which may hold a part of the field that no random point
+ * came upon. */
 static bool search(trial *t, const site *s, size_t id) {
     const bool above = s->above;
     double p[3], q[3], f, best = (double)INFINITY, step = 0.25 * t->size;
@@ -320,7 +327,8 @@ static bool search(trial *t, const site *s, size_t id) {
         if (!isfinite(by)) continue;
         if ((by >= 0) != above) { /* found: a pair across, and what is there */
             double fp;
-            if (!field(t, p, &fp) || !keeps(t, p, fp, q, f) || !narrow(t, p, fp, (double[3]){q[0], q[1], q[2]}, f))
+            if (!field(t, p, &fp) || !keeps(t, p, fp, q, f) ||
+                !narrow(t, p, fp, (double[3]){q[0], q[1], q[2]}, f))
                 return false;
             return climb(t, q, fmin(step, 0.02 * t->size));
         }
@@ -387,7 +395,8 @@ static bool try_part(trial *t, uint32_t part, uint32_t k, uint32_t alike) {
     for (uint32_t e = 0; e < ENVIRONMENTS; e++) {
         uint32_t turn = (e + k) % ENVIRONMENTS;
         set_environment(t, (int)e);
-        if (!try_environment(t, pairs, climbs / ENVIRONMENTS + (turn < climbs % ENVIRONMENTS))) return false;
+        if (!try_environment(t, pairs, climbs / ENVIRONMENTS + (turn < climbs % ENVIRONMENTS)))
+            return false;
     }
     set_environment(t, 0);
     return search_all(t, k, alike);
@@ -418,9 +427,11 @@ static bool try_cameras(trial *t) {
             if (t->input) t->input[1].f = c->time;
             if (!field(t, c->position, &f)) return false;
             if (!(f < -1e-6) || t->text[0]) continue;
-            snprintf(t->text, sizeof t->text, "Wthe camera at (%g, %g, %g), %g s, is inside %s", c->position[0],
-                     c->position[1], c->position[2], c->time,
-                     is_source(t) ? "the field" : (snprintf(what, sizeof what, "part \"%s\"", t->part->name), what));
+            snprintf(t->text, sizeof t->text, "Wthe camera at (%g, %g, %g), %g s, is inside %s",
+                     c->position[0], c->position[1], c->position[2], c->time,
+                     is_source(t)
+                         ? "the field"
+                         : (snprintf(what, sizeof what, "part \"%s\"", t->part->name), what));
         }
     }
     return true;
@@ -429,7 +440,8 @@ static bool try_cameras(trial *t) {
 static bool try_parts(trial *t) {
     const masu_sdfc_result *s = t->scene;
     uint32_t forms = 0, alike;
-    for (uint32_t i = 0; i < s->part_count; i++) forms += s->parts[i].user && is_first(s, i, &alike);
+    for (uint32_t i = 0; i < s->part_count; i++)
+        forms += s->parts[i].user && is_first(s, i, &alike);
     t->least_portion = 1;
     for (uint32_t i = 0; i < s->part_count; i++) {
         if (!s->parts[i].user || !is_first(s, i, &alike)) continue;
@@ -440,10 +452,11 @@ static bool try_parts(trial *t) {
     }
     if (!try_cameras(t)) return false;
     if (t->least_portion < 1 && !t->text[0]) {
-        snprintf(t->text, sizeof t->text,
-                 "W%u forms of parts with glsl share a limit of %.0e instructions: some were tested at %.2g %% of "
-                 "the points",
-                 forms, WORK_MAX, 100 * t->least_portion);
+        snprintf(
+            t->text, sizeof t->text,
+            "W%u forms of parts with glsl share a limit of %.0e instructions: some were tested at %.2g %% of "
+            "the points",
+            forms, WORK_MAX, 100 * t->least_portion);
     }
     return true;
 }
@@ -465,9 +478,10 @@ static void body(void *argument, int fd) {
         for (uint32_t i = 0; t->slots && i < t->scene->slot_count; i++)
             t->slots[i].f = (double)t->scene->slots[i];
         if (try_parts(t) && t->measures && t->jumps_by > 0)
-            snprintf(t->text, sizeof t->text,
-                     "Ethe field jumps by %.3g at (%.6g, %.6g, %.6g): \"lipschitz\": \"auto\" needs a continuous field",
-                     t->jumps_by, t->jump[0], t->jump[1], t->jump[2]);
+            snprintf(
+                t->text, sizeof t->text,
+                "Ethe field jumps by %.3g at (%.6g, %.6g, %.6g): \"lipschitz\": \"auto\" needs a continuous field",
+                t->jumps_by, t->jump[0], t->jump[1], t->jump[2]);
         else if (t->measures && !t->text[0])
             snprintf(t->text, sizeof t->text, "S%.17g", t->steepest);
         free(t->sites);
@@ -496,13 +510,15 @@ bool masu_bake_try(const masu_sdfc_result *scene, const uint32_t *words, size_t 
     masu_bake_result result = masu_bake_fork(body, &t, SECONDS, &said);
     masu_bake_append(&said, "", 1);
     const char *text = (const char *)said.data;
-    bool ended = result.end == MASU_BAKE_EXITED && result.code == 0, measured = ended && text[0] == 'S';
+    bool ended = result.end == MASU_BAKE_EXITED && result.code == 0,
+         measured = ended && text[0] == 'S';
     if (!ended) masu_cli_warn("%s: its glsl was not tested, since the test did not finish", path);
     if (ended && text[0] == 'W') masu_cli_warn("%s: %s", path, text + 1);
     if (ended && text[0] == 'E') masu_cli_error("%s: %s", path, text + 1);
     if (measured) *steepest = strtod(text + 1, NULL);
     if (steepest && !measured && !(ended && text[0] == 'E'))
-        masu_cli_error("%s: \"lipschitz\": \"auto\" needs a field that runs on the CPU: state a number", path);
+        masu_cli_error(
+            "%s: \"lipschitz\": \"auto\" needs a field that runs on the CPU: state a number", path);
     bool good = !(ended && text[0] == 'E') && (!steepest || measured);
     masu_bake_release(&said);
     return good;

@@ -91,7 +91,8 @@ static FILE *find(const job *j, off_t *bytes) {
         masu_bake_buffer path = {0};
         masu_bake_append(&path, at, length);
         masu_bake_append(&path, "/", 1);
-        if (masu_bake_append_spelling(&path, base)) file = open_regular((const char *)path.data, bytes);
+        if (masu_bake_append_spelling(&path, base))
+            file = open_regular((const char *)path.data, bytes);
         masu_bake_release(&path);
         at += length + (at[length] == ':');
     }

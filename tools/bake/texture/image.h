@@ -19,7 +19,8 @@ enum { MASU_BAKE_SIZE_KEPT, MASU_BAKE_SIZE_POWER, MASU_BAKE_SIZE_SQUARE, MASU_BA
 typedef struct masu_bake_picture {
     uint32_t width, height;
     masu_bake_buffer rgba; /* 4 bytes per texel, as the file encodes them */
-    uint32_t whole_width, whole_height; /* of the file, if it is larger than MASU_TEXTURE_SIZE_MAX; else 0 */
+    /* Of the file, if it is larger than MASU_TEXTURE_SIZE_MAX; else 0. */
+    uint32_t whole_width, whole_height;
     uint32_t bits; /* of a channel, if its values need more than 8; else 0 */
 } masu_bake_picture;
 

@@ -92,14 +92,16 @@ static void gather(const uint8_t *rgba, uint32_t width, uint32_t height, uint32_
     }
 }
 
-/* For a value of 8 bits the two ends of 5 or 6 bits whose mean (2 a + b) / 3 is nearest; of equals the nearest ends,
- * which decoders of little precision like best. */
+/* For a value of 8 bits the two ends of 5 or 6 bits whose mean (2 a + b) / 3 is nearest; of equals
+ * the nearest ends, which decoders of little precision like best. */
 typedef struct ends {
     uint8_t a, b;
     float value;
 } ends;
 
-static float expanded(uint32_t c, uint32_t bits) { return (float)(c << (8 - bits) | c >> (2 * bits - 8)); }
+static float expanded(uint32_t c, uint32_t bits) {
+    return (float)(c << (8 - bits) | c >> (2 * bits - 8));
+}
 
 /* The nearest to `wanted` that is not far from `other`. */
 static ends find_ends(float wanted, float other, uint32_t bits) {
@@ -108,7 +110,8 @@ static ends find_ends(float wanted, float other, uint32_t bits) {
     for (uint32_t a = 0; a < 1u << bits; a++) {
         for (uint32_t b = 0; b < 1u << bits; b++) {
             float value = (2 * expanded(a, bits) + expanded(b, bits)) / 3;
-            float error = fmaxf(fabsf(value - wanted), 1.35f * fabsf(value - other)) + 1e-4f * fabsf((float)a - (float)b);
+            float error = fmaxf(fabsf(value - wanted), 1.35f * fabsf(value - other)) +
+                          1e-4f * fabsf((float)a - (float)b);
             if (!(error < least)) continue;
             least = error;
             best = (ends){(uint8_t)a, (uint8_t)b, value};
@@ -134,13 +137,15 @@ static const ends *ends_of(int kind) {
 static void solid_block(const uint8_t rgb[3], unsigned char out[8]) {
     bool grey = rgb[0] == rgb[1] && rgb[1] == rgb[2];
     ends r = ends_of(0)[rgb[0]], g = ends_of(grey ? 2 : 1)[rgb[1]], b = ends_of(0)[rgb[2]];
-    uint32_t first = (uint32_t)r.a << 11 | (uint32_t)g.a << 5 | b.a, second = (uint32_t)r.b << 11 | (uint32_t)g.b << 5 | b.b;
+    uint32_t first = (uint32_t)r.a << 11 | (uint32_t)g.a << 5 | b.a,
+             second = (uint32_t)r.b << 11 | (uint32_t)g.b << 5 | b.b;
     /* The larger end is the first one: else there is no mean of thirds. */
     uint32_t index = first == second ? 0 : first > second ? 2 : 3;
     uint32_t high = first > second ? first : second, low = first > second ? second : first;
-    const unsigned char block[8] = {(unsigned char)high, (unsigned char)(high >> 8), (unsigned char)low, (unsigned char)(low >> 8),
-                                    (unsigned char)(index * 85), (unsigned char)(index * 85), (unsigned char)(index * 85),
-                                    (unsigned char)(index * 85)};
+    const unsigned char block[8] = {(unsigned char)high,         (unsigned char)(high >> 8),
+                                    (unsigned char)low,          (unsigned char)(low >> 8),
+                                    (unsigned char)(index * 85), (unsigned char)(index * 85),
+                                    (unsigned char)(index * 85), (unsigned char)(index * 85)};
     memcpy(out, block, sizeof block);
 }
 

@@ -26,8 +26,8 @@ void masu_texel_halve(const float *from, uint32_t width, uint32_t height, bool b
 float masu_texel_rougher(float roughness, float mean_length);
 
 /* Blocks of bytes: 4 per texel, of which BC4 takes the first and BC5 the first two. Returns bytes
- * written. Texels beyond the edge repeat the last. A block of one colour is off by 4/3 of 255 at most, a grey one
- * without a tint of more than 1. */
+ * written. Texels beyond the edge repeat the last. A block of one colour is off by 4/3 of 255 at
+ * most, a grey one without a tint of more than 1. */
 size_t masu_texel_blocks(uint32_t format, const uint8_t *rgba, uint32_t width, uint32_t height,
                          unsigned char *out);
 

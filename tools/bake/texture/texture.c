@@ -70,11 +70,12 @@ static bool read_picture(maker *m, uint32_t image, masu_bake_picture *picture) {
     bool smaller = !m->sizes && picture->whole_width;
     m->reduced[image] = smaller || picture->bits;
     if (smaller) {
-        masu_cli_warn("texture %s: %u x %u texels, reduced to %u x %u", name_of(m, image), picture->whole_width,
-                      picture->whole_height, picture->width, picture->height);
+        masu_cli_warn("texture %s: %u x %u texels, reduced to %u x %u", name_of(m, image),
+                      picture->whole_width, picture->whole_height, picture->width, picture->height);
     }
     if (picture->bits)
-        masu_cli_warn("texture %s: %u bits per channel, reduced to 8", name_of(m, image), picture->bits);
+        masu_cli_warn("texture %s: %u bits per channel, reduced to 8", name_of(m, image),
+                      picture->bits);
     return good;
 }
 
@@ -345,7 +346,8 @@ static void make_surface(maker *m, texture *t) {
                                 : 1;
                 }
                 if (has[0] && t->wanted.gloss) to[0] = 1 - to[0];
-                if (t->wanted.slot == MASU_SLOT_OCCLUSION) to[0] = 1 - t->wanted.occlusion * (1 - to[0]);
+                if (t->wanted.slot == MASU_SLOT_OCCLUSION)
+                    to[0] = 1 - t->wanted.occlusion * (1 - to[0]);
                 to[2] = to[3] = 1;
             }
         }
@@ -573,8 +575,8 @@ static void point(maker *m, masu_blob_material *material, const masu_bake_maps *
         }
         if (t->absolute) material->roughness = 1;
     }
-    /* An emissive factor is often white and meant for its map: without the map it would be a lamp. Only an unlit
-     * material keeps it, since it is its colour. */
+    /* An emissive factor is often white and meant for its map: without the map it would be a lamp.
+     * Only an unlit material keeps it, since it is its colour. */
     if ((maps->image[MASU_BAKE_EMISSIVE] != MASU_BLOB_NONE || maps->dark) && !maps->unlit &&
         slots[MASU_SLOT_EMISSIVE] == MASU_BLOB_NONE) {
         memset(material->emissive, 0, sizeof material->emissive);
@@ -601,8 +603,8 @@ static void forget(maker *m) {
     m->count = 0;
 }
 
-/* Along an axis on which coordinates stay in 0..1 a texture is shown once: clamped, its edge does not take colour from
- * the opposite one. Not where a detail repeats it more often. */
+/* Along an axis on which coordinates stay in 0..1 a texture is shown once: clamped, its edge does
+ * not take colour from the opposite one. Not where a detail repeats it more often. */
 static void clamp_what_is_shown_once(masu_bake_content *content) {
     size_t materials = (size_t)masu_bake_count(content, MASU_BLOB_MATERIALS);
     const float *texcoords = MASU_BAKE_ARRAY(content, MASU_BLOB_TEXCOORDS, const float);
@@ -614,14 +616,17 @@ static void clamp_what_is_shown_once(masu_bake_content *content) {
         for (uint32_t v = 0; v < p->vertex_count; v++) {
             for (int k = 0; k < 2; k++) {
                 float at = texcoords[2 * ((size_t)p->first_vertex + v) + (size_t)k];
-                if (!(at >= -SHOWN_ONCE_SLACK && at <= 1 + SHOWN_ONCE_SLACK)) repeats[p->material][k] = true;
+                if (!(at >= -SHOWN_ONCE_SLACK && at <= 1 + SHOWN_ONCE_SLACK))
+                    repeats[p->material][k] = true;
             }
         }
     }
     for (size_t i = 0; i < materials; i++) {
         masu_bake_maps *maps = &MASU_BAKE_MAPS_OF(content)[i];
         for (int k = 0; k < 2; k++) {
-            if (!repeats[i][k] && maps->wrap[k] == 0 && MASU_BAKE_MATERIALS(content)[i].detail[k] == 1) maps->wrap[k] = 1;
+            if (!repeats[i][k] && maps->wrap[k] == 0 &&
+                MASU_BAKE_MATERIALS(content)[i].detail[k] == 1)
+                maps->wrap[k] = 1;
         }
     }
     free(repeats);

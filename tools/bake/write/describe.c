@@ -1,5 +1,6 @@
-/* describe.c: see describe.h. Camera, light and sizes are written as numbers, although a scene has defaults
- * for them: they are what someone edits, and the defaults of a scene depend on its ground, too. */
+/* describe.c: see describe.h. Camera, light and sizes are written as numbers, although a scene has
+ * defaults for them: they are what someone edits, and the defaults of a scene depend on its ground,
+ * too. */
 #define _XOPEN_SOURCE 700 /* realpath */
 #include "bake/write/describe.h"
 #include "bake/base/file.h"
@@ -64,7 +65,8 @@ static void put_member(masu_bake_buffer *out, const char *before, float value) {
 }
 
 /* A feature with one setting, or false. `before` has its name. */
-static void put_feature(masu_bake_buffer *out, const char *before, bool on, const char *setting, double value) {
+static void put_feature(masu_bake_buffer *out, const char *before, bool on, const char *setting,
+                        double value) {
     masu_bake_append_text(out, before);
     if (on) {
         put(out, "{\"%s\": ", setting);
@@ -96,7 +98,8 @@ static bool put_path(const masu_bake_options *options, const char *path, masu_ba
 }
 
 /* Files, and the ground of a first look. */
-static bool put_models(const masu_bake_options *options, const masu_bake_description *d, masu_bake_buffer *out) {
+static bool put_models(const masu_bake_options *options, const masu_bake_description *d,
+                       masu_bake_buffer *out) {
     if (!d->model_count) return true;
     masu_bake_append_text(out, "  \"models\": [\n");
     for (size_t i = 0; i < d->model_count; i++) {
@@ -126,7 +129,8 @@ static bool put_models(const masu_bake_options *options, const masu_bake_descrip
     return true;
 }
 
-static bool put_field(const masu_bake_options *options, const masu_bake_sdf *sdf, masu_bake_buffer *out) {
+static bool put_field(const masu_bake_options *options, const masu_bake_sdf *sdf,
+                      masu_bake_buffer *out) {
     if (!sdf->source) return true;
     masu_bake_append_text(out, "  \"sdf\": {\n    \"source\": ");
     if (!put_path(options, sdf->source, out)) return false;
@@ -143,9 +147,12 @@ static bool put_field(const masu_bake_options *options, const masu_bake_sdf *sdf
     return true;
 }
 
-static void put_camera(const masu_bake_look *l, const masu_bake_content *content, masu_bake_buffer *out) {
-    const masu_blob_camera_key *key = MASU_BAKE_ARRAY(content, MASU_BLOB_CAMERA_KEYS, masu_blob_camera_key);
-    const masu_blob_environment *e = MASU_BAKE_ARRAY(content, MASU_BLOB_ENVIRONMENT, masu_blob_environment);
+static void put_camera(const masu_bake_look *l, const masu_bake_content *content,
+                       masu_bake_buffer *out) {
+    const masu_blob_camera_key *key =
+        MASU_BAKE_ARRAY(content, MASU_BLOB_CAMERA_KEYS, masu_blob_camera_key);
+    const masu_blob_environment *e =
+        MASU_BAKE_ARRAY(content, MASU_BLOB_ENVIRONMENT, masu_blob_environment);
     masu_bake_append_text(out, "  \"camera\": {\"fov_y\": ");
     put_double(out, l->fov_y);
     put_member(out, ", \"near\": ", e->near_distance);
@@ -157,7 +164,8 @@ static void put_camera(const masu_bake_look *l, const masu_bake_content *content
 }
 
 /* The sun of a file is left to the file: a scene with a sun of its own ignores it. */
-static void put_sun(const masu_bake_look *l, const masu_bake_content *content, masu_bake_buffer *out) {
+static void put_sun(const masu_bake_look *l, const masu_bake_content *content,
+                    masu_bake_buffer *out) {
     masu_bake_append_text(out, "  \"sun\": {");
     if (!l->sun_of_model) {
         masu_bake_append_text(out, "\"direction\": ");
@@ -181,7 +189,8 @@ static void put_sun(const masu_bake_look *l, const masu_bake_content *content, m
 }
 
 static void put_air(const masu_bake_content *content, masu_bake_buffer *out) {
-    const masu_blob_environment *e = MASU_BAKE_ARRAY(content, MASU_BLOB_ENVIRONMENT, masu_blob_environment);
+    const masu_blob_environment *e =
+        MASU_BAKE_ARRAY(content, MASU_BLOB_ENVIRONMENT, masu_blob_environment);
     masu_bake_append_text(out, "  \"ambient\": ");
     put_floats(out, e->ambient);
     masu_bake_append_text(out, ",\n  \"sky\": {\"zenith\": ");
@@ -221,7 +230,8 @@ bool masu_bake_write_scene(const masu_bake_options *options, const masu_bake_des
         put_air(content, &text);
         put_reflections(&d->reflections, &text);
         masu_cli_progress_clear();
-        good = masu_bake_write_file(options->output ? options->output : "/dev/stdout", text.data, text.bytes);
+        good = masu_bake_write_file(options->output ? options->output : "/dev/stdout", text.data,
+                                    text.bytes);
     }
     masu_bake_release(&text);
     return good;
