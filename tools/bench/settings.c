@@ -87,8 +87,8 @@ static const technique bundles[] = {
     {"soft steps", 0, {.sharpen = MASU_OFF, .march_steps = 128}},
     /* For worlds, whose shadow maps cost the same at every render size. */
     {"soft cascades", 0, {.sharpen = MASU_OFF, .shadow_cascades = 2}},
-    /* Less of every feature, none disabled: for scales at which a smaller image hardly makes a frame
-     * cheaper. */
+    /* Less of every feature, none disabled: for scales at which a smaller image hardly saves
+     * time. */
     {"lean",
      SMALL,
      {.temporal = MASU_ON,
