@@ -96,11 +96,13 @@ static void a_scene_of_nothing_leaves_what_is_done_to_pictures(void **state) {
     check_dropped("shadow_distance=0.5", count, "no shadow map");
     check_dropped("specular_cutoff=0.25", count, "no reflections");
     check_dropped("specular_frames=64", count, "no reflections");
-    /* What is left of the bundles: the cheap one at 0.4 has fast EASU and no RCAS, the lean one is temporal. */
+    /* What is left of the bundles: the cheap one at 0.4 has fast EASU and no RCAS, the lean one is
+     * temporal. */
     assert_true(find(count, "scale=0.4+easu=fast+sharpen=off") < count);
-    check_dropped("scale=0.75+temporal=on+march_steps=128+lod_error=2+ao_slices=1+ao_steps=4+shadow_refresh=2-4-8-8+"
-                  "specular_reuse_taps=4+specular_filter_taps=6",
-                  count, "");
+    check_dropped(
+        "scale=0.75+temporal=on+march_steps=128+lod_error=2+ao_slices=1+ao_steps=4+shadow_refresh=2-4-8-8+"
+        "specular_reuse_taps=4+specular_filter_taps=6",
+        count, "");
     for (uint32_t i = 0; i < count; i++) {
         if (settings[i].dropped[0]) continue;
         const masu_rung *r = &settings[i].rung;
@@ -136,19 +138,20 @@ static void a_scene_of_everything_keeps_everything(void **state) {
             turned += masu_knob_differs(k, &settings[i].rung, &settings[0].rung);
         if (!turned && strcmp(k->name, "upscale") != 0) fail_msg("%s is never turned", k->name);
     }
-    static const char *const there[] = {"specular_cutoff=0.25",
-                                        "specular_cutoff=0.5",
-                                        "specular_frames=16",
-                                        "specular_frames=64",
-                                        "scale=0.9375+sharpen=off",
-                                        "scale=0.28+temporal=on",
-                                        "scale=0.2+temporal=on",
-                                        "scale=0.22+temporal=on+march_steps=128+lod_error=2+ao_slices=1+ao_steps=4+"
-                                        "shadow_refresh=2-4-8-8+specular_reuse_taps=4+specular_filter_taps=6",
-                                        "scale=0.4375+sharpen=off",
-                                        "scale=0.4+sharpen=off+aa=smaa-high",
-                                        "scale=0.625+sharpen=off+march_steps=128",
-                                        "scale=0.625+sharpen=off+shadow_cascades=2"};
+    static const char *const there[] = {
+        "specular_cutoff=0.25",
+        "specular_cutoff=0.5",
+        "specular_frames=16",
+        "specular_frames=64",
+        "scale=0.9375+sharpen=off",
+        "scale=0.28+temporal=on",
+        "scale=0.2+temporal=on",
+        ("scale=0.22+temporal=on+march_steps=128+lod_error=2+ao_slices=1+ao_steps=4+"
+         "shadow_refresh=2-4-8-8+specular_reuse_taps=4+specular_filter_taps=6"),
+        "scale=0.4375+sharpen=off",
+        "scale=0.4+sharpen=off+aa=smaa-high",
+        "scale=0.625+sharpen=off+march_steps=128",
+        "scale=0.625+sharpen=off+shadow_cascades=2"};
     for (size_t i = 0; i < sizeof there / sizeof *there; i++)
         assert_true(find(count, there[i]) < count);
     uint32_t half = find(count, "shadow_distance=40"); /* of the scene's 80 */
@@ -291,31 +294,31 @@ static void every_knob_has_its_part_of_a_name(void **state) {
 
 static void names_that_are_none_are_refused(void **state) {
     (void)state;
-    static const char *const bad[][2] = {{"", "''"},
-                                         {"scale", "'scale'"},
-                                         {"scale=", "scale: expected a number from 0 to 1, found ''"},
-                                         {"scale=half", "found 'half'"},
-                                         {"scale=nan", "found 'nan'"},
-                                         {"scale=inf", "found 'inf'"},
-                                         {"scale=0.5x", "found '0.5x'"},
-                                         {"scale=1.5", "found '1.5'"},
-                                         {"scale=1e+09", "found '1e'"},
-                                         {"aa=off+lod_error=1e+10", "lod_error: expected"},
-                                         {"scale=0.5+", "''"},
-                                         {"scale=0.5+scale=0.4", "'scale=0.4': the knob is already set"},
-                                         {"aa=smaa", "found 'smaa'"},
-                                         {"aa=high", "aa: expected one of auto, off, fxaa, smaa-low"},
-                                         {"aa=smaa-high2", "found 'smaa-high2'"},
-                                         {"base+aa=fxaa", "'base'"},
-                                         {"speed=3", "'speed=3'"},
-                                         {"ao_steps=-1", "found '-1'"},
-                                         {"ao_steps= 1", "found ' 1'"},
-                                         {"ao_steps=17", "ao_steps: expected a whole number from 0 to 16"},
-                                         {"ao_steps=99999999999", "found '99999999999'"},
-                                         {"shadow_resolution=8",
-                                          "expected 0 or a whole number from 16 to 8192"},
-                                         {"shadow_refresh=1-2-4", "4 whole numbers, each from 0 to 64"},
-                                         {"shadow_refresh=1-2-4-65", "found '1-2-4-65'"}};
+    static const char *const bad[][2] = {
+        {"", "''"},
+        {"scale", "'scale'"},
+        {"scale=", "scale: expected a number from 0 to 1, found ''"},
+        {"scale=half", "found 'half'"},
+        {"scale=nan", "found 'nan'"},
+        {"scale=inf", "found 'inf'"},
+        {"scale=0.5x", "found '0.5x'"},
+        {"scale=1.5", "found '1.5'"},
+        {"scale=1e+09", "found '1e'"},
+        {"aa=off+lod_error=1e+10", "lod_error: expected"},
+        {"scale=0.5+", "''"},
+        {"scale=0.5+scale=0.4", "'scale=0.4': the knob is already set"},
+        {"aa=smaa", "found 'smaa'"},
+        {"aa=high", "aa: expected one of auto, off, fxaa, smaa-low"},
+        {"aa=smaa-high2", "found 'smaa-high2'"},
+        {"base+aa=fxaa", "'base'"},
+        {"speed=3", "'speed=3'"},
+        {"ao_steps=-1", "found '-1'"},
+        {"ao_steps= 1", "found ' 1'"},
+        {"ao_steps=17", "ao_steps: expected a whole number from 0 to 16"},
+        {"ao_steps=99999999999", "found '99999999999'"},
+        {"shadow_resolution=8", "expected 0 or a whole number from 16 to 8192"},
+        {"shadow_refresh=1-2-4", "4 whole numbers, each from 0 to 64"},
+        {"shadow_refresh=1-2-4-65", "found '1-2-4-65'"}};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         char error[600] = "";
         masu_rung rung;
