@@ -1,6 +1,7 @@
 #!/bin/sh
 # needs.sh FOLDER...: prints `FOLDER/NAME.json:FILE,FILE` for each scene description: the files of these folders that it
-# names, directly or through a file that it names (an .obj names its .mtl). make bakes a scene again when one of them changes.
+# names, directly or through a file that it names (an .obj names its .mtl). make bakes a scene again when one of them
+# changes.
 set -eu
 find "$@" -maxdepth 1 -type f | sort | awk '
 { path[NR] = $0; name[NR] = $0; sub(/.*\//, "", name[NR]) }

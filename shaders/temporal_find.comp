@@ -49,7 +49,7 @@
 
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
-layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D color_image; /* roots of display light */
+layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D color_image; /* sqrt-encoded */
 layout(set = MASU_SET_PASS, binding = 1) uniform sampler2D depth_image;
 layout(set = MASU_SET_PASS, binding = 2) uniform sampler2D velocity_image; /* linear */
 layout(set = MASU_SET_PASS, binding = 3) uniform sampler2D old_depth_image;
@@ -57,27 +57,27 @@ layout(set = MASU_SET_PASS, binding = 4) uniform sampler2DArray history_image; /
 layout(set = MASU_SET_PASS, binding = 5, rg32ui) uniform writeonly uimage2D found_image;
 
 const float most_at_rest = masu_found_most;
-const float most_changing = 8.0; /* the same in a world that changes */
+const float most_changing = 8.0; /* static pixels of a changing scene */
 const float most_moving = 1.5; /* and at full size: */
 const float most_moving_whole = 2.0;
-const float most_other = 1.0; /* of what rests and is no longer what it was */
+const float most_other = 1.0; /* static pixels whose mean has changed */
 const float per_growth = 40.0; /* of view depth; */
-const float per_pixel = 0.1;   /* of motion: by how much that is divided */
+const float per_pixel = 0.1;   /* of motion: divides the weight */
 const float at_rest = 0.02;    /* pixels of the input */
-const float apart = 0.1;       /* of the nearest depth: a silhouette */
+const float apart = 0.1;       /* share of the nearest depth: a silhouette */
 const float same_depth = 0.01;
 const float deviations = 1.25;
-const float deviations_at_rest = 0.6; /* of what is no longer what it was */
-const float unseen = 0.01; /* display light that a mean over the surroundings may differ by */
+const float deviations_at_rest = 0.6; /* static pixels whose mean has changed */
+const float unseen = 0.01; /* allowed difference of the 3x3 means, display-linear */
 
-/* Depths around a pixel: large is near. */
+/* Depths of the 3x3 samples; larger is closer. */
 struct around {
     float nearest, farthest;
-    float slope; /* by which depth differs from pixel to pixel of one surface */
-    uint way;    /* to the nearest, of upscale/found.glsl */
+    float slope; /* change of depth per pixel on the surface */
+    uint way;    /* offset of the nearest sample, see upscale/found.glsl */
 };
 
-/* Of the nine samples around: roots of display light, as they stand in the picture, of 10 bits (upscale/roots.glsl). */
+/* Of the 3x3 samples: square-root-encoded colour of 10 bits, as stored (upscale/roots.glsl). */
 struct colors {
     vec3 mean, deviation, least, most;
 };
@@ -93,10 +93,11 @@ around depths_around(ivec2 at, ivec2 size)
     return found;
 }
 
-/* Pixels that the pixel has moved, how its depth has grown; w as in the image. */
+/* xy: motion in pixels; z: growth of view depth; w as in the image. */
 vec4 motion_at(ivec2 at, vec2 place, around a, vec2 size, out bool of_front)
 {
-    /* Not even with a weight of 0 what lies beyond: NaN comes through it. Of a size of 1 no place is far enough from it. */
+    /* Texels outside of the image must not be read even with a weight of 0: they may be NaN. With a
+     * size of 1 every position reads them. */
     vec2 inside = min(max(place, vec2(0.5)), size - 0.51);
     vec4 moved = textureLod(velocity_image, inside * vec2(push.moved_x, push.moved_y), 0.0);
     of_front = a.nearest - a.farthest > apart * a.nearest || !(moved.w > 0.99) || any(lessThan(size, vec2(2.0)));
@@ -111,26 +112,26 @@ vec4 depths_before(vec2 before)
 {
     vec2 size = vec2(frame.temporal.xy);
     vec2 place = (before - 0.5 * previous.jitter.zw) * size;
-    vec2 inside = min(max(place, vec2(1.0)), size - 1.0); /* of a size of 1 it is the same texel four times */
+    vec2 inside = min(max(place, vec2(1.0)), size - 1.0); /* with a size of 1 the same texel four times */
     return textureGather(old_depth_image, inside * vec2(push.then_x, push.then_y));
 }
 
 /* Rule 2. growth: relative change of view depth. */
 bool is_known(vec4 depths, around a, float growth)
 {
-    /* Distances are those of `depths`, times `now`, and those of now, times `then`; NaN is not known. */
+    /* Stored depths are scaled by `now`, current ones by `then`. NaN compares as unknown. */
     float then = previous.forward.w, now = frame.forward.w * (1.0 + growth);
     float off = (same_depth * a.nearest + 2.0 * a.slope) * then;
     return masu_least_of(depths) * now <= a.nearest * then + off && masu_most_of(depths) * now >= a.farthest * then - off;
 }
 
-/* Whether a depth of the previous frame lies in front of all that this frame's samples show. */
+/* Whether a depth of the previous frame is in front of all samples of this frame. */
 bool is_gone(float depth, around a)
 {
     return depth * frame.forward.w > (1.0 + apart) * a.nearest * previous.forward.w;
 }
 
-/* Rule 5: of such a depth the bits of masu_thin; 0: its surface is not thin. */
+/* Rule 5: the bits of masu_thin of such a depth; 0: the surface is not thin. */
 uint thin_of(float depth)
 {
     uint bits = floatBitsToUint(depth) & masu_thin_bits;
@@ -155,9 +156,10 @@ colors colors_around(ivec2 at, ivec2 last)
     return c;
 }
 
-/* Whether the history around is no longer what the nine samples show; off: by how much it is
- * brighter. Of light: the mean of squares is that of the roots, squared, and their variance; light
- * deviates by as much as a root that is a deviation off the mean. */
+/* Whether the mean of the history differs from the mean of the nine samples; off: by how much the
+ * history is brighter. Both are compared as light. With square-root-encoded samples, the mean of
+ * light is the squared mean plus the variance, and the standard deviation of light is the
+ * difference that one standard deviation of the encoded samples makes. */
 bool is_other(vec2 before, colors c, out vec3 off)
 {
     vec2 shown = vec2(push.history_x, push.history_y), half_texel = 0.5 * shown * vec2(push.pixel_x, push.pixel_y);
@@ -165,7 +167,7 @@ bool is_other(vec2 before, colors c, out vec3 off)
     vec3 sum = vec3(0.0);
     for (int i = 0; i < 4; i++) {
         vec2 corner = inside + vec2(2 * (i & 1) - 1, 2 * (i >> 1) - 1) * half_texel;
-        corner = min(corner, shown - half_texel); /* of a size of 1 it lies beyond */
+        corner = min(corner, shown - half_texel); /* with a size of 1 it is outside */
         sum += textureLod(history_image, vec3(corner, masu_layer_before()), 0.0).rgb;
     }
     vec3 mean = c.mean * c.mean + c.deviation * c.deviation;
@@ -185,7 +187,8 @@ uvec2 found_at(ivec2 at, vec2 size)
     bool changes = frame.temporal.z >= MASU_TEMPORAL_CHANGES;
     bool there = frame.temporal.x != 0u && moved.w > 0.0 && all(greaterThanEqual(before, vec2(0.0))) &&
                  all(lessThanEqual(before, vec2(1.0)));
-    /* Where nothing has moved it is what it was, though this frame's samples may miss it: a wire. */
+    /* If nothing has moved, the surface is unchanged even if this frame's samples miss it: a
+     * wire. */
     if (there && rests && !changes) {
         return masu_found(masu_found_stays, most_at_rest, vec3(0.0), vec3(1.0));
     }
@@ -218,7 +221,7 @@ uvec2 found_at(ivec2 at, vec2 size)
     if (!known) {
         return uvec2(0u);
     }
-    other = other || (rests && gone); /* what has left may show a little */
+    other = other || (rests && gone); /* the disoccluded surface may contribute a little */
     vec3 within = (rests ? deviations_at_rest : deviations) * c.deviation;
     vec3 low = max(c.least, c.mean - within), high = min(c.most, c.mean + within);
     float moving = most / (1.0 + per_growth * abs(moved.z) + per_pixel * speed);

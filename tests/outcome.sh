@@ -1,5 +1,5 @@
-# outcome.sh: which files are models, and what came of a bake, in a few words; for lab/gallery/gallery.sh and for the test that counts
-# them. Sourced.
+# outcome.sh: which files are models, and what came of a bake, in a few words; for lab/gallery/gallery.sh and for the
+# test that counts them. Sourced.
 
 # Pictures, texts, materials and data beside models: no models.
 others='png jpg jpeg tga dds bmp gif tif tiff webp ktx2 rgb rgba hdr txt md mtl bin vert frag glsl html htm material

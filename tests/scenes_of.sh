@@ -1,7 +1,8 @@
 #!/bin/sh
-# scenes_of.sh [FOLDER]: prints `KIND/TEST:SCENE,SCENE` for each test program and script below tests/, or lab/tests/, that
-# names baked scenes, for make: only these are baked before the test runs. KIND is unit, gpu or scripts. A scene is named as "NAME" or NAME.masu, or by a
-# suite that the test runs (--suite suites/NAME.json). A test that reads `scenes/*.masu` needs all of them: `*`.
+# scenes_of.sh [FOLDER]: prints `KIND/TEST:SCENE,SCENE` for each test program and script below tests/, or lab/tests/,
+# that names baked scenes, for make: only these are baked before the test runs. KIND is unit, gpu or scripts. A scene is
+# named as "NAME" or NAME.masu, or by a suite that the test runs (--suite suites/NAME.json). A test that reads
+# `scenes/*.masu` needs all of them: `*`.
 set -eu
 names=$(find scenes tests/scenes -maxdepth 1 -name '*.json' | sed 's|.*/||; s|\.json$||')
 in=${1:-tests}

@@ -1,7 +1,7 @@
 #!/bin/bash
-# stored.sh [NAME...]: makes tests/reference/NAME.ref, what tests/gpu/test_reference.c compares the renderer with; all of
-# them unless some are named. Needs make, make lab, and the scenes that are named here (make gpu TESTS=reference bakes
-# them). A few minutes of two processors.
+# stored.sh [NAME...]: makes tests/reference/NAME.ref, what tests/gpu/test_reference.c compares the renderer with; all
+# of them unless some are named. Needs make, make lab, and the scenes that are named here (make gpu TESTS=reference
+# bakes them). A few minutes of two processors.
 set -eu
 lab=${BUILD:-build}/lab/bin/masu-lab
 scenes=${BUILD:-build}/scenes

@@ -1,5 +1,5 @@
-/* punctual_lights.c: see punctual_lights.h. What is out of range is refused before it is kept; nothing else
- * here can fail. */
+/* punctual_lights.c: see punctual_lights.h. Values out of range are rejected before they are
+ * stored; nothing else here can fail. */
 #include "frame/punctual_lights.h"
 
 #include "base/error.h"
@@ -29,7 +29,8 @@ void masu_lights_copy_scene(masu_lights *l, const masu_frame_plan *plan, const m
     }
 }
 
-/* World position and direction: of the instance that carries it, as it stands now. */
+/* World position and direction, from the current transform of the instance that carries the
+ * light. */
 static void carry(const masu_instances *in, const masu_punctual_light_state *s, double position[3],
                   double direction[3]) {
     for (uint32_t k = 0; k < 3; k++) {
@@ -55,7 +56,7 @@ void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_fram
     uint32_t lights = f->plan->scene.lights;
     masu_light_header header = {.list_words = MASU_LIGHT_LIST_WORDS(lights)};
     if (!lights) return;
-    /* What is mirrored may be lit by what is not in the picture. */
+    /* Lights outside of the view may light reflected surfaces. */
     int culls = masu_frame_rung(f)->frustum != MASU_OFF && !f->plan->needs.reflections;
     unsigned char *to = masu_frame_slot(f, MASU_BUFFER_LIGHTS);
     struct masu_punctual_light_data *data =
@@ -76,7 +77,7 @@ void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_fram
     l->slot_count[f->slot] = header.count;
 }
 
-/* ---- What the host changes ------------------------------------------------------------------- */
+/* ---- Changes by the host --------------------------------------------------------------------- */
 
 uint32_t masu_lights_find(const masu_lights *l, const masu_frame_plan *plan, const char *name) {
     uint64_t hash = masu_fnv1a64(name, strlen(name));
@@ -94,7 +95,7 @@ masu_punctual_light_state masu_lights_get(const masu_lights *l, const masu_insta
     return state;
 }
 
-/* Checks a state that the host gives, and replaces the handle of its instance by an index + 1. */
+/* Checks a state from the host, and replaces the handle of its instance by an index + 1. */
 static masu_result take_state(const masu_instances *in, const char *name,
                               masu_punctual_light_state *state, masu_detail *detail) {
     double value = 0.0;

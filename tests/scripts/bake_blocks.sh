@@ -1,6 +1,6 @@
 #!/bin/bash
-# GLSL blocks in .sdf scenes, and sources of GLSL: masu-bake runs them on the CPU and refuses one that is steeper than its
-# author says, with the two points. blocks.sdf has each instruction that such code may hold.
+# GLSL blocks in .sdf scenes, and sources of GLSL: masu-bake runs them on the CPU and refuses one that is steeper than
+# its author says, with the two points. blocks.sdf has each instruction that such code may hold.
 set -u
 cd "$(dirname "$0")/../.." || exit 1
 bake=$(realpath "${BUILD:-build}/bin/masu-bake")

@@ -66,7 +66,8 @@ c_text() {
         }' "$1"
 }
 
-# The help of each built program and of each command of masu and masu-lab; without programs the strings of their sources.
+# The help of each built program and of each command of masu and masu-lab; without programs the strings of their
+# sources.
 help_texts() {
     local file program command
     if [ ! -x "$bin/masu" ]; then

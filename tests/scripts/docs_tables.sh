@@ -1,5 +1,6 @@
 #!/bin/sh
-# docs/knobs.md and docs/passes.md are up to date with the tables they are generated from, and the help shows the same knobs.
+# docs/knobs.md and docs/passes.md are up to date with the tables they are generated from, and the help shows the same
+# knobs.
 set -e
 masu=${BUILD:-build}/bin/masu
 folder=$(mktemp -d)

@@ -1,6 +1,7 @@
 #!/bin/bash
-# Facts that several pages repeat are the same everywhere, and equal what the sources define: library size, limits, number of
-# drivers, tested GPUs, the exception of masu_resize. Each check is first shown a copy of the tree that breaks it.
+# Facts that several pages repeat are the same everywhere, and equal what the sources define: library size, limits,
+# number of drivers, tested GPUs, the exception of masu_resize. Each check is first shown a copy of the tree that breaks
+# it.
 #
 # shellcheck disable=SC2016,SC2046,SC2086 # dollars belong to sed and awk; lists of files
 set -u

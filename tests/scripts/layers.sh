@@ -1,7 +1,8 @@
 #!/bin/bash
 # The layers of the sources: a file of src/ includes and calls only what is in its own folder or below, there are no
 # cycles of files in src/ and of folders in tools/, no file is too long, tools/ has no files of its own, and nothing
-# outside lab/ includes or links anything of lab/, and lab/reference includes nothing of shaders/ and src/frame. Each rule is first shown something that breaks it.
+# outside lab/ includes or links anything of lab/, and lab/reference includes nothing of shaders/ and src/frame. Each
+# rule is first shown something that breaks it.
 #
 # A node is a module, x.c with x.h. Includes are read from the text, calls from the object files.
 #
@@ -86,8 +87,8 @@ lab_users() {
         sed 's|^\./||' | grep -vE '^(lab|build)/' | sort
 }
 
-# shared_code ROOT: includes of lab/reference beyond its own files, the blob's layout and validation, the SDF compiler and
-# file helpers: the path tracer that judges the renderer shares no shading, no light and no camera with it
+# shared_code ROOT: includes of lab/reference beyond its own files, the blob's layout and validation, the SDF compiler
+# and file helpers: the path tracer that judges the renderer shares no shading, no light and no camera with it
 shared_code() {
     (cd "$1" && grep -rnE '^[[:space:]]*#[[:space:]]*include "' --include='*.[ch]' lab/reference) |
         grep -vE '"(lab/reference/[a-z_]+\.h|scene/blob\.h|masu\.h|image\.h|file_kind\.h|sdfc/sdfc\.h|bake/base/process\.h)"'

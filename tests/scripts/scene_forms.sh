@@ -1,6 +1,7 @@
 #!/bin/bash
-# A new element of a scene has come with all that belongs to it: a new version of the blob, its section in docs/blob.md, its member in
-# docs/scene.md, and a seed from which the fuzzer of scenes reaches its check. CONTRIBUTING.md lists the steps.
+# A new element of a scene has come with all that belongs to it: a new version of the blob, its section in docs/blob.md,
+# its member in docs/scene.md, and a seed from which the fuzzer of scenes reaches its check. CONTRIBUTING.md lists the
+# steps.
 set -e
 build=${BUILD:-build}
 folder=$(mktemp -d)
@@ -11,13 +12,15 @@ problem() {
     problems=1
 }
 
-# layout FILE: a checksum of the kinds of sections and of the structs of their elements, whatever their comments and their order of lines.
+# layout FILE: a checksum of the kinds of sections and of the structs of their elements, whatever their comments and
+# their order of lines.
 layout() {
     tr '\n' ' ' < "$1" | sed 's|/\*|\n/*|g; s|\*/|*/\n|g' | sed '/^\/\*/d' | tr -d '\n' | tr -s ' ' |
         grep -oE '(enum masu_blob_kind|typedef struct masu_blob_[a-z_]*) \{[^}]*\}' | cksum | cut -d' ' -f1
 }
 
-# version_problem FILE: what is wrong where the layout has changed and the version has not. Prints nothing if all is well.
+# version_problem FILE: what is wrong where the layout has changed and the version has not. Prints nothing if all is
+# well.
 version_problem() {
     local version sum
     version=$(sed -n 's/^#define MASU_BLOB_VERSION \([0-9]*\)u.*/\1/p' "$1")

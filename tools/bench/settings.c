@@ -10,10 +10,10 @@
 
 /* ---- Settings -------------------------------------------------------------------------------- */
 
-/* One knob, or a few that make one technique. Fields that are 0 are the base's; shadow_distance is
- * a part of the scene's. At which render sizes: the output's, half of it, and in `masu bench
- * --quick`. Bundles are at a few sizes, with SIXTEENTHS at all down to 0.4, with SMALL at a few
- * below. */
+/* One knob, or several that form one technique. Fields that are 0 have the value of the base;
+ * shadow_distance is a factor of the scene's. WHOLE, HALF: measured at the output size, at half of
+ * it; QUICK: also by `masu bench --quick`. Bundles are measured at a few sizes, with SIXTEENTHS at
+ * all sizes down to 0.4, with SMALL at a few smaller ones. */
 enum { WHOLE = 1, HALF = 2, QUICK = 4, STRUCTURAL = 8, SAME = 16, SIXTEENTHS = 32, SMALL = 64 };
 
 typedef struct technique {
@@ -73,22 +73,22 @@ static const technique techniques[] = {
     {"frustum", WHOLE | SAME, {.frustum = MASU_OFF}},
     {"occlusion", WHOLE | STRUCTURAL | SAME, {.occlusion = MASU_OFF}},
     {"light_tiles", WHOLE | STRUCTURAL | SAME, {.light_tiles = MASU_OFF}},
-    {"upscale", 0, {.upscale = MASU_ON}}, /* at full size it makes nothing better, below it is on */
+    {"upscale", 0, {.upscale = MASU_ON}}, /* no gain at full size; always on below */
     {"temporal", WHOLE | HALF | QUICK | STRUCTURAL, {.temporal = MASU_ON}},
 };
 
-/* What a port might choose together. The plain one, nothing but the base, is at every size. */
+/* Combinations that a port might choose. The base itself is measured at every size. */
 static const technique bundles[] = {
     {"full", 0, {.aa = MASU_AA_SMAA_HIGH}},
     {"temporal", SMALL, {.temporal = MASU_ON}},
-    /* What a mean over each pixel is, RCAS leads away from: most rungs are of this kind. */
+    /* RCAS increases the difference from a box-filtered image: most rungs are without it. */
     {"soft", SIXTEENTHS, {.sharpen = MASU_OFF}},
     {"soft aa", 0, {.sharpen = MASU_OFF, .aa = MASU_AA_SMAA_HIGH}},
     {"soft steps", 0, {.sharpen = MASU_OFF, .march_steps = 128}},
-    /* Of a world, whose shadow map takes a part of the frame that a smaller picture does not make less. */
+    /* For worlds, whose shadow maps cost the same at every render size. */
     {"soft cascades", 0, {.sharpen = MASU_OFF, .shadow_cascades = 2}},
-    /* Less of everything, nothing dropped: below the scales at which a smaller picture still makes
-     * a frame cheaper. */
+    /* Less of every feature, none disabled: for scales at which a smaller image hardly saves
+     * time. */
     {"lean",
      SMALL,
      {.temporal = MASU_ON,
@@ -152,7 +152,7 @@ static bool is_turned(const masu_knob *k) {
     return !strcmp(k->name, "scale");
 }
 
-/* A knob that no technique turns: each of its words, or halfway and all of the way to its maximum. */
+/* A knob of no technique: each of its names, or half of and all of the way to its maximum. */
 static void add_knob(list *l, const masu_knob *k) {
     technique one = {.name = k->name};
     double from = masu_knob_get(k, &masu_setting_base, 0);

@@ -20,7 +20,8 @@
 #include <string.h>
 #include <unistd.h>
 
-/* At rest before flicker is measured, over how many differences; not timed before each turn. */
+/* SETTLE: static frames before flicker is measured over FLICKER differences; FAST: frames of fast
+ * motion; WARM: untimed frames before samples. */
 enum { SETTLE_FRAMES = 24, FLICKER_FRAMES = 8, FAST_FRAMES = 8, WARM_FRAMES = 2, BATCH = MASU_MAX_RUNGS - 1 };
 
 typedef struct sweep {
@@ -35,7 +36,7 @@ typedef struct sweep {
     uint64_t bytes[MASU_SETTINGS_MOST];
     uint32_t setting_count, pixels;
     uint8_t *truth, *before;
-    float *map, *true_radiance; /* of the truth, 3 a pixel */
+    float *map, *true_radiance; /* of the ground truth, 3 floats per pixel */
     masu_samples samples[MASU_MAX_RUNGS];
     uint64_t hash, start;
     uint32_t pending; /* still to be measured when the run began */
@@ -61,7 +62,7 @@ static void close_session(sweep *w) {
     w->opened = false;
 }
 
-/* ---- What is measured ------------------------------------------------------------------------ */
+/* ---- Settings -------------------------------------------------------------------------------- */
 
 static bool plan_of(sweep *w, const masu_rung *rung, masu_plan_info *plan) {
     masu_desc d = w->s.desc;
@@ -70,7 +71,7 @@ static bool plan_of(sweep *w, const masu_rung *rung, masu_plan_info *plan) {
     return masu_plan(&d, plan, &w->s.detail) == MASU_OK;
 }
 
-/* Plans are kept for parents: 160 of some kilobytes. */
+/* Plans are kept for comparison with parents: 160 of a few kilobytes. */
 static bool fit_settings(sweep *w, masu_plan_info *plans) {
     if (!plan_of(w, &w->settings[0].rung, &plans[0])) return failed(w, w->s.detail.text);
     masu_settings_fit(w->settings, w->setting_count, &w->s.scene, &plans[0]);
@@ -121,7 +122,7 @@ static bool plan_settings(sweep *w) {
     return good;
 }
 
-/* ---- The truth ------------------------------------------------------------------------------- */
+/* ---- Ground truth ---------------------------------------------------------------------------- */
 
 static bool draw_truth(sweep *w, uint8_t *rgba) {
     masu_session_desc d = session_of(w);
@@ -135,7 +136,7 @@ static bool draw_truth(sweep *w, uint8_t *rgba) {
     return good;
 }
 
-/* Beside the truth's picture: TRUTH.png, TRUTH.pfm, TRUTH.specular.pfm. */
+/* Files of the ground truth: TRUTH.png, TRUTH.pfm, TRUTH.specular.pfm. */
 static bool beside(const char *picture, const char *suffix, char out[4096]) {
     size_t n = strlen(picture);
     if (n > 4 && !strcmp(picture + n - 4, ".png")) n -= 4;
@@ -152,7 +153,7 @@ static bool load_radiance(sweep *w, const char *path) {
     return fits || failed(w, "the ground truth's radiance has another size");
 }
 
-/* Both of them, or both are drawn: a picture that is there stays, whatever is drawn beside it. */
+/* Reads both files, or renders both. An existing image is never overwritten. */
 static bool read_or_draw(sweep *w, const char *picture, const char *radiance) {
     VkExtent2D size = w->d->size;
     bool there = masu_file_exists(picture);
@@ -168,7 +169,7 @@ static bool read_or_draw(sweep *w, const char *picture, const char *radiance) {
                                w->error_size);
 }
 
-/* The folder has its own picture, for the report, wherever it came from. */
+/* The report needs a copy of the ground truth in the folder. */
 static bool find_truth(sweep *w) {
     char own[4096], radiance[4096];
     VkExtent2D size = w->d->size;
@@ -180,7 +181,7 @@ static bool find_truth(sweep *w) {
                                                w->error_size));
 }
 
-/* ---- Pictures -------------------------------------------------------------------------------- */
+/* ---- Images ---------------------------------------------------------------------------------- */
 
 static bool draw(sweep *w, uint32_t rung, bool cut, masu_commands *commands) {
     return masu_motion_frame(&w->s, rung, w->d->time, MASU_MOTION_STEP, cut, commands, w->error, w->error_size);
@@ -190,17 +191,17 @@ static bool read_back(sweep *w) {
     return masu_headless_target_read(&w->s.host, &w->s.targets[0], w->error, w->error_size);
 }
 
-/* Whether a picture of that setting depends on the frames before. */
+/* Whether the image of a setting depends on previous frames. */
 static bool remembers(const sweep *w, const masu_rung *rung) {
     return w->motion.remembers || masu_setting_remembers(rung);
 }
 
-/* Nor are its pictures in motion and at rest the same where cascades are not drawn in every frame. */
+/* With cascades that are not rendered in every frame, static and moving images differ too. */
 static bool depends_on_motion(const sweep *w, const masu_rung *rung) {
     return remembers(w, rung) || masu_setting_period(rung) > 1;
 }
 
-/* Mean absolute difference of successive frames at rest, of 255. */
+/* Mean absolute difference of successive static frames, of 255. */
 static bool flicker(sweep *w, uint32_t rung, const masu_setting *s, uint64_t *next, double *out) {
     const bool depends = depends_on_motion(w, &s->rung);
     uint32_t settle = depends ? SETTLE_FRAMES : 1, frames = depends ? FLICKER_FRAMES : 1;
@@ -302,7 +303,7 @@ static void times(const masu_samples *base, const masu_samples *s, masu_row *row
 
 /* ---- Batches --------------------------------------------------------------------------------- */
 
-/* Rung 0 is the base; it has a row of its own only where it is one of those asked for. */
+/* Rung 0 is the base; it only gets a row if it is one of the requested settings. */
 typedef struct batch {
     uint32_t of[MASU_MAX_RUNGS]; /* settings; [0] is 0 */
     uint32_t count;
@@ -356,9 +357,9 @@ static bool draw_batch(sweep *w, batch *b) {
     return true;
 }
 
-/* The noise of reflections goes by the number of the frame, and so do the places of rung.temporal. So each picture is that of a renderer of its
- * own: settings then differ by their knobs alone, and a row does not depend on what batch, shard or resumed
- * run it is in. */
+/* The noise of reflections and the jitter of rung.temporal depend on the frame number. So each image
+ * gets a separate renderer: settings then differ only by their knobs, and a row does not depend on
+ * its batch, shard or resumed run. */
 static bool draw_alone(sweep *w, batch *b) {
     for (uint32_t k = b->base_too ? 0 : 1; k < b->count; k++) {
         const batch one = {.of = {b->of[k]}, .count = 1};
@@ -374,7 +375,7 @@ static bool draw_alone(sweep *w, batch *b) {
     return true;
 }
 
-/* As many rounds as asked for, and more until so many seconds have gone. */
+/* At least the requested number of rounds, and more until `seconds` have passed. */
 static bool time_batch(sweep *w, batch *b, double seconds) {
     uint64_t start = masu_clock_ns(NULL);
     double gone = 0.0;
@@ -400,7 +401,7 @@ static bool time_batch(sweep *w, batch *b, double seconds) {
     return true;
 }
 
-/* With sessions of its own: what is timed copies nothing for a reader. */
+/* Separate sessions: timed renderers have no images for readback. */
 static bool look_behind(sweep *w, batch *b) {
     masu_rung rungs[MASU_MAX_RUNGS];
     masu_depth_error depth[MASU_MAX_RUNGS];
@@ -427,7 +428,7 @@ static bool look_behind(sweep *w, batch *b) {
     return true;
 }
 
-/* Once, and of runs that add rows alone. */
+/* Written once, by runs that add rows. */
 static bool note_machine(sweep *w) {
     masu_machine machine;
     if (w->out->measured) return true;
@@ -456,12 +457,12 @@ static bool listed(const masu_setting_list *list, const char *id) {
     return false;
 }
 
-/* The base always is: the flicker of the others is judged by its own. */
+/* The base is always measured: the flicker of other settings is compared with it. */
 static bool asked_for(const masu_setting_list *only, uint32_t number, const char *id) {
     return !only || !only->count || !number || listed(only, id);
 }
 
-/* The base belongs to the first shard, like all others by its number among those measured. */
+/* Shards divide the measured settings by number; the base belongs to the first shard. */
 static uint32_t mine(const sweep *w, const masu_row *rows, uint32_t count, uint32_t *list) {
     uint32_t n = 0, number = 0;
     for (uint32_t i = 0; i < w->setting_count; i++) {
@@ -520,7 +521,7 @@ static bool known(sweep *w) {
     return true;
 }
 
-/* Before what takes minutes. */
+/* Checked before the work, which takes minutes. */
 static bool alike(sweep *w) {
     return !w->d->like ||
            masu_against_same(w->d->like, w->d->folder, w->error, w->error_size);
@@ -551,14 +552,14 @@ static bool measure(sweep *w) {
 
 /* ---- Rungs again ----------------------------------------------------------------------------- */
 
-/* Those of the list that have a row, but none in steady.csv yet, by number. */
+/* Settings of the list that have a row but none in steady.csv, by number. */
 static uint32_t unsteady(const sweep *w, const masu_setting_list *list, const masu_row *rows,
                          uint32_t count, const masu_row *there, uint32_t there_count,
                          uint32_t *out) {
     uint32_t n = 0;
     for (uint32_t i = 1; i < w->setting_count; i++) {
         const char *id = w->settings[i].id;
-        if (w->settings[i].dropped[0]) continue; /* its name may be another's */
+        if (w->settings[i].dropped[0]) continue; /* another setting may have its name */
         if (listed(list, id) && masu_rows_find(rows, count, id) &&
             !masu_rows_find(there, there_count, id)) {
             out[n++] = i;

@@ -32,7 +32,7 @@ bool masu_sweep_picture(const char *folder, const char *setting, const char *suf
 
 /* ---- sweep.json ------------------------------------------------------------------------------ */
 
-/* Whole files as text, NULL where there is none or it cannot be read. */
+/* A whole file as text; NULL if it does not exist or cannot be read. */
 static char *read_text(const char *path) {
     uint8_t *bytes = NULL;
     size_t count = 0;
@@ -56,7 +56,7 @@ static json_t *knobs_json(const masu_rung *rung) {
     return knobs;
 }
 
-/* Everything that two parts of one sweep must have in common; what shard it is, is not in it. */
+/* Everything that two parts of one sweep must have in common, which excludes the shard. */
 static char *describe(const masu_sweep_desc *d, const masu_sweep_about *about) {
     char hex[32];
     const char *last = strrchr(d->scene_path, '/');
@@ -227,7 +227,7 @@ static bool write_rows(const char *folder, const char *name, const masu_row *row
     return good;
 }
 
-/* A clone of the project has the rows of its reports, but not their pictures. */
+/* A clone of the project has the rows of its reports, but not their images. */
 static uint32_t keep_drawn(const char *folder, masu_row *rows, uint32_t count) {
     char path[4096];
     uint32_t kept = 0;
@@ -238,7 +238,7 @@ static uint32_t keep_drawn(const char *folder, masu_row *rows, uint32_t count) {
     return kept;
 }
 
-/* Times of rows that are to be measured again say nothing of the new ones. */
+/* Steady times of rows that will be measured again are dropped. */
 static uint32_t keep_known(const masu_row *known, uint32_t known_count, masu_row *rows,
                            uint32_t count) {
     uint32_t kept = 0;
@@ -248,7 +248,7 @@ static uint32_t keep_known(const masu_row *known, uint32_t known_count, masu_row
     return kept;
 }
 
-/* What is not there is not begun. */
+/* A file that does not exist is not created. */
 static bool rewrite(const char *folder, const char *name, const masu_row *rows, uint32_t count,
                     char *error, size_t error_size) {
     char path[4096];
@@ -279,7 +279,7 @@ bool masu_sweep_append(const char *folder, const char *name, const masu_row *row
     char path[4096];
     if (!masu_sweep_path(folder, name, path))
         return fail(error, error_size, folder, "the path is too long");
-    /* No waiting for a FIFO. */
+    /* O_NONBLOCK does not wait for a reader of a FIFO. */
     int file = open(path, O_WRONLY | O_APPEND | O_CREAT | O_NONBLOCK | O_CLOEXEC, 0666);
     FILE *f = file >= 0 ? fdopen(file, "a") : NULL;
     if (!f && file >= 0) (void)close(file);
@@ -292,7 +292,7 @@ bool masu_sweep_append(const char *folder, const char *name, const masu_row *row
 
 /* ---- Merging --------------------------------------------------------------------------------- */
 
-/* What says that it is a PNG is looked at: others' files are not spread as they are. */
+/* Images are decoded before they are copied, since they may come from another machine. */
 static bool copy(const char *from, const char *to, char *error, size_t error_size) {
     uint8_t *bytes = NULL;
     size_t count = 0;
@@ -310,10 +310,10 @@ static bool copy(const char *from, const char *to, char *error, size_t error_siz
 
 typedef struct merged {
     masu_row rows[MASU_SETTINGS_MOST], steady[MASU_SETTINGS_MOST];
-    uint32_t count, steady_count; /* of two parts that have a setting the first's is taken, times too */
+    uint32_t count, steady_count; /* if two parts have a setting, the first one is used */
 } merged;
 
-/* Rows that `all` has not got yet, with their pictures, and what there is of the truth. */
+/* Adds the rows that `all` lacks, with their images, and the files of the ground truth. */
 static bool merge_part(const char *folder, const char *part, merged *all, char *error,
                        size_t error_size) {
     char from[4096], to[4096];
@@ -328,7 +328,7 @@ static bool merge_part(const char *folder, const char *part, merged *all, char *
         if (masu_rows_find(all->rows, all->count, rows[i].setting)) continue;
         if (all->count == MASU_SETTINGS_MOST)
             good = fail(error, error_size, part, "too many settings");
-        for (int k = 0; k < 2 && good; k++) { /* not every setting has another picture at rest */
+        for (int k = 0; k < 2 && good; k++) { /* not every setting has a separate static image */
             const char *suffix = k ? MASU_SWEEP_REST : "";
             if (!masu_sweep_picture(part, rows[i].setting, suffix, from) ||
                 !masu_sweep_picture(folder, rows[i].setting, suffix, to))
@@ -352,7 +352,7 @@ static bool merge_part(const char *folder, const char *part, merged *all, char *
     return good;
 }
 
-/* The same order whatever the parts: that of sweep.json. */
+/* The order of sweep.json, independent of the parts. */
 static uint32_t in_order(const char *text, const masu_row *all, uint32_t count, masu_row *out) {
     json_t *root = json_loads(text, 0, NULL), *one;
     uint32_t n = 0;

@@ -1,21 +1,20 @@
-/* sweep_files.h: the folder of `masu bench`, see sweep.h: what is in it, begun,
- * resumed, appended to, merged. Functions that can fail return false (NULL) and write one line to
- * `error`. */
+/* sweep_files.h: creates, resumes, extends and merges the folder of `masu bench` (sweep.h).
+ * Functions that can fail return false (NULL) and write one line to `error`. */
 #ifndef MASU_BENCH_SWEEP_FILES_H
 #define MASU_BENCH_SWEEP_FILES_H
 
 #include "bench/sweep.h"
 
-/* What sweep.json says besides the description. */
+/* Content of sweep.json besides the description. */
 typedef struct masu_sweep_about {
     const char *driver;
-    const char *depth; /* what surfaces are compared with */
+    const char *depth; /* reference for surfaces */
     uint64_t hash;     /* of the scene */
     const masu_setting *settings;
     uint32_t count;
 } masu_sweep_about;
 
-/* Makes the folder and writes sweep.json. If there is one already it must say the same. */
+/* Creates the folder and writes sweep.json. An existing one must be equal. */
 bool masu_sweep_begin(const masu_sweep_desc *desc, const masu_sweep_about *about, char *error,
                       size_t error_size);
 
@@ -27,8 +26,8 @@ int masu_sweep_lock(const char *folder, char *error, size_t error_size);
 bool masu_sweep_one_build(const masu_row *rows, uint32_t count, const char *build, const char *path,
                           char *error, size_t error_size);
 
-/* The rows of results.csv that have a picture in the folder. It then has no others, nor what was torn;
- * steady.csv has none but of these. No file is no error. Freed by free(). */
+/* The rows of results.csv that have an image in the folder. Removes other and incomplete rows from
+ * results.csv and steady.csv. A missing file is no error. Release the result by free(). */
 masu_row *masu_sweep_resume(const char *folder, uint32_t *count, char *error, size_t error_size);
 
 /* On the disk when it returns; a new file begins with the header. `name`: MASU_SWEEP_RESULTS or

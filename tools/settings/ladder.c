@@ -12,7 +12,7 @@ bool masu_ladder_dominates(masu_ladder_point a, masu_ladder_point b) {
            (a.time < b.time || a.error < b.error);
 }
 
-/* Of b, which is measured. What is no number is neither less nor more than anything. */
+/* b is measured. NaN compares as not less and not greater. */
 static bool same(masu_ladder_point a, masu_ladder_point b) {
     return measured(a) && !(a.time < b.time) && !(a.time > b.time) && !(a.error < b.error) &&
            !(a.error > b.error);
@@ -46,14 +46,14 @@ void masu_ladder_exclude(masu_ladder_point *points, uint32_t n, const double *co
         for (uint32_t c = 0; c < columns; c++) whole = whole && costs[i * columns + c] > 0.0;
         if (!whole) points[i].time = 0.0;
     }
-    for (uint32_t i = 0; i < n; i++) { /* a time below 0: beaten, and still beats others */
+    for (uint32_t i = 0; i < n; i++) { /* a time below 0: dominated, but still dominates others */
         if (measured(points[i]) && beaten(points, n, costs, columns, i))
             points[i].time = -points[i].time;
     }
     for (uint32_t i = 0; i < n; i++) points[i].time = fmax(points[i].time, 0.0);
 }
 
-/* Hundreds of points at most: every pair is looked at, and sorting is by insertion. */
+/* There are a few hundred points at most: all pairs are compared, and sorting is by insertion. */
 uint32_t masu_ladder_front(const masu_ladder_point *points, uint32_t n, uint32_t *out) {
     uint32_t count = 0;
     for (uint32_t i = 0; i < n; i++) {
@@ -70,7 +70,7 @@ static uint32_t remove_at(uint32_t *list, uint32_t count, uint32_t at) {
     return count - 1;
 }
 
-/* Of a list in falling quality; the quickest stays. */
+/* The list is in falling quality; the quickest is always kept. */
 static uint32_t keep_better(const masu_ladder_point *points, double better, uint32_t *list,
                             uint32_t count) {
     uint32_t first = count - 1;
@@ -95,12 +95,12 @@ uint32_t masu_ladder_rungs(const masu_ladder_point *points, uint32_t n, double a
     for (uint32_t i = 1; i < count; i++) {
         if (points[out[kept - 1]].time >= apart * points[out[i]].time) out[kept++] = out[i];
     }
-    if (out[kept - 1] != quickest) { /* the last kept gives way to it, but for the best */
+    if (out[kept - 1] != quickest) { /* it replaces the last ones, except the best */
         while (kept > 1 && points[out[kept - 1]].time < apart * points[quickest].time) kept--;
         if (points[out[kept - 1]].time >= apart * points[quickest].time) out[kept++] = quickest;
     }
     while (kept > most) {
-        uint32_t least = kept - 1; /* of two places the best stays */
+        uint32_t least = kept - 1; /* if most is 2, the best is kept */
         double gap = HUGE_VAL;
         for (uint32_t i = 1; i + 1 < kept; i++) {
             double g = points[out[i - 1]].time / points[out[i + 1]].time;

@@ -1,8 +1,8 @@
 /* ladder_file.h: ladder.json, as `masu bench` writes it, read back into rungs.
  *
- * Strict: what is unknown, out of range or out of order is refused in one line, so that a ladder that is
- * read is one that masu_init takes on any scene whose blob has code for its marches. A knob that is not
- * named is 0. Nothing of the file's text is kept. */
+ * Strict: unknown members, values out of range and rungs out of order are errors of one line, so
+ * that masu_init accepts every ladder that was read. A knob that is not named is 0. Nothing of the
+ * file's text is kept. */
 #ifndef MASU_SETTINGS_LADDER_FILE_H
 #define MASU_SETTINGS_LADDER_FILE_H
 
@@ -12,15 +12,15 @@
 
 typedef struct masu_ladder_file {
     char scene[80], driver[200], clock[16];
-    char date[12]; /* "2026-11-22"; empty: not said */
+    char date[12]; /* "2026-11-22"; empty: unknown */
     uint32_t width, height;
     uint32_t count; /* at least 1 */
     char settings[MASU_MAX_RUNGS][MASU_SETTING_ID];
     masu_rung rungs[MASU_MAX_RUNGS];
     double ratios[MASU_MAX_RUNGS]; /* falling */
     double flips[MASU_MAX_RUNGS];
-    double rmses[MASU_MAX_RUNGS]; /* below 0: not said */
-    /* Mean change at rest from the previous rung, of 255; below 0: unknown. */
+    double rmses[MASU_MAX_RUNGS]; /* below 0: unknown */
+    /* Mean change of a static image from the previous rung, of 255; below 0: unknown. */
     double steps[MASU_MAX_RUNGS];
 } masu_ladder_file;
 

@@ -1,6 +1,6 @@
 #!/bin/bash
-# masu-lab world, and masu-bake with what it writes: the city is the same every time and as large as promised, and errors
-# are one line. forza is tested only where its data is installed.
+# masu-lab world, and masu-bake with what it writes: the city is the same every time and as large as promised, and
+# errors are one line. forza is tested only where its data is installed.
 set -u
 cd "$(dirname "$0")/../../.." || exit 1
 lab=$(realpath "${BUILD:-build}/bin/masu-lab")
