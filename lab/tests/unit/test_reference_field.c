@@ -1,6 +1,6 @@
 /*
  * test_reference_field.c: fields of the reference path tracer whose distance is known: a source of
- * GLSL, blocks of GLSL in a .sdf source, and what becomes of a mistake.
+ * GLSL, blocks of GLSL in a .sdf source, what becomes of a mistake; and its ambient occlusion.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-#include "lab/reference/field.h"
+#include "lab/reference/tracer.h"
 #include "support/files.h"
 
 /* A scene of that source, with the parameter "radius" of 0.75. */
@@ -147,10 +147,67 @@ static void a_mistake_is_reported_with_its_line(void **state) {
     assert_null(strchr(error, '\n'));
 }
 
+/* Light of a floor, of one everywhere around, over that without ambient occlusion. */
+static double open_share(ref_tracer *t, double all, double field, double strength) {
+    enum { PATHS = 16000 };
+    double sum[2] = {0};
+    for (int k = 0; k < 2; k++) {
+        uint64_t paths = k && all > 0 && field > all ? PATHS / 16 : PATHS; /* of 16 rays each */
+        t->occlusion_radius = k ? all : 0;
+        t->field_occlusion_radius = k ? field : 0;
+        t->field_occlusion_strength = strength;
+        for (uint64_t i = 0; i < paths; i++) {
+            ref_random r = ref_random_at(1, 0, i);
+            sum[k] += ref_radiance(t, ref_v(0, -1, 0), &r).x;
+        }
+        sum[k] /= (double)paths;
+    }
+    return sum[1] / sum[0];
+}
+
+/* A ceiling at the height a R occludes directions with cos > a by 1 - a / cos each: in all, weighted
+ * by the cosine, by (1 - a)^2. */
+static void a_ceiling_occludes_by_a_closed_form(void **state) {
+    (void)state;
+    static const char sdf[] = "param radius = 0.75 [0, 2];\n"
+                              "part floor = plane((0, 1, 0), 0);\n"
+                              "part roof = translate((0, 2, 0), box((9, 1, 9)));\n";
+    char error[1024];
+    ref_field f;
+    ref_scene scene;
+    ref_world world;
+    masu_blob_environment environment;
+    ref_sky sky = {.zenith = {1, 1, 1}, .horizon = {1, 1, 1}, .ambient = {1, 1, 1}};
+    memset(&scene, 0, sizeof scene);
+    memset(&environment, 0, sizeof environment);
+    if (!open("roof.sdf", sdf, 2, 0, &f, error)) fail_msg("%s", error);
+    assert_true(ref_world_open(&scene, &f, ref_v(0, 0.5, 0), &world, error, sizeof error));
+    ref_tracer t = {.world = &world,
+                    .sky = &sky,
+                    .bsdf_samples = true,
+                    .sun_direction = {0, 1, 0},
+                    .eye = {0, 0.5, 0},
+                    .environment = &environment};
+    /* Radii of all surfaces and of the field, its strength; what is left */
+    const double rows[][4] = {{0, 2, 1, 0.75},   {0, 4, 1, 0.4375}, {0, 2, 0.4, 0.9},
+                              {0, 0.9, 1, 1},    {4, 0, 1, 0.4375}, {4, 2, 1, 0.4375},
+                              {2, 4, 1, 0.4375}, {2, 4, 0.2, 0.75}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        double found = open_share(&t, rows[i][0], rows[i][1], rows[i][2]);
+        if (!(fabs(found - rows[i][3]) < 0.01))
+            fail_msg("radii %g, %g, strength %g: %g is left, expected %g", rows[i][0], rows[i][1],
+                     rows[i][2], found, rows[i][3]);
+    }
+    ref_world_close(&world);
+    ref_field_close(&f);
+}
+
 int main(void) {
+    ref_ggx_tables();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_source_of_glsl_is_the_distance_that_it_computes),
         cmocka_unit_test(blocks_of_glsl_are_parts_like_any_other),
+        cmocka_unit_test(a_ceiling_occludes_by_a_closed_form),
         cmocka_unit_test(a_mistake_is_reported_with_its_line),
     };
     return cmocka_run_group_tests(tests, make_scratch, remove_scratch);
