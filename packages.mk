@@ -31,6 +31,9 @@ PACKAGES_full := clang libclang-rt-dev python3-skimage
 # for the plots of masu bench and masu-lab, which go without. Never installed by itself
 PACKAGES_plots := gnuplot-nox
 
+# for `masu-lab reference` of scenes with hand-written GLSL, which becomes C++ (make lab-check)
+PACKAGES_lab := spirv-cross libglm-dev g++
+
 # to build the drivers of `masu-lab isa` for Intel and Adreno (make isa-drivers)
 PACKAGES_isa := meson ninja-build bison flex python3-mako libdrm-dev libexpat1-dev libelf-dev zlib1g-dev libncurses-dev
 PACKAGES_isa += pkgconf g++ glslang-tools curl ca-certificates
@@ -69,7 +72,7 @@ endef
 
 .PHONY: packages deps-build deps-demo deps-worlds deps-view deps-test deps-analyse
 packages: ## print the Debian packages by role
-	@$(foreach role,build demo worlds view test full plots isa cross analyse dev,echo "$(role): $(PACKAGES_$(role))";)
+	@$(foreach role,build demo worlds view test full lab plots isa cross analyse dev,echo "$(role): $(PACKAGES_$(role))";)
 deps-build: ## install the packages that building needs
 	$(call install-packages,$(PACKAGES_build))
 deps-demo: ## install the packages that the demo needs

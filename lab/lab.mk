@@ -13,6 +13,7 @@ lab_make = $(more) config=lab BUILD='$(LAB_BUILD)' MADE='$(MADE)'
 lab: $(GENERATED) ## build build/lab/bin/masu-lab, and masu and masu-bake with every march
 	+$(V)$(lab_make) lab-programs
 lab-check: deps-test ## install missing packages, build, run the lab's tests on the system driver: TESTS=name
+	$(call install-packages,$(PACKAGES_lab))
 	+$(V)$(more) tools $(sort $(foreach t,$(shell tests/scenes_of.sh lab/tests),$(call scenes_of_test,$(t))))
 	+$(V)$(lab_make) lab-check-built
 

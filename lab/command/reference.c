@@ -19,7 +19,7 @@ typedef struct options {
     const char *output, *errors, *store, *sdf, *sky, *model_error;
     VkExtent2D size;
     uint32_t paths, threads, seed, bounces, transport, fields_shadow;
-    double time, sun[2], sun_radius, turn, scale;
+    double time, sun[2], sun_radius, turn, scale, occlusion[2];
     bool physics, animate, own_sun, progress, cycles;
 } options;
 
@@ -50,7 +50,8 @@ static const masu_option rows[] = {
     MASU_FLAG(options, animate, "animate", "loop the first animation clip of every model"),
     MASU_OWN("sun", "AZIMUTH,ELEVATION", read_sun,
              "sun position in degrees (default: the scene's)"),
-    MASU_TEXT(options, sdf, "sdf", "FILE.sdf", "source of the scene's signed distance field"),
+    MASU_TEXT(options, sdf, "sdf", "FILE",
+              "source of the scene's signed distance field: .sdf or GLSL"),
     MASU_TEXT(
         options, sky, "sky", "FILE.hdr",
         "panorama (.hdr, .pfm) instead of the scene's sky: the file of an environment map, or\n"
@@ -70,6 +71,9 @@ static const masu_option rows[] = {
               "radius of the sun's disc; 0: a point"),
     MASU_UINT(options, fields_shadow, "sdf-shadows", 0, 1,
               "1: the field casts shadows (default: if the scene has any)"),
+    MASU_REAL(options, occlusion[0], "sdf-ambient", "METRES", 0, 1e6,
+              "radius of the field's ambient occlusion; 0: none"),
+    MASU_REAL(options, occlusion[1], "sdf-ambient-strength", "SHARE", 0, 1, "its strength"),
     MASU_FLAG(options, cycles, "cycles",
               "microfacets of Blender's Cycles: uncorrelated masking, one bounce between them"),
     MASU_HEADING("Samples"),
@@ -99,7 +103,14 @@ static void command_line(const options *o, const char *scene, char *text, size_t
     if (o->physics) at += (size_t)snprintf(text + at, size - at, " --physics");
     if (o->transport)
         at += (size_t)snprintf(text + at, size - at, " --transport %s", transports[o->transport]);
-    if (o->sun_radius > 0) snprintf(text + at, size - at, " --sun-radius %g", o->sun_radius);
+    if (o->sun_radius > 0)
+        at += (size_t)snprintf(text + at, size - at, " --sun-radius %g", o->sun_radius);
+    if (o->fields_shadow < 2)
+        at += (size_t)snprintf(text + at, size - at, " --sdf-shadows %u", o->fields_shadow);
+    if (o->occlusion[0] > 0)
+        at += (size_t)snprintf(text + at, size - at, " --sdf-ambient %g", o->occlusion[0]);
+    if (o->occlusion[1] < 1)
+        snprintf(text + at, size - at, " --sdf-ambient-strength %g", o->occlusion[1]);
 }
 
 static bool is_png(const char *path) {
@@ -151,6 +162,9 @@ static bool save(const options *o, const char *scene, double exposure, const ref
 
 /* Features of the scene that the reference does not judge. */
 static void warn(const options *o, const ref_scene *s) {
+    if (s->blob.section[MASU_BLOB_OCCLUSION_SPIRV] && !(o->occlusion[0] > 0) && !o->physics)
+        masu_cli_warn("the blob does not tell whether the field occludes ambient light: give the "
+                      "radius by --sdf-ambient");
     if (s->meso) masu_cli_warn("mesoscale detail of materials is left out");
     if ((double)s->environment->turbidity > 0 && !o->sky)
         masu_cli_warn("the analytic sky is left out: give an image of it by --sky");
@@ -176,6 +190,8 @@ static int render(const options *o, const char *path, ref_scene *scene, const re
                     .sun_direction = ref_of(e->sun_direction),
                     .sun_color = ref_of(e->sun_color),
                     .occlusion_radius = (double)e->occlusion_radius,
+                    .field_occlusion_radius = o->occlusion[0],
+                    .field_occlusion_strength = o->occlusion[1],
                     .cutoff = scene->reflections ? (double)scene->reflections->cutoff : 0,
                     .environment = e};
     t.field_shadows = o->fields_shadow == 1 || o->physics ||
@@ -249,13 +265,11 @@ static int run_reference(const options *o, const char *path) {
     int code = MASU_CLI_OK;
     if (scene.sdf && !o->sdf)
         code = masu_cli_error(
-            "%s: the scene has a signed distance field: give its source by --sdf FILE.sdf", path);
+            "%s: the scene has a signed distance field: give its source by --sdf FILE", path);
     if (!scene.sdf && o->sdf) code = masu_cli_error("--sdf: %s has no signed distance field", path);
     if (!code && scene.sdf) {
         masu_cli_progress("compiling %s", o->sdf);
-        has_field = ref_field_open(o->sdf, scene.sdf, scene.blob.section[MASU_BLOB_SDF_PARAMS],
-                                   (uint32_t)scene.blob.count[MASU_BLOB_SDF_PARAMS], o->time,
-                                   &field, error, sizeof error);
+        has_field = ref_field_open(o->sdf, &scene.blob, o->time, &field, error, sizeof error);
         if (!has_field) code = masu_cli_error("%s", error);
     }
     memset(&sky, 0, sizeof sky);
@@ -283,7 +297,12 @@ static int write_model_error(const options *o) {
 
 static int run(masu_cli *cli) {
     long cores = sysconf(_SC_NPROCESSORS_ONLN);
-    options o = {.size = {640, 360}, .paths = 64, .bounces = 16, .scale = 1, .fields_shadow = 2};
+    options o = {.size = {640, 360},
+                 .paths = 64,
+                 .bounces = 16,
+                 .scale = 1,
+                 .fields_shadow = 2,
+                 .occlusion = {0, 1}};
     masu_given given = {.most = 1, .excess = "expected one scene"};
     int code;
     if (!masu_options_read(cli, rows, &o, &given, &code)) return code;

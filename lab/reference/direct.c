@@ -12,20 +12,41 @@ static double traced_share(double roughness, double cutoff) {
     return 1 - x * x * (3 - 2 * x);
 }
 
-/* An occluder at the distance t within the radius counts by 1 - t / radius. One cosine-weighted
- * ray. */
+enum { OCCLUSION_RAYS = 16 };
+
+/* What of a ray is open: an occluder at the distance t within the radius counts by
+ * 1 - t / radius. */
+static double open_along(const ref_tracer *t, ref_vec from, ref_vec d, double radius,
+                         unsigned flags) {
+    ref_hit by;
+    bool met =
+        radius > 0 && ref_world_trace(t->world, from, d, radius, flags | REF_RAY_NO_BLENDS, &by);
+    return met ? by.t / radius : 1;
+}
+
+/* docs/scene.md, "Ambient occlusion": the smaller visibility of two, of all surfaces within the one
+ * radius and of the field within the other; by cosine-weighted rays. Whatever the field occludes
+ * within no larger a radius is among all surfaces. Only otherwise the smaller one differs from
+ * point to point: a ray each says nothing about it, and several are averaged before. */
 static double open_to_sky(const ref_tracer *t, const ref_hit *hit, const ref_surface *s,
                           ref_random *r) {
-    if (!(t->occlusion_radius > 0)) return 1;
-    double u = ref_draw(r);
-    double v = ref_draw(r);
+    double all = t->occlusion_radius, field = t->world->field ? t->field_occlusion_radius : 0;
+    if (field <= all) field = 0;
+    if (!(all > 0) && !(field > 0)) return 1;
     ref_frame f = ref_frame_of(s->normal);
-    ref_vec d = ref_from(&f, ref_cosine_sample(u, v));
-    ref_hit by;
-    if (!(ref_dot(d, hit->ng) > 0)) return 0;
-    ref_vec from = ref_world_leave(t->world, hit, d);
-    if (!ref_world_trace(t->world, from, d, t->occlusion_radius, REF_RAY_NO_BLENDS, &by)) return 1;
-    return by.t / t->occlusion_radius;
+    int rays = all > 0 && field > 0 ? OCCLUSION_RAYS : 1;
+    double open_all = 0, open_field = 0;
+    for (int i = 0; i < rays; i++) {
+        double u = ref_draw(r);
+        double v = ref_draw(r);
+        ref_vec d = ref_from(&f, ref_cosine_sample(u, v));
+        if (!(ref_dot(d, hit->ng) > 0)) continue;
+        ref_vec from = ref_world_leave(t->world, hit, d);
+        open_all += open_along(t, from, d, all, 0);
+        open_field += open_along(t, from, d, field, REF_RAY_NO_TRIANGLES);
+    }
+    open_field = 1 - t->field_occlusion_strength * (1 - open_field / rays);
+    return fmin(open_all / rays, field > 0 ? open_field : 1);
 }
 
 /* A mirror of roughness `roughness` without a traced ray. */

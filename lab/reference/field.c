@@ -1,93 +1,126 @@
 /* field.c: see field.h. */
 #include "lab/reference/field.h"
 
-#include "bake/base/process.h"
 #include "image.h"
 #include "sdfc/sdfc.h"
 
-#include <dlfcn.h>
+#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #define EMISSIVE_MOST 65504.0
-enum { SOURCE_MOST = 4 << 20, SECONDS = 120, STEPS_MOST = 4000 };
+enum { SOURCE_MOST = 4 << 20, PARAMS_MOST = 256, STEPS_MOST = 4000 };
+_Static_assert(REF_GLSL_SLOTS == MASU_SDFC_SLOTS_MAX && PARAMS_MOST == MASU_SDFC_PARAMS_MAX,
+               "the GLSL has room for what the compiler makes");
 
-static bool compile(ref_field *f, const char *text, char *error, size_t size) {
-    char source[128], object[128];
-    snprintf(f->folder, sizeof f->folder, "/tmp/masu-reference-XXXXXX");
-    if (!mkdtemp(f->folder)) {
-        f->folder[0] = 0;
-        snprintf(error, size, "cannot make a folder in /tmp for the compiled field");
-        return false;
-    }
-    snprintf(source, sizeof source, "%s/field.c", f->folder);
-    snprintf(object, sizeof object, "%s/field.so", f->folder);
-    if (!masu_file_write(source, text, strlen(text), error, size)) return false;
-    const char *arguments[] = {"cc",      "-std=c11", "-O2", "-w",   "-ffp-contract=off",
-                               "-shared", "-fPIC",    "-o",  object, source,
-                               "-lm",     NULL};
-    masu_bake_buffer output = {0};
-    masu_bake_result result = masu_bake_run(arguments, SECONDS, &output);
-    bool good = result.end == MASU_BAKE_EXITED && result.code == 0;
-    if (!good) {
-        masu_bake_append(&output, "", 1);
-        output.data[strcspn((char *)output.data, "\n")] = 0;
-        snprintf(error, size, "the C compiler (cc) cannot compile the field: %.200s",
-                 (char *)output.data);
-    }
-    masu_bake_release(&output);
-    if (good) f->library = dlopen(object, RTLD_NOW | RTLD_LOCAL);
-    if (good && !f->library)
-        snprintf(error, size, "cannot load the compiled field: %.200s", dlerror());
-    return f->library != NULL;
+static bool is_sdf(const char *path) {
+    size_t length = strlen(path);
+    return length > 4 && !strcmp(path + length - 4, ".sdf");
 }
 
-/* ISO C has no conversion from an object pointer to a function pointer; POSIX has. */
-static bool find(const ref_field *f, const char *name, void *to) {
-    void *symbol = dlsym(f->library, name);
-    memcpy(to, &symbol, sizeof symbol);
-    return symbol != NULL;
+/* "#define MASU_PARAM_RADIUS 0" of each parameter, then the GLSL; free() it. */
+static char *with_params(const ref_blob *blob, const char *glsl) {
+    enum { LINE = 2 * MASU_BLOB_NAME_MAX };
+    const masu_blob_sdf_param *params = blob->section[MASU_BLOB_SDF_PARAMS];
+    const char *names = blob->section[MASU_BLOB_NAMES];
+    uint64_t count = blob->count[MASU_BLOB_SDF_PARAMS];
+    size_t size = count * LINE + strlen(glsl) + 16, at = 0;
+    char *text = malloc(size);
+    for (uint64_t i = 0; text && i < count; i++) {
+        const char *name = names && params[i].name != MASU_BLOB_NONE ? names + params[i].name : "";
+        at += (size_t)snprintf(text + at, size - at, "#define MASU_PARAM_");
+        for (; *name; name++) text[at++] = (char)toupper((unsigned char)*name);
+        at += (size_t)snprintf(text + at, size - at, " %llu\n", (unsigned long long)i);
+    }
+    if (text) snprintf(text + at, size - at, "#line 1\n%s", glsl);
+    return text;
 }
 
-bool ref_field_open(const char *source, const masu_blob_sdf *sdf, const masu_blob_sdf_param *params,
-                    uint32_t param_count, double time, ref_field *f, char *error, size_t size) {
-    uint8_t *text = NULL;
-    size_t bytes;
+static bool open_glsl(ref_field *f, const ref_blob *blob, const char *glsl, const char *source,
+                      bool parts, char *error, size_t size) {
+    char *text = with_params(blob, glsl);
+    f->inputs = calloc(1, sizeof *f->inputs);
+    bool good = text && f->inputs;
+    if (!good) snprintf(error, size, "out of memory for the field");
+    if (good) {
+        f->inputs->time = f->time;
+        memcpy(f->inputs->params, f->params, sizeof f->params);
+        good = ref_compile_glsl(text, source, parts, &f->glsl, &f->run, error, size);
+    }
+    free(text);
+    return good;
+}
+
+/* The parts that masu-sdfc has no C of: all of their form is GLSL then. */
+static bool open_parts(ref_field *f, const ref_blob *blob, const masu_sdfc_result *made,
+                       const char *source, char *error, size_t size) {
+    f->parts = calloc(made->part_count, sizeof *f->parts);
+    f->steepness = calloc(made->part_count, sizeof *f->steepness);
+    for (uint32_t i = 0; f->parts && f->steepness && i < made->part_count; i++) {
+        if (made->parts[i].truth) continue;
+        f->parts[f->part_count] = (int)i;
+        f->steepness[f->part_count++] = made->parts[i].lipschitz;
+    }
+    if (!f->part_count) return true;
+    if (!open_glsl(f, blob, made->glsl, source, true, error, size)) return false;
+    for (uint32_t i = 0; i < made->slot_count; i++) f->inputs->slots[i] = (double)made->slots[i];
+    ref_glsl_call call = {.what = REF_GLSL_UPDATE};
+    f->run(f->inputs, &call);
+    return true;
+}
+
+static bool open_sdf(ref_field *f, const ref_blob *blob, const char *text, size_t bytes,
+                     const char *source, char *error, size_t size) {
+    const masu_blob_sdf *sdf = blob->section[MASU_BLOB_SDF];
+    uint64_t param_count = blob->count[MASU_BLOB_SDF_PARAMS];
     masu_sdfc_result made;
-    memset(f, 0, sizeof *f);
-    memset(&made, 0, sizeof made);
-    f->time = time;
-    f->low = ref_of(sdf->bounds_min);
-    f->high = ref_of(sdf->bounds_max);
-    f->longest = (double)sdf->max_distance;
-    for (uint32_t i = 0; i < param_count && i < 256; i++) f->params[i] = (double)params[i].value;
     masu_sdfc_options options = {.pairs = UINT32_MAX};
-    bool good =
-        masu_file_read(source, SOURCE_MOST, &text, &bytes, error, size) &&
-        masu_sdfc_compile_with((const char *)text, bytes, source, &options, &made, error, size);
+    memset(&made, 0, sizeof made);
+    bool good = masu_sdfc_compile_with(text, bytes, source, &options, &made, error, size);
     if (good && (made.param_count != param_count || made.part_count != sdf->part_count)) {
         snprintf(error, size,
                  "%s: not the source of this scene's field: expected %u parts and %u parameters, "
                  "found %u and %u",
-                 source, sdf->part_count, param_count, made.part_count, made.param_count);
+                 source, sdf->part_count, (unsigned)param_count, made.part_count, made.param_count);
         good = false;
     }
-    for (uint32_t i = 0; good && i < made.part_count; i++) {
-        if (made.parts[i].truth) continue;
-        snprintf(error, size, "%s: the part %s is GLSL and has no C: the reference cannot trace it",
-                 source, made.parts[i].name);
-        good = false;
-    }
-    good = good && compile(f, made.c, error, size);
-    if (good &&
-        (!find(f, "masu_truth_step", &f->step) || !find(f, "masu_truth_distance", &f->distance) ||
-         !find(f, "masu_truth_part", &f->part) || !find(f, "masu_truth_material", &f->material))) {
+    good = good && ref_compile_c(made.c, &f->c, error, size);
+    if (good && (!ref_library_find(&f->c, "masu_truth_step", &f->step) ||
+                 !ref_library_find(&f->c, "masu_truth_distance", &f->distance) ||
+                 !ref_library_find(&f->c, "masu_truth_part", &f->part) ||
+                 !ref_library_find(&f->c, "masu_truth_material", &f->material))) {
         snprintf(error, size, "%s: the compiled field lacks a function", source);
         good = false;
     }
+    good = good && open_parts(f, blob, &made, source, error, size);
     masu_sdfc_release(&made);
+    return good;
+}
+
+bool ref_field_open(const char *source, const ref_blob *blob, double time, ref_field *f,
+                    char *error, size_t size) {
+    const masu_blob_sdf *sdf = blob->section[MASU_BLOB_SDF];
+    const masu_blob_sdf_param *params = blob->section[MASU_BLOB_SDF_PARAMS];
+    uint8_t *text = NULL;
+    size_t bytes;
+    memset(f, 0, sizeof *f);
+    f->time = time;
+    f->low = ref_of(sdf->bounds_min);
+    f->high = ref_of(sdf->bounds_max);
+    f->longest = (double)sdf->max_distance;
+    f->lipschitz = (double)sdf->lipschitz;
+    for (uint64_t i = 0; i < blob->count[MASU_BLOB_SDF_PARAMS] && i < PARAMS_MOST; i++)
+        f->params[i] = (double)params[i].value;
+    bool good = masu_file_read(source, SOURCE_MOST, &text, &bytes, error, size);
+    if (good && is_sdf(source)) {
+        good = open_sdf(f, blob, (const char *)text, bytes, source, error, size);
+    } else if (good) {
+        char *copy = calloc(bytes + 1, 1); /* with a NUL */
+        if (copy) memcpy(copy, text, bytes);
+        good = open_glsl(f, blob, copy ? copy : "", source, false, error, size);
+        free(copy);
+    }
     free(text);
     if (!good) ref_field_close(f);
     error[strcspn(error, "\n")] = 0;
@@ -95,30 +128,60 @@ bool ref_field_open(const char *source, const masu_blob_sdf *sdf, const masu_blo
 }
 
 void ref_field_close(ref_field *f) {
-    static const char *const files[] = {"field.c", "field.so"};
-    char path[128];
-    if (f->library) dlclose(f->library);
-    for (int i = 0; f->folder[0] && i < 2; i++) {
-        snprintf(path, sizeof path, "%s/%s", f->folder, files[i]);
-        unlink(path);
-    }
-    if (f->folder[0]) rmdir(f->folder);
+    ref_library_close(&f->c);
+    ref_library_close(&f->glsl);
+    free(f->inputs);
+    free(f->parts);
+    free(f->steepness);
     memset(f, 0, sizeof *f);
+}
+
+/* ---- Values ---------------------------------------------------------------------------------- */
+
+static double glsl_at(const ref_field *f, int part, const double p[3]) {
+    ref_glsl_call call = {.what = REF_GLSL_FIELD, .part = part};
+    memcpy(call.point, p, sizeof call.point);
+    f->run(f->inputs, &call);
+    return isnan(call.value) ? HUGE_VAL : call.value; /* nothing is there */
+}
+
+/* f / L of the part with the least one; its number and f. */
+static double least_at(const ref_field *f, const double p[3], int *part, double *distance) {
+    if (!f->c.handle) {
+        *distance = glsl_at(f, 0, p);
+        *part = 0;
+        return *distance / f->lipschitz;
+    }
+    double step = f->step(f->params, f->time, p);
+    *distance = f->part_count ? f->distance(f->params, f->time, p) : step;
+    *part = -1; /* of the C */
+    for (uint32_t i = 0; i < f->part_count; i++) {
+        double own = glsl_at(f, f->parts[i], p);
+        *distance = fmin(*distance, own * f->steepness[i]);
+        if (!(own < step)) continue;
+        step = own;
+        *part = f->parts[i];
+    }
+    return step;
+}
+
+static double step_at(const ref_field *f, ref_vec p) {
+    double at[3] = {p.x, p.y, p.z}, distance;
+    int part;
+    return least_at(f, at, &part, &distance);
+}
+
+double ref_field_distance(const ref_field *f, ref_vec p) {
+    double at[3] = {p.x, p.y, p.z}, distance;
+    int part;
+    if (f->c.handle && !f->part_count) return f->distance(f->params, f->time, at);
+    least_at(f, at, &part, &distance);
+    return distance;
 }
 
 /* ---- Rays ------------------------------------------------------------------------------------ */
 
 static double extent(ref_vec p) { return 1 + fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z))); }
-
-static double step_at(const ref_field *f, ref_vec p) {
-    double at[3] = {p.x, p.y, p.z};
-    return f->step(f->params, f->time, at);
-}
-
-static double distance_at(const ref_field *f, ref_vec p) {
-    double at[3] = {p.x, p.y, p.z};
-    return f->distance(f->params, f->time, at);
-}
 
 /* Where a ray is within the bounds. */
 static bool clip(const ref_field *f, ref_vec from, ref_vec d, double *near, double *far) {
@@ -150,10 +213,12 @@ double ref_field_trace(const ref_field *f, ref_vec from, ref_vec d, double far) 
 
 ref_vec ref_field_normal(const ref_field *f, ref_vec p) {
     double h = 1e-6 * extent(p);
-    ref_vec g =
-        ref_v(distance_at(f, ref_v(p.x + h, p.y, p.z)) - distance_at(f, ref_v(p.x - h, p.y, p.z)),
-              distance_at(f, ref_v(p.x, p.y + h, p.z)) - distance_at(f, ref_v(p.x, p.y - h, p.z)),
-              distance_at(f, ref_v(p.x, p.y, p.z + h)) - distance_at(f, ref_v(p.x, p.y, p.z - h)));
+    ref_vec g = ref_v(ref_field_distance(f, ref_v(p.x + h, p.y, p.z)) -
+                          ref_field_distance(f, ref_v(p.x - h, p.y, p.z)),
+                      ref_field_distance(f, ref_v(p.x, p.y + h, p.z)) -
+                          ref_field_distance(f, ref_v(p.x, p.y - h, p.z)),
+                      ref_field_distance(f, ref_v(p.x, p.y, p.z + h)) -
+                          ref_field_distance(f, ref_v(p.x, p.y, p.z - h)));
     return ref_unit(g);
 }
 
@@ -167,9 +232,18 @@ ref_vec ref_field_leave(const ref_field *f, ref_vec p, ref_vec n) {
     return from;
 }
 
-void ref_field_surface(const ref_field *f, ref_vec p, ref_surface *s) {
-    double at[3] = {p.x, p.y, p.z}, m[8];
-    f->material(f->part(f->params, f->time, at), m);
+void ref_field_surface(const ref_field *f, ref_vec p, ref_vec n, ref_surface *s) {
+    double at[3] = {p.x, p.y, p.z}, m[8], distance;
+    int part;
+    least_at(f, at, &part, &distance);
+    if (f->c.handle) {
+        f->material(part < 0 ? f->part(f->params, f->time, at) : part, m);
+    } else {
+        ref_glsl_call call = {.what = REF_GLSL_SURFACE, .normal = {n.x, n.y, n.z}};
+        memcpy(call.point, at, sizeof at);
+        f->run(f->inputs, &call);
+        memcpy(m, call.look, sizeof m);
+    }
     memset(s, 0, sizeof *s);
     s->albedo = ref_v(ref_clamp(m[0], 0, 1), ref_clamp(m[1], 0, 1), ref_clamp(m[2], 0, 1));
     s->roughness = ref_clamp(m[3], 0, 1);

@@ -241,7 +241,7 @@ static ref_vec bent(const ref_world *w, const ref_hit *hit, ref_vec n) {
 void ref_world_look(const ref_world *w, const ref_hit *hit, ref_vec v, ref_look *out) {
     *out = (ref_look){.cover = 1, .opacity = 1};
     if (hit->triangle == REF_SDF) {
-        ref_field_surface(w->field, hit->p, &out->s);
+        ref_field_surface(w->field, hit->p, hit->ng, &out->s);
         out->s.normal = out->s.coat_normal = facing(hit->ng, v, 0);
         return;
     }

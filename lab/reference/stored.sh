@@ -51,3 +51,5 @@ store blobs 128 --sdf scenes/blobs.sdf
 store spheres 128 --sdf scenes/spheres.sdf
 store rods 128 --sdf scenes/rods.sdf
 store tunnel 128 --sdf scenes/tunnel.sdf
+store engine 256 --sdf scenes/engine.glsl
+store city_shadows 128 --sdf scenes/city.sdf --sun-radius 0.5 --sdf-ambient 1.5

@@ -68,6 +68,8 @@ static const row rows[] = {
     {.scene = "spheres"},
     {.scene = "rods"},
     {.scene = "tunnel"},
+    {.scene = "engine"},
+    {.scene = "city_shadows"},
 };
 enum { ROWS = sizeof rows / sizeof *rows };
 
