@@ -166,8 +166,6 @@ static void warn(const options *o, const ref_scene *s) {
         masu_cli_warn("the blob does not tell whether the field occludes ambient light: give the "
                       "radius by --sdf-ambient");
     if (s->meso) masu_cli_warn("mesoscale detail of materials is left out");
-    if ((double)s->environment->turbidity > 0 && !o->sky)
-        masu_cli_warn("the analytic sky is left out: give an image of it by --sky");
     if (o->output && is_png(o->output) && (double)s->environment->metered > 0)
         masu_cli_warn("auto-exposure is left out");
 }
@@ -267,6 +265,10 @@ static int run_reference(const options *o, const char *path) {
         code = masu_cli_error(
             "%s: the scene has a signed distance field: give its source by --sdf FILE", path);
     if (!scene.sdf && o->sdf) code = masu_cli_error("--sdf: %s has no signed distance field", path);
+    /* It lights the scene and has its sun: without it nothing could be compared. */
+    if (!code && (double)scene.environment->turbidity > 0 && !o->sky)
+        code = masu_cli_error("%s: the scene has an analytic sky (turbidity %g): give an image of "
+                              "it by --sky FILE", path, (double)scene.environment->turbidity);
     if (!code && scene.sdf) {
         masu_cli_progress("compiling %s", o->sdf);
         has_field = ref_field_open(o->sdf, &scene.blob, o->time, &field, error, sizeof error);

@@ -27,4 +27,14 @@ END
 "$lab" reference "$folder/sky.masu" -o "$folder/sky.png" --paths 1 --size 16x16 --quiet || fail "masu-lab reference"
 colour=$(convert "$folder/sky.png" -depth 8 rgb:- | od -An -v -tu1 -w3 | sort -u | xargs)
 [ "$colour" = "188 221 141" ] || fail "the sky is $colour"
+
+# An analytic sky is not traced.
+sed 's/"sky": {.*}/"sky": {"turbidity": 3}/; s/"sun": .*/"sun": {"direction": [0, 1, 0]},/' "$folder/sky.json" > "$folder/haze.json"
+if "$bin/masu-bake" "$folder/haze.json" -o "$folder/haze.masu" --bare --quiet; then
+    said=$("$lab" reference "$folder/haze.masu" -o "$folder/haze.png" --paths 1 --size 16x16 --quiet 2>&1)
+    [ $? = 1 ] && [[ $said == *"analytic sky (turbidity 3)"*"--sky"* ]] && [ ! -e "$folder/haze.png" ] ||
+        fail "analytic sky: $said"
+else
+    fail "masu-bake, haze"
+fi
 [ $failures = 0 ]
