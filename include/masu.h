@@ -268,8 +268,8 @@ MASU_API float masu_scene_specular_cutoff(const masu_scene *scene);
 struct masu_limits;
 MASU_API void masu_scene_usage(const masu_scene *scene, struct masu_limits *out);
 
-/* Classes of scenes by content. Each has its own built-in ladder (masu_desc.ladder). A world is a
- * scene of polygons with LODs and occluders. */
+/* Classes of scenes by content. Those without a measured ladder (masu_desc.ladder) use the nearest
+ * one's. A world is a scene of polygons with LODs and occluders. */
 typedef enum masu_scene_class {
     MASU_SCENE_POLYGONS = 0,
     MASU_SCENE_WORLD = 1,

@@ -65,10 +65,9 @@ vec2 spread_around(ivec2 texel, masu_guide g, vec3 point, float width)
         squares += y * y;
         count += 1.0;
     }
-    if (!(count > 0.0)) {
-        return vec2(65504.0, 0.0);
-    }
-    return vec2(sum / count, masu_sqrt(squares / count - (sum / count) * (sum / count)));
+    /* One neighbour or two do not tell what is bright here. */
+    float mean = sum / max(count, 1.0);
+    return vec2(count > 2.0 ? mean : 65504.0, masu_sqrt(squares / max(count, 1.0) - mean * mean));
 }
 
 void main()

@@ -22,12 +22,11 @@
  *      between pixels blurs, so a pixel that moves by 1/16 pixel or more has at most 2 samples
  *      (1.5 below full size). The weight falls with speed and with the change of view depth: a
  *      surface that comes closer was smaller in the history.
- *
  *   5. Missed surfaces: samples may miss a surface thinner than a pixel for frames. If the
  *      previous frame had a thin surface here (temporal_keep.comp), its velocity brings it here,
  *      and nothing as near is among the 3x3 samples, then the pixel keeps the surface's history
- *      if that differs from the samples: not clamped to them, with the weight of a moving pixel.
- *      Otherwise the frames that hit it would be averaged with histories that have lost it.
+ *      if that differs from the samples: clamped from below only, with the weight of a moving
+ *      pixel. Otherwise the frames that hit it would be averaged with histories that have lost it.
  *
  * upscale/found.glsl defines the two 32-bit values of the result.
  *

@@ -30,16 +30,20 @@ const float in_front = 1.2;
 /* The bits of masu_thin of the texel `at`; 0 if it is not one pixel wide, or stands still. */
 uint thin_at(ivec2 at, float depth, vec2 size, vec2 texel)
 {
+    /* In the last column and row masu_corner repeats texels across. */
+    if (any(greaterThanEqual(vec2(at), size - 1.0))) {
+        return 0u;
+    }
     vec4 before = masu_corner(depth_image, vec2(at), size, texel);
     vec4 after = masu_corner(depth_image, vec2(at) + 1.0, size, texel);
     vec2 beside = vec2(max(before.x, after.z), max(before.z, after.x));
     vec4 moved = texelFetch(velocity_image, at, 0);
     moved.xy += frame.shifts.zw;
-    float speed = max(abs(moved.x), abs(moved.y));
     bool thin = min(beside.x, beside.y) < (1.0 - apart) * depth && moved.w > 0.0;
-    return thin && speed > 0.02 && speed <= masu_thin_fastest
-               ? masu_thin(moved.xy, masu_thin_lives)
-               : 0u;
+    vec2 speed = abs(moved.xy);
+    bool moves = any(greaterThan(speed, vec2(0.02))) &&
+                 all(lessThanEqual(speed, vec2(masu_thin_fastest))); /* not NaN */
+    return thin && moves ? masu_thin(moved.xy, masu_thin_lives) : 0u;
 }
 
 void main()

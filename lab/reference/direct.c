@@ -46,7 +46,8 @@ static double open_to_sky(const ref_tracer *t, const ref_hit *hit, const ref_sur
         open_field += open_along(t, from, d, field, REF_RAY_NO_TRIANGLES);
     }
     open_field = 1 - t->field_occlusion_strength * (1 - open_field / rays);
-    return fmin(open_all / rays, field > 0 ? open_field : 1);
+    /* Rays below the surface count as blocked; without a radius none does. */
+    return fmin(all > 0 ? open_all / rays : 1, field > 0 ? open_field : 1);
 }
 
 /* A mirror of roughness `roughness` without a traced ray. */

@@ -122,8 +122,10 @@ bool ref_field_open(const char *source, const ref_blob *blob, double time, ref_f
         free(copy);
     }
     free(text);
-    if (!good) ref_field_close(f);
-    error[strcspn(error, "\n")] = 0;
+    if (!good) {
+        ref_field_close(f);
+        error[strcspn(error, "\n")] = 0;
+    }
     return good;
 }
 

@@ -322,6 +322,7 @@ static void the_first_frame_has_few_fireflies(void **state) {
     masu_camera camera;
     masu_commands commands;
     uint32_t fireflies = 0;
+    double sum = 0, all = 0;
     assert_int_equal(masu_camera_at(s.m, 0.8, &camera), MASU_OK);
     for (uint32_t k = 0; k < 16; k++) { /* other rays in each */
         draw(&s, &(masu_frame_desc){.camera = &camera, .time_step = 1.0f / 60.0f, .cut = 1},
@@ -334,11 +335,14 @@ static void the_first_frame_has_few_fireflies(void **state) {
             for (int n = 0; n < 25; n++)
                 most = fmaxf(most, truth[3 * ((y + n / 5 - 2) * (int)W + x + n % 5 - 2)]);
             fireflies += picture[3 * p] > 2.0f * most;
+            sum += (double)picture[3 * p];
+            all += (double)truth[3 * p];
         }
     }
     close_session(&s);
-    printf("%u fireflies in 16 first frames\n", fireflies);
+    printf("%u fireflies in 16 first frames, light %.3f of the truth's\n", fireflies, sum / all);
     assert_true(fireflies < 34); /* 25; 43 without a limit */
+    assert_true(sum > 0.9 * all && sum < 1.1 * all);
 }
 
 /* A rung without full-resolution history does not keep them: the next one that has them must not take older ones for

@@ -21,7 +21,7 @@ static bool drawable(const masu_plot *p, uint32_t i) {
 }
 
 /* Series of points: those that are bundles or sizes by name, single knobs together. */
-static const char *const series[] = {"base", "scale", "cheap",   "middle",
+static const char *const series[] = {"base", "scale", "cheap",   "lean",
                                      "full", "soft",  "soft aa", "soft steps",
                                      "soft cascades", "temporal"};
 enum { SERIES = sizeof series / sizeof *series };
@@ -126,7 +126,7 @@ static void write_commands(FILE *f, const masu_plot *p) {
     static const char *const colors[] = {"#000000", "#0072b2", "#e69f00", "#009e73", "#cc79a7",
                                          "#56b4e9", "#56b4e9", "#56b4e9", "#8c510a", "#d4a017", "#999999"};
     static const char *const names[] = {
-        "base", "render size only", "cheap",           "middle",  "full",
+        "base", "render size only", "cheap",           "lean",    "full",
         "soft", "soft, SMAA",        "soft, 128 steps", "soft, 2 cascades", "temporal", "one knob"};
     static const int marks[] = {7, 7, 9, 5, 13, 11, 10, 12, 8, 15, 6};
     for (uint32_t k = 0; k <= SERIES; k++)

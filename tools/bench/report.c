@@ -110,6 +110,8 @@ static bool load_rest(const report *r, uint32_t row, uint8_t *out) {
     static const char *const suffixes[] = {MASU_SWEEP_REST, ""};
     char path[4096], error[4096];
     for (int i = 0; i < 2; i++) {
+        /* Without reflections and temporal passes the still is the image in motion. */
+        if (i && r->rows[row].rest_flip != r->rows[row].flip) return false;
         if (masu_sweep_picture(r->folder, r->rows[row].setting, suffixes[i], path) &&
             masu_file_exists(path))
             return masu_picture_load(path, r->size, out, error, sizeof error);
