@@ -33,8 +33,8 @@ static bool read_sun(masu_cli *cli, void *to) {
 
 static const masu_option rows[] = {
     MASU_HEADING("Output"),
-    {MASU_ROW(options, output, MASU_TAKE_FILE, "output", "FILE",
-              "FILE.pfm: linear image before exposure; FILE.png: 8 bits of sRGB, with the scene's\n"
+    {MASU_ROW(options, output, MASU_TAKE_IMAGE, "output", "FILE",
+              "FILE.pfm, FILE.exr: linear image before exposure; FILE.png: 8 bits of sRGB, with the scene's\n"
               "exposure and the filmic tone curve"),
      .letter = 'o'},
     MASU_FILE(options, errors, "error", "FILE.pfm", "standard error of each value"),
@@ -113,11 +113,6 @@ static void command_line(const options *o, const char *scene, char *text, size_t
         snprintf(text + at, size - at, " --sdf-ambient-strength %g", o->occlusion[1]);
 }
 
-static bool is_png(const char *path) {
-    const char *end = strrchr(path, '.');
-    return end && !strcmp(end, ".png");
-}
-
 /* With the curve of shaders/shared/tone.glsl. */
 static bool save_png(const char *path, const ref_image *image, double exposure, char *error,
                      size_t size) {
@@ -141,11 +136,11 @@ static bool save(const options *o, const char *scene, double exposure, const ref
                  char *error, size_t size) {
     masu_reference *r = calloc(1, sizeof *r);
     bool good = r != NULL;
-    if (o->output && is_png(o->output))
-        good = good && save_png(o->output, image, exposure, error, size);
+    if (o->output && masu_image_is_linear(o->output))
+        good = good && masu_image_save_linear(o->output, image->mean, image->width, image->height,
+                                              error, size);
     else if (o->output)
-        good = good && masu_image_save_pfm(o->output, image->mean, image->width, image->height, 3,
-                                           error, size);
+        good = good && save_png(o->output, image, exposure, error, size);
     if (o->errors)
         good = good && masu_image_save_pfm(o->errors, image->error, image->width, image->height, 3,
                                            error, size);
@@ -166,7 +161,7 @@ static void warn(const options *o, const ref_scene *s) {
         masu_cli_warn("the blob does not tell whether the field occludes ambient light: give the "
                       "radius by --sdf-ambient");
     if (s->meso) masu_cli_warn("mesoscale detail of materials is left out");
-    if (o->output && is_png(o->output) && (double)s->environment->metered > 0)
+    if (o->output && !masu_image_is_linear(o->output) && (double)s->environment->metered > 0)
         masu_cli_warn("auto-exposure is left out");
 }
 
@@ -319,7 +314,7 @@ static int run(masu_cli *cli) {
 
 const masu_cli_command lab_reference = {
     .name = "reference",
-    .arguments = "SCENE.masu -o X.pfm|X.png [options]",
+    .arguments = "SCENE.masu -o X.pfm|X.exr|X.png [options]",
     .summary = "render a scene by a path tracer that shares nothing with the renderer",
     .details = "The default is the model that Masu promises: a difference from `masu render` is a "
                "bug, or\n"

@@ -14,7 +14,7 @@ static double traced_share(double roughness, double cutoff) {
 
 enum { OCCLUSION_RAYS = 16 };
 
-/* What of a ray is open: an occluder at the distance t within the radius counts by
+/* Unoccluded share of a ray: an occluder at the distance t within the radius counts by
  * 1 - t / radius. */
 static double open_along(const ref_tracer *t, ref_vec from, ref_vec d, double radius,
                          unsigned flags) {

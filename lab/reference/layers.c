@@ -1,8 +1,8 @@
 /* layers.c: the physics mode of bsdf.h. Light walks between the facets of a layer (ggx.h) until it
  * leaves, or enters the layer at a facet with the probability 1 - F, straight on: no layer
  * refracts. Below a dielectric is a Lambertian base, below a coat the whole base with its facets.
- * What a layer mirrors back from inside is what it mirrors from outside. All values are estimates
- * of one walk; their means are reciprocal, and what is white returns all light. */
+ * A layer reflects as much from inside as from outside. All values are estimates
+ * of one walk; their means are reciprocal, and a white surface returns all light. */
 #include "lab/reference/bsdf.h"
 
 #include <string.h>

@@ -28,6 +28,14 @@ END
 colour=$(convert "$folder/sky.png" -depth 8 rgb:- | od -An -v -tu1 -w3 | sort -u | xargs)
 [ "$colour" = "188 221 141" ] || fail "the sky is $colour"
 
+# The format is the name's; of linear light the sky is what the scene says.
+said=$("$lab" reference "$folder/sky.masu" -o "$folder/sky.jpg" --paths 1 --size 16x16 --quiet 2>&1)
+[ $? = 2 ] && [[ $said == *sky.jpg* ]] && [ ! -e "$folder/sky.jpg" ] || fail "sky.jpg: $said"
+for end in pfm exr; do
+    "$lab" reference "$folder/sky.masu" -o "$folder/sky.$end" --paths 1 --size 16x16 --quiet || fail "sky.$end"
+done
+"$bin/masu" compare "$folder/sky.exr" "$folder/sky.pfm" > "$folder/compared" 2>&1 || fail "$(cat "$folder/compared")"
+
 # An analytic sky is not traced.
 sed 's/"sky": {.*}/"sky": {"turbidity": 3}/; s/"sun": .*/"sun": {"direction": [0, 1, 0]},/' "$folder/sky.json" > "$folder/haze.json"
 if "$bin/masu-bake" "$folder/haze.json" -o "$folder/haze.masu" --bare --quiet; then

@@ -10,9 +10,11 @@
 /* A box with smoothed normals is meant to be a box: edges that turn by more than 45 degrees are no
  * chords. */
 static const double least_cosine = 0.70;
-/* Of the primitive's diagonal: shadows may begin no farther inside of their casters than that. */
+/* Limit of the rise as a share of the primitive's diagonal: shadows may begin no farther inside
+ * their casters. */
 static const double most = 0.01;
-/* Nor than that of the radius of its thin parts, which have a share of its area: the shadow of a leg shrinks by no more. */
+/* Limit of the rise as a share of the radius of curvature of the primitive's thin parts: the shadow
+ * of a leg shrinks by no more. Thin parts are the thinnest 5 % of its area. */
 static const double most_of_radius = 0.1;
 static const double thin_share = 0.05;
 
@@ -34,7 +36,8 @@ static int by_radius(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* Of the arc that the edge is the chord of, whatever its turn: a leg of four sides is thin, too. */
+/* Radius of the arc whose chord is the edge. No limit of the turn: a leg with four sides is thin,
+ * too. */
 static double radius_of(const masu_blob_vertex *a, const masu_blob_vertex *b) {
     masu_bake_vec3 edge = masu_bake_sub(masu_bake_v3f(b->position), masu_bake_v3f(a->position));
     masu_bake_vec3 turn = masu_bake_sub(masu_bake_decode_normal(b->normal), masu_bake_decode_normal(a->normal));
@@ -42,7 +45,8 @@ static double radius_of(const masu_blob_vertex *a, const masu_blob_vertex *b) {
     return convex > 0 ? masu_bake_dot(edge, edge) / convex : HUGE_VAL;
 }
 
-/* All of the surface but thin_share has that radius at least. A triangle has that of its most curved edge. */
+/* The radius that all but thin_share of the surface has at least. A triangle has the radius of its
+ * most curved edge. */
 static double thin_radius(const masu_blob_vertex *vertices, const uint32_t *indices, uint32_t triangles, curved *room) {
     double area = 0, thin = 0;
     for (uint32_t t = 0; t < triangles; t++) {
