@@ -97,12 +97,7 @@ void add_lights(inout masu_lit lit, masu_surface s, masu_bsdf b, uvec2 at, vec3 
         if (!all_lights) {
             light = min(masu_light_tiles[list + 1u + i], uint(MASU_LOCAL_LIGHTS_MAX) - 1u);
         }
-        vec3 l;
-        vec3 color;
-        if (masu_light_reaches(masu_lights[light], rel, l, color)) {
-            masu_add_light(lit, s, b, l, color);
-            reached++;
-        }
+        reached += masu_add_local_light(lit, s, b, light, rel) ? 1u : 0u;
     }
     masu_count(MASU_COUNTER_LIGHT_TESTS, count);
     masu_count(MASU_COUNTER_LIGHT_SHADED, reached);

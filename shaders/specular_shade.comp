@@ -140,11 +140,7 @@ vec3 radiance(met m, vec3 rel, vec3 direction)
         if (i >= lights) {
             break;
         }
-        vec3 l;
-        vec3 color;
-        if (masu_light_reaches(masu_lights[i], rel, l, color)) {
-            masu_add_light(lit, m.surface, b, l, color);
-        }
+        masu_add_local_light(lit, m.surface, b, i, rel);
     }
 #endif
     return lit.diffuse + lit.specular + m.surface.emissive;

@@ -78,4 +78,18 @@ bool masu_light_reaches(masu_punctual_light_data light, vec3 rel, out vec3 l, ou
     return strength > 0.0 && masu_finite(color);
 }
 
+#ifdef MASU_SHADE_GLSL
+/* Adds what a light contributes at a surface point relative to the eye. False: nothing arrives. */
+bool masu_add_local_light(inout masu_lit lit, masu_surface s, masu_bsdf b, uint light, vec3 rel)
+{
+    vec3 l;
+    vec3 color;
+    bool reaches = masu_light_reaches(masu_lights[light], rel, l, color);
+    if (reaches) {
+        masu_add_light(lit, s, b, l, color);
+    }
+    return reaches;
+}
+#endif
+
 #endif
