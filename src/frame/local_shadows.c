@@ -145,10 +145,17 @@ void masu_local_shadows_begin(masu_local_shadows *s, const masu_frame_data *f) {
     for (uint32_t slot = 0; slot < s->capacity; slot++) s->choice[slot].offered = 0;
 }
 
-/* The size that a texel at a third of the range takes a pixel and a half for, from where the camera is. */
-static double wanted_size(const masu_frame_data *f, double range, double distance) {
-    double third = range / 3.0, pixels = 0.5 * (double)masu_frame_rung_plan(f)->render_height / (double)f->u.up[3];
-    return 2.0 * third * pixels / (1.5 * fmax(distance, third));
+double masu_local_face_wish(double range, double radius, double tangent, double distance, double pixels) {
+    double third = range / 3.0, sharp = 2.0 * third * tangent * pixels / (1.5 * fmax(distance, third));
+    return fmin(sharp, 3.0 * tangent * third / radius);
+}
+
+/* A size is kept for wishes of less than half to more than twice of it. */
+uint32_t masu_local_face_size(double wish, uint32_t now, uint32_t most) {
+    uint32_t size = MASU_LOCAL_TILE_LEAST;
+    if (now && now <= most && (wish <= 2.2 * now || now == most) && (wish >= 0.45 * now || now == size)) return now;
+    while (size < most && wish > 1.4142 * size) size *= 2;
+    return size;
 }
 
 /* All lights have room for that many texels along the edges of their faces. */
@@ -159,15 +166,13 @@ static uint32_t largest_size(const masu_local_shadows *s, const masu_frame_plan 
     return size;
 }
 
-static void set_size(masu_local_shadows *s, masu_local_light *light, const masu_frame_data *f, double wanted) {
+static void set_size(masu_local_shadows *s, masu_local_light *light, const masu_frame_data *f, float radius,
+                     double distance) {
+    double tangent = light->tangent > 0.0 ? light->tangent : 1.0;
+    double pixels = 0.5 * (double)masu_frame_rung_plan(f)->render_height / (double)f->u.up[3];
+    double wish = masu_local_face_wish(light->range, (double)radius, tangent, distance, pixels);
     uint32_t most = largest_size(s, f->plan, light->tangent > 0.0 ? 1 : MASU_LOCAL_FACES);
-    double now = (double)light->size;
-    /* It changes by hysteresis: each size is for half to twice of it. */
-    if (light->size && light->size <= most && (wanted <= 2.2 * now || light->size == most) &&
-        (wanted >= 0.45 * now || light->size == MASU_LOCAL_TILE_LEAST))
-        return;
-    uint32_t size = MASU_LOCAL_TILE_LEAST;
-    while (size < most && wanted > 1.4142 * size) size *= 2;
+    uint32_t size = masu_local_face_size(wish, light->size, most);
     if (size == light->size) return;
     light->size = size;
     for (uint32_t i = 0; i < MASU_LOCAL_FACES; i++) {
@@ -196,7 +201,7 @@ void masu_local_shadows_offer(masu_local_shadows *s, const masu_frame_data *f, u
         s->choice[slot - 1].offered = 1;
         s->choice[slot - 1].score = score;
         if (set_light(&s->lights[slot - 1], state, position, direction, f->number)) s->choice[slot - 1].fade = 0;
-        set_size(s, &s->lights[slot - 1], f, wanted_size(f, (double)state->range, distance));
+        set_size(s, &s->lights[slot - 1], f, state->radius, distance);
     }
     masu_shadow_wish_add(&s->wish, s->most, light + 1, score);
 }
