@@ -58,6 +58,15 @@ static void cube_axes(uint32_t face, double axis[3][3]) {
     axis[2][major] = face % 2 ? -1.0 : 1.0;
 }
 
+/* Those of a spot's: the shader gets the first, and the second by a cross product. */
+static void spot_axes(const double direction[3], double axis[3][3]) {
+    masu_shadow_axes(direction, axis);
+    for (uint32_t k = 0; k < 3; k++) {
+        uint32_t i = (k + 1) % 3, j = (k + 2) % 3;
+        axis[1][k] = axis[2][i] * axis[0][j] - axis[2][j] * axis[0][i];
+    }
+}
+
 /* Unless the whole face, which lies within 54.74 degrees around its middle, is outside of the cone. */
 int masu_local_face_is_lit(const double axis[3], double angle, uint32_t face) {
     double cosine = face % 2 ? -axis[face / 2] : axis[face / 2];
@@ -103,7 +112,7 @@ static int set_light(masu_local_light *light, const masu_punctual_light_state *s
         face->drawn = 0;
         if (light->tangent > 0.0) {
             face->used = i == 0;
-            masu_shadow_axes(light->axis, face->axis);
+            spot_axes(light->axis, face->axis);
         } else {
             face->used = !cone || masu_local_face_is_lit(light->axis, light->angle, i);
             cube_axes(i, face->axis);
@@ -413,6 +422,8 @@ void masu_local_shadows_of(const masu_local_shadows *s, uint32_t light, masu_uve
         words[i] = log | s->choice[slot - 1].fade << MASU_LOCAL_FADE_SHIFT |
                    (uint32_t)(face->tile.y / 8) << MASU_LOCAL_Y_SHIFT | (uint32_t)(face->tile.x / 8) << MASU_LOCAL_X_SHIFT;
     }
+    float across[3] = {(float)of->faces[0].axis[0][0], (float)of->faces[0].axis[0][1], (float)of->faces[0].axis[0][2]};
+    if (of->tangent > 0.0 && words[0]) memcpy(&words[1], across, sizeof across);
     float near_distance = (float)of->near_distance, tangent = (float)of->tangent;
     memcpy(&words[6], &near_distance, sizeof near_distance);
     memcpy(&words[7], &tangent, sizeof tangent);
