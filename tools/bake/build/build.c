@@ -8,6 +8,7 @@
 #include "bake/build/look.h"
 #include "bake/build/parts.h"
 #include "bake/light/environment.h"
+#include "bake/light/field.h"
 #include "bake/light/picture_sun.h"
 #include "bake/mesh/rise.h"
 #include "bake/scene/camera.h"
@@ -174,6 +175,8 @@ static bool build_probes(const masu_bake_description *d, const masu_bake_options
     if (!probes.wanted && !probes.live) return true;
     probes.threads = options->threads;
     masu_bake_trace *trace = masu_bake_trace_make(content);
+    masu_bake_field *field = trace ? masu_bake_field_make(content, d->sdf.source) : NULL;
+    if (field) masu_bake_trace_add(trace, field);
     masu_bake_probe_report done = {0};
     bool good = trace && masu_bake_make_probes(content, &probes, trace, &done);
     masu_cli_progress_clear();
@@ -188,6 +191,7 @@ static bool build_probes(const masu_bake_description *d, const masu_bake_options
     if (good && options->probe_report)
         masu_bake_report_probes(content, &probes, trace, REPORT_POINTS, REPORT_RAYS);
     masu_bake_trace_release(trace);
+    masu_bake_field_release(field);
     return good;
 }
 

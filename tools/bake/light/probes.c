@@ -20,7 +20,7 @@
 #define BACKS_MOST 0.25f
 #define FACE_NEAREST 1e-3f
 /* Rays of a live probe: the lobes of its map are narrow. */
-#define LIVE_RAYS 4096u
+#define LIVE_RAYS 2048u
 
 masu_bake_probe_settings masu_bake_probe_defaults(void) {
     return (masu_bake_probe_settings){
@@ -189,7 +189,7 @@ static void make_map(uint32_t side, bool narrow, uint32_t rays, const float (*hi
             texel_direction(side, i, j, d);
             for (uint32_t r = 0; r < rays; r++) {
                 float c = d[0] * hits[r][0] + d[1] * hits[r][1] + d[2] * hits[r][2];
-                if (!(c > 0.5f)) continue;
+                if (!(c > (narrow ? 0.93f : 0.5f))) continue;
                 float c2 = c * c, c4 = c2 * c2, c8 = c4 * c4, c16 = c8 * c8, w = c16 * c16;
                 w *= side > 6 ? w : 1;
                 w *= narrow ? w * w * c8 : 1;
