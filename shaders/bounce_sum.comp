@@ -3,8 +3,8 @@
  * nine harmonics of irradiance / pi becomes its set, as halves; the mean of its sets what light.comp and the next
  * frame's rays ask for. A workgroup per probe, an invocation per ray, then per coefficient.
  *
- * A word of a set stays where the new one is within a step of it: light that is fed back would otherwise round to
- * and fro for ever.
+ * A number of a set stays where the new one is within a step of it, of halves as large as the first coefficient:
+ * light that is fed back would otherwise round to and fro for ever.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -49,10 +49,10 @@ float projected(uint coefficient, uint rays)
     return masu_sane(sum * (12.5663706 / float(rays)), -65504.0, 65504.0);
 }
 
-/* A half as it was, unless the new one is farther than a step from it. */
-float settled(float old, float new)
+/* As it was, unless the new one is farther than a step from it. */
+float settled(float old, float new, float first)
 {
-    float step = max(abs(old), abs(new)) * (1.0 / 1024.0) + 6e-8;
+    float step = max(abs(first), 6e-5) * (1.0 / 1024.0);
     return abs(new - old) <= step ? old : new;
 }
 
@@ -65,22 +65,27 @@ void main()
     uint count = clamp(word >> MASU_BOUNCE_COUNT_SHIFT, 1u, MASU_BOUNCE_SETS);
     if (lane < rays) {
         uint i = gl_WorkGroupID.x * rays + lane;
-        uvec4 found = masu_bounce_rays[2u * i + 1u];
-        vec2 ba = unpackHalf2x16(found.y);
-        vec3 sum = vec3(unpackHalf2x16(found.x), ba.x);
+        uvec4 seen = masu_bounce_rays[2u * i + 1u];
+        vec2 ba = unpackHalf2x16(seen.y);
+        vec3 sum = vec3(unpackHalf2x16(seen.x), ba.x);
         if (uintBitsToFloat(masu_bounce_rays[2u * i].w) >= 0.0) {
-            sum += vec3(ba.y, unpackHalf2x16(found.z));
+            sum += vec3(ba.y, unpackHalf2x16(seen.z));
         }
         light[lane] = masu_sane(sum, 0.0, 65504.0);
         directions[lane] = masu_bounce_direction(masu_bounce_ray(word & MASU_BOUNCE_PROBE, set, lane));
     }
     barrier();
+    if (lane < 28u) {
+        means[lane] = lane < 27u ? projected(lane, rays) : 0.0;
+    }
+    barrier();
+    vec2 found = vec2(0.0);
     uint own = masu_probe_live_sets() + (probe * MASU_BOUNCE_SETS + set) * MASU_PROBE_SET_WORDS;
     if (lane < MASU_PROBE_SET_WORDS) {
         vec2 before = unpackHalf2x16(probe_words[own + lane]);
-        vec2 now = vec2(projected(2u * lane, rays), lane < 13u ? projected(2u * lane + 1u, rays) : 0.0);
-        now = unpackHalf2x16(packHalf2x16(now));
-        now = vec2(settled(before.x, now.x), settled(before.y, now.y));
+        vec2 first = vec2(means[2u * lane % 3u], means[(2u * lane + 1u) % 3u]);
+        vec2 now = unpackHalf2x16(packHalf2x16(vec2(means[2u * lane], means[2u * lane + 1u])));
+        now = vec2(settled(before.x, now.x, first.x), settled(before.y, now.y, first.y));
         now = masu_sane(vec4(now, 0.0, 0.0), -65504.0, 65504.0).xy;
         probe_words[own + lane] = packHalf2x16(now);
         vec2 mean = now;
@@ -90,9 +95,12 @@ void main()
                 mean += masu_sane(vec4(unpackHalf2x16(probe_words[other + lane]), 0.0, 0.0), -65504.0, 65504.0).xy;
             }
         }
-        mean /= float(count);
-        means[2u * lane] = mean.x;
-        means[2u * lane + 1u] = mean.y;
+        found = mean / float(count);
+    }
+    barrier();
+    if (lane < MASU_PROBE_SET_WORDS) {
+        means[2u * lane] = found.x;
+        means[2u * lane + 1u] = found.y;
     }
     barrier();
     if (lane < 9u) {
