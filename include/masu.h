@@ -1413,8 +1413,8 @@ MASU_API MASU_MUST_USE masu_result masu_instance_get(masu_renderer *renderer,
 /* Hides an instance (`shown` 0) or shows it from the next masu_frame on: in the image, in shadows
  * and in reflections. The lights of a hidden instance are off. Cascades with shadow_refresh above 1
  * keep its shadow until they are re-rendered. An instance that is shown has a velocity of 0 in its
- * first frame. Light probes are baked and do not change. MASU_ERROR_ARGUMENT: the handle is
- * invalid. */
+ * first frame. Baked light of probes does not change; a live bounce follows within some
+ * rounds of its probes. MASU_ERROR_ARGUMENT: the handle is invalid. */
 MASU_API MASU_MUST_USE masu_result masu_instance_show(masu_renderer *renderer,
                                                       masu_instance instance, uint32_t shown);
 
@@ -1630,8 +1630,8 @@ MASU_API MASU_MUST_USE masu_result masu_material_get(masu_renderer *renderer,
                                                      masu_material_state *out);
 
 /* Changes a material from the next masu_frame on: in the image, on transparent surfaces, and in
- * traced reflections, whose histories adapt over some frames. Light probes are baked and do not
- * change. Whether a rung traces reflections still depends on the original materials.
+ * traced reflections, whose histories adapt over some frames. Baked light of probes does not
+ * change, a live bounce follows. Whether a rung traces reflections still depends on the original materials.
  *
  * Nothing has changed after an error.
  *   MASU_ERROR_ARGUMENT   as masu_material_get; a value is out of range or not finite; or a member,

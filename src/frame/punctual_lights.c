@@ -80,8 +80,8 @@ void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_loca
     masu_light_header header = {.list_words = MASU_LIGHT_LIST_WORDS(lights)};
     if (!lights) return;
     if (f->plan->local_atlas) header.atlas_texel = 1.0f / (float)f->plan->local_atlas;
-    /* Lights outside of the view may light reflected surfaces. */
-    int culls = masu_frame_rung(f)->frustum != MASU_OFF && !f->plan->needs.reflections;
+    /* Lights outside of the view may light reflected surfaces, and what probes see. */
+    int culls = masu_frame_rung(f)->frustum != MASU_OFF && !f->plan->needs.reflections && !f->plan->needs.bounce;
     unsigned char *to = masu_frame_slot(f, MASU_BUFFER_LIGHTS);
     struct masu_punctual_light_data *data =
         (struct masu_punctual_light_data *)(void *)(to + sizeof header);

@@ -217,6 +217,7 @@ static int is_of_use(const masu_desc *d, uint32_t r, masu_knob_use use) {
     case MASU_USE_LIGHTS: return s && s->lights;
     case MASU_USE_LOCAL_SHADOWS: return s && s->shadow_lights && s->instances;
     case MASU_USE_SPECULAR: return masu_could_trace(d->scene, &d->rungs[r]);
+    case MASU_USE_BOUNCE: return s && s->bounce;
     case MASU_USE_ALWAYS:
     case MASU_USE_UPSCALED:
     case MASU_USE_SHARPEN:
@@ -323,7 +324,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                .dynamic = d->scene && plan->scene.sdf_dynamic,
                                .anchored = d->scene && plan->scene.sdf_anchored,
                                .sdf_occlusion = d->scene && plan->scene.sdf_occlusion,
-                               .probes = d->scene && plan->scene.probes,
+                               .probes = d->scene && plan->scene.probes && (!plan->scene.probes_unlit || any.bounce),
                                .shadow = d->scene && plan->scene.shadow_cascades,
                                .transparents = d->scene && plan->scene.transparents,
                                .lights = d->scene && plan->scene.lights,
@@ -334,9 +335,11 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                .readback = d->readback,
                                .split = d->split,
                                .reflections = any.specular,
-                               .traced = any.specular && plan->scene.trace_instances,
+                               .traced = (any.specular || any.bounce) && plan->scene.trace_instances,
                                .traced_sdf = any.specular && plan->scene.trace_sdf,
-                               .query = any.specular && plan->scene.trace_instances &&
+                               .bounce = any.bounce,
+                               .bounce_sdf = any.bounce && plan->scene.bounce_sdf,
+                               .query = any.specular && !any.bounce && plan->scene.trace_instances &&
                                         d->ray_query == MASU_ON,
                                .accumulate = d->debug.reference != 0,
                                .any_taa = wants(d, rung_has_taa),

@@ -127,8 +127,10 @@ static masu_result check_probes(reader *r) {
         !within(&p->bias, 1, 0.0f, 1e9f)) {
         return bad(r, "probes", 0, "place, spacing or bias is out of range");
     }
-    if (p->sky_sets != 1 && p->sky_sets != 4 && p->sky_sets != 9)
+    int unlit = p->live == 1 && !p->sky_sets && !p->suns && p->emissive == 1;
+    if (!unlit && p->sky_sets != 1 && p->sky_sets != 4 && p->sky_sets != 9)
         return bad(r, "probes", 0, "sets of the sky are not 1, 4 or 9");
+    if (p->live > 1) return bad(r, "probes", 0, "live is not 0 or 1");
     if (p->suns > MASU_PROBE_SUNS_MAX) return bad(r, "probes", 0, "has more than 16 suns");
     if (p->emissive > 1 || p->visibility > MASU_PROBE_VISIBILITY_MAX)
         return bad(r, "probes", 0, "emissive is not 0 or 1, or maps have over 16 texels a side");
@@ -288,6 +290,9 @@ void masu_describe_looks(const reader *r, masu_scene_data *out) {
         out->probe_sets = masu_probe_sets(p);
         out->probes = p->counts[0] * p->counts[1] * p->counts[2];
         out->probe_words = r->counts[MASU_BLOB_PROBE_DATA];
+        out->probes_unlit = !p->sky_sets;
+        out->bounce = p->live && (r->view.trace_nodes || r->view.code[MASU_BLOB_BOUNCE_SDF_SPIRV].words);
+        out->bounce_sdf = r->view.code[MASU_BLOB_BOUNCE_SDF_SPIRV].words != NULL;
     }
     if (r->view.environment_map) {
         out->environment_size = r->view.environment_map->size;
