@@ -42,8 +42,9 @@ static uint64_t now(const masu_device *m) {
  * its channels; whether the output is whole groups of invocations; how many nodes a ray may have to
  * come back to; whether a tile's rays are shared by its invocations; whether coats have maps or
  * normals of their own; whether anything colours what shines through it; whether the output keeps
- * its size; whether means over frames are halves; whether albedo texels hold emission. */
-enum { SPECIAL_COUNT = 16 };
+ * its size; whether means over frames are halves; whether albedo texels hold emission;
+ * whether lights may be capsules or rectangles; whether rays share the light of their surfaces. */
+enum { SPECIAL_COUNT = 18 };
 
 static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
                                        VkBool32 constants[SPECIAL_COUNT]) {
@@ -63,7 +64,9 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
         {12, 12 * sizeof *constants, sizeof *constants},
         {13, 13 * sizeof *constants, sizeof *constants},
         {14, 14 * sizeof *constants, sizeof *constants},
-        {15, 15 * sizeof *constants, sizeof *constants}};
+        {15, 15 * sizeof *constants, sizeof *constants},
+        {16, 16 * sizeof *constants, sizeof *constants},
+        {17, 17 * sizeof *constants, sizeof *constants}};
     constants[0] = first;
     constants[1] = m->plan->needs.sky != 0;
     constants[2] = m->plan->scene.fog != 0;
@@ -89,6 +92,8 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
     constants[13] = sized;
     constants[14] = (VkBool32)masu_has_half_means(m->plan);
     constants[15] = m->plan->needs.emission_packed != 0;
+    constants[16] = m->plan->needs.area_lights != 0;
+    constants[17] = m->plan->needs.shared_lights != 0;
     return (VkSpecializationInfo){SPECIAL_COUNT, entries, SPECIAL_COUNT * sizeof *constants,
                                   constants};
 }

@@ -79,7 +79,9 @@ typedef struct MASU_MAY_ALIAS masu_scene_data {
     uint32_t transparent_sets; /* texture sets of theirs, at least 1 if there are any */
 
     /* Light. */
-    uint32_t lights; /* punctual lights */
+    uint32_t lights; /* local lights */
+    uint32_t area_lights;    /* capsules and rectangles among them */
+    uint32_t surface_lights; /* those of a surface of the scene */
     uint32_t probes, probe_sets;
     uint64_t probe_words;                        /* 32-bit values of all sets of all probes */
     uint32_t environment_size, environment_mips; /* texels along an edge of the map; 0: none */
