@@ -104,6 +104,12 @@ vec4 light_of(uvec2 texel, masu_guide g)
         {
             m = met_sdf(hit);
         }
+#ifdef MASU_LIGHTS
+        if (masu_shared_lights && push.accumulate == 0u && any(greaterThan(m.surface.emissive, vec3(0.0)))) {
+            vec3 eye = -masu_normalize(point, g.normal);
+            m.surface.emissive *= masu_met_share(rel, point, g.normal, eye, g.roughness);
+        }
+#endif
         light = radiance(m, rel, direction);
     }
     light = masu_seen_along(light, !(t >= 0.0), direction, foggy, air);

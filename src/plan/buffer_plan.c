@@ -39,7 +39,8 @@ static uint64_t masu_slot_count(const masu_frame_plan *plan) {
 static uint64_t masu_table_words(const masu_frame_plan *plan) {
     const masu_scene_data *s = &plan->scene;
     if (!plan->needs.scene) return 0;
-    return (plan->needs.raster && s->coats ? MASU_TABLE_WORDS_ALL : MASU_TABLE_WORDS) +
+    uint64_t words = plan->needs.raster && s->coats ? MASU_TABLE_WORDS_COAT : MASU_TABLE_WORDS;
+    return (plan->needs.area_lights ? MASU_TABLE_WORDS_ALL : words) +
            masu_blob_environment_texels(s->environment_size, s->environment_mips);
 }
 

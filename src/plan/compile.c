@@ -329,6 +329,10 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                .transparents = d->scene && plan->scene.transparents,
                                .lights = d->scene && plan->scene.lights,
                                .local_shadows = d->scene && any.local_shadows,
+                               .area_lights = d->scene && plan->scene.lights &&
+                                              (plan->scene.area_lights || d->area_lights),
+                               .shared_lights = d->scene && plan->scene.lights &&
+                                                (plan->scene.surface_lights || d->area_lights),
                                .surface = d->scene && plan->scene.instances && plan->scene.surfaces,
                                .environment = d->scene && plan->scene.environment_size,
                                .sky = d->scene && (plan->scene.analytic_sky || d->analytic_sky),

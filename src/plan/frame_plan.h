@@ -167,7 +167,9 @@ typedef struct masu_needs {
     int velocity;      /* something reads velocities: the previous frame is kept */
     int sdf_occlusion; /* the SDF casts shadows or occludes ambient light */
     int probes;        /* it has light probes, baked or live */
-    int lights;        /* there are points and spots */
+    int lights;        /* there are local lights, */
+    int area_lights;   /* among them perhaps capsules or rectangles, */
+    int shared_lights; /* and perhaps some whose surfaces are in the scene */
     int local_shadows; /* and some cast shadows in some rung: there is an atlas */
     int shadow;        /* polygons cast shadows of the sun: there is a shadow map */
     int transparents;  /* something is blended */
