@@ -2,7 +2,6 @@
 #include "lab/reference/field.h"
 
 #include "image.h"
-#include "sdfc/sdfc.h"
 
 #include <ctype.h>
 #include <stdio.h>
@@ -94,6 +93,10 @@ static bool open_sdf(ref_field *f, const ref_blob *blob, const char *text, size_
         good = false;
     }
     good = good && open_parts(f, blob, &made, source, error, size);
+    if (good && !ref_field_find_emitters(f, &made)) {
+        snprintf(error, size, "out of memory for the field");
+        good = false;
+    }
     masu_sdfc_release(&made);
     return good;
 }
@@ -135,6 +138,7 @@ void ref_field_close(ref_field *f) {
     free(f->inputs);
     free(f->parts);
     free(f->steepness);
+    free(f->emitters);
     memset(f, 0, sizeof *f);
 }
 

@@ -6,6 +6,13 @@
 #include "lab/reference/bsdf.h"
 #include "lab/reference/compile.h"
 #include "lab/reference/scene.h"
+#include "sdfc/sdfc.h"
+
+/* A part that emits, by the box that contains it. */
+typedef struct ref_field_emitter {
+    ref_vec low, high;
+    double cumulative; /* probability up to and with this one */
+} ref_field_emitter;
 
 typedef struct ref_field {
     /* C: all of a .sdf source but its parts with GLSL. Handle NULL: a source of GLSL */
@@ -25,6 +32,8 @@ typedef struct ref_field {
     double params[256], time;
     ref_vec low, high; /* nothing outside of it is seen */
     double longest;
+    ref_field_emitter *emitters; /* bounded parts of a .sdf source; NULL: none */
+    uint32_t emitter_count;
 } ref_field;
 
 /* source: a .sdf file, or GLSL. The parameters have their default values. */
@@ -41,5 +50,11 @@ ref_vec ref_field_normal(const ref_field *f, ref_vec p);
 ref_vec ref_field_leave(const ref_field *f, ref_vec p, ref_vec n);
 /* n: of ref_field_normal. */
 void ref_field_surface(const ref_field *f, ref_vec p, ref_vec n, ref_surface *out);
+
+/* field_light.c: directions from a point towards the boxes of emitting parts, by their power and
+ * uniform in the volume of a box; and the density of a direction over the solid angle. */
+bool ref_field_find_emitters(ref_field *f, const masu_sdfc_result *made);
+ref_vec ref_field_towards_emitter(const ref_field *f, ref_vec from, ref_random *r);
+double ref_field_emitter_pdf(const ref_field *f, ref_vec from, ref_vec direction);
 
 #endif

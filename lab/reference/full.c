@@ -70,10 +70,38 @@ static void sample_emitter(const ref_tracer *t, const ref_hit *hit, const ref_bs
     for (int i = 0; i < REF_LOBES; i++) out->of[i] = ref_add(out->of[i], ref_mul(f.of[i], light));
 }
 
-/* MIS weight of emission that a scattered ray meets, beside samples of the emitters. */
-static double emission_weight(const ref_tracer *t, const ref_hit *hit, ref_vec d, double travelled,
-                              double pdf, bool camera) {
+/* Towards a part of the field that emits: what of the field is met first, if nothing is before it. */
+static void sample_field(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, ref_random *r,
+                         ref_lobes *out) {
+    const ref_field *field = t->world->field;
+    ref_vec l = ref_field_towards_emitter(field, hit->p, r);
+    if (!(ref_dot(l, hit->ng) > 0)) return;
+    ref_lobes f = ref_bsdf_eval(b, l, r);
+    if (!(ref_max(ref_lobes_sum(&f)) > 0)) return;
+    ref_vec from = ref_world_leave(t->world, hit, l);
+    double pdf = ref_field_emitter_pdf(field, hit->p, l),
+           far = ref_field_trace(field, from, l, HUGE_VAL);
+    if (!(pdf > 0) || !(far < HUGE_VAL)) return;
+    ref_surface s;
+    ref_vec p = ref_along(from, far, l);
+    ref_field_surface(field, p, ref_field_normal(field, p), &s);
+    if (!(ref_max(s.emissive) > 0)) return;
+    double mis = power(pdf, t->bsdf_samples ? ref_bsdf_pdf(b, l) : 0);
+    ref_vec light = ref_mul(ref_unoccluded(t, from, l, far, REF_RAY_NO_SDF), s.emissive);
+    light = ref_scale(light, mis / pdf);
+    for (int i = 0; i < REF_LOBES; i++) out->of[i] = ref_add(out->of[i], ref_mul(f.of[i], light));
+}
+
+static bool field_emits(const ref_tracer *t) {
+    return t->world->field && t->world->field->emitter_count && t->light_samples;
+}
+
+/* MIS weight of emission that a ray scattered at `from` meets, beside samples of the emitters. */
+static double emission_weight(const ref_tracer *t, const ref_hit *hit, ref_vec from, ref_vec d,
+                              double travelled, double pdf, bool camera) {
     const ref_scene *s = t->world->scene;
+    if (!camera && hit->triangle == REF_SDF && field_emits(t))
+        return t->bsdf_samples ? power(pdf, ref_field_emitter_pdf(t->world->field, from, d)) : 0;
     if (camera || !t->light_samples || hit->triangle == REF_SDF || !s->emitter_count) return 1;
     double cosine = fabs(ref_dot(hit->ng, d));
     double other =
@@ -81,8 +109,14 @@ static double emission_weight(const ref_tracer *t, const ref_hit *hit, ref_vec d
     return t->bsdf_samples ? power(pdf, other) : 0;
 }
 
-ref_vec ref_full(const ref_tracer *t, ref_vec from, ref_vec d, ref_random *r) {
-    ref_vec sum = ref_splat(0), left = ref_splat(1), start = from;
+/* White and matt, without a mirror. */
+static const ref_look patch_look = {
+    .s = {.albedo = {1, 1, 1}, .roughness = 1, .occlusion = 1}, .cover = 1, .opacity = 1};
+
+/* patch: the first surface, seen along d; NULL: what a ray from there meets. */
+static ref_vec walk(const ref_tracer *t, ref_vec from, ref_vec d, const ref_hit *patch,
+                    ref_random *r) {
+    ref_vec sum = ref_splat(0), left = ref_splat(1), start = from, scattered = from;
     ref_lobes w = {{ref_splat(1), ref_splat(0), ref_splat(0)}};
     bool map = ref_sky_is_map(t->sky) && t->sky_samples, mirror = true;
     double pdf = 0;
@@ -93,7 +127,10 @@ ref_vec ref_full(const ref_tracer *t, ref_vec from, ref_vec d, ref_random *r) {
         ref_bsdf b;
         bool camera = bounce == 0;
         ref_vec all = ref_mul(left, ref_lobes_sum(&w)), v = ref_scale(d, -1);
-        if (!ref_world_trace(t->world, from, d, HUGE_VAL, REF_RAY_ONE_SIDED, &hit)) {
+        bool is_patch = patch && step == 0;
+        if (is_patch) {
+            hit = *patch;
+        } else if (!ref_world_trace(t->world, from, d, HUGE_VAL, REF_RAY_ONE_SIDED, &hit)) {
             double mis = camera || !map    ? 1
                          : t->bsdf_samples ? power(pdf, ref_sky_pdf(t->sky, d))
                                            : 0;
@@ -106,6 +143,10 @@ ref_vec ref_full(const ref_tracer *t, ref_vec from, ref_vec d, ref_random *r) {
             return ref_add(sum, ref_scale(ref_mul(left, light), mis));
         }
         ref_world_look(t->world, &hit, v, &look);
+        if (is_patch) {
+            look = patch_look;
+            look.s.normal = look.s.coat_normal = hit.ng;
+        }
         double travelled = ref_length(ref_sub(hit.p, start));
         double air = mirror ? ref_air_left(t, start, d, travelled) : 1;
         if (air < 1) {
@@ -126,7 +167,7 @@ ref_vec ref_full(const ref_tracer *t, ref_vec from, ref_vec d, ref_random *r) {
             all = ref_scale(all, 1 / (1 - through));
             left = ref_scale(left, 1 / (1 - through));
         }
-        double seen = emission_weight(t, &hit, d, travelled, pdf, camera) * pane.soft;
+        double seen = emission_weight(t, &hit, scattered, d, travelled, pdf, camera) * pane.soft;
         sum = ref_add(sum, ref_mul(all, ref_scale(look.s.emissive, seen)));
         if (ref_is_unlit(&look.s)) return sum;
         ref_lobes lit;
@@ -137,6 +178,7 @@ ref_vec ref_full(const ref_tracer *t, ref_vec from, ref_vec d, ref_random *r) {
             if (map) sample_map(t, &hit, &b, r, &lit);
             if (t->world->scene->emitter_count && t->light_samples)
                 sample_emitter(t, &hit, &b, r, &lit);
+            if (field_emits(t)) sample_field(t, &hit, &b, r, &lit);
         }
         ref_vec mirrored = ref_scale(ref_add(lit.of[REF_BASE], lit.of[REF_COAT]), pane.mirror);
         sum = ref_add(sum, ref_mul(all, ref_along(mirrored, pane.soft, lit.of[REF_SOFT])));
@@ -154,7 +196,16 @@ ref_vec ref_full(const ref_tracer *t, ref_vec from, ref_vec d, ref_random *r) {
             if (u >= survive) return sum;
             left = ref_scale(left, 1 / survive);
         }
+        scattered = hit.p;
         from = start = ref_world_leave(t->world, &hit, d);
     }
     return sum;
+}
+
+ref_vec ref_full(const ref_tracer *t, ref_vec from, ref_vec d, ref_random *r) {
+    return walk(t, from, d, NULL, r);
+}
+
+ref_vec ref_irradiance(const ref_tracer *t, const ref_hit *at, ref_random *r) {
+    return ref_scale(walk(t, at->p, ref_scale(at->ng, -1), at, r), REF_PI);
 }

@@ -66,5 +66,7 @@ ref_vec ref_unoccluded(const ref_tracer *t, ref_vec from, ref_vec l, double far,
 
 ref_vec ref_direct(const ref_tracer *t, ref_vec from, ref_vec d, ref_random *r, int depth);
 ref_vec ref_full(const ref_tracer *t, ref_vec from, ref_vec d, ref_random *r);
+/* Light that arrives at a surface from the side of its normal by all paths, over all directions. */
+ref_vec ref_irradiance(const ref_tracer *t, const ref_hit *at, ref_random *r);
 
 #endif
