@@ -8,6 +8,13 @@
 #include "lab/reference/scene.h"
 #include "sdfc/sdfc.h"
 
+/* A part of the C and the box that contains it. */
+typedef struct ref_field_box {
+    ref_vec low, high;
+    int part;
+    double lipschitz;
+} ref_field_box;
+
 /* A part that emits, by the box that contains it. */
 typedef struct ref_field_emitter {
     ref_vec low, high;
@@ -20,6 +27,7 @@ typedef struct ref_field {
     double (*step)(const double *params, double time, const double p[3]);
     double (*distance)(const double *params, double time, const double p[3]);
     int (*part)(const double *params, double time, const double p[3]);
+    double (*part_distance)(const double *params, double time, const double p[3], int part);
     void (*material)(int part, double out[8]);
     /* A source of GLSL; or parts of a .sdf source */
     ref_library glsl;
@@ -32,6 +40,8 @@ typedef struct ref_field {
     double params[256], time;
     ref_vec low, high; /* nothing outside of it is seen */
     double longest;
+    ref_field_box *boxes; /* of a .sdf source */
+    uint32_t box_count;
     ref_field_emitter *emitters; /* bounded parts of a .sdf source; NULL: none */
     uint32_t emitter_count;
 } ref_field;

@@ -35,9 +35,9 @@ bool ref_field_find_emitters(ref_field *f, const masu_sdfc_result *made) {
         double power = power_of(f, part, (int)i);
         if (!(power > 0)) continue;
         sum += power;
-        f->emitters[f->emitter_count++] = (ref_field_emitter){
-            ref_v(part->low[0], part->low[1], part->low[2]),
-            ref_v(part->high[0], part->high[1], part->high[2]), sum};
+        f->emitters[f->emitter_count++] =
+            (ref_field_emitter){ref_v(part->low[0], part->low[1], part->low[2]),
+                                ref_v(part->high[0], part->high[1], part->high[2]), sum};
     }
     for (uint32_t i = 0; i < f->emitter_count; i++) f->emitters[i].cumulative /= sum;
     return true;

@@ -223,7 +223,8 @@ static void parts_that_emit_are_found(void **state) {
                  "material white { albedo 1; roughness 1 }\n"
                  "material glow { albedo 0; roughness 1; emissive 10 }\n"
                  "part floor : white = plane((0, 1, 0), 0);\n"
-                 "part lamp : glow = %s;\n", shapes[kind]);
+                 "part lamp : glow = %s;\n",
+                 shapes[kind]);
         memset(&scene, 0, sizeof scene);
         memset(&environment, 0, sizeof environment);
         if (!open("lamp.sdf", text, 2, 0, &f, error)) fail_msg("%s", error);
@@ -255,7 +256,8 @@ static void parts_that_emit_are_found(void **state) {
             }
             double expected = kind ? mean[1] : high[i][1], most = kind ? 4 * deviation[1] : 0;
             for (int way = 0; way < 3; way++) {
-                if (!(fabs(mean[way] - expected) <= fmax(.004 * expected, most + 4 * deviation[way])))
+                if (!(fabs(mean[way] - expected) <=
+                      fmax(.004 * expected, most + 4 * deviation[way])))
                     fail_msg("%d, place %d, way %d: %g +- %g, expected %g", kind, i, way, mean[way],
                              deviation[way], expected);
             }
