@@ -15,11 +15,11 @@ typedef struct ref_field_box {
     double lipschitz;
 } ref_field_box;
 
-/* A part that emits, by the box that contains it. */
-typedef struct ref_field_emitter {
+/* Where light comes from: the box of a part that emits, or of a window. */
+typedef struct ref_light_box {
     ref_vec low, high;
     double cumulative; /* probability up to and with this one */
-} ref_field_emitter;
+} ref_light_box;
 
 typedef struct ref_field {
     /* C: all of a .sdf source but its parts with GLSL. Handle NULL: a source of GLSL */
@@ -42,7 +42,7 @@ typedef struct ref_field {
     double longest;
     ref_field_box *boxes; /* of a .sdf source */
     uint32_t box_count;
-    ref_field_emitter *emitters; /* bounded parts of a .sdf source; NULL: none */
+    ref_light_box *emitters; /* bounded parts of a .sdf source; NULL: none */
     uint32_t emitter_count;
 } ref_field;
 
@@ -61,10 +61,11 @@ ref_vec ref_field_leave(const ref_field *f, ref_vec p, ref_vec n);
 /* n: of ref_field_normal. */
 void ref_field_surface(const ref_field *f, ref_vec p, ref_vec n, ref_surface *out);
 
-/* field_light.c: directions from a point towards the boxes of emitting parts, by their power and
- * uniform in the volume of a box; and the density of a direction over the solid angle. */
+/* field_light.c. Bounded parts of a .sdf source that emit. */
 bool ref_field_find_emitters(ref_field *f, const masu_sdfc_result *made);
-ref_vec ref_field_towards_emitter(const ref_field *f, ref_vec from, ref_random *r);
-double ref_field_emitter_pdf(const ref_field *f, ref_vec from, ref_vec direction);
+/* A direction towards a point that is uniform in the volume of one of the boxes; and the density of
+ * such directions over the solid angle. */
+ref_vec ref_towards_box(const ref_light_box *boxes, uint32_t count, ref_vec from, ref_random *r);
+double ref_box_pdf(const ref_light_box *boxes, uint32_t count, ref_vec from, ref_vec direction);
 
 #endif

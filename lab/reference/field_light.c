@@ -1,5 +1,5 @@
-/* field_light.c: parts of the field that emit light, as a path looks for them: a point in the box
- * that contains the part, whatever its shape. See field.h. */
+/* field_light.c: light that a path looks for by a box: parts of the field that emit, whatever their
+ * shape, and windows to the sky. See field.h. */
 #include "lab/reference/field.h"
 
 #include <stdlib.h>
@@ -36,37 +36,37 @@ bool ref_field_find_emitters(ref_field *f, const masu_sdfc_result *made) {
         if (!(power > 0)) continue;
         sum += power;
         f->emitters[f->emitter_count++] =
-            (ref_field_emitter){ref_v(part->low[0], part->low[1], part->low[2]),
-                                ref_v(part->high[0], part->high[1], part->high[2]), sum};
+            (ref_light_box){ref_v(part->low[0], part->low[1], part->low[2]),
+                            ref_v(part->high[0], part->high[1], part->high[2]), sum};
     }
     for (uint32_t i = 0; i < f->emitter_count; i++) f->emitters[i].cumulative /= sum;
     return true;
 }
 
-ref_vec ref_field_towards_emitter(const ref_field *f, ref_vec from, ref_random *r) {
+ref_vec ref_towards_box(const ref_light_box *boxes, uint32_t count, ref_vec from, ref_random *r) {
     double which = ref_draw(r);
     double u = ref_draw(r);
     double v = ref_draw(r);
     double w = ref_draw(r);
-    uint32_t low = 0, high = f->emitter_count - 1;
+    uint32_t low = 0, high = count - 1;
     while (low < high) {
         uint32_t middle = (low + high) / 2;
-        if (f->emitters[middle].cumulative > which)
+        if (boxes[middle].cumulative > which)
             high = middle;
         else
             low = middle + 1;
     }
-    const ref_field_emitter *e = &f->emitters[low];
+    const ref_light_box *e = &boxes[low];
     ref_vec side = ref_sub(e->high, e->low);
     ref_vec p = ref_add(e->low, ref_mul(side, ref_v(u, v, w)));
     return ref_unit(ref_sub(p, from));
 }
 
 /* Of all points of a ray within a box: t^2 dt / V is the solid angle's share of the volume. */
-double ref_field_emitter_pdf(const ref_field *f, ref_vec from, ref_vec d) {
+double ref_box_pdf(const ref_light_box *boxes, uint32_t count, ref_vec from, ref_vec d) {
     double sum = 0, before = 0;
-    for (uint32_t i = 0; i < f->emitter_count; i++) {
-        const ref_field_emitter *e = &f->emitters[i];
+    for (uint32_t i = 0; i < count; i++) {
+        const ref_light_box *e = &boxes[i];
         double near = 0, far = HUGE_VAL, volume = 1;
         for (int k = 0; k < 3; k++) {
             double o = component(from, k), w = component(d, k), a = component(e->low, k),

@@ -74,12 +74,12 @@ static void sample_emitter(const ref_tracer *t, const ref_hit *hit, const ref_bs
 static void sample_field(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, ref_random *r,
                          ref_lobes *out) {
     const ref_field *field = t->world->field;
-    ref_vec l = ref_field_towards_emitter(field, hit->p, r);
+    ref_vec l = ref_towards_box(field->emitters, field->emitter_count, hit->p, r);
     if (!(ref_dot(l, hit->ng) > 0)) return;
     ref_lobes f = ref_bsdf_eval(b, l, r);
     if (!(ref_max(ref_lobes_sum(&f)) > 0)) return;
     ref_vec from = ref_world_leave(t->world, hit, l);
-    double pdf = ref_field_emitter_pdf(field, hit->p, l),
+    double pdf = ref_box_pdf(field->emitters, field->emitter_count, hit->p, l),
            far = ref_field_trace(field, from, l, HUGE_VAL);
     if (!(pdf > 0) || !(far < HUGE_VAL)) return;
     ref_surface s;
@@ -92,6 +92,18 @@ static void sample_field(const ref_tracer *t, const ref_hit *hit, const ref_bsdf
     for (int i = 0; i < REF_LOBES; i++) out->of[i] = ref_add(out->of[i], ref_mul(f.of[i], light));
 }
 
+/* Towards a window, of a sky that is no map. */
+static void sample_window(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, ref_random *r,
+                          ref_lobes *out) {
+    ref_vec l = ref_towards_box(&t->window, 1, hit->p, r);
+    double pdf = ref_box_pdf(&t->window, 1, hit->p, l);
+    ref_lobes f = ref_bsdf_eval(b, l, r);
+    if (!(pdf > 0) || !(ref_max(ref_lobes_sum(&f)) > 0)) return;
+    double mis = power(pdf, t->bsdf_samples ? ref_bsdf_pdf(b, l) : 0);
+    ref_vec sky = ref_scale(ref_mul(to_sky(t, hit, l), ref_sky_at(t->sky, l)), mis / pdf);
+    for (int i = 0; i < REF_LOBES; i++) out->of[i] = ref_add(out->of[i], ref_mul(f.of[i], sky));
+}
+
 static bool field_emits(const ref_tracer *t) {
     return t->world->field && t->world->field->emitter_count && t->light_samples;
 }
@@ -101,7 +113,9 @@ static double emission_weight(const ref_tracer *t, const ref_hit *hit, ref_vec f
                               double travelled, double pdf, bool camera) {
     const ref_scene *s = t->world->scene;
     if (!camera && hit->triangle == REF_SDF && field_emits(t))
-        return t->bsdf_samples ? power(pdf, ref_field_emitter_pdf(t->world->field, from, d)) : 0;
+        return t->bsdf_samples ? power(pdf, ref_box_pdf(t->world->field->emitters,
+                                                        t->world->field->emitter_count, from, d))
+                               : 0;
     if (camera || !t->light_samples || hit->triangle == REF_SDF || !s->emitter_count) return 1;
     double cosine = fabs(ref_dot(hit->ng, d));
     double other =
@@ -119,6 +133,7 @@ static ref_vec walk(const ref_tracer *t, ref_vec from, ref_vec d, const ref_hit 
     ref_vec sum = ref_splat(0), left = ref_splat(1), start = from, scattered = from;
     ref_lobes w = {{ref_splat(1), ref_splat(0), ref_splat(0)}};
     bool map = ref_sky_is_map(t->sky) && t->sky_samples, mirror = true;
+    const bool window = !map && t->window.cumulative > 0;
     double pdf = 0;
     uint32_t bounce = 0;
     for (uint32_t step = 0; step < STEPS_MOST; step++) {
@@ -131,9 +146,10 @@ static ref_vec walk(const ref_tracer *t, ref_vec from, ref_vec d, const ref_hit 
         if (is_patch) {
             hit = *patch;
         } else if (!ref_world_trace(t->world, from, d, HUGE_VAL, REF_RAY_ONE_SIDED, &hit)) {
-            double mis = camera || !map    ? 1
-                         : t->bsdf_samples ? power(pdf, ref_sky_pdf(t->sky, d))
-                                           : 0;
+            double mis = 1, other = 0;
+            if (map) other = ref_sky_pdf(t->sky, d);
+            if (window) other = ref_box_pdf(&t->window, 1, scattered, d);
+            if (!camera && (map || window)) mis = t->bsdf_samples ? power(pdf, other) : 0;
             ref_vec seen = camera ? ref_sky_seen(t, d) : ref_sky_at(t->sky, d);
             ref_vec soft = t->physics ? seen : ref_sky_soft(t->sky, d);
             double air = mirror ? ref_air_left(t, start, d, HUGE_VAL) : 1;
@@ -142,10 +158,11 @@ static ref_vec walk(const ref_tracer *t, ref_vec from, ref_vec d, const ref_hit 
             ref_vec light = ref_add(mirrored, ref_mul(w.of[REF_SOFT], soft));
             return ref_add(sum, ref_scale(ref_mul(left, light), mis));
         }
-        ref_world_look(t->world, &hit, v, &look);
         if (is_patch) {
             look = patch_look;
             look.s.normal = look.s.coat_normal = hit.ng;
+        } else {
+            ref_world_look(t->world, &hit, v, &look);
         }
         double travelled = ref_length(ref_sub(hit.p, start));
         double air = mirror ? ref_air_left(t, start, d, travelled) : 1;
@@ -176,6 +193,7 @@ static ref_vec walk(const ref_tracer *t, ref_vec from, ref_vec d, const ref_hit 
         ref_punctual_light(t, &hit, &b, r, &lit);
         if (bounce < t->bounces) {
             if (map) sample_map(t, &hit, &b, r, &lit);
+            if (window) sample_window(t, &hit, &b, r, &lit);
             if (t->world->scene->emitter_count && t->light_samples)
                 sample_emitter(t, &hit, &b, r, &lit);
             if (field_emits(t)) sample_field(t, &hit, &b, r, &lit);

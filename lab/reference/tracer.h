@@ -25,7 +25,8 @@ typedef struct ref_tracer {
     ref_vec eye;
     double occlusion_radius; /* of ambient occlusion, direct only; 0: none */
     double field_occlusion_radius, field_occlusion_strength; /* of the field's own; 0: none */
-    double cutoff;           /* roughness from which no reflection is traced; 0: none is */
+    ref_light_box window; /* through which the sky is looked for; cumulative 0: none */
+    double cutoff;        /* roughness from which no reflection is traced; 0: none is */
     const masu_blob_environment *environment;
 } ref_tracer;
 
