@@ -112,7 +112,7 @@ vec3 flat_normal(ivec2 at, ivec2 size, float depth, vec3 n)
 #ifdef MASU_LIGHTS
 /* Of the tile's list, or of all: the same operations in the same order on the lights that reach the
  * point, so that the two have the same bits. */
-void add_lights(inout masu_lit lit, masu_surface s, masu_bsdf b, uvec2 at, vec3 rel, vec3 n)
+void add_lights(inout masu_lit lit, masu_surface s, masu_bsdf b, uvec2 at, vec3 rel, vec3 n, vec3 traced)
 {
     uvec2 size = uvec2(pc.output_width, pc.output_height);
     uint lights = masu_light_count();
@@ -129,7 +129,7 @@ void add_lights(inout masu_lit lit, masu_surface s, masu_bsdf b, uvec2 at, vec3 
         if (!all_lights) {
             light = min(masu_light_tiles[list + 1u + i], uint(MASU_LOCAL_LIGHTS_MAX) - 1u);
         }
-        reached += masu_add_local_light(lit, s, b, light, rel, n) ? 1u : 0u;
+        reached += masu_add_local_light(lit, s, b, light, rel, n, traced) ? 1u : 0u;
     }
     masu_count(MASU_COUNTER_LIGHT_TESTS, count);
     masu_count(MASU_COUNTER_LIGHT_SHADED, reached);
@@ -166,12 +166,13 @@ void main()
                 masu_bsdf b = masu_bsdf_make(s, n, -direction);
                 masu_lit lit = masu_shade(s, b, rel, arriving(at), sky);
 #ifdef MASU_LIGHTS
-                #ifdef MASU_LOCAL_SHADOWS
+#ifdef MASU_LOCAL_SHADOWS
                 if (reliefs) {
                     n = flat_normal(ivec2(at), ivec2(pc.output_width, pc.output_height), depth, n);
                 }
 #endif
-                add_lights(lit, s, b, at, ray * masu_light_depth(depth), n);
+                vec3 traced = vec3(1.0 - kept, push.accumulate != 0u ? 1.0 : 0.0);
+                add_lights(lit, s, b, at, ray * masu_light_depth(depth), n, traced);
 #endif
                 color += lit.diffuse + lit.specular;
             }
