@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "scene/punctual_light.h"
 
+#include <math.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>
@@ -52,12 +53,25 @@ static void carry(const masu_instances *in, const masu_punctual_light_state *s, 
     }
 }
 
+/* How far a particle that is seen reaches from its middle, where it is lit. */
+static float reach_of_particles(const masu_frame_data *f) {
+    float reach = 0.0f;
+    for (uint32_t i = 0; i < f->desc.particle_count; i++) {
+        const masu_particle *p = &f->desc.particles[i];
+        if (!(p->flags & MASU_PARTICLE_LIT)) continue;
+        float high = p->half_height > 0.0f ? p->half_height : p->half_width;
+        reach = fmaxf(reach, p->half_width + high);
+    }
+    return reach;
+}
+
 void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_frame_data *f) {
     uint32_t lights = f->plan->scene.lights;
     masu_light_header header = {.list_words = MASU_LIGHT_LIST_WORDS(lights)};
     if (!lights) return;
     /* Lights outside of the view may light reflected surfaces. */
     int culls = masu_frame_rung(f)->frustum != MASU_OFF && !f->plan->needs.reflections;
+    float reach = culls ? reach_of_particles(f) : 0.0f;
     unsigned char *to = masu_frame_slot(f, MASU_BUFFER_LIGHTS);
     struct masu_punctual_light_data *data =
         (struct masu_punctual_light_data *)(void *)(to + sizeof header);
@@ -70,7 +84,8 @@ void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_fram
         carry(in, &l->states[i], position, direction);
         for (uint32_t k = 0; k < 3; k++) position[k] -= f->eye[k];
         if (!masu_light_place(&l->states[i], position, direction, &placed)) continue;
-        if (culls && masu_light_outside(placed.bound, f->u.clip_from_rel)) continue;
+        float bound[4] = {placed.bound[0], placed.bound[1], placed.bound[2], placed.bound[3] + reach};
+        if (culls && masu_light_outside(bound, f->u.clip_from_rel)) continue;
         data[header.count++] = placed;
     }
     memcpy(to, &header, sizeof header);
