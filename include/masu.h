@@ -1552,6 +1552,8 @@ typedef struct masu_punctual_light_state {
     /* Spot: angles from the direction, radians, 0 <= inner <= outer <= pi: full intensity up to
      * inner, 0 from outer on. A point does not use them, but they are checked. */
     float inner, outer;
+    /* 1: casts no shadows. In a scene without any light that does, none will. */
+    uint32_t no_shadow;
 } masu_punctual_light_state;
 
 /* The first light with that name in the scene; id 0 if there is none. */
@@ -1736,6 +1738,9 @@ typedef struct masu_stats_info {
     /* Punctual lights, with debug.counters: pairs of light and pixel tested, those with a
      * contribution, and 16x16 tiles with more than 63 lights, whose pixels test all lights. */
     uint64_t light_tests, light_shaded, light_tiles_full;
+    /* Shadows of punctual lights: lights that have them, faces rendered in this frame, and faces
+     * that are not up to date because local_shadow_faces were rendered already. */
+    uint32_t local_shadow_lights, local_shadow_faces, local_shadow_waiting;
     /* Traced reflections, with debug.counters: number of 8x8 tiles with rays, rays, rays that hit a
      * polygon, rays that hit the SDF, BVH nodes visited, SDF evaluations. */
     uint64_t specular_tiles, specular_rays, specular_hits, specular_sdf_hits;

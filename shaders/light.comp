@@ -2,7 +2,7 @@
  * light.comp: one path for polygons and SDF hits: sun, ambient light, sky where there is
  * nothing. With MASU_OCCLUSION it is light_occluded, in which the sun and what comes from everywhere
  * arrive as far as sdf_occlusion.comp says; with MASU_PROBES light probes say what comes from
- * everywhere; with MASU_LIGHTS there are points and spots, without shadows; with MASU_SURFACE some
+ * everywhere; with MASU_LIGHTS there are points and spots, with MASU_LOCAL_SHADOWS their shadows; with MASU_SURFACE some
  * surfaces are more than albedo, roughness and metallic.
  *
  * Surfaces as light/shade.glsl has them; what the air takes and adds (light/air.glsl) only in scenes
@@ -25,9 +25,6 @@
 #include "light/shade.glsl"
 #include "light/air.glsl"
 #include "specular/guide.glsl"
-#ifdef MASU_LIGHTS
-#include "light/lights.glsl"
-#endif
 
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
@@ -45,10 +42,18 @@ layout(set = MASU_SET_PASS, binding = 3) uniform usampler2D occlusion_image;
 #define MASU_AT_SURFACE 3
 #endif
 #ifdef MASU_SURFACE
-#define MASU_AT_HDR (MASU_AT_SURFACE + 1)
+#define MASU_AT_LOCAL_SHADOWS (MASU_AT_SURFACE + 1)
 layout(set = MASU_SET_PASS, binding = MASU_AT_SURFACE) uniform sampler2D surface_image;
 #else
-#define MASU_AT_HDR MASU_AT_SURFACE
+#define MASU_AT_LOCAL_SHADOWS MASU_AT_SURFACE
+#endif
+#ifdef MASU_LOCAL_SHADOWS
+#define MASU_AT_HDR (MASU_AT_LOCAL_SHADOWS + 1)
+#else
+#define MASU_AT_HDR MASU_AT_LOCAL_SHADOWS
+#endif
+#ifdef MASU_LIGHTS
+#include "light/lights.glsl"
 #endif
 layout(set = MASU_SET_PASS, binding = MASU_AT_HDR, rgba16f) uniform image2D hdr_image;
 
@@ -78,7 +83,7 @@ masu_surface surface_at(ivec2 at, vec4 albedo, uint normal)
 }
 
 #ifdef MASU_LIGHTS
-void add_lights(inout masu_lit lit, masu_surface s, masu_bsdf b, uvec2 at, vec3 rel)
+void add_lights(inout masu_lit lit, masu_surface s, masu_bsdf b, uvec2 at, vec3 rel, vec3 n)
 {
     uvec2 size = uvec2(pc.output_width, pc.output_height);
     masu_asked asked = masu_lights_asked(at, size, push.light_tiles != 0u);
@@ -87,7 +92,7 @@ void add_lights(inout masu_lit lit, masu_surface s, masu_bsdf b, uvec2 at, vec3 
         if (i >= asked.count) {
             break;
         }
-        reached += masu_add_local_light(lit, s, b, masu_light_asked(asked, i), rel) ? 1u : 0u;
+        reached += masu_add_local_light(lit, s, b, masu_light_asked(asked, i), rel, n) ? 1u : 0u;
     }
     masu_count(MASU_COUNTER_LIGHT_TESTS, asked.count);
     masu_count(MASU_COUNTER_LIGHT_SHADED, reached);
@@ -124,7 +129,7 @@ void main()
                 masu_bsdf b = masu_bsdf_make(s, n, -direction);
                 masu_lit lit = masu_shade(s, b, rel, arriving(at), sky);
 #ifdef MASU_LIGHTS
-                add_lights(lit, s, b, at, ray * masu_light_depth(depth));
+                add_lights(lit, s, b, at, ray * masu_light_depth(depth), n);
 #endif
                 color += lit.diffuse + lit.specular;
             }

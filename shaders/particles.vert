@@ -17,6 +17,9 @@
 #ifdef MASU_SUN_MAP
 #define MASU_AT_SUN_MAP 1
 #include "light/sun_map.glsl"
+#define MASU_AT_LOCAL_SHADOWS 2
+#else
+#define MASU_AT_LOCAL_SHADOWS 1
 #endif
 #ifdef MASU_LIGHTS
 #include "light/lights.glsl"
@@ -40,6 +43,9 @@ vec3 light_at(vec3 rel)
         vec3 l;
         vec3 color;
         if (masu_light_reaches(masu_lights[i], rel, l, color)) {
+#ifdef MASU_LOCAL_SHADOWS
+            color *= masu_light_seen(masu_lights[i], rel, l);
+#endif
             sum += color;
         }
     }

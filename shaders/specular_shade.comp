@@ -20,9 +20,6 @@
 #include "shared/store.glsl"
 #include "light/shade.glsl"
 #include "light/air.glsl"
-#ifdef MASU_LIGHTS
-#include "light/lights.glsl"
-#endif
 #ifndef MASU_NO_POLYGONS /* rays meet nothing but the SDF */
 #define MASU_TRACE_POLYGONS
 #include "trace/scene.glsl"
@@ -43,9 +40,17 @@ layout(set = MASU_SET_PASS, binding = 2) uniform usampler2D hit_image;
 #ifdef MASU_SUN_MAP
 #define MASU_AT_SUN_MAP 3
 #include "light/sun_map.glsl"
-#define MASU_AT_LIGHT 4
+#define MASU_AT_LOCAL_SHADOWS 4
 #else
-#define MASU_AT_LIGHT 3
+#define MASU_AT_LOCAL_SHADOWS 3
+#endif
+#ifdef MASU_LOCAL_SHADOWS
+#define MASU_AT_LIGHT (MASU_AT_LOCAL_SHADOWS + 1)
+#else
+#define MASU_AT_LIGHT MASU_AT_LOCAL_SHADOWS
+#endif
+#ifdef MASU_LIGHTS
+#include "light/lights.glsl"
 #endif
 layout(set = MASU_SET_PASS, binding = MASU_AT_LIGHT, rgba16f) uniform writeonly image2D light_image;
 
@@ -140,7 +145,7 @@ vec3 radiance(met m, vec3 rel, vec3 direction)
         if (i >= lights) {
             break;
         }
-        masu_add_local_light(lit, m.surface, b, i, rel);
+        masu_add_local_light(lit, m.surface, b, i, rel, m.normal);
     }
 #endif
     return lit.diffuse + lit.specular + m.surface.emissive;

@@ -1,6 +1,6 @@
 /*
  * lights.glsl: punctual lights, point and spot: what reaches a surface point of one of them, and which
- * of them a pixel has to ask. No shadows: a wall in between hides nothing.
+ * of them a pixel has to ask. With MASU_LOCAL_SHADOWS, as far as nothing is in between (light/local_shadow.glsl).
  *
  *   reaches = color * window * cone / max(d^2, radius^2)
  *   window  = 1 - (d / range)^4, 0 from the range on: an inverse square that ends, so that a light
@@ -24,7 +24,7 @@
 
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_LIGHTS, std430) readonly buffer Lights
 {
-    uvec4 masu_lights_header; /* x lights in view, y words of a tile's list */
+    uvec4 masu_lights_header; /* x lights in view, y words of a tile's list, z 1 / texels of the atlas, float bits */
     masu_punctual_light_data masu_lights[];
 };
 
@@ -102,14 +102,22 @@ bool masu_light_reaches(masu_punctual_light_data light, vec3 rel, out vec3 l, ou
     return strength > 0.0 && masu_finite(color);
 }
 
+#ifdef MASU_LOCAL_SHADOWS
+#include "light/local_shadow.glsl"
+#endif
+
 #ifdef MASU_SHADE_GLSL
-/* Adds what a light contributes at a surface point relative to the eye. False: nothing arrives. */
-bool masu_add_local_light(inout masu_lit lit, masu_surface s, masu_bsdf b, uint light, vec3 rel)
+/* Adds what a light contributes at a surface point relative to the eye. n: the normal of the surface itself.
+ * False: nothing arrives. */
+bool masu_add_local_light(inout masu_lit lit, masu_surface s, masu_bsdf b, uint light, vec3 rel, vec3 n)
 {
     vec3 l;
     vec3 color;
     bool reaches = masu_light_reaches(masu_lights[light], rel, l, color);
     if (reaches) {
+#ifdef MASU_LOCAL_SHADOWS
+        color *= masu_light_seen(masu_lights[light], rel, n);
+#endif
         masu_add_light(lit, s, b, l, color);
     }
     return reaches;

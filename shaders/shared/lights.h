@@ -17,6 +17,18 @@ struct masu_punctual_light_data {
     masu_vec4 cone;     /* x 1 / (cos(inner) - cos(outer)), point light 1; y sine and z cosine of
                            the outer angle, point light 0 */
     masu_vec4 bound;    /* sphere around everything that it lights: xyz, w radius, rounded up */
+    /* Shadow. x y z w, x y: a word for each face; z near distance, w tangent of half the angle of the only
+     * face, 0: cube faces +x -x +y -y +z -z; both as bits of floats. All 0: none. */
+    masu_uvec4 shadow[2];
 };
+
+/* A word of a face, 0: nothing there casts a shadow. From the lowest bit on: log2 of the tile's size, 4 bits;
+ * how far it is faded in, 0 to LOCAL_FADE, 4; y / 8, 12; x / 8, 12. */
+#define MASU_LOCAL_FADE 8
+#define MASU_LOCAL_FADE_SHIFT 4
+#define MASU_LOCAL_Y_SHIFT 8
+#define MASU_LOCAL_X_SHIFT 20
+/* Texels beyond the face's edge on each side of a tile, for the filter. */
+#define MASU_LOCAL_GUARD 2
 
 #endif

@@ -65,10 +65,34 @@ static float reach_of_particles(const masu_frame_data *f) {
     return reach;
 }
 
-void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_frame_data *f) {
+/* Whether a light is there in this frame; where, if it is. */
+static int is_there(const masu_lights *l, const masu_instances *in, uint32_t i, double position[3],
+                    double direction[3]) {
+    uint64_t carrier = l->states[i].instance.id;
+    if (!masu_handle_lives(&l->handles, i)) return 0;
+    if (carrier && masu_instance_hidden(in, (uint32_t)carrier - 1)) return 0;
+    carry(in, &l->states[i], position, direction);
+    return 1;
+}
+
+void masu_lights_cast(const masu_lights *l, masu_local_shadows *shadows, const masu_instances *in,
+                      const masu_bounds *bounds, const masu_frame_data *f) {
+    if (!f->plan->needs.local_shadows) return;
+    masu_local_shadows_begin(shadows, f);
+    for (uint32_t i = 0; i < f->plan->scene.lights; i++) {
+        double position[3], direction[3];
+        if (l->states[i].no_shadow || !is_there(l, in, i, position, direction)) continue;
+        masu_local_shadows_offer(shadows, f, i, &l->states[i], position, direction);
+    }
+    masu_local_shadows_write(shadows, in, bounds, f);
+}
+
+void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_local_shadows *shadows,
+                       const masu_frame_data *f) {
     uint32_t lights = f->plan->scene.lights;
     masu_light_header header = {.list_words = MASU_LIGHT_LIST_WORDS(lights)};
     if (!lights) return;
+    if (f->plan->local_atlas) header.atlas_texel = 1.0f / (float)f->plan->local_atlas;
     /* Lights outside of the view may light reflected surfaces. */
     int culls = masu_frame_rung(f)->frustum != MASU_OFF && !f->plan->needs.reflections;
     float reach = culls ? reach_of_particles(f) : 0.0f;
@@ -78,14 +102,12 @@ void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_fram
     for (uint32_t i = 0; i < lights; i++) {
         struct masu_punctual_light_data placed;
         double position[3], direction[3];
-        uint64_t carrier = l->states[i].instance.id;
-        if (!masu_handle_lives(&l->handles, i)) continue;
-        if (carrier && masu_instance_hidden(in, (uint32_t)carrier - 1)) continue;
-        carry(in, &l->states[i], position, direction);
+        if (!is_there(l, in, i, position, direction)) continue;
         for (uint32_t k = 0; k < 3; k++) position[k] -= f->eye[k];
         if (!masu_light_place(&l->states[i], position, direction, &placed)) continue;
         float bound[4] = {placed.bound[0], placed.bound[1], placed.bound[2], placed.bound[3] + reach};
         if (culls && masu_light_outside(bound, f->u.clip_from_rel)) continue;
+        if (f->plan->needs.local_shadows) masu_local_shadows_of(shadows, i, placed.shadow);
         data[header.count++] = placed;
     }
     memcpy(to, &header, sizeof header);
@@ -139,9 +161,9 @@ masu_result masu_lights_set(masu_lights *l, const masu_instances *in, uint32_t l
     masu_result result = take_state(in, name, &to, detail);
     if (result) return result;
     /* Padding at the end may differ in equal states. */
-    enum { MEMBERS = offsetof(masu_punctual_light_state, outer) + sizeof(to.outer) };
+    enum { MEMBERS = offsetof(masu_punctual_light_state, no_shadow) + sizeof(to.no_shadow) };
     _Static_assert(sizeof to - MEMBERS < _Alignof(masu_punctual_light_state),
-                   "a member follows `outer`: name the last one");
+                   "a member follows `no_shadow`: name the last one");
     l->changes += memcmp(&l->states[light], &to, MEMBERS) != 0;
     l->states[light] = to;
     return MASU_OK;

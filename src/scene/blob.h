@@ -123,7 +123,8 @@ enum masu_blob_material_flags {
     /* Whose relief the normal map is not: the mesh's own normal is the coat's, or what lies below it */
     MASU_MATERIAL_COAT_SMOOTH = 0x200000,
     MASU_MATERIAL_BASE_SMOOTH = 0x400000,
-    MASU_MATERIAL_KNOWN = 0x7DFFFF
+    MASU_MATERIAL_NO_SHADOW = 0x800000, /* casts no shadows, neither of the sun nor of other lights */
+    MASU_MATERIAL_KNOWN = 0xFDFFFF
 };
 
 /* The guarantees of Vulkan 1.1 for maxImageDimension2D and maxImageArrayLayers. */
@@ -325,7 +326,12 @@ typedef struct masu_blob_meso {
     float specular[3], spread2;
 } masu_blob_meso;
 
-enum masu_blob_light_type { MASU_LIGHT_POINT = 0, MASU_LIGHT_SPOT = 1 };
+enum masu_blob_light_type {
+    MASU_LIGHT_POINT = 0,
+    MASU_LIGHT_SPOT = 1,
+    MASU_LIGHT_TYPE = 0xFF,
+    MASU_LIGHT_NO_SHADOW = 0x100 /* beside the type */
+};
 
 /* Light of a place. At distance d a white surface that faces it has the radiance
  * color / max(d, radius)^2, times a window that falls to 0 at range. */
@@ -335,7 +341,7 @@ typedef struct masu_blob_light {
     float color[3];    /* radiant intensity / pi, 0..1e9 */
     float radius;      /* of the source, 1e-6..1e9 metres: nearer than this counts as this near */
     float direction[3]; /* of spots: where they shine, unit length */
-    uint32_t type;      /* masu_blob_light_type */
+    uint32_t type;      /* masu_blob_light_type, and MASU_LIGHT_NO_SHADOW */
     float inner;        /* of spots: full light within this angle of the direction, radians, */
     float outer;        /* none beyond this one; 0 <= inner <= outer <= pi. Points: both 0 */
     uint32_t parent;    /* instance that carries it, or MASU_BLOB_NONE */

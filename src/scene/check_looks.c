@@ -99,13 +99,15 @@ static masu_result check_material(reader *r, uint64_t i) {
 static masu_result check_light(reader *r, uint64_t i) {
     const masu_blob_light *l = &r->view.lights[i];
     double value;
-    if (l->type > MASU_LIGHT_SPOT) return bad(r, "lights", i, "no such type");
+    uint32_t type = l->type & MASU_LIGHT_TYPE;
+    if ((l->type & ~(uint32_t)(MASU_LIGHT_TYPE | MASU_LIGHT_NO_SHADOW)) || type > MASU_LIGHT_SPOT)
+        return bad(r, "lights", i, "no such type");
     masu_punctual_light_state state = masu_light_state_of(l);
     const char *wrong = masu_light_state_wrong(&state, &value);
     if (wrong) return bad(r, "lights", i, wrong);
-    if (l->type == MASU_LIGHT_SPOT && !unit_vector(l->direction))
+    if (type == MASU_LIGHT_SPOT && !unit_vector(l->direction))
         return bad(r, "lights", i, "direction is no unit vector");
-    if (l->type == MASU_LIGHT_POINT && (l->inner != 0.0f || l->outer != 0.0f))
+    if (type == MASU_LIGHT_POINT && (l->inner != 0.0f || l->outer != 0.0f))
         return bad(r, "lights", i, "is a point, but has angles");
     if (l->parent != MASU_BLOB_NONE && l->parent >= r->counts[MASU_BLOB_INSTANCES])
         return bad(r, "lights", i, "no such parent");
@@ -274,6 +276,12 @@ void masu_describe_looks(const reader *r, masu_scene_data *out) {
     describe_transparents(r, out);
     out->meso = (uint32_t)r->counts[MASU_BLOB_MESO];
     out->lights = (uint32_t)r->counts[MASU_BLOB_LIGHTS];
+    for (uint32_t i = 0; i < out->lights; i++) {
+        const masu_blob_light *l = &r->view.lights[i];
+        if (l->type & MASU_LIGHT_NO_SHADOW) continue;
+        out->shadow_lights++;
+        out->shadow_spots += l->type == MASU_LIGHT_SPOT && l->outer <= MASU_LOCAL_ANGLE_MOST;
+    }
     if (r->view.probes) {
         const masu_blob_probes *p = r->view.probes;
         out->probe_sets = masu_probe_sets(p);

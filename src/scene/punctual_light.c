@@ -36,6 +36,8 @@ const char *masu_light_state_wrong(const masu_punctual_light_state *s, double *v
     if (!(s->outer >= 0.0f && s->outer <= 3.1415928f)) return "outer is not 0 to pi";
     *value = (double)s->inner;
     if (!(s->inner >= 0.0f && s->inner <= s->outer)) return "inner is not 0 to outer";
+    *value = (double)s->no_shadow;
+    if (s->no_shadow > 1) return "no_shadow is neither 0 nor 1";
     *value = (double)direction;
     return !s->spot || direction > 1e-15f ? NULL : "direction of a spot is zero";
 }
@@ -43,7 +45,8 @@ const char *masu_light_state_wrong(const masu_punctual_light_state *s, double *v
 masu_punctual_light_state masu_light_state_of(const masu_blob_light *light) {
     masu_punctual_light_state s = {.range = light->range,
                                 .radius = light->radius,
-                                .spot = light->type == MASU_LIGHT_SPOT,
+                                .spot = (light->type & MASU_LIGHT_TYPE) == MASU_LIGHT_SPOT,
+                                .no_shadow = (light->type & MASU_LIGHT_NO_SHADOW) != 0,
                                 .inner = light->inner,
                                 .outer = light->outer};
     for (uint32_t k = 0; k < 3; k++) {

@@ -80,6 +80,8 @@ typedef struct MASU_MAY_ALIAS masu_scene_data {
 
     /* Light. */
     uint32_t lights; /* punctual lights */
+    uint32_t shadow_lights; /* those that cast shadows */
+    uint32_t shadow_spots;  /* of them, spots that have one face */
     uint32_t probes, probe_sets;
     uint64_t probe_words;                        /* 32-bit values of all sets of all probes */
     uint32_t environment_size, environment_mips; /* texels along an edge of the map; 0: none */

@@ -108,9 +108,9 @@ void masu_bake_carry_lights(masu_bake_content *content, uint64_t first_light,
         masu_bake_vec3 moved = masu_bake_apply(&inverse, at);
         masu_bake_vec3 ahead = masu_bake_sub(masu_bake_apply(&inverse, to), moved);
         if (!masu_bake_sane(moved)) continue;
-        if (light->type == MASU_LIGHT_SPOT && !masu_bake_normalize(&ahead)) continue;
+        if ((light->type & MASU_LIGHT_TYPE) == MASU_LIGHT_SPOT && !masu_bake_normalize(&ahead)) continue;
         masu_bake_store(moved, light->position);
-        if (light->type == MASU_LIGHT_SPOT) masu_bake_store(ahead, light->direction);
+        if ((light->type & MASU_LIGHT_TYPE) == MASU_LIGHT_SPOT) masu_bake_store(ahead, light->direction);
         light->parent = (uint32_t)first_instance;
     }
 }

@@ -236,7 +236,7 @@ static bool move(masu_blob_light *light, const masu_bake_affine *to) {
         masu_bake_sub(masu_bake_apply(to, masu_bake_v3f(light->direction)), zero);
     if (!masu_bake_sane(position)) return false;
     masu_bake_store(position, light->position);
-    if (light->type != MASU_LIGHT_SPOT) return true;
+    if ((light->type & MASU_LIGHT_TYPE) != MASU_LIGHT_SPOT) return true;
     if (!masu_bake_normalize(&direction)) return false;
     masu_bake_store(direction, light->direction);
     return true;
