@@ -82,7 +82,7 @@ static const char *no_shadow_map(const masu_needs *n) {
 
 static const char *no_local_shadows(const masu_needs *n) {
     return n->local_shadows ? "rung.local_shadows is off"
-           : n->lights      ? "no punctual light casts shadows of polygons, or rung.local_shadows is off"
+           : n->lights      ? "no punctual light casts shadows, or rung.local_shadows is off"
                             : "the scene has no punctual lights";
 }
 

@@ -87,7 +87,8 @@ enum masu_blob_kind {
     MASU_BLOB_SKINS = 54,    /* meshes that joints bend; these three come together */
     MASU_BLOB_JOINTS = 55,   /* by skin; those of one kind share them */
     MASU_BLOB_SKIN_VERTICES = 56, /* the same */
-    MASU_BLOB_KIND_COUNT = 57
+    MASU_BLOB_LOCAL_SHADOW_SPIRV = 57, /* the SDF casts shadows of punctual lights */
+    MASU_BLOB_KIND_COUNT = 58
 };
 
 /* Four texels by four make a block. sRGB formats hold display-encoded colour. */
