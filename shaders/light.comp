@@ -82,6 +82,33 @@ masu_surface surface_at(ivec2 at, vec4 albedo, uint normal)
     return s;
 }
 
+#ifdef MASU_LOCAL_SHADOWS
+layout(constant_id = 16) const bool reliefs = false; /* normals may be those of maps */
+
+/* The smaller step of depth to the two pixels beside: across an edge there is none. */
+float depth_step(ivec2 before, ivec2 after, float depth)
+{
+    float low = depth - texelFetch(depth_image, before, 0).r;
+    float high = texelFetch(depth_image, after, 0).r - depth;
+    return abs(low) < abs(high) ? low : high;
+}
+
+/* The normal of the surface itself, which a map may have tilted: by depth, which is affine across a plane. A surface
+ * of an SDF is not as smooth in depth; where the two are far apart, the G-buffer's counts. */
+vec3 flat_normal(ivec2 at, ivec2 size, float depth, vec3 n)
+{
+    float x = depth_step(ivec2(max(at.x - 1, 0), at.y), ivec2(min(at.x + 1, size.x - 1), at.y), depth);
+    float y = depth_step(ivec2(at.x, max(at.y - 1, 0)), ivec2(at.x, min(at.y + 1, size.y - 1)), depth);
+    vec2 tangent = vec2(frame.right.w, frame.up.w);
+    vec2 slope = vec2(x, -y) * vec2(size) * 0.5 / tangent;
+    vec2 ray = masu_ndc(vec2(at) + 0.5, vec2(size)) * vec2(1.0, -1.0) * tangent;
+    vec3 view = vec3(slope, depth - dot(slope, ray));
+    vec3 normal = -(frame.right.xyz * (view.x / tangent.x) + frame.up.xyz * (view.y / tangent.y) + frame.forward.xyz * view.z);
+    normal = masu_normalize(normal, n);
+    return dot(normal, n) > 0.7 ? normal : n;
+}
+#endif
+
 #ifdef MASU_LIGHTS
 void add_lights(inout masu_lit lit, masu_surface s, masu_bsdf b, uvec2 at, vec3 rel, vec3 n)
 {
@@ -129,6 +156,11 @@ void main()
                 masu_bsdf b = masu_bsdf_make(s, n, -direction);
                 masu_lit lit = masu_shade(s, b, rel, arriving(at), sky);
 #ifdef MASU_LIGHTS
+                #ifdef MASU_LOCAL_SHADOWS
+                if (reliefs) {
+                    n = flat_normal(ivec2(at), ivec2(pc.output_width, pc.output_height), depth, n);
+                }
+#endif
                 add_lights(lit, s, b, at, ray * masu_light_depth(depth), n);
 #endif
                 color += lit.diffuse + lit.specular;

@@ -27,29 +27,30 @@ vec3 masu_local_spline(float f)
     return vec3(0.5 * a * a, 0.75 - f * f, 0.5 * b * b);
 }
 
-vec3 masu_local_lit(vec3 plane, float row, vec3 nearest)
+/* Of a row of texels those that are lit. Depths are at most 1: a clamp to 0..1 costs no instruction. */
+vec3 masu_local_lit(vec3 across, float down, float depth, vec3 nearest)
 {
-    return vec3(greaterThanEqual(max(plane + row, vec3(0.0)), nearest));
+    return vec3(greaterThanEqual(clamp(across + down, 0.0, 1.0), nearest - depth));
 }
 
-/* at: in texels of the tile; corner: its first texel in the atlas; depth: of the point; slope: what its surface
- * gains of it per texel. */
-float masu_local_filter(vec2 at, vec2 corner, float depth, vec2 slope, float texel)
+/* at: in texels of the atlas; depth: of the point; slope: what its surface gains of it per texel. */
+float masu_local_filter(vec2 at, float depth, vec2 slope, float texel)
 {
     vec2 middle = floor(at);
     vec2 f = at - middle - 0.5;
-    vec2 uv = (corner + middle) * texel;
+    vec2 uv = middle * texel;
     vec4 a = textureGather(local_shadow_atlas, uv);
     vec4 b = textureGather(local_shadow_atlas, uv + vec2(texel, 0.0));
     vec4 c = textureGather(local_shadow_atlas, uv + vec2(0.0, texel));
     vec4 d = textureGather(local_shadow_atlas, uv + vec2(texel, texel));
-    vec3 across = slope.x * (vec3(-1.0, 0.0, 1.0) - f.x);
-    vec3 down = slope.y * (vec3(-1.0, 0.0, 1.0) - f.y);
+    float across = -slope.x * f.x;
+    float down = -slope.y * f.y;
+    vec3 columns = vec3(across - slope.x, across, across + slope.x);
     vec3 weight = masu_local_spline(f.x);
     /* Gathered are the texels below left, below right, above right, above left of a corner. */
-    vec3 sums = vec3(dot(weight, masu_local_lit(across, down.x, vec3(a.w, a.z, b.z) - depth)),
-                     dot(weight, masu_local_lit(across, down.y, vec3(a.x, a.y, b.y) - depth)),
-                     dot(weight, masu_local_lit(across, down.z, vec3(c.x, c.y, d.y) - depth)));
+    vec3 sums = vec3(dot(weight, masu_local_lit(columns, down - slope.y, depth, vec3(a.w, a.z, b.z))),
+                     dot(weight, masu_local_lit(columns, down, depth, vec3(a.x, a.y, b.y))),
+                     dot(weight, masu_local_lit(columns, down + slope.y, depth, vec3(c.x, c.y, d.y))));
     return dot(masu_local_spline(f.y), sums);
 }
 
@@ -64,14 +65,9 @@ float masu_light_seen(masu_punctual_light_data light, vec3 rel, vec3 n)
     vec2 across;
     uint word = light.shadow[0].x;
     if (tangent > 0.0) {
-        /* The axes of masu_shadow_axes (src/frame/shadow.c). */
-        vec3 axis = light.axis.xyz;
-        float s = axis.y < 0.0 ? -1.0 : 1.0;
-        float a = -1.0 / (s + axis.y);
-        float b = axis.x * axis.z * a;
-        vec3 u = vec3(1.0 + s * axis.x * axis.x * a, -s * axis.x, s * b);
-        vec3 v = vec3(b, -axis.z, s + axis.z * axis.z * a);
-        z = dot(axis, p);
+        vec3 u = uintBitsToFloat(light.shadow[0].yzw);
+        vec3 v = cross(light.axis.xyz, u);
+        z = dot(light.axis.xyz, p);
         uv = vec2(dot(u, p), dot(v, p));
         across = vec2(dot(u, n), dot(v, n));
     } else {
@@ -95,22 +91,21 @@ float masu_light_seen(masu_punctual_light_data light, vec3 rel, vec3 n)
         }
         z = abs(z);
     }
-    if (word == 0u || !(z > 0.0)) {
+    if (word == 0u || !(z > 1e-6)) {
         return 1.0;
     }
     float edge = float(1u << (word & 15u));
     vec2 corner = vec2(word >> MASU_LOCAL_X_SHIFT, word >> MASU_LOCAL_Y_SHIFT & 0xFFFu) * 8.0;
-    float inverse = masu_rcp(z);
+    float inverse = 1.0 / z;
     float width = 2.0 * tangent / (edge - 2.0 * float(MASU_LOCAL_GUARD)); /* of a texel at distance 1 */
-    vec2 at = clamp(uv * (inverse / width) + 0.5 * edge, vec2(1.5), vec2(edge - 1.5));
+    vec2 at = uv * (inverse / width) + (corner + 0.5 * edge);
     float depth = near * inverse;
-    float facing = min(dot(n, p) * inverse, -1e-6);
-    vec2 slope = clamp(across / facing, -masu_local_steepest, masu_local_steepest);
     float step = depth * width;
-    float lit = masu_local_filter(at, corner, depth + masu_local_least_bias * step, slope * step,
+    float facing = min(dot(n, p) * inverse, -1.0 / masu_local_steepest);
+    float lit = masu_local_filter(at, depth + masu_local_least_bias * step, across * (step / facing),
                                   uintBitsToFloat(masu_lights_header.z));
     float fade = float(word >> MASU_LOCAL_FADE_SHIFT & 15u) * (1.0 / float(MASU_LOCAL_FADE));
-    return mix(1.0, lit, min(fade, 1.0));
+    return lit * fade + (1.0 - fade);
 }
 
 #endif

@@ -17,8 +17,9 @@ struct masu_punctual_light_data {
     masu_vec4 cone;     /* x 1 / (cos(inner) - cos(outer)), point light 1; y sine and z cosine of
                            the outer angle, point light 0 */
     masu_vec4 bound;    /* sphere around everything that it lights: xyz, w radius, rounded up */
-    /* Shadow. x y z w, x y: a word for each face; z near distance, w tangent of half the angle of the only
-     * face, 0: cube faces +x -x +y -y +z -z; both as bits of floats. All 0: none. */
+    /* Shadow, all 0: none. x y z w, x y: a word for each cube face +x -x +y -y +z -z; z near distance, w 0, as
+     * bits of floats. With only one face, of a spot: x its word; y z w the unit vector across it, of which the
+     * cross product with the axis is the one down; then z near distance, w tangent of half its angle. */
     masu_uvec4 shadow[2];
 };
 

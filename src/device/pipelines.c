@@ -35,15 +35,16 @@ static uint64_t now(const masu_device *m) {
     return m->plan->desc.clock_ns ? m->plan->desc.clock_ns(m->plan->desc.clock_user) : 0;
 }
 
-/* Constants 0 to 15 of all shaders, of which each has those it declares: of compute shaders whether
+/* Constants 0 to 16 of all shaders, of which each has those it declares: of compute shaders whether
  * counters are kept, of others whether masks are cut; whether the sky may be the analytic one;
  * whether there is fog; whether the sky is from a picture; whether reflections are traced; the tone
  * curve; the target's encoding; whether the last pass rounds to its steps or changes the order of
  * its channels; whether the output is whole groups of invocations; how many nodes a ray may have to
  * come back to; whether a tile's rays are shared by its invocations; whether coats have maps or
  * normals of their own; whether anything colours what shines through it; whether the output keeps
- * its size; whether means over frames are halves; whether albedo texels hold emission. */
-enum { SPECIAL_COUNT = 16 };
+ * its size; whether means over frames are halves; whether albedo texels hold emission; whether normals of the G-buffer
+ * may be those of maps. */
+enum { SPECIAL_COUNT = 17 };
 
 static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
                                        VkBool32 constants[SPECIAL_COUNT]) {
@@ -63,7 +64,8 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
         {12, 12 * sizeof *constants, sizeof *constants},
         {13, 13 * sizeof *constants, sizeof *constants},
         {14, 14 * sizeof *constants, sizeof *constants},
-        {15, 15 * sizeof *constants, sizeof *constants}};
+        {15, 15 * sizeof *constants, sizeof *constants},
+        {16, 16 * sizeof *constants, sizeof *constants}};
     constants[0] = first;
     constants[1] = m->plan->needs.sky != 0;
     constants[2] = m->plan->scene.fog != 0;
@@ -89,6 +91,7 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
     constants[13] = sized;
     constants[14] = (VkBool32)masu_has_half_means(m->plan);
     constants[15] = m->plan->needs.emission_packed != 0;
+    constants[16] = m->plan->scene.reliefs != 0;
     return (VkSpecializationInfo){SPECIAL_COUNT, entries, SPECIAL_COUNT * sizeof *constants,
                                   constants};
 }

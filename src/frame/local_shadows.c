@@ -58,6 +58,15 @@ static void cube_axes(uint32_t face, double axis[3][3]) {
     axis[2][major] = face % 2 ? -1.0 : 1.0;
 }
 
+/* Those of a spot's: the shader gets the first, and the second by a cross product. */
+static void spot_axes(const double direction[3], double axis[3][3]) {
+    masu_shadow_axes(direction, axis);
+    for (uint32_t k = 0; k < 3; k++) {
+        uint32_t i = (k + 1) % 3, j = (k + 2) % 3;
+        axis[1][k] = axis[2][i] * axis[0][j] - axis[2][j] * axis[0][i];
+    }
+}
+
 /* Unless the whole face, which lies within 54.74 degrees around its middle, is outside of the cone. */
 int masu_local_face_is_lit(const double axis[3], double angle, uint32_t face) {
     double cosine = face % 2 ? -axis[face / 2] : axis[face / 2];
@@ -103,7 +112,7 @@ static int set_light(masu_local_light *light, const masu_punctual_light_state *s
         face->drawn = 0;
         if (light->tangent > 0.0) {
             face->used = i == 0;
-            masu_shadow_axes(light->axis, face->axis);
+            spot_axes(light->axis, face->axis);
         } else {
             face->used = !cone || masu_local_face_is_lit(light->axis, light->angle, i);
             cube_axes(i, face->axis);
@@ -145,10 +154,17 @@ void masu_local_shadows_begin(masu_local_shadows *s, const masu_frame_data *f) {
     for (uint32_t slot = 0; slot < s->capacity; slot++) s->choice[slot].offered = 0;
 }
 
-/* The size that a texel at a third of the range takes a pixel and a half for, from where the camera is. */
-static double wanted_size(const masu_frame_data *f, double range, double distance) {
-    double third = range / 3.0, pixels = 0.5 * (double)masu_frame_rung_plan(f)->render_height / (double)f->u.up[3];
-    return 2.0 * third * pixels / (1.5 * fmax(distance, third));
+double masu_local_face_wish(double range, double radius, double tangent, double distance, double pixels) {
+    double third = range / 3.0, sharp = 2.0 * third * tangent * pixels / (1.5 * fmax(distance, third));
+    return fmin(sharp, 3.0 * tangent * third / radius);
+}
+
+/* A size is kept for wishes of less than half to more than twice of it. */
+uint32_t masu_local_face_size(double wish, uint32_t now, uint32_t most) {
+    uint32_t size = MASU_LOCAL_TILE_LEAST;
+    if (now && now <= most && (wish <= 2.2 * now || now == most) && (wish >= 0.45 * now || now == size)) return now;
+    while (size < most && wish > 1.4142 * size) size *= 2;
+    return size;
 }
 
 /* All lights have room for that many texels along the edges of their faces. */
@@ -159,15 +175,13 @@ static uint32_t largest_size(const masu_local_shadows *s, const masu_frame_plan 
     return size;
 }
 
-static void set_size(masu_local_shadows *s, masu_local_light *light, const masu_frame_data *f, double wanted) {
+static void set_size(masu_local_shadows *s, masu_local_light *light, const masu_frame_data *f, float radius,
+                     double distance) {
+    double tangent = light->tangent > 0.0 ? light->tangent : 1.0;
+    double pixels = 0.5 * (double)masu_frame_rung_plan(f)->render_height / (double)f->u.up[3];
+    double wish = masu_local_face_wish(light->range, (double)radius, tangent, distance, pixels);
     uint32_t most = largest_size(s, f->plan, light->tangent > 0.0 ? 1 : MASU_LOCAL_FACES);
-    double now = (double)light->size;
-    /* It changes by hysteresis: each size is for half to twice of it. */
-    if (light->size && light->size <= most && (wanted <= 2.2 * now || light->size == most) &&
-        (wanted >= 0.45 * now || light->size == MASU_LOCAL_TILE_LEAST))
-        return;
-    uint32_t size = MASU_LOCAL_TILE_LEAST;
-    while (size < most && wanted > 1.4142 * size) size *= 2;
+    uint32_t size = masu_local_face_size(wish, light->size, most);
     if (size == light->size) return;
     light->size = size;
     for (uint32_t i = 0; i < MASU_LOCAL_FACES; i++) {
@@ -196,7 +210,7 @@ void masu_local_shadows_offer(masu_local_shadows *s, const masu_frame_data *f, u
         s->choice[slot - 1].offered = 1;
         s->choice[slot - 1].score = score;
         if (set_light(&s->lights[slot - 1], state, position, direction, f->number)) s->choice[slot - 1].fade = 0;
-        set_size(s, &s->lights[slot - 1], f, wanted_size(f, (double)state->range, distance));
+        set_size(s, &s->lights[slot - 1], f, state->radius, distance);
     }
     masu_shadow_wish_add(&s->wish, s->most, light + 1, score);
 }
@@ -443,6 +457,8 @@ void masu_local_shadows_of(const masu_local_shadows *s, uint32_t light, masu_uve
         words[i] = log | s->choice[slot - 1].fade << MASU_LOCAL_FADE_SHIFT |
                    (uint32_t)(face->tile.y / 8) << MASU_LOCAL_Y_SHIFT | (uint32_t)(face->tile.x / 8) << MASU_LOCAL_X_SHIFT;
     }
+    float across[3] = {(float)of->faces[0].axis[0][0], (float)of->faces[0].axis[0][1], (float)of->faces[0].axis[0][2]};
+    if (of->tangent > 0.0 && words[0]) memcpy(&words[1], across, sizeof across);
     float near_distance = (float)of->near_distance, tangent = (float)of->tangent;
     memcpy(&words[6], &near_distance, sizeof near_distance);
     memcpy(&words[7], &tangent, sizeof tangent);

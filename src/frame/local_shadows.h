@@ -78,7 +78,13 @@ void masu_local_shadows_write(masu_local_shadows *s, const masu_instances *in, c
 /* masu_punctual_light_data.shadow of a light. */
 void masu_local_shadows_of(const masu_local_shadows *s, uint32_t light, masu_uvec4 out[2]);
 
-/* Of faces, for tests: whether a light whose cone has that axis and half angle reaches into a cube face. */
+/* Texels along the edge of a face: a texel at a third of the range takes a pixel and a half, and three of them, the
+ * width of the filter, no less than the penumbra that a source of that radius has there behind something half way.
+ * pixels: of a length of one at distance one. */
+double masu_local_face_wish(double range, double radius, double tangent, double distance, double pixels);
+/* The size for a wish, with hysteresis; now: the size that it has, 0: none. */
+uint32_t masu_local_face_size(double wish, uint32_t now, uint32_t most);
+/* Of faces: whether a light whose cone has that axis and half angle reaches into a cube face. */
 int masu_local_face_is_lit(const double axis[3], double angle, uint32_t face);
 
 #endif

@@ -269,6 +269,7 @@ void masu_describe_looks(const reader *r, masu_scene_data *out) {
         const masu_blob_material *m = &r->view.materials[i];
         if (has_surface(m)) out->surfaces++;
         if (m->coat > 0.0f) out->coats++;
+        if (!(m->flags & MASU_MATERIAL_IS_BLEND) && m->flags & 1u << MASU_SLOT_NORMAL) out->reliefs = 1;
         if (m->coat > 0.0f && m->flags & own) out->own_coats = 1;
         if (m->flags & MASU_MATERIAL_IS_TINTED) out->tints = 1;
         if (m->flags & MASU_MATERIAL_IS_BLEND) out->blends++;

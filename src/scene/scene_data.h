@@ -74,6 +74,7 @@ typedef struct MASU_MAY_ALIAS masu_scene_data {
     uint32_t coats;     /* materials with a clear coat */
     uint32_t own_coats; /* flag: a coat has a map, or a normal other than the base's */
     uint32_t meso;      /* tables of mesoscale detail */
+    uint32_t reliefs;   /* flag: an opaque material has a normal map */
     uint32_t blends;    /* transparent materials */
     uint32_t tints;     /* flag: a transparent material has coloured transmission */
     uint32_t transparents;     /* transparent primitives, once per instance */
