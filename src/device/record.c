@@ -628,6 +628,13 @@ static masu_result record_split(masu_recorder *rec, uint32_t *part, masu_detail 
     return MASU_OK;
 }
 
+/* Whether the variant runs a pass that not every frame needs. */
+static int is_drawn(const masu_recorder *rec, uint32_t pass) {
+    if (masu_is_cascade(pass)) return masu_variant_draws(rec->rp, rec->variant, pass - MASU_PASS_CASCADE_0);
+    if (!masu_is_of_faces(pass)) return 1;
+    return masu_variant_draws(rec->rp, rec->variant, MASU_DRAWN_FACES);
+}
+
 masu_result masu_record_frame(masu_recorder *rec, const VkDescriptorSet *sets,
                               masu_detail *detail) {
     const masu_device *m = rec->m;
@@ -643,9 +650,7 @@ masu_result masu_record_frame(masu_recorder *rec, const VkDescriptorSet *sets,
     masu_find_persistent(rec);
     timestamp(rec, 0);
     for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
-        int drawn = !masu_is_cascade(p) ||
-                    masu_variant_draws(rec->rp, rec->variant, p - MASU_PASS_CASCADE_0);
-        if (masu_has_pass(&rec->rp->active, p) && drawn) {
+        if (masu_has_pass(&rec->rp->active, p) && is_drawn(rec, p)) {
             begin_label(rec, masu_passes[p].name);
             masu_barrier_before(rec, p);
             if (masu_passes[p].kind == MASU_PASS_GRAPHICS) record_graphics(rec, p, sets);

@@ -402,7 +402,7 @@ static void set_ready(masu_local_shadows *s, masu_local_slot *stats) {
 }
 
 void masu_local_shadows_write(masu_local_shadows *s, const masu_instances *in, const masu_bounds *bounds,
-                              const masu_frame_data *f) {
+                              masu_frame_data *f) {
     masu_local_slot *stats = &s->slots[f->slot];
     uint32_t budget = s->most ? masu_frame_rung(f)->local_shadow_faces : 0, number = 0;
     uint8_t skip[MASU_SHADOW_LIGHTS_MAX * MASU_LOCAL_FACES];
@@ -435,13 +435,15 @@ void masu_local_shadows_write(masu_local_shadows *s, const masu_instances *in, c
         face->drawn = 1;
     }
     stats->faces = number;
+    set_ready(s, stats);
+    f->faces = number != 0;
+    if (!f->faces) return; /* the recording without the passes that read the rest */
     for (uint32_t k = number; k < f->plan->local_faces; k++) clear_draws(f, k);
     out.square[0] = f->plan->local_tile;
     out.square[1] = f->plan->local_faces < 4 ? f->plan->local_faces : 4;
     out.square[2] = f->plan->local_atlas;
     out.square[3] = number;
     memcpy(masu_frame_slot(f, MASU_BUFFER_LOCAL_FACES), &out, sizeof out);
-    set_ready(s, stats);
 }
 
 void masu_local_shadows_of(const masu_local_shadows *s, uint32_t light, masu_uvec4 out[2]) {

@@ -73,7 +73,7 @@ void masu_local_shadows_offer(masu_local_shadows *s, const masu_frame_data *f, u
                               const double direction[3]);
 /* Before masu_instances_write. */
 void masu_local_shadows_write(masu_local_shadows *s, const masu_instances *in, const masu_bounds *bounds,
-                              const masu_frame_data *f);
+                              masu_frame_data *f);
 
 /* masu_punctual_light_data.shadow of a light. */
 void masu_local_shadows_of(const masu_local_shadows *s, uint32_t light, masu_uvec4 out[2]);

@@ -76,7 +76,7 @@ static int is_there(const masu_lights *l, const masu_instances *in, uint32_t i, 
 }
 
 void masu_lights_cast(const masu_lights *l, masu_local_shadows *shadows, const masu_instances *in,
-                      const masu_bounds *bounds, const masu_frame_data *f) {
+                      const masu_bounds *bounds, masu_frame_data *f) {
     if (!f->plan->needs.local_shadows) return;
     masu_local_shadows_begin(shadows, f);
     for (uint32_t i = 0; i < f->plan->scene.lights; i++) {

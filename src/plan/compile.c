@@ -50,6 +50,8 @@ static void resolve_shadow(masu_frame_plan *plan, uint32_t r) {
         rp->slow |= 1u << k;
         rp->variants *= 2;
     }
+    rp->faces = plan->needs.on.local_shadows;
+    if (rp->faces) rp->variants *= 2;
     plan->images[MASU_IMAGE_SHADOW_MAP].persistent |= rp->slow != 0;
     plan->needs.cascades = rp->cascades;
     rp->first_recording = plan->recordings;

@@ -170,6 +170,10 @@ int masu_is_cascade(uint32_t pass) {
     return masu_passes[pass].geometry == MASU_GEOMETRY_CASCADE;
 }
 
+int masu_is_of_faces(uint32_t pass) {
+    return masu_passes[pass].extent == MASU_EXTENT_LOCAL_FACES || masu_passes[pass].extent == MASU_EXTENT_LOCAL_ATLAS;
+}
+
 int masu_has_set(uint32_t pass) {
     masu_geometry geometry = masu_passes[pass].geometry;
     return masu_passes[pass].kind == MASU_PASS_COMPUTE || geometry == MASU_GEOMETRY_BLENDED ||

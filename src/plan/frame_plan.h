@@ -262,6 +262,8 @@ int masu_usage_writes(masu_usage usage);
 
 /* Whether it is a cascade of the shadow map: it does not run in every frame. */
 int masu_is_cascade(uint32_t pass);
+/* The same of the passes that render shadow faces of punctual lights. */
+int masu_is_of_faces(uint32_t pass);
 
 /* Whether a rung of such needs has an image: the last column but one of images.inc. */
 int masu_has_image(const masu_needs *needs, uint32_t image);
