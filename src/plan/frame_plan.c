@@ -171,7 +171,8 @@ int masu_is_cascade(uint32_t pass) {
 }
 
 int masu_is_of_faces(uint32_t pass) {
-    return masu_passes[pass].extent == MASU_EXTENT_LOCAL_FACES || masu_passes[pass].extent == MASU_EXTENT_LOCAL_ATLAS;
+    masu_image_extent extent = masu_passes[pass].extent;
+    return extent == MASU_EXTENT_LOCAL_FACES || extent == MASU_EXTENT_LOCAL_SDF || extent == MASU_EXTENT_LOCAL_ATLAS;
 }
 
 int masu_has_set(uint32_t pass) {
