@@ -382,7 +382,7 @@ static masu_recording_id recording_id(const masu_frame_data *f) {
 static const VkCommandBuffer *pick_recording(const masu_renderer *m, const masu_frame_data *f) {
     const masu_rung_plan *rp = masu_frame_rung_plan(f);
     uint32_t first = masu_recording_of(&m->plan, recording_id(f));
-    return &m->device.frames[(first + masu_recording_variant(rp, f->cascades)) * m->plan.parts];
+    return &m->device.frames[(first + masu_recording_variant(rp, f->cascades | f->faces << MASU_DRAWN_FACES)) * m->plan.parts];
 }
 
 /* After masu_resize. Nothing is written to the slot yet: a frame that fails has changed nothing. */

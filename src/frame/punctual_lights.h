@@ -45,6 +45,6 @@ void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_loca
 
 /* Finds the lights that may cast shadows in this frame, and lets masu_local_shadows_write do the rest. */
 void masu_lights_cast(const masu_lights *l, masu_local_shadows *shadows, const masu_instances *in,
-                      const masu_bounds *bounds, const masu_frame_data *f);
+                      const masu_bounds *bounds, masu_frame_data *f);
 
 #endif
