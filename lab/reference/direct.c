@@ -121,8 +121,7 @@ static ref_lobes shade(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *
     ref_vec l;
     memset(&out, 0, sizeof out);
     ref_sun_light(t, hit, b, r, &out);
-    if (!pane)
-        ref_punctual_light(t, hit, b, r, &out); /* which transparent surfaces do not receive */
+    ref_punctual_light(t, hit, b, r, &out);
     if (!depth && !pane) {
         a.share[0] = traced_share(b->s.roughness, t->cutoff);
         a.share[1] = traced_share(b->s.coat_roughness, t->cutoff);

@@ -59,7 +59,31 @@ uint masu_light_list(uvec2 tile, uvec2 size)
     return (tile.y * columns + tile.x) * masu_lights_header.y;
 }
 
-/* View depth of what the depth image says; both passes ask here, so that they agree. */
+#ifndef MASU_LIGHT_TILES_WRITTEN
+/* Which lights a pixel asks: those of its tile's list, or all of them: the same operations in the same order on the
+ * lights that reach it. */
+struct masu_asked {
+    uint count;
+    uint list;
+    bool all_lights;
+};
+
+masu_asked masu_lights_asked(uvec2 at, uvec2 size, bool by_tiles)
+{
+    uint list = masu_light_list(at / uint(MASU_TILE), size);
+    uint listed = by_tiles ? masu_light_tiles[list] : MASU_TILE_ALL;
+    bool all_lights = listed == MASU_TILE_ALL;
+    return masu_asked(all_lights ? masu_light_count() : min(listed, uint(MASU_TILE_LIGHTS_MAX)), list, all_lights);
+}
+
+/* The i-th of them. */
+uint masu_light_asked(masu_asked asked, uint i)
+{
+    return asked.all_lights ? i : min(masu_light_tiles[asked.list + 1u + i], uint(MASU_LOCAL_LIGHTS_MAX) - 1u);
+}
+#endif
+
+/* View depth of what the depth image says; all passes ask here, so that they agree. */
 float masu_light_depth(float depth)
 {
     precise float z = frame.forward.w * masu_rcp(depth);

@@ -262,6 +262,28 @@ static void follow_casters(masu_local_shadows *s, const masu_instances *in, cons
     }
 }
 
+/* The SDF, as one caster that moves with each change of what its field depends on. */
+static void follow_sdf(masu_local_shadows *s, const masu_frame_data *f) {
+    s->sdf_box[3] = -1.0f;
+    if (!f->plan->needs.sdf_casts) return;
+    for (uint32_t k = 0; k < 3; k++) {
+        double low = (double)f->u.sdf_low[k] + f->eye[k], high = (double)f->u.sdf_high[k] + f->eye[k];
+        s->sdf_box[k] = (float)(0.5 * (low + high));
+        s->sdf_box[3 + k] = (float)(0.5 * (high - low) * 1.0001);
+    }
+    uint64_t hash = masu_fnv1a64(f->u.anchor, 3 * sizeof *f->u.anchor);
+    if (f->plan->needs.dynamic) {
+        hash ^= masu_fnv1a64(f->u.sdf_params, sizeof f->u.sdf_params);
+        hash = hash * 31 + masu_fnv1a64(&f->u.eye_hi[3], sizeof f->u.eye_hi[3]); /* time */
+    }
+    if (hash != s->sdf_hash) touch_faces(s, s->sdf_box, f->number);
+    s->sdf_hash = hash;
+}
+
+static int sdf_reaches(const masu_local_shadows *s, const masu_local_light *light, const masu_local_face *face) {
+    return s->sdf_box[3] >= 0.0f && touches(light, face, s->sdf_box);
+}
+
 /* ---- Rendering ------------------------------------------------------------------------------- */
 
 /* What a face sees, into the lists and counts of a slot of the frame: always the finest form. Returns how many. */
@@ -269,6 +291,7 @@ static uint32_t list_casters(masu_local_shadows *s, const masu_instances *in, co
                              const masu_frame_data *f, const masu_local_light *light, const masu_local_face *face,
                              uint32_t number) {
     const masu_scene_data *scene = &f->plan->scene;
+    if (!f->plan->needs.raster) return 0;
     masu_cull_set set = masu_bounds_set(bounds, scene);
     masu_cull_counts counts = {0, 0};
     masu_cull(&set, &face->view, s->group_states, s->marks, 1, &counts);
@@ -299,6 +322,7 @@ static uint32_t list_casters(masu_local_shadows *s, const masu_instances *in, co
 }
 
 static void clear_draws(const masu_frame_data *f, uint32_t number) {
+    if (!f->plan->needs.raster) return;
     VkDrawIndexedIndirectCommand *draws = draws_of(f->device, f->slot, number);
     for (uint32_t d = 0; d < f->plan->draws; d++) draws[d].instanceCount = 0;
 }
@@ -322,6 +346,14 @@ static void write_face(const masu_local_light *light, const masu_local_face *fac
     u->tile[number][0] = face->tile.x;
     u->tile[number][1] = face->tile.y;
     u->tile[number][2] = face->tile.size;
+}
+
+/* Those of the pass that marches the SDF go over all such faces of the frame. */
+static void take_groups(const masu_local_face *face, uint32_t number, struct masu_local_face_uniforms *u) {
+    uint32_t across = (face->tile.size + MASU_GROUP - 1) / MASU_GROUP;
+    if (u->groups[0] < across) u->groups[0] = u->groups[1] = across;
+    u->groups[2] = number + 1;
+    u->tile[number][3] = 1;
 }
 
 /* A tile of the size that is wanted, or of a smaller one; its own if it has that. 0: there is no room. */
@@ -409,6 +441,7 @@ int masu_local_shadows_write(masu_local_shadows *s, const masu_instances *in, co
     masu_shadow_choose(s->choice, s->capacity, s->most, &s->wish, s->since, free_slot, s);
     place_lights(s);
     follow_casters(s, in, bounds, f);
+    follow_sdf(s, f);
     find_seen(s, f);
     /* Faces in which nothing is cost no rendering, but they have to be found out. */
     for (uint32_t looked = 0; number < budget && looked < 4 * budget; looked++) {
@@ -417,9 +450,11 @@ int masu_local_shadows_write(masu_local_shadows *s, const masu_instances *in, co
         masu_local_light *light = &s->lights[i / MASU_LOCAL_FACES];
         masu_local_face *face = &light->faces[i % MASU_LOCAL_FACES];
         skip[i] = 1;
-        if (!list_casters(s, in, bounds, f, light, face, number)) {
+        int reached = sdf_reaches(s, light, face);
+        if (!list_casters(s, in, bounds, f, light, face, number) && !reached) {
             masu_shadow_tile_give(&s->tiles, &face->tile);
         } else if (find_tile(s, light, face)) {
+            if (reached) take_groups(face, number, &out);
             write_face(light, face, f->plan->local_tile, number++, &out);
         } else {
             face->drawn = 0;

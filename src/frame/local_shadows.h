@@ -55,6 +55,8 @@ typedef struct masu_local_shadows {
     uint32_t *slot_of_light;   /* [light]: 1 + its slot, 0: none */
     float (*boxes)[6];         /* [instance]: as of the last frame; half sizes below 0: it was hidden */
     uint8_t *group_states, *marks;
+    float sdf_box[6];          /* where the SDF that casts shadows may be; half sizes below 0: there is none */
+    uint64_t sdf_hash;         /* of what it depended on in the last frame */
     masu_shadow_tiles tiles;
     masu_shadow_wish wish;
     uint32_t most; /* lights that may have shadows in this frame */

@@ -88,7 +88,8 @@ enum masu_blob_kind {
     MASU_BLOB_JOINTS = 55,   /* by skin; those of one kind share them */
     MASU_BLOB_SKIN_VERTICES = 56, /* the same */
     MASU_BLOB_BOUNCE_SDF_SPIRV = 57, /* rays of live probes meet the SDF */
-    MASU_BLOB_KIND_COUNT = 58
+    MASU_BLOB_LOCAL_SHADOW_SPIRV = 58, /* the SDF casts shadows of punctual lights */
+    MASU_BLOB_KIND_COUNT = 59
 };
 
 /* Four texels by four make a block. sRGB formats hold display-encoded colour. */

@@ -134,7 +134,7 @@ static bool add_position(masu_session *s, const masu_light *light, sums *sum, ch
 static bool settle_shadows(masu_session *s, const masu_frame_desc *frame, char *error, size_t error_size) {
     enum { FRAMES_MAX = 64 };
     masu_stats_info stats = {.local_shadow_waiting = 1};
-    if (!masu_scene_data_of(&s->scene)->shadow_lights || !masu_scene_data_of(&s->scene)->instances) return true;
+    if (!masu_scene_data_of(&s->scene)->shadow_lights) return true;
     for (int k = 0; k < FRAMES_MAX && (stats.local_shadow_waiting || stats.local_shadow_faces); k++) {
         masu_commands commands;
         if (!masu_session_frame(s, frame, true, &commands, error, error_size)) return false;

@@ -1,4 +1,5 @@
-/* field.c: see field.h. A ray marches only those parts whose bounding sphere it meets. */
+/* field.c: see field.h. A ray marches each part by itself, within the part's box, and always the one that it may
+ * meet first: so most parts are asked once or never. */
 #include "bake/light/field.h"
 #include "bake/base/file.h"
 #include "bake/shader/sdf.h"
@@ -9,10 +10,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define STEPS_MAX 256
+#define STEPS_MAX 1024
 #define NEAR_ENOUGH 2e-5 /* metres, and of the way to there */
 #define ROOM_MAX 4096u   /* variables of a part */
-#define MET_MAX 512u     /* parts that a ray may meet; of more all are marched */
+#define PARTS_MAX MASU_SDFC_PARTS_MAX
 
 struct masu_bake_field {
     masu_bake_buffer text;
@@ -58,50 +59,47 @@ void masu_bake_field_release(masu_bake_field *f) {
     free(f);
 }
 
-/* The part of the ray within the bounds. */
-static bool clip(const masu_bake_field *f, const double o[3], const double d[3], double *near, double *far) {
+/* The part of the ray within a box. */
+static bool clip(const double low[3], const double high[3], const double o[3], const double d[3], double *near,
+                 double *far) {
     for (int k = 0; k < 3; k++) {
         if (fabs(d[k]) < 1e-12) {
-            if (o[k] < f->low[k] || o[k] > f->high[k]) return false;
+            if (!(o[k] >= low[k] && o[k] <= high[k])) return false;
             continue;
         }
-        double a = (f->low[k] - o[k]) / d[k], b = (f->high[k] - o[k]) / d[k];
+        double a = (low[k] - o[k]) / d[k], b = (high[k] - o[k]) / d[k];
         *near = fmax(*near, fmin(a, b));
         *far = fmin(*far, fmax(a, b));
     }
     return *near < *far;
 }
 
-static bool can_meet(const masu_sdfc_part *p, const double o[3], const double d[3], double near, double far) {
-    double along = 0, square = 0;
-    if (p->user) return false;
-    if (!(p->radius >= 0)) return true;
-    for (int k = 0; k < 3; k++) along += (p->center[k] - o[k]) * d[k];
-    along = fmin(fmax(along, near), far);
-    for (int k = 0; k < 3; k++) {
-        double off = o[k] + along * d[k] - p->center[k];
-        square += off * off;
-    }
-    double reach = p->radius + 1e-4;
-    return square <= reach * reach;
-}
+/* A part that the ray may meet: not before `until`, nor from `end` on. */
+typedef struct waiting {
+    uint32_t part;
+    double until, end;
+} waiting;
 
 typedef struct met {
     double room[ROOM_MAX];
-    uint32_t parts[MET_MAX], count;
-    bool all;
+    waiting parts[PARTS_MAX];
+    uint32_t count;
 } met;
 
-static double distance(const masu_bake_field *f, met *m, const double p[3], uint32_t *part) {
-    double least = HUGE_VAL;
-    uint32_t count = m->all ? f->count : m->count;
-    for (uint32_t i = 0; i < count; i++) {
-        uint32_t n = m->all ? i : m->parts[i];
-        if (f->parts[n].user) continue;
-        double d = masu_sdfc_field_run(f->field, n, p, m->room) / fmax(f->parts[n].lipschitz, 1e-6);
-        if (d < least) least = d, *part = n;
+static void list_parts(const masu_bake_field *f, const double o[3], const double d[3], double near, double far, met *m) {
+    m->count = 0;
+    for (uint32_t i = 0; i < f->count; i++) {
+        const masu_sdfc_part *p = &f->parts[i];
+        double low[3], high[3];
+        waiting *w = &m->parts[m->count];
+        if (p->user) continue;
+        for (int k = 0; k < 3; k++) {
+            low[k] = p->low[k] - 1e-3;
+            high[k] = p->high[k] + 1e-3;
+        }
+        *w = (waiting){i, near, far};
+        m->count += clip(low, high, o, d, &w->until, &w->end);
     }
-    return least;
 }
 
 static void fill(const masu_bake_field *f, met *m, const double p[3], const float d[3], double t, bool back,
@@ -132,28 +130,26 @@ static void fill(const masu_bake_field *f, met *m, const double p[3], const floa
 
 bool masu_bake_field_ray(const masu_bake_field *f, const float origin[3], const float direction[3],
                          float far, masu_bake_hit *hit) {
-    double o[3], d[3], t = 0, end = fmin((double)far, f->longest);
+    double o[3], d[3], start = 0, end = fmin((double)far, f->longest);
     met m;
-    m.count = 0;
-    m.all = false;
     for (int k = 0; k < 3; k++) o[k] = (double)origin[k], d[k] = (double)direction[k];
-    if (!clip(f, o, d, &t, &end)) return false;
-    for (uint32_t i = 0; i < f->count && !m.all; i++) {
-        if (!can_meet(&f->parts[i], o, d, t, end)) continue;
-        m.all = m.count == MET_MAX;
-        if (!m.all) m.parts[m.count++] = i;
-    }
-    if (!m.count) return false;
-    bool first = t == 0;
-    for (int i = 0; i < STEPS_MAX && t < end; i++, first = false) {
+    if (!clip(f->low, f->high, o, d, &start, &end)) return false;
+    list_parts(f, o, d, start, end, &m);
+    for (int i = 0; i < STEPS_MAX && m.count; i++) {
+        uint32_t next = 0;
+        for (uint32_t k = 1; k < m.count; k++) {
+            if (m.parts[k].until < m.parts[next].until) next = k;
+        }
+        waiting *w = &m.parts[next];
+        double t = w->until, enough = NEAR_ENOUGH * (1 + t);
         const double p[3] = {o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2]};
-        uint32_t part = 0;
-        double least = distance(f, &m, p, &part);
-        if (least < NEAR_ENOUGH * (1 + t) && !(first && least > 0)) {
-            if (hit) fill(f, &m, p, direction, t, first, part, hit);
+        double away = masu_sdfc_field_run(f->field, w->part, p, m.room) / fmax(f->parts[w->part].lipschitz, 1e-6);
+        if (away < enough && !(t == 0 && away > 0)) {
+            if (hit) fill(f, &m, p, direction, t, t == 0, w->part, hit);
             return true;
         }
-        t += fmax(least, NEAR_ENOUGH * (1 + t));
+        w->until = t + fmax(away, enough);
+        if (w->until >= w->end) *w = m.parts[--m.count];
     }
     return false;
 }
