@@ -64,6 +64,8 @@ typedef uint32_t masu_per_cascade[MASU_MAX_CASCADES];
       "the scene has no screen-space ambient occlusion")                                           \
     X(SHADOWS, "scenes with a shadow map", "the scene has no shadow map")                          \
     X(LIGHTS, "scenes with punctual lights", "the scene has no punctual lights")                   \
+    X(LOCAL_SHADOWS, "scenes with punctual lights that cast shadows",                              \
+      "no punctual light of the scene casts shadows")                                              \
     X(SPECULAR, "scenes with traced reflections", "no reflections are traced")                     \
     X(BOUNCE, "scenes with a live bounce", "the scene has no live bounce")
 
@@ -157,6 +159,21 @@ typedef enum masu_knob_use {
            " has moved out of the cascade. In between, shadows of moving objects lag behind.",     \
            "Saves draws. A value above 1 keeps the shadow map from sharing memory with other"      \
            " images; each cascade with one doubles the number of recordings of the rung.")         \
+    /* Shadows of punctual lights: a cache of faces in one atlas. */                               \
+    WORD(  masu_switch,      local_shadows,        MASU_ON,        LOCAL_SHADOWS,                  \
+           "Shadows of punctual lights. AUTO: on.",                                                \
+           "Per pixel and shadowed light up to 200 instructions; the faces that are rendered.")    \
+    NUMBER(uint32_t,         local_shadow_atlas,   128,  4096, 2048, LOCAL_SHADOWS, "texels",      \
+           "Largest width and height of the atlas of shadow faces, rounded down to a power of two;"\
+           " smaller if few lights cast shadows. All rungs share the largest.",                    \
+           "2 n^2 persistent device bytes.")                                                       \
+    NUMBER(uint32_t,         local_shadow_lights,  1,    64,   8,    LOCAL_SHADOWS, "",            \
+           "Largest number of punctual lights with shadows at a time, the most important ones.",   \
+           "More lookups per pixel, and smaller faces.")                                           \
+    NUMBER(uint32_t,         local_shadow_faces,   1,    16,   4,    LOCAL_SHADOWS, "faces",       \
+           "Largest number of shadow faces rendered per frame: 1 for a spot, up to 6 for a point"  \
+           " light. Faces that have to wait show what they held.",                                 \
+           "The draws of each face; 1 MiB of transient device memory each.")                       \
     /* Traced reflections at half the render size: one ray per 2x2 pixels, then filters. */        \
     WORD(  masu_switch,      specular,             MASU_AUTO,      SPECULAR,                       \
            "Traced reflections. AUTO: on if a surface is glossy enough and the device allows"      \
@@ -277,7 +294,7 @@ MASU_API int masu_knob_accepts(const masu_knob *knob, double to);
       "transparent primitives, summed over all instances: 76 bytes each, host; 24, and 20 for"     \
       " each texture set that they use, per frame in flight, device")                              \
     X(lights, 4096,                                                                                \
-      "punctual lights: 80 bytes each per frame in flight, device, and 80 bytes each, host")       \
+      "punctual lights: 112 bytes each per frame in flight, device, and 92 bytes each, host")       \
     X(trace_triangles, 0,                                                                          \
       "triangles in the BVHs for reflections: 16 bytes each, and about a quarter of a 48-byte"     \
       " node each, device")                                                                        \

@@ -171,6 +171,7 @@ $(MADE)/tools/make_%: tools/generate/make_%.c $(wildcard shaders/shared/*.h) $(T
 	@mkdir -p $(@D)
 	$(V)$(CC) -std=c11 $(WARNINGS) -O2 -ffp-contract=off -Ishaders -Itools -I$(MADE)/gen $< -lm -o $@
 $(MADE)/tools/make_smaa_area: tools/generate/smaa_tables.h
+$(MADE)/tools/make_split_sum: tools/generate/cosines.inc
 $(MADE)/gen/%.table: $(MADE)/tools/make_%
 	@mkdir -p $(@D)
 	@echo "  TABLE   $@"

@@ -20,9 +20,6 @@
 #include "shared/store.glsl"
 #include "light/shade.glsl"
 #include "light/air.glsl"
-#ifdef MASU_LIGHTS
-#include "light/lights.glsl"
-#endif
 #ifndef MASU_NO_POLYGONS /* rays meet nothing but the SDF */
 #define MASU_TRACE_POLYGONS
 #include "trace/scene.glsl"
@@ -44,9 +41,17 @@ layout(set = MASU_SET_PASS, binding = 2) uniform usampler2D hit_image;
 #ifdef MASU_SUN_MAP
 #define MASU_AT_SUN_MAP 3
 #include "light/sun_map.glsl"
-#define MASU_AT_LIGHT 4
+#define MASU_AT_LOCAL_SHADOWS 4
 #else
-#define MASU_AT_LIGHT 3
+#define MASU_AT_LOCAL_SHADOWS 3
+#endif
+#ifdef MASU_LOCAL_SHADOWS
+#define MASU_AT_LIGHT (MASU_AT_LOCAL_SHADOWS + 1)
+#else
+#define MASU_AT_LIGHT MASU_AT_LOCAL_SHADOWS
+#endif
+#ifdef MASU_LIGHTS
+#include "light/lights.glsl"
 #endif
 layout(set = MASU_SET_PASS, binding = MASU_AT_LIGHT, rgba16f) uniform writeonly image2D light_image;
 
@@ -71,7 +76,7 @@ vec3 radiance(met m, vec3 rel, vec3 direction)
         if (i >= lights) {
             break;
         }
-        masu_add_local_light(lit, m.surface, b, i, rel);
+        masu_add_local_light(lit, m.surface, b, i, rel, m.normal);
     }
 #endif
     return lit.diffuse + lit.specular + m.surface.emissive;
@@ -99,6 +104,12 @@ vec4 light_of(uvec2 texel, masu_guide g)
         {
             m = met_sdf(hit);
         }
+#ifdef MASU_LIGHTS
+        if (masu_shared_lights && push.accumulate == 0u && any(greaterThan(m.surface.emissive, vec3(0.0)))) {
+            vec3 eye = -masu_normalize(point, g.normal);
+            m.surface.emissive *= masu_met_share(rel, point, g.normal, eye, g.roughness);
+        }
+#endif
         light = radiance(m, rel, direction);
     }
     light = masu_seen_along(light, !(t >= 0.0), direction, foggy, air);

@@ -41,6 +41,7 @@ static void alloc_host(masu_arena *arena, const masu_frame_plan *plan, masu_rend
     masu_bounds_alloc(&to->bounds, arena, plan);
     masu_models_alloc(&to->models, arena, plan);
     masu_lights_alloc(&to->lights, arena, plan);
+    masu_local_shadows_alloc(&to->local_shadows, arena, plan);
     masu_materials_alloc(&to->materials, arena, plan);
     masu_visible_alloc(&to->visible, arena, plan);
     masu_picking_alloc(&to->picking, arena, plan);
@@ -88,6 +89,7 @@ void masu_write_scene(masu_renderer *m) {
     masu_scene_view v = masu_scene_data_view(&m->plan.scene);
     masu_visible_write_scene(&m->device, &m->draws, &v);
     masu_picking_write_scene(&m->device, &m->draws, &v);
+    masu_local_shadows_write_scene(&m->device, &m->draws, &v);
     masu_occlusion_write_scene(&m->device, &m->draws, &v);
 }
 
@@ -353,7 +355,8 @@ masu_result masu_write_frame(masu_renderer *m, masu_frame_data *f) {
 
     masu_shadow_write(&m->shadow, &m->bounds, f);
     masu_views_set(&m->views, &m->bounds, &m->shadow, f);
-    masu_lights_write(&m->lights, &m->instances, f);
+    masu_lights_cast(&m->lights, &m->local_shadows, &m->instances, &m->bounds, f);
+    masu_lights_write(&m->lights, &m->instances, &m->local_shadows, f);
     masu_materials_write(&m->materials, f);
     masu_bounce_write(&m->bounce, &m->lights, &m->instances, &m->materials, f);
 

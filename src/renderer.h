@@ -19,6 +19,7 @@
 #include "frame/frame_data.h"
 #include "frame/host_matrices.h"
 #include "frame/instances.h"
+#include "frame/local_shadows.h"
 #include "frame/materials.h"
 #include "frame/models.h"
 #include "frame/occlusion.h"
@@ -64,6 +65,7 @@ struct masu_renderer {
     masu_lights lights;
     masu_materials materials;
     masu_shadow shadow;
+    masu_local_shadows local_shadows;
     masu_views views;
     masu_visible visible;
     masu_picking picking;

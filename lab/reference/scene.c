@@ -205,7 +205,7 @@ static bool read_lights(ref_scene *s, const double *matrices) {
     uint8_t *hidden = hidden_instances(&s->blob);
     s->lights = calloc(s->blob.count[MASU_BLOB_LIGHTS] + 1, sizeof *s->lights);
     for (uint64_t i = 0; s->lights && hidden && i < s->blob.count[MASU_BLOB_LIGHTS]; i++) {
-        bool spot = from[i].type == MASU_LIGHT_SPOT;
+        bool spot = (from[i].type & MASU_LIGHT_TYPE) == MASU_LIGHT_SPOT;
         if (from[i].parent != MASU_BLOB_NONE && hidden[from[i].parent]) continue;
         ref_light *l = &s->lights[s->light_count++];
         *l = (ref_light){ref_of(from[i].position),         ref_of(from[i].color),

@@ -11,6 +11,7 @@
 #include "shared/exposure.h"
 #include "shared/frame.h"
 #include "shared/lights.h"
+#include "shared/local_shadow.h"
 #include "shared/lookup_tables.h"
 #include "shared/materials.h"
 #include "shared/picking.h"

@@ -1,4 +1,4 @@
-/* punctual_lights.h: punctual lights, points and spots, between the scene and the shaders.
+/* punctual_lights.h: local lights, points, spots and area lights, between the scene and the shaders.
  *
  * The host keeps each light as the scene or masu_punctual_light_set has it; every frame it places them,
  * leaves out those that light nothing in the picture, and writes the rest, in the scene's order, to
@@ -8,6 +8,7 @@
 #define MASU_PUNCTUAL_LIGHTS_H
 
 #include "frame/instances.h"
+#include "frame/local_shadows.h"
 
 typedef struct masu_lights {
     /* plan->scene.lights of them. The instance that carries one is not its handle here, but 1 + its index;
@@ -16,6 +17,7 @@ typedef struct masu_lights {
     uint64_t *names;                      /* FNV-1a 64 of the name, 0: none */
     uint32_t slot_count[MASU_MAX_FLIGHT]; /* in view */
     uint32_t changes;                     /* how often one was set */
+    int any_areas, any_surfaces;          /* needs.area_lights, needs.shared_lights */
     uint32_t *lives;                      /* of the reserve */
     masu_handles handles;
 } masu_lights;
@@ -38,6 +40,11 @@ masu_result masu_lights_add(masu_lights *l, const masu_instances *in,
 void masu_lights_remove(masu_lights *l, uint32_t light);
 
 /* Those that may be seen to light something to the slot; after the camera. */
-void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_frame_data *f);
+void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_local_shadows *shadows,
+                       const masu_frame_data *f);
+
+/* Finds the lights that may cast shadows in this frame, and lets masu_local_shadows_write do the rest. */
+void masu_lights_cast(const masu_lights *l, masu_local_shadows *shadows, const masu_instances *in,
+                      const masu_bounds *bounds, const masu_frame_data *f);
 
 #endif

@@ -39,7 +39,8 @@ static uint64_t masu_slot_count(const masu_frame_plan *plan) {
 static uint64_t masu_table_words(const masu_frame_plan *plan) {
     const masu_scene_data *s = &plan->scene;
     if (!plan->needs.scene) return 0;
-    return (plan->needs.raster && s->coats ? MASU_TABLE_WORDS_ALL : MASU_TABLE_WORDS) +
+    uint64_t words = plan->needs.raster && s->coats ? MASU_TABLE_WORDS_COAT : MASU_TABLE_WORDS;
+    return (plan->needs.area_lights ? MASU_TABLE_WORDS_ALL : words) +
            masu_blob_environment_texels(s->environment_size, s->environment_mips);
 }
 
@@ -181,7 +182,8 @@ static void layout_drawn(masu_frame_plan *plan) {
     }
     d->transparents = next;
     d->picks = next + MASU_TRANSPARENT_WORDS * (uint64_t)s->transparents;
-    d->words = d->picks + (plan->needs.picking ? plan->listed : 0);
+    d->faces = d->picks + (plan->needs.picking ? plan->listed : 0);
+    d->words = d->faces + (uint64_t)plan->local_faces * plan->listed;
 }
 
 /* Nothing at all where nothing is reserved. */
@@ -212,7 +214,7 @@ static uint64_t masu_draw_count(const masu_frame_plan *plan) {
     const masu_scene_data *s = &plan->scene;
     if (!s->instances) return 0;
     return own_draws(plan) + (uint64_t)s->transparents * s->transparent_sets +
-           (plan->needs.picking ? plan->draws : 0);
+           (plan->needs.picking ? plan->draws : 0) + (uint64_t)plan->local_faces * plan->draws;
 }
 
 /* Of instances; behind them, of receivers. */
@@ -298,6 +300,7 @@ void masu_size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
         layout_drawn(plan);
         plan->transparent_draws = own_draws(plan);
         plan->pick_draws = plan->transparent_draws + (uint64_t)s->transparents * s->transparent_sets;
+        plan->face_draws = plan->pick_draws + (plan->needs.picking ? plan->draws : 0);
         if (plan->receiver_mask) plan->receiver_mask = seen_instances(plan);
     }
     layout_sprites(plan);

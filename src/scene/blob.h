@@ -25,7 +25,7 @@
 
 #define MASU_BLOB_MAGIC 0x5553414Du /* the bytes 'M' 'A' 'S' 'U' */
 #define MASU_BLOB_VERSION 16u
-/* layout of version 16: 2799515899 (kinds of sections and their elements, tests/scripts/scene_forms.sh) */
+/* layout of version 16: 650198991 (kinds of sections and their elements, tests/scripts/scene_forms.sh) */
 #define MASU_BLOB_ALIGN 16u
 #define MASU_BLOB_NONE 0xFFFFFFFFu /* "no name", "no parent" */
 #define MASU_BLOB_PART_SLOTS 8u    /* of an SDF's part, in front of all others: sphere, slope, form, first argument, material */
@@ -124,7 +124,8 @@ enum masu_blob_material_flags {
     /* Whose relief the normal map is not: the mesh's own normal is the coat's, or what lies below it */
     MASU_MATERIAL_COAT_SMOOTH = 0x200000,
     MASU_MATERIAL_BASE_SMOOTH = 0x400000,
-    MASU_MATERIAL_KNOWN = 0x7DFFFF
+    MASU_MATERIAL_NO_SHADOW = 0x800000, /* casts no shadows, neither of the sun nor of other lights */
+    MASU_MATERIAL_KNOWN = 0xFDFFFF
 };
 
 /* The guarantees of Vulkan 1.1 for maxImageDimension2D and maxImageArrayLayers. */
@@ -326,21 +327,34 @@ typedef struct masu_blob_meso {
     float specular[3], spread2;
 } masu_blob_meso;
 
-enum masu_blob_light_type { MASU_LIGHT_POINT = 0, MASU_LIGHT_SPOT = 1 };
+enum masu_blob_light_type {
+    MASU_LIGHT_POINT = 0,
+    MASU_LIGHT_SPOT = 1,
+    MASU_LIGHT_SPHERE = 2,
+    MASU_LIGHT_CAPSULE = 3,
+    MASU_LIGHT_RECTANGLE = 4,
+    MASU_LIGHT_TYPE = 0xFF,
+    /* Beside the type: */
+    MASU_LIGHT_NO_SHADOW = 0x100,
+    MASU_LIGHT_TWO_SIDED = 0x200, /* rectangle */
+    MASU_LIGHT_SURFACE = 0x400    /* of a surface of the scene; not of points and spots */
+};
 
-/* Light of a place. At distance d a white surface that faces it has the radiance
- * color / max(d, radius)^2, times a window that falls to 0 at range. */
+/* Light of a place. At distance d a white surface that faces a point has the radiance
+ * color / d^2, times a window that falls to 0 at range. */
 typedef struct masu_blob_light {
     float position[3]; /* world, or object space of the parent */
     float range;       /* metres, 0..1e15; 0: it lights nothing */
-    float color[3];    /* radiant intensity / pi, 0..1e9 */
-    float radius;      /* of the source, 1e-6..1e9 metres: nearer than this counts as this near */
-    float direction[3]; /* of spots: where they shine, unit length */
-    uint32_t type;      /* masu_blob_light_type */
+    float color[3];    /* 0..1e9; points and spots: radiant intensity / pi, others: radiance */
+    float radius;      /* of the source, 1e-6..1e9 metres */
+    float direction[3]; /* of spots: where they shine, unit length; capsule, rectangle: half axis */
+    uint32_t type;      /* masu_blob_light_type, and flags */
     float inner;        /* of spots: full light within this angle of the direction, radians, */
     float outer;        /* none beyond this one; 0 <= inner <= outer <= pi. Points: both 0 */
     uint32_t parent;    /* instance that carries it, or MASU_BLOB_NONE */
     uint32_t name;
+    float half_axis[3]; /* rectangle */
+    uint32_t reserved;  /* 0 */
 } masu_blob_light;
 
 #define MASU_BLOB_LIGHTS_MAX 4096u
@@ -611,7 +625,7 @@ _Static_assert(sizeof(masu_blob_texture_set) == 32, "blob texture set");
 _Static_assert(sizeof(masu_blob_camera_key) == 32, "blob camera key");
 _Static_assert(sizeof(masu_blob_environment) == 144, "blob environment");
 _Static_assert(sizeof(masu_blob_meso) == 96, "blob meso");
-_Static_assert(sizeof(masu_blob_light) == 64, "blob light");
+_Static_assert(sizeof(masu_blob_light) == 80, "blob light");
 _Static_assert(sizeof(masu_blob_probes) == 1344, "blob probes");
 _Static_assert(sizeof(masu_blob_environment_map) == 160, "blob environment map");
 _Static_assert(sizeof(masu_blob_shadow) == 16, "blob shadow");

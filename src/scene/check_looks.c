@@ -99,14 +99,18 @@ static masu_result check_material(reader *r, uint64_t i) {
 static masu_result check_light(reader *r, uint64_t i) {
     const masu_blob_light *l = &r->view.lights[i];
     double value;
-    if (l->type > MASU_LIGHT_SPOT) return bad(r, "lights", i, "no such type");
+    uint32_t type = l->type & MASU_LIGHT_TYPE, flags = l->type & ~(uint32_t)MASU_LIGHT_TYPE;
+    if (type > MASU_LIGHT_RECTANGLE) return bad(r, "lights", i, "no such type");
+    if (flags & ~(uint32_t)(MASU_LIGHT_NO_SHADOW | MASU_LIGHT_TWO_SIDED | MASU_LIGHT_SURFACE))
+        return bad(r, "lights", i, "unknown flags");
+    if (l->reserved) return bad(r, "lights", i, "reserved is not 0");
     masu_punctual_light_state state = masu_light_state_of(l);
     const char *wrong = masu_light_state_wrong(&state, &value);
     if (wrong) return bad(r, "lights", i, wrong);
-    if (l->type == MASU_LIGHT_SPOT && !unit_vector(l->direction))
+    if (type == MASU_LIGHT_SPOT && !unit_vector(l->direction))
         return bad(r, "lights", i, "direction is no unit vector");
-    if (l->type == MASU_LIGHT_POINT && (l->inner != 0.0f || l->outer != 0.0f))
-        return bad(r, "lights", i, "is a point, but has angles");
+    if (type != MASU_LIGHT_SPOT && (l->inner != 0.0f || l->outer != 0.0f))
+        return bad(r, "lights", i, "is no spot, but has angles");
     if (l->parent != MASU_BLOB_NONE && l->parent >= r->counts[MASU_BLOB_INSTANCES])
         return bad(r, "lights", i, "no such parent");
     return name_ok(r, l->name) ? MASU_OK : bad(r, "lights", i, "name lies outside the names");
@@ -269,6 +273,7 @@ void masu_describe_looks(const reader *r, masu_scene_data *out) {
         const masu_blob_material *m = &r->view.materials[i];
         if (has_surface(m)) out->surfaces++;
         if (m->coat > 0.0f) out->coats++;
+        if (!(m->flags & MASU_MATERIAL_IS_BLEND) && m->flags & 1u << MASU_SLOT_NORMAL) out->reliefs = 1;
         if (m->coat > 0.0f && m->flags & own) out->own_coats = 1;
         if (m->flags & MASU_MATERIAL_IS_TINTED) out->tints = 1;
         if (m->flags & MASU_MATERIAL_IS_BLEND) out->blends++;
@@ -276,6 +281,15 @@ void masu_describe_looks(const reader *r, masu_scene_data *out) {
     describe_transparents(r, out);
     out->meso = (uint32_t)r->counts[MASU_BLOB_MESO];
     out->lights = (uint32_t)r->counts[MASU_BLOB_LIGHTS];
+    for (uint32_t i = 0; i < out->lights; i++) {
+        const masu_blob_light *l = &r->view.lights[i];
+        uint32_t type = l->type & MASU_LIGHT_TYPE;
+        out->area_lights += type >= MASU_LIGHT_CAPSULE;
+        out->surface_lights += (l->type & MASU_LIGHT_SURFACE) != 0;
+        if (l->type & MASU_LIGHT_NO_SHADOW) continue;
+        out->shadow_lights++;
+        out->shadow_spots += type == MASU_LIGHT_SPOT && l->outer <= MASU_LOCAL_ANGLE_MOST;
+    }
     if (r->view.probes) {
         const masu_blob_probes *p = r->view.probes;
         out->probe_sets = masu_probe_sets(p);

@@ -110,6 +110,7 @@ const char *masu_knob_useless(const masu_knob *k, const masu_rung *rung, const m
     case MASU_USE_LODS: used = masu_scene_data_of(scene)->lods; break;
     case MASU_USE_OCCLUDERS: used = masu_scene_data_of(scene)->placed_occluders; break;
     case MASU_USE_POLYGONS: used = masu_scene_count(scene, MASU_SCENE_INSTANCE); break;
+    case MASU_USE_LOCAL_SHADOWS: used = masu_scene_data_of(scene)->shadow_lights; break;
     case MASU_USE_LIGHTS: used = masu_scene_count(scene, MASU_SCENE_LIGHT); break;
     case MASU_USE_UPSCALED: used = upscaled; break;
     case MASU_USE_SHARPEN: used = by_default || rung->sharpen == MASU_ON; break;

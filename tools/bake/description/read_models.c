@@ -238,7 +238,8 @@ static bool read_model(const masu_bake_json *model, masu_bake_reader *r, const j
     static const char *const members[] = {"file",      "mesh",      "name",     "group", "moving",
                                           "translate", "rotate",    "rotate_y", "scale", "fit",
                                           "material",  "materials", "occluder", "merge", "lights",
-                                          "traced",    "hidden",    "spare",    "variant", "drop", NULL};
+                                          "traced",    "hidden",    "spare",    "variant", "drop",
+                                          "shadows",   NULL};
     const char *name = NULL;
     out->where = masu_bake_take_text(&r->out->pool, model->where);
     out->lights = 1;
