@@ -23,6 +23,7 @@
 
 #include "shared/lights.h"
 #include "shared/guard.glsl"
+#include "shared/sdf_limits.h"
 
 /* The scene may have rectangles and capsules. */
 #ifdef MASU_AREA_LIGHTS
