@@ -132,7 +132,7 @@ ref_vec ref_full(const ref_tracer *t, ref_vec from, ref_vec d, ref_random *r) {
         ref_lobes lit;
         memset(&lit, 0, sizeof lit);
         ref_sun_light(t, &hit, &b, r, &lit);
-        ref_punctual_light(t, &hit, &b, r, &lit);
+        ref_local_lights(t, &hit, &b, r, NULL, &lit);
         if (bounce < t->bounces) {
             if (map) sample_map(t, &hit, &b, r, &lit);
             if (t->world->scene->emitter_count && t->light_samples)

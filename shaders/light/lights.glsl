@@ -152,7 +152,7 @@ float masu_light_within(masu_punctual_light_data light, vec3 rel)
         from -= u * clamp(along, -1.0, 1.0);
         if (masu_light_kind(light) == MASU_KIND_RECTANGLE) {
             from -= v * clamp(dot(from, v) * masu_rcp(dot(v, v)), -1.0, 1.0);
-            radius = 0.1 * min(masu_sqrt(dot(u, u)), masu_sqrt(dot(v, v)));
+            radius = light.axis.w;
         }
     }
     return masu_sqrt(dot(from, from)) * masu_rcp(1.05 * radius + 1e-4);

@@ -136,7 +136,10 @@ static int place_shape(const masu_punctual_light_state *s, const double directio
             out->cone[k] = s->shape == MASU_SHAPE_RECTANGLE ? s->half_axis[k] : 0.0f;
         }
         out->cone[3] = s->shape == MASU_SHAPE_RECTANGLE ? 2.0f : 1.0f;
-        if (s->shape == MASU_SHAPE_RECTANGLE) out->color[3] = s->two_sided ? 1.0f : 0.0f;
+        if (s->shape == MASU_SHAPE_RECTANGLE) {
+            out->color[3] = s->two_sided ? 1.0f : 0.0f;
+            out->axis[3] = s->radius;
+        }
         if (!(length_of(direction) <= 1e15)) return 0; /* an instance has moved it beyond */
         for (uint32_t k = 0; k < 3; k++) {
             if (!(fabsf(out->cone[k]) <= 1e15f)) return 0;

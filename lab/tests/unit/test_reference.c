@@ -337,7 +337,13 @@ static void fog_and_punctual_lights(void **state) {
     static const double cone[4][2] = {{33, .685}, {36, .411}, {39, .194}, {42, .051}};
     for (int i = 0; i < 4; i++) {
         double a = cone[i][0] * REF_PI / 180, radians = REF_PI / 180;
-        ref_light light = {{0, 1, 0}, {1, 1, 1}, {0, -1, 0}, 1e6, .01, 30 * radians, 45 * radians};
+        ref_light light = {.position = {0, 1, 0},
+                           .color = {1, 1, 1},
+                           .direction = {0, -1, 0},
+                           .range = 1e6,
+                           .radius = .01,
+                           .inner = 30 * radians,
+                           .outer = 45 * radians};
         ref_vec l, color = ref_light_at(&light, ref_v(tan(a), 0, 0), &l);
         check(color.x / (cos(a) * cos(a)), cone[i][1], 2e-4, "spot light");
     }
