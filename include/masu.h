@@ -1417,8 +1417,8 @@ MASU_API MASU_MUST_USE masu_result masu_instance_get(masu_renderer *renderer,
 /* Hides an instance (`shown` 0) or shows it from the next masu_frame on: in the image, in shadows
  * and in reflections. The lights of a hidden instance are off. Cascades with shadow_refresh above 1
  * keep its shadow until they are re-rendered. An instance that is shown has a velocity of 0 in its
- * first frame. Light probes are baked and do not change. MASU_ERROR_ARGUMENT: the handle is
- * invalid. */
+ * first frame. Baked light of probes does not change; a live bounce follows within some
+ * rounds of its probes. MASU_ERROR_ARGUMENT: the handle is invalid. */
 MASU_API MASU_MUST_USE masu_result masu_instance_show(masu_renderer *renderer,
                                                       masu_instance instance, uint32_t shown);
 
@@ -1581,6 +1581,8 @@ typedef struct masu_punctual_light_state {
      * is not lit by it, and reflection rays that hit it share its mirrored light with it. Lights
      * that masu-bake has fitted have it. Radii scale with their instance then. */
     uint32_t has_surface;
+    /* 1: casts no shadows. In a scene without any light that does, none will. */
+    uint32_t no_shadow;
 } masu_punctual_light_state;
 
 /* The first light with that name in the scene; id 0 if there is none. */
@@ -1658,8 +1660,8 @@ MASU_API MASU_MUST_USE masu_result masu_material_get(masu_renderer *renderer,
                                                      masu_material_state *out);
 
 /* Changes a material from the next masu_frame on: in the image, on transparent surfaces, and in
- * traced reflections, whose histories adapt over some frames. Light probes are baked and do not
- * change. Whether a rung traces reflections still depends on the original materials.
+ * traced reflections, whose histories adapt over some frames. Baked light of probes does not
+ * change, a live bounce follows. Whether a rung traces reflections still depends on the original materials.
  *
  * Nothing has changed after an error.
  *   MASU_ERROR_ARGUMENT   as masu_material_get; a value is out of range or not finite; or a member,
@@ -1765,6 +1767,9 @@ typedef struct masu_stats_info {
     /* Punctual lights, with debug.counters: pairs of light and pixel tested, those with a
      * contribution, and 16x16 tiles with more than 63 lights, whose pixels test all lights. */
     uint64_t light_tests, light_shaded, light_tiles_full;
+    /* Shadows of punctual lights: lights that have them, faces rendered in this frame, and faces
+     * that are not up to date because local_shadow_faces were rendered already. */
+    uint32_t local_shadow_lights, local_shadow_faces, local_shadow_waiting;
     /* Traced reflections, with debug.counters: number of 8x8 tiles with rays, rays, rays that hit a
      * polygon, rays that hit the SDF, BVH nodes visited, SDF evaluations. */
     uint64_t specular_tiles, specular_rays, specular_hits, specular_sdf_hits;

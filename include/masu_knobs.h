@@ -64,7 +64,10 @@ typedef uint32_t masu_per_cascade[MASU_MAX_CASCADES];
       "the scene has no screen-space ambient occlusion")                                           \
     X(SHADOWS, "scenes with a shadow map", "the scene has no shadow map")                          \
     X(LIGHTS, "scenes with punctual lights", "the scene has no punctual lights")                   \
-    X(SPECULAR, "scenes with traced reflections", "no reflections are traced")
+    X(LOCAL_SHADOWS, "scenes with punctual lights that cast shadows",                              \
+      "no punctual light of the scene casts shadows")                                              \
+    X(SPECULAR, "scenes with traced reflections", "no reflections are traced")                     \
+    X(BOUNCE, "scenes with a live bounce", "the scene has no live bounce")
 
 typedef enum masu_knob_use {
 #define MASU_KNOB_USE_ENUM(name, where, missing) MASU_USE_##name,
@@ -156,6 +159,21 @@ typedef enum masu_knob_use {
            " has moved out of the cascade. In between, shadows of moving objects lag behind.",     \
            "Saves draws. A value above 1 keeps the shadow map from sharing memory with other"      \
            " images; each cascade with one doubles the number of recordings of the rung.")         \
+    /* Shadows of punctual lights: a cache of faces in one atlas. */                               \
+    WORD(  masu_switch,      local_shadows,        MASU_ON,        LOCAL_SHADOWS,                  \
+           "Shadows of punctual lights. AUTO: on.",                                                \
+           "Per pixel and shadowed light up to 200 instructions; the faces that are rendered.")    \
+    NUMBER(uint32_t,         local_shadow_atlas,   128,  4096, 2048, LOCAL_SHADOWS, "texels",      \
+           "Largest width and height of the atlas of shadow faces, rounded down to a power of two;"\
+           " smaller if few lights cast shadows. All rungs share the largest.",                    \
+           "2 n^2 persistent device bytes.")                                                       \
+    NUMBER(uint32_t,         local_shadow_lights,  1,    64,   8,    LOCAL_SHADOWS, "",            \
+           "Largest number of punctual lights with shadows at a time, the most important ones.",   \
+           "More lookups per pixel, and smaller faces.")                                           \
+    NUMBER(uint32_t,         local_shadow_faces,   1,    16,   4,    LOCAL_SHADOWS, "faces",       \
+           "Largest number of shadow faces rendered per frame: 1 for a spot, up to 6 for a point"  \
+           " light. Faces that have to wait show what they held.",                                 \
+           "The draws of each face; 1 MiB of transient device memory each.")                       \
     /* Traced reflections at half the render size: one ray per 2x2 pixels, then filters. */        \
     WORD(  masu_switch,      specular,             MASU_AUTO,      SPECULAR,                       \
            "Traced reflections. AUTO: on if a surface is glossy enough and the device allows"      \
@@ -168,7 +186,19 @@ typedef enum masu_knob_use {
     NUMBER(uint32_t,         specular_frames,      1,    240,  32,   SPECULAR,  "frames",          \
            "Length of the temporal accumulation of reflections, in frames of 1/60 s. 0: 32, or 8"  \
            " with temporal, which accumulates too.",                                               \
-           "None.")
+           "None.")                                                                                \
+    /* Live bounce of diffuse light, by irradiance probes. */                                      \
+    WORD(  masu_switch,      bounce,               MASU_AUTO,      BOUNCE,                         \
+           "Live bounce: rays of some probes per frame. OFF: probes keep what they have. AUTO: on" \
+           " if the device allows enough storage buffers.",                                        \
+           "The rays, until the light has been at rest for 64 rounds of all probes; then none.")   \
+    NUMBER(uint32_t,         bounce_probes,        1,    2048, 94,   BOUNCE,    "probes",          \
+           "Probes that trace rays per frame. In the first frames up to four times as many do.",   \
+           "Time grows in proportion. 128 device bytes for each of their rays, which a scene with" \
+           " fewer probes does not take.")                                                         \
+    NUMBER(uint32_t,         bounce_rays,          8,    64,   48,   BOUNCE,    "rays",            \
+           "Rays of a probe per frame. A probe shows the mean of its last four sets of rays.",     \
+           "Time grows in proportion.")
 /* clang-format on */
 
 #include "masu_study.h"
@@ -254,7 +284,7 @@ MASU_API int masu_knob_accepts(const masu_knob *knob, double to);
     X(shadow_resolution, 8192, "width and height n of a cascade in texels: 4 n^2 bytes, device")   \
     X(probes, 0,                                                                                   \
       "light probes: 48 bytes each, 56 more for each set, and the distance map of each probe,"     \
-      " device")                                                                                   \
+      " device; live ones 272 more, and 2 on the host")                                            \
     X(textures, 0, "textures with their mip chains; texture_bytes has their cost")                 \
     X(texture_bytes, 0,                                                                            \
       "bytes of all texels on the device, compressed or decoded as used; the device may add"       \
@@ -264,7 +294,7 @@ MASU_API int masu_knob_accepts(const masu_knob *knob, double to);
       "transparent primitives, summed over all instances: 76 bytes each, host; 24, and 20 for"     \
       " each texture set that they use, per frame in flight, device")                              \
     X(lights, 4096,                                                                                \
-      "punctual lights: 80 bytes each per frame in flight, device, and 80 bytes each, host")       \
+      "punctual lights: 112 bytes each per frame in flight, device, and 92 bytes each, host")       \
     X(trace_triangles, 0,                                                                          \
       "triangles in the BVHs for reflections: 16 bytes each, and about a quarter of a 48-byte"     \
       " node each, device")                                                                        \

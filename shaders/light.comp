@@ -2,7 +2,7 @@
  * light.comp: one path for polygons and SDF hits: sun, ambient light, sky where there is
  * nothing. With MASU_OCCLUSION it is light_occluded, in which the sun and what comes from everywhere
  * arrive as far as sdf_occlusion.comp says; with MASU_PROBES light probes say what comes from
- * everywhere; with MASU_LIGHTS there are points and spots, without shadows; with MASU_SURFACE some
+ * everywhere; with MASU_LIGHTS there are points and spots, with MASU_LOCAL_SHADOWS their shadows; with MASU_SURFACE some
  * surfaces are more than albedo, roughness and metallic.
  *
  * Surfaces as light/shade.glsl has them; what the air takes and adds (light/air.glsl) only in scenes
@@ -25,9 +25,6 @@
 #include "light/shade.glsl"
 #include "light/air.glsl"
 #include "specular/guide.glsl"
-#ifdef MASU_LIGHTS
-#include "light/lights.glsl"
-#endif
 
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
@@ -45,10 +42,18 @@ layout(set = MASU_SET_PASS, binding = 3) uniform usampler2D occlusion_image;
 #define MASU_AT_SURFACE 3
 #endif
 #ifdef MASU_SURFACE
-#define MASU_AT_HDR (MASU_AT_SURFACE + 1)
+#define MASU_AT_LOCAL_SHADOWS (MASU_AT_SURFACE + 1)
 layout(set = MASU_SET_PASS, binding = MASU_AT_SURFACE) uniform sampler2D surface_image;
 #else
-#define MASU_AT_HDR MASU_AT_SURFACE
+#define MASU_AT_LOCAL_SHADOWS MASU_AT_SURFACE
+#endif
+#ifdef MASU_LOCAL_SHADOWS
+#define MASU_AT_HDR (MASU_AT_LOCAL_SHADOWS + 1)
+#else
+#define MASU_AT_HDR MASU_AT_LOCAL_SHADOWS
+#endif
+#ifdef MASU_LIGHTS
+#include "light/lights.glsl"
 #endif
 layout(set = MASU_SET_PASS, binding = MASU_AT_HDR, rgba16f) uniform image2D hdr_image;
 
@@ -77,10 +82,37 @@ masu_surface surface_at(ivec2 at, vec4 albedo, uint normal)
     return s;
 }
 
+#ifdef MASU_LOCAL_SHADOWS
+layout(constant_id = 16) const bool reliefs = false; /* normals may be those of maps */
+
+/* The smaller step of depth to the two pixels beside: across an edge there is none. */
+float depth_step(ivec2 before, ivec2 after, float depth)
+{
+    float low = depth - texelFetch(depth_image, before, 0).r;
+    float high = texelFetch(depth_image, after, 0).r - depth;
+    return abs(low) < abs(high) ? low : high;
+}
+
+/* The normal of the surface itself, which a map may have tilted: by depth, which is affine across a plane. A surface
+ * of an SDF is not as smooth in depth; where the two are far apart, the G-buffer's counts. */
+vec3 flat_normal(ivec2 at, ivec2 size, float depth, vec3 n)
+{
+    float x = depth_step(ivec2(max(at.x - 1, 0), at.y), ivec2(min(at.x + 1, size.x - 1), at.y), depth);
+    float y = depth_step(ivec2(at.x, max(at.y - 1, 0)), ivec2(at.x, min(at.y + 1, size.y - 1)), depth);
+    vec2 tangent = vec2(frame.right.w, frame.up.w);
+    vec2 slope = vec2(x, -y) * vec2(size) * 0.5 / tangent;
+    vec2 ray = masu_ndc(vec2(at) + 0.5, vec2(size)) * vec2(1.0, -1.0) * tangent;
+    vec3 view = vec3(slope, depth - dot(slope, ray));
+    vec3 normal = -(frame.right.xyz * (view.x / tangent.x) + frame.up.xyz * (view.y / tangent.y) + frame.forward.xyz * view.z);
+    normal = masu_normalize(normal, n);
+    return dot(normal, n) > 0.7 ? normal : n;
+}
+#endif
+
 #ifdef MASU_LIGHTS
 /* Of the tile's list, or of all: the same operations in the same order on the lights that reach the
  * point, so that the two have the same bits. */
-void add_lights(inout masu_lit lit, masu_surface s, masu_bsdf b, uvec2 at, vec3 rel, vec3 traced)
+void add_lights(inout masu_lit lit, masu_surface s, masu_bsdf b, uvec2 at, vec3 rel, vec3 n, vec3 traced)
 {
     uvec2 size = uvec2(pc.output_width, pc.output_height);
     uint lights = masu_light_count();
@@ -97,7 +129,7 @@ void add_lights(inout masu_lit lit, masu_surface s, masu_bsdf b, uvec2 at, vec3 
         if (!all_lights) {
             light = min(masu_light_tiles[list + 1u + i], uint(MASU_LOCAL_LIGHTS_MAX) - 1u);
         }
-        reached += masu_add_local_light(lit, s, b, light, rel, traced) ? 1u : 0u;
+        reached += masu_add_local_light(lit, s, b, light, rel, n, traced) ? 1u : 0u;
     }
     masu_count(MASU_COUNTER_LIGHT_TESTS, count);
     masu_count(MASU_COUNTER_LIGHT_SHADED, reached);
@@ -134,8 +166,13 @@ void main()
                 masu_bsdf b = masu_bsdf_make(s, n, -direction);
                 masu_lit lit = masu_shade(s, b, rel, arriving(at), sky);
 #ifdef MASU_LIGHTS
+#ifdef MASU_LOCAL_SHADOWS
+                if (reliefs) {
+                    n = flat_normal(ivec2(at), ivec2(pc.output_width, pc.output_height), depth, n);
+                }
+#endif
                 vec3 traced = vec3(1.0 - kept, push.accumulate != 0u ? 1.0 : 0.0);
-                add_lights(lit, s, b, at, ray * masu_light_depth(depth), traced);
+                add_lights(lit, s, b, at, ray * masu_light_depth(depth), n, traced);
 #endif
                 color += lit.diffuse + lit.specular;
             }

@@ -126,9 +126,9 @@ function describe_pass(row,    n, part, i, when, reads, writes, code) {
     split_list(inside(part[6], "WHEN"), when)
     for (i = 9; i <= n; i++) {
         code = trim(part[i])
-        if (code !~ /^(WRITE|WRITES|UPDATE|UPDATE_LATEST|COLOR|COLOR_PART|BLEND|DEPTH|DEPTH_PART|COPY_TO|BUILDS|HOST_COLOR)\(/)
+        if (code !~ /^(WRITE|WRITES|UPDATE|UPDATE_LATEST|COLOR|COLOR_PART|BLEND|DEPTH|DEPTH_PART|DEPTH_KEPT|COPY_TO|BUILDS|HOST_COLOR)\(/)
             reads = reads (reads == "" ? "" : ", ") resource(code)
-        if (code ~ /^(WRITE|WRITES|UPDATE|UPDATE_LATEST|COLOR|COLOR_PART|BLEND|DEPTH|DEPTH_PART|COPY_TO|COPY_BACK|COPY_BACK_LATEST|BUILDS|HOST_COLOR|PING_PONG)\(/)
+        if (code ~ /^(WRITE|WRITES|UPDATE|UPDATE_LATEST|COLOR|COLOR_PART|BLEND|DEPTH|DEPTH_PART|DEPTH_KEPT|COPY_TO|COPY_BACK|COPY_BACK_LATEST|BUILDS|HOST_COLOR|PING_PONG)\(/)
             writes = writes (writes == "" ? "" : ", ") (code ~ /^COPY_BACK/ ? "host memory" : resource(code))
     }
     while (sub(/host memory, host memory/, "host memory", writes)) {}
@@ -182,7 +182,7 @@ function add_shader(name, list,    n, words, i) {
     name = trim(head[2])
     file = name
     traced = $0 ~ /\(SPECULAR[_)]/ || $0 ~ /WRITES\(TRACE\)/
-    polygons = $0 ~ /DRAW\((POLYGONS|CASCADE|BOXES|BLENDED),/ || $0 ~ /\((DRAWS|SEEN)\)/ || $0 ~ /WRITES\((VERTICES|PREVIOUS_VERTICES|TRACE)\)/
+    polygons = $0 ~ /DRAW\((POLYGONS|CASCADE|CASTERS|BOXES|BLENDED),/ || $0 ~ /\((DRAWS|SEEN)\)/ || $0 ~ /WRITES\((VERTICES|PREVIOUS_VERTICES|TRACE)\)/
     tail = substr($0, index($0, "PUSH("))
     tail = substr(tail, length(inside(tail, "PUSH")) + 6) # what stands behind it
     if (tail ~ /^\)?, *COMP\(/) {

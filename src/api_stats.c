@@ -51,6 +51,8 @@ static int is_fixed_pass(uint32_t pass) {
     case MASU_EXTENT_KEPT:
     case MASU_EXTENT_BATCHES:
     case MASU_EXTENT_PROBES:
+    case MASU_EXTENT_RAYS:
+    case MASU_EXTENT_TRACED_PROBES:
     case MASU_EXTENT_PICK:
     case MASU_EXTENT_SHADOW: return 1;
     default: return pass == MASU_PASS_PRESENT;
@@ -147,6 +149,9 @@ masu_result masu_stats(const masu_renderer *m, uint32_t slot, masu_stats_info *o
     for (uint32_t i = 0; i < m->plan.scene.lights; i++)
         out->lights += masu_handle_lives(&m->lights.handles, i) != 0;
     out->lights_in_view = m->lights.slot_count[slot];
+    out->local_shadow_lights = m->local_shadows.slots[slot].lights;
+    out->local_shadow_faces = m->local_shadows.slots[slot].faces;
+    out->local_shadow_waiting = m->local_shadows.slots[slot].waiting;
     out->draws = out->views[0].draws;
     out->triangles = out->views[0].triangles;
     out->transparents = m->transparents.slot_count[slot];

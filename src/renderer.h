@@ -19,11 +19,13 @@
 #include "frame/frame_data.h"
 #include "frame/host_matrices.h"
 #include "frame/instances.h"
+#include "frame/local_shadows.h"
 #include "frame/materials.h"
 #include "frame/models.h"
 #include "frame/occlusion.h"
 #include "frame/picking.h"
 #include "frame/punctual_lights.h"
+#include "frame/bounce.h"
 #include "frame/reflections.h"
 #include "frame/sdf.h"
 #include "frame/shadow.h"
@@ -63,6 +65,7 @@ struct masu_renderer {
     masu_lights lights;
     masu_materials materials;
     masu_shadow shadow;
+    masu_local_shadows local_shadows;
     masu_views views;
     masu_visible visible;
     masu_picking picking;
@@ -70,6 +73,7 @@ struct masu_renderer {
     masu_transparents transparents;
     masu_sprites sprites;
     masu_reflections reflections;
+    masu_bounce bounce;
 };
 
 /* The result of a public function whose error is in m->error: logs it. */

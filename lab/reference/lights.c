@@ -45,7 +45,9 @@ static bool sphere_pdf(const ref_light *light, ref_vec to, ref_vec l, to_light *
     double d = ref_length(to), along = ref_dot(l, to), r = light->radius, cap = cap_of(r, d);
     double aside = ref_dot(to, to) - along * along;
     if (!(along > 0) || (d > r && aside > r * r)) return false;
-    *out = (to_light){l, d > r ? along - sqrt(fmax(r * r - aside, 0)) : along, 1 / (2 * REF_PI * cap)};
+    /* A ray ends before it enters the source: a bulb of that size does not occlude it. */
+    double far = d > r ? along - sqrt(fmax(r * r - aside, 0)) - 2e-3 * r : along;
+    *out = (to_light){l, fmax(far, 0), 1 / (2 * REF_PI * cap)};
     return true;
 }
 
@@ -148,7 +150,7 @@ static void add_point(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b
                       ref_random *r, ref_lobes *out) {
     ref_vec l, color = ref_light_at(light, hit->p, &l);
     ref_lobes f = ref_bsdf_eval(b, l, r);
-    to_light to = {l, ref_length(ref_sub(light->position, hit->p)), 1};
+    to_light to = {l, fmax(ref_length(ref_sub(light->position, hit->p)) - light->radius, 0), 1};
     if (ref_max(ref_lobes_sum(&f)) > 0) add_seen(t, hit, &f, ref_scale(color, REF_PI), &to, NULL, out);
 }
 

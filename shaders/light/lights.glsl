@@ -1,7 +1,7 @@
 /*
  * lights.glsl: local lights: points and spots, which are spheres of their radius, capsules and rectangles:
- * what reaches a surface point of one of them, and which of them a pixel has to ask. No shadows: a wall in
- * between hides nothing. How a source of a size is mirrored: light/source.glsl.
+ * what reaches a surface point of one of them, and which of them a pixel has to ask. With MASU_LOCAL_SHADOWS, as
+ * far as nothing is in between (light/local_shadow.glsl). How a source of a size is mirrored: light/source.glsl.
  *
  *   reaches = color * window * cone / max(d^2, radius^2)
  *   window  = 1 - (d / range)^4, 0 from the range on: an inverse square that ends, so that a light
@@ -28,12 +28,12 @@
 #ifdef MASU_AREA_LIGHTS
 const bool masu_area_lights = true;
 #else
-layout(constant_id = 16) const bool masu_area_lights = false;
+layout(constant_id = 17) const bool masu_area_lights = false;
 #endif
 
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_LIGHTS, std430) readonly buffer Lights
 {
-    uvec4 masu_lights_header; /* x lights in view, y words of a tile's list */
+    uvec4 masu_lights_header; /* x lights in view, y words of a tile's list, z 1 / texels of the atlas, float bits */
     masu_punctual_light_data masu_lights[];
 };
 
@@ -106,11 +106,15 @@ bool masu_light_reaches(masu_punctual_light_data light, vec3 rel, out vec3 l, ou
     return strength > 0.0 && masu_finite(color);
 }
 
+#ifdef MASU_LOCAL_SHADOWS
+#include "light/local_shadow.glsl"
+#endif
+
 #ifdef MASU_SHADE_GLSL
 #include "light/source.glsl"
 
 /* The mirrored light of some lights' surfaces is shared between rays that meet them and the lobe. */
-layout(constant_id = 17) const bool masu_shared_lights = false;
+layout(constant_id = 18) const bool masu_shared_lights = false;
 
 /* Half axes of a rectangle, or of a capsule as one that faces a point; `to`: from the point to its centre.
  * The second turns such that the side that faces the point is the front. False: it shines the other way. */
@@ -158,9 +162,9 @@ float masu_light_within(masu_punctual_light_data light, vec3 rel)
     return masu_sqrt(dot(from, from)) * masu_rcp(1.05 * radius + 1e-4);
 }
 
-/* Adds what a light contributes at a surface point relative to the eye. traced: of the mirrored light of base and
+/* Adds what a light contributes at a surface point relative to the eye. n: the normal of the surface itself; traced: of the mirrored light of base and
  * coat; z 1: rays meet all of what they can, 0: they share it with the lobe. False: nothing arrives. */
-bool masu_add_local_light(inout masu_lit lit, masu_surface s, masu_bsdf b, uint number, vec3 rel, vec3 traced)
+bool masu_add_local_light(inout masu_lit lit, masu_surface s, masu_bsdf b, uint number, vec3 rel, vec3 n, vec3 traced)
 {
     masu_punctual_light_data light = masu_lights[number];
     vec3 l;
@@ -168,6 +172,9 @@ bool masu_add_local_light(inout masu_lit lit, masu_surface s, masu_bsdf b, uint 
     if (!masu_light_reaches(light, rel, l, color)) {
         return false;
     }
+#ifdef MASU_LOCAL_SHADOWS
+    color *= masu_light_seen(light, rel, n);
+#endif
     vec3 to = light.position.xyz - rel;
     bool area = masu_area_lights && masu_light_kind(light) != MASU_KIND_POINT;
     float size = masu_light_size(light, to);
@@ -224,9 +231,9 @@ float masu_met_share(vec3 met, vec3 rel, vec3 n, vec3 v, float roughness)
 }
 
 /* Where no rays are traced from the surface. */
-bool masu_add_local_light(inout masu_lit lit, masu_surface s, masu_bsdf b, uint number, vec3 rel)
+bool masu_add_local_light(inout masu_lit lit, masu_surface s, masu_bsdf b, uint number, vec3 rel, vec3 n)
 {
-    return masu_add_local_light(lit, s, b, number, rel, vec3(0.0));
+    return masu_add_local_light(lit, s, b, number, rel, n, vec3(0.0));
 }
 #endif
 

@@ -5,11 +5,13 @@
 #define MASU_SHARED_H
 
 #include "shared/ao.h"
+#include "shared/bounce.h"
 #include "shared/counters.h"
 #include "shared/culling.h"
 #include "shared/exposure.h"
 #include "shared/frame.h"
 #include "shared/lights.h"
+#include "shared/local_shadow.h"
 #include "shared/lookup_tables.h"
 #include "shared/materials.h"
 #include "shared/picking.h"

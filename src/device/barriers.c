@@ -53,6 +53,7 @@ masu_use masu_use_of(masu_usage usage, masu_pass_kind kind) {
                           VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, 1};
     case MASU_WRITE_DEPTH:
     case MASU_UPDATE_DEPTH:
+    case MASU_KEEP_DEPTH:
         return (masu_use){1,
                           VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT |
                               VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT,
@@ -113,7 +114,7 @@ static void add_tenants(const masu_recorder *rec, masu_image_id id, VkPipelineSt
 VkImageMemoryBarrier masu_image_barrier(const masu_recorder *rec, masu_image_id id,
                                         VkAccessFlags from, const masu_use *to,
                                         VkImageLayout old_layout) {
-    int depth = id < MASU_IMAGE_SOURCE && masu_images[id].format == VK_FORMAT_D32_SFLOAT;
+    int depth = id < MASU_IMAGE_SOURCE && masu_is_depth(masu_images[id].format);
     return (VkImageMemoryBarrier){
         .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
         .srcAccessMask = from,

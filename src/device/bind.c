@@ -151,7 +151,7 @@ static masu_result create_view(masu_device *m, uint32_t image, VkFormat format,
                                VkImageUsageFlags usage, VkImageView *view, masu_detail *detail) {
     const VkImageUsageFlags copies = VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
     if (!(usage & ~copies)) return MASU_OK;
-    int depth = format == VK_FORMAT_D32_SFLOAT;
+    int depth = masu_is_depth(format);
     VkImageViewUsageCreateInfo only = {.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_USAGE_CREATE_INFO,
                                        .usage = usage};
     VkImageViewCreateInfo info = {

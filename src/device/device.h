@@ -47,7 +47,7 @@ typedef struct masu_device {
     VkRenderPass render_passes[MASU_PASS_COUNT];
     VkFramebuffer framebuffers[MASU_PASS_COUNT];
     VkDescriptorSetLayout texture_layout; /* null without textures, as are the next three */
-    VkPipeline textured[MASU_TEXTURED_COUNT], masked_casters, masked_picks, tints;
+    VkPipeline textured[MASU_TEXTURED_COUNT], masked_casters, masked_faces, masked_picks, tints;
     VkPipeline culled[MASU_CULLED_COUNT]; /* null where nothing is seen from one side only */
     /* Of the subpass of emitting materials: by masu_draw_kind, two-sided, then culled. */
     VkPipeline emitting[2 * MASU_CULLED_COUNT];

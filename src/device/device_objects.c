@@ -74,6 +74,7 @@ void masu_device_destroy(masu_device *m) {
     for (uint32_t i = 0; i < 2 * MASU_CULLED_COUNT; i++)
         vk->DestroyPipeline(device, m->emitting[i], vk->allocator);
     vk->DestroyPipeline(device, m->masked_casters, vk->allocator);
+    vk->DestroyPipeline(device, m->masked_faces, vk->allocator);
     vk->DestroyPipeline(device, m->masked_picks, vk->allocator);
     vk->DestroyPipeline(device, m->tints, vk->allocator);
     vk->DestroyDescriptorSetLayout(device, m->texture_layout, vk->allocator);

@@ -35,16 +35,16 @@ static uint64_t now(const masu_device *m) {
     return m->plan->desc.clock_ns ? m->plan->desc.clock_ns(m->plan->desc.clock_user) : 0;
 }
 
-/* Constants 0 to 15 of all shaders, of which each has those it declares: of compute shaders whether
+/* Constants 0 to 16 of all shaders, of which each has those it declares: of compute shaders whether
  * counters are kept, of others whether masks are cut; whether the sky may be the analytic one;
  * whether there is fog; whether the sky is from a picture; whether reflections are traced; the tone
  * curve; the target's encoding; whether the last pass rounds to its steps or changes the order of
  * its channels; whether the output is whole groups of invocations; how many nodes a ray may have to
  * come back to; whether a tile's rays are shared by its invocations; whether coats have maps or
  * normals of their own; whether anything colours what shines through it; whether the output keeps
- * its size; whether means over frames are halves; whether albedo texels hold emission;
- * whether lights may be capsules or rectangles; whether rays share the light of their surfaces. */
-enum { SPECIAL_COUNT = 18 };
+ * its size; whether means over frames are halves; whether albedo texels hold emission; whether normals of the G-buffer
+ * may be those of maps; whether lights may be capsules or rectangles; whether rays share the light of their surfaces. */
+enum { SPECIAL_COUNT = 19 };
 
 static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
                                        VkBool32 constants[SPECIAL_COUNT]) {
@@ -66,7 +66,8 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
         {14, 14 * sizeof *constants, sizeof *constants},
         {15, 15 * sizeof *constants, sizeof *constants},
         {16, 16 * sizeof *constants, sizeof *constants},
-        {17, 17 * sizeof *constants, sizeof *constants}};
+        {17, 17 * sizeof *constants, sizeof *constants},
+        {18, 18 * sizeof *constants, sizeof *constants}};
     constants[0] = first;
     constants[1] = m->plan->needs.sky != 0;
     constants[2] = m->plan->scene.fog != 0;
@@ -92,8 +93,9 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
     constants[13] = sized;
     constants[14] = (VkBool32)masu_has_half_means(m->plan);
     constants[15] = m->plan->needs.emission_packed != 0;
-    constants[16] = m->plan->needs.area_lights != 0;
-    constants[17] = m->plan->needs.shared_lights != 0;
+    constants[16] = m->plan->scene.reliefs != 0;
+    constants[17] = m->plan->needs.area_lights != 0;
+    constants[18] = m->plan->needs.shared_lights != 0;
     return (VkSpecializationInfo){SPECIAL_COUNT, entries, SPECIAL_COUNT * sizeof *constants,
                                   constants};
 }
@@ -122,7 +124,7 @@ static masu_result create_set_layout(masu_device *m, const VkDescriptorSetLayout
 static int draws_polygons(uint32_t pass) {
     masu_geometry g = masu_passes[pass].geometry;
     return g == MASU_GEOMETRY_POLYGONS || g == MASU_GEOMETRY_CASCADE || g == MASU_GEOMETRY_BLENDED ||
-           g == MASU_GEOMETRY_PICK;
+           g == MASU_GEOMETRY_PICK || g == MASU_GEOMETRY_CASTERS;
 }
 
 /* Set 2: the textures of a draw. */
@@ -281,10 +283,11 @@ static masu_result create_render_pass(masu_device *m, uint32_t pass, masu_detail
     const masu_rung_plan *rp = masu_first_rung(m->plan, pass);
     for (uint32_t a = 0; a < rp->access_count[pass]; a++) {
         masu_access access = rp->access[pass][a];
-        int is_depth = access.usage == MASU_WRITE_DEPTH || access.usage == MASU_UPDATE_DEPTH;
-        int blended = access.usage == MASU_BLEND_COLOR;
+        int is_depth = access.usage == MASU_WRITE_DEPTH || access.usage == MASU_UPDATE_DEPTH ||
+                       access.usage == MASU_KEEP_DEPTH;
+        int kept = access.usage == MASU_BLEND_COLOR || access.usage == MASU_KEEP_DEPTH;
         int part = access.usage == MASU_UPDATE_COLOR;
-        if (!is_depth && !blended && !part && access.usage != MASU_WRITE_COLOR) continue;
+        if (!is_depth && !kept && !part && access.usage != MASU_WRITE_COLOR) continue;
         emission += part;
         VkImageLayout layout = is_depth ? VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL
                                         : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
@@ -296,9 +299,9 @@ static masu_result create_render_pass(masu_device *m, uint32_t pass, masu_detail
         attachments[n] =
             (VkAttachmentDescription){.format = masu_images[access.image].format,
                                       .samples = VK_SAMPLE_COUNT_1_BIT,
-                                      .loadOp = blended ? VK_ATTACHMENT_LOAD_OP_LOAD
-                                                : part  ? VK_ATTACHMENT_LOAD_OP_DONT_CARE
-                                                        : VK_ATTACHMENT_LOAD_OP_CLEAR,
+                                      .loadOp = kept ? VK_ATTACHMENT_LOAD_OP_LOAD
+                                                : part ? VK_ATTACHMENT_LOAD_OP_DONT_CARE
+                                                       : VK_ATTACHMENT_LOAD_OP_CLEAR,
                                       .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
                                       .stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE,
                                       .stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE,
@@ -379,7 +382,8 @@ static VkResult create_graphics_pipeline(masu_device *m, uint32_t pass,
     int polygons = draws_polygons(pass); /* else what the vertex shader makes up */
     int blends = blends_color(m, pass);
     int depths = geometry == MASU_GEOMETRY_POLYGONS || geometry == MASU_GEOMETRY_CASCADE ||
-                 geometry == MASU_GEOMETRY_BOXES || geometry == MASU_GEOMETRY_PICK || geometry == MASU_GEOMETRY_DEPTHS;
+                 geometry == MASU_GEOMETRY_BOXES || geometry == MASU_GEOMETRY_PICK || geometry == MASU_GEOMETRY_DEPTHS ||
+                 geometry == MASU_GEOMETRY_CASTERS || geometry == MASU_GEOMETRY_TILES;
     VkBool32 constants[SPECIAL_COUNT];
     VkSpecializationInfo special = specialise(m, masked, constants);
     VkPipelineShaderStageCreateInfo stages[2];
@@ -426,7 +430,7 @@ static VkResult create_graphics_pipeline(masu_device *m, uint32_t pass,
         .sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
         .depthTestEnable = depths ? VK_TRUE : VK_FALSE,
         .depthWriteEnable = depths ? VK_TRUE : VK_FALSE,
-        .depthCompareOp = VK_COMPARE_OP_GREATER};
+        .depthCompareOp = geometry == MASU_GEOMETRY_TILES ? VK_COMPARE_OP_ALWAYS : VK_COMPARE_OP_GREATER};
     VkPipelineColorBlendAttachmentState blend[5];
     memset(blend, 0, sizeof blend);
     for (uint32_t i = 0; i < 5; i++) {
@@ -555,6 +559,14 @@ static masu_result create_masked_casters(masu_device *m, uint32_t pass, masu_det
     return result;
 }
 
+/* Nor do its lamps stop there. */
+static masu_result create_masked_faces(masu_device *m, uint32_t pass, masu_detail *detail) {
+    if (!m->plan->scene.masks) return MASU_OK;
+    masu_result result = create_pipeline(m, pass, 1, VK_TRUE, 0, 0, &m->masked_faces, detail);
+    masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(m->masked_faces), "local_shadow, masks");
+    return result;
+}
+
 /* Nor is one picked there, or what is blended where its map is clear. */
 static masu_result create_masked_picks(masu_device *m, uint32_t pass, masu_detail *detail) {
     masu_result result = create_pipeline(m, pass, 1, VK_TRUE, 0, 0, &m->masked_picks, detail);
@@ -586,6 +598,8 @@ static masu_result create_graphics(masu_device *m, uint32_t pass, masu_detail *d
         result = create_emitting(m, pass, detail);
     if (!result && geometry == MASU_GEOMETRY_CASCADE && textures)
         result = create_masked_casters(m, pass, detail);
+    if (!result && geometry == MASU_GEOMETRY_CASTERS && textures)
+        result = create_masked_faces(m, pass, detail);
     if (!result && geometry == MASU_GEOMETRY_PICK && textures)
         result = create_masked_picks(m, pass, detail);
     return result;

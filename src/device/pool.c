@@ -70,7 +70,10 @@ static VkPipeline *place(masu_device *m, uint32_t i) {
     i -= MASU_CULLED_COUNT;
     if (i < 2 * MASU_CULLED_COUNT) return &m->emitting[i];
     i -= 2 * MASU_CULLED_COUNT;
-    return i == 0 ? &m->masked_casters : i == 1 ? &m->masked_picks : &m->tints;
+    return i == 0   ? &m->masked_casters
+           : i == 1 ? &m->masked_faces
+           : i == 2 ? &m->masked_picks
+                    : &m->tints;
 }
 
 /* Notes what a pipeline is known by. */

@@ -31,7 +31,7 @@ typedef struct MASU_MAY_ALIAS masu_pool {
 } masu_pool;
 
 /* Most pipelines of a renderer: each pass's two forms, and those of textures. */
-#define MASU_POOL_KEYS (2 * MASU_PASS_COUNT + MASU_TEXTURED_COUNT + 3 * MASU_CULLED_COUNT + 3)
+#define MASU_POOL_KEYS (2 * MASU_PASS_COUNT + MASU_TEXTURED_COUNT + 3 * MASU_CULLED_COUNT + 4)
 
 /* codes: of both stages; the second none of a compute pass. form: the vertex input, culling and
  * blending of a graphics pass. Of the constants those count that the code declares. The rest

@@ -81,6 +81,13 @@ static void record_compute(masu_recorder *rec, uint32_t pass, VkDescriptorSet se
     if (masu_passes[pass].extent == MASU_EXTENT_DECALS) {
         vk->CmdDispatchIndirect(rec->cmd, rec->m->objects.buffers[MASU_BUFFER_SPRITES],
                                 sprites_at(rec, MASU_SPRITE_DISPATCH));
+    } else if (masu_passes[pass].extent == MASU_EXTENT_RAYS ||
+               masu_passes[pass].extent == MASU_EXTENT_TRACED_PROBES) {
+        int rays = masu_passes[pass].extent == MASU_EXTENT_RAYS;
+        vk->CmdDispatchIndirect(rec->cmd, rec->m->objects.buffers[MASU_BUFFER_BOUNCE],
+                                rec->flight * rec->m->plan->buffers[MASU_BUFFER_BOUNCE].stride +
+                                    (rays ? offsetof(struct masu_bounce_header, rays)
+                                          : offsetof(struct masu_bounce_header, probes)));
     } else if (tiles != MASU_BUFFER_COUNT) {
         vk->CmdDispatchIndirect(rec->cmd, rec->m->objects.buffers[tiles], 0);
     } else {
@@ -98,6 +105,12 @@ SAME_PLACE(layers);
 SAME_PLACE(detail_u);
 SAME_PLACE(detail_v);
 SAME_PLACE(instances);
+_Static_assert(sizeof(struct masu_push_cascade) == sizeof(struct masu_push_local_shadow) &&
+                   offsetof(struct masu_push_cascade, cascade) == offsetof(struct masu_push_local_shadow, face) &&
+                   offsetof(struct masu_push_cascade, rise) == offsetof(struct masu_push_local_shadow, rise),
+               "faces of lamps are drawn as cascades are");
+_Static_assert(offsetof(struct masu_push_cascade, cascade) == offsetof(struct masu_push_gbuffer, material),
+               "a cascade has its number in the place of the material");
 _Static_assert(offsetof(struct masu_push_cascade, rise) == offsetof(struct masu_push_gbuffer, meso),
                "a cascade has no meso, and a rise there");
 #undef SAME_PLACE
@@ -116,10 +129,11 @@ SAME_PLACE(material, blended);
 #define GRAPHICS_STAGES (VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT)
 
 /* How a material is drawn: 0 without textures, then as draws.h counts. The sun asks for no maps but the masks. */
-static uint32_t sweep_of(const masu_draw_material *material, uint32_t view) {
+static uint32_t sweep_of(const masu_draw_material *material, int casts) {
     if (material->flags & MASU_MATERIAL_IS_BLEND) return UINT32_MAX; /* transparents.c; no shadow */
+    if (casts && material->flags & MASU_MATERIAL_NO_SHADOW) return UINT32_MAX;
     uint32_t kind = masu_draw_kind(material->flags);
-    return view && kind == 1 + MASU_TEXTURED_OPAQUE ? 0 : kind;
+    return casts && kind == 1 + MASU_TEXTURED_OPAQUE ? 0 : kind;
 }
 
 /* The same of what is picked: whatever has holes is asked for its map, and what is blended is there where its map
@@ -154,8 +168,8 @@ static void bind_maps(masu_recorder *rec, VkPipelineLayout layout,
  * order of drawing. A sweep draws what shares a pipeline: without textures, with, and masks last, so
  * that most of what they would hide or shade in vain is known already. Emitting materials have
  * sweeps of their own where they have a subpass. */
-static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep, int culled,
-                         int emitting) {
+static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep, int culled, int emitting,
+                         uint32_t face) {
     const masu_device *m = rec->m;
     const masu_vk *vk = &m->vk;
     int kept = m->plan->desc.resizable != 0; /* then the blob may be gone */
@@ -163,17 +177,19 @@ static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep, int 
     if (!kept) v = masu_scene_data_view(&m->plan->scene);
     VkPipelineLayout layout = m->layouts[pass];
     VkDeviceSize zero = 0;
-    int sun = masu_is_cascade(pass), pick = pass == MASU_PASS_PICK;
+    int lamp = pass == MASU_PASS_LOCAL_SHADOW, sun = masu_is_cascade(pass), pick = pass == MASU_PASS_PICK;
+    int casters = sun || lamp;
     uint32_t bound = MASU_BLOB_NONE, view = sun ? 1 + pass - MASU_PASS_CASCADE_0 : 0;
     int apart = pass == MASU_PASS_GBUFFER && masu_has_emission_subpass(m->plan);
     VkPipeline pipeline = emitting ? m->emitting[(culled ? MASU_CULLED_COUNT : 0) + sweep]
                           : culled ? m->culled[sweep]
                           : !sweep ? m->pipelines[sun ? MASU_PASS_CASCADE_0 : pass]
                           : sun  ? m->masked_casters
+                          : lamp ? m->masked_faces
                           : pick ? m->masked_picks
                                  : m->textured[sweep - 1];
     /* Nothing is drawn so. */
-    if (!pipeline || ((sun || pick) && sweep == 1 + MASU_TEXTURED_OPAQUE)) return;
+    if (!pipeline || ((casters || pick) && sweep == 1 + MASU_TEXTURED_OPAQUE)) return;
     vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
     vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, MASU_SET_GLOBAL, 1,
                               &m->global_sets[rec->flight][pass], 0, NULL);
@@ -182,15 +198,21 @@ static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep, int 
         vk->CmdBindVertexBuffers(rec->cmd, 1, 1, &m->objects.buffers[MASU_BUFFER_TEXCOORDS], &zero);
     vk->CmdBindIndexBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_INDICES], 0,
                            VK_INDEX_TYPE_UINT32);
-    int occlusion = masu_has_pass(&rec->rp->active, MASU_PASS_CULL);
+    int occlusion = !lamp && masu_has_pass(&rec->rp->active, MASU_PASS_CULL);
     uint32_t lists = view * m->plan->listed;
     if (occlusion) lists += (uint32_t)m->plan->drawn.lists;
     VkDeviceSize commands = rec->flight * m->plan->buffers[MASU_BUFFER_DRAWS].stride;
     commands += pick ? m->plan->pick_draws * MASU_DRAW_BYTES : MASU_DRAWS_OF(m->plan, view, occlusion);
     if (pick) lists = (uint32_t)m->plan->drawn.picks;
+    if (lamp) {
+        lists = (uint32_t)m->plan->drawn.faces + face * m->plan->listed;
+        commands = rec->flight * m->plan->buffers[MASU_BUFFER_DRAWS].stride +
+                   (m->plan->face_draws + (uint64_t)face * m->plan->draws) * MASU_DRAW_BYTES;
+    }
     masu_push_block block = push_of(rec, pass);
     struct masu_push_gbuffer push; /* a cascade is told the same, but its number for the material */
     memcpy(&push, &block.own, sizeof push);
+    if (lamp) push.material = face;
     for (uint32_t b = 0; b < rec->draws->batch_count; b++) {
         const masu_batch *batch = &rec->draws->batches[b];
         push.instances = lists + batch->first_listed;
@@ -199,10 +221,10 @@ static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep, int 
                                             : masu_draw_material_of(&v, batch->first_primitive + d);
             int blended = (drawn.flags & MASU_MATERIAL_IS_BLEND) != 0;
             if (batch->mirrored) drawn.flags &= ~(uint32_t)MASU_MATERIAL_IS_SINGLE;
-            if ((pick ? pick_sweep_of(&drawn) : sweep_of(&drawn, view)) != sweep) continue;
+            if ((pick ? pick_sweep_of(&drawn) : sweep_of(&drawn, casters)) != sweep) continue;
             if (apart && emitting != (drawn.emits != 0)) continue;
-            if (!sun && !pick && culled != ((drawn.flags & MASU_MATERIAL_IS_SINGLE) != 0)) continue;
-            if (sun) {
+            if (!casters && !pick && culled != ((drawn.flags & MASU_MATERIAL_IS_SINGLE) != 0)) continue;
+            if (casters) {
                 memcpy(&push.meso, &drawn.rise, sizeof push.meso); /* a cascade reads rise there */
             } else if (pick) {
                 push.material = blended ? 1 : 0;
@@ -229,7 +251,20 @@ static void record_polygons(masu_recorder *rec, uint32_t pass) {
     for (int emitting = 0; emitting < subpasses; emitting++) {
         if (emitting) rec->m->vk.CmdNextSubpass(rec->cmd, VK_SUBPASS_CONTENTS_INLINE);
         for (uint32_t sweep = 0; sweep < sweeps; sweep++)
-            for (int side = 0; side < sides; side++) record_sweep(rec, pass, sweep, side, emitting);
+            for (int side = 0; side < sides; side++) record_sweep(rec, pass, sweep, side, emitting, 0);
+    }
+}
+
+/* The shadow faces that a frame of this rung may render, each in its square. */
+static void record_faces(masu_recorder *rec, uint32_t pass) {
+    const masu_device *m = rec->m;
+    uint32_t sweeps = m->texture_layout ? 1 + MASU_TEXTURED_COUNT : 1, edge = m->plan->local_tile;
+    for (uint32_t face = 0; face < m->plan->desc.rungs[rec->rung].local_shadow_faces; face++) {
+        VkRect2D area = {masu_local_face_place(m->plan, face), {edge, edge}};
+        VkViewport viewport = {(float)area.offset.x, (float)area.offset.y, (float)edge, (float)edge, 0.0f, 1.0f};
+        m->vk.CmdSetViewport(rec->cmd, 0, 1, &viewport);
+        m->vk.CmdSetScissor(rec->cmd, 0, 1, &area);
+        for (uint32_t sweep = 0; sweep < sweeps; sweep++) record_sweep(rec, pass, sweep, 0, 0, face);
     }
 }
 
@@ -324,8 +359,8 @@ static void record_occluders(masu_recorder *rec) {
     }
 }
 
-/* One triangle that covers the render area. */
-static void record_fullscreen(masu_recorder *rec, uint32_t pass, VkDescriptorSet set) {
+/* So many vertices that the vertex shader makes up: a triangle that covers the render area, or squares. */
+static void record_made_up(masu_recorder *rec, uint32_t pass, VkDescriptorSet set, uint32_t vertices) {
     const masu_vk *vk = &rec->m->vk;
     masu_push_block push = push_of(rec, pass);
     vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, rec->m->pipelines[pass]);
@@ -333,7 +368,7 @@ static void record_fullscreen(masu_recorder *rec, uint32_t pass, VkDescriptorSet
     vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, rec->m->layouts[pass],
                               MASU_SET_GLOBAL, set ? 2 : 1, sets, 0, NULL);
     vk->CmdPushConstants(rec->cmd, rec->m->layouts[pass], GRAPHICS_STAGES, 0, sizeof push, &push);
-    vk->CmdDraw(rec->cmd, 3, 1, 0, 0);
+    vk->CmdDraw(rec->cmd, vertices, 1, 0, 0);
 }
 
 /* The part of its images that a graphics pass clears and draws. */
@@ -378,7 +413,10 @@ static void record_graphics(masu_recorder *rec, uint32_t pass, const VkDescripto
         if (pass == MASU_PASS_PARTICLES) /* the last draw */
             record_sprites(rec, pass, sets[pass], MASU_SPRITE_DRAWS + rec->m->plan->scene.transparents);
         if (pass == MASU_PASS_LINES) record_sprites(rec, pass, sets[pass], MASU_SPRITE_LINES);
-        if (pass == MASU_PASS_SPLIT_DEPTH) record_fullscreen(rec, pass, sets[pass]);
+        if (pass == MASU_PASS_SPLIT_DEPTH) record_made_up(rec, pass, sets[pass], 3);
+        if (pass == MASU_PASS_LOCAL_SHADOW) record_faces(rec, pass);
+        if (pass == MASU_PASS_LOCAL_SHADOW_KEEP)
+            record_made_up(rec, pass, sets[pass], 6 * rec->m->plan->desc.rungs[rec->rung].local_shadow_faces);
     }
     vk->CmdEndRenderPass(rec->cmd);
 }
@@ -394,7 +432,7 @@ static void record_readback(masu_recorder *rec, uint32_t pass) {
         while (masu_images[id].readback >> bit != 1u) bit++;
         VkBufferImageCopy copy = {
             .bufferOffset = rec->flight * buffer->stride + rec->m->plan->readback_offset[bit],
-            .imageSubresource = {.aspectMask = masu_images[id].format == VK_FORMAT_D32_SFLOAT
+            .imageSubresource = {.aspectMask = masu_is_depth(masu_images[id].format)
                                                    ? VK_IMAGE_ASPECT_DEPTH_BIT
                                                    : VK_IMAGE_ASPECT_COLOR_BIT,
                                  .layerCount = 1},

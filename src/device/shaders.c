@@ -119,7 +119,8 @@ masu_draw_code masu_draw_code_of(const masu_frame_plan *plan, uint32_t pass, int
                                ? scene_code(plan, pass)
                                : permutation(plan, pass, of_pass[pass].fragment, textured, 0)};
     /* Through the holes of masks the sun shines; the rest of a cascade is depth alone. */
-    if (masu_passes[pass].geometry == MASU_GEOMETRY_CASCADE && !textured)
+    masu_geometry geometry = masu_passes[pass].geometry;
+    if ((geometry == MASU_GEOMETRY_CASCADE || geometry == MASU_GEOMETRY_CASTERS) && !textured)
         code.fragment = (masu_code){0};
     return code;
 }

@@ -28,6 +28,10 @@ static uint8_t frames_to_write(const masu_frame_plan *plan) {
     return (uint8_t)(plan->desc.frames_in_flight + (plan->needs.velocity ? 1 : 0));
 }
 
+int masu_instance_moved(const masu_instances *in, const masu_frame_plan *plan, uint32_t i) {
+    return masu_instance_dirty(in, i) == frames_to_write(plan);
+}
+
 /* Nothing is anywhere yet. */
 static void init_reserve(masu_instances *in, const masu_frame_plan *plan) {
     for (uint32_t mesh = 0; mesh < plan->scene.meshes; mesh++) in->of_mesh[mesh] = MASU_BLOB_NONE;

@@ -41,6 +41,9 @@ static inline int masu_instance_hidden(const masu_instances *in, uint32_t instan
     return in->flags[instance] & MASU_INSTANCE_HIDDEN;
 }
 
+/* Whether it was moved, bent, shown or hidden since the last frame; to be asked before masu_instances_write. */
+int masu_instance_moved(const masu_instances *in, const masu_frame_plan *plan, uint32_t instance);
+
 /* Of finite rows. */
 void masu_instances_place(masu_instances *in, const masu_frame_plan *plan, uint32_t instance,
                           const float rows[12]);

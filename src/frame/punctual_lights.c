@@ -70,26 +70,50 @@ static void carry(const masu_instances *in, masu_punctual_light_state *s, double
     s->radius = (float)fmin(fmax((double)s->radius * size, 1e-6), 1e9);
 }
 
-void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_frame_data *f) {
+/* Whether a light is there in this frame; where, if it is. */
+static int is_there(const masu_lights *l, const masu_instances *in, uint32_t i,
+                    masu_punctual_light_state *state, double position[3], double direction[3]) {
+    uint64_t carrier = l->states[i].instance.id;
+    if (!masu_handle_lives(&l->handles, i)) return 0;
+    if (carrier && masu_instance_hidden(in, (uint32_t)carrier - 1)) return 0;
+    *state = l->states[i];
+    carry(in, state, position, direction);
+    return 1;
+}
+
+void masu_lights_cast(const masu_lights *l, masu_local_shadows *shadows, const masu_instances *in,
+                      const masu_bounds *bounds, const masu_frame_data *f) {
+    if (!f->plan->needs.local_shadows) return;
+    masu_local_shadows_begin(shadows, f);
+    for (uint32_t i = 0; i < f->plan->scene.lights; i++) {
+        double position[3], direction[3];
+        masu_punctual_light_state state;
+        if (l->states[i].no_shadow || !is_there(l, in, i, &state, position, direction)) continue;
+        masu_local_shadows_offer(shadows, f, i, &state, position, direction);
+    }
+    masu_local_shadows_write(shadows, in, bounds, f);
+}
+
+void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_local_shadows *shadows,
+                       const masu_frame_data *f) {
     uint32_t lights = f->plan->scene.lights;
     masu_light_header header = {.list_words = MASU_LIGHT_LIST_WORDS(lights)};
     if (!lights) return;
-    /* Lights outside of the view may light reflected surfaces. */
-    int culls = masu_frame_rung(f)->frustum != MASU_OFF && !f->plan->needs.reflections;
+    if (f->plan->local_atlas) header.atlas_texel = 1.0f / (float)f->plan->local_atlas;
+    /* Lights outside of the view may light reflected surfaces, and what probes see. */
+    int culls = masu_frame_rung(f)->frustum != MASU_OFF && !f->plan->needs.reflections && !f->plan->needs.bounce;
     unsigned char *to = masu_frame_slot(f, MASU_BUFFER_LIGHTS);
     struct masu_punctual_light_data *data =
         (struct masu_punctual_light_data *)(void *)(to + sizeof header);
     for (uint32_t i = 0; i < lights; i++) {
         struct masu_punctual_light_data placed;
         double position[3], direction[3];
-        uint64_t carrier = l->states[i].instance.id;
-        if (!masu_handle_lives(&l->handles, i)) continue;
-        if (carrier && masu_instance_hidden(in, (uint32_t)carrier - 1)) continue;
-        masu_punctual_light_state state = l->states[i];
-        carry(in, &state, position, direction);
+        masu_punctual_light_state state;
+        if (!is_there(l, in, i, &state, position, direction)) continue;
         for (uint32_t k = 0; k < 3; k++) position[k] -= f->eye[k];
         if (!masu_light_place(&state, position, direction, &placed)) continue;
         if (culls && masu_light_outside(placed.bound, f->u.clip_from_rel)) continue;
+        if (f->plan->needs.local_shadows) masu_local_shadows_of(shadows, i, placed.shadow);
         data[header.count++] = placed;
     }
     memcpy(to, &header, sizeof header);
@@ -155,9 +179,9 @@ masu_result masu_lights_set(masu_lights *l, const masu_instances *in, uint32_t l
     masu_result result = take_state(l, in, name, &to, detail);
     if (result) return result;
     /* Padding at the end may differ in equal states. */
-    enum { MEMBERS = offsetof(masu_punctual_light_state, has_surface) + sizeof(to.has_surface) };
+    enum { MEMBERS = offsetof(masu_punctual_light_state, no_shadow) + sizeof(to.no_shadow) };
     _Static_assert(sizeof to - MEMBERS < _Alignof(masu_punctual_light_state),
-                   "a member follows `has_surface`: name the last one");
+                   "a member follows `no_shadow`: name the last one");
     l->changes += memcmp(&l->states[light], &to, MEMBERS) != 0;
     l->states[light] = to;
     return MASU_OK;

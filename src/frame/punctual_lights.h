@@ -8,6 +8,7 @@
 #define MASU_PUNCTUAL_LIGHTS_H
 
 #include "frame/instances.h"
+#include "frame/local_shadows.h"
 
 typedef struct masu_lights {
     /* plan->scene.lights of them. The instance that carries one is not its handle here, but 1 + its index;
@@ -39,6 +40,11 @@ masu_result masu_lights_add(masu_lights *l, const masu_instances *in,
 void masu_lights_remove(masu_lights *l, uint32_t light);
 
 /* Those that may be seen to light something to the slot; after the camera. */
-void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_frame_data *f);
+void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_local_shadows *shadows,
+                       const masu_frame_data *f);
+
+/* Finds the lights that may cast shadows in this frame, and lets masu_local_shadows_write do the rest. */
+void masu_lights_cast(const masu_lights *l, masu_local_shadows *shadows, const masu_instances *in,
+                      const masu_bounds *bounds, const masu_frame_data *f);
 
 #endif

@@ -162,7 +162,8 @@ static VkImageUsageFlags usage_flag(masu_usage usage) {
     case MASU_UPDATE_COLOR:
     case MASU_BLEND_COLOR: return VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
     case MASU_WRITE_DEPTH:
-    case MASU_UPDATE_DEPTH: return VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+    case MASU_UPDATE_DEPTH:
+    case MASU_KEEP_DEPTH: return VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
     case MASU_WRITE_COPY: return VK_IMAGE_USAGE_TRANSFER_DST_BIT;
     case MASU_READ_BUFFER:
     case MASU_READ_VERTICES:
@@ -214,7 +215,9 @@ static int is_of_use(const masu_desc *d, uint32_t r, masu_knob_use use) {
     case MASU_USE_AO: return s && s->occlusion_radius > 0.0f;
     case MASU_USE_SHADOWS: return s && s->shadow_cascades;
     case MASU_USE_LIGHTS: return s && s->lights;
+    case MASU_USE_LOCAL_SHADOWS: return s && s->shadow_lights && s->instances;
     case MASU_USE_SPECULAR: return masu_could_trace(d->scene, &d->rungs[r]);
+    case MASU_USE_BOUNCE: return s && s->bounce;
     case MASU_USE_ALWAYS:
     case MASU_USE_UPSCALED:
     case MASU_USE_SHARPEN:
@@ -265,6 +268,29 @@ static int wants(const masu_desc *d, int (*has)(const masu_desc *d, uint32_t r))
     return 0;
 }
 
+/* The atlas has room for the most lights that may have shadows at a time, each spot with a tile of the largest
+ * size, each point with six of half of it; what needs more gets smaller tiles. */
+static void resolve_local_shadows(masu_frame_plan *plan) {
+    const masu_desc *d = &plan->desc;
+    uint32_t lights = 0, most = MASU_LOCAL_TILE_LEAST, viewports = d->viewport_count ? d->viewport_count : 1;
+    for (uint32_t r = 0; r < d->rung_count; r++) {
+        const masu_rung *rung = &d->rungs[r];
+        if (rung->local_shadows == MASU_OFF) continue;
+        if (plan->local_faces < rung->local_shadow_faces) plan->local_faces = rung->local_shadow_faces;
+        if (lights < rung->local_shadow_lights) lights = rung->local_shadow_lights;
+        if (most < rung->local_shadow_atlas) most = rung->local_shadow_atlas;
+    }
+    lights *= viewports;
+    if (lights > plan->scene.shadow_lights) lights = plan->scene.shadow_lights;
+    uint32_t points = plan->scene.shadow_lights - plan->scene.shadow_spots;
+    if (points > lights) points = lights;
+    uint64_t tile = MASU_LOCAL_TILE_MOST, area = points * 6 * (tile / 2) * (tile / 2) + (lights - points) * tile * tile;
+    plan->local_lights = lights;
+    plan->local_atlas = MASU_LOCAL_TILE_LEAST;
+    while (2 * plan->local_atlas <= most && (uint64_t)plan->local_atlas * plan->local_atlas < area) plan->local_atlas *= 2;
+    plan->local_tile = plan->local_atlas < MASU_LOCAL_TILE_MOST ? plan->local_atlas : MASU_LOCAL_TILE_MOST;
+}
+
 masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                          uint64_t storage_alignment, masu_frame_plan *plan, masu_detail *detail) {
     memset(plan, 0, sizeof *plan);
@@ -298,10 +324,11 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                .dynamic = d->scene && plan->scene.sdf_dynamic,
                                .anchored = d->scene && plan->scene.sdf_anchored,
                                .sdf_occlusion = d->scene && plan->scene.sdf_occlusion,
-                               .probes = d->scene && plan->scene.probes,
+                               .probes = d->scene && plan->scene.probes && (!plan->scene.probes_unlit || any.bounce),
                                .shadow = d->scene && plan->scene.shadow_cascades,
                                .transparents = d->scene && plan->scene.transparents,
                                .lights = d->scene && plan->scene.lights,
+                               .local_shadows = d->scene && any.local_shadows,
                                .area_lights = d->scene && plan->scene.lights &&
                                               (plan->scene.area_lights || d->area_lights),
                                .shared_lights = d->scene && plan->scene.lights &&
@@ -312,9 +339,11 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                .readback = d->readback,
                                .split = d->split,
                                .reflections = any.specular,
-                               .traced = any.specular && plan->scene.trace_instances,
+                               .traced = (any.specular || any.bounce) && plan->scene.trace_instances,
                                .traced_sdf = any.specular && plan->scene.trace_sdf,
-                               .query = any.specular && plan->scene.trace_instances &&
+                               .bounce = any.bounce,
+                               .bounce_sdf = any.bounce && plan->scene.bounce_sdf,
+                               .query = any.specular && !any.bounce && plan->scene.trace_instances &&
                                         d->ray_query == MASU_ON,
                                .accumulate = d->debug.reference != 0,
                                .any_taa = wants(d, rung_has_taa),
@@ -345,6 +374,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
     masu_output_plan(plan);
     if (plan->needs.query) plan->scene.trace_nodes = 0; /* the device has trees of its own */
     masu_shadow_peak(d, &plan->cascades, &plan->cascade_size);
+    if (plan->needs.local_shadows) resolve_local_shadows(plan);
     /* The sun's: each cascade, else all of the scene. */
     uint32_t suns = plan->needs.shadow ? plan->cascades : d->debug.casters ? 1 : 0;
     plan->views = plan->needs.raster ? 1 + suns : 1;

@@ -80,11 +80,23 @@ static const char *no_shadow_map(const masu_needs *n) {
     return n->raster ? "the scene has no shadow map" : "the scene has no instances";
 }
 
+static const char *no_local_shadows(const masu_needs *n) {
+    return n->local_shadows ? "rung.local_shadows is off"
+           : n->lights      ? "no punctual light casts shadows of polygons, or rung.local_shadows is off"
+                            : "the scene has no punctual lights";
+}
+
 static const char *no_specular(const masu_needs *n) {
     return !n->scene       ? NO_SCENE
            : n->dropped & MASU_DROPPED_SPECULAR
                  ? "rung.specular is off, or the device has too few storage buffers"
                             : "nothing is glossy enough to trace, or rung.specular is off";
+}
+
+static const char *no_bounce(const masu_needs *n) {
+    return n->dropped & MASU_DROPPED_BOUNCE
+               ? "rung.bounce is off, or the device has too few storage buffers"
+               : "the scene has no live bounce, or rung.bounce is off";
 }
 
 static const char *no_filter(const masu_needs *n, const char *off) {
@@ -128,6 +140,7 @@ static const char *no_upscale(const masu_needs *n) {
 #define BLEND(id) IMAGE_ACCESS(id, BLEND_COLOR)
 #define DEPTH(id) IMAGE_ACCESS(id, WRITE_DEPTH)
 #define DEPTH_PART(id) IMAGE_ACCESS(id, UPDATE_DEPTH)
+#define DEPTH_KEPT(id) IMAGE_ACCESS(id, KEEP_DEPTH)
 #define COPY_TO(id) IMAGE_ACCESS(id, WRITE_COPY)
 #define COPY_BACK(id) IMAGE_ACCESS(id, READ_BACK)
 #define READ_LATEST(class_of) {MASU_LATEST(MASU_CLASS_##class_of), MASU_READ}
@@ -166,7 +179,8 @@ int masu_is_cascade(uint32_t pass) {
 int masu_has_set(uint32_t pass) {
     masu_geometry geometry = masu_passes[pass].geometry;
     return masu_passes[pass].kind == MASU_PASS_COMPUTE || geometry == MASU_GEOMETRY_BLENDED ||
-           geometry == MASU_GEOMETRY_SPRITES || geometry == MASU_GEOMETRY_DEPTHS;
+           geometry == MASU_GEOMETRY_SPRITES || geometry == MASU_GEOMETRY_DEPTHS ||
+           geometry == MASU_GEOMETRY_TILES;
 }
 
 int masu_access_binds(masu_access access, int writes) {
@@ -186,10 +200,12 @@ VkExtent2D masu_extent_of(masu_image_extent extent, VkExtent2D render, VkExtent2
     if (extent == MASU_EXTENT_ATLAS)
         return (VkExtent2D){MASU_ATLAS_WIDTH, MASU_ATLAS_HEIGHT};
     if (extent == MASU_EXTENT_ONE || extent == MASU_EXTENT_KEPT || extent == MASU_EXTENT_BATCHES ||
-        extent == MASU_EXTENT_PROBES || extent == MASU_EXTENT_SKINS || extent == MASU_EXTENT_SKIN_TREES)
+        extent == MASU_EXTENT_PROBES || extent == MASU_EXTENT_RAYS ||
+        extent == MASU_EXTENT_TRACED_PROBES || extent == MASU_EXTENT_SKINS || extent == MASU_EXTENT_SKIN_TREES)
         return (VkExtent2D){1, 1};
     if (extent == MASU_EXTENT_PICK) return (VkExtent2D){2, 2};
-    if (extent == MASU_EXTENT_SHADOW) return (VkExtent2D){0, 0};
+    if (extent == MASU_EXTENT_SHADOW || extent == MASU_EXTENT_LOCAL_FACES || extent == MASU_EXTENT_LOCAL_ATLAS)
+        return (VkExtent2D){0, 0};
     int shown = extent == MASU_EXTENT_OUTPUT || extent == MASU_EXTENT_OUTPUT_PAIRS ||
                 extent == MASU_EXTENT_OUTPUT_ODD;
     VkExtent2D size = shown ? output : render;

@@ -8,6 +8,7 @@ uint32_t masu_format_bytes(VkFormat format) {
     case VK_FORMAT_R32G32_UINT: return 8;
     case VK_FORMAT_R32G32B32A32_UINT:
     case VK_FORMAT_R32G32B32A32_SFLOAT: return 16;
+    case VK_FORMAT_D16_UNORM: return 2;
     default: return 4;
     }
 }
@@ -43,12 +44,27 @@ VkOffset2D masu_cascade_place(const masu_frame_plan *plan, uint32_t cascade) {
                         (int32_t)(cascade / columns * plan->cascade_size)};
 }
 
+/* ---- Shadows of punctual lights -------------------------------------------------------------- */
+
+#define FACES_ACROSS 4u
+
+VkOffset2D masu_local_face_place(const masu_frame_plan *plan, uint32_t face) {
+    return (VkOffset2D){(int32_t)(face % FACES_ACROSS * plan->local_tile),
+                        (int32_t)(face / FACES_ACROSS * plan->local_tile)};
+}
+
 VkExtent2D masu_plan_extent(const masu_frame_plan *plan, masu_image_extent extent,
                             VkExtent2D render) {
     uint32_t columns = cascade_columns(plan);
     if (extent == MASU_EXTENT_HALF && plan->desc.debug.ao_full) return render;
     int traced = extent == MASU_EXTENT_TRACED || extent == MASU_EXTENT_GLOSSY;
     if (traced && plan->desc.debug.reference) return render;
+    if (extent == MASU_EXTENT_LOCAL_ATLAS) return (VkExtent2D){plan->local_atlas, plan->local_atlas};
+    if (extent == MASU_EXTENT_LOCAL_FACES) {
+        uint32_t across = plan->local_faces < FACES_ACROSS ? plan->local_faces : FACES_ACROSS;
+        return (VkExtent2D){across * plan->local_tile,
+                            (plan->local_faces + FACES_ACROSS - 1) / FACES_ACROSS * plan->local_tile};
+    }
     if (extent != MASU_EXTENT_SHADOW) return masu_extent_of(extent, render, plan->desc.output);
     return (VkExtent2D){columns * plan->cascade_size,
                         (plan->cascades + columns - 1) / columns * plan->cascade_size};

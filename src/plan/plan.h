@@ -72,7 +72,7 @@ typedef struct masu_block_plan {
 /* Words of a slot of MASU_BUFFER_DRAWN; masu_shared.h says what is where. Without occlusion there
  * are the lists of stage 1 alone. */
 typedef struct masu_drawn_plan {
-    uint64_t header, lists, kept, batches, large, boxes, occluders, pairs, transparents, picks, words;
+    uint64_t header, lists, kept, batches, large, boxes, occluders, pairs, transparents, picks, faces, words;
 } masu_drawn_plan;
 
 /* Where in a slot of MASU_BUFFER_SPRITES the three kinds begin, in vec4; masu_shared.h says what is there. */
@@ -127,6 +127,7 @@ typedef struct masu_frame_plan {
     masu_sprites_plan sprites;
     uint64_t transparent_draws; /* of MASU_BUFFER_DRAWS: where theirs begin */
     uint64_t pick_draws; /* of the same: where those of the picked pixel begin */
+    uint64_t face_draws; /* of the same: where those of the shadow faces begin */
     uint64_t receiver_mask; /* first word of MASU_BUFFER_SEEN that is of receivers; 0: it has none */
     uint32_t pass_sets; /* descriptor sets of set 1 over all rungs and targets */
     uint32_t targets_max; /* targets that there may be: more than now only with desc.resizable */
@@ -134,6 +135,9 @@ typedef struct masu_frame_plan {
     uint32_t viewport_recordings; /* of one viewport */
     uint32_t parts; /* command buffers of a recording: 1, and one more for each point where it is split */
     uint32_t cascades, cascade_size; /* of the shadow map: the most of any rung */
+    /* Shadows of punctual lights, the most of any rung: faces rendered per frame, lights that have them in all
+     * viewports, texels along an edge of the atlas and of its largest tile. 0: there are none. */
+    uint32_t local_faces, local_lights, local_atlas, local_tile;
 } masu_frame_plan;
 
 /* v rounded up to a multiple of a, which need not be a power of two. */
@@ -178,6 +182,8 @@ static inline uint32_t masu_own_traced(const masu_frame_plan *p) {
 
 /* Where a cascade lies in the shadow map, of the size that the map is laid out for. */
 VkOffset2D masu_cascade_place(const masu_frame_plan *plan, uint32_t cascade);
+/* Where the square of one of the frame's shadow faces of punctual lights lies. */
+VkOffset2D masu_local_face_place(const masu_frame_plan *plan, uint32_t face);
 /* Bits over a rung's slow cascades only, out of bits over all: the variant that draws them. */
 uint32_t masu_recording_variant(const masu_rung_plan *rung, uint32_t drawn);
 /* Whether a variant of a rung's recordings draws a cascade. */
@@ -202,6 +208,9 @@ int masu_comes_last(const masu_rung_plan *rung, uint32_t pass);
 
 /* Texel bytes of the formats of the table. */
 uint32_t masu_format_bytes(VkFormat format);
+static inline int masu_is_depth(VkFormat format) {
+    return format == VK_FORMAT_D32_SFLOAT || format == VK_FORMAT_D16_UNORM;
+}
 
 /* Whether the G-buffer pass draws emitting materials in a second subpass, the only one that has hdr
  * attached. Where materials may begin to emit at run time, all are drawn with it in one. */

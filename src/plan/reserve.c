@@ -100,6 +100,7 @@ masu_result masu_reserve_add(const masu_reserve *reserve, masu_scene_data *scene
                              masu_reserve_plan *out, masu_detail *detail) {
     *out = (masu_reserve_plan){.lights = reserve->lights};
     scene->lights += reserve->lights;
+    scene->shadow_lights += reserve->lights;
     if (!reserve->models || !scene->models) return MASU_OK;
     masu_result result = add_models(reserve->models, scene, out, detail);
     if (result) return result;

@@ -25,7 +25,7 @@
 
 #define MASU_BLOB_MAGIC 0x5553414Du /* the bytes 'M' 'A' 'S' 'U' */
 #define MASU_BLOB_VERSION 16u
-/* layout of version 16: 2873034419 (kinds of sections and their elements, tests/scripts/scene_forms.sh) */
+/* layout of version 16: 650198991 (kinds of sections and their elements, tests/scripts/scene_forms.sh) */
 #define MASU_BLOB_ALIGN 16u
 #define MASU_BLOB_NONE 0xFFFFFFFFu /* "no name", "no parent" */
 #define MASU_BLOB_PART_SLOTS 8u    /* of an SDF's part, in front of all others: sphere, slope, form, first argument, material */
@@ -87,7 +87,8 @@ enum masu_blob_kind {
     MASU_BLOB_SKINS = 54,    /* meshes that joints bend; these three come together */
     MASU_BLOB_JOINTS = 55,   /* by skin; those of one kind share them */
     MASU_BLOB_SKIN_VERTICES = 56, /* the same */
-    MASU_BLOB_KIND_COUNT = 57
+    MASU_BLOB_BOUNCE_SDF_SPIRV = 57, /* rays of live probes meet the SDF */
+    MASU_BLOB_KIND_COUNT = 58
 };
 
 /* Four texels by four make a block. sRGB formats hold display-encoded colour. */
@@ -123,7 +124,8 @@ enum masu_blob_material_flags {
     /* Whose relief the normal map is not: the mesh's own normal is the coat's, or what lies below it */
     MASU_MATERIAL_COAT_SMOOTH = 0x200000,
     MASU_MATERIAL_BASE_SMOOTH = 0x400000,
-    MASU_MATERIAL_KNOWN = 0x7DFFFF
+    MASU_MATERIAL_NO_SHADOW = 0x800000, /* casts no shadows, neither of the sun nor of other lights */
+    MASU_MATERIAL_KNOWN = 0xFDFFFF
 };
 
 /* The guarantees of Vulkan 1.1 for maxImageDimension2D and maxImageArrayLayers. */
@@ -333,6 +335,7 @@ enum masu_blob_light_type {
     MASU_LIGHT_RECTANGLE = 4,
     MASU_LIGHT_TYPE = 0xFF,
     /* Beside the type: */
+    MASU_LIGHT_NO_SHADOW = 0x100,
     MASU_LIGHT_TWO_SIDED = 0x200, /* rectangle */
     MASU_LIGHT_SURFACE = 0x400    /* of a surface of the scene; not of points and spots */
 };
@@ -366,6 +369,8 @@ typedef struct masu_blob_light {
 #define MASU_PROBE_WORDS 14u /* of one set: 27 halfs, coefficient after coefficient, RGB in each; then
                                 in the first set how far the probe is to be believed, 0..1 */
 #define MASU_PROBE_LIT_WORDS 12u /* of a probe under the light of a frame; not in blobs */
+/* Of a live probe, not in blobs either: its mean, as lit words are, and four sums. */
+#define MASU_PROBE_LIVE_WORDS (MASU_PROBE_LIT_WORDS + 4u * MASU_PROBE_WORDS)
 #define MASU_PROBE_COUNT_MAX 262144u
 #define MASU_PROBE_BYTES_MAX ((uint64_t)64 << 20)
 #define MASU_PROBE_VISIBILITY_MAX 16u
@@ -381,11 +386,11 @@ typedef struct masu_blob_probes {
     float spacing[3]; /* metres */
     float reserved0;
     uint32_t counts[3];  /* together at most MASU_PROBE_COUNT_MAX */
-    uint32_t sky_sets;   /* 1, 4 or 9 */
+    uint32_t sky_sets;   /* 1, 4 or 9; live: 0 too, then one set of emission alone, all 0 */
     uint32_t suns;       /* 0..MASU_PROBE_SUNS_MAX */
     uint32_t emissive;   /* 0 or 1 */
     uint32_t visibility; /* texels along the edge of a map of distances; 0: no maps */
-    uint32_t reserved1;
+    uint32_t live;       /* 1: rays of the frame add what is not baked */
     float sun_direction[MASU_PROBE_SUNS_MAX][4]; /* towards it, unit length; unused ones 0 */
     float sun_inverse[MASU_PROBE_SUNS_MAX][MASU_PROBE_SUNS_MAX]; /* of the matrix 1 - angle / pi */
 } masu_blob_probes;

@@ -101,7 +101,7 @@ static masu_result check_light(reader *r, uint64_t i) {
     double value;
     uint32_t type = l->type & MASU_LIGHT_TYPE, flags = l->type & ~(uint32_t)MASU_LIGHT_TYPE;
     if (type > MASU_LIGHT_RECTANGLE) return bad(r, "lights", i, "no such type");
-    if (flags & ~(uint32_t)(MASU_LIGHT_TWO_SIDED | MASU_LIGHT_SURFACE))
+    if (flags & ~(uint32_t)(MASU_LIGHT_NO_SHADOW | MASU_LIGHT_TWO_SIDED | MASU_LIGHT_SURFACE))
         return bad(r, "lights", i, "unknown flags");
     if (l->reserved) return bad(r, "lights", i, "reserved is not 0");
     masu_punctual_light_state state = masu_light_state_of(l);
@@ -129,8 +129,10 @@ static masu_result check_probes(reader *r) {
         !within(&p->bias, 1, 0.0f, 1e9f)) {
         return bad(r, "probes", 0, "place, spacing or bias is out of range");
     }
-    if (p->sky_sets != 1 && p->sky_sets != 4 && p->sky_sets != 9)
+    int unlit = p->live == 1 && !p->sky_sets && !p->suns && p->emissive == 1;
+    if (!unlit && p->sky_sets != 1 && p->sky_sets != 4 && p->sky_sets != 9)
         return bad(r, "probes", 0, "sets of the sky are not 1, 4 or 9");
+    if (p->live > 1) return bad(r, "probes", 0, "live is not 0 or 1");
     if (p->suns > MASU_PROBE_SUNS_MAX) return bad(r, "probes", 0, "has more than 16 suns");
     if (p->emissive > 1 || p->visibility > MASU_PROBE_VISIBILITY_MAX)
         return bad(r, "probes", 0, "emissive is not 0 or 1, or maps have over 16 texels a side");
@@ -271,6 +273,7 @@ void masu_describe_looks(const reader *r, masu_scene_data *out) {
         const masu_blob_material *m = &r->view.materials[i];
         if (has_surface(m)) out->surfaces++;
         if (m->coat > 0.0f) out->coats++;
+        if (!(m->flags & MASU_MATERIAL_IS_BLEND) && m->flags & 1u << MASU_SLOT_NORMAL) out->reliefs = 1;
         if (m->coat > 0.0f && m->flags & own) out->own_coats = 1;
         if (m->flags & MASU_MATERIAL_IS_TINTED) out->tints = 1;
         if (m->flags & MASU_MATERIAL_IS_BLEND) out->blends++;
@@ -279,15 +282,22 @@ void masu_describe_looks(const reader *r, masu_scene_data *out) {
     out->meso = (uint32_t)r->counts[MASU_BLOB_MESO];
     out->lights = (uint32_t)r->counts[MASU_BLOB_LIGHTS];
     for (uint32_t i = 0; i < out->lights; i++) {
-        uint32_t type = r->view.lights[i].type;
-        out->area_lights += (type & MASU_LIGHT_TYPE) >= MASU_LIGHT_CAPSULE;
-        out->surface_lights += (type & MASU_LIGHT_SURFACE) != 0;
+        const masu_blob_light *l = &r->view.lights[i];
+        uint32_t type = l->type & MASU_LIGHT_TYPE;
+        out->area_lights += type >= MASU_LIGHT_CAPSULE;
+        out->surface_lights += (l->type & MASU_LIGHT_SURFACE) != 0;
+        if (l->type & MASU_LIGHT_NO_SHADOW) continue;
+        out->shadow_lights++;
+        out->shadow_spots += type == MASU_LIGHT_SPOT && l->outer <= MASU_LOCAL_ANGLE_MOST;
     }
     if (r->view.probes) {
         const masu_blob_probes *p = r->view.probes;
         out->probe_sets = masu_probe_sets(p);
         out->probes = p->counts[0] * p->counts[1] * p->counts[2];
         out->probe_words = r->counts[MASU_BLOB_PROBE_DATA];
+        out->probes_unlit = !p->sky_sets;
+        out->bounce = p->live && (r->view.trace_nodes || r->view.code[MASU_BLOB_BOUNCE_SDF_SPIRV].words);
+        out->bounce_sdf = r->view.code[MASU_BLOB_BOUNCE_SDF_SPIRV].words != NULL;
     }
     if (r->view.environment_map) {
         out->environment_size = r->view.environment_map->size;

@@ -73,6 +73,8 @@ const char *masu_light_state_wrong(const masu_punctual_light_state *s, double *v
     if (!(s->outer >= 0.0f && s->outer <= 3.1415928f)) return "outer is not 0 to pi";
     *value = (double)s->inner;
     if (!(s->inner >= 0.0f && s->inner <= s->outer)) return "inner is not 0 to outer";
+    *value = (double)s->no_shadow;
+    if (s->no_shadow > 1) return "no_shadow is neither 0 nor 1";
     *value = (double)direction;
     if (s->spot && !(direction > 1e-15f)) return "direction of a spot is zero";
     return shape_wrong(s, value);
@@ -88,6 +90,7 @@ masu_punctual_light_state masu_light_state_of(const masu_blob_light *light) {
                                              : MASU_SHAPE_POINT,
                                 .two_sided = (light->type & MASU_LIGHT_TWO_SIDED) != 0,
                                 .has_surface = (light->type & MASU_LIGHT_SURFACE) != 0,
+                                .no_shadow = (light->type & MASU_LIGHT_NO_SHADOW) != 0,
                                 .inner = light->inner,
                                 .outer = light->outer};
     for (uint32_t k = 0; k < 3; k++) {

@@ -12,8 +12,13 @@
     (1u + ((lights) < MASU_TILE_LIGHTS_MAX ? (lights) : MASU_TILE_LIGHTS_MAX))
 
 typedef struct masu_light_header {
-    uint32_t count, list_words, reserved[2];
+    uint32_t count, list_words;
+    float atlas_texel; /* 1 / texels along an edge of the atlas of shadows */
+    uint32_t reserved;
 } masu_light_header;
+
+/* The half angle of the widest spot whose shadow is one face; others have faces of a cube. Radians: 60 degrees. */
+#define MASU_LOCAL_ANGLE_MOST 1.0472f
 
 /* A sphere around all that a light reaches. */
 typedef struct masu_light_bound {

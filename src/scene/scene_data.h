@@ -73,6 +73,7 @@ typedef struct MASU_MAY_ALIAS masu_scene_data {
     uint32_t coats;     /* materials with a clear coat */
     uint32_t own_coats; /* flag: a coat has a map, or a normal other than the base's */
     uint32_t meso;      /* tables of mesoscale detail */
+    uint32_t reliefs;   /* flag: an opaque material has a normal map */
     uint32_t blends;    /* transparent materials */
     uint32_t tints;     /* flag: a transparent material has coloured transmission */
     uint32_t transparents;     /* transparent primitives, once per instance */
@@ -82,8 +83,13 @@ typedef struct MASU_MAY_ALIAS masu_scene_data {
     uint32_t lights; /* local lights */
     uint32_t area_lights;    /* capsules and rectangles among them */
     uint32_t surface_lights; /* those of a surface of the scene */
+    uint32_t shadow_lights;  /* those that cast shadows */
+    uint32_t shadow_spots;   /* of them, spots that have one face */
     uint32_t probes, probe_sets;
     uint64_t probe_words;                        /* 32-bit values of all sets of all probes */
+    uint32_t probes_unlit;                       /* flag: they have no baked light */
+    uint32_t bounce;                             /* flag: and rays of the frame add to it */
+    uint32_t bounce_sdf;                         /* flag: which meet the SDF */
     uint32_t environment_size, environment_mips; /* texels along an edge of the map; 0: none */
     uint32_t analytic_sky;                       /* flag: the sky follows from the sun */
     uint32_t fog;                                /* flag */

@@ -73,6 +73,6 @@ void main()
     s.coat_roughness = c.surface.w;
     masu_bsdf b = masu_bsdf_make(s, vec3(0.0, 0.0, 1.0), c.view.xyz);
     masu_lit lit = masu_lit(vec3(0.0), vec3(0.0));
-    bool reached = masu_add_local_light(lit, s, b, uint(c.view.w), c.point.xyz);
+    bool reached = masu_add_local_light(lit, s, b, uint(c.view.w), c.point.xyz, vec3(0.0, 0.0, 1.0));
     results[at] = vec4(lit.diffuse.x, lit.specular.x, reached ? 1.0 : 0.0, 0.0);
 }

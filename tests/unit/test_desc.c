@@ -153,6 +153,10 @@ static masu_rung default_rung(float scale, float sharpness) {
                        .frustum = MASU_ON,
                        .ao = MASU_ON,
                        .light_tiles = MASU_ON,
+                       .local_shadows = MASU_ON,
+                       .local_shadow_atlas = 2048,
+                       .local_shadow_lights = 8,
+                       .local_shadow_faces = 4,
                        .specular_reuse = MASU_ON,
                        .specular_temporal = MASU_ON,
                        .specular_fine = MASU_ON,
@@ -165,7 +169,9 @@ static masu_rung default_rung(float scale, float sharpness) {
                        .shadow_refresh = {1, 1, 1, 1},
                        .specular_reuse_taps = 8,
                        .specular_filter_taps = 12,
-                       .specular_frames = 32};
+                       .specular_frames = 32,
+                       .bounce_probes = 94,
+                       .bounce_rays = 48};
 }
 
 /* Without a scene nothing more of the output is known. */

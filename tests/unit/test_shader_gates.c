@@ -204,6 +204,7 @@ static const struct {
     {"sdf_occlusion.comp", "-DMASU_PASS=1", 1, 0, 6}, /* lists 3, rays and their march, samples */
     {"specular_trace_sdf.comp", "-DMASU_PASS=1", 1, 0, 2}, /* the march, the normal */
     {"specular_trace_sdf.comp", "-DMASU_MOTION=1", 1, 0, 3},
+    {"bounce_sdf.comp", "-DMASU_PASS=1", 1, 0, 2},
 };
 
 static int needs_a_field(const char *name) {

@@ -7,6 +7,7 @@
  *   range      0 beyond; by default where that radiance has fallen to a hundredth; of the others three times as
  *              far, and 8 times their size; at least 6 times
  *   half_u, half_v  half axes, from the centre: of a capsule to an end, of a rectangle to two sides
+ *   shadows    false: it casts none
  *   inner, outer  of a spot: degrees from its axis, full light inside, none outside */
 #include "bake/description/reader.h"
 #include "bake/scene/piece.h"
@@ -86,18 +87,20 @@ static bool read_light(const masu_bake_json *at, masu_bake_reader *r, masu_bake_
     static const char *const members[] = {"type",  "position",  "direction", "color",
                                           "range", "intensity", "inner",     "outer",
                                           "name",  "radius",    "instance",  "half_u",
-                                          "half_v", "two_sided", NULL};
+                                          "half_v", "two_sided", "shadows",  NULL};
     const double most = MASU_BAKE_COORDINATE_MAX;
     masu_blob_light light = {.parent = MASU_BLOB_NONE, .name = MASU_BLOB_NONE};
     masu_bake_vec3 position = {0, 0, 0}, color = {1, 1, 1};
     double intensity = 1, radius = 0.01;
     const char *name = NULL, *instance = NULL;
+    bool shadows = true;
     if (!masu_bake_json_object(at, members) || !read_type(at, &light.type) ||
         !masu_bake_json_vec3(at, "position", -most, most, &position) ||
         !masu_bake_json_vec3(at, "color", 0, MASU_BAKE_LIGHT_COLOR_MAX, &color) ||
         !masu_bake_json_number(at, "intensity", 0, MASU_BAKE_LIGHT_COLOR_MAX, &intensity) ||
         !masu_bake_json_number(at, "radius", 1e-6, 1e9, &radius) ||
-        !masu_bake_json_string(at, "name", &name) || !read_cone(at, &light) ||
+        !masu_bake_json_string(at, "name", &name) ||
+        !masu_bake_json_boolean(at, "shadows", &shadows) || !read_cone(at, &light) ||
         !masu_bake_json_string(at, "instance", &instance)) {
         return false;
     }
@@ -121,6 +124,7 @@ static bool read_light(const masu_bake_json *at, masu_bake_reader *r, masu_bake_
     masu_punctual_light_state state = masu_light_state_of(&light);
     const char *wrong = masu_light_state_wrong(&state, &value);
     if (wrong) return masu_bake_json_wrong(at, "%s: %g", wrong, value);
+    if (!shadows) light.type |= MASU_LIGHT_NO_SHADOW;
     *out = (masu_bake_light){.value = light};
     out->where = masu_bake_take_text(&r->out->pool, at->where);
     if (name) out->name = masu_bake_take_text(&r->out->pool, name);

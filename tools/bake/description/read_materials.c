@@ -227,7 +227,9 @@ bool masu_bake_read_materials(const masu_bake_json *model, masu_bake_reader *r,
     masu_bake_json list = masu_bake_json_member(model, "materials");
     if (list.value && !masu_bake_json_array(&list, 0)) return false;
     size_t count = list.value ? json_array_size(list.value) : 0;
-    out->changes = masu_bake_take(&r->out->pool, (count + 1) * sizeof *out->changes);
+    bool shadows = true;
+    if (!masu_bake_json_boolean(model, "shadows", &shadows)) return false;
+    out->changes = masu_bake_take(&r->out->pool, (count + 2) * sizeof *out->changes);
     if (all.value) {
         masu_bake_material_change *change = &out->changes[out->change_count++];
         if (!read_change(&all, r, change)) return false;
@@ -240,6 +242,12 @@ bool masu_bake_read_materials(const masu_bake_json *model, masu_bake_reader *r,
         if (!read_change(&at, r, change)) return false;
         if (!*change->value.match)
             return masu_bake_json_wrong(&at, "needs \"match\": a name pattern such as \"tr-*\"");
+    }
+    if (!shadows) {
+        masu_bake_override *last = &out->changes[out->change_count++].value;
+        last->value = masu_bake_default_material();
+        last->maps = masu_bake_no_maps();
+        last->shadowless = true;
     }
     return true;
 }

@@ -248,7 +248,7 @@ static bool read_model(const masu_bake_json *model, masu_bake_reader *r, const j
                                           "translate", "rotate",    "rotate_y", "scale", "fit",
                                           "material",  "materials", "occluder", "merge", "lights",
                                           "traced",    "hidden",    "spare",    "variant", "drop",
-                                          "area_light", NULL};
+                                          "area_light", "shadows",  NULL};
     const char *name = NULL;
     out->where = masu_bake_take_text(&r->out->pool, model->where);
     out->lights = 1;

@@ -98,6 +98,8 @@ typedef struct masu_bake_maps {
     /* Emission is the base colour: without its picture, the factor. */
     uint8_t unlit;
     uint8_t dark;                    /* emission was meant for a map that the importer left out */
+    uint8_t shadowless;              /* 1: casts no shadows */
+    uint8_t reserved[3];
     float cutoff, normal_scale;      /* normal_scale: of heights their strength */
     float occlusion;                 /* strength of the occlusion map, 0..1 */
     /* no padding: it is compared as bytes */

@@ -11,7 +11,7 @@ static bool same_override(const masu_bake_override *a, const masu_bake_override 
     const masu_blob_material *x = &a->value, *y = &b->value;
     return a->base_color == b->base_color && a->roughness == b->roughness &&
            a->metallic == b->metallic && a->emissive == b->emissive && a->alpha == b->alpha &&
-           a->single == b->single && a->relief_of == b->relief_of && a->cutoff == b->cutoff && memcmp(a->map, b->map, sizeof a->map) == 0 &&
+           a->single == b->single && a->shadowless == b->shadowless && a->relief_of == b->relief_of && a->cutoff == b->cutoff && memcmp(a->map, b->map, sizeof a->map) == 0 &&
            memcmp(&a->maps, &b->maps, sizeof a->maps) == 0 &&
            memcmp(x->base_color, y->base_color, sizeof x->base_color) == 0 &&
            memcmp(x->emissive, y->emissive, sizeof x->emissive) == 0 &&
@@ -91,6 +91,7 @@ static void apply_override(const masu_bake_override *o, masu_blob_material *to,
     }
     if (o->cutoff) maps->cutoff = o->maps.cutoff;
     if (o->single) maps->single = o->maps.single;
+    if (o->shadowless) maps->shadowless = 1;
     if (o->relief_of) maps->relief_of = o->maps.relief_of;
 }
 

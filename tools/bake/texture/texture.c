@@ -584,6 +584,7 @@ static void point(maker *m, masu_blob_material *material, const masu_bake_maps *
     if (maps->additive && flags & MASU_MATERIAL_IS_BLEND) flags |= MASU_MATERIAL_IS_ADDITIVE;
     if (maps->tinted && flags & MASU_MATERIAL_IS_BLEND) flags |= MASU_MATERIAL_IS_TINTED;
     if (maps->single) flags |= MASU_MATERIAL_IS_SINGLE;
+    if (maps->shadowless) flags |= MASU_MATERIAL_NO_SHADOW;
     if (material->coat > 0 && flags & 1u << MASU_SLOT_NORMAL) {
         if (maps->relief_of == MASU_BAKE_RELIEF_OF_BASE) flags |= MASU_MATERIAL_COAT_SMOOTH;
         if (maps->relief_of == MASU_BAKE_RELIEF_OF_COAT) flags |= MASU_MATERIAL_BASE_SMOOTH;

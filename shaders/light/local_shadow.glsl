@@ -1,0 +1,111 @@
+/*
+ * local_shadow.glsl: how much of a punctual light a point sees past what casts shadows, by the light's faces in
+ * the atlas (shared/local_shadow.h). Whoever includes this binds the atlas, and says where: MASU_AT_LOCAL_SHADOWS.
+ * Needs lights.glsl's buffer before it.
+ *
+ * A point light has six faces of a cube along the world's axes, a spot one along its own; a texel is lit or not,
+ * and nine of them count with the weights of a quadratic B-spline around the point.
+ *
+ * BIAS. The depth near / z of a plane is affine in the face. Each of the nine is compared with the surface's own
+ * plane there where that rises towards the light, and with the point's depth where it falls: exact on a plane.
+ * The atlas holds depths that are rounded away from the light; another tenth of a texel is for what normal and
+ * depth of the point are rounded to.
+ */
+#ifndef MASU_LOCAL_SHADOW_GLSL
+#define MASU_LOCAL_SHADOW_GLSL
+
+layout(set = MASU_SET_PASS, binding = MASU_AT_LOCAL_SHADOWS) uniform sampler2D local_shadow_atlas;
+
+const float masu_local_steepest = 200.0; /* slope against the light that is still made up for: 0.3 degrees */
+const float masu_local_least_bias = 0.1; /* texels */
+
+/* Weights of the texels before, at and after the point; f: how far it is from its texel's centre. */
+vec3 masu_local_spline(float f)
+{
+    float a = 0.5 - f;
+    float b = 0.5 + f;
+    return vec3(0.5 * a * a, 0.75 - f * f, 0.5 * b * b);
+}
+
+/* Of a row of texels those that are lit. Depths are at most 1: a clamp to 0..1 costs no instruction. */
+vec3 masu_local_lit(vec3 across, float down, float depth, vec3 nearest)
+{
+    return vec3(greaterThanEqual(clamp(across + down, 0.0, 1.0), nearest - depth));
+}
+
+/* at: in texels of the atlas; depth: of the point; slope: what its surface gains of it per texel. */
+float masu_local_filter(vec2 at, float depth, vec2 slope, float texel)
+{
+    vec2 middle = floor(at);
+    vec2 f = at - middle - 0.5;
+    vec2 uv = middle * texel;
+    vec4 a = textureGather(local_shadow_atlas, uv);
+    vec4 b = textureGather(local_shadow_atlas, uv + vec2(texel, 0.0));
+    vec4 c = textureGather(local_shadow_atlas, uv + vec2(0.0, texel));
+    vec4 d = textureGather(local_shadow_atlas, uv + vec2(texel, texel));
+    float across = -slope.x * f.x;
+    float down = -slope.y * f.y;
+    vec3 columns = vec3(across - slope.x, across, across + slope.x);
+    vec3 weight = masu_local_spline(f.x);
+    /* Gathered are the texels below left, below right, above right, above left of a corner. */
+    vec3 sums = vec3(dot(weight, masu_local_lit(columns, down - slope.y, depth, vec3(a.w, a.z, b.z))),
+                     dot(weight, masu_local_lit(columns, down, depth, vec3(a.x, a.y, b.y))),
+                     dot(weight, masu_local_lit(columns, down + slope.y, depth, vec3(c.x, c.y, d.y))));
+    return dot(masu_local_spline(f.y), sums);
+}
+
+/* rel: relative to the eye; n: unit, of the surface itself, on the lit side. */
+float masu_light_seen(masu_punctual_light_data light, vec3 rel, vec3 n)
+{
+    vec3 p = rel - light.position.xyz;
+    float near = uintBitsToFloat(light.shadow[1].z);
+    float tangent = uintBitsToFloat(light.shadow[1].w);
+    float z;
+    vec2 uv;
+    vec2 across;
+    uint word = light.shadow[0].x;
+    if (tangent > 0.0) {
+        vec3 u = uintBitsToFloat(light.shadow[0].yzw);
+        vec3 v = cross(light.axis.xyz, u);
+        z = dot(light.axis.xyz, p);
+        uv = vec2(dot(u, p), dot(v, p));
+        across = vec2(dot(u, n), dot(v, n));
+    } else {
+        vec3 size = abs(p);
+        tangent = 1.0;
+        if (size.x >= size.y && size.x >= size.z) {
+            z = p.x;
+            uv = p.yz;
+            across = n.yz;
+            word = z < 0.0 ? light.shadow[0].y : word;
+        } else if (size.y >= size.z) {
+            z = p.y;
+            uv = p.zx;
+            across = n.zx;
+            word = z < 0.0 ? light.shadow[0].w : light.shadow[0].z;
+        } else {
+            z = p.z;
+            uv = p.xy;
+            across = n.xy;
+            word = z < 0.0 ? light.shadow[1].y : light.shadow[1].x;
+        }
+        z = abs(z);
+    }
+    if (word == 0u || !(z > 1e-6)) {
+        return 1.0;
+    }
+    float edge = float(1u << (word & 15u));
+    vec2 corner = vec2(word >> MASU_LOCAL_X_SHIFT, word >> MASU_LOCAL_Y_SHIFT & 0xFFFu) * 8.0;
+    float inverse = 1.0 / z;
+    float width = 2.0 * tangent / (edge - 2.0 * float(MASU_LOCAL_GUARD)); /* of a texel at distance 1 */
+    vec2 at = uv * (inverse / width) + (corner + 0.5 * edge);
+    float depth = near * inverse;
+    float step = depth * width;
+    float facing = min(dot(n, p) * inverse, -1.0 / masu_local_steepest);
+    float lit = masu_local_filter(at, depth + masu_local_least_bias * step, across * (step / facing),
+                                  uintBitsToFloat(masu_lights_header.z));
+    float fade = float(word >> MASU_LOCAL_FADE_SHIFT & 15u) * (1.0 / float(MASU_LOCAL_FADE));
+    return lit * fade + (1.0 - fade);
+}
+
+#endif

@@ -1,0 +1,88 @@
+/* local_shadows.h: shadows of punctual lights: which lights have them (shadow_choice.h), where in the atlas their
+ * faces lie (shadow_tiles.h), and which faces a frame renders.
+ *
+ * FACES. A spot of up to MASU_LOCAL_ANGLE_MOST has one face, any other light up to six, of a cube along the world's axes:
+ * those that its cone touches. Each is a cache entry of its own. What it holds does not depend on the camera: what
+ * the light reaches is drawn, in full detail. It is due when its light has moved or turned, when something inside of it
+ * has moved, appeared or gone, and when it is to have another size. A face in which nothing can cast a shadow has no
+ * tile.
+ *
+ * BUDGET. At most rung.local_shadow_faces are rendered per frame, those that wait for longest first. A face that
+ * waits shows what it held, but if its light has moved: then it has no shadow until it is rendered.
+ *
+ * Written to the frame's slot: the faces to render and their draws. The words of each light go into
+ * masu_punctual_light_data.shadow. Everything is decided here, by numbers that do not depend on the GPU. */
+#ifndef MASU_LOCAL_SHADOWS_H
+#define MASU_LOCAL_SHADOWS_H
+
+#include "frame/bounds.h"
+#include "frame/instances.h"
+#include "frame/shadow_choice.h"
+#include "frame/shadow_tiles.h"
+
+#define MASU_LOCAL_FACES 6u
+
+typedef struct masu_local_face {
+    masu_cull_view view;
+    double axis[3][3]; /* its third is where it looks */
+    masu_shadow_tile tile;
+    uint64_t since;  /* frame that made it due */
+    uint8_t used;    /* the light reaches into it */
+    uint8_t due;     /* it is not as it would be rendered now */
+    uint8_t drawn;   /* it is rendered, or nothing is in it; else nothing is to be read */
+} masu_local_face;
+
+/* What a slot of the choice holds. */
+typedef struct masu_local_light {
+    double position[3], axis[3];
+    double range, near_distance;
+    double tangent; /* of half the angle of the only face; 0: cube */
+    double angle;   /* of the cone; pi: it shines everywhere */
+    uint32_t size;  /* texels that its faces are to have */
+    masu_local_face faces[MASU_LOCAL_FACES];
+} masu_local_light;
+
+typedef struct masu_local_slot {
+    uint32_t lights, faces, waiting;
+} masu_local_slot;
+
+typedef struct masu_local_shadows {
+    uint32_t capacity;         /* lights with shadows at a time */
+    masu_shadow_slot *choice;  /* [capacity] */
+    masu_local_light *lights;  /* [capacity] */
+    uint32_t *slot_of_light;   /* [light]: 1 + its slot, 0: none */
+    float (*boxes)[6];         /* [instance]: as of the last frame; half sizes below 0: it was hidden */
+    uint8_t *group_states, *marks;
+    masu_shadow_tiles tiles;
+    masu_shadow_wish wish;
+    uint32_t most; /* lights that may have shadows in this frame */
+    int empty;     /* nothing is kept: neither slots nor boxes */
+    masu_local_slot slots[MASU_MAX_FLIGHT];
+} masu_local_shadows;
+
+void masu_local_shadows_alloc(masu_local_shadows *s, masu_arena *arena, const masu_frame_plan *plan);
+/* What does not change of the faces' draw commands, to all slots. */
+void masu_local_shadows_write_scene(const masu_device *device, const masu_draws *draws, const masu_scene_view *v);
+
+/* A frame: begin, offer each light that may cast shadows, in their order, then write. */
+void masu_local_shadows_begin(masu_local_shadows *s, const masu_frame_data *f);
+void masu_local_shadows_offer(masu_local_shadows *s, const masu_frame_data *f, uint32_t light,
+                              const masu_punctual_light_state *state, const double position[3],
+                              const double direction[3]);
+/* Before masu_instances_write. */
+void masu_local_shadows_write(masu_local_shadows *s, const masu_instances *in, const masu_bounds *bounds,
+                              const masu_frame_data *f);
+
+/* masu_punctual_light_data.shadow of a light. */
+void masu_local_shadows_of(const masu_local_shadows *s, uint32_t light, masu_uvec4 out[2]);
+
+/* Texels along the edge of a face: a texel at a third of the range takes a pixel and a half, and three of them, the
+ * width of the filter, no less than the penumbra that a source of that radius has there behind something half way.
+ * pixels: of a length of one at distance one. */
+double masu_local_face_wish(double range, double radius, double tangent, double distance, double pixels);
+/* The size for a wish, with hysteresis; now: the size that it has, 0: none. */
+uint32_t masu_local_face_size(double wish, uint32_t now, uint32_t most);
+/* Of faces: whether a light whose cone has that axis and half angle reaches into a cube face. */
+int masu_local_face_is_lit(const double axis[3], double angle, uint32_t face);
+
+#endif

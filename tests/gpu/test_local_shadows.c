@@ -1,0 +1,513 @@
+/* test_local_shadows.c: shadows of punctual lights. What a pixel sees of a light beside exact rays; planes do not
+ * shadow themselves; what is kept has the bits of what is rendered again; how many faces a frame renders; shadows
+ * come and go by steps. */
+#include "support/files.h"
+#include "support/floats.h"
+#include "support/random.h"
+#include "support/support.h"
+
+#include "frame/local_shadows.h"
+#include "reference/triangles.h"
+#include "reference/vec.h"
+#include "scene/scene.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PIXELS_MOST (320 * 200)
+
+static char json[1 << 16];
+static size_t used;
+
+static void add(const char *format, ...) {
+    va_list args;
+    va_start(args, format);
+    used += (size_t)vsnprintf(json + used, sizeof json - used, format, args);
+    va_end(args);
+    assert_true(used < sizeof json);
+}
+
+static void begin_scene(double ground) {
+    used = 0;
+    add("{\"ambient\": [0, 0, 0], \"sun\": {\"intensity\": 0}, \"sky\": {\"zenith\": [0, 0, 0], "
+        "\"horizon\": [0, 0, 0]}, \"ambient_occlusion\": false, \"reflections\": false, "
+        "\"models\": [{\"mesh\": {\"plane\": {\"size_x\": %g, \"size_z\": %g}}, "
+        "\"material\": {\"roughness\": 1}}", ground, ground);
+}
+
+static void add_box(const char *name, double x, double y, double z, double sx, double sy, double sz, double turn) {
+    add(", {\"mesh\": {\"box\": {\"size\": [%g, %g, %g]}}, \"name\": \"%s\", \"translate\": [%g, %g, %g], "
+        "\"rotate_y\": %g, \"material\": {\"roughness\": 1}}", sx, sy, sz, name, x, y, z, turn);
+}
+
+static void add_lights(const char *lights) { add("], \"lights\": [%s]}", lights); }
+
+static masu_camera look(double x, double y, double z, double fx, double fy, double fz, double fov) {
+    return (masu_camera){.position = {x, y, z},
+                         .forward = {(float)fx, (float)fy, (float)fz},
+                         .fov_y = (float)fov,
+                         .near_distance = 0.05f};
+}
+
+/* ---- Sessions -------------------------------------------------------------------------------- */
+
+typedef struct lamps {
+    masu_session s;
+    uint32_t width, height;
+    masu_ref_triangles world;
+    masu_stats_info stats; /* of the last frame */
+} lamps;
+
+enum { SHADOWED, PLAIN, RUNGS };
+
+static void open_lamps(lamps *l, const char *scene, uint32_t width, uint32_t height, const masu_rung *rung,
+                       uint32_t reserve) {
+    size_t bytes;
+    masu_scene bound;
+    memset(l, 0, sizeof *l);
+    l->width = width;
+    l->height = height;
+    assert_true(width * height <= PIXELS_MOST);
+    masu_session_desc d = test_desc(NULL, width, height);
+    d.scene_path = baked_scene(scene);
+    d.desc.readback = MASU_READBACK_HDR;
+    d.desc.reserve.lights = reserve;
+    d.desc.rung_count = RUNGS;
+    if (rung) d.desc.rungs[SHADOWED] = *rung;
+    d.desc.rungs[PLAIN].local_shadows = MASU_OFF;
+    d.desc.debug.poison = 1;
+    open_session(&l->s, &d);
+    void *blob = read_file(baked_scene(scene), &bytes);
+    assert_int_equal(masu_scene_bind(blob, bytes, &bound, NULL), MASU_OK);
+    assert_true(masu_ref_triangles_open(&bound, &l->world));
+    free(blob);
+}
+
+static void close_lamps(lamps *l) {
+    masu_ref_triangles_close(&l->world);
+    close_session(&l->s);
+}
+
+static const uint16_t *take(lamps *l, const masu_camera *camera, uint32_t rung) {
+    masu_light dark = {.sun_direction = {0, 1, 0}, .exposure = 1};
+    masu_frame_desc frame = {.camera = camera, .light = &dark, .rung = rung};
+    masu_commands commands;
+    draw(&l->s, &frame, &commands, NULL);
+    l->stats = stats_of(&l->s, commands.slot);
+    assert_int_equal(l->stats.replaced, 0);
+    return read_image(&l->s, commands.slot, MASU_READBACK_HDR);
+}
+
+/* Until nothing changes any more. */
+static const uint16_t *settle(lamps *l, const masu_camera *camera) {
+    const uint16_t *hdr = NULL;
+    for (uint32_t f = 0, still = 0; still < 10; f++) {
+        hdr = take(l, camera, SHADOWED);
+        still = l->stats.local_shadow_waiting || l->stats.local_shadow_faces ? 0 : still + 1;
+        assert_true(f < 200);
+    }
+    return hdr;
+}
+
+static double luma(const uint16_t *texel) { return half_float(texel[0]) + half_float(texel[1]) + half_float(texel[2]); }
+
+/* ---- Beside exact rays ----------------------------------------------------------------------- */
+
+static masu_punctual_light_state state_of(const lamps *l, uint32_t light) {
+    masu_punctual_light_state s;
+    assert_int_equal(masu_punctual_light_get(l->s.m, masu_punctual_light_at(l->s.m, light), &s), MASU_OK);
+    return s;
+}
+
+typedef struct hit_point {
+    double at[3], normal[3]; /* on the side of the light */
+    uint32_t triangle;
+} hit_point;
+
+static int point_under(const lamps *l, const masu_camera *c, const double light[3], uint32_t x, uint32_t y,
+                       hit_point *out) {
+    double f[3], r[3], u[3], up[3] = {0, 1, 0}, d[3], towards[3], t;
+    for (int k = 0; k < 3; k++) f[k] = (double)c->forward[k];
+    unit3(f);
+    cross3(f, up, r);
+    unit3(r);
+    cross3(r, f, u);
+    double tan_y = tan((double)c->fov_y / 2), a = ((x + 0.5) / l->width * 2 - 1) * tan_y * l->width / l->height;
+    double b = ((y + 0.5) / l->height * 2 - 1) * tan_y;
+    for (int k = 0; k < 3; k++) d[k] = f[k] + r[k] * a - u[k] * b;
+    int64_t hit = masu_ref_hit(&l->world, c->position, d, 0.05, HUGE_VAL, &t);
+    if (hit < 0) return 0;
+    for (int k = 0; k < 3; k++) {
+        out->at[k] = c->position[k] + d[k] * t;
+        towards[k] = light[k] - out->at[k];
+    }
+    out->triangle = (uint32_t)hit;
+    return masu_ref_normal(&l->world.triangles[hit], towards, out->normal);
+}
+
+static int sees(const lamps *l, const double at[3], const double normal[3], const double light[3], double near) {
+    double from[3], d[3], t;
+    for (int k = 0; k < 3; k++) {
+        from[k] = at[k] + normal[k] * 1e-4;
+        d[k] = light[k] - from[k];
+    }
+    double length = sqrt(dot3(d, d));
+    return masu_ref_hit(&l->world, from, d, 0, 1 - near / length, &t) < 0;
+}
+
+/* Whether the light is seen alike from all of the point's plane that lies within so many texels of its face. */
+static int is_clear(const lamps *l, const hit_point *p, const double light[3], double texel, double texels, int seen,
+                    double near) {
+    double d[3], major = 0;
+    for (int k = 0; k < 3; k++) {
+        d[k] = p->at[k] - light[k];
+        major = fmax(major, fabs(d[k]));
+    }
+    for (int i = 0; i < 16; i++) {
+        double turn = i * (6.28318530718 / 8), far = texels * texel * major * (i < 8 ? 1 : 0.5), to[3], at[3];
+        double across[3] = {1, 0, 0}, u[3], v[3];
+        if (fabs(d[0]) > 0.7 * major) across[0] = 0, across[1] = 1;
+        cross3(d, across, u);
+        unit3(u);
+        cross3(d, u, v);
+        unit3(v);
+        for (int k = 0; k < 3; k++) to[k] = d[k] + far * (cos(turn) * u[k] + sin(turn) * v[k]);
+        double along = dot3(to, p->normal), t = along < -1e-9 ? dot3(d, p->normal) / along : 0;
+        if (!(t > 0) || t > 20) return 0;
+        for (int k = 0; k < 3; k++) at[k] = light[k] + to[k] * t;
+        if (sees(l, at, p->normal, light, near) != seen) return 0;
+    }
+    return 1;
+}
+
+typedef struct comparison {
+    uint32_t lit, wrong, wrong_near, seam, seam_wrong; /* pixels; of wrong_near: two texels from an edge */
+} comparison;
+
+/* As wide as the light's faces have it for that camera; now: the size that they had, and get. */
+static double texel_of(const lamps *l, const masu_camera *c, double tangent, uint32_t most, uint32_t *now) {
+    masu_punctual_light_state s = state_of(l, 0);
+    double d[3], pixels = 0.5 * l->height / tan((double)c->fov_y / 2);
+    for (int k = 0; k < 3; k++) d[k] = s.position[k] - c->position[k];
+    *now = masu_local_face_size(
+        masu_local_face_wish((double)s.range, (double)s.radius, tangent, sqrt(dot3(d, d)), pixels), *now, most);
+    return 2 * tangent / (*now - 4);
+}
+
+static comparison compare_rays(lamps *l, const masu_camera *c, double texel, const char *what) {
+    static uint16_t plain[4 * PIXELS_MOST];
+    comparison sum = {0};
+    masu_punctual_light_state s = state_of(l, 0);
+    double near = fmax(0.05, (double)s.radius);
+    memcpy(plain, take(l, c, PLAIN), (size_t)l->width * l->height * 8);
+    const uint16_t *hdr = settle(l, c);
+    for (uint32_t i = 0; i < l->width * l->height; i++) {
+        hit_point p;
+        double without = luma(plain + 4 * i);
+        if (!(without > 1e-3) || !point_under(l, c, s.position, i % l->width, i / l->width, &p)) continue;
+        double seen = luma(hdr + 4 * i) / without;
+        int truth = sees(l, p.at, p.normal, s.position, near);
+        sum.lit++;
+        int off = fabs(seen - truth) > 0.1;
+        double d[3], size[3];
+        for (int k = 0; k < 3; k++) size[k] = fabs(d[k] = p.at[k] - s.position[k]);
+        double most = fmax(size[0], fmax(size[1], size[2]));
+        int seam = 0;
+        for (int k = 0; k < 3; k++) {
+            double second = fmin(size[k], size[(k + 1) % 3]) > size[(k + 2) % 3] ? fabs(size[k] - size[(k + 1) % 3]) : 9;
+            seam |= second < 2 * texel * most;
+        }
+        sum.seam += seam != 0;
+        if (!off) continue;
+        sum.wrong += is_clear(l, &p, s.position, texel, 2, truth, near);
+        sum.seam_wrong += seam && is_clear(l, &p, s.position, texel, 2, truth, near);
+        sum.wrong_near++;
+    }
+    print_message("%-24s %6u lit, off by more than 0.1: %5u, of them beyond 2 texels of an edge %4u (%.2f %%); at seams "
+                  "%u, off %u\n", what, sum.lit, sum.wrong_near, sum.wrong, 100.0 * sum.wrong / sum.lit, sum.seam,
+                  sum.seam_wrong);
+    return sum;
+}
+
+static void add_room(void) {
+    uint64_t seed = 5;
+    for (int i = 0; i < 14; i++) {
+        char name[16];
+        snprintf(name, sizeof name, "box%d", i);
+        double turn = i * 2.399963, far = 1.2 + 0.28 * i, high = random_between(&seed, 0.3, 2.2);
+        add_box(name, far * cos(turn), high / 2 + (i % 5 == 0 ? 0.4 : 0), far * sin(turn), random_between(&seed, 0.2, 1),
+                high, random_between(&seed, 0.2, 1), random_between(&seed, 0, 90));
+    }
+    for (int i = 0; i < 3; i++) {
+        add(", {\"mesh\": {\"sphere\": {\"subdivisions\": %d}}, \"scale\": 0.6, \"translate\": [%g, 0.6, %g], "
+            "\"material\": {\"roughness\": 1}}", 3 + i, 1.5 * i - 2.5, 2.5 - i);
+    }
+    add_box("wall", 0, 2, -7, 16, 4, 0.3, 0);
+    add_box("side", -7, 2, 0, 0.3, 4, 16, 0);
+    add_box("roof", 1, 3.6, 1, 3, 0.1, 2, 20);
+}
+
+static void visibility_is_that_of_rays(void **state) {
+    (void)state;
+    static const struct {
+        const char *what, *light;
+        double tangent;
+        uint32_t most; /* texels of a face */
+    } cases[] = {
+        {"point", "{\"type\": \"point\", \"position\": [0, 2.1, 0.2], \"intensity\": 9, \"range\": 14}", 1, 256},
+        {"spot of 40",
+         "{\"type\": \"spot\", \"position\": [4, 4, 5], \"direction\": [-1, -0.8, -1.1], \"outer\": 40, "
+         "\"intensity\": 30, \"range\": 20}", 0.8391, 512},
+        {"spot of 75, cube",
+         "{\"type\": \"spot\", \"position\": [0.3, 3, 0], \"direction\": [0.2, -1, 0], \"outer\": 75, "
+         "\"intensity\": 12, \"range\": 14}", 1, 256},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        lamps l;
+        begin_scene(30);
+        add_room();
+        add_lights(cases[i].light);
+        bake_scene("lamp_room", json);
+        open_lamps(&l, "lamp_room", 320, 200, NULL, 0);
+        masu_camera views[] = {look(4.5, 4.5, 6, -4, -4.2, -6, 1.1), look(-5, 2, 5, 5, -1.5, -6, 1.2)};
+        uint32_t size = 0;
+        for (size_t v = 0; v < 2; v++) {
+            double texel = texel_of(&l, &views[v], cases[i].tangent, cases[i].most, &size);
+            comparison c = compare_rays(&l, &views[v], texel, cases[i].what);
+            assert_true(c.lit > 8000);
+            assert_true(c.wrong * 100 <= c.lit);
+            assert_true(c.seam_wrong * 100 <= c.seam);
+        }
+        close_lamps(&l);
+    }
+}
+
+/* ---- Planes ---------------------------------------------------------------------------------- */
+
+/* The ground alone, under a lamp close above it: it is lit at all angles, and by all of its own face. A plate far
+ * below it makes sure that the faces are not empty. */
+static void planes_do_not_shadow_themselves(void **state) {
+    (void)state;
+    static const struct {
+        const char *what;
+        uint32_t atlas;
+        double height, tilt;
+        int spot;
+    } cases[] = {{"point, 256", 2048, 0.3, 0, 0}, {"point, 128", 512, 0.3, 0, 0}, {"spot, 512", 2048, 1.5, 0.7, 1},
+                 {"point, 256, high", 2048, 3, 0, 0}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        lamps l;
+        masu_rung rung = {.local_shadow_atlas = cases[i].atlas};
+        static uint16_t plain[4 * PIXELS_MOST];
+        char text[300];
+        begin_scene(60);
+        snprintf(text, sizeof text,
+                 "{\"type\": \"%s\", \"position\": [0.1, %g, 0.2], \"intensity\": 40, \"range\": 25%s}",
+                 cases[i].spot ? "spot" : "point", cases[i].height,
+                 cases[i].spot ? ", \"direction\": [1, -0.5, 0.3], \"outer\": 55" : "");
+        add_lights(text);
+        bake_scene("lamp_plane", json);
+        open_lamps(&l, "lamp_plane", 320, 200, &rung, 0);
+        masu_camera c = look(-8, 5, 3, 8, -4.4, -3, 1.2);
+        memcpy(plain, take(&l, &c, PLAIN), sizeof plain);
+        const uint16_t *hdr = settle(&l, &c);
+        assert_int_equal(l.stats.local_shadow_lights, 1);
+        masu_punctual_light_state s = state_of(&l, 0);
+        uint32_t lit = 0, dark = 0;
+        double least = 1, angles[2] = {90, 0};
+        for (uint32_t p = 0; p < l.width * l.height; p++) {
+            hit_point at;
+            if (!(luma(plain + 4 * p) > 1e-4) || !point_under(&l, &c, s.position, p % l.width, p / l.width, &at)) continue;
+            double d[3] = {at.at[0] - s.position[0], at.at[1] - s.position[1], at.at[2] - s.position[2]};
+            double angle = acos(fabs(d[1]) / sqrt(dot3(d, d))) * (180 / 3.14159265358979);
+            if (angle > 89.0) continue;
+            double seen = luma(hdr + 4 * p) / luma(plain + 4 * p);
+            angles[0] = fmin(angles[0], angle), angles[1] = fmax(angles[1], angle);
+            lit++, dark += seen < 0.99;
+            least = fmin(least, seen);
+        }
+        print_message("%-18s %u lit pixels at %.1f to %.1f degrees, below 0.99: %u, the least %.3f\n", cases[i].what, lit,
+                      angles[0], angles[1], dark, least);
+        assert_true(lit > 4000 && angles[1] > 80);
+        assert_int_equal(dark, 0);
+        close_lamps(&l);
+    }
+}
+
+/* ---- Cache ----------------------------------------------------------------------------------- */
+
+static void bake_street(void) {
+    begin_scene(60);
+    add_room();
+    add_box("car", 0, 0.5, 3, 1, 1, 2, 0);
+    add_lights("{\"type\": \"point\", \"position\": [0, 2.1, 0.2], \"intensity\": 9, \"range\": 9}, "
+               "{\"type\": \"spot\", \"position\": [4, 4, 5], \"direction\": [-1, -0.8, -1.1], \"outer\": 40, "
+               "\"intensity\": 30, \"range\": 20}, "
+               "{\"type\": \"point\", \"position\": [-4, 1.5, 3], \"intensity\": 6, \"range\": 8}, "
+               "{\"type\": \"spot\", \"position\": [0, 0.1, 1.2], \"direction\": [0, -0.1, 1], \"outer\": 25, "
+               "\"instance\": \"car\", \"intensity\": 20, \"range\": 15}");
+    bake_scene("lamp_street", json);
+}
+
+static void what_is_kept_is_what_would_be_rendered(void **state) {
+    (void)state;
+    static uint16_t kept[4 * PIXELS_MOST];
+    lamps l;
+    masu_camera end = look(5, 4.5, 7, -4, -3, -6, 1.1);
+    bake_street();
+    open_lamps(&l, "lamp_street", 160, 100, NULL, 0);
+    uint32_t most = 0, rendered = 0;
+    for (int f = 0; f < 150; f++) {
+        double t = f / 150.0;
+        masu_camera c = look(5 * t, 4.5, 7, -4 + 3 * sin(20 * t), -3, -6, 1.1);
+        if (f % 3 && f < 100) move_instance(&l.s, "car", (float)(6 * t - 3), 0.5f, (float)(3 + sin(9 * t)), 1);
+        if (f % 20 < 5) move_instance(&l.s, "box3", (float)(2 * cos(f)), 0.5f, (float)(2 * sin(f)), 1);
+        take(&l, &c, SHADOWED);
+        assert_true(l.stats.local_shadow_faces <= 4);
+        if (most < l.stats.local_shadow_faces) most = l.stats.local_shadow_faces;
+        rendered += l.stats.local_shadow_faces;
+    }
+    move_instance(&l.s, "car", 1, 0.5f, 3.5f, 1);
+    memcpy(kept, settle(&l, &end), (size_t)l.width * l.height * 8);
+    assert_int_equal(most, 4);
+    print_message("%u faces rendered in 150 frames\n", rendered);
+    /* At rest nothing is rendered. */
+    for (int f = 0; f < 8; f++) {
+        assert_memory_equal(take(&l, &end, SHADOWED), kept, (size_t)l.width * l.height * 8);
+        assert_int_equal(l.stats.local_shadow_faces, 0);
+        assert_int_equal(l.stats.local_shadow_lights, 4);
+    }
+    close_lamps(&l);
+    lamps fresh;
+    open_lamps(&fresh, "lamp_street", 160, 100, NULL, 0);
+    move_instance(&fresh.s, "car", 1, 0.5f, 3.5f, 1);
+    move_instance(&fresh.s, "box3", (float)(2 * cos(144)), 0.5f, (float)(2 * sin(144)), 1);
+    const uint16_t *again = settle(&fresh, &end);
+    uint32_t other = 0;
+    for (uint32_t i = 0; i < 4 * fresh.width * fresh.height; i++) other += again[i] != kept[i];
+    print_message("%u components differ from those of a new renderer\n", other);
+    assert_int_equal(other, 0);
+    close_lamps(&fresh);
+}
+
+/* Two lights and one slot: a third one, brighter and out of sight, takes it. */
+static void shadows_come_and_go_by_steps(void **state) {
+    (void)state;
+    static uint16_t plain[4 * PIXELS_MOST], before[4 * PIXELS_MOST];
+    lamps l;
+    masu_rung rung = {.local_shadow_lights = 1};
+    masu_camera c = look(5, 4.5, 7, -4, -3, -6, 1.1);
+    begin_scene(60);
+    add_room();
+    add_lights("{\"type\": \"point\", \"position\": [0, 2.1, 0.2], \"intensity\": 9, \"range\": 14}, "
+               "{\"type\": \"point\", \"position\": [20, 2, 30], \"intensity\": 9, \"range\": 5}");
+    bake_scene("lamp_pair", json);
+    open_lamps(&l, "lamp_pair", 160, 100, &rung, 0);
+    memcpy(plain, take(&l, &c, PLAIN), (size_t)l.width * l.height * 8);
+    memcpy(before, plain, (size_t)l.width * l.height * 8);
+    masu_punctual_light_state away = state_of(&l, 1);
+    double most = 0;
+    uint32_t shadowed = 0, changes = 0;
+    for (int f = 0; f < 160; f++) {
+        if (f == 50 || f == 100) {
+            away.color[0] = f == 50 ? 1e6f : 1.0f;
+            assert_int_equal(masu_punctual_light_set(l.s.m, masu_punctual_light_at(l.s.m, 1), &away), MASU_OK);
+        }
+        const uint16_t *hdr = take(&l, &c, SHADOWED);
+        assert_int_equal(l.stats.local_shadow_lights <= 1, 1);
+        uint32_t now = 0, changed = 0;
+        for (uint32_t i = 0; i < l.width * l.height; i++) {
+            double without = luma(plain + 4 * i);
+            if (!(without > 1e-3)) continue;
+            double step = fabs(luma(hdr + 4 * i) - luma(before + 4 * i)) / without;
+            most = fmax(most, step);
+            changed |= step > 0.01;
+            now += luma(hdr + 4 * i) < 0.05 * without;
+        }
+        changes += changed;
+        if (f == 40 || f == 150) shadowed += now > 500;
+        if (f == 95) assert_int_equal(now, 0);
+        memcpy(before, hdr, (size_t)l.width * l.height * 8);
+    }
+    print_message("largest step %.4f of the light in a frame, %u frames with any\n", most, changes);
+    assert_int_equal(shadowed, 2);
+    assert_int_equal(changes, 24);
+    assert_true(most <= 1.0 / 8 + 2e-3);
+    close_lamps(&l);
+}
+
+/* ---- Live changes ---------------------------------------------------------------------------- */
+
+static void a_thousand_lights_come_and_go(void **state) {
+    (void)state;
+    enum { ROOM = 40 };
+    lamps l;
+    masu_camera c = look(5, 4.5, 7, -4, -3, -6, 1.1);
+    masu_punctual_light handles[ROOM] = {{0}};
+    uint64_t seed = 3;
+    bake_street();
+    open_lamps(&l, "lamp_street", 64, 40, NULL, ROOM);
+    for (uint32_t n = 0; n < 1000; n++) {
+        uint32_t at = (uint32_t)random_between(&seed, 0, ROOM - 0.01);
+        if (handles[at].id) assert_int_equal(masu_punctual_light_remove(l.s.m, handles[at]), MASU_OK);
+        masu_punctual_light_state s = {.range = (float)random_between(&seed, 1, 12),
+                                       .radius = 0.01f,
+                                       .spot = n % 3 == 0,
+                                       .no_shadow = n % 7 == 0,
+                                       .direction = {0.3f, -1, 0.2f},
+                                       .inner = 0.2f,
+                                       .outer = (float)random_between(&seed, 0.2, 3.1)};
+        for (int k = 0; k < 3; k++) {
+            s.position[k] = random_between(&seed, -4, 4) + (k == 1 ? 3 : 0);
+            s.color[k] = (float)random_between(&seed, 0, 20);
+        }
+        assert_int_equal(masu_punctual_light_add(l.s.m, &s, &handles[at]), MASU_OK);
+        if (n % 4) continue;
+        take(&l, &c, n % 100 == 48 ? PLAIN : SHADOWED);
+        assert_true(l.stats.local_shadow_faces <= 4 && l.stats.local_shadow_lights <= 8);
+    }
+    close_lamps(&l);
+}
+
+static void nothing_is_planned_where_no_light_casts(void **state) {
+    (void)state;
+    for (uint32_t casts = 0; casts < 2; casts++) {
+        lamps l;
+        masu_plan_info plan;
+        char text[200];
+        begin_scene(20);
+        snprintf(text, sizeof text, "{\"type\": \"point\", \"position\": [0, 2, 0], \"intensity\": 5, \"shadows\": %s}",
+                 casts ? "true" : "false");
+        add_lights(text);
+        bake_scene("lamp_off", json);
+        open_lamps(&l, "lamp_off", 16, 16, NULL, 0);
+        masu_plan_of(l.s.m, &plan);
+        for (uint32_t i = 0; i < plan.pass_count; i++) {
+            if (strncmp(plan.passes[i].name, "local_shadow", 12) == 0)
+                assert_int_equal(plan.passes[i].active, casts ? 1u << SHADOWED : 0);
+        }
+        uint64_t bytes = 0;
+        for (uint32_t i = 0; i < plan.image_count; i++) {
+            if (strcmp(plan.images[i].name, "local_shadow_atlas") == 0 && plan.images[i].used)
+                bytes = plan.images[i].bytes;
+        }
+        /* One point light: six faces of 256 fit into 1024. */
+        if (!casts) assert_int_equal(bytes, 0);
+        if (casts) assert_true(bytes >= 2 * 1024 * 1024 && bytes < 3 * 1024 * 1024);
+        close_lamps(&l);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(visibility_is_that_of_rays),
+        cmocka_unit_test(planes_do_not_shadow_themselves),
+        cmocka_unit_test(what_is_kept_is_what_would_be_rendered),
+        cmocka_unit_test(shadows_come_and_go_by_steps),
+        cmocka_unit_test(a_thousand_lights_come_and_go),
+        cmocka_unit_test(nothing_is_planned_where_no_light_casts),
+    };
+    return cmocka_run_group_tests(tests, make_scratch, remove_scratch);
+}
