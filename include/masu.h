@@ -610,6 +610,10 @@ typedef struct masu_desc {
     /* Flag: frames may set light.turbidity although the scene has no analytic sky. No effect with
      * an environment map. Scene only. */
     uint32_t analytic_sky;
+    /* Flag: local lights may be capsules and rectangles, or have a surface, although those of the
+     * scene do not. Costs up to 84 KiB of device memory, and registers in the passes that light
+     * surfaces. Scene only. */
+    uint32_t area_lights;
     /* Several views of the scene: each frame renders viewports[masu_frame_desc.viewport] with its
      * own camera and rung. 0..4; 0: one view, all of the output; viewports[0] must then be all
      * zero. Each viewport must be inside the output; with storage targets it must start at 0, 0
@@ -1414,8 +1418,8 @@ MASU_API MASU_MUST_USE masu_result masu_instance_get(masu_renderer *renderer,
 /* Hides an instance (`shown` 0) or shows it from the next masu_frame on: in the image, in shadows
  * and in reflections. The lights of a hidden instance are off. Cascades with shadow_refresh above 1
  * keep its shadow until they are re-rendered. An instance that is shown has a velocity of 0 in its
- * first frame. Light probes are baked and do not change. MASU_ERROR_ARGUMENT: the handle is
- * invalid. */
+ * first frame. Baked light of probes does not change; a live bounce follows within some
+ * rounds of its probes. MASU_ERROR_ARGUMENT: the handle is invalid. */
 MASU_API MASU_MUST_USE masu_result masu_instance_show(masu_renderer *renderer,
                                                       masu_instance instance, uint32_t shown);
 
@@ -1534,24 +1538,49 @@ MASU_API MASU_MUST_USE masu_result masu_model_animate(masu_renderer *renderer, m
 
 /* ---- Punctual lights ------------------------------------------------------------------------- */
 
-/* Handle of a punctual light: a point light or a spot light. */
+/* Handle of a local light: a point or spot light, or an area light. */
 typedef struct masu_punctual_light {
     uint64_t id;
 } masu_punctual_light;
 
+/* Shapes of local lights. A point or spot is a sphere of `radius` that has the given radiant
+ * intensity. The others are given by their radiance; the camera does not see them. */
+typedef enum masu_light_shape {
+    MASU_SHAPE_POINT = 0,     /* point or spot */
+    MASU_SHAPE_SPHERE = 1,    /* as a point with color * radius^2 */
+    MASU_SHAPE_CAPSULE = 2,   /* position +- direction, with hemispheres of `radius` at both ends */
+    MASU_SHAPE_RECTANGLE = 3, /* position +- direction +- half_axis; shines towards direction x
+                               * half_axis, or both ways. A parallelogram if they are not at right
+                               * angles */
+    MASU_SHAPE_FORCE_32 = 0x7fffffff
+} masu_light_shape;
+
 typedef struct masu_punctual_light_state {
     masu_instance instance; /* that the light is attached to; id 0: none */
     double position[3]; /* metres, world, or object space of `instance`; within 1e15 */
-    float direction[3]; /* spot: direction of the light, same space; need not be unit length */
-    /* Radiant intensity / pi, 0..1e9; 0: off. A white diffuse surface that faces the light at d
-     * metres has a radiance of color / d^2, less towards `range`. */
+    /* Same space. Spot: direction of the light, of any length. Capsule, rectangle: half axis in
+     * metres, 1e-6..1e9 long. */
+    float direction[3];
+    /* 0..1e9; 0: off. Point, spot: radiant intensity / pi; a white diffuse surface that faces the
+     * light at d metres has a radiance of color / d^2, less towards `range`. Other shapes:
+     * radiance. */
     float color[3];
-    float range;   /* metres, 0..1e15: the light is 0 from this distance on */
-    float radius;  /* of the source, metres, 1e-6..1e9: smallest distance d for the falloff */
+    /* Metres, 0..1e15: the light is 0 from this distance to its centre on. At least 6 times the
+     * size of an area light, or its near field is cut off. */
+    float range;
+    float radius;  /* of the source, metres, 1e-6..1e9; not used by rectangles */
     uint32_t spot; /* 0: point, 1: spot */
     /* Spot: angles from the direction, radians, 0 <= inner <= outer <= pi: full intensity up to
      * inner, 0 from outer on. A point does not use them, but they are checked. */
     float inner, outer;
+    /* Capsules and rectangles, and has_surface, require desc.area_lights or a scene with some. */
+    masu_light_shape shape;
+    float half_axis[3];  /* rectangle: the other half axis, metres, like `direction` */
+    uint32_t two_sided;  /* rectangle: 1: shines both ways */
+    /* 1: the light of a surface that the scene has too, which lies within its shape. That surface
+     * is not lit by it, and reflection rays that hit it share its mirrored light with it. Lights
+     * that masu-bake has fitted have it. Radii scale with their instance then. */
+    uint32_t has_surface;
     /* 1: casts no shadows. In a scene without any light that does, none will. */
     uint32_t no_shadow;
 } masu_punctual_light_state;
@@ -1631,8 +1660,8 @@ MASU_API MASU_MUST_USE masu_result masu_material_get(masu_renderer *renderer,
                                                      masu_material_state *out);
 
 /* Changes a material from the next masu_frame on: in the image, on transparent surfaces, and in
- * traced reflections, whose histories adapt over some frames. Light probes are baked and do not
- * change. Whether a rung traces reflections still depends on the original materials.
+ * traced reflections, whose histories adapt over some frames. Baked light of probes does not
+ * change, a live bounce follows. Whether a rung traces reflections still depends on the original materials.
  *
  * Nothing has changed after an error.
  *   MASU_ERROR_ARGUMENT   as masu_material_get; a value is out of range or not finite; or a member,

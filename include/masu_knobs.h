@@ -66,7 +66,8 @@ typedef uint32_t masu_per_cascade[MASU_MAX_CASCADES];
     X(LIGHTS, "scenes with punctual lights", "the scene has no punctual lights")                   \
     X(LOCAL_SHADOWS, "scenes with punctual lights that cast shadows",                              \
       "no punctual light of the scene casts shadows")                                              \
-    X(SPECULAR, "scenes with traced reflections", "no reflections are traced")
+    X(SPECULAR, "scenes with traced reflections", "no reflections are traced")                     \
+    X(BOUNCE, "scenes with a live bounce", "the scene has no live bounce")
 
 typedef enum masu_knob_use {
 #define MASU_KNOB_USE_ENUM(name, where, missing) MASU_USE_##name,
@@ -185,7 +186,19 @@ typedef enum masu_knob_use {
     NUMBER(uint32_t,         specular_frames,      1,    240,  32,   SPECULAR,  "frames",          \
            "Length of the temporal accumulation of reflections, in frames of 1/60 s. 0: 32, or 8"  \
            " with temporal, which accumulates too.",                                               \
-           "None.")
+           "None.")                                                                                \
+    /* Live bounce of diffuse light, by irradiance probes. */                                      \
+    WORD(  masu_switch,      bounce,               MASU_AUTO,      BOUNCE,                         \
+           "Live bounce: rays of some probes per frame. OFF: probes keep what they have. AUTO: on" \
+           " if the device allows enough storage buffers.",                                        \
+           "The rays, until the light has been at rest for 64 rounds of all probes; then none.")   \
+    NUMBER(uint32_t,         bounce_probes,        1,    2048, 94,   BOUNCE,    "probes",          \
+           "Probes that trace rays per frame. In the first frames up to four times as many do.",   \
+           "Time grows in proportion. 128 device bytes for each of their rays, which a scene with" \
+           " fewer probes does not take.")                                                         \
+    NUMBER(uint32_t,         bounce_rays,          8,    64,   48,   BOUNCE,    "rays",            \
+           "Rays of a probe per frame. A probe shows the mean of its last four sets of rays.",     \
+           "Time grows in proportion.")
 /* clang-format on */
 
 #include "masu_study.h"
@@ -271,7 +284,7 @@ MASU_API int masu_knob_accepts(const masu_knob *knob, double to);
     X(shadow_resolution, 8192, "width and height n of a cascade in texels: 4 n^2 bytes, device")   \
     X(probes, 0,                                                                                   \
       "light probes: 48 bytes each, 56 more for each set, and the distance map of each probe,"     \
-      " device")                                                                                   \
+      " device; live ones 272 more, and 2 on the host")                                            \
     X(textures, 0, "textures with their mip chains; texture_bytes has their cost")                 \
     X(texture_bytes, 0,                                                                            \
       "bytes of all texels on the device, compressed or decoded as used; the device may add"       \

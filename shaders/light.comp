@@ -110,7 +110,7 @@ vec3 flat_normal(ivec2 at, ivec2 size, float depth, vec3 n)
 #endif
 
 #ifdef MASU_LIGHTS
-void add_lights(inout masu_lit lit, masu_surface s, masu_bsdf b, uvec2 at, vec3 rel, vec3 n)
+void add_lights(inout masu_lit lit, masu_surface s, masu_bsdf b, uvec2 at, vec3 rel, vec3 n, vec3 traced)
 {
     uvec2 size = uvec2(pc.output_width, pc.output_height);
     masu_asked asked = masu_lights_asked(at, size, push.light_tiles != 0u);
@@ -119,7 +119,7 @@ void add_lights(inout masu_lit lit, masu_surface s, masu_bsdf b, uvec2 at, vec3 
         if (i >= asked.count) {
             break;
         }
-        reached += masu_add_local_light(lit, s, b, masu_light_asked(asked, i), rel, n) ? 1u : 0u;
+        reached += masu_add_local_light(lit, s, b, masu_light_asked(asked, i), rel, n, traced) ? 1u : 0u;
     }
     masu_count(MASU_COUNTER_LIGHT_TESTS, asked.count);
     masu_count(MASU_COUNTER_LIGHT_SHADED, reached);
@@ -156,12 +156,13 @@ void main()
                 masu_bsdf b = masu_bsdf_make(s, n, -direction);
                 masu_lit lit = masu_shade(s, b, rel, arriving(at), sky);
 #ifdef MASU_LIGHTS
-                #ifdef MASU_LOCAL_SHADOWS
+#ifdef MASU_LOCAL_SHADOWS
                 if (reliefs) {
                     n = flat_normal(ivec2(at), ivec2(pc.output_width, pc.output_height), depth, n);
                 }
 #endif
-                add_lights(lit, s, b, at, ray * masu_light_depth(depth), n);
+                vec3 traced = vec3(1.0 - kept, push.accumulate != 0u ? 1.0 : 0.0);
+                add_lights(lit, s, b, at, ray * masu_light_depth(depth), n, traced);
 #endif
                 color += lit.diffuse + lit.specular;
             }

@@ -112,7 +112,7 @@ bool sphere_misses(vec3 c, float radius, piece p)
  * its digits; the cross product loses none.) */
 bool cone_misses(masu_punctual_light_data light, piece p)
 {
-    if (!(light.cone.z > 0.0)) {
+    if (!(light.cone.z > 0.0) || masu_light_kind(light) != MASU_KIND_POINT) {
         return false; /* wider than a half-space, or no cone */
     }
     vec3 center = 0.5 * (p.box_low + p.box_high);

@@ -1,7 +1,7 @@
 /*
  * probes.comp: the light of the frame at every probe: what the baker has found for the parts of the
  * sky and for some suns, times the sky and the sun of now. One invocation per probe; lookups then
- * read one set, however many there are.
+ * read one set, however many there are. With MASU_LIVE_PROBES what rays of live probes have found is added.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -79,16 +79,29 @@ void main()
             sums[2u * word] = sum.x;
             sums[2u * word + 1u] = sum.y;
         }
+#ifdef MASU_LIVE_PROBES
+        uint live = masu_probe_live() + probe * MASU_PROBE_LIT_WORDS;
+        vec3 mean = masu_sane(vec3(unpackHalf2x16(probe_words[live]), unpackHalf2x16(probe_words[live + 1u]).x),
+                              0.0, 65504.0);
+        for (uint k = 0u; k < 9u; k++) {
+            vec3 v = mean;
+            if (k > 0u) {
+                v *= masu_probe_integers(probe_words[live + 1u + k]) *
+                     ((k < 4u ? MASU_PROBE_MOST_1 : MASU_PROBE_MOST_2) / 511.0);
+            }
+            sums[3u * k] += v.x;
+            sums[3u * k + 1u] += v.y;
+            sums[3u * k + 2u] += v.z;
+        }
+#endif
         float valid = unpackHalf2x16(probe_words[from + MASU_PROBE_SET_WORDS - 1u]).y;
         vec3 first = masu_sane(vec3(sums[0], sums[1], sums[2]), 0.0, 65504.0);
         vec3 by = vec3(masu_rcp(first.x), masu_rcp(first.y), masu_rcp(first.z)) * 511.0;
         probe_words[to] = packHalf2x16(first.xy);
         probe_words[to + 1u] = packHalf2x16(vec2(first.z, masu_sane(valid, 0.0, 1.0)));
         for (uint k = 1u; k < 9u; k++) {
-            vec3 v = vec3(sums[3u * k], sums[3u * k + 1u], sums[3u * k + 2u]) * by /
-                     (k < 4u ? MASU_PROBE_MOST_1 : MASU_PROBE_MOST_2);
-            uvec3 q = uvec3(ivec3(floor(masu_sane(v, -511.0, 511.0) + 0.5))) & 1023u;
-            probe_words[to + 1u + k] = q.x | q.y << 10 | q.z << 20;
+            vec3 v = vec3(sums[3u * k], sums[3u * k + 1u], sums[3u * k + 2u]);
+            probe_words[to + 1u + k] = masu_probe_pack_ratio(v, by, k);
         }
     }
     masu_count_end();

@@ -17,7 +17,7 @@
 SCENE_SHADERS := update.comp classify.comp cone.comp march.comp march_plain.comp march_seed.comp \
     march_checkerboard.comp sdf_velocity.comp sdf_occlusion.comp \
     silhouettes.comp local_shadow_sdf.comp \
-    specular_trace_sdf.comp
+    specular_trace_sdf.comp bounce_sdf.comp
 # Of these, the marches that only the lab build has: masu-bake holds their text only with MASU_LAB.
 LAB_SCENE_SHADERS := march_plain.comp march_seed.comp march_checkerboard.comp
 
@@ -171,6 +171,7 @@ $(MADE)/tools/make_%: tools/generate/make_%.c $(wildcard shaders/shared/*.h) $(T
 	@mkdir -p $(@D)
 	$(V)$(CC) -std=c11 $(WARNINGS) -O2 -ffp-contract=off -Ishaders -Itools -I$(MADE)/gen $< -lm -o $@
 $(MADE)/tools/make_smaa_area: tools/generate/smaa_tables.h
+$(MADE)/tools/make_split_sum: tools/generate/cosines.inc
 $(MADE)/gen/%.table: $(MADE)/tools/make_%
 	@mkdir -p $(@D)
 	@echo "  TABLE   $@"

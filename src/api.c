@@ -49,6 +49,7 @@ static void alloc_host(masu_arena *arena, const masu_frame_plan *plan, masu_rend
     masu_transparents_alloc(&to->transparents, arena, plan);
     masu_sprites_alloc(&to->sprites, arena, plan);
     masu_reflections_alloc(&to->reflections, arena, plan);
+    masu_bounce_alloc(&to->bounce, arena, plan);
     int governed = plan->desc.governor.mode != MASU_GOVERNOR_OFF;
     to->governor = masu_arena_alloc(arena, "governor", governed, sizeof *to->governor, 8);
     if (!governed) to->governor = NULL;
@@ -80,6 +81,7 @@ void masu_copy_scene(masu_renderer *m) {
     masu_occlusion_copy_scene(&m->occlusion, plan, &v);
     masu_transparents_copy_scene(&m->transparents, plan, &m->draws, &v);
     masu_reflections_copy_scene(&m->reflections, plan, &v);
+    masu_bounce_copy_scene(&m->bounce, plan, &v);
 }
 
 void masu_write_scene(masu_renderer *m) {
@@ -356,6 +358,7 @@ masu_result masu_write_frame(masu_renderer *m, masu_frame_data *f) {
     masu_lights_cast(&m->lights, &m->local_shadows, &m->instances, &m->bounds, f);
     masu_lights_write(&m->lights, &m->instances, &m->local_shadows, f);
     masu_materials_write(&m->materials, f);
+    masu_bounce_write(&m->bounce, &m->lights, &m->instances, &m->materials, f);
 
     /* Whatever asks which instances have moved, then those themselves. */
     masu_reflections_write_instances(&m->reflections, &m->instances, &m->bounds, f);

@@ -51,6 +51,8 @@ static int is_fixed_pass(uint32_t pass) {
     case MASU_EXTENT_KEPT:
     case MASU_EXTENT_BATCHES:
     case MASU_EXTENT_PROBES:
+    case MASU_EXTENT_RAYS:
+    case MASU_EXTENT_TRACED_PROBES:
     case MASU_EXTENT_PICK:
     case MASU_EXTENT_SHADOW:
     case MASU_EXTENT_LOCAL_FACES:

@@ -25,6 +25,7 @@
 #include "frame/occlusion.h"
 #include "frame/picking.h"
 #include "frame/punctual_lights.h"
+#include "frame/bounce.h"
 #include "frame/reflections.h"
 #include "frame/sdf.h"
 #include "frame/shadow.h"
@@ -72,6 +73,7 @@ struct masu_renderer {
     masu_transparents transparents;
     masu_sprites sprites;
     masu_reflections reflections;
+    masu_bounce bounce;
 };
 
 /* The result of a public function whose error is in m->error: logs it. */

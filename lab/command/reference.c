@@ -19,7 +19,7 @@ typedef struct options {
     const char *output, *errors, *store, *sdf, *sky, *model_error;
     VkExtent2D size;
     uint32_t paths, threads, seed, bounces, transport, fields_shadow;
-    double time, sun[2], sun_radius, turn, scale, occlusion[2];
+    double time, sun[2], sun_radius, turn, scale, occlusion[2], window[6];
     bool physics, animate, own_sun, progress, cycles;
 } options;
 
@@ -31,10 +31,23 @@ static bool read_sun(masu_cli *cli, void *to) {
     return masu_cli_sun(cli, o->sun);
 }
 
+static bool read_window(masu_cli *cli, void *to) {
+    options *o = to;
+    double *w = o->window;
+    if (sscanf(cli->value, "%lf,%lf,%lf,%lf,%lf,%lf", &w[0], &w[1], &w[2], &w[3], &w[4], &w[5]) ==
+            6 &&
+        w[0] < w[3] && w[1] < w[4] && w[2] < w[5])
+        return true;
+    masu_cli_usage_error(
+        "--window: expected two corners X,Y,Z,X,Y,Z, the lower one first, not \"%s\"", cli->value);
+    return false;
+}
+
 static const masu_option rows[] = {
     MASU_HEADING("Output"),
     {MASU_ROW(options, output, MASU_TAKE_IMAGE, "output", "FILE",
-              "FILE.pfm, FILE.exr: linear image before exposure; FILE.png: 8 bits of sRGB, with the scene's\n"
+              "FILE.pfm, FILE.exr: linear image before exposure; FILE.png: 8 bits of sRGB, with "
+              "the scene's\n"
               "exposure and the filmic tone curve"),
      .letter = 'o'},
     MASU_FILE(options, errors, "error", "FILE.pfm", "standard error of each value"),
@@ -59,6 +72,9 @@ static const masu_option rows[] = {
     MASU_REAL(options, turn, "sky-rotate", "DEGREES", -360, 360,
               "azimuth of the panorama's centre"),
     MASU_REAL(options, scale, "sky-scale", "FACTOR", 1e-6, 1e6, "factor for its radiance"),
+    MASU_OWN(
+        "window", "X,Y,Z,X,Y,Z", read_window,
+        "box through which the sky is looked for (full): less noise in a room; the mean stays"),
     MASU_HEADING("Light"),
     MASU_FLAG(
         options, physics, "physics",
@@ -186,6 +202,9 @@ static int render(const options *o, const char *path, ref_scene *scene, const re
                     .field_occlusion_radius = o->occlusion[0],
                     .field_occlusion_strength = o->occlusion[1],
                     .cutoff = scene->reflections ? (double)scene->reflections->cutoff : 0,
+                    .window = {{o->window[0], o->window[1], o->window[2]},
+                               {o->window[3], o->window[4], o->window[5]},
+                               o->window[0] < o->window[3]},
                     .environment = e};
     t.field_shadows = o->fields_shadow == 1 || o->physics ||
                       (o->fields_shadow == 2 && scene->blob.section[MASU_BLOB_OCCLUSION_SPIRV]);
@@ -263,7 +282,8 @@ static int run_reference(const options *o, const char *path) {
     /* It lights the scene and has its sun: without it nothing could be compared. */
     if (!code && (double)scene.environment->turbidity > 0 && !o->sky)
         code = masu_cli_error("%s: the scene has an analytic sky (turbidity %g): give an image of "
-                              "it by --sky FILE", path, (double)scene.environment->turbidity);
+                              "it by --sky FILE",
+                              path, (double)scene.environment->turbidity);
     if (!code && scene.sdf) {
         masu_cli_progress("compiling %s", o->sdf);
         has_field = ref_field_open(o->sdf, &scene.blob, o->time, &field, error, sizeof error);

@@ -2,7 +2,6 @@
 #include "lab/reference/field.h"
 
 #include "image.h"
-#include "sdfc/sdfc.h"
 
 #include <ctype.h>
 #include <stdio.h>
@@ -70,6 +69,18 @@ static bool open_parts(ref_field *f, const ref_blob *blob, const masu_sdfc_resul
     return true;
 }
 
+static bool find_boxes(ref_field *f, const masu_sdfc_result *made) {
+    f->boxes = calloc(made->part_count + 1, sizeof *f->boxes);
+    for (uint32_t i = 0; f->boxes && i < made->part_count; i++) {
+        const masu_sdfc_part *part = &made->parts[i];
+        if (!part->truth) continue;
+        f->boxes[f->box_count++] = (ref_field_box){
+            ref_v(part->low[0], part->low[1], part->low[2]),
+            ref_v(part->high[0], part->high[1], part->high[2]), (int)i, part->lipschitz};
+    }
+    return f->boxes != NULL;
+}
+
 static bool open_sdf(ref_field *f, const ref_blob *blob, const char *text, size_t bytes,
                      const char *source, char *error, size_t size) {
     const masu_blob_sdf *sdf = blob->section[MASU_BLOB_SDF];
@@ -89,11 +100,16 @@ static bool open_sdf(ref_field *f, const ref_blob *blob, const char *text, size_
     if (good && (!ref_library_find(&f->c, "masu_truth_step", &f->step) ||
                  !ref_library_find(&f->c, "masu_truth_distance", &f->distance) ||
                  !ref_library_find(&f->c, "masu_truth_part", &f->part) ||
+                 !ref_library_find(&f->c, "masu_truth_part_distance", &f->part_distance) ||
                  !ref_library_find(&f->c, "masu_truth_material", &f->material))) {
         snprintf(error, size, "%s: the compiled field lacks a function", source);
         good = false;
     }
     good = good && open_parts(f, blob, &made, source, error, size);
+    if (good && (!find_boxes(f, &made) || !ref_field_find_emitters(f, &made))) {
+        snprintf(error, size, "out of memory for the field");
+        good = false;
+    }
     masu_sdfc_release(&made);
     return good;
 }
@@ -135,6 +151,8 @@ void ref_field_close(ref_field *f) {
     free(f->inputs);
     free(f->parts);
     free(f->steepness);
+    free(f->boxes);
+    free(f->emitters);
     memset(f, 0, sizeof *f);
 }
 
@@ -185,28 +203,67 @@ double ref_field_distance(const ref_field *f, ref_vec p) {
 
 static double extent(ref_vec p) { return 1 + fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z))); }
 
-/* Where a ray is within the bounds. */
-static bool clip(const ref_field *f, ref_vec from, ref_vec d, double *near, double *far) {
+/* Where a ray is within a box. */
+static bool clip(ref_vec lowest, ref_vec highest, ref_vec from, ref_vec d, double *near,
+                 double *far) {
     double o[3] = {from.x, from.y, from.z}, w[3] = {d.x, d.y, d.z};
-    double low[3] = {f->low.x, f->low.y, f->low.z}, high[3] = {f->high.x, f->high.y, f->high.z};
+    double low[3] = {lowest.x, lowest.y, lowest.z}, high[3] = {highest.x, highest.y, highest.z};
     for (int k = 0; k < 3; k++) {
         if (w[k] == 0) {
             if (o[k] < low[k] || o[k] > high[k]) return false;
             continue;
         }
         double a = (low[k] - o[k]) / w[k], b = (high[k] - o[k]) / w[k];
-        *near = fmax(*near, fmin(a, b));
-        *far = fmin(*far, fmax(a, b));
+        double first = a < b ? a : b, last = a < b ? b : a;
+        if (first > *near) *near = first;
+        if (last < *far) *far = last;
+        if (!(*near < *far)) return false;
     }
-    return *near < *far;
+    return true;
+}
+
+/* What a ray has to look at: a part, and where the ray is within its box. */
+typedef struct span {
+    double near, far;
+    const ref_field_box *box;
+} span;
+
+static uint32_t spans_of(const ref_field *f, ref_vec from, ref_vec d, double near, double far,
+                         span out[MASU_SDFC_PARTS_MAX]) {
+    uint32_t count = 0;
+    ref_vec wider = ref_splat(1e-6 * extent(from));
+    for (uint32_t i = 0; i < f->box_count; i++) {
+        span s = {near, far, &f->boxes[i]};
+        ref_vec low = ref_sub(s.box->low, wider), high = ref_add(s.box->high, wider);
+        if (clip(low, high, from, d, &s.near, &s.far)) out[count++] = s;
+    }
+    return count;
+}
+
+/* Safe step of a ray at t: no part is met before its box. */
+static double step_along(const ref_field *f, ref_vec p, double t, const span *spans,
+                         uint32_t count) {
+    double at[3] = {p.x, p.y, p.z}, step = HUGE_VAL;
+    for (uint32_t i = 0; i < count; i++) {
+        const span *s = &spans[i];
+        if (t > s->far) continue;
+        double own = s->near - t;
+        if (!(own > 1e-7 * extent(p)))
+            own = f->part_distance(f->params, f->time, at, s->box->part) / s->box->lipschitz;
+        if (own < step) step = own;
+    }
+    for (uint32_t i = 0; i < f->part_count; i++) step = fmin(step, glsl_at(f, f->parts[i], at));
+    return step;
 }
 
 double ref_field_trace(const ref_field *f, ref_vec from, ref_vec d, double far) {
     double t = 0, limit = fmin(far, f->longest);
-    if (!clip(f, from, d, &t, &limit)) return HUGE_VAL;
+    span spans[MASU_SDFC_PARTS_MAX];
+    if (!clip(f->low, f->high, from, d, &t, &limit)) return HUGE_VAL;
+    uint32_t count = f->c.handle ? spans_of(f, from, d, t, limit, spans) : 0;
     for (int i = 0; i < STEPS_MOST && t < limit; i++) {
         ref_vec p = ref_along(from, t, d);
-        double step = step_at(f, p);
+        double step = f->c.handle ? step_along(f, p, t, spans, count) : step_at(f, p);
         if (!(step > 1e-8 * extent(p))) return t;
         t += step;
     }

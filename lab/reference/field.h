@@ -6,6 +6,20 @@
 #include "lab/reference/bsdf.h"
 #include "lab/reference/compile.h"
 #include "lab/reference/scene.h"
+#include "sdfc/sdfc.h"
+
+/* A part of the C and the box that contains it. */
+typedef struct ref_field_box {
+    ref_vec low, high;
+    int part;
+    double lipschitz;
+} ref_field_box;
+
+/* Where light comes from: the box of a part that emits, or of a window. */
+typedef struct ref_light_box {
+    ref_vec low, high;
+    double cumulative; /* probability up to and with this one */
+} ref_light_box;
 
 typedef struct ref_field {
     /* C: all of a .sdf source but its parts with GLSL. Handle NULL: a source of GLSL */
@@ -13,6 +27,7 @@ typedef struct ref_field {
     double (*step)(const double *params, double time, const double p[3]);
     double (*distance)(const double *params, double time, const double p[3]);
     int (*part)(const double *params, double time, const double p[3]);
+    double (*part_distance)(const double *params, double time, const double p[3], int part);
     void (*material)(int part, double out[8]);
     /* A source of GLSL; or parts of a .sdf source */
     ref_library glsl;
@@ -25,6 +40,10 @@ typedef struct ref_field {
     double params[256], time;
     ref_vec low, high; /* nothing outside of it is seen */
     double longest;
+    ref_field_box *boxes; /* of a .sdf source */
+    uint32_t box_count;
+    ref_light_box *emitters; /* bounded parts of a .sdf source; NULL: none */
+    uint32_t emitter_count;
 } ref_field;
 
 /* source: a .sdf file, or GLSL. The parameters have their default values. */
@@ -41,5 +60,12 @@ ref_vec ref_field_normal(const ref_field *f, ref_vec p);
 ref_vec ref_field_leave(const ref_field *f, ref_vec p, ref_vec n);
 /* n: of ref_field_normal. */
 void ref_field_surface(const ref_field *f, ref_vec p, ref_vec n, ref_surface *out);
+
+/* field_light.c. Bounded parts of a .sdf source that emit. */
+bool ref_field_find_emitters(ref_field *f, const masu_sdfc_result *made);
+/* A direction towards a point that is uniform in the volume of one of the boxes; and the density of
+ * such directions over the solid angle. */
+ref_vec ref_towards_box(const ref_light_box *boxes, uint32_t count, ref_vec from, ref_random *r);
+double ref_box_pdf(const ref_light_box *boxes, uint32_t count, ref_vec from, ref_vec direction);
 
 #endif

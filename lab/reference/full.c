@@ -70,10 +70,52 @@ static void sample_emitter(const ref_tracer *t, const ref_hit *hit, const ref_bs
     for (int i = 0; i < REF_LOBES; i++) out->of[i] = ref_add(out->of[i], ref_mul(f.of[i], light));
 }
 
-/* MIS weight of emission that a scattered ray meets, beside samples of the emitters. */
-static double emission_weight(const ref_tracer *t, const ref_hit *hit, ref_vec d, double travelled,
-                              double pdf, bool camera) {
+/* Towards a part of the field that emits: what of the field is met first, if nothing is before it. */
+static void sample_field(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, ref_random *r,
+                         ref_lobes *out) {
+    const ref_field *field = t->world->field;
+    ref_vec l = ref_towards_box(field->emitters, field->emitter_count, hit->p, r);
+    if (!(ref_dot(l, hit->ng) > 0)) return;
+    ref_lobes f = ref_bsdf_eval(b, l, r);
+    if (!(ref_max(ref_lobes_sum(&f)) > 0)) return;
+    ref_vec from = ref_world_leave(t->world, hit, l);
+    double pdf = ref_box_pdf(field->emitters, field->emitter_count, hit->p, l),
+           far = ref_field_trace(field, from, l, HUGE_VAL);
+    if (!(pdf > 0) || !(far < HUGE_VAL)) return;
+    ref_surface s;
+    ref_vec p = ref_along(from, far, l);
+    ref_field_surface(field, p, ref_field_normal(field, p), &s);
+    if (!(ref_max(s.emissive) > 0)) return;
+    double mis = power(pdf, t->bsdf_samples ? ref_bsdf_pdf(b, l) : 0);
+    ref_vec light = ref_mul(ref_unoccluded(t, from, l, far, REF_RAY_NO_SDF), s.emissive);
+    light = ref_scale(light, mis / pdf);
+    for (int i = 0; i < REF_LOBES; i++) out->of[i] = ref_add(out->of[i], ref_mul(f.of[i], light));
+}
+
+/* Towards a window, of a sky that is no map. */
+static void sample_window(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, ref_random *r,
+                          ref_lobes *out) {
+    ref_vec l = ref_towards_box(&t->window, 1, hit->p, r);
+    double pdf = ref_box_pdf(&t->window, 1, hit->p, l);
+    ref_lobes f = ref_bsdf_eval(b, l, r);
+    if (!(pdf > 0) || !(ref_max(ref_lobes_sum(&f)) > 0)) return;
+    double mis = power(pdf, t->bsdf_samples ? ref_bsdf_pdf(b, l) : 0);
+    ref_vec sky = ref_scale(ref_mul(to_sky(t, hit, l), ref_sky_at(t->sky, l)), mis / pdf);
+    for (int i = 0; i < REF_LOBES; i++) out->of[i] = ref_add(out->of[i], ref_mul(f.of[i], sky));
+}
+
+static bool field_emits(const ref_tracer *t) {
+    return t->world->field && t->world->field->emitter_count && t->light_samples;
+}
+
+/* MIS weight of emission that a ray scattered at `from` meets, beside samples of the emitters. */
+static double emission_weight(const ref_tracer *t, const ref_hit *hit, ref_vec from, ref_vec d,
+                              double travelled, double pdf, bool camera) {
     const ref_scene *s = t->world->scene;
+    if (!camera && hit->triangle == REF_SDF && field_emits(t))
+        return t->bsdf_samples ? power(pdf, ref_box_pdf(t->world->field->emitters,
+                                                        t->world->field->emitter_count, from, d))
+                               : 0;
     if (camera || !t->light_samples || hit->triangle == REF_SDF || !s->emitter_count) return 1;
     double cosine = fabs(ref_dot(hit->ng, d));
     double other =
@@ -81,10 +123,17 @@ static double emission_weight(const ref_tracer *t, const ref_hit *hit, ref_vec d
     return t->bsdf_samples ? power(pdf, other) : 0;
 }
 
-ref_vec ref_full(const ref_tracer *t, ref_vec from, ref_vec d, ref_random *r) {
-    ref_vec sum = ref_splat(0), left = ref_splat(1), start = from;
+/* White and matt, without a mirror. */
+static const ref_look patch_look = {
+    .s = {.albedo = {1, 1, 1}, .roughness = 1, .occlusion = 1}, .cover = 1, .opacity = 1};
+
+/* patch: the first surface, seen along d; NULL: what a ray from there meets. */
+static ref_vec walk(const ref_tracer *t, ref_vec from, ref_vec d, const ref_hit *patch,
+                    ref_random *r) {
+    ref_vec sum = ref_splat(0), left = ref_splat(1), start = from, scattered = from;
     ref_lobes w = {{ref_splat(1), ref_splat(0), ref_splat(0)}};
     bool map = ref_sky_is_map(t->sky) && t->sky_samples, mirror = true;
+    const bool window = !map && t->window.cumulative > 0;
     double pdf = 0;
     uint32_t bounce = 0;
     for (uint32_t step = 0; step < STEPS_MOST; step++) {
@@ -93,10 +142,14 @@ ref_vec ref_full(const ref_tracer *t, ref_vec from, ref_vec d, ref_random *r) {
         ref_bsdf b;
         bool camera = bounce == 0;
         ref_vec all = ref_mul(left, ref_lobes_sum(&w)), v = ref_scale(d, -1);
-        if (!ref_world_trace(t->world, from, d, HUGE_VAL, REF_RAY_ONE_SIDED, &hit)) {
-            double mis = camera || !map    ? 1
-                         : t->bsdf_samples ? power(pdf, ref_sky_pdf(t->sky, d))
-                                           : 0;
+        bool is_patch = patch && step == 0;
+        if (is_patch) {
+            hit = *patch;
+        } else if (!ref_world_trace(t->world, from, d, HUGE_VAL, REF_RAY_ONE_SIDED, &hit)) {
+            double mis = 1, other = 0;
+            if (map) other = ref_sky_pdf(t->sky, d);
+            if (window) other = ref_box_pdf(&t->window, 1, scattered, d);
+            if (!camera && (map || window)) mis = t->bsdf_samples ? power(pdf, other) : 0;
             ref_vec seen = camera ? ref_sky_seen(t, d) : ref_sky_at(t->sky, d);
             ref_vec soft = t->physics ? seen : ref_sky_soft(t->sky, d);
             double air = mirror ? ref_air_left(t, start, d, HUGE_VAL) : 1;
@@ -105,7 +158,12 @@ ref_vec ref_full(const ref_tracer *t, ref_vec from, ref_vec d, ref_random *r) {
             ref_vec light = ref_add(mirrored, ref_mul(w.of[REF_SOFT], soft));
             return ref_add(sum, ref_scale(ref_mul(left, light), mis));
         }
-        ref_world_look(t->world, &hit, v, &look);
+        if (is_patch) {
+            look = patch_look;
+            look.s.normal = look.s.coat_normal = hit.ng;
+        } else {
+            ref_world_look(t->world, &hit, v, &look);
+        }
         double travelled = ref_length(ref_sub(hit.p, start));
         double air = mirror ? ref_air_left(t, start, d, travelled) : 1;
         if (air < 1) {
@@ -126,7 +184,7 @@ ref_vec ref_full(const ref_tracer *t, ref_vec from, ref_vec d, ref_random *r) {
             all = ref_scale(all, 1 / (1 - through));
             left = ref_scale(left, 1 / (1 - through));
         }
-        double seen = emission_weight(t, &hit, d, travelled, pdf, camera) * pane.soft;
+        double seen = emission_weight(t, &hit, scattered, d, travelled, pdf, camera) * pane.soft;
         sum = ref_add(sum, ref_mul(all, ref_scale(look.s.emissive, seen)));
         if (ref_is_unlit(&look.s)) return sum;
         ref_lobes lit;
@@ -135,8 +193,10 @@ ref_vec ref_full(const ref_tracer *t, ref_vec from, ref_vec d, ref_random *r) {
         ref_punctual_light(t, &hit, &b, r, &lit);
         if (bounce < t->bounces) {
             if (map) sample_map(t, &hit, &b, r, &lit);
+            if (window) sample_window(t, &hit, &b, r, &lit);
             if (t->world->scene->emitter_count && t->light_samples)
                 sample_emitter(t, &hit, &b, r, &lit);
+            if (field_emits(t)) sample_field(t, &hit, &b, r, &lit);
         }
         ref_vec mirrored = ref_scale(ref_add(lit.of[REF_BASE], lit.of[REF_COAT]), pane.mirror);
         sum = ref_add(sum, ref_mul(all, ref_along(mirrored, pane.soft, lit.of[REF_SOFT])));
@@ -154,7 +214,16 @@ ref_vec ref_full(const ref_tracer *t, ref_vec from, ref_vec d, ref_random *r) {
             if (u >= survive) return sum;
             left = ref_scale(left, 1 / survive);
         }
+        scattered = hit.p;
         from = start = ref_world_leave(t->world, &hit, d);
     }
     return sum;
+}
+
+ref_vec ref_full(const ref_tracer *t, ref_vec from, ref_vec d, ref_random *r) {
+    return walk(t, from, d, NULL, r);
+}
+
+ref_vec ref_irradiance(const ref_tracer *t, const ref_hit *at, ref_random *r) {
+    return ref_scale(walk(t, at->p, ref_scale(at->ng, -1), at, r), REF_PI);
 }

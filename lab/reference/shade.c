@@ -118,7 +118,9 @@ void ref_punctual_light(const ref_tracer *t, const ref_hit *hit, const ref_bsdf 
         }
         ref_lobes f = ref_bsdf_eval(b, l, r);
         if (!(ref_max(ref_lobes_sum(&f)) > 0)) continue;
-        ref_vec seen = visible(t, hit, l, far, t->physics);
+        /* A ray ends where it enters the source: a bulb of that size does not occlude it. */
+        double free = fmax(far - s->lights[i].radius * (1 + 1e-3), 0);
+        ref_vec seen = visible(t, hit, l, free, t->physics && free > 0);
         add(out, &f, ref_scale(ref_mul(seen, color), REF_PI));
     }
 }

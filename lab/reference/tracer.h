@@ -25,7 +25,8 @@ typedef struct ref_tracer {
     ref_vec eye;
     double occlusion_radius; /* of ambient occlusion, direct only; 0: none */
     double field_occlusion_radius, field_occlusion_strength; /* of the field's own; 0: none */
-    double cutoff;           /* roughness from which no reflection is traced; 0: none is */
+    ref_light_box window; /* through which the sky is looked for; cumulative 0: none */
+    double cutoff;        /* roughness from which no reflection is traced; 0: none is */
     const masu_blob_environment *environment;
 } ref_tracer;
 
@@ -66,5 +67,7 @@ ref_vec ref_unoccluded(const ref_tracer *t, ref_vec from, ref_vec l, double far,
 
 ref_vec ref_direct(const ref_tracer *t, ref_vec from, ref_vec d, ref_random *r, int depth);
 ref_vec ref_full(const ref_tracer *t, ref_vec from, ref_vec d, ref_random *r);
+/* Light that arrives at a surface from the side of its normal by all paths, over all directions. */
+ref_vec ref_irradiance(const ref_tracer *t, const ref_hit *at, ref_random *r);
 
 #endif

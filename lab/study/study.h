@@ -57,10 +57,11 @@ typedef struct masu_study {
 #define MASU_STUDY_TRUTH MASU_TRUTH_ROWS(masu_study_options, truth)
 #define MASU_STUDY_JSON MASU_FLAG(masu_study_options, json, "json", "print JSON")
 #define MASU_STUDY_DEVICE MASU_DEVICE_ROWS(masu_study_options, host)
-#define MASU_STUDY_END {.name = NULL}
+#define MASU_STUDY_END                                                                             \
+    { .name = NULL }
 
 extern const masu_study masu_study_march, masu_study_rays, masu_study_reflections, masu_study_image,
-    masu_study_upscale, masu_study_temporal, masu_study_baseline;
+    masu_study_upscale, masu_study_temporal, masu_study_baseline, masu_study_light, masu_study_rest;
 
 /* The name of the scene's file without its folder and from its first dot on. */
 void masu_study_scene_name(const char *path, char *name, size_t size);

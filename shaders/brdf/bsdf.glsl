@@ -74,6 +74,7 @@ struct masu_bsdf {
     vec2 coat_line;    /* a, b */
     vec3 coat_n;
     float coat_n_v;
+    float coat_gain;   /* factor of the coat's lobe, 1 */
 #endif
 };
 
@@ -156,6 +157,7 @@ masu_bsdf masu_bsdf_make(masu_surface s, vec3 n, vec3 v)
 #ifdef MASU_SURFACE
     b.coat_n = n;
     b.coat_n_v = over;
+    b.coat_gain = 1.0;
     if (masu_own_coats) {
         b.n = masu_below(n, s.lean);
         b.n_v = masu_sane(dot(b.n, v), 1e-4, 1.0);
@@ -235,7 +237,7 @@ void masu_bsdf_parts(masu_bsdf b, vec3 l, out vec3 mirrored, out vec3 below)
     if (b.coat > 0.0) {
         float steep = masu_schlick(min(over, b.coat_n_v));
         specular *= max(1.0 - b.coat * (b.coat_line.x + b.coat_line.y * steep), 0.0);
-        float lobe = b.coat * (0.04 + 0.96 * s) * masu_ggx(b.coat_n, h, b.coat_alpha, over, b.coat_n_v);
+        float lobe = b.coat_gain * b.coat * (0.04 + 0.96 * s) * masu_ggx(b.coat_n, h, b.coat_alpha, over, b.coat_n_v);
         if (masu_own_coats) {
             top = lobe * over;
         } else {

@@ -1,6 +1,7 @@
 /*
- * lights.glsl: punctual lights, point and spot: what reaches a surface point of one of them, and which
- * of them a pixel has to ask. With MASU_LOCAL_SHADOWS, as far as nothing is in between (light/local_shadow.glsl).
+ * lights.glsl: local lights: points and spots, which are spheres of their radius, capsules and rectangles:
+ * what reaches a surface point of one of them, and which of them a pixel has to ask. With MASU_LOCAL_SHADOWS, as
+ * far as nothing is in between (light/local_shadow.glsl). How a source of a size is mirrored: light/source.glsl.
  *
  *   reaches = color * window * cone / max(d^2, radius^2)
  *   window  = 1 - (d / range)^4, 0 from the range on: an inverse square that ends, so that a light
@@ -9,8 +10,9 @@
  *             angle a to the axis its versine 1 - cos(a) = |l + axis|^2 / 2 is compared: cosines of
  *             narrow cones have no digits left. Window and cone are those of glTF's
  *             KHR_lights_punctual
- *   color   is radiant intensity / pi, as the sun's is irradiance / pi: a white matt surface that
- *             faces the light at distance d has the radiance color / d^2
+ *   color   of points and spots is radiant intensity / pi, as the sun's is irradiance / pi: a white matt surface that
+ *             faces the light at distance d has the radiance color / d^2. Of capsules and rectangles it is
+ *             radiance; window and range are those of the centre
  *
  * A tile's list (light_tiles.comp) leaves out only lights for which masu_light_reaches is false at
  * every surface of the tile, and lists rise: a sum over the list has the same bits as one over all.
@@ -21,6 +23,14 @@
 
 #include "shared/lights.h"
 #include "shared/guard.glsl"
+#include "shared/sdf_limits.h"
+
+/* The scene may have rectangles and capsules. */
+#ifdef MASU_AREA_LIGHTS
+const bool masu_area_lights = true;
+#else
+layout(constant_id = 17) const bool masu_area_lights = false;
+#endif
 
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_LIGHTS, std430) readonly buffer Lights
 {
@@ -81,8 +91,24 @@ float masu_light_depth(float depth)
     return z;
 }
 
-/* l: unit vector towards the light. False: nothing arrives, and the other two are not to be used.
- * rel: the point, relative to the eye. */
+const uint MASU_KIND_POINT = 0u;
+const uint MASU_KIND_CAPSULE = 1u;
+const uint MASU_KIND_RECTANGLE = 2u;
+
+uint masu_light_kind(masu_punctual_light_data light)
+{
+    return uint(clamp(light.cone.w, 0.0, 7.0)) & 3u;
+}
+
+/* Whether its surface is in the scene too, where rays may meet it. */
+bool masu_light_is_shared(masu_punctual_light_data light)
+{
+    return (uint(clamp(light.cone.w, 0.0, 7.0)) & uint(MASU_LIGHT_SHARED)) != 0u;
+}
+
+/* l: unit vector towards the light's centre. color: of a point or spot irradiance / pi on a surface that faces
+ * it, of others radiance. False: nothing arrives, and the other two are not to be used. rel: the point, relative
+ * to the eye. */
 bool masu_light_reaches(masu_punctual_light_data light, vec3 rel, out vec3 l, out vec3 color)
 {
     vec3 to = light.position.xyz - rel;
@@ -98,8 +124,39 @@ bool masu_light_reaches(masu_punctual_light_data light, vec3 rel, out vec3 l, ou
     float t = clamp((light.axis.w - 0.5 * dot(chord, chord)) * light.cone.x, 0.0, 1.0);
     float window = 1.0 - share * share;
     float strength = window * (t * t) / max(squared, light.color.w);
+    if (masu_area_lights && masu_light_kind(light) != MASU_KIND_POINT) {
+        strength = window;
+    }
     color = light.color.rgb * strength;
     return strength > 0.0 && masu_finite(color);
+}
+
+/* Half axes of a rectangle, or of a capsule as one that faces a point; `to`: from the point to its centre.
+ * The second turns such that the side that faces the point is the front. False: it shines the other way. */
+bool masu_light_axes(masu_punctual_light_data light, vec3 to, out vec3 u, out vec3 v)
+{
+    u = light.axis.xyz;
+    v = light.cone.xyz;
+    if (masu_light_kind(light) == MASU_KIND_CAPSULE) {
+        float radius = masu_sqrt(light.color.w);
+        v = masu_normalize(cross(to, u), vec3(0.0)) * radius;
+        u += masu_normalize(cross(v, to), vec3(0.0)) * (0.78539816 * radius);
+    }
+    bool behind = dot(cross(u, v), to) > 0.0;
+    v = behind ? -v : v;
+    return !behind || light.color.w > 0.0;
+}
+
+/* The part of the sky that a source fills, as the squared sine of a sphere's radius. */
+float masu_light_size(masu_punctual_light_data light, vec3 to)
+{
+    float squared = dot(to, to), area = light.color.w;
+    vec3 u, v;
+    if (masu_area_lights && masu_light_kind(light) != MASU_KIND_POINT) {
+        masu_light_axes(light, to, u, v);
+        area = 1.2732395 * abs(dot(cross(u, v), to)) * masu_rsqrt(squared); /* 4 / pi */
+    }
+    return min(area / max(squared, masu_tiny), 0.9999);
 }
 
 #ifdef MASU_LOCAL_SHADOWS
@@ -107,20 +164,98 @@ bool masu_light_reaches(masu_punctual_light_data light, vec3 rel, out vec3 l, ou
 #endif
 
 #ifdef MASU_SHADE_GLSL
-/* Adds what a light contributes at a surface point relative to the eye. n: the normal of the surface itself.
- * False: nothing arrives. */
-bool masu_add_local_light(inout masu_lit lit, masu_surface s, masu_bsdf b, uint light, vec3 rel, vec3 n)
+#include "light/source.glsl"
+
+/* The mirrored light of some lights' surfaces is shared between rays that meet them and the lobe. */
+layout(constant_id = 18) const bool masu_shared_lights = false;
+
+/* How far a point relative to the eye lies from the middle of a light that has a surface in the scene: below 1
+ * within what the baker has fitted, a little more for what is rounded. */
+float masu_light_within(masu_punctual_light_data light, vec3 rel)
 {
+    vec3 from = rel - light.position.xyz;
+    float radius = masu_sqrt(light.color.w), beyond = 0.0;
+    vec3 u = light.axis.xyz, v = light.cone.xyz;
+    if (masu_area_lights && masu_light_kind(light) != MASU_KIND_POINT) {
+        float along = dot(from, u) * masu_rcp(dot(u, u));
+        from -= u * clamp(along, -1.0, 1.0);
+        if (masu_light_kind(light) == MASU_KIND_RECTANGLE) {
+            from -= v * clamp(dot(from, v) * masu_rcp(dot(v, v)), -1.0, 1.0);
+            radius = 0.1 * min(masu_sqrt(dot(u, u)), masu_sqrt(dot(v, v)));
+        }
+    }
+    return masu_sqrt(dot(from, from)) * masu_rcp(1.05 * radius + 1e-4);
+}
+
+/* Adds what a light contributes at a surface point relative to the eye. n: the normal of the surface itself; traced: of the mirrored light of base and
+ * coat; z 1: rays meet all of what they can, 0: they share it with the lobe. False: nothing arrives. */
+bool masu_add_local_light(inout masu_lit lit, masu_surface s, masu_bsdf b, uint number, vec3 rel, vec3 n, vec3 traced)
+{
+    masu_punctual_light_data light = masu_lights[number];
     vec3 l;
     vec3 color;
-    bool reaches = masu_light_reaches(masu_lights[light], rel, l, color);
-    if (reaches) {
-#ifdef MASU_LOCAL_SHADOWS
-        color *= masu_light_seen(masu_lights[light], rel, n);
-#endif
-        masu_add_light(lit, s, b, l, color);
+    if (!masu_light_reaches(light, rel, l, color)) {
+        return false;
     }
-    return reaches;
+#ifdef MASU_LOCAL_SHADOWS
+    color *= masu_light_seen(light, rel, n);
+#endif
+    vec3 to = light.position.xyz - rel;
+    bool area = masu_area_lights && masu_light_kind(light) != MASU_KIND_POINT;
+    float size = masu_light_size(light, to);
+    vec2 kept = vec2(1.0);
+    if (masu_shared_lights && masu_light_is_shared(light)) {
+        if (masu_light_within(light, rel) < 1.0) {
+            return false; /* its own surface */
+        }
+        kept -= traced.xy * max(masu_ray_shares(s, b, l, size), traced.z);
+    }
+    if (area) {
+        vec3 u, v;
+        if (!masu_light_axes(light, to, u, v)) {
+            return false;
+        }
+        masu_add_rectangle(lit, s, b, l, color, masu_rectangle(b, to, u, v), kept.x);
+        color *= size;
+        b.f0 = b.rest = b.diffuse = vec3(0.0); /* the coat is left: as a sphere's */
+        b.f90 = 0.0;
+    }
+#ifndef MASU_SURFACE
+    if (area) {
+        return true;
+    }
+#endif
+    masu_spread(b, l, color, size, kept);
+    masu_add_light(lit, s, b, l, color);
+    return true;
+}
+
+/* Share of the emission that a ray has met, at a point `met`, in what a surface at `rel` mirrors: of what is no
+ * local light's surface all of it. n, v, roughness: of the lobe that the ray is of. */
+float masu_met_share(vec3 met, vec3 rel, vec3 n, vec3 v, float roughness)
+{
+    uint lights = masu_light_count();
+    float nearest = 1.0, share = 1.0;
+    for (uint i = 0u; i < uint(MASU_LOCAL_LIGHTS_MAX); i++) {
+        if (i >= lights) {
+            break;
+        }
+        masu_punctual_light_data light = masu_lights[i];
+        vec3 to = light.position.xyz - rel;
+        float within = masu_light_is_shared(light) ? masu_light_within(light, met) : 1.0;
+        if (within < nearest && dot(to, to) * light.position.w < 1.0) {
+            nearest = within;
+            vec3 l = masu_normalize(to, n);
+            share = masu_ray_share(n, v, l, roughness, masu_light_size(light, to));
+        }
+    }
+    return share;
+}
+
+/* Where no rays are traced from the surface. */
+bool masu_add_local_light(inout masu_lit lit, masu_surface s, masu_bsdf b, uint number, vec3 rel, vec3 n)
+{
+    return masu_add_local_light(lit, s, b, number, rel, n, vec3(0.0));
 }
 #endif
 

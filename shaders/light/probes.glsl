@@ -10,6 +10,8 @@
  *     direction (Donnelly and Lauritzen 2006; Majercik et al., JCGT 8-2, 2019)
  *   0 for probes that are inside of things
  * None is exactly 0, so that the sum can be divided by.
+ *
+ * With MASU_PROBES_LIVE what live probes have found alone, without what is baked.
  */
 #ifndef MASU_LIGHT_PROBES_GLSL
 #define MASU_LIGHT_PROBES_GLSL
@@ -51,6 +53,31 @@ uint masu_probe_maps() { return masu_probe_count() * masu_probe_sets() * MASU_PR
 uint masu_probe_lit()
 {
     return (masu_probe_maps() + masu_probe_count() * masu_probe_map_words() + 3u) & ~3u;
+}
+
+/* Where probes are live: the means of what their rays have found, and the sets that these are of. */
+uint masu_probe_live() { return masu_probe_lit() + masu_probe_count() * MASU_PROBE_LIT_WORDS; }
+uint masu_probe_live_sets() { return masu_probe_live() + masu_probe_count() * MASU_PROBE_LIT_WORDS; }
+
+/* Where a probe is, from the first. */
+vec3 masu_probe_place(uint probe)
+{
+    uvec3 counts = max(probe_grid.counts.xyz, uvec3(1u));
+    uvec3 at = uvec3(probe % counts.x, probe / counts.x % counts.y, probe / (counts.x * counts.y));
+    return vec3(at) * probe_grid.spacing.xyz;
+}
+
+/* Coefficient k of a lit word, by 511 / the first one. */
+uint masu_probe_pack_ratio(vec3 coefficient, vec3 by, uint k)
+{
+    vec3 v = coefficient * by / (k < 4u ? MASU_PROBE_MOST_1 : MASU_PROBE_MOST_2);
+    uvec3 q = uvec3(ivec3(floor(masu_sane(v, -511.0, 511.0) + 0.5))) & 1023u;
+    return q.x | q.y << 10 | q.z << 20;
+}
+
+vec3 masu_probe_integers(uint w)
+{
+    return vec3(ivec3(uvec3(w << 22, w << 12, w << 2)) >> 22);
 }
 
 /* Real spherical harmonics of a unit direction from the second on (Ramamoorthi and Hanrahan 2001), as
@@ -99,11 +126,6 @@ float masu_probe_seen(uint map, uint texels, vec3 d, float distance)
 }
 
 #ifndef MASU_PROBES_WRITE
-vec3 masu_probe_integers(uint w)
-{
-    return vec3(ivec3(uvec3(w << 22, w << 12, w << 2)) >> 22);
-}
-
 /* Irradiance / pi of one probe by the normal. */
 vec3 masu_probe_irradiance(uint quad, masu_probe_factors f, out float valid)
 {
@@ -144,6 +166,9 @@ vec4 masu_probe_light(vec3 from, vec3 normal)
     uint map_words = more.z > 0u ? side * side : 0u;
     uint maps = count * (counts.w + more.y + more.x) * MASU_PROBE_SET_WORDS;
     uint lit = (maps + count * map_words + 3u) / 4u;
+#ifdef MASU_PROBES_LIVE
+    lit += count * (MASU_PROBE_LIT_WORDS / 4u);
+#endif
     masu_probe_factors by_normal = masu_probe_basis(normal);
     vec3 sum = vec3(0.0);
     float total = 0.0;

@@ -1,4 +1,4 @@
-/* lights.h: punctual lights of a frame and their tile lists. */
+/* lights.h: local lights of a frame and their tile lists. */
 #ifndef MASU_SHARED_LIGHTS_H
 #define MASU_SHARED_LIGHTS_H
 
@@ -9,13 +9,16 @@
 #define MASU_LOCAL_LIGHTS_MAX 4096
 #define MASU_TILE_LIGHTS_MAX 63
 
-/* A point or spot light, camera-relative. shaders/light/lights.glsl evaluates it. */
+/* A local light, camera-relative. shaders/light/lights.glsl evaluates it. */
 struct masu_punctual_light_data {
     masu_vec4 position; /* xyz; w 1 / range^2 */
-    masu_vec4 color;    /* rgb radiant intensity / pi; w smallest squared distance */
-    masu_vec4 axis;     /* xyz unit direction of a spot; w 1 - cos(outer). Point light: 0 0 0 4 */
-    masu_vec4 cone;     /* x 1 / (cos(inner) - cos(outer)), point light 1; y sine and z cosine of
-                           the outer angle, point light 0 */
+    masu_vec4 color;    /* point, spot: rgb radiant intensity / pi. Capsule, rectangle: radiance.
+                           w squared radius; rectangle: 1 two sides, 0 only the front, u x v */
+    masu_vec4 axis;     /* xyz unit direction of a spot, w 1 - cos(outer); point 0 0 0 4.
+                           Capsule, rectangle: half axis u, metres; 4 */
+    masu_vec4 cone;     /* spot: x 1 / (cos(inner) - cos(outer)); y sine and z cosine of the outer
+                           angle; point 1 0 0. Rectangle: half axis v. Capsule: 0 0 0.
+                           w bits: kind, 0 point or spot, 1 capsule, 2 rectangle; LIGHT_SHARED */
     masu_vec4 bound;    /* sphere around everything that it lights: xyz, w radius, rounded up */
     /* Shadow, all 0: none. x y z w, x y: a word for each cube face +x -x +y -y +z -z; z near distance, w 0, as
      * bits of floats. With only one face, of a spot: x its word; y z w the unit vector across it, of which the
@@ -31,5 +34,7 @@ struct masu_punctual_light_data {
 #define MASU_LOCAL_X_SHIFT 20
 /* Texels beyond the face's edge on each side of a tile, for the filter. */
 #define MASU_LOCAL_GUARD 2
+/* The light is that of a surface of the scene, which rays meet. */
+#define MASU_LIGHT_SHARED 4
 
 #endif

@@ -11,7 +11,11 @@
  *   TABLE_AVERAGE        2 floats per row: the hemispherical averages of both
  *   TABLE_COAT           white lobe times the larger (1 - N.w)^5 of both directions w; the same
  *                        times (1 - h.v)^5. From here on only for scenes with clear coat
- *   TABLE_COAT_AVERAGE   4 floats per row: the averages of both; a and b of the coat */
+ *   TABLE_COAT_AVERAGE   4 floats per row: the averages of both; a and b of the coat
+ *   TABLE_TRANSFORM      only for scenes with area lights: two 32-bit values of two snorm16 numbers
+ *                        each for every node: a, b, c / alpha, d / (2 alpha) (shaders/light/source.glsl,
+ *                        fitted by tools/generate/make_cosines.c). TRANSFORM_COLUMNS nodes over
+ *                        sqrt(1 - N.V), TRANSFORM_ROWS rows over roughness, both interpolated */
 #define MASU_TABLE_SIZE 64
 #define MASU_TABLE_ROWS 256
 #define MASU_TABLE_SMOOTHEST 0.045
@@ -20,7 +24,11 @@
 #define MASU_TABLE_COAT 16896
 #define MASU_TABLE_COAT_AVERAGE 33280
 #define MASU_TABLE_WORDS 16896 /* 32-bit values without coat */
-#define MASU_TABLE_WORDS_ALL 34304
+#define MASU_TABLE_TRANSFORM 34304
+#define MASU_TABLE_WORDS_COAT 34304
+#define MASU_TABLE_WORDS_ALL 38400
+#define MASU_TRANSFORM_COLUMNS 64
+#define MASU_TRANSFORM_ROWS 32
 
 /* The blue-noise tile (shaders/noise/sequence.glsl, written by tools/generate/make_blue_noise.c): a
  * square of 32-bit values, row by row. */

@@ -5,6 +5,7 @@
 #define MASU_SHARED_H
 
 #include "shared/ao.h"
+#include "shared/bounce.h"
 #include "shared/counters.h"
 #include "shared/culling.h"
 #include "shared/exposure.h"

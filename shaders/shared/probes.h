@@ -17,13 +17,17 @@
 #define MASU_PROBE_MOST_1 1.25  /* light from a single direction has 1.155 in band 1 */
 #define MASU_PROBE_MOST_2 0.625 /* and 0.559 in band 2 */
 
+/* Behind the light of this frame, where probes are live: of each the mean of what its rays have found, as
+ * lit words are; then of each PROBE_SETS_LIVE partial sums, as sets are. */
+#define MASU_PROBE_SETS_LIVE 4u
+
 /* Head of the buffer, masu_blob_probes in src/scene/blob.h. Then, per probe, the coefficients from
  * the blob; then, per probe, the light of this frame. */
 struct masu_probe_grid {
     masu_vec4 origin;  /* xyz first probe; w metres by which points are moved along their normal */
     masu_vec4 spacing; /* xyz */
     masu_uvec4 counts; /* xyz; w coefficient sets of the sky */
-    masu_uvec4 more;   /* x suns, y 1: has a set for emission, z texels along the edge of a map */
+    masu_uvec4 more;   /* x suns, y 1: has a set for emission, z texels along the edge of a map, w 1: live */
     masu_vec4 sun_direction[MASU_PROBE_SUNS];
     masu_vec4 sun_inverse[4 * MASU_PROBE_SUNS]; /* rows of 16 */
 };

@@ -24,14 +24,17 @@ typedef struct masu_most {
 } masu_most;
 
 /* The pass of which a stage binds most storage buffers, of those that bind one of the group; PLAIN:
- * of those that bind none of tracing and culling, which no rung can do without. */
+ * of those that bind none of the others, which no rung can do without. Rays of probes bind what reflections
+ * do: they count as BOUNCING alone. */
 static masu_most most_buffers(const masu_frame_plan *plan, masu_binding_group group) {
-    const uint32_t optional = 1u << MASU_BINDING_TRACING | 1u << MASU_BINDING_CULLING;
+    const uint32_t bouncing = 1u << MASU_BINDING_BOUNCING;
+    const uint32_t optional = 1u << MASU_BINDING_TRACING | 1u << MASU_BINDING_CULLING | bouncing;
     masu_most most = {0, ""};
     for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
         uint32_t groups, count;
         if (!masu_first_rung(plan, p)) continue;
         count = masu_storage_buffers(plan, p, &groups);
+        if (groups & bouncing) groups = bouncing;
         if (group == MASU_BINDING_PLAIN ? groups & optional : !(groups >> group & 1)) continue;
         if (count > most.buffers) most = (masu_most){count, masu_passes[p].name};
     }
@@ -79,6 +82,8 @@ static masu_result choose_ray_query(masu_desc *desc, const masu_frame_plan *plan
     int forced = desc->ray_query == MASU_ON;
     int wished = forced || (desc->ray_query == MASU_AUTO && desc->vulkan.ray_query && is_gpu(vk));
     desc->ray_query = MASU_OFF;
+    /* Rays of probes walk our own tree, and one is enough. */
+    if (plan->needs.bounce && !forced) wished = 0;
     if (!wished || !plan->needs.traced || !desc_traces(desc)) return MASU_OK;
     if (!desc->vulkan.ray_query) {
         return masu_fail(
@@ -133,7 +138,11 @@ static masu_result fit_buffers(masu_desc *desc, const masu_frame_plan *plan, uin
     masu_most plain = most_buffers(plan, MASU_BINDING_PLAIN);
     if (has < plain.buffers) return too_few("the scene", plain, has, detail);
     masu_result result = MASU_OK;
-    if (plan->needs.reflections) {
+    if (plan->needs.bounce) {
+        result = drop(desc, offsetof(masu_rung, bounce), "bounce",
+                      most_buffers(plan, MASU_BINDING_BOUNCING), has, MASU_DROPPED_BOUNCE, dropped, detail);
+    }
+    if (!result && plan->needs.reflections) {
         result = drop(desc, offsetof(masu_rung, specular), "specular",
                       most_buffers(plan, MASU_BINDING_TRACING), has, MASU_DROPPED_SPECULAR, dropped,
                       detail);

@@ -43,8 +43,8 @@ static uint64_t now(const masu_device *m) {
  * come back to; whether a tile's rays are shared by its invocations; whether coats have maps or
  * normals of their own; whether anything colours what shines through it; whether the output keeps
  * its size; whether means over frames are halves; whether albedo texels hold emission; whether normals of the G-buffer
- * may be those of maps. */
-enum { SPECIAL_COUNT = 17 };
+ * may be those of maps; whether lights may be capsules or rectangles; whether rays share the light of their surfaces. */
+enum { SPECIAL_COUNT = 19 };
 
 static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
                                        VkBool32 constants[SPECIAL_COUNT]) {
@@ -65,7 +65,9 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
         {13, 13 * sizeof *constants, sizeof *constants},
         {14, 14 * sizeof *constants, sizeof *constants},
         {15, 15 * sizeof *constants, sizeof *constants},
-        {16, 16 * sizeof *constants, sizeof *constants}};
+        {16, 16 * sizeof *constants, sizeof *constants},
+        {17, 17 * sizeof *constants, sizeof *constants},
+        {18, 18 * sizeof *constants, sizeof *constants}};
     constants[0] = first;
     constants[1] = m->plan->needs.sky != 0;
     constants[2] = m->plan->scene.fog != 0;
@@ -92,6 +94,8 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
     constants[14] = (VkBool32)masu_has_half_means(m->plan);
     constants[15] = m->plan->needs.emission_packed != 0;
     constants[16] = m->plan->scene.reliefs != 0;
+    constants[17] = m->plan->needs.area_lights != 0;
+    constants[18] = m->plan->needs.shared_lights != 0;
     return (VkSpecializationInfo){SPECIAL_COUNT, entries, SPECIAL_COUNT * sizeof *constants,
                                   constants};
 }
@@ -389,7 +393,7 @@ static VkResult create_graphics_pipeline(masu_device *m, uint32_t pass,
             .stage = i ? VK_SHADER_STAGE_FRAGMENT_BIT : VK_SHADER_STAGE_VERTEX_BIT,
             .module = modules[i],
             .pName = "main",
-            .pSpecializationInfo = i || geometry == MASU_GEOMETRY_BLENDED ? &special : NULL};
+            .pSpecializationInfo = i || geometry == MASU_GEOMETRY_BLENDED || geometry == MASU_GEOMETRY_SPRITES ? &special : NULL};
     }
     VkVertexInputBindingDescription bindings[] = {
         {0, sizeof(masu_blob_vertex), VK_VERTEX_INPUT_RATE_VERTEX},

@@ -81,6 +81,13 @@ static void record_compute(masu_recorder *rec, uint32_t pass, VkDescriptorSet se
     if (masu_passes[pass].extent == MASU_EXTENT_DECALS) {
         vk->CmdDispatchIndirect(rec->cmd, rec->m->objects.buffers[MASU_BUFFER_SPRITES],
                                 sprites_at(rec, MASU_SPRITE_DISPATCH));
+    } else if (masu_passes[pass].extent == MASU_EXTENT_RAYS ||
+               masu_passes[pass].extent == MASU_EXTENT_TRACED_PROBES) {
+        int rays = masu_passes[pass].extent == MASU_EXTENT_RAYS;
+        vk->CmdDispatchIndirect(rec->cmd, rec->m->objects.buffers[MASU_BUFFER_BOUNCE],
+                                rec->flight * rec->m->plan->buffers[MASU_BUFFER_BOUNCE].stride +
+                                    (rays ? offsetof(struct masu_bounce_header, rays)
+                                          : offsetof(struct masu_bounce_header, probes)));
     } else if (masu_passes[pass].extent == MASU_EXTENT_LOCAL_SDF) {
         VkDeviceSize slot = rec->flight * rec->m->plan->buffers[MASU_BUFFER_LOCAL_FACES].stride;
         vk->CmdDispatchIndirect(rec->cmd, rec->m->objects.buffers[MASU_BUFFER_LOCAL_FACES],

@@ -14,6 +14,8 @@ void masu_lights_alloc(masu_lights *l, masu_arena *arena, const masu_frame_plan 
     uint32_t count = plan->scene.lights;
     l->states = masu_arena_alloc(arena, "punctual lights", count, sizeof *l->states, 8);
     l->names = masu_arena_alloc(arena, "light names", count, sizeof *l->names, 8);
+    l->any_areas = plan->needs.area_lights;
+    l->any_surfaces = plan->needs.shared_lights;
     l->lives = masu_arena_alloc(arena, "reserve lights", plan->reserve.lights, sizeof *l->lives, 4);
 }
 
@@ -30,10 +32,21 @@ void masu_lights_copy_scene(masu_lights *l, const masu_frame_plan *plan, const m
     }
 }
 
-/* World position and direction, from the current transform of the instance that carries the
- * light. */
-static void carry(const masu_instances *in, const masu_punctual_light_state *s, double position[3],
+static double masu_determinant(const float *const rows[3]) {
+    double sum = 0.0;
+    for (uint32_t k = 0; k < 3; k++) {
+        uint32_t i = (k + 1) % 3, j = (k + 2) % 3;
+        double minor = (double)rows[1][i] * (double)rows[2][j] - (double)rows[1][j] * (double)rows[2][i];
+        sum += (double)rows[0][k] * minor;
+    }
+    return sum;
+}
+
+/* World position, direction and the other half axis, from the current transform of the instance that
+ * carries the light; of a surface's light the radius too. */
+static void carry(const masu_instances *in, masu_punctual_light_state *s, double position[3],
                   double direction[3]) {
+    float half_axis[3] = {s->half_axis[0], s->half_axis[1], s->half_axis[2]};
     for (uint32_t k = 0; k < 3; k++) {
         position[k] = s->position[k];
         direction[k] = (double)s->direction[k];
@@ -50,7 +63,11 @@ static void carry(const masu_instances *in, const masu_punctual_light_state *s, 
             position[k] += (double)row[j] * s->position[j];
             direction[k] += (double)row[j] * (double)s->direction[j];
         }
+        s->half_axis[k] = row[0] * half_axis[0] + row[1] * half_axis[1] + row[2] * half_axis[2];
     }
+    if (!s->has_surface) return;
+    double size = pow(fabs(masu_determinant(rows)), 1.0 / 3.0);
+    s->radius = (float)fmin(fmax((double)s->radius * size, 1e-6), 1e9);
 }
 
 /* How far a particle that is seen reaches from its middle, where it is lit. */
@@ -66,12 +83,13 @@ static float reach_of_particles(const masu_frame_data *f) {
 }
 
 /* Whether a light is there in this frame; where, if it is. */
-static int is_there(const masu_lights *l, const masu_instances *in, uint32_t i, double position[3],
-                    double direction[3]) {
+static int is_there(const masu_lights *l, const masu_instances *in, uint32_t i,
+                    masu_punctual_light_state *state, double position[3], double direction[3]) {
     uint64_t carrier = l->states[i].instance.id;
     if (!masu_handle_lives(&l->handles, i)) return 0;
     if (carrier && masu_instance_hidden(in, (uint32_t)carrier - 1)) return 0;
-    carry(in, &l->states[i], position, direction);
+    *state = l->states[i];
+    carry(in, state, position, direction);
     return 1;
 }
 
@@ -81,8 +99,9 @@ void masu_lights_cast(const masu_lights *l, masu_local_shadows *shadows, const m
     masu_local_shadows_begin(shadows, f);
     for (uint32_t i = 0; i < f->plan->scene.lights; i++) {
         double position[3], direction[3];
-        if (l->states[i].no_shadow || !is_there(l, in, i, position, direction)) continue;
-        masu_local_shadows_offer(shadows, f, i, &l->states[i], position, direction);
+        masu_punctual_light_state state;
+        if (l->states[i].no_shadow || !is_there(l, in, i, &state, position, direction)) continue;
+        masu_local_shadows_offer(shadows, f, i, &state, position, direction);
     }
     masu_local_shadows_write(shadows, in, bounds, f);
 }
@@ -93,8 +112,8 @@ void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_loca
     masu_light_header header = {.list_words = MASU_LIGHT_LIST_WORDS(lights)};
     if (!lights) return;
     if (f->plan->local_atlas) header.atlas_texel = 1.0f / (float)f->plan->local_atlas;
-    /* Lights outside of the view may light reflected surfaces. */
-    int culls = masu_frame_rung(f)->frustum != MASU_OFF && !f->plan->needs.reflections;
+    /* Lights outside of the view may light reflected surfaces, and what probes see. */
+    int culls = masu_frame_rung(f)->frustum != MASU_OFF && !f->plan->needs.reflections && !f->plan->needs.bounce;
     float reach = culls ? reach_of_particles(f) : 0.0f;
     unsigned char *to = masu_frame_slot(f, MASU_BUFFER_LIGHTS);
     struct masu_punctual_light_data *data =
@@ -102,9 +121,10 @@ void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_loca
     for (uint32_t i = 0; i < lights; i++) {
         struct masu_punctual_light_data placed;
         double position[3], direction[3];
-        if (!is_there(l, in, i, position, direction)) continue;
+        masu_punctual_light_state state;
+        if (!is_there(l, in, i, &state, position, direction)) continue;
         for (uint32_t k = 0; k < 3; k++) position[k] -= f->eye[k];
-        if (!masu_light_place(&l->states[i], position, direction, &placed)) continue;
+        if (!masu_light_place(&state, position, direction, &placed)) continue;
         float bound[4] = {placed.bound[0], placed.bound[1], placed.bound[2], placed.bound[3] + reach};
         if (culls && masu_light_outside(bound, f->u.clip_from_rel)) continue;
         if (f->plan->needs.local_shadows) masu_local_shadows_of(shadows, i, placed.shadow);
@@ -133,13 +153,25 @@ masu_punctual_light_state masu_lights_get(const masu_lights *l, const masu_insta
 }
 
 /* Checks a state from the host, and replaces the handle of its instance by an index + 1. */
-static masu_result take_state(const masu_instances *in, const char *name,
+static masu_result take_state(const masu_lights *l, const masu_instances *in, const char *name,
                               masu_punctual_light_state *state, masu_detail *detail) {
     double value = 0.0;
     const char *wrong = masu_light_state_wrong(state, &value);
     if (wrong) {
         return masu_fail(detail, MASU_ERROR_ARGUMENT, "light", 0, 0, "%s: %s (%g)", name, wrong,
                          value);
+    }
+    if (state->shape >= MASU_SHAPE_CAPSULE && !l->any_areas) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "area_lights", 1, 0,
+                         "%s: is a capsule or rectangle: desc.area_lights is 0, and the scene has "
+                         "none",
+                         name);
+    }
+    if (state->has_surface && !l->any_surfaces) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "area_lights", 1, 0,
+                         "%s: has_surface is 1: desc.area_lights is 0, and no light of the scene "
+                         "has a surface",
+                         name);
     }
     uint64_t id = state->instance.id;
     if (!id) return MASU_OK;
@@ -158,7 +190,7 @@ masu_result masu_lights_set(masu_lights *l, const masu_instances *in, uint32_t l
     masu_punctual_light_state to = *state;
     char name[24];
     snprintf(name, sizeof name, "light %u", light);
-    masu_result result = take_state(in, name, &to, detail);
+    masu_result result = take_state(l, in, name, &to, detail);
     if (result) return result;
     /* Padding at the end may differ in equal states. */
     enum { MEMBERS = offsetof(masu_punctual_light_state, no_shadow) + sizeof(to.no_shadow) };
@@ -173,7 +205,7 @@ masu_result masu_lights_add(masu_lights *l, const masu_instances *in,
                             const masu_punctual_light_state *state, uint32_t *light,
                             masu_detail *detail) {
     masu_punctual_light_state to = *state;
-    masu_result result = take_state(in, "the new light", &to, detail);
+    masu_result result = take_state(l, in, "the new light", &to, detail);
     if (result) return result;
     *light = masu_handle_free(&l->handles);
     if (*light == UINT32_MAX) {

@@ -1,4 +1,4 @@
-/* punctual_lights.h: punctual lights, points and spots, between the scene and the shaders.
+/* punctual_lights.h: local lights, points, spots and area lights, between the scene and the shaders.
  *
  * The host keeps each light as the scene or masu_punctual_light_set has it; every frame it places them,
  * leaves out those that light nothing in the picture, and writes the rest, in the scene's order, to
@@ -17,6 +17,7 @@ typedef struct masu_lights {
     uint64_t *names;                      /* FNV-1a 64 of the name, 0: none */
     uint32_t slot_count[MASU_MAX_FLIGHT]; /* in view */
     uint32_t changes;                     /* how often one was set */
+    int any_areas, any_surfaces;          /* needs.area_lights, needs.shared_lights */
     uint32_t *lives;                      /* of the reserve */
     masu_handles handles;
 } masu_lights;

@@ -130,7 +130,7 @@ void masu_reflections_write_instances(masu_reflections *s, const masu_instances 
         uint32_t instance = s->traced[i];
         if (instance == MASU_BLOB_NONE) instance = masu_own_instances(plan); /* of the reserve: not looked at */
         const struct masu_instance_data *now = &in->now[instance];
-        const struct masu_instance_data *before = &in->previous[instance];
+        const struct masu_instance_data *before = plan->needs.velocity ? &in->previous[instance] : now;
         float both[2][3][4];
         rows_of(now, s->origin, both[0]);
         int comes = f->cut || in->flags[instance] & MASU_INSTANCE_COMES;
@@ -156,7 +156,7 @@ static void origin_of(const double eye[3], double origin[3]) {
 
 void masu_reflections_read(masu_reflections *s, masu_frame_data *f) {
     struct masu_frame_uniforms *u = &f->u;
-    if (!f->plan->needs.reflections) return;
+    if (!f->plan->needs.reflections && !f->plan->needs.bounce) return;
     const masu_rung_plan *rp = masu_frame_rung_plan(f);
     origin_of(f->eye, s->origin);
     for (uint32_t k = 0; k < 3; k++) {

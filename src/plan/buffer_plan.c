@@ -39,15 +39,49 @@ static uint64_t masu_slot_count(const masu_frame_plan *plan) {
 static uint64_t masu_table_words(const masu_frame_plan *plan) {
     const masu_scene_data *s = &plan->scene;
     if (!plan->needs.scene) return 0;
-    return (plan->needs.raster && s->coats ? MASU_TABLE_WORDS_ALL : MASU_TABLE_WORDS) +
+    uint64_t words = plan->needs.raster && s->coats ? MASU_TABLE_WORDS_COAT : MASU_TABLE_WORDS;
+    return (plan->needs.area_lights ? MASU_TABLE_WORDS_ALL : words) +
            masu_blob_environment_texels(s->environment_size, s->environment_mips);
 }
 
-static uint64_t masu_probe_bytes(const masu_scene_data *s) {
-    if (!s->probes) return 0;
+static uint64_t masu_probe_bytes(const masu_frame_plan *plan) {
+    const masu_scene_data *s = &plan->scene;
+    if (!plan->needs.probes) return 0;
+    uint64_t words = MASU_PROBE_LIT_WORDS + (plan->needs.bounce ? MASU_PROBE_LIVE_WORDS : 0);
     return sizeof(masu_blob_probes) +
-           (masu_align_up(s->probe_words, 4) + (uint64_t)s->probes * MASU_PROBE_LIT_WORDS) *
-               sizeof(uint32_t);
+           (masu_align_up(s->probe_words, 4) + s->probes * words) * sizeof(uint32_t);
+}
+
+static int masu_traces(const masu_needs *n) { return n->reflections || n->bounce; }
+
+uint32_t masu_bounce_most(const masu_frame_plan *plan, uint32_t rung) {
+    return plan->desc.rungs[rung].bounce_probes * MASU_BOUNCE_BURST;
+}
+
+/* The most of any rung. */
+static uint64_t masu_bounce_probes(const masu_frame_plan *plan) {
+    uint64_t most = 0;
+    for (uint32_t r = 0; r < plan->desc.rung_count && plan->needs.bounce; r++) {
+        uint64_t probes = masu_bounce_most(plan, r);
+        if (most < probes) most = probes;
+    }
+    return most < plan->scene.probes ? most : plan->scene.probes;
+}
+
+static uint64_t masu_bounce_bytes(const masu_frame_plan *plan) {
+    uint64_t probes = masu_bounce_probes(plan);
+    return probes ? sizeof(struct masu_bounce_header) + probes * sizeof(uint32_t) : 0;
+}
+
+static uint64_t masu_bounce_rays(const masu_frame_plan *plan) {
+    uint64_t most = 0, probes;
+    for (uint32_t r = 0; r < plan->desc.rung_count && plan->needs.bounce; r++) {
+        probes = masu_bounce_most(plan, r);
+        if (probes > plan->scene.probes) probes = plan->scene.probes;
+        probes *= plan->desc.rungs[r].bounce_rays;
+        if (most < probes) most = probes;
+    }
+    return most;
 }
 
 /* The most over all rungs that `words` takes of one of so many groups of pixels. */

@@ -13,7 +13,8 @@ void masu_size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
 typedef enum masu_binding_group {
     MASU_BINDING_PLAIN,
     MASU_BINDING_CULLING,
-    MASU_BINDING_TRACING
+    MASU_BINDING_TRACING,
+    MASU_BINDING_BOUNCING
 } masu_binding_group;
 
 /* A binding of descriptor set 0. */
@@ -33,6 +34,9 @@ void masu_bindings(const masu_frame_plan *plan, masu_binding out[]);
 
 /* Over all rungs, the most tiles that a list may have of what is dispatched by lists: SDF, reflections, SMAA. */
 uint64_t masu_most_tiles(const masu_frame_plan *plan);
+
+/* The most probes of a live bounce that trace rays in a frame of a rung. */
+uint32_t masu_bounce_most(const masu_frame_plan *plan, uint32_t rung);
 
 typedef struct masu_buffer_row {
     const char *name;

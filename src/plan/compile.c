@@ -219,6 +219,7 @@ static int is_of_use(const masu_desc *d, uint32_t r, masu_knob_use use) {
     case MASU_USE_LIGHTS: return s && s->lights;
     case MASU_USE_LOCAL_SHADOWS: return s && s->shadow_lights && (s->instances || s->sdf_casts);
     case MASU_USE_SPECULAR: return masu_could_trace(d->scene, &d->rungs[r]);
+    case MASU_USE_BOUNCE: return s && s->bounce;
     case MASU_USE_ALWAYS:
     case MASU_USE_UPSCALED:
     case MASU_USE_SHARPEN:
@@ -325,11 +326,15 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                .dynamic = d->scene && plan->scene.sdf_dynamic,
                                .anchored = d->scene && plan->scene.sdf_anchored,
                                .sdf_occlusion = d->scene && plan->scene.sdf_occlusion,
-                               .probes = d->scene && plan->scene.probes,
+                               .probes = d->scene && plan->scene.probes && (!plan->scene.probes_unlit || any.bounce),
                                .shadow = d->scene && plan->scene.shadow_cascades,
                                .transparents = d->scene && plan->scene.transparents,
                                .lights = d->scene && plan->scene.lights,
                                .local_shadows = d->scene && any.local_shadows,
+                               .area_lights = d->scene && plan->scene.lights &&
+                                              (plan->scene.area_lights || d->area_lights),
+                               .shared_lights = d->scene && plan->scene.lights &&
+                                                (plan->scene.surface_lights || d->area_lights),
                                .sdf_casts = d->scene && any.local_shadows && plan->scene.sdf_casts,
                                .surface = d->scene && plan->scene.instances && plan->scene.surfaces,
                                .environment = d->scene && plan->scene.environment_size,
@@ -337,9 +342,11 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                .readback = d->readback,
                                .split = d->split,
                                .reflections = any.specular,
-                               .traced = any.specular && plan->scene.trace_instances,
+                               .traced = (any.specular || any.bounce) && plan->scene.trace_instances,
                                .traced_sdf = any.specular && plan->scene.trace_sdf,
-                               .query = any.specular && plan->scene.trace_instances &&
+                               .bounce = any.bounce,
+                               .bounce_sdf = any.bounce && plan->scene.bounce_sdf,
+                               .query = any.specular && !any.bounce && plan->scene.trace_instances &&
                                         d->ray_query == MASU_ON,
                                .accumulate = d->debug.reference != 0,
                                .any_taa = wants(d, rung_has_taa),

@@ -92,6 +92,7 @@ static void resolve_sizes(masu_desc *d, uint32_t r) {
 static void resolve_scene(const masu_desc *d, masu_rung *rung) {
     if (!masu_scene_data_of(d->scene)->placed_occluders) fill(&rung->occlusion, MASU_OFF);
     if (!masu_could_trace(d->scene, rung)) fill(&rung->specular, MASU_OFF);
+    if (!masu_scene_data_of(d->scene)->bounce) fill(&rung->bounce, MASU_OFF);
 }
 
 masu_desc masu_desc_resolved(const masu_desc *desc) {

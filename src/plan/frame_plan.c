@@ -93,6 +93,12 @@ static const char *no_specular(const masu_needs *n) {
                             : "nothing is glossy enough to trace, or rung.specular is off";
 }
 
+static const char *no_bounce(const masu_needs *n) {
+    return n->dropped & MASU_DROPPED_BOUNCE
+               ? "rung.bounce is off, or the device has too few storage buffers"
+               : "the scene has no live bounce, or rung.bounce is off";
+}
+
 static const char *no_filter(const masu_needs *n, const char *off) {
     return !n->specular    ? no_specular(n)
            : n->accumulate ? "debug.reference: nothing is filtered"
@@ -199,7 +205,8 @@ VkExtent2D masu_extent_of(masu_image_extent extent, VkExtent2D render, VkExtent2
     if (extent == MASU_EXTENT_ATLAS)
         return (VkExtent2D){MASU_ATLAS_WIDTH, MASU_ATLAS_HEIGHT};
     if (extent == MASU_EXTENT_ONE || extent == MASU_EXTENT_KEPT || extent == MASU_EXTENT_BATCHES ||
-        extent == MASU_EXTENT_PROBES || extent == MASU_EXTENT_SKINS || extent == MASU_EXTENT_SKIN_TREES)
+        extent == MASU_EXTENT_PROBES || extent == MASU_EXTENT_RAYS ||
+        extent == MASU_EXTENT_TRACED_PROBES || extent == MASU_EXTENT_SKINS || extent == MASU_EXTENT_SKIN_TREES)
         return (VkExtent2D){1, 1};
     if (extent == MASU_EXTENT_PICK) return (VkExtent2D){2, 2};
     if (extent == MASU_EXTENT_SHADOW || extent == MASU_EXTENT_LOCAL_FACES || extent == MASU_EXTENT_LOCAL_ATLAS)

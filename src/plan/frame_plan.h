@@ -64,6 +64,8 @@ typedef enum masu_image_extent {
     MASU_EXTENT_SKINS,   /* an invocation per vertex of the largest skin, for each skin */
     MASU_EXTENT_SKIN_TREES, /* a workgroup per skin */
     MASU_EXTENT_PROBES,  /* an invocation per light probe */
+    MASU_EXTENT_RAYS,    /* an invocation per ray of the frame's live probes: indirect, by the host */
+    MASU_EXTENT_TRACED_PROBES, /* a workgroup per probe that has such: indirect, by the host */
     MASU_EXTENT_PICK,    /* the 2x2 pixels with the one that is picked */
     MASU_EXTENT_SHADOW,  /* all cascades of the shadow map; plan.c knows how large */
     MASU_EXTENT_LOCAL_FACES, /* the local_shadow_faces squares that a frame renders; likewise */
@@ -141,9 +143,10 @@ typedef struct masu_switches {
  * else. */
 /* Features that the device has too few storage buffers for. Until the plan is compiled again they
  * are added to desc.deny.storage_buffers, which is then less than 64. */
+#define MASU_DROPPED_BOUNCE (1u << 29)
 #define MASU_DROPPED_SPECULAR (1u << 30)
 #define MASU_DROPPED_OCCLUSION (1u << 31)
-#define MASU_DROPPED_ANY (MASU_DROPPED_SPECULAR | MASU_DROPPED_OCCLUSION)
+#define MASU_DROPPED_ANY (MASU_DROPPED_BOUNCE | MASU_DROPPED_SPECULAR | MASU_DROPPED_OCCLUSION)
 
 typedef struct masu_needs {
     int scene;         /* a scene is drawn (else: upscaling of a source image) */
@@ -164,8 +167,10 @@ typedef struct masu_needs {
     int emission_packed; /* into albedo (pack.glsl): the device has too few attachments */
     int velocity;      /* something reads velocities: the previous frame is kept */
     int sdf_occlusion; /* the SDF casts shadows or occludes ambient light */
-    int probes;        /* it has light probes */
-    int lights;        /* there are points and spots */
+    int probes;        /* it has light probes, baked or live */
+    int lights;        /* there are local lights, */
+    int area_lights;   /* among them perhaps capsules or rectangles, */
+    int shared_lights; /* and perhaps some whose surfaces are in the scene */
     int sdf_casts;     /* the SDF casts their shadows */
     int local_shadows; /* and some cast shadows in some rung: there is an atlas */
     int shadow;        /* polygons cast shadows of the sun: there is a shadow map */
@@ -173,6 +178,8 @@ typedef struct masu_needs {
     int reflections;   /* a rung traces some */
     int traced;        /* there are polygons to trace */
     int traced_sdf;    /* there is an SDF to trace */
+    int bounce;        /* a rung traces rays of live probes; */
+    int bounce_sdf;    /* they meet the SDF */
     int query;         /* polygons are found by ray queries of the device */
     int any_taa;        /* a rung has taa, */
     int any_fine;        /* fine */

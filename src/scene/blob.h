@@ -25,7 +25,7 @@
 
 #define MASU_BLOB_MAGIC 0x5553414Du /* the bytes 'M' 'A' 'S' 'U' */
 #define MASU_BLOB_VERSION 16u
-/* layout of version 16: 3060973816 (kinds of sections and their elements, tests/scripts/scene_forms.sh) */
+/* layout of version 16: 650198991 (kinds of sections and their elements, tests/scripts/scene_forms.sh) */
 #define MASU_BLOB_ALIGN 16u
 #define MASU_BLOB_NONE 0xFFFFFFFFu /* "no name", "no parent" */
 #define MASU_BLOB_PART_SLOTS 8u    /* of an SDF's part, in front of all others: sphere, slope, form, first argument, material */
@@ -87,8 +87,9 @@ enum masu_blob_kind {
     MASU_BLOB_SKINS = 54,    /* meshes that joints bend; these three come together */
     MASU_BLOB_JOINTS = 55,   /* by skin; those of one kind share them */
     MASU_BLOB_SKIN_VERTICES = 56, /* the same */
-    MASU_BLOB_LOCAL_SHADOW_SPIRV = 57, /* the SDF casts shadows of punctual lights */
-    MASU_BLOB_KIND_COUNT = 58
+    MASU_BLOB_BOUNCE_SDF_SPIRV = 57, /* rays of live probes meet the SDF */
+    MASU_BLOB_LOCAL_SHADOW_SPIRV = 58, /* the SDF casts shadows of punctual lights */
+    MASU_BLOB_KIND_COUNT = 59
 };
 
 /* Four texels by four make a block. sRGB formats hold display-encoded colour. */
@@ -330,23 +331,31 @@ typedef struct masu_blob_meso {
 enum masu_blob_light_type {
     MASU_LIGHT_POINT = 0,
     MASU_LIGHT_SPOT = 1,
+    MASU_LIGHT_SPHERE = 2,
+    MASU_LIGHT_CAPSULE = 3,
+    MASU_LIGHT_RECTANGLE = 4,
     MASU_LIGHT_TYPE = 0xFF,
-    MASU_LIGHT_NO_SHADOW = 0x100 /* beside the type */
+    /* Beside the type: */
+    MASU_LIGHT_NO_SHADOW = 0x100,
+    MASU_LIGHT_TWO_SIDED = 0x200, /* rectangle */
+    MASU_LIGHT_SURFACE = 0x400    /* of a surface of the scene; not of points and spots */
 };
 
-/* Light of a place. At distance d a white surface that faces it has the radiance
- * color / max(d, radius)^2, times a window that falls to 0 at range. */
+/* Light of a place. At distance d a white surface that faces a point has the radiance
+ * color / d^2, times a window that falls to 0 at range. */
 typedef struct masu_blob_light {
     float position[3]; /* world, or object space of the parent */
     float range;       /* metres, 0..1e15; 0: it lights nothing */
-    float color[3];    /* radiant intensity / pi, 0..1e9 */
-    float radius;      /* of the source, 1e-6..1e9 metres: nearer than this counts as this near */
-    float direction[3]; /* of spots: where they shine, unit length */
-    uint32_t type;      /* masu_blob_light_type, and MASU_LIGHT_NO_SHADOW */
+    float color[3];    /* 0..1e9; points and spots: radiant intensity / pi, others: radiance */
+    float radius;      /* of the source, 1e-6..1e9 metres */
+    float direction[3]; /* of spots: where they shine, unit length; capsule, rectangle: half axis */
+    uint32_t type;      /* masu_blob_light_type, and flags */
     float inner;        /* of spots: full light within this angle of the direction, radians, */
     float outer;        /* none beyond this one; 0 <= inner <= outer <= pi. Points: both 0 */
     uint32_t parent;    /* instance that carries it, or MASU_BLOB_NONE */
     uint32_t name;
+    float half_axis[3]; /* rectangle */
+    uint32_t reserved;  /* 0 */
 } masu_blob_light;
 
 #define MASU_BLOB_LIGHTS_MAX 4096u
@@ -361,6 +370,8 @@ typedef struct masu_blob_light {
 #define MASU_PROBE_WORDS 14u /* of one set: 27 halfs, coefficient after coefficient, RGB in each; then
                                 in the first set how far the probe is to be believed, 0..1 */
 #define MASU_PROBE_LIT_WORDS 12u /* of a probe under the light of a frame; not in blobs */
+/* Of a live probe, not in blobs either: its mean, as lit words are, and four sums. */
+#define MASU_PROBE_LIVE_WORDS (MASU_PROBE_LIT_WORDS + 4u * MASU_PROBE_WORDS)
 #define MASU_PROBE_COUNT_MAX 262144u
 #define MASU_PROBE_BYTES_MAX ((uint64_t)64 << 20)
 #define MASU_PROBE_VISIBILITY_MAX 16u
@@ -376,11 +387,11 @@ typedef struct masu_blob_probes {
     float spacing[3]; /* metres */
     float reserved0;
     uint32_t counts[3];  /* together at most MASU_PROBE_COUNT_MAX */
-    uint32_t sky_sets;   /* 1, 4 or 9 */
+    uint32_t sky_sets;   /* 1, 4 or 9; live: 0 too, then one set of emission alone, all 0 */
     uint32_t suns;       /* 0..MASU_PROBE_SUNS_MAX */
     uint32_t emissive;   /* 0 or 1 */
     uint32_t visibility; /* texels along the edge of a map of distances; 0: no maps */
-    uint32_t reserved1;
+    uint32_t live;       /* 1: rays of the frame add what is not baked */
     float sun_direction[MASU_PROBE_SUNS_MAX][4]; /* towards it, unit length; unused ones 0 */
     float sun_inverse[MASU_PROBE_SUNS_MAX][MASU_PROBE_SUNS_MAX]; /* of the matrix 1 - angle / pi */
 } masu_blob_probes;
@@ -615,7 +626,7 @@ _Static_assert(sizeof(masu_blob_texture_set) == 32, "blob texture set");
 _Static_assert(sizeof(masu_blob_camera_key) == 32, "blob camera key");
 _Static_assert(sizeof(masu_blob_environment) == 144, "blob environment");
 _Static_assert(sizeof(masu_blob_meso) == 96, "blob meso");
-_Static_assert(sizeof(masu_blob_light) == 64, "blob light");
+_Static_assert(sizeof(masu_blob_light) == 80, "blob light");
 _Static_assert(sizeof(masu_blob_probes) == 1344, "blob probes");
 _Static_assert(sizeof(masu_blob_environment_map) == 160, "blob environment map");
 _Static_assert(sizeof(masu_blob_shadow) == 16, "blob shadow");

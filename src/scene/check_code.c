@@ -39,6 +39,8 @@ static const struct {
     {MASU_BLOB_OCCLUSION_SPIRV, 8, 8, 2, 2, 1, PUSH(sdf_occlusion), FIELD},
     {MASU_BLOB_TRACE_SDF_SPIRV, 8, 8, 2, 2, 1, PUSH(specular_trace_sdf),
      FIELD | AT(SPECULAR_TILES) | AT(PREVIOUS)},
+    {MASU_BLOB_BOUNCE_SDF_SPIRV, 8, 8, 0, 0, 0, PUSH(bounce_sdf),
+     FIELD | AT(PROBES) | AT(BOUNCE) | AT(BOUNCE_RAYS)},
     {MASU_BLOB_LOCAL_SHADOW_SPIRV, 8, 8, 0, 0, 1, sizeof(struct masu_push), FIELD | AT(LOCAL_FACES)},
 };
 _Static_assert(MASU_BIND_COUNT <= 64, "a bit for each binding of set 0");

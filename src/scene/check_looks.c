@@ -99,16 +99,18 @@ static masu_result check_material(reader *r, uint64_t i) {
 static masu_result check_light(reader *r, uint64_t i) {
     const masu_blob_light *l = &r->view.lights[i];
     double value;
-    uint32_t type = l->type & MASU_LIGHT_TYPE;
-    if ((l->type & ~(uint32_t)(MASU_LIGHT_TYPE | MASU_LIGHT_NO_SHADOW)) || type > MASU_LIGHT_SPOT)
-        return bad(r, "lights", i, "no such type");
+    uint32_t type = l->type & MASU_LIGHT_TYPE, flags = l->type & ~(uint32_t)MASU_LIGHT_TYPE;
+    if (type > MASU_LIGHT_RECTANGLE) return bad(r, "lights", i, "no such type");
+    if (flags & ~(uint32_t)(MASU_LIGHT_NO_SHADOW | MASU_LIGHT_TWO_SIDED | MASU_LIGHT_SURFACE))
+        return bad(r, "lights", i, "unknown flags");
+    if (l->reserved) return bad(r, "lights", i, "reserved is not 0");
     masu_punctual_light_state state = masu_light_state_of(l);
     const char *wrong = masu_light_state_wrong(&state, &value);
     if (wrong) return bad(r, "lights", i, wrong);
     if (type == MASU_LIGHT_SPOT && !unit_vector(l->direction))
         return bad(r, "lights", i, "direction is no unit vector");
-    if (type == MASU_LIGHT_POINT && (l->inner != 0.0f || l->outer != 0.0f))
-        return bad(r, "lights", i, "is a point, but has angles");
+    if (type != MASU_LIGHT_SPOT && (l->inner != 0.0f || l->outer != 0.0f))
+        return bad(r, "lights", i, "is no spot, but has angles");
     if (l->parent != MASU_BLOB_NONE && l->parent >= r->counts[MASU_BLOB_INSTANCES])
         return bad(r, "lights", i, "no such parent");
     return name_ok(r, l->name) ? MASU_OK : bad(r, "lights", i, "name lies outside the names");
@@ -127,8 +129,10 @@ static masu_result check_probes(reader *r) {
         !within(&p->bias, 1, 0.0f, 1e9f)) {
         return bad(r, "probes", 0, "place, spacing or bias is out of range");
     }
-    if (p->sky_sets != 1 && p->sky_sets != 4 && p->sky_sets != 9)
+    int unlit = p->live == 1 && !p->sky_sets && !p->suns && p->emissive == 1;
+    if (!unlit && p->sky_sets != 1 && p->sky_sets != 4 && p->sky_sets != 9)
         return bad(r, "probes", 0, "sets of the sky are not 1, 4 or 9");
+    if (p->live > 1) return bad(r, "probes", 0, "live is not 0 or 1");
     if (p->suns > MASU_PROBE_SUNS_MAX) return bad(r, "probes", 0, "has more than 16 suns");
     if (p->emissive > 1 || p->visibility > MASU_PROBE_VISIBILITY_MAX)
         return bad(r, "probes", 0, "emissive is not 0 or 1, or maps have over 16 texels a side");
@@ -279,15 +283,21 @@ void masu_describe_looks(const reader *r, masu_scene_data *out) {
     out->lights = (uint32_t)r->counts[MASU_BLOB_LIGHTS];
     for (uint32_t i = 0; i < out->lights; i++) {
         const masu_blob_light *l = &r->view.lights[i];
+        uint32_t type = l->type & MASU_LIGHT_TYPE;
+        out->area_lights += type >= MASU_LIGHT_CAPSULE;
+        out->surface_lights += (l->type & MASU_LIGHT_SURFACE) != 0;
         if (l->type & MASU_LIGHT_NO_SHADOW) continue;
         out->shadow_lights++;
-        out->shadow_spots += l->type == MASU_LIGHT_SPOT && l->outer <= MASU_LOCAL_ANGLE_MOST;
+        out->shadow_spots += type == MASU_LIGHT_SPOT && l->outer <= MASU_LOCAL_ANGLE_MOST;
     }
     if (r->view.probes) {
         const masu_blob_probes *p = r->view.probes;
         out->probe_sets = masu_probe_sets(p);
         out->probes = p->counts[0] * p->counts[1] * p->counts[2];
         out->probe_words = r->counts[MASU_BLOB_PROBE_DATA];
+        out->probes_unlit = !p->sky_sets;
+        out->bounce = p->live && (r->view.trace_nodes || r->view.code[MASU_BLOB_BOUNCE_SDF_SPIRV].words);
+        out->bounce_sdf = r->view.code[MASU_BLOB_BOUNCE_SDF_SPIRV].words != NULL;
     }
     if (r->view.environment_map) {
         out->environment_size = r->view.environment_map->size;

@@ -142,7 +142,8 @@ static masu_result check_trees(reader *r) {
 
 static masu_result check_reflections(reader *r) {
     const masu_blob_reflections *f = r->view.reflections;
-    int traced = r->view.trace_nodes || r->view.code[MASU_BLOB_TRACE_SDF_SPIRV].words;
+    int traced = r->view.trace_nodes || r->view.code[MASU_BLOB_TRACE_SDF_SPIRV].words ||
+                 r->view.code[MASU_BLOB_BOUNCE_SDF_SPIRV].words;
     if (!f) return traced ? bad(r, "reflections", 0, "are not there, but what they trace is") : MASU_OK;
     if (!within(&f->cutoff, 1, 0.0f, 1.0f) || !within(&f->glossiest, 1, 0.0f, 1.0f) ||
         !within(&f->distance, 1, 1e-3f, 1e9f)) {
@@ -192,7 +193,7 @@ void masu_describe_trace(const reader *r, masu_scene_data *out) {
     }
     const masu_blob_reflections *f = r->view.reflections;
     if (!f) return;
-    out->reflections = 1;
+    out->reflections = f->cutoff > 0.0f;
     out->trace_sdf = r->view.code[MASU_BLOB_TRACE_SDF_SPIRV].words != NULL;
     out->specular_cutoff = f->cutoff;
     out->glossiest = f->glossiest;

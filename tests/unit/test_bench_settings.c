@@ -113,8 +113,8 @@ static void a_scene_of_nothing_leaves_what_is_done_to_pictures(void **state) {
 
 static void a_scene_of_everything_keeps_everything(void **state) {
     (void)state;
-    static const char *const passes[] = {"ao", "specular_guide", "cascade_0"};
-    const masu_plan_info plan = plan_with(passes, 3);
+    static const char *const passes[] = {"ao", "specular_guide", "cascade_0", "bounce_sum"};
+    const masu_plan_info plan = plan_with(passes, 4);
     uint32_t count = masu_settings_make(false, settings), dropped = 0;
     masu_settings_fit(settings, count, masu_scene_of(&everything), &plan);
     check_names(count);

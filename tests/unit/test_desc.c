@@ -169,7 +169,9 @@ static masu_rung default_rung(float scale, float sharpness) {
                        .shadow_refresh = {1, 1, 1, 1},
                        .specular_reuse_taps = 8,
                        .specular_filter_taps = 12,
-                       .specular_frames = 32};
+                       .specular_frames = 32,
+                       .bounce_probes = 94,
+                       .bounce_rays = 48};
 }
 
 /* Without a scene nothing more of the output is known. */

@@ -1046,10 +1046,10 @@ static void only_what_is_coated_has_the_tables_of_coats(void **state) {
     assert_int_equal(plan.buffers[MASU_BUFFER_TABLES].bytes, 4 * MASU_TABLE_WORDS);
     s.coats = 1;
     compile(&d, &plan);
-    assert_int_equal(plan.buffers[MASU_BUFFER_TABLES].bytes, 4 * MASU_TABLE_WORDS_ALL);
+    assert_int_equal(plan.buffers[MASU_BUFFER_TABLES].bytes, 4 * MASU_TABLE_WORDS_COAT);
     s.surfaces = 0; /* of what is blended */
     compile(&d, &plan);
-    assert_int_equal(plan.buffers[MASU_BUFFER_TABLES].bytes, 4 * MASU_TABLE_WORDS_ALL);
+    assert_int_equal(plan.buffers[MASU_BUFFER_TABLES].bytes, 4 * MASU_TABLE_WORDS_COAT);
     assert_false(plan.needs.surface);
     d = scene_desc(SDF, 100, 100);
     s = *masu_scene_data_of(d.scene);

@@ -188,7 +188,12 @@ static void what_lights_a_scene_is_checked(void **state) {
     LIT("meso", 0, MESO[0].alpha = 4.5f);
     LIT("meso", 0, MESO[0].facet = 1.5f);
     LIT("meso", 0, MESO[0].offset = -0.5f);
-    LIT("lights", 0, LIGHT[0].type = 2);
+    LIT("lights", 0, LIGHT[0].type = MASU_LIGHT_RECTANGLE + 1);
+    LIT("lights", 0, LIGHT[0].type = MASU_LIGHT_CAPSULE); /* whose half axis is 0 */
+    LIT("lights", 0, LIGHT[0].type = 0x10000);
+    LIT("lights", 0, LIGHT[0].type = MASU_LIGHT_SURFACE); /* of a point */
+    LIT("lights", 0, LIGHT[0].reserved = 1);
+    LIT("lights", 0, (LIGHT[0].type = MASU_LIGHT_RECTANGLE, LIGHT[0].direction[0] = LIGHT[0].half_axis[0] = 1.0f));
     LIT("lights", 0, LIGHT[0].range = -1.0f);
     LIT("lights", 0, LIGHT[0].range = 2e15f);
     LIT("lights", 0, LIGHT[0].outer = 1.0f); /* of a point */

@@ -205,6 +205,7 @@ static const struct {
     {"local_shadow_sdf.comp", "-DMASU_PASS=1", 1, 0, 4}, /* the list 2, leaving and the march, the box */
     {"specular_trace_sdf.comp", "-DMASU_PASS=1", 1, 0, 2}, /* the march, the normal */
     {"specular_trace_sdf.comp", "-DMASU_MOTION=1", 1, 0, 3},
+    {"bounce_sdf.comp", "-DMASU_PASS=1", 1, 0, 2},
 };
 
 static int needs_a_field(const char *name) {

@@ -16,6 +16,8 @@
  *
  * The nearest row counts: the G-buffer has 256 roughnesses too, and it saves half of the reads.
  *
+ * Behind them lies what make_cosines.c has fitted, which takes too long to be made while building.
+ *
  * Nodes lie at equal steps of sqrt(N.v). A lobe of alpha 0.002 loses most at N.v = 0.001, which is the
  * second node; equal steps of N.v would see nothing of it. */
 #include "shared/masu_shared.h"
@@ -25,6 +27,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "generate/cosines.inc"
 
 #define PI 3.14159265358979323846
 
@@ -167,6 +171,7 @@ int main(void) {
         four[2] = bits_of(line[row][0]);
         four[3] = bits_of(line[row][1]);
     }
+    memcpy(&words[MASU_TABLE_TRANSFORM], cosines, sizeof cosines);
     printf("/* Made by tools/generate/make_split_sum.c. */\nstatic const uint32_t masu_split_sum[] = {\n");
     for (int i = 0; i < MASU_TABLE_WORDS_ALL; i++) {
         printf("0x%08x,%s", words[i], i % 8 == 7 ? "\n" : " ");

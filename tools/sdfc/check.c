@@ -38,9 +38,9 @@ static void note_cell(uint64_t *cells, int op, const double *a, double result) {
 }
 
 static double run_function(const sdfc *c, const sdfc_program *p, int function, double x, double y,
-                           double z, uint64_t *cells) {
+                           double z, double *variables, uint64_t *cells) {
     const sdfc_function *f = &p->functions[function];
-    double *v = c->variables + f->first_variable;
+    double *v = variables + f->first_variable;
     v[0] = x;
     v[1] = y;
     v[2] = z;
@@ -58,7 +58,7 @@ static double run_function(const sdfc *c, const sdfc_program *p, int function, d
                     int cell = i->select[j] ? n >> (i->select[j] - 1) & ((1 << i->bits[j]) - 1) : 0;
                     q[j] = a[4 * j + cell];
                 }
-                double d = run_function(c, p, i->aux, q[0], q[1], q[2], cells);
+                double d = run_function(c, p, i->aux, q[0], q[1], q[2], variables, cells);
                 r = d < r ? d : r;
             }
         } else if (i->op != SDFC_CALL_USER) {
@@ -71,7 +71,11 @@ static double run_function(const sdfc *c, const sdfc_program *p, int function, d
 }
 
 double sdfc_run(const sdfc *c, const sdfc_program *p, const double p3[3], uint64_t *cells) {
-    return run_function(c, p, 0, p3[0], p3[1], p3[2], cells);
+    return run_function(c, p, 0, p3[0], p3[1], p3[2], c->variables, cells);
+}
+
+double sdfc_run_in(const sdfc *c, const sdfc_program *p, const double p3[3], double *room) {
+    return run_function(c, p, 0, p3[0], p3[1], p3[2], room, NULL);
 }
 
 /* ---- random points ---- */

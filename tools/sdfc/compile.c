@@ -50,7 +50,7 @@ static char *taken(sdfc_text *text) {
     return data;
 }
 
-static void fill_part(const sdfc *c, int i, masu_sdfc_part *out) {
+void sdfc_fill_part(const sdfc *c, int i, masu_sdfc_part *out) {
     const sdfc_part *p = &c->parts[i];
     const sdfc_facts *f = &c->shapes[p->shape].facts;
     memcpy(out->name, p->name, sizeof out->name);
@@ -82,7 +82,7 @@ static double least_roughness(const sdfc *c) {
 
 static void fill_result(sdfc *c, masu_sdfc_result *out) {
     out->parts = sdfc_take(c, (size_t)c->part_count, sizeof *out->parts);
-    for (int i = 0; i < c->part_count; i++) fill_part(c, i, &out->parts[i]);
+    for (int i = 0; i < c->part_count; i++) sdfc_fill_part(c, i, &out->parts[i]);
     out->slots = sdfc_take(c, c->slot_count, sizeof *out->slots);
     for (uint32_t i = 0; i < c->slot_count; i++) {
         out->slots[i] = (float)fmax(fmin(c->initial[i], 1e30), -1e30);

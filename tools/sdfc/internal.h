@@ -368,5 +368,8 @@ void sdfc_check_cameras(sdfc *c, const masu_sdfc_camera *cameras, uint32_t count
 void sdfc_free_program(sdfc_program *p); /* what it holds */
 void sdfc_free(sdfc *c);                 /* and all it has taken */
 double sdfc_run(const sdfc *c, const sdfc_program *p, const double p3[3], uint64_t *cells);
+/* The same with room for the program's variables. */
+double sdfc_run_in(const sdfc *c, const sdfc_program *p, const double p3[3], double *room);
+void sdfc_fill_part(const sdfc *c, int i, masu_sdfc_part *out);
 
 #endif

@@ -12,6 +12,7 @@
  *   terms.c     which of them can be left out where they do not matter, by which bit
  *   emit.c      that list -> GLSL, C, JSON
  *   check.c     that list, run: constants and bounds tried on random points
+ *   field.c     and kept, for who wants to know the field somewhere
  *
  * Any bytes are a valid question: the answer is a result or a message. Memory and time are bounded
  * by the limits below. Nothing is global. */
@@ -93,5 +94,18 @@ bool masu_sdfc_compile_with(const char *text, size_t bytes, const char *name,
 bool masu_sdfc_compile(const char *text, size_t bytes, const char *name, masu_sdfc_result *out,
                        char *error, size_t error_size);
 void masu_sdfc_release(masu_sdfc_result *result);
+
+/* The same scene as a function of a point, with parameters at their defaults and time 0. NULL: what
+ * masu_sdfc_compile refuses. The text must outlive it. */
+typedef struct masu_sdfc_field masu_sdfc_field;
+masu_sdfc_field *masu_sdfc_field_open(const char *text, size_t bytes, const char *name);
+void masu_sdfc_field_close(masu_sdfc_field *field);
+const masu_sdfc_part *masu_sdfc_field_parts(const masu_sdfc_field *field, uint32_t *count);
+/* Numbers that a thread brings for masu_sdfc_field_run to work in. */
+size_t masu_sdfc_field_room(const masu_sdfc_field *field);
+/* Of one part, which must not be of a glsl block (`user`): at most `lipschitz` times the distance. */
+double masu_sdfc_field_run(const masu_sdfc_field *field, uint32_t part, const double p[3], double *room);
+void masu_sdfc_field_material(const masu_sdfc_field *field, uint32_t part,
+                              double out[MASU_SDFC_MATERIAL_SLOTS]);
 
 #endif

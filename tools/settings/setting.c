@@ -105,6 +105,7 @@ const char *masu_knob_useless(const masu_knob *k, const masu_rung *rung, const m
     case MASU_USE_SDF: used = (masu_scene_features(scene) & MASU_SCENE_HAS_SDF); break;
     case MASU_USE_AO: used = has_pass(base, "ao"); break;
     case MASU_USE_SPECULAR: used = has_pass(base, "specular_"); break;
+    case MASU_USE_BOUNCE: used = has_pass(base, "bounce_"); break;
     case MASU_USE_SHADOWS: used = has_pass(base, "cascade_"); break;
     case MASU_USE_LODS: used = masu_scene_data_of(scene)->lods; break;
     case MASU_USE_OCCLUDERS: used = masu_scene_data_of(scene)->placed_occluders; break;

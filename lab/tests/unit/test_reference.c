@@ -288,6 +288,38 @@ static void a_closed_box_is_a_geometric_series(void **state) {
     }
 }
 
+/* Below a roof with a square hole of 1 m at a height of 1 m, under a sky of radiance 1: the hole's
+ * irradiance is that of a square lamp. */
+static void a_window_to_the_sky_is_found(void **state) {
+    (void)state;
+    double error[2];
+    for (int way = 0; way < 2; way++) {
+        stage *s = clear();
+        s->materials[0].base = ref_splat(0);
+        s->sky = (ref_sky){.zenith = {1, 1, 1}, .horizon = {1, 1, 1}, .ambient = {1, 1, 1}};
+        quad(s, ref_v(-99, 1, -99), ref_v(99, 1, -99), ref_v(99, 1, -.5), ref_v(-99, 1, -.5), 0);
+        quad(s, ref_v(-99, 1, .5), ref_v(99, 1, .5), ref_v(99, 1, 99), ref_v(-99, 1, 99), 0);
+        quad(s, ref_v(-99, 1, -.5), ref_v(-.5, 1, -.5), ref_v(-.5, 1, .5), ref_v(-99, 1, .5), 0);
+        quad(s, ref_v(.5, 1, -.5), ref_v(99, 1, -.5), ref_v(99, 1, .5), ref_v(.5, 1, .5), 0);
+        if (way) s->tracer.window = (ref_light_box){{-.55, .98, -.5}, {.5, 1.03, .5}, 1};
+        set_up(s);
+        const ref_hit at = {.p = {0, 0, 0}, .ng = {0, 1, 0}};
+        double sum = 0, square = 0;
+        const int paths = 20000;
+        for (int i = 0; i < paths; i++) {
+            ref_random r = ref_random_at(3, 1, (uint64_t)i);
+            double value = ref_irradiance(&s->tracer, &at, &r).x;
+            sum += value;
+            square += value * value;
+        }
+        error[way] = sqrt((square / paths - sum / paths * sum / paths) / paths);
+        double x = .5, q = sqrt(1 + x * x), expected = 4 * x / q * atan(x / q);
+        check(sum / paths, expected, error[way], "irradiance through a window");
+        take_down(s);
+    }
+    assert_true(error[1] < error[0] / 3);
+}
+
 /* By samples of the lamp, of the scattered ray, and of both. */
 static void panes_dim_the_light_of_lamps(void **state) {
     (void)state;
@@ -474,6 +506,7 @@ int main(void) {
         cmocka_unit_test(a_map_is_sampled_as_it_is_looked_up),
         cmocka_unit_test(area_lights),
         cmocka_unit_test(a_closed_box_is_a_geometric_series),
+        cmocka_unit_test(a_window_to_the_sky_is_found),
         cmocka_unit_test(panes_dim_the_light_of_lamps),
         cmocka_unit_test(fog_and_punctual_lights),
         cmocka_unit_test(the_place_of_a_scene_does_not_matter),

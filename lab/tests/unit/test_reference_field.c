@@ -1,6 +1,7 @@
 /*
  * test_reference_field.c: fields of the reference path tracer whose distance is known: a source of
- * GLSL, blocks of GLSL in a .sdf source, what becomes of a mistake; and its ambient occlusion.
+ * GLSL, blocks of GLSL in a .sdf source, what becomes of a mistake; its ambient occlusion, and parts
+ * that emit light.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -202,12 +203,78 @@ static void a_ceiling_occludes_by_a_closed_form(void **state) {
     ref_field_close(&f);
 }
 
+/* Light of a ball of radius 0.5, 2 m above a white floor, and of a tube, by samples of the lamp, of
+ * the scattered ray, and of both. */
+static void parts_that_emit_are_found(void **state) {
+    (void)state;
+    static const char *const shapes[2] = {"translate((0, 2, 0), sphere(0.5))",
+                                          "capsule((-0.6, 1, 0.2), (0.5, 1.3, 0.2), 0.04)"};
+    static const double high[6][2] = {{0, 1.9635}, {.5, 1.7928}, {1, 1.4050},
+                                      {2, .6942},  {4, .1756},   {8, .02801}};
+    for (int kind = 0; kind < 2; kind++) {
+        char text[512], error[1024];
+        ref_field f;
+        ref_scene scene;
+        ref_world world;
+        ref_sky sky = {.ambient = {0, 0, 0}};
+        masu_blob_environment environment;
+        snprintf(text, sizeof text,
+                 "param radius = 0.75 [0, 2];\n"
+                 "material white { albedo 1; roughness 1 }\n"
+                 "material glow { albedo 0; roughness 1; emissive 10 }\n"
+                 "part floor : white = plane((0, 1, 0), 0);\n"
+                 "part lamp : glow = %s;\n",
+                 shapes[kind]);
+        memset(&scene, 0, sizeof scene);
+        memset(&environment, 0, sizeof environment);
+        if (!open("lamp.sdf", text, 2, 0, &f, error)) fail_msg("%s", error);
+        assert_int_equal(f.emitter_count, 1);
+        assert_true(ref_world_open(&scene, &f, ref_v(0, 0.5, 0), &world, error, sizeof error));
+        ref_tracer t = {.world = &world,
+                        .sky = &sky,
+                        .physics = true,
+                        .full = true,
+                        .bounces = 1,
+                        .sun_direction = {0, 1, 0},
+                        .environment = &environment};
+        for (int i = 0; i < (kind ? 3 : 6); i++) {
+            double mean[3], deviation[3];
+            for (int way = 0; way < 3; way++) {
+                double sum = 0, square = 0, x = kind ? .7 * i - .5 : high[i][0];
+                const int paths = way == 1 ? 60000 : 10000;
+                const ref_hit at = {.p = {x, 0, 0}, .ng = {0, 1, 0}, .triangle = REF_SDF};
+                t.light_samples = way != 1;
+                t.bsdf_samples = way != 0;
+                for (int k = 0; k < paths; k++) {
+                    ref_random r = ref_random_at(5, (uint64_t)i, (uint64_t)k);
+                    double value = ref_irradiance(&t, &at, &r).x;
+                    sum += value;
+                    square += value * value;
+                }
+                mean[way] = sum / paths;
+                deviation[way] = sqrt(fmax(square / paths - mean[way] * mean[way], 0) / paths);
+            }
+            double expected = kind ? mean[1] : high[i][1], most = kind ? 4 * deviation[1] : 0;
+            for (int way = 0; way < 3; way++) {
+                if (!(fabs(mean[way] - expected) <=
+                      fmax(.004 * expected, most + 4 * deviation[way])))
+                    fail_msg("%d, place %d, way %d: %g +- %g, expected %g", kind, i, way, mean[way],
+                             deviation[way], expected);
+            }
+            assert_true(deviation[2] < .03 * mean[2]); /* of 10,000 paths */
+        }
+        ref_world_close(&world);
+        ref_field_close(&f);
+    }
+}
+
 int main(void) {
     ref_ggx_tables();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_source_of_glsl_is_the_distance_that_it_computes),
         cmocka_unit_test(blocks_of_glsl_are_parts_like_any_other),
         cmocka_unit_test(a_ceiling_occludes_by_a_closed_form),
+        cmocka_unit_test(parts_that_emit_are_found),
         cmocka_unit_test(a_mistake_is_reported_with_its_line),
     };
     return cmocka_run_group_tests(tests, make_scratch, remove_scratch);

@@ -8,6 +8,7 @@
 #include "bake/build/look.h"
 #include "bake/build/parts.h"
 #include "bake/light/environment.h"
+#include "bake/light/field.h"
 #include "bake/light/picture_sun.h"
 #include "bake/mesh/rise.h"
 #include "bake/scene/camera.h"
@@ -164,16 +165,18 @@ static bool build_scene(masu_bake_description *d, const masu_bake_options *optio
     free(panorama.rgb);
     if (options->describe) return true;
     return !d->sdf.source || masu_bake_compile_march(content, d->sdf.source, &d->sdf.occlusion,
-                                                     d->reflections.wanted, options->variants);
+                                                     d->reflections.wanted, d->probes.live, options->variants);
 }
 
 static bool build_probes(const masu_bake_description *d, const masu_bake_options *options,
                          masu_bake_content *content) {
     masu_bake_probe_settings probes = d->probes;
-    if (!probes.wanted && !options->probes) return true;
-    probes.wanted = true;
+    probes.wanted |= options->probes;
+    if (!probes.wanted && !probes.live) return true;
     probes.threads = options->threads;
     masu_bake_trace *trace = masu_bake_trace_make(content);
+    masu_bake_field *field = trace ? masu_bake_field_make(content, d->sdf.source) : NULL;
+    if (field) masu_bake_trace_add(trace, field);
     masu_bake_probe_report done = {0};
     bool good = trace && masu_bake_make_probes(content, &probes, trace, &done);
     masu_cli_progress_clear();
@@ -188,6 +191,7 @@ static bool build_probes(const masu_bake_description *d, const masu_bake_options
     if (good && options->probe_report)
         masu_bake_report_probes(content, &probes, trace, REPORT_POINTS, REPORT_RAYS);
     masu_bake_trace_release(trace);
+    masu_bake_field_release(field);
     return good;
 }
 
@@ -195,6 +199,10 @@ bool masu_bake_build(masu_bake_description *d, const masu_bake_options *options,
                      masu_bake_content *content, masu_bake_report *report) {
     if (!build_scene(d, options, content, report)) return false;
     if (options->describe) return true;
+    if (d->probes.live && !d->reflections.wanted) { /* rays of probes, and of nothing that mirrors */
+        d->reflections.wanted = true;
+        d->reflections.cutoff = 0;
+    }
     content->pictures_wanted = report->reflected = d->reflections.wanted;
     content->picture_side = d->reflections.texture_size;
     if (!masu_bake_make_textures(content, options->texture_path)) return false;

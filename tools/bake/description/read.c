@@ -47,13 +47,15 @@ static bool read_members(const masu_bake_json *scene, masu_bake_reader *r) {
                                           "lods",
                                           "occluders",
                                           "probes",
+                                          "bounce",
                                           "lights",
                                           "ambient_occlusion",
                                           "environment",
                                           "reflections",
                                           NULL};
     if (!masu_bake_json_object(scene, members) || !masu_bake_read_detail(scene, r) ||
-        !masu_bake_read_probes(scene, r) || !masu_bake_read_reflections(scene, r) ||
+        !masu_bake_read_probes(scene, r) || !masu_bake_read_bounce(scene, r) ||
+        !masu_bake_read_reflections(scene, r) ||
         !masu_bake_read_models(scene, r) || !masu_bake_read_lights(scene, r) ||
         !masu_bake_read_sdf(scene, r) || !masu_bake_read_look(scene, r) ||
         !masu_bake_read_environment(scene, r)) {

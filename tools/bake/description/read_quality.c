@@ -96,6 +96,28 @@ bool masu_bake_read_probes(const masu_bake_json *scene, masu_bake_reader *r) {
            masu_bake_json_number(&probes, "bias", 0, 1, &s->bias) && read_suns(&probes, s);
 }
 
+/* The grid is that of the probes where the scene has those too. */
+bool masu_bake_read_bounce(const masu_bake_json *scene, masu_bake_reader *r) {
+    masu_bake_probe_settings *s = &r->out->probes;
+    static const char *const members[] = {"spacing", "box", NULL};
+    masu_bake_json at, box, probes = masu_bake_json_member(scene, "probes");
+    double spacing = MASU_BAKE_LIVE_SPACING;
+    if (!masu_bake_json_feature(scene, "bounce", &at, &s->live)) return false;
+    if (s->live && (!probes.value || !masu_bake_json_has(&probes, "visibility"))) s->visibility = MASU_PROBE_VISIBILITY_MAX;
+    if (!at.value) return true;
+    if (!masu_bake_json_object(&at, members) || !masu_bake_json_number(&at, "spacing", 1e-3, 1e6, &spacing)) return false;
+    box = masu_bake_json_member(&at, "box");
+    bool spaced = masu_bake_json_has(&at, "spacing");
+    if ((box.value && s->has_bounds) || (spaced && (s->has_spacing || s->has_counts)))
+        return masu_bake_json_wrong(&at, "\"probes\" has a grid of its own, and both share one");
+    if (spaced) {
+        s->has_spacing = true;
+        s->spacing = masu_bake_v3(spacing, spacing, spacing);
+    }
+    s->has_bounds |= box.value != NULL;
+    return !box.value || masu_bake_json_box(&box, &s->bounds);
+}
+
 /* ---- reflections ---- */
 
 bool masu_bake_read_reflections(const masu_bake_json *scene, masu_bake_reader *r) {

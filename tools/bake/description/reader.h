@@ -27,6 +27,7 @@ bool masu_bake_read_look(const masu_bake_json *scene, masu_bake_reader *r);
 bool masu_bake_read_environment(const masu_bake_json *scene, masu_bake_reader *r);
 bool masu_bake_read_detail(const masu_bake_json *scene, masu_bake_reader *r);
 bool masu_bake_read_probes(const masu_bake_json *scene, masu_bake_reader *r);
+bool masu_bake_read_bounce(const masu_bake_json *scene, masu_bake_reader *r);
 bool masu_bake_read_reflections(const masu_bake_json *scene, masu_bake_reader *r);
 
 /* A .sdf without a scene: where its parts are decides what is drawn and what the camera sees. */

@@ -8,14 +8,19 @@
 #include "cli/cli.h"
 
 #include <stdatomic.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define PROBES_WISHED 2048.0
 #define COEFFICIENTS 27u
 #define DISTANCE_MOST 1.5f /* of a cell's diagonal: what is farther hides nothing in a cell */
-/* A probe from which more of the rays than this meet the backs of surfaces is inside of something. */
+/* A probe from which more of the rays than this meet the backs of surfaces is inside of something; and so is
+ * one that is this near to a surface, in metres: its map would not tell the two sides apart. */
 #define BACKS_MOST 0.25f
+#define FACE_NEAREST 1e-3f
+/* Rays of a live probe: the lobes of its map are narrow. */
+#define LIVE_RAYS 2048u
 
 masu_bake_probe_settings masu_bake_probe_defaults(void) {
     return (masu_bake_probe_settings){
@@ -24,11 +29,41 @@ masu_bake_probe_settings masu_bake_probe_defaults(void) {
 
 /* ---- the grid ---- */
 
+/* Whether light is baked, not maps of distances alone. */
+static bool is_lit(const masu_bake_probe_settings *s) { return s->wanted || !s->live; }
+
+/* Of a probe on the device. */
+static uint64_t device_bytes(const masu_bake_probe_settings *s, const masu_blob_probes *p) {
+    uint64_t side = s->visibility + 2, map = s->visibility ? side * side : 0;
+    uint64_t words = masu_probe_sets(p) * MASU_PROBE_WORDS + map + MASU_PROBE_LIT_WORDS;
+    return sizeof(uint32_t) * (words + (s->live ? MASU_PROBE_LIVE_WORDS : 0));
+}
+
+/* As near as MASU_BAKE_LIVE_SPACING, or as the bytes allow. */
+static double live_spacing(const double size[3], uint64_t each) {
+    double spacing = MASU_BAKE_LIVE_SPACING, most = (double)(MASU_BAKE_LIVE_BYTES / each);
+    for (;; spacing *= 1.02) {
+        double total = 1;
+        for (int k = 0; k < 3; k++) total *= fmax(ceil(size[k] / spacing - 1e-6), 1);
+        if (!(total > most)) break;
+    }
+    if (spacing > MASU_BAKE_LIVE_SPACING && !masu_cli_quiet())
+        printf("bounce: probes %.3g m apart instead of %.3g, to take at most %llu MiB; \"spacing\" or a smaller "
+               "\"box\" sets it\n",
+               spacing, MASU_BAKE_LIVE_SPACING, (unsigned long long)(MASU_BAKE_LIVE_BYTES >> 20));
+    return spacing;
+}
+
 /* Probes stand in the middles of their cells: none on the surfaces that bound the scene. */
 static bool place(const masu_bake_content *content, const masu_bake_probe_settings *s,
                   masu_blob_probes *p) {
     masu_bake_affine identity = masu_bake_identity();
     masu_bake_box box = s->has_bounds ? s->bounds : masu_bake_bounds(content, &identity);
+    if (!s->has_bounds && s->live && masu_bake_count(content, MASU_BLOB_SDF)) {
+        const masu_blob_sdf *sdf = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, const masu_blob_sdf);
+        masu_bake_box_grow(&box, masu_bake_v3f(sdf->bounds_min));
+        masu_bake_box_grow(&box, masu_bake_v3f(sdf->bounds_max));
+    }
     if (masu_bake_box_is_empty(&box)) {
         masu_cli_error("probes: the scene has neither polygons nor bounds for them");
         return false;
@@ -39,6 +74,7 @@ static bool place(const masu_bake_content *content, const masu_bake_probe_settin
     double most = fmax(fmax(size[0], size[1]), fmax(size[2], 1e-3)), total = 1;
     for (int k = 0; k < 3; k++) size[k] = fmax(size[k], most * 1e-3);
     double even = cbrt(size[0] * size[1] * size[2] / PROBES_WISHED), count[3];
+    if (s->live && !s->has_spacing && !s->has_counts) even = live_spacing(size, device_bytes(s, p));
     for (int k = 0; k < 3; k++) {
         count[k] = s->has_counts    ? s->counts[k]
                    : s->has_spacing ? ceil(size[k] / wish[k] - 1e-6)
@@ -144,8 +180,8 @@ static void texel_direction(uint32_t side, uint32_t i, uint32_t j, float d[3]) {
 
 static uint32_t unorm16(float v) { return (uint32_t)(fminf(v, 1.0f) * 65535.0f + 0.5f); }
 
-/* Means over a lobe as wide as a texel or two. */
-static void make_map(uint32_t side, uint32_t rays, const float (*hits)[4], uint32_t *map) {
+/* Means over a lobe as wide as a texel or two: powers 32 and 64, narrow 200. */
+static void make_map(uint32_t side, bool narrow, uint32_t rays, const float (*hits)[4], uint32_t *map) {
     uint32_t outer = side + 2;
     for (uint32_t j = 0; j < side; j++) {
         for (uint32_t i = 0; i < side; i++) {
@@ -153,9 +189,10 @@ static void make_map(uint32_t side, uint32_t rays, const float (*hits)[4], uint3
             texel_direction(side, i, j, d);
             for (uint32_t r = 0; r < rays; r++) {
                 float c = d[0] * hits[r][0] + d[1] * hits[r][1] + d[2] * hits[r][2];
-                if (!(c > 0.5f)) continue;
+                if (!(c > (narrow ? 0.93f : 0.5f))) continue;
                 float c2 = c * c, c4 = c2 * c2, c8 = c4 * c4, c16 = c8 * c8, w = c16 * c16;
                 w *= side > 6 ? w : 1;
+                w *= narrow ? w * w * c8 : 1;
                 total += w;
                 mean += w * hits[r][3];
                 square += w * hits[r][3] * hits[r][3];
@@ -183,7 +220,10 @@ static void make_map(uint32_t side, uint32_t rays, const float (*hits)[4], uint3
 static void trace_probe(void *context, uint32_t item) {
     work *w = context;
     const masu_blob_probes *g = w->grid;
-    uint32_t rays = w->settings->rays, backs = 0;
+    const uint32_t paths = is_lit(w->settings) ? w->settings->rays : 0;
+    uint32_t rays = paths, backs = 0;
+    if (w->settings->live && rays < LIVE_RAYS) rays = LIVE_RAYS;
+    bool touches = false;
     const uint32_t at[3] = {item % g->counts[0], item / g->counts[0] % g->counts[1],
                             item / g->counts[0] / g->counts[1]};
     float origin[3], diagonal = 0;
@@ -202,14 +242,20 @@ static void trace_probe(void *context, uint32_t item) {
         masu_bake_hit first;
         masu_path_sample(seed, r, 0, u);
         masu_path_sphere(u, d);
-        count += masu_path_radiance(w->trace, &w->lights, origin, d, seed, r, 1, light, &first);
+        if (r < paths) {
+            count += masu_path_radiance(w->trace, &w->lights, origin, d, seed, r, 1, light, &first);
+        } else {
+            count++;
+            if (!masu_bake_trace_ray(w->trace, origin, d, FLT_MAX, &first)) first.t = -1;
+        }
         float far = DISTANCE_MOST;
         if (first.t >= 0) far = fminf(first.t / diagonal * (first.back ? 0.2f : 1.0f), far);
         backs += first.t >= 0 && first.back;
+        touches |= first.t >= 0 && first.t < FACE_NEAREST;
         memcpy(hits[r], d, sizeof d);
         hits[r][3] = far;
         masu_probe_basis(d, y);
-        for (uint32_t s = 0; s < w->sets; s++) {
+        for (uint32_t s = 0; s < w->sets && r < paths; s++) {
             for (uint32_t k = 0; k < COEFFICIENTS; k++) {
                 total[s][k] += (double)(light[s][k % 3] * y[k / 3]);
             }
@@ -219,13 +265,13 @@ static void trace_probe(void *context, uint32_t item) {
     for (uint32_t s = 0; s < w->sets; s++) {
         for (uint32_t k = 0; k < COEFFICIENTS; k++) {
             double band = k < 3 ? 1 : k < 12 ? 2.0 / 3 : 0.25;
-            sums[s * COEFFICIENTS + k] = (float)(total[s][k] * band * 4 * MASU_BAKE_PI / rays);
+            sums[s * COEFFICIENTS + k] = (float)(total[s][k] * band * 4 * MASU_BAKE_PI / fmax(paths, 1));
         }
     }
-    w->valid[item] = (float)backs <= BACKS_MOST * (float)rays;
+    w->valid[item] = !touches && (float)backs <= BACKS_MOST * (float)rays;
     uint32_t side = w->settings->visibility;
     if (side)
-        make_map(side, rays, (const float(*)[4])hits,
+        make_map(side, w->settings->live && side > 8, rays, (const float(*)[4])hits,
                  w->maps + (size_t)item * (side + 2) * (side + 2));
     free(hits);
     free(total);
@@ -276,7 +322,8 @@ static uint64_t fill_invalid(work *w) {
 static void write_sets(work *w, masu_blob_probes *p, masu_bake_buffer *out) {
     uint32_t count = p->counts[0] * p->counts[1] * p->counts[2], glow = p->sky_sets;
     for (size_t i = 0; i < (size_t)count * w->sets * COEFFICIENTS; i++) {
-        if (i / COEFFICIENTS % w->sets == glow && w->sums[i] != 0) p->emissive = 1;
+        /* Of live probes the rays of a frame meet it. */
+        if (i / COEFFICIENTS % w->sets == glow && w->sums[i] != 0 && !p->live) p->emissive = 1;
     }
     for (uint32_t i = 0; i < count; i++) {
         for (uint32_t s = 0; s < w->sets; s++) {
@@ -295,10 +342,13 @@ static void write_sets(work *w, masu_blob_probes *p, masu_bake_buffer *out) {
 
 bool masu_bake_make_probes(masu_bake_content *content, const masu_bake_probe_settings *s,
                            const masu_bake_trace *trace, masu_bake_probe_report *report) {
-    masu_blob_probes p = {.sky_sets = s->sky_bands * s->sky_bands, .visibility = s->visibility};
+    masu_blob_probes p = {.sky_sets = is_lit(s) ? s->sky_bands * s->sky_bands : 0,
+                          .emissive = !is_lit(s),
+                          .visibility = s->visibility,
+                          .live = s->live};
     double started = masu_bake_seconds();
+    if (is_lit(s)) set_suns(content, s, &p);
     if (!place(content, s, &p)) return false;
-    set_suns(content, s, &p);
     uint32_t count = p.counts[0] * p.counts[1] * p.counts[2];
     size_t map = s->visibility ? (size_t)(s->visibility + 2) * (s->visibility + 2) : 0;
     uint64_t bytes =

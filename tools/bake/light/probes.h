@@ -7,10 +7,12 @@
 #include "bake/mesh/trace.h"
 
 typedef struct masu_bake_probe_settings {
-    bool wanted;
+    bool wanted; /* baked light of sky and sun */
+    bool live;   /* rays of each frame add the rest */
     bool has_bounds, has_spacing, has_counts;
     masu_bake_box bounds;   /* default: of what the instances show */
-    masu_bake_vec3 spacing; /* default: about 2048 probes, alike along all axes */
+    masu_bake_vec3 spacing; /* default: about 2048 probes, alike along all axes; of live ones 0.5 m, or as far
+                               apart as LIVE_BYTES asks for */
     uint32_t counts[3];
     uint32_t rays; /* of each probe */
     uint32_t bounces;
@@ -23,6 +25,9 @@ typedef struct masu_bake_probe_settings {
     uint32_t threads; /* 0: all processors */
 } masu_bake_probe_settings;
 
+#define MASU_BAKE_LIVE_SPACING 0.5
+#define MASU_BAKE_LIVE_BYTES ((uint64_t)4 << 20)
+
 typedef struct masu_bake_probe_report {
     uint64_t probes, invalid, rays, bytes, triangles;
     double seconds;
@@ -30,7 +35,7 @@ typedef struct masu_bake_probe_report {
 
 masu_bake_probe_settings masu_bake_probe_defaults(void);
 
-/* Appends PROBES and PROBE_DATA. Textures have been made, if there are any. False after reporting. */
+/* Appends PROBES and PROBE_DATA; of live probes without baked light maps of distances alone. Textures have been made, if there are any. False after reporting. */
 bool masu_bake_make_probes(masu_bake_content *content, const masu_bake_probe_settings *settings,
                            const masu_bake_trace *trace, masu_bake_probe_report *report);
 

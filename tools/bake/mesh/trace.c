@@ -2,12 +2,14 @@
  * keeps its material, a vertex its texture coordinates where the scene has any. */
 #define _POSIX_C_SOURCE 200809L
 #include "bake/mesh/trace.h"
+#include "bake/light/field.h"
 #include "bake/scene/live.h"
 #include "cli/cli.h"
 #include "scene/texture.h"
 
 #include <embree3/rtcore.h>
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,6 +32,7 @@ typedef struct look {
 struct masu_bake_trace {
     RTCDevice device;
     RTCScene scene;
+    const masu_bake_field *field; /* NULL: none */
     uint64_t triangles, vertices;
     float *positions;    /* 3 per vertex, and one more: Embree reads 16 bytes */
     float *texcoords;    /* 2 per vertex, or NULL */
@@ -285,6 +288,8 @@ void masu_bake_trace_release(masu_bake_trace *trace) {
     free(trace);
 }
 
+void masu_bake_trace_add(masu_bake_trace *trace, const masu_bake_field *field) { trace->field = field; }
+
 uint64_t masu_bake_trace_triangles(const masu_bake_trace *trace) { return trace->triangles; }
 
 /* ---- rays ---- */
@@ -356,8 +361,8 @@ static struct RTCRay ray_of(const float o[3], const float d[3], float near, floa
                            .tfar = far};
 }
 
-bool masu_bake_trace_ray(const masu_bake_trace *trace, const float origin[3],
-                         const float direction[3], float far, masu_bake_hit *hit) {
+static bool polygon_ray(const masu_bake_trace *trace, const float origin[3],
+                        const float direction[3], float far, masu_bake_hit *hit) {
     float near = 0;
     if (!trace->triangles) return false;
     for (int passed = 0; passed < MASKS_MAX; passed++) {
@@ -373,16 +378,39 @@ bool masu_bake_trace_ray(const masu_bake_trace *trace, const float origin[3],
     return false;
 }
 
-bool masu_bake_trace_free(const masu_bake_trace *trace, const float origin[3],
-                          const float direction[3], float far) {
+/* The field wants directions of unit length. */
+static bool field_ray(const masu_bake_trace *trace, const float origin[3], const float direction[3], float far,
+                      masu_bake_hit *hit) {
+    if (!trace->field) return false;
+    float length = sqrtf(direction[0] * direction[0] + direction[1] * direction[1] + direction[2] * direction[2]);
+    if (!(length > 0)) return false;
+    const float d[3] = {direction[0] / length, direction[1] / length, direction[2] / length};
+    if (!masu_bake_field_ray(trace->field, origin, d, far < FLT_MAX / length ? far * length : FLT_MAX, hit)) return false;
+    if (hit) hit->t /= length;
+    return true;
+}
+
+bool masu_bake_trace_ray(const masu_bake_trace *trace, const float origin[3],
+                         const float direction[3], float far, masu_bake_hit *hit) {
+    bool met = polygon_ray(trace, origin, direction, far, hit);
+    return field_ray(trace, origin, direction, met ? hit->t : far, hit) || met;
+}
+
+static bool polygons_free(const masu_bake_trace *trace, const float origin[3], const float direction[3],
+                          float far) {
     if (!trace->triangles) return true;
     if (trace->masks) {
         masu_bake_hit hit;
-        return !masu_bake_trace_ray(trace, origin, direction, far, &hit);
+        return !polygon_ray(trace, origin, direction, far, &hit);
     }
     struct RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     struct RTCRay r = ray_of(origin, direction, 0, far);
     rtcOccluded1(trace->scene, &context, &r);
     return r.tfar > 0; /* -infinity where something is in between */
+}
+
+bool masu_bake_trace_free(const masu_bake_trace *trace, const float origin[3],
+                          const float direction[3], float far) {
+    return polygons_free(trace, origin, direction, far) && !field_ray(trace, origin, direction, far, NULL);
 }

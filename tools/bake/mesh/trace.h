@@ -4,7 +4,7 @@
  * What it knows of a surface is what diffuse light needs: which way it faces, its base colour and
  * what it emits, both with their maps, read from a mip of at most 64 texels a side; a masked texel is
  * not there. Base colour stands for the share of light that comes back, of metals too. LODs are left
- * out, and so is an SDF: its code runs on the GPU alone.
+ * out. With an SDF (light/field.h), that too.
  *
  * Rays give the same answer in every run and on every thread: the tree is built by one thread, and
  * two surfaces at one place are told apart by their order in it. */
@@ -31,6 +31,9 @@ typedef struct masu_bake_hit {
  * every ray leaves it. */
 masu_bake_trace *masu_bake_trace_make(const masu_bake_content *content);
 void masu_bake_trace_release(masu_bake_trace *trace);
+/* From here on rays meet this too; NULL: nothing. It is not released. */
+struct masu_bake_field;
+void masu_bake_trace_add(masu_bake_trace *trace, const struct masu_bake_field *field);
 
 /* The nearest surface up to `far`. Threads may ask at the same time. */
 bool masu_bake_trace_ray(const masu_bake_trace *trace, const float origin[3],

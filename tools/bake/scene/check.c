@@ -174,7 +174,7 @@ static const char *check_lights(const masu_bake_content *c) {
         const masu_blob_light *light = &MASU_BAKE_LIGHTS(c)[i];
         double value;
         masu_punctual_light_state state = masu_light_state_of(light);
-        if ((light->type & MASU_LIGHT_TYPE) > MASU_LIGHT_SPOT || masu_light_state_wrong(&state, &value))
+        if ((light->type & MASU_LIGHT_TYPE) > MASU_LIGHT_RECTANGLE || masu_light_state_wrong(&state, &value))
             return "a light with a value out of range";
         if (light->parent != MASU_BLOB_NONE &&
             light->parent >= masu_bake_count(c, MASU_BLOB_INSTANCES)) {

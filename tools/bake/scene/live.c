@@ -105,12 +105,16 @@ void masu_bake_carry_lights(masu_bake_content *content, uint64_t first_light,
         if (light->parent != MASU_BLOB_NONE) continue;
         masu_bake_vec3 at = masu_bake_v3f(light->position);
         masu_bake_vec3 to = masu_bake_mad(at, masu_bake_v3f(light->direction), 1);
+        masu_bake_vec3 other = masu_bake_mad(at, masu_bake_v3f(light->half_axis), 1);
+        uint32_t type = light->type & MASU_LIGHT_TYPE;
         masu_bake_vec3 moved = masu_bake_apply(&inverse, at);
         masu_bake_vec3 ahead = masu_bake_sub(masu_bake_apply(&inverse, to), moved);
         if (!masu_bake_sane(moved)) continue;
-        if ((light->type & MASU_LIGHT_TYPE) == MASU_LIGHT_SPOT && !masu_bake_normalize(&ahead)) continue;
+        if (type == MASU_LIGHT_SPOT && !masu_bake_normalize(&ahead)) continue;
         masu_bake_store(moved, light->position);
-        if ((light->type & MASU_LIGHT_TYPE) == MASU_LIGHT_SPOT) masu_bake_store(ahead, light->direction);
+        if (type != MASU_LIGHT_POINT && type != MASU_LIGHT_SPHERE) masu_bake_store(ahead, light->direction);
+        other = masu_bake_sub(masu_bake_apply(&inverse, other), moved);
+        masu_bake_store(other, light->half_axis);
         light->parent = (uint32_t)first_instance;
     }
 }

@@ -229,6 +229,27 @@ double masu_bake_light_range(masu_bake_vec3 color) {
     return fmin(fmax(10.0 * sqrt(fmax(most, 0.0)), 1e-3), 1e9);
 }
 
+/* The radiant intensity / pi of an area light along its normal, or of a capsule from aside; the light's
+ * size as its own from where it looks like a point on. */
+double masu_bake_area_range(const masu_blob_light *light) {
+    uint32_t type = light->type & MASU_LIGHT_TYPE;
+    double r = (double)light->radius, area = 0, size = 0;
+    masu_bake_vec3 u = masu_bake_v3f(light->direction), v = masu_bake_v3f(light->half_axis);
+    if (type <= MASU_LIGHT_SPOT) return masu_bake_light_range(masu_bake_v3f(light->color));
+    double length = sqrt(masu_bake_dot(u, u));
+    masu_bake_vec3 side = masu_bake_cross(u, v);
+    if (type == MASU_LIGHT_RECTANGLE) {
+        area = 4 * sqrt(masu_bake_dot(side, side));
+        size = sqrt(masu_bake_dot(u, u) + masu_bake_dot(v, v));
+    } else {
+        area = MASU_BAKE_PI * r * r;
+        size = r;
+    }
+    if (type == MASU_LIGHT_CAPSULE) area += 4 * r * length, size += length;
+    masu_bake_vec3 color = masu_bake_v3f(light->color), zero = {0, 0, 0};
+    return fmax(masu_bake_light_range(masu_bake_mad(zero, color, area / MASU_BAKE_PI)), 8 * size);
+}
+
 /* A light in another space. False: it has left what can be said. */
 static bool move(masu_blob_light *light, const masu_bake_affine *to) {
     masu_bake_vec3 origin = {0, 0, 0}, zero = masu_bake_apply(to, origin);
@@ -236,10 +257,13 @@ static bool move(masu_blob_light *light, const masu_bake_affine *to) {
     masu_bake_vec3 direction =
         masu_bake_sub(masu_bake_apply(to, masu_bake_v3f(light->direction)), zero);
     if (!masu_bake_sane(position)) return false;
+    uint32_t type = light->type & MASU_LIGHT_TYPE;
     masu_bake_store(position, light->position);
-    if ((light->type & MASU_LIGHT_TYPE) != MASU_LIGHT_SPOT) return true;
-    if (!masu_bake_normalize(&direction)) return false;
+    if (type == MASU_LIGHT_POINT || type == MASU_LIGHT_SPHERE) return true;
+    if (type == MASU_LIGHT_SPOT && !masu_bake_normalize(&direction)) return false;
     masu_bake_store(direction, light->direction);
+    direction = masu_bake_sub(masu_bake_apply(to, masu_bake_v3f(light->half_axis)), zero);
+    masu_bake_store(direction, light->half_axis);
     return true;
 }
 

@@ -53,5 +53,6 @@ const char *masu_bake_place_lights(masu_bake_content *scene, const masu_bake_con
 void masu_bake_detach_lights(masu_bake_content *piece);
 /* Where a white surface that faces a light of that colour has a radiance of a hundredth, metres. */
 double masu_bake_light_range(masu_bake_vec3 color);
+double masu_bake_area_range(const masu_blob_light *light);
 
 #endif

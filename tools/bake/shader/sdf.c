@@ -406,7 +406,8 @@ enum {
     OCCLUSION,
     LOCAL_SHADOWS,
     REFLECTED_STILL,
-    REFLECTED_DYNAMIC
+    REFLECTED_DYNAMIC,
+    BOUNCED
 };
 
 /* The shaders that are compiled together with the scene's field, and the sections they go to. The march
@@ -416,7 +417,7 @@ static const struct {
     uint32_t kind;
     int when; /* always; with slots that change, or with time; with --variants; with shadows or
                  ambient occlusion; with punctual lights that cast shadows; with reflections and slots that are
-                 constant, or change */
+                 constant, or change; with a live bounce */
 } scene_shaders[] = {
     {"march.comp", NULL, "march.raw", "march.spv", MASU_BLOB_MARCH_SPIRV, ALWAYS},
     {"update.comp", NULL, "update.raw", "update.spv", MASU_BLOB_UPDATE_SPIRV, UPDATED},
@@ -438,16 +439,18 @@ static const struct {
     {"specular_trace_sdf.comp", NULL, "mirror.raw", "mirror.spv", MASU_BLOB_TRACE_SDF_SPIRV,
      REFLECTED_STILL},
     {"specular_trace_sdf.comp", "-DMASU_MOTION=1", "mirror.raw", "mirror.spv",
-     MASU_BLOB_TRACE_SDF_SPIRV, REFLECTED_DYNAMIC}};
+     MASU_BLOB_TRACE_SDF_SPIRV, REFLECTED_DYNAMIC},
+    {"bounce_sdf.comp", NULL, "bounce.raw", "bounce.spv", MASU_BLOB_BOUNCE_SDF_SPIRV, BOUNCED}};
 
 static bool wanted(int when, bool dynamic, bool anchored, bool occlusion, bool casts, bool reflected,
-                   bool variants) {
+                   bool bounced, bool variants) {
     if (when == UPDATED) return dynamic || anchored;
     if (when == DYNAMIC) return dynamic;
     if (when == OCCLUSION) return occlusion;
     if (when == LOCAL_SHADOWS) return casts;
     if (when == REFLECTED_STILL) return reflected && !dynamic;
     if (when == REFLECTED_DYNAMIC) return reflected && dynamic;
+    if (when == BOUNCED) return bounced;
     return when == ALWAYS || variants;
 }
 
@@ -542,7 +545,7 @@ static bool any_light_casts(const masu_bake_content *content) {
 }
 
 bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path,
-                             const masu_bake_occlusion *occlusion, bool reflected, bool variants) {
+                             const masu_bake_occlusion *occlusion, bool reflected, bool bounced, bool variants) {
     const char *directory = masu_bake_temporary_directory();
     if (!directory) return false;
     char *scene_directory = masu_bake_directory_of(glsl_path);
@@ -557,7 +560,7 @@ bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path,
                 (!darkens || write_occlusion(directory, occlusion));
     for (size_t i = 0; i < sizeof scene_shaders / sizeof *scene_shaders && good; i++) {
         bool anchored = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf)->anchored != 0;
-        if (!wanted(scene_shaders[i].when, dynamic, anchored, darkens, casts, reflected, variants))
+        if (!wanted(scene_shaders[i].when, dynamic, anchored, darkens, casts, reflected, bounced, variants))
             continue;
         paths p = {masu_bake_join(directory, scene_shaders[i].source),
                    masu_bake_join(directory, scene_shaders[i].raw),

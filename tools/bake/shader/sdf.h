@@ -25,7 +25,7 @@ typedef struct masu_bake_occlusion {
  * complete: they decide how the shader is compiled. A .sdf brings its own parameters, which are
  * added. reflected: rays of reflections meet it. Reports errors under the GLSL's own name and lines. */
 bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path,
-                             const masu_bake_occlusion *occlusion, bool reflected, bool variants);
+                             const masu_bake_occlusion *occlusion, bool reflected, bool bounced, bool variants);
 
 /* Whether a source is a file in the language of docs/sdf.md. */
 bool masu_bake_is_sdf(const char *path);

@@ -1,0 +1,71 @@
+/*
+ * ray.glsl: the rays of live probes (shared/bounce.h), and what a buffer holds of each, twice 16 bytes.
+ *
+ *   between tracing and shading   what it has met, as an image of reflections holds it (specular/ray.glsl);
+ *                                 the other half is unused
+ *   from shading on   xyz the point that was met, world space minus the anchor of what is traced, w how far
+ *                     its light is, or below 0 where that does not arrive; then as halves the radiance without
+ *                     that light, and what it adds; then the direction towards it, octahedral
+ *
+ * The directions of a set are a spherical Fibonacci lattice (Swinbank and Purser 2006), turned by a hash of
+ * probe and set: so a scene at rest gives the same bits again, and neighbours do not err alike.
+ */
+#ifndef MASU_BOUNCE_RAY_GLSL
+#define MASU_BOUNCE_RAY_GLSL
+
+#include "shared/bounce.h"
+#include "shared/guard.glsl"
+
+layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_BOUNCE, std430) readonly buffer Bounce
+{
+    masu_bounce_header masu_bounce;
+    uint masu_bounce_list[];
+};
+layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_BOUNCE_RAYS, std430) buffer BounceRays
+{
+    uvec4 masu_bounce_rays[];
+};
+
+struct masu_bounce_ray {
+    uint probe, set, number; /* of its set */
+};
+
+uint masu_bounce_each() { return clamp(masu_bounce.probes.w, 1u, MASU_BOUNCE_RAYS_MAX); }
+
+masu_bounce_ray masu_bounce_ray_at(uint i)
+{
+    uint each = masu_bounce_each();
+    uint word = masu_bounce_list[i / each];
+    return masu_bounce_ray(word & MASU_BOUNCE_PROBE, word >> MASU_BOUNCE_SET_SHIFT & (MASU_BOUNCE_SETS - 1u), i % each);
+}
+
+/* pcg3d (Jarzynski and Olano, JCGT 9-3, 2020). */
+uvec3 masu_bounce_hash(uvec3 v)
+{
+    v = v * 1664525u + 1013904223u;
+    v.x += v.y * v.z;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    v ^= v >> 16u;
+    v.x += v.y * v.z;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    return v;
+}
+
+float masu_bounce_unit(uint hash) { return float(hash >> 8) * (1.0 / 16777216.0); }
+
+/* Turned by an even quaternion (Shoemake 1992). */
+vec3 masu_bounce_direction(masu_bounce_ray r)
+{
+    uvec3 h = masu_bounce_hash(uvec3(r.probe, r.set, 0x6D617375u));
+    float a = masu_bounce_unit(h.x), b = 6.28318531 * masu_bounce_unit(h.y), c = 6.28318531 * masu_bounce_unit(h.z);
+    vec4 q = vec4(masu_sqrt(1.0 - a) * vec2(sin(b), cos(b)), masu_sqrt(a) * vec2(sin(c), cos(c)));
+    float z = 1.0 - (2.0 * float(r.number) + 1.0) / float(masu_bounce_each());
+    float turn = 6.28318531 * fract(float(r.number) * 0.618033989);
+    vec3 d = vec3(masu_sqrt(1.0 - z * z) * vec2(cos(turn), sin(turn)), z);
+    d += 2.0 * cross(q.xyz, cross(q.xyz, d) + q.w * d);
+    return masu_normalize(d, vec3(0.0, 1.0, 0.0));
+}
+
+#endif

@@ -1,0 +1,127 @@
+/*
+ * bounce_shade.comp: the diffuse light that leaves what each ray of the frame's live probes has met: what it
+ * emits; the mean that live probes had around it, so that light bounces on and on; and that of one light, chosen
+ * in proportion to what each would add without shadows, by a hash of the ray, and divided by its probability. What
+ * blocks that light a ray of its own finds: no light passes walls, whether or not it has a shadow map.
+ *
+ * Where probes have baked light, that of sky and sun is in there, bounces and all: neither counts here.
+ */
+#version 440
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+#include "shared/lights.h"
+#include "shared/trace.h"
+#include "shared/globals.glsl"
+#include "shared/pack.glsl"
+#include "light/environment.glsl"
+#include "light/sky.glsl"
+#include "light/ambient.glsl"
+#define MASU_PROBES_LIVE
+#include "light/probes.glsl"
+#ifdef MASU_LIGHTS
+#include "light/lights.glsl"
+#endif
+#ifndef MASU_NO_POLYGONS
+#define MASU_TRACE_POLYGONS
+#include "trace/scene.glsl"
+#include "trace/texels.glsl"
+#endif
+#include "specular/ray.glsl"
+#include "trace/met.glsl"
+#include "bounce/ray.glsl"
+
+layout(local_size_x = 64) in;
+
+/* A light that was chosen among those asked so far. */
+struct chosen {
+    vec3 color;  /* what it adds, irradiance / pi */
+    vec3 l;
+    float far;   /* how far it is */
+    float weight; /* of it */
+    float total; /* of all */
+};
+
+/* Each takes the place of the one before with the probability of its share of the sum so far. */
+void ask(inout chosen c, vec3 l, float far, vec3 color, float chance)
+{
+    float weight = dot(color, vec3(0.2126, 0.7152, 0.0722));
+    if (weight > 0.0) {
+        c.total += weight;
+        if (chance * c.total < weight) {
+            c.color = color;
+            c.l = l;
+            c.far = far;
+            c.weight = weight;
+        }
+    }
+}
+
+void main()
+{
+    uint i = gl_GlobalInvocationID.x;
+    if (i < masu_bounce.rays.x * 64u && i < masu_bounce.rays.w) {
+        masu_bounce_ray ray = masu_bounce_ray_at(i);
+        vec3 direction = masu_bounce_direction(ray);
+        vec3 place = masu_probe_place(ray.probe);
+        uvec4 hit = masu_bounce_rays[2u * i];
+        float t = masu_met_at(hit);
+        bool unlit = probe_grid.counts.w == 0u; /* nothing is baked */
+        vec3 sum = vec3(0.0), added = vec3(0.0);
+        chosen c = chosen(vec3(0.0), vec3(0.0, 1.0, 0.0), -1.0, 1.0, 0.0);
+        vec3 from = place + direction * max(t, 0.0);
+        vec3 lifted = from;
+        if (t >= 0.0) {
+            met m;
+#ifdef MASU_TRACE_POLYGONS
+            if ((hit.y & MASU_HIT_SDF) == 0u) {
+                /* As wide as a set's rays are apart. */
+                m = met_polygon(hit, direction, t * masu_rsqrt(float(masu_bounce_each())) * 3.0);
+            } else
+#endif
+            {
+                m = met_sdf(hit);
+            }
+            sum = min(m.surface.emissive, vec3(MASU_BOUNCE_EMISSION));
+            if (!masu_is_unlit(m.surface)) {
+                vec3 albedo = clamp(m.surface.albedo, vec3(0.0), vec3(1.0));
+                vec3 n = m.normal;
+                vec3 far = abs(from + probe_grid.origin.xyz);
+                lifted += n * (4e-6 * (max(far.x, max(far.y, far.z)) + t) + 2e-3 * probe_grid.origin.w);
+                vec3 eye = (frame.eye_hi.xyz - probe_grid.origin.xyz) + frame.eye_lo.xyz;
+                uint seed = ray.probe * 256u + ray.set * 64u + ray.number;
+                if (unlit) {
+                    vec3 l = frame.sun_direction.xyz;
+                    ask(c, l, frame.trace_anchor.w, frame.sun_color.rgb * max(dot(n, l), 0.0), 0.0);
+                }
+#ifdef MASU_LIGHTS
+                uint lights = masu_light_count();
+                for (uint k = 0u; k < uint(MASU_LOCAL_LIGHTS_MAX); k++) {
+                    if (k >= lights) {
+                        break;
+                    }
+                    vec3 l;
+                    vec3 color;
+                    if (masu_light_reaches(masu_lights[k], lifted - eye, l, color)) {
+                        /* Less what a lamp may be in. */
+                        float within = max(masu_sqrt(masu_lights[k].color.w), 0.05);
+                        float away = max(length(masu_lights[k].position.xyz - (lifted - eye)) - within, 0.0);
+                        float chance = masu_bounce_unit(masu_bounce_hash(uvec3(seed, k, 0x626F756Eu)).x);
+                        ask(c, l, away, color * max(dot(n, l), 0.0), chance);
+                    }
+                }
+#endif
+                added = albedo * c.color * (c.total / c.weight);
+                vec4 live = masu_probe_light(from, n);
+                sum += albedo * (live.rgb * live.w + (unlit ? masu_ambient(n) * (1.0 - live.w) : vec3(0.0)));
+            }
+        } else if (unlit) {
+            sum = masu_sky(direction);
+        }
+        sum = masu_sane(sum, 0.0, 65504.0);
+        added = masu_sane(added, 0.0, 65504.0);
+        vec3 at = lifted + (probe_grid.origin.xyz - frame.trace_anchor.xyz);
+        masu_bounce_rays[2u * i] = uvec4(floatBitsToUint(at), floatBitsToUint(c.total > 0.0 ? c.far : -1.0));
+        masu_bounce_rays[2u * i + 1u] = uvec4(packHalf2x16(sum.rg), packHalf2x16(vec2(sum.b, added.r)),
+                                              packHalf2x16(added.gb), masu_pack_direction(c.l));
+    }
+}

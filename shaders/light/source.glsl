@@ -1,0 +1,202 @@
+/*
+ * source.glsl: light sources that have a size: the sphere of a point or a spot, a rectangle, a capsule.
+ *
+ *   sphere     diffuse: irradiance of its part above the horizon. Specular: the lobe of a point at its
+ *              centre, widened by the source (Karis, "Real Shading in Unreal Engine 4", 2013, with the
+ *              distance of half vectors instead of the mirror direction), times a factor that restores
+ *              the energy. Roughness 0.045 to 1, sin of the source's radius 0.02 to 0.95, any height:
+ *              within 15 % of the exact energy for views of 20 degrees above the surface and more, within
+ *              22 % at 10 (tests/gpu/test_area_lights.c)
+ *   rectangle  linearly transformed cosines (Heitz et al., "Real-Time Polygonal-Light Shading with
+ *              Linearly Transformed Cosines", SIGGRAPH 2016). The horizon does not clip the polygon: its
+ *              vector form factor is taken for that of a sphere (Hill, "Real-Time Area Lighting: a
+ *              Journey from Research to Production", 2016). The table is normalised: the amplitude is the
+ *              albedo of tables.glsl
+ *   capsule    a rectangle that faces the point, longer by pi r / 4 at either end
+ *
+ * s2: squared sine of the angle that the radius of a sphere subtends, 0..1.
+ */
+#ifndef MASU_SOURCE_GLSL
+#define MASU_SOURCE_GLSL
+
+#include "brdf/bsdf.glsl"
+
+/* Mean cosine over a sphere whose centre has the cosine c: irradiance / (pi radiance s2). Between the two
+ * cosines of tangency a fit; times s2 off by 0.016 at most, at s 0.98, and by 0.003 below 0.8, of a full
+ * hemisphere (Snyder, "Area Light Sources for Real-Time Graphics", 1996). */
+float masu_clipped_cosine(float c, float s2)
+{
+    float s = sqrt(s2);
+    if (c >= s) {
+        return c;
+    }
+    float x = sqrt(1.0 - s2);
+    float q = clamp(0.5 + 0.5 * c * masu_rcp(s), 0.0, 1.0);
+    float whole = 1.0 - 0.8 * x;
+    return s * (whole * masu_pow_above(max(q, 1e-6), 1.0 + x) + (1.0 - whole) * q * q * (0.698 + 0.302 * q));
+}
+
+float masu_widened(float alpha, float wider)
+{
+    return sqrt(min(alpha * alpha + wider, 1.0));
+}
+
+/* What the widened lobe lacks: it has the energy of a disc's irradiance, not of a solid angle, and loses
+ * what it spreads below the horizon. wider: added to alpha^2. Fitted to integrals. */
+float masu_source_gain(float alpha, float n_v, float s2, float wider)
+{
+    float s = sqrt(s2), steep = (1.0 - n_v) * (1.0 - n_v);
+    float solid = 2.0 / (1.0 + sqrt(1.0 - s2)) - 1.0;
+    float spread = wider * s / ((alpha * alpha + wider) * (s + 0.06));
+    float lost = spread * (0.1 + 0.34 * steep) * (1.0 - s2 * s);
+    return (1.0 + solid * (1.0 - alpha)) / (1.0 - lost * (1.0 - alpha));
+}
+
+/* Share of a source's specular light that one ray of the lobe finds, estimated: the chance that it meets
+ * a sphere of that size. l: unit, towards its centre. */
+float masu_ray_share(vec3 n, vec3 v, vec3 l, float roughness, float s2)
+{
+    float n_v = masu_sane(dot(n, v), 1e-4, 1.0);
+    float alpha = masu_alpha(roughness), wide = 0.25 * s2 / (n_v * n_v);
+    float a2 = alpha * alpha + wide;
+    vec3 h = masu_normalize(l + v, n);
+    vec3 sine = cross(n, h);
+    float n_h = clamp(dot(n, h), 0.0, 1.0);
+    float k = dot(sine, sine) + n_h * n_h * a2;
+    return masu_sane(wide * a2 / (k * k), 0.0, 1.0);
+}
+
+/* Of base and coat. Roughness as reflection rays have it (specular/guide.glsl). */
+vec2 masu_ray_shares(masu_surface s, masu_bsdf b, vec3 l, float s2)
+{
+    vec2 share = vec2(masu_ray_share(b.n, b.v, l, floor(s.roughness * 63.0 + 0.5) / 63.0, s2), 0.0);
+#ifdef MASU_SURFACE
+    if (b.coat > 0.0) {
+        share.y = masu_ray_share(b.coat_n, b.v, l, floor(s.coat_roughness * 63.0 + 0.5) / 63.0, s2);
+    }
+#endif
+    return share;
+}
+
+/* A sphere in the direction l, unit: changes surface, direction and colour to those of a point. kept: of
+ * the mirrored light of base and coat, what rays do not find. */
+void masu_spread(inout masu_bsdf b, inout vec3 l, inout vec3 color, float s2, vec2 kept)
+{
+    s2 = clamp(s2, 0.0, 0.9999);
+    float n_l = dot(b.n, l), cosine = masu_clipped_cosine(n_l, s2);
+    if (cosine > 0.0 && cosine != n_l) { /* lifted above the horizon */
+        vec3 lifted = l + b.n * (cosine - n_l);
+        float size = dot(lifted, lifted);
+        l = lifted * masu_rsqrt(size);
+        color *= sqrt(size);
+    }
+    vec3 sum = l + b.v;
+    float wider = s2 / (1.8 * sqrt(dot(sum, sum)) + 0.4);
+    float base = kept.x * masu_source_gain(b.alpha, b.n_v, s2, wider);
+    b.alpha = masu_widened(b.alpha, wider);
+    b.f0 *= base;
+    b.f90 *= base;
+#ifdef MASU_SURFACE
+    b.coat_gain = kept.y * masu_source_gain(b.coat_alpha, b.coat_n_v, s2, wider);
+    b.coat_alpha = masu_widened(b.coat_alpha, wider);
+#endif
+}
+
+/* ---- Rectangles ------------------------------------------------------------------------------ */
+
+/* Angle between two unit vectors over 2 pi, times their normal. acos(x) / sqrt(1 - x^2) / (2 pi) within
+ * 6e-7 relative. */
+vec3 masu_edge(vec3 a, vec3 b)
+{
+    float x = dot(a, b), y = abs(x);
+    float v = (0.2499999 + y * (0.1441643 + 0.0041431 * y)) / (1.0 + y * (1.2132374 + 0.2893999 * y));
+    vec3 normal = cross(a, b);
+    /* Of nearly opposite vectors 1 - x^2 has no digits left. */
+    return normal * (x >= 0.0 ? v : 0.5 * masu_rsqrt(dot(normal, normal)) - v);
+}
+
+/* Vector form factor of a parallelogram: its centre relative to the point, its half axes. */
+vec3 masu_form_factor(vec3 center, vec3 u, vec3 v)
+{
+    vec3 up = u + v, across = u - v;
+    vec3 a = masu_normalize(center - up, vec3(0.0)), b = masu_normalize(center + across, vec3(0.0));
+    vec3 c = masu_normalize(center + up, vec3(0.0)), d = masu_normalize(center - across, vec3(0.0));
+    return masu_edge(b, a) + masu_edge(c, b) + masu_edge(d, c) + masu_edge(a, d);
+}
+
+/* The part of a form factor above the horizon, and a mean cosine; n: unit. */
+float masu_above(vec3 form, vec3 n, out float cosine)
+{
+    float size = min(masu_sqrt(dot(form, form)), 0.99999);
+    cosine = masu_clipped_cosine(dot(form, n) * masu_rcp(size), size);
+    float above = size * cosine;
+    cosine *= 1.0 - size * (1.0 / 3.0); /* of a hemisphere its mean, weighted by itself */
+    return above;
+}
+
+/* Two numbers of the table of cosines' transforms. */
+vec4 masu_transform_at(uint node)
+{
+    uint at = uint(MASU_TABLE_TRANSFORM) + 2u * node;
+    return vec4(unpackSnorm2x16(masu_tables[at]), unpackSnorm2x16(masu_tables[at + 1u]));
+}
+
+/* a, b, c / alpha, d / (2 alpha) of the matrix (a 0 b, 0 1 0, c 0 d) from the lobe to a cosine. */
+vec4 masu_transform(float alpha, float n_v)
+{
+    const float rows = float(MASU_TRANSFORM_ROWS - 1), columns = float(MASU_TRANSFORM_COLUMNS - 1);
+    float y = clamp((sqrt(alpha) - MASU_TABLE_SMOOTHEST) * (rows / (1.0 - MASU_TABLE_SMOOTHEST)), 0.0, rows);
+    float x = sqrt(1.0 - n_v) * columns;
+    uint row = min(uint(y), uint(MASU_TRANSFORM_ROWS - 2));
+    uint column = min(uint(x), uint(MASU_TRANSFORM_COLUMNS - 2));
+    uint node = row * uint(MASU_TRANSFORM_COLUMNS) + column;
+    vec4 low = mix(masu_transform_at(node), masu_transform_at(node + 1u), x - float(column));
+    node += uint(MASU_TRANSFORM_COLUMNS);
+    vec4 high = mix(masu_transform_at(node), masu_transform_at(node + 1u), x - float(column));
+    return mix(low, high, y - float(row));
+}
+
+/* Irradiance / (pi radiance) by a parallelogram that faces the point (x), the part of its specular lobe
+ * that it fills (y), and the mean cosine of the former (z). */
+vec3 masu_rectangle(masu_bsdf b, vec3 center, vec3 u, vec3 v)
+{
+    vec3 n = b.n;
+    float sign_z = n.z < 0.0 ? -1.0 : 1.0;
+    float ratio = -1.0 / (sign_z + n.z);
+    float mixed = n.x * n.y * ratio;
+    vec3 t = vec3(1.0 + sign_z * n.x * n.x * ratio, sign_z * mixed, -sign_z * n.x);
+    vec3 s = vec3(mixed, sign_z + n.y * n.y * ratio, -n.y);
+    /* Away from the viewer. At the pole the lobe is round. */
+    vec2 away = -vec2(dot(b.v, t), dot(b.v, s));
+    float size = dot(away, away);
+    away = size > 1e-12 ? away * masu_rsqrt(size) : vec2(1.0, 0.0);
+    vec3 along = away.x * t + away.y * s;
+    vec4 m = masu_transform(b.alpha, b.n_v);
+    mat3 lobe = mat3(m.x * along + m.y * n, cross(n, along), b.alpha * (m.z * along + 2.0 * m.w * n));
+    float lit, part;
+    float irradiance = masu_above(masu_form_factor(center, u, v), n, lit);
+    /* v * M is the transpose of M times v: M's columns are the rows of the transform. */
+    float mirrored = masu_above(masu_form_factor(center * lobe, u * lobe, v * lobe), vec3(0.0, 0.0, 1.0), part);
+    /* The horizon cuts off a part of the cosine's hemisphere: the rest stands for all. */
+    float c = b.alpha * m.z;
+    mirrored *= 2.0 / (1.0 + m.x * masu_rsqrt(m.x * m.x + c * c));
+    bool risen = dot(center, n) + abs(dot(u, n)) + abs(dot(v, n)) > 0.0;
+    return risen ? vec3(irradiance, mirrored, lit) : vec3(0.0);
+}
+
+/* form: of masu_rectangle. What a coat mirrors is not in it. */
+void masu_add_rectangle(inout masu_lit lit, masu_surface s, masu_bsdf b, vec3 l, vec3 color, vec3 form, float kept)
+{
+#ifdef MASU_SURFACE
+    if (s.shadow >= 0.0) {
+        color *= masu_meso_shadow(s.shadow, b.v, l);
+    }
+#endif
+    masu_albedo a = masu_albedo_of(b, clamp(form.z, 0.0, 1.0), clamp(form.z, 0.0, 1.0));
+    vec3 specular = masu_bsdf_specular(b) * (form.y * kept) + b.rest * (masu_lost(a) * form.x);
+    vec3 diffuse = b.diffuse * ((1.0 - masu_matte(b, a)) * form.x);
+    lit.specular += color * masu_sane(specular, 0.0, masu_huge);
+    lit.diffuse += color * masu_sane(diffuse, 0.0, masu_huge);
+}
+
+#endif

@@ -1,0 +1,78 @@
+/*
+ * met.glsl: the surface that a ray has met, of what images and buffers hold of it (specular/ray.glsl). After
+ * shared/pack.glsl, specular/ray.glsl and, where there are polygons, trace/scene.glsl and trace/texels.glsl.
+ */
+#ifndef MASU_TRACE_MET_GLSL
+#define MASU_TRACE_MET_GLSL
+
+/* What a ray has met. */
+struct met {
+    masu_surface surface;
+    vec3 normal; /* unit, towards where the ray comes from */
+};
+
+met met_sdf(uvec4 hit)
+{
+    met m;
+    m.surface = masu_unpack_met(unpackUnorm4x8(hit.w), hit.z);
+    m.normal = masu_unpack_normal(hit.z);
+    return m;
+}
+
+#ifdef MASU_TRACE_POLYGONS
+met met_polygon(uvec4 hit, vec3 direction, float width)
+{
+    met m;
+    vec2 b = unpackUnorm2x16(hit.w);
+    vec3 weights = vec3(1.0 - b.x - b.y, b);
+    uvec4 triangle = masu_trace_triangle(hit.z);
+    hit.y = masu_trace_instance(hit.y);
+    vec3 p0 = uintBitsToFloat(masu_trace_vertices[triangle.x].xyz);
+    vec3 p1 = uintBitsToFloat(masu_trace_vertices[triangle.y].xyz);
+    vec3 p2 = uintBitsToFloat(masu_trace_vertices[triangle.z].xyz);
+    vec3 normal = masu_trace_vertex_normal(triangle.x) * weights.x +
+                  masu_trace_vertex_normal(triangle.y) * weights.y +
+                  masu_trace_vertex_normal(triangle.z) * weights.z;
+    vec3 flat_normal = masu_normalize(masu_trace_upright(hit.y, cross(p1 - p0, p2 - p0)), -direction);
+    m.normal = masu_normalize(masu_trace_upright(hit.y, normal), flat_normal);
+    m.normal = dot(flat_normal, direction) > 0.0 ? -m.normal : m.normal;
+    /* As the raster's: a normal that points away is turned until it does not. */
+    float away = dot(m.normal, direction);
+    if (away > 0.0) {
+        m.normal = masu_normalize(m.normal - away * direction, -direction);
+    }
+
+    masu_trace_material look = masu_trace_material_at(triangle.w & MASU_TRACE_MATERIAL);
+    m.surface = masu_plain_surface(look.base_color.rgb, look.base_color.w);
+    m.surface.emissive = look.emissive.rgb;
+    m.surface.metallic = look.emissive.w;
+    m.surface.specular = look.more.x;
+    m.surface.coat = look.more.y;
+    m.surface.coat_roughness = look.more.z;
+#ifdef MASU_TRACE_TEXTURES
+    if (look.maps.x != MASU_TRACE_NONE || look.maps.y != MASU_TRACE_NONE) {
+        vec2 uv = masu_trace_uv(triangle.xyz, b);
+        vec2 u1 = masu_trace_texcoords[triangle.y] - masu_trace_texcoords[triangle.x];
+        vec2 u2 = masu_trace_texcoords[triangle.z] - masu_trace_texcoords[triangle.x];
+        vec3 w1 = masu_trace_now(hit.y, vec4(p1 - p0, 0.0));
+        vec3 w2 = masu_trace_now(hit.y, vec4(p2 - p0, 0.0));
+        float across = length(cross(w1, w2)), wide = abs(u1.x * u2.y - u1.y * u2.x);
+        float density = masu_sqrt(wide * masu_rcp(across)); /* of texture coordinates per metre */
+        float lod = masu_log2(max(width, 1e-9) * density /
+                              max(masu_sqrt(abs(dot(flat_normal, direction))), 0.1));
+        /* In a loop: the code for a look would stand here twice. */
+        [[dont_unroll]] for (int i = 0; i < 2; i++) {
+            uint map = i == 0 ? look.maps.x : look.maps.y;
+            if (map != MASU_TRACE_NONE) {
+                vec3 texel = masu_trace_sized(map, uv, lod, look.maps.w).rgb;
+                m.surface.albedo *= i == 0 ? texel : vec3(1.0);
+                m.surface.emissive *= i == 0 ? vec3(1.0) : texel;
+            }
+        }
+    }
+#endif
+    return m;
+}
+#endif
+
+#endif

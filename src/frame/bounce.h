@@ -1,0 +1,62 @@
+/* bounce.h: which live probes trace rays in a frame. A round is over when every probe has had its turn; what is
+ * in view comes first in each. A change of what light meets restarts the sets of all probes, so that none shows
+ * a mean with what was; while changes follow each other within WINDOW rounds, the window of sets slides
+ * instead. After REST rounds without a change no probe traces, and the probes keep their bits.
+ *
+ * All of it follows from what frames have asked for so far: nothing is read back. */
+#ifndef MASU_BOUNCE_H
+#define MASU_BOUNCE_H
+
+#include "frame/frame_data.h"
+#include "frame/instances.h"
+#include "frame/materials.h"
+#include "frame/punctual_lights.h"
+#include "scene/blob_section.h"
+
+enum {
+    MASU_BOUNCE_WINDOW = 4, /* rounds: the sets of a probe */
+    MASU_BOUNCE_REST = 64,
+    MASU_BOUNCE_OFF = 0xFF  /* `sets` of a probe that is inside of something */
+};
+
+/* What light meets, as far as the host can change it. */
+typedef struct masu_bounce_cause {
+    uint32_t lights, instances, materials;
+    float sun[2][3], sky[14][4], params[MASU_SDF_PARAM_VEC4S][4], time;
+} masu_bounce_cause;
+
+typedef struct masu_bounce {
+    struct masu_bounce_probe {
+        uint8_t sets;  /* traced since the last restart: up to WINDOW, then WINDOW to 2 WINDOW - 1 around */
+        uint8_t round; /* the last that it took part in */
+    } *probes;
+    uint32_t count, valid; /* all, and those that are not off */
+    uint32_t counts[3];
+    float origin[3], spacing[3];
+    int lit;        /* the probes have baked light: sun and sky are no cause */
+    uint32_t round; /* the present one; its low byte tells rounds apart */
+    uint32_t left;  /* probes that it lacks */
+    uint32_t quiet; /* whole rounds since the last change */
+    uint32_t burst; /* rounds that still have more rays */
+    masu_bounce_cause cause;
+} masu_bounce;
+
+/* Which probes are to be first: NULL: none. */
+typedef struct masu_bounce_view {
+    const float *clip_from_rel; /* 16 */
+    double eye[3];
+} masu_bounce_view;
+
+void masu_bounce_alloc(masu_bounce *b, masu_arena *arena, const masu_frame_plan *plan);
+void masu_bounce_copy_scene(masu_bounce *b, const masu_frame_plan *plan, const masu_scene_view *v);
+
+/* Something has changed. */
+void masu_bounce_restart(masu_bounce *b);
+/* At most `most` probes as words of shared/bounce.h; returns how many. */
+uint32_t masu_bounce_choose(masu_bounce *b, const masu_bounce_view *view, uint32_t most, uint32_t *words);
+
+/* Finds whether something has changed, and writes the frame's slot. */
+void masu_bounce_write(masu_bounce *b, const masu_lights *lights, const masu_instances *in,
+                       const masu_materials *materials, const masu_frame_data *f);
+
+#endif

@@ -1,0 +1,226 @@
+/* test_bounce.c: live probes in whole frames, under the validation layer: a white furnace, two rooms with a door
+ * and a lamp, a corner under baked daylight. What the probes hold is read where the device has it. */
+#include "support/support.h"
+#include "support/files.h"
+#include "support/random.h"
+
+#include "bake/light/probe_light.h"
+#include "device/bind.h"
+#include "renderer.h"
+#include "scene/scene.h"
+#include "shared/masu_shared.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { W = 64, H = 48, POINTS = 512, RAYS = 94 * 48 };
+
+typedef struct rooms {
+    masu_session s;
+    void *blob;
+    masu_scene_view v;
+    uint32_t probes;
+    uint32_t *live, *sets; /* on the device */
+} rooms;
+
+static void open_rooms(rooms *r, const char *scene) {
+    masu_session_desc d = test_desc(scene, W, H);
+    size_t bytes;
+    masu_scene bound;
+    d.desc.rung_count = 1;
+    d.desc.rungs[0] = (masu_rung){.scale = 1.0f};
+    d.desc.readback = MASU_READBACK_HDR;
+    skip_unless_host_sees_all_memory();
+    memset(r, 0, sizeof *r);
+    open_session(&r->s, &d);
+    r->blob = read_file(scene_path(scene), &bytes);
+    assert_int_equal(masu_scene_bind(r->blob, bytes, &bound, NULL), MASU_OK);
+    r->v = masu_scene_view_of(&bound);
+    const masu_blob_probes *p = r->v.probes;
+    r->probes = p->counts[0] * p->counts[1] * p->counts[2];
+    unsigned char *at = masu_buffer_pointer(&r->s.m->device, MASU_BUFFER_PROBES, 0);
+    assert_non_null(at);
+    uint64_t lit = (r->v.probe_words + 3) / 4 * 4;
+    r->live = (uint32_t *)(void *)(at + sizeof *p) + lit + (uint64_t)r->probes * MASU_PROBE_LIT_WORDS;
+    r->sets = r->live + (uint64_t)r->probes * MASU_PROBE_LIT_WORDS;
+}
+
+static void close_rooms(rooms *r) {
+    close_session(&r->s);
+    free(r->blob);
+}
+
+static uint64_t hash_of(const rooms *r) {
+    return masu_fnv1a64(r->live, (size_t)r->probes * MASU_PROBE_LIVE_WORDS * 4);
+}
+
+static void frame(rooms *r) {
+    masu_commands commands;
+    draw(&r->s, &(masu_frame_desc){.time_step = 1.0f / 60}, &commands, NULL);
+}
+
+/* Frames until so many rounds without a change have passed. */
+static uint32_t settle(rooms *r, uint32_t rounds) {
+    uint32_t frames = 0;
+    do frame(r), frames++;
+    while (r->s.m->bounce.quiet < rounds && frames < 2000);
+    assert_int_equal(r->s.m->bounce.quiet, rounds);
+    return frames;
+}
+
+static float half_at(const uint32_t *words, uint32_t i) {
+    return masu_probe_half(words[i / 2] >> (i & 1 ? 16 : 0) & 0xFFFFu);
+}
+
+static int is_valid(const rooms *r, uint32_t probe) { return half_at(r->live + (size_t)probe * MASU_PROBE_LIT_WORDS, 3) > 0; }
+
+/* Mean irradiance / pi, green, of points on the floor from x to x + 1.6, by the lookup of the picture. */
+static double floor_at(const rooms *r, float x) {
+    uint64_t random = 5;
+    double sum = 0;
+    for (uint32_t i = 0; i < POINTS; i++) {
+        const float p[3] = {x + 1.6f * random_float(&random), 0, 0.2f + 2.6f * random_float(&random)};
+        const float n[3] = {0, 1, 0};
+        float out[3];
+        (void)masu_probe_lookup(r->v.probes, r->v.probe_data, r->live, p, n, out);
+        sum += (double)out[1];
+    }
+    return sum / POINTS;
+}
+
+static void light_up(rooms *r, float color) {
+    masu_punctual_light lamp = masu_punctual_light_find(r->s.m, "lamp");
+    masu_punctual_light_state state;
+    assert_int_equal(masu_punctual_light_get(r->s.m, lamp, &state), MASU_OK);
+    for (int k = 0; k < 3; k++) state.color[k] = color;
+    assert_int_equal(masu_punctual_light_set(r->s.m, lamp, &state), MASU_OK);
+}
+
+/* ---- The furnace ----------------------------------------------------------------------------- */
+
+/* Walls that emit 0.5 and send back half: all is 1. */
+static void a_furnace_is_1_everywhere(void **state) {
+    (void)state;
+    rooms r;
+    open_rooms(&r, "test_bounce_furnace");
+    (void)settle(&r, 40);
+    float low = 10, high = 0;
+    for (uint32_t i = 0; i < r.probes; i++) {
+        assert_true(is_valid(&r, i));
+        for (uint32_t c = 0; c < 3; c++) {
+            float e = half_at(r.live + (size_t)i * MASU_PROBE_LIT_WORDS, c) * 0.282095f;
+            low = fminf(low, e), high = fmaxf(high, e);
+        }
+    }
+    print_message("%u probes of a furnace: %.4f to %.4f\n", r.probes, (double)low, (double)high);
+    assert_true(low > 0.99f && high < 1.01f);
+    close_rooms(&r);
+}
+
+/* What is no number in a set is gone with the set, and in no picture. */
+static void poison_is_gone_after_a_window(void **state) {
+    (void)state;
+    rooms r;
+    open_rooms(&r, "test_bounce_furnace");
+    (void)settle(&r, 8);
+    for (uint32_t k = 0; k < MASU_PROBE_WORDS; k++) r.sets[3 * 4 * MASU_PROBE_WORDS + k] = 0x7E007C00u;
+    for (uint32_t k = 0; k < MASU_PROBE_LIT_WORDS; k++) r.live[7 * MASU_PROBE_LIT_WORDS + k] = 0xFFFFFFFFu;
+    for (uint32_t f = 0; f < 4; f++) {
+        const uint16_t *pixels = draw_image(&r.s, &(masu_frame_desc){.time_step = 0.01f}, MASU_READBACK_HDR, NULL);
+        for (uint32_t i = 0; i < W * H * 4; i++) assert_true((pixels[i] & 0x7C00u) != 0x7C00u);
+    }
+    (void)settle(&r, 16);
+    uint32_t words = r.probes * MASU_BOUNCE_SETS * MASU_PROBE_WORDS;
+    for (uint32_t i = 0; i < words; i++)
+        assert_true((r.sets[i] & 0x7C00u) != 0x7C00u && (r.sets[i] >> 16 & 0x7C00u) != 0x7C00u);
+    (void)settle(&r, 40);
+    for (uint32_t i = 0; i < r.probes; i++)
+        assert_float_equal(half_at(r.live + (size_t)i * MASU_PROBE_LIT_WORDS, 1) * 0.282095f, 1, 0.01);
+    close_rooms(&r);
+}
+
+/* ---- Rooms ----------------------------------------------------------------------------------- */
+
+static void light_comes_rises_rests_and_stays_behind_a_door(void **state) {
+    (void)state;
+    rooms r;
+    open_rooms(&r, "test_bounce");
+    light_up(&r, 0);
+    (void)settle(&r, 8);
+    assert_true(floor_at(&r, 0.2f) == 0);
+    /* On: it rises until it is there. */
+    static double curve[4096];
+    uint32_t frames = 0, at_90 = 0;
+    light_up(&r, 2);
+    do {
+        frame(&r);
+        curve[frames++] = floor_at(&r, 0.2f);
+    } while (r.s.m->bounce.quiet < MASU_BOUNCE_REST && frames < 4096);
+    double final = floor_at(&r, 0.2f), fall = 0, most = 0;
+    while (at_90 < frames && curve[at_90] < 0.9 * final) at_90++;
+    for (uint32_t f = 1; f < frames; f++) {
+        fall = fmax(fall, (curve[f - 1] - curve[f]) / final);
+        most = fmax(most, curve[f] / final);
+    }
+    uint32_t bound = 29 * 192 * r.s.m->bounce.valid / (10 * RAYS);
+    print_message("%u probes: 90 %% after %u frames, at most %u; largest fall %.4f, most %.4f\n", r.s.m->bounce.valid,
+                  at_90 + 1, bound, fall, most);
+    assert_true(final > 0.01 && at_90 + 1 <= bound && fall < 0.01 && most < 1.02);
+    /* Rest loses nothing: two more windows would leave the same words. Then nothing is traced. */
+    uint64_t at_rest = hash_of(&r);
+    r.s.m->bounce.quiet = MASU_BOUNCE_REST - 2 * MASU_BOUNCE_WINDOW;
+    (void)settle(&r, MASU_BOUNCE_REST);
+    assert_true(at_rest == hash_of(&r));
+    memset(r.sets, 0xFF, 4);
+    for (uint32_t f = 0; f < 3; f++) frame(&r);
+    assert_int_equal(r.sets[0], 0xFFFFFFFFu);
+    double behind = floor_at(&r, 3.3f) / final;
+    print_message("behind the shut door %.5f of the light before it\n", behind);
+    assert_true(behind <= 0.01);
+    /* The door opens: that is a change, and light goes through. */
+    masu_model door = masu_model_find(r.s.m, "door");
+    const float away[12] = {1, 0, 0, 3.05f, 0, 1, 0, -20, 0, 0, 1, 1.5f};
+    assert_int_equal(masu_model_set_transform(r.s.m, door, away), MASU_OK);
+    (void)settle(&r, 16);
+    double open = floor_at(&r, 3.3f) / floor_at(&r, 0.2f);
+    print_message("behind the open door %.5f\n", open);
+    assert_true(open > 0.03);
+    close_rooms(&r);
+}
+
+/* ---- Daylight -------------------------------------------------------------------------------- */
+
+/* Sky and sun are baked: rays find nothing more, to the bit. */
+static void baked_daylight_counts_once(void **state) {
+    (void)state;
+    rooms r;
+    open_rooms(&r, "test_bounce_lit");
+    (void)settle(&r, 5);
+    uint32_t valid = 0;
+    for (uint32_t i = 0; i < r.probes; i++) {
+        valid += is_valid(&r, i) != 0;
+        for (uint32_t k = 0; k < MASU_PROBE_LIT_WORDS; k++)
+            if (k != 1) assert_int_equal(r.live[i * MASU_PROBE_LIT_WORDS + k], 0);
+    }
+    assert_true(valid > r.probes / 2); /* they have been traced */
+    for (uint32_t i = 0; i < r.probes * MASU_BOUNCE_SETS * MASU_PROBE_WORDS; i++) assert_int_equal(r.sets[i], 0);
+    /* Neither is a change of the sun one to them. */
+    uint32_t quiet = r.s.m->bounce.quiet;
+    masu_light light = {.sun_direction = {0.2f, 0.6f, 0.75f}, .sun_color = {2, 2, 2}, .ambient = {1, 1, 1}};
+    masu_commands commands;
+    draw(&r.s, &(masu_frame_desc){.light = &light}, &commands, NULL);
+    assert_true(r.s.m->bounce.quiet >= quiet);
+    close_rooms(&r);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_furnace_is_1_everywhere),
+        cmocka_unit_test(poison_is_gone_after_a_window),
+        cmocka_unit_test(light_comes_rises_rests_and_stays_behind_a_door),
+        cmocka_unit_test(baked_daylight_counts_once),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,156 @@
+/* test_bounce.c: which live probes trace rays in a frame (src/frame/bounce.h). */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "frame/bounce.h"
+#include "shared/masu_shared.h"
+
+enum { PROBES = 576, MOST = 94, OFF_EVERY = 17 };
+
+typedef struct grid {
+    masu_bounce b;
+    struct masu_bounce_probe probes[PROBES];
+    uint32_t words[4 * MOST];
+} grid;
+
+static grid *make(void) {
+    grid *g = calloc(1, sizeof *g);
+    g->b.probes = g->probes;
+    g->b.count = PROBES;
+    g->b.counts[0] = 12, g->b.counts[1] = 6, g->b.counts[2] = 8;
+    for (int k = 0; k < 3; k++) g->b.spacing[k] = 0.5f;
+    for (uint32_t i = 0; i < PROBES; i++) {
+        g->probes[i].sets = i % OFF_EVERY ? 0 : MASU_BOUNCE_OFF;
+        g->b.valid += i % OFF_EVERY != 0;
+    }
+    g->b.quiet = MASU_BOUNCE_WINDOW;
+    masu_bounce_restart(&g->b);
+    return g;
+}
+
+static uint32_t probe_of(uint32_t word) { return word & MASU_BOUNCE_PROBE; }
+static uint32_t set_of(uint32_t word) { return word >> MASU_BOUNCE_SET_SHIFT & 3u; }
+static uint32_t count_of(uint32_t word) { return word >> MASU_BOUNCE_COUNT_SHIFT; }
+
+/* Frames of a whole round; `seen` is how often each probe has had its turn. */
+static uint32_t run_round(grid *g, uint32_t seen[PROBES]) {
+    uint32_t round = g->b.round, frames = 0;
+    for (; g->b.round == round; frames++) {
+        uint32_t count = masu_bounce_choose(&g->b, NULL, MOST, g->words);
+        if (!count) break;
+        assert_true(count <= MOST);
+        for (uint32_t i = 0; i < count; i++) seen[probe_of(g->words[i])]++;
+    }
+    return frames;
+}
+
+static void a_round_takes_every_probe_that_is_not_off_once(void **state) {
+    (void)state;
+    grid *g = make();
+    for (uint32_t k = 0; k < 6; k++) {
+        uint32_t seen[PROBES] = {0};
+        assert_int_equal(run_round(g, seen), (g->b.valid + MOST - 1) / MOST);
+        for (uint32_t i = 0; i < PROBES; i++) assert_int_equal(seen[i], i % OFF_EVERY != 0);
+    }
+    free(g);
+}
+
+static void sets_go_around_and_count_from_a_restart_on(void **state) {
+    (void)state;
+    grid *g = make();
+    uint32_t frames = (g->b.valid + MOST - 1) / MOST;
+    for (uint32_t round = 0; round < 11; round++) {
+        if (round == 6) masu_bounce_restart(&g->b);
+        uint32_t since = round < 6 ? round : round - 6;
+        for (uint32_t f = 0; f < frames; f++) {
+            uint32_t count = masu_bounce_choose(&g->b, NULL, MOST, g->words);
+            for (uint32_t i = 0; i < count; i++) {
+                assert_int_equal(set_of(g->words[i]), since % 4);
+                assert_int_equal(count_of(g->words[i]), since < 4 ? since + 1 : 4);
+            }
+        }
+    }
+    free(g);
+}
+
+/* Else a light that moves in every frame would leave each probe with its first set alone. */
+static void changes_that_follow_each_other_slide_the_window(void **state) {
+    (void)state;
+    grid *g = make();
+    uint32_t seen[PROBES] = {0}, least = 4;
+    for (uint32_t round = 0; round < 5; round++) (void)run_round(g, seen);
+    for (uint32_t f = 0; f < 60; f++) {
+        masu_bounce_restart(&g->b);
+        uint32_t count = masu_bounce_choose(&g->b, NULL, MOST, g->words);
+        assert_int_not_equal(count, 0);
+        for (uint32_t i = 0; i < count && f >= 40; i++) {
+            if (count_of(g->words[i]) < least) least = count_of(g->words[i]);
+        }
+    }
+    assert_int_equal(least, 4);
+    free(g);
+}
+
+static void at_rest_nothing_is_traced_until_something_changes(void **state) {
+    (void)state;
+    grid *g = make();
+    uint32_t seen[PROBES] = {0}, rounds = 0;
+    while (rounds < 200 && run_round(g, seen)) rounds++;
+    assert_int_equal(rounds, MASU_BOUNCE_REST);
+    assert_int_equal(masu_bounce_choose(&g->b, NULL, MOST, g->words), 0);
+    masu_bounce_restart(&g->b);
+    assert_int_equal(masu_bounce_choose(&g->b, NULL, MOST, g->words), MOST);
+    assert_int_equal(count_of(g->words[0]), 1);
+    free(g);
+}
+
+static void what_is_in_view_comes_first(void **state) {
+    (void)state;
+    grid *g = make();
+    /* Looks along -z from beyond the grid's middle: what is in front has z below 1. */
+    const float clip[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, -1, 0, 0, 0.05f, 0};
+    const masu_bounce_view view = {clip, {2.75, 1.25, 1.0}};
+    uint32_t before = 0, count, last = 0;
+    int behind = 0;
+    for (uint32_t f = 0; before < g->b.valid && f < 20; f++) {
+        count = masu_bounce_choose(&g->b, &view, MOST, g->words);
+        for (uint32_t i = 0; i < count && before + i < g->b.valid; i++) {
+            uint32_t z = probe_of(g->words[i]) / 72;
+            behind |= z > 4; /* two cells around the eye count as seen */
+            if (z < 2) last = before + i;
+            if (behind && z == 0) last = UINT32_MAX;
+        }
+        before += count;
+    }
+    assert_true(behind);
+    assert_true(last < g->b.valid);
+    free(g);
+}
+
+static void all_inside_of_things_is_no_work(void **state) {
+    (void)state;
+    grid *g = make();
+    for (uint32_t i = 0; i < PROBES; i++) g->probes[i].sets = MASU_BOUNCE_OFF;
+    g->b.valid = 0;
+    masu_bounce_restart(&g->b);
+    assert_int_equal(masu_bounce_choose(&g->b, NULL, MOST, g->words), 0);
+    free(g);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_round_takes_every_probe_that_is_not_off_once),
+        cmocka_unit_test(sets_go_around_and_count_from_a_restart_on),
+        cmocka_unit_test(changes_that_follow_each_other_slide_the_window),
+        cmocka_unit_test(at_rest_nothing_is_traced_until_something_changes),
+        cmocka_unit_test(what_is_in_view_comes_first),
+        cmocka_unit_test(all_inside_of_things_is_no_work),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
