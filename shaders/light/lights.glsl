@@ -131,16 +131,6 @@ bool masu_light_reaches(masu_punctual_light_data light, vec3 rel, out vec3 l, ou
     return strength > 0.0 && masu_finite(color);
 }
 
-#ifdef MASU_LOCAL_SHADOWS
-#include "light/local_shadow.glsl"
-#endif
-
-#ifdef MASU_SHADE_GLSL
-#include "light/source.glsl"
-
-/* The mirrored light of some lights' surfaces is shared between rays that meet them and the lobe. */
-layout(constant_id = 18) const bool masu_shared_lights = false;
-
 /* Half axes of a rectangle, or of a capsule as one that faces a point; `to`: from the point to its centre.
  * The second turns such that the side that faces the point is the front. False: it shines the other way. */
 bool masu_light_axes(masu_punctual_light_data light, vec3 to, out vec3 u, out vec3 v)
@@ -168,6 +158,16 @@ float masu_light_size(masu_punctual_light_data light, vec3 to)
     }
     return min(area / max(squared, masu_tiny), 0.9999);
 }
+
+#ifdef MASU_LOCAL_SHADOWS
+#include "light/local_shadow.glsl"
+#endif
+
+#ifdef MASU_SHADE_GLSL
+#include "light/source.glsl"
+
+/* The mirrored light of some lights' surfaces is shared between rays that meet them and the lobe. */
+layout(constant_id = 18) const bool masu_shared_lights = false;
 
 /* How far a point relative to the eye lies from the middle of a light that has a surface in the scene: below 1
  * within what the baker has fitted, a little more for what is rounded. */
