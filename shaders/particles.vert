@@ -31,7 +31,7 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SPRITES, std430) readonly buff
 };
 
 #ifdef MASU_LIGHTS
-/* Of points and spots, what a facing white surface would send. */
+/* What a facing white surface would send of all of them; of a rectangle or a capsule as of a sphere that looks as large. */
 vec3 light_at(vec3 rel)
 {
     vec3 sum = vec3(0.0);
@@ -43,6 +43,9 @@ vec3 light_at(vec3 rel)
         vec3 l;
         vec3 color;
         if (masu_light_reaches(masu_lights[i], rel, l, color)) {
+            if (masu_area_lights && masu_light_kind(masu_lights[i]) != MASU_KIND_POINT) {
+                color *= masu_light_size(masu_lights[i], masu_lights[i].position.xyz - rel);
+            }
 #ifdef MASU_LOCAL_SHADOWS
             color *= masu_light_seen(masu_lights[i], rel, l);
 #endif

@@ -23,6 +23,7 @@
 
 #include "shared/lights.h"
 #include "shared/guard.glsl"
+#include "shared/sdf_limits.h"
 
 /* The scene may have rectangles and capsules. */
 #ifdef MASU_AREA_LIGHTS
@@ -130,16 +131,6 @@ bool masu_light_reaches(masu_punctual_light_data light, vec3 rel, out vec3 l, ou
     return strength > 0.0 && masu_finite(color);
 }
 
-#ifdef MASU_LOCAL_SHADOWS
-#include "light/local_shadow.glsl"
-#endif
-
-#ifdef MASU_SHADE_GLSL
-#include "light/source.glsl"
-
-/* The mirrored light of some lights' surfaces is shared between rays that meet them and the lobe. */
-layout(constant_id = 18) const bool masu_shared_lights = false;
-
 /* Half axes of a rectangle, or of a capsule as one that faces a point; `to`: from the point to its centre.
  * The second turns such that the side that faces the point is the front. False: it shines the other way. */
 bool masu_light_axes(masu_punctual_light_data light, vec3 to, out vec3 u, out vec3 v)
@@ -168,6 +159,16 @@ float masu_light_size(masu_punctual_light_data light, vec3 to)
     return min(area / max(squared, masu_tiny), 0.9999);
 }
 
+#ifdef MASU_LOCAL_SHADOWS
+#include "light/local_shadow.glsl"
+#endif
+
+#ifdef MASU_SHADE_GLSL
+#include "light/source.glsl"
+
+/* The mirrored light of some lights' surfaces is shared between rays that meet them and the lobe. */
+layout(constant_id = 18) const bool masu_shared_lights = false;
+
 /* How far a point relative to the eye lies from the middle of a light that has a surface in the scene: below 1
  * within what the baker has fitted, a little more for what is rounded. */
 float masu_light_within(masu_punctual_light_data light, vec3 rel)
@@ -180,7 +181,7 @@ float masu_light_within(masu_punctual_light_data light, vec3 rel)
         from -= u * clamp(along, -1.0, 1.0);
         if (masu_light_kind(light) == MASU_KIND_RECTANGLE) {
             from -= v * clamp(dot(from, v) * masu_rcp(dot(v, v)), -1.0, 1.0);
-            radius = 0.1 * min(masu_sqrt(dot(u, u)), masu_sqrt(dot(v, v)));
+            radius = light.axis.w;
         }
     }
     return masu_sqrt(dot(from, from)) * masu_rcp(1.05 * radius + 1e-4);
@@ -242,10 +243,13 @@ float masu_met_share(vec3 met, vec3 rel, vec3 n, vec3 v, float roughness)
         masu_punctual_light_data light = masu_lights[i];
         vec3 to = light.position.xyz - rel;
         float within = masu_light_is_shared(light) ? masu_light_within(light, met) : 1.0;
-        if (within < nearest && dot(to, to) * light.position.w < 1.0) {
+        float far = dot(to, to) * light.position.w;
+        if (within < nearest && far < 1.0) {
             nearest = within;
             vec3 l = masu_normalize(to, n);
+            /* Where the window dims the lobe, rays find the rest. */
             share = masu_ray_share(n, v, l, roughness, masu_light_size(light, to));
+            share = 1.0 - (1.0 - share) * (1.0 - far * far);
         }
     }
     return share;
