@@ -100,7 +100,7 @@ static int set_light(masu_local_light *light, const masu_punctual_light_state *s
         now.axis[k] = cone ? direction[k] / length : 0.0;
     }
     now.range = (double)state->range;
-    now.near_distance = fmax(NEAR_LEAST, (double)state->radius);
+    now.near_distance = fmax(NEAR_LEAST, masu_light_solid(state));
     now.tangent = now.angle <= (double)MASU_LOCAL_ANGLE_MOST ? fmax(tan(now.angle), 1e-3) : 0.0;
     if (!memcmp(&now, light, offsetof(masu_local_light, size))) return 0;
     double moved[3] = {position[0] - light->position[0], position[1] - light->position[1],
@@ -149,6 +149,7 @@ void masu_local_shadows_begin(masu_local_shadows *s, const masu_frame_data *f) {
     /* Where there are none, casters are not followed. */
     if (s->empty || !s->most) forget(s, f->plan);
     for (uint32_t k = 0; s->empty && k < f->plan->scene.instances; k++) s->boxes[k][3] = -1.0f;
+    s->since = f->desc.cut || s->empty ? 0 : s->since + (s->since < MASU_SHADOW_CUT);
     s->empty = 0;
     s->wish.count = 0;
     for (uint32_t slot = 0; slot < s->capacity; slot++) s->choice[slot].offered = 0;
@@ -365,6 +366,21 @@ static int find_tile(masu_local_shadows *s, const masu_local_light *light, masu_
     return face->tile.size != 0;
 }
 
+/* By the sphere around what a face of a cube reaches: a point light that moves may have more faces than the budget. */
+static void find_seen(masu_local_shadows *s, const masu_frame_data *f) {
+    for (uint32_t slot = 0; slot < s->capacity; slot++) {
+        const masu_local_light *light = &s->lights[slot];
+        for (uint32_t i = 0; i < MASU_LOCAL_FACES; i++) {
+            masu_local_face *face = &s->lights[slot].faces[i];
+            float bound[4] = {0, 0, 0, (float)(0.8166 * light->range)};
+            if (!face->due) continue;
+            for (uint32_t k = 0; k < 3; k++)
+                bound[k] = (float)(light->position[k] - f->eye[k] + 0.5774 * light->range * face->axis[2][k]);
+            face->seen = (uint8_t)(light->tangent > 0.0 || !masu_light_outside(bound, f->u.clip_from_rel));
+        }
+    }
+}
+
 /* The face that waits for longest; MASU_LOCAL_FACES * capacity: none is due. */
 static uint32_t next_due(const masu_local_shadows *s, const uint8_t *skip) {
     uint32_t none = s->capacity * MASU_LOCAL_FACES, best = none;
@@ -374,7 +390,10 @@ static uint32_t next_due(const masu_local_shadows *s, const uint8_t *skip) {
         if (best != none) {
             const masu_local_face *other = &s->lights[best / MASU_LOCAL_FACES].faces[best % MASU_LOCAL_FACES];
             double score = s->choice[i / MASU_LOCAL_FACES].score, than = s->choice[best / MASU_LOCAL_FACES].score;
-            if (face->since > other->since || (face->since == other->since && score <= than)) continue;
+            if (face->since != other->since ? face->since > other->since
+                : face->seen != other->seen ? face->seen < other->seen
+                                            : score <= than)
+                continue;
         }
         best = i;
     }
@@ -396,13 +415,21 @@ static void set_ready(masu_local_shadows *s, masu_local_slot *stats) {
             ready = ready && (!face->used || face->drawn);
             stats->waiting += face->due;
         }
+        stats->waiting += s->choice[slot].light && !s->lights[slot].size; /* it has its slot since this frame */
         s->choice[slot].ready = ready;
         stats->lights += s->choice[slot].light != 0;
     }
 }
 
-void masu_local_shadows_write(masu_local_shadows *s, const masu_instances *in, const masu_bounds *bounds,
-                              masu_frame_data *f) {
+/* Of how far shadows are faded in: another number as soon as one differs, as good as always. */
+static uint32_t faded(const masu_local_shadows *s) {
+    uint32_t sum = 0;
+    for (uint32_t slot = 0; slot < s->capacity; slot++) sum = 31 * sum + s->choice[slot].fade;
+    return sum;
+}
+
+int masu_local_shadows_write(masu_local_shadows *s, const masu_instances *in, const masu_bounds *bounds,
+                             masu_frame_data *f) {
     masu_local_slot *stats = &s->slots[f->slot];
     uint32_t budget = s->most ? masu_frame_rung(f)->local_shadow_faces : 0, number = 0;
     uint8_t skip[MASU_SHADOW_LIGHTS_MAX * MASU_LOCAL_FACES];
@@ -410,10 +437,12 @@ void masu_local_shadows_write(masu_local_shadows *s, const masu_instances *in, c
     memset(stats, 0, sizeof *stats);
     memset(&out, 0, sizeof out);
     memset(skip, 0, sizeof skip);
-    masu_shadow_choose(s->choice, s->capacity, s->most, &s->wish, f->desc.cut != 0, free_slot, s);
+    uint32_t before = faded(s), changed = 0;
+    masu_shadow_choose(s->choice, s->capacity, s->most, &s->wish, s->since, free_slot, s);
     place_lights(s);
     follow_casters(s, in, bounds, f);
     follow_sdf(s, f);
+    find_seen(s, f);
     /* Faces in which nothing is cost no rendering, but they have to be found out. */
     for (uint32_t looked = 0; number < budget && looked < 4 * budget; looked++) {
         uint32_t i = next_due(s, skip);
@@ -433,17 +462,20 @@ void masu_local_shadows_write(masu_local_shadows *s, const masu_instances *in, c
         }
         face->due = 0;
         face->drawn = 1;
+        changed = 1;
     }
     stats->faces = number;
     set_ready(s, stats);
     f->faces = number != 0;
-    if (!f->faces) return; /* the recording without the passes that read the rest */
+    changed |= faded(s) != before;
+    if (!f->faces) return (int)changed; /* the recording without the passes that read the rest */
     for (uint32_t k = number; k < f->plan->local_faces; k++) clear_draws(f, k);
     out.square[0] = f->plan->local_tile;
     out.square[1] = f->plan->local_faces < 4 ? f->plan->local_faces : 4;
     out.square[2] = f->plan->local_atlas;
     out.square[3] = number;
     memcpy(masu_frame_slot(f, MASU_BUFFER_LOCAL_FACES), &out, sizeof out);
+    return 1;
 }
 
 void masu_local_shadows_of(const masu_local_shadows *s, uint32_t light, masu_uvec4 out[2]) {

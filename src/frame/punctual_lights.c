@@ -93,7 +93,7 @@ static int is_there(const masu_lights *l, const masu_instances *in, uint32_t i,
     return 1;
 }
 
-void masu_lights_cast(const masu_lights *l, masu_local_shadows *shadows, const masu_instances *in,
+void masu_lights_cast(masu_lights *l, masu_local_shadows *shadows, const masu_instances *in,
                       const masu_bounds *bounds, masu_frame_data *f) {
     if (!f->plan->needs.local_shadows) return;
     masu_local_shadows_begin(shadows, f);
@@ -103,7 +103,7 @@ void masu_lights_cast(const masu_lights *l, masu_local_shadows *shadows, const m
         if (l->states[i].no_shadow || !is_there(l, in, i, &state, position, direction)) continue;
         masu_local_shadows_offer(shadows, f, i, &state, position, direction);
     }
-    masu_local_shadows_write(shadows, in, bounds, f);
+    l->changes += masu_local_shadows_write(shadows, in, bounds, f) != 0;
 }
 
 void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_local_shadows *shadows,

@@ -25,7 +25,7 @@
 
 #define MASU_BLOB_MAGIC 0x5553414Du /* the bytes 'M' 'A' 'S' 'U' */
 #define MASU_BLOB_VERSION 16u
-/* layout of version 16: 650198991 (kinds of sections and their elements, tests/scripts/scene_forms.sh) */
+/* layout of version 16: 1838381741 (kinds of sections and their elements, tests/scripts/scene_forms.sh) */
 #define MASU_BLOB_ALIGN 16u
 #define MASU_BLOB_NONE 0xFFFFFFFFu /* "no name", "no parent" */
 #define MASU_BLOB_PART_SLOTS 8u    /* of an SDF's part, in front of all others: sphere, slope, form, first argument, material */

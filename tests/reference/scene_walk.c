@@ -436,6 +436,7 @@ static const struct {
     [MASU_BLOB_OCCLUSION_SPIRV] = {1, 0},
     [MASU_BLOB_TRACE_SDF_SPIRV] = {1, 0},
     [MASU_BLOB_LOCAL_SHADOW_SPIRV] = {1, 0},
+    [MASU_BLOB_BOUNCE_SDF_SPIRV] = {1, 0},
 };
 
 static void read_code(walker *w) {

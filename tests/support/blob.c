@@ -273,8 +273,8 @@ static int is_code(uint32_t kind) {
     return kind == MASU_BLOB_MARCH_SPIRV ||
            (kind >= MASU_BLOB_CLASSIFY_SPIRV && kind <= MASU_BLOB_CHECKERBOARD_SPIRV) ||
            (kind >= MASU_BLOB_UPDATE_PREVIOUS_SPIRV && kind <= MASU_BLOB_OCCLUSION_SPIRV) ||
-           kind == MASU_BLOB_TRACE_SDF_SPIRV || kind == MASU_BLOB_SILHOUETTES_SPIRV ||
-           kind == MASU_BLOB_LOCAL_SHADOW_SPIRV;
+           kind == MASU_BLOB_TRACE_SDF_SPIRV || kind == MASU_BLOB_BOUNCE_SDF_SPIRV ||
+           kind == MASU_BLOB_SILHOUETTES_SPIRV || kind == MASU_BLOB_LOCAL_SHADOW_SPIRV;
 }
 
 /* The smallest module that its pass could run: main returns. The record is filled in when all of the blob is there. */
@@ -345,7 +345,7 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
     int trace_textured = trace && parts & SUPPORT_TRACE_MORE && parts & SUPPORT_TEXTURES;
     int trace_sdf = trace && parts & SUPPORT_TRACE_MORE && parts & SUPPORT_SDF;
     if (trace_textured) sections += 2;
-    if (trace_sdf) sections += 1;
+    if (trace_sdf) sections += 2;
     int live = parts & SUPPORT_RASTER && parts & SUPPORT_LIVE;
     if (live) sections += 2;
     int skin = live && parts & SUPPORT_SKIN;
@@ -436,7 +436,10 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
         ADD(MASU_BLOB_TRACE_TEXTURES, trace_textures);
         ADD(MASU_BLOB_TRACE_TEXELS, trace_texels);
     }
-    if (trace_sdf) add_code(blob, MASU_BLOB_TRACE_SDF_SPIRV);
+    if (trace_sdf) {
+        add_code(blob, MASU_BLOB_TRACE_SDF_SPIRV);
+        add_code(blob, MASU_BLOB_BOUNCE_SDF_SPIRV);
+    }
     if (live) {
         ADD(MASU_BLOB_MODELS, models);
         ADD(MASU_BLOB_MODEL_NODES, model_nodes);
