@@ -49,8 +49,7 @@
  *  - stream or create geometry: all geometry is in the blob. At run time a host may add copies of
  *    movable models without skins, punctual lights, particles, decals and debug lines, each up to
  *    desc.reserve;
- *  - cast shadows from punctual lights (their light passes through walls), particles or transparent
- *    surfaces;
+ *  - cast shadows from particles or transparent surfaces;
  *  - refract light, order intersecting transparent surfaces, or reflect particles and decals;
  *  - verify that the SPIR-V of a scene with an SDF is harmless: trust such a blob like a program.
  *
@@ -1040,8 +1039,8 @@ typedef struct masu_light {
 /* Flags of particles. LIT: `color` is an albedo; without the flag, a radiance. A lit particle
  * scatters light evenly, as thin smoke does: color * (visibility * sun_color / 4 + ambient + the
  * sum over punctual lights of (what a white surface facing the light would send) / 4): 1/4 is the
- * mean of max(n.l, 0) over all directions n. All is taken at its centre, the sun's visibility from
- * the shadow map. ADDITIVE: additive blending, which occludes nothing. */
+ * mean of max(n.l, 0) over all directions n. All is taken at its centre, visibility from the shadow
+ * maps. ADDITIVE: additive blending, which occludes nothing. */
 #define MASU_PARTICLE_LIT 1u
 #define MASU_PARTICLE_ADDITIVE 2u
 /* A particle: a camera-facing sprite of elliptical shape with soft edges, for smoke, sparks, dust.

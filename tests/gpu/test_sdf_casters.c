@@ -143,7 +143,7 @@ static void render(masu_session *s, uint32_t rung, uint32_t frames, masu_frame_d
 }
 
 typedef struct tally {
-    uint32_t dark, bright, wrong, acne;
+    uint32_t dark, bright, wrong, leaks, acne;
 } tally;
 
 /* A pixel whose truth is clear, of what is seen there at `at`. */
@@ -159,6 +159,7 @@ static void take(tally *t, uint32_t pixel, const double at[3], const double ligh
     double seen = with / without;
     if (truth) t->bright++; else t->dark++;
     t->wrong += fabs(seen - truth) > 0.1;
+    t->leaks += !truth && seen > 0.1;
     t->acne += truth && seen < 0.99;
 }
 
@@ -181,6 +182,7 @@ static void expect(const char *what, tally t, uint32_t dark, uint32_t bright, in
     print_message("%-34s %5u dark, %5u bright, %u off by more than 0.1, %u below 0.99\n", what, t.dark, t.bright, t.wrong, t.acne);
     if (t.dark < dark || t.bright < bright) fail_msg("%s: too few to tell", what);
     if (t.wrong * 100 > t.dark + t.bright) fail_msg("%s: %u of %u pixels", what, t.wrong, t.dark + t.bright);
+    if (t.leaks * 20 > t.dark) fail_msg("%s: %u of %u dark pixels are lit", what, t.leaks, t.dark);
     if (!blurred && t.acne * 200 > t.bright) fail_msg("%s: acne, %u of %u", what, t.acne, t.bright);
 }
 
