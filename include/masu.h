@@ -1567,7 +1567,8 @@ typedef struct masu_punctual_light_state {
     /* Metres, 0..1e15: the light is 0 from this distance to its centre on. At least 6 times the
      * size of an area light, or its near field is cut off. */
     float range;
-    float radius;  /* of the source, metres, 1e-6..1e9; not used by rectangles */
+    /* Of the source, metres, 1e-6..1e9; rectangle with has_surface: half the thickness. */
+    float radius;
     uint32_t spot; /* 0: point, 1: spot */
     /* Spot: angles from the direction, radians, 0 <= inner <= outer <= pi: full intensity up to
      * inner, 0 from outer on. A point does not use them, but they are checked. */

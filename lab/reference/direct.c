@@ -121,13 +121,12 @@ static ref_lobes shade(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *
     ref_vec l;
     memset(&out, 0, sizeof out);
     ref_sun_light(t, hit, b, r, &out);
-    if (!pane)
-        ref_punctual_light(t, hit, b, r, &out); /* which transparent surfaces do not receive */
     if (!depth && !pane) {
         a.share[0] = traced_share(b->s.roughness, t->cutoff);
         a.share[1] = traced_share(b->s.coat_roughness, t->cutoff);
         a.open *= open_to_sky(t, hit, &b->s, r);
     }
+    if (!pane) ref_local_lights(t, hit, b, r, a.share, &out); /* which transparent surfaces do not receive */
     bool map = ref_sky_is_map(t->sky) && t->sky_samples;
     if (map) sample_map(t, hit, b, &a, r, &out);
     if (t->bsdf_samples && ref_bsdf_sample(b, r, &l, &w)) {

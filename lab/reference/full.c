@@ -190,7 +190,7 @@ static ref_vec walk(const ref_tracer *t, ref_vec from, ref_vec d, const ref_hit 
         ref_lobes lit;
         memset(&lit, 0, sizeof lit);
         ref_sun_light(t, &hit, &b, r, &lit);
-        ref_punctual_light(t, &hit, &b, r, &lit);
+        ref_local_lights(t, &hit, &b, r, NULL, &lit);
         if (bounce < t->bounces) {
             if (map) sample_map(t, &hit, &b, r, &lit);
             if (window) sample_window(t, &hit, &b, r, &lit);

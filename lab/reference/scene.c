@@ -205,17 +205,24 @@ static bool read_lights(ref_scene *s, const double *matrices) {
     uint8_t *hidden = hidden_instances(&s->blob);
     s->lights = calloc(s->blob.count[MASU_BLOB_LIGHTS] + 1, sizeof *s->lights);
     for (uint64_t i = 0; s->lights && hidden && i < s->blob.count[MASU_BLOB_LIGHTS]; i++) {
-        bool spot = (from[i].type & MASU_LIGHT_TYPE) == MASU_LIGHT_SPOT;
+        uint32_t type = from[i].type & MASU_LIGHT_TYPE;
+        bool spot = type == MASU_LIGHT_SPOT;
         if (from[i].parent != MASU_BLOB_NONE && hidden[from[i].parent]) continue;
         ref_light *l = &s->lights[s->light_count++];
         *l = (ref_light){ref_of(from[i].position),         ref_of(from[i].color),
                          ref_of(from[i].direction),        (double)from[i].range,
                          (double)from[i].radius,           (double)from[i].inner,
-                         spot ? (double)from[i].outer : -1};
+                         spot ? (double)from[i].outer : -1,
+                         type,
+                         ref_of(from[i].half_axis),
+                         (from[i].type & MASU_LIGHT_TWO_SIDED) != 0,
+                         (from[i].type & MASU_LIGHT_SURFACE) != 0};
         if (from[i].parent == MASU_BLOB_NONE) continue;
         const double *m = matrices + 12 * (size_t)from[i].parent;
         l->position = ref_transform(m, l->position);
-        l->direction = ref_unit(ref_transform_direction(m, l->direction));
+        l->direction = ref_transform_direction(m, l->direction);
+        if (spot) l->direction = ref_unit(l->direction);
+        l->half_axis = ref_transform_direction(m, l->half_axis);
     }
     bool good = s->lights && hidden;
     free(hidden);

@@ -40,7 +40,10 @@ typedef struct ref_triangle {
 
 typedef struct ref_light {
     ref_vec position, color, direction;
-    double range, radius, inner, outer; /* outer < 0: a point */
+    double range, radius, inner, outer; /* outer < 0: no spot */
+    uint32_t type;                      /* masu_blob_light_type */
+    ref_vec half_axis;                  /* of a rectangle; the first one is `direction` */
+    bool two_sided, surface;            /* surface: triangles of the scene send its light */
 } ref_light;
 
 typedef struct ref_emitter {

@@ -1,4 +1,4 @@
-/* shade.c: light from the sun and from punctual lights, the sky and the air before it, and
+/* shade.c: light from the sun, the sky and the air before it, and
  * transparent surfaces: what both kinds of path share; see tracer.h. */
 #include "lab/reference/fog.h"
 #include "lab/reference/tracer.h"
@@ -12,7 +12,7 @@ bool ref_is_unlit(const ref_surface *s) {
            !(s->coat > 0);
 }
 
-static void add(ref_lobes *to, const ref_lobes *from, ref_vec color) {
+void ref_add_lobes(ref_lobes *to, const ref_lobes *from, ref_vec color) {
     for (int i = 0; i < REF_LOBES; i++) to->of[i] = ref_add(to->of[i], ref_mul(from->of[i], color));
 }
 
@@ -57,8 +57,7 @@ ref_vec ref_unoccluded(const ref_tracer *t, ref_vec from, ref_vec l, double far,
     return ref_splat(0);
 }
 
-/* Light that reaches a surface from a light source at the distance `far` along l. */
-static ref_vec visible(const ref_tracer *t, const ref_hit *hit, ref_vec l, double far,
+ref_vec ref_light_visible(const ref_tracer *t, const ref_hit *hit, ref_vec l, double far,
                        bool shadows) {
     if (!shadows) return ref_splat(1);
     if (!(ref_dot(l, hit->ng) > 0)) return ref_splat(0);
@@ -81,48 +80,8 @@ void ref_sun_light(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, r
     }
     ref_lobes f = ref_bsdf_eval(b, l, r);
     if (!(ref_max(ref_lobes_sum(&f)) > 0)) return;
-    ref_vec seen = visible(t, hit, l, HUGE_VAL, t->polygons_shadow || t->field_shadows);
-    add(out, &f, ref_scale(ref_mul(seen, t->sun_color), REF_PI));
-}
-
-ref_vec ref_light_at(const ref_light *light, ref_vec p, ref_vec *l) {
-    ref_vec to = ref_sub(light->position, p);
-    double d2 = ref_dot(to, to), d = sqrt(d2), share = d / light->range, cone = 1;
-    *l = d > 0 ? ref_scale(to, 1 / d) : ref_v(0, 1, 0);
-    if (!(share < 1)) return ref_splat(0);
-    double window = 1 - share * share * share * share;
-    if (light->outer >= 0) {
-        double c = -ref_dot(*l, light->direction), inner = cos(light->inner),
-               outer = cos(light->outer);
-        double x = inner > outer ? ref_clamp((c - outer) / (inner - outer), 0, 1) : c >= outer;
-        cone = x * x;
-    }
-    return ref_scale(light->color, window * cone / fmax(d2, light->radius * light->radius));
-}
-
-void ref_punctual_light(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, ref_random *r,
-                        ref_lobes *out) {
-    const ref_scene *s = t->world->scene;
-    for (uint32_t i = 0; i < s->light_count; i++) {
-        ref_vec l, color = ref_light_at(&s->lights[i], hit->p, &l);
-        if (!(ref_max(color) > 0)) continue;
-        double far = ref_length(ref_sub(s->lights[i].position, hit->p));
-        if (t->physics &&
-            far > s->lights[i].radius) { /* a disc of the source's radius that faces the point */
-            ref_frame f = ref_frame_of(l);
-            double u = ref_draw(r);
-            double v = ref_draw(r);
-            double wide = s->lights[i].radius * sqrt(u);
-            l = ref_unit(
-                ref_from(&f, ref_v(wide * cos(2 * REF_PI * v), wide * sin(2 * REF_PI * v), far)));
-        }
-        ref_lobes f = ref_bsdf_eval(b, l, r);
-        if (!(ref_max(ref_lobes_sum(&f)) > 0)) continue;
-        /* A ray ends where it enters the source: a bulb of that size does not occlude it. */
-        double free = fmax(far - s->lights[i].radius * (1 + 1e-3), 0);
-        ref_vec seen = visible(t, hit, l, free, t->physics && free > 0);
-        add(out, &f, ref_scale(ref_mul(seen, color), REF_PI));
-    }
+    ref_vec seen = ref_light_visible(t, hit, l, HUGE_VAL, t->polygons_shadow || t->field_shadows);
+    ref_add_lobes(out, &f, ref_scale(ref_mul(seen, t->sun_color), REF_PI));
 }
 
 /* ---- Air ------------------------------------------------------------------------------------- */

@@ -33,14 +33,19 @@ typedef struct ref_tracer {
 /* From the camera along d, unit. */
 ref_vec ref_radiance(const ref_tracer *t, ref_vec d, ref_random *r);
 
-/* Irradiance / pi by a punctual light at p, on a surface that faces it. *l: towards it, unit. */
+/* Irradiance / pi by a point or spot at p, as if it had no size, on a surface that faces it. *l: towards it, unit. */
 ref_vec ref_light_at(const ref_light *light, ref_vec p, ref_vec *l);
 
-/* Parts of shade.c, air.c. */
+/* Parts of shade.c, lights.c. */
 void ref_sun_light(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, ref_random *r,
                    ref_lobes *out);
-void ref_punctual_light(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, ref_random *r,
-                        ref_lobes *out);
+/* share: of base and coat, what is traced of a mirrored light's surface instead; NULL: nothing. */
+void ref_local_lights(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, ref_random *r,
+                      const double share[2], ref_lobes *out);
+/* Adds `from`, each lobe times color. */
+void ref_add_lobes(ref_lobes *to, const ref_lobes *from, ref_vec color);
+/* Light that reaches a surface from a light source at the distance `far` along l. */
+ref_vec ref_light_visible(const ref_tracer *t, const ref_hit *hit, ref_vec l, double far, bool shadows);
 bool ref_is_unlit(const ref_surface *s);
 /* Fog along a segment that begins at `from` in direction d: the part of the light that is left.
  * far: HUGE_VAL for the sky. */

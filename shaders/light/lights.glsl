@@ -156,7 +156,7 @@ float masu_light_within(masu_punctual_light_data light, vec3 rel)
         from -= u * clamp(along, -1.0, 1.0);
         if (masu_light_kind(light) == MASU_KIND_RECTANGLE) {
             from -= v * clamp(dot(from, v) * masu_rcp(dot(v, v)), -1.0, 1.0);
-            radius = 0.1 * min(masu_sqrt(dot(u, u)), masu_sqrt(dot(v, v)));
+            radius = light.axis.w;
         }
     }
     return masu_sqrt(dot(from, from)) * masu_rcp(1.05 * radius + 1e-4);
@@ -218,10 +218,13 @@ float masu_met_share(vec3 met, vec3 rel, vec3 n, vec3 v, float roughness)
         masu_punctual_light_data light = masu_lights[i];
         vec3 to = light.position.xyz - rel;
         float within = masu_light_is_shared(light) ? masu_light_within(light, met) : 1.0;
-        if (within < nearest && dot(to, to) * light.position.w < 1.0) {
+        float far = dot(to, to) * light.position.w;
+        if (within < nearest && far < 1.0) {
             nearest = within;
             vec3 l = masu_normalize(to, n);
+            /* Where the window dims the lobe, rays find the rest. */
             share = masu_ray_share(n, v, l, roughness, masu_light_size(light, to));
+            share = 1.0 - (1.0 - share) * (1.0 - far * far);
         }
     }
     return share;

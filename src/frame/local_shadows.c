@@ -100,7 +100,7 @@ static int set_light(masu_local_light *light, const masu_punctual_light_state *s
         now.axis[k] = cone ? direction[k] / length : 0.0;
     }
     now.range = (double)state->range;
-    now.near_distance = fmax(NEAR_LEAST, (double)state->radius);
+    now.near_distance = fmax(NEAR_LEAST, masu_light_solid(state));
     now.tangent = now.angle <= (double)MASU_LOCAL_ANGLE_MOST ? fmax(tan(now.angle), 1e-3) : 0.0;
     if (!memcmp(&now, light, offsetof(masu_local_light, size))) return 0;
     double moved[3] = {position[0] - light->position[0], position[1] - light->position[1],

@@ -103,6 +103,17 @@ masu_punctual_light_state masu_light_state_of(const masu_blob_light *light) {
     return s;
 }
 
+double masu_light_solid(const masu_punctual_light_state *s) {
+    double u = 0.0, v = 0.0;
+    for (uint32_t k = 0; k < 3; k++) {
+        u += (double)s->direction[k] * (double)s->direction[k];
+        v += (double)s->half_axis[k] * (double)s->half_axis[k];
+    }
+    if (!s->has_surface) return (double)s->radius;
+    if (s->shape < MASU_SHAPE_CAPSULE) return 1.02 * (double)s->radius;
+    return (double)s->radius + sqrt(u + (s->shape == MASU_SHAPE_RECTANGLE ? v : 0.0));
+}
+
 /* ---- One light ------------------------------------------------------------------------------- */
 
 /* Of a cone of half angle a and the range as its side: up to 45 degrees the sphere through the tip and
@@ -139,7 +150,10 @@ static int place_shape(const masu_punctual_light_state *s, const double directio
             out->cone[k] = s->shape == MASU_SHAPE_RECTANGLE ? s->half_axis[k] : 0.0f;
         }
         out->cone[3] = s->shape == MASU_SHAPE_RECTANGLE ? 2.0f : 1.0f;
-        if (s->shape == MASU_SHAPE_RECTANGLE) out->color[3] = s->two_sided ? 1.0f : 0.0f;
+        if (s->shape == MASU_SHAPE_RECTANGLE) {
+            out->color[3] = s->two_sided ? 1.0f : 0.0f;
+            out->axis[3] = s->radius;
+        }
         if (!(length_of(direction) <= 1e15)) return 0; /* an instance has moved it beyond */
         for (uint32_t k = 0; k < 3; k++) {
             if (!(fabsf(out->cone[k]) <= 1e15f)) return 0;

@@ -31,6 +31,10 @@ masu_punctual_light_state masu_light_state_of(const masu_blob_light *light);
 /* NULL, or what is wrong with a state; `value` then is the number that is. */
 const char *masu_light_state_wrong(const masu_punctual_light_state *state, double *value);
 
+/* How far from its centre the scene may have a surface that is the light's own and casts no shadow of its light,
+ * metres, before its instance scales it. */
+double masu_light_solid(const masu_punctual_light_state *state);
+
 /* The light as the shaders read it, its bound included. position: relative to the eye; direction and
  * the state's half axis: in world space. Returns 0 if it lights nothing, wherever that is. */
 int masu_light_place(const masu_punctual_light_state *state, const double position[3],

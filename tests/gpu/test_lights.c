@@ -65,6 +65,15 @@ static void add_lights(uint32_t count, double size, double low, double high) {
     add("\"lights\": [");
     for (uint32_t i = 0; i < count; i++) {
         double range = random_spread(&seed, low, high) * size, outer = i % 7 ? random_between(&seed, 2, 80) : random_between(&seed, 80, 180);
+        if (count >= 20 && i % 11 < 2) { /* area lights among them */
+            double half = range / 13;
+            add("%s{\"type\": \"%s\", \"name\": \"l%u\", \"position\": [%.9g, %.9g, %.9g], \"range\": %.9g, "
+                "\"half_u\": [%.9g, 0, %.9g], %s%.9g%s}",
+                i ? ", " : "", i % 11 ? "capsule" : "rectangle", i, random_between(&seed, -12, 12) * size,
+                random_between(&seed, -1, 5) * size, random_between(&seed, -12, 12) * size, range, half, half / 2,
+                i % 11 ? "\"radius\": " : "\"half_v\": [0, ", half / 4, i % 11 ? "" : ", 0]");
+            continue;
+        }
         add("%s{\"type\": \"%s\", \"name\": \"l%u\", \"position\": [%.9g, %.9g, %.9g], "
             "\"color\": [%g, %g, %g], \"intensity\": %g, \"range\": %.9g, \"radius\": %g",
             i ? ", " : "", i % 3 ? "point" : "spot", i, random_between(&seed, -12, 12) * size, random_between(&seed, -1, 5) * size,
@@ -468,6 +477,16 @@ static void bad_values_are_refused_with_a_line(void **state) {
             if (!strstr(d->text, names[k]) || !strstr(d->text, "light 0:") || strchr(d->text, '\n'))
                 fail_msg("%s %g: %s", names[k], (double)wrong[i], d->text);
         }
+    }
+    masu_punctual_light_state shaped[4] = {good, good, good, good};
+    static const char *const shapes[] = {"shape", "spot", "area_lights", "has_surface"};
+    for (int k = 0; k < 4; k++) {
+        shaped[k].spot = k == 1;
+        shaped[k].shape = (masu_light_shape[]){(masu_light_shape)4, MASU_SHAPE_SPHERE, MASU_SHAPE_CAPSULE, MASU_SHAPE_SPHERE}[k];
+        shaped[k].has_surface = k == 3;
+        assert_int_equal(masu_punctual_light_set(p.s.m, light, &shaped[k]), MASU_ERROR_ARGUMENT);
+        if (!strstr(masu_last_error(p.s.m)->text, shapes[k]))
+            fail_msg("%s: %s", shapes[k], masu_last_error(p.s.m)->text);
     }
     masu_punctual_light_state none = good;
     memset(none.direction, 0, sizeof none.direction);

@@ -113,6 +113,51 @@ for ((i = 0; i < 12; i++)); do many="$many, $many"; done
 bakes "$box" "$many"
 refuses '4097 lights' "$many, {$point}"
 
+# ---- Area lights ---------------------------------------------------------------------------------
+
+rectangle='"type": "rectangle", "position": [1, 2, 3], "half_u": [0.6, 0, 0], "half_v": [0, 0.8, 0]'
+bakes "$box" "{\"type\": \"sphere\", \"position\": [1, 2, 3], \"radius\": 0.5, \"intensity\": 4},
+    {\"type\": \"capsule\", \"position\": [0, 0, 0], \"half_u\": [0, 2, 0], \"radius\": 0.1, \"range\": 20},
+    {$rectangle}, {$rectangle, \"two_sided\": true, \"instance\": \"car\"}"
+is 0 '1 2 3 30 4 4 4 0.5 0 0 0 | 2 |0 0 | -1 '
+is 1 '0 0 0 20 1 1 1 0.1 0 2 0 | 3 |0 0 | -1 '
+is 2 '1 2 3 23.45 1 1 1 0.01 0.6 0 0 | 4 |0 0 | -1 '
+is 3 '1 2 3 23.45 1 1 1 0.01 0.6 0 0 | 516 |0 0 | 0 '
+half_v() { od -An -v -w4 -j $((section + stride * $1 + 64)) -N 12 -t f4 "$folder/s.masu" | awk '{ printf "%.4g ", $1 }'; }
+[ "$(half_v 2)" = '0 0.8 0 ' ] || fail "the rectangle's half_v is $(half_v 2)"
+refuses '"range" is 5 m; expected at least 6 times' "{$rectangle, \"range\": 5}"
+refuses '"radius" is only allowed for other lights than rectangles' "{$rectangle, \"radius\": 1}"
+refuses '"half_u" is only allowed for capsules' "{$point, \"half_u\": [1, 0, 0]}"
+refuses '"half_v" is only allowed for rectangles' '{"type": "capsule", "position": [0, 0, 0], "half_v": [1, 0, 0]}'
+refuses '"two_sided" is only allowed for rectangles' "{$point, \"two_sided\": true}"
+refuses 'needs "radius"' '{"type": "sphere", "position": [0, 0, 0]}'
+refuses 'a half axis is not 1e-6 to 1e9 m long: 0' '{"type": "capsule", "position": [0, 0, 0], "radius": 1}'
+refuses 'the sine of the angle between the half axes' \
+    '{"type": "rectangle", "position": [0, 0, 0], "half_u": [1, 0, 0], "half_v": [2, 0, 0]}'
+
+# ---- Emissive models -----------------------------------------------------------------------------
+
+# glows MESH [MEMBERS]
+glows() { echo "{\"mesh\": $1, \"material\": {\"base_color\": [0, 0, 0], \"emissive\": [4, 2, 1]}${2:-}}"; }
+
+# Sheets shine both ways. The box has 2.1 m2 in all, which 2 m2 of the rectangle stand for; the post 0.82 m2, the
+# capsule 4 pi r (r + half). Radiance keeps the flux.
+bakes "$(glows '{"plane": {"size_x": 2, "size_z": 1}}' ', "translate": [5, 6, 7]')" ''
+is 0 '0 0 0 64.02 4 2 1 1e-06 1 0 0 | 1540 |0 0 | 0 '
+bakes "$(glows '{"box": {"size": [2, 0.02, 0.5]}}' ', "scale": 2')" ''
+light 0 | grep -qE '^0 0 0 [0-9.]+ 4.2 2.1 1.05 0.01 -?1 0 0 \| 1540 ' || fail "a flat box is $(light 0)"
+bakes "$(glows '{"box": {"size": [0.1, 2, 0.1]}}')" ''
+light 0 | awk '{ r = $8; h = $10 < 0 ? -$10 : $10; flux = $5 * 12.5664 * r * (r + h); exit !(flux > 3.26 && flux < 3.30 && r > 0.06 && r < 0.072 && h > 0.9 && $13 == 1027) }' ||
+    fail "a post is $(light 0)"
+bakes "$(glows '{"sphere": {"radius": 0.1, "subdivisions": 3}}')" ''
+light 0 | awk '{ exit !($5 > 3.8 && $5 < 4 && $8 > 0.0999 && $8 < 0.1001 && $13 == 1026) }' || fail "a ball is $(light 0)"
+bakes "$(glows '{"sphere": {"radius": 0.1}}' ', "area_light": false')" ''
+is 0 none
+bakes "$(glows '{"sphere": {"radius": 0.001}}')" '' # too small, unless it is asked for
+is 0 none
+bakes "$(glows '{"sphere": {"radius": 0.001}}' ', "area_light": true')" ''
+[ "$(light 0)" != none ] || fail "a small ball that shall be a light is none"
+
 # ---- glTF ----------------------------------------------------------------------------------------
 
 positions=AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA

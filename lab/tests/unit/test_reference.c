@@ -261,6 +261,39 @@ static void area_lights(void **state) {
     }
 }
 
+/* Lights that have no triangles: the same irradiance, whichever of the two strategies finds them. */
+static void local_lights_have_a_size(void **state) {
+    (void)state;
+    static const double high[3][2] = {{0, 1.9635}, {1, 1.4050}, {4, .1756}};
+    static const double square[3][2] = {{0, 6.5682}, {1, 4.4310}, {2, 1.4729}};
+    ref_light lights[] = {
+        {.type = MASU_LIGHT_SPHERE, .color = ref_splat(10), .radius = .5, .position = ref_v(0, 2, 0)},
+        {.type = MASU_LIGHT_POINT, .color = ref_splat(2.5), .radius = .5, .position = ref_v(0, 2, 0)},
+        {.type = MASU_LIGHT_CAPSULE, .color = ref_splat(10), .radius = .5, .position = ref_v(0, 2, 0),
+         .direction = ref_v(1e-4, 0, 0)},
+        {.type = MASU_LIGHT_RECTANGLE, .color = ref_splat(10), .radius = .01, .position = ref_v(0, 1.5, 0),
+         .direction = ref_v(1, 0, 0), .half_axis = ref_v(0, 0, .5)}};
+    for (int kind = 0; kind < 4; kind++) {
+        lights[kind].range = 1e9;
+        lights[kind].outer = -1;
+        stage *s = clear();
+        ground(s);
+        s->scene.lights = &lights[kind];
+        s->scene.light_count = 1;
+        set_up(s);
+        for (int i = 0; i < 6; i++) {
+            const double *at = kind == 3 ? square[i / 2] : high[i / 2];
+            double error;
+            s->tracer.bsdf_samples = i % 2 == 0;
+            double found = seen(s, ref_v(at[0], .05, 3), ref_v(at[0], 0, 0), 20000, &error);
+            check(found * REF_PI, at[1], error * REF_PI, "irradiance from a local light");
+        }
+        s->scene.lights = NULL;
+        s->scene.light_count = 0;
+        take_down(s);
+    }
+}
+
 static void a_closed_box_is_a_geometric_series(void **state) {
     (void)state;
     static const uint32_t bounces[5] = {0, 1, 2, 4, 8};
@@ -369,7 +402,13 @@ static void fog_and_punctual_lights(void **state) {
     static const double cone[4][2] = {{33, .685}, {36, .411}, {39, .194}, {42, .051}};
     for (int i = 0; i < 4; i++) {
         double a = cone[i][0] * REF_PI / 180, radians = REF_PI / 180;
-        ref_light light = {{0, 1, 0}, {1, 1, 1}, {0, -1, 0}, 1e6, .01, 30 * radians, 45 * radians};
+        ref_light light = {.position = {0, 1, 0},
+                           .color = {1, 1, 1},
+                           .direction = {0, -1, 0},
+                           .range = 1e6,
+                           .radius = .01,
+                           .inner = 30 * radians,
+                           .outer = 45 * radians};
         ref_vec l, color = ref_light_at(&light, ref_v(tan(a), 0, 0), &l);
         check(color.x / (cos(a) * cos(a)), cone[i][1], 2e-4, "spot light");
     }
@@ -505,6 +544,7 @@ int main(void) {
         cmocka_unit_test(matt_surfaces_under_skies),
         cmocka_unit_test(a_map_is_sampled_as_it_is_looked_up),
         cmocka_unit_test(area_lights),
+        cmocka_unit_test(local_lights_have_a_size),
         cmocka_unit_test(a_closed_box_is_a_geometric_series),
         cmocka_unit_test(a_window_to_the_sky_is_found),
         cmocka_unit_test(panes_dim_the_light_of_lamps),

@@ -3,6 +3,7 @@
  * leaves the coordinates that a scene may have, or is no box where it is said to be one. */
 #include "bake/base/file.h"
 #include "bake/build/parts.h"
+#include "bake/light/emitters.h"
 #include "bake/mesh/detail.h"
 #include "bake/mesh/drop.h"
 #include "bake/mesh/occluders.h"
@@ -307,6 +308,7 @@ bool masu_bake_build_models(const masu_bake_description *d, size_t start,
         set_group(content, model, first);
         good = add_occluder(&b, model, first);
         masu_bake_mark_traced(content, first, model->traced);
+        masu_bake_fit_emitters(content, first, model->area_light, model->where);
     }
     release_loaded(&b);
     return good;

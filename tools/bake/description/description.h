@@ -70,6 +70,7 @@ typedef struct masu_bake_model {
     masu_bake_hides hides;
     masu_bake_box occluder; /* of HIDES_BOX: in object space */
     int traced;             /* MASU_BAKE_TRACED_* */
+    int area_light;         /* MASU_BAKE_AREA_* */
     masu_bake_material_change *changes;
     size_t change_count;
 } masu_bake_model;

@@ -1,6 +1,7 @@
 /* read_models.c: the "models" of a scene: what each shows (a file, or a mesh by formula), where it
  * is placed, and what is said of its instances. Placed is
  * translate * fit * rotate * scale   of the model as its file has it. */
+#include "bake/light/emitters.h"
 #include "bake/description/reader.h"
 #include "bake/scene/groups.h"
 
@@ -208,6 +209,14 @@ static bool read_traced(const masu_bake_json *model, masu_bake_model *out) {
     return true;
 }
 
+static bool read_area_light(const masu_bake_json *model, masu_bake_model *out) {
+    bool area = true;
+    if (!masu_bake_json_has(model, "area_light")) return true;
+    if (!masu_bake_json_boolean(model, "area_light", &area)) return false;
+    out->area_light = area ? MASU_BAKE_AREA_YES : MASU_BAKE_AREA_NO;
+    return true;
+}
+
 /* ---- models ---- */
 
 static bool read_source(const masu_bake_json *model, masu_bake_reader *r, const json_t **written,
@@ -239,7 +248,7 @@ static bool read_model(const masu_bake_json *model, masu_bake_reader *r, const j
                                           "translate", "rotate",    "rotate_y", "scale", "fit",
                                           "material",  "materials", "occluder", "merge", "lights",
                                           "traced",    "hidden",    "spare",    "variant", "drop",
-                                          "shadows",   NULL};
+                                          "area_light", "shadows",  NULL};
     const char *name = NULL;
     out->where = masu_bake_take_text(&r->out->pool, model->where);
     out->lights = 1;
@@ -247,7 +256,7 @@ static bool read_model(const masu_bake_json *model, masu_bake_reader *r, const j
         !read_placement(model, out) || !masu_bake_json_string(model, "name", &name) ||
         !masu_bake_json_number(model, "lights", 0, 1e9, &out->lights) ||
         !masu_bake_read_materials(model, r, out) || !read_group(model, r, out) ||
-        !read_occluder(model, out) || !read_traced(model, out)) {
+        !read_occluder(model, out) || !read_traced(model, out) || !read_area_light(model, out)) {
         return false;
     }
     if (name) out->name = masu_bake_take_text(&r->out->pool, name);
