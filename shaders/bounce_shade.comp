@@ -55,8 +55,8 @@ void ask(inout chosen c, vec3 l, float far, vec3 color, float chance)
 }
 
 #ifdef MASU_LIGHTS
-/* Asks a light at a point relative to the eye; of a capsule or rectangle a point that two numbers choose. `far`
- * stops short of what a lamp may be in, or of its own surface. */
+/* Asks a light at a point relative to the eye. Capsules and rectangles are seen as far as one of their points is,
+ * which two numbers choose. Rays end short of what a lamp may be in, and of a light's own surface. */
 void ask_light(inout chosen c, masu_punctual_light_data light, vec3 rel, vec3 n, uvec3 hash)
 {
     vec3 l;
@@ -74,15 +74,17 @@ void ask_light(inout chosen c, masu_punctual_light_data light, vec3 rel, vec3 n,
         if (!masu_light_axes(light, to, u, v)) {
             return;
         }
+        float cosine;
+        color *= masu_above(masu_form_factor(to, u, v), n, cosine);
         to += (2.0 * masu_bounce_unit(hash.y) - 1.0) * u + (2.0 * masu_bounce_unit(hash.z) - 1.0) * v;
-        float squared = max(dot(to, to), 1e-12);
-        l = to * masu_rsqrt(squared);
-        color *= min(1.2732395 * abs(dot(cross(u, v), l)) / squared, 1.0); /* 4 / pi */
-        margin = masu_light_kind(light) == MASU_KIND_CAPSULE ? 1.1 * masu_sqrt(light.color.w)
-                                                             : 0.12 * min(masu_sqrt(dot(u, u)), masu_sqrt(dot(v, v)));
-        margin += 0.02;
+        l = masu_normalize(to, n);
+        float thick = masu_light_kind(light) == MASU_KIND_CAPSULE ? masu_sqrt(light.color.w) : light.axis.w;
+        float facing = abs(dot(masu_normalize(cross(u, v), l), l));
+        margin = 1.1 * thick / max(facing, 0.1) + 0.02;
+    } else {
+        color *= max(dot(n, l), 0.0);
     }
-    ask(c, l, max(masu_sqrt(dot(to, to)) - margin, 0.0), color * max(dot(n, l), 0.0), masu_bounce_unit(hash.x));
+    ask(c, l, max(masu_sqrt(dot(to, to)) - margin, 0.0), color, masu_bounce_unit(hash.x));
 }
 
 /* Whether a point relative to the eye is the surface of a light, whose emission comes as that light. */
