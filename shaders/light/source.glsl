@@ -52,8 +52,9 @@ float masu_source_gain(float alpha, float n_v, float s2, float wider)
     return (1.0 + solid * (1.0 - alpha)) / (1.0 - lost * (1.0 - alpha));
 }
 
-/* Share of a source's specular light that one ray of the lobe finds, estimated: the chance that it meets
- * a sphere of that size. l: unit, towards its centre. */
+/* Weight of rays for a source's specular light: a smooth step of the chance that a ray of the lobe meets a
+ * sphere of that size, because the widened lobe is nearly exact where that is small, and rays are noise. l: unit,
+ * towards its centre. */
 float masu_ray_share(vec3 n, vec3 v, vec3 l, float roughness, float s2)
 {
     float n_v = masu_sane(dot(n, v), 1e-4, 1.0);
@@ -63,7 +64,8 @@ float masu_ray_share(vec3 n, vec3 v, vec3 l, float roughness, float s2)
     vec3 sine = cross(n, h);
     float n_h = clamp(dot(n, h), 0.0, 1.0);
     float k = dot(sine, sine) + n_h * n_h * a2;
-    return masu_sane(wide * a2 / (k * k), 0.0, 1.0);
+    float chance = masu_sane(wide * a2 / (k * k), 0.0, 1.0);
+    return chance * chance * (3.0 - 2.0 * chance);
 }
 
 /* Of base and coat. Roughness as reflection rays have it (specular/guide.glsl). */
