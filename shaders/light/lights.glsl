@@ -222,9 +222,11 @@ float masu_met_share(vec3 met, vec3 rel, vec3 n, vec3 v, float roughness)
         if (within < nearest && far < 1.0) {
             nearest = within;
             vec3 l = masu_normalize(to, n);
-            /* Where the window dims the lobe, rays find the rest. */
+            /* Where the window takes the lobe away, rays find the light; what it dims a little is lost, not noise. */
+            float dimmed = far * far;
+            dimmed *= dimmed * (3.0 - 2.0 * dimmed);
             share = masu_ray_share(n, v, l, roughness, masu_light_size(light, to));
-            share = 1.0 - (1.0 - share) * (1.0 - far * far);
+            share = 1.0 - (1.0 - share) * (1.0 - dimmed);
         }
     }
     return share;
