@@ -185,8 +185,9 @@ float masu_light_within(masu_punctual_light_data light, vec3 rel)
     return masu_sqrt(dot(from, from)) * masu_rcp(1.05 * radius + 1e-4);
 }
 
-/* Adds what a light contributes at a surface point relative to the eye. n: the normal of the surface itself; traced: of the mirrored light of base and
- * coat; z 1: rays meet all of what they can, 0: they share it with the lobe. False: nothing arrives. */
+/* Adds what a light contributes at a surface point relative to the eye. n: the normal of the surface itself; traced:
+ * share of the mirrored light of base and coat that is traced; z 1: rays meet all of what they can, 0: they share it
+ * with the lobe. False: nothing arrives. */
 bool masu_add_local_light(inout masu_lit lit, masu_surface s, masu_bsdf b, uint number, vec3 rel, vec3 n, vec3 traced)
 {
     masu_punctual_light_data light = masu_lights[number];
