@@ -20,7 +20,7 @@
  * MASU_TEXTURES the material's maps, with MASU_SUN_MAP the sun's shadow map, with MASU_LIGHTS points and spots by the
  * lists of tiles, which then begin at the near plane (light_tiles.comp); where the surface is, depth says, as it does for
  * the lists: what is interpolated across a large triangle is less exact. With MASU_LOCAL_SHADOWS their shadows, too,
- * of four taps: nine take 24 registers more.
+ * of four taps: nine take 16 registers more.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
