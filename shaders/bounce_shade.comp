@@ -13,9 +13,7 @@
 #include "shared/trace.h"
 #include "shared/globals.glsl"
 #include "shared/pack.glsl"
-#include "light/environment.glsl"
-#include "light/sky.glsl"
-#include "light/ambient.glsl"
+#include "light/shade.glsl"
 #define MASU_PROBES_LIVE
 #include "light/probes.glsl"
 #ifdef MASU_LIGHTS
@@ -56,6 +54,55 @@ void ask(inout chosen c, vec3 l, float far, vec3 color, float chance)
     }
 }
 
+#ifdef MASU_LIGHTS
+/* Asks a light at a point relative to the eye. Capsules and rectangles are seen as far as one of their points is,
+ * which two numbers choose. Rays end short of what a lamp may be in, and of a light's own surface. */
+void ask_light(inout chosen c, masu_punctual_light_data light, vec3 rel, vec3 n, uvec3 hash)
+{
+    vec3 l;
+    vec3 color;
+    if (!masu_light_reaches(light, rel, l, color)) {
+        return;
+    }
+    vec3 to = light.position.xyz - rel;
+    float margin = max(masu_sqrt(light.color.w), 0.05);
+    if (masu_light_is_shared(light) && masu_light_within(light, rel) < 1.0) {
+        return; /* its own surface */
+    }
+    if (masu_area_lights && masu_light_kind(light) != MASU_KIND_POINT) {
+        vec3 u, v;
+        if (!masu_light_axes(light, to, u, v)) {
+            return;
+        }
+        float cosine;
+        color *= masu_above(masu_form_factor(to, u, v), n, cosine);
+        to += (2.0 * masu_bounce_unit(hash.y) - 1.0) * u + (2.0 * masu_bounce_unit(hash.z) - 1.0) * v;
+        l = masu_normalize(to, n);
+        float thick = masu_light_kind(light) == MASU_KIND_CAPSULE ? masu_sqrt(light.color.w) : light.axis.w;
+        float facing = abs(dot(masu_normalize(cross(u, v), l), l));
+        margin = 1.1 * thick / max(facing, 0.1) + 0.02;
+    } else {
+        color *= max(dot(n, l), 0.0);
+    }
+    ask(c, l, max(masu_sqrt(dot(to, to)) - margin, 0.0), color, masu_bounce_unit(hash.x));
+}
+
+/* Whether a point relative to the eye is the surface of a light, whose emission comes as that light. */
+bool is_of_light(vec3 rel)
+{
+    uint lights = masu_light_count();
+    for (uint k = 0u; k < uint(MASU_LOCAL_LIGHTS_MAX); k++) {
+        if (k >= lights) {
+            break;
+        }
+        if (masu_light_is_shared(masu_lights[k]) && masu_light_within(masu_lights[k], rel) < 1.0) {
+            return true;
+        }
+    }
+    return false;
+}
+#endif
+
 void main()
 {
     uint i = gl_GlobalInvocationID.x;
@@ -81,13 +128,18 @@ void main()
             {
                 m = met_sdf(hit);
             }
+            vec3 eye = (frame.eye_hi.xyz - probe_grid.origin.xyz) + frame.eye_lo.xyz;
             sum = min(m.surface.emissive, vec3(MASU_BOUNCE_EMISSION));
+#ifdef MASU_LIGHTS
+            if (max(sum.r, max(sum.g, sum.b)) > 0.0 && is_of_light(from - eye)) {
+                sum = vec3(0.0);
+            }
+#endif
             if (!masu_is_unlit(m.surface)) {
                 vec3 albedo = clamp(m.surface.albedo, vec3(0.0), vec3(1.0));
                 vec3 n = m.normal;
                 vec3 far = abs(from + probe_grid.origin.xyz);
                 lifted += n * (4e-6 * (max(far.x, max(far.y, far.z)) + t) + 2e-3 * probe_grid.origin.w);
-                vec3 eye = (frame.eye_hi.xyz - probe_grid.origin.xyz) + frame.eye_lo.xyz;
                 uint seed = ray.probe * 256u + ray.set * 64u + ray.number;
                 if (unlit) {
                     vec3 l = frame.sun_direction.xyz;
@@ -99,15 +151,7 @@ void main()
                     if (k >= lights) {
                         break;
                     }
-                    vec3 l;
-                    vec3 color;
-                    if (masu_light_reaches(masu_lights[k], lifted - eye, l, color)) {
-                        /* Less what a lamp may be in. */
-                        float within = max(masu_sqrt(masu_lights[k].color.w), 0.05);
-                        float away = max(length(masu_lights[k].position.xyz - (lifted - eye)) - within, 0.0);
-                        float chance = masu_bounce_unit(masu_bounce_hash(uvec3(seed, k, 0x626F756Eu)).x);
-                        ask(c, l, away, color * max(dot(n, l), 0.0), chance);
-                    }
+                    ask_light(c, masu_lights[k], lifted - eye, n, masu_bounce_hash(uvec3(seed, k, 0x626F756Eu)));
                 }
 #endif
                 added = albedo * c.color * (c.total / c.weight);

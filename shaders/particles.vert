@@ -44,7 +44,9 @@ vec3 light_at(vec3 rel)
         vec3 color;
         if (masu_light_reaches(masu_lights[i], rel, l, color)) {
             if (masu_area_lights && masu_light_kind(masu_lights[i]) != MASU_KIND_POINT) {
-                color *= masu_light_size(masu_lights[i], masu_lights[i].position.xyz - rel);
+                vec3 to = masu_lights[i].position.xyz - rel, u, v;
+                bool facing = masu_light_axes(masu_lights[i], to, u, v);
+                color *= facing ? masu_light_size(masu_lights[i], to, u, v) : 0.0;
             }
 #ifdef MASU_LOCAL_SHADOWS
             color *= masu_light_seen(masu_lights[i], rel, l);

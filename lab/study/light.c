@@ -68,7 +68,7 @@ static bool choose(study *w, uint32_t chosen, bool shadows,
     for (uint32_t i = 0; i < w->scene.light_count; i++) {
         masu_punctual_light_state state = states[i];
         if (i != chosen) memset(state.color, 0, sizeof state.color);
-        (void)shadows;
+        state.no_shadow = !shadows;
         if (masu_punctual_light_set(w->s.m, masu_punctual_light_at(w->s.m, i), &state) != MASU_OK)
             return failed(w, "a light cannot be changed");
     }

@@ -147,16 +147,14 @@ bool masu_light_axes(masu_punctual_light_data light, vec3 to, out vec3 u, out ve
     return !behind || light.color.w > 0.0;
 }
 
-/* The part of the sky that a source fills, as the squared sine of a sphere's radius. */
-float masu_light_size(masu_punctual_light_data light, vec3 to)
+/* The part of the sky that a source fills, as the squared sine of a sphere's radius. u, v: of masu_light_axes. */
+float masu_light_size(masu_punctual_light_data light, vec3 to, vec3 u, vec3 v)
 {
-    float squared = dot(to, to), area = light.color.w;
-    vec3 u, v;
+    float squared = max(dot(to, to), masu_tiny), area = light.color.w;
     if (masu_area_lights && masu_light_kind(light) != MASU_KIND_POINT) {
-        masu_light_axes(light, to, u, v);
-        area = 1.2732395 * abs(dot(cross(u, v), to)) * masu_rsqrt(squared); /* 4 / pi */
+        area = 1.2732395 * abs(dot(cross(u, v), to)) * masu_rsqrt_sure(squared); /* 4 / pi */
     }
-    return min(area / max(squared, masu_tiny), 0.9999);
+    return min(area / squared, 0.9999);
 }
 
 #ifdef MASU_LOCAL_SHADOWS
@@ -187,8 +185,9 @@ float masu_light_within(masu_punctual_light_data light, vec3 rel)
     return masu_sqrt(dot(from, from)) * masu_rcp(1.05 * radius + 1e-4);
 }
 
-/* Adds what a light contributes at a surface point relative to the eye. n: the normal of the surface itself; traced: of the mirrored light of base and
- * coat; z 1: rays meet all of what they can, 0: they share it with the lobe. False: nothing arrives. */
+/* Adds what a light contributes at a surface point relative to the eye. n: the normal of the surface itself; traced:
+ * share of the mirrored light of base and coat that is traced; z 1: rays meet all of what they can, 0: they share it
+ * with the lobe. False: nothing arrives. */
 bool masu_add_local_light(inout masu_lit lit, masu_surface s, masu_bsdf b, uint number, vec3 rel, vec3 n, vec3 traced)
 {
     masu_punctual_light_data light = masu_lights[number];
@@ -200,9 +199,12 @@ bool masu_add_local_light(inout masu_lit lit, masu_surface s, masu_bsdf b, uint 
 #ifdef MASU_LOCAL_SHADOWS
     color *= masu_light_seen(light, rel, n);
 #endif
-    vec3 to = light.position.xyz - rel;
+    vec3 to = light.position.xyz - rel, u = vec3(0.0), v = vec3(0.0);
     bool area = masu_area_lights && masu_light_kind(light) != MASU_KIND_POINT;
-    float size = masu_light_size(light, to);
+    if (area && !masu_light_axes(light, to, u, v)) {
+        return false;
+    }
+    float size = masu_light_size(light, to, u, v);
     vec2 kept = vec2(1.0);
     if (masu_shared_lights && masu_light_is_shared(light)) {
         if (masu_light_within(light, rel) < 1.0) {
@@ -211,21 +213,16 @@ bool masu_add_local_light(inout masu_lit lit, masu_surface s, masu_bsdf b, uint 
         kept -= traced.xy * max(masu_ray_shares(s, b, l, size), traced.z);
     }
     if (area) {
-        vec3 u, v;
-        if (!masu_light_axes(light, to, u, v)) {
-            return false;
-        }
-        masu_add_rectangle(lit, s, b, l, color, masu_rectangle(b, to, u, v), kept.x);
-        color *= size;
-        b.f0 = b.rest = b.diffuse = vec3(0.0); /* the coat is left: as a sphere's */
-        b.f90 = 0.0;
-    }
-#ifndef MASU_SURFACE
-    if (area) {
-        return true;
-    }
+        vec3 form = masu_rectangle(b, to, u, v);
+        vec3 mirrored = color * masu_sane(masu_bsdf_specular(b) * (form.y * kept.x), 0.0, masu_huge);
+#ifdef MASU_SURFACE
+        mirrored *= s.shadow >= 0.0 ? masu_meso_shadow(s.shadow, b.v, l) : 1.0;
 #endif
-    masu_spread(b, l, color, size, kept);
+        lit.specular += mirrored;
+        masu_flatten(b, l, color, form, size, kept);
+    } else {
+        masu_spread(b, l, color, size, kept);
+    }
     masu_add_light(lit, s, b, l, color);
     return true;
 }
@@ -246,10 +243,15 @@ float masu_met_share(vec3 met, vec3 rel, vec3 n, vec3 v, float roughness)
         float far = dot(to, to) * light.position.w;
         if (within < nearest && far < 1.0) {
             nearest = within;
-            vec3 l = masu_normalize(to, n);
-            /* Where the window dims the lobe, rays find the rest. */
-            share = masu_ray_share(n, v, l, roughness, masu_light_size(light, to));
-            share = 1.0 - (1.0 - share) * (1.0 - far * far);
+            vec3 l = masu_normalize(to, n), u = vec3(0.0), v = vec3(0.0);
+            if (masu_area_lights && masu_light_kind(light) != MASU_KIND_POINT) {
+                masu_light_axes(light, to, u, v);
+            }
+            /* Where the window takes the lobe away, rays find the light; what it dims a little is lost, not noise. */
+            float dimmed = far * far;
+            dimmed *= dimmed * (3.0 - 2.0 * dimmed);
+            share = masu_ray_share(n, v, l, roughness, masu_light_size(light, to, u, v));
+            share = 1.0 - (1.0 - share) * (1.0 - dimmed);
         }
     }
     return share;

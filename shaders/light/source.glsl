@@ -19,6 +19,8 @@
 #ifndef MASU_SOURCE_GLSL
 #define MASU_SOURCE_GLSL
 
+#extension GL_EXT_control_flow_attributes : require
+
 #include "brdf/bsdf.glsl"
 
 /* Mean cosine over a sphere whose centre has the cosine c: irradiance / (pi radiance s2). Between the two
@@ -52,8 +54,9 @@ float masu_source_gain(float alpha, float n_v, float s2, float wider)
     return (1.0 + solid * (1.0 - alpha)) / (1.0 - lost * (1.0 - alpha));
 }
 
-/* Share of a source's specular light that one ray of the lobe finds, estimated: the chance that it meets
- * a sphere of that size. l: unit, towards its centre. */
+/* Weight of rays for a source's specular light: a smooth step of the chance that a ray of the lobe meets a
+ * sphere of that size, because the widened lobe is nearly exact where that is small, and rays are noise. l: unit,
+ * towards its centre. */
 float masu_ray_share(vec3 n, vec3 v, vec3 l, float roughness, float s2)
 {
     float n_v = masu_sane(dot(n, v), 1e-4, 1.0);
@@ -63,7 +66,8 @@ float masu_ray_share(vec3 n, vec3 v, vec3 l, float roughness, float s2)
     vec3 sine = cross(n, h);
     float n_h = clamp(dot(n, h), 0.0, 1.0);
     float k = dot(sine, sine) + n_h * n_h * a2;
-    return masu_sane(wide * a2 / (k * k), 0.0, 1.0);
+    float chance = masu_sane(wide * a2 / (k * k), 0.0, 1.0);
+    return chance * chance * (3.0 - 2.0 * chance);
 }
 
 /* Of base and coat. Roughness as reflection rays have it (specular/guide.glsl). */
@@ -115,12 +119,17 @@ vec3 masu_edge(vec3 a, vec3 b)
     return normal * (x >= 0.0 ? v : 0.5 * masu_rsqrt(dot(normal, normal)) - v);
 }
 
+vec3 masu_corner(vec3 v)
+{
+    return v * masu_rsqrt_sure(max(dot(v, v), 1e-30));
+}
+
 /* Vector form factor of a parallelogram: its centre relative to the point, its half axes. */
 vec3 masu_form_factor(vec3 center, vec3 u, vec3 v)
 {
     vec3 up = u + v, across = u - v;
-    vec3 a = masu_normalize(center - up, vec3(0.0)), b = masu_normalize(center + across, vec3(0.0));
-    vec3 c = masu_normalize(center + up, vec3(0.0)), d = masu_normalize(center - across, vec3(0.0));
+    vec3 a = masu_corner(center - up), b = masu_corner(center + across);
+    vec3 c = masu_corner(center + up), d = masu_corner(center - across);
     return masu_edge(b, a) + masu_edge(c, b) + masu_edge(d, c) + masu_edge(a, d);
 }
 
@@ -156,9 +165,8 @@ vec4 masu_transform(float alpha, float n_v)
     return mix(low, high, y - float(row));
 }
 
-/* Irradiance / (pi radiance) by a parallelogram that faces the point (x), the part of its specular lobe
- * that it fills (y), and the mean cosine of the former (z). */
-vec3 masu_rectangle(masu_bsdf b, vec3 center, vec3 u, vec3 v)
+/* Rows of the transform from a surface's lobe to a cosine. */
+mat3 masu_lobe(masu_bsdf b, vec4 m)
 {
     vec3 n = b.n;
     float sign_z = n.z < 0.0 ? -1.0 : 1.0;
@@ -169,34 +177,53 @@ vec3 masu_rectangle(masu_bsdf b, vec3 center, vec3 u, vec3 v)
     /* Away from the viewer. At the pole the lobe is round. */
     vec2 away = -vec2(dot(b.v, t), dot(b.v, s));
     float size = dot(away, away);
-    away = size > 1e-12 ? away * masu_rsqrt(size) : vec2(1.0, 0.0);
+    away = size > 1e-12 ? away * masu_rsqrt_sure(size) : vec2(1.0, 0.0);
     vec3 along = away.x * t + away.y * s;
-    vec4 m = masu_transform(b.alpha, b.n_v);
-    mat3 lobe = mat3(m.x * along + m.y * n, cross(n, along), b.alpha * (m.z * along + 2.0 * m.w * n));
-    float lit, part;
-    float irradiance = masu_above(masu_form_factor(center, u, v), n, lit);
-    /* v * M is the transpose of M times v: M's columns are the rows of the transform. */
-    float mirrored = masu_above(masu_form_factor(center * lobe, u * lobe, v * lobe), vec3(0.0, 0.0, 1.0), part);
-    /* The horizon cuts off a part of the cosine's hemisphere: the rest stands for all. */
-    float c = b.alpha * m.z;
-    mirrored *= 2.0 / (1.0 + m.x * masu_rsqrt(m.x * m.x + c * c));
-    bool risen = dot(center, n) + abs(dot(u, n)) + abs(dot(v, n)) > 0.0;
-    return risen ? vec3(irradiance, mirrored, lit) : vec3(0.0);
+    return mat3(m.x * along + m.y * n, cross(n, along), b.alpha * (m.z * along + 2.0 * m.w * n));
 }
 
-/* form: of masu_rectangle. What a coat mirrors is not in it. */
-void masu_add_rectangle(inout masu_lit lit, masu_surface s, masu_bsdf b, vec3 l, vec3 color, vec3 form, float kept)
+/* Irradiance / (pi radiance) by a parallelogram that faces the point (x), the part of its specular lobe
+ * that it fills (y), and the mean cosine of the former (z). */
+vec3 masu_rectangle(masu_bsdf b, vec3 center, vec3 u, vec3 v)
 {
-#ifdef MASU_SURFACE
-    if (s.shadow >= 0.0) {
-        color *= masu_meso_shadow(s.shadow, b.v, l);
+    vec3 form = vec3(0.0), n = b.n;
+    if (!(dot(center, n) + abs(dot(u, n)) + abs(dot(v, n)) > 0.0)) {
+        return form;
     }
+    vec4 m = masu_transform(b.alpha, b.n_v);
+    /* In a loop: the code for a form factor would stand here twice. */
+    [[dont_unroll]] for (int i = 0; i < 2; i++) {
+        float lit;
+        form.y = masu_above(masu_form_factor(center, u, v), n, lit);
+        if (i == 0) {
+            form.xz = vec2(form.y, lit);
+            mat3 lobe = masu_lobe(b, m);
+            center = center * lobe; /* scalar products with its columns */
+            u = u * lobe;
+            v = v * lobe;
+            n = vec3(0.0, 0.0, 1.0);
+        }
+    }
+    /* The horizon cuts off a part of the cosine's hemisphere: the rest stands for all. */
+    float c = b.alpha * m.z;
+    form.y *= 2.0 / (1.0 + m.x * masu_rsqrt(m.x * m.x + c * c));
+    return form;
+}
+
+/* What a parallelogram leaves to a light in one direction: surface, direction and colour are changed to it. It
+ * has the rectangle's irradiance and no specular lobe but the coat's. s2: as of a sphere. */
+void masu_flatten(inout masu_bsdf b, inout vec3 l, inout vec3 color, vec3 form, float s2, vec2 kept)
+{
+    float cosine = clamp(form.z, 0.01, 1.0);
+    vec3 side = l - b.n * dot(b.n, l);
+    l = side * masu_sqrt((1.0 - cosine * cosine) * masu_rcp(dot(side, side))) + b.n * cosine;
+    color *= form.x / cosine;
+    b.f0 = vec3(0.0);
+    b.f90 = 0.0;
+#ifdef MASU_SURFACE
+    b.coat_gain = kept.y;
+    b.coat_alpha = masu_widened(b.coat_alpha, s2 / (3.6 * b.coat_n_v + 0.4));
 #endif
-    masu_albedo a = masu_albedo_of(b, clamp(form.z, 0.0, 1.0), clamp(form.z, 0.0, 1.0));
-    vec3 specular = masu_bsdf_specular(b) * (form.y * kept) + b.rest * (masu_lost(a) * form.x);
-    vec3 diffuse = b.diffuse * ((1.0 - masu_matte(b, a)) * form.x);
-    lit.specular += color * masu_sane(specular, 0.0, masu_huge);
-    lit.diffuse += color * masu_sane(diffuse, 0.0, masu_huge);
 }
 
 #endif

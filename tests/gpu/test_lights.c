@@ -76,7 +76,7 @@ static void add_lights(uint32_t count, double size, double low, double high) {
     add("\"lights\": [");
     for (uint32_t i = 0; i < count; i++) {
         double range = random_spread(&seed, low, high) * size, outer = i % 7 ? random_between(&seed, 2, 80) : random_between(&seed, 80, 180);
-        if (count >= 20 && i % 11 < 2) { /* area lights among them */
+        if (count >= 20 && size >= 1 && i % 11 < 2) { /* area lights among them */
             double half = range / 13;
             add("%s{\"type\": \"%s\", \"name\": \"l%u\", \"position\": [%.9g, %.9g, %.9g], \"range\": %.9g, "
                 "\"half_u\": [%.9g, 0, %.9g], %s%.9g%s}",

@@ -326,6 +326,8 @@ static void planes_do_not_shadow_themselves(void **state) {
             double seen = luma(hdr + 4 * p) / luma(plain + 4 * p);
             angles[0] = fmin(angles[0], angle), angles[1] = fmax(angles[1], angle);
             lit++, dark += seen < 0.99;
+            if (seen < 0.99 && dark <= 8)
+                print_message("%.3f at %.1f degrees, %.3f %.3f from the light\n", seen, angle, d[0], d[2]);
             least = fmin(least, seen);
         }
         print_message("%-18s %u lit pixels at %.1f to %.1f degrees, below 0.99: %u, the least %.3f\n", cases[i].what, lit,

@@ -4,7 +4,7 @@
  *   position   world, or object space of `instance`; likewise directions and axes
  *   color      times intensity is radiant intensity / pi of points and spots: a white diffuse surface that
  *              faces the light at one metre has this radiance. Of the others it is their radiance
- *   range      0 beyond; by default where that radiance has fallen to a hundredth; of the others three times as
+ *   range      0 beyond; by default where that radiance has fallen to a hundredth; of the others six times as
  *              far, and 8 times their size; at least 6 times
  *   half_u, half_v  half axes, from the centre: of a capsule to an end, of a rectangle to two sides
  *   shadows    false: it casts none

@@ -20,6 +20,7 @@
 #define RADIANCE_LEAST 1.0
 #define INTENSITY_LEAST 1e-3
 #define COVER_LEAST 0.4
+#define EDGES_TRIED 200u
 
 typedef struct part {
     masu_bake_vec3 center, normal; /* means by area; of the normals, below 1 long */
@@ -109,21 +110,40 @@ static void principal_axes(double m[3][3], masu_bake_vec3 axis[3]) {
     for (int k = 0; k < 3; k++) axis[k] = masu_bake_v3(v[0][k], v[1][k], v[2][k]);
 }
 
-/* Turns two axes about the third to where the box is smallest. */
+typedef struct box {
+    masu_bake_vec3 axis[2];
+    double size;
+} box;
+
+static void try_axes(const corners *c, uint32_t n, masu_bake_vec3 center, const masu_bake_vec3 axis[2], box *best) {
+    double unused;
+    double size = half_along(c, n, center, axis[0], &unused) * half_along(c, n, center, axis[1], &unused);
+    if (!(size < best->size * (1 - 1e-6))) return;
+    *best = (box){{axis[0], axis[1]}, size};
+}
+
+/* Turns two axes about the third to where the box is smallest. A side of that box is along an edge of the part,
+ * of which many are not all tried. */
 static void tighten(const corners *c, uint32_t n, part *p, const masu_bake_vec3 flat[2]) {
-    double least = DBL_MAX, unused;
-    masu_bake_vec3 best[2] = {flat[0], flat[1]};
-    for (int i = 0; i < 45; i++) {
-        double angle = MASU_BAKE_PI / 90 * i;
-        masu_bake_vec3 a = along(flat, angle), b = along(flat, angle + MASU_BAKE_PI / 2);
-        double size = half_along(c, n, p->center, a, &unused) * half_along(c, n, p->center, b, &unused);
-        if (!(size < least * (1 - 1e-9))) continue;
-        least = size;
-        best[0] = a;
-        best[1] = b;
+    box best = {{flat[0], flat[1]}, DBL_MAX};
+    size_t tried = 0;
+    for (size_t i = 0; i < c->count && tried < EDGES_TRIED; i++) {
+        if (c->part[i] != n) continue;
+        masu_bake_vec3 edge = masu_bake_sub(c->at[i % 3 == 2 ? i - 2 : i + 1], c->at[i]);
+        double x = masu_bake_dot(edge, flat[0]), y = masu_bake_dot(edge, flat[1]);
+        if (!(x * x + y * y > 1e-6 * masu_bake_dot(edge, edge))) continue;
+        double angle = atan2(y, x);
+        masu_bake_vec3 axis[2] = {along(flat, angle), along(flat, angle + MASU_BAKE_PI / 2)};
+        try_axes(c, n, p->center, axis, &best);
+        tried++;
     }
-    p->axis[0] = best[0];
-    p->axis[1] = best[1];
+    for (int i = 0; i < 45 && tried == EDGES_TRIED; i++) {
+        double angle = MASU_BAKE_PI / 90 * i;
+        masu_bake_vec3 axis[2] = {along(flat, angle), along(flat, angle + MASU_BAKE_PI / 2)};
+        try_axes(c, n, p->center, axis, &best);
+    }
+    p->axis[0] = best.axis[0];
+    p->axis[1] = best.axis[1];
 }
 
 static void measure(const corners *c, uint32_t n, part *p) {

@@ -229,7 +229,7 @@ double masu_bake_light_range(masu_bake_vec3 color) {
     return fmin(fmax(10.0 * sqrt(fmax(most, 0.0)), 1e-3), 1e9);
 }
 
-/* By the radiant intensity / pi of an area light along its normal, or of a capsule from aside; three times that
+/* By the radiant intensity / pi of an area light along its normal, or of a capsule from aside; six times that
  * of a point, for highlights are seen from farther. At least 8 times its size. */
 double masu_bake_area_range(const masu_blob_light *light) {
     uint32_t type = light->type & MASU_LIGHT_TYPE;
@@ -247,7 +247,7 @@ double masu_bake_area_range(const masu_blob_light *light) {
     }
     if (type == MASU_LIGHT_CAPSULE) area += 4 * r * length, size += length;
     masu_bake_vec3 color = masu_bake_v3f(light->color), zero = {0, 0, 0};
-    return fmax(3 * masu_bake_light_range(masu_bake_mad(zero, color, area / MASU_BAKE_PI)), 8 * size);
+    return fmax(6 * masu_bake_light_range(masu_bake_mad(zero, color, area / MASU_BAKE_PI)), 8 * size);
 }
 
 /* A light in another space. False: it has left what can be said. */
