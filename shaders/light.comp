@@ -113,7 +113,9 @@ vec3 flat_normal(ivec2 at, ivec2 size, float depth, vec3 n)
 void add_lights(inout masu_lit lit, masu_surface s, masu_bsdf b, uvec2 at, vec3 rel, vec3 n, vec3 traced)
 {
     uvec2 size = uvec2(pc.output_width, pc.output_height);
-    masu_asked asked = masu_lights_asked(at, size, push.light_tiles != 0u);
+    /* As a number of the workgroup: lights are then loaded once for all lanes, not into registers of each. */
+    uvec2 tile = gl_WorkGroupID.xy / uint(MASU_TILE / MASU_GROUP);
+    masu_asked asked = masu_lights_asked(tile, size, push.light_tiles != 0u);
     uint reached = 0u;
     for (uint i = 0u; i < uint(MASU_LOCAL_LIGHTS_MAX); i++) {
         if (i >= asked.count) {

@@ -19,7 +19,8 @@
  * The depth is the latest image's, of polygons and the SDF alike; there is no depth attachment. With
  * MASU_TEXTURES the material's maps, with MASU_SUN_MAP the sun's shadow map, with MASU_LIGHTS points and spots by the
  * lists of tiles, which then begin at the near plane (light_tiles.comp); where the surface is, depth says, as it does for
- * the lists: what is interpolated across a large triangle is less exact. With MASU_LOCAL_SHADOWS their shadows, too.
+ * the lists: what is interpolated across a large triangle is less exact. With MASU_LOCAL_SHADOWS their shadows, too,
+ * of four taps: nine take 16 registers more.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -41,6 +42,7 @@
 #define MASU_AT_LOCAL_SHADOWS 1
 #endif
 #ifdef MASU_LIGHTS
+#define MASU_LOCAL_SHADOWS_FOUR
 #include "light/lights.glsl"
 #endif
 
@@ -80,7 +82,7 @@ void add_lights(inout masu_lit lit, masu_surface s, masu_bsdf b, vec3 n)
     uvec2 at = uvec2(gl_FragCoord.xy);
     uvec2 size = uvec2(pc.output_width, pc.output_height);
     vec3 rel = masu_pixel_ray(at, size) * masu_light_depth(gl_FragCoord.z);
-    masu_asked asked = masu_lights_asked(at, size, push.light_tiles != 0u);
+    masu_asked asked = masu_lights_asked(at / uint(MASU_TILE), size, push.light_tiles != 0u);
     for (uint i = 0u; i < uint(MASU_LOCAL_LIGHTS_MAX); i++) {
         if (i >= asked.count) {
             break;
@@ -156,12 +158,14 @@ void main()
         masu_mirrored sky = masu_mirrored_sky(s, n, -direction, vec2(1.0));
         masu_bsdf b = masu_bsdf_make(s, n, -direction);
         masu_lit lit = masu_shade(s, b, in_rel, seen, sky);
+        float mirrored = clamp(dot(lit.mirror, vec3(1.0 / 3.0)), 0.0, 1.0);
+        taken = 1.0 - through * (1.0 - mirrored);
+        lit.diffuse += s.emissive;
 #ifdef MASU_LIGHTS
+        /* Last: what has been used up by now takes no registers in the loop. */
         add_lights(lit, s, b, away ? -skin : skin);
 #endif
-        float mirrored = clamp(dot(lit.mirror, vec3(1.0 / 3.0)), 0.0, 1.0);
-        color = (lit.diffuse + s.emissive) * opacity + (additive ? vec3(0.0) : lit.specular);
-        taken = 1.0 - through * (1.0 - mirrored);
+        color = lit.diffuse * opacity + (additive ? vec3(0.0) : lit.specular);
     }
     color *= cover;
     if (any_tints && twice && away) {

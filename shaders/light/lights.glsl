@@ -61,7 +61,7 @@ uint masu_light_list(uvec2 tile, uvec2 size)
 }
 
 #ifndef MASU_LIGHT_TILES_WRITTEN
-/* Which lights a pixel asks: those of its tile's list, or all of them: the same operations in the same order on the
+/* Which lights a pixel of a tile asks: those of its list, or all of them: the same operations in the same order on the
  * lights that reach it. */
 struct masu_asked {
     uint count;
@@ -69,9 +69,9 @@ struct masu_asked {
     bool all_lights;
 };
 
-masu_asked masu_lights_asked(uvec2 at, uvec2 size, bool by_tiles)
+masu_asked masu_lights_asked(uvec2 tile, uvec2 size, bool by_tiles)
 {
-    uint list = masu_light_list(at / uint(MASU_TILE), size);
+    uint list = masu_light_list(tile, size);
     uint listed = by_tiles ? masu_light_tiles[list] : MASU_TILE_ALL;
     bool all_lights = listed == MASU_TILE_ALL;
     return masu_asked(all_lights ? masu_light_count() : min(listed, uint(MASU_TILE_LIGHTS_MAX)), list, all_lights);

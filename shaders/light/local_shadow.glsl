@@ -34,6 +34,20 @@ vec3 masu_local_lit(vec3 across, float down, float depth, vec3 nearest)
     return vec3(greaterThanEqual(clamp(across + down, 0.0, 1.0), nearest - depth));
 }
 
+#ifdef MASU_LOCAL_SHADOWS_FOUR
+/* The four texels around the point, for shaders that have no registers for nine. */
+float masu_local_filter(vec2 at, float depth, vec2 slope, float texel)
+{
+    vec2 corner = floor(at - 0.5);
+    vec2 f = at - 0.5 - corner;
+    vec4 nearest = textureGather(local_shadow_atlas, (corner + 1.0) * texel) - depth;
+    vec2 low = -slope * f;
+    vec2 high = low + slope;
+    vec4 rise = vec4(low.x + high.y, high.x + high.y, high.x + low.y, low.x + low.y);
+    vec4 lit = vec4(greaterThanEqual(clamp(rise, 0.0, 1.0), nearest));
+    return mix(mix(lit.w, lit.z, f.x), mix(lit.x, lit.y, f.x), f.y);
+}
+#else
 /* at: in texels of the atlas; depth: of the point; slope: what its surface gains of it per texel. */
 float masu_local_filter(vec2 at, float depth, vec2 slope, float texel)
 {
@@ -54,6 +68,7 @@ float masu_local_filter(vec2 at, float depth, vec2 slope, float texel)
                      dot(weight, masu_local_lit(columns, down + slope.y, depth, vec3(c.x, c.y, d.y))));
     return dot(masu_local_spline(f.y), sums);
 }
+#endif
 
 /* rel: relative to the eye; n: unit, of the surface itself, on the lit side. */
 float masu_light_seen(masu_punctual_light_data light, vec3 rel, vec3 n)

@@ -15,6 +15,8 @@
 
 enum { WIDTH = 128, HEIGHT = 96, PIXELS = WIDTH * HEIGHT, SHADOWS = 0, NONE = 1, SETTLED = 24 };
 
+static uint64_t evals; /* of the field, for the last pictures */
+static uint32_t faces;
 static float lit[4 * PIXELS], open[4 * PIXELS], depths[PIXELS];
 
 /* ---- What blocks ----------------------------------------------------------------------------- */
@@ -136,7 +138,12 @@ static void render(masu_session *s, uint32_t rung, uint32_t frames, masu_frame_d
     masu_commands commands;
     frame.camera = &camera;
     frame.rung = rung;
-    for (uint32_t i = 0; i < frames; i++) draw(s, &frame, &commands, NULL);
+    faces = 0, evals = 0;
+    for (uint32_t i = 0; i < frames; i++) {
+        draw(s, &frame, &commands, NULL);
+        masu_stats_info stats = stats_of(s, commands.slot);
+        faces += stats.local_shadow_faces, evals += stats.shadow_evals;
+    }
     floats_of_halves(read_image(s, commands.slot, MASU_READBACK_HDR), hdr, 4 * PIXELS);
     memcpy(depths, read_image(s, commands.slot, MASU_READBACK_DEPTH), sizeof depths);
     assert_int_equal(stats_of(s, commands.slot).replaced, 0);
@@ -209,6 +216,7 @@ static void points_and_spots_see_the_sdf(void **state) {
         open_scene(&s, "casters");
         render(&s, NONE, 1, (masu_frame_desc){0}, open);
         render(&s, SHADOWS, SETTLED, (masu_frame_desc){0}, lit);
+        print_message("%u faces, %.1f samples of the field for each of 128x128 texels\n", faces, (double)evals / (faces * 128 * 128));
         expect(i ? "spot: ground and itself" : "point: ground and itself", compare(lamp, NAN), 100, 2000, 0);
         close_session(&s);
     }
@@ -231,6 +239,7 @@ static void the_sdf_alone_has_shadows(void **state) {
     open_scene(&s, "alone");
     render(&s, NONE, 1, (masu_frame_desc){0}, open);
     render(&s, SHADOWS, SETTLED, (masu_frame_desc){0}, lit);
+    print_message("%u faces, %.1f samples of the field for each of 128x128 texels\n", faces, (double)evals / (faces * 128 * 128));
     expect("81 balls over a half-space", compare(lamp, NAN), 80, 1000, 0);
     close_session(&s);
 }
