@@ -124,8 +124,8 @@ bool masu_light_axes(masu_punctual_light_data light, vec3 to, out vec3 u, out ve
     v = light.cone.xyz;
     if (masu_light_kind(light) == MASU_KIND_CAPSULE) {
         float radius = masu_sqrt(light.color.w);
-        v = masu_normalize(cross(to, u), vec3(0.0)) * radius;
-        u += masu_normalize(cross(v, to), vec3(0.0)) * (0.78539816 * radius);
+        v = masu_corner(cross(to, u)) * radius;
+        u += masu_corner(cross(v, to)) * (0.78539816 * radius);
     }
     bool behind = dot(cross(u, v), to) > 0.0;
     v = behind ? -v : v;
