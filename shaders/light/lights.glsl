@@ -142,22 +142,21 @@ float masu_light_size(masu_punctual_light_data light, vec3 to, vec3 u, vec3 v)
     return min(area / squared, 0.9999);
 }
 
-/* How far a point relative to the eye lies from the middle of a light that has a surface in the scene: below 1
- * within what the baker has fitted, a little more for what is rounded. */
+/* How far a point relative to the eye lies from the middle of a light that has a surface in the scene, squared:
+ * below 1 within what the baker has fitted, and a little more for what is rounded. */
 float masu_light_within(masu_punctual_light_data light, vec3 rel)
 {
     vec3 from = rel - light.position.xyz;
-    float radius = masu_sqrt(light.color.w), beyond = 0.0;
-    vec3 u = light.axis.xyz, v = light.cone.xyz;
+    float radius2 = light.color.w;
     if (masu_area_lights && masu_light_kind(light) != MASU_KIND_POINT) {
-        float along = dot(from, u) * masu_rcp(dot(u, u));
-        from -= u * clamp(along, -1.0, 1.0);
+        vec3 u = light.axis.xyz, v = light.cone.xyz;
+        from -= u * clamp(dot(from, u) * masu_rcp(dot(u, u)), -1.0, 1.0);
         if (masu_light_kind(light) == MASU_KIND_RECTANGLE) {
             from -= v * clamp(dot(from, v) * masu_rcp(dot(v, v)), -1.0, 1.0);
-            radius = light.axis.w;
+            radius2 = light.axis.w * light.axis.w;
         }
     }
-    return masu_sqrt(dot(from, from)) * masu_rcp(1.05 * radius + 1e-4);
+    return dot(from, from) * masu_rcp(1.1 * radius2 + 1e-7);
 }
 
 /* Adds what a light contributes at a surface point relative to the eye. n: the normal of the surface itself; traced: of the mirrored light of base and
