@@ -216,14 +216,14 @@ float masu_met_share(vec3 met, vec3 rel, vec3 n, vec3 v, float roughness)
         float far = dot(to, to) * light.position.w;
         if (within < nearest && far < 1.0) {
             nearest = within;
-            vec3 l = masu_normalize(to, n), u = vec3(0.0), v = vec3(0.0);
+            vec3 l = masu_normalize(to, n), half_u = vec3(0.0), half_v = vec3(0.0);
             if (masu_area_lights && masu_light_kind(light) != MASU_KIND_POINT) {
-                masu_light_axes(light, to, u, v);
+                masu_light_axes(light, to, half_u, half_v);
             }
             /* Where the window takes the lobe away, rays find the light; what it dims a little is lost, not noise. */
             float dimmed = far * far;
             dimmed *= dimmed * (3.0 - 2.0 * dimmed);
-            share = masu_ray_share(n, v, l, roughness, masu_light_size(light, to, u, v));
+            share = masu_ray_share(n, v, l, roughness, masu_light_size(light, to, half_u, half_v));
             share = 1.0 - (1.0 - share) * (1.0 - dimmed);
         }
     }
