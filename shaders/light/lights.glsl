@@ -139,8 +139,8 @@ bool masu_light_axes(masu_punctual_light_data light, vec3 to, out vec3 u, out ve
     v = light.cone.xyz;
     if (masu_light_kind(light) == MASU_KIND_CAPSULE) {
         float radius = masu_sqrt(light.color.w);
-        v = masu_normalize(cross(to, u), vec3(0.0)) * radius;
-        u += masu_normalize(cross(v, to), vec3(0.0)) * (0.78539816 * radius);
+        v = masu_corner(cross(to, u)) * radius;
+        u += masu_corner(cross(v, to)) * (0.78539816 * radius);
     }
     bool behind = dot(cross(u, v), to) > 0.0;
     v = behind ? -v : v;
@@ -167,22 +167,21 @@ float masu_light_size(masu_punctual_light_data light, vec3 to, vec3 u, vec3 v)
 /* The mirrored light of some lights' surfaces is shared between rays that meet them and the lobe. */
 layout(constant_id = 18) const bool masu_shared_lights = false;
 
-/* How far a point relative to the eye lies from the middle of a light that has a surface in the scene: below 1
- * within what the baker has fitted, a little more for what is rounded. */
+/* How far a point relative to the eye lies from the middle of a light that has a surface in the scene, squared:
+ * below 1 within what the baker has fitted, and a little more for what is rounded. */
 float masu_light_within(masu_punctual_light_data light, vec3 rel)
 {
     vec3 from = rel - light.position.xyz;
-    float radius = masu_sqrt(light.color.w), beyond = 0.0;
-    vec3 u = light.axis.xyz, v = light.cone.xyz;
+    float radius2 = light.color.w;
     if (masu_area_lights && masu_light_kind(light) != MASU_KIND_POINT) {
-        float along = dot(from, u) * masu_rcp(dot(u, u));
-        from -= u * clamp(along, -1.0, 1.0);
+        vec3 u = light.axis.xyz, v = light.cone.xyz;
+        from -= u * clamp(dot(from, u) * masu_rcp(dot(u, u)), -1.0, 1.0);
         if (masu_light_kind(light) == MASU_KIND_RECTANGLE) {
             from -= v * clamp(dot(from, v) * masu_rcp(dot(v, v)), -1.0, 1.0);
-            radius = light.axis.w;
+            radius2 = light.axis.w * light.axis.w;
         }
     }
-    return masu_sqrt(dot(from, from)) * masu_rcp(1.05 * radius + 1e-4);
+    return dot(from, from) * masu_rcp(1.1 * radius2 + 1e-7);
 }
 
 /* Adds what a light contributes at a surface point relative to the eye. n: the normal of the surface itself; traced:
@@ -243,14 +242,14 @@ float masu_met_share(vec3 met, vec3 rel, vec3 n, vec3 v, float roughness)
         float far = dot(to, to) * light.position.w;
         if (within < nearest && far < 1.0) {
             nearest = within;
-            vec3 l = masu_normalize(to, n), u = vec3(0.0), v = vec3(0.0);
+            vec3 l = masu_normalize(to, n), half_u = vec3(0.0), half_v = vec3(0.0);
             if (masu_area_lights && masu_light_kind(light) != MASU_KIND_POINT) {
-                masu_light_axes(light, to, u, v);
+                masu_light_axes(light, to, half_u, half_v);
             }
             /* Where the window takes the lobe away, rays find the light; what it dims a little is lost, not noise. */
             float dimmed = far * far;
             dimmed *= dimmed * (3.0 - 2.0 * dimmed);
-            share = masu_ray_share(n, v, l, roughness, masu_light_size(light, to, u, v));
+            share = masu_ray_share(n, v, l, roughness, masu_light_size(light, to, half_u, half_v));
             share = 1.0 - (1.0 - share) * (1.0 - dimmed);
         }
     }

@@ -116,7 +116,7 @@ vec3 masu_edge(vec3 a, vec3 b)
     float v = (0.2499999 + y * (0.1441643 + 0.0041431 * y)) / (1.0 + y * (1.2132374 + 0.2893999 * y));
     vec3 normal = cross(a, b);
     /* Of nearly opposite vectors 1 - x^2 has no digits left. */
-    return normal * (x >= 0.0 ? v : 0.5 * masu_rsqrt(dot(normal, normal)) - v);
+    return normal * (x >= 0.0 ? v : 0.5 * masu_rsqrt_sure(max(dot(normal, normal), 1e-20)) - v);
 }
 
 vec3 masu_corner(vec3 v)
@@ -124,13 +124,21 @@ vec3 masu_corner(vec3 v)
     return v * masu_rsqrt_sure(max(dot(v, v), 1e-30));
 }
 
-/* Vector form factor of a parallelogram: its centre relative to the point, its half axes. */
+/* Vector form factor of a parallelogram: its centre relative to the point, its half axes. In a loop: an edge
+ * takes many registers. */
 vec3 masu_form_factor(vec3 center, vec3 u, vec3 v)
 {
-    vec3 up = u + v, across = u - v;
-    vec3 a = masu_corner(center - up), b = masu_corner(center + across);
-    vec3 c = masu_corner(center + up), d = masu_corner(center - across);
-    return masu_edge(b, a) + masu_edge(c, b) + masu_edge(d, c) + masu_edge(a, d);
+    vec3 sum = vec3(0.0), corner = -u - v, next = v - u;
+    vec3 from = masu_corner(center + corner);
+    [[dont_unroll]] for (int i = 0; i < 4; i++) {
+        vec3 to = masu_corner(center + next);
+        sum += masu_edge(from, to);
+        from = to;
+        vec3 last = corner;
+        corner = next;
+        next = -last;
+    }
+    return sum;
 }
 
 /* The part of a form factor above the horizon, and a mean cosine; n: unit. */
@@ -143,11 +151,13 @@ float masu_above(vec3 form, vec3 n, out float cosine)
     return above;
 }
 
-/* Two numbers of the table of cosines' transforms. */
+/* A node of the table of cosines' transforms, times 32767. */
 vec4 masu_transform_at(uint node)
 {
     uint at = uint(MASU_TABLE_TRANSFORM) + 2u * node;
-    return vec4(unpackSnorm2x16(masu_tables[at]), unpackSnorm2x16(masu_tables[at + 1u]));
+    ivec2 words = ivec2(masu_tables[at], masu_tables[at + 1u]);
+    ivec2 low = words << 16;
+    return vec4(low.x >> 16, words.x >> 16, low.y >> 16, words.y >> 16);
 }
 
 /* a, b, c / alpha, d / (2 alpha) of the matrix (a 0 b, 0 1 0, c 0 d) from the lobe to a cosine. */
@@ -162,7 +172,7 @@ vec4 masu_transform(float alpha, float n_v)
     vec4 low = mix(masu_transform_at(node), masu_transform_at(node + 1u), x - float(column));
     node += uint(MASU_TRANSFORM_COLUMNS);
     vec4 high = mix(masu_transform_at(node), masu_transform_at(node + 1u), x - float(column));
-    return mix(low, high, y - float(row));
+    return mix(low, high, y - float(row)) * (1.0 / 32767.0);
 }
 
 /* Rows of the transform from a surface's lobe to a cosine. */
