@@ -1038,9 +1038,10 @@ typedef struct masu_light {
 } masu_light;
 
 /* Flags of particles. LIT: `color` is an albedo; without the flag, a radiance. A lit particle
- * scatters sun and ambient light evenly, as thin smoke does: color * (visibility * sun_color / 4 +
- * ambient), with the visibility of its centre from the shadow map. ADDITIVE: additive blending,
- * which occludes nothing. */
+ * scatters light evenly, as thin smoke does: color * (visibility * sun_color / 4 + ambient + the
+ * sum over punctual lights of (what a white surface facing the light would send) / 4): 1/4 is the
+ * mean of max(n.l, 0) over all directions n. All is taken at its centre, the sun's visibility from
+ * the shadow map. ADDITIVE: additive blending, which occludes nothing. */
 #define MASU_PARTICLE_LIT 1u
 #define MASU_PARTICLE_ADDITIVE 2u
 /* A particle: a camera-facing sprite of elliptical shape with soft edges, for smoke, sparks, dust.

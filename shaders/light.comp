@@ -110,28 +110,18 @@ vec3 flat_normal(ivec2 at, ivec2 size, float depth, vec3 n)
 #endif
 
 #ifdef MASU_LIGHTS
-/* Of the tile's list, or of all: the same operations in the same order on the lights that reach the
- * point, so that the two have the same bits. */
 void add_lights(inout masu_lit lit, masu_surface s, masu_bsdf b, uvec2 at, vec3 rel, vec3 n, vec3 traced)
 {
     uvec2 size = uvec2(pc.output_width, pc.output_height);
-    uint lights = masu_light_count();
-    uint list = masu_light_list(at / uint(MASU_TILE), size);
-    uint listed = push.light_tiles != 0u ? masu_light_tiles[list] : MASU_TILE_ALL;
-    bool all_lights = listed == MASU_TILE_ALL;
-    uint count = all_lights ? lights : min(listed, uint(MASU_TILE_LIGHTS_MAX));
+    masu_asked asked = masu_lights_asked(at, size, push.light_tiles != 0u);
     uint reached = 0u;
     for (uint i = 0u; i < uint(MASU_LOCAL_LIGHTS_MAX); i++) {
-        if (i >= count) {
+        if (i >= asked.count) {
             break;
         }
-        uint light = i;
-        if (!all_lights) {
-            light = min(masu_light_tiles[list + 1u + i], uint(MASU_LOCAL_LIGHTS_MAX) - 1u);
-        }
-        reached += masu_add_local_light(lit, s, b, light, rel, n, traced) ? 1u : 0u;
+        reached += masu_add_local_light(lit, s, b, masu_light_asked(asked, i), rel, n, traced) ? 1u : 0u;
     }
-    masu_count(MASU_COUNTER_LIGHT_TESTS, count);
+    masu_count(MASU_COUNTER_LIGHT_TESTS, asked.count);
     masu_count(MASU_COUNTER_LIGHT_SHADED, reached);
 }
 #endif

@@ -8,7 +8,9 @@
  *     forward+", SIGGRAPH Asia 2012 technical briefs),
  *   - outside one of the tile's four side planes, or of the box around the piece of the tile's
  *     pyramid between the two depths: planes alone keep what is near a corner,
- * or when its cone misses the sphere around that box. The host has widened the bounding spheres by
+ * or when its cone misses the sphere around that box. Where something is blended before the surfaces
+ * (push.blended), a tile has everything from the near plane to its farthest surface, or where it shows the
+ * sky, to the end. The host has widened the bounding spheres by
  * more than all rounding here and in lights.glsl amounts to, and the planes lie half a pixel outside
  * of all pixel centres: a light that is left out reaches no pixel in exact bits.
  *
@@ -17,6 +19,7 @@
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
+#include "push/light_tiles.h"
 #include "shared/counters.h"
 #include "shared/lights.h"
 #include "shared/sdf_limits.h"
@@ -37,6 +40,9 @@ shared uint nearest;
 shared uint farthest;
 shared uint slices; /* those with a surface */
 shared uint kept[WORDS];
+
+/* Farther than any light reaches; its square is a float. */
+const float end_of_world = 1e17;
 
 /* The piece of the tile's pyramid that has surfaces. View space: x right, y down, z ahead. */
 struct piece {
@@ -184,7 +190,12 @@ void main()
         if (there[i]) {
             low = min(low, floatBitsToUint(z[i]));
             high = max(high, floatBitsToUint(z[i]));
+        } else if (push.blended != 0u && all(lessThan(at, size))) {
+            high = floatBitsToUint(end_of_world);
         }
+    }
+    if (push.blended != 0u) {
+        low = floatBitsToUint(masu_light_depth(1.0));
     }
     if (low <= high) {
         atomicMin(nearest, low);
@@ -204,7 +215,7 @@ void main()
     }
     barrier();
     if (any_surface) {
-        p.filled = slices;
+        p.filled = push.blended != 0u ? 0xFFFFFFFFu : slices;
         uint count = masu_light_count();
         for (uint i = 0u; i < uint(MASU_LOCAL_LIGHTS_MAX / INVOCATIONS); i++) {
             uint n = i * uint(INVOCATIONS) + me;

@@ -12,7 +12,15 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_LOCAL_FACES, std140) uniform L
     masu_local_face_uniforms faces;
 };
 
+#ifdef MASU_NO_POLYGONS
+#define MASU_AT_SDF 0
+#else
+#define MASU_AT_SDF 1
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D faces_image;
+#endif
+#ifdef MASU_SDF_CASTS
+layout(set = MASU_SET_PASS, binding = MASU_AT_SDF) uniform sampler2D sdf_image;
+#endif
 
 layout(location = 0) flat in uint in_face;
 
@@ -21,6 +29,14 @@ void main()
     uint k = min(in_face, uint(MASU_LOCAL_FACES_MAX - 1));
     uvec2 texel = uvec2(gl_FragCoord.xy) - faces.tile[k].xy;
     uvec2 square = uvec2(k % faces.square.y, k / faces.square.y) * faces.square.x;
-    float depth = texelFetch(faces_image, ivec2(square + texel), 0).r;
+    float depth = 0.0;
+#ifndef MASU_NO_POLYGONS
+    depth = texelFetch(faces_image, ivec2(square + texel), 0).r;
+#endif
+#ifdef MASU_SDF_CASTS
+    if (faces.tile[k].w != 0u) {
+        depth = max(depth, texelFetch(sdf_image, ivec2(square + texel), 0).r);
+    }
+#endif
     gl_FragDepth = floor(clamp(depth, 0.0, 1.0) * 65535.0) * (1.0 / 65535.0);
 }

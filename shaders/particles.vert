@@ -1,10 +1,11 @@
 /*
  * particles.vert: six vertices of a quad that faces the eye, of MASU_BIND_SPRITES: masu_shared.h has its layout,
  * src/frame/particles.c writes it anew for each frame, sorted. All of a quad has the view depth of its middle. With
- * MASU_SUN_MAP the sun's shadow map is looked at there, too: once for each vertex, where each pixel of each of many layers
- * would take nine texels.
+ * MASU_SUN_MAP the sun's shadow map is looked at there, too, and with MASU_LIGHTS all points and spots in view: once for
+ * each vertex, where each pixel of each of many layers would do so.
  *
- * Light is scattered evenly by what is thin: a sun of irradiance pi * sun_color leaves a quarter of sun_color.
+ * Light is scattered evenly by what is thin. Irradiance of a light from l, its mean over all n of max(n.l, 0), is a
+ * quarter of what a facing surface gets: a sun of irradiance pi * sun_color leaves a quarter of sun_color.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -16,12 +17,44 @@
 #ifdef MASU_SUN_MAP
 #define MASU_AT_SUN_MAP 1
 #include "light/sun_map.glsl"
+#define MASU_AT_LOCAL_SHADOWS 2
+#else
+#define MASU_AT_LOCAL_SHADOWS 1
+#endif
+#ifdef MASU_LIGHTS
+#include "light/lights.glsl"
 #endif
 
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SPRITES, std430) readonly buffer Sprites
 {
     vec4 sprites[];
 };
+
+#ifdef MASU_LIGHTS
+/* What a facing white surface would send of all of them; of a rectangle or a capsule as of a sphere that looks as large. */
+vec3 light_at(vec3 rel)
+{
+    vec3 sum = vec3(0.0);
+    uint lights = masu_light_count();
+    for (uint i = 0u; i < uint(MASU_LOCAL_LIGHTS_MAX); i++) {
+        if (i >= lights) {
+            break;
+        }
+        vec3 l;
+        vec3 color;
+        if (masu_light_reaches(masu_lights[i], rel, l, color)) {
+            if (masu_area_lights && masu_light_kind(masu_lights[i]) != MASU_KIND_POINT) {
+                color *= masu_light_size(masu_lights[i], masu_lights[i].position.xyz - rel);
+            }
+#ifdef MASU_LOCAL_SHADOWS
+            color *= masu_light_seen(masu_lights[i], rel, l);
+#endif
+            sum += color;
+        }
+    }
+    return sum;
+}
+#endif
 
 layout(location = 0) out vec2 out_place; /* in the quad, -1..1 */
 layout(location = 1) out vec3 out_rel;
@@ -50,6 +83,9 @@ void main()
         seen = masu_sun_seen(middle.xyz, frame.sun_direction.xyz, depth);
 #endif
         light = frame.sun_color.rgb * (0.25 * seen) + frame.ambient.rgb;
+#ifdef MASU_LIGHTS
+        light += 0.25 * light_at(middle.xyz);
+#endif
     }
     out_place = place;
     out_rel = rel;

@@ -16,7 +16,7 @@
 
 SCENE_SHADERS := update.comp classify.comp cone.comp march.comp march_plain.comp march_seed.comp \
     march_checkerboard.comp sdf_velocity.comp sdf_occlusion.comp \
-    silhouettes.comp \
+    silhouettes.comp local_shadow_sdf.comp \
     specular_trace_sdf.comp bounce_sdf.comp
 # Of these, the marches that only the lab build has: masu-bake holds their text only with MASU_LAB.
 LAB_SCENE_SHADERS := march_plain.comp march_seed.comp march_checkerboard.comp

@@ -17,7 +17,9 @@
  * winding, which files get wrong and negative scales turn. Each fragment is drawn once.
  *
  * The depth is the latest image's, of polygons and the SDF alike; there is no depth attachment. With
- * MASU_TEXTURES the material's maps, with MASU_SUN_MAP the sun's shadow map.
+ * MASU_TEXTURES the material's maps, with MASU_SUN_MAP the sun's shadow map, with MASU_LIGHTS points and spots by the
+ * lists of tiles, which then begin at the near plane (light_tiles.comp); where the surface is, depth says, as it does for
+ * the lists: what is interpolated across a large triangle is less exact. With MASU_LOCAL_SHADOWS their shadows, too.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -34,6 +36,12 @@
 #ifdef MASU_SUN_MAP
 #define MASU_AT_SUN_MAP 1
 #include "light/sun_map.glsl"
+#define MASU_AT_LOCAL_SHADOWS 2
+#else
+#define MASU_AT_LOCAL_SHADOWS 1
+#endif
+#ifdef MASU_LIGHTS
+#include "light/lights.glsl"
 #endif
 
 layout(constant_id = 0) const bool tints = false;
@@ -65,6 +73,23 @@ layout(location = 0) out vec4 out_color;
 /* Sums of many layers stay below what a half holds. */
 const float brightest = 4096.0;
 
+#ifdef MASU_LIGHTS
+/* n: of the surface itself. */
+void add_lights(inout masu_lit lit, masu_surface s, masu_bsdf b, vec3 n)
+{
+    uvec2 at = uvec2(gl_FragCoord.xy);
+    uvec2 size = uvec2(pc.output_width, pc.output_height);
+    vec3 rel = masu_pixel_ray(at, size) * masu_light_depth(gl_FragCoord.z);
+    masu_asked asked = masu_lights_asked(at, size, push.light_tiles != 0u);
+    for (uint i = 0u; i < uint(MASU_LOCAL_LIGHTS_MAX); i++) {
+        if (i >= asked.count) {
+            break;
+        }
+        masu_add_local_light(lit, s, b, masu_light_asked(asked, i), rel, n);
+    }
+}
+#endif
+
 void main()
 {
     masu_material_data m = materials[in_thing.x];
@@ -79,6 +104,9 @@ void main()
     vec3 direction = masu_normalize(in_rel, frame.forward.xyz);
     vec3 n = masu_normalize(in_normal, -direction);
     bool away = masu_seen_from_below(n, in_rel);
+#ifdef MASU_LIGHTS
+    vec3 skin = n;
+#endif
     bool twice = (in_thing.y & MASU_MAP_FAR_SIDE_FIRST) != 0u;
     bool elsewhere = twice && away != (in_thing.w == 0u);
 #ifdef MASU_TEXTURES
@@ -126,7 +154,11 @@ void main()
         color = s.emissive * opacity;
     } else {
         masu_mirrored sky = masu_mirrored_sky(s, n, -direction, vec2(1.0));
-        masu_lit lit = masu_shade(s, masu_bsdf_make(s, n, -direction), in_rel, seen, sky);
+        masu_bsdf b = masu_bsdf_make(s, n, -direction);
+        masu_lit lit = masu_shade(s, b, in_rel, seen, sky);
+#ifdef MASU_LIGHTS
+        add_lights(lit, s, b, away ? -skin : skin);
+#endif
         float mirrored = clamp(dot(lit.mirror, vec3(1.0 / 3.0)), 0.0, 1.0);
         color = (lit.diffuse + s.emissive) * opacity + (additive ? vec3(0.0) : lit.specular);
         taken = 1.0 - through * (1.0 - mirrored);

@@ -350,12 +350,12 @@ masu_result masu_write_frame(masu_renderer *m, masu_frame_data *f) {
 
     masu_sun_sky_write(&m->sun_sky, f);
     masu_reflections_read(&m->reflections, f);
+    masu_lights_cast(&m->lights, &m->local_shadows, &m->instances, &m->bounds, f);
     masu_temporal_read(&m->temporal, &m->history, &m->instances, &m->lights, &m->materials, f);
     masu_frame_write_uniforms(&m->history, f);
 
     masu_shadow_write(&m->shadow, &m->bounds, f);
     masu_views_set(&m->views, &m->bounds, &m->shadow, f);
-    masu_lights_cast(&m->lights, &m->local_shadows, &m->instances, &m->bounds, f);
     masu_lights_write(&m->lights, &m->instances, &m->local_shadows, f);
     masu_materials_write(&m->materials, f);
     masu_bounce_write(&m->bounce, &m->lights, &m->instances, &m->materials, f);
@@ -382,7 +382,7 @@ static masu_recording_id recording_id(const masu_frame_data *f) {
 static const VkCommandBuffer *pick_recording(const masu_renderer *m, const masu_frame_data *f) {
     const masu_rung_plan *rp = masu_frame_rung_plan(f);
     uint32_t first = masu_recording_of(&m->plan, recording_id(f));
-    return &m->device.frames[(first + masu_recording_variant(rp, f->cascades)) * m->plan.parts];
+    return &m->device.frames[(first + masu_recording_variant(rp, f->cascades | f->faces << MASU_DRAWN_FACES)) * m->plan.parts];
 }
 
 /* After masu_resize. Nothing is written to the slot yet: a frame that fails has changed nothing. */

@@ -54,7 +54,9 @@ static int is_fixed_pass(uint32_t pass) {
     case MASU_EXTENT_RAYS:
     case MASU_EXTENT_TRACED_PROBES:
     case MASU_EXTENT_PICK:
-    case MASU_EXTENT_SHADOW: return 1;
+    case MASU_EXTENT_SHADOW:
+    case MASU_EXTENT_LOCAL_FACES:
+    case MASU_EXTENT_LOCAL_ATLAS: return 1;
     default: return pass == MASU_PASS_PRESENT;
     }
 }

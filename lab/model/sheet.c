@@ -104,7 +104,7 @@ static double cascade_texels(const masu_frame_plan *plan, uint32_t rung, uint32_
 /* Texels of an attachment, or of what is copied. */
 static double attached(const masu_count *c, uint32_t rung, uint32_t pass, masu_usage usage, double texels,
                        masu_model_row *row) {
-    if (usage == MASU_BLEND_COLOR) { /* read and written */
+    if (usage == MASU_BLEND_COLOR || usage == MASU_KEEP_DEPTH) { /* read and written */
         worsen(&row->bytes_sure, MASU_MODEL_MEASURED);
         return 2.0 * fmin(texels, growth(c, rung, pass) * c->passes[rung][pass].invocations);
     }

@@ -126,7 +126,7 @@ static ref_lobes shade(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *
         a.share[1] = traced_share(b->s.coat_roughness, t->cutoff);
         a.open *= open_to_sky(t, hit, &b->s, r);
     }
-    if (!pane) ref_local_lights(t, hit, b, r, a.share, &out); /* which transparent surfaces do not receive */
+    ref_local_lights(t, hit, b, r, a.share, &out);
     bool map = ref_sky_is_map(t->sky) && t->sky_samples;
     if (map) sample_map(t, hit, b, &a, r, &out);
     if (t->bsdf_samples && ref_bsdf_sample(b, r, &l, &w)) {

@@ -23,6 +23,7 @@
 
 #include "shared/lights.h"
 #include "shared/guard.glsl"
+#include "shared/sdf_limits.h"
 
 /* The scene may have rectangles and capsules. */
 #ifdef MASU_AREA_LIGHTS
@@ -59,7 +60,31 @@ uint masu_light_list(uvec2 tile, uvec2 size)
     return (tile.y * columns + tile.x) * masu_lights_header.y;
 }
 
-/* View depth of what the depth image says; both passes ask here, so that they agree. */
+#ifndef MASU_LIGHT_TILES_WRITTEN
+/* Which lights a pixel asks: those of its tile's list, or all of them: the same operations in the same order on the
+ * lights that reach it. */
+struct masu_asked {
+    uint count;
+    uint list;
+    bool all_lights;
+};
+
+masu_asked masu_lights_asked(uvec2 at, uvec2 size, bool by_tiles)
+{
+    uint list = masu_light_list(at / uint(MASU_TILE), size);
+    uint listed = by_tiles ? masu_light_tiles[list] : MASU_TILE_ALL;
+    bool all_lights = listed == MASU_TILE_ALL;
+    return masu_asked(all_lights ? masu_light_count() : min(listed, uint(MASU_TILE_LIGHTS_MAX)), list, all_lights);
+}
+
+/* The i-th of them. */
+uint masu_light_asked(masu_asked asked, uint i)
+{
+    return asked.all_lights ? i : min(masu_light_tiles[asked.list + 1u + i], uint(MASU_LOCAL_LIGHTS_MAX) - 1u);
+}
+#endif
+
+/* View depth of what the depth image says; all passes ask here, so that they agree. */
 float masu_light_depth(float depth)
 {
     precise float z = frame.forward.w * masu_rcp(depth);
@@ -106,16 +131,6 @@ bool masu_light_reaches(masu_punctual_light_data light, vec3 rel, out vec3 l, ou
     return strength > 0.0 && masu_finite(color);
 }
 
-#ifdef MASU_LOCAL_SHADOWS
-#include "light/local_shadow.glsl"
-#endif
-
-#ifdef MASU_SHADE_GLSL
-#include "light/source.glsl"
-
-/* The mirrored light of some lights' surfaces is shared between rays that meet them and the lobe. */
-layout(constant_id = 18) const bool masu_shared_lights = false;
-
 /* Half axes of a rectangle, or of a capsule as one that faces a point; `to`: from the point to its centre.
  * The second turns such that the side that faces the point is the front. False: it shines the other way. */
 bool masu_light_axes(masu_punctual_light_data light, vec3 to, out vec3 u, out vec3 v)
@@ -143,6 +158,16 @@ float masu_light_size(masu_punctual_light_data light, vec3 to)
     }
     return min(area / max(squared, masu_tiny), 0.9999);
 }
+
+#ifdef MASU_LOCAL_SHADOWS
+#include "light/local_shadow.glsl"
+#endif
+
+#ifdef MASU_SHADE_GLSL
+#include "light/source.glsl"
+
+/* The mirrored light of some lights' surfaces is shared between rays that meet them and the lobe. */
+layout(constant_id = 18) const bool masu_shared_lights = false;
 
 /* How far a point relative to the eye lies from the middle of a light that has a surface in the scene: below 1
  * within what the baker has fitted, a little more for what is rounded. */

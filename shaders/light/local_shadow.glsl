@@ -9,7 +9,7 @@
  * BIAS. The depth near / z of a plane is affine in the face. Each of the nine is compared with the surface's own
  * plane there where that rises towards the light, and with the point's depth where it falls: exact on a plane.
  * The atlas holds depths that are rounded away from the light; another tenth of a texel is for what normal and
- * depth of the point are rounded to.
+ * depth of the point are rounded to, and what the plane gains in an eighth of a texel across for what vertices are.
  */
 #ifndef MASU_LOCAL_SHADOW_GLSL
 #define MASU_LOCAL_SHADOW_GLSL
@@ -18,6 +18,7 @@ layout(set = MASU_SET_PASS, binding = MASU_AT_LOCAL_SHADOWS) uniform sampler2D l
 
 const float masu_local_steepest = 200.0; /* slope against the light that is still made up for: 0.3 degrees */
 const float masu_local_least_bias = 0.1; /* texels */
+const float masu_local_snap = 1.0 / 8.0; /* texels: how far rasterisers may move an edge across a face */
 
 /* Weights of the texels before, at and after the point; f: how far it is from its texel's centre. */
 vec3 masu_local_spline(float f)
@@ -102,8 +103,9 @@ float masu_light_seen(masu_punctual_light_data light, vec3 rel, vec3 n)
     float depth = near * inverse;
     float step = depth * width;
     float facing = min(dot(n, p) * inverse, -1.0 / masu_local_steepest);
-    float lit = masu_local_filter(at, depth + masu_local_least_bias * step, across * (step / facing),
-                                  uintBitsToFloat(masu_lights_header.z));
+    vec2 slope = across * (step / facing);
+    float bias = masu_local_least_bias * step + masu_local_snap * (abs(slope.x) + abs(slope.y));
+    float lit = masu_local_filter(at, depth + bias, slope, uintBitsToFloat(masu_lights_header.z));
     float fade = float(word >> MASU_LOCAL_FADE_SHIFT & 15u) * (1.0 / float(MASU_LOCAL_FADE));
     return lit * fade + (1.0 - fade);
 }

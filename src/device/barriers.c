@@ -203,7 +203,8 @@ void masu_memory_barrier(masu_recorder *rec, VkPipelineStageFlags from, VkAccess
 /* An image that outlives the frame begins it as the one before has left it, except where nothing of
  * it is needed any more. */
 void masu_find_persistent(masu_recorder *rec) {
-    int all = rec->variant + 1 == rec->rp->variants;
+    int all = 1;
+    for (uint32_t k = 0; k < rec->rp->cascades; k++) all = all && masu_variant_draws(rec->rp, rec->variant, k);
     for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
         if (!rec->m->plan->images[i].persistent || (all && !masu_images[i].kept)) continue;
         rec->states[i] = masu_use_of(MASU_READ, MASU_PASS_COMPUTE);

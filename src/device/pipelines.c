@@ -393,7 +393,7 @@ static VkResult create_graphics_pipeline(masu_device *m, uint32_t pass,
             .stage = i ? VK_SHADER_STAGE_FRAGMENT_BIT : VK_SHADER_STAGE_VERTEX_BIT,
             .module = modules[i],
             .pName = "main",
-            .pSpecializationInfo = i || geometry == MASU_GEOMETRY_BLENDED ? &special : NULL};
+            .pSpecializationInfo = i || geometry == MASU_GEOMETRY_BLENDED || geometry == MASU_GEOMETRY_SPRITES ? &special : NULL};
     }
     VkVertexInputBindingDescription bindings[] = {
         {0, sizeof(masu_blob_vertex), VK_VERTEX_INPUT_RATE_VERTEX},

@@ -49,7 +49,7 @@ uint64_t masu_pool_key(const masu_device *m, uint32_t pass, const masu_code code
             masu_has_set(pass) && (masu_access_binds(access, 0) || masu_access_binds(access, 1));
         int attached = access.usage == MASU_WRITE_COLOR || access.usage == MASU_BLEND_COLOR ||
                        access.usage == MASU_UPDATE_COLOR || access.usage == MASU_WRITE_DEPTH ||
-                       access.usage == MASU_UPDATE_DEPTH;
+                       access.usage == MASU_UPDATE_DEPTH || access.usage == MASU_KEEP_DEPTH;
         if (bound || attached) key = add(key, access.usage);
         /* Shaders know the formats of what they store. */
         if (attached) key = add(key, (uint64_t)masu_images[access.image].format);

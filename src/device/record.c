@@ -88,6 +88,10 @@ static void record_compute(masu_recorder *rec, uint32_t pass, VkDescriptorSet se
                                 rec->flight * rec->m->plan->buffers[MASU_BUFFER_BOUNCE].stride +
                                     (rays ? offsetof(struct masu_bounce_header, rays)
                                           : offsetof(struct masu_bounce_header, probes)));
+    } else if (masu_passes[pass].extent == MASU_EXTENT_LOCAL_SDF) {
+        VkDeviceSize slot = rec->flight * rec->m->plan->buffers[MASU_BUFFER_LOCAL_FACES].stride;
+        vk->CmdDispatchIndirect(rec->cmd, rec->m->objects.buffers[MASU_BUFFER_LOCAL_FACES],
+                                slot + offsetof(struct masu_local_face_uniforms, groups));
     } else if (tiles != MASU_BUFFER_COUNT) {
         vk->CmdDispatchIndirect(rec->cmd, rec->m->objects.buffers[tiles], 0);
     } else {
@@ -631,6 +635,13 @@ static masu_result record_split(masu_recorder *rec, uint32_t *part, masu_detail 
     return MASU_OK;
 }
 
+/* Whether the variant runs a pass that not every frame needs. */
+static int is_drawn(const masu_recorder *rec, uint32_t pass) {
+    if (masu_is_cascade(pass)) return masu_variant_draws(rec->rp, rec->variant, pass - MASU_PASS_CASCADE_0);
+    if (!masu_is_of_faces(pass)) return 1;
+    return masu_variant_draws(rec->rp, rec->variant, MASU_DRAWN_FACES);
+}
+
 masu_result masu_record_frame(masu_recorder *rec, const VkDescriptorSet *sets,
                               masu_detail *detail) {
     const masu_device *m = rec->m;
@@ -646,9 +657,7 @@ masu_result masu_record_frame(masu_recorder *rec, const VkDescriptorSet *sets,
     masu_find_persistent(rec);
     timestamp(rec, 0);
     for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
-        int drawn = !masu_is_cascade(p) ||
-                    masu_variant_draws(rec->rp, rec->variant, p - MASU_PASS_CASCADE_0);
-        if (masu_has_pass(&rec->rp->active, p) && drawn) {
+        if (masu_has_pass(&rec->rp->active, p) && is_drawn(rec, p)) {
             begin_label(rec, masu_passes[p].name);
             masu_barrier_before(rec, p);
             if (masu_passes[p].kind == MASU_PASS_GRAPHICS) record_graphics(rec, p, sets);

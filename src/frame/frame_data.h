@@ -27,6 +27,7 @@ typedef struct masu_frame_data {
     masu_light light; /* with defaults */
     struct masu_frame_uniforms u;
     uint32_t cascades; /* bit per cascade of the shadow map that it draws */
+    uint32_t faces;    /* 1: it renders shadow faces of punctual lights */
 } masu_frame_data;
 
 /* The previous frame, of no length where nothing reads velocities. It is kept here and not on the device,

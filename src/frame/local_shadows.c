@@ -149,6 +149,7 @@ void masu_local_shadows_begin(masu_local_shadows *s, const masu_frame_data *f) {
     /* Where there are none, casters are not followed. */
     if (s->empty || !s->most) forget(s, f->plan);
     for (uint32_t k = 0; s->empty && k < f->plan->scene.instances; k++) s->boxes[k][3] = -1.0f;
+    s->since = f->desc.cut || s->empty ? 0 : s->since + (s->since < MASU_SHADOW_CUT);
     s->empty = 0;
     s->wish.count = 0;
     for (uint32_t slot = 0; slot < s->capacity; slot++) s->choice[slot].offered = 0;
@@ -261,6 +262,28 @@ static void follow_casters(masu_local_shadows *s, const masu_instances *in, cons
     }
 }
 
+/* The SDF, as one caster that moves with each change of what its field depends on. */
+static void follow_sdf(masu_local_shadows *s, const masu_frame_data *f) {
+    s->sdf_box[3] = -1.0f;
+    if (!f->plan->needs.sdf_casts) return;
+    for (uint32_t k = 0; k < 3; k++) {
+        double low = (double)f->u.sdf_low[k] + f->eye[k], high = (double)f->u.sdf_high[k] + f->eye[k];
+        s->sdf_box[k] = (float)(0.5 * (low + high));
+        s->sdf_box[3 + k] = (float)(0.5 * (high - low) * 1.0001);
+    }
+    uint64_t hash = masu_fnv1a64(f->u.anchor, 3 * sizeof *f->u.anchor);
+    if (f->plan->needs.dynamic) {
+        hash ^= masu_fnv1a64(f->u.sdf_params, sizeof f->u.sdf_params);
+        hash = hash * 31 + masu_fnv1a64(&f->u.eye_hi[3], sizeof f->u.eye_hi[3]); /* time */
+    }
+    if (hash != s->sdf_hash) touch_faces(s, s->sdf_box, f->number);
+    s->sdf_hash = hash;
+}
+
+static int sdf_reaches(const masu_local_shadows *s, const masu_local_light *light, const masu_local_face *face) {
+    return s->sdf_box[3] >= 0.0f && touches(light, face, s->sdf_box);
+}
+
 /* ---- Rendering ------------------------------------------------------------------------------- */
 
 /* What a face sees, into the lists and counts of a slot of the frame: always the finest form. Returns how many. */
@@ -268,6 +291,7 @@ static uint32_t list_casters(masu_local_shadows *s, const masu_instances *in, co
                              const masu_frame_data *f, const masu_local_light *light, const masu_local_face *face,
                              uint32_t number) {
     const masu_scene_data *scene = &f->plan->scene;
+    if (!f->plan->needs.raster) return 0;
     masu_cull_set set = masu_bounds_set(bounds, scene);
     masu_cull_counts counts = {0, 0};
     masu_cull(&set, &face->view, s->group_states, s->marks, 1, &counts);
@@ -298,6 +322,7 @@ static uint32_t list_casters(masu_local_shadows *s, const masu_instances *in, co
 }
 
 static void clear_draws(const masu_frame_data *f, uint32_t number) {
+    if (!f->plan->needs.raster) return;
     VkDrawIndexedIndirectCommand *draws = draws_of(f->device, f->slot, number);
     for (uint32_t d = 0; d < f->plan->draws; d++) draws[d].instanceCount = 0;
 }
@@ -323,6 +348,14 @@ static void write_face(const masu_local_light *light, const masu_local_face *fac
     u->tile[number][2] = face->tile.size;
 }
 
+/* Those of the pass that marches the SDF go over all such faces of the frame. */
+static void take_groups(const masu_local_face *face, uint32_t number, struct masu_local_face_uniforms *u) {
+    uint32_t across = (face->tile.size + MASU_GROUP - 1) / MASU_GROUP;
+    if (u->groups[0] < across) u->groups[0] = u->groups[1] = across;
+    u->groups[2] = number + 1;
+    u->tile[number][3] = 1;
+}
+
 /* A tile of the size that is wanted, or of a smaller one; its own if it has that. 0: there is no room. */
 static int find_tile(masu_local_shadows *s, const masu_local_light *light, masu_local_face *face) {
     if (face->tile.size == light->size) return 1;
@@ -331,6 +364,21 @@ static int find_tile(masu_local_shadows *s, const masu_local_light *light, masu_
     for (uint32_t size = light->size; size >= MASU_LOCAL_TILE_LEAST && !face->tile.size; size /= 2)
         face->tile = masu_shadow_tile_take(&s->tiles, size);
     return face->tile.size != 0;
+}
+
+/* By the sphere around what a face of a cube reaches: a point light that moves may have more faces than the budget. */
+static void find_seen(masu_local_shadows *s, const masu_frame_data *f) {
+    for (uint32_t slot = 0; slot < s->capacity; slot++) {
+        const masu_local_light *light = &s->lights[slot];
+        for (uint32_t i = 0; i < MASU_LOCAL_FACES; i++) {
+            masu_local_face *face = &s->lights[slot].faces[i];
+            float bound[4] = {0, 0, 0, (float)(0.8166 * light->range)};
+            if (!face->due) continue;
+            for (uint32_t k = 0; k < 3; k++)
+                bound[k] = (float)(light->position[k] - f->eye[k] + 0.5774 * light->range * face->axis[2][k]);
+            face->seen = (uint8_t)(light->tangent > 0.0 || !masu_light_outside(bound, f->u.clip_from_rel));
+        }
+    }
 }
 
 /* The face that waits for longest; MASU_LOCAL_FACES * capacity: none is due. */
@@ -342,7 +390,10 @@ static uint32_t next_due(const masu_local_shadows *s, const uint8_t *skip) {
         if (best != none) {
             const masu_local_face *other = &s->lights[best / MASU_LOCAL_FACES].faces[best % MASU_LOCAL_FACES];
             double score = s->choice[i / MASU_LOCAL_FACES].score, than = s->choice[best / MASU_LOCAL_FACES].score;
-            if (face->since > other->since || (face->since == other->since && score <= than)) continue;
+            if (face->since != other->since ? face->since > other->since
+                : face->seen != other->seen ? face->seen < other->seen
+                                            : score <= than)
+                continue;
         }
         best = i;
     }
@@ -364,13 +415,21 @@ static void set_ready(masu_local_shadows *s, masu_local_slot *stats) {
             ready = ready && (!face->used || face->drawn);
             stats->waiting += face->due;
         }
+        stats->waiting += s->choice[slot].light && !s->lights[slot].size; /* it has its slot since this frame */
         s->choice[slot].ready = ready;
         stats->lights += s->choice[slot].light != 0;
     }
 }
 
-void masu_local_shadows_write(masu_local_shadows *s, const masu_instances *in, const masu_bounds *bounds,
-                              const masu_frame_data *f) {
+/* Of how far shadows are faded in: another number as soon as one differs, as good as always. */
+static uint32_t faded(const masu_local_shadows *s) {
+    uint32_t sum = 0;
+    for (uint32_t slot = 0; slot < s->capacity; slot++) sum = 31 * sum + s->choice[slot].fade;
+    return sum;
+}
+
+int masu_local_shadows_write(masu_local_shadows *s, const masu_instances *in, const masu_bounds *bounds,
+                             masu_frame_data *f) {
     masu_local_slot *stats = &s->slots[f->slot];
     uint32_t budget = s->most ? masu_frame_rung(f)->local_shadow_faces : 0, number = 0;
     uint8_t skip[MASU_SHADOW_LIGHTS_MAX * MASU_LOCAL_FACES];
@@ -378,9 +437,12 @@ void masu_local_shadows_write(masu_local_shadows *s, const masu_instances *in, c
     memset(stats, 0, sizeof *stats);
     memset(&out, 0, sizeof out);
     memset(skip, 0, sizeof skip);
-    masu_shadow_choose(s->choice, s->capacity, s->most, &s->wish, f->desc.cut != 0, free_slot, s);
+    uint32_t before = faded(s), changed = 0;
+    masu_shadow_choose(s->choice, s->capacity, s->most, &s->wish, s->since, free_slot, s);
     place_lights(s);
     follow_casters(s, in, bounds, f);
+    follow_sdf(s, f);
+    find_seen(s, f);
     /* Faces in which nothing is cost no rendering, but they have to be found out. */
     for (uint32_t looked = 0; number < budget && looked < 4 * budget; looked++) {
         uint32_t i = next_due(s, skip);
@@ -388,9 +450,11 @@ void masu_local_shadows_write(masu_local_shadows *s, const masu_instances *in, c
         masu_local_light *light = &s->lights[i / MASU_LOCAL_FACES];
         masu_local_face *face = &light->faces[i % MASU_LOCAL_FACES];
         skip[i] = 1;
-        if (!list_casters(s, in, bounds, f, light, face, number)) {
+        int reached = sdf_reaches(s, light, face);
+        if (!list_casters(s, in, bounds, f, light, face, number) && !reached) {
             masu_shadow_tile_give(&s->tiles, &face->tile);
         } else if (find_tile(s, light, face)) {
+            if (reached) take_groups(face, number, &out);
             write_face(light, face, f->plan->local_tile, number++, &out);
         } else {
             face->drawn = 0;
@@ -398,15 +462,20 @@ void masu_local_shadows_write(masu_local_shadows *s, const masu_instances *in, c
         }
         face->due = 0;
         face->drawn = 1;
+        changed = 1;
     }
     stats->faces = number;
+    set_ready(s, stats);
+    f->faces = number != 0;
+    changed |= faded(s) != before;
+    if (!f->faces) return (int)changed; /* the recording without the passes that read the rest */
     for (uint32_t k = number; k < f->plan->local_faces; k++) clear_draws(f, k);
     out.square[0] = f->plan->local_tile;
     out.square[1] = f->plan->local_faces < 4 ? f->plan->local_faces : 4;
     out.square[2] = f->plan->local_atlas;
     out.square[3] = number;
     memcpy(masu_frame_slot(f, MASU_BUFFER_LOCAL_FACES), &out, sizeof out);
-    set_ready(s, stats);
+    return 1;
 }
 
 void masu_local_shadows_of(const masu_local_shadows *s, uint32_t light, masu_uvec4 out[2]) {

@@ -7,7 +7,8 @@
  * has moved, appeared or gone, and when it is to have another size. A face in which nothing can cast a shadow has no
  * tile.
  *
- * BUDGET. At most rung.local_shadow_faces are rendered per frame, those that wait for longest first. A face that
+ * BUDGET. At most rung.local_shadow_faces are rendered per frame, those that wait for longest first, then those in
+ * view, then those of the most important light. A face that
  * waits shows what it held, but if its light has moved: then it has no shadow until it is rendered.
  *
  * Written to the frame's slot: the faces to render and their draws. The words of each light go into
@@ -30,6 +31,7 @@ typedef struct masu_local_face {
     uint8_t used;    /* the light reaches into it */
     uint8_t due;     /* it is not as it would be rendered now */
     uint8_t drawn;   /* it is rendered, or nothing is in it; else nothing is to be read */
+    uint8_t seen;    /* some of what it reaches may be in the view of this frame */
 } masu_local_face;
 
 /* What a slot of the choice holds. */
@@ -53,9 +55,12 @@ typedef struct masu_local_shadows {
     uint32_t *slot_of_light;   /* [light]: 1 + its slot, 0: none */
     float (*boxes)[6];         /* [instance]: as of the last frame; half sizes below 0: it was hidden */
     uint8_t *group_states, *marks;
+    float sdf_box[6];          /* where the SDF that casts shadows may be; half sizes below 0: there is none */
+    uint64_t sdf_hash;         /* of what it depended on in the last frame */
     masu_shadow_tiles tiles;
     masu_shadow_wish wish;
     uint32_t most; /* lights that may have shadows in this frame */
+    uint32_t since; /* frames since the last cut */
     int empty;     /* nothing is kept: neither slots nor boxes */
     masu_local_slot slots[MASU_MAX_FLIGHT];
 } masu_local_shadows;
@@ -69,9 +74,9 @@ void masu_local_shadows_begin(masu_local_shadows *s, const masu_frame_data *f);
 void masu_local_shadows_offer(masu_local_shadows *s, const masu_frame_data *f, uint32_t light,
                               const masu_punctual_light_state *state, const double position[3],
                               const double direction[3]);
-/* Before masu_instances_write. */
-void masu_local_shadows_write(masu_local_shadows *s, const masu_instances *in, const masu_bounds *bounds,
-                              const masu_frame_data *f);
+/* Before masu_instances_write. Returns whether a shadow may look other than in the last frame. */
+int masu_local_shadows_write(masu_local_shadows *s, const masu_instances *in, const masu_bounds *bounds,
+                             masu_frame_data *f);
 
 /* masu_punctual_light_data.shadow of a light. */
 void masu_local_shadows_of(const masu_local_shadows *s, uint32_t light, masu_uvec4 out[2]);

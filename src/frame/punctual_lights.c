@@ -70,6 +70,18 @@ static void carry(const masu_instances *in, masu_punctual_light_state *s, double
     s->radius = (float)fmin(fmax((double)s->radius * size, 1e-6), 1e9);
 }
 
+/* How far a particle that is seen reaches from its middle, where it is lit. */
+static float reach_of_particles(const masu_frame_data *f) {
+    float reach = 0.0f;
+    for (uint32_t i = 0; i < f->desc.particle_count; i++) {
+        const masu_particle *p = &f->desc.particles[i];
+        if (!(p->flags & MASU_PARTICLE_LIT)) continue;
+        float high = p->half_height > 0.0f ? p->half_height : p->half_width;
+        reach = fmaxf(reach, p->half_width + high);
+    }
+    return reach;
+}
+
 /* Whether a light is there in this frame; where, if it is. */
 static int is_there(const masu_lights *l, const masu_instances *in, uint32_t i,
                     masu_punctual_light_state *state, double position[3], double direction[3]) {
@@ -81,8 +93,8 @@ static int is_there(const masu_lights *l, const masu_instances *in, uint32_t i,
     return 1;
 }
 
-void masu_lights_cast(const masu_lights *l, masu_local_shadows *shadows, const masu_instances *in,
-                      const masu_bounds *bounds, const masu_frame_data *f) {
+void masu_lights_cast(masu_lights *l, masu_local_shadows *shadows, const masu_instances *in,
+                      const masu_bounds *bounds, masu_frame_data *f) {
     if (!f->plan->needs.local_shadows) return;
     masu_local_shadows_begin(shadows, f);
     for (uint32_t i = 0; i < f->plan->scene.lights; i++) {
@@ -91,7 +103,7 @@ void masu_lights_cast(const masu_lights *l, masu_local_shadows *shadows, const m
         if (l->states[i].no_shadow || !is_there(l, in, i, &state, position, direction)) continue;
         masu_local_shadows_offer(shadows, f, i, &state, position, direction);
     }
-    masu_local_shadows_write(shadows, in, bounds, f);
+    l->changes += masu_local_shadows_write(shadows, in, bounds, f) != 0;
 }
 
 void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_local_shadows *shadows,
@@ -102,6 +114,7 @@ void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_loca
     if (f->plan->local_atlas) header.atlas_texel = 1.0f / (float)f->plan->local_atlas;
     /* Lights outside of the view may light reflected surfaces, and what probes see. */
     int culls = masu_frame_rung(f)->frustum != MASU_OFF && !f->plan->needs.reflections && !f->plan->needs.bounce;
+    float reach = culls ? reach_of_particles(f) : 0.0f;
     unsigned char *to = masu_frame_slot(f, MASU_BUFFER_LIGHTS);
     struct masu_punctual_light_data *data =
         (struct masu_punctual_light_data *)(void *)(to + sizeof header);
@@ -112,7 +125,8 @@ void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_loca
         if (!is_there(l, in, i, &state, position, direction)) continue;
         for (uint32_t k = 0; k < 3; k++) position[k] -= f->eye[k];
         if (!masu_light_place(&state, position, direction, &placed)) continue;
-        if (culls && masu_light_outside(placed.bound, f->u.clip_from_rel)) continue;
+        float bound[4] = {placed.bound[0], placed.bound[1], placed.bound[2], placed.bound[3] + reach};
+        if (culls && masu_light_outside(bound, f->u.clip_from_rel)) continue;
         if (f->plan->needs.local_shadows) masu_local_shadows_of(shadows, i, placed.shadow);
         data[header.count++] = placed;
     }

@@ -16,7 +16,7 @@ typedef struct masu_lights {
     masu_punctual_light_state *states;
     uint64_t *names;                      /* FNV-1a 64 of the name, 0: none */
     uint32_t slot_count[MASU_MAX_FLIGHT]; /* in view */
-    uint32_t changes;                     /* how often one was set */
+    uint32_t changes;                     /* how often one was set, or its shadow has changed */
     int any_areas, any_surfaces;          /* needs.area_lights, needs.shared_lights */
     uint32_t *lives;                      /* of the reserve */
     masu_handles handles;
@@ -43,8 +43,9 @@ void masu_lights_remove(masu_lights *l, uint32_t light);
 void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_local_shadows *shadows,
                        const masu_frame_data *f);
 
-/* Finds the lights that may cast shadows in this frame, and lets masu_local_shadows_write do the rest. */
-void masu_lights_cast(const masu_lights *l, masu_local_shadows *shadows, const masu_instances *in,
-                      const masu_bounds *bounds, const masu_frame_data *f);
+/* Finds the lights that may cast shadows in this frame, and lets masu_local_shadows_write do the rest. After the camera,
+ * before masu_temporal_read. */
+void masu_lights_cast(masu_lights *l, masu_local_shadows *shadows, const masu_instances *in,
+                      const masu_bounds *bounds, masu_frame_data *f);
 
 #endif

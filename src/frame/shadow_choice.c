@@ -50,9 +50,10 @@ static uint32_t victim_of(const masu_shadow_slot *slots, uint32_t count, const m
     return victim;
 }
 
-void masu_shadow_choose(masu_shadow_slot *slots, uint32_t count, uint32_t most, const masu_shadow_wish *wish, int cut,
+void masu_shadow_choose(masu_shadow_slot *slots, uint32_t count, uint32_t most, const masu_shadow_wish *wish, uint32_t since,
                         void (*left)(void *user, uint32_t slot), void *user) {
     uint32_t waiting = 0, used = 0, leaving = 0;
+    int cut = since == 0;
     for (uint32_t i = 0; i < wish->count; i++) waiting += slot_of(slots, count, wish->light[i]) == count;
     for (uint32_t s = 0; s < count; s++) {
         masu_shadow_slot *slot = &slots[s];
@@ -74,7 +75,8 @@ void masu_shadow_choose(masu_shadow_slot *slots, uint32_t count, uint32_t most, 
         masu_shadow_slot *slot = &slots[s];
         if (!slot->light) continue;
         if (!slot->leaves) {
-            if (slot->ready && slot->fade < MASU_LOCAL_FADE) slot->fade++;
+            if (slot->ready && slot->fade < MASU_LOCAL_FADE)
+                slot->fade = since < MASU_SHADOW_CUT ? MASU_LOCAL_FADE : slot->fade + 1;
             continue;
         }
         slot->fade = cut || !slot->fade ? 0 : slot->fade - 1;

@@ -12,6 +12,7 @@
 #define MASU_SHADOW_HYSTERESIS 1.5
 #define MASU_SHADOW_UNSEEN 0.3 /* factor of what is outside of the view */
 #define MASU_SHADOW_HOLD 30u   /* frames */
+#define MASU_SHADOW_CUT 16u    /* frames after a cut in which shadows come without a fade: no one has seen them off */
 #define MASU_SHADOW_LIGHTS_MAX 256u /* with shadows at a time, in all viewports */
 
 /* A light with a shadow. */
@@ -37,9 +38,9 @@ double masu_shadow_score(const float color[3], double range, double distance);
 /* Adds a light (1 + its number) if it is among the `most` of the highest scores. */
 void masu_shadow_wish_add(masu_shadow_wish *wish, uint32_t most, uint32_t light, double score);
 
-/* The next frame: lights fade, leave slots and take slots. `most`: slots that may be used. cut: the camera has jumped;
- * nobody sees what pops. `left` is called for each slot whose light has lost it. */
-void masu_shadow_choose(masu_shadow_slot *slots, uint32_t count, uint32_t most, const masu_shadow_wish *wish, int cut,
+/* The next frame: lights fade, leave slots and take slots. `most`: slots that may be used. since: frames since the last
+ * cut, 0: in this one nobody sees what pops. `left` is called for each slot whose light has lost it. */
+void masu_shadow_choose(masu_shadow_slot *slots, uint32_t count, uint32_t most, const masu_shadow_wish *wish, uint32_t since,
                         void (*left)(void *user, uint32_t slot), void *user);
 
 #endif

@@ -50,6 +50,8 @@ static void resolve_shadow(masu_frame_plan *plan, uint32_t r) {
         rp->slow |= 1u << k;
         rp->variants *= 2;
     }
+    rp->faces = plan->needs.on.local_shadows;
+    if (rp->faces) rp->variants *= 2;
     plan->images[MASU_IMAGE_SHADOW_MAP].persistent |= rp->slow != 0;
     plan->needs.cascades = rp->cascades;
     rp->first_recording = plan->recordings;
@@ -215,7 +217,7 @@ static int is_of_use(const masu_desc *d, uint32_t r, masu_knob_use use) {
     case MASU_USE_AO: return s && s->occlusion_radius > 0.0f;
     case MASU_USE_SHADOWS: return s && s->shadow_cascades;
     case MASU_USE_LIGHTS: return s && s->lights;
-    case MASU_USE_LOCAL_SHADOWS: return s && s->shadow_lights && s->instances;
+    case MASU_USE_LOCAL_SHADOWS: return s && s->shadow_lights && (s->instances || s->sdf_casts);
     case MASU_USE_SPECULAR: return masu_could_trace(d->scene, &d->rungs[r]);
     case MASU_USE_BOUNCE: return s && s->bounce;
     case MASU_USE_ALWAYS:
@@ -333,6 +335,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                               (plan->scene.area_lights || d->area_lights),
                                .shared_lights = d->scene && plan->scene.lights &&
                                                 (plan->scene.surface_lights || d->area_lights),
+                               .sdf_casts = d->scene && any.local_shadows && plan->scene.sdf_casts,
                                .surface = d->scene && plan->scene.instances && plan->scene.surfaces,
                                .environment = d->scene && plan->scene.environment_size,
                                .sky = d->scene && (plan->scene.analytic_sky || d->analytic_sky),

@@ -82,7 +82,7 @@ static const char *no_shadow_map(const masu_needs *n) {
 
 static const char *no_local_shadows(const masu_needs *n) {
     return n->local_shadows ? "rung.local_shadows is off"
-           : n->lights      ? "no punctual light casts shadows of polygons, or rung.local_shadows is off"
+           : n->lights      ? "no punctual light casts shadows, or rung.local_shadows is off"
                             : "the scene has no punctual lights";
 }
 
@@ -174,6 +174,11 @@ int masu_usage_writes(masu_usage usage) { return usage >= MASU_WRITE; }
 
 int masu_is_cascade(uint32_t pass) {
     return masu_passes[pass].geometry == MASU_GEOMETRY_CASCADE;
+}
+
+int masu_is_of_faces(uint32_t pass) {
+    masu_image_extent extent = masu_passes[pass].extent;
+    return extent == MASU_EXTENT_LOCAL_FACES || extent == MASU_EXTENT_LOCAL_SDF || extent == MASU_EXTENT_LOCAL_ATLAS;
 }
 
 int masu_has_set(uint32_t pass) {

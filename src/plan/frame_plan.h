@@ -69,6 +69,7 @@ typedef enum masu_image_extent {
     MASU_EXTENT_PICK,    /* the 2x2 pixels with the one that is picked */
     MASU_EXTENT_SHADOW,  /* all cascades of the shadow map; plan.c knows how large */
     MASU_EXTENT_LOCAL_FACES, /* the local_shadow_faces squares that a frame renders; likewise */
+    MASU_EXTENT_LOCAL_SDF,   /* an invocation per texel of the due faces that the SDF reaches: indirect, by the host */
     MASU_EXTENT_LOCAL_ATLAS  /* the atlas that keeps them; likewise */
 } masu_image_extent;
 
@@ -170,6 +171,7 @@ typedef struct masu_needs {
     int lights;        /* there are local lights, */
     int area_lights;   /* among them perhaps capsules or rectangles, */
     int shared_lights; /* and perhaps some whose surfaces are in the scene */
+    int sdf_casts;     /* the SDF casts their shadows */
     int local_shadows; /* and some cast shadows in some rung: there is an atlas */
     int shadow;        /* polygons cast shadows of the sun: there is a shadow map */
     int transparents;  /* something is blended */
@@ -267,6 +269,8 @@ int masu_usage_writes(masu_usage usage);
 
 /* Whether it is a cascade of the shadow map: it does not run in every frame. */
 int masu_is_cascade(uint32_t pass);
+/* The same of the passes that render shadow faces of punctual lights. */
+int masu_is_of_faces(uint32_t pass);
 
 /* Whether a rung of such needs has an image: the last column but one of images.inc. */
 int masu_has_image(const masu_needs *needs, uint32_t image);

@@ -75,12 +75,13 @@ uint32_t masu_recording_variant(const masu_rung_plan *rung, uint32_t drawn) {
     for (uint32_t k = 0; k < rung->cascades; k++) {
         if (rung->slow & 1u << k) variant |= (drawn >> k & 1u) << bit++;
     }
-    return variant;
+    return rung->faces ? variant | (drawn >> MASU_DRAWN_FACES & 1u) << bit : variant;
 }
 
-int masu_variant_draws(const masu_rung_plan *rung, uint32_t variant, uint32_t cascade) {
-    uint32_t only = 1u << cascade;
-    if (cascade >= rung->cascades) return 0;
+int masu_variant_draws(const masu_rung_plan *rung, uint32_t variant, uint32_t what) {
+    uint32_t only = 1u << what;
+    if (what == MASU_DRAWN_FACES) return rung->faces && (masu_recording_variant(rung, only) & variant) != 0;
+    if (what >= rung->cascades) return 0;
     return !(rung->slow & only) || (masu_recording_variant(rung, only) & variant) != 0;
 }
 

@@ -31,8 +31,10 @@ typedef struct masu_rung_plan {
     uint32_t render_width, render_height;
     uint32_t cascades, cascade_size; /* of the shadow map; 0: none */
     uint32_t slow; /* bit per cascade that is not drawn in every frame */
-    /* A recording for each set of slow cascades, per target; the last draws them all. */
+    /* A recording for each set of slow cascades, with and without shadow faces of punctual lights, per target; the
+     * last draws them all. */
     uint32_t variants, first_recording;
+    int faces; /* it may render such faces */
     masu_pass_set active;
     uint32_t access_count[MASU_PASS_COUNT];
     masu_access access[MASU_PASS_COUNT][MASU_PASS_ACCESSES]; /* stand-ins resolved */
@@ -184,10 +186,12 @@ static inline uint32_t masu_own_traced(const masu_frame_plan *p) {
 VkOffset2D masu_cascade_place(const masu_frame_plan *plan, uint32_t cascade);
 /* Where the square of one of the frame's shadow faces of punctual lights lies. */
 VkOffset2D masu_local_face_place(const masu_frame_plan *plan, uint32_t face);
-/* Bits over a rung's slow cascades only, out of bits over all: the variant that draws them. */
+/* What a frame may leave out: the bit of a cascade, or of all shadow faces of punctual lights. */
+#define MASU_DRAWN_FACES MASU_CASCADES_MAX
+/* Bits over what a rung may leave out only, out of bits over all: the variant that draws it. */
 uint32_t masu_recording_variant(const masu_rung_plan *rung, uint32_t drawn);
-/* Whether a variant of a rung's recordings draws a cascade. */
-int masu_variant_draws(const masu_rung_plan *rung, uint32_t variant, uint32_t cascade);
+/* Whether a variant of a rung's recordings draws a cascade, or MASU_DRAWN_FACES. */
+int masu_variant_draws(const masu_rung_plan *rung, uint32_t variant, uint32_t what);
 /* Whether a pass reads an image in any rung that runs it. */
 int masu_reads(const masu_frame_plan *plan, uint32_t pass, masu_image_id image);
 /* The first rung that runs a pass, which speaks for all of them: which images stand behind its bindings may

@@ -25,7 +25,7 @@
 
 #define MASU_BLOB_MAGIC 0x5553414Du /* the bytes 'M' 'A' 'S' 'U' */
 #define MASU_BLOB_VERSION 16u
-/* layout of version 16: 650198991 (kinds of sections and their elements, tests/scripts/scene_forms.sh) */
+/* layout of version 16: 1838381741 (kinds of sections and their elements, tests/scripts/scene_forms.sh) */
 #define MASU_BLOB_ALIGN 16u
 #define MASU_BLOB_NONE 0xFFFFFFFFu /* "no name", "no parent" */
 #define MASU_BLOB_PART_SLOTS 8u    /* of an SDF's part, in front of all others: sphere, slope, form, first argument, material */
@@ -88,7 +88,8 @@ enum masu_blob_kind {
     MASU_BLOB_JOINTS = 55,   /* by skin; those of one kind share them */
     MASU_BLOB_SKIN_VERTICES = 56, /* the same */
     MASU_BLOB_BOUNCE_SDF_SPIRV = 57, /* rays of live probes meet the SDF */
-    MASU_BLOB_KIND_COUNT = 58
+    MASU_BLOB_LOCAL_SHADOW_SPIRV = 58, /* the SDF casts shadows of punctual lights */
+    MASU_BLOB_KIND_COUNT = 59
 };
 
 /* Four texels by four make a block. sRGB formats hold display-encoded colour. */

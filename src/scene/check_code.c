@@ -41,6 +41,7 @@ static const struct {
      FIELD | AT(SPECULAR_TILES) | AT(PREVIOUS)},
     {MASU_BLOB_BOUNCE_SDF_SPIRV, 8, 8, 0, 0, 0, PUSH(bounce_sdf),
      FIELD | AT(PROBES) | AT(BOUNCE) | AT(BOUNCE_RAYS)},
+    {MASU_BLOB_LOCAL_SHADOW_SPIRV, 8, 8, 0, 0, 1, sizeof(struct masu_push), FIELD | AT(LOCAL_FACES)},
 };
 _Static_assert(MASU_BIND_COUNT <= 64, "a bit for each binding of set 0");
 
@@ -48,7 +49,8 @@ _Static_assert(MASU_BIND_COUNT <= 64, "a bit for each binding of set 0");
 static masu_module_class bound_at(uint32_t rule, uint32_t raster, uint32_t set, uint32_t binding) {
     if (set == MASU_SET_GLOBAL) {
         if (binding >= MASU_BIND_COUNT || !(rules[rule].global >> binding & 1u)) return MASU_MODULE_NOTHING;
-        return binding == MASU_BIND_FRAME || binding == MASU_BIND_PREVIOUS || binding == MASU_BIND_SKY ? MASU_MODULE_UNIFORMS : MASU_MODULE_STORAGE;
+        const uint64_t uniforms = AT(FRAME) | AT(PREVIOUS) | AT(SKY) | AT(LOCAL_FACES);
+        return uniforms >> binding & 1u ? MASU_MODULE_UNIFORMS : MASU_MODULE_STORAGE;
     }
     uint32_t reads = raster ? rules[rule].raster_reads : rules[rule].reads;
     if (set != MASU_SET_PASS) return MASU_MODULE_NOTHING;

@@ -71,6 +71,7 @@ void masu_describe_sdf(const reader *r, masu_scene_data *out) {
     out->sdf_dynamic = r->view.code[MASU_BLOB_UPDATE_PREVIOUS_SPIRV].words != NULL;
     out->sdf_anchored = r->view.sdf->anchored;
     out->sdf_occlusion = r->view.code[MASU_BLOB_OCCLUSION_SPIRV].words != NULL;
+    out->sdf_casts = r->view.code[MASU_BLOB_LOCAL_SHADOW_SPIRV].words != NULL;
 #ifdef MASU_LAB
     static const struct {
         uint32_t kind;

@@ -41,6 +41,7 @@ static const section_rule rules[MASU_BLOB_KIND_COUNT] = {
     CODE(MASU_BLOB_OCCLUSION_SPIRV, "sdf_occlusion SPIR-V"),
     CODE(MASU_BLOB_TRACE_SDF_SPIRV, "specular_trace_sdf SPIR-V"),
     CODE(MASU_BLOB_BOUNCE_SDF_SPIRV, "bounce_sdf SPIR-V"),
+    CODE(MASU_BLOB_LOCAL_SHADOW_SPIRV, "local_shadow_sdf SPIR-V"),
     [MASU_BLOB_REFLECTIONS] = {"reflections", sizeof(masu_blob_reflections), 1, 0},
     [MASU_BLOB_TRACE_TEXTURES] = {"trace textures", sizeof(masu_blob_trace_texture),
                                   MASU_SECTION_MOST, 0},

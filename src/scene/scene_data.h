@@ -53,6 +53,7 @@ typedef struct MASU_MAY_ALIAS masu_scene_data {
     uint32_t sdf_march; /* bit per masu_march that the blob has code for */
 #endif
     uint32_t sdf_occlusion; /* flag: casts shadows or occludes ambient light */
+    uint32_t sdf_casts;     /* flag: casts shadows of punctual lights */
 
     /* Shadow map of the sun; all 0 without one or without instances. */
     uint32_t shadow_cascades;

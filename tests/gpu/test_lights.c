@@ -1,6 +1,7 @@
 /* test_lights.c: punctual lights. What a light without a size does to a pixel is what a sun of that direction and colour
  * would do, with both from the reference in double precision (tests/reference/lights.h); lists by
- * tile change no bit of any picture; nothing is out of bounds; what the host may set and what not. */
+ * tile change no bit of any picture; nothing is out of bounds; what the host may set and what not. Panes and
+ * particles are lit as well. */
 #include "support/files.h"
 #include "support/floats.h"
 #include "support/random.h"
@@ -30,6 +31,9 @@ static void add(const char *format, ...) {
 }
 
 static uint64_t seed;
+static int blends; /* scenes have panes and bubbles, frames particles */
+static masu_particle sparks[8];
+static uint64_t blend_seed;
 
 /* ---- Scenes ---------------------------------------------------------------------------------- */
 
@@ -48,6 +52,13 @@ static void begin_scene(double size) {
             i % 2 ? "box\": {\"size\": [1, 1.5, 1]}" : "sphere\": {\"subdivisions\": 3}", i,
             s * size, at[0] * size, at[1] * size, at[2] * size, random_between(&seed, 0, 1), random_between(&seed, 0, 1), random_between(&seed, 0, 1),
             random_between(&seed, 0, 1), i % 5 == 0);
+    }
+    for (int i = 0; i < 6 * blends; i++) {
+        add(", {\"mesh\": {\"%s}, \"scale\": %g, \"translate\": [%g, %g, %g], "
+            "\"material\": {\"roughness\": %g, \"opacity\": %g}}",
+            i % 2 ? "box\": {\"size\": [3, 3, 0.1]}" : "sphere\": {\"subdivisions\": 2}", random_between(&blend_seed, 0.5, 1.5) * size,
+            random_between(&blend_seed, -9, 9) * size, random_between(&blend_seed, 1, 5) * size, random_between(&blend_seed, -9, 9) * size,
+            random_between(&blend_seed, 0.1, 1), random_between(&blend_seed, 0, 0.9));
     }
     add("], \"ambient\": [0, 0, 0], \"sun\": {\"intensity\": 0}, "
         "\"sky\": {\"zenith\": [0, 0, 0], \"horizon\": [0, 0, 0]}, ");
@@ -111,12 +122,13 @@ static void open_pictures(pictures *p, const char *scene, uint32_t width, uint32
     d.desc.rungs[UNCULLED].frustum = MASU_OFF;
     for (uint32_t way = 0; way < WAYS; way++) d.desc.rungs[way].local_shadows = MASU_OFF; /* test_local_shadows.c */
     d.desc.debug.poison = 1;
+    d.desc.reserve.particles = blends ? 8 : 0;
     open_session(&p->s, &d);
 }
 
 static const uint16_t *take(pictures *p, const masu_camera *camera, const masu_light *sun,
                             uint32_t rung, masu_stats_info *stats) {
-    masu_frame_desc frame = {.camera = camera, .light = sun, .rung = rung};
+    masu_frame_desc frame = {.camera = camera, .light = sun, .rung = rung, .particles = sparks, .particle_count = blends ? 8 : 0};
     masu_commands commands;
     draw(&p->s, &frame, &commands, NULL);
     masu_stats_info own = stats_of(&p->s, commands.slot);
@@ -170,6 +182,14 @@ static void compare_ways(pictures *p, uint32_t lights, uint32_t frames, double s
         masu_stats_info stats[WAYS];
         c.near_distance = (float)near;
         set_random(p, lights, size);
+        for (int i = 0; i < 8 * blends; i++) {
+            sparks[i] = (masu_particle){.half_width = (float)(random_between(&blend_seed, 0.1, 2) * size),
+                                        .color = {1, 1, 1},
+                                        .opacity = 0.5f,
+                                        .flags = MASU_PARTICLE_LIT};
+            for (int k = 0; k < 3; k++)
+                sparks[i].position[k] = c.position[k] + 4 * size * (double)c.forward[k] + random_between(&blend_seed, -3, 3) * size;
+        }
         for (uint32_t way = 0; way < WAYS; way++) {
             memcpy(first[way], take(p, &c, NULL, way, &stats[way]), pixels * 8);
             if (memcmp(first[way], first[0], pixels * 8))
@@ -197,6 +217,26 @@ static void bake_many(const char *name, uint32_t lights, double size, double low
     bake_scene(name, json);
 }
 
+/* A light that is nearer than any surface of a tile, or before the sky, lights the pane between. */
+static void tiles_begin_at_the_near_plane(void **state) {
+    (void)state;
+    static uint16_t by_tiles[4 * 96 * 64];
+    pictures p;
+    used = 0;
+    add("{\"models\": [{\"mesh\": {\"box\": {\"size\": [8, 4, 1]}}, \"translate\": [0, -3, -20]}, "
+        "{\"mesh\": {\"box\": {\"size\": [9, 6, 0.01]}}, \"material\": {\"roughness\": 0.5, \"opacity\": 0.5}}], "
+        "\"ambient\": [0, 0, 0], \"sun\": {\"intensity\": 0}, "
+        "\"sky\": {\"zenith\": [0, 0, 0], \"horizon\": [0, 0, 0]}, "
+        "\"lights\": [{\"type\": \"point\", \"position\": [0, 0, 1], \"intensity\": 20, \"range\": 6}]}");
+    bake_scene("before", json);
+    open_pictures(&p, "before", 96, 64, 1);
+    masu_camera c = look(0, 0, 6, 0, 0, -1, 0.9);
+    memcpy(by_tiles, take(&p, &c, NULL, TILES, NULL), sizeof by_tiles);
+    assert_memory_equal(by_tiles, take(&p, &c, NULL, ALL_LIGHTS, NULL), sizeof by_tiles);
+    assert_true(lit_pixels(by_tiles, 96 * 64) > 96 * 64 * 3 / 4);
+    close_session(&p.s);
+}
+
 static void tiles_change_no_bit(void **state) {
     (void)state;
     static const struct {
@@ -213,6 +253,8 @@ static void tiles_change_no_bit(void **state) {
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         totals sum = {0};
         pictures p;
+        blends = i % 2 == 0;
+        blend_seed = 5;
         bake_many("many", cases[i].lights, cases[i].size, cases[i].low, cases[i].high);
         open_pictures(&p, "many", cases[i].width, cases[i].height, i == 1);
         seed = 100 + (uint32_t)i;
@@ -233,6 +275,7 @@ static void tiles_change_no_bit(void **state) {
         if (cases[i].lights == 200 && cases[i].low >= 10) assert_true(sum.full > 0);
         if (cases[i].lights == 1024) assert_true(sum.tests[TILES] * 4 < sum.tests[ALL_LIGHTS]);
     }
+    blends = 0;
 }
 
 /* ---- Against the truth ----------------------------------------------------------------------- */
@@ -275,9 +318,9 @@ typedef struct error {
     uint32_t compared, lit;
 } error_info;
 
-/* One light, by its own and pixel by pixel as a sun. */
+/* One light, by its own and pixel by pixel as a sun. pane: not 0: it is on z = 0, which is in no depth image. */
 static error_info compare_light(pictures *p, const masu_camera *c,
-                                const masu_punctual_light_state *state) {
+                                const masu_punctual_light_state *state, int pane) {
     static uint16_t local[4 * 256 * 256];
     static float depths[256 * 256];
     masu_punctual_light one = masu_punctual_light_at(p->s.m, 0), off = one;
@@ -289,6 +332,8 @@ static error_info compare_light(pictures *p, const masu_camera *c,
     assert_int_equal(masu_punctual_light_set(p->s.m, one, state), MASU_OK);
     memcpy(local, take(p, c, &sun, TILES, NULL), (size_t)p->width * p->height * 8);
     memcpy(depths, read_image(&p->s, 0, MASU_READBACK_DEPTH), (size_t)p->width * p->height * 4);
+    for (uint32_t i = 0; i < p->width * p->height && pane; i++)
+        depths[i] = (float)((double)c->near_distance / c->position[2]);
     assert_int_equal(masu_punctual_light_set(p->s.m, off, &dark), MASU_OK);
     for (uint32_t n = 0; n < 30; n++) {
         uint32_t x = (uint32_t)random_between(&seed, 0, p->width - 0.01), y = (uint32_t)random_between(&seed, 0, p->height - 0.01);
@@ -352,7 +397,7 @@ static void a_light_is_a_sun_of_its_direction(void **state) {
             s.color[k] = (float)(cases[i].color * (1 - 0.3 * k));
         }
         seed = 7 + (uint32_t)i;
-        error_info e = compare_light(&p, &c, &s);
+        error_info e = compare_light(&p, &c, &s, 0);
         print_message("%-28s largest error %.2e of %u components lit, %u pixels\n", cases[i].what,
                       e.most, e.lit, e.compared);
         assert_true(e.compared > 10);
@@ -371,6 +416,83 @@ static uint64_t picture_hash(pictures *p, const masu_camera *c, uint64_t *lit) {
     uint64_t n = lit_pixels(hdr, (uint64_t)p->width * p->height);
     if (lit) *lit = n;
     return masu_fnv1a64(hdr, (uint64_t)p->width * p->height * 8);
+}
+
+static masu_punctual_light_state lamp_at(double x, double y, double z, float color, float range) {
+    return (masu_punctual_light_state){.position = {x, y, z}, .color = {color, 0.5f * color, 0.25f * color}, .range = range, .radius = 0.01f};
+}
+
+static void a_pane_is_lit_as_by_a_sun_of_the_lights_direction(void **state) {
+    (void)state;
+    static const char *const kinds[] = {"\"opacity\": 0.5", "\"opacity\": 0.25, \"blend\": \"additive\"",
+                                        "\"opacity\": 0.5, \"metallic\": 1, \"coat\": 1"};
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        pictures p;
+        used = 0;
+        add("{\"models\": [{\"mesh\": {\"plane\": {\"size_x\": 40, \"size_z\": 40}}, \"rotate\": [90, 0, 0], "
+            "\"material\": {\"roughness\": 0.4, \"base_color\": [0.8, 0.6, 0.4], %s}}], "
+            "\"ambient\": [0, 0, 0], \"sun\": {\"intensity\": 0}, \"reflections\": false, "
+            "\"sky\": {\"zenith\": [0, 0, 0], \"horizon\": [0, 0, 0]}, ",
+            kinds[i]);
+        add_lights(1, 1, 1, 2);
+        bake_scene("pane", json);
+        open_pictures(&p, "pane", 96, 64, 1);
+        masu_camera c = look(0.5, 0.25, 4, 0, 0, -1, 0.9);
+        masu_punctual_light_state near = lamp_at(1, -0.5, 1, 8, 3), spot = lamp_at(-2, 1, 3, 30, 20);
+        spot.spot = 1, spot.inner = 0.2f, spot.outer = 0.5f;
+        spot.direction[0] = 2, spot.direction[1] = -1, spot.direction[2] = -3;
+        seed = 3;
+        error_info a = compare_light(&p, &c, &near, 1), b = compare_light(&p, &c, &spot, 1);
+        print_message("pane {%s}: off by %.1e and %.1e, %u and %u lit\n", kinds[i], a.most, b.most, a.lit, b.lit);
+        assert_true(a.lit > 20 && b.lit > 20 && a.most < 3e-3 && b.most < 3e-3);
+        close_session(&p.s);
+    }
+}
+
+/* The mean over all directions n of max(n.l, 0) is 1/4; the centre's light, also where it is out of view. */
+static void a_particle_scatters_a_quarter_of_each_light(void **state) {
+    (void)state;
+    static uint16_t culled[4 * 96 * 64];
+    pictures p;
+    blends = 1;
+    used = 0;
+    add("{\"models\": [{\"mesh\": {\"plane\": {\"size_x\": 1, \"size_z\": 1}}, \"translate\": [0, -9, 0]}], "
+        "\"ambient\": [0, 0, 0], \"sun\": {\"intensity\": 0}, "
+        "\"sky\": {\"zenith\": [0, 0, 0], \"horizon\": [0, 0, 0]}, ");
+    add_lights(2, 1, 1, 2);
+    bake_scene("spark", json);
+    open_pictures(&p, "spark", 96, 64, 1);
+    masu_camera c = look(0, 0, 6, 0, 0, -1, 0.9);
+    masu_punctual_light_state lights[2] = {lamp_at(1, 0.5, 0.25, 6, 4), lamp_at(-2, 1, 2, 20, 9)};
+    lights[1].spot = 1, lights[1].inner = 0.2f, lights[1].outer = 0.6f;
+    lights[1].direction[0] = 2, lights[1].direction[1] = -1, lights[1].direction[2] = -2;
+    for (uint32_t i = 0; i < 2; i++)
+        assert_int_equal(masu_punctual_light_set(p.s.m, masu_punctual_light_at(p.s.m, i), &lights[i]), MASU_OK);
+    memset(sparks, 0, sizeof sparks);
+    for (int far = 0; far < 2; far++) {
+        masu_particle spark = {.half_width = far ? 3 : 0.5f, .color = {0.5f, 1, 0.75f}, .opacity = 1, .edge = 1, .flags = MASU_PARTICLE_LIT};
+        spark.position[0] = far ? 6.5 : 0.2; /* the right side is at 4.4 */
+        sparks[0] = spark;
+        double want[3] = {0};
+        for (uint32_t i = 0; i < 2; i++) {
+            masu_ref_light r = reference_of(&lights[i]);
+            double l[3], color[3];
+            if (far) lights[i].position[0] = 7.5 + i, r.position[0] = 7.5 + i; /* behind it */
+            if (far) assert_int_equal(masu_punctual_light_set(p.s.m, masu_punctual_light_at(p.s.m, i), &lights[i]), MASU_OK);
+            masu_ref_light_reaches(&r, spark.position, l, color);
+            for (int k = 0; k < 3; k++) want[k] += 0.25 * (double)spark.color[k] * color[k];
+        }
+        memcpy(culled, take(&p, &c, NULL, TILES, NULL), sizeof culled);
+        assert_memory_equal(culled, take(&p, &c, NULL, ALL_LIGHTS, NULL), sizeof culled);
+        assert_memory_equal(culled, take(&p, &c, NULL, UNCULLED, NULL), sizeof culled);
+        const uint16_t *is = culled + 4 * (32 * 96 + (far ? 94 : 49));
+        for (int k = 0; k < 3; k++) {
+            if (!(want[k] > 0.01) || fabs(half_float(is[k]) - want[k]) > 2e-3 * want[k])
+                fail_msg("%d, channel %d: %g, not %g", far, k, half_float(is[k]), want[k]);
+        }
+    }
+    close_session(&p.s);
+    blends = 0;
 }
 
 static void extremes_are_finite_and_mean_what_they_say(void **state) {
@@ -581,6 +703,9 @@ static void a_scene_without_lights_has_no_pass_for_them(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_light_is_a_sun_of_its_direction),
+        cmocka_unit_test(a_pane_is_lit_as_by_a_sun_of_the_lights_direction),
+        cmocka_unit_test(a_particle_scatters_a_quarter_of_each_light),
+        cmocka_unit_test(tiles_begin_at_the_near_plane),
         cmocka_unit_test(tiles_change_no_bit),
         cmocka_unit_test(extremes_are_finite_and_mean_what_they_say),
         cmocka_unit_test(bad_values_are_refused_with_a_line),

@@ -435,6 +435,7 @@ static const struct {
 #endif
     [MASU_BLOB_OCCLUSION_SPIRV] = {1, 0},
     [MASU_BLOB_TRACE_SDF_SPIRV] = {1, 0},
+    [MASU_BLOB_LOCAL_SHADOW_SPIRV] = {1, 0},
     [MASU_BLOB_BOUNCE_SDF_SPIRV] = {1, 0},
 };
 
@@ -465,6 +466,7 @@ static void read_code(walker *w) {
            "update SPIR-V");
     expect(w, w->scene->sdf_occlusion == (w->view.code[MASU_BLOB_OCCLUSION_SPIRV].words != NULL),
            "sdf_occlusion");
+    expect(w, w->scene->sdf_casts == (w->view.code[MASU_BLOB_LOCAL_SHADOW_SPIRV].words != NULL), "sdf_casts");
     expect(w, w->scene->trace_sdf == (w->view.code[MASU_BLOB_TRACE_SDF_SPIRV].words != NULL),
            "trace_sdf");
 }

@@ -274,7 +274,7 @@ static int is_code(uint32_t kind) {
            (kind >= MASU_BLOB_CLASSIFY_SPIRV && kind <= MASU_BLOB_CHECKERBOARD_SPIRV) ||
            (kind >= MASU_BLOB_UPDATE_PREVIOUS_SPIRV && kind <= MASU_BLOB_OCCLUSION_SPIRV) ||
            kind == MASU_BLOB_TRACE_SDF_SPIRV || kind == MASU_BLOB_BOUNCE_SDF_SPIRV ||
-           kind == MASU_BLOB_SILHOUETTES_SPIRV;
+           kind == MASU_BLOB_SILHOUETTES_SPIRV || kind == MASU_BLOB_LOCAL_SHADOW_SPIRV;
 }
 
 /* The smallest module that its pass could run: main returns. The record is filled in when all of the blob is there. */
@@ -333,9 +333,9 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
     int lighting = parts & SUPPORT_RASTER && parts & SUPPORT_LIGHTING;
     if (lighting) sections += 6;
 #ifdef MASU_LAB
-    enum { VARIANT_SECTIONS = 6 };
+    enum { VARIANT_SECTIONS = 7 };
 #else
-    enum { VARIANT_SECTIONS = 3 };
+    enum { VARIANT_SECTIONS = 4 };
 #endif
     if (parts & SUPPORT_SDF && parts & SUPPORT_VARIANTS) sections += VARIANT_SECTIONS;
     uint32_t with_textures = SUPPORT_RASTER | SUPPORT_TEXTURES;
@@ -406,6 +406,7 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
             add_code(blob, MASU_BLOB_CHECKERBOARD_SPIRV);
 #endif
             add_code(blob, MASU_BLOB_OCCLUSION_SPIRV);
+            add_code(blob, MASU_BLOB_LOCAL_SHADOW_SPIRV);
         }
         ADD(MASU_BLOB_SLOTS, slots);
     }

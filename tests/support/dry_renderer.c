@@ -23,8 +23,8 @@ _Alignas(64) unsigned char memory[MASU_ROLE_COUNT][ROOM];
 masu_blob_camera_key keys[4];
 
 static support_blob blob;
-static VkCommandBuffer frame_handles[MASU_MAX_FLIGHT * MASU_MAX_RUNGS * MASU_MAX_TARGETS];
-static uint8_t recorded[MASU_MAX_FLIGHT * MASU_MAX_RUNGS * MASU_MAX_TARGETS];
+static VkCommandBuffer frame_handles[2 * MASU_MAX_FLIGHT * MASU_MAX_RUNGS * MASU_MAX_TARGETS];
+static uint8_t recorded[2 * MASU_MAX_FLIGHT * MASU_MAX_RUNGS * MASU_MAX_TARGETS];
 static VkCommandBuffer load_handles[16384];
 static struct masu_instance_data instances[4];
 static uint64_t instance_names[4];
@@ -41,6 +41,11 @@ static masu_cull_node groups[4];
 static masu_placed_occluder occluders[4];
 static masu_punctual_light_state lights[4];
 static uint64_t light_names[4];
+static masu_shadow_slot shadow_slots[4];
+static masu_local_light shadow_lights[4];
+static uint32_t shadows_of_lights[4];
+static float previous_boxes[4][6];
+static uint8_t face_states[4], caster_marks[4];
 static masu_sky sky;
 static masu_transparent transparents[8];
 static masu_back_to_front order[16];
@@ -113,6 +118,15 @@ void make_renderer_with(uint32_t parts, uint64_t staging, const masu_rung *rungs
     m.instances.meshes = instance_meshes;
     m.lights.states = lights;
     m.lights.names = light_names;
+    assert_true(m.plan.local_lights <= COUNT(shadow_slots));
+    m.local_shadows = (masu_local_shadows){.capacity = m.plan.local_lights,
+                                           .choice = shadow_slots,
+                                           .lights = shadow_lights,
+                                           .slot_of_light = shadows_of_lights,
+                                           .boxes = previous_boxes,
+                                           .group_states = face_states,
+                                           .marks = caster_marks,
+                                           .empty = 1};
     m.sun_sky.sky = &sky;
     m.transparents.things = transparents;
     m.transparents.order = order;

@@ -265,7 +265,7 @@ static void slots_are_updated_only_if_something_changes_them(void **state) {
     masu_desc d = scene_desc(RASTER | SDF, 64, 64);
     assert_string_equal(why_of(&d, MASU_PASS_UPDATE), "the SDF's slots are constant");
     support_scene.sdf_dynamic = 1;
-    assert_frame(&d, 0, GBUFFER "update(wb:slots) " MARCH_ON_RASTER LIGHT_SDF TONEMAP);
+    assert_frame(&d, 0, "update(wb:slots) " GBUFFER MARCH_ON_RASTER LIGHT_SDF TONEMAP);
     assert_string_equal(why_of(&d, MASU_PASS_UPDATE), "the SDF depends on parameters or time");
     d = scene_desc(SDF, 64, 64);
     support_scene.sdf_dynamic = 1;

@@ -94,6 +94,7 @@ static int is_in_build(uint32_t kind) {
 static uint64_t write_with(uint32_t kind) {
     uint32_t with = kind >= MASU_BLOB_TEXCOORDS && kind <= MASU_BLOB_TEXELS ? SUPPORT_TEXTURES
                     : kind == MASU_BLOB_LODS                                 ? SUPPORT_DETAIL
+                    : kind == MASU_BLOB_LOCAL_SHADOW_SPIRV                   ? 0
                     : kind >= MASU_BLOB_TRACE_NODES                          ? SUPPORT_TRACE
                     : kind >= MASU_BLOB_MESO                                 ? SUPPORT_LIGHTING
                                                                              : 0;
@@ -120,7 +121,8 @@ static const struct {
              {MASU_BLOB_SEED_SPIRV, "march_seed SPIR-V", 0},
              {MASU_BLOB_CHECKERBOARD_SPIRV, "march_checkerboard SPIR-V", 0},
 #endif
-             {MASU_BLOB_OCCLUSION_SPIRV, "sdf_occlusion SPIR-V", 0}};
+             {MASU_BLOB_OCCLUSION_SPIRV, "sdf_occlusion SPIR-V", 0},
+             {MASU_BLOB_LOCAL_SHADOW_SPIRV, "local_shadow_sdf SPIR-V", 0}};
 
 static const float not_finite[] = {(float)NAN, (float)INFINITY, (float)-INFINITY};
 

@@ -202,6 +202,7 @@ static const struct {
     {"march_seed.comp", "-DMASU_LAB=1", 2, 0, 3},
     {"march_checkerboard.comp", "-DMASU_LAB=1", 1, 0, 3},
     {"sdf_occlusion.comp", "-DMASU_PASS=1", 1, 0, 6}, /* lists 3, rays and their march, samples */
+    {"local_shadow_sdf.comp", "-DMASU_PASS=1", 1, 0, 4}, /* the list 2, leaving and the march, the box */
     {"specular_trace_sdf.comp", "-DMASU_PASS=1", 1, 0, 2}, /* the march, the normal */
     {"specular_trace_sdf.comp", "-DMASU_MOTION=1", 1, 0, 3},
     {"bounce_sdf.comp", "-DMASU_PASS=1", 1, 0, 2},

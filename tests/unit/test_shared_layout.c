@@ -93,7 +93,7 @@ static const layout layouts[] = {
      {MEMBER(masu_local_face_uniforms, row0), MEMBER(masu_local_face_uniforms, row1),
       MEMBER(masu_local_face_uniforms, row2), MEMBER(masu_local_face_uniforms, origin_hi),
       MEMBER(masu_local_face_uniforms, origin_lo), MEMBER(masu_local_face_uniforms, tile),
-      MEMBER(masu_local_face_uniforms, square)}},
+      MEMBER(masu_local_face_uniforms, groups), MEMBER(masu_local_face_uniforms, square)}},
     {STRUCT(masu_push),
      0,
      {MEMBER(masu_push, render_width), MEMBER(masu_push, render_height),

@@ -264,7 +264,7 @@ static int render_still(masu_session *s, const masu_render_options *o,
                    ? MASU_CLI_OK
                    : masu_cli_error("out of memory for an image of %ux%u", width, height);
     double moved = HUGE_VAL;
-    uint32_t n = 0;
+    uint32_t n = 0, summed = 0;
     while (!code && n < STILL_FRAMES_MAX && (n < STILL_FRAMES_MIN || moved >= STILL_CHANGE)) {
         masu_cli_progress("frame %u of at most %u", n + 1, STILL_FRAMES_MAX);
         if (!measure(s, o, n, counts, &sample, &stats, &commands, error, sizeof error) ||
@@ -275,11 +275,14 @@ static int render_still(masu_session *s, const masu_render_options *o,
         } else {
             if (n) moved = change(before, s->targets[0].mapped, width, height);
             memcpy(before, s->targets[0].mapped, bytes);
-            for (size_t i = 0; linear && i < values; i++) linear[i] += linear[values + i];
-            n++;
+            /* The mean begins when all shadows of punctual lights are there. */
+            if (stats.local_shadow_waiting || stats.local_shadow_faces) summed = 0;
+            for (size_t i = 0; linear && i < values; i++)
+                linear[i] = (summed ? linear[i] : 0.0f) + linear[values + i];
+            n++, summed++;
         }
     }
-    for (size_t i = 0; linear && i < values; i++) linear[i] /= (float)(n ? n : 1);
+    for (size_t i = 0; linear && i < values; i++) linear[i] /= (float)(summed ? summed : 1);
     if (!code) code = write_image(s, o->output, before, linear, size);
     free(before);
     free(linear);

@@ -4,6 +4,7 @@
 #include "measure/linear.h"
 #include "measure/specular.h"
 #include "image.h"
+#include "scene/scene_data.h"
 #include "shared/masu_shared.h"
 
 #include <math.h>
@@ -33,6 +34,9 @@ static const masu_rung exact_rung = {.scale = 1.0f,
                                      .march_steps = MASU_MARCH_STEPS_MAX,
                                      .occlusion = MASU_OFF,
                                      .lod_error = -1.0f,
+                                     .local_shadow_atlas = 4096,
+                                     .local_shadow_lights = 64,
+                                     .local_shadow_faces = 16,
                                      .ao_slices = MASU_AO_SLICES_MAX,
                                      .ao_steps = MASU_AO_STEPS_MAX};
 
@@ -126,6 +130,19 @@ static bool add_position(masu_session *s, const masu_light *light, sums *sum, ch
     return true;
 }
 
+/* Frames until all faces of the shadows of punctual lights are rendered. */
+static bool settle_shadows(masu_session *s, const masu_frame_desc *frame, char *error, size_t error_size) {
+    enum { FRAMES_MAX = 64 };
+    masu_stats_info stats = {.local_shadow_waiting = 1};
+    if (!masu_scene_data_of(&s->scene)->shadow_lights) return true;
+    for (int k = 0; k < FRAMES_MAX && (stats.local_shadow_waiting || stats.local_shadow_faces); k++) {
+        masu_commands commands;
+        if (!masu_session_frame(s, frame, true, &commands, error, error_size)) return false;
+        if (masu_stats(s->m, commands.slot, &stats)) stats.local_shadow_waiting = 1;
+    }
+    return true;
+}
+
 static bool add_positions(masu_session *s, masu_frame_desc frame, uint32_t positions, uint32_t rays,
                           sums *sum, void (*progress)(const char *text), char *error,
                           size_t error_size) {
@@ -133,6 +150,7 @@ static bool add_positions(masu_session *s, masu_frame_desc frame, uint32_t posit
     if (!masu_picture_camera(s, &frame, &camera, error, error_size)) return false;
     frame.rung = 0;
     frame.time_step = MASU_PICTURE_STEP;
+    if (!settle_shadows(s, &frame, error, error_size)) return false;
     for (uint32_t i = 0; i < positions; i++) {
         say_position(i, positions, progress);
         masu_picture_place(i, positions, camera.jitter);

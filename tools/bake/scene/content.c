@@ -32,6 +32,7 @@ static const uint32_t strides[MASU_BLOB_KIND_COUNT] = {
     [MASU_BLOB_OCCLUSION_SPIRV] = sizeof(uint32_t),
     [MASU_BLOB_TRACE_SDF_SPIRV] = sizeof(uint32_t),
     [MASU_BLOB_BOUNCE_SDF_SPIRV] = sizeof(uint32_t),
+    [MASU_BLOB_LOCAL_SHADOW_SPIRV] = sizeof(uint32_t),
     [MASU_BLOB_SHADOW] = sizeof(masu_blob_shadow),
     [MASU_BLOB_SLOTS] = sizeof(float),
     [MASU_BLOB_GROUPS] = sizeof(masu_blob_group),

@@ -404,6 +404,7 @@ enum {
     DYNAMIC,
     VARIANT,
     OCCLUSION,
+    LOCAL_SHADOWS,
     REFLECTED_STILL,
     REFLECTED_DYNAMIC,
     BOUNCED
@@ -415,7 +416,8 @@ static const struct {
     const char *source, *define /* or NULL */, *raw, *optimised;
     uint32_t kind;
     int when; /* always; with slots that change, or with time; with --variants; with shadows or
-                 ambient occlusion; with reflections and slots that are constant, or change; with a live bounce */
+                 ambient occlusion; with punctual lights that cast shadows; with reflections and slots that are
+                 constant, or change; with a live bounce */
 } scene_shaders[] = {
     {"march.comp", NULL, "march.raw", "march.spv", MASU_BLOB_MARCH_SPIRV, ALWAYS},
     {"update.comp", NULL, "update.raw", "update.spv", MASU_BLOB_UPDATE_SPIRV, UPDATED},
@@ -433,17 +435,19 @@ static const struct {
      MASU_BLOB_CHECKERBOARD_SPIRV, VARIANT},
 #endif
     {"sdf_occlusion.comp", NULL, "occl.raw", "occl.spv", MASU_BLOB_OCCLUSION_SPIRV, OCCLUSION},
+    {"local_shadow_sdf.comp", NULL, "faces.raw", "faces.spv", MASU_BLOB_LOCAL_SHADOW_SPIRV, LOCAL_SHADOWS},
     {"specular_trace_sdf.comp", NULL, "mirror.raw", "mirror.spv", MASU_BLOB_TRACE_SDF_SPIRV,
      REFLECTED_STILL},
     {"specular_trace_sdf.comp", "-DMASU_MOTION=1", "mirror.raw", "mirror.spv",
      MASU_BLOB_TRACE_SDF_SPIRV, REFLECTED_DYNAMIC},
     {"bounce_sdf.comp", NULL, "bounce.raw", "bounce.spv", MASU_BLOB_BOUNCE_SDF_SPIRV, BOUNCED}};
 
-static bool wanted(int when, bool dynamic, bool anchored, bool occlusion, bool reflected,
+static bool wanted(int when, bool dynamic, bool anchored, bool occlusion, bool casts, bool reflected,
                    bool bounced, bool variants) {
     if (when == UPDATED) return dynamic || anchored;
     if (when == DYNAMIC) return dynamic;
     if (when == OCCLUSION) return occlusion;
+    if (when == LOCAL_SHADOWS) return casts;
     if (when == REFLECTED_STILL) return reflected && !dynamic;
     if (when == REFLECTED_DYNAMIC) return reflected && dynamic;
     if (when == BOUNCED) return bounced;
@@ -531,6 +535,15 @@ static bool try_blocks(masu_bake_content *content, masu_sdfc_result *scene, cons
     return good;
 }
 
+/* Those that a program adds to other scenes have no shadows of the SDF: it is not compiled for them. */
+static bool any_light_casts(const masu_bake_content *content) {
+    const masu_blob_light *lights = MASU_BAKE_ARRAY(content, MASU_BLOB_LIGHTS, const masu_blob_light);
+    for (uint64_t i = 0; i < masu_bake_count(content, MASU_BLOB_LIGHTS); i++) {
+        if (!(lights[i].type & MASU_LIGHT_NO_SHADOW)) return true;
+    }
+    return false;
+}
+
 bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path,
                              const masu_bake_occlusion *occlusion, bool reflected, bool bounced, bool variants) {
     const char *directory = masu_bake_temporary_directory();
@@ -542,11 +555,12 @@ bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path,
     bool dynamic = false;
     masu_sdfc_result scene = {0};
     bool darkens = occlusion->shadows || occlusion->ambient;
+    bool casts = any_light_casts(content);
     bool good = lay_out(directory, content, glsl_path, &dynamic, &scene) &&
                 (!darkens || write_occlusion(directory, occlusion));
     for (size_t i = 0; i < sizeof scene_shaders / sizeof *scene_shaders && good; i++) {
         bool anchored = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf)->anchored != 0;
-        if (!wanted(scene_shaders[i].when, dynamic, anchored, darkens, reflected, bounced, variants))
+        if (!wanted(scene_shaders[i].when, dynamic, anchored, darkens, casts, reflected, bounced, variants))
             continue;
         paths p = {masu_bake_join(directory, scene_shaders[i].source),
                    masu_bake_join(directory, scene_shaders[i].raw),

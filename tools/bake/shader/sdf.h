@@ -21,7 +21,7 @@ typedef struct masu_bake_occlusion {
     double radius, strength;
 } masu_bake_occlusion;
 
-/* Reads the scene's GLSL and fills MARCH_SPIRV. The content's instances and SDF parameters are
+/* Reads the scene's GLSL and fills MARCH_SPIRV. The content's instances, lights and SDF parameters are
  * complete: they decide how the shader is compiled. A .sdf brings its own parameters, which are
  * added. reflected: rays of reflections meet it. Reports errors under the GLSL's own name and lines. */
 bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path,

@@ -64,6 +64,7 @@ const char *masu_bake_kind_name(uint32_t kind) {
         [MASU_BLOB_OCCLUSION_SPIRV] = "occlusion_spirv",
         [MASU_BLOB_TRACE_SDF_SPIRV] = "specular_trace_sdf_spirv",
         [MASU_BLOB_BOUNCE_SDF_SPIRV] = "bounce_sdf_spirv",
+        [MASU_BLOB_LOCAL_SHADOW_SPIRV] = "local_shadow_sdf_spirv",
         [MASU_BLOB_SHADOW] = "shadow",
         [MASU_BLOB_SLOTS] = "slots",
         [MASU_BLOB_GROUPS] = "groups",
