@@ -1,6 +1,7 @@
 /* test_probes.c: light probes: what rays say of a scene, that a grid is the same whatever the threads,
  * that its light is near the truth and much nearer than without it, and that a wall between two rooms
  * keeps most of their light apart. Bounds are those of a small grid with few rays. */
+#define _DEFAULT_SOURCE
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -8,9 +9,11 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include <cmocka.h>
 
+#include "bake/light/field.h"
 #include "bake/light/path.h"
 #include "bake/light/probes.h"
 #include "bake/build/look.h"
@@ -107,6 +110,61 @@ static void bake_room(masu_bake_content *c, const masu_bake_probe_settings *s,
     assert_non_null(trace);
     assert_true(masu_bake_make_probes(c, s, trace, report));
     masu_bake_trace_release(trace);
+}
+
+/* A ball of 1 m behind a thin wall with a hole, as text: rays meet what the formulas say, and the nearer of SDF and
+ * polygons. */
+static void rays_meet_the_sdf_too(void **state) {
+    (void)state;
+    static const char text[] = "material red { albedo (0.8, 0.1, 0.2); emissive (1, 2, 3) }\n"
+                               "material grey { albedo 0.5 }\n"
+                               "part ball : red = translate((0, 1.5, 0), sphere(1));\n"
+                               "part wall : grey = difference(translate((0, 1.5, 1.5), box((2, 1.5, 0.02))),\n"
+                               "    translate((0, 1.5, 1.5), box((0.1, 0.1, 1))));\n";
+    char path[] = "/tmp/masu_field_XXXXXX.sdf";
+    int file = mkstemps(path, 4);
+    assert_true(file >= 0 && write(file, text, sizeof text - 1) == (ssize_t)sizeof text - 1);
+    (void)close(file);
+    masu_bake_content c = room(false), bare = room(false);
+    masu_blob_sdf sdf = {.bounds_min = {-2, 0, -2}, .bounds_max = {2, 3, 2}, .lipschitz = 1, .max_distance = 100};
+    masu_bake_append(&c.section[MASU_BLOB_SDF], &sdf, sizeof sdf);
+    masu_bake_trace *trace = masu_bake_trace_make(&c);
+    masu_bake_field *field = masu_bake_field_make(&c, path);
+    assert_non_null(field);
+    masu_bake_trace_add(trace, field);
+    const float outside[3] = {0, 1.5f, 1.9f}, aside[3] = {0.5f, 1.5f, 1.9f}, inside[3] = {0, 1.5f, 0.5f};
+    const float back[3] = {0, 0, -2}, up[3] = {0, 1, 0}, high[3] = {1.5f, 1.5f, 0};
+    masu_bake_hit hit;
+    /* Through the hole: the ball. The direction is 2 long. */
+    assert_true(masu_bake_trace_ray(trace, outside, back, 100, &hit));
+    assert_float_equal(hit.t, 0.45f, 1e-3);
+    assert_float_equal(hit.normal[2], 1, 1e-3);
+    assert_float_equal(hit.albedo[0], 0.8f, 1e-6);
+    assert_float_equal(hit.emissive[2], 3, 1e-6);
+    assert_false(hit.back);
+    assert_true(masu_bake_trace_ray(trace, aside, back, 100, &hit));
+    assert_float_equal(hit.t, 0.19f, 1e-3);
+    assert_float_equal(hit.albedo[0], 0.5f, 1e-6);
+    assert_false(masu_bake_trace_free(trace, aside, back, 100));
+    assert_true(masu_bake_trace_free(trace, aside, back, 0.18f));
+    /* From within the back of it; beside it the ceiling, which is of polygons. */
+    assert_true(masu_bake_trace_ray(trace, inside, up, 100, &hit));
+    assert_true(hit.back && hit.t == 0);
+    assert_true(masu_bake_trace_ray(trace, high, up, 100, &hit));
+    assert_float_equal(hit.t, 1.5f, 1e-4);
+    assert_float_equal(hit.albedo[0], 0.7f, 1e-6);
+    /* Probes in the ball are inside of something. */
+    masu_bake_probe_report with, without;
+    masu_bake_probe_settings s = settings(0);
+    s.rays = 32;
+    assert_true(masu_bake_make_probes(&c, &s, trace, &with));
+    masu_bake_trace_release(trace);
+    masu_bake_field_release(field);
+    (void)unlink(path);
+    bake_room(&bare, &s, &without);
+    assert_true(with.invalid > without.invalid + 10);
+    masu_bake_content_release(&bare);
+    masu_bake_content_release(&c);
 }
 
 static void threads_change_no_byte(void **state) {
@@ -301,6 +359,7 @@ static void halfs_round_to_the_nearest(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rays_meet_what_is_there),
+        cmocka_unit_test(rays_meet_the_sdf_too),
         cmocka_unit_test(threads_change_no_byte),
         cmocka_unit_test(nothing_in_the_way_leaves_the_sky),
         cmocka_unit_test(light_is_near_the_truth),
