@@ -131,6 +131,11 @@ bool masu_light_reaches(masu_punctual_light_data light, vec3 rel, out vec3 l, ou
     return strength > 0.0 && masu_finite(color);
 }
 
+vec3 masu_unit(vec3 v)
+{
+    return v * masu_rsqrt_sure(max(dot(v, v), 1e-30));
+}
+
 /* Half axes of a rectangle, or of a capsule as one that faces a point; `to`: from the point to its centre.
  * The second turns such that the side that faces the point is the front. False: it shines the other way. */
 bool masu_light_axes(masu_punctual_light_data light, vec3 to, out vec3 u, out vec3 v)
@@ -139,8 +144,8 @@ bool masu_light_axes(masu_punctual_light_data light, vec3 to, out vec3 u, out ve
     v = light.cone.xyz;
     if (masu_light_kind(light) == MASU_KIND_CAPSULE) {
         float radius = masu_sqrt(light.color.w);
-        v = masu_corner(cross(to, u)) * radius;
-        u += masu_corner(cross(v, to)) * (0.78539816 * radius);
+        v = masu_unit(cross(to, u)) * radius;
+        u += masu_unit(cross(v, to)) * (0.78539816 * radius);
     }
     bool behind = dot(cross(u, v), to) > 0.0;
     v = behind ? -v : v;

@@ -119,19 +119,14 @@ vec3 masu_edge(vec3 a, vec3 b)
     return normal * (x >= 0.0 ? v : 0.5 * masu_rsqrt_sure(max(dot(normal, normal), 1e-20)) - v);
 }
 
-vec3 masu_corner(vec3 v)
-{
-    return v * masu_rsqrt_sure(max(dot(v, v), 1e-30));
-}
-
 /* Vector form factor of a parallelogram: its centre relative to the point, its half axes. In a loop: an edge
  * takes many registers. */
 vec3 masu_form_factor(vec3 center, vec3 u, vec3 v)
 {
     vec3 sum = vec3(0.0), corner = -u - v, next = v - u;
-    vec3 from = masu_corner(center + corner);
+    vec3 from = masu_unit(center + corner);
     [[dont_unroll]] for (int i = 0; i < 4; i++) {
-        vec3 to = masu_corner(center + next);
+        vec3 to = masu_unit(center + next);
         sum += masu_edge(from, to);
         from = to;
         vec3 last = corner;

@@ -38,7 +38,8 @@ static void check_names(uint32_t count) {
 }
 
 static const masu_scene_data everything = {
-    .sdf = 1, .lods = 1, .placed_occluders = 1, .instances = 1, .lights = 1, .shadow_cascades = 4,
+    .sdf = 1, .lods = 1, .placed_occluders = 1, .instances = 1, .lights = 1,
+    .shadow_lights = 1, .shadow_cascades = 4,
     .shadow_distance = 80};
 
 static masu_plan_info plan_with(const char *const *passes, uint32_t count) {

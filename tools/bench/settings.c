@@ -76,6 +76,8 @@ static const technique techniques[] = {
     {"frustum", WHOLE | SAME, {.frustum = MASU_OFF}},
     {"occlusion", WHOLE | STRUCTURAL | SAME, {.occlusion = MASU_OFF}},
     {"light_tiles", WHOLE | STRUCTURAL | SAME, {.light_tiles = MASU_OFF}},
+    {"local_shadows", WHOLE | STRUCTURAL, {.local_shadows = MASU_OFF}},
+    {"local_shadow_lights", WHOLE, {.local_shadow_lights = 4}},
     {"upscale", 0, {.upscale = MASU_ON}}, /* no gain at full size; always on below */
     {"temporal", WHOLE | HALF | QUICK | STRUCTURAL, {.temporal = MASU_ON}},
 };
