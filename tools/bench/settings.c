@@ -78,6 +78,8 @@ static const technique techniques[] = {
     {"light_tiles", WHOLE | STRUCTURAL | SAME, {.light_tiles = MASU_OFF}},
     {"local_shadows", WHOLE | STRUCTURAL, {.local_shadows = MASU_OFF}},
     {"local_shadow_lights", WHOLE, {.local_shadow_lights = 4}},
+    {"local_shadow_atlas", WHOLE | STRUCTURAL, {.local_shadow_atlas = 1024}},
+    {"local_shadow_faces", WHOLE, {.local_shadow_faces = 1}},
     {"upscale", 0, {.upscale = MASU_ON}}, /* no gain at full size; always on below */
     {"temporal", WHOLE | HALF | QUICK | STRUCTURAL, {.temporal = MASU_ON}},
 };
