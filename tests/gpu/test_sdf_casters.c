@@ -170,13 +170,15 @@ static void take(tally *t, uint32_t pixel, const double at[3], const double ligh
     t->acne += truth && seen < 0.99;
 }
 
-/* plane_z: what is looked at is a pane there, in no depth; NAN: by the depth. */
+static const double by_depth = (double)NAN;
+
+/* plane_z: what is looked at is a pane there, which is in no depth image; or by_depth. */
 static tally compare(const double light[3], double plane_z) {
     tally t = {0};
     for (uint32_t i = 0; i < PIXELS; i++) {
         double ray[3], at[3], z = depths[i] > 0 ? (double)camera.near_distance / (double)depths[i] : 0;
         ray_of(i % WIDTH, i / WIDTH, ray);
-        double f = sqrt(1.09), forward = (ray[1] * -0.3 + ray[2] * -1) / f; /* 1 */
+        double forward = (ray[1] * -0.3 - ray[2]) / sqrt(1.09);
         if (!isnan(plane_z)) z = (plane_z - camera.position[2]) / ray[2] * forward;
         if (!(z > 0)) continue;
         for (int k = 0; k < 3; k++) at[k] = camera.position[k] + z / forward * ray[k];
@@ -217,7 +219,7 @@ static void points_and_spots_see_the_sdf(void **state) {
         render(&s, NONE, 1, (masu_frame_desc){0}, open);
         render(&s, SHADOWS, SETTLED, (masu_frame_desc){0}, lit);
         print_message("%u faces, %.1f samples of the field for each of 128x128 texels\n", faces, (double)evals / (faces * 128 * 128));
-        expect(i ? "spot: ground and itself" : "point: ground and itself", compare(lamp, NAN), 100, 2000, 0);
+        expect(i ? "spot: ground and itself" : "point: ground and itself", compare(lamp, by_depth), 100, 2000, 0);
         close_session(&s);
     }
 }
@@ -240,7 +242,7 @@ static void the_sdf_alone_has_shadows(void **state) {
     render(&s, NONE, 1, (masu_frame_desc){0}, open);
     render(&s, SHADOWS, SETTLED, (masu_frame_desc){0}, lit);
     print_message("%u faces, %.1f samples of the field for each of 128x128 texels\n", faces, (double)evals / (faces * 128 * 128));
-    expect("81 balls over a half-space", compare(lamp, NAN), 80, 1000, 0);
+    expect("81 balls over a half-space", compare(lamp, by_depth), 80, 1000, 0);
     close_session(&s);
 }
 
@@ -254,7 +256,7 @@ static void polygons_shade_the_sdf(void **state) {
     open_scene(&s, "roof");
     render(&s, NONE, 1, (masu_frame_desc){0}, open);
     render(&s, SHADOWS, SETTLED, (masu_frame_desc){0}, lit);
-    expect("a polygon over the SDF", compare(lamp, NAN), 150, 1500, 0);
+    expect("a polygon over the SDF", compare(lamp, by_depth), 150, 1500, 0);
     close_session(&s);
 }
 
@@ -271,7 +273,7 @@ static void a_bulb_lets_its_light_out_and_a_roof_does_not(void **state) {
     open_scene(&s, "lantern");
     render(&s, NONE, 1, (masu_frame_desc){0}, open);
     render(&s, SHADOWS, SETTLED, (masu_frame_desc){0}, lit);
-    expect("a lamp below its roof", compare(bulb, NAN), 20, 2000, 0);
+    expect("a lamp below its roof", compare(bulb, by_depth), 20, 2000, 0);
     close_session(&s);
 }
 
@@ -356,13 +358,13 @@ static void shadows_follow_a_parameter(void **state) {
         ball.middle[0] = (double)x;
         render(&s, NONE, 1, frame, open);
         render(&s, SHADOWS, SETTLED, frame, lit);
-        expect(i ? "a ball that has moved" : "a ball that moves", compare(lamp, NAN), 40, 2000, 0);
+        expect(i ? "a ball that has moved" : "a ball that moves", compare(lamp, by_depth), 40, 2000, 0);
         if (i) break;
         /* From frame to frame of the same rung, with two frames for the faces of a point. */
         x = ball.middle[0] = -0.5;
         render(&s, SHADOWS, 4, frame, lit);
         render(&s, NONE, 1, frame, open);
-        expect("the next frames", compare(lamp, NAN), 40, 2000, 0);
+        expect("the next frames", compare(lamp, by_depth), 40, 2000, 0);
     }
     close_session(&s);
 }
