@@ -1,0 +1,369 @@
+/* study_bounce.c: `masu-lab study bounce`: indirect light of a live bounce at points of the image,
+ * against paths of the reference, and how it follows a lamp that is switched on. */
+#include "lab/study/study.h"
+
+#include "lab/reference/render.h"
+#include "measure/linear.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { POINTS_MOST = 16384 };
+
+typedef struct options {
+    masu_study_options study;
+    const char *sdf, *lamp;
+    uint32_t points, paths;
+    double lamp_color, camera[6];
+    bool night;
+} options;
+
+static options given = {.study = {.size = {320, 180}, .time = 0.0, .frames = 400},
+                        .points = 1024,
+                        .paths = 256,
+                        .lamp_color = 10};
+static const masu_study_options *const o = &given.study;
+
+static const masu_column columns[] = {{"scene", NULL, NULL, NULL},
+                                      {"points", "%.0f", "points", "%.0f"},
+                                      {"reference", "%.6f", "irradiance", "%.4f"},
+                                      {"noise", "%.6f", "noise, %", "%.1f"},
+                                      {"found", "%.6f", "found", "%.4f"},
+                                      {"rmse", "%.6f", "RMSE, %", "%.1f"},
+                                      {"response", "%.0f", "frames to 90 %", "%.0f"},
+                                      {"flicker", "%.6f", "flicker, %", "%.3f"},
+                                      {"driver", "\"", NULL, NULL},
+                                      {NULL, NULL, NULL, NULL}};
+
+typedef struct point {
+    size_t at;       /* pixel */
+    double albedo;   /* of uniform light, luminance */
+    double expected; /* indirect irradiance */
+} point;
+
+typedef struct study {
+    ref_scene scene;
+    ref_field field;
+    ref_world world;
+    ref_sky sky;
+    bool has_field;
+    ref_camera camera;
+    point *points;
+    uint32_t count;
+    float *image, *direct;
+    double *series; /* mean irradiance after each frame */
+    double reference, noise, found, rmse, response, flicker;
+    char driver[1024];
+    uint32_t messages;
+    masu_session s;
+} study;
+
+static bool failed(char *error, size_t size, const char *text) {
+    snprintf(error, size, "%s", text);
+    return false;
+}
+
+/* ---- The reference --------------------------------------------------------------------------- */
+
+static bool open_reference(study *w, char *error, size_t size) {
+    const double *c = given.camera;
+    if (!ref_scene_open(o->scene, o->time, false, &w->scene, error, size)) return false;
+    if (!w->scene.probes) return failed(error, size, "the scene has no probes");
+    if (w->scene.sdf && !given.sdf)
+        return failed(error, size,
+                      "the scene has a signed distance field: give its source by --sdf FILE");
+    if (w->scene.sdf) {
+        w->has_field = ref_field_open(given.sdf, &w->scene.blob, o->time, &w->field, error, size);
+        if (!w->has_field) return false;
+    }
+    const masu_blob_environment *e = w->scene.environment;
+    w->sky = (ref_sky){.zenith = ref_of(e->sky_zenith), .horizon = ref_of(e->sky_horizon)};
+    if (given.night) w->sky.zenith = w->sky.horizon = ref_splat(0);
+    w->camera = ref_camera_at(&w->scene.blob, o->time);
+    if (c[0] != c[3] || c[1] != c[4] || c[2] != c[5]) {
+        w->camera.eye = ref_v(c[0], c[1], c[2]);
+        w->camera.forward = ref_unit(ref_sub(ref_v(c[3], c[4], c[5]), w->camera.eye));
+        w->camera.right = ref_unit(ref_cross(w->camera.forward, ref_v(0, 1, 0)));
+        w->camera.up = ref_cross(w->camera.right, w->camera.forward);
+    }
+    return ref_sky_prepare(&w->sky) && ref_world_open(&w->scene, w->has_field ? &w->field : NULL,
+                                                      w->camera.eye, &w->world, error, size);
+}
+
+static void set_lamp(study *w) {
+    const masu_blob_light *lights = w->scene.blob.section[MASU_BLOB_LIGHTS];
+    const char *names = w->scene.blob.section[MASU_BLOB_NAMES];
+    for (uint32_t i = 0; given.lamp && i < w->scene.light_count; i++) {
+        if (lights[i].name == MASU_BLOB_NONE || strcmp(names + lights[i].name, given.lamp))
+            continue;
+        w->scene.lights[i].color = ref_splat(given.lamp_color);
+    }
+}
+
+/* Inside the cells of the probes: outside, their light fades. */
+static bool in_grid(const study *w, ref_vec at) {
+    const masu_blob_probes *g = w->scene.blob.section[MASU_BLOB_PROBES];
+    const double p[3] = {at.x, at.y, at.z};
+    for (int k = 0; k < 3; k++) {
+        double cell = (double)g->spacing[k], low = (double)g->origin[k] - 0.5 * cell;
+        if (p[k] < low - 1e-3 || p[k] > low + cell * g->counts[k] + 1e-3) return false;
+    }
+    return true;
+}
+
+/* Matt polygons that do not emit, spread over the image. */
+static void find_points(study *w) {
+    const size_t pixels = (size_t)o->size.width * o->size.height;
+    ref_ggx_tables();
+    for (size_t i = 0; i < pixels && w->count < given.points; i++) {
+        size_t at = (size_t)(fmod((double)i * 0.6180339887498949, 1) * (double)pixels);
+        ref_vec d = ref_camera_ray(&w->camera, ((double)(at % o->size.width) + 0.5) / o->size.width,
+                                   ((double)(at / o->size.width) + 0.5) / o->size.height,
+                                   (double)o->size.width / o->size.height);
+        ref_hit hit;
+        ref_look look;
+        ref_bsdf b;
+        if (!ref_world_trace(&w->world, w->camera.eye, d, HUGE_VAL, REF_RAY_ONE_SIDED, &hit) ||
+            hit.triangle == REF_SDF || !in_grid(w, hit.p))
+            continue;
+        ref_world_look(&w->world, &hit, ref_scale(d, -1), &look);
+        if (look.flags & MASU_MATERIAL_IS_BLEND || ref_max(look.s.emissive) > 0 ||
+            look.s.roughness < 0.6 || look.s.metallic > 0)
+            continue;
+        ref_bsdf_make(&b, &look.s, ref_scale(d, -1), false);
+        ref_lobes albedo = ref_bsdf_albedo(&b);
+        ref_tracer all = {.world = &w->world,
+                          .sky = &w->sky,
+                          .physics = true,
+                          .full = true,
+                          .polygons_shadow = true,
+                          .field_shadows = true,
+                          .sky_samples = true,
+                          .light_samples = true,
+                          .bsdf_samples = true,
+                          .bounces = 16,
+                          .sun_direction = ref_of(w->scene.environment->sun_direction),
+                          .sun_color =
+                              given.night ? ref_splat(0) : ref_of(w->scene.environment->sun_color),
+                          .eye = w->camera.eye,
+                          .environment = w->scene.environment};
+        double sum = 0, square = 0, n = given.paths;
+        for (uint32_t k = 0; k < given.paths; k++) {
+            ref_random r = ref_random_at(7, at, k), same = r;
+            all.bounces = 16;
+            double value = ref_luminance(ref_irradiance(&all, &hit, &r));
+            all.bounces = 0;
+            value -= ref_luminance(ref_irradiance(&all, &hit, &same));
+            sum += value;
+            square += value * value;
+        }
+        w->points[w->count++] = (point){at, ref_luminance(ref_lobes_sum(&albedo)), sum / n};
+        w->reference += sum / n;
+        w->noise += fmax(square / n - sum * sum / n / n, 0) / (n - 1);
+    }
+    w->reference /= w->count ? w->count : 1;
+    w->noise = w->reference > 0 ? sqrt(w->noise / w->count) / w->reference : 0;
+}
+
+/* ---- Frames ---------------------------------------------------------------------------------- */
+
+static bool open_renderer(study *w, bool bounce, char *error, size_t size) {
+    masu_session_desc d = {.scene_path = o->scene, .host = o->host};
+    d.desc.output = o->size;
+    d.desc.targets.storage = 1;
+    d.desc.readback = MASU_READBACK_HDR;
+    d.desc.rung_count = 1;
+    d.desc.rungs[0] = (masu_rung){.scale = 1,
+                                  .temporal = MASU_OFF,
+                                  .specular = MASU_OFF,
+                                  .bounce = bounce ? MASU_ON : MASU_OFF};
+    if (!masu_session_open(&d, &w->s, error, size)) return false;
+    snprintf(w->driver, sizeof w->driver, "%s", w->s.host.driver);
+    return true;
+}
+
+static bool switch_lamp(study *w, bool on) {
+    masu_punctual_light_state state;
+    if (!given.lamp) return true;
+    masu_punctual_light lamp = masu_punctual_light_find(w->s.m, given.lamp);
+    if (masu_punctual_light_get(w->s.m, lamp, &state) != MASU_OK) return false;
+    for (int k = 0; k < 3; k++) state.color[k] = on ? (float)given.lamp_color : 0.0f;
+    return masu_punctual_light_set(w->s.m, lamp, &state) == MASU_OK;
+}
+
+static bool draw(study *w, bool first, float *rgb, char *error, size_t size) {
+    masu_light light;
+    masu_camera camera;
+    masu_commands commands;
+    if (masu_light_of(w->s.m, &light) != MASU_OK ||
+        masu_camera_at(w->s.m, o->time, &camera) != MASU_OK)
+        return failed(error, size, "the scene has no light or no camera");
+    memset(light.ambient, 0, sizeof light.ambient);
+    if (given.night) {
+        memset(light.sun_color, 0, sizeof light.sun_color);
+        memset(light.sky_zenith, 0, sizeof light.sky_zenith);
+        memset(light.sky_horizon, 0, sizeof light.sky_horizon);
+    }
+    const double eye[3] = {w->camera.eye.x, w->camera.eye.y, w->camera.eye.z},
+                 forward[3] = {w->camera.forward.x, w->camera.forward.y, w->camera.forward.z};
+    for (int k = 0; k < 3; k++) {
+        camera.position[k] = eye[k];
+        camera.forward[k] = (float)forward[k];
+    }
+    masu_frame_desc frame = {.camera = &camera,
+                             .light = &light,
+                             .time = o->time,
+                             .time_step = first ? 0.0f : 1.0f / 60.0f,
+                             .cut = first};
+    return masu_session_frame(&w->s, &frame, true, &commands, error, size) &&
+           (masu_linear_read(w->s.m, commands.slot, o->size, rgb) ||
+            failed(error, size, "no image of linear light"));
+}
+
+static double irradiance_at(const study *w, const point *p) {
+    const float *a = w->image + 3 * p->at, *b = w->direct + 3 * p->at;
+    ref_vec light = ref_v((double)(a[0] - b[0]), (double)(a[1] - b[1]), (double)(a[2] - b[2]));
+    return REF_PI * ref_luminance(light) / p->albedo;
+}
+
+static double mean_of(const study *w) {
+    double sum = 0;
+    for (uint32_t i = 0; i < w->count; i++) sum += irradiance_at(w, &w->points[i]) / w->count;
+    return sum;
+}
+
+static bool measure(study *w, char *error, size_t size) {
+    enum { SHADOWS = 24 }; /* frames until shadows are complete */
+    if (!open_renderer(w, false, error, size)) return false;
+    bool good = switch_lamp(w, true) || failed(error, size, "the scene has no lamp of that name");
+    for (int i = 0; good && i < SHADOWS; i++) good = draw(w, !i, w->direct, error, size);
+    masu_session_close(&w->s);
+    w->messages += w->s.host.messages;
+    if (!good || !open_renderer(w, true, error, size)) return false;
+    good = switch_lamp(w, false);
+    for (uint32_t i = 0; good && given.lamp && i < o->frames; i++)
+        good = draw(w, !i, w->image, error, size);
+    good = good && switch_lamp(w, true);
+    double before = 0, previous = 0;
+    for (uint32_t i = 0; good && i < o->frames; i++) {
+        if (i + 1 == o->frames) previous = mean_of(w);
+        good = draw(w, !given.lamp && !i, w->image, error, size);
+        w->series[i] = mean_of(w);
+    }
+    masu_session_close(&w->s);
+    w->messages += w->s.host.messages;
+    if (!good) return false;
+    w->found = w->series[o->frames - 1];
+    w->flicker = w->found > 0 ? fabs(w->found - previous) / w->found : 0;
+    /* The first frame still has what was before, but for the first probes. */
+    before = given.lamp ? w->series[0] : 0;
+    for (uint32_t i = o->frames; i > 0; i--) {
+        if (fabs(w->series[i - 1] - w->found) > 0.1 * fabs(w->found - before)) {
+            w->response = i + 1;
+            break;
+        }
+    }
+    /* What the noise of the reference adds to the squares is known, and taken out. */
+    double sum = -w->noise * w->noise * w->reference * w->reference * w->count;
+    for (uint32_t i = 0; i < w->count; i++) {
+        double off = irradiance_at(w, &w->points[i]) - w->points[i].expected;
+        sum += off * off;
+    }
+    w->rmse = w->reference > 0 ? sqrt(fmax(sum, 0) / w->count) / w->reference : 0;
+    return true;
+}
+
+static int report(study *w) {
+    char scene[128];
+    masu_table t;
+    masu_study_scene_name(o->scene, scene, sizeof scene);
+    masu_table_open(&t, columns, "");
+    const double values[] = {w->count,      w->reference, 100 * w->noise,  w->found,
+                             100 * w->rmse, w->response,  100 * w->flicker};
+    masu_table_text(&t, scene);
+    masu_table_numbers(&t, values, 7);
+    masu_table_text(&t, w->driver);
+    masu_table_print(&t, o->text);
+    int code = masu_table_close(&t, o->csv);
+    return w->messages
+               ? masu_cli_error("the validation layer has reported %u messages", w->messages)
+               : code;
+}
+
+static int run(void) {
+    static study w; /* a session may not move, and is large */
+    char error[4096];
+    const size_t values = 3 * (size_t)o->size.width * o->size.height;
+    w.points = calloc(POINTS_MOST, sizeof *w.points);
+    w.image = calloc(2 * values, sizeof *w.image);
+    w.series = calloc(o->frames, sizeof *w.series);
+    bool good = w.points && w.image && w.series;
+    if (!good) failed(error, sizeof error, "out of memory");
+    if (good) w.direct = w.image + values;
+    good = good && open_reference(&w, error, sizeof error);
+    if (good) {
+        set_lamp(&w);
+        masu_cli_progress_text("paths of the reference");
+        find_points(&w);
+        good = w.count > 0 || failed(error, sizeof error, "no matt polygon is in view");
+    }
+    if (good) {
+        masu_cli_progress_text("frames");
+        good = measure(&w, error, sizeof error);
+    }
+    masu_cli_progress_clear();
+    int code = good ? report(&w) : masu_cli_error("%s", error);
+    ref_world_close(&w.world);
+    ref_sky_close(&w.sky);
+    if (w.has_field) ref_field_close(&w.field);
+    ref_scene_close(&w.scene);
+    free(w.points);
+    free(w.image);
+    free(w.series);
+    return code;
+}
+
+static bool read_camera(masu_cli *cli, void *to) {
+    double *c = ((options *)to)->camera;
+    if (sscanf(cli->value, "%lf,%lf,%lf,%lf,%lf,%lf", &c[0], &c[1], &c[2], &c[3], &c[4], &c[5]) ==
+        6)
+        return true;
+    masu_cli_usage_error("--camera: expected X,Y,Z,X,Y,Z: position and target, not \"%s\"",
+                         cli->value);
+    return false;
+}
+
+static const masu_option rows[] = {
+    MASU_STUDY_SIZE,
+    MASU_STUDY_TIME,
+    MASU_TEXT(options, sdf, "sdf", "FILE", "source of the scene's signed distance field"),
+    MASU_UINT(options, points, "points", 1, POINTS_MOST, "points of matt polygons in view"),
+    MASU_UINT(options, paths, "paths", 2, 1000000, "paths of the reference from each"),
+    MASU_OWN("camera", "X,Y,Z,X,Y,Z", read_camera, "position and target (default: the scene's)"),
+    MASU_FLAG(options, night, "night", "without sun and sky"),
+    MASU_TEXT(options, lamp, "lamp", "NAME", "light that is switched on after --frames without it"),
+    MASU_REAL(options, lamp_color, "lamp-color", "VALUE", 0, 1e9, "its colour, grey"),
+    MASU_STUDY_FRAMES(10000, "frames until the bounce is at rest"),
+    MASU_STUDY_CSV,
+    MASU_STUDY_DEVICE,
+    MASU_STUDY_END};
+
+const masu_study masu_study_bounce = {
+    .name = "bounce",
+    .purpose = "indirect light of a live bounce, compared with paths of the reference",
+    .arguments = "SCENE.masu [--sdf FILE] [options]",
+    .scenes_min = 1,
+    .scenes_max = 1,
+    .options = rows,
+    .given = &given.study,
+    .run = run,
+    .details =
+        "Irradiance of points, less the direct light of sun, points and spots: that of a frame is "
+        "the light that the\n"
+        "bounce adds to a pixel, over the albedo of its material. Its mean in the reference and "
+        "the noise of one\n"
+        "point, its mean in the last frame, the RMSE relative to the reference's mean, frames "
+        "until the mean stays\n"
+        "within a tenth of its change, and the relative change of the mean in the last frame.\n"};
