@@ -154,6 +154,8 @@ masu_result masu_stats(const masu_renderer *m, uint32_t slot, masu_stats_info *o
     out->local_shadow_lights = m->local_shadows.slots[slot].lights;
     out->local_shadow_faces = m->local_shadows.slots[slot].faces;
     out->local_shadow_waiting = m->local_shadows.slots[slot].waiting;
+    int bounces = masu_has_pass(&m->plan.rungs[out->rung].active, MASU_PASS_BOUNCE_SUM);
+    out->bounce_rounds_left = bounces ? m->bounce.slot_left[slot] : 0;
     out->draws = out->views[0].draws;
     out->triangles = out->views[0].triangles;
     out->transparents = m->transparents.slot_count[slot];

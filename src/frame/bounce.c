@@ -31,7 +31,7 @@ void masu_bounce_copy_scene(masu_bounce *b, const masu_frame_plan *plan, const m
     b->round = 0;
     b->left = 0;
     b->quiet = MASU_BOUNCE_WINDOW;
-    b->burst = MASU_BOUNCE_WINDOW;
+    b->burst = MASU_BOUNCE_BURST_ROUNDS;
     masu_bounce_restart(b);
 }
 
@@ -122,7 +122,7 @@ void masu_bounce_write(masu_bounce *b, const masu_lights *lights, const masu_ins
     masu_bounce_cause cause = cause_of(b, lights, in, materials, f);
     if (memcmp(&cause, &b->cause, sizeof cause) != 0) masu_bounce_restart(b);
     b->cause = cause;
-    if (f->cut && b->quiet < MASU_BOUNCE_REST) b->burst = MASU_BOUNCE_WINDOW;
+    if (f->cut && b->quiet < MASU_BOUNCE_REST) b->burst = MASU_BOUNCE_BURST_ROUNDS;
     const masu_rung *rung = masu_frame_rung(f);
     uint32_t most = masu_bounce_most(f->plan, f->desc.rung) / (b->burst ? 1 : MASU_BOUNCE_BURST);
     unsigned char *to = masu_frame_slot(f, MASU_BUFFER_BOUNCE);
@@ -131,4 +131,5 @@ void masu_bounce_write(masu_bounce *b, const masu_lights *lights, const masu_ins
     uint32_t probes = masu_bounce_choose(b, &view, most, words), rays = probes * rung->bounce_rays;
     const struct masu_bounce_header header = {{(rays + 63) / 64, 1, 1, rays}, {probes, 1, 1, rung->bounce_rays}};
     memcpy(to, &header, sizeof header);
+    b->slot_left[f->slot] = b->valid ? MASU_BOUNCE_REST - b->quiet : 0;
 }

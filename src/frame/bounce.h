@@ -16,6 +16,7 @@
 enum {
     MASU_BOUNCE_WINDOW = 4, /* rounds: the sets of a probe */
     MASU_BOUNCE_REST = 64,
+    MASU_BOUNCE_BURST_ROUNDS = 16, /* after the first frame, or a cut: most of what bounces has come by then */
     MASU_BOUNCE_OFF = 0xFF  /* `sets` of a probe that is inside of something */
 };
 
@@ -39,6 +40,7 @@ typedef struct masu_bounce {
     uint32_t quiet; /* whole rounds since the last change */
     uint32_t burst; /* rounds that still have more rays */
     masu_bounce_cause cause;
+    uint32_t slot_left[MASU_MAX_FLIGHT]; /* masu_stats_info.bounce_rounds_left */
 } masu_bounce;
 
 /* Which probes are to be first: NULL: none. */

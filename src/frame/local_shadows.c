@@ -157,7 +157,7 @@ void masu_local_shadows_begin(masu_local_shadows *s, const masu_frame_data *f) {
 
 double masu_local_face_wish(double range, double radius, double tangent, double distance, double pixels) {
     double third = range / 3.0, sharp = 2.0 * third * tangent * pixels / (1.5 * fmax(distance, third));
-    return fmin(sharp, 3.0 * tangent * third / radius);
+    return fmin(sharp, fmax(256.0, 3.0 * tangent * third / radius));
 }
 
 /* A size is kept for wishes of less than half to more than twice of it. */

@@ -82,8 +82,8 @@ int masu_local_shadows_write(masu_local_shadows *s, const masu_instances *in, co
 void masu_local_shadows_of(const masu_local_shadows *s, uint32_t light, masu_uvec4 out[2]);
 
 /* Texels along the edge of a face: a texel at a third of the range takes a pixel and a half, and three of them, the
- * width of the filter, no less than the penumbra that a source of that radius has there behind something half way.
- * pixels: of a length of one at distance one. */
+ * width of the filter, no less than the penumbra that a source of that radius has there behind something half way; but
+ * at least 256 for the sake of contacts, whose shadows are sharper. pixels: of a length of one at distance one. */
 double masu_local_face_wish(double range, double radius, double tangent, double distance, double pixels);
 /* The size for a wish, with hysteresis; now: the size that it has, 0: none. */
 uint32_t masu_local_face_size(double wish, uint32_t now, uint32_t most);

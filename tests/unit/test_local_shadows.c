@@ -207,7 +207,7 @@ static void sizes_follow_the_view_with_hysteresis(void **state) {
     /* Half the distance: twice the texels. A large source: three texels as wide as its penumbra. */
     double far = masu_local_face_wish(15, 0.01, 1, 20, 500), near = masu_local_face_wish(15, 0.01, 1, 10, 500);
     assert_true(fabs(2 * far - near) < 1e-9);
-    assert_true(fabs(masu_local_face_wish(15, 0.1, 1, 10, 5000) - 150) < 1e-9);
+    assert_true(fabs(masu_local_face_wish(15, 0.04, 1, 10, 5000) - 375) < 1e-9);
 }
 
 int main(void) {

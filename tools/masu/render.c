@@ -20,6 +20,7 @@
 #define FRAMES_MAX 100000u
 #define STILL_FRAMES_MIN 16u /* temporal anti-aliasing has seen each part of a pixel */
 #define STILL_FRAMES_MAX 64u
+#define STILL_FRAMES_SETTLING 256u /* and most until shadows and live light are there */
 #define STILL_CHANGE 0.25
 #define REFERENCE_RAYS 1024u /* per pixel: below it the truth's own noise is seen */
 
@@ -264,9 +265,10 @@ static int render_still(masu_session *s, const masu_render_options *o,
                    ? MASU_CLI_OK
                    : masu_cli_error("out of memory for an image of %ux%u", width, height);
     double moved = HUGE_VAL;
-    uint32_t n = 0, summed = 0;
-    while (!code && n < STILL_FRAMES_MAX && (n < STILL_FRAMES_MIN || moved >= STILL_CHANGE)) {
-        masu_cli_progress("frame %u of at most %u", n + 1, STILL_FRAMES_MAX);
+    uint32_t n = 0, summed = 0, settling = 0;
+    while (!code && n - settling < STILL_FRAMES_MAX && settling < STILL_FRAMES_SETTLING &&
+           (n < STILL_FRAMES_MIN || moved >= STILL_CHANGE)) {
+        masu_cli_progress("frame %u of at most %u", n + 1, settling + STILL_FRAMES_MAX);
         if (!measure(s, o, n, counts, &sample, &stats, &commands, error, sizeof error) ||
             !masu_headless_target_read(&s->host, &s->targets[0], error, sizeof error)) {
             code = masu_cli_error("%s", error);
@@ -275,8 +277,11 @@ static int render_still(masu_session *s, const masu_render_options *o,
         } else {
             if (n) moved = change(before, s->targets[0].mapped, width, height);
             memcpy(before, s->targets[0].mapped, bytes);
-            /* The mean begins when all shadows of punctual lights are there. */
-            if (stats.local_shadow_waiting || stats.local_shadow_faces) summed = 0;
+            if (masu_picture_settles(&stats)) {
+                settling++;
+                summed = 0;
+                moved = HUGE_VAL;
+            }
             for (size_t i = 0; linear && i < values; i++)
                 linear[i] = (summed ? linear[i] : 0.0f) + linear[values + i];
             n++, summed++;

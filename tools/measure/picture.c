@@ -130,12 +130,16 @@ static bool add_position(masu_session *s, const masu_light *light, sums *sum, ch
     return true;
 }
 
-/* Frames until all faces of the shadows of punctual lights are rendered. */
-static bool settle_shadows(masu_session *s, const masu_frame_desc *frame, char *error, size_t error_size) {
-    enum { FRAMES_MAX = 64 };
+int masu_picture_settles(const masu_stats_info *stats) {
+    return stats->local_shadow_waiting || stats->local_shadow_faces || stats->bounce_rounds_left > 48;
+}
+
+static bool settle_lights(masu_session *s, const masu_frame_desc *frame, char *error, size_t error_size) {
+    enum { FRAMES_MAX = 256 };
     masu_stats_info stats = {.local_shadow_waiting = 1};
-    if (!masu_scene_data_of(&s->scene)->shadow_lights) return true;
-    for (int k = 0; k < FRAMES_MAX && (stats.local_shadow_waiting || stats.local_shadow_faces); k++) {
+    const masu_scene_data *scene = masu_scene_data_of(&s->scene);
+    if (!scene->shadow_lights && !scene->bounce) return true;
+    for (int k = 0; k < FRAMES_MAX && masu_picture_settles(&stats); k++) {
         masu_commands commands;
         if (!masu_session_frame(s, frame, true, &commands, error, error_size)) return false;
         if (masu_stats(s->m, commands.slot, &stats)) stats.local_shadow_waiting = 1;
@@ -150,7 +154,7 @@ static bool add_positions(masu_session *s, masu_frame_desc frame, uint32_t posit
     if (!masu_picture_camera(s, &frame, &camera, error, error_size)) return false;
     frame.rung = 0;
     frame.time_step = MASU_PICTURE_STEP;
-    if (!settle_shadows(s, &frame, error, error_size)) return false;
+    if (!settle_lights(s, &frame, error, error_size)) return false;
     for (uint32_t i = 0; i < positions; i++) {
         say_position(i, positions, progress);
         masu_picture_place(i, positions, camera.jitter);

@@ -34,6 +34,9 @@
  * (root mean square), at worst 4. */
 void masu_picture_place(uint32_t i, uint32_t n, float out[2]);
 
+/* Whether shadows of punctual lights or live light are still on their way in a frame at rest. */
+int masu_picture_settles(const masu_stats_info *stats);
+
 /* Makes `camera`, whose jitter changes, the frame's: a copy of its own, or the scene's. */
 bool masu_picture_camera(masu_session *s, masu_frame_desc *frame, masu_camera *camera, char *error,
                          size_t error_size);
