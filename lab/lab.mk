@@ -27,6 +27,10 @@ gallery: tools ## write build/gallery/index.html: all models of assimp-testmodel
 study isa-table ladders ladder-costs ladder-devices gallery:
 	+$(V)$(lab_make) $@
 
+.PHONY: light
+light: tools $(foreach s,alley garden night room small_lamps,$(BUILD)/scenes/$(s).masu) ## measure local lights and the live bounce beside the reference path tracer (an hour)
+	+$(V)$(lab_make) $@
+
 .PHONY: isa-drivers
 isa-drivers: ## build Intel's and Adreno's compilers for MASU_ISA_DRIVERS=build/isa-drivers (ten minutes)
 	$(call install-packages,$(PACKAGES_isa))
@@ -192,6 +196,27 @@ ladder_device = $(firstword $(subst =, ,$(1)))=$(call ladder_scene,$(1))=$(LADDE
 ladder-devices: $(LAB)
 	$(V)$(LAB) ladder --devices $(foreach l,$(LADDERS),$(call ladder_device,$(l))) > $(BUILD)/ladder_devices.h
 	$(V)cp $(BUILD)/ladder_devices.h src/quality/ladder_devices.h
+
+# Each beside the reference: visibility, indirect light, small lamps, the settled still.
+LIGHT = $(MADE)/light
+.PHONY: light
+light: $(LAB)
+	$(V)mkdir -p $(LIGHT)
+	$(V)for s in night alley garden; do $(LAB) study light $(MADE)/scenes/$$s.masu --sdf scenes/$$s.sdf || exit 1; done
+	$(V)$(LAB) study bounce $(MADE)/scenes/room.masu --sdf scenes/room.sdf
+	$(V)$(LAB) study bounce $(MADE)/scenes/room.masu --sdf scenes/room.sdf --night --lamp lamp
+	$(V)$(LAB) study bounce $(MADE)/scenes/room.masu --sdf scenes/room.sdf --night --lamp lamp \
+	    --camera 6.4,1.5,-1.6,8.8,1,1.2
+	$(V)$(LAB) study bounce $(MADE)/scenes/alley.masu --sdf scenes/alley.sdf --frames 600
+	$(V)$(LAB) reference $(MADE)/scenes/small_lamps.masu --physics --size 320x240 --paths 128 -o $(LIGHT)/small_lamps.pfm
+	$(V)$(LAB) study rest $(MADE)/scenes/small_lamps.masu --reference $(LIGHT)/small_lamps.pfm
+	$(V)for s in night alley 'room --window 1.6,0.9,2,4,2.4,2.1'; do \
+	    n=$${s%% *}; options=$${s#$$n}; \
+	    $(LAB) reference $(MADE)/scenes/$$n.masu --sdf scenes/$$n.sdf --physics --sun-radius 0.27 --size 320x180 \
+	        --paths 1024 $$options -o $(LIGHT)/$$n.png && \
+	    $(MADE)/bin/masu render $(MADE)/scenes/$$n.masu --size 320x180 -o $(LIGHT)/$$n.still.png && \
+	    $(MADE)/bin/masu compare $(LIGHT)/$$n.png $(LIGHT)/$$n.still.png || exit 1; \
+	done
 
 .PHONY: gallery
 gallery: $(if $(PATHS),$(LAB))

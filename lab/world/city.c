@@ -29,11 +29,15 @@ static const deck decks[] = {
     {2, 3, 72, -40, -96, 10}, {7, 7, 0, 0, 0, 0}, {4, 3, -24, 40, 0, 25}, {2, 3, -24, 80, 0, 20}};
 enum { DECKS = sizeof decks / sizeof decks[0], GROUND = 1 };
 
+enum { LAMPS = 1024 };
 typedef struct city {
     FILE *out;
     uint64_t random;
     uint32_t objects;
     char group[64];
+    bool night;
+    uint32_t lamps;
+    double lamp[LAMPS][3]; /* of the lamps' heads */
 } city;
 
 /* PCG32 (O'Neill 2014): 64 bits of state, 32 of output. */
@@ -66,6 +70,8 @@ static void put(city *c, const char *part, place p) {
     if (p.sx != 1 || p.sy != 1 || p.sz != 1) {
         fprintf(c->out, ", \"scale\": [%.3f, %.3f, %.3f]", p.sx, p.sy, p.sz);
     }
+    /* Their light is that of "lights", and of none by day. */
+    if (!strcmp(part, "lamp") || !strcmp(part, "sign")) fputs(", \"area_light\": false", c->out);
     if (p.color >= 0) {
         const double *k = colors[p.color];
         fprintf(c->out, ", \"material\": {\"base_color\": [%.2f, %.2f, %.2f]}", k[0], k[1], k[2]);
@@ -210,8 +216,10 @@ static void put_tile(city *c, int level, int i, int j, unsigned edge) {
     put_at(c, "deck", x, k->y, z, 0);
     put_edge(c, x, k->y, z, edge);
     for (int corner = 0; corner < 4; corner++) {
-        put_at(c, "lamp", x + (corner & 1 ? 18.5 : -18.5), k->y + 0.15,
-               z + (corner & 2 ? 18.5 : -18.5), 45);
+        double at[3] = {x + (corner & 1 ? 18.5 : -18.5), k->y + 0.15,
+                        z + (corner & 2 ? 18.5 : -18.5)};
+        put_at(c, "lamp", at[0], at[1], at[2], 45);
+        if (c->lamps < LAMPS) memcpy(c->lamp[c->lamps++], at, sizeof at);
     }
     for (int n = below(c, 4); n > 0; n--) { /* passers-by */
         put_at(c, "person_pale", x + between(c, -17, 17), k->y + 0.15, z + 18.4,
@@ -295,6 +303,32 @@ static void walk(FILE *out) {
     }
 }
 
+#define DAY "city.json"
+#define NIGHT "city_night.json"
+static const char day[] =
+    "  \"sun\": {\"azimuth\": 130, \"elevation\": 48, \"color\": [1, 0.92, 0.8], \"intensity\": "
+    "1.2,\n"
+    "          \"shadows\": {\"cascades\": 4, \"resolution\": 1024, \"distance\": 400}},\n"
+    "  \"ambient\": [0.24, 0.26, 0.30],\n"
+    "  \"sky\": {\"zenith\": [0.30, 0.38, 0.50], \"horizon\": [0.86, 0.80, 0.66]},\n";
+static const char night[] =
+    "  \"sun\": {\"azimuth\": 130, \"elevation\": 48, \"color\": [0.5, 0.6, 1], \"intensity\": "
+    "0.02,\n"
+    "          \"shadows\": {\"cascades\": 4, \"resolution\": 1024, \"distance\": 400}},\n"
+    "  \"ambient\": [0.010, 0.012, 0.020],\n"
+    "  \"sky\": {\"zenith\": [0.004, 0.006, 0.014], \"horizon\": [0.03, 0.03, 0.04]}, \"exposure\": 2,\n";
+
+/* Below the heads of the lamps, which they would light otherwise. */
+static void put_lights(city *c) {
+    fputs("  \"lights\": [", c->out);
+    for (uint32_t i = 0; i < c->lamps; i++)
+        fprintf(c->out,
+                "%s\n    {\"type\": \"point\", \"position\": [%.3f, %.3f, %.3f], "
+                "\"color\": [1, 0.74, 0.44], \"intensity\": 14, \"range\": 26, \"radius\": 0.1}",
+                i ? "," : "", c->lamp[i][0], c->lamp[i][1] + 3.35, c->lamp[i][2]);
+    fputs("\n  ],\n", c->out);
+}
+
 static bool write_scene(city *c, const char *folder) {
     fputs("{\n  \"models\": [", c->out);
     for (int level = 0; level < DECKS; level++) put_deck(c, level);
@@ -307,19 +341,21 @@ static bool write_scene(city *c, const char *folder) {
     key(c->out, 30, high, 216, -24);
     fputs(
         "      {\"time\": 31, \"position\": [150, 130, 205], \"target\": [0, 20, 0]}\n    ]\n  },\n"
-        "  \"ambient_occlusion\": false, \"reflections\": false,\n"
-        "  \"sun\": {\"azimuth\": 130, \"elevation\": 48, \"color\": [1, 0.92, 0.8], "
-        "\"intensity\": 1.2,\n"
-        "          \"shadows\": {\"cascades\": 4, \"resolution\": 1024, \"distance\": 400}},\n"
-        "  \"ambient\": [0.24, 0.26, 0.30],\n"
-        "  \"sky\": {\"zenith\": [0.30, 0.38, 0.50], \"horizon\": [0.86, 0.80, 0.66]},\n"
-        "  \"lods\": 3,\n  \"occluders\": 4\n}\n",
+        "  \"ambient_occlusion\": false, \"reflections\": false,\n",
         c->out);
-    return masu_world_close(c->out, folder, "city.json");
+    fputs(c->night ? night : day, c->out);
+    if (c->night) put_lights(c);
+    fputs("  \"lods\": 3,\n  \"occluders\": 4\n}\n", c->out);
+    return masu_world_close(c->out, folder, c->night ? NIGHT : DAY);
+}
+
+static bool write_city(const char *folder, bool night) {
+    static city c; /* 24 KB: not for the stack */
+    c = (city){.random = 0x6D617375u, .night = night};
+    c.out = masu_world_create(folder, night ? NIGHT : DAY);
+    return c.out && write_scene(&c, folder);
 }
 
 bool masu_world_city(const char *folder) {
-    city c = {.random = 0x6D617375u, .out = masu_world_create(folder, "city.json")};
-    if (!c.out) return false;
-    return write_scene(&c, folder) && masu_world_parts(folder);
+    return write_city(folder, false) && write_city(folder, true) && masu_world_parts(folder);
 }
