@@ -87,7 +87,8 @@ static void steps_of_any_size_add_up_to_the_scene(void **state) {
     (void)state;
     static unsigned char at_once[ROOM];
     masu_commands commands;
-    make_renderer(SUPPORT_ALL | SUPPORT_LIGHTING, 0);
+    const masu_rung rung = {.local_shadows = MASU_OFF}; /* whose atlas is cleared by a step of its own */
+    make_renderer_with(SUPPORT_ALL | SUPPORT_LIGHTING, 0, &rung, 1);
     assert_int_equal(masu_load(&m, &commands), MASU_OK);
     memcpy(at_once, memory[MASU_ROLE_DEVICE], ROOM);
     uint64_t all = commands.load_bytes;
@@ -96,7 +97,7 @@ static void steps_of_any_size_add_up_to_the_scene(void **state) {
     for (uint64_t step = 1; step <= all + 1; step += step < 100 ? 1 : 3001) {
         uint64_t sum = 0, calls = 0;
         masu_result result;
-        make_renderer(SUPPORT_ALL | SUPPORT_LIGHTING, 0);
+        make_renderer_with(SUPPORT_ALL | SUPPORT_LIGHTING, 0, &rung, 1);
         m.plan.desc.load_step = step;
         do {
             result = masu_load(&m, &commands);
