@@ -207,7 +207,6 @@ light: $(LAB)
 	$(V)$(LAB) study bounce $(MADE)/scenes/room.masu --sdf scenes/room.sdf --night --lamp lamp
 	$(V)$(LAB) study bounce $(MADE)/scenes/room.masu --sdf scenes/room.sdf --night --lamp lamp \
 	    --camera 6.4,1.5,-1.6,8.8,1,1.2
-	$(V)$(LAB) study bounce $(MADE)/scenes/alley.masu --sdf scenes/alley.sdf --frames 600
 	$(V)$(LAB) reference $(MADE)/scenes/small_lamps.masu --physics --size 320x240 --paths 128 -o $(LIGHT)/small_lamps.pfm
 	$(V)$(LAB) study rest $(MADE)/scenes/small_lamps.masu --reference $(LIGHT)/small_lamps.pfm
 	$(V)for s in night alley 'room --window 1.6,0.9,2,4,2.4,2.1'; do \

@@ -366,4 +366,7 @@ const masu_study masu_study_bounce = {
         "the noise of one\n"
         "point, its mean in the last frame, the RMSE relative to the reference's mean, frames "
         "until the mean stays\n"
-        "within a tenth of its change, and the relative change of the mean in the last frame.\n"};
+        "within a tenth of its change, and the relative change of the mean in the last frame. "
+        "Light straight from\n"
+        "emissive surfaces counts as indirect in the reference alone: not for scenes with emissive "
+        "models.\n"};
