@@ -65,7 +65,7 @@ void ask_light(inout chosen c, masu_punctual_light_data light, vec3 rel, vec3 n,
         return;
     }
     vec3 to = light.position.xyz - rel;
-    float margin = max(masu_sqrt(light.color.w), 0.05);
+    float margin = max(1.1 * masu_sqrt(light.color.w) + 0.02, 0.05); /* its bulb may be of the same radius */
     if (masu_light_is_shared(light) && masu_light_within(light, rel) < 1.0) {
         return; /* its own surface */
     }
