@@ -15,7 +15,7 @@ rows() {
     printf '%s\n' "$table" | sed "1d; s/\"//g; s/, /; /g; s/^/$name,/" | grep -E "^$name,[^,]*,($which)"
 }
 gpus=$1
-for scene in engine wet_city mirrors city textures glass night; do
+for scene in engine wet_city mirrors city textures glass night alley room; do
     rows "$scene" "$scene" ''
 done
 rows skins test_skin 'skin|gbuffer'
