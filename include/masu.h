@@ -1770,7 +1770,7 @@ typedef struct masu_stats_info {
     /* Shadows of punctual lights: lights that have them, faces rendered in this frame, and faces
      * that are not up to date because local_shadow_faces were rendered already. */
     uint32_t local_shadow_lights, local_shadow_faces, local_shadow_waiting;
-    /* Live bounce: rounds of all probes until it rests, 64 after a change; below 48 most light has
+    /* Live bounce: rounds of all probes until it rests, 64 after a change; below 56 most light has
      * arrived. 0: it rests, or there is none. */
     uint32_t bounce_rounds_left;
     /* Traced reflections, with debug.counters: number of 8x8 tiles with rays, rays, rays that hit a

@@ -131,7 +131,7 @@ static bool add_position(masu_session *s, const masu_light *light, sums *sum, ch
 }
 
 int masu_picture_settles(const masu_stats_info *stats) {
-    return stats->local_shadow_waiting || stats->local_shadow_faces || stats->bounce_rounds_left > 48;
+    return stats->local_shadow_waiting || stats->local_shadow_faces || stats->bounce_rounds_left > 56;
 }
 
 static bool settle_lights(masu_session *s, const masu_frame_desc *frame, char *error, size_t error_size) {
