@@ -24,6 +24,7 @@ void masu_local_shadows_alloc(masu_local_shadows *s, masu_arena *arena, const ma
     s->capacity = capacity;
     s->empty = 1;
     s->choice = masu_arena_alloc(arena, "shadow slots", capacity, sizeof *s->choice, 8);
+    s->wish = masu_arena_alloc(arena, "shadow wishes", capacity != 0, sizeof *s->wish, 8);
     s->lights = masu_arena_alloc(arena, "shadow faces", capacity, sizeof *s->lights, 8);
     s->slot_of_light = masu_arena_alloc(arena, "shadows of lights", lights, sizeof *s->slot_of_light, 4);
     s->boxes = masu_arena_alloc(arena, "previous boxes", instances, sizeof *s->boxes, 4);
@@ -151,7 +152,7 @@ void masu_local_shadows_begin(masu_local_shadows *s, const masu_frame_data *f) {
     for (uint32_t k = 0; s->empty && k < f->plan->scene.instances; k++) s->boxes[k][3] = -1.0f;
     s->since = f->desc.cut || s->empty ? 0 : s->since + (s->since < MASU_SHADOW_CUT);
     s->empty = 0;
-    s->wish.count = 0;
+    if (s->capacity) s->wish->count = 0;
     for (uint32_t slot = 0; slot < s->capacity; slot++) s->choice[slot].offered = 0;
 }
 
@@ -213,7 +214,7 @@ void masu_local_shadows_offer(masu_local_shadows *s, const masu_frame_data *f, u
         if (set_light(&s->lights[slot - 1], state, position, direction, f->number)) s->choice[slot - 1].fade = 0;
         set_size(s, &s->lights[slot - 1], f, state->radius, distance);
     }
-    masu_shadow_wish_add(&s->wish, s->most, light + 1, score);
+    masu_shadow_wish_add(s->wish, s->most, light + 1, score);
 }
 
 /* ---- Casters that have moved ----------------------------------------------------------------- */
@@ -438,7 +439,7 @@ int masu_local_shadows_write(masu_local_shadows *s, const masu_instances *in, co
     memset(&out, 0, sizeof out);
     memset(skip, 0, sizeof skip);
     uint32_t before = faded(s), changed = 0;
-    masu_shadow_choose(s->choice, s->capacity, s->most, &s->wish, s->since, free_slot, s);
+    masu_shadow_choose(s->choice, s->capacity, s->most, s->wish, s->since, free_slot, s);
     place_lights(s);
     follow_casters(s, in, bounds, f);
     follow_sdf(s, f);

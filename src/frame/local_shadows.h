@@ -58,7 +58,7 @@ typedef struct masu_local_shadows {
     float sdf_box[6];          /* where the SDF that casts shadows may be; half sizes below 0: there is none */
     uint64_t sdf_hash;         /* of what it depended on in the last frame */
     masu_shadow_tiles tiles;
-    masu_shadow_wish wish;
+    masu_shadow_wish *wish; /* where capacity is not 0 */
     uint32_t most; /* lights that may have shadows in this frame */
     uint32_t since; /* frames since the last cut */
     int empty;     /* nothing is kept: neither slots nor boxes */
