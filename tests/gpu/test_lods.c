@@ -207,7 +207,7 @@ static void a_ladder_without_lods_has_none_of_it(void **state) {
         if (with) d.desc.rungs[1].lod_error = 0.5f;
         open_session(&s, &d);
         uint32_t n = memory_rows(s.m, rows);
-        assert_true(n < 64);
+        assert_true(n < MEMORY_ROWS);
         assert_int_equal(row_of(rows, n, "instance LODs")->count > 0, with);
         bytes[with] = row_of(rows, n, "draw commands")->bytes;
         masu_stats_info stats = draw_frame(&s, &(masu_camera){.position = {0, 0, 1000},

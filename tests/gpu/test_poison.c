@@ -139,8 +139,10 @@ static void take(uint8_t *pixels, const char *what, uint32_t poisoned) {
     if (!(own & MASU_READBACK_VELOCITY)) check_halves(&velocity, what);
 }
 
-/* What the GPU has written: not a depth attachment, whose bits the driver may have packed. */
+/* What the GPU has written: not a depth attachment, whose bits the driver may have packed; nor the shadow faces of lights,
+ * which keep what they have until a light or a caster moves. */
 static bool is_poisoned(uint32_t resource) {
+    if (resource == MASU_IMAGE_LOCAL_SHADOW_ATLAS) return false;
     static const uint32_t buffers[] = {MASU_BUFFER_TILES,       MASU_BUFFER_EXPOSURE,   MASU_BUFFER_LIGHT_TILES,
                                        MASU_BUFFER_SPECULAR_TILES, MASU_BUFFER_SMAA_TILES, MASU_BUFFER_PREVIOUS_VERTICES,
                                        MASU_BUFFER_SEEN};

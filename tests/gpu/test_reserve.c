@@ -26,7 +26,7 @@ static const struct {
 static masu_session_desc desc_of(const char *scene, uint32_t models, uint32_t lights) {
     masu_session_desc d = test_desc(scene, W, H);
     d.desc.rung_count = 1;
-    d.desc.rungs[0] = (masu_rung){.scale = 1.0f};
+    d.desc.rungs[0] = (masu_rung){.scale = 1.0f, .local_shadows = MASU_OFF}; /* which lights have shadows depends on the past */
     d.desc.reserve.models = models;
     d.desc.reserve.lights = lights;
     return d;

@@ -54,7 +54,7 @@ static const char round_ones[] =
     "{\"mesh\": {\"box\": {\"size\": [0.5, 1.4, 0.3]}}, \"translate\": [-0.6, 0.7, -1.3], \"material\": "
     "{\"base_color\": [0.1, 0.2, 0.7], \"roughness\": 1}}, "
     "{\"mesh\": {\"box\": {\"size\": [0.5, 1.2, 0.3]}}, \"translate\": [0.7, 0.9, -1.5], \"material\": "
-    "{\"base_color\": [0, 0, 0], \"emissive\": [3, 2, 1]}}], "
+    "{\"base_color\": [0, 0, 0], \"emissive\": [3, 2, 1]}, \"area_light\": false}], "
     "\"sun\": {\"intensity\": 0}, \"ambient\": [0.3, 0.33, 0.4], " SKY VIEW "}";
 
 /* Things lit by the sun, all matt, in glossy ones that do not see each other. */
@@ -235,9 +235,9 @@ static void sunny_ones_agree_with_the_tracer(void **state) {
     "[0, 0.6, 0], \"material\": {\"base_color\": [0.9, 0.5, 0.2], \"metallic\": 1, "                 \
     "\"roughness\": 0.4, \"coat\": 1, \"coat_roughness\": " #roughness "}}, "                        \
     "{\"mesh\": {\"box\": {\"size\": [2, 1, 0.3]}}, \"translate\": [-2, 2, 3], \"material\": "       \
-    "{\"base_color\": [0, 0, 0], \"emissive\": [2, 3, 4]}}, "                                      \
+    "{\"base_color\": [0, 0, 0], \"emissive\": [2, 3, 4]}, \"area_light\": false}, "                                      \
     "{\"mesh\": {\"box\": {\"size\": [0.3, 2, 1]}}, \"translate\": [2, 0.5, 1], \"material\": "      \
-    "{\"base_color\": [0, 0, 0], \"emissive\": [2, 0.5, 0.5]}}], "                                 \
+    "{\"base_color\": [0, 0, 0], \"emissive\": [2, 0.5, 0.5]}, \"area_light\": false}], "                                 \
     "\"sun\": {\"intensity\": 0}, \"ambient\": [0, 0, 0], " SKY VIEW "}"
 
 static void coats_agree_with_the_tracer(void **state) {
@@ -338,7 +338,7 @@ static const char street[] =
     "{\"mesh\": {\"plane\": {\"size_x\": 24, \"size_z\": 18}}, \"translate\": [0, 0, -5], \"material\": "
     "{\"base_color\": [0.02, 0.02, 0.02], \"roughness\": 0.35}}, "
     "{\"mesh\": {\"box\": {\"size\": [60, 4, 0.5]}}, \"translate\": [0, 2, -14], \"material\": "
-    "{\"base_color\": [0, 0, 0], \"emissive\": [2, 0.4, 0.1]}}], "
+    "{\"base_color\": [0, 0, 0], \"emissive\": [2, 0.4, 0.1]}, \"area_light\": false}], "
     "\"sun\": {\"intensity\": 0}, \"ambient\": [0, 0, 0], "
     "\"sky\": {\"zenith\": [0.1, 0.3, 1], \"horizon\": [0.1, 0.3, 1]}, "
     "\"camera\": {\"fov_y\": 40, \"near\": 0.05, \"keys\": [{\"position\": [0, 1, 6], \"target\": [0, 0.4, -4]}]}, "
@@ -418,7 +418,7 @@ static void only_tiles_that_mirror_are_traced(void **state) {
 
 static const char bright[] =
     "{\"models\": [" BALLS ", {\"mesh\": {\"box\": {\"size\": [8, 0.2, 8]}}, \"translate\": [0, 3, 0], "
-    "\"material\": {\"base_color\": [0, 0, 0], \"emissive\": [65504, 65504, 1]}}], "
+    "\"material\": {\"base_color\": [0, 0, 0], \"emissive\": [65504, 65504, 1]}, \"area_light\": false}], "
     "\"sun\": {\"intensity\": 1000}, \"ambient\": [1, 1, 1], " BALLS_SEEN ", "
     "\"reflections\": {\"cutoff\": 1}}";
 
