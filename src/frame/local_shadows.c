@@ -177,6 +177,13 @@ static uint32_t largest_size(const masu_local_shadows *s, const masu_frame_plan 
     return size;
 }
 
+/* In a frame, unless it waits already. */
+static void make_due(masu_local_face *face, uint64_t frame) {
+    if (!face->used || face->due) return;
+    face->due = 1;
+    face->since = frame;
+}
+
 static void set_size(masu_local_shadows *s, masu_local_light *light, const masu_frame_data *f, float radius,
                      double distance) {
     double tangent = light->tangent > 0.0 ? light->tangent : 1.0;
@@ -187,10 +194,7 @@ static void set_size(masu_local_shadows *s, masu_local_light *light, const masu_
     if (size == light->size) return;
     light->size = size;
     for (uint32_t i = 0; i < MASU_LOCAL_FACES; i++) {
-        masu_local_face *face = &light->faces[i];
-        if (!face->used || face->due || !face->tile.size) continue;
-        face->due = 1;
-        face->since = f->number;
+        if (light->faces[i].tile.size) make_due(&light->faces[i], f->number);
     }
 }
 
@@ -245,9 +249,7 @@ static void touch_faces(masu_local_shadows *s, const float box[6], uint64_t fram
         masu_local_light *light = &s->lights[slot];
         for (uint32_t i = 0; i < MASU_LOCAL_FACES; i++) {
             masu_local_face *face = &light->faces[i];
-            if (!face->used || face->due || !touches(light, face, box)) continue;
-            face->due = 1;
-            face->since = frame;
+            if (face->used && !face->due && touches(light, face, box)) make_due(face, frame);
         }
     }
 }
