@@ -32,7 +32,7 @@ static uint8_t instance_flags[4];
 static masu_placed_model placed_models[4];
 static masu_node model_nodes[4];
 static uint32_t models_of[4];
-static _Alignas(64) unsigned char bent[4096]; /* clips and skins */
+static _Alignas(64) unsigned char own[1 << 16]; /* clips, skins, shadows of lights */
 static struct masu_frame_uniforms history;
 static struct masu_instance_data previous[4];
 static masu_blob_sdf_param params[4];
@@ -41,11 +41,6 @@ static masu_cull_node groups[4];
 static masu_placed_occluder occluders[4];
 static masu_punctual_light_state lights[4];
 static uint64_t light_names[4];
-static masu_shadow_slot shadow_slots[4];
-static masu_local_light shadow_lights[4];
-static uint32_t shadows_of_lights[4];
-static float previous_boxes[4][6];
-static uint8_t face_states[4], caster_marks[4];
 static masu_sky sky;
 static masu_transparent transparents[8];
 static masu_back_to_front order[16];
@@ -97,10 +92,11 @@ void make_renderer_with(uint32_t parts, uint64_t staging, const masu_rung *rungs
     m.models.nodes = model_nodes;
     m.models.of_instance = models_of;
     masu_arena arena;
-    masu_arena_begin(&arena, bent, sizeof bent);
+    masu_arena_begin(&arena, own, sizeof own);
     masu_animation_alloc(&m.models.animation, &arena, &m.plan);
     masu_skins_alloc(&m.models.skins, &arena, &m.plan);
-    assert_true(arena.used <= sizeof bent);
+    masu_local_shadows_alloc(&m.local_shadows, &arena, &m.plan);
+    assert_true(arena.used <= sizeof own);
     m.history.previous = &history;
     m.instances.previous = previous;
     m.camera.keys = keys;
@@ -118,15 +114,6 @@ void make_renderer_with(uint32_t parts, uint64_t staging, const masu_rung *rungs
     m.instances.meshes = instance_meshes;
     m.lights.states = lights;
     m.lights.names = light_names;
-    assert_true(m.plan.local_lights <= COUNT(shadow_slots));
-    m.local_shadows = (masu_local_shadows){.capacity = m.plan.local_lights,
-                                           .choice = shadow_slots,
-                                           .lights = shadow_lights,
-                                           .slot_of_light = shadows_of_lights,
-                                           .boxes = previous_boxes,
-                                           .group_states = face_states,
-                                           .marks = caster_marks,
-                                           .empty = 1};
     m.sun_sky.sky = &sky;
     m.transparents.things = transparents;
     m.transparents.order = order;
