@@ -26,7 +26,7 @@ typedef struct masu_render_options {
     double exposure;          /* 0: the scene's */
     double anisotropy;
     bool own_sun, casters, poison, split, dither;
-    bool animate; /* models that have clips */
+    bool at_rest; /* models that have clips do not play them */
 } masu_render_options;
 
 /* One measured frame. */

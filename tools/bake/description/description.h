@@ -58,6 +58,7 @@ typedef struct masu_bake_model {
     const char *name;  /* before the instances' names, or NULL */
     const char *group; /* "outer/inner", or NULL */
     bool moving; /* it is a model of the scene for the host, too */
+    bool plays;  /* moving, if its file has clips; building decides it */
     bool hidden; /* at first; moving, then */
     uint32_t spare; /* so many more of it, hidden; moving, then */
     double merge;               /* cell size, metres; 0: as the file has it */

@@ -66,7 +66,7 @@ static void report(masu_import *m) {
         masu_import_format(w, "%u lights: ignored, since their units are not known\n",
                            m->source->mNumLights);
     }
-    if (!m->moving && (m->skins || m->source->mNumAnimations)) {
+    if (!m->moving && !m->plays && (m->skins || m->source->mNumAnimations)) {
         masu_bake_append_text(w,
                               "only \"moving\" models are animated: this one has its rest pose\n");
     }
@@ -113,6 +113,7 @@ static void convert(masu_import *m, masu_bake_buffer *error) {
         else
             masu_import_show_all(m);
         if (m->live) masu_import_live(m);
+        if (m->plays) m->moving = masu_bake_count(m->piece, MASU_BLOB_CLIPS) > 0;
         if (!m->moving) masu_import_forget(m);
         report(m);
         if (masu_bake_count(m->piece, MASU_BLOB_INSTANCES) == 0) {
@@ -202,8 +203,10 @@ void masu_bake_read_model(const char *path, const masu_bake_wanted *wanted, masu
                      .path = path,
                      .wanted = wanted->textures,
                      .piece = piece,
-                     .moving = wanted->moving,
-                     .live = scene->mRootNode && masu_import_is_live(scene, wanted->moving),
+                     .moving = wanted->moving || wanted->plays,
+                     .plays = wanted->plays && !wanted->moving,
+                     .live = scene->mRootNode &&
+                             masu_import_is_live(scene, wanted->moving || wanted->plays),
                      .warnings = warnings};
     convert(&m, error);
 }

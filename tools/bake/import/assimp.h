@@ -94,6 +94,7 @@ typedef struct masu_import {
     uint32_t invisible;    /* materials with an opacity of 0 */
     uint32_t other_lights; /* that shine from or to nowhere */
     bool full, moving;
+    bool plays; /* moving only if there are clips */
     /* Of a model that has skins, or that moves and has clips: */
     bool live;
     uint32_t crowded, unbound; /* vertices of more than four joints, of none */
