@@ -540,7 +540,7 @@ typedef struct masu_blob_camera_key {
     float time; /* seconds */
     float position[3];
     float target[3]; /* differs from position */
-    float fov_y;     /* radians, (0, pi); below 0: orthographic, that many metres high */
+    float fov_y;     /* radians, (0, pi) */
 } masu_blob_camera_key;
 
 typedef struct masu_blob_environment {

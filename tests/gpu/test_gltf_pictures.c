@@ -605,6 +605,38 @@ static void skins_stand_as_their_joints_have_them(void **state) {
     compare(skinned("STEP", moves, 3), (shot){{3.5, 0.5, 2.5}, {3.5, 0.5, 0}}, &f, 1, 0);
 }
 
+/* Two boxes of one size, the second ten metres behind the first: as large in the picture. */
+static void an_orthographic_camera_sees_no_depth(void **state) {
+    (void)state;
+    static const char json[] =
+        "{\"models\": [{\"mesh\": {\"box\": {}}, \"translate\": [-1.5, 0, 0], \"material\": {\"emissive\": [50, 50, 50]}}, "
+        "{\"mesh\": {\"box\": {}}, \"translate\": [1.5, 0, -10], \"material\": {\"emissive\": [50, 50, 50]}}], "
+        "\"camera\": {%s, \"keys\": [{\"position\": [0, 0, 6], \"target\": [0, 0, -4.5]}]}}";
+    static const char *const lenses[] = {"\"height\": 4", "\"fov_y\": 40"};
+    double width[2][2];
+    for (int i = 0; i < 2; i++) {
+        char text[1024], name[16];
+        masu_session s;
+        snprintf(text, sizeof text, json, lenses[i]);
+        snprintf(name, sizeof name, "depth%d", i);
+        bake_scene(name, text);
+        masu_session_desc d = test_desc(NULL, SIDE, SIDE);
+        d.scene_path = baked_scene(name);
+        d.desc.readback = MASU_READBACK_HDR;
+        d.desc.rung_count = 1;
+        open_session(&s, &d);
+        masu_frame_desc frame = {0};
+        const uint16_t *seen = draw_image(&s, &frame, MASU_READBACK_HDR, NULL);
+        width[i][0] = width[i][1] = 0;
+        for (int x = 0; x < SIDE; x++)
+            width[i][x >= SIDE / 2] += half_float(seen[4 * (SIDE / 2 * SIDE + x)]) > 10;
+        close_session(&s);
+    }
+    /* 64 texels for four metres. */
+    assert_true(fabs(width[0][0] - 16) <= 1 && fabs(width[0][1] - 16) <= 1);
+    assert_true(width[1][0] > 1.8 * width[1][1]);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(emission_needs_no_fifth_attachment),
@@ -627,6 +659,7 @@ int main(void) {
         cmocka_unit_test(draco_is_unpacked),
         cmocka_unit_test(nodes_have_instances),
         cmocka_unit_test(morphs_have_their_weights),
+        cmocka_unit_test(an_orthographic_camera_sees_no_depth),
         cmocka_unit_test(skins_stand_as_their_joints_have_them),
     };
     return cmocka_run_group_tests(tests, make_scratch, remove_scratch);

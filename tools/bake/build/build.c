@@ -64,7 +64,7 @@ static bool load_panorama(const masu_bake_environment *e, masu_bake_panorama *ou
 }
 
 /* The key of a model's camera. */
-static bool take_camera(const masu_bake_description *d, const masu_bake_content *content,
+static bool take_camera(masu_bake_description *d, const masu_bake_box *bounds, const masu_bake_content *content,
                         masu_blob_camera_key *key) {
     const masu_bake_camera *camera = masu_bake_find_camera(content, d->look.camera);
     if (!camera) {
@@ -85,8 +85,15 @@ static bool take_camera(const masu_bake_description *d, const masu_bake_content 
     double ahead = fmax(1, masu_bake_length(at) * 1e-3);
     *key = (masu_blob_camera_key){.fov_y = d->look.own_fov_y ? (float)(d->look.fov_y * (MASU_BAKE_PI / 180))
                                                              : camera->fov_y};
+    masu_bake_vec3 forward = masu_bake_v3f(camera->direction);
+    if (camera->height > 0 && !(d->look.height > 0)) d->look.height = (double)camera->height;
+    if (d->look.own_fov_y) d->look.height = 0;
+    if (d->look.height > 0 && !masu_bake_box_is_empty(bounds)) { /* exact in the middle of the scene */
+        masu_bake_vec3 middle = masu_bake_mad(bounds->low, masu_bake_sub(bounds->high, bounds->low), 0.5);
+        ahead = fmax(ahead, masu_bake_dot(masu_bake_sub(middle, at), forward));
+    }
     masu_bake_store(at, key->position);
-    masu_bake_store(masu_bake_mad(at, masu_bake_v3f(camera->direction), ahead), key->target);
+    masu_bake_store(masu_bake_mad(at, forward, ahead), key->target);
     return true;
 }
 
@@ -154,7 +161,7 @@ static bool build_scene(masu_bake_description *d, const masu_bake_options *optio
     if (d->look.camera) {
         d->look.keys = masu_bake_take(&d->pool, sizeof *d->look.keys);
         d->look.key_count = 1;
-        if (!take_camera(d, content, d->look.keys)) return false;
+        if (!take_camera(d, &bounds, content, d->look.keys)) return false;
     }
     masu_bake_panorama panorama = {0};
     if (!load_panorama(&d->environment, &panorama)) return false;

@@ -89,6 +89,7 @@ typedef struct masu_bake_look {
     const char *camera;           /* of a model, instead of keys; or NULL */
     double fov_y;                 /* degrees, of that one */
     bool own_fov_y;               /* the scene says so */
+    double height;                /* of an orthographic one, metres; 0: perspective */
     double near;                  /* metres; 0: by default */
     masu_bake_vec3 sun_direction; /* towards the sun */
     masu_bake_vec3 sun_color;
