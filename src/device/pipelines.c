@@ -628,13 +628,13 @@ static masu_result create_samplers(masu_device *m, masu_detail *detail) {
     float anisotropy = m->plan->desc.vulkan.max_anisotropy;
     for (uint32_t i = 0; i < m->plan->scene.texture_sets; i++) {
         const uint32_t *wrap = v.texture_sets[i].wrap;
-        VkSampler *sampler = &m->samplers[wrap[0] + 3 * wrap[1]];
+        VkSampler *sampler = &m->samplers[masu_sampler_of(wrap)];
         if (*sampler) continue;
         VkSamplerCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
-                                    .magFilter = VK_FILTER_LINEAR,
+                                    .magFilter = wrap[0] & 4u ? VK_FILTER_NEAREST : VK_FILTER_LINEAR,
                                     .minFilter = VK_FILTER_LINEAR,
                                     .mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR,
-                                    .addressModeU = modes[wrap[0]],
+                                    .addressModeU = modes[wrap[0] & 3u],
                                     .addressModeV = modes[wrap[1]],
                                     .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                     .anisotropyEnable = anisotropy > 1.0f,

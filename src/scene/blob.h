@@ -461,7 +461,8 @@ typedef struct masu_blob_texture {
 /* What a draw binds together: a texture per slot, or MASU_BLOB_NONE. */
 typedef struct masu_blob_texture_set {
     uint32_t texture[MASU_SLOT_COUNT];
-    uint32_t wrap[2]; /* along u and v: 0 repeat, 1 clamp, 2 mirror */
+    uint32_t wrap[2]; /* along u and v: 0 repeat, 1 clamp, 2 mirror; the first plus 4: magnified without
+                         interpolation */
 } masu_blob_texture_set;
 
 /* Traced reflections; present with TRACE_NODES, TRACE_SDF_SPIRV or both. */

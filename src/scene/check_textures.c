@@ -49,7 +49,7 @@ static masu_result check_texture_set(reader *r, uint64_t i) {
         }
     }
     if (!given) return bad(r, "texture sets", i, "is empty");
-    if (set->wrap[0] > 2 || set->wrap[1] > 2) return bad(r, "texture sets", i, "no such wrapping");
+    if ((set->wrap[0] & ~4u) > 2 || set->wrap[1] > 2) return bad(r, "texture sets", i, "no such wrapping");
     return MASU_OK;
 }
 

@@ -73,7 +73,7 @@ struct masu_trace_material masu_trace_material_of(const masu_scene_data *scene,
         {MASU_TRACE_NONE, MASU_TRACE_NONE, m->flags, 0}};
     if (!(m->flags & MASU_MATERIAL_HAS_MAPS)) return out;
     const masu_blob_texture_set *set = &v->texture_sets[m->texture_set];
-    out.maps[3] = set->wrap[0] | set->wrap[1] << 2;
+    out.maps[3] = (set->wrap[0] & 3u) | set->wrap[1] << 2;
     if (m->more_layers >> (16 + MASU_SLOT_EMISSIVE) & 1u) out.maps[3] |= MASU_TRACE_SECOND;
     out.maps[0] = picture_of(scene, v, m, MASU_SLOT_BASE);
     out.maps[1] = picture_of(scene, v, m, MASU_SLOT_EMISSIVE);

@@ -9,6 +9,7 @@
 #include "reference/fsr1.h"
 #include "reference/patterns.h"
 #include "reference/smaa.h"
+#include "scene/blob.h"
 
 #include <math.h>
 #include <stdio.h>

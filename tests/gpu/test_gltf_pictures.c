@@ -396,6 +396,31 @@ static void pictures_are_of_the_second_set_and_turned(void **state) {
             ahead, f, 4, 0);
 }
 
+/* Of eight texels along a side: interpolated, the squares would be an eighth wider than they are. */
+static void pixels_of_a_picture_stay_sharp(void **state) {
+    (void)state;
+    static const uint8_t colors[4][3] = {{255, 0, 0}, {0, 255, 0}, {0, 0, 255}, {255, 255, 255}};
+    static const float coordinates[8] = {0, 1, 1, 1, 1, 0, 0, 0};
+    static uint8_t rgba[8 * 8 * 4];
+    char attributes[64], rest[512], error[ERROR_SIZE];
+    face f[4];
+    for (int i = 0; i < 64; i++) {
+        memcpy(rgba + 4 * i, colors[(i % 8 >= 4) + 2 * (i / 8 >= 4)], 3);
+        rgba[4 * i + 3] = 255;
+    }
+    assert_ok(masu_image_save_png(in_scratch("pixels.png"), rgba, 8, 8, 0, error, sizeof error));
+    quarter(f);
+    for (int i = 0; i < 4; i++)
+        for (int c = 0; c < 3; c++) f[i].look[c] = linear(colors[i][c]);
+    begin_quad();
+    snprintf(attributes, sizeof attributes, ",\"TEXCOORD_0\":%d", floats(coordinates, "VEC2", 4, 2));
+    snprintf(rest, sizeof rest,
+             ",\"images\":[{\"uri\":\"pixels.png\"}],\"textures\":[{\"source\":0,\"sampler\":0}],"
+             "\"samplers\":[{\"magFilter\":9728}],\"materials\":[{\"pbrMetallicRoughness\":{" ROUGH
+             ",\"baseColorTexture\":{\"index\":0}}}]");
+    compare(finish_quad(attributes, ",\"material\":0", rest), ahead, f, 4, 0);
+}
+
 static void pictures_are_webp(void **state) {
     (void)state;
     static const float at[8] = {0, 1, 1, 1, 1, 0, 0, 0};
@@ -648,6 +673,7 @@ int main(void) {
         cmocka_unit_test(coats_have_maps),
         cmocka_unit_test(glass_colours_what_is_behind),
         cmocka_unit_test(pictures_are_of_the_second_set_and_turned),
+        cmocka_unit_test(pixels_of_a_picture_stay_sharp),
         cmocka_unit_test(pictures_are_webp),
         cmocka_unit_test(vertices_have_colours),
         cmocka_unit_test(single_sided_materials_are_not_seen_from_behind),

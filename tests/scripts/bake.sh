@@ -323,6 +323,11 @@ refuses 2 'found a name that ends in .masu, expected one that ends in .json' "$f
 refuses 2 'bakes nothing: remove --stats' "$folder/nodes.gltf" --describe --stats "$folder/stats.json"
 rm -f "$folder/out/told.json" "$folder/out/alone.masu"
 
+# A model that is kilometres long may be in centimetres.
+printf 'v %s 0 %s\n' 0 0 0 9 1500000 9 1500000 0 | cat - <(echo 'f 1 2 3 4') > "$folder/wide.obj"
+accepts "$folder/wide.obj" "${x[@]}"
+says stdout 'wide.obj: is 1.5e+06 m long; if its file is in centimetres'
+
 # The same with NaN in a corner of one of two triangles, then in both.
 nan=AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAwH8AAAAA
 two=$(printf '%s%s' "$positions" "$nan")

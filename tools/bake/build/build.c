@@ -28,6 +28,7 @@
 /* More triangles than these are not traced unless the scene asks for it: the tree of more takes
  * seconds to bake, and an integrated GPU has hardly the time to walk it. */
 #define TRACED_TRIANGLES_MAX 500000u
+#define LARGE 1000 /* metres: longer models may have other units */
 
 static void make_detail(const masu_bake_description *d, masu_bake_content *content,
                         masu_bake_report *report) {
@@ -136,6 +137,17 @@ static void take_panorama_sun(const masu_bake_environment *e, masu_bake_panorama
     look->sun_color = masu_bake_v3(sun.color[0], sun.color[1], sun.color[2]);
 }
 
+/* A model alone is in metres unless its file says otherwise, and few things are kilometres wide. */
+static void hint_at_units(const masu_bake_description *d, const masu_bake_box *bounds) {
+    if (masu_bake_box_is_empty(bounds) || !d->model_count || !d->models[0].plays || masu_cli_quiet()) return;
+    masu_bake_vec3 e = masu_bake_sub(bounds->high, bounds->low);
+    double longest = fmax(e.x, fmax(e.y, e.z));
+    if (longest < LARGE) return;
+    printf("%s: is %.3g m long; if its file is in centimetres or millimetres, use a scene with a \"scale\" of 0.01 or "
+           "0.001 (--describe writes one)\n",
+           d->models[0].file, longest);
+}
+
 /* Models, SDF, camera and light. Completes the description by the members that depend on the
  * models. */
 static bool build_scene(masu_bake_description *d, const masu_bake_options *options,
@@ -144,6 +156,7 @@ static bool build_scene(masu_bake_description *d, const masu_bake_options *optio
     make_detail(d, content, report);
     masu_bake_affine identity = masu_bake_identity();
     masu_bake_box bounds = report->bounds = masu_bake_bounds(content, &identity);
+    hint_at_units(d, &bounds);
     if (d->default_reflections &&
         masu_bake_count(content, MASU_BLOB_INDICES) / 3 > TRACED_TRIANGLES_MAX)
         d->reflections.wanted = false;

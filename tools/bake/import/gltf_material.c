@@ -19,7 +19,7 @@ typedef struct texture {
     uint32_t image;
     int set;
     double uv[6];
-    uint8_t wrap[2];
+    uint8_t wrap[2], nearest; /* compared as bytes */
 } texture;
 
 /* ---- pictures ---- */
@@ -86,11 +86,7 @@ static bool read_sampler(masu_gltf *g, const json_t *about, texture *t) {
         !masu_gltf_size(g, sampler, "magFilter", &filter))
         return false;
     for (int k = 0; k < 2; k++) t->wrap[k] = wrap[k] == 33071 ? 1 : wrap[k] == 33648 ? 2 : 0;
-    if (filter == 9728) {
-        masu_gltf_note_one(g,
-                           "textures request nearest-neighbour filtering, which is not supported",
-                           masu_gltf_name_of(g, "samplers", (size_t)index, sampler));
-    }
+    t->nearest = filter == 9728;
     return true;
 }
 
@@ -235,9 +231,10 @@ static const texture *agree(masu_gltf *g, maps *m, masu_gltf_material *out) {
             leave_out(
                 g, t,
                 "textures use other coordinates than the base colour of their material: ignored");
-        if (t->image != MASU_BLOB_NONE && memcmp(t->wrap, first->wrap, sizeof t->wrap) != 0)
+        if (t->image != MASU_BLOB_NONE &&
+            (memcmp(t->wrap, first->wrap, sizeof t->wrap) != 0 || t->nearest != first->nearest))
             masu_gltf_note_one(g,
-                               "textures have another wrap mode than the base colour of their "
+                               "textures have another wrap mode or filter than the base colour of their "
                                "material, which is used",
                                g->where);
     }
@@ -259,6 +256,7 @@ static void settle(masu_gltf *g, maps *m, masu_gltf_material *out) {
     if (to->gloss) to->channel[MASU_BAKE_ROUGHNESS] = 3;
     if (!first) return;
     memcpy(to->wrap, first->wrap, sizeof to->wrap);
+    to->nearest = first->nearest;
     memcpy(out->uv, first->uv, sizeof out->uv);
     out->set = first->set;
 }

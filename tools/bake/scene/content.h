@@ -104,7 +104,7 @@ typedef struct masu_bake_maps {
     uint8_t shadowless;              /* 1: casts no shadows */
     uint8_t colored;                 /* MASU_BAKE_COLORED_* */
     uint8_t second;                  /* bit of a slot of a texture set: its map is of the second coordinates */
-    uint8_t reserved;
+    uint8_t nearest;                 /* 1: magnified without interpolation */
     float cutoff, normal_scale;      /* normal_scale: of heights their strength */
     float occlusion;                 /* strength of the occlusion map, 0..1 */
     /* no padding: it is compared as bytes */

@@ -555,7 +555,7 @@ static uint32_t set_of(masu_bake_content *c, const masu_blob_texture_set *set) {
 
 static void point(maker *m, masu_blob_material *material, const masu_bake_maps *maps,
                   const uint32_t slots[MASU_SLOT_COUNT]) {
-    masu_blob_texture_set set = {.wrap = {maps->wrap[0], maps->wrap[1]}};
+    masu_blob_texture_set set = {.wrap = {maps->wrap[0] + 4u * maps->nearest, maps->wrap[1]}};
     uint32_t flags = is_blended(m, maps, material, slots[MASU_SLOT_BASE]) ? MASU_MATERIAL_IS_BLEND : 0, layers = 0;
     for (uint32_t slot = 0; slot < MASU_SLOT_COUNT; slot++) {
         set.texture[slot] = MASU_BLOB_NONE;
