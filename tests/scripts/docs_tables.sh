@@ -15,6 +15,11 @@ diff -u docs/passes.md "$folder/passes.md" || {
     echo "docs/passes.md is out of date with src/plan/passes.inc: run make docs-tables"
     exit 1
 }
+tools/bake/import/features.sh --into docs/scene.md | diff -u docs/scene.md - || {
+    echo "docs/scene.md is out of date with tools/bake/import/gltf_features.inc: run make docs-tables"
+    exit 1
+}
+[ "$(tools/bake/import/features.sh | wc -l)" -ge 30 ]
 "$masu" plan --knobs > "$folder/plan"
 "$masu" render --setting help > "$folder/setting"
 cmp "$folder/plan" "$folder/setting"

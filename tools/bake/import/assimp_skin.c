@@ -491,7 +491,7 @@ static void add_weights(masu_import *m, const struct aiMeshMorphAnim *from, doub
             for (unsigned k = 0; from->mKeys && k < from->mNumKeys; k++) {
                 const struct aiMeshMorphKey *key = &from->mKeys[k];
                 for (unsigned i = 0; key->mValues && key->mWeights && i < key->mNumValuesAndWeights; i++) {
-                    const double value[4] = {masu_import_clamped(key->mWeights[i], -1e6, 1e6), 0, 0, 0};
+                    const double value[4] = {(double)masu_import_clamped(key->mWeights[i], -1e6, 1e6), 0, 0, 0};
                     if (key->mValues[i] == t) add_key(&weights, key->mTime * tick, value, 1);
                 }
             }
