@@ -127,6 +127,11 @@ static void compile_rung(masu_frame_plan *plan, uint32_t r) {
         for (uint32_t a = 0; a < MASU_PASS_ACCESSES && row->access[a].image; a++) {
             masu_usage usage = (masu_usage)row->access[a].usage;
             uint8_t resource = resolve(row->access[a].image, &l);
+            /* Bound all the same, and not read: one shader is for both. */
+            if (p == MASU_PASS_TRANSPARENTS && resource == MASU_IMAGE_BACKGROUND && !plan->needs.rough_glass) {
+                resource = l.image[MASU_CLASS_DEPTH];
+                usage = MASU_READ;
+            }
             if (!keeps_access(plan, p, resource, usage)) continue;
             rp->access[p][rp->access_count[p]++] = (masu_access){resource, (uint8_t)usage};
             if (masu_usage_writes(usage) && !masu_is_buffer(resource)) write_latest(&l, resource);
@@ -329,6 +334,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                .probes = d->scene && plan->scene.probes && (!plan->scene.probes_unlit || any.bounce),
                                .shadow = d->scene && plan->scene.shadow_cascades,
                                .transparents = d->scene && plan->scene.transparents,
+                               .rough_glass = d->scene && plan->scene.transparents && plan->scene.tints & MASU_TINTS_ROUGH,
                                .lights = d->scene && plan->scene.lights,
                                .local_shadows = d->scene && any.local_shadows,
                                .area_lights = d->scene && plan->scene.lights &&

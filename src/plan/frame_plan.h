@@ -50,6 +50,7 @@ typedef enum masu_image_extent {
     MASU_EXTENT_OUTPUT_ODD, /* the same, an invocation for the 2x2 pixels between four texels: one more each way than texels */
     MASU_EXTENT_HALF, /* a texel per 2x2 render pixels */
     MASU_EXTENT_TRACED, /* the same, for reflections; per pixel with debug.reference */
+    MASU_EXTENT_LEVELS, /* 1/2 to 1/64 of the render size side by side: light/background.glsl */
     MASU_EXTENT_BLOCK8,
     MASU_EXTENT_BLOCK4,
     MASU_EXTENT_TILE,  /* one workgroup per tile of 16x16 */
@@ -174,7 +175,8 @@ typedef struct masu_needs {
     int sdf_casts;     /* the SDF casts their shadows */
     int local_shadows; /* and some cast shadows in some rung: there is an atlas */
     int shadow;        /* polygons cast shadows of the sun: there is a shadow map */
-    int transparents;  /* something is blended */
+    int transparents;  /* something is blended, */
+    int rough_glass;   /* and something behind it seen blurred */
     int reflections;   /* a rung traces some */
     int traced;        /* there are polygons to trace */
     int traced_sdf;    /* there is an SDF to trace */

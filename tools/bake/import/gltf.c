@@ -248,6 +248,7 @@ static bool is_read(const char *extension) {
                                         "KHR_materials_transmission",
                                         "KHR_materials_unlit",
                                         "KHR_materials_variants",
+                                        "KHR_materials_volume",
                                         "KHR_mesh_quantization",
                                         "KHR_texture_basisu", /* its pictures are warned of */
                                         "KHR_texture_transform",
