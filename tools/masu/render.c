@@ -2,7 +2,7 @@
  * counts and memory. */
 #include "command/options.h"
 #include "masu/render.h"
-#include "masu/video.h"
+#include "command/video.h"
 
 #include "alloc_count.h"
 #include "measure/linear.h"
