@@ -500,16 +500,19 @@ void masu_ui_help(const char *text) {
 }
 
 void masu_ui_progress(float fraction, const char *text) {
+    bool fits = (ImGui::GetCurrentWindow()->Flags & ImGuiWindowFlags_AlwaysAutoResize) != 0;
+    float width = fits ? std::min(30.0f * em(), ui.right) - 2.0f * ImGui::GetStyle().WindowPadding.x
+                       : ImGui::GetContentRegionAvail().x;
     if (fraction < 0.0f) { /* to and fro */
         ImVec2 at = ImGui::GetCursorScreenPos();
-        float width = ImGui::GetContentRegionAvail().x, x = (float)std::fmod(ImGui::GetTime() * 0.5, 2.0);
+        float x = (float)std::fmod(ImGui::GetTime() * 0.5, 2.0);
         x = (x > 1.0f ? 2.0f - x : x) * 0.75f * width;
-        ImGui::ProgressBar(0.0f, ImVec2(-1.0f, 0.0f), "");
+        ImGui::ProgressBar(0.0f, ImVec2(width, 0.0f), "");
         ImGui::GetWindowDrawList()->AddRectFilled(ImVec2(at.x + x, at.y),
                                                   ImVec2(at.x + x + 0.25f * width, at.y + ImGui::GetFrameHeight()),
                                                   ImGui::GetColorU32(ImGuiCol_PlotHistogram));
     } else {
-        ImGui::ProgressBar(std::min(fraction, 1.0f), ImVec2(-1.0f, 0.0f), "");
+        ImGui::ProgressBar(std::min(fraction, 1.0f), ImVec2(width, 0.0f), "");
     }
     wrapped(MASU_INK_DIM, text);
 }
