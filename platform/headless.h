@@ -70,6 +70,7 @@ typedef struct masu_headless {
     bool compressed;         /* textureCompressionBC is enabled */
     bool float16;            /* shaderFloat16 is enabled, and VK_KHR_shader_float16_int8 */
     float most_anisotropy;   /* samplerAnisotropy is enabled: its limit; else 0 */
+    float usual_anisotropy;  /* 8, or that limit; 0 on a CPU driver, where filtering takes 20 times as long */
     bool lost;               /* a wait has timed out or the device is gone: nothing is waited for */
     uint64_t wait_ns;        /* MASU_HEADLESS_TIMEOUT_NS, which tests replace */
     char first_message[512]; /* of the validation layer */

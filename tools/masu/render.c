@@ -490,7 +490,7 @@ static const masu_option rows[] = {
     MASU_KNOB(masu_render_options, turned.to, "lod-error", "PIXELS", "lod_error",
               "largest screen-space error of a mesh LOD; below 0: no LODs (default 1)"),
     MASU_REAL(masu_render_options, anisotropy, "anisotropy", "N", 1.0, 64.0,
-              "anisotropic texture samples, if the device supports them (default 1)"),
+              "anisotropic texture samples, if the device supports them (default 8 on a GPU, 1 on a CPU)"),
     MASU_HEADING("Light and tone"),
     MASU_OWN("sun", "AZIMUTH,ELEVATION", read_sun,
              "sun position in degrees (default: the scene's)"),
@@ -568,7 +568,7 @@ static int describe(masu_render_options *o, const masu_given *given) {
     }
     d->tone = (masu_tone)o->tone;
     d->analytic_sky = o->turbidity > 0.0;
-    d->vulkan.max_anisotropy = (float)o->anisotropy;
+    d->vulkan.max_anisotropy = o->anisotropy > 0.0 ? (float)o->anisotropy : -1.0f;
     if (o->dither || o->still || o->video) d->dither = MASU_ON;
     if (o->output && masu_image_is_linear(o->output)) d->readback = MASU_READBACK_HDR;
     if (o->split) d->deny.unified_memory = 1;

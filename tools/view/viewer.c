@@ -94,7 +94,7 @@ static void complete(masu_viewer *v, masu_desc *d) {
                               .pipeline_cache = v->cache,
                               .pipelines = &v->pools[0],
                               .texture_compression_bc = h->compressed,
-                              .max_anisotropy = h->most_anisotropy < 8.0f ? h->most_anisotropy : 8.0f,
+                              .max_anisotropy = h->usual_anisotropy,
                               .ray_query = h->ray_query,
                               .shader_float16 = h->float16};
     d->scene = &v->scene;
