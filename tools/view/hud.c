@@ -21,8 +21,20 @@ static const char *bytes_text(uint64_t bytes, char *out, size_t size) {
     return out;
 }
 
+/* The name of a setting with blanks, where lines may end. */
+static void spaced_setting(const masu_viewer *v, const masu_rung *rung, char out[2 * MASU_SETTING_ID]) {
+    char name[MASU_SETTING_ID];
+    size_t n = 0;
+    masu_viewer_setting(v, rung, name);
+    for (const char *c = name; *c; c++) {
+        if (*c == '+') out[n++] = ' ';
+        out[n++] = *c;
+    }
+    out[n] = '\0';
+}
+
 static void frame_lines(const masu_viewer *v) {
-    char name[MASU_SETTING_ID], host[32], device[32];
+    char name[2 * MASU_SETTING_ID], host[32], device[32];
     const masu_governor_info *g = &v->stats.governor;
     const masu_plan_rung *r = &v->plan.rungs[v->rung];
     double gpu = (double)v->stats.gpu_ns / 1e6;
@@ -40,7 +52,7 @@ static void frame_lines(const masu_viewer *v) {
     else
         masu_ui_text(MASU_INK, "%ux%u of %ux%u   rung %u (0-%u)%s", r->render_width, r->render_height, o.width,
             o.height, v->rung, v->want.rung_count - 1, v->governed ? ", governor" : "");
-    masu_viewer_setting(v, &v->want.rungs[v->rung], name);
+    spaced_setting(v, &v->want.rungs[v->rung], name);
     masu_ui_text(MASU_INK_WARN, "%s", name);
     if (v->governed) {
         float predicted = v->rung < MASU_MAX_RUNGS ? g->predicted_ms[v->rung] : 0.0f;
@@ -93,22 +105,28 @@ static void culling_lines(const masu_viewer *v) {
     }
 }
 
-/* In the frame's order; what takes less than a four-hundredth of the longest goes into one line. */
+/* In the frame's order; what takes less than its part goes into one line, where there are too many. */
 static void pass_lines(const masu_viewer *v) {
     const masu_stats_info *s = &v->stats;
-    uint64_t total = 0, most = 1, rest = 0;
+    uint64_t total = 0, most = 1, least = 0, rest = 0;
+    uint32_t room = masu_ui_room();
     char ms[32];
     for (uint32_t p = 0; p < s->pass_count; p++) {
         total += s->pass_ns[p];
         if (s->pass_ns[p] > most) most = s->pass_ns[p];
     }
+    if (room < 5) return; /* of a small window */
     masu_ui_row(MASU_INK_TITLE, (const char *[]){"passes", "ms"}, 2, 0.0f);
     if (!total) {
         masu_ui_text(MASU_INK_DIM, v->o->no_timestamps ? "no timestamps (--no-timestamps)" : "not measured yet");
         return;
     }
+    for (uint32_t shown = UINT32_MAX; shown > room - 3 && least < most; least += most / 400 + 1) {
+        shown = 0;
+        for (uint32_t p = 0; p < s->pass_count; p++) shown += s->pass_ns[p] > least;
+    }
     for (uint32_t p = 0; p < s->pass_count; p++) {
-        if (s->pass_ns[p] * 400 < most) {
+        if (s->pass_ns[p] <= least) {
             rest += s->pass_ns[p];
             continue;
         }
@@ -122,39 +140,39 @@ static void pass_lines(const masu_viewer *v) {
 
 /* The line, and whose side is which, at the bottom where no panel is. */
 static void draw_split(const masu_viewer *v) {
-    char name[MASU_SETTING_ID], text[MASU_SETTING_ID + 32];
+    char name[2 * MASU_SETTING_ID], text[2 * MASU_SETTING_ID + 32];
     float width = (float)v->compose.shown.width, height = (float)v->compose.shown.height, h = masu_ui_line_height();
-    float x = (float)v->split * width, y = height - 6.0f * h;
+    float x = (float)v->split * width, y = height;
     masu_ui_fill(x - 1.0f, 0.0f, 2.0f, height, 0xFFFFFF, 0.8f);
-    masu_viewer_setting(v, &v->want.rungs[v->rung], name);
+    spaced_setting(v, &v->want.rungs[v->rung], name);
     snprintf(text, sizeof text, "A: rung %u, %s", v->rung, name);
     masu_ui_label(x - h, y, 0.0f, x - h, MASU_INK, text);
-    masu_viewer_setting(v, &v->reference, name);
+    spaced_setting(v, &v->reference, name);
     snprintf(text, sizeof text, "B: %s", name);
     masu_ui_label(x + h, y, x + h, width, MASU_INK, text);
 }
 
 static void draw_difference(const masu_viewer *v) {
     const masu_difference *d = &v->difference;
-    char name[MASU_SETTING_ID], text[MASU_SETTING_ID + 128];
+    char name[2 * MASU_SETTING_ID], text[2 * MASU_SETTING_ID + 160];
     float width = (float)v->compose.shown.width, height = (float)v->compose.shown.height, h = masu_ui_line_height();
-    masu_viewer_setting(v, &v->reference, name);
+    spaced_setting(v, &v->reference, name);
     if (d->failed)
         snprintf(text, sizeof text, "out of memory for FLIP at %.0fx%.0f", (double)width, (double)height);
-    else if (!d->known) snprintf(text, sizeof text, "FLIP of rung %u against B (%.80s): computing", v->rung, name);
+    else if (!d->known) snprintf(text, sizeof text, "FLIP of rung %u against B (%s): computing", v->rung, name);
     else
-        snprintf(text, sizeof text, "FLIP of rung %u against B (%.80s): mean %.4f, 99 %% below %.3f, max %.3f",
+        snprintf(text, sizeof text, "FLIP of rung %u against B (%s): mean %.4f, 99 %% below %.3f, max %.3f",
                  v->rung, name, d->mean, d->p99, d->max);
-    masu_ui_label(0.0f, height - 6.0f * h, 0.0f, 0.0f, MASU_INK, text);
-    /* The scale of the map, at the left edge. */
-    float bar = 0.3f * height, y = height - 7.0f * h - bar;
+    masu_ui_label(0.0f, height, 0.0f, 0.0f, MASU_INK, text);
+    /* The scale of the map, in the middle. */
+    float bar = 0.3f * height, x = 0.5f * width, y = 0.5f * height;
     for (int i = 0; i < 32; i++) {
         uint32_t rgba = masu_difference_color(1.0f - (float)i / 31.0f);
         uint32_t rgb = (rgba & 255u) << 16 | (rgba & 0xFF00u) | (rgba >> 16 & 255u);
-        masu_ui_fill(h, y + bar * (float)i / 32.0f, 2.0f * h, bar / 32.0f + 1.0f, rgb, 1.0f);
+        masu_ui_fill(x, y + bar * (float)i / 32.0f, 2.0f * h, bar / 32.0f + 1.0f, rgb, 1.0f);
     }
-    masu_ui_label(3.5f * h, y - h, 0.0f, 0.0f, MASU_INK, "1");
-    masu_ui_label(3.5f * h, y + bar - h, 0.0f, 0.0f, MASU_INK, "0");
+    masu_ui_label(x + 2.5f * h, y - h, 0.0f, 0.0f, MASU_INK, "1");
+    masu_ui_label(x + 2.5f * h, y + bar - h, 0.0f, 0.0f, MASU_INK, "0");
 }
 
 void masu_hud_draw(masu_viewer *v) {

@@ -42,7 +42,7 @@ void masu_look_reset(masu_viewer *v) {
     read_params(v);
     for (uint32_t i = 0; i < MASU_LOOK_ITEMS; i++) {
         l->lamps[i] = 1.0f;
-        l->clips[i] = (masu_playback){.speed = 1.0f, .plays = true, .loops = true};
+        l->clips[i] = (masu_playback){.other = 1, .speed = 1.0f, .plays = true, .loops = true};
     }
     for (uint32_t i = 0; i < listed(v, MASU_SCENE_MODEL); i++) {
         masu_model_state model;

@@ -26,7 +26,8 @@ struct {
     bool renders; /* ImGui_ImplVulkan_Init has been called */
     int rects[256];
     uint32_t pictures;
-    float right;        /* where the panel at the right edge begins, in this frame */
+    float right, edge;  /* where the panel at the right edge begins: in this frame so far, in the last one */
+    ImVec2 left;        /* of the window at the upper left, its size in this frame */
     float bottom, lines; /* height of the lines at the lower edge, of the last frame and so far of this one */
     bool fresh_keys[512], fresh_buttons[3]; /* pressed since the last frame: held for one, however short */
     bool keys[512], buttons[3];
@@ -334,7 +335,9 @@ void masu_ui_begin(double seconds) {
     io.DeltaTime = seconds > 1e-4 ? (float)seconds : 1e-4f;
     for (int i = 0; i < 512; i++) io.KeysDown[i] = ui.keys[i] || ui.fresh_keys[i], ui.fresh_keys[i] = false;
     for (int i = 0; i < 3; i++) io.MouseDown[i] = ui.buttons[i] || ui.fresh_buttons[i], ui.fresh_buttons[i] = false;
+    ui.edge = ui.right;
     ui.right = io.DisplaySize.x;
+    ui.left = ImVec2(0, 0);
     ui.bottom = ui.lines;
     ui.lines = 0.0f;
     ImGui_ImplVulkan_NewFrame();
@@ -368,6 +371,7 @@ void masu_ui_window(const char *name, masu_ui_place place, bool focus) {
         ImGui::SetNextWindowPos(ImVec2(0, 0));
         panel = within(27.0f * em(), height);
         ImGui::SetNextWindowSize(ImVec2(panel.x, 0.0f));
+        ImGui::SetNextWindowSizeConstraints(ImVec2(panel.x, 0.0f), ImVec2(panel.x, height - ui.bottom));
         flags |= still;
         break;
     case MASU_UI_RIGHT:
@@ -392,6 +396,7 @@ void masu_ui_window(const char *name, masu_ui_place place, bool focus) {
     }
     if (focus) ImGui::SetNextWindowFocus();
     ImGui::Begin(name, nullptr, flags);
+    if (place == MASU_UI_LEFT) ui.left = ImGui::GetWindowSize();
     if (place == MASU_UI_BOTTOM) ui.lines += ImGui::GetWindowHeight();
     if (focus) ImGui::GetCurrentContext()->NavDisableHighlight = false;
 }
@@ -551,14 +556,22 @@ void masu_ui_fill(float x, float y, float width, float height, uint32_t color, f
     ImGui::GetBackgroundDrawList()->AddRectFilled(ImVec2(x, y), ImVec2(x + width, y + height), color_of(color, opacity));
 }
 
+uint32_t masu_ui_room(void) {
+    float room = (float)ui.d.extent.height - ui.bottom - ImGui::GetCursorScreenPos().y - ImGui::GetStyle().WindowPadding.y;
+    return room > 0.0f ? (uint32_t)(room / ImGui::GetTextLineHeightWithSpacing()) : 0;
+}
+
+/* Beside the panels and above the lines at the lower edge. */
 void masu_ui_label(float x, float y, float left, float right, uint32_t color, const char *text) {
     const float pad = 0.4f * em();
     if (!(right > left)) left = 0.0f, right = (float)ui.d.extent.width;
+    right = std::min(right, ui.edge);
+    if (y < ui.left.y) left = std::max(left, ui.left.x);
     float room = right - left - 2.0f * pad;
     if (room < 2.0f * em()) return;
     ImVec2 size = ImGui::CalcTextSize(text, nullptr, false, room);
     x = std::max(std::min(x, right - size.x - 2.0f * pad), left);
-    y = std::max(std::min(y, (float)ui.d.extent.height - size.y - 2.0f * pad), 0.0f);
+    y = std::max(std::min(y, (float)ui.d.extent.height - ui.bottom - size.y - 2.0f * pad), 0.0f);
     ImDrawList *list = ImGui::GetBackgroundDrawList();
     list->AddRectFilled(ImVec2(x, y), ImVec2(x + size.x + 2 * pad, y + size.y + 2 * pad), color_of(0x0B1016, 0.8f));
     list->AddText(ImGui::GetFont(), em(), ImVec2(x + pad, y + pad), color_of(color), text, nullptr, room);

@@ -117,6 +117,7 @@ void masu_ui_fill(float x, float y, float width, float height, uint32_t color, f
  * if it is wider. */
 void masu_ui_label(float x, float y, float left, float right, uint32_t color, const char *text);
 float masu_ui_line_height(void);
+uint32_t masu_ui_room(void); /* lines between the next item of a window and the lower edge */
 
 #ifdef __cplusplus
 }
