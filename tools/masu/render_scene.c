@@ -1,5 +1,5 @@
-/* render_scene.c: what `masu render` changes in the scene of a frame: parameters of the SDF (--param), and the clips
- * that models play (--animate, --clip). */
+/* render_scene.c: what `masu render` changes in the scene of a frame: parameters of the SDF
+ * (--param), and the clips that models play (--animate, --clip). */
 #include "masu/render.h"
 
 #include "image.h"
@@ -19,11 +19,13 @@ static void list(char *out, size_t size, const char *name) {
 }
 
 /* One of --param; false: `error` says what is wrong. */
-static bool set_param(const masu_scene *scene, const char *text, float *values, char *error, size_t size) {
+static bool set_param(const masu_scene *scene, const char *text, float *values, char *error,
+                      size_t size) {
     const char *equals = strchr(text, '=');
     char name[256] = "", known[512] = "", *end = NULL;
     double value = equals ? strtod(equals + 1, &end) : 0.0;
-    if (!equals || equals == text || end == equals + 1 || *end || (size_t)(equals - text) >= sizeof name) {
+    if (!equals || equals == text || end == equals + 1 || *end ||
+        (size_t)(equals - text) >= sizeof name) {
         snprintf(error, size, "--param: expected NAME=NUMBER, found '%.100s'", text);
         return false;
     }
@@ -39,8 +41,8 @@ static bool set_param(const masu_scene *scene, const char *text, float *values, 
     masu_scene_view s = masu_scene_view_of(scene);
     const masu_blob_sdf_param *p = &s.sdf_params[at];
     if (!(value >= (double)p->minimum && value <= (double)p->maximum)) {
-        snprintf(error, size, "--param: %.100s: expected %g to %g, found %.30s", name, (double)p->minimum,
-                 (double)p->maximum, equals + 1);
+        snprintf(error, size, "--param: %.100s: expected %g to %g, found %.30s", name,
+                 (double)p->minimum, (double)p->maximum, equals + 1);
         return false;
     }
     values[at] = (float)value;
@@ -52,7 +54,8 @@ static uint32_t find_clip(const masu_session *s, masu_model model, const char *c
     char *end;
     uint32_t at = masu_model_clip_find(s->m, model, clip);
     unsigned long number = strtoul(clip, &end, 10);
-    if (at == MASU_CLIP_NONE && *clip >= '0' && *clip <= '9' && !*end && number < masu_model_clips(s->m, model))
+    if (at == MASU_CLIP_NONE && *clip >= '0' && *clip <= '9' && !*end &&
+        number < masu_model_clips(s->m, model))
         at = (uint32_t)number;
     return at;
 }
@@ -80,12 +83,14 @@ bool masu_render_read_scene(masu_render_options *o, char *error, size_t size) {
     masu_scene scene;
     masu_detail detail;
     if (!o->param_count && !o->clip) return true;
-    if (!masu_file_read(o->d.scene_path, SCENE_BYTES_MAX, &bytes, &count, error, size)) return false;
+    if (!masu_file_read(o->d.scene_path, SCENE_BYTES_MAX, &bytes, &count, error, size))
+        return false;
     bool good = !masu_scene_bind(bytes, count, &scene, &detail);
     if (good) {
         masu_scene_view view = masu_scene_view_of(&scene);
         o->sdf_param_count = o->param_count ? masu_scene_count(&scene, MASU_SCENE_SDF_PARAM) : 0;
-        for (uint32_t i = 0; i < o->sdf_param_count; i++) o->sdf_params[i] = view.sdf_params[i].value;
+        for (uint32_t i = 0; i < o->sdf_param_count; i++)
+            o->sdf_params[i] = view.sdf_params[i].value;
         for (uint32_t i = 0; i < o->param_count && good; i++)
             good = set_param(&scene, o->params[i], o->sdf_params, error, size);
         good = good && (!o->clip || has_clip(&scene, o->clip, error, size));
@@ -96,11 +101,13 @@ bool masu_render_read_scene(masu_render_options *o, char *error, size_t size) {
     return good;
 }
 
-bool masu_render_animate(masu_session *s, const masu_render_options *o, double time, char *error, size_t size) {
+bool masu_render_animate(masu_session *s, const masu_render_options *o, double time, char *error,
+                         size_t size) {
     for (uint32_t i = 0; i < masu_scene_count(&s->scene, MASU_SCENE_MODEL); i++) {
         masu_model model = masu_model_at(s->m, i);
         uint32_t clip = o->clip ? find_clip(s, model, o->clip) : 0;
-        masu_clip_use use = {.clip = clip == MASU_CLIP_NONE ? 0 : clip, .loop = 1, .time = time, .weight = 1.0f};
+        masu_clip_use use = {
+            .clip = clip == MASU_CLIP_NONE ? 0 : clip, .loop = 1, .time = time, .weight = 1.0f};
         if (!masu_model_clips(s->m, model) || !masu_model_animate(s->m, model, &use, 1)) continue;
         snprintf(error, size, "%s", masu_last_error(s->m)->text);
         return false;

@@ -1,12 +1,12 @@
-/* bake.c: files: those that are opened, baked first unless they are a blob, and those that change while
- * their scene is looked at.
+/* bake.c: files: those that are opened, baked first unless they are a blob, and those that change
+ * while their scene is looked at.
  *
- * A baked scene is watched itself. Anything else is watched with every file that it names: when one of
- * them changes, a process bakes the scene into a folder of ours, and what comes out is loaded if it
- * succeeds; if not, the line that it has said is shown and the old scene stays. Files are looked at twice
- * a second, by time and size; a script looks at every frame and waits for the baker, except for a file
- * that is opened while it runs. Shaders of the library are part of the program: what can be reloaded is
- * the scene with its .sdf or .glsl. */
+ * A baked scene is watched itself. Anything else is watched with every file that it names: when one
+ * of them changes, a process bakes the scene into a folder of ours, and what comes out is loaded if
+ * it succeeds; if not, the line that it has said is shown and the old scene stays. Files are looked
+ * at twice a second, by time and size; a script looks at every frame and waits for the baker,
+ * except for a file that is opened while it runs. Shaders of the library are part of the program:
+ * what can be reloaded is the scene with its .sdf or .glsl. */
 #include "view/viewer.h"
 
 #include "cli/cli.h"
@@ -58,7 +58,8 @@ static void watch_named(masu_baker *b, const char *folder, const json_t *value) 
         struct stat s;
         const char *text = json_string_value(value);
         int n = snprintf(path, sizeof path, "%s%s", *text == '/' ? "" : folder, text);
-        if (*text && n > 0 && n < (int)sizeof path && !stat(path, &s) && S_ISREG(s.st_mode)) watch(b, path);
+        if (*text && n > 0 && n < (int)sizeof path && !stat(path, &s) && S_ISREG(s.st_mode))
+            watch(b, path);
     } else if (json_is_object(value)) {
         json_object_foreach((json_t *)value, key, child) watch_named(b, folder, child);
     } else if (json_is_array(value)) {
@@ -66,7 +67,8 @@ static void watch_named(masu_baker *b, const char *folder, const json_t *value) 
     }
 }
 
-/* A description that cannot be read is watched by itself; the baker says what is wrong with it. So are other files. */
+/* A description that cannot be read is watched by itself; the baker says what is wrong with it. So
+ * are other files. */
 static void watch_source(masu_baker *b, const char *json) {
     char folder[1024] = "";
     const char *slash = strrchr(json, '/');
@@ -222,14 +224,17 @@ void masu_baker_progress(const masu_viewer *v, float *fraction, char *text, size
     unsigned done, all;
     const char *slash = strrchr(b->source, '/'), *of;
     FILE *f = fopen(b->log, "r");
-    if (f && !fseek(f, 0, SEEK_END) && ftell(f) > (long)sizeof log) (void)fseek(f, 1 - (long)sizeof log, SEEK_END);
-    else if (f) rewind(f);
+    if (f && !fseek(f, 0, SEEK_END) && ftell(f) > (long)sizeof log)
+        (void)fseek(f, 1 - (long)sizeof log, SEEK_END);
+    else if (f)
+        rewind(f);
     size_t n = f ? fread(log, 1, sizeof log - 1, f) : 0;
     if (f) fclose(f);
     log[n] = '\0';
     last = strrchr(log, '\033');
     snprintf(text, size, "baking %s, %.0f s%s%.200s", slash ? slash + 1 : b->source,
-             (double)(masu_clock_ns(NULL) - b->begun_ns) / 1e9, last && last[1] && last[2] && last[3] ? ": " : "",
+             (double)(masu_clock_ns(NULL) - b->begun_ns) / 1e9,
+             last && last[1] && last[2] && last[3] ? ": " : "",
              last && strlen(last) > 3 ? last + 3 : "");
     *fraction = -1.0f;
     of = last ? strstr(last, " of ") : NULL;
@@ -239,9 +244,7 @@ void masu_baker_progress(const masu_viewer *v, float *fraction, char *text, size
 
 /* ---- Opening --------------------------------------------------------------------------------- */
 
-static void fail(masu_viewer *v) {
-    snprintf(v->trouble, sizeof v->trouble, "%s", v->error);
-}
+static void fail(masu_viewer *v) { snprintf(v->trouble, sizeof v->trouble, "%s", v->error); }
 
 static bool finish(masu_viewer *v, bool good) {
     masu_baker *b = &v->baker;
@@ -311,8 +314,10 @@ bool masu_baker_wait(masu_viewer *v) {
 
 void masu_baker_again(masu_viewer *v) {
     if (!*v->baker.source) return;
-    if (v->baker.child) v->baker.again = true;
-    else if (!begin(v)) fail(v);
+    if (v->baker.child)
+        v->baker.again = true;
+    else if (!begin(v))
+        fail(v);
 }
 
 bool masu_baker_poll(masu_viewer *v) {

@@ -1,6 +1,6 @@
-/* hud.c: the numbers at the upper left: F1 has them off, short or full; and what is drawn on the picture. All of it
- * comes from masu_stats of a frame that has finished, from the plan and from the memory that was asked for; nothing is
- * measured here. */
+/* hud.c: the numbers at the upper left: F1 has them off, short or full; and what is drawn on the
+ * picture. All of it comes from masu_stats of a frame that has finished, from the plan and from the
+ * memory that was asked for; nothing is measured here. */
 #include "view/viewer.h"
 
 #include "settings/setting.h"
@@ -13,8 +13,10 @@ static const char *bytes_text(uint64_t bytes, char *out, size_t size) {
         char digits[32];
         snprintf(digits, sizeof digits, "%llu", (unsigned long long)bytes);
         int n = (int)strlen(digits);
-        if (n > 3) snprintf(out, size, "%.*s,%s B", n - 3, digits, digits + n - 3);
-        else snprintf(out, size, "%s B", digits);
+        if (n > 3)
+            snprintf(out, size, "%.*s,%s B", n - 3, digits, digits + n - 3);
+        else
+            snprintf(out, size, "%s B", digits);
     } else {
         snprintf(out, size, "%.1f MiB", (double)bytes / 1048576.0);
     }
@@ -22,7 +24,8 @@ static const char *bytes_text(uint64_t bytes, char *out, size_t size) {
 }
 
 /* The name of a setting with blanks, where lines may end. */
-static void spaced_setting(const masu_viewer *v, const masu_rung *rung, char out[2 * MASU_SETTING_ID]) {
+static void spaced_setting(const masu_viewer *v, const masu_rung *rung,
+                           char out[2 * MASU_SETTING_ID]) {
     char name[MASU_SETTING_ID];
     size_t n = 0;
     masu_viewer_setting(v, rung, name);
@@ -42,49 +45,54 @@ static void frame_lines(const masu_viewer *v) {
     if (v->stats.gpu_ns) snprintf(gpu_text, sizeof gpu_text, "%.2f ms", gpu);
     if (v->wall_ms > 0.0 && !v->scripted)
         masu_ui_text(MASU_INK, "%.1f fps   %.2f ms/frame   GPU %s", 1000.0 / v->wall_ms, v->wall_ms,
-            gpu_text);
+                     gpu_text);
     else
         masu_ui_text(MASU_INK, "frame %llu   GPU %s", (unsigned long long)v->frames, gpu_text);
     VkExtent2D o = {v->a.target.width, v->a.target.height};
     if (r->render_width == o.width && r->render_height == o.height)
-        masu_ui_text(MASU_INK, "%ux%u   rung %u (0-%u)%s", o.width, o.height, v->rung, v->want.rung_count - 1,
-            v->governed ? ", governor" : "");
+        masu_ui_text(MASU_INK, "%ux%u   rung %u (0-%u)%s", o.width, o.height, v->rung,
+                     v->want.rung_count - 1, v->governed ? ", governor" : "");
     else
-        masu_ui_text(MASU_INK, "%ux%u of %ux%u   rung %u (0-%u)%s", r->render_width, r->render_height, o.width,
-            o.height, v->rung, v->want.rung_count - 1, v->governed ? ", governor" : "");
+        masu_ui_text(MASU_INK, "%ux%u of %ux%u   rung %u (0-%u)%s", r->render_width,
+                     r->render_height, o.width, o.height, v->rung, v->want.rung_count - 1,
+                     v->governed ? ", governor" : "");
     spaced_setting(v, &v->want.rungs[v->rung], name);
     masu_ui_text(MASU_INK_WARN, "%s", name);
     if (v->governed) {
         float predicted = v->rung < MASU_MAX_RUNGS ? g->predicted_ms[v->rung] : 0.0f;
         masu_ui_text(gpu > (double)v->want.governor.target_ms ? MASU_INK_WARN : MASU_INK_GOOD,
-            "target %.2f ms   predicted %.2f   actual %s", (double)v->want.governor.target_ms,
-            (double)predicted, gpu_text);
+                     "target %.2f ms   predicted %.2f   actual %s",
+                     (double)v->want.governor.target_ms, (double)predicted, gpu_text);
         masu_ui_text(MASU_INK_DIM, "%s", g->reason_text ? g->reason_text : "");
     }
-    masu_ui_text(MASU_INK, "host %s   device %s", bytes_text(v->a.need.host_bytes, host, sizeof host),
-        bytes_text(v->a.need.device_bytes, device, sizeof device));
+    masu_ui_text(MASU_INK, "host %s   device %s",
+                 bytes_text(v->a.need.host_bytes, host, sizeof host),
+                 bytes_text(v->a.need.device_bytes, device, sizeof device));
     if (v->path_end > 0.0)
-        masu_ui_text(MASU_INK, "time %.2f of %.2f s%s%s", v->time, v->path_end, v->on_path ? ", path" : "",
-            v->paused ? ", paused" : "");
+        masu_ui_text(MASU_INK, "time %.2f of %.2f s%s%s", v->time, v->path_end,
+                     v->on_path ? ", path" : "", v->paused ? ", paused" : "");
     else
         masu_ui_text(MASU_INK, "time %.2f s%s", v->time, v->paused ? ", paused" : "");
 }
 
 static void row(uint32_t color, const char *name, const uint64_t numbers[3]) {
     char text[3][24];
-    for (int i = 0; i < 3; i++) snprintf(text[i], sizeof text[i], "%llu", (unsigned long long)numbers[i]);
+    for (int i = 0; i < 3; i++)
+        snprintf(text[i], sizeof text[i], "%llu", (unsigned long long)numbers[i]);
     masu_ui_row(color, (const char *[]){name, text[0], text[1], text[2]}, 4, -1.0f);
 }
 
 static void polygon_lines(const masu_viewer *v) {
-    masu_ui_row(MASU_INK_TITLE, (const char *[]){"rendered", "instances", "draws", "triangles"}, 4, -1.0f);
+    masu_ui_row(MASU_INK_TITLE, (const char *[]){"rendered", "instances", "draws", "triangles"}, 4,
+                -1.0f);
     for (uint32_t i = 0; i < v->stats.view_count && i < MASU_MAX_VIEWS; i++) {
         const masu_view_stats *s = &v->stats.views[i];
         char name[24] = "camera";
         if (i) snprintf(name, sizeof name, "cascade %u", i - 1);
         row(MASU_INK, name, (const uint64_t[]){s->instances, s->draws, s->triangles});
     }
-    masu_ui_text(MASU_INK_DIM, "of %u instances, %llu triangles%s", masu_scene_count(&v->scene, MASU_SCENE_INSTANCE),
+    masu_ui_text(MASU_INK_DIM, "of %u instances, %llu triangles%s",
+                 masu_scene_count(&v->scene, MASU_SCENE_INSTANCE),
                  (unsigned long long)masu_scene_triangles(&v->scene),
                  (masu_scene_features(&v->scene) & MASU_SCENE_HAS_SDF) ? " and an SDF" : "");
 }
@@ -94,18 +102,19 @@ static void culling_lines(const masu_viewer *v) {
         polygon_lines(v);
     } else {
         masu_ui_text(MASU_INK_DIM, "no polygons%s",
-            (masu_scene_features(&v->scene) & MASU_SCENE_HAS_SDF) ? ", only an SDF" : "");
+                     (masu_scene_features(&v->scene) & MASU_SCENE_HAS_SDF) ? ", only an SDF" : "");
     }
     if (v->stats.lights)
         masu_ui_text(MASU_INK, "lights %u, in view %u", v->stats.lights, v->stats.lights_in_view);
     if (v->want.debug.counters) {
         masu_ui_text(MASU_INK, "SDF evaluations %.2f M, hits %llu, unconverged %llu",
-            (double)v->stats.sdf_evals / 1e6, (unsigned long long)v->stats.sdf_hits,
-            (unsigned long long)v->stats.sdf_unconverged);
+                     (double)v->stats.sdf_evals / 1e6, (unsigned long long)v->stats.sdf_hits,
+                     (unsigned long long)v->stats.sdf_unconverged);
     }
 }
 
-/* In the frame's order; what takes less than its part goes into one line, where there are too many. */
+/* In the frame's order; what takes less than its part goes into one line, where there are too many.
+ */
 static void pass_lines(const masu_viewer *v) {
     const masu_stats_info *s = &v->stats;
     uint64_t total = 0, most = 1, least = 0, rest = 0;
@@ -118,7 +127,8 @@ static void pass_lines(const masu_viewer *v) {
     if (room < 5) return; /* of a small window */
     masu_ui_row(MASU_INK_TITLE, (const char *[]){"passes", "ms"}, 2, 0.0f);
     if (!total) {
-        masu_ui_text(MASU_INK_DIM, v->o->no_timestamps ? "no timestamps (--no-timestamps)" : "not measured yet");
+        masu_ui_text(MASU_INK_DIM,
+                     v->o->no_timestamps ? "no timestamps (--no-timestamps)" : "not measured yet");
         return;
     }
     for (uint32_t shown = UINT32_MAX; shown > room - 3 && least < most; least += most / 400 + 1) {
@@ -131,7 +141,8 @@ static void pass_lines(const masu_viewer *v) {
             continue;
         }
         snprintf(ms, sizeof ms, "%.3f", (double)s->pass_ns[p] / 1e6);
-        masu_ui_row(MASU_INK, (const char *[]){s->pass_names[p], ms}, 2, (float)((double)s->pass_ns[p] / (double)most));
+        masu_ui_row(MASU_INK, (const char *[]){s->pass_names[p], ms}, 2,
+                    (float)((double)s->pass_ns[p] / (double)most));
     }
     if (!rest) return;
     snprintf(ms, sizeof ms, "%.3f", (double)rest / 1e6);
@@ -141,7 +152,8 @@ static void pass_lines(const masu_viewer *v) {
 /* The line, and whose side is which, at the bottom where no panel is. */
 static void draw_split(const masu_viewer *v) {
     char name[2 * MASU_SETTING_ID], text[2 * MASU_SETTING_ID + 32];
-    float width = (float)v->compose.shown.width, height = (float)v->compose.shown.height, h = masu_ui_line_height();
+    float width = (float)v->compose.shown.width, height = (float)v->compose.shown.height,
+          h = masu_ui_line_height();
     float x = (float)v->split * width, y = height;
     masu_ui_fill(x - 1.0f, 0.0f, 2.0f, height, 0xFFFFFF, 0.8f);
     spaced_setting(v, &v->want.rungs[v->rung], name);
@@ -155,14 +167,18 @@ static void draw_split(const masu_viewer *v) {
 static void draw_difference(const masu_viewer *v) {
     const masu_difference *d = &v->difference;
     char name[2 * MASU_SETTING_ID], text[2 * MASU_SETTING_ID + 160];
-    float width = (float)v->compose.shown.width, height = (float)v->compose.shown.height, h = masu_ui_line_height();
+    float width = (float)v->compose.shown.width, height = (float)v->compose.shown.height,
+          h = masu_ui_line_height();
     spaced_setting(v, &v->reference, name);
     if (d->failed)
-        snprintf(text, sizeof text, "out of memory for FLIP at %.0fx%.0f", (double)width, (double)height);
-    else if (!d->known) snprintf(text, sizeof text, "FLIP of rung %u against B (%s): computing", v->rung, name);
+        snprintf(text, sizeof text, "out of memory for FLIP at %.0fx%.0f", (double)width,
+                 (double)height);
+    else if (!d->known)
+        snprintf(text, sizeof text, "FLIP of rung %u against B (%s): computing", v->rung, name);
     else
-        snprintf(text, sizeof text, "FLIP of rung %u against B (%s): mean %.4f, 99 %% below %.3f, max %.3f",
-                 v->rung, name, d->mean, d->p99, d->max);
+        snprintf(text, sizeof text,
+                 "FLIP of rung %u against B (%s): mean %.4f, 99 %% below %.3f, max %.3f", v->rung,
+                 name, d->mean, d->p99, d->max);
     masu_ui_label(0.0f, height, 0.0f, 0.0f, MASU_INK, text);
     /* The scale of the map, in the middle. */
     float bar = 0.3f * height, x = 0.5f * width, y = 0.5f * height;

@@ -1,5 +1,6 @@
-/* look.c: what the panels change in the scene without baking it: light, parameters of the SDF, lamps, which models are
- * shown, how their clips play. It is applied before each frame, to A and to B, so that it outlives a new renderer. */
+/* look.c: what the panels change in the scene without baking it: light, parameters of the SDF,
+ * lamps, which models are shown, how their clips play. It is applied before each frame, to A and to
+ * B, so that it outlives a new renderer. */
 #include "view/viewer.h"
 
 #include "scene/blob_section.h"
@@ -23,7 +24,8 @@ static void read_light(masu_viewer *v) {
     float length = sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
     l->light = l->from;
     l->azimuth = atan2f(d[0], d[2]) * DEGREES;
-    l->elevation = length > 0.0f ? asinf(fminf(fmaxf(d[1] / length, -1.0f), 1.0f)) * DEGREES : 90.0f;
+    l->elevation =
+        length > 0.0f ? asinf(fminf(fmaxf(d[1] / length, -1.0f), 1.0f)) * DEGREES : 90.0f;
     l->sun = 1.0f;
     l->stops = 0.0f;
 }
@@ -59,7 +61,8 @@ void masu_look_keep(masu_viewer *v) {
     bool same_light = !memcmp(&l->from, &before.from, sizeof l->from);
     if (same_light) {
         l->light = before.light;
-        l->azimuth = before.azimuth, l->elevation = before.elevation, l->sun = before.sun, l->stops = before.stops;
+        l->azimuth = before.azimuth, l->elevation = before.elevation, l->sun = before.sun,
+        l->stops = before.stops;
     }
     if (l->param_count == before.param_count) memcpy(l->params, before.params, sizeof l->params);
     memcpy(l->lamps, before.lamps, sizeof l->lamps);
@@ -83,7 +86,8 @@ static bool pose(masu_renderer *m, masu_model model, masu_playback *p) {
     if (!clips) return true;
     if (p->clip >= clips) p->clip = 0;
     if (p->other >= clips) p->other = 0;
-    masu_clip_use uses[2] = {{p->clip, p->loops, p->time, 1.0f - p->blend}, {p->other, p->loops, p->time, p->blend}};
+    masu_clip_use uses[2] = {{p->clip, p->loops, p->time, 1.0f - p->blend},
+                             {p->other, p->loops, p->time, p->blend}};
     return !masu_model_animate(m, model, uses, p->blend > 0.0f ? 2 : 1);
 }
 

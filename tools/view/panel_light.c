@@ -15,17 +15,22 @@ static void restart(masu_viewer *v, const char *what) {
 /* A sky that follows from the sun; a scene without one gets it when it is asked for. */
 static void sky(masu_viewer *v) {
     masu_look *l = &v->look;
-    bool map = masu_scene_view_of(&v->scene).environment_map != NULL, analytic = l->light.turbidity > 0.0f;
-    bool can = v->want.analytic_sky || (masu_scene_features(&v->scene) & MASU_SCENE_HAS_ANALYTIC_SKY);
+    bool map = masu_scene_view_of(&v->scene).environment_map != NULL,
+         analytic = l->light.turbidity > 0.0f;
+    bool can =
+        v->want.analytic_sky || (masu_scene_features(&v->scene) & MASU_SCENE_HAS_ANALYTIC_SKY);
     if (map) {
         if (!*v->baker.source) {
-            masu_ui_text(MASU_INK_DIM, "The sky is an environment map. It is turned by baking: open the description of "
-                                       "the scene instead of the baked file.");
+            masu_ui_text(
+                MASU_INK_DIM,
+                "The sky is an environment map. It is turned by baking: open the description of "
+                "the scene instead of the baked file.");
             return;
         }
         masu_ui_slider("Environment turn", &v->baker.turn, -180.0f, 180.0f, "%.0f degrees", false);
         if (masu_ui_committed()) masu_baker_again(v);
-        masu_ui_help("Turns the environment map about the vertical axis, by baking the scene again.");
+        masu_ui_help(
+            "Turns the environment map about the vertical axis, by baking the scene again.");
         return;
     }
     if (masu_ui_check("Sky from the sun", &analytic)) {
@@ -44,7 +49,8 @@ static void sun(masu_viewer *v) {
     masu_ui_slider("Sun azimuth", &l->azimuth, -180.0f, 180.0f, "%.1f degrees", false);
     masu_ui_slider("Sun elevation", &l->elevation, -10.0f, 90.0f, "%.1f degrees", false);
     masu_ui_slider("Sun strength", &l->sun, 0.0f, 8.0f, "%.2f", true);
-    masu_ui_help("Factor on the sun of the scene. A sun that follows from the sky does not change.");
+    masu_ui_help(
+        "Factor on the sun of the scene. A sun that follows from the sky does not change.");
     sky(v);
     if (!(masu_scene_features(&v->scene) & MASU_SCENE_HAS_FOG)) return;
     masu_ui_slider("Fog density", &l->light.fog_density, 0.0f, 1.0f, "%.4f per metre", true);
@@ -74,8 +80,10 @@ static void lamps(masu_viewer *v) {
     if (!count || !masu_ui_section("Lamps", count <= 8)) return;
     for (uint32_t i = 0; i < count && i < MASU_LOOK_ITEMS; i++) {
         const char *name = masu_scene_name(&v->scene, MASU_SCENE_LIGHT, i);
-        if (*name) snprintf(label, sizeof label, "%s", name);
-        else snprintf(label, sizeof label, "lamp %u", i);
+        if (*name)
+            snprintf(label, sizeof label, "%s", name);
+        else
+            snprintf(label, sizeof label, "lamp %u", i);
         masu_ui_push(i);
         masu_ui_slider(label, &v->look.lamps[i], 0.0f, 10.0f, "%.2f", true);
         masu_ui_pop();

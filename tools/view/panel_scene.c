@@ -1,4 +1,5 @@
-/* panel_scene.c: the panel "Scene": parameters of the SDF, models with their clips and variants, and what there is. */
+/* panel_scene.c: the panel "Scene": parameters of the SDF, models with their clips and variants,
+ * and what there is. */
 #include "view/viewer.h"
 
 #include "scene/blob_section.h"
@@ -19,8 +20,8 @@ static void parameters(masu_viewer *v) {
         float span = p->maximum - p->minimum;
         snprintf(format, sizeof format, "%%.%df", span > 50.0f ? 1 : span > 5.0f ? 2 : 3);
         masu_ui_push(i);
-        masu_ui_slider(masu_scene_name(&v->scene, MASU_SCENE_SDF_PARAM, i), &l->params[i], p->minimum, p->maximum, format,
-                       false);
+        masu_ui_slider(masu_scene_name(&v->scene, MASU_SCENE_SDF_PARAM, i), &l->params[i],
+                       p->minimum, p->maximum, format, false);
         masu_ui_pop();
     }
     if (masu_ui_button("Defaults##parameters"))
@@ -39,12 +40,14 @@ static void clips(masu_viewer *v, uint32_t model, masu_playback *p) {
     }
     double length = masu_model_clip_duration(v->a.m, handle, p->clip);
     float at = (float)p->time;
-    if (p->loops && length > 0.0) at = (float)(p->time - length * (double)(int64_t)(p->time / length));
+    if (p->loops && length > 0.0)
+        at = (float)(p->time - length * (double)(int64_t)(p->time / length));
     masu_ui_choice("Clip", &p->clip, names, count);
     masu_ui_check("Play", &p->plays);
     masu_ui_same_line();
     masu_ui_check("Loop", &p->loops);
-    if (length > 0.0 && masu_ui_slider("Clip time", &at, 0.0f, (float)length, "%.2f s", false)) p->time = (double)at, p->plays = false;
+    if (length > 0.0 && masu_ui_slider("Clip time", &at, 0.0f, (float)length, "%.2f s", false))
+        p->time = (double)at, p->plays = false;
     masu_ui_slider("Speed", &p->speed, -4.0f, 4.0f, "%.2f", false);
     if (count < 2) return;
     masu_ui_choice("Blend with", &p->other, names, count);
@@ -58,8 +61,10 @@ static void models(masu_viewer *v) {
     for (uint32_t i = 0; i < count && i < MASU_LOOK_ITEMS; i++) {
         const char *name = masu_scene_name(&v->scene, MASU_SCENE_MODEL, i);
         bool shown = !v->look.hidden[i];
-        if (*name) snprintf(label, sizeof label, "%s", name);
-        else snprintf(label, sizeof label, "model %u", i);
+        if (*name)
+            snprintf(label, sizeof label, "%s", name);
+        else
+            snprintf(label, sizeof label, "model %u", i);
         masu_ui_push(i);
         if (masu_ui_check(label, &shown)) v->look.hidden[i] = !shown;
         clips(v, i, &v->look.clips[i]);
@@ -87,10 +92,13 @@ static void counts(const masu_viewer *v) {
     if (!masu_ui_section("Contents", true)) return;
     masu_ui_text(MASU_INK_DIM, "%s", *v->baker.source ? v->baker.source : v->baker.blob);
     masu_ui_text(MASU_INK, "%u instances, %llu triangles, %u materials, %u lights%s",
-                 masu_scene_count(&v->scene, MASU_SCENE_INSTANCE), (unsigned long long)masu_scene_triangles(&v->scene),
-                 masu_scene_count(&v->scene, MASU_SCENE_MATERIAL), masu_scene_count(&v->scene, MASU_SCENE_LIGHT),
+                 masu_scene_count(&v->scene, MASU_SCENE_INSTANCE),
+                 (unsigned long long)masu_scene_triangles(&v->scene),
+                 masu_scene_count(&v->scene, MASU_SCENE_MATERIAL),
+                 masu_scene_count(&v->scene, MASU_SCENE_LIGHT),
                  masu_scene_features(&v->scene) & MASU_SCENE_HAS_SDF ? ", an SDF" : "");
-    masu_ui_text(MASU_INK, "class %s, textures %.1f MiB", masu_scene_class_name(masu_scene_class_of(&v->scene)),
+    masu_ui_text(MASU_INK, "class %s, textures %.1f MiB",
+                 masu_scene_class_name(masu_scene_class_of(&v->scene)),
                  (double)masu_scene_texture_bytes(&v->scene, v->host.compressed) / 1048576.0);
 }
 

@@ -1,4 +1,5 @@
-/* panels.c: the user interface of a frame: the start page, progress of a bake, panels with tabs, and messages. */
+/* panels.c: the user interface of a frame: the start page, progress of a bake, panels with tabs,
+ * and messages. */
 #include "view/viewer.h"
 
 #include <stdio.h>
@@ -53,22 +54,29 @@ static void draw_messages(const masu_viewer *v) {
     bool noted = *v->note && v->turns - v->note_turn < NOTE_TURNS, keys = v->hud != MASU_HUD_OFF;
     if (!*v->trouble && !noted && !keys && !v->recorder.films && !v->recorder.records) return;
     masu_ui_window("messages", MASU_UI_BOTTOM, false);
-    if (*v->trouble) masu_ui_text(MASU_INK_BAD, "%s", v->trouble);
-    else if (noted) masu_ui_text(MASU_INK_GOOD, "%s", v->note);
+    if (*v->trouble)
+        masu_ui_text(MASU_INK_BAD, "%s", v->trouble);
+    else if (noted)
+        masu_ui_text(MASU_INK_GOOD, "%s", v->note);
     if (v->recorder.films)
-        masu_ui_text(MASU_INK_WARN, "video: %llu frames (F9 ends it)", (unsigned long long)v->recorder.filmed);
+        masu_ui_text(MASU_INK_WARN, "video: %llu frames (F9 ends it)",
+                     (unsigned long long)v->recorder.filmed);
     if (v->recorder.records) masu_ui_text(MASU_INK_WARN, "camera path: %.1f s", v->recorder.time);
     if (keys && (v->gallery.open || !v->a.m))
         masu_ui_text(MASU_INK_DIM, "F1 text  F4 start page  F11 full screen  Esc exit");
     else if (keys)
-        masu_ui_text(MASU_INK_DIM, "F1 text  Tab panels  F4 start page  F5 scene  F6 light  F7 quality  F8 camera  F10 capture  F9 video  "
-                                   "F2 split  F3 difference  P path  Space pause  F12 screenshot  Esc exit");
+        masu_ui_text(MASU_INK_DIM,
+                     "F1 text  Tab panels  F4 start page  F5 scene  F6 light  F7 quality  F8 "
+                     "camera  F10 capture  F9 video  "
+                     "F2 split  F3 difference  P path  Space pause  F12 screenshot  Esc exit");
     masu_ui_window_end();
 }
 
 void masu_panels_draw(masu_viewer *v) {
-    if (v->gallery.open) masu_gallery_draw(v);
-    else if (v->a.m) masu_hud_draw(v);
+    if (v->gallery.open)
+        masu_gallery_draw(v);
+    else if (v->a.m)
+        masu_hud_draw(v);
     if (v->panels.open && v->a.m && !v->gallery.open) draw_tabs(v);
     if (v->baker.child) draw_progress(v);
     draw_messages(v);

@@ -1,8 +1,8 @@
 /* ui.cpp: see ui.h: Dear ImGui (libimgui-dev), its renderer for Vulkan, and the events of SDL. */
 #include "ui.h"
 
-#include <imgui.h>
 #include <backends/imgui_impl_vulkan.h>
+#include <imgui.h>
 #include <imgui_internal.h>
 
 #include <algorithm>
@@ -26,10 +26,13 @@ struct {
     bool renders; /* ImGui_ImplVulkan_Init has been called */
     int rects[256];
     uint32_t pictures;
-    float right, edge;  /* where the panel at the right edge begins: in this frame so far, in the last one */
-    ImVec2 left;        /* of the window at the upper left, its size in this frame */
-    float bottom, lines; /* height of the lines at the lower edge, of the last frame and so far of this one */
-    bool fresh_keys[512], fresh_buttons[3]; /* pressed since the last frame: held for one, however short */
+    float right,
+        edge; /* where the panel at the right edge begins: in this frame so far, in the last one */
+    ImVec2 left; /* of the window at the upper left, its size in this frame */
+    float bottom,
+        lines; /* height of the lines at the lower edge, of the last frame and so far of this one */
+    bool fresh_keys[512],
+        fresh_buttons[3]; /* pressed since the last frame: held for one, however short */
     bool keys[512], buttons[3];
     VkResult failed;
 } ui;
@@ -111,7 +114,8 @@ void make_atlas(const uint8_t *const *pictures, uint32_t count) {
     float pixels = font_pixels(ui.d.extent);
     config.FontDataOwnedByAtlas = false;
     atlas->Clear();
-    atlas->AddFontFromMemoryTTF((void *)masu_ui_font, (int)(masu_ui_font_end - masu_ui_font), pixels, &config);
+    atlas->AddFontFromMemoryTTF((void *)masu_ui_font, (int)(masu_ui_font_end - masu_ui_font),
+                                pixels, &config);
     ui.pictures = std::min(count, (uint32_t)(sizeof ui.rects / sizeof *ui.rects));
     for (uint32_t i = 0; i < ui.pictures; i++)
         ui.rects[i] = pictures[i] ? atlas->AddCustomRectRegular(w, h) : -1;
@@ -123,8 +127,8 @@ void make_atlas(const uint8_t *const *pictures, uint32_t count) {
         if (ui.rects[i] < 0) continue;
         const ImFontAtlasCustomRect *r = atlas->GetCustomRectByIndex(ui.rects[i]);
         for (int y = 0; y < h; y++) {
-            memcpy(texels + 4 * ((size_t)(r->Y + y) * (size_t)width + r->X), pictures[i] + 4 * (size_t)(y * w),
-                   4 * (size_t)w);
+            memcpy(texels + 4 * ((size_t)(r->Y + y) * (size_t)width + r->X),
+                   pictures[i] + 4 * (size_t)(y * w), 4 * (size_t)w);
         }
     }
     set_style(pixels);
@@ -148,8 +152,8 @@ bool upload() {
     submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
     submit.commandBufferCount = 1;
     submit.pCommandBuffers = &cmd;
-    good = good && !vkEndCommandBuffer(cmd) && !vkQueueSubmit(ui.d.queue, 1, &submit, VK_NULL_HANDLE) &&
-           !vkQueueWaitIdle(ui.d.queue);
+    good = good && !vkEndCommandBuffer(cmd) &&
+           !vkQueueSubmit(ui.d.queue, 1, &submit, VK_NULL_HANDLE) && !vkQueueWaitIdle(ui.d.queue);
     ImGui_ImplVulkan_DestroyFontUploadObjects();
     vkFreeCommandBuffers(ui.d.device, ui.d.pool, 1, &cmd);
     return good && !ui.failed;
@@ -179,10 +183,12 @@ bool make_renderer() {
 
 /* The image's part at (x, y) that a window of the wanted size at that corner may have. */
 ImVec2 within(float width, float height) {
-    return ImVec2(std::min(width, (float)ui.d.extent.width), std::min(height, (float)ui.d.extent.height));
+    return ImVec2(std::min(width, (float)ui.d.extent.width),
+                  std::min(height, (float)ui.d.extent.height));
 }
 
-/* A label, and behind or below it room for an item that is as wide as the rest; returns the item's hidden name. */
+/* A label, and behind or below it room for an item that is as wide as the rest; returns the item's
+ * hidden name. */
 const char *labelled(const char *label) {
     static char hidden[300];
     float width = ImGui::GetContentRegionAvail().x, column = 0.42f * width;
@@ -190,7 +196,8 @@ const char *labelled(const char *label) {
     ImGui::PushTextWrapPos(0.0f);
     ImGui::TextUnformatted(label, ImGui::FindRenderedTextEnd(label));
     ImGui::PopTextWrapPos();
-    if (ImGui::GetItemRectSize().x <= column) ImGui::SameLine(column + ImGui::GetStyle().WindowPadding.x);
+    if (ImGui::GetItemRectSize().x <= column)
+        ImGui::SameLine(column + ImGui::GetStyle().WindowPadding.x);
     ImGui::SetNextItemWidth(-1.0f);
     snprintf(hidden, sizeof hidden, "##%s", label);
     return hidden;
@@ -234,8 +241,8 @@ void masu_ui_close(void) {
     if (ImGui::GetCurrentContext()) ImGui::DestroyContext();
 }
 
-bool masu_ui_attach(const masu_ui_device *device, const uint8_t *const *pictures, uint32_t count, char *error,
-                    size_t size) {
+bool masu_ui_attach(const masu_ui_device *device, const uint8_t *const *pictures, uint32_t count,
+                    char *error, size_t size) {
     masu_ui_detach();
     ui.d = *device;
     ui.failed = VK_SUCCESS;
@@ -292,12 +299,15 @@ bool masu_ui_event(const SDL_Event *e, double scale) {
     case SDL_MOUSEBUTTONUP:
         if (e->button.which == SDL_TOUCH_MOUSEID) return false;
         io.MousePos = ImVec2((float)(e->button.x * scale), (float)(e->button.y * scale));
-        button = e->button.button == SDL_BUTTON_LEFT ? 0 : e->button.button == SDL_BUTTON_RIGHT ? 1 : 2;
+        button = e->button.button == SDL_BUTTON_LEFT    ? 0
+                 : e->button.button == SDL_BUTTON_RIGHT ? 1
+                                                        : 2;
         ui.buttons[button] = e->type == SDL_MOUSEBUTTONDOWN;
         if (ui.buttons[button]) ui.fresh_buttons[button] = true;
         /* Whether a window is there is known before the next frame says so. */
         for (ImGuiWindow *w : ImGui::GetCurrentContext()->Windows) {
-            if (w->WasActive && !(w->Flags & ImGuiWindowFlags_NoMouseInputs) && w->Rect().Contains(io.MousePos))
+            if (w->WasActive && !(w->Flags & ImGuiWindowFlags_NoMouseInputs) &&
+                w->Rect().Contains(io.MousePos))
                 return true;
         }
         return io.WantCaptureMouse && !ui.buttons[button];
@@ -333,8 +343,10 @@ void masu_ui_begin(double seconds) {
     ImGuiIO &io = ImGui::GetIO();
     io.DisplaySize = ImVec2((float)ui.d.extent.width, (float)ui.d.extent.height);
     io.DeltaTime = seconds > 1e-4 ? (float)seconds : 1e-4f;
-    for (int i = 0; i < 512; i++) io.KeysDown[i] = ui.keys[i] || ui.fresh_keys[i], ui.fresh_keys[i] = false;
-    for (int i = 0; i < 3; i++) io.MouseDown[i] = ui.buttons[i] || ui.fresh_buttons[i], ui.fresh_buttons[i] = false;
+    for (int i = 0; i < 512; i++)
+        io.KeysDown[i] = ui.keys[i] || ui.fresh_keys[i], ui.fresh_keys[i] = false;
+    for (int i = 0; i < 3; i++)
+        io.MouseDown[i] = ui.buttons[i] || ui.fresh_buttons[i], ui.fresh_buttons[i] = false;
     ui.edge = ui.right;
     ui.right = io.DisplaySize.x;
     ui.left = ImVec2(0, 0);
@@ -364,14 +376,16 @@ void masu_ui_window(const char *name, masu_ui_place place, bool focus) {
     const ImGuiWindowFlags still = ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing |
                                    ImGuiWindowFlags_NoBringToFrontOnFocus;
     ImGuiWindowFlags flags = ImGuiWindowFlags_NoDecoration & ~ImGuiWindowFlags_NoScrollbar;
-    flags |= ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing;
+    flags |= ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+             ImGuiWindowFlags_NoFocusOnAppearing;
     ImVec2 panel = within(28.0f * em(), height), lines = within(ui.right, 0.3f * height);
     switch (place) {
     case MASU_UI_LEFT:
         ImGui::SetNextWindowPos(ImVec2(0, 0));
         panel = within(27.0f * em(), height);
         ImGui::SetNextWindowSize(ImVec2(panel.x, 0.0f));
-        ImGui::SetNextWindowSizeConstraints(ImVec2(panel.x, 0.0f), ImVec2(panel.x, height - ui.bottom));
+        ImGui::SetNextWindowSizeConstraints(ImVec2(panel.x, 0.0f),
+                                            ImVec2(panel.x, height - ui.bottom));
         flags |= still;
         break;
     case MASU_UI_RIGHT:
@@ -411,7 +425,8 @@ bool masu_ui_tab(const char *label, bool select) {
 
 /* ---- Items ----------------------------------------------------------------------------------- */
 
-/* Lines at the lower edge are as wide as the image allows, not as their window, which fits itself to them. */
+/* Lines at the lower edge are as wide as the image allows, not as their window, which fits itself
+ * to them. */
 static void wrapped(uint32_t color, const char *text) {
     ImGuiWindow *w = ImGui::GetCurrentWindow();
     bool fits = (w->Flags & ImGuiWindowFlags_AlwaysAutoResize) != 0;
@@ -436,15 +451,17 @@ void masu_ui_row(uint32_t color, const char *const *cells, uint32_t count, float
     ImVec2 at = ImGui::GetCursorScreenPos();
     if (bar >= 0.0f) {
         float end = std::max(bar * 0.36f * width, 1.0f);
-        ImGui::GetWindowDrawList()->AddRectFilled(ImVec2(at.x + 0.62f * width, at.y + 0.25f * em()),
-                                                  ImVec2(at.x + 0.62f * width + end, at.y + 0.8f * em()),
-                                                  color_of(0x4FA3E0, 0.86f));
+        ImGui::GetWindowDrawList()->AddRectFilled(
+            ImVec2(at.x + 0.62f * width, at.y + 0.25f * em()),
+            ImVec2(at.x + 0.62f * width + end, at.y + 0.8f * em()), color_of(0x4FA3E0, 0.86f));
         width *= 0.6f;
     }
     ImGui::PushStyleColor(ImGuiCol_Text, color_of(color));
     for (uint32_t i = 0; i < count; i++) {
         float part = (width - from) / (float)(count > 1 ? count - 1 : 1);
-        if (i) ImGui::SameLine(from + part * (float)i - ImGui::CalcTextSize(cells[i]).x + ImGui::GetStyle().WindowPadding.x);
+        if (i)
+            ImGui::SameLine(from + part * (float)i - ImGui::CalcTextSize(cells[i]).x +
+                            ImGui::GetStyle().WindowPadding.x);
         ImGui::TextUnformatted(cells[i]);
     }
     ImGui::PopStyleColor();
@@ -464,16 +481,19 @@ void masu_ui_same_line(void) {
 
 bool masu_ui_check(const char *label, bool *value) { return ImGui::Checkbox(label, value); }
 
-bool masu_ui_slider(const char *label, float *value, float low, float high, const char *format, bool logarithmic) {
+bool masu_ui_slider(const char *label, float *value, float low, float high, const char *format,
+                    bool logarithmic) {
     return ImGui::SliderFloat(labelled(label), value, low, high, format,
-                              ImGuiSliderFlags_AlwaysClamp | (logarithmic ? ImGuiSliderFlags_Logarithmic : 0));
+                              ImGuiSliderFlags_AlwaysClamp |
+                                  (logarithmic ? ImGuiSliderFlags_Logarithmic : 0));
 }
 
 /* A chosen name that is too long for its half of the line stands below it too. */
 bool masu_ui_choice(const char *label, uint32_t *index, const char *const *names, uint32_t count) {
     bool changed = false;
     const char *chosen = *index < count ? names[*index] : "", *hidden = labelled(label);
-    bool cut = ImGui::CalcTextSize(chosen).x > ImGui::GetContentRegionAvail().x - 2.0f * ImGui::GetFrameHeight();
+    bool cut = ImGui::CalcTextSize(chosen).x >
+               ImGui::GetContentRegionAvail().x - 2.0f * ImGui::GetFrameHeight();
     if (ImGui::BeginCombo(hidden, chosen, ImGuiComboFlags_HeightLarge)) {
         for (uint32_t i = 0; i < count; i++) {
             ImGui::PushID((int)i);
@@ -489,13 +509,15 @@ bool masu_ui_choice(const char *label, uint32_t *index, const char *const *names
 
 bool masu_ui_color(const char *label, float rgb[3]) {
     return ImGui::ColorEdit3(labelled(label), rgb,
-                             ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR | ImGuiColorEditFlags_NoLabel);
+                             ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR |
+                                 ImGuiColorEditFlags_NoLabel);
 }
 
 bool masu_ui_committed(void) { return ImGui::IsItemDeactivatedAfterEdit(); }
 
 void masu_ui_help(const char *text) {
-    if (!ImGui::IsItemHovered() && !(ImGui::IsItemFocused() && !ImGui::GetCurrentContext()->NavDisableHighlight))
+    if (!ImGui::IsItemHovered() &&
+        !(ImGui::IsItemFocused() && !ImGui::GetCurrentContext()->NavDisableHighlight))
         return;
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(std::min(26.0f * em(), 0.8f * (float)ui.d.extent.width));
@@ -513,9 +535,10 @@ void masu_ui_progress(float fraction, const char *text) {
         float x = (float)std::fmod(ImGui::GetTime() * 0.5, 2.0);
         x = (x > 1.0f ? 2.0f - x : x) * 0.75f * width;
         ImGui::ProgressBar(0.0f, ImVec2(width, 0.0f), "");
-        ImGui::GetWindowDrawList()->AddRectFilled(ImVec2(at.x + x, at.y),
-                                                  ImVec2(at.x + x + 0.25f * width, at.y + ImGui::GetFrameHeight()),
-                                                  ImGui::GetColorU32(ImGuiCol_PlotHistogram));
+        ImGui::GetWindowDrawList()->AddRectFilled(
+            ImVec2(at.x + x, at.y),
+            ImVec2(at.x + x + 0.25f * width, at.y + ImGui::GetFrameHeight()),
+            ImGui::GetColorU32(ImGuiCol_PlotHistogram));
     } else {
         ImGui::ProgressBar(std::min(fraction, 1.0f), ImVec2(width, 0.0f), "");
     }
@@ -534,7 +557,8 @@ bool masu_ui_picture(uint32_t at, const char *label) {
         atlas->CalcCustomRectUV(atlas->GetCustomRectByIndex(ui.rects[at]), &from, &to);
         pressed = ImGui::ImageButton(atlas->TexID, ImVec2(width, height), from, to);
     } else {
-        pressed = ImGui::Button("##none", ImVec2(width + 2 * s.FramePadding.x, height + 2 * s.FramePadding.y));
+        pressed = ImGui::Button(
+            "##none", ImVec2(width + 2 * s.FramePadding.x, height + 2 * s.FramePadding.y));
     }
     ImGui::PopID();
     ImGui::TextUnformatted(label);
@@ -553,11 +577,13 @@ void masu_ui_pop(void) { ImGui::PopID(); }
 float masu_ui_line_height(void) { return ImGui::GetTextLineHeight(); }
 
 void masu_ui_fill(float x, float y, float width, float height, uint32_t color, float opacity) {
-    ImGui::GetBackgroundDrawList()->AddRectFilled(ImVec2(x, y), ImVec2(x + width, y + height), color_of(color, opacity));
+    ImGui::GetBackgroundDrawList()->AddRectFilled(ImVec2(x, y), ImVec2(x + width, y + height),
+                                                  color_of(color, opacity));
 }
 
 uint32_t masu_ui_room(void) {
-    float room = (float)ui.d.extent.height - ui.bottom - ImGui::GetCursorScreenPos().y - ImGui::GetStyle().WindowPadding.y;
+    float room = (float)ui.d.extent.height - ui.bottom - ImGui::GetCursorScreenPos().y -
+                 ImGui::GetStyle().WindowPadding.y;
     return room > 0.0f ? (uint32_t)(room / ImGui::GetTextLineHeightWithSpacing()) : 0;
 }
 
@@ -573,6 +599,8 @@ void masu_ui_label(float x, float y, float left, float right, uint32_t color, co
     x = std::max(std::min(x, right - size.x - 2.0f * pad), left);
     y = std::max(std::min(y, (float)ui.d.extent.height - ui.bottom - size.y - 2.0f * pad), 0.0f);
     ImDrawList *list = ImGui::GetBackgroundDrawList();
-    list->AddRectFilled(ImVec2(x, y), ImVec2(x + size.x + 2 * pad, y + size.y + 2 * pad), color_of(0x0B1016, 0.8f));
-    list->AddText(ImGui::GetFont(), em(), ImVec2(x + pad, y + pad), color_of(color), text, nullptr, room);
+    list->AddRectFilled(ImVec2(x, y), ImVec2(x + size.x + 2 * pad, y + size.y + 2 * pad),
+                        color_of(0x0B1016, 0.8f));
+    list->AddText(ImGui::GetFont(), em(), ImVec2(x + pad, y + pad), color_of(color), text, nullptr,
+                  room);
 }

@@ -1,8 +1,10 @@
-/* ui.h: the user interface that is drawn over the picture, as calls of C: Dear ImGui behind ui.cpp, the only file of
- * C++ of the viewer. Panels are written with the functions of "Items"; each call is one item of this frame.
+/* ui.h: the user interface that is drawn over the picture, as calls of C: Dear ImGui behind ui.cpp,
+ * the only file of C++ of the viewer. Panels are written with the functions of "Items"; each call
+ * is one item of this frame.
  *
- * One window, one interface: the state is the library's own. Sizes and positions are pixels of the window's image,
- * text grows with its height. Text is wrapped at the edge of its window, and windows stay inside of the image. */
+ * One window, one interface: the state is the library's own. Sizes and positions are pixels of the
+ * window's image, text grows with its height. Text is wrapped at the edge of its window, and
+ * windows stay inside of the image. */
 #ifndef MASU_VIEW_UI_H
 #define MASU_VIEW_UI_H
 
@@ -18,7 +20,8 @@ extern "C" {
 
 /* ---- Life ------------------------------------------------------------------------------------ */
 
-/* What it draws with, and on: an RGBA8 image in COLOR_ATTACHMENT_OPTIMAL, which it leaves in TRANSFER_SRC_OPTIMAL. */
+/* What it draws with, and on: an RGBA8 image in COLOR_ATTACHMENT_OPTIMAL, which it leaves in
+ * TRANSFER_SRC_OPTIMAL. */
 typedef struct masu_ui_device {
     VkInstance instance;
     VkPhysicalDevice physical;
@@ -38,8 +41,8 @@ typedef struct masu_ui_device {
 void masu_ui_open(void);
 void masu_ui_close(void);
 /* Whenever the image or the pictures change; the device is idle. The pictures are copied. */
-bool masu_ui_attach(const masu_ui_device *device, const uint8_t *const *pictures, uint32_t count, char *error,
-                    size_t size);
+bool masu_ui_attach(const masu_ui_device *device, const uint8_t *const *pictures, uint32_t count,
+                    char *error, size_t size);
 void masu_ui_detach(void);
 
 /* Key presses, mouse and text. True: it is the interface's, and nothing else should happen. */
@@ -65,7 +68,8 @@ typedef enum masu_ui_place {
 void masu_ui_window(const char *name, masu_ui_place place, bool focus);
 void masu_ui_window_end(void);
 
-/* Tabs: masu_ui_tabs, for each masu_ui_tab with its items and masu_ui_tab_end if it is true, masu_ui_tabs_end. */
+/* Tabs: masu_ui_tabs, for each masu_ui_tab with its items and masu_ui_tab_end if it is true,
+ * masu_ui_tabs_end. */
 void masu_ui_tabs(void);
 bool masu_ui_tab(const char *label, bool select);
 void masu_ui_tab_end(void);
@@ -90,14 +94,17 @@ enum {
 #endif
 
 void masu_ui_text(uint32_t color, const char *format, ...) MASU_UI_PRINTF(2, 3);
-/* A row of up to 4 columns, of which all but the first are right-aligned numbers; bar: 0..1 behind it, below 0: none. */
+/* A row of up to 4 columns, of which all but the first are right-aligned numbers; bar: 0..1 behind
+ * it, below 0: none. */
 void masu_ui_row(uint32_t color, const char *const *cells, uint32_t count, float bar);
 bool masu_ui_section(const char *label, bool open); /* false: folded, leave its items out */
 bool masu_ui_button(const char *label);
 void masu_ui_same_line(void); /* the next item is beside the last one, if it fits */
 bool masu_ui_check(const char *label, bool *value);
-/* Drag, or Ctrl+click or Enter to type. format is printf's, of a float; logarithmic: the range spans decades. */
-bool masu_ui_slider(const char *label, float *value, float low, float high, const char *format, bool logarithmic);
+/* Drag, or Ctrl+click or Enter to type. format is printf's, of a float; logarithmic: the range
+ * spans decades. */
+bool masu_ui_slider(const char *label, float *value, float low, float high, const char *format,
+                    bool logarithmic);
 bool masu_ui_choice(const char *label, uint32_t *index, const char *const *names, uint32_t count);
 bool masu_ui_color(const char *label, float rgb[3]);
 /* The last item was changed and has been let go, by mouse or key. */
@@ -113,8 +120,8 @@ void masu_ui_pop(void);
 /* ---- On the picture, below all windows ------------------------------------------------------- */
 
 void masu_ui_fill(float x, float y, float width, float height, uint32_t color, float opacity);
-/* A label at (x, y), moved so that it is inside of the image and, if right is more than left, between those; wrapped
- * if it is wider. */
+/* A label at (x, y), moved so that it is inside of the image and, if right is more than left,
+ * between those; wrapped if it is wider. */
 void masu_ui_label(float x, float y, float left, float right, uint32_t color, const char *text);
 float masu_ui_line_height(void);
 uint32_t masu_ui_room(void); /* lines between the next item of a window and the lower edge */

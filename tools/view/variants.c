@@ -1,4 +1,5 @@
-/* variants.c: names of the material variants of a glTF file (KHR_materials_variants), for the panel that chooses one. */
+/* variants.c: names of the material variants of a glTF file (KHR_materials_variants), for the panel
+ * that chooses one. */
 #include "view/viewer.h"
 
 #include "image.h"
@@ -9,7 +10,8 @@
 #include <string.h>
 
 #define BYTES_MAX ((size_t)1 << 30)
-#define BINARY_HEAD 20u /* of a .glb: magic, version, length, length of the first chunk, its type: JSON */
+#define BINARY_HEAD                                                                                \
+    20u /* of a .glb: magic, version, length, length of the first chunk, its type: JSON */
 
 void masu_baker_read_variants(masu_viewer *v) {
     masu_baker *b = &v->baker;
@@ -22,11 +24,13 @@ void masu_baker_read_variants(masu_viewer *v) {
     length = count;
     if (count > BINARY_HEAD && !memcmp(bytes, "glTF", 4)) {
         from = BINARY_HEAD;
-        length = bytes[12] | (size_t)bytes[13] << 8 | (size_t)bytes[14] << 16 | (size_t)bytes[15] << 24;
+        length =
+            bytes[12] | (size_t)bytes[13] << 8 | (size_t)bytes[14] << 16 | (size_t)bytes[15] << 24;
         if (length > count - from) length = count - from;
     }
     json_t *root = json_loadb((const char *)bytes + from, length, 0, NULL);
-    const json_t *extension = json_object_get(json_object_get(root, "extensions"), "KHR_materials_variants");
+    const json_t *extension =
+        json_object_get(json_object_get(root, "extensions"), "KHR_materials_variants");
     const json_t *list = json_object_get(extension, "variants"), *each;
     size_t i;
     json_array_foreach(list, i, each) {
