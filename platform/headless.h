@@ -126,8 +126,8 @@ typedef struct masu_headless_target {
     uint32_t width, height;
 } masu_headless_target;
 
-/* format is one that masu_targets takes. storage: VK_IMAGE_USAGE_STORAGE_BIT and _SAMPLED_BIT, else
- * VK_IMAGE_USAGE_TRANSFER_DST_BIT. */
+/* format is one that masu_targets takes. Usage: TRANSFER_SRC and _DST; storage: also STORAGE, SAMPLED,
+ * and COLOR_ATTACHMENT for what the host draws over a frame. */
 bool masu_headless_target_create(masu_headless *host, uint32_t width, uint32_t height,
                                  VkFormat format, bool storage, masu_headless_target *target,
                                  char *error, size_t error_size);
