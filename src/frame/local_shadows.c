@@ -110,7 +110,7 @@ static int set_light(masu_local_light *light, const masu_punctual_light_state *s
     memcpy(light, &now, offsetof(masu_local_light, size));
     for (uint32_t i = 0; i < MASU_LOCAL_FACES; i++) {
         masu_local_face *face = &light->faces[i];
-        face->drawn = 0;
+        face->drawn = face->marched = 0;
         if (light->tangent > 0.0) {
             face->used = i == 0;
             spot_axes(light->axis, face->axis);
@@ -194,7 +194,10 @@ void masu_local_shadows_offer(masu_local_shadows *s, const masu_frame_data *f, u
     masu_punctual_light_state lit = *state; /* a lamp that is off keeps its slot until another one needs it */
     if (slot) lit.color[0] = fmaxf(lit.color[0], 1e-30f);
     if (!masu_light_place(&lit, rel, direction, &placed)) return;
-    double distance = sqrt(dot(rel, rel)), score = masu_shadow_score(state->color, (double)state->range, distance);
+    double distance = sqrt(dot(rel, rel));
+    double center[3] = {(double)placed.bound[0], (double)placed.bound[1], (double)placed.bound[2]};
+    double score = masu_shadow_score(masu_light_intensity(state, direction), (double)placed.bound[3],
+                                     sqrt(dot(center, center)));
     if (masu_light_outside(placed.bound, f->u.clip_from_rel)) score *= MASU_SHADOW_UNSEEN;
     if (slot) {
         score *= MASU_SHADOW_HYSTERESIS;
@@ -264,6 +267,8 @@ static void follow_sdf(masu_local_shadows *s, const masu_frame_data *f) {
         hash ^= masu_fnv1a64(f->u.sdf_params, sizeof f->u.sdf_params);
         hash = hash * 31 + masu_fnv1a64(&f->u.eye_hi[3], sizeof f->u.eye_hi[3]); /* time */
     }
+    for (uint32_t i = 0; hash != s->sdf_hash && i < s->capacity * MASU_LOCAL_FACES; i++)
+        s->lights[i / MASU_LOCAL_FACES].faces[i % MASU_LOCAL_FACES].marched = 0;
     if (hash != s->sdf_hash) touch_faces(s, s->sdf_box, f->number);
     s->sdf_hash = hash;
 }
@@ -337,17 +342,23 @@ static void write_face(const masu_local_light *light, const masu_local_face *fac
 }
 
 /* Those of the pass that marches the SDF go over all such faces of the frame. */
-static void take_groups(const masu_local_face *face, uint32_t number, struct masu_local_face_uniforms *u) {
+static void take_groups(masu_local_face *face, uint32_t number, struct masu_local_face_uniforms *u) {
+    u->tile[number][3] = face->marched ? 1 : 2;
+    if (face->marched) return;
+    face->marched = 1;
     uint32_t across = (face->tile.size + MASU_GROUP - 1) / MASU_GROUP;
     if (u->groups[0] < across) u->groups[0] = u->groups[1] = across;
     u->groups[2] = number + 1;
-    u->tile[number][3] = 1;
 }
 
 /* A tile of the size that is wanted, or of a smaller one; its own if it has that and stays. 0: there is no room. */
 static int find_tile(masu_local_shadows *s, const masu_local_light *light, masu_local_face *face) {
-    if (face->moves) masu_shadow_tile_move(&s->tiles, &face->tile);
-    if (face->moves || face->tile.size == light->size) return 1;
+    if (!face->moves && face->tile.size == light->size) return 1;
+    face->marched = 0;
+    if (face->moves) {
+        masu_shadow_tile_move(&s->tiles, &face->tile);
+        return 1;
+    }
     /* Its own becomes free in the same frame, in which it is read no more. */
     masu_shadow_tile_give(&s->tiles, &face->tile);
     for (uint32_t size = light->size; size >= MASU_LOCAL_TILE_LEAST && !face->tile.size; size /= 2)

@@ -37,6 +37,7 @@ typedef struct masu_local_face {
     uint8_t drawn;   /* it is rendered, or nothing is in it; else nothing is to be read */
     uint8_t seen;    /* some of what it reaches may be in the view of this frame */
     uint8_t moves;   /* it is due for another tile of its size */
+    uint8_t marched; /* local_shadow_sdf has what its tile holds of the SDF */
 } masu_local_face;
 
 /* What a slot of the choice holds. */

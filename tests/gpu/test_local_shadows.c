@@ -509,7 +509,7 @@ static void a_thousand_lights_come_and_go(void **state) {
         assert_int_equal(masu_punctual_light_add(l.s.m, &s, &handles[at]), MASU_OK);
         if (n % 4) continue;
         take(&l, &c, n % 100 == 48 ? PLAIN : SHADOWED);
-        assert_true(l.stats.local_shadow_faces <= 4 && l.stats.local_shadow_lights <= 8);
+        assert_true(l.stats.local_shadow_faces <= 4 && l.stats.local_shadow_lights <= 16);
     }
     close_lamps(&l);
 }

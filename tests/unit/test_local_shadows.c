@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "frame/local_shadows.h"
+#include "scene/punctual_light.h"
 #include "shared/masu_shared.h"
 #include "support/random.h"
 
@@ -222,6 +223,22 @@ static void nobody_leaves_for_nothing(void **state) {
     assert_null(slot_of(&s, 2));
 }
 
+/* A neon tube is bright to look at, but lights less than a lamp; a cone reaches less than a sphere. */
+static void scores_are_of_what_a_light_adds(void **state) {
+    (void)state;
+    const double none[3] = {0, 0, 0}, half[3] = {0, 0.75, 0};
+    masu_punctual_light_state lamp = {.color = {7, 5, 2}}, ball = {.shape = MASU_SHAPE_SPHERE, .color = {26, 2, 11}, .radius = 0.5f};
+    masu_punctual_light_state tube = {.shape = MASU_SHAPE_CAPSULE, .color = {26, 2, 11}, .radius = 0.02f};
+    masu_punctual_light_state window = {.shape = MASU_SHAPE_RECTANGLE, .color = {3, 2, 1}, .half_axis = {1.5f, 0, 0}};
+    assert_true(fabs(masu_light_intensity(&lamp, none) - 7) < 1e-9);
+    assert_true(fabs(masu_light_intensity(&ball, none) - 26 * 0.25) < 1e-6);
+    assert_true(fabs(masu_light_intensity(&tube, half) - 26 * (0.0004 + 4 * 0.75 * 0.02 / 3.14159265)) < 1e-5);
+    assert_true(fabs(masu_light_intensity(&window, half) - 3 * 4 * 0.75 * 1.5 / 3.14159265) < 1e-5);
+    assert_true(masu_shadow_score(2, 10, 20) < masu_shadow_score(3, 10, 20));
+    assert_true(fabs(masu_shadow_score(2, 10, 20) - 4 * masu_shadow_score(2, 10, 40)) < 1e-9);
+    assert_true(masu_shadow_score(2, 10, 0) > 0);
+}
+
 /* ---- Faces ----------------------------------------------------------------------------------- */
 
 static void a_cone_reaches_into_the_faces_that_it_touches(void **state) {
@@ -274,6 +291,7 @@ int main(void) {
         cmocka_unit_test(small_changes_of_order_change_nothing),
         cmocka_unit_test(a_shadow_is_held_then_faded_then_given_away),
         cmocka_unit_test(nobody_leaves_for_nothing),
+        cmocka_unit_test(scores_are_of_what_a_light_adds),
         cmocka_unit_test(a_cone_reaches_into_the_faces_that_it_touches),
         cmocka_unit_test(sizes_follow_the_view_with_hysteresis),
     };
