@@ -213,7 +213,7 @@ void main()
             uint i = 2u * gl_LocalInvocationIndex;
             uvec2 at = gl_WorkGroupID.xy * uvec2(MASU_GROUP) + uvec2(i % uint(MASU_GROUP), i / uint(MASU_GROUP));
             at = (faces.tile[k].xy + at) / uvec2(2u, 1u);
-            imageStore(pairs_image, ivec2(at), uvec4(depths[i] | depths[i + 1u] << 16, 0u, 0u, 0u));
+            MASU_STORE_UINT(pairs_image, at, uvec4(depths[i] | depths[i + 1u] << 16));
         }
     }
     masu_count_end();

@@ -103,7 +103,11 @@ static int set_light(masu_local_light *light, const masu_punctual_light_state *s
     now.range = (double)state->range;
     now.near_distance = fmax(NEAR_LEAST, masu_light_solid(state));
     now.tangent = now.angle <= (double)MASU_LOCAL_ANGLE_MOST ? fmax(tan(now.angle), 1e-3) : 0.0;
-    if (!memcmp(&now, light, offsetof(masu_local_light, size))) return 0;
+    if (!memcmp(&now, light, offsetof(masu_local_light, size))) {
+        if (light->still < MASU_LOCAL_STILL) light->still++;
+        return 0;
+    }
+    light->still = light->range > 0.0 ? 0 : MASU_LOCAL_STILL;
     double moved[3] = {position[0] - light->position[0], position[1] - light->position[1],
                        position[2] - light->position[2]};
     int jumped = dot(moved, moved) > 0.0625 * now.range * now.range;
@@ -373,6 +377,7 @@ static void fit_sizes(masu_local_shadows *s, const masu_frame_data *f) {
     for (uint32_t slot = 0; slot < s->capacity; slot++) {
         const masu_local_light *light = &s->lights[slot];
         sizes[slot] = light->wish;
+        if (light->still < MASU_LOCAL_STILL && sizes[slot] > MASU_LOCAL_TILE_MOVES) sizes[slot] = MASU_LOCAL_TILE_MOVES;
         faces[slot] = 0;
         for (uint32_t i = 0; i < MASU_LOCAL_FACES; i++) faces[slot] += light->faces[i].used;
         scores[slot] = s->choice[slot].score * (light->size >= light->wish ? MASU_SHADOW_HYSTERESIS : 1.0);

@@ -7,7 +7,7 @@
  * has moved, appeared or gone, and when it is to have another size. A face in which nothing can cast a shadow has no
  * tile.
  *
- * SIZES follow the screen. Where the atlas has no room for all of them, the largest are halved, the least important
+ * SIZES follow the screen. A light that moves renders all that it sees in each frame: it has 256 texels at most. Where the atlas has no room for all of them, the largest are halved, the least important
  * first. A face keeps its tile until it is rendered into another one. One that found no free square of its size has a
  * smaller tile; as soon as no face is due, tiles move together until it finds one.
  *
@@ -26,6 +26,8 @@
 #include "frame/shadow_tiles.h"
 
 #define MASU_LOCAL_FACES 6u
+#define MASU_LOCAL_STILL 8u /* frames from which on a light does not move */
+#define MASU_LOCAL_TILE_MOVES 256u
 
 typedef struct masu_local_face {
     masu_cull_view view;
@@ -47,7 +49,8 @@ typedef struct masu_local_light {
     double tangent; /* of half the angle of the only face; 0: cube */
     double angle;   /* of the cone; pi: it shines everywhere */
     uint32_t size;  /* texels that its faces are to have */
-    uint32_t wish;  /* those that they would have in an atlas with room for all */
+    uint32_t wish;  /* those that they would have at rest in an atlas with room for all */
+    uint32_t still; /* frames since it has moved, up to MASU_LOCAL_STILL */
     masu_local_face faces[MASU_LOCAL_FACES];
 } masu_local_light;
 

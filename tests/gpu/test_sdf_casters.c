@@ -248,12 +248,11 @@ static void the_sdf_alone_has_shadows(void **state) {
 
 static void polygons_shade_the_sdf(void **state) {
     (void)state;
-    shape box = {1, {0, 1.5, 0}, {0.8, 0.1, 0.8}};
+    shape both[] = {{1, {0, 1.5, 0}, {0.8, 0.1, 0.8}}, {0, {0.3, 0.5, 0.3}, {0.4, 0, 0}}};
     masu_session s;
-    shapes = &box, shape_count = 1;
+    shapes = both, shape_count = 2;
     bake("roof", "{\"mesh\": {\"box\": {\"size\": [1.6, 0.2, 1.6]}}, \"name\": \"roof\", \"translate\": [0, 1.5, 0]}",
-         /* The ball above the lamp is there to be marched: planes are not. */
-         "part ground = plane((0, 1, 0), 0);\npart ball = translate((1, 5.5, 1.5), sphere(0.2));\n", POINT,
+         "part ground = plane((0, 1, 0), 0);\npart ball = translate((0.3, 0.5, 0.3), sphere(0.4));\n", POINT,
          ", \"reflections\": false");
     open_scene(&s, "roof");
     render(&s, NONE, 1, (masu_frame_desc){0}, open);
@@ -261,7 +260,7 @@ static void polygons_shade_the_sdf(void **state) {
     expect("a polygon over the SDF", compare(lamp, by_depth), 150, 1500, 0);
     assert_true(evals > 0);
     /* The SDF's depth of the faces is kept while only a polygon moves. */
-    box.middle[0] = 0.4;
+    both[0].middle[0] = 0.4;
     move_instance(&s, "roof", 0.4f, 1.5f, 0, 1);
     render(&s, SHADOWS, 8, (masu_frame_desc){0}, lit);
     assert_true(faces > 0);
