@@ -138,7 +138,7 @@ static int8_t seen_from(const study *w, const ref_light *light, ref_vec p) {
         ref_vec q =
             ref_add(light->position, ref_from(&f, ref_v(wide * cos(phi), wide * sin(phi), 0)));
         ref_vec d = ref_sub(q, p);
-        /* The bulb around the source blocks nothing; the reference meets an SDF a little in front of it. */
+        /* The bulb blocks nothing; the reference meets an SDF a little in front of it. */
         double length = ref_length(d), free = length - 1.05 * light->radius;
         met += !(free > 0) ||
                !ref_world_occluded(&w->world, p, ref_scale(d, 1 / length), free, REF_RAY_NO_BLENDS);
