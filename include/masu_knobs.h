@@ -167,9 +167,9 @@ typedef enum masu_knob_use {
            "Largest width and height of the atlas of shadow faces, rounded down to a power of two;"\
            " smaller if few lights cast shadows. All rungs share the largest.",                    \
            "2 n^2 persistent device bytes.")                                                       \
-    NUMBER(uint32_t,         local_shadow_lights,  1,    64,   8,    LOCAL_SHADOWS, "",            \
+    NUMBER(uint32_t,         local_shadow_lights,  1,    64,   16,   LOCAL_SHADOWS, "",            \
            "Largest number of punctual lights with shadows at a time, the most important ones.",   \
-           "More lookups per pixel, and smaller faces.")                                           \
+           "More faces to render when they change; smaller faces where the atlas is full.")                                         \
     NUMBER(uint32_t,         local_shadow_faces,   1,    16,   4,    LOCAL_SHADOWS, "faces",       \
            "Largest number of shadow faces rendered per frame: 1 for a spot, up to 6 for a point"  \
            " light. Faces that have to wait show what they held.",                                 \

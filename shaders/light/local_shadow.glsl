@@ -18,6 +18,7 @@ layout(set = MASU_SET_PASS, binding = MASU_AT_LOCAL_SHADOWS) uniform sampler2D l
 
 const float masu_local_steepest = 200.0; /* slope against the light that is still made up for: 0.3 degrees */
 const float masu_local_least_bias = 0.1; /* texels */
+const float masu_local_behind = 20.0; /* a surface that faces away from all of the source is dark over 2.9 degrees */
 const float masu_local_snap = 1.0 / 8.0; /* texels: how far rasterisers may move an edge across a face */
 
 /* Weights of the texels before, at and after the point; f: how far it is from its texel's centre. */
@@ -117,10 +118,12 @@ float masu_light_seen(masu_punctual_light_data light, vec3 rel, vec3 n)
     vec2 at = uv * (inverse / width) + (corner + 0.5 * edge);
     float depth = near * inverse;
     float step = depth * width;
-    float facing = min(dot(n, p) * inverse, -1.0 / masu_local_steepest);
+    float along = dot(n, p) * inverse;
+    float facing = min(along, -1.0 / masu_local_steepest);
     vec2 slope = across * (step / facing);
     float bias = masu_local_least_bias * step + masu_local_snap * (abs(slope.x) + abs(slope.y));
     float lit = masu_local_filter(at, depth + bias, slope, uintBitsToFloat(masu_lights_header.z));
+    lit *= clamp(1.0 - (along - depth) * masu_local_behind, 0.0, 1.0);
     float fade = float(word >> MASU_LOCAL_FADE_SHIFT & 15u) * (1.0 / float(MASU_LOCAL_FADE));
     return lit * fade + (1.0 - fade);
 }

@@ -276,7 +276,7 @@ static int wants(const masu_desc *d, int (*has)(const masu_desc *d, uint32_t r))
 }
 
 /* The atlas has room for the most lights that may have shadows at a time, each spot with a tile of the largest
- * size, each point with six of half of it; what needs more gets smaller tiles. */
+ * size, each point with six, if that is within rung.local_shadow_atlas; else they get smaller tiles. */
 static void resolve_local_shadows(masu_frame_plan *plan) {
     const masu_desc *d = &plan->desc;
     uint32_t lights = 0, most = MASU_LOCAL_TILE_LEAST, viewports = d->viewport_count ? d->viewport_count : 1;
@@ -291,7 +291,7 @@ static void resolve_local_shadows(masu_frame_plan *plan) {
     if (lights > plan->scene.shadow_lights) lights = plan->scene.shadow_lights;
     uint32_t points = plan->scene.shadow_lights - plan->scene.shadow_spots;
     if (points > lights) points = lights;
-    uint64_t tile = MASU_LOCAL_TILE_MOST, area = points * 6 * (tile / 2) * (tile / 2) + (lights - points) * tile * tile;
+    uint64_t tile = MASU_LOCAL_TILE_MOST, area = (points * 6 + (lights - points)) * tile * tile;
     plan->local_lights = lights;
     plan->local_atlas = MASU_LOCAL_TILE_LEAST;
     while (2 * plan->local_atlas <= most && (uint64_t)plan->local_atlas * plan->local_atlas < area) plan->local_atlas *= 2;

@@ -71,7 +71,8 @@ typedef enum masu_image_extent {
     MASU_EXTENT_SHADOW,  /* all cascades of the shadow map; plan.c knows how large */
     MASU_EXTENT_LOCAL_FACES, /* the local_shadow_faces squares that a frame renders; likewise */
     MASU_EXTENT_LOCAL_SDF,   /* an invocation per texel of the due faces that the SDF reaches: indirect, by the host */
-    MASU_EXTENT_LOCAL_ATLAS  /* the atlas that keeps them; likewise */
+    MASU_EXTENT_LOCAL_ATLAS, /* the atlas that keeps them; likewise */
+    MASU_EXTENT_LOCAL_PAIRS  /* half as wide */
 } masu_image_extent;
 
 typedef struct masu_image_row {
