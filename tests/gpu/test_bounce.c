@@ -105,7 +105,7 @@ static void a_furnace_is_1_everywhere(void **state) {
     (void)state;
     rooms r;
     open_rooms(&r, "test_bounce_furnace");
-    (void)settle(&r, 40);
+    (void)settle(&r, 120);
     float low = 10, high = 0;
     for (uint32_t i = 0; i < r.probes; i++) {
         assert_true(is_valid(&r, i));
@@ -135,7 +135,7 @@ static void poison_is_gone_after_a_window(void **state) {
     uint32_t words = r.probes * MASU_BOUNCE_SETS * MASU_PROBE_WORDS;
     for (uint32_t i = 0; i < words; i++)
         assert_true((r.sets[i] & 0x7C00u) != 0x7C00u && (r.sets[i] >> 16 & 0x7C00u) != 0x7C00u);
-    (void)settle(&r, 40);
+    (void)settle(&r, 120);
     for (uint32_t i = 0; i < r.probes; i++)
         assert_float_equal(half_at(r.live + (size_t)i * MASU_PROBE_LIT_WORDS, 1) * 0.282095f, 1, 0.01);
     close_rooms(&r);
