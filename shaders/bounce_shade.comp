@@ -140,7 +140,7 @@ void main()
                 vec3 n = m.normal;
                 vec3 far = abs(from + probe_grid.origin.xyz);
                 lifted += n * (4e-6 * (max(far.x, max(far.y, far.z)) + t) + 2e-3 * probe_grid.origin.w);
-                uint seed = ray.probe * 256u + ray.set * 64u + ray.number;
+                uint seed = (ray.probe * MASU_BOUNCE_SETS + ray.set) * MASU_BOUNCE_RAYS_MAX + ray.number;
                 if (unlit) {
                     vec3 l = frame.sun_direction.xyz;
                     ask(c, l, frame.trace_anchor.w, frame.sun_color.rgb * max(dot(n, l), 0.0), 0.0);
