@@ -75,7 +75,8 @@ void ask_light(inout chosen c, masu_punctual_light_data light, vec3 rel, vec3 n,
             return;
         }
         float cosine;
-        color *= masu_above(masu_form_factor(to, u, v), n, cosine);
+        vec3 form = masu_form_factor(to, u, v);
+        color *= masu_above(form, dot(form, n), cosine);
         to += (2.0 * masu_bounce_unit(hash.y) - 1.0) * u + (2.0 * masu_bounce_unit(hash.z) - 1.0) * v;
         l = masu_normalize(to, n);
         float thick = masu_light_kind(light) == MASU_KIND_CAPSULE ? masu_sqrt(light.color.w) : light.axis.w;

@@ -47,6 +47,7 @@
 #endif
 #ifdef MASU_LIGHTS
 #define MASU_LOCAL_SHADOWS_FOUR
+#define MASU_LIGHTS_APART
 #include "light/lights.glsl"
 #endif
 
@@ -95,13 +96,16 @@ void add_lights(inout masu_lit lit, masu_surface s, masu_bsdf b, vec3 n)
     uvec2 at = uvec2(gl_FragCoord.xy);
     uvec2 size = uvec2(pc.output_width, pc.output_height);
     vec3 rel = masu_pixel_ray(at, size) * masu_light_depth(gl_FragCoord.z);
+    masu_light_sum sum = masu_light_sum(lit.diffuse, lit.specular);
     masu_asked asked = masu_lights_asked(at / uint(MASU_TILE), size, push.light_tiles != 0u);
     for (uint i = 0u; i < uint(MASU_LOCAL_LIGHTS_MAX); i++) {
         if (i >= asked.count) {
             break;
         }
-        masu_add_local_light(lit, s, b, masu_light_asked(asked, i), rel, n);
+        masu_add_local_light(sum, s, b, masu_light_asked(asked, i), rel, n, vec3(0.0));
     }
+    lit.diffuse = sum.light;
+    lit.specular = sum.mirrored;
 }
 #endif
 
@@ -214,8 +218,14 @@ void main()
         color = s.emissive * opacity;
     } else {
         masu_mirrored sky = masu_mirrored_sky(s, n, -direction, vec2(1.0));
+#ifdef MASU_LIGHTS
+        masu_around around = masu_ambient_at(in_rel, masu_base_normal(s, n));
+        masu_bsdf b = masu_bsdf_make(s, n, -direction);
+        masu_lit lit = masu_shade(s, b, around, seen, sky);
+#else
         masu_bsdf b = masu_bsdf_make(s, n, -direction);
         masu_lit lit = masu_shade(s, b, in_rel, seen, sky);
+#endif
         float mirrored = clamp(dot(lit.mirror, vec3(1.0 / 3.0)), 0.0, 1.0);
         surface = taken = 1.0 - through * (1.0 - mirrored);
         if (any_rough && (in_thing.y & MASU_MAP_TINTED) != 0u && s.roughness > MASU_SHARP_GLASS) {
