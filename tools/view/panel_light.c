@@ -46,11 +46,12 @@ static void sky(masu_viewer *v) {
 
 static void sun(masu_viewer *v) {
     masu_look *l = &v->look;
-    masu_ui_slider("Sun azimuth", &l->azimuth, -180.0f, 180.0f, "%.1f degrees", false);
-    masu_ui_slider("Sun elevation", &l->elevation, -10.0f, 90.0f, "%.1f degrees", false);
-    masu_ui_slider("Sun strength", &l->sun, 0.0f, 8.0f, "%.2f", true);
+    bool moved = masu_ui_slider("Sun azimuth", &l->azimuth, -180.0f, 180.0f, "%.1f degrees", false);
+    moved |= masu_ui_slider("Sun elevation", &l->elevation, -10.0f, 90.0f, "%.1f degrees", false);
+    moved |= masu_ui_slider("Sun strength", &l->sun, 0.0f, 8.0f, "%.2f", true);
     masu_ui_help(
         "Factor on the sun of the scene. A sun that follows from the sky does not change.");
+    if (moved) masu_look_light(v);
     sky(v);
     if (!(masu_scene_features(&v->scene) & MASU_SCENE_HAS_FOG)) return;
     masu_ui_slider("Fog density", &l->light.fog_density, 0.0f, 1.0f, "%.4f per metre", true);
@@ -63,7 +64,8 @@ static void exposure(masu_viewer *v) {
     if (v->a.desc.exposure.metered == MASU_AUTO)
         metered = (masu_scene_features(&v->scene) & MASU_SCENE_HAS_METERED_EXPOSURE) != 0;
     uint32_t tone = (uint32_t)v->want.tone;
-    masu_ui_slider("Exposure", &v->look.stops, -8.0f, 8.0f, "%+.2f stops", false);
+    if (masu_ui_slider("Exposure", &v->look.stops, -8.0f, 8.0f, "%+.2f stops", false))
+        masu_look_light(v);
     if (masu_ui_check("Auto-exposure", &metered)) {
         v->want.exposure.metered = metered ? MASU_ON : MASU_OFF;
         restart(v, metered ? "auto-exposure on" : "auto-exposure off");
@@ -93,7 +95,6 @@ static void lamps(masu_viewer *v) {
 
 void masu_panel_light(masu_viewer *v) {
     if (v->look.has_light) sun(v);
-    masu_look_light(v);
     exposure(v);
     lamps(v);
     if (!masu_ui_button("Light of the scene")) return;

@@ -488,13 +488,18 @@ bool masu_ui_slider(const char *label, float *value, float low, float high, cons
                                   (logarithmic ? ImGuiSliderFlags_Logarithmic : 0));
 }
 
-/* A chosen name that is too long for its half of the line stands below it too. */
+/* A chosen name that is too long for its half of the line is shortened there, and stands below it
+ * in full. */
 bool masu_ui_choice(const char *label, uint32_t *index, const char *const *names, uint32_t count) {
     bool changed = false;
     const char *chosen = *index < count ? names[*index] : "", *hidden = labelled(label);
-    bool cut = ImGui::CalcTextSize(chosen).x >
-               ImGui::GetContentRegionAvail().x - 2.0f * ImGui::GetFrameHeight();
-    if (ImGui::BeginCombo(hidden, chosen, ImGuiComboFlags_HeightLarge)) {
+    char text[300];
+    float room = ImGui::GetContentRegionAvail().x - 1.5f * ImGui::GetFrameHeight();
+    size_t fits = strlen(chosen), length = fits;
+    snprintf(text, sizeof text, "%.290s", chosen);
+    while (fits > 1 && ImGui::CalcTextSize(text).x > room)
+        snprintf(text, sizeof text, "%.*s...", (int)std::min(--fits, (size_t)290), chosen);
+    if (ImGui::BeginCombo(hidden, text, ImGuiComboFlags_HeightLarge)) {
         for (uint32_t i = 0; i < count; i++) {
             ImGui::PushID((int)i);
             if (ImGui::Selectable(names[i], i == *index)) changed = i != *index, *index = i;
@@ -503,7 +508,7 @@ bool masu_ui_choice(const char *label, uint32_t *index, const char *const *names
         }
         ImGui::EndCombo();
     }
-    if (cut) wrapped(MASU_INK_DIM, chosen);
+    if (fits < length) wrapped(MASU_INK_DIM, chosen);
     return changed;
 }
 
