@@ -135,6 +135,7 @@ static const struct {
     {"repeat((9, 0, 9) as a, repeat_limited((2, 0, 2), (3, 1, 3) as b, box((0.3 + 0.3 * b.hash(0), 1 + a.hash(0), 0.5))))",
      BOUND, {0, 0.5, 0}},
     {"repeat((4, 0, 0) as h, polar(5, translate((1, 0, 0.1), box((0.2, 0.2, 0.1 + 0.3 * h.hash(0))))))", BOUND, {1, 0, 0.1}},
+    {"repeat((4, 0, 4) as h, polar(6, translate((1, 0, 0), box((0.2, 0.2, 0.1 + 0.3 * h.hash(0))))))", BOUND, {1, 0, 0}},
     {"apollonian(6, 1.2, 0.03)", SAFE, {0, 0, 0}},
     {"intersection(apollonian(9, 1.3, 0.01), sphere(2))", SAFE, {0, 0, 0}},
     {"mandelbox(6, 2)", ESTIMATE, {0, 0, 0}},

@@ -279,7 +279,9 @@ static void check_mirror(sdfc *c, const sdfc_part *part, int shape) {
     const bool anchored = c->anchored;
     sdfc_part alone = {.shape = shape, .token = part->token};
     c->anchored = false;
+    c->any_cell = true;
     sdfc_lower(c, &alone);
+    c->any_cell = false;
     c->anchored = anchored;
     c->instrs = instrs;
     c->at = before;

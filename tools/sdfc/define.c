@@ -129,11 +129,11 @@ bool sdfc_local_name(sdfc *c, int token, sdfc_value *v) {
         const char *name;
         int op, count;
         double most;
-    } names[] = {{"p", SDFC_POINT, 3, INFINITY},
-                 {"world", SDFC_WORLD, 3, INFINITY},
+    } names[] = {{"p", SDFC_POINT, 3, SDFC_INFINITY},
+                 {"world", SDFC_WORLD, 3, SDFC_INFINITY},
                  {"n", SDFC_NORMAL, 3, 1},
                  {"trap", SDFC_TRAP, 3, 1e6},
-                 {"px", SDFC_FOOTPRINT, 1, INFINITY}};
+                 {"px", SDFC_FOOTPRINT, 1, SDFC_INFINITY}};
     if (!c->in_material) return false;
     if (sdfc_token_is(c, token, "cell")) {
         const sdfc_symbol innermost = {.kind = SYMBOL_CELL, .index = -1};

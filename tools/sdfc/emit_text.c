@@ -50,15 +50,66 @@ static void mark_used(bool *used, int op) {
     }
 }
 
-static void mark_parts(const sdfc *c, bool *used) {
+/* What the looks of a surface are made of; the distance is wanted for the choices alone. */
+static bool *live_variables(sdfc *c, const sdfc_program *p) {
+    const sdfc_function *f = &p->functions[p->surface];
+    bool *live = sdfc_take(c, (size_t)f->count + 3, sizeof *live);
+    for (int k = 0; k < 8; k++) {
+        if (p->look[k] >= 0) live[p->look[k]] = true;
+    }
+    for (int k = f->count; k-- > 0;) {
+        const sdfc_instr *i = &f->instrs[k];
+        bool calls = i->op == SDFC_CALL_MIN || i->op == SDFC_CALL_NEAREST;
+        int count = calls ? SDFC_OPERANDS_MAX : i->op == SDFC_CALL_USER ? 3 : sdfc_ops[i->op].operands;
+        for (int j = 0; j < count && live[3 + k]; j++) {
+            if (i->operand[j] >= 0) live[i->operand[j]] = true;
+        }
+    }
+    return live;
+}
+
+static bool is_called(const sdfc_program *p, const bool *live, int callee) {
+    for (int f = 0; f < callee; f++) {
+        for (int k = 0; k < p->functions[f].count; k++) {
+            const sdfc_instr *i = &p->functions[f].instrs[k];
+            bool calls = i->op == SDFC_CALL_MIN || i->op == SDFC_CALL_NEAREST;
+            if (calls && i->aux == callee && (f != p->surface || !p->surface || live[3 + k])) return true;
+        }
+    }
+    return false;
+}
+
+/* Which functions of a part are called at all, and which variables of its surface are needed. */
+typedef struct liveness {
+    bool *functions, *variables;
+} liveness;
+
+static liveness find_live(sdfc *c, const sdfc_program *p) {
+    liveness l = {sdfc_take(c, (size_t)p->function_count, 1), NULL};
+    if (p->surface) l.variables = live_variables(c, p);
+    for (int f = 0; f < p->function_count; f++) {
+        l.functions[f] = f == 0 || (p->surface && f == p->surface) || is_called(p, l.variables, f);
+    }
+    return l;
+}
+
+static void forget(liveness *l) {
+    free(l->functions);
+    free(l->variables);
+}
+
+static void mark_parts(sdfc *c, bool *used) {
     for (int g = 0; g < c->group_count; g++) {
         const sdfc_program *p = &c->parts[c->groups[g].first_part].program;
+        liveness live = find_live(c, p);
         for (int f = 0; f < p->function_count; f++) {
-            for (int i = 0; i < p->functions[f].count; i++) {
+            for (int i = 0; i < p->functions[f].count && live.functions[f]; i++) {
+                if (p->surface && f == p->surface && !live.variables[3 + i]) continue;
                 mark_used(used, p->functions[f].instrs[i].op);
                 if (p->functions[f].instrs[i].named) mark_used(used, SDFC_cell_seed);
             }
         }
+        forget(&live);
     }
 }
 
@@ -351,31 +402,11 @@ static bool ends_term(const sdfc_function *f, int k) {
     return false;
 }
 
-/* What the looks of a surface are made of; the distance is wanted for the choices alone. */
-static const bool *find_live(sdfc *c, const sdfc_program *p) {
-    const sdfc_function *f = &p->functions[p->surface];
-    bool *live = sdfc_take(c, (size_t)f->count + 3, sizeof *live);
-    free(c->scratch);
-    c->scratch = live;
-    for (int k = 0; k < 8; k++) {
-        if (p->look[k] >= 0) live[p->look[k]] = true;
-    }
-    for (int k = f->count; k-- > 0;) {
-        const sdfc_instr *i = &f->instrs[k];
-        bool calls = i->op == SDFC_CALL_MIN || i->op == SDFC_CALL_NEAREST;
-        int count = calls ? SDFC_OPERANDS_MAX : i->op == SDFC_CALL_USER ? 3 : sdfc_ops[i->op].operands;
-        for (int j = 0; j < count && live[3 + k]; j++) {
-            if (i->operand[j] >= 0) live[i->operand[j]] = true;
-        }
-    }
-    return live;
-}
-
 static void put_function(sdfc_writer *w, int group, const sdfc_program *p, int function,
-                         bool root) {
+                         const liveness *live) {
     const sdfc_function *f = &p->functions[function];
     const sdfc_group *g = &w->c->groups[group];
-    bool terms = w->glsl, surface = p->surface && function == p->surface;
+    bool terms = w->glsl, surface = p->surface && function == p->surface, root = function == 0;
     PUT(w, surface ? "%svoid masu_look_%d" : "%sreal masu_shape_%d", w->glsl ? "" : "static ", group);
     if (!root && !surface) PUT(w, "_%d", function);
     PUT(w, w->glsl ? "(real x, real y, real z, uint base, uint on" : "(real x, real y, real z, uint base");
@@ -383,9 +414,8 @@ static void put_function(sdfc_writer *w, int group, const sdfc_program *p, int f
     PUT(w, !surface ? ")\n{\n" : w->glsl ? ", out real look[8])\n{\n" : ", real look[8])\n{\n");
     if (!w->glsl) PUT(w, "    (void)x;\n    (void)y;\n    (void)z;\n    (void)base;\n");
     if (terms && g->term_count) PUT(w, "    uint kept = 0u;\n");
-    const bool *live = surface ? find_live(w->c, p) : NULL;
     for (int k = 0; k < f->count; k++) {
-        if (live && !live[3 + k]) continue;
+        if (surface && !live->variables[3 + k]) continue;
         if (terms) open_terms(w, g, p, f, k);
         sdfc_put_instr(w, group, p, &f->instrs[k], 3 + k, terms && ends_term(f, k));
         if (terms) close_terms(w, g, p, f, k);
@@ -416,7 +446,11 @@ void sdfc_put_shapes(sdfc_writer *w) {
         const sdfc_program *p = &part->program;
         if (!w->glsl && !sdfc_group_truth(w->c, g)) continue;
         PUT(w, "/* %s%s */\n", part->name, w->c->groups[g].part_count > 1 ? " and others" : "");
-        for (int f = p->function_count; f-- > 0;) put_function(w, g, p, f, f == 0);
+        liveness live = find_live(w->c, p);
+        for (int f = p->function_count; f-- > 0;) {
+            if (live.functions[f]) put_function(w, g, p, f, &live);
+        }
+        forget(&live);
     }
 }
 

@@ -65,6 +65,7 @@ int sdfc_leaf(sdfc *c, int op, int a, int b, double low, double high) {
                                    .a = {a, b, 0},
                                    .local = true,
                                    .cellular = op == SDFC_CELL && a < 0,
+                                   .trapped = op == SDFC_TRAP,
                                    .slope = op == SDFC_POINT || op == SDFC_WORLD    ? 1
                                             : op == SDFC_FOOTPRINT || op == SDFC_CELL ? 0
                                                                                       : SDFC_INFINITY,
@@ -238,7 +239,7 @@ int sdfc_fade(sdfc *c, const int e[3]) {
 int sdfc_apply(sdfc *c, int op, int x, int y, int z) {
     int a[3] = {x, y, z};
     int count = sdfc_ops[op].operands;
-    bool constant = true, timed = false, anchored = false, local = false, cellular = false;
+    bool constant = true, timed = false, anchored = false, local = false, cellular = false, trapped = false;
     double values[3] = {0};
     for (int i = 0; i < count; i++) {
         values[i] = c->exprs[a[i]].value;
@@ -247,6 +248,7 @@ int sdfc_apply(sdfc *c, int op, int x, int y, int z) {
         anchored = anchored || c->exprs[a[i]].anchored;
         local = local || c->exprs[a[i]].local;
         cellular = cellular || c->exprs[a[i]].cellular;
+        trapped = trapped || c->exprs[a[i]].trapped;
     }
     double value = sdfc_ops[op].run(values);
     if (constant) return sdfc_number(c, value);
@@ -267,6 +269,7 @@ int sdfc_apply(sdfc *c, int op, int x, int y, int z) {
                                    .anchored = anchored,
                                    .local = local,
                                    .cellular = cellular,
+                                   .trapped = trapped,
                                    .slope = local ? slope_of(c, op, a) : 0,
                                    .value = in_range(c, value),
                                    .low = r.low,

@@ -92,7 +92,7 @@ typedef struct sdfc_expr {
     bool timed;              /* on parameters or time */
     bool anchored;           /* on the anchor */
     bool local;              /* on where it is evaluated */
-    bool cellular;           /* on the innermost cell there */
+    bool cellular, trapped;  /* on the innermost cell there, on what a fractal's levels met */
     double slope;            /* by which a local one changes with the point, at most; INFINITY: not known */
     double value, low, high; /* value: at the parameters' defaults and time 0 */
 } sdfc_expr;
@@ -310,6 +310,7 @@ typedef struct sdfc {
     bool in_material;
     int first_token, first_symbol; /* of the statement that is read */
     int cells; /* repetitions with a name */
+    bool any_cell; /* a shape is lowered outside of its own: any will do */
     sdfc_token *tokens;
     int token_count, token_capacity;
     int at; /* the token looked at */

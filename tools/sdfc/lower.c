@@ -484,6 +484,7 @@ int sdfc_lower_shape(sdfc_lowering *l, int shape, sdfc_point p) {
     if (!hands_offset_on(l->c, s)) p = sdfc_settled(l, p);
     if (root && !l->root && l->surface) l->own = sdfc_settled(l, p);
     l->look = (sdfc_look){0};
+    if (l->shallow && !l->root) return sdfc_literal(l, 0);
     bool fractal = s->kind == SDFC_KIND_MANDELBULB || (s->kind >= SDFC_KIND_APOLLONIAN && s->kind <= SDFC_KIND_JULIA);
     if (fractal && l->surface) {
         l->fractal = shape;
@@ -551,7 +552,7 @@ void sdfc_lower(sdfc *c, sdfc_part *part) {
     for (int i = 0; i < 3 && c->anchored; i++) whole.offset[i] = c->anchor_expr[i] + 1;
     int d = sdfc_lower_shape(&l, part->shape, whole);
     part->program.functions[root].result = d;
-    sdfc_lower_surface(c, part);
+    if (!c->any_cell) sdfc_lower_surface(c, part);
     int variables = 0;
     for (int i = 0; i < part->program.function_count; i++) {
         part->program.functions[i].first_variable = variables;

@@ -35,6 +35,7 @@ typedef struct sdfc_lowering {
     int cell[SDFC_CELLS_DEEP], seed[SDFC_CELLS_DEEP], cells; /* that it stands in; operands */
     /* of the function that makes materials */
     bool surface;
+    bool shallow; /* it asks nothing of the shape, only of the part's own space */
     int material; /* of what is not painted */
     sdfc_look look, plain;
     sdfc_point own, world, here; /* of the part; of all; of what is painted */

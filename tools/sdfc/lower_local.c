@@ -18,6 +18,7 @@ static int cell_number(sdfc_lowering *l, int cell) {
     for (int i = l->cells; i-- > 0;) {
         if (cell < 0 || l->cell[i] == cell) return l->seed[i];
     }
+    if (l->c->any_cell) return sdfc_literal(l, 7);
     sdfc_fail(l->c, l->c->at, "cell: expected a repetition with a name around what this material is of: repeat(periods as name, ...)");
 }
 
@@ -118,12 +119,22 @@ static bool holds_paint(const sdfc *c, int shape) {
     return false;
 }
 
+static bool asks_trap(const sdfc *c, const sdfc_material *m) {
+    for (int i = 0; i < MASU_SDFC_MATERIAL_SLOTS; i++) {
+        if (c->exprs[m->value[i]].trapped) return true;
+    }
+    return false;
+}
+
 void sdfc_lower_surface(sdfc *c, sdfc_part *part) {
-    if (!c->materials[part->material].local && !holds_paint(c, part->shape)) return;
+    const sdfc_material m = c->materials[part->material];
+    bool painted = holds_paint(c, part->shape);
+    if (!m.local && !painted) return;
     sdfc_lowering l = {.c = c,
                        .program = &part->program,
                        .root = true,
                        .surface = true,
+                       .shallow = !painted && !m.cellular && !asks_trap(c, &m),
                        .material = part->material,
                        .scale = 1,
                        .fractal = -1};

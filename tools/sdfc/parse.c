@@ -73,8 +73,8 @@ const sdfc_symbol *sdfc_find(sdfc *c, int token) {
 
 static bool reserved(const sdfc *c, int token) {
     static const char *const words[] = {"param", "let", "material", "part", "for",  "in",
-                                        "shape", "def", "include",  "as",   "glsl", "c",
-                                        "time",  "pi",  "tau",      NULL};
+                                        "shape", "def", "include",  "as",   "glsl", "time",
+                                        "pi",    "tau", NULL};
     for (int i = 0; words[i]; i++) {
         if (sdfc_token_is(c, token, words[i])) return true;
     }

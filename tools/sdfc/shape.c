@@ -218,14 +218,14 @@ int sdfc_parse_shape(sdfc *c) {
 
 bool masu_sdfc_put_shapes(FILE *to) {
     fputs("# Shapes of the SDF language\n\n"
-          "Made from `tools/sdfc/kinds.inc` by `make docs-tables`. [sdf.md](sdf.md) describes the language. Primitives are\n"
-          "centred at the origin unless the table says otherwise, and their axis is y. `h` is half the height. Angles are in\n"
-          "radians. Flat shapes have no end along z; `extrude` and `revolve` take the section at z = 0 of any shape.\n\n"
-          "The Lipschitz constant bounds the slope of the field: L is that of the shape inside, \"largest\" that of the\n"
-          "steepest operand. The field is the distance where the last column says exact; a bound is never larger than the\n"
-          "distance, but within solids; an estimate is larger for less than 1 point in 200. All are tested on a million pairs\n"
-          "of points.\n\n"
-          "| shape | what it is | Lipschitz constant | field |\n|---|---|---|---|\n",
+          "Generated from `tools/sdfc/kinds.inc` by `make docs-tables`. [sdf.md](sdf.md) describes the language. Primitives are\n"
+          "centred at the origin unless noted, and their axis is y. `h` is half the height. Angles are in radians. Flat shapes\n"
+          "have no end along z; `extrude` and `revolve` use the section at z = 0 of any shape.\n\n"
+          "The Lipschitz constant bounds the slope of the field. L: the constant of the operand; largest: the largest constant\n"
+          "of the operands. The last column describes the field outside the solid. Exact: it is the distance. Bound: it is at\n"
+          "most the distance. Estimate: it exceeds the distance at less than 1 point in 200. Unit tests check every shape,\n"
+          "with a million pairs of points under `LONG=1`.\n\n"
+          "| shape | description | Lipschitz constant | field |\n|---|---|---|---|\n",
           to);
     for (int i = 0; i < SDFC_KIND_COUNT; i++) {
         const sdfc_kind *k = &sdfc_kinds[i];
