@@ -25,6 +25,7 @@ typedef struct scene {
     sdfc *c;
     char error[4096];
     double *room;
+    sdfc_place_of at; /* that materials are asked with */
 } scene;
 
 static bool start(scene *r, const char *text) {
@@ -34,6 +35,7 @@ static bool start(scene *r, const char *text) {
     sdfc_start(c);
     r->error[0] = '\0';
     r->room = NULL;
+    r->at = (sdfc_place_of){{0}, 0};
     if (setjmp(c->failed)) {
         sdfc_free(r->c);
         return false;
@@ -68,7 +70,7 @@ static double value(const scene *r, int part, const double p[3]) {
 
 static void look(const scene *r, int part, double x, double y, double z, double out[8]) {
     const double p[3] = {x, y, z};
-    sdfc_run_look(r->c, &r->c->parts[part], p, r->room, out);
+    sdfc_run_look(r->c, &r->c->parts[part], p, &r->at, r->room, out);
 }
 
 static const sdfc_facts *facts(const scene *r, int part) { return &r->c->shapes[r->c->parts[part].shape].facts; }
@@ -132,6 +134,7 @@ static const struct {
      BOUND, {0, 1, 0}},
     {"repeat((2, 2, 2) as h, translate(0.3 * (h.hash(1), h.hash(2), h.hash(3)), sphere(0.3 + 0.4 * h.hash(0))))", BOUND, {0, 0, 0}},
     {"repeat_limited((2, 0, 2), (5, 1, 3) as h, rotate((0, 1, 0), tau * h.hash(0), box((0.9, 1, 0.2))))", BOUND, {0, 0, 0}},
+    {"repeat_limited((0.6, 0.6, 0.6), (3, 4, 2) as h, sphere(0.1 + 0.15 * h.hash(0)))", BOUND, {0, 0.3, 0.3}},
     {"repeat((9, 0, 9) as a, repeat_limited((2, 0, 2), (3, 1, 3) as b, box((0.3 + 0.3 * b.hash(0), 1 + a.hash(0), 0.5))))",
      BOUND, {0, 0.5, 0}},
     {"repeat((4, 0, 0) as h, polar(5, translate((1, 0, 0.1), box((0.2, 0.2, 0.1 + 0.3 * h.hash(0))))))", BOUND, {1, 0, 0.1}},
@@ -176,7 +179,7 @@ static double steepest(const scene *r, uint32_t pairs, uint64_t *seed) {
         any_point(facts(r, 0), seed, at.p);
         for (int k = 0; k < 3; k++) at.q[k] = at.p[k] + by * random_between(seed, -1, 1);
         measure(r, &at);
-        for (int halves = 0; n % 5 == 0 && halves < 20; halves++) { /* towards the steeper half: finds jumps */
+        for (int halves = 0; n % 20 < 2 && halves < 20; halves++) { /* towards the steeper half: finds jumps */
             pair low = at, high = at;
             for (int k = 0; k < 3; k++) low.q[k] = high.p[k] = (at.p[k] + at.q[k]) / 2;
             if (apart(at.p, at.q) < 4e-6) break;
@@ -363,7 +366,7 @@ static void assert_color(const char *text, double x, double y, double z, double 
     scene r;
     double out[8];
     must_start(&r, text);
-    r.c->normal[1] = 1;
+    r.at.normal[1] = 1;
     look(&r, 0, x, y, z, out);
     if (fabs(out[0] - red) + fabs(out[1] - green) + fabs(out[2] - blue) > 1e-6)
         fail_msg("%s at (%g, %g, %g): (%.7g, %.7g, %.7g), not (%.7g, %.7g, %.7g)", text, x, y, z, out[0], out[1], out[2], red,
@@ -438,11 +441,11 @@ static void patterns_fade_where_pixels_are_wider(void **state) {
     must_start(&r, text);
     for (int i = 0; i < 50; i++) {
         double x = 0.37 * i;
-        r.c->footprint = 0;
+        r.at.footprint = 0;
         look(&r, 0, x, 0.3, 0.2, sharp);
-        r.c->footprint = 10;
+        r.at.footprint = 10;
         look(&r, 0, x, 0.3, 0.2, wide);
-        r.c->footprint = 1e-4;
+        r.at.footprint = 1e-4;
         look(&r, 0, x, 0.3, 0.2, fine);
         assert_true(fmin(sharp[0], 1 - sharp[0]) < 1e-9 || fmod(2 * x, 1) < 1e-3);
         assert_true(fabs(wide[0] - 0.5) < 1e-9 && wide[1] == 0 && wide[2] == 0);

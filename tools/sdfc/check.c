@@ -38,7 +38,7 @@ static void note_cell(uint64_t *cells, int op, const double *a, double result) {
 }
 
 static double run_function(const sdfc *c, const sdfc_program *p, int function, const double point[3],
-                           const double *inputs, double *variables, uint64_t *cells);
+                           const double *inputs, const sdfc_place_of *at, double *variables, uint64_t *cells);
 
 /* The least of the values at the points, or with `nearest` the number of the point that has it. */
 static double run_call(const sdfc *c, const sdfc_program *p, const sdfc_instr *i, const double *a, bool nearest,
@@ -53,7 +53,7 @@ static double run_call(const sdfc *c, const sdfc_program *p, const sdfc_instr *i
         for (int j = 0; j < i->around; j++) inputs[j] = a[24 + j];
         const double seed[9] = {a[18], a[19], a[20], q[0], q[1], q[2], a[21], a[22], a[23]};
         if (i->named) inputs[i->around] = sdfc_ops[SDFC_cell_seed].run(seed);
-        double d = run_function(c, p, i->aux, q, inputs, variables, cells);
+        double d = run_function(c, p, i->aux, q, inputs, NULL, variables, cells);
         if (d < least) number = n;
         least = d < least ? d : least;
     }
@@ -61,7 +61,7 @@ static double run_call(const sdfc *c, const sdfc_program *p, const sdfc_instr *i
 }
 
 static double run_function(const sdfc *c, const sdfc_program *p, int function, const double point[3],
-                           const double *inputs, double *variables, uint64_t *cells) {
+                           const double *inputs, const sdfc_place_of *at, double *variables, uint64_t *cells) {
     const sdfc_function *f = &p->functions[function];
     double *v = variables + f->first_variable;
     for (int k = 0; k < 3; k++) v[k] = point[k];
@@ -78,8 +78,8 @@ static double run_function(const sdfc *c, const sdfc_program *p, int function, c
         case SDFC_CALL_NEAREST: r = run_call(c, p, i, a, i->op == SDFC_CALL_NEAREST, variables, cells); break;
         case SDFC_CALL_USER: break;
         case SDFC_INPUT: r = inputs[k]; break;
-        case SDFC_NORMAL: r = c->normal[i->aux]; break;
-        case SDFC_FOOTPRINT: r = c->footprint; break;
+        case SDFC_NORMAL: r = at ? at->normal[i->aux] : 0; break;
+        case SDFC_FOOTPRINT: r = at ? at->footprint : 0; break;
         default:
             r = sdfc_ops[i->op].run(a);
             if (cells) note_cell(cells, i->op, a, r);
@@ -90,22 +90,23 @@ static double run_function(const sdfc *c, const sdfc_program *p, int function, c
 }
 
 double sdfc_run(const sdfc *c, const sdfc_program *p, const double p3[3], uint64_t *cells) {
-    return run_function(c, p, 0, p3, NULL, c->variables, cells);
+    return run_function(c, p, 0, p3, NULL, NULL, c->variables, cells);
 }
 
 double sdfc_run_in(const sdfc *c, const sdfc_program *p, const double p3[3], double *room) {
-    return run_function(c, p, 0, p3, NULL, room, NULL);
+    return run_function(c, p, 0, p3, NULL, NULL, room, NULL);
 }
 
-void sdfc_run_look(const sdfc *c, const sdfc_part *part, const double p3[3], double *room, double out[8]) {
+void sdfc_run_look(const sdfc *c, const sdfc_part *part, const double p3[3], const sdfc_place_of *at, double *room,
+                   double out[8]) {
     const sdfc_program *p = &part->program;
-    if (p->surface) run_function(c, p, p->surface, p3, NULL, room, NULL);
+    if (p->surface) run_function(c, p, p->surface, p3, NULL, at, room, NULL);
     for (int k = 0; k < 8; k++) {
-        int at = p->look[k];
+        int operand = p->look[k];
         if (!p->surface)
             out[k] = c->values[c->materials[part->material].value[k]];
         else
-            out[k] = at >= 0 ? room[p->functions[p->surface].first_variable + at] : c->values[p->args[~at]];
+            out[k] = operand >= 0 ? room[p->functions[p->surface].first_variable + operand] : c->values[p->args[~operand]];
     }
 }
 

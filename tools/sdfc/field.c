@@ -70,7 +70,8 @@ double masu_sdfc_field_run(const masu_sdfc_field *f, uint32_t part, const double
     return sdfc_run_in(f->c, &f->c->parts[part].program, p, room);
 }
 
-void masu_sdfc_field_material(const masu_sdfc_field *f, uint32_t part, const double p[3], double *room,
-                              double out[MASU_SDFC_MATERIAL_SLOTS]) {
-    sdfc_run_look(f->c, &f->c->parts[part], p, room, out);
+void masu_sdfc_field_material(const masu_sdfc_field *f, uint32_t part, const double p[3], const double n[3],
+                              double width, double *room, double out[MASU_SDFC_MATERIAL_SLOTS]) {
+    const sdfc_place_of at = {{n[0], n[1], n[2]}, width};
+    sdfc_run_look(f->c, &f->c->parts[part], p, &at, room, out);
 }

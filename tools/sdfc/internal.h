@@ -353,7 +353,7 @@ typedef struct sdfc {
     void *scratch;
     bool *needed;   /* expressions that slots are made of */
     double *values; /* of expressions, while checking */
-    double normal[3], footprint; /* that materials are asked with */
+
     double *variables;
     sdfc_text glsl, c, table, warnings;
 } sdfc;
@@ -462,9 +462,12 @@ void sdfc_free(sdfc *c);                 /* and all it has taken */
 double sdfc_run(const sdfc *c, const sdfc_program *p, const double p3[3], uint64_t *cells);
 /* The same with room for the program's variables. */
 double sdfc_run_in(const sdfc *c, const sdfc_program *p, const double p3[3], double *room);
-/* Albedo, roughness, emissive, metallic of a part there; where they are not the same everywhere, with the normal and
- * the footprint of c. */
-void sdfc_run_look(const sdfc *c, const sdfc_part *part, const double p3[3], double *room, double out[8]);
+typedef struct sdfc_place_of {
+    double normal[3], footprint;
+} sdfc_place_of;
+/* Albedo, roughness, emissive, metallic of a part there. */
+void sdfc_run_look(const sdfc *c, const sdfc_part *part, const double p3[3], const sdfc_place_of *at, double *room,
+                   double out[8]);
 void sdfc_fill_part(const sdfc *c, int i, masu_sdfc_part *out);
 
 #endif
