@@ -78,6 +78,9 @@ layout(location = 2) flat in uvec4 in_thing; /* material, flags, layers; which i
 #ifdef MASU_TEXTURES
 layout(location = 3) in vec2 in_texcoord;
 layout(location = 4) flat in vec2 in_detail;
+#ifdef MASU_ATTRIBUTES
+layout(location = 5) in vec4 in_color;
+#endif
 #define MASU_MAPS_FLAGS in_thing.y
 #define MASU_MAPS_LAYERS in_thing.z
 #define MASU_MAPS_DETAIL in_detail
@@ -176,6 +179,10 @@ void main()
 #ifdef MASU_TEXTURES
     /* Everything that takes derivatives comes before the discard. */
     cover = masu_sample_maps(in_texcoord, s);
+#ifdef MASU_ATTRIBUTES
+    masu_tint(s, in_color.rgb);
+    cover *= in_color.a;
+#endif
     vec3 bent = masu_bend_normal(in_normal, in_rel, in_texcoord);
     vec3 even = masu_normalize(masu_lean_to_eye(away ? -n : n, in_rel, 0.0), n);
     n = masu_normalize(masu_seen_normal(away ? -bent : bent, in_rel, n), -direction);

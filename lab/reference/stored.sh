@@ -38,6 +38,7 @@ store night 256 --sdf scenes/night.sdf
 store test_reflections 512 --sdf tests/scenes/test_reflections.sdf
 store test_skin 256 --time 0.5 --animate
 store test_swing 256 --time 0.3 --animate
+store reference_attributes 512 --time 0.5 --animate
 store test_foliage 256
 store test_texture_mask 256
 store test_texture_normals 256

@@ -54,6 +54,8 @@ static const row rows[] = {
     {.scene = "test_reflections", .rays = 128, .ratio = 0.015, .p95 = 0.15},
     {.scene = "test_skin", .time = 0.5, .animate = true, .rays = 64},
     {.scene = "test_swing", .time = 0.3, .animate = true, .rays = 64},
+    /* Vertex colours, lit, unlit and fading; emission of the second coordinates; a morph target */
+    {.scene = "reference_attributes", .time = 0.5, .animate = true, .rays = 64},
     {.scene = "test_foliage"},
     {.scene = "test_texture_mask"},
     {.scene = "test_texture_normals"},

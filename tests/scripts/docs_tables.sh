@@ -20,6 +20,11 @@ diff -u docs/sdf-shapes.md "$folder/shapes.md" || {
     echo "docs/sdf-shapes.md is not what tools/sdfc/kinds.inc says: make docs-tables"
     exit 1
 }
+tools/bake/import/features.sh --into docs/scene.md | diff -u docs/scene.md - || {
+    echo "docs/scene.md is out of date with tools/bake/import/gltf_features.inc: run make docs-tables"
+    exit 1
+}
+[ "$(tools/bake/import/features.sh | wc -l)" -ge 30 ]
 "$masu" plan --knobs > "$folder/plan"
 "$masu" render --setting help > "$folder/setting"
 cmp "$folder/plan" "$folder/setting"
