@@ -149,7 +149,7 @@ more = $(MAKE) --no-print-directory $(if $(findstring jobserver,$(MAKEFLAGS)),,-
 .PHONY: all lib tools scenes shaders
 all: lib tools $(EXAMPLES) ## build the library, the programs and the example (the default)
 lib: $(BUILD)/lib/libmasu.a $(SHARED) ## build only build/lib/libmasu.a and libmasu.so: CLASSES="both sdf-traced"
-tools: $(addprefix $(BUILD)/bin/,masu masu-bake masu-sdfc masu-meso $(if $(HAVE_VIEW),masu-view)) $(SUITES) ## build build/bin/masu, masu-bake, masu-sdfc, masu-meso; masu-view if SDL2 is installed
+tools: $(addprefix $(BUILD)/bin/,masu masu-bake masu-sdfc masu-meso $(if $(HAVE_VIEW),masu-view)) $(SUITES) ## build build/bin/masu, masu-bake, masu-sdfc, masu-meso; masu-view if SDL2 and Dear ImGui are installed
 shaders: $(SPIRV) ## compile, validate and optimise all shaders
 scenes: $(SCENES) ## bake scenes/*.json to build/scenes/*.masu
 
@@ -165,14 +165,21 @@ demo-picture: $(BUILD)/bin/masu $(picture_of)
 	@echo "The image is $(abspath $(picture))"
 
 view: deps-demo deps-view $(if $(filter forza,$(WORLD)),deps-worlds)
-view: ## install missing packages, build, bake, open the scene in a window: WORLD=garden|engine|forza|city|... VIEW_ARGS=
+view: ## install missing packages, build, open a window: a start page, or WORLD=garden|engine|forza|city|... VIEW_ARGS=
 	+$(V)$(more) view-window
 
-# A scene with a description is baked again when that or its field changes; worlds take too long for that.
+# Without a name the start page, which bakes what is chosen. A scene with a description is baked again when that or its
+# field changes; worlds take too long for that.
+view_baker := --bake '$(BUILD)/bin/masu-bake --texture-path $(MADE)/textures'
 view_json := $(wildcard scenes/$(WORLD).json)
+ifeq ($(origin WORLD),file)
+view-window: $(addprefix $(BUILD)/bin/,masu-view masu-bake masu) $(MADE)/textures/made
+	$(V)$(BUILD)/bin/masu-view --gallery scenes --cache $(MADE)/pictures $(view_baker) $(VIEW_ARGS)
+else
 view-window: $(addprefix $(BUILD)/bin/,masu-view masu-bake) $(picture_of)
 	$(V)$(BUILD)/bin/masu-view $(picture_of) $(if $(TIME),--time $(TIME)) $(if $(filter $(WORLDS),$(WORLD)),, \
-	    $(if $(view_json),--json $(view_json) --bake '$(BUILD)/bin/masu-bake --texture-path $(MADE)/textures')) $(VIEW_ARGS)
+	    $(if $(view_json),--json $(view_json) $(view_baker))) $(VIEW_ARGS)
+endif
 
 # CI has no use for it and must not depend on it: without TORCS's data there is no forza, and that is
 # no failure.

@@ -16,9 +16,9 @@ PACKAGES_demo := libvulkan1 mesa-vulkan-drivers assimp-testmodels
 # to bake the world forza: the data of TORCS
 PACKAGES_worlds := torcs-data
 
-# to build masu-view: the window, and the font that becomes part of the program. Without, `make` leaves
-# it out
-PACKAGES_view := libsdl2-dev fonts-dejavu-core
+# to build masu-view: the window, the user interface, and the font that becomes part of the program. Without, `make`
+# leaves it out
+PACKAGES_view := libsdl2-dev libimgui-dev g++ fonts-dejavu-core
 
 # to run the tests; g++, cmake, and pkgconf from above, look at what is installed as a user of theirs would;
 # ImageMagick measures pictures beside us; masu-view has a screen of Xvfb

@@ -80,7 +80,7 @@ install-lib: lib install-folders ## install headers, libraries, and files for pk
 	$(V)$(call fill,masu.pc.in,-e 's|@LIBRARY@|-l:libmasu.a -lm|' -e '/@PRIVATE@/d') "$(root)/lib/pkgconfig/masu-static.pc"
 	$(V)$(call fill,masu-config.cmake.in) "$(root)/lib/cmake/masu/masu-config.cmake"
 	$(V)$(call fill,masu-config-version.cmake.in) "$(root)/lib/cmake/masu/masu-config-version.cmake"
-install-tools: tools man install-folders ## install masu, masu-bake, masu-sdfc, masu-meso and masu-view (with SDL2), their manual pages and completion
+install-tools: tools man install-folders ## install masu, masu-bake, masu-sdfc, masu-meso and masu-view (with SDL2, Dear ImGui), their manual pages and completion
 	$(V)install -d "$(root)/bin" "$(root)/share/man/man1" "$(root)/share/bash-completion/completions"
 	$(V)install -m 755 $(PROGRAMS:%=$(BUILD)/bin/%) "$(root)/bin"
 	$(V)install -m 644 $(MAN_PAGES) "$(root)/share/man/man1"

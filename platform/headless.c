@@ -272,6 +272,8 @@ static bool create_device(masu_headless *host, char *error, size_t size) {
     host->compressed = offered.textureCompressionBC;
     host->most_anisotropy =
         offered.samplerAnisotropy ? host->properties.limits.maxSamplerAnisotropy : 0.0f;
+    if (host->properties.deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU)
+        host->usual_anisotropy = host->most_anisotropy < 8.0f ? host->most_anisotropy : 8.0f;
     VkDeviceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                .queueCreateInfoCount = 1,
                                .pQueueCreateInfos = &queue,

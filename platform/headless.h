@@ -70,6 +70,7 @@ typedef struct masu_headless {
     bool compressed;         /* textureCompressionBC is enabled */
     bool float16;            /* shaderFloat16 is enabled, and VK_KHR_shader_float16_int8 */
     float most_anisotropy;   /* samplerAnisotropy is enabled: its limit; else 0 */
+    float usual_anisotropy;  /* 8, or that limit; 0 on a CPU driver, where filtering takes 20 times as long */
     bool lost;               /* a wait has timed out or the device is gone: nothing is waited for */
     uint64_t wait_ns;        /* MASU_HEADLESS_TIMEOUT_NS, which tests replace */
     char first_message[512]; /* of the validation layer */
@@ -125,8 +126,8 @@ typedef struct masu_headless_target {
     uint32_t width, height;
 } masu_headless_target;
 
-/* format is one that masu_targets takes. storage: VK_IMAGE_USAGE_STORAGE_BIT and _SAMPLED_BIT, else
- * VK_IMAGE_USAGE_TRANSFER_DST_BIT. */
+/* format is one that masu_targets takes. Usage: TRANSFER_SRC and _DST; storage: also STORAGE, SAMPLED,
+ * and COLOR_ATTACHMENT for what the host draws over a frame. */
 bool masu_headless_target_create(masu_headless *host, uint32_t width, uint32_t height,
                                  VkFormat format, bool storage, masu_headless_target *target,
                                  char *error, size_t error_size);

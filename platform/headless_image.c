@@ -145,8 +145,10 @@ bool masu_headless_target_create(masu_headless *host, uint32_t width, uint32_t h
     t->height = height;
     VkImageUsageFlags usage =
         VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
-        (storage ? VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT
-                 : VK_IMAGE_USAGE_TRANSFER_DST_BIT);
+        VK_IMAGE_USAGE_TRANSFER_DST_BIT |
+        (storage ? VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
+                       VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT
+                 : 0);
     if (!make_image(host, width, height, format, usage, &t->image, &t->view, &t->memory, error,
                     error_size) ||
         !masu_headless_buffer_create(host, texel_bytes(format) * width * height,

@@ -109,6 +109,7 @@ bool masu_session_open(const masu_session_desc *d, masu_session *s, char *error,
         return false;
     }
     float anisotropy = d->desc.vulkan.max_anisotropy, most = s->host.most_anisotropy;
+    if (anisotropy < 0.0f) anisotropy = s->host.usual_anisotropy;
     if (anisotropy > most) anisotropy = most;
     s->desc.vulkan = (masu_vulkan){s->host.desc.get_instance_proc_addr,
                                    s->host.instance,

@@ -13,7 +13,8 @@
 typedef struct masu_session_desc {
     const char *scene_path; /* NULL: none */
     masu_desc
-        desc; /* vulkan (but its pipelines), scene, targets.images and .views are filled in; the rest is as given */
+        desc; /* vulkan (but its pipelines), scene, targets.images and .views are filled in; the rest is as given.
+               * vulkan.max_anisotropy: at most what the device has; below 0: the host's usual_anisotropy */
     masu_headless_desc host;
     uint32_t target_count; /* 0: 1 */
     bool no_renderer;      /* stop before masu_init; masu_session_start goes on */

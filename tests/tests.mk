@@ -130,10 +130,10 @@ device-report: scenes $(BUILD)/bin/masu $(SUITES) $(EXTREME) $(EXTREME:.masu=.tr
 
 # ---- Fuzzing. Seeds are whole files; without any, a fuzzer starts from nothing. ------------------
 
-# A blob of a kilobyte, in which most mutations hit something that is looked at, and a real
-# one.
+# Blobs of a few kilobytes, in which most mutations hit something that is looked at, and a real one that is not large:
+# every input is hashed.
 FUZZ_SEEDS_scene := $(patsubst %,$(BUILD)/tests/fuzz/%.masu,scene textures lods trace skins code lighting reflections)
-FUZZ_SEEDS_scene += $(firstword $(filter-out %/engine.masu,$(SCENES)) $(SCENES))
+FUZZ_SEEDS_scene += $(firstword $(filter %/blobs.masu,$(SCENES)) $(SCENES))
 
 $(BUILD)/tests/fuzz/seed_scene: $(BUILD)/obj/tests/fuzz/seed_scene.o $(TEST_ARCHIVES)
 	$(link)

@@ -43,21 +43,19 @@ $(BUILD)/bin/masu-sdfc: LIBS = -lm
 $(BUILD)/bin/masu-sdfc: $(BUILD)/obj/tools/sdfc/main.o $(call tool_archive,sdfc) $(call tool_archive,cli) $(PLATFORM)
 	$(link)
 
-# masu-view takes SDL2 and a font, which nothing else does: `make view` installs them, and without them the
-# other programs are built all the same.
-VIEW_FONT  := /usr/share/fonts/truetype/dejavu/DejaVuSansMono.ttf
+# masu-view takes SDL2, Dear ImGui and a font, which nothing else does: `make view` installs them, and without them
+# the other programs are built all the same.
+VIEW_FONT  := /usr/share/fonts/truetype/dejavu/DejaVuSans.ttf
 SDL_CFLAGS := $$(pkg-config --cflags sdl2 | sed 's/-I/-isystem /g')
+IMGUI_CFLAGS := $$(pkg-config --cflags imgui | sed 's/-I/-isystem /g') -DMASU_UI_FONT='"$(VIEW_FONT)"'
 HAVE_SDL2  := $(wildcard $(addsuffix /SDL2/SDL.h,/usr/include /usr/local/include))
-HAVE_VIEW  := $(and $(HAVE_SDL2),$(wildcard $(VIEW_FONT)))
-VIEW_OBJECTS := $(call objects,$(wildcard tools/view/*.c))
+HAVE_IMGUI := $(wildcard $(addsuffix /imgui/backends/imgui_impl_vulkan.h,/usr/include /usr/local/include))
+HAVE_VIEW  := $(and $(HAVE_SDL2),$(HAVE_IMGUI),$(wildcard $(VIEW_FONT)))
+VIEW_OBJECTS := $(call objects,$(wildcard tools/view/*.c)) $(BUILD)/obj/tools/view/ui.o
 
 $(BUILD)/obj/tools/view/%.o: FOLDER_FLAGS += $(SDL_CFLAGS)
-$(BUILD)/obj/tools/view/canvas.o: $(MADE)/gen/view_font.h
-$(MADE)/gen/view_font.h: $(MADE)/tools/make_font
-	@mkdir -p $(@D)
-	@echo "  TABLE   $@"
-	$(V)$< $(VIEW_FONT) > $@
-$(BUILD)/bin/masu-view: LIBS = $(MASU_LIBS) $$(pkg-config --libs sdl2)
+$(BUILD)/obj/tools/view/ui.o: private CXXFLAGS += $(SDL_CFLAGS) $(IMGUI_CFLAGS)
+$(BUILD)/bin/masu-view: LIBS = $(MASU_LIBS) $$(pkg-config --libs sdl2) -limgui -l:libstb.a -lstdc++
 $(BUILD)/bin/masu-view: $(VIEW_OBJECTS) $(KEEP_LOADED) $(MEASURE_ARCHIVES) $(BAKE_ARCHIVES)
 	$(link)
 
@@ -65,11 +63,13 @@ $(BUILD)/bin/masu-view: $(VIEW_OBJECTS) $(KEEP_LOADED) $(MEASURE_ARCHIVES) $(BAK
 
 # Committed, for readers; tests/scripts/docs_tables.sh fails where they are not what the headers say.
 .PHONY: docs-tables
-docs-tables: $(BUILD)/bin/masu ## write docs/knobs.md, docs/passes.md and the table of glTF in docs/scene.md
+docs-tables: $(BUILD)/bin/masu $(BUILD)/bin/masu-sdfc ## write docs/knobs.md, passes.md, sdf-shapes.md and the table of glTF in scene.md
 	$(V)$(BUILD)/bin/masu plan --knobs=md > docs/knobs.md.new
 	$(V)mv docs/knobs.md.new docs/knobs.md
 	$(V)shaders/tables.sh passes > docs/passes.md.new
 	$(V)mv docs/passes.md.new docs/passes.md
+	$(V)$(BUILD)/bin/masu-sdfc --shapes > docs/sdf-shapes.md.new
+	$(V)mv docs/sdf-shapes.md.new docs/sdf-shapes.md
 	$(V)tools/bake/import/features.sh --into docs/scene.md > docs/scene.md.new
 	$(V)mv docs/scene.md.new docs/scene.md
 

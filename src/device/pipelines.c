@@ -92,7 +92,7 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
         levels, 4); /* so that scenes of about the same size share pipelines */
     constants[10] = m->plan->desc.debug.share_rays == MASU_ON;
     constants[11] = scene->own_coats != 0;
-    constants[12] = scene->tints != 0;
+    constants[12] = scene->tints;
     constants[13] = sized;
     constants[14] = (VkBool32)masu_has_half_means(m->plan);
     constants[15] = m->plan->needs.emission_packed != 0;

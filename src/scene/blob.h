@@ -397,8 +397,8 @@ typedef struct masu_blob_light {
 #define MASU_PROBE_WORDS 14u /* of one set: 27 halfs, coefficient after coefficient, RGB in each; then
                                 in the first set how far the probe is to be believed, 0..1 */
 #define MASU_PROBE_LIT_WORDS 12u /* of a probe under the light of a frame; not in blobs */
-/* Of a live probe, not in blobs either: its mean, as lit words are, and four sums. */
-#define MASU_PROBE_LIVE_WORDS (MASU_PROBE_LIT_WORDS + 4u * MASU_PROBE_WORDS)
+/* Of a live probe, not in blobs either: its mean, as lit words are, and sixteen sums. */
+#define MASU_PROBE_LIVE_WORDS (MASU_PROBE_LIT_WORDS + 16u * MASU_PROBE_WORDS)
 #define MASU_PROBE_COUNT_MAX 262144u
 #define MASU_PROBE_BYTES_MAX ((uint64_t)64 << 20)
 #define MASU_PROBE_VISIBILITY_MAX 16u

@@ -80,7 +80,7 @@ typedef struct MASU_MAY_ALIAS masu_scene_data {
     uint32_t meso;      /* tables of mesoscale detail */
     uint32_t reliefs;   /* flag: an opaque material has a normal map */
     uint32_t blends;    /* transparent materials */
-    uint32_t tints;     /* flag: a transparent material has coloured transmission */
+    uint32_t tints;     /* a transparent material has coloured transmission; MASU_TINTS_ROUGH: a rough one */
     uint32_t transparents;     /* transparent primitives, once per instance */
     uint32_t transparent_sets; /* texture sets of theirs, at least 1 if there are any */
 

@@ -470,7 +470,7 @@ static void upscale_runs_the_passes_of_the_frame_on_a_file_and_keeps_alpha(void 
     char from[256], error[ERROR_SIZE];
     struct masu_image image;
     masu_pattern_fill(MASU_PATTERN_PHOTO, 1, IW, IH, in);
-    for (uint32_t i = 0; i < IW * IH; i++) in[4 * i + 3] = (uint8_t)(i % IW * 6);
+    for (uint32_t i = 0; i < IW * IH; i++) in[4 * i + 3] = (uint8_t)(i % IW * 6 + 6);
     snprintf(from, sizeof from, "%s/in.png", scratch);
     assert_ok(masu_image_save_png(from, in, IW, IH, 0, error, sizeof error));
     assert_int_equal(
@@ -503,6 +503,35 @@ static void upscale_runs_the_passes_of_the_frame_on_a_file_and_keeps_alpha(void 
         for (size_t k = 0; k < sizeof want; k++) sums[i] += (uint64_t)abs(sharp[i][k] - want[k]);
     }
     assert_true(sums[0] > 2 * sums[1] && sums[1] > 0);
+}
+
+/* Whatever colour a sprite has where it is transparent. */
+static void upscaled_sprites_have_no_fringe(void **state) {
+    (void)state;
+    enum { SIDE = 24 };
+    static uint8_t in[SIDE * SIDE * 4];
+    char from[256], error[ERROR_SIZE];
+    struct masu_image image;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        double x = i % SIDE - 11.5, y = i / SIDE - 11.5, d = sqrt(x * x + y * y), alpha = 7.5 - d;
+        in[4 * i + 3] = (uint8_t)(255.0 * fmin(fmax(alpha, 0.0), 1.0));
+        in[4 * i] = in[4 * i + 3] ? 200 : 0;
+        in[4 * i + 1] = in[4 * i + 3] ? 120 : 255;
+    }
+    snprintf(from, sizeof from, "%s/sprite.png", scratch);
+    assert_ok(masu_image_save_png(from, in, SIDE, SIDE, 0, error, sizeof error));
+    assert_int_equal(cli_run("upscale %s %s/large.png --size 48x48", from, scratch), 0);
+    snprintf(from, sizeof from, "%s/large.png", scratch);
+    assert_ok(masu_image_load_png(from, &image, error, sizeof error));
+    int seen = 0, worst = 0;
+    for (int i = 0; i < 48 * 48; i++) {
+        if (image.rgba[4 * i + 3] < 8) continue;
+        worst = (int)fmax(worst, fmax(abs(image.rgba[4 * i] - 200), abs(image.rgba[4 * i + 1] - 120)));
+        seen++;
+    }
+    assert_true(seen > 600);
+    if (worst > 1) fail_msg("colours differ by %d of 255", worst);
+    masu_image_free(&image);
 }
 
 /* At its own size a picture is smoothed and nothing else, whether its size is given or not. */
@@ -572,6 +601,7 @@ int main(void) {
         cmocka_unit_test(rays_choose_what_finds_polygons),
         cmocka_unit_test(the_example_of_the_readme_draws),
         cmocka_unit_test(upscale_runs_the_passes_of_the_frame_on_a_file_and_keeps_alpha),
+        cmocka_unit_test(upscaled_sprites_have_no_fringe),
         cmocka_unit_test(upscale_smooths_edges),
     };
     return cmocka_run_group_tests_name("cli", tests, make_scratch, remove_scratch);

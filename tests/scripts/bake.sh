@@ -427,5 +427,47 @@ if [ "${config:-}" != sanitize ] && [ "${NESTED:-}" = '' ]; then
         fail "other counts (>) than tests/expect/models.txt (<)"
 fi
 
+# ---- What the command line changes ---------------------------------------------------------------
+
+cat > "$folder/paint.gltf" << 'END'
+{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+"extensionsUsed":["KHR_materials_variants"],
+"extensions":{"KHR_materials_variants":{"variants":[{"name":"crimson"},{"name":"azure"}]}},
+"materials":[{"pbrMetallicRoughness":{"baseColorFactor":[0.8,0.1,0.1,1]}},
+{"pbrMetallicRoughness":{"baseColorFactor":[0.1,0.2,0.9,1]}}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"material":0,
+"extensions":{"KHR_materials_variants":{"mappings":[{"material":0,"variants":[0]},{"material":1,
+"variants":[1]}]}}}]}],"buffers":[{"byteLength":66,
+"uri":"data:application/octet-stream;base64,AACAvwAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAAEAAAAAAAAAAAAAAAAAAAIC/AAABAAIAAQADAAIAAwAAAAIA"}],
+"bufferViews":[{"buffer":0,"byteLength":48,"byteOffset":0},{"buffer":0,"byteLength":18,"byteOffset":48}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[-1,0,-1],"max":[1,2,0]},
+{"bufferView":1,"componentType":5123,"count":9,"type":"SCALAR"}]}
+END
+for paint in crimson azure; do
+    accepts "$folder/paint.gltf" -o "$folder/$paint.masu" --variant $paint --quiet
+done
+accepts "$folder/paint.gltf" -o "$folder/plain.masu" --quiet
+cmp -s "$folder/plain.masu" "$folder/crimson.masu" || fail "--variant crimson is not the file's own material"
+cmp -s "$folder/plain.masu" "$folder/azure.masu" && fail "--variant azure changes nothing"
+refuses 1 'green.*"crimson", "azure"' "$folder/paint.gltf" "${x[@]}" --variant green
+scene '{"models": [{"file": "paint.gltf"}]}'
+refuses 1 'scene.json: --variant needs a model' "$json" "${x[@]}" --variant azure
+
+# Half of the panorama is brighter (32 x 16 texels of Radiance's format, not compressed).
+{
+    printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 16 +X 32\n'
+    for ((i = 0; i < 16; i++)); do
+        for ((j = 0; j < 32; j++)); do printf "\\x$((j < 16 ? 70 : 20))\\x40\\x40\\x80"; done
+    done
+} > "$folder/sky.hdr"
+scene '{"environment": {"file": "sky.hdr", "rotate": 30}, "models": [{"file": "paint.gltf"}]}'
+accepts "$json" -o "$folder/turned.masu" --quiet
+accepts "$json" -o "$folder/more.masu" --turn 20 --quiet
+scene '{"environment": {"file": "sky.hdr", "rotate": 10}, "models": [{"file": "paint.gltf"}]}'
+accepts "$json" -o "$folder/less.masu" --turn 20 --quiet
+cmp -s "$folder/turned.masu" "$folder/less.masu" || fail "--turn 20 is not added to the 10 degrees of the scene"
+cmp -s "$folder/turned.masu" "$folder/more.masu" && fail "--turn changes nothing"
+refuses 2 'turn.*400' "$json" "${x[@]}" --turn 400
+
 [ $failures = 0 ] && echo "masu-bake: all as expected, $tried models tried"
 [ $failures = 0 ]

@@ -24,7 +24,7 @@ skip() {
     exit 77
 }
 
-[ -x "$view" ] || skip "there is no $view: it takes SDL2"
+[ -x "$view" ] || skip "there is no $view: it takes SDL2 and Dear ImGui"
 command -v Xvfb > /dev/null || skip "there is no Xvfb"
 command -v compare > /dev/null || skip "there is no ImageMagick"
 icd=$(tests/drivers.sh system 2> /dev/null) || skip "there is no lavapipe"
@@ -47,12 +47,10 @@ refuses() {
 both=$scenes/test_both.masu
 "$view" --help | grep -q 'F12' || fail "--help does not list the keys"
 refuses 2 'unknown option --gone' --gone "$both"
-refuses 2 'no scene given'
-refuses 2 'expected one scene' "$both" "$both"
-refuses 2 '--bake needs --json' "$both" --bake true
+refuses 2 'expected one file' "$both" "$both"
 refuses 2 '--quit needs --frames' "$both" --quit
 refuses 2 '--setting' "$both" --setting scale=7
-refuses 1 'none.masu' none.masu
+refuses 1 'none.masu: no such file' none.masu
 refuses 1 '--rung: expected 0 to 2, found 7' "$both" --rung 7 --ladder off
 printf 'frame 3 quit\nframe 2 quit\n' > falling
 refuses 1 'falling:2: expected frame numbers in rising order' "$both" --script falling
@@ -159,17 +157,6 @@ frame 14 key 2
 frame 14 key PageUp
 frame 18 screenshot map_none.png
 frame 18 key F3
-frame 18 key Tab        # knobs; scale is the first
-frame 20 screenshot menu.png
-frame 20 key Left
-frame 20 key Left
-frame 22 key Left
-frame 22 key Tab
-frame 24 screenshot knob.png
-frame 24 key Tab
-frame 24 key Backspace
-frame 24 key Tab
-frame 26 screenshot knob_back.png
 frame 26 key F1
 frame 28 screenshot hud_short.png
 frame 28 key F1
@@ -194,29 +181,26 @@ frame 81 screenshot found.png
 frame 82 quit
 END
 cd ball || exit 1
-for p in rung0 rung2 split map menu knob hud_short hud_full green broken red again found; do
+for p in rung0 rung2 split map hud_short hud_full green broken red again found; do
     shows $p.png 320x180
 done
 shows small.png 200x150
 shows large.png 400x300
 differ rung0.png rung2.png
-same split.png rung2.png 150x90+0+0
-same split.png rung0.png 150x90+170+0
-same split_right.png rung2.png 214x90+0+0
-differ split_right.png split.png 40x90+170+0
-same split_left.png rung0.png 230x90+90+0
+same split.png rung2.png 150x60+0+0
+same split.png rung0.png 150x60+170+0
+same split_right.png rung2.png 214x60+0+0
+differ split_right.png split.png 40x60+170+0
+same split_left.png rung0.png 230x60+90+0
 differ map.png rung2.png $upper
 differ map.png map_none.png $upper
-[ "$(convert map_none.png -crop 200x100+0+0 -format '%[fx:maxima<0.1]' info:)" = 1 ] ||
+[ "$(convert map_none.png -crop 200x40+0+0 -format '%[fx:maxima<0.1]' info:)" = 1 ] ||
     fail "the difference of a rung from itself is not black"
-differ menu.png rung0.png $upper
-differ knob.png rung0.png $upper
-same knob_back.png rung0.png $upper
 differ hud_short.png rung0.png
 differ hud_full.png hud_short.png
 differ green.png rung0.png $upper
 same broken.png green.png $upper
-differ broken.png green.png 320x80+0+100 # the error's line
+differ broken.png green.png 320x80+0+100 # the line of the error
 same red.png rung0.png $upper
 same again.png rung0.png $upper
 same found.png rung0.png $upper
@@ -282,6 +266,96 @@ frame 6 quit
 END
 grep -q '^80 45: the SDF, depth ' sdf/stdout || fail "a click on the SDF: $(cat sdf/stdout)"
 
+# Panels: each opens and shows something else; a slider by mouse and a box by keys change something; the video has its
+# frames; a recorded path becomes a description. Files are dropped, and what cannot be opened is one line.
+sed 's/sphere(1)/sphere(radius)/; 1i param radius = 1 [0.4, 1.6];' red.sdf > field.sdf
+sed 's/ball.sdf/field.sdf/' ball.json > field.json
+cat > slow << END
+#!/bin/sh
+printf '\\r\\033[Ktracing 2 of 5' >&2
+until [ -e $folder/go ]; do sleep 0.05; done
+exec '$bake' "\$@"
+END
+chmod +x slow
+touch go
+play panels ../field.json --bake ../slow --size 480x270 --ladder ../sizes.json --rung 0 << 'END'
+frame 0 key F1
+frame 0 key F1
+frame 0 key Space
+frame 4 screenshot plain.png
+frame 4 key F5
+frame 7 screenshot scene.png
+frame 7 click 460 65        # radius, at its largest
+frame 11 screenshot slid.png
+frame 11 key F6
+frame 14 screenshot light.png
+frame 14 click 325 48       # the sun's elevation, nearly at its lowest
+frame 18 screenshot dusk.png
+frame 18 key F7
+frame 21 screenshot quality.png
+frame 21 key F10
+frame 24 screenshot capture.png
+frame 24 key Down           # the keyboard is at the first item: without panels and text
+frame 27 key Space
+frame 30 key F9
+frame 33 key F9
+frame 34 key F8
+frame 37 screenshot camera.png
+frame 37 click 190 170      # record
+frame 60 click 190 170
+frame 64 screenshot recorded.png
+frame 64 click 262 170      # save
+frame 66 key Escape
+frame 68 screenshot closed.png
+frame 69 run rm ../go
+frame 70 drop ../ball.sdf
+frame 74 screenshot progress.png
+frame 75 run touch ../go
+frame 75 wait
+frame 78 screenshot dropped.png
+frame 79 drop ../none.glb
+frame 81 screenshot none.png
+frame 82 quit
+END
+cd panels || exit 1
+differ plain.png scene.png 300x200+180+0
+differ scene.png light.png 300x200+180+0
+differ light.png quality.png 300x200+180+0
+differ quality.png capture.png 300x200+180+0
+differ capture.png camera.png 300x200+180+0
+same plain.png scene.png 170x200+0+0
+differ scene.png slid.png 170x200+0+0 # a larger ball
+differ slid.png dusk.png 170x200+0+0
+same closed.png dusk.png 170x200+0+0
+[ "$(head -1 masu-*.y4m)" = 'YUV4MPEG2 W480 H270 F30:1 Ip A1:1 C444 XCOLORRANGE=LIMITED' ] ||
+    fail "video: $(head -c 80 masu-*.y4m | head -1)"
+[ "$(stat -c %s masu-*.y4m)" = $(($(head -1 masu-*.y4m | wc -c) + 3 * (6 + 3 * 480 * 270))) ] ||
+    fail "a video of $(stat -c %s masu-*.y4m) bytes, not 3 frames"
+grep -q '"target"' ../field-path.json && grep -q 'field.sdf' ../field-path.json || fail "no path was saved"
+"$bake" ../field-path.json -o path.masu --quiet || fail "the saved path does not bake"
+differ closed.png progress.png 170x100+0+170
+differ progress.png dropped.png
+differ none.png dropped.png 480x70+0+200 # the line of the error
+same none.png dropped.png 480x150+0+0
+cd ..
+
+# The start page makes pictures of the scenes of a folder, and opens one.
+mkdir scenes && cp ball.json ball.sdf scenes/
+play start --gallery ../scenes --cache ../pictures --size 320x180 << 'END'
+frame 2 screenshot empty.png
+frame 2 run until [ -e ../pictures/ball.png ]; do sleep 0.1; done; sleep 0.3
+frame 6 screenshot page.png
+frame 6 key F1
+frame 6 key F1
+frame 6 click 60 80
+frame 8 wait
+frame 12 screenshot opened.png
+frame 13 quit
+END
+shows pictures/ball.png 192x108
+differ start/empty.png start/page.png
+differ start/page.png start/opened.png
+
 # A baked scene that is exchanged, and one that is cut off.
 cp "$both" scene.masu
 play blob ../scene.masu --size 160x90 --ladder ../sizes.json --rung 0 << END
@@ -297,9 +371,9 @@ frame 12 screenshot back.png
 frame 13 quit
 END
 differ blob/before.png blob/after.png
-same blob/kept.png blob/after.png 160x40+0+0
+same blob/kept.png blob/after.png 160x20+0+0
 differ blob/kept.png blob/after.png
-same blob/back.png blob/before.png 160x40+0+0
+same blob/back.png blob/before.png 160x20+0+0
 
 # One picture, as a command; the governor; then a device that is lost for good.
 mkdir once
@@ -313,7 +387,7 @@ code=$?
 [ $code = 1 ] && grep -q 'masu-view: the Vulkan device was lost twice in a row' out ||
     fail "lost twice: exit code $code: $(cat out)"
 : > nothing.json
-refuses 1 'nothing.json' --json nothing.json --size 64x48
+refuses 1 'nothing.json' nothing.json --size 64x48 --frames 1 --quit
 left=$(find "${TMPDIR:-/tmp}" -maxdepth 1 -name 'masu-view-*' -newer display)
 [ -z "$left" ] || fail "left behind: $left"
 

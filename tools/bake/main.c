@@ -47,6 +47,8 @@ enum {
     OPTION_VARIANTS,
 #endif
     OPTION_BARE,
+    OPTION_VARIANT,
+    OPTION_TURN,
     OPTION_DESCRIBE,
     OPTION_NO_TEXTURES,
     OPTION_TEXTURE_PATH,
@@ -126,6 +128,10 @@ static int run(masu_cli *cli) {
             if (!masu_cli_uint(cli, 1, 64, &o.threads)) return MASU_CLI_USAGE;
             break;
         case OPTION_BARE: o.bare = true; break;
+        case OPTION_VARIANT: o.variant = cli->value; break;
+        case OPTION_TURN:
+            if (!masu_cli_double(cli, -360.0, 360.0, &o.turn)) return MASU_CLI_USAGE;
+            break;
         case OPTION_DESCRIBE: o.describe = true; break;
 #ifdef MASU_LAB
         case OPTION_VARIANTS: o.variants = true; break;
@@ -170,6 +176,8 @@ int main(int argc, char **argv) {
          "without the ground, shadows, ambient occlusion and reflections that the\n"
          "input does not ask for",
          OPTION_BARE, 0},
+        {"variant", "NAME", "material variant of a glTF MODEL (KHR_materials_variants)", OPTION_VARIANT, 0},
+        {"turn", "DEGREES", "turn the environment map of a scene by this much more", OPTION_TURN, 0},
         {"describe", NULL,
          "write the scene description that a MODEL or FIELD.sdf gets, to -o SCENE.json or\n"
          "stdout, and bake nothing",

@@ -100,7 +100,7 @@ uint32_t masu_cli_warnings(void) { return state.warnings; }
 bool masu_cli_quiet(void) { return state.quiet; }
 
 void masu_cli_progress(const char *format, ...) {
-    if (state.quiet || !isatty(STDERR_FILENO)) return;
+    if (state.quiet || (!isatty(STDERR_FILENO) && !getenv("MASU_PROGRESS"))) return;
     char text[72]; /* a line that the terminal wraps could not be wiped */
     va_list arguments;
     va_start(arguments, format);

@@ -139,7 +139,8 @@ uint32_t masu_cli_warnings(void); /* how many so far */
 /* Is called with the text of each from now on, behind "warning: "; NULL: no more. */
 void masu_cli_hear_warnings(void (*hears)(void *user, const char *text), void *user);
 
-/* What is going on now: replaced by the next one, wiped by any message and at the end. */
+/* What is going on now: replaced by the next one, wiped by any message and at the end. On a terminal, or with
+ * MASU_PROGRESS in the environment, as masu-view sets it for its baker. */
 void masu_cli_progress(const char *format, ...) MASU_CLI_PRINTF(1, 2);
 void masu_cli_progress_text(const char *text); /* as a callback */
 void masu_cli_progress_clear(void);

@@ -2,7 +2,7 @@
  * counts and memory. */
 #include "command/options.h"
 #include "masu/render.h"
-#include "masu/video.h"
+#include "command/video.h"
 
 #include "alloc_count.h"
 #include "measure/linear.h"
@@ -104,18 +104,6 @@ static void set_light(const masu_render_options *o, masu_light *light) {
     light->turbidity = (float)o->turbidity;
 }
 
-/* Every model that has clips plays its first one. */
-static bool animate(masu_session *s, double time, char *error, size_t size) {
-    for (uint32_t i = 0; i < masu_scene_count(&s->scene, MASU_SCENE_MODEL); i++) {
-        masu_model model = masu_model_at(s->m, i);
-        masu_clip_use use = {.loop = 1, .time = time, .weight = 1.0f};
-        if (!masu_model_clips(s->m, model) || !masu_model_animate(s->m, model, &use, 1)) continue;
-        snprintf(error, size, "%s", masu_last_error(s->m)->text);
-        return false;
-    }
-    return true;
-}
-
 static bool measure(masu_session *s, const masu_render_options *o, uint32_t frame,
                     masu_vk_alloc_counts *counts, masu_sample *out, masu_stats_info *stats,
                     masu_commands *drawn, char *error, size_t size) {
@@ -128,12 +116,14 @@ static bool measure(masu_session *s, const masu_render_options *o, uint32_t fram
     if (own_light) set_light(o, &light);
     const uint32_t rays = o->rays ? o->rays : 1, image = o->still ? 0 : frame / rays;
     masu_frame_desc f = {.light = own_light ? &light : NULL,
+                         .sdf_params = o->sdf_param_count ? o->sdf_params : NULL,
+                         .sdf_param_count = o->sdf_param_count,
                          .time = o->time + (double)(o->first + image) * o->time_step,
                          .time_step = o->rays ? MASU_PICTURE_STEP : (float)o->time_step,
                          .rung = o->target_ms > 0.0 ? MASU_RUNG_AUTO : o->rung,
                          /* The sum begins with the first one that counts. */
                          .cut = o->rays && frame % rays == 0};
-    if (!o->at_rest && !animate(s, f.time, error, size)) return false;
+    if (!o->at_rest && !masu_render_animate(s, o, f.time, error, size)) return false;
     masu_commands commands;
     uint64_t callbacks = counts->allocations + counts->reallocations;
     uint64_t thread = masu_allocs_of_thread();
@@ -183,11 +173,13 @@ static int truth_frame(masu_session *s, const masu_render_options *o, const masu
     char error[1024], name[4096] = "";
     const bool file = o->output && (strchr(o->output, '#') || frame + 1 == o->frames);
     masu_frame_desc f = {.light = light,
+                         .sdf_params = o->sdf_param_count ? o->sdf_params : NULL,
+                         .sdf_param_count = o->sdf_param_count,
                          .time = o->time + (double)(o->first + frame) * o->time_step};
     if (file && !output_name(o->output, frame, name, sizeof name))
         return masu_cli_error("--output: the file name is too long");
     if (!file && !o->video) return MASU_CLI_OK;
-    if (!o->at_rest && !animate(s, f.time, error, sizeof error)) return masu_cli_error("%s", error);
+    if (!o->at_rest && !masu_render_animate(s, o, f.time, error, sizeof error)) return masu_cli_error("%s", error);
     if (!masu_picture_truth(s, &f, o->positions, o->rays ? o->rays : MASU_PICTURE_RAYS,
                             &(masu_picture_means){.linear = linear, .display = rgba},
                             masu_cli_progress_text, error, sizeof error) ||
@@ -398,6 +390,16 @@ static bool read_reference(masu_cli *cli, void *to) {
     return !cli->value || masu_cli_uint(cli, 1, FRAMES_MAX, &o->rays);
 }
 
+static bool read_param(masu_cli *cli, void *to) {
+    masu_render_options *o = to;
+    if (o->param_count == MASU_RENDER_PARAMS_MAX) {
+        masu_cli_usage_error("--param: expected at most %u of them", MASU_RENDER_PARAMS_MAX);
+        return false;
+    }
+    o->params[o->param_count++] = cli->value;
+    return true;
+}
+
 static bool read_animate(masu_cli *cli, void *to) {
     masu_render_options *o = to;
     o->at_rest = cli->value && !strcmp(cli->value, "off");
@@ -473,6 +475,10 @@ static const masu_option rows[] = {
               "time between frames"),
     MASU_OWN("animate", "[=off]", read_animate,
              "loop the first animation clip of every model (default); off: keep the rest pose"),
+    MASU_TEXT(masu_render_options, clip, "clip", "NAME|N",
+              "clip that models play, by name or number; models without it play their first"),
+    MASU_OWN("param", "NAME=VALUE", read_param,
+             "parameter of the scene's SDF; may be given several times"),
     MASU_HEADING("Reference images"),
     MASU_OWN("truth", "[=N]", read_truth,
              "ground truth: average N full-size samples per pixel (default 64), with the\n"
@@ -500,7 +506,7 @@ static const masu_option rows[] = {
     MASU_KNOB(masu_render_options, turned.to, "lod-error", "PIXELS", "lod_error",
               "largest screen-space error of a mesh LOD; below 0: no LODs (default 1)"),
     MASU_REAL(masu_render_options, anisotropy, "anisotropy", "N", 1.0, 64.0,
-              "anisotropic texture samples, if the device supports them (default 1)"),
+              "anisotropic texture samples, if the device supports them (default 8 on a GPU, 1 on a CPU)"),
     MASU_HEADING("Light and tone"),
     MASU_OWN("sun", "AZIMUTH,ELEVATION", read_sun,
              "sun position in degrees (default: the scene's)"),
@@ -578,7 +584,7 @@ static int describe(masu_render_options *o, const masu_given *given) {
     }
     d->tone = (masu_tone)o->tone;
     d->analytic_sky = o->turbidity > 0.0;
-    d->vulkan.max_anisotropy = (float)o->anisotropy;
+    d->vulkan.max_anisotropy = o->anisotropy > 0.0 ? (float)o->anisotropy : -1.0f;
     if (o->dither || o->still || o->video) d->dither = MASU_ON;
     if (o->output && masu_image_is_linear(o->output)) d->readback = MASU_READBACK_HDR;
     if (o->split) d->deny.unified_memory = 1;
@@ -617,6 +623,7 @@ static int run(masu_cli *cli) {
     if (code) return code;
     if ((o.stats || o.times || o.target_ms > 0.0) && !masu_clock_advances())
         return masu_cli_error("%s", MASU_CLOCK_STOPPED);
+    if (!masu_render_read_scene(&o, error, sizeof error)) return masu_cli_error("%s", error);
     o.d.host.allocator = o.stats ? &allocator : NULL;
     masu_cli_progress("building pipelines");
     if (o.positions && !masu_picture_open(&o.d, o.positions, &s, error, sizeof error))

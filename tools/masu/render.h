@@ -1,4 +1,5 @@
-/* render.h: what `masu render` is asked for and what it measures; render.c draws, render_stats.c tells. */
+/* render.h: what `masu render` is asked for and what it measures; render.c renders, render_scene.c changes the
+ * scene, render_stats.c reports. */
 #ifndef MASU_CMD_RENDER_H
 #define MASU_CMD_RENDER_H
 
@@ -10,6 +11,8 @@ typedef struct masu_turned {
     uint32_t cull;
     masu_rung to;
 } masu_turned;
+
+#define MASU_RENDER_PARAMS_MAX 64u
 
 typedef struct masu_render_options {
     masu_session_desc d;
@@ -26,8 +29,18 @@ typedef struct masu_render_options {
     double exposure;          /* 0: the scene's */
     double anisotropy;
     bool own_sun, casters, poison, split, dither;
+    const char *clip;         /* that models play; NULL: the first */
+    const char *params[MASU_RENDER_PARAMS_MAX]; /* "NAME=VALUE" */
+    uint32_t param_count;
+    float sdf_params[MASU_MAX_SDF_PARAMS]; /* of every frame, if there is a --param */
+    uint32_t sdf_param_count;
     bool at_rest; /* models that have clips do not play them */
 } masu_render_options;
+
+/* render_scene.c: what --param and --clip name in the scene. On false `error` is one line. */
+bool masu_render_read_scene(masu_render_options *o, char *error, size_t size);
+/* Every model that has clips plays one. */
+bool masu_render_animate(masu_session *s, const masu_render_options *o, double time, char *error, size_t size);
 
 /* One measured frame. */
 typedef struct masu_sample {

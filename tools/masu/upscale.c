@@ -64,6 +64,32 @@ static bool has_alpha(const struct masu_image *image) {
     return false;
 }
 
+/* The colour of a pixel with alpha 0 is not seen, but filters would mix it into the edges beside it. Each such pixel
+ * gets the mean of its neighbours that have a colour; repeated as far as EASU and RCAS reach. False: no memory. */
+static bool fill_transparent(struct masu_image *image) {
+    enum { REACH = 4, NONE = REACH + 1 };
+    int width = (int)image->width, height = (int)image->height;
+    uint8_t *filled_in = malloc((size_t)width * (size_t)height); /* round; NONE: not yet */
+    if (!filled_in) return false;
+    for (int i = 0; i < width * height; i++) filled_in[i] = image->rgba[4 * i + 3] ? 0 : NONE;
+    for (int at = 0; at < REACH * width * height; at++) {
+        int round = at / (width * height) + 1, i = at % (width * height), x = i % width, y = i / width;
+        unsigned sum[3] = {0}, count = 0;
+        if (filled_in[i] != NONE) continue;
+        for (int k = 0; k < 9; k++) {
+            int u = x + k % 3 - 1, v = y + k / 3 - 1;
+            if (u < 0 || v < 0 || u >= width || v >= height || filled_in[v * width + u] >= round) continue;
+            for (int c = 0; c < 3; c++) sum[c] += image->rgba[4 * (v * width + u) + c];
+            count++;
+        }
+        if (!count) continue;
+        for (int c = 0; c < 3; c++) image->rgba[4 * i + c] = (uint8_t)((sum[c] + count / 2) / count);
+        filled_in[i] = (uint8_t)round;
+    }
+    free(filled_in);
+    return true;
+}
+
 /* FSR1 knows three channels. Alpha goes through the same passes as a grey picture of its own. */
 static bool upscale_alpha(const masu_session_desc *d, const struct masu_image *image, uint8_t *out,
                           char *error, size_t size) {
@@ -96,7 +122,7 @@ static int upscale_file(const masu_session_desc *given, const char *from, const 
     uint32_t width = d->desc.output.width, height = d->desc.output.height;
     uint8_t *out = malloc((size_t)width * height * 4);
     int code = MASU_CLI_OK;
-    if (!out) {
+    if (!out || !fill_transparent(&image)) {
         code = masu_cli_error("out of memory for %ux%u pixels", width, height);
     } else if (!upscale(d, image.rgba, image.width, image.height, out, error, sizeof error) ||
                (has_alpha(&image) && !upscale_alpha(d, &image, out, error, sizeof error)) ||
@@ -167,7 +193,7 @@ const masu_cli_command masu_cmd_upscale = {
     .summary = "upscale an image with FSR1 (EASU, RCAS) or anti-alias it with SMAA or FXAA",
     .details =
         "The input must be display-encoded (sRGB), as FSR1 expects. Alpha goes through the same passes\n"
-        "as a separate image. With --aa and no --size, or with --size equal to the input's size, only\n"
+        "as a separate image; pixels with alpha 0 take the colours beside them. With --aa and no --size, or with --size equal to the input's size, only\n"
         "anti-aliasing runs.\n\n"
         "Exit codes:\n"
         "  0  success\n"

@@ -1,17 +1,20 @@
-/* bake.c: files that change while the scene is looked at.
+/* bake.c: files: those that are opened, baked first unless they are a blob, and those that change
+ * while their scene is looked at.
  *
- * Without --json the baked scene itself is watched. With it, the description and every file that it
- * names: when one of them changes, a process bakes the scene into a folder of ours, and what comes out
- * is loaded if it succeeds; if not, the line that it has said is shown and the old scene stays. Files
- * are looked at twice a second, by time and size; a script looks at every frame and waits for the baker.
- * Shaders of the library are part of the program: what can be reloaded is the scene with its .sdf or
- * .glsl. */
+ * A baked scene is watched itself. Anything else is watched with every file that it names: when one
+ * of them changes, a process bakes the scene into a folder of ours, and what comes out is loaded if
+ * it succeeds; if not, the line that it has said is shown and the old scene stays. Files are looked
+ * at twice a second, by time and size; a script looks at every frame and waits for the baker,
+ * except for a file that is opened while it runs. Shaders of the library are part of the program:
+ * what can be reloaded is the scene with its .sdf or .glsl. */
 #include "view/viewer.h"
 
 #include "cli/cli.h"
 #include "clock.h"
+#include "file_kind.h"
 #include "image.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <jansson.h>
 #include <signal.h>
@@ -55,7 +58,8 @@ static void watch_named(masu_baker *b, const char *folder, const json_t *value) 
         struct stat s;
         const char *text = json_string_value(value);
         int n = snprintf(path, sizeof path, "%s%s", *text == '/' ? "" : folder, text);
-        if (*text && n > 0 && n < (int)sizeof path && !stat(path, &s) && S_ISREG(s.st_mode)) watch(b, path);
+        if (*text && n > 0 && n < (int)sizeof path && !stat(path, &s) && S_ISREG(s.st_mode))
+            watch(b, path);
     } else if (json_is_object(value)) {
         json_object_foreach((json_t *)value, key, child) watch_named(b, folder, child);
     } else if (json_is_array(value)) {
@@ -63,8 +67,9 @@ static void watch_named(masu_baker *b, const char *folder, const json_t *value) 
     }
 }
 
-/* A description that cannot be read is watched by itself; the baker says what is wrong with it. */
-static void watch_description(masu_baker *b, const char *json) {
+/* A description that cannot be read is watched by itself; the baker says what is wrong with it. So
+ * are other files. */
+static void watch_source(masu_baker *b, const char *json) {
     char folder[1024] = "";
     const char *slash = strrchr(json, '/');
     if (slash && (size_t)(slash - json) + 2 < sizeof folder)
@@ -89,9 +94,9 @@ static bool has_changed(masu_baker *b) {
     return changed;
 }
 
-/* ---- Baking ---------------------------------------------------------------------------------- */
+/* ---- Processes ------------------------------------------------------------------------------- */
 
-static void program_beside(char *out, size_t size, const char *name) {
+void masu_program_beside(char *out, size_t size, const char *name) {
     char path[1024];
     ssize_t n = readlink("/proc/self/exe", path, sizeof path - 1);
     path[n > 0 ? n : 0] = '\0';
@@ -100,26 +105,85 @@ static void program_beside(char *out, size_t size, const char *name) {
     snprintf(out, size, "%s%s", slash ? path : "", name);
 }
 
-/* `COMMAND JSON -o OUTPUT --quiet`, what it says into a file. */
-static bool begin(masu_viewer *v) {
-    masu_baker *b = &v->baker;
-    char program[1100], words[4096];
-    program_beside(program, sizeof program, "masu-bake");
-    snprintf(words, sizeof words, "exec %s \"$@\"", v->o->bake ? v->o->bake : "\"$0\"");
-    b->again = false;
+long masu_child_start(masu_viewer *v, const char *words, const char *log, char *const arguments[]) {
+    char *argv[16] = {"sh", "-c", (char *)words, "sh"};
+    for (int i = 0; arguments[i] && i < 11; i++) argv[4 + i] = arguments[i];
     fflush(NULL);
     pid_t child = fork();
     if (child < 0) {
-        snprintf(v->error, sizeof v->error, "cannot start the baker: %s", strerror(errno));
-        return false;
+        snprintf(v->error, sizeof v->error, "cannot start a process: %s", strerror(errno));
+        return 0;
     }
     if (!child) {
-        if (!freopen(b->log, "w", stderr) || !freopen("/dev/null", "w", stdout)) _exit(126);
-        execl("/bin/sh", "sh", "-c", words, program, v->o->json, "-o", b->output, "--quiet", (char *)NULL);
+        if (!freopen(log, "w", stderr) || !freopen("/dev/null", "w", stdout)) _exit(126);
+        (void)setenv("MASU_PROGRESS", "1", 1);
+        execv("/bin/sh", argv);
         _exit(127);
     }
-    b->child = child;
+    return child;
+}
+
+bool masu_child_ended(long child, bool wait, int *status) {
+    pid_t r;
+    *status = -1;
+    do {
+        r = waitpid((pid_t)child, status, wait ? 0 : WNOHANG);
+    } while (r < 0 && errno == EINTR);
+    if (r < 0) *status = -1;
+    return r != 0;
+}
+
+void masu_child_end(long child) {
+    int status;
+    if (!child) return;
+    kill((pid_t)child, SIGTERM);
+    (void)masu_child_ended(child, true, &status);
+}
+
+/* ---- Baking ---------------------------------------------------------------------------------- */
+
+static bool make_folder(masu_viewer *v) {
+    masu_baker *b = &v->baker;
+    if (b->folder[0]) return true;
+    const char *root = getenv("TMPDIR");
+    snprintf(b->folder, sizeof b->folder, "%.900s/masu-view-XXXXXX", root && *root ? root : "/tmp");
+    if (!mkdtemp(b->folder)) {
+        snprintf(v->error, sizeof v->error, "%.900s: cannot create the folder: %.80s", b->folder,
+                 strerror(errno));
+        b->folder[0] = '\0';
+        return false;
+    }
+    snprintf(b->output, sizeof b->output, "%s/scene.masu", b->folder);
+    snprintf(b->log, sizeof b->log, "%s/baker.log", b->folder);
     return true;
+}
+
+/* `COMMAND SOURCE -o OUTPUT ...`, what it says into a file. */
+static bool begin(masu_viewer *v) {
+    masu_baker *b = &v->baker;
+    char program[1100], words[4096], turn[32];
+    char *arguments[9] = {b->source, "-o", b->output};
+    int count = 3;
+    if (!make_folder(v)) return false;
+    if (v->o->bake) {
+        snprintf(words, sizeof words, "exec %s \"$@\"", v->o->bake);
+    } else {
+        masu_program_beside(program, sizeof program, "masu-bake");
+        snprintf(words, sizeof words, "exec '%s' \"$@\"", program);
+    }
+    if (b->turn != 0.0f) {
+        snprintf(turn, sizeof turn, "%.1f", (double)b->turn);
+        arguments[count++] = "--turn";
+        arguments[count++] = turn;
+    }
+    if (*b->variant) {
+        arguments[count++] = "--variant";
+        arguments[count++] = b->variant;
+    }
+    b->again = false;
+    b->begun_ns = masu_clock_ns(NULL);
+    b->child = masu_child_start(v, words, b->log, arguments);
+    return b->child != 0;
 }
 
 /* The first line that is no warning, else the first there is. */
@@ -130,6 +194,8 @@ static void read_complaint(const char *log, char *out, size_t size) {
     out[0] = '\0';
     while (f && !found && fgets(line, sizeof line, f)) {
         line[strcspn(line, "\n")] = '\0';
+        char *wiped = strrchr(line, '\033'); /* progress before it */
+        if (wiped && strlen(wiped) > 2) memmove(line, wiped + 3, strlen(wiped + 3) + 1);
         if (!*line) continue;
         found = !strstr(line, ": warning: ");
         if (found || !*out) snprintf(out, size, "%s", line);
@@ -140,14 +206,10 @@ static void read_complaint(const char *log, char *out, size_t size) {
 /* True: it has ended; *good says how. */
 static bool ended(masu_viewer *v, bool wait, bool *good) {
     masu_baker *b = &v->baker;
-    int status = 0;
-    pid_t r;
-    do {
-        r = waitpid((pid_t)b->child, &status, wait ? 0 : WNOHANG);
-    } while (r < 0 && errno == EINTR);
-    if (!r) return false;
+    int status;
+    if (!masu_child_ended(b->child, wait, &status)) return false;
     b->child = 0;
-    *good = r > 0 && WIFEXITED(status) && !WEXITSTATUS(status);
+    *good = WIFEXITED(status) && !WEXITSTATUS(status);
     if (*good) return true;
     read_complaint(b->log, v->error, sizeof v->error);
     if (!*v->error)
@@ -155,47 +217,107 @@ static bool ended(masu_viewer *v, bool wait, bool *good) {
     return true;
 }
 
-static bool make_folder(masu_viewer *v) {
-    masu_baker *b = &v->baker;
-    const char *root = getenv("TMPDIR");
-    snprintf(b->folder, sizeof b->folder, "%.900s/masu-view-XXXXXX", root && *root ? root : "/tmp");
-    if (!mkdtemp(b->folder)) {
-        snprintf(v->error, sizeof v->error, "%s: cannot create the folder: %s", b->folder,
-                 strerror(errno));
-        b->folder[0] = '\0';
-        return false;
-    }
-    snprintf(b->output, sizeof b->output, "%s/scene.masu", b->folder);
-    snprintf(b->log, sizeof b->log, "%s/baker.log", b->folder);
-    return true;
+/* What it does now, and how much of that is done if it says "N of M". */
+void masu_baker_progress(const masu_viewer *v, float *fraction, char *text, size_t size) {
+    const masu_baker *b = &v->baker;
+    char log[2048] = "", *last;
+    unsigned done, all;
+    const char *slash = strrchr(b->source, '/'), *of;
+    FILE *f = fopen(b->log, "r");
+    if (f && !fseek(f, 0, SEEK_END) && ftell(f) > (long)sizeof log)
+        (void)fseek(f, 1 - (long)sizeof log, SEEK_END);
+    else if (f)
+        rewind(f);
+    size_t n = f ? fread(log, 1, sizeof log - 1, f) : 0;
+    if (f) fclose(f);
+    log[n] = '\0';
+    last = strrchr(log, '\033');
+    snprintf(text, size, "baking %s, %.0f s%s%.200s", slash ? slash + 1 : b->source,
+             (double)(masu_clock_ns(NULL) - b->begun_ns) / 1e9,
+             last && last[1] && last[2] && last[3] ? ": " : "",
+             last && strlen(last) > 3 ? last + 3 : "");
+    *fraction = -1.0f;
+    of = last ? strstr(last, " of ") : NULL;
+    while (of && of > last && isdigit((unsigned char)of[-1])) of--;
+    if (of && sscanf(of, "%u of %u", &done, &all) == 2 && all) *fraction = (float)done / (float)all;
 }
 
-bool masu_baker_open(masu_viewer *v) {
-    masu_baker *b = &v->baker;
-    bool good = false;
-    b->looked_ns = masu_clock_ns(NULL);
-    if (!v->o->json) {
-        watch(b, v->o->scene);
-        return true;
-    }
-    watch_description(b, v->o->json);
-    if (!make_folder(v)) return false;
-    if (v->o->scene) return true;
-    if (!begin(v)) return false;
-    (void)ended(v, true, &good);
-    return good;
-}
+/* ---- Opening --------------------------------------------------------------------------------- */
+
+static void fail(masu_viewer *v) { snprintf(v->trouble, sizeof v->trouble, "%s", v->error); }
 
 static bool finish(masu_viewer *v, bool good) {
     masu_baker *b = &v->baker;
-    if (!good) {
-        snprintf(v->trouble, sizeof v->trouble, "%s", v->error);
-        v->stale_overlay = true;
-        return true;
-    }
+    bool fresh = b->opens;
     b->count = 0; /* it may name other files now */
-    watch_description(b, v->o->json);
-    return masu_viewer_load(v, b->output);
+    watch_source(b, b->source);
+    if (!good) return fail(v), true;
+    b->opens = false;
+    snprintf(b->blob, sizeof b->blob, "%s", b->output);
+    return masu_viewer_load(v, b->blob, fresh);
+}
+
+/* True unless the device is lost. */
+static bool open_it(masu_viewer *v, const char *path) {
+    masu_baker *b = &v->baker;
+    if (!masu_file_is_regular(path)) {
+        snprintf(v->error, sizeof v->error, "%.900s: no such file", path);
+        return fail(v), true;
+    }
+    masu_child_end(b->child);
+    b->child = 0;
+    b->count = 0;
+    b->turn = 0.0f;
+    b->variant_count = 0;
+    b->variant[0] = b->source[0] = '\0';
+    b->opens = true;
+    v->trouble[0] = '\0';
+    v->gallery.open = false;
+    masu_file_kind kind = masu_file_kind_of(path, NULL, 0);
+    if (kind == MASU_FILE_BLOB) {
+        snprintf(b->blob, sizeof b->blob, "%s", path);
+        watch(b, path);
+        b->opens = false;
+        return masu_viewer_load(v, path, true);
+    }
+    snprintf(b->source, sizeof b->source, "%s", path);
+    watch_source(b, path);
+    masu_baker_read_variants(v);
+    if (!begin(v)) fail(v);
+    return true;
+}
+
+void masu_baker_open(masu_viewer *v, const char *path) {
+    if (!open_it(v, path)) v->lost = true;
+}
+
+bool masu_baker_start(masu_viewer *v) {
+    masu_baker *b = &v->baker;
+    const char *json = v->o->json, *scene = v->o->scene;
+    b->looked_ns = masu_clock_ns(NULL);
+    if (scene && json) { /* baked already: the description is for changes */
+        snprintf(b->source, sizeof b->source, "%s", json);
+        snprintf(b->blob, sizeof b->blob, "%s", scene);
+        watch_source(b, json);
+        return masu_viewer_load(v, scene, true);
+    }
+    if (!scene && !json) return masu_gallery_open(v), true;
+    return open_it(v, scene ? scene : json) && (!v->scripted || masu_baker_wait(v));
+}
+
+bool masu_baker_wait(masu_viewer *v) {
+    bool good;
+    if (!v->baker.child) return true;
+    (void)ended(v, true, &good);
+    return finish(v, good);
+}
+
+void masu_baker_again(masu_viewer *v) {
+    if (!*v->baker.source) return;
+    if (v->baker.child)
+        v->baker.again = true;
+    else if (!begin(v))
+        fail(v);
 }
 
 bool masu_baker_poll(masu_viewer *v) {
@@ -204,32 +326,23 @@ bool masu_baker_poll(masu_viewer *v) {
     bool good;
     if (b->child && ended(v, false, &good)) {
         if (!b->again) return finish(v, good);
-        return begin(v) || (snprintf(v->trouble, sizeof v->trouble, "%s", v->error), true);
+        return begin(v) || (fail(v), true);
     }
     if (!v->scripted && now - b->looked_ns < LOOK_NS) return true;
     b->looked_ns = now;
     if (!has_changed(b)) return true;
-    if (!v->o->json) return masu_viewer_load(v, v->o->scene);
+    if (!*b->source) return masu_viewer_load(v, b->blob, false);
     if (b->child) {
         b->again = true;
         return true;
     }
-    masu_viewer_note(v, "baking %.200s", v->o->json);
-    if (!begin(v)) {
-        snprintf(v->trouble, sizeof v->trouble, "%s", v->error);
-        return true;
-    }
-    if (!v->scripted) return true;
-    (void)ended(v, true, &good);
-    return finish(v, good);
+    if (!begin(v)) return fail(v), true;
+    return !v->scripted || masu_baker_wait(v);
 }
 
 void masu_baker_close(masu_baker *b) {
-    if (b->child) {
-        kill((pid_t)b->child, SIGTERM);
-        (void)waitpid((pid_t)b->child, NULL, 0);
-        b->child = 0;
-    }
+    masu_child_end(b->child);
+    b->child = 0;
     if (!b->folder[0]) return;
     (void)remove(b->output);
     (void)remove(b->log);

@@ -2,14 +2,15 @@
 #include "view/compose.h"
 
 #include "compose_comp.spv.h"
+#include "view/ui.h"
 
 #include <stdio.h>
 #include <string.h>
 
-enum { BINDINGS = 5, TILE = 8 };
+enum { BINDINGS = 4, TILE = 8 };
 
 typedef struct masu_compose_push {
-    int32_t width, height, split, map, top, bottom;
+    int32_t width, height, split, map;
 } masu_compose_push;
 
 /* ---- Once per device ------------------------------------------------------------------------- */
@@ -83,14 +84,12 @@ bool masu_compose_open(masu_compose *c, masu_headless *host, VkPipelineCache cac
     VkResult r = make_layouts(c);
     if (!r) r = make_pipeline(c, cache);
     if (!r) r = make_sets(c);
-    return r ? masu_headless_fail(error, size, "the overlay's pipeline", r) : true;
+    return r ? masu_headless_fail(error, size, "the pipeline of the window", r) : true;
 }
 
 /* ---- Once per size --------------------------------------------------------------------------- */
 
 static void drop_size(masu_compose *c) {
-    for (uint32_t i = 0; i < MASU_WINDOW_FLIGHT; i++)
-        masu_headless_buffer_destroy(c->host, &c->overlay[i]);
     masu_headless_buffer_destroy(c->host, &c->map);
     masu_headless_target_destroy(c->host, &c->shown);
 }
@@ -98,13 +97,6 @@ static void drop_size(masu_compose *c) {
 bool masu_compose_resize(masu_compose *c, VkExtent2D output, char *error, size_t size) {
     uint64_t bytes = (uint64_t)4 * output.width * output.height;
     drop_size(c);
-    for (uint32_t i = 0; i < MASU_WINDOW_FLIGHT; i++) {
-        if (!masu_headless_buffer_create(c->host, bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
-                                         &c->overlay[i], error, size)) {
-            return false;
-        }
-        c->top[i] = c->bottom[i] = 0;
-    }
     if (!masu_headless_buffer_create(c->host, bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, &c->map, error,
                                      size)) {
         return false;
@@ -130,22 +122,12 @@ void masu_compose_close(masu_compose *c) {
 
 /* ---- Once per frame -------------------------------------------------------------------------- */
 
-void masu_compose_overlay(masu_compose *c, uint32_t slot, const masu_canvas *canvas) {
-    c->top[slot] = canvas->top;
-    c->bottom[slot] = canvas->bottom;
-    if (canvas->bottom <= canvas->top) return;
-    size_t from = (size_t)canvas->top * (size_t)canvas->width;
-    size_t count = (size_t)(canvas->bottom - canvas->top) * (size_t)canvas->width;
-    memcpy((uint32_t *)c->overlay[slot].mapped + from, canvas->pixels + from, 4 * count);
-}
-
 static void write_set(masu_compose *c, uint32_t slot, const masu_composition *what) {
     const masu_headless_target *b = what->b ? what->b : what->a;
     VkDescriptorImageInfo images[3] = {{.imageView = what->a->view, .imageLayout = VK_IMAGE_LAYOUT_GENERAL},
                                        {.imageView = b->view, .imageLayout = VK_IMAGE_LAYOUT_GENERAL},
                                        {.imageView = c->shown.view, .imageLayout = VK_IMAGE_LAYOUT_GENERAL}};
-    VkDescriptorBufferInfo buffers[2] = {{c->overlay[slot].buffer, 0, VK_WHOLE_SIZE},
-                                         {c->map.buffer, 0, VK_WHOLE_SIZE}};
+    VkDescriptorBufferInfo map = {c->map.buffer, 0, VK_WHOLE_SIZE};
     VkWriteDescriptorSet writes[BINDINGS];
     for (uint32_t i = 0; i < BINDINGS; i++) {
         writes[i] = (VkWriteDescriptorSet){
@@ -156,7 +138,7 @@ static void write_set(masu_compose *c, uint32_t slot, const masu_composition *wh
             .descriptorType =
                 i < 3 ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
             .pImageInfo = i < 3 ? &images[i] : NULL,
-            .pBufferInfo = i < 3 ? NULL : &buffers[i - 3]};
+            .pBufferInfo = i < 3 ? NULL : &map};
     }
     vkUpdateDescriptorSets(c->host->device, BINDINGS, writes, 0, NULL);
 }
@@ -182,29 +164,46 @@ static void draw(masu_compose *c, VkCommandBuffer cmd, uint32_t slot, const masu
     VkImageMemoryBarrier before[3] = {
         change(c->shown.image, VK_IMAGE_LAYOUT_UNDEFINED, general, 0, VK_ACCESS_SHADER_WRITE_BIT),
         change(what->a->image, source, general, written, read)};
-    VkImageMemoryBarrier after[3] = {
-        change(c->shown.image, general, source, VK_ACCESS_SHADER_WRITE_BIT, VK_ACCESS_TRANSFER_READ_BIT),
-        change(what->a->image, general, source, 0, VK_ACCESS_TRANSFER_READ_BIT)};
+    VkImageMemoryBarrier after[2] = {change(what->a->image, general, source, 0, VK_ACCESS_TRANSFER_READ_BIT)};
     uint32_t count = what->b ? 3 : 2;
     if (what->b) {
         before[2] = change(what->b->image, source, general, written, read);
-        after[2] = change(what->b->image, general, source, 0, VK_ACCESS_TRANSFER_READ_BIT);
+        after[1] = change(what->b->image, general, source, 0, VK_ACCESS_TRANSFER_READ_BIT);
     }
     vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, 0, 0,
                          NULL, 0, NULL, count, before);
     uint32_t width = c->shown.width, height = c->shown.height;
-    masu_compose_push push = {(int32_t)width,
-                              (int32_t)height,
-                              (int32_t)(what->b && what->split < width ? what->split : width),
-                              what->map,
-                              c->top[slot],
-                              c->bottom[slot]};
+    masu_compose_push push = {(int32_t)width, (int32_t)height,
+                              (int32_t)(what->b && what->split < width ? what->split : width), what->map};
     vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, c->pipeline);
     vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, c->layout, 0, 1, &c->sets[slot], 0, NULL);
     vkCmdPushConstants(cmd, c->layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof push, &push);
     vkCmdDispatch(cmd, (width + TILE - 1) / TILE, (height + TILE - 1) / TILE, 1);
     vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, NULL,
-                         0, NULL, count, after);
+                         0, NULL, count - 1, after);
+}
+
+/* Where there is no picture yet. */
+static void clear(masu_compose *c, VkCommandBuffer cmd) {
+    const VkImageLayout general = VK_IMAGE_LAYOUT_GENERAL;
+    const VkClearColorValue dark = {.float32 = {0.06f, 0.07f, 0.09f, 1.0f}};
+    const VkImageSubresourceRange all = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+    VkImageMemoryBarrier before =
+        change(c->shown.image, VK_IMAGE_LAYOUT_UNDEFINED, general, 0, VK_ACCESS_TRANSFER_WRITE_BIT);
+    vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, NULL, 0,
+                         NULL, 1, &before);
+    vkCmdClearColorImage(cmd, c->shown.image, general, &dark, 1, &all);
+}
+
+/* The user interface leaves it as the blit wants it. */
+static void draw_ui(masu_compose *c, VkCommandBuffer cmd) {
+    VkImageMemoryBarrier before =
+        change(c->shown.image, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+               VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT,
+               VK_ACCESS_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT);
+    vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT,
+                         VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT, 0, 0, NULL, 0, NULL, 1, &before);
+    masu_ui_record(cmd);
 }
 
 /* The submit waits for the image at the transfer stage, and so does its first barrier. */
@@ -242,8 +241,13 @@ bool masu_compose_record(masu_compose *c, uint32_t slot, const masu_composition 
                                       .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
     r = vkBeginCommandBuffer(*cmd, &begin);
     if (r) return masu_headless_fail(error, size, "vkBeginCommandBuffer", r);
-    write_set(c, slot, what);
-    draw(c, *cmd, slot, what);
+    if (what->a) {
+        write_set(c, slot, what);
+        draw(c, *cmd, slot, what);
+    } else {
+        clear(c, *cmd);
+    }
+    draw_ui(c, *cmd);
     show(c, *cmd, image, extent);
     r = vkEndCommandBuffer(*cmd);
     return r ? masu_headless_fail(error, size, "vkEndCommandBuffer", r) : true;

@@ -1,6 +1,6 @@
 /*
  * compose.comp: what masu-view shows: the picture of A; beside a line, that of B; or a map of their
- * difference; and over all of it the overlay. One invocation per pixel.
+ * difference. One invocation per pixel.
  */
 #version 440
 
@@ -11,20 +11,14 @@ layout(push_constant) uniform Push
     ivec2 size;
     int split;   /* pixels right of it are B's; size.x: there is no B */
     int map;     /* not 0: the map instead of A and B */
-    int top;     /* rows [top, bottom) of the overlay hold something */
-    int bottom;
 } push;
 
 layout(set = 0, binding = 0, rgba8) uniform readonly image2D image_a;
 layout(set = 0, binding = 1, rgba8) uniform readonly image2D image_b;
 layout(set = 0, binding = 2, rgba8) uniform writeonly image2D shown;
-layout(set = 0, binding = 3, std430) readonly buffer Overlay
+layout(set = 0, binding = 3, std430) readonly buffer Map
 {
-    uint overlay[]; /* RGBA8, premultiplied; rows of size.x */
-};
-layout(set = 0, binding = 4, std430) readonly buffer Map
-{
-    uint map[]; /* RGBA8 */
+    uint map[]; /* RGBA8; rows of size.x */
 };
 
 void main()
@@ -41,10 +35,6 @@ void main()
         color = imageLoad(image_a, p).rgb;
     } else {
         color = imageLoad(image_b, p).rgb;
-    }
-    if (p.y >= push.top && p.y < push.bottom) {
-        vec4 over = unpackUnorm4x8(overlay[at]);
-        color = over.rgb + color * (1.0 - over.a);
     }
     imageStore(shown, p, vec4(color, 1.0));
 }

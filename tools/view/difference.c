@@ -86,7 +86,6 @@ static void show(masu_viewer *v) {
         for (size_t i = 0; i < (size_t)d->width * d->height; i++) to[i] = masu_difference_color(d->errors[i]);
         d->known = true;
     }
-    v->stale_overlay = true;
     drop(d);
 }
 

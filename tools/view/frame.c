@@ -1,4 +1,4 @@
-/* frame.c: one frame to the window: acquire an image, let the library draw, lay the overlay over it, show
+/* frame.c: one frame to the window: acquire an image, let the library draw, the user interface over it, show
  * it. Two frames are in flight; the fence of a slot is waited for before the slot comes round. */
 #include "view/viewer.h"
 
@@ -9,8 +9,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define OVERLAY_NS 100000000u /* numbers that change faster cannot be read */
 
 static bool vulkan_failed(masu_viewer *v, const char *call, VkResult r) {
     if (r == VK_ERROR_DEVICE_LOST) v->lost = true;
@@ -57,6 +55,7 @@ static bool let_draw(masu_viewer *v, uint32_t slot) {
                              .rung = v->governed ? MASU_RUNG_AUTO : v->rung,
                              .cut = v->cut};
     masu_pick_ask(v, &frame);
+    if (!masu_look_apply(v, v->a.m, &frame)) return masu_failed(v, v->a.m);
     if (masu_frame(v->a.m, &frame, &v->a.last)) return masu_failed(v, v->a.m);
     v->slot_of_a[slot] = v->a.last.slot;
     v->slot_known[slot] = true;
@@ -65,26 +64,18 @@ static bool let_draw(masu_viewer *v, uint32_t slot) {
     if (v->show == MASU_SHOW_A) return true;
     frame.rung = 0;
     frame.pick = 0;
+    if (!masu_look_apply(v, v->b.m, &frame)) return masu_failed(v, v->b.m);
     return masu_frame(v->b.m, &frame, &v->b.last) == MASU_OK || masu_failed(v, v->b.m);
 }
 
-static void draw_overlay(masu_viewer *v, uint32_t slot) {
-    uint64_t now = masu_clock_ns(NULL);
-    if (v->stale_overlay || v->scripted || now - v->overlay_ns > OVERLAY_NS) {
-        masu_canvas_clear(&v->canvas);
-        masu_hud_draw(v);
-        masu_menu_draw(v);
-        v->stale_overlay = false;
-        v->overlay_ns = now;
-        v->overlay_version++;
-    }
-    if (v->slot_version[slot] == v->overlay_version) return;
-    masu_compose_overlay(&v->compose, slot, &v->canvas);
-    v->slot_version[slot] = v->overlay_version;
+static void draw_ui(masu_viewer *v) {
+    masu_ui_begin(v->turn_seconds);
+    masu_panels_draw(v);
+    masu_ui_end();
 }
 
 static bool submit(masu_viewer *v, uint32_t slot, uint32_t image) {
-    const masu_composition what = {.a = &v->a.target,
+    const masu_composition what = {.a = v->a.m ? &v->a.target : NULL,
                                    .b = v->show == MASU_SHOW_SPLIT ? &v->b.target : NULL,
                                    .split = (uint32_t)(v->split * v->a.target.width + 0.5),
                                    .map = v->show == MASU_SHOW_MAP && v->difference.known};
@@ -95,7 +86,7 @@ static bool submit(masu_viewer *v, uint32_t slot, uint32_t image) {
     VkPipelineStageFlags stage = VK_PIPELINE_STAGE_TRANSFER_BIT;
     VkCommandBuffer drawn[2] = {v->a.last.buffer, v->b.last.buffer};
     VkSubmitInfo submits[2] = {{.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
-                                .commandBufferCount = v->show == MASU_SHOW_A ? 1 : 2,
+                                .commandBufferCount = !v->a.m ? 0 : v->show == MASU_SHOW_A ? 1 : 2,
                                 .pCommandBuffers = drawn},
                                {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
                                 .waitSemaphoreCount = 1,
@@ -123,8 +114,9 @@ bool masu_viewer_frame(masu_viewer *v) {
         return true;
     }
     if (r) return vulkan_failed(v, "vkAcquireNextImageKHR", r);
-    if (!let_draw(v, slot)) return false;
-    draw_overlay(v, slot);
+    v->slot_known[slot] = false;
+    if (v->a.m && !let_draw(v, slot)) return false;
+    draw_ui(v);
     if (!submit(v, slot, image)) return false;
     v->cut = false;
     v->frames++;
@@ -146,8 +138,8 @@ static bool save_linear(masu_viewer *v, const char *path) {
     return good;
 }
 
-bool masu_viewer_screenshot(masu_viewer *v, const char *path) {
-    masu_headless_target *t = &v->compose.shown;
+bool masu_viewer_screenshot(masu_viewer *v, const char *path, bool clean) {
+    masu_headless_target *t = clean && v->a.m ? &v->a.target : &v->compose.shown;
     if (!v->frames) {
         snprintf(v->error, sizeof v->error, "%s: no frame is rendered yet", path);
         return false;

@@ -36,7 +36,6 @@ static void drag(masu_viewer *v, int x) {
     SDL_GetWindowSize(v->window.sdl, &width, &height);
     if (width < 1) return;
     v->split = fmin(fmax((double)x / width, 0.0), 1.0);
-    v->stale_overlay = true;
 }
 
 static bool window_event(masu_viewer *v, masu_hands *h, const SDL_WindowEvent *e) {
@@ -56,8 +55,20 @@ static bool window_event(masu_viewer *v, masu_hands *h, const SDL_WindowEvent *e
     return true;
 }
 
+/* Pixels of the window's image to a point of the window: not 1 on a screen of high density. */
+static double scale(const masu_viewer *v) {
+    int width = 0;
+    SDL_GetWindowSize(v->window.sdl, &width, NULL);
+    return width > 0 ? (double)v->window.extent.width / width : 1.0;
+}
+
 bool masu_hands_event(masu_hands *h, masu_viewer *v, const SDL_Event *e) {
+    if (!h->held[TURN] && masu_ui_event(e, scale(v))) return true;
     switch (e->type) {
+    case SDL_DROPFILE:
+        masu_baker_open(v, e->drop.file);
+        SDL_free(e->drop.file);
+        return !v->lost;
     case SDL_QUIT: v->quit = true; return true;
     case SDL_WINDOWEVENT: return window_event(v, h, &e->window);
     case SDL_KEYDOWN:
@@ -72,6 +83,7 @@ bool masu_hands_event(masu_hands *h, masu_viewer *v, const SDL_Event *e) {
     case SDL_MOUSEBUTTONUP: {
         bool down = e->type == SDL_MOUSEBUTTONDOWN;
         if (e->button.button == SDL_BUTTON_RIGHT) look(h, down);
+        if (!v->a.m) return true;
         if (e->button.button == SDL_BUTTON_LEFT) h->dragging = down && v->show == MASU_SHOW_SPLIT;
         if (h->dragging) drag(v, e->button.x);
         else if (down && e->button.button == SDL_BUTTON_LEFT) masu_pick_click(v, e->button.x, e->button.y);
@@ -125,7 +137,8 @@ void masu_hands_move(masu_hands *h, masu_viewer *v, double seconds) {
     if (h->pad) add_pad(h->pad, &w, seconds);
     h->yaw = h->pitch = 0.0;
     bool moves = w.right != 0.0 || w.up != 0.0 || w.forward != 0.0 || w.yaw != 0.0 || w.pitch != 0.0;
-    if (!moves) return;
+    if (!moves || !v->a.m) return;
+    v->recorder.plays = false;
     if (v->on_path) { /* who takes the wheel, leaves the path where it is */
         masu_camera camera;
         masu_viewer_camera(v, &camera);

@@ -1,10 +1,9 @@
-/* keys.c: what a pressed key does. Keys that are held are input.c's, those of an open menu menu.c's. */
+/* keys.c: what a pressed key does. Keys that are held are input.c's; what the user interface takes is not seen here. */
 #include "view/viewer.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 
 static const float targets[] = {2.0f,   4.0f,   6.94f,  8.33f,  11.11f, 13.89f, 16.67f, 20.0f, 22.22f, 33.33f,
                                 50.0f,  66.67f, 100.0f, 200.0f, 300.0f, 500.0f, 700.0f, 1000.0f};
@@ -84,26 +83,35 @@ static void store_reference(masu_viewer *v) {
     snprintf(v->change, sizeof v->change, "B is now %.100s", name);
 }
 
-static bool screenshot(masu_viewer *v) {
-    char name[64];
-    time_t now = time(NULL);
-    struct tm local;
-    if (!localtime_r(&now, &local) || !strftime(name, sizeof name, "masu-%Y%m%d-%H%M%S.png", &local))
-        snprintf(name, sizeof name, "masu.png");
-    if (v->scripted) snprintf(name, sizeof name, "masu-%06llu.png", (unsigned long long)v->turns);
-    if (masu_viewer_screenshot(v, name)) return masu_viewer_note(v, "wrote %s", name), true;
-    snprintf(v->trouble, sizeof v->trouble, "%s", v->error); /* a full disk is no reason to end */
-    return !v->lost;
+/* What has a meaning without a scene, too. */
+static bool always(masu_viewer *v, SDL_Keycode key) {
+    bool full;
+    switch (key) {
+    case SDLK_ESCAPE:
+        if (v->gallery.open && v->a.m) v->gallery.open = false;
+        else if (v->panels.open) v->panels.open = false;
+        else v->quit = true;
+        return true;
+    case SDLK_F1: v->hud = (v->hud + 1) % MASU_HUD_LEVELS; return true;
+    case SDLK_F4:
+        if (v->gallery.open && v->a.m) v->gallery.open = false;
+        else masu_gallery_open(v), v->panels.focus = true;
+        return true;
+    case SDLK_F11:
+        full = (SDL_GetWindowFlags(v->window.sdl) & SDL_WINDOW_FULLSCREEN_DESKTOP) != 0;
+        SDL_SetWindowFullscreen(v->window.sdl, full ? 0 : SDL_WINDOW_FULLSCREEN_DESKTOP);
+        return true;
+    case SDLK_F12: v->shoot = true; return true;
+    default: return false;
+    }
 }
 
 bool masu_key_pressed(masu_viewer *v, SDL_Keycode key, uint16_t modifiers) {
     double far = modifiers & KMOD_SHIFT ? 10.0 : 1.0;
-    v->stale_overlay = true;
     v->moved = v->frames; /* whatever it was: what is compared is to be compared again */
-    if (v->menu.open && masu_menu_key(v, key)) return true;
+    if (always(v, key) || !v->a.m) return true;
     if (key >= SDLK_1 && key <= SDLK_8) return take_rung(v, (uint32_t)(key - SDLK_1)), true;
     switch (key) {
-    case SDLK_ESCAPE: v->quit = true; return true;
     case SDLK_PAGEUP: return take_rung(v, v->rung > 0 ? v->rung - 1 : 0), true;
     case SDLK_PAGEDOWN: return take_rung(v, v->rung + 1), true;
     case SDLK_0: govern(v, true); return true;
@@ -122,19 +130,18 @@ bool masu_key_pressed(masu_viewer *v, SDL_Keycode key, uint16_t modifiers) {
     case SDLK_RIGHT: scrub(v, 0.1 * far); return true;
     case SDLK_HOME: scrub(v, -v->time); return true;
     case SDLK_TAB:
-    case SDLK_m: v->menu.open = !v->menu.open; return true;
-    case SDLK_F1: v->hud = (v->hud + 1) % MASU_HUD_LEVELS; return true;
+    case SDLK_m: masu_panels_show(v, v->panels.tab); return true;
+    case SDLK_F5:
+    case SDLK_F6:
+    case SDLK_F7:
+    case SDLK_F8: masu_panels_show(v, MASU_TAB_SCENE + (uint32_t)(key - SDLK_F5)); return true;
+    case SDLK_F10: masu_panels_show(v, MASU_TAB_CAPTURE); return true;
+    case SDLK_F9: masu_capture_film(v, !v->recorder.films); return true;
     case SDLK_F2: return masu_viewer_show(v, v->show == MASU_SHOW_SPLIT ? MASU_SHOW_A : MASU_SHOW_SPLIT);
     case SDLK_F3: return masu_viewer_show(v, v->show == MASU_SHOW_MAP ? MASU_SHOW_A : MASU_SHOW_MAP);
     case SDLK_b: store_reference(v); return true;
     case SDLK_LEFTBRACKET: v->split = fmax(v->split - 0.02 * far, 0.0); return true;
     case SDLK_RIGHTBRACKET: v->split = fmin(v->split + 0.02 * far, 1.0); return true;
-    case SDLK_F11: {
-        bool full = (SDL_GetWindowFlags(v->window.sdl) & SDL_WINDOW_FULLSCREEN_DESKTOP) != 0;
-        SDL_SetWindowFullscreen(v->window.sdl, full ? 0 : SDL_WINDOW_FULLSCREEN_DESKTOP);
-        return true;
-    }
-    case SDLK_F12: return screenshot(v);
     default: return true;
     }
 }

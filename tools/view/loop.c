@@ -27,6 +27,9 @@ static void take_events(masu_viewer *v, masu_hands *hands, bool *good) {
 static void pass_time(masu_viewer *v, masu_hands *hands, double seconds) {
     double step = v->paused ? 0.0 : seconds;
     masu_hands_move(hands, v, seconds);
+    v->turn_seconds = seconds;
+    masu_capture_step(v, seconds);
+    masu_look_advance(v, step);
     v->time_step = (float)step;
     v->time += step;
     if (v->on_path && v->path_end > 0.0 && v->time > v->path_end) {
@@ -51,8 +54,8 @@ static bool turn(masu_viewer *v, masu_script *script, masu_hands *hands, double 
     if (!masu_script_play(script, v)) return false;
     take_events(v, hands, &good);
     if (!good || v->quit) return good;
-    if (!masu_baker_poll(v)) return false;
-    if (v->changed) restart(v, &good);
+    if (!masu_baker_poll(v) || !masu_gallery_poll(v)) return false;
+    if (v->changed && v->a.m) restart(v, &good);
     if (!good) return false;
     if (v->window.stale && !v->hidden && !masu_viewer_resize(v)) return false;
     bool drawable = !v->hidden && v->window.extent.width;
@@ -63,8 +66,14 @@ static bool turn(masu_viewer *v, masu_script *script, masu_hands *hands, double 
     pass_time(v, hands, seconds);
     uint64_t before = v->frames;
     if (!masu_viewer_frame(v) || !masu_difference_step(v)) return false;
-    if (v->frames == before) SDL_Delay(RETRY);
-    return true;
+    if (v->frames == before) {
+        SDL_Delay(RETRY);
+        return true;
+    }
+    if (!masu_capture_frame(v)) return false;
+    bool shoot = v->shoot;
+    v->shoot = false;
+    return !shoot || masu_capture_still(v);
 }
 
 /* True: the device is another one now. */
@@ -85,7 +94,9 @@ int masu_viewer_run(masu_viewer *v, masu_script *script) {
     bool good = true;
     while (good && !v->quit) {
         uint64_t now = masu_clock_ns(NULL), frames = v->frames;
-        double seconds = v->scripted ? MASU_VIEWER_STEP : fmin((double)(now - last) / 1e9, STEP_MAX);
+        double seconds = v->recorder.films ? MASU_VIEWER_FILM_STEP
+                         : v->scripted    ? MASU_VIEWER_STEP
+                                          : fmin((double)(now - last) / 1e9, STEP_MAX);
         last = now;
         good = turn(v, script, &hands, seconds);
         if (!good && v->lost) good = recover(v);
@@ -97,7 +108,7 @@ int masu_viewer_run(masu_viewer *v, masu_script *script) {
         }
         v->turns++;
         if (good && o->frames && v->turns == o->frames) {
-            if (o->screenshot) good = masu_viewer_screenshot(v, o->screenshot);
+            if (o->screenshot) good = masu_viewer_screenshot(v, o->screenshot, false);
             v->quit = v->quit || o->quit;
         }
     }

@@ -1,4 +1,4 @@
-/* main.c: the program masu-view: a baked scene in a window. docs/commands.md is its manual. */
+/* main.c: the program masu-view: a scene in a window, from any file. docs/commands.md is its manual. */
 #include "view/script.h"
 
 #include "settings/setting.h"
@@ -15,11 +15,14 @@
 static const masu_option rows[] = {
     MASU_HEADING("Scene"),
     MASU_TEXT(masu_viewer_options, json, "json", "FILE.json",
-              "scene description; baked again when it or a file that it names (.sdf,\n"
-              ".glsl, models) changes, and baked at the start if there is no SCENE.masu"),
+              "description of the baked scene FILE; baked again when it or a file that it\n"
+              "names (.sdf, .glsl, models) changes"),
     MASU_TEXT(masu_viewer_options, bake, "bake", "COMMAND",
-              "shell command of the baker, run as COMMAND FILE.json -o OUT.masu --quiet\n"
+              "shell command of the baker, run as COMMAND FILE -o OUT.masu\n"
               "(default: masu-bake in the folder of this program)"),
+    MASU_TEXT(masu_viewer_options, gallery, "gallery", "DIR", "scenes of the start page, as pictures"),
+    MASU_TEXT(masu_viewer_options, cache, "cache", "DIR",
+              "folder of these pictures (default: one in TMPDIR)"),
     MASU_HEADING("Window"),
     MASU_SIZE(masu_viewer_options, size, "size", "size of the window in pixels"),
     MASU_FLAG(masu_viewer_options, no_vsync, "no-vsync",
@@ -87,12 +90,10 @@ static int view(const masu_viewer_options *o) {
     v->o = o;
     v->scripted = o->script || o->frames;
     v->rung = o->rung;
-    v->governed = !o->rung_given && !o->setting;
     v->time = o->time;
     v->split = 0.5;
     v->hud = MASU_HUD_SHORT;
     v->fly.speed = 4.0;
-    v->overlay_version = 1;
     masu_script script = {0};
     int code = describe(o, v);
     bool read = code || !o->script || masu_script_read(o->script, &script, v->error, sizeof v->error);
@@ -116,16 +117,13 @@ static int view(const masu_viewer_options *o) {
 
 static int run(masu_cli *cli) {
     masu_viewer_options o = {.size = {1280, 720}, .target_ms = 16.67, .host.message = print_message};
-    masu_given given = {.most = 1, .excess = "expected one scene"};
+    masu_given given = {.most = 1, .excess = "expected one file"};
     int code;
     if (!masu_options_read(cli, rows, &o, &given, &code)) return code;
     o.scene = given.count ? given.arguments[0] : NULL;
     o.rung_given = masu_is_given(&given, rows, "rung");
     masu_switch ignored;
     masu_use_rays(o.rays, &ignored, &o.host);
-    if (!o.scene && !o.json)
-        return masu_cli_usage_error("no scene given: expected SCENE.masu or --json FILE.json");
-    if (o.bake && !o.json) return masu_cli_usage_error("--bake needs --json");
     if (o.setting && (o.ladder || o.rung_given || masu_is_given(&given, rows, "target-ms")))
         return masu_cli_usage_error(
             "--setting cannot be combined with --ladder, --rung or --target-ms");
@@ -137,25 +135,30 @@ static int run(masu_cli *cli) {
 
 int main(int argc, char **argv) {
     static const masu_cli_command command = {
-        .arguments = "SCENE.masu [options]\n"
-                     "       masu-view --json FILE.json [options]",
-        .summary = "show a baked scene in a window",
+        .arguments = "[FILE] [options]",
+        .summary = "show a scene in a window",
         .details =
+            "FILE is a baked scene (.masu), a scene description (.json), an SDF (.sdf) or a model (.glb, .gltf,\n"
+            ".obj, ...); all but the first are baked, and baked again when they change. Without it the start page\n"
+            "opens. A file that is dropped on the window is opened.\n\n"
             "Keys:\n"
             "  W A S D, Q E          move the camera; Shift: faster; mouse wheel: speed\n"
             "  right mouse button    turn the camera\n"
             "  P, Space              camera path on, off; pause\n"
             "  Left, Right, Home     time backward, forward, 0; Shift: larger steps\n"
+            "  Tab or M              panels: arrow keys move, Space changes, Enter types a value, Esc ends\n"
+            "  F4                    start page\n"
+            "  F5 to F8, F10         panels: scene, light, quality, camera; capture\n"
+            "  F9, F12               video on, off; screenshot\n"
             "  1 to 8                rung 0 to 7 of the ladder\n"
             "  Page Up, Page Down    the next better, the next cheaper rung\n"
             "  0; G; + and -         governor on; governor on, off; its target\n"
-            "  Tab or M              knobs: arrow keys select and change, Backspace: the default\n"
-            "  F1                    overlay: off, short, full\n"
+            "  F1                    numbers: off, short, full\n"
             "  F2                    split screen: A, the current setting, and B, a stored one\n"
             "  [ ], left mouse       move the dividing line; without split screen: pick an object\n"
             "  B                     store the current setting as B (at first the best rung)\n"
             "  F3                    FLIP of A against B\n"
-            "  F11, F12, Esc         full screen; screenshot; exit\n"
+            "  F11, Esc              full screen; close panels, exit\n"
             "A game controller also moves the camera.\n\n"
             "Exit codes:\n"
             "  0  success\n"
@@ -163,7 +166,8 @@ int main(int argc, char **argv) {
             "  2  the command line is wrong\n\n"
             "Examples:\n"
             "  masu-view engine.masu\n"
-            "  masu-view --json scenes/engine.json --setting scale=0.5\n",
+            "  masu-view model.glb\n"
+            "  masu-view scenes/engine.json --setting scale=0.5\n",
         .run = run};
     static const masu_cli_command *const commands[] = {&command, NULL};
     static const masu_cli_program program = {

@@ -72,24 +72,13 @@ void masu_pick_take(masu_viewer *v, uint32_t slot) {
     v->picked.at[0] = (int)p.x;
     v->picked.at[1] = (int)p.y;
     v->picked.turn = v->turns;
-    v->stale_overlay = true;
     if (v->scripted && !masu_cli_quiet()) printf("%u %u: %s\n", p.x, p.y, v->picked.text);
 }
 
 void masu_pick_draw(masu_viewer *v) {
-    masu_canvas *c = &v->canvas;
     if (!v->picked.text[0] || v->turns - v->picked.turn >= SHOWN_TURNS) return;
-    int x = v->picked.at[0], y = v->picked.at[1], w = c->font->width, h = c->font->height;
-    char text[sizeof v->picked.text];
-    int room = c->width / w - 3, length;
-    snprintf(text, sizeof text, "%.*s", room > 0 ? room : 0, v->picked.text);
-    length = (int)strlen(text);
-    masu_canvas_fill(c, x - h / 2, y, h, 1, 0xFFFFFF, 255);
-    masu_canvas_fill(c, x, y - h / 2, 1, h, 0xFFFFFF, 255);
-    /* Right of the cross and above it, or where there is room. */
-    int left = x + w, top = y - 2 * h;
-    if (left > c->width - (length + 2) * w) left = c->width - (length + 2) * w;
-    if (top < 0) top = y + h;
-    masu_canvas_fill(c, left, top, (length + 2) * w, h + h / 2, 0x0B1016, 205);
-    (void)masu_canvas_text(c, left + w, top + h / 4, MASU_INK_GOOD, text);
+    float x = (float)v->picked.at[0], y = (float)v->picked.at[1], h = masu_ui_line_height();
+    masu_ui_fill(x - h / 2, y, h, 1.0f, 0xFFFFFF, 1.0f);
+    masu_ui_fill(x, y - h / 2, 1.0f, h, 0xFFFFFF, 1.0f);
+    masu_ui_label(x + h, y < 3.0f * h ? y + h : y - 2.5f * h, 0.0f, 0.0f, MASU_INK_GOOD, v->picked.text);
 }

@@ -25,13 +25,15 @@ typedef enum masu_act {
     ACT_MINIMISE,
     ACT_RESTORE,
     ACT_SCREENSHOT,
+    ACT_DROP,
+    ACT_WAIT,
     ACT_RUN,
     ACT_LOSE,
     ACT_QUIT
 } masu_act;
 
 static const char *const act_names[] = {"key",    "down",     "up",      "wheel",      "mouse", "button", "click",
-                                        "resize", "minimise", "restore", "screenshot", "run",   "lose",   "quit"};
+                                        "resize", "minimise", "restore", "screenshot", "drop",  "wait",   "run",   "lose",       "quit"};
 enum { ACTS = sizeof act_names / sizeof *act_names };
 
 typedef struct masu_script_line {
@@ -78,6 +80,7 @@ static bool read_text(masu_script_line *line) {
         return sscanf(line->text, "%dx%d %c", &line->x, &line->y, &end) == 2 && line->x >= 1 && line->y >= 1 &&
                line->x <= 16384 && line->y <= 16384;
     case ACT_SCREENSHOT: return *line->text && masu_file_named(line->text, ".png", NULL, 0);
+    case ACT_DROP:
     case ACT_RUN: return *line->text != '\0';
     default: return *line->text == '\0';
     }
@@ -228,7 +231,12 @@ static bool play(masu_viewer *v, const masu_script_line *l) {
     case ACT_RESIZE: SDL_SetWindowSize(v->window.sdl, l->x, l->y); return true;
     case ACT_MINIMISE: push_window(v, SDL_WINDOWEVENT_MINIMIZED); return true;
     case ACT_RESTORE: push_window(v, SDL_WINDOWEVENT_RESTORED); return true;
-    case ACT_SCREENSHOT: return masu_viewer_screenshot(v, l->text);
+    case ACT_SCREENSHOT: return masu_viewer_screenshot(v, l->text, false);
+    case ACT_DROP:
+        e.drop = (SDL_DropEvent){.type = SDL_DROPFILE, .file = SDL_strdup(l->text)};
+        SDL_PushEvent(&e);
+        return true;
+    case ACT_WAIT: return masu_baker_wait(v);
     case ACT_RUN: return run(v, l->text);
     case ACT_LOSE: v->lose = true; return true;
     case ACT_QUIT: e.type = SDL_QUIT; SDL_PushEvent(&e); return true;

@@ -10,6 +10,8 @@
  *     frame N resize 800x600
  *     frame N minimise           or restore
  *     frame N screenshot out.png of the frame before
+ *     frame N drop FILE          dropped on the window; what is baked for it goes on in later frames,
+ *     frame N wait               until it is baked
  *     frame N run COMMAND        by sh; waited for
  *     frame N lose               as if the device were lost
  *     frame N quit

@@ -21,7 +21,6 @@ void masu_viewer_note(masu_viewer *v, const char *format, ...) {
     (void)vsnprintf(v->note, sizeof v->note, format, arguments);
     va_end(arguments);
     v->note_turn = v->turns;
-    v->stale_overlay = true;
 }
 
 /* Objects that the GPU still uses cannot be destroyed, and waiting for it has no end. */
@@ -60,6 +59,8 @@ static bool read_scene(masu_viewer *v, const char *path, void **blob, masu_scene
 
 /* The path's camera where there is one, else one that looks at the middle from a few metres. */
 static void place_camera(masu_viewer *v) {
+    v->time = v->o->time;
+    v->path_end = masu_fly_path_end(v->a.m);
     masu_camera camera = {.position = {0.0, 1.7, 6.0}, .forward = {0.0f, -0.1f, -1.0f}, .fov_y = 1.0f};
     bool has = masu_scene_count(&v->scene, MASU_SCENE_CAMERA_KEY) &&
                masu_camera_at(v->a.m, v->time, &camera) == MASU_OK;
@@ -93,7 +94,7 @@ static void complete(masu_viewer *v, masu_desc *d) {
                               .pipeline_cache = v->cache,
                               .pipelines = &v->pools[0],
                               .texture_compression_bc = h->compressed,
-                              .max_anisotropy = h->most_anisotropy < 8.0f ? h->most_anisotropy : 8.0f,
+                              .max_anisotropy = h->usual_anisotropy,
                               .ray_query = h->ray_query,
                               .shader_float16 = h->float16};
     d->scene = &v->scene;
@@ -133,7 +134,6 @@ static bool start_a(masu_viewer *v) {
     d.picking = 1;
     if (v->o->screenshot && masu_image_is_linear(v->o->screenshot)) d.readback = MASU_READBACK_HDR;
     v->cut = true;
-    v->stale_overlay = true;
     v->difference.known = false;
     v->picked.text[0] = '\0';
     for (uint32_t i = 0; i < MASU_WINDOW_FLIGHT; i++) v->slot_known[i] = false;
@@ -159,7 +159,6 @@ bool masu_viewer_restart(masu_viewer *v) {
 bool masu_viewer_show(masu_viewer *v, uint32_t show) {
     uint32_t before = v->show;
     v->show = show;
-    v->stale_overlay = true;
     if ((before == MASU_SHOW_A) == (show == MASU_SHOW_A)) return true;
     masu_viewer_settle(v);
     if (show == MASU_SHOW_A) {
@@ -177,7 +176,6 @@ bool masu_viewer_show(masu_viewer *v, uint32_t show) {
 /* Without a start where the size was planned for. */
 static bool resize_stages(masu_viewer *v, VkExtent2D now) {
     v->cut = true;
-    v->stale_overlay = true;
     v->difference.known = false;
     bool kept = masu_stage_resize(&v->a, now, v->error, sizeof v->error);
     if (kept) masu_plan_of(v->a.m, &v->plan);
@@ -197,16 +195,25 @@ bool masu_viewer_resize(masu_viewer *v) {
         return false;
     }
     VkExtent2D now = v->window.extent;
-    const masu_headless_target *is = &v->a.target;
-    if (!now.width || (v->a.m && is->width == now.width && is->height == now.height)) return true;
-    if (!masu_canvas_resize(&v->canvas, now.width, now.height)) {
-        snprintf(v->error, sizeof v->error, "out of memory for an overlay of %ux%u", now.width,
-                 now.height);
-        return false;
-    }
-    if (!masu_compose_resize(&v->compose, now, v->error, sizeof v->error)) return false;
-    v->overlay_version++;
-    return v->a.m ? resize_stages(v, now) : start_a(v);
+    const masu_headless_target *is = &v->compose.shown;
+    if (!now.width || (is->width == now.width && is->height == now.height)) return true;
+    if (!masu_compose_resize(&v->compose, now, v->error, sizeof v->error) || !masu_viewer_attach_ui(v)) return false;
+    return !v->blob || (v->a.m ? resize_stages(v, now) : start_a(v));
+}
+
+bool masu_viewer_attach_ui(masu_viewer *v) {
+    const masu_headless *h = &v->host;
+    const masu_ui_device d = {.instance = h->instance,
+                              .physical = h->physical,
+                              .device = h->device,
+                              .family = h->family,
+                              .queue = h->queue,
+                              .pool = h->pool,
+                              .view = v->compose.shown.view,
+                              .extent = v->window.extent,
+                              .flight = MASU_WINDOW_FLIGHT};
+    v->gallery.stale = false;
+    return masu_ui_attach(&d, (const uint8_t *const *)v->gallery.pictures, v->gallery.count, v->error, sizeof v->error);
 }
 
 /* The ladder of the scene, or what the command line says instead. A value that is the default is 0 again,
@@ -231,7 +238,22 @@ static void want_given(masu_viewer *v) {
     }
 }
 
-bool masu_viewer_load(masu_viewer *v, const char *path) {
+/* What belongs to a scene that is looked at for the first time. */
+static void begin_scene(masu_viewer *v) {
+    char title[300];
+    v->rung = v->o->rung_given ? v->o->rung : 0;
+    if (v->rung >= v->want.rung_count) v->rung = v->want.rung_count - 1;
+    v->governed = !v->o->rung_given && v->want.governor.mode != MASU_GOVERNOR_OFF;
+    v->reference = v->want.rungs[0];
+    v->recorder.count = 0;
+    v->recorder.records = v->recorder.plays = false;
+    place_camera(v);
+    masu_look_reset(v);
+    snprintf(title, sizeof title, "masu: %.290s", *v->baker.source ? v->baker.source : v->baker.blob);
+    SDL_SetWindowTitle(v->window.sdl, title);
+}
+
+bool masu_viewer_load(masu_viewer *v, const char *path, bool fresh) {
     void *blob = NULL;
     masu_scene scene;
     if (!read_scene(v, path, &blob, &scene)) {
@@ -241,14 +263,21 @@ bool masu_viewer_load(masu_viewer *v, const char *path) {
     void *old_blob = v->blob;
     masu_scene old = v->scene;
     masu_desc old_want = v->want;
-    bool same_class = masu_scene_class_of(&scene) == masu_scene_class_of(&old);
+    bool same_class = old_blob && masu_scene_class_of(&scene) == masu_scene_class_of(&old);
     v->blob = blob;
     v->scene = scene;
-    if (!same_class) want_given(v); /* other rungs were measured for it */
+    if (!same_class || fresh) want_given(v); /* other rungs were measured for it */
+    if (!v->host.device) return true;        /* it is what the program begins with */
+    if (v->rung >= v->want.rung_count) v->rung = v->want.rung_count - 1;
     masu_viewer_settle(v);
     if (start_a(v)) {
         free(old_blob);
         v->trouble[0] = '\0';
+        if (fresh) {
+            begin_scene(v);
+            return v->show == MASU_SHOW_A || start_b(v);
+        }
+        masu_look_keep(v);
         v->path_end = masu_fly_path_end(v->a.m);
         if (!masu_scene_count(&scene, MASU_SCENE_CAMERA_KEY)) v->on_path = false;
         masu_viewer_note(v, "reloaded in %.0f ms %s", v->a.start_ms,
@@ -261,7 +290,7 @@ bool masu_viewer_load(masu_viewer *v, const char *path) {
     v->want = old_want;
     if (v->lost) return false;
     snprintf(v->trouble, sizeof v->trouble, "%s", v->error);
-    return v->a.m ? true : start_a(v);
+    return v->a.m || !v->blob ? true : start_a(v);
 }
 
 /* ---- Device ---------------------------------------------------------------------------------- */
@@ -278,13 +307,12 @@ static bool open_device(masu_viewer *v) {
     if (r) return masu_headless_fail(v->error, sizeof v->error, "vkCreateFence", r);
     if (!masu_compose_open(&v->compose, &v->host, v->cache, v->error, sizeof v->error)) return false;
     /* A window may be opened minimised: then there is no size yet to begin with. */
-    for (int i = 0; i < 100 && !v->a.m; i++) {
+    for (int i = 0; i < 100; i++) {
         if (!masu_viewer_resize(v)) return false;
-        if (v->a.m) break;
+        if (v->window.extent.width) return true;
         SDL_PumpEvents();
         SDL_Delay(50);
     }
-    if (v->a.m) return true;
     snprintf(v->error, sizeof v->error, "no window: its size is 0");
     return false;
 }
@@ -296,6 +324,7 @@ static void close_device(masu_viewer *v) {
     masu_stage_close(&v->a);
     masu_stage_close(&v->b);
     for (int i = 0; i < 2 && v->host.device; i++) masu_pipelines_destroy(&d.vulkan, &v->pools[i]);
+    masu_ui_detach();
     masu_compose_close(&v->compose);
     for (uint32_t i = 0; i < MASU_WINDOW_FLIGHT && v->host.device; i++) {
         vkDestroyFence(v->host.device, v->fences[i], NULL);
@@ -316,37 +345,37 @@ bool masu_viewer_recover(masu_viewer *v) {
     return v->show == MASU_SHOW_A || start_b(v);
 }
 
+/* What is wrong with files is said before there is a window. */
 bool masu_viewer_open(masu_viewer *v) {
-    const char *path = v->o->scene;
-    char title[300];
-    if (!masu_baker_open(v)) return false;
-    if (!path) path = v->baker.output;
-    if (!read_scene(v, path, &v->blob, &v->scene)) return false;
-    snprintf(title, sizeof title, "masu: %s", v->o->scene ? v->o->scene : v->o->json);
-    want_given(v);
-    v->reference = v->want.rungs[0];
-    if (v->rung >= v->want.rung_count) {
-        snprintf(v->error, sizeof v->error, "--rung: expected 0 to %u, found %u",
-                 v->want.rung_count - 1, v->rung);
+    masu_ui_open();
+    if (!masu_baker_start(v)) return false;
+    if (*v->trouble) {
+        snprintf(v->error, sizeof v->error, "%s", v->trouble);
         return false;
     }
-    if (!masu_window_open(&v->window, title, v->o->size, v->error, sizeof v->error) || !open_device(v))
+    if (v->blob && v->o->rung >= v->want.rung_count) {
+        snprintf(v->error, sizeof v->error, "--rung: expected 0 to %u, found %u", v->want.rung_count - 1, v->o->rung);
         return false;
-    v->path_end = masu_fly_path_end(v->a.m);
-    place_camera(v);
+    }
+    v->rung = v->o->rung;
+    if (!masu_window_open(&v->window, "masu", v->o->size, v->error, sizeof v->error) || !open_device(v)) return false;
+    if (v->a.m) begin_scene(v);
     return true;
 }
 
 void masu_viewer_close(masu_viewer *v) {
     masu_difference_close(&v->difference);
     masu_baker_close(&v->baker);
+    masu_capture_close(v);
     close_device(v);
-    masu_canvas_free(&v->canvas);
+    masu_gallery_close(&v->gallery);
+    masu_ui_close();
     free(v->blob);
     v->blob = NULL;
     masu_window_close(&v->window);
 }
 
 void masu_viewer_camera(const masu_viewer *v, masu_camera *out) {
+    if (masu_capture_camera(v, out)) return;
     if (!v->on_path || masu_camera_at(v->a.m, v->time, out)) masu_fly_camera(&v->fly, out);
 }

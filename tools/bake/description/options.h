@@ -11,6 +11,8 @@ typedef struct masu_bake_options {
     const char *models_directory; /* what "@assimp/" stands for */
     /* No ground, shadows, occlusion, reflections that are not asked for. */
     bool bare;
+    double turn;         /* degrees, added to the environment map's own */
+    const char *variant; /* of the materials of a lone model; NULL: the file's own */
     /* build */
     masu_bake_textures textures; /* WANTED or OFF */
     const char *texture_path;    /* folders with ':' between, or NULL */

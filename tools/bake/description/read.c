@@ -71,15 +71,16 @@ static bool read_scene(const masu_bake_options *options, masu_bake_description *
     char *directory = masu_bake_directory_of(options->input);
     masu_bake_reader reader = {directory, options->models_directory, options->bare, out};
     bool good = read_members(&scene, &reader);
+    if (out->environment.file) out->environment.rotate += options->turn;
     free(directory);
     json_decref(scene.value);
     return good;
 }
 
-static void describe_model(const char *file, masu_bake_description *out) {
+static void describe_model(const char *file, const char *variant, masu_bake_description *out) {
     out->models = masu_bake_take(&out->pool, sizeof *out->models);
     out->models[0] = (masu_bake_model){
-        .where = "", .file = file, .plays = true, .lights = 1, .placement = masu_bake_identity()};
+        .where = "", .file = file, .variant = variant, .plays = true, .lights = 1, .placement = masu_bake_identity()};
     out->model_count = 1;
 }
 
@@ -99,6 +100,11 @@ bool masu_bake_read(const masu_bake_options *options, masu_bake_description *out
                        masu_file_hint(options->input, NULL, 0, MASU_FILE_UNKNOWN));
         return false;
     }
+    bool is_lone = !is_scene(options->input) && !masu_bake_is_sdf(options->input);
+    if (options->variant && !is_lone) {
+        masu_cli_error("%s: --variant needs a model", options->input);
+        return false;
+    }
     if (is_scene(options->input)) {
         if (!options->describe) return read_scene(options, out);
         masu_cli_error(
@@ -107,7 +113,7 @@ bool masu_bake_read(const masu_bake_options *options, masu_bake_description *out
         return false;
     }
     if (masu_bake_is_sdf(options->input)) return masu_bake_describe_sdf(options, out);
-    describe_model(options->input, out);
+    describe_model(options->input, options->variant, out);
     out->first_look = out->reflections.wanted = out->default_reflections = !options->bare;
     return true;
 }

@@ -8,10 +8,11 @@
  * have the same one, or only one of them has any; of two different ones the coat's is left out, with a note.
  *
  * What has no counterpart is brought near, and a note says so: glass of KHR_materials_transmission
- * is thin, and what shines through has its base colour; unlit surfaces emit their colour; specular
+ * is thin, what shines through has its base colour and what KHR_materials_volume leaves of it; unlit surfaces emit their colour; specular
  * and glossiness become metallic and roughness, as the appendix of that extension has it. */
 #include "bake/import/gltf.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -469,6 +470,22 @@ static bool read_coat(masu_gltf *g, const json_t *about, masu_blob_material *to,
            read_texture(g, coat, "clearcoatRoughnessTexture", &m->all[MASU_BAKE_COAT_ROUGHNESS]);
 }
 
+/* KHR_materials_volume: the light that is left after the thickness, as a factor for each of the two surfaces that a ray
+ * crosses. The refraction of the ray is not followed. */
+static bool read_volume(masu_gltf *g, const json_t *about, float color[3]) {
+    const json_t *volume = masu_gltf_extension(g, about, "KHR_materials_volume");
+    double thickness = 0, distance = 0, left[3] = {1, 1, 1};
+    if (!masu_gltf_number(g, volume, "thicknessFactor", &thickness) ||
+        !masu_gltf_number(g, volume, "attenuationDistance", &distance) ||
+        !masu_gltf_numbers(g, volume, "attenuationColor", 3, left))
+        return false;
+    note_texture(g, volume, "thicknessTexture");
+    if (!(thickness > 0 && distance > 0)) return true;
+    limit_all(g, left, 3, 1, "attenuationColor");
+    for (int k = 0; k < 3; k++) color[k] *= (float)pow(left[k], 0.5 * thickness / distance);
+    return true;
+}
+
 /* Of what shines through a share is coloured; the alpha of the base colour counts where it is blended anyway. */
 static bool read_transmission(masu_gltf *g, const json_t *about, masu_gltf_material *out) {
     const json_t *through = masu_gltf_extension(g, about, "KHR_materials_transmission");
@@ -484,10 +501,7 @@ static bool read_transmission(masu_gltf *g, const json_t *about, masu_gltf_mater
             g->where);
         return true;
     }
-    if (to->roughness > 0)
-        masu_gltf_note_one(
-            g, "materials transmit light and are rough: what is behind them is drawn sharp",
-            g->where);
+    if (!read_volume(g, about, to->base_color)) return false;
     out->alpha = (out->blends ? out->alpha : 1) * (1 - factor);
     out->given.maps.tinted = 1;
     out->blends = true;

@@ -1,5 +1,5 @@
 /* video.c: see video.h. */
-#include "masu/video.h"
+#include "command/video.h"
 
 #include <errno.h>
 #include <math.h>
