@@ -88,6 +88,7 @@ static void blends_and_parts_that_move(void **state) {
     (void)state;
     same("blobs", 1, 0.7);
     same("blobs", 1, 3.1);
+    same("creature", 1, 0.4);
     if (whole_run()) same("wet_city", 1, 2.3);
 }
 

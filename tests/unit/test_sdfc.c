@@ -517,6 +517,9 @@ static void blocks_have_bits_for_what_can_be_left_out(void **state) {
         {"part a = union(sphere(1), box((1, 2, 3)));", 1, 2},
         {"part a = smooth_union(0.2, sphere(1), union(torus(2, 0.1), cylinder(1, 1)));", 1, 4},
         {"part a = difference(sphere(1), torus(1, 0.2), box((1, 2, 3)));", 1, 3},
+        {"part a = blend(0.2, sphere(1), torus(2, 0.1), cylinder(1, 1), box((1, 2, 3)));", 1, 3},
+        {"part a = chamfer(0.2, sphere(1), stairs(0.1, 3, torus(2, 0.1), cylinder(1, 1)));", 1, 4},
+        {"part a = xor(sphere(1), torus(2, 0.1));", 0, 0},
         {"for i in 0..8 { part a = translate((i, 0, 0), union(sphere(1), box((1, 2, 3)))); }", 1, 2},
         /* more than a word for all of them: none */
         {"for i in 0..20 { part a = translate((i, 0, 0), union(sphere(1), box((1, 2, 3)))); }", 1, 0},

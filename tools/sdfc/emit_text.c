@@ -68,27 +68,24 @@ static bool *live_variables(sdfc *c, const sdfc_program *p) {
     return live;
 }
 
-static bool is_called(const sdfc_program *p, const bool *live, int callee) {
-    for (int f = 0; f < callee; f++) {
-        for (int k = 0; k < p->functions[f].count; k++) {
-            const sdfc_instr *i = &p->functions[f].instrs[k];
-            bool calls = i->op == SDFC_CALL_MIN || i->op == SDFC_CALL_NEAREST;
-            if (calls && i->aux == callee && (f != p->surface || !p->surface || live[3 + k])) return true;
-        }
-    }
-    return false;
-}
-
 /* Which functions of a part are called at all, and which variables of its surface are needed. */
 typedef struct liveness {
     bool *functions, *variables;
 } liveness;
 
+/* A function calls later ones only. */
 static liveness find_live(sdfc *c, const sdfc_program *p) {
     liveness l = {sdfc_take(c, (size_t)p->function_count, 1), NULL};
     if (p->surface) l.variables = live_variables(c, p);
+    l.functions[0] = true;
+    l.functions[p->surface] = true;
     for (int f = 0; f < p->function_count; f++) {
-        l.functions[f] = f == 0 || (p->surface && f == p->surface) || is_called(p, l.variables, f);
+        bool surface = p->surface && f == p->surface;
+        for (int k = 0; k < p->functions[f].count && l.functions[f]; k++) {
+            const sdfc_instr *i = &p->functions[f].instrs[k];
+            bool calls = i->op == SDFC_CALL_MIN || i->op == SDFC_CALL_NEAREST;
+            if (calls && (!surface || l.variables[3 + k])) l.functions[i->aux] = true;
+        }
     }
     return l;
 }
@@ -352,7 +349,7 @@ static void open_terms(sdfc_writer *w, const sdfc_group *g, const sdfc_program *
         const sdfc_term *term = &f->terms[t];
         if (term->first != k || !is_open(term)) continue;
         PUT(w, is_declared(f, t) ? "    v%d = " : "    real v%d = ", 3 + term->last);
-        if (term->opens)
+        if (term->opens || term->far)
             PUT(w, term->most ? "(-1e30)" : "1e30");
         else
             sdfc_put_operand(w, g, p, f->instrs[term->last].operand[0]);

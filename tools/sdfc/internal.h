@@ -182,6 +182,7 @@ typedef struct sdfc_term {
     int smooth;      /* the argument (~operand) that is the radius of the blend, or 0 */
     int cap;         /* instead of a bit: evaluated where its other operand exceeds this argument (~operand) */
     bool opens;      /* the first of its join */
+    bool far;        /* left out it counts as endlessly far, instead of leaving what it is joined to */
     bool most;       /* the join takes the larger value */
     double lipschitz; /* of it and of what it is joined to, per metre of the world */
 } sdfc_term;

@@ -289,7 +289,7 @@ int sdfc_lower_whole(sdfc_lowering *l, int shape, sdfc_point p) {
 }
 
 bool sdfc_has_terms(const sdfc_lowering *l, const sdfc_shape *s) {
-    if (!(l->stretch > 0) || s->children < 2 || s->facts.estimate || s->kind >= SDFC_KIND_XOR) return false;
+    if (!(l->stretch > 0) || s->children < 2 || s->facts.estimate || s->kind == SDFC_KIND_XOR) return false;
     bool is_union = s->kind == SDFC_KIND_UNION || s->kind == SDFC_KIND_SMOOTH_UNION || s->kind >= SDFC_KIND_CHAMFER;
     if (l->in_cells && !is_union) return false;
     if (!l->folded) return true;
@@ -311,6 +311,7 @@ void sdfc_add_term(sdfc_lowering *l, const sdfc_shape *s, int child, int first, 
                     .bit = -1,
                     .smooth = smooth,
                     .opens = child == 0,
+                    .far = s->kind == SDFC_KIND_BLEND,
                     .most = s->kind != SDFC_KIND_UNION && s->kind != SDFC_KIND_SMOOTH_UNION && s->kind < SDFC_KIND_CHAMFER,
                     .lipschitz = lipschitz * l->stretch};
 }

@@ -33,21 +33,27 @@ static sdfc_look joined_look(sdfc_lowering *l, const sdfc_shape *s, int d, int e
     }
 }
 
-/* All operands at once, so that their order does not matter: see blend_two in library_joins.inc. */
+/* All operands at once, so that their order does not matter: see blend_two in library_joins.inc. An operand that is
+ * farther than those before it by the radius has no share, to the bit: it is a term. */
 static int lower_blend(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p) {
     int f[SDFC_CHILDREN_MAX] = {0}, n = s->children;
     sdfc_look looks[SDFC_CHILDREN_MAX] = {{0}};
     int k = sdfc_argument(l, s->number[0]), inverse = sdfc_argument(l, s->number[1]);
-    double stretch = l->stretch;
-    l->stretch = 0; /* one term */
+    bool terms = sdfc_has_terms(l, s), at_fold = l->at_fold;
+    int m = 0;
     for (int i = 0; i < n; i++) {
+        l->at_fold = at_fold;
+        int first = l->program->functions[l->function].count;
         f[i] = sdfc_lower_shape(l, s->child[i], p);
         looks[i] = l->look;
+        if (terms && i > 0) {
+            f[i] = OP(l, second, m, f[i]);
+            sdfc_add_term(l, s, i, first, k);
+        }
+        if (n > 2 || terms) m = i ? OP(l, min, m, f[i]) : f[0];
     }
-    l->stretch = stretch;
-    int t = f[0], zero = sdfc_literal(l, 0);
+    int t = m, zero = sdfc_literal(l, 0);
     if (n == 2) t = OP(l, blend_two, f[0], f[1], k);
-    for (int i = 1; i < n && n > 2; i++) t = OP(l, min, t, f[i]);
     for (int step = 0; step < (n < 4 ? 5 : 7) + n / 8 && n > 2; step++) {
         int squares = zero, sum = zero;
         for (int i = 0; i < n; i++) {
