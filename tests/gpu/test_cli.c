@@ -301,9 +301,9 @@ static int changed_by(const char *scene, const char *options) {
     int changed = 0;
     for (int k = 0; k < 2; k++) {
         snprintf(name, sizeof name, "%s/changed%d.png", scratch, k);
-        assert_int_equal(cli_run("render %s -o %s --frame --size 64x48 --time 0.4 --animate %s",
-                                 scene_path(scene), name, k ? options : ""),
-                         0);
+        if (cli_run("render %s -o %s --frame --size 64x48 --time 0.4 --animate %s", scene_path(scene), name,
+                    k ? options : ""))
+            fail_msg("%s: %s", options, cli_err);
         assert_ok(masu_image_load_png(name, &images[k], error, sizeof error));
     }
     for (int i = 0; i < 4 * 64 * 48; i++) changed += images[0].rgba[i] != images[1].rgba[i];
