@@ -1521,8 +1521,8 @@ MASU_API double masu_model_clip_duration(const masu_renderer *renderer, masu_mod
                                          uint32_t clip);
 
 /* Poses a model from the next masu_frame on. All nodes that any clip of the model animates get the
- * weighted average of the clips in `uses`; with a count of 0, or a sum of weights of 0, they get
- * the rest pose of the file. Other nodes do not change. The host advances the times; there is no
+ * weighted average of the clips in `uses`, and so do the weights of their morph targets; with a
+ * count of 0, or a sum of weights of 0, they get the rest pose of the file. Other nodes do not change. The host advances the times; there is no
  * automatic playback.
  *
  * Skinned meshes follow their nodes in the image, shadows, velocities and traced reflections. The
@@ -1534,6 +1534,14 @@ MASU_API double masu_model_clip_duration(const masu_renderer *renderer, masu_mod
  * the transform of a node overflows a float, or the handle is invalid. Nothing has changed then. */
 MASU_API MASU_MUST_USE masu_result masu_model_animate(masu_renderer *renderer, masu_model model,
                                                       const masu_clip_use *uses, uint32_t count);
+
+/* Sets the weight of a model's morph targets of that name, of all of its meshes, from the next
+ * masu_frame on. masu_model_animate replaces the weights of targets that any clip of the model
+ * animates; others keep theirs. Before the first call they have the weights of the file.
+ * MASU_ERROR_ARGUMENT: a pointer is NULL, the model has no such target, the weight is not within
+ * -1e6..1e6, or the handle is invalid. Nothing has changed then. */
+MASU_API MASU_MUST_USE masu_result masu_model_morph_set(masu_renderer *renderer, masu_model model,
+                                                        const char *name, float weight);
 
 /* ---- Punctual lights ------------------------------------------------------------------------- */
 

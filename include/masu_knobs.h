@@ -167,9 +167,9 @@ typedef enum masu_knob_use {
            "Largest width and height of the atlas of shadow faces, rounded down to a power of two;"\
            " smaller if few lights cast shadows. All rungs share the largest.",                    \
            "2 n^2 persistent device bytes.")                                                       \
-    NUMBER(uint32_t,         local_shadow_lights,  1,    64,   8,    LOCAL_SHADOWS, "",            \
+    NUMBER(uint32_t,         local_shadow_lights,  1,    64,   16,   LOCAL_SHADOWS, "",            \
            "Largest number of punctual lights with shadows at a time, the most important ones.",   \
-           "More lookups per pixel, and smaller faces.")                                           \
+           "More faces to render when they change; smaller faces where the atlas is full.")                                         \
     NUMBER(uint32_t,         local_shadow_faces,   1,    16,   4,    LOCAL_SHADOWS, "faces",       \
            "Largest number of shadow faces rendered per frame: 1 for a spot, up to 6 for a point"  \
            " light. Faces that have to wait show what they held.",                                 \
@@ -191,13 +191,13 @@ typedef enum masu_knob_use {
     WORD(  masu_switch,      bounce,               MASU_AUTO,      BOUNCE,                         \
            "Live bounce: rays of some probes per frame. OFF: probes keep what they have. AUTO: on" \
            " if the device allows enough storage buffers.",                                        \
-           "The rays, until the light has been at rest for 64 rounds of all probes; then none.")   \
+           "The rays, until the light has been at rest for 256 rounds of all probes; then none.")  \
     NUMBER(uint32_t,         bounce_probes,        1,    2048, 94,   BOUNCE,    "probes",          \
            "Probes that trace rays per frame. In the first frames up to four times as many do.",   \
            "Time grows in proportion. 128 device bytes for each of their rays, which a scene with" \
            " fewer probes does not take.")                                                         \
     NUMBER(uint32_t,         bounce_rays,          8,    64,   48,   BOUNCE,    "rays",            \
-           "Rays of a probe per frame. A probe shows the mean of its last four sets of rays.",     \
+           "Rays of a probe per frame. A probe shows the mean of up to sixteen sets of rays.",    \
            "Time grows in proportion.")
 /* clang-format on */
 
@@ -284,7 +284,7 @@ MASU_API int masu_knob_accepts(const masu_knob *knob, double to);
     X(shadow_resolution, 8192, "width and height n of a cascade in texels: 4 n^2 bytes, device")   \
     X(probes, 0,                                                                                   \
       "light probes: 48 bytes each, 56 more for each set, and the distance map of each probe,"     \
-      " device; live ones 272 more, and 2 on the host")                                            \
+      " device; live ones 944 more, and 2 on the host")                                            \
     X(textures, 0, "textures with their mip chains; texture_bytes has their cost")                 \
     X(texture_bytes, 0,                                                                            \
       "bytes of all texels on the device, compressed or decoded as used; the device may add"       \

@@ -75,7 +75,8 @@ void ask_light(inout chosen c, masu_punctual_light_data light, vec3 rel, vec3 n,
             return;
         }
         float cosine;
-        color *= masu_above(masu_form_factor(to, u, v), n, cosine);
+        vec3 form = masu_form_factor(to, u, v);
+        color *= masu_above(form, dot(form, n), cosine);
         to += (2.0 * masu_bounce_unit(hash.y) - 1.0) * u + (2.0 * masu_bounce_unit(hash.z) - 1.0) * v;
         l = masu_normalize(to, n);
         float thick = masu_light_kind(light) == MASU_KIND_CAPSULE ? masu_sqrt(light.color.w) : light.axis.w;
@@ -140,7 +141,7 @@ void main()
                 vec3 n = m.normal;
                 vec3 far = abs(from + probe_grid.origin.xyz);
                 lifted += n * (4e-6 * (max(far.x, max(far.y, far.z)) + t) + 2e-3 * probe_grid.origin.w);
-                uint seed = ray.probe * 256u + ray.set * 64u + ray.number;
+                uint seed = (ray.probe * MASU_BOUNCE_SETS + ray.set) * MASU_BOUNCE_RAYS_MAX + ray.number;
                 if (unlit) {
                     vec3 l = frame.sun_direction.xyz;
                     ask(c, l, frame.trace_anchor.w, frame.sun_color.rgb * max(dot(n, l), 0.0), 0.0);

@@ -1,7 +1,7 @@
 /*
  * gbuffer.frag: the material of a polygon into the G-buffer. push.material is the draw's material. With
  * MASU_MOTION (gbuffer_velocity) its velocity too, with MASU_SURFACE what the surface image holds. With MASU_TEXTURES the material's maps: push.flags
- * its flags, push.layers the layers of its maps, 8 bits each, push.coat_layer that of its coat's; push.mip_bias the bias of mip levels, push.mip_moving (not
+ * its flags, push.layers the layers of its maps, 8 bits each, push.coat_layer that of its coat's (with MASU_ATTRIBUTES: from bit 8 on which maps are of the second coordinates); push.mip_bias the bias of mip levels, push.mip_moving (not
  * below 0) what is added to it of what moves, push.detail_* the scale of texture coordinates of all maps but base colour and emissive.
  */
 #version 440
@@ -38,8 +38,18 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_MATERIALS, std430) readonly bu
 };
 
 #ifdef MASU_TEXTURES
+#ifdef MASU_ATTRIBUTES
+layout(location = 4) in vec2 in_second;
+layout(location = 5) in vec4 in_color;
+#define MASU_MAPS_SECOND (push.coat_layer >> 8)
+#define MASU_MAPS_SECOND_AT in_second
+#endif
 #ifdef MASU_SURFACE
+#ifdef MASU_ATTRIBUTES
+#define MASU_MAPS_COAT_LAYER (push.coat_layer & 0xFFu)
+#else
 #define MASU_MAPS_COAT_LAYER push.coat_layer
+#endif
 #endif
 #ifdef MASU_MOTION
 float mip_bias;
@@ -103,6 +113,9 @@ void main()
 #endif
     /* Everything that takes derivatives comes before the discard. */
     float alpha = masu_sample_maps(in_texcoord, s);
+#ifdef MASU_ATTRIBUTES
+    masu_tint(s, in_color.rgb);
+#endif
     vec3 bent = masu_bend_normal(in_normal, in_rel, in_texcoord);
 #endif
     /* Two-sided: the normal is turned to the viewer, whichever way the triangle was wound. */

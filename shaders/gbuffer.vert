@@ -7,7 +7,7 @@
  * With MASU_MOTION (gbuffer_velocity) also to where the vertex was in the previous frame, by the same
  * operations: what stood still gets the same bits twice, and a velocity of exactly 0. With MASU_SKINNED
  * vertices from push.first_skinned on were elsewhere in their mesh, too: skin_previous.comp has found where.
- * With MASU_TEXTURES texture coordinates go along.
+ * With MASU_TEXTURES texture coordinates go along, with MASU_ATTRIBUTES a second set and colours of vertices.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -48,6 +48,12 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_PREVIOUS_VERTICES, std430) rea
 layout(location = 2) in vec2 texcoord;
 layout(location = 3) out vec2 out_texcoord;
 #endif
+#ifdef MASU_ATTRIBUTES
+layout(location = 3) in vec2 second_texcoord;
+layout(location = 4) in vec4 color;
+layout(location = 4) out vec2 out_second;
+layout(location = 5) out vec4 out_color;
+#endif
 
 /* Meshes with textures and without have edges in common. */
 invariant gl_Position;
@@ -63,6 +69,10 @@ void main()
     out_rel = rel;
 #ifdef MASU_TEXTURES
     out_texcoord = texcoord;
+#endif
+#ifdef MASU_ATTRIBUTES
+    out_second = second_texcoord;
+    out_color = masu_vertex_color(color);
 #endif
 #ifdef MASU_MOTION
     vec3 before = position;

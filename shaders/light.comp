@@ -110,19 +110,22 @@ vec3 flat_normal(ivec2 at, ivec2 size, float depth, vec3 n)
 #endif
 
 #ifdef MASU_LIGHTS
-void add_lights(inout masu_lit lit, masu_surface s, masu_bsdf b, uvec2 at, vec3 rel, vec3 n, vec3 traced)
+/* Adds the local lights. rel, n: the point relative to the eye, the normal of the surface itself. */
+void add_lights(inout vec3 color, masu_surface s, masu_bsdf b, uvec2 at, vec3 rel, vec3 n, vec3 traced)
 {
     uvec2 size = uvec2(pc.output_width, pc.output_height);
     /* As a number of the workgroup: lights are then loaded once for all lanes, not into registers of each. */
     uvec2 tile = gl_WorkGroupID.xy / uint(MASU_TILE / MASU_GROUP);
     masu_asked asked = masu_lights_asked(tile, size, push.light_tiles != 0u);
+    masu_light_sum sum = masu_light_sum(color);
     uint reached = 0u;
     for (uint i = 0u; i < uint(MASU_LOCAL_LIGHTS_MAX); i++) {
         if (i >= asked.count) {
             break;
         }
-        reached += masu_add_local_light(lit, s, b, masu_light_asked(asked, i), rel, n, traced) ? 1u : 0u;
+        reached += masu_add_local_light(sum, s, b, masu_light_asked(asked, i), rel, n, traced) ? 1u : 0u;
     }
+    color = sum.light;
     masu_count(MASU_COUNTER_LIGHT_TESTS, asked.count);
     masu_count(MASU_COUNTER_LIGHT_SHADED, reached);
 }
@@ -155,8 +158,16 @@ void main()
                 }
                 vec3 n = masu_unpack_normal(normal);
                 masu_mirrored sky = masu_mirrored_sky(s, n, -direction, kept);
+#ifdef MASU_LIGHTS
+                /* Before the bsdf, too, which then takes no registers in the probes. */
+                masu_around around = masu_ambient_at(rel, masu_base_normal(s, n));
+                masu_bsdf b = masu_bsdf_make(s, n, -direction);
+                masu_lit lit = masu_shade(s, b, around, arriving(at), sky);
+#else
                 masu_bsdf b = masu_bsdf_make(s, n, -direction);
                 masu_lit lit = masu_shade(s, b, rel, arriving(at), sky);
+#endif
+                color += lit.diffuse + lit.specular;
 #ifdef MASU_LIGHTS
 #ifdef MASU_LOCAL_SHADOWS
                 if (reliefs) {
@@ -164,9 +175,8 @@ void main()
                 }
 #endif
                 vec3 traced = vec3(1.0 - kept, push.accumulate != 0u ? 1.0 : 0.0);
-                add_lights(lit, s, b, at, ray * masu_light_depth(depth), n, traced);
+                add_lights(color, s, b, at, ray * masu_light_depth(depth), n, traced);
 #endif
-                color += lit.diffuse + lit.specular;
             }
             if (foggy) {
                 float far = frame.forward.w * masu_rcp(depth) * length(ray);

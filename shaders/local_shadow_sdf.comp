@@ -1,7 +1,8 @@
 /*
  * local_shadow_sdf.comp: the SDF as punctual lights see it: a ray for each texel of the shadow faces that a frame
  * renders, from the light to its range. Compiled by masu-bake with the scene's field. What is stored is near / z, as
- * depth of polygons; 0 where nothing is. local_shadow_keep.frag puts the nearer of the two into the atlas.
+ * depth of polygons, rounded down to 16 bits; 0 where nothing is. local_shadow_keep.frag puts the nearer of the two
+ * into the atlas. A face in which only polygons have moved is not marched again.
  *
  * A workgroup is a block of 8x8 texels. It lists the parts whose bounding spheres its rays can touch: as a scene has
  * few parts, bits of them, else numbers in shared memory, or all where there are more than LIST_MOST.
@@ -29,7 +30,7 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_LOCAL_FACES, std140) uniform L
     masu_local_face_uniforms faces;
 };
 
-layout(set = MASU_SET_PASS, binding = 0, r32f) uniform writeonly image2D depth_image;
+layout(set = MASU_SET_PASS, binding = 0, r32ui) uniform writeonly uimage2D pairs_image;
 
 #define LIST_MOST 255
 #define MASU_OWN_PARTS LIST_MOST
@@ -43,6 +44,7 @@ layout(set = MASU_SET_PASS, binding = 0, r32f) uniform writeonly image2D depth_i
 #define INVOCATIONS (MASU_GROUP * MASU_GROUP)
 
 shared uint masks[MASKS];
+shared uint depths[INVOCATIONS];
 
 /* Whether a sphere comes near any ray of the block; across: distance of the rays from the middle one, at distance 1. */
 bool can_touch(vec4 sphere, vec3 middle, float across, float longest)
@@ -190,7 +192,7 @@ void main()
     float edge = float(faces.tile[k].z);
     float width = faces.origin_hi[k].w;
     /* The whole workgroup or none of it: tiles are whole blocks. */
-    if (faces.tile[k].w != 0u && gl_WorkGroupID.x * uint(MASU_GROUP) < faces.tile[k].z &&
+    if (faces.tile[k].w == 2u && gl_WorkGroupID.x * uint(MASU_GROUP) < faces.tile[k].z &&
         gl_WorkGroupID.y * uint(MASU_GROUP) < faces.tile[k].z) {
         eye_hi = faces.origin_hi[k].xyz - frame.anchor.xyz;
         eye_lo = faces.origin_lo[k].xyz;
@@ -205,8 +207,14 @@ void main()
         uint evals = 0u;
         float depth = depth_of_texel(k, (vec2(texel) + 0.5 - 0.5 * edge) * width, any_listed(), evals);
         masu_count(MASU_COUNTER_SHADOW_EVALS, evals);
-        uvec2 square = uvec2(k % max(faces.square.y, 1u), k / max(faces.square.y, 1u)) * faces.square.x;
-        MASU_STORE_R32F(depth_image, square + texel, depth);
+        depths[gl_LocalInvocationIndex] = min(uint(clamp(depth, 0.0, 1.0) * 65535.0), 65535u);
+        barrier();
+        if (gl_LocalInvocationIndex < uint(INVOCATIONS) / 2u) {
+            uint i = 2u * gl_LocalInvocationIndex;
+            uvec2 at = gl_WorkGroupID.xy * uvec2(MASU_GROUP) + uvec2(i % uint(MASU_GROUP), i / uint(MASU_GROUP));
+            at = (faces.tile[k].xy + at) / uvec2(2u, 1u);
+            MASU_STORE_UINT(pairs_image, at, uvec4(depths[i] | depths[i + 1u] << 16));
+        }
     }
     masu_count_end();
 }

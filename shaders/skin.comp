@@ -29,8 +29,8 @@ void main()
 {
     uint rest, vertex, matrices;
     if (!masu_find_vertex(0u, rest, vertex, matrices)) return;
-    masu_bent bent = masu_bend(rest, matrices);
-    vec3 normal = turned(bent, masu_oct_decode(bent.rest_normal));
+    masu_bent bent = masu_bend(0u, rest, matrices);
+    vec3 normal = turned(bent, bent.rest_normal);
     skinned[vertex] =
         uvec4(floatBitsToUint(bent.position), packSnorm2x16(masu_oct_encode(normal)));
 }

@@ -6,6 +6,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "push/skin_previous.h"
 #include "shared/types.h"
+#include "shared/pack.glsl"
 #include "shared/push.glsl"
 #include "shared/skinning.glsl"
 
@@ -19,7 +20,7 @@ void main()
 {
     uint rest, vertex, matrices;
     if (!masu_find_vertex(push.half_elements, rest, vertex, matrices)) return;
-    vec3 position = masu_bend(rest, matrices).position;
+    vec3 position = masu_bend(push.half_elements, rest, matrices).position;
     uint k = 3u * (vertex - push.first_vertex);
     previous_vertices[k] = position.x;
     previous_vertices[k + 1u] = position.y;

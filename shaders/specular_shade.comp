@@ -68,18 +68,24 @@ vec3 radiance(met m, vec3 rel, vec3 direction)
         seen.x = masu_sun_seen(rel, m.normal, dot(rel, frame.forward.xyz));
     }
 #endif
-    masu_bsdf b = masu_bsdf_make(m.surface, m.normal, -direction);
-    masu_lit lit = masu_shade(m.surface, b, rel, seen, sky);
 #ifdef MASU_LIGHTS
+    masu_around around = masu_ambient_at(rel, masu_base_normal(m.surface, m.normal));
+    masu_bsdf b = masu_bsdf_make(m.surface, m.normal, -direction);
+    masu_lit lit = masu_shade(m.surface, b, around, seen, sky);
+    masu_light_sum sum = masu_light_sum(lit.diffuse + lit.specular + m.surface.emissive);
     uint lights = masu_light_count();
     for (uint i = 0u; i < uint(MASU_LOCAL_LIGHTS_MAX); i++) {
         if (i >= lights) {
             break;
         }
-        masu_add_local_light(lit, m.surface, b, i, rel, m.normal);
+        masu_add_local_light(sum, m.surface, b, i, rel, m.normal, vec3(0.0));
     }
-#endif
+    return sum.light;
+#else
+    masu_bsdf b = masu_bsdf_make(m.surface, m.normal, -direction);
+    masu_lit lit = masu_shade(m.surface, b, rel, seen, sky);
     return lit.diffuse + lit.specular + m.surface.emissive;
+#endif
 }
 
 vec4 light_of(uvec2 texel, masu_guide g)

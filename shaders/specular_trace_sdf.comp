@@ -70,6 +70,9 @@ uvec4 hit_of(reflected m, float t, bool known, inout uint evals)
     }
     masu_surface s = masu_plain_surface(vec3(0.5), 0.5);
     masu_normal = n;
+#ifdef MASU_SDF_PAINTED
+    masu_footprint = t * r.pixel;
+#endif
     masu_sdf_part_surface(part, p, s);
     vec4 albedo;
     uint normal;

@@ -12,6 +12,9 @@
  * alpha takes from it what the brightest channel loses. Both sides of a ball colour it before either adds its
  * light; what the far one adds is coloured here. Fog between the eye and the glass takes the hue too.
  *
+ * Rough glass shows the lit picture without transparent surfaces, blurred (masu_behind), in place of what blending would
+ * let through. Both sides of a thing that is not flat are taken to be as rough.
+ *
  * A thing that is not flat is drawn twice, first what is turned away from the eye, then what faces it:
  * a ball is right in itself, whatever the order of its triangles. It goes by the normals, not by the
  * winding, which files get wrong and negative scales turn. Each fragment is drawn once.
@@ -32,6 +35,7 @@
 #include "shared/facing.glsl"
 #include "shared/pack.glsl"
 #include "light/air.glsl"
+#include "light/background.glsl"
 #include "light/shade.glsl"
 
 #ifdef MASU_SUN_MAP
@@ -43,11 +47,14 @@
 #endif
 #ifdef MASU_LIGHTS
 #define MASU_LOCAL_SHADOWS_FOUR
+#define MASU_LIGHTS_APART
 #include "light/lights.glsl"
 #endif
 
 layout(constant_id = 0) const bool tints = false;
-layout(constant_id = 12) const bool any_tints = false; /* the scene has something for that */
+layout(constant_id = 12) const uint tinted_glass = 0u; /* the scene has some; MASU_TINTS_ROUGH: and rough one */
+const bool any_tints = tinted_glass != 0u;
+const bool any_rough = (tinted_glass & MASU_TINTS_ROUGH) != 0u;
 layout(constant_id = 2) const bool foggy = false; /* the scene has fog */
 
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D depth_image;
@@ -57,6 +64,13 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_MATERIALS, std430) readonly bu
     masu_material_data materials[];
 };
 
+#ifdef MASU_LOCAL_SHADOWS
+#define MASU_AT_BACKGROUND (MASU_AT_LOCAL_SHADOWS + 1)
+#else
+#define MASU_AT_BACKGROUND MASU_AT_LOCAL_SHADOWS
+#endif
+layout(set = MASU_SET_PASS, binding = MASU_AT_BACKGROUND) uniform sampler2D background_image; /* if any_rough */
+
 layout(location = 0) in vec3 in_normal;
 layout(location = 1) in vec3 in_rel;
 layout(location = 2) flat in uvec4 in_thing; /* material, flags, layers; which instance */
@@ -64,6 +78,9 @@ layout(location = 2) flat in uvec4 in_thing; /* material, flags, layers; which i
 #ifdef MASU_TEXTURES
 layout(location = 3) in vec2 in_texcoord;
 layout(location = 4) flat in vec2 in_detail;
+#ifdef MASU_ATTRIBUTES
+layout(location = 5) in vec4 in_color;
+#endif
 #define MASU_MAPS_FLAGS in_thing.y
 #define MASU_MAPS_LAYERS in_thing.z
 #define MASU_MAPS_DETAIL in_detail
@@ -82,15 +99,63 @@ void add_lights(inout masu_lit lit, masu_surface s, masu_bsdf b, vec3 n)
     uvec2 at = uvec2(gl_FragCoord.xy);
     uvec2 size = uvec2(pc.output_width, pc.output_height);
     vec3 rel = masu_pixel_ray(at, size) * masu_light_depth(gl_FragCoord.z);
+    masu_light_sum sum = masu_light_sum(lit.diffuse, lit.specular);
     masu_asked asked = masu_lights_asked(at / uint(MASU_TILE), size, push.light_tiles != 0u);
     for (uint i = 0u; i < uint(MASU_LOCAL_LIGHTS_MAX); i++) {
         if (i >= asked.count) {
             break;
         }
-        masu_add_local_light(lit, s, b, masu_light_asked(asked, i), rel, n);
+        masu_add_local_light(sum, s, b, masu_light_asked(asked, i), rel, n, vec3(0.0));
     }
+    lit.diffuse = sum.light;
+    lit.specular = sum.mirrored;
 }
 #endif
+
+/* One level of the blurred picture around a pixel; in alpha the depth. */
+vec4 background_level(uint level, vec2 pixel)
+{
+    uvec2 tiles = masu_background_tiles(uvec2(pc.output_width, pc.output_height));
+    vec2 size = vec2(tiles * MASU_BACKGROUND_TILE) / exp2(float(level));
+    vec2 at = clamp(pixel / exp2(float(level)), vec2(0.5), size - 0.5);
+    vec2 whole = vec2(textureSize(background_image, 0));
+    return textureLod(background_image, (vec2(masu_background_at(level, tiles)) + at) / whole, 0.0);
+}
+
+vec4 background(vec2 pixel, float apart)
+{
+    float level = clamp(log2(max(apart, 1.0)), 1.0, float(MASU_BACKGROUND_LEVELS));
+    uint low = min(uint(level), MASU_BACKGROUND_LEVELS - 1u);
+    return mix(background_level(low, pixel), background_level(low + 1u, pixel), level - float(low));
+}
+
+/* What is behind glass whose two sides are alike and whose lobe has this alpha: each ray leaves as its reflection by a
+ * facet would, on the other side (KHR_materials_transmission). A facet of slope t = alpha sqrt(u / (1 - u)) turns a ray
+ * by twice its angle; across the gap behind the glass that is so many pixels. TAPS of such rays, of equal u, on a
+ * spiral; each takes the level whose texels are as far apart as the taps. The gap is a mean, since blur that changes
+ * from pixel to pixel with the depth behind it shows edges. radius: of the circle that half of the rays meet, pixels. */
+#define TAPS 12
+const float spread = 2.0 * 0.7 * 0.5117; /* 0.7 sqrt(pi / TAPS): more than that blurs twice */
+vec3 masu_behind(vec2 pixel, float alpha, out float radius)
+{
+    float reach = 0.5 * float(pc.output_height) * masu_rcp(length(frame.up.xyz)), gap = 1.0;
+    for (int i = 0; i < 2; i++) {
+        float depth = background(pixel, 2.0 * alpha * reach * gap).a;
+        gap = masu_sane(1.0 - depth * masu_rcp(gl_FragCoord.z), 0.0, 1.0);
+    }
+    reach *= gap;
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < TAPS; i++) {
+        float u = (float(i) + 0.5) / float(TAPS);
+        float t = alpha * sqrt(u / (1.0 - u));
+        float bent = 2.0 * t / (1.0 + t * t);
+        float turn = float(i) * 2.39996323;
+        float apart = spread * reach * alpha / ((1.0 - u) * (1.0 + t * t));
+        sum += background(pixel + reach * bent * vec2(cos(turn), sin(turn)), apart).rgb;
+    }
+    radius = reach * 2.0 * alpha;
+    return sum / float(TAPS);
+}
 
 void main()
 {
@@ -114,6 +179,10 @@ void main()
 #ifdef MASU_TEXTURES
     /* Everything that takes derivatives comes before the discard. */
     cover = masu_sample_maps(in_texcoord, s);
+#ifdef MASU_ATTRIBUTES
+    masu_tint(s, in_color.rgb);
+    cover *= in_color.a;
+#endif
     vec3 bent = masu_bend_normal(in_normal, in_rel, in_texcoord);
     vec3 even = masu_normalize(masu_lean_to_eye(away ? -n : n, in_rel, 0.0), n);
     n = masu_normalize(masu_seen_normal(away ? -bent : bent, in_rel, n), -direction);
@@ -150,16 +219,31 @@ void main()
     }
 #endif
     bool additive = (in_thing.y & MASU_MAP_ADDITIVE) != 0u;
-    vec3 color;
-    float taken = opacity;
+    vec3 color, behind = vec3(0.0);
+    float taken = opacity, surface = opacity; /* of what is behind; by the surface itself, not by what it blurs */
     if (masu_is_unlit(s)) {
         color = s.emissive * opacity;
     } else {
         masu_mirrored sky = masu_mirrored_sky(s, n, -direction, vec2(1.0));
+#ifdef MASU_LIGHTS
+        masu_around around = masu_ambient_at(in_rel, masu_base_normal(s, n));
+        masu_bsdf b = masu_bsdf_make(s, n, -direction);
+        masu_lit lit = masu_shade(s, b, around, seen, sky);
+#else
         masu_bsdf b = masu_bsdf_make(s, n, -direction);
         masu_lit lit = masu_shade(s, b, in_rel, seen, sky);
+#endif
         float mirrored = clamp(dot(lit.mirror, vec3(1.0 / 3.0)), 0.0, 1.0);
-        taken = 1.0 - through * (1.0 - mirrored);
+        surface = taken = 1.0 - through * (1.0 - mirrored);
+        if (any_rough && (in_thing.y & MASU_MAP_TINTED) != 0u && s.roughness > MASU_SHARP_GLASS) {
+            float alpha = masu_sane(s.roughness * s.roughness, 0.0, 1.0) * (twice ? 1.41421356 : 1.0);
+            float radius;
+            vec3 passes = hue * (1.0 - taken);
+            behind = masu_behind(gl_FragCoord.xy, alpha, radius) * (twice ? passes * passes : passes);
+            float blurred = smoothstep(1.0, 3.0, radius); /* the finest level is half as large as the picture */
+            behind *= blurred * cover;
+            taken = 1.0 - (1.0 - taken) * (1.0 - blurred);
+        }
         lit.diffuse += s.emissive;
 #ifdef MASU_LIGHTS
         /* Last: what has been used up by now takes no registers in the loop. */
@@ -173,7 +257,9 @@ void main()
     }
     taken = additive ? 0.0 : taken * cover;
     if (foggy) {
-        color = masu_through_air(color, direction, masu_air_depth(direction, length(in_rel)), taken);
+        float own = additive ? 0.0 : surface * cover;
+        color = masu_through_air(color, direction, masu_air_depth(direction, length(in_rel)), own);
     }
+    color += behind; /* fog before it and all */
     out_color = vec4(masu_sane(color, 0.0, brightest), masu_sane(taken, 0.0, 1.0));
 }

@@ -1,7 +1,7 @@
 /*
  * transparents.vert: one transparent thing, which push.instances of the push constants finds: six words in
  * the buffer of drawn instances, written anew for each frame (src/frame/transparents.c): instance, material,
- * flags, layers and detail of its maps. With MASU_TEXTURES texture coordinates go along. Of what is
+ * flags, layers and detail of its maps. With MASU_TEXTURES texture coordinates go along, with MASU_ATTRIBUTES colours. Of what is
  * drawn twice the first instance is for what is turned away from the eye. Where it `tints`
  * (transparents.frag), what has no colour for what is behind it shrinks to a point.
  */
@@ -22,6 +22,10 @@ layout(location = 2) in vec2 texcoord;
 layout(location = 3) out vec2 out_texcoord;
 layout(location = 4) flat out vec2 out_detail;
 #endif
+#ifdef MASU_ATTRIBUTES
+layout(location = 4) in vec4 color;
+layout(location = 5) out vec4 out_color;
+#endif
 
 layout(constant_id = 0) const bool tints = false;
 
@@ -41,6 +45,9 @@ void main()
                       uint(gl_InstanceIndex));
 #ifdef MASU_TEXTURES
     out_texcoord = texcoord;
+#ifdef MASU_ATTRIBUTES
+    out_color = masu_vertex_color(color);
+#endif
     out_detail = vec2(uintBitsToFloat(drawn[push.instances + 4u]), uintBitsToFloat(drawn[push.instances + 5u]));
 #endif
     gl_Position = frame.clip_from_rel * vec4(rel, 1.0);

@@ -180,6 +180,15 @@ masu_result masu_model_animate(masu_renderer *m, masu_model model, const masu_cl
                                               uses, count, &m->error));
 }
 
+masu_result masu_model_morph_set(masu_renderer *m, masu_model model, const char *name, float weight) {
+    uint32_t i;
+    if (!m || !name) return masu_finish_null(m, "name");
+    masu_result result = check_model(m, model, &i);
+    if (result) return result;
+    return masu_finish(m, masu_models_morph(&m->models, &m->instances, &m->bounds, &m->plan, i, name,
+                                            weight, &m->error));
+}
+
 /* ---- Punctual lights ------------------------------------------------------------------------- */
 
 static masu_result check_light(masu_renderer *m, masu_punctual_light light, uint32_t *index) {

@@ -146,11 +146,11 @@ $(BUILD)/tests/fuzz/lods.masu: $(BUILD)/tests/fuzz/seed_scene
 $(BUILD)/tests/fuzz/trace.masu: $(BUILD)/tests/fuzz/seed_scene
 	$(V)$< $@ 257
 $(BUILD)/tests/fuzz/skins.masu: $(BUILD)/tests/fuzz/seed_scene
-	$(V)$< $@ 1537
+	$(V)$< $@ 17921
 $(BUILD)/tests/fuzz/lighting.masu: $(BUILD)/tests/fuzz/seed_scene
 	$(V)$< $@ 129
 $(BUILD)/tests/fuzz/reflections.masu: $(BUILD)/tests/fuzz/seed_scene
-	$(V)$< $@ 4387
+	$(V)$< $@ 12579
 # The code of an SDF alone: most of such a blob's words are SPIR-V's.
 $(BUILD)/tests/fuzz/code.masu: $(BUILD)/tests/fuzz/seed_scene
 	$(V)$< $@ 10

@@ -63,11 +63,15 @@ $(BUILD)/bin/masu-view: $(VIEW_OBJECTS) $(KEEP_LOADED) $(MEASURE_ARCHIVES) $(BAK
 
 # Committed, for readers; tests/scripts/docs_tables.sh fails where they are not what the headers say.
 .PHONY: docs-tables
-docs-tables: $(BUILD)/bin/masu ## write docs/knobs.md and docs/passes.md from their tables
+docs-tables: $(BUILD)/bin/masu $(BUILD)/bin/masu-sdfc ## write docs/knobs.md, passes.md, sdf-shapes.md and the table of glTF in scene.md
 	$(V)$(BUILD)/bin/masu plan --knobs=md > docs/knobs.md.new
 	$(V)mv docs/knobs.md.new docs/knobs.md
 	$(V)shaders/tables.sh passes > docs/passes.md.new
 	$(V)mv docs/passes.md.new docs/passes.md
+	$(V)$(BUILD)/bin/masu-sdfc --shapes > docs/sdf-shapes.md.new
+	$(V)mv docs/sdf-shapes.md.new docs/sdf-shapes.md
+	$(V)tools/bake/import/features.sh --into docs/scene.md > docs/scene.md.new
+	$(V)mv docs/scene.md.new docs/scene.md
 
 # ---- Scenes --------------------------------------------------------------------------------------
 

@@ -5,7 +5,7 @@
 #   gallery.sh OUT FOLDER...     OUT: a new or empty folder for index.html, the pictures, counts.txt
 #
 # SIZE (480x270) of the pictures, MATCH a pattern (find -path) of the models, JOBS (all processors) at once.
-# NO_PICTURES=1 only bakes. PATHS=N, not 0: each row is the reference of N paths a pixel, the settled still, one raw frame.
+# Clips are shown at TIME (0.5) seconds. NO_PICTURES=1 only bakes. PATHS=N, not 0: each row is the reference of N paths a pixel, the settled still, one raw frame.
 set -u
 cd "$(dirname "$0")/../.." || exit 1
 bake=$(realpath "${BUILD:-build}/bin/masu-bake")
@@ -13,6 +13,7 @@ masu=$(realpath "${BUILD:-build}/bin/masu")
 lab=$(realpath -m "${BUILD:-build}/lab/bin/masu-lab")
 paths=${PATHS:-0}
 size=${SIZE:-480x270}
+time=${TIME:-0.5}
 
 . tests/outcome.sh
 
@@ -25,9 +26,9 @@ beside() {
     *.sdf) sdf=(--sdf "$2") ;;
     *.json) mapfile -t sdf < <(sed -n 's|.*"source": *"\([^"]*\.sdf\)".*|--sdf\n'"${2%/*}"'/\1|p' "$2") ;;
     esac
-    "$lab" reference "$at.masu" -o "$at.ref.png" --paths "$paths" --size "$size" --quiet "${sdf[@]}" 2>> "$at.err" &&
+    "$lab" reference "$at.masu" -o "$at.ref.png" --paths "$paths" --size "$size" --time "$time" --animate --quiet "${sdf[@]}" 2>> "$at.err" &&
         echo "<img src=\"$1.ref.png\" loading=\"lazy\" alt=\"reference\">"
-    "$masu" render "$at.masu" -o "$at.raw.png" --frame --size "$size" --quiet 2>> "$at.err" &&
+    "$masu" render "$at.masu" -o "$at.raw.png" --frame --size "$size" --time "$time" --quiet 2>> "$at.err" &&
         echo "<img src=\"$1.raw.png\" loading=\"lazy\" alt=\"raw frame\">"
 }
 
@@ -42,7 +43,7 @@ one() {
     {
         echo "<figure>"
         if [ $code = 0 ] && [ ! "${NO_PICTURES:-}" ]; then
-            if timeout 300 "$masu" render "$at.masu" -o "$at.png" --size "$size" --quiet > /dev/null 2>> "$at.err"; then
+            if timeout 300 "$masu" render "$at.masu" -o "$at.png" --size "$size" --time "$time" --quiet > /dev/null 2>> "$at.err"; then
                 [ "$paths" = 0 ] || beside "$number" "$file" > "$at.beside"
                 grep -s ref.png "$at.beside"
                 echo "<img src=\"$number.png\" loading=\"lazy\" alt=\"\">"

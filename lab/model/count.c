@@ -5,6 +5,7 @@
 #include "settings/setting.h"
 #include "lab/model/hook.h"
 #include "session.h"
+#include "shared/lights.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -46,11 +47,22 @@ static void add_counts(masu_pass_count *passes, double share) {
     }
 }
 
+/* Frames that are drawn before one is counted. By then all faces of lights' shadows are rendered and
+ * faded in, as a static scene has them. */
+static uint32_t warm_up(const masu_frame_plan *plan, uint32_t rung) {
+    const masu_rung *r = &plan->desc.rungs[rung];
+    if (!plan->needs.local_shadows || r->local_shadows == MASU_OFF) return WARM_UP;
+    uint32_t lights = r->local_shadow_lights, faces = r->local_shadow_faces;
+    if (lights > plan->scene.lights) lights = plan->scene.lights;
+    return WARM_UP + MASU_LOCAL_FADE + (6 * lights + faces - 1) / faces;
+}
+
 static bool draw_rung(masu_session *s, const masu_count_desc *d, uint32_t rung, masu_count *out,
                       char *error, size_t error_size) {
     uint32_t period = masu_setting_period(&out->drawn.desc.rungs[rung]);
     if (period > PERIOD_MOST) period = PERIOD_MOST;
-    for (uint32_t i = 0; i < WARM_UP + period; i++) {
+    const uint32_t warm = warm_up(&out->drawn, rung);
+    for (uint32_t i = 0; i < warm + period; i++) {
         masu_frame_desc frame = {
             .time = d->time, .time_step = 1.0f / 60.0f, .rung = rung, .cut = i == 0};
         masu_commands commands;
@@ -59,7 +71,7 @@ static bool draw_rung(masu_session *s, const masu_count_desc *d, uint32_t rung, 
         if (!masu_session_frame(s, &frame, true, &commands, error, error_size) ||
             !masu_hook_read(error, error_size))
             return false;
-        if (i < WARM_UP) continue;
+        if (i < warm) continue;
         add_counts(out->passes[rung], 1.0 / period);
         if (masu_stats(s->m, commands.slot, &stats)) continue;
         for (uint32_t v = 0; v < stats.view_count; v++)

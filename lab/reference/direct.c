@@ -167,6 +167,7 @@ ref_vec ref_direct(const ref_tracer *t, ref_vec from, ref_vec d, ref_random *r, 
         sum = ref_add(sum, ref_mul(left, ref_through_air(t, color, d, air, taken)));
         if (!blend) return sum;
         left = ref_mul(left, pane.behind);
+        d = ref_pane_scatter(&look, d, r), v = ref_scale(d, -1);
         from = ref_world_leave(t->world, &hit, d);
     }
     return sum;

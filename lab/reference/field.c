@@ -101,6 +101,7 @@ static bool open_sdf(ref_field *f, const ref_blob *blob, const char *text, size_
                  !ref_library_find(&f->c, "masu_truth_distance", &f->distance) ||
                  !ref_library_find(&f->c, "masu_truth_part", &f->part) ||
                  !ref_library_find(&f->c, "masu_truth_part_distance", &f->part_distance) ||
+                 !ref_library_find(&f->c, "masu_truth_look", &f->look) ||
                  !ref_library_find(&f->c, "masu_truth_material", &f->material))) {
         snprintf(error, size, "%s: the compiled field lacks a function", source);
         good = false;
@@ -296,7 +297,9 @@ void ref_field_surface(const ref_field *f, ref_vec p, ref_vec n, ref_surface *s)
     int part;
     least_at(f, at, &part, &distance);
     if (f->c.handle) {
-        f->material(part < 0 ? f->part(f->params, f->time, at) : part, m);
+        const double normal[3] = {n.x, n.y, n.z};
+        part = part < 0 ? f->part(f->params, f->time, at) : part;
+        f->look(f->params, f->time, part, at, normal, 0, m);
     } else {
         ref_glsl_call call = {.what = REF_GLSL_SURFACE, .normal = {n.x, n.y, n.z}};
         memcpy(call.point, at, sizeof at);

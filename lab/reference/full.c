@@ -178,6 +178,7 @@ static ref_vec walk(const ref_tracer *t, ref_vec from, ref_vec d, const ref_hit 
             double through = ref_clamp(ref_max(pane.behind), 0.1, 0.9), u = ref_draw(r);
             if (u < through) {
                 left = ref_mul(left, ref_scale(pane.behind, 1 / through));
+                d = ref_pane_scatter(&look, d, r);
                 from = ref_world_leave(t->world, &hit, d);
                 continue;
             }

@@ -15,12 +15,16 @@ static const ref_material *material_of(const ref_world *w, uint32_t triangle) {
     return &w->scene->materials[w->scene->triangles[triangle].material];
 }
 
-static void texcoord_at(const ref_scene *s, const ref_triangle *t, double u, double v,
+static const float *texcoords_of(const ref_scene *s, const ref_material *m, int slot) {
+    return m->second >> slot & 1u ? s->texcoords_1 : s->texcoords;
+}
+
+static void texcoord_at(const float *texcoords, const ref_triangle *t, double u, double v,
                         double out[2]) {
     for (int k = 0; k < 2; k++) {
-        double a = (double)s->texcoords[2 * (size_t)t->vertex[0] + (size_t)k];
-        double b = (double)s->texcoords[2 * (size_t)t->vertex[1] + (size_t)k];
-        double c = (double)s->texcoords[2 * (size_t)t->vertex[2] + (size_t)k];
+        double a = (double)texcoords[2 * (size_t)t->vertex[0] + (size_t)k];
+        double b = (double)texcoords[2 * (size_t)t->vertex[1] + (size_t)k];
+        double c = (double)texcoords[2 * (size_t)t->vertex[2] + (size_t)k];
         out[k] = a + u * (b - a) + v * (c - a);
     }
 }
@@ -29,7 +33,7 @@ static void map_at(const ref_world *w, uint32_t triangle, int slot, double u, do
                    double out[4]) {
     const ref_material *m = material_of(w, triangle);
     double at[2];
-    texcoord_at(w->scene, &w->scene->triangles[triangle], u, v, at);
+    texcoord_at(texcoords_of(w->scene, m, slot), &w->scene->triangles[triangle], u, v, at);
     bool plain = slot == MASU_SLOT_BASE || slot == MASU_SLOT_EMISSIVE;
     ref_texture_at(m->map[slot], at[0] * (plain ? 1 : m->detail[0]),
                    at[1] * (plain ? 1 : m->detail[1]), m->wrap, out);
@@ -194,12 +198,28 @@ ref_vec ref_world_leave(const ref_world *w, const ref_hit *hit, ref_vec d) {
 
 /* ---- Materials ------------------------------------------------------------------------------- */
 
+/* The colour of vertices, linear, with alpha. */
+static void color_at(const ref_world *w, uint32_t triangle, double u, double v, double out[4]) {
+    const ref_triangle *t = &w->scene->triangles[triangle];
+    for (int k = 0; k < 4; k++) {
+        const float *c = w->scene->colors ? w->scene->colors + k : NULL;
+        out[k] = c ? (1 - u - v) * (double)c[4 * (size_t)t->vertex[0]] + u * (double)c[4 * (size_t)t->vertex[1]] +
+                         v * (double)c[4 * (size_t)t->vertex[2]]
+                   : 1;
+    }
+}
+
+/* Its light is its colour, and nothing shines on it. */
+static bool is_unlit(const ref_material *m) {
+    return !(ref_dot(m->base, m->base) > 0) && m->roughness >= 1 && !(m->coat > 0);
+}
+
 ref_vec ref_world_emission(const ref_world *w, uint32_t triangle, double u, double v) {
     const ref_material *m = material_of(w, triangle);
-    double texel[4];
-    if (!m->map[MASU_SLOT_EMISSIVE]) return m->emissive;
-    map_at(w, triangle, MASU_SLOT_EMISSIVE, u, v, texel);
-    return ref_mul(m->emissive, ref_v(texel[0], texel[1], texel[2]));
+    double texel[4] = {1, 1, 1, 1}, color[4] = {1, 1, 1, 1};
+    if (m->map[MASU_SLOT_EMISSIVE]) map_at(w, triangle, MASU_SLOT_EMISSIVE, u, v, texel);
+    if (is_unlit(m)) color_at(w, triangle, u, v, color);
+    return ref_mul(m->emissive, ref_v(texel[0] * color[0], texel[1] * color[1], texel[2] * color[2]));
 }
 
 /* n turned until v sees it: normals of coarse meshes and maps may point away. least: its cosine
@@ -221,7 +241,7 @@ static ref_vec bent(const ref_world *w, const ref_hit *hit, ref_vec n) {
     double z = sqrt(fmax(1 - x * x - y * y, 0));
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 2; k++)
-            uv[i][k] = (double)s->texcoords[2 * (size_t)t->vertex[i] + (size_t)k];
+            uv[i][k] = (double)texcoords_of(s, &s->materials[t->material], MASU_SLOT_NORMAL)[2 * (size_t)t->vertex[i] + (size_t)k];
     ref_vec a = s->positions[t->vertex[0]];
     ref_vec e1 = ref_sub(s->positions[t->vertex[1]], a),
             e2 = ref_sub(s->positions[t->vertex[2]], a);
@@ -266,6 +286,11 @@ void ref_world_look(const ref_world *w, const ref_hit *hit, ref_vec v, ref_look 
         map_at(w, hit->triangle, MASU_SLOT_BASE, hit->u, hit->v, texel);
         out->s.albedo = ref_mul(m->base, ref_v(texel[0], texel[1], texel[2]));
         if (m->flags & MASU_MATERIAL_IS_BLEND) out->cover = texel[3];
+    }
+    if (s->colors) {
+        color_at(w, hit->triangle, hit->u, hit->v, texel);
+        out->s.albedo = ref_mul(out->s.albedo, ref_v(texel[0], texel[1], texel[2]));
+        if (m->flags & MASU_MATERIAL_IS_BLEND) out->cover *= texel[3];
     }
     if (m->map[MASU_SLOT_SURFACE]) {
         map_at(w, hit->triangle, MASU_SLOT_SURFACE, hit->u, hit->v, texel);

@@ -137,7 +137,7 @@ static void animate_node(const ref_blob *blob, const masu_blob_model *m, uint32_
         node_pose pose = pose_of(local);
         for (uint32_t c = 0; c < clips[i].channel_count; c++) {
             const masu_blob_channel *channel = &channels[clips[i].first_channel + c];
-            if (channel->node != node) continue;
+            if (channel->node != node || channel->path == MASU_CHANNEL_WEIGHT) continue;
             sample(blob->section[MASU_BLOB_KEYS], channel, t, &pose);
             moved = true;
         }
@@ -180,6 +180,47 @@ void ref_pose_instances(const ref_blob *blob, double time, bool animate, double 
     }
 }
 
+/* The weight of a morph target while the first clip of its model plays. */
+static double weight_of(const ref_blob *blob, const masu_blob_skin *skin, uint32_t target, double time, bool animate) {
+    const masu_blob_model *m = (const masu_blob_model *)blob->section[MASU_BLOB_MODELS] + skin->model;
+    const masu_blob_clip *clips = blob->section[MASU_BLOB_CLIPS];
+    const masu_blob_channel *channels = blob->section[MASU_BLOB_CHANNELS];
+    double rest = (double)((const masu_blob_morph_target *)
+                               blob->section[MASU_BLOB_MORPH_TARGETS])[skin->first_target + target].weight;
+    for (uint64_t i = 0; animate && i < blob->count[MASU_BLOB_CLIPS]; i++) {
+        if (clips[i].model != m->like) continue;
+        double length = (double)clips[i].duration, t = length > 0 ? fmod(time, length) : 0;
+        if (t < 0) t += length;
+        for (uint32_t c = 0; c < clips[i].channel_count; c++) {
+            const masu_blob_channel *channel = &channels[clips[i].first_channel + c];
+            node_pose pose = {.translation = {0}};
+            if (channel->path != MASU_CHANNEL_WEIGHT || channel->node != skin->node - m->first_node ||
+                channel->target != target)
+                continue;
+            sample(blob->section[MASU_BLOB_KEYS], channel, t, &pose); /* as a translation along x */
+            return pose.translation[0];
+        }
+        return rest;
+    }
+    return rest;
+}
+
+/* Adds the targets of a skin to a rest vertex. */
+static void morph(const ref_blob *blob, const masu_blob_skin *skin, uint32_t vertex, const double *weights,
+                  ref_vec *position, double normal[3]) {
+    const masu_blob_morph_delta *deltas = blob->section[MASU_BLOB_MORPH_DELTAS];
+    for (uint32_t t = 0; t < skin->target_count; t++) {
+        const masu_blob_morph_delta *d = &deltas[skin->first_delta + (size_t)t * skin->vertex_count + vertex];
+        *position = ref_along(*position, weights[t], ref_of(d->position));
+        for (int k = 0; k < 3; k++) {
+            int bits = k < 2 ? 11 : 10, most = (1 << (bits - 1)) - 1;
+            int value = (int)(d->normal >> 11 * k & ((1u << bits) - 1));
+            if (value > most) value -= 1 << bits;
+            normal[k] += weights[t] * 2 * value / most;
+        }
+    }
+}
+
 bool ref_pose_skin(const ref_blob *blob, uint32_t index, double time, bool animate,
                    ref_vec *positions, ref_vec *normals) {
     const masu_blob_skin *skin = (const masu_blob_skin *)blob->section[MASU_BLOB_SKINS] + index;
@@ -192,7 +233,10 @@ bool ref_pose_skin(const ref_blob *blob, uint32_t index, double time, bool anima
         skin->first_skin_vertex;
     double whole[12], *nodes = calloc(m->node_count, 12 * sizeof *nodes);
     double *bones = calloc(skin->joint_count, 12 * sizeof *bones);
-    bool good = nodes && bones;
+    double *weights = calloc(skin->target_count + 1, sizeof *weights);
+    bool good = nodes && bones && weights;
+    for (uint32_t t = 0; good && t < skin->target_count; t++)
+        weights[t] = weight_of(blob, skin, t, time, animate);
     if (good) {
         doubles_of(m->transform, whole);
         pose_model(blob, m, time, animate, nodes);
@@ -209,12 +253,15 @@ bool ref_pose_skin(const ref_blob *blob, uint32_t index, double time, bool anima
                 for (int e = 0; e < 12; e++) sum[e] += from[v].weights[k] / 65535.0 * bone[e];
             }
             ref_octahedral(from[v].rest.normal, normal);
-            positions[v] = ref_transform(sum, ref_of(from[v].rest.position));
+            ref_vec rest = ref_of(from[v].rest.position);
+            morph(blob, skin, v, weights, &rest, normal);
+            positions[v] = ref_transform(sum, rest);
             normals[v] =
                 ref_unit(ref_transform_normal(sum, ref_v(normal[0], normal[1], normal[2])));
         }
     }
     free(nodes);
     free(bones);
+    free(weights);
     return good;
 }

@@ -78,6 +78,7 @@ static bool read_materials(ref_scene *s) {
         if (!(m->flags & MASU_MATERIAL_HAS_MAPS)) continue;
         const masu_blob_texture_set *set = &sets[m->texture_set];
         memcpy(s->materials[i].wrap, set->wrap, sizeof set->wrap);
+        s->materials[i].second = m->more_layers >> 16;
         for (uint32_t slot = 0; good && slot < MASU_SLOT_COUNT; slot++) {
             if (!(m->flags & 1u << slot)) continue;
             uint32_t layer = slot < 4 ? m->layers >> 8 * slot : m->more_layers >> 8 * (slot - 4);
@@ -119,6 +120,8 @@ static bool add_primitive(ref_scene *s, const masu_blob_primitive *p, const doub
     const masu_blob_vertex *vertices = s->blob.section[MASU_BLOB_VERTICES];
     const uint32_t *indices = s->blob.section[MASU_BLOB_INDICES];
     const float *texcoords = s->blob.section[MASU_BLOB_TEXCOORDS];
+    const float *second = s->blob.section[MASU_BLOB_TEXCOORDS_1];
+    const uint32_t *colors = s->blob.section[MASU_BLOB_COLORS];
     uint64_t first = s->vertex_count;
     if (first + p->vertex_count > UINT32_MAX) return false;
     for (uint32_t i = 0; i < p->vertex_count; i++) {
@@ -133,6 +136,12 @@ static bool add_primitive(ref_scene *s, const masu_blob_primitive *p, const doub
         if (texcoords)
             memcpy(s->texcoords + 2 * at, texcoords + 2 * (size_t)(p->first_vertex + i),
                    2 * sizeof(float));
+        if (s->texcoords_1)
+            memcpy(s->texcoords_1 + 2 * at, second + 2 * (size_t)(p->first_vertex + i), 2 * sizeof(float));
+        for (int k = 0; k < 4 && s->colors; k++) {
+            float c = (float)(colors[p->first_vertex + i] >> 8 * k & 255u) / 255.0f;
+            s->colors[4 * at + (uint64_t)k] = k < 3 ? c * c : c;
+        }
     }
     for (uint32_t i = 0; i + 2 < p->index_count; i += 3) {
         ref_triangle *t = &s->triangles[s->triangle_count++];
@@ -188,7 +197,12 @@ static bool read_triangles(ref_scene *s, const double *matrices, double time, bo
         s->triangles = calloc(triangles + 1, sizeof *s->triangles);
         if (s->blob.section[MASU_BLOB_TEXCOORDS])
             s->texcoords = calloc(vertices + 1, 2 * sizeof *s->texcoords);
+        if (s->blob.section[MASU_BLOB_TEXCOORDS_1])
+            s->texcoords_1 = calloc(vertices + 1, 2 * sizeof *s->texcoords_1);
+        if (s->blob.section[MASU_BLOB_COLORS]) s->colors = calloc(vertices + 1, 4 * sizeof *s->colors);
         good = s->positions && s->normals && s->triangles &&
+               !s->texcoords_1 == !s->blob.section[MASU_BLOB_TEXCOORDS_1] &&
+               !s->colors == !s->blob.section[MASU_BLOB_COLORS] &&
                (s->texcoords || !s->blob.section[MASU_BLOB_TEXCOORDS]);
     }
     for (uint64_t i = 0; good && i < count; i++) {
@@ -282,6 +296,8 @@ void ref_scene_close(ref_scene *s) {
     free(s->positions);
     free(s->normals);
     free(s->texcoords);
+    free(s->texcoords_1);
+    free(s->colors);
     free(s->triangles);
     free(s->lights);
     free(s->emitters);

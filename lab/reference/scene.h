@@ -30,6 +30,7 @@ typedef struct ref_material {
     double roughness, metallic, specular, coat, coat_roughness, opacity, cutoff;
     double detail[2];
     uint32_t wrap[2];
+    uint32_t second;                         /* bit per slot: its map is of the second coordinates */
     const ref_texture *map[MASU_SLOT_COUNT]; /* NULL: none */
 } ref_material;
 
@@ -55,6 +56,7 @@ typedef struct ref_scene {
     ref_blob blob;
     ref_vec *positions, *normals; /* world space */
     float *texcoords;             /* two a vertex, or NULL */
+    float *texcoords_1, *colors;  /* two and four (linear) a vertex, or NULL */
     uint64_t vertex_count;
     ref_triangle *triangles;
     uint64_t triangle_count;

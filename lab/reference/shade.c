@@ -3,6 +3,8 @@
 #include "lab/reference/fog.h"
 #include "lab/reference/tracer.h"
 
+#include "shared/masu_shared.h"
+
 #include <string.h>
 
 enum { LAYERS_MOST = 64 };
@@ -35,6 +37,19 @@ ref_pane ref_pane_of(const ref_look *look, const ref_bsdf *b) {
     p.soft *= look->cover;
     p.mirror *= look->cover;
     return p;
+}
+
+ref_vec ref_pane_scatter(const ref_look *look, ref_vec d, ref_random *r) {
+    double alpha = look->s.roughness * look->s.roughness;
+    if (!(look->flags & MASU_MATERIAL_IS_TINTED) || !(look->s.roughness > MASU_SHARP_GLASS)) return d;
+    ref_vec n = ref_dot(look->s.normal, d) < 0 ? look->s.normal : ref_scale(look->s.normal, -1);
+    ref_frame f = ref_frame_of(n);
+    ref_vec v = ref_to(&f, ref_scale(d, -1));
+    double u1 = ref_draw(r), u2 = ref_draw(r);
+    ref_vec h = ref_ggx_normal(alpha, v, u1, u2);
+    ref_vec l = ref_sub(ref_scale(h, 2 * ref_dot(v, h)), v);
+    if (!(l.z > 0)) return d;
+    return ref_from(&f, ref_v(l.x, l.y, -l.z));
 }
 
 ref_vec ref_unoccluded(const ref_tracer *t, ref_vec from, ref_vec l, double far, unsigned flags) {

@@ -69,6 +69,7 @@ bool ref_texture_decode(const masu_blob_texture *t, const uint8_t *texels, uint3
 
 static uint32_t wrapped(double at, uint32_t size, uint32_t wrap) {
     double n = size, i = floor(at);
+    wrap &= 3u;
     if (wrap == 1) return (uint32_t)ref_clamp(i, 0, n - 1);
     if (wrap == 2) {
         double m = i - 2 * n * floor(i / (2 * n));
@@ -86,6 +87,7 @@ void ref_texture_at(const ref_texture *t, double u, double v, const uint32_t wra
                     double out[4]) {
     double x = u * t->width - 0.5, y = v * t->height - 0.5;
     double px = x - floor(x), py = y - floor(y);
+    if (wrap[0] & 4u) px = px < 0.5 ? 0 : 1, py = py < 0.5 ? 0 : 1; /* not interpolated */
     memset(out, 0, 4 * sizeof *out);
     for (int i = 0; i < 4; i++) {
         double weight = (i & 1 ? px : 1 - px) * (i & 2 ? py : 1 - py);

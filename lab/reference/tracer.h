@@ -66,6 +66,8 @@ typedef struct ref_pane {
     double soft, mirror, taken;
 } ref_pane;
 ref_pane ref_pane_of(const ref_look *look, const ref_bsdf *b);
+/* Which way a ray goes on behind rough glass: as a reflection by a facet (GGX), mirrored to the other side. */
+ref_vec ref_pane_scatter(const ref_look *look, ref_vec d, ref_random *r);
 /* Part of the light from the distance `far` along l that arrives: transparent surfaces dim it in
  * physics mode only. */
 ref_vec ref_unoccluded(const ref_tracer *t, ref_vec from, ref_vec l, double far, unsigned flags);

@@ -107,7 +107,7 @@ static bool find_points(study *w, uint32_t slot) {
     if (masu_readback(w->s.m, slot, MASU_READBACK_DEPTH, &depth) != MASU_OK)
         return failed(w, "no depth");
     for (size_t at = 0; at < w->pixels; at++) {
-        ref_hit hit;
+        ref_hit hit, front;
         ref_vec d = pixel_ray(w, &c, at);
         size_t x = at % w->d->size.width, y = at / w->d->size.width;
         const float *row = (const void *)((const uint8_t *)depth.pixels + y * depth.row_bytes);
@@ -115,6 +115,9 @@ static bool find_points(study *w, uint32_t slot) {
         if (!ref_world_trace(&w->world, c.eye, d, HUGE_VAL, REF_RAY_ONE_SIDED | REF_RAY_NO_BLENDS,
                              &hit) ||
             !(row[x] > 0))
+            continue;
+        /* A transparent surface in front reflects the light too: its part cannot be told apart. */
+        if (ref_world_trace(&w->world, c.eye, d, hit.t * (1 - 1e-6), REF_RAY_ONE_SIDED, &front))
             continue;
         double z = near / (double)row[x], expected = hit.t * ref_dot(d, c.forward);
         if (!(fabs(z - expected) < 0.003 * expected)) continue;
@@ -135,7 +138,8 @@ static int8_t seen_from(const study *w, const ref_light *light, ref_vec p) {
         ref_vec q =
             ref_add(light->position, ref_from(&f, ref_v(wide * cos(phi), wide * sin(phi), 0)));
         ref_vec d = ref_sub(q, p);
-        double length = ref_length(d), free = length - light->radius * (1 + 1e-3);
+        /* The bulb blocks nothing; the reference meets an SDF a little in front of it. */
+        double length = ref_length(d), free = length - 1.05 * light->radius;
         met += !(free > 0) ||
                !ref_world_occluded(&w->world, p, ref_scale(d, 1 / length), free, REF_RAY_NO_BLENDS);
     }
@@ -213,6 +217,7 @@ static bool rank(study *w, const masu_punctual_light_state *states, uint32_t *ch
     for (uint32_t i = 0; i < w->scene.light_count; i++) {
         double sum = 0;
         uint32_t at = *count;
+        if (states[i].shape >= MASU_SHAPE_CAPSULE) continue;
         if (!choose(w, i, false, states) || !draw(w, 1, w->open)) return false;
         for (size_t p = 0; p < w->pixels; p++) sum += fmin(added(w, w->open, p) * w->exposure, 1);
         while (at > 0 && sums[at - 1] < sum) at--;
@@ -272,7 +277,8 @@ static bool open_renderer(study *w) {
     d.desc.targets.storage = 1;
     d.desc.readback = MASU_READBACK_HDR | MASU_READBACK_DEPTH;
     d.desc.rung_count = 1;
-    d.desc.rungs[0] = (masu_rung){.scale = 1, .temporal = MASU_OFF, .specular = MASU_OFF};
+    d.desc.rungs[0] = (masu_rung){
+        .scale = 1, .temporal = MASU_OFF, .specular = MASU_OFF, .bounce = MASU_OFF};
     if (!masu_session_open(&d, &w->s, w->error, w->error_size)) return false;
     snprintf(w->out->driver, sizeof w->out->driver, "%s", w->s.host.driver);
     return true;

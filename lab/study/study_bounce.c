@@ -14,9 +14,9 @@ enum { POINTS_MOST = 16384 };
 
 typedef struct options {
     masu_study_options study;
-    const char *sdf, *lamp;
-    uint32_t points, paths;
-    double lamp_color, camera[6];
+    const char *sdf, *lamp, *reference;
+    uint32_t points, paths, probes, rays;
+    double lamp_color, camera[6], window[6];
     bool night;
 } options;
 
@@ -31,6 +31,7 @@ static const masu_column columns[] = {{"scene", NULL, NULL, NULL},
                                       {"reference", "%.6f", "irradiance", "%.4f"},
                                       {"noise", "%.6f", "noise, %", "%.1f"},
                                       {"found", "%.6f", "found", "%.4f"},
+                                      {"bias", "%.6f", "bias, %", "%+.1f"},
                                       {"rmse", "%.6f", "RMSE, %", "%.1f"},
                                       {"response", "%.0f", "frames to 90 %", "%.0f"},
                                       {"flicker", "%.6f", "flicker, %", "%.3f"},
@@ -41,6 +42,8 @@ typedef struct point {
     size_t at;       /* pixel */
     double albedo;   /* of uniform light, luminance */
     double expected; /* indirect irradiance */
+    double variance; /* of `expected` */
+    ref_vec p, n;
 } point;
 
 typedef struct study {
@@ -48,13 +51,15 @@ typedef struct study {
     ref_field field;
     ref_world world;
     ref_sky sky;
-    bool has_field;
+    bool has_field, shines; /* shines: some emissive surfaces are lights */
+    uint32_t materials;
+    ref_vec *emissive, *of_lights; /* of each material; the second 0 where it is no light's */
     ref_camera camera;
     point *points;
     uint32_t count;
     float *image, *direct;
     double *series; /* mean irradiance after each frame */
-    double reference, noise, found, rmse, response, flicker;
+    double reference, noise, found, bias, rmse, response, flicker;
     char driver[1024];
     uint32_t messages;
     masu_session s;
@@ -113,10 +118,74 @@ static bool in_grid(const study *w, ref_vec at) {
     return true;
 }
 
-/* Matt polygons that do not emit, spread over the image. */
+/* Whether an area light in the scene's list stands for the light of a triangle. */
+static bool is_of_light(const ref_scene *s, const ref_triangle *triangle) {
+    ref_vec at = ref_splat(0);
+    for (int k = 0; k < 3; k++)
+        at = ref_add(at, ref_scale(s->positions[triangle->vertex[k]], 1.0 / 3));
+    for (uint32_t i = 0; i < s->light_count; i++) {
+        const ref_light *l = &s->lights[i];
+        double reach = l->radius + (l->type >= MASU_LIGHT_CAPSULE ? ref_length(l->direction) : 0) +
+                       (l->type == MASU_LIGHT_RECTANGLE ? ref_length(l->half_axis) : 0);
+        if (l->surface && ref_length(ref_sub(at, l->position)) <= 1.1 * reach + 0.01) return true;
+    }
+    return false;
+}
+
+/* Light straight from emissive surfaces that are lights too, which pixels have without a bounce: the scene with
+ * nothing else in it that shines. */
+static double emission_at(study *w, const ref_tracer *all, const ref_hit *hit, ref_random *r) {
+    static const ref_sky dark;
+    ref_tracer t = *all;
+    const uint32_t lights = w->scene.light_count;
+    if (!w->scene.emitter_count || !w->shines) return 0;
+    t.sky = &dark;
+    t.sun_color = ref_splat(0);
+    t.bounces = 1;
+    w->scene.light_count = 0;
+    for (uint32_t i = 0; i < w->materials; i++) w->scene.materials[i].emissive = w->of_lights[i];
+    double value = ref_luminance(ref_irradiance(&t, hit, r));
+    w->scene.light_count = lights;
+    for (uint32_t i = 0; i < w->materials; i++) w->scene.materials[i].emissive = w->emissive[i];
+    return value;
+}
+
+static bool find_emitters(study *w) {
+    w->materials = (uint32_t)w->scene.blob.count[MASU_BLOB_MATERIALS];
+    w->emissive = calloc(2 * (size_t)w->materials + 1, sizeof *w->emissive);
+    if (!w->emissive) return false;
+    w->of_lights = w->emissive + w->materials;
+    for (uint32_t i = 0; i < w->materials; i++) w->emissive[i] = w->scene.materials[i].emissive;
+    for (uint32_t i = 0; i < w->scene.emitter_count; i++) {
+        const ref_triangle *t = &w->scene.triangles[w->scene.emitters[i].triangle];
+        if (!is_of_light(&w->scene, t)) continue;
+        w->of_lights[t->material] = w->emissive[t->material];
+        w->shines = true;
+    }
+    return true;
+}
+
+/* Matt surfaces that do not emit, spread over the image. */
 static void find_points(study *w) {
     const size_t pixels = (size_t)o->size.width * o->size.height;
+    const double *window = given.window;
     ref_ggx_tables();
+    ref_tracer all = {.world = &w->world,
+                      .sky = &w->sky,
+                      .physics = true,
+                      .full = true,
+                      .polygons_shadow = true,
+                      .field_shadows = true,
+                      .sky_samples = true,
+                      .light_samples = true,
+                      .bsdf_samples = true,
+                      .bounces = 16,
+                      .sun_direction = ref_of(w->scene.environment->sun_direction),
+                      .sun_color = given.night ? ref_splat(0) : ref_of(w->scene.environment->sun_color),
+                      .eye = w->camera.eye,
+                      .window = {ref_v(window[0], window[1], window[2]),
+                                 ref_v(window[3], window[4], window[5]), window[0] < window[3]},
+                      .environment = w->scene.environment};
     for (size_t i = 0; i < pixels && w->count < given.points; i++) {
         size_t at = (size_t)(fmod((double)i * 0.6180339887498949, 1) * (double)pixels);
         ref_vec d = ref_camera_ray(&w->camera, ((double)(at % o->size.width) + 0.5) / o->size.width,
@@ -126,7 +195,7 @@ static void find_points(study *w) {
         ref_look look;
         ref_bsdf b;
         if (!ref_world_trace(&w->world, w->camera.eye, d, HUGE_VAL, REF_RAY_ONE_SIDED, &hit) ||
-            hit.triangle == REF_SDF || !in_grid(w, hit.p))
+            !in_grid(w, hit.p))
             continue;
         ref_world_look(&w->world, &hit, ref_scale(d, -1), &look);
         if (look.flags & MASU_MATERIAL_IS_BLEND || ref_max(look.s.emissive) > 0 ||
@@ -134,37 +203,42 @@ static void find_points(study *w) {
             continue;
         ref_bsdf_make(&b, &look.s, ref_scale(d, -1), false);
         ref_lobes albedo = ref_bsdf_albedo(&b);
-        ref_tracer all = {.world = &w->world,
-                          .sky = &w->sky,
-                          .physics = true,
-                          .full = true,
-                          .polygons_shadow = true,
-                          .field_shadows = true,
-                          .sky_samples = true,
-                          .light_samples = true,
-                          .bsdf_samples = true,
-                          .bounces = 16,
-                          .sun_direction = ref_of(w->scene.environment->sun_direction),
-                          .sun_color =
-                              given.night ? ref_splat(0) : ref_of(w->scene.environment->sun_color),
-                          .eye = w->camera.eye,
-                          .environment = w->scene.environment};
         double sum = 0, square = 0, n = given.paths;
         for (uint32_t k = 0; k < given.paths; k++) {
-            ref_random r = ref_random_at(7, at, k), same = r;
+            ref_random r = ref_random_at(7, at, k), same = r, again = r;
             all.bounces = 16;
             double value = ref_luminance(ref_irradiance(&all, &hit, &r));
             all.bounces = 0;
             value -= ref_luminance(ref_irradiance(&all, &hit, &same));
+            value -= emission_at(w, &all, &hit, &again);
             sum += value;
             square += value * value;
         }
-        w->points[w->count++] = (point){at, ref_luminance(ref_lobes_sum(&albedo)), sum / n};
-        w->reference += sum / n;
-        w->noise += fmax(square / n - sum * sum / n / n, 0) / (n - 1);
+        w->points[w->count++] = (point){at, ref_luminance(ref_lobes_sum(&albedo)), sum / n,
+                                        fmax(square / n - sum * sum / n / n, 0) / (n - 1), hit.p, hit.ng};
     }
-    w->reference /= w->count ? w->count : 1;
-    w->noise = w->reference > 0 ? sqrt(w->noise / w->count) / w->reference : 0;
+}
+
+/* Points of a file that an earlier run has written, or of paths, which are written there. */
+static bool read_points(study *w, char *error, size_t size) {
+    FILE *file = given.reference ? fopen(given.reference, "rb") : NULL;
+    if (file) {
+        w->count = (uint32_t)fread(w->points, sizeof *w->points, given.points, file);
+    } else {
+        if (!find_emitters(w)) return failed(error, size, "out of memory");
+        masu_cli_progress_text("paths of the reference");
+        find_points(w);
+        if (given.reference) file = fopen(given.reference, "wb");
+        if (given.reference && (!file || fwrite(w->points, sizeof *w->points, w->count, file) != w->count))
+            snprintf(error, size, "%s: cannot be written", given.reference);
+    }
+    if (file) fclose(file);
+    for (uint32_t i = 0; i < w->count; i++) {
+        w->reference += w->points[i].expected / w->count;
+        w->noise += w->points[i].variance / w->count;
+    }
+    w->noise = w->reference > 0 ? sqrt(w->noise) / w->reference : 0;
+    return w->count > 0 || failed(error, size, "no matt polygon is in view");
 }
 
 /* ---- Frames ---------------------------------------------------------------------------------- */
@@ -178,7 +252,9 @@ static bool open_renderer(study *w, bool bounce, char *error, size_t size) {
     d.desc.rungs[0] = (masu_rung){.scale = 1,
                                   .temporal = MASU_OFF,
                                   .specular = MASU_OFF,
-                                  .bounce = bounce ? MASU_ON : MASU_OFF};
+                                  .bounce = bounce ? MASU_ON : MASU_OFF,
+                                  .bounce_probes = bounce ? given.probes : 0,
+                                  .bounce_rays = bounce ? given.rays : 0};
     if (!masu_session_open(&d, &w->s, error, size)) return false;
     snprintf(w->driver, sizeof w->driver, "%s", w->s.host.driver);
     return true;
@@ -270,7 +346,9 @@ static bool measure(study *w, char *error, size_t size) {
     for (uint32_t i = 0; i < w->count; i++) {
         double off = irradiance_at(w, &w->points[i]) - w->points[i].expected;
         sum += off * off;
+        w->bias += off / w->count;
     }
+    w->bias = w->reference > 0 ? w->bias / w->reference : 0;
     w->rmse = w->reference > 0 ? sqrt(fmax(sum, 0) / w->count) / w->reference : 0;
     return true;
 }
@@ -281,9 +359,9 @@ static int report(study *w) {
     masu_study_scene_name(o->scene, scene, sizeof scene);
     masu_table_open(&t, columns, "");
     const double values[] = {w->count,      w->reference, 100 * w->noise,  w->found,
-                             100 * w->rmse, w->response,  100 * w->flicker};
+                             100 * w->bias, 100 * w->rmse, w->response,  100 * w->flicker};
     masu_table_text(&t, scene);
-    masu_table_numbers(&t, values, 7);
+    masu_table_numbers(&t, values, 8);
     masu_table_text(&t, w->driver);
     masu_table_print(&t, o->text);
     int code = masu_table_close(&t, o->csv);
@@ -305,9 +383,7 @@ static int run(void) {
     good = good && open_reference(&w, error, sizeof error);
     if (good) {
         set_lamp(&w);
-        masu_cli_progress_text("paths of the reference");
-        find_points(&w);
-        good = w.count > 0 || failed(error, sizeof error, "no matt polygon is in view");
+        good = read_points(&w, error, sizeof error);
     }
     if (good) {
         masu_cli_progress_text("frames");
@@ -320,6 +396,7 @@ static int run(void) {
     if (w.has_field) ref_field_close(&w.field);
     ref_scene_close(&w.scene);
     free(w.points);
+    free(w.emissive);
     free(w.image);
     free(w.series);
     return code;
@@ -335,12 +412,26 @@ static bool read_camera(masu_cli *cli, void *to) {
     return false;
 }
 
+static bool read_window(masu_cli *cli, void *to) {
+    double *w = ((options *)to)->window;
+    if (sscanf(cli->value, "%lf,%lf,%lf,%lf,%lf,%lf", &w[0], &w[1], &w[2], &w[3], &w[4], &w[5]) == 6 &&
+        w[0] < w[3] && w[1] < w[4] && w[2] < w[5])
+        return true;
+    masu_cli_usage_error("--window: expected two corners X,Y,Z,X,Y,Z, the lower one first, not \"%s\"",
+                         cli->value);
+    return false;
+}
+
 static const masu_option rows[] = {
     MASU_STUDY_SIZE,
     MASU_STUDY_TIME,
     MASU_TEXT(options, sdf, "sdf", "FILE", "source of the scene's signed distance field"),
     MASU_UINT(options, points, "points", 1, POINTS_MOST, "points of matt polygons in view"),
     MASU_UINT(options, paths, "paths", 2, 1000000, "paths of the reference from each"),
+    MASU_TEXT(options, reference, "reference", "FILE", "points and what paths found there: read, or else written"),
+    MASU_OWN("window", "X,Y,Z,X,Y,Z", read_window, "box through which the sky is seen: fewer paths needed"),
+    MASU_UINT(options, probes, "probes", 1, 2048, "rung.bounce_probes (default: the library's)"),
+    MASU_UINT(options, rays, "rays", 8, 64, "rung.bounce_rays (default: the library's)"),
     MASU_OWN("camera", "X,Y,Z,X,Y,Z", read_camera, "position and target (default: the scene's)"),
     MASU_FLAG(options, night, "night", "without sun and sky"),
     MASU_TEXT(options, lamp, "lamp", "NAME", "light that is switched on after --frames without it"),
@@ -368,5 +459,4 @@ const masu_study masu_study_bounce = {
         "until the mean stays\n"
         "within a tenth of its change, and the relative change of the mean in the last frame. "
         "Light straight from\n"
-        "emissive surfaces counts as indirect in the reference alone: not for scenes with emissive "
-        "models.\n"};
+        "emissive surfaces is indirect, unless area lights stand for them.\n"};

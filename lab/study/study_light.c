@@ -109,7 +109,9 @@ const masu_study masu_study_light = {
     .details = "Each light is drawn alone, with and without shadows. Pixels that it would light by "
                "over 1/255 of white\n"
                "are compared with rays from their centre to points of the source, where all of "
-               "these agree. Too bright\n"
+               "these agree. Pixels\n"
+               "behind transparent surfaces are left out, and so are capsules and rectangles. Too "
+               "bright\n"
                "and too dark: off by over 0.1 of the light. Leak: 99th percentile of the distance "
                "of pixels that should\n"
                "be dark from those that may be lit, in texels of a shadow map of 512.\n"};

@@ -63,20 +63,41 @@ static bool add_frame(masu_session *s, uint32_t slot, size_t values, sums *t, ch
     return true;
 }
 
+enum { AROUND = 3 };
+
+/* Whether a pixel is of the glow: the mean of the reference around it is at least the floor, and no
+ * lamp is near. Single pixels of the reference are noisy: to choose them by their own light would
+ * choose those that are too bright. */
+static bool is_glow(const float *reference, int32_t x, int32_t y) {
+    const int32_t width = (int32_t)o->size.width, height = (int32_t)o->size.height;
+    double sum = 0, count = 0;
+    for (int32_t j = y - AROUND; j <= y + AROUND; j++) {
+        for (int32_t i = x - AROUND; i <= x + AROUND; i++) {
+            if (i < 0 || j < 0 || i >= width || j >= height) continue;
+            const float *r = reference + 3 * ((size_t)j * (size_t)width + (size_t)i);
+            double most = fmax((double)r[0], fmax((double)r[1], (double)r[2]));
+            if (!(most < 1)) return false;
+            sum += most;
+            count++;
+        }
+    }
+    return sum > given.floor * count;
+}
+
 static void evaluate(const sums *t, const float *reference, size_t pixels, found *out) {
     double light[2] = {0, 0};
     float *deviations = t->linear;
     for (size_t p = 0; p < pixels; p++) {
         const float *r = reference + 3 * p;
         float deviation = 0;
-        double most = fmax((double)r[0], fmax((double)r[1], (double)r[2]));
         for (size_t k = 0; k < 3; k++) {
             float n = (float)given.last, mean = t->sum[3 * p + k] / n;
             deviation = fmaxf(deviation, sqrtf(fmaxf(t->square[3 * p + k] / n - mean * mean, 0)));
         }
         deviations[p] = deviation;
         out->mean += (double)deviation / (double)pixels;
-        if (!(most > given.floor) || !(most < 1)) continue;
+        if (!is_glow(reference, (int32_t)(p % o->size.width), (int32_t)(p / o->size.width)))
+            continue;
         out->pixels++;
         for (size_t k = 0; k < 3; k++) {
             light[0] += (double)t->mean[3 * p + k];
@@ -183,7 +204,8 @@ const masu_study masu_study_rest = {
     .options = rows,
     .given = &given.study,
     .run = run,
-    .details = "Glow: light of the pixels that have a radiance of --above to 1 in the reference, "
+    .details = "Glow: light of the pixels around which the reference has a mean radiance of --above "
+               "or more, and none of 1,\n"
                "over that of the reference.\n"
                "Deviation: standard deviation over the last frames of each pixel of the shown "
                "image, of 255, without tone\n"

@@ -7,8 +7,10 @@
  *                     its light is, or below 0 where that does not arrive; then as halves the radiance without
  *                     that light, and what it adds; then the direction towards it, octahedral
  *
- * The directions of a set are a spherical Fibonacci lattice (Swinbank and Purser 2006), turned by a hash of
- * probe and set: so a scene at rest gives the same bits again, and neighbours do not err alike.
+ * The directions of all sets of a probe are a spherical Fibonacci lattice (Swinbank and Purser 2006), turned by a
+ * hash of the probe: so a scene at rest gives the same bits again, and neighbours do not err alike. A lattice at
+ * half the distance is four copies of itself, shifted by halves of its two steps: each set is a sixteenth of the
+ * lattice and evenly spread, and so are the first four together.
  */
 #ifndef MASU_BOUNCE_RAY_GLSL
 #define MASU_BOUNCE_RAY_GLSL
@@ -55,14 +57,17 @@ uvec3 masu_bounce_hash(uvec3 v)
 
 float masu_bounce_unit(uint hash) { return float(hash >> 8) * (1.0 / 16777216.0); }
 
-/* Turned by an even quaternion (Shoemake 1992). */
+/* Turned by an even quaternion (Shoemake 1992). The lattice's steps are (1, golden ratio) and (0, 1), in rays and
+ * turns; a set is shifted by quarters of them. */
 vec3 masu_bounce_direction(masu_bounce_ray r)
 {
-    uvec3 h = masu_bounce_hash(uvec3(r.probe, r.set, 0x6D617375u));
+    uvec3 h = masu_bounce_hash(uvec3(r.probe, 0u, 0x6D617375u));
     float a = masu_bounce_unit(h.x), b = 6.28318531 * masu_bounce_unit(h.y), c = 6.28318531 * masu_bounce_unit(h.z);
     vec4 q = vec4(masu_sqrt(1.0 - a) * vec2(sin(b), cos(b)), masu_sqrt(a) * vec2(sin(c), cos(c)));
-    float z = 1.0 - (2.0 * float(r.number) + 1.0) / float(masu_bounce_each());
-    float turn = 6.28318531 * fract(float(r.number) * 0.618033989);
+    uint i = (r.set & 1u) * 2u + (r.set >> 2 & 1u), j = (r.set >> 1 & 1u) * 2u + (r.set >> 3 & 1u);
+    float at = float(r.number) + 0.25 * float(i);
+    float z = 1.0 - (2.0 * at + 0.25) / float(masu_bounce_each());
+    float turn = 6.28318531 * fract(at * 0.618033989 + 0.25 * float(j));
     vec3 d = vec3(masu_sqrt(1.0 - z * z) * vec2(cos(turn), sin(turn)), z);
     d += 2.0 * cross(q.xyz, cross(q.xyz, d) + q.w * d);
     return masu_normalize(d, vec3(0.0, 1.0, 0.0));

@@ -142,6 +142,17 @@ vec3 masu_rest_color(vec3 f0, float f90, float lost)
     return f * f * (1.35 - 0.35 * f) * (1.0 - lost) / (1.0 - f * lost);
 }
 
+/* The normal below a coat that has its own, n. */
+vec3 masu_base_normal(masu_surface s, vec3 n)
+{
+#ifdef MASU_SURFACE
+    if (masu_own_coats) {
+        return masu_below(n, s.lean);
+    }
+#endif
+    return n;
+}
+
 /* n: the normal, unit, a coat's where it has its own; v: towards the viewer, unit. */
 masu_bsdf masu_bsdf_make(masu_surface s, vec3 n, vec3 v)
 {

@@ -106,16 +106,16 @@ bool masu_light_is_shared(masu_punctual_light_data light)
     return (uint(clamp(light.cone.w, 0.0, 7.0)) & uint(MASU_LIGHT_SHARED)) != 0u;
 }
 
-/* l: unit vector towards the light's centre. color: of a point or spot irradiance / pi on a surface that faces
- * it, of others radiance. False: nothing arrives, and the other two are not to be used. rel: the point, relative
- * to the eye. */
-bool masu_light_reaches(masu_punctual_light_data light, vec3 rel, out vec3 l, out vec3 color)
+/* l: unit vector towards the light's centre. strength: factor of the light's colour: of a point or spot irradiance /
+ * pi on a surface that faces it, of others radiance. False: nothing arrives, and the other two are not to be used.
+ * rel: the point, relative to the eye. */
+bool masu_light_arrives(masu_punctual_light_data light, vec3 rel, out vec3 l, out float strength)
 {
     vec3 to = light.position.xyz - rel;
     float squared = dot(to, to);
     float share = squared * light.position.w;
     l = vec3(0.0, 1.0, 0.0);
-    color = vec3(0.0);
+    strength = 0.0;
     if (!(share < 1.0)) {
         return false; /* NaN too */
     }
@@ -123,12 +123,20 @@ bool masu_light_reaches(masu_punctual_light_data light, vec3 rel, out vec3 l, ou
     vec3 chord = l + light.axis.xyz;
     float t = clamp((light.axis.w - 0.5 * dot(chord, chord)) * light.cone.x, 0.0, 1.0);
     float window = 1.0 - share * share;
-    float strength = window * (t * t) / max(squared, light.color.w);
+    strength = window * (t * t) / max(squared, light.color.w);
     if (masu_area_lights && masu_light_kind(light) != MASU_KIND_POINT) {
         strength = window;
     }
+    return strength > 0.0 && masu_finite((abs(light.color.r) + abs(light.color.g) + abs(light.color.b)) * strength);
+}
+
+/* The same with the colour. */
+bool masu_light_reaches(masu_punctual_light_data light, vec3 rel, out vec3 l, out vec3 color)
+{
+    float strength;
+    bool arrives = masu_light_arrives(light, rel, l, strength);
     color = light.color.rgb * strength;
-    return strength > 0.0 && masu_finite(color);
+    return arrives;
 }
 
 vec3 masu_unit(vec3 v)
@@ -189,21 +197,62 @@ float masu_light_within(masu_punctual_light_data light, vec3 rel)
     return dot(from, from) * masu_rcp(1.1 * radius2 + 1e-7);
 }
 
+/* How far a light reaches above the horizon of a plane through the point, and not yet how far the horizon cuts it: 0
+ * or less, it lights nothing. to: its centre. */
+float masu_light_height(masu_punctual_light_data light, vec3 to, vec3 n)
+{
+    uint kind = masu_area_lights ? masu_light_kind(light) : MASU_KIND_POINT;
+    float height = dot(n, to) + (kind == MASU_KIND_RECTANGLE ? abs(dot(n, light.cone.xyz)) : masu_sqrt(light.color.w));
+    return kind == MASU_KIND_POINT ? height : height + abs(dot(n, light.axis.xyz));
+}
+
+/* A sum of lights: both kinds together, which takes less registers, but where MASU_LIGHTS_APART says otherwise. */
+struct masu_light_sum {
+    vec3 light; /* or what comes from below the skin, */
+#ifdef MASU_LIGHTS_APART
+    vec3 mirrored;
+#endif
+};
+
+void masu_sum_mirrored(inout masu_light_sum sum, vec3 mirrored)
+{
+#ifdef MASU_LIGHTS_APART
+    sum.mirrored += mirrored;
+#else
+    sum.light += mirrored;
+#endif
+}
+
 /* Adds what a light contributes at a surface point relative to the eye. n: the normal of the surface itself; traced:
  * share of the mirrored light of base and coat that is traced; z 1: rays meet all of what they can, 0: they share it
- * with the lobe. False: nothing arrives. */
-bool masu_add_local_light(inout masu_lit lit, masu_surface s, masu_bsdf b, uint number, vec3 rel, vec3 n, vec3 traced)
+ * with the lobe. False: nothing arrives.
+ *
+ * Shadows come first: they keep only one number, and what is in shadow needs nothing of the rest. */
+bool masu_add_local_light(inout masu_light_sum sum, masu_surface s, masu_bsdf b, uint number, vec3 rel, vec3 n, vec3 traced)
 {
     masu_punctual_light_data light = masu_lights[number];
     vec3 l;
-    vec3 color;
-    if (!masu_light_reaches(light, rel, l, color)) {
+    float strength;
+    if (!masu_light_arrives(light, rel, l, strength)) {
+        return false;
+    }
+    vec3 to = light.position.xyz - rel;
+    float height = masu_light_height(light, to, b.n);
+#ifdef MASU_SURFACE
+    if (masu_own_coats) {
+        height = max(height, masu_light_height(light, to, b.coat_n));
+    }
+#endif
+    if (!(height > 0.0)) {
         return false;
     }
 #ifdef MASU_LOCAL_SHADOWS
-    color *= masu_light_seen(light, rel, n);
+    strength *= masu_light_seen(light, rel, n);
+    if (!(strength > 0.0)) {
+        return false;
+    }
 #endif
-    vec3 to = light.position.xyz - rel, u = vec3(0.0), v = vec3(0.0);
+    vec3 u = vec3(0.0), v = vec3(0.0);
     bool area = masu_area_lights && masu_light_kind(light) != MASU_KIND_POINT;
     if (area && !masu_light_axes(light, to, u, v)) {
         return false;
@@ -214,20 +263,33 @@ bool masu_add_local_light(inout masu_lit lit, masu_surface s, masu_bsdf b, uint 
         if (masu_light_within(light, rel) < 1.0) {
             return false; /* its own surface */
         }
-        kept -= traced.xy * max(masu_ray_shares(s, b, l, size), traced.z);
+#ifdef MASU_SURFACE
+        bool any_traced = traced.x + traced.y > 0.0;
+#else
+        bool any_traced = traced.x > 0.0;
+#endif
+        if (any_traced) {
+            kept -= traced.xy * max(masu_ray_shares(s, b, l, size), traced.z);
+        }
     }
+    vec3 color = light.color.rgb * strength;
     if (area) {
         vec3 form = masu_rectangle(b, to, u, v);
         vec3 mirrored = color * masu_sane(masu_bsdf_specular(b) * (form.y * kept.x), 0.0, masu_huge);
 #ifdef MASU_SURFACE
         mirrored *= s.shadow >= 0.0 ? masu_meso_shadow(s.shadow, b.v, l) : 1.0;
 #endif
-        lit.specular += mirrored;
+        masu_sum_mirrored(sum, mirrored);
         masu_flatten(b, l, color, form, size, kept);
     } else {
         masu_spread(b, l, color, size, kept);
     }
+    masu_lit lit;
+    lit.diffuse = vec3(0.0);
+    lit.specular = vec3(0.0);
     masu_add_light(lit, s, b, l, color);
+    sum.light += lit.diffuse;
+    masu_sum_mirrored(sum, lit.specular);
     return true;
 }
 
@@ -259,12 +321,6 @@ float masu_met_share(vec3 met, vec3 rel, vec3 n, vec3 v, float roughness)
         }
     }
     return share;
-}
-
-/* Where no rays are traced from the surface. */
-bool masu_add_local_light(inout masu_lit lit, masu_surface s, masu_bsdf b, uint number, vec3 rel, vec3 n)
-{
-    return masu_add_local_light(lit, s, b, number, rel, n, vec3(0.0));
 }
 #endif
 

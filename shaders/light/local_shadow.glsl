@@ -14,10 +14,13 @@
 #ifndef MASU_LOCAL_SHADOW_GLSL
 #define MASU_LOCAL_SHADOW_GLSL
 
+#extension GL_EXT_control_flow_attributes : require
+
 layout(set = MASU_SET_PASS, binding = MASU_AT_LOCAL_SHADOWS) uniform sampler2D local_shadow_atlas;
 
 const float masu_local_steepest = 200.0; /* slope against the light that is still made up for: 0.3 degrees */
 const float masu_local_least_bias = 0.1; /* texels */
+const float masu_local_behind = 20.0; /* a surface that faces away from all of the source is dark over 2.9 degrees */
 const float masu_local_snap = 1.0 / 8.0; /* texels: how far rasterisers may move an edge across a face */
 
 /* Weights of the texels before, at and after the point; f: how far it is from its texel's centre. */
@@ -54,19 +57,24 @@ float masu_local_filter(vec2 at, float depth, vec2 slope, float texel)
     vec2 middle = floor(at);
     vec2 f = at - middle - 0.5;
     vec2 uv = middle * texel;
-    vec4 a = textureGather(local_shadow_atlas, uv);
-    vec4 b = textureGather(local_shadow_atlas, uv + vec2(texel, 0.0));
-    vec4 c = textureGather(local_shadow_atlas, uv + vec2(0.0, texel));
-    vec4 d = textureGather(local_shadow_atlas, uv + vec2(texel, texel));
     float across = -slope.x * f.x;
-    float down = -slope.y * f.y;
+    float down = -slope.y * (f.y + 1.0);
     vec3 columns = vec3(across - slope.x, across, across + slope.x);
-    vec3 weight = masu_local_spline(f.x);
-    /* Gathered are the texels below left, below right, above right, above left of a corner. */
-    vec3 sums = vec3(dot(weight, masu_local_lit(columns, down - slope.y, depth, vec3(a.w, a.z, b.z))),
-                     dot(weight, masu_local_lit(columns, down, depth, vec3(a.x, a.y, b.y))),
-                     dot(weight, masu_local_lit(columns, down + slope.y, depth, vec3(c.x, c.y, d.y))));
-    return dot(masu_local_spline(f.y), sums);
+    vec3 weight = masu_local_spline(f.x), rows = masu_local_spline(f.y);
+    float sum = 0.0;
+    /* In a loop: all sixteen texels of four gathers at once take too many registers. Gathered are the texels
+     * below left, below right, above right, above left of a corner. The second turn has the middle row again. */
+    [[dont_unroll]] for (int i = 0; i < 2; i++) {
+        vec4 left = textureGather(local_shadow_atlas, uv);
+        vec4 right = textureGather(local_shadow_atlas, uv + vec2(texel, 0.0));
+        float low = dot(weight, masu_local_lit(columns, down, depth, vec3(left.w, left.z, right.z)));
+        float high = dot(weight, masu_local_lit(columns, down + slope.y, depth, vec3(left.x, left.y, right.y)));
+        sum += rows.x * low + rows.y * high;
+        rows = vec3(0.0, rows.z, 0.0);
+        down += slope.y;
+        uv.y += texel;
+    }
+    return sum;
 }
 #endif
 
@@ -117,10 +125,12 @@ float masu_light_seen(masu_punctual_light_data light, vec3 rel, vec3 n)
     vec2 at = uv * (inverse / width) + (corner + 0.5 * edge);
     float depth = near * inverse;
     float step = depth * width;
-    float facing = min(dot(n, p) * inverse, -1.0 / masu_local_steepest);
+    float along = dot(n, p) * inverse;
+    float facing = min(along, -1.0 / masu_local_steepest);
     vec2 slope = across * (step / facing);
     float bias = masu_local_least_bias * step + masu_local_snap * (abs(slope.x) + abs(slope.y));
     float lit = masu_local_filter(at, depth + bias, slope, uintBitsToFloat(masu_lights_header.z));
+    lit *= clamp(1.0 - (along - depth) * masu_local_behind, 0.0, 1.0);
     float fade = float(word >> MASU_LOCAL_FADE_SHIFT & 15u) * (1.0 / float(MASU_LOCAL_FADE));
     return lit * fade + (1.0 - fade);
 }

@@ -138,10 +138,15 @@ masu_mirrored masu_mirrored_sky(masu_surface s, vec3 n, vec3 v, vec2 kept)
 }
 
 /* What comes from everywhere alone. b: of s; rel: the point, relative to the eye; seen: how much of it arrives; sky: of
- * masu_mirrored_sky. */
+ * masu_mirrored_sky. With lights the caller has asked what is around before it has made b. */
+#ifdef MASU_LIGHTS
+masu_lit masu_shade_around(masu_surface s, masu_bsdf b, masu_around around, float seen, masu_mirrored sky)
+{
+#else
 masu_lit masu_shade_around(masu_surface s, masu_bsdf b, vec3 rel, float seen, masu_mirrored sky)
 {
     masu_around around = masu_ambient_at(rel, b.n);
+#endif
     vec3 ambient = around.mirrored * (seen * s.occlusion);
     masu_lit lit = masu_lit(masu_bsdf_diffuse(b) * around.irradiance * (seen * s.occlusion),
                             vec3(0.0), masu_bsdf_specular(b));
@@ -161,9 +166,15 @@ masu_lit masu_shade_around(masu_surface s, masu_bsdf b, vec3 rel, float seen, ma
 }
 
 /* The same and the sun; seen: how much arrives of the sun and of the light from everywhere. */
+#ifdef MASU_LIGHTS
+masu_lit masu_shade(masu_surface s, masu_bsdf b, masu_around around, vec2 seen, masu_mirrored sky)
+{
+    masu_lit lit = masu_shade_around(s, b, around, seen.y, sky);
+#else
 masu_lit masu_shade(masu_surface s, masu_bsdf b, vec3 rel, vec2 seen, masu_mirrored sky)
 {
     masu_lit lit = masu_shade_around(s, b, rel, seen.y, sky);
+#endif
     masu_add_light(lit, s, b, frame.sun_direction.xyz, frame.sun_color.rgb * seen.x);
     return lit;
 }

@@ -444,6 +444,9 @@ masu_surface surface_met(ray r, float t, bool known, uint part, out vec3 n)
         masu_count(MASU_COUNTER_SDF_EVALS, 4u);
     }
     masu_normal = n;
+#ifdef MASU_SDF_PAINTED
+    masu_footprint = t * r.pixel;
+#endif
     masu_sdf_part_surface(part, p, s);
     return s;
 }

@@ -5,7 +5,7 @@
 #include "shared/types.h"
 
 #define MASU_BOUNCE_BURST 4u      /* times as many probes in the first rounds */
-#define MASU_BOUNCE_SETS 4u       /* sets of rays whose mean a probe shows */
+#define MASU_BOUNCE_SETS 16u     /* sets of rays whose mean a probe shows */
 #define MASU_BOUNCE_RAYS_MAX 64u  /* of a set: a workgroup sums them */
 #define MASU_BOUNCE_RAY_BYTES 32u /* see shaders/bounce/ray.glsl */
 #define MASU_BOUNCE_EMISSION 64.0 /* most radiance that a ray takes from an emissive surface */

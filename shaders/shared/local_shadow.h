@@ -17,7 +17,7 @@ struct masu_local_face_uniforms {
     masu_vec4 row2[MASU_LOCAL_FACES_MAX];      /* xyz unit axis; w near distance, m */
     masu_vec4 origin_hi[MASU_LOCAL_FACES_MAX]; /* xyz light, rounded to float; w texel width at distance 1 */
     masu_vec4 origin_lo[MASU_LOCAL_FACES_MAX]; /* xyz light - origin_hi; w largest depth along row2, m */
-    masu_uvec4 tile[MASU_LOCAL_FACES_MAX]; /* xy first texel in the atlas; z texels per edge, 0: none; w 1: the SDF reaches it */
+    masu_uvec4 tile[MASU_LOCAL_FACES_MAX]; /* xy first texel in the atlas; z texels per edge, 0: none; w 1: the SDF reaches it, 2: and is marched */
     masu_uvec4 groups; /* xyz workgroups of local_shadow_sdf */
     masu_uvec4 square; /* x texels per edge of a square, y squares side by side, z of the atlas, w faces */
 };

@@ -41,6 +41,25 @@ layout(set = MASU_SET_TEXTURES, binding = 4) uniform sampler2DArray occlusion_ma
 layout(set = MASU_SET_TEXTURES, binding = 5) uniform sampler2DArray coat_map;
 #endif
 
+/* Where a map is read: of MASU_MAPS_SECOND, where whoever includes this has it, a bit for each slot. */
+vec2 masu_map_at(uint slot, vec2 at)
+{
+#ifdef MASU_MAPS_SECOND
+    return (MASU_MAPS_SECOND >> slot & 1u) != 0u ? MASU_MAPS_SECOND_AT : at;
+#else
+    return at;
+#endif
+}
+
+#ifdef MASU_ATTRIBUTES
+/* By the colour of vertices: what is lit, and of an unlit surface, whose light it is, what it emits. */
+void masu_tint(inout masu_surface s, vec3 color)
+{
+    s.emissive *= masu_is_unlit(s) ? color : vec3(1.0);
+    s.albedo *= color;
+}
+#endif
+
 float masu_layer(uint slot)
 {
     return float(MASU_MAPS_LAYERS >> 8 * slot & 0xFFu);
@@ -58,7 +77,7 @@ vec4 masu_base(vec2 at)
     if ((MASU_MAPS_FLAGS & MASU_MAP_BASE) == 0u) {
         return vec4(1.0);
     }
-    return texture(base_map, vec3(at, masu_layer(0u)), MASU_MAPS_BIAS);
+    return texture(base_map, vec3(masu_map_at(0u, at), masu_layer(0u)), MASU_MAPS_BIAS);
 }
 
 /* Multiplies the factors of `s`; returns alpha. */
@@ -68,22 +87,22 @@ float masu_sample_maps(vec2 at, inout masu_surface s)
     vec4 base = masu_base(at);
     s.albedo *= base.rgb;
     if ((MASU_MAPS_FLAGS & MASU_MAP_SURFACE) != 0u) {
-        vec2 surface = texture(surface_map, vec3(at * MASU_MAPS_DETAIL, masu_layer(2u)), bias).rg;
+        vec2 surface = texture(surface_map, vec3(masu_map_at(2u, at) * MASU_MAPS_DETAIL, masu_layer(2u)), bias).rg;
         s.roughness *= surface.r;
         if ((MASU_MAPS_FLAGS & MASU_MAP_METAL) != 0u) {
             s.metallic *= surface.g;
         }
     }
     if ((MASU_MAPS_FLAGS & MASU_MAP_EMISSIVE) != 0u) {
-        s.emissive *= texture(emissive_map, vec3(at, masu_layer(3u)), bias).rgb;
+        s.emissive *= texture(emissive_map, vec3(masu_map_at(3u, at), masu_layer(3u)), bias).rgb;
     }
     if ((MASU_MAPS_FLAGS & MASU_MAP_OCCLUSION) != 0u) {
         float layer = float(MASU_MAPS_FLAGS >> MASU_MAP_OCCLUSION_SHIFT);
-        s.occlusion *= texture(occlusion_map, vec3(at * MASU_MAPS_DETAIL, layer), bias).r;
+        s.occlusion *= texture(occlusion_map, vec3(masu_map_at(4u, at) * MASU_MAPS_DETAIL, layer), bias).r;
     }
 #ifdef MASU_MAPS_COAT_LAYER
     if (masu_own_coats && (MASU_MAPS_FLAGS & MASU_MAP_COAT) != 0u) {
-        vec2 coat = texture(coat_map, vec3(at * MASU_MAPS_DETAIL, float(MASU_MAPS_COAT_LAYER)), bias).rg;
+        vec2 coat = texture(coat_map, vec3(masu_map_at(5u, at) * MASU_MAPS_DETAIL, float(MASU_MAPS_COAT_LAYER)), bias).rg;
         s.coat *= coat.r;
         s.coat_roughness *= coat.g;
     }
@@ -106,6 +125,7 @@ vec3 masu_bend_normal(vec3 normal, vec3 rel, vec2 at)
     if ((MASU_MAPS_FLAGS & MASU_MAP_NORMAL) == 0u) {
         return normal;
     }
+    at = masu_map_at(1u, at);
     vec2 xy = texture(normal_map, vec3(at * MASU_MAPS_DETAIL, masu_layer(1u)), MASU_MAPS_BIAS).rg;
     /* 128 / 255 is zero: an even number of steps has no middle. */
     xy = clamp((xy * 255.0 - 128.0) / 127.0, -1.0, 1.0);

@@ -25,6 +25,10 @@
 #define MASU_MAP_CUTOFF_SHIFT 8
 #define MASU_MAP_OCCLUSION_SHIFT 24 /* 8 bits: the layer of the occlusion map */
 
+/* Transmission: of masu_scene_data.tints, and the roughness up to which what is behind glass is sharp. */
+#define MASU_TINTS_ROUGH 2u
+#define MASU_SHARP_GLASS 0.05
+
 /* Transform of an instance: the rows of the 3x4 matrix object -> world space. */
 struct masu_instance_data {
     masu_vec4 row0;

@@ -24,6 +24,12 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_DRAWN, std430) readonly buffer
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec2 oct_normal;
 
+/* A colour as the blob has it: linear, so that it is interpolated as light is. */
+vec4 masu_vertex_color(vec4 stored)
+{
+    return vec4(stored.rgb * stored.rgb, stored.a);
+}
+
 uint masu_instance_id()
 {
     return drawn[push.instances + uint(gl_InstanceIndex)];

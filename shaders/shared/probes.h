@@ -18,8 +18,7 @@
 #define MASU_PROBE_MOST_2 0.625 /* and 0.559 in band 2 */
 
 /* Behind the light of this frame, where probes are live: of each the mean of what its rays have found, as
- * lit words are; then of each PROBE_SETS_LIVE partial sums, as sets are. */
-#define MASU_PROBE_SETS_LIVE 4u
+ * lit words are; then of each MASU_BOUNCE_SETS partial sums, as sets are. */
 
 /* Head of the buffer, masu_blob_probes in src/scene/blob.h. Then, per probe, the coefficients from
  * the blob; then, per probe, the light of this frame. */

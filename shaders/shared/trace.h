@@ -16,6 +16,7 @@
 #define MASU_TRACE_NODE_UVEC4 3
 #define MASU_TRACE_RECORD_UVEC4 4
 #define MASU_TRACE_TOP_DEPTH 20
+#define MASU_MORPH_TARGETS 1024  /* loop bound: MASU_BLOB_MORPH_TARGETS_MAX of blob.h */
 #define MASU_SKIN_ROUNDS 4096    /* loop bound: nodes of a skinned mesh's BVH / 64 */
 #define MASU_TRACE_LEVELS_MAX 28 /* of a mesh's BVH: MASU_TRACE_DEPTH_MAX of blob.h */
 #define MASU_TRACE_STACK 48
@@ -24,6 +25,7 @@
 /* Material of a triangle: index and flags. */
 #define MASU_TRACE_NONE 0xFFFFFFFFu
 #define MASU_TRACE_HOLES 0x80000000u  /* alpha-tested */
+#define MASU_TRACE_SECOND 0x10u       /* of a material's wrap modes: emission is of the second coordinates */
 #define MASU_TRACE_SINGLE 0x40000000u /* single-sided: missed from behind */
 #define MASU_TRACE_MATERIAL 0x3FFFFFFFu
 #define MASU_TRACE_NOISE_WORDS 4096u

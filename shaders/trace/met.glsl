@@ -52,8 +52,8 @@ met met_polygon(uvec4 hit, vec3 direction, float width)
 #ifdef MASU_TRACE_TEXTURES
     if (look.maps.x != MASU_TRACE_NONE || look.maps.y != MASU_TRACE_NONE) {
         vec2 uv = masu_trace_uv(triangle.xyz, b);
-        vec2 u1 = masu_trace_texcoords[triangle.y] - masu_trace_texcoords[triangle.x];
-        vec2 u2 = masu_trace_texcoords[triangle.z] - masu_trace_texcoords[triangle.x];
+        vec2 u0 = masu_trace_texcoord(triangle.x, 0u);
+        vec2 u1 = masu_trace_texcoord(triangle.y, 0u) - u0, u2 = masu_trace_texcoord(triangle.z, 0u) - u0;
         vec3 w1 = masu_trace_now(hit.y, vec4(p1 - p0, 0.0));
         vec3 w2 = masu_trace_now(hit.y, vec4(p2 - p0, 0.0));
         float across = length(cross(w1, w2)), wide = abs(u1.x * u2.y - u1.y * u2.x);
@@ -64,11 +64,20 @@ met met_polygon(uvec4 hit, vec3 direction, float width)
         [[dont_unroll]] for (int i = 0; i < 2; i++) {
             uint map = i == 0 ? look.maps.x : look.maps.y;
             if (map != MASU_TRACE_NONE) {
-                vec3 texel = masu_trace_sized(map, uv, lod, look.maps.w).rgb;
+                vec2 at = uv;
+                if (masu_attributes >= 2u && i == 1 && (look.maps.w & MASU_TRACE_SECOND) != 0u) {
+                    at = masu_trace_second_uv(triangle.xyz, b);
+                }
+                vec3 texel = masu_trace_sized(map, at, lod, look.maps.w).rgb;
                 m.surface.albedo *= i == 0 ? texel : vec3(1.0);
                 m.surface.emissive *= i == 0 ? vec3(1.0) : texel;
             }
         }
+    }
+    if ((masu_attributes & 1u) != 0u) {
+        vec3 color = masu_trace_color(triangle.xyz, weights);
+        m.surface.emissive *= masu_is_unlit(m.surface) ? color : vec3(1.0);
+        m.surface.albedo *= color;
     }
 #endif
     return m;

@@ -16,8 +16,33 @@
 #ifdef MASU_TRACE_TEXTURES
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_TRACE_TEXCOORDS, std430) readonly buffer TraceTexcoords
 {
-    vec2 masu_trace_texcoords[];
+    uvec2 masu_trace_texcoords[];
 };
+
+/* Bit 0: vertices have colours; 1: a second set of coordinates. They lie behind the first (scene_data.h). */
+layout(constant_id = 19) const uint masu_attributes = 0u;
+
+/* The set'th coordinates of a vertex. */
+vec2 masu_trace_texcoord(uint vertex, uint set)
+{
+    uint colors = masu_trace_static[masu_trace_static[0].w].w; /* from this 32-bit value on */
+    /* The second set is as long as the first, and ends where colours begin. */
+    uint at = masu_attributes >= 2u && set != 0u ? vertex + (colors >> 2) : vertex;
+    return uintBitsToFloat(masu_trace_texcoords[at]);
+}
+
+/* Linear, of a place on a triangle. */
+vec3 masu_trace_color(uvec3 vertices, vec3 weights)
+{
+    uint colors = masu_trace_static[masu_trace_static[0].w].w;
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < 3; i++) {
+        uint at = colors + vertices[i];
+        vec3 root = unpackUnorm4x8(masu_trace_texcoords[at >> 1][at & 1u]).rgb;
+        sum += root * root * weights[i];
+    }
+    return sum;
+}
 
 /* wrap: 0 repeat, 1 clamp, 2 mirror. */
 int masu_trace_wrap(int i, int size, uint wrap)
@@ -78,8 +103,14 @@ vec4 masu_trace_sized(uint picture, vec2 uv, float width, uint wrap)
 
 vec2 masu_trace_uv(uvec3 vertices, vec2 b)
 {
-    vec2 a = masu_trace_texcoords[vertices.x];
-    return a + (masu_trace_texcoords[vertices.y] - a) * b.x + (masu_trace_texcoords[vertices.z] - a) * b.y;
+    vec2 p = masu_trace_texcoord(vertices.x, 0u);
+    return p + (masu_trace_texcoord(vertices.y, 0u) - p) * b.x + (masu_trace_texcoord(vertices.z, 0u) - p) * b.y;
+}
+
+vec2 masu_trace_second_uv(uvec3 vertices, vec2 b)
+{
+    vec2 p = masu_trace_texcoord(vertices.x, 1u);
+    return p + (masu_trace_texcoord(vertices.y, 1u) - p) * b.x + (masu_trace_texcoord(vertices.z, 1u) - p) * b.y;
 }
 
 /* Masks: whether the surface is there at all. By the largest mip: what its coverage is, a ray that is one

@@ -82,9 +82,13 @@ static masu_result choose_ray_query(masu_desc *desc, const masu_frame_plan *plan
     int forced = desc->ray_query == MASU_ON;
     int wished = forced || (desc->ray_query == MASU_AUTO && desc->vulkan.ray_query && is_gpu(vk));
     desc->ray_query = MASU_OFF;
-    /* Rays of probes walk our own tree, and one is enough. */
-    if (plan->needs.bounce && !forced) wished = 0;
     if (!wished || !plan->needs.traced || !desc_traces(desc)) return MASU_OK;
+    if (plan->needs.bounce && forced) {
+        return masu_fail(detail, MASU_ERROR_SCENE, "ray_query", 0, 1,
+                         "ray_query is MASU_ON, but rays of the scene's live bounce walk the library's own "
+                         "tree, and reflections with them: leave it to MASU_AUTO, or turn rung.bounce off");
+    }
+    if (plan->needs.bounce) return MASU_OK;
     if (!desc->vulkan.ray_query) {
         return masu_fail(
             detail, MASU_ERROR_DEVICE, "vulkan.ray_query", 1, 0,

@@ -119,7 +119,7 @@ static masu_result create_texture_sets(masu_device *m, masu_detail *detail) {
             uint32_t given = from->texture[slot];
             if (given == MASU_BLOB_NONE) given = from->texture[any];
             VkDescriptorImageInfo image = {.sampler =
-                                               m->samplers[from->wrap[0] + 3 * from->wrap[1]],
+                                               m->samplers[masu_sampler_of(from->wrap)],
                                            .imageView = m->plan->textures[given].view,
                                            .imageLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
             VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,

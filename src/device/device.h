@@ -10,7 +10,11 @@
 #include "plan/plan.h"
 #include "scene/texture.h"
 
-#define MASU_SAMPLER_COUNT 9u
+#define MASU_SAMPLER_COUNT 18u
+/* Of the wrap modes of a texture set. */
+static inline uint32_t masu_sampler_of(const uint32_t wrap[2]) {
+    return (wrap[0] & 3u) + 3u * wrap[1] + (wrap[0] & 4u ? MASU_SAMPLER_COUNT / 2 : 0);
+}
 
 /* Of each mesh; one that rays do not meet has none. */
 typedef struct masu_ray_mesh {
@@ -51,7 +55,7 @@ typedef struct masu_device {
     VkPipeline culled[MASU_CULLED_COUNT]; /* null where nothing is seen from one side only */
     /* Of the subpass of emitting materials: by masu_draw_kind, two-sided, then culled. */
     VkPipeline emitting[2 * MASU_CULLED_COUNT];
-    VkSampler samplers[MASU_SAMPLER_COUNT]; /* wrap of u + 3 * wrap of v; those that sets ask for */
+    VkSampler samplers[MASU_SAMPLER_COUNT]; /* masu_sampler_of; those that sets ask for */
     uint64_t pipeline_ns[MASU_PASS_COUNT];
     uint64_t *pool_keys; /* pool.c: MASU_POOL_KEYS of them, or of no length */
 

@@ -231,8 +231,19 @@ static void load_vertices(const source *s, masu_chunk chunk, unsigned char *to) 
     copy(s->v->vertices, chunk, to);
 }
 
+/* What of `bytes` from `at` on, in the buffer, lies in the chunk. */
+static void copy_part(const void *from, uint64_t at, uint64_t bytes, masu_chunk chunk, unsigned char *to) {
+    uint64_t first = at > chunk.offset ? at : chunk.offset, end = chunk.offset + chunk.bytes;
+    if (at + bytes < end) end = at + bytes;
+    if (first < end)
+        memcpy(to + (first - chunk.offset), (const unsigned char *)from + (first - at), (size_t)(end - first));
+}
+
+/* Rest vertices, then the deltas of their morph targets. */
 static void load_skin_vertices(const source *s, masu_chunk chunk, unsigned char *to) {
-    copy(s->v->skin_vertices, chunk, to);
+    uint64_t own = s->scene->skin_vertices * sizeof(masu_blob_skin_vertex);
+    copy_part(s->v->skin_vertices, 0, own, chunk, to);
+    copy_part(s->v->morph_deltas, own, s->scene->morph_deltas * sizeof(masu_blob_morph_delta), chunk, to);
 }
 
 static void load_indices(const source *s, masu_chunk chunk, unsigned char *to) {
@@ -240,7 +251,12 @@ static void load_indices(const source *s, masu_chunk chunk, unsigned char *to) {
 }
 
 static void load_texcoords(const source *s, masu_chunk chunk, unsigned char *to) {
-    copy(s->v->texcoords, chunk, to);
+    static const uint32_t white = MASU_BLOB_WHITE;
+    static const float zero[2] = {0.0f, 0.0f};
+    const masu_texcoord_layout_of at = masu_texcoord_layout(s->scene);
+    copy_part(s->v->texcoords, 0, at.second, chunk, to);
+    copy_part(s->v->texcoords_1 ? s->v->texcoords_1 : zero, at.second, at.colors - at.second, chunk, to);
+    copy_part(s->v->colors ? s->v->colors : &white, at.colors, at.bytes - at.colors, chunk, to);
 }
 
 static void load_smaa_area(const source *s, masu_chunk chunk, unsigned char *to) {

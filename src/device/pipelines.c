@@ -35,7 +35,7 @@ static uint64_t now(const masu_device *m) {
     return m->plan->desc.clock_ns ? m->plan->desc.clock_ns(m->plan->desc.clock_user) : 0;
 }
 
-/* Constants 0 to 16 of all shaders, of which each has those it declares: of compute shaders whether
+/* Constants 0 to 20 of all shaders, of which each has those it declares: of compute shaders whether
  * counters are kept, of others whether masks are cut; whether the sky may be the analytic one;
  * whether there is fog; whether the sky is from a picture; whether reflections are traced; the tone
  * curve; the target's encoding; whether the last pass rounds to its steps or changes the order of
@@ -43,8 +43,9 @@ static uint64_t now(const masu_device *m) {
  * come back to; whether a tile's rays are shared by its invocations; whether coats have maps or
  * normals of their own; whether anything colours what shines through it; whether the output keeps
  * its size; whether means over frames are halves; whether albedo texels hold emission; whether normals of the G-buffer
- * may be those of maps; whether lights may be capsules or rectangles; whether rays share the light of their surfaces. */
-enum { SPECIAL_COUNT = 19 };
+ * may be those of maps; whether lights may be capsules or rectangles; whether rays share the light of their surfaces; whether rays meet colours of
+ * vertices (1) and maps of the second texture coordinates (2); whether skins have morph targets. */
+enum { SPECIAL_COUNT = 21 };
 
 static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
                                        VkBool32 constants[SPECIAL_COUNT]) {
@@ -67,7 +68,9 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
         {15, 15 * sizeof *constants, sizeof *constants},
         {16, 16 * sizeof *constants, sizeof *constants},
         {17, 17 * sizeof *constants, sizeof *constants},
-        {18, 18 * sizeof *constants, sizeof *constants}};
+        {18, 18 * sizeof *constants, sizeof *constants},
+        {19, 19 * sizeof *constants, sizeof *constants},
+        {20, 20 * sizeof *constants, sizeof *constants}};
     constants[0] = first;
     constants[1] = m->plan->needs.sky != 0;
     constants[2] = m->plan->scene.fog != 0;
@@ -89,13 +92,15 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
         levels, 4); /* so that scenes of about the same size share pipelines */
     constants[10] = m->plan->desc.debug.share_rays == MASU_ON;
     constants[11] = scene->own_coats != 0;
-    constants[12] = scene->tints != 0;
+    constants[12] = scene->tints;
     constants[13] = sized;
     constants[14] = (VkBool32)masu_has_half_means(m->plan);
     constants[15] = m->plan->needs.emission_packed != 0;
     constants[16] = m->plan->scene.reliefs != 0;
     constants[17] = m->plan->needs.area_lights != 0;
     constants[18] = m->plan->needs.shared_lights != 0;
+    constants[19] = scene->vertex_colors | scene->second_texcoords << 1;
+    constants[20] = scene->skin_targets != 0;
     return (VkSpecializationInfo){SPECIAL_COUNT, entries, SPECIAL_COUNT * sizeof *constants,
                                   constants};
 }
@@ -397,16 +402,22 @@ static VkResult create_graphics_pipeline(masu_device *m, uint32_t pass,
     }
     VkVertexInputBindingDescription bindings[] = {
         {0, sizeof(masu_blob_vertex), VK_VERTEX_INPUT_RATE_VERTEX},
-        {1, 2 * sizeof(float), VK_VERTEX_INPUT_RATE_VERTEX}};
+        {1, 2 * sizeof(float), VK_VERTEX_INPUT_RATE_VERTEX},
+        {2, m->plan->scene.second_texcoords ? 2 * sizeof(float) : 0, VK_VERTEX_INPUT_RATE_VERTEX},
+        {3, m->plan->scene.vertex_colors ? sizeof(uint32_t) : 0, VK_VERTEX_INPUT_RATE_VERTEX}};
+    int shaded = geometry == MASU_GEOMETRY_POLYGONS || geometry == MASU_GEOMETRY_BLENDED;
+    int attributed = textured && shaded && masu_has_attributes(&m->plan->scene);
     VkVertexInputAttributeDescription attributes[] = {
         {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(masu_blob_vertex, position)},
         {1, 0, VK_FORMAT_R16G16_SNORM, offsetof(masu_blob_vertex, normal)},
-        {2, 1, VK_FORMAT_R32G32_SFLOAT, 0}};
+        {2, 1, VK_FORMAT_R32G32_SFLOAT, 0},
+        {3, 2, VK_FORMAT_R32G32_SFLOAT, 0},
+        {4, 3, VK_FORMAT_R8G8B8A8_UNORM, 0}};
     VkPipelineVertexInputStateCreateInfo input = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO,
-        .vertexBindingDescriptionCount = textured ? 2 : polygons ? 1 : 0,
+        .vertexBindingDescriptionCount = attributed ? 4 : textured ? 2 : polygons ? 1 : 0,
         .pVertexBindingDescriptions = bindings,
-        .vertexAttributeDescriptionCount = textured ? 3 : polygons ? 2 : 0,
+        .vertexAttributeDescriptionCount = attributed ? 5 : textured ? 3 : polygons ? 2 : 0,
         .pVertexAttributeDescriptions = attributes};
     VkPipelineInputAssemblyStateCreateInfo assembly = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
@@ -617,13 +628,13 @@ static masu_result create_samplers(masu_device *m, masu_detail *detail) {
     float anisotropy = m->plan->desc.vulkan.max_anisotropy;
     for (uint32_t i = 0; i < m->plan->scene.texture_sets; i++) {
         const uint32_t *wrap = v.texture_sets[i].wrap;
-        VkSampler *sampler = &m->samplers[wrap[0] + 3 * wrap[1]];
+        VkSampler *sampler = &m->samplers[masu_sampler_of(wrap)];
         if (*sampler) continue;
         VkSamplerCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
-                                    .magFilter = VK_FILTER_LINEAR,
+                                    .magFilter = wrap[0] & 4u ? VK_FILTER_NEAREST : VK_FILTER_LINEAR,
                                     .minFilter = VK_FILTER_LINEAR,
                                     .mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR,
-                                    .addressModeU = modes[wrap[0]],
+                                    .addressModeU = modes[wrap[0] & 3u],
                                     .addressModeV = modes[wrap[1]],
                                     .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                     .anisotropyEnable = anisotropy > 1.0f,

@@ -151,13 +151,22 @@ static uint32_t pick_sweep_of(masu_draw_material *material) {
     return holes && (material->flags & MASU_MATERIAL_HAS_MAPS) ? 1 + MASU_TEXTURED_MASK : 0;
 }
 
+/* The first texture coordinates; in scenes that have them the second ones and colours. */
+static void bind_texcoords(masu_recorder *rec) {
+    const masu_texcoord_layout_of at = masu_texcoord_layout(&rec->m->plan->scene);
+    VkBuffer buffer = rec->m->objects.buffers[MASU_BUFFER_TEXCOORDS];
+    const VkBuffer buffers[] = {buffer, buffer, buffer};
+    const VkDeviceSize places[] = {0, at.second, at.colors};
+    rec->m->vk.CmdBindVertexBuffers(rec->cmd, 1, masu_has_attributes(&rec->m->plan->scene) ? 3 : 1, buffers, places);
+}
+
 /* A material's flags and layers into the push constants, and its textures bound where they are not
  * those of the draw before. */
 static void bind_maps(masu_recorder *rec, VkPipelineLayout layout,
                       const masu_draw_material *material, struct masu_push_gbuffer *push,
                       uint32_t *bound) {
     push->flags = (material->flags & 0xFFFFFFu) | material->more_layers << MASU_MAP_OCCLUSION_SHIFT;
-    push->coat_layer = material->more_layers >> 8 & 0xFFu;
+    push->coat_layer = material->more_layers >> 8 & 0x3FFFu; /* and which maps are of the second coordinates */
     push->layers = material->layers;
     push->detail_u = material->detail[0];
     push->detail_v = material->detail[1];
@@ -198,8 +207,7 @@ static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep, int 
     vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, MASU_SET_GLOBAL, 1,
                               &m->global_sets[rec->flight][pass], 0, NULL);
     vk->CmdBindVertexBuffers(rec->cmd, 0, 1, &m->objects.buffers[MASU_BUFFER_VERTICES], &zero);
-    if (sweep)
-        vk->CmdBindVertexBuffers(rec->cmd, 1, 1, &m->objects.buffers[MASU_BUFFER_TEXCOORDS], &zero);
+    if (sweep) bind_texcoords(rec);
     vk->CmdBindIndexBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_INDICES], 0,
                            VK_INDEX_TYPE_UINT32);
     int occlusion = !lamp && masu_has_pass(&rec->rp->active, MASU_PASS_CULL);
@@ -320,7 +328,7 @@ static void record_transparents(masu_recorder *rec, const VkDescriptorSet *sets)
     memcpy(&push, &block.own, sizeof push);
     if (!among && !tints) bind_transparents(rec, sets[MASU_PASS_TRANSPARENTS], 0);
     vk->CmdBindVertexBuffers(rec->cmd, 0, 1, &m->objects.buffers[MASU_BUFFER_VERTICES], &zero);
-    if (m->texture_layout) vk->CmdBindVertexBuffers(rec->cmd, 1, 1, &m->objects.buffers[MASU_BUFFER_TEXCOORDS], &zero);
+    if (m->texture_layout) bind_texcoords(rec);
     vk->CmdBindIndexBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_INDICES], 0, VK_INDEX_TYPE_UINT32);
     for (uint32_t k = 0; k < rec->draws->transparent_count; k++) {
         if (among) record_sprites(rec, MASU_PASS_PARTICLES, sets[MASU_PASS_PARTICLES], MASU_SPRITE_DRAWS + k);

@@ -103,6 +103,7 @@ void masu_animation_copy_scene(masu_animation *a, const masu_frame_plan *plan,
                                   .duration = c->duration};
         for (uint32_t k = 0; k < c->channel_count; k++) {
             uint32_t node = v->channels[c->first_channel + k].node;
+            if (v->channels[c->first_channel + k].path == MASU_CHANNEL_WEIGHT) continue;
             a->moved[v->models[c->model].first_node + node] = 1;
         }
     }
@@ -155,8 +156,9 @@ static void turn_evenly(const float from[4], const float to[4], double share, do
     normalised(out, 4);
 }
 
-static void sample(const masu_blob_key *keys, const masu_blob_channel *c, double t,
-                   masu_node_pose *pose) {
+/* The keys around a time, and how much of the way from the first to the second it is. */
+static double around(const masu_blob_key *keys, const masu_blob_channel *c, double t,
+                     const masu_blob_key **from_key, const masu_blob_key **to_key) {
     const masu_blob_key *k = keys + c->first_key;
     uint32_t low = 0, end = c->key_count - 1;
     while (low < end) { /* the last key that is not behind t; the first, where all are */
@@ -169,13 +171,22 @@ static void sample(const masu_blob_key *keys, const masu_blob_channel *c, double
     uint32_t next = low + 1 < c->key_count ? low + 1 : low;
     double from = (double)k[low].time, share = 0.0;
     if (next > low && !c->step && t > from) share = (t - from) / ((double)k[next].time - from);
+    *from_key = &k[low];
+    *to_key = &k[next];
+    return share;
+}
+
+static void sample(const masu_blob_key *keys, const masu_blob_channel *c, double t,
+                   masu_node_pose *pose) {
+    const masu_blob_key *from, *next;
+    double share = around(keys, c, t, &from, &next);
     if (c->path == MASU_CHANNEL_ROTATION) {
-        turn_evenly(k[low].value, k[next].value, share, pose->rotation);
+        turn_evenly(from->value, next->value, share, pose->rotation);
         return;
     }
     double *to = c->path == MASU_CHANNEL_SCALE ? pose->scale : pose->translation;
     for (uint32_t i = 0; i < 3; i++)
-        to[i] = (1.0 - share) * (double)k[low].value[i] + share * (double)k[next].value[i];
+        to[i] = (1.0 - share) * (double)from->value[i] + share * (double)next->value[i];
 }
 
 /* Adds a share of a pose; rotations on the side of what is there. */
@@ -198,7 +209,9 @@ static void add_use(masu_animation *a, const masu_clip *clip, const masu_clip_us
         masu_node_pose pose;
         if (!a->moved[first_node + n]) continue;
         pose = a->rest[first_node + n];
-        for (; c < end && a->channels[c].node == n; c++) sample(a->keys, &a->channels[c], t, &pose);
+        for (; c < end && a->channels[c].node <= n; c++) {
+            if (a->channels[c].path != MASU_CHANNEL_WEIGHT) sample(a->keys, &a->channels[c], t, &pose);
+        }
         add(&a->poses[n], &pose, share);
     }
 }
@@ -223,4 +236,23 @@ void masu_animation_pose(masu_animation *a, uint32_t first_clip, const masu_clip
         if (!a->moved[first_node + n] || normalised(a->poses[n].rotation, 4) > 0.0) continue;
         a->poses[n].rotation[3] = 1.0;
     }
+}
+
+double masu_animation_weight(const masu_animation *a, uint32_t first_clip, const masu_clip_use *uses,
+                             uint32_t count, uint32_t node, uint32_t target, double rest) {
+    double whole = 0.0, sum = 0.0;
+    for (uint32_t i = 0; i < count; i++) whole += (double)uses[i].weight;
+    for (uint32_t i = 0; i < count && whole > 0.0; i++) {
+        const masu_clip *clip = &a->clips[first_clip + uses[i].clip];
+        const masu_blob_key *from, *next;
+        for (uint32_t c = clip->first_channel; c < clip->first_channel + clip->channel_count; c++) {
+            const masu_blob_channel *channel = &a->channels[c];
+            if (channel->path != MASU_CHANNEL_WEIGHT || channel->node != node || channel->target != target) continue;
+            double share = around(a->keys, channel, time_in(clip, &uses[i]), &from, &next);
+            double value = (1.0 - share) * (double)from->value[0] + share * (double)next->value[0];
+            sum += (value - rest) * ((double)uses[i].weight / whole);
+            break;
+        }
+    }
+    return rest + sum;
 }

@@ -52,6 +52,10 @@ uint32_t masu_animation_clips(const masu_animation *a, const masu_frame_plan *pl
 void masu_animation_pose(masu_animation *a, uint32_t first_clip, const masu_clip_use *uses,
                          uint32_t count, uint32_t first_node, uint32_t nodes);
 
+/* The weight of a morph target of the skin at a node, which rests at `rest`, as the same uses have it. */
+double masu_animation_weight(const masu_animation *a, uint32_t first_clip, const masu_clip_use *uses,
+                             uint32_t count, uint32_t node, uint32_t target, double rest);
+
 /* The matrix of a pose, row by row; and back, without what is neither translation, rotation nor scale. */
 void masu_pose_rows(const masu_node_pose *pose, float rows[12]);
 masu_node_pose masu_pose_of(const float rows[12]);

@@ -6,6 +6,9 @@
 #include <math.h>
 #include <string.h>
 
+_Static_assert(MASU_BOUNCE_WINDOW == MASU_BOUNCE_SETS, "sets of a live probe");
+_Static_assert(MASU_PROBE_LIVE_WORDS == MASU_PROBE_LIT_WORDS + MASU_BOUNCE_SETS * MASU_PROBE_WORDS, "a live probe");
+
 void masu_bounce_alloc(masu_bounce *b, masu_arena *arena, const masu_frame_plan *plan) {
     uint32_t count = plan->needs.bounce ? plan->scene.probes : 0;
     b->probes = masu_arena_alloc(arena, "live probes", count, sizeof *b->probes, 1);
@@ -30,7 +33,7 @@ void masu_bounce_copy_scene(masu_bounce *b, const masu_frame_plan *plan, const m
     memset(&b->cause, 0, sizeof b->cause);
     b->round = 0;
     b->left = 0;
-    b->quiet = MASU_BOUNCE_WINDOW;
+    b->quiet = MASU_BOUNCE_FIRST;
     b->burst = MASU_BOUNCE_BURST_ROUNDS;
     masu_bounce_restart(b);
 }
@@ -43,13 +46,26 @@ static void next_round(masu_bounce *b) {
 }
 
 void masu_bounce_restart(masu_bounce *b) {
-    int follows = b->quiet < MASU_BOUNCE_WINDOW;
+    int follows = b->quiet < MASU_BOUNCE_FIRST;
     b->quiet = 0;
-    if (follows) return;
     for (uint32_t i = 0; i < b->count; i++) {
-        if (b->probes[i].sets != MASU_BOUNCE_OFF) b->probes[i].sets = 0;
+        struct masu_bounce_probe *p = &b->probes[i];
+        if (p->sets == MASU_BOUNCE_OFF) continue;
+        if (!follows) p->sets = 0;
+        else if (p->sets >= 2 * MASU_BOUNCE_FIRST) p->sets = MASU_BOUNCE_FIRST;
     }
-    next_round(b);
+    if (!follows) next_round(b);
+}
+
+/* The next set of a probe: the first ones twice, since their first light lacks later bounces; then the others; then
+ * all around. *count: how many of its sets count, with this one. */
+static uint32_t next_set(struct masu_bounce_probe *p, uint32_t *count) {
+    const uint32_t twice = 2 * MASU_BOUNCE_FIRST, all = MASU_BOUNCE_FIRST + MASU_BOUNCE_WINDOW, at = p->sets++;
+    if (p->sets == all + MASU_BOUNCE_WINDOW) p->sets = all;
+    *count = at < MASU_BOUNCE_FIRST ? at + 1 : MASU_BOUNCE_FIRST;
+    if (at < twice) return at % MASU_BOUNCE_FIRST;
+    *count = at < all ? at - MASU_BOUNCE_FIRST + 1 : MASU_BOUNCE_WINDOW;
+    return at < all ? at - MASU_BOUNCE_FIRST : at - all;
 }
 
 /* Whether a probe is within two cells of the eye, or in view, or nearly so. */
@@ -78,11 +94,9 @@ uint32_t masu_bounce_choose(masu_bounce *b, const masu_bounce_view *view, uint32
             struct masu_bounce_probe *p = &b->probes[i];
             if (p->sets == MASU_BOUNCE_OFF || p->round == (uint8_t)b->round) continue;
             if (!rest && !is_seen(b, view, i)) continue;
-            uint32_t set = p->sets % MASU_BOUNCE_WINDOW;
-            uint32_t counting = p->sets < MASU_BOUNCE_WINDOW ? p->sets + 1u : MASU_BOUNCE_WINDOW;
+            uint32_t counting, set = next_set(p, &counting);
             words[count++] = i | set << MASU_BOUNCE_SET_SHIFT | counting << MASU_BOUNCE_COUNT_SHIFT;
             p->round = (uint8_t)b->round;
-            p->sets = (uint8_t)(p->sets + 1 < 2 * MASU_BOUNCE_WINDOW ? p->sets + 1 : MASU_BOUNCE_WINDOW);
             b->left--;
         }
     }

@@ -1,6 +1,6 @@
 /* bounce.h: which live probes trace rays in a frame. A round is over when every probe has had its turn; what is
  * in view comes first in each. A change of what light meets restarts the sets of all probes, so that none shows
- * a mean with what was; while changes follow each other within WINDOW rounds, the window of sets slides
+ * a mean with what was; while changes follow each other within FIRST rounds, a window of the FIRST sets slides
  * instead. After REST rounds without a change no probe traces, and the probes keep their bits.
  *
  * All of it follows from what frames have asked for so far: nothing is read back. */
@@ -14,8 +14,9 @@
 #include "scene/blob_section.h"
 
 enum {
-    MASU_BOUNCE_WINDOW = 4, /* rounds: the sets of a probe */
-    MASU_BOUNCE_REST = 64,
+    MASU_BOUNCE_FIRST = 4,   /* sets of a probe that are shown soon after a change */
+    MASU_BOUNCE_WINDOW = 16, /* all sets of a probe */
+    MASU_BOUNCE_REST = 256,  /* rounds */
     MASU_BOUNCE_BURST_ROUNDS = 16, /* after the first frame, or a cut: most of what bounces has come by then */
     MASU_BOUNCE_OFF = 0xFF  /* `sets` of a probe that is inside of something */
 };
@@ -28,7 +29,7 @@ typedef struct masu_bounce_cause {
 
 typedef struct masu_bounce {
     struct masu_bounce_probe {
-        uint8_t sets;  /* traced since the last restart: up to WINDOW, then WINDOW to 2 WINDOW - 1 around */
+        uint8_t sets;  /* traced since the last restart; from FIRST + WINDOW on around, by WINDOW */
         uint8_t round; /* the last that it took part in */
     } *probes;
     uint32_t count, valid; /* all, and those that are not off */

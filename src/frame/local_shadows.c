@@ -103,14 +103,18 @@ static int set_light(masu_local_light *light, const masu_punctual_light_state *s
     now.range = (double)state->range;
     now.near_distance = fmax(NEAR_LEAST, masu_light_solid(state));
     now.tangent = now.angle <= (double)MASU_LOCAL_ANGLE_MOST ? fmax(tan(now.angle), 1e-3) : 0.0;
-    if (!memcmp(&now, light, offsetof(masu_local_light, size))) return 0;
+    if (!memcmp(&now, light, offsetof(masu_local_light, size))) {
+        if (light->still < MASU_LOCAL_STILL) light->still++;
+        return 0;
+    }
+    light->still = light->range > 0.0 ? 0 : MASU_LOCAL_STILL;
     double moved[3] = {position[0] - light->position[0], position[1] - light->position[1],
                        position[2] - light->position[2]};
     int jumped = dot(moved, moved) > 0.0625 * now.range * now.range;
     memcpy(light, &now, offsetof(masu_local_light, size));
     for (uint32_t i = 0; i < MASU_LOCAL_FACES; i++) {
         masu_local_face *face = &light->faces[i];
-        face->drawn = 0;
+        face->drawn = face->marched = 0;
         if (light->tangent > 0.0) {
             face->used = i == 0;
             spot_axes(light->axis, face->axis);
@@ -156,9 +160,9 @@ void masu_local_shadows_begin(masu_local_shadows *s, const masu_frame_data *f) {
     for (uint32_t slot = 0; slot < s->capacity; slot++) s->choice[slot].offered = 0;
 }
 
-double masu_local_face_wish(double range, double radius, double tangent, double distance, double pixels) {
-    double third = range / 3.0, sharp = 2.0 * third * tangent * pixels / (1.5 * fmax(distance, third));
-    return fmin(sharp, fmax(256.0, 3.0 * tangent * third / radius));
+double masu_local_face_wish(double range, double tangent, double distance, double pixels) {
+    double third = range / 3.0;
+    return fmax(256.0, 2.0 * third * tangent * pixels / (0.75 * fmax(distance, third)));
 }
 
 /* A size is kept for wishes of less than half to more than twice of it. */
@@ -169,14 +173,6 @@ uint32_t masu_local_face_size(double wish, uint32_t now, uint32_t most) {
     return size;
 }
 
-/* All lights have room for that many texels along the edges of their faces. */
-static uint32_t largest_size(const masu_local_shadows *s, const masu_frame_plan *plan, uint32_t faces) {
-    double area = (double)plan->local_atlas * plan->local_atlas / ((double)s->capacity * faces);
-    uint32_t size = MASU_LOCAL_TILE_LEAST;
-    while (2 * size <= plan->local_tile && (double)(2 * size) * (2 * size) <= area) size *= 2;
-    return size;
-}
-
 /* In a frame, unless it waits already. */
 static void make_due(masu_local_face *face, uint64_t frame) {
     if (!face->used || face->due) return;
@@ -184,18 +180,11 @@ static void make_due(masu_local_face *face, uint64_t frame) {
     face->since = frame;
 }
 
-static void set_size(masu_local_shadows *s, masu_local_light *light, const masu_frame_data *f, float radius,
-                     double distance) {
+static void set_wish(masu_local_light *light, const masu_frame_data *f, double distance) {
     double tangent = light->tangent > 0.0 ? light->tangent : 1.0;
     double pixels = 0.5 * (double)masu_frame_rung_plan(f)->render_height / (double)f->u.up[3];
-    double wish = masu_local_face_wish(light->range, (double)radius, tangent, distance, pixels);
-    uint32_t most = largest_size(s, f->plan, light->tangent > 0.0 ? 1 : MASU_LOCAL_FACES);
-    uint32_t size = masu_local_face_size(wish, light->size, most);
-    if (size == light->size) return;
-    light->size = size;
-    for (uint32_t i = 0; i < MASU_LOCAL_FACES; i++) {
-        if (light->faces[i].tile.size) make_due(&light->faces[i], f->number);
-    }
+    double wish = masu_local_face_wish(light->range, tangent, distance, pixels);
+    light->wish = masu_local_face_size(wish, light->wish, f->plan->local_tile);
 }
 
 void masu_local_shadows_offer(masu_local_shadows *s, const masu_frame_data *f, uint32_t light,
@@ -209,14 +198,17 @@ void masu_local_shadows_offer(masu_local_shadows *s, const masu_frame_data *f, u
     masu_punctual_light_state lit = *state; /* a lamp that is off keeps its slot until another one needs it */
     if (slot) lit.color[0] = fmaxf(lit.color[0], 1e-30f);
     if (!masu_light_place(&lit, rel, direction, &placed)) return;
-    double distance = sqrt(dot(rel, rel)), score = masu_shadow_score(state->color, (double)state->range, distance);
+    double distance = sqrt(dot(rel, rel));
+    double center[3] = {(double)placed.bound[0], (double)placed.bound[1], (double)placed.bound[2]};
+    double score = masu_shadow_score(masu_light_intensity(state, direction), (double)placed.bound[3],
+                                     sqrt(dot(center, center)));
     if (masu_light_outside(placed.bound, f->u.clip_from_rel)) score *= MASU_SHADOW_UNSEEN;
     if (slot) {
         score *= MASU_SHADOW_HYSTERESIS;
         s->choice[slot - 1].offered = 1;
         s->choice[slot - 1].score = score;
         if (set_light(&s->lights[slot - 1], state, position, direction, f->number)) s->choice[slot - 1].fade = 0;
-        set_size(s, &s->lights[slot - 1], f, state->radius, distance);
+        set_wish(&s->lights[slot - 1], f, distance);
     }
     masu_shadow_wish_add(s->wish, s->most, light + 1, score);
 }
@@ -279,6 +271,8 @@ static void follow_sdf(masu_local_shadows *s, const masu_frame_data *f) {
         hash ^= masu_fnv1a64(f->u.sdf_params, sizeof f->u.sdf_params);
         hash = hash * 31 + masu_fnv1a64(&f->u.eye_hi[3], sizeof f->u.eye_hi[3]); /* time */
     }
+    for (uint32_t i = 0; hash != s->sdf_hash && i < s->capacity * MASU_LOCAL_FACES; i++)
+        s->lights[i / MASU_LOCAL_FACES].faces[i % MASU_LOCAL_FACES].marched = 0;
     if (hash != s->sdf_hash) touch_faces(s, s->sdf_box, f->number);
     s->sdf_hash = hash;
 }
@@ -352,21 +346,80 @@ static void write_face(const masu_local_light *light, const masu_local_face *fac
 }
 
 /* Those of the pass that marches the SDF go over all such faces of the frame. */
-static void take_groups(const masu_local_face *face, uint32_t number, struct masu_local_face_uniforms *u) {
+static void take_groups(masu_local_face *face, uint32_t number, struct masu_local_face_uniforms *u) {
+    u->tile[number][3] = face->marched ? 1 : 2;
+    if (face->marched) return;
+    face->marched = 1;
     uint32_t across = (face->tile.size + MASU_GROUP - 1) / MASU_GROUP;
     if (u->groups[0] < across) u->groups[0] = u->groups[1] = across;
     u->groups[2] = number + 1;
-    u->tile[number][3] = 1;
 }
 
-/* A tile of the size that is wanted, or of a smaller one; its own if it has that. 0: there is no room. */
+/* A tile of the size that is wanted, or of a smaller one; its own if it has that and stays. 0: there is no room. */
 static int find_tile(masu_local_shadows *s, const masu_local_light *light, masu_local_face *face) {
-    if (face->tile.size == light->size) return 1;
+    if (!face->moves && face->tile.size == light->size) return 1;
+    face->marched = 0;
+    if (face->moves) {
+        masu_shadow_tile_move(&s->tiles, &face->tile);
+        return 1;
+    }
     /* Its own becomes free in the same frame, in which it is read no more. */
     masu_shadow_tile_give(&s->tiles, &face->tile);
     for (uint32_t size = light->size; size >= MASU_LOCAL_TILE_LEAST && !face->tile.size; size /= 2)
         face->tile = masu_shadow_tile_take(&s->tiles, size);
     return face->tile.size != 0;
+}
+
+/* Sizes that have room together. What has a size counts more for it, so that lights of equal score do not swap. */
+static void fit_sizes(masu_local_shadows *s, const masu_frame_data *f) {
+    uint32_t sizes[MASU_SHADOW_LIGHTS_MAX], faces[MASU_SHADOW_LIGHTS_MAX];
+    double scores[MASU_SHADOW_LIGHTS_MAX];
+    for (uint32_t slot = 0; slot < s->capacity; slot++) {
+        const masu_local_light *light = &s->lights[slot];
+        sizes[slot] = light->wish;
+        if (light->still < MASU_LOCAL_STILL && sizes[slot] > MASU_LOCAL_TILE_MOVES) sizes[slot] = MASU_LOCAL_TILE_MOVES;
+        faces[slot] = 0;
+        for (uint32_t i = 0; i < MASU_LOCAL_FACES; i++) faces[slot] += light->faces[i].used;
+        scores[slot] = s->choice[slot].score * (light->size >= light->wish ? MASU_SHADOW_HYSTERESIS : 1.0);
+    }
+    masu_shadow_sizes_fit(sizes, faces, scores, s->capacity, f->plan->local_atlas);
+    for (uint32_t slot = 0; slot < s->capacity; slot++) {
+        masu_local_light *light = &s->lights[slot];
+        for (uint32_t i = 0; i < MASU_LOCAL_FACES && light->size != sizes[slot]; i++) {
+            masu_local_face *face = &light->faces[i];
+            if (face->tile.size && face->tile.size != sizes[slot]) make_due(face, f->number);
+        }
+        light->size = sizes[slot];
+    }
+}
+
+/* At rest: a face with too small a tile gets one of its size, or else the last tile that can moves forward. Each move
+ * is towards the first place, so there is an end to them. */
+static void join_tiles(masu_local_shadows *s, const masu_frame_data *f) {
+    masu_local_face *small = NULL, *last = NULL;
+    uint32_t size = 0;
+    for (uint32_t i = 0; i < s->capacity * MASU_LOCAL_FACES; i++) {
+        masu_local_face *face = &s->lights[i / MASU_LOCAL_FACES].faces[i % MASU_LOCAL_FACES];
+        uint32_t wanted = s->lights[i / MASU_LOCAL_FACES].size;
+        if (face->due) return;
+        if (!small && face->tile.size && face->tile.size < wanted) small = face, size = wanted;
+    }
+    if (!small) return;
+    masu_shadow_tiles without = s->tiles;
+    masu_shadow_tile own = small->tile;
+    masu_shadow_tile_give(&without, &own);
+    if (masu_shadow_tile_take(&without, size).size) {
+        make_due(small, f->number);
+        return;
+    }
+    for (uint32_t i = 0; i < s->capacity * MASU_LOCAL_FACES; i++) {
+        masu_local_face *face = &s->lights[i / MASU_LOCAL_FACES].faces[i % MASU_LOCAL_FACES];
+        if (last && masu_shadow_tile_order(face->tile) < masu_shadow_tile_order(last->tile)) continue;
+        if (masu_shadow_tile_before(&s->tiles, face->tile).size) last = face;
+    }
+    if (!last) return;
+    make_due(last, f->number);
+    last->moves = 1;
 }
 
 /* By the sphere around what a face of a cube reaches: a point light that moves may have more faces than the budget. */
@@ -443,9 +496,11 @@ int masu_local_shadows_write(masu_local_shadows *s, const masu_instances *in, co
     uint32_t before = faded(s), changed = 0;
     masu_shadow_choose(s->choice, s->capacity, s->most, s->wish, s->since, free_slot, s);
     place_lights(s);
+    fit_sizes(s, f);
     follow_casters(s, in, bounds, f);
     follow_sdf(s, f);
     find_seen(s, f);
+    join_tiles(s, f);
     /* Faces in which nothing is cost no rendering, but they have to be found out. */
     for (uint32_t looked = 0; number < budget && looked < 4 * budget; looked++) {
         uint32_t i = next_due(s, skip);
@@ -463,7 +518,7 @@ int masu_local_shadows_write(masu_local_shadows *s, const masu_instances *in, co
             face->drawn = 0;
             continue;
         }
-        face->due = 0;
+        face->due = face->moves = 0;
         face->drawn = 1;
         changed = 1;
     }

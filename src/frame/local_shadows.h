@@ -7,6 +7,10 @@
  * has moved, appeared or gone, and when it is to have another size. A face in which nothing can cast a shadow has no
  * tile.
  *
+ * SIZES follow the screen. A light that moves renders all that it sees in each frame: it has 256 texels at most. Where the atlas has no room for all of them, the largest are halved, the least important
+ * first. A face keeps its tile until it is rendered into another one. One that found no free square of its size has a
+ * smaller tile; as soon as no face is due, tiles move together until it finds one.
+ *
  * BUDGET. At most rung.local_shadow_faces are rendered per frame, those that wait for longest first, then those in
  * view, then those of the most important light. A face that
  * waits shows what it held, but if its light has moved: then it has no shadow until it is rendered.
@@ -22,6 +26,8 @@
 #include "frame/shadow_tiles.h"
 
 #define MASU_LOCAL_FACES 6u
+#define MASU_LOCAL_STILL 8u /* frames from which on a light does not move */
+#define MASU_LOCAL_TILE_MOVES 256u
 
 typedef struct masu_local_face {
     masu_cull_view view;
@@ -32,6 +38,8 @@ typedef struct masu_local_face {
     uint8_t due;     /* it is not as it would be rendered now */
     uint8_t drawn;   /* it is rendered, or nothing is in it; else nothing is to be read */
     uint8_t seen;    /* some of what it reaches may be in the view of this frame */
+    uint8_t moves;   /* it is due for another tile of its size */
+    uint8_t marched; /* local_shadow_sdf has what its tile holds of the SDF */
 } masu_local_face;
 
 /* What a slot of the choice holds. */
@@ -41,6 +49,8 @@ typedef struct masu_local_light {
     double tangent; /* of half the angle of the only face; 0: cube */
     double angle;   /* of the cone; pi: it shines everywhere */
     uint32_t size;  /* texels that its faces are to have */
+    uint32_t wish;  /* those that they would have at rest in an atlas with room for all */
+    uint32_t still; /* frames since it has moved, up to MASU_LOCAL_STILL */
     masu_local_face faces[MASU_LOCAL_FACES];
 } masu_local_light;
 
@@ -81,10 +91,9 @@ int masu_local_shadows_write(masu_local_shadows *s, const masu_instances *in, co
 /* masu_punctual_light_data.shadow of a light. */
 void masu_local_shadows_of(const masu_local_shadows *s, uint32_t light, masu_uvec4 out[2]);
 
-/* Texels along the edge of a face: a texel at a third of the range takes a pixel and a half, and three of them, the
- * width of the filter, no less than the penumbra that a source of that radius has there behind something half way; but
- * at least 256 for the sake of contacts, whose shadows are sharper. pixels: of a length of one at distance one. */
-double masu_local_face_wish(double range, double radius, double tangent, double distance, double pixels);
+/* Texels along the edge of a face: a texel at a third of the range takes three quarters of a pixel, but no fewer than
+ * 256. pixels: of a length of one at distance one. */
+double masu_local_face_wish(double range, double tangent, double distance, double pixels);
 /* The size for a wish, with hysteresis; now: the size that it has, 0: none. */
 uint32_t masu_local_face_size(double wish, uint32_t now, uint32_t most);
 /* Of faces: whether a light whose cone has that axis and half angle reaches into a cube face. */

@@ -230,7 +230,22 @@ masu_result masu_models_animate(masu_models *s, masu_instances *in, masu_bounds 
                          "model %u: in this pose a node of it is beyond what a float holds",
                          model + 1);
     }
+    masu_skins_play(&s->skins, &s->animation, plan, model, m->first_node, first, uses, count);
     settle(s, in, b, plan, model);
+    return MASU_OK;
+}
+
+masu_result masu_models_morph(masu_models *s, masu_instances *in, masu_bounds *b,
+                              const masu_frame_plan *plan, uint32_t model, const char *name,
+                              float weight, masu_detail *detail) {
+    if (!(fabsf(weight) <= MASU_MORPH_WEIGHT_MAX))
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "weight", 1000000, 0,
+                         "model %u: the weight of \"%s\" is %g, not within 1e6 of 0", model + 1, name,
+                         (double)weight);
+    if (!masu_skins_set(&s->skins, plan, model, name, weight))
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "name", 1, 0,
+                         "model %u: it has no morph target \"%s\"", model + 1, name);
+    masu_skins_settle(&s->skins, in, b, plan, model);
     return MASU_OK;
 }
 

@@ -51,6 +51,10 @@ masu_result masu_models_move_node(masu_models *s, masu_instances *in, masu_bound
 masu_result masu_models_animate(masu_models *s, masu_instances *in, masu_bounds *b,
                                 const masu_frame_plan *plan, uint32_t model,
                                 const masu_clip_use *uses, uint32_t count, masu_detail *detail);
+/* masu_model_morph_set of the public header. */
+masu_result masu_models_morph(masu_models *s, masu_instances *in, masu_bounds *b,
+                              const masu_frame_plan *plan, uint32_t model, const char *name,
+                              float weight, masu_detail *detail);
 void masu_models_show(masu_models *s, masu_instances *in, const masu_frame_plan *plan,
                       uint32_t model, int shown);
 /* A free place of the reserve becomes a copy of a model: its nodes are as they are there; they show nothing yet.

@@ -6,10 +6,9 @@
 #include <math.h>
 #include <string.h>
 
-double masu_shadow_score(const float color[3], double range, double distance) {
-    double brightest = fmax((double)color[0], fmax((double)color[1], (double)color[2]));
-    double apart = range / fmax(distance, 0.5 * range);
-    return brightest * apart * apart;
+double masu_shadow_score(double intensity, double radius, double distance) {
+    double apart = radius / fmax(distance, 0.5 * radius);
+    return intensity * apart * apart;
 }
 
 void masu_shadow_wish_add(masu_shadow_wish *wish, uint32_t most, uint32_t light, double score) {

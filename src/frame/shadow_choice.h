@@ -32,8 +32,9 @@ typedef struct masu_shadow_wish {
     double score[MASU_SHADOW_LIGHTS_MAX];
 } masu_shadow_wish;
 
-/* Intensity times the solid angle, up to a factor, of the sphere that a light reaches. */
-double masu_shadow_score(const float color[3], double range, double distance);
+/* Intensity times the solid angle, up to a factor, of the sphere that a light reaches: its radius, and how far away its
+ * centre is. */
+double masu_shadow_score(double intensity, double radius, double distance);
 
 /* Adds a light (1 + its number) if it is among the `most` of the highest scores. */
 void masu_shadow_wish_add(masu_shadow_wish *wish, uint32_t most, uint32_t light, double score);

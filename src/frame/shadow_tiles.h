@@ -24,4 +24,16 @@ void masu_shadow_tiles_clear(masu_shadow_tiles *t, uint32_t size);
 masu_shadow_tile masu_shadow_tile_take(masu_shadow_tiles *t, uint32_t size);
 void masu_shadow_tile_give(masu_shadow_tiles *t, masu_shadow_tile *tile);
 
+/* Where a tile begins along a Z-order curve. */
+uint32_t masu_shadow_tile_order(masu_shadow_tile tile);
+/* The first free tile of the same size, if it comes before this one in that order; else one with size 0. Once no tile
+ * has any, what is free is contiguous but for less than two of the largest tiles. */
+masu_shadow_tile masu_shadow_tile_before(const masu_shadow_tiles *t, masu_shadow_tile tile);
+/* There, if there is one. */
+void masu_shadow_tile_move(masu_shadow_tiles *t, masu_shadow_tile *tile);
+
+/* Sizes that have room together in an atlas of size^2 texels: as long as they do not, of the largest ones that with
+ * the lowest score is halved. A light has faces[i] tiles of sizes[i]. */
+void masu_shadow_sizes_fit(uint32_t *sizes, const uint32_t *faces, const double *scores, uint32_t count, uint32_t size);
+
 #endif

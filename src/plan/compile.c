@@ -127,6 +127,11 @@ static void compile_rung(masu_frame_plan *plan, uint32_t r) {
         for (uint32_t a = 0; a < MASU_PASS_ACCESSES && row->access[a].image; a++) {
             masu_usage usage = (masu_usage)row->access[a].usage;
             uint8_t resource = resolve(row->access[a].image, &l);
+            /* Bound all the same, and not read: one shader is for both. */
+            if (p == MASU_PASS_TRANSPARENTS && resource == MASU_IMAGE_BACKGROUND && !plan->needs.rough_glass) {
+                resource = l.image[MASU_CLASS_DEPTH];
+                usage = MASU_READ;
+            }
             if (!keeps_access(plan, p, resource, usage)) continue;
             rp->access[p][rp->access_count[p]++] = (masu_access){resource, (uint8_t)usage};
             if (masu_usage_writes(usage) && !masu_is_buffer(resource)) write_latest(&l, resource);
@@ -271,7 +276,7 @@ static int wants(const masu_desc *d, int (*has)(const masu_desc *d, uint32_t r))
 }
 
 /* The atlas has room for the most lights that may have shadows at a time, each spot with a tile of the largest
- * size, each point with six of half of it; what needs more gets smaller tiles. */
+ * size, each point with six, if that is within rung.local_shadow_atlas; else they get smaller tiles. */
 static void resolve_local_shadows(masu_frame_plan *plan) {
     const masu_desc *d = &plan->desc;
     uint32_t lights = 0, most = MASU_LOCAL_TILE_LEAST, viewports = d->viewport_count ? d->viewport_count : 1;
@@ -286,7 +291,7 @@ static void resolve_local_shadows(masu_frame_plan *plan) {
     if (lights > plan->scene.shadow_lights) lights = plan->scene.shadow_lights;
     uint32_t points = plan->scene.shadow_lights - plan->scene.shadow_spots;
     if (points > lights) points = lights;
-    uint64_t tile = MASU_LOCAL_TILE_MOST, area = points * 6 * (tile / 2) * (tile / 2) + (lights - points) * tile * tile;
+    uint64_t tile = MASU_LOCAL_TILE_MOST, area = (points * 6 + (lights - points)) * tile * tile;
     plan->local_lights = lights;
     plan->local_atlas = MASU_LOCAL_TILE_LEAST;
     while (2 * plan->local_atlas <= most && (uint64_t)plan->local_atlas * plan->local_atlas < area) plan->local_atlas *= 2;
@@ -329,6 +334,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                .probes = d->scene && plan->scene.probes && (!plan->scene.probes_unlit || any.bounce),
                                .shadow = d->scene && plan->scene.shadow_cascades,
                                .transparents = d->scene && plan->scene.transparents,
+                               .rough_glass = d->scene && plan->scene.transparents && plan->scene.tints & MASU_TINTS_ROUGH,
                                .lights = d->scene && plan->scene.lights,
                                .local_shadows = d->scene && any.local_shadows,
                                .area_lights = d->scene && plan->scene.lights &&

@@ -208,8 +208,11 @@ VkExtent2D masu_extent_of(masu_image_extent extent, VkExtent2D render, VkExtent2
         extent == MASU_EXTENT_PROBES || extent == MASU_EXTENT_RAYS ||
         extent == MASU_EXTENT_TRACED_PROBES || extent == MASU_EXTENT_SKINS || extent == MASU_EXTENT_SKIN_TREES)
         return (VkExtent2D){1, 1};
+    if (extent == MASU_EXTENT_LEVELS)
+        return (VkExtent2D){(render.width + 63) / 64 * 32, (render.height + 63) / 64 * 48};
     if (extent == MASU_EXTENT_PICK) return (VkExtent2D){2, 2};
-    if (extent == MASU_EXTENT_SHADOW || extent == MASU_EXTENT_LOCAL_FACES || extent == MASU_EXTENT_LOCAL_ATLAS)
+    if (extent == MASU_EXTENT_SHADOW || extent == MASU_EXTENT_LOCAL_FACES || extent == MASU_EXTENT_LOCAL_ATLAS ||
+        extent == MASU_EXTENT_LOCAL_PAIRS)
         return (VkExtent2D){0, 0};
     int shown = extent == MASU_EXTENT_OUTPUT || extent == MASU_EXTENT_OUTPUT_PAIRS ||
                 extent == MASU_EXTENT_OUTPUT_ODD;

@@ -50,6 +50,7 @@ typedef enum masu_image_extent {
     MASU_EXTENT_OUTPUT_ODD, /* the same, an invocation for the 2x2 pixels between four texels: one more each way than texels */
     MASU_EXTENT_HALF, /* a texel per 2x2 render pixels */
     MASU_EXTENT_TRACED, /* the same, for reflections; per pixel with debug.reference */
+    MASU_EXTENT_LEVELS, /* 1/2 to 1/64 of the render size side by side: light/background.glsl */
     MASU_EXTENT_BLOCK8,
     MASU_EXTENT_BLOCK4,
     MASU_EXTENT_TILE,  /* one workgroup per tile of 16x16 */
@@ -70,7 +71,8 @@ typedef enum masu_image_extent {
     MASU_EXTENT_SHADOW,  /* all cascades of the shadow map; plan.c knows how large */
     MASU_EXTENT_LOCAL_FACES, /* the local_shadow_faces squares that a frame renders; likewise */
     MASU_EXTENT_LOCAL_SDF,   /* an invocation per texel of the due faces that the SDF reaches: indirect, by the host */
-    MASU_EXTENT_LOCAL_ATLAS  /* the atlas that keeps them; likewise */
+    MASU_EXTENT_LOCAL_ATLAS, /* the atlas that keeps them; likewise */
+    MASU_EXTENT_LOCAL_PAIRS  /* half as wide */
 } masu_image_extent;
 
 typedef struct masu_image_row {
@@ -174,7 +176,8 @@ typedef struct masu_needs {
     int sdf_casts;     /* the SDF casts their shadows */
     int local_shadows; /* and some cast shadows in some rung: there is an atlas */
     int shadow;        /* polygons cast shadows of the sun: there is a shadow map */
-    int transparents;  /* something is blended */
+    int transparents;  /* something is blended, */
+    int rough_glass;   /* and something behind it seen blurred */
     int reflections;   /* a rung traces some */
     int traced;        /* there are polygons to trace */
     int traced_sdf;    /* there is an SDF to trace */

@@ -60,6 +60,7 @@ VkExtent2D masu_plan_extent(const masu_frame_plan *plan, masu_image_extent exten
     int traced = extent == MASU_EXTENT_TRACED || extent == MASU_EXTENT_GLOSSY;
     if (traced && plan->desc.debug.reference) return render;
     if (extent == MASU_EXTENT_LOCAL_ATLAS) return (VkExtent2D){plan->local_atlas, plan->local_atlas};
+    if (extent == MASU_EXTENT_LOCAL_PAIRS) return (VkExtent2D){plan->local_atlas / 2, plan->local_atlas};
     if (extent == MASU_EXTENT_LOCAL_FACES) {
         uint32_t across = plan->local_faces < FACES_ACROSS ? plan->local_faces : FACES_ACROSS;
         return (VkExtent2D){across * plan->local_tile,

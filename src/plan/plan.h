@@ -152,6 +152,11 @@ void masu_plan_select_viewport(masu_frame_plan *plan, uint32_t viewport);
 /* Bytes of MASU_BUFFER_JOINTS for one moment: of each skin a header, then the matrices. */
 #define MASU_SKIN_HEADER_BYTES 32u
 static inline uint64_t masu_joints_bytes(const masu_scene_data *s) {
+    uint64_t morphs = s->skin_targets ? (uint64_t)16 * s->skins + (uint64_t)16 * s->skin_targets : 0;
+    return s->skins * (uint64_t)MASU_SKIN_HEADER_BYTES + s->skinned_joints * (uint64_t)48 + morphs;
+}
+/* Where the morphs of skins begin there: of each skin an element, then of each target one. */
+static inline uint64_t masu_morphs_at(const masu_scene_data *s) {
     return s->skins * (uint64_t)MASU_SKIN_HEADER_BYTES + s->skinned_joints * (uint64_t)48;
 }
 

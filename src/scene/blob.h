@@ -24,8 +24,8 @@
 #include <stdint.h>
 
 #define MASU_BLOB_MAGIC 0x5553414Du /* the bytes 'M' 'A' 'S' 'U' */
-#define MASU_BLOB_VERSION 16u
-/* layout of version 16: 1838381741 (kinds of sections and their elements, tests/scripts/scene_forms.sh) */
+#define MASU_BLOB_VERSION 17u
+/* layout of version 17: 3570820542 (kinds of sections and their elements, tests/scripts/scene_forms.sh) */
 #define MASU_BLOB_ALIGN 16u
 #define MASU_BLOB_NONE 0xFFFFFFFFu /* "no name", "no parent" */
 #define MASU_BLOB_PART_SLOTS 8u    /* of an SDF's part, in front of all others: sphere, slope, form, first argument, material */
@@ -89,7 +89,11 @@ enum masu_blob_kind {
     MASU_BLOB_SKIN_VERTICES = 56, /* the same */
     MASU_BLOB_BOUNCE_SDF_SPIRV = 57, /* rays of live probes meet the SDF */
     MASU_BLOB_LOCAL_SHADOW_SPIRV = 58, /* the SDF casts shadows of punctual lights */
-    MASU_BLOB_KIND_COUNT = 59
+    MASU_BLOB_COLORS = 59, /* uint32, one per vertex, with texture coordinates: masu_blob_color */
+    MASU_BLOB_TEXCOORDS_1 = 60,  /* float pairs, one per vertex: what maps of the second set are read at */
+    MASU_BLOB_MORPH_TARGETS = 61, /* of skins; these two come together */
+    MASU_BLOB_MORPH_DELTAS = 62,
+    MASU_BLOB_KIND_COUNT = 63
 };
 
 /* Four texels by four make a block. sRGB formats hold display-encoded colour. */
@@ -156,6 +160,9 @@ typedef struct masu_blob_vertex {
     float position[3];
     int16_t normal[2]; /* octahedral, signed normalised (c / 32767) */
 } masu_blob_vertex;
+
+/* A colour of COLORS: square roots of linear red, green, blue, then alpha, 8 bits each from the lowest on. */
+#define MASU_BLOB_WHITE 0xFFFFFFFFu
 
 typedef struct masu_blob_primitive {
     uint32_t first_index;
@@ -232,16 +239,18 @@ typedef struct masu_blob_clip {
 enum masu_blob_channel_path {
     MASU_CHANNEL_TRANSLATION = 0, /* x, y, z */
     MASU_CHANNEL_ROTATION = 1,    /* a quaternion x, y, z, w of unit length */
-    MASU_CHANNEL_SCALE = 2        /* x, y, z */
+    MASU_CHANNEL_SCALE = 2,       /* x, y, z */
+    MASU_CHANNEL_WEIGHT = 3       /* of a morph target of the node's skin: x */
 };
 
 /* One of the three that make up a node's place: translation times rotation times scale. */
 typedef struct masu_blob_channel {
     uint32_t node; /* of the model's nodes, counted from its first */
-    uint32_t path; /* masu_blob_channel_path; no other channel of the clip has both */
+    uint32_t path; /* masu_blob_channel_path; no other channel of the clip has node, path and target */
     uint32_t step; /* 1: each key holds until the next; 0: in between is in between */
     uint32_t first_key, key_count; /* the next of KEYS, at least one; the ends hold */
-    uint32_t reserved[3];
+    uint32_t target;               /* of CHANNEL_WEIGHT: of the skin's targets; else 0 */
+    uint32_t reserved[2];
 } masu_blob_channel;
 
 typedef struct masu_blob_key {
@@ -260,7 +269,24 @@ typedef struct masu_blob_skin {
     uint32_t first_vertex, vertex_count; /* of VERTICES: all of its primitives lie inside */
     uint32_t first_skin_vertex;          /* of SKIN_VERTICES, as many; the next ones, or those of `like` */
     uint32_t first_joint, joint_count;   /* of JOINTS, 1..65536: the same */
+    uint32_t first_target, target_count; /* of MORPH_TARGETS: the same; 0: its vertices only bend */
+    uint32_t first_delta;                /* of MORPH_DELTAS, vertex_count for each target: the same */
+    uint32_t reserved;
 } masu_blob_skin;
+
+/* What is added to rest vertices, times a weight, before joints move them. The box holds all of its deltas. */
+#define MASU_BLOB_MORPH_TARGETS_MAX 1024u /* of one skin */
+typedef struct masu_blob_morph_target {
+    float low[3], high[3];
+    float weight; /* at rest, within +-MASU_MORPH_WEIGHT_MAX */
+    uint32_t name;
+} masu_blob_morph_target;
+#define MASU_MORPH_WEIGHT_MAX 1e6f
+
+typedef struct masu_blob_morph_delta {
+    float position[3];
+    uint32_t normal; /* signed normalised x, y, z of 11, 11, 10 bits, of +-2 */
+} masu_blob_morph_delta;
 
 /* A vertex is the weighted mean of where the joints put it: node in the model, times inverse bind. */
 typedef struct masu_blob_joint {
@@ -313,7 +339,8 @@ typedef struct masu_blob_material {
     float coat_roughness; /* perceptual, 0..1 */
     float opacity;        /* 0..1, of blended materials; else 1 */
     uint32_t meso;        /* element of MESO, or MASU_BLOB_NONE */
-    uint32_t more_layers; /* of the slots from OCCLUSION on, 8 bits each */
+    uint32_t more_layers; /* of the slots from OCCLUSION on, 8 bits each; from bit 16 on a bit for each
+                             slot: its coordinates are TEXCOORDS_1 */
     float detail[2];          /* texture coordinates of all maps but colour and emissive are times it */
 } masu_blob_material;
 
@@ -370,8 +397,8 @@ typedef struct masu_blob_light {
 #define MASU_PROBE_WORDS 14u /* of one set: 27 halfs, coefficient after coefficient, RGB in each; then
                                 in the first set how far the probe is to be believed, 0..1 */
 #define MASU_PROBE_LIT_WORDS 12u /* of a probe under the light of a frame; not in blobs */
-/* Of a live probe, not in blobs either: its mean, as lit words are, and four sums. */
-#define MASU_PROBE_LIVE_WORDS (MASU_PROBE_LIT_WORDS + 4u * MASU_PROBE_WORDS)
+/* Of a live probe, not in blobs either: its mean, as lit words are, and sixteen sums. */
+#define MASU_PROBE_LIVE_WORDS (MASU_PROBE_LIT_WORDS + 16u * MASU_PROBE_WORDS)
 #define MASU_PROBE_COUNT_MAX 262144u
 #define MASU_PROBE_BYTES_MAX ((uint64_t)64 << 20)
 #define MASU_PROBE_VISIBILITY_MAX 16u
@@ -434,7 +461,8 @@ typedef struct masu_blob_texture {
 /* What a draw binds together: a texture per slot, or MASU_BLOB_NONE. */
 typedef struct masu_blob_texture_set {
     uint32_t texture[MASU_SLOT_COUNT];
-    uint32_t wrap[2]; /* along u and v: 0 repeat, 1 clamp, 2 mirror */
+    uint32_t wrap[2]; /* along u and v: 0 repeat, 1 clamp, 2 mirror; the first plus 4: magnified without
+                         interpolation */
 } masu_blob_texture_set;
 
 /* Traced reflections; present with TRACE_NODES, TRACE_SDF_SPIRV or both. */
@@ -615,7 +643,9 @@ _Static_assert(sizeof(masu_blob_instance) == 64, "blob instance");
 _Static_assert(sizeof(masu_blob_clip) == 32, "blob clip");
 _Static_assert(sizeof(masu_blob_channel) == 32, "blob channel");
 _Static_assert(sizeof(masu_blob_key) == 20, "blob key");
-_Static_assert(sizeof(masu_blob_skin) == 32, "blob skin");
+_Static_assert(sizeof(masu_blob_skin) == 48, "blob skin");
+_Static_assert(sizeof(masu_blob_morph_target) == 32, "blob morph target");
+_Static_assert(sizeof(masu_blob_morph_delta) == 16, "blob morph delta");
 _Static_assert(sizeof(masu_blob_joint) == 80, "blob joint");
 _Static_assert(sizeof(masu_blob_skin_vertex) == 32, "blob skin vertex");
 _Static_assert(sizeof(masu_blob_group) == 48, "blob group");

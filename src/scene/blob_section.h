@@ -30,6 +30,8 @@ typedef struct masu_scene_view {
     const float *slots;
     uint64_t slot_count;
     const float *texcoords;
+    const uint32_t *colors;   /* of vertices; NULL: none */
+    const float *texcoords_1; /* NULL: none */
     const masu_blob_texture *textures;
     const masu_blob_texture_set *texture_sets;
     const unsigned char *texels;
@@ -55,6 +57,8 @@ typedef struct masu_scene_view {
     const masu_blob_skin *skins;
     const masu_blob_joint *joints;
     const masu_blob_skin_vertex *skin_vertices;
+    const masu_blob_morph_target *morph_targets;
+    const masu_blob_morph_delta *morph_deltas;
     struct {
         const uint32_t *words; /* NULL: none */
         uint64_t count;

@@ -275,7 +275,8 @@ void masu_describe_looks(const reader *r, masu_scene_data *out) {
         if (m->coat > 0.0f) out->coats++;
         if (!(m->flags & MASU_MATERIAL_IS_BLEND) && m->flags & 1u << MASU_SLOT_NORMAL) out->reliefs = 1;
         if (m->coat > 0.0f && m->flags & own) out->own_coats = 1;
-        if (m->flags & MASU_MATERIAL_IS_TINTED) out->tints = 1;
+        if (m->flags & MASU_MATERIAL_IS_TINTED)
+            out->tints |= (double)m->roughness > MASU_SHARP_GLASS ? 1 | MASU_TINTS_ROUGH : 1;
         if (m->flags & MASU_MATERIAL_IS_BLEND) out->blends++;
     }
     describe_transparents(r, out);

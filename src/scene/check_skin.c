@@ -8,7 +8,18 @@
 
 /* Whether a channel before it in its clip moves the same: channels are sorted by node, then path. */
 static int in_order(const masu_blob_channel *c, const masu_blob_channel *before) {
-    return before->node < c->node || (before->node == c->node && before->path < c->path);
+    if (before->node != c->node) return before->node < c->node;
+    return before->path < c->path || (before->path == c->path && before->target < c->target);
+}
+
+/* Morph targets that there are: those of the skin at the node. */
+static const char *wrong_target(const reader *r, const masu_blob_model *m, const masu_blob_channel *c) {
+    if (c->path != MASU_CHANNEL_WEIGHT) return c->target ? "has a morph target, but no weight" : NULL;
+    uint32_t skin = r->view.model_nodes[m->first_node + c->node].skin;
+    if (!skin || skin > r->counts[MASU_BLOB_SKINS] ||
+        c->target >= r->view.skins[skin - 1].target_count)
+        return "is of a morph target that its node lacks";
+    return NULL;
 }
 
 static masu_result check_channels(reader *r, const masu_blob_clip *clip, uint64_t *next_key) {
@@ -17,6 +28,7 @@ static masu_result check_channels(reader *r, const masu_blob_clip *clip, uint64_
         const masu_blob_channel *channel = &v->channels[c];
         const char *wrong = masu_wrong_channel(channel, v->models[clip->model].node_count, v->keys,
                                                r->counts[MASU_BLOB_KEYS], *next_key);
+        if (!wrong) wrong = wrong_target(r, &v->models[clip->model], channel);
         if (!wrong && c > clip->first_channel && !in_order(channel, channel - 1))
             wrong = "is not sorted by node and path";
         if (wrong) return bad(r, "channels", c, wrong);
@@ -54,7 +66,7 @@ masu_result masu_check_clips(reader *r) {
 
 /* Of SKIN_VERTICES and JOINTS: how far they have been given to skins; of VERTICES too, and of all joints. */
 typedef struct given {
-    uint64_t vertices, joints, skinned, slots;
+    uint64_t vertices, joints, skinned, slots, targets, deltas;
 } given;
 
 /* That its mesh is its own. */
@@ -77,6 +89,19 @@ static masu_result check_mesh(reader *r, uint64_t i) {
     return MASU_OK;
 }
 
+/* Its morph targets, which no skin before it has: every delta lies in its target's box. */
+static masu_result check_targets(reader *r, const masu_blob_skin *s) {
+    const masu_scene_view *v = &r->view;
+    for (uint32_t t = 0; t < s->target_count; t++) {
+        const masu_blob_morph_target *target = &v->morph_targets[s->first_target + t];
+        const char *wrong = masu_wrong_morph_target(
+            target, v->morph_deltas + s->first_delta + (uint64_t)t * s->vertex_count, s->vertex_count);
+        if (!wrong && !name_ok(r, target->name)) wrong = "name lies outside the names";
+        if (wrong) return bad(r, "morph targets", (uint64_t)s->first_target + t, wrong);
+    }
+    return MASU_OK;
+}
+
 /* Its joints and vertices, which no skin before it has. */
 static masu_result check_own(reader *r, uint64_t i) {
     const masu_scene_view *v = &r->view;
@@ -91,7 +116,7 @@ static masu_result check_own(reader *r, uint64_t i) {
                                                    v->joints + s->first_joint, s->joint_count);
         if (wrong) return bad(r, "skin vertices", (uint64_t)s->first_skin_vertex + k, wrong);
     }
-    return MASU_OK;
+    return check_targets(r, s);
 }
 
 static masu_result check_ranges(reader *r, uint64_t i, given *g) {
@@ -110,6 +135,8 @@ static masu_result check_ranges(reader *r, uint64_t i, given *g) {
         int same = like->like == s->like && like->vertex_count == s->vertex_count &&
                    like->first_skin_vertex == s->first_skin_vertex &&
                    like->first_joint == s->first_joint && like->joint_count == s->joint_count &&
+                   like->first_target == s->first_target && like->target_count == s->target_count &&
+                   like->first_delta == s->first_delta &&
                    v->models[like->model].like == v->models[s->model].like;
         return same ? MASU_OK : bad(r, "skins", i, "is not like the skin that it says");
     }
@@ -117,8 +144,15 @@ static masu_result check_ranges(reader *r, uint64_t i, given *g) {
         s->vertex_count > r->counts[MASU_BLOB_SKIN_VERTICES] - g->vertices ||
         s->joint_count > r->counts[MASU_BLOB_JOINTS] - g->joints)
         return bad(r, "skins", i, "joints or vertices are not the next of theirs");
+    uint64_t deltas = (uint64_t)s->vertex_count * s->target_count;
+    if (s->target_count > MASU_BLOB_MORPH_TARGETS_MAX || s->first_target != g->targets || s->first_delta != g->deltas ||
+        s->target_count > r->counts[MASU_BLOB_MORPH_TARGETS] - g->targets ||
+        deltas > r->counts[MASU_BLOB_MORPH_DELTAS] - g->deltas)
+        return bad(r, "skins", i, "morph targets or their deltas are too many, or not the next of theirs");
     g->vertices += s->vertex_count;
     g->joints += s->joint_count;
+    g->targets += s->target_count;
+    g->deltas += deltas;
     return check_own(r, i);
 }
 
@@ -141,7 +175,7 @@ masu_result masu_check_skins(reader *r) {
     const masu_scene_view *v = &r->view;
     uint64_t skins = r->counts[MASU_BLOB_SKINS], joints = r->counts[MASU_BLOB_JOINTS], bent = 0;
     uint64_t vertices = r->counts[MASU_BLOB_SKIN_VERTICES];
-    given g = {0, 0, 0, 0};
+    given g = {0, 0, 0, 0, 0, 0};
     if (!skins != !joints || !skins != !vertices)
         return bad(r, "skins", 0, "are there without joints or vertices, or these alone");
     for (uint64_t n = 0; n < r->counts[MASU_BLOB_MODEL_NODES]; n++) bent += v->model_nodes[n].skin != 0;
@@ -161,6 +195,8 @@ masu_result masu_check_skins(reader *r) {
     if (bent != skins) return bad(r, "model nodes", 0, "share a skin");
     if (g.vertices != vertices) return bad(r, "skin vertices", g.vertices, "belongs to no skin");
     if (g.joints != joints) return bad(r, "joints", g.joints, "belongs to no skin");
+    if (g.targets != r->counts[MASU_BLOB_MORPH_TARGETS]) return bad(r, "morph targets", g.targets, "belongs to no skin");
+    if (g.deltas != r->counts[MASU_BLOB_MORPH_DELTAS]) return bad(r, "morph deltas", g.deltas, "belongs to no target");
     if (skins && g.skinned != r->counts[MASU_BLOB_VERTICES])
         return bad(r, "vertices", g.skinned, "follows those of skins");
     return skins ? check_stiff(r) : MASU_OK;
@@ -184,6 +220,8 @@ void masu_describe_skins(const reader *r, masu_scene_data *out) {
     out->skins = (uint32_t)r->counts[MASU_BLOB_SKINS];
     out->skin_vertices = (uint32_t)r->counts[MASU_BLOB_SKIN_VERTICES];
     out->joints = (uint32_t)r->counts[MASU_BLOB_JOINTS];
+    out->morph_targets = (uint32_t)r->counts[MASU_BLOB_MORPH_TARGETS];
+    out->morph_deltas = (uint32_t)r->counts[MASU_BLOB_MORPH_DELTAS];
     for (uint32_t i = 0; i < out->models; i++) {
         if (v->models[i].node_count > out->max_nodes) out->max_nodes = v->models[i].node_count;
     }
@@ -194,6 +232,7 @@ void masu_describe_skins(const reader *r, masu_scene_data *out) {
         if (!i) out->first_skinned = s->first_vertex;
         out->skinned_vertices += s->vertex_count;
         out->skinned_joints += s->joint_count;
+        out->skin_targets += s->target_count;
         if (s->vertex_count > out->max_skinned) out->max_skinned = s->vertex_count;
     }
 }

@@ -49,7 +49,7 @@ static masu_result check_texture_set(reader *r, uint64_t i) {
         }
     }
     if (!given) return bad(r, "texture sets", i, "is empty");
-    if (set->wrap[0] > 2 || set->wrap[1] > 2) return bad(r, "texture sets", i, "no such wrapping");
+    if ((set->wrap[0] & ~4u) > 2 || set->wrap[1] > 2) return bad(r, "texture sets", i, "no such wrapping");
     return MASU_OK;
 }
 
@@ -81,7 +81,9 @@ static masu_result check_maps(reader *r, uint64_t i) {
             return bad(r, "materials", i, "no such layer");
         }
     }
-    if (m->more_layers > 0xFFFF) return bad(r, "materials", i, "no such layer");
+    uint32_t second = m->more_layers >> 16;
+    if (second & ~maps || (second && !r->view.texcoords_1))
+        return bad(r, "materials", i, "no such layer, or a map of coordinates that there are not");
     uint32_t has_base = maps >> MASU_SLOT_BASE & 1, has_surface = maps >> MASU_SLOT_SURFACE & 1;
     if (m->flags & MASU_MATERIAL_IS_MASK &&
         (!has_base ||
@@ -111,6 +113,15 @@ masu_result masu_check_textures(reader *r) {
         if (!within(&v->texcoords[2 * i], 2, -MASU_TEXCOORD_MAX, MASU_TEXCOORD_MAX)) {
             return bad(r, "texture coordinates", i, "are not finite or beyond 32768");
         }
+    }
+    uint64_t colors = r->counts[MASU_BLOB_COLORS], second = r->counts[MASU_BLOB_TEXCOORDS_1];
+    if (colors && (!some || colors != r->counts[MASU_BLOB_VERTICES]))
+        return bad(r, "vertex colours", colors, "are not as many as vertices with texture coordinates");
+    if (second && (!some || second != r->counts[MASU_BLOB_VERTICES]))
+        return bad(r, "second texture coordinates", second, "are not as many as the first ones");
+    for (uint64_t i = 0; i < second; i++) {
+        if (!within(&v->texcoords_1[2 * i], 2, -MASU_TEXCOORD_MAX, MASU_TEXCOORD_MAX))
+            return bad(r, "second texture coordinates", i, "are not finite or beyond 32768");
     }
     uint64_t end = 0;
     for (uint64_t i = 0; i < r->counts[MASU_BLOB_TEXTURES]; i++) {

@@ -114,6 +114,21 @@ double masu_light_solid(const masu_punctual_light_state *s) {
     return (double)s->radius + sqrt(u + (s->shape == MASU_SHAPE_RECTANGLE ? v : 0.0));
 }
 
+double masu_light_intensity(const masu_punctual_light_state *s, const double direction[3]) {
+    double brightest = fmax((double)s->color[0], fmax((double)s->color[1], (double)s->color[2]));
+    double radius = (double)s->radius, along = 0.0, across = 0.0;
+    for (uint32_t k = 0; k < 3; k++) {
+        along += direction[k] * direction[k];
+        across += (double)s->half_axis[k] * (double)s->half_axis[k];
+    }
+    switch (s->shape) { /* radiance times the area that it shows */
+    case MASU_SHAPE_SPHERE: return brightest * radius * radius;
+    case MASU_SHAPE_CAPSULE: return brightest * (radius * radius + 4.0 / PI * sqrt(along) * radius);
+    case MASU_SHAPE_RECTANGLE: return brightest * (4.0 / PI) * sqrt(along * across);
+    default: return brightest;
+    }
+}
+
 /* ---- One light ------------------------------------------------------------------------------- */
 
 /* Of a cone of half angle a and the range as its side: up to 45 degrees the sphere through the tip and

@@ -34,6 +34,8 @@ const char *masu_light_state_wrong(const masu_punctual_light_state *state, doubl
 /* How far from its centre the scene may have a surface that is the light's own and casts no shadow of its light,
  * metres, before its instance scales it. */
 double masu_light_solid(const masu_punctual_light_state *state);
+/* Radiant intensity over pi of the brightest channel, towards where it is largest. direction: in world space. */
+double masu_light_intensity(const masu_punctual_light_state *s, const double direction[3]);
 
 /* The light as the shaders read it, its bound included. position: relative to the eye; direction and
  * the state's half axis: in world space. Returns 0 if it lights nothing, wherever that is. */

@@ -61,6 +61,8 @@ static void describe(const reader *r, uint64_t blob_bytes, uint64_t pairs, masu_
     }
     out->texture_arrays = (uint32_t)r->counts[MASU_BLOB_TEXTURES];
     out->texture_sets = (uint32_t)r->counts[MASU_BLOB_TEXTURE_SETS];
+    out->vertex_colors = r->view.colors != NULL;
+    out->second_texcoords = r->view.texcoords_1 != NULL;
     for (uint32_t i = 0; i < out->texture_arrays; i++) {
         const masu_blob_texture *t = &r->view.textures[i];
         out->textures += t->layers;

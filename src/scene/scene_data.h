@@ -35,6 +35,8 @@ typedef struct MASU_MAY_ALIAS masu_scene_data {
     uint32_t max_nodes;                        /* of any one model */
     uint32_t skins;                            /* skinned meshes */
     uint32_t skin_vertices, joints;            /* of the shared skins in the blob */
+    uint32_t morph_targets, morph_deltas;      /* the same */
+    uint32_t skin_targets;                     /* of all skinned meshes, each counted for itself */
     uint32_t skinned_vertices, skinned_joints; /* of all skinned meshes */
     uint32_t skinned_nodes;                    /* of their BVHs */
     uint32_t first_skinned, max_skinned; /* first skinned vertex; most vertices of any one mesh */
@@ -64,6 +66,8 @@ typedef struct MASU_MAY_ALIAS masu_scene_data {
     /* Materials and textures. */
     uint32_t textures; /* layers of all texture arrays */
     uint32_t texture_arrays, texture_sets;
+    uint32_t vertex_colors;         /* flag: vertices have colours */
+    uint32_t second_texcoords;      /* flag: vertices have a second set of coordinates */
     uint64_t texture_bytes;         /* of texels as compressed blocks */
     uint64_t texture_bytes_decoded; /* of the same texels decoded */
     uint32_t masks;                 /* flag: a material is alpha-tested */
@@ -76,7 +80,7 @@ typedef struct MASU_MAY_ALIAS masu_scene_data {
     uint32_t meso;      /* tables of mesoscale detail */
     uint32_t reliefs;   /* flag: an opaque material has a normal map */
     uint32_t blends;    /* transparent materials */
-    uint32_t tints;     /* flag: a transparent material has coloured transmission */
+    uint32_t tints;     /* a transparent material has coloured transmission; MASU_TINTS_ROUGH: a rough one */
     uint32_t transparents;     /* transparent primitives, once per instance */
     uint32_t transparent_sets; /* texture sets of theirs, at least 1 if there are any */
 
@@ -113,6 +117,25 @@ typedef struct MASU_MAY_ALIAS masu_scene_data {
 } masu_scene_data;
 _Static_assert(sizeof(masu_scene_data) <= sizeof(masu_scene), "masu_scene.opaque is too small");
 _Static_assert(_Alignof(masu_scene_data) <= _Alignof(masu_scene), "masu_scene is misaligned");
+
+/* The buffer of texture coordinates: the first set of all vertices, then, in scenes that have either, the second
+ * set and the colours. The one that is missing is one element, which all vertices share. */
+typedef struct masu_texcoord_layout_of {
+    uint64_t second, colors, bytes; /* where they begin */
+} masu_texcoord_layout_of;
+
+static inline int masu_has_attributes(const masu_scene_data *s) {
+    return s->vertex_colors || s->second_texcoords;
+}
+
+static inline masu_texcoord_layout_of masu_texcoord_layout(const masu_scene_data *s) {
+    uint64_t n = s->vertices;
+    masu_texcoord_layout_of at = {8 * n, 8 * n, 8 * n};
+    if (!masu_has_attributes(s)) return at;
+    at.colors = at.second + (s->second_texcoords ? 8 * n : 8);
+    at.bytes = at.colors + (s->vertex_colors ? 4 * n : 4);
+    return at;
+}
 
 /* The content of a scene, and back. NULL for NULL. */
 static inline const masu_scene_data *masu_scene_data_of(const masu_scene *scene) {

@@ -20,7 +20,7 @@ static int is_unit(const float q[4]) {
 const char *masu_wrong_channel(const masu_blob_channel *c, uint32_t nodes,
                                const masu_blob_key *keys, uint64_t key_count, uint64_t next) {
     if (c->node >= nodes) return "moves no node of its model";
-    if (c->path > MASU_CHANNEL_SCALE) return "unknown path";
+    if (c->path > MASU_CHANNEL_WEIGHT) return "unknown path";
     if (c->step > 1) return "step is neither 0 nor 1";
     if (c->first_key != next || !c->key_count || c->key_count > key_count - next)
         return "keys are not the next of the keys";
@@ -31,6 +31,8 @@ const char *masu_wrong_channel(const masu_blob_channel *c, uint32_t nodes,
         if (!all_finite(keys[k].value, 4)) return "a key is not finite";
         if (c->path == MASU_CHANNEL_ROTATION && !is_unit(keys[k].value))
             return "a rotation is not of unit length";
+        if (c->path == MASU_CHANNEL_WEIGHT && !(fabsf(keys[k].value[0]) <= MASU_MORPH_WEIGHT_MAX))
+            return "a weight is beyond 1e6";
     }
     return NULL;
 }
@@ -63,4 +65,19 @@ const char *masu_wrong_skin_vertex(const masu_blob_skin_vertex *v, const masu_bl
         }
     }
     return sum == 65535 ? NULL : "has weights that are not 65535 together";
+}
+
+const char *masu_wrong_morph_target(const masu_blob_morph_target *t,
+                                    const masu_blob_morph_delta *deltas, uint32_t vertices) {
+    if (!(fabsf(t->weight) <= MASU_MORPH_WEIGHT_MAX)) return "weight is beyond 1e6";
+    for (uint32_t k = 0; k < 3; k++) {
+        if (!(t->low[k] >= -1e15f && t->high[k] <= 1e15f)) return "box is not finite";
+    }
+    for (uint32_t i = 0; i < vertices; i++) {
+        for (uint32_t k = 0; k < 3; k++) {
+            float d = deltas[i].position[k];
+            if (!(t->low[k] <= d && d <= t->high[k])) return "has a delta outside its box";
+        }
+    }
+    return NULL;
 }

@@ -15,4 +15,8 @@ const char *masu_wrong_joint(const masu_blob_joint *joint, uint32_t nodes);
 const char *masu_wrong_skin_vertex(const masu_blob_skin_vertex *vertex,
                                    const masu_blob_joint *joints, uint32_t joint_count);
 
+/* With its deltas, one for each of its skin's vertices. */
+const char *masu_wrong_morph_target(const masu_blob_morph_target *target,
+                                    const masu_blob_morph_delta *deltas, uint32_t vertices);
+
 #endif

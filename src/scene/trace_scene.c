@@ -73,7 +73,8 @@ struct masu_trace_material masu_trace_material_of(const masu_scene_data *scene,
         {MASU_TRACE_NONE, MASU_TRACE_NONE, m->flags, 0}};
     if (!(m->flags & MASU_MATERIAL_HAS_MAPS)) return out;
     const masu_blob_texture_set *set = &v->texture_sets[m->texture_set];
-    out.maps[3] = set->wrap[0] | set->wrap[1] << 2;
+    out.maps[3] = (set->wrap[0] & 3u) | set->wrap[1] << 2;
+    if (m->more_layers >> (16 + MASU_SLOT_EMISSIVE) & 1u) out.maps[3] |= MASU_TRACE_SECOND;
     out.maps[0] = picture_of(scene, v, m, MASU_SLOT_BASE);
     out.maps[1] = picture_of(scene, v, m, MASU_SLOT_EMISSIVE);
     blur_surface(scene, v, m, &out);
@@ -103,6 +104,7 @@ static void element(const masu_scene_data *scene, const masu_scene_view *v,
         out[0] = (uint32_t)p->materials;
         out[1] = (uint32_t)p->pictures;
         out[2] = (uint32_t)p->texels;
+        out[3] = (uint32_t)(masu_texcoord_layout(scene).colors / 4);
     } else if (i < p->materials) {
         memcpy(out, &masu_blue_noise[4 * (i - p->noise)], 16);
     } else if (i < p->pictures) {

@@ -6,6 +6,7 @@
 #version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_AREA_LIGHTS
+#define MASU_LIGHTS_APART
 #define MASU_SURFACE
 #include "brdf/bsdf.glsl"
 
@@ -72,7 +73,7 @@ void main()
     s.coat = c.surface.z;
     s.coat_roughness = c.surface.w;
     masu_bsdf b = masu_bsdf_make(s, vec3(0.0, 0.0, 1.0), c.view.xyz);
-    masu_lit lit = masu_lit(vec3(0.0), vec3(0.0));
-    bool reached = masu_add_local_light(lit, s, b, uint(c.view.w), c.point.xyz, vec3(0.0, 0.0, 1.0));
-    results[at] = vec4(lit.diffuse.x, lit.specular.x, reached ? 1.0 : 0.0, 0.0);
+    masu_light_sum sum = masu_light_sum(vec3(0.0), vec3(0.0));
+    bool reached = masu_add_local_light(sum, s, b, uint(c.view.w), c.point.xyz, vec3(0.0, 0.0, 1.0), vec3(0.0));
+    results[at] = vec4(sum.light.x, sum.mirrored.x, reached ? 1.0 : 0.0, 0.0);
 }

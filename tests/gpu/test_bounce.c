@@ -105,7 +105,7 @@ static void a_furnace_is_1_everywhere(void **state) {
     (void)state;
     rooms r;
     open_rooms(&r, "test_bounce_furnace");
-    (void)settle(&r, 40);
+    (void)settle(&r, 120);
     float low = 10, high = 0;
     for (uint32_t i = 0; i < r.probes; i++) {
         assert_true(is_valid(&r, i));
@@ -125,17 +125,17 @@ static void poison_is_gone_after_a_window(void **state) {
     rooms r;
     open_rooms(&r, "test_bounce_furnace");
     (void)settle(&r, 8);
-    for (uint32_t k = 0; k < MASU_PROBE_WORDS; k++) r.sets[3 * 4 * MASU_PROBE_WORDS + k] = 0x7E007C00u;
+    for (uint32_t k = 0; k < MASU_PROBE_WORDS; k++) r.sets[3 * MASU_BOUNCE_SETS * MASU_PROBE_WORDS + k] = 0x7E007C00u;
     for (uint32_t k = 0; k < MASU_PROBE_LIT_WORDS; k++) r.live[7 * MASU_PROBE_LIT_WORDS + k] = 0xFFFFFFFFu;
     for (uint32_t f = 0; f < 4; f++) {
         const uint16_t *pixels = draw_image(&r.s, &(masu_frame_desc){.time_step = 0.01f}, MASU_READBACK_HDR, NULL);
         for (uint32_t i = 0; i < W * H * 4; i++) assert_true((pixels[i] & 0x7C00u) != 0x7C00u);
     }
-    (void)settle(&r, 16);
+    (void)settle(&r, 28); /* set 0 has had its turn */
     uint32_t words = r.probes * MASU_BOUNCE_SETS * MASU_PROBE_WORDS;
     for (uint32_t i = 0; i < words; i++)
         assert_true((r.sets[i] & 0x7C00u) != 0x7C00u && (r.sets[i] >> 16 & 0x7C00u) != 0x7C00u);
-    (void)settle(&r, 40);
+    (void)settle(&r, 120);
     for (uint32_t i = 0; i < r.probes; i++)
         assert_float_equal(half_at(r.live + (size_t)i * MASU_PROBE_LIT_WORDS, 1) * 0.282095f, 1, 0.01);
     close_rooms(&r);
@@ -215,12 +215,35 @@ static void baked_daylight_counts_once(void **state) {
     close_rooms(&r);
 }
 
+/* ---- Ray queries ----------------------------------------------------------------------------- */
+
+/* Rays of probes walk the library's own tree. */
+static void ray_queries_are_refused(void **state) {
+    (void)state;
+    masu_session_desc d = test_desc("test_bounce", W, H);
+    masu_session s;
+    masu_detail detail;
+    masu_memory need;
+    d.desc.rung_count = 1;
+    d.desc.rungs[0] = (masu_rung){.scale = 1.0f};
+    d.no_renderer = true;
+    open_session(&s, &d);
+    s.desc.ray_query = MASU_ON;
+    assert_int_equal(masu_memory_query(&s.desc, &need, &detail), MASU_ERROR_SCENE);
+    assert_string_equal(detail.what, "ray_query");
+    assert_non_null(strstr(detail.text, "live bounce"));
+    s.desc.ray_query = MASU_AUTO;
+    assert_int_equal(masu_memory_query(&s.desc, &need, NULL), MASU_OK);
+    close_session(&s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_furnace_is_1_everywhere),
         cmocka_unit_test(poison_is_gone_after_a_window),
         cmocka_unit_test(light_comes_rises_rests_and_stays_behind_a_door),
         cmocka_unit_test(baked_daylight_counts_once),
+        cmocka_unit_test(ray_queries_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -9,6 +9,7 @@
 #include "reference/fsr1.h"
 #include "reference/patterns.h"
 #include "reference/smaa.h"
+#include "scene/blob.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -192,6 +193,22 @@ static void render_writes_the_picture_and_its_numbers_under_validation(void **st
     assert_int_equal(cli_run("render %s -o %s/f-###.png --size 16x16 --frames 2 --quiet", scene, scratch),
                      0);
     assert_true(is_in_scratch("f-000.png") && is_in_scratch("f-001.png") && !is_in_scratch("f-002.png"));
+    /* Clips play unless they are not to. */
+    static const char *const ways[] = {"", " --animate", " --animate=off", " --animate=off --time 0"};
+    uint64_t hash[4];
+    for (size_t i = 0; i < 4; i++) {
+        assert_int_equal(cli_run("render %s -o %s/f.png --frame --size 48x32 --quiet --time 0.5%s",
+                                 scene_path("test_swing"), scratch, ways[i]),
+                         0);
+        snprintf(path, sizeof path, "%s/f.png", scratch);
+        assert_ok(masu_image_load_png(path, &image, error, sizeof error));
+        hash[i] = masu_fnv1a64(image.rgba, (uint64_t)4 * image.width * image.height);
+        masu_image_free(&image);
+    }
+    assert_int_equal(hash[0], hash[1]);
+    assert_int_not_equal(hash[0], hash[2]);
+    assert_int_equal(hash[2], hash[3]);
+    assert_int_equal(cli_run("render %s --animate=on", scene), 2);
 }
 
 /* A target of a second fits whatever the machine does. */

@@ -396,6 +396,31 @@ static void pictures_are_of_the_second_set_and_turned(void **state) {
             ahead, f, 4, 0);
 }
 
+/* Of eight texels along a side: interpolated, the squares would be an eighth wider than they are. */
+static void pixels_of_a_picture_stay_sharp(void **state) {
+    (void)state;
+    static const uint8_t colors[4][3] = {{255, 0, 0}, {0, 255, 0}, {0, 0, 255}, {255, 255, 255}};
+    static const float coordinates[8] = {0, 1, 1, 1, 1, 0, 0, 0};
+    static uint8_t rgba[8 * 8 * 4];
+    char attributes[64], rest[512], error[ERROR_SIZE];
+    face f[4];
+    for (int i = 0; i < 64; i++) {
+        memcpy(rgba + 4 * i, colors[(i % 8 >= 4) + 2 * (i / 8 >= 4)], 3);
+        rgba[4 * i + 3] = 255;
+    }
+    assert_ok(masu_image_save_png(in_scratch("pixels.png"), rgba, 8, 8, 0, error, sizeof error));
+    quarter(f);
+    for (int i = 0; i < 4; i++)
+        for (int c = 0; c < 3; c++) f[i].look[c] = linear(colors[i][c]);
+    begin_quad();
+    snprintf(attributes, sizeof attributes, ",\"TEXCOORD_0\":%d", floats(coordinates, "VEC2", 4, 2));
+    snprintf(rest, sizeof rest,
+             ",\"images\":[{\"uri\":\"pixels.png\"}],\"textures\":[{\"source\":0,\"sampler\":0}],"
+             "\"samplers\":[{\"magFilter\":9728}],\"materials\":[{\"pbrMetallicRoughness\":{" ROUGH
+             ",\"baseColorTexture\":{\"index\":0}}}]");
+    compare(finish_quad(attributes, ",\"material\":0", rest), ahead, f, 4, 0);
+}
+
 static void pictures_are_webp(void **state) {
     (void)state;
     static const float at[8] = {0, 1, 1, 1, 1, 0, 0, 0};
@@ -605,6 +630,38 @@ static void skins_stand_as_their_joints_have_them(void **state) {
     compare(skinned("STEP", moves, 3), (shot){{3.5, 0.5, 2.5}, {3.5, 0.5, 0}}, &f, 1, 0);
 }
 
+/* Two boxes of one size, the second ten metres behind the first: as large in the picture. */
+static void an_orthographic_camera_sees_no_depth(void **state) {
+    (void)state;
+    static const char json[] =
+        "{\"models\": [{\"mesh\": {\"box\": {}}, \"translate\": [-1.5, 0, 0], \"material\": {\"emissive\": [50, 50, 50]}}, "
+        "{\"mesh\": {\"box\": {}}, \"translate\": [1.5, 0, -10], \"material\": {\"emissive\": [50, 50, 50]}}], "
+        "\"camera\": {%s, \"keys\": [{\"position\": [0, 0, 6], \"target\": [0, 0, -4.5]}]}}";
+    static const char *const lenses[] = {"\"height\": 4", "\"fov_y\": 40"};
+    double width[2][2];
+    for (int i = 0; i < 2; i++) {
+        char text[1024], name[16];
+        masu_session s;
+        snprintf(text, sizeof text, json, lenses[i]);
+        snprintf(name, sizeof name, "depth%d", i);
+        bake_scene(name, text);
+        masu_session_desc d = test_desc(NULL, SIDE, SIDE);
+        d.scene_path = baked_scene(name);
+        d.desc.readback = MASU_READBACK_HDR;
+        d.desc.rung_count = 1;
+        open_session(&s, &d);
+        masu_frame_desc frame = {0};
+        const uint16_t *seen = draw_image(&s, &frame, MASU_READBACK_HDR, NULL);
+        width[i][0] = width[i][1] = 0;
+        for (int x = 0; x < SIDE; x++)
+            width[i][x >= SIDE / 2] += half_float(seen[4 * (SIDE / 2 * SIDE + x)]) > 10;
+        close_session(&s);
+    }
+    /* 64 texels for four metres. */
+    assert_true(fabs(width[0][0] - 16) <= 1 && fabs(width[0][1] - 16) <= 1);
+    assert_true(width[1][0] > 1.8 * width[1][1]);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(emission_needs_no_fifth_attachment),
@@ -616,6 +673,7 @@ int main(void) {
         cmocka_unit_test(coats_have_maps),
         cmocka_unit_test(glass_colours_what_is_behind),
         cmocka_unit_test(pictures_are_of_the_second_set_and_turned),
+        cmocka_unit_test(pixels_of_a_picture_stay_sharp),
         cmocka_unit_test(pictures_are_webp),
         cmocka_unit_test(vertices_have_colours),
         cmocka_unit_test(single_sided_materials_are_not_seen_from_behind),
@@ -627,6 +685,7 @@ int main(void) {
         cmocka_unit_test(draco_is_unpacked),
         cmocka_unit_test(nodes_have_instances),
         cmocka_unit_test(morphs_have_their_weights),
+        cmocka_unit_test(an_orthographic_camera_sees_no_depth),
         cmocka_unit_test(skins_stand_as_their_joints_have_them),
     };
     return cmocka_run_group_tests(tests, make_scratch, remove_scratch);

@@ -192,7 +192,7 @@ static double texel_of(const lamps *l, const masu_camera *c, double tangent, uin
     double d[3], pixels = 0.5 * l->height / tan((double)c->fov_y / 2);
     for (int k = 0; k < 3; k++) d[k] = s.position[k] - c->position[k];
     *now = masu_local_face_size(
-        masu_local_face_wish((double)s.range, (double)s.radius, tangent, sqrt(dot3(d, d)), pixels), *now, most);
+        masu_local_face_wish((double)s.range, tangent, sqrt(dot3(d, d)), pixels), *now, most);
     return 2 * tangent / (*now - 4);
 }
 
@@ -339,7 +339,7 @@ static void expect_no_acne(const plane_case *p) {
 
 static void planes_do_not_shadow_themselves(void **state) {
     (void)state;
-    expect_no_acne(&(plane_case){"point, 256", 2048, 0.3, 0, 1});
+    expect_no_acne(&(plane_case){"point, 256", 1024, 0.3, 0, 1});
     expect_no_acne(&(plane_case){"point, 128", 512, 0.3, 0, 1});
     expect_no_acne(&(plane_case){"spot, 512", 2048, 1.5, 1, 1});
 }
@@ -349,6 +349,33 @@ static void planes_do_not_shadow_themselves(void **state) {
 static void large_triangles_do_not_shadow_themselves(void **state) {
     (void)state;
     expect_no_acne(&(plane_case){"two triangles", 2048, 0.3, 0, 0});
+}
+
+/* Two lamps behind the plane of a box's face, whose normals lean to one of them by 30 degrees: both are dark there. */
+static void faces_that_look_away_are_dark(void **state) {
+    (void)state;
+    static uint16_t plain[4 * PIXELS_MOST];
+    lamps l;
+    masu_camera c = look(0, 1, 3, 0, 0, -1, 0.5);
+    begin_scene(0.1);
+    add(", {\"mesh\": {\"box\": {\"size\": [1, 1, 0.2]}}, \"translate\": [0, 1, 0], \"material\": {\"roughness\": 1, "
+        "\"normal_map\": \"lean_right.png\"}}");
+    assert_int_equal(shell("cp %s/textures/lean_right.png %s", build_dir(), in_scratch("lean_right.png")), 0);
+    add_lights("{\"type\": \"point\", \"position\": [3, 1, -0.4], \"intensity\": 40, \"range\": 9}, "
+               "{\"type\": \"point\", \"position\": [-3, 1, -0.4], \"intensity\": 40, \"range\": 9}");
+    bake_scene("lamp_behind", json);
+    open_lamps(&l, "lamp_behind", 64, 40, NULL, 0);
+    memcpy(plain, take(&l, &c, PLAIN), (size_t)l.width * l.height * 8);
+    const uint16_t *hdr = settle(&l, &c);
+    uint32_t lit = 0, bright = 0;
+    for (uint32_t i = 0; i < l.width * l.height; i++) {
+        if (!(luma(plain + 4 * i) > 1e-3)) continue;
+        lit++, bright += luma(hdr + 4 * i) > 0.1 * luma(plain + 4 * i);
+    }
+    print_message("%u pixels are lit from behind without shadows, %u with them\n", lit, bright);
+    assert_true(lit > 300);
+    assert_true(bright * 100 <= lit); /* SwiftShader: 3 at the edge of the box */
+    close_lamps(&l);
 }
 
 /* ---- Cache ----------------------------------------------------------------------------------- */
@@ -366,13 +393,13 @@ static void bake_street(void) {
     bake_scene("lamp_street", json);
 }
 
-static void what_is_kept_is_what_would_be_rendered(void **state) {
-    (void)state;
+static void expect_kept(uint32_t atlas) {
     static uint16_t kept[4 * PIXELS_MOST];
     lamps l;
+    masu_rung rung = {.local_shadow_atlas = atlas};
     masu_camera end = look(5, 4.5, 7, -4, -3, -6, 1.1);
     bake_street();
-    open_lamps(&l, "lamp_street", 96, 60, NULL, 0);
+    open_lamps(&l, "lamp_street", 96, 60, &rung, 0);
     uint32_t most = 0, rendered = 0;
     for (int f = 0; f < 90; f++) {
         double t = f / 90.0;
@@ -396,7 +423,7 @@ static void what_is_kept_is_what_would_be_rendered(void **state) {
     }
     close_lamps(&l);
     lamps fresh;
-    open_lamps(&fresh, "lamp_street", 96, 60, NULL, 0);
+    open_lamps(&fresh, "lamp_street", 96, 60, &rung, 0);
     move_instance(&fresh.s, "car", 1, 0.5f, 3.5f, 1);
     move_instance(&fresh.s, "box3", (float)(2 * cos(84)), 0.5f, (float)(2 * sin(84)), 1);
     const uint16_t *again = settle(&fresh, &end);
@@ -405,6 +432,13 @@ static void what_is_kept_is_what_would_be_rendered(void **state) {
     print_message("%u components differ from those of a new renderer\n", other);
     assert_int_equal(other, 0);
     close_lamps(&fresh);
+}
+
+/* Also in an atlas without room for the sizes that its 14 faces would have. */
+static void what_is_kept_is_what_would_be_rendered(void **state) {
+    (void)state;
+    expect_kept(2048);
+    expect_kept(1024);
 }
 
 /* Two lights and one slot: a third one, brighter and out of sight, takes it. */
@@ -482,7 +516,7 @@ static void a_thousand_lights_come_and_go(void **state) {
         assert_int_equal(masu_punctual_light_add(l.s.m, &s, &handles[at]), MASU_OK);
         if (n % 4) continue;
         take(&l, &c, n % 100 == 48 ? PLAIN : SHADOWED);
-        assert_true(l.stats.local_shadow_faces <= 4 && l.stats.local_shadow_lights <= 8);
+        assert_true(l.stats.local_shadow_faces <= 4 && l.stats.local_shadow_lights <= 16);
     }
     close_lamps(&l);
 }
@@ -509,9 +543,9 @@ static void nothing_is_planned_where_no_light_casts(void **state) {
             if (strcmp(plan.images[i].name, "local_shadow_atlas") == 0 && plan.images[i].used)
                 bytes = plan.images[i].bytes;
         }
-        /* One point light: six faces of 256 fit into 1024. */
+        /* One point light: six faces of 512 fit into 2048. */
         if (!casts) assert_int_equal(bytes, 0);
-        if (casts) assert_true(bytes >= 2 * 1024 * 1024 && bytes < 3 * 1024 * 1024);
+        if (casts) assert_true(bytes >= 8 * 1024 * 1024 && bytes < 9 * 1024 * 1024);
         close_lamps(&l);
     }
 }
@@ -521,6 +555,7 @@ int main(void) {
         cmocka_unit_test(visibility_is_that_of_rays),
         cmocka_unit_test(planes_do_not_shadow_themselves),
         cmocka_unit_test(large_triangles_do_not_shadow_themselves),
+        cmocka_unit_test(faces_that_look_away_are_dark),
         cmocka_unit_test(what_is_kept_is_what_would_be_rendered),
         cmocka_unit_test(shadows_come_and_go_by_steps),
         cmocka_unit_test(a_thousand_lights_come_and_go),

@@ -248,15 +248,25 @@ static void the_sdf_alone_has_shadows(void **state) {
 
 static void polygons_shade_the_sdf(void **state) {
     (void)state;
-    static const shape box[] = {{1, {0, 1.5, 0}, {0.8, 0.1, 0.8}}};
+    shape both[] = {{1, {0, 1.5, 0}, {0.8, 0.1, 0.8}}, {0, {0.3, 0.5, 0.3}, {0.4, 0, 0}}};
     masu_session s;
-    shapes = box, shape_count = 1;
-    bake("roof", "{\"mesh\": {\"box\": {\"size\": [1.6, 0.2, 1.6]}}, \"translate\": [0, 1.5, 0]}", "part ground = plane((0, 1, 0), 0);\n", POINT,
+    shapes = both, shape_count = 2;
+    bake("roof", "{\"mesh\": {\"box\": {\"size\": [1.6, 0.2, 1.6]}}, \"name\": \"roof\", \"translate\": [0, 1.5, 0]}",
+         "part ground = plane((0, 1, 0), 0);\npart ball = translate((0.3, 0.5, 0.3), sphere(0.4));\n", POINT,
          ", \"reflections\": false");
     open_scene(&s, "roof");
     render(&s, NONE, 1, (masu_frame_desc){0}, open);
     render(&s, SHADOWS, SETTLED, (masu_frame_desc){0}, lit);
     expect("a polygon over the SDF", compare(lamp, by_depth), 150, 1500, 0);
+    assert_true(evals > 0);
+    /* The SDF's depth of the faces is kept while only a polygon moves. */
+    both[0].middle[0] = 0.4;
+    move_instance(&s, "roof", 0.4f, 1.5f, 0, 1);
+    render(&s, SHADOWS, 8, (masu_frame_desc){0}, lit);
+    assert_true(faces > 0);
+    assert_int_equal(evals, 0);
+    render(&s, NONE, 1, (masu_frame_desc){0}, open);
+    expect("the same, moved", compare(lamp, by_depth), 150, 1500, 0);
     close_session(&s);
 }
 

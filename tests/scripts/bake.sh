@@ -290,11 +290,26 @@ for name in outer inner mirrored triangle paint; do
     grep -q -a "$name" "$folder/out/x.masu" || fail "the name $name is not in the blob"
 done
 
-# What --describe writes is baked to the same bytes: a model with a ground, a flat one, a field.
+# An animated file alone plays: its clip is kept, without "moving". One without clips has no model.
+sed -e "s|\"count\": 3|&|; s|^ \"bufferViews\": \[| \"animations\": [{\"name\": \"lift\", \"samplers\": [{\"input\": 1, \"output\": 2}],\\
+    \"channels\": [{\"sampler\": 0, \"target\": {\"node\": 1, \"path\": \"translation\"}}]}],\\
+&{\"buffer\": 1, \"byteLength\": 8}, {\"buffer\": 1, \"byteOffset\": 8, \"byteLength\": 24}, |" \
+    -e 's|"bufferView": 0, "componentType"|"bufferView": 2, "componentType"|' \
+    -e 's|"max": \[1, 1, 0\]}|&,\
+    {"bufferView": 0, "componentType": 5126, "count": 2, "type": "SCALAR"},\
+    {"bufferView": 1, "componentType": 5126, "count": 2, "type": "VEC3"}|' \
+    -e "s|\"buffers\": \[.*\"}\]|\"buffers\": [{\"byteLength\": 36, \"uri\": \"data:application/octet-stream;base64,$positions\"},\\
+    {\"byteLength\": 32, \"uri\": \"data:application/octet-stream;base64,AAAAAAAAgD8AAAAAAAAAAAAAAAAAAAAAAACgQAAAAAA=\"}]|" "$folder/nodes.gltf" > "$folder/lift.gltf"
+accepts "$folder/lift.gltf" "${x[@]}"
+grep -q -a lift "$folder/out/x.masu" || fail "lift.gltf: its clip is not kept"
+"$bake" "$folder/lift.gltf" --describe | grep -q '"moving": true' || fail "lift.gltf: does not play"
+! "$bake" "$folder/nodes.gltf" --describe | grep -q moving || fail "nodes.gltf: a model without clips is movable"
+
+# What --describe writes is baked to the same bytes: a model with a ground, a flat one, a clip, a field.
 echo 'f 1 2 3 4' | cat <(printf 'v %s 0 %s\n' 0 0 0 9 9 9 9 0) - > "$folder/flat.obj"
 echo 'part ball = sphere(0.7);' > "$folder/ball.sdf"
 mkdir -p "$folder/out"
-for input in nodes.gltf flat.obj ball.sdf; do
+for input in nodes.gltf flat.obj lift.gltf ball.sdf; do
     accepts "$folder/$input" "${x[@]}"
     cp "$folder/out/x.masu" "$folder/out/alone.masu"
     accepts "$folder/$input" --describe -o "$folder/out/told.json"
@@ -307,6 +322,11 @@ refuses 1 'told.json: is a scene description already' "$folder/out/told.json" --
 refuses 2 'found a name that ends in .masu, expected one that ends in .json' "$folder/nodes.gltf" --describe "${x[@]}"
 refuses 2 'bakes nothing: remove --stats' "$folder/nodes.gltf" --describe --stats "$folder/stats.json"
 rm -f "$folder/out/told.json" "$folder/out/alone.masu"
+
+# A model that is kilometres long may be in centimetres.
+printf 'v %s 0 %s\n' 0 0 0 9 1500000 9 1500000 0 | cat - <(echo 'f 1 2 3 4') > "$folder/wide.obj"
+accepts "$folder/wide.obj" "${x[@]}"
+says stdout 'wide.obj: is 1.5e+06 m long; if its file is in centimetres'
 
 # The same with NaN in a corner of one of two triangles, then in both.
 nan=AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAwH8AAAAA

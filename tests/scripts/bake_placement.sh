@@ -58,7 +58,7 @@ END
 for from in outer b/outer; do
     scene '{"models": [{"file": "camera.gltf", "name": "b", "translate": [1, 2, 3]}], "camera": {"from": "'$from'"}}'
     accepts "$json" "${x[@]}" --stats "$folder/stats.json"
-    says stderr 'camera.gltf: 1 cameras without perspective, which are not supported (first: inner)'
+    says stderr 'camera.gltf: 1 cameras without perspective or size, which are not supported (first: inner)'
     says stats.json '"b/outer"'
     cp "$folder/out/x.masu" "$folder/out/$(basename $from).$(dirname $from | tr . x).masu"
 done
@@ -67,6 +67,18 @@ scene '{"models": [{"file": "camera.gltf", "name": "b", "translate": [1, 2, 3]}]
     "camera": {"keys": [{"position": [11, 2, 3], "target": [11, 2, 2], "fov_y": 28.64788975654116}]}}'
 accepts "$json" "${x[@]}"
 cmp "$folder/out/outer.x.masu" "$folder/out/x.masu" || fail "a camera is not where its file has it"
+# An orthographic one: as one of a scene that is as high, exact in the middle of the model.
+sed 's/"orthographic": {}/"orthographic": {"xmag": 6, "ymag": 3, "znear": 0.1, "zfar": 100}/; s/5, 0\], "camera"/5, 7], "camera"/' \
+    "$folder/camera.gltf" > "$folder/flat.gltf"
+scene '{"models": [{"file": "flat.gltf"}], "camera": {"from": "inner"}}'
+accepts "$json" "${x[@]}" --strict
+cp "$folder/out/x.masu" "$folder/out/flat.masu"
+scene '{"models": [{"file": "flat.gltf"}], "camera": {"height": 6, "keys": [{"position": [10, 5, 7], "target": [10, 5, 3.5]}]}}'
+accepts "$json" "${x[@]}"
+cmp "$folder/out/flat.masu" "$folder/out/x.masu" || fail "an orthographic camera is not where its file has it"
+wrong ': camera: expected either "fov_y" or "height", found both' "{\"models\": [$sphere}],
+    \"camera\": {\"fov_y\": 40, \"height\": 2}}"
+
 scene '{"models": [{"file": "camera.gltf"}], "camera": {"from": "inner"}}'
 run "$json" "${x[@]}"
 [ $code = 1 ] || fail "a camera that there is not: exit code $code"

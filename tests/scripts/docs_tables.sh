@@ -1,5 +1,5 @@
 #!/bin/sh
-# docs/knobs.md and docs/passes.md are up to date with the tables they are generated from, and the help shows the same
+# docs/knobs.md, docs/passes.md and docs/sdf-shapes.md are up to date with the tables they are generated from, and the help shows the same
 # knobs.
 set -e
 masu=${BUILD:-build}/bin/masu
@@ -15,6 +15,16 @@ diff -u docs/passes.md "$folder/passes.md" || {
     echo "docs/passes.md is out of date with src/plan/passes.inc: run make docs-tables"
     exit 1
 }
+"${BUILD:-build}/bin/masu-sdfc" --shapes > "$folder/shapes.md"
+diff -u docs/sdf-shapes.md "$folder/shapes.md" || {
+    echo "docs/sdf-shapes.md is not what tools/sdfc/kinds.inc says: make docs-tables"
+    exit 1
+}
+tools/bake/import/features.sh --into docs/scene.md | diff -u docs/scene.md - || {
+    echo "docs/scene.md is out of date with tools/bake/import/gltf_features.inc: run make docs-tables"
+    exit 1
+}
+[ "$(tools/bake/import/features.sh | wc -l)" -ge 30 ]
 "$masu" plan --knobs > "$folder/plan"
 "$masu" render --setting help > "$folder/setting"
 cmp "$folder/plan" "$folder/setting"

@@ -130,6 +130,8 @@ static const masu_blob_material mapped[] = {
 static const float texcoords[][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {-3.5f, 2},   {0.5f, 0.5f},
                                      {7, 7}, {0, 0}, {4, 0}, {4, 4}, {0, 32768.0f}};
 
+static const uint32_t colors[] = {0xFF0000FF, 0xFF00FF00, MASU_BLOB_WHITE, 0x80FF0000, 0, 1, 2, 3, 4, 5, 6};
+
 static const masu_blob_texture textures[] = {
     {MASU_TEXTURE_BC3_SRGB, 8, 8, 4, 2, NAME_PLATE, 0},
     {MASU_TEXTURE_BC5, 6, 3, 3, 1, MASU_BLOB_NONE, 224},
@@ -219,7 +221,18 @@ static const masu_blob_model_node model_nodes[] = {
 };
 
 /* The square of mesh 1, by "bend", which is turned, and by "lid" below it. */
-static const masu_blob_skin skins[] = {{2, 3, 0, 7, 4, 0, 0, 2}};
+static const masu_blob_skin skins[] = {{2, 3, 0, 7, 4, 0, 0, 2, 0, 0, 0, 0}};
+
+/* With SUPPORT_MORPH: "up" lifts it, "wide" pulls two corners apart and is half there at rest. */
+static const masu_blob_morph_target morph_targets[] = {
+    {{0, 0, 0}, {0, 1, 0}, 0.0f, NAME_BEND},
+    {{-1, 0, 0}, {1, 0, 0}, 0.5f, NAME_GLOW},
+};
+
+static const masu_blob_morph_delta morph_deltas[] = {
+    {{0, 1, 0}, 0}, {{0, 1, 0}, 0}, {{0, 1, 0}, 0}, {{0, 1, 0}, 0},
+    {{0, 0, 0}, 0}, {{0, 0, 0}, 0}, {{1, 0, 0}, 0}, {{-1, 0, 0}, 0x2FF},
+};
 
 static const masu_blob_joint joints[] = {
     {{1, 0, 0, 0, 0, 1, 0, 2, 0, 0, 1, 0}, {-2, -2, 0}, {2, -2, 0}, 0, 1},
@@ -237,9 +250,22 @@ static const masu_blob_skin_vertex skin_vertices[] = {
 static const masu_blob_clip clips[] = {{2, 0, 2, 2.0f, NAME_BEND, {0}}, {2, 2, 1, 0.5f, NAME_GLOW, {0}}};
 
 static const masu_blob_channel channels[] = {
-    {0, MASU_CHANNEL_TRANSLATION, 0, 0, 2, {0}},
-    {1, MASU_CHANNEL_ROTATION, 0, 2, 2, {0}},
-    {1, MASU_CHANNEL_SCALE, 1, 4, 2, {0}},
+    {0, MASU_CHANNEL_TRANSLATION, 0, 0, 2, 0, {0}},
+    {1, MASU_CHANNEL_ROTATION, 0, 2, 2, 0, {0}},
+    {1, MASU_CHANNEL_SCALE, 1, 4, 2, 0, {0}},
+};
+
+/* The same, and "bend" raises the first target of the skin at its node. */
+static const masu_blob_clip morph_clips[] = {{2, 0, 3, 2.0f, NAME_BEND, {0}}, {2, 3, 1, 0.5f, NAME_GLOW, {0}}};
+static const masu_blob_channel morph_channels[] = {
+    {0, MASU_CHANNEL_TRANSLATION, 0, 0, 2, 0, {0}},
+    {1, MASU_CHANNEL_ROTATION, 0, 2, 2, 0, {0}},
+    {1, MASU_CHANNEL_WEIGHT, 0, 4, 2, 0, {0}},
+    {1, MASU_CHANNEL_SCALE, 1, 6, 2, 0, {0}},
+};
+static const masu_blob_key morph_keys[] = {
+    {0.0f, {0, 0, 0, 0}}, {2.0f, {4, 0, 2, 0}}, {0.5f, {0, 0, 0, 1}}, {1.5f, {0, 0, 1, 0}},
+    {0.0f, {0, 0, 0, 0}}, {2.0f, {1, 0, 0, 0}}, {0.0f, {1, 1, 1, 0}}, {0.25f, {2, 3, 4, 0}},
 };
 
 static const masu_blob_key clip_keys[] = {
@@ -350,6 +376,10 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
     if (live) sections += 2;
     int skin = live && parts & SUPPORT_SKIN;
     if (skin) sections += 6;
+    int morph = skin && parts & SUPPORT_MORPH;
+    if (morph) sections += 2;
+    int attributes = (parts & with_textures) == with_textures && parts & SUPPORT_ATTRIBUTES;
+    if (attributes) sections += 2;
     blob->size = sizeof *header + sections * sizeof(masu_blob_section);
     if (parts & SUPPORT_RASTER) {
         ADD(MASU_BLOB_VERTICES, vertices);
@@ -416,6 +446,10 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
         ADD(MASU_BLOB_TEXTURE_SETS, texture_sets);
         ADD(MASU_BLOB_TEXELS, texels);
     }
+    if (attributes) {
+        ADD(MASU_BLOB_COLORS, colors);
+        ADD(MASU_BLOB_TEXCOORDS_1, texcoords);
+    }
     if (detail) ADD(MASU_BLOB_LODS, lods);
     if (lighting) {
         ADD(MASU_BLOB_MESO, meso);
@@ -445,13 +479,22 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
         ADD(MASU_BLOB_MODEL_NODES, model_nodes);
     }
     if (skin) {
-        ADD(MASU_BLOB_CLIPS, clips);
-        ADD(MASU_BLOB_CHANNELS, channels);
-        ADD(MASU_BLOB_KEYS, clip_keys);
+        if (morph) {
+            ADD(MASU_BLOB_CLIPS, morph_clips);
+            ADD(MASU_BLOB_CHANNELS, morph_channels);
+            ADD(MASU_BLOB_KEYS, morph_keys);
+            ADD(MASU_BLOB_MORPH_TARGETS, morph_targets);
+            ADD(MASU_BLOB_MORPH_DELTAS, morph_deltas);
+        } else {
+            ADD(MASU_BLOB_CLIPS, clips);
+            ADD(MASU_BLOB_CHANNELS, channels);
+            ADD(MASU_BLOB_KEYS, clip_keys);
+        }
         ADD(MASU_BLOB_SKINS, skins);
         ADD(MASU_BLOB_JOINTS, joints);
         ADD(MASU_BLOB_SKIN_VERTICES, skin_vertices);
         ((masu_blob_model_node *)support_blob_find(blob, MASU_BLOB_MODEL_NODES))[3].skin = 1;
+        if (morph) ((masu_blob_skin *)support_blob_find(blob, MASU_BLOB_SKINS))->target_count = 2;
     }
     support_blob_recode(blob);
     support_blob_seal(blob->bytes, blob->size);

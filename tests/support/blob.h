@@ -50,6 +50,8 @@ enum {
     SUPPORT_SKIN = 1024, /* with SUPPORT_LIVE, without SUPPORT_DETAIL: mesh 1 bends, and has no occluder */
     SUPPORT_TRACE_MORE = 4096, /* with SUPPORT_TRACE: rays sample textures, with SUPPORT_TEXTURES; they hit the SDF, with SUPPORT_SDF */
     SUPPORT_LONG_NAME = 2048, /* names are "", one of 255 bytes, "x" */
+    SUPPORT_ATTRIBUTES = 8192, /* with SUPPORT_TEXTURES: colours of vertices, second texture coordinates */
+    SUPPORT_MORPH = 16384, /* with SUPPORT_SKIN: it has two morph targets */
     SUPPORT_LIGHTING = 128 /* with SUPPORT_RASTER: a small relief, lights, probes, a sky from a picture */
 };
 

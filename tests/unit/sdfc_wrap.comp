@@ -5,6 +5,7 @@
 #include "shared/guard.glsl"
 #include "shared/wide.glsl"
 struct masu_surface { vec3 albedo; float roughness; vec3 emissive; float metallic; };
+vec3 masu_normal = vec3(0.0, 1.0, 0.0);
 layout(local_size_x = 64) in;
 layout(set = 0, binding = 0, std430) buffer Slots { float slots[]; };
 layout(set = 0, binding = 1, std430) buffer Params { float time; uint count; float params[256]; };

@@ -459,6 +459,96 @@ static void without_skins_there_is_nothing_of_it(void **state) {
     assert_int_equal(m.plan.buffers[MASU_BUFFER_SKIN_VERTICES].bytes, 4 * 32);
 }
 
+/* ---- Morph targets --------------------------------------------------------------------------- */
+
+#define TARGET OF(MORPH_TARGETS, masu_blob_morph_target)
+#define DELTA OF(MORPH_DELTAS, masu_blob_morph_delta)
+#undef PARTS
+#define PARTS (SUPPORT_ALL | SUPPORT_LIVE | SUPPORT_SKIN | SUPPORT_MORPH)
+
+static void morphs_that_are_none_are_refused(void **state) {
+    (void)state;
+    REFUSED("skins", 0, support_blob_drop(&broken, MASU_BLOB_MORPH_TARGETS));
+    REFUSED("skins", 0, support_blob_drop(&broken, MASU_BLOB_MORPH_DELTAS));
+    REFUSED("channels", 2, SKIN[0].target_count = 0);
+    REFUSED("skins", 0, SKIN[0].target_count = 3);
+    REFUSED("morph targets", 1, SKIN[0].target_count = 1);
+    REFUSED("skins", 0, SKIN[0].first_target = 1);
+    REFUSED("skins", 0, SKIN[0].first_delta = 1);
+    REFUSED("channels", 2, CHANNEL[2].target = 2);
+    REFUSED("channels", 1, CHANNEL[1].target = 1);
+    REFUSED("channels", 2, KEY[5].value[0] = 2e6f);
+    REFUSED("morph targets", 1, TARGET[1].weight = (float)NAN);
+    REFUSED("morph targets", 0, TARGET[0].high[1] = 0.5f);
+    REFUSED("morph targets", 1, TARGET[1].low[0] = -INFINITY);
+    REFUSED("morph targets", 0, TARGET[0].name = 1u << 20);
+    REFUSED("morph targets", 1, DELTA[6].position[2] = (float)NAN);
+}
+
+static void start_morphs(void) {
+    const masu_rung rung = {.temporal = MASU_ON};
+    make_renderer_with(PARTS, 0, &rung, 1);
+    lid = masu_model_find(&m, "lid");
+    assert_int_not_equal(lid.id, 0);
+}
+
+/* The targets that do anything, as the slot has them: first delta and weight. */
+static uint32_t told_morphs(const unsigned char *slot, uint32_t out[2][2]) {
+    uint32_t header[8], count;
+    memcpy(header, slot, sizeof header);
+    assert_int_not_equal(header[7], 0);
+    memcpy(&count, slot + (size_t)16 * header[7], sizeof count);
+    assert_true(count <= 2);
+    for (uint32_t i = 0; i < count; i++) memcpy(out[i], slot + (size_t)16 * (header[7] + 1 + i), 8);
+    return count;
+}
+
+static float as_float(uint32_t bits) {
+    float f;
+    memcpy(&f, &bits, sizeof f);
+    return f;
+}
+
+static void weights_are_those_of_clips_and_of_the_host(void **state) {
+    (void)state;
+    uint32_t told[2][2];
+    float box[6], before[6];
+    start_morphs();
+    const masu_skins *s = &m.models.skins;
+    assert_true(fabs((double)s->weights[0] - (0)) <= 0); /* at rest */
+    assert_true(fabs((double)s->weights[1] - (0.5)) <= 0);
+    pose_at(0, 0.5, 0);
+    assert_true(fabs((double)s->weights[0] - (0.25)) <= 1e-6); /* a quarter of its way */
+    assert_true(fabs((double)s->weights[1] - (0.5)) <= 0);      /* no clip changes it */
+    /* With as much of a clip that does not have it: half of that. */
+    const masu_clip_use both[2] = {{.clip = 0, .time = 0.5, .weight = 1.0f}, {.clip = 1, .weight = 1.0f}};
+    assert_int_equal(pose(both, 2), MASU_OK);
+    assert_true(fabs((double)s->weights[0] - (0.125)) <= 1e-6);
+    memcpy(before, m.bounds.meshes[m.instances.meshes[s->skins[0].instance]], sizeof before);
+    assert_int_equal(masu_model_morph_set(&m, lid, "glow", -2.0f), MASU_OK);
+    memcpy(box, m.bounds.meshes[m.instances.meshes[s->skins[0].instance]], sizeof box);
+    assert_true(box[3] - box[0] > before[3] - before[0] + 1.5f || box[5] - box[2] > before[5] - before[2] + 1.5f);
+    assert_int_equal(masu_model_morph_set(&m, lid, "none", 1.0f), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_model_morph_set(&m, lid, "bend", (float)NAN), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_model_morph_set(&m, lid, NULL, 1.0f), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_model_morph_set(&m, (masu_model){0}, "bend", 1.0f), MASU_ERROR_ARGUMENT);
+    assert_true(fabs((double)s->weights[1] - (-2)) <= 0);
+    /* The slot: of both moments. */
+    masu_frame_desc frame = {.rung = 0};
+    write_good(&frame, 0);
+    assert_int_equal(told_morphs(slot_bytes(MASU_BUFFER_JOINTS, 0), told), 2);
+    assert_int_equal(told[0][0], 8); /* behind four vertices of two elements */
+    assert_int_equal(told[1][0], 12);
+    assert_true(fabs((double)as_float(told[1][1]) - (-2)) <= 0);
+    assert_int_equal(masu_model_morph_set(&m, lid, "bend", 0.0f), MASU_OK);
+    m.timeline.frame = 1; /* the first is a cut */
+    write_good(&frame, 1);
+    const unsigned char *slot = slot_bytes(MASU_BUFFER_JOINTS, 1);
+    assert_int_equal(told_morphs(slot, told), 1);
+    assert_int_equal(told[0][0], 12);
+    assert_int_equal(told_morphs(slot + masu_joints_bytes(&m.plan.scene), told), 2); /* the frame before */
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_blob_tells_its_clips_and_skins),
@@ -474,6 +564,8 @@ int main(void) {
         cmocka_unit_test(a_skin_is_where_its_joints_are),
         cmocka_unit_test(boxes_hold_what_bends),
         cmocka_unit_test(without_skins_there_is_nothing_of_it),
+        cmocka_unit_test(morphs_that_are_none_are_refused),
+        cmocka_unit_test(weights_are_those_of_clips_and_of_the_host),
     };
     return cmocka_run_group_tests(tests, support_make_edge, NULL);
 }

@@ -29,13 +29,13 @@ static grid *make(void) {
         g->probes[i].sets = i % OFF_EVERY ? 0 : MASU_BOUNCE_OFF;
         g->b.valid += i % OFF_EVERY != 0;
     }
-    g->b.quiet = MASU_BOUNCE_WINDOW;
+    g->b.quiet = MASU_BOUNCE_FIRST;
     masu_bounce_restart(&g->b);
     return g;
 }
 
 static uint32_t probe_of(uint32_t word) { return word & MASU_BOUNCE_PROBE; }
-static uint32_t set_of(uint32_t word) { return word >> MASU_BOUNCE_SET_SHIFT & 3u; }
+static uint32_t set_of(uint32_t word) { return word >> MASU_BOUNCE_SET_SHIFT & (MASU_BOUNCE_SETS - 1u); }
 static uint32_t count_of(uint32_t word) { return word >> MASU_BOUNCE_COUNT_SHIFT; }
 
 /* Frames of a whole round; `seen` is how often each probe has had its turn. */
@@ -61,18 +61,21 @@ static void a_round_takes_every_probe_that_is_not_off_once(void **state) {
     free(g);
 }
 
+/* Four sets, the same again with the light of later bounces, the other twelve, then all around. */
 static void sets_go_around_and_count_from_a_restart_on(void **state) {
     (void)state;
     grid *g = make();
     uint32_t frames = (g->b.valid + MOST - 1) / MOST;
-    for (uint32_t round = 0; round < 11; round++) {
-        if (round == 6) masu_bounce_restart(&g->b);
-        uint32_t since = round < 6 ? round : round - 6;
+    for (uint32_t round = 0; round < 86; round++) {
+        if (round == 6 || round == 20) masu_bounce_restart(&g->b);
+        uint32_t since = round < 6 ? round : round < 20 ? round - 6 : round - 20;
+        uint32_t set = since < 8 ? since % 4 : since < 20 ? since - 4 : (since - 20) % 16;
+        uint32_t counting = since < 4 ? since + 1 : since < 8 ? 4 : since < 20 ? since - 3 : 16;
         for (uint32_t f = 0; f < frames; f++) {
             uint32_t count = masu_bounce_choose(&g->b, NULL, MOST, g->words);
             for (uint32_t i = 0; i < count; i++) {
-                assert_int_equal(set_of(g->words[i]), since % 4);
-                assert_int_equal(count_of(g->words[i]), since < 4 ? since + 1 : 4);
+                assert_int_equal(set_of(g->words[i]), set);
+                assert_int_equal(count_of(g->words[i]), counting);
             }
         }
     }
@@ -83,17 +86,19 @@ static void sets_go_around_and_count_from_a_restart_on(void **state) {
 static void changes_that_follow_each_other_slide_the_window(void **state) {
     (void)state;
     grid *g = make();
-    uint32_t seen[PROBES] = {0}, least = 4;
-    for (uint32_t round = 0; round < 5; round++) (void)run_round(g, seen);
+    uint32_t seen[PROBES] = {0}, least = 4, most = 0;
+    for (uint32_t round = 0; round < 30; round++) (void)run_round(g, seen);
     for (uint32_t f = 0; f < 60; f++) {
         masu_bounce_restart(&g->b);
         uint32_t count = masu_bounce_choose(&g->b, NULL, MOST, g->words);
         assert_int_not_equal(count, 0);
         for (uint32_t i = 0; i < count && f >= 40; i++) {
             if (count_of(g->words[i]) < least) least = count_of(g->words[i]);
+            if (set_of(g->words[i]) > most) most = set_of(g->words[i]);
         }
     }
     assert_int_equal(least, 4);
+    assert_int_equal(most, 3);
     free(g);
 }
 
@@ -101,7 +106,7 @@ static void at_rest_nothing_is_traced_until_something_changes(void **state) {
     (void)state;
     grid *g = make();
     uint32_t seen[PROBES] = {0}, rounds = 0;
-    while (rounds < 200 && run_round(g, seen)) rounds++;
+    while (rounds < 2 * MASU_BOUNCE_REST && run_round(g, seen)) rounds++;
     assert_int_equal(rounds, MASU_BOUNCE_REST);
     assert_int_equal(masu_bounce_choose(&g->b, NULL, MOST, g->words), 0);
     masu_bounce_restart(&g->b);

@@ -155,7 +155,7 @@ static masu_rung default_rung(float scale, float sharpness) {
                        .light_tiles = MASU_ON,
                        .local_shadows = MASU_ON,
                        .local_shadow_atlas = 2048,
-                       .local_shadow_lights = 8,
+                       .local_shadow_lights = 16,
                        .local_shadow_faces = 4,
                        .specular_reuse = MASU_ON,
                        .specular_temporal = MASU_ON,

@@ -504,7 +504,7 @@ static void what_a_scene_lacks_is_ignored(void **state) {
                                    .light_tiles = MASU_ON,
                                    .local_shadows = MASU_ON,
                                    .local_shadow_atlas = 2048,
-                                   .local_shadow_lights = 8,
+                                   .local_shadow_lights = 16,
                                    .local_shadow_faces = 4,
                                    .specular = MASU_ON,
                                    .specular_cutoff = 0.9f,

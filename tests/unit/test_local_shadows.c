@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "frame/local_shadows.h"
+#include "scene/punctual_light.h"
 #include "shared/masu_shared.h"
 #include "support/random.h"
 
@@ -58,6 +59,59 @@ static void small_tiles_leave_room_for_large_ones(void **state) {
         assert_int_equal(masu_shadow_tile_take(&t, 256).size, 256);
     }
     for (int k = 0; k < 14; k++) assert_int_equal(masu_shadow_tile_take(&t, 512).size, 512);
+}
+
+static void tiles_move_together(void **state) {
+    (void)state;
+    enum { MOST = 80 };
+    uint64_t seed = 4;
+    for (int round = 0; round < 40; round++) {
+        masu_shadow_tiles t;
+        masu_shadow_tile tiles[MOST] = {{0, 0, 0}};
+        masu_shadow_tiles_clear(&t, 2048);
+        uint64_t area = 0;
+        for (int n = 0; n < 400; n++) {
+            uint32_t i = (uint32_t)random_between(&seed, 0, MOST - 0.01), size = 128u << (support_random(&seed) % 3);
+            if (tiles[i].size) masu_shadow_tile_give(&t, &tiles[i]);
+            else tiles[i] = masu_shadow_tile_take(&t, size);
+        }
+        for (int i = 0; i < MOST; i += 1 + (support_random(&seed) % 3)) masu_shadow_tile_give(&t, &tiles[i]);
+        for (int i = 0; i < MOST; i++) area += (uint64_t)tiles[i].size * tiles[i].size;
+        uint32_t moves = 0;
+        for (int moved = 1; moved; moves += (uint32_t)moved) {
+            moved = 0;
+            for (int i = 0; i < MOST && !moved; i++) {
+                masu_shadow_tile before = tiles[i];
+                masu_shadow_tile_move(&t, &tiles[i]);
+                moved = before.x != tiles[i].x || before.y != tiles[i].y;
+                if (moved) assert_true(masu_shadow_tile_order(tiles[i]) < masu_shadow_tile_order(before));
+                for (int k = 0; moved && k < MOST; k++) assert_false(k != i && tiles[k].size && overlap(&tiles[i], &tiles[k]));
+            }
+            assert_true(moves < 10000);
+        }
+        /* All but less than two squares of what is free is in whole ones. */
+        uint32_t free_squares = (uint32_t)((2048ull * 2048 - area) / (512 * 512)), found = 0;
+        while (masu_shadow_tile_take(&t, 512).size) found++;
+        assert_true(found + 2 > free_squares);
+    }
+}
+
+static void the_least_important_shrink_first(void **state) {
+    (void)state;
+    uint32_t sizes[4] = {512, 512, 256, 512};
+    const uint32_t faces[4] = {6, 1, 6, 6};
+    const double scores[4] = {3, 1, 0.5, 2};
+    masu_shadow_sizes_fit(sizes, faces, scores, 4, 2048); /* 13 + 6/4 of 16 squares of 512 */
+    assert_true(sizes[0] == 512 && sizes[1] == 512 && sizes[2] == 256 && sizes[3] == 512);
+    masu_shadow_sizes_fit(sizes, faces, scores, 4, 1024); /* 4: all are halved, and two again */
+    assert_true(sizes[0] == 256 && sizes[1] == 256 && sizes[2] == 128 && sizes[3] == 256);
+    masu_shadow_sizes_fit(sizes, faces, scores, 4, 512);
+    assert_true(sizes[0] == 128 && sizes[1] == 128 && sizes[2] == 128 && sizes[3] == 128);
+    uint32_t equal[2] = {512, 512};
+    const uint32_t spots[2] = {1, 1};
+    const double alike[2] = {1, 1};
+    masu_shadow_sizes_fit(equal, spots, alike, 2, 512);
+    assert_true(equal[0] == 256 && equal[1] == 256);
 }
 
 /* ---- Choice ---------------------------------------------------------------------------------- */
@@ -169,6 +223,22 @@ static void nobody_leaves_for_nothing(void **state) {
     assert_null(slot_of(&s, 2));
 }
 
+/* A neon tube is bright to look at, but lights less than a lamp; a cone reaches less than a sphere. */
+static void scores_are_of_what_a_light_adds(void **state) {
+    (void)state;
+    const double none[3] = {0, 0, 0}, half[3] = {0, 0.75, 0};
+    masu_punctual_light_state lamp = {.color = {7, 5, 2}}, ball = {.shape = MASU_SHAPE_SPHERE, .color = {26, 2, 11}, .radius = 0.5f};
+    masu_punctual_light_state tube = {.shape = MASU_SHAPE_CAPSULE, .color = {26, 2, 11}, .radius = 0.02f};
+    masu_punctual_light_state window = {.shape = MASU_SHAPE_RECTANGLE, .color = {3, 2, 1}, .half_axis = {1.5f, 0, 0}};
+    assert_true(fabs(masu_light_intensity(&lamp, none) - 7) < 1e-9);
+    assert_true(fabs(masu_light_intensity(&ball, none) - 26 * 0.25) < 1e-6);
+    assert_true(fabs(masu_light_intensity(&tube, half) - 26 * (0.0004 + 4 * 0.75 * 0.02 / 3.14159265)) < 1e-5);
+    assert_true(fabs(masu_light_intensity(&window, half) - 3 * 4 * 0.75 * 1.5 / 3.14159265) < 1e-5);
+    assert_true(masu_shadow_score(2, 10, 20) < masu_shadow_score(3, 10, 20));
+    assert_true(fabs(masu_shadow_score(2, 10, 20) - 4 * masu_shadow_score(2, 10, 40)) < 1e-9);
+    assert_true(masu_shadow_score(2, 10, 0) > 0);
+}
+
 /* ---- Faces ----------------------------------------------------------------------------------- */
 
 static void a_cone_reaches_into_the_faces_that_it_touches(void **state) {
@@ -204,20 +274,24 @@ static void sizes_follow_the_view_with_hysteresis(void **state) {
     assert_int_equal(masu_local_face_size(120, 256, 512), 256);
     assert_int_equal(masu_local_face_size(110, 256, 512), 128);
     assert_int_equal(masu_local_face_size(500, 512, 256), 256);
-    /* Half the distance: twice the texels. A large source: three texels as wide as its penumbra. */
-    double far = masu_local_face_wish(15, 0.01, 1, 20, 500), near = masu_local_face_wish(15, 0.01, 1, 10, 500);
+    /* Half the distance: twice the texels, up to a third of the range. */
+    double far = masu_local_face_wish(15, 1, 20, 500), near = masu_local_face_wish(15, 1, 10, 500);
     assert_true(fabs(2 * far - near) < 1e-9);
-    assert_true(fabs(masu_local_face_wish(15, 0.04, 1, 10, 5000) - 375) < 1e-9);
+    assert_true(fabs(masu_local_face_wish(15, 1, 1000, 500) - 256) < 1e-9);
+    assert_true(fabs(masu_local_face_wish(15, 1, 1, 300) - 800) < 1e-9);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tiles_never_overlap_and_all_come_back),
         cmocka_unit_test(small_tiles_leave_room_for_large_ones),
+        cmocka_unit_test(tiles_move_together),
+        cmocka_unit_test(the_least_important_shrink_first),
         cmocka_unit_test(the_best_have_shadows),
         cmocka_unit_test(small_changes_of_order_change_nothing),
         cmocka_unit_test(a_shadow_is_held_then_faded_then_given_away),
         cmocka_unit_test(nobody_leaves_for_nothing),
+        cmocka_unit_test(scores_are_of_what_a_light_adds),
         cmocka_unit_test(a_cone_reaches_into_the_faces_that_it_touches),
         cmocka_unit_test(sizes_follow_the_view_with_hysteresis),
     };

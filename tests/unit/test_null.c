@@ -141,6 +141,7 @@ static const float unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     X(masu_model_clip_find, ((void)masu_model_clip_find(P(0, &m), MODEL, P(1, "a")), NO_RESULT))   \
     X(masu_model_clip_duration, ((void)masu_model_clip_duration(P(0, &m), MODEL, 0), NO_RESULT))   \
     X(masu_model_animate, masu_model_animate(P(0, &m), MODEL, P(1, &clip_use), 1))                 \
+    X(masu_model_morph_set, masu_model_morph_set(P(0, &m), MODEL, P(1, "up"), 1.0f))             \
     X(masu_punctual_light_find, ((void)masu_punctual_light_find(P(0, &m), P(1, "a")), NO_RESULT))  \
     X(masu_punctual_light_at, ((void)masu_punctual_light_at(P(0, &m), 0), NO_RESULT))              \
     X(masu_punctual_light_get, masu_punctual_light_get(P(0, &m), LIGHT, P(1, &light_state)))       \

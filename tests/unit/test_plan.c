@@ -711,7 +711,7 @@ static void what_is_blended_comes_over_the_light_if_there_is_any(void **state) {
     assert_int_equal(with.pass_sets, without.pass_sets);
     support_scene.transparents = 5, support_scene.transparent_sets = 2;
     assert_frame(&d, 0,
-                 GBUFFER LIGHT_RASTER "transparents(r:depth b:hdr) tonemap(r:hdr w:target)");
+                 GBUFFER LIGHT_RASTER "transparents(r:depth r:depth b:hdr) tonemap(r:hdr w:target)");
     compile(&d, &with);
     assert_string_equal(with.why[MASU_PASS_TRANSPARENTS], "the scene has transparent materials");
     assert_true(with.images[MASU_IMAGE_HDR].usage & VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);

@@ -95,6 +95,9 @@ static uint64_t write_with(uint32_t kind) {
     uint32_t with = kind >= MASU_BLOB_TEXCOORDS && kind <= MASU_BLOB_TEXELS ? SUPPORT_TEXTURES
                     : kind == MASU_BLOB_LODS                                 ? SUPPORT_DETAIL
                     : kind == MASU_BLOB_LOCAL_SHADOW_SPIRV                   ? 0
+                    : kind == MASU_BLOB_COLORS || kind == MASU_BLOB_TEXCOORDS_1
+                        ? SUPPORT_TEXTURES | SUPPORT_ATTRIBUTES
+                    : kind >= MASU_BLOB_MORPH_TARGETS ? SUPPORT_LIVE | SUPPORT_SKIN | SUPPORT_MORPH
                     : kind >= MASU_BLOB_TRACE_NODES                          ? SUPPORT_TRACE
                     : kind >= MASU_BLOB_MESO                                 ? SUPPORT_LIGHTING
                                                                              : 0;

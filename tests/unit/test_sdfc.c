@@ -690,7 +690,7 @@ static void mistakes_name_their_place(void **state) {
         {"", "x.sdf:1:1: expected a part, found the end of the text"},
         {"part a = sphere(1)", "x.sdf:1:19: expected \";\", found the end of the text\n"
                                "part a = sphere(1)\n                  ^"},
-        {"let a = 1;\npart b = spher(1);", "x.sdf:2:10: expected a shape, found \"spher\"\n"
+        {"let a = 1;\npart b = spher(1);", "x.sdf:2:10: expected a shape, found \"spher\": did you mean \"sphere\"?\n"
                                            "part b = spher(1);\n         ^"},
         {"part a = box(1, 2);", "x.sdf:1:15: expected \")\", found \",\""},
         {"part a = sphere((1, 2, 3));", "x.sdf:1:17: expected a number, found three numbers"},
@@ -729,7 +729,7 @@ static void mistakes_name_their_place(void **state) {
          "lipschitz 1;",
          "x.sdf:1:32: masu_param(1): the scene has 1 parameter, counted from 0"},
         {"part a = glsl { return 1.0; ", "x.sdf:1:15: expected a \"}\" for this \"{\""},
-        {"for i in 0..9 { part a = sphere(1);", "x.sdf:1:36: expected param, let, shape, material, "
+        {"for i in 0..9 { part a = sphere(1);", "x.sdf:1:36: expected param, let, shape, def, material, "
                                                 "part or for, found the end of the text"},
         {"for i in 0..5000 { part a = sphere(1); }", "x.sdf:1:27: more than 4096 parts"},
         {"for i in 0..60000 { for j in 0..60000 { } }", "x.sdf:1:"},

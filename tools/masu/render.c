@@ -123,7 +123,7 @@ static bool measure(masu_session *s, const masu_render_options *o, uint32_t fram
                          .rung = o->target_ms > 0.0 ? MASU_RUNG_AUTO : o->rung,
                          /* The sum begins with the first one that counts. */
                          .cut = o->rays && frame % rays == 0};
-    if (o->animate && !masu_render_animate(s, o, f.time, error, size)) return false;
+    if (!o->at_rest && !masu_render_animate(s, o, f.time, error, size)) return false;
     masu_commands commands;
     uint64_t callbacks = counts->allocations + counts->reallocations;
     uint64_t thread = masu_allocs_of_thread();
@@ -179,7 +179,7 @@ static int truth_frame(masu_session *s, const masu_render_options *o, const masu
     if (file && !output_name(o->output, frame, name, sizeof name))
         return masu_cli_error("--output: the file name is too long");
     if (!file && !o->video) return MASU_CLI_OK;
-    if (o->animate && !masu_render_animate(s, o, f.time, error, sizeof error)) return masu_cli_error("%s", error);
+    if (!o->at_rest && !masu_render_animate(s, o, f.time, error, sizeof error)) return masu_cli_error("%s", error);
     if (!masu_picture_truth(s, &f, o->positions, o->rays ? o->rays : MASU_PICTURE_RAYS,
                             &(masu_picture_means){.linear = linear, .display = rgba},
                             masu_cli_progress_text, error, sizeof error) ||
@@ -400,6 +400,16 @@ static bool read_param(masu_cli *cli, void *to) {
     return true;
 }
 
+static bool read_animate(masu_cli *cli, void *to) {
+    masu_render_options *o = to;
+    o->at_rest = cli->value && !strcmp(cli->value, "off");
+    if (cli->value && !o->at_rest) {
+        masu_cli_usage_error("--animate: expected off, found \"%s\"", cli->value);
+        return false;
+    }
+    return true;
+}
+
 static bool read_first(masu_cli *cli, void *to) {
     masu_render_options *o = to;
     return !cli->value || masu_cli_uint(cli, 0, FRAMES_MAX, &o->first);
@@ -463,8 +473,8 @@ static const masu_option rows[] = {
               "time of the first frame (default 0)"),
     MASU_REAL(masu_render_options, time_step, "time-step", "SECONDS", 0.0, 1e6,
               "time between frames"),
-    MASU_FLAG(masu_render_options, animate, "animate",
-              "loop the first animation clip of every model"),
+    MASU_OWN("animate", "[=off]", read_animate,
+             "loop the first animation clip of every model (default); off: keep the rest pose"),
     MASU_TEXT(masu_render_options, clip, "clip", "NAME|N",
               "clip that models play, by name or number; models without it play their first"),
     MASU_OWN("param", "NAME=VALUE", read_param,

@@ -34,7 +34,7 @@ typedef struct masu_render_options {
     uint32_t param_count;
     float sdf_params[MASU_MAX_SDF_PARAMS]; /* of every frame, if there is a --param */
     uint32_t sdf_param_count;
-    bool animate; /* models that have clips */
+    bool at_rest; /* models that have clips do not play them */
 } masu_render_options;
 
 /* render_scene.c: what --param and --clip name in the scene. On false `error` is one line. */

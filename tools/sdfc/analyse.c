@@ -46,7 +46,7 @@ void sdfc_analyse(sdfc *c, int shape) {
     }
     if (!(f.lipschitz < 1e12) || !(f.growth > 1e-12)) {
         sdfc_fail(c, s.token, "%s: expected a field with a Lipschitz constant below 1e12",
-                  sdfc_kind_names[s.kind]);
+                  sdfc_kinds[s.kind].name);
     }
     for (int i = 0; i < 3; i++) { /* beyond what fp32 can square */
         if (!(f.box.low[i] >= -1e15)) f.box.low[i] = -SDFC_INFINITY;

@@ -93,83 +93,6 @@ static void rotate_facts(sdfc *c, const sdfc_shape *s, sdfc_facts *f) {
     if (isfinite(f->radius) && !sdfc_bounded(&f->box)) sdfc_box_of_sphere(f);
 }
 
-/* ---- joining ---- */
-
-/* Fields of different constants are divided by them before a hard union, so that one stiff shape
- * does not slow the others. Not before a blend: that would change its form. */
-static bool levelled(const sdfc *c, const sdfc_shape *s) {
-    if (s->kind != SDFC_KIND_UNION && s->kind != SDFC_KIND_INTERSECTION &&
-        s->kind != SDFC_KIND_DIFFERENCE) {
-        return false;
-    }
-    for (int i = 1; i < s->children; i++) {
-        if (c->shapes[s->child[i]].facts.lipschitz != c->shapes[s->child[0]].facts.lipschitz) {
-            return true;
-        }
-    }
-    return false;
-}
-
-/* By how many times k smooth minima of n operands, one after the other, lie below the least of
- * these: most if all are equal. A step lowers y k below the least to (y + (1 - y)^2 / 4) k, which
- * increases with y on 0..1 and stays below 1. */
-static double lowered(int n) {
-    double y = 0;
-    for (int i = 1; i < n; i++) y += (1 - y) * (1 - y) / 4;
-    return y;
-}
-
-static sdfc_facts joined(sdfc *c, sdfc_shape *s) {
-    bool level = levelled(c, s);
-    bool is_union = s->kind == SDFC_KIND_UNION || s->kind == SDFC_KIND_SMOOTH_UNION;
-    bool is_cut = s->kind == SDFC_KIND_DIFFERENCE || s->kind == SDFC_KIND_SMOOTH_DIFFERENCE;
-    sdfc_facts f = {0};
-    int boxes = 0;
-    s->extra[0] = level;
-    for (int i = 0; i < s->children; i++) {
-        sdfc_facts g = c->shapes[s->child[i]].facts;
-        if (level) {
-            g.growth /= g.lipschitz;
-            g.lipschitz = 1;
-        }
-        if (i == 0) {
-            f = g;
-            boxes = sdfc_bounded(&g.box);
-            continue;
-        }
-        f.lipschitz = fmax(f.lipschitz, g.lipschitz);
-        f.symmetric &= g.symmetric;
-        f.rising &= is_cut ? 0 : g.rising;
-        if (is_union) {
-            sdfc_join(&f, &g);
-            f.growth = fmin(f.growth, g.growth);
-        } else if (!is_cut) {
-            if (g.radius < f.radius) {
-                f.radius = g.radius;
-                memcpy(f.center, g.center, sizeof f.center);
-            }
-            for (int k = 0; k < 3; k++) {
-                double from = fmax(f.box.low[k], g.box.low[k]);
-                double to = fmin(f.box.high[k], g.box.high[k]);
-                f.box.low[k] = fmin(from, to);
-                f.box.high[k] = fmax(from, to);
-            }
-            f.growth = fmin(f.growth, g.growth);
-            boxes += sdfc_bounded(&g.box);
-        }
-    }
-    /* outside several boxes at once, one of the distances is 1 / sqrt(n) of the whole */
-    if (!is_union && !is_cut && boxes > 1) f.growth /= sqrt(fmin(boxes, 3));
-    if (s->kind == SDFC_KIND_SMOOTH_UNION) {
-        sdfc_widen(&f, lowered(s->children) * sdfc_size_of(c, s->number[0]) / f.growth);
-    }
-    if (s->kind == SDFC_KIND_SMOOTH_UNION || s->kind == SDFC_KIND_SMOOTH_INTERSECTION ||
-        s->kind == SDFC_KIND_SMOOTH_DIFFERENCE) {
-        s->number[1] = sdfc_apply1(c, SDFC_rcp, s->number[0]);
-    }
-    return f;
-}
-
 /* ---- moving ---- */
 
 static void translate_facts(sdfc *c, const sdfc_shape *s, sdfc_facts *f) {
@@ -310,9 +233,9 @@ static void repeat_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
         double period = sdfc_low(c, n[i]);
         if (!(period > 0) || !isfinite(sdfc_high(c, n[i]))) {
             sdfc_fail(c, s->token, "%s: expected periods above 0, or 0 for none",
-                      sdfc_kind_names[s->kind]);
+                      sdfc_kinds[s->kind].name);
         }
-        bool even = f->symmetric >> i & 1;
+        bool even = (f->symmetric >> i & 1) && !s->cell; /* else cells may differ */
         double h = sdfc_corner(&f->box, i);
         int row = limited ? s->whole[i] : INT_MAX;
         int cells = cells_of(even, f->rising >> i & 1, h, period, row);
@@ -322,7 +245,7 @@ static void repeat_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
                 c, s->token,
                 "%s: the shape reaches %g from the centre of its cell along %c: expected at most %g, "
                 "%g times the period",
-                sdfc_kind_names[s->kind], h, 'x' + i, most, most / period);
+                sdfc_kinds[s->kind].name, h, 'x' + i, most, most / period);
         }
         s->extra[i] = cells;
         f->cost *= cells;
@@ -375,6 +298,9 @@ static bool is_round(const sdfc *c, int shape) {
     case SDFC_KIND_SPHERE:
     case SDFC_KIND_TORUS:
     case SDFC_KIND_CYLINDER:
+    case SDFC_KIND_ROUNDED_CYLINDER:
+    case SDFC_KIND_SOLID_ANGLE:
+    case SDFC_KIND_CUT_SPHERE:
     case SDFC_KIND_CONE: return true;
     case SDFC_KIND_PLANE:
     case SDFC_KIND_TRANSLATE:
@@ -386,8 +312,14 @@ static bool is_round(const sdfc *c, int shape) {
     case SDFC_KIND_SMOOTH_UNION:
     case SDFC_KIND_SMOOTH_INTERSECTION:
     case SDFC_KIND_SMOOTH_DIFFERENCE:
+    case SDFC_KIND_CHAMFER:
+    case SDFC_KIND_STAIRS:
+    case SDFC_KIND_XOR:
+    case SDFC_KIND_BLEND:
+    case SDFC_KIND_PAINT:
     case SDFC_KIND_ONION:
     case SDFC_KIND_ROUND: break;
+    case SDFC_KIND_REVOLVE: return true;
     default: return false;
     }
     for (int i = 0; i < s->children; i++) {
@@ -595,8 +527,30 @@ static void elongate_facts(sdfc *c, const sdfc_shape *s, sdfc_facts *f) {
     f->radius += sdfc_norm3(by);
 }
 
+/* Of the section at z = 0, which is the shape itself if it is flat. What is less steep than 1 would have caps that
+ * are too steep for it. */
+static void extrude_facts(const sdfc *c, const sdfc_shape *s, sdfc_facts *f) {
+    double h = sdfc_size_of(c, s->number[0]);
+    f->box.low[2] = -h;
+    f->box.high[2] = h;
+    f->lipschitz = fmax(f->lipschitz, 1);
+    f->growth = fmin(f->growth, 1);
+    f->symmetric |= 4;
+    f->rising |= 4;
+    sdfc_sphere_of_box(f);
+}
+
+static void revolve_facts(const sdfc *c, const sdfc_shape *s, sdfc_facts *f) {
+    double r = fmax(f->box.high[0] + sdfc_high(c, s->number[0]), 0);
+    f->box.low[0] = f->box.low[2] = -r;
+    f->box.high[0] = f->box.high[2] = r;
+    f->symmetric = 5 | (f->symmetric & 2);
+    f->rising &= 2;
+    sdfc_sphere_of_box(f);
+}
+
 sdfc_facts sdfc_operator_facts(sdfc *c, sdfc_shape *s) {
-    if (s->kind >= SDFC_KIND_UNION && s->kind <= SDFC_KIND_SMOOTH_DIFFERENCE) return joined(c, s);
+    if (sdfc_is_join(s->kind)) return sdfc_joined_facts(c, s);
     sdfc_facts f = c->shapes[s->child[0]].facts;
     int *n = s->number;
     switch (s->kind) {
@@ -617,6 +571,8 @@ sdfc_facts sdfc_operator_facts(sdfc *c, sdfc_shape *s) {
     case SDFC_KIND_TWIST: twist_facts(c, s, &f); break;
     case SDFC_KIND_BEND: bend_facts(c, s, &f); break;
     case SDFC_KIND_ELONGATE: elongate_facts(c, s, &f); break;
+    case SDFC_KIND_EXTRUDE: extrude_facts(c, s, &f); break;
+    case SDFC_KIND_REVOLVE: revolve_facts(c, s, &f); break;
     case SDFC_KIND_ONION: f.rising = 0; /* fallthrough */
     case SDFC_KIND_ROUND: sdfc_widen(&f, sdfc_size_of(c, n[0]) / f.growth); break;
     case SDFC_KIND_DISPLACE: {

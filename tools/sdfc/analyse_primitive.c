@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-static sdfc_facts solid(double x, double y, double z, unsigned symmetric) {
+sdfc_facts sdfc_solid(double x, double y, double z, unsigned symmetric) {
     sdfc_facts f = {.lipschitz = 1,
                     .growth = 1,
                     .box = sdfc_symmetric_box(x, y, z),
@@ -67,7 +67,7 @@ static void ellipsoid_arguments(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
 }
 
 static sdfc_facts user_facts(sdfc *c, const sdfc_shape *s) {
-    sdfc_facts f = solid(0, 0, 0, 0);
+    sdfc_facts f = sdfc_solid(0, 0, 0, 0);
     for (int i = 0; i < 3; i++) {
         f.box.low[i] = fmin(sdfc_low(c, s->number[i]), sdfc_low(c, s->number[3 + i]));
         f.box.high[i] = fmax(sdfc_low(c, s->number[i]), sdfc_low(c, s->number[3 + i]));
@@ -91,7 +91,7 @@ static sdfc_facts user_facts(sdfc *c, const sdfc_shape *s) {
 static sdfc_facts mandelbulb_facts(sdfc *c, const sdfc_shape *s) {
     if (s->whole[0] < 2) sdfc_fail(c, s->token, "mandelbulb: expected a power from 2 to 16");
     double r = pow(2, 1.0 / (s->whole[0] - 1)); /* beyond it every point escapes */
-    sdfc_facts f = ball(solid(r, r, r, 0), r);
+    sdfc_facts f = ball(sdfc_solid(r, r, r, 0), r);
     f.lipschitz = s->whole[1] > SDFC_SHALLOW_LEVELS ? MANDELBULB_LIPSCHITZ : 1.0;
     f.estimate = true;
     f.cost = 20.0 * s->whole[1];
@@ -110,7 +110,13 @@ static unsigned rising(int kind, const double least[3]) {
     case SDFC_KIND_CAPSULE:
     case SDFC_KIND_CYLINDER:
     case SDFC_KIND_PLANE:
-    case SDFC_KIND_ELLIPSOID: return 7;
+    case SDFC_KIND_ELLIPSOID:
+    case SDFC_KIND_ROUNDED_CYLINDER: return 7;
+    case SDFC_KIND_PYRAMID: return 5;
+    case SDFC_KIND_TRIANGLE:
+    case SDFC_KIND_NGON:
+    case SDFC_KIND_STAR:
+    case SDFC_KIND_HEART: return 4;
     case SDFC_KIND_CONE: return sized && least[0] > 0 && least[2] >= 0 ? 5 : 0;
     case SDFC_KIND_OCTAHEDRON: return least[0] >= 0 ? 7 : 0;
     case SDFC_KIND_HEX_PRISM:
@@ -124,22 +130,24 @@ static unsigned rising(int kind, const double least[3]) {
 static sdfc_facts facts_of(sdfc *c, sdfc_shape *s) {
     int *n = s->number;
     double a = 0, b = 0, d = 0;
+    if (s->kind >= SDFC_KIND_ROUND_CONE && s->kind <= SDFC_KIND_TERRAIN) return sdfc_more_facts(c, s);
+    if (s->kind >= SDFC_KIND_APOLLONIAN && s->kind <= SDFC_KIND_JULIA) return sdfc_more_facts(c, s);
     if (s->kind != SDFC_KIND_MENGER && s->kind != SDFC_KIND_SIERPINSKI &&
         s->kind != SDFC_KIND_MANDELBULB && s->kind != SDFC_KIND_USER) {
         a = sdfc_size_of(c, n[0]);
         b = sdfc_size_of(c, n[1]);
         d = sdfc_size_of(c, n[2]);
     }
-    sdfc_facts f = solid(a, b, d, 7); /* box, rounded box, frame, ellipsoid */
+    sdfc_facts f = sdfc_solid(a, b, d, 7); /* box, rounded box, frame, ellipsoid */
     switch (s->kind) {
-    case SDFC_KIND_SPHERE: return ball(solid(a, a, a, 7), a);
-    case SDFC_KIND_TORUS: return ball(solid(a + b, b, a + b, 7), a + b);
+    case SDFC_KIND_SPHERE: return ball(sdfc_solid(a, a, a, 7), a);
+    case SDFC_KIND_TORUS: return ball(sdfc_solid(a + b, b, a + b, 7), a + b);
     case SDFC_KIND_CAPSULE:
         f.symmetric = 0;
         capsule_arguments(c, s, &f);
         return f;
-    case SDFC_KIND_CYLINDER: return solid(b, a, b, 7);
-    case SDFC_KIND_CONE: return solid(fmax(b, d), a, fmax(b, d), 5);
+    case SDFC_KIND_CYLINDER: return sdfc_solid(b, a, b, 7);
+    case SDFC_KIND_CONE: return sdfc_solid(fmax(b, d), a, fmax(b, d), 5);
     case SDFC_KIND_PLANE:
         sdfc_unit_vector(c, s, n, "a normal");
         f.box = SDFC_EVERYWHERE;
@@ -150,21 +158,21 @@ static sdfc_facts facts_of(sdfc *c, sdfc_shape *s) {
         }
         return f;
     case SDFC_KIND_ELLIPSOID: ellipsoid_arguments(c, s, &f); return f;
-    case SDFC_KIND_OCTAHEDRON: return ball(f = solid(a, a, a, 7), a);
-    case SDFC_KIND_HEX_PRISM: return solid(a * 1.1547005383792517, b, a * 1.0000001, 7);
+    case SDFC_KIND_OCTAHEDRON: return ball(f = sdfc_solid(a, a, a, 7), a);
+    case SDFC_KIND_HEX_PRISM: return sdfc_solid(a * 1.1547005383792517, b, a * 1.0000001, 7);
     case SDFC_KIND_TRI_PRISM: {
-        f = solid(a, b, a * 1.1547005383792517, 3);
+        f = sdfc_solid(a, b, a * 1.1547005383792517, 3);
         f.box.low[2] = -a * 0.57735026918962584;
         f.radius = hypot(a * 1.1547005383792517, b); /* about the middle */
         return f;
     }
-    case SDFC_KIND_LINK: return solid(b + d, a + b + d, d, 7);
+    case SDFC_KIND_LINK: return sdfc_solid(b + d, a + b + d, d, 7);
     case SDFC_KIND_MENGER:
-        f = solid(1, 1, 1, 7);
+        f = sdfc_solid(1, 1, 1, 7);
         f.cost = 3.0 * s->whole[0];
         return f;
     case SDFC_KIND_SIERPINSKI:
-        f = solid(1, 1, 1, 0);
+        f = sdfc_solid(1, 1, 1, 0);
         f.cost = 3.0 * s->whole[0];
         return f;
     case SDFC_KIND_MANDELBULB: return mandelbulb_facts(c, s);

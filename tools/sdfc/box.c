@@ -42,6 +42,10 @@ static bound extent(sdfc *c, int shape, int axis, bool high) {
     bound constant = {-1, high ? s->facts.box.high[axis] : s->facts.box.low[axis], 0};
     if (c->part_count > MASU_SDFC_MASKED_MAX) return constant;
     bool repeats = s->kind == SDFC_KIND_REPEAT && s->extra[axis] != 0;
+    bool local = false; /* cells have sizes of their own */
+    for (int i = 0; i < 3; i++) local = local || (s->children < 2 && c->exprs[s->number[i]].local);
+    if (local) return constant;
+    if (s->kind == SDFC_KIND_PAINT) return extent(c, s->child[0], axis, high);
     if (s->kind == SDFC_KIND_TRANSLATE) {
         return moved(c, extent(c, s->child[0], axis, high), s->number[axis]);
     }

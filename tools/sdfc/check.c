@@ -37,31 +37,50 @@ static void note_cell(uint64_t *cells, int op, const double *a, double result) {
     *cells = (*cells ^ (uint64_t)(int64_t)fmax(fmin(cell, 1e15), -1e15)) * 0x100000001B3u;
 }
 
-static double run_function(const sdfc *c, const sdfc_program *p, int function, double x, double y,
-                           double z, double *variables, uint64_t *cells) {
+static double run_function(const sdfc *c, const sdfc_program *p, int function, const double point[3],
+                           const double *inputs, const sdfc_place_of *at, double *variables, uint64_t *cells);
+
+/* The least of the values at the points, or with `nearest` the number of the point that has it. */
+static double run_call(const sdfc *c, const sdfc_program *p, const sdfc_instr *i, const double *a, bool nearest,
+                       double *variables, uint64_t *cells) {
+    double least = 1e30, number = 0;
+    for (int n = 0; n < i->points; n++) {
+        double q[3], inputs[SDFC_OPERANDS_MAX];
+        for (int j = 0; j < 3; j++) {
+            int cell = i->select[j] ? n >> (i->select[j] - 1) & ((1 << i->bits[j]) - 1) : 0;
+            q[j] = a[4 * j + cell];
+        }
+        for (int j = 0; j < i->around; j++) inputs[j] = a[24 + j];
+        const double seed[9] = {a[18], a[19], a[20], q[0], q[1], q[2], a[21], a[22], a[23]};
+        if (i->named) inputs[i->around] = sdfc_ops[SDFC_cell_seed].run(seed);
+        double d = run_function(c, p, i->aux, q, inputs, NULL, variables, cells);
+        if (d < least) number = n;
+        least = d < least ? d : least;
+    }
+    return nearest ? number : least;
+}
+
+static double run_function(const sdfc *c, const sdfc_program *p, int function, const double point[3],
+                           const double *inputs, const sdfc_place_of *at, double *variables, uint64_t *cells) {
     const sdfc_function *f = &p->functions[function];
     double *v = variables + f->first_variable;
-    v[0] = x;
-    v[1] = y;
-    v[2] = z;
+    for (int k = 0; k < 3; k++) v[k] = point[k];
     for (int k = 0; k < f->count; k++) {
         const sdfc_instr *i = &f->instrs[k];
-        int count = i->op == SDFC_CALL_MIN ? 12 : sdfc_ops[i->op].operands;
-        double a[SDFC_OPERANDS_MAX], r = 1e30;
+        bool calls = i->op == SDFC_CALL_MIN || i->op == SDFC_CALL_NEAREST;
+        int count = !calls ? sdfc_ops[i->op].operands : i->named || i->around ? SDFC_OPERANDS_MAX : 12;
+        double a[SDFC_OPERANDS_MAX] = {0}, r = 1e30;
         for (int j = 0; j < count; j++) {
             a[j] = i->operand[j] >= 0 ? v[i->operand[j]] : c->values[p->args[~i->operand[j]]];
         }
-        if (i->op == SDFC_CALL_MIN) {
-            for (int n = 0; n < i->points; n++) {
-                double q[3];
-                for (int j = 0; j < 3; j++) {
-                    int cell = i->select[j] ? n >> (i->select[j] - 1) & ((1 << i->bits[j]) - 1) : 0;
-                    q[j] = a[4 * j + cell];
-                }
-                double d = run_function(c, p, i->aux, q[0], q[1], q[2], variables, cells);
-                r = d < r ? d : r;
-            }
-        } else if (i->op != SDFC_CALL_USER) {
+        switch (i->op) {
+        case SDFC_CALL_MIN:
+        case SDFC_CALL_NEAREST: r = run_call(c, p, i, a, i->op == SDFC_CALL_NEAREST, variables, cells); break;
+        case SDFC_CALL_USER: break;
+        case SDFC_INPUT: r = inputs[k]; break;
+        case SDFC_NORMAL: r = at ? at->normal[i->aux] : 0; break;
+        case SDFC_FOOTPRINT: r = at ? at->footprint : 0; break;
+        default:
             r = sdfc_ops[i->op].run(a);
             if (cells) note_cell(cells, i->op, a, r);
         }
@@ -71,11 +90,24 @@ static double run_function(const sdfc *c, const sdfc_program *p, int function, d
 }
 
 double sdfc_run(const sdfc *c, const sdfc_program *p, const double p3[3], uint64_t *cells) {
-    return run_function(c, p, 0, p3[0], p3[1], p3[2], c->variables, cells);
+    return run_function(c, p, 0, p3, NULL, NULL, c->variables, cells);
 }
 
 double sdfc_run_in(const sdfc *c, const sdfc_program *p, const double p3[3], double *room) {
-    return run_function(c, p, 0, p3[0], p3[1], p3[2], room, NULL);
+    return run_function(c, p, 0, p3, NULL, NULL, room, NULL);
+}
+
+void sdfc_run_look(const sdfc *c, const sdfc_part *part, const double p3[3], const sdfc_place_of *at, double *room,
+                   double out[8]) {
+    const sdfc_program *p = &part->program;
+    if (p->surface) run_function(c, p, p->surface, p3, NULL, at, room, NULL);
+    for (int k = 0; k < 8; k++) {
+        int operand = p->look[k];
+        if (!p->surface)
+            out[k] = c->values[c->materials[part->material].value[k]];
+        else
+            out[k] = operand >= 0 ? room[p->functions[p->surface].first_variable + operand] : c->values[p->args[~operand]];
+    }
 }
 
 /* ---- random points ---- */
@@ -248,7 +280,9 @@ static void check_mirror(sdfc *c, const sdfc_part *part, int shape) {
     const bool anchored = c->anchored;
     sdfc_part alone = {.shape = shape, .token = part->token};
     c->anchored = false;
+    c->any_cell = true;
     sdfc_lower(c, &alone);
+    c->any_cell = false;
     c->anchored = anchored;
     c->instrs = instrs;
     c->at = before;

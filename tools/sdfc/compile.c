@@ -21,6 +21,9 @@ void sdfc_free(sdfc *c) {
     for (int i = 0; i < c->shape_count; i++) free(c->shapes[i].child);
     for (int i = 0; i < c->part_count; i++) sdfc_free_program(&c->parts[i].program);
     for (int i = 0; i < c->group_count; i++) free(c->groups[i].slot_of_arg);
+    free(c->joined);
+    free(c->files);
+    free(c->defs);
     free(c->tokens);
     free(c->exprs);
     free(c->shapes);
@@ -43,6 +46,8 @@ void sdfc_free(sdfc *c) {
     free(c->warnings.data);
     free(c);
 }
+
+void sdfc_start(sdfc *c) { c->time_expr = c->open_kind = c->call_token = -1; }
 
 static char *taken(sdfc_text *text) {
     char *data = text->data;
@@ -69,13 +74,23 @@ void sdfc_fill_part(const sdfc *c, int i, masu_sdfc_part *out) {
     }
 }
 
-/* Expressions that are no constants may have any value. */
+/* Expressions of time or parameters may have any value; what a surface knows of itself is within its interval. */
+static double roughness_of(const sdfc *c, int material) {
+    const sdfc_expr *e = &c->exprs[c->materials[material].value[3]];
+    return e->op == SDFC_CONST || (e->local && !e->timed) ? fmax(e->low, 0) : 0;
+}
+
+static void painted_roughness(const sdfc *c, int shape, double *least) {
+    const sdfc_shape *s = &c->shapes[shape];
+    if (s->kind == SDFC_KIND_PAINT) *least = fmin(*least, roughness_of(c, s->paint));
+    for (int i = 0; i < s->children; i++) painted_roughness(c, s->child[i], least);
+}
+
 static double least_roughness(const sdfc *c) {
     double least = 1;
     for (int i = 0; i < c->part_count; i++) {
-        const int *value = c->materials[c->parts[i].material].value;
-        double roughness = sdfc_constant(c, value[3]) ? c->exprs[value[3]].value : 0;
-        least = fmin(least, fmax(roughness, 0));
+        least = fmin(least, roughness_of(c, c->parts[i].material));
+        painted_roughness(c, c->parts[i].shape, &least);
     }
     return least;
 }
@@ -142,7 +157,7 @@ bool masu_sdfc_compile_with(const char *text, size_t bytes, const char *name,
         snprintf(error, error_size, "%s: out of memory", name);
         return false;
     }
-    c->time_expr = -1;
+    sdfc_start(c);
     c->anchored = options && options->anchored;
     c->text = text;
     c->bytes = bytes;

@@ -29,6 +29,7 @@ void sdfc_put_instr(sdfc_writer *w, int group, const sdfc_program *p, const sdfc
                     int variable, bool declared);
 /* Functions of the library that are used; with_expressions: by the update of slots too. */
 void sdfc_put_library(sdfc_writer *w, bool with_expressions);
+void sdfc_put_update_library(sdfc_writer *w); /* what that needs besides, in GLSL */
 void sdfc_put_users(sdfc_writer *w);             /* blocks that the author wrote */
 void sdfc_put_shapes(sdfc_writer *w);            /* a function for each form */
 void sdfc_put_update(sdfc_writer *w);            /* statements that write the slots that change */

@@ -18,6 +18,20 @@ static void put_c_field(sdfc_writer *w) {
     PUT(w, "    default: return INFINITY;\n    }\n}\n\n");
 }
 
+/* Forms whose material is not the same everywhere. */
+static void put_c_look(sdfc_writer *w) {
+    sdfc *c = w->c;
+    PUT(w, "static int looks(int part, const double p[3], double out[8])\n{\n"
+           "    uint base = (uint)slot[part * %u + 6];\n    (void)base;\n    (void)p;\n    (void)out;\n"
+           "    switch ((int)slot[part * %u + 5]) {\n",
+        MASU_SDFC_PART_SLOTS, MASU_SDFC_PART_SLOTS);
+    for (int g = 0; g < c->group_count; g++) {
+        if (!sdfc_group_truth(c, g) || !c->parts[c->groups[g].first_part].program.surface) continue;
+        PUT(w, "    case %d: masu_look_%d(p[0], p[1], p[2], base, out); return 1;\n", g, g);
+    }
+    PUT(w, "    default: return 0;\n    }\n}\n\n");
+}
+
 static const char c_api[] =
     "static int nearest(const double *params, double time, const double p[3], double *step,\n"
     "                   double *distance)\n"
@@ -61,6 +75,17 @@ static const char c_api[] =
     "    double step, distance;\n"
     "    return nearest(params, time, p, &step, &distance);\n"
     "}\n\n"
+    "/* a part's albedo, roughness, emissive, metallic at a point, with a normal and the width of a pixel there */\n"
+    "void masu_truth_look(const double *params, double time, int part, const double p[3],\n"
+    "                     const double n[3], double width, double out[8])\n"
+    "{\n"
+    "    if (part < 0 || part >= PARTS) part = 0;\n"
+    "    update(params, time);\n"
+    "    memcpy(masu_normal, n, sizeof masu_normal);\n"
+    "    masu_footprint = width;\n"
+    "    if (looks(part, p, out)) return;\n"
+    "    memcpy(out, slot + MATERIALS + 8 * (int)slot[part * 8 + 7], 8 * sizeof *out);\n"
+    "}\n\n"
     "/* albedo, roughness, emissive, metallic, as of the last call above in this thread */\n"
     "void masu_truth_material(int part, double out[8])\n"
     "{\n"
@@ -92,7 +117,8 @@ void sdfc_put_c(sdfc_writer *w) {
     PUT(w, "static _Thread_local double now[PARAMS + 1]; /* parameters and time of the slots */\n"
            "static _Thread_local int ready;\n\n"
            "static double masu_param(int i) { return i >= 0 && i < PARAMS ? now[i] : 0.0; }\n"
-           "static double masu_time(void) { return now[PARAMS]; }\n\n");
+           "static double masu_time(void) { return now[PARAMS]; }\n"
+           "static _Thread_local double masu_normal[3], masu_footprint;\n\n");
     sdfc_put_users(w);
     sdfc_put_bytes(c, w->out, sdfc_c_prelude, strlen(sdfc_c_prelude));
     PUT(w, "\ntypedef uint32_t uint;\n#define uint(x) ((uint32_t)(x))\n#define real(x) "
@@ -103,6 +129,7 @@ void sdfc_put_c(sdfc_writer *w) {
     PUT(w, "\n");
     sdfc_put_shapes(w);
     put_c_field(w);
+    put_c_look(w);
     PUT(w, "static void update(const double *params, double time)\n{\n"
            "    (void)masu_param;\n    (void)masu_time;\n"
            "    if (ready && now[PARAMS] == time &&\n"

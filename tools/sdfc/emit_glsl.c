@@ -436,6 +436,48 @@ static void put_places(sdfc_writer *w) {
         w->c->place_count, w->c->place_base, SDFC_PLACE_SLOTS, w->c->slot_count - 1);
 }
 
+/* Forms whose material is not the same everywhere have a function for it. */
+static void put_looks(sdfc_writer *w) {
+    const sdfc *c = w->c;
+    for (int g = 0; g < c->group_count; g++) {
+        const sdfc_group *group = &c->groups[g];
+        if (!c->parts[group->first_part].program.surface) continue;
+        PUT(w, "    if (part >= %du && part < %du) {\n        float look[8];\n        masu_look_%d(p.x, p.y, p.z, ",
+            group->first_part, group->first_part + group->part_count, g);
+        put_slot_base(w, g);
+        PUT(w, ", 0xFFFFFFFFu, look);\n"
+               "        s.albedo = vec3(look[0], look[1], look[2]);\n"
+               "        s.roughness = look[3];\n"
+               "        s.emissive = vec3(look[4], look[5], look[6]);\n"
+               "        s.metallic = look[7];\n    }\n");
+    }
+}
+
+static bool any_looks(const sdfc *c) {
+    for (int i = 0; i < c->part_count; i++) {
+        if (c->parts[i].program.surface) return true;
+    }
+    return false;
+}
+
+static void put_surfaces(sdfc_writer *w) {
+    sdfc *c = w->c;
+    PUT(w,
+        "void masu_sdf_part_surface(uint part, vec3 p, inout masu_surface s)\n{\n"
+        "    uint material = min(uint(masu_slot(part * %uu + 7u)), %uu);\n"
+        "    uint at = %uu + material * %uu;\n"
+        "    s.albedo = vec3(masu_slot(at), masu_slot(at + 1u), masu_slot(at + 2u));\n"
+        "    s.roughness = masu_slot(at + 3u);\n"
+        "    s.emissive = vec3(masu_slot(at + 4u), masu_slot(at + 5u), masu_slot(at + 6u));\n"
+        "    s.metallic = masu_slot(at + 7u);\n",
+        MASU_SDFC_PART_SLOTS, (unsigned)(c->material_count > 0 ? c->material_count - 1 : 0), (unsigned)c->part_count * MASU_SDFC_PART_SLOTS,
+        MASU_SDFC_MATERIAL_SLOTS);
+    put_looks(w);
+    PUT(w, "}\n\n"
+           "void masu_sdf_surface(vec3 p, inout masu_surface s)\n{\n"
+           "    masu_sdf_part_surface(masu_sdf_nearest(p), p, s);\n}\n\n");
+}
+
 void sdfc_put_glsl(sdfc_writer *w) {
     sdfc *c = w->c;
     PUT(w, "/* Made by masu-sdfc: %d parts of %d forms. */\n", c->part_count, c->group_count);
@@ -454,6 +496,10 @@ void sdfc_put_glsl(sdfc_writer *w) {
         sdfc_any_rough(c));
     PUT(w, "#define MASU_SDF_SLOT_COUNT %u\n", c->slot_count);
     PUT(w, "#define MASU_SDF_DYNAMIC %d\n\n", any_timed(c));
+    if (any_looks(c)) {
+        PUT(w, "#define MASU_SDF_PAINTED 1 /* materials ask for masu_normal and a pixel's width */\n"
+               "float masu_footprint = 0.0;\n\n");
+    }
     sdfc_put_users(w);
     PUT(w, "#include \"sdf/terms.glsl\"\n#define real float\n#define TO_INT(x) int(x)\n");
     sdfc_put_library(w, false);
@@ -478,26 +524,9 @@ void sdfc_put_glsl(sdfc_writer *w) {
            "uint masu_sdf_nearest(vec3 p)\n{\n    uint part;\n    masu_sdf_with(p, part);\n"
            "    return part;\n}\n\n");
     put_flat(w);
-    PUT(w,
-        "void masu_sdf_part_surface(uint part, vec3 p, inout masu_surface s)\n{\n"
-        "    uint material = min(uint(masu_slot(part * %uu + 7u)), %uu);\n"
-        "    uint at = %uu + material * %uu;\n"
-        "    s.albedo = vec3(masu_slot(at), masu_slot(at + 1u), masu_slot(at + 2u));\n"
-        "    s.roughness = masu_slot(at + 3u);\n"
-        "    s.emissive = vec3(masu_slot(at + 4u), masu_slot(at + 5u), masu_slot(at + 6u));\n"
-        "    s.metallic = masu_slot(at + 7u);\n}\n\n"
-        "void masu_sdf_surface(vec3 p, inout masu_surface s)\n{\n"
-        "    masu_sdf_part_surface(masu_sdf_nearest(p), p, s);\n}\n\n",
-        MASU_SDFC_PART_SLOTS, (unsigned)(c->material_count > 0 ? c->material_count - 1 : 0), (unsigned)c->part_count * MASU_SDFC_PART_SLOTS,
-        MASU_SDFC_MATERIAL_SLOTS);
+    put_surfaces(w);
     PUT(w, "#ifdef MASU_SDF_SETUP\n");
-    bool has_mod = false;
-    for (int i = 0; i < c->expr_count; i++) {
-        has_mod = has_mod || (c->needed[i] && c->exprs[i].op == SDFC_mod);
-    }
-    if (has_mod) {
-        PUT(w, "real masu_h_mod%s\n%s\n", sdfc_ops[SDFC_mod].params, sdfc_ops[SDFC_mod].body);
-    }
+    sdfc_put_update_library(w);
     if (c->place_count) put_places(w);
     PUT(w, "void masu_sdf_update()\n{\n");
     sdfc_put_update(w);

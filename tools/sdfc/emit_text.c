@@ -50,28 +50,97 @@ static void mark_used(bool *used, int op) {
     }
 }
 
-void sdfc_put_library(sdfc_writer *w, bool with_expressions) {
-    bool used[SDFC_OP_COUNT] = {false};
-    for (int g = 0; g < w->c->group_count; g++) {
-        const sdfc_program *p = &w->c->parts[w->c->groups[g].first_part].program;
+/* What the looks of a surface are made of; the distance is wanted for the choices alone. */
+static bool *live_variables(sdfc *c, const sdfc_program *p) {
+    const sdfc_function *f = &p->functions[p->surface];
+    bool *live = sdfc_take(c, (size_t)f->count + 3, sizeof *live);
+    for (int k = 0; k < 8; k++) {
+        if (p->look[k] >= 0) live[p->look[k]] = true;
+    }
+    for (int k = f->count; k-- > 0;) {
+        const sdfc_instr *i = &f->instrs[k];
+        bool calls = i->op == SDFC_CALL_MIN || i->op == SDFC_CALL_NEAREST;
+        int count = calls ? SDFC_OPERANDS_MAX : i->op == SDFC_CALL_USER ? 3 : sdfc_ops[i->op].operands;
+        for (int j = 0; j < count && live[3 + k]; j++) {
+            if (i->operand[j] >= 0) live[i->operand[j]] = true;
+        }
+    }
+    return live;
+}
+
+static bool is_called(const sdfc_program *p, const bool *live, int callee) {
+    for (int f = 0; f < callee; f++) {
+        for (int k = 0; k < p->functions[f].count; k++) {
+            const sdfc_instr *i = &p->functions[f].instrs[k];
+            bool calls = i->op == SDFC_CALL_MIN || i->op == SDFC_CALL_NEAREST;
+            if (calls && i->aux == callee && (f != p->surface || !p->surface || live[3 + k])) return true;
+        }
+    }
+    return false;
+}
+
+/* Which functions of a part are called at all, and which variables of its surface are needed. */
+typedef struct liveness {
+    bool *functions, *variables;
+} liveness;
+
+static liveness find_live(sdfc *c, const sdfc_program *p) {
+    liveness l = {sdfc_take(c, (size_t)p->function_count, 1), NULL};
+    if (p->surface) l.variables = live_variables(c, p);
+    for (int f = 0; f < p->function_count; f++) {
+        l.functions[f] = f == 0 || (p->surface && f == p->surface) || is_called(p, l.variables, f);
+    }
+    return l;
+}
+
+static void forget(liveness *l) {
+    free(l->functions);
+    free(l->variables);
+}
+
+static void mark_parts(sdfc *c, bool *used) {
+    for (int g = 0; g < c->group_count; g++) {
+        const sdfc_program *p = &c->parts[c->groups[g].first_part].program;
+        liveness live = find_live(c, p);
         for (int f = 0; f < p->function_count; f++) {
-            for (int i = 0; i < p->functions[f].count; i++) {
+            for (int i = 0; i < p->functions[f].count && live.functions[f]; i++) {
+                if (p->surface && f == p->surface && !live.variables[3 + i]) continue;
                 mark_used(used, p->functions[f].instrs[i].op);
+                if (p->functions[f].instrs[i].named) mark_used(used, SDFC_cell_seed);
             }
         }
+        forget(&live);
     }
-    if (with_expressions) {
-        for (int i = 0; i < w->c->expr_count; i++) {
-            if (w->c->needed[i]) mark_used(used, w->c->exprs[i].op);
-        }
+}
+
+static void mark_expressions(const sdfc *c, bool *used) {
+    for (int i = 0; i < c->expr_count; i++) {
+        if (c->needed[i]) mark_used(used, c->exprs[i].op);
     }
+}
+
+static void put_used(sdfc_writer *w, const bool *used, const bool *except) {
     for (int op = SDFC_TIME + 1; op < SDFC_CALL_MIN; op++) {
         const sdfc_op_info *info = &sdfc_ops[op];
-        if (!used[op] || !info->body) continue;
+        if (!used[op] || except[op] || !info->body) continue;
         PUT(w, "%sreal masu_h_%s%s\n", w->glsl ? "" : "static ", info->name, info->params);
         sdfc_put_bytes(w->c, w->out, info->body, strlen(info->body));
         PUT(w, "\n");
     }
+}
+
+void sdfc_put_library(sdfc_writer *w, bool with_expressions) {
+    bool used[SDFC_OP_COUNT] = {false}, none[SDFC_OP_COUNT] = {false};
+    mark_parts(w->c, used);
+    if (with_expressions) mark_expressions(w->c, used);
+    put_used(w, used, none);
+}
+
+void sdfc_put_update_library(sdfc_writer *w) {
+    bool used[SDFC_OP_COUNT] = {false}, parts[SDFC_OP_COUNT] = {false};
+    mark_parts(w->c, parts);
+    mark_expressions(w->c, used);
+    put_used(w, used, parts);
 }
 
 /* ---- shapes ---- */
@@ -113,7 +182,7 @@ static void put_dot(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p, 
 
 /* Whether other cells of a repetition can be left out by how far off they are. */
 static bool has_reach(const sdfc_writer *w, const sdfc_program *p, const sdfc_instr *i) {
-    return w->glsl && w->c->exprs[p->args[~i->operand[15]]].value > 0;
+    return w->glsl && i->op == SDFC_CALL_MIN && w->c->exprs[p->args[~i->operand[15]]].value > 0;
 }
 
 static void put_bound(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p,
@@ -154,10 +223,34 @@ static unsigned bits_of(const sdfc_program *p, int function) {
     return bits;
 }
 
+/* The cells that a function is called in: those around, then its own by how far its coordinates are folded. */
+static void put_inputs(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p, const sdfc_instr *i) {
+    for (int k = 0; k < i->around; k++) {
+        PUT(w, ", ");
+        sdfc_put_operand(w, g, p, i->operand[24 + k]);
+    }
+    if (!i->named) return;
+    PUT(w, ", masu_h_cell_seed(");
+    for (int k = 0; k < 3; k++) {
+        sdfc_put_operand(w, g, p, i->operand[18 + k]);
+        PUT(w, ", ");
+    }
+    PUT(w, "p0, p1, p2");
+    for (int k = 0; k < 3; k++) {
+        PUT(w, ", ");
+        sdfc_put_operand(w, g, p, i->operand[21 + k]);
+    }
+    PUT(w, ")");
+}
+
 static void put_call_min(sdfc_writer *w, int group, const sdfc_group *g, const sdfc_program *p,
                          const sdfc_instr *i, int variable, bool declared) {
-    bool skips = has_reach(w, p, i);
-    PUT(w, declared ? "    v%d = 1e30;\n" : "    real v%d = 1e30;\n", variable);
+    bool skips = has_reach(w, p, i), nearest = i->op == SDFC_CALL_NEAREST;
+    if (nearest)
+        PUT(w, declared ? "    v%d = 0.0;\n" : "    real v%d = 0.0;\n", variable);
+    else
+        PUT(w, declared ? "    v%d = 1e30;\n" : "    real v%d = 1e30;\n", variable);
+    if (nearest) PUT(w, "    {\n    real least = 1e30;\n");
     if (skips) PUT(w, "    {\n");
     if (skips)
         PUT(w, "    uint skip = 0u;\n    uint i = 0u;\n    MASU_LOOP for (uint n = 0u; n < %du; n++) {\n        if (i >= %du) {\n            break;\n        }\n", i->points, i->points);
@@ -178,14 +271,23 @@ static void put_call_min(sdfc_writer *w, int group, const sdfc_group *g, const s
         sdfc_put_operand(w, g, p, i->operand[4 * k]);
         PUT(w, ";\n");
     }
-    PUT(w, "        v%d = min(v%d, masu_shape_%d_%d(p0, p1, p2, base%s));\n", variable, variable, group,
-        i->aux, w->glsl ? ", on" : "");
+    if (nearest)
+        PUT(w, "        real d = masu_shape_%d_%d(p0, p1, p2, base%s", group, i->aux, w->glsl ? ", on" : "");
+    else
+        PUT(w, "        v%d = min(v%d, masu_shape_%d_%d(p0, p1, p2, base%s", variable, variable, group, i->aux,
+            w->glsl ? ", on" : "");
+    put_inputs(w, g, p, i);
+    if (nearest)
+        PUT(w, ");\n        v%d = d < least ? real(i) : v%d;\n        least = min(least, d);\n", variable, variable);
+    else
+        PUT(w, "));\n");
     if (skips) {
         put_skips(w, g, p, i, variable);
         PUT(w, "        i = ((i | skip) + 1u) & ~skip;\n");
     }
     PUT(w, "    }\n");
-    if (skips) PUT(w, "    }\n");
+    if (skips || nearest) PUT(w, "    }\n");
+    if (nearest) return;
     unsigned bits = w->glsl && g->term_count ? bits_of(p, i->aux) : 0;
     if (!bits) return;
     PUT(w, "    MASU_KEEP_ALL(v%d + MASU_SDF_MARGIN * ", variable);
@@ -198,7 +300,8 @@ static void put_call_min(sdfc_writer *w, int group, const sdfc_group *g, const s
 void sdfc_put_instr(sdfc_writer *w, int group, const sdfc_program *p, const sdfc_instr *i,
                     int variable, bool declared) {
     const sdfc_group *g = &w->c->groups[group];
-    if (i->op == SDFC_CALL_MIN) {
+    if (i->op == SDFC_INPUT) return; /* in the list of parameters */
+    if (i->op == SDFC_CALL_MIN || i->op == SDFC_CALL_NEAREST) {
         put_call_min(w, group, g, p, i, variable, declared);
         return;
     }
@@ -209,6 +312,10 @@ void sdfc_put_instr(sdfc_writer *w, int group, const sdfc_program *p, const sdfc
             sdfc_put_operand(w, g, p, i->operand[k]);
             PUT(w, k < 2 ? ", " : w->glsl ? "))" : ")");
         }
+    } else if (i->op == SDFC_NORMAL) {
+        PUT(w, w->glsl ? "masu_normal.%c" : "masu_normal['%c' - 'x']", 'x' + i->aux);
+    } else if (i->op == SDFC_FOOTPRINT) {
+        PUT(w, "masu_footprint");
     } else if (does_nothing(w, g, p, i)) {
         sdfc_put_operand(w, g, p, i->operand[0]);
     } else if (i->op == SDFC_dot3) {
@@ -296,21 +403,33 @@ static bool ends_term(const sdfc_function *f, int k) {
 }
 
 static void put_function(sdfc_writer *w, int group, const sdfc_program *p, int function,
-                         bool root) {
+                         const liveness *live) {
     const sdfc_function *f = &p->functions[function];
     const sdfc_group *g = &w->c->groups[group];
-    bool terms = w->glsl;
-    PUT(w, "%sreal masu_shape_%d", w->glsl ? "" : "static ", group);
-    if (!root) PUT(w, "_%d", function);
-    PUT(w, w->glsl ? "(real x, real y, real z, uint base, uint on)\n{\n" : "(real x, real y, real z, uint base)\n{\n");
+    bool terms = w->glsl, surface = p->surface && function == p->surface, root = function == 0;
+    PUT(w, surface ? "%svoid masu_look_%d" : "%sreal masu_shape_%d", w->glsl ? "" : "static ", group);
+    if (!root && !surface) PUT(w, "_%d", function);
+    PUT(w, w->glsl ? "(real x, real y, real z, uint base, uint on" : "(real x, real y, real z, uint base");
+    for (int k = 0; k < f->inputs; k++) PUT(w, ", real v%d", 3 + k);
+    PUT(w, !surface ? ")\n{\n" : w->glsl ? ", out real look[8])\n{\n" : ", real look[8])\n{\n");
     if (!w->glsl) PUT(w, "    (void)x;\n    (void)y;\n    (void)z;\n    (void)base;\n");
     if (terms && g->term_count) PUT(w, "    uint kept = 0u;\n");
     for (int k = 0; k < f->count; k++) {
+        if (surface && !live->variables[3 + k]) continue;
         if (terms) open_terms(w, g, p, f, k);
         sdfc_put_instr(w, group, p, &f->instrs[k], 3 + k, terms && ends_term(f, k));
         if (terms) close_terms(w, g, p, f, k);
     }
     if (terms && g->term_count) PUT(w, "    MASU_KEPT\n");
+    for (int k = 0; k < 8 && surface; k++) {
+        PUT(w, "    look[%d] = ", k);
+        sdfc_put_operand(w, g, p, p->look[k]);
+        PUT(w, ";\n");
+    }
+    if (surface) {
+        PUT(w, "}\n\n");
+        return;
+    }
     PUT(w, "    return ");
     sdfc_put_operand(w, &w->c->groups[group], p, f->result);
     PUT(w, ";\n}\n\n");
@@ -327,7 +446,11 @@ void sdfc_put_shapes(sdfc_writer *w) {
         const sdfc_program *p = &part->program;
         if (!w->glsl && !sdfc_group_truth(w->c, g)) continue;
         PUT(w, "/* %s%s */\n", part->name, w->c->groups[g].part_count > 1 ? " and others" : "");
-        for (int f = p->function_count; f-- > 0;) put_function(w, g, p, f, f == 0);
+        liveness live = find_live(w->c, p);
+        for (int f = p->function_count; f-- > 0;) {
+            if (live.functions[f]) put_function(w, g, p, f, &live);
+        }
+        forget(&live);
     }
 }
 

@@ -60,6 +60,20 @@ int sdfc_anchor_expr(sdfc *c, int axis) {
                                    .high = SDFC_INFINITY});
 }
 
+int sdfc_leaf(sdfc *c, int op, int a, int b, double low, double high) {
+    return add_expr(c, (sdfc_expr){.op = op,
+                                   .a = {a, b, 0},
+                                   .local = true,
+                                   .cellular = op == SDFC_CELL && a < 0,
+                                   .trapped = op == SDFC_TRAP,
+                                   .slope = op == SDFC_POINT || op == SDFC_WORLD    ? 1
+                                            : op == SDFC_FOOTPRINT || op == SDFC_CELL ? 0
+                                                                                      : SDFC_INFINITY,
+                                   .value = op == SDFC_CELL ? 0.5 : 0,
+                                   .low = low,
+                                   .high = high});
+}
+
 /* ---- intervals ---- */
 
 typedef struct interval {
@@ -132,6 +146,27 @@ static interval range(const sdfc *c, int op, const int *a) {
     case SDFC_sin: return cosine((interval){x.low - PI / 2, x.high - PI / 2});
     case SDFC_sqrt: return (interval){sqrt(fmax(x.low, 0)), sqrt(fmax(x.high, 0))};
     case SDFC_floor: return (interval){floor(x.low), floor(x.high)};
+    case SDFC_fract: return (interval){0, 1};
+    case SDFC_sign: return (interval){x.low > 0 ? 1 : x.low == 0 ? 0 : -1, x.high < 0 ? -1 : x.high == 0 ? 0 : 1};
+    case SDFC_step: return (interval){y.low >= x.high ? 1 : 0, y.high < x.low ? 0 : 1};
+    case SDFC_less: return (interval){x.high < y.low ? 1 : 0, x.low >= y.high ? 0 : 1};
+    case SDFC_select:
+        if (x.low > 0.5) return y;
+        if (x.high <= 0.5) return v[2];
+        return (interval){fmin(y.low, v[2].low), fmax(y.high, v[2].high)};
+    case SDFC_ease: /* of 0..1 */
+        if (!(x.low >= 0 && x.high <= 1)) return everything;
+        return (interval){x.low * x.low * (3 - 2 * x.low), x.high * x.high * (3 - 2 * x.high)};
+    case SDFC_atan2:
+        if (y.low > 0) {
+            return (interval){atan2(x.low, x.low > 0 ? y.high : y.low), atan2(x.high, x.high > 0 ? y.low : y.high)};
+        }
+        return (interval){-PI, PI};
+    case SDFC_log2: return (interval){log2(fmax(x.low, 1e-30)), log2(fmax(x.high, 1e-30))};
+    case SDFC_noise:
+    case SDFC_square_wave: return (interval){-1, 1};
+    case SDFC_fade:
+    case SDFC_cell_hash: return (interval){0, 1};
     case SDFC_mod:
         if (y.low > 0) return (interval){0, y.high};
         return (interval){-fmax(fabs(y.low), fabs(y.high)), fmax(fabs(y.low), fabs(y.high))};
@@ -141,6 +176,11 @@ static interval range(const sdfc *c, int op, const int *a) {
         double p[4] = {pow(fmax(x.low, 0), y.low), pow(fmax(x.low, 0), y.high),
                        pow(fmax(x.high, 0), y.low), pow(fmax(x.high, 0), y.high)};
         interval r = {0, 1};
+        if (x.low > 1e-30) { /* monotone in both: the corners, within 2^+-126 */
+            r = (interval){p[0], p[0]};
+            for (int i = 1; i < 4; i++) r.low = fmin(r.low, p[i]), r.high = fmax(r.high, p[i]);
+            return (interval){fmin(r.low, 8.5e37), fmax(r.high, 1.1e-38)};
+        }
         for (int i = 0; i < 4; i++) r.high = fmax(r.high, p[i]);
         return r;
     }
@@ -158,16 +198,57 @@ static interval widened(interval r) {
     return r;
 }
 
+/* How much a result changes with the point, from how its operands do. */
+static double slope_of(const sdfc *c, int op, const int *a) {
+    const sdfc_expr *x = &c->exprs[a[0]], *y = &c->exprs[a[1]];
+    switch (op) {
+    case SDFC_add:
+    case SDFC_sub: return x->slope + y->slope;
+    case SDFC_neg:
+    case SDFC_abs:
+    case SDFC_sin:
+    case SDFC_cos: return x->slope;
+    case SDFC_min:
+    case SDFC_max: return fmax(x->slope, y->slope);
+    case SDFC_mul: {
+        double by_x = fmax(fabs(x->low), fabs(x->high)), by_y = fmax(fabs(y->low), fabs(y->high));
+        return times(x->slope, by_y) + times(y->slope, by_x);
+    }
+    case SDFC_noise: return 3.4641016151377549 * hypot(hypot(x->slope, y->slope), c->exprs[a[2]].slope);
+    default: return SDFC_INFINITY;
+    }
+}
+
+int sdfc_footprint(sdfc *c, int e) {
+    const sdfc_expr *x = &c->exprs[e];
+    if (!x->local || !isfinite(x->slope) || x->slope == 0) return sdfc_number(c, 0);
+    int slope = sdfc_number(c, x->slope);
+    return sdfc_apply(c, SDFC_mul, sdfc_leaf(c, SDFC_FOOTPRINT, 0, 0, 0, SDFC_INFINITY), slope, slope);
+}
+
+int sdfc_fade(sdfc *c, const int e[3]) {
+    int steepest = e[0];
+    for (int i = 1; i < 3; i++) {
+        double a = c->exprs[e[i]].slope, b = c->exprs[steepest].slope;
+        if (c->exprs[e[i]].local && (a > b || !c->exprs[steepest].local)) steepest = e[i];
+    }
+    int width = sdfc_footprint(c, steepest);
+    return sdfc_apply(c, SDFC_fade, width, width, width);
+}
+
 int sdfc_apply(sdfc *c, int op, int x, int y, int z) {
     int a[3] = {x, y, z};
     int count = sdfc_ops[op].operands;
-    bool constant = true, timed = false, anchored = false;
+    bool constant = true, timed = false, anchored = false, local = false, cellular = false, trapped = false;
     double values[3] = {0};
     for (int i = 0; i < count; i++) {
         values[i] = c->exprs[a[i]].value;
         constant = constant && sdfc_constant(c, a[i]);
         timed = timed || c->exprs[a[i]].timed;
         anchored = anchored || c->exprs[a[i]].anchored;
+        local = local || c->exprs[a[i]].local;
+        cellular = cellular || c->exprs[a[i]].cellular;
+        trapped = trapped || c->exprs[a[i]].trapped;
     }
     double value = sdfc_ops[op].run(values);
     if (constant) return sdfc_number(c, value);
@@ -177,6 +258,8 @@ int sdfc_apply(sdfc *c, int op, int x, int y, int z) {
         if (op == SDFC_mul && sdfc_is(c, a[i], 0)) return a[i];
     }
     if (op == SDFC_sub && sdfc_is(c, y, 0)) return x;
+    if (op == SDFC_select && c->exprs[x].low > 0.5) return y;
+    if (op == SDFC_select && c->exprs[x].high <= 0.5) return z;
     for (int i = count; i < 3; i++) a[i] = a[0];
     interval r = widened(range(c, op, a));
     return add_expr(c, (sdfc_expr){.op = op,
@@ -184,6 +267,10 @@ int sdfc_apply(sdfc *c, int op, int x, int y, int z) {
                                    .dynamic = timed || anchored,
                                    .timed = timed,
                                    .anchored = anchored,
+                                   .local = local,
+                                   .cellular = cellular,
+                                   .trapped = trapped,
+                                   .slope = local ? slope_of(c, op, a) : 0,
                                    .value = in_range(c, value),
                                    .low = r.low,
                                    .high = r.high});
@@ -198,6 +285,12 @@ void sdfc_evaluate(const sdfc *c, const double *params, double time, double *val
         case SDFC_PARAM: values[i] = params[e->a[0]]; break;
         case SDFC_TIME: values[i] = time; break;
         case SDFC_ANCHOR: values[i] = 0; break;
+        case SDFC_POINT:
+        case SDFC_WORLD:
+        case SDFC_NORMAL:
+        case SDFC_TRAP:
+        case SDFC_FOOTPRINT:
+        case SDFC_CELL: values[i] = e->value; break; /* operations, where they matter */
         default:
             for (int k = 0; k < 3; k++) a[k] = values[e->a[k]];
             values[i] = sdfc_ops[e->op].run(a);

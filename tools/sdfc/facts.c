@@ -92,13 +92,13 @@ void sdfc_unit_vector(sdfc *c, const sdfc_shape *s, int *v, const char *what) {
     for (int i = 0; i < 3; i++) {
         if (!sdfc_constant(c, v[i])) {
             sdfc_fail(c, s->token, "%s: expected %s known at compile time",
-                      sdfc_kind_names[s->kind], what);
+                      sdfc_kinds[s->kind].name, what);
         }
         u[i] = c->exprs[v[i]].value;
     }
     double length = sdfc_norm3(u);
     if (!(length > 1e-12)) {
-        sdfc_fail(c, s->token, "%s: expected %s that is not zero", sdfc_kind_names[s->kind], what);
+        sdfc_fail(c, s->token, "%s: expected %s that is not zero", sdfc_kinds[s->kind].name, what);
     }
     for (int i = 0; i < 3; i++) v[i] = sdfc_number(c, u[i] / length);
 }

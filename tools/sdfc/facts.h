@@ -36,10 +36,15 @@ double sdfc_reach(const sdfc_facts *f, int i, int j);
 /* Replaces a vector that is known at compile time by the unit one; else an error. */
 void sdfc_unit_vector(sdfc *c, const sdfc_shape *s, int *v, const char *what);
 
+/* A solid of constant 1 in a box around the origin, with these mirrors. */
+sdfc_facts sdfc_solid(double x, double y, double z, unsigned symmetric);
+
 /* ---- the rules ---- */
 
 /* Both also replace the shape's arguments by derived ones. */
 sdfc_facts sdfc_primitive_facts(sdfc *c, sdfc_shape *s);
+sdfc_facts sdfc_joined_facts(sdfc *c, sdfc_shape *s);
+sdfc_facts sdfc_more_facts(sdfc *c, sdfc_shape *s);
 sdfc_facts sdfc_operator_facts(sdfc *c, sdfc_shape *s);
 
 #endif

@@ -43,7 +43,7 @@ masu_sdfc_field *masu_sdfc_field_open(const char *text, size_t bytes, const char
         free(f);
         return NULL;
     }
-    f->c->time_expr = -1;
+    sdfc_start(f->c);
     f->c->text = text;
     f->c->bytes = bytes;
     f->c->name = name;
@@ -70,8 +70,8 @@ double masu_sdfc_field_run(const masu_sdfc_field *f, uint32_t part, const double
     return sdfc_run_in(f->c, &f->c->parts[part].program, p, room);
 }
 
-void masu_sdfc_field_material(const masu_sdfc_field *f, uint32_t part,
-                              double out[MASU_SDFC_MATERIAL_SLOTS]) {
-    const sdfc_material *m = &f->c->materials[f->c->parts[part].material];
-    for (int k = 0; k < MASU_SDFC_MATERIAL_SLOTS; k++) out[k] = f->c->values[m->value[k]];
+void masu_sdfc_field_material(const masu_sdfc_field *f, uint32_t part, const double p[3], const double n[3],
+                              double width, double *room, double out[MASU_SDFC_MATERIAL_SLOTS]) {
+    const sdfc_place_of at = {{n[0], n[1], n[2]}, width};
+    sdfc_run_look(f->c, &f->c->parts[part], p, &at, room, out);
 }

@@ -12,7 +12,8 @@ static bool same_user(const sdfc *c, int a, int b) {
 
 static bool same_form(const sdfc *c, const sdfc_program *a, const sdfc_program *b) {
     if (a->function_count != b->function_count || a->arg_count != b->arg_count) return false;
-    if (a->root_count != b->root_count) return false;
+    if (a->root_count != b->root_count || a->surface != b->surface) return false;
+    if (memcmp(a->look, b->look, sizeof a->look) != 0) return false;
     if (a->root_count && memcmp(a->root, b->root, (size_t)a->root_count * sizeof *a->root)) {
         return false;
     }
@@ -44,7 +45,7 @@ static uint32_t form_hash(const sdfc_program *p) {
 /* Whether the form's field is affine in the point: a half-space, however it is placed. The march
  * meets it in closed form. */
 static bool is_flat(const sdfc_program *p) {
-    if (p->function_count != 1) return false;
+    if (p->function_count != (p->surface ? 2 : 1)) return false;
     const sdfc_function *f = &p->functions[0];
     for (int i = 0; i < f->count; i++) {
         const sdfc_instr *at = &f->instrs[i];

@@ -17,7 +17,7 @@
 #endif
 
 #define SDFC_INFINITY ((double)INFINITY) /* <math.h>'s is a float */
-#define SDFC_OPERANDS_MAX 18
+#define SDFC_OPERANDS_MAX 27
 #define SDFC_COPIES_MAX 16 /* around an axis, the same */
 #define SDFC_CELLS_MAX 4 /* copies in a row that a repetition evaluates */
 #define SDFC_EXPRS_MAX (1 << 20)
@@ -36,6 +36,11 @@ enum sdfc_op {
     SDFC_CONST,
     SDFC_PARAM,
     SDFC_ANCHOR, /* a[0]: axis */
+    /* What is known where a surface is, or in a cell: never of slots, always of operations (lower_local.c). */
+    SDFC_POINT, SDFC_WORLD, SDFC_NORMAL, SDFC_TRAP, /* a[0]: axis */
+    SDFC_FOOTPRINT,
+    SDFC_CELL,  /* a[0]: the repetition, -1: the innermost; a[1]: the channel */
+    SDFC_INPUT, /* of a function: which cell it is called in */
     SDFC_TIME,
 #define T(name, count, text, code) SDFC_##name,
 #define F(name, count, params, ...) SDFC_##name,
@@ -44,6 +49,7 @@ enum sdfc_op {
 #undef F
     /* The least of a function's values at up to 64 points: up to 4 coordinates on each axis. */
     SDFC_CALL_MIN,
+    SDFC_CALL_NEAREST, /* the number of the point that has it */
     SDFC_CALL_USER,
     SDFC_OP_COUNT
 };
@@ -85,6 +91,9 @@ typedef struct sdfc_expr {
     bool dynamic;            /* depends on parameters, time or the anchor */
     bool timed;              /* on parameters or time */
     bool anchored;           /* on the anchor */
+    bool local;              /* on where it is evaluated */
+    bool cellular, trapped;  /* on the innermost cell there, on what a fractal's levels met */
+    double slope;            /* by which a local one changes with the point, at most; INFINITY: not known */
     double value, low, high; /* value: at the parameters' defaults and time 0 */
 } sdfc_expr;
 
@@ -113,7 +122,9 @@ typedef struct sdfc_facts {
 
 typedef struct sdfc_shape {
     int kind;       /* index into sdfc_kinds */
-    int number[12]; /* expressions */
+    int number[16]; /* expressions */
+    int cell;       /* of a repetition that has a name: its number + 1 */
+    int paint;      /* PAINT: the material */
     int whole[4];   /* compile-time integers */
     int *child;
     int children;
@@ -130,13 +141,16 @@ typedef struct sdfc_user {
 } sdfc_user;
 
 enum {
-#define KIND(id, name, pattern) SDFC_KIND_##id,
+#define KIND(id, ...) SDFC_KIND_##id,
 #include "sdfc/kinds.inc"
 #undef KIND
     SDFC_KIND_COUNT
 };
-extern const char *const sdfc_kind_names[SDFC_KIND_COUNT];
-extern const char *const sdfc_kind_patterns[SDFC_KIND_COUNT];
+typedef struct sdfc_kind {
+    const char *name, *pattern, *arguments, *meaning, *lipschitz, *distance;
+} sdfc_kind;
+extern const sdfc_kind sdfc_kinds[SDFC_KIND_COUNT];
+static inline bool sdfc_is_join(int kind) { return kind >= SDFC_KIND_UNION && kind <= SDFC_KIND_BLEND; }
 
 /* ---- what a part becomes ---- */
 
@@ -151,7 +165,11 @@ typedef struct sdfc_instr {
                                            |the own coordinate|) is the least value of its other
                                            cells, with + of all except the second; 16: the least of
                                            cells that are not evaluated; 17: the constant of the
-                                           values per metre of the world */
+                                           values per metre of the world; 18..20: the coordinates
+                                           before the fold; 21..23: 1 / period or 0; 24..26: cells
+                                           around it */
+    int16_t named, around;              /* CALL_MIN: whether the function takes its own cell, and of
+                                           how many around it */
     int32_t operand[SDFC_OPERANDS_MAX]; /* >= 0: a variable, < 0: argument ~operand */
 } sdfc_instr;
 
@@ -173,6 +191,7 @@ typedef struct sdfc_function {
     int count, capacity;
     sdfc_term *terms; /* what stands in another comes before it */
     int term_count, term_capacity;
+    int inputs; /* the first operations: cells that it is called in */
     int result; /* operand */
     int first_variable;
 } sdfc_function;
@@ -191,6 +210,8 @@ typedef struct sdfc_program {
     int *args; /* expressions */
     int arg_count, arg_capacity;
     int variable_count;
+    int surface;            /* the function that makes the material where it is not the same everywhere; 0: none */
+    int look[8];            /* its results: operands */
 } sdfc_program;
 
 typedef struct sdfc_part {
@@ -216,14 +237,37 @@ typedef struct sdfc_group {
 typedef struct sdfc_material {
     char name[MASU_SDFC_NAME_MAX];
     int value[MASU_SDFC_MATERIAL_SLOTS];
+    bool local, cellular; /* depends on where it is asked, on the innermost cell */
 } sdfc_material;
 
 typedef struct sdfc_value {
-    int count; /* 1 or 3 */
+    int count; /* 1, 2 or 3 */
     int e[3];
 } sdfc_value;
 
-typedef enum sdfc_symbol_kind { SYMBOL_LET, SYMBOL_SHAPE, SYMBOL_MATERIAL } sdfc_symbol_kind;
+typedef enum sdfc_symbol_kind {
+    SYMBOL_LET,
+    SYMBOL_SHAPE,
+    SYMBOL_MATERIAL,
+    SYMBOL_DEF,
+    SYMBOL_CELL,
+    SYMBOL_BROKEN /* its declaration is wrong */
+} sdfc_symbol_kind;
+
+#define SDFC_ARGUMENTS_MAX 16
+/* def NAME(...) = body; a call reads the body's tokens again. */
+typedef struct sdfc_def {
+    int body; /* token */
+    int argument[SDFC_ARGUMENTS_MAX], fallback[SDFC_ARGUMENTS_MAX], count; /* tokens; 0: none */
+    int symbols; /* declared before it */
+    bool is_shape;
+} sdfc_def;
+
+/* A file's text in the text of all. */
+typedef struct sdfc_file {
+    char name[256];
+    uint32_t begin;
+} sdfc_file;
 
 typedef struct sdfc_symbol {
     uint32_t offset, length;
@@ -247,11 +291,26 @@ typedef struct sdfc_text {
 } sdfc_text;
 
 typedef struct sdfc {
-    jmp_buf failed;
+    jmp_buf failed, statement;
+    bool in_statement; /* a mistake ends this only */
     const char *text, *name;
     size_t bytes;
+    char *joined; /* the text, if it includes others */
+    sdfc_file *files;
+    int file_count, file_capacity;
+    uint32_t file_end;
     char *error;
-    size_t error_size;
+    size_t error_size, error_length;
+    int errors;
+    int open_kind;  /* the shape whose arguments are read, or -1 */
+    int call_token; /* of the def that is being expanded, or -1 */
+    sdfc_def *defs;
+    int def_count, def_capacity;
+    int hidden_from, hidden_to; /* symbols that a def's body does not see */
+    bool in_material;
+    int first_token, first_symbol; /* of the statement that is read */
+    int cells; /* repetitions with a name */
+    bool any_cell; /* a shape is lowered outside of its own: any will do */
     sdfc_token *tokens;
     int token_count, token_capacity;
     int at; /* the token looked at */
@@ -294,6 +353,7 @@ typedef struct sdfc {
     void *scratch;
     bool *needed;   /* expressions that slots are made of */
     double *values; /* of expressions, while checking */
+
     double *variables;
     sdfc_text glsl, c, table, warnings;
 } sdfc;
@@ -301,9 +361,14 @@ typedef struct sdfc {
 /* ---- lex.c ---- */
 
 void sdfc_lex(sdfc *c);
+
+/* ---- message.c ---- */
+
+enum { SDFC_NAMES_SHAPES = 1, SDFC_NAMES_NUMBERS = 2, SDFC_NAMES_MATERIALS = 4 };
+void sdfc_report(sdfc *c, uint32_t line, uint32_t column, uint32_t offset, const char *message);
+/* As sdfc_expected, with the most similar name of these kinds. */
+SDFC_NORETURN void sdfc_unknown(sdfc *c, int token, unsigned kinds, const char *what);
 /* Reports at a token and gives up; "expected WHAT, found THE TOKEN" */
-/* Rejects masu_param(n) of a block if n is a literal without a parameter. */
-void sdfc_check_blocks(sdfc *c);
 SDFC_NORETURN void sdfc_fail(sdfc *c, int token, const char *format, ...) SDFC_PRINTF(3, 4);
 SDFC_NORETURN void sdfc_expected(sdfc *c, int token, const char *format, ...) SDFC_PRINTF(3, 4);
 void sdfc_warn(sdfc *c, int token, const char *format, ...) SDFC_PRINTF(3, 4);
@@ -331,7 +396,32 @@ static inline bool sdfc_is(const sdfc *c, int e, double value) {
     return c->exprs[e].op == SDFC_CONST && c->exprs[e].value == value;
 }
 
+int sdfc_leaf(sdfc *c, int op, int a, int b, double low, double high); /* a local one */
+/* Of a pixel in the units of e, 0 if not known; how much is left of noise there. */
+int sdfc_footprint(sdfc *c, int e);
+int sdfc_fade(sdfc *c, const int e[3]);
+
+/* ---- expression.c, define.c ---- */
+
+const char *sdfc_function_name(int i); /* NULL behind the last */
+double sdfc_need_constant(sdfc *c, const char *what);
+void sdfc_parse_pair(sdfc *c, int out[2]);
+void sdfc_parse_def(sdfc *c);
+/* Returns the shape, or fills in the value. */
+int sdfc_call_def(sdfc *c, int def, int token, sdfc_value *v);
+bool sdfc_begins_shape(sdfc *c);
+/* p, n, ... where a material is described */
+bool sdfc_local_name(sdfc *c, int token, sdfc_value *v);
+sdfc_value sdfc_parse_cell(sdfc *c, int token, const sdfc_symbol *s); /* .hash(0) */
+
 /* ---- parse.c, shape.c ---- */
+
+/* Rejects masu_param(n) of a block if n is a literal without a parameter. */
+void sdfc_check_blocks(sdfc *c);
+sdfc_symbol *sdfc_declare(sdfc *c, int token, sdfc_symbol_kind kind);
+int sdfc_need_name(sdfc *c, const char *what, bool declared);
+int sdfc_need_shape_name(sdfc *c); /* of a shape or def that is declared */
+int sdfc_parse_material_name(sdfc *c);
 
 void sdfc_parse(sdfc *c);
 void sdfc_enter(sdfc *c); /* one level deeper, or an error */
@@ -340,6 +430,7 @@ sdfc_value sdfc_parse_expression(sdfc *c);
 int sdfc_parse_scalar(sdfc *c);
 void sdfc_parse_vector(sdfc *c, int out[3]); /* a number stands for three */
 long sdfc_parse_whole(sdfc *c, long low, long high);
+bool sdfc_is_mark(const sdfc *c, char mark);
 bool sdfc_mark(sdfc *c, char mark); /* takes it if it is there */
 void sdfc_need_mark(sdfc *c, char mark);
 bool sdfc_word(sdfc *c, const char *word);
@@ -365,11 +456,18 @@ void sdfc_emit(sdfc *c);
 void sdfc_check(sdfc *c, uint32_t pairs);
 /* Warns of parts that a camera is inside of. */
 void sdfc_check_cameras(sdfc *c, const masu_sdfc_camera *cameras, uint32_t count);
+void sdfc_start(sdfc *c); /* what is not 0 in an empty one */
 void sdfc_free_program(sdfc_program *p); /* what it holds */
 void sdfc_free(sdfc *c);                 /* and all it has taken */
 double sdfc_run(const sdfc *c, const sdfc_program *p, const double p3[3], uint64_t *cells);
 /* The same with room for the program's variables. */
 double sdfc_run_in(const sdfc *c, const sdfc_program *p, const double p3[3], double *room);
+typedef struct sdfc_place_of {
+    double normal[3], footprint;
+} sdfc_place_of;
+/* Albedo, roughness, emissive, metallic of a part there. */
+void sdfc_run_look(const sdfc *c, const sdfc_part *part, const double p3[3], const sdfc_place_of *at, double *room,
+                   double out[8]);
 void sdfc_fill_part(const sdfc *c, int i, masu_sdfc_part *out);
 
 #endif

@@ -1,89 +1,15 @@
-/* lex.c: text -> tokens; messages; and the growing arrays of a compilation. */
+/* lex.c: text -> tokens, those of included files in the place of their names; and the growing arrays of
+ * a compilation. */
 #include "sdfc/internal.h"
+#include "image.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- messages ---- */
-
-#define LINE_SHOWN 160u
-
-static void append(char *out, size_t size, size_t *length, const char *text, size_t bytes) {
-    for (size_t i = 0; i < bytes && *length + 1 < size; i++) {
-        unsigned char b = (unsigned char)text[i];
-        out[(*length)++] = b == '\n' || (b >= 0x20 && b < 0x7F) ? (char)b : b == '\t' ? ' ' : '?';
-    }
-    if (size) out[*length] = '\0';
-}
-
-/* "name:line:column: message", the line, and a caret below the column. */
-static void report(const sdfc *c, uint32_t line, uint32_t column, uint32_t offset,
-                   const char *message, char *out, size_t size) {
-    char head[64];
-    size_t length = 0;
-    append(out, size, &length, c->name, strlen(c->name));
-    snprintf(head, sizeof head, ":%u:%u: ", line, column);
-    append(out, size, &length, head, strlen(head));
-    append(out, size, &length, message, strlen(message));
-    size_t begin = offset - (column - 1), skip = 0;
-    size_t end = begin;
-    while (end < c->bytes && c->text[end] != '\n' && c->text[end] != '\r') end++;
-    if (column > LINE_SHOWN) skip = column - LINE_SHOWN / 2;
-    size_t shown = end - begin > skip ? end - begin - skip : 0;
-    append(out, size, &length, "\n", 1);
-    append(out, size, &length, c->text + begin + skip, shown < LINE_SHOWN ? shown : LINE_SHOWN);
-    append(out, size, &length, "\n", 1);
-    for (size_t i = 1; i + skip < column; i++) append(out, size, &length, " ", 1);
-    append(out, size, &length, "^", 1);
-}
-
-static void say(const sdfc *c, int token, const char *message, char *out, size_t size) {
-    const sdfc_token *t = &c->tokens[token];
-    report(c, t->line, t->column, t->offset - (t->kind == TOKEN_RAW), message, out, size);
-}
-
-void sdfc_fail(sdfc *c, int token, const char *format, ...) {
-    char message[512];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(message, sizeof message, format, arguments);
-    va_end(arguments);
-    say(c, token, message, c->error, c->error_size);
-    longjmp(c->failed, 1);
-}
-
-void sdfc_warn(sdfc *c, int token, const char *format, ...) {
-    char message[512], whole[1024];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(message, sizeof message, format, arguments);
-    va_end(arguments);
-    const sdfc_token *t = &c->tokens[token];
-    size_t length = 0;
-    append(whole, sizeof whole, &length, c->name, strlen(c->name));
-    sdfc_put(c, &c->warnings, "%s:%u:%u: %s\n", whole, t->line, t->column, message);
-}
-
-void sdfc_expected(sdfc *c, int token, const char *format, ...) {
-    char message[256];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(message, sizeof message, format, arguments);
-    va_end(arguments);
-    const sdfc_token *t = &c->tokens[token];
-    int length = t->length < 40 ? (int)t->length : 40;
-    switch (t->kind) {
-    case TOKEN_END: sdfc_fail(c, token, "expected %s, found the end of the text", message);
-    case TOKEN_RAW: sdfc_fail(c, token, "expected %s, found a block", message);
-    default:
-        sdfc_fail(c, token, "expected %s, found \"%.*s\"", message, length, c->text + t->offset);
-    }
-}
-
 static SDFC_NORETURN void fail_at(sdfc *c, uint32_t line, uint32_t column, uint32_t offset,
                                   const char *message) {
-    report(c, line, column, offset, message, c->error, c->error_size);
+    sdfc_report(c, line, column, offset, message);
     longjmp(c->failed, 1);
 }
 
@@ -99,6 +25,7 @@ void *sdfc_grow(sdfc *c, void *array, int count, int *capacity, size_t size, int
     if (count < *capacity) return array;
     if (count >= most) {
         int token = c->at < c->token_count ? c->at : c->token_count - 1;
+        c->in_statement = false; /* what follows would be too much as well */
         sdfc_fail(c, token < 0 ? 0 : token, "more than %d %s", most, what);
     }
     int more = *capacity ? 2 * *capacity : 16;
@@ -151,7 +78,7 @@ static bool is_name(int b, bool first) {
 }
 
 static int byte_at(const sdfc *c, uint32_t at) {
-    return at < c->bytes ? (unsigned char)c->text[at] : -1;
+    return at < c->file_end ? (unsigned char)c->text[at] : -1;
 }
 
 static void advance(const sdfc *c, cursor *k) {
@@ -239,8 +166,65 @@ static void read_block(sdfc *c, cursor *k) {
     t->offset = open.at + 1;
 }
 
-void sdfc_lex(sdfc *c) {
-    cursor k = {0, 1, 0};
+static void lex_file(sdfc *c, int file, int depth);
+
+/* The path beside the file that names it. */
+static void path_beside(const char *from, const char *name, int length, char out[256]) {
+    const char *slash = strrchr(from, '/');
+    int folder = slash ? (int)(slash - from) + 1 : 0;
+    snprintf(out, 256, "%.*s%.*s", folder, from, length, name);
+}
+
+/* include "NAME"; each file once, its tokens in the place of this. */
+static void read_include(sdfc *c, cursor *k, int file, int depth) {
+    uint32_t column = k->at - k->line_start + 1;
+    skip_blanks(c, k);
+    if (byte_at(c, k->at) != '"') fail_at(c, k->line, k->at - k->line_start + 1, k->at, "expected a file's name in quotes");
+    uint32_t from = ++k->at, start = from;
+    while (byte_at(c, k->at) >= 0x20 && byte_at(c, k->at) != '"') k->at++;
+    uint32_t length = k->at - from;
+    if (byte_at(c, k->at) != '"' || !length || length > 120) {
+        fail_at(c, k->line, start - k->line_start, start - 1, "expected a file's name of at most 120 bytes in quotes");
+    }
+    k->at++;
+    skip_blanks(c, k);
+    if (byte_at(c, k->at) == ';') k->at++;
+    char name[256], error[512], message[640];
+    path_beside(file ? c->files[file].name : c->name, c->text + from, (int)length, name);
+    for (int i = 0; i < c->file_count; i++) {
+        if (strcmp(c->files[i].name, name) == 0) return;
+    }
+    uint8_t *bytes = NULL;
+    size_t count = 0;
+    if (depth >= 8) fail_at(c, k->line, column, from, "expected at most 8 files that include each other");
+    if (!masu_file_read(name, MASU_SDFC_SOURCE_MAX, &bytes, &count, error, sizeof error)) {
+        snprintf(message, sizeof message, "include: %s", error);
+        fail_at(c, k->line, start - k->line_start, start - 1, message);
+    }
+    char *joined = c->bytes + count + 1 > 4 * MASU_SDFC_SOURCE_MAX ? NULL : malloc(c->bytes + count + 2);
+    if (!joined) {
+        free(bytes);
+        fail_at(c, k->line, column, from, "expected files of at most 4 MiB in all");
+    }
+    memcpy(joined, c->text, c->bytes);
+    joined[c->bytes] = '\n';
+    memcpy(joined + c->bytes + 1, bytes, count);
+    free(bytes);
+    free(c->joined);
+    c->text = c->joined = joined;
+    uint32_t begin = (uint32_t)c->bytes + 1, end = c->file_end;
+    c->bytes += count + 1;
+    c->files = sdfc_grow(c, c->files, c->file_count, &c->file_capacity, sizeof *c->files, 64, "files");
+    c->files[c->file_count].begin = begin;
+    memcpy(c->files[c->file_count++].name, name, sizeof name);
+    c->file_end = (uint32_t)c->bytes;
+    lex_file(c, c->file_count - 1, depth + 1);
+    c->file_end = end;
+}
+
+static void lex_file(sdfc *c, int file, int depth) {
+    uint32_t begin = c->files[file].begin;
+    cursor k = {begin, 1, begin};
     for (;;) {
         skip_blanks(c, &k);
         int b = byte_at(c, k.at), next = byte_at(c, k.at + 1);
@@ -252,6 +236,11 @@ void sdfc_lex(sdfc *c) {
             if (length >= MASU_SDFC_NAME_MAX) {
                 fail_at(c, k.line, k.at - k.line_start + 1, k.at,
                         "expected a name of at most 63 characters");
+            }
+            if (length == 7 && memcmp(c->text + k.at, "include", 7) == 0) {
+                k.at = end;
+                read_include(c, &k, file, depth);
+                continue;
             }
             add(c, TOKEN_NAME, &k, length);
             bool raw = sdfc_token_is(c, c->token_count - 1, "glsl") ||
@@ -266,7 +255,7 @@ void sdfc_lex(sdfc *c) {
         } else if (b == '.' && next == '.') {
             add(c, TOKEN_MARK, &k, 2)->mark = TOKEN_DOTS;
             k.at += 2;
-        } else if (b > 0 && strchr("+-*/^(){}[],;:=.", b)) {
+        } else if (b > 0 && strchr("+-*/^(){}[],;:=.<>?", b)) {
             add(c, TOKEN_MARK, &k, 1)->mark = (char)b;
             k.at++;
         } else {
@@ -278,5 +267,14 @@ void sdfc_lex(sdfc *c) {
             fail_at(c, k.line, k.at - k.line_start + 1, k.at, message);
         }
     }
-    add(c, TOKEN_END, &k, 0);
+    if (file == 0) add(c, TOKEN_END, &k, 0);
+}
+
+void sdfc_lex(sdfc *c) {
+    c->files = sdfc_grow(c, c->files, 0, &c->file_capacity, sizeof *c->files, 64, "files");
+    snprintf(c->files[0].name, sizeof c->files[0].name, "%s", c->name);
+    c->file_count = 1;
+    c->file_end = (uint32_t)c->bytes;
+    c->open_kind = c->call_token = -1;
+    lex_file(c, 0, 0);
 }

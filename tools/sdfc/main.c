@@ -14,7 +14,7 @@
 #define TEXT(x) #x
 #define VERSION_TEXT(a, b, c) TEXT(a) "." TEXT(b) "." TEXT(c)
 
-enum { OPTION_GLSL = 1, OPTION_C, OPTION_TABLE, OPTION_PAIRS, OPTION_ANCHORED };
+enum { OPTION_GLSL = 1, OPTION_C, OPTION_TABLE, OPTION_PAIRS, OPTION_ANCHORED, OPTION_SHAPES };
 
 static bool read_text(const char *path, char **text, size_t *bytes) {
     char error[4096];
@@ -98,6 +98,7 @@ static int run(masu_cli *cli) {
             if (!masu_cli_uint(cli, 1, 1000000000, &options.pairs)) return MASU_CLI_USAGE;
             break;
         case OPTION_ANCHORED: options.anchored = true; break;
+        case OPTION_SHAPES: return masu_sdfc_put_shapes(stdout) ? MASU_CLI_OK : MASU_CLI_FAILURE;
         case MASU_CLI_ARGUMENT:
             if (input) return masu_cli_usage_error("more than one input: %s", cli->value);
             input = cli->value;
@@ -118,6 +119,7 @@ int main(int argc, char **argv) {
         {"pairs", "N", "random point pairs tested per part form; default: 20000", OPTION_PAIRS, 0},
         {"anchored", NULL, "keep the precision of the GLSL far from the origin", OPTION_ANCHORED,
          0},
+        {"shapes", NULL, "print the table of shapes as Markdown", OPTION_SHAPES, 0},
         {NULL, NULL, NULL, 0, 0},
     };
     static const masu_cli_command command = {

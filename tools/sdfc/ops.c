@@ -45,6 +45,8 @@ typedef uint32_t uint;
 #define CALL_8(f) f(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7])
 #define CALL_9(f) f(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8])
 #define CALL_11(f) f(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], a[10])
+#define CALL_12(f) f(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], a[10], a[11])
+#define CALL_13(f) f(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], a[10], a[11], a[12])
 #define T(name, count, text, code) static double run_##name(const double *a) { return code; }
 #define F(name, count, params, ...) static double run_##name(const double *a) { return CALL_##count(masu_h_##name); }
 #include "sdfc/library.inc"
@@ -61,6 +63,13 @@ const sdfc_op_info sdfc_ops[SDFC_OP_COUNT] = {
     [SDFC_CONST] = {"const", 0, NULL, NULL, NULL, NULL},
     [SDFC_PARAM] = {"param", 0, NULL, NULL, NULL, NULL},
     [SDFC_ANCHOR] = {"anchor", 0, NULL, NULL, NULL, NULL},
+    [SDFC_POINT] = {"point", 0, NULL, NULL, NULL, NULL},
+    [SDFC_WORLD] = {"world", 0, NULL, NULL, NULL, NULL},
+    [SDFC_NORMAL] = {"normal", 0, NULL, NULL, NULL, NULL},
+    [SDFC_TRAP] = {"trap", 0, NULL, NULL, NULL, NULL},
+    [SDFC_FOOTPRINT] = {"footprint", 0, NULL, NULL, NULL, NULL},
+    [SDFC_CELL] = {"cell", 0, NULL, NULL, NULL, NULL},
+    [SDFC_INPUT] = {"input", 0, NULL, NULL, NULL, NULL},
     [SDFC_TIME] = {"time", 0, NULL, NULL, NULL, NULL},
 #define T(name, count, text, code) [SDFC_##name] = {#name, count, text, NULL, NULL, run_##name},
 #define F(name, count, params, ...) [SDFC_##name] = {#name, count, NULL, #params, #__VA_ARGS__, run_##name},
@@ -68,6 +77,7 @@ const sdfc_op_info sdfc_ops[SDFC_OP_COUNT] = {
 #undef T
 #undef F
     [SDFC_CALL_MIN] = {"call_min", 0, NULL, NULL, NULL, NULL},
+    [SDFC_CALL_NEAREST] = {"call_nearest", 0, NULL, NULL, NULL, NULL},
     [SDFC_CALL_USER] = {"call_user", 0, NULL, NULL, NULL, NULL},
 };
 /* clang-format on */

@@ -2,9 +2,12 @@
  * double precision that says the truth, and a table of parts with Lipschitz constants and bounds.
  *
  *   sdfc.c           the program masu-sdfc
- *   lex.c       text -> tokens, messages
- *   parse.c     statements and expressions
- *   shape.c     the table of shapes and their arguments
+ *   lex.c       text -> tokens, of included files too
+ *   message.c   what is said of mistakes
+ *   parse.c     statements
+ *   expression.c  expressions as they are written
+ *   define.c    def, and what materials know of the place
+ *   shape.c     shapes as they are written; kinds.inc is their table
  *   expr.c      expressions: folding, intervals, values
  *   ops.c       the formulas of library.inc, as C and as text
  *   analyse.c   Lipschitz constant and bounds of each operator
@@ -22,6 +25,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 #define MASU_SDFC_SOURCE_MAX ((size_t)1 << 20)
 #define MASU_SDFC_PARTS_MAX 4096
@@ -95,6 +99,9 @@ bool masu_sdfc_compile(const char *text, size_t bytes, const char *name, masu_sd
                        char *error, size_t error_size);
 void masu_sdfc_release(masu_sdfc_result *result);
 
+/* The table of shapes, as docs/sdf-shapes.md. */
+bool masu_sdfc_put_shapes(FILE *to);
+
 /* The same scene as a function of a point, with parameters at their defaults and time 0. NULL: what
  * masu_sdfc_compile refuses. The text must outlive it. */
 typedef struct masu_sdfc_field masu_sdfc_field;
@@ -105,7 +112,8 @@ const masu_sdfc_part *masu_sdfc_field_parts(const masu_sdfc_field *field, uint32
 size_t masu_sdfc_field_room(const masu_sdfc_field *field);
 /* Of one part, which must not be of a glsl block (`user`): at most `lipschitz` times the distance. */
 double masu_sdfc_field_run(const masu_sdfc_field *field, uint32_t part, const double p[3], double *room);
-void masu_sdfc_field_material(const masu_sdfc_field *field, uint32_t part,
-                              double out[MASU_SDFC_MATERIAL_SLOTS]);
+/* What it looks like at p, with a normal and the width of a pixel there: albedo, roughness, emissive, metallic. */
+void masu_sdfc_field_material(const masu_sdfc_field *field, uint32_t part, const double p[3], const double n[3],
+                              double width, double *room, double out[MASU_SDFC_MATERIAL_SLOTS]);
 
 #endif

@@ -38,7 +38,7 @@ static void add_dynamic(sdfc *c, uint32_t slot, int expr) {
 
 static void set_slot(sdfc *c, uint32_t slot, int expr) {
     c->initial[slot] = c->exprs[expr].value;
-    if (c->exprs[expr].dynamic) add_dynamic(c, slot, expr);
+    if (c->exprs[expr].dynamic && !c->exprs[expr].local) add_dynamic(c, slot, expr);
 }
 
 /* ---- slots that depend on the anchor alone ---- */

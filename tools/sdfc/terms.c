@@ -14,7 +14,7 @@
 enum { WORD = 32, LEAST_COST = 10 };
 
 static int cost_of(const sdfc_instr *i) {
-    if (i->op == SDFC_CALL_MIN || i->op == SDFC_CALL_USER) return 60;
+    if (i->op == SDFC_CALL_MIN || i->op == SDFC_CALL_NEAREST || i->op == SDFC_CALL_USER) return 60;
     return sdfc_ops[i->op].text ? 2 : 12;
 }
 
@@ -118,6 +118,10 @@ static bool is_rough(const sdfc *c, int shape) {
     case SDFC_KIND_MENGER:
     case SDFC_KIND_SIERPINSKI:
     case SDFC_KIND_MANDELBULB:
+    case SDFC_KIND_APOLLONIAN:
+    case SDFC_KIND_MANDELBOX:
+    case SDFC_KIND_JULIA:
+    case SDFC_KIND_TERRAIN:
     case SDFC_KIND_KALEIDOSCOPE:
     case SDFC_KIND_USER: return true;
     default: break;

@@ -28,6 +28,7 @@
 /* More triangles than these are not traced unless the scene asks for it: the tree of more takes
  * seconds to bake, and an integrated GPU has hardly the time to walk it. */
 #define TRACED_TRIANGLES_MAX 500000u
+#define LARGE 1000 /* metres: longer models may have other units */
 
 static void make_detail(const masu_bake_description *d, masu_bake_content *content,
                         masu_bake_report *report) {
@@ -64,7 +65,7 @@ static bool load_panorama(const masu_bake_environment *e, masu_bake_panorama *ou
 }
 
 /* The key of a model's camera. */
-static bool take_camera(const masu_bake_description *d, const masu_bake_content *content,
+static bool take_camera(masu_bake_description *d, const masu_bake_box *bounds, const masu_bake_content *content,
                         masu_blob_camera_key *key) {
     const masu_bake_camera *camera = masu_bake_find_camera(content, d->look.camera);
     if (!camera) {
@@ -85,8 +86,15 @@ static bool take_camera(const masu_bake_description *d, const masu_bake_content 
     double ahead = fmax(1, masu_bake_length(at) * 1e-3);
     *key = (masu_blob_camera_key){.fov_y = d->look.own_fov_y ? (float)(d->look.fov_y * (MASU_BAKE_PI / 180))
                                                              : camera->fov_y};
+    masu_bake_vec3 forward = masu_bake_v3f(camera->direction);
+    if (camera->height > 0 && !(d->look.height > 0)) d->look.height = (double)camera->height;
+    if (d->look.own_fov_y) d->look.height = 0;
+    if (d->look.height > 0 && !masu_bake_box_is_empty(bounds)) { /* exact in the middle of the scene */
+        masu_bake_vec3 middle = masu_bake_mad(bounds->low, masu_bake_sub(bounds->high, bounds->low), 0.5);
+        ahead = fmax(ahead, masu_bake_dot(masu_bake_sub(middle, at), forward));
+    }
     masu_bake_store(at, key->position);
-    masu_bake_store(masu_bake_mad(at, masu_bake_v3f(camera->direction), ahead), key->target);
+    masu_bake_store(masu_bake_mad(at, forward, ahead), key->target);
     return true;
 }
 
@@ -129,6 +137,17 @@ static void take_panorama_sun(const masu_bake_environment *e, masu_bake_panorama
     look->sun_color = masu_bake_v3(sun.color[0], sun.color[1], sun.color[2]);
 }
 
+/* A model alone is in metres unless its file says otherwise, and few things are kilometres wide. */
+static void hint_at_units(const masu_bake_description *d, const masu_bake_box *bounds) {
+    if (masu_bake_box_is_empty(bounds) || !d->model_count || !d->models[0].plays || masu_cli_quiet()) return;
+    masu_bake_vec3 e = masu_bake_sub(bounds->high, bounds->low);
+    double longest = fmax(e.x, fmax(e.y, e.z));
+    if (longest < LARGE) return;
+    printf("%s: is %.3g m long; if its file is in centimetres or millimetres, use a scene with a \"scale\" of 0.01 or "
+           "0.001 (--describe writes one)\n",
+           d->models[0].file, longest);
+}
+
 /* Models, SDF, camera and light. Completes the description by the members that depend on the
  * models. */
 static bool build_scene(masu_bake_description *d, const masu_bake_options *options,
@@ -137,6 +156,7 @@ static bool build_scene(masu_bake_description *d, const masu_bake_options *optio
     make_detail(d, content, report);
     masu_bake_affine identity = masu_bake_identity();
     masu_bake_box bounds = report->bounds = masu_bake_bounds(content, &identity);
+    hint_at_units(d, &bounds);
     if (d->default_reflections &&
         masu_bake_count(content, MASU_BLOB_INDICES) / 3 > TRACED_TRIANGLES_MAX)
         d->reflections.wanted = false;
@@ -154,7 +174,7 @@ static bool build_scene(masu_bake_description *d, const masu_bake_options *optio
     if (d->look.camera) {
         d->look.keys = masu_bake_take(&d->pool, sizeof *d->look.keys);
         d->look.key_count = 1;
-        if (!take_camera(d, content, d->look.keys)) return false;
+        if (!take_camera(d, &bounds, content, d->look.keys)) return false;
     }
     masu_bake_panorama panorama = {0};
     if (!load_panorama(&d->environment, &panorama)) return false;

@@ -35,6 +35,7 @@ typedef struct loaded_model {
     uint32_t shape;              /* of the description's */
     double merge;                /* metres, 0: as the file has it */
     bool moving;                 /* with its clips and skins */
+    bool plays;                  /* the same if it has clips */
     const char *variant;         /* of its materials, or NULL */
     masu_bake_textures textures; /* as imported; of a shape FORCED: it has coordinates */
     masu_bake_content piece;
@@ -54,7 +55,7 @@ static loaded_model *find_loaded(const model_builder *b, const loaded_model *wan
     for (loaded_model *at = b->loaded; at; at = at->next) {
         bool same = wanted->path ? at->path && strcmp(at->path, wanted->path) == 0
                                  : !at->path && at->shape == wanted->shape;
-        if (same && at->merge == wanted->merge && at->moving == wanted->moving &&
+        if (same && at->merge == wanted->merge && at->moving == wanted->moving && at->plays == wanted->plays &&
             at->textures == wanted->textures && strcmp(at->variant ? at->variant : "", wanted->variant ? wanted->variant : "") == 0)
             return at;
     }
@@ -74,7 +75,7 @@ static bool make_piece(const model_builder *b, const masu_bake_model *model, loa
         return true;
     }
     masu_cli_progress("importing %s", made->path);
-    masu_bake_wanted wanted = {made->textures, made->moving, made->variant};
+    masu_bake_wanted wanted = {made->textures, made->moving, made->plays, made->variant};
     if (!masu_bake_import_as(made->path, &wanted, &made->piece)) return false;
     const char *problem = made->merge > 0 ? masu_bake_merge(&made->piece, made->merge) : NULL;
     return !problem || masu_bake_wrong(b->description, model->where, "gives %s", problem);
@@ -96,6 +97,7 @@ static loaded_model *fetch(model_builder *b, const masu_bake_model *model) {
                            .merge = model->merge,
                            /* What is merged has lost its nodes. */
                            .moving = model->file && model->moving && !(model->merge > 0),
+                           .plays = model->file && model->plays,
                            .variant = model->variant,
                            .textures = model->file ? b->textures : MASU_BAKE_TEXTURES_OFF};
     if (b->textures != MASU_BAKE_TEXTURES_OFF && is_mapped(model))
@@ -300,9 +302,10 @@ bool masu_bake_build_models(const masu_bake_description *d, size_t start,
     model_builder b = {.description = d, .content = content, .textures = textures};
     bool good = true;
     for (size_t i = start; good && i < d->model_count; i++) {
-        const masu_bake_model *model = &d->models[i];
+        masu_bake_model *model = &d->models[i];
         uint64_t first = masu_bake_count(content, MASU_BLOB_INSTANCES);
         loaded_model *from = fetch(&b, model);
+        if (from && from->plays) model->moving = masu_bake_count(&from->piece, MASU_BLOB_CLIPS) > 0;
         good = from && place_all(&b, model, from);
         if (!good) break;
         set_group(content, model, first);

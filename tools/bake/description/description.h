@@ -58,6 +58,7 @@ typedef struct masu_bake_model {
     const char *name;  /* before the instances' names, or NULL */
     const char *group; /* "outer/inner", or NULL */
     bool moving; /* it is a model of the scene for the host, too */
+    bool plays;  /* moving, if its file has clips; building decides it */
     bool hidden; /* at first; moving, then */
     uint32_t spare; /* so many more of it, hidden; moving, then */
     double merge;               /* cell size, metres; 0: as the file has it */
@@ -88,6 +89,7 @@ typedef struct masu_bake_look {
     const char *camera;           /* of a model, instead of keys; or NULL */
     double fov_y;                 /* degrees, of that one */
     bool own_fov_y;               /* the scene says so */
+    double height;                /* of an orthographic one, metres; 0: perspective */
     double near;                  /* metres; 0: by default */
     masu_bake_vec3 sun_direction; /* towards the sun */
     masu_bake_vec3 sun_color;

@@ -63,17 +63,20 @@ static bool read_keys(const masu_bake_json *keys, masu_bake_reader *r) {
 }
 
 static bool read_camera(const masu_bake_json *scene, masu_bake_reader *r) {
-    static const char *const members[] = {"fov_y", "near", "keys", "from", NULL};
+    static const char *const members[] = {"fov_y", "height", "near", "keys", "from", NULL};
     const char *from = NULL;
     masu_bake_json camera = masu_bake_json_member(scene, "camera");
     if (!camera.value) return true;
     if (!masu_bake_json_object(&camera, members) ||
         !masu_bake_json_number(&camera, "fov_y", 0.1, 170, &r->out->look.fov_y) ||
+        !masu_bake_json_number(&camera, "height", 1e-6, 1e9, &r->out->look.height) ||
         !masu_bake_json_number(&camera, "near", 1e-6, 1e6, &r->out->look.near) ||
         !masu_bake_json_string(&camera, "from", &from)) {
         return false;
     }
     r->out->look.own_fov_y = masu_bake_json_has(&camera, "fov_y");
+    if (r->out->look.own_fov_y && r->out->look.height > 0)
+        return masu_bake_json_wrong(&camera, "expected either \"fov_y\" or \"height\", found both");
     if (from && masu_bake_json_has(&camera, "keys"))
         return masu_bake_json_wrong(&camera, "expected either \"keys\" or \"from\", found both");
     if (from) r->out->look.camera = masu_bake_take_text(&r->out->pool, from);

@@ -27,8 +27,6 @@ static void report(masu_import *m) {
                            (const char *)m->textures.data,
                            m->texture_count > MASU_IMPORT_NAMES_MAX ? ", ..." : "");
     }
-    if (m->mixed)
-        masu_import_format(w, "%llu " MASU_IMPORT_COLORS_MIXED "\n", (unsigned long long)m->mixed);
     if (m->clamped)
         masu_import_format(w, "%llu " MASU_IMPORT_COLORS_CLAMPED "\n",
                            (unsigned long long)m->clamped);
@@ -66,7 +64,7 @@ static void report(masu_import *m) {
         masu_import_format(w, "%u lights: ignored, since their units are not known\n",
                            m->source->mNumLights);
     }
-    if (!m->moving && (m->skins || m->source->mNumAnimations)) {
+    if (!m->moving && !m->plays && (m->skins || m->source->mNumAnimations)) {
         masu_bake_append_text(w,
                               "only \"moving\" models are animated: this one has its rest pose\n");
     }
@@ -113,6 +111,7 @@ static void convert(masu_import *m, masu_bake_buffer *error) {
         else
             masu_import_show_all(m);
         if (m->live) masu_import_live(m);
+        if (m->plays) m->moving = masu_bake_count(m->piece, MASU_BLOB_CLIPS) > 0;
         if (!m->moving) masu_import_forget(m);
         report(m);
         if (masu_bake_count(m->piece, MASU_BLOB_INSTANCES) == 0) {
@@ -190,20 +189,22 @@ static const struct aiScene *read_assimp(const char *path, masu_bake_buffer *war
 void masu_bake_read_model(const char *path, const masu_bake_wanted *wanted, masu_bake_content *piece,
                           masu_bake_buffer *warnings, masu_bake_buffer *error) {
     masu_gltf g = {.path = path, .variant = wanted->variant, .wanted = wanted->textures, .piece = piece,
-                   .warnings = warnings, .error = error};
+                   .moving = wanted->moving, .plays = wanted->plays, .warnings = warnings, .error = error};
     bool ours = masu_gltf_is_file(path);
     const struct aiScene *scene = &g.scene;
     if (ours && !masu_gltf_read(&g)) return;
     if (!ours && wanted->variant) masu_bake_append_text(warnings, "variants need a glTF 2 file\n");
     if (!ours && !(scene = read_assimp(path, warnings, error))) return;
+    bool moving = wanted->moving || (wanted->plays && scene->mNumAnimations);
     masu_import m = {.source = scene,
                      .given = (const masu_import_given *)(const void *)g.given.data,
                      .ranges = (const float *)(const void *)g.ranges.data,
                      .path = path,
                      .wanted = wanted->textures,
                      .piece = piece,
-                     .moving = wanted->moving,
-                     .live = scene->mRootNode && masu_import_is_live(scene, wanted->moving),
+                     .moving = moving,
+                     .plays = wanted->plays && !wanted->moving,
+                     .live = scene->mRootNode && masu_import_is_live(scene, moving),
                      .warnings = warnings};
     convert(&m, error);
 }

@@ -88,18 +88,20 @@ typedef struct masu_import {
     masu_import_loss losses[MASU_LOSSES];
     uint64_t triangles;
     uint32_t texture_count, bad_nodes, skins, unmapped, turned;
-    uint64_t mixed, clamped; /* triangles, of vertex colours: vertex_color.h */
+    uint64_t clamped; /* triangles, of vertex colours: vertex_color.h */
     uint32_t phong;          /* materials with a specular exponent or colour */
     uint32_t translucent;    /* meshes whose vertex colours have an alpha */
     uint32_t invisible;    /* materials with an opacity of 0 */
     uint32_t other_lights; /* that shine from or to nowhere */
     bool full, moving;
+    bool plays; /* moving only if there are clips */
     /* Of a model that has skins, or that moves and has clips: */
     bool live;
     uint32_t crowded, unbound; /* vertices of more than four joints, of none */
     uint32_t unordered;        /* keys before the previous one */
     uint32_t lost_joints;      /* that are no nodes */
     masu_bake_buffer nodes; /* masu_import_node */
+    masu_bake_buffer skin_nodes; /* uint32_t: of each skin the node that shows it */
     masu_bake_content bent; /* meshes with bones, as they are bound: their mesh_parts are of it */
     masu_bake_buffer influences; /* masu_bake_influence of each of its vertices; joints are bones, */
                                  /* or their count: none */
@@ -118,8 +120,8 @@ float masu_import_clamped(double value, double low, double high);
 
 /* A material, read once; one that there is not is the default one. */
 const masu_import_given *masu_import_read_material(masu_import *m, unsigned index);
-/* The piece's number of it, times a colour of vertices (linear, or NULL). */
-uint32_t masu_import_material(masu_import *m, unsigned index, const double *color);
+/* The piece's number of it, times a colour (linear, or NULL). colored: its vertices have colours. */
+uint32_t masu_import_material(masu_import *m, unsigned index, const double *color, bool colored);
 /* Of a colour that was chosen on a screen, the linear one. */
 double masu_import_decode_srgb(double c);
 /* Converts an aiMesh, once. */

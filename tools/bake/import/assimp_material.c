@@ -353,13 +353,15 @@ const masu_import_given *masu_import_read_material(masu_import *m, unsigned inde
     return made;
 }
 
-uint32_t masu_import_material(masu_import *m, unsigned index, const double *color) {
+uint32_t masu_import_material(masu_import *m, unsigned index, const double *color, bool colored) {
     const masu_import_given *from = masu_import_read_material(m, index);
     masu_blob_material to = from->material;
     /* The file has none: colours are all there is. */
-    bool none = color && strcmp(from->name, AI_DEFAULT_MATERIAL_NAME) == 0;
-    for (int k = 0; k < 3 && color; k++)
-        to.base_color[k] =
-            masu_import_clamped((none ? 1 : (double)to.base_color[k]) * color[k], 0, 1);
-    return masu_bake_mapped_material(m->piece, &to, &from->maps, from->name);
+    bool none = (color || (colored && !m->given)) && strcmp(from->name, AI_DEFAULT_MATERIAL_NAME) == 0;
+    masu_bake_maps maps = from->maps;
+    for (int k = 0; k < 3 && (color || none); k++)
+        to.base_color[k] = masu_import_clamped(
+            (none ? 1 : (double)to.base_color[k]) * (color ? color[k] : 1), 0, 1);
+    if (colored && !maps.colored) maps.colored = MASU_BAKE_COLORED;
+    return masu_bake_mapped_material(m->piece, &to, &maps, from->name);
 }

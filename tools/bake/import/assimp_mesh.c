@@ -106,14 +106,14 @@ static float *texcoords_of(masu_import *m, const struct aiMesh *mesh) {
 /* Triangles of one material, times a colour (or NULL). */
 static void add_part(masu_import *m, const struct aiMesh *mesh, bool bent,
                      masu_bake_triangles *part, const double *color, masu_bake_losses *lost) {
-    part->material = masu_import_material(m, mesh->mMaterialIndex, color);
+    part->material = masu_import_material(m, mesh->mMaterialIndex, color, part->colors != NULL);
     if (bent)
         masu_import_bent_mesh(m, mesh, part, lost);
     else if (!masu_bake_add_triangles(m->piece, part, lost))
         m->full = true;
 }
 
-/* A part for each colour. Of glTF it is done already (gltf_mesh.c). */
+/* A part for each colour, or one with colours at its vertices. Of glTF it is done already (gltf_mesh.c). */
 static void add_colored(masu_import *m, const struct aiMesh *mesh, bool bent,
                         const masu_bake_triangles *all, masu_bake_losses *lost) {
     masu_bake_pool pool = {0};
@@ -132,8 +132,12 @@ static void add_colored(masu_import *m, const struct aiMesh *mesh, bool bent,
     m->translucent += alpha;
     masu_import_group_colors(&pool, linear, mesh->mNumVertices, all->indices, triangles, true,
                              &colors);
-    m->mixed += colors.exact ? 0 : triangles;
     m->clamped += colors.clamped;
+    if (!colors.exact) {
+        masu_bake_triangles part = *all;
+        part.colors = linear;
+        add_part(m, mesh, bent, &part, NULL, lost);
+    }
     for (uint32_t g = 0; g < colors.count && !m->full; g++) {
         const masu_import_color *c = &colors.groups[g];
         masu_bake_buffer indices = {0};
@@ -147,6 +151,15 @@ static void add_colored(masu_import *m, const struct aiMesh *mesh, bool bent,
         masu_bake_release(&indices);
     }
     masu_bake_pool_release(&pool);
+}
+
+static const float *second_texcoords(masu_bake_pool *pool, const struct aiMesh *mesh) {
+    float *out = masu_bake_take(pool, (size_t)mesh->mNumVertices * 2 * sizeof *out);
+    for (size_t i = 0; i < mesh->mNumVertices; i++) {
+        out[2 * i] = mesh->mTextureCoords[1][i].x;
+        out[2 * i + 1] = mesh->mTextureCoords[1][i].y;
+    }
+    return out;
 }
 
 void masu_import_mesh(masu_import *m, unsigned index) {
@@ -185,11 +198,15 @@ void masu_import_mesh(masu_import *m, unsigned index) {
         .repeats = !maps->wrap[0] && !maps->wrap[1],
     };
     masu_bake_losses lost = {0};
-    if (mesh->mColors[0] && triangles.index_count)
+    masu_bake_pool pool = {0};
+    if (m->given && mesh->mColors[0]) triangles.colors = &mesh->mColors[0]->r;
+    if (m->given && mesh->mTextureCoords[1]) triangles.second = second_texcoords(&pool, mesh);
+    if (!m->given && mesh->mColors[0] && triangles.index_count)
         add_colored(m, mesh, to == &m->bent, &triangles, &lost);
     else
         add_part(m, mesh, to == &m->bent, &triangles, NULL, &lost);
     masu_bake_release(&indices);
+    masu_bake_pool_release(&pool);
     free(texcoords);
     note_losses(m, mesh, &lost);
     note_loss(m, MASU_LOST_FACE, left_out, mesh);

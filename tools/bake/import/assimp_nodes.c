@@ -169,7 +169,10 @@ static void convert_cameras(masu_import *m, const struct aiNode *node, const mas
         char name[sizeof from->mName.data + 1];
         memcpy(name, from->mName.data, (size_t)length);
         name[length] = '\0';
-        masu_bake_add_camera(m->piece, name, 2 * atan(tan(width / 2) / aspect), at, direction);
+        /* Half its width, as wide as a node makes it. */
+        double half = (double)masu_import_clamped((double)from->mOrthographicWidth, 0, 1e9) * masu_bake_length(direction);
+        double fov = half > 0 ? 0.7 : 2 * atan(tan(width / 2) / aspect);
+        masu_bake_add_camera(m->piece, name, fov, 2 * half / aspect, at, direction);
     }
 }
 

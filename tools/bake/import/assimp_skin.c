@@ -19,14 +19,20 @@ static uint32_t node_count(const masu_import *m) {
 bool masu_import_is_live(const struct aiScene *s, bool moving) {
     bool live = moving && s->mAnimations && s->mNumAnimations;
     for (unsigned i = 0; s->mMeshes && i < s->mNumMeshes; i++)
-        live = live || (s->mMeshes[i] && s->mMeshes[i]->mNumBones);
+        live = live || (s->mMeshes[i] && (s->mMeshes[i]->mNumBones || (moving && s->mMeshes[i]->mNumAnimMeshes)));
     return live;
+}
+
+/* Morph targets of a model that moves. */
+static unsigned target_count(const masu_import *m, const struct aiMesh *mesh) {
+    unsigned count = m->moving && mesh->mAnimMeshes ? mesh->mNumAnimMeshes : 0;
+    return count < MASU_BLOB_MORPH_TARGETS_MAX ? count : MASU_BLOB_MORPH_TARGETS_MAX;
 }
 
 bool masu_import_bends(const masu_import *m, unsigned mesh) {
     const struct aiMesh *source = m->source->mMeshes[mesh];
-    return m->live && source && source->mBones && source->mNumBones &&
-           source->mNumBones < JOINTS_MAX;
+    if (!m->live || !source || source->mNumBones >= JOINTS_MAX) return false;
+    return (source->mBones && source->mNumBones) || target_count(m, source);
 }
 
 /* ---- Influences ------------------------------------------------------------------------------ */
@@ -52,7 +58,7 @@ static void add_weight(four *f, unsigned bone, double weight) {
 
 /* 65535 together: what rounding leaves goes to the largest. Nothing at all: a bone behind the last. */
 static masu_bake_influence quantised(const four *f, unsigned bones) {
-    masu_bake_influence out = {{(uint16_t)bones, 0, 0, 0}, {65535, 0, 0, 0}};
+    masu_bake_influence out = {{(uint16_t)bones, 0, 0, 0}, {65535, 0, 0, 0}, 0};
     double sum = 0;
     unsigned left = 65535;
     for (int k = 0; k < 4; k++) sum += f->weights[k];
@@ -82,7 +88,8 @@ static masu_bake_influence *influences_of(masu_import *m, const struct aiMesh *m
     for (unsigned i = 0; i < mesh->mNumVertices; i++) {
         out[i] = quantised(&all[i], mesh->mNumBones);
         m->crowded += all[i].count > 4;
-        m->unbound += all[i].count == 0;
+        m->unbound += all[i].count == 0 && mesh->mNumBones;
+        if (target_count(m, mesh)) out[i].source = i;
     }
     free(all);
     return out;
@@ -166,9 +173,95 @@ static void grow(masu_blob_joint *joint, const float p[3]) {
     joint->used = 1;
 }
 
+/* ---- Morph targets --------------------------------------------------------------------------- */
+
+/* Where a vertex of the skin is in the file. */
+typedef struct origin {
+    const struct aiMesh *mesh;
+    uint32_t vertex;
+} origin;
+
+static masu_bake_vec3 vector_of(const struct aiVector3D *v) {
+    return masu_bake_v3((double)v->x, (double)v->y, (double)v->z);
+}
+
+/* What a target adds to a vertex; nothing where it is not finite. */
+static void delta_of(const origin *o, unsigned target, masu_bake_vec3 *position, masu_bake_vec3 *normal) {
+    const struct aiAnimMesh *t = target < o->mesh->mNumAnimMeshes ? o->mesh->mAnimMeshes[target] : NULL;
+    *position = *normal = masu_bake_v3(0, 0, 0);
+    if (!t || o->vertex >= t->mNumVertices || o->vertex >= o->mesh->mNumVertices) return;
+    if (t->mVertices)
+        *position = masu_bake_sub(vector_of(&t->mVertices[o->vertex]), vector_of(&o->mesh->mVertices[o->vertex]));
+    if (t->mNormals && o->mesh->mNormals)
+        *normal = masu_bake_sub(vector_of(&t->mNormals[o->vertex]), vector_of(&o->mesh->mNormals[o->vertex]));
+    if (!masu_bake_sane(*position)) *position = masu_bake_v3(0, 0, 0);
+    if (!masu_bake_sane(*normal)) *normal = masu_bake_v3(0, 0, 0);
+}
+
+static uint32_t packed_normal(masu_bake_vec3 n) {
+    const double all[3] = {n.x, n.y, n.z};
+    uint32_t out = 0;
+    for (int k = 0; k < 3; k++) {
+        double most = k < 2 ? 1023 : 511, v = fmax(-1, fmin(1, all[k] / 2)) * most;
+        out |= ((uint32_t)(int32_t)floor(v + 0.5) & (k < 2 ? 0x7FFu : 0x3FFu)) << 11 * k;
+    }
+    return out;
+}
+
+/* At the weights that the file rests with. */
+static void rest_morphed(const origin *o, unsigned targets, masu_blob_vertex *v) {
+    masu_bake_vec3 p = masu_bake_v3f(v->position), n = masu_bake_decode_normal(v->normal);
+    bool any = false;
+    for (unsigned t = 0; t < targets && t < o->mesh->mNumAnimMeshes; t++) {
+        masu_bake_vec3 position, normal;
+        double weight = o->mesh->mAnimMeshes[t] ? (double)o->mesh->mAnimMeshes[t]->mWeight : 0;
+        if (!(fabs(weight) <= (double)MASU_MORPH_WEIGHT_MAX) || weight == 0) continue;
+        delta_of(o, t, &position, &normal);
+        p = masu_bake_mad(p, position, weight);
+        n = masu_bake_mad(n, normal, weight);
+        any = true;
+    }
+    if (!any) return;
+    masu_bake_store(p, v->position);
+    if (masu_bake_normalize(&n)) masu_bake_encode_normal(n, v->normal);
+}
+
+/* After all parts of a skin: targets are those of the mesh that has most. */
+static void add_targets(masu_import *m, const origin *origins, masu_blob_skin *skin) {
+    masu_bake_content *c = m->piece;
+    const struct aiMesh *most = NULL;
+    for (uint32_t k = 0; k < skin->vertex_count; k++) {
+        if (!most || target_count(m, origins[k].mesh) > target_count(m, most)) most = origins[k].mesh;
+    }
+    skin->target_count = most ? target_count(m, most) : 0;
+    skin->first_target = (uint32_t)masu_bake_count(c, MASU_BLOB_MORPH_TARGETS);
+    skin->first_delta = (uint32_t)masu_bake_count(c, MASU_BLOB_MORPH_DELTAS);
+    for (unsigned t = 0; t < skin->target_count; t++) {
+        const struct aiAnimMesh *from = most->mAnimMeshes[t];
+        masu_blob_morph_target target = {.name = MASU_BLOB_NONE};
+        if (from) target.name = masu_bake_name(c, from->mName.data, (size_t)masu_import_length(&from->mName));
+        if (from && fabsf(from->mWeight) <= MASU_MORPH_WEIGHT_MAX) target.weight = from->mWeight;
+        for (uint32_t k = 0; k < skin->vertex_count; k++) {
+            masu_bake_vec3 position, normal;
+            masu_blob_morph_delta delta;
+            delta_of(&origins[k], t, &position, &normal);
+            masu_bake_store(position, delta.position);
+            delta.normal = packed_normal(normal);
+            for (int i = 0; i < 3; i++) {
+                target.low[i] = fminf(target.low[i], delta.position[i]);
+                target.high[i] = fmaxf(target.high[i], delta.position[i]);
+            }
+            masu_bake_append(&c->section[MASU_BLOB_MORPH_DELTAS], &delta, sizeof delta);
+        }
+        masu_bake_append(&c->section[MASU_BLOB_MORPH_TARGETS], &target, sizeof target);
+    }
+}
+
+/* ---- Parts ----------------------------------------------------------------------------------- */
+
 /* A part of a bent mesh, in the piece: its vertices at rest, its triangles. base: its joints among the skin's. */
 static bool copy_part(masu_import *m, const masu_blob_primitive *from, uint32_t first_joint,
-                      uint32_t base) {
+                      uint32_t base, const struct aiMesh *mesh, masu_bake_buffer *origins) {
     masu_bake_content *to = m->piece;
     masu_blob_primitive part = *from;
     masu_blob_joint *joints = MASU_BAKE_ARRAY(to, MASU_BLOB_JOINTS, masu_blob_joint) + first_joint;
@@ -183,7 +276,11 @@ static bool copy_part(masu_import *m, const masu_blob_primitive *from, uint32_t 
             v.weights[i] = by.weights[i];
             if (by.weights[i]) grow(&joints[v.joints[i]], v.rest.position);
         }
-        masu_blob_vertex made = at_rest(m, &v, joints);
+        origin o = {mesh, by.source};
+        masu_bake_append(origins, &o, sizeof o);
+        masu_blob_skin_vertex morphed = v;
+        rest_morphed(&o, target_count(m, mesh), &morphed.rest);
+        masu_blob_vertex made = at_rest(m, &morphed, joints);
         if (!masu_bake_sane(masu_bake_v3f(made.position))) return false;
         for (int i = 0; i < 3; i++) {
             float p = made.position[i];
@@ -194,6 +291,7 @@ static bool copy_part(masu_import *m, const masu_blob_primitive *from, uint32_t 
         masu_bake_append(&to->section[MASU_BLOB_TEXCOORDS],
                          MASU_BAKE_ARRAY(&m->bent, MASU_BLOB_TEXCOORDS, float) + 2 * (size_t)at,
                          2 * sizeof(float));
+        masu_bake_copy_attributes(to, &m->bent, at, 1);
         masu_bake_append(&to->section[MASU_BLOB_SKIN_VERTICES], &v, sizeof v);
     }
     masu_bake_append(&to->section[MASU_BLOB_INDICES],
@@ -221,7 +319,8 @@ static void back_to(masu_bake_content *c, const mark *here) {
 }
 
 /* Of a node that shows meshes with bones: their joints together are a skin. False: nothing of it can be drawn. */
-static bool make_skin(masu_import *m, uint32_t node, masu_blob_skin *skin, uint32_t *instance) {
+static bool make_skin(masu_import *m, uint32_t node, masu_blob_skin *skin, uint32_t *instance,
+                      masu_bake_buffer *origins) {
     masu_bake_content *c = m->piece;
     const struct aiNode *source = NODES(m)[node].node;
     uint32_t first = (uint32_t)masu_bake_count(c, MASU_BLOB_PRIMITIVES);
@@ -239,7 +338,7 @@ static bool make_skin(masu_import *m, uint32_t node, masu_blob_skin *skin, uint3
         for (uint32_t k = 0; k < m->mesh_parts[mesh].count; k++) {
             const masu_blob_primitive *part =
                 &MASU_BAKE_PRIMITIVES(&m->bent)[m->mesh_parts[mesh].first + k];
-            if (!copy_part(m, part, skin->first_joint, base)) return false;
+            if (!copy_part(m, part, skin->first_joint, base, m->source->mMeshes[mesh], origins)) return false;
         }
     }
     uint32_t count = (uint32_t)masu_bake_count(c, MASU_BLOB_PRIMITIVES) - first;
@@ -251,6 +350,7 @@ static bool make_skin(masu_import *m, uint32_t node, masu_blob_skin *skin, uint3
                                    MASU_BLOB_NONE, name);
     skin->joint_count = (uint32_t)masu_bake_count(c, MASU_BLOB_JOINTS) - skin->first_joint;
     skin->vertex_count = (uint32_t)masu_bake_count(c, MASU_BLOB_VERTICES) - skin->first_vertex;
+    add_targets(m, (const origin *)(const void *)origins->data, skin);
     return true;
 }
 
@@ -269,8 +369,12 @@ static void make_skins(masu_import *m, masu_bake_buffer *instances) {
         uint32_t instance = MASU_BLOB_NONE;
         if (!shows_bent(m, NODES(m)[n].node)) continue;
         mark here = mark_of(m->piece);
-        if (make_skin(m, n, &skin, &instance)) {
+        masu_bake_buffer origins = {0};
+        bool good = make_skin(m, n, &skin, &instance, &origins);
+        masu_bake_release(&origins);
+        if (good) {
             masu_bake_append(&m->piece->section[MASU_BLOB_SKINS], &skin, sizeof skin);
+            masu_bake_append(&m->skin_nodes, &n, sizeof n);
             masu_bake_append(instances, &instance, sizeof instance);
         } else {
             back_to(m->piece, &here);
@@ -361,11 +465,39 @@ static void add_tracks(const struct aiNodeAnim *from, uint32_t node, double tick
     add_track(tracks, &scales);
 }
 
+/* Weights are of skins' nodes, which come last. */
 static int by_node(const void *a, const void *b) {
     const track *x = a, *y = b;
+    int weighs[2] = {x->channel.path == MASU_CHANNEL_WEIGHT, y->channel.path == MASU_CHANNEL_WEIGHT};
+    if (weighs[0] != weighs[1]) return weighs[0] - weighs[1];
     if (x->channel.node != y->channel.node) return x->channel.node < y->channel.node ? -1 : 1;
     if (x->channel.path != y->channel.path) return x->channel.path < y->channel.path ? -1 : 1;
+    if (x->channel.target != y->channel.target) return x->channel.target < y->channel.target ? -1 : 1;
     return x->order < y->order ? -1 : 1;
+}
+
+/* Of the targets of the skin that a node shows. Assimp's name may have "*" and a number behind the node's. */
+static void add_weights(masu_import *m, const struct aiMeshMorphAnim *from, double tick, masu_bake_buffer *tracks) {
+    struct aiString name = from->mName;
+    char *star = memchr(name.data, '*', (size_t)masu_import_length(&name));
+    if (star) name.length = (ai_uint32)(star - name.data);
+    uint32_t node = find_node(m, &name);
+    const uint32_t *skins = (const uint32_t *)(const void *)m->skin_nodes.data;
+    for (uint32_t s = 0; s < m->skin_nodes.bytes / sizeof *skins; s++) {
+        const masu_blob_skin *skin = &MASU_BAKE_ARRAY(m->piece, MASU_BLOB_SKINS, const masu_blob_skin)[s];
+        if (skins[s] != node) continue;
+        for (uint32_t t = 0; t < skin->target_count; t++) {
+            track weights = {.channel = {.node = s, .path = MASU_CHANNEL_WEIGHT, .target = t}};
+            for (unsigned k = 0; from->mKeys && k < from->mNumKeys; k++) {
+                const struct aiMeshMorphKey *key = &from->mKeys[k];
+                for (unsigned i = 0; key->mValues && key->mWeights && i < key->mNumValuesAndWeights; i++) {
+                    const double value[4] = {(double)masu_import_clamped(key->mWeights[i], -1e6, 1e6), 0, 0, 0};
+                    if (key->mValues[i] == t) add_key(&weights, key->mTime * tick, value, 1);
+                }
+            }
+            add_track(tracks, &weights);
+        }
+    }
 }
 
 /* Channels are of the file's nodes until these have their numbers. */
@@ -378,6 +510,9 @@ static void make_clip(masu_import *m, const struct aiAnimation *from) {
                                            : MASU_BLOB_NONE;
         if (node != MASU_BLOB_NONE) add_tracks(from->mChannels[i], node, tick, &tracks);
     }
+    for (unsigned i = 0; from->mMorphMeshChannels && i < from->mNumMorphMeshChannels; i++) {
+        if (from->mMorphMeshChannels[i]) add_weights(m, from->mMorphMeshChannels[i], tick, &tracks);
+    }
     size_t count = tracks.bytes / sizeof(track);
     track *all = (track *)(void *)tracks.data;
     if (count) qsort(all, count, sizeof *all, by_node);
@@ -387,7 +522,8 @@ static void make_clip(masu_import *m, const struct aiAnimation *from) {
         .name = masu_bake_name(c, from->mName.data, (size_t)masu_import_length(&from->mName))};
     for (size_t i = 0; i < count; i++) {
         masu_blob_channel channel = all[i].channel;
-        if (i && channel.node == all[i - 1].channel.node && channel.path == all[i - 1].channel.path)
+        if (i && channel.node == all[i - 1].channel.node && channel.path == all[i - 1].channel.path &&
+            channel.target == all[i - 1].channel.target)
             continue;
         channel.first_key = (uint32_t)masu_bake_count(c, MASU_BLOB_KEYS);
         channel.key_count = (uint32_t)(all[i].keys.bytes / sizeof(masu_blob_key));
@@ -396,7 +532,7 @@ static void make_clip(masu_import *m, const struct aiAnimation *from) {
         const masu_blob_key *keys = (const masu_blob_key *)(const void *)all[i].keys.data;
         clip.duration = fmaxf(clip.duration, keys[channel.key_count - 1].time);
         clip.channel_count++;
-        NODES(m)[channel.node].needed = true;
+        if (channel.path != MASU_CHANNEL_WEIGHT) NODES(m)[channel.node].needed = true;
     }
     for (size_t i = 0; i < count; i++) {
         m->unordered += all[i].unordered;
@@ -476,7 +612,9 @@ void masu_import_live(masu_import *m) {
         joints[j].node = NODES(m)[joints[j].node].number;
     masu_blob_channel *channels = MASU_BAKE_ARRAY(c, MASU_BLOB_CHANNELS, masu_blob_channel);
     for (uint64_t k = 0; k < masu_bake_count(c, MASU_BLOB_CHANNELS); k++)
-        channels[k].node = NODES(m)[channels[k].node].number;
+        channels[k].node = channels[k].path == MASU_CHANNEL_WEIGHT
+                               ? channels[k].node + (uint32_t)masu_bake_count(c, MASU_BLOB_MODEL_NODES)
+                               : NODES(m)[channels[k].node].number;
     for (uint32_t i = 0; i < instances.bytes / sizeof(uint32_t); i++) {
         uint32_t instance = ((const uint32_t *)(const void *)instances.data)[i];
         masu_blob_skin *skin = &MASU_BAKE_ARRAY(c, MASU_BLOB_SKINS, masu_blob_skin)[i];
@@ -489,6 +627,7 @@ void masu_import_live(masu_import *m) {
 
 void masu_import_forget(masu_import *m) {
     static const int kinds[] = {MASU_BLOB_MODEL_NODES, MASU_BLOB_CLIPS,  MASU_BLOB_CHANNELS, MASU_BLOB_KEYS,
-                                MASU_BLOB_SKINS,       MASU_BLOB_JOINTS, MASU_BLOB_SKIN_VERTICES};
+                                MASU_BLOB_SKINS,       MASU_BLOB_JOINTS, MASU_BLOB_SKIN_VERTICES,
+                                MASU_BLOB_MORPH_TARGETS, MASU_BLOB_MORPH_DELTAS};
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) masu_bake_release(&m->piece->section[kinds[i]]);
 }

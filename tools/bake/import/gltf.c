@@ -235,24 +235,13 @@ static bool parse(masu_gltf *g) {
 /* ---- extensions ---- */
 
 static bool is_read(const char *extension) {
-    static const char *const names[] = {"EXT_mesh_gpu_instancing",
-                                        "EXT_meshopt_compression",
-                                        "EXT_texture_webp",
-                                        "KHR_draco_mesh_compression",
-                                        "KHR_lights_punctual",
-                                        "KHR_materials_clearcoat",
-                                        "KHR_materials_emissive_strength",
-                                        "KHR_materials_ior",
-                                        "KHR_materials_pbrSpecularGlossiness",
-                                        "KHR_materials_specular",
-                                        "KHR_materials_transmission",
-                                        "KHR_materials_unlit",
-                                        "KHR_materials_variants",
-                                        "KHR_mesh_quantization",
-                                        "KHR_texture_basisu", /* its pictures are warned of */
-                                        "KHR_texture_transform",
-                                        "KHR_xmp_json_ld", /* about the file */
-                                        "MSFT_texture_dds"};
+#define FEATURE(what, read, dropped)
+#define EXTENSION(name, read, dropped) name,
+    static const char *const names[] = {
+#include "bake/import/gltf_features.inc"
+    };
+#undef FEATURE
+#undef EXTENSION
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         if (strcmp(extension, names[i]) == 0) return true;
     }

@@ -43,6 +43,8 @@ typedef struct masu_gltf_material {
     masu_import_given given;
     int set;         /* of the texture coordinates: TEXCOORD_n */
     double uv[6];    /* rows of what turns them into those of its pictures */
+    int second_set;      /* the same of the maps of given.maps.second */
+    double second_uv[6];
     double alpha;    /* of the base colour */
     bool blends, unlit;
 } masu_gltf_material;
@@ -60,6 +62,7 @@ typedef struct masu_gltf {
     const char *path;        /* NULL: of bytes alone, without files beside them */
     const char *variant;     /* of KHR_materials_variants, or NULL */
     masu_bake_textures wanted;
+    bool moving, plays;      /* morph targets are kept: always, or if there are animations */
     masu_bake_content *piece; /* gets pictures */
     masu_bake_buffer *warnings, *error;
     json_t *root;
@@ -165,8 +168,9 @@ void masu_gltf_draco_close(masu_gltf_draco *draco);
 /* ---- the others; false: failed ---- */
 
 bool masu_gltf_read_materials(masu_gltf *g);
-/* The number that an aiMesh has for a material of the file under a colour (linear, with alpha); -1: the default. */
-unsigned masu_gltf_given(masu_gltf *g, json_int_t material, const double color[4]);
+/* The number that an aiMesh has for a material of the file under a colour (linear, with alpha); -1: the default.
+ * colored: MASU_BAKE_COLORED_*, of its vertices. */
+unsigned masu_gltf_given(masu_gltf *g, json_int_t material, const double color[4], int colored);
 /* The aiMeshes of a mesh of the file under a skin and a node's morph weights. */
 bool masu_gltf_make_mesh(masu_gltf *g, json_int_t mesh, json_int_t skin, const json_t *weights,
                          const masu_gltf_made **out);

@@ -136,6 +136,37 @@ static struct aiNodeAnim *channel_of(masu_gltf *g, const keys *k, int path, cons
     return out;
 }
 
+/* A channel of weights: of each target one of Assimp's, with that target alone. */
+static void add_weights(masu_gltf *g, const float *times, uint32_t count, const float *values, uint32_t targets,
+                        int how, const struct aiNode *node, struct aiAnimation *out) {
+    struct aiMeshMorphAnim **all = masu_gltf_take(g, out->mNumMorphMeshChannels + (size_t)targets, sizeof *all);
+    uint32_t parts = how == CUBIC ? 3 : 1;
+    float *own = masu_gltf_take(g, (size_t)count * parts + 1, sizeof *own);
+    if (out->mNumMorphMeshChannels)
+        memcpy(all, out->mMorphMeshChannels, out->mNumMorphMeshChannels * sizeof *all);
+    for (uint32_t t = 0; t < targets; t++) {
+        keys k = {.components = 1};
+        for (size_t i = 0; i < (size_t)count * parts; i++) own[i] = values[i * targets + t];
+        make_keys(&k, times, count, own, how);
+        const double *key = (const double *)(const void *)k.all.data;
+        struct aiMeshMorphAnim *made = masu_gltf_take(g, 1, sizeof *made);
+        made->mName = node->mName;
+        made->mNumKeys = (unsigned)(k.all.bytes / (5 * sizeof *key));
+        made->mKeys = masu_gltf_take(g, made->mNumKeys, sizeof *made->mKeys);
+        unsigned *number = masu_gltf_take(g, 1, sizeof *number);
+        double *weights = masu_gltf_take(g, made->mNumKeys, sizeof *weights);
+        *number = t;
+        for (unsigned i = 0; i < made->mNumKeys; i++, key += 5) {
+            weights[i] = key[1];
+            made->mKeys[i] = (struct aiMeshMorphKey){
+                .mTime = key[0], .mValues = number, .mWeights = &weights[i], .mNumValuesAndWeights = 1};
+        }
+        all[out->mNumMorphMeshChannels++] = made;
+        masu_bake_release(&k.all);
+    }
+    out->mMorphMeshChannels = all;
+}
+
 static int find_path(const char *path) {
     static const char *const paths[] = {"translation", "rotation", "scale"};
     for (int i = 0; path && i < 3; i++) {
@@ -144,8 +175,9 @@ static int find_path(const char *path) {
     return -1;
 }
 
-/* NULL without failure: it moves nothing that can move. */
-static struct aiNodeAnim *read_channel(masu_gltf *g, const json_t *clip, const json_t *channel, double *end) {
+/* NULL without failure: it moves nothing that can move, or weights, which are in the clip then. */
+static struct aiNodeAnim *read_channel(masu_gltf *g, const json_t *clip, const json_t *channel,
+                                       struct aiAnimation *clip_made) {
     const json_t *target = masu_gltf_object(g, channel, "target");
     const json_t *samplers = masu_gltf_array(g, clip, "samplers");
     json_int_t node = -1, sampler = -1, input = -1, output = -1;
@@ -158,11 +190,9 @@ static struct aiNodeAnim *read_channel(masu_gltf *g, const json_t *clip, const j
     const json_t *about = sampler < 0 ? NULL : json_array_get(samplers, (size_t)sampler);
     const char *how = masu_gltf_string(g, about, "interpolation");
     int kind = !how || !strcmp(how, "LINEAR") ? LINEAR : !strcmp(how, "STEP") ? STEP : CUBIC;
-    if (path && strcmp(path, "weights") == 0)
-        masu_gltf_note_one(g, "animation channels change morph weights, which are not animated",
-                           g->where);
-    keys k = {.components = find_path(path) == 1 ? 4 : 3};
-    if (find_path(path) < 0 || node < 0 || !about || masu_gltf_failed(g)) return NULL;
+    bool weighs = path && strcmp(path, "weights") == 0;
+    keys k = {.components = find_path(path) == 1 ? 4 : weighs ? 1 : 3};
+    if ((find_path(path) < 0 && !weighs) || node < 0 || !about || masu_gltf_failed(g)) return NULL;
     if (!masu_gltf_index(g, about, "input", accessors, &input) ||
         !masu_gltf_index(g, about, "output", accessors, &output))
         return NULL;
@@ -173,12 +203,19 @@ static struct aiNodeAnim *read_channel(masu_gltf *g, const json_t *clip, const j
     const float *in = masu_gltf_floats(g, input, 1, &times, NULL);
     const float *out = in ? masu_gltf_floats(g, output, k.components, &values, NULL) : NULL;
     if (!out) return NULL;
-    if ((uint64_t)times * (kind == CUBIC ? 3 : 1) > values) {
+    uint64_t needed = (uint64_t)times * (kind == CUBIC ? 3 : 1);
+    if (needed > values) {
         masu_gltf_fail(g, "samplers[%lld] has %u times and %u values", (long long)sampler, times, values);
         return NULL;
     }
+    for (uint32_t i = 0; i < times; i++) clip_made->mDuration = fmax(clip_made->mDuration, (double)in[i]);
+    if (weighs) {
+        uint64_t targets = needed ? values / needed : 0;
+        if (targets <= MASU_BLOB_MORPH_TARGETS_MAX)
+            add_weights(g, in, times, out, (uint32_t)targets, kind, &g->nodes[node], clip_made);
+        return NULL;
+    }
     make_keys(&k, in, times, out, kind);
-    for (uint32_t i = 0; i < times; i++) *end = fmax(*end, (double)in[i]);
     struct aiNodeAnim *made = channel_of(g, &k, find_path(path), &g->nodes[node]);
     masu_bake_release(&k.all);
     return made;
@@ -190,7 +227,7 @@ static bool read_clip(masu_gltf *g, const json_t *clip, size_t index, struct aiA
     out->mTicksPerSecond = 1;
     out->mChannels = masu_gltf_take(g, json_array_size(channels), sizeof *out->mChannels);
     for (size_t i = 0; i < json_array_size(channels) && !masu_gltf_failed(g); i++) {
-        struct aiNodeAnim *made = read_channel(g, clip, json_array_get(channels, i), &out->mDuration);
+        struct aiNodeAnim *made = read_channel(g, clip, json_array_get(channels, i), out);
         if (made) out->mChannels[out->mNumChannels++] = made;
     }
     return !masu_gltf_failed(g);

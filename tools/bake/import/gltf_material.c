@@ -1,17 +1,18 @@
 /* gltf_material.c: materials of a glTF file and the names of their pictures; see gltf.h.
  *
  * A mesh has one set of texture coordinates here. It is that of the base colour, else of the first map that there
- * is, with its transform worked in (gltf_mesh.c). A map that wants other coordinates is left out, with a note; but
- * where all but colour and emission are repeated so many times more often, the material's detail says it.
+ * is, with its transform worked in (gltf_mesh.c); and a second one for opaque materials, of the first map that wants
+ * other coordinates. A map that wants neither is left out, with a note; but where all but colour and emission are repeated so many times more often, the material's detail says it.
  *
  * A coat has the mesh's normal where it names no picture, and one picture of normals is what a surface has: coat and base
  * have the same one, or only one of them has any; of two different ones the coat's is left out, with a note.
  *
  * What has no counterpart is brought near, and a note says so: glass of KHR_materials_transmission
- * is thin, and what shines through has its base colour; unlit surfaces emit their colour; specular
+ * is thin, what shines through has its base colour and what KHR_materials_volume leaves of it; unlit surfaces emit their colour; specular
  * and glossiness become metallic and roughness, as the appendix of that extension has it. */
 #include "bake/import/gltf.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -19,7 +20,7 @@ typedef struct texture {
     uint32_t image;
     int set;
     double uv[6];
-    uint8_t wrap[2];
+    uint8_t wrap[2], nearest; /* compared as bytes */
 } texture;
 
 /* ---- pictures ---- */
@@ -86,11 +87,7 @@ static bool read_sampler(masu_gltf *g, const json_t *about, texture *t) {
         !masu_gltf_size(g, sampler, "magFilter", &filter))
         return false;
     for (int k = 0; k < 2; k++) t->wrap[k] = wrap[k] == 33071 ? 1 : wrap[k] == 33648 ? 2 : 0;
-    if (filter == 9728) {
-        masu_gltf_note_one(g,
-                           "textures request nearest-neighbour filtering, which is not supported",
-                           masu_gltf_name_of(g, "samplers", (size_t)index, sampler));
-    }
+    t->nearest = filter == 9728;
     return true;
 }
 
@@ -169,9 +166,44 @@ static void leave_out(masu_gltf *g, texture *t, const char *why) {
     t->image = MASU_BLOB_NONE;
 }
 
+/* Maps that share a texture of a set (blob.h): they have the same coordinates. */
+static uint8_t slot_of(int map) {
+    static const uint8_t slots[MASU_BAKE_MAPS] = {
+        [MASU_BAKE_BASE] = MASU_SLOT_BASE,           [MASU_BAKE_OPACITY] = MASU_SLOT_BASE,
+        [MASU_BAKE_NORMAL] = MASU_SLOT_NORMAL,       [MASU_BAKE_ROUGHNESS] = MASU_SLOT_SURFACE,
+        [MASU_BAKE_METALLIC] = MASU_SLOT_SURFACE,    [MASU_BAKE_EMISSIVE] = MASU_SLOT_EMISSIVE,
+        [MASU_BAKE_OCCLUSION] = MASU_SLOT_OCCLUSION, [MASU_BAKE_COAT] = MASU_SLOT_COAT,
+        [MASU_BAKE_COAT_ROUGHNESS] = MASU_SLOT_COAT};
+    return slots[map];
+}
+
+/* A second set for maps that do not use the first: that of the first of them. What is blended has none. */
+static void use_second(masu_gltf *g, const maps *m, int map, const texture **second, masu_gltf_material *out, bool *used) {
+    const texture *t = &m->all[map];
+    double own[2];
+    uint8_t slot = slot_of(map);
+    *used = false;
+    if (out->blends || out->unlit || (slot == MASU_SLOT_BASE)) return;
+    if (*second && !(repeats(*second, t, own) && near(own[0], 1) && near(own[1], 1))) return;
+    for (size_t i = 0; i < ORDER; i++) { /* of the same texture all or none */
+        const texture *other = &m->all[order[i]];
+        if (slot_of(order[i]) != slot || other->image == MASU_BLOB_NONE) continue;
+        if (!(repeats(t, other, own) && near(own[0], 1) && near(own[1], 1))) return;
+    }
+    if (!*second) {
+        out->second_set = t->set;
+        memcpy(out->second_uv, t->uv, sizeof out->second_uv);
+        *second = t;
+    }
+    out->given.maps.second |= (uint8_t)(1u << slot);
+    *used = true;
+    (void)g;
+}
+
 /* One set of coordinates for all; returns the map that has it, or NULL. */
-static const texture *agree(masu_gltf *g, maps *m, float detail[2]) {
-    const texture *first = NULL;
+static const texture *agree(masu_gltf *g, maps *m, masu_gltf_material *out) {
+    float *detail = out->given.material.detail;
+    const texture *first = NULL, *second = NULL;
     double times[2] = {1, 1};
     bool scaled = true;
     for (size_t i = 0; i < ORDER && !first; i++) {
@@ -187,19 +219,23 @@ static const texture *agree(masu_gltf *g, maps *m, float detail[2]) {
         seen = 1;
     }
     if (!scaled) times[0] = times[1] = 1;
+    bool whole = times[0] == 1 && times[1] == 1;
     for (size_t i = 0; i < ORDER; i++) {
         texture *t = &m->all[order[i]];
         double own[2] = {0, 0};
         if (t->image == MASU_BLOB_NONE) continue;
         bool same = repeats(first, t, own) && near(own[0], i < 2 ? 1 : times[0]) &&
                     near(own[1], i < 2 ? 1 : times[1]);
-        if (!same)
+        bool used = false;
+        if (!same && whole) use_second(g, m, order[i], &second, out, &used);
+        if (!same && !used)
             leave_out(
                 g, t,
                 "textures use other coordinates than the base colour of their material: ignored");
-        else if (memcmp(t->wrap, first->wrap, sizeof t->wrap) != 0)
+        if (t->image != MASU_BLOB_NONE &&
+            (memcmp(t->wrap, first->wrap, sizeof t->wrap) != 0 || t->nearest != first->nearest))
             masu_gltf_note_one(g,
-                               "textures have another wrap mode than the base colour of their "
+                               "textures have another wrap mode or filter than the base colour of their "
                                "material, which is used",
                                g->where);
     }
@@ -212,7 +248,7 @@ static void settle(masu_gltf *g, maps *m, masu_gltf_material *out) {
     static const uint8_t channel[MASU_BAKE_MAPS] = {
         [MASU_BAKE_ROUGHNESS] = 1, [MASU_BAKE_METALLIC] = 2, [MASU_BAKE_COAT_ROUGHNESS] = 1};
     masu_bake_maps *to = &out->given.maps;
-    const texture *first = agree(g, m, out->given.material.detail);
+    const texture *first = agree(g, m, out);
     for (size_t i = 0; i < ORDER; i++) {
         int map = order[i];
         to->image[map] = m->all[map].image;
@@ -221,6 +257,7 @@ static void settle(masu_gltf *g, maps *m, masu_gltf_material *out) {
     if (to->gloss) to->channel[MASU_BAKE_ROUGHNESS] = 3;
     if (!first) return;
     memcpy(to->wrap, first->wrap, sizeof to->wrap);
+    to->nearest = first->nearest;
     memcpy(out->uv, first->uv, sizeof out->uv);
     out->set = first->set;
 }
@@ -433,6 +470,22 @@ static bool read_coat(masu_gltf *g, const json_t *about, masu_blob_material *to,
            read_texture(g, coat, "clearcoatRoughnessTexture", &m->all[MASU_BAKE_COAT_ROUGHNESS]);
 }
 
+/* KHR_materials_volume: the light that is left after the thickness, as a factor for each of the two surfaces that a ray
+ * crosses. The refraction of the ray is not followed. */
+static bool read_volume(masu_gltf *g, const json_t *about, float color[3]) {
+    const json_t *volume = masu_gltf_extension(g, about, "KHR_materials_volume");
+    double thickness = 0, distance = 0, left[3] = {1, 1, 1};
+    if (!masu_gltf_number(g, volume, "thicknessFactor", &thickness) ||
+        !masu_gltf_number(g, volume, "attenuationDistance", &distance) ||
+        !masu_gltf_numbers(g, volume, "attenuationColor", 3, left))
+        return false;
+    note_texture(g, volume, "thicknessTexture");
+    if (!(thickness > 0 && distance > 0)) return true;
+    limit_all(g, left, 3, 1, "attenuationColor");
+    for (int k = 0; k < 3; k++) color[k] *= (float)pow(left[k], 0.5 * thickness / distance);
+    return true;
+}
+
 /* Of what shines through a share is coloured; the alpha of the base colour counts where it is blended anyway. */
 static bool read_transmission(masu_gltf *g, const json_t *about, masu_gltf_material *out) {
     const json_t *through = masu_gltf_extension(g, about, "KHR_materials_transmission");
@@ -448,10 +501,7 @@ static bool read_transmission(masu_gltf *g, const json_t *about, masu_gltf_mater
             g->where);
         return true;
     }
-    if (to->roughness > 0)
-        masu_gltf_note_one(
-            g, "materials transmit light and are rough: what is behind them is drawn sharp",
-            g->where);
+    if (!read_volume(g, about, to->base_color)) return false;
     out->alpha = (out->blends ? out->alpha : 1) * (1 - factor);
     out->given.maps.tinted = 1;
     out->blends = true;
@@ -521,7 +571,7 @@ bool masu_gltf_read_materials(masu_gltf *g) {
     return true;
 }
 
-unsigned masu_gltf_given(masu_gltf *g, json_int_t material, const double color[4]) {
+unsigned masu_gltf_given(masu_gltf *g, json_int_t material, const double color[4], int colored) {
     const masu_gltf_material *from = &g->materials[material < 0 ? g->material_count : (size_t)material];
     masu_import_given made = from->given;
     masu_blob_material *to = &made.material;
@@ -533,7 +583,10 @@ unsigned masu_gltf_given(masu_gltf *g, json_int_t material, const double color[4
         to->base_color[k] = 0;
     }
     if (from->blends) alpha *= (double)masu_import_clamped(color[3], 0, 1);
-    if (from->blends && alpha < 0.999) {
+    made.maps.colored = (uint8_t)(colored && from->blends ? colored : colored != 0);
+    if (colored == MASU_BAKE_COLORED_ALPHA && made.maps.alpha == MASU_BAKE_ALPHA_MASK)
+        masu_gltf_note_one(g, "materials are alpha-tested and have vertex colours with alpha, which is ignored", made.name);
+    if (from->blends && (alpha < 0.999 || made.maps.colored == MASU_BAKE_COLORED_ALPHA)) {
         made.maps.alpha = MASU_BAKE_ALPHA_BLEND;
         to->opacity = masu_import_clamped(alpha, 0, 1);
     }

@@ -1,8 +1,8 @@
 /* gltf_mesh.c: primitives of a glTF file become aiMeshes; see gltf.h.
  *
- * COLOR_0 becomes materials (vertex_color.h).
+ * COLOR_0 becomes materials where it can (vertex_color.h), else colours of vertices.
  *
- * Morph weights are those of the rest pose. Where normals are missing, faces are flat, as glTF wants it. */
+ * Morph targets of models that move become aiAnimMeshes; of others the weights are those of the rest pose. Where normals are missing, faces are flat, as glTF wants it. */
 #include "bake/import/gltf.h"
 #include "bake/import/vertex_color.h"
 
@@ -16,12 +16,19 @@
 /* The vertices of a primitive, `count` of each; NULL: it has none. */
 typedef struct vertices {
     uint32_t count;
-    float *positions, *normals, *texcoords, *colors; /* colors: 4 each */
+    float *positions, *normals, *texcoords, *second, *colors; /* colors: 4 each */
     uint32_t *joints[JOINT_SETS];                    /* 4 each, and weights too */
     float *weights[JOINT_SETS];
     uint32_t *indices;
     uint64_t index_count;
+    struct target *targets; /* of a model that moves */
+    uint32_t target_count;
 } vertices;
+
+/* What a morph target adds; NULL: nothing. */
+typedef struct target {
+    float *positions, *normals;
+} target;
 
 typedef struct source {
     const json_t *primitive, *attributes, *packed; /* packed: Draco's attributes, or NULL */
@@ -111,12 +118,16 @@ static bool read_texcoords(masu_gltf *g, const source *s, const masu_gltf_materi
     unsigned n = 0;
     const double *uv = material->uv;
     if (g->wanted != MASU_BAKE_TEXTURES_FORCED && !masu_bake_has_maps(&material->given.maps)) return true;
-    snprintf(name, sizeof name, "TEXCOORD_%d", material->set);
-    v->texcoords = attribute(g, s, name, 2, 2, v->count, &count, &n);
-    for (size_t i = 0; v->texcoords && i < v->count; i++) {
-        double a = (double)v->texcoords[2 * i], b = (double)v->texcoords[2 * i + 1];
-        v->texcoords[2 * i] = (float)(uv[0] * a + uv[1] * b + uv[2]);
-        v->texcoords[2 * i + 1] = (float)(uv[3] * a + uv[4] * b + uv[5]);
+    for (int set = 0; set < (material->given.maps.second ? 2 : 1) && !masu_gltf_failed(g); set++) {
+        snprintf(name, sizeof name, "TEXCOORD_%d", set ? material->second_set : material->set);
+        if (set) uv = material->second_uv;
+        float *at = attribute(g, s, name, 2, 2, v->count, &count, &n);
+        for (size_t i = 0; at && i < v->count; i++) {
+            double a = (double)at[2 * i], b = (double)at[2 * i + 1];
+            at[2 * i] = (float)(uv[0] * a + uv[1] * b + uv[2]);
+            at[2 * i + 1] = (float)(uv[3] * a + uv[4] * b + uv[5]);
+        }
+        *(set ? &v->second : &v->texcoords) = at;
     }
     return !masu_gltf_failed(g);
 }
@@ -141,6 +152,25 @@ static void note_attributes(masu_gltf *g, const source *s, const masu_gltf_mater
 
 /* ---- morph targets ---- */
 
+static bool keeps_targets(const masu_gltf *g) {
+    return g->moving || (g->plays && masu_gltf_count(g, "animations"));
+}
+
+static bool keep_target(masu_gltf *g, const source *s, const source *from, vertices *v, size_t count, size_t t) {
+    uint32_t found;
+    unsigned n = 0;
+    if (count > MASU_BLOB_MORPH_TARGETS_MAX) {
+        masu_gltf_note_one(g, "primitives have more than 1024 morph targets: ignored", s->name);
+        return true;
+    }
+    if (!v->targets) v->targets = masu_gltf_take(g, count, sizeof *v->targets);
+    v->target_count = (uint32_t)count;
+    v->targets[t].positions = attribute(g, from, "POSITION", 3, 3, v->count, &found, &n);
+    if (v->normals && !masu_gltf_failed(g))
+        v->targets[t].normals = attribute(g, from, "NORMAL", 3, 3, v->count, &found, &n);
+    return !masu_gltf_failed(g);
+}
+
 static bool morph(masu_gltf *g, const source *s, const json_t *weights, vertices *v) {
     const json_t *targets = masu_gltf_array(g, s->primitive, "targets");
     for (size_t t = 0; t < json_array_size(targets); t++) {
@@ -148,8 +178,11 @@ static bool morph(masu_gltf *g, const source *s, const json_t *weights, vertices
         float *const to[] = {v->positions, v->normals};
         double weight = json_number_value(json_array_get(weights, t));
         source target = {.attributes = json_array_get(targets, t), .name = s->name};
-        if (weight == 0) continue;
-        for (int a = 0; a < 2 && to[a]; a++) {
+        if (keeps_targets(g)) {
+            if (!keep_target(g, s, &target, v, json_array_size(targets), t)) return false;
+            weight = 0;
+        }
+        if (weight != 0) for (int a = 0; a < 2 && to[a]; a++) {
             uint32_t count;
             unsigned n = 0;
             const float *from = attribute(g, &target, names[a], 3, 3, v->count, &count, &n);
@@ -211,6 +244,21 @@ static void *spread(masu_gltf *g, const vertices *v, const void *from, size_t by
     return out;
 }
 
+/* The normals of moved faces, less those that they have. */
+static void flatten_target(masu_gltf *g, const vertices *v, target *to) {
+    if (!to->positions) return;
+    to->normals = masu_gltf_take(g, v->count, 12);
+    for (uint32_t i = 0; i + 3 <= v->count; i += 3) {
+        masu_bake_vec3 p[3], from = masu_bake_v3f(v->normals + 3 * (size_t)i);
+        for (int k = 0; k < 3; k++)
+            p[k] = masu_bake_mad(masu_bake_v3f(v->positions + 3 * ((size_t)i + (size_t)k)),
+                                 masu_bake_v3f(to->positions + 3 * ((size_t)i + (size_t)k)), 1);
+        masu_bake_vec3 n = masu_bake_cross(masu_bake_sub(p[1], p[0]), masu_bake_sub(p[2], p[0]));
+        if (!masu_bake_normalize(&n)) n = from;
+        for (int k = 0; k < 3; k++) masu_bake_store(masu_bake_sub(n, from), to->normals + 3 * ((size_t)i + (size_t)k));
+    }
+}
+
 /* Each corner a vertex of its own, with the normal of its face. What is out of range stays so. */
 static void flatten(masu_gltf *g, vertices *v) {
     vertices out = *v;
@@ -218,6 +266,7 @@ static void flatten(masu_gltf *g, vertices *v) {
     out.count = (uint32_t)v->index_count;
     out.positions = spread(g, v, v->positions, 12);
     out.texcoords = spread(g, v, v->texcoords, 8);
+    out.second = spread(g, v, v->second, 8);
     out.colors = spread(g, v, v->colors, 16);
     for (int set = 0; set < JOINT_SETS; set++) {
         out.joints[set] = spread(g, v, v->joints[set], 16);
@@ -234,6 +283,11 @@ static void flatten(masu_gltf *g, vertices *v) {
                                            masu_bake_sub(masu_bake_v3f(p + 6), a));
         if (!masu_bake_normalize(&n)) n = masu_bake_v3(0, 1, 0); /* no area: it is left out */
         for (int k = 0; k < 3; k++) masu_bake_store(n, out.normals + 3 * ((size_t)i + (size_t)k));
+    }
+    if (v->target_count) out.targets = masu_gltf_take(g, v->target_count, sizeof *out.targets);
+    for (uint32_t t = 0; t < v->target_count; t++) {
+        out.targets[t].positions = spread(g, v, v->targets[t].positions, 12);
+        flatten_target(g, &out, &out.targets[t]);
     }
     *v = out;
 }
@@ -305,25 +359,56 @@ static unsigned add_mesh(masu_gltf *g, const vertices *v, const struct aiMesh *l
     return (unsigned)(g->meshes.bytes / sizeof mesh - 1);
 }
 
-/* A mesh for each colour. */
+/* A mesh for each colour, or one whose vertices have them. */
 static void add_parts(masu_gltf *g, const vertices *v, const struct aiMesh *like, json_int_t material,
                       uint32_t triangles, masu_bake_buffer *numbers, const char *name) {
     masu_import_colors colors;
     bool blends = g->materials[material < 0 ? g->material_count : (size_t)material].blends;
     masu_import_group_colors(&g->pool, v->colors, v->count, v->indices, triangles, !blends,
                              &colors);
-    if (!colors.exact) masu_gltf_note_many(g, triangles, MASU_IMPORT_COLORS_MIXED, name);
     if (colors.clamped) masu_gltf_note_many(g, colors.clamped, MASU_IMPORT_COLORS_CLAMPED, name);
+    if (!colors.exact) {
+        static const double white[4] = {1, 1, 1, 1};
+        struct aiMesh colored = *like;
+        int how = colors.translucent ? MASU_BAKE_COLORED_ALPHA : MASU_BAKE_COLORED;
+        colored.mColors[0] = (struct aiColor4D *)(void *)v->colors;
+        unsigned number = add_mesh(g, v, &colored, NULL, triangles, masu_gltf_given(g, material, white, how));
+        masu_bake_append(numbers, &number, sizeof number);
+    }
     for (uint32_t i = 0; i < colors.count; i++) {
         const masu_import_color *c = &colors.groups[i];
         unsigned number = add_mesh(g, v, like, colors.triangles + c->first, c->count,
-                                   masu_gltf_given(g, material, c->color));
+                                   masu_gltf_given(g, material, c->color, MASU_BAKE_COLORED_NOT));
         masu_bake_append(numbers, &number, sizeof number);
     }
 }
 
+/* Assimp has them whole, not as what they add. */
+static struct aiVector3D *moved(masu_gltf *g, const float *base, const float *delta, uint32_t count) {
+    float *to = masu_gltf_take(g, count, 12);
+    if (!base) return NULL;
+    for (size_t i = 0; i < (size_t)count * 3; i++) to[i] = base[i] + (delta ? delta[i] : 0);
+    return (struct aiVector3D *)(void *)to;
+}
+
+static void add_targets(masu_gltf *g, const vertices *v, const json_t *mesh, const json_t *weights, struct aiMesh *to) {
+    const json_t *names = json_object_get(json_object_get(mesh, "extras"), "targetNames");
+    to->mNumAnimMeshes = v->target_count;
+    to->mAnimMeshes = masu_gltf_take(g, v->target_count, sizeof *to->mAnimMeshes);
+    for (uint32_t t = 0; t < v->target_count; t++) {
+        struct aiAnimMesh *made = to->mAnimMeshes[t] = masu_gltf_take(g, 1, sizeof *made);
+        const char *name = json_string_value(json_array_get(names, t));
+        masu_gltf_set_string(&made->mName, name ? name : "");
+        made->mNumVertices = v->count;
+        made->mVertices = moved(g, v->positions, v->targets[t].positions, v->count);
+        made->mNormals = moved(g, v->normals, v->targets[t].normals, v->count);
+        made->mWeight = (float)json_number_value(json_array_get(weights, t));
+    }
+}
+
 static bool add_primitive(masu_gltf *g, const vertices *v, json_int_t material, json_int_t skin,
-                          masu_bake_buffer *numbers, const char *name) {
+                          const json_t *owner, const json_t *weights, masu_bake_buffer *numbers,
+                          const char *name) {
     static const double white[4] = {1, 1, 1, 1};
     struct aiMesh like = {.mNumVertices = v->count,
                           .mVertices = (struct aiVector3D *)(void *)v->positions,
@@ -333,19 +418,21 @@ static bool add_primitive(masu_gltf *g, const vertices *v, json_int_t material, 
         return masu_gltf_fail(g, "more than 2^29 vertices or triangles");
     uint32_t triangles = (uint32_t)(v->index_count / 3);
     if (!triangles) return true;
-    if (v->texcoords) {
-        struct aiVector3D *to = masu_gltf_take(g, v->count, sizeof *to);
-        for (size_t i = 0; i < v->count; i++)
-            to[i] = (struct aiVector3D){v->texcoords[2 * i], v->texcoords[2 * i + 1], 0};
-        like.mTextureCoords[0] = to;
+    for (int set = 0; set < 2; set++) {
+        const float *from = set ? v->second : v->texcoords;
+        struct aiVector3D *to = from ? masu_gltf_take(g, v->count, sizeof *to) : NULL;
+        for (size_t i = 0; to && i < v->count; i++)
+            to[i] = (struct aiVector3D){from[2 * i], from[2 * i + 1], 0};
+        like.mTextureCoords[set] = to;
     }
     if (skin >= 0 && v->joints[0]) add_bones(g, v, skin, &like, name);
+    if (v->target_count && !masu_gltf_failed(g)) add_targets(g, v, owner, weights, &like);
     if (masu_gltf_failed(g)) return false;
     if (v->colors) {
         add_parts(g, v, &like, material, triangles, numbers, name);
         return true;
     }
-    unsigned number = add_mesh(g, v, &like, NULL, triangles, masu_gltf_given(g, material, white));
+    unsigned number = add_mesh(g, v, &like, NULL, triangles, masu_gltf_given(g, material, white, MASU_BAKE_COLORED_NOT));
     masu_bake_append(numbers, &number, sizeof number);
     return true;
 }
@@ -382,8 +469,8 @@ static bool open_draco(masu_gltf *g, source *s) {
            masu_gltf_fail(g, "KHR_draco_mesh_compression: the bytes are damaged");
 }
 
-static bool read_primitive(masu_gltf *g, source *s, unsigned mode, json_int_t skin, const json_t *weights,
-                           masu_bake_buffer *numbers) {
+static bool read_primitive(masu_gltf *g, source *s, unsigned mode, json_int_t skin, const json_t *owner,
+                           const json_t *weights, masu_bake_buffer *numbers) {
     vertices v = {0};
     json_int_t chosen = -1;
     unsigned n = 0;
@@ -403,7 +490,7 @@ static bool read_primitive(masu_gltf *g, source *s, unsigned mode, json_int_t sk
         return false;
     unroll(g, s->packed ? 4 : mode, &v);
     flatten(g, &v);
-    return add_primitive(g, &v, chosen, skin, numbers, s->name);
+    return add_primitive(g, &v, chosen, skin, owner, weights, numbers, s->name);
 }
 
 static bool read_mesh(masu_gltf *g, const json_t *mesh, size_t index, json_int_t skin, const json_t *weights,
@@ -423,7 +510,7 @@ static bool read_mesh(masu_gltf *g, const json_t *mesh, size_t index, json_int_t
         } else if (mode > 6 || !s.attributes) {
             masu_gltf_fail(g, "primitives[%zu] has no attributes or an unknown mode", i);
         } else {
-            read_primitive(g, &s, (unsigned)mode, skin, weights, &numbers);
+            read_primitive(g, &s, (unsigned)mode, skin, mesh, weights, &numbers);
             masu_gltf_draco_close(&s.draco);
         }
     }

@@ -180,12 +180,17 @@ static bool add_camera(masu_gltf *g, const json_t *node, const struct aiNode *at
     const json_t *lens = camera ? masu_gltf_object(g, camera, "perspective") : NULL;
     double height = 0, aspect = 16.0 / 9;
     if (!camera || masu_gltf_failed(g)) return false;
-    if (!lens) {
-        masu_gltf_note_one(g, "cameras without perspective, which are not supported",
+    const json_t *flat = camera ? masu_gltf_object(g, camera, "orthographic") : NULL;
+    double mag[2] = {0, 0};
+    if (!lens && !masu_gltf_number(g, flat, "xmag", &mag[0])) return false;
+    if (!lens && !masu_gltf_number(g, flat, "ymag", &mag[1])) return false;
+    if (!lens && !(mag[0] > 0 && mag[1] > 0)) {
+        masu_gltf_note_one(g, "cameras without perspective or size, which are not supported",
                            at->mName.data);
         return true;
     }
     if (!masu_gltf_number(g, lens, "yfov", &height) || !masu_gltf_number(g, lens, "aspectRatio", &aspect)) return false;
+    if (!lens) aspect = mag[0] / mag[1];
     aspect = aspect > 1e-3 && aspect < 1e3 ? aspect : 16.0 / 9;
     height = (double)masu_import_clamped(height, 0, 3.1);
     struct aiCamera *made = masu_gltf_take(g, 1, sizeof *made);
@@ -193,6 +198,7 @@ static bool add_camera(masu_gltf *g, const json_t *node, const struct aiNode *at
     made->mLookAt.z = -1;
     made->mUp.y = 1;
     made->mAspect = (float)aspect;
+    made->mOrthographicWidth = lens ? 0 : (float)(mag[1] * aspect);
     made->mHorizontalFOV = (float)(2 * atan(tan(height / 2) * aspect));
     masu_bake_append(&g->cameras, &made, sizeof made);
     return true;

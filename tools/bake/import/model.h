@@ -16,6 +16,7 @@ typedef enum masu_bake_textures {
 typedef struct masu_bake_wanted {
     masu_bake_textures textures;
     bool moving;         /* with its clips and skins, and the nodes they need, where it has any */
+    bool plays;          /* the same, but only if the file has clips */
     const char *variant; /* of a glTF file's materials, or NULL */
 } masu_bake_wanted;
 

@@ -18,20 +18,10 @@ static int by_color(const void *a, const void *b) {
     return order ? order : x->triangle < y->triangle ? -1 : x->triangle > y->triangle;
 }
 
-static float level_of(float c, double levels) {
-    double s = sqrt((double)masu_import_clamped((double)c, 0, 1));
-    return (float)(floor(s * levels + 0.5) / levels);
-}
-
-/* Triangles in the order of their colours, of `levels` in each channel (0: as they are). Returns
- * how many colours. */
-static uint32_t sort_colors(const key *means, uint32_t count, double levels, key *out) {
+/* Triangles in the order of their colours. Returns how many colours. */
+static uint32_t sort_colors(const key *means, uint32_t count, key *out) {
     uint32_t colors = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        out[i] = means[i];
-        for (int k = 0; k < 4 && levels > 0; k++)
-            out[i].color[k] = level_of(means[i].color[k], levels);
-    }
+    memcpy(out, means, count * sizeof *out);
     qsort(out, count, sizeof *out, by_color);
     for (uint32_t i = 0; i < count; i++)
         colors += !i || memcmp(out[i].color, out[i - 1].color, sizeof out->color) != 0;
@@ -71,27 +61,20 @@ void masu_import_group_colors(masu_bake_pool *pool, const float *colors, uint32_
     *out =
         (masu_import_colors){.triangles = masu_bake_take(pool, triangles * sizeof *out->triangles)};
     bool plain = mean_colors(colors, vertices, indices, triangles, opaque, means, &out->clamped);
-    double levels = 128;
-    uint32_t count = sort_colors(means, triangles, 0, sorted);
-    bool kept = count <= GROUPS_MAX;
-    while (count > GROUPS_MAX && levels > 1) {
-        count = sort_colors(means, triangles, levels, sorted);
-        levels /= 2;
-    }
+    for (uint32_t i = 0; i < vertices && !opaque; i++)
+        out->translucent = out->translucent || colors[4 * (size_t)i + 3] < 0.999f;
+    uint32_t count = plain ? sort_colors(means, triangles, sorted) : 0;
+    out->exact = plain && count <= GROUPS_MAX;
+    if (!out->exact) return;
     out->groups = masu_bake_take(pool, count * sizeof *out->groups);
-    out->exact = kept && plain;
     for (uint32_t i = 0, next; i < triangles; i = next) {
         masu_import_color *to = &out->groups[out->count++];
-        double sum[4] = {0, 0, 0, 0};
         for (next = i;
              next < triangles && !memcmp(sorted[next].color, sorted[i].color, sizeof sorted->color);
-             next++) {
+             next++)
             out->triangles[next] = sorted[next].triangle;
-            for (int k = 0; k < 4; k++) sum[k] += (double)means[sorted[next].triangle].color[k];
-        }
         to->first = i;
         to->count = next - i;
-        for (int k = 0; k < 4; k++)
-            to->color[k] = kept ? (double)sorted[i].color[k] : sum[k] / (next - i);
+        for (int k = 0; k < 4; k++) to->color[k] = (double)sorted[i].color[k];
     }
 }

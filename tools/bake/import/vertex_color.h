@@ -1,9 +1,7 @@
-/* vertex_color.h: colours of vertices become materials, since a vertex has no room for a colour
- * (blob.h).
+/* vertex_color.h: colours of vertices become materials where that costs nothing.
  *
- * The triangles of a mesh are grouped by colour; each group gets a material of its colour. Up to 64
- * colours that do not change within a triangle are kept exactly. Else a triangle has the mean of
- * its corners, and similar ones are drawn in one colour, which importers report. */
+ * The triangles of a mesh are grouped by colour; each group gets a material of its colour, if these are up
+ * to 64 colours that do not change within a triangle. Other meshes keep the colours of their vertices. */
 #ifndef MASU_BAKE_VERTEX_COLOR_H
 #define MASU_BAKE_VERTEX_COLOR_H
 
@@ -12,8 +10,6 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define MASU_IMPORT_COLORS_MIXED                                                                   \
-    "triangles have colours at their vertices: each is of one colour, like ones of the same"
 #define MASU_IMPORT_COLORS_CLAMPED "triangles have colours at their vertices beyond 0 to 1: clamped"
 
 typedef struct masu_import_color {
@@ -25,7 +21,8 @@ typedef struct masu_import_colors {
     masu_import_color *groups;
     uint32_t count;
     uint32_t *triangles; /* their numbers, in the order of the groups */
-    bool exact;          /* each triangle has its own colour */
+    bool exact;          /* each triangle has its own colour; else there are no groups */
+    bool translucent;    /* an alpha is below 1 */
     uint32_t clamped;    /* triangles with a colour beyond 0 to 1 */
 } masu_import_colors;
 

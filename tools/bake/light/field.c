@@ -117,7 +117,7 @@ static void fill(const masu_bake_field *f, met *m, const double p[3], const floa
         n[k] = length > 0 ? n[k] / length : -(double)d[k];
         towards += n[k] * (double)d[k];
     }
-    masu_sdfc_field_material(f->field, part, look);
+    masu_sdfc_field_material(f->field, part, p, n, 0, m->room, look);
     for (int k = 0; k < 3; k++) {
         hit->normal[k] = (float)(towards > 0 ? -n[k] : n[k]);
         hit->position[k] = (float)(p[k] + 4 * (NEAR_ENOUGH * (1 + t)) * (double)hit->normal[k]);

@@ -152,6 +152,7 @@ static uint32_t vertex_of(masu_bake_content *out, const masu_bake_content *piece
     const float *texcoords = MASU_BAKE_ARRAY(piece, MASU_BLOB_TEXCOORDS, const float);
     masu_bake_append(&out->section[MASU_BLOB_TEXCOORDS], texcoords + 2 * (size_t)vertex,
                      2 * sizeof *texcoords);
+    masu_bake_copy_attributes(out, piece, vertex, 1);
     for (int k = 0; k < 3; k++) {
         if (p->vertex_count == 0 || v.position[k] < p->aabb_min[k]) p->aabb_min[k] = v.position[k];
         if (p->vertex_count == 0 || v.position[k] > p->aabb_max[k]) p->aabb_max[k] = v.position[k];
@@ -198,6 +199,7 @@ static void keep(masu_bake_content *out, const masu_bake_content *piece, const u
                      piece->section[MASU_BLOB_VERTICES].bytes);
     masu_bake_append(&out->section[MASU_BLOB_TEXCOORDS], piece->section[MASU_BLOB_TEXCOORDS].data,
                      piece->section[MASU_BLOB_TEXCOORDS].bytes);
+    masu_bake_copy_attributes(out, piece, 0, masu_bake_count(piece, MASU_BLOB_VERTICES));
     masu_bake_append(&out->section[MASU_BLOB_INDICES], piece->section[MASU_BLOB_INDICES].data,
                      piece->section[MASU_BLOB_INDICES].bytes);
     uint64_t meshes = masu_bake_count(piece, MASU_BLOB_MESHES);
@@ -255,6 +257,7 @@ const char *masu_bake_merge(masu_bake_content *piece, double cell) {
         }
         for (uint32_t kind = 1; kind < MASU_BLOB_KIND_COUNT; kind++) {
             bool ours = kind == MASU_BLOB_VERTICES || kind == MASU_BLOB_TEXCOORDS ||
+                        kind == MASU_BLOB_COLORS || kind == MASU_BLOB_TEXCOORDS_1 ||
                         kind == MASU_BLOB_INDICES || kind == MASU_BLOB_PRIMITIVES ||
                         kind == MASU_BLOB_MESHES || kind == MASU_BLOB_INSTANCES ||
                         kind == MASU_BLOB_MATERIALS || kind == MASU_BLOB_NAMES ||

@@ -158,9 +158,10 @@ typedef struct welder {
 typedef struct corner {
     masu_blob_vertex vertex;
     float texcoord[2];
+    masu_bake_attributes more;
     masu_bake_influence influence; /* zero where nothing bends */
 } corner;
-_Static_assert(sizeof(corner) == 40, "compared and hashed as bytes");
+_Static_assert(sizeof(corner) == 56, "compared and hashed as bytes");
 
 static void welder_begin(welder *w, uint32_t material) {
     memset(w->slots, 0xFF, w->slot_count * sizeof *w->slots);
@@ -184,6 +185,12 @@ static bool same_influence(const welder *w, uint32_t there, const corner *c) {
     return memcmp(other, &c->influence, sizeof c->influence) == 0;
 }
 
+static bool same_attributes(const welder *w, uint32_t there, const corner *c) {
+    masu_bake_attributes other =
+        masu_bake_attributes_of(w->content, (uint64_t)w->primitive.first_vertex + there);
+    return memcmp(&other, &c->more, sizeof other) == 0;
+}
+
 static uint32_t weld(welder *w, const corner *c) {
     masu_blob_primitive *p = &w->primitive;
     const masu_blob_vertex *vertex = &c->vertex;
@@ -195,13 +202,15 @@ static uint32_t weld(welder *w, const corner *c) {
         const float *texcoord = MASU_BAKE_ARRAY(w->content, MASU_BLOB_TEXCOORDS, const float) +
                                 2 * ((size_t)p->first_vertex + there);
         if (memcmp(other, vertex, sizeof *vertex) == 0 &&
-            memcmp(texcoord, c->texcoord, sizeof c->texcoord) == 0 && same_influence(w, there, c)) {
+            memcmp(texcoord, c->texcoord, sizeof c->texcoord) == 0 && same_attributes(w, there, c) &&
+            same_influence(w, there, c)) {
             return there;
         }
     }
     w->slots[slot] = p->vertex_count;
     masu_bake_append(&w->content->section[MASU_BLOB_VERTICES], vertex, sizeof *vertex);
     masu_bake_append(&w->content->section[MASU_BLOB_TEXCOORDS], c->texcoord, sizeof c->texcoord);
+    masu_bake_add_attributes(w->content, &c->more);
     if (w->bent) masu_bake_append(w->bent, &c->influence, sizeof c->influence);
     for (int k = 0; k < 3; k++) {
         float v = vertex->position[k];
@@ -281,7 +290,13 @@ bool masu_bake_add_triangles(masu_bake_content *content, const masu_bake_triangl
         }
         for (int k = 0; k < 3; k++) {
             uint32_t from = kept[i + k];
-            corner made = {.influence = {{0}, {0}}};
+            corner made = {.more = {MASU_BLOB_WHITE, {0, 0}}, .influence = {{0}, {0}, 0}};
+            if (t->colors) made.more.color = masu_bake_encode_color(t->colors + 4 * (size_t)from);
+            for (int c = 0; c < 2 && t->second; c++) {
+                float second = t->second[2 * (size_t)from + (size_t)c] + 0.0f;
+                made.more.texcoord[c] = usable(second) ? second : 0;
+                losses->bad_texcoords += !usable(second);
+            }
             if (w.bent) made.influence = t->influences[from];
             memcpy(made.vertex.normal, normals[t->normals ? from : i + (uint64_t)k], sizeof made.vertex.normal);
             /* + 0 turns -0 into 0: equal positions are equal bits. */

@@ -8,6 +8,7 @@
 /* What moves a vertex: up to four joints of its mesh; weights 65535 together. */
 typedef struct masu_bake_influence {
     uint16_t joints[4], weights[4];
+    uint32_t source; /* of a mesh that morphs: its number there; else 0 */
 } masu_bake_influence;
 
 /* Triangles of unknown quality become one or more primitives at the end of `content`. */
@@ -15,6 +16,8 @@ typedef struct masu_bake_triangles {
     const float *positions; /* 3 per vertex */
     const float *normals;   /* 3 per vertex; NULL: made, see creases.h */
     const float *texcoords; /* 2 per vertex, v down the picture, or NULL */
+    const float *colors;    /* 4 per vertex, linear with alpha, or NULL */
+    const float *second;    /* second texture coordinates, or NULL */
     bool repeats;           /* their textures repeat: whole turns may be taken off */
     uint32_t vertex_count;
     const uint32_t *indices;

@@ -6,22 +6,25 @@
 
 #define FOV_LEAST (0.1 * MASU_BAKE_PI / 180)
 #define FOV_MOST (170 * MASU_BAKE_PI / 180)
+#define HEIGHT_MOST 1e9
 
 uint32_t masu_bake_camera_count(const masu_bake_content *content) {
     return (uint32_t)(content->cameras.bytes / sizeof(masu_bake_camera));
 }
 
-void masu_bake_add_camera(masu_bake_content *content, const char *name, double fov_y, masu_bake_vec3 position,
-                          masu_bake_vec3 direction) {
+void masu_bake_add_camera(masu_bake_content *content, const char *name, double fov_y, double height,
+                          masu_bake_vec3 position, masu_bake_vec3 direction) {
     masu_bake_camera c;
     memset(&c, 0, sizeof c);
-    if (!masu_bake_sane(position) || !masu_bake_normalize(&direction) || !(fov_y >= FOV_LEAST && fov_y <= FOV_MOST))
+    if (!masu_bake_sane(position) || !masu_bake_normalize(&direction) || !(height >= 0 && height <= HEIGHT_MOST) ||
+        !(fov_y >= FOV_LEAST && fov_y <= FOV_MOST))
         return;
     snprintf(c.name, sizeof c.name, "%s", name);
     for (char *at = c.name; *at; at++) {
         if ((unsigned char)*at < 0x20 || *at == 0x7F) *at = '?';
     }
     c.fov_y = (float)fov_y;
+    c.height = (float)height;
     masu_bake_store(position, c.position);
     masu_bake_store(direction, c.direction);
     masu_bake_append(&content->cameras, &c, sizeof c);
@@ -35,7 +38,7 @@ const char *masu_bake_check_cameras(const masu_bake_content *piece) {
         if (!end || c->own > (size_t)(end - c->name)) return "a camera whose name does not end";
         double length = masu_bake_length(masu_bake_v3f(c->direction));
         if (!masu_bake_sane(masu_bake_v3f(c->position)) || !(length > 0.99 && length < 1.01) ||
-            !((double)c->fov_y >= FOV_LEAST * 0.99 && (double)c->fov_y <= FOV_MOST * 1.01))
+            !((double)c->height >= 0 && (double)c->height <= HEIGHT_MOST * 1.01) || !((double)c->fov_y >= FOV_LEAST * 0.99 && (double)c->fov_y <= FOV_MOST * 1.01))
             return "a camera out of range";
     }
     return NULL;
@@ -52,7 +55,7 @@ void masu_bake_place_cameras(masu_bake_content *scene, const masu_bake_content *
         bool named = prefix && *prefix;
         snprintf(name, sizeof name, "%.120s%s%.120s", named ? prefix : "", named ? "/" : "", from->name + from->own);
         uint32_t before = masu_bake_camera_count(scene);
-        masu_bake_add_camera(scene, name, (double)from->fov_y, masu_bake_apply(placement, masu_bake_v3f(from->position)),
+        masu_bake_add_camera(scene, name, (double)from->fov_y, (double)from->height * masu_bake_length(ahead), masu_bake_apply(placement, masu_bake_v3f(from->position)),
                              ahead);
         if (!named || masu_bake_camera_count(scene) == before) continue;
         masu_bake_camera *made = &MASU_BAKE_CAMERAS(scene)[before];

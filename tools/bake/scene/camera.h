@@ -11,16 +11,17 @@ typedef struct masu_bake_camera {
     char name[MASU_BAKE_CAMERA_NAME]; /* in a scene "model/camera", if the model has a name */
     uint32_t own;                     /* where the name that the file has for it begins */
     float fov_y;                      /* radians */
+    float height;                     /* of an orthographic one, metres; else 0 */
     float position[3], direction[3];  /* direction: of unit length */
 } masu_bake_camera;
 
 #define MASU_BAKE_CAMERAS(c) ((masu_bake_camera *)(void *)(c)->cameras.data)
 uint32_t masu_bake_camera_count(const masu_bake_content *content);
 
-/* Adds one, unless it has no place, looks nowhere or is wider than a picture can be. The name is cut if it is too
- * long; its control characters become '?'. */
-void masu_bake_add_camera(masu_bake_content *content, const char *name, double fov_y, masu_bake_vec3 position,
-                          masu_bake_vec3 direction);
+/* Adds one, unless it has no place, looks nowhere or is wider than a picture can be. height: of an orthographic one,
+ * or 0. The name is cut if it is too long; its control characters become '?'. */
+void masu_bake_add_camera(masu_bake_content *content, const char *name, double fov_y, double height,
+                          masu_bake_vec3 position, masu_bake_vec3 direction);
 
 /* NULL or what is wrong with those of a piece. */
 const char *masu_bake_check_cameras(const masu_bake_content *piece);

@@ -139,8 +139,8 @@ static const char *check_maps(const masu_bake_content *c) {
                 return "a map of no picture";
             }
         }
-        if (m->gloss > 1 || m->additive > 1 || m->single > 1 || m->alpha > MASU_BAKE_ALPHA_COVERS || m->relief > 2 ||
-            m->wrap[0] > 2 || m->wrap[1] > 2 || !in_range(&m->cutoff, 1, 0, 1) ||
+        if (m->gloss > 1 || m->additive > 1 || m->single > 1 || m->colored > MASU_BAKE_COLORED_ALPHA || m->second > MASU_MATERIAL_HAS_MAPS || m->alpha > MASU_BAKE_ALPHA_COVERS || m->relief > 2 ||
+            m->nearest > 1 || m->wrap[0] > 2 || m->wrap[1] > 2 || !in_range(&m->cutoff, 1, 0, 1) ||
             !in_range(&m->normal_scale, 1, -16, 16) || !in_range(&m->occlusion, 1, 0, 1)) {
             return "a map out of range";
         }
@@ -148,6 +148,12 @@ static const char *check_maps(const masu_bake_content *c) {
     if (masu_bake_count(c, MASU_BLOB_TEXCOORDS) != masu_bake_count(c, MASU_BLOB_VERTICES)) {
         return "not as many texture coordinates as vertices";
     }
+    if (masu_bake_count(c, MASU_BLOB_COLORS) > masu_bake_count(c, MASU_BLOB_VERTICES) ||
+        masu_bake_count(c, MASU_BLOB_TEXCOORDS_1) > masu_bake_count(c, MASU_BLOB_VERTICES))
+        return "more colours or texture coordinates than vertices";
+    if (!in_range(MASU_BAKE_ARRAY(c, MASU_BLOB_TEXCOORDS_1, const float),
+                  (size_t)(2 * masu_bake_count(c, MASU_BLOB_TEXCOORDS_1)), -MASU_TEXCOORD_MAX, MASU_TEXCOORD_MAX))
+        return "texture coordinates out of range";
     const float *texcoords = MASU_BAKE_ARRAY(c, MASU_BLOB_TEXCOORDS, const float);
     if (!in_range(texcoords, (size_t)(2 * masu_bake_count(c, MASU_BLOB_TEXCOORDS)),
                   -MASU_TEXCOORD_MAX, MASU_TEXCOORD_MAX)) {
@@ -251,7 +257,7 @@ static const char *check_skins(const masu_bake_content *c) {
     const masu_blob_joint *joints = MASU_BAKE_ARRAY(c, MASU_BLOB_JOINTS, const masu_blob_joint);
     const masu_blob_skin_vertex *vertices =
         MASU_BAKE_ARRAY(c, MASU_BLOB_SKIN_VERTICES, const masu_blob_skin_vertex);
-    uint64_t next_joint = 0, next = 0;
+    uint64_t next_joint = 0, next = 0, next_target = 0, next_delta = 0;
     for (uint64_t i = 0; i < masu_bake_count(c, MASU_BLOB_SKINS); i++) {
         const masu_blob_skin *s = &skins[i];
         const char *problem = check_skin(c, s);
@@ -271,6 +277,23 @@ static const char *check_skins(const masu_bake_content *c) {
             if (masu_wrong_skin_vertex(&vertices[next + k], joints + next_joint, s->joint_count))
                 return "a vertex that no joints move";
         }
+        uint64_t deltas = (uint64_t)s->vertex_count * s->target_count;
+        if (s->target_count > MASU_BLOB_MORPH_TARGETS_MAX ||
+            (s->target_count && (s->first_target != next_target || s->first_delta != next_delta)) ||
+            s->target_count > masu_bake_count(c, MASU_BLOB_MORPH_TARGETS) - next_target ||
+            deltas > masu_bake_count(c, MASU_BLOB_MORPH_DELTAS) - next_delta)
+            return "morph targets out of range";
+        for (uint32_t t = 0; t < s->target_count; t++) {
+            const masu_blob_morph_target *target =
+                &MASU_BAKE_ARRAY(c, MASU_BLOB_MORPH_TARGETS, const masu_blob_morph_target)[next_target + t];
+            const masu_blob_morph_delta *all =
+                MASU_BAKE_ARRAY(c, MASU_BLOB_MORPH_DELTAS, const masu_blob_morph_delta) + next_delta;
+            if (!name_ok(c, target->name) ||
+                masu_wrong_morph_target(target, all + (size_t)t * s->vertex_count, s->vertex_count))
+                return "a morph target out of range";
+        }
+        next_target += s->target_count;
+        next_delta += deltas;
         next_joint += s->joint_count;
         next += s->vertex_count;
     }

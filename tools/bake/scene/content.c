@@ -62,6 +62,10 @@ static const uint32_t strides[MASU_BLOB_KIND_COUNT] = {
     [MASU_BLOB_SKINS] = sizeof(masu_blob_skin),
     [MASU_BLOB_JOINTS] = sizeof(masu_blob_joint),
     [MASU_BLOB_SKIN_VERTICES] = sizeof(masu_blob_skin_vertex),
+    [MASU_BLOB_COLORS] = sizeof(uint32_t),
+    [MASU_BLOB_TEXCOORDS_1] = 2 * sizeof(float),
+    [MASU_BLOB_MORPH_TARGETS] = sizeof(masu_blob_morph_target),
+    [MASU_BLOB_MORPH_DELTAS] = sizeof(masu_blob_morph_delta),
     [MASU_BLOB_REFLECTIONS] = sizeof(masu_blob_reflections),
     [MASU_BLOB_TRACE_TEXTURES] = sizeof(masu_blob_trace_texture),
     [MASU_BLOB_TRACE_TEXELS] = sizeof(uint32_t),
@@ -88,6 +92,66 @@ void masu_bake_content_release(masu_bake_content *content) {
     masu_bake_release(&content->traced);
     masu_bake_release(&content->pictures);
     masu_bake_release(&content->picture_texels);
+}
+
+/* ---- attributes of vertices ---- */
+
+/* Up to `count` elements, new ones filled with `byte`. */
+static void pad(masu_bake_content *content, uint32_t kind, uint64_t count, int byte) {
+    masu_bake_buffer *section = &content->section[kind];
+    size_t bytes = (size_t)count * strides[kind], old = section->bytes;
+    if (old >= bytes) return;
+    masu_bake_append(section, NULL, bytes - old);
+    memset(section->data + old, byte, bytes - old);
+}
+
+void masu_bake_pad_attributes(masu_bake_content *content) {
+    uint64_t count = masu_bake_count(content, MASU_BLOB_VERTICES);
+    if (content->section[MASU_BLOB_COLORS].bytes) pad(content, MASU_BLOB_COLORS, count, 0xFF);
+    if (content->section[MASU_BLOB_TEXCOORDS_1].bytes) pad(content, MASU_BLOB_TEXCOORDS_1, count, 0);
+}
+
+static void set_attributes(masu_bake_content *content, uint64_t vertex, const masu_bake_attributes *a) {
+    if (a->color != MASU_BLOB_WHITE) {
+        pad(content, MASU_BLOB_COLORS, vertex, 0xFF);
+        masu_bake_append(&content->section[MASU_BLOB_COLORS], &a->color, sizeof a->color);
+    }
+    if (a->texcoord[0] != 0 || a->texcoord[1] != 0) {
+        pad(content, MASU_BLOB_TEXCOORDS_1, vertex, 0);
+        masu_bake_append(&content->section[MASU_BLOB_TEXCOORDS_1], a->texcoord, sizeof a->texcoord);
+    }
+}
+
+void masu_bake_add_attributes(masu_bake_content *content, const masu_bake_attributes *attributes) {
+    set_attributes(content, masu_bake_count(content, MASU_BLOB_VERTICES) - 1, attributes);
+}
+
+masu_bake_attributes masu_bake_attributes_of(const masu_bake_content *content, uint64_t vertex) {
+    masu_bake_attributes a = {MASU_BLOB_WHITE, {0, 0}};
+    if (vertex < masu_bake_count(content, MASU_BLOB_COLORS))
+        a.color = MASU_BAKE_ARRAY(content, MASU_BLOB_COLORS, const uint32_t)[vertex];
+    if (vertex < masu_bake_count(content, MASU_BLOB_TEXCOORDS_1))
+        memcpy(a.texcoord, MASU_BAKE_ARRAY(content, MASU_BLOB_TEXCOORDS_1, const float) + 2 * vertex,
+               sizeof a.texcoord);
+    return a;
+}
+
+void masu_bake_copy_attributes(masu_bake_content *to, const masu_bake_content *from, uint64_t first, uint64_t count) {
+    if (!from->section[MASU_BLOB_COLORS].bytes && !from->section[MASU_BLOB_TEXCOORDS_1].bytes) return;
+    uint64_t at = masu_bake_count(to, MASU_BLOB_VERTICES) - count;
+    for (uint64_t i = 0; i < count; i++) {
+        masu_bake_attributes a = masu_bake_attributes_of(from, first + i);
+        set_attributes(to, at + i, &a);
+    }
+}
+
+uint32_t masu_bake_encode_color(const float color[4]) {
+    uint32_t out = 0;
+    for (int k = 0; k < 4; k++) {
+        double c = color[k] > 0 ? fmin((double)color[k], 1) : 0; /* NaN: 0 */
+        out |= (uint32_t)((k < 3 ? sqrt(c) : c) * 255 + 0.5) << 8 * k;
+    }
+    return out;
 }
 
 /* ---- names ---- */

@@ -84,6 +84,9 @@ enum {
 /* Which of a coat and what lies below it has the relief of the normal map; the other has the mesh's normal. */
 enum { MASU_BAKE_RELIEF_OF_BOTH, MASU_BAKE_RELIEF_OF_BASE, MASU_BAKE_RELIEF_OF_COAT };
 
+/* Whether vertices have colours of their own, which the base colour is multiplied by; and alpha below 1. */
+enum { MASU_BAKE_COLORED_NOT, MASU_BAKE_COLORED, MASU_BAKE_COLORED_ALPHA };
+
 typedef struct masu_bake_maps {
     uint32_t image[MASU_BAKE_MAPS];  /* MASU_BLOB_NONE: no such map */
     uint8_t channel[MASU_BAKE_MAPS]; /* 0..3: of the picture, for maps of one channel */
@@ -99,7 +102,9 @@ typedef struct masu_bake_maps {
     uint8_t unlit;
     uint8_t dark;                    /* emission was meant for a map that the importer left out */
     uint8_t shadowless;              /* 1: casts no shadows */
-    uint8_t reserved[3];
+    uint8_t colored;                 /* MASU_BAKE_COLORED_* */
+    uint8_t second;                  /* bit of a slot of a texture set: its map is of the second coordinates */
+    uint8_t nearest;                 /* 1: magnified without interpolation */
     float cutoff, normal_scale;      /* normal_scale: of heights their strength */
     float occlusion;                 /* strength of the occlusion map, 0..1 */
     /* no padding: it is compared as bytes */
@@ -118,6 +123,21 @@ void masu_bake_content_release(masu_bake_content *content);
 #define MASU_BAKE_INSTANCES(c) MASU_BAKE_ARRAY(c, MASU_BLOB_INSTANCES, masu_blob_instance)
 #define MASU_BAKE_LIGHTS(c) MASU_BAKE_ARRAY(c, MASU_BLOB_LIGHTS, masu_blob_light)
 #define MASU_BAKE_MATERIALS(c) MASU_BAKE_ARRAY(c, MASU_BLOB_MATERIALS, masu_blob_material)
+
+/* COLORS and TEXCOORDS_1 end with the last vertex that has other than white and 0: masu_bake_pad_attributes makes them
+ * as many as vertices, where there are any. */
+typedef struct masu_bake_attributes {
+    uint32_t color; /* as masu_blob_color has it: MASU_BLOB_WHITE */
+    float texcoord[2];
+} masu_bake_attributes;
+/* Those of the vertex that was added last. */
+void masu_bake_add_attributes(masu_bake_content *content, const masu_bake_attributes *attributes);
+masu_bake_attributes masu_bake_attributes_of(const masu_bake_content *content, uint64_t vertex);
+/* Of `count` vertices from `first` on to as many that were added last. */
+void masu_bake_copy_attributes(masu_bake_content *to, const masu_bake_content *from, uint64_t first, uint64_t count);
+void masu_bake_pad_attributes(masu_bake_content *content);
+/* Linear, with alpha. */
+uint32_t masu_bake_encode_color(const float color[4]);
 
 /* A name's offset. Control characters and broken UTF-8 become '?'; an empty name is NONE; one that is longer than
  * a blob takes is cut, and counted. */

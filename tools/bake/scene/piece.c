@@ -196,6 +196,7 @@ const char *masu_bake_place(masu_bake_content *scene, const masu_bake_content *p
     if (!residence->has_vertices) {
         residence->first_vertex = copy_section(scene, piece, MASU_BLOB_VERTICES);
         copy_section(scene, piece, MASU_BLOB_TEXCOORDS);
+        masu_bake_copy_attributes(scene, piece, 0, masu_bake_count(piece, MASU_BLOB_VERTICES));
         residence->has_vertices = true;
     }
     uint32_t first_mesh = residence->first_mesh;

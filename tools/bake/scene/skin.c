@@ -16,6 +16,7 @@ static void *elements(const masu_bake_content *c, uint32_t kind, uint64_t first)
 static uint32_t copy_range(masu_bake_content *to, const masu_bake_content *from, uint32_t kind,
                            uint32_t first, uint32_t count) {
     uint32_t made = (uint32_t)masu_bake_count(to, kind);
+    if (!count) return made;
     masu_bake_append(&to->section[kind], NULL, (size_t)count * masu_bake_stride(kind));
     memcpy(elements(to, kind, made), elements(from, kind, first),
            (size_t)count * masu_bake_stride(kind));
@@ -37,6 +38,7 @@ static uint32_t copy_mesh(masu_bake_content *c, uint32_t mesh, uint32_t first_ve
     masu_blob_mesh made = MASU_BAKE_MESHES(c)[mesh];
     uint32_t vertices = copy_range(c, c, MASU_BLOB_VERTICES, first_vertex, vertex_count);
     copy_range(c, c, MASU_BLOB_TEXCOORDS, first_vertex, vertex_count);
+    masu_bake_copy_attributes(c, c, first_vertex, vertex_count);
     made.first_primitive =
         copy_range(c, c, MASU_BLOB_PRIMITIVES, made.first_primitive, made.primitive_count);
     for (uint32_t k = 0; k < made.primitive_count; k++) {
@@ -79,10 +81,23 @@ void masu_bake_add_skins(masu_bake_content *content, const masu_bake_content *pi
                                           skin.joint_count);
             skin.first_skin_vertex = copy_range(content, piece, MASU_BLOB_SKIN_VERTICES,
                                                 skin.first_skin_vertex, skin.vertex_count);
+            uint32_t first_target = skin.first_target;
+            skin.first_target = copy_range(content, piece, MASU_BLOB_MORPH_TARGETS, first_target,
+                                           skin.target_count);
+            for (uint32_t t = 0; t < skin.target_count; t++) {
+                const char *text = masu_bake_name_text(
+                    piece, MASU_BAKE_ARRAY(piece, MASU_BLOB_MORPH_TARGETS, masu_blob_morph_target)[first_target + t].name);
+                MASU_BAKE_ARRAY(content, MASU_BLOB_MORPH_TARGETS, masu_blob_morph_target)[skin.first_target + t].name =
+                    masu_bake_name(content, text, strlen(text));
+            }
+            skin.first_delta = copy_range(content, piece, MASU_BLOB_MORPH_DELTAS, skin.first_delta,
+                                          skin.vertex_count * skin.target_count);
         } else {
             skin.like = skin_of(content, m->like, k);
             skin.first_joint = SKINS(content)[skin.like].first_joint;
             skin.first_skin_vertex = SKINS(content)[skin.like].first_skin_vertex;
+            skin.first_target = SKINS(content)[skin.like].first_target;
+            skin.first_delta = SKINS(content)[skin.like].first_delta;
         }
         node->skin = made + 1;
         masu_bake_append(&content->section[MASU_BLOB_SKINS], &skin, sizeof skin);
@@ -154,5 +169,8 @@ void masu_bake_gather_skins(masu_bake_content *content) {
     }
     reorder(&content->section[MASU_BLOB_VERTICES], place, count, sizeof(masu_blob_vertex));
     reorder(&content->section[MASU_BLOB_TEXCOORDS], place, count, 2 * sizeof(float));
+    masu_bake_pad_attributes(content);
+    reorder(&content->section[MASU_BLOB_COLORS], place, count, sizeof(uint32_t));
+    reorder(&content->section[MASU_BLOB_TEXCOORDS_1], place, count, 2 * sizeof(float));
     free(place);
 }

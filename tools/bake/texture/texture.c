@@ -11,6 +11,7 @@
 #include "bake/texture/texture.h"
 #include "bake/texture/bump.h"
 #include "bake/texture/image.h"
+#include "bake/texture/attributes.h"
 #include "bake/texture/mask.h"
 #include "bake/texture/texel.h"
 #include "bake/texture/trace_texture.h"
@@ -400,7 +401,9 @@ static void ask_for_normals(request *r, uint32_t which, const masu_bake_maps *ma
 
 /* base: its texture, or NONE. What may be blended but is opaque all over is not. */
 static bool is_blended(const maker *m, const masu_bake_maps *maps, const masu_blob_material *material, uint32_t base) {
-    if (maps->alpha == MASU_BAKE_ALPHA_BLEND && (maps->additive || material->opacity < 0.999f)) return true;
+    if (maps->alpha == MASU_BAKE_ALPHA_BLEND &&
+        (maps->additive || material->opacity < 0.999f || maps->colored == MASU_BAKE_COLORED_ALPHA))
+        return true;
     const texture *t = base != MASU_BLOB_NONE ? &m->textures[base] : NULL;
     return t && t->format == MASU_TEXTURE_BC3_SRGB && t->alpha == MASU_BAKE_ALPHA_BLEND;
 }
@@ -552,7 +555,7 @@ static uint32_t set_of(masu_bake_content *c, const masu_blob_texture_set *set) {
 
 static void point(maker *m, masu_blob_material *material, const masu_bake_maps *maps,
                   const uint32_t slots[MASU_SLOT_COUNT]) {
-    masu_blob_texture_set set = {.wrap = {maps->wrap[0], maps->wrap[1]}};
+    masu_blob_texture_set set = {.wrap = {maps->wrap[0] + 4u * maps->nearest, maps->wrap[1]}};
     uint32_t flags = is_blended(m, maps, material, slots[MASU_SLOT_BASE]) ? MASU_MATERIAL_IS_BLEND : 0, layers = 0;
     for (uint32_t slot = 0; slot < MASU_SLOT_COUNT; slot++) {
         set.texture[slot] = MASU_BLOB_NONE;
@@ -593,6 +596,8 @@ static void point(maker *m, masu_blob_material *material, const masu_bake_maps *
     material->flags = flags;
     if (!(flags & MASU_MATERIAL_HAS_MAPS)) return;
     material->layers = layers;
+    /* What is blended has no room for it: nor has it maps of the second coordinates (gltf_material.c). */
+    material->more_layers |= (maps->second & flags & MASU_MATERIAL_HAS_MAPS) << 16;
     material->texture_set = set_of(m->content, &set);
 }
 
@@ -625,7 +630,7 @@ static void clamp_what_is_shown_once(masu_bake_content *content) {
     for (size_t i = 0; i < materials; i++) {
         masu_bake_maps *maps = &MASU_BAKE_MAPS_OF(content)[i];
         for (int k = 0; k < 2; k++) {
-            if (!repeats[i][k] && maps->wrap[k] == 0 &&
+            if (!repeats[i][k] && maps->wrap[k] == 0 && !maps->second &&
                 MASU_BAKE_MATERIALS(content)[i].detail[k] == 1)
                 maps->wrap[k] = 1;
         }
@@ -634,6 +639,7 @@ static void clamp_what_is_shown_once(masu_bake_content *content) {
 }
 
 bool masu_bake_make_textures(masu_bake_content *content, const char *directories) {
+    masu_bake_whiten(content);
     size_t materials = (size_t)masu_bake_count(content, MASU_BLOB_MATERIALS);
     size_t images = content->images.bytes / sizeof(masu_bake_image);
     maker m = {.content = content, .directories = directories};
@@ -667,6 +673,7 @@ bool masu_bake_make_textures(masu_bake_content *content, const char *directories
         for (size_t i = 0; i < materials; i++) {
             point(&m, &MASU_BAKE_MATERIALS(content)[i], &MASU_BAKE_MAPS_OF(content)[i], slots[i]);
         }
+        masu_bake_finish_attributes(content);
         if (!made) masu_bake_release(&content->section[MASU_BLOB_TEXCOORDS]);
     }
     forget(&m);

@@ -107,6 +107,7 @@ static bool put_models(const masu_bake_options *options, const masu_bake_descrip
         if (m->file) {
             masu_bake_append_text(out, "    {\"file\": ");
             if (!put_path(options, m->file, out)) return false;
+            if (m->moving) masu_bake_append_text(out, ", \"moving\": true");
         } else {
             const masu_bake_shape *plane = &d->shapes[m->shape];
             const masu_blob_material *grey = &m->changes[0].value.value;
