@@ -311,6 +311,39 @@ static void a_setting_is_drawn_by_its_name(void **state) {
     }
 }
 
+/* Bytes of the image that `masu render` with these options differs by from the one without. */
+static int changed_by(const char *scene, const char *options) {
+    struct masu_image images[2];
+    char name[256], error[ERROR_SIZE];
+    int changed = 0;
+    for (int k = 0; k < 2; k++) {
+        snprintf(name, sizeof name, "%s/changed%d.png", scratch, k);
+        if (cli_run("render %s -o %s --frame --size 64x48 --time 0.4 --animate %s", scene_path(scene), name,
+                    k ? options : ""))
+            fail_msg("%s: %s", options, cli_err);
+        assert_ok(masu_image_load_png(name, &images[k], error, sizeof error));
+    }
+    for (int i = 0; i < 4 * 64 * 48; i++) changed += images[0].rgba[i] != images[1].rgba[i];
+    masu_image_free(&images[0]);
+    masu_image_free(&images[1]);
+    return changed;
+}
+
+static void parameters_and_clips_are_set_by_name(void **state) {
+    (void)state;
+    assert_int_equal(changed_by("test_velocity", "--param radius=0.5"), 0);
+    assert_in_range(changed_by("test_velocity", "--param radius=0.9"), 100, 4 * 64 * 48);
+    assert_int_equal(changed_by("test_skin", "--clip 0"), 0);
+    assert_int_equal(cli_run("render %s -o %s/x.png --param none=1", scene_path("test_velocity"), scratch), 1);
+    assert_non_null(strstr(cli_err, "no parameter 'none', expected one of radius"));
+    assert_int_equal(cli_run("render %s -o %s/x.png --param radius=1e9", scene_path("test_velocity"), scratch), 1);
+    assert_non_null(strstr(cli_err, "radius: expected "));
+    assert_int_equal(cli_run("render %s -o %s/x.png --param radius", scene_path("test_velocity"), scratch), 1);
+    assert_non_null(strstr(cli_err, "expected NAME=NUMBER, found 'radius'"));
+    assert_int_equal(cli_run("render %s -o %s/x.png --clip none", scene_path("test_skin"), scratch), 1);
+    assert_non_null(strstr(cli_err, "no model has the clip 'none', expected one of "));
+}
+
 /* Both formats have the same floats; what they are is the image that the PNG shows. */
 static void linear_light_is_written_in_both_formats(void **state) {
     (void)state;
@@ -592,6 +625,7 @@ int main(void) {
         cmocka_unit_test(render_writes_the_picture_and_its_numbers_under_validation),
         cmocka_unit_test(ladders_are_read_and_shown),
         cmocka_unit_test(a_setting_is_drawn_by_its_name),
+        cmocka_unit_test(parameters_and_clips_are_set_by_name),
         cmocka_unit_test(linear_light_is_written_in_both_formats),
         cmocka_unit_test(without_options_the_still_is_settled),
         cmocka_unit_test(sequences_are_numbered_files_and_video),

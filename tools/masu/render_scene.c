@@ -40,7 +40,7 @@ static bool set_param(const masu_scene *scene, const char *text, float *values, 
     }
     masu_scene_view s = masu_scene_view_of(scene);
     const masu_blob_sdf_param *p = &s.sdf_params[at];
-    if (!(value >= (double)p->minimum && value <= (double)p->maximum)) {
+    if (!((float)value >= p->minimum && (float)value <= p->maximum)) { /* floats, as the range is */
         snprintf(error, size, "--param: %.100s: expected %g to %g, found %.30s", name,
                  (double)p->minimum, (double)p->maximum, equals + 1);
         return false;

@@ -382,7 +382,7 @@ void masu_ui_window(const char *name, masu_ui_place place, bool focus) {
     switch (place) {
     case MASU_UI_LEFT:
         ImGui::SetNextWindowPos(ImVec2(0, 0));
-        panel = within(27.0f * em(), height);
+        panel = within(std::min(27.0f * em(), ui.edge), height);
         ImGui::SetNextWindowSize(ImVec2(panel.x, 0.0f));
         ImGui::SetNextWindowSizeConstraints(ImVec2(panel.x, 0.0f),
                                             ImVec2(panel.x, height - ui.bottom));
