@@ -35,7 +35,7 @@ vec4 mean_of_pixels(uvec2 at)
 
 void keep(uint level, uvec2 tiles, uvec2 at, vec4 mean)
 {
-    imageStore(background_image, ivec2(masu_background_at(level, tiles) + at), mean);
+    MASU_STORE_HALF(background_image, masu_background_at(level, tiles) + at, mean);
 }
 
 void main()

@@ -116,15 +116,15 @@ void add_lights(inout masu_lit lit, masu_surface s, masu_bsdf b, vec3 n)
 vec4 background_level(uint level, vec2 pixel)
 {
     uvec2 tiles = masu_background_tiles(uvec2(pc.output_width, pc.output_height));
-    vec2 size = vec2(tiles * MASU_BACKGROUND_TILE) / exp2(float(level));
-    vec2 at = clamp(pixel / exp2(float(level)), vec2(0.5), size - 0.5);
+    vec2 size = vec2(tiles * (MASU_BACKGROUND_TILE >> level));
+    vec2 at = clamp(pixel / float(1u << level), vec2(0.5), size - 0.5);
     vec2 whole = vec2(textureSize(background_image, 0));
     return textureLod(background_image, (vec2(masu_background_at(level, tiles)) + at) / whole, 0.0);
 }
 
 vec4 background(vec2 pixel, float apart)
 {
-    float level = clamp(log2(max(apart, 1.0)), 1.0, float(MASU_BACKGROUND_LEVELS));
+    float level = clamp(masu_log2(max(apart, 1.0)), 1.0, float(MASU_BACKGROUND_LEVELS));
     uint low = min(uint(level), MASU_BACKGROUND_LEVELS - 1u);
     return mix(background_level(low, pixel), background_level(low + 1u, pixel), level - float(low));
 }

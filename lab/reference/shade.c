@@ -3,11 +3,10 @@
 #include "lab/reference/fog.h"
 #include "lab/reference/tracer.h"
 
-#include "shared/masu_shared.h"
-
 #include <string.h>
 
 enum { LAYERS_MOST = 64 };
+static const double sharp_glass = 0.05; /* roughness up to which what is behind is sharp */
 
 bool ref_is_unlit(const ref_surface *s) {
     return ref_max(s->emissive) > 0 && !(ref_max(s->albedo) > 0) && s->roughness >= 1 &&
@@ -41,7 +40,7 @@ ref_pane ref_pane_of(const ref_look *look, const ref_bsdf *b) {
 
 ref_vec ref_pane_scatter(const ref_look *look, ref_vec d, ref_random *r) {
     double alpha = look->s.roughness * look->s.roughness;
-    if (!(look->flags & MASU_MATERIAL_IS_TINTED) || !(look->s.roughness > MASU_SHARP_GLASS)) return d;
+    if (!(look->flags & MASU_MATERIAL_IS_TINTED) || !(look->s.roughness > sharp_glass)) return d;
     ref_vec n = ref_dot(look->s.normal, d) < 0 ? look->s.normal : ref_scale(look->s.normal, -1);
     ref_frame f = ref_frame_of(n);
     ref_vec v = ref_to(&f, ref_scale(d, -1));

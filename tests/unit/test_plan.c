@@ -731,7 +731,7 @@ static void what_is_blended_comes_over_the_light_if_there_is_any(void **state) {
     support_scene.shadow_distance = 50;
     compile(&d, &with); /* the nearer of both depths, and the sun's map */
     assert_non_null(strstr(frame_text(&with, 0),
-                           " transparents(r:scene_depth r:shadow_map b:hdr) tonemap(r:hdr "));
+                           " transparents(r:scene_depth r:shadow_map r:scene_depth b:hdr) tonemap(r:hdr "));
 }
 
 /* What a frame may bring: a pass for each kind that there is room for, one buffer for all, an image for lines. Without room,
