@@ -157,7 +157,7 @@ $(BUILD)/tests/fuzz/code.masu: $(BUILD)/tests/fuzz/seed_scene
 $(BUILD)/tests/fuzz/fuzz_scene: | $(FUZZ_SEEDS_scene)
 
 # Every feature in a few lines, and a scene.
-FUZZ_SEEDS_sdfc := tests/unit/features.sdf scenes/rods.sdf
+FUZZ_SEEDS_sdfc := tests/unit/features.sdf scenes/rods.sdf scenes/creature.sdf scenes/skyline.sdf
 
 # Every feature that is read, in a small file.
 FUZZ_SEEDS_gltf := tests/fuzz/all.gltf
