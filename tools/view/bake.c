@@ -9,6 +9,7 @@
  * what can be reloaded is the scene with its .sdf or .glsl. */
 #include "view/viewer.h"
 
+#include "bake/base/process.h"
 #include "cli/cli.h"
 #include "clock.h"
 #include "file_kind.h"
@@ -109,12 +110,13 @@ long masu_child_start(masu_viewer *v, const char *words, const char *log, char *
     char *argv[16] = {"sh", "-c", (char *)words, "sh"};
     for (int i = 0; arguments[i] && i < 11; i++) argv[4 + i] = arguments[i];
     fflush(NULL);
-    pid_t child = fork();
+    pid_t parent = getpid(), child = fork();
     if (child < 0) {
         snprintf(v->error, sizeof v->error, "cannot start a process: %s", strerror(errno));
         return 0;
     }
     if (!child) {
+        masu_bake_end_with_parent(parent, SIGTERM);
         if (!freopen(log, "w", stderr) || !freopen("/dev/null", "w", stdout)) _exit(126);
         (void)setenv("MASU_PROGRESS", "1", 1);
         execv("/bin/sh", argv);
