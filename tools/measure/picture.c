@@ -130,8 +130,9 @@ static bool add_position(masu_session *s, const masu_light *light, sums *sum, ch
     return true;
 }
 
+/* Live probes show all of their sets 20 rounds after a cut; the other 236 settle the bounces between them. */
 int masu_picture_settles(const masu_stats_info *stats) {
-    return stats->local_shadow_waiting || stats->local_shadow_faces || stats->bounce_rounds_left > 56;
+    return stats->local_shadow_waiting || stats->local_shadow_faces || stats->bounce_rounds_left > 236;
 }
 
 static bool settle_lights(masu_session *s, const masu_frame_desc *frame, char *error, size_t error_size) {
