@@ -6,7 +6,7 @@
 #include <string.h>
 
 enum { LAYERS_MOST = 64 };
-static const double sharp_glass = 0.05; /* roughness up to which what is behind is sharp */
+static const double sharp_glass = 0.05; /* glass up to this roughness does not blur */
 
 bool ref_is_unlit(const ref_surface *s) {
     return ref_max(s->emissive) > 0 && !(ref_max(s->albedo) > 0) && s->roughness >= 1 &&

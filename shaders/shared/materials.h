@@ -25,7 +25,7 @@
 #define MASU_MAP_CUTOFF_SHIFT 8
 #define MASU_MAP_OCCLUSION_SHIFT 24 /* 8 bits: the layer of the occlusion map */
 
-/* Transmission: of masu_scene_data.tints, and the roughness up to which what is behind glass is sharp. */
+/* Transmission: of masu_scene_data.tints, and the roughness up to which glass does not blur. */
 #define MASU_TINTS_ROUGH 2u
 #define MASU_SHARP_GLASS 0.05
 

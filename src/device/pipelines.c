@@ -42,9 +42,10 @@ static uint64_t now(const masu_device *m) {
  * its channels; whether the output is whole groups of invocations; how many nodes a ray may have to
  * come back to; whether a tile's rays are shared by its invocations; whether coats have maps or
  * normals of their own; whether anything colours what shines through it; whether the output keeps
- * its size; whether means over frames are halves; whether albedo texels hold emission; whether normals of the G-buffer
- * may be those of maps; whether lights may be capsules or rectangles; whether rays share the light of their surfaces; whether rays meet colours of
- * vertices (1) and maps of the second texture coordinates (2); whether skins have morph targets. */
+ * its size; whether means over frames are halves; whether albedo texels hold emission;
+ * whether normals of the G-buffer may be those of maps; whether lights may be capsules or
+ * rectangles; whether rays share the light of their surfaces; whether rays meet vertex colours (1)
+ * and maps on the second texture coordinates (2); whether skins have morph targets. */
 enum { SPECIAL_COUNT = 21 };
 
 static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,

@@ -18,62 +18,20 @@
 
 #include "sdfc/sdfc.h"
 #include "sdfc/internal.h"
+#include "support/field.h"
 #include "support/files.h"
 #include "support/random.h"
 
-typedef struct scene {
-    sdfc *c;
-    char error[4096];
-    double *room;
-    sdfc_place_of at; /* that materials are asked with */
-} scene;
-
-static bool start(scene *r, const char *text) {
-    sdfc *c = r->c = calloc(1, sizeof *c);
-    assert_non_null(c);
-    *c = (sdfc){.text = text, .bytes = strlen(text), .name = "x.sdf", .error = r->error, .error_size = sizeof r->error};
-    sdfc_start(c);
-    r->error[0] = '\0';
-    r->room = NULL;
-    r->at = (sdfc_place_of){{0}, 0};
-    if (setjmp(c->failed)) {
-        sdfc_free(r->c);
-        return false;
-    }
-    sdfc_lex(c);
-    sdfc_parse(c);
-    int variables = 0;
-    for (int i = 0; i < c->part_count; i++) {
-        sdfc_lower(c, &c->parts[i]);
-        if (c->parts[i].program.variable_count > variables) variables = c->parts[i].program.variable_count;
-    }
-    r->room = calloc((size_t)variables, sizeof *r->room);
-    c->values = calloc((size_t)c->expr_count, sizeof *c->values);
-    double params[MASU_SDFC_PARAMS_MAX] = {0};
-    for (int i = 0; i < c->param_count; i++) params[i] = c->params[i].value;
-    sdfc_evaluate(c, params, 0, c->values);
-    return true;
+static void must_start(field *r, const char *text) {
+    if (!field_start(r, text)) fail_msg("%s\n%s", text, r->error);
 }
 
-static void must_start(scene *r, const char *text) {
-    if (!start(r, text)) fail_msg("%s\n%s", text, r->error);
-}
-
-static void stop(scene *r) {
-    free(r->room);
-    sdfc_free(r->c);
-}
-
-static double value(const scene *r, int part, const double p[3]) {
-    return sdfc_run_in(r->c, &r->c->parts[part].program, p, r->room);
-}
-
-static void look(const scene *r, int part, double x, double y, double z, double out[8]) {
+static void look(const field *r, int part, double x, double y, double z, double out[8]) {
     const double p[3] = {x, y, z};
     sdfc_run_look(r->c, &r->c->parts[part], p, &r->at, r->room, out);
 }
 
-static const sdfc_facts *facts(const scene *r, int part) { return &r->c->shapes[r->c->parts[part].shape].facts; }
+static const sdfc_facts *facts(const field *r, int part) { return &r->c->shapes[r->c->parts[part].shape].facts; }
 
 static double apart(const double p[3], const double q[3]) {
     return sqrt((p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1]) + (p[2] - q[2]) * (p[2] - q[2]));
@@ -162,13 +120,13 @@ typedef struct pair {
     double p[3], q[3], slope;
 } pair;
 
-static void measure(const scene *r, pair *at) {
+static void measure(const field *r, pair *at) {
     double d = apart(at->p, at->q);
-    at->slope = d > 1e-12 ? fabs(value(r, 0, at->p) - value(r, 0, at->q)) / d : 0;
+    at->slope = d > 1e-12 ? fabs(field_value(r, 0, at->p) - field_value(r, 0, at->q)) / d : 0;
 }
 
 /* The steepest of many pairs, each then moved to wherever it is steeper. */
-static double steepest(const scene *r, uint32_t pairs, uint64_t *seed) {
+static double steepest(const field *r, uint32_t pairs, uint64_t *seed) {
     enum { KEPT = 64, STEPS = 150 };
     static pair kept[KEPT];
     double most = 0;
@@ -209,23 +167,23 @@ static double steepest(const scene *r, uint32_t pairs, uint64_t *seed) {
     return most;
 }
 
-static void gradient(const scene *r, const double p[3], double g[3]) {
+static void gradient(const field *r, const double p[3], double g[3]) {
     for (int k = 0; k < 3; k++) {
         double a[3] = {p[0], p[1], p[2]}, b[3] = {p[0], p[1], p[2]};
         a[k] += 1e-6;
         b[k] -= 1e-6;
-        g[k] = (value(r, 0, a) - value(r, 0, b)) / 2e-6;
+        g[k] = (field_value(r, 0, a) - field_value(r, 0, b)) / 2e-6;
     }
 }
 
 /* With the constant 1 the value is never more than the distance; where the walk ends on the surface, nor less. */
-static void assert_exact(const scene *r, const char *text, uint64_t *seed) {
+static void assert_exact(const field *r, const char *text, uint64_t *seed) {
     int missed = 0, tried = 0;
     double worst = 0;
     for (int n = 0; n < 600; n++) {
         double p[3], g[3], q[3];
         any_point(facts(r, 0), seed, p);
-        double f = value(r, 0, p);
+        double f = field_value(r, 0, p);
         if (!(f > 0.01)) continue;
         gradient(r, p, g);
         double length = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
@@ -234,7 +192,7 @@ static void assert_exact(const scene *r, const char *text, uint64_t *seed) {
             continue;
         }
         for (int k = 0; k < 3; k++) q[k] = p[k] - f * g[k];
-        worst = fmax(worst, fabs(value(r, 0, q)));
+        worst = fmax(worst, fabs(field_value(r, 0, q)));
         tried++;
     }
     if (tried < 100 || missed > tried / 10 || worst > 1e-3) {
@@ -242,20 +200,20 @@ static void assert_exact(const scene *r, const char *text, uint64_t *seed) {
     }
 }
 
-static void assert_safe(const scene *r, const char *text, double share, uint32_t pairs, uint64_t *seed) {
+static void assert_safe(const field *r, const char *text, double share, uint32_t pairs, uint64_t *seed) {
     double L = facts(r, 0)->lipschitz;
     int tried = 0, wrong = 0;
     for (uint32_t n = 0; n < pairs; n++) {
         double p[3], q[3], way[3], length = 0;
         any_point(facts(r, 0), seed, p);
-        double f = value(r, 0, p);
+        double f = field_value(r, 0, p);
         if (!(f > 0)) continue;
         for (int k = 0; k < 3; k++) way[k] = random_between(seed, -1, 1);
         for (int k = 0; k < 3; k++) length += way[k] * way[k];
         double step = f / L * cbrt(random_between(seed, 0, 1)) * (1 - 1e-9);
         for (int k = 0; k < 3; k++) q[k] = p[k] + way[k] / sqrt(length) * step;
         tried++;
-        wrong += value(r, 0, q) < 0;
+        wrong += field_value(r, 0, q) < 0;
     }
     if (tried < 100 || wrong > share * tried) fail_msg("%s: %d of %d steps end in the solid", text, wrong, tried);
 }
@@ -264,13 +222,13 @@ static void every_shape_is_what_its_table_says(void **state) {
     (void)state;
     const uint32_t pairs = long_run() ? 1000000 : whole_run() ? 12000 : 2000;
     for (size_t i = 0; i < SHAPES; i++) {
-        scene r;
+        field r;
         char text[1024];
         uint64_t seed = 7;
         snprintf(text, sizeof text, "material m { albedo 1 } part a = %s;", shapes[i].text);
         must_start(&r, text);
         const sdfc_facts *f = facts(&r, 0);
-        if (!(value(&r, 0, shapes[i].solid) < 0)) fail_msg("%s: %g within", text, value(&r, 0, shapes[i].solid));
+        if (!(field_value(&r, 0, shapes[i].solid) < 0)) fail_msg("%s: %g within", text, field_value(&r, 0, shapes[i].solid));
         if (shapes[i].claim == ESTIMATE || shapes[i].claim == SAFE) {
             assert_safe(&r, text, shapes[i].claim == SAFE ? 0 : 0.005, pairs, &seed);
         } else {
@@ -286,17 +244,17 @@ static void every_shape_is_what_its_table_says(void **state) {
                 out = sqrt(out * out + d * d);
             }
             if (isfinite(f->radius)) out = fmax(out, apart(p, f->center) - f->radius);
-            double v = out > 0 ? value(&r, 0, p) : 0;
+            double v = out > 0 ? field_value(&r, 0, p) : 0;
             if (v < f->growth * out * (1 - 1e-9) - 1e-9) fail_msg("%s: %g at a distance of %g from its bounds", text, v, out);
         }
-        stop(&r);
+        field_stop(&r);
     }
 }
 
 /* ---- cells and blends, by formulas ---- */
 
 /* The number that a cell has is the albedo of the ground there. */
-static double hash_of(const scene *r, double x, double z) {
+static double hash_of(const field *r, double x, double z) {
     double out[8];
     look(r, 1, x, 0, z, out);
     return out[0];
@@ -308,7 +266,7 @@ static void cells_that_differ_are_all_there(void **state) {
         "material m { albedo (cell.hash(0), cell.hash(1), 0) }"
         "part a = repeat((3, 0, 2) as h, translate((0, h.hash(0), 0), sphere(0.4 + 0.4 * h.hash(1))));"
         "part b : m = repeat((3, 0, 2) as h, box((1.5, 1, 1)));";
-    scene r;
+    field r;
     uint64_t seed = 3;
     must_start(&r, text);
     double least = 1, most = 0;
@@ -323,14 +281,14 @@ static void cells_that_differ_are_all_there(void **state) {
                                 (0.4 + 0.4 * out[1]));
             }
         }
-        double f = value(&r, 0, p), h = hash_of(&r, p[0], p[2]);
+        double f = field_value(&r, 0, p), h = hash_of(&r, p[0], p[2]);
         if ((f < 0) != (d < 0) && fabs(d) > 1e-9) fail_msg("(%g, %g, %g): %g, all cells %g", p[0], p[1], p[2], f, d);
         if (f > d + 1e-9 || (d < 0.15 && fabs(f - d) > 1e-9)) fail_msg("(%g, %g, %g): %g, all cells %g", p[0], p[1], p[2], f, d);
         least = fmin(least, h);
         most = fmax(most, h);
     }
     assert_true(least < 0.05 && most > 0.95);
-    stop(&r);
+    field_stop(&r);
 }
 
 static void a_blend_does_not_depend_on_the_order(void **state) {
@@ -340,30 +298,30 @@ static void a_blend_does_not_depend_on_the_order(void **state) {
         "part b = blend(0.5, torus(1, 0.2), translate((0, 1, 0.4), box((0.3, 0.3, 0.3))), sphere(1), translate((1, 0.3, 0), sphere(0.5)));"
         "part c = sphere(1); part d = translate((1, 0.3, 0), sphere(0.5)); part e = translate((0, 1, 0.4), box((0.3, 0.3, 0.3)));"
         "part f = torus(1, 0.2); part g = blend(0.5, sphere(1), sphere(1), sphere(1), sphere(1), sphere(1), sphere(1), sphere(1), sphere(1), sphere(1));";
-    scene r;
+    field r;
     uint64_t seed = 5;
     must_start(&r, text);
     for (int n = 0; n < 5000; n++) {
         double p[3], sum = 0;
         for (int k = 0; k < 3; k++) p[k] = random_between(&seed, -2, 2);
-        double t = value(&r, 0, p);
-        assert_true(fabs(t - value(&r, 1, p)) < 1e-9);
+        double t = field_value(&r, 0, p);
+        assert_true(fabs(t - field_value(&r, 1, p)) < 1e-9);
         for (int i = 2; i < 6; i++) {
-            double h = fmax(1 - (value(&r, i, p) - t) / 0.5, 0);
+            double h = fmax(1 - (field_value(&r, i, p) - t) / 0.5, 0);
             sum += h * h;
         }
         if (fabs(sum - 1) > 1e-6) fail_msg("sum %.9g at (%g, %g, %g)", sum, p[0], p[1], p[2]);
-        double nine = value(&r, 6, p), one = value(&r, 2, p);
+        double nine = field_value(&r, 6, p), one = field_value(&r, 2, p);
         assert_true(fabs(nine - (one - 0.5 * (1 - 1 / 3.0))) < 1e-6);
     }
     assert_true(fabs(facts(&r, 6)->box.high[0] - (1 + 0.5 * (1 - 1 / 3.0))) < 1e-9);
-    stop(&r);
+    field_stop(&r);
 }
 
 /* ---- colours ---- */
 
 static void assert_color(const char *text, double x, double y, double z, double red, double green, double blue) {
-    scene r;
+    field r;
     double out[8];
     must_start(&r, text);
     r.at.normal[1] = 1;
@@ -371,7 +329,7 @@ static void assert_color(const char *text, double x, double y, double z, double 
     if (fabs(out[0] - red) + fabs(out[1] - green) + fabs(out[2] - blue) > 1e-6)
         fail_msg("%s at (%g, %g, %g): (%.7g, %.7g, %.7g), not (%.7g, %.7g, %.7g)", text, x, y, z, out[0], out[1], out[2], red,
                  green, blue);
-    stop(&r);
+    field_stop(&r);
 }
 
 #define TWO "material r { albedo (1, 0, 0) } material b { albedo (0, 0, 1) } "
@@ -436,7 +394,7 @@ static void colours_depend_on_the_place(void **state) {
 static void patterns_fade_where_pixels_are_wider(void **state) {
     (void)state;
     static const char text[] = "material m { albedo (checker(4 * p), fbm(p, 4, 0.5, 2), noise(2 * p)) } part a : m = scale(2, box((9, 9, 9)));";
-    scene r;
+    field r;
     double sharp[8], wide[8], fine[8];
     must_start(&r, text);
     for (int i = 0; i < 50; i++) {
@@ -451,14 +409,14 @@ static void patterns_fade_where_pixels_are_wider(void **state) {
         assert_true(fabs(wide[0] - 0.5) < 1e-9 && wide[1] == 0 && wide[2] == 0);
         assert_true(fabs(fine[1] - sharp[1]) < 1e-9 && fabs(fine[0] - sharp[0]) < 1e-6 + (fmod(2 * x, 1) < 1e-3));
     }
-    stop(&r);
+    field_stop(&r);
 }
 
 /* ---- the language ---- */
 
 static void defs_and_functions_mean_what_they_say(void **state) {
     (void)state;
-    scene r;
+    field r;
     must_start(&r, "def column(h, r = 0.25) = union(cylinder(h, r), translate((0, h, 0), sphere(2 * r)));"
                    "def twice(s, by) = union(s, translate(by, s)); def half(x) = x / 2;"
                    "let r = 7; part a = column(2); part b = union(cylinder(2, 0.25), translate((0, 2, 0), sphere(0.5)));"
@@ -468,10 +426,10 @@ static void defs_and_functions_mean_what_they_say(void **state) {
     for (int n = 0; n < 500; n++) {
         double p[3];
         for (int k = 0; k < 3; k++) p[k] = random_between(&seed, -4, 4);
-        assert_true(fabs(value(&r, 0, p) - value(&r, 1, p)) < 1e-12);
-        assert_true(fabs(value(&r, 2, p) - value(&r, 3, p)) < 1e-12);
+        assert_true(fabs(field_value(&r, 0, p) - field_value(&r, 1, p)) < 1e-12);
+        assert_true(fabs(field_value(&r, 2, p) - field_value(&r, 3, p)) < 1e-12);
     }
-    stop(&r);
+    field_stop(&r);
 }
 
 static void several_mistakes_are_told_at_once(void **state) {
@@ -490,8 +448,8 @@ static void several_mistakes_are_told_at_once(void **state) {
         "x.sdf:10:10: expected a material, found \"stnoe\": did you mean \"stone\"?",
         "x.sdf:11:17: expected a function, found \"stripe\": did you mean \"stripes\"?",
     };
-    scene r;
-    assert_false(start(&r, text));
+    field r;
+    assert_false(field_start(&r, text));
     for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++) {
         if (!strstr(r.error, wanted[i])) fail_msg("\"%s\" is not in\n%s", wanted[i], r.error);
     }
@@ -524,8 +482,8 @@ static void mistakes_of_the_new_words_name_their_place(void **state) {
         {"part a = intersection(repeat((2, 0, 0) as h, sphere(h.hash(1001))));", "x.sdf:1:60: expected a whole number from 0 to 1000"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        scene r;
-        if (start(&r, cases[i].text)) fail_msg("%s: success", cases[i].text);
+        field r;
+        if (field_start(&r, cases[i].text)) fail_msg("%s: success", cases[i].text);
         if (!strstr(r.error, cases[i].message)) fail_msg("%s\nis answered by\n%s", cases[i].text, r.error);
     }
 }

@@ -21,6 +21,7 @@
 
 #include "sdfc/sdfc.h"
 #include "sdfc/internal.h"
+#include "support/field.h"
 #include "support/files.h"
 #include "support/random.h"
 
@@ -753,39 +754,6 @@ static void mistakes_name_their_place(void **state) {
 
 /* ---- repetitions, compared with the union of their copies ---- */
 
-/* Runs the parts of a text in double precision; false: the text is rejected. */
-typedef struct runner {
-    sdfc *c;
-    char error[1024];
-} runner;
-
-static bool start_runner(runner *r, const char *text) {
-    sdfc *c = r->c = calloc(1, sizeof *c);
-    assert_non_null(c);
-    *c = (sdfc){.text = text, .bytes = strlen(text), .name = "x.sdf", .error = r->error,
-                .error_size = sizeof r->error, .time_expr = -1};
-    if (setjmp(c->failed)) {
-        sdfc_free(r->c);
-        return false;
-    }
-    sdfc_lex(c);
-    sdfc_parse(c);
-    int variables = 0;
-    for (int i = 0; i < c->part_count; i++) {
-        sdfc_lower(c, &c->parts[i]);
-        variables += c->parts[i].program.variable_count;
-    }
-    c->variables = calloc((size_t)variables, sizeof *c->variables);
-    c->values = calloc((size_t)c->expr_count, sizeof *c->values);
-    const double params[1] = {0};
-    sdfc_evaluate(c, params, 0, c->values);
-    return true;
-}
-
-static double run_part(const runner *r, int part, const double p[3]) {
-    return sdfc_run(r->c, &r->c->parts[part].program, p, NULL);
-}
-
 typedef struct writer {
     char text[4096];
     size_t length;
@@ -847,11 +815,11 @@ typedef struct rows {
 } rows;
 
 /* The least value of all copies of part 1 that can be near. */
-static double union_of_copies(const runner *r, const rows *of, const double p[3]) {
+static double union_of_copies(const field *r, const rows *of, const double p[3]) {
     double least = 1e30;
     for (int i = 0; i < of->around; i++) {
         double a = 2 * PI * i / of->around, q[3] = {p[0] * cos(a) + p[2] * sin(a), p[1], p[2] * cos(a) - p[0] * sin(a)};
-        least = fmin(least, run_part(r, 1, q));
+        least = fmin(least, field_value(r, 1, q));
     }
     if (of->around) return least;
     int from[3] = {0, 0, 0}, to[3] = {0, 0, 0};
@@ -869,7 +837,7 @@ static double union_of_copies(const runner *r, const rows *of, const double p[3]
                 for (int k = 0; k < 3; k++) {
                     q[k] = p[k] - of->period[k] * (cell[k] - (of->count[k] ? (of->count[k] - 1) / 2.0 : 0));
                 }
-                least = fmin(least, run_part(r, 1, q));
+                least = fmin(least, field_value(r, 1, q));
             }
         }
     }
@@ -895,7 +863,7 @@ static void put_rows(writer *w, rows *of, int form) {
 
 /* Solid where the union is, nothing else solid, no solid nearer than f / L, and the constant
  * holds. */
-static void compare_copies(const char *text, const runner *r, const rows *of, uint64_t *seed) {
+static void compare_copies(const char *text, const field *r, const rows *of, uint64_t *seed) {
     double L = r->c->shapes[r->c->parts[0].shape].facts.lipschitz;
     for (int n = 0; n < 150; n++) {
         double p[3], q[3], way[3], reach = n % 2 ? 2 : 6;
@@ -905,7 +873,7 @@ static void compare_copies(const char *text, const runner *r, const rows *of, ui
             /* Where the selection changes. */
             if (n % 8 == 0) p[k] = of->period[k] * round(2 * p[k]) / 2 + 1e-7 * way[k];
         }
-        double f = run_part(r, 0, p), u = union_of_copies(r, of, p);
+        double f = field_value(r, 0, p), u = union_of_copies(r, of, p);
         for (int k = 0; k < 3 && n % 3 == 2; k++) { /* to where the union falls */
             memcpy(q, p, sizeof q);
             q[k] += 1e-5;
@@ -917,7 +885,7 @@ static void compare_copies(const char *text, const runner *r, const rows *of, ui
         }
         double step = n % 3 ? f / L : pow(10, random_between(seed, -6, 0));
         for (int k = 0; k < 3; k++) q[k] = p[k] + way[k] / length * step * 0.999999;
-        double g = run_part(r, 0, q);
+        double g = field_value(r, 0, q);
         if (fabs(f - g) > L * apart(p, q) * (1 + 1e-9) + 1e-9) {
             fail_msg("%s: %.17g at (%.17g, %.17g, %.17g), %.17g at (%.17g, %.17g, %.17g), constant %g", text, f, p[0],
                      p[1], p[2], g, q[0], q[1], q[2], L);
@@ -951,7 +919,7 @@ static void repetitions_are_the_union_of_their_copies(void **state) {
     w.seed = 49;
     for (int i = 0; i < CASES + 600; i++) {
         static char child[4096];
-        static runner r;
+        static field r;
         rows of;
         w.length = 0;
         if (i < CASES) {
@@ -971,12 +939,12 @@ static void repetitions_are_the_union_of_their_copies(void **state) {
             put_rows(&w, &of, i % 3);
         }
         put(&w, "%s); part b = %s;", child, child);
-        if (!start_runner(&r, w.text)) {
+        if (!field_start(&r, w.text)) {
             if (i < CASES || !(strstr(r.error, "reaches") || strstr(r.error, "covers"))) fail_msg("%s: %s", w.text, r.error);
             continue;
         }
         compare_copies(w.text, &r, &of, &w.seed);
-        sdfc_free(r.c);
+        field_stop(&r);
         compared++;
     }
     if (compared < 300) fail_msg("only %d of 600 compile", compared);
