@@ -45,7 +45,7 @@ static bool failed(study *w, const char *text) {
 static bool draw(study *w, uint32_t frames, float *rgb) {
     masu_light light;
     masu_commands commands = {.slot = 0};
-    if (masu_light_of(w->s.m, &light) != MASU_OK) return failed(w, "the scene has no light");
+    if (masu_light_of(w->s.m, &light, NULL) != MASU_OK) return failed(w, "the scene has no light");
     memset(light.sun_color, 0, sizeof light.sun_color);
     memset(light.ambient, 0, sizeof light.ambient);
     memset(light.sky_zenith, 0, sizeof light.sky_zenith);
@@ -69,7 +69,7 @@ static bool choose(study *w, uint32_t chosen, bool shadows,
         masu_punctual_light_state state = states[i];
         if (i != chosen) memset(state.color, 0, sizeof state.color);
         state.no_shadow = !shadows;
-        if (masu_punctual_light_set(w->s.m, masu_punctual_light_at(w->s.m, i), &state) != MASU_OK)
+        if (masu_punctual_light_set(w->s.m, masu_punctual_light_at(w->s.m, i), &state, NULL) != MASU_OK)
             return failed(w, "a light cannot be changed");
     }
     return true;
@@ -77,7 +77,7 @@ static bool choose(study *w, uint32_t chosen, bool shadows,
 
 static bool read_states(study *w, masu_punctual_light_state *states) {
     for (uint32_t i = 0; i < w->scene.light_count; i++) {
-        if (masu_punctual_light_get(w->s.m, masu_punctual_light_at(w->s.m, i), &states[i]) !=
+        if (masu_punctual_light_get(w->s.m, masu_punctual_light_at(w->s.m, i), &states[i], NULL) !=
             MASU_OK)
             return failed(w, "the renderer and the reference count the lights differently");
     }
@@ -104,7 +104,7 @@ static bool find_points(study *w, uint32_t slot) {
     masu_readback_image depth;
     ref_camera c = ref_camera_at(&w->scene.blob, w->d->time);
     const double near = (double)w->scene.environment->near_distance;
-    if (masu_readback(w->s.m, slot, MASU_READBACK_DEPTH, &depth) != MASU_OK)
+    if (masu_readback(w->s.m, slot, MASU_READBACK_DEPTH, &depth, NULL) != MASU_OK)
         return failed(w, "no depth");
     for (size_t at = 0; at < w->pixels; at++) {
         ref_hit hit, front;

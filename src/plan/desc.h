@@ -1,5 +1,5 @@
-/* desc.h: the description that a host gives: its defaults and its ranges. masu_desc_resolved (masu.h)
- * turns zeros into defaults; the check takes what it returns. Knobs have theirs in quality/knobs.h,
+/* desc.h: the description that a host gives: its defaults and its ranges. masu_desc_resolved turns
+ * zeros into defaults; the check takes what it returns. Knobs have theirs in quality/knobs.h,
  * limits in plan/limits.h.
  *
  * Pure functions: no Vulkan call, no allocation, nothing kept. */
@@ -7,6 +7,9 @@
 #define MASU_DESC_H
 
 #include "masu.h"
+
+/* masu_desc_resolve (masu.h) without a check of `bytes`; NULL: all defaults. */
+masu_desc masu_desc_resolved(const masu_desc *desc);
 
 /* Of a resolved description: what a rung is shaded at, and whether it is resolved over frames. */
 VkExtent2D masu_render_size(const masu_desc *d, uint32_t r);

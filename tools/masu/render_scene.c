@@ -108,8 +108,9 @@ bool masu_render_animate(masu_session *s, const masu_render_options *o, double t
         uint32_t clip = o->clip ? find_clip(s, model, o->clip) : 0;
         masu_clip_use use = {
             .clip = clip == MASU_CLIP_NONE ? 0 : clip, .loop = 1, .time = time, .weight = 1.0f};
-        if (!masu_model_clips(s->m, model) || !masu_model_animate(s->m, model, &use, 1)) continue;
-        snprintf(error, size, "%s", masu_last_error(s->m)->text);
+        if (!masu_model_clips(s->m, model) || !masu_model_animate(s->m, model, &use, 1, &s->detail))
+            continue;
+        snprintf(error, size, "%s", s->detail.text);
         return false;
     }
     return true;

@@ -166,6 +166,7 @@ typedef struct masu_viewer {
 
     void *blob;
     masu_scene scene;
+    masu_detail detail;          /* of the masu_* call that failed */
     masu_desc want;              /* rungs, governor and all else that is asked of A */
     masu_desc given;             /* as the command line has it, before defaults are filled in */
     masu_rung reference;         /* the setting of B */
