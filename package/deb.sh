@@ -30,7 +30,7 @@ Section: graphics
 Priority: optional
 Installed-Size: $(du -sk "$root/usr" | cut -f 1)
 Depends: $depends
-Recommends: mesa-vulkan-drivers | vulkan-icd
+Recommends: mesa-vulkan-drivers | vulkan-icd, glslang-tools, spirv-tools
 Suggests: libvulkan-dev, pkgconf
 Description: fixed-memory renderer of polygons and distance fields (Vulkan)
  The library for C and C++ (static and shared, with headers, pkg-config and

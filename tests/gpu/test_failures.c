@@ -389,7 +389,8 @@ static void errors_of_live_calls_reach_the_log(void **state) {
     s.desc.log = NULL;
     logged.errors = 0;
     LOGGED(masu_load(m, NULL, &failure));
-    LOGGED(masu_frame(m, &(masu_frame_desc){MASU_FRAME_DESC}, &commands, &failure)); /* not loaded */
+    LOGGED(masu_frame(m, &(masu_frame_desc){MASU_FRAME_DESC}, &commands, &failure));
+    assert_string_equal(failure.what, "masu_load"); /* not loaded */
     LOGGED(masu_frame(m, NULL, &commands, &failure));
     LOGGED(masu_split_of(m, MASU_SPLIT_BEFORE_TONE, 0, 0, &split, &failure));
     LOGGED(masu_split_of(m, MASU_SPLIT_BEFORE_TONE, 0, 0, NULL, &failure));
@@ -418,7 +419,23 @@ static void errors_of_live_calls_reach_the_log(void **state) {
     LOGGED(masu_punctual_light_remove(m, (masu_punctual_light){0}, &failure));
     LOGGED(masu_material_get(m, (masu_material){0}, &material, &failure));
     LOGGED(masu_material_set(m, (masu_material){0}, NULL, &failure));
-    logged.errors = 0; /* masu_resize has a detail of its own */
+    /* Functions that do not change the renderer. */
+    masu_stats_info stats;
+    masu_readback_image image;
+    masu_pick_info pick;
+    masu_frame_view view;
+    masu_camera camera;
+    LOGGED(masu_frame(m, &(masu_frame_desc){0}, &commands, &failure));
+    assert_string_equal(failure.what, "bytes");
+    LOGGED(masu_stats(m, 99, &stats, &failure));
+    LOGGED(masu_stats(m, 0, NULL, &failure));
+    LOGGED(masu_readback(m, 0, MASU_READBACK_ALL, &image, &failure));
+    LOGGED(masu_readback(m, 99, MASU_READBACK_HDR, &image, &failure));
+    LOGGED(masu_pick(m, 0, &pick, &failure));
+    LOGGED(masu_frame_view_of(m, &view, &failure));
+    LOGGED(masu_camera_at(m, (double)NAN, &camera, &failure));
+    LOGGED(masu_light_of(m, NULL, &failure));
+    logged.errors = 0;
     assert_int_equal(masu_resize(m, (VkExtent2D){8, 8}, &s.desc.targets, NULL, &detail),
                      MASU_ERROR_STATE);
     assert_int_equal(logged.errors, 1);

@@ -21,6 +21,7 @@ static void open_scene(masu_session *x, const char *name) {
 
 static masu_desc desc_of(const masu_session *s, const masu_session *x, const masu_desc *more) {
     masu_desc d = *more;
+    d.bytes = sizeof d;
     d.vulkan = s->desc.vulkan;
     d.targets = s->desc.targets;
     d.scene = &x->scene;
