@@ -132,7 +132,7 @@ static const struct {
     double sun, sun_most, ambient, ambient_most;
     enum { EVERYWHERE, FIRST_DRIVER, LONG_RUN } when;
 } stated[] = {{"spheres", 0.27, 0.02, 0.4, 0.03, 0.2, FIRST_DRIVER}, {"spheres", 2, 0.015, 0.2, 0.03, 0.2, LONG_RUN},
-              {"city", 0.27, 0.05, 0.9, 0.05, 0.4, LONG_RUN},        {"city", 2, 0.03, 0.3, 0.05, 0.4, EVERYWHERE},
+              {"city", 0.27, 0.05, 0.9, 0.05, 0.4, LONG_RUN},        {"city", 2, 0.03, 0.3, 0.05, 0.4, LONG_RUN},
               {"blobs", 0.27, 0.03, 0.5, 0.06, 0.4, LONG_RUN},   {"blobs", 2, 0.03, 0.3, 0.06, 0.4, LONG_RUN},
               {"tunnel", 0.27, 0.02, 0.3, 0.05, 0.4, EVERYWHERE},
               /* So many parts that each block of pixels lists a few of them: one that is missing in
