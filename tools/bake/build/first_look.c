@@ -14,6 +14,9 @@
 #define FRAME_SHARE 0.89   /* of the height or width of the picture, whichever the model meets first */
 #define ASPECT (16.0 / 9) /* of the picture that it is made for: in narrower ones a wide model is cut off */
 #define FLAT 0.12         /* height / the shorter side of what is a place, not a thing: no ground, seen from higher up */
+#define STEEP 0.85        /* height / depth of the camera's direction for these */
+#define LOW 0.5           /* height / the longer side of what is looked down on */
+#define LOOK_DOWN 0.3     /* of its height: the camera's height above the top */
 #define GROUND_RADII 60   /* half a side of the ground, in radii of the model: it ends in the haze */
 
 typedef struct axes {
@@ -87,6 +90,20 @@ static masu_blob_camera_key frame(const masu_bake_content *c, const masu_bake_bo
     return key;
 }
 
+/* The near end of a long, low model, such as a table, fills the frame: the camera rises until it sees the top. */
+static masu_blob_camera_key frame_from_above(const masu_bake_content *c, const masu_bake_box *box,
+                                             double fov_y, bool flat) {
+    masu_bake_vec3 e = extent_of(box);
+    double rise = flat ? STEEP : 0.38, seen = box->high.y + LOOK_DOWN * e.y;
+    bool low = e.y < LOW * fmax(e.x, e.z);
+    masu_blob_camera_key key = frame(c, box, fov_y, masu_bake_v3(0.62, rise, 1.0));
+    while (low && rise < STEEP && !((double)key.position[1] > seen)) {
+        rise += 0.1;
+        key = frame(c, box, fov_y, masu_bake_v3(0.62, rise, 1.0));
+    }
+    return key;
+}
+
 /* Just under the model: what lies on it, as soles and tyres do, must not flicker through. */
 static void add_ground(const masu_bake_box *box, masu_bake_description *d) {
     masu_bake_vec3 e = extent_of(box);
@@ -152,8 +169,7 @@ void masu_bake_make_first_look(const masu_bake_box *bounds, const masu_bake_cont
     d->look = masu_bake_default_look();
     d->look.keys = masu_bake_take(&d->pool, sizeof *d->look.keys);
     d->look.key_count = 1;
-    d->look.keys[0] = frame(content, bounds, d->look.fov_y,
-                            masu_bake_v3(0.62, flat ? 0.85 : 0.38, 1.0));
+    d->look.keys[0] = frame_from_above(content, bounds, d->look.fov_y, flat);
     set_light(bounds, flat, &d->look);
     d->reflections.smallest = radius * 2 * MASU_BAKE_TRACED_SHARE; /* the ground is not to count */
     if (!flat) add_ground(bounds, d);
