@@ -3,7 +3,7 @@
 # bytes, seconds of the processor, and what masu-bake says of it. For people to look at; tests/scripts/bake.sh counts outcomes.
 #
 #   gallery.sh OUT FOLDER...     OUT: a new or empty folder for index.html, the pictures, counts.txt (outcomes),
-#                             kinds.txt (warnings and refusals by kind: files in which each occurs)
+#                               kinds.txt (warnings and refusals by kind: files in which each occurs)
 #
 # SIZE (480x270) of the pictures, MATCH a pattern (find -path) of the models, JOBS (all processors) at once.
 # Clips are shown at TIME (0.5) seconds. NO_PICTURES=1 only bakes. PATHS=N, not 0: each row is the reference of N paths a pixel, the settled still, one raw frame.
@@ -20,12 +20,12 @@ time=${TIME:-0.5}
 
 html() { sed 's/&/\&amp;/g; s/</\&lt;/g; s/>/\&gt;/g'; }
 
-# kinds FILE: the kinds of the warnings on stdin, and of a refusal, without names and numbers
+# kinds FILE: the kinds of the warnings on stdin, and of a refusal, without names of files and numbers
 kinds() {
-    sed -n "s|^masu-bake: ||; s|${1//[|.*&[]/.}|FILE|g; s/.*warning: /warning: /; s/^cannot read FILE: /refused: /
-        s/texture .*: \([a-z]*[A-Z]*[^:]*; ignored\)/texture: \1/
-        s/ (\(in [0-9]* meshes\|first\): .*//; s/ (\(in [0-9]* meshes\|first\)//
-        s/FILE//g;         s/\"[^\"]*\"/\"...\"/g; s/'[^']*'/'...'/g; s/[0-9][0-9.e+-]*/N/g; s/FILE: //
+    sed -n "s/^masu-bake: //; s|${1//[|.*&[]/.}|FILE|g; s/.*warning: /warning: /; s/^cannot read FILE: /refused: /
+        s/^warning: texture .*: \([^:]*; ignored\)/warning: texture: \1/; s/^warning: unsupported textures.*/warning: unsupported textures/
+        s/^warning: [^:\"]*\.[A-Za-z0-9]*: /warning: /; s/ (\(in [0-9]* meshes\|first\).*//; s/material \"[^\"]*\"/a material/
+        s/'[^']*'/'...'/g; s/_[0-9]\+/_n/g; s/\b[0-9][0-9.e+-]*/N/g
         /^\(warning\|refused\): /p" | cut -c 1-120
 }
 
@@ -46,7 +46,7 @@ beside() {
 one() {
     local number=$1 file=$2 name=$3 at=$out/$1 took code
     local TIMEFORMAT='%3U %3S'
-    { time timeout 60 "$bake" "$file" -o "$at.masu" --stats "$at.json" --quiet > /dev/null 2> "$at.err" < /dev/null; } 2> "$at.cpu"
+    { time timeout 600 "$bake" "$file" -o "$at.masu" --stats "$at.json" --quiet > /dev/null 2> "$at.err" < /dev/null; } 2> "$at.cpu"
     code=$?
     took=$(awk '{ printf "%d", 1000 * ($1 + $2) }' "$at.cpu")
     outcome $code "$at.err" > "$at.outcome"
