@@ -12,6 +12,7 @@
 #include <string.h>
 
 #define FRAME_SHARE 0.89   /* of the height or width of the picture, whichever the model meets first */
+#define MOVING_SHARE 0.75 /* of a model that plays clips, which is framed at rest */
 #define ASPECT (16.0 / 9) /* of the picture that it is made for: in narrower ones a wide model is cut off */
 #define FLAT 0.12         /* height / the shorter side of what is a place, not a thing: no ground, seen from higher up */
 #define STEEP 0.85        /* height / depth of the camera's direction for these */
@@ -74,7 +75,8 @@ static masu_blob_camera_key frame(const masu_bake_content *c, const masu_bake_bo
                                   masu_bake_vec3 towards) {
     const masu_bake_vec3 zero = {0, 0, 0};
     axes at = axes_of(towards);
-    double b = tan(fov_y * (MASU_BAKE_PI / 360)) * FRAME_SHARE, a = b * ASPECT;
+    double share = masu_bake_count(c, MASU_BLOB_CLIPS) ? MOVING_SHARE : FRAME_SHARE;
+    double b = tan(fov_y * (MASU_BAKE_PI / 360)) * share, a = b * ASPECT;
     reach r;
     reach_of(c, &at, a, b, &r);
     masu_bake_vec3 center = masu_bake_mad(box->low, extent_of(box), 0.5);
