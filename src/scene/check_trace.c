@@ -1,6 +1,6 @@
 /* check_trace.c: validates the ray tracing data.
  *
- * Traversal of a validated BVH terminates, stays within its sections and needs at most
+ * Traversal of a validated BVH terminates, reads only its sections and needs at most
  * MASU_TRACE_DEPTH_MAX 32-bit values of stack, for any box contents. The check visits the nodes in
  * the only permitted order, in which the index of the next children follows from the number of
  * previous ones, so it needs no visited flags. Boxes that do not contain their items can only lose

@@ -42,7 +42,7 @@ typedef struct masu_module {
     uint32_t record_words;
 } masu_module;
 
-/* Validates a module and fills `out`. Returns NULL, or what is wrong; *at is then the index of the
+/* Validates a module and fills `out`. Returns NULL, or an error text; *at is then the index of the
  * invalid 32-bit value. */
 const char *masu_module_read(const uint32_t *words, uint64_t count, masu_module *out, uint64_t *at);
 

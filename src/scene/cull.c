@@ -215,8 +215,8 @@ static inline void test_items(const masu_cull_set *set, const masu_cull_view *vi
         uint32_t kept = (1u << lanes) - 1u;
         for (uint32_t p = 0; p < view->count && kept; p++) {
             if (!(mask >> p & 1u)) continue;
-            /* Boxes that are rejected already need no work in a lane, but are counted as tested, because
-             * the SIMD variant tests all four. */
+            /* Boxes that are rejected already need no work in a lane, but are counted as
+             * tested, because the SIMD variant tests all four. */
             *tests += lanes;
             kept &= ~(simd ? outside_simd(set, at, &view->planes[p])
                            : outside_plain(set, at, &view->planes[p]));

@@ -83,19 +83,19 @@ typedef struct MASU_MAY_ALIAS masu_scene_data {
     uint32_t
         tints; /* a transparent material has coloured transmission; MASU_TINTS_ROUGH: a rough one */
     uint32_t transparents;     /* transparent primitives, once per instance */
-    uint32_t transparent_sets; /* texture sets of theirs, at least 1 if there are any */
+    uint32_t transparent_sets; /* their texture sets, at least 1 if there are any */
 
     /* Light. */
     uint32_t lights; /* local lights */
     uint32_t area_lights;    /* capsules and rectangles among them */
     uint32_t surface_lights; /* those of a surface of the scene */
     uint32_t shadow_lights;  /* those that cast shadows */
-    uint32_t shadow_spots;   /* of them, spots that have one face */
+    uint32_t shadow_spots;   /* among those, spots that have one face */
     uint32_t probes, probe_sets;
     uint64_t probe_words;                        /* 32-bit values of all sets of all probes */
     uint32_t probes_unlit;                       /* flag: they have no baked light */
     uint32_t bounce;                             /* flag: and rays of the frame add to it */
-    uint32_t bounce_sdf;                         /* flag: which meet the SDF */
+    uint32_t bounce_sdf;                         /* flag: which also trace the SDF */
     uint32_t environment_size, environment_mips; /* texels along an edge of the map; 0: none */
     uint32_t analytic_sky;                       /* flag: the sky follows from the sun */
     uint32_t fog;                                /* flag */

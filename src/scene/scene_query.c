@@ -64,7 +64,6 @@ int32_t masu_scene_find(const masu_scene *scene, masu_scene_item item, const cha
 /* ---- Clips ----------------------------------------------------------------------------------- */
 
 /* Clips belong to the first of the models that have the same meshes at the same nodes. */
-
 uint32_t masu_scene_clip_count(const masu_scene *scene, uint32_t model) {
     const masu_scene_data *s = data_of(scene);
     uint32_t count = 0;

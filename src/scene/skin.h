@@ -1,6 +1,5 @@
 /* skin.h: validation rules of clips and skins, shared by the blob reader and by the baker, which
- * gets the data from another process. Pure functions. They return NULL, or what is wrong in a few
- * words. */
+ * gets the data from another process. Pure functions. They return NULL, or a short error text. */
 #ifndef MASU_SCENE_SKIN_H
 #define MASU_SCENE_SKIN_H
 
