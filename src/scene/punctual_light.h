@@ -14,7 +14,7 @@
 typedef struct masu_light_header {
     uint32_t count, list_words;
     float atlas_texel; /* 1 / texels along an edge of the atlas of shadows */
-    uint32_t reserved;
+    float snap; /* m at distance 1 from the camera: how far its rasteriser may move an edge */
 } masu_light_header;
 
 /* The half angle of the widest spot whose shadow is one face; others have faces of a cube. Radians: 60 degrees. */
