@@ -36,7 +36,7 @@ beside() {
     *.sdf) sdf=(--sdf "$2") ;;
     *.json) mapfile -t sdf < <(sed -n 's|.*"source": *"\([^"]*\.sdf\)".*|--sdf\n'"${2%/*}"'/\1|p' "$2") ;;
     esac
-    "$lab" reference "$at.masu" -o "$at.ref.png" --paths "$paths" --size "$size" --time "$time" --animate --quiet "${sdf[@]}" 2>> "$at.err" &&
+    "$lab" reference "$at.masu" -o "$at.ref.png" --paths "$paths" --size "$size" --time "$time" --quiet "${sdf[@]}" 2>> "$at.err" &&
         echo "<img src=\"$1.ref.png\" loading=\"lazy\" alt=\"reference\">"
     "$masu" render "$at.masu" -o "$at.raw.png" --frame --size "$size" --time "$time" --quiet 2>> "$at.err" &&
         echo "<img src=\"$1.raw.png\" loading=\"lazy\" alt=\"raw frame\">"
