@@ -1539,6 +1539,12 @@ MASU_API int32_t masu_scene_find(const masu_scene *scene, masu_scene_item item, 
 MASU_API uint32_t masu_scene_clip_count(const masu_scene *scene, uint32_t model);
 MASU_API const char *masu_scene_clip_name(const masu_scene *scene, uint32_t model, uint32_t clip);
 
+/* Default value of an SDF parameter. `minimum`, `maximum`: NULL, or receive the range to which
+ * masu_frame_desc.sdf_params is clamped. All are 0 if there is no such parameter. Reads the
+ * blob. */
+MASU_API float masu_scene_sdf_range(const masu_scene *scene, uint32_t index, float *minimum,
+                                    float *maximum);
+
 typedef enum masu_scene_feature_bits {
     MASU_SCENE_HAS_SDF = 1,
     MASU_SCENE_HAS_DYNAMIC_SDF = 2, /* the SDF depends on parameters or time */

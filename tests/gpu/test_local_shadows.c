@@ -278,6 +278,7 @@ static void visibility_is_that_of_rays(void **state) {
             comparison c = compare_rays(&l, &views[v], texel, cases[i].what);
             assert_true(c.lit > 3000);
             assert_true(c.wrong * 100 <= c.lit);
+            assert_true(c.wrong_near * 40 <= c.lit); /* an edge as wide as the filter: 6 % */
             assert_true(c.seam_wrong * 100 <= c.seam);
         }
         close_lamps(&l);
@@ -337,19 +338,15 @@ static void expect_no_acne(const plane_case *p) {
     close_lamps(&l);
 }
 
-static void the_floor_below_a_near_point_does_not_shadow_itself(void **state) {
-    (void)state;
-    expect_no_acne(&(plane_case){"point, 512", 2048, 0.3, 0, 1});
-}
-
 static void planes_do_not_shadow_themselves(void **state) {
     (void)state;
+    expect_no_acne(&(plane_case){"point, 512", 2048, 0.3, 0, 1});
     expect_no_acne(&(plane_case){"point, 128", 512, 0.3, 0, 1});
     expect_no_acne(&(plane_case){"spot, 512", 2048, 1.5, 1, 1});
 }
 
 /* Clipped to a hundredth of their size, and farther from the camera than from the lamp, whose texels are a twentieth of
- * a pixel. */
+ * a pixel: what the camera's rasteriser does to their depth is more than a texel, if it has few subpixel bits. */
 static void large_triangles_do_not_shadow_themselves(void **state) {
     (void)state;
     expect_no_acne(&(plane_case){"two triangles", 2048, 0.3, 0, 0});
@@ -557,7 +554,6 @@ static void nothing_is_planned_where_no_light_casts(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(visibility_is_that_of_rays),
-        cmocka_unit_test(the_floor_below_a_near_point_does_not_shadow_itself),
         cmocka_unit_test(planes_do_not_shadow_themselves),
         cmocka_unit_test(large_triangles_do_not_shadow_themselves),
         cmocka_unit_test(faces_that_look_away_are_dark),

@@ -30,6 +30,7 @@ static masu_governor_state learnt;
 static masu_detail detail;
 static masu_scene look;
 static uint32_t resolution;
+static float range[2];
 static masu_limits usage;
 static masu_commands commands;
 static masu_camera camera;
@@ -79,6 +80,8 @@ static const float unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     X(masu_scene_find, (masu_scene_find(P(0, &scene), MASU_SCENE_MODEL, P(1, "a")), NO_RESULT))    \
     X(masu_scene_clip_count, (masu_scene_clip_count(P(0, &scene), 0), NO_RESULT))                  \
     X(masu_scene_clip_name, (masu_scene_clip_name(P(0, &scene), 0, 0), NO_RESULT))                 \
+    X(masu_scene_sdf_range,                                                                        \
+      ((void)masu_scene_sdf_range(P(0, &scene), 0, P(1, &range[0]), P(2, &range[1])), NO_RESULT))  \
     X(masu_scene_features, (masu_scene_features(P(0, &scene)), NO_RESULT))                         \
     X(masu_scene_triangles, (masu_scene_triangles(P(0, &scene)), NO_RESULT))                       \
     X(masu_scene_texture_bytes, (masu_scene_texture_bytes(P(0, &scene), 1), NO_RESULT))            \

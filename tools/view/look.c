@@ -32,9 +32,9 @@ static void read_light(masu_viewer *v) {
 
 static void read_params(masu_viewer *v) {
     masu_look *l = &v->look;
-    masu_scene_view s = masu_scene_view_of(&v->scene);
     l->param_count = masu_scene_count(&v->scene, MASU_SCENE_SDF_PARAM);
-    for (uint32_t i = 0; i < l->param_count; i++) l->params[i] = s.sdf_params[i].value;
+    for (uint32_t i = 0; i < l->param_count; i++)
+        l->params[i] = masu_scene_sdf_range(&v->scene, i, NULL, NULL);
 }
 
 void masu_look_reset(masu_viewer *v) {

@@ -331,6 +331,9 @@ void masu_program_beside(char *out, size_t size, const char *name);
 
 /* loop.c: an exit code */
 struct masu_script;
+/* SIGINT, SIGTERM and SIGHUP end masu_viewer_run as closing the window does; a second one ends the
+ * process. */
+void masu_viewer_catch_signals(void);
 int masu_viewer_run(masu_viewer *v, struct masu_script *script);
 
 #endif
