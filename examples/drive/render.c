@@ -25,8 +25,7 @@ static masu_desc describe(const render *r) {
         .targets = window_targets(r->window),
         .frames_in_flight = WINDOW_SLOTS,
         .ladder = MASU_ON,
-        .analytic_sky = 1,
-        .resizable = 1,
+        .analytic_sky = 1, .resizable = 1,
         .exposure = {.metered = MASU_ON},
         .governor = {.mode = r->fixed_rung < 0 ? MASU_GOVERNOR_ON : MASU_GOVERNOR_FIXED,
                      .rung = r->fixed_rung < 0 ? 0 : (uint32_t)r->fixed_rung,
@@ -40,7 +39,8 @@ static bool build(render *r, const track *t) {
     masu_commands load;
     masu_result result;
     masu_desc desc = describe(r);
-    if (masu_init(&desc, host_block, sizeof host_block, &r->masu, &r->detail)) return failed(&r->detail);
+    if (masu_init(&desc, host_block, sizeof host_block, &r->masu, &r->detail))
+        return failed(&r->detail);
     while ((result = masu_load(r->masu, &load, &r->detail)) == MASU_INCOMPLETE) {
         if (!window_run(r->window, load.buffer)) return false;
     }
