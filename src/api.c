@@ -103,6 +103,8 @@ static masu_result create_plan(const masu_desc *desc, masu_vk *vk, masu_frame_pl
     memset(objects, 0, sizeof *objects);
     memset(textures, 0, MASU_TEXTURE_ARRAYS_MAX * sizeof *textures);
     if (!desc) return masu_fail_null(detail, "desc");
+    if (desc->bytes != sizeof *desc)
+        return masu_fail_bytes(detail, "masu_desc", sizeof *desc, desc->bytes);
     if (desc->scene && !masu_scene_data_of(desc->scene)->blob) {
         return masu_fail(detail, MASU_ERROR_ARGUMENT, "scene", 1, 0,
                          "scene was not filled by masu_scene_bind");
@@ -151,20 +153,22 @@ static masu_result plan_and_forget(const masu_desc *desc, masu_frame_plan *plan,
 }
 
 masu_result masu_memory_query(const masu_desc *desc, masu_memory *out, masu_detail *detail) {
-    if (!out) return masu_fail_null(detail, "out");
+    masu_detail own;
     masu_frame_plan plan;
     uint64_t host_bytes = 0;
-    masu_result result = plan_and_forget(desc, &plan, &host_bytes, detail);
+    masu_result result =
+        out ? plan_and_forget(desc, &plan, &host_bytes, &own) : masu_fail_null(&own, "out");
     if (!result) masu_memory_export(&plan, host_bytes, out);
-    return result;
+    return masu_finish_desc(desc, result, &own, detail);
 }
 
 masu_result masu_plan(const masu_desc *desc, masu_plan_info *out, masu_detail *detail) {
-    if (!out) return masu_fail_null(detail, "out");
+    masu_detail own;
     masu_frame_plan plan;
     uint64_t host_bytes = 0;
-    masu_result result = plan_and_forget(desc, &plan, &host_bytes, detail);
-    if (result) return result;
+    masu_result result =
+        out ? plan_and_forget(desc, &plan, &host_bytes, &own) : masu_fail_null(&own, "out");
+    if (result) return masu_finish_desc(desc, result, &own, detail);
     masu_plan_export(&plan, NULL, out);
     masu_memory_export(&plan, host_bytes, &out->memory);
     return MASU_OK;
@@ -258,17 +262,14 @@ static void log_box(const masu_renderer *m) {
 masu_result masu_init(const masu_desc *desc, void *block, uint64_t block_bytes, masu_renderer **out,
                       masu_detail *detail) {
     masu_detail own;
-    if (!out) return masu_fail_null(detail, "out");
-    *out = NULL;
-    masu_result result = init(desc, block, block_bytes, out, &own);
-    if (!result) {
-        log_box(*out);
-        return MASU_OK;
-    }
-    if (detail) *detail = own;
-    if (desc) masu_log(desc, MASU_LOG_ERROR, own.text);
-    return result;
+    if (out) *out = NULL;
+    masu_result result =
+        out ? init(desc, block, block_bytes, out, &own) : masu_fail_null(&own, "out");
+    if (!result) log_box(*out);
+    return masu_finish_desc(desc, result, &own, detail);
 }
+
+uint32_t masu_version(void) { return MASU_VERSION; }
 
 void masu_destroy(masu_renderer *m) {
     if (!m || m->cookie != MASU_RENDERER_COOKIE) return;
@@ -285,11 +286,11 @@ masu_result masu_check_lost(const masu_renderer *m, masu_detail *detail) {
     return result;
 }
 
-masu_result masu_load(masu_renderer *m, masu_commands *commands) {
-    if (!m || !commands) return masu_finish_null(m, "commands");
+masu_result masu_load(masu_renderer *m, masu_commands *commands, masu_detail *detail) {
+    if (!m || !commands) return masu_finish_null(m, "commands", detail);
     memset(commands, 0, sizeof *commands);
     masu_result result = masu_check_lost(m, &m->error);
-    if (result) return masu_finish(m, result);
+    if (result) return masu_finish(m, result, detail);
     if (m->loaded) return MASU_OK;
     masu_load_step step = masu_load_next(&m->device);
     commands->buffer = commands->parts[0] = step.commands;
@@ -399,8 +400,13 @@ static masu_result check_plain_frame(masu_renderer *m, masu_frame_data *f) {
     return result ? result : masu_picking_read(f, &m->error);
 }
 
-masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_commands *commands) {
-    if (!m || !frame || !commands) return masu_finish_null(m, frame ? "commands" : "frame");
+masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_commands *commands,
+                       masu_detail *detail) {
+    if (!m || !frame || !commands) return masu_finish_null(m, frame ? "commands" : "frame", detail);
+    if (frame->bytes != sizeof *frame) {
+        masu_fail_bytes(&m->error, "masu_frame_desc", sizeof *frame, frame->bytes);
+        return masu_finish(m, MASU_ERROR_ARGUMENT, detail);
+    }
     if (frame->viewport < m->plan.desc.viewport_count)
         masu_plan_select_viewport(&m->plan, frame->viewport);
     masu_frame_data f = masu_frame_begin(&m->plan, &m->device, &m->draws, &m->timeline, frame);
@@ -414,7 +420,7 @@ masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_comm
     if (result) { /* the next attempt gets the times of this slot again */
         m->timeline = timeline;
         if (m->governor) *m->governor = governor;
-        return masu_finish(m, result);
+        return masu_finish(m, result, detail);
     }
     m->rung = f.desc.rung;
     const masu_rung_plan *rp = &m->plan.rungs[f.desc.rung];
@@ -436,21 +442,27 @@ masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_comm
     return MASU_OK;
 }
 
-const masu_detail *masu_last_error(const masu_renderer *m) {
-    static const masu_detail none = {
-        .result = MASU_ERROR_ARGUMENT, .what = "renderer", .needed = 1, .text = "renderer is NULL"};
-    return m ? &m->error : &none;
-}
-
 /* ---- What the host asks and changes ---------------------------------------------------------- */
 
-masu_result masu_camera_at(const masu_renderer *m, double time, masu_camera *out) {
-    return m ? masu_camera_path_at(&m->camera, &m->plan, time, out) : MASU_ERROR_ARGUMENT;
+masu_result masu_camera_at(const masu_renderer *m, double time, masu_camera *out,
+                           masu_detail *detail) {
+    masu_detail own;
+    if (!m || !out) return masu_finish_null_const(m, "out", detail);
+    masu_result result = masu_camera_path_at(&m->camera, &m->plan, time, out);
+    if (result == MASU_ERROR_STATE)
+        masu_fail(&own, result, "scene", 1, 0, "the scene has no camera path");
+    else if (result)
+        masu_fail_number(&own, "time", time, "finite numbers of seconds");
+    return masu_finish_desc(&m->plan.desc, result, &own, detail);
 }
 
-masu_result masu_light_of(const masu_renderer *m, masu_light *out) {
-    if (!m || !out) return MASU_ERROR_ARGUMENT;
-    if (!m->plan.needs.scene) return MASU_ERROR_STATE;
+masu_result masu_light_of(const masu_renderer *m, masu_light *out, masu_detail *detail) {
+    masu_detail own;
+    if (!m || !out) return masu_finish_null_const(m, "out", detail);
+    if (!m->plan.needs.scene) {
+        masu_fail(&own, MASU_ERROR_STATE, "scene", 1, 0, "there is no scene that has a light");
+        return masu_finish_desc(&m->plan.desc, own.result, &own, detail);
+    }
     *out = masu_sun_sky_light(&m->sun_sky);
     return MASU_OK;
 }

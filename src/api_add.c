@@ -89,20 +89,20 @@ static masu_result copy_model(masu_renderer *m, uint32_t like, const float rows[
     return MASU_OK;
 }
 
-masu_result masu_model_add(masu_renderer *m, masu_model like, const float rows[12],
-                           masu_model *out) {
+masu_result masu_model_add(masu_renderer *m, masu_model like, const float rows[12], masu_model *out,
+                           masu_detail *detail) {
     uint32_t i;
     if (out) *out = (masu_model){0};
-    if (!m || !rows || !out) return masu_finish_null(m, rows ? "out" : "rows");
+    if (!m || !rows || !out) return masu_finish_null(m, rows ? "out" : "rows", detail);
     masu_result result = masu_handle_check(&m->models.handles, "model", like.id, &i, &m->error);
-    if (result) return masu_finish(m, result);
+    if (result) return masu_finish(m, result, detail);
     uint32_t added = masu_models_spare(&m->models, &m->plan, i);
     if (added == UINT32_MAX) result = copy_model(m, i, rows, &added);
     if (!result) { /* of a copy once more, now that it has instances */
         result = masu_models_move(&m->models, &m->instances, &m->bounds, &m->plan, added, rows,
                                   &m->error);
     }
-    if (result) return masu_finish(m, result);
+    if (result) return masu_finish(m, result, detail);
     masu_models_show(&m->models, &m->instances, &m->plan, added, 1);
     *out = masu_model_at(m, added);
     return MASU_OK;
@@ -119,11 +119,11 @@ static void drop_lights(masu_renderer *m, uint32_t model) {
     }
 }
 
-masu_result masu_model_remove(masu_renderer *m, masu_model model) {
+masu_result masu_model_remove(masu_renderer *m, masu_model model, masu_detail *detail) {
     uint32_t i;
-    if (!m) return MASU_ERROR_ARGUMENT;
+    if (!m) return masu_fail_null(detail, "renderer");
     masu_result result = masu_handle_check(&m->models.handles, "model", model.id, &i, &m->error);
-    if (result) return masu_finish(m, result);
+    if (result) return masu_finish(m, result, detail);
     if (i < masu_own_models(&m->plan)) { /* the scene's own stay its own */
         masu_models_show(&m->models, &m->instances, &m->plan, i, 0);
         return MASU_OK;
@@ -146,25 +146,26 @@ masu_result masu_model_remove(masu_renderer *m, masu_model model) {
 /* ---- Lights ---------------------------------------------------------------------------------- */
 
 masu_result masu_punctual_light_add(masu_renderer *m, const masu_punctual_light_state *state,
-                                    masu_punctual_light *out) {
+                                    masu_punctual_light *out, masu_detail *detail) {
     uint32_t light;
     if (out) *out = (masu_punctual_light){0};
-    if (!m || !state || !out) return masu_finish_null(m, state ? "out" : "state");
+    if (!m || !state || !out) return masu_finish_null(m, state ? "out" : "state", detail);
     masu_result result = masu_lights_add(&m->lights, &m->instances, state, &light, &m->error);
     if (!result) *out = masu_punctual_light_at(m, light);
-    return masu_finish(m, result);
+    return masu_finish(m, result, detail);
 }
 
-masu_result masu_punctual_light_remove(masu_renderer *m, masu_punctual_light light) {
+masu_result masu_punctual_light_remove(masu_renderer *m, masu_punctual_light light,
+                                       masu_detail *detail) {
     uint32_t i;
-    if (!m) return MASU_ERROR_ARGUMENT;
+    if (!m) return masu_fail_null(detail, "renderer");
     masu_result result = masu_handle_check(&m->lights.handles, "light", light.id, &i, &m->error);
     if (!result && i < masu_own_lights(&m->plan)) {
         result =
             masu_fail(&m->error, MASU_ERROR_ARGUMENT, "light", 0, i,
                       "light %u is part of the scene and cannot be removed: set its color to 0", i);
     }
-    if (result) return masu_finish(m, result);
+    if (result) return masu_finish(m, result, detail);
     masu_lights_remove(&m->lights, i);
     return MASU_OK;
 }

@@ -74,17 +74,20 @@ void masu_frame_presented(masu_renderer *m, uint64_t frame, uint64_t present_ns,
 
 /* ---- What the host changes ------------------------------------------------------------------- */
 
-static masu_result check(masu_renderer *m, const void *given, const char *what) {
-    if (!m) return MASU_ERROR_ARGUMENT;
-    if (!given) return masu_finish_null(m, what);
+static masu_result check(masu_renderer *m, const void *given, const char *what,
+                         masu_detail *detail) {
+    if (!m || !given) return masu_finish_null(m, what, detail);
     if (m->governor) return MASU_OK;
-    return masu_finish(m, masu_fail(&m->error, MASU_ERROR_STATE, "governor.mode", MASU_GOVERNOR_ON,
-                                    MASU_GOVERNOR_OFF,
-                                    "there is no governor: governor.mode was OFF in masu_init"));
+    return masu_finish(m,
+                       masu_fail(&m->error, MASU_ERROR_STATE, "governor.mode", MASU_GOVERNOR_ON,
+                                 MASU_GOVERNOR_OFF,
+                                 "there is no governor: governor.mode was OFF in masu_init"),
+                       detail);
 }
 
-masu_result masu_governor_set(masu_renderer *m, const masu_governor_setting *setting) {
-    masu_result result = check(m, setting, "setting");
+masu_result masu_governor_set(masu_renderer *m, const masu_governor_setting *setting,
+                              masu_detail *detail) {
+    masu_result result = check(m, setting, "setting", detail);
     if (result) return result;
     masu_governor_desc d = {.mode = setting->mode,
                             .target_ms = setting->target_ms,
@@ -97,22 +100,24 @@ masu_result masu_governor_set(masu_renderer *m, const masu_governor_setting *set
         return masu_finish(m,
                            masu_fail(&m->error, MASU_ERROR_ARGUMENT, "governor.mode",
                                      MASU_GOVERNOR_ON, MASU_GOVERNOR_OFF,
-                                     "governor.mode is 0 (OFF), allowed are 1 (ON) and 2 (FIXED)"));
+                                     "governor.mode is 0 (OFF), allowed are 1 (ON) and 2 (FIXED)"),
+                           detail);
     }
-    result = masu_finish(m, masu_governor_check(&d, m->plan.desc.rung_count, &m->error));
+    result = masu_finish(m, masu_governor_check(&d, m->plan.desc.rung_count, &m->error), detail);
     if (!result) masu_governor_adjust(m->governor, &d);
     return result;
 }
 
-masu_result masu_governor_save(masu_renderer *m, masu_governor_state *out) {
-    masu_result result = check(m, out, "out");
+masu_result masu_governor_save(masu_renderer *m, masu_governor_state *out, masu_detail *detail) {
+    masu_result result = check(m, out, "out", detail);
     if (!result) masu_governor_export_state(m->governor, masu_governed_output(m), out);
     return result;
 }
 
-masu_result masu_governor_restore(masu_renderer *m, const masu_governor_state *state) {
-    masu_result result = check(m, state, "state");
-    if (!result) result = masu_finish(m, masu_governor_state_check(state, &m->error));
+masu_result masu_governor_restore(masu_renderer *m, const masu_governor_state *state,
+                                  masu_detail *detail) {
+    masu_result result = check(m, state, "state", detail);
+    if (!result) result = masu_finish(m, masu_governor_state_check(state, &m->error), detail);
     if (!result)
         masu_governor_import_state(m->governor, state, masu_governed_output(m), m->timeline.frame);
     return result;

@@ -102,10 +102,6 @@ static masu_result resize(masu_renderer *m, VkExtent2D output, const masu_target
 masu_result masu_resize(masu_renderer *m, VkExtent2D output, const masu_targets *targets,
                         const masu_viewport *viewports, masu_detail *detail) {
     if (!m) return masu_fail_null(detail, "renderer");
-    masu_detail own = {.result = MASU_OK};
-    masu_result result = resize(m, output, targets, viewports, &own);
-    if (!result) return MASU_OK;
-    masu_log(&m->plan.desc, MASU_LOG_ERROR, own.text);
-    if (detail) *detail = own;
-    return result;
+    masu_result result = resize(m, output, targets, viewports, &m->error);
+    return masu_finish(m, result, detail);
 }

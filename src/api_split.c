@@ -59,10 +59,10 @@ static masu_result check(masu_renderer *m, masu_split_bits which, uint32_t rung,
 }
 
 masu_result masu_split_of(masu_renderer *m, masu_split_bits which, uint32_t rung, uint32_t viewport,
-                          masu_split *out) {
-    if (!m || !out) return masu_finish_null(m, "out");
+                          masu_split *out, masu_detail *detail) {
+    if (!m || !out) return masu_finish_null(m, "out", detail);
     masu_result result = check(m, which, rung, viewport);
-    if (result) return masu_finish(m, result);
+    if (result) return masu_finish(m, result, detail);
     masu_desc d = m->plan.desc;
     d.output = m->plan.whole;
     if (d.viewport_count)
@@ -78,9 +78,13 @@ masu_result masu_split_of(masu_renderer *m, masu_split_bits which, uint32_t rung
     return MASU_OK;
 }
 
-masu_result masu_frame_view_of(const masu_renderer *m, masu_frame_view *out) {
-    if (!m || !out) return MASU_ERROR_ARGUMENT;
-    if (!m->view.render_width) return MASU_ERROR_STATE;
+masu_result masu_frame_view_of(const masu_renderer *m, masu_frame_view *out, masu_detail *detail) {
+    masu_detail own;
+    if (!m || !out) return masu_finish_null_const(m, "out", detail);
+    if (!m->view.render_width) {
+        masu_fail(&own, MASU_ERROR_STATE, "frame", 1, 0, "there is no frame of a scene yet");
+        return masu_finish_desc(&m->plan.desc, own.result, &own, detail);
+    }
     *out = m->view;
     return MASU_OK;
 }

@@ -132,8 +132,22 @@ static void read_counters(const masu_renderer *m, uint32_t slot, masu_stats_info
     if (masu_has_pass(&m->plan.rungs[out->rung].active, MASU_PASS_CULL)) read_stage2(m, slot, out);
 }
 
-masu_result masu_stats(const masu_renderer *m, uint32_t slot, masu_stats_info *out) {
-    if (!m || !out || slot >= m->plan.desc.frames_in_flight) return MASU_ERROR_ARGUMENT;
+/* What masu_stats, masu_readback and masu_pick require. */
+static masu_result check_slot(const masu_renderer *m, uint32_t slot, const void *out,
+                              masu_detail *detail) {
+    masu_detail own;
+    if (!m || !out) return masu_finish_null_const(m, "out", detail);
+    uint32_t slots = m->plan.desc.frames_in_flight;
+    if (slot < slots) return MASU_OK;
+    masu_fail(&own, MASU_ERROR_ARGUMENT, "slot", slots - 1, slot,
+              "slot %u does not exist, the last one is %u", slot, slots - 1);
+    return masu_finish_desc(&m->plan.desc, own.result, &own, detail);
+}
+
+masu_result masu_stats(const masu_renderer *m, uint32_t slot, masu_stats_info *out,
+                       masu_detail *detail) {
+    masu_result result = check_slot(m, slot, out, detail);
+    if (result) return result;
     memset(out, 0, sizeof *out);
     out->frame = m->timeline.slots[slot].frame;
     out->pass_count = MASU_PASS_COUNT;
@@ -182,12 +196,18 @@ void masu_peaks(const masu_renderer *m, masu_peak_info *out) {
 /* ---- Images ---------------------------------------------------------------------------------- */
 
 masu_result masu_readback(const masu_renderer *m, uint32_t slot, masu_readback_bits which,
-                          masu_readback_image *out) {
-    if (!m || !out || slot >= m->plan.desc.frames_in_flight) return MASU_ERROR_ARGUMENT;
+                          masu_readback_image *out, masu_detail *detail) {
+    masu_detail own;
+    masu_result result = check_slot(m, slot, out, detail);
+    if (result) return result;
     uint32_t bit = 0;
     while (bit < MASU_READBACK_IMAGES && which != 1u << bit) bit++;
-    if (bit == MASU_READBACK_IMAGES || !(m->plan.desc.readback & 1u << bit))
-        return MASU_ERROR_ARGUMENT;
+    if (bit == MASU_READBACK_IMAGES || !(m->plan.desc.readback & 1u << bit)) {
+        masu_fail(&own, MASU_ERROR_ARGUMENT, "which", m->plan.desc.readback, (unsigned)which,
+                  "which is %u: one bit of desc.readback, which is %u in this plan",
+                  (unsigned)which, m->plan.desc.readback);
+        return masu_finish_desc(&m->plan.desc, own.result, &own, detail);
+    }
     if (m->timeline.slots[slot].frame == UINT64_MAX || !has_ended(m, slot)) return MASU_INCOMPLETE;
     uint32_t id = 1;
     while (masu_images[id].readback != (uint32_t)which) id++;
@@ -211,9 +231,15 @@ static uint32_t node_of(const masu_models *s, uint32_t model, uint32_t instance)
     return MASU_NODE_NONE;
 }
 
-masu_result masu_pick(const masu_renderer *m, uint32_t slot, masu_pick_info *out) {
-    if (!m || !out || slot >= m->plan.desc.frames_in_flight || !m->plan.needs.picking)
-        return MASU_ERROR_ARGUMENT;
+masu_result masu_pick(const masu_renderer *m, uint32_t slot, masu_pick_info *out,
+                      masu_detail *detail) {
+    masu_detail own;
+    masu_result result = check_slot(m, slot, out, detail);
+    if (result) return result;
+    if (!m->plan.needs.picking) {
+        masu_fail(&own, MASU_ERROR_ARGUMENT, "picking", 1, 0, "masu_pick requires desc.picking");
+        return masu_finish_desc(&m->plan.desc, own.result, &own, detail);
+    }
     *out = (masu_pick_info){.frame = m->timeline.slots[slot].frame, .node = MASU_NODE_NONE};
     if (out->frame == UINT64_MAX || !has_ended(m, slot)) return MASU_INCOMPLETE;
     const masu_picking_slot *asked = &m->picking.slots[slot];
@@ -233,9 +259,10 @@ masu_result masu_pick(const masu_renderer *m, uint32_t slot, masu_pick_info *out
     uint32_t i = words[1];
     if (out->kind != MASU_PICK_INSTANCE || i >= m->plan.scene.instances) return MASU_OK;
     uint32_t model = m->plan.scene.models ? m->models.of_instance[i] : MASU_BLOB_NONE;
-    uint32_t own = masu_own_models(&m->plan);
+    uint32_t scene_models = masu_own_models(&m->plan);
     /* The slot's copy of that frame is gone: the present one was added later. */
-    if (model != MASU_BLOB_NONE && model >= own && out->frame < m->picking.added[model - own])
+    if (model != MASU_BLOB_NONE && model >= scene_models &&
+        out->frame < m->picking.added[model - scene_models])
         return MASU_OK;
     out->instance = masu_instance_at(m, i);
     if (model == MASU_BLOB_NONE) return MASU_OK;

@@ -19,6 +19,7 @@ static bool failed(const masu_detail *detail) {
 
 static masu_desc describe(const render *r) {
     masu_desc d = {
+        MASU_DESC,
         .vulkan = window_vulkan(r->window),
         .scene = &r->scene,
         .output = r->window->size,
@@ -42,10 +43,10 @@ static bool build(render *r, const track *t) {
     masu_result result;
     masu_desc desc = describe(r);
     if (masu_init(&desc, host_block, sizeof host_block, &r->masu, &detail)) return failed(&detail);
-    while ((result = masu_load(r->masu, &load)) == MASU_INCOMPLETE) {
+    while ((result = masu_load(r->masu, &load, &detail)) == MASU_INCOMPLETE) {
         if (!window_run(r->window, load.buffer)) return false;
     }
-    if (result) return failed(masu_last_error(r->masu));
+    if (result) return failed(&detail);
     for (int i = 0; i < t->cars; i++) {
         r->bodies[i] = masu_model_find(r->masu, t->car[i].name);
         for (int k = 0; k < t->car[i].wheels; k++)
@@ -75,10 +76,10 @@ bool render_resize(render *r, const track *t) {
     masu_governor_state learnt;
     if (masu_resize(r->masu, desc.output, &desc.targets, NULL, NULL) == MASU_OK) return true;
     /* It is larger than what was planned for, or has another number of images. */
-    if (masu_governor_save(r->masu, &learnt)) return false;
+    if (masu_governor_save(r->masu, &learnt, NULL)) return false;
     masu_destroy(r->masu);
     r->masu = NULL, r->frame = 0;
-    return build(r, t) && masu_governor_restore(r->masu, &learnt) == MASU_OK;
+    return build(r, t) && masu_governor_restore(r->masu, &learnt, NULL) == MASU_OK;
 }
 
 void render_close(render *r) {
@@ -104,7 +105,7 @@ static masu_result place(render *r, masu_model model, const vec now[3], vec at,
     float rows[12] = {(float)row[0].x, (float)row[0].y, (float)row[0].z, (float)at.x,
                       (float)row[1].x, (float)row[1].y, (float)row[1].z, (float)at.y,
                       (float)row[2].x, (float)row[2].y, (float)row[2].z, (float)at.z};
-    return model.id ? masu_model_set_transform(r->masu, model, rows) : MASU_OK;
+    return model.id ? masu_model_set_transform(r->masu, model, rows, &r->detail) : MASU_OK;
 }
 
 static masu_result place_car(render *r, int i, const car *c, const track_car *start) {
@@ -133,13 +134,13 @@ static masu_result set_lamps(render *r, const car *c, float on) {
                                        .color = {40 * on, 36 * on, 28 * on},
                                        .range = 90, .radius = 0.05f,
                                        .spot = 1, .inner = 0.1f, .outer = 0.5f};
-        if (r->lamps[i].id) result = masu_punctual_light_set(r->masu, r->lamps[i], &s);
+        if (r->lamps[i].id) result = masu_punctual_light_set(r->masu, r->lamps[i], &s, &r->detail);
     }
     return result;
 }
 
 static masu_result set_light(render *r, bool dusk, masu_light *light) {
-    masu_result result = masu_light_of(r->masu, light);
+    masu_result result = masu_light_of(r->masu, light, &r->detail);
     if (!dusk) return result;
     light->turbidity = 4;
     light->exposure = 0.3f; /* metered: a third of the brightness of a day */
@@ -185,9 +186,10 @@ bool render_frame(render *r, const race *race, const render_view *view, bool *ou
                           .forward = {(float)forward.x, (float)forward.y, (float)forward.z},
                           .fov_y = 1.05f + 0.0022f * (float)speed,
                           .near_distance = 0.2f};
-    masu_frame_desc frame = {.camera = &camera, .light = &light, .target = image, .cut = view->cut,
-                             .time = view->time, .time_step = view->step, .rung = MASU_RUNG_AUTO};
-    if (result || masu_frame(r->masu, &frame, &commands)) return failed(masu_last_error(r->masu));
+    masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &camera, .light = &light, .target = image,
+                             .cut = view->cut, .time = view->time, .time_step = view->step,
+                             .rung = MASU_RUNG_AUTO};
+    if (result || masu_frame(r->masu, &frame, &commands, &r->detail)) return failed(&r->detail);
     r->changes += r->frames && commands.rung != r->rung;
     r->frame++, r->frames++, r->rungs |= 1u << commands.rung, r->rung = commands.rung;
     if (!record_hud(r, slot, image, race, view)) return false;

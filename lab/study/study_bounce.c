@@ -264,17 +264,17 @@ static bool switch_lamp(study *w, bool on) {
     masu_punctual_light_state state;
     if (!given.lamp) return true;
     masu_punctual_light lamp = masu_punctual_light_find(w->s.m, given.lamp);
-    if (masu_punctual_light_get(w->s.m, lamp, &state) != MASU_OK) return false;
+    if (masu_punctual_light_get(w->s.m, lamp, &state, NULL) != MASU_OK) return false;
     for (int k = 0; k < 3; k++) state.color[k] = on ? (float)given.lamp_color : 0.0f;
-    return masu_punctual_light_set(w->s.m, lamp, &state) == MASU_OK;
+    return masu_punctual_light_set(w->s.m, lamp, &state, NULL) == MASU_OK;
 }
 
 static bool draw(study *w, bool first, float *rgb, char *error, size_t size) {
     masu_light light;
     masu_camera camera;
     masu_commands commands;
-    if (masu_light_of(w->s.m, &light) != MASU_OK ||
-        masu_camera_at(w->s.m, o->time, &camera) != MASU_OK)
+    if (masu_light_of(w->s.m, &light, NULL) != MASU_OK ||
+        masu_camera_at(w->s.m, o->time, &camera, NULL) != MASU_OK)
         return failed(error, size, "the scene has no light or no camera");
     memset(light.ambient, 0, sizeof light.ambient);
     if (given.night) {

@@ -34,7 +34,8 @@ layout(constant_id = 17) const bool masu_area_lights = false;
 
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_LIGHTS, std430) readonly buffer Lights
 {
-    uvec4 masu_lights_header; /* x lights in view, y words of a tile's list, z 1 / texels of the atlas, float bits */
+    uvec4 masu_lights_header; /* x lights in view, y words of a tile's list; float bits: z 1 / texels of the
+                               * atlas, w a step of the camera's subpixel grid at distance 1, m */
     masu_punctual_light_data masu_lights[];
 };
 

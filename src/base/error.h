@@ -31,7 +31,15 @@ masu_result masu_fail_vulkan(masu_detail *detail, VkResult vk, const char *call)
  * (specification, "Return Codes"), and cleanup must not destroy such a handle. */
 #define MASU_FAILED(r, handle) ((r) != VK_SUCCESS && ((handle) = VK_NULL_HANDLE, 1))
 
+/* The member `bytes` of a host's description differs from `needed`. `type`: "masu_desc". */
+masu_result masu_fail_bytes(masu_detail *detail, const char *type, size_t needed, uint32_t given);
+
 /* Writes one line to the host's log, if there is one. */
 void masu_log(const masu_desc *desc, masu_log_level level, const char *text);
+
+/* The result of a public function: logs the error `own` and copies it to `detail`, which may be
+ * NULL. A `desc` that is NULL or of another size has no log. */
+masu_result masu_finish_desc(const masu_desc *desc, masu_result result, const masu_detail *own,
+                             masu_detail *detail);
 
 #endif

@@ -139,6 +139,18 @@ masu_desc masu_desc_resolved(const masu_desc *desc) {
     return d;
 }
 
+masu_result masu_desc_resolve(const masu_desc *desc, masu_desc *out, masu_detail *detail) {
+    masu_detail own;
+    masu_result result = MASU_OK;
+    if (!desc || !out)
+        result = masu_fail_null(&own, desc ? "out" : "desc");
+    else if (desc->bytes != sizeof *desc)
+        result = masu_fail_bytes(&own, "masu_desc", sizeof *desc, desc->bytes);
+    else
+        *out = masu_desc_resolved(desc);
+    return masu_finish_desc(desc, result, &own, detail);
+}
+
 /* ---- Checks ---------------------------------------------------------------------------------- */
 
 static masu_result bad_range(masu_detail *detail, const char *what, uint64_t given, uint64_t low,

@@ -1,5 +1,5 @@
-/* desc.h: defaults and ranges of the description. masu_desc_resolved (masu.h) replaces zeros by
- * defaults; masu_desc_check requires its result. The ranges of knobs are in quality/knobs.h, the
+/* desc.h: defaults and ranges of the description. masu_desc_resolved replaces zeros by defaults;
+ * masu_desc_check requires its result. The ranges of knobs are in quality/knobs.h, the
  * limits in plan/limits.h.
  *
  * Pure functions: no Vulkan calls, no allocation, no state. */
@@ -7,6 +7,9 @@
 #define MASU_DESC_H
 
 #include "masu.h"
+
+/* masu_desc_resolve (masu.h) without its check of `bytes`. NULL gives all defaults. */
+masu_desc masu_desc_resolved(const masu_desc *desc);
 
 /* For a resolved description: the render size of a rung, and whether the rung uses temporal
  * upscaling. */

@@ -20,6 +20,9 @@ static const char *const whats[] = {MASU_LIMITS(WHAT)};
 #define SAME_PLACE(name, ...)                                                                      \
     _Static_assert(offsetof(masu_limits, name) == offsetof(masu_peak_info, name), #name);
 MASU_LIMITS(SAME_PLACE)
+#define ONE(...) +1
+_Static_assert(sizeof(masu_limits) == sizeof(uint64_t) * (0 MASU_LIMITS(ONE)),
+               "masu_limits has members without a row: make docs-tables");
 
 const masu_limit *masu_limit_table(void) { return limits; }
 

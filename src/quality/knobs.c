@@ -18,6 +18,12 @@ static const masu_word march_words[] = {MASU_MARCH_WORDS(WORD_ROW)};
 static const masu_word easu_words[] = {MASU_EASU_WORDS(WORD_ROW)};
 static const masu_word aa_words[] = {MASU_AA_WORDS(WORD_ROW)};
 
+#define SAME_VALUE(name, value, ...)                                                               \
+    _Static_assert(name == (value), #name " is not that of the table: make docs-tables");
+MASU_SWITCH_WORDS(SAME_VALUE)
+MASU_EASU_WORDS(SAME_VALUE)
+MASU_AA_WORDS(SAME_VALUE)
+
 /* What the C type of a row says of it: kind, and the words of an enum. */
 #define KIND_float MASU_KNOB_FLOAT
 #define KIND_uint32_t MASU_KNOB_COUNT
@@ -61,6 +67,18 @@ MASU_KNOB_USES(USE_TEXTS)
      .cost = costs,                                                                                \
      .words = WORDS_##type,                                                                        \
      .word_count = sizeof(WORDS_##type) / sizeof *(WORDS_##type)},
+
+/* masu_rung, which make_structs.c writes, has a member of the type of each row, in order. */
+#define RUNG_MEMBER(type, name, ...) type name;
+typedef struct rung_of_table {
+    MASU_KNOBS(RUNG_MEMBER, RUNG_MEMBER)
+} rung_of_table;
+#define SAME_MEMBER(type, name, ...)                                                               \
+    _Static_assert(offsetof(masu_rung, name) == offsetof(rung_of_table, name) &&                   \
+                       _Generic(&((masu_rung *)0)->name, type *: 1, default: 0),                   \
+                   "masu_rung." #name " is not that of the table: make docs-tables");
+MASU_KNOBS(SAME_MEMBER, SAME_MEMBER)
+_Static_assert(sizeof(masu_rung) == sizeof(rung_of_table), "masu_rung has members without a row");
 
 static const masu_knob knobs[] = {MASU_KNOBS(NUMBER_ROW, WORD_ROW_OF){.name = NULL}};
 

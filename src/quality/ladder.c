@@ -1,6 +1,7 @@
 /* ladder.c: see ladder.h. */
 #include "quality/ladder.h"
 
+#include "base/error.h"
 #include "quality/ladder_devices.h"
 #include "quality/ladder_tables.h"
 #include "scene/scene.h"
@@ -95,9 +96,20 @@ static void give(const masu_ladder *l, masu_desc *desc, float costs[MASU_MAX_RUN
     }
 }
 
-masu_result masu_ladder_of(const masu_scene *scene, masu_desc *desc, const char **from) {
+masu_result masu_ladder_of(const masu_scene *scene, masu_desc *desc, const char **from,
+                           masu_detail *detail) {
+    masu_detail own;
     const masu_ladder *l = masu_ladder_for(scene);
-    if (!scene || !desc || !l) return MASU_ERROR_ARGUMENT;
+    if (!scene || !desc) {
+        masu_result result = masu_fail_null(&own, scene ? "desc" : "scene");
+        return masu_finish_desc(desc, result, &own, detail);
+    }
+    if (desc->bytes != sizeof *desc)
+        return masu_fail_bytes(detail, "masu_desc", sizeof *desc, desc->bytes);
+    if (!l) {
+        masu_fail(&own, MASU_ERROR_ARGUMENT, "scene", 1, 0, "there is no ladder for the scene");
+        return masu_finish_desc(desc, own.result, &own, detail);
+    }
     give(l, desc, desc->governor.costs);
     if (from) *from = l->from;
     return MASU_OK;

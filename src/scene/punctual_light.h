@@ -15,7 +15,7 @@
 typedef struct masu_light_header {
     uint32_t count, list_words;
     float atlas_texel; /* 1 / texels along an edge of the local shadow atlas */
-    uint32_t reserved;
+    float snap; /* m at distance 1 from the camera: how far its rasteriser may move an edge */
 } masu_light_header;
 
 /* Half angle, in radians (60 degrees), of the widest spot whose shadow needs a single face. Other

@@ -84,6 +84,16 @@ const char *masu_scene_clip_name(const masu_scene *scene, uint32_t model, uint32
     return "";
 }
 
+float masu_scene_sdf_range(const masu_scene *scene, uint32_t index, float *minimum,
+                           float *maximum) {
+    const masu_scene_data *s = data_of(scene);
+    masu_blob_sdf_param p = {0};
+    if (s->blob && index < s->sdf_params) p = masu_scene_data_view(s).sdf_params[index];
+    if (minimum) *minimum = p.minimum;
+    if (maximum) *maximum = p.maximum;
+    return p.value;
+}
+
 /* ---- Properties ------------------------------------------------------------------------------ */
 
 uint32_t masu_scene_features(const masu_scene *scene) {

@@ -39,7 +39,7 @@ static void help_and_version_are_there_for_every_command(void **state) {
     assert_int_equal(cli_run("help nothing"), 2);
     assert_non_null(strstr(cli_err, "unknown command \"nothing\""));
     assert_int_equal(cli_run("--version"), 0);
-    assert_non_null(strstr(cli_out, "0.1.0"));
+    assert_non_null(strstr(cli_out, "0.2.0"));
 }
 
 static void wrong_command_lines_are_exit_code_2(void **state) {
