@@ -36,8 +36,8 @@ void masu_governor_shown(masu_governor *g, uint64_t frame, uint64_t ns, uint64_t
 /* Changes mode, target, headroom, range, dwell and fixed rung from the next frame on. Measured
  * costs and times are kept. Out-of-range fields are treated as in masu_governor_init. */
 void masu_governor_adjust(masu_governor *g, const masu_governor_desc *desc);
-/* Before the first frame, if an earlier renderer has measured the load: selects the best rung within
- * the target. */
+/* Before the first frame, if an earlier renderer has measured the load: selects the best rung
+ * within the target. */
 void masu_governor_settle_at_best(masu_governor *g);
 /* Forgets failed rises. */
 void masu_governor_forget_mistakes(masu_governor *g);
