@@ -1,5 +1,5 @@
-/* api_governor.c: the public functions of the governor (measured times, settings, state), and how
- * masu_frame uses it (api_governor.h). */
+/* api_governor.c: the public functions of the governor (measured times, settings, state), and its
+ * use by masu_frame (api_governor.h). */
 #include "api_governor.h"
 
 #include "base/error.h"
@@ -16,7 +16,7 @@ VkExtent2D masu_governed_output(const masu_renderer *m) {
     return m->plan.desc.viewport_count ? (VkExtent2D){first->width, first->height} : m->plan.whole;
 }
 
-/* Rungs of a source image have no scale: what they cost has to be learnt. */
+/* Rungs of a source image have no scale, so there is no cost prior; costs are measured. */
 void masu_governed_start(masu_renderer *m) {
     const masu_desc *d = &m->plan.desc;
     masu_governor_rung rungs[MASU_MAX_RUNGS];
@@ -72,7 +72,7 @@ void masu_frame_presented(masu_renderer *m, uint64_t frame, uint64_t present_ns,
     masu_governor_shown(m->governor, frame, present_ns, refresh_ns);
 }
 
-/* ---- What the host changes ------------------------------------------------------------------- */
+/* ---- Settings -------------------------------------------------------------------------------- */
 
 static masu_result check(masu_renderer *m, const void *given, const char *what,
                          masu_detail *detail) {

@@ -1,4 +1,4 @@
-/* api_scene.c: the public functions that query and change instances, models, punctual lights and
+/* api_scene.c: the public functions that query and change instances, models, local lights and
  * materials between frames (api_add.c adds and removes them). They change the host's copy in
  * src/frame/; masu_frame uploads the changes. */
 #include "renderer.h"
@@ -157,7 +157,7 @@ masu_result masu_model_node_set(masu_renderer *m, masu_model model, uint32_t nod
 
 /* ---- Clips ----------------------------------------------------------------------------------- */
 
-/* Those of a model, or none of what is no model. */
+/* Number and first of the clips of a model; 0 for an invalid model. */
 static uint32_t clips_of(const masu_renderer *m, masu_model model, uint32_t *first) {
     uint32_t i = m ? masu_handle_index(&m->models.handles, model.id) : 0;
     if (!m || i >= m->plan.scene.models) return 0;

@@ -18,14 +18,15 @@ static uint64_t *stamps_of(const masu_renderer *m, uint32_t slot) {
     return (uint64_t *)(void *)(from + m->plan.readback_times);
 }
 
-/* What no clock shows: counts of fewer bits are below it. The frame overwrites it when it ends. */
+/* A value that no timestamp has: narrower counters are below it. The GPU overwrites it at the end
+ * of the frame. */
 #define NO_STAMP UINT64_MAX
 
 void masu_slot_begin(masu_renderer *m, uint32_t slot) {
     if (m->device.queries) stamps_of(m, slot)[masu_stamps(&m->plan.desc) - 1] = NO_STAMP;
 }
 
-/* Whether the slot's frame has ended, as far as that can be told without asking the driver. */
+/* Whether the slot's frame has ended, as far as this is possible without calling the driver. */
 static int has_ended(const masu_renderer *m, uint32_t slot) {
     return !m->device.queries ||
            stamps_of(m, slot)[masu_stamps(&m->plan.desc) - 1] != NO_STAMP;
@@ -35,12 +36,13 @@ static uint64_t stamp_ns(const masu_renderer *m, uint32_t slot, uint32_t from, u
     const uint64_t *stamps = stamps_of(m, slot);
     uint32_t bits = m->device.vk.queue_family.timestampValidBits;
     uint64_t mask = bits >= 64 ? UINT64_MAX : ((uint64_t)1 << bits) - 1;
-    /* The counter may wrap between two stamps: the difference under the mask is right all the same. */
+    /* The counter may wrap between two timestamps; the masked difference is correct
+     * nevertheless. */
     return (uint64_t)((double)((stamps[to] - stamps[from]) & mask) *
                       (double)m->device.vk.properties.limits.timestampPeriod);
 }
 
-/* Whether the time of a pass does not depend on the render size. */
+/* Whether the cost of a pass does not depend on the render size. */
 static int is_fixed_pass(uint32_t pass) {
     switch (masu_passes[pass].extent) {
     case MASU_EXTENT_OUTPUT:
@@ -69,7 +71,7 @@ int masu_slot_sample(const masu_renderer *m, uint32_t slot, masu_governor_sample
                                   .wall_ms = held->wall_ms,
                                   .cpu_ms = held->cpu_ms,
                                   .exclude_from_timing = held->exclude_from_timing};
-    /* None, never submitted, or not the governor's, whose are those of the first viewport. */
+    /* No frame, never submitted, or not of the first viewport, whose times the governor uses. */
     if (held->frame == UINT64_MAX || held->viewport || !has_ended(m, slot)) return 0;
     if (stamps) out->gpu_ms = (double)stamp_ns(m, slot, 0, stamps - 1) * 1e-6;
     for (uint32_t p = 0; p + 2 <= stamps && stamps > 2; p++) {
@@ -132,7 +134,7 @@ static void read_counters(const masu_renderer *m, uint32_t slot, masu_stats_info
     if (masu_has_pass(&m->plan.rungs[out->rung].active, MASU_PASS_CULL)) read_stage2(m, slot, out);
 }
 
-/* What masu_stats, masu_readback and masu_pick require. */
+/* Requirements that masu_stats, masu_readback and masu_pick share. */
 static masu_result check_slot(const masu_renderer *m, uint32_t slot, const void *out,
                               masu_detail *detail) {
     masu_detail own;
@@ -213,7 +215,7 @@ masu_result masu_readback(const masu_renderer *m, uint32_t slot, masu_readback_b
     while (masu_images[id].readback != (uint32_t)which) id++;
     VkFormat format = masu_images[id].format;
     if (format == VK_FORMAT_D32_SFLOAT)
-        format = VK_FORMAT_R32_SFLOAT; /* as it lies in the buffer */
+        format = VK_FORMAT_R32_SFLOAT; /* the format in the readback buffer */
     VkExtent2D size = masu_plan_extent(&m->plan, masu_images[id].extent,
                                        m->timeline.slots[slot].render);
     *out = (masu_readback_image){
@@ -222,7 +224,7 @@ masu_result masu_readback(const masu_renderer *m, uint32_t slot, masu_readback_b
     return MASU_OK;
 }
 
-/* The node of a model that shows an instance. */
+/* The node of a model that has an instance. */
 static uint32_t node_of(const masu_models *s, uint32_t model, uint32_t instance) {
     const masu_placed_model *of = &s->models[model];
     for (uint32_t n = 0; n < of->node_count; n++) {
@@ -245,7 +247,7 @@ masu_result masu_pick(const masu_renderer *m, uint32_t slot, masu_pick_info *out
     const masu_picking_slot *asked = &m->picking.slots[slot];
     if (!asked->asked) return MASU_OK;
     uint32_t words[MASU_PICKED_WORDS];
-    float told[4]; /* depth, from the eye */
+    float told[4]; /* view depth */
     memcpy(words, masu_buffer_pointer(&m->device, MASU_BUFFER_PICKED, slot), sizeof words);
     memcpy(told, words + 2, sizeof told);
     out->kind = words[0] == MASU_PICKED_INSTANCE ? MASU_PICK_INSTANCE
@@ -260,7 +262,7 @@ masu_result masu_pick(const masu_renderer *m, uint32_t slot, masu_pick_info *out
     if (out->kind != MASU_PICK_INSTANCE || i >= m->plan.scene.instances) return MASU_OK;
     uint32_t model = m->plan.scene.models ? m->models.of_instance[i] : MASU_BLOB_NONE;
     uint32_t scene_models = masu_own_models(&m->plan);
-    /* The slot's copy of that frame is gone: the present one was added later. */
+    /* The copy in the slot at that frame has been removed: the present copy was added later. */
     if (model != MASU_BLOB_NONE && model >= scene_models &&
         out->frame < m->picking.added[model - scene_models])
         return MASU_OK;
@@ -285,7 +287,7 @@ void masu_unpack_normal(uint32_t texel, float out[3]) {
         x = (1.0f - fabsf(y)) * (x < 0.0f ? -1.0f : 1.0f);
         y = (1.0f - fabsf(t)) * (y < 0.0f ? -1.0f : 1.0f);
     }
-    float length = sqrtf(x * x + y * y + z * z); /* at least 1/sqrt(3) on the octahedron */
+    float length = sqrtf(x * x + y * y + z * z); /* at least 1/sqrt(3) on an octahedron */
     out[0] = x / length;
     out[1] = y / length;
     out[2] = z / length;
@@ -317,7 +319,7 @@ static const char *texture_name(VkFormat format) {
     }
 }
 
-/* Rows of a report as they come: those behind the capacity are counted alone. */
+/* Rows of a report. Rows beyond the capacity are only counted. */
 typedef struct report {
     masu_memory_row *rows;
     uint32_t capacity, count;

@@ -50,8 +50,8 @@ masu_result masu_fail_number(masu_detail *detail, const char *what, double given
 
 masu_result masu_fail_element(masu_detail *detail, const char *what, uint32_t index, double given,
                               const char *allowed) {
-    return masu_fail(detail, MASU_ERROR_ARGUMENT, what, 0, 0, "%s[%u] is %.9g, allowed are %s", what,
-                     index, given, allowed);
+    return masu_fail(detail, MASU_ERROR_ARGUMENT, what, 0, 0, "%s[%u] is %.9g, allowed are %s",
+                     what, index, given, allowed);
 }
 
 masu_result masu_fail_vulkan(masu_detail *detail, VkResult vk, const char *call) {

@@ -57,28 +57,13 @@ enum { SPECIAL_COUNT = 21 };
 
 static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
                                        VkBool32 constants[SPECIAL_COUNT]) {
+#define ENTRY(n)                                                                                   \
+    { n, (n) * sizeof *constants, sizeof *constants }
     static const VkSpecializationMapEntry entries[SPECIAL_COUNT] = {
-        {0, 0, sizeof *constants},
-        {1, sizeof *constants, sizeof *constants},
-        {2, 2 * sizeof *constants, sizeof *constants},
-        {3, 3 * sizeof *constants, sizeof *constants},
-        {4, 4 * sizeof *constants, sizeof *constants},
-        {5, 5 * sizeof *constants, sizeof *constants},
-        {6, 6 * sizeof *constants, sizeof *constants},
-        {7, 7 * sizeof *constants, sizeof *constants},
-        {8, 8 * sizeof *constants, sizeof *constants},
-        {9, 9 * sizeof *constants, sizeof *constants},
-        {10, 10 * sizeof *constants, sizeof *constants},
-        {11, 11 * sizeof *constants, sizeof *constants},
-        {12, 12 * sizeof *constants, sizeof *constants},
-        {13, 13 * sizeof *constants, sizeof *constants},
-        {14, 14 * sizeof *constants, sizeof *constants},
-        {15, 15 * sizeof *constants, sizeof *constants},
-        {16, 16 * sizeof *constants, sizeof *constants},
-        {17, 17 * sizeof *constants, sizeof *constants},
-        {18, 18 * sizeof *constants, sizeof *constants},
-        {19, 19 * sizeof *constants, sizeof *constants},
-        {20, 20 * sizeof *constants, sizeof *constants}};
+        ENTRY(0),  ENTRY(1),  ENTRY(2),  ENTRY(3),  ENTRY(4),  ENTRY(5),  ENTRY(6),
+        ENTRY(7),  ENTRY(8),  ENTRY(9),  ENTRY(10), ENTRY(11), ENTRY(12), ENTRY(13),
+        ENTRY(14), ENTRY(15), ENTRY(16), ENTRY(17), ENTRY(18), ENTRY(19), ENTRY(20)};
+#undef ENTRY
     constants[0] = first;
     constants[1] = m->plan->needs.sky != 0;
     constants[2] = m->plan->scene.fog != 0;

@@ -34,7 +34,7 @@ enum {
 };
 
 /* First byte of an id. */
-#define MASU_PACK_RECENT 64u  /* below: index in the recent list, from 1 on */
+#define MASU_PACK_RECENT 64u /* below: index in the recent list, from 1 on */
 /* then a signed literal: distance in results from the last id coded so */
 #define MASU_PACK_EARLIER 0u
 #define MASU_PACK_NEAR 64u    /* from here on: the last result, the one before, ... */
@@ -42,8 +42,8 @@ enum {
 #define MASU_PACK_NUMBER 255u /* then a number */
 
 /* First byte of a number: row << 5 | distance from the row's last result + MASU_PACK_BACK. */
-#define MASU_PACK_ROWS 7u    /* as a row: no row; a literal follows */
-#define MASU_PACK_STEP 31u   /* as a distance: a signed literal follows */
+#define MASU_PACK_ROWS 7u  /* as a row: no row; a literal follows */
+#define MASU_PACK_STEP 31u /* as a distance: a signed literal follows */
 #define MASU_PACK_BACK 4u
 #define MASU_PACK_RESULTS 4096u /* results that can be addressed; a power of two */
 

@@ -1,4 +1,4 @@
-/* governor_report.c: what a governor knows, as the host sees it. See governor.h. */
+/* governor_report.c: the state of a governor in the public struct. See governor.h. */
 #include "quality/governor.h"
 
 #include <string.h>
@@ -56,5 +56,7 @@ void masu_governor_report(const masu_governor *g, masu_governor_info *out) {
     out->slope_ms = (float)g->slope;
     double interval = out->refreshes ? out->refreshes * g->pacing.refresh : g->target;
     out->start_delay_ms = (float)masu_largest(
-        interval - masu_governor_upper(g, g->rung, masu_governor_lead(g, g->frame), 0, MASU_GOVERNOR_MARGIN), 0.0);
+        interval - masu_governor_upper(g, g->rung, masu_governor_lead(g, g->frame), 0,
+                                       MASU_GOVERNOR_MARGIN),
+        0.0);
 }

@@ -27,8 +27,7 @@
 /* layout of version 17: 3570820542 (kinds and elements; tests/scripts/scene_forms.sh) */
 #define MASU_BLOB_ALIGN 16u
 #define MASU_BLOB_NONE 0xFFFFFFFFu /* "no name", "no parent" */
-/* values per SDF primitive, at the start of SLOTS: bounding sphere, slope, form, first argument,
- * material */
+/* values per SDF primitive, first in SLOTS: sphere, slope, form, first argument, material */
 #define MASU_BLOB_PART_SLOTS 8u
 #define MASU_BLOB_NAME_MAX 255u    /* bytes of a name, without its NUL */
 
@@ -48,9 +47,8 @@ enum masu_blob_kind {
     MASU_BLOB_CLASSIFY_SPIRV = 13, /* these three: present exactly if MARCH_SPIRV is */
     MASU_BLOB_CONE8_SPIRV = 14,
     MASU_BLOB_CONE4_SPIRV = 15,
-    /* present if slots depend on parameters, time or the floating origin */
-    MASU_BLOB_UPDATE_SPIRV = 16,
-    MASU_BLOB_PLAIN_SPIRV = 17, /* these three: only with masu-bake --variants, lab build */
+    MASU_BLOB_UPDATE_SPIRV = 16, /* slots depend on parameters, time or the floating origin */
+    MASU_BLOB_PLAIN_SPIRV = 17,  /* these three: only with masu-bake --variants, lab build */
     MASU_BLOB_SEED_SPIRV = 18,
     MASU_BLOB_CHECKERBOARD_SPIRV = 19, /* 20 is not used */
     MASU_BLOB_SLOTS = 21, /* float: initial values of the SDF's evaluated constants; at least one */
@@ -70,8 +68,7 @@ enum masu_blob_kind {
     MASU_BLOB_LIGHTS = 35, /* local lights */
     MASU_BLOB_PROBES = 36, /* at most one: light probe grid; these two are present together */
     MASU_BLOB_PROBE_DATA = 37,
-    /* at most one: sky from an image; these two are present together */
-    MASU_BLOB_ENVIRONMENT_MAP = 38,
+    MASU_BLOB_ENVIRONMENT_MAP = 38, /* at most one: sky image; these two are present together */
     MASU_BLOB_ENVIRONMENT_TEXELS = 39,
     MASU_BLOB_REFLECTIONS = 44,    /* at most one: reflections are traced */
     MASU_BLOB_TRACE_TEXTURES = 45, /* texture copies for ray hits; these two are present together */
@@ -110,7 +107,7 @@ enum masu_blob_texture_format {
 
 /* Textures of a material: slots of a texture set, and bits of a material's flags. */
 enum masu_blob_texture_slot {
-    MASU_SLOT_BASE = 0,    /* base colour, alpha in BC3 */
+    MASU_SLOT_BASE = 0, /* base colour, alpha in BC3 */
     /* BC5: x and y of the tangent-space normal as 0..1, +y towards the top of the image */
     MASU_SLOT_NORMAL = 1,
     MASU_SLOT_SURFACE = 2, /* BC4: roughness; BC5: roughness, metallic */
@@ -124,16 +121,13 @@ enum masu_blob_texture_slot {
  * material has that map, whose values are multiplied by the material's factor. */
 enum masu_blob_material_flags {
     MASU_MATERIAL_HAS_MAPS = 0x3F,
-    /* alpha-tested: texels with alpha below the cut-off are discarded */
-    MASU_MATERIAL_IS_MASK = 0x40,
-    MASU_MATERIAL_IS_BLEND = 0x80,  /* transparent: blended over the image */
-    MASU_MATERIAL_CUTOFF_SHIFT = 8, /* 8 bits: cut-off times 255 */
-    /* with IS_BLEND: adds its radiance and attenuates nothing */
-    MASU_MATERIAL_IS_ADDITIVE = 0x10000,
+    MASU_MATERIAL_IS_MASK = 0x40,        /* alpha-tested: discarded below the cut-off */
+    MASU_MATERIAL_IS_BLEND = 0x80,       /* transparent: blended over the image */
+    MASU_MATERIAL_CUTOFF_SHIFT = 8,      /* 8 bits: cut-off times 255 */
+    MASU_MATERIAL_IS_ADDITIVE = 0x10000, /* with IS_BLEND: adds radiance, attenuates nothing */
     MASU_MATERIAL_IS_SINGLE = 0x40000,   /* back faces (clockwise triangles) are not drawn */
     MASU_MATERIAL_HAS_METAL = 0x80000,   /* the surface map also holds metallic */
-    /* with IS_BLEND: transmission is tinted by the base colour */
-    MASU_MATERIAL_IS_TINTED = 0x100000,
+    MASU_MATERIAL_IS_TINTED = 0x100000,  /* with IS_BLEND: base colour tints transmission */
     /* Layers that ignore the normal map and use the mesh normal: the coat, or the base below it. */
     MASU_MATERIAL_COAT_SMOOTH = 0x200000,
     MASU_MATERIAL_BASE_SMOOTH = 0x400000,
@@ -221,12 +215,11 @@ enum masu_blob_model_flags { MASU_MODEL_HIDDEN = 1 /* until the host shows the m
 
 /* A model that is moved as one. Its nodes follow the previous model's in MODEL_NODES. */
 typedef struct masu_blob_model {
-    float transform[12]; /* model space to world, as placed in the scene */
+    float transform[12];             /* model space to world, as placed in the scene */
     uint32_t first_node, node_count; /* at least one */
     uint32_t name;
     uint32_t flags; /* masu_blob_model_flags */
-    /* the first model of its kind (same meshes at the same nodes); at most its own index */
-    uint32_t like;
+    uint32_t like;  /* first model with the same meshes at the same nodes; at most its own index */
     uint32_t reserved[3];
 } masu_blob_model;
 
@@ -234,10 +227,8 @@ typedef struct masu_blob_model {
  * own. */
 typedef struct masu_blob_model_node {
     float local[12];   /* node to parent node or model */
-    /* index into MODEL_NODES, of the same model and before this node; or MASU_BLOB_NONE */
-    uint32_t parent;
-    /* the instance that the node moves, used by no other node; or MASU_BLOB_NONE */
-    uint32_t instance;
+    uint32_t parent;   /* index into MODEL_NODES: an earlier node of the model; or MASU_BLOB_NONE */
+    uint32_t instance; /* that the node moves, used by no other node; or MASU_BLOB_NONE */
     uint32_t name;
     uint32_t skin; /* 1 + index into SKINS of the skin that deforms the instance; 0: none */
 } masu_blob_model_node;
@@ -265,7 +256,7 @@ typedef struct masu_blob_channel {
     uint32_t step; /* 1: each key's value holds until the next key; 0: interpolated */
     /* next range of KEYS, at least one; the first and last values hold outside */
     uint32_t first_key, key_count;
-    uint32_t target;               /* CHANNEL_WEIGHT: index of the skin's target; else 0 */
+    uint32_t target; /* CHANNEL_WEIGHT: index of the skin's target; else 0 */
     uint32_t reserved[2];
 } masu_blob_channel;
 
@@ -309,11 +300,11 @@ typedef struct masu_blob_morph_delta {
 /* A skinned vertex is the weighted mean of its joint transforms: node in the model times inverse
  * bind matrix. */
 typedef struct masu_blob_joint {
-    float inverse_bind[12];  /* from bind-pose space to the space of the joint */
+    float inverse_bind[12]; /* from bind-pose space to the space of the joint */
     /* bounds of all bind-pose vertices with a weight for it; both 0 if there are none */
     float low[3], high[3];
-    uint32_t node;           /* relative to the model's first node */
-    uint32_t used;           /* 1: some vertex has a weight for it */
+    uint32_t node; /* relative to the model's first node */
+    uint32_t used; /* 1: some vertex has a weight for it */
 } masu_blob_joint;
 
 /* The bind pose. VERTICES holds the same vertex in the pose of the baked scene. */
@@ -357,7 +348,7 @@ typedef struct masu_blob_material {
     uint32_t texture_set; /* element of TEXTURE_SETS */
     uint32_t layers;      /* of the first four slots' textures, 8 bits per slot */
     float specular; /* 0..1: reflectance of a dielectric at normal incidence / 0.08; plain: 0.5 */
-    float coat;           /* 0..1: weight of the clear coat */
+    float coat;     /* 0..1: weight of the clear coat */
     float coat_roughness; /* perceptual, 0..1 */
     float opacity;        /* 0..1 for transparent materials, else 1 */
     uint32_t meso;        /* element of MESO, or MASU_BLOB_NONE */
@@ -423,8 +414,7 @@ typedef struct masu_blob_light {
  * the probe's confidence, 0..1 */
 #define MASU_PROBE_WORDS 14u
 #define MASU_PROBE_LIT_WORDS 12u /* of a probe lit for a frame; not in blobs */
-/* Live probe, not in blobs either: its mean, in the layout of a lit probe, and sixteen
- * sums. */
+/* Live probe, not in blobs either: its mean, laid out like a lit probe, and sixteen sums. */
 #define MASU_PROBE_LIVE_WORDS (MASU_PROBE_LIT_WORDS + 16u * MASU_PROBE_WORDS)
 #define MASU_PROBE_COUNT_MAX 262144u
 #define MASU_PROBE_BYTES_MAX ((uint64_t)64 << 20)
@@ -587,10 +577,10 @@ typedef struct masu_blob_environment {
     float sky_zenith[3];
     float brighten; /* adaptation speed to a darker image, 0..1e6 1/s, */
     float sky_horizon[3];
-    float turbidity; /* 0: constant sky, the two colours above; 1.5..10: analytic sky */
-    float ground[3]; /* ground albedo of the analytic sky, 0..1 */
+    float turbidity;        /* 0: constant sky, the two colours above; 1.5..10: analytic sky */
+    float ground[3];        /* ground albedo of the analytic sky, 0..1 */
     float occlusion_radius; /* of screen-space ambient occlusion, metres; 0: none */
-    float fog_color[3]; /* radiance of dense fog; all zero: that of the sky at the horizon */
+    float fog_color[3];     /* radiance of dense fog; all zero: that of the sky at the horizon */
     float fog_density;  /* at fog_height, 1/m; 0: no fog */
     float fog_height;   /* m */
     /* >= 0, 1/m: the density falls by a factor of e over 1 / fog_falloff metres of height */
@@ -617,7 +607,7 @@ typedef struct masu_blob_sdf {
     float bounds_min[3]; /* world space; the SDF has no surface outside */
     float lipschitz;     /* >= 1e-3: |f(p)-f(q)| <= lipschitz |p-q| */
     float bounds_max[3];
-    float max_distance;  /* maximum ray length, > 0 */
+    float max_distance; /* maximum ray length, > 0 */
     /* 1: the code was compiled to read the raster depth (the scene has instances) */
     uint32_t has_raster;
     uint32_t part_count; /* 1..4096 */

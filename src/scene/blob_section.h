@@ -30,7 +30,7 @@ typedef struct masu_scene_view {
     const float *slots;
     uint64_t slot_count;
     const float *texcoords;
-    const uint32_t *colors;   /* one per vertex */
+    const uint32_t *colors; /* one per vertex */
     const float *texcoords_1;
     const masu_blob_texture *textures;
     const masu_blob_texture_set *texture_sets;

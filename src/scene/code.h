@@ -38,7 +38,7 @@ typedef struct masu_module {
     uint32_t push_bytes;      /* size of its push constants; 0: none */
     uint32_t bound_count;
     masu_module_bound bound[MASU_MODULE_BOUND_MAX];
-    const uint32_t *record;   /* the instruction with its MASU_MODULE_RECORD; NULL: none */
+    const uint32_t *record; /* the instruction with its MASU_MODULE_RECORD; NULL: none */
     uint32_t record_words;
 } masu_module;
 

@@ -30,11 +30,10 @@
 
 /* An instance in the layout of the shaders: 64 bytes. */
 typedef struct masu_trace_record {
-    float row
-        [3]
-        /* rows of the inverse, world to object; w: x, y, z of the position, relative to the
+    float row[3]
+             /* rows of the inverse, world to object; w: x, y, z of the position, relative to the
          * anchor */
-        [4];
+             [4];
     uint32_t root;     /* index into TRACE_NODES */
     uint32_t traced;   /* index into TRACE_INSTANCES */
     uint32_t instance; /* index into INSTANCES */
