@@ -318,10 +318,15 @@ static void walk(FILE *out) {
 /* A nearly logarithmic distribution: near cascades have twice the resolution of the default's. */
 #define SHADOWS                                                                                    \
     "\"shadows\": {\"cascades\": 4, \"resolution\": 1024, \"distance\": 400, \"lambda\": 0.92}"
-/* Afternoon: a low sun shines under the decks, and the sky's ambient light depends on direction. */
-static const char day[] = "  \"sun\": {\"azimuth\": 150, \"elevation\": 20,\n"
-                          "          " SHADOWS "},\n"
-                          "  \"sky\": {\"turbidity\": 3, \"ground\": [0.25, 0.22, 0.18]},\n";
+/* Afternoon: a low sun shines under the decks. */
+static const char day[] =
+    "  \"sun\": {\"azimuth\": 150, \"elevation\": 20,\n"
+    "          " SHADOWS "},\n"
+    "  \"sky\": {\"turbidity\": 3, \"ground\": [0.18, 0.2, 0.23]}, \"exposure\": {\"factor\": "
+    "0.5},\n"
+    /* Below a deck little of the sky is visible. Distance maps would take 400 bytes per probe. */
+    "  \"probes\": {\"spacing\": [8, 5, 8], \"rays\": 512, \"bounces\": 3, \"sky_bands\": 2, "
+    "\"visibility\": 0},\n";
 static const char night[] =
     "  \"sun\": {\"azimuth\": 130, \"elevation\": 48, \"color\": [0.5, 0.6, 1], \"intensity\": "
     "0.02,\n"
