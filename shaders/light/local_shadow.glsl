@@ -59,7 +59,6 @@ float masu_local_filter(vec2 at, float depth, vec2 slope, float texel)
     vec2 uv = middle * texel;
     float across = -slope.x * f.x;
     float down = -slope.y * (f.y + 1.0);
-    vec3 columns = vec3(across - slope.x, across, across + slope.x);
     vec3 weight = masu_local_spline(f.x), rows = masu_local_spline(f.y);
     float sum = 0.0;
     /* In a loop: all sixteen texels of four gathers at once take too many registers. Gathered are the texels
@@ -67,10 +66,11 @@ float masu_local_filter(vec2 at, float depth, vec2 slope, float texel)
     [[dont_unroll]] for (int i = 0; i < 2; i++) {
         vec4 left = textureGather(local_shadow_atlas, uv);
         vec4 right = textureGather(local_shadow_atlas, uv + vec2(texel, 0.0));
+        vec3 columns = vec3(across - slope.x, across, across + slope.x);
         float low = dot(weight, masu_local_lit(columns, down, depth, vec3(left.w, left.z, right.z)));
         float high = dot(weight, masu_local_lit(columns, down + slope.y, depth, vec3(left.x, left.y, right.y)));
         sum += rows.x * low + rows.y * high;
-        rows = vec3(0.0, rows.z, 0.0);
+        rows.xy = vec2(0.0, rows.z);
         down += slope.y;
         uv.y += texel;
     }
@@ -81,7 +81,7 @@ float masu_local_filter(vec2 at, float depth, vec2 slope, float texel)
 /* rel: relative to the eye; n: unit, of the surface itself, on the lit side. */
 float masu_light_seen(masu_punctual_light_data light, vec3 rel, vec3 n)
 {
-    vec3 p = rel - light.position.xyz;
+    vec3 p = rel - light.shadow_origin.xyz;
     float near = uintBitsToFloat(light.shadow[1].z);
     float tangent = uintBitsToFloat(light.shadow[1].w);
     float z;
