@@ -160,6 +160,7 @@ typedef struct masu_needs {
     int blit;          /* targets are filled by a blit */
     int dynamic;       /* slots of the SDF depend on parameters or time */
     int anchored;      /* and on where the eye is: the SDF reaches far from the origin */
+    int timed;         /* `dynamic`, and some depend on time */
     int occluders;     /* the scene has some */
     int unculled;      /* and a mesh of too many primitives or instances for culling by them */
     int surface;       /* some material has more than the four numbers of albedo and normal image */

@@ -580,6 +580,9 @@ typedef struct masu_blob_shadow {
 #define MASU_SHADOW_SIZE_MIN 16u
 #define MASU_SHADOW_SIZE_MAX 8192u
 
+#define MASU_SDF_ANCHORED 1u /* the update SPIR-V moves the SDF's space to frame.anchor */
+#define MASU_SDF_TIMELESS 2u /* no slot depends on time */
+
 typedef struct masu_blob_sdf {
     float bounds_min[3]; /* nothing of the SDF is drawn outside; world space */
     float lipschitz;     /* >= 1e-3: |f(p)-f(q)| <= lipschitz |p-q| */
@@ -587,7 +590,7 @@ typedef struct masu_blob_sdf {
     float max_distance;  /* longest ray, > 0 */
     uint32_t has_raster; /* 1: the code was compiled to read a raster depth (there are instances) */
     uint32_t part_count; /* 1..4096 */
-    uint32_t anchored;   /* 1: the update SPIR-V moves the SDF's space to frame.anchor */
+    uint32_t flags;      /* MASU_SDF_ANCHORED, MASU_SDF_TIMELESS */
     uint32_t block_words; /* of the tiles' buffer for each 4x4 block of pixels: 0..2 */
 } masu_blob_sdf;
 
