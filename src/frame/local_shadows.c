@@ -306,8 +306,8 @@ static void follow_sdf(masu_local_shadows *s, const masu_frame_data *f) {
     uint64_t hash = masu_fnv1a64(f->u.anchor, 3 * sizeof *f->u.anchor);
     if (f->plan->needs.dynamic) {
         hash ^= masu_fnv1a64(f->u.sdf_params, sizeof f->u.sdf_params);
-        hash = hash * 31 + masu_fnv1a64(&f->u.eye_hi[3], sizeof f->u.eye_hi[3]); /* time */
     }
+    if (f->plan->needs.timed) hash = hash * 31 + masu_fnv1a64(&f->u.eye_hi[3], sizeof f->u.eye_hi[3]);
     for (uint32_t i = 0; hash != s->sdf_hash && i < s->capacity * MASU_LOCAL_FACES; i++)
         s->lights[i / MASU_LOCAL_FACES].faces[i % MASU_LOCAL_FACES].marched = 0;
     if (hash != s->sdf_hash) touch_faces(s, s->sdf_box, f->number);

@@ -603,6 +603,9 @@ typedef struct masu_blob_shadow {
 #define MASU_SHADOW_SIZE_MIN 16u
 #define MASU_SHADOW_SIZE_MAX 8192u
 
+#define MASU_SDF_ANCHORED 1u /* the update SPIR-V moves the SDF's space to frame.anchor */
+#define MASU_SDF_TIMELESS 2u /* no slot depends on time */
+
 typedef struct masu_blob_sdf {
     float bounds_min[3]; /* world space; the SDF has no surface outside */
     float lipschitz;     /* >= 1e-3: |f(p)-f(q)| <= lipschitz |p-q| */
@@ -611,7 +614,7 @@ typedef struct masu_blob_sdf {
     /* 1: the code was compiled to read the raster depth (the scene has instances) */
     uint32_t has_raster;
     uint32_t part_count; /* 1..4096 */
-    uint32_t anchored;   /* 1: the update SPIR-V moves the SDF's space to frame.anchor */
+    uint32_t flags;       /* MASU_SDF_ANCHORED, MASU_SDF_TIMELESS */
     uint32_t block_words; /* 32-bit term masks in the tile buffer, per 4x4 block of pixels: 0..2 */
 } masu_blob_sdf;
 

@@ -917,20 +917,25 @@ static void an_sdf_without_code_is_refused(void **state) {
 
 static void an_anchored_sdf_needs_the_code_that_moves_it(void **state) {
     (void)state;
-    REFUSED("sdf", 0, AT(SDF, masu_blob_sdf)->anchored = 2);
+    REFUSED("sdf", 0, AT(SDF, masu_blob_sdf)->flags = 4);
     for (uint32_t constant = 0; constant < 2; constant++) { /* but for the anchor */
         masu_scene scene;
         support_blob_write(&blob, SUPPORT_ALL);
-        AT(SDF, masu_blob_sdf)->anchored = 1;
+        AT(SDF, masu_blob_sdf)->flags = MASU_SDF_ANCHORED;
         if (constant) support_blob_drop(&blob, MASU_BLOB_UPDATE_PREVIOUS_SPIRV);
         support_blob_recode(&blob);
         support_blob_seal(blob.bytes, blob.size);
         support_accepted(&blob, &scene);
         assert_int_equal(masu_scene_data_of(&scene)->sdf_anchored, 1);
         assert_int_equal(masu_scene_data_of(&scene)->sdf_dynamic, !constant);
+        assert_int_equal(masu_scene_data_of(&scene)->sdf_timed, !constant);
+        AT(SDF, masu_blob_sdf)->flags |= MASU_SDF_TIMELESS;
+        support_blob_seal(blob.bytes, blob.size);
+        support_accepted(&blob, &scene);
+        assert_int_equal(masu_scene_data_of(&scene)->sdf_timed, 0);
     }
     REFUSED("update SPIR-V", 0, {
-        AT(SDF, masu_blob_sdf)->anchored = 1;
+        AT(SDF, masu_blob_sdf)->flags = MASU_SDF_ANCHORED;
         support_blob_drop(&blob, MASU_BLOB_UPDATE_PREVIOUS_SPIRV);
         support_blob_drop(&blob, MASU_BLOB_UPDATE_SPIRV);
     });
