@@ -46,7 +46,7 @@ static uint64_t now(const masu_device *m) {
  * whether normals of the G-buffer may be those of maps; whether lights may be capsules or
  * rectangles; whether rays share the light of their surfaces; whether rays meet vertex colours (1)
  * and maps on the second texture coordinates (2); whether skins have morph targets. */
-enum { SPECIAL_COUNT = 21 };
+enum { SPECIAL_COUNT = 22 };
 
 static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
                                        VkBool32 constants[SPECIAL_COUNT]) {
@@ -71,7 +71,8 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
         {17, 17 * sizeof *constants, sizeof *constants},
         {18, 18 * sizeof *constants, sizeof *constants},
         {19, 19 * sizeof *constants, sizeof *constants},
-        {20, 20 * sizeof *constants, sizeof *constants}};
+        {20, 20 * sizeof *constants, sizeof *constants},
+        {21, 21 * sizeof *constants, sizeof *constants}};
     constants[0] = first;
     constants[1] = m->plan->needs.sky != 0;
     constants[2] = m->plan->scene.fog != 0;
@@ -102,6 +103,7 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
     constants[18] = m->plan->needs.shared_lights != 0;
     constants[19] = scene->vertex_colors | scene->second_texcoords << 1;
     constants[20] = scene->skin_targets != 0;
+    constants[21] = scene->lobes;
     return (VkSpecializationInfo){SPECIAL_COUNT, entries, SPECIAL_COUNT * sizeof *constants,
                                   constants};
 }

@@ -24,8 +24,8 @@
 #include <stdint.h>
 
 #define MASU_BLOB_MAGIC 0x5553414Du /* the bytes 'M' 'A' 'S' 'U' */
-#define MASU_BLOB_VERSION 17u
-/* layout of version 17: 3570820542 (kinds of sections and their elements, tests/scripts/scene_forms.sh) */
+#define MASU_BLOB_VERSION 18u
+/* layout of version 18: 2955733314 (kinds of sections and their elements, tests/scripts/scene_forms.sh) */
 #define MASU_BLOB_ALIGN 16u
 #define MASU_BLOB_NONE 0xFFFFFFFFu /* "no name", "no parent" */
 #define MASU_BLOB_PART_SLOTS 8u    /* of an SDF's part, in front of all others: sphere, slope, form, first argument, material */
@@ -109,9 +109,10 @@ enum masu_blob_texture_slot {
     MASU_SLOT_BASE = 0,    /* base colour, alpha in BC3 */
     MASU_SLOT_NORMAL = 1,  /* BC5: x and y of the tangent-space normal as 0..1, +y up the image */
     MASU_SLOT_SURFACE = 2, /* BC4: roughness; BC5: roughness, metallic */
-    MASU_SLOT_EMISSIVE = 3,
+    MASU_SLOT_EMISSIVE = 3,  /* with COAT_RELIEF: BC5, the normals of the coat */
     MASU_SLOT_OCCLUSION = 4, /* BC4: what of the light from everywhere arrives, by the relief */
-    MASU_SLOT_COAT = 5,      /* BC5: clear coat, its roughness; not of what is blended */
+    MASU_SLOT_COAT = 5,      /* BC5: clear coat, its roughness; with LOBE_MAP BC1 or BC3: what multiplies
+                                colour (rgb) and strength (alpha) of the lobe; not of what is blended */
     MASU_SLOT_COUNT = 6
 };
 
@@ -130,7 +131,12 @@ enum masu_blob_material_flags {
     MASU_MATERIAL_COAT_SMOOTH = 0x200000,
     MASU_MATERIAL_BASE_SMOOTH = 0x400000,
     MASU_MATERIAL_NO_SHADOW = 0x800000, /* casts no shadows, neither of the sun nor of other lights */
-    MASU_MATERIAL_KNOWN = 0xFDFFFF
+    MASU_MATERIAL_TRANSMISSION_MAP = 0x20000, /* with IS_TINTED: alpha of the base colour is the share that
+                                                 is transmitted, not what the surface covers */
+    /* Without IS_BLEND: */
+    MASU_MATERIAL_LOBE_MAP = 0x10000,     /* with HAS_COAT's bit: it is a map of a specular colour or a sheen */
+    MASU_MATERIAL_COAT_RELIEF = 0x100000, /* with COAT_SMOOTH: the coat has normals of its own, see EMISSIVE */
+    MASU_MATERIAL_KNOWN = 0xFFFFFF
 };
 
 /* The guarantees of Vulkan 1.1 for maxImageDimension2D and maxImageArrayLayers. */
@@ -334,7 +340,7 @@ typedef struct masu_blob_material {
     uint32_t flags;       /* masu_blob_material_flags; 0: no textures, and the next two are 0 */
     uint32_t texture_set; /* element of TEXTURE_SETS */
     uint32_t layers;      /* of the set's textures, 8 bits per slot, of the first four */
-    float specular;       /* 0..1: reflectance of a dielectric at normal incidence / 0.08; plain: 0.5 */
+    float specular;       /* 0..12.5: reflectance of a dielectric at normal incidence / 0.08; plain: 0.5 */
     float coat;           /* 0..1: how much of a clear coat lies on it */
     float coat_roughness; /* perceptual, 0..1 */
     float opacity;        /* 0..1, of blended materials; else 1 */
@@ -342,6 +348,12 @@ typedef struct masu_blob_material {
     uint32_t more_layers; /* of the slots from OCCLUSION on, 8 bits each; from bit 16 on a bit for each
                              slot: its coordinates are TEXCOORDS_1 */
     float detail[2];          /* texture coordinates of all maps but colour and emissive are times it */
+    /* At most one of the next three, without a coat and MESO: masu_lobe_code (material.h). */
+    float specular_color[3];   /* 0..1, the largest 1: of the dielectric's reflectance; 0, 0, 0: gray */
+    float sheen_color[3];      /* 0..1; 0: none. With specular 0.5 */
+    float sheen_roughness;     /* perceptual, 0..1 */
+    float anisotropy;          /* 0..1: roughness along the grain is mix(alpha, 1, anisotropy^2) */
+    float anisotropy_rotation; /* of the grain from the direction of u towards +y of a normal map, 0..2 pi */
 } masu_blob_material;
 
 /* What a relief too small for polygons looks like from an angle: curves of shaders/brdf/meso.glsl, which
@@ -650,7 +662,7 @@ _Static_assert(sizeof(masu_blob_joint) == 80, "blob joint");
 _Static_assert(sizeof(masu_blob_skin_vertex) == 32, "blob skin vertex");
 _Static_assert(sizeof(masu_blob_group) == 48, "blob group");
 _Static_assert(sizeof(masu_blob_occluder) == 32, "blob occluder");
-_Static_assert(sizeof(masu_blob_material) == 80, "blob material");
+_Static_assert(sizeof(masu_blob_material) == 116, "blob material");
 _Static_assert(sizeof(masu_blob_texture) == 32, "blob texture");
 _Static_assert(sizeof(masu_blob_texture_set) == 32, "blob texture set");
 _Static_assert(sizeof(masu_blob_camera_key) == 32, "blob camera key");
