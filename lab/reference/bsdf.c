@@ -122,7 +122,7 @@ static void make_lobes(ref_bsdf *b) {
     b->grained = b->s.anisotropy > 0;
     if (!b->grained) return;
     b->along = b->alpha + (1 - b->alpha) * b->s.anisotropy * b->s.anisotropy;
-    b->mean_rough = pow(b->along * b->alpha, 0.25);
+    b->mean_rough = pow((b->along * b->along + b->alpha * b->alpha) / 2, 0.25);
 }
 
 /* Light that leaves after several bounces, as a factor of what is lost. */

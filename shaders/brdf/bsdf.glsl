@@ -39,8 +39,8 @@
  *   sheen   Charlie's distribution and masking (Estevez and Kulla, "Production Friendly Microfacet Sheen BRDF", 2017) by
  *           their fits; what lies below is scaled by the lesser of 1 - E(v), 1 - E(l) (KHR_materials_sheen). E by a fit
  *           to its integral: RMS 0.013, worst 0.05 at a cosine of 0.02
- *   grain   GGX with two alphas (Heitz 2014); albedos are those of the geometric mean. For light that is looked up
- *           around the mirror direction the normal leans to the viewer across the grain
+ *   grain   GGX with two alphas (Heitz 2014); albedos are those of the root mean square of both. Light looked up around
+ *           the mirror direction is a mean over normals that lean along the grain (masu_fan, shade.glsl)
  *
  * All in fp32, finite for any bit pattern.
  */
@@ -239,18 +239,6 @@ float masu_grain_alpha(masu_surface s)
     float strength = float(s.lobe & 127u) / 127.0;
     return mix(masu_alpha(masu_sane(s.roughness, 0.0, 1.0)), 1.0, strength * strength);
 }
-
-/* The normal around which light from everywhere is looked up. */
-vec3 masu_grain_normal(masu_surface s, vec3 n, vec3 v)
-{
-    if (!masu_has_lobe(s, MASU_LOBE_GRAIN)) {
-        return n;
-    }
-    vec3 across = cross(n, masu_grain(s, n));
-    float rest = 1.0 - float(s.lobe & 127u) / 127.0 * (1.0 - masu_sane(s.roughness, 0.0, 1.0));
-    rest *= rest;
-    return masu_normalize(mix(v - across * dot(v, across), n, rest * rest), n);
-}
 #endif
 
 /* The normal below a coat that has its own, n. */
@@ -302,7 +290,7 @@ masu_bsdf masu_bsdf_make(masu_surface s, vec3 n, vec3 v)
     if (masu_has_lobe(s, MASU_LOBE_GRAIN)) {
         b.grain = masu_grain(s, b.n);
         b.grain_alpha = masu_grain_alpha(s);
-        b.row = masu_row_of(sqrt(sqrt(b.alpha * b.grain_alpha)));
+        b.row = masu_row_of(sqrt(sqrt(0.5 * (b.alpha * b.alpha + b.grain_alpha * b.grain_alpha))));
     }
     if (masu_has_lobe(s, MASU_LOBE_SHEEN)) {
         b.sheen = masu_lobe_hue(s.lobe >> 10 & 2047u) * masu_lobe_root(s.lobe >> 5, 31u);

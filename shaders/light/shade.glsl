@@ -102,6 +102,25 @@ float masu_bend_lookup(masu_surface s, vec3 n, vec3 v, inout vec3 direction, ino
     return share * r2;
 }
 
+#ifdef MASU_SURFACE
+/* The open sky as a surface with a grain mirrors it: the mean over five normals, at equal steps of the distribution of
+ * slopes along the grain (GGX: slope = alpha q / sqrt(1 - q^2)), each as rough as the surface is across the grain. */
+vec3 masu_fan(masu_surface s, vec3 n, vec3 v)
+{
+    vec3 grain = masu_grain(s, n) * masu_grain_alpha(s), sum = vec3(0.0);
+    float weights = 0.0;
+    [[dont_unroll]] for (int i = 0; i < 5; i++) {
+        float q = 0.4 * float(i) - 0.8;
+        vec3 h = masu_normalize(n + grain * (q * masu_rsqrt(1.0 - q * q)), n);
+        vec3 l = reflect(-v, h);
+        float weight = dot(n, l) > 0.0 ? max(dot(v, h), 0.0) : 0.0;
+        sum += weight * masu_ambient_mirror(l, s.roughness);
+        weights += weight;
+    }
+    return weights > 1e-4 ? sum / weights : masu_ambient_mirror(reflect(-v, n), s.roughness);
+}
+#endif
+
 masu_mirrored masu_mirrored_sky(masu_surface s, vec3 n, vec3 v, vec2 kept)
 {
     masu_mirrored m = masu_mirrored(vec3(0.0), vec3(0.0), 0.0, kept.x);
@@ -109,11 +128,6 @@ masu_mirrored masu_mirrored_sky(masu_surface s, vec3 n, vec3 v, vec2 kept)
 #ifdef MASU_SURFACE
     if (masu_own_coats) {
         normal = masu_below(n, s.lean);
-    }
-#endif
-#ifdef MASU_SURFACE
-    if ((masu_extra_lobes >> MASU_LOBE_GRAIN & 1u) != 0u) {
-        normal = masu_grain_normal(s, normal, v);
     }
 #endif
     vec3 mirrored = reflect(-v, normal);
@@ -133,6 +147,9 @@ masu_mirrored masu_mirrored_sky(masu_surface s, vec3 n, vec3 v, vec2 kept)
         part = s.coat > 0.0 ? kept.y : 0.0;
         mirrored = reflect(-v, n);
         roughness = s.coat_roughness;
+    }
+    if (masu_has_lobe(s, MASU_LOBE_GRAIN) && kept.x > 0.0) {
+        m.base = kept.x * masu_fan(s, normal, v);
     }
 #else
     if (kept.x > 0.0) {

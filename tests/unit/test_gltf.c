@@ -653,7 +653,7 @@ static void reflectance_is_of_any_colour_and_strength(void **state) {
 }
 
 /* Of whatever the specification and its registry of extensions have, and no reader is written for, a file gets one line
- * with its name; masu-bake --strict takes any line for an error (tests/scripts/bake.sh). */
+ * with its name; masu-bake --strict takes any line for an error (tests/scripts/bake_placement.sh). */
 static void nothing_is_dropped_in_silence(void **state) {
     (void)state;
     static const char *const of_materials[] = {
