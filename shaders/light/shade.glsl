@@ -90,7 +90,7 @@ float masu_bend_lookup(masu_surface s, vec3 n, vec3 v, inout vec3 direction, ino
 {
     float r = masu_sane(s.roughness, 0.0, 1.0);
     float c = masu_sane(dot(n, v), 1e-4, 1.0);
-    vec3 colors = mix(vec3(0.08 * masu_sane(s.specular, 0.0, 1.0)), masu_sane(s.albedo, 0.0, 1.0),
+    vec3 colors = mix(vec3(0.08 * masu_sane(s.specular, 0.0, masu_most_specular())), masu_sane(s.albedo, 0.0, 1.0),
                       masu_sane(s.metallic, 0.0, 1.0));
     float f0 = max(colors.r, max(colors.g, colors.b));
     vec2 table = masu_table(uint(MASU_TABLE_LOSS), masu_row_of(r), c);
@@ -101,6 +101,25 @@ float masu_bend_lookup(masu_surface s, vec3 n, vec3 v, inout vec3 direction, ino
     roughness = r * (1.0 - 0.5 * share);
     return share * r2;
 }
+
+#ifdef MASU_SURFACE
+/* The open sky as a surface with a grain mirrors it: the mean over five normals, at equal steps of the distribution of
+ * slopes along the grain (GGX: slope = alpha q / sqrt(1 - q^2)), each as rough as the surface is across the grain. */
+vec3 masu_fan(masu_surface s, vec3 n, vec3 v)
+{
+    vec3 grain = masu_grain(s, n) * masu_grain_alpha(s), sum = vec3(0.0);
+    float weights = 0.0;
+    [[dont_unroll]] for (int i = 0; i < 5; i++) {
+        float q = 0.4 * float(i) - 0.8;
+        vec3 h = masu_normalize(n + grain * (q * masu_rsqrt(1.0 - q * q)), n);
+        vec3 l = reflect(-v, h);
+        float weight = dot(n, l) > 0.0 ? max(dot(v, h), 0.0) : 0.0;
+        sum += weight * masu_ambient_mirror(l, s.roughness);
+        weights += weight;
+    }
+    return weights > 1e-4 ? sum / weights : masu_ambient_mirror(reflect(-v, n), s.roughness);
+}
+#endif
 
 masu_mirrored masu_mirrored_sky(masu_surface s, vec3 n, vec3 v, vec2 kept)
 {
@@ -128,6 +147,9 @@ masu_mirrored masu_mirrored_sky(masu_surface s, vec3 n, vec3 v, vec2 kept)
         part = s.coat > 0.0 ? kept.y : 0.0;
         mirrored = reflect(-v, n);
         roughness = s.coat_roughness;
+    }
+    if (masu_has_lobe(s, MASU_LOBE_GRAIN) && kept.x > 0.0) {
+        m.base = kept.x * masu_fan(s, normal, v);
     }
 #else
     if (kept.x > 0.0) {

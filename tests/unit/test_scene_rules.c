@@ -182,7 +182,12 @@ static void what_lights_a_scene_is_checked(void **state) {
         LIT("environment", 0, SKY[0].fog_falloff = x);
         LIT("environment", 0, SKY[0].fog_start = x);
     }
-    LIT("materials", 0, MATERIAL_OF[0].specular = 1.01f);
+    LIT("materials", 0, MATERIAL_OF[0].specular = 12.6f);
+    LIT("materials", 0, MATERIAL_OF[0].anisotropy = 1.5f);
+    LIT("materials", 0, MATERIAL_OF[0].specular_color[1] = 0.5f); /* and no channel is 1 */
+    LIT("materials", 0, (MATERIAL_OF[0].sheen_color[0] = 1.0f, MATERIAL_OF[0].specular = 0.3f));
+    LIT("materials", 0, (MATERIAL_OF[0].sheen_color[0] = 1.0f, MATERIAL_OF[0].specular = 0.5f, MATERIAL_OF[0].anisotropy = 1.0f));
+    LIT("materials", 0, (MATERIAL_OF[0].anisotropy = MATERIAL_OF[0].coat = 1.0f)); /* one lobe, and none with a coat */
     LIT("materials", 0, MATERIAL_OF[0].opacity = 0.5f); /* but not blended */
     LIT("materials", 0, MATERIAL_OF[0].flags = MASU_MATERIAL_IS_ADDITIVE);
     LIT("materials", 0, MATERIAL_OF[0].flags = MASU_MATERIAL_IS_TINTED);
