@@ -475,7 +475,7 @@ typedef struct masu_limits {
     /* transparent primitives, summed over all instances: 76 bytes each, host; 24, and 20 for
      * each texture set that they use, per frame in flight, device */
     uint64_t transparents;
-    /* punctual lights: 112 bytes each per frame in flight, device, and 116 bytes each, host */
+    /* punctual lights: 128 bytes each per frame in flight, device, and 116 bytes each, host */
     uint64_t lights;
     /* triangles in the BVHs for reflections: 16 bytes each, and about a quarter of a 48-byte
      * node each, device */

@@ -258,7 +258,7 @@ static bool switch_lamp(study *w, bool on) {
 /* Takes the door away. */
 static bool open_door(study *w, char *error, size_t size) {
     masu_model door = masu_model_find(w->s.m, given.door ? given.door : "");
-    if (!given.door || masu_model_show(w->s.m, door, 0) == MASU_OK) return true;
+    if (!given.door || masu_model_show(w->s.m, door, 0, NULL) == MASU_OK) return true;
     return failed(error, size, "the scene has no movable model of that name");
 }
 

@@ -513,7 +513,7 @@ static void a_point_that_moves_keeps_its_walls(void **state) {
     for (int f = 0; f < 24; f++) {
         lamp.position[0] = 0.6 * sin(0.3 * f);
         lamp.position[2] = 0.4 * sin(0.5 * f);
-        assert_int_equal(masu_punctual_light_set(l.s.m, masu_punctual_light_at(l.s.m, 0), &lamp), MASU_OK);
+        assert_int_equal(masu_punctual_light_set(l.s.m, masu_punctual_light_at(l.s.m, 0), &lamp, NULL), MASU_OK);
         const uint16_t *hdr = take(&l, &c, SHADOWED);
         assert_true(l.stats.local_shadow_faces <= 4);
         waited += l.stats.local_shadow_waiting != 0;
