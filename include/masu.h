@@ -1470,7 +1470,7 @@ typedef struct masu_material_state {
     float emissive[3];   /* linear radiance, 0..1e9 */
     float roughness;     /* perceptual, 0..1 */
     float metallic;      /* 0..1 */
-    /* 0..1: dielectric reflectance at normal incidence / 0.08; default 0.5. */
+    /* 0..1: dielectric reflectance at normal incidence / 0.08; default 0.5. Lobes: read only, to 12.5. */
     float specular;
     float coat;              /* weight of the clear coat, 0..1 */
     float coat_roughness;    /* perceptual, 0..1; unused while `coat` is 0 */

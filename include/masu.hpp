@@ -70,7 +70,10 @@ public:
         call([&](masu_detail *d) { return masu_scene_bind(blob_.data(), size, &scene_, d); });
     }
 
-    const masu_scene *get() const noexcept { return &scene_; }
+    scene(scene &&) noexcept = default;
+    scene &operator=(scene &&) noexcept = default;
+
+    const masu_scene *get() const noexcept { return &scene_; } /* in this object */
     std::uint32_t count(masu_scene_item item) const { return masu_scene_count(&scene_, item); }
     std::string name(masu_scene_item item, std::uint32_t index) const {
         return masu_scene_name(&scene_, item, index);

@@ -430,7 +430,7 @@ MASU_API int masu_knob_accepts(const masu_knob *knob, double to);
       "transparent primitives, summed over all instances: 76 bytes each, host; 24, and 20 for"     \
       " each texture set that they use, per frame in flight, device")                              \
     X(lights, 4096,                                                                                \
-      "punctual lights: 112 bytes each per frame in flight, device, and 116 bytes each, host")     \
+      "punctual lights: 128 bytes each per frame in flight, device, and 116 bytes each, host")     \
     X(trace_triangles, 0,                                                                          \
       "triangles in the BVHs for reflections: 16 bytes each, and about a quarter of a 48-byte"     \
       " node each, device")                                                                        \

@@ -30,6 +30,20 @@
 
 layout(local_size_x = 64) in;
 
+/* Part of the light from a direction of that cosine that a surface reflects, or by reciprocity of light from everywhere
+ * that it reflects there. Probes see light of low frequency only, so that the specular part may leave as the diffuse
+ * part does. Without it wet asphalt of albedo 0.045 would reflect a third of what it does. */
+vec3 reflectance(masu_surface s, float cosine)
+{
+    vec2 t = masu_table(uint(MASU_TABLE_LOSS), masu_row_of(masu_sane(s.roughness, 0.0, 1.0)), clamp(cosine, 0.0, 1.0));
+    vec3 albedo = clamp(s.albedo, vec3(0.0), vec3(1.0));
+    float f0 = 0.08 * masu_sane(s.specular, 0.0, 1.0);
+    float matte = f0 * (1.0 - t.x) + (min(50.0 * f0, 1.0) - f0) * t.y;
+    /* Of metals the light that the lobe loses leaves after another reflection. */
+    vec3 metal = albedo * (1.0 - t.x + t.x * albedo) + (1.0 - albedo) * t.y;
+    return mix(albedo * (1.0 - matte) + matte, metal, masu_sane(s.metallic, 0.0, 1.0));
+}
+
 /* A light that was chosen among those asked so far. */
 struct chosen {
     vec3 color;  /* what it adds, irradiance / pi */
@@ -137,7 +151,6 @@ void main()
             }
 #endif
             if (!masu_is_unlit(m.surface)) {
-                vec3 albedo = clamp(m.surface.albedo, vec3(0.0), vec3(1.0));
                 vec3 n = m.normal;
                 vec3 far = abs(from + probe_grid.origin.xyz);
                 lifted += n * (4e-6 * (max(far.x, max(far.y, far.z)) + t) + 2e-3 * probe_grid.origin.w);
@@ -155,9 +168,9 @@ void main()
                     ask_light(c, masu_lights[k], lifted - eye, n, masu_bounce_hash(uvec3(seed, k, 0x626F756Eu)));
                 }
 #endif
-                added = albedo * c.color * (c.total / c.weight);
+                added = reflectance(m.surface, dot(n, c.l)) * c.color * (c.total / c.weight);
                 vec4 live = masu_probe_light(from, n);
-                sum += albedo * (live.rgb * live.w + (unlit ? masu_ambient(n) * (1.0 - live.w) : vec3(0.0)));
+                sum += reflectance(m.surface, -dot(n, direction)) * (live.rgb * live.w + (unlit ? masu_ambient(n) * (1.0 - live.w) : vec3(0.0)));
             }
         } else if (unlit) {
             sum = masu_sky(direction);

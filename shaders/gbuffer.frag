@@ -99,7 +99,7 @@ void main()
     masu_surface s = masu_plain_surface(m.base_color.rgb, m.base_color.w);
     s.emissive = m.emissive.rgb;
     s.metallic = m.emissive.w;
-    s.specular = m.more.x;
+    masu_take_specular(s, m.more.x);
     s.coat = m.more.y;
     s.coat_roughness = m.more.z;
 #ifdef MASU_MOTION
@@ -117,6 +117,17 @@ void main()
     masu_tint(s, in_color.rgb);
 #endif
     vec3 bent = masu_bend_normal(in_normal, in_rel, in_texcoord);
+#ifdef MASU_SURFACE
+    bool coat_bends = masu_own_coats && (push.flags & MASU_MAP_COAT_RELIEF) != 0u;
+    vec3 bent_coat = in_normal, grain = vec3(0.0);
+    if (coat_bends) {
+        bent_coat = masu_bend_coat(in_normal, in_rel, in_texcoord);
+    }
+    if (masu_has_lobe(s, MASU_LOBE_GRAIN)) {
+        float angle = float(s.lobe >> 7 & 127u) * (3.14159265 / 128.0);
+        grain = masu_from_tangents(vec2(cos(angle), sin(angle)), in_normal, in_rel, in_texcoord);
+    }
+#endif
 #endif
     /* Two-sided: the normal is turned to the viewer, whichever way the triangle was wound. */
     vec3 n = masu_normalize(in_normal, vec3(0.0, 1.0, 0.0));
@@ -129,6 +140,9 @@ void main()
     bent = away ? -bent : bent;
 #ifdef MASU_SURFACE
     vec3 even = masu_normalize(masu_lean_to_eye(away ? -n : n, in_rel, 0.0), n); /* without the relief */
+    if (coat_bends) {
+        even = masu_normalize(masu_seen_normal(away ? -bent_coat : bent_coat, in_rel, n), n);
+    }
 #endif
 #ifdef MASU_SURFACE
     if (push.meso > 0u) {
@@ -160,6 +174,11 @@ void main()
 #if defined(MASU_TEXTURES) && defined(MASU_SURFACE)
     if (two) {
         s.lean = masu_lean_of(masu_unpack_normal(out_normal), masu_normalize(below, even));
+    }
+#endif
+#if defined(MASU_TEXTURES) && defined(MASU_SURFACE)
+    if (masu_has_lobe(s, MASU_LOBE_GRAIN)) {
+        masu_turn_grain(s, masu_unpack_normal(out_normal), grain);
     }
 #endif
 #ifdef MASU_SURFACE

@@ -163,7 +163,7 @@ void main()
     masu_surface s = masu_plain_surface(m.base_color.rgb, m.base_color.w);
     s.emissive = m.emissive.rgb;
     s.metallic = m.emissive.w;
-    s.specular = m.more.x;
+    masu_take_specular(s, m.more.x);
     s.coat = m.more.y;
     s.coat_roughness = m.more.z;
     float opacity = m.more.w;
@@ -179,6 +179,10 @@ void main()
 #ifdef MASU_TEXTURES
     /* Everything that takes derivatives comes before the discard. */
     cover = masu_sample_maps(in_texcoord, s);
+    if ((tinted_glass & MASU_TINTS_MAPPED) != 0u && (in_thing.y & MASU_MAP_TRANSMISSION) != 0u) {
+        opacity = 1.0 - (1.0 - opacity) * cover;
+        cover = 1.0;
+    }
 #ifdef MASU_ATTRIBUTES
     masu_tint(s, in_color.rgb);
     cover *= in_color.a;

@@ -113,10 +113,12 @@ $(MADE)/textures/made: $(MADE)/tools/make_textures
 	$(V)touch $@
 
 # Worlds are written by a program of the lab (lab/lab.mk). Not part of `all` or of the tests.
-WORLDS     := city forza
+WORLDS     := city city_night forza forza_night
 TORCS      ?= /usr/share/games/torcs
 TIME_city  := 1
 TIME_forza := 0.7
+TIME_city_night  := $(TIME_city)
+TIME_forza_night := $(TIME_forza)
 
 # The example of the README.
 $(BUILD)/examples/%: LIBS = -lvulkan -lm

@@ -19,15 +19,13 @@ static bool failed(const masu_detail *detail) {
 
 static masu_desc describe(const render *r) {
     masu_desc d = {
-        MASU_DESC,
-        .vulkan = window_vulkan(r->window),
+        MASU_DESC, .vulkan = window_vulkan(r->window),
         .scene = &r->scene,
         .output = r->window->size,
         .targets = window_targets(r->window),
         .frames_in_flight = WINDOW_SLOTS,
         .ladder = MASU_ON,
-        .analytic_sky = 1,
-        .resizable = 1,
+        .analytic_sky = 1, .resizable = 1,
         .exposure = {.metered = MASU_ON},
         .governor = {.mode = r->fixed_rung < 0 ? MASU_GOVERNOR_ON : MASU_GOVERNOR_FIXED,
                      .rung = r->fixed_rung < 0 ? 0 : (uint32_t)r->fixed_rung,
@@ -38,15 +36,15 @@ static masu_desc describe(const render *r) {
 
 /* A renderer for the window as large as it is, in the blocks. */
 static bool build(render *r, const track *t) {
-    masu_detail detail = {0};
     masu_commands load;
     masu_result result;
     masu_desc desc = describe(r);
-    if (masu_init(&desc, host_block, sizeof host_block, &r->masu, &detail)) return failed(&detail);
-    while ((result = masu_load(r->masu, &load, &detail)) == MASU_INCOMPLETE) {
+    if (masu_init(&desc, host_block, sizeof host_block, &r->masu, &r->detail))
+        return failed(&r->detail);
+    while ((result = masu_load(r->masu, &load, &r->detail)) == MASU_INCOMPLETE) {
         if (!window_run(r->window, load.buffer)) return false;
     }
-    if (result) return failed(&detail);
+    if (result) return failed(&r->detail);
     for (int i = 0; i < t->cars; i++) {
         r->bodies[i] = masu_model_find(r->masu, t->car[i].name);
         for (int k = 0; k < t->car[i].wheels; k++)
@@ -58,15 +56,14 @@ static bool build(render *r, const track *t) {
 }
 
 bool render_open(render *r, window *w, const char *path, const track *t) {
-    masu_detail detail = {0};
     masu_memory need;
     size_t bytes = 0;
     r->window = w;
     void *blob = r->blob = SDL_LoadFile(path, &bytes);
     if (!blob) return fprintf(stderr, "drive: %s\n", SDL_GetError()), false;
-    if (masu_scene_bind(blob, bytes, &r->scene, &detail)) return failed(&detail);
+    if (masu_scene_bind(blob, bytes, &r->scene, &r->detail)) return failed(&r->detail);
     masu_desc desc = describe(r); /* the blocks are to be of the types that it would take itself */
-    if (masu_memory_query(&desc, &need, &detail)) return failed(&detail);
+    if (masu_memory_query(&desc, &need, &r->detail)) return failed(&r->detail);
     return window_blocks(w, &need, device_bytes, r->blocks) && overlay_open(&r->overlay, w) &&
            build(r, t);
 }

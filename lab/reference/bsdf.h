@@ -16,6 +16,11 @@ typedef struct ref_surface {
     ref_vec albedo, emissive;
     double roughness, metallic, specular; /* specular: f0 / 0.08 */
     double coat, coat_roughness;
+    ref_vec hue;                 /* of the dielectric's f0, which is 0.08 specular times it; 0: white */
+    ref_vec sheen;               /* colour, 0: none */
+    double sheen_roughness;
+    double anisotropy;           /* 0: none */
+    ref_vec grain;               /* unit */
     double occlusion;            /* of the material's map */
     ref_vec normal, coat_normal; /* unit, towards the viewer */
 } ref_surface;
@@ -43,6 +48,10 @@ typedef struct ref_bsdf {
     ref_returned all, seen;
     ref_vec rest_color; /* of metal and dielectric together */
     double matte_rest;
+    bool grained;
+    double along;         /* alpha along the grain, which is x of `base` */
+    double mean_rough;    /* roughness whose albedos the base has */
+    double sheen_alpha, sheen_most, bared; /* bared: what lies below a sheen keeps, by v */
     double pick[REF_LOBES]; /* probability of sampling each */
 } ref_bsdf;
 

@@ -33,7 +33,7 @@ static void sample_map(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *
     for (int i = 0; i < REF_LOBES; i++) out->of[i] = ref_add(out->of[i], ref_mul(f.of[i], sky));
 }
 
-static void sample_emitter(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b,
+static void sample_emitter(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, const bool *direct,
                            ref_random *r, ref_lobes *out) {
     const ref_scene *s = t->world->scene;
     double which = ref_draw(r);
@@ -61,6 +61,7 @@ static void sample_emitter(const ref_tracer *t, const ref_hit *hit, const ref_bs
     double facing = ref_dot(n, l), cosine = fabs(facing);
     if (!(cosine > 1e-9)) return;
     if (s->materials[k->material].flags & MASU_MATERIAL_IS_SINGLE && facing > 0) return;
+    if (direct && direct[k->material]) return;
     ref_lobes f = ref_bsdf_eval(b, l, r);
     if (!(ref_max(ref_lobes_sum(&f)) > 0)) return;
     double pdf = s->emitter_pdf[triangle] * d2 / cosine;
@@ -163,6 +164,7 @@ static ref_vec walk(const ref_tracer *t, ref_vec from, ref_vec d, const ref_hit 
             look.s.normal = look.s.coat_normal = hit.ng;
         } else {
             ref_world_look(t->world, &hit, v, &look);
+            if (patch && t->diffuse_hits) look.s.specular = look.s.metallic = look.s.coat = 0;
         }
         double travelled = ref_length(ref_sub(hit.p, start));
         double air = mirror ? ref_air_left(t, start, d, travelled) : 1;
@@ -186,17 +188,23 @@ static ref_vec walk(const ref_tracer *t, ref_vec from, ref_vec d, const ref_hit 
             left = ref_scale(left, 1 / (1 - through));
         }
         double seen = emission_weight(t, &hit, scattered, d, travelled, pdf, camera) * pane.soft;
+        if (patch && bounce == 1 && t->direct && hit.triangle != REF_SDF &&
+            t->direct[t->world->scene->triangles[hit.triangle].material])
+            seen = 0;
         sum = ref_add(sum, ref_mul(all, ref_scale(look.s.emissive, seen)));
         if (ref_is_unlit(&look.s)) return sum;
         ref_lobes lit;
         memset(&lit, 0, sizeof lit);
-        ref_sun_light(t, &hit, &b, r, &lit);
-        ref_local_lights(t, &hit, &b, r, NULL, &lit);
+        const bool *direct = is_patch ? t->direct : NULL;
+        if (!direct) {
+            ref_sun_light(t, &hit, &b, r, &lit);
+            ref_local_lights(t, &hit, &b, r, NULL, &lit);
+        }
         if (bounce < t->bounces) {
             if (map) sample_map(t, &hit, &b, r, &lit);
             if (window) sample_window(t, &hit, &b, r, &lit);
             if (t->world->scene->emitter_count && t->light_samples)
-                sample_emitter(t, &hit, &b, r, &lit);
+                sample_emitter(t, &hit, &b, direct, r, &lit);
             if (field_emits(t)) sample_field(t, &hit, &b, r, &lit);
         }
         ref_vec mirrored = ref_scale(ref_add(lit.of[REF_BASE], lit.of[REF_COAT]), pane.mirror);

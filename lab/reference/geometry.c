@@ -217,7 +217,7 @@ static bool is_unlit(const ref_material *m) {
 ref_vec ref_world_emission(const ref_world *w, uint32_t triangle, double u, double v) {
     const ref_material *m = material_of(w, triangle);
     double texel[4] = {1, 1, 1, 1}, color[4] = {1, 1, 1, 1};
-    if (m->map[MASU_SLOT_EMISSIVE]) map_at(w, triangle, MASU_SLOT_EMISSIVE, u, v, texel);
+    if (m->flags & 1u << MASU_SLOT_EMISSIVE) map_at(w, triangle, MASU_SLOT_EMISSIVE, u, v, texel);
     if (is_unlit(m)) color_at(w, triangle, u, v, color);
     return ref_mul(m->emissive, ref_v(texel[0] * color[0], texel[1] * color[1], texel[2] * color[2]));
 }
@@ -231,17 +231,13 @@ static ref_vec facing(ref_vec n, ref_vec v, double least) {
 
 /* glTF's tangent space: unit gradients of u and v on the plane of n; +y of the map is up,
  * against v. */
-static ref_vec bent(const ref_world *w, const ref_hit *hit, ref_vec n) {
+static ref_vec from_tangents(const ref_world *w, const ref_hit *hit, ref_vec n, uint32_t slot, double x, double y) {
     const ref_scene *s = w->scene;
     const ref_triangle *t = &s->triangles[hit->triangle];
-    double texel[4], uv[3][2];
-    map_at(w, hit->triangle, MASU_SLOT_NORMAL, hit->u, hit->v, texel);
-    double x = ref_clamp((texel[0] * 255 - 128) / 127, -1, 1),
-           y = ref_clamp((texel[1] * 255 - 128) / 127, -1, 1);
-    double z = sqrt(fmax(1 - x * x - y * y, 0));
+    double uv[3][2], z = sqrt(fmax(1 - x * x - y * y, 0));
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 2; k++)
-            uv[i][k] = (double)texcoords_of(s, &s->materials[t->material], MASU_SLOT_NORMAL)[2 * (size_t)t->vertex[i] + (size_t)k];
+            uv[i][k] = (double)texcoords_of(s, &s->materials[t->material], slot)[2 * (size_t)t->vertex[i] + (size_t)k];
     ref_vec a = s->positions[t->vertex[0]];
     ref_vec e1 = ref_sub(s->positions[t->vertex[1]], a),
             e2 = ref_sub(s->positions[t->vertex[2]], a);
@@ -256,6 +252,31 @@ static ref_vec bent(const ref_world *w, const ref_hit *hit, ref_vec n) {
     if (lu > 0) out = ref_along(out, side * x / lu, along_u);
     if (lv > 0) out = ref_along(out, -side * y / lv, along_v);
     return ref_unit(out);
+}
+
+static ref_vec bent(const ref_world *w, const ref_hit *hit, ref_vec n, uint32_t slot) {
+    double texel[4];
+    map_at(w, hit->triangle, slot, hit->u, hit->v, texel);
+    return from_tangents(w, hit, n, slot, ref_clamp((texel[0] * 255 - 128) / 127, -1, 1),
+                         ref_clamp((texel[1] * 255 - 128) / 127, -1, 1));
+}
+
+/* Lobes of blob.h beyond the plain ones. */
+static void look_at_lobes(const ref_world *w, const ref_hit *hit, ref_vec n, const ref_material *m, ref_surface *s) {
+    double texel[4] = {1, 1, 1, 1}, opaque = !(m->flags & MASU_MATERIAL_IS_BLEND);
+    if (opaque && m->flags & MASU_MATERIAL_LOBE_MAP) map_at(w, hit->triangle, MASU_SLOT_COAT, hit->u, hit->v, texel);
+    s->sheen_roughness = m->sheen_roughness;
+    s->anisotropy = m->anisotropy;
+    if (ref_max(m->sheen_color) > 0) {
+        s->sheen = ref_mul(m->sheen_color, ref_v(texel[0], texel[1], texel[2]));
+        s->sheen_roughness *= texel[3];
+    } else {
+        ref_vec f0 = ref_scale(ref_mul(ref_max(m->specular_color) > 0 ? m->specular_color : ref_splat(1), ref_v(texel[0], texel[1], texel[2])), m->specular * texel[3]);
+        s->specular = ref_max(f0);
+        s->hue = ref_scale(f0, 1 / fmax(s->specular, 1e-9));
+    }
+    if (m->anisotropy > 0)
+        s->grain = from_tangents(w, hit, n, MASU_SLOT_BASE, cos(m->anisotropy_rotation), sin(m->anisotropy_rotation));
 }
 
 void ref_world_look(const ref_world *w, const ref_hit *hit, ref_vec v, ref_look *out) {
@@ -285,7 +306,11 @@ void ref_world_look(const ref_world *w, const ref_hit *hit, ref_vec v, ref_look 
     if (m->map[MASU_SLOT_BASE]) {
         map_at(w, hit->triangle, MASU_SLOT_BASE, hit->u, hit->v, texel);
         out->s.albedo = ref_mul(m->base, ref_v(texel[0], texel[1], texel[2]));
-        if (m->flags & MASU_MATERIAL_IS_BLEND) out->cover = texel[3];
+        if (m->flags & MASU_MATERIAL_IS_BLEND) {
+            bool passes = m->flags & MASU_MATERIAL_TRANSMISSION_MAP;
+            out->cover = passes ? 1 : texel[3];
+            if (passes) out->opacity = 1 - (1 - m->opacity) * texel[3];
+        }
     }
     if (s->colors) {
         color_at(w, hit->triangle, hit->u, hit->v, texel);
@@ -301,16 +326,19 @@ void ref_world_look(const ref_world *w, const ref_hit *hit, ref_vec v, ref_look 
         map_at(w, hit->triangle, MASU_SLOT_OCCLUSION, hit->u, hit->v, texel);
         out->s.occlusion = texel[0];
     }
-    if (m->map[MASU_SLOT_COAT]) {
+    if (m->map[MASU_SLOT_COAT] && !(m->flags & MASU_MATERIAL_LOBE_MAP)) {
         map_at(w, hit->triangle, MASU_SLOT_COAT, hit->u, hit->v, texel);
         out->s.coat *= texel[0];
         out->s.coat_roughness *= texel[1];
     }
     /* The side of the triangle decides, not the order of its vertices. */
     double turn = ref_dot(n, hit->ng) < 0 ? -1 : 1;
-    ref_vec relief = m->map[MASU_SLOT_NORMAL] ? bent(w, hit, n) : n;
+    look_at_lobes(w, hit, n, m, &out->s);
+    ref_vec relief = m->map[MASU_SLOT_NORMAL] ? bent(w, hit, n, MASU_SLOT_NORMAL) : n, own = n;
+    bool coat_bends = !(m->flags & MASU_MATERIAL_IS_BLEND) && m->flags & MASU_MATERIAL_COAT_RELIEF;
+    if (coat_bends) own = facing(ref_scale(bent(w, hit, n, MASU_SLOT_EMISSIVE), turn), v, 0.1);
     n = facing(ref_scale(n, turn), v, 0);
     relief = m->map[MASU_SLOT_NORMAL] ? facing(ref_scale(relief, turn), v, 0.1) : n;
     out->s.normal = m->flags & MASU_MATERIAL_BASE_SMOOTH ? n : relief;
-    out->s.coat_normal = m->flags & MASU_MATERIAL_COAT_SMOOTH ? n : relief;
+    out->s.coat_normal = coat_bends ? own : m->flags & MASU_MATERIAL_COAT_SMOOTH ? n : relief;
 }

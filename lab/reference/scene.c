@@ -70,6 +70,11 @@ static bool read_materials(ref_scene *s) {
                            .coat = (double)m->coat,
                            .coat_roughness = (double)m->coat_roughness,
                            .opacity = (double)m->opacity,
+                           .specular_color = ref_of(m->specular_color),
+                           .sheen_color = ref_of(m->sheen_color),
+                           .sheen_roughness = (double)m->sheen_roughness,
+                           .anisotropy = (double)m->anisotropy,
+                           .anisotropy_rotation = (double)m->anisotropy_rotation,
                            .cutoff = (m->flags >> MASU_MATERIAL_CUTOFF_SHIFT & 0xFF) / 255.0,
                            .detail = {(double)m->detail[0], (double)m->detail[1]}};
         s->blends = s->blends || (m->flags & MASU_MATERIAL_IS_BLEND);
@@ -80,7 +85,9 @@ static bool read_materials(ref_scene *s) {
         memcpy(s->materials[i].wrap, set->wrap, sizeof set->wrap);
         s->materials[i].second = m->more_layers >> 16;
         for (uint32_t slot = 0; good && slot < MASU_SLOT_COUNT; slot++) {
-            if (!(m->flags & 1u << slot)) continue;
+            bool relief = slot == MASU_SLOT_EMISSIVE && !(m->flags & MASU_MATERIAL_IS_BLEND) &&
+                          m->flags & MASU_MATERIAL_COAT_RELIEF;
+            if (!(m->flags & 1u << slot) && !relief) continue;
             uint32_t layer = slot < 4 ? m->layers >> 8 * slot : m->more_layers >> 8 * (slot - 4);
             s->materials[i].map[slot] = texture_of(s, set->texture[slot], layer & 0xFF, keys);
             good = s->materials[i].map[slot] != NULL;

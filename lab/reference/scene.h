@@ -28,6 +28,8 @@ typedef struct ref_material {
     uint32_t flags;
     ref_vec base, emissive;
     double roughness, metallic, specular, coat, coat_roughness, opacity, cutoff;
+    ref_vec specular_color, sheen_color;
+    double sheen_roughness, anisotropy, anisotropy_rotation;
     double detail[2];
     uint32_t wrap[2];
     uint32_t second;                         /* bit per slot: its map is of the second coordinates */

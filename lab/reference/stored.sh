@@ -32,6 +32,7 @@ store reference_air 512
 store test_fog 512
 store glass 256 --sdf scenes/glass.sdf
 store reference_glass 512
+store reference_materials 512
 store test_pane_maps 128
 store test_pane 128 --sdf tests/scenes/test_pane.sdf
 store night 256 --sdf scenes/night.sdf

@@ -28,6 +28,10 @@ typedef struct ref_tracer {
     ref_light_box window; /* through which the sky is looked for; cumulative 0: none */
     double cutoff;        /* roughness from which no reflection is traced; 0: none is */
     const masu_blob_environment *environment;
+    /* ref_irradiance without the direct light of sun, local lights and emissive materials with `true` here; NULL: all
+     * light. */
+    const bool *direct;
+    bool diffuse_hits; /* ref_irradiance: surfaces reflect by their base colour, diffusely, as probe rays shade them */
 } ref_tracer;
 
 /* From the camera along d, unit. */

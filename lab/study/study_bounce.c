@@ -14,10 +14,10 @@ enum { POINTS_MOST = 16384 };
 
 typedef struct options {
     masu_study_options study;
-    const char *sdf, *lamp, *reference;
+    const char *sdf, *lamp, *door, *reference;
     uint32_t points, paths, probes, rays;
     double lamp_color, camera[6], window[6];
-    bool night;
+    bool night, diffuse;
 } options;
 
 static options given = {.study = {.size = {320, 180}, .time = 0.0, .frames = 400},
@@ -33,17 +33,19 @@ static const masu_column columns[] = {{"scene", NULL, NULL, NULL},
                                       {"found", "%.6f", "found", "%.4f"},
                                       {"bias", "%.6f", "bias, %", "%+.1f"},
                                       {"rmse", "%.6f", "RMSE, %", "%.1f"},
+                                      {"bare_bias", "%.6f", "bias, %: no AO", "%+.1f"},
+                                      {"bare_rmse", "%.6f", "RMSE, %: no AO", "%.1f"},
                                       {"response", "%.0f", "frames to 90 %", "%.0f"},
                                       {"flicker", "%.6f", "flicker, %", "%.3f"},
                                       {"driver", "\"", NULL, NULL},
                                       {NULL, NULL, NULL, NULL}};
 
 typedef struct point {
-    size_t at;       /* pixel */
-    double albedo;   /* of uniform light, luminance */
-    double expected; /* indirect irradiance */
-    double variance; /* of `expected` */
-    ref_vec p, n;
+    size_t at;        /* pixel */
+    double expected;  /* indirect irradiance */
+    double halves[2]; /* the same by every second path */
+    double variance;  /* of `expected` */
+    ref_vec soft, all; /* what of uniform light the surface reflects diffusely, and with the specular part */
 } point;
 
 typedef struct study {
@@ -51,15 +53,14 @@ typedef struct study {
     ref_field field;
     ref_world world;
     ref_sky sky;
-    bool has_field, shines; /* shines: some emissive surfaces are lights */
-    uint32_t materials;
-    ref_vec *emissive, *of_lights; /* of each material; the second 0 where it is no light's */
+    bool has_field;
+    bool *direct_materials; /* whose emission reaches pixels as a light's */
     ref_camera camera;
     point *points;
     uint32_t count;
-    float *image, *direct;
+    float *image, *direct, *uniform; /* uniform: `direct` and light of radiance 1 from everywhere */
     double *series; /* mean irradiance after each frame */
-    double reference, noise, found, bias, rmse, response, flicker;
+    double reference, noise, found, bias, rmse, bare_bias, bare_rmse, response, flicker;
     char driver[1024];
     uint32_t messages;
     masu_session s;
@@ -132,45 +133,21 @@ static bool is_of_light(const ref_scene *s, const ref_triangle *triangle) {
     return false;
 }
 
-/* Light straight from emissive surfaces that are lights too, which pixels have without a bounce: the scene with
- * nothing else in it that shines. */
-static double emission_at(study *w, const ref_tracer *all, const ref_hit *hit, ref_random *r) {
-    static const ref_sky dark;
-    ref_tracer t = *all;
-    const uint32_t lights = w->scene.light_count;
-    if (!w->scene.emitter_count || !w->shines) return 0;
-    t.sky = &dark;
-    t.sun_color = ref_splat(0);
-    t.bounces = 1;
-    w->scene.light_count = 0;
-    for (uint32_t i = 0; i < w->materials; i++) w->scene.materials[i].emissive = w->of_lights[i];
-    double value = ref_luminance(ref_irradiance(&t, hit, r));
-    w->scene.light_count = lights;
-    for (uint32_t i = 0; i < w->materials; i++) w->scene.materials[i].emissive = w->emissive[i];
-    return value;
-}
-
+/* Materials whose emission pixels have without a bounce. */
 static bool find_emitters(study *w) {
-    w->materials = (uint32_t)w->scene.blob.count[MASU_BLOB_MATERIALS];
-    w->emissive = calloc(2 * (size_t)w->materials + 1, sizeof *w->emissive);
-    if (!w->emissive) return false;
-    w->of_lights = w->emissive + w->materials;
-    for (uint32_t i = 0; i < w->materials; i++) w->emissive[i] = w->scene.materials[i].emissive;
+    w->direct_materials = calloc((size_t)w->scene.blob.count[MASU_BLOB_MATERIALS] + 1, sizeof *w->direct_materials);
+    if (!w->direct_materials) return false;
     for (uint32_t i = 0; i < w->scene.emitter_count; i++) {
         const ref_triangle *t = &w->scene.triangles[w->scene.emitters[i].triangle];
-        if (!is_of_light(&w->scene, t)) continue;
-        w->of_lights[t->material] = w->emissive[t->material];
-        w->shines = true;
+        if (is_of_light(&w->scene, t)) w->direct_materials[t->material] = true;
     }
     return true;
 }
 
-/* Matt surfaces that do not emit, spread over the image. */
-static void find_points(study *w) {
-    const size_t pixels = (size_t)o->size.width * o->size.height;
+static ref_tracer tracer_of(const study *w) {
     const double *window = given.window;
     ref_ggx_tables();
-    ref_tracer all = {.world = &w->world,
+    return (ref_tracer){.world = &w->world,
                       .sky = &w->sky,
                       .physics = true,
                       .full = true,
@@ -180,12 +157,23 @@ static void find_points(study *w) {
                       .light_samples = true,
                       .bsdf_samples = true,
                       .bounces = 16,
+                      .direct = w->direct_materials,
+                      .diffuse_hits = given.diffuse,
                       .sun_direction = ref_of(w->scene.environment->sun_direction),
                       .sun_color = given.night ? ref_splat(0) : ref_of(w->scene.environment->sun_color),
                       .eye = w->camera.eye,
                       .window = {ref_v(window[0], window[1], window[2]),
                                  ref_v(window[3], window[4], window[5]), window[0] < window[3]},
                       .environment = w->scene.environment};
+}
+
+static double ratio(double a, double b) { return b > 0 ? a / b : 0; }
+
+/* Matt surfaces that do not emit, spread over the image. */
+static void find_points(study *w) {
+    const size_t pixels = (size_t)o->size.width * o->size.height;
+    ref_ggx_tables();
+    ref_tracer all = tracer_of(w);
     for (size_t i = 0; i < pixels && w->count < given.points; i++) {
         size_t at = (size_t)(fmod((double)i * 0.6180339887498949, 1) * (double)pixels);
         ref_vec d = ref_camera_ray(&w->camera, ((double)(at % o->size.width) + 0.5) / o->size.width,
@@ -203,19 +191,17 @@ static void find_points(study *w) {
             continue;
         ref_bsdf_make(&b, &look.s, ref_scale(d, -1), false);
         ref_lobes albedo = ref_bsdf_albedo(&b);
-        double sum = 0, square = 0, n = given.paths;
+        double sum[2] = {0}, square = 0, n = given.paths;
         for (uint32_t k = 0; k < given.paths; k++) {
-            ref_random r = ref_random_at(7, at, k), same = r, again = r;
-            all.bounces = 16;
+            ref_random r = ref_random_at(7, at, k);
             double value = ref_luminance(ref_irradiance(&all, &hit, &r));
-            all.bounces = 0;
-            value -= ref_luminance(ref_irradiance(&all, &hit, &same));
-            value -= emission_at(w, &all, &hit, &again);
-            sum += value;
+            sum[k & 1] += value;
             square += value * value;
         }
-        w->points[w->count++] = (point){at, ref_luminance(ref_lobes_sum(&albedo)), sum / n,
-                                        fmax(square / n - sum * sum / n / n, 0) / (n - 1), hit.p, hit.ng};
+        double mean = (sum[0] + sum[1]) / n;
+        w->points[w->count++] = (point){.at = at, .expected = mean,
+                                        .halves = {sum[0] / ((given.paths + 1) / 2), sum[1] / (given.paths / 2)},
+                                        .variance = fmax(square / n - mean * mean, 0) / (n - 1), .soft = albedo.of[REF_SOFT], .all = ref_lobes_sum(&albedo)};
     }
 }
 
@@ -269,14 +255,21 @@ static bool switch_lamp(study *w, bool on) {
     return masu_punctual_light_set(w->s.m, lamp, &state, NULL) == MASU_OK;
 }
 
-static bool draw(study *w, bool first, float *rgb, char *error, size_t size) {
+/* Takes the door away. */
+static bool open_door(study *w, char *error, size_t size) {
+    masu_model door = masu_model_find(w->s.m, given.door ? given.door : "");
+    if (!given.door || masu_model_show(w->s.m, door, 0) == MASU_OK) return true;
+    return failed(error, size, "the scene has no movable model of that name");
+}
+
+static bool draw(study *w, bool first, float ambient, float *rgb, char *error, size_t size) {
     masu_light light;
     masu_camera camera;
     masu_commands commands;
     if (masu_light_of(w->s.m, &light, NULL) != MASU_OK ||
         masu_camera_at(w->s.m, o->time, &camera, NULL) != MASU_OK)
         return failed(error, size, "the scene has no light or no camera");
-    memset(light.ambient, 0, sizeof light.ambient);
+    for (int k = 0; k < 3; k++) light.ambient[k] = ambient;
     if (given.night) {
         memset(light.sun_color, 0, sizeof light.sun_color);
         memset(light.sky_zenith, 0, sizeof light.sky_zenith);
@@ -298,34 +291,57 @@ static bool draw(study *w, bool first, float *rgb, char *error, size_t size) {
             failed(error, size, "no image of linear light"));
 }
 
-static double irradiance_at(const study *w, const point *p) {
-    const float *a = w->image + 3 * p->at, *b = w->direct + 3 * p->at;
-    ref_vec light = ref_v((double)(a[0] - b[0]), (double)(a[1] - b[1]), (double)(a[2] - b[2]));
-    return REF_PI * ref_luminance(light) / p->albedo;
+static ref_vec added(const float *a, const float *b, size_t pixel) {
+    const float *p = a + 3 * pixel, *q = b + 3 * pixel;
+    return ref_v((double)(p[0] - q[0]), (double)(p[1] - q[1]), (double)(p[2] - q[2]));
+}
+
+/* What the bounce adds to a pixel, over its diffuse albedo. bare: without ambient occlusion, which is known from what
+ * uniform light adds to the pixel. */
+static double irradiance_at(const study *w, const point *p, bool bare) {
+    ref_vec light = added(w->image, w->direct, p->at), one = p->soft, uniform = added(w->uniform, w->direct, p->at);
+    if (bare) one = ref_mul(one, ref_v(ratio(uniform.x, p->all.x), ratio(uniform.y, p->all.y), ratio(uniform.z, p->all.z)));
+    return REF_PI * ref_luminance(ref_v(ratio(light.x, one.x), ratio(light.y, one.y), ratio(light.z, one.z)));
 }
 
 static double mean_of(const study *w) {
     double sum = 0;
-    for (uint32_t i = 0; i < w->count; i++) sum += irradiance_at(w, &w->points[i]) / w->count;
+    for (uint32_t i = 0; i < w->count; i++) sum += irradiance_at(w, &w->points[i], false) / w->count;
     return sum;
+}
+
+/* Two halves of the paths have independent noise, so that its squares are not in the mean of products. */
+static void compare(const study *w, bool bare, double *bias, double *rmse) {
+    double sum = 0, off = 0, n = w->count;
+    for (uint32_t i = 0; i < w->count; i++) {
+        const point *p = &w->points[i];
+        double found = irradiance_at(w, p, bare);
+        sum += (found - p->halves[0]) * (found - p->halves[1]);
+        off += found - p->expected;
+    }
+    *bias = w->reference > 0 ? off / n / w->reference : (double)NAN;
+    *rmse = w->reference > 0 ? sqrt(fmax(sum / n, 0)) / w->reference : (double)NAN;
 }
 
 static bool measure(study *w, char *error, size_t size) {
     enum { SHADOWS = 24 }; /* frames until shadows are complete */
     if (!open_renderer(w, false, error, size)) return false;
     bool good = switch_lamp(w, true) || failed(error, size, "the scene has no lamp of that name");
-    for (int i = 0; good && i < SHADOWS; i++) good = draw(w, !i, w->direct, error, size);
+    good = good && open_door(w, error, size);
+    for (int i = 0; good && i < SHADOWS; i++) good = draw(w, !i, 0, w->direct, error, size);
+    good = good && draw(w, false, 1, w->uniform, error, size);
     masu_session_close(&w->s);
     w->messages += w->s.host.messages;
     if (!good || !open_renderer(w, true, error, size)) return false;
-    good = switch_lamp(w, false);
-    for (uint32_t i = 0; good && given.lamp && i < o->frames; i++)
-        good = draw(w, !i, w->image, error, size);
-    good = good && switch_lamp(w, true);
+    const bool changes = given.lamp || given.door;
+    good = switch_lamp(w, given.door != NULL);
+    for (uint32_t i = 0; good && changes && i < o->frames; i++)
+        good = draw(w, !i, 0, w->image, error, size);
+    good = good && switch_lamp(w, true) && open_door(w, error, size);
     double before = 0, previous = 0;
     for (uint32_t i = 0; good && i < o->frames; i++) {
         if (i + 1 == o->frames) previous = mean_of(w);
-        good = draw(w, !given.lamp && !i, w->image, error, size);
+        good = draw(w, !changes && !i, 0, w->image, error, size);
         w->series[i] = mean_of(w);
     }
     masu_session_close(&w->s);
@@ -334,22 +350,16 @@ static bool measure(study *w, char *error, size_t size) {
     w->found = w->series[o->frames - 1];
     w->flicker = w->found > 0 ? fabs(w->found - previous) / w->found : 0;
     /* The first frame still has what was before, but for the first probes. */
-    before = given.lamp ? w->series[0] : 0;
+    before = changes ? w->series[0] : 0;
     for (uint32_t i = o->frames; i > 0; i--) {
         if (fabs(w->series[i - 1] - w->found) > 0.1 * fabs(w->found - before)) {
             w->response = i + 1;
             break;
         }
     }
-    /* What the noise of the reference adds to the squares is known, and taken out. */
-    double sum = -w->noise * w->noise * w->reference * w->reference * w->count;
-    for (uint32_t i = 0; i < w->count; i++) {
-        double off = irradiance_at(w, &w->points[i]) - w->points[i].expected;
-        sum += off * off;
-        w->bias += off / w->count;
-    }
-    w->bias = w->reference > 0 ? w->bias / w->reference : 0;
-    w->rmse = w->reference > 0 ? sqrt(fmax(sum, 0) / w->count) / w->reference : 0;
+    if (given.door) w->reference = w->noise = 0; /* paths have met the door */
+    compare(w, false, &w->bias, &w->rmse);
+    compare(w, true, &w->bare_bias, &w->bare_rmse);
     return true;
 }
 
@@ -359,9 +369,10 @@ static int report(study *w) {
     masu_study_scene_name(o->scene, scene, sizeof scene);
     masu_table_open(&t, columns, "");
     const double values[] = {w->count,      w->reference, 100 * w->noise,  w->found,
-                             100 * w->bias, 100 * w->rmse, w->response,  100 * w->flicker};
+                             100 * w->bias, 100 * w->rmse, 100 * w->bare_bias, 100 * w->bare_rmse,
+                             w->response,   100 * w->flicker};
     masu_table_text(&t, scene);
-    masu_table_numbers(&t, values, 8);
+    masu_table_numbers(&t, values, 10);
     masu_table_text(&t, w->driver);
     masu_table_print(&t, o->text);
     int code = masu_table_close(&t, o->csv);
@@ -375,11 +386,11 @@ static int run(void) {
     char error[4096];
     const size_t values = 3 * (size_t)o->size.width * o->size.height;
     w.points = calloc(POINTS_MOST, sizeof *w.points);
-    w.image = calloc(2 * values, sizeof *w.image);
+    w.image = calloc(3 * values, sizeof *w.image);
     w.series = calloc(o->frames, sizeof *w.series);
     bool good = w.points && w.image && w.series;
     if (!good) failed(error, sizeof error, "out of memory");
-    if (good) w.direct = w.image + values;
+    if (good) w.direct = w.image + values, w.uniform = w.direct + values;
     good = good && open_reference(&w, error, sizeof error);
     if (good) {
         set_lamp(&w);
@@ -396,7 +407,7 @@ static int run(void) {
     if (w.has_field) ref_field_close(&w.field);
     ref_scene_close(&w.scene);
     free(w.points);
-    free(w.emissive);
+    free(w.direct_materials);
     free(w.image);
     free(w.series);
     return code;
@@ -434,7 +445,9 @@ static const masu_option rows[] = {
     MASU_UINT(options, rays, "rays", 8, 64, "rung.bounce_rays (default: the library's)"),
     MASU_OWN("camera", "X,Y,Z,X,Y,Z", read_camera, "position and target (default: the scene's)"),
     MASU_FLAG(options, night, "night", "without sun and sky"),
+    MASU_FLAG(options, diffuse, "diffuse-hits", "paths reflect diffusely after the first surface, as probe rays do"),
     MASU_TEXT(options, lamp, "lamp", "NAME", "light that is switched on after --frames without it"),
+    MASU_TEXT(options, door, "open", "MODEL", "door that opens after --frames: response to that, with the lamp on"),
     MASU_REAL(options, lamp_color, "lamp-color", "VALUE", 0, 1e9, "its colour, grey"),
     MASU_STUDY_FRAMES(10000, "frames until the bounce is at rest"),
     MASU_STUDY_CSV,
@@ -451,9 +464,9 @@ const masu_study masu_study_bounce = {
     .given = &given.study,
     .run = run,
     .details =
-        "Irradiance of points, less the direct light of sun, points and spots: that of a frame is "
+        "Irradiance of points, less the direct light of sun and local lights: that of a frame is "
         "the light that the\n"
-        "bounce adds to a pixel, over the albedo of its material. Its mean in the reference and "
+        "bounce adds to a pixel, over its diffuse albedo; also without ambient occlusion. Its mean in the reference and "
         "the noise of one\n"
         "point, its mean in the last frame, the RMSE relative to the reference's mean, frames "
         "until the mean stays\n"

@@ -34,6 +34,14 @@
  * degrees between the normals, white dielectrics therefore return 0.977 to 0.998 of the light,
  * metals 0.83 to 1.02 (tests/unit/test_brdf.c).
  *
+ * Lobes of masu_extra_lobes, one a surface:
+ *   colour  f0 of any colour and strength; what lies below gets what the brightest channel leaves
+ *   sheen   Charlie's distribution and masking (Estevez and Kulla, "Production Friendly Microfacet Sheen BRDF", 2017) by
+ *           their fits; what lies below is scaled by the lesser of 1 - E(v), 1 - E(l) (KHR_materials_sheen). E by a fit
+ *           to its integral: RMS 0.013, worst 0.05 at a cosine of 0.02
+ *   grain   GGX with two alphas (Heitz 2014); albedos are those of the root mean square of both. Light looked up around
+ *           the mirror direction is a mean over normals that lean along the grain (masu_fan, shade.glsl)
+ *
  * All in fp32, finite for any bit pattern.
  */
 #ifndef MASU_BSDF_GLSL
@@ -75,6 +83,13 @@ struct masu_bsdf {
     vec3 coat_n;
     float coat_n_v;
     float coat_gain;   /* factor of the coat's lobe, 1 */
+    vec3 sheen;        /* its colour; 0 without one, as the next ones are */
+    float sheen_alpha;
+    float sheen_bend;  /* of masu_sheen_masking, at a cosine of 0.5 */
+    float sheen_v;     /* masking of v */
+    float bared;       /* share of light that what lies below a sheen has, by v; 1 without one */
+    vec3 grain;        /* unit; along it alpha is grain_alpha. 0 without one */
+    float grain_alpha;
 #endif
 };
 
@@ -142,6 +157,90 @@ vec3 masu_rest_color(vec3 f0, float f90, float lost)
     return f * f * (1.35 - 0.35 * f) * (1.0 - lost) / (1.0 - f * lost);
 }
 
+/* Colours of a dielectric's reflectance are for the light that it mirrors at once alone: below gets what the brightest
+ * channel leaves, which is grey (KHR_materials_specular), and so does light between facets. */
+float masu_most_specular()
+{
+#ifdef MASU_SURFACE
+    return masu_extra_lobes != 0u ? 12.5 : 1.0;
+#else
+    return 1.0;
+#endif
+}
+
+vec3 masu_dielectric_f0(masu_surface s, float f0)
+{
+#ifdef MASU_SURFACE
+    if (masu_has_lobe(s, MASU_LOBE_COLORED)) {
+        return f0 * masu_lobe_hue(s.lobe >> 8 & 2047u);
+    }
+#endif
+    return vec3(f0);
+}
+
+#ifdef MASU_SURFACE
+/* ---- Sheen. The curve of masking, its fit for alpha 0 and 1 blended by (1 - alpha)^2 ---- */
+float masu_sheen_curve(float x, float alpha)
+{
+    float t = 1.0 - alpha;
+    t *= t;
+    float a = mix(21.5473, 25.3245, t), b = mix(3.82987, 3.32435, t), c = mix(0.19823, 0.16801, t);
+    float d = mix(-1.97760, -1.27393, t), e = mix(-4.32054, -4.85967, t);
+    return a / (1.0 + b * masu_pow(x, c)) + d * x + e;
+}
+
+float masu_sheen_masking(masu_bsdf b, float cosine)
+{
+    bool low = cosine < 0.5;
+    float curve = masu_sheen_curve(low ? cosine : 1.0 - cosine, b.sheen_alpha);
+    return masu_exp2(1.44269504 * (low ? curve : 2.0 * b.sheen_bend - curve));
+}
+
+/* Directional albedo. */
+float masu_sheen_albedo(float alpha, float cosine)
+{
+    float c = clamp(cosine, 0.0, 1.0), x = 1.0 / max(sqrt(alpha), 0.2);
+    vec4 at = vec4(1.0, sqrt(c), c, c * c * c);
+    vec4 k0 = vec4(0.1516, -0.3499, -0.5952, 0.2420), k1 = vec4(-0.1311, -0.7139, 0.0290, -0.2316);
+    vec4 k2 = vec4(0.0312, 0.1164, -0.1814, -0.1540);
+    return min(masu_exp2(1.44269504 * dot(k0 + (k1 + k2 * x) * x, at)), 1.0);
+}
+
+/* f * N.L * pi; sine2: of the half vector. */
+vec3 masu_sheen(masu_bsdf b, float sine2, float n_l)
+{
+    float power = 1.0 / b.sheen_alpha;
+    float d = (2.0 + power) * 0.5 * masu_pow(clamp(sine2, 0.0, 1.0), 0.5 * power);
+    return b.sheen * (d * 0.25 / ((1.0 + b.sheen_v + masu_sheen_masking(b, n_l)) * b.n_v));
+}
+
+float masu_bared(masu_bsdf b, float cosine)
+{
+    return 1.0 - max(b.sheen.r, max(b.sheen.g, b.sheen.b)) * masu_sheen_albedo(b.sheen_alpha, cosine);
+}
+
+/* ---- Grain ---- */
+
+/* As masu_ggx. */
+float masu_ggx_grain(masu_bsdf b, vec3 h, vec3 l, float n_l)
+{
+    vec3 across = cross(b.n, b.grain);
+    vec2 alpha = vec2(b.grain_alpha, b.alpha);
+    vec2 at = vec2(dot(h, b.grain), dot(h, across)) / alpha;
+    vec3 to_l = vec3(alpha * vec2(dot(l, b.grain), dot(l, across)), n_l);
+    vec3 to_v = vec3(alpha * vec2(dot(b.v, b.grain), dot(b.v, across)), b.n_v);
+    float n_h = clamp(dot(b.n, h), 0.0, 1.0), d = dot(at, at) + n_h * n_h;
+    return 0.5 / max(alpha.x * alpha.y * d * d * (n_l * length(to_v) + b.n_v * length(to_l)), 1e-12);
+}
+
+/* alpha along the grain. */
+float masu_grain_alpha(masu_surface s)
+{
+    float strength = float(s.lobe & 127u) / 127.0;
+    return mix(masu_alpha(masu_sane(s.roughness, 0.0, 1.0)), 1.0, strength * strength);
+}
+#endif
+
 /* The normal below a coat that has its own, n. */
 vec3 masu_base_normal(masu_surface s, vec3 n)
 {
@@ -159,7 +258,7 @@ masu_bsdf masu_bsdf_make(masu_surface s, vec3 n, vec3 v)
     masu_bsdf b;
     float roughness = masu_sane(s.roughness, 0.0, 1.0);
     float metallic = masu_sane(s.metallic, 0.0, 1.0);
-    float f0 = 0.08 * masu_sane(s.specular, 0.0, 1.0);
+    float f0 = 0.08 * masu_sane(s.specular, 0.0, masu_most_specular());
     vec3 albedo = masu_sane(s.albedo, 0.0, 1.0);
     b.n = n;
     b.v = v;
@@ -182,8 +281,26 @@ masu_bsdf masu_bsdf_make(masu_surface s, vec3 n, vec3 v)
 #ifdef MASU_SURFACE
     matte_f90 = max(min(matte_f90, masu_sane(s.edge, 0.0, 1.0)), f0);
 #endif
-    b.f0 = mix(vec3(f0), albedo, metallic);
+    b.f0 = mix(masu_dielectric_f0(s, f0), albedo, metallic);
     b.f90 = mix(matte_f90, metal_f90, metallic);
+#ifdef MASU_SURFACE
+    b.sheen = b.grain = vec3(0.0);
+    b.sheen_alpha = b.bared = b.grain_alpha = 1.0;
+    b.sheen_bend = b.sheen_v = 0.0;
+    if (masu_has_lobe(s, MASU_LOBE_GRAIN)) {
+        b.grain = masu_grain(s, b.n);
+        b.grain_alpha = masu_grain_alpha(s);
+        b.row = masu_row_of(sqrt(sqrt(0.5 * (b.alpha * b.alpha + b.grain_alpha * b.grain_alpha))));
+    }
+    if (masu_has_lobe(s, MASU_LOBE_SHEEN)) {
+        b.sheen = masu_lobe_hue(s.lobe >> 10 & 2047u) * masu_lobe_root(s.lobe >> 5, 31u);
+        float rough = max(float(s.lobe & 31u) / 31.0, 0.07);
+        b.sheen_alpha = rough * rough;
+        b.sheen_bend = masu_sheen_curve(0.5, b.sheen_alpha);
+        b.sheen_v = masu_sheen_masking(b, b.n_v);
+        b.bared = masu_bared(b, b.n_v);
+    }
+#endif
     b.matte_f0 = f0;
     b.matte_slope = matte_f90 - f0;
 
@@ -212,6 +329,11 @@ masu_bsdf masu_bsdf_make(masu_surface s, vec3 n, vec3 v)
     b.rest = rest / max(masu_lost(all), 1e-6);
     b.diffuse = below / max(1.0 - masu_matte(b, all), 1e-6);
     b.ambient = max(rest + below, vec3(0.0));
+#ifdef MASU_SURFACE
+    if (masu_has_lobe(s, MASU_LOBE_SHEEN)) {
+        b.ambient = b.ambient * b.bared + b.sheen * masu_sheen_albedo(b.sheen_alpha, b.n_v);
+    }
+#endif
     return b;
 }
 
@@ -244,6 +366,9 @@ void masu_bsdf_parts(masu_bsdf b, vec3 l, out vec3 mirrored, out vec3 below)
     float s = masu_schlick(0.5 * sqrt(dot(sum, sum)));
     vec3 specular = (b.f0 + (b.f90 - b.f0) * s) * masu_ggx(b.n, h, b.alpha, n_l, b.n_v);
 #ifdef MASU_SURFACE
+    if ((masu_extra_lobes >> MASU_LOBE_GRAIN & 1u) != 0u && dot(b.grain, b.grain) > 0.0) {
+        specular = (b.f0 + (b.f90 - b.f0) * s) * masu_ggx_grain(b, h, l, n_l);
+    }
     float top = 0.0;
     if (b.coat > 0.0) {
         float steep = masu_schlick(min(over, b.coat_n_v));
@@ -265,6 +390,14 @@ void masu_bsdf_parts(masu_bsdf b, vec3 l, out vec3 mirrored, out vec3 below)
 #endif
     mirrored = masu_sane(mirrored, 0.0, masu_huge);
     below = masu_sane(b.diffuse * ((1.0 - masu_matte(b, lit)) * n_l), 0.0, masu_huge);
+#ifdef MASU_SURFACE
+    if ((masu_extra_lobes >> MASU_LOBE_SHEEN & 1u) != 0u && b.bared < 1.0) {
+        float bared = min(b.bared, masu_bared(b, n_l));
+        vec3 sine = cross(b.n, h);
+        mirrored *= bared;
+        below = below * bared + masu_sane(masu_sheen(b, dot(sine, sine), n_l), 0.0, masu_huge);
+    }
+#endif
 }
 
 /* Both together. */
@@ -285,7 +418,13 @@ vec3 masu_bsdf_diffuse(masu_bsdf b)
 /* of radiance prefiltered by the surface's roughness around the mirror direction, */
 vec3 masu_bsdf_specular(masu_bsdf b)
 {
-    return b.f0 * b.seen.white + (b.f90 - b.f0) * b.seen.weight;
+    vec3 mirrored = b.f0 * b.seen.white + (b.f90 - b.f0) * b.seen.weight;
+#ifdef MASU_SURFACE
+    if ((masu_extra_lobes >> MASU_LOBE_SHEEN & 1u) != 0u) {
+        mirrored *= b.bared;
+    }
+#endif
+    return mirrored;
 }
 
 /* and of radiance prefiltered by the coat's roughness. Their sum is 1 for a white surface. */

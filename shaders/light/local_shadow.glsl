@@ -67,7 +67,6 @@ float masu_local_filter(vec2 at, float depth, vec2 slope, float texel, out float
     vec2 uv = middle * texel;
     float across = -slope.x * f.x;
     float down = -slope.y * (f.y + 1.0);
-    vec3 columns = vec3(across - slope.x, across, across + slope.x);
     vec3 weight = masu_local_spline(f.x), rows = masu_local_spline(f.y);
     float sum = 0.0;
     gap = 0.0;
@@ -76,13 +75,14 @@ float masu_local_filter(vec2 at, float depth, vec2 slope, float texel, out float
     [[dont_unroll]] for (int i = 0; i < 2; i++) {
         vec4 left = textureGather(local_shadow_atlas, uv);
         vec4 right = textureGather(local_shadow_atlas, uv + vec2(texel, 0.0));
+        vec3 columns = vec3(across - slope.x, across, across + slope.x);
         vec3 low_above = vec3(left.w, left.z, right.z) - depth, high_above = vec3(left.x, left.y, right.y) - depth;
         float low = dot(weight, masu_local_lit(columns, down, low_above));
         float high = dot(weight, masu_local_lit(columns, down + slope.y, high_above));
         gap = max(gap, max(max(low_above.x, low_above.y), low_above.z));
         gap = max(gap, max(max(high_above.x, high_above.y), high_above.z));
         sum += rows.x * low + rows.y * high;
-        rows = vec3(0.0, rows.z, 0.0);
+        rows.xy = vec2(0.0, rows.z);
         down += slope.y;
         uv.y += texel;
     }
@@ -93,7 +93,7 @@ float masu_local_filter(vec2 at, float depth, vec2 slope, float texel, out float
 /* rel: relative to the eye; n: unit, of the surface itself, on the lit side. */
 float masu_light_seen(masu_punctual_light_data light, vec3 rel, vec3 n)
 {
-    vec3 p = rel - light.position.xyz;
+    vec3 p = rel - light.shadow_origin.xyz;
     float near = uintBitsToFloat(light.shadow[1].z);
     float tangent = uintBitsToFloat(light.shadow[1].w);
     float z;

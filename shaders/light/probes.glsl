@@ -5,7 +5,8 @@
  *
  * Weights of the eight, multiplied:
  *   trilinear, of the point moved off its surface by the grid's bias
- *   wrapped cosine: a probe behind the surface knows of light that cannot come here
+ *   1 in front of the surface's plane, falling to 0 at the grid's bias behind it: such a probe receives light that
+ *     cannot come here. A cosine would favour probes far from the surface over those close to it
  *   visibility: Chebyshev's bound by the mean and mean square of distances from the probe in that
  *     direction (Donnelly and Lauritzen 2006; Majercik et al., JCGT 8-2, 2019)
  *   0 for probes that are inside of things
@@ -161,7 +162,7 @@ vec4 masu_probe_light(vec3 from, vec3 normal)
     vec3 cell = clamp(point / spacing, vec3(0.0), last);
     uvec3 base = min(uvec3(cell), max(counts.xyz, uvec3(2u)) - 2u);
     vec3 f = cell - vec3(base);
-    float diagonal = length(spacing);
+    float diagonal = length(spacing), per_bias = masu_rcp(max(origin.w, 1e-4));
     uint count = counts.x * counts.y * counts.z, side = more.z + 2u;
     uint map_words = more.z > 0u ? side * side : 0u;
     uint maps = count * (counts.w + more.y + more.x) * MASU_PROBE_SET_WORDS;
@@ -180,8 +181,8 @@ vec4 masu_probe_light(vec3 from, vec3 normal)
         float square = dot(to, to);
         float distance = sqrt(max(square, 1e-12));
         vec3 d = to / distance;
-        float facing = 0.5 + 0.5 * dot(d, normal);
-        float w = t.x * t.y * t.z * (facing * facing + 0.1);
+        float front = clamp(2.0 + dot(to, normal) * per_bias, 0.0, 1.0);
+        float w = t.x * t.y * t.z * (front * front + 0.05);
         uint probe = (at.z * counts.y + at.y) * counts.x + at.x;
         if (map_words > 0u && square > 1e-12) {
             w *= max(masu_probe_seen(maps + probe * map_words, more.z, -d, distance / diagonal), 1e-4);

@@ -90,7 +90,7 @@ float masu_bend_lookup(masu_surface s, vec3 n, vec3 v, inout vec3 direction, ino
 {
     float r = masu_sane(s.roughness, 0.0, 1.0);
     float c = masu_sane(dot(n, v), 1e-4, 1.0);
-    vec3 colors = mix(vec3(0.08 * masu_sane(s.specular, 0.0, 1.0)), masu_sane(s.albedo, 0.0, 1.0),
+    vec3 colors = mix(vec3(0.08 * masu_sane(s.specular, 0.0, masu_most_specular())), masu_sane(s.albedo, 0.0, 1.0),
                       masu_sane(s.metallic, 0.0, 1.0));
     float f0 = max(colors.r, max(colors.g, colors.b));
     vec2 table = masu_table(uint(MASU_TABLE_LOSS), masu_row_of(r), c);
@@ -101,6 +101,25 @@ float masu_bend_lookup(masu_surface s, vec3 n, vec3 v, inout vec3 direction, ino
     roughness = r * (1.0 - 0.5 * share);
     return share * r2;
 }
+
+#ifdef MASU_SURFACE
+/* The open sky as a surface with a grain mirrors it: the mean over five normals, at equal steps of the distribution of
+ * slopes along the grain (GGX: slope = alpha q / sqrt(1 - q^2)), each as rough as the surface is across the grain. */
+vec3 masu_fan(masu_surface s, vec3 n, vec3 v)
+{
+    vec3 grain = masu_grain(s, n) * masu_grain_alpha(s), sum = vec3(0.0);
+    float weights = 0.0;
+    [[dont_unroll]] for (int i = 0; i < 5; i++) {
+        float q = 0.4 * float(i) - 0.8;
+        vec3 h = masu_normalize(n + grain * (q * masu_rsqrt(1.0 - q * q)), n);
+        vec3 l = reflect(-v, h);
+        float weight = dot(n, l) > 0.0 ? max(dot(v, h), 0.0) : 0.0;
+        sum += weight * masu_ambient_mirror(l, s.roughness);
+        weights += weight;
+    }
+    return weights > 1e-4 ? sum / weights : masu_ambient_mirror(reflect(-v, n), s.roughness);
+}
+#endif
 
 masu_mirrored masu_mirrored_sky(masu_surface s, vec3 n, vec3 v, vec2 kept)
 {
@@ -129,6 +148,9 @@ masu_mirrored masu_mirrored_sky(masu_surface s, vec3 n, vec3 v, vec2 kept)
         mirrored = reflect(-v, n);
         roughness = s.coat_roughness;
     }
+    if (masu_has_lobe(s, MASU_LOBE_GRAIN) && kept.x > 0.0) {
+        m.base = kept.x * masu_fan(s, normal, v);
+    }
 #else
     if (kept.x > 0.0) {
         m.base = kept.x * masu_ambient_mirror(mirrored, roughness);
@@ -136,6 +158,104 @@ masu_mirrored masu_mirrored_sky(masu_surface s, vec3 n, vec3 v, vec2 kept)
 #endif
     return m;
 }
+
+#ifdef MASU_LIGHTS
+/* A surface as halves, while other things need its registers. */
+struct masu_shelved_look {
+    uvec2 albedo, emissive;
+    uint metallic;
+#ifdef MASU_SURFACE
+    uvec2 coat;
+#endif
+};
+
+uvec2 masu_pack_halves(vec4 v)
+{
+    return uvec2(packHalf2x16(v.xy), packHalf2x16(v.zw));
+}
+
+vec4 masu_unpack_halves(uvec2 v)
+{
+    return vec4(unpackHalf2x16(v.x), unpackHalf2x16(v.y));
+}
+
+masu_shelved_look masu_shelve(masu_surface s)
+{
+    masu_shelved_look p;
+    p.albedo = masu_pack_halves(vec4(s.albedo, s.roughness));
+    p.emissive = masu_pack_halves(vec4(s.emissive, s.specular));
+    p.metallic = packHalf2x16(vec2(s.metallic, s.occlusion));
+#ifdef MASU_SURFACE
+    p.coat = masu_pack_halves(vec4(s.coat, s.coat_roughness, s.edge, s.shadow));
+#endif
+    return p;
+}
+
+void masu_unshelve(masu_shelved_look p, inout masu_surface s)
+{
+    vec4 v = masu_unpack_halves(p.albedo);
+    s.albedo = v.xyz;
+    s.roughness = v.w;
+    v = masu_unpack_halves(p.emissive);
+    s.emissive = v.xyz;
+    s.specular = v.w;
+    vec2 numbers = unpackHalf2x16(p.metallic);
+    s.metallic = numbers.x;
+    s.occlusion = numbers.y;
+#ifdef MASU_SURFACE
+    v = masu_unpack_halves(p.coat);
+    s.coat = v.x;
+    s.coat_roughness = v.y;
+    s.edge = v.z;
+    s.shadow = v.w;
+#endif
+}
+
+#ifdef MASU_SHELVED
+/* The colours of a bsdf and the numbers that go with them, which only the end of a light's evaluation needs. */
+struct masu_shelved_bsdf {
+    uvec2 f0, rest, diffuse, matte;
+#ifdef MASU_SURFACE
+    uint coat_line;
+#endif
+};
+
+masu_shelved_bsdf masu_shelve(masu_bsdf b)
+{
+    masu_shelved_bsdf p;
+    p.f0 = masu_pack_halves(vec4(b.f0, b.f90));
+    p.rest = masu_pack_halves(vec4(b.rest, b.seen.white));
+    p.diffuse = masu_pack_halves(vec4(b.diffuse, b.seen.weight));
+    p.matte = masu_pack_halves(vec4(b.matte_f0, b.matte_slope, b.matte_rest, 0.0));
+#ifdef MASU_SURFACE
+    p.matte.y = packHalf2x16(vec2(b.matte_rest, b.coat));
+    p.coat_line = packHalf2x16(b.coat_line);
+#endif
+    return p;
+}
+
+void masu_unshelve(masu_shelved_bsdf p, inout masu_bsdf b)
+{
+    vec4 v = masu_unpack_halves(p.f0);
+    b.f0 = v.xyz;
+    b.f90 = v.w;
+    v = masu_unpack_halves(p.rest);
+    b.rest = v.xyz;
+    b.seen.white = v.w;
+    v = masu_unpack_halves(p.diffuse);
+    b.diffuse = v.xyz;
+    b.seen.weight = v.w;
+    v = masu_unpack_halves(p.matte);
+    b.matte_f0 = v.x;
+    b.matte_slope = v.y;
+    b.matte_rest = v.z;
+#ifdef MASU_SURFACE
+    b.coat = v.w;
+    b.coat_line = unpackHalf2x16(p.coat_line);
+#endif
+}
+#endif
+#endif
 
 /* What comes from everywhere alone. b: of s; rel: the point, relative to the eye; seen: how much of it arrives; sky: of
  * masu_mirrored_sky. With lights the caller has asked what is around before it has made b. */

@@ -106,6 +106,9 @@ float masu_sample_maps(vec2 at, inout masu_surface s)
         s.coat *= coat.r;
         s.coat_roughness *= coat.g;
     }
+    if (masu_extra_lobes != 0u && (MASU_MAPS_FLAGS & MASU_MAP_LOBE) != 0u) {
+        masu_scale_lobe(s, texture(coat_map, vec3(masu_map_at(5u, at) * MASU_MAPS_DETAIL, float(MASU_MAPS_COAT_LAYER)), bias));
+    }
 #endif
     return base.a;
 }
@@ -119,16 +122,9 @@ vec3 masu_seen_normal(vec3 normal, vec3 rel, vec3 fallback)
     return masu_lean_to_eye(masu_normalize(normal, fallback), rel, least);
 }
 
-/* The normal of the map in world space, unnormalised, on the side of `normal`. */
-vec3 masu_bend_normal(vec3 normal, vec3 rel, vec2 at)
+/* A direction of tangent space, z above 0, in world space, on the side of `normal`; at: the coordinates. */
+vec3 masu_from_tangents(vec2 xy, vec3 normal, vec3 rel, vec2 at)
 {
-    if ((MASU_MAPS_FLAGS & MASU_MAP_NORMAL) == 0u) {
-        return normal;
-    }
-    at = masu_map_at(1u, at);
-    vec2 xy = texture(normal_map, vec3(at * MASU_MAPS_DETAIL, masu_layer(1u)), MASU_MAPS_BIAS).rg;
-    /* 128 / 255 is zero: an even number of steps has no middle. */
-    xy = clamp((xy * 255.0 - 128.0) / 127.0, -1.0, 1.0);
     float z = sqrt(max(1.0 - dot(xy, xy), 0.0));
     vec3 dx = dFdx(rel);
     vec3 dy = dFdy(rel);
@@ -146,5 +142,32 @@ vec3 masu_bend_normal(vec3 normal, vec3 rel, vec2 at)
     /* Of a mapping without extent along u or v that direction is zero, and its lean is left out. */
     return t * (masu_rsqrt(dot(t, t)) * xy.x) + b * (masu_rsqrt(dot(b, b)) * xy.y) + n * z;
 }
+
+/* 128 / 255 is zero: an even number of steps has no middle. */
+vec2 masu_lean_of_texel(vec2 xy)
+{
+    return clamp((xy * 255.0 - 128.0) / 127.0, -1.0, 1.0);
+}
+
+/* The normal of the map in world space, unnormalised, on the side of `normal`. */
+vec3 masu_bend_normal(vec3 normal, vec3 rel, vec2 at)
+{
+    if ((MASU_MAPS_FLAGS & MASU_MAP_NORMAL) == 0u) {
+        return normal;
+    }
+    at = masu_map_at(1u, at);
+    vec2 xy = texture(normal_map, vec3(at * MASU_MAPS_DETAIL, masu_layer(1u)), MASU_MAPS_BIAS).rg;
+    return masu_from_tangents(masu_lean_of_texel(xy), normal, rel, at);
+}
+
+#ifdef MASU_MAPS_COAT_LAYER
+/* ... of the coat's own map, which is in the place of that of emission. */
+vec3 masu_bend_coat(vec3 normal, vec3 rel, vec2 at)
+{
+    at = masu_map_at(3u, at);
+    vec2 xy = texture(emissive_map, vec3(at * MASU_MAPS_DETAIL, masu_layer(3u)), MASU_MAPS_BIAS).rg;
+    return masu_from_tangents(masu_lean_of_texel(xy), normal, rel, at);
+}
+#endif
 
 #endif

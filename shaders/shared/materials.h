@@ -16,7 +16,10 @@
 #define MASU_MAP_OCCLUSION 16u
 #define MASU_MAP_COAT 32u
 #define MASU_MAP_ADDITIVE 0x10000u
-#define MASU_MAP_FAR_SIDE_FIRST 0x20000u /* transparent, drawn twice: back faces first */
+#define MASU_MAP_FAR_SIDE_FIRST 32u      /* transparent, which has no coat map: drawn twice, back faces first */
+#define MASU_MAP_TRANSMISSION 0x20000u   /* alpha of the base colour is transmission */
+#define MASU_MAP_LOBE 0x10000u           /* opaque: the coat's map is the lobe's */
+#define MASU_MAP_COAT_RELIEF 0x100000u   /* opaque: the map of emission has the coat's normals */
 #define MASU_MAP_SINGLE 0x40000u         /* single-sided: culled from behind */
 #define MASU_MAP_METAL 0x80000u
 #define MASU_MAP_TINTED 0x100000u        /* transmission is tinted by the base colour */
@@ -27,7 +30,13 @@
 
 /* Transmission: of masu_scene_data.tints, and the roughness up to which glass does not blur. */
 #define MASU_TINTS_ROUGH 2u
+#define MASU_TINTS_MAPPED 4u /* and some with a map of it */
 #define MASU_SHARP_GLASS 0.05
+
+/* Kinds of lobes beyond GGX with a grey f0 up to 0.08 (pack.glsl, masu_lobe_code); bit 1 << kind of masu_extra_lobes. */
+#define MASU_LOBE_COLORED 1u /* f0 of any colour and strength */
+#define MASU_LOBE_SHEEN 2u
+#define MASU_LOBE_GRAIN 3u /* anisotropic */
 
 /* Transform of an instance: the rows of the 3x4 matrix object -> world space. */
 struct masu_instance_data {
@@ -39,7 +48,7 @@ struct masu_instance_data {
 struct masu_material_data {
     masu_vec4 base_color; /* rgb linear albedo; w perceptual roughness 0..1 */
     masu_vec4 emissive;   /* rgb linear radiance, 0: not emissive; w metallic 0..1 */
-    masu_vec4 more;       /* specular, coat, coat roughness, opacity: each 0..1 */
+    masu_vec4 more;       /* specular (below 0: -1 - lobe), coat, coat roughness, opacity: each 0..1 */
 };
 
 #endif

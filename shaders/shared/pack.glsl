@@ -28,6 +28,14 @@
  * 13 bits per axis leave a normal within 0.03 degrees. src/api_stats.c, masu_unpack_normal is the
  * twin in C; of surfaces with emission, measure/texel.c.
  *
+ *   Where a scene has other lobes (masu_extra_lobes) such a surface has no coat: g is below 16, a has its upper bit set,
+ *   and 23 bits are the lobe: 0-7 r, 8-14 a, 15-18 g, 19-22 the lower half of b, whose upper half is occlusion:
+ *                   21-22  MASU_LOBE_*; of colours as hue: 11 bits, which channel is the brightest and the roots of
+ *                          the other two relative to it, 25 steps each
+ *                   COLORED  0-7 root of the brightest f0, 8-18 hue
+ *                   SHEEN    0-4 roughness, 5-9 root of the brightest channel, 10-20 hue
+ *                   GRAIN    0-6 anisotropy, 7-13 angle of the grain (masu_lean_axes), half a turn, 14-20 specular
+ *
  * A coat mirrors sharply and has all 26 bits; what lies below it is within 0.3 degrees where it leans by 6, 0.8 at
  * 30, 1.9 at 60; half of that in the mean. The other way round, or both in 13 bits, a polished coat would show steps.
  *
@@ -70,6 +78,7 @@ struct masu_surface {
     float shadow;         /* what the shadows of its relief leave of a light, 0..1; below 0: no relief */
     float edge;           /* factor of the specular terms at grazing angles, 0..1 */
     vec2 lean;            /* of what lies below a coat of another normal: x and y of its own, in masu_lean_axes */
+    uint lobe;            /* 23 bits, see above; 0: none beyond the plain one */
 };
 
 #ifdef MASU_SURFACE
@@ -79,11 +88,88 @@ const bool masu_own_coats = true;
 #else
 layout(constant_id = 11) const bool masu_own_coats = false;
 #endif
+/* Bit 1 << MASU_LOBE_*: the scene has such lobes. */
+#ifdef MASU_ALL_LOBES
+const uint masu_extra_lobes = 14u;
+#else
+layout(constant_id = 21) const uint masu_extra_lobes = 0u;
+#endif
 #endif
 
 masu_surface masu_plain_surface(vec3 albedo, float roughness)
 {
-    return masu_surface(albedo, roughness, vec3(0.0), 0.0, 0.5, 0.0, 0.0, 1.0, -1.0, 1.0, vec2(0.0));
+    return masu_surface(albedo, roughness, vec3(0.0), 0.0, 0.5, 0.0, 0.0, 1.0, -1.0, 1.0, vec2(0.0), 0u);
+}
+
+float masu_brightest(vec3 color)
+{
+    return max(color.r, max(color.g, color.b));
+}
+
+#ifdef MASU_SURFACE
+bool masu_has_lobe(masu_surface s, uint kind)
+{
+    return (masu_extra_lobes >> kind & 1u) != 0u && s.lobe >> 21 == kind;
+}
+
+/* A colour relative to its brightest channel. */
+vec3 masu_lobe_hue(uint code)
+{
+    vec2 others = vec2(code / 26u % 26u, code % 26u) * (1.0 / 25.0);
+    others *= others;
+    uint channel = code / 676u;
+    return channel == 0u ? vec3(1.0, others) : channel == 1u ? vec3(others.y, 1.0, others.x) : vec3(others, 1.0);
+}
+
+uint masu_hue_code(vec3 color, float brightest)
+{
+    bool red = color.r >= brightest, green = !red && color.g >= brightest;
+    vec2 others = red ? color.gb : green ? color.br : color.rg;
+    uvec2 steps = uvec2(sqrt(clamp(others / max(brightest, masu_tiny), vec2(0.0), vec2(1.0))) * 25.0 + 0.5);
+    return ((red ? 0u : green ? 1u : 2u) * 26u + steps.x) * 26u + steps.y;
+}
+
+float masu_lobe_root(uint code, uint steps)
+{
+    float root = float(code & steps) / float(steps);
+    return root * root;
+}
+
+void masu_set_lobe(inout masu_surface s, uint lobe)
+{
+    uint kind = lobe >> 21;
+    s.lobe = lobe;
+    s.specular = kind == MASU_LOBE_COLORED ? 12.5 * masu_lobe_root(lobe, 255u)
+               : kind == MASU_LOBE_GRAIN ? float(lobe >> 14 & 127u) / 127.0 : 0.5;
+}
+
+/* By a texel of the lobe's map: rgb times its colour, alpha times its strength, of a sheen its roughness. */
+void masu_scale_lobe(inout masu_surface s, vec4 texel)
+{
+    if (masu_has_lobe(s, MASU_LOBE_COLORED)) {
+        vec3 f0 = masu_lobe_hue(s.lobe >> 8 & 2047u) * (masu_lobe_root(s.lobe, 255u) * texel.a) * texel.rgb;
+        float most = masu_brightest(f0);
+        uint root = uint(sqrt(clamp(most, 0.0, 1.0)) * 255.0 + 0.5);
+        masu_set_lobe(s, MASU_LOBE_COLORED << 21 | masu_hue_code(f0, most) << 8 | root);
+    } else if (masu_has_lobe(s, MASU_LOBE_SHEEN)) {
+        vec3 color = masu_lobe_hue(s.lobe >> 10 & 2047u) * masu_lobe_root(s.lobe >> 5, 31u) * texel.rgb;
+        float most = masu_brightest(color);
+        uint root = uint(sqrt(clamp(most, 0.0, 1.0)) * 31.0 + 0.5);
+        uint rough = uint(clamp(float(s.lobe & 31u) * texel.a, 0.0, 31.0) + 0.5);
+        masu_set_lobe(s, MASU_LOBE_SHEEN << 21 | masu_hue_code(color, most) << 10 | root << 5 | rough);
+    }
+}
+#endif
+
+/* What a material has as its specular factor (masu_specular_of). */
+void masu_take_specular(inout masu_surface s, float given)
+{
+    s.specular = given;
+#ifdef MASU_SURFACE
+    if (masu_extra_lobes != 0u && given < 0.0) {
+        masu_set_lobe(s, uint(clamp(-given, 1.0, 8388608.0)) - 1u);
+    }
+#endif
 }
 
 /* Within -1..1 but for its rounding, whatever the bits of n. */
@@ -109,11 +195,6 @@ vec3 masu_oct_decode(vec2 p)
         n.xy = (1.0 - abs(n.yx)) * s;
     }
     return n * masu_rsqrt(dot(n, n));
-}
-
-float masu_brightest(vec3 color)
-{
-    return max(color.r, max(color.g, color.b));
 }
 
 bool masu_is_emissive(masu_surface s)
@@ -243,6 +324,24 @@ vec3 masu_below(vec3 n, vec2 lean)
     return masu_normalize(below, n);
 }
 
+/* The grain of a surface as its texels have it: by its angle in the axes of the normal n; grain: any length. */
+void masu_turn_grain(inout masu_surface s, vec3 n, vec3 grain)
+{
+    vec3 t, b;
+    masu_lean_axes(n, t, b);
+    vec2 at = vec2(dot(t, grain), dot(b, grain));
+    float half_turns = dot(at, at) > masu_tiny ? masu_atan2(at.y, at.x) * (128.0 / 3.14159265) : 0.0;
+    masu_set_lobe(s, (s.lobe & ~(127u << 7)) | (uint(int(round(half_turns)) + 256) & 127u) << 7);
+}
+
+vec3 masu_grain(masu_surface s, vec3 n)
+{
+    vec3 t, b;
+    masu_lean_axes(n, t, b);
+    float angle = float(s.lobe >> 7 & 127u) * (3.14159265 / 128.0);
+    return t * cos(angle) + b * sin(angle);
+}
+
 uvec2 masu_pack_lean(vec2 lean)
 {
     vec2 root = sqrt(min(abs(lean), vec2(1.0))) * 63.0 + 0.5;
@@ -263,6 +362,14 @@ vec4 masu_pack_surface(masu_surface s)
     float coat = floor(v.y * 15.0 + 0.5) * 16.0 + floor(v.z * 15.0 + 0.5);
     float relief_steps = 254.0;
 #ifdef MASU_SURFACE
+    if (masu_extra_lobes != 0u) {
+        relief_steps = 126.0;
+        if (s.lobe != 0u) {
+            float above = 16.0 * floor(v.w * 15.0 + 0.5);
+            return vec4(float(s.lobe & 255u), float(s.lobe >> 15 & 15u), above + float(s.lobe >> 19 & 15u),
+                        float(128u + (s.lobe >> 8 & 127u))) / 255.0;
+        }
+    }
     if (masu_own_coats) {
         relief_steps = 126.0;
         vec2 lean = masu_sane(vec3(s.lean, 0.0), -1.0, 1.0).xy;
@@ -288,6 +395,16 @@ void masu_unpack_surface(vec4 texel, inout masu_surface s)
     s.shadow = (texel.a * 255.0 - 1.0) / 254.0;
     bool relief = texel.a > 0.0;
 #ifdef MASU_SURFACE
+    if (masu_extra_lobes != 0u) {
+        uvec4 bytes = uvec4(texel * 255.0 + 0.5);
+        s.shadow = (texel.a * 255.0 - 1.0) / 126.0;
+        if (bytes.a >= 128u && bytes.g < 16u) {
+            s.shadow = -1.0;
+            s.occlusion = float(bytes.b >> 4) / 15.0;
+            masu_set_lobe(s, bytes.r | (bytes.a & 127u) << 8 | bytes.g << 15 | (bytes.b & 15u) << 19);
+            return;
+        }
+    }
     if (masu_own_coats) {
         uvec4 bytes = uvec4(texel * 255.0 + 0.5);
         s.shadow = (texel.a * 255.0 - 1.0) / 126.0;

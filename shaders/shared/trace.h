@@ -32,7 +32,7 @@
 struct masu_trace_material {
     masu_vec4 base_color; /* rgb linear albedo; w perceptual roughness 0..1 */
     masu_vec4 emissive;   /* rgb linear radiance; w metallic 0..1 */
-    masu_vec4 more;       /* specular, coat, coat roughness, opacity: each 0..1 */
+    masu_vec4 more;       /* as of masu_material_data */
     masu_uvec4 maps;      /* x base colour texture, y emissive texture, or TRACE_NONE; z flags of
                              the material (materials.h); w wrap modes of u and v, 2 bits each */
 };

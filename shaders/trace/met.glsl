@@ -46,7 +46,7 @@ met met_polygon(uvec4 hit, vec3 direction, float width)
     m.surface = masu_plain_surface(look.base_color.rgb, look.base_color.w);
     m.surface.emissive = look.emissive.rgb;
     m.surface.metallic = look.emissive.w;
-    m.surface.specular = look.more.x;
+    masu_take_specular(m.surface, look.more.x);
     m.surface.coat = look.more.y;
     m.surface.coat_roughness = look.more.z;
 #ifdef MASU_TRACE_TEXTURES

@@ -54,7 +54,10 @@ void masu_bounce_restart(masu_bounce *b) {
         if (!follows) p->sets = 0;
         else if (p->sets >= 2 * MASU_BOUNCE_FIRST) p->sets = MASU_BOUNCE_FIRST;
     }
-    if (!follows) next_round(b);
+    if (!follows) {
+        b->swift = MASU_BOUNCE_SWIFT_ROUNDS;
+        next_round(b);
+    }
 }
 
 /* The next set of a probe: the first ones twice, since their first light lacks later bounces; then the others; then
@@ -104,6 +107,7 @@ uint32_t masu_bounce_choose(masu_bounce *b, const masu_bounce_view *view, uint32
         next_round(b);
         b->quiet++;
         b->burst -= b->burst > 0;
+        b->swift -= b->swift > 0;
     }
     return count;
 }
@@ -119,7 +123,7 @@ static masu_bounce_cause cause_of(const masu_bounce *b, const masu_lights *light
     c.instances = in->changes;
     c.materials = materials->changes;
     memcpy(c.params, u->sdf_params, sizeof c.params);
-    if (f->plan->needs.dynamic && f->plan->needs.bounce_sdf) c.time = u->eye_hi[3];
+    if (f->plan->needs.timed && f->plan->needs.bounce_sdf) c.time = u->eye_hi[3];
     if (b->lit) return c;
     memcpy(c.sun[0], u->sun_direction, sizeof c.sun[0]);
     memcpy(c.sun[1], u->sun_color, sizeof c.sun[1]);
@@ -130,15 +134,24 @@ static masu_bounce_cause cause_of(const masu_bounce *b, const masu_lights *light
     return c;
 }
 
-void masu_bounce_write(masu_bounce *b, const masu_lights *lights, const masu_instances *in,
-                       const masu_materials *materials, const masu_frame_data *f) {
-    if (!masu_has_pass(&masu_frame_rung_plan(f)->active, MASU_PASS_BOUNCE_SUM)) return;
+void masu_bounce_follow(masu_bounce *b, const masu_lights *lights, const masu_instances *in,
+                        const masu_materials *materials, const masu_frame_data *f) {
     masu_bounce_cause cause = cause_of(b, lights, in, materials, f);
     if (memcmp(&cause, &b->cause, sizeof cause) != 0) masu_bounce_restart(b);
     b->cause = cause;
+}
+
+uint32_t masu_bounce_pace(const masu_bounce *b, uint32_t most) {
+    return most / (b->burst ? 1 : b->swift ? MASU_BOUNCE_BURST / 2 : MASU_BOUNCE_BURST);
+}
+
+void masu_bounce_write(masu_bounce *b, const masu_lights *lights, const masu_instances *in,
+                       const masu_materials *materials, const masu_frame_data *f) {
+    if (!masu_has_pass(&masu_frame_rung_plan(f)->active, MASU_PASS_BOUNCE_SUM)) return;
+    masu_bounce_follow(b, lights, in, materials, f);
     if (f->cut && b->quiet < MASU_BOUNCE_REST) b->burst = MASU_BOUNCE_BURST_ROUNDS;
     const masu_rung *rung = masu_frame_rung(f);
-    uint32_t most = masu_bounce_most(f->plan, f->desc.rung) / (b->burst ? 1 : MASU_BOUNCE_BURST);
+    uint32_t most = masu_bounce_pace(b, masu_bounce_most(f->plan, f->desc.rung));
     unsigned char *to = masu_frame_slot(f, MASU_BUFFER_BOUNCE);
     masu_bounce_view view = {f->u.clip_from_rel, {f->eye[0], f->eye[1], f->eye[2]}};
     uint32_t *words = (uint32_t *)(void *)(to + sizeof(struct masu_bounce_header));

@@ -18,6 +18,7 @@ enum {
     MASU_BOUNCE_WINDOW = 16, /* all sets of a probe */
     MASU_BOUNCE_REST = 256,  /* rounds */
     MASU_BOUNCE_BURST_ROUNDS = 16, /* after the first frame, or a cut: most of what bounces has come by then */
+    MASU_BOUNCE_SWIFT_ROUNDS = MASU_BOUNCE_FIRST + MASU_BOUNCE_WINDOW, /* after a change that follows no other */
     MASU_BOUNCE_OFF = 0xFF  /* `sets` of a probe that is inside of something */
 };
 
@@ -39,7 +40,7 @@ typedef struct masu_bounce {
     uint32_t round; /* the present one; its low byte tells rounds apart */
     uint32_t left;  /* probes that it lacks */
     uint32_t quiet; /* whole rounds since the last change */
-    uint32_t burst; /* rounds that still have more rays */
+    uint32_t burst, swift; /* rounds that still have four times, twice the rays */
     masu_bounce_cause cause;
     uint32_t slot_left[MASU_MAX_FLIGHT]; /* masu_stats_info.bounce_rounds_left */
 } masu_bounce;
@@ -56,9 +57,14 @@ void masu_bounce_copy_scene(masu_bounce *b, const masu_frame_plan *plan, const m
 /* Something has changed. */
 void masu_bounce_restart(masu_bounce *b);
 /* At most `most` probes as words of shared/bounce.h; returns how many. */
+/* Probes of the next frame, of `most` in a burst. */
+uint32_t masu_bounce_pace(const masu_bounce *b, uint32_t most);
 uint32_t masu_bounce_choose(masu_bounce *b, const masu_bounce_view *view, uint32_t most, uint32_t *words);
 
-/* Finds whether something has changed, and writes the frame's slot. */
+/* Restarts if what light meets differs from the frame before. */
+void masu_bounce_follow(masu_bounce *b, const masu_lights *lights, const masu_instances *in,
+                        const masu_materials *materials, const masu_frame_data *f);
+/* masu_bounce_follow, then writes the frame's slot. */
 void masu_bounce_write(masu_bounce *b, const masu_lights *lights, const masu_instances *in,
                        const masu_materials *materials, const masu_frame_data *f);
 

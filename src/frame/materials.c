@@ -57,12 +57,22 @@ static masu_material_mode mode_of(uint32_t flags) {
     return flags & MASU_MATERIAL_IS_MASK ? MASU_MATERIAL_MASKED : MASU_MATERIAL_OPAQUE;
 }
 
+/* Of a lobe (masu_lobe_code), which stays as it is. */
+static float specular_in(float given) {
+    uint32_t code = given < 0.0f ? (uint32_t)-given - 1u : 0;
+    float root = (float)(code & 255u) / 255.0f;
+    if (!code) return given;
+    return code >> 21 == MASU_LOBE_COLORED ? 12.5f * root * root
+           : code >> 21 == MASU_LOBE_GRAIN ? (float)(code >> 14 & 127u) / 127.0f
+                                           : 0.5f;
+}
+
 masu_material_state masu_materials_get(const masu_materials *s, uint32_t material) {
     const struct masu_material_data *now = &s->now[material];
     uint32_t cutoff = s->flags[material] >> MASU_MATERIAL_CUTOFF_SHIFT & 255u;
     masu_material_state state = {.roughness = now->base_color[3],
                                  .metallic = now->emissive[3],
-                                 .specular = now->more[0],
+                                 .specular = specular_in(now->more[0]),
                                  .coat = now->more[1],
                                  .coat_roughness = now->more[2],
                                  .opacity = now->more[3],
@@ -80,13 +90,13 @@ typedef struct factor {
     float most;
 } factor;
 
-static masu_result check_factors(uint32_t material, const masu_material_state *s, masu_detail *detail) {
+static masu_result check_factors(uint32_t material, const masu_material_state *s, int lobe, masu_detail *detail) {
     const factor factors[] = {{"base_color", s->base_color, 3, 1.0f},
                               {"opacity", &s->opacity, 1, 1.0f},
                               {"roughness", &s->roughness, 1, 1.0f},
                               {"metallic", &s->metallic, 1, 1.0f},
                               {"emissive", s->emissive, 3, 1e9f},
-                              {"specular", &s->specular, 1, 1.0f},
+                              {"specular", &s->specular, 1, lobe ? 12.5f : 1.0f},
                               {"coat", &s->coat, 1, 1.0f},
                               {"coat_roughness", &s->coat_roughness, 1, 1.0f}};
     for (uint32_t i = 0; i < sizeof factors / sizeof *factors; i++) {
@@ -119,6 +129,11 @@ static masu_result check_fixed(const masu_materials *s, const masu_frame_plan *p
         return fixed(i, "opacity", "the material is not blended", detail);
     if (to->coat > 0.0f && !plan->scene.coats)
         return fixed(i, "coat", "the scene has no material with one, and no tables for it", detail);
+    if (s->now[i].more[0] < 0.0f) {
+        const char *why = "the material has a sheen, an anisotropy, or a reflectance with a colour or above 0.08";
+        if (to->specular != now.specular) return fixed(i, "specular", why, detail);
+        if (to->coat > 0.0f) return fixed(i, "coat", why, detail);
+    }
     if (blends || plan->needs.surface) return MASU_OK;
     if (to->specular != now.specular)
         return fixed(i, "specular", "the scene has no image for it: no material has one but 0.5", detail);
@@ -127,13 +142,14 @@ static masu_result check_fixed(const masu_materials *s, const masu_frame_plan *p
 
 masu_result masu_materials_set(masu_materials *s, const masu_frame_plan *plan, uint32_t material,
                                const masu_material_state *state, masu_detail *detail) {
-    masu_result result = check_factors(material, state, detail);
+    int lobe = s->now[material].more[0] < 0.0f;
+    masu_result result = check_factors(material, state, lobe, detail);
     if (!result) result = check_fixed(s, plan, material, state, detail);
     if (result) return result;
     struct masu_material_data to = {
         {state->base_color[0], state->base_color[1], state->base_color[2], state->roughness},
         {state->emissive[0], state->emissive[1], state->emissive[2], state->metallic},
-        {state->specular, state->coat, state->coat_roughness, state->opacity}};
+        {lobe ? s->now[material].more[0] : state->specular, state->coat, state->coat_roughness, state->opacity}};
     s->changes += memcmp(&s->now[material], &to, sizeof to) != 0;
     s->now[material] = to;
     return MASU_OK;

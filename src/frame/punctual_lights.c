@@ -129,7 +129,7 @@ void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_loca
         if (!masu_light_place(&state, position, direction, &placed)) continue;
         float bound[4] = {placed.bound[0], placed.bound[1], placed.bound[2], placed.bound[3] + reach};
         if (culls && masu_light_outside(bound, f->u.clip_from_rel)) continue;
-        if (f->plan->needs.local_shadows) masu_local_shadows_of(shadows, i, placed.shadow);
+        if (f->plan->needs.local_shadows) masu_local_shadows_of(shadows, i, f->eye, &placed);
         data[header.count++] = placed;
     }
     memcpy(to, &header, sizeof header);

@@ -71,7 +71,7 @@ static int has_changed(const struct masu_frame_uniforms *now, const struct masu_
     if (memcmp(now->air + 1, before->air + 1, 3 * sizeof *now->air) != 0) return 1;
     float higher = (now->eye_hi[1] - now->air[0]) - (before->eye_hi[1] - before->air[0]);
     if (now->fog[3] > 0.0f && fabsf(higher) > 1e-3f * (1.0f + fabsf(now->eye_hi[1]))) return 1;
-    if (plan->needs.dynamic && now->eye_hi[3] != before->eye_hi[3]) return 1;
+    if (plan->needs.timed && now->eye_hi[3] != before->eye_hi[3]) return 1;
     return memcmp(now->sdf_params, before->sdf_params, sizeof now->sdf_params) != 0;
 }
 

@@ -23,8 +23,8 @@
 #include <stdint.h>
 
 #define MASU_BLOB_MAGIC 0x5553414Du /* the bytes 'M' 'A' 'S' 'U' */
-#define MASU_BLOB_VERSION 17u
-/* layout of version 17: 3570820542 (kinds and elements; tests/scripts/scene_forms.sh) */
+#define MASU_BLOB_VERSION 18u
+/* layout of version 18: 2955733314 (kinds and elements; tests/scripts/scene_forms.sh) */
 #define MASU_BLOB_ALIGN 16u
 #define MASU_BLOB_NONE 0xFFFFFFFFu /* "no name", "no parent" */
 /* values per SDF primitive, first in SLOTS: sphere, slope, form, first argument, material */
@@ -111,9 +111,11 @@ enum masu_blob_texture_slot {
     /* BC5: x and y of the tangent-space normal as 0..1, +y towards the top of the image */
     MASU_SLOT_NORMAL = 1,
     MASU_SLOT_SURFACE = 2, /* BC4: roughness; BC5: roughness, metallic */
-    MASU_SLOT_EMISSIVE = 3,
+    MASU_SLOT_EMISSIVE = 3,  /* with COAT_RELIEF: BC5, the normals of the coat */
     MASU_SLOT_OCCLUSION = 4, /* BC4: ambient occlusion, 1: unoccluded */
-    MASU_SLOT_COAT = 5,      /* BC5: clear coat, its roughness; not for transparent materials */
+    /* BC5: clear coat, its roughness; with LOBE_MAP BC1 or BC3: factors of the lobe's colour (rgb) and
+     * strength (alpha); not for transparent materials */
+    MASU_SLOT_COAT = 5,
     MASU_SLOT_COUNT = 6
 };
 
@@ -132,7 +134,12 @@ enum masu_blob_material_flags {
     MASU_MATERIAL_COAT_SMOOTH = 0x200000,
     MASU_MATERIAL_BASE_SMOOTH = 0x400000,
     MASU_MATERIAL_NO_SHADOW = 0x800000, /* casts no shadow of any light */
-    MASU_MATERIAL_KNOWN = 0xFDFFFF
+    /* With IS_TINTED: alpha of the base colour map is the transmitted share, not the coverage. */
+    MASU_MATERIAL_TRANSMISSION_MAP = 0x20000,
+    /* Without IS_BLEND: */
+    MASU_MATERIAL_LOBE_MAP = 0x10000,     /* with the bit of COAT: the map is that of the lobe */
+    MASU_MATERIAL_COAT_RELIEF = 0x100000, /* with COAT_SMOOTH: own normals of the coat, see EMISSIVE */
+    MASU_MATERIAL_KNOWN = 0xFFFFFF
 };
 
 /* The minimum limits of Vulkan 1.1 for maxImageDimension2D and maxImageArrayLayers. */
@@ -347,7 +354,7 @@ typedef struct masu_blob_material {
     uint32_t flags;       /* masu_blob_material_flags; 0: no textures; the next two are 0 */
     uint32_t texture_set; /* element of TEXTURE_SETS */
     uint32_t layers;      /* of the first four slots' textures, 8 bits per slot */
-    float specular; /* 0..1: reflectance of a dielectric at normal incidence / 0.08; plain: 0.5 */
+    float specular; /* 0..12.5: reflectance of a dielectric at normal incidence / 0.08; plain: 0.5 */
     float coat;     /* 0..1: weight of the clear coat */
     float coat_roughness; /* perceptual, 0..1 */
     float opacity;        /* 0..1 for transparent materials, else 1 */
@@ -357,6 +364,13 @@ typedef struct masu_blob_material {
     uint32_t more_layers;
     /* scale of the texture coordinates of all maps except base colour and emissive */
     float detail[2];
+    /* At most one of the next three, without a coat and MESO: masu_lobe_code (material.h). */
+    float specular_color[3]; /* of a dielectric's reflectance: 0..1, the largest 1; 0, 0, 0: grey */
+    float sheen_color[3];    /* 0..1; 0: no sheen. With specular 0.5 */
+    float sheen_roughness;   /* perceptual, 0..1 */
+    float anisotropy; /* 0..1: roughness along the grain is mix(alpha, 1, anisotropy^2) */
+    /* 0..2 pi: direction of the grain, from +u towards +y of a normal map */
+    float anisotropy_rotation;
 } masu_blob_material;
 
 /* Appearance, by viewing angle, of surface detail too small for polygons: the curves of
@@ -603,6 +617,9 @@ typedef struct masu_blob_shadow {
 #define MASU_SHADOW_SIZE_MIN 16u
 #define MASU_SHADOW_SIZE_MAX 8192u
 
+#define MASU_SDF_ANCHORED 1u /* the update SPIR-V moves the SDF's space to frame.anchor */
+#define MASU_SDF_TIMELESS 2u /* no slot depends on time */
+
 typedef struct masu_blob_sdf {
     float bounds_min[3]; /* world space; the SDF has no surface outside */
     float lipschitz;     /* >= 1e-3: |f(p)-f(q)| <= lipschitz |p-q| */
@@ -611,7 +628,7 @@ typedef struct masu_blob_sdf {
     /* 1: the code was compiled to read the raster depth (the scene has instances) */
     uint32_t has_raster;
     uint32_t part_count; /* 1..4096 */
-    uint32_t anchored;   /* 1: the update SPIR-V moves the SDF's space to frame.anchor */
+    uint32_t flags;       /* MASU_SDF_ANCHORED, MASU_SDF_TIMELESS */
     uint32_t block_words; /* 32-bit term masks in the tile buffer, per 4x4 block of pixels: 0..2 */
 } masu_blob_sdf;
 
@@ -674,7 +691,7 @@ _Static_assert(sizeof(masu_blob_joint) == 80, "blob joint");
 _Static_assert(sizeof(masu_blob_skin_vertex) == 32, "blob skin vertex");
 _Static_assert(sizeof(masu_blob_group) == 48, "blob group");
 _Static_assert(sizeof(masu_blob_occluder) == 32, "blob occluder");
-_Static_assert(sizeof(masu_blob_material) == 80, "blob material");
+_Static_assert(sizeof(masu_blob_material) == 116, "blob material");
 _Static_assert(sizeof(masu_blob_texture) == 32, "blob texture");
 _Static_assert(sizeof(masu_blob_texture_set) == 32, "blob texture set");
 _Static_assert(sizeof(masu_blob_camera_key) == 32, "blob camera key");

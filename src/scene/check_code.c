@@ -93,7 +93,7 @@ static masu_result check_record(reader *r, uint32_t kind, const masu_module *cod
         .slots = (uint32_t)r->view.slot_count,
         .block_words = s->block_words,
         .raster = s->has_raster,
-        .anchored = s->anchored,
+        .anchored = s->flags & MASU_SDF_ANCHORED,
         .moves = r->view.code[MASU_BLOB_UPDATE_PREVIOUS_SPIRV].words != NULL};
     char wanted[MASU_MODULE_RECORD_BYTES], found[MASU_MODULE_RECORD_BYTES];
     masu_module_record(&counts, wanted);

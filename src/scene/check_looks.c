@@ -2,6 +2,7 @@
  * local lights, probes, sky and fog. */
 #include "scene/check.h"
 
+#include "scene/material.h"
 #include "scene/punctual_light.h"
 
 #include <string.h>
@@ -72,9 +73,23 @@ static masu_result check_shadow(reader *r) {
     return MASU_OK;
 }
 
+/* Numbers of lobes; the G-buffer has room for one kind, in the place of coats and reliefs. */
+static int lobes_fit(const masu_blob_material *m) {
+    const float *hue = m->specular_color, *sheen = m->sheen_color;
+    if (!within(hue, 3, 0.0f, 1.0f) || !within(sheen, 3, 0.0f, 1.0f) || !within(&m->sheen_roughness, 1, 0.0f, 1.0f) ||
+        !within(&m->anisotropy, 1, 0.0f, 1.0f) || !within(&m->anisotropy_rotation, 1, 0.0f, 6.2832f))
+        return 0;
+    if (masu_is_colored(hue) && !(hue[0] == 1.0f || hue[1] == 1.0f || hue[2] == 1.0f)) return 0;
+    int colored = m->specular > 1.0f || masu_is_colored(hue);
+    int shines = sheen[0] > 0.0f || sheen[1] > 0.0f || sheen[2] > 0.0f, grained = m->anisotropy > 0.0f;
+    if (shines && m->specular != 0.5f) return 0;
+    if (masu_lobe_code(m) && (m->coat > 0.0f || m->meso != MASU_BLOB_NONE)) return 0;
+    return colored + shines + grained <= 1;
+}
+
 static masu_result check_material(reader *r, uint64_t i) {
     const masu_blob_material *m = &r->view.materials[i];
-    if (!within(&m->specular, 1, 0.0f, 1.0f) || !within(&m->coat, 1, 0.0f, 1.0f) ||
+    if (!within(&m->specular, 1, 0.0f, 12.5f) || !within(&m->coat, 1, 0.0f, 1.0f) ||
         !within(&m->coat_roughness, 1, 0.0f, 1.0f) || !within(&m->opacity, 1, 0.0f, 1.0f)) {
         return bad(r, "materials", i, "a value is out of range");
     }
@@ -82,12 +97,18 @@ static masu_result check_material(reader *r, uint64_t i) {
         return bad(r, "materials", i, "detail is not 0.001 to 10000");
     if (m->meso != MASU_BLOB_NONE && m->meso >= r->counts[MASU_BLOB_MESO])
         return bad(r, "materials", i, "no such meso");
-    if (m->flags & MASU_MATERIAL_IS_ADDITIVE && !(m->flags & MASU_MATERIAL_IS_BLEND))
-        return bad(r, "materials", i, "is additive, but not blended");
-    if (m->flags & MASU_MATERIAL_IS_TINTED && !(m->flags & MASU_MATERIAL_IS_BLEND))
-        return bad(r, "materials", i, "is tinted, but not blended");
-    if (m->flags & MASU_MATERIAL_IS_TINTED && m->flags & MASU_MATERIAL_IS_ADDITIVE)
+    if (!lobes_fit(m)) return bad(r, "materials", i, "a lobe is out of range, or not the only one");
+    uint32_t blends = m->flags & MASU_MATERIAL_IS_BLEND;
+    if (blends && m->flags & MASU_MATERIAL_IS_TINTED && m->flags & MASU_MATERIAL_IS_ADDITIVE)
         return bad(r, "materials", i, "is tinted, but hides nothing");
+    if (m->flags & MASU_MATERIAL_TRANSMISSION_MAP && (!blends || !(m->flags & MASU_MATERIAL_IS_TINTED)))
+        return bad(r, "materials", i, "has a map of transmission, but transmits nothing");
+    if (!blends && m->flags & MASU_MATERIAL_LOBE_MAP &&
+        (!(m->flags & 1u << MASU_SLOT_COAT) || masu_lobe_code(m) >> 21 == MASU_LOBE_GRAIN))
+        return bad(r, "materials", i, "has no lobe, or no map of it");
+    if (!blends && m->flags & MASU_MATERIAL_COAT_RELIEF &&
+        (!(m->flags & MASU_MATERIAL_COAT_SMOOTH) || m->flags & 1u << MASU_SLOT_EMISSIVE))
+        return bad(r, "materials", i, "has no coat whose relief it could be, or emission in its place");
     if (m->flags & MASU_MATERIAL_COAT_SMOOTH && m->flags & MASU_MATERIAL_BASE_SMOOTH)
         return bad(r, "materials", i, "has a relief, but neither coat nor base has it");
     if (!(m->flags & MASU_MATERIAL_IS_BLEND) && m->opacity != 1.0f)
@@ -238,7 +259,7 @@ masu_result masu_check_looks(reader *r) {
  * Transparent materials are not in the G-buffer. */
 static int has_surface(const masu_blob_material *m) {
     if (m->flags & MASU_MATERIAL_IS_BLEND) return 0;
-    return m->specular != 0.5f || m->coat > 0.0f || m->meso != MASU_BLOB_NONE ||
+    return m->specular != 0.5f || m->coat > 0.0f || m->meso != MASU_BLOB_NONE || masu_lobe_code(m) ||
            (m->flags & 1u << MASU_SLOT_OCCLUSION) != 0;
 }
 
@@ -279,8 +300,11 @@ void masu_describe_looks(const reader *r, masu_scene_data *out) {
         if (!(m->flags & MASU_MATERIAL_IS_BLEND) && m->flags & 1u << MASU_SLOT_NORMAL)
             out->reliefs = 1;
         if (m->coat > 0.0f && m->flags & own) out->own_coats = 1;
-        if (m->flags & MASU_MATERIAL_IS_TINTED)
+        if (masu_lobe_code(m)) out->lobes |= 1u << (masu_lobe_code(m) >> 21);
+        if (m->flags & MASU_MATERIAL_IS_BLEND && m->flags & MASU_MATERIAL_IS_TINTED) {
             out->tints |= (double)m->roughness > MASU_SHARP_GLASS ? 1 | MASU_TINTS_ROUGH : 1;
+            if (m->flags & MASU_MATERIAL_TRANSMISSION_MAP) out->tints |= MASU_TINTS_MAPPED;
+        }
         if (m->flags & MASU_MATERIAL_IS_BLEND) out->blends++;
     }
     describe_transparents(r, out);

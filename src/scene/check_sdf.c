@@ -36,7 +36,8 @@ masu_result masu_check_sdf(reader *r) {
     if (s->part_count < 1 || s->part_count > MASU_SDF_PARTS_MAX) {
         return bad(r, "sdf", 0, "part count is not 1 to 4096");
     }
-    if (s->anchored > 1) return bad(r, "sdf", 0, "anchored is neither 0 nor 1");
+    if (s->flags & ~(MASU_SDF_ANCHORED | MASU_SDF_TIMELESS))
+        return bad(r, "sdf", 0, "flags has an unknown bit");
     if (s->block_words > MASU_BLOCK_WORDS_MAX)
         return bad(r, "sdf", 0, "words of a block are not 0 to 2");
     if (!v->slots) return bad(r, "slots", 0, "are missing");
@@ -58,9 +59,9 @@ masu_result masu_check_sdf(reader *r) {
                      k == MASU_BLOB_VELOCITY_SPIRV || k == MASU_BLOB_SILHOUETTES_SPIRV;
         /* The constants of an anchored SDF depend at least on the floating origin. */
         if (k == MASU_BLOB_UPDATE_SPIRV) {
-            needed = s->anchored || v->code[MASU_BLOB_UPDATE_PREVIOUS_SPIRV].words;
+            needed = s->flags & MASU_SDF_ANCHORED || v->code[MASU_BLOB_UPDATE_PREVIOUS_SPIRV].words;
         } else if (k == MASU_BLOB_UPDATE_PREVIOUS_SPIRV) {
-            needed = !s->anchored && v->code[MASU_BLOB_UPDATE_SPIRV].words;
+            needed = !(s->flags & MASU_SDF_ANCHORED) && v->code[MASU_BLOB_UPDATE_SPIRV].words;
         }
         if (!v->code[k].words && !needed) continue;
         if (!v->code[k].words || v->code[k].count < 5 || v->code[k].words[0] != 0x07230203u) {
@@ -75,7 +76,8 @@ void masu_describe_sdf(const reader *r, masu_scene_data *out) {
     out->sdf_block_words = r->view.sdf->block_words;
     out->sdf_slots = (uint32_t)r->counts[MASU_BLOB_SLOTS];
     out->sdf_dynamic = r->view.code[MASU_BLOB_UPDATE_PREVIOUS_SPIRV].words != NULL;
-    out->sdf_anchored = r->view.sdf->anchored;
+    out->sdf_timed = out->sdf_dynamic && !(r->view.sdf->flags & MASU_SDF_TIMELESS);
+    out->sdf_anchored = (r->view.sdf->flags & MASU_SDF_ANCHORED) != 0;
     out->sdf_occlusion = r->view.code[MASU_BLOB_OCCLUSION_SPIRV].words != NULL;
     out->sdf_casts = r->view.code[MASU_BLOB_LOCAL_SHADOW_SPIRV].words != NULL;
 #ifdef MASU_LAB

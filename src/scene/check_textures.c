@@ -30,8 +30,8 @@ static int slot_takes(uint32_t slot, uint32_t format) {
     case MASU_SLOT_NORMAL: return format == MASU_TEXTURE_BC5;
     case MASU_SLOT_SURFACE: return format == MASU_TEXTURE_BC4 || format == MASU_TEXTURE_BC5;
     case MASU_SLOT_OCCLUSION: return format == MASU_TEXTURE_BC4;
-    case MASU_SLOT_COAT: return format == MASU_TEXTURE_BC5;
-    default: return format == MASU_TEXTURE_BC1_SRGB;
+    case MASU_SLOT_COAT: return format != MASU_TEXTURE_BC4;
+    default: return format == MASU_TEXTURE_BC1_SRGB || format == MASU_TEXTURE_BC5;
     }
 }
 
@@ -58,11 +58,13 @@ static masu_result check_texture_set(reader *r, uint64_t i) {
 static masu_result check_maps(reader *r, uint64_t i) {
     const masu_blob_material *m = &r->view.materials[i];
     uint32_t maps = m->flags & MASU_MATERIAL_HAS_MAPS;
+    uint32_t opaque = ~m->flags & MASU_MATERIAL_IS_BLEND;
+    uint32_t relief = opaque && m->flags & MASU_MATERIAL_COAT_RELIEF, lobe = opaque && m->flags & MASU_MATERIAL_LOBE_MAP;
     uint32_t smooth = MASU_MATERIAL_COAT_SMOOTH | MASU_MATERIAL_BASE_SMOOTH;
     uint32_t alpha = MASU_MATERIAL_HAS_METAL | MASU_MATERIAL_IS_MASK | smooth;
     if (m->flags & ~(uint32_t)MASU_MATERIAL_KNOWN) return bad(r, "materials", i, "unknown flags");
     if (!maps) {
-        if (m->texture_set || m->layers || m->more_layers || m->flags & alpha) {
+        if (m->texture_set || m->layers || m->more_layers || m->flags & alpha || relief || lobe) {
             return bad(r, "materials", i, "has no textures, but speaks of them");
         }
         return MASU_OK;
@@ -72,7 +74,7 @@ static masu_result check_maps(reader *r, uint64_t i) {
     }
     const masu_blob_texture_set *set = &r->view.texture_sets[m->texture_set];
     for (uint32_t slot = 0; slot < MASU_SLOT_COUNT; slot++) {
-        if (!(maps & 1u << slot)) continue;
+        if (!(maps & 1u << slot) && !(relief && slot == MASU_SLOT_EMISSIVE)) continue;
         if (set->texture[slot] == MASU_BLOB_NONE) {
             return bad(r, "materials", i, "its texture set lacks a texture");
         }
@@ -80,13 +82,18 @@ static masu_result check_maps(reader *r, uint64_t i) {
             (slot < MASU_SLOT_OCCLUSION ? m->layers >> 8 * slot
                                         : m->more_layers >> 8 * (slot - MASU_SLOT_OCCLUSION)) &
             0xFF;
+        uint32_t format = r->view.textures[set->texture[slot]].format;
+        if ((slot == MASU_SLOT_EMISSIVE && (format == MASU_TEXTURE_BC5) != relief) ||
+            (slot == MASU_SLOT_COAT && opaque && (format == MASU_TEXTURE_BC5) == lobe))
+            return bad(r, "materials", i, "a texture's format is not that of its map");
         if (layer >= r->view.textures[set->texture[slot]].layers) {
             return bad(r, "materials", i, "no such layer");
         }
     }
     uint32_t second = m->more_layers >> 16;
-    if (second & ~maps || (second && !r->view.texcoords_1))
+    if (second & ~(maps | relief << MASU_SLOT_EMISSIVE) || (second && !r->view.texcoords_1))
         return bad(r, "materials", i, "no such layer, or a map of coordinates that there are not");
+    if (!opaque && maps >> MASU_SLOT_COAT & 1) return bad(r, "materials", i, "is blended, and has a map of its coat");
     uint32_t has_base = maps >> MASU_SLOT_BASE & 1, has_surface = maps >> MASU_SLOT_SURFACE & 1;
     if (m->flags & MASU_MATERIAL_IS_MASK &&
         (!has_base ||

@@ -50,6 +50,7 @@ typedef struct MASU_MAY_ALIAS masu_scene_data {
     uint32_t sdf_params; /* run-time parameters */
     uint32_t sdf_parts, sdf_slots, sdf_block_words;
     uint32_t sdf_dynamic;  /* flag: slots depend on parameters or time */
+    uint32_t sdf_timed;    /* flag: some of these depend on time */
     uint32_t sdf_anchored; /* flag: precise far from the origin (docs/sdf.md) */
 #ifdef MASU_LAB
     uint32_t sdf_march; /* bit per masu_march that the blob has code for */
@@ -77,11 +78,13 @@ typedef struct MASU_MAY_ALIAS masu_scene_data {
                          * occlusion map */
     uint32_t coats;     /* materials with a clear coat */
     uint32_t own_coats; /* flag: a coat has a map, or a normal other than the base's */
+    uint32_t lobes;     /* bit 1 << MASU_LOBE_*: a material has one */
     uint32_t meso;      /* tables of mesoscale detail */
     uint32_t reliefs;   /* flag: an opaque material has a normal map */
     uint32_t blends;    /* transparent materials */
-    uint32_t
-        tints; /* a transparent material has coloured transmission; MASU_TINTS_ROUGH: a rough one */
+    /* A transparent material has coloured transmission; MASU_TINTS_ROUGH: a rough one,
+     * MASU_TINTS_MAPPED: one with a map of its transmission. */
+    uint32_t tints;
     uint32_t transparents;     /* transparent primitives, once per instance */
     uint32_t transparent_sets; /* their texture sets, at least 1 if there are any */
 

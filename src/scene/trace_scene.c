@@ -2,6 +2,7 @@
 #include "scene/trace_scene.h"
 
 #include "blue_noise.h"
+#include "scene/material.h"
 #include "scene/trace.h"
 
 #include <string.h>
@@ -70,7 +71,7 @@ struct masu_trace_material masu_trace_material_of(const masu_scene_data *scene,
     struct masu_trace_material out = {
         {m->base_color[0], m->base_color[1], m->base_color[2], m->roughness},
         {m->emissive[0], m->emissive[1], m->emissive[2], m->metallic},
-        {m->specular, m->coat, m->coat_roughness, m->opacity},
+        {masu_specular_of(m), m->coat, m->coat_roughness, m->opacity},
         {MASU_TRACE_NONE, MASU_TRACE_NONE, m->flags, 0}};
     if (!(m->flags & MASU_MATERIAL_HAS_MAPS)) return out;
     const masu_blob_texture_set *set = &v->texture_sets[m->texture_set];

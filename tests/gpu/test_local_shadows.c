@@ -489,6 +489,48 @@ static void shadows_come_and_go_by_steps(void **state) {
     close_lamps(&l);
 }
 
+/* Inside a shut box six faces of the point are due in each frame, two more than are rendered: nothing
+ * outside is lit in any frame. */
+static void a_point_that_moves_keeps_its_walls(void **state) {
+    (void)state;
+    static uint16_t plain[4 * PIXELS_MOST];
+    lamps l;
+    masu_rung rung = {.local_shadow_faces = 4};
+    masu_camera c = look(0, 9, 7, 0, -9, -7, 1.0);
+    uint32_t lit = 0, leaks = 0, waited = 0;
+    begin_scene(24);
+    for (int k = 0; k < 2; k++) {
+        add_box(k ? "right" : "left", 2.2 * k - 1.1, 1.1, 0, 0.2, 2.2, 2.4, 0);
+        add_box(k ? "front" : "back", 0, 1.1, 2.2 * k - 1.1, 2.4, 2.2, 0.2, 0);
+    }
+    add_box("lid", 0, 2.3, 0, 2.4, 0.2, 2.4, 0);
+    add_lights("{\"type\": \"point\", \"position\": [0, 1.1, 0], \"intensity\": 9, \"range\": 14}");
+    bake_scene("lamp_shut", json);
+    open_lamps(&l, "lamp_shut", 96, 60, &rung, 0);
+    memcpy(plain, take(&l, &c, PLAIN), (size_t)l.width * l.height * 8);
+    settle(&l, &c);
+    masu_punctual_light_state lamp = state_of(&l, 0);
+    for (int f = 0; f < 24; f++) {
+        lamp.position[0] = 0.6 * sin(0.3 * f);
+        lamp.position[2] = 0.4 * sin(0.5 * f);
+        assert_int_equal(masu_punctual_light_set(l.s.m, masu_punctual_light_at(l.s.m, 0), &lamp), MASU_OK);
+        const uint16_t *hdr = take(&l, &c, SHADOWED);
+        assert_true(l.stats.local_shadow_faces <= 4);
+        waited += l.stats.local_shadow_waiting != 0;
+        for (uint32_t i = 0; i < l.width * l.height; i++) {
+            double without = luma(plain + 4 * i);
+            if (!(without > 1e-2)) continue;
+            lit++;
+            leaks += luma(hdr + 4 * i) > 0.05 * without;
+        }
+    }
+    print_message("%u of %u pixels lit through the box, faces waited in %u of 24 frames\n", leaks, lit, waited);
+    assert_true(lit > 24 * 1000 && waited > 8);
+    assert_int_equal(leaks, 0);
+    settle(&l, &c); /* it comes to rest, where nothing waits */
+    close_lamps(&l);
+}
+
 /* ---- Live changes ---------------------------------------------------------------------------- */
 
 static void a_thousand_lights_come_and_go(void **state) {
@@ -559,6 +601,7 @@ int main(void) {
         cmocka_unit_test(faces_that_look_away_are_dark),
         cmocka_unit_test(what_is_kept_is_what_would_be_rendered),
         cmocka_unit_test(shadows_come_and_go_by_steps),
+        cmocka_unit_test(a_point_that_moves_keeps_its_walls),
         cmocka_unit_test(a_thousand_lights_come_and_go),
         cmocka_unit_test(nothing_is_planned_where_no_light_casts),
     };

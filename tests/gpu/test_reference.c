@@ -46,6 +46,8 @@ static const row rows[] = {
     {.scene = "glass"},
     /* Blur by one gap a pixel, of a picture at half its size: p95 0.150, worst patch 0.32; drawn sharp 0.324, 0.66 */
     {.scene = "reference_glass", .p95 = 0.17, .trimmed = 1.3},
+    /* Lobes: colours and strengths of specular light, sheen, anisotropy; a coat's own normals, a map of transmission */
+    {.scene = "reference_materials"},
     {.scene = "test_pane_maps"},
     {.scene = "test_pane"},
     {.scene = "night"},

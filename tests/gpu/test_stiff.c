@@ -36,7 +36,7 @@ static const stiff_case steep[] = {
      .most = {0.37, 0, 2.9e-05, 0.059, ANY_DEPTH, 1.1, 119, 145, 0},
      .why = "needles 4 pixels apart; the steps are a fiftieth of the field, hence the "
             "evaluations, and the rays that part from the truth pass between needles"},
-    {.name = "displace, noise, L = 50",
+    {.name = "displace, noise, L = 43",
      .scene = "displace_noise",
      .camera = LOOK(0.4, 0.5, 3.2, -0.1f, -0.15f, -1, 0.9f, 0.05f),
      .width = 128,

@@ -459,8 +459,10 @@ static void read_code(walker *w) {
     expect(w, w->scene->sdf_march == marches, "sdf_march");
 #endif
     int timed = w->view.code[MASU_BLOB_UPDATE_PREVIOUS_SPIRV].words != NULL;
-    int anchored = w->view.sdf && w->view.sdf->anchored;
+    int anchored = w->view.sdf && w->view.sdf->flags & MASU_SDF_ANCHORED;
+    int timeless = w->view.sdf && w->view.sdf->flags & MASU_SDF_TIMELESS;
     expect(w, w->scene->sdf_dynamic == (uint32_t)timed, "sdf_dynamic");
+    expect(w, w->scene->sdf_timed == (uint32_t)(timed && !timeless), "sdf_timed");
     expect(w, w->scene->sdf_anchored == (uint32_t)anchored, "sdf_anchored");
     expect(w, (w->view.code[MASU_BLOB_UPDATE_SPIRV].words != NULL) == (timed || anchored),
            "update SPIR-V");

@@ -340,7 +340,7 @@ void support_blob_recode(support_blob *blob) {
                                          .slots = slots ? (uint32_t)slots->count : 0,
                                          .block_words = s->block_words,
                                          .raster = s->has_raster,
-                                         .anchored = s->anchored,
+                                         .anchored = s->flags & MASU_SDF_ANCHORED,
                                          .moves = support_blob_row(blob, MASU_BLOB_UPDATE_PREVIOUS_SPIRV) != NULL};
         uint32_t *words = (uint32_t *)(void *)(blob->bytes + row->offset);
         masu_module_record(&counts, (char *)(words + masu_module_record_place(words, row->count) - MASU_MODULE_RECORD_WORDS + 1));

@@ -115,6 +115,52 @@ static void at_rest_nothing_is_traced_until_something_changes(void **state) {
     free(g);
 }
 
+/* An SDF that depends on parameters rests while these are the same; one that depends on time does not. */
+static void only_time_keeps_a_field_of_parameters_awake(void **state) {
+    (void)state;
+    for (int timed = 0; timed < 2; timed++) {
+        static masu_frame_plan plan;
+        static masu_frame_data f;
+        static masu_lights lights;
+        static masu_instances instances;
+        static masu_materials materials;
+        grid *g = make();
+        plan.needs = (masu_needs){.sdf = 1, .dynamic = 1, .timed = timed, .bounce = 1, .bounce_sdf = 1};
+        f.plan = &plan;
+        f.u.sdf_params[0][0] = 0.25f;
+        masu_bounce_follow(&g->b, &lights, &instances, &materials, &f);
+        g->b.quiet = MASU_BOUNCE_REST;
+        f.u.eye_hi[3] += 0.5f; /* time */
+        masu_bounce_follow(&g->b, &lights, &instances, &materials, &f);
+        assert_int_equal(g->b.quiet, timed ? 0 : MASU_BOUNCE_REST);
+        g->b.quiet = MASU_BOUNCE_REST;
+        f.u.sdf_params[0][0] = 0.5f;
+        masu_bounce_follow(&g->b, &lights, &instances, &materials, &f);
+        assert_int_equal(g->b.quiet, 0);
+        free(g);
+    }
+}
+
+/* Twice the rays until all sets are traced, but not where one change follows another. */
+static void a_change_brings_more_rays_for_some_rounds(void **state) {
+    (void)state;
+    grid *g = make();
+    uint32_t seen[PROBES] = {0};
+    for (uint32_t round = 0; round < MASU_BOUNCE_SWIFT_ROUNDS; round++) {
+        assert_int_equal(masu_bounce_pace(&g->b, 4 * MOST), 2 * MOST);
+        (void)run_round(g, seen);
+    }
+    assert_int_equal(masu_bounce_pace(&g->b, 4 * MOST), MOST);
+    for (uint32_t k = 0; k < 200; k++) {
+        masu_bounce_restart(&g->b);
+        (void)masu_bounce_choose(&g->b, NULL, masu_bounce_pace(&g->b, 4 * MOST), g->words);
+    }
+    assert_int_equal(masu_bounce_pace(&g->b, 4 * MOST), MOST);
+    g->b.burst = 1;
+    assert_int_equal(masu_bounce_pace(&g->b, 4 * MOST), 4 * MOST);
+    free(g);
+}
+
 static void what_is_in_view_comes_first(void **state) {
     (void)state;
     grid *g = make();
@@ -154,6 +200,8 @@ int main(void) {
         cmocka_unit_test(sets_go_around_and_count_from_a_restart_on),
         cmocka_unit_test(changes_that_follow_each_other_slide_the_window),
         cmocka_unit_test(at_rest_nothing_is_traced_until_something_changes),
+        cmocka_unit_test(only_time_keeps_a_field_of_parameters_awake),
+        cmocka_unit_test(a_change_brings_more_rays_for_some_rounds),
         cmocka_unit_test(what_is_in_view_comes_first),
         cmocka_unit_test(all_inside_of_things_is_no_work),
     };

@@ -57,7 +57,7 @@ static void other_counts_than_the_code_was_compiled_for_are_refused(void **state
     assert_refused("march SPIR-V", "words 0");
     support_blob_write(&blob, SUPPORT_ALL);
     field = support_blob_find(&blob, MASU_BLOB_SDF);
-    field->anchored = 1;
+    field->flags = MASU_SDF_ANCHORED;
     assert_refused("march SPIR-V", "in place");
     /* It was compiled to read the slots' second half, which is there no more. */
     support_blob_write(&blob, SUPPORT_ALL);

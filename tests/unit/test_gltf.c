@@ -349,7 +349,10 @@ static void coats_have_pictures_of_their_own(void **state) {
         {"{" NORMAL COAT_OF(",\"clearcoatNormalTexture\":{\"index\":1,\"texCoord\":1}") "}", NULL, MASU_BAKE_RELIEF_OF_BOTH},
         {"{" COAT_OF(",\"clearcoatNormalTexture\":{\"index\":1,\"texCoord\":1,\"scale\":3}") "}", NULL, MASU_BAKE_RELIEF_OF_COAT},
         {"{" NORMAL COAT_OF(",\"clearcoatNormalTexture\":{\"index\":1,\"texCoord\":1,\"scale\":3}") "}",
-         "1 clear coats have another normal map than the base layer: ignored, they are smooth", MASU_BAKE_RELIEF_OF_BASE},
+         NULL, MASU_BAKE_RELIEF_OF_BASE},
+        {"{" NORMAL "\"emissiveTexture\":{\"index\":0,\"texCoord\":1}," COAT_OF(",\"clearcoatNormalTexture\":{\"index\":0,\"texCoord\":1,\"scale\":3}") "}",
+         "1 clear coats have another normal map than the base layer, and the material has emission or is transparent",
+         MASU_BAKE_RELIEF_OF_BASE},
         {"{" NORMAL "\"name\":\"without\"}", NULL, MASU_BAKE_RELIEF_OF_BOTH}};
     char attributes[128];
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -471,8 +474,8 @@ static void what_is_not_read_is_told(void **state) {
     (void)state;
     begin_quad();
     import_warned(finish_quad("", ",\"material\":0",
-                              ",\"materials\":[{\"name\":\"silk\",\"extensions\":{\"KHR_materials_sheen\":{}}},{\"name\":\"wool\",\"extensions\":{\"KHR_materials_sheen\":{}}}]"),
-                  "2 times KHR_materials_sheen, which is not supported (first: silk)");
+                              ",\"materials\":[{\"name\":\"oil\",\"extensions\":{\"KHR_materials_iridescence\":{}}},{\"name\":\"pearl\",\"extensions\":{\"KHR_materials_iridescence\":{}}}]"),
+                  "2 times KHR_materials_iridescence, which is not supported (first: oil)");
     begin_quad();
     char attributes[64];
     snprintf(attributes, sizeof attributes, ",\"_WETNESS\":%d", quad_positions);
@@ -597,9 +600,15 @@ static void clamped_and_simplified_values_are_told(void **state) {
 #define EXTENSION(name, members) "{\"extensions\":{\"KHR_materials_" name "\":{" members "}}}"
 #define DIELECTRIC(name, members) "{\"pbrMetallicRoughness\":{\"metallicFactor\":0},\"extensions\":{\"KHR_materials_" name "\":{" members "}}}"
     static const char *const cases[][2] = {
-        {DIELECTRIC("ior", "\"ior\":0"), "1 materials reflect more than 0.08 at normal incidence"},
-        {DIELECTRIC("ior", "\"ior\":2.4"), "1 materials reflect more than 0.08 at normal incidence"},
-        {DIELECTRIC("specular", "\"specularColorFactor\":[9,9,9]"), "1 materials reflect more than 0.08 at normal incidence"},
+        {DIELECTRIC("clearcoat", "\"clearcoatFactor\":1},\"KHR_materials_ior\":{\"ior\":2.4"),
+         "1 materials have a clear coat and a specular colour, texture or reflectance above 0.08: gray, at most 0.08"},
+        {DIELECTRIC("sheen", "\"sheenColorFactor\":[1,1,1]},\"KHR_materials_ior\":{\"ior\":1.4"),
+         "1 materials have a sheen and a specular factor or index of refraction, which is ignored"},
+        {DIELECTRIC("sheen", "\"sheenColorFactor\":[1,1,1]},\"KHR_materials_clearcoat\":{\"clearcoatFactor\":1"),
+         "1 materials have a clear coat and a sheen: the sheen is ignored"},
+        {DIELECTRIC("sheen", "\"sheenColorFactor\":[1,1,1]},\"KHR_materials_anisotropy\":{\"anisotropyStrength\":1"),
+         "1 materials have a sheen and an anisotropy: the anisotropy is ignored"},
+        {DIELECTRIC("ior", "\"ior\":0.5"), "1 materials have an \"ior\" below 1: taken for 1"},
         {"{\"alphaMode\":\"MASK\",\"pbrMetallicRoughness\":{\"metallicFactor\":0},\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1}}}",
          "1 materials transmit light and are alpha-tested"},
         {EXTENSION("clearcoat", "\"clearcoatFactor\":3"), "1 materials have a \"clearcoatFactor\" beyond 0 to 1: clamped"},
@@ -616,6 +625,91 @@ static void clamped_and_simplified_values_are_told(void **state) {
         begin_quad();
         snprintf(rest, sizeof rest, ",\"materials\":[%s]", cases[i][0]);
         import_warned(finish_quad("", ",\"material\":0", rest), cases[i][1]);
+    }
+}
+
+/* Reflectance at normal incidence, as KHR_materials_ior and KHR_materials_specular have it: ((n - 1) / (n + 1))^2 times
+ * the colour, at most 1, times the factor. */
+static void reflectance_is_of_any_colour_and_strength(void **state) {
+    (void)state;
+    static const struct {
+        const char *about;
+        double f0[3];
+    } cases[] = {
+        {DIELECTRIC("ior", "\"ior\":1.5"), {0.04, 0.04, 0.04}},
+        {DIELECTRIC("ior", "\"ior\":2.4"), {0.16955, 0.16955, 0.16955}},
+        {DIELECTRIC("ior", "\"ior\":0"), {1, 1, 1}},
+        {DIELECTRIC("specular", "\"specularColorFactor\":[1,0.5,0.25]"), {0.04, 0.02, 0.01}},
+        {DIELECTRIC("specular", "\"specularFactor\":0.5,\"specularColorFactor\":[100,10,1]"), {0.5, 0.2, 0.02}},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char rest[1024];
+        begin_quad();
+        snprintf(rest, sizeof rest, ",\"materials\":[%s]", cases[i].about);
+        import_quietly(finish_quad("", ",\"material\":0", rest));
+        for (int k = 0; k < 3; k++)
+            assert_near((double)(material(0)->specular * (material(0)->specular_color[0] > 0 ? material(0)->specular_color[k] : 1)) * 0.08,
+                        cases[i].f0[k], 1e-5);
+    }
+    begin_quad();
+    import_quietly(finish_quad("", ",\"material\":0",
+                               ",\"materials\":[{\"extensions\":{\"KHR_materials_sheen\":{\"sheenColorFactor\":[1,0.5,0],"
+                               "\"sheenRoughnessFactor\":0.3}}},{\"extensions\":{\"KHR_materials_anisotropy\":"
+                               "{\"anisotropyStrength\":0.5,\"anisotropyRotation\":-1}}}]"));
+    assert_near((double)material(0)->sheen_color[1], 0.5, 0);
+    assert_near((double)material(0)->sheen_roughness, 0.3, 1e-6);
+}
+
+/* Of whatever the specification and its registry of extensions have, and no reader is written for, a file gets one line
+ * with its name; masu-bake --strict takes any line for an error (tests/scripts/bake_placement.sh). */
+static void nothing_is_dropped_in_silence(void **state) {
+    (void)state;
+    static const char *const of_materials[] = {
+        "KHR_materials_iridescence",    "KHR_materials_dispersion",   "KHR_materials_diffuse_transmission",
+        "KHR_materials_volume_scatter", "KHR_materials_sss",          "KHR_techniques_webgl",
+        "KHR_materials_common",         "ADOBE_materials_clearcoat_specular", "ADOBE_materials_clearcoat_tint",
+        "ADOBE_materials_thin_transparency", "NV_materials_mdl",      "MSFT_packing_occlusionRoughnessMetallic",
+        "MSFT_packing_normalRoughnessMetallic", "VRMC_materials_mtoon", "EXT_materials_bump"};
+    static const char *const of_nodes[] = {
+        "KHR_node_visibility", "KHR_node_selectability", "KHR_node_hoverability", "KHR_physics_rigid_bodies", "KHR_audio_emitter",
+        "EXT_lights_ies",      "MSFT_lod",               "AGI_articulations",     "MSFT_physics",             "EXT_instance_features"};
+    static const char *const of_files[] = {
+        "KHR_animation_pointer", "EXT_lights_image_based", "EXT_structural_metadata", "KHR_interactivity",
+        "EXT_gaussian",          "KHR_gaussian_splatting", "AGI_stk_metadata",        "FB_geometry_metadata",
+        "MPEG_media",            "VRMC_vrm",               "CESIUM_primitive_outline", "GRIFFEL_bim_data",
+        "EXT_mesh_features",     "EXT_primitive_voxels",   "EXT_texture_avif",        "SEIN_node_proxy"};
+    char rest[2048], warning[160];
+#define EACH(names, format)                                                                                           \
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {                                                       \
+        begin_quad();                                                                                                 \
+        snprintf(rest, sizeof rest, format, names[i]);                                                                \
+        snprintf(warning, sizeof warning, "1 times %s, which is not supported", names[i]);                            \
+        import_warned(finish_quad("", ",\"material\":0", rest), warning);                                             \
+    }
+    EACH(of_materials, ",\"materials\":[{\"extensions\":{\"%s\":{}}}]")
+    EACH(of_nodes, ",\"materials\":[{}],\"cameras\":[{\"type\":\"perspective\",\"perspective\":{\"yfov\":1,\"znear\":0.1},"
+                   "\"extensions\":{\"%s\":{}}}]")
+    EACH(of_files, ",\"materials\":[{}],\"extensions\":{\"%s\":{}}")
+    static const struct {
+        const char *attributes, *materials, *warning;
+    } properties[] = {
+        {",\"COLOR_1\":%d", "{}", "COLOR_1, which is not supported"},
+        {",\"_BATCHID\":%d", "{}", "_BATCHID, which is not supported"},
+        {"", "{\"extensions\":{\"KHR_materials_anisotropy\":{\"anisotropyStrength\":0.5,\"anisotropyTexture\":{\"index\":0}}}}",
+         "1 materials have a \"anisotropyTexture\", which is not supported"},
+        {"", "{\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1},\"KHR_materials_volume\":{"
+             "\"thicknessFactor\":1,\"attenuationDistance\":1,\"thicknessTexture\":{\"index\":0}}},"
+             "\"pbrMetallicRoughness\":{\"metallicFactor\":0}}",
+         "1 materials have a \"thicknessTexture\", which is not supported"},
+        {"", "{\"extensions\":{\"KHR_materials_pbrSpecularGlossiness\":{}}},{\"pbrMetallicRoughness\":{}}",
+         "1 of 2 materials have specular and glossiness"},
+    };
+    for (size_t i = 0; i < sizeof properties / sizeof *properties; i++) {
+        char attributes[64];
+        begin_quad();
+        snprintf(attributes, sizeof attributes, properties[i].attributes, quad_positions);
+        snprintf(rest, sizeof rest, ",\"materials\":[%s]", properties[i].materials);
+        import_warned(finish_quad(attributes, ",\"material\":0", rest), properties[i].warning);
     }
 }
 
@@ -909,6 +1003,8 @@ int main(void) {
         cmocka_unit_test(occlusion_has_a_strength),
         cmocka_unit_test(textures_that_are_shown_once_are_clamped),
         cmocka_unit_test(clamped_and_simplified_values_are_told),
+        cmocka_unit_test(reflectance_is_of_any_colour_and_strength),
+        cmocka_unit_test(nothing_is_dropped_in_silence),
         cmocka_unit_test(colours_of_vertices_in_other_formats),
         cmocka_unit_test(variants_by_name),
         cmocka_unit_test(lights_in_candela),

@@ -182,7 +182,12 @@ static void what_lights_a_scene_is_checked(void **state) {
         LIT("environment", 0, SKY[0].fog_falloff = x);
         LIT("environment", 0, SKY[0].fog_start = x);
     }
-    LIT("materials", 0, MATERIAL_OF[0].specular = 1.01f);
+    LIT("materials", 0, MATERIAL_OF[0].specular = 12.6f);
+    LIT("materials", 0, MATERIAL_OF[0].anisotropy = 1.5f);
+    LIT("materials", 0, MATERIAL_OF[0].specular_color[1] = 0.5f); /* and no channel is 1 */
+    LIT("materials", 0, (MATERIAL_OF[0].sheen_color[0] = 1.0f, MATERIAL_OF[0].specular = 0.3f));
+    LIT("materials", 0, (MATERIAL_OF[0].sheen_color[0] = 1.0f, MATERIAL_OF[0].specular = 0.5f, MATERIAL_OF[0].anisotropy = 1.0f));
+    LIT("materials", 0, (MATERIAL_OF[0].anisotropy = MATERIAL_OF[0].coat = 1.0f)); /* one lobe, and none with a coat */
     LIT("materials", 0, MATERIAL_OF[0].opacity = 0.5f); /* but not blended */
     LIT("materials", 0, MATERIAL_OF[0].flags = MASU_MATERIAL_IS_ADDITIVE);
     LIT("materials", 0, MATERIAL_OF[0].flags = MASU_MATERIAL_IS_TINTED);
@@ -917,20 +922,25 @@ static void an_sdf_without_code_is_refused(void **state) {
 
 static void an_anchored_sdf_needs_the_code_that_moves_it(void **state) {
     (void)state;
-    REFUSED("sdf", 0, AT(SDF, masu_blob_sdf)->anchored = 2);
+    REFUSED("sdf", 0, AT(SDF, masu_blob_sdf)->flags = 4);
     for (uint32_t constant = 0; constant < 2; constant++) { /* but for the anchor */
         masu_scene scene;
         support_blob_write(&blob, SUPPORT_ALL);
-        AT(SDF, masu_blob_sdf)->anchored = 1;
+        AT(SDF, masu_blob_sdf)->flags = MASU_SDF_ANCHORED;
         if (constant) support_blob_drop(&blob, MASU_BLOB_UPDATE_PREVIOUS_SPIRV);
         support_blob_recode(&blob);
         support_blob_seal(blob.bytes, blob.size);
         support_accepted(&blob, &scene);
         assert_int_equal(masu_scene_data_of(&scene)->sdf_anchored, 1);
         assert_int_equal(masu_scene_data_of(&scene)->sdf_dynamic, !constant);
+        assert_int_equal(masu_scene_data_of(&scene)->sdf_timed, !constant);
+        AT(SDF, masu_blob_sdf)->flags |= MASU_SDF_TIMELESS;
+        support_blob_seal(blob.bytes, blob.size);
+        support_accepted(&blob, &scene);
+        assert_int_equal(masu_scene_data_of(&scene)->sdf_timed, 0);
     }
     REFUSED("update SPIR-V", 0, {
-        AT(SDF, masu_blob_sdf)->anchored = 1;
+        AT(SDF, masu_blob_sdf)->flags = MASU_SDF_ANCHORED;
         support_blob_drop(&blob, MASU_BLOB_UPDATE_PREVIOUS_SPIRV);
         support_blob_drop(&blob, MASU_BLOB_UPDATE_SPIRV);
     });

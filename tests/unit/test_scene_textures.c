@@ -164,7 +164,9 @@ static void a_material_asks_for_maps_that_are_there(void **state) {
     REFUSED("materials", 1, MATERIAL[1].flags |= MASU_MATERIAL_IS_MASK);
     REFUSED("materials", 1, MATERIAL[1].flags |= MASU_MATERIAL_HAS_METAL);
     REFUSED("texture sets", 0, SET[0].texture[4] = 1); /* BC5 is no occlusion */
-    REFUSED("texture sets", 0, SET[0].texture[MASU_SLOT_COAT] = 0); /* nor BC3 a coat */
+    REFUSED("materials", 0, SET[0].texture[MASU_SLOT_COAT] = 0, MATERIAL[0].flags |= 1u << MASU_SLOT_COAT); /* nor BC3 a coat */
+    REFUSED("materials", 0, MATERIAL[0].flags |= MASU_MATERIAL_LOBE_MAP); /* it has none */
+    REFUSED("materials", 0, MATERIAL[0].flags |= MASU_MATERIAL_COAT_RELIEF);
     REFUSED("materials", 0, SET[0].texture[MASU_SLOT_COAT] = 1, MATERIAL[0].flags |= 1u << MASU_SLOT_COAT,
             MATERIAL[0].more_layers = 0x900);
     REFUSED("materials", 0, MATERIAL[0].more_layers = 0x10000);

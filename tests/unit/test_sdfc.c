@@ -490,7 +490,7 @@ static void parts_of_one_form_share_its_code(void **state) {
     assert_int_equal(result.part_count, 150);
     assert_int_equal(result.shape_count, 2);
     assert_int_equal(count(result.glsl, "real masu_shape_"), 2);
-    assert_true(result.dynamic);
+    assert_true(result.dynamic && result.timeless);
     assert_string_equal(result.parts[7].name, "a_7");
     /* x of a; y, hash and r of b: all else is the same in all of them */
     uint32_t head = 150 * MASU_SDFC_PART_SLOTS + MASU_SDFC_MATERIAL_SLOTS;
@@ -634,6 +634,7 @@ static void parts_that_move_are_told_from_those_that_rest(void **state) {
             bits |= (uint32_t)moves << i;
         }
         assert_int_equal(bits != 0, cases[k].some);
+        assert_int_equal(result.timeless, k == 0);
         snprintf(wanted, sizeof wanted, "return word == 0 ? 0x%xu : 0x0u;", bits);
         if (count(result.glsl, wanted) != 1) fail_msg("%s: not %s", cases[k].text, wanted);
         masu_sdfc_release(&result);

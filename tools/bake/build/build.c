@@ -50,7 +50,7 @@ static void add_sdf(const masu_bake_sdf *sdf, masu_bake_content *content) {
                          .max_distance = (float)sdf->max_distance,
                          .has_raster = masu_bake_count(content, MASU_BLOB_INSTANCES) > 0,
                          .part_count = 1,
-                         .anchored = sdf->anchored};
+                         .flags = sdf->anchored ? MASU_SDF_ANCHORED : 0};
     masu_bake_store(sdf->bounds.low, out.bounds_min);
     masu_bake_store(sdf->bounds.high, out.bounds_max);
     masu_bake_append(&content->section[MASU_BLOB_SDF], &out, sizeof out);

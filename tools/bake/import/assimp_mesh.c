@@ -183,9 +183,11 @@ void masu_import_mesh(masu_import *m, unsigned index) {
         }
     }
     _Static_assert(sizeof(struct aiVector3D) == 3 * sizeof(float), "Assimp built for double");
-    const masu_bake_maps *maps = &masu_import_read_material(m, mesh->mMaterialIndex)->maps;
+    const masu_import_given *given = masu_import_read_material(m, mesh->mMaterialIndex);
     float *texcoords = NULL;
-    if (m->wanted == MASU_BAKE_TEXTURES_FORCED || masu_bake_has_maps(maps)) {
+    /* The grain of an anisotropy is along u. */
+    if (m->wanted == MASU_BAKE_TEXTURES_FORCED || masu_bake_has_maps(&given->maps) ||
+        (given->material.anisotropy > 0 && mesh->mTextureCoords[0])) {
         texcoords = texcoords_of(m, mesh);
     }
     masu_bake_triangles triangles = {
@@ -195,7 +197,7 @@ void masu_import_mesh(masu_import *m, unsigned index) {
         .indices = (const uint32_t *)(const void *)indices.data,
         .index_count = indices.bytes / sizeof(uint32_t),
         .texcoords = texcoords,
-        .repeats = !maps->wrap[0] && !maps->wrap[1],
+        .repeats = !given->maps.wrap[0] && !given->maps.wrap[1],
     };
     masu_bake_losses lost = {0};
     masu_bake_pool pool = {0};

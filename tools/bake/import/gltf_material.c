@@ -12,6 +12,8 @@
  * and glossiness become metallic and roughness, as the appendix of that extension has it. */
 #include "bake/import/gltf.h"
 
+#include "scene/material.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -138,10 +140,12 @@ typedef struct maps {
     texture all[MASU_BAKE_MAPS];
 } maps;
 
-static const int order[] = {MASU_BAKE_BASE,     MASU_BAKE_EMISSIVE, MASU_BAKE_NORMAL,
-                            MASU_BAKE_ROUGHNESS, MASU_BAKE_METALLIC, MASU_BAKE_OCCLUSION,
-                            MASU_BAKE_COAT,     MASU_BAKE_COAT_ROUGHNESS};
+static const int order[] = {MASU_BAKE_BASE,       MASU_BAKE_EMISSIVE,  MASU_BAKE_OPACITY,
+                            MASU_BAKE_NORMAL,     MASU_BAKE_ROUGHNESS, MASU_BAKE_METALLIC,
+                            MASU_BAKE_OCCLUSION,  MASU_BAKE_COAT,      MASU_BAKE_COAT_ROUGHNESS,
+                            MASU_BAKE_LOBE_COLOR, MASU_BAKE_LOBE_STRENGTH, MASU_BAKE_COAT_NORMAL};
 #define ORDER (sizeof order / sizeof *order)
+#define ORDER_COLORS 3 /* of them, the first: what a material's detail does not repeat */
 
 static bool near(double a, double b) { return fabs(a - b) <= 1e-5 * fmax(1, fmax(fabs(a), fabs(b))); }
 
@@ -173,7 +177,8 @@ static uint8_t slot_of(int map) {
         [MASU_BAKE_NORMAL] = MASU_SLOT_NORMAL,       [MASU_BAKE_ROUGHNESS] = MASU_SLOT_SURFACE,
         [MASU_BAKE_METALLIC] = MASU_SLOT_SURFACE,    [MASU_BAKE_EMISSIVE] = MASU_SLOT_EMISSIVE,
         [MASU_BAKE_OCCLUSION] = MASU_SLOT_OCCLUSION, [MASU_BAKE_COAT] = MASU_SLOT_COAT,
-        [MASU_BAKE_COAT_ROUGHNESS] = MASU_SLOT_COAT};
+        [MASU_BAKE_COAT_ROUGHNESS] = MASU_SLOT_COAT, [MASU_BAKE_LOBE_COLOR] = MASU_SLOT_COAT,
+        [MASU_BAKE_LOBE_STRENGTH] = MASU_SLOT_COAT,  [MASU_BAKE_COAT_NORMAL] = MASU_SLOT_EMISSIVE};
     return slots[map];
 }
 
@@ -210,7 +215,7 @@ static const texture *agree(masu_gltf *g, maps *m, masu_gltf_material *out) {
         if (m->all[order[i]].image != MASU_BLOB_NONE) first = &m->all[order[i]];
     }
     if (!first) return NULL;
-    for (size_t i = 2, seen = 0; i < ORDER && scaled; i++) { /* all but colours, alike */
+    for (size_t i = ORDER_COLORS, seen = 0; i < ORDER && scaled; i++) { /* all but colours, alike */
         const texture *t = &m->all[order[i]];
         double own[2];
         if (t->image == MASU_BLOB_NONE) continue;
@@ -224,8 +229,8 @@ static const texture *agree(masu_gltf *g, maps *m, masu_gltf_material *out) {
         texture *t = &m->all[order[i]];
         double own[2] = {0, 0};
         if (t->image == MASU_BLOB_NONE) continue;
-        bool same = repeats(first, t, own) && near(own[0], i < 2 ? 1 : times[0]) &&
-                    near(own[1], i < 2 ? 1 : times[1]);
+        bool same = repeats(first, t, own) && near(own[0], i < ORDER_COLORS ? 1 : times[0]) &&
+                    near(own[1], i < ORDER_COLORS ? 1 : times[1]);
         bool used = false;
         if (!same && whole) use_second(g, m, order[i], &second, out, &used);
         if (!same && !used)
@@ -246,7 +251,8 @@ static const texture *agree(masu_gltf *g, maps *m, masu_gltf_material *out) {
 
 static void settle(masu_gltf *g, maps *m, masu_gltf_material *out) {
     static const uint8_t channel[MASU_BAKE_MAPS] = {
-        [MASU_BAKE_ROUGHNESS] = 1, [MASU_BAKE_METALLIC] = 2, [MASU_BAKE_COAT_ROUGHNESS] = 1};
+        [MASU_BAKE_ROUGHNESS] = 1, [MASU_BAKE_METALLIC] = 2, [MASU_BAKE_COAT_ROUGHNESS] = 1,
+        [MASU_BAKE_LOBE_STRENGTH] = 3};
     masu_bake_maps *to = &out->given.maps;
     const texture *first = agree(g, m, out);
     for (size_t i = 0; i < ORDER; i++) {
@@ -395,31 +401,106 @@ static bool read_emission(masu_gltf *g, const json_t *about, masu_gltf_material 
     return true;
 }
 
-/* The reflectance of a dielectric is that of its index of refraction, times the specular factor. */
-static bool read_specular(masu_gltf *g, const json_t *about, masu_blob_material *to) {
+/* Reflectance of a dielectric at normal incidence: that of its index of refraction times the specular colour, at most 1,
+ * times the specular factor. */
+static bool read_specular(masu_gltf *g, const json_t *about, masu_blob_material *to, maps *m) {
     const json_t *specular = masu_gltf_extension(g, about, "KHR_materials_specular");
     const json_t *refraction = masu_gltf_extension(g, about, "KHR_materials_ior");
-    double factor = 1, color[3] = {1, 1, 1}, index = 1.5;
+    double factor = 1, color[3] = {1, 1, 1}, index = 1.5, most = 0;
     if (!masu_gltf_number(g, specular, "specularFactor", &factor) ||
         !masu_gltf_numbers(g, specular, "specularColorFactor", 3, color) ||
-        !masu_gltf_number(g, refraction, "ior", &index))
+        !masu_gltf_number(g, refraction, "ior", &index) ||
+        !read_texture(g, specular, "specularTexture", &m->all[MASU_BAKE_LOBE_STRENGTH]) ||
+        !read_texture(g, specular, "specularColorTexture", &m->all[MASU_BAKE_LOBE_COLOR]))
         return false;
-    note_texture(g, specular, "specularTexture");
-    note_texture(g, specular, "specularColorTexture");
-    if (!near(color[0], color[1]) || !near(color[1], color[2]))
-        masu_gltf_note_one(g, "materials have a specular colour: only its brightness is used",
-                           g->where);
     if (!specular && !refraction) return true;
-    double root = (index - 1) / (index + 1), share = 0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2];
-    double reflectance = index > 0 ? root * root : 1; /* 0 stands for infinity */
-    double specular_share = reflectance * share * factor / 0.08;
-    if (!(specular_share >= 0 && specular_share <= 1 + 1e-6) && to->metallic < 1)
-        masu_gltf_note_one(
-            g,
-            "materials reflect more than 0.08 at normal incidence (ior, specular factors): clamped",
-            g->where);
-    to->specular = masu_import_clamped(specular_share, 0, 1);
+    factor = (double)limited(g, factor, 0, 1, "specularFactor");
+    double root = (index - 1) / (index + 1), reflectance = index > 0 ? root * root : 1; /* 0 stands for infinity */
+    if (!(index == 0 || index >= 1)) {
+        masu_gltf_note_one(g, "materials have an \"ior\" below 1: taken for 1", g->where);
+        reflectance = 0;
+    }
+    for (int k = 0; k < 3; k++) {
+        color[k] = fmin(fmax(color[k], 0) * reflectance, 1) * factor;
+        most = fmax(most, color[k]);
+    }
+    to->specular = masu_import_clamped(most / 0.08, 0, 12.5);
+    bool gray = near(color[0], color[1]) && near(color[1], color[2]);
+    for (int k = 0; k < 3 && !gray; k++) to->specular_color[k] = masu_import_clamped(color[k] / most, 0, 1);
     return true;
+}
+
+static bool read_sheen(masu_gltf *g, const json_t *about, masu_blob_material *to, maps *m) {
+    const json_t *sheen = masu_gltf_extension(g, about, "KHR_materials_sheen");
+    double color[3] = {0, 0, 0}, roughness = 0;
+    texture colors, strength;
+    if (!masu_gltf_numbers(g, sheen, "sheenColorFactor", 3, color) ||
+        !masu_gltf_number(g, sheen, "sheenRoughnessFactor", &roughness) ||
+        !read_texture(g, sheen, "sheenColorTexture", &colors) ||
+        !read_texture(g, sheen, "sheenRoughnessTexture", &strength))
+        return false;
+    limit_all(g, color, 3, 1, "sheenColorFactor");
+    if (!(color[0] > 0 || color[1] > 0 || color[2] > 0)) return true;
+    for (int k = 0; k < 3; k++) to->sheen_color[k] = (float)color[k];
+    to->sheen_roughness = limited(g, roughness, 0, 1, "sheenRoughnessFactor");
+    m->all[MASU_BAKE_LOBE_COLOR] = colors;
+    m->all[MASU_BAKE_LOBE_STRENGTH] = strength;
+    return true;
+}
+
+static bool read_anisotropy(masu_gltf *g, const json_t *about, masu_blob_material *to) {
+    const json_t *grain = masu_gltf_extension(g, about, "KHR_materials_anisotropy");
+    double strength = 0, rotation = 0;
+    if (!masu_gltf_number(g, grain, "anisotropyStrength", &strength) ||
+        !masu_gltf_number(g, grain, "anisotropyRotation", &rotation))
+        return false;
+    note_texture(g, grain, "anisotropyTexture");
+    to->anisotropy = limited(g, strength, 0, 1, "anisotropyStrength");
+    rotation = fmod(rotation, 6.283185307179586);
+    to->anisotropy_rotation = (float)(rotation < 0 ? rotation + 6.283185307179586 : rotation);
+    return true;
+}
+
+/* A material has one lobe beyond the plain ones (blob.h): a coat comes first, then sheen, anisotropy, colour. */
+static void settle_lobes(masu_gltf *g, masu_blob_material *to, maps *m) {
+    float *hue = to->specular_color, *sheen = to->sheen_color;
+    texture *maps_of[2] = {&m->all[MASU_BAKE_LOBE_COLOR], &m->all[MASU_BAKE_LOBE_STRENGTH]};
+    bool mapped = maps_of[0]->image != MASU_BLOB_NONE || maps_of[1]->image != MASU_BLOB_NONE;
+    bool shines = sheen[0] > 0 || sheen[1] > 0 || sheen[2] > 0, grained = to->anisotropy > 0;
+    bool metal = !(to->metallic < 1) && m->all[MASU_BAKE_METALLIC].image == MASU_BLOB_NONE;
+    bool tinted = masu_is_colored(hue), colored = to->specular > 1 || tinted || (mapped && !shines);
+    const char *first = to->coat > 0 ? "a clear coat" : shines ? "a sheen" : "an anisotropy";
+    char what[128];
+    if (metal && !shines) colored = false; /* metals mirror their base colour */
+    if (shines && to->coat > 0) {
+        masu_gltf_note_one(g, "materials have a clear coat and a sheen: the sheen is ignored", g->where);
+        shines = false;
+        maps_of[0]->image = maps_of[1]->image = MASU_BLOB_NONE;
+    }
+    if (grained && (to->coat > 0 || shines)) {
+        snprintf(what, sizeof what, "materials have %s and an anisotropy: the anisotropy is ignored", first);
+        masu_gltf_note_one(g, what, g->where);
+        grained = false;
+    }
+    if (colored && (to->coat > 0 || shines || grained)) {
+        snprintf(what, sizeof what,
+                 "materials have %s and a specular colour, texture or reflectance above 0.08: gray, at most 0.08", first);
+        masu_gltf_note_one(g, what, g->where);
+        colored = false;
+    }
+    if (!colored && !shines) maps_of[0]->image = maps_of[1]->image = MASU_BLOB_NONE;
+    if (!shines) sheen[0] = sheen[1] = sheen[2] = 0;
+    if (!grained) to->anisotropy = to->anisotropy_rotation = 0;
+    if (!colored) {
+        float share = 0.2126f * hue[0] + 0.7152f * hue[1] + 0.0722f * hue[2];
+        to->specular = masu_import_clamped((double)(tinted ? to->specular * share : to->specular), 0, 1);
+        hue[0] = hue[1] = hue[2] = 0;
+    }
+    if (shines && !near((double)to->specular, 0.5)) {
+        masu_gltf_note_one(g, "materials have a sheen and a specular factor or index of refraction, which is ignored",
+                           g->where);
+    }
+    if (shines) to->specular = 0.5f;
 }
 
 /* One picture of normals for both, with its strength; see above. */
@@ -437,9 +518,13 @@ static void settle_normals(masu_gltf *g, masu_gltf_material *out, maps *m, textu
                near(scale[0], scale[1])) {
         out->given.maps.relief_of = MASU_BAKE_RELIEF_OF_BOTH;
     } else {
-        leave_out(
-            g, coat,
-            "clear coats have another normal map than the base layer: ignored, they are smooth");
+        out->given.maps.coat_scale = limited(g, scale[1], -16, 16, "clearcoatNormalTexture.scale");
+        m->all[MASU_BAKE_COAT_NORMAL] = *coat;
+        if (m->all[MASU_BAKE_EMISSIVE].image != MASU_BLOB_NONE || out->blends) {
+            leave_out(g, &m->all[MASU_BAKE_COAT_NORMAL],
+                      "clear coats have another normal map than the base layer, and the material has emission or is "
+                      "transparent: ignored, they are smooth");
+        }
     }
 }
 
@@ -488,14 +573,18 @@ static bool read_volume(masu_gltf *g, const json_t *about, float color[3]) {
 }
 
 /* Of what shines through a share is coloured; the alpha of the base colour counts where it is blended anyway. */
-static bool read_transmission(masu_gltf *g, const json_t *about, masu_gltf_material *out) {
+static bool read_transmission(masu_gltf *g, const json_t *about, masu_gltf_material *out, maps *m) {
     const json_t *through = masu_gltf_extension(g, about, "KHR_materials_transmission");
     masu_blob_material *to = &out->given.material;
     double factor = 0;
     if (!masu_gltf_number(g, through, "transmissionFactor", &factor)) return false;
-    note_texture(g, through, "transmissionTexture");
+    if (!read_texture(g, through, "transmissionTexture", &m->all[MASU_BAKE_OPACITY])) return false;
+    texture *map = &m->all[MASU_BAKE_OPACITY];
     factor = (double)limited(g, factor, 0, 1, "transmissionFactor") * (1 - (double)to->metallic);
+    if (!(factor > 0) || out->given.maps.alpha == MASU_BAKE_ALPHA_MASK) map->image = MASU_BLOB_NONE;
     if (!(factor > 0)) return true;
+    if (map->image != MASU_BLOB_NONE && out->blends) /* alpha of the base colour is taken */
+        leave_out(g, map, "materials have a \"transmissionTexture\" and are alpha-blended: it is ignored");
     if (out->given.maps.alpha == MASU_BAKE_ALPHA_MASK) {
         masu_gltf_note_one(
             g, "materials transmit light and are alpha-tested: drawn without transmission",
@@ -505,6 +594,7 @@ static bool read_transmission(masu_gltf *g, const json_t *about, masu_gltf_mater
     if (!read_volume(g, about, to->base_color)) return false;
     out->alpha = (out->blends ? out->alpha : 1) * (1 - factor);
     out->given.maps.tinted = 1;
+    out->given.maps.transmission = map->image != MASU_BLOB_NONE;
     out->blends = true;
     out->given.maps.alpha = MASU_BAKE_ALPHA_BLEND;
     return true;
@@ -515,8 +605,11 @@ static void make_unlit(masu_gltf_material *out, maps *m) {
     masu_blob_material *to = &out->given.material;
     memcpy(to->emissive, to->base_color, sizeof to->emissive);
     m->all[MASU_BAKE_EMISSIVE] = m->all[MASU_BAKE_BASE];
-    to->metallic = to->specular = to->coat = 0;
+    to->metallic = to->specular = to->coat = to->anisotropy = 0;
     to->roughness = 1;
+    for (int k = 0; k < 3; k++) to->specular_color[k] = to->sheen_color[k] = 0;
+    m->all[MASU_BAKE_LOBE_COLOR].image = m->all[MASU_BAKE_LOBE_STRENGTH].image = MASU_BLOB_NONE;
+    m->all[MASU_BAKE_COAT_NORMAL].image = MASU_BLOB_NONE;
     out->unlit = true;
     out->given.maps.unlit = 1;
     m->all[MASU_BAKE_NORMAL].image = m->all[MASU_BAKE_ROUGHNESS].image = MASU_BLOB_NONE;
@@ -531,12 +624,14 @@ static bool read_material(masu_gltf *g, const json_t *about, masu_gltf_material 
     (void)masu_gltf_string(g, about, "name");
     if (masu_gltf_failed(g) || !read_metallic(g, about, out, &m) || !read_glossiness(g, about, out, &m) ||
         !read_alpha(g, about, out) || !read_emission(g, about, out, &m) ||
-        !read_specular(g, about, &out->given.material) || !read_coat(g, about, &out->given.material, &m) ||
-        !read_transmission(g, about, out) ||
+        !read_specular(g, about, &out->given.material, &m) || !read_coat(g, about, &out->given.material, &m) ||
+        !read_sheen(g, about, &out->given.material, &m) || !read_anisotropy(g, about, &out->given.material) ||
+        !read_transmission(g, about, out, &m) ||
         !read_normals(g, about, out, &m) ||
         !read_texture(g, about, "occlusionTexture", &m.all[MASU_BAKE_OCCLUSION]) ||
         !masu_gltf_number(g, masu_gltf_object(g, about, "occlusionTexture"), "strength", &strength))
         return false;
+    settle_lobes(g, &out->given.material, &m);
     out->given.maps.occlusion = limited(g, strength, 0, 1, "occlusionTexture.strength");
     out->given.maps.single = !json_is_true(json_object_get(about, "doubleSided"));
     if (masu_gltf_extension(g, about, "KHR_materials_unlit")) make_unlit(out, &m);
@@ -545,6 +640,25 @@ static bool read_material(masu_gltf *g, const json_t *about, masu_gltf_material 
                            g->wanted != MASU_BAKE_TEXTURES_OFF &&
                            out->given.maps.image[MASU_BAKE_EMISSIVE] == MASU_BLOB_NONE;
     return !masu_gltf_failed(g);
+}
+
+/* Specular and glossiness become metallic and roughness by an inverse that is not exact: beside materials that are
+ * metallic and roughness already, the same surface may look different. */
+static void note_mixture(masu_gltf *g) {
+    size_t count = masu_gltf_count(g, "materials"), glossy = 0;
+    const char *first = NULL;
+    char what[200];
+    for (size_t i = 0; i < count; i++) {
+        const json_t *about = masu_gltf_element(g, "materials", (json_int_t)i);
+        if (!about || !masu_gltf_extension(g, about, "KHR_materials_pbrSpecularGlossiness")) continue;
+        glossy++;
+        if (!first) first = masu_gltf_name_of(g, "materials", i, about);
+    }
+    if (!glossy || glossy == count) return;
+    snprintf(what, sizeof what,
+             "of %zu materials have specular and glossiness, which become metallic and roughness, beside others that have "
+             "these: convert the file to one of them, unless both look right", count);
+    masu_gltf_note_many(g, glossy, what, first);
 }
 
 bool masu_gltf_read_materials(masu_gltf *g) {
@@ -568,6 +682,7 @@ bool masu_gltf_read_materials(masu_gltf *g) {
         out->given.name = masu_bake_take_text(&g->pool, name ? name : "");
         if (!read_material(g, about, out)) return false;
     }
+    note_mixture(g);
     g->where[0] = '\0';
     return true;
 }

@@ -117,7 +117,8 @@ static bool read_texcoords(masu_gltf *g, const source *s, const masu_gltf_materi
     uint32_t count;
     unsigned n = 0;
     const double *uv = material->uv;
-    if (g->wanted != MASU_BAKE_TEXTURES_FORCED && !masu_bake_has_maps(&material->given.maps)) return true;
+    bool grained = material->given.material.anisotropy > 0; /* along u */
+    if (g->wanted != MASU_BAKE_TEXTURES_FORCED && !grained && !masu_bake_has_maps(&material->given.maps)) return true;
     for (int set = 0; set < (material->given.maps.second ? 2 : 1) && !masu_gltf_failed(g); set++) {
         snprintf(name, sizeof name, "TEXCOORD_%d", set ? material->second_set : material->set);
         if (set) uv = material->second_uv;

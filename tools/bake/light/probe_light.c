@@ -183,7 +183,7 @@ float masu_probe_lookup(const masu_blob_probes *p, const uint32_t *data, const u
     uint32_t sets = masu_probe_sets(p), count = p->counts[0] * p->counts[1] * p->counts[2];
     uint32_t texels = (p->visibility + 2) * (p->visibility + 2);
     const uint32_t *maps = data + (uint64_t)count * sets * MASU_PROBE_WORDS;
-    float y[9], sum[3] = {0}, total = 0;
+    float y[9], sum[3] = {0}, total = 0, per_bias = 1.0f / fmaxf(p->bias, 1e-4f);
     masu_probe_basis(normal, y);
     for (uint32_t corner = 0; corner < 8; corner++) {
         uint32_t at[3];
@@ -199,8 +199,9 @@ float masu_probe_lookup(const masu_blob_probes *p, const uint32_t *data, const u
         const uint32_t *words = lit + (uint64_t)probe * MASU_PROBE_LIT_WORDS;
         float distance = sqrtf(fmaxf(square, 1e-12f)), d[3];
         for (int k = 0; k < 3; k++) d[k] = to[k] / distance;
-        float facing = 0.5f + 0.5f * (d[0] * normal[0] + d[1] * normal[1] + d[2] * normal[2]);
-        w *= facing * facing + 0.1f;
+        float front = 2.0f + (to[0] * normal[0] + to[1] * normal[1] + to[2] * normal[2]) * per_bias;
+        front = fminf(fmaxf(front, 0.0f), 1.0f);
+        w *= front * front + 0.05f;
         if (p->visibility && square > 1e-12f) {
             float back[3] = {-d[0], -d[1], -d[2]};
             w *= fmaxf(seen(p, maps + (uint64_t)probe * texels, back, distance / diagonal), 1e-4f);

@@ -224,6 +224,7 @@ masu_bake_maps masu_bake_no_maps(void) {
     maps.cutoff = 0.5f;
     maps.normal_scale = 1;
     maps.occlusion = 1;
+    maps.coat_scale = 1;
     return maps;
 }
 

@@ -57,10 +57,13 @@ enum {
     MASU_BAKE_ROUGHNESS,
     MASU_BAKE_METALLIC,
     MASU_BAKE_EMISSIVE,
-    MASU_BAKE_OPACITY, /* alpha as a picture of its own */
+    MASU_BAKE_OPACITY, /* alpha as a picture of its own; with `transmission` the share that is transmitted */
     MASU_BAKE_OCCLUSION,
     MASU_BAKE_COAT, /* apart here, as roughness and metallic are */
     MASU_BAKE_COAT_ROUGHNESS,
+    MASU_BAKE_COAT_NORMAL,   /* of a coat whose normals are not those of the base */
+    MASU_BAKE_LOBE_COLOR,    /* of a specular colour or a sheen */
+    MASU_BAKE_LOBE_STRENGTH, /* of a specular factor or the roughness of a sheen */
     MASU_BAKE_MAPS
 };
 
@@ -105,8 +108,10 @@ typedef struct masu_bake_maps {
     uint8_t colored;                 /* MASU_BAKE_COLORED_* */
     uint8_t second;                  /* bit of a slot of a texture set: its map is of the second coordinates */
     uint8_t nearest;                 /* 1: magnified without interpolation */
+    uint8_t transmission;            /* with `tinted`: what the map of opacity is */
     float cutoff, normal_scale;      /* normal_scale: of heights their strength */
     float occlusion;                 /* strength of the occlusion map, 0..1 */
+    float coat_scale;                /* as normal_scale, of the coat's map */
     /* no padding: it is compared as bytes */
 } masu_bake_maps;
 

@@ -54,6 +54,15 @@ bool masu_bake_override_matches(const masu_bake_content *piece, const masu_bake_
     return false;
 }
 
+/* What a scene gives a material takes the place of the model's lobes: blob.h allows one, and none with a coat. */
+static void drop_lobes(const masu_bake_override *o, masu_blob_material *to, masu_bake_maps *maps) {
+    if (!o->specular && !(to->coat > 0) && to->meso == MASU_BLOB_NONE) return;
+    for (int k = 0; k < 3; k++) to->specular_color[k] = to->sheen_color[k] = 0;
+    to->sheen_roughness = to->anisotropy = to->anisotropy_rotation = 0;
+    if (to->specular > 1) to->specular = 1;
+    maps->image[MASU_BAKE_LOBE_COLOR] = maps->image[MASU_BAKE_LOBE_STRENGTH] = MASU_BLOB_NONE;
+}
+
 static void apply_override(const masu_bake_override *o, masu_blob_material *to,
                            masu_bake_maps *maps, bool own[MASU_BAKE_MAPS]) {
     const masu_blob_material *v = &o->value;
@@ -93,6 +102,7 @@ static void apply_override(const masu_bake_override *o, masu_blob_material *to,
     if (o->single) maps->single = o->maps.single;
     if (o->shadowless) maps->shadowless = 1;
     if (o->relief_of) maps->relief_of = o->maps.relief_of;
+    drop_lobes(o, to, maps);
 }
 
 static uint32_t placed_material(masu_bake_content *scene, const masu_bake_content *piece,

@@ -109,7 +109,8 @@ static void take_parts(const masu_sdfc_result *scene, masu_bake_content *content
     masu_blob_sdf *sdf = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf);
     sdf->part_count = scene->part_count;
     sdf->block_words = scene->block_words;
-    if (!scene->anchored) sdf->anchored = 0; /* nothing in it depends on where it is */
+    if (!scene->anchored) sdf->flags &= ~MASU_SDF_ANCHORED; /* nothing in it depends on where it is */
+    if (scene->timeless) sdf->flags |= MASU_SDF_TIMELESS;
     masu_bake_append(&content->section[MASU_BLOB_SLOTS],
                      scene->slot_count ? scene->slots : &no_slot,
                      (scene->slot_count ? scene->slot_count : 1) * sizeof(float));
@@ -170,7 +171,7 @@ static bool compile_scene(const char *path, masu_bake_content *content, masu_bak
         return false;
     }
     masu_sdfc_options options = {
-        .anchored = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf)->anchored != 0};
+        .anchored = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf)->flags & MASU_SDF_ANCHORED};
     masu_sdfc_camera *cameras = path_of(content, &options.camera_count);
     options.cameras = cameras;
     good = masu_sdfc_compile_with((const char *)own.data, own.bytes, path, &options, scene, error,
@@ -559,7 +560,7 @@ bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path,
     bool good = lay_out(directory, content, glsl_path, &dynamic, &scene) &&
                 (!darkens || write_occlusion(directory, occlusion));
     for (size_t i = 0; i < sizeof scene_shaders / sizeof *scene_shaders && good; i++) {
-        bool anchored = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf)->anchored != 0;
+        bool anchored = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf)->flags & MASU_SDF_ANCHORED;
         if (!wanted(scene_shaders[i].when, dynamic, anchored, darkens, casts, reflected, bounced, variants))
             continue;
         paths p = {masu_bake_join(directory, scene_shaders[i].source),
@@ -575,7 +576,7 @@ bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path,
                                          .slots = (uint32_t)masu_bake_count(content, MASU_BLOB_SLOTS),
                                          .block_words = sdf->block_words,
                                          .raster = has_raster,
-                                         .anchored = sdf->anchored,
+                                         .anchored = sdf->flags & MASU_SDF_ANCHORED,
                                          .moves = dynamic};
         good = run_tools(&p, has_raster, directory, glsl_path, &counts) &&
                take_spirv(content, scene_shaders[i].kind, p.optimised, glsl_path) &&

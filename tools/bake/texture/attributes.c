@@ -6,8 +6,9 @@ void masu_bake_whiten(masu_bake_content *content) {
         masu_bake_maps *maps = &MASU_BAKE_MAPS_OF(content)[i];
         static const unsigned char white[4] = {255, 255, 255, 255};
         const masu_bake_image about = {.raw_width = 1, .raw_height = 1, .data_bytes = sizeof white};
-        if (!maps->colored || maps->image[MASU_BAKE_BASE] != MASU_BLOB_NONE) continue;
-        maps->image[MASU_BAKE_BASE] = masu_bake_add_image(content, "white, for vertex colours", &about, white);
+        bool needs = maps->colored || MASU_BAKE_MATERIALS(content)[i].anisotropy > 0; /* the grain is along u */
+        if (!needs || maps->image[MASU_BAKE_BASE] != MASU_BLOB_NONE) continue;
+        maps->image[MASU_BAKE_BASE] = masu_bake_add_image(content, "white", &about, white);
     }
 }
 

@@ -16,6 +16,7 @@
 #include "bake/texture/texel.h"
 #include "bake/texture/trace_texture.h"
 #include "cli/cli.h"
+#include "scene/material.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -29,7 +30,7 @@ typedef struct request {
     uint8_t channel[2];
     uint8_t gloss, alpha;
     uint8_t relief, clamped[2]; /* of a picture of normals or heights; what it does at its edge counts for heights */
-    uint8_t reserved;
+    uint8_t apart; /* alpha is not what the colour covers: base: transmission; coat: a lobe's strength */
     float cutoff, normal_scale, roughness, occlusion;
 } request;
 
@@ -180,7 +181,7 @@ static void finish(texture *t, float *level, float *normals) {
     size_t texels = (size_t)t->width * t->height;
     float *scratch = allocate_level(t->width, t->height);
     uint8_t *bytes = masu_bake_allocate(texels * 4);
-    bool by_alpha = t->format == MASU_TEXTURE_BC3_SRGB;
+    bool by_alpha = t->format == MASU_TEXTURE_BC3_SRGB && !t->wanted.apart;
     double wanted = 1;
     uint32_t w = t->width, h = t->height;
     for (uint32_t mip = 0; mip < t->mips; mip++) {
@@ -188,7 +189,7 @@ static void finish(texture *t, float *level, float *normals) {
         if (t->wanted.slot == MASU_SLOT_NORMAL) {
             encode_normal(level, texels, bytes);
         } else if (t->wanted.slot == MASU_SLOT_SURFACE || t->wanted.slot == MASU_SLOT_OCCLUSION ||
-                   t->wanted.slot == MASU_SLOT_COAT) {
+                   (t->wanted.slot == MASU_SLOT_COAT && !t->wanted.apart)) {
             encode_surface(level, normals, texels, t->wanted.roughness, bytes);
         } else {
             encode_color(level, texels, bytes);
@@ -247,12 +248,12 @@ static uint32_t opacity_channel(const masu_bake_picture *p) {
 static void make_color(maker *m, texture *t) {
     masu_bake_picture color, opacity;
     bool has_color = read_picture(m, t->wanted.image[0], &color);
-    bool has_opacity =
-        t->wanted.slot == MASU_SLOT_BASE && read_picture(m, t->wanted.image[1], &opacity);
+    bool has_opacity = (t->wanted.slot == MASU_SLOT_BASE || t->wanted.apart) &&
+                       read_picture(m, t->wanted.image[1], &opacity);
     if (has_color || has_opacity) {
         const masu_bake_picture *size = has_color ? &color : &opacity;
         uint32_t w = size->width, h = size->height;
-        uint32_t channel = has_opacity ? opacity_channel(&opacity) : 0;
+        uint32_t channel = t->wanted.apart ? t->wanted.channel[1] : has_opacity ? opacity_channel(&opacity) : 0;
         float *level = allocate_level(w, h), linear[256];
         for (int i = 0; i < 256; i++) linear[i] = masu_texel_from_srgb((uint8_t)i);
         for (uint32_t y = 0; y < h; y++) {
@@ -262,7 +263,7 @@ static void make_color(maker *m, texture *t) {
                     to[k] = has_color ? linear[byte_at(&color, x, y, w, h, k)] : 1;
                 }
                 to[3] = has_opacity ? (float)byte_at(&opacity, x, y, w, h, channel) / 255.0f
-                        : has_color ? (float)byte_at(&color, x, y, w, h, 3) / 255.0f
+                        : has_color && !t->wanted.apart ? (float)byte_at(&color, x, y, w, h, 3) / 255.0f
                                     : 1;
             }
         }
@@ -273,7 +274,7 @@ static void make_color(maker *m, texture *t) {
         /* Of emission nobody looks at it. */
         if (judged.slot != MASU_SLOT_BASE) judged.alpha = MASU_BAKE_ALPHA_OPAQUE;
         t->alpha = judge_alpha(m, &judged, level, texels);
-        bool opaque = t->alpha == MASU_BAKE_ALPHA_OPAQUE || t->wanted.slot != MASU_SLOT_BASE;
+        bool opaque = t->wanted.slot == MASU_SLOT_BASE ? t->alpha == MASU_BAKE_ALPHA_OPAQUE : !has_opacity;
         begin(t, opaque ? MASU_TEXTURE_BC1_SRGB : MASU_TEXTURE_BC3_SRGB, w, h);
         finish(t, level, NULL);
         free(level);
@@ -386,7 +387,12 @@ static uint32_t obtain(maker *m, const request *wanted) {
     case MASU_SLOT_NORMAL: make_normal(m, t); break;
     case MASU_SLOT_OCCLUSION: /* one channel, as roughness alone */
     case MASU_SLOT_COAT:
-    case MASU_SLOT_SURFACE: make_surface(m, t); break;
+    case MASU_SLOT_SURFACE:
+        if (wanted->apart)
+            make_color(m, t);
+        else
+            make_surface(m, t);
+        break;
     default: make_color(m, t); break;
     }
     return m->count++;
@@ -408,6 +414,14 @@ static bool is_blended(const maker *m, const masu_bake_maps *maps, const masu_bl
     return t && t->format == MASU_TEXTURE_BC3_SRGB && t->alpha == MASU_BAKE_ALPHA_BLEND;
 }
 
+/* A coat has normals of its own in the place of a map of emission, beside those of the base. */
+static bool has_coat_relief(const maker *m, const masu_bake_maps *maps, const masu_blob_material *material,
+                            const uint32_t slots[MASU_SLOT_COUNT]) {
+    return maps->image[MASU_BAKE_COAT_NORMAL] != MASU_BLOB_NONE && maps->image[MASU_BAKE_EMISSIVE] == MASU_BLOB_NONE &&
+           material->coat > 0 && slots[MASU_SLOT_NORMAL] != MASU_BLOB_NONE &&
+           !is_blended(m, maps, material, slots[MASU_SLOT_BASE]);
+}
+
 /* The textures of a material by slot, NONE where there are none. */
 static void request_all(maker *m, const masu_bake_maps *maps, const masu_blob_material *material,
                         uint32_t out[MASU_SLOT_COUNT]) {
@@ -422,6 +436,7 @@ static void request_all(maker *m, const masu_bake_maps *maps, const masu_blob_ma
             r.image[1] = maps->image[MASU_BAKE_OPACITY];
             r.alpha = maps->alpha;
             r.cutoff = maps->cutoff;
+            r.apart = maps->transmission;
             break;
         case MASU_SLOT_NORMAL:
             ask_for_normals(&r, 0, maps);
@@ -445,12 +460,20 @@ static void request_all(maker *m, const masu_bake_maps *maps, const masu_blob_ma
             r.occlusion = maps->occlusion;
             break;
         case MASU_SLOT_COAT:
-            if (!(material->coat > 0)) break;
+            if (!(material->coat > 0) && !masu_lobe_code(material)) break;
             if (is_blended(m, maps, material, out[MASU_SLOT_BASE])) {
-                if (!m->sizes && (maps->image[MASU_BAKE_COAT] & maps->image[MASU_BAKE_COAT_ROUGHNESS]) != MASU_BLOB_NONE)
+                if (!m->sizes && (maps->image[MASU_BAKE_COAT] & maps->image[MASU_BAKE_COAT_ROUGHNESS] &
+                                  maps->image[MASU_BAKE_LOBE_COLOR] & maps->image[MASU_BAKE_LOBE_STRENGTH]) != MASU_BLOB_NONE)
                     masu_cli_warn(
-                        "material \"%s\": transparent materials have no coat map: ignored",
+                        "material \"%s\": transparent materials have no maps of coat, specular or sheen: ignored",
                         masu_bake_name_text(m->content, material->name));
+                break;
+            }
+            if (!(material->coat > 0)) {
+                r.image[0] = maps->image[MASU_BAKE_LOBE_COLOR];
+                r.image[1] = maps->image[MASU_BAKE_LOBE_STRENGTH];
+                r.channel[1] = maps->channel[MASU_BAKE_LOBE_STRENGTH];
+                r.apart = 1;
                 break;
             }
             r.image[0] = maps->image[MASU_BAKE_COAT];
@@ -458,7 +481,14 @@ static void request_all(maker *m, const masu_bake_maps *maps, const masu_blob_ma
             r.channel[0] = maps->channel[MASU_BAKE_COAT];
             r.channel[1] = maps->channel[MASU_BAKE_COAT_ROUGHNESS];
             break;
-        default: r.image[0] = maps->image[MASU_BAKE_EMISSIVE]; break;
+        default:
+            r.image[0] = maps->image[MASU_BAKE_EMISSIVE];
+            if (has_coat_relief(m, maps, material, out)) {
+                r.slot = MASU_SLOT_NORMAL;
+                r.image[0] = maps->image[MASU_BAKE_COAT_NORMAL];
+                r.normal_scale = maps->coat_scale;
+            }
+            break;
         }
         out[slot] = MASU_BLOB_NONE;
         if (r.image[0] == MASU_BLOB_NONE && r.image[1] == MASU_BLOB_NONE &&
@@ -566,8 +596,11 @@ static void point(maker *m, masu_blob_material *material, const masu_bake_maps *
             material->more_layers |= t->layer << 8 * (slot - MASU_SLOT_OCCLUSION);
         else
             layers |= t->layer << 8 * slot;
-        flags |= 1u << slot;
+        bool relief = slot == MASU_SLOT_EMISSIVE && t->wanted.slot == MASU_SLOT_NORMAL;
+        flags |= relief ? (uint32_t)MASU_MATERIAL_COAT_RELIEF : 1u << slot;
+        if (slot == MASU_SLOT_COAT && t->wanted.apart) flags |= MASU_MATERIAL_LOBE_MAP;
         if (slot == MASU_SLOT_BASE && t->format == MASU_TEXTURE_BC3_SRGB) {
+            if (t->wanted.apart) flags |= MASU_MATERIAL_TRANSMISSION_MAP;
             if (t->alpha != MASU_BAKE_ALPHA_BLEND) {
                 flags |= MASU_MATERIAL_IS_MASK;
                 flags |= (uint32_t)masu_texel_to_unorm(maps->cutoff) << MASU_MATERIAL_CUTOFF_SHIFT;
@@ -581,7 +614,7 @@ static void point(maker *m, masu_blob_material *material, const masu_bake_maps *
     /* An emissive factor is often white and meant for its map: without the map it would be a lamp.
      * Only an unlit material keeps it, since it is its colour. */
     if ((maps->image[MASU_BAKE_EMISSIVE] != MASU_BLOB_NONE || maps->dark) && !maps->unlit &&
-        slots[MASU_SLOT_EMISSIVE] == MASU_BLOB_NONE) {
+        !(flags & 1u << MASU_SLOT_EMISSIVE)) {
         memset(material->emissive, 0, sizeof material->emissive);
     }
     if (maps->additive && flags & MASU_MATERIAL_IS_BLEND) flags |= MASU_MATERIAL_IS_ADDITIVE;
@@ -597,7 +630,9 @@ static void point(maker *m, masu_blob_material *material, const masu_bake_maps *
     if (!(flags & MASU_MATERIAL_HAS_MAPS)) return;
     material->layers = layers;
     /* What is blended has no room for it: nor has it maps of the second coordinates (gltf_material.c). */
-    material->more_layers |= (maps->second & flags & MASU_MATERIAL_HAS_MAPS) << 16;
+    uint32_t second = flags & MASU_MATERIAL_HAS_MAPS;
+    if (!(flags & MASU_MATERIAL_IS_BLEND) && flags & MASU_MATERIAL_COAT_RELIEF) second |= 1u << MASU_SLOT_EMISSIVE;
+    material->more_layers |= (maps->second & second) << 16;
     material->texture_set = set_of(m->content, &set);
 }
 
