@@ -32,7 +32,7 @@ static uint32_t buffer_chunks(const masu_frame_plan *plan) {
 
 /* Whether any image persists between frames. The last chunk then sets the layouts of these
  * images. */
-static int keeps_images(const masu_frame_plan *plan) {
+static int has_persistent_images(const masu_frame_plan *plan) {
     for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
         if (plan->images[i].used && masu_images[i].kept) return 1;
     }
@@ -41,7 +41,7 @@ static int keeps_images(const masu_frame_plan *plan) {
 
 uint32_t masu_load_chunks(const masu_frame_plan *plan) {
     uint32_t chunks =
-        buffer_chunks(plan) + (keeps_images(plan) ? 1 : 0) + masu_ray_build_steps(plan);
+        buffer_chunks(plan) + (has_persistent_images(plan) ? 1 : 0) + masu_ray_build_steps(plan);
     if (!plan->scene.texture_arrays) return chunks;
     masu_scene_view v = masu_scene_data_view(&plan->scene);
     return chunks + masu_texture_chunks(v.textures, plan->scene.texture_arrays, plan->compressed,
@@ -50,7 +50,7 @@ uint32_t masu_load_chunks(const masu_frame_plan *plan) {
 
 /* Number of chunks that copy. The chunks after them build acceleration structures. */
 static uint32_t copy_chunks(const masu_frame_plan *plan, uint32_t chunks) {
-    return chunks - (keeps_images(plan) ? 1 : 0) - masu_ray_build_steps(plan);
+    return chunks - (has_persistent_images(plan) ? 1 : 0) - masu_ray_build_steps(plan);
 }
 
 masu_chunk masu_load_chunk(const masu_frame_plan *plan, uint32_t index) {
@@ -71,7 +71,7 @@ masu_chunk masu_load_chunk(const masu_frame_plan *plan, uint32_t index) {
 
 /* Transitions all layers and mips of a texture to the transfer layout, or from it to the
  * shader-read layout. */
-static void move_texture(masu_device *m, VkCommandBuffer cmd, VkImage image, int to_shader) {
+static void transition_texture(masu_device *m, VkCommandBuffer cmd, VkImage image, int to_shader) {
     VkImageMemoryBarrier b = {
         .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
         .srcAccessMask = to_shader ? VK_ACCESS_TRANSFER_WRITE_BIT : 0,
@@ -99,7 +99,7 @@ static void record_textures(masu_device *m, VkCommandBuffer cmd, masu_texture_cu
     while (masu_texture_next(v.textures, m->plan->scene.texture_arrays, m->plan->compressed, room,
                              next, &used, &r)) {
         VkImage image = m->plan->textures[r.texture].image;
-        if (r.first) move_texture(m, cmd, image, 0);
+        if (r.first) transition_texture(m, cmd, image, 0);
         VkBufferImageCopy copy = {
             .bufferOffset = r.offset,
             .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, r.mip, r.layer, 1},
@@ -107,7 +107,7 @@ static void record_textures(masu_device *m, VkCommandBuffer cmd, masu_texture_cu
             .imageExtent = {r.width, r.height, 1}};
         m->vk.CmdCopyBufferToImage(cmd, m->objects.buffers[MASU_BUFFER_STAGING], image,
                                    VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
-        if (r.last) move_texture(m, cmd, image, 1);
+        if (r.last) transition_texture(m, cmd, image, 1);
     }
 }
 
@@ -124,7 +124,7 @@ static void clear_image(const masu_recorder *rec, masu_image_id image, const mas
  * except in images with two layers (ping-pong), which are cleared: if a host skips a frame without
  * setting frame.cut, the next frame reads a layer that was never written, and 0 means "no
  * samples". */
-static void record_kept(masu_device *m, VkCommandBuffer cmd) {
+static void record_persistent_images(masu_device *m, VkCommandBuffer cmd) {
     masu_use rest = masu_use_of(MASU_READ, MASU_PASS_COMPUTE),
              copy = masu_use_of(MASU_WRITE_COPY, MASU_PASS_TRANSFER);
     masu_recorder rec = {.m = m, .cmd = cmd};
@@ -148,8 +148,8 @@ static masu_result record_load(masu_device *m, uint32_t index, masu_texture_curs
     VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     VkResult r = m->vk.BeginCommandBuffer(cmd, &begin);
     if (r) return masu_fail_vulkan(detail, r, "vkBeginCommandBuffer");
-    if (keeps_images(m->plan) && index + 1 == m->load_count) {
-        record_kept(m, cmd);
+    if (has_persistent_images(m->plan) && index + 1 == m->load_count) {
+        record_persistent_images(m, cmd);
     } else if (index >= copy_chunks(m->plan, m->load_count)) {
         masu_ray_record_bottoms(m, cmd, mesh);
     } else if (index < buffer_chunks(m->plan)) {

@@ -16,15 +16,16 @@ static masu_pool *pool_of(const masu_device *m) { return pool_in(m->plan->desc.v
 /* ---- Keys ------------------------------------------------------------------------------------ */
 
 /* FNV-1a over 64-bit values. */
-static uint64_t add(uint64_t key, uint64_t word) {
+static uint64_t hash_value(uint64_t key, uint64_t word) {
     for (uint32_t k = 0; k < 8; k++) key = (key ^ (word >> 8 * k & 255u)) * 0x100000001B3u;
     return key;
 }
 
 static uint64_t add_code(uint64_t key, const masu_code *code) {
-    key = add(key, code->bytes);
-    if (!code->words) return add(add(key, code->packed.run), code->packed.own);
-    for (uint64_t i = 0; i < code->bytes / sizeof *code->words; i++) key = add(key, code->words[i]);
+    key = hash_value(key, code->bytes);
+    if (!code->words) return hash_value(hash_value(key, code->packed.run), code->packed.own);
+    for (uint64_t i = 0; i < code->bytes / sizeof *code->words; i++)
+        key = hash_value(key, code->words[i]);
     return key;
 }
 
@@ -33,15 +34,16 @@ uint64_t masu_pool_key(const masu_device *m, uint32_t pass, const masu_code code
     uint64_t key = 0xCBF29CE484222325u;
     uint32_t declared =
         masu_code_interface(&codes[0]).constants | masu_code_interface(&codes[1]).constants;
-    key = add_code(add_code(add(add(key, pass), form), &codes[0]), &codes[1]);
+    key = add_code(add_code(hash_value(hash_value(key, pass), form), &codes[0]), &codes[1]);
     for (uint32_t i = 0; i < constant_count; i++) {
-        if (declared >> i & 1u) key = add(add(key, i), constants[i]);
+        if (declared >> i & 1u) key = hash_value(hash_value(key, i), constants[i]);
     }
     VkDescriptorSetLayoutBinding global[MASU_BIND_COUNT];
     uint32_t count = masu_global_bindings(m->plan, pass, global);
     for (uint32_t i = 0; i < count; i++)
-        key = add(add(add(key, global[i].binding), (uint64_t)global[i].descriptorType),
-                  global[i].stageFlags);
+        key = hash_value(
+            hash_value(hash_value(key, global[i].binding), (uint64_t)global[i].descriptorType),
+            global[i].stageFlags);
     const masu_rung_plan *rp = masu_first_rung(m->plan, pass);
     for (uint32_t a = 0; a < rp->access_count[pass]; a++) {
         masu_access access = rp->access[pass][a];
@@ -50,9 +52,9 @@ uint64_t masu_pool_key(const masu_device *m, uint32_t pass, const masu_code code
         int attached = access.usage == MASU_WRITE_COLOR || access.usage == MASU_BLEND_COLOR ||
                        access.usage == MASU_UPDATE_COLOR || access.usage == MASU_WRITE_DEPTH ||
                        access.usage == MASU_UPDATE_DEPTH || access.usage == MASU_KEEP_DEPTH;
-        if (bound || attached) key = add(key, access.usage);
+        if (bound || attached) key = hash_value(key, access.usage);
         /* The image format is part of a shader's storage image declaration. */
-        if (attached) key = add(key, (uint64_t)masu_images[access.image].format);
+        if (attached) key = hash_value(key, (uint64_t)masu_images[access.image].format);
     }
     return key ? key : 1;
 }
@@ -60,7 +62,7 @@ uint64_t masu_pool_key(const masu_device *m, uint32_t pass, const masu_code code
 /* ---- Acquiring and adding pipelines ---------------------------------------------------------- */
 
 /* The i-th pipeline of the device, for 0 <= i < MASU_POOL_KEYS. */
-static VkPipeline *place(masu_device *m, uint32_t i) {
+static VkPipeline *pipeline_slot(masu_device *m, uint32_t i) {
     if (i < MASU_PASS_COUNT) return &m->pipelines[i];
     if (i < 2 * MASU_PASS_COUNT) return &m->last[i - MASU_PASS_COUNT];
     i -= 2 * MASU_PASS_COUNT;
@@ -77,9 +79,9 @@ static VkPipeline *place(masu_device *m, uint32_t i) {
 }
 
 /* Notes the key of a pipeline, for masu_pool_release. */
-static void note(masu_device *m, const VkPipeline *at, uint64_t key) {
+static void note_key(masu_device *m, const VkPipeline *at, uint64_t key) {
     for (uint32_t i = 0; i < MASU_POOL_KEYS; i++) {
-        if (place(m, i) == at) m->pool_keys[i] = key;
+        if (pipeline_slot(m, i) == at) m->pool_keys[i] = key;
     }
 }
 
@@ -92,7 +94,7 @@ int masu_pool_acquire(masu_device *m, uint64_t key, VkPipeline *out) {
         row->users++;
         row->used = ++pool->clock;
         pool->info.reused++;
-        note(m, out, key);
+        note_key(m, out, key);
         return 1;
     }
     return 0;
@@ -121,14 +123,14 @@ void masu_pool_add(masu_device *m, const VkPipeline *at, uint64_t key) {
     masu_pool_row *row = make_room(m, pool);
     if (!row) return;
     *row = (masu_pool_row){key, *at, 1, ++pool->clock};
-    note(m, at, key);
+    note_key(m, at, key);
 }
 
 void masu_pool_release(masu_device *m) {
     masu_pool *pool = pool_of(m);
     if (!pool) return;
     for (uint32_t i = 0; i < MASU_POOL_KEYS; i++) {
-        VkPipeline *from = place(m, i);
+        VkPipeline *from = pipeline_slot(m, i);
         for (uint32_t r = 0; r < pool->info.count && *from && m->pool_keys[i]; r++) {
             masu_pool_row *row = &pool->rows[r];
             if (row->pipeline != *from) continue;

@@ -406,8 +406,8 @@ static void record_occluders(masu_recorder *rec) {
 
 /* Draws `vertices` vertices that the vertex shader generates: a triangle that covers the render
  * area, or squares. */
-static void record_made_up(masu_recorder *rec, uint32_t pass, VkDescriptorSet set,
-                           uint32_t vertices) {
+static void record_generated_vertices(masu_recorder *rec, uint32_t pass, VkDescriptorSet set,
+                                      uint32_t vertices) {
     const masu_vk *vk = &rec->m->vk;
     masu_push_block push = push_of(rec, pass);
     vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, rec->m->pipelines[pass]);
@@ -462,11 +462,11 @@ static void record_graphics(masu_recorder *rec, uint32_t pass, const VkDescripto
             record_sprites(rec, pass, sets[pass],
                            MASU_SPRITE_DRAWS + rec->m->plan->scene.transparents);
         if (pass == MASU_PASS_LINES) record_sprites(rec, pass, sets[pass], MASU_SPRITE_LINES);
-        if (pass == MASU_PASS_SPLIT_DEPTH) record_made_up(rec, pass, sets[pass], 3);
+        if (pass == MASU_PASS_SPLIT_DEPTH) record_generated_vertices(rec, pass, sets[pass], 3);
         if (pass == MASU_PASS_LOCAL_SHADOW) record_faces(rec, pass);
         if (pass == MASU_PASS_LOCAL_SHADOW_KEEP)
-            record_made_up(rec, pass, sets[pass],
-                           6 * rec->m->plan->desc.rungs[rec->rung].local_shadow_faces);
+            record_generated_vertices(rec, pass, sets[pass],
+                                      6 * rec->m->plan->desc.rungs[rec->rung].local_shadow_faces);
     }
     vk->CmdEndRenderPass(rec->cmd);
 }

@@ -85,9 +85,9 @@ static uint64_t masu_bounce_rays(const masu_frame_plan *plan) {
 }
 
 /* Maximum of words(plan, rung, grid) over all rungs; grid: number of blocks of the extent. */
-static uint64_t most_words(const masu_frame_plan *plan, masu_image_extent extent,
-                           uint64_t (*words)(const masu_frame_plan *plan, uint32_t rung,
-                                             VkExtent2D grid)) {
+static uint64_t max_words(const masu_frame_plan *plan, masu_image_extent extent,
+                          uint64_t (*words)(const masu_frame_plan *plan, uint32_t rung,
+                                            VkExtent2D grid)) {
     uint64_t most = 0;
     for (uint32_t r = 0; r < plan->desc.rung_count; r++) {
         VkExtent2D render = {plan->rungs[r].render_width, plan->rungs[r].render_height};
@@ -115,8 +115,8 @@ static uint64_t block_words(const masu_frame_plan *plan, uint32_t rung, VkExtent
  * rung. */
 static uint64_t masu_tile_words(const masu_frame_plan *plan) {
     if (!plan->needs.sdf) return 0;
-    return most_words(plan, MASU_EXTENT_TILE, tile_words) +
-           most_words(plan, MASU_EXTENT_BLOCK4, block_words);
+    return max_words(plan, MASU_EXTENT_TILE, tile_words) +
+           max_words(plan, MASU_EXTENT_BLOCK4, block_words);
 }
 
 static uint64_t light_words(const masu_frame_plan *plan, uint32_t rung, VkExtent2D grid) {
@@ -127,7 +127,7 @@ static uint64_t light_words(const masu_frame_plan *plan, uint32_t rung, VkExtent
 /* At least one value: the buffer is bound even if all rungs disable light tiles. */
 static uint64_t masu_light_tile_words(const masu_frame_plan *plan) {
     if (!plan->needs.lights) return 0;
-    uint64_t words = most_words(plan, MASU_EXTENT_TILE, light_words);
+    uint64_t words = max_words(plan, MASU_EXTENT_TILE, light_words);
     return words ? words : 1;
 }
 
@@ -138,7 +138,7 @@ static uint64_t specular_words(const masu_frame_plan *plan, uint32_t rung, VkExt
 }
 
 static uint64_t masu_specular_tile_words(const masu_frame_plan *plan) {
-    return plan->needs.reflections ? most_words(plan, MASU_EXTENT_TRACED, specular_words) : 0;
+    return plan->needs.reflections ? max_words(plan, MASU_EXTENT_TRACED, specular_words) : 0;
 }
 
 static uint64_t smaa_words(const masu_frame_plan *plan, uint32_t rung, VkExtent2D grid) {
@@ -147,7 +147,7 @@ static uint64_t smaa_words(const masu_frame_plan *plan, uint32_t rung, VkExtent2
 }
 
 static uint64_t masu_smaa_tile_words(const masu_frame_plan *plan) {
-    return plan->needs.smoothing ? most_words(plan, MASU_EXTENT_TILE, smaa_words) : 0;
+    return plan->needs.smoothing ? max_words(plan, MASU_EXTENT_TILE, smaa_words) : 0;
 }
 
 static uint64_t tiles_of(const masu_frame_plan *plan, uint32_t rung, VkExtent2D grid) {
@@ -156,7 +156,7 @@ static uint64_t tiles_of(const masu_frame_plan *plan, uint32_t rung, VkExtent2D 
 }
 
 uint64_t masu_most_tiles(const masu_frame_plan *plan) {
-    uint64_t tiles = most_words(plan, MASU_EXTENT_TILE, tiles_of),
+    uint64_t tiles = max_words(plan, MASU_EXTENT_TILE, tiles_of),
              glossy = masu_specular_tile_words(plan);
     glossy -= glossy ? MASU_TILES_HEADER : 0;
     return tiles > glossy ? tiles : glossy;

@@ -224,7 +224,7 @@ static void gather_images(masu_frame_plan *plan) {
 
 /* Whether a knob can have an effect in the scene: evaluates the column `use` of its row. Knobs of
  * upscaling are decided per rung. */
-static int is_of_use(const masu_desc *d, uint32_t r, masu_knob_use use) {
+static int has_effect(const masu_desc *d, uint32_t r, masu_knob_use use) {
     const masu_scene_data *s = masu_scene_data_of(d->scene);
     switch (use) {
     case MASU_USE_SDF: return s && s->sdf;
@@ -250,7 +250,7 @@ static int is_of_use(const masu_desc *d, uint32_t r, masu_knob_use use) {
 static masu_switches switches_of(const masu_desc *d, uint32_t r, masu_switches *any) {
     masu_switches on;
 #define SET_masu_switch(name, use)                                                                 \
-    on.name = d->rungs[r].name != MASU_OFF && is_of_use(d, r, MASU_USE_##use);                     \
+    on.name = d->rungs[r].name != MASU_OFF && has_effect(d, r, MASU_USE_##use);                    \
     if (any) any->name |= on.name;
 #define SET_masu_easu(name, use)
 #define SET_masu_aa(name, use)
@@ -280,7 +280,7 @@ static int rung_has_resolved(const masu_desc *d, uint32_t r) {
     return rung_has_fine(d, r) && masu_rung_resolves(d, r);
 }
 
-static int wants(const masu_desc *d, int (*has)(const masu_desc *d, uint32_t r)) {
+static int any_rung(const masu_desc *d, int (*has)(const masu_desc *d, uint32_t r)) {
     for (uint32_t r = 0; r < d->rung_count; r++) {
         if (has(d, r)) return 1;
     }
@@ -374,15 +374,15 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
         .query =
             any.specular && !any.bounce && plan->scene.trace_instances && d->ray_query == MASU_ON,
         .accumulate = d->debug.reference != 0,
-        .any_taa = wants(d, rung_has_taa),
-        .any_fine = wants(d, rung_has_fine),
+        .any_taa = any_rung(d, rung_has_taa),
+        .any_fine = any_rung(d, rung_has_fine),
         .any = any,
-        .any_resolved = wants(d, rung_has_resolved),
+        .any_resolved = any_rung(d, rung_has_resolved),
         .picking = d->scene && d->picking,
         .metered = d->scene && d->exposure.metered == MASU_ON,
         .velocity = (d->readback & MASU_READBACK_VELOCITY) != 0 ||
                     (d->split & MASU_SPLIT_VELOCITY) != 0 || any.specular ||
-                    wants(d, masu_rung_resolves),
+                    any_rung(d, masu_rung_resolves),
         .dropped = d->deny.storage_buffers & MASU_DROPPED_ANY,
         .particles = d->scene && d->reserve.particles,
         .decals = d->scene && d->reserve.decals,

@@ -47,22 +47,22 @@ static void fill(masu_switch *word, masu_switch with) {
 /* Each change of viewport invalidates the history. Images that the host draws before the tone curve
  * have no velocities and would leave trails. A host that reads velocities may have its own temporal
  * filter. */
-static int are_interrupted(const masu_desc *d) {
+static int is_history_interrupted(const masu_desc *d) {
     return d->viewport_count > 1 || (d->split & ~(uint32_t)MASU_SPLIT_AFTER_UPSCALE) != 0;
 }
 
 /* Whether consecutive frames are likely to be rendered, as temporal upscaling requires: assumed if
  * there is a governor. */
-static int frames_follow(const masu_desc *d) {
+static int are_frames_consecutive(const masu_desc *d) {
     return d->scene && d->governor.mode != MASU_GOVERNOR_OFF && !d->debug.reference &&
-           !are_interrupted(d);
+           !is_history_interrupted(d);
 }
 
 /* Default of `temporal`: off if the rung sets another upscaler or anti-aliasing. */
 static masu_switch temporal_of(const masu_desc *d, const masu_rung *rung) {
     int silent = rung->upscale == MASU_AUTO && rung->easu == MASU_EASU_AUTO &&
                  rung->sharpen == MASU_AUTO && rung->aa == MASU_AA_AUTO;
-    return frames_follow(d) && silent ? MASU_ON : MASU_OFF;
+    return are_frames_consecutive(d) && silent ? MASU_ON : MASU_OFF;
 }
 
 /* With temporal upscaling, a longer accumulation of reflections would blur them and add lag:
@@ -70,7 +70,7 @@ static masu_switch temporal_of(const masu_desc *d, const masu_rung *rung) {
 #define SPECULAR_FRAMES_RESOLVED 8u
 
 /* Defaults that depend on other knobs. */
-static void resolve_words(masu_rung *rung) {
+static void resolve_dependent_knobs(masu_rung *rung) {
     /* With temporal upscaling, accumulated samples average better than the hits of neighbouring
      * pixels, and a second temporal filter blurs: docs/design/17-temporal-upscaling.md. */
     masu_switch alone = rung->temporal == MASU_ON ? MASU_OFF : MASU_ON;
@@ -104,9 +104,10 @@ masu_desc masu_desc_resolved(const masu_desc *desc) {
     if (d.frames_in_flight == 0) d.frames_in_flight = 2;
     int given = d.rung_count != 0;
     masu_ladder_defaults(&d);
-    int smooth = d.scene && masu_scene_data_of(d.scene)->smooth_edges && !frames_follow(&d);
+    int smooth =
+        d.scene && masu_scene_data_of(d.scene)->smooth_edges && !are_frames_consecutive(&d);
     /* The default rungs follow the rules of MASU_AUTO. */
-    for (uint32_t r = 0; !given && are_interrupted(&d) && r < d.rung_count; r++) {
+    for (uint32_t r = 0; !given && is_history_interrupted(&d) && r < d.rung_count; r++) {
         if (d.rungs[r].temporal != MASU_ON) continue;
         d.rungs[r].temporal = MASU_OFF;
         if (smooth) d.rungs[r].aa = MASU_AA_SMAA_HIGH;
@@ -125,7 +126,7 @@ masu_desc masu_desc_resolved(const masu_desc *desc) {
         masu_rung_defaults(&d.rungs[r]);
         if (d.rungs[r].specular_cutoff == 0.0f && d.scene)
             d.rungs[r].specular_cutoff = masu_scene_specular_cutoff(d.scene);
-        resolve_words(&d.rungs[r]);
+        resolve_dependent_knobs(&d.rungs[r]);
         if (d.scene) resolve_scene(&d, &d.rungs[r]);
         if ((d.scene || d.source.view) && d.output.width && d.output.height) resolve_sizes(&d, r);
     }

@@ -24,7 +24,7 @@
 
 #define MASU_BLOB_MAGIC 0x5553414Du /* the bytes 'M' 'A' 'S' 'U' */
 #define MASU_BLOB_VERSION 18u
-/* layout of version 18: 2955733314 (kinds and elements; tests/scripts/scene_forms.sh) */
+/* layout of version 18: 3896646864 (kinds and elements; tests/scripts/scene_forms.sh) */
 #define MASU_BLOB_ALIGN 16u
 #define MASU_BLOB_NONE 0xFFFFFFFFu /* "no name", "no parent" */
 /* values per SDF primitive, first in SLOTS: sphere, slope, form, first argument, material */
@@ -81,8 +81,7 @@ enum masu_blob_kind {
     MASU_BLOB_TRACE_INSTANCES = 43, /* uint32, ascending: the traced instances */
     MASU_BLOB_MODELS = 49,          /* movable models; these two are present together */
     MASU_BLOB_MODEL_NODES = 50,     /* grouped by model, parents before children */
-    /* sorted by the first model of a kind; these three are present together */
-    MASU_BLOB_CLIPS = 51,
+    MASU_BLOB_CLIPS = 51, /* by first model of a kind; these three are present together */
     MASU_BLOB_CHANNELS = 52,           /* grouped by clip */
     MASU_BLOB_KEYS = 53,               /* grouped by channel, by ascending time */
     MASU_BLOB_SKINS = 54,              /* skinned meshes; these three are present together */
@@ -108,13 +107,12 @@ enum masu_blob_texture_format {
 /* Textures of a material: slots of a texture set, and bits of a material's flags. */
 enum masu_blob_texture_slot {
     MASU_SLOT_BASE = 0, /* base colour, alpha in BC3 */
-    /* BC5: x and y of the tangent-space normal as 0..1, +y towards the top of the image */
-    MASU_SLOT_NORMAL = 1,
+    MASU_SLOT_NORMAL = 1, /* BC5: x, y of the tangent-space normal as 0..1, +y up the image */
     MASU_SLOT_SURFACE = 2, /* BC4: roughness; BC5: roughness, metallic */
-    MASU_SLOT_EMISSIVE = 3,  /* with COAT_RELIEF: BC5, the normals of the coat */
+    MASU_SLOT_EMISSIVE = 3,  /* with COAT_RELIEF: BC5, the normal map of the coat */
     MASU_SLOT_OCCLUSION = 4, /* BC4: ambient occlusion, 1: unoccluded */
-    /* BC5: clear coat, its roughness; with LOBE_MAP BC1 or BC3: factors of the lobe's colour (rgb) and
-     * strength (alpha); not for transparent materials */
+    /* BC5: clear coat, its roughness; with LOBE_MAP BC1 or BC3: factors of the lobe's colour (rgb)
+     * and strength (alpha); not for transparent materials */
     MASU_SLOT_COAT = 5,
     MASU_SLOT_COUNT = 6
 };
@@ -134,11 +132,11 @@ enum masu_blob_material_flags {
     MASU_MATERIAL_COAT_SMOOTH = 0x200000,
     MASU_MATERIAL_BASE_SMOOTH = 0x400000,
     MASU_MATERIAL_NO_SHADOW = 0x800000, /* casts no shadow of any light */
-    /* With IS_TINTED: alpha of the base colour map is the transmitted share, not the coverage. */
+    /* With IS_TINTED: alpha of the base colour map is the transmission, not the coverage. */
     MASU_MATERIAL_TRANSMISSION_MAP = 0x20000,
     /* Without IS_BLEND: */
-    MASU_MATERIAL_LOBE_MAP = 0x10000,     /* with the bit of COAT: the map is that of the lobe */
-    MASU_MATERIAL_COAT_RELIEF = 0x100000, /* with COAT_SMOOTH: own normals of the coat, see EMISSIVE */
+    MASU_MATERIAL_LOBE_MAP = 0x10000,     /* with the bit of COAT: its map is for the lobe */
+    MASU_MATERIAL_COAT_RELIEF = 0x100000, /* with COAT_SMOOTH: the coat has a normal map */
     MASU_MATERIAL_KNOWN = 0xFFFFFF
 };
 
@@ -178,14 +176,12 @@ typedef struct masu_blob_primitive {
     uint32_t first_index;
     uint32_t index_count; /* a multiple of 3 */
     uint32_t first_vertex;
-    /* 1 .. 16,777,215: indices are exact even on devices without fullDrawIndexUint32 */
-    uint32_t vertex_count;
+    uint32_t vertex_count; /* 1 .. 16,777,215: exact without fullDrawIndexUint32 */
     uint32_t material;
     float aabb_min[3]; /* object space */
     float aabb_max[3];
-    /* Object space: largest height of the smooth surface, defined by the vertex normals, above the
-     * triangles. 0: faceted. The shadow map shrinks the primitive by this distance, to avoid
-     * self-shadowing. */
+    /* Object space: largest height of the smooth surface (by vertex normals) above the triangles;
+     * 0: faceted. The shadow map shrinks the primitive by it, to avoid self-shadowing. */
     float rise;
 } masu_blob_primitive;
 
@@ -204,9 +200,7 @@ typedef struct masu_blob_mesh {
 typedef struct masu_blob_lod {
     uint32_t mesh;
     uint32_t first_primitive;
-    /* object space: upper bound of the distance between the two surfaces; does not decrease from
-     * level to level */
-    float error;
+    float error; /* object space: bound of the distance of both surfaces; never decreases */
     uint32_t reserved;
 } masu_blob_lod;
 
@@ -261,8 +255,7 @@ typedef struct masu_blob_channel {
     uint32_t node; /* relative to the model's first node */
     uint32_t path; /* masu_blob_channel_path; (node, path, target) is unique in a clip */
     uint32_t step; /* 1: each key's value holds until the next key; 0: interpolated */
-    /* next range of KEYS, at least one; the first and last values hold outside */
-    uint32_t first_key, key_count;
+    uint32_t first_key, key_count; /* next range of KEYS, at least one; both ends hold */
     uint32_t target; /* CHANNEL_WEIGHT: index of the skin's target; else 0 */
     uint32_t reserved[2];
 } masu_blob_channel;
@@ -275,15 +268,13 @@ typedef struct masu_blob_key {
 /* A skinned mesh. It has its own vertices, which the GPU writes in every frame, and one instance.
  * The vertices of all skins are at the end of VERTICES, in this order. Sorted by model. */
 #define MASU_BLOB_SKINS_MAX 16384u
-/* sum over all skins; shared joints count once per skin */
-#define MASU_BLOB_SKIN_JOINTS_MAX (1u << 20)
+#define MASU_BLOB_SKIN_JOINTS_MAX (1u << 20) /* sum over skins; shared ones once per skin */
 typedef struct masu_blob_skin {
     uint32_t model; /* the model that shows it, */
     uint32_t node;  /* and the node of MODEL_NODES */
     uint32_t like;  /* the first skin with the same joints and vertices, at most this one */
     uint32_t first_vertex, vertex_count; /* range of VERTICES that contains all its primitives */
-    /* vertex_count elements of SKIN_VERTICES: the next, or those of `like` */
-    uint32_t first_skin_vertex;
+    uint32_t first_skin_vertex; /* vertex_count of SKIN_VERTICES: the next, or of `like` */
     uint32_t first_joint, joint_count; /* range of JOINTS, 1..65536: the next, or those of `like` */
     uint32_t first_target, target_count; /* range of MORPH_TARGETS: likewise; 0: no morph targets */
     uint32_t first_delta; /* index into MORPH_DELTAS, vertex_count per target: likewise */
@@ -308,8 +299,7 @@ typedef struct masu_blob_morph_delta {
  * bind matrix. */
 typedef struct masu_blob_joint {
     float inverse_bind[12]; /* from bind-pose space to the space of the joint */
-    /* bounds of all bind-pose vertices with a weight for it; both 0 if there are none */
-    float low[3], high[3];
+    float low[3], high[3]; /* bounds of the bind-pose vertices that it moves; 0 if none */
     uint32_t node; /* relative to the model's first node */
     uint32_t used; /* 1: some vertex has a weight for it */
 } masu_blob_joint;
@@ -333,8 +323,7 @@ typedef struct masu_blob_group {
     uint32_t reserved;
 } masu_blob_group;
 
-/* per mesh: every instance's occluders are processed in every frame */
-#define MASU_BLOB_OCCLUDERS_MAX 64u
+#define MASU_BLOB_OCCLUDERS_MAX 64u /* per mesh: each is processed per instance and frame */
 
 /* A box inside a mesh. The mesh occludes the whole box from every direction, so everything behind
  * the box is behind the mesh. */
@@ -354,23 +343,19 @@ typedef struct masu_blob_material {
     uint32_t flags;       /* masu_blob_material_flags; 0: no textures; the next two are 0 */
     uint32_t texture_set; /* element of TEXTURE_SETS */
     uint32_t layers;      /* of the first four slots' textures, 8 bits per slot */
-    float specular; /* 0..12.5: reflectance of a dielectric at normal incidence / 0.08; plain: 0.5 */
+    float specular; /* 0..12.5: dielectric reflectance at normal incidence / 0.08; default: 0.5 */
     float coat;     /* 0..1: weight of the clear coat */
     float coat_roughness; /* perceptual, 0..1 */
     float opacity;        /* 0..1 for transparent materials, else 1 */
     uint32_t meso;        /* element of MESO, or MASU_BLOB_NONE */
-    /* of the slots from OCCLUSION on, 8 bits each; from bit 16 on one bit per slot: uses
-     * TEXCOORDS_1 */
-    uint32_t more_layers;
-    /* scale of the texture coordinates of all maps except base colour and emissive */
-    float detail[2];
-    /* At most one of the next three, without a coat and MESO: masu_lobe_code (material.h). */
-    float specular_color[3]; /* of a dielectric's reflectance: 0..1, the largest 1; 0, 0, 0: grey */
+    uint32_t more_layers; /* slots from OCCLUSION on, 8 bits; from bit 16: TEXCOORDS_1 per slot */
+    float detail[2]; /* scale of texture coordinates, except for base colour and emissive */
+    /* At most one of the next three, only without coat and MESO: masu_lobe_code (material.h). */
+    float specular_color[3]; /* hue of the dielectric reflectance: 0..1, maximum 1; 0, 0, 0: grey */
     float sheen_color[3];    /* 0..1; 0: no sheen. With specular 0.5 */
     float sheen_roughness;   /* perceptual, 0..1 */
-    float anisotropy; /* 0..1: roughness along the grain is mix(alpha, 1, anisotropy^2) */
-    /* 0..2 pi: direction of the grain, from +u towards +y of a normal map */
-    float anisotropy_rotation;
+    float anisotropy; /* 0..1: alpha along the grain is mix(alpha, 1, anisotropy^2) */
+    float anisotropy_rotation; /* 0..2 pi: direction of the grain, from +u to +y of normal maps */
 } masu_blob_material;
 
 /* Appearance, by viewing angle, of surface detail too small for polygons: the curves of
@@ -495,9 +480,7 @@ typedef struct masu_blob_texture {
 /* The textures that a draw binds: one per slot, or MASU_BLOB_NONE. */
 typedef struct masu_blob_texture_set {
     uint32_t texture[MASU_SLOT_COUNT];
-    /* along u and v: 0 repeat, 1 clamp, 2 mirror; plus 4 in the first: nearest magnification
-     * filter */
-    uint32_t wrap[2];
+    uint32_t wrap[2]; /* u, v: 0 repeat, 1 clamp, 2 mirror; first + 4: nearest magnification */
 } masu_blob_texture_set;
 
 /* Traced reflections; present with TRACE_NODES, TRACE_SDF_SPIRV or both. */
@@ -597,8 +580,7 @@ typedef struct masu_blob_environment {
     float fog_color[3];     /* radiance of dense fog; all zero: that of the sky at the horizon */
     float fog_density;  /* at fog_height, 1/m; 0: no fog */
     float fog_height;   /* m */
-    /* >= 0, 1/m: the density falls by a factor of e over 1 / fog_falloff metres of height */
-    float fog_falloff;
+    float fog_falloff; /* >= 0, 1/m: density falls by e over 1 / fog_falloff metres of height */
     float fog_start;    /* >= 0, m: distance without fog */
     float darken;       /* and to a brighter one; 0: the default */
     float smooth_edges; /* 1: the default anti-aliasing is SMAA; 0: none */
@@ -625,8 +607,7 @@ typedef struct masu_blob_sdf {
     float lipschitz;     /* >= 1e-3: |f(p)-f(q)| <= lipschitz |p-q| */
     float bounds_max[3];
     float max_distance; /* maximum ray length, > 0 */
-    /* 1: the code was compiled to read the raster depth (the scene has instances) */
-    uint32_t has_raster;
+    uint32_t has_raster; /* 1: the code reads the raster depth (the scene has instances) */
     uint32_t part_count; /* 1..4096 */
     uint32_t flags;       /* MASU_SDF_ANCHORED, MASU_SDF_TIMELESS */
     uint32_t block_words; /* 32-bit term masks in the tile buffer, per 4x4 block of pixels: 0..2 */

@@ -76,12 +76,14 @@ static masu_result check_shadow(reader *r) {
 /* Numbers of lobes; the G-buffer has room for one kind, in the place of coats and reliefs. */
 static int lobes_fit(const masu_blob_material *m) {
     const float *hue = m->specular_color, *sheen = m->sheen_color;
-    if (!within(hue, 3, 0.0f, 1.0f) || !within(sheen, 3, 0.0f, 1.0f) || !within(&m->sheen_roughness, 1, 0.0f, 1.0f) ||
-        !within(&m->anisotropy, 1, 0.0f, 1.0f) || !within(&m->anisotropy_rotation, 1, 0.0f, 6.2832f))
+    if (!within(hue, 3, 0.0f, 1.0f) || !within(sheen, 3, 0.0f, 1.0f) ||
+        !within(&m->sheen_roughness, 1, 0.0f, 1.0f) || !within(&m->anisotropy, 1, 0.0f, 1.0f) ||
+        !within(&m->anisotropy_rotation, 1, 0.0f, 6.2832f))
         return 0;
     if (masu_is_colored(hue) && !(hue[0] == 1.0f || hue[1] == 1.0f || hue[2] == 1.0f)) return 0;
     int colored = m->specular > 1.0f || masu_is_colored(hue);
-    int shines = sheen[0] > 0.0f || sheen[1] > 0.0f || sheen[2] > 0.0f, grained = m->anisotropy > 0.0f;
+    int shines = sheen[0] > 0.0f || sheen[1] > 0.0f || sheen[2] > 0.0f,
+        grained = m->anisotropy > 0.0f;
     if (shines && m->specular != 0.5f) return 0;
     if (masu_lobe_code(m) && (m->coat > 0.0f || m->meso != MASU_BLOB_NONE)) return 0;
     return colored + shines + grained <= 1;
@@ -101,14 +103,16 @@ static masu_result check_material(reader *r, uint64_t i) {
     uint32_t blends = m->flags & MASU_MATERIAL_IS_BLEND;
     if (blends && m->flags & MASU_MATERIAL_IS_TINTED && m->flags & MASU_MATERIAL_IS_ADDITIVE)
         return bad(r, "materials", i, "is tinted, but hides nothing");
-    if (m->flags & MASU_MATERIAL_TRANSMISSION_MAP && (!blends || !(m->flags & MASU_MATERIAL_IS_TINTED)))
+    if (m->flags & MASU_MATERIAL_TRANSMISSION_MAP &&
+        (!blends || !(m->flags & MASU_MATERIAL_IS_TINTED)))
         return bad(r, "materials", i, "has a map of transmission, but transmits nothing");
     if (!blends && m->flags & MASU_MATERIAL_LOBE_MAP &&
         (!(m->flags & 1u << MASU_SLOT_COAT) || masu_lobe_code(m) >> 21 == MASU_LOBE_GRAIN))
         return bad(r, "materials", i, "has no lobe, or no map of it");
     if (!blends && m->flags & MASU_MATERIAL_COAT_RELIEF &&
         (!(m->flags & MASU_MATERIAL_COAT_SMOOTH) || m->flags & 1u << MASU_SLOT_EMISSIVE))
-        return bad(r, "materials", i, "has no coat whose relief it could be, or emission in its place");
+        return bad(r, "materials", i,
+                   "has no coat whose relief it could be, or emission in its place");
     if (m->flags & MASU_MATERIAL_COAT_SMOOTH && m->flags & MASU_MATERIAL_BASE_SMOOTH)
         return bad(r, "materials", i, "has a relief, but neither coat nor base has it");
     if (!(m->flags & MASU_MATERIAL_IS_BLEND) && m->opacity != 1.0f)
@@ -259,8 +263,8 @@ masu_result masu_check_looks(reader *r) {
  * Transparent materials are not in the G-buffer. */
 static int has_surface(const masu_blob_material *m) {
     if (m->flags & MASU_MATERIAL_IS_BLEND) return 0;
-    return m->specular != 0.5f || m->coat > 0.0f || m->meso != MASU_BLOB_NONE || masu_lobe_code(m) ||
-           (m->flags & 1u << MASU_SLOT_OCCLUSION) != 0;
+    return m->specular != 0.5f || m->coat > 0.0f || m->meso != MASU_BLOB_NONE ||
+           masu_lobe_code(m) || (m->flags & 1u << MASU_SLOT_OCCLUSION) != 0;
 }
 
 /* Collects the texture sets of transparent items, at most one more than the limit. */

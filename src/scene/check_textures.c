@@ -59,7 +59,8 @@ static masu_result check_maps(reader *r, uint64_t i) {
     const masu_blob_material *m = &r->view.materials[i];
     uint32_t maps = m->flags & MASU_MATERIAL_HAS_MAPS;
     uint32_t opaque = ~m->flags & MASU_MATERIAL_IS_BLEND;
-    uint32_t relief = opaque && m->flags & MASU_MATERIAL_COAT_RELIEF, lobe = opaque && m->flags & MASU_MATERIAL_LOBE_MAP;
+    uint32_t relief = opaque && m->flags & MASU_MATERIAL_COAT_RELIEF,
+             lobe = opaque && m->flags & MASU_MATERIAL_LOBE_MAP;
     uint32_t smooth = MASU_MATERIAL_COAT_SMOOTH | MASU_MATERIAL_BASE_SMOOTH;
     uint32_t alpha = MASU_MATERIAL_HAS_METAL | MASU_MATERIAL_IS_MASK | smooth;
     if (m->flags & ~(uint32_t)MASU_MATERIAL_KNOWN) return bad(r, "materials", i, "unknown flags");
@@ -93,7 +94,8 @@ static masu_result check_maps(reader *r, uint64_t i) {
     uint32_t second = m->more_layers >> 16;
     if (second & ~(maps | relief << MASU_SLOT_EMISSIVE) || (second && !r->view.texcoords_1))
         return bad(r, "materials", i, "no such layer, or a map of coordinates that there are not");
-    if (!opaque && maps >> MASU_SLOT_COAT & 1) return bad(r, "materials", i, "is blended, and has a map of its coat");
+    if (!opaque && maps >> MASU_SLOT_COAT & 1)
+        return bad(r, "materials", i, "is blended, and has a map of its coat");
     uint32_t has_base = maps >> MASU_SLOT_BASE & 1, has_surface = maps >> MASU_SLOT_SURFACE & 1;
     if (m->flags & MASU_MATERIAL_IS_MASK &&
         (!has_base ||

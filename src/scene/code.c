@@ -217,7 +217,7 @@ static uint32_t id_kind(const walk *w, uint32_t id) {
 /* ---- Operands -------------------------------------------------------------------------------- */
 
 /* Length of a string literal in 32-bit values; 0 if it does not end within `left` values. */
-static uint32_t text_words(const uint32_t *at, uint32_t left) {
+static uint32_t string_length(const uint32_t *at, uint32_t left) {
     const void *end = left ? memchr(at, 0, 4 * (size_t)left) : NULL;
     return end ? (uint32_t)(((const char *)end - (const char *)at) / 4 + 1) : 0;
 }
@@ -269,7 +269,7 @@ static const char *check_operands(walk *w, const form *f, const uint32_t *word, 
         if (*p == '\0') return at == length ? NULL : "an instruction is too long";
         if (at >= length) return "an instruction is too short";
         if (*p == 'S') {
-            uint32_t text = text_words(word + at, length - at);
+            uint32_t text = string_length(word + at, length - at);
             if (!text) return "a text does not end";
             at += text;
             continue;
@@ -369,7 +369,7 @@ static const char *note(walk *w, const uint32_t *word, uint32_t length) {
 
 /* ---- Functions and blocks -------------------------------------------------------------------- */
 
-static const char *step(walk *w, uint32_t op) {
+static const char *check_block_structure(walk *w, uint32_t op) {
     int ends = op >= OP_BRANCH && op <= OP_UNREACHABLE;
     if (w->merging &&
         !(w->merging == OP_LOOP_MERGE ? op == OP_BRANCH || op == OP_BRANCH_CONDITIONAL
@@ -407,7 +407,7 @@ static const char *check_order(walk *w, const form *f, uint32_t op) {
     uint32_t rank = inside ? RANK_FUNCTION : f->rank;
     if (rank < w->rank) return "an instruction stands in the wrong section";
     w->rank = rank;
-    return rank == RANK_FUNCTION ? step(w, op) : NULL;
+    return rank == RANK_FUNCTION ? check_block_structure(w, op) : NULL;
 }
 
 /* ---- Traversal ------------------------------------------------------------------------------- */
@@ -445,7 +445,7 @@ static const uint32_t *find(const walk *w, uint32_t id) {
 static int is(const uint32_t *word, uint32_t op) { return word && (word[0] & 0xFFFFu) == op; }
 
 /* The instruction of the type that a pointer type points to. */
-static const uint32_t *pointed(const walk *w, uint32_t type) {
+static const uint32_t *pointee_of(const walk *w, uint32_t type) {
     const uint32_t *pointer = find(w, type);
     return is(pointer, OP_TYPE_POINTER) ? find(w, pointer[3]) : NULL;
 }
@@ -459,7 +459,7 @@ static const char *check_resources(walk *w) {
                 return "two resources share a binding";
         }
         const uint32_t *variable = find(w, b->id),
-                       *type = variable ? pointed(w, variable[1]) : NULL;
+                       *type = variable ? pointee_of(w, variable[1]) : NULL;
         if (b->class != MASU_MODULE_SAMPLED) {
             if (!is(type, OP_TYPE_STRUCT)) return "a buffer is no block";
             continue;
@@ -536,7 +536,7 @@ const char *masu_module_read(const uint32_t *words, uint64_t count, masu_module 
     problem = check_resources(&w);
     if (!problem) problem = check_local_size(&w);
     if (!problem && w.push_type) {
-        out->push_bytes = struct_bytes(&w, pointed(&w, w.push_type), 1);
+        out->push_bytes = struct_bytes(&w, pointee_of(&w, w.push_type), 1);
         if (!out->push_bytes)
             problem = "push constants are not numbers of 32 bits within 128 bytes";
     }

@@ -11,7 +11,8 @@ static inline uint32_t masu_root_steps(float value, float steps) {
     return (uint32_t)(sqrtf(value < 0.0f ? 0.0f : value < 1.0f ? value : 1.0f) * steps + 0.5f);
 }
 
-/* Which channel is the brightest, and the roots of the other two relative to it: as masu_hue_code of pack.glsl. */
+/* Index of the brightest channel, and the square roots of the other two relative to it, in 26 steps
+ * each. The same code as from masu_hue_code of pack.glsl. */
 static inline uint32_t masu_hue_code(const float color[3]) {
     uint32_t most = color[0] >= color[1] && color[0] >= color[2] ? 0 : color[1] >= color[2] ? 1 : 2;
     const float scale = color[most] > 0.0f ? 1.0f / color[most] : 0.0f;
@@ -19,17 +20,20 @@ static inline uint32_t masu_hue_code(const float color[3]) {
            masu_root_steps(color[(most + 2) % 3] * scale, 25.0f);
 }
 
-/* 0, 0, 0 is gray too. */
-static inline int masu_is_colored(const float hue[3]) { return hue[0] != hue[1] || hue[1] != hue[2]; }
+/* Whether the channels differ; 0, 0, 0 is treated as grey. */
+static inline int masu_is_colored(const float hue[3]) {
+    return hue[0] != hue[1] || hue[1] != hue[2];
+}
 
-/* The 23 bits of pack.glsl that stand for a lobe beyond GGX with a grey f0 up to 0.08; 0: it has none. */
+/* The 23-bit code (pack.glsl) of a specular lobe other than GGX with a grey f0 of at most 0.08; 0
+ * for that one. */
 static inline uint32_t masu_lobe_code(const masu_blob_material *m) {
     const float pi = 3.14159265f, *sheen = m->sheen_color, *hue = m->specular_color;
     float most = sheen[0] > sheen[1] ? sheen[0] : sheen[1];
     most = most > sheen[2] ? most : sheen[2];
     if (most > 0.0f) {
-        return MASU_LOBE_SHEEN << 21 | masu_hue_code(sheen) << 10 | masu_root_steps(most, 31.0f) << 5 |
-               (uint32_t)(m->sheen_roughness * 31.0f + 0.5f);
+        return MASU_LOBE_SHEEN << 21 | masu_hue_code(sheen) << 10 |
+               masu_root_steps(most, 31.0f) << 5 | (uint32_t)(m->sheen_roughness * 31.0f + 0.5f);
     }
     if (m->anisotropy > 0.0f) {
         uint32_t angle = (uint32_t)(m->anisotropy_rotation / pi * 128.0f + 0.5f) & 127u;
@@ -38,12 +42,14 @@ static inline uint32_t masu_lobe_code(const masu_blob_material *m) {
     }
     const float gray[3] = {1.0f, 1.0f, 1.0f};
     int colored = masu_is_colored(hue);
-    if (!colored && m->specular <= 1.0f && (m->flags & MASU_MATERIAL_IS_BLEND || !(m->flags & MASU_MATERIAL_LOBE_MAP)))
+    if (!colored && m->specular <= 1.0f &&
+        (m->flags & MASU_MATERIAL_IS_BLEND || !(m->flags & MASU_MATERIAL_LOBE_MAP)))
         return 0;
-    return MASU_LOBE_COLORED << 21 | masu_hue_code(colored ? hue : gray) << 8 | masu_root_steps(m->specular * 0.08f, 255.0f);
+    return MASU_LOBE_COLORED << 21 | masu_hue_code(colored ? hue : gray) << 8 |
+           masu_root_steps(m->specular * 0.08f, 255.0f);
 }
 
-/* Shaders have a lobe in the place of the specular factor, below 0. */
+/* The specular factor of the shaders; a negative value is a lobe code. */
 static inline float masu_specular_of(const masu_blob_material *m) {
     uint32_t code = masu_lobe_code(m);
     return code ? -(float)(code + 1u) : m->specular;

@@ -35,8 +35,8 @@ uint64_t masu_trace_slot_bytes(const masu_scene_data *scene, int query) {
 
 /* Index of the ray tracing copy of a material's map, or MASU_TRACE_NONE. Binary search: the copies
  * are sorted. */
-static uint32_t picture_of(const masu_scene_data *scene, const masu_scene_view *v,
-                           const masu_blob_material *m, uint32_t slot) {
+static uint32_t trace_texture_of(const masu_scene_data *scene, const masu_scene_view *v,
+                                 const masu_blob_material *m, uint32_t slot) {
     if (!(m->flags & 1u << slot)) return MASU_TRACE_NONE;
     uint32_t texture = v->texture_sets[m->texture_set].texture[slot];
     uint32_t layer = m->layers >> 8 * slot & 255u, first = 0, end = scene->trace_textures;
@@ -54,9 +54,9 @@ static uint32_t picture_of(const masu_scene_data *scene, const masu_scene_view *
 
 /* Ray hits do not sample roughness and metallic but use the mean of the map. It is the smallest mip
  * of the map's copy, which includes the effect of the normal map on the roughness. */
-static void blur_surface(const masu_scene_data *scene, const masu_scene_view *v,
-                         const masu_blob_material *m, struct masu_trace_material *out) {
-    uint32_t i = picture_of(scene, v, m, MASU_SLOT_SURFACE);
+static void set_mean_surface(const masu_scene_data *scene, const masu_scene_view *v,
+                             const masu_blob_material *m, struct masu_trace_material *out) {
+    uint32_t i = trace_texture_of(scene, v, m, MASU_SLOT_SURFACE);
     if (i == MASU_TRACE_NONE) return;
     const masu_blob_trace_texture *t = &v->trace_textures[i];
     uint32_t mean = v->trace_texels[t->first + masu_blob_trace_texels(t->width, t->height) - 1];
@@ -77,15 +77,15 @@ struct masu_trace_material masu_trace_material_of(const masu_scene_data *scene,
     const masu_blob_texture_set *set = &v->texture_sets[m->texture_set];
     out.maps[3] = (set->wrap[0] & 3u) | set->wrap[1] << 2;
     if (m->more_layers >> (16 + MASU_SLOT_EMISSIVE) & 1u) out.maps[3] |= MASU_TRACE_SECOND;
-    out.maps[0] = picture_of(scene, v, m, MASU_SLOT_BASE);
-    out.maps[1] = picture_of(scene, v, m, MASU_SLOT_EMISSIVE);
-    blur_surface(scene, v, m, &out);
+    out.maps[0] = trace_texture_of(scene, v, m, MASU_SLOT_BASE);
+    out.maps[1] = trace_texture_of(scene, v, m, MASU_SLOT_EMISSIVE);
+    set_mean_surface(scene, v, m, &out);
     return out;
 }
 
 /* The i-th 16-byte element of the traced scene buffer. */
-static void element(const masu_scene_data *scene, const masu_scene_view *v,
-                    const masu_trace_plan *p, uint64_t i, uint32_t out[4]) {
+static void write_element(const masu_scene_data *scene, const masu_scene_view *v,
+                          const masu_trace_plan *p, uint64_t i, uint32_t out[4]) {
     memset(out, 0, 16);
     if (i < p->nodes) {
         masu_trace_static s = masu_trace_static_layout(scene->trace_nodes, scene->trace_triangles);
@@ -99,7 +99,7 @@ static void element(const masu_scene_data *scene, const masu_scene_view *v,
         out[3] = v->primitives[t->primitive].material;
         const masu_blob_material *m = &v->materials[out[3]];
         if (m->flags & MASU_MATERIAL_IS_MASK &&
-            picture_of(scene, v, m, MASU_SLOT_BASE) != MASU_TRACE_NONE)
+            trace_texture_of(scene, v, m, MASU_SLOT_BASE) != MASU_TRACE_NONE)
             out[3] |= MASU_TRACE_HOLES;
         if (m->flags & MASU_MATERIAL_IS_SINGLE) out[3] |= MASU_TRACE_SINGLE;
     } else if (i < p->noise) {
@@ -130,7 +130,7 @@ void masu_trace_write(const masu_scene_data *scene, const masu_scene_view *v, ui
         uint32_t words[4];
         uint64_t skip = at % 16, part = 16 - skip;
         if (part > offset + bytes - at) part = offset + bytes - at;
-        element(scene, v, &p, at / 16, words);
+        write_element(scene, v, &p, at / 16, words);
         memcpy(to + (at - offset), (const unsigned char *)words + skip, (size_t)part);
         at += part;
     }

@@ -55,25 +55,25 @@ static range measured(const builder *b, uint32_t first, uint32_t count) {
 /* ---- Splits ---------------------------------------------------------------------------------- */
 
 /* Order by centre, then by index: the tree does not depend on the initial order. */
-static int behind(const builder *b, uint32_t i, uint32_t j, uint32_t axis) {
+static int is_after(const builder *b, uint32_t i, uint32_t j, uint32_t axis) {
     float x = middle(&b->boxes[i], axis), y = middle(&b->boxes[j], axis);
     return x > y || (x == y && i > j);
 }
 
-static void sort_few(const builder *b, uint32_t *items, uint32_t count, uint32_t axis) {
+static void sort_range(const builder *b, uint32_t *items, uint32_t count, uint32_t axis) {
     for (uint32_t i = 1; i < count; i++) {
         uint32_t item = items[i], k = i;
-        for (; k > 0 && behind(b, items[k - 1], item, axis); k--) items[k] = items[k - 1];
+        for (; k > 0 && is_after(b, items[k - 1], item, axis); k--) items[k] = items[k - 1];
         items[k] = item;
     }
 }
 
-static uint32_t split_few(const builder *b, range r) {
+static uint32_t split_exact(const builder *b, range r) {
     uint32_t best_axis = 0, best_at = r.count / 2;
     uint32_t *items = b->work + r.first;
     float best = INFINITY, left[FEW];
     for (uint32_t axis = 0; axis < 3; axis++) {
-        sort_few(b, items, r.count, axis);
+        sort_range(b, items, r.count, axis);
         masu_trace_box box = nothing();
         for (uint32_t i = 0; i + 1 < r.count; i++) {
             grow(&box, &b->boxes[items[i]]);
@@ -90,7 +90,7 @@ static uint32_t split_few(const builder *b, range r) {
             }
         }
     }
-    if (best_axis != 2) sort_few(b, items, r.count, best_axis);
+    if (best_axis != 2) sort_range(b, items, r.count, best_axis);
     return best_at;
 }
 
@@ -98,21 +98,21 @@ static uint32_t split_few(const builder *b, range r) {
  * with median-of-three pivots. Quickselect is quadratic in the worst case, so the number of rounds
  * is limited to what normal input needs. After that, the halves are only approximately ordered, but
  * still halves. */
-static uint32_t split_half(const builder *b, range r, uint32_t axis) {
+static uint32_t split_median(const builder *b, range r, uint32_t axis) {
     uint32_t *items = b->work + r.first, half = r.count / 2;
     uint32_t low = 0, high = r.count - 1;
     for (uint32_t round = 0; round < 64 && low < high; round++) {
         uint32_t a = items[low], c = items[high], m = items[low + (high - low) / 2];
-        uint32_t pivot = behind(b, a, m, axis) ? (behind(b, m, c, axis)   ? m
-                                                  : behind(b, a, c, axis) ? c
-                                                                          : a)
-                                               : (behind(b, a, c, axis)   ? a
-                                                  : behind(b, m, c, axis) ? c
-                                                                          : m);
+        uint32_t pivot = is_after(b, a, m, axis) ? (is_after(b, m, c, axis)   ? m
+                                                    : is_after(b, a, c, axis) ? c
+                                                                              : a)
+                                                 : (is_after(b, a, c, axis)   ? a
+                                                    : is_after(b, m, c, axis) ? c
+                                                                              : m);
         uint32_t i = low, j = high;
         for (;;) {
-            while (behind(b, pivot, items[i], axis)) i++;
-            while (behind(b, items[j], pivot, axis)) j--;
+            while (is_after(b, pivot, items[i], axis)) i++;
+            while (is_after(b, items[j], pivot, axis)) j--;
             if (i >= j) break;
             uint32_t swap = items[i];
             items[i++] = items[j];
@@ -159,7 +159,7 @@ static uint32_t bin_of(const builder *b, const bins *by, uint32_t item, uint32_t
     return bin < BINS ? bin : BINS - 1;
 }
 
-static uint32_t split_many(const builder *b, range r) {
+static uint32_t split_binned(const builder *b, range r) {
     bins by = bins_of(b, r);
     static const masu_trace_box inside_out = {{INFINITY, INFINITY, INFINITY},
                                               {-INFINITY, -INFINITY, -INFINITY}};
@@ -199,7 +199,7 @@ static uint32_t split_many(const builder *b, range r) {
             }
         }
     }
-    if (!best_count) return split_half(b, r, by.widest);
+    if (!best_count) return split_median(b, r, by.widest);
     uint32_t *items = b->work + r.first, at = 0;
     for (uint32_t i = 0; i < r.count; i++) {
         if (bin_of(b, &by, items[i], best_axis) >= best_bin) continue;
@@ -236,9 +236,9 @@ static uint32_t divide(const builder *b, range all, uint32_t leaf, int tight, ra
         range r = ranges[i];
         uint32_t at;
         if (tight)
-            at = split_half(b, r, bins_of(b, r).widest);
+            at = split_median(b, r, bins_of(b, r).widest);
         else
-            at = r.count <= FEW ? split_few(b, r) : split_many(b, r);
+            at = r.count <= FEW ? split_exact(b, r) : split_binned(b, r);
         ranges[i] = measured(b, r.first, at);
         ranges[count++] = measured(b, r.first + at, r.count - at);
     }
