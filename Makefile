@@ -154,8 +154,8 @@ shaders: $(SPIRV) ## compile, validate and optimise all shaders
 scenes: $(SCENES) ## bake scenes/*.json to build/scenes/*.masu
 
 .PHONY: demo demo-picture view view-window worlds hostile
-demo: deps-demo $(if $(filter forza,$(WORLD)),deps-worlds)
-demo: ## install missing packages, build, bake, render: WORLD=garden|engine|forza|city|... SIZE=1280x720 TIME= DEMO_ARGS=
+demo: deps-demo $(if $(filter forza%,$(WORLD)),deps-worlds)
+demo: ## install missing packages, build, bake, render: WORLD=garden|engine|forza|city_night|... SIZE=1280x720 TIME= DEMO_ARGS=
 	+$(V)$(more) demo-picture
 
 picture := $(BUILD)/demo$(if $(filter-out garden,$(WORLD)),-$(WORLD)).png
@@ -164,8 +164,8 @@ demo-picture: $(BUILD)/bin/masu $(picture_of)
 	$(V)$(BUILD)/bin/masu render $(picture_of) -o $(picture) --size $(SIZE) --time $(or $(TIME),$(TIME_$(WORLD)),0) $(DEMO_ARGS)
 	@echo "The image is $(abspath $(picture))"
 
-view: deps-demo deps-view $(if $(filter forza,$(WORLD)),deps-worlds)
-view: ## install missing packages, build, open a window: a start page, or WORLD=garden|engine|forza|city|... VIEW_ARGS=
+view: deps-demo deps-view $(if $(filter forza%,$(WORLD)),deps-worlds)
+view: ## install missing packages, build, open a window: a start page, or WORLD=garden|engine|forza|city_night|... VIEW_ARGS=
 	+$(V)$(more) view-window
 
 # Without a name the start page, which bakes what is chosen. A scene with a description is baked again when that or its
@@ -183,10 +183,10 @@ endif
 
 # CI has no use for it and must not depend on it: without TORCS's data there is no forza, and that is
 # no failure.
-worlds: deps-build ## bake the worlds city and forza to build/worlds; installs torcs-data if it can
-	+$(V)$(more) world-city
+worlds: deps-build ## bake the worlds city and forza, by day and night, to build/worlds; installs torcs-data if it can
+	+$(V)$(more) world-city world-city_night
 	+$(V)if $(MAKE) --no-print-directory deps-worlds && [ -d "$(TORCS)" ]; then \
-	    $(more) world-forza; \
+	    $(more) world-forza world-forza_night; \
 	else \
 	    echo "masu: no world forza: the package torcs-data cannot be installed here"; \
 	fi

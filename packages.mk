@@ -21,8 +21,8 @@ PACKAGES_worlds := torcs-data
 PACKAGES_view := libsdl2-dev libimgui-dev g++ fonts-dejavu-core
 
 # to run the tests; g++, cmake, and pkgconf from above, look at what is installed as a user of theirs would;
-# ImageMagick measures pictures beside us; masu-view has a screen of Xvfb
-PACKAGES_test := libcmocka-dev vulkan-validationlayers g++ imagemagick cmake $(PACKAGES_view) xvfb
+# ImageMagick measures pictures beside us; masu-view has a screen of Xvfb; LuaJIT reads the generated declarations
+PACKAGES_test := libcmocka-dev vulkan-validationlayers g++ imagemagick cmake $(PACKAGES_view) xvfb luajit
 
 # to build everything a second time with the other compiler and its sanitizers, whose library is a package of
 # its own (make check FULL=1), and for `make fuzz`; and another measure of SSIM
@@ -48,6 +48,10 @@ PACKAGES_cross += gcc-i686-linux-gnu libc6-dev-i386-cross qemu-user
 # for `make analyse`. Never installed by itself
 PACKAGES_analyse := gcc clang-tidy cppcheck
 
+# for `make reference` and `make deb`. Never installed by itself
+PACKAGES_reference := doxygen
+PACKAGES_deb := dpkg-dev fakeroot
+
 # for who works on Masu: `make format`, `make compdb`. Never installed by itself
 PACKAGES_dev := clang-format bear
 
@@ -72,7 +76,7 @@ endef
 
 .PHONY: packages deps-build deps-demo deps-worlds deps-view deps-test deps-analyse
 packages: ## print the Debian packages by role
-	@$(foreach role,build demo worlds view test full lab plots isa cross analyse dev,echo "$(role): $(PACKAGES_$(role))";)
+	@$(foreach role,build demo worlds view test full lab plots isa cross analyse reference deb dev,echo "$(role): $(PACKAGES_$(role))";)
 deps-build: ## install the packages that building needs
 	$(call install-packages,$(PACKAGES_build))
 deps-demo: ## install the packages that the demo needs

@@ -181,7 +181,8 @@ int main(int argc, char **argv) {
     CHECK(masu_headless_target_create(&host, WIDTH, HEIGHT, VK_FORMAT_R8G8B8A8_UNORM, false, &image, error, room));
     masu_scene scene;
     CHECK(masu_scene_bind(blob, size, &scene, &detail) == MASU_OK);
-    masu_desc desc = {.vulkan = {.get_instance_proc_addr = vkGetInstanceProcAddr,
+    masu_desc desc = {MASU_DESC,
+                      .vulkan = {.get_instance_proc_addr = vkGetInstanceProcAddr,
                                  .instance = host.instance,
                                  .physical_device = host.physical,
                                  .device = host.device,
@@ -196,7 +197,9 @@ int main(int argc, char **argv) {
     masu_renderer *m;
     masu_commands commands;
     CHECK(masu_init(&desc, block, need.host_bytes, &m, &detail) == MASU_OK);
-    while (masu_load(m, &commands) == MASU_INCOMPLETE) CHECK(masu_headless_run(&host, commands.buffer, error, room));
+    while (masu_load(m, &commands, &detail) == MASU_INCOMPLETE) {
+        CHECK(masu_headless_run(&host, commands.buffer, error, room));
+    }
 
     /* Images, views, formats and layouts are the same in every frame: all this is made once. */
     static const masu_split_bits points[2] = {MASU_SPLIT_BEFORE_TONE, MASU_SPLIT_AFTER_UPSCALE};
@@ -211,7 +214,7 @@ int main(int argc, char **argv) {
          .pCode = masu_spv_host_pass_frag}};
     for (int i = 0; i < 2; i++) CHECK(!vkCreateShaderModule(host.device, &code[i], NULL, &modules[i]));
     for (int i = 0; i < 2; i++) {
-        CHECK(masu_split_of(m, points[i], 0, 0, &split[i]) == MASU_OK);
+        CHECK(masu_split_of(m, points[i], 0, 0, &split[i], &detail) == MASU_OK);
         CHECK(!make_targets(host.device, &split[i], &painters[i]));
         CHECK(!make_pipeline(host.device, modules, split[i].depth.view != VK_NULL_HANDLE, &painters[i]));
     }
@@ -232,12 +235,12 @@ int main(int argc, char **argv) {
     for (int i = 0; i < 4; i++) {
         masu_camera camera;
         masu_frame_view view;
-        CHECK(masu_camera_at(m, 0.0, &camera) == MASU_OK);
-        masu_frame_desc frame = {.camera = &camera, .rung = i < 3 ? 2 : 1}; /* both are upscaled */
-        CHECK(masu_frame(m, &frame, &commands) == MASU_OK);
-        CHECK(masu_frame_view_of(m, &view) == MASU_OK);
+        CHECK(masu_camera_at(m, 0.0, &camera, &detail) == MASU_OK);
+        masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &camera, .rung = i < 3 ? 2 : 1}; /* both are upscaled */
+        CHECK(masu_frame(m, &frame, &commands, &detail) == MASU_OK);
+        CHECK(masu_frame_view_of(m, &view, &detail) == MASU_OK);
         for (int k = 0; k < 2; k++) /* how much of the images is the picture depends on the rung */
-            CHECK(masu_split_of(m, points[k], commands.rung, 0, &split[k]) == MASU_OK);
+            CHECK(masu_split_of(m, points[k], commands.rung, 0, &split[k], &detail) == MASU_OK);
         const float *f = camera.forward; /* of a scene's camera as long as the way to what it looks at */
         sheet glowing = slanting(&view, sqrt((double)(f[0] * f[0] + f[1] * f[1] + f[2] * f[2])));
         CHECK(!record(own[0], &painters[0], &split[0].color, &glowing));

@@ -34,15 +34,15 @@ static bool read_scene(view *v, const char *path) {
 }
 
 static masu_desc describe(view *v) {
-    return (masu_desc){
-        .vulkan = window_vulkan(&v->window),
-        .scene = &v->scene,
-        .output = v->window.size,
-        .targets = window_targets(&v->window),
-        .frames_in_flight = WINDOW_SLOTS,
-        .ladder = MASU_ON, /* rungs as they were measured for scenes of this class */
-        .resizable = 1,
-        .governor = {.mode = MASU_GOVERNOR_ON}};
+    return (masu_desc){MASU_DESC,
+                       .vulkan = window_vulkan(&v->window),
+                       .scene = &v->scene,
+                       .output = v->window.size,
+                       .targets = window_targets(&v->window),
+                       .frames_in_flight = WINDOW_SLOTS,
+                       .ladder = MASU_ON, /* rungs as they were measured for scenes of this class */
+                       .resizable = 1,
+                       .governor = {.mode = MASU_GOVERNOR_ON}};
 }
 
 /* A renderer for the window as large as it is. It knows at once what the one before has learnt. */
@@ -53,7 +53,7 @@ static bool build(view *v) {
     masu_commands load;
     masu_result result;
     masu_desc desc = describe(v);
-    bool knows = v->m && masu_governor_save(v->m, &learnt) == MASU_OK;
+    bool knows = v->m && masu_governor_save(v->m, &learnt, NULL) == MASU_OK;
     masu_destroy(v->m);
     free(v->block);
     v->m = NULL, v->block = NULL, v->frame = 0, v->inits++;
@@ -64,10 +64,11 @@ static bool build(view *v) {
                        (unsigned long long)need.host_bytes),
                false;
     if (masu_init(&desc, v->block, need.host_bytes, &v->m, &detail)) return failed(&detail);
-    while ((result = masu_load(v->m, &load)) == MASU_INCOMPLETE) {
+    while ((result = masu_load(v->m, &load, &detail)) == MASU_INCOMPLETE) {
         if (!window_run(&v->window, load.buffer)) return false;
     }
-    return result || (knows && masu_governor_restore(v->m, &learnt)) ? failed(masu_last_error(v->m)) : true;
+    if (!result && knows) result = masu_governor_restore(v->m, &learnt, &detail);
+    return !result || failed(&detail);
 }
 
 /* True, and the window still outdated: it has no size now, as one that is rolled up. */
@@ -87,12 +88,14 @@ static bool draw(view *v, const char *picture, bool *outdated) {
     window *w = &v->window;
     uint32_t slot = (uint32_t)(v->frame % WINDOW_SLOTS), image;
     masu_commands commands;
+    masu_detail detail;
     VkResult got = window_begin(w, slot, &image); /* waits until the slot is free */
     *outdated = got == VK_ERROR_OUT_OF_DATE_KHR;
     if (got) return *outdated;
     if (w->submit_ns[slot]) masu_frame_times(v->m, slot, w->submit_ns[slot], w->done_ns[slot], 0);
-    masu_frame_desc frame = {.time = SDL_GetTicks() / 1e3, .rung = MASU_RUNG_AUTO, .target = image};
-    if (masu_frame(v->m, &frame, &commands)) return failed(masu_last_error(v->m));
+    masu_frame_desc frame = {MASU_FRAME_DESC, .time = SDL_GetTicks() / 1e3, .rung = MASU_RUNG_AUTO,
+                             .target = image};
+    if (masu_frame(v->m, &frame, &commands, &detail)) return failed(&detail);
     overlay_line line = {8, 8, 2, ""};
     snprintf(line.text, sizeof line.text, "%uX%u  RUNG %u", w->size.width, w->size.height, commands.rung);
     v->frame++, v->frames++, v->rungs |= 1u << commands.rung;

@@ -25,13 +25,13 @@ int main(int argc, char **argv) {
     masu_scene scene;
     CHECK(masu_scene_bind(blob, size, &scene, &detail) == MASU_OK);
     masu_desc desc = {
+        MASU_DESC,
         .vulkan = {.get_instance_proc_addr = vkGetInstanceProcAddr,
                    .instance = host.instance,
                    .physical_device = host.physical,
                    .device = host.device,
                    .queue_family = host.family},
-        .scene = &scene,
-        .output = {1280, 720},
+        .scene = &scene, .output = {1280, 720},
         .targets = {.images = &image.image, .views = &image.view, .count = 1, .storage = 1}};
     masu_memory need;
     CHECK(masu_memory_query(&desc, &need, &detail) == MASU_OK);
@@ -41,12 +41,12 @@ int main(int argc, char **argv) {
     masu_renderer *m;
     masu_commands commands;
     CHECK(masu_init(&desc, block, need.host_bytes, &m, &detail) == MASU_OK);
-    while (masu_load(m, &commands) == MASU_INCOMPLETE) {
+    while (masu_load(m, &commands, &detail) == MASU_INCOMPLETE) {
         CHECK(masu_headless_run(&host, commands.buffer, error, room));
     }
     for (int i = 0; i < 10; i++) { /* no allocation from here on */
-        masu_frame_desc frame = {.time = i / 60.0, .rung = i < 9 ? 2 : 0};
-        CHECK(masu_frame(m, &frame, &commands) == MASU_OK);
+        masu_frame_desc frame = {MASU_FRAME_DESC, .time = i / 60.0, .rung = i < 9 ? 2 : 0};
+        CHECK(masu_frame(m, &frame, &commands, &detail) == MASU_OK);
         CHECK(masu_headless_run(&host, commands.buffer, error, room));
     }
     CHECK(masu_headless_target_read(&host, &image, error, room));

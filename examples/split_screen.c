@@ -38,6 +38,7 @@ int main(int argc, char **argv) {
     masu_scene scene;
     CHECK(masu_scene_bind(blob, size, &scene, &detail) == MASU_OK);
     masu_desc desc = {
+        MASU_DESC,
         .vulkan = {.get_instance_proc_addr = vkGetInstanceProcAddr,
                    .instance = host.instance,
                    .physical_device = host.physical,
@@ -54,17 +55,18 @@ int main(int argc, char **argv) {
     masu_renderer *m;
     masu_commands commands;
     CHECK(masu_init(&desc, block, need.host_bytes, &m, &detail) == MASU_OK);
-    while (masu_load(m, &commands) == MASU_INCOMPLETE) {
+    while (masu_load(m, &commands, &detail) == MASU_INCOMPLETE) {
         CHECK(masu_headless_run(&host, commands.buffer, error, room));
     }
     for (int i = 0; i < FRAMES; i++) {
         double time = i / 60.0;
         masu_camera cameras[2];
-        CHECK(masu_camera_at(m, time, &cameras[0]) == MASU_OK);
+        CHECK(masu_camera_at(m, time, &cameras[0], &detail) == MASU_OK);
         cameras[1] = beside(&cameras[0]);
         for (uint32_t k = 0; k < 2; k++) { /* the first discards what the image holds, the second keeps it */
-            masu_frame_desc frame = {.camera = &cameras[k], .time = time, .time_step = 1 / 60.0f, .viewport = k};
-            if (masu_frame(m, &frame, &commands)) return fprintf(stderr, "%s\n", masu_last_error(m)->text), 1;
+            masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &cameras[k], .time = time,
+                                     .time_step = 1 / 60.0f, .viewport = k};
+            CHECK(masu_frame(m, &frame, &commands, &detail) == MASU_OK);
             CHECK(masu_headless_run(&host, commands.buffer, error, room));
         }
     }

@@ -1,10 +1,20 @@
 /* masu.h: the public interface of Masu and its reference manual. It includes masu_knobs.h (quality
  * settings and scene limits) and masu_study.h (settings for studies, which a port does not need).
- * To start, read "Terms", "Life cycle" and examples/minimal.c.
+ * To start, read "Terms", "Life cycle" and examples/minimal.c. The declarations follow in the order
+ * in which a port needs them: life cycle, description, frame, live scene, queries.
  *
  * Masu renders baked scenes of polygons and signed distance fields (SDFs) within a fixed amount of
  * memory, whose size is available before the first frame. The host owns the Vulkan device, the
  * queue, the window and the frame loop.
+ *
+ * MASU DOES NOT
+ *  - submit, wait for the GPU, present, start threads, open files, print, or keep global state;
+ *  - stream or create geometry: all geometry is in the blob. At run time a host may add copies of
+ *    movable models without skins, punctual lights, particles, decals and debug lines, each up to
+ *    desc.reserve;
+ *  - cast shadows from particles or transparent surfaces;
+ *  - refract light, order intersecting transparent surfaces, or reflect particles and decals;
+ *  - verify that the SPIR-V of a scene with an SDF is harmless: trust such a blob like a program.
  *
  * TERMS
  *    blob        a scene as baked by masu-bake, one block of bytes (docs/blob.md)
@@ -20,38 +30,20 @@
  *
  *     masu_scene scene;                                   // 1. validate a baked scene
  *     masu_scene_bind(blob, blob_bytes, &scene, &detail); //    (skip for upscaling only)
- *     masu_desc desc = {.vulkan = {...}, .scene = &scene, .output = {1920, 1080}, ...};
+ *     masu_desc desc = {MASU_DESC, .vulkan = {...}, .scene = &scene, .output = {1920, 1080}, ...};
  *     masu_memory need;                                   // 2. query the memory it needs
  *     masu_memory_query(&desc, &need, &detail);
  *     masu_renderer *m;                                   // 3. create all objects in that memory
  *     masu_init(&desc, block, need.host_bytes, &m, &detail);
- *     while (masu_load(m, &commands) == MASU_INCOMPLETE)  // 4. upload the scene
+ *     while (masu_load(m, &commands, &detail) == MASU_INCOMPLETE) // 4. upload the scene
  *         submit_and_wait(commands.buffer);
  *     for (;;) {                                          // 5. render
  *         wait_for_fence_of_frame(n - frames_in_flight);
- *         masu_frame(m, &frame, &commands);               //    writes uniforms, picks a recording
+ *         masu_frame_desc frame = {MASU_FRAME_DESC, .time = time};
+ *         masu_frame(m, &frame, &commands, &detail);      //    writes uniforms, picks a recording
  *         submit(commands.buffer, fence);
  *     }
  *     wait_idle(); masu_destroy(m);                       // 6. the host may reuse the memory
- *
- * GUARANTEES
- *  - After masu_init the library calls no heap function and no vkAllocate*, vkCreate* or
- *    vkBegin/EndCommandBuffer. The exception is that masu_resize, and the first frame of each rung
- *    after it (in each slot, target and viewport, whenever that is), record command buffers again.
- *    Allocations of the driver inside vkQueueSubmit are not covered; `masu render --stats` counts
- *    them.
- *  - A failed masu_init has destroyed everything that it created. A failed masu_frame has written
- *    nothing and has not advanced the frame number.
- *  - A renderer must be used by one thread at a time. Different renderers are independent.
- *
- * MASU DOES NOT
- *  - submit, wait for the GPU, present, start threads, open files, print, or keep global state;
- *  - stream or create geometry: all geometry is in the blob. At run time a host may add copies of
- *    movable models without skins, punctual lights, particles, decals and debug lines, each up to
- *    desc.reserve;
- *  - cast shadows from particles or transparent surfaces;
- *  - refract light, order intersecting transparent surfaces, or reflect particles and decals;
- *  - verify that the SPIR-V of a scene with an SDF is harmless: trust such a blob like a program.
  *
  * VULKAN CONTRACT
  *  - Device: Vulkan 1.1, one queue family with graphics and compute, D32_SFLOAT as depth attachment
@@ -77,6 +69,16 @@
  *    its slot still has the data of an older frame. With rung.temporal or shadow_refresh above 1
  *    the next frame must then set frame.cut.
  *
+ * GUARANTEES
+ *  - After masu_init the library calls no heap function and no vkAllocate*, vkCreate* or
+ *    vkBegin/EndCommandBuffer. The exception is that masu_resize, and the first frame of each rung
+ *    after it (in each slot, target and viewport, whenever that is), record command buffers again.
+ *    Allocations of the driver inside vkQueueSubmit are not covered; `masu render --stats` counts
+ *    them.
+ *  - A failed masu_init has destroyed everything that it created. A failed masu_frame has written
+ *    nothing and has not advanced the frame number.
+ *  - A renderer must be used by one thread at a time. Different renderers are independent.
+ *
  * CHANGES
  *    output size up to desc.output,
  *    other targets, or another number     masu_resize
@@ -96,15 +98,23 @@
  *    angles       radians                                colour   linear, unless noted
  *    depth        reversed, infinite far plane: near / view z, 1 at the near plane, 0 at infinity
  *    matrices     row by row, multiply column vectors    pixels   from the upper left corner
- *    zero         every struct may be zero-initialised; a zero member selects the stated default
+ *    zero         every struct may be zero-initialised; a zero member selects the stated default,
+ *                 except `bytes` of masu_desc and masu_frame_desc
  *    flags        a uint32_t described as a flag is off at 0 and on at any other value
  *
  * ERRORS
  *    Functions return MASU_OK (0), MASU_INCOMPLETE (> 0: call again) or a negative masu_result.
- *    A masu_detail receives the cause; pass NULL to ignore it. Functions that change a renderer and
- *    have no such parameter store the cause for masu_last_error. NULL for any other pointer is
- *    MASU_ERROR_ARGUMENT; functions without a result then return 0 or do nothing. A call that fails
- *    with ARGUMENT, LIMIT or STATE has changed nothing.
+ *    Each function with such a result takes a masu_detail as its last parameter, which receives the
+ *    cause of a failure (NULL: ignored), and sends the cause to desc.log; masu_scene_bind, which
+ *    has no description, only fills the detail. NULL for any other pointer is MASU_ERROR_ARGUMENT;
+ *    functions without a result then return 0 or do nothing. A call that fails with ARGUMENT, LIMIT
+ *    or STATE has changed nothing.
+ *
+ * VERSIONS
+ *    Until 1.0 a minor version may break source and binary compatibility; the soname contains it
+ *    (libmasu.so.0.2). masu_desc and masu_frame_desc begin with their size in bytes, set by
+ *    MASU_DESC and MASU_FRAME_DESC: a program that was compiled with another header gets
+ *    MASU_ERROR_ARGUMENT with both sizes. docs/embedding.md has the rules.
  *
  * Compiles as C11 (pedantic) and C++17. */
 #ifndef MASU_H
@@ -126,31 +136,32 @@ extern "C" {
 #define MASU_MUST_USE
 #endif
 
+/* ---- Version and results --------------------------------------------------------------------- */
+
 #define MASU_VERSION_MAJOR 0
-#define MASU_VERSION_MINOR 1
+#define MASU_VERSION_MINOR 2
 #define MASU_VERSION_PATCH 0
+#define MASU_VERSION                                                                               \
+    (MASU_VERSION_MAJOR * 1000000u + MASU_VERSION_MINOR * 1000u + MASU_VERSION_PATCH)
 
-/* ---- Results --------------------------------------------------------------------------------- */
+/* MASU_VERSION of the linked library. It is compatible with this header if major and minor version
+ * are equal: masu_version() / 1000 == MASU_VERSION / 1000. */
+MASU_API uint32_t masu_version(void);
 
-/* Name, value, meaning. Values never change once released. */
-#define MASU_RESULTS(X)                                                                            \
-    X(MASU_OK, 0, "success")                                                                       \
-    X(MASU_INCOMPLETE, 1, "not finished: call again")                                              \
-    X(MASU_ERROR_ARGUMENT, -1, "an argument is missing, out of range or not finite")               \
-    X(MASU_ERROR_MEMORY, -2, "a memory block is missing, misaligned or too small")                 \
-    X(MASU_ERROR_LIMIT, -3, "a limit or budget of the description is exceeded")                    \
-    X(MASU_ERROR_DEVICE, -4, "the device lacks a required feature")                                \
-    X(MASU_ERROR_SCENE, -5, "the scene blob is corrupt")                                           \
-    X(MASU_ERROR_VERSION, -6, "the scene blob has another format version: bake it again")          \
-    X(MASU_ERROR_VULKAN, -7, "a Vulkan call failed")                                               \
-    X(MASU_ERROR_DEVICE_LOST, -8, "the Vulkan device was lost")                                    \
-    X(MASU_ERROR_STATE, -9, "called out of order")
-
+/* Values never change once released. */
 typedef enum masu_result {
-#define MASU_RESULT_ENUM(name, value, text) name = value,
-    MASU_RESULTS(MASU_RESULT_ENUM)
-#undef MASU_RESULT_ENUM
-        MASU_RESULT_FORCE_32 = 0x7FFFFFFF
+    MASU_OK = 0,                 /* success */
+    MASU_INCOMPLETE = 1,         /* not finished: call again */
+    MASU_ERROR_ARGUMENT = -1,    /* an argument is missing, out of range or not finite */
+    MASU_ERROR_MEMORY = -2,      /* a memory block is missing, misaligned or too small */
+    MASU_ERROR_LIMIT = -3,       /* a limit or budget of the description is exceeded */
+    MASU_ERROR_DEVICE = -4,      /* the device lacks a required feature */
+    MASU_ERROR_SCENE = -5,       /* the scene blob is corrupt */
+    MASU_ERROR_VERSION = -6,     /* the scene blob has another format version: bake it again */
+    MASU_ERROR_VULKAN = -7,      /* a Vulkan call failed */
+    MASU_ERROR_DEVICE_LOST = -8, /* the Vulkan device was lost */
+    MASU_ERROR_STATE = -9,       /* called out of order */
+    MASU_RESULT_FORCE_32 = 0x7FFFFFFF
 } masu_result;
 
 /* The meaning of a code, without a newline. Never NULL; "unknown result" for other values. */
@@ -176,13 +187,16 @@ typedef enum masu_log_level {
  * during the call. */
 typedef void (*masu_log_fn)(void *user, masu_log_level level, const char *text);
 
-/* ---- Scenes ---------------------------------------------------------------------------------- */
+/* ---- Life cycle ------------------------------------------------------------------------------ */
 
-/* A validated scene, filled by masu_scene_bind. Copyable; its content is private. A zeroed one is
- * an empty scene for the functions below, and MASU_ERROR_ARGUMENT as masu_desc.scene. */
-typedef struct masu_scene {
-    uint64_t opaque[64];
-} masu_scene;
+typedef struct masu_scene masu_scene;           /* 1. a validated scene */
+typedef struct masu_desc masu_desc;             /* 2. everything that masu_init needs */
+typedef struct masu_memory masu_memory;         /*    the memory that it would need */
+typedef struct masu_renderer masu_renderer;     /* 3. stored in the caller's block */
+typedef struct masu_commands masu_commands;     /* 4. the command buffers to submit */
+typedef struct masu_frame_desc masu_frame_desc; /* 5. one frame */
+typedef struct masu_targets masu_targets;       /*    the images that frames are written to */
+typedef struct masu_viewport masu_viewport;
 
 /* Validates every offset, count, index and float of `blob` and its hash, and fills `*out`. Takes
  * time proportional to its size; allocates and keeps nothing. `blob`: 16-byte aligned, readable and
@@ -198,94 +212,107 @@ typedef struct masu_scene {
 MASU_API MASU_MUST_USE masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes,
                                                    masu_scene *out, masu_detail *detail);
 
-/* The functions below describe what the blob contains; room that masu_desc.reserve adds is not
- * counted. They take constant time unless stated otherwise. Functions that read the blob need it to
- * be readable and unchanged. `scene` may be NULL: the result is then 0, -1 or "". */
+/* Memory that masu_init would need for `desc`, by the same code. Creates no lasting object. Like
+ * masu_plan and masu_init, it reads the scene's blob, which must still be readable. Errors as
+ * masu_init, except MASU_ERROR_MEMORY for the host block. */
+MASU_API MASU_MUST_USE masu_result masu_memory_query(const masu_desc *desc, masu_memory *out,
+                                                     masu_detail *detail);
 
-typedef enum masu_scene_item {
-    MASU_SCENE_INSTANCE = 0,
-    MASU_SCENE_MODEL = 1, /* movable models, the scene's pooled copies included */
-    MASU_SCENE_LIGHT = 2, /* punctual lights */
-    MASU_SCENE_MATERIAL = 3,
-    MASU_SCENE_SDF_PARAM = 4, /* run-time parameters of the SDF */
-    MASU_SCENE_CAMERA_KEY = 5 /* keys of the camera path; they have no names */
-} masu_scene_item;
+/* Creates a renderer: plans memory, allocates device memory that the host has not provided, and
+ * creates all images, buffers, pipelines and descriptor sets. It records one command buffer per
+ * combination of frame in flight, rung, target and viewport; each cascade with
+ * rungs[].shadow_refresh above 1 doubles the number for its rung.
+ *
+ * `block`: `block_bytes` of memory with any content, aligned to masu_memory.host_alignment. It
+ * belongs to the renderer until masu_destroy; nothing outside is written. On failure *out is NULL
+ * and every object has been destroyed.
+ *   MASU_ERROR_ARGUMENT      a member of `desc` is invalid, `bytes` for example; the detail names
+ *                            it
+ *   MASU_ERROR_MEMORY        `block` or a device block is NULL, misaligned or too small; the detail
+ *                            has the bytes needed and given
+ *   MASU_ERROR_LIMIT         a limit or budget is exceeded
+ *   MASU_ERROR_DEVICE        the device lacks a required feature; the detail names it
+ *   MASU_ERROR_SCENE         the scene cannot be rendered with `desc`; the detail has the cause
+ *   MASU_ERROR_VULKAN, _DEVICE_LOST   a Vulkan call failed; the detail has its name and VkResult */
+MASU_API MASU_MUST_USE masu_result masu_init(const masu_desc *desc, void *block,
+                                             uint64_t block_bytes, masu_renderer **out,
+                                             masu_detail *detail);
 
-/* Number of items of a kind; their indices are 0 to the result - 1. 0 for an unknown kind. */
-MASU_API uint32_t masu_scene_count(const masu_scene *scene, masu_scene_item item);
+/* Copies the scene to the device.
+ *   MASU_INCOMPLETE   submit commands->buffer, wait for it, call again
+ *   MASU_OK           finished; there is nothing to submit
+ * On unified memory a scene without textures needs no submit, and the first call returns MASU_OK;
+ * except with ray query, whose acceleration structures the device builds. Without a scene only the
+ * lookup table of SMAA is copied, if a rung uses it.
+ *
+ * With desc.load_step one call writes at most that number of bytes, and the device copies those for
+ * memory that is not host-visible. Per call it builds acceleration structures for at most load_step
+ * / 48 triangles, but always whole meshes. A step that has written to host-visible memory only has
+ * nothing to submit: buffer is NULL and part_count is 0. A host can thus load a second scene, in a
+ * separate renderer with separate memory blocks, while it shows frames of the first one:
+ *
+ *     masu_scene_bind(blob, ...); masu_memory_query(&desc, ...);  // slow: read the whole blob and
+ *     masu_init(&desc, other_block, ..., &next, &detail);         // create all objects; a host's
+ *                                                                 // thread may run them
+ *     for (;;) {                                                  // frames
+ *         wait_for_fence_of_frame(n - frames_in_flight);
+ *         step.part_count = 0;
+ *         if (next && fence_of_last_step_has_been_waited_for())
+ *             loaded = masu_load(next, &step, &detail) == MASU_OK;
+ *         masu_frame(now, &frame, &commands, &detail);
+ *         submit(step.parts, then commands.parts, fence);
+ *         if (loaded) { old = now; now = next; next = NULL; }     // its first frame is a cut.
+ *     }                                                           // After the last fence of `old`:
+ *                                                                 // masu_destroy(old)
+ *
+ * The memory blocks of the old renderer are then free for the next scene: two sets of blocks serve
+ * any number of scenes. With vulkan.pipelines the two renderers share pipelines, and masu_init
+ * creates only those that are missing in the pool. */
+MASU_API MASU_MUST_USE masu_result masu_load(masu_renderer *renderer, masu_commands *commands,
+                                             masu_detail *detail);
 
-/* Name of an item, "" if it has none or does not exist. Reads the blob and points into it. */
-MASU_API const char *masu_scene_name(const masu_scene *scene, masu_scene_item item, uint32_t index);
+/* Writes the uniforms of a frame and returns the command buffer to submit. Allocates nothing, and
+ * records nothing except after masu_resize. Call it when the slot is free: the frame that
+ * masu_frame returned frames_in_flight calls ago has finished on the GPU. commands->rung is the
+ * rung of the frame.
+ *   MASU_ERROR_ARGUMENT   `bytes` is not sizeof(masu_frame_desc);
+ *                         rung, target, camera, light or a parameter is out of range or not finite;
+ *                         MASU_RUNG_AUTO without a governor; an array is NULL with a count above 0
+ *   MASU_ERROR_LIMIT      more particles, decals or lines than desc.reserve
+ *   MASU_ERROR_STATE      masu_load has not finished
+ *   MASU_ERROR_VULKAN, _DEVICE_LOST   as masu_resize, after it
+ * After an error nothing has been written, and the frame number has not advanced. */
+MASU_API MASU_MUST_USE masu_result masu_frame(masu_renderer *renderer, const masu_frame_desc *frame,
+                                              masu_commands *commands, masu_detail *detail);
 
-/* Index of the first item with that name; -1 if there is none, or if `name` is NULL or "". Reads
- * the blob; takes time proportional to the number of items. */
-MASU_API int32_t masu_scene_find(const masu_scene *scene, masu_scene_item item, const char *name);
+/* Changes the output size and the targets, also their number. Creates no pipeline, allocates and
+ * loads nothing, and does not read the blob. Requires desc.resizable; allowed before, between and
+ * after the calls of masu_load. The frames of this renderer must have finished on the GPU; its own
+ * masu_load steps, frames and loads of other renderers may be running.
+ *   `output`      1 x 1 to desc.output
+ *   `targets`     1 to MASU_MAX_TARGETS images with the format, storage, layout, encoding, white
+ *                 and peak of masu_init; all but storage may be 0 for these. The arrays are read
+ *                 during the call; the handles must be valid until the next masu_resize or
+ *                 masu_destroy
+ *   `viewports`   desc.viewport_count elements, or NULL if that is 0
+ * The next frame is a cut. Frame numbers, slots, transforms and the governor's state continue.
+ *
+ * The call records the command buffers of the rung in use. Those of another rung
+ * follow in masu_frame: the first frame of that rung in each slot and target records its own.
+ *   MASU_ERROR_ARGUMENT   an argument contradicts the rules above
+ *   MASU_ERROR_LIMIT      `output` is larger than desc.output: use masu_destroy and masu_init
+ *   MASU_ERROR_STATE      desc.resizable is 0, or there is no scene
+ *   MASU_ERROR_VULKAN     a Vulkan call failed. The new size and targets apply nevertheless;
+ *                         masu_frame records what is missing, or fails likewise
+ *   MASU_ERROR_DEVICE_LOST   only masu_destroy is of use: masu_load, masu_resize and masu_frame
+ *                         fail likewise from then on */
+MASU_API MASU_MUST_USE masu_result masu_resize(masu_renderer *renderer, VkExtent2D output,
+                                               const masu_targets *targets,
+                                               const masu_viewport *viewports, masu_detail *detail);
 
-/* Number of animation clips of a model, 0 if the model does not exist; and the name of a clip, as
- * masu_scene_name. Both read the blob and take time proportional to the clips of all models. */
-MASU_API uint32_t masu_scene_clip_count(const masu_scene *scene, uint32_t model);
-MASU_API const char *masu_scene_clip_name(const masu_scene *scene, uint32_t model, uint32_t clip);
-
-typedef enum masu_scene_feature_bits {
-    MASU_SCENE_HAS_SDF = 1,
-    MASU_SCENE_HAS_DYNAMIC_SDF = 2, /* the SDF depends on parameters or time */
-    MASU_SCENE_HAS_SHADOW_MAP = 4,  /* polygons cast sun shadows */
-    MASU_SCENE_HAS_REFLECTIONS = 8, /* traced ones, if a surface is smooth enough: see the class */
-    MASU_SCENE_HAS_TRANSPARENTS = 16,
-    MASU_SCENE_HAS_ANALYTIC_SKY = 32, /* the sky follows from the sun */
-    MASU_SCENE_HAS_FOG = 64,
-    MASU_SCENE_HAS_METERED_EXPOSURE = 128, /* the default of masu_exposure.metered is ON */
-    MASU_SCENE_HAS_DEFAULT_AA = 256        /* the default rungs use anti-aliasing */
-} masu_scene_feature_bits;
-
-/* The features that the scene uses: MASU_SCENE_HAS_*. */
-MASU_API uint32_t masu_scene_features(const masu_scene *scene);
-
-/* Triangles of all instances at the finest level of detail. */
-MASU_API uint64_t masu_scene_triangles(const masu_scene *scene);
-
-/* Bytes of all texels with their mips, without padding. compressed: 1 as BC blocks, 0 decoded, for
- * a device without textureCompressionBC. */
-MASU_API uint64_t masu_scene_texture_bytes(const masu_scene *scene, int compressed);
-
-/* Cascades of the sun's shadow map, 0 to MASU_MAX_CASCADES; 0: no shadow map. `resolution`: NULL,
- * or receives the texels along an edge of a cascade. They are what 0 stands for in
- * rung.shadow_cascades and rung.shadow_resolution, and their upper bounds. */
-MASU_API uint32_t masu_scene_shadow_cascades(const masu_scene *scene, uint32_t *resolution);
-
-/* Distance from the camera up to which the shadow map reaches, metres: what 0 stands for in
- * rung.shadow_distance. 0: no shadow map. */
-MASU_API float masu_scene_shadow_distance(const masu_scene *scene);
-
-/* Perceptual roughness, 0..1, from which on reflections are not traced: what 0 stands for in
- * rung.specular_cutoff. 0 without MASU_SCENE_HAS_REFLECTIONS. */
-MASU_API float masu_scene_specular_cutoff(const masu_scene *scene);
-
-/* The smallest masu_limits (masu_knobs.h) that accept the scene, with default rungs and no reserve.
- * `texture_bytes` is the size of decoded texels; a device with textureCompressionBC needs less. All
- * members are 0 if `scene` is NULL. */
-struct masu_limits;
-MASU_API void masu_scene_usage(const masu_scene *scene, struct masu_limits *out);
-
-/* Classes of scenes by content. Those without a measured ladder (masu_desc.ladder) use the nearest
- * one's. A world is a scene of polygons with LODs and occluders. */
-typedef enum masu_scene_class {
-    MASU_SCENE_POLYGONS = 0,
-    MASU_SCENE_WORLD = 1,
-    MASU_SCENE_SDF = 2,
-    MASU_SCENE_BOTH = 3,            /* polygons and an SDF */
-    MASU_SCENE_POLYGONS_TRACED = 4, /* the same four with traced reflections */
-    MASU_SCENE_WORLD_TRACED = 5,
-    MASU_SCENE_SDF_TRACED = 6,
-    MASU_SCENE_BOTH_TRACED = 7,
-    MASU_SCENE_CLASSES = 8
-} masu_scene_class;
-
-/* MASU_SCENE_POLYGONS for NULL. */
-MASU_API masu_scene_class masu_scene_class_of(const masu_scene *scene);
-
-/* "world-traced", for example. Never NULL. */
-MASU_API const char *masu_scene_class_name(masu_scene_class scene_class);
+/* Destroys every Vulkan object of the renderer and frees the device memory that masu_init
+ * allocated. The device must be idle. NULL is allowed. */
+MASU_API void masu_destroy(masu_renderer *renderer);
 
 /* ---- Description ----------------------------------------------------------------------------- */
 
@@ -303,6 +330,98 @@ MASU_API const char *masu_scene_class_name(masu_scene_class scene_class);
 /* masu_rung (a quality level), masu_limits and the tables of their members. It includes
  * masu_study.h. */
 #include "masu_knobs.h"
+
+/* A validated scene, filled by masu_scene_bind. Copyable; its content is private. A zeroed one is
+ * an empty scene for queries, and MASU_ERROR_ARGUMENT as masu_desc.scene. */
+typedef struct masu_scene {
+    uint64_t opaque[64];
+} masu_scene;
+
+#define MASU_MAX_PIPELINES 384u
+/* A pool of pipelines that outlive a renderer and that several renderers share. masu_init takes
+ * matching pipelines from the pool and adds those that it creates; masu_destroy leaves all in the
+ * pool. A further scene or output size then creates only pipelines that are not in the pool. A full
+ * pool destroys the pipeline that has been unused by renderers for the longest time; if all of its
+ * MASU_MAX_PIPELINES are in use, further ones are destroyed with their renderer.
+ *
+ * Zero it at first; use it with one device and one build of the library. Its content is private
+ * (masu_pipelines_info_of). Renderers with the same pool must not run masu_init or masu_destroy
+ * concurrently. The host owns the pool, does not move it, and destroys it with
+ * masu_pipelines_destroy. */
+typedef struct masu_pipelines {
+    uint64_t opaque[1160];
+} masu_pipelines;
+
+typedef struct masu_vulkan {
+    PFN_vkGetInstanceProcAddr get_instance_proc_addr; /* required */
+    VkInstance instance;              /* required, created with API version >= 1.1 */
+    VkPhysicalDevice physical_device; /* required */
+    VkDevice device;                  /* required */
+    uint32_t queue_family;            /* graphics and compute */
+    /* For every create and allocate call; NULL: the driver's. pfnAllocation, pfnReallocation and
+     * pfnFree are required; of the two internal callbacks, set both or none. */
+    const VkAllocationCallbacks *allocator;
+    VkPipelineCache pipeline_cache; /* used in masu_init; VK_NULL_HANDLE: none */
+    /* Features that the host has enabled on the device. Vulkan has no query for them. */
+    uint32_t texture_compression_bc; /* flag: textureCompressionBC. Textures remain compressed, at
+                                        1/4 to 1/8 of the memory */
+    float max_anisotropy; /* samplerAnisotropy: largest number of samples, 1..64, clamped to
+                             maxSamplerAnisotropy; 0: not enabled */
+    uint32_t ray_query;   /* flag: VK_KHR_ray_query, VK_KHR_acceleration_structure and buffer device
+                             addresses (extension or Vulkan 1.2), each with its feature */
+    uint32_t shader_float16; /* flag: shaderFloat16 of VK_KHR_shader_float16_int8 (or Vulkan 1.2) */
+    masu_pipelines *pipelines; /* valid until masu_destroy; NULL: no pool, masu_destroy destroys the
+                                  pipelines */
+} masu_vulkan;
+
+/* Encoding of the target. White is the colour of a radiance of 1 / exposure without a tone
+ * curve. */
+typedef enum masu_encoding {
+    MASU_ENCODING_AUTO = 0,   /* SRGB; LINEAR for floating-point targets */
+    MASU_ENCODING_SRGB = 1,   /* IEC 61966-2-1: 0..1, 1 is white. Any format */
+    MASU_ENCODING_LINEAR = 2, /* scRGB: linear, sRGB primaries, 1 is 80 nits, unbounded.
+                                 VK_FORMAT_R16G16B16A16_SFLOAT */
+    MASU_ENCODING_PQ = 3      /* HDR10: BT.2020 primaries, ST 2084. Formats of 10 or 16 bits */
+} masu_encoding;
+
+typedef struct masu_targets {
+    const VkImage *images;    /* `count` images of at least the output size */
+    const VkImageView *views; /* one per image; required for storage targets, else may be NULL */
+    uint32_t count;           /* 1..8 */
+    /* 8 bits: R8G8B8A8, B8G8R8A8, A8B8G8R8, each UNORM or SRGB (same bytes). 10 bits: A2B10G10R10,
+     * A2R10G10B10. 5 and 6 bits: R5G6B5, B5G6R5. 16 bits: R16G16B16A16, UNORM or SFLOAT.
+     * 0: VK_FORMAT_R8G8B8A8_UNORM. Without a scene: UNORM only. */
+    VkFormat format;
+    uint32_t storage; /* flag: written directly as storage images; 0: filled by a blit or copy */
+    /* GENERAL, TRANSFER_SRC_OPTIMAL, SHADER_READ_ONLY_OPTIMAL, COLOR_ATTACHMENT_OPTIMAL or
+     * PRESENT_SRC_KHR. UNDEFINED (0): TRANSFER_SRC_OPTIMAL. */
+    VkImageLayout final_layout;
+    masu_encoding encoding; /* scene only */
+    /* For LINEAR and PQ, nits, 1..10000: luminance of white, and peak luminance of the display, at
+     * least white, which shapes the neutral tone curve. 0: white is 80 (LINEAR) or 203 (PQ,
+     * BT.2408); peak is 1000, or white if that is higher. */
+    float white, peak;
+} masu_targets;
+
+/* Upscaling without a scene: a host image is the input of anti-aliasing (if the rung has it), EASU
+ * and RCAS. Sampled values are display-encoded colour, clamped to 0..1; NaN becomes 0. For images
+ * in an sRGB format the view must therefore be UNORM: an sRGB view returns linear values, which are
+ * filtered and written without encoding. Anti-aliasing reduces the image to 8 bits per channel. */
+typedef struct masu_source {
+    VkImageView view;       /* VK_NULL_HANDLE: none. Sampled; its layout before and after the frame
+                               is VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL */
+    uint32_t width, height; /* valid texels from (0,0), 1..16384; the image may be larger, texels
+                               outside are not read */
+    VkFormat format; /* of the view; 0: unspecified. Stating an 8-bit UNORM format saves a tenth of
+                        the work; the result is the same */
+} masu_source;
+
+/* A rectangle of the output, in pixels, for views with separate frames: split screen, map,
+ * mirror. */
+typedef struct masu_viewport {
+    uint32_t x, y, width, height;
+} masu_viewport;
+#define MASU_MAX_VIEWPORTS 4u
 
 /* Capacities for objects that the host adds at run time. masu_memory includes their memory. Models
  * and lights of the reserve count towards limits and peaks like those of the scene. 0: none, at no
@@ -403,80 +522,6 @@ typedef enum masu_split_bits {
     MASU_SPLIT_ALL = 15
 } masu_split_bits;
 
-#define MASU_MAX_PIPELINES 384u
-/* A pool of pipelines that outlive a renderer and that several renderers share. masu_init takes
- * matching pipelines from the pool and adds those that it creates; masu_destroy leaves all in the
- * pool. A further scene or output size then creates only pipelines that are not in the pool. A full
- * pool destroys the pipeline that has been unused by renderers for the longest time; if all of its
- * MASU_MAX_PIPELINES are in use, further ones are destroyed with their renderer.
- *
- * Zero it at first; use it with one device and one build of the library. Its content is private
- * (masu_pipelines_info_of). Renderers with the same pool must not run masu_init or masu_destroy
- * concurrently. The host owns the pool, does not move it, and destroys it with
- * masu_pipelines_destroy. */
-typedef struct masu_pipelines {
-    uint64_t opaque[1160];
-} masu_pipelines;
-
-typedef struct masu_pipelines_info {
-    uint32_t count; /* pipelines in the pool */
-    uint32_t used;  /* of these, in use by renderers */
-    /* By all masu_init calls so far: pipelines created, and taken from the pool. */
-    uint32_t created, reused;
-    uint32_t evicted; /* destroyed to make room */
-} masu_pipelines_info;
-
-typedef struct masu_vulkan {
-    PFN_vkGetInstanceProcAddr get_instance_proc_addr; /* required */
-    VkInstance instance;              /* required, created with API version >= 1.1 */
-    VkPhysicalDevice physical_device; /* required */
-    VkDevice device;                  /* required */
-    uint32_t queue_family;            /* graphics and compute */
-    /* For every create and allocate call; NULL: the driver's. pfnAllocation, pfnReallocation and
-     * pfnFree are required; of the two internal callbacks, set both or none. */
-    const VkAllocationCallbacks *allocator;
-    VkPipelineCache pipeline_cache; /* used in masu_init; VK_NULL_HANDLE: none */
-    /* Features that the host has enabled on the device. Vulkan has no query for them. */
-    uint32_t texture_compression_bc; /* flag: textureCompressionBC. Textures remain compressed, at
-                                        1/4 to 1/8 of the memory */
-    float max_anisotropy; /* samplerAnisotropy: largest number of samples, 1..64, clamped to
-                             maxSamplerAnisotropy; 0: not enabled */
-    uint32_t ray_query;   /* flag: VK_KHR_ray_query, VK_KHR_acceleration_structure and buffer device
-                             addresses (extension or Vulkan 1.2), each with its feature */
-    uint32_t shader_float16; /* flag: shaderFloat16 of VK_KHR_shader_float16_int8 (or Vulkan 1.2) */
-    masu_pipelines *pipelines; /* valid until masu_destroy; NULL: no pool, masu_destroy destroys the
-                                  pipelines */
-} masu_vulkan;
-
-/* Encoding of the target. White is the colour of a radiance of 1 / exposure without a tone
- * curve. */
-typedef enum masu_encoding {
-    MASU_ENCODING_AUTO = 0,   /* SRGB; LINEAR for floating-point targets */
-    MASU_ENCODING_SRGB = 1,   /* IEC 61966-2-1: 0..1, 1 is white. Any format */
-    MASU_ENCODING_LINEAR = 2, /* scRGB: linear, sRGB primaries, 1 is 80 nits, unbounded.
-                                 VK_FORMAT_R16G16B16A16_SFLOAT */
-    MASU_ENCODING_PQ = 3      /* HDR10: BT.2020 primaries, ST 2084. Formats of 10 or 16 bits */
-} masu_encoding;
-
-typedef struct masu_targets {
-    const VkImage *images;    /* `count` images of at least the output size */
-    const VkImageView *views; /* one per image; required for storage targets, else may be NULL */
-    uint32_t count;           /* 1..8 */
-    /* 8 bits: R8G8B8A8, B8G8R8A8, A8B8G8R8, each UNORM or SRGB (same bytes). 10 bits: A2B10G10R10,
-     * A2R10G10B10. 5 and 6 bits: R5G6B5, B5G6R5. 16 bits: R16G16B16A16, UNORM or SFLOAT.
-     * 0: VK_FORMAT_R8G8B8A8_UNORM. Without a scene: UNORM only. */
-    VkFormat format;
-    uint32_t storage; /* flag: written directly as storage images; 0: filled by a blit or copy */
-    /* GENERAL, TRANSFER_SRC_OPTIMAL, SHADER_READ_ONLY_OPTIMAL, COLOR_ATTACHMENT_OPTIMAL or
-     * PRESENT_SRC_KHR. UNDEFINED (0): TRANSFER_SRC_OPTIMAL. */
-    VkImageLayout final_layout;
-    masu_encoding encoding; /* scene only */
-    /* For LINEAR and PQ, nits, 1..10000: luminance of white, and peak luminance of the display, at
-     * least white, which shapes the neutral tone curve. 0: white is 80 (LINEAR) or 203 (PQ,
-     * BT.2408); peak is 1000, or white if that is higher. */
-    float white, peak;
-} masu_targets;
-
 /* Tone curve: maps radiance times exposure to the output. ACES ends at white. NEUTRAL ends at
  * white, with LINEAR and PQ at the peak. Scene only. */
 typedef enum masu_tone {
@@ -504,29 +549,9 @@ typedef struct masu_exposure {
     float min, max; /* bounds of the metered factor, 1e-9..1e9; 0: 1/1024 and 1024 */
 } masu_exposure;
 
-/* Upscaling without a scene: a host image is the input of anti-aliasing (if the rung has it), EASU
- * and RCAS. Sampled values are display-encoded colour, clamped to 0..1; NaN becomes 0. For images
- * in an sRGB format the view must therefore be UNORM: an sRGB view returns linear values, which are
- * filtered and written without encoding. Anti-aliasing reduces the image to 8 bits per channel. */
-typedef struct masu_source {
-    VkImageView view;       /* VK_NULL_HANDLE: none. Sampled; its layout before and after the frame
-                               is VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL */
-    uint32_t width, height; /* valid texels from (0,0), 1..16384; the image may be larger, texels
-                               outside are not read */
-    VkFormat format; /* of the view; 0: unspecified. Stating an 8-bit UNORM format saves a tenth of
-                        the work; the result is the same */
-} masu_source;
-
-/* A rectangle of the output, in pixels, for views with separate frames: split screen, map,
- * mirror. */
-typedef struct masu_viewport {
-    uint32_t x, y, width, height;
-} masu_viewport;
-#define MASU_MAX_VIEWPORTS 4u
-
 #define MASU_LOAD_STEP_MIN 65536u /* bytes of the longest row of texels */
 
-/* ---- Governor: automatic selection of rungs -------------------------------------------------- */
+/* ---- Description: governor ------------------------------------------------------------------- */
 
 typedef enum masu_governor_mode {
     MASU_GOVERNOR_OFF = 0,  /* the host selects the rung of each frame */
@@ -577,8 +602,11 @@ typedef struct masu_governor_desc {
     uint32_t keep;
 } masu_governor_desc;
 
+/* ---- Description: all of it ------------------------------------------------------------------ */
+
 /* Everything that masu_init needs. "Scene only": ignored without a scene, unless noted. */
 typedef struct masu_desc {
+    uint32_t bytes; /* sizeof(masu_desc), set by MASU_DESC */
     masu_vulkan vulkan;
     const masu_scene *scene; /* NULL: upscaling of `source` only. Read during the call */
     masu_source source;      /* required without a scene; with one it must be all zero */
@@ -668,14 +696,45 @@ typedef struct masu_desc {
     masu_governor_desc governor;
     masu_debug debug; /* for tests and studies (masu_study.h) */
     masu_deny deny;   /* device features to leave unused (masu_study.h) */
-    /* Receives the messages of masu_init, and the error of each failed call that takes a renderer
-     * which is not const. NULL: silent. */
+    /* Receives the messages of masu_init, and the error of each failed call that takes this
+     * description or the renderer. NULL: silent. */
     masu_log_fn log;
     void *log_user;
     /* Monotonic clock, ns, to measure the creation time of pipelines; NULL: not measured. */
     uint64_t (*clock_ns)(void *user);
     void *clock_user;
 } masu_desc;
+
+/* Starts an initializer: masu_desc desc = {MASU_DESC, .output = {1920, 1080}}; */
+#define MASU_DESC .bytes = sizeof(masu_desc)
+
+/* Copies the description with all defaults filled in, by the same function as in masu_init. Needs
+ * no device. Resolving the result again does not change it; `out` may be `desc`. Members that
+ * depend on the scene (or source) or on the output size remain unresolved if those are missing.
+ * Resolve after the last change: a resolved member no longer follows the member that its default
+ * depends on. These members remain AUTO:
+ *  - rungs[].specular and .occlusion, if the scene has a use for them: on a device with too few
+ *    storage buffers AUTO disables the feature, and ON is an error in masu_init;
+ *  - ray_query, half_floats, debug.share_rays, which depend on the device.
+ *
+ *   MASU_ERROR_ARGUMENT   a pointer is NULL, or desc.bytes is not sizeof(masu_desc); other members
+ *                         are not checked */
+MASU_API MASU_MUST_USE masu_result masu_desc_resolve(const masu_desc *desc, masu_desc *out,
+                                                     masu_detail *detail);
+
+/* Writes the built-in ladder of the scene's class, or of the most similar measured class, into
+ * rung_count, rungs, flips and governor.costs of `desc`, for a host that changes it before
+ * masu_init. Rungs that governor.keep of `desc` forbids are omitted. Knobs for features that the
+ * scene lacks have no effect. `from`: scene, size, driver and date of the measurement (static
+ * string); may be NULL. MASU_ERROR_ARGUMENT: `scene` or `desc` is NULL, or desc.bytes is not
+ * sizeof(masu_desc). */
+MASU_API MASU_MUST_USE masu_result masu_ladder_of(const masu_scene *scene, masu_desc *desc,
+                                                  const char **from, masu_detail *detail);
+
+/* Destroys the pipelines and samplers of a pool and zeroes it. Destroy the renderers that use it
+ * first. Reads get_instance_proc_addr, instance, device and allocator of `vulkan`. NULL is
+ * allowed. */
+MASU_API void masu_pipelines_destroy(const masu_vulkan *vulkan, masu_pipelines *pipelines);
 
 /* ---- Memory ---------------------------------------------------------------------------------- */
 
@@ -700,282 +759,7 @@ typedef struct masu_memory {
     uint64_t transient_lower_bound; /* largest sum alive at the same time, a bound for any plan */
 } masu_memory;
 
-/* Memory that masu_init would need for `desc`, by the same code. Creates no lasting object. Like
- * masu_plan and masu_init, it reads the scene's blob, which must still be readable. Errors as
- * masu_init, except MASU_ERROR_MEMORY for the host block. */
-MASU_API MASU_MUST_USE masu_result masu_memory_query(const masu_desc *desc, masu_memory *out,
-                                                     masu_detail *detail);
-
-typedef struct masu_renderer masu_renderer; /* stored in the caller's block */
-
-/* Creates a renderer: plans memory, allocates device memory that the host has not provided, and
- * creates all images, buffers, pipelines and descriptor sets. It records one command buffer per
- * combination of frame in flight, rung, target and viewport; each cascade with
- * rungs[].shadow_refresh above 1 doubles the number for its rung.
- *
- * `block`: `block_bytes` of memory with any content, aligned to masu_memory.host_alignment. It
- * belongs to the renderer until masu_destroy; nothing outside is written. On failure *out is NULL
- * and every object has been destroyed.
- *   MASU_ERROR_ARGUMENT      a member of `desc` is invalid; the detail names it
- *   MASU_ERROR_MEMORY        `block` or a device block is NULL, misaligned or too small; the detail
- *                            has the bytes needed and given
- *   MASU_ERROR_LIMIT         a limit or budget is exceeded
- *   MASU_ERROR_DEVICE        the device lacks a required feature; the detail names it
- *   MASU_ERROR_SCENE         the scene cannot be rendered with `desc`; the detail has the cause
- *   MASU_ERROR_VULKAN, _DEVICE_LOST   a Vulkan call failed; the detail has its name and VkResult */
-MASU_API MASU_MUST_USE masu_result masu_init(const masu_desc *desc, void *block,
-                                             uint64_t block_bytes, masu_renderer **out,
-                                             masu_detail *detail);
-
-/* Destroys every Vulkan object of the renderer and frees the device memory that masu_init
- * allocated. The device must be idle. NULL is allowed. */
-MASU_API void masu_destroy(masu_renderer *renderer);
-
-/* Destroys the pipelines and samplers of a pool and zeroes it. Destroy the renderers that use it
- * first. Reads get_instance_proc_addr, instance, device and allocator of `vulkan`. NULL is
- * allowed. */
-MASU_API void masu_pipelines_destroy(const masu_vulkan *vulkan, masu_pipelines *pipelines);
-
-/* The counts of a pool; all 0 if `pipelines` is NULL. */
-MASU_API void masu_pipelines_info_of(const masu_pipelines *pipelines, masu_pipelines_info *out);
-
-/* Changes the output size and the targets, also their number. Creates no pipeline, allocates and
- * loads nothing, and does not read the blob. Requires desc.resizable; allowed before, between and
- * after the calls of masu_load. The frames of this renderer must have finished on the GPU; its own
- * masu_load steps, frames and loads of other renderers may be running.
- *   `output`      1 x 1 to desc.output
- *   `targets`     1 to MASU_MAX_TARGETS images with the format, storage, layout, encoding, white
- *                 and peak of masu_init; all but storage may be 0 for these. The arrays are read
- *                 during the call; the handles must be valid until the next masu_resize or
- *                 masu_destroy
- *   `viewports`   desc.viewport_count elements, or NULL if that is 0
- * The next frame is a cut. Frame numbers, slots, transforms and the governor's state continue.
- *
- * The call records the command buffers of the rung in use. Those of another rung
- * follow in masu_frame: the first frame of that rung in each slot and target records its own.
- *   MASU_ERROR_ARGUMENT   an argument contradicts the rules above
- *   MASU_ERROR_LIMIT      `output` is larger than desc.output: use masu_destroy and masu_init
- *   MASU_ERROR_STATE      desc.resizable is 0, or there is no scene
- *   MASU_ERROR_VULKAN     a Vulkan call failed. The new size and targets apply nevertheless;
- *                         masu_frame records what is missing, or fails likewise
- *   MASU_ERROR_DEVICE_LOST   only masu_destroy is of use: masu_load, masu_resize and masu_frame
- *                         fail likewise from then on */
-MASU_API MASU_MUST_USE masu_result masu_resize(masu_renderer *renderer, VkExtent2D output,
-                                               const masu_targets *targets,
-                                               const masu_viewport *viewports, masu_detail *detail);
-
-/* A copy of the description with all defaults filled in, by the same function as in masu_init.
- * Needs no device. Resolving the result again does not change it. Members that depend on the scene
- * (or source) or on the output size remain unresolved if those are missing. Resolve after the last
- * change: a resolved member no longer follows the member that its default depends on. These members
- * remain AUTO:
- *  - rungs[].specular and .occlusion, if the scene has a use for them: on a device with too few
- *    storage buffers AUTO disables the feature, and ON is an error in masu_init;
- *  - ray_query, half_floats, debug.share_rays, which depend on the device. */
-MASU_API masu_desc masu_desc_resolved(const masu_desc *desc);
-
-/* Writes the built-in ladder of the scene's class, or of the most similar measured class, into
- * rung_count, rungs, flips and governor.costs of `desc`, for a host that changes it before
- * masu_init. Rungs that governor.keep of `desc` forbids are omitted. Knobs for features that the
- * scene lacks have no effect. `from`: scene, size, driver and date of the measurement (static
- * string); may be NULL. MASU_ERROR_ARGUMENT: `scene` or `desc` is NULL. */
-MASU_API MASU_MUST_USE masu_result masu_ladder_of(const masu_scene *scene, masu_desc *desc,
-                                                  const char **from);
-
-/* A row of the memory plan. */
-typedef struct masu_memory_row {
-    const char *name;
-    const char *kind; /* "host", "buffer", "texture" (an array of textures), "image" */
-    masu_role role;   /* of device rows */
-    uint64_t count;   /* elements, or texels of an image */
-    uint64_t bytes;   /* total */
-    uint64_t alignment;
-    uint64_t offset; /* in its block, bytes */
-    /* 1: needed from first_pass to last_pass only, may share its memory with other rows. A
-     * transient buffer is needed during masu_load only, and may share its memory with any transient
-     * image. */
-    uint32_t transient;
-    uint32_t first_pass, last_pass; /* indices into masu_plan_info.passes */
-} masu_memory_row;
-
-/* Writes at most `capacity` rows of the renderer's memory plan, host rows first; none if `rows` is
- * NULL. Returns the total number of rows. */
-MASU_API uint32_t masu_memory_report(const masu_renderer *renderer, masu_memory_row *rows,
-                                     uint32_t capacity);
-
-/* ---- State of the governor ------------------------------------------------------------------- */
-
-#define MASU_GOVERNOR_REASONS(X)                                                                   \
-    X(MASU_GOVERNOR_REASON_NONE, 0, "there is no governor")                                        \
-    X(MASU_GOVERNOR_REASON_START, 1, "no frame has been measured yet")                             \
-    X(MASU_GOVERNOR_REASON_HOLD, 2, "the rung meets the target, and no better rung would")         \
-    X(MASU_GOVERNOR_REASON_BEST, 3, "the best rung meets the target")                              \
-    X(MASU_GOVERNOR_REASON_WAIT, 4, "a better rung fits, but the last change is too recent")       \
-    X(MASU_GOVERNOR_REASON_DOWN, 5, "the previous rung was predicted to miss the target")          \
-    X(MASU_GOVERNOR_REASON_JUMP, 6, "the load has jumped: the previous rung is too slow")          \
-    X(MASU_GOVERNOR_REASON_EMERGENCY, 7, "two frames in a row have missed the target")             \
-    X(MASU_GOVERNOR_REASON_UP, 8, "this better rung is predicted to meet the target")              \
-    X(MASU_GOVERNOR_REASON_WORST, 9, "no rung meets the target: the cheapest one is used")         \
-    X(MASU_GOVERNOR_REASON_NO_GAIN, 10, "cheaper rungs save no time, or a survey measures it")     \
-    X(MASU_GOVERNOR_REASON_STALE, 11, "no recent measurements: the rung is kept")                  \
-    X(MASU_GOVERNOR_REASON_FIXED, 12, "the rung is fixed")                                         \
-    X(MASU_GOVERNOR_REASON_HOST, 13, "the host has selected the rung")                             \
-    X(MASU_GOVERNOR_REASON_EXCLUDED, 14, "the frame is excluded from timing: the rung is kept")    \
-    X(MASU_GOVERNOR_REASON_TRIAL, 15, "trial of a better rung: does the clock follow the load?")
-
-/* Why the rung was selected. */
-typedef enum masu_governor_reason {
-#define MASU_GOVERNOR_REASON_ENUM(name, value, text) name = value,
-    MASU_GOVERNOR_REASONS(MASU_GOVERNOR_REASON_ENUM)
-#undef MASU_GOVERNOR_REASON_ENUM
-        MASU_GOVERNOR_REASON_FORCE_32 = 0x7FFFFFFF
-} masu_governor_reason;
-
-/* The clock that the governor currently uses. */
-typedef enum masu_governor_source {
-    MASU_GOVERNOR_SOURCE_NONE = 0, /* no plausible clock */
-    MASU_GOVERNOR_SOURCE_GPU = 1,  /* timestamps, checked against wall-clock time if available */
-    MASU_GOVERNOR_SOURCE_WALL = 2  /* the host's clock: timestamps are missing or implausible */
-} masu_governor_source;
-
-/* Why the governor cannot reach the rung that it needs. */
-typedef enum masu_governor_lock {
-    MASU_GOVERNOR_FREE = 0,
-    MASU_GOVERNOR_LOCKED_FIXED = 1,   /* the range contains one rung only */
-    MASU_GOVERNOR_LOCKED_WORST = 2,   /* the cheapest rung misses the target */
-    MASU_GOVERNOR_LOCKED_NO_GAIN = 3, /* over the target, and the rungs hardly differ in time */
-    MASU_GOVERNOR_LOCKED_STALE = 4,   /* there are no recent samples */
-    MASU_GOVERNOR_LOCKED_CPU = 5      /* CPU bound: the host's own work exceeds the target, so the
-                                         rung is kept */
-} masu_governor_lock;
-
-/* The state of the governor. */
-typedef struct masu_governor_info {
-    masu_governor_mode mode;
-    uint32_t rung; /* of the frame that masu_frame returned last */
-    masu_governor_reason reason;
-    const char *reason_text; /* in English, static, never NULL */
-    masu_governor_lock locked;
-    masu_governor_source source;
-    uint32_t rung_count;
-    float predicted_ms[MASU_MAX_RUNGS]; /* of a frame like the last one in each rung; 0: unknown */
-    float target_ms;
-    /* The model: frame time = fixed_ms + load_ms * (cost of the rung). */
-    float fixed_ms;
-    float load_ms;     /* at cost 1 */
-    float slope_ms;    /* change of load_ms per frame */
-    float noise;       /* relative standard deviation of one frame time */
-    float overhead_ms; /* wall-clock time outside the timestamps; included in the predictions */
-    float unit;        /* factor on GPU times; not 1 if the unit of the timestamps is wrong */
-    /* Frame pacing: a frame of this rung that is submitted this long after its interval has begun
-     * is predicted to end within the interval. A host that reads its input only after this time has
-     * a lower latency. The interval is target_ms, or `refreshes` refreshes if refresh_ms is not
-     * 0. */
-    float start_delay_ms;
-    /* Frame times used; frame times rejected as implausible, or excluded
-     * (frame.exclude_from_timing). */
-    uint64_t samples, rejected;
-    /* Used frame times above the target. If refresh_ms is not 0: frames that were presented more
-     * than half a refresh late. */
-    uint64_t missed;
-    uint64_t changes; /* of the rung */
-    /* The host's work per frame (masu_frame_times), without outliers; 0: unknown. */
-    float cpu_ms;
-    float refresh_ms; /* refresh interval of the display (masu_frame_presented); 0: unknown */
-    /* Number of refreshes, 1..16, for which the host should present this frame: the smallest number
-     * that the predicted frame time and the host's work fit into, and at least target_ms. It rises
-     * after 4 frames in a row that do not fit, or 4 late ones of 16. It falls by one after 60
-     * frames that would fit, later after a failed fall. 0: refresh_ms is unknown. */
-    uint32_t refreshes;
-    /* Wall-clock times are whole multiples of this: the host waits for the display's refresh before
-     * it measures, so they hide how much of a refresh a frame needs. 0: not detected. Pass the time
-     * at which the GPU finished (masu_frame_times), or enable timestamps. */
-    float vsync_ms;
-} masu_governor_info;
-
-/* The part of masu_governor_desc that can change between frames (masu_governor_set), with the same
- * units, ranges and defaults. `mode` must be MASU_GOVERNOR_ON or _FIXED. */
-typedef struct masu_governor_setting {
-    masu_governor_mode mode;
-    float target_ms, headroom;
-    uint32_t best_rung, worst_rung, rung, dwell;
-} masu_governor_setting;
-
-#define MASU_GOVERNOR_STATE_VERSION 1u
-
-/* The estimates of a governor (masu_governor_save): numbers without pointers, to be copied, or
- * written to a file for the same machine. The members are private to the library. */
-typedef struct masu_governor_state {
-    uint32_t bytes, version; /* sizeof, MASU_GOVERNOR_STATE_VERSION */
-    uint32_t known;          /* 0: no measurements yet; all members below are 0 */
-    uint32_t width, height;  /* output, pixels */
-    uint32_t rung_count, rung;
-    uint32_t held;            /* frames since `rung` was selected, at most 4096 */
-    uint32_t patience;        /* wait before the next rise, in multiples of dwell, 1..64 */
-    uint32_t wall_only;       /* 1: timestamps are implausible */
-    uint32_t follows;         /* 1: the clock has followed the load in a trial */
-    uint32_t trials;          /* failed trials since, 0..6 */
-    double fixed_ms, load_ms; /* as in masu_governor_info */
-    double fixed_variance, load_variance, covariance; /* ms^2 */
-    double noise, overhead_ms, unit;                  /* as in masu_governor_info */
-    double settled_ms, mistake_ms; /* load_ms when the rung settled, and at the last failed rise */
-    struct {
-        double scale, prior;   /* from the description; they identify the rung */
-        double cost, variance; /* estimated cost, variance of its relative error */
-        double penalty;        /* factor on the predicted time, raised by failed rises */
-    } rungs[MASU_MAX_RUNGS];
-} masu_governor_state;
-
-/* In English, without a newline. Never NULL. */
-MASU_API const char *masu_governor_reason_string(masu_governor_reason reason);
-
-/* ---- Frames ---------------------------------------------------------------------------------- */
-
-typedef struct masu_commands {
-    VkCommandBuffer buffer; /* parts[0] */
-    uint32_t slot; /* frame-in-flight slot: wait for its fence before masu_frame uses it again */
-    uint32_t rung;
-    uint64_t frame; /* number of this frame, from 0 */
-    /* The command buffers of the frame, in order: one, plus one for each point of desc.split, with
-     * the host's commands in between. Submit all parts, each once, preferably in one vkQueueSubmit.
-     * 1 for a masu_load that returns MASU_INCOMPLETE. */
-    uint32_t part_count;
-    VkCommandBuffer parts[MASU_MAX_PARTS];
-    /* For masu_load: bytes that this step has written, and bytes that remain. */
-    uint64_t load_bytes, load_left;
-} masu_commands;
-
-/* Copies the scene to the device.
- *   MASU_INCOMPLETE   submit commands->buffer, wait for it, call again
- *   MASU_OK           finished; there is nothing to submit
- * On unified memory a scene without textures needs no submit, and the first call returns MASU_OK;
- * except with ray query, whose acceleration structures the device builds. Without a scene only the
- * lookup table of SMAA is copied, if a rung uses it.
- *
- * With desc.load_step one call writes at most that number of bytes, and the device copies those for
- * memory that is not host-visible. Per call it builds acceleration structures for at most load_step
- * / 48 triangles, but always whole meshes. A step that has written to host-visible memory only has
- * nothing to submit: buffer is NULL and part_count is 0. A host can thus load a second scene, in a
- * separate renderer with separate memory blocks, while it shows frames of the first one:
- *
- *     masu_scene_bind(blob, ...); masu_memory_query(&desc, ...);  // slow: read the whole blob and
- *     masu_init(&desc, other_block, ..., &next, &detail);         // create all objects; a host's
- *                                                                 // thread may run them
- *     for (;;) {                                                  // frames
- *         wait_for_fence_of_frame(n - frames_in_flight);
- *         step.part_count = 0;
- *         if (next && fence_of_last_step_has_been_waited_for())
- *             loaded = masu_load(next, &step) == MASU_OK;
- *         masu_frame(now, &frame, &commands);
- *         submit(step.parts, then commands.parts, fence);
- *         if (loaded) { old = now; now = next; next = NULL; }     // its first frame is a cut.
- *     }                                                           // After the last fence of `old`:
- *                                                                 // masu_destroy(old)
- *
- * The memory blocks of the old renderer are then free for the next scene: two sets of blocks serve
- * any number of scenes. With vulkan.pipelines the two renderers share pipelines, and masu_init
- * creates only those that are missing in the pool. */
-MASU_API MASU_MUST_USE masu_result masu_load(masu_renderer *renderer, masu_commands *commands);
+/* ---- Frame ----------------------------------------------------------------------------------- */
 
 typedef struct masu_camera {
     double position[3];  /* world, metres */
@@ -1101,6 +885,7 @@ typedef struct masu_line {
 
 /* Without a scene camera, light and cut are unused. */
 typedef struct masu_frame_desc {
+    uint32_t bytes;            /* sizeof(masu_frame_desc), set by MASU_FRAME_DESC */
     const masu_camera *camera; /* NULL: the scene's camera path at `time` */
     const masu_light *light;   /* NULL: the scene's */
     double time;     /* seconds since the start, -1e15..1e15: animates SDF and camera path */
@@ -1138,26 +923,30 @@ typedef struct masu_frame_desc {
     uint32_t pick, pick_x, pick_y;
 } masu_frame_desc;
 
-/* Writes the uniforms of a frame and returns the command buffer to submit. Allocates nothing, and
- * records nothing except after masu_resize. Call it when the slot is free: the frame that
- * masu_frame returned frames_in_flight calls ago has finished on the GPU. commands->rung is the
- * rung of the frame.
- *   MASU_ERROR_ARGUMENT   rung, target, camera, light or a parameter is out of range or not finite;
- *                         MASU_RUNG_AUTO without a governor; an array is NULL with a count above 0
- *   MASU_ERROR_LIMIT      more particles, decals or lines than desc.reserve
- *   MASU_ERROR_STATE      masu_load has not finished
- *   MASU_ERROR_VULKAN, _DEVICE_LOST   as masu_resize, after it
- * After an error nothing has been written, and the frame number has not advanced. */
-MASU_API MASU_MUST_USE masu_result masu_frame(masu_renderer *renderer, const masu_frame_desc *frame,
-                                              masu_commands *commands);
+/* Starts an initializer: masu_frame_desc frame = {MASU_FRAME_DESC, .time = time}; */
+#define MASU_FRAME_DESC .bytes = sizeof(masu_frame_desc)
 
-/* ---- Host passes inside a frame -------------------------------------------------------------- */
+typedef struct masu_commands {
+    VkCommandBuffer buffer; /* parts[0] */
+    uint32_t slot; /* frame-in-flight slot: wait for its fence before masu_frame uses it again */
+    uint32_t rung;
+    uint64_t frame; /* number of this frame, from 0 */
+    /* The command buffers of the frame, in order: one, plus one for each point of desc.split, with
+     * the host's commands in between. Submit all parts, each once, preferably in one vkQueueSubmit.
+     * 1 for a masu_load that returns MASU_INCOMPLETE. */
+    uint32_t part_count;
+    VkCommandBuffer parts[MASU_MAX_PARTS];
+    /* For masu_load: bytes that this step has written, and bytes that remain. */
+    uint64_t load_bytes, load_left;
+} masu_commands;
+
+/* ---- Frame: host passes inside it ------------------------------------------------------------ */
 
 /* With desc.split a frame is submitted like this (examples/host_pass.c):
  *
- *     masu_frame(m, &frame, &commands);
- *     masu_split_of(m, MASU_SPLIT_BEFORE_TONE, commands.rung, frame.viewport, &split);
- *     masu_frame_view_of(m, &view);                       // the matrices of this frame
+ *     masu_frame(m, &frame, &commands, &detail);
+ *     masu_split_of(m, MASU_SPLIT_BEFORE_TONE, commands.rung, frame.viewport, &split, &detail);
+ *     masu_frame_view_of(m, &view, &detail);              // the matrices of this frame
  *     record(own);                                        // a command buffer of the host
  *     VkCommandBuffer all[] = {commands.parts[0], own, commands.parts[1]};
  *     vkQueueSubmit(queue, 1, &{.commandBufferCount = 3, .pCommandBuffers = all}, fence);
@@ -1226,7 +1015,8 @@ typedef struct masu_split {
  * at any time after masu_init. `which`: BEFORE_TONE or AFTER_UPSCALE. MASU_ERROR_ARGUMENT: a
  * pointer is NULL, `which` is not in desc.split, or the rung or viewport does not exist. */
 MASU_API MASU_MUST_USE masu_result masu_split_of(masu_renderer *renderer, masu_split_bits which,
-                                                 uint32_t rung, uint32_t viewport, masu_split *out);
+                                                 uint32_t rung, uint32_t viewport, masu_split *out,
+                                                 masu_detail *detail);
 
 /* Camera matrices of a frame, row by row, for column vectors: transpose them for a GLSL mat4, or
  * declare it layout(row_major). View space: x right, y up, the camera looks along -z, metres. Clip
@@ -1256,9 +1046,9 @@ typedef struct masu_frame_view {
 /* The matrices of the frame that masu_frame returned last. MASU_ERROR_ARGUMENT: a pointer is NULL.
  * MASU_ERROR_STATE: there is no frame yet, or no scene. */
 MASU_API MASU_MUST_USE masu_result masu_frame_view_of(const masu_renderer *renderer,
-                                                      masu_frame_view *out);
+                                                      masu_frame_view *out, masu_detail *detail);
 
-/* ---- Input of the governor ------------------------------------------------------------------- */
+/* ---- Frame: governor ------------------------------------------------------------------------- */
 
 /* Reports the wall-clock time of the slot's last frame, in ms: from its submit, or from the end of
  * the previous frame if that was later, to its fence. Optional. Call it after the wait for the
@@ -1275,7 +1065,7 @@ MASU_API MASU_MUST_USE masu_result masu_frame_view_of(const masu_renderer *rende
  *             masu_frame_wall(m, slot, now - fmax(submitted[slot], ended));
  *             ended = now;
  *         }
- *         masu_frame(m, &frame, &commands);               // the governor reads the time here
+ *         masu_frame(m, &frame, &commands, &detail);      // the governor reads the time here
  *         submitted[slot] = clock_ms();
  *         submit(commands.buffer, fence[slot]);
  *     }
@@ -1312,6 +1102,14 @@ MASU_API void masu_frame_times(masu_renderer *renderer, uint32_t slot, uint64_t 
 MASU_API void masu_frame_presented(masu_renderer *renderer, uint64_t frame, uint64_t present_ns,
                                    uint64_t refresh_ns);
 
+/* The part of masu_governor_desc that can change between frames (masu_governor_set), with the same
+ * units, ranges and defaults. `mode` must be MASU_GOVERNOR_ON or _FIXED. */
+typedef struct masu_governor_setting {
+    masu_governor_mode mode;
+    float target_ms, headroom;
+    uint32_t best_rung, worst_rung, rung, dwell;
+} masu_governor_setting;
+
 /* Replaces mode, target, headroom, range, fixed rung and dwell of the governor from the next
  * masu_frame on. Members that are 0 select their defaults. Measured times and costs remain valid;
  * failed rises are forgotten, and a better rung that fits is selected without waiting for the
@@ -1321,13 +1119,40 @@ MASU_API void masu_frame_presented(masu_renderer *renderer, uint64_t frame, uint
  *                         its range. Nothing has changed
  *   MASU_ERROR_STATE      governor.mode was OFF in masu_init */
 MASU_API MASU_MUST_USE masu_result masu_governor_set(masu_renderer *renderer,
-                                                     const masu_governor_setting *setting);
+                                                     const masu_governor_setting *setting,
+                                                     masu_detail *detail);
+
+#define MASU_GOVERNOR_STATE_VERSION 1u
+
+/* The estimates of a governor (masu_governor_save): numbers without pointers, to be copied, or
+ * written to a file for the same machine. The members are private to the library. */
+typedef struct masu_governor_state {
+    uint32_t bytes, version; /* sizeof, MASU_GOVERNOR_STATE_VERSION */
+    uint32_t known;          /* 0: no measurements yet; all members below are 0 */
+    uint32_t width, height;  /* output, pixels */
+    uint32_t rung_count, rung;
+    uint32_t held;            /* frames since `rung` was selected, at most 4096 */
+    uint32_t patience;        /* wait before the next rise, in multiples of dwell, 1..64 */
+    uint32_t wall_only;       /* 1: timestamps are implausible */
+    uint32_t follows;         /* 1: the clock has followed the load in a trial */
+    uint32_t trials;          /* failed trials since, 0..6 */
+    double fixed_ms, load_ms; /* as in masu_governor_info */
+    double fixed_variance, load_variance, covariance; /* ms^2 */
+    double noise, overhead_ms, unit;                  /* as in masu_governor_info */
+    double settled_ms, mistake_ms; /* load_ms when the rung settled, and at the last failed rise */
+    struct {
+        double scale, prior;   /* from the description; they identify the rung */
+        double cost, variance; /* estimated cost, variance of its relative error */
+        double penalty;        /* factor on the predicted time, raised by failed rises */
+    } rungs[MASU_MAX_RUNGS];
+} masu_governor_state;
 
 /* Saves the estimates of the governor for masu_governor_restore: after masu_destroy and masu_init,
  * in another renderer, or in a later run. Allowed between any two frames. MASU_ERROR_ARGUMENT: a
  * pointer is NULL. MASU_ERROR_STATE: as masu_governor_set. */
 MASU_API MASU_MUST_USE masu_result masu_governor_save(masu_renderer *renderer,
-                                                      masu_governor_state *out);
+                                                      masu_governor_state *out,
+                                                      masu_detail *detail);
 
 /* Restores saved estimates, before the first frame or between any two. With the same rungs (scales
  * and governor.costs) and the same output size, the first frame has the rung that the old renderer
@@ -1343,26 +1168,10 @@ MASU_API MASU_MUST_USE masu_result masu_governor_save(masu_renderer *renderer,
  *   MASU_ERROR_VERSION    the state has another version or size
  *   MASU_ERROR_STATE      as masu_governor_set */
 MASU_API MASU_MUST_USE masu_result masu_governor_restore(masu_renderer *renderer,
-                                                         const masu_governor_state *state);
+                                                         const masu_governor_state *state,
+                                                         masu_detail *detail);
 
-/* ---- Queries --------------------------------------------------------------------------------- */
-
-/* The cause of the last failure of a function that takes a non-const renderer and no masu_detail:
- * masu_load, masu_frame, masu_split_of, masu_governor_*, and the functions of instances, models,
- * lights and materials. Never NULL. */
-MASU_API const masu_detail *masu_last_error(const masu_renderer *renderer);
-
-/* The camera of the scene's path at `time`, in seconds; before the start and after the end the
- * first and the last camera. MASU_ERROR_STATE: the scene has no camera. MASU_ERROR_ARGUMENT: a
- * pointer is NULL, or `time` is not finite. */
-MASU_API MASU_MUST_USE masu_result masu_camera_at(const masu_renderer *renderer, double time,
-                                                  masu_camera *out);
-
-/* The light of the scene, which a host can change and pass to masu_frame. MASU_ERROR_STATE: there
- * is no scene. MASU_ERROR_ARGUMENT: a pointer is NULL. */
-MASU_API MASU_MUST_USE masu_result masu_light_of(const masu_renderer *renderer, masu_light *out);
-
-/* ---- Instances and models -------------------------------------------------------------------- */
+/* ---- Live scene: handles --------------------------------------------------------------------- */
 
 /* HANDLES. id 0 is no object. All other ids are returned by the functions below; do not construct
  * them. A handle of an object of the scene is valid in every renderer of the same blob, also after
@@ -1373,6 +1182,8 @@ MASU_API MASU_MUST_USE masu_result masu_light_of(const masu_renderer *renderer, 
  * A handle of an object that was added belongs to its renderer. Once the object is removed, the
  * handle is MASU_ERROR_ARGUMENT for good: no id is used twice. For that, a slot of desc.reserve
  * holds at most 2^31 - 1 objects, one after the other, until masu_destroy; then it is retired. */
+
+/* ---- Live scene: instances and models -------------------------------------------------------- */
 
 /* Handle of an instance: a mesh with a transform. */
 typedef struct masu_instance {
@@ -1386,7 +1197,8 @@ MASU_API masu_instance masu_instance_find(const masu_renderer *renderer, const c
  * world space, row by row. MASU_ERROR_ARGUMENT: the handle is invalid, or a value is not finite. */
 MASU_API MASU_MUST_USE masu_result masu_instance_set_transform(masu_renderer *renderer,
                                                                masu_instance instance,
-                                                               const float rows[12]);
+                                                               const float rows[12],
+                                                               masu_detail *detail);
 
 /* The instance with that index: first those of the scene, in the order of MASU_SCENE_INSTANCE,
  * then those of copied models (desc.reserve). id 0 after the last one, and for an unused slot. */
@@ -1412,7 +1224,7 @@ typedef struct masu_instance_state {
  * handle is invalid. */
 MASU_API MASU_MUST_USE masu_result masu_instance_get(masu_renderer *renderer,
                                                      masu_instance instance,
-                                                     masu_instance_state *out);
+                                                     masu_instance_state *out, masu_detail *detail);
 
 /* Hides an instance (`shown` 0) or shows it from the next masu_frame on: in the image, in shadows
  * and in reflections. The lights of a hidden instance are off. Cascades with shadow_refresh above 1
@@ -1420,7 +1232,8 @@ MASU_API MASU_MUST_USE masu_result masu_instance_get(masu_renderer *renderer,
  * first frame. Baked light of probes does not change; a live bounce follows within some
  * rounds of its probes. MASU_ERROR_ARGUMENT: the handle is invalid. */
 MASU_API MASU_MUST_USE masu_result masu_instance_show(masu_renderer *renderer,
-                                                      masu_instance instance, uint32_t shown);
+                                                      masu_instance instance, uint32_t shown,
+                                                      masu_detail *detail);
 
 /* The first model with that name in the scene description; id 0 if there is none. */
 MASU_API masu_model masu_model_find(const masu_renderer *renderer, const char *name);
@@ -1442,18 +1255,19 @@ typedef struct masu_model_state {
 
 /* State of a model in the next masu_frame. Errors as masu_instance_get. */
 MASU_API MASU_MUST_USE masu_result masu_model_get(masu_renderer *renderer, masu_model model,
-                                                  masu_model_state *out);
+                                                  masu_model_state *out, masu_detail *detail);
 
 /* Sets the transform of a model with all its nodes from the next masu_frame on. `rows` as in
  * masu_model_state. An instance of the model that masu_instance_set_transform has moved returns to
  * its node. MASU_ERROR_ARGUMENT: a pointer is NULL, the handle is invalid, a value is not finite,
  * or the transform of a node overflows a float. Nothing has changed then. */
 MASU_API MASU_MUST_USE masu_result masu_model_set_transform(masu_renderer *renderer,
-                                                            masu_model model, const float rows[12]);
+                                                            masu_model model, const float rows[12],
+                                                            masu_detail *detail);
 
 /* As masu_instance_show, for all instances of the model. */
 MASU_API MASU_MUST_USE masu_result masu_model_show(masu_renderer *renderer, masu_model model,
-                                                   uint32_t shown);
+                                                   uint32_t shown, masu_detail *detail);
 
 /* Adds a model of the same kind as `like` at `rows` from the next masu_frame on. It takes a hidden
  * model of that kind from the scene, a pooled copy ("spare") for example. If all of them are shown,
@@ -1465,13 +1279,15 @@ MASU_API MASU_MUST_USE masu_result masu_model_show(masu_renderer *renderer, masu
  *   MASU_ERROR_ARGUMENT   as masu_model_set_transform
  * Nothing has changed after an error. */
 MASU_API MASU_MUST_USE masu_result masu_model_add(masu_renderer *renderer, masu_model like,
-                                                  const float rows[12], masu_model *out);
+                                                  const float rows[12], masu_model *out,
+                                                  masu_detail *detail);
 
 /* Removes a model. A copy frees its slot: its handle, the handles of its instances, and the handles
  * of reserve lights attached to them become invalid. Scene lights attached to it are detached and
  * switched off. A model of the scene is only hidden, as by masu_model_show, and its handle remains
  * valid. MASU_ERROR_ARGUMENT: the handle is invalid. */
-MASU_API MASU_MUST_USE masu_result masu_model_remove(masu_renderer *renderer, masu_model model);
+MASU_API MASU_MUST_USE masu_result masu_model_remove(masu_renderer *renderer, masu_model model,
+                                                     masu_detail *detail);
 
 #define MASU_NODE_NONE UINT32_MAX
 
@@ -1489,13 +1305,15 @@ typedef struct masu_node_state {
 /* State of a node in the next masu_frame. Errors as masu_model_get; also MASU_ERROR_ARGUMENT if the
  * node does not exist. */
 MASU_API MASU_MUST_USE masu_result masu_model_node_get(masu_renderer *renderer, masu_model model,
-                                                       uint32_t node, masu_node_state *out);
+                                                       uint32_t node, masu_node_state *out,
+                                                       masu_detail *detail);
 
 /* Sets the transform of a node relative to its parent, which also moves the nodes below it: doors,
  * wheels, turrets. Errors as masu_model_set_transform; also MASU_ERROR_ARGUMENT if the node does
  * not exist. */
 MASU_API MASU_MUST_USE masu_result masu_model_node_set(masu_renderer *renderer, masu_model model,
-                                                       uint32_t node, const float rows[12]);
+                                                       uint32_t node, const float rows[12],
+                                                       masu_detail *detail);
 
 /* Clips: animations from a model's file, which masu-bake stores for movable models. Indices 0 ..
  * count - 1 are the same for all copies of a model. */
@@ -1522,8 +1340,8 @@ MASU_API double masu_model_clip_duration(const masu_renderer *renderer, masu_mod
 
 /* Poses a model from the next masu_frame on. All nodes that any clip of the model animates get the
  * weighted average of the clips in `uses`, and so do the weights of their morph targets; with a
- * count of 0, or a sum of weights of 0, they get the rest pose of the file. Other nodes do not change. The host advances the times; there is no
- * automatic playback.
+ * count of 0, or a sum of weights of 0, they get the rest pose of the file. Other nodes do not
+ * change. The host advances the times; there is no automatic playback.
  *
  * Skinned meshes follow their nodes in the image, shadows, velocities and traced reflections. The
  * histories of reflections use the motion of the instance, not the deformation. Scenes with skins
@@ -1533,7 +1351,8 @@ MASU_API double masu_model_clip_duration(const masu_renderer *renderer, masu_mod
  * MASU_MAX_CLIP_USES, the model lacks a clip, a time or weight is not finite, a weight is below 0,
  * the transform of a node overflows a float, or the handle is invalid. Nothing has changed then. */
 MASU_API MASU_MUST_USE masu_result masu_model_animate(masu_renderer *renderer, masu_model model,
-                                                      const masu_clip_use *uses, uint32_t count);
+                                                      const masu_clip_use *uses, uint32_t count,
+                                                      masu_detail *detail);
 
 /* Sets the weight of a model's morph targets of that name, of all of its meshes, from the next
  * masu_frame on. masu_model_animate replaces the weights of targets that any clip of the model
@@ -1541,9 +1360,10 @@ MASU_API MASU_MUST_USE masu_result masu_model_animate(masu_renderer *renderer, m
  * MASU_ERROR_ARGUMENT: a pointer is NULL, the model has no such target, the weight is not within
  * -1e6..1e6, or the handle is invalid. Nothing has changed then. */
 MASU_API MASU_MUST_USE masu_result masu_model_morph_set(masu_renderer *renderer, masu_model model,
-                                                        const char *name, float weight);
+                                                        const char *name, float weight,
+                                                        masu_detail *detail);
 
-/* ---- Punctual lights ------------------------------------------------------------------------- */
+/* ---- Live scene: lights ---------------------------------------------------------------------- */
 
 /* Handle of a local light: a point or spot light, or an area light. */
 typedef struct masu_punctual_light {
@@ -1605,26 +1425,30 @@ MASU_API masu_punctual_light masu_punctual_light_at(const masu_renderer *rendere
  * handle is invalid. */
 MASU_API MASU_MUST_USE masu_result masu_punctual_light_get(masu_renderer *renderer,
                                                            masu_punctual_light light,
-                                                           masu_punctual_light_state *out);
+                                                           masu_punctual_light_state *out,
+                                                           masu_detail *detail);
 
 /* Changes a light from the next masu_frame on. MASU_ERROR_ARGUMENT: the handle is invalid, or a
  * value is out of range or not finite. Nothing has changed then. */
 MASU_API MASU_MUST_USE masu_result masu_punctual_light_set(masu_renderer *renderer,
                                                            masu_punctual_light light,
-                                                           const masu_punctual_light_state *state);
+                                                           const masu_punctual_light_state *state,
+                                                           masu_detail *detail);
 
 /* Adds a light from the next masu_frame on, in a slot of desc.reserve.lights. MASU_ERROR_LIMIT: no
  * slot is free. MASU_ERROR_ARGUMENT: as masu_punctual_light_set. */
 MASU_API MASU_MUST_USE masu_result masu_punctual_light_add(masu_renderer *renderer,
                                                            const masu_punctual_light_state *state,
-                                                           masu_punctual_light *out);
+                                                           masu_punctual_light *out,
+                                                           masu_detail *detail);
 
 /* Removes a light that was added. Its handle becomes invalid. MASU_ERROR_ARGUMENT: the handle is
  * invalid, or the light is one of the scene; set the colour of such a light to 0 instead. */
 MASU_API MASU_MUST_USE masu_result masu_punctual_light_remove(masu_renderer *renderer,
-                                                              masu_punctual_light light);
+                                                              masu_punctual_light light,
+                                                              masu_detail *detail);
 
-/* ---- Materials ------------------------------------------------------------------------------- */
+/* ---- Live scene: materials ------------------------------------------------------------------- */
 
 /* Handle of a material. Requires desc.mutable_materials. */
 typedef struct masu_material {
@@ -1665,11 +1489,12 @@ MASU_API masu_material masu_material_at(const masu_renderer *renderer, uint32_t 
  * handle is invalid. MASU_ERROR_STATE: desc.mutable_materials is 0. */
 MASU_API MASU_MUST_USE masu_result masu_material_get(masu_renderer *renderer,
                                                      masu_material material,
-                                                     masu_material_state *out);
+                                                     masu_material_state *out, masu_detail *detail);
 
 /* Changes a material from the next masu_frame on: in the image, on transparent surfaces, and in
  * traced reflections, whose histories adapt over some frames. Baked light of probes does not
- * change, a live bounce follows. Whether a rung traces reflections still depends on the original materials.
+ * change, a live bounce follows. Whether a rung traces reflections still depends on the original
+ * materials.
  *
  * Nothing has changed after an error.
  *   MASU_ERROR_ARGUMENT   as masu_material_get; a value is out of range or not finite; or a member,
@@ -1681,9 +1506,117 @@ MASU_API MASU_MUST_USE masu_result masu_material_get(masu_renderer *renderer,
  *   MASU_ERROR_STATE      desc.mutable_materials is 0 */
 MASU_API MASU_MUST_USE masu_result masu_material_set(masu_renderer *renderer,
                                                      masu_material material,
-                                                     const masu_material_state *state);
+                                                     const masu_material_state *state,
+                                                     masu_detail *detail);
 
-/* ---- Frame plan ------------------------------------------------------------------------------ */
+/* ---- Queries: scene -------------------------------------------------------------------------- */
+
+/* The functions below describe what the blob contains; room that masu_desc.reserve adds is not
+ * counted. They take constant time unless stated otherwise. Functions that read the blob need it to
+ * be readable and unchanged. `scene` may be NULL: the result is then 0, -1 or "". */
+
+typedef enum masu_scene_item {
+    MASU_SCENE_INSTANCE = 0,
+    MASU_SCENE_MODEL = 1, /* movable models, the scene's pooled copies included */
+    MASU_SCENE_LIGHT = 2, /* punctual lights */
+    MASU_SCENE_MATERIAL = 3,
+    MASU_SCENE_SDF_PARAM = 4, /* run-time parameters of the SDF */
+    MASU_SCENE_CAMERA_KEY = 5 /* keys of the camera path; they have no names */
+} masu_scene_item;
+
+/* Number of items of a kind; their indices are 0 to the result - 1. 0 for an unknown kind. */
+MASU_API uint32_t masu_scene_count(const masu_scene *scene, masu_scene_item item);
+
+/* Name of an item, "" if it has none or does not exist. Reads the blob and points into it. */
+MASU_API const char *masu_scene_name(const masu_scene *scene, masu_scene_item item, uint32_t index);
+
+/* Index of the first item with that name; -1 if there is none, or if `name` is NULL or "". Reads
+ * the blob; takes time proportional to the number of items. */
+MASU_API int32_t masu_scene_find(const masu_scene *scene, masu_scene_item item, const char *name);
+
+/* Number of animation clips of a model, 0 if the model does not exist; and the name of a clip, as
+ * masu_scene_name. Both read the blob and take time proportional to the clips of all models. */
+MASU_API uint32_t masu_scene_clip_count(const masu_scene *scene, uint32_t model);
+MASU_API const char *masu_scene_clip_name(const masu_scene *scene, uint32_t model, uint32_t clip);
+
+/* Default value of an SDF parameter. `minimum`, `maximum`: NULL, or receive the range to which
+ * masu_frame_desc.sdf_params is clamped. All are 0 if there is no such parameter. Reads the
+ * blob. */
+MASU_API float masu_scene_sdf_range(const masu_scene *scene, uint32_t index, float *minimum,
+                                    float *maximum);
+
+typedef enum masu_scene_feature_bits {
+    MASU_SCENE_HAS_SDF = 1,
+    MASU_SCENE_HAS_DYNAMIC_SDF = 2, /* the SDF depends on parameters or time */
+    MASU_SCENE_HAS_SHADOW_MAP = 4,  /* polygons cast sun shadows */
+    MASU_SCENE_HAS_REFLECTIONS = 8, /* traced ones, if a surface is smooth enough: see the class */
+    MASU_SCENE_HAS_TRANSPARENTS = 16,
+    MASU_SCENE_HAS_ANALYTIC_SKY = 32, /* the sky follows from the sun */
+    MASU_SCENE_HAS_FOG = 64,
+    MASU_SCENE_HAS_METERED_EXPOSURE = 128, /* the default of masu_exposure.metered is ON */
+    MASU_SCENE_HAS_DEFAULT_AA = 256        /* the default rungs use anti-aliasing */
+} masu_scene_feature_bits;
+
+/* The features that the scene uses: MASU_SCENE_HAS_*. */
+MASU_API uint32_t masu_scene_features(const masu_scene *scene);
+
+/* Triangles of all instances at the finest level of detail. */
+MASU_API uint64_t masu_scene_triangles(const masu_scene *scene);
+
+/* Bytes of all texels with their mips, without padding. compressed: 1 as BC blocks, 0 decoded, for
+ * a device without textureCompressionBC. */
+MASU_API uint64_t masu_scene_texture_bytes(const masu_scene *scene, int compressed);
+
+/* Cascades of the sun's shadow map, 0 to MASU_MAX_CASCADES; 0: no shadow map. `resolution`: NULL,
+ * or receives the texels along an edge of a cascade. They are what 0 stands for in
+ * rung.shadow_cascades and rung.shadow_resolution, and their upper bounds. */
+MASU_API uint32_t masu_scene_shadow_cascades(const masu_scene *scene, uint32_t *resolution);
+
+/* Distance from the camera up to which the shadow map reaches, metres: what 0 stands for in
+ * rung.shadow_distance. 0: no shadow map. */
+MASU_API float masu_scene_shadow_distance(const masu_scene *scene);
+
+/* Perceptual roughness, 0..1, from which on reflections are not traced: what 0 stands for in
+ * rung.specular_cutoff. 0 without MASU_SCENE_HAS_REFLECTIONS. */
+MASU_API float masu_scene_specular_cutoff(const masu_scene *scene);
+
+/* The smallest masu_limits (masu_knobs.h) that accept the scene, with default rungs and no reserve.
+ * `texture_bytes` is the size of decoded texels; a device with textureCompressionBC needs less. All
+ * members are 0 if `scene` is NULL. */
+MASU_API void masu_scene_usage(const masu_scene *scene, masu_limits *out);
+
+/* Classes of scenes by content. Those without a measured ladder (masu_desc.ladder) use the nearest
+ * one's. A world is a scene of polygons with LODs and occluders. */
+typedef enum masu_scene_class {
+    MASU_SCENE_POLYGONS = 0,
+    MASU_SCENE_WORLD = 1,
+    MASU_SCENE_SDF = 2,
+    MASU_SCENE_BOTH = 3,            /* polygons and an SDF */
+    MASU_SCENE_POLYGONS_TRACED = 4, /* the same four with traced reflections */
+    MASU_SCENE_WORLD_TRACED = 5,
+    MASU_SCENE_SDF_TRACED = 6,
+    MASU_SCENE_BOTH_TRACED = 7,
+    MASU_SCENE_CLASSES = 8
+} masu_scene_class;
+
+/* The class of a scene; MASU_SCENE_POLYGONS for NULL. */
+MASU_API masu_scene_class masu_scene_class_of(const masu_scene *scene);
+
+/* Name of a class, "world-traced" for example. Never NULL. */
+MASU_API const char *masu_scene_class_name(masu_scene_class scene_class);
+
+/* The camera of the scene's path at `time`, in seconds; before the start and after the end the
+ * first and the last camera. MASU_ERROR_STATE: the scene has no camera. MASU_ERROR_ARGUMENT: a
+ * pointer is NULL, or `time` is not finite. */
+MASU_API MASU_MUST_USE masu_result masu_camera_at(const masu_renderer *renderer, double time,
+                                                  masu_camera *out, masu_detail *detail);
+
+/* The light of the scene, which a host can change and pass to masu_frame. MASU_ERROR_STATE: there
+ * is no scene. MASU_ERROR_ARGUMENT: a pointer is NULL. */
+MASU_API MASU_MUST_USE masu_result masu_light_of(const masu_renderer *renderer, masu_light *out,
+                                                 masu_detail *detail);
+
+/* ---- Queries: plan and memory ---------------------------------------------------------------- */
 
 typedef struct masu_plan_pass {
     /* Also the file name of the shader, the debug label and the timestamp's name. */
@@ -1733,10 +1666,134 @@ typedef struct masu_plan_info {
 MASU_API MASU_MUST_USE masu_result masu_plan(const masu_desc *desc, masu_plan_info *out,
                                              masu_detail *detail);
 
-/* The same for an existing renderer, with creation times of pipelines. */
+/* As masu_plan, for an existing renderer, with creation times of pipelines. */
 MASU_API void masu_plan_of(const masu_renderer *renderer, masu_plan_info *out);
 
-/* ---- Statistics, readback and picking -------------------------------------------------------- */
+/* A row of the memory plan. */
+typedef struct masu_memory_row {
+    const char *name;
+    const char *kind; /* "host", "buffer", "texture" (an array of textures), "image" */
+    masu_role role;   /* of device rows */
+    uint64_t count;   /* elements, or texels of an image */
+    uint64_t bytes;   /* total */
+    uint64_t alignment;
+    uint64_t offset; /* in its block, bytes */
+    /* 1: needed from first_pass to last_pass only, may share its memory with other rows. A
+     * transient buffer is needed during masu_load only, and may share its memory with any transient
+     * image. */
+    uint32_t transient;
+    uint32_t first_pass, last_pass; /* indices into masu_plan_info.passes */
+} masu_memory_row;
+
+/* Writes at most `capacity` rows of the renderer's memory plan, host rows first; none if `rows` is
+ * NULL. Returns the total number of rows. */
+MASU_API uint32_t masu_memory_report(const masu_renderer *renderer, masu_memory_row *rows,
+                                     uint32_t capacity);
+
+/* The numbers of items in the renderer, which can be used as masu_limits. */
+MASU_API void masu_peaks(const masu_renderer *renderer, masu_peak_info *out);
+
+typedef struct masu_pipelines_info {
+    uint32_t count; /* pipelines in the pool */
+    uint32_t used;  /* of these, in use by renderers */
+    /* By all masu_init calls so far: pipelines created, and taken from the pool. */
+    uint32_t created, reused;
+    uint32_t evicted; /* destroyed to make room */
+} masu_pipelines_info;
+
+/* The counts of a pool; all 0 if `pipelines` is NULL. */
+MASU_API void masu_pipelines_info_of(const masu_pipelines *pipelines, masu_pipelines_info *out);
+
+/* ---- Queries: governor ----------------------------------------------------------------------- */
+
+/* Why the rung was selected. */
+typedef enum masu_governor_reason {
+    MASU_GOVERNOR_REASON_NONE = 0,      /* there is no governor */
+    MASU_GOVERNOR_REASON_START = 1,     /* no frame has been measured yet */
+    MASU_GOVERNOR_REASON_HOLD = 2,      /* the rung meets the target, and no better rung would */
+    MASU_GOVERNOR_REASON_BEST = 3,      /* the best rung meets the target */
+    MASU_GOVERNOR_REASON_WAIT = 4,      /* a better rung fits, but the last change is too recent */
+    MASU_GOVERNOR_REASON_DOWN = 5,      /* the previous rung was predicted to miss the target */
+    MASU_GOVERNOR_REASON_JUMP = 6,      /* the load has jumped: the previous rung is too slow */
+    MASU_GOVERNOR_REASON_EMERGENCY = 7, /* two frames in a row have missed the target */
+    MASU_GOVERNOR_REASON_UP = 8,        /* this better rung is predicted to meet the target */
+    MASU_GOVERNOR_REASON_WORST = 9,     /* no rung meets the target: the cheapest one is used */
+    MASU_GOVERNOR_REASON_NO_GAIN = 10,  /* cheaper rungs save no time, or a survey measures it */
+    MASU_GOVERNOR_REASON_STALE = 11,    /* no recent measurements: the rung is kept */
+    MASU_GOVERNOR_REASON_FIXED = 12,    /* the rung is fixed */
+    MASU_GOVERNOR_REASON_HOST = 13,     /* the host has selected the rung */
+    MASU_GOVERNOR_REASON_EXCLUDED = 14, /* the frame is excluded from timing: the rung is kept */
+    /* trial of a better rung: does the clock follow the load? */
+    MASU_GOVERNOR_REASON_TRIAL = 15,
+    MASU_GOVERNOR_REASON_FORCE_32 = 0x7FFFFFFF
+} masu_governor_reason;
+
+/* The clock that the governor currently uses. */
+typedef enum masu_governor_source {
+    MASU_GOVERNOR_SOURCE_NONE = 0, /* no plausible clock */
+    MASU_GOVERNOR_SOURCE_GPU = 1,  /* timestamps, checked against wall-clock time if available */
+    MASU_GOVERNOR_SOURCE_WALL = 2  /* the host's clock: timestamps are missing or implausible */
+} masu_governor_source;
+
+/* Why the governor cannot reach the rung that it needs. */
+typedef enum masu_governor_lock {
+    MASU_GOVERNOR_FREE = 0,
+    MASU_GOVERNOR_LOCKED_FIXED = 1,   /* the range contains one rung only */
+    MASU_GOVERNOR_LOCKED_WORST = 2,   /* the cheapest rung misses the target */
+    MASU_GOVERNOR_LOCKED_NO_GAIN = 3, /* over the target, and the rungs hardly differ in time */
+    MASU_GOVERNOR_LOCKED_STALE = 4,   /* there are no recent samples */
+    MASU_GOVERNOR_LOCKED_CPU = 5      /* CPU bound: the host's own work exceeds the target, so the
+                                         rung is kept */
+} masu_governor_lock;
+
+/* The state of the governor. */
+typedef struct masu_governor_info {
+    masu_governor_mode mode;
+    uint32_t rung; /* of the frame that masu_frame returned last */
+    masu_governor_reason reason;
+    const char *reason_text; /* in English, static, never NULL */
+    masu_governor_lock locked;
+    masu_governor_source source;
+    uint32_t rung_count;
+    float predicted_ms[MASU_MAX_RUNGS]; /* of a frame like the last one in each rung; 0: unknown */
+    float target_ms;
+    /* The model: frame time = fixed_ms + load_ms * (cost of the rung). */
+    float fixed_ms;
+    float load_ms;     /* at cost 1 */
+    float slope_ms;    /* change of load_ms per frame */
+    float noise;       /* relative standard deviation of one frame time */
+    float overhead_ms; /* wall-clock time outside the timestamps; included in the predictions */
+    float unit;        /* factor on GPU times; not 1 if the unit of the timestamps is wrong */
+    /* Frame pacing: a frame of this rung that is submitted this long after its interval has begun
+     * is predicted to end within the interval. A host that reads its input only after this time has
+     * a lower latency. The interval is target_ms, or `refreshes` refreshes if refresh_ms is not
+     * 0. */
+    float start_delay_ms;
+    /* Frame times used; frame times rejected as implausible, or excluded
+     * (frame.exclude_from_timing). */
+    uint64_t samples, rejected;
+    /* Used frame times above the target. If refresh_ms is not 0: frames that were presented more
+     * than half a refresh late. */
+    uint64_t missed;
+    uint64_t changes; /* of the rung */
+    /* The host's work per frame (masu_frame_times), without outliers; 0: unknown. */
+    float cpu_ms;
+    float refresh_ms; /* refresh interval of the display (masu_frame_presented); 0: unknown */
+    /* Number of refreshes, 1..16, for which the host should present this frame: the smallest number
+     * that the predicted frame time and the host's work fit into, and at least target_ms. It rises
+     * after 4 frames in a row that do not fit, or 4 late ones of 16. It falls by one after 60
+     * frames that would fit, later after a failed fall. 0: refresh_ms is unknown. */
+    uint32_t refreshes;
+    /* Wall-clock times are whole multiples of this: the host waits for the display's refresh before
+     * it measures, so they hide how much of a refresh a frame needs. 0: not detected. Pass the time
+     * at which the GPU finished (masu_frame_times), or enable timestamps. */
+    float vsync_ms;
+} masu_governor_info;
+
+/* The meaning of a reason, in English, without a newline. Never NULL. */
+MASU_API const char *masu_governor_reason_string(masu_governor_reason reason);
+
+/* ---- Queries: statistics, readback and picking ----------------------------------------------- */
 
 /* Culling statistics of one view. */
 typedef struct masu_view_stats {
@@ -1805,10 +1862,8 @@ typedef struct masu_stats_info {
  *   MASU_INCOMPLETE       the slot has not been used yet; or there are timestamps, and the frame
  *                         has not ended or was never submitted: only its `frame` and `rung` are
  *                         valid */
-MASU_API masu_result masu_stats(const masu_renderer *renderer, uint32_t slot, masu_stats_info *out);
-
-/* The numbers of items in the renderer, which can be used as masu_limits. */
-MASU_API void masu_peaks(const masu_renderer *renderer, masu_peak_info *out);
+MASU_API masu_result masu_stats(const masu_renderer *renderer, uint32_t slot, masu_stats_info *out,
+                                masu_detail *detail);
 
 typedef struct masu_readback_image {
     const void *pixels;     /* valid until the slot is used again */
@@ -1821,7 +1876,8 @@ typedef struct masu_readback_image {
  * MASU_ERROR_ARGUMENT: the image is not in desc.readback, the slot does not exist, or a pointer is
  * NULL. MASU_INCOMPLETE: as masu_stats. */
 MASU_API masu_result masu_readback(const masu_renderer *renderer, uint32_t slot,
-                                   masu_readback_bits which, masu_readback_image *out);
+                                   masu_readback_bits which, masu_readback_image *out,
+                                   masu_detail *detail);
 
 /* Kind of object at a pixel. */
 typedef enum masu_pick_kind {
@@ -1856,7 +1912,8 @@ typedef struct masu_pick_info {
  * its jittered sample position. Call it at the same point as masu_stats. MASU_ERROR_ARGUMENT:
  * desc.picking is 0, the slot does not exist, or a pointer is NULL. MASU_INCOMPLETE: as
  * masu_stats. */
-MASU_API masu_result masu_pick(const masu_renderer *renderer, uint32_t slot, masu_pick_info *out);
+MASU_API masu_result masu_pick(const masu_renderer *renderer, uint32_t slot, masu_pick_info *out,
+                               masu_detail *detail);
 
 /* Unpacks a texel of MASU_READBACK_NORMAL to a unit vector in world space. */
 MASU_API void masu_unpack_normal(uint32_t texel, float out[3]);

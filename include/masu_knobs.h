@@ -41,10 +41,45 @@
       "SMAA 1x: edges with a contrast of 0.05 or more, searched for 64 pixels, with diagonals"     \
       " and corners")
 
-#define MASU_WORD_ENUM(name, value, word, text) name = value,
-typedef enum masu_switch { MASU_SWITCH_WORDS(MASU_WORD_ENUM) } masu_switch;
-typedef enum masu_easu { MASU_EASU_WORDS(MASU_WORD_ENUM) } masu_easu;
-typedef enum masu_aa { MASU_AA_WORDS(MASU_WORD_ENUM) } masu_aa;
+/* written by make_structs.c: enums */
+typedef enum masu_switch {
+    /* the default of the knob */
+    MASU_AUTO = 0,
+    MASU_OFF = 1,
+    MASU_ON = 2,
+} masu_switch;
+
+typedef enum masu_easu {
+    /* selects full */
+    MASU_EASU_AUTO = 0,
+    /* EASU of FSR1 as AMD published it */
+    MASU_EASU_FULL = 1,
+    /* EASU that detects edges once instead of four times; if the four texels around a pixel
+     * differ by at most 1/255, it uses their bilinear average, which is within 1/255 of full
+     * (errors elsewhere: docs/design/15-fsr1.md) */
+    MASU_EASU_FAST = 2,
+    /* bilinear filter, for comparison */
+    MASU_EASU_BILINEAR = 3,
+} masu_easu;
+
+typedef enum masu_aa {
+    /* selects off */
+    MASU_AA_AUTO = 0,
+    MASU_AA_OFF = 1,
+    /* FXAA: one pass that samples adjacent pixels only */
+    MASU_AA_FXAA = 2,
+    /* SMAA 1x: edges with a contrast of 0.15 or more, searched for 8 pixels */
+    MASU_AA_SMAA_LOW = 3,
+    /* SMAA 1x: edges with a contrast of 0.1 or more, searched for 16 pixels */
+    MASU_AA_SMAA_MEDIUM = 4,
+    /* SMAA 1x: edges with a contrast of 0.1 or more, searched for 32 pixels, with diagonals and
+     * corners */
+    MASU_AA_SMAA_HIGH = 5,
+    /* SMAA 1x: edges with a contrast of 0.05 or more, searched for 64 pixels, with diagonals and
+     * corners */
+    MASU_AA_SMAA_ULTRA = 6,
+} masu_aa;
+/* end of what make_structs.c wrote */
 
 /* One value per shadow cascade, the closest cascade first. */
 typedef uint32_t masu_per_cascade[MASU_MAX_CASCADES];
@@ -76,8 +111,8 @@ typedef enum masu_knob_use {
 } masu_knob_use;
 
 /* The knobs of a rung. One row per knob, in the order of the members of masu_rung, of setting
- * names, files and tables. To add a knob, add a row; `make docs-tables` then regenerates
- * docs/knobs.md. The two strings of a row are its description and its cost.
+ * names, files and tables. To add a knob, add a row; `make docs-tables` then regenerates masu_rung
+ * below and docs/knobs.md. The two strings of a row are its description and its cost.
  *
  * NUMBER: `min` and `max` bound the value. 0 is always valid: it selects the default in the column
  * "0 is" unless the description defines another default; if that column is 0 too, the description
@@ -169,7 +204,7 @@ typedef enum masu_knob_use {
            "2 n^2 persistent device bytes.")                                                       \
     NUMBER(uint32_t,         local_shadow_lights,  1,    64,   16,   LOCAL_SHADOWS, "",            \
            "Largest number of punctual lights with shadows at a time, the most important ones.",   \
-           "More faces to render when they change; smaller faces where the atlas is full.")                                         \
+           "More faces to render when they change; smaller faces where the atlas is full.")        \
     NUMBER(uint32_t,         local_shadow_faces,   1,    16,   4,    LOCAL_SHADOWS, "faces",       \
            "Largest number of shadow faces rendered per frame: 1 for a spot, up to 6 for a point"  \
            " light. Faces that have to wait show what they held.",                                 \
@@ -202,7 +237,6 @@ typedef enum masu_knob_use {
 /* clang-format on */
 
 #include "masu_study.h"
-#undef MASU_WORD_ENUM
 
 /* All knobs, in order. */
 #define MASU_KNOBS(NUMBER, WORD)                                                                   \
@@ -212,11 +246,113 @@ typedef enum masu_knob_use {
 /* One rung (quality level) of the quality ladder: a value for every knob. masu_init records the
  * command buffers of each rung; masu_frame_desc.rung selects one per frame. All zero: output size,
  * every feature of the scene, no anti-aliasing. */
+/* written by make_structs.c: masu_rung */
 typedef struct masu_rung {
-#define MASU_KNOB_FIELD(type, name, ...) type name;
-    MASU_KNOBS(MASU_KNOB_FIELD, MASU_KNOB_FIELD)
-#undef MASU_KNOB_FIELD
+    /* Render size / output size, per axis. Ignored with a source image. Range 0..1; 0: 1. */
+    float scale;
+    /* Upscaling by EASU or bilinear filter. AUTO: on if the render size differs from the output
+     * size; OFF is an error then. */
+    masu_switch upscale;
+    /* Upscaling filter. AUTO: full. */
+    masu_easu easu;
+    /* Sharpening by RCAS. AUTO: on after EASU (full or fast), off after bilinear. */
+    masu_switch sharpen;
+    /* Reduction of RCAS sharpening: each stop halves it (AMD's definition). Below 0: no
+     * reduction, the strongest sharpening. Range -1..64 stops; 0: 0.2. */
+    float sharpness;
+    /* Anti-aliasing filter before upscaling. AUTO: off. */
+    masu_aa aa;
+    /* Temporal anti-aliasing and upscaling with a jittered camera. Replaces aa and EASU, and
+     * RCAS unless sharpen is on. Scenes only. AUTO: on with a governor, at most one viewport and
+     * no split except AFTER_UPSCALE, in rungs with upscale, easu, sharpen and aa at AUTO; else
+     * off. */
+    masu_switch temporal;
+    /* SDF edge anti-aliasing: averages four samples in pixels that contain an edge of the SDF.
+     * AUTO: off. */
+    masu_switch silhouettes;
+    /* Largest number of sphere-tracing steps per ray. A ray that reaches it ends at its current
+     * position. Range 1..2048 steps; 0: 2048. */
+    uint32_t march_steps;
+    /* Largest geometric error of an LOD on the screen, in pixels of the render size. Below 0:
+     * always the full mesh. Range -1000000000..1000000000 pixels; 0: 1. */
+    float lod_error;
+    /* Screen-space ambient occlusion. AUTO: on. */
+    masu_switch ao;
+    /* Slices (directions) per texel of the ambient occlusion. Range 1..8; 0: 2. */
+    uint32_t ao_slices;
+    /* Samples on each of the two sides of a slice. Range 1..16; 0: 8. */
+    uint32_t ao_steps;
+    /* Number of shadow cascades. 0: the scene's. Range 1..4. */
+    uint32_t shadow_cascades;
+    /* Width and height of a shadow cascade. 0: the scene's. Range 16..8192 texels. */
+    uint32_t shadow_resolution;
+    /* View depth at which shadows end. 0: the scene's. Range 0..1000000000 m. */
+    float shadow_distance;
+    /* Interval at which each cascade is re-rendered; also after a cut, and when the view has
+     * moved out of the cascade. In between, shadows of moving objects lag behind. Range 1..64
+     * frames; 0: 1. */
+    masu_per_cascade shadow_refresh;
+    /* Shadows of punctual lights. AUTO: on. */
+    masu_switch local_shadows;
+    /* Largest width and height of the atlas of shadow faces, rounded down to a power of two;
+     * smaller if few lights cast shadows. All rungs share the largest. Range 128..4096 texels;
+     * 0: 2048. */
+    uint32_t local_shadow_atlas;
+    /* Largest number of punctual lights with shadows at a time, the most important ones. Range
+     * 1..64; 0: 16. */
+    uint32_t local_shadow_lights;
+    /* Largest number of shadow faces rendered per frame: 1 for a spot, up to 6 for a point
+     * light. Faces that have to wait show what they held. Range 1..16 faces; 0: 4. */
+    uint32_t local_shadow_faces;
+    /* Traced reflections. AUTO: on if a surface is glossy enough and the device allows enough
+     * storage buffers. */
+    masu_switch specular;
+    /* Perceptual roughness from which on surfaces reflect the sky or light probes and trace no
+     * rays; between 3/4 of it and it, both are blended. 0: the scene's. Range 0..1. */
+    float specular_cutoff;
+    /* Length of the temporal accumulation of reflections, in frames of 1/60 s. 0: 32, or 8 with
+     * temporal, which accumulates too. Range 1..240 frames; 0: 32. */
+    uint32_t specular_frames;
+    /* Live bounce: rays of some probes per frame. OFF: probes keep what they have. AUTO: on if
+     * the device allows enough storage buffers. */
+    masu_switch bounce;
+    /* Probes that trace rays per frame. In the first frames up to four times as many do. Range
+     * 1..2048 probes; 0: 94. */
+    uint32_t bounce_probes;
+    /* Rays of a probe per frame. A probe shows the mean of up to sixteen sets of rays. Range
+     * 8..64 rays; 0: 48. */
+    uint32_t bounce_rays;
+    /* Frustum culling of instances; the image is the same. AUTO: on. */
+    masu_switch frustum;
+    /* Occlusion culling of instances; the image is the same. AUTO: on if the scene has
+     * occluders. */
+    masu_switch occlusion;
+    /* Tiled light culling: each pixel evaluates the punctual lights of its 16x16 tile only; the
+     * image is the same. AUTO: on if the scene has punctual lights. */
+    masu_switch light_tiles;
+#ifdef MASU_LAB
+    /* How the SDF is marched. AUTO: the product's march. */
+    masu_march march;
+#endif
+    /* Spatial reuse: each texel also weighs the ray hits of its neighbours while its history is
+     * short. AUTO: on; off with temporal. */
+    masu_switch specular_reuse;
+    /* Temporal accumulation of reflections. AUTO: on. */
+    masu_switch specular_temporal;
+    /* Full-resolution history for smooth surfaces, and for 2x2 pixels with more than one
+     * surface; requires specular_temporal. AUTO: on. */
+    masu_switch specular_fine;
+    /* Spatial filter whose radius follows the remaining noise. AUTO: on. */
+    masu_switch specular_filter;
+    /* Second, short temporal accumulation against flicker; requires specular_temporal. AUTO: on;
+     * off with temporal. */
+    masu_switch specular_taa;
+    /* Neighbours per texel in specular_reuse. Range 1..16; 0: 8. */
+    uint32_t specular_reuse_taps;
+    /* Neighbours per texel in specular_filter. Range 1..32; 0: 12. */
+    uint32_t specular_filter_taps;
 } masu_rung;
+/* end of what make_structs.c wrote */
 
 /* The tables above as data, for settings menus and files. An enum value of a knob: */
 typedef struct masu_word {
@@ -294,7 +430,7 @@ MASU_API int masu_knob_accepts(const masu_knob *knob, double to);
       "transparent primitives, summed over all instances: 76 bytes each, host; 24, and 20 for"     \
       " each texture set that they use, per frame in flight, device")                              \
     X(lights, 4096,                                                                                \
-      "punctual lights: 112 bytes each per frame in flight, device, and 116 bytes each, host")       \
+      "punctual lights: 128 bytes each per frame in flight, device, and 116 bytes each, host")     \
     X(trace_triangles, 0,                                                                          \
       "triangles in the BVHs for reflections: 16 bytes each, and about a quarter of a 48-byte"     \
       " node each, device")                                                                        \
@@ -302,19 +438,78 @@ MASU_API int masu_knob_accepts(const masu_knob *knob, double to);
       "instances in the BVH for reflections: 208 bytes each per frame in flight, device, and"      \
       " about 200 bytes each, host")
 
-#define MASU_LIMIT_FIELD(name, ...) uint64_t name;
-
 /* 0: no limit. A scene above a limit is MASU_ERROR_LIMIT; the detail names the member. */
+/* written by make_structs.c: masu_limits */
 typedef struct masu_limits {
-    MASU_LIMITS(MASU_LIMIT_FIELD)
+    /* 16 bytes each, device */
+    uint64_t vertices;
+    /* 4 bytes each, device */
+    uint64_t indices;
+    /* 48 bytes each, device */
+    uint64_t materials;
+    /* 98 bytes each, host, and 52 bytes each per frame in flight, device; with velocities 146
+     * and 100. With occlusion culling, on the device: 32 more, and 8 for each occluder of the
+     * instance, per frame in flight, and 4 once. With a shadow map, per cascade: 4 more; with
+     * occlusion culling 12, and 4 once. With LODs: 1 more on the host, and on the device 4 for
+     * each LOD of the mesh and each view (8 with occlusion culling) */
+    uint64_t instances;
+    /* movable models, including hidden and pooled copies: 72 bytes each, host, and 4 for each
+     * instance of the scene */
+    uint64_t models;
+    /* nodes of all movable models: 112 bytes each, host */
+    uint64_t model_nodes;
+    /* 16 bytes each, host */
+    uint64_t sdf_params;
+    /* cascades of the shadow map in the largest rung */
+    uint64_t shadow_cascades;
+    /* width and height n of a cascade in texels: 4 n^2 bytes, device */
+    uint64_t shadow_resolution;
+    /* light probes: 48 bytes each, 56 more for each set, and the distance map of each probe,
+     * device; live ones 944 more, and 2 on the host */
+    uint64_t probes;
+    /* textures with their mip chains; texture_bytes has their cost */
+    uint64_t textures;
+    /* bytes of all texels on the device, compressed or decoded as used; the device may add
+     * padding */
+    uint64_t texture_bytes;
+    /* transparent primitives, summed over all instances: 76 bytes each, host; 24, and 20 for
+     * each texture set that they use, per frame in flight, device */
+    uint64_t transparents;
+    /* punctual lights: 112 bytes each per frame in flight, device, and 116 bytes each, host */
+    uint64_t lights;
+    /* triangles in the BVHs for reflections: 16 bytes each, and about a quarter of a 48-byte
+     * node each, device */
+    uint64_t trace_triangles;
+    /* instances in the BVH for reflections: 208 bytes each per frame in flight, device, and
+     * about 200 bytes each, host */
+    uint64_t trace_instances;
 } masu_limits;
+/* end of what make_structs.c wrote */
 
+/* The largest numbers of a renderer (masu_peaks). */
+/* written by make_structs.c: masu_peak_info */
 typedef struct masu_peak_info {
-    MASU_LIMITS(MASU_LIMIT_FIELD)
+    /* as in masu_limits */
+    uint64_t vertices;
+    uint64_t indices;
+    uint64_t materials;
+    uint64_t instances;
+    uint64_t models;
+    uint64_t model_nodes;
+    uint64_t sdf_params;
+    uint64_t shadow_cascades;
+    uint64_t shadow_resolution;
+    uint64_t probes;
+    uint64_t textures;
+    uint64_t texture_bytes;
+    uint64_t transparents;
+    uint64_t lights;
+    uint64_t trace_triangles;
+    uint64_t trace_instances;
     uint64_t host_bytes;   /* used in the host block */
     uint64_t device_bytes; /* in all device blocks */
 } masu_peak_info;
-#undef MASU_LIMIT_FIELD
+/* end of what make_structs.c wrote */
 
 /* A limit as data. */
 typedef struct masu_limit {

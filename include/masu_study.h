@@ -19,7 +19,9 @@
     X(MASU_MARCH_CHECKERBOARD, 3, "checkerboard",                                                  \
       "* cones of 8x8 pixels, then a two-phase checkerboard with safe restarts")
 
-typedef enum masu_march { MASU_MARCH_WORDS(MASU_WORD_ENUM) } masu_march;
+#define MASU_MARCH_ENUM(name, value, word, text) name = value,
+typedef enum masu_march { MASU_MARCH_WORDS(MASU_MARCH_ENUM) } masu_march;
+#undef MASU_MARCH_ENUM
 
 #define MASU_LAB_KNOBS(NUMBER, WORD)                                                               \
     WORD(  masu_march,       march,                MASU_MARCH_AUTO, SDF,                           \

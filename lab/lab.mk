@@ -47,10 +47,11 @@ reference-blender: lab $(BUILD)/bin/masu-bake ## write lab/notes/reference_blend
 $(LAB_BUILD)/bin/masu-lab: force | $(GENERATED)
 	+$(V)$(lab_make) $@
 
-$(BUILD)/worlds/city/city.json: $(LAB_BUILD)/bin/masu-lab
+# Both descriptions of a world are written at once: by day and by night.
+$(BUILD)/worlds/city/city.json $(BUILD)/worlds/city/city_night.json &: $(LAB_BUILD)/bin/masu-lab
 	@mkdir -p $(@D)
 	$(V)$< world city $(@D) --quiet
-$(BUILD)/worlds/forza/forza.json: $(LAB_BUILD)/bin/masu-lab
+$(BUILD)/worlds/forza/forza.json $(BUILD)/worlds/forza/forza_night.json &: $(LAB_BUILD)/bin/masu-lab
 	@mkdir -p $(@D)
 	$(V)$< world forza $(@D) --torcs '$(TORCS)'
 FORZA_RELIEFS := $(foreach r,asphalt grass gravel,$(BUILD)/worlds/forza/$(r).json)
@@ -58,12 +59,12 @@ $(FORZA_RELIEFS): $(BUILD)/worlds/forza/%.json: $(BUILD)/bin/masu-meso
 	@mkdir -p $(@D)
 	@echo "  MESO    $*"
 	$(V)cd $(@D) && $(abspath $(BUILD)/bin/masu-meso) --make $* -o $* > /dev/null
-$(BUILD)/worlds/forza.masu: $(FORZA_RELIEFS)
+$(BUILD)/worlds/forza.masu $(BUILD)/worlds/forza_night.masu: $(FORZA_RELIEFS)
 
 .PHONY: $(WORLDS:%=world-%)
 $(WORLDS:%=world-%): world-%: $(BUILD)/worlds/%.masu
 define world_rule
-$(BUILD)/worlds/$(1).masu: $(BUILD)/worlds/$(1)/$(1).json $(BUILD)/bin/masu-bake.code
+$(BUILD)/worlds/$(1).masu: $(BUILD)/worlds/$(1:_night=)/$(1).json $(BUILD)/bin/masu-bake.code
 	@echo "  BAKE    $$<"
 	$$(V)$(BUILD)/bin/masu-bake $$< -o $$@ --stats $$(@:.masu=.stats.json)
 endef

@@ -18,6 +18,7 @@ done | sort -u | while read -r file; do
     cp "$file" "$to.new/$place"
 done
 cp LICENSE package/CMakeLists.txt "$to.new"
+cp include/masu.hpp "$to.new/include"
 cp package/bundle-Makefile "$to.new/Makefile"
 rm -rf "$to"
 mv "$to.new" "$to"

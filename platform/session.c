@@ -63,12 +63,12 @@ static bool open_targets(const masu_session_desc *d, masu_session *s, char *erro
 static bool load(masu_session *s, char *error, size_t size) {
     masu_commands commands;
     masu_result result;
-    while ((result = masu_load(s->m, &commands)) == MASU_INCOMPLETE) {
+    while ((result = masu_load(s->m, &commands, &s->detail)) == MASU_INCOMPLETE) {
         if (!masu_headless_run(&s->host, commands.buffer, error, size)) return false;
     }
     free(s->blob); /* the renderer has what it needs */
     s->blob = NULL;
-    return result == MASU_OK;
+    return result == MASU_OK || failed(s, NULL, error, size);
 }
 
 bool masu_session_start(masu_session *s, char *error, size_t size) {
@@ -85,6 +85,13 @@ bool masu_session_start(masu_session *s, char *error, size_t size) {
     return load(s, error, size);
 }
 
+masu_desc masu_session_resolved(const masu_desc *desc) {
+    masu_desc d = *desc;
+    d.bytes = sizeof d;
+    if (masu_desc_resolve(&d, &d, NULL)) return *desc; /* it fails for another size only */
+    return d;
+}
+
 bool masu_session_denied(void) {
     const char *what = getenv("MASU_DENY");
     return what && !strcmp(what, "all");
@@ -94,6 +101,7 @@ bool masu_session_open(const masu_session_desc *d, masu_session *s, char *error,
                        size_t error_size) {
     memset(s, 0, sizeof *s);
     s->desc = d->desc;
+    if (!s->desc.bytes) s->desc.bytes = sizeof s->desc;
     masu_headless_desc host = d->host;
     host.labels = host.labels || d->desc.debug.labels;
     host.deny = host.deny || masu_session_denied();
@@ -149,11 +157,13 @@ bool masu_session_frame(masu_session *s, const masu_frame_desc *frame, bool wait
                         masu_commands *commands, char *error, size_t error_size) {
     /* The slot that comes round next must be free before masu_frame writes to it. */
     if (!masu_headless_wait(&s->host, s->next_slot, error, error_size)) return false;
-    if (masu_frame(s->m, frame, commands)) {
-        snprintf(error, error_size, "%s", masu_last_error(s->m)->text);
+    masu_frame_desc f = *frame;
+    if (!f.bytes) f.bytes = sizeof f;
+    if (masu_frame(s->m, &f, commands, &s->detail)) {
+        snprintf(error, error_size, "%s", s->detail.text);
         return false;
     }
-    s->next_slot = (commands->slot + 1) % masu_desc_resolved(&s->desc).frames_in_flight;
+    s->next_slot = (commands->slot + 1) % masu_session_resolved(&s->desc).frames_in_flight;
     if (!masu_headless_submit(&s->host, commands->buffer, commands->slot, error, error_size))
         return false;
     return !wait || masu_headless_wait(&s->host, commands->slot, error, error_size);

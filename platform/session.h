@@ -13,7 +13,7 @@
 typedef struct masu_session_desc {
     const char *scene_path; /* NULL: none */
     masu_desc
-        desc; /* vulkan (but its pipelines), scene, targets.images and .views are filled in; the rest is as given.
+        desc; /* bytes, vulkan (but its pipelines), scene, targets.images and .views are filled in; the rest is as given.
                * vulkan.max_anisotropy: at most what the device has; below 0: the host's usual_anisotropy */
     masu_headless_desc host;
     uint32_t target_count; /* 0: 1 */
@@ -47,7 +47,11 @@ void masu_session_close(masu_session *s);
  * session stays open on failure. */
 bool masu_session_start(masu_session *s, char *error, size_t error_size);
 
-/* One frame: waits for its slot, writes it, submits it. With `wait` it has finished on return. */
+/* masu_desc_resolve of a description whose `bytes` may be 0. */
+masu_desc masu_session_resolved(const masu_desc *desc);
+
+/* One frame: waits for its slot, writes it, submits it. With `wait` it has finished on return.
+ * frame->bytes may be 0. */
 bool masu_session_frame(masu_session *s, const masu_frame_desc *frame, bool wait,
                         masu_commands *commands, char *error, size_t error_size);
 

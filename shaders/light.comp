@@ -157,10 +157,14 @@ void main()
                     kept = masu_kept_mirrors(s, push.cutoff, push.accumulate != 0u);
                 }
                 vec3 n = masu_unpack_normal(normal);
+#ifdef MASU_LIGHTS
+                /* First of all, and with the surface as halves: the lookup of probes takes the most registers. */
+                masu_shelved_look look = masu_shelve(s);
+                masu_around around = masu_ambient_at(rel, masu_base_normal(s, n));
+                masu_unshelve(look, s);
+#endif
                 masu_mirrored sky = masu_mirrored_sky(s, n, -direction, kept);
 #ifdef MASU_LIGHTS
-                /* Before the bsdf, too, which then takes no registers in the probes. */
-                masu_around around = masu_ambient_at(rel, masu_base_normal(s, n));
                 masu_bsdf b = masu_bsdf_make(s, n, -direction);
                 masu_lit lit = masu_shade(s, b, around, arriving(at), sky);
 #else

@@ -11,6 +11,8 @@
 #version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_SURFACE /* any of what is met may have a coat */
+#define MASU_LOCAL_SHADOWS_FOUR /* nine texels and MASU_SHELVED: registers */
+#define MASU_SHELVED
 #include "push/specular_shade.h"
 #include "shared/lights.h"
 #include "shared/trace.h"
@@ -61,6 +63,12 @@ vec3 radiance(met m, vec3 rel, vec3 direction)
     if (masu_is_unlit(m.surface)) {
         return m.surface.emissive;
     }
+#ifdef MASU_LIGHTS
+    /* First of all, and with the surface as halves: the lookup takes the most registers. */
+    masu_shelved_look look = masu_shelve(m.surface);
+    masu_around around = masu_ambient_at(rel, masu_base_normal(m.surface, m.normal));
+    masu_unshelve(look, m.surface);
+#endif
     masu_mirrored sky = masu_mirrored_sky(m.surface, m.normal, -direction, vec2(1.0));
     vec2 seen = vec2(1.0);
 #ifdef MASU_SUN_MAP
@@ -69,16 +77,16 @@ vec3 radiance(met m, vec3 rel, vec3 direction)
     }
 #endif
 #ifdef MASU_LIGHTS
-    masu_around around = masu_ambient_at(rel, masu_base_normal(m.surface, m.normal));
     masu_bsdf b = masu_bsdf_make(m.surface, m.normal, -direction);
     masu_lit lit = masu_shade(m.surface, b, around, seen, sky);
     masu_light_sum sum = masu_light_sum(lit.diffuse + lit.specular + m.surface.emissive);
+    masu_shelved_bsdf shelf = masu_shelve(b);
     uint lights = masu_light_count();
     for (uint i = 0u; i < uint(MASU_LOCAL_LIGHTS_MAX); i++) {
         if (i >= lights) {
             break;
         }
-        masu_add_local_light(sum, m.surface, b, i, rel, m.normal, vec3(0.0));
+        masu_add_local_light(sum, m.surface, b, shelf, i, rel, m.normal, vec3(0.0));
     }
     return sum.light;
 #else

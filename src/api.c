@@ -1,5 +1,5 @@
-/* api.c: the public functions for the life of a renderer (masu_init, masu_load, masu_destroy) and
- * for its frames. The other api_*.c contain the rest of masu.h. */
+/* api.c: the public functions for the lifetime of a renderer (masu_init, masu_load, masu_destroy)
+ * and for its frames. The other api_*.c implement the rest of masu.h. */
 #include "api_governor.h"
 #include "api_stats.h"
 #include "base/error.h"
@@ -20,11 +20,12 @@
 
 /* ---- The host block -------------------------------------------------------------------------- */
 
-/* The one walk that sizes and lays out the host block. m is NULL when only counting. */
+/* The only sequence of allocations in the host memory block, for the size query and for init. m is
+ * NULL when only counting. */
 static void alloc_host(masu_arena *arena, const masu_frame_plan *plan, masu_renderer **m) {
     uint32_t arrays = plan->scene.texture_arrays;
     masu_renderer *r = masu_arena_alloc(arena, "renderer", 1, sizeof *r, MASU_ARENA_ALIGNMENT);
-    masu_renderer scrap; /* takes the NULLs of a counting walk */
+    masu_renderer scrap; /* receives the NULL results of counting */
     masu_renderer *to = r ? r : &scrap;
     masu_texture_plan *textures = masu_arena_alloc(arena, "textures", arrays, sizeof *textures, 8);
     if (r) {
@@ -95,20 +96,23 @@ void masu_write_scene(masu_renderer *m) {
 
 /* ---- Plan and query -------------------------------------------------------------------------- */
 
-/* A plan needs the driver's sizes, so images and buffers are created; the caller keeps or destroys
- * them. */
+/* A plan needs sizes from the driver, so images and buffers are created. The caller keeps or
+ * destroys them. */
 static masu_result create_plan(const masu_desc *desc, masu_vk *vk, masu_frame_plan *plan,
                                masu_texture_plan textures[MASU_TEXTURE_ARRAYS_MAX],
                                masu_objects *objects, masu_detail *detail) {
     memset(objects, 0, sizeof *objects);
     memset(textures, 0, MASU_TEXTURE_ARRAYS_MAX * sizeof *textures);
     if (!desc) return masu_fail_null(detail, "desc");
+    if (desc->bytes != sizeof *desc)
+        return masu_fail_bytes(detail, "masu_desc", sizeof *desc, desc->bytes);
     if (desc->scene && !masu_scene_data_of(desc->scene)->blob) {
         return masu_fail(detail, MASU_ERROR_ARGUMENT, "scene", 1, 0,
                          "scene was not filled by masu_scene_bind");
     }
     masu_result result =
-        masu_compile(desc, 1, 1, plan, detail); /* pure checks come before the first Vulkan call */
+        /* checks without the driver precede the first Vulkan call */
+        masu_compile(desc, 1, 1, plan, detail);
     if (!result) result = masu_governor_check(&desc->governor, plan->desc.rung_count, detail);
     if (!result) result = masu_vk_load(desc, vk, detail);
     if (result) return result;
@@ -146,25 +150,27 @@ static masu_result plan_and_forget(const masu_desc *desc, masu_frame_plan *plan,
     masu_arena_begin(&arena, NULL, 0);
     alloc_host(&arena, plan, NULL);
     *host_bytes = arena.used;
-    plan->textures = NULL; /* they were on this stack */
+    plan->textures = NULL; /* pointed to this stack frame */
     return check_host(plan, arena.used, detail);
 }
 
 masu_result masu_memory_query(const masu_desc *desc, masu_memory *out, masu_detail *detail) {
-    if (!out) return masu_fail_null(detail, "out");
+    masu_detail own;
     masu_frame_plan plan;
     uint64_t host_bytes = 0;
-    masu_result result = plan_and_forget(desc, &plan, &host_bytes, detail);
+    masu_result result =
+        out ? plan_and_forget(desc, &plan, &host_bytes, &own) : masu_fail_null(&own, "out");
     if (!result) masu_memory_export(&plan, host_bytes, out);
-    return result;
+    return masu_finish_desc(desc, result, &own, detail);
 }
 
 masu_result masu_plan(const masu_desc *desc, masu_plan_info *out, masu_detail *detail) {
-    if (!out) return masu_fail_null(detail, "out");
+    masu_detail own;
     masu_frame_plan plan;
     uint64_t host_bytes = 0;
-    masu_result result = plan_and_forget(desc, &plan, &host_bytes, detail);
-    if (result) return result;
+    masu_result result =
+        out ? plan_and_forget(desc, &plan, &host_bytes, &own) : masu_fail_null(&own, "out");
+    if (result) return masu_finish_desc(desc, result, &own, detail);
     masu_plan_export(&plan, NULL, out);
     masu_memory_export(&plan, host_bytes, &out->memory);
     return MASU_OK;
@@ -211,7 +217,7 @@ static masu_result init(const masu_desc *desc, void *block, uint64_t block_bytes
     alloc_host(&arena, &plan, &m);
     m->cookie = MASU_RENDERER_COOKIE;
     m->arena = arena;
-    plan.textures = m->plan.textures; /* the walk has put them into the block */
+    plan.textures = m->plan.textures; /* the allocation above has set it */
     m->plan = plan;
     m->plan.desc.scene = plan.desc.scene ? masu_scene_of(&m->plan.scene) : NULL;
     m->device.vk = vk;
@@ -258,17 +264,14 @@ static void log_box(const masu_renderer *m) {
 masu_result masu_init(const masu_desc *desc, void *block, uint64_t block_bytes, masu_renderer **out,
                       masu_detail *detail) {
     masu_detail own;
-    if (!out) return masu_fail_null(detail, "out");
-    *out = NULL;
-    masu_result result = init(desc, block, block_bytes, out, &own);
-    if (!result) {
-        log_box(*out);
-        return MASU_OK;
-    }
-    if (detail) *detail = own;
-    if (desc) masu_log(desc, MASU_LOG_ERROR, own.text);
-    return result;
+    if (out) *out = NULL;
+    masu_result result =
+        out ? init(desc, block, block_bytes, out, &own) : masu_fail_null(&own, "out");
+    if (!result) log_box(*out);
+    return masu_finish_desc(desc, result, &own, detail);
 }
+
+uint32_t masu_version(void) { return MASU_VERSION; }
 
 void masu_destroy(masu_renderer *m) {
     if (!m || m->cookie != MASU_RENDERER_COOKIE) return;
@@ -285,11 +288,11 @@ masu_result masu_check_lost(const masu_renderer *m, masu_detail *detail) {
     return result;
 }
 
-masu_result masu_load(masu_renderer *m, masu_commands *commands) {
-    if (!m || !commands) return masu_finish_null(m, "commands");
+masu_result masu_load(masu_renderer *m, masu_commands *commands, masu_detail *detail) {
+    if (!m || !commands) return masu_finish_null(m, "commands", detail);
     memset(commands, 0, sizeof *commands);
     masu_result result = masu_check_lost(m, &m->error);
-    if (result) return masu_finish(m, result);
+    if (result) return masu_finish(m, result, detail);
     if (m->loaded) return MASU_OK;
     masu_load_step step = masu_load_next(&m->device);
     commands->buffer = commands->parts[0] = step.commands;
@@ -298,7 +301,7 @@ masu_result masu_load(masu_renderer *m, masu_commands *commands) {
     commands->load_left = masu_load_bytes(&m->device) - m->device.load_done;
     if (step.more) return MASU_INCOMPLETE;
     m->loaded = 1;
-    m->plan.scene.blob = NULL; /* from here on the host may free it */
+    m->plan.scene.blob = NULL; /* the host may free the blob now */
     return MASU_OK;
 }
 
@@ -327,9 +330,10 @@ static masu_result check_frame(masu_renderer *m, const masu_frame_desc *frame) {
                          viewports - 1);
     }
     if (frame->viewport && frame->rung == MASU_RUNG_AUTO) {
-        return masu_fail(&m->error, MASU_ERROR_ARGUMENT, "rung", d->rung_count - 1, frame->rung,
-                         "rung is MASU_RUNG_AUTO for viewport %u: the governor's is the first alone",
-                         frame->viewport);
+        return masu_fail(
+            &m->error, MASU_ERROR_ARGUMENT, "rung", d->rung_count - 1, frame->rung,
+            "rung is MASU_RUNG_AUTO for viewport %u: the governor's is the first alone",
+            frame->viewport);
     }
     if (frame->target >= d->targets.count) {
         return masu_fail(&m->error, MASU_ERROR_ARGUMENT, "target", d->targets.count - 1,
@@ -339,7 +343,7 @@ static masu_result check_frame(masu_renderer *m, const masu_frame_desc *frame) {
     return masu_sprites_check(d, frame, &m->error);
 }
 
-/* Each step reads what those before it have found: their order is part of what they do. */
+/* Each step reads the results of the previous ones, so the order matters. */
 masu_result masu_write_frame(masu_renderer *m, masu_frame_data *f) {
     masu_result result = masu_frame_read_time(f, &m->error);
     if (!result) result = masu_camera_read(&m->camera, f, &m->error);
@@ -360,7 +364,7 @@ masu_result masu_write_frame(masu_renderer *m, masu_frame_data *f) {
     masu_materials_write(&m->materials, f);
     masu_bounce_write(&m->bounce, &m->lights, &m->instances, &m->materials, f);
 
-    /* Whatever asks which instances have moved, then those themselves. */
+    /* First the readers of which instances have moved, then the instances themselves. */
     masu_reflections_write_instances(&m->reflections, &m->instances, &m->bounds, f);
     masu_occlusion_write_boxes(&m->bounds, &m->instances, f);
     masu_skins_write(&m->models.skins, &m->instances, f);
@@ -378,14 +382,18 @@ static masu_recording_id recording_id(const masu_frame_data *f) {
     return (masu_recording_id){f->slot, f->desc.viewport, f->desc.rung, f->desc.target};
 }
 
-/* What is submitted: of the frame's slot, rung and target the recording that draws its cascades. */
+/* The command buffers to submit: of the recording for the frame's slot, rung and target that
+ * renders the cascades due. */
 static const VkCommandBuffer *pick_recording(const masu_renderer *m, const masu_frame_data *f) {
     const masu_rung_plan *rp = masu_frame_rung_plan(f);
     uint32_t first = masu_recording_of(&m->plan, recording_id(f));
-    return &m->device.frames[(first + masu_recording_variant(rp, f->cascades | f->faces << MASU_DRAWN_FACES)) * m->plan.parts];
+    return &m->device.frames[(first + masu_recording_variant(
+                                          rp, f->cascades | f->faces << MASU_DRAWN_FACES)) *
+                             m->plan.parts];
 }
 
-/* After masu_resize. Nothing is written to the slot yet: a frame that fails has changed nothing. */
+/* After masu_resize, recordings may be missing. Nothing has been written to the slot yet, so a
+ * failing frame has changed nothing. */
 static masu_result record_missing(masu_renderer *m, const masu_frame_data *f) {
     masu_result result = masu_record_missing(&m->device, &m->draws, recording_id(f), &m->error);
     m->lost |= result == MASU_ERROR_DEVICE_LOST;
@@ -399,8 +407,13 @@ static masu_result check_plain_frame(masu_renderer *m, masu_frame_data *f) {
     return result ? result : masu_picking_read(f, &m->error);
 }
 
-masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_commands *commands) {
-    if (!m || !frame || !commands) return masu_finish_null(m, frame ? "commands" : "frame");
+masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_commands *commands,
+                       masu_detail *detail) {
+    if (!m || !frame || !commands) return masu_finish_null(m, frame ? "commands" : "frame", detail);
+    if (frame->bytes != sizeof *frame) {
+        masu_fail_bytes(&m->error, "masu_frame_desc", sizeof *frame, frame->bytes);
+        return masu_finish(m, MASU_ERROR_ARGUMENT, detail);
+    }
     if (frame->viewport < m->plan.desc.viewport_count)
         masu_plan_select_viewport(&m->plan, frame->viewport);
     masu_frame_data f = masu_frame_begin(&m->plan, &m->device, &m->draws, &m->timeline, frame);
@@ -411,10 +424,10 @@ masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_comm
     if (!result && m->governor) masu_governed_pick(m, &f);
     if (!result) result = record_missing(m, &f);
     if (!result) result = m->plan.desc.scene ? masu_write_frame(m, &f) : check_plain_frame(m, &f);
-    if (result) { /* the next attempt gets the times of this slot again */
+    if (result) { /* the next attempt needs the times of this slot again */
         m->timeline = timeline;
         if (m->governor) *m->governor = governor;
-        return masu_finish(m, result);
+        return masu_finish(m, result, detail);
     }
     m->rung = f.desc.rung;
     const masu_rung_plan *rp = &m->plan.rungs[f.desc.rung];
@@ -436,21 +449,27 @@ masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_comm
     return MASU_OK;
 }
 
-const masu_detail *masu_last_error(const masu_renderer *m) {
-    static const masu_detail none = {
-        .result = MASU_ERROR_ARGUMENT, .what = "renderer", .needed = 1, .text = "renderer is NULL"};
-    return m ? &m->error : &none;
+/* ---- Queries and changes by the host --------------------------------------------------------- */
+
+masu_result masu_camera_at(const masu_renderer *m, double time, masu_camera *out,
+                           masu_detail *detail) {
+    masu_detail own;
+    if (!m || !out) return masu_finish_null_const(m, "out", detail);
+    masu_result result = masu_camera_path_at(&m->camera, &m->plan, time, out);
+    if (result == MASU_ERROR_STATE)
+        masu_fail(&own, result, "scene", 1, 0, "the scene has no camera path");
+    else if (result)
+        masu_fail_number(&own, "time", time, "finite numbers of seconds");
+    return masu_finish_desc(&m->plan.desc, result, &own, detail);
 }
 
-/* ---- What the host asks and changes ---------------------------------------------------------- */
-
-masu_result masu_camera_at(const masu_renderer *m, double time, masu_camera *out) {
-    return m ? masu_camera_path_at(&m->camera, &m->plan, time, out) : MASU_ERROR_ARGUMENT;
-}
-
-masu_result masu_light_of(const masu_renderer *m, masu_light *out) {
-    if (!m || !out) return MASU_ERROR_ARGUMENT;
-    if (!m->plan.needs.scene) return MASU_ERROR_STATE;
+masu_result masu_light_of(const masu_renderer *m, masu_light *out, masu_detail *detail) {
+    masu_detail own;
+    if (!m || !out) return masu_finish_null_const(m, "out", detail);
+    if (!m->plan.needs.scene) {
+        masu_fail(&own, MASU_ERROR_STATE, "scene", 1, 0, "there is no scene that has a light");
+        return masu_finish_desc(&m->plan.desc, own.result, &own, detail);
+    }
     *out = masu_sun_sky_light(&m->sun_sky);
     return MASU_OK;
 }

@@ -1,10 +1,9 @@
 /* api_add.c: the public functions that add objects to a scene between frames and remove them:
- * copies of models and punctual lights, in the slots that desc.reserve provides
- * (src/plan/reserve.h).
+ * copies of models and local lights, in the slots of desc.reserve (src/plan/reserve.h).
  *
- * A copy needs a slot in each module with data per instance (instances, nodes, transparents, traced
+ * A copy needs a slot in each module with per-instance data (instances, nodes, transparents, traced
  * instances), and one in the reserve of lights for each of its lights. All slots are checked before
- * any is taken. */
+ * any is used. */
 #include "base/error.h"
 #include "renderer.h"
 
@@ -14,28 +13,29 @@ static uint32_t place_of(const masu_renderer *m, uint32_t model) {
     return model - masu_own_models(&m->plan);
 }
 
-/* The node's instance shows a model's; UINT32_MAX: it shows none. */
+/* The instance of a node of a model; UINT32_MAX: none. */
 static uint32_t instance_of(const masu_renderer *m, uint32_t model, uint32_t node) {
     return m->models.nodes[m->models.models[model].first_node + node].instance;
 }
 
-/* Whether a light is there and an instance of the model carries it. */
+/* Whether a light exists and is attached to an instance of the model. */
 static int carries(const masu_renderer *m, uint32_t model, uint32_t light) {
-    uint64_t carrier = m->lights.states[light].instance.id; /* its index + 1 */
+    uint64_t carrier = m->lights.states[light].instance.id; /* index + 1 */
     return masu_handle_lives(&m->lights.handles, light) && carrier &&
            m->models.of_instance[carrier - 1] == model;
 }
 
 /* ---- Models ---------------------------------------------------------------------------------- */
 
-/* Whether there is room for a copy of a model in the reserve. */
+/* Whether the reserve has room for a copy of a model. */
 static masu_result check_room(masu_renderer *m, uint32_t like) {
     uint32_t models = m->plan.reserve.models, lights = 0, free = 0;
     if (!models || masu_models_bends(&m->models, &m->plan, like)) {
         return masu_fail(&m->error, MASU_ERROR_LIMIT, "models", 1, 0,
                          "model %u: all of its kind are shown; \"spare\" in its description gives "
                          "the scene more%s",
-                         like, models ? ", desc.reserve holds none that bend" : ", desc.reserve too");
+                         like,
+                         models ? ", desc.reserve holds none that bend" : ", desc.reserve too");
     }
     if (masu_handle_free(&m->models.handles) == UINT32_MAX) {
         return masu_fail(&m->error, MASU_ERROR_LIMIT, "reserve.models", models + 1, models,
@@ -52,7 +52,7 @@ static masu_result check_room(masu_renderer *m, uint32_t like) {
                      like, needed, given);
 }
 
-/* What one instance shows, casts, mirrors and carries, as of another. */
+/* Copies the meshes, shadow and reflection state and lights of instance `from` to `to`. */
 static void copy_instance(masu_renderer *m, uint32_t place, uint32_t from, uint32_t to) {
     masu_instances_add(&m->instances, to, m->instances.meshes[from]);
     masu_transparents_copy(&m->transparents, &m->plan, place, from, to);
@@ -62,7 +62,8 @@ static void copy_instance(masu_renderer *m, uint32_t place, uint32_t from, uint3
         if (!masu_handle_lives(&m->lights.handles, i) || state.instance.id != (uint64_t)from + 1)
             continue;
         state.instance.id = masu_handle_at(&m->instances.handles, to);
-        (void)masu_lights_add(&m->lights, &m->instances, &state, &light, NULL); /* there is room */
+        /* cannot fail: there is room */
+        (void)masu_lights_add(&m->lights, &m->instances, &state, &light, NULL);
     }
 }
 
@@ -73,8 +74,9 @@ static masu_result copy_model(masu_renderer *m, uint32_t like, const float rows[
     uint32_t model = masu_handle_free(&m->models.handles), place = place_of(m, model);
     uint32_t instance = masu_own_instances(&m->plan) + place * m->plan.reserve.place.instances;
     masu_models_copy(&m->models, &m->plan, place, like);
-    result = masu_models_move(&m->models, &m->instances, &m->bounds, &m->plan, model, rows, &m->error);
-    if (result) return result; /* as yet it shows nothing, and the place is free */
+    result =
+        masu_models_move(&m->models, &m->instances, &m->bounds, &m->plan, model, rows, &m->error);
+    if (result) return result; /* nothing is visible yet, and the slot remains free */
     masu_placed_model *to = &m->models.models[model];
     for (uint32_t n = 0; n < to->node_count; n++) {
         uint32_t from = instance_of(m, like, n);
@@ -89,26 +91,27 @@ static masu_result copy_model(masu_renderer *m, uint32_t like, const float rows[
     return MASU_OK;
 }
 
-masu_result masu_model_add(masu_renderer *m, masu_model like, const float rows[12],
-                           masu_model *out) {
+masu_result masu_model_add(masu_renderer *m, masu_model like, const float rows[12], masu_model *out,
+                           masu_detail *detail) {
     uint32_t i;
     if (out) *out = (masu_model){0};
-    if (!m || !rows || !out) return masu_finish_null(m, rows ? "out" : "rows");
+    if (!m || !rows || !out) return masu_finish_null(m, rows ? "out" : "rows", detail);
     masu_result result = masu_handle_check(&m->models.handles, "model", like.id, &i, &m->error);
-    if (result) return masu_finish(m, result);
+    if (result) return masu_finish(m, result, detail);
     uint32_t added = masu_models_spare(&m->models, &m->plan, i);
     if (added == UINT32_MAX) result = copy_model(m, i, rows, &added);
-    if (!result) { /* of a copy once more, now that it has instances */
+    if (!result) { /* a second time for a copy, which has instances now */
         result = masu_models_move(&m->models, &m->instances, &m->bounds, &m->plan, added, rows,
                                   &m->error);
     }
-    if (result) return masu_finish(m, result);
+    if (result) return masu_finish(m, result, detail);
     masu_models_show(&m->models, &m->instances, &m->plan, added, 1);
     *out = masu_model_at(m, added);
     return MASU_OK;
 }
 
-/* What an instance that goes has carried: lights of the reserve go too, those of the scene stay, and are off. */
+/* Removes the lights of a removed instance: reserve lights are freed, lights of the scene are
+ * switched off. */
 static void drop_lights(masu_renderer *m, uint32_t model) {
     for (uint32_t i = 0; i < m->plan.scene.lights; i++) {
         if (!carries(m, model, i)) continue;
@@ -119,12 +122,12 @@ static void drop_lights(masu_renderer *m, uint32_t model) {
     }
 }
 
-masu_result masu_model_remove(masu_renderer *m, masu_model model) {
+masu_result masu_model_remove(masu_renderer *m, masu_model model, masu_detail *detail) {
     uint32_t i;
-    if (!m) return MASU_ERROR_ARGUMENT;
+    if (!m) return masu_fail_null(detail, "renderer");
     masu_result result = masu_handle_check(&m->models.handles, "model", model.id, &i, &m->error);
-    if (result) return masu_finish(m, result);
-    if (i < masu_own_models(&m->plan)) { /* the scene's own stay its own */
+    if (result) return masu_finish(m, result, detail);
+    if (i < masu_own_models(&m->plan)) { /* slots of the scene's own models are never freed */
         masu_models_show(&m->models, &m->instances, &m->plan, i, 0);
         return MASU_OK;
     }
@@ -146,25 +149,26 @@ masu_result masu_model_remove(masu_renderer *m, masu_model model) {
 /* ---- Lights ---------------------------------------------------------------------------------- */
 
 masu_result masu_punctual_light_add(masu_renderer *m, const masu_punctual_light_state *state,
-                                    masu_punctual_light *out) {
+                                    masu_punctual_light *out, masu_detail *detail) {
     uint32_t light;
     if (out) *out = (masu_punctual_light){0};
-    if (!m || !state || !out) return masu_finish_null(m, state ? "out" : "state");
+    if (!m || !state || !out) return masu_finish_null(m, state ? "out" : "state", detail);
     masu_result result = masu_lights_add(&m->lights, &m->instances, state, &light, &m->error);
     if (!result) *out = masu_punctual_light_at(m, light);
-    return masu_finish(m, result);
+    return masu_finish(m, result, detail);
 }
 
-masu_result masu_punctual_light_remove(masu_renderer *m, masu_punctual_light light) {
+masu_result masu_punctual_light_remove(masu_renderer *m, masu_punctual_light light,
+                                       masu_detail *detail) {
     uint32_t i;
-    if (!m) return MASU_ERROR_ARGUMENT;
+    if (!m) return masu_fail_null(detail, "renderer");
     masu_result result = masu_handle_check(&m->lights.handles, "light", light.id, &i, &m->error);
     if (!result && i < masu_own_lights(&m->plan)) {
         result =
             masu_fail(&m->error, MASU_ERROR_ARGUMENT, "light", 0, i,
                       "light %u is part of the scene and cannot be removed: set its color to 0", i);
     }
-    if (result) return masu_finish(m, result);
+    if (result) return masu_finish(m, result, detail);
     masu_lights_remove(&m->lights, i);
     return MASU_OK;
 }

@@ -1,5 +1,5 @@
-/* api_governor.c: the public functions of the governor (measured times, settings, state), and how
- * masu_frame uses it (api_governor.h). */
+/* api_governor.c: the public functions of the governor (measured times, settings, state), and its
+ * use by masu_frame (api_governor.h). */
 #include "api_governor.h"
 
 #include "base/error.h"
@@ -16,7 +16,7 @@ VkExtent2D masu_governed_output(const masu_renderer *m) {
     return m->plan.desc.viewport_count ? (VkExtent2D){first->width, first->height} : m->plan.whole;
 }
 
-/* Rungs of a source image have no scale: what they cost has to be learnt. */
+/* Rungs of a source image have no scale, so there is no cost prior; costs are measured. */
 void masu_governed_start(masu_renderer *m) {
     const masu_desc *d = &m->plan.desc;
     masu_governor_rung rungs[MASU_MAX_RUNGS];
@@ -72,19 +72,22 @@ void masu_frame_presented(masu_renderer *m, uint64_t frame, uint64_t present_ns,
     masu_governor_shown(m->governor, frame, present_ns, refresh_ns);
 }
 
-/* ---- What the host changes ------------------------------------------------------------------- */
+/* ---- Settings -------------------------------------------------------------------------------- */
 
-static masu_result check(masu_renderer *m, const void *given, const char *what) {
-    if (!m) return MASU_ERROR_ARGUMENT;
-    if (!given) return masu_finish_null(m, what);
+static masu_result check(masu_renderer *m, const void *given, const char *what,
+                         masu_detail *detail) {
+    if (!m || !given) return masu_finish_null(m, what, detail);
     if (m->governor) return MASU_OK;
-    return masu_finish(m, masu_fail(&m->error, MASU_ERROR_STATE, "governor.mode", MASU_GOVERNOR_ON,
-                                    MASU_GOVERNOR_OFF,
-                                    "there is no governor: governor.mode was OFF in masu_init"));
+    return masu_finish(m,
+                       masu_fail(&m->error, MASU_ERROR_STATE, "governor.mode", MASU_GOVERNOR_ON,
+                                 MASU_GOVERNOR_OFF,
+                                 "there is no governor: governor.mode was OFF in masu_init"),
+                       detail);
 }
 
-masu_result masu_governor_set(masu_renderer *m, const masu_governor_setting *setting) {
-    masu_result result = check(m, setting, "setting");
+masu_result masu_governor_set(masu_renderer *m, const masu_governor_setting *setting,
+                              masu_detail *detail) {
+    masu_result result = check(m, setting, "setting", detail);
     if (result) return result;
     masu_governor_desc d = {.mode = setting->mode,
                             .target_ms = setting->target_ms,
@@ -97,22 +100,24 @@ masu_result masu_governor_set(masu_renderer *m, const masu_governor_setting *set
         return masu_finish(m,
                            masu_fail(&m->error, MASU_ERROR_ARGUMENT, "governor.mode",
                                      MASU_GOVERNOR_ON, MASU_GOVERNOR_OFF,
-                                     "governor.mode is 0 (OFF), allowed are 1 (ON) and 2 (FIXED)"));
+                                     "governor.mode is 0 (OFF), allowed are 1 (ON) and 2 (FIXED)"),
+                           detail);
     }
-    result = masu_finish(m, masu_governor_check(&d, m->plan.desc.rung_count, &m->error));
+    result = masu_finish(m, masu_governor_check(&d, m->plan.desc.rung_count, &m->error), detail);
     if (!result) masu_governor_adjust(m->governor, &d);
     return result;
 }
 
-masu_result masu_governor_save(masu_renderer *m, masu_governor_state *out) {
-    masu_result result = check(m, out, "out");
+masu_result masu_governor_save(masu_renderer *m, masu_governor_state *out, masu_detail *detail) {
+    masu_result result = check(m, out, "out", detail);
     if (!result) masu_governor_export_state(m->governor, masu_governed_output(m), out);
     return result;
 }
 
-masu_result masu_governor_restore(masu_renderer *m, const masu_governor_state *state) {
-    masu_result result = check(m, state, "state");
-    if (!result) result = masu_finish(m, masu_governor_state_check(state, &m->error));
+masu_result masu_governor_restore(masu_renderer *m, const masu_governor_state *state,
+                                  masu_detail *detail) {
+    masu_result result = check(m, state, "state", detail);
+    if (!result) result = masu_finish(m, masu_governor_state_check(state, &m->error), detail);
     if (!result)
         masu_governor_import_state(m->governor, state, masu_governed_output(m), m->timeline.frame);
     return result;

@@ -1,7 +1,7 @@
-/* api_resize.c: masu_resize: another output size and other targets for the existing images. Images
- * are allocated for the largest output; passes of a smaller one use their upper left part, as rungs
- * of a smaller scale do. Only recordings depend on sizes: those of the rung in use are recorded
- * again, the others when a frame needs them. */
+/* api_resize.c: masu_resize: a new output size and new targets for the existing images. Images are
+ * allocated for the largest output; a smaller one uses their upper left part, like rungs with a
+ * smaller scale. Only recordings depend on sizes: those of the current rung are recorded at once,
+ * the others when a frame needs them. */
 #include "api_governor.h"
 #include "base/error.h"
 #include "device/device_objects.h"
@@ -11,7 +11,7 @@
 #include "quality/governor_state.h"
 #include "renderer.h"
 
-/* What may stay 0 stays what it is. */
+/* Fields that may be 0 keep their current value. */
 static masu_targets filled_in(const masu_targets *given, const masu_targets *now) {
     masu_targets t = *given;
     if (t.format == VK_FORMAT_UNDEFINED) t.format = now->format;
@@ -102,10 +102,6 @@ static masu_result resize(masu_renderer *m, VkExtent2D output, const masu_target
 masu_result masu_resize(masu_renderer *m, VkExtent2D output, const masu_targets *targets,
                         const masu_viewport *viewports, masu_detail *detail) {
     if (!m) return masu_fail_null(detail, "renderer");
-    masu_detail own = {.result = MASU_OK};
-    masu_result result = resize(m, output, targets, viewports, &own);
-    if (!result) return MASU_OK;
-    masu_log(&m->plan.desc, MASU_LOG_ERROR, own.text);
-    if (detail) *detail = own;
-    return result;
+    masu_result result = resize(m, output, targets, viewports, &m->error);
+    return masu_finish(m, result, detail);
 }

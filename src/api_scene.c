@@ -1,4 +1,4 @@
-/* api_scene.c: the public functions that query and change instances, models, punctual lights and
+/* api_scene.c: the public functions that query and change instances, models, local lights and
  * materials between frames (api_add.c adds and removes them). They change the host's copy in
  * src/frame/; masu_frame uploads the changes. */
 #include "renderer.h"
@@ -7,9 +7,11 @@
 
 /* ---- Instances ------------------------------------------------------------------------------- */
 
-static masu_result check_instance(masu_renderer *m, masu_instance instance, uint32_t *index) {
+static masu_result check_instance(masu_renderer *m, masu_instance instance, uint32_t *index,
+                                  masu_detail *detail) {
     return masu_finish(
-        m, masu_handle_check(&m->instances.handles, "instance", instance.id, index, &m->error));
+        m, masu_handle_check(&m->instances.handles, "instance", instance.id, index, &m->error),
+        detail);
 }
 
 masu_instance masu_instance_at(const masu_renderer *m, uint32_t index) {
@@ -22,20 +24,22 @@ masu_instance masu_instance_find(const masu_renderer *m, const char *name) {
 }
 
 masu_result masu_instance_set_transform(masu_renderer *m, masu_instance instance,
-                                        const float rows[12]) {
+                                        const float rows[12], masu_detail *detail) {
     uint32_t i;
-    if (!m || !rows) return masu_finish_null(m, "rows");
-    masu_result result = check_instance(m, instance, &i);
+    if (!m || !rows) return masu_finish_null(m, "rows", detail);
+    masu_result result = check_instance(m, instance, &i, detail);
     if (!result)
-        result = masu_finish(m, masu_instances_set(&m->instances, &m->plan, i, rows, &m->error));
+        result =
+            masu_finish(m, masu_instances_set(&m->instances, &m->plan, i, rows, &m->error), detail);
     if (!result) masu_bounds_move(&m->bounds, &m->plan, &m->instances, i);
     return result;
 }
 
-masu_result masu_instance_get(masu_renderer *m, masu_instance instance, masu_instance_state *out) {
+masu_result masu_instance_get(masu_renderer *m, masu_instance instance, masu_instance_state *out,
+                              masu_detail *detail) {
     uint32_t i;
-    if (!m || !out) return masu_finish_null(m, "out");
-    masu_result result = check_instance(m, instance, &i);
+    if (!m || !out) return masu_finish_null(m, "out", detail);
+    masu_result result = check_instance(m, instance, &i, detail);
     if (result) return result;
     float box[6];
     *out = (masu_instance_state){.index = i,
@@ -52,19 +56,21 @@ masu_result masu_instance_get(masu_renderer *m, masu_instance instance, masu_ins
     return MASU_OK;
 }
 
-masu_result masu_instance_show(masu_renderer *m, masu_instance instance, uint32_t shown) {
+masu_result masu_instance_show(masu_renderer *m, masu_instance instance, uint32_t shown,
+                               masu_detail *detail) {
     uint32_t i;
-    if (!m) return MASU_ERROR_ARGUMENT;
-    masu_result result = check_instance(m, instance, &i);
+    if (!m) return masu_fail_null(detail, "renderer");
+    masu_result result = check_instance(m, instance, &i, detail);
     if (!result) masu_instances_show(&m->instances, &m->plan, i, shown != 0);
     return result;
 }
 
 /* ---- Models ---------------------------------------------------------------------------------- */
 
-static masu_result check_model(masu_renderer *m, masu_model model, uint32_t *index) {
-    return masu_finish(m,
-                       masu_handle_check(&m->models.handles, "model", model.id, index, &m->error));
+static masu_result check_model(masu_renderer *m, masu_model model, uint32_t *index,
+                               masu_detail *detail) {
+    return masu_finish(
+        m, masu_handle_check(&m->models.handles, "model", model.id, index, &m->error), detail);
 }
 
 masu_model masu_model_find(const masu_renderer *m, const char *name) {
@@ -76,10 +82,11 @@ masu_model masu_model_at(const masu_renderer *m, uint32_t index) {
     return (masu_model){m ? masu_handle_at(&m->models.handles, index) : 0};
 }
 
-masu_result masu_model_get(masu_renderer *m, masu_model model, masu_model_state *out) {
+masu_result masu_model_get(masu_renderer *m, masu_model model, masu_model_state *out,
+                           masu_detail *detail) {
     uint32_t i;
-    if (!m || !out) return masu_finish_null(m, "out");
-    masu_result result = check_model(m, model, &i);
+    if (!m || !out) return masu_finish_null(m, "out", detail);
+    masu_result result = check_model(m, model, &i, detail);
     if (result) return result;
     const masu_placed_model *of = &m->models.models[i];
     *out = (masu_model_state){.index = i, .shown = of->shown, .nodes = of->node_count};
@@ -88,19 +95,22 @@ masu_result masu_model_get(masu_renderer *m, masu_model model, masu_model_state 
     return MASU_OK;
 }
 
-masu_result masu_model_set_transform(masu_renderer *m, masu_model model, const float rows[12]) {
+masu_result masu_model_set_transform(masu_renderer *m, masu_model model, const float rows[12],
+                                     masu_detail *detail) {
     uint32_t i;
-    if (!m || !rows) return masu_finish_null(m, "rows");
-    masu_result result = check_model(m, model, &i);
+    if (!m || !rows) return masu_finish_null(m, "rows", detail);
+    masu_result result = check_model(m, model, &i, detail);
     if (result) return result;
     return masu_finish(
-        m, masu_models_move(&m->models, &m->instances, &m->bounds, &m->plan, i, rows, &m->error));
+        m, masu_models_move(&m->models, &m->instances, &m->bounds, &m->plan, i, rows, &m->error),
+        detail);
 }
 
-masu_result masu_model_show(masu_renderer *m, masu_model model, uint32_t shown) {
+masu_result masu_model_show(masu_renderer *m, masu_model model, uint32_t shown,
+                            masu_detail *detail) {
     uint32_t i;
-    if (!m) return MASU_ERROR_ARGUMENT;
-    masu_result result = check_model(m, model, &i);
+    if (!m) return masu_fail_null(detail, "renderer");
+    masu_result result = check_model(m, model, &i, detail);
     if (!result) masu_models_show(&m->models, &m->instances, &m->plan, i, shown != 0);
     return result;
 }
@@ -114,11 +124,12 @@ uint32_t masu_model_node_find(const masu_renderer *m, masu_model model, const ch
 }
 
 masu_result masu_model_node_get(masu_renderer *m, masu_model model, uint32_t node,
-                                masu_node_state *out) {
+                                masu_node_state *out, masu_detail *detail) {
     uint32_t i;
-    if (!m || !out) return masu_finish_null(m, "out");
-    masu_result result = check_model(m, model, &i);
-    if (!result) result = masu_finish(m, masu_models_check_node(&m->models, i, node, &m->error));
+    if (!m || !out) return masu_finish_null(m, "out", detail);
+    masu_result result = check_model(m, model, &i, detail);
+    if (!result)
+        result = masu_finish(m, masu_models_check_node(&m->models, i, node, &m->error), detail);
     if (result) return result;
     uint32_t first = m->models.models[i].first_node;
     const masu_node *of = &m->models.nodes[first + node];
@@ -131,19 +142,22 @@ masu_result masu_model_node_get(masu_renderer *m, masu_model model, uint32_t nod
 }
 
 masu_result masu_model_node_set(masu_renderer *m, masu_model model, uint32_t node,
-                                const float rows[12]) {
+                                const float rows[12], masu_detail *detail) {
     uint32_t i;
-    if (!m || !rows) return masu_finish_null(m, "rows");
-    masu_result result = check_model(m, model, &i);
-    if (!result) result = masu_finish(m, masu_models_check_node(&m->models, i, node, &m->error));
+    if (!m || !rows) return masu_finish_null(m, "rows", detail);
+    masu_result result = check_model(m, model, &i, detail);
+    if (!result)
+        result = masu_finish(m, masu_models_check_node(&m->models, i, node, &m->error), detail);
     if (result) return result;
-    return masu_finish(m, masu_models_move_node(&m->models, &m->instances, &m->bounds, &m->plan, i,
-                                                node, rows, &m->error));
+    return masu_finish(m,
+                       masu_models_move_node(&m->models, &m->instances, &m->bounds, &m->plan, i,
+                                             node, rows, &m->error),
+                       detail);
 }
 
 /* ---- Clips ----------------------------------------------------------------------------------- */
 
-/* Those of a model, or none of what is no model. */
+/* Number and first of the clips of a model; 0 for an invalid model. */
 static uint32_t clips_of(const masu_renderer *m, masu_model model, uint32_t *first) {
     uint32_t i = m ? masu_handle_index(&m->models.handles, model.id) : 0;
     if (!m || i >= m->plan.scene.models) return 0;
@@ -171,29 +185,35 @@ double masu_model_clip_duration(const masu_renderer *m, masu_model model, uint32
 }
 
 masu_result masu_model_animate(masu_renderer *m, masu_model model, const masu_clip_use *uses,
-                               uint32_t count) {
+                               uint32_t count, masu_detail *detail) {
     uint32_t i;
-    if (!m || (count && !uses)) return masu_finish_null(m, "uses");
-    masu_result result = check_model(m, model, &i);
+    if (!m || (count && !uses)) return masu_finish_null(m, "uses", detail);
+    masu_result result = check_model(m, model, &i, detail);
     if (result) return result;
-    return masu_finish(m, masu_models_animate(&m->models, &m->instances, &m->bounds, &m->plan, i,
-                                              uses, count, &m->error));
+    return masu_finish(m,
+                       masu_models_animate(&m->models, &m->instances, &m->bounds, &m->plan, i, uses,
+                                           count, &m->error),
+                       detail);
 }
 
-masu_result masu_model_morph_set(masu_renderer *m, masu_model model, const char *name, float weight) {
+masu_result masu_model_morph_set(masu_renderer *m, masu_model model, const char *name, float weight,
+                                 masu_detail *detail) {
     uint32_t i;
-    if (!m || !name) return masu_finish_null(m, "name");
-    masu_result result = check_model(m, model, &i);
+    if (!m || !name) return masu_finish_null(m, "name", detail);
+    masu_result result = check_model(m, model, &i, detail);
     if (result) return result;
-    return masu_finish(m, masu_models_morph(&m->models, &m->instances, &m->bounds, &m->plan, i, name,
-                                            weight, &m->error));
+    return masu_finish(m,
+                       masu_models_morph(&m->models, &m->instances, &m->bounds, &m->plan, i, name,
+                                         weight, &m->error),
+                       detail);
 }
 
 /* ---- Punctual lights ------------------------------------------------------------------------- */
 
-static masu_result check_light(masu_renderer *m, masu_punctual_light light, uint32_t *index) {
-    return masu_finish(m,
-                       masu_handle_check(&m->lights.handles, "light", light.id, index, &m->error));
+static masu_result check_light(masu_renderer *m, masu_punctual_light light, uint32_t *index,
+                               masu_detail *detail) {
+    return masu_finish(
+        m, masu_handle_check(&m->lights.handles, "light", light.id, index, &m->error), detail);
 }
 
 masu_punctual_light masu_punctual_light_at(const masu_renderer *m, uint32_t index) {
@@ -206,32 +226,36 @@ masu_punctual_light masu_punctual_light_find(const masu_renderer *m, const char 
 }
 
 masu_result masu_punctual_light_get(masu_renderer *m, masu_punctual_light light,
-                                    masu_punctual_light_state *out) {
+                                    masu_punctual_light_state *out, masu_detail *detail) {
     uint32_t i;
-    if (!m || !out) return masu_finish_null(m, "out");
-    masu_result result = check_light(m, light, &i);
+    if (!m || !out) return masu_finish_null(m, "out", detail);
+    masu_result result = check_light(m, light, &i, detail);
     if (!result) *out = masu_lights_get(&m->lights, &m->instances, i);
     return result;
 }
 
 masu_result masu_punctual_light_set(masu_renderer *m, masu_punctual_light light,
-                                    const masu_punctual_light_state *state) {
+                                    const masu_punctual_light_state *state, masu_detail *detail) {
     uint32_t i;
-    if (!m || !state) return masu_finish_null(m, "state");
-    masu_result result = check_light(m, light, &i);
+    if (!m || !state) return masu_finish_null(m, "state", detail);
+    masu_result result = check_light(m, light, &i, detail);
     if (result) return result;
-    return masu_finish(m, masu_lights_set(&m->lights, &m->instances, i, state, &m->error));
+    return masu_finish(m, masu_lights_set(&m->lights, &m->instances, i, state, &m->error), detail);
 }
 
 /* ---- Materials ------------------------------------------------------------------------------- */
 
-static masu_result check_material(masu_renderer *m, masu_material material, uint32_t *index) {
+static masu_result check_material(masu_renderer *m, masu_material material, uint32_t *index,
+                                  masu_detail *detail) {
     if (m->plan.desc.mutable_materials)
         return masu_finish(
-            m, masu_handle_check(&m->materials.handles, "material", material.id, index, &m->error));
+            m, masu_handle_check(&m->materials.handles, "material", material.id, index, &m->error),
+            detail);
     return masu_finish(
-        m, masu_fail(&m->error, MASU_ERROR_STATE, "mutable_materials", 1, 0,
-                     "materials can be neither read nor changed: desc.mutable_materials is 0"));
+        m,
+        masu_fail(&m->error, MASU_ERROR_STATE, "mutable_materials", 1, 0,
+                  "materials can be neither read nor changed: desc.mutable_materials is 0"),
+        detail);
 }
 
 masu_material masu_material_at(const masu_renderer *m, uint32_t index) {
@@ -243,19 +267,20 @@ masu_material masu_material_find(const masu_renderer *m, const char *name) {
     return masu_material_at(m, masu_materials_find(&m->materials, name));
 }
 
-masu_result masu_material_get(masu_renderer *m, masu_material material, masu_material_state *out) {
+masu_result masu_material_get(masu_renderer *m, masu_material material, masu_material_state *out,
+                              masu_detail *detail) {
     uint32_t i;
-    if (!m || !out) return masu_finish_null(m, "out");
-    masu_result result = check_material(m, material, &i);
+    if (!m || !out) return masu_finish_null(m, "out", detail);
+    masu_result result = check_material(m, material, &i, detail);
     if (!result) *out = masu_materials_get(&m->materials, i);
     return result;
 }
 
 masu_result masu_material_set(masu_renderer *m, masu_material material,
-                              const masu_material_state *state) {
+                              const masu_material_state *state, masu_detail *detail) {
     uint32_t i;
-    if (!m || !state) return masu_finish_null(m, "state");
-    masu_result result = check_material(m, material, &i);
+    if (!m || !state) return masu_finish_null(m, "state", detail);
+    masu_result result = check_material(m, material, &i, detail);
     if (result) return result;
-    return masu_finish(m, masu_materials_set(&m->materials, &m->plan, i, state, &m->error));
+    return masu_finish(m, masu_materials_set(&m->materials, &m->plan, i, state, &m->error), detail);
 }

@@ -18,14 +18,15 @@ static uint64_t *stamps_of(const masu_renderer *m, uint32_t slot) {
     return (uint64_t *)(void *)(from + m->plan.readback_times);
 }
 
-/* What no clock shows: counts of fewer bits are below it. The frame overwrites it when it ends. */
+/* A value that no timestamp has: narrower counters are below it. The GPU overwrites it at the end
+ * of the frame. */
 #define NO_STAMP UINT64_MAX
 
 void masu_slot_begin(masu_renderer *m, uint32_t slot) {
     if (m->device.queries) stamps_of(m, slot)[masu_stamps(&m->plan.desc) - 1] = NO_STAMP;
 }
 
-/* Whether the slot's frame has ended, as far as that can be told without asking the driver. */
+/* Whether the slot's frame has ended, as far as this is possible without calling the driver. */
 static int has_ended(const masu_renderer *m, uint32_t slot) {
     return !m->device.queries ||
            stamps_of(m, slot)[masu_stamps(&m->plan.desc) - 1] != NO_STAMP;
@@ -35,12 +36,13 @@ static uint64_t stamp_ns(const masu_renderer *m, uint32_t slot, uint32_t from, u
     const uint64_t *stamps = stamps_of(m, slot);
     uint32_t bits = m->device.vk.queue_family.timestampValidBits;
     uint64_t mask = bits >= 64 ? UINT64_MAX : ((uint64_t)1 << bits) - 1;
-    /* The counter may wrap between two stamps: the difference under the mask is right all the same. */
+    /* The counter may wrap between two timestamps; the masked difference is correct
+     * nevertheless. */
     return (uint64_t)((double)((stamps[to] - stamps[from]) & mask) *
                       (double)m->device.vk.properties.limits.timestampPeriod);
 }
 
-/* Whether the time of a pass does not depend on the render size. */
+/* Whether the cost of a pass does not depend on the render size. */
 static int is_fixed_pass(uint32_t pass) {
     switch (masu_passes[pass].extent) {
     case MASU_EXTENT_OUTPUT:
@@ -69,7 +71,7 @@ int masu_slot_sample(const masu_renderer *m, uint32_t slot, masu_governor_sample
                                   .wall_ms = held->wall_ms,
                                   .cpu_ms = held->cpu_ms,
                                   .exclude_from_timing = held->exclude_from_timing};
-    /* None, never submitted, or not the governor's, whose are those of the first viewport. */
+    /* No frame, never submitted, or not of the first viewport, whose times the governor uses. */
     if (held->frame == UINT64_MAX || held->viewport || !has_ended(m, slot)) return 0;
     if (stamps) out->gpu_ms = (double)stamp_ns(m, slot, 0, stamps - 1) * 1e-6;
     for (uint32_t p = 0; p + 2 <= stamps && stamps > 2; p++) {
@@ -132,8 +134,22 @@ static void read_counters(const masu_renderer *m, uint32_t slot, masu_stats_info
     if (masu_has_pass(&m->plan.rungs[out->rung].active, MASU_PASS_CULL)) read_stage2(m, slot, out);
 }
 
-masu_result masu_stats(const masu_renderer *m, uint32_t slot, masu_stats_info *out) {
-    if (!m || !out || slot >= m->plan.desc.frames_in_flight) return MASU_ERROR_ARGUMENT;
+/* Requirements that masu_stats, masu_readback and masu_pick share. */
+static masu_result check_slot(const masu_renderer *m, uint32_t slot, const void *out,
+                              masu_detail *detail) {
+    masu_detail own;
+    if (!m || !out) return masu_finish_null_const(m, "out", detail);
+    uint32_t slots = m->plan.desc.frames_in_flight;
+    if (slot < slots) return MASU_OK;
+    masu_fail(&own, MASU_ERROR_ARGUMENT, "slot", slots - 1, slot,
+              "slot %u does not exist, the last one is %u", slot, slots - 1);
+    return masu_finish_desc(&m->plan.desc, own.result, &own, detail);
+}
+
+masu_result masu_stats(const masu_renderer *m, uint32_t slot, masu_stats_info *out,
+                       masu_detail *detail) {
+    masu_result result = check_slot(m, slot, out, detail);
+    if (result) return result;
     memset(out, 0, sizeof *out);
     out->frame = m->timeline.slots[slot].frame;
     out->pass_count = MASU_PASS_COUNT;
@@ -182,18 +198,24 @@ void masu_peaks(const masu_renderer *m, masu_peak_info *out) {
 /* ---- Images ---------------------------------------------------------------------------------- */
 
 masu_result masu_readback(const masu_renderer *m, uint32_t slot, masu_readback_bits which,
-                          masu_readback_image *out) {
-    if (!m || !out || slot >= m->plan.desc.frames_in_flight) return MASU_ERROR_ARGUMENT;
+                          masu_readback_image *out, masu_detail *detail) {
+    masu_detail own;
+    masu_result result = check_slot(m, slot, out, detail);
+    if (result) return result;
     uint32_t bit = 0;
     while (bit < MASU_READBACK_IMAGES && which != 1u << bit) bit++;
-    if (bit == MASU_READBACK_IMAGES || !(m->plan.desc.readback & 1u << bit))
-        return MASU_ERROR_ARGUMENT;
+    if (bit == MASU_READBACK_IMAGES || !(m->plan.desc.readback & 1u << bit)) {
+        masu_fail(&own, MASU_ERROR_ARGUMENT, "which", m->plan.desc.readback, (unsigned)which,
+                  "which is %u: one bit of desc.readback, which is %u in this plan",
+                  (unsigned)which, m->plan.desc.readback);
+        return masu_finish_desc(&m->plan.desc, own.result, &own, detail);
+    }
     if (m->timeline.slots[slot].frame == UINT64_MAX || !has_ended(m, slot)) return MASU_INCOMPLETE;
     uint32_t id = 1;
     while (masu_images[id].readback != (uint32_t)which) id++;
     VkFormat format = masu_images[id].format;
     if (format == VK_FORMAT_D32_SFLOAT)
-        format = VK_FORMAT_R32_SFLOAT; /* as it lies in the buffer */
+        format = VK_FORMAT_R32_SFLOAT; /* the format in the readback buffer */
     VkExtent2D size = masu_plan_extent(&m->plan, masu_images[id].extent,
                                        m->timeline.slots[slot].render);
     *out = (masu_readback_image){
@@ -202,7 +224,7 @@ masu_result masu_readback(const masu_renderer *m, uint32_t slot, masu_readback_b
     return MASU_OK;
 }
 
-/* The node of a model that shows an instance. */
+/* The node of a model that has an instance. */
 static uint32_t node_of(const masu_models *s, uint32_t model, uint32_t instance) {
     const masu_placed_model *of = &s->models[model];
     for (uint32_t n = 0; n < of->node_count; n++) {
@@ -211,15 +233,21 @@ static uint32_t node_of(const masu_models *s, uint32_t model, uint32_t instance)
     return MASU_NODE_NONE;
 }
 
-masu_result masu_pick(const masu_renderer *m, uint32_t slot, masu_pick_info *out) {
-    if (!m || !out || slot >= m->plan.desc.frames_in_flight || !m->plan.needs.picking)
-        return MASU_ERROR_ARGUMENT;
+masu_result masu_pick(const masu_renderer *m, uint32_t slot, masu_pick_info *out,
+                      masu_detail *detail) {
+    masu_detail own;
+    masu_result result = check_slot(m, slot, out, detail);
+    if (result) return result;
+    if (!m->plan.needs.picking) {
+        masu_fail(&own, MASU_ERROR_ARGUMENT, "picking", 1, 0, "masu_pick requires desc.picking");
+        return masu_finish_desc(&m->plan.desc, own.result, &own, detail);
+    }
     *out = (masu_pick_info){.frame = m->timeline.slots[slot].frame, .node = MASU_NODE_NONE};
     if (out->frame == UINT64_MAX || !has_ended(m, slot)) return MASU_INCOMPLETE;
     const masu_picking_slot *asked = &m->picking.slots[slot];
     if (!asked->asked) return MASU_OK;
     uint32_t words[MASU_PICKED_WORDS];
-    float told[4]; /* depth, from the eye */
+    float told[4]; /* view depth */
     memcpy(words, masu_buffer_pointer(&m->device, MASU_BUFFER_PICKED, slot), sizeof words);
     memcpy(told, words + 2, sizeof told);
     out->kind = words[0] == MASU_PICKED_INSTANCE ? MASU_PICK_INSTANCE
@@ -233,9 +261,10 @@ masu_result masu_pick(const masu_renderer *m, uint32_t slot, masu_pick_info *out
     uint32_t i = words[1];
     if (out->kind != MASU_PICK_INSTANCE || i >= m->plan.scene.instances) return MASU_OK;
     uint32_t model = m->plan.scene.models ? m->models.of_instance[i] : MASU_BLOB_NONE;
-    uint32_t own = masu_own_models(&m->plan);
-    /* The slot's copy of that frame is gone: the present one was added later. */
-    if (model != MASU_BLOB_NONE && model >= own && out->frame < m->picking.added[model - own])
+    uint32_t scene_models = masu_own_models(&m->plan);
+    /* The copy in the slot at that frame has been removed: the present copy was added later. */
+    if (model != MASU_BLOB_NONE && model >= scene_models &&
+        out->frame < m->picking.added[model - scene_models])
         return MASU_OK;
     out->instance = masu_instance_at(m, i);
     if (model == MASU_BLOB_NONE) return MASU_OK;
@@ -258,7 +287,7 @@ void masu_unpack_normal(uint32_t texel, float out[3]) {
         x = (1.0f - fabsf(y)) * (x < 0.0f ? -1.0f : 1.0f);
         y = (1.0f - fabsf(t)) * (y < 0.0f ? -1.0f : 1.0f);
     }
-    float length = sqrtf(x * x + y * y + z * z); /* at least 1/sqrt(3) on the octahedron */
+    float length = sqrtf(x * x + y * y + z * z); /* at least 1/sqrt(3) on an octahedron */
     out[0] = x / length;
     out[1] = y / length;
     out[2] = z / length;
@@ -290,7 +319,7 @@ static const char *texture_name(VkFormat format) {
     }
 }
 
-/* Rows of a report as they come: those behind the capacity are counted alone. */
+/* Rows of a report. Rows beyond the capacity are only counted. */
 typedef struct report {
     masu_memory_row *rows;
     uint32_t capacity, count;

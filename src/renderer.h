@@ -76,15 +76,26 @@ struct masu_renderer {
     masu_bounce bounce;
 };
 
-/* The result of a public function whose error is in m->error: logs it. */
-static inline masu_result masu_finish(const masu_renderer *m, masu_result result) {
-    if (result < 0) masu_log(&m->plan.desc, MASU_LOG_ERROR, m->error.text);
-    return result;
+/* The result of a public function whose error is in m->error: logs it and copies it to `detail`,
+ * which may be NULL. */
+static inline masu_result masu_finish(const masu_renderer *m, masu_result result,
+                                      masu_detail *detail) {
+    return masu_finish_desc(&m->plan.desc, result, &m->error, detail);
 }
 
 /* The argument `what` is NULL, or the renderer is. */
-static inline masu_result masu_finish_null(masu_renderer *m, const char *what) {
-    return m ? masu_finish(m, masu_fail_null(&m->error, what)) : MASU_ERROR_ARGUMENT;
+static inline masu_result masu_finish_null(masu_renderer *m, const char *what,
+                                           masu_detail *detail) {
+    if (!m) return masu_fail_null(detail, "renderer");
+    return masu_finish(m, masu_fail_null(&m->error, what), detail);
+}
+
+/* The same for functions that do not change the renderer. */
+static inline masu_result masu_finish_null_const(const masu_renderer *m, const char *what,
+                                                 masu_detail *detail) {
+    masu_detail own;
+    if (!m) return masu_fail_null(detail, "renderer");
+    return masu_finish_desc(&m->plan.desc, masu_fail_null(&own, what), &own, detail);
 }
 
 /* MASU_ERROR_DEVICE_LOST if an earlier call has found that. */

@@ -22,7 +22,7 @@ test_programs = $(call only,$(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard $(1
 GPU_TESTS    := $(call test_programs,tests/gpu/test_*.c)
 FUZZ_TESTS   := $(call test_programs,tests/fuzz/fuzz_*.c)
 # Those that look at texts and not at what is built say nothing new a second time: NESTED is set by tests/full.
-TEXT_TESTS   := $(addprefix tests/scripts/,dialect.sh docs.sh docs_tables.sh facts.sh layers.sh source_gates.sh install.sh bundle.sh exports.sh sizes.sh floats.sh)
+TEXT_TESTS   := $(addprefix tests/scripts/,dialect.sh docs.sh docs_tables.sh facts.sh layers.sh source_gates.sh install.sh bundle.sh exports.sh abi.sh bindings.sh sizes.sh floats.sh)
 TEXT_TESTS   += $(BUILD)/tests/unit/test_shader_gates
 # Nor do those that take long for code that unit tests go through, or whose time goes by in a driver.
 LONG_TESTS   := $(addprefix tests/scripts/,bake_blocks.sh drive.sh meso.sh view.sh)

@@ -62,8 +62,14 @@ $(BUILD)/bin/masu-view: $(VIEW_OBJECTS) $(KEEP_LOADED) $(MEASURE_ARCHIVES) $(BAK
 # ---- Tables in documents -------------------------------------------------------------------------
 
 # Committed, for readers; tests/scripts/docs_tables.sh fails where they are not what the headers say.
-.PHONY: docs-tables
-docs-tables: $(BUILD)/bin/masu $(BUILD)/bin/masu-sdfc ## write docs/knobs.md, passes.md, sdf-shapes.md and the table of glTF in scene.md
+# The structs of masu_knobs.h, of which everything else is compiled: first.
+.PHONY: docs-tables struct-tables
+struct-tables:
+	@mkdir -p $(BUILD)/tools
+	$(V)$(CC) -std=c11 -DMASU_LAB -Iinclude tools/generate/make_structs.c -o $(BUILD)/tools/make_structs
+	$(V)$(BUILD)/tools/make_structs < include/masu_knobs.h > $(BUILD)/masu_knobs.h
+	$(V)cmp -s $(BUILD)/masu_knobs.h include/masu_knobs.h || cp $(BUILD)/masu_knobs.h include/masu_knobs.h
+docs-tables: struct-tables $(BUILD)/bin/masu $(BUILD)/bin/masu-sdfc ## write masu_rung in masu_knobs.h, docs/knobs.md, passes.md, sdf-shapes.md and the table of glTF in scene.md
 	$(V)$(BUILD)/bin/masu plan --knobs=md > docs/knobs.md.new
 	$(V)mv docs/knobs.md.new docs/knobs.md
 	$(V)shaders/tables.sh passes > docs/passes.md.new
@@ -107,10 +113,12 @@ $(MADE)/textures/made: $(MADE)/tools/make_textures
 	$(V)touch $@
 
 # Worlds are written by a program of the lab (lab/lab.mk). Not part of `all` or of the tests.
-WORLDS     := city forza
+WORLDS     := city city_night forza forza_night
 TORCS      ?= /usr/share/games/torcs
 TIME_city  := 1
 TIME_forza := 0.7
+TIME_city_night  := $(TIME_city)
+TIME_forza_night := $(TIME_forza)
 
 # The example of the README.
 $(BUILD)/examples/%: LIBS = -lvulkan -lm

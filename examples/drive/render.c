@@ -19,14 +19,13 @@ static bool failed(const masu_detail *detail) {
 
 static masu_desc describe(const render *r) {
     masu_desc d = {
-        .vulkan = window_vulkan(r->window),
+        MASU_DESC, .vulkan = window_vulkan(r->window),
         .scene = &r->scene,
         .output = r->window->size,
         .targets = window_targets(r->window),
         .frames_in_flight = WINDOW_SLOTS,
         .ladder = MASU_ON,
-        .analytic_sky = 1,
-        .resizable = 1,
+        .analytic_sky = 1, .resizable = 1,
         .exposure = {.metered = MASU_ON},
         .governor = {.mode = r->fixed_rung < 0 ? MASU_GOVERNOR_ON : MASU_GOVERNOR_FIXED,
                      .rung = r->fixed_rung < 0 ? 0 : (uint32_t)r->fixed_rung,
@@ -37,15 +36,15 @@ static masu_desc describe(const render *r) {
 
 /* A renderer for the window as large as it is, in the blocks. */
 static bool build(render *r, const track *t) {
-    masu_detail detail = {0};
     masu_commands load;
     masu_result result;
     masu_desc desc = describe(r);
-    if (masu_init(&desc, host_block, sizeof host_block, &r->masu, &detail)) return failed(&detail);
-    while ((result = masu_load(r->masu, &load)) == MASU_INCOMPLETE) {
+    if (masu_init(&desc, host_block, sizeof host_block, &r->masu, &r->detail))
+        return failed(&r->detail);
+    while ((result = masu_load(r->masu, &load, &r->detail)) == MASU_INCOMPLETE) {
         if (!window_run(r->window, load.buffer)) return false;
     }
-    if (result) return failed(masu_last_error(r->masu));
+    if (result) return failed(&r->detail);
     for (int i = 0; i < t->cars; i++) {
         r->bodies[i] = masu_model_find(r->masu, t->car[i].name);
         for (int k = 0; k < t->car[i].wheels; k++)
@@ -57,15 +56,14 @@ static bool build(render *r, const track *t) {
 }
 
 bool render_open(render *r, window *w, const char *path, const track *t) {
-    masu_detail detail = {0};
     masu_memory need;
     size_t bytes = 0;
     r->window = w;
     void *blob = r->blob = SDL_LoadFile(path, &bytes);
     if (!blob) return fprintf(stderr, "drive: %s\n", SDL_GetError()), false;
-    if (masu_scene_bind(blob, bytes, &r->scene, &detail)) return failed(&detail);
+    if (masu_scene_bind(blob, bytes, &r->scene, &r->detail)) return failed(&r->detail);
     masu_desc desc = describe(r); /* the blocks are to be of the types that it would take itself */
-    if (masu_memory_query(&desc, &need, &detail)) return failed(&detail);
+    if (masu_memory_query(&desc, &need, &r->detail)) return failed(&r->detail);
     return window_blocks(w, &need, device_bytes, r->blocks) && overlay_open(&r->overlay, w) &&
            build(r, t);
 }
@@ -75,10 +73,10 @@ bool render_resize(render *r, const track *t) {
     masu_governor_state learnt;
     if (masu_resize(r->masu, desc.output, &desc.targets, NULL, NULL) == MASU_OK) return true;
     /* It is larger than what was planned for, or has another number of images. */
-    if (masu_governor_save(r->masu, &learnt)) return false;
+    if (masu_governor_save(r->masu, &learnt, NULL)) return false;
     masu_destroy(r->masu);
     r->masu = NULL, r->frame = 0;
-    return build(r, t) && masu_governor_restore(r->masu, &learnt) == MASU_OK;
+    return build(r, t) && masu_governor_restore(r->masu, &learnt, NULL) == MASU_OK;
 }
 
 void render_close(render *r) {
@@ -104,7 +102,7 @@ static masu_result place(render *r, masu_model model, const vec now[3], vec at,
     float rows[12] = {(float)row[0].x, (float)row[0].y, (float)row[0].z, (float)at.x,
                       (float)row[1].x, (float)row[1].y, (float)row[1].z, (float)at.y,
                       (float)row[2].x, (float)row[2].y, (float)row[2].z, (float)at.z};
-    return model.id ? masu_model_set_transform(r->masu, model, rows) : MASU_OK;
+    return model.id ? masu_model_set_transform(r->masu, model, rows, &r->detail) : MASU_OK;
 }
 
 static masu_result place_car(render *r, int i, const car *c, const track_car *start) {
@@ -133,13 +131,13 @@ static masu_result set_lamps(render *r, const car *c, float on) {
                                        .color = {40 * on, 36 * on, 28 * on},
                                        .range = 90, .radius = 0.05f,
                                        .spot = 1, .inner = 0.1f, .outer = 0.5f};
-        if (r->lamps[i].id) result = masu_punctual_light_set(r->masu, r->lamps[i], &s);
+        if (r->lamps[i].id) result = masu_punctual_light_set(r->masu, r->lamps[i], &s, &r->detail);
     }
     return result;
 }
 
 static masu_result set_light(render *r, bool dusk, masu_light *light) {
-    masu_result result = masu_light_of(r->masu, light);
+    masu_result result = masu_light_of(r->masu, light, &r->detail);
     if (!dusk) return result;
     light->turbidity = 4;
     light->exposure = 0.3f; /* metered: a third of the brightness of a day */
@@ -185,9 +183,10 @@ bool render_frame(render *r, const race *race, const render_view *view, bool *ou
                           .forward = {(float)forward.x, (float)forward.y, (float)forward.z},
                           .fov_y = 1.05f + 0.0022f * (float)speed,
                           .near_distance = 0.2f};
-    masu_frame_desc frame = {.camera = &camera, .light = &light, .target = image, .cut = view->cut,
-                             .time = view->time, .time_step = view->step, .rung = MASU_RUNG_AUTO};
-    if (result || masu_frame(r->masu, &frame, &commands)) return failed(masu_last_error(r->masu));
+    masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &camera, .light = &light, .target = image,
+                             .cut = view->cut, .time = view->time, .time_step = view->step,
+                             .rung = MASU_RUNG_AUTO};
+    if (result || masu_frame(r->masu, &frame, &commands, &r->detail)) return failed(&r->detail);
     r->changes += r->frames && commands.rung != r->rung;
     r->frame++, r->frames++, r->rungs |= 1u << commands.rung, r->rung = commands.rung;
     if (!record_hud(r, slot, image, race, view)) return false;

@@ -11,6 +11,7 @@ typedef struct render {
     void *blob;                                /* of the scene */
     masu_device_block blocks[MASU_ROLE_COUNT]; /* allocated once, for every size of the window */
     masu_renderer *masu;
+    masu_detail detail; /* of the masu_* call that failed */
     float target_ms; /* of the governor */
     int fixed_rung;  /* instead of it; -1 */
     uint64_t frame;  /* since the renderer was made, as the library counts */

@@ -20,7 +20,7 @@ typedef struct options {
     VkExtent2D size;
     uint32_t paths, threads, seed, bounces, transport, fields_shadow;
     double time, sun[2], sun_radius, turn, scale, occlusion[2], window[6];
-    bool physics, animate, own_sun, progress, cycles;
+    bool physics, at_rest, own_sun, progress, cycles;
 } options;
 
 static const char *const transports[] = {"auto", "direct", "full", NULL};
@@ -29,6 +29,14 @@ static bool read_sun(masu_cli *cli, void *to) {
     options *o = to;
     o->own_sun = true;
     return masu_cli_sun(cli, o->sun);
+}
+
+static bool read_animate(masu_cli *cli, void *to) {
+    options *o = to;
+    o->at_rest = cli->value && !strcmp(cli->value, "off");
+    if (!cli->value || o->at_rest) return true;
+    masu_cli_usage_error("--animate: expected off, found \"%s\"", cli->value);
+    return false;
 }
 
 static bool read_window(masu_cli *cli, void *to) {
@@ -60,7 +68,8 @@ static const masu_option rows[] = {
     MASU_HEADING("Scene"),
     MASU_REAL(options, time, "time", "SECONDS", -1e9, 1e9,
               "time in the scene and on its camera path"),
-    MASU_FLAG(options, animate, "animate", "loop the first animation clip of every model"),
+    MASU_OWN("animate", "[=off]", read_animate,
+             "loop the first animation clip of every model (default); off: keep the rest pose"),
     MASU_OWN("sun", "AZIMUTH,ELEVATION", read_sun,
              "sun position in degrees (default: the scene's)"),
     MASU_TEXT(options, sdf, "sdf", "FILE",
@@ -115,7 +124,7 @@ static void command_line(const options *o, const char *scene, char *text, size_t
         text, size, "masu-lab reference %s --size %ux%u --paths %u --seed %u --time %g",
         slash ? slash + 1 : scene, o->size.width, o->size.height, o->paths, o->seed, o->time);
     if (o->sdf) at += (size_t)snprintf(text + at, size - at, " --sdf %s", sdf ? sdf + 1 : o->sdf);
-    if (o->animate) at += (size_t)snprintf(text + at, size - at, " --animate");
+    if (o->at_rest) at += (size_t)snprintf(text + at, size - at, " --animate=off");
     if (o->physics) at += (size_t)snprintf(text + at, size - at, " --physics");
     if (o->transport)
         at += (size_t)snprintf(text + at, size - at, " --transport %s", transports[o->transport]);
@@ -269,7 +278,7 @@ static int run_reference(const options *o, const char *path) {
     ref_sky sky;
     float *pixels = NULL;
     masu_cli_progress("reading %s", path);
-    if (!ref_scene_open(path, o->time, o->animate, &scene, error, sizeof error)) {
+    if (!ref_scene_open(path, o->time, !o->at_rest, &scene, error, sizeof error)) {
         ref_scene_close(&scene);
         return masu_cli_error("%s", error);
     }

@@ -1,8 +1,9 @@
 #!/bin/bash
 # gallery.sh: every model of strangers, as masu-bake shows it: one HTML page with a picture of each, its name, triangles,
-# bytes, seconds, and what masu-bake says of it. For people to look at; tests/scripts/bake.sh counts outcomes.
+# bytes, seconds of the processor, and what masu-bake says of it. For people to look at; tests/scripts/bake.sh counts outcomes.
 #
-#   gallery.sh OUT FOLDER...     OUT: a new or empty folder for index.html, the pictures, counts.txt
+#   gallery.sh OUT FOLDER...     OUT: a new or empty folder for index.html, the pictures, counts.txt (outcomes),
+#                               kinds.txt (warnings and refusals by kind: files in which each occurs)
 #
 # SIZE (480x270) of the pictures, MATCH a pattern (find -path) of the models, JOBS (all processors) at once.
 # Clips are shown at TIME (0.5) seconds. NO_PICTURES=1 only bakes. PATHS=N, not 0: each row is the reference of N paths a pixel, the settled still, one raw frame.
@@ -19,6 +20,15 @@ time=${TIME:-0.5}
 
 html() { sed 's/&/\&amp;/g; s/</\&lt;/g; s/>/\&gt;/g'; }
 
+# kinds FILE: the kinds of the warnings on stdin, and of a refusal, without names of files and numbers
+kinds() {
+    sed -n "s/^masu-bake: //; s|${1//[|.*&[]/.}|FILE|g; s/.*warning: /warning: /; s/^cannot read FILE: /refused: /
+        s/^warning: texture .*: \([^:]*; ignored\)/warning: texture: \1/; s/^warning: unsupported textures.*/warning: unsupported textures/
+        s/^warning: [^:\"]*\.[A-Za-z0-9]*: /warning: /; s/ (\(in [0-9]* meshes\|first\).*//; s/material \"[^\"]*\"/a material/
+        s/'[^']*'/'...'/g; s/_[0-9]\+/_n/g; s/\b[0-9][0-9.e+-]*/N/g
+        /^\(warning\|refused\): /p" | cut -c 1-120
+}
+
 # beside NUMBER FILE: the other two images of the row, or why there is no reference
 beside() {
     local at=$out/$1 sdf=()
@@ -26,7 +36,7 @@ beside() {
     *.sdf) sdf=(--sdf "$2") ;;
     *.json) mapfile -t sdf < <(sed -n 's|.*"source": *"\([^"]*\.sdf\)".*|--sdf\n'"${2%/*}"'/\1|p' "$2") ;;
     esac
-    "$lab" reference "$at.masu" -o "$at.ref.png" --paths "$paths" --size "$size" --time "$time" --animate --quiet "${sdf[@]}" 2>> "$at.err" &&
+    "$lab" reference "$at.masu" -o "$at.ref.png" --paths "$paths" --size "$size" --time "$time" --quiet "${sdf[@]}" 2>> "$at.err" &&
         echo "<img src=\"$1.ref.png\" loading=\"lazy\" alt=\"reference\">"
     "$masu" render "$at.masu" -o "$at.raw.png" --frame --size "$size" --time "$time" --quiet 2>> "$at.err" &&
         echo "<img src=\"$1.raw.png\" loading=\"lazy\" alt=\"raw frame\">"
@@ -34,12 +44,13 @@ beside() {
 
 # one NUMBER FILE NAME: a row of the page in OUT/NUMBER.row, its outcome in OUT/NUMBER.outcome
 one() {
-    local number=$1 file=$2 name=$3 at=$out/$1 start took code
-    start=$(date +%s%N)
-    timeout 60 "$bake" "$file" -o "$at.masu" --stats "$at.json" --quiet > /dev/null 2> "$at.err" < /dev/null
+    local number=$1 file=$2 name=$3 at=$out/$1 took code
+    local TIMEFORMAT='%3U %3S'
+    { time timeout 600 "$bake" "$file" -o "$at.masu" --stats "$at.json" --quiet > /dev/null 2> "$at.err" < /dev/null; } 2> "$at.cpu"
     code=$?
-    took=$((($(date +%s%N) - start) / 1000000))
+    took=$(awk '{ printf "%d", 1000 * ($1 + $2) }' "$at.cpu")
     outcome $code "$at.err" > "$at.outcome"
+    kinds "$file" < "$at.err" | sort -u > "$at.kinds"
     {
         echo "<figure>"
         if [ $code = 0 ] && [ ! "${NO_PICTURES:-}" ]; then
@@ -76,7 +87,7 @@ out=$1
 shift
 mkdir -p "$out" || exit 1
 out=$(realpath "$out")
-rm -f "$out"/[0-9]*.{png,row,outcome,took,peak,err} "$out"/index.html "$out"/counts.txt
+rm -f "$out"/[0-9]*.{png,row,outcome,took,peak,err,cpu,kinds} "$out"/index.html "$out"/counts.txt
 number=0
 for folder in "$@"; do
     [ -d "$folder" ] || continue
@@ -98,15 +109,16 @@ cat "$out"/[0-9]*.outcome 2> /dev/null | sort | uniq -c | sort -rn > "$out/count
     echo '<h1>Models of strangers</h1><pre>'
     html < "$out/counts.txt"
     cut -d ' ' -f 1 "$out"/[0-9]*.took 2> /dev/null | sort -n | awk '{ t[NR] = $1 } END { if (NR)
-        printf "seconds to bake: median %.2f, most %.2f\n", t[int((NR + 1) / 2)] / 1000, t[NR] / 1000 }' | tee -a "$out/counts.txt"
+        printf "processor seconds to bake: median %.2f, most %.2f\n", t[int((NR + 1) / 2)] / 1000, t[NR] / 1000 }' | tee -a "$out/counts.txt"
     cat "$out"/[0-9]*.peak 2> /dev/null | sort -n | awk '{ p[NR] = $1 } END { if (NR)
         printf "memory to bake, MB: median %.1f, most %.1f\n", p[int((NR + 1) / 2)] / 1e6, p[NR] / 1e6 }' | tee -a "$out/counts.txt"
+    cat "$out"/[0-9]*.kinds 2> /dev/null | sort | uniq -c | sort -rn | tee "$out/kinds.txt" | html
     sort -rn "$out"/[0-9]*.took 2> /dev/null | head -5 | awk '{ $1 = $1 / 1000 " s "; print }' | html
     echo '</pre>'
     cat "$out"/[0-9]*.row 2> /dev/null
     echo '</html>'
 } > "$out/index.html"
-rm -f "$out"/[0-9]*.{row,outcome,took,peak,err,beside}
+rm -f "$out"/[0-9]*.{row,outcome,took,peak,err,cpu,kinds,beside}
 cat "$out/counts.txt"
 echo "The page is $out/index.html"
 ! grep -q WRONG "$out/counts.txt"

@@ -44,6 +44,7 @@ bool masu_isa_compile(const masu_desc *given, void (*before)(const char *pass), 
                       size_t error_size) {
     masu_null_device device;
     masu_desc desc = *given;
+    desc.bytes = sizeof desc;
     memset(rows, 0, sizeof *rows);
     if (!masu_null_device_open(&device, before, rows, error, error_size)) return false;
     desc.vulkan = (masu_vulkan){.get_instance_proc_addr = masu_null_get_instance_proc_addr,

@@ -73,7 +73,7 @@ static bool draw_rung(masu_session *s, const masu_count_desc *d, uint32_t rung, 
             return false;
         if (i < warm) continue;
         add_counts(out->passes[rung], 1.0 / period);
-        if (masu_stats(s->m, commands.slot, &stats)) continue;
+        if (masu_stats(s->m, commands.slot, &stats, NULL)) continue;
         for (uint32_t v = 0; v < stats.view_count; v++)
             out->triangles[rung][v != 0] += (double)stats.views[v].triangles / period;
     }

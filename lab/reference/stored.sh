@@ -36,9 +36,9 @@ store test_pane_maps 128
 store test_pane 128 --sdf tests/scenes/test_pane.sdf
 store night 256 --sdf scenes/night.sdf
 store test_reflections 512 --sdf tests/scenes/test_reflections.sdf
-store test_skin 256 --time 0.5 --animate
-store test_swing 256 --time 0.3 --animate
-store reference_attributes 512 --time 0.5 --animate
+store test_skin 256 --time 0.5
+store test_swing 256 --time 0.3
+store reference_attributes 512 --time 0.5
 store test_foliage 256
 store test_texture_mask 256
 store test_texture_normals 256

@@ -18,10 +18,10 @@ static bool measure(masu_session *s, uint32_t rung, double time, double *ms, cha
                     size_t size) {
     *ms = 1e9;
     for (uint32_t i = 0; i < TRIES; i++) {
-        masu_frame_desc f = {.time = time, .rung = rung};
+        masu_frame_desc f = {MASU_FRAME_DESC, .time = time, .rung = rung};
         masu_commands c;
-        if (masu_frame(s->m, &f, &c)) {
-            snprintf(error, size, "%s", masu_last_error(s->m)->text);
+        if (masu_frame(s->m, &f, &c, &s->detail)) {
+            snprintf(error, size, "%s", s->detail.text);
             return false;
         }
         uint64_t start = masu_clock_ns(NULL);

@@ -316,7 +316,7 @@ static bool sample(bench *w, uint32_t e, int phase, bool kept) {
         uint64_t start = masu_clock_ns(NULL);
         if (!draw(w, s, w->d->time + (double)t->frame / 60.0, plain, &commands)) return false;
         wall += (double)(masu_clock_ns(NULL) - start) / 1e6;
-        if (masu_stats(s->m, commands.slot, &stats) || !stats.timed) continue;
+        if (masu_stats(s->m, commands.slot, &stats, NULL) || !stats.timed) continue;
         gpu += (double)stats.gpu_ns / 1e6;
         if (kept && phase == MASU_BASELINE_MOTION) keep_passes(&w->out->entries[e], &stats);
     }
@@ -414,7 +414,7 @@ static bool count_entry(bench *w, uint32_t e) {
         double time = w->d->time - (double)(frames - 1 - k) / 60.0;
         good = draw(w, &w->other, time, k == 0, &commands);
     }
-    if (good && masu_stats(w->other.m, commands.slot, &stats)) good = failed(w, "no counts");
+    if (good && masu_stats(w->other.m, commands.slot, &stats, NULL)) good = failed(w, "no counts");
     if (good) {
         entry->evals = stats.sdf_evals;
         entry->occlusion_evals = stats.shadow_evals + stats.occlusion_evals;

@@ -13,7 +13,7 @@
 enum { AROUND = 16 }; /* pixels to each side within which the edge of a leak is looked for */
 
 typedef struct point {
-    ref_vec p;
+    ref_vec p, n;
     bool met; /* the frame and the reference see the same surface */
 } point;
 
@@ -45,7 +45,7 @@ static bool failed(study *w, const char *text) {
 static bool draw(study *w, uint32_t frames, float *rgb) {
     masu_light light;
     masu_commands commands = {.slot = 0};
-    if (masu_light_of(w->s.m, &light) != MASU_OK) return failed(w, "the scene has no light");
+    if (masu_light_of(w->s.m, &light, NULL) != MASU_OK) return failed(w, "the scene has no light");
     memset(light.sun_color, 0, sizeof light.sun_color);
     memset(light.ambient, 0, sizeof light.ambient);
     memset(light.sky_zenith, 0, sizeof light.sky_zenith);
@@ -69,7 +69,7 @@ static bool choose(study *w, uint32_t chosen, bool shadows,
         masu_punctual_light_state state = states[i];
         if (i != chosen) memset(state.color, 0, sizeof state.color);
         state.no_shadow = !shadows;
-        if (masu_punctual_light_set(w->s.m, masu_punctual_light_at(w->s.m, i), &state) != MASU_OK)
+        if (masu_punctual_light_set(w->s.m, masu_punctual_light_at(w->s.m, i), &state, NULL) != MASU_OK)
             return failed(w, "a light cannot be changed");
     }
     return true;
@@ -77,7 +77,7 @@ static bool choose(study *w, uint32_t chosen, bool shadows,
 
 static bool read_states(study *w, masu_punctual_light_state *states) {
     for (uint32_t i = 0; i < w->scene.light_count; i++) {
-        if (masu_punctual_light_get(w->s.m, masu_punctual_light_at(w->s.m, i), &states[i]) !=
+        if (masu_punctual_light_get(w->s.m, masu_punctual_light_at(w->s.m, i), &states[i], NULL) !=
             MASU_OK)
             return failed(w, "the renderer and the reference count the lights differently");
     }
@@ -104,7 +104,7 @@ static bool find_points(study *w, uint32_t slot) {
     masu_readback_image depth;
     ref_camera c = ref_camera_at(&w->scene.blob, w->d->time);
     const double near = (double)w->scene.environment->near_distance;
-    if (masu_readback(w->s.m, slot, MASU_READBACK_DEPTH, &depth) != MASU_OK)
+    if (masu_readback(w->s.m, slot, MASU_READBACK_DEPTH, &depth, NULL) != MASU_OK)
         return failed(w, "no depth");
     for (size_t at = 0; at < w->pixels; at++) {
         ref_hit hit, front;
@@ -121,7 +121,7 @@ static bool find_points(study *w, uint32_t slot) {
             continue;
         double z = near / (double)row[x], expected = hit.t * ref_dot(d, c.forward);
         if (!(fabs(z - expected) < 0.003 * expected)) continue;
-        w->points[at] = (point){ref_world_leave(&w->world, &hit, hit.ng), true};
+        w->points[at] = (point){ref_world_leave(&w->world, &hit, hit.ng), hit.ng, true};
     }
     return true;
 }
@@ -153,7 +153,8 @@ static int by_value(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* How far from a pixel that may be lit, in texels. */
+/* Distance, in texels, from the centre of a pixel to what may be lit: to the nearest such pixel, or to the nearest of
+ * points around it on its tangent plane, since a pixel may be larger than many texels. */
 static double depth_of(const study *w, const ref_light *light, size_t at) {
     const int width = (int)w->d->size.width, height = (int)w->d->size.height;
     const int x0 = (int)(at % (size_t)width), y0 = (int)(at / (size_t)width);
@@ -168,6 +169,14 @@ static double depth_of(const study *w, const ref_light *light, size_t at) {
         }
     }
     double texel = 2 * tan(half) * ref_length(ref_sub(light->position, p)) / 512;
+    static const double radii[] = {0.25, 0.5, 1, 1.5, 2, 3, 4, 6, 8};
+    ref_frame f = ref_frame_of(w->points[at].n);
+    for (size_t i = 0; i < 12 * sizeof radii / sizeof *radii; i++) {
+        double r = radii[i / 12] * texel, phi = (double)(i % 12) * REF_PI / 6;
+        if (r >= least) break;
+        ref_vec q = ref_add(p, ref_from(&f, ref_v(r * cos(phi), r * sin(phi), 0)));
+        if (seen_from(w, light, q)) least = r;
+    }
     return least / texel;
 }
 

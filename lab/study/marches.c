@@ -75,7 +75,7 @@ static masu_result load(bench *b, renderer *r, masu_detail *detail) {
     masu_commands commands;
     masu_result result;
     char error[512];
-    while ((result = masu_load(r->m, &commands)) == MASU_INCOMPLETE) {
+    while ((result = masu_load(r->m, &commands, NULL)) == MASU_INCOMPLETE) {
         if (!masu_headless_run(&b->s.host, commands.buffer, error, sizeof error)) {
             snprintf(detail->text, sizeof detail->text, "%.190s", error);
             return MASU_ERROR_VULKAN;
@@ -114,17 +114,17 @@ static int open_renderer(bench *b, masu_march march, uint32_t steps, bool counti
 }
 
 static bool draw(bench *b, renderer *r, masu_stats_info *stats, double *wall_ms) {
-    masu_frame_desc frame = {.time = b->d->time};
+    masu_frame_desc frame = {MASU_FRAME_DESC, .time = b->d->time};
     masu_commands commands;
     char error[512];
     uint64_t start = masu_clock_ns(NULL);
-    if (masu_frame(r->m, &frame, &commands)) return failed(b, masu_last_error(r->m)->text);
+    if (masu_frame(r->m, &frame, &commands, &b->s.detail)) return failed(b, b->s.detail.text);
     if (!masu_headless_submit(&b->s.host, commands.buffer, commands.slot, error, sizeof error) ||
         !masu_headless_wait(&b->s.host, commands.slot, error, sizeof error)) {
         return failed(b, error);
     }
     *wall_ms = (double)(masu_clock_ns(NULL) - start) / 1e6;
-    (void)masu_stats(r->m, commands.slot, stats);
+    (void)masu_stats(r->m, commands.slot, stats, NULL);
     return true;
 }
 
@@ -163,7 +163,7 @@ static bool make_truth(bench *b, const renderer *r) {
     masu_camera camera;
     char error[512];
     if (b->samples) return true;
-    if (masu_camera_at(r->m, b->d->time, &camera) != MASU_OK)
+    if (masu_camera_at(r->m, b->d->time, &camera, NULL) != MASU_OK)
         return failed(b, "the scene has no camera");
     if (!masu_view_of(&b->s.scene, &camera, b->d->time, b->d->width, b->d->height, &b->view, error,
                       sizeof error)) {
@@ -251,9 +251,9 @@ static bool compare(bench *b, const renderer *r, masu_bench_row *row) {
     gbuffer g;
     uint32_t w = masu_truth_columns(b->d->width, b->d->stride);
     uint32_t h = masu_truth_columns(b->d->height, b->d->stride);
-    if (masu_readback(r->m, 0, MASU_READBACK_DEPTH, &g.depth) ||
-        masu_readback(r->m, 0, MASU_READBACK_ALBEDO, &g.albedo) ||
-        masu_readback(r->m, 0, MASU_READBACK_NORMAL, &g.normal)) {
+    if (masu_readback(r->m, 0, MASU_READBACK_DEPTH, &g.depth, NULL) ||
+        masu_readback(r->m, 0, MASU_READBACK_ALBEDO, &g.albedo, NULL) ||
+        masu_readback(r->m, 0, MASU_READBACK_NORMAL, &g.normal, NULL)) {
         return failed(b, "no readback");
     }
     uint64_t count = pair(b, &g);

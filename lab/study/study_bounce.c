@@ -250,15 +250,15 @@ static bool switch_lamp(study *w, bool on) {
     masu_punctual_light_state state;
     if (!given.lamp) return true;
     masu_punctual_light lamp = masu_punctual_light_find(w->s.m, given.lamp);
-    if (masu_punctual_light_get(w->s.m, lamp, &state) != MASU_OK) return false;
+    if (masu_punctual_light_get(w->s.m, lamp, &state, NULL) != MASU_OK) return false;
     for (int k = 0; k < 3; k++) state.color[k] = on ? (float)given.lamp_color : 0.0f;
-    return masu_punctual_light_set(w->s.m, lamp, &state) == MASU_OK;
+    return masu_punctual_light_set(w->s.m, lamp, &state, NULL) == MASU_OK;
 }
 
 /* Takes the door away. */
 static bool open_door(study *w, char *error, size_t size) {
     masu_model door = masu_model_find(w->s.m, given.door ? given.door : "");
-    if (!given.door || masu_model_show(w->s.m, door, 0) == MASU_OK) return true;
+    if (!given.door || masu_model_show(w->s.m, door, 0, NULL) == MASU_OK) return true;
     return failed(error, size, "the scene has no movable model of that name");
 }
 
@@ -266,8 +266,8 @@ static bool draw(study *w, bool first, float ambient, float *rgb, char *error, s
     masu_light light;
     masu_camera camera;
     masu_commands commands;
-    if (masu_light_of(w->s.m, &light) != MASU_OK ||
-        masu_camera_at(w->s.m, o->time, &camera) != MASU_OK)
+    if (masu_light_of(w->s.m, &light, NULL) != MASU_OK ||
+        masu_camera_at(w->s.m, o->time, &camera, NULL) != MASU_OK)
         return failed(error, size, "the scene has no light or no camera");
     for (int k = 0; k < 3; k++) light.ambient[k] = ambient;
     if (given.night) {

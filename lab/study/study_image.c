@@ -157,7 +157,7 @@ static uint32_t batch_of(const bench *b, uint32_t first) {
 
 static bool frame_of(bench *b, masu_session *s, uint32_t rung, bool cut, masu_commands *commands) {
     masu_camera camera;
-    if (masu_camera_at(s->m, o->time, &camera)) return failed(b, "the scene has no camera");
+    if (masu_camera_at(s->m, o->time, &camera, NULL)) return failed(b, "the scene has no camera");
     masu_frame_desc frame = {
         .camera = &camera, .time = o->time, .time_step = 1.0f / 60.0f, .rung = rung, .cut = cut};
     return masu_session_frame(s, &frame, true, commands, b->error, sizeof b->error);
@@ -223,7 +223,7 @@ static bool measure(bench *b, masu_session *s, uint32_t first, uint32_t count) {
             uint64_t start = masu_clock_ns(NULL);
             if (!frame_of(b, s, k, true, &commands)) return false;
             double wall = (double)(masu_clock_ns(NULL) - start) / 1e6;
-            if (!run || masu_stats(s->m, commands.slot, &stats)) continue;
+            if (!run || masu_stats(s->m, commands.slot, &stats, NULL)) continue;
             least(&b->rows[first + k].wall_ms, wall);
             least(&b->rows[first + k].gpu_ms, (double)stats.gpu_ns / 1e6);
             least(&b->rows[first + k].chain_ms, chain_ns(&stats) / 1e6);

@@ -178,7 +178,7 @@ static double filters_ms(bench *b, uint32_t slot) {
                                         "specular_keep_fine"};
     masu_stats_info stats;
     double ms = 0;
-    (void)masu_stats(b->s.m, slot, &stats);
+    (void)masu_stats(b->s.m, slot, &stats, NULL);
     for (uint32_t p = 0; p < stats.pass_count; p++) {
         for (size_t i = 0; i < sizeof passes / sizeof *passes; i++) {
             if (!strcmp(stats.pass_names[p], passes[i])) ms += (double)stats.pass_ns[p] / 1e6;
@@ -190,7 +190,7 @@ static double filters_ms(bench *b, uint32_t slot) {
 static bool time_filters(bench *b, uint32_t way) {
     masu_camera camera;
     masu_commands commands;
-    if (masu_camera_at(b->s.m, o->time, &camera)) return failed(b, "the scene has no camera");
+    if (masu_camera_at(b->s.m, o->time, &camera, NULL)) return failed(b, "the scene has no camera");
     for (uint32_t i = 0; i < TIMED; i++) {
         masu_frame_desc frame = {.camera = &camera,
                                  .time = o->time,

@@ -174,7 +174,7 @@ static bool open_rung(bench *b, const bench_case *c, subject *u) {
     good = good && u->block && !masu_init(&d, u->block, need.host_bytes, &u->m, &detail);
     masu_result result = MASU_INCOMPLETE;
     while (good && result == MASU_INCOMPLETE) {
-        result = masu_load(u->m, &commands);
+        result = masu_load(u->m, &commands, NULL);
         if (result == MASU_INCOMPLETE &&
             !masu_headless_run(&b->s.host, commands.buffer, b->error, sizeof b->error))
             return false;
@@ -212,17 +212,17 @@ static bool count_early(bench *b, uint32_t i) {
 
 static bool run_rung(bench *b, subject *u, double *wall, double *gpu) {
     masu_commands commands;
-    masu_frame_desc frame = {0};
+    masu_frame_desc frame = {MASU_FRAME_DESC};
     masu_stats_info stats;
     uint64_t from = masu_clock_ns(NULL);
-    if (masu_frame(u->m, &frame, &commands)) {
-        snprintf(b->error, sizeof b->error, "%s", masu_last_error(u->m)->text);
+    if (masu_frame(u->m, &frame, &commands, &b->s.detail)) {
+        snprintf(b->error, sizeof b->error, "%s", b->s.detail.text);
         return false;
     }
     if (!masu_headless_run(&b->s.host, commands.buffer, b->error, sizeof b->error)) return false;
     *wall = (double)(masu_clock_ns(NULL) - from) * 1e-9;
     *gpu =
-        masu_stats(u->m, commands.slot, &stats) || !stats.timed ? 0 : (double)stats.gpu_ns * 1e-9;
+        masu_stats(u->m, commands.slot, &stats, NULL) || !stats.timed ? 0 : (double)stats.gpu_ns * 1e-9;
     return true;
 }
 

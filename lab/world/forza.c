@@ -10,7 +10,9 @@
  *            are to lie beside the scene; their colours stay the track's
  *   camera   a lap at 50 m/s from 0 s on; then, for pictures, a look at the stands ("crowd") and one
  *            from above ("high"): their times are printed
- *   lights   two spots that are off, "head0" and "head1", for a program to give to a car
+ *   lights   two spots that are off, "head0" and "head1", for a program to give to a car.
+ *            forza_night.json has the same track by night, with lamps along it
+ *   plain    grass below the track, to the horizon: TORCS's ground ends behind the trees
  *   track    forza.track: the road and the cars in numbers, for a program that drives (docs/drive.md) */
 #include "lab/world/world.h"
 
@@ -284,20 +286,92 @@ static void grounds(FILE *out) {
     fputs("]", out);
 }
 
-static bool write_scene(const track *t, ground *g, const char *folder, const char *torcs) {
-    FILE *road = masu_world_create(folder, "forza.track");
-    if (!road) return false;
-    FILE *out = masu_world_create(folder, "forza.json");
-    if (!out) return fclose(road), false;
-    write_road(t, road);
+/* TORCS's ground ends behind the trees, where the sky would begin. The plain is just below the
+ * model's lowest point, -3.4 m, and wide enough to fade in the fog. It casts no shadows and is not
+ * in the BVH, because it would widen both. */
+static void plain(FILE *out, const char *torcs) {
+    fprintf(
+        out,
+        ",\n    {\"mesh\": {\"plane\": {\"size_x\": 12000, \"size_z\": 12000, \"tile\": 800}}, "
+        "\"name\": \"plain\",\n"
+        "     \"translate\": [1150, -3.6, -600], \"shadows\": false, \"traced\": false,\n"
+        "     \"material\": {\"base_color\": [1, 1, 1], \"roughness\": 1, \"alpha\": \"opaque\",\n"
+        "                  \"base_color_map\": \"%s/tracks/road/forza/GRAS2B.png\"}}",
+        torcs);
+}
+
+/* Lamps behind the barriers, on alternating sides. The emission of their heads is visible only;
+ * the light comes from the spots of lamp_lights. */
+#define LAMP_EVERY 10 /* points */
+#define LAMP_HEIGHT 9.0
+
+static masu_bake_vec3 lamp_foot(const track *t, int i) {
+    int side = i / LAMP_EVERY & 1;
+    double off = t->points[i].wall[side] + 1.5;
+    masu_bake_vec3 at = beside(t, i, side ? -off : off, 0);
+    at.y += t->points[i].rise[side];
+    return at;
+}
+
+static void lamp_models(const track *t, FILE *out) {
+    for (int i = 0; i + LAMP_EVERY < t->count; i += LAMP_EVERY) {
+        masu_bake_vec3 foot = lamp_foot(t, i);
+        fprintf(out,
+                ",\n    {\"mesh\": {\"box\": {\"size\": [0.16, 10, 0.16]}}, \"translate\": [%.2f, "
+                "%.2f, %.2f],\n"
+                "     \"material\": {\"base_color\": [0.3, 0.3, 0.3]}},\n"
+                "    {\"mesh\": {\"box\": {\"size\": [1, 0.16, 1]}}, \"translate\": [%.2f, %.2f, "
+                "%.2f], "
+                "\"area_light\": false,\n"
+                "     \"shadows\": false, \"material\": {\"emissive\": [6, 5.4, 4.4]}}",
+                foot.x, foot.y + LAMP_HEIGHT - 5, foot.z, foot.x, foot.y + LAMP_HEIGHT, foot.z);
+    }
+}
+
+static void lamp_lights(const track *t, FILE *out) {
+    for (int i = 0; i + LAMP_EVERY < t->count; i += LAMP_EVERY) {
+        masu_bake_vec3 foot = lamp_foot(t, i);
+        const point *p = &t->points[i];
+        fprintf(out,
+                ",\n    {\"type\": \"spot\", \"position\": [%.2f, %.2f, %.2f], \"direction\": "
+                "[%.2f, %.2f, %.2f],\n"
+                "     \"color\": [1, 0.9, 0.74], \"intensity\": 400, \"outer\": 75, \"inner\": 40, "
+                "\"range\": 80, "
+                "\"radius\": 0.3}",
+                foot.x, foot.y + LAMP_HEIGHT - 0.2, foot.z, p->x - foot.x,
+                p->height - foot.y - LAMP_HEIGHT, -p->y - foot.z);
+    }
+}
+
+#define SHADOWS "\"shadows\": {\"cascades\": 4, \"resolution\": 1024, \"distance\": 300}"
+#define FOG "  \"fog\": {\"visibility\": 8000, \"falloff\": 0.004},\n"
+/* Afternoon: a low sun to the right of the start, with shadows of trees on the road. */
+static const char day[] =
+    "  \"sun\": {\"azimuth\": 165, \"elevation\": 24,\n"
+    "          " SHADOWS "},\n"
+    "  \"sky\": {\"turbidity\": 3, \"ground\": [0.12, 0.13, 0.1]}, \"exposure\": 1.2,\n" FOG;
+static const char night[] = "  \"sun\": {\"azimuth\": 230, \"elevation\": 42, \"color\": [0.5, "
+                            "0.6, 1], \"intensity\": 0.06,\n"
+                            "          " SHADOWS "},\n"
+                            "  \"ambient\": [0.03, 0.036, 0.05],\n"
+                            "  \"sky\": {\"zenith\": [0.004, 0.006, 0.014], \"horizon\": [0.02, "
+                            "0.022, 0.03]}, \"exposure\": 2,\n" FOG;
+
+static bool write_models(const track *t, ground *g, const char *torcs, bool is_night, FILE *out,
+                         FILE *road) {
     fprintf(out,
             "{\n  \"models\": [\n    {\"file\": \"%s/tracks/road/forza/forza.acc\", \"merge\": 128",
             torcs);
     grounds(out);
     fputs("}", out);
-    bool placed = cars(t, g, torcs, out, road);
-    bool good = masu_world_close(road, folder, "forza.track") && placed;
-    if (!good) return fclose(out), false;
+    if (!cars(t, g, torcs, out, road)) return false;
+    plain(out, torcs);
+    if (is_night) lamp_models(t, out);
+    return true;
+}
+
+/* Prints when the camera is where. */
+static void write_camera(const track *t, FILE *out, const char *folder) {
     fputs("\n  ],\n  \"camera\": {\n    \"fov_y\": 60,\n    \"near\": 0.2,\n    \"keys\": [\n",
           out);
     for (int i = 0; i < t->count; i += 2) {
@@ -316,24 +390,39 @@ static bool write_scene(const track *t, ground *g, const char *folder, const cha
     key(out, end + 11, high, middle, ",");
     key(out, end + 20, near, car, ",");
     key(out, end + 21, near, car, "");
-    fputs("    ]\n  },\n"
-          "  \"sun\": {\"azimuth\": 230, \"elevation\": 42,\n"
-          "          \"shadows\": {\"cascades\": 4, \"resolution\": 1024, \"distance\": 300}},\n"
-          "  \"sky\": {\"turbidity\": 3, \"ground\": [0.12, 0.13, 0.1]}, \"exposure\": 0.8,\n"
-          "  \"ambient_occlusion\": {\"radius\": 1.5}, \"reflections\": {\"cutoff\": 0.4},\n"
-          "  \"lights\": [\n"
-          "    {\"name\": \"head0\", \"type\": \"spot\", \"position\": [0, 0, 0], \"direction\": [1, 0, 0], "
-          "\"intensity\": 0},\n"
-          "    {\"name\": \"head1\", \"type\": \"spot\", \"position\": [0, 0, 0], \"direction\": [1, 0, 0], "
-          "\"intensity\": 0}],\n"
-          "  \"fog\": {\"visibility\": 8000, \"falloff\": 0.004},\n  \"lods\": 3,\n  "
-          "\"occluders\": 4\n}\n",
-          out);
-    if (!masu_cli_quiet()) {
+    fputs("    ]\n  },\n", out);
+    if (!masu_cli_quiet() && folder) {
         printf("%s/forza.json: a lap of %.0f m; crowd at %.0f s, high at %.0f s, cars at %.0f s\n",
                folder, t->points[t->count - 1].along, end, end + 10, end + 20);
     }
-    return masu_world_close(out, folder, "forza.json");
+}
+
+static bool write_scene(const track *t, ground *g, const char *folder, const char *torcs,
+                        bool is_night) {
+    const char *name = is_night ? "forza_night.json" : "forza.json";
+    FILE *road = masu_world_create(folder, "forza.track");
+    if (!road) return false;
+    FILE *out = masu_world_create(folder, name);
+    if (!out) return fclose(road), false;
+    write_road(t, road);
+    bool placed = write_models(t, g, torcs, is_night, out, road);
+    bool good = masu_world_close(road, folder, "forza.track") && placed;
+    if (!good) return fclose(out), false;
+    write_camera(t, out, is_night ? NULL : folder);
+    fputs(is_night ? night : day, out);
+    fputs("  \"ambient_occlusion\": {\"radius\": 1.5}, \"reflections\": {\"cutoff\": 0.4, "
+          "\"smallest\": 1.4},\n"
+          "  \"lights\": [\n"
+          "    {\"name\": \"head0\", \"type\": \"spot\", \"position\": [0, 0, 0], \"direction\": "
+          "[1, 0, 0], "
+          "\"intensity\": 0},\n"
+          "    {\"name\": \"head1\", \"type\": \"spot\", \"position\": [0, 0, 0], \"direction\": "
+          "[1, 0, 0], "
+          "\"intensity\": 0}",
+          out);
+    if (is_night) lamp_lights(t, out);
+    fputs("],\n  \"lods\": 3,\n  \"occluders\": 4\n}\n", out);
+    return masu_world_close(out, folder, name);
 }
 
 static bool write_track(const char *folder, const char *torcs, const char *xml, const char *model) {
@@ -359,7 +448,8 @@ static bool write_track(const char *folder, const char *torcs, const char *xml, 
             good = false;
         }
         if (good) find_normals(&t, &g);
-        good = good && write_scene(&t, &g, folder, torcs);
+        good = good && write_scene(&t, &g, folder, torcs, false) &&
+               write_scene(&t, &g, folder, torcs, true);
         free(g.corners);
     }
     masu_bake_content_release(&piece);

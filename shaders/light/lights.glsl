@@ -34,7 +34,8 @@ layout(constant_id = 17) const bool masu_area_lights = false;
 
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_LIGHTS, std430) readonly buffer Lights
 {
-    uvec4 masu_lights_header; /* x lights in view, y words of a tile's list, z 1 / texels of the atlas, float bits */
+    uvec4 masu_lights_header; /* x lights in view, y words of a tile's list; float bits: z 1 / texels of the
+                               * atlas, w a step of the camera's subpixel grid at distance 1, m */
     masu_punctual_light_data masu_lights[];
 };
 
@@ -228,7 +229,12 @@ void masu_sum_mirrored(inout masu_light_sum sum, vec3 mirrored)
  * with the lobe. False: nothing arrives.
  *
  * Shadows come first: they keep only one number, and what is in shadow needs nothing of the rest. */
+#ifdef MASU_SHELVED
+bool masu_add_local_light(inout masu_light_sum sum, masu_surface s, masu_bsdf b, masu_shelved_bsdf shelf, uint number,
+                          vec3 rel, vec3 n, vec3 traced)
+#else
 bool masu_add_local_light(inout masu_light_sum sum, masu_surface s, masu_bsdf b, uint number, vec3 rel, vec3 n, vec3 traced)
+#endif
 {
     masu_punctual_light_data light = masu_lights[number];
     vec3 l;
@@ -251,6 +257,9 @@ bool masu_add_local_light(inout masu_light_sum sum, masu_surface s, masu_bsdf b,
     if (!(strength > 0.0)) {
         return false;
     }
+    /* Computed again, and written in another way: kept, they would take six registers while the atlas is read. */
+    to = -(rel - light.position.xyz);
+    l = to * masu_rsqrt(dot(to, to));
 #endif
     vec3 u = vec3(0.0), v = vec3(0.0);
     bool area = masu_area_lights && masu_light_kind(light) != MASU_KIND_POINT;
@@ -272,24 +281,46 @@ bool masu_add_local_light(inout masu_light_sum sum, masu_surface s, masu_bsdf b,
             kept -= traced.xy * max(masu_ray_shares(s, b, l, size), traced.z);
         }
     }
-    vec3 color = light.color.rgb * strength;
+    vec3 form = vec3(0.0);
     if (area) {
-        vec3 form = masu_rectangle(b, to, u, v);
+        form = masu_rectangle(b, to, u, v);
+    }
+#ifdef MASU_SHELVED
+    masu_unshelve(shelf, b);
+#endif
+    vec3 color = light.color.rgb * strength;
+    bool directed = true;
+    if (area) {
         vec3 mirrored = color * masu_sane(masu_bsdf_specular(b) * (form.y * kept.x), 0.0, masu_huge);
 #ifdef MASU_SURFACE
         mirrored *= s.shadow >= 0.0 ? masu_meso_shadow(s.shadow, b.v, l) : 1.0;
 #endif
         masu_sum_mirrored(sum, mirrored);
-        masu_flatten(b, l, color, form, size, kept);
+#ifdef MASU_SURFACE
+        directed = b.coat > 0.0 || s.shadow >= 0.0;
+#else
+        directed = b.f90 < 0.0; /* never; a constant would let the compiler keep more registers */
+#endif
+        if (!directed) {
+            /* What is left is the light between facets and the one from below, which know of no direction. */
+            masu_albedo lit = masu_albedo_of(b, clamp(form.z, 0.01, 1.0), 0.0);
+            color *= form.x;
+            sum.light += color * masu_sane(b.diffuse * (1.0 - masu_matte(b, lit)), 0.0, masu_huge);
+            masu_sum_mirrored(sum, color * masu_sane(b.rest * masu_lost(lit), 0.0, masu_huge));
+        } else {
+            masu_flatten(b, l, color, form, size, kept);
+        }
     } else {
         masu_spread(b, l, color, size, kept);
     }
-    masu_lit lit;
-    lit.diffuse = vec3(0.0);
-    lit.specular = vec3(0.0);
-    masu_add_light(lit, s, b, l, color);
-    sum.light += lit.diffuse;
-    masu_sum_mirrored(sum, lit.specular);
+    if (directed) {
+        masu_lit lit;
+        lit.diffuse = vec3(0.0);
+        lit.specular = vec3(0.0);
+        masu_add_light(lit, s, b, l, color);
+        sum.light += lit.diffuse;
+        masu_sum_mirrored(sum, lit.specular);
+    }
     return true;
 }
 

@@ -4,12 +4,15 @@
  * Needs lights.glsl's buffer before it.
  *
  * A point light has six faces of a cube along the world's axes, a spot one along its own; a texel is lit or not,
- * and nine of them count with the weights of a quadratic B-spline around the point.
+ * and nine texels are weighted by a quadratic B-spline around the point. The edge of a shadow is where their sum is a
+ * half. Around it the sum is made steeper, up to three times, if the penumbra of the source is narrower than the filter.
  *
  * BIAS. The depth near / z of a plane is affine in the face. Each of the nine is compared with the surface's own
  * plane there where that rises towards the light, and with the point's depth where it falls: exact on a plane.
  * The atlas holds depths that are rounded away from the light; another tenth of a texel is for what normal and
  * depth of the point are rounded to, and what the plane gains in an eighth of a texel across for what vertices are.
+ * The point comes from a depth image, whose rasteriser snaps vertices as well: it is lifted off its plane by a step of
+ * the subpixel grid at its distance from the camera. This matters if texels are smaller than that step.
  */
 #ifndef MASU_LOCAL_SHADOW_GLSL
 #define MASU_LOCAL_SHADOW_GLSL
@@ -22,6 +25,8 @@ const float masu_local_steepest = 200.0; /* slope against the light that is stil
 const float masu_local_least_bias = 0.1; /* texels */
 const float masu_local_behind = 20.0; /* a surface that faces away from all of the source is dark over 2.9 degrees */
 const float masu_local_snap = 1.0 / 8.0; /* texels: how far rasterisers may move an edge across a face */
+const float masu_local_steeper = 3.0; /* most: edges of a third of the filter's width */
+const float masu_local_width = 0.9; /* texels: half width of the penumbra that is as wide as the filter */
 
 /* Weights of the texels before, at and after the point; f: how far it is from its texel's centre. */
 vec3 masu_local_spline(float f)
@@ -31,46 +36,53 @@ vec3 masu_local_spline(float f)
     return vec3(0.5 * a * a, 0.75 - f * f, 0.5 * b * b);
 }
 
-/* Of a row of texels those that are lit. Depths are at most 1: a clamp to 0..1 costs no instruction. */
-vec3 masu_local_lit(vec3 across, float down, float depth, vec3 nearest)
+/* Of a row of texels those that are lit. above: how far they are above the point. Depths are at most 1: a clamp to
+ * 0..1 costs no instruction. */
+vec3 masu_local_lit(vec3 across, float down, vec3 above)
 {
-    return vec3(greaterThanEqual(clamp(across + down, 0.0, 1.0), nearest - depth));
+    return vec3(greaterThanEqual(clamp(across + down, 0.0, 1.0), above));
 }
 
 #ifdef MASU_LOCAL_SHADOWS_FOUR
 /* The four texels around the point, for shaders that have no registers for nine. */
-float masu_local_filter(vec2 at, float depth, vec2 slope, float texel)
+float masu_local_filter(vec2 at, float depth, vec2 slope, float texel, out float gap)
 {
     vec2 corner = floor(at - 0.5);
     vec2 f = at - 0.5 - corner;
-    vec4 nearest = textureGather(local_shadow_atlas, (corner + 1.0) * texel) - depth;
+    vec4 above = textureGather(local_shadow_atlas, (corner + 1.0) * texel) - depth;
+    gap = max(max(above.x, above.y), max(above.z, above.w));
     vec2 low = -slope * f;
     vec2 high = low + slope;
     vec4 rise = vec4(low.x + high.y, high.x + high.y, high.x + low.y, low.x + low.y);
-    vec4 lit = vec4(greaterThanEqual(clamp(rise, 0.0, 1.0), nearest));
+    vec4 lit = vec4(greaterThanEqual(clamp(rise, 0.0, 1.0), above));
     return mix(mix(lit.w, lit.z, f.x), mix(lit.x, lit.y, f.x), f.y);
 }
 #else
-/* at: in texels of the atlas; depth: of the point; slope: what its surface gains of it per texel. */
-float masu_local_filter(vec2 at, float depth, vec2 slope, float texel)
+/* at: in texels of the atlas; depth: of the point; slope: what its surface gains of it per texel. gap: depth of the
+ * nearest texel to the light, minus that of the point. */
+float masu_local_filter(vec2 at, float depth, vec2 slope, float texel, out float gap)
 {
     vec2 middle = floor(at);
     vec2 f = at - middle - 0.5;
     vec2 uv = middle * texel;
     float across = -slope.x * f.x;
     float down = -slope.y * (f.y + 1.0);
-    vec3 columns = vec3(across - slope.x, across, across + slope.x);
     vec3 weight = masu_local_spline(f.x), rows = masu_local_spline(f.y);
     float sum = 0.0;
+    gap = 0.0;
     /* In a loop: all sixteen texels of four gathers at once take too many registers. Gathered are the texels
      * below left, below right, above right, above left of a corner. The second turn has the middle row again. */
     [[dont_unroll]] for (int i = 0; i < 2; i++) {
         vec4 left = textureGather(local_shadow_atlas, uv);
         vec4 right = textureGather(local_shadow_atlas, uv + vec2(texel, 0.0));
-        float low = dot(weight, masu_local_lit(columns, down, depth, vec3(left.w, left.z, right.z)));
-        float high = dot(weight, masu_local_lit(columns, down + slope.y, depth, vec3(left.x, left.y, right.y)));
+        vec3 columns = vec3(across - slope.x, across, across + slope.x);
+        vec3 low_above = vec3(left.w, left.z, right.z) - depth, high_above = vec3(left.x, left.y, right.y) - depth;
+        float low = dot(weight, masu_local_lit(columns, down, low_above));
+        float high = dot(weight, masu_local_lit(columns, down + slope.y, high_above));
+        gap = max(gap, max(max(low_above.x, low_above.y), low_above.z));
+        gap = max(gap, max(max(high_above.x, high_above.y), high_above.z));
         sum += rows.x * low + rows.y * high;
-        rows = vec3(0.0, rows.z, 0.0);
+        rows.xy = vec2(0.0, rows.z);
         down += slope.y;
         uv.y += texel;
     }
@@ -81,7 +93,7 @@ float masu_local_filter(vec2 at, float depth, vec2 slope, float texel)
 /* rel: relative to the eye; n: unit, of the surface itself, on the lit side. */
 float masu_light_seen(masu_punctual_light_data light, vec3 rel, vec3 n)
 {
-    vec3 p = rel - light.position.xyz;
+    vec3 p = rel - light.shadow_origin.xyz;
     float near = uintBitsToFloat(light.shadow[1].z);
     float tangent = uintBitsToFloat(light.shadow[1].w);
     float z;
@@ -128,8 +140,14 @@ float masu_light_seen(masu_punctual_light_data light, vec3 rel, vec3 n)
     float along = dot(n, p) * inverse;
     float facing = min(along, -1.0 / masu_local_steepest);
     vec2 slope = across * (step / facing);
-    float bias = masu_local_least_bias * step + masu_local_snap * (abs(slope.x) + abs(slope.y));
-    float lit = masu_local_filter(at, depth + bias, slope, uintBitsToFloat(masu_lights_header.z));
+    float lift = uintBitsToFloat(masu_lights_header.w) * masu_sqrt(dot(rel, rel)) * (inverse / width); /* texels */
+    float bias = masu_local_least_bias * step + masu_local_snap * (abs(slope.x) + abs(slope.y)) - lift * (step / facing);
+    float gap;
+    float lit = masu_local_filter(at, depth + bias, slope, uintBitsToFloat(masu_lights_header.z), gap);
+    /* Half the penumbra, in texels: radius * gap / (near * width). */
+    float radius = masu_area_lights && masu_light_kind(light) != MASU_KIND_POINT ? near : masu_sqrt(light.color.w);
+    float steeper = clamp(masu_local_width * near * width / max(radius * gap, 1e-12), 1.0, masu_local_steeper);
+    lit = clamp((lit - 0.5) * steeper + 0.5, 0.0, 1.0);
     lit *= clamp(1.0 - (along - depth) * masu_local_behind, 0.0, 1.0);
     float fade = float(word >> MASU_LOCAL_FADE_SHIFT & 15u) * (1.0 / float(MASU_LOCAL_FADE));
     return lit * fade + (1.0 - fade);

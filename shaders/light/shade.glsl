@@ -137,6 +137,104 @@ masu_mirrored masu_mirrored_sky(masu_surface s, vec3 n, vec3 v, vec2 kept)
     return m;
 }
 
+#ifdef MASU_LIGHTS
+/* A surface as halves, while other things need its registers. */
+struct masu_shelved_look {
+    uvec2 albedo, emissive;
+    uint metallic;
+#ifdef MASU_SURFACE
+    uvec2 coat;
+#endif
+};
+
+uvec2 masu_pack_halves(vec4 v)
+{
+    return uvec2(packHalf2x16(v.xy), packHalf2x16(v.zw));
+}
+
+vec4 masu_unpack_halves(uvec2 v)
+{
+    return vec4(unpackHalf2x16(v.x), unpackHalf2x16(v.y));
+}
+
+masu_shelved_look masu_shelve(masu_surface s)
+{
+    masu_shelved_look p;
+    p.albedo = masu_pack_halves(vec4(s.albedo, s.roughness));
+    p.emissive = masu_pack_halves(vec4(s.emissive, s.specular));
+    p.metallic = packHalf2x16(vec2(s.metallic, s.occlusion));
+#ifdef MASU_SURFACE
+    p.coat = masu_pack_halves(vec4(s.coat, s.coat_roughness, s.edge, s.shadow));
+#endif
+    return p;
+}
+
+void masu_unshelve(masu_shelved_look p, inout masu_surface s)
+{
+    vec4 v = masu_unpack_halves(p.albedo);
+    s.albedo = v.xyz;
+    s.roughness = v.w;
+    v = masu_unpack_halves(p.emissive);
+    s.emissive = v.xyz;
+    s.specular = v.w;
+    vec2 numbers = unpackHalf2x16(p.metallic);
+    s.metallic = numbers.x;
+    s.occlusion = numbers.y;
+#ifdef MASU_SURFACE
+    v = masu_unpack_halves(p.coat);
+    s.coat = v.x;
+    s.coat_roughness = v.y;
+    s.edge = v.z;
+    s.shadow = v.w;
+#endif
+}
+
+#ifdef MASU_SHELVED
+/* The colours of a bsdf and the numbers that go with them, which only the end of a light's evaluation needs. */
+struct masu_shelved_bsdf {
+    uvec2 f0, rest, diffuse, matte;
+#ifdef MASU_SURFACE
+    uint coat_line;
+#endif
+};
+
+masu_shelved_bsdf masu_shelve(masu_bsdf b)
+{
+    masu_shelved_bsdf p;
+    p.f0 = masu_pack_halves(vec4(b.f0, b.f90));
+    p.rest = masu_pack_halves(vec4(b.rest, b.seen.white));
+    p.diffuse = masu_pack_halves(vec4(b.diffuse, b.seen.weight));
+    p.matte = masu_pack_halves(vec4(b.matte_f0, b.matte_slope, b.matte_rest, 0.0));
+#ifdef MASU_SURFACE
+    p.matte.y = packHalf2x16(vec2(b.matte_rest, b.coat));
+    p.coat_line = packHalf2x16(b.coat_line);
+#endif
+    return p;
+}
+
+void masu_unshelve(masu_shelved_bsdf p, inout masu_bsdf b)
+{
+    vec4 v = masu_unpack_halves(p.f0);
+    b.f0 = v.xyz;
+    b.f90 = v.w;
+    v = masu_unpack_halves(p.rest);
+    b.rest = v.xyz;
+    b.seen.white = v.w;
+    v = masu_unpack_halves(p.diffuse);
+    b.diffuse = v.xyz;
+    b.seen.weight = v.w;
+    v = masu_unpack_halves(p.matte);
+    b.matte_f0 = v.x;
+    b.matte_slope = v.y;
+    b.matte_rest = v.z;
+#ifdef MASU_SURFACE
+    b.coat = v.w;
+    b.coat_line = unpackHalf2x16(p.coat_line);
+#endif
+}
+#endif
+#endif
+
 /* What comes from everywhere alone. b: of s; rel: the point, relative to the eye; seen: how much of it arrives; sky: of
  * masu_mirrored_sky. With lights the caller has asked what is around before it has made b. */
 #ifdef MASU_LIGHTS

@@ -155,13 +155,17 @@ float masu_above(vec3 form, float height, out float cosine)
     return above;
 }
 
-/* A node of the table of cosines' transforms, times 32767. */
-vec4 masu_transform_at(uint node)
+/* Between two nodes of the table of cosines' transforms, times 32767. Number by number: vectors take more registers. */
+vec4 masu_transform_at(uint node, float f)
 {
     uint at = uint(MASU_TABLE_TRANSFORM) + 2u * node;
-    ivec2 words = ivec2(masu_tables[at], masu_tables[at + 1u]);
-    ivec2 low = words << 16;
-    return vec4(low.x >> 16, words.x >> 16, low.y >> 16, words.y >> 16);
+    ivec4 words = ivec4(masu_tables[at], masu_tables[at + 1u], masu_tables[at + 2u], masu_tables[at + 3u]);
+    vec4 m;
+    m.x = mix(float(words.x << 16 >> 16), float(words.z << 16 >> 16), f);
+    m.y = mix(float(words.x >> 16), float(words.z >> 16), f);
+    m.z = mix(float(words.y << 16 >> 16), float(words.w << 16 >> 16), f);
+    m.w = mix(float(words.y >> 16), float(words.w >> 16), f);
+    return m;
 }
 
 /* a, b, c / alpha, d / (2 alpha) of the matrix (a 0 b, 0 1 0, c 0 d) from the lobe to a cosine. */
@@ -173,9 +177,8 @@ vec4 masu_transform(float alpha, float n_v)
     uint row = min(uint(y), uint(MASU_TRANSFORM_ROWS - 2));
     uint column = min(uint(x), uint(MASU_TRANSFORM_COLUMNS - 2));
     uint node = row * uint(MASU_TRANSFORM_COLUMNS) + column;
-    vec4 low = mix(masu_transform_at(node), masu_transform_at(node + 1u), x - float(column));
-    node += uint(MASU_TRANSFORM_COLUMNS);
-    vec4 high = mix(masu_transform_at(node), masu_transform_at(node + 1u), x - float(column));
+    vec4 low = masu_transform_at(node, x - float(column));
+    vec4 high = masu_transform_at(node + uint(MASU_TRANSFORM_COLUMNS), x - float(column));
     return mix(low, high, y - float(row)) * (1.0 / 32767.0);
 }
 

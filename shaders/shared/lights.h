@@ -25,6 +25,7 @@ struct masu_punctual_light_data {
      * bits of floats. With only one face, of a spot: x its word; y z w the unit vector across it, of which the
      * cross product with the axis is the one down; then z near distance, w tangent of half its angle. */
     masu_uvec4 shadow[2];
+    masu_vec4 shadow_origin; /* xyz: where its faces were rendered from; a light that moves is ahead of it */
 };
 
 /* A word of a face, 0: nothing there casts a shadow. From the lowest bit on: log2 of the tile's size, 4 bits;

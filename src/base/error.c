@@ -6,10 +6,17 @@
 
 const char *masu_result_string(masu_result result) {
     switch (result) {
-#define MASU_RESULT_TEXT(name, value, text)                                                        \
-    case name: return text;
-        MASU_RESULTS(MASU_RESULT_TEXT)
-#undef MASU_RESULT_TEXT
+    case MASU_OK: return "success";
+    case MASU_INCOMPLETE: return "not finished: call again";
+    case MASU_ERROR_ARGUMENT: return "an argument is missing, out of range or not finite";
+    case MASU_ERROR_MEMORY: return "a memory block is missing, misaligned or too small";
+    case MASU_ERROR_LIMIT: return "a limit or budget of the description is exceeded";
+    case MASU_ERROR_DEVICE: return "the device lacks a required feature";
+    case MASU_ERROR_SCENE: return "the scene blob is corrupt";
+    case MASU_ERROR_VERSION: return "the scene blob has another format version: bake it again";
+    case MASU_ERROR_VULKAN: return "a Vulkan call failed";
+    case MASU_ERROR_DEVICE_LOST: return "the Vulkan device was lost";
+    case MASU_ERROR_STATE: return "called out of order";
     case MASU_RESULT_FORCE_32: break;
     }
     return "unknown result";
@@ -43,14 +50,31 @@ masu_result masu_fail_number(masu_detail *detail, const char *what, double given
 
 masu_result masu_fail_element(masu_detail *detail, const char *what, uint32_t index, double given,
                               const char *allowed) {
-    return masu_fail(detail, MASU_ERROR_ARGUMENT, what, 0, 0, "%s[%u] is %.9g, allowed are %s", what,
-                     index, given, allowed);
+    return masu_fail(detail, MASU_ERROR_ARGUMENT, what, 0, 0, "%s[%u] is %.9g, allowed are %s",
+                     what, index, given, allowed);
 }
 
 masu_result masu_fail_vulkan(masu_detail *detail, VkResult vk, const char *call) {
     masu_result result = vk == VK_ERROR_DEVICE_LOST ? MASU_ERROR_DEVICE_LOST : MASU_ERROR_VULKAN;
     masu_fail(detail, result, call, 0, 0, "%s failed with VkResult %d", call, (int)vk);
     if (detail) detail->vulkan = vk;
+    return result;
+}
+
+masu_result masu_fail_bytes(masu_detail *detail, const char *type, size_t needed, uint32_t given) {
+    return masu_fail(
+        detail, MASU_ERROR_ARGUMENT, "bytes", needed, given,
+        "%s.bytes is %u, this library (%d.%d.%d) needs %u: compile with its masu.h, and "
+        "set it to sizeof(%s)",
+        type, given, MASU_VERSION_MAJOR, MASU_VERSION_MINOR, MASU_VERSION_PATCH, (unsigned)needed,
+        type);
+}
+
+masu_result masu_finish_desc(const masu_desc *desc, masu_result result, const masu_detail *own,
+                             masu_detail *detail) {
+    if (result >= 0) return result;
+    if (desc && desc->bytes == sizeof *desc) masu_log(desc, MASU_LOG_ERROR, own->text);
+    if (detail) *detail = *own;
     return result;
 }
 

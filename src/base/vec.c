@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-/* In double, so that 1e-30 and 1e+30 neither under- nor overflow. */
+/* In double, so that 1e-30 and 1e+30 neither underflow nor overflow. */
 int masu_unit(const float v[3], float out[3]) {
     double x = (double)v[0], y = (double)v[1], z = (double)v[2];
     double length = sqrt(x * x + y * y + z * z);

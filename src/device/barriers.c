@@ -1,15 +1,16 @@
-/* barriers.c: derived by walking the rung's accesses with, per image, the stage, access and layout of its
- * last use:
- *  - a read after a write, a write after anything, another layout, or the first read by a stage needs
- *    a barrier;
- *  - the first use of a transient image in a frame comes from UNDEFINED, and waits for every image
- *    that shares bytes with it and was used before;
- *  - a full barrier at the top of the frame orders it behind the previous frame, so no state crosses
- *    frames, but for an image whose content outlives them: it rests in the layout that shaders
- *    read, and comes from UNDEFINED only where the recording draws all that its rung reads of it.
- *  - the host's own commands (desc.split) are a use by all stages, and the part of the recording behind them
- *    begins with a full barrier.
- * Each pass gets at most one vkCmdPipelineBarrier. */
+/* barriers.c: pipeline barriers. Walks the accesses of a rung's passes and keeps the stage, access
+ * and layout of each image's last use:
+ * - A read after a write, any write, a layout change, or the first read by another stage needs a
+ *   barrier.
+ * - The first use of a transient image in a frame has the old layout UNDEFINED. It waits for all
+ *   images that share memory with it and were used earlier in the frame.
+ * - A full barrier at the start of the frame waits for the previous frame, so no state is carried
+ *   from frame to frame. Exception: a persistent image is in the shader-read layout between frames.
+ *   If the recording renders all contents that its rung reads, the image starts from UNDEFINED too.
+ * - The host's own commands (desc.split) are a use by all stages. The part of the recording
+ *   after them begins with a full barrier.
+ *
+ * Each pass has at most one vkCmdPipelineBarrier. */
 #include "device/barriers.h"
 
 masu_use masu_use_of(masu_usage usage, masu_pass_kind kind) {
@@ -95,9 +96,9 @@ static int share_bytes(const masu_image_plan *a, const masu_image_plan *b) {
     return a->offset < b->offset + b->bytes && b->offset < a->offset + a->bytes;
 }
 
-/* What the first use of `id` has to wait for: the earlier tenants of its bytes. Without any, the
- * caller's own stage links it to the barrier at the top of the frame; TOP_OF_PIPE would not (it
- * chains with nothing before it). */
+/* Adds the stages and writes that the first use of image `id` must wait for: all earlier users of
+ * the same memory. If there are none, the caller's own stage chains with the barrier at the start
+ * of the frame. TOP_OF_PIPE would not: it chains with nothing before it. */
 static void add_tenants(const masu_recorder *rec, masu_image_id id, VkPipelineStageFlags *stages,
                         VkAccessFlags *access) {
     const masu_image_plan *images = rec->m->plan->images;
@@ -138,17 +139,21 @@ void masu_barrier_before(masu_recorder *rec, uint32_t pass) {
     for (uint32_t a = 0; a < rec->rp->access_count[pass]; a++) {
         masu_image_id id = (masu_image_id)rec->rp->access[pass][a].image;
         masu_usage usage = (masu_usage)rec->rp->access[pass][a].usage;
-        if (id == MASU_IMAGE_SOURCE) continue; /* the host's contract: readable already */
+        if (id == MASU_IMAGE_SOURCE) continue; /* the host supplies it in a readable layout */
         masu_use next = masu_use_of(usage, masu_passes[pass].kind), *now = &rec->states[id];
-        /* Particles are lit at their middles, among what is transparent too. */
-        if (usage == MASU_READ && masu_passes[pass].kind == MASU_PASS_GRAPHICS && rec->m->plan->needs.particles)
+        /* The vertex shader of particles samples images too: it computes the lighting at each
+         * particle's centre. */
+        if (usage == MASU_READ && masu_passes[pass].kind == MASU_PASS_GRAPHICS &&
+            rec->m->plan->needs.particles)
             next.stages |= VK_PIPELINE_STAGE_VERTEX_SHADER_BIT;
-        /* A storage target need not be an attachment: the host knows what it can be. */
-        if (id == MASU_IMAGE_TARGET && usage == MASU_HOST_COLOR) next.layout = VK_IMAGE_LAYOUT_GENERAL;
+        /* A target with storage usage may lack attachment usage, which only the host can check.
+         * GENERAL is valid for both. */
+        if (id == MASU_IMAGE_TARGET && usage == MASU_HOST_COLOR)
+            next.layout = VK_IMAGE_LAYOUT_GENERAL;
         if (masu_is_buffer(id)) {
-            /* A buffer. Its first use in a frame is behind the barrier at the frame's top. A second
-             * reader of what the frame has written may be a stage to which it is not visible
-             * yet. */
+            /* Buffers. The barrier at the start of the frame covers the first use. A second
+             * reader of data written in this frame may be a stage for which the write is not
+             * visible yet. */
             int unseen = rec->written[id] && (next.stages & ~now->stages) != 0;
             if (next.writes) rec->written[id] = 1;
             if (now->used && (now->writes || next.writes || unseen)) {
@@ -167,20 +172,21 @@ void masu_barrier_before(masu_recorder *rec, uint32_t pass) {
             barriers[n++] = masu_image_barrier(rec, id, access, &next, VK_IMAGE_LAYOUT_UNDEFINED);
             to |= next.stages;
         } else if (now->layout != next.layout || now->writes || next.writes ||
-                   next.stages & ~now->stages) { /* a stage to which it is not visible yet */
+                   /* a stage for which the write is not visible yet */
+                   next.stages & ~now->stages) {
             from |= now->stages;
             barriers[n++] =
                 masu_image_barrier(rec, id, now->writes ? now->access : 0, &next, now->layout);
             to |= next.stages;
-            /* Both have read it: a later writer waits for all of them. */
+            /* Both uses are reads: a later writer waits for both stages. */
             if (!now->writes && !next.writes && now->layout == next.layout)
                 next.stages |= now->stages;
         } else {
-            next.stages |= now->stages; /* one more reader: a later writer waits for all of them */
+            next.stages |= now->stages; /* one more reader: a later writer waits for all */
         }
         *now = next;
     }
-    if (masu_passes[pass].kind == MASU_PASS_HOST) { /* whatever the host does, all that we did is done */
+    if (masu_passes[pass].kind == MASU_PASS_HOST) { /* the host's commands may access anything */
         from = to = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT;
         memory.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
         memory.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
@@ -200,11 +206,12 @@ void masu_memory_barrier(masu_recorder *rec, VkPipelineStageFlags from, VkAccess
     rec->barriers++;
 }
 
-/* An image that outlives the frame begins it as the one before has left it, except where nothing of
- * it is needed any more. */
+/* Persistent images keep the state in which the previous frame left them. Exception: if this
+ * recording renders all cascades, images that need not be kept start from UNDEFINED. */
 void masu_find_persistent(masu_recorder *rec) {
     int all = 1;
-    for (uint32_t k = 0; k < rec->rp->cascades; k++) all = all && masu_variant_draws(rec->rp, rec->variant, k);
+    for (uint32_t k = 0; k < rec->rp->cascades; k++)
+        all = all && masu_variant_draws(rec->rp, rec->variant, k);
     for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
         if (!rec->m->plan->images[i].persistent || (all && !masu_images[i].kept)) continue;
         rec->states[i] = masu_use_of(MASU_READ, MASU_PASS_COMPUTE);

@@ -1,22 +1,24 @@
-/* barriers.h: the barriers between passes, derived from what the rows of the table read and write. */
+/* barriers.h: barriers between passes, derived from the accesses in the pass table. */
 #ifndef MASU_BARRIERS_H
 #define MASU_BARRIERS_H
 
 #include "device/recorder.h"
 
-/* What a row's access asks for. */
+/* Stages, access and layout that an access of a pass needs. */
 masu_use masu_use_of(masu_usage usage, masu_pass_kind kind);
-/* The image behind an id, in this recording. */
+/* The Vulkan image of an id in this recording; the target depends on the recording. */
 VkImage masu_recorded_image(const masu_recorder *rec, masu_image_id id);
-/* Of all of an image. */
+/* Barrier over all layers of an image. */
 VkImageMemoryBarrier masu_image_barrier(const masu_recorder *rec, masu_image_id id,
                                         VkAccessFlags from, const masu_use *to,
                                         VkImageLayout old_layout);
-/* Records what a pass has to wait for, and notes what it does. */
+/* Records the barrier that a pass needs, if any, and updates the state of its images and
+ * buffers. */
 void masu_barrier_before(masu_recorder *rec, uint32_t pass);
 void masu_memory_barrier(masu_recorder *rec, VkPipelineStageFlags from, VkAccessFlags from_access,
                          VkPipelineStageFlags to, VkAccessFlags to_access);
-/* Images that outlive the frame: as it finds them, and as it has to leave them. */
+/* Images that outlive the frame: set their initial state, and return them to the shader-read layout
+ * at the end of the recording. */
 void masu_find_persistent(masu_recorder *rec);
 void masu_leave_persistent(masu_recorder *rec);
 

@@ -1,6 +1,5 @@
-/* bind.c: device memory is allocated (one vkAllocateMemory per block) or taken from the host,
- * mapped once for the renderer's whole life, and the planned images and buffers are bound at their
- * offsets. */
+/* bind.c: allocates device memory (one vkAllocateMemory per block) or accepts the host's, maps it
+ * for the lifetime of the renderer, and binds the planned images and buffers at their offsets. */
 #include "device/bind.h"
 
 #include "base/error.h"
@@ -9,7 +8,7 @@ static const char *const role_names[MASU_ROLE_COUNT] = {"device_blocks[MASU_ROLE
                                                         "device_blocks[MASU_ROLE_UPLOAD]",
                                                         "device_blocks[MASU_ROLE_READBACK]"};
 
-/* The block that serves a role. */
+/* The memory block that serves a role. */
 static uint32_t block_of(const masu_frame_plan *plan, masu_role role) {
     return plan->unified ? (uint32_t)MASU_ROLE_DEVICE : (uint32_t)role;
 }
@@ -27,7 +26,8 @@ void masu_name(const masu_device *m, VkObjectType type, uint64_t handle, const c
                                           .objectType = type,
                                           .objectHandle = handle,
                                           .pObjectName = name};
-    (void)m->vk.SetDebugUtilsObjectNameEXT(m->vk.device, &info); /* a missing name harms nobody */
+    /* a missing debug name is harmless */
+    (void)m->vk.SetDebugUtilsObjectNameEXT(m->vk.device, &info);
 }
 
 static masu_result bind_host_block(masu_device *m, uint32_t role, masu_detail *detail) {
@@ -56,7 +56,8 @@ static masu_result bind_host_block(masu_device *m, uint32_t role, masu_detail *d
         return masu_fail(detail, MASU_ERROR_MEMORY, name, visible, flags,
                          "%s must be mapped, of a host-visible and coherent type", name);
     }
-    uint64_t alignment = need->alignment < 64 ? need->alignment : 64; /* the least of vkMapMemory */
+    /* guaranteed alignment of vkMapMemory */
+    uint64_t alignment = need->alignment < 64 ? need->alignment : 64;
     if (need->host_visible && (uintptr_t)given->mapped % alignment) {
         return masu_fail(detail, MASU_ERROR_MEMORY, name, alignment, (uintptr_t)given->mapped,
                          "%s: mapped is not aligned to %llu bytes", name,
@@ -109,8 +110,9 @@ masu_result masu_bind_memory(masu_device *m, masu_detail *detail) {
         if (r) return masu_fail_vulkan(detail, r, "vkBindBufferMemory");
         masu_name(m, VK_OBJECT_TYPE_BUFFER, MASU_HANDLE(m->objects.buffers[b]), buffer->name);
     }
-    uint64_t base =
-        m->memory_owned[MASU_ROLE_DEVICE] ? 0 : m->plan->desc.device_blocks[MASU_ROLE_DEVICE].offset;
+    uint64_t base = m->memory_owned[MASU_ROLE_DEVICE]
+                        ? 0
+                        : m->plan->desc.device_blocks[MASU_ROLE_DEVICE].offset;
     for (uint32_t i = 0; i < MASU_IMAGE_COUNT; i++) {
         if (!m->objects.images[i]) continue;
         VkResult r =
@@ -146,10 +148,11 @@ static masu_result create_texture_views(masu_device *m, masu_detail *detail) {
     return MASU_OK;
 }
 
-/* An image that is used for nothing that needs a view may not have one (valid usage 04441). */
+/* An image whose usage flags include none that needs a view must not have one (VUID 04441). */
 static masu_result create_view(masu_device *m, uint32_t image, VkFormat format,
                                VkImageUsageFlags usage, VkImageView *view, masu_detail *detail) {
-    const VkImageUsageFlags copies = VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    const VkImageUsageFlags copies =
+        VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
     if (!(usage & ~copies)) return MASU_OK;
     int depth = masu_is_depth(format);
     VkImageViewUsageCreateInfo only = {.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_USAGE_CREATE_INFO,
@@ -158,7 +161,8 @@ static masu_result create_view(masu_device *m, uint32_t image, VkFormat format,
         .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
         .pNext = usage == m->plan->images[image].usage ? NULL : &only,
         .image = m->objects.images[image],
-        .viewType = masu_images[image].layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D,
+        .viewType =
+            masu_images[image].layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D,
         .format = format,
         .subresourceRange = {.aspectMask =
                                  depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT,

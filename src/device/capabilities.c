@@ -23,9 +23,10 @@ typedef struct masu_most {
     const char *pass;
 } masu_most;
 
-/* The pass of which a stage binds most storage buffers, of those that bind one of the group; PLAIN:
- * of those that bind none of the others, which no rung can do without. Rays of probes bind what reflections
- * do: they count as BOUNCING alone. */
+/* The largest number of storage buffers in one stage, over the passes that bind a buffer of
+ * `group`, and the pass that has it. PLAIN: over the passes that bind no buffer of an optional
+ * group; no rung can omit those. Probe rays bind the buffers of reflections too, but count only as
+ * BOUNCING. */
 static masu_most most_buffers(const masu_frame_plan *plan, masu_binding_group group) {
     const uint32_t bouncing = 1u << MASU_BINDING_BOUNCING;
     const uint32_t optional = 1u << MASU_BINDING_TRACING | 1u << MASU_BINDING_CULLING | bouncing;
@@ -48,7 +49,8 @@ static masu_result too_few(const char *what, masu_most most, uint32_t has, masu_
                      what, most.buffers, most.pass, has);
 }
 
-/* Turns a feature off in rungs that leave it to us: `bit` in *dropped. */
+/* Sets a MASU_AUTO feature to OFF in rungs for which the device has too few storage buffers, and
+ * sets `bit` in *dropped. MASU_ON is an error. */
 static masu_result drop(masu_desc *desc, size_t member, const char *name, masu_most most,
                         uint32_t has, uint32_t bit, uint32_t *dropped, masu_detail *detail) {
     for (uint32_t r = 0; r < desc->rung_count && has < most.buffers; r++) {
@@ -62,7 +64,7 @@ static masu_result drop(masu_desc *desc, size_t member, const char *name, masu_m
     return MASU_OK;
 }
 
-/* Whether any rung still may trace. */
+/* Whether any rung may still trace rays. */
 static int desc_traces(const masu_desc *desc) {
     for (uint32_t r = 0; r < desc->rung_count; r++) {
         if (desc->rungs[r].specular != MASU_OFF) return 1;
@@ -72,11 +74,12 @@ static int desc_traces(const masu_desc *desc) {
 
 static int is_gpu(const masu_vk *vk) {
     VkPhysicalDeviceType type = vk->properties.deviceType;
-    return type == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU || type == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU;
+    return type == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU ||
+           type == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU;
 }
 
-/* Whether the device's ray queries or our own tree finds what is reflected: the description is left
- * with ON or OFF. */
+/* Chooses between VK_KHR_ray_query and the built-in BVH for reflections: sets the field to ON or
+ * OFF. */
 static masu_result choose_ray_query(masu_desc *desc, const masu_frame_plan *plan, const masu_vk *vk,
                                     masu_detail *detail) {
     int forced = desc->ray_query == MASU_ON;
@@ -84,9 +87,10 @@ static masu_result choose_ray_query(masu_desc *desc, const masu_frame_plan *plan
     desc->ray_query = MASU_OFF;
     if (!wished || !plan->needs.traced || !desc_traces(desc)) return MASU_OK;
     if (plan->needs.bounce && forced) {
-        return masu_fail(detail, MASU_ERROR_SCENE, "ray_query", 0, 1,
-                         "ray_query is MASU_ON, but rays of the scene's live bounce walk the library's own "
-                         "tree, and reflections with them: leave it to MASU_AUTO, or turn rung.bounce off");
+        return masu_fail(
+            detail, MASU_ERROR_SCENE, "ray_query", 0, 1,
+            "ray_query is MASU_ON, but rays of the scene's live bounce walk the library's own "
+            "tree, and reflections with them: leave it to MASU_AUTO, or turn rung.bounce off");
     }
     if (plan->needs.bounce) return MASU_OK;
     if (!desc->vulkan.ray_query) {
@@ -96,10 +100,11 @@ static masu_result choose_ray_query(masu_desc *desc, const masu_frame_plan *plan
             "without VK_KHR_ray_query");
     }
     if (plan->scene.skins && forced) {
-        return masu_fail(detail, MASU_ERROR_SCENE, "ray_query", 0, plan->scene.skins,
-                         "ray_query is MASU_ON, but structures of the device do not bend: the scene "
-                         "has %u skins",
-                         plan->scene.skins);
+        return masu_fail(
+            detail, MASU_ERROR_SCENE, "ray_query", 0, plan->scene.skins,
+            "ray_query is MASU_ON, but structures of the device do not bend: the scene "
+            "has %u skins",
+            plan->scene.skins);
     }
     if (plan->scene.skins) return MASU_OK;
     masu_result result = masu_ray_check(&plan->scene, vk, detail);
@@ -108,7 +113,7 @@ static masu_result choose_ray_query(masu_desc *desc, const masu_frame_plan *plan
     return MASU_OK;
 }
 
-/* Whether EASU weighs texels in 16 bits: the description is left with ON, AUTO (fast EASU alone) or OFF. */
+/* Chooses 16-bit arithmetic in EASU: ON, AUTO (only in fast EASU) or OFF. */
 static masu_result choose_half_floats(masu_desc *desc, const masu_vk *vk, masu_detail *detail) {
     int forced = desc->half_floats == MASU_ON, used = 0;
     for (uint32_t r = 0; r < desc->rung_count; r++) {
@@ -121,22 +126,24 @@ static masu_result choose_half_floats(masu_desc *desc, const masu_vk *vk, masu_d
             "half_floats is MASU_ON, but vulkan.shader_float16 says that the device was "
             "created without shaderFloat16");
     }
-    int wished = forced || (desc->half_floats == MASU_AUTO && desc->vulkan.shader_float16 && is_gpu(vk));
+    int wished =
+        forced || (desc->half_floats == MASU_AUTO && desc->vulkan.shader_float16 && is_gpu(vk));
     if (!used || !wished) desc->half_floats = MASU_OFF;
     return MASU_OK;
 }
 
-/* What is not mandatory in Vulkan 1.1, though few devices are without. */
+/* Linear filtering of 16-bit unorm is optional in Vulkan 1.1, although few devices lack it. */
 static int filters_unorm16(const masu_vk *vk) {
-    VkFormatFeatureFlags wanted = VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
+    VkFormatFeatureFlags wanted =
+        VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
     VkFormatProperties p;
     memset(&p, 0, sizeof p);
     vk->GetPhysicalDeviceFormatProperties(vk->physical, VK_FORMAT_R16G16B16A16_UNORM, &p);
     return (p.optimalTilingFeatures & wanted) == wanted;
 }
 
-/* Vulkan guarantees four storage buffers in a stage. Where there are fewer than a feature binds,
- * rungs that leave it to us go without it. */
+/* Vulkan guarantees four storage buffers per stage. If a feature needs more than the device has,
+ * rungs with MASU_AUTO omit the feature. */
 static masu_result fit_buffers(masu_desc *desc, const masu_frame_plan *plan, uint32_t has,
                                uint32_t *dropped, masu_detail *detail) {
     masu_most plain = most_buffers(plan, MASU_BINDING_PLAIN);
@@ -144,7 +151,8 @@ static masu_result fit_buffers(masu_desc *desc, const masu_frame_plan *plan, uin
     masu_result result = MASU_OK;
     if (plan->needs.bounce) {
         result = drop(desc, offsetof(masu_rung, bounce), "bounce",
-                      most_buffers(plan, MASU_BINDING_BOUNCING), has, MASU_DROPPED_BOUNCE, dropped, detail);
+                      most_buffers(plan, MASU_BINDING_BOUNCING), has, MASU_DROPPED_BOUNCE, dropped,
+                      detail);
     }
     if (!result && plan->needs.reflections) {
         result = drop(desc, offsetof(masu_rung, specular), "specular",
@@ -159,7 +167,7 @@ static masu_result fit_buffers(masu_desc *desc, const masu_frame_plan *plan, uin
     return result;
 }
 
-/* What grows with the scene and is bound whole, and the widest dispatch over instances. */
+/* Checks the ranges of storage buffers, which grow with the scene, and the largest dispatches. */
 static masu_result check_ranges(const masu_frame_plan *plan, const VkPhysicalDeviceLimits *limits,
                                 masu_detail *detail) {
     for (uint32_t i = 0; i < MASU_BUFFER_COUNT; i++) {
@@ -173,14 +181,16 @@ static masu_result check_ranges(const masu_frame_plan *plan, const VkPhysicalDev
                          "%s need a storage buffer of %llu bytes, the device has %u", b->name,
                          (unsigned long long)bytes, limits->maxStorageBufferRange);
     }
-    /* Tiles of a list are all dispatched along x; over a picture's two axes vk.c has looked. */
+    /* Indirect dispatches put all tiles of a list along x. vk.c checks the dispatches over both
+     * axes of an image. */
     uint64_t tiles = masu_most_tiles(plan);
     if (tiles > limits->maxComputeWorkGroupCount[0]) {
-        return masu_fail(detail, MASU_ERROR_DEVICE, "maxComputeWorkGroupCount", tiles,
-                         limits->maxComputeWorkGroupCount[0],
-                         "output %ux%u has up to %llu tiles, a workgroup each, the device has %u workgroups",
-                         plan->desc.output.width, plan->desc.output.height, (unsigned long long)tiles,
-                         limits->maxComputeWorkGroupCount[0]);
+        return masu_fail(
+            detail, MASU_ERROR_DEVICE, "maxComputeWorkGroupCount", tiles,
+            limits->maxComputeWorkGroupCount[0],
+            "output %ux%u has up to %llu tiles, a workgroup each, the device has %u workgroups",
+            plan->desc.output.width, plan->desc.output.height, (unsigned long long)tiles,
+            limits->maxComputeWorkGroupCount[0]);
     }
     uint32_t groups = (plan->scene.instances + 63) / 64;
     if (plan->occlusion && groups > limits->maxComputeWorkGroupCount[0]) {
@@ -192,7 +202,7 @@ static masu_result check_ranges(const masu_frame_plan *plan, const VkPhysicalDev
     return MASU_OK;
 }
 
-/* The largest side of a shadow map. */
+/* Largest width and height that a shadow map may have. */
 static uint32_t widest_map(const VkPhysicalDeviceLimits *limits) {
     uint32_t most = limits->maxImageDimension2D;
     if (most > limits->maxFramebufferWidth) most = limits->maxFramebufferWidth;
@@ -222,14 +232,16 @@ masu_result masu_capabilities_check(const masu_frame_plan *plan, const masu_vk *
 
 /* ---- Open choices ---------------------------------------------------------------------------- */
 
-/* The rungs as the host gave them, or those that the plan chose, to be looked at and changed; what those of a
- * measured ladder cost, where the host has not said it, on a device of this class. Returns the class's name where
- * that was so, else "". */
-static const char *own_rungs(masu_desc *desc, const masu_frame_plan *plan, masu_device_class device_class) {
+/* Copies the default rungs of the plan into `desc` if the host gave none, so that they can be
+ * changed. If the costs of the rungs come from a measured ladder, costs that the host left at 0 are
+ * replaced by those of this device class. Returns the name of the class in that case, else "". */
+static const char *own_rungs(masu_desc *desc, const masu_frame_plan *plan,
+                             masu_device_class device_class) {
     if (desc->rung_count) return "";
     const masu_governor_desc given = desc->governor;
     const masu_scene *scene = plan->desc.scene;
-    const float *costs = plan->desc.ladder == MASU_ON ? masu_ladder_costs_on(scene, device_class) : NULL;
+    const float *costs =
+        plan->desc.ladder == MASU_ON ? masu_ladder_costs_on(scene, device_class) : NULL;
     const char *computed_for = "";
     desc->rung_count = plan->desc.rung_count;
     memcpy(desc->rungs, plan->desc.rungs, sizeof desc->rungs);
@@ -237,7 +249,7 @@ static const char *own_rungs(masu_desc *desc, const masu_frame_plan *plan, masu_
     memcpy(desc->governor.costs, plan->desc.governor.costs, sizeof desc->governor.costs);
     for (uint32_t r = 0; r < desc->rung_count && costs; r++) {
         if (given.costs[r] != 0.0f) continue;
-        /* On the scale of the measured ones, which the host sees. */
+        /* In the unit of the measured costs that the host sees. */
         const masu_ladder *l = masu_ladder_for(scene);
         desc->governor.costs[r] = costs[masu_ladder_kept(l, given.keep, r)] * l->ratios[0];
         computed_for = masu_device_class_name(device_class);
@@ -253,7 +265,7 @@ masu_result masu_capabilities_fit(masu_desc *desc, const masu_frame_plan *plan, 
     uint32_t has = buffers_of(desc, limits);
     uint32_t dropped = 0;
     masu_result result = fit_buffers(desc, plan, has, &dropped, detail);
-    desc->deny.storage_buffers = dropped ? has | dropped : 0; /* the plan gives it as the reason */
+    desc->deny.storage_buffers = dropped ? has | dropped : 0; /* the plan prints it as the reason */
     uint32_t widest = widest_map(limits);
     if (!desc->deny.image_size || desc->deny.image_size > widest) desc->deny.image_size = widest;
     uint32_t attachments = limits->maxColorAttachments;
@@ -262,6 +274,7 @@ masu_result masu_capabilities_fit(masu_desc *desc, const masu_frame_plan *plan, 
     if (!result) result = choose_ray_query(desc, plan, vk, detail);
     if (!result) result = choose_half_floats(desc, vk, detail);
     if (!filters_unorm16(vk)) desc->deny.unorm16 = 1;
-    if (desc->debug.share_rays == MASU_AUTO) desc->debug.share_rays = is_gpu(vk) ? MASU_ON : MASU_OFF;
+    if (desc->debug.share_rays == MASU_AUTO)
+        desc->debug.share_rays = is_gpu(vk) ? MASU_ON : MASU_OFF;
     return result;
 }

@@ -1,5 +1,5 @@
-/* descriptors.c: the descriptor pool, set 0 of a pass's buffers, set 1 of a pass's images,
- * and the sets of textures. */
+/* descriptors.c: the descriptor pool, set 0 (buffers) and set 1 (images) of each pass, and set 2
+ * (textures). */
 #include "device/descriptors.h"
 
 #include "plan/buffer_plan.h"
@@ -28,7 +28,7 @@ static masu_result create_pool(masu_device *m, masu_detail *detail) {
                 bindings[i].descriptorType == VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR;
         }
     }
-    /* None may be 0; the last is of ray queries alone. */
+    /* No count may be 0. The last entry exists only with ray queries. */
     VkDescriptorPoolSize sizes[] = {
         {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1 + uniforms * flights},
         {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1 + buffers * flights},
@@ -58,8 +58,9 @@ static masu_result allocate_set(masu_device *m, VkDescriptorSetLayout layout,
     return r ? masu_fail_vulkan(detail, r, "vkAllocateDescriptorSets") : MASU_OK;
 }
 
-/* A binding of one frame in flight. Code that reads a uniform buffer that the plan does not have is compiled
- * away, but a set must be whole: it gets the frame's. */
+/* Writes one buffer binding for one frame in flight. A shader may declare a uniform buffer that the
+ * plan does not have, if the code that reads the buffer is compiled away. The binding must be valid
+ * nevertheless, so the frame's uniform buffer is bound. */
 static void write_binding(masu_device *m, uint32_t flight, VkDescriptorSet set,
                           const masu_binding *row) {
     const masu_buffer_plan *b = &m->plan->buffers[row->buffer];
@@ -71,7 +72,7 @@ static void write_binding(masu_device *m, uint32_t flight, VkDescriptorSet set,
         buffer = (VkDescriptorBufferInfo){m->objects.buffers[MASU_BUFFER_FRAME], flight * b->stride,
                                           sizeof(struct masu_frame_uniforms)};
     }
-    if (!b->bytes) return; /* no pass of this plan looks at it */
+    if (!b->bytes) return; /* no pass of this plan uses it */
     VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                                   .dstSet = set,
                                   .dstBinding = row->binding,
@@ -81,7 +82,7 @@ static void write_binding(masu_device *m, uint32_t flight, VkDescriptorSet set,
     m->vk.UpdateDescriptorSets(m->vk.device, 1, &write, 0, NULL);
 }
 
-/* One for each pass, of the buffers that it declares. */
+/* One set per pass, with the buffers that its shaders declare. */
 static masu_result create_global_sets(masu_device *m, uint32_t pass, masu_detail *detail) {
     masu_binding rows[MASU_BIND_COUNT];
     VkDescriptorSetLayoutBinding bindings[MASU_BIND_COUNT];
@@ -104,8 +105,8 @@ static masu_result create_global_sets(masu_device *m, uint32_t pass, masu_detail
     return MASU_OK;
 }
 
-/* A slot without a texture gets one of the others: the shader does not look at it, but a set must be
- * whole. */
+/* An unused texture slot gets another slot's texture. The shader does not sample it, but every
+ * binding of a set must be valid. */
 static masu_result create_texture_sets(masu_device *m, masu_detail *detail) {
     masu_scene_view v = {0};
     if (m->plan->scene.texture_sets) v = masu_scene_data_view(&m->plan->scene);
@@ -150,10 +151,12 @@ static void write_pass_set(masu_device *m, const masu_rung_plan *rp, uint32_t pa
             if (!masu_access_binds(rp->access[pass][a], writes)) continue;
             uint32_t id = rp->access[pass][a].image;
             VkDescriptorImageInfo image = {
-                .imageView = id == MASU_IMAGE_TARGET     ? m->plan->desc.targets.views[target]
+                .imageView = id == MASU_IMAGE_TARGET   ? m->plan->desc.targets.views[target]
                              : writes && m->stores[id] ? m->stores[id]
                                                        : m->views[id],
-                .imageLayout = masu_use_of((masu_usage)rp->access[pass][a].usage, masu_passes[pass].kind).layout};
+                .imageLayout =
+                    masu_use_of((masu_usage)rp->access[pass][a].usage, masu_passes[pass].kind)
+                        .layout};
             VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                                           .dstSet = set,
                                           .dstBinding = binding++,
@@ -167,7 +170,8 @@ static void write_pass_set(masu_device *m, const masu_rung_plan *rp, uint32_t pa
     }
 }
 
-/* Walks the sets in their order: `next` is the first set of a pass, `count` how many it has. */
+/* Iterates over the sets in allocation order: `next` is the first set of a pass, `count` its number
+ * of sets. */
 typedef struct set_cursor {
     uint32_t rung, pass, next, count;
 } set_cursor;

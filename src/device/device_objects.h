@@ -1,4 +1,4 @@
-/* device_objects.h: creates the Vulkan objects of a renderer in masu_init and destroys them in
+/* device_objects.h: creates a renderer's Vulkan objects in masu_init and destroys them in
  * masu_destroy. */
 #ifndef MASU_DEVICE_OBJECTS_H
 #define MASU_DEVICE_OBJECTS_H
@@ -6,14 +6,14 @@
 #include "base/arena.h"
 #include "device/device.h"
 
-/* Arrays in the host block. */
+/* Allocates the arrays in the host memory block. */
 void masu_device_alloc(masu_device *m, masu_arena *arena, const masu_frame_plan *plan);
 
-/* Copies the handles of the host's targets, and points the plan's targets at the copies. */
+/* Copies the handles of the host's targets and points the plan's targets to the copies. */
 void masu_set_targets(masu_device *m, const masu_targets *targets);
 
-/* vk, plan and objects are there; all else is made of them. What has been made when a step fails
- * stays for masu_device_destroy. */
+/* Creates all objects; m->vk, m->plan and m->objects must be set. If a step fails, the objects that
+ * exist remain valid for masu_device_destroy. */
 masu_result masu_device_create(masu_device *m, const masu_draws *draws, masu_detail *detail);
 void masu_device_destroy(masu_device *m);
 

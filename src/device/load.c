@@ -19,7 +19,7 @@ _Static_assert(MASU_LOAD_STEP_MIN >= MASU_TEXTURE_ROW_MAX, "a step holds a row o
 
 /* ---- Chunks ---------------------------------------------------------------------------------- */
 
-/* Chunks of resident buffers: none where the host can write them. */
+/* Number of chunks for resident buffers: 0 if the host can write their memory directly. */
 static uint32_t buffer_chunks(const masu_frame_plan *plan) {
     uint64_t step = plan->buffers[MASU_BUFFER_STAGING].bytes;
     uint32_t chunks = 0;
@@ -30,7 +30,8 @@ static uint32_t buffer_chunks(const masu_frame_plan *plan) {
     return chunks;
 }
 
-/* Whether frames leave images to each other: then the last chunk puts them into their layout. */
+/* Whether any image persists between frames. The last chunk then sets the layouts of these
+ * images. */
 static int keeps_images(const masu_frame_plan *plan) {
     for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
         if (plan->images[i].used && masu_images[i].kept) return 1;
@@ -39,14 +40,15 @@ static int keeps_images(const masu_frame_plan *plan) {
 }
 
 uint32_t masu_load_chunks(const masu_frame_plan *plan) {
-    uint32_t chunks = buffer_chunks(plan) + (keeps_images(plan) ? 1 : 0) + masu_ray_build_steps(plan);
+    uint32_t chunks =
+        buffer_chunks(plan) + (keeps_images(plan) ? 1 : 0) + masu_ray_build_steps(plan);
     if (!plan->scene.texture_arrays) return chunks;
     masu_scene_view v = masu_scene_data_view(&plan->scene);
     return chunks + masu_texture_chunks(v.textures, plan->scene.texture_arrays, plan->compressed,
                                         plan->buffers[MASU_BUFFER_STAGING].bytes);
 }
 
-/* Those that copy stand first; behind them structures of ray queries are built. */
+/* Number of chunks that copy. The chunks after them build acceleration structures. */
 static uint32_t copy_chunks(const masu_frame_plan *plan, uint32_t chunks) {
     return chunks - (keeps_images(plan) ? 1 : 0) - masu_ray_build_steps(plan);
 }
@@ -65,9 +67,10 @@ masu_chunk masu_load_chunk(const masu_frame_plan *plan, uint32_t index) {
     return (masu_chunk){MASU_BUFFER_COUNT, 0, 0, 0};
 }
 
-/* ---- What is recorded ------------------------------------------------------------------------ */
+/* ---- Recording ------------------------------------------------------------------------------- */
 
-/* All of a texture to the layout that copies need, or from there to that of shaders. */
+/* Transitions all layers and mips of a texture to the transfer layout, or from it to the
+ * shader-read layout. */
 static void move_texture(masu_device *m, VkCommandBuffer cmd, VkImage image, int to_shader) {
     VkImageMemoryBarrier b = {
         .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
@@ -87,8 +90,8 @@ static void move_texture(masu_device *m, VkCommandBuffer cmd, VkImage image, int
                              0, 0, NULL, 0, NULL, 1, &b);
 }
 
-/* One chunk of textures from `next` on. Rows of one texture that two chunks copy do not overlap:
- * they need no barrier between them. */
+/* Records one chunk of textures, from `next` on. Two chunks never copy the same rows of a texture,
+ * so they need no barrier between them. */
 static void record_textures(masu_device *m, VkCommandBuffer cmd, masu_texture_cursor *next) {
     masu_scene_view v = masu_scene_data_view(&m->plan->scene);
     masu_texture_region r;
@@ -108,28 +111,33 @@ static void record_textures(masu_device *m, VkCommandBuffer cmd, masu_texture_cu
     }
 }
 
-/* All of an image is 0, and it is where a transfer may write. */
+/* Clears an image to 0, from UNDEFINED; leaves the image in the layout of `to`. */
 static void clear_image(const masu_recorder *rec, masu_image_id image, const masu_use *to) {
     VkImageMemoryBarrier b = masu_image_barrier(rec, image, 0, to, VK_IMAGE_LAYOUT_UNDEFINED);
     VkClearColorValue zero = {.float32 = {0.0f}};
-    rec->m->vk.CmdPipelineBarrier(rec->cmd, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, to->stages, 0, 0, NULL, 0, NULL, 1, &b);
+    rec->m->vk.CmdPipelineBarrier(rec->cmd, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, to->stages, 0, 0,
+                                  NULL, 0, NULL, 1, &b);
     rec->m->vk.CmdClearColorImage(rec->cmd, b.image, to->layout, &zero, 1, &b.subresourceRange);
 }
 
-/* The images that the first frame finds as if another had left them; what is in them is not looked
- * at. One of two layers is cleared: if a host leaves a frame out and forgets the cut, the next reads a layer that none has
- * written, and 0 means no samples. */
+/* Puts persistent images into the layout that the first frame expects. Their content is not read,
+ * except in images with two layers (ping-pong), which are cleared: if a host skips a frame without
+ * setting frame.cut, the next frame reads a layer that was never written, and 0 means "no
+ * samples". */
 static void record_kept(masu_device *m, VkCommandBuffer cmd) {
-    masu_use rest = masu_use_of(MASU_READ, MASU_PASS_COMPUTE), copy = masu_use_of(MASU_WRITE_COPY, MASU_PASS_TRANSFER);
+    masu_use rest = masu_use_of(MASU_READ, MASU_PASS_COMPUTE),
+             copy = masu_use_of(MASU_WRITE_COPY, MASU_PASS_TRANSFER);
     masu_recorder rec = {.m = m, .cmd = cmd};
     for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
         if (!m->plan->images[i].used || !masu_images[i].kept) continue;
-        masu_use from = {.stages = VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, .layout = VK_IMAGE_LAYOUT_UNDEFINED};
+        masu_use from = {.stages = VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT,
+                         .layout = VK_IMAGE_LAYOUT_UNDEFINED};
         if (masu_images[i].layers > 1) {
             clear_image(&rec, (masu_image_id)i, &copy);
             from = copy;
         }
-        VkImageMemoryBarrier b = masu_image_barrier(&rec, (masu_image_id)i, from.access, &rest, from.layout);
+        VkImageMemoryBarrier b =
+            masu_image_barrier(&rec, (masu_image_id)i, from.access, &rest, from.layout);
         m->vk.CmdPipelineBarrier(cmd, from.stages, rest.stages, 0, 0, NULL, 0, NULL, 1, &b);
     }
 }
@@ -165,12 +173,13 @@ masu_result masu_load_record(masu_device *m, masu_detail *detail) {
     return result;
 }
 
-/* ---- What is written ------------------------------------------------------------------------- */
+/* ---- Source data ----------------------------------------------------------------------------- */
 
 _Static_assert(sizeof(masu_blob_meso) == 2 * sizeof(struct masu_material_data),
                "curves lie in the buffer of materials");
 
-/* An element of the buffer of materials: a material, or half of the curves of a small relief. */
+/* Element i of the materials buffer: a material, or half of a mesoscale detail entry
+ * (masu_blob_meso). */
 static struct masu_material_data material_element(const masu_scene_view *v, uint64_t i) {
     struct masu_material_data d;
     if (i < v->material_count) return masu_material_data_of(&v->materials[i]);
@@ -180,7 +189,7 @@ static struct masu_material_data material_element(const masu_scene_view *v, uint
 
 _Static_assert(sizeof(masu_blob_probes) == sizeof(struct masu_probe_grid), "probes");
 
-/* The grid, its data, and room that the GPU fills. */
+/* The probe grid's header and data; the remainder, which the GPU fills, is 0. */
 static void write_probes(const masu_scene_view *v, masu_chunk chunk, unsigned char *to) {
     const struct {
         const void *from;
@@ -200,7 +209,7 @@ static void write_probes(const masu_scene_view *v, masu_chunk chunk, unsigned ch
     }
 }
 
-/* The library's tables, then the scene's environment map. */
+/* The library's split-sum tables, then the scene's environment map. */
 static void write_tables(const masu_scene_view *v, masu_chunk chunk, unsigned char *to) {
     const masu_blob_environment_map *map = v->environment_map;
     uint64_t texels = map ? masu_blob_environment_texels(map->size, map->mips) : 0;
@@ -216,7 +225,7 @@ static void write_tables(const masu_scene_view *v, masu_chunk chunk, unsigned ch
     }
 }
 
-/* ---- A function for each LOADED of buffers.inc: all write a chunk of it ---------------------- */
+/* ---- One function per LOADED row of buffers.inc; each writes one chunk ----------------------- */
 
 typedef struct source {
     const masu_scene_data *scene;
@@ -231,19 +240,23 @@ static void load_vertices(const source *s, masu_chunk chunk, unsigned char *to) 
     copy(s->v->vertices, chunk, to);
 }
 
-/* What of `bytes` from `at` on, in the buffer, lies in the chunk. */
-static void copy_part(const void *from, uint64_t at, uint64_t bytes, masu_chunk chunk, unsigned char *to) {
+/* Copies the part of a range that falls into the chunk. The range has `bytes` bytes and begins at
+ * offset `at` of the buffer. */
+static void copy_part(const void *from, uint64_t at, uint64_t bytes, masu_chunk chunk,
+                      unsigned char *to) {
     uint64_t first = at > chunk.offset ? at : chunk.offset, end = chunk.offset + chunk.bytes;
     if (at + bytes < end) end = at + bytes;
     if (first < end)
-        memcpy(to + (first - chunk.offset), (const unsigned char *)from + (first - at), (size_t)(end - first));
+        memcpy(to + (first - chunk.offset), (const unsigned char *)from + (first - at),
+               (size_t)(end - first));
 }
 
-/* Rest vertices, then the deltas of their morph targets. */
+/* Bind-pose vertices, then the deltas of their morph targets. */
 static void load_skin_vertices(const source *s, masu_chunk chunk, unsigned char *to) {
     uint64_t own = s->scene->skin_vertices * sizeof(masu_blob_skin_vertex);
     copy_part(s->v->skin_vertices, 0, own, chunk, to);
-    copy_part(s->v->morph_deltas, own, s->scene->morph_deltas * sizeof(masu_blob_morph_delta), chunk, to);
+    copy_part(s->v->morph_deltas, own, s->scene->morph_deltas * sizeof(masu_blob_morph_delta),
+              chunk, to);
 }
 
 static void load_indices(const source *s, masu_chunk chunk, unsigned char *to) {
@@ -255,7 +268,8 @@ static void load_texcoords(const source *s, masu_chunk chunk, unsigned char *to)
     static const float zero[2] = {0.0f, 0.0f};
     const masu_texcoord_layout_of at = masu_texcoord_layout(s->scene);
     copy_part(s->v->texcoords, 0, at.second, chunk, to);
-    copy_part(s->v->texcoords_1 ? s->v->texcoords_1 : zero, at.second, at.colors - at.second, chunk, to);
+    copy_part(s->v->texcoords_1 ? s->v->texcoords_1 : zero, at.second, at.colors - at.second, chunk,
+              to);
     copy_part(s->v->colors ? s->v->colors : &white, at.colors, at.bytes - at.colors, chunk, to);
 }
 
@@ -280,7 +294,7 @@ static void load_ray_indices(const source *s, masu_chunk chunk, unsigned char *t
     masu_ray_write_indices(s->v, chunk.offset, chunk.bytes, to);
 }
 
-/* The buffer may hold two sets; both begin as the blob has them. */
+/* The buffer may hold two sets of SDF parameters; both start with the values of the blob. */
 static void load_slots(const source *s, masu_chunk chunk, unsigned char *to) {
     uint64_t size = s->v->slot_count * sizeof(float), at = chunk.offset, end = at + chunk.bytes;
     while (at < end) {
@@ -290,7 +304,8 @@ static void load_slots(const source *s, masu_chunk chunk, unsigned char *to) {
     }
 }
 
-/* A chunk may cut a material in two when the staging buffer is small: convert whole, copy the part. */
+/* With a small staging buffer a chunk may end within a material: converts the material and copies
+ * the part. */
 static void load_materials(const source *s, masu_chunk chunk, unsigned char *to) {
     uint64_t size = sizeof(struct masu_material_data), at = chunk.offset, end = at + chunk.bytes;
     while (at < end) {
@@ -316,7 +331,8 @@ static void write_resident(const masu_scene_data *scene, const masu_scene_view *
     loads[chunk.buffer](&s, chunk, to);
 }
 
-/* Returns how many bytes they are, without what lies between them. */
+/* Fills the staging buffer with one chunk. Returns the bytes written, without padding between
+ * regions. */
 static uint64_t write_textures(masu_device *m, const masu_scene_view *v, unsigned char *to) {
     uint64_t used = 0, bytes = 0, room = m->plan->buffers[MASU_BUFFER_STAGING].bytes;
     masu_texture_region region;
@@ -329,13 +345,14 @@ static uint64_t write_textures(masu_device *m, const masu_scene_view *v, unsigne
     return bytes;
 }
 
-/* Bytes of a buffer that are loaded: without a scene the library's own alone. */
+/* Bytes of a buffer that are loaded; without a scene only the library's own tables. */
 static uint64_t loaded_bytes(const masu_frame_plan *plan, uint32_t b) {
     if (!masu_buffers[b].loaded || (!plan->desc.scene && loads[b] != load_smaa_area)) return 0;
     return plan->buffers[b].bytes;
 }
 
-/* Where the host can write them: at most `room` bytes from m->load_place on. Returns how many. */
+/* Writes up to `room` bytes, from m->load_place on, to buffers that the host can write directly.
+ * Returns the number of bytes. */
 static uint64_t write_in_place(masu_device *m, const masu_scene_view *v, uint64_t room) {
     uint64_t start = 0, written = 0;
     for (uint32_t b = 0; b < MASU_BUFFER_COUNT && written < room; b++) {
@@ -361,11 +378,11 @@ uint64_t masu_load_bytes(const masu_device *m) {
 
 masu_load_step masu_load_next(masu_device *m) {
     masu_load_step step = {0};
-    masu_scene_view v = {0}; /* without a scene there may still be tables */
+    masu_scene_view v = {0}; /* some tables are loaded even without a scene */
     uint64_t most = m->plan->desc.load_step;
     if (m->plan->desc.scene) v = masu_scene_data_view(&m->plan->scene);
     if (!m->plan->staged) step.bytes = write_in_place(m, &v, most ? most : UINT64_MAX);
-    int full = most && step.bytes; /* what is copied has a step of its own */
+    int full = most && step.bytes; /* the step is used up: copies follow in the next */
     if (!full && m->load_next < m->load_count) {
         unsigned char *to = masu_buffer_pointer(m, MASU_BUFFER_STAGING, 0);
         if (m->load_next < buffer_chunks(m->plan)) {

@@ -10,7 +10,7 @@
 
 #include <string.h>
 
-#define STAGING_BYTES ((uint64_t)4 << 20) /* where desc.load_step does not say */
+#define STAGING_BYTES ((uint64_t)4 << 20) /* if desc.load_step is 0 */
 
 /* ---- Placement ------------------------------------------------------------------------------- */
 
@@ -22,9 +22,8 @@ static int overlaps(const masu_placement *a, const masu_placement *b) {
     return a->offset < b->offset + b->bytes && b->offset < a->offset + a->bytes;
 }
 
-/* First fit: the lowest offset at which item `k` of `order` meets none of those placed before it.
- * Candidates are the start and the end of each placed item: a lowest free offset is always one of
- * these, rounded up. */
+/* First fit: places item `k` of `order` at the lowest offset at which it overlaps no item placed
+ * before it. Only the ends of placed items, rounded up, need to be tried, and offset 0. */
 static void place_one(masu_placement *items, const uint32_t *order, uint32_t k) {
     masu_placement *item = &items[order[k]];
     uint64_t best = UINT64_MAX;
@@ -51,7 +50,7 @@ static uint64_t place_in_order(masu_placement *items, const uint32_t *order, uin
     return end;
 }
 
-/* Sort keys of the orders tried: larger goes first. */
+/* Sort key of an item for each of the placement orders; larger keys are placed first. */
 static uint64_t order_key(const masu_placement *item, uint32_t rule) {
     uint64_t life = item->last - item->first + 1;
     switch (rule) {
@@ -94,7 +93,8 @@ uint64_t masu_place(masu_placement *items, uint32_t n) {
 uint64_t masu_place_lower_bound(const masu_placement *items, uint32_t n) {
     uint64_t most = 0;
     for (uint32_t i = 0; i < n; i++) {
-        /* The live set only grows at some item's first row. */
+        /* The live set only grows at the first row of some item, so only these rows need to be
+         * tested. */
         uint64_t sum = 0;
         for (uint32_t j = 0; j < n; j++) {
             if (items[j].first <= items[i].first && items[i].first <= items[j].last) {
@@ -111,10 +111,11 @@ uint64_t masu_place_lower_bound(const masu_placement *items, uint32_t n) {
 #define LOCAL VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT
 #define VISIBLE (VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT)
 #define CACHED VK_MEMORY_PROPERTY_HOST_CACHED_BIT
-/* Protected and lazily allocated types cannot hold what we put there. */
+/* Protected and lazily allocated memory cannot hold these resources. */
 #define UNFIT (VK_MEMORY_PROPERTY_LAZILY_ALLOCATED_BIT | VK_MEMORY_PROPERTY_PROTECTED_BIT)
 
-/* The first type of `bits` that has all of `wanted`, and whose heap can hold `bytes`. */
+/* Finds the first memory type in `bits` that has all properties in `wanted` and whose heap holds
+ * `bytes`. */
 static int find_type(const masu_vk *vk, uint32_t bits, VkMemoryPropertyFlags wanted, uint64_t bytes,
                      uint32_t *type) {
     for (uint32_t i = 0; i < vk->memory.memoryTypeCount; i++) {
@@ -128,15 +129,15 @@ static int find_type(const masu_vk *vk, uint32_t bits, VkMemoryPropertyFlags wan
     return 0;
 }
 
-/* From best to merely possible. */
+/* In order of preference; the last entry is the minimum. */
 static const VkMemoryPropertyFlags preferences[MASU_ROLE_COUNT][3] = {
     [MASU_ROLE_DEVICE] = {LOCAL, 0, 0},
     [MASU_ROLE_UPLOAD] = {VISIBLE | LOCAL, VISIBLE, VISIBLE},
     [MASU_ROLE_READBACK] = {VISIBLE | CACHED, VISIBLE, VISIBLE},
 };
 
-/* The type of a block: the host's, where it brings the block, else the best that fits. On unified
- * memory the one block has to be everything at once. */
+/* Chooses a block's memory type: the host's if it provides the block, else the preferred type that
+ * fits. On unified memory the single block needs the properties of all roles. */
 static masu_result choose_type(const masu_vk *vk, masu_frame_plan *plan, uint32_t role,
                                masu_detail *detail) {
     static const char *const names[] = {"device memory", "upload memory", "readback memory"};
@@ -183,7 +184,8 @@ static masu_result create_buffer(const masu_vk *vk, masu_frame_plan *plan, uint3
     VkMemoryRequirements need;
     vk->GetBufferMemoryRequirements(vk->device, objects->buffers[b], &need);
     buffer->memory_bytes = need.size;
-    /* A plan may ask for more, both are powers of two. */
+    /* The plan may require a larger alignment. Both are powers of two, so the larger one satisfies
+     * both. */
     if (buffer->alignment < need.alignment) buffer->alignment = need.alignment;
     buffer->type_bits = need.memoryTypeBits;
     return MASU_OK;
@@ -270,27 +272,27 @@ void masu_objects_destroy(const masu_vk *vk, masu_frame_plan *plan, masu_objects
 /* ---- Layout ---------------------------------------------------------------------------------- */
 
 static void add_to_block(masu_block_plan *block, uint64_t alignment, uint32_t type_bits) {
-    /* Of two that have no type in common none is left, which choose_type says. */
+    /* 0 if two resources have no memory type in common; choose_type reports it. */
     block->type_bits = block->alignment ? block->type_bits & type_bits : type_bits;
     if (block->alignment < alignment) block->alignment = alignment;
 }
 
-/* Lays the buffers of one role at the end of a block. Staging and poison are created later and laid
- * then. */
+/* Appends the buffers of one role to a block. The staging and poison buffers are created and placed
+ * later. */
 static void place_buffers(masu_frame_plan *plan, masu_role role, masu_block_plan *block) {
     for (uint32_t b = 0; b < MASU_BUFFER_COUNT; b++) {
         masu_buffer_plan *buffer = &plan->buffers[b];
         if (!buffer->bytes || buffer->role != role || b == MASU_BUFFER_POISON) continue;
         block->address |= (buffer->usage & VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT) != 0;
-        if (masu_buffers[b].of_loading) continue; /* place_images */
+        if (masu_buffers[b].of_loading) continue; /* by place_loading */
         buffer->offset = masu_align_up(block->bytes, buffer->alignment);
         block->bytes = buffer->offset + buffer->memory_bytes;
         add_to_block(block, buffer->alignment, buffer->type_bits);
     }
 }
 
-/* What only masu_load needs lies where the transient images of frames will. Returns where it ends,
- * from `start` on. */
+/* Resources that only masu_load uses share memory with the frames' transient images. Returns their
+ * end. */
 static uint64_t place_loading(masu_frame_plan *plan, uint64_t start, masu_block_plan *block) {
     uint64_t end = start;
     for (uint32_t b = 0; b < MASU_BUFFER_COUNT; b++) {
@@ -303,7 +305,8 @@ static uint64_t place_loading(masu_frame_plan *plan, uint64_t start, masu_block_
     return end;
 }
 
-/* Textures stay as long as the renderer: behind one another, apart from buffers by the granularity. */
+/* Textures live as long as the renderer: placed one after another, separated from buffers by
+ * bufferImageGranularity. */
 static void place_textures(const masu_vk *vk, masu_frame_plan *plan, masu_block_plan *block) {
     uint64_t granularity = vk->properties.limits.bufferImageGranularity;
     if (!plan->scene.texture_arrays) return;
@@ -327,7 +330,8 @@ static void place_images(const masu_vk *vk, masu_frame_plan *plan, masu_block_pl
         masu_image_plan *image = &plan->images[i];
         if (!image->used) continue;
         if (image->persistent) {
-            /* In front of the others, where nothing is poisoned. */
+            /* Persistent images precede the transient ones and are outside the range that is
+             * poisoned. */
             uint64_t apart = image->alignment > granularity ? image->alignment : granularity;
             image->offset = masu_align_up(block->bytes, apart ? apart : 1);
             block->bytes = image->offset + image->bytes;
@@ -350,8 +354,8 @@ static void place_images(const masu_vk *vk, masu_frame_plan *plan, masu_block_pl
     }
     uint64_t end = plan->transient_offset + plan->transient_aliased;
     uint64_t loading = place_loading(plan, plan->transient_offset, block);
-    /* What follows (buffers of other roles on unified memory) must not share a granule with an
-     * image. */
+    /* The next resource (a buffer of another role, on unified memory) must not share a
+     * bufferImageGranularity page with an image. */
     block->bytes = masu_align_up(end > loading ? end : loading, start_alignment);
 }
 
@@ -380,8 +384,8 @@ static int is_unified(const masu_vk *vk, masu_frame_plan *plan) {
     return block->bytes && find_type(vk, block->type_bits, LOCAL | VISIBLE, block->bytes, &unused);
 }
 
-/* What textures need in a staging buffer that takes them all at once. Images are tiled: they go
- * through it even where the host could write their memory. */
+/* Staging bytes that hold all textures at once. Images have optimal tiling, so they need staging
+ * even if the host can write their memory. */
 static uint64_t texture_staging(const masu_frame_plan *plan) {
     if (!plan->scene.texture_arrays) return 0;
     masu_scene_view v = masu_scene_data_view(&plan->scene);
@@ -392,7 +396,7 @@ static uint64_t texture_staging(const masu_frame_plan *plan) {
     return bytes;
 }
 
-/* Resident buffers need a staging buffer exactly when the host cannot write where they live. */
+/* Resident buffers need staging exactly if the host cannot write their memory. */
 static masu_result create_staging(const masu_vk *vk, masu_frame_plan *plan, masu_objects *objects,
                                   masu_detail *detail) {
     uint64_t resident = 0;
@@ -416,7 +420,7 @@ static masu_result create_poison(const masu_vk *vk, masu_frame_plan *plan, masu_
                                  masu_detail *detail) {
     masu_buffer_plan *poison = &plan->buffers[MASU_BUFFER_POISON];
     if (!plan->desc.debug.poison || !plan->transient_aliased) return MASU_OK;
-    /* Whole words: vkCmdFillBuffer leaves a last partial word alone. */
+    /* vkCmdFillBuffer does not write a last partial 4-byte unit, so the size is rounded down. */
     poison->bytes = plan->transient_aliased & ~(uint64_t)3;
     masu_result result = create_buffer(vk, plan, MASU_BUFFER_POISON, objects, detail);
     if (result) return result;

@@ -9,8 +9,8 @@ typedef struct offers {
     int blocks, anisotropy, ray_query, half_floats;
 } offers;
 
-/* Structures that a driver does not know it leaves alone (specification, "Valid Usage for Structure Pointer
- * Chains"): zero. */
+/* Drivers leave structures that they do not support unchanged (specification, "Valid Usage for
+ * Structure Pointer Chains"), so they remain 0. */
 static int ask(const masu_device *m, offers *out) {
     const masu_vulkan *v = &m->plan->desc.vulkan;
     PFN_vkGetPhysicalDeviceFeatures2 get =
@@ -34,7 +34,8 @@ static int ask(const masu_device *m, offers *out) {
 static void say(const masu_device *m, masu_log_level level, const char *field, const char *feature,
                 const char *gain) {
     char text[256];
-    snprintf(text, sizeof text, "vulkan.%s is 0, but the device offers %s: %s", field, feature, gain);
+    snprintf(text, sizeof text, "vulkan.%s is 0, but the device offers %s: %s", field, feature,
+             gain);
     masu_log(&m->plan->desc, level, text);
 }
 
@@ -43,22 +44,27 @@ void masu_report_offers(const masu_device *m) {
     const masu_scene_data *s = &m->plan->scene;
     offers o;
     if (!d->log || !ask(m, &o)) return;
-    if (o.blocks && !d->vulkan.texture_compression_bc && s->textures && !d->deny.compressed_textures) {
+    if (o.blocks && !d->vulkan.texture_compression_bc && s->textures &&
+        !d->deny.compressed_textures) {
         char gain[128];
         snprintf(gain, sizeof gain, "textures take %llu bytes, compressed %llu",
-                 (unsigned long long)s->texture_bytes_decoded, (unsigned long long)s->texture_bytes);
+                 (unsigned long long)s->texture_bytes_decoded,
+                 (unsigned long long)s->texture_bytes);
         say(m, MASU_LOG_WARNING, "texture_compression_bc", "textureCompressionBC", gain);
     }
     if (o.anisotropy && !(d->vulkan.max_anisotropy > 0.0f) && s->textures)
-        say(m, MASU_LOG_INFO, "max_anisotropy", "samplerAnisotropy", "slanted textures would be sharper");
+        say(m, MASU_LOG_INFO, "max_anisotropy", "samplerAnisotropy",
+            "slanted textures would be sharper");
     VkPhysicalDeviceType type = m->vk.properties.deviceType;
     int gpu = type == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU ||
               type == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU;
-    if (!gpu) return; /* what is emulated is not missed */
+    if (!gpu) return; /* software devices: the features bring nothing */
     int fast = 0;
     for (uint32_t r = 0; r < d->rung_count; r++) fast |= d->rungs[r].easu == MASU_EASU_FAST;
     if (o.ray_query && !d->vulkan.ray_query && m->plan->needs.traced)
-        say(m, MASU_LOG_INFO, "ray_query", "VK_KHR_ray_query", "reflections are traced by the library's own tree");
+        say(m, MASU_LOG_INFO, "ray_query", "VK_KHR_ray_query",
+            "reflections are traced by the library's own tree");
     if (o.half_floats && !d->vulkan.shader_float16 && fast)
-        say(m, MASU_LOG_INFO, "shader_float16", "shaderFloat16", "fast EASU weighs texels in 32 bits");
+        say(m, MASU_LOG_INFO, "shader_float16", "shaderFloat16",
+            "fast EASU weighs texels in 32 bits");
 }

@@ -1,5 +1,5 @@
-/* offers.h: what the device offers and the host has not enabled, though this plan would use it: a line each to
- * the host's log, so that nothing is lost silently. Asks the driver once, in masu_init; cannot fail. */
+/* offers.h: logs each feature that the device supports, this plan would use and the host has not
+ * enabled, one line per feature. Queries the driver once, in masu_init; cannot fail. */
 #ifndef MASU_OFFERS_H
 #define MASU_OFFERS_H
 

@@ -1,6 +1,5 @@
-/* pipelines.c: descriptor set layouts derived from the rows of the frame table, shader modules,
- * pipelines, and the render passes of graphics rows. Modules live only while their pipeline is
- * built. */
+/* pipelines.c: descriptor set layouts, shader modules, pipelines and render passes, derived from
+ * the pass table. A shader module exists only while its pipeline is created. */
 #include "device/pipelines.h"
 
 #include "device/pool.h"
@@ -16,14 +15,16 @@
 
 #include <string.h>
 
-/* Unpacked into a block that is mapped and that nothing is in yet; the driver keeps what it needs. */
+/* Unpacks the shader into a mapped block that nothing else uses yet. The driver keeps its own copy,
+ * so the module's memory can be used again. */
 static masu_result create_module(masu_device *m, masu_code code, VkShaderModule *module,
                                  masu_detail *detail) {
     uint32_t role = masu_code_role(m->plan);
     const uint32_t *words = masu_code_read(&code, (uint32_t *)(void *)m->mapped[role]);
     if (!words)
         return masu_fail(detail, MASU_ERROR_DEVICE, "shader", code.bytes, 0,
-                         "a shader of %llu bytes cannot be unpacked", (unsigned long long)code.bytes);
+                         "a shader of %llu bytes cannot be unpacked",
+                         (unsigned long long)code.bytes);
     VkShaderModuleCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
                                      .codeSize = (size_t)code.bytes,
                                      .pCode = words};
@@ -35,43 +36,34 @@ static uint64_t now(const masu_device *m) {
     return m->plan->desc.clock_ns ? m->plan->desc.clock_ns(m->plan->desc.clock_user) : 0;
 }
 
-/* Constants 0 to 20 of all shaders, of which each has those it declares: of compute shaders whether
- * counters are kept, of others whether masks are cut; whether the sky may be the analytic one;
- * whether there is fog; whether the sky is from a picture; whether reflections are traced; the tone
- * curve; the target's encoding; whether the last pass rounds to its steps or changes the order of
- * its channels; whether the output is whole groups of invocations; how many nodes a ray may have to
- * come back to; whether a tile's rays are shared by its invocations; whether coats have maps or
- * normals of their own; whether anything colours what shines through it; whether the output keeps
- * its size; whether means over frames are halves; whether albedo texels hold emission;
- * whether normals of the G-buffer may be those of maps; whether lights may be capsules or
- * rectangles; whether rays share the light of their surfaces; whether rays meet vertex colours (1)
- * and maps on the second texture coordinates (2); whether skins have morph targets. */
+/* Specialisation constants, by constant_id. A shader has those that it declares.
+ *
+ *    0  compute: counters are kept; other shaders: alpha test (or, for transparent surfaces,
+ *       the multiplying pass of coloured transmission)
+ *    1  the sky may be the analytic one         2  the scene has fog
+ *    3  the sky is an environment map           4  reflections are traced
+ *    5  tone curve                              6  encoding of the target
+ *    7  the last pass dithers to its steps or swaps channels
+ *    8  the output is a whole number of workgroups
+ *    9  stack size of BVH traversal            10  the invocations of a tile share rays
+ *   11  clear coats with their own maps or normals
+ *   12  coloured transmission                  13  the output size is fixed
+ *   14  temporal accumulation of reflections is stored as half floats
+ *   15  albedo texels hold emission            16  G-buffer normals may be from normal maps
+ *   17  capsule or rectangle lights            18  rays share the lighting of surfaces they hit
+ *   19  bit 0: rays sample vertex colours; bit 1: maps on the second texture coordinates
+ *   20  skins have morph targets */
 enum { SPECIAL_COUNT = 21 };
 
 static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
                                        VkBool32 constants[SPECIAL_COUNT]) {
+#define ENTRY(n)                                                                                   \
+    { n, (n) * sizeof *constants, sizeof *constants }
     static const VkSpecializationMapEntry entries[SPECIAL_COUNT] = {
-        {0, 0, sizeof *constants},
-        {1, sizeof *constants, sizeof *constants},
-        {2, 2 * sizeof *constants, sizeof *constants},
-        {3, 3 * sizeof *constants, sizeof *constants},
-        {4, 4 * sizeof *constants, sizeof *constants},
-        {5, 5 * sizeof *constants, sizeof *constants},
-        {6, 6 * sizeof *constants, sizeof *constants},
-        {7, 7 * sizeof *constants, sizeof *constants},
-        {8, 8 * sizeof *constants, sizeof *constants},
-        {9, 9 * sizeof *constants, sizeof *constants},
-        {10, 10 * sizeof *constants, sizeof *constants},
-        {11, 11 * sizeof *constants, sizeof *constants},
-        {12, 12 * sizeof *constants, sizeof *constants},
-        {13, 13 * sizeof *constants, sizeof *constants},
-        {14, 14 * sizeof *constants, sizeof *constants},
-        {15, 15 * sizeof *constants, sizeof *constants},
-        {16, 16 * sizeof *constants, sizeof *constants},
-        {17, 17 * sizeof *constants, sizeof *constants},
-        {18, 18 * sizeof *constants, sizeof *constants},
-        {19, 19 * sizeof *constants, sizeof *constants},
-        {20, 20 * sizeof *constants, sizeof *constants}};
+        ENTRY(0),  ENTRY(1),  ENTRY(2),  ENTRY(3),  ENTRY(4),  ENTRY(5),  ENTRY(6),
+        ENTRY(7),  ENTRY(8),  ENTRY(9),  ENTRY(10), ENTRY(11), ENTRY(12), ENTRY(13),
+        ENTRY(14), ENTRY(15), ENTRY(16), ENTRY(17), ENTRY(18), ENTRY(19), ENTRY(20)};
+#undef ENTRY
     constants[0] = first;
     constants[1] = m->plan->needs.sky != 0;
     constants[2] = m->plan->scene.fog != 0;
@@ -86,11 +78,11 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
     VkExtent2D output = m->plan->desc.output;
     int sized = !m->plan->desc.resizable && !m->plan->desc.viewport_count;
     constants[8] = sized && output.width % MASU_GROUP == 0 && output.height % MASU_GROUP == 0;
-    /* Nothing is left of the root, and of the lowest nodes nothing is entered. */
+    /* The root is never pushed, and traversal of the lowest level pushes nothing: hence - 2. */
     const masu_scene_data *scene = &m->plan->scene;
     uint32_t levels = masu_trace_top_levels(scene->trace_instances) + scene->trace_levels - 2;
     constants[9] = (uint32_t)masu_align_up(
-        levels, 4); /* so that scenes of about the same size share pipelines */
+        levels, 4); /* rounded up so that scenes of similar size share pipelines */
     constants[10] = m->plan->desc.debug.share_rays == MASU_ON;
     constants[11] = scene->own_coats != 0;
     constants[12] = scene->tints;
@@ -106,7 +98,7 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
                                   constants};
 }
 
-/* 0 where there is no pool. */
+/* Key of a pipeline in the pool; 0 without a pool. */
 static uint64_t key_of(const masu_device *m, uint32_t pass, const masu_code codes[2], uint32_t form,
                        const VkBool32 constants[SPECIAL_COUNT]) {
     if (!m->plan->desc.vulkan.pipelines) return 0;
@@ -129,8 +121,8 @@ static masu_result create_set_layout(masu_device *m, const VkDescriptorSetLayout
 
 static int draws_polygons(uint32_t pass) {
     masu_geometry g = masu_passes[pass].geometry;
-    return g == MASU_GEOMETRY_POLYGONS || g == MASU_GEOMETRY_CASCADE || g == MASU_GEOMETRY_BLENDED ||
-           g == MASU_GEOMETRY_PICK || g == MASU_GEOMETRY_CASTERS;
+    return g == MASU_GEOMETRY_POLYGONS || g == MASU_GEOMETRY_CASCADE ||
+           g == MASU_GEOMETRY_BLENDED || g == MASU_GEOMETRY_PICK || g == MASU_GEOMETRY_CASTERS;
 }
 
 /* Set 2: the textures of a draw. */
@@ -145,14 +137,16 @@ static masu_result create_texture_layout(masu_device *m, masu_detail *detail) {
     return create_set_layout(m, bindings, MASU_SLOT_COUNT, &m->texture_layout, detail);
 }
 
-/* Set 1: reads first, then writes, in the order of the row. */
+/* Set 1: reads first, then writes, in the order of the pass's row. */
 static masu_result create_pass_layout(masu_device *m, uint32_t pass, masu_detail *detail) {
     const masu_rung_plan *rp = masu_first_rung(m->plan, pass);
     if (!rp) return MASU_OK;
-    VkDescriptorSetLayoutBinding bindings[2 * MASU_PASS_ACCESSES]; /* what is read and written has two */
+    /* an access that reads and writes has two */
+    VkDescriptorSetLayoutBinding bindings[2 * MASU_PASS_ACCESSES];
     uint32_t n = 0;
     int compute = masu_passes[pass].kind == MASU_PASS_COMPUTE;
-    VkShaderStageFlags stages = compute ? VK_SHADER_STAGE_COMPUTE_BIT : VK_SHADER_STAGE_FRAGMENT_BIT;
+    VkShaderStageFlags stages =
+        compute ? VK_SHADER_STAGE_COMPUTE_BIT : VK_SHADER_STAGE_FRAGMENT_BIT;
     if (masu_passes[pass].geometry == MASU_GEOMETRY_SPRITES) stages |= VK_SHADER_STAGE_VERTEX_BIT;
     for (int writes = 0; writes < 2 && masu_has_set(pass); writes++) {
         for (uint32_t a = 0; a < rp->access_count[pass]; a++) {
@@ -195,7 +189,8 @@ static masu_result create_pass_layout(masu_device *m, uint32_t pass, masu_detail
 
 /* ---- Compute --------------------------------------------------------------------------------- */
 
-/* Of a pass that has two pipelines the one of rungs that it ends is "NAME, last". */
+/* If a pass has two pipelines, the one for rungs in which the pass is the last is named "NAME,
+ * last". */
 static void name_form(const masu_device *m, uint32_t pass, int last, VkPipeline pipeline) {
     static const char ending[] = ", last";
     const char *name = masu_passes[pass].name;
@@ -243,7 +238,7 @@ static masu_result create_compute_form(masu_device *m, uint32_t pass, int last, 
     return MASU_OK;
 }
 
-/* The forms that its rungs ask for. */
+/* Creates the pipelines that the rungs need: for the pass as the last one, otherwise, or both. */
 static masu_result create_compute(masu_device *m, uint32_t pass, masu_detail *detail) {
     masu_result result = MASU_OK;
     for (uint32_t r = 0; r < m->plan->desc.rung_count && !result; r++) {
@@ -269,18 +264,18 @@ static uint32_t color_attachments(const masu_device *m, uint32_t pass) {
     return count;
 }
 
-/* gbuffer.frag writes emission behind all else, whether there is anything that emits or not. Unless
- * the device has too few attachments, that output has one, which is unused. */
+/* gbuffer.frag always declares an emission output, after all others. Without an emission attachment
+ * the output gets an unused attachment reference, if the device has enough attachments. */
 static int has_unused_emission(const masu_device *m, uint32_t pass) {
     return masu_passes[pass].geometry == MASU_GEOMETRY_POLYGONS && !m->plan->needs.emissive &&
            color_attachments(m, pass) < m->vk.properties.limits.maxColorAttachments;
 }
 
-/* Attachments come in the layouts that the row's barriers put them in, and stay there: the render
- * pass itself does no transition, so that record.c remains the only place that thinks about them.
- * Only the render area is cleared: a cascade of the shadow map leaves the others alone.
- * A second subpass, of emitting materials, has one attachment more. That takes no independentBlend,
- * a feature that hosts may have left off and write masks of one attachment would need. */
+/* Initial and final layouts are those that the row's barriers set: the render pass transitions
+ * nothing, so record.c is the only file that manages layouts. Only the render area is cleared:
+ * rendering a cascade keeps the other cascades of the shadow map. Emitting materials have a second
+ * subpass with one more attachment. The alternative, write masks per attachment, needs the
+ * independentBlend feature, which hosts may not have enabled. */
 static masu_result create_render_pass(masu_device *m, uint32_t pass, masu_detail *detail) {
     VkAttachmentDescription attachments[MASU_PASS_ACCESSES];
     VkAttachmentReference colors[MASU_PASS_ACCESSES], depth = {0, VK_IMAGE_LAYOUT_UNDEFINED};
@@ -369,7 +364,7 @@ static masu_result create_render_pass(masu_device *m, uint32_t pass, masu_detail
                : MASU_OK;
 }
 
-/* Whether it is drawn over what is there. */
+/* Whether the pass blends over the existing image. */
 static int blends_color(const masu_device *m, uint32_t pass) {
     const masu_rung_plan *rp = masu_first_rung(m->plan, pass);
     for (uint32_t a = 0; a < rp->access_count[pass]; a++) {
@@ -378,18 +373,20 @@ static int blends_color(const masu_device *m, uint32_t pass) {
     return 0;
 }
 
-/* textured: with texture coordinates; masked: with the discard of masks, of what is blended: it multiplies;
- * culled: not from behind; emitting: in the second subpass. */
+/* textured: with texture coordinates. masked: with the alpha test; for transparent surfaces, the
+ * pass that multiplies the image by the colour of the transmission. culled: with back-face culling.
+ * emitting: in the second subpass. */
 static VkResult create_graphics_pipeline(masu_device *m, uint32_t pass,
                                          const VkShaderModule modules[2], int textured,
                                          VkBool32 masked, int culled, int emitting,
                                          VkPipeline *out) {
     masu_geometry geometry = masu_passes[pass].geometry;
-    int polygons = draws_polygons(pass); /* else what the vertex shader makes up */
+    int polygons = draws_polygons(pass); /* else the vertex shader generates the vertices */
     int blends = blends_color(m, pass);
     int depths = geometry == MASU_GEOMETRY_POLYGONS || geometry == MASU_GEOMETRY_CASCADE ||
-                 geometry == MASU_GEOMETRY_BOXES || geometry == MASU_GEOMETRY_PICK || geometry == MASU_GEOMETRY_DEPTHS ||
-                 geometry == MASU_GEOMETRY_CASTERS || geometry == MASU_GEOMETRY_TILES;
+                 geometry == MASU_GEOMETRY_BOXES || geometry == MASU_GEOMETRY_PICK ||
+                 geometry == MASU_GEOMETRY_DEPTHS || geometry == MASU_GEOMETRY_CASTERS ||
+                 geometry == MASU_GEOMETRY_TILES;
     VkBool32 constants[SPECIAL_COUNT];
     VkSpecializationInfo special = specialise(m, masked, constants);
     VkPipelineShaderStageCreateInfo stages[2];
@@ -399,7 +396,10 @@ static VkResult create_graphics_pipeline(masu_device *m, uint32_t pass,
             .stage = i ? VK_SHADER_STAGE_FRAGMENT_BIT : VK_SHADER_STAGE_VERTEX_BIT,
             .module = modules[i],
             .pName = "main",
-            .pSpecializationInfo = i || geometry == MASU_GEOMETRY_BLENDED || geometry == MASU_GEOMETRY_SPRITES ? &special : NULL};
+            .pSpecializationInfo =
+                i || geometry == MASU_GEOMETRY_BLENDED || geometry == MASU_GEOMETRY_SPRITES
+                    ? &special
+                    : NULL};
     }
     VkVertexInputBindingDescription bindings[] = {
         {0, sizeof(masu_blob_vertex), VK_VERTEX_INPUT_RATE_VERTEX},
@@ -427,8 +427,8 @@ static VkResult create_graphics_pipeline(masu_device *m, uint32_t pass,
         .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO,
         .viewportCount = 1,
         .scissorCount = 1};
-    /* Back faces are culled only where a material says so: CAD data is not consistently wound, and the normal
-     * is turned towards the viewer. */
+    /* Back faces are culled only for single-sided materials: CAD data has inconsistent winding, and
+     * shaders turn the normal towards the camera. */
     VkPipelineRasterizationStateCreateInfo raster = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
         .polygonMode = VK_POLYGON_MODE_FILL,
@@ -442,14 +442,15 @@ static VkResult create_graphics_pipeline(masu_device *m, uint32_t pass,
         .sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
         .depthTestEnable = depths ? VK_TRUE : VK_FALSE,
         .depthWriteEnable = depths ? VK_TRUE : VK_FALSE,
-        .depthCompareOp = geometry == MASU_GEOMETRY_TILES ? VK_COMPARE_OP_ALWAYS : VK_COMPARE_OP_GREATER};
+        .depthCompareOp =
+            geometry == MASU_GEOMETRY_TILES ? VK_COMPARE_OP_ALWAYS : VK_COMPARE_OP_GREATER};
     VkPipelineColorBlendAttachmentState blend[5];
     memset(blend, 0, sizeof blend);
     for (uint32_t i = 0; i < 5; i++) {
         blend[i].colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
                                   VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
     }
-    if (blends) { /* the colour is multiplied by its alpha already; that of the picture stays */
+    if (blends) { /* premultiplied alpha; the alpha of the image is kept */
         blend[0].blendEnable = VK_TRUE;
         blend[0].srcColorBlendFactor = VK_BLEND_FACTOR_ONE;
         blend[0].dstColorBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
@@ -483,11 +484,11 @@ static VkResult create_graphics_pipeline(masu_device *m, uint32_t pass,
                                          .layout = m->layouts[pass],
                                          .renderPass = m->render_passes[pass],
                                          .subpass = emitting ? 1 : 0};
-    return m->vk.CreateGraphicsPipelines(m->vk.device, m->plan->desc.vulkan.pipeline_cache, 1, &info,
-                                         m->vk.allocator, out);
+    return m->vk.CreateGraphicsPipelines(m->vk.device, m->plan->desc.vulkan.pipeline_cache, 1,
+                                         &info, m->vk.allocator, out);
 }
 
-/* Times are added up per pass. */
+/* The creation time is added to that of the pass. */
 static masu_result create_pipeline(masu_device *m, uint32_t pass, int textured, VkBool32 masked,
                                    int culled, int emitting, VkPipeline *out, masu_detail *detail) {
     masu_draw_code code = masu_draw_code_of(m->plan, pass, textured);
@@ -519,7 +520,7 @@ static masu_result create_pipeline(masu_device *m, uint32_t pass, int textured, 
     return result;
 }
 
-/* What has textures, and what has masks. */
+/* Pipelines for textured and for alpha-tested materials. */
 static masu_result create_textured(masu_device *m, uint32_t pass, masu_detail *detail) {
     masu_result result = MASU_OK;
     for (uint32_t i = 0; i < MASU_TEXTURED_COUNT && !result; i++) {
@@ -532,10 +533,10 @@ static masu_result create_textured(masu_device *m, uint32_t pass, masu_detail *d
     return result;
 }
 
-/* The same once more for what is not seen from behind. */
+/* The same pipelines with back-face culling, for single-sided materials. */
 static masu_result create_culled(masu_device *m, uint32_t pass, int textures, masu_detail *detail) {
-    static const char *const names[MASU_CULLED_COUNT] = {"gbuffer, culled", "gbuffer, textured, culled",
-                                                         "gbuffer, masks, culled"};
+    static const char *const names[MASU_CULLED_COUNT] = {
+        "gbuffer, culled", "gbuffer, textured, culled", "gbuffer, masks, culled"};
     masu_result result = MASU_OK;
     for (uint32_t i = 0; i < MASU_CULLED_COUNT && !result && m->plan->scene.singles; i++) {
         int mask = i == 1 + MASU_TEXTURED_MASK;
@@ -547,7 +548,7 @@ static masu_result create_culled(masu_device *m, uint32_t pass, int textures, ma
     return result;
 }
 
-/* Once more for what emits, of the kinds of which anything does. */
+/* The same pipelines in the emission subpass, for those draw kinds that have emitting materials. */
 static masu_result create_emitting(masu_device *m, uint32_t pass, masu_detail *detail) {
     masu_result result = MASU_OK;
     uint32_t sides = m->plan->scene.singles ? 2 : 1;
@@ -563,7 +564,7 @@ static masu_result create_emitting(masu_device *m, uint32_t pass, masu_detail *d
     return result;
 }
 
-/* Through the holes of a mask the sun shines. */
+/* Sunlight passes through the holes of alpha-tested materials, so their shadows need textures. */
 static masu_result create_masked_casters(masu_device *m, uint32_t pass, masu_detail *detail) {
     if (!m->plan->scene.masks) return MASU_OK;
     masu_result result = create_pipeline(m, pass, 1, VK_TRUE, 0, 0, &m->masked_casters, detail);
@@ -571,7 +572,7 @@ static masu_result create_masked_casters(masu_device *m, uint32_t pass, masu_det
     return result;
 }
 
-/* Nor do its lamps stop there. */
+/* The same for the shadows of local lights. */
 static masu_result create_masked_faces(masu_device *m, uint32_t pass, masu_detail *detail) {
     if (!m->plan->scene.masks) return MASU_OK;
     masu_result result = create_pipeline(m, pass, 1, VK_TRUE, 0, 0, &m->masked_faces, detail);
@@ -579,7 +580,8 @@ static masu_result create_masked_faces(masu_device *m, uint32_t pass, masu_detai
     return result;
 }
 
-/* Nor is one picked there, or what is blended where its map is clear. */
+/* Picking ignores the holes of alpha-tested materials, and transparent surfaces where their opacity
+ * is below one half. */
 static masu_result create_masked_picks(masu_device *m, uint32_t pass, masu_detail *detail) {
     masu_result result = create_pipeline(m, pass, 1, VK_TRUE, 0, 0, &m->masked_picks, detail);
     masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(m->masked_picks), "pick, masks");
@@ -589,12 +591,13 @@ static masu_result create_masked_picks(masu_device *m, uint32_t pass, masu_detai
 static masu_result create_graphics(masu_device *m, uint32_t pass, masu_detail *detail) {
     masu_geometry geometry = masu_passes[pass].geometry;
     int textures = m->texture_layout != VK_NULL_HANDLE;
-    /* Cascades share what the first one has. */
+    /* All cascades use the objects of the first one. */
     if (geometry == MASU_GEOMETRY_CASCADE && pass != MASU_PASS_CASCADE_0) return MASU_OK;
     masu_result result = create_render_pass(m, pass, detail);
-    /* An empty scene clears. */
+    /* Without polygons the pass only clears its attachments. */
     if (geometry == MASU_GEOMETRY_POLYGONS && !m->plan->needs.raster) return result;
-    /* One pipeline for all that is blended: in scenes with textures what has none passes by them. */
+    /* One pipeline for all transparent surfaces. In scenes with textures, surfaces without textures
+     * use it too and skip the sampling. */
     int textured = geometry == MASU_GEOMETRY_BLENDED && textures;
     if (!result)
         result = create_pipeline(m, pass, textured, VK_FALSE, 0, 0, &m->pipelines[pass], detail);
@@ -617,8 +620,8 @@ static masu_result create_graphics(masu_device *m, uint32_t pass, masu_detail *d
     return result;
 }
 
-/* Those that the scene's texture sets ask for: trilinear, and along the longer axis of a pixel's
- * footprint where the device was created for it. */
+/* Creates the samplers that the scene's texture sets use: trilinear, and anisotropic if the device
+ * was created with samplerAnisotropy. */
 static masu_result create_samplers(masu_device *m, masu_detail *detail) {
     static const VkSamplerAddressMode modes[] = {VK_SAMPLER_ADDRESS_MODE_REPEAT,
                                                  VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
@@ -632,7 +635,8 @@ static masu_result create_samplers(masu_device *m, masu_detail *detail) {
         VkSampler *sampler = &m->samplers[masu_sampler_of(wrap)];
         if (*sampler) continue;
         VkSamplerCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
-                                    .magFilter = wrap[0] & 4u ? VK_FILTER_NEAREST : VK_FILTER_LINEAR,
+                                    .magFilter =
+                                        wrap[0] & 4u ? VK_FILTER_NEAREST : VK_FILTER_LINEAR,
                                     .minFilter = VK_FILTER_LINEAR,
                                     .mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR,
                                     .addressModeU = modes[wrap[0] & 3u],
@@ -647,7 +651,8 @@ static masu_result create_samplers(masu_device *m, masu_detail *detail) {
     return MASU_OK;
 }
 
-/* A pool's, where there is one: layouts are compatible only with the same samplers. */
+/* Takes the sampler from the pool, if there is one: pipeline layouts are compatible only if their
+ * immutable samplers are the same. */
 static masu_result create_sampler(masu_device *m, uint32_t number, const VkSamplerCreateInfo *info,
                                   VkSampler *out, masu_detail *detail) {
     VkSampler pooled = masu_pool_sampler(m, number);

@@ -15,7 +15,7 @@ static masu_pool *pool_of(const masu_device *m) { return pool_in(m->plan->desc.v
 
 /* ---- Keys ------------------------------------------------------------------------------------ */
 
-/* FNV-1a, word by word. */
+/* FNV-1a over 64-bit values. */
 static uint64_t add(uint64_t key, uint64_t word) {
     for (uint32_t k = 0; k < 8; k++) key = (key ^ (word >> 8 * k & 255u)) * 0x100000001B3u;
     return key;
@@ -51,15 +51,15 @@ uint64_t masu_pool_key(const masu_device *m, uint32_t pass, const masu_code code
                        access.usage == MASU_UPDATE_COLOR || access.usage == MASU_WRITE_DEPTH ||
                        access.usage == MASU_UPDATE_DEPTH || access.usage == MASU_KEEP_DEPTH;
         if (bound || attached) key = add(key, access.usage);
-        /* Shaders know the formats of what they store. */
+        /* The image format is part of a shader's storage image declaration. */
         if (attached) key = add(key, (uint64_t)masu_images[access.image].format);
     }
     return key ? key : 1;
 }
 
-/* ---- Taking and giving ----------------------------------------------------------------------- */
+/* ---- Acquiring and adding pipelines ---------------------------------------------------------- */
 
-/* Each pipeline of the device has a place. */
+/* The i-th pipeline of the device, for 0 <= i < MASU_POOL_KEYS. */
 static VkPipeline *place(masu_device *m, uint32_t i) {
     if (i < MASU_PASS_COUNT) return &m->pipelines[i];
     if (i < 2 * MASU_PASS_COUNT) return &m->last[i - MASU_PASS_COUNT];
@@ -76,7 +76,7 @@ static VkPipeline *place(masu_device *m, uint32_t i) {
                     : &m->tints;
 }
 
-/* Notes what a pipeline is known by. */
+/* Notes the key of a pipeline, for masu_pool_release. */
 static void note(masu_device *m, const VkPipeline *at, uint64_t key) {
     for (uint32_t i = 0; i < MASU_POOL_KEYS; i++) {
         if (place(m, i) == at) m->pool_keys[i] = key;
@@ -98,8 +98,8 @@ int masu_pool_acquire(masu_device *m, uint64_t key, VkPipeline *out) {
     return 0;
 }
 
-/* A free row, or that of the pipeline that has been unused for the longest time; NULL: all are in
- * use. */
+/* Returns a free row, or frees the row of the pipeline that has been unused for the longest time.
+ * NULL if all are in use. */
 static masu_pool_row *make_room(const masu_device *m, masu_pool *pool) {
     masu_pool_row *oldest = NULL;
     if (pool->info.count < MASU_MAX_PIPELINES) return &pool->rows[pool->info.count++];
@@ -137,7 +137,7 @@ void masu_pool_release(masu_device *m) {
             *from = VK_NULL_HANDLE;
         }
     }
-    m->sampler = m->linear = VK_NULL_HANDLE; /* the pool keeps them */
+    m->sampler = m->linear = VK_NULL_HANDLE; /* the pool owns them */
 }
 
 VkSampler masu_pool_sampler(const masu_device *m, uint32_t number) {
@@ -150,7 +150,7 @@ void masu_pool_add_sampler(masu_device *m, uint32_t number, VkSampler sampler) {
     if (pool) pool->samplers[number] = sampler;
 }
 
-/* ---- What the host calls --------------------------------------------------------------------- */
+/* ---- Public functions ------------------------------------------------------------------------ */
 
 void masu_pipelines_info_of(const masu_pipelines *pipelines, masu_pipelines_info *out) {
     const masu_pool *pool = (const masu_pool *)(const void *)pipelines;

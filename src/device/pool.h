@@ -1,12 +1,13 @@
-/* pool.h: pipelines that outlive their renderer, masu_pipelines of the public header: masu_init
- * uses what is there and adds what it had to make, masu_destroy uses it no more. The host owns
- * the pool, the pool its pipelines; several renderers may use one at a time.
+/* pool.h: pipelines that outlive their renderer (masu_pipelines in masu.h). masu_init takes the
+ * pipelines that match and adds those that it had to create; masu_destroy releases them. The host
+ * owns the pool, and the pool owns its pipelines. Several renderers may share a pool, but must not
+ * call it at the same time.
  *
- * A key says what a pipeline was made of: its pass and code, the constants and bindings that the
- * code declares, what it is drawn to. Other differences between scenes do not count. Layouts
- * and render passes are each renderer's own, and compatible where the keys agree (specification,
- * "Pipeline Layout Compatibility", "Render Pass Compatibility"); samplers stand in layouts, so
- * they are the pool's too. */
+ * A key is a hash of everything that a pipeline is created from: pass and code, the constants and
+ * bindings that the code declares, and the attachments. Scenes may differ in anything else. Each
+ * renderer has its own layouts and render passes, which are compatible if the keys are equal
+ * (specification, "Pipeline Layout Compatibility", "Render Pass Compatibility"). Samplers are part
+ * of layouts, so the pool owns them too. */
 #ifndef MASU_POOL_H
 #define MASU_POOL_H
 
@@ -14,41 +15,42 @@
 #include "device/shaders.h"
 #include "scene/scene_data.h"
 
-/* The host's memory has another type (masu_pipelines). */
+/* MASU_MAY_ALIAS: the host's memory has the type masu_pipelines. */
 typedef struct MASU_MAY_ALIAS masu_pool_row {
     uint64_t key; /* hash of everything that the pipeline was created from */
     VkPipeline pipeline;
-    uint32_t users; /* references from existing renderers */
-    uint32_t used;  /* `clock` when it was last taken or given back */
+    uint32_t users; /* number of renderers that use the pipeline */
+    uint32_t used;  /* `clock` at the last acquire or release */
 } masu_pool_row;
 
-/* The content of a masu_pipelines. */
+/* The content of the host's masu_pipelines. */
 typedef struct MASU_MAY_ALIAS masu_pool {
-    masu_pipelines_info info; /* `used` is counted when it is asked for */
+    masu_pipelines_info info; /* `used` is computed on request */
     uint32_t clock;
     VkSampler samplers[2];
     masu_pool_row rows[MASU_MAX_PIPELINES];
 } masu_pool;
 
-/* Most pipelines of a renderer: each pass's two forms, and those of textures. */
+/* Largest number of pipelines of a renderer: two forms per pass, and the textured, culled,
+ * emitting, masked and tinted variants. */
 #define MASU_POOL_KEYS (2 * MASU_PASS_COUNT + MASU_TEXTURED_COUNT + 3 * MASU_CULLED_COUNT + 4)
 
-/* codes: of both stages; the second none of a compute pass. form: the vertex input, culling and
- * blending of a graphics pass. Of the constants those count that the code declares. The rest
- * follows from plan and pass. */
+/* codes: both stages; the second is empty for a compute pass. form: vertex input, culling and
+ * blending of a graphics pass. constants: only those that the code declares contribute. Everything
+ * else follows from plan and pass. */
 uint64_t masu_pool_key(const masu_device *m, uint32_t pass, const masu_code codes[2], uint32_t form,
                        const uint32_t *constants, uint32_t constant_count);
 
-/* Into *out, a pipeline of the device, if there is one of that key. */
+/* Sets *out, a member of the device, to the pipeline with this key. Returns 0 if there is none. */
 int masu_pool_acquire(masu_device *m, uint64_t key, VkPipeline *out);
-/* Adds a pipeline of the device that had to be made; if all of a full pool are in use, it stays
- * the renderer's. */
+/* Adds a pipeline that the device had to create. If the pool is full and all its pipelines are in
+ * use, the renderer keeps ownership. */
 void masu_pool_add(masu_device *m, const VkPipeline *at, uint64_t key);
-/* The renderer uses none of the pool's pipelines and samplers any more. */
+/* The renderer releases all its pipelines and samplers of the pool. */
 void masu_pool_release(masu_device *m);
-/* Sampler 0 or 1 of the pool: VK_NULL_HANDLE: it has none yet, or there is no pool. */
+/* Sampler 0 or 1 of the pool. VK_NULL_HANDLE if the pool has none yet, or without a pool. */
 VkSampler masu_pool_sampler(const masu_device *m, uint32_t number);
-/* Gives the pool a sampler, if there is one. */
+/* Transfers ownership of a sampler to the pool, if there is one. */
 void masu_pool_add_sampler(masu_device *m, uint32_t number, VkSampler sampler);
 
 #endif

@@ -9,27 +9,27 @@
 
 #include <string.h>
 
-/* instanceCustomIndex has 24 bits: the first triangle of a mesh must fit. */
+/* Limit: instanceCustomIndex, the first triangle of a mesh, has 24 bits. */
 #define TRIANGLES_MAX (1u << 24)
-#define STRUCTURE_ALIGNMENT 256u /* of an offset in a buffer: valid usage 03734 */
+#define STRUCTURE_ALIGNMENT 256u /* of an offset in a buffer: VUID 03734 */
 #define INDEX_BYTES (3 * sizeof(uint32_t))
-#define TRIANGLE_BYTES (INDEX_BYTES + 9 * sizeof(float)) /* of what a build reads */
+#define TRIANGLE_BYTES (INDEX_BYTES + 9 * sizeof(float)) /* read by a build */
 #define ALL_RAYS 0xFFu
 
 _Static_assert(sizeof(VkAccelerationStructureInstanceKHR) == 64, "instances of the top level");
 
-/* ---- What is built --------------------------------------------------------------------------- */
+/* ---- Build descriptions ---------------------------------------------------------------------- */
 
-/* A description of one structure, whole in itself: it may not be copied. */
+/* Parameters of one build. `info` points to `geometry`, so a build must not be copied. */
 typedef struct build {
     VkAccelerationStructureGeometryKHR geometry;
     VkAccelerationStructureBuildGeometryInfoKHR info;
     VkAccelerationStructureBuildRangeInfoKHR range;
 } build;
 
-/* Whether rays may go through some of a mesh. One geometry serves all of its triangles, since their
- * order is that of the tree: where one of its materials is a mask, or not seen from behind, the shader is asked about each
- * of them. */
+/* Whether a ray may pass through a part of the mesh. A mesh is a single geometry, because its
+ * triangles are in the order of the BVH. If one of its materials is alpha-tested or single-sided,
+ * the geometry is not opaque and the shader tests each candidate triangle. */
 static int has_holes(const masu_scene_data *scene, const masu_scene_view *v, uint32_t mesh) {
     const masu_blob_mesh *m = &v->meshes[mesh];
     uint32_t holes = MASU_MATERIAL_IS_SINGLE | (masu_ray_masks(scene) ? MASU_MATERIAL_IS_MASK : 0);
@@ -40,7 +40,7 @@ static int has_holes(const masu_scene_data *scene, const masu_scene_view *v, uin
     return 0;
 }
 
-/* Of a mesh, but for addresses. */
+/* Describes the bottom-level structure of a mesh, without its addresses. */
 static void describe_bottom(const masu_scene_data *scene, const masu_scene_view *v, uint32_t mesh,
                             build *b) {
     const masu_blob_mesh *m = &v->meshes[mesh];
@@ -242,7 +242,7 @@ static void record_build(masu_device *m, VkCommandBuffer cmd, build *b,
     m->vk.CmdBuildAccelerationStructuresKHR(cmd, 1, &b->info, &range);
 }
 
-/* What was copied, or built in the same scratch memory, comes before. */
+/* A build waits for earlier copies, and for earlier builds that use the same scratch memory. */
 static void wait_before_build(masu_device *m, VkCommandBuffer cmd, VkPipelineStageFlags from,
                               VkAccessFlags access) {
     VkMemoryBarrier barrier = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
@@ -254,8 +254,8 @@ static void wait_before_build(masu_device *m, VkCommandBuffer cmd, VkPipelineSta
                              1, &barrier, 0, NULL, 0, NULL);
 }
 
-/* The meshes from `mesh` on of one step, some of them: no more bytes than a step may have, but one at least. Returns the
- * first of the next. */
+/* One step builds the meshes from `mesh` on, within desc.load_step bytes, but at least one. Returns
+ * the first mesh of the next step. */
 static uint32_t end_of_step(const masu_frame_plan *plan, const masu_scene_view *v, uint32_t mesh) {
     uint64_t room = plan->desc.load_step, used = 0;
     for (; mesh < plan->scene.meshes; mesh++) {
@@ -281,7 +281,7 @@ uint32_t masu_ray_build_steps(const masu_frame_plan *plan) {
 void masu_ray_record_bottoms(masu_device *m, VkCommandBuffer cmd, uint32_t *next) {
     masu_scene_view v = masu_scene_data_view(&m->plan->scene);
     uint32_t mesh = *next;
-    /* Of steps before this one, too. */
+    /* Includes the builds of earlier steps. */
     VkPipelineStageFlags from =
         VK_PIPELINE_STAGE_TRANSFER_BIT | VK_PIPELINE_STAGE_ACCELERATION_STRUCTURE_BUILD_BIT_KHR;
     VkAccessFlags access =
@@ -301,7 +301,7 @@ void masu_ray_record_bottoms(masu_device *m, VkCommandBuffer cmd, uint32_t *next
     }
 }
 
-/* The barrier at the top of the frame stands between it and what the previous frame did. */
+/* The barrier at the start of the frame orders the build after the previous frame's accesses. */
 void masu_ray_record_top(masu_device *m, VkCommandBuffer cmd, uint32_t slot) {
     build b;
     describe_top(&m->plan->scene, &b);

@@ -1,6 +1,7 @@
-/* record.c: the table becomes command buffers: one for a recording, or, where desc.split has the
- * host's own commands in a frame, one more for each such row of the table. recordings.c says which
- * recordings there are. */
+/* record.c: records the passes of a frame into command buffers: one per recording, plus one for
+ * each row of the pass table at which desc.split inserts the host's own commands. recordings.c
+ * lists the recordings. Over 700 lines: all kinds of passes share the helpers that bind and
+ * draw. */
 #include "device/record.h"
 
 #include "base/error.h"
@@ -23,7 +24,7 @@ static masu_push_block push_of(const masu_recorder *rec, uint32_t pass) {
     return masu_push_of(rec->m->plan, rec->rung, pass, few_groups(rec));
 }
 
-/* The list of tiles that an indirect pass runs for; MASU_BUFFER_COUNT: it runs for all. */
+/* The tile list of an indirect pass, or MASU_BUFFER_COUNT for a direct one. */
 static masu_buffer_id tiles_of(masu_image_extent extent) {
     switch (extent) {
     case MASU_EXTENT_TILES: return MASU_BUFFER_TILES;
@@ -37,20 +38,24 @@ static masu_buffer_id tiles_of(masu_image_extent extent) {
 static VkExtent2D groups_of(const masu_recorder *rec, uint32_t pass, const masu_push_block *push) {
     const masu_frame_plan *plan = rec->m->plan;
     uint32_t few = few_groups(rec), edge = MASU_GROUP, width = 0;
-    /* Of culling views lie in y: the camera, or the sun's. */
-    uint32_t views = push->own.word[offsetof(struct masu_push_cull, view) / 4] ? plan->views - 1 : 1;
+    /* The y axis of culling is the view: one for the camera, plan->views - 1 for the sun's
+     * cascades. */
+    uint32_t views =
+        push->own.word[offsetof(struct masu_push_cull, view) / 4] ? plan->views - 1 : 1;
     switch (masu_passes[pass].extent) {
     case MASU_EXTENT_PROBES: return (VkExtent2D){(plan->scene.probes + 63) / 64, 1};
-    case MASU_EXTENT_SKINS: return (VkExtent2D){(plan->scene.max_skinned + 63) / 64, plan->scene.skins};
+    case MASU_EXTENT_SKINS:
+        return (VkExtent2D){(plan->scene.max_skinned + 63) / 64, plan->scene.skins};
     case MASU_EXTENT_SKIN_TREES: return (VkExtent2D){plan->scene.skins, 1};
     case MASU_EXTENT_KEPT: return (VkExtent2D){(plan->scene.instances + 63) / 64, views};
     case MASU_EXTENT_BATCHES: return (VkExtent2D){few + rec->draws->large_count, views};
-    /* Tiles are workgroups themselves; everything else has one invocation per pixel or block. */
+    /* One workgroup per tile. Other extents have one invocation per pixel or block. */
     case MASU_EXTENT_TILE:
     case MASU_EXTENT_ONE: edge = 1; break;
     case MASU_EXTENT_OUTPUT_PAIRS: width = 2 * edge; break;
     case MASU_EXTENT_OUTPUT_ODD:
-        return (VkExtent2D){push->sizes.render_width / edge + 1, push->sizes.render_height / edge + 1};
+        return (VkExtent2D){push->sizes.render_width / edge + 1,
+                            push->sizes.render_height / edge + 1};
     default: break;
     }
     width = width ? width : edge;
@@ -58,9 +63,10 @@ static VkExtent2D groups_of(const masu_recorder *rec, uint32_t pass, const masu_
                         (push->sizes.output_height + edge - 1) / edge};
 }
 
-/* Where in MASU_BUFFER_SPRITES a vec4 of the frame lies. */
+/* Offset in MASU_BUFFER_SPRITES of this frame's element `vec4`. */
 static VkDeviceSize sprites_at(const masu_recorder *rec, uint64_t vec4) {
-    return rec->flight * rec->m->plan->buffers[MASU_BUFFER_SPRITES].stride + vec4 * sizeof(masu_vec4);
+    return rec->flight * rec->m->plan->buffers[MASU_BUFFER_SPRITES].stride +
+           vec4 * sizeof(masu_vec4);
 }
 
 static void record_compute(masu_recorder *rec, uint32_t pass, VkDescriptorSet set) {
@@ -110,10 +116,13 @@ SAME_PLACE(detail_u);
 SAME_PLACE(detail_v);
 SAME_PLACE(instances);
 _Static_assert(sizeof(struct masu_push_cascade) == sizeof(struct masu_push_local_shadow) &&
-                   offsetof(struct masu_push_cascade, cascade) == offsetof(struct masu_push_local_shadow, face) &&
-                   offsetof(struct masu_push_cascade, rise) == offsetof(struct masu_push_local_shadow, rise),
+                   offsetof(struct masu_push_cascade, cascade) ==
+                       offsetof(struct masu_push_local_shadow, face) &&
+                   offsetof(struct masu_push_cascade, rise) ==
+                       offsetof(struct masu_push_local_shadow, rise),
                "faces of lamps are drawn as cascades are");
-_Static_assert(offsetof(struct masu_push_cascade, cascade) == offsetof(struct masu_push_gbuffer, material),
+_Static_assert(offsetof(struct masu_push_cascade, cascade) ==
+                   offsetof(struct masu_push_gbuffer, material),
                "a cascade has its number in the place of the material");
 _Static_assert(offsetof(struct masu_push_cascade, rise) == offsetof(struct masu_push_gbuffer, meso),
                "a cascade has no meso, and a rise there");
@@ -132,41 +141,47 @@ SAME_PLACE(material, blended);
 
 #define GRAPHICS_STAGES (VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT)
 
-/* How a material is drawn: 0 without textures, then as draws.h counts. The sun asks for no maps but the masks. */
+/* The sweep that draws a material: a masu_draw_kind (draws.h), UINT32_MAX for none. Shadow casters
+ * use textures only for the alpha test. */
 static uint32_t sweep_of(const masu_draw_material *material, int casts) {
-    if (material->flags & MASU_MATERIAL_IS_BLEND) return UINT32_MAX; /* transparents.c; no shadow */
+    /* drawn by transparents.c; casts no shadow */
+    if (material->flags & MASU_MATERIAL_IS_BLEND) return UINT32_MAX;
     if (casts && material->flags & MASU_MATERIAL_NO_SHADOW) return UINT32_MAX;
     uint32_t kind = masu_draw_kind(material->flags);
     return casts && kind == 1 + MASU_TEXTURED_OPAQUE ? 0 : kind;
 }
 
-/* The same of what is picked: whatever has holes is asked for its map, and what is blended is there where its map
- * is by half. */
+/* The sweep that draws a material for picking. Transparent and alpha-tested materials use their
+ * map. A transparent surface can be picked where its opacity is at least one half. */
 #define HALF_THERE (128u << MASU_MAP_CUTOFF_SHIFT)
 
 static uint32_t pick_sweep_of(masu_draw_material *material) {
     int blended = (material->flags & MASU_MATERIAL_IS_BLEND) != 0;
     int holes = blended || (material->flags & MASU_MATERIAL_IS_MASK);
-    if (blended) material->flags = (material->flags & ~(0xFFu << MASU_MAP_CUTOFF_SHIFT)) | HALF_THERE;
+    if (blended)
+        material->flags = (material->flags & ~(0xFFu << MASU_MAP_CUTOFF_SHIFT)) | HALF_THERE;
     return holes && (material->flags & MASU_MATERIAL_HAS_MAPS) ? 1 + MASU_TEXTURED_MASK : 0;
 }
 
-/* The first texture coordinates; in scenes that have them the second ones and colours. */
+/* Binds the first texture coordinates and, in scenes that have them, the second ones and the vertex
+ * colours. */
 static void bind_texcoords(masu_recorder *rec) {
     const masu_texcoord_layout_of at = masu_texcoord_layout(&rec->m->plan->scene);
     VkBuffer buffer = rec->m->objects.buffers[MASU_BUFFER_TEXCOORDS];
     const VkBuffer buffers[] = {buffer, buffer, buffer};
     const VkDeviceSize places[] = {0, at.second, at.colors};
-    rec->m->vk.CmdBindVertexBuffers(rec->cmd, 1, masu_has_attributes(&rec->m->plan->scene) ? 3 : 1, buffers, places);
+    rec->m->vk.CmdBindVertexBuffers(rec->cmd, 1, masu_has_attributes(&rec->m->plan->scene) ? 3 : 1,
+                                    buffers, places);
 }
 
-/* A material's flags and layers into the push constants, and its textures bound where they are not
- * those of the draw before. */
+/* Sets a material's flags and layers in the push constants, and binds its textures if they differ
+ * from the previous draw's. */
 static void bind_maps(masu_recorder *rec, VkPipelineLayout layout,
                       const masu_draw_material *material, struct masu_push_gbuffer *push,
                       uint32_t *bound) {
     push->flags = (material->flags & 0xFFFFFFu) | material->more_layers << MASU_MAP_OCCLUSION_SHIFT;
-    push->coat_layer = material->more_layers >> 8 & 0x3FFFu; /* and which maps are of the second coordinates */
+    /* and bits: which maps use the second texture coordinates */
+    push->coat_layer = material->more_layers >> 8 & 0x3FFFu;
     push->layers = material->layers;
     push->detail_u = material->detail[0];
     push->detail_v = material->detail[1];
@@ -176,21 +191,23 @@ static void bind_maps(masu_recorder *rec, VkPipelineLayout layout,
                                      MASU_SET_TEXTURES, 1, &rec->m->texture_sets[*bound], 0, NULL);
 }
 
-/* One draw per primitive of each form of a placed mesh, for one view; instances of one mesh are neighbours, so one
- * draw serves them all; visible.c says which, in commands that lie in the order of batches whatever the
- * order of drawing. A sweep draws what shares a pipeline: without textures, with, and masks last, so
- * that most of what they would hide or shade in vain is known already. Emitting materials have
- * sweeps of their own where they have a subpass. */
-static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep, int culled, int emitting,
-                         uint32_t face) {
+/* Draws, for one view, each primitive of each level of detail of the instantiated meshes. Instances
+ * of a mesh are contiguous, so one indirect draw covers all of them. visible.c writes the instance
+ * counts into draw commands, which are in batch order independent of the drawing order. A sweep
+ * draws the materials that share a pipeline: without textures, with textures, and alpha-tested
+ * last, so that the depth test rejects most of their fragments. If emitting materials have a
+ * subpass, they have separate sweeps. */
+static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep, int culled,
+                         int emitting, uint32_t face) {
     const masu_device *m = rec->m;
     const masu_vk *vk = &m->vk;
-    int kept = m->plan->desc.resizable != 0; /* then the blob may be gone */
+    int kept = m->plan->desc.resizable != 0; /* the blob may be freed by then */
     masu_scene_view v = {0};
     if (!kept) v = masu_scene_data_view(&m->plan->scene);
     VkPipelineLayout layout = m->layouts[pass];
     VkDeviceSize zero = 0;
-    int lamp = pass == MASU_PASS_LOCAL_SHADOW, sun = masu_is_cascade(pass), pick = pass == MASU_PASS_PICK;
+    int lamp = pass == MASU_PASS_LOCAL_SHADOW, sun = masu_is_cascade(pass),
+        pick = pass == MASU_PASS_PICK;
     int casters = sun || lamp;
     uint32_t bound = MASU_BLOB_NONE, view = sun ? 1 + pass - MASU_PASS_CASCADE_0 : 0;
     int apart = pass == MASU_PASS_GBUFFER && masu_has_emission_subpass(m->plan);
@@ -201,7 +218,7 @@ static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep, int 
                           : lamp ? m->masked_faces
                           : pick ? m->masked_picks
                                  : m->textured[sweep - 1];
-    /* Nothing is drawn so. */
+    /* No material uses this pipeline. */
     if (!pipeline || ((casters || pick) && sweep == 1 + MASU_TEXTURED_OPAQUE)) return;
     vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
     vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, MASU_SET_GLOBAL, 1,
@@ -214,7 +231,8 @@ static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep, int 
     uint32_t lists = view * m->plan->listed;
     if (occlusion) lists += (uint32_t)m->plan->drawn.lists;
     VkDeviceSize commands = rec->flight * m->plan->buffers[MASU_BUFFER_DRAWS].stride;
-    commands += pick ? m->plan->pick_draws * MASU_DRAW_BYTES : MASU_DRAWS_OF(m->plan, view, occlusion);
+    commands +=
+        pick ? m->plan->pick_draws * MASU_DRAW_BYTES : MASU_DRAWS_OF(m->plan, view, occlusion);
     if (pick) lists = (uint32_t)m->plan->drawn.picks;
     if (lamp) {
         lists = (uint32_t)m->plan->drawn.faces + face * m->plan->listed;
@@ -222,7 +240,7 @@ static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep, int 
                    (m->plan->face_draws + (uint64_t)face * m->plan->draws) * MASU_DRAW_BYTES;
     }
     masu_push_block block = push_of(rec, pass);
-    struct masu_push_gbuffer push; /* a cascade is told the same, but its number for the material */
+    struct masu_push_gbuffer push; /* cascades: same layout, cascade index for material */
     memcpy(&push, &block.own, sizeof push);
     if (lamp) push.material = face;
     for (uint32_t b = 0; b < rec->draws->batch_count; b++) {
@@ -235,9 +253,11 @@ static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep, int 
             if (batch->mirrored) drawn.flags &= ~(uint32_t)MASU_MATERIAL_IS_SINGLE;
             if ((pick ? pick_sweep_of(&drawn) : sweep_of(&drawn, casters)) != sweep) continue;
             if (apart && emitting != (drawn.emits != 0)) continue;
-            if (!casters && !pick && culled != ((drawn.flags & MASU_MATERIAL_IS_SINGLE) != 0)) continue;
+            if (!casters && !pick && culled != ((drawn.flags & MASU_MATERIAL_IS_SINGLE) != 0))
+                continue;
             if (casters) {
-                memcpy(&push.meso, &drawn.rise, sizeof push.meso); /* a cascade reads rise there */
+                /* a cascade reads `rise` there */
+                memcpy(&push.meso, &drawn.rise, sizeof push.meso);
             } else if (pick) {
                 push.material = blended ? 1 : 0;
                 push.flags = drawn.flags;
@@ -258,30 +278,35 @@ static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep, int 
 
 static void record_polygons(masu_recorder *rec, uint32_t pass) {
     uint32_t sweeps = rec->m->texture_layout ? 1 + MASU_TEXTURED_COUNT : 1;
-    int sides = rec->m->plan->scene.singles && masu_passes[pass].geometry == MASU_GEOMETRY_POLYGONS ? 2 : 1;
+    int sides =
+        rec->m->plan->scene.singles && masu_passes[pass].geometry == MASU_GEOMETRY_POLYGONS ? 2 : 1;
     int subpasses = pass == MASU_PASS_GBUFFER && masu_has_emission_subpass(rec->m->plan) ? 2 : 1;
     for (int emitting = 0; emitting < subpasses; emitting++) {
         if (emitting) rec->m->vk.CmdNextSubpass(rec->cmd, VK_SUBPASS_CONTENTS_INLINE);
         for (uint32_t sweep = 0; sweep < sweeps; sweep++)
-            for (int side = 0; side < sides; side++) record_sweep(rec, pass, sweep, side, emitting, 0);
+            for (int side = 0; side < sides; side++)
+                record_sweep(rec, pass, sweep, side, emitting, 0);
     }
 }
 
-/* The shadow faces that a frame of this rung may render, each in its square. */
+/* Draws the local shadow faces that a frame of this rung may render, each into its atlas square. */
 static void record_faces(masu_recorder *rec, uint32_t pass) {
     const masu_device *m = rec->m;
     uint32_t sweeps = m->texture_layout ? 1 + MASU_TEXTURED_COUNT : 1, edge = m->plan->local_tile;
     for (uint32_t face = 0; face < m->plan->desc.rungs[rec->rung].local_shadow_faces; face++) {
         VkRect2D area = {masu_local_face_place(m->plan, face), {edge, edge}};
-        VkViewport viewport = {(float)area.offset.x, (float)area.offset.y, (float)edge, (float)edge, 0.0f, 1.0f};
+        VkViewport viewport = {
+            (float)area.offset.x, (float)area.offset.y, (float)edge, (float)edge, 0.0f, 1.0f};
         m->vk.CmdSetViewport(rec->cmd, 0, 1, &viewport);
         m->vk.CmdSetScissor(rec->cmd, 0, 1, &area);
-        for (uint32_t sweep = 0; sweep < sweeps; sweep++) record_sweep(rec, pass, sweep, 0, 0, face);
+        for (uint32_t sweep = 0; sweep < sweeps; sweep++)
+            record_sweep(rec, pass, sweep, 0, 0, face);
     }
 }
 
-/* One draw of what the vertex shader makes up of MASU_BUFFER_SPRITES, as many as the frame says. */
-static void record_sprites(masu_recorder *rec, uint32_t pass, VkDescriptorSet set, uint64_t command) {
+/* One indirect draw of vertices generated from MASU_BUFFER_SPRITES; the frame writes the count. */
+static void record_sprites(masu_recorder *rec, uint32_t pass, VkDescriptorSet set,
+                           uint64_t command) {
     const masu_device *m = rec->m;
     const VkDescriptorSet sets[] = {m->global_sets[rec->flight][pass], set};
     masu_push_block push = push_of(rec, pass);
@@ -289,8 +314,8 @@ static void record_sprites(masu_recorder *rec, uint32_t pass, VkDescriptorSet se
     m->vk.CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, m->layouts[pass],
                                 MASU_SET_GLOBAL, 2, sets, 0, NULL);
     m->vk.CmdPushConstants(rec->cmd, m->layouts[pass], GRAPHICS_STAGES, 0, sizeof push, &push);
-    m->vk.CmdDrawIndirect(rec->cmd, m->objects.buffers[MASU_BUFFER_SPRITES], sprites_at(rec, command), 1,
-                          sizeof(masu_vec4));
+    m->vk.CmdDrawIndirect(rec->cmd, m->objects.buffers[MASU_BUFFER_SPRITES],
+                          sprites_at(rec, command), 1, sizeof(masu_vec4));
 }
 
 static void bind_transparents(masu_recorder *rec, VkDescriptorSet set, int tints) {
@@ -298,30 +323,34 @@ static void bind_transparents(masu_recorder *rec, VkDescriptorSet set, int tints
     VkPipeline pipeline = tints ? rec->m->tints : rec->m->pipelines[MASU_PASS_TRANSPARENTS];
     rec->m->vk.CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
     rec->m->vk.CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS,
-                                     rec->m->layouts[MASU_PASS_TRANSPARENTS], MASU_SET_GLOBAL, 2, sets, 0, NULL);
+                                     rec->m->layouts[MASU_PASS_TRANSPARENTS], MASU_SET_GLOBAL, 2,
+                                     sets, 0, NULL);
 }
 
-/* The commands of a slot, from `at` on. */
+/* Draws the commands of a slot, which begin at offset `at`. */
 static void draw_slot(masu_recorder *rec, VkDeviceSize at, int bind) {
     const masu_device *m = rec->m;
     for (uint32_t c = 0; c < m->plan->scene.transparent_sets; c++) {
         if (m->texture_layout && (bind || m->plan->scene.transparent_sets > 1))
-            m->vk.CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, m->layouts[MASU_PASS_TRANSPARENTS],
-                                        MASU_SET_TEXTURES, 1, &m->texture_sets[rec->draws->transparent_sets[c]], 0, NULL);
-        m->vk.CmdDrawIndexedIndirect(rec->cmd, m->objects.buffers[MASU_BUFFER_DRAWS], at + c * MASU_DRAW_BYTES, 1,
-                                     MASU_DRAW_BYTES);
+            m->vk.CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS,
+                                        m->layouts[MASU_PASS_TRANSPARENTS], MASU_SET_TEXTURES, 1,
+                                        &m->texture_sets[rec->draws->transparent_sets[c]], 0, NULL);
+        m->vk.CmdDrawIndexedIndirect(rec->cmd, m->objects.buffers[MASU_BUFFER_DRAWS],
+                                     at + c * MASU_DRAW_BYTES, 1, MASU_DRAW_BYTES);
     }
 }
 
-/* Slot after slot, each with a command for each texture set: transparents.c has filled one of them. Before each
- * slot those particles that are farther; render passes of both are compatible. Where anything gives what is behind it
- * a colour, each slot is drawn twice: that first. */
+/* Draws the transparent slots back to front. A slot has one command per texture set, of which
+ * transparents.c fills one. Before each slot the particles behind it are drawn; the render passes
+ * of both are compatible. In scenes with coloured transmission each slot is drawn twice: first the
+ * pass that multiplies the image by the transmitted colour. */
 static void record_transparents(masu_recorder *rec, const VkDescriptorSet *sets) {
     const masu_device *m = rec->m;
     const masu_vk *vk = &m->vk;
     VkPipelineLayout layout = m->layouts[MASU_PASS_TRANSPARENTS];
     VkDeviceSize zero = 0;
-    VkDeviceSize at = rec->flight * m->plan->buffers[MASU_BUFFER_DRAWS].stride + m->plan->transparent_draws * MASU_DRAW_BYTES;
+    VkDeviceSize at = rec->flight * m->plan->buffers[MASU_BUFFER_DRAWS].stride +
+                      m->plan->transparent_draws * MASU_DRAW_BYTES;
     int among = m->plan->needs.particles, tints = m->plan->scene.tints != 0;
     masu_push_block block = push_of(rec, MASU_PASS_TRANSPARENTS);
     struct masu_push_transparents push;
@@ -329,9 +358,12 @@ static void record_transparents(masu_recorder *rec, const VkDescriptorSet *sets)
     if (!among && !tints) bind_transparents(rec, sets[MASU_PASS_TRANSPARENTS], 0);
     vk->CmdBindVertexBuffers(rec->cmd, 0, 1, &m->objects.buffers[MASU_BUFFER_VERTICES], &zero);
     if (m->texture_layout) bind_texcoords(rec);
-    vk->CmdBindIndexBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_INDICES], 0, VK_INDEX_TYPE_UINT32);
+    vk->CmdBindIndexBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_INDICES], 0,
+                           VK_INDEX_TYPE_UINT32);
     for (uint32_t k = 0; k < rec->draws->transparent_count; k++) {
-        if (among) record_sprites(rec, MASU_PASS_PARTICLES, sets[MASU_PASS_PARTICLES], MASU_SPRITE_DRAWS + k);
+        if (among)
+            record_sprites(rec, MASU_PASS_PARTICLES, sets[MASU_PASS_PARTICLES],
+                           MASU_SPRITE_DRAWS + k);
         if (among || tints) bind_transparents(rec, sets[MASU_PASS_TRANSPARENTS], tints);
         push.instances = (uint32_t)m->plan->drawn.transparents + MASU_TRANSPARENT_WORDS * k;
         memcpy(&block.own, &push, sizeof push);
@@ -345,11 +377,12 @@ static void record_transparents(masu_recorder *rec, const VkDescriptorSet *sets)
     }
 }
 
-/* Each part of the atlas has its own. */
+/* Each part of the occluder atlas has its own viewport and indirect draw. */
 static void record_occluders(masu_recorder *rec) {
     const masu_device *m = rec->m;
     VkPipelineLayout layout = m->layouts[MASU_PASS_OCCLUDERS];
-    m->vk.CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, m->pipelines[MASU_PASS_OCCLUDERS]);
+    m->vk.CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS,
+                          m->pipelines[MASU_PASS_OCCLUDERS]);
     m->vk.CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, MASU_SET_GLOBAL,
                                 1, &m->global_sets[rec->flight][MASU_PASS_OCCLUDERS], 0, NULL);
     masu_push_block block = push_of(rec, MASU_PASS_OCCLUDERS);
@@ -371,8 +404,10 @@ static void record_occluders(masu_recorder *rec) {
     }
 }
 
-/* So many vertices that the vertex shader makes up: a triangle that covers the render area, or squares. */
-static void record_made_up(masu_recorder *rec, uint32_t pass, VkDescriptorSet set, uint32_t vertices) {
+/* Draws `vertices` vertices that the vertex shader generates: a triangle that covers the render
+ * area, or squares. */
+static void record_made_up(masu_recorder *rec, uint32_t pass, VkDescriptorSet set,
+                           uint32_t vertices) {
     const masu_vk *vk = &rec->m->vk;
     masu_push_block push = push_of(rec, pass);
     vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, rec->m->pipelines[pass]);
@@ -383,15 +418,16 @@ static void record_made_up(masu_recorder *rec, uint32_t pass, VkDescriptorSet se
     vk->CmdDraw(rec->cmd, vertices, 1, 0, 0);
 }
 
-/* The part of its images that a graphics pass clears and draws. */
+/* The part of its attachments that a graphics pass clears and draws. */
 static VkRect2D render_area(const masu_recorder *rec, uint32_t pass) {
     if (pass == MASU_PASS_OCCLUDERS)
         return (VkRect2D){{0, 0}, {MASU_ATLAS_WIDTH, MASU_ATLAS_HEIGHT}};
     if (pass == MASU_PASS_PICK) return (VkRect2D){{0, 0}, {2, 2}};
     if (!masu_is_cascade(pass))
-        return (VkRect2D){{0, 0},
-                          masu_plan_extent(rec->m->plan, masu_passes[pass].extent,
-                                           (VkExtent2D){rec->rp->render_width, rec->rp->render_height})};
+        return (VkRect2D){
+            {0, 0},
+            masu_plan_extent(rec->m->plan, masu_passes[pass].extent,
+                             (VkExtent2D){rec->rp->render_width, rec->rp->render_height})};
     return (VkRect2D){masu_cascade_place(rec->m->plan, pass - MASU_PASS_CASCADE_0),
                       {rec->rp->cascade_size, rec->rp->cascade_size}};
 }
@@ -400,7 +436,7 @@ static void record_graphics(masu_recorder *rec, uint32_t pass, const VkDescripto
     const masu_vk *vk = &rec->m->vk;
     uint32_t objects = masu_is_cascade(pass) ? MASU_PASS_CASCADE_0 : pass;
     VkClearValue clear[6];
-    memset(clear, 0, sizeof clear); /* depth 0 is infinitely far */
+    memset(clear, 0, sizeof clear); /* depth 0 is infinitely far (reversed z) */
     VkRect2D area = render_area(rec, pass);
     VkViewport viewport = {(float)area.offset.x,
                            (float)area.offset.y,
@@ -415,20 +451,22 @@ static void record_graphics(masu_recorder *rec, uint32_t pass, const VkDescripto
                                    .clearValueCount = 6,
                                    .pClearValues = clear};
     vk->CmdBeginRenderPass(rec->cmd, &begin, VK_SUBPASS_CONTENTS_INLINE);
-    if (rec->m->pipelines[objects]) { /* else it only clears */
+    if (rec->m->pipelines[objects]) { /* without a pipeline the pass only clears */
         vk->CmdSetViewport(rec->cmd, 0, 1, &viewport);
         vk->CmdSetScissor(rec->cmd, 0, 1, &area);
         if (pass == MASU_PASS_GBUFFER || pass == MASU_PASS_PICK || masu_is_cascade(pass))
             record_polygons(rec, pass);
         if (pass == MASU_PASS_OCCLUDERS) record_occluders(rec);
         if (pass == MASU_PASS_TRANSPARENTS) record_transparents(rec, sets);
-        if (pass == MASU_PASS_PARTICLES) /* the last draw */
-            record_sprites(rec, pass, sets[pass], MASU_SPRITE_DRAWS + rec->m->plan->scene.transparents);
+        if (pass == MASU_PASS_PARTICLES) /* the particles in front of all transparent surfaces */
+            record_sprites(rec, pass, sets[pass],
+                           MASU_SPRITE_DRAWS + rec->m->plan->scene.transparents);
         if (pass == MASU_PASS_LINES) record_sprites(rec, pass, sets[pass], MASU_SPRITE_LINES);
         if (pass == MASU_PASS_SPLIT_DEPTH) record_made_up(rec, pass, sets[pass], 3);
         if (pass == MASU_PASS_LOCAL_SHADOW) record_faces(rec, pass);
         if (pass == MASU_PASS_LOCAL_SHADOW_KEEP)
-            record_made_up(rec, pass, sets[pass], 6 * rec->m->plan->desc.rungs[rec->rung].local_shadow_faces);
+            record_made_up(rec, pass, sets[pass],
+                           6 * rec->m->plan->desc.rungs[rec->rung].local_shadow_faces);
     }
     vk->CmdEndRenderPass(rec->cmd);
 }
@@ -457,7 +495,8 @@ static void record_readback(masu_recorder *rec, uint32_t pass) {
 
 static void record_present(masu_recorder *rec, uint32_t pass) {
     const VkExtent2D size = rec->m->plan->desc.output;
-    const masu_viewport *v = &rec->m->plan->desc.viewports[rec->viewport]; /* all 0 where there are none */
+    /* all 0 without viewports */
+    const masu_viewport *v = &rec->m->plan->desc.viewports[rec->viewport];
     const VkOffset3D at = {(int32_t)v->x, (int32_t)v->y, 0};
     masu_image_id from = (masu_image_id)rec->rp->access[pass][0].image;
     if (rec->m->plan->copies) {
@@ -498,12 +537,12 @@ static void end_label(const masu_recorder *rec) {
     rec->m->vk.CmdEndDebugUtilsLabelEXT(rec->cmd);
 }
 
-/* Query `index` of this flight. The full barrier keeps later work from starting before the stamp is
- * written, and earlier work from ending after it: without it a driver may overlap passes and each
- * time would mean little. */
+/* Writes timestamp `index` of this frame in flight. The full barrier keeps later work from starting
+ * before the timestamp, and earlier work from ending after it. Without the barrier a driver may
+ * overlap passes, and the times of single passes would be meaningless. */
 static void timestamp(masu_recorder *rec, uint32_t index) {
     if (!rec->m->queries) return;
-    if (!rec->m->plan->desc.debug.timestamps) { /* the governor's two cost no barrier */
+    if (!rec->m->plan->desc.debug.timestamps) { /* the governor's two timestamps need no barrier */
         if (index != 0 && index != MASU_PASS_COUNT) return;
         rec->m->vk.CmdWriteTimestamp(rec->cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT,
                                      rec->m->queries,
@@ -517,11 +556,13 @@ static void timestamp(masu_recorder *rec, uint32_t index) {
                                  rec->flight * (MASU_PASS_COUNT + 1) + index);
 }
 
-/* NaN or infinity, read as fp32, fp16 or unorm alike; or NaN, 1, NaN, 1 as fp16 and 0.0078 as fp32, which passes for
- * content where only one component is looked at. */
-static uint32_t poison_word(uint32_t kind) { return kind == 3 ? 0x3C007FC0u : kind == 2 ? 0x7C007C00u : 0x7FC07FC0u; }
+/* Kind 1: NaN, kind 2: infinity, both as fp32 and as fp16 (unorm: not 0). Kind 3: NaN, 1, NaN, 1 as
+ * fp16 and 0.0078 as fp32, which passes as content if a shader tests only one component. */
+static uint32_t poison_word(uint32_t kind) {
+    return kind == 3 ? 0x3C007FC0u : kind == 2 ? 0x7C007C00u : 0x7FC07FC0u;
+}
 
-/* Of the slot, to where shaders and rays read them. */
+/* Copies the mutable materials from this frame's slot to the buffers that shaders and rays read. */
 static void copy_materials(masu_recorder *rec) {
     const masu_device *m = rec->m;
     const masu_scene_data *scene = &m->plan->scene;
@@ -554,20 +595,20 @@ static void record_prologue(masu_recorder *rec) {
     int tiled = 0;
     for (uint32_t t = 0; t < sizeof tiles / sizeof *tiles; t++) {
         if (!m->plan->buffers[tiles[t]].bytes) continue;
-        /* Arguments of the indirect dispatch: no tile yet, one row, one layer. */
+        /* Indirect dispatch arguments: no tiles yet, one row, one layer. */
         static const uint32_t arguments[3] = {0, 1, 1};
         tiled = 1;
         for (uint32_t i = 0; i < 3; i++)
             m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[tiles[t]], 4 * i, 4, arguments[i]);
     }
-    if (m->plan->needs.metered) { /* the bins; what the previous frame left stays */
+    if (m->plan->needs.metered) { /* clears the histogram bins, keeps the header */
         m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_EXPOSURE],
                             MASU_EXPOSURE_HEADER * sizeof(uint32_t), VK_WHOLE_SIZE, 0);
     }
     int live = m->plan->buffers[MASU_BUFFER_LIVE_MATERIALS].bytes != 0;
     if (live) copy_materials(rec);
     int receivers = masu_has_pass(&rec->rp->active, MASU_PASS_RECEIVER_MASK);
-    if (receivers) { /* none yet: the least depth is the farthest from the sun */
+    if (receivers) { /* no receiver yet: the initial minimum is the depth farthest from the sun */
         m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_SEEN],
                             m->plan->receiver_mask * sizeof(uint32_t), VK_WHOLE_SIZE, UINT32_MAX);
     }
@@ -595,7 +636,8 @@ static void record_epilogue(masu_recorder *rec) {
                             m->objects.buffers[MASU_BUFFER_READBACK], 1, &copy);
     }
     if (m->queries) {
-        /* Copied by the GPU, so that masu_stats is a read of memory and no call into the driver. */
+        /* The GPU copies the results, so that masu_stats reads memory and does not call the
+         * driver. */
         m->vk.CmdCopyQueryPoolResults(
             rec->cmd, m->queries, rec->flight * (MASU_PASS_COUNT + 1), masu_stamps(&m->plan->desc),
             m->objects.buffers[MASU_BUFFER_READBACK],
@@ -610,7 +652,7 @@ static void record_epilogue(masu_recorder *rec) {
         masu_memory_barrier(rec, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
                             VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
     }
-    /* The target to where the host wants it, visible to whatever comes next. */
+    /* Leaves the target in the layout that the host expects, visible to any later access. */
     const masu_use *target = &rec->states[MASU_IMAGE_TARGET];
     masu_use last = {1, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_READ_BIT,
                      m->plan->desc.targets.final_layout, 0};
@@ -632,7 +674,8 @@ static masu_result end_part(masu_recorder *rec, masu_detail *detail) {
     return r ? masu_fail_vulkan(detail, r, "vkEndCommandBuffer") : MASU_OK;
 }
 
-/* The host's commands go here. Images that it is given are in their layouts, and stay in them. */
+/* Ends a part: the host inserts its commands here. It gets images in their documented layouts and
+ * must leave them in these. */
 static masu_result record_split(masu_recorder *rec, uint32_t *part, masu_detail *detail) {
     masu_result result = end_part(rec, detail);
     if (!result) result = begin_part(rec, ++*part, detail);
@@ -643,9 +686,10 @@ static masu_result record_split(masu_recorder *rec, uint32_t *part, masu_detail 
     return MASU_OK;
 }
 
-/* Whether the variant runs a pass that not every frame needs. */
+/* Whether this variant runs a pass that not every frame runs. */
 static int is_drawn(const masu_recorder *rec, uint32_t pass) {
-    if (masu_is_cascade(pass)) return masu_variant_draws(rec->rp, rec->variant, pass - MASU_PASS_CASCADE_0);
+    if (masu_is_cascade(pass))
+        return masu_variant_draws(rec->rp, rec->variant, pass - MASU_PASS_CASCADE_0);
     if (!masu_is_of_faces(pass)) return 1;
     return masu_variant_draws(rec->rp, rec->variant, MASU_DRAWN_FACES);
 }
@@ -657,7 +701,7 @@ masu_result masu_record_frame(masu_recorder *rec, const VkDescriptorSet *sets,
     masu_result result = begin_part(rec, part, detail);
     if (result) return result;
     record_prologue(rec);
-    if (rec->viewport) { /* what the first has drawn stays */
+    if (rec->viewport) { /* keeps the image of the first viewport */
         rec->states[MASU_IMAGE_TARGET] =
             (masu_use){1, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_WRITE_BIT,
                        m->plan->desc.targets.final_layout, 1};

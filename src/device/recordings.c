@@ -1,7 +1,7 @@
-/* recordings.c: which recordings there are. One per (frame in flight, viewport, rung, target,
- * and where a rung draws cascades of the shadow map less often than every frame: set of those
- * that it draws). masu_init makes them, after masu_resize the first frame that needs one; they
- * are submitted again and again. */
+/* recordings.c: the list of recordings. There is one per frame in flight, viewport, rung and
+ * target. If a rung renders some shadow cascades less often than every frame, there is also one
+ * variant per set of cascades. masu_init records all; after masu_resize the first frame that needs
+ * a recording records it. Recordings are submitted many times. */
 #include "device/recordings.h"
 
 #include "base/error.h"
@@ -13,7 +13,7 @@
 #include <string.h>
 
 static masu_result create_command_buffers(masu_device *m, uint32_t frames, masu_detail *detail) {
-    /* Recordings are replaced one by one, while others are pending. */
+    /* Command buffers are reset one by one, while others may be pending. */
     VkCommandPoolCreateInfo pool = {
         .sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
         .flags = m->plan->desc.resizable
@@ -42,8 +42,8 @@ static masu_result create_queries(masu_device *m, masu_detail *detail) {
     return MASU_FAILED(r, m->queries) ? masu_fail_vulkan(detail, r, "vkCreateQueryPool") : MASU_OK;
 }
 
-/* The variants of a frame's recording: one for each set of cascades that it may draw. `again`:
- * they may have been recorded before, or in part. */
+/* Records all variants of a frame, one per set of cascades. `again`: some may be recorded
+ * already. */
 static masu_result record_variants(masu_device *m, const masu_draws *draws, masu_recording_id id,
                                    int again, masu_detail *detail) {
     masu_frame_plan *plan = m->plan;
@@ -69,7 +69,7 @@ static masu_result record_variants(masu_device *m, const masu_draws *draws, masu
                              .variant = v,
                              .rp = rp};
         if (!result) result = masu_record_frame(&rec, sets, detail);
-        rp->barriers = rec.barriers; /* of the last variant, which leaves nothing out */
+        rp->barriers = rec.barriers; /* of the last variant, which runs all passes */
     }
     if (!result) m->recorded[first] = 1;
     return result;

@@ -13,22 +13,22 @@ enum {
     MASU_AXIS_COUNT
 };
 
-/* A shader and the axes that it is compiled over: how many forms each has. */
+/* A shader, the axes over which it is compiled, and its number of forms per axis. */
 typedef struct masu_shader {
     const char *name;
     uint32_t axis_count;
     struct {
         uint32_t axis, forms;
     } axes[4];
-    const masu_packed *codes; /* of every combination, the first axis fastest */
+    const masu_packed *codes; /* all combinations, first axis fastest */
 } masu_shader;
 
 #include "packed.h"
 #include "permutations.h"
 
-/* ---- The form of each axis that a plan asks for ---------------------------------------------- */
+/* ---- Form of each axis that a plan needs ----------------------------------------------------- */
 
-/* Whether all that a pass samples, in any rung, is colour that holds nothing but 0..1. */
+/* Whether all images that a pass samples, in any rung, are colour in the range 0..1. */
 static int reads_unorm(const masu_frame_plan *plan, uint32_t pass) {
     for (uint32_t r = 0; r < plan->desc.rung_count; r++) {
         const masu_rung_plan *rp = &plan->rungs[r];
@@ -48,7 +48,7 @@ static int reads_unorm(const masu_frame_plan *plan, uint32_t pass) {
     return 1;
 }
 
-/* Of the axes COLOR and LAST. */
+/* Form of the axes COLOR and LAST. */
 static int color_form(const masu_frame_plan *plan, uint32_t pass, int last) {
     if (plan->deep) return 3;
     if (plan->needs.scene) return last ? 2 : 4;
@@ -68,7 +68,8 @@ static uint32_t form_of(uint32_t axis, const masu_frame_plan *plan, uint32_t pas
     }
 }
 
-/* A flag counts as 1 whatever it is; a form that a shader does not have as its last. */
+/* The permutation of a shader for the plan. A non-zero flag is form 1; a value beyond the shader's
+ * forms selects the last form. */
 static masu_code permutation(const masu_frame_plan *plan, uint32_t pass, uint32_t shader,
                              int textured, int last) {
     const masu_shader *s = &shaders[shader];
@@ -118,7 +119,7 @@ masu_draw_code masu_draw_code_of(const masu_frame_plan *plan, uint32_t pass, int
                            masu_passes[pass].code
                                ? scene_code(plan, pass)
                                : permutation(plan, pass, of_pass[pass].fragment, textured, 0)};
-    /* Through the holes of masks the sun shines; the rest of a cascade is depth alone. */
+    /* Casters need a fragment shader only for the alpha test; otherwise only depth is written. */
     masu_geometry geometry = masu_passes[pass].geometry;
     if ((geometry == MASU_GEOMETRY_CASCADE || geometry == MASU_GEOMETRY_CASTERS) && !textured)
         code.fragment = (masu_code){0};
@@ -130,10 +131,10 @@ masu_interface masu_code_interface(const masu_code *code) {
                        : code->packed.interface;
 }
 
-/* Bindings of set 0 that any form of a pass declares. */
+/* Bit mask of the set 0 bindings that any form of a pass declares. */
 static uint64_t declared_bindings(const masu_frame_plan *plan, uint32_t pass) {
     uint64_t bindings = 0;
-    if (masu_passes[pass].code) { /* of the scene, in one form: it is read, so read it once */
+    if (masu_passes[pass].code) { /* scene code has one form: read it once */
         masu_code vertex = permutation(plan, pass, of_pass[pass].vertex, 0, 0);
         masu_code own = scene_code(plan, pass);
         return masu_code_interface(&vertex).bindings | masu_code_interface(&own).bindings;
@@ -197,7 +198,7 @@ const uint32_t *masu_code_read(const masu_code *code, uint32_t *room) {
     return masu_unpack(&masu_pack_of_all, &code->packed, room) ? room : NULL;
 }
 
-/* ---- What is left out ------------------------------------------------------------------------ */
+/* ---- Shaders missing from the library -------------------------------------------------------- */
 
 masu_result masu_code_check(const masu_frame_plan *plan, masu_detail *detail) {
     for (uint32_t r = 0; r < plan->desc.rung_count; r++) {
@@ -205,12 +206,13 @@ masu_result masu_code_check(const masu_frame_plan *plan, masu_detail *detail) {
         for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
             if (!masu_has_pass(&rp->active, p)) continue;
             masu_draw_code draw = masu_draw_code_of(plan, p, plan->scene.texture_arrays > 0);
-            if (!masu_compute_code(plan, p, masu_comes_last(rp, p)).left_out && !draw.vertex.left_out &&
-                !draw.fragment.left_out)
+            if (!masu_compute_code(plan, p, masu_comes_last(rp, p)).left_out &&
+                !draw.vertex.left_out && !draw.fragment.left_out)
                 continue;
             const char *name = masu_scene_class_name(masu_scene_class_of(plan->desc.scene));
             return masu_fail(detail, MASU_ERROR_LIMIT, "CLASSES", 1, 0,
-                             "this library was built without the shader of the pass %s: the scene's class is %s, "
+                             "this library was built without the shader of the pass %s: the "
+                             "scene's class is %s, "
                              "to be built with make CLASSES=%s or all",
                              masu_passes[p].name, name, name);
         }
@@ -218,7 +220,7 @@ masu_result masu_code_check(const masu_frame_plan *plan, masu_detail *detail) {
     return MASU_OK;
 }
 
-/* ---- The room that they need ----------------------------------------------------------------- */
+/* ---- Memory for unpacking -------------------------------------------------------------------- */
 
 static uint64_t larger(uint64_t bytes, masu_code code) {
     return !code.words && code.bytes > bytes ? code.bytes : bytes;

@@ -1,5 +1,5 @@
-/* spirv_interface.c: see spirv_interface.h. Numbers are those of the SPIR-V specification,
- * sections 3.20 and 3.49.8. */
+/* spirv_interface.c: see spirv_interface.h. Constants are from the SPIR-V specification, sections
+ * 3.20 and 3.49.8. */
 #include "device/spirv_interface.h"
 
 #include <stddef.h>
@@ -15,8 +15,8 @@ enum {
     SET_0_MAX = 128
 };
 
-/* The next OpDecorate with a number behind it, from *at on; NULL: there is none. All stand
- * before the first type. */
+/* Returns the next OpDecorate with a literal operand, from *at on, or NULL. All decorations precede
+ * the first type declaration. */
 static const uint32_t *next_decoration(const uint32_t *words, uint64_t count, uint64_t *at) {
     while (*at < count) {
         const uint32_t *op = words + *at;
@@ -32,7 +32,7 @@ static const uint32_t *next_decoration(const uint32_t *words, uint64_t count, ui
 /* The variables of set 0. A module that Masu can bind has at most one per binding, and few
  * aliases. */
 typedef struct variables {
-    uint32_t count; /* beyond SET_0_MAX: too many to tell */
+    uint32_t count; /* larger than SET_0_MAX: too many to list */
     uint32_t ids[SET_0_MAX];
 } variables;
 

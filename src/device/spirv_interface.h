@@ -1,6 +1,6 @@
-/* spirv_interface.h: what a SPIR-V module declares of the interface of its pipeline. The build
- * notes it for each module of the library (tools/generate/pack_spirv.c); of a scene's code
- * masu_init reads it. */
+/* spirv_interface.h: the part of a pipeline's interface that a SPIR-V module declares. The build
+ * computes it for each module of the library (tools/generate/pack_spirv.c), masu_init for the code
+ * of a scene. */
 #ifndef MASU_SPIRV_INTERFACE_H
 #define MASU_SPIRV_INTERFACE_H
 
@@ -11,9 +11,9 @@ typedef struct masu_interface {
     uint64_t bindings;  /* of descriptor set 0: bit n is binding n, below 64 */
 } masu_interface;
 
-/* Total: nothing outside of the words is read, whatever they are. Linear in the decorations. A
- * module with more than 128 variables in set 0 counts as one that declares each of its bindings
- * there. */
+/* Accepts arbitrary input: reads only the `count` values. Linear in the number of decorations. For
+ * a module with more than 128 variables in set 0, all bindings that it decorates there are
+ * reported. */
 masu_interface masu_interface_of(const uint32_t *words, uint64_t count);
 
 #endif

@@ -6,22 +6,22 @@
 #define MAGIC 0x07230203u
 #define HEADER 5u
 
-/* Ids, the one used last first; place 0 is none. */
+/* Recently used ids, latest first, from index 1 on; index 0 is unused. */
 typedef struct recent {
     uint32_t ids[MASU_PACK_RECENT];
-    uint32_t earlier; /* which result the last id was that had no place */
+    uint32_t earlier; /* index of the last result that was coded by MASU_PACK_EARLIER */
 } recent;
 
 typedef struct unpacking {
     const masu_pack *pack;
     const uint8_t *run, *run_end;
-    uint32_t own;  /* next byte of the module's own part */
-    uint32_t from; /* next byte from elsewhere */
+    uint32_t own;  /* next byte of the module's own part of the pool */
+    uint32_t from; /* next byte of the rest of the pool */
     uint32_t own_left, left;
     int failed;
-    uint32_t rows[MASU_PACK_ROWS]; /* the last result of each, the latest row first */
+    uint32_t rows[MASU_PACK_ROWS]; /* last result of each row, latest row first */
     uint32_t result_count;
-    uint32_t results[MASU_PACK_RESULTS]; /* by their number modulo */
+    uint32_t results[MASU_PACK_RESULTS]; /* by result index modulo MASU_PACK_RESULTS */
     recent types, ids;
 } unpacking;
 
@@ -50,7 +50,7 @@ static uint32_t run_literal(unpacking *u) { return literal_of(u, run_byte); }
 
 static uint32_t signed_of(uint32_t code) { return code >> 1 ^ (0u - (code & 1)); }
 
-/* The next run that has a byte. Sums wrap around; pool_byte looks where they end. */
+/* Reads the next run that is not empty. Offsets wrap around; pool_byte checks the range. */
 static void next_run(unpacking *u) {
     uint32_t b = run_byte(u);
     u->own_left = b & MASU_PACK_OWN;
@@ -79,7 +79,7 @@ static uint32_t pool_byte(unpacking *u) {
     return u->pack->pool[at];
 }
 
-/* ---- Words ----------------------------------------------------------------------------------- */
+/* ---- Instructions ---------------------------------------------------------------------------- */
 
 static uint32_t literal(unpacking *u) { return literal_of(u, pool_byte); }
 
@@ -105,7 +105,7 @@ static uint32_t number(unpacking *u, int is_result) {
     return value;
 }
 
-/* The result of that number, counted from the first. */
+/* The result with index `which`, counted from the first result of the module. */
 static uint32_t result(unpacking *u, uint32_t which) {
     uint32_t ago = u->result_count - which;
     if (!ago || ago > u->result_count || ago > MASU_PACK_RESULTS) u->failed = 1;
@@ -114,8 +114,10 @@ static uint32_t result(unpacking *u, uint32_t which) {
 
 static uint32_t id(unpacking *u, recent *r) {
     uint32_t b = pool_byte(u), value, place = b;
-    if (b == MASU_PACK_FAR) return result(u, u->result_count - 1 - (b - MASU_PACK_NEAR) - literal(u));
-    if (b >= MASU_PACK_NEAR && b < MASU_PACK_FAR) return result(u, u->result_count - 1 - (b - MASU_PACK_NEAR));
+    if (b == MASU_PACK_FAR)
+        return result(u, u->result_count - 1 - (b - MASU_PACK_NEAR) - literal(u));
+    if (b >= MASU_PACK_NEAR && b < MASU_PACK_FAR)
+        return result(u, u->result_count - 1 - (b - MASU_PACK_NEAR));
     if (b == MASU_PACK_NUMBER) {
         value = number(u, 0);
         place = MASU_PACK_RECENT - 1;
@@ -140,7 +142,7 @@ static uint32_t word(unpacking *u, uint32_t coding) {
 }
 
 int masu_unpack(const masu_pack *pack, const masu_packed *packed, uint32_t *words) {
-    static const uint8_t literals[MASU_PACK_SHAPE]; /* MASU_PACK_LITERAL */
+    static const uint8_t literals[MASU_PACK_SHAPE]; /* 0: all MASU_PACK_LITERAL */
     unpacking u = {.pack = pack, .own = packed->own};
     if (packed->words < HEADER || packed->run > pack->run_bytes ||
         packed->run_bytes > pack->run_bytes - packed->run)

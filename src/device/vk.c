@@ -1,4 +1,4 @@
-/* vk.c: loading the function table and checking the device against the floor that include/masu.h
+/* vk.c: loads the function table and checks the device against the minimum requirements that masu.h
  * states. */
 #include "device/vk.h"
 
@@ -11,11 +11,11 @@
 typedef struct format_floor {
     VkFormat format;
     const char *name;
-    VkFormatFeatureFlags features; /* optimal tiling */
+    VkFormatFeatureFlags features; /* with optimal tiling */
 } format_floor;
 
 /* All but the first are mandatory in Vulkan 1.1 (specification, "Required Format Support"). They
- * are checked all the same: a driver that lies here fails in a much darker place later. */
+ * are checked nevertheless: a non-conformant driver would fail later with a less clear error. */
 static const format_floor format_floors[] = {
     {VK_FORMAT_D32_SFLOAT, "VK_FORMAT_D32_SFLOAT",
      VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT},
@@ -52,7 +52,7 @@ static masu_result check_formats(const masu_desc *desc, const masu_vk *vk, masu_
     VkFormatProperties target_properties;
     memset(&target_properties, 0, sizeof target_properties);
     vk->GetPhysicalDeviceFormatProperties(vk->physical, target, &target_properties);
-    /* sRGB formats are copied to; every format that is there may be. */
+    /* Output with an sRGB format is copied, any other format is blitted. */
     VkFormatFeatureFlags into = masu_output_copies(desc) ? VK_FORMAT_FEATURE_TRANSFER_DST_BIT
                                                          : VK_FORMAT_FEATURE_BLIT_DST_BIT;
     if (!desc->targets.storage && !(target_properties.optimalTilingFeatures & into)) {
@@ -114,14 +114,16 @@ static masu_result check_floor(const masu_desc *desc, const masu_vk *vk, masu_de
     return check_sizes(desc, vk, detail);
 }
 
-/* Where the host says that they are there: a driver that then does not know one is at fault. */
+/* Loads the ray query functions. The host states that they are enabled, so a missing one is an
+ * error. */
 static masu_result load_rays(const masu_desc *desc, masu_vk *vk, masu_detail *detail) {
     if (!desc->vulkan.ray_query || desc->ray_query == MASU_OFF) return MASU_OK;
 #define MASU_VK_LOAD_RAYS(name)                                                                    \
     vk->name = (PFN_vk##name)vk->GetDeviceProcAddr(vk->device, "vk" #name);
     MASU_VK_RAYS(MASU_VK_LOAD_RAYS)
 #undef MASU_VK_LOAD_RAYS
-    /* Of a device that has enabled the feature of 1.2 instead of the extension. */
+    /* A device may have enabled the Vulkan 1.2 feature instead of the extension; then only the core
+     * name exists. */
     if (!vk->GetBufferDeviceAddressKHR) {
         vk->GetBufferDeviceAddressKHR = (PFN_vkGetBufferDeviceAddressKHR)vk->GetDeviceProcAddr(
             vk->device, "vkGetBufferDeviceAddress");
@@ -136,8 +138,9 @@ static masu_result load_rays(const masu_desc *desc, masu_vk *vk, masu_detail *de
     PFN_vkGetPhysicalDeviceProperties2 get = (PFN_vkGetPhysicalDeviceProperties2)
         desc->vulkan.get_instance_proc_addr(vk->instance, "vkGetPhysicalDeviceProperties2");
     if (!get) {
-        return masu_fail(detail, MASU_ERROR_DEVICE, "vkGetPhysicalDeviceProperties2", 1, 0,
-                         "the host's get_instance_proc_addr knows no vkGetPhysicalDeviceProperties2");
+        return masu_fail(
+            detail, MASU_ERROR_DEVICE, "vkGetPhysicalDeviceProperties2", 1, 0,
+            "the host's get_instance_proc_addr knows no vkGetPhysicalDeviceProperties2");
     }
     vk->rays.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_PROPERTIES_KHR;
     VkPhysicalDeviceProperties2 properties = {
@@ -147,7 +150,7 @@ static masu_result load_rays(const masu_desc *desc, masu_vk *vk, masu_detail *de
     return MASU_OK;
 }
 
-/* What Vulkan asks of the host's callbacks: a driver calls them unseen. */
+/* Vulkan's requirements on the host's allocation callbacks. Drivers call them without checks. */
 static masu_result check_allocator(const VkAllocationCallbacks *a, masu_detail *detail) {
     if (!a) return MASU_OK;
     if (!a->pfnAllocation) return masu_fail_null(detail, "vulkan.allocator.pfnAllocation");
@@ -156,8 +159,8 @@ static masu_result check_allocator(const VkAllocationCallbacks *a, masu_detail *
     if (!a->pfnInternalAllocation == !a->pfnInternalFree) return MASU_OK;
     const char *what = a->pfnInternalFree ? "vulkan.allocator.pfnInternalAllocation"
                                           : "vulkan.allocator.pfnInternalFree";
-    return masu_fail(detail, MASU_ERROR_ARGUMENT, what, 1, 0, "%s is NULL, and the other one is not",
-                     what);
+    return masu_fail(detail, MASU_ERROR_ARGUMENT, what, 1, 0,
+                     "%s is NULL, and the other one is not", what);
 }
 
 masu_result masu_vk_load(const masu_desc *desc, masu_vk *vk, masu_detail *detail) {

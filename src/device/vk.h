@@ -1,9 +1,9 @@
-/* vk.h: the Vulkan functions the library calls, loaded through the host's vkGetInstanceProcAddr.
+/* vk.h: the Vulkan functions that the library calls, loaded by the host's vkGetInstanceProcAddr.
  *
- * One table per renderer: no global loader that could collide with the host's, and a test can put
- * its own wrappers in between. Every function is Vulkan 1.0 core but the debug labels, which are
- * NULL where the extension is off, and those of ray queries, which are NULL where the host does not
- * offer them or the description does not want them. */
+ * Each renderer has its own table: no global loader can conflict with the host's, and a test can
+ * insert wrappers. All functions are Vulkan 1.0 or 1.1 core, except the debug labels, which are
+ * NULL if the extension is disabled, and the ray query functions, which are NULL if the host does
+ * not enable them or the description does not use them. */
 #ifndef MASU_VK_H
 #define MASU_VK_H
 
@@ -89,7 +89,7 @@
     X(CmdEndDebugUtilsLabelEXT)                                                                    \
     X(SetDebugUtilsObjectNameEXT)
 
-/* All of them or none. */
+/* Either all are loaded or none. */
 #define MASU_VK_RAYS(X)                                                                            \
     X(CmdBuildAccelerationStructuresKHR)                                                           \
     X(CreateAccelerationStructureKHR)                                                              \
@@ -112,7 +112,8 @@ typedef struct masu_vk {
     VkPhysicalDeviceProperties properties;
     VkPhysicalDeviceMemoryProperties memory;
     VkQueueFamilyProperties queue_family;
-    VkPhysicalDeviceAccelerationStructurePropertiesKHR rays; /* where the functions are there */
+    /* if the ray query functions are loaded */
+    VkPhysicalDeviceAccelerationStructurePropertiesKHR rays;
 } masu_vk;
 
 /* Loads the table and checks the device floor: API version, queue family, formats, limits. */

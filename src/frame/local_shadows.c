@@ -88,9 +88,35 @@ static void set_planes(masu_local_light *light, masu_local_face *face) {
     masu_cull_add_plane(&face->view, back, light->range - dot(back, light->position));
 }
 
+/* Gives up the set of faces that was rendered before the one of now. */
+static void drop_shown(masu_local_shadows *s, masu_local_light *light) {
+    for (uint32_t i = 0; i < MASU_LOCAL_FACES; i++) masu_shadow_tile_give(&s->tiles, &light->shown_tiles[i]);
+    light->shown = 0;
+}
+
+static uint32_t faces_of(const masu_local_light *light, uint32_t *drawn) {
+    uint32_t used = 0;
+    *drawn = 0;
+    for (uint32_t i = 0; i < MASU_LOCAL_FACES; i++) {
+        used += light->faces[i].used;
+        *drawn += light->faces[i].used && light->faces[i].drawn;
+    }
+    return used;
+}
+
+/* Shows the set of faces on until the next one is there. */
+static void keep_shown(masu_local_light *light) {
+    for (uint32_t i = 0; i < MASU_LOCAL_FACES; i++) {
+        light->shown_tiles[i] = light->faces[i].tile;
+        memset(&light->faces[i].tile, 0, sizeof light->faces[i].tile);
+    }
+    memcpy(light->shown_position, light->position, sizeof light->shown_position);
+    light->shown = 1;
+}
+
 /* The light as it is now; its faces are due if it is not as it was. Returns whether it has jumped, or is another one. */
-static int set_light(masu_local_light *light, const masu_punctual_light_state *state, const double position[3],
-                      const double direction[3], uint64_t frame) {
+static int set_light(masu_local_shadows *s, masu_local_light *light, const masu_punctual_light_state *state,
+                     const double position[3], const double direction[3], uint64_t frame) {
     masu_local_light now;
     memset(&now, 0, sizeof now);
     double length = sqrt(dot(direction, direction));
@@ -103,14 +129,24 @@ static int set_light(masu_local_light *light, const masu_punctual_light_state *s
     now.range = (double)state->range;
     now.near_distance = fmax(NEAR_LEAST, masu_light_solid(state));
     now.tangent = now.angle <= (double)MASU_LOCAL_ANGLE_MOST ? fmax(tan(now.angle), 1e-3) : 0.0;
+    light->behind = 0;
     if (!memcmp(&now, light, offsetof(masu_local_light, size))) {
         if (light->still < MASU_LOCAL_STILL) light->still++;
         return 0;
     }
     light->still = light->range > 0.0 ? 0 : MASU_LOCAL_STILL;
+    size_t after = offsetof(masu_local_light, axis);
+    int same = !memcmp(now.axis, light->axis, offsetof(masu_local_light, size) - after);
     double moved[3] = {position[0] - light->position[0], position[1] - light->position[1],
                        position[2] - light->position[2]};
     int jumped = dot(moved, moved) > 0.0625 * now.range * now.range;
+    uint32_t drawn, used = faces_of(light, &drawn);
+    if (light->shown && same && !jumped) {
+        light->behind = 1;
+        return 0;
+    }
+    if (light->shown) drop_shown(s, light);
+    else if (same && !jumped && used > 1 && drawn == used) keep_shown(light);
     memcpy(light, &now, offsetof(masu_local_light, size));
     for (uint32_t i = 0; i < MASU_LOCAL_FACES; i++) {
         masu_local_face *face = &light->faces[i];
@@ -135,6 +171,7 @@ static void free_slot(void *user, uint32_t slot) {
     masu_local_shadows *s = user;
     s->slot_of_light[s->choice[slot].light - 1] = 0;
     for (uint32_t i = 0; i < MASU_LOCAL_FACES; i++) masu_shadow_tile_give(&s->tiles, &s->lights[slot].faces[i].tile);
+    drop_shown(s, &s->lights[slot]);
     memset(&s->lights[slot], 0, sizeof s->lights[slot]);
 }
 
@@ -207,7 +244,7 @@ void masu_local_shadows_offer(masu_local_shadows *s, const masu_frame_data *f, u
         score *= MASU_SHADOW_HYSTERESIS;
         s->choice[slot - 1].offered = 1;
         s->choice[slot - 1].score = score;
-        if (set_light(&s->lights[slot - 1], state, position, direction, f->number)) s->choice[slot - 1].fade = 0;
+        if (set_light(s, &s->lights[slot - 1], state, position, direction, f->number)) s->choice[slot - 1].fade = 0;
         set_wish(&s->lights[slot - 1], f, distance);
     }
     masu_shadow_wish_add(s->wish, s->most, light + 1, score);
@@ -356,7 +393,7 @@ static void take_groups(masu_local_face *face, uint32_t number, struct masu_loca
 }
 
 /* A tile of the size that is wanted, or of a smaller one; its own if it has that and stays. 0: there is no room. */
-static int find_tile(masu_local_shadows *s, const masu_local_light *light, masu_local_face *face) {
+static int find_tile(masu_local_shadows *s, masu_local_light *light, masu_local_face *face) {
     if (!face->moves && face->tile.size == light->size) return 1;
     face->marched = 0;
     if (face->moves) {
@@ -367,7 +404,9 @@ static int find_tile(masu_local_shadows *s, const masu_local_light *light, masu_
     masu_shadow_tile_give(&s->tiles, &face->tile);
     for (uint32_t size = light->size; size >= MASU_LOCAL_TILE_LEAST && !face->tile.size; size /= 2)
         face->tile = masu_shadow_tile_take(&s->tiles, size);
-    return face->tile.size != 0;
+    if (face->tile.size || !light->shown) return face->tile.size != 0;
+    drop_shown(s, light); /* no room for both sets */
+    return find_tile(s, light, face);
 }
 
 /* Sizes that have room together. What has a size counts more for it, so that lights of equal score do not swap. */
@@ -378,8 +417,9 @@ static void fit_sizes(masu_local_shadows *s, const masu_frame_data *f) {
         const masu_local_light *light = &s->lights[slot];
         sizes[slot] = light->wish;
         if (light->still < MASU_LOCAL_STILL && sizes[slot] > MASU_LOCAL_TILE_MOVES) sizes[slot] = MASU_LOCAL_TILE_MOVES;
-        faces[slot] = 0;
-        for (uint32_t i = 0; i < MASU_LOCAL_FACES; i++) faces[slot] += light->faces[i].used;
+        uint32_t drawn;
+        faces[slot] = faces_of(light, &drawn);
+        if (light->still < MASU_LOCAL_STILL && faces[slot] > 1) faces[slot] *= 2; /* one set is shown, one rendered */
         scores[slot] = s->choice[slot].score * (light->size >= light->wish ? MASU_SHADOW_HYSTERESIS : 1.0);
     }
     masu_shadow_sizes_fit(sizes, faces, scores, s->capacity, f->plan->local_atlas);
@@ -468,9 +508,10 @@ static void set_ready(masu_local_shadows *s, masu_local_slot *stats) {
         int ready = s->choice[slot].light && s->lights[slot].size;
         for (uint32_t i = 0; i < MASU_LOCAL_FACES; i++) {
             const masu_local_face *face = &s->lights[slot].faces[i];
-            ready = ready && (!face->used || face->drawn);
+            ready = ready && (!face->used || face->drawn || s->lights[slot].shown);
             stats->waiting += face->due;
         }
+        stats->waiting += s->lights[slot].behind;
         stats->waiting += s->choice[slot].light && !s->lights[slot].size; /* it has its slot since this frame */
         s->choice[slot].ready = ready;
         stats->lights += s->choice[slot].light != 0;
@@ -523,6 +564,10 @@ int masu_local_shadows_write(masu_local_shadows *s, const masu_instances *in, co
         changed = 1;
     }
     stats->faces = number;
+    for (uint32_t slot = 0; slot < s->capacity; slot++) {
+        uint32_t drawn, used = faces_of(&s->lights[slot], &drawn);
+        if (s->lights[slot].shown && drawn == used) drop_shown(s, &s->lights[slot]);
+    }
     set_ready(s, stats);
     f->faces = number != 0;
     changed |= faded(s) != before;
@@ -536,7 +581,8 @@ int masu_local_shadows_write(masu_local_shadows *s, const masu_instances *in, co
     return 1;
 }
 
-void masu_local_shadows_of(const masu_local_shadows *s, uint32_t light, masu_uvec4 out[2]) {
+void masu_local_shadows_of(const masu_local_shadows *s, uint32_t light, const double eye[3],
+                           struct masu_punctual_light_data *out) {
     uint32_t slot = s->slot_of_light[light];
     if (!slot || !s->choice[slot - 1].fade) return;
     const masu_local_light *of = &s->lights[slot - 1];
@@ -544,15 +590,18 @@ void masu_local_shadows_of(const masu_local_shadows *s, uint32_t light, masu_uve
     for (uint32_t i = 0; i < MASU_LOCAL_FACES; i++) {
         const masu_local_face *face = &of->faces[i];
         uint32_t log = 0;
-        if (!face->used || !face->drawn || !face->tile.size) continue;
-        while (1u << log < face->tile.size) log++;
+        masu_shadow_tile tile = of->shown ? of->shown_tiles[i] : face->tile;
+        if (!face->used || !(face->drawn || of->shown) || !tile.size) continue;
+        while (1u << log < tile.size) log++;
         words[i] = log | s->choice[slot - 1].fade << MASU_LOCAL_FADE_SHIFT |
-                   (uint32_t)(face->tile.y / 8) << MASU_LOCAL_Y_SHIFT | (uint32_t)(face->tile.x / 8) << MASU_LOCAL_X_SHIFT;
+                   (uint32_t)(tile.y / 8) << MASU_LOCAL_Y_SHIFT | (uint32_t)(tile.x / 8) << MASU_LOCAL_X_SHIFT;
     }
     float across[3] = {(float)of->faces[0].axis[0][0], (float)of->faces[0].axis[0][1], (float)of->faces[0].axis[0][2]};
     if (of->tangent > 0.0 && words[0]) memcpy(&words[1], across, sizeof across);
     float near_distance = (float)of->near_distance, tangent = (float)of->tangent;
     memcpy(&words[6], &near_distance, sizeof near_distance);
     memcpy(&words[7], &tangent, sizeof tangent);
-    memcpy(out, words, sizeof words);
+    memcpy(out->shadow, words, sizeof words);
+    for (uint32_t k = 0; k < 3; k++)
+        out->shadow_origin[k] = (float)((of->shown ? of->shown_position : of->position)[k] - eye[k]);
 }

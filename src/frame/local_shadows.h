@@ -12,8 +12,12 @@
  * smaller tile; as soon as no face is due, tiles move together until it finds one.
  *
  * BUDGET. At most rung.local_shadow_faces are rendered per frame, those that wait for longest first, then those in
- * view, then those of the most important light. A face that
- * waits shows what it held, but if its light has moved: then it has no shadow until it is rendered.
+ * view, then those of the most important light. A face that waits shows what it held.
+ *
+ * A LIGHT THAT MOVES and has several faces needs more of them in a frame than the budget may have. All faces of a set
+ * are rendered from one position, that of the frame in which the set was begun. Until the last of them is there, the
+ * set before it is shown, from its own position (masu_punctual_light_data.shadow_origin): a shadow is complete and
+ * late. With F faces of lights that move and a budget of B, by at most 2 ceil(F / B) - 2 frames: 2 of a point.
  *
  * Written to the frame's slot: the faces to render and their draws. The words of each light go into
  * masu_punctual_light_data.shadow. Everything is decided here, by numbers that do not depend on the GPU. */
@@ -44,13 +48,17 @@ typedef struct masu_local_face {
 
 /* What a slot of the choice holds. */
 typedef struct masu_local_light {
-    double position[3], axis[3];
+    double position[3], axis[3]; /* of its set of faces */
     double range, near_distance;
     double tangent; /* of half the angle of the only face; 0: cube */
     double angle;   /* of the cone; pi: it shines everywhere */
     uint32_t size;  /* texels that its faces are to have */
     uint32_t wish;  /* those that they would have at rest in an atlas with room for all */
     uint32_t still; /* frames since it has moved, up to MASU_LOCAL_STILL */
+    uint8_t behind; /* it has moved on since its set of faces was begun */
+    uint8_t shown;  /* the set before is shown: its tiles, and where the light was */
+    double shown_position[3];
+    masu_shadow_tile shown_tiles[MASU_LOCAL_FACES];
     masu_local_face faces[MASU_LOCAL_FACES];
 } masu_local_light;
 
@@ -88,8 +96,9 @@ void masu_local_shadows_offer(masu_local_shadows *s, const masu_frame_data *f, u
 int masu_local_shadows_write(masu_local_shadows *s, const masu_instances *in, const masu_bounds *bounds,
                              masu_frame_data *f);
 
-/* masu_punctual_light_data.shadow of a light. */
-void masu_local_shadows_of(const masu_local_shadows *s, uint32_t light, masu_uvec4 out[2]);
+/* masu_punctual_light_data.shadow and shadow_origin of a light. */
+void masu_local_shadows_of(const masu_local_shadows *s, uint32_t light, const double eye[3],
+                           struct masu_punctual_light_data *out);
 
 /* Texels along the edge of a face: a texel at a third of the range takes three quarters of a pixel, but no fewer than
  * 256. pixels: of a length of one at distance one. */

@@ -112,6 +112,8 @@ void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_loca
     masu_light_header header = {.list_words = MASU_LIGHT_LIST_WORDS(lights)};
     if (!lights) return;
     if (f->plan->local_atlas) header.atlas_texel = 1.0f / (float)f->plan->local_atlas;
+    float pixel = 2.0f * f->u.up[3] / (float)masu_frame_rung_plan(f)->render_height;
+    header.snap = ldexpf(pixel, -(int)f->device->vk.properties.limits.subPixelPrecisionBits);
     /* Lights outside of the view may light reflected surfaces, and what probes see. */
     int culls = masu_frame_rung(f)->frustum != MASU_OFF && !f->plan->needs.reflections && !f->plan->needs.bounce;
     float reach = culls ? reach_of_particles(f) : 0.0f;
@@ -127,7 +129,7 @@ void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_loca
         if (!masu_light_place(&state, position, direction, &placed)) continue;
         float bound[4] = {placed.bound[0], placed.bound[1], placed.bound[2], placed.bound[3] + reach};
         if (culls && masu_light_outside(bound, f->u.clip_from_rel)) continue;
-        if (f->plan->needs.local_shadows) masu_local_shadows_of(shadows, i, placed.shadow);
+        if (f->plan->needs.local_shadows) masu_local_shadows_of(shadows, i, f->eye, &placed);
         data[header.count++] = placed;
     }
     memcpy(to, &header, sizeof header);

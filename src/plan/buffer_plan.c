@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-/* ---- Rows as they are ------------------------------------------------------------------------ */
+/* ---- The rows of buffers.inc ----------------------------------------------------------------- */
 
 enum { LIFETIME_ALWAYS = 0, LIFETIME_LOADING = 1 };
 typedef enum slot_kind { SLOTS_ONCE, SLOTS_FLIGHT, SLOTS_PREVIOUS } slot_kind;
@@ -22,9 +22,9 @@ const masu_buffer_row masu_buffers[MASU_BUFFER_COUNT] = {
 #undef BUFFER
 };
 
-/* ---- Sizes that take more than a line -------------------------------------------------------- */
+/* ---- Sizes ----------------------------------------------------------------------------------- */
 
-/* Each slot has a half for itself and one for the previous frame it where something asks for that. */
+/* With velocities, each slot has a half for this frame and a half for the previous frame. */
 static uint64_t masu_halves(const masu_frame_plan *plan) { return plan->needs.velocity ? 2 : 1; }
 
 static uint64_t masu_counter_words(const masu_frame_plan *plan) {
@@ -58,7 +58,7 @@ uint32_t masu_bounce_most(const masu_frame_plan *plan, uint32_t rung) {
     return plan->desc.rungs[rung].bounce_probes * MASU_BOUNCE_BURST;
 }
 
-/* The most of any rung. */
+/* Largest number of live probes per frame over all rungs. */
 static uint64_t masu_bounce_probes(const masu_frame_plan *plan) {
     uint64_t most = 0;
     for (uint32_t r = 0; r < plan->desc.rung_count && plan->needs.bounce; r++) {
@@ -84,7 +84,7 @@ static uint64_t masu_bounce_rays(const masu_frame_plan *plan) {
     return most;
 }
 
-/* The most over all rungs that `words` takes of one of so many groups of pixels. */
+/* Maximum of words(plan, rung, grid) over all rungs; grid: number of blocks of the extent. */
 static uint64_t most_words(const masu_frame_plan *plan, masu_image_extent extent,
                            uint64_t (*words)(const masu_frame_plan *plan, uint32_t rung,
                                              VkExtent2D grid)) {
@@ -111,10 +111,12 @@ static uint64_t block_words(const masu_frame_plan *plan, uint32_t rung, VkExtent
     return words ? (uint64_t)grid.width * grid.height * (1 + MASU_BLOCK_SPANS * words) : 0;
 }
 
-/* The blocks' bits stand behind the lists of the frame's own tiles: the most of each is room for both. */
+/* The term masks of blocks follow the tile lists. The sum of both maxima holds both in every
+ * rung. */
 static uint64_t masu_tile_words(const masu_frame_plan *plan) {
     if (!plan->needs.sdf) return 0;
-    return most_words(plan, MASU_EXTENT_TILE, tile_words) + most_words(plan, MASU_EXTENT_BLOCK4, block_words);
+    return most_words(plan, MASU_EXTENT_TILE, tile_words) +
+           most_words(plan, MASU_EXTENT_BLOCK4, block_words);
 }
 
 static uint64_t light_words(const masu_frame_plan *plan, uint32_t rung, VkExtent2D grid) {
@@ -122,7 +124,7 @@ static uint64_t light_words(const masu_frame_plan *plan, uint32_t rung, VkExtent
     return (uint64_t)grid.width * grid.height * MASU_LIGHT_LIST_WORDS(plan->scene.lights);
 }
 
-/* It is bound even where all rungs go without. */
+/* At least one value: the buffer is bound even if all rungs disable light tiles. */
 static uint64_t masu_light_tile_words(const masu_frame_plan *plan) {
     if (!plan->needs.lights) return 0;
     uint64_t words = most_words(plan, MASU_EXTENT_TILE, light_words);
@@ -154,7 +156,8 @@ static uint64_t tiles_of(const masu_frame_plan *plan, uint32_t rung, VkExtent2D 
 }
 
 uint64_t masu_most_tiles(const masu_frame_plan *plan) {
-    uint64_t tiles = most_words(plan, MASU_EXTENT_TILE, tiles_of), glossy = masu_specular_tile_words(plan);
+    uint64_t tiles = most_words(plan, MASU_EXTENT_TILE, tiles_of),
+             glossy = masu_specular_tile_words(plan);
     glossy -= glossy ? MASU_TILES_HEADER : 0;
     return tiles > glossy ? tiles : glossy;
 }
@@ -186,7 +189,7 @@ static void layout_drawn(masu_frame_plan *plan) {
     d->words = d->faces + (uint64_t)plan->local_faces * plan->listed;
 }
 
-/* Nothing at all where nothing is reserved. */
+/* All 0 if the host reserves no sprites. */
 static void layout_sprites(masu_frame_plan *plan) {
     const masu_needs *n = &plan->needs;
     const masu_reserve *r = &plan->desc.reserve;
@@ -204,7 +207,8 @@ static uint64_t masu_sprite_count(const masu_frame_plan *plan) {
     return plan->needs.sprites ? (uint64_t)r->particles + r->lines + r->decals : 0;
 }
 
-/* Of frustum and occlusion culling, then of the occluders, then of what is blended. */
+/* Number of draws after frustum culling; with occlusion culling also those of its second stage and
+ * of the occluders. The draws of transparent surfaces follow. */
 static uint64_t own_draws(const masu_frame_plan *plan) {
     uint64_t draws = (uint64_t)plan->views * plan->draws;
     return plan->occlusion ? 2 * draws + MASU_ATLAS_PARTS(plan) : draws;
@@ -217,7 +221,7 @@ static uint64_t masu_draw_count(const masu_frame_plan *plan) {
            (plan->needs.picking ? plan->draws : 0) + (uint64_t)plan->local_faces * plan->draws;
 }
 
-/* Of instances; behind them, of receivers. */
+/* One 32-bit value per view and instance; the receiver masks follow. */
 static uint64_t seen_instances(const masu_frame_plan *plan) {
     return plan->occlusion ? (uint64_t)plan->views * plan->scene.instances : 0;
 }
@@ -234,12 +238,12 @@ typedef struct readback_slot {
     uint64_t times, images[MASU_READBACK_IMAGES], bytes;
 } readback_slot;
 
-/* Images behind what there is, each 16-byte aligned for vkCmdCopyImageToBuffer. */
+/* Appends the images, each aligned to 16 bytes for vkCmdCopyImageToBuffer. */
 static void layout_readback_images(const masu_frame_plan *plan, readback_slot *slot) {
     for (uint32_t i = 0; i < MASU_READBACK_IMAGES; i++) {
         if (!(plan->desc.readback & 1u << i)) continue;
         slot->images[i] = slot->bytes;
-        uint64_t bytes = 0; /* the depth may live in either of two images: the larger counts */
+        uint64_t bytes = 0; /* depth may be in either of two images: uses the larger one */
         for (uint32_t id = 1; id < MASU_IMAGE_COUNT; id++) {
             if (!(masu_images[id].readback & 1u << i) || !plan->images[id].used) continue;
             uint64_t v = (uint64_t)plan->images[id].width * plan->images[id].height *
@@ -267,7 +271,7 @@ static uint64_t masu_readback_bytes(const masu_frame_plan *plan) {
     return layout_readback(plan).bytes;
 }
 
-/* ---- All rows -------------------------------------------------------------------------------- */
+/* ---- The plan of all buffers ----------------------------------------------------------------- */
 
 #define VERTEX VK_BUFFER_USAGE_VERTEX_BUFFER_BIT
 #define INDEX VK_BUFFER_USAGE_INDEX_BUFFER_BIT
@@ -281,7 +285,7 @@ static uint64_t masu_readback_bytes(const masu_frame_plan *plan) {
 #define INPUT (ADDRESS | VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR)
 #define SCRATCH (ADDRESS | STORAGE)
 
-/* Slots begin where the device wants a binding to begin. */
+/* Slots are aligned to the device's requirement for bindings. */
 static void layout_slots(const masu_frame_plan *plan, masu_buffer_plan *b, slot_kind slots,
                          uint64_t bytes, uint64_t alignment) {
     b->bytes = bytes;
@@ -299,7 +303,8 @@ void masu_size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
     if (s->instances) {
         layout_drawn(plan);
         plan->transparent_draws = own_draws(plan);
-        plan->pick_draws = plan->transparent_draws + (uint64_t)s->transparents * s->transparent_sets;
+        plan->pick_draws =
+            plan->transparent_draws + (uint64_t)s->transparents * s->transparent_sets;
         plan->face_draws = plan->pick_draws + (plan->needs.picking ? plan->draws : 0);
         if (plan->receiver_mask) plan->receiver_mask = seen_instances(plan);
     }
@@ -334,7 +339,7 @@ void masu_size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
 #define VERTEX_STAGE VK_SHADER_STAGE_VERTEX_BIT
 #define ALL (COMPUTE | FRAGMENT | VERTEX_STAGE)
 
-/* A uniform buffer shows its struct; a storage buffer a slot, or the half of one, up to the next. */
+/* Size of a binding: of a uniform buffer its struct; of a storage buffer a slot, or half of one. */
 static uint64_t range_of(const masu_frame_plan *plan, masu_buffer_id id, VkDescriptorType type,
                          uint64_t bytes) {
     const masu_buffer_plan *b = &plan->buffers[id];

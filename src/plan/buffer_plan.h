@@ -1,15 +1,15 @@
-/* buffer_plan.h: what follows from the rows of buffers.inc for one plan: sizes, and the bindings of descriptor
- * set 0. Pure functions; nothing is kept. */
+/* buffer_plan.h: sizes of the buffers of buffers.inc for a plan, and the bindings of descriptor set
+ * 0. Pure functions. */
 #ifndef MASU_BUFFER_PLAN_H
 #define MASU_BUFFER_PLAN_H
 
 #include "plan/plan.h"
 
-/* Fills plan->buffers and all that says where things lie in them. Needs everything else of the plan. */
+/* Fills plan->buffers and all offsets in buffers. The rest of the plan must be complete. */
 void masu_size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
                        uint64_t storage_alignment);
 
-/* What a rung goes without where a stage has too few storage buffers. */
+/* Feature that a rung drops if a shader stage has too few storage buffers. */
 typedef enum masu_binding_group {
     MASU_BINDING_PLAIN,
     MASU_BINDING_CULLING,
@@ -23,27 +23,28 @@ typedef struct masu_binding {
     masu_buffer_id buffer;
     VkDescriptorType type;
     VkShaderStageFlags stages;
-    uint64_t range; /* bytes that it shows: of a slot, or of one of its halves */
+    uint64_t range; /* size in bytes: of a slot, or of half a slot */
     masu_binding_group group;
-    int bound;    /* the plan's layout has it */
-    int previous; /* it is of the half of a slot that is of the previous frame */
+    int bound;    /* whether the plan's layout has it */
+    int previous; /* whether it is the previous frame's half of a slot */
 } masu_binding;
 
-/* All of them, in the order of the rows; out has room for MASU_BIND_COUNT. */
+/* Writes all bindings, in the order of the rows; `out` has room for MASU_BIND_COUNT. */
 void masu_bindings(const masu_frame_plan *plan, masu_binding out[]);
 
-/* Over all rungs, the most tiles that a list may have of what is dispatched by lists: SDF, reflections, SMAA. */
+/* Maximum length, over all rungs, of the tile lists of indirect dispatches: SDF, reflections,
+ * SMAA. */
 uint64_t masu_most_tiles(const masu_frame_plan *plan);
 
-/* The most probes of a live bounce that trace rays in a frame of a rung. */
+/* Maximum number of live probes that trace rays in a frame of a rung. */
 uint32_t masu_bounce_most(const masu_frame_plan *plan, uint32_t rung);
 
 typedef struct masu_buffer_row {
     const char *name;
     masu_role role;
     int loaded;     /* masu_load writes it */
-    int of_loading; /* masu_load alone needs it */
-    int halved;     /* where velocities are read, a slot has a half of the previous frame */
+    int of_loading; /* only masu_load uses it */
+    int halved;     /* with velocities, a slot has a half for the previous frame */
 } masu_buffer_row;
 
 extern const masu_buffer_row masu_buffers[MASU_BUFFER_COUNT];

@@ -22,17 +22,20 @@ static void resolve_upscaling(const masu_desc *d, uint32_t r, const masu_rung_pl
     needs->sharpen = needs->on.sharpen;
     needs->fxaa = !needs->resolve && rung->aa == MASU_AA_FXAA;
     needs->smaa = !needs->resolve && rung->aa >= MASU_AA_SMAA_LOW;
-    /* A rung of half the size stays one, whatever the output becomes. */
+    /* A rung of half size keeps its ratio when the output is resized. */
     int half = d->scene ? rung->scale == 0.5f
-                        : 2 * rp->render_width == d->output.width && 2 * rp->render_height == d->output.height;
+                        : 2 * rp->render_width == d->output.width &&
+                              2 * rp->render_height == d->output.height;
     needs->twice = half && needs->upscale && needs->easu == MASU_EASU_FULL && !d->debug.exact &&
                    d->half_floats != MASU_ON;
-    /* An output that may become odd would have its last pixels a pixel elsewhere than in rungs of other sizes, whose past it goes on
-     * from. */
-    int doubles = 2 * rp->render_width == d->output.width && 2 * rp->render_height == d->output.height;
+    /* If a resizable output becomes odd, the last pixels of a 2x rung would be offset by one from
+     * those of other rungs, whose history it continues. */
+    int doubles =
+        2 * rp->render_width == d->output.width && 2 * rp->render_height == d->output.height;
     int sized = !d->resizable && !d->viewport_count;
     needs->resolve_twice = needs->resolve && doubles && sized && !d->debug.exact;
-    /* Upscaling only, at ratio 1, with everything off: something has to write the target. */
+    /* Upscaling at ratio 1 with all other effects off: the upscaler runs nevertheless, because
+     * some pass must write the target. */
     int writes = needs->scene || needs->upscale || needs->sharpen || needs->fxaa || needs->smaa;
     if (!writes) needs->upscale = 1;
 }
@@ -58,8 +61,8 @@ static void resolve_shadow(masu_frame_plan *plan, uint32_t r) {
     plan->recordings += rp->variants * plan->targets_max;
 }
 
-/* Which resource an access of the table means in a rung: itself, or of a stand-in the image of the class that the
- * latest pass has written, or the one before that. 0: there is none. */
+/* The most recently written image of each class, and the one before. resolve() replaces a stand-in
+ * by these. 0: there is none. */
 typedef struct latest {
     uint8_t image[MASU_CLASS_COUNT], before[MASU_CLASS_COUNT];
 } latest;
@@ -70,8 +73,10 @@ static uint8_t resolve(uint8_t resource, const latest *l) {
     return l->before[resource - MASU_BEFORE(0)];
 }
 
-/* Whether desc.split gives an image to the host's commands, in the row where they go; of other accesses 1. */
-static int is_given(const masu_frame_plan *plan, uint32_t pass, uint8_t resource, masu_usage usage) {
+/* Whether desc.split gives an image to the host's commands at this split point; 1 for all other
+ * accesses. */
+static int is_given(const masu_frame_plan *plan, uint32_t pass, uint8_t resource,
+                    masu_usage usage) {
     uint32_t split = plan->desc.split;
     if (usage != MASU_READ_HOST && usage != MASU_HOST_DEPTH) return 1;
     if (pass == MASU_PASS_SPLIT_OUTPUT && !(split & MASU_SPLIT_KEEP)) return 0;
@@ -79,13 +84,16 @@ static int is_given(const masu_frame_plan *plan, uint32_t pass, uint8_t resource
     return 1;
 }
 
-/* Of reflections' velocities nothing is read or written unless a rung follows them. */
+/* The velocities of reflections are accessed only if a rung reprojects reflections. */
 static int is_composed(const masu_needs *n, uint8_t resource) {
-    return n->any_resolved || (resource != MASU_IMAGE_SPECULAR_LENGTH && resource != MASU_IMAGE_VELOCITY);
+    return n->any_resolved ||
+           (resource != MASU_IMAGE_SPECULAR_LENGTH && resource != MASU_IMAGE_VELOCITY);
 }
 
-/* Whether a rung has what an access names: an image, or a buffer that a pass and not the host has written. */
-static int keeps_access(const masu_frame_plan *plan, uint32_t pass, uint8_t resource, masu_usage usage) {
+/* Whether the rung has the resource of an access: an image, or a buffer that a pass (not the host)
+ * writes. */
+static int keeps_access(const masu_frame_plan *plan, uint32_t pass, uint8_t resource,
+                        masu_usage usage) {
     const masu_needs *n = &plan->needs;
     switch (resource) {
     case MASU_IMAGE_NONE: return 0;
@@ -99,7 +107,8 @@ static int keeps_access(const masu_frame_plan *plan, uint32_t pass, uint8_t reso
     default: break;
     }
     if (masu_is_buffer(resource)) return 1;
-    if (usage == MASU_READ_BACK && !(masu_images[resource].readback & plan->desc.readback)) return 0;
+    if (usage == MASU_READ_BACK && !(masu_images[resource].readback & plan->desc.readback))
+        return 0;
     if (!is_given(plan, pass, resource, usage)) return 0;
     if (usage == MASU_UPDATE_COLOR) return n->emissive;
     if (pass == MASU_PASS_SPECULAR_COMPOSITE && !is_composed(n, resource)) return 0;
@@ -127,8 +136,10 @@ static void compile_rung(masu_frame_plan *plan, uint32_t r) {
         for (uint32_t a = 0; a < MASU_PASS_ACCESSES && row->access[a].image; a++) {
             masu_usage usage = (masu_usage)row->access[a].usage;
             uint8_t resource = resolve(row->access[a].image, &l);
-            /* Bound all the same, and not read: one shader is for both. */
-            if (p == MASU_PASS_TRANSPARENTS && resource == MASU_IMAGE_BACKGROUND && !plan->needs.rough_glass) {
+            /* Without rough glass the shader does not read the background, but the binding must be
+             * valid. */
+            if (p == MASU_PASS_TRANSPARENTS && resource == MASU_IMAGE_BACKGROUND &&
+                !plan->needs.rough_glass) {
                 resource = l.image[MASU_CLASS_DEPTH];
                 usage = MASU_READ;
             }
@@ -137,8 +148,8 @@ static void compile_rung(masu_frame_plan *plan, uint32_t r) {
             if (masu_usage_writes(usage) && !masu_is_buffer(resource)) write_latest(&l, resource);
         }
     }
-    /* The last colour pass writes the target itself, or what a blit takes to it, and so does every pass that has
-     * to do with the same image. */
+    /* The last colour pass writes the target, or the image that is blitted to the target. All
+     * accesses to its image are replaced. */
     int blit = l.image[MASU_CLASS_COLOR] == MASU_IMAGE_TARGET;
     uint8_t last = blit ? l.before[MASU_CLASS_COLOR] : l.image[MASU_CLASS_COLOR];
     for (uint32_t p = 0; p < MASU_PASS_COUNT && last != MASU_IMAGE_SOURCE; p++) {
@@ -190,7 +201,7 @@ static void gather_images(masu_frame_plan *plan) {
             for (uint32_t a = 0; a < rp->access_count[p]; a++) {
                 masu_image_id id = (masu_image_id)rp->access[p][a].image;
                 writes_target |= id == MASU_IMAGE_TARGET;
-                if (id >= MASU_IMAGE_SOURCE) continue; /* the host's, or a buffer */
+                if (id >= MASU_IMAGE_SOURCE) continue; /* owned by the host, or a buffer */
                 masu_image_plan *image = &plan->images[id];
                 VkExtent2D render = {rp->render_width, rp->render_height};
                 VkExtent2D size = masu_plan_extent(plan, masu_images[id].extent, render);
@@ -202,7 +213,8 @@ static void gather_images(masu_frame_plan *plan) {
                 if (image->width < size.width) image->width = size.width;
                 if (image->height < size.height) image->height = size.height;
                 image->usage |= usage_flag((masu_usage)rp->access[p][a].usage);
-                if (masu_images[id].layers > 1) image->usage |= VK_IMAGE_USAGE_TRANSFER_DST_BIT; /* cleared by masu_load */
+                /* cleared by masu_load */
+                if (masu_images[id].layers > 1) image->usage |= VK_IMAGE_USAGE_TRANSFER_DST_BIT;
             }
             if (!masu_has_pass(&rp->active, p) || !masu_has_set(p)) continue;
             plan->pass_sets += writes_target ? plan->targets_max : 1;
@@ -210,8 +222,8 @@ static void gather_images(masu_frame_plan *plan) {
     }
 }
 
-/* Whether a knob can change anything in the scene of a description: the column `use` of its row.
- * What knobs of upscaling depend on is decided per rung. */
+/* Whether a knob can have an effect in the scene: evaluates the column `use` of its row. Knobs of
+ * upscaling are decided per rung. */
 static int is_of_use(const masu_desc *d, uint32_t r, masu_knob_use use) {
     const masu_scene_data *s = masu_scene_data_of(d->scene);
     switch (use) {
@@ -233,8 +245,8 @@ static int is_of_use(const masu_desc *d, uint32_t r, masu_knob_use use) {
     return 1;
 }
 
-/* The switches that a rung has on where that is of use; with `any`, adds them to those that any
- * rung has. */
+/* The switches that a rung has on and that have an effect. `any` accumulates them over the
+ * rungs. */
 static masu_switches switches_of(const masu_desc *d, uint32_t r, masu_switches *any) {
     masu_switches on;
 #define SET_masu_switch(name, use)                                                                 \
@@ -263,7 +275,7 @@ static int rung_has_fine(const masu_desc *d, uint32_t r) {
            d->rungs[r].specular_temporal != MASU_OFF && d->rungs[r].specular_fine != MASU_OFF;
 }
 
-/* Mirrors whose pixels rung.temporal finds again where what they mirror was. */
+/* Whether temporal upscaling reprojects reflections by the motion of the reflected surface. */
 static int rung_has_resolved(const masu_desc *d, uint32_t r) {
     return rung_has_fine(d, r) && masu_rung_resolves(d, r);
 }
@@ -275,15 +287,18 @@ static int wants(const masu_desc *d, int (*has)(const masu_desc *d, uint32_t r))
     return 0;
 }
 
-/* The atlas has room for the most lights that may have shadows at a time, each spot with a tile of the largest
- * size, each point with six, if that is within rung.local_shadow_atlas; else they get smaller tiles. */
+/* Size of the local shadow atlas: room for the maximum number of shadow-casting lights at a time,
+ * with one tile of the largest size per spot light and six per point light, but at most
+ * rung.local_shadow_atlas. If that is too small, the lights get smaller tiles. */
 static void resolve_local_shadows(masu_frame_plan *plan) {
     const masu_desc *d = &plan->desc;
-    uint32_t lights = 0, most = MASU_LOCAL_TILE_LEAST, viewports = d->viewport_count ? d->viewport_count : 1;
+    uint32_t lights = 0, most = MASU_LOCAL_TILE_LEAST,
+             viewports = d->viewport_count ? d->viewport_count : 1;
     for (uint32_t r = 0; r < d->rung_count; r++) {
         const masu_rung *rung = &d->rungs[r];
         if (rung->local_shadows == MASU_OFF) continue;
-        if (plan->local_faces < rung->local_shadow_faces) plan->local_faces = rung->local_shadow_faces;
+        if (plan->local_faces < rung->local_shadow_faces)
+            plan->local_faces = rung->local_shadow_faces;
         if (lights < rung->local_shadow_lights) lights = rung->local_shadow_lights;
         if (most < rung->local_shadow_atlas) most = rung->local_shadow_atlas;
     }
@@ -294,8 +309,10 @@ static void resolve_local_shadows(masu_frame_plan *plan) {
     uint64_t tile = MASU_LOCAL_TILE_MOST, area = (points * 6 + (lights - points)) * tile * tile;
     plan->local_lights = lights;
     plan->local_atlas = MASU_LOCAL_TILE_LEAST;
-    while (2 * plan->local_atlas <= most && (uint64_t)plan->local_atlas * plan->local_atlas < area) plan->local_atlas *= 2;
-    plan->local_tile = plan->local_atlas < MASU_LOCAL_TILE_MOST ? plan->local_atlas : MASU_LOCAL_TILE_MOST;
+    while (2 * plan->local_atlas <= most && (uint64_t)plan->local_atlas * plan->local_atlas < area)
+        plan->local_atlas *= 2;
+    plan->local_tile =
+        plan->local_atlas < MASU_LOCAL_TILE_MOST ? plan->local_atlas : MASU_LOCAL_TILE_MOST;
 }
 
 masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
@@ -322,70 +339,72 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
         if (!plan->scene.shadow_cascades) d->readback &= ~(uint32_t)MASU_READBACK_SHADOW_MAP;
         plan->compressed = masu_keeps_blocks(d);
     } else {
-        d->readback = 0; /* the images that could be asked for are the scene's */
+        d->readback = 0; /* only a scene has images to read back */
     }
-    plan->needs = (masu_needs){.scene = d->scene != NULL,
-                               .raster = d->scene && plan->scene.instances,
-                               .skins = d->scene && plan->scene.skins,
-                               .sdf = d->scene && plan->scene.sdf,
-                               .dynamic = d->scene && plan->scene.sdf_dynamic,
-                               .timed = d->scene && plan->scene.sdf_timed,
-                               .anchored = d->scene && plan->scene.sdf_anchored,
-                               .sdf_occlusion = d->scene && plan->scene.sdf_occlusion,
-                               .probes = d->scene && plan->scene.probes && (!plan->scene.probes_unlit || any.bounce),
-                               .shadow = d->scene && plan->scene.shadow_cascades,
-                               .transparents = d->scene && plan->scene.transparents,
-                               .rough_glass = d->scene && plan->scene.transparents && plan->scene.tints & MASU_TINTS_ROUGH,
-                               .lights = d->scene && plan->scene.lights,
-                               .local_shadows = d->scene && any.local_shadows,
-                               .area_lights = d->scene && plan->scene.lights &&
-                                              (plan->scene.area_lights || d->area_lights),
-                               .shared_lights = d->scene && plan->scene.lights &&
-                                                (plan->scene.surface_lights || d->area_lights),
-                               .sdf_casts = d->scene && any.local_shadows && plan->scene.sdf_casts,
-                               .surface = d->scene && plan->scene.instances && plan->scene.surfaces,
-                               .environment = d->scene && plan->scene.environment_size,
-                               .sky = d->scene && (plan->scene.analytic_sky || d->analytic_sky),
-                               .readback = d->readback,
-                               .split = d->split,
-                               .reflections = any.specular,
-                               .traced = (any.specular || any.bounce) && plan->scene.trace_instances,
-                               .traced_sdf = any.specular && plan->scene.trace_sdf,
-                               .bounce = any.bounce,
-                               .bounce_sdf = any.bounce && plan->scene.bounce_sdf,
-                               .query = any.specular && !any.bounce && plan->scene.trace_instances &&
-                                        d->ray_query == MASU_ON,
-                               .accumulate = d->debug.reference != 0,
-                               .any_taa = wants(d, rung_has_taa),
-                               .any_fine = wants(d, rung_has_fine),
-                               .any = any,
-                               .any_resolved = wants(d, rung_has_resolved),
-                               .picking = d->scene && d->picking,
-                               .metered = d->scene && d->exposure.metered == MASU_ON,
-                               .velocity = (d->readback & MASU_READBACK_VELOCITY) != 0 || (d->split & MASU_SPLIT_VELOCITY) != 0 ||
-                                           any.specular ||
-                                           wants(d, masu_rung_resolves),
-                               .dropped = d->deny.storage_buffers & MASU_DROPPED_ANY,
-                               .particles = d->scene && d->reserve.particles,
-                               .decals = d->scene && d->reserve.decals,
-                               .lines = d->scene && d->reserve.lines,
-                               .blit = !d->targets.storage};
+    plan->needs = (masu_needs){
+        .scene = d->scene != NULL,
+        .raster = d->scene && plan->scene.instances,
+        .skins = d->scene && plan->scene.skins,
+        .sdf = d->scene && plan->scene.sdf,
+        .dynamic = d->scene && plan->scene.sdf_dynamic,
+        .timed = d->scene && plan->scene.sdf_timed,
+        .anchored = d->scene && plan->scene.sdf_anchored,
+        .sdf_occlusion = d->scene && plan->scene.sdf_occlusion,
+        .probes = d->scene && plan->scene.probes && (!plan->scene.probes_unlit || any.bounce),
+        .shadow = d->scene && plan->scene.shadow_cascades,
+        .transparents = d->scene && plan->scene.transparents,
+        .rough_glass = d->scene && plan->scene.transparents && plan->scene.tints & MASU_TINTS_ROUGH,
+        .lights = d->scene && plan->scene.lights,
+        .local_shadows = d->scene && any.local_shadows,
+        .area_lights =
+            d->scene && plan->scene.lights && (plan->scene.area_lights || d->area_lights),
+        .shared_lights =
+            d->scene && plan->scene.lights && (plan->scene.surface_lights || d->area_lights),
+        .sdf_casts = d->scene && any.local_shadows && plan->scene.sdf_casts,
+        .surface = d->scene && plan->scene.instances && plan->scene.surfaces,
+        .environment = d->scene && plan->scene.environment_size,
+        .sky = d->scene && (plan->scene.analytic_sky || d->analytic_sky),
+        .readback = d->readback,
+        .split = d->split,
+        .reflections = any.specular,
+        .traced = (any.specular || any.bounce) && plan->scene.trace_instances,
+        .traced_sdf = any.specular && plan->scene.trace_sdf,
+        .bounce = any.bounce,
+        .bounce_sdf = any.bounce && plan->scene.bounce_sdf,
+        .query =
+            any.specular && !any.bounce && plan->scene.trace_instances && d->ray_query == MASU_ON,
+        .accumulate = d->debug.reference != 0,
+        .any_taa = wants(d, rung_has_taa),
+        .any_fine = wants(d, rung_has_fine),
+        .any = any,
+        .any_resolved = wants(d, rung_has_resolved),
+        .picking = d->scene && d->picking,
+        .metered = d->scene && d->exposure.metered == MASU_ON,
+        .velocity = (d->readback & MASU_READBACK_VELOCITY) != 0 ||
+                    (d->split & MASU_SPLIT_VELOCITY) != 0 || any.specular ||
+                    wants(d, masu_rung_resolves),
+        .dropped = d->deny.storage_buffers & MASU_DROPPED_ANY,
+        .particles = d->scene && d->reserve.particles,
+        .decals = d->scene && d->reserve.decals,
+        .lines = d->scene && d->reserve.lines,
+        .blit = !d->targets.storage};
     int emits = plan->needs.raster && (plan->scene.emissions || d->mutable_materials);
     uint32_t attachments = 3u + (plan->needs.surface != 0) + (plan->needs.velocity != 0);
     plan->needs.emission_packed =
         emits && d->deny.color_attachments && attachments > d->deny.color_attachments;
     plan->needs.emissive = emits && !plan->needs.emission_packed;
     plan->needs.sprites = plan->needs.particles || plan->needs.decals || plan->needs.lines;
-    for (uint32_t r = 0; r < d->rung_count; r++) plan->needs.smoothing |= masu_is_smaa(d->rungs[r].aa);
+    for (uint32_t r = 0; r < d->rung_count; r++)
+        plan->needs.smoothing |= masu_is_smaa(d->rungs[r].aa);
     plan->parts = 1 + ((d->split & MASU_SPLIT_BEFORE_TONE) != 0) +
                   ((d->split & MASU_SPLIT_AFTER_UPSCALE) != 0);
     plan->most = plan->whole = d->output;
     plan->targets_max = d->resizable && d->scene ? MASU_MAX_TARGETS : d->targets.count;
     masu_output_plan(plan);
-    if (plan->needs.query) plan->scene.trace_nodes = 0; /* the device has trees of its own */
+    if (plan->needs.query) plan->scene.trace_nodes = 0; /* the driver builds its own BVHs */
     masu_shadow_peak(d, &plan->cascades, &plan->cascade_size);
     if (plan->needs.local_shadows) resolve_local_shadows(plan);
-    /* The sun's: each cascade, else all of the scene. */
+    /* Views of the sun: one per cascade, else one for the whole scene. */
     uint32_t suns = plan->needs.shadow ? plan->cascades : d->debug.casters ? 1 : 0;
     plan->views = plan->needs.raster ? 1 + suns : 1;
     plan->needs.occluders = d->scene && plan->scene.placed_occluders > 0;
@@ -460,8 +479,8 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
     return MASU_OK;
 }
 
-/* A rung that upscales goes on to, even where a small output makes its render size the same: images of both
- * sizes grow with the output, so that what was allocated for a larger one will do. */
+/* A rung that upscales keeps doing so, even if a small output makes both sizes equal: the images of
+ * both sizes grow with the output, so the allocated memory is always sufficient. */
 void masu_plan_resize(masu_frame_plan *plan, VkExtent2D output) {
     plan->desc.output = output;
     for (uint32_t r = 0; r < plan->desc.rung_count; r++) {
@@ -473,7 +492,8 @@ void masu_plan_resize(masu_frame_plan *plan, VkExtent2D output) {
 
 void masu_plan_select_viewport(masu_frame_plan *plan, uint32_t viewport) {
     const masu_viewport *v = &plan->desc.viewports[viewport];
-    masu_plan_resize(plan, plan->desc.viewport_count ? (VkExtent2D){v->width, v->height} : plan->whole);
+    masu_plan_resize(plan,
+                     plan->desc.viewport_count ? (VkExtent2D){v->width, v->height} : plan->whole);
 }
 
 /* ---- Export ---------------------------------------------------------------------------------- */
@@ -500,7 +520,7 @@ void masu_memory_export(const masu_frame_plan *plan, uint64_t host_bytes, masu_m
     out->transient_lower_bound = plan->transient_lower_bound;
 }
 
-/* Bytes of the table's images that this plan does not have, at their size in this plan. */
+/* Bytes of the images in the table that this plan omits, at their size in this plan. */
 static uint64_t saved_bytes(const masu_frame_plan *plan) {
     VkExtent2D render = {0, 0};
     for (uint32_t r = 0; r < plan->desc.rung_count; r++) {
@@ -512,7 +532,8 @@ static uint64_t saved_bytes(const masu_frame_plan *plan) {
     for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
         if (plan->images[i].used) continue;
         VkExtent2D size = masu_plan_extent(plan, masu_images[i].extent, render);
-        bytes += (uint64_t)masu_images[i].layers * size.width * size.height * masu_format_bytes(masu_plan_format(plan, i));
+        bytes += (uint64_t)masu_images[i].layers * size.width * size.height *
+                 masu_format_bytes(masu_plan_format(plan, i));
     }
     return bytes;
 }
@@ -541,7 +562,8 @@ void masu_plan_export(const masu_frame_plan *plan, const uint64_t *pipeline_ns,
                 const char *name = resource_name(rp->access[p][a].image);
                 masu_usage usage = (masu_usage)rp->access[p][a].usage;
                 if (masu_usage_writes(usage) && writes < 6) pass->writes[writes++] = name;
-                if ((!masu_usage_writes(usage) || usage == MASU_PING_PONG) && reads < 12) pass->reads[reads++] = name;
+                if ((!masu_usage_writes(usage) || usage == MASU_PING_PONG) && reads < 12)
+                    pass->reads[reads++] = name;
             }
         }
     }

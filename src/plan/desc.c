@@ -15,11 +15,11 @@
 
 /* ---- Defaults -------------------------------------------------------------------------------- */
 
-/* Render size of a scale: at least one pixel, rounded to nearest. 1080 lines give 864 at 0.8 and
- * 432 at 0.4. */
+/* Render size for a scale: rounded to nearest, at least 1. 1080 lines give 864 at 0.8 and 432 at
+ * 0.4. */
 static uint32_t scaled(uint32_t size, float scale) {
     double v = floor((double)size * (double)scale + 0.5);
-    if (!(v >= 1.0)) return 1u; /* no number, too: it is refused later */
+    if (!(v >= 1.0)) return 1u; /* NaN too; the check rejects it later */
     return v > (double)size ? size : (uint32_t)v;
 }
 
@@ -29,7 +29,7 @@ VkExtent2D masu_render_size(const masu_desc *d, uint32_t r) {
     return (VkExtent2D){scaled(d->output.width, scale), scaled(d->output.height, scale)};
 }
 
-/* The sum of debug.reference is of one place in each pixel. */
+/* Not with debug.reference, which averages rays at a fixed position in each pixel. */
 int masu_rung_resolves(const masu_desc *d, uint32_t r) {
     return d->scene && !d->debug.reference && d->rungs[r].temporal == MASU_ON;
 }
@@ -44,40 +44,42 @@ static void fill(masu_switch *word, masu_switch with) {
     if (*word == MASU_AUTO) *word = with;
 }
 
-/* Several viewports cut each other's history off. What a host draws before the tone curve has no
- * velocity and would leave trails; what asks for velocities may have a history of its own. */
+/* Each change of viewport invalidates the history. Images that the host draws before the tone curve
+ * have no velocities and would leave trails. A host that reads velocities may have its own temporal
+ * filter. */
 static int are_interrupted(const masu_desc *d) {
     return d->viewport_count > 1 || (d->split & ~(uint32_t)MASU_SPLIT_AFTER_UPSCALE) != 0;
 }
 
-/* Whether frames follow each other, as accumulated samples need: that is what a governor is for. */
+/* Whether consecutive frames are likely to be rendered, as temporal upscaling requires: assumed if
+ * there is a governor. */
 static int frames_follow(const masu_desc *d) {
     return d->scene && d->governor.mode != MASU_GOVERNOR_OFF && !d->debug.reference &&
            !are_interrupted(d);
 }
 
-/* What `temporal` is at AUTO. A rung that says by what else it is resolved is resolved by that. */
+/* Default of `temporal`: off if the rung sets another upscaler or anti-aliasing. */
 static masu_switch temporal_of(const masu_desc *d, const masu_rung *rung) {
-    int silent = rung->upscale == MASU_AUTO && rung->easu == MASU_EASU_AUTO && rung->sharpen == MASU_AUTO &&
-                 rung->aa == MASU_AA_AUTO;
+    int silent = rung->upscale == MASU_AUTO && rung->easu == MASU_EASU_AUTO &&
+                 rung->sharpen == MASU_AUTO && rung->aa == MASU_AA_AUTO;
     return frames_follow(d) && silent ? MASU_ON : MASU_OFF;
 }
 
-/* Beside many samples from one a longer mean of the reflections alone blurs what that has sharp, and tells late:
+/* With temporal upscaling, a longer accumulation of reflections would blur them and add lag:
  * docs/design/17-temporal-upscaling.md. */
 #define SPECULAR_FRAMES_RESOLVED 8u
 
-/* What follows from another knob. */
+/* Defaults that depend on other knobs. */
 static void resolve_words(masu_rung *rung) {
-    /* Many samples from one are a better mean than the neighbours' hits are, and a second mean over frames blurs what the
-     * first has sharp: docs/design/17-temporal-upscaling.md. */
+    /* With temporal upscaling, accumulated samples average better than the hits of neighbouring
+     * pixels, and a second temporal filter blurs: docs/design/17-temporal-upscaling.md. */
     masu_switch alone = rung->temporal == MASU_ON ? MASU_OFF : MASU_ON;
     fill(&rung->specular_reuse, alone);
     fill(&rung->specular_taa, alone);
 }
 
-/* What follows from the sizes, and from the words. What is blurred by a bilinear mean RCAS would not bring
- * back. */
+/* Defaults that depend on the sizes and on the enum values. RCAS cannot restore detail after
+ * bilinear upscaling. */
 static void resolve_sizes(masu_desc *d, uint32_t r) {
     masu_rung *rung = &d->rungs[r];
     VkExtent2D size = masu_render_size(d, r);
@@ -87,8 +89,8 @@ static void resolve_sizes(masu_desc *d, uint32_t r) {
     fill(&rung->sharpen, upscales && rung->easu != MASU_EASU_BILINEAR ? MASU_ON : MASU_OFF);
 }
 
-/* What a device may lack the storage buffers for stays AUTO, which goes without where ON fails; what the scene has
- * no use for is off. */
+/* Features for which a device may have too few storage buffers remain AUTO, which drops them on
+ * such a device; ON is an error there. Features that the scene cannot use are OFF. */
 static void resolve_scene(const masu_desc *d, masu_rung *rung) {
     if (!masu_scene_data_of(d->scene)->placed_occluders) fill(&rung->occlusion, MASU_OFF);
     if (!masu_could_trace(d->scene, rung)) fill(&rung->specular, MASU_OFF);
@@ -103,7 +105,7 @@ masu_desc masu_desc_resolved(const masu_desc *desc) {
     int given = d.rung_count != 0;
     masu_ladder_defaults(&d);
     int smooth = d.scene && masu_scene_data_of(d.scene)->smooth_edges && !frames_follow(&d);
-    /* Built-in rungs follow the rule of AUTO. */
+    /* The default rungs follow the rules of MASU_AUTO. */
     for (uint32_t r = 0; !given && are_interrupted(&d) && r < d.rung_count; r++) {
         if (d.rungs[r].temporal != MASU_ON) continue;
         d.rungs[r].temporal = MASU_OFF;
@@ -135,6 +137,18 @@ masu_desc masu_desc_resolved(const masu_desc *desc) {
     }
     masu_output_defaults(&d);
     return d;
+}
+
+masu_result masu_desc_resolve(const masu_desc *desc, masu_desc *out, masu_detail *detail) {
+    masu_detail own;
+    masu_result result = MASU_OK;
+    if (!desc || !out)
+        result = masu_fail_null(&own, desc ? "out" : "desc");
+    else if (desc->bytes != sizeof *desc)
+        result = masu_fail_bytes(&own, "masu_desc", sizeof *desc, desc->bytes);
+    else
+        *out = masu_desc_resolved(desc);
+    return masu_finish_desc(desc, result, &own, detail);
 }
 
 /* ---- Checks ---------------------------------------------------------------------------------- */
@@ -193,23 +207,26 @@ static masu_result check_reserve(const masu_desc *d, masu_detail *detail) {
     return MASU_OK;
 }
 
-static masu_result bad_split(const masu_desc *d, uint32_t needed, const char *problem, masu_detail *detail) {
-    return masu_fail(detail, MASU_ERROR_ARGUMENT, "split", needed, d->split, "split is %u: %s", d->split,
-                     problem);
+static masu_result bad_split(const masu_desc *d, uint32_t needed, const char *problem,
+                             masu_detail *detail) {
+    return masu_fail(detail, MASU_ERROR_ARGUMENT, "split", needed, d->split, "split is %u: %s",
+                     d->split, problem);
 }
 
 static masu_result check_split(const masu_desc *d, masu_detail *detail) {
     uint32_t split = d->split;
-    if (split & ~(uint32_t)MASU_SPLIT_ALL) return bad_range(detail, "split", split, 0, MASU_SPLIT_ALL);
+    if (split & ~(uint32_t)MASU_SPLIT_ALL)
+        return bad_range(detail, "split", split, 0, MASU_SPLIT_ALL);
     if (!d->scene && (split & ~(uint32_t)MASU_SPLIT_AFTER_UPSCALE))
-        return bad_split(d, MASU_SPLIT_AFTER_UPSCALE, "without a scene there is MASU_SPLIT_AFTER_UPSCALE alone",
-                         detail);
+        return bad_split(d, MASU_SPLIT_AFTER_UPSCALE,
+                         "without a scene there is MASU_SPLIT_AFTER_UPSCALE alone", detail);
     if ((split & MASU_SPLIT_KEEP) && !(split & MASU_SPLIT_AFTER_UPSCALE))
-        return bad_split(d, MASU_SPLIT_AFTER_UPSCALE, "MASU_SPLIT_KEEP keeps for MASU_SPLIT_AFTER_UPSCALE",
-                         detail);
+        return bad_split(d, MASU_SPLIT_AFTER_UPSCALE,
+                         "MASU_SPLIT_KEEP keeps for MASU_SPLIT_AFTER_UPSCALE", detail);
     if ((split & MASU_SPLIT_VELOCITY) && !(split & (MASU_SPLIT_BEFORE_TONE | MASU_SPLIT_KEEP)))
         return bad_split(d, MASU_SPLIT_BEFORE_TONE,
-                         "MASU_SPLIT_VELOCITY takes MASU_SPLIT_BEFORE_TONE or MASU_SPLIT_KEEP", detail);
+                         "MASU_SPLIT_VELOCITY takes MASU_SPLIT_BEFORE_TONE or MASU_SPLIT_KEEP",
+                         detail);
     return MASU_OK;
 }
 
@@ -237,7 +254,7 @@ masu_result masu_desc_check_given(const masu_desc *given, masu_detail *detail) {
     return MASU_OK;
 }
 
-/* Reflections that a scene cannot have are OFF in every resolved rung. */
+/* Reflections are OFF in every resolved rung if the scene cannot have them. */
 static masu_result check_keep(const masu_desc *d, masu_detail *detail) {
     uint32_t keep = d->governor.keep;
     if (keep & ~MASU_KEEP_ALL) return bad_range(detail, "governor.keep", keep, 0, MASU_KEEP_ALL);
@@ -319,7 +336,8 @@ masu_result masu_desc_check(const masu_desc *d, masu_detail *detail) {
                          "flips[%u] is %g, allowed are 0 to 1", r, (double)d->flips[r]);
     }
     if ((unsigned)d->debug.share_rays > MASU_ON)
-        return bad_range(detail, "debug.share_rays", (unsigned)d->debug.share_rays, MASU_AUTO, MASU_ON);
+        return bad_range(detail, "debug.share_rays", (unsigned)d->debug.share_rays, MASU_AUTO,
+                         MASU_ON);
     if ((unsigned)d->half_floats > MASU_ON)
         return bad_range(detail, "half_floats", (unsigned)d->half_floats, MASU_AUTO, MASU_ON);
     if ((unsigned)d->ray_query > MASU_ON)

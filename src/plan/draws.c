@@ -16,9 +16,10 @@ void masu_draws_alloc(masu_draws *draws, masu_arena *arena, const masu_frame_pla
                                         sizeof *draws->materials, 4);
 }
 
-/* A form of a mesh that has instances. */
-static masu_batch *add_batch(masu_draws *draws, const masu_frame_plan *plan, const masu_scene_view *v, uint32_t mesh,
-                             uint32_t first_primitive, uint32_t first, uint32_t instances) {
+/* Adds the batch of one level of detail of a mesh with instances. */
+static masu_batch *add_batch(masu_draws *draws, const masu_frame_plan *plan,
+                             const masu_scene_view *v, uint32_t mesh, uint32_t first_primitive,
+                             uint32_t first, uint32_t instances) {
     masu_batch *b = &draws->batches[draws->batch_count];
     uint32_t primitives = v->meshes[mesh].primitive_count;
     *b = (masu_batch){.first_primitive = first_primitive,
@@ -49,10 +50,12 @@ static masu_batch *add_batch(masu_draws *draws, const masu_frame_plan *plan, con
 int masu_is_mirrored(const float rows[12]) {
     double m[12];
     for (uint32_t k = 0; k < 12; k++) m[k] = (double)rows[k];
-    return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]) < 0.0;
+    return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) +
+               m[2] * (m[4] * m[9] - m[5] * m[8]) <
+           0.0;
 }
 
-/* Of each mesh so many as all copies could have, whatever models they are of. */
+/* Per mesh: the maximum number of instances that copies of models can add, of any model. */
 static void count_added(masu_draws *draws, const masu_frame_plan *plan, const masu_scene_view *v) {
     for (uint32_t mesh = 0; mesh < plan->scene.meshes; mesh++) draws->added[mesh] = 0;
     for (uint32_t i = 0; i < masu_own_models(plan); i++) {
@@ -86,7 +89,7 @@ static void add_batches(masu_draws *draws, const masu_frame_plan *plan, const ma
     }
 }
 
-/* A blended thing: a slot, and its texture set among those of all. */
+/* Adds a transparent item, and its texture set to the list of sets. */
 static void add_transparent(masu_draws *draws, const masu_blob_material *material) {
     uint32_t i = 0;
     draws->transparent_count++;

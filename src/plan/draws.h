@@ -1,8 +1,8 @@
-/* draws.h: what the recordings draw, in their order: the forms of placed meshes, then what is blended.
- * Made once of scene and plan; record.c records it, and src/frame/visible.c, occlusion.c and
- * transparents.c say in each frame how many instances a draw has.
+/* draws.h: the list of draws in recording order: the levels of detail of instantiated meshes, then
+ * the transparent items. Built once from scene and plan. record.c records the draws;
+ * src/frame/visible.c, occlusion.c and transparents.c write the instance counts every frame.
  *
- * The renderer owns it; its batches lie in the host block. Nothing here fails. */
+ * The renderer owns the list; its batches are in the host memory block. Cannot fail. */
 #ifndef MASU_DRAWS_H
 #define MASU_DRAWS_H
 
@@ -10,30 +10,31 @@
 #include "plan/plan.h"
 #include "scene/blob_section.h"
 
-/* The ways to draw polygons with textures; those without have the pass's own pipeline. Alpha-tested ones
- * have theirs, so that only they lose the early depth test. */
-/* 1 + these: masu_draw_kind */
+/* Pipelines of polygons with textures; polygons without textures use the pipeline of the pass.
+ * Alpha-tested materials have a separate pipeline, so that only these lose the early depth test. */
+/* 1 + value: masu_draw_kind */
 enum { MASU_TEXTURED_OPAQUE, MASU_TEXTURED_MASK, MASU_TEXTURED_COUNT };
-/* Of what is not seen from behind: without textures, then the same. */
+/* Pipelines of single-sided materials: without textures, then as above. */
 #define MASU_CULLED_COUNT (1u + MASU_TEXTURED_COUNT)
 
-#define MASU_TRANSPARENT_WORDS 6u /* of a slot in the buffer of drawn instances */
+#define MASU_TRANSPARENT_WORDS 6u /* 32-bit values per slot in the buffer of drawn instances */
 
-/* A form of a placed mesh: its instances, and one draw for each of its primitives. The mesh itself comes
- * first, then its LODs, if the plan has any, the finer first. */
+/* A batch: one level of detail of a mesh, its instances, and one draw per primitive. The mesh
+ * itself is first, then its LODs, if the plan has any, finest first. */
 typedef struct masu_batch {
     uint32_t first_primitive, first_draw, draw_count;
     uint32_t mesh;
     uint32_t first_instance, instance_count;
-    uint32_t room;                 /* instances that its list holds: its own, and what may be added */
-    uint32_t first_listed;         /* where in a view's lists its own begins */
-    uint32_t first_lod, lod_count; /* of the mesh itself: its LODs */
-    uint32_t blended;              /* of the draws those of blended materials: never recorded */
-    uint32_t mirrored; /* 1: some instance is, as it was baked: its materials are seen from both sides */
-    uint64_t triangles;            /* of one instance, without those */
+    uint32_t room; /* capacity of its instance list: its instances, and those that may be added */
+    uint32_t first_listed;         /* start of its list in a view's lists */
+    uint32_t first_lod, lod_count; /* only in the batch of the mesh itself */
+    uint32_t blended; /* number of draws with transparent materials, which are not recorded here */
+    /* 1: some instance is mirrored in the baked scene: its materials are drawn two-sided */
+    uint32_t mirrored;
+    uint64_t triangles; /* of one instance, without transparent primitives */
 } masu_batch;
 
-/* How a draw is drawn: what recording it asks of its material. */
+/* The properties of a material that its recording needs. */
 typedef struct masu_draw_material {
     uint32_t material;
     uint32_t flags; /* masu_blob_material_flags */
@@ -41,16 +42,16 @@ typedef struct masu_draw_material {
     uint32_t texture_set, layers, more_layers;
     float detail[2];
     float rise;    /* masu_blob_primitive.rise */
-    uint32_t meso; /* element of the buffer of materials where its curves begin; 0: none */
+    uint32_t meso; /* index of its mesoscale detail in the materials buffer; 0: none */
 } masu_draw_material;
 
 typedef struct masu_draws {
     masu_batch *batches;
-    uint32_t *added; /* [mesh]: instances that may be added; of no length without a reserve */
-    /* [draw]; of no length unless they are recorded again, when the blob is gone. */
+    uint32_t *added; /* [mesh]: instances that may be added; empty without a reserve */
+    /* [draw]; empty unless recordings are repeated later, when the blob may be freed. */
     masu_draw_material *materials;
-    uint32_t batch_count, large_count; /* large: with room for over 64 instances */
-    /* Slots of blended things, and the texture sets of each. */
+    uint32_t batch_count, large_count; /* large: with a capacity of over 64 instances */
+    /* Transparent slots, and the texture sets of each slot. */
     uint32_t transparent_count, transparent_set_count;
     uint32_t transparent_sets[MASU_TRANSPARENT_SETS_MAX];
 } masu_draws;
@@ -58,12 +59,12 @@ typedef struct masu_draws {
 void masu_draws_alloc(masu_draws *draws, masu_arena *arena, const masu_frame_plan *plan);
 void masu_draws_build(masu_draws *draws, const masu_frame_plan *plan, const masu_scene_view *v);
 
-/* Of an instance's transform: its triangles turn the other way in the picture. */
+/* Whether a transform reverses the winding of triangles. */
 int masu_is_mirrored(const float rows[12]);
 
 masu_draw_material masu_draw_material_of(const masu_scene_view *v, uint32_t primitive);
 
-/* A part of the atlas of occluders: 0 is the camera's, 1 the sun's. */
+/* Area of a part of the occluder atlas: 0 camera, 1 sun. */
 VkRect2D masu_atlas_part(uint32_t part);
 
 #endif

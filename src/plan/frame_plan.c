@@ -1,5 +1,5 @@
 /* frame_plan.c: the rows of passes.inc and images.inc as constant arrays, and the conditions of
- * passes. A pass is added as a row of passes.inc and a shader. */
+ * passes. */
 #include "plan/frame_plan.h"
 
 /* ---- Images ---------------------------------------------------------------------------------- */
@@ -26,7 +26,7 @@ int masu_has_image(const masu_needs *n, uint32_t image) {
     }
 }
 
-/* ---- Why a pass does not run, where rows share the reason ------------------------------------ */
+/* ---- Reasons for not running a pass, shared by several rows ---------------------------------- */
 
 #define NO_SCENE "no scene: a source image is upscaled"
 #define NO_SDF "the scene has no SDF"
@@ -59,13 +59,13 @@ static const char *no_march(const masu_needs *n) {
     return n->sdf ? "rung.march selects another march" : NO_SDF;
 }
 
-/* Whether a rung has anything that reads velocities. */
+/* Whether any pass of the rung reads velocities. */
 static int wants_velocity(const masu_needs *n) {
     return n->velocity && (n->temporal || n->resolve || (n->readback & MASU_READBACK_VELOCITY) ||
                            (n->split & MASU_SPLIT_VELOCITY));
 }
 
-/* Of two kinds of velocities the other one runs, or none. */
+/* Reason if a pass does not write velocities: no reader, or `other`. */
 static const char *no_velocity(const masu_needs *n, const char *other) {
     return wants_velocity(n) ? other : "nothing reads velocities";
 }
@@ -178,7 +178,8 @@ int masu_is_cascade(uint32_t pass) {
 
 int masu_is_of_faces(uint32_t pass) {
     masu_image_extent extent = masu_passes[pass].extent;
-    return extent == MASU_EXTENT_LOCAL_FACES || extent == MASU_EXTENT_LOCAL_SDF || extent == MASU_EXTENT_LOCAL_ATLAS;
+    return extent == MASU_EXTENT_LOCAL_FACES || extent == MASU_EXTENT_LOCAL_SDF ||
+           extent == MASU_EXTENT_LOCAL_ATLAS;
 }
 
 int masu_has_set(uint32_t pass) {
@@ -206,13 +207,14 @@ VkExtent2D masu_extent_of(masu_image_extent extent, VkExtent2D render, VkExtent2
         return (VkExtent2D){MASU_ATLAS_WIDTH, MASU_ATLAS_HEIGHT};
     if (extent == MASU_EXTENT_ONE || extent == MASU_EXTENT_KEPT || extent == MASU_EXTENT_BATCHES ||
         extent == MASU_EXTENT_PROBES || extent == MASU_EXTENT_RAYS ||
-        extent == MASU_EXTENT_TRACED_PROBES || extent == MASU_EXTENT_SKINS || extent == MASU_EXTENT_SKIN_TREES)
+        extent == MASU_EXTENT_TRACED_PROBES || extent == MASU_EXTENT_SKINS ||
+        extent == MASU_EXTENT_SKIN_TREES)
         return (VkExtent2D){1, 1};
     if (extent == MASU_EXTENT_LEVELS)
         return (VkExtent2D){(render.width + 63) / 64 * 32, (render.height + 63) / 64 * 48};
     if (extent == MASU_EXTENT_PICK) return (VkExtent2D){2, 2};
-    if (extent == MASU_EXTENT_SHADOW || extent == MASU_EXTENT_LOCAL_FACES || extent == MASU_EXTENT_LOCAL_ATLAS ||
-        extent == MASU_EXTENT_LOCAL_PAIRS)
+    if (extent == MASU_EXTENT_SHADOW || extent == MASU_EXTENT_LOCAL_FACES ||
+        extent == MASU_EXTENT_LOCAL_ATLAS || extent == MASU_EXTENT_LOCAL_PAIRS)
         return (VkExtent2D){0, 0};
     int shown = extent == MASU_EXTENT_OUTPUT || extent == MASU_EXTENT_OUTPUT_PAIRS ||
                 extent == MASU_EXTENT_OUTPUT_ODD;

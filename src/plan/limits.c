@@ -12,14 +12,17 @@
     {.name = #id, .offset = offsetof(masu_limits, id), .max = (most), .text = costs},
 static const masu_limit limits[] = {MASU_LIMITS(LIMIT_ROW){.name = NULL}};
 
-/* As masu_detail.what has them. */
+/* The names as in masu_detail.what. */
 #define WHAT(name, ...) "limits." #name,
 static const char *const whats[] = {MASU_LIMITS(WHAT)};
 
-/* A limit and its peak are at one place. */
+/* The members of masu_limits and masu_peak_info have the same offsets. */
 #define SAME_PLACE(name, ...)                                                                      \
     _Static_assert(offsetof(masu_limits, name) == offsetof(masu_peak_info, name), #name);
 MASU_LIMITS(SAME_PLACE)
+#define ONE(...) +1
+_Static_assert(sizeof(masu_limits) == sizeof(uint64_t) * (0 MASU_LIMITS(ONE)),
+               "masu_limits has members without a row: make docs-tables");
 
 const masu_limit *masu_limit_table(void) { return limits; }
 
@@ -45,7 +48,7 @@ uint64_t masu_desc_texture_bytes(const masu_desc *d) {
     return masu_scene_texture_bytes(d->scene, masu_keeps_blocks(d));
 }
 
-/* What the scene has under the name of the limit, but for what its rungs or the device decide. */
+/* The scene's requirement for each limit, without those that depend on rungs or on the device. */
 masu_limits masu_limits_needed(const masu_desc *d) {
     static const masu_limits none;
     if (!d->scene) return none;

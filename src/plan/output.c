@@ -5,13 +5,14 @@
 
 #include <math.h>
 
-/* Formats that a target may have: bits of its least precise channel, how it is filled. */
+/* Formats that a target may have: bits of the least precise channel, and how the target is
+ * written. */
 typedef struct target_format {
     VkFormat format;
     uint32_t bits;
     uint32_t steps[3];
-    int srgb;    /* reading it decodes: its bytes are those of the UNORM format */
-    int swapped; /* blue comes first in memory */
+    int srgb;    /* sRGB format: the target receives the same bytes as with UNORM */
+    int swapped; /* blue is first in memory */
 } target_format;
 
 static const target_format target_formats[] = {
@@ -45,7 +46,7 @@ void masu_output_defaults(masu_desc *d) {
     masu_targets *t = &d->targets;
     uint32_t bits = f ? f->bits : 8;
     if (d->tone == MASU_TONE_AUTO) d->tone = MASU_TONE_ACES;
-    /* The rest depends on the scene, which may still be to come: a host resolves the default rungs. */
+    /* The rest depends on the scene. A host may resolve the default rungs before it has one. */
     if (!d->scene) return;
     if (t->encoding == MASU_ENCODING_AUTO) {
         t->encoding = t->format == VK_FORMAT_R16G16B16A16_SFLOAT ? MASU_ENCODING_LINEAR
@@ -85,9 +86,10 @@ static masu_result check_targets(const masu_desc *d, masu_detail *detail) {
     const target_format *f = format_of(d);
     int floats = t->format == VK_FORMAT_R16G16B16A16_SFLOAT;
     if (!f) {
-        return bad(detail, "targets.format", VK_FORMAT_B8G8R8A8_UNORM, (uint64_t)t->format,
-                   "offered are R8G8B8A8, B8G8R8A8, A8B8G8R8 (UNORM 37, 44, 51; SRGB 43, 50, 57), 10 "
-                   "bits (58, 64), R5G6B5 (4, 5), R16G16B16A16 (UNORM 91, SFLOAT 97)");
+        return bad(
+            detail, "targets.format", VK_FORMAT_B8G8R8A8_UNORM, (uint64_t)t->format,
+            "offered are R8G8B8A8, B8G8R8A8, A8B8G8R8 (UNORM 37, 44, 51; SRGB 43, 50, 57), 10 "
+            "bits (58, 64), R5G6B5 (4, 5), R16G16B16A16 (UNORM 91, SFLOAT 97)");
     }
     if (t->storage && t->format != VK_FORMAT_R8G8B8A8_UNORM && !(floats && d->scene)) {
         return bad(detail, "targets.format", VK_FORMAT_R8G8B8A8_UNORM, (uint64_t)t->format,
@@ -128,9 +130,10 @@ static masu_result check_targets(const masu_desc *d, masu_detail *detail) {
                    "filled by a blit");
     }
     if (d->deep_color == MASU_ON && f->srgb) {
-        return bad(detail, "deep_color", MASU_OFF, (unsigned)d->deep_color,
-                   "a target of an SRGB format gets a copy of bytes; the UNORM format of the same bits is "
-                   "filled by a blit");
+        return bad(
+            detail, "deep_color", MASU_OFF, (unsigned)d->deep_color,
+            "a target of an SRGB format gets a copy of bytes; the UNORM format of the same bits is "
+            "filled by a blit");
     }
     int needs_deep = (floats && t->storage) || t->encoding != MASU_ENCODING_SRGB;
     if (d->deep_color == MASU_OFF && needs_deep) {
@@ -172,7 +175,8 @@ masu_result masu_output_check(const masu_desc *d, masu_detail *detail) {
     if ((unsigned)e->metered > MASU_ON)
         return bad(detail, "exposure.metered", MASU_ON, (unsigned)e->metered, "no masu_switch");
     if (!(e->brighten > 0.0f && e->brighten <= 1e6f))
-        return bad_float(detail, "exposure.brighten", e->brighten, "allowed are 0 to 1e6 per second");
+        return bad_float(detail, "exposure.brighten", e->brighten,
+                         "allowed are 0 to 1e6 per second");
     if (!(e->darken > 0.0f && e->darken <= 1e6f))
         return bad_float(detail, "exposure.darken", e->darken, "allowed are 0 to 1e6 per second");
     float low = e->low < 0.0f ? 0.0f : e->low, high = e->high < 0.0f ? 0.0f : e->high;
@@ -190,10 +194,11 @@ void masu_output_plan(masu_frame_plan *plan) {
     const masu_desc *d = &plan->desc;
     const target_format *f = format_of(d);
     plan->copies = masu_output_copies(d);
-    if (!d->scene) return; /* what is upscaled is passed on as it is */
+    if (!d->scene) return; /* a source image is upscaled without changes to its encoding */
     plan->deep = d->deep_color == MASU_ON;
     int dither = d->dither == MASU_ON && f->steps[0];
-    /* Halves, and bytes for fewer bits, are rounded here, so that the driver has nothing left to. */
+    /* Rounds half floats, and bytes for targets with fewer bits, in the shader, so that the
+     * driver's conversion does not round again. */
     if (dither || plan->deep || f->bits < 8) {
         int bytes = !plan->deep && f->bits > 8; /* the last image before the blit has 8 bits */
         for (uint32_t c = 0; c < 3; c++) plan->output.steps[c] = bytes ? 255 : f->steps[c];

@@ -1,4 +1,4 @@
-/* plan.c: what is asked of a plan; compile.c makes it. See plan.h. */
+/* plan.c: queries of a plan; see plan.h. compile.c creates plans. */
 #include "plan/plan.h"
 
 uint32_t masu_format_bytes(VkFormat format) {
@@ -30,8 +30,8 @@ const masu_rung_plan *masu_first_rung(const masu_frame_plan *plan, uint32_t pass
 
 /* ---- The shadow map -------------------------------------------------------------------------- */
 
-/* Four cascades are arranged in a square, fewer in a column. A column of three that is too high for
- * the device's images becomes a square with an empty quarter. */
+/* Four cascades are arranged in a square, fewer in a column. If a column of three is too high for
+ * the device, it becomes a square with an empty quarter. */
 static uint32_t cascade_columns(const masu_frame_plan *plan) {
     uint32_t most = plan->desc.deny.image_size;
     int is_high = plan->cascades == 3 && most && 3 * plan->cascade_size > most;
@@ -44,7 +44,7 @@ VkOffset2D masu_cascade_place(const masu_frame_plan *plan, uint32_t cascade) {
                         (int32_t)(cascade / columns * plan->cascade_size)};
 }
 
-/* ---- Shadows of punctual lights -------------------------------------------------------------- */
+/* ---- Shadows of local lights ----------------------------------------------------------------- */
 
 #define FACES_ACROSS 4u
 
@@ -59,12 +59,14 @@ VkExtent2D masu_plan_extent(const masu_frame_plan *plan, masu_image_extent exten
     if (extent == MASU_EXTENT_HALF && plan->desc.debug.ao_full) return render;
     int traced = extent == MASU_EXTENT_TRACED || extent == MASU_EXTENT_GLOSSY;
     if (traced && plan->desc.debug.reference) return render;
-    if (extent == MASU_EXTENT_LOCAL_ATLAS) return (VkExtent2D){plan->local_atlas, plan->local_atlas};
-    if (extent == MASU_EXTENT_LOCAL_PAIRS) return (VkExtent2D){plan->local_atlas / 2, plan->local_atlas};
+    if (extent == MASU_EXTENT_LOCAL_ATLAS)
+        return (VkExtent2D){plan->local_atlas, plan->local_atlas};
+    if (extent == MASU_EXTENT_LOCAL_PAIRS)
+        return (VkExtent2D){plan->local_atlas / 2, plan->local_atlas};
     if (extent == MASU_EXTENT_LOCAL_FACES) {
         uint32_t across = plan->local_faces < FACES_ACROSS ? plan->local_faces : FACES_ACROSS;
-        return (VkExtent2D){across * plan->local_tile,
-                            (plan->local_faces + FACES_ACROSS - 1) / FACES_ACROSS * plan->local_tile};
+        return (VkExtent2D){across * plan->local_tile, (plan->local_faces + FACES_ACROSS - 1) /
+                                                           FACES_ACROSS * plan->local_tile};
     }
     if (extent != MASU_EXTENT_SHADOW) return masu_extent_of(extent, render, plan->desc.output);
     return (VkExtent2D){columns * plan->cascade_size,
@@ -81,7 +83,8 @@ uint32_t masu_recording_variant(const masu_rung_plan *rung, uint32_t drawn) {
 
 int masu_variant_draws(const masu_rung_plan *rung, uint32_t variant, uint32_t what) {
     uint32_t only = 1u << what;
-    if (what == MASU_DRAWN_FACES) return rung->faces && (masu_recording_variant(rung, only) & variant) != 0;
+    if (what == MASU_DRAWN_FACES)
+        return rung->faces && (masu_recording_variant(rung, only) & variant) != 0;
     if (what >= rung->cascades) return 0;
     return !(rung->slow & only) || (masu_recording_variant(rung, only) & variant) != 0;
 }
@@ -93,7 +96,8 @@ int masu_has_half_means(const masu_frame_plan *plan) {
 VkFormat masu_plan_format(const masu_frame_plan *plan, uint32_t image) {
     const masu_image_row *row = &masu_images[image];
     int color = row->class_of == MASU_CLASS_COLOR && row->format != VK_FORMAT_UNDEFINED;
-    if (row->format == VK_FORMAT_R16G16B16A16_UNORM && masu_has_half_means(plan)) return VK_FORMAT_R16G16B16A16_SFLOAT;
+    if (row->format == VK_FORMAT_R16G16B16A16_UNORM && masu_has_half_means(plan))
+        return VK_FORMAT_R16G16B16A16_SFLOAT;
     return color && plan->deep ? VK_FORMAT_R16G16B16A16_SFLOAT : row->format;
 }
 

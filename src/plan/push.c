@@ -11,10 +11,10 @@ static int is_temporal(const masu_push_input *in) {
     return masu_has_pass(&in->plan->rungs[in->rung].active, MASU_PASS_TEMPORAL_FIND);
 }
 
-/* Fewer pixels than are shown: mips as fine as the output's pixels ask for, since what EASU gets blurred it
- * cannot bring back. The mean over frames is of samples all over a pixel, each of which may look at a part of it alone:
- * two mips finer have the least error at rest, and at full size in motion
- * (docs/design/17-temporal-upscaling.md). */
+/* At a lower render size, mips as fine as for the output size, because EASU cannot restore detail
+ * that is missing. Temporal upscaling averages samples all over a pixel, each of which may cover
+ * only a part of the pixel: two mips finer have the lowest error for a stationary camera, and at
+ * full size in motion (docs/design/17-temporal-upscaling.md). */
 static float masu_mip_bias(const masu_push_input *in) {
     const masu_desc *d = &in->plan->desc;
     const masu_rung *rung = &d->rungs[in->rung];
@@ -22,33 +22,37 @@ static float masu_mip_bias(const masu_push_input *in) {
     return (d->debug.no_bias ? 0.0f : own) + d->debug.mip_bias;
 }
 
-/* Levels that gbuffer.frag gives back by the speed of what moves, from 2.3 times these on down: those that the scale has added. Of what
- * moves few samples of before count, and what they do not smooth is noise. */
+/* Mip levels that gbuffer.frag adds back in proportion to the speed of a pixel, up to 2.3 times
+ * this value: the levels that the render scale has subtracted. Moving pixels accumulate few
+ * samples, and detail that these do not average is noise. */
 static float masu_mip_moving(const masu_push_input *in) {
     const masu_desc *d = &in->plan->desc;
     return is_temporal(in) && !d->debug.no_bias ? -log2f(d->rungs[in->rung].scale) : 0.0f;
 }
 
-/* The most that is shown, in whites. */
+/* Largest output value, in units of white. */
 static float masu_peak(const masu_targets *t) {
     return t->encoding == MASU_ENCODING_SRGB ? 1.0f : t->peak / t->white;
 }
 
-/* Whether the output has the render size. */
+/* Whether the output size equals the render size. */
 static int shows_each_pixel(const masu_push_input *in) {
     const masu_rung_plan *rp = &in->plan->rungs[in->rung];
-    return rp->render_width == in->plan->desc.output.width && rp->render_height == in->plan->desc.output.height;
+    return rp->render_width == in->plan->desc.output.width &&
+           rp->render_height == in->plan->desc.output.height;
 }
 
-/* By how much rung.temporal sharpens what it shows (shaders/upscale/history.glsl), at rest and while the view moves. */
+/* Sharpening of rung.temporal (shaders/upscale/history.glsl), for a stationary and a moving
+ * view. */
 static float calm_sharpening(const masu_rung *r) { return 0.03f - 0.02f * r->scale; }
 static float moving_sharpening(const masu_rung *r) { return 0.22f - 0.15f * r->scale; }
 
-/* The farthest that a linear fetch may lie in an image of that size whose texels' middles are whole numbers: samplers round to 1/256,
- * and the last middle would be read with what lies beyond it. */
+/* Largest coordinate for a linear fetch, with texel centres at the integers. Samplers round to
+ * 1/256, so a fetch at the last centre would also read the texel behind it. */
 static float last_place(uint32_t size) { return (float)size - 1.005f; }
 
-/* The image of depth that a pass reads: as large as the largest rung that has it, which other images need not be. */
+/* The depth image that a pass reads. It has the size of the largest rung with this image, which may
+ * differ from other images. */
 static const masu_image_plan *depth_of(const masu_push_input *in) {
     const masu_rung_plan *rp = &in->plan->rungs[in->rung];
     for (uint32_t a = 0; a < rp->access_count[in->pass]; a++) {
@@ -60,8 +64,8 @@ static const masu_image_plan *depth_of(const masu_push_input *in) {
     return &in->plan->images[MASU_IMAGE_SCENE_DEPTH];
 }
 
-/* Of the four settings of SMAA: the threshold of luma in the steps of smaa/color.glsl, steps of a search, and
- * of one along a diagonal. */
+/* Per SMAA preset: the luma threshold in the steps of smaa/color.glsl, the search steps, and the
+ * diagonal search steps. */
 static float masu_smaa_threshold(masu_aa aa) {
     static const float thresholds[] = {0.15f, 0.1f, 0.1f, 0.05f};
     return 2550000.0f * thresholds[aa - MASU_AA_SMAA_LOW];
@@ -77,8 +81,8 @@ static uint32_t masu_smaa_diagonal_steps(masu_aa aa) {
     return steps[aa - MASU_AA_SMAA_LOW];
 }
 
-/* What is there of the march for passes behind it: 0 nothing, 1 the tiles' lists of parts, 2 what matters to blocks, too (with
- * debug.all_terms that is all of the tile). */
+/* Output of the march for later passes: 0 none, 1 lists of primitives per tile, 2 also term masks
+ * per block (with debug.all_terms, the masks have all terms of the tile). */
 static uint32_t march_listed(const masu_rung *r) {
 #ifdef MASU_LAB
     masu_needs n = {.march = r->march};
@@ -113,7 +117,7 @@ static uint32_t march_listed(const masu_rung *r) {
 #undef UINT
 #undef FLOAT
 
-/* A row that tells more than there is room for stops the build. */
+/* The build fails if a row has more push constants than fit. */
 #define UINT(name, value) +1
 #define FLOAT(name, value) +1
 #define PASS(ID, name, purpose, kind, extent, when, push, ...)                                     \
@@ -134,7 +138,7 @@ masu_push_block masu_push_of(const masu_frame_plan *plan, uint32_t rung, uint32_
     VkExtent2D output = masu_plan_extent(plan, masu_passes[pass].extent, render);
     masu_push_block block;
     memset(&block, 0, sizeof block);
-    for (uint32_t a = 0; a < rp->access_count[pass]; a++) { /* the first image that is read */
+    for (uint32_t a = 0; a < rp->access_count[pass]; a++) { /* the first sampled image */
         if (rp->access[pass][a].usage != MASU_READ) continue;
         if (masu_images[rp->access[pass][a].image].extent == MASU_EXTENT_OUTPUT)
             input = plan->desc.output;

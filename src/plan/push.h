@@ -1,12 +1,13 @@
-/* push.h: the push constants of a pass: sizes, then what its row in passes.inc tells its shader.
+/* push.h: the push constants of a pass: sizes, then the values of its row in passes.inc.
  *
- * Pure functions of a plan; what changes from draw to draw record.c fills in. */
+ * Pure functions of a plan. record.c fills in values that change per draw. */
 #ifndef MASU_PUSH_H
 #define MASU_PUSH_H
 
 #include "plan/plan.h"
 
-/* As shaders/shared/push.glsl declares the block: the structs masu_push_NAME of tables.h begin at `own`. */
+/* The push constant block as in shaders/shared/push.glsl; the structs masu_push_NAME of tables.h
+ * start at `own`. */
 #define MASU_PUSH_OWN 16u
 typedef struct masu_push_block {
     struct masu_push sizes;
@@ -17,15 +18,16 @@ typedef struct masu_push_block {
 } masu_push_block;
 _Static_assert(sizeof(masu_push_block) <= 128, "every device has 128 bytes of push constants");
 
-/* What the values of a row are computed of. */
+/* Inputs of the expressions in rows. */
 typedef struct masu_push_input {
     const masu_frame_plan *plan;
     uint32_t rung, pass;
-    uint32_t few;   /* of occlusion culling: workgroups of batches with at most 64 instances */
-    float scale[2]; /* input pixels / output pixels, as upscale/place.glsl wants it */
+    uint32_t few;   /* occlusion culling: workgroups of batches with at most 64 instances */
+    float scale[2]; /* input pixels / output pixels, for upscale/place.glsl */
 } masu_push_input;
 
-/* All of a pass; few: see above. */
-masu_push_block masu_push_of(const masu_frame_plan *plan, uint32_t rung, uint32_t pass, uint32_t few);
+/* All push constants of a pass. few: see above. */
+masu_push_block masu_push_of(const masu_frame_plan *plan, uint32_t rung, uint32_t pass,
+                             uint32_t few);
 
 #endif

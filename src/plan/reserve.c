@@ -4,10 +4,11 @@
 #include "base/error.h"
 #include "scene/scene.h"
 
-/* How many of sorted numbers are this one: none or one of TRACE_INSTANCES. */
+/* 0 or 1: whether an instance is in the sorted TRACE_INSTANCES. */
 static uint32_t traced(const masu_scene_view *v, uint32_t count, uint32_t instance) {
     uint32_t first;
-    return count ? masu_scene_range(v->trace_instances, sizeof(uint32_t), count, instance, &first) : 0;
+    return count ? masu_scene_range(v->trace_instances, sizeof(uint32_t), count, instance, &first)
+                 : 0;
 }
 
 static uint32_t blended(const masu_scene_view *v, const masu_blob_mesh *mesh) {
@@ -26,7 +27,8 @@ int masu_reserve_copies(const masu_scene_view *v, const masu_blob_model *model) 
     return 1;
 }
 
-/* What a copy of a model takes. Words of lists for each of its instances are added to `lists`: of meshes, of LODs. */
+/* Sizes of a copy of a model. Adds the list entries of its instances to `lists`: of meshes, of
+ * LODs. */
 static void size_of(const masu_scene_data *scene, const masu_scene_view *v,
                     const masu_blob_model *model, masu_place_size *size, uint32_t *occluders,
                     uint64_t lists[2]) {
@@ -78,11 +80,15 @@ static masu_result add_models(uint32_t models, masu_scene_data *scene, masu_rese
         grow(&most_occluders, occluders);
     }
     if (!any) return MASU_OK;
-    const uint64_t sizes[] = {(uint64_t)models * place->instances, (uint64_t)models * place->nodes,
-                              models * lists[0], models * lists[1],
-                              (uint64_t)models * place->transparents, (uint64_t)models * most_occluders};
-    static const char *const whats[] = {"instances", "nodes", "entries in lists",
-                                        "entries in lists of LODs", "blended primitives", "occluders"};
+    const uint64_t sizes[] = {(uint64_t)models * place->instances,
+                              (uint64_t)models * place->nodes,
+                              models * lists[0],
+                              models * lists[1],
+                              (uint64_t)models * place->transparents,
+                              (uint64_t)models * most_occluders};
+    static const char *const whats[] = {"instances",          "nodes",
+                                        "entries in lists",   "entries in lists of LODs",
+                                        "blended primitives", "occluders"};
     for (uint32_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
         if (sizes[i] > MASU_RESERVE_PARTS_MAX)
             return too_many(whats[i], sizes[i], MASU_RESERVE_PARTS_MAX, detail);

@@ -5,8 +5,8 @@
 
 enum { AMD = 0x1002, INTEL = 0x8086, QUALCOMM = 0x5143, ARM = 0x13B5, IMAGINATION = 0x1010 };
 
-/* Device ids from first to last. Vendors give them out in blocks, an architecture after the other; the gaps belong to
- * the vendor's row without ids, its newer architectures. */
+/* Ranges of device ids. Vendors assign ids in blocks per architecture. Ids outside these ranges
+ * belong to the vendor's row for all ids, its newer architectures. */
 static const struct {
     uint32_t vendor, first, last;
     masu_device_class device_class;
@@ -21,7 +21,7 @@ static const struct {
     {AMD, 0x7300, 0x730F, MASU_DEVICE_VEGA8}, /* Fiji */
     {AMD, 0x9830, 0x98FF, MASU_DEVICE_VEGA8}, /* small APUs of GCN 2 and 3 */
     {AMD, 0, UINT32_MAX, MASU_DEVICE_DECK},   /* RDNA */
-    /* Gen 7 to 11, of which all are laid out like Gen 9's in what counts here. */
+    /* Gen 7 to 11. For the relative costs of passes, all have the same design as Gen 9. */
     {INTEL, 0x0100, 0x0FFF, MASU_DEVICE_UHD620},
     {INTEL, 0x1600, 0x1FFF, MASU_DEVICE_UHD620}, /* Broadwell, Skylake, Apollo Lake */
     {INTEL, 0x22B0, 0x22BF, MASU_DEVICE_UHD620}, /* Braswell */
@@ -33,7 +33,7 @@ static const struct {
     {INTEL, 0x87C0, 0x87CF, MASU_DEVICE_UHD620}, /* Amber Lake */
     {INTEL, 0x8A50, 0x8A7F, MASU_DEVICE_UHD620}, /* Ice Lake: Gen 11 */
     {INTEL, 0x9B20, 0x9BFF, MASU_DEVICE_UHD620}, /* Comet Lake */
-    {INTEL, 0, UINT32_MAX, MASU_DEVICE_XE80},    /* Gen 12: Tiger Lake and what came after */
+    {INTEL, 0, UINT32_MAX, MASU_DEVICE_XE80},    /* Gen 12: Tiger Lake and later */
     {QUALCOMM, 0, UINT32_MAX, MASU_DEVICE_MOBILE},
     {ARM, 0, UINT32_MAX, MASU_DEVICE_MOBILE},
     {IMAGINATION, 0, UINT32_MAX, MASU_DEVICE_MOBILE},

@@ -1,12 +1,12 @@
-/* device_class.h: which of the classes of GPUs that the project's times are computed for a device belongs to, by
- * vendor and device id (docs/design/20-cost-model.md). Pure; owns nothing, fails at nothing. */
+/* device_class.h: maps a device, by vendor and device id, to one of the GPU classes for which costs
+ * are computed (docs/design/20-cost-model.md). Pure functions; cannot fail. */
 #ifndef MASU_DEVICE_CLASS_H
 #define MASU_DEVICE_CLASS_H
 
 #include <vulkan/vulkan_core.h>
 
 typedef enum masu_device_class {
-    MASU_DEVICE_OTHER, /* CPUs, and GPUs of which no compiler was asked */
+    MASU_DEVICE_OTHER, /* CPUs, and GPUs without a class */
     MASU_DEVICE_XE80,
     MASU_DEVICE_UHD620,
     MASU_DEVICE_VEGA8,
@@ -15,12 +15,13 @@ typedef enum masu_device_class {
     MASU_DEVICE_CLASSES
 } masu_device_class;
 
-/* That whose instructions are the device's, or the next older; of Mali and PowerVR no compiler was asked, they take
- * Adreno's. What counts of a class is how its passes compare with each other, not how fast it is: a discrete GPU of
- * the same instructions belongs to it, too. */
+/* The class with the instruction set of the device, or with the next older one. Mali and PowerVR
+ * use the class of Adreno, because no compiler for these was available. A class describes the
+ * relative costs of passes, not speed: discrete GPUs with the same instruction set belong to it
+ * too. */
 masu_device_class masu_device_class_of(const VkPhysicalDeviceProperties *device);
 
-/* As the model sheet calls it; "": MASU_DEVICE_OTHER. Never NULL. */
+/* The name in the cost model; "" for MASU_DEVICE_OTHER. Never NULL. */
 const char *masu_device_class_name(masu_device_class device_class);
 
 #endif

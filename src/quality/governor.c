@@ -1,4 +1,4 @@
-/* governor.c: the rules that select a rung. See governor.h; governor_model.c has the model of frame
+/* governor.c: the rules that select a rung. See governor.h. governor_model.c has the model of frame
  * times that they use. */
 #include "quality/governor.h"
 
@@ -8,47 +8,47 @@
 #include <math.h>
 #include <string.h>
 
-/* ---- Constants: all are times in frames, deviations, or parts
- * ------------------------------------ */
+/* ---- Constants: times in frames, standard deviations, or ratios ------------------------------ */
 
-#define COST_KNOWN 0.0015 /* relative deviation of a cost that has been measured before */
+#define COST_KNOWN 0.0015 /* relative deviation of a cost that was measured before */
 #define MARGIN MASU_GOVERNOR_MARGIN
-#define MARGIN_REST 1.25 /* and those with which it is kept, at rest */
-#define MARGIN_MOVES 3.5 /* and while the load rises, where the prediction is late: */
-#define RISES_LEAST 0.05 /* by this part in a dwell it does not yet, */
-#define RISES_MOST 0.15  /* by this one it does */
-#define FALL_AHEAD 0.75  /* of the dwell: so far ahead a slope is followed to choose a lower rung */
+#define MARGIN_REST 1.25 /* margins for keeping it: steady load, */
+#define MARGIN_MOVES 3.5 /* and rising load, when the prediction lags */
+#define RISES_LEAST 0.05 /* relative rise of the load within a dwell: none below this, */
+#define RISES_MOST 0.15  /* certain from this on */
+#define FALL_AHEAD 0.75  /* dwells to extrapolate the slope when selecting a cheaper rung */
 #define STALE_FRAMES 30u
-#define STEP_UP 1.5        /* a rise to less than this factor of cost is worth waiting for, */
-#define STEP_WAIT 5u       /* so many halves of the dwell */
-#define SETTLE_WAIT 8u     /* halves of the dwell: then the rung has settled */
-#define SETTLE_BAND 0.05   /* a load within it of where it settled has not moved */
-#define MISTAKE_LOAD 1.1   /* factor within which the load is where it was at the last rise, */
-#define MISTAKE_RANGE 1.25 /* and this one since */
-#define FORGET_LOAD 1.3    /* a load that has changed by this factor is new: mistakes are past */
-/* Of rungs that were risen to by mistake: factor on what they are expected to take. */
+#define STEP_UP 1.5        /* a rise by less than this cost factor waits for a larger one, */
+#define STEP_WAIT 5u       /* for this many half dwells */
+#define SETTLE_WAIT 8u     /* half dwells until a rung is settled */
+#define SETTLE_BAND 0.05   /* relative change of load that leaves it settled */
+#define MISTAKE_LOAD 1.1   /* factor within which the load equals that of the last rise, */
+#define MISTAKE_RANGE 1.25 /* and that it must not have left since */
+#define FORGET_LOAD 1.3    /* load change by this factor clears failed rises */
+/* Failed rises: factor on the predicted time of the rung. */
 #define PENALTY_LEAST 1.02
 #define PENALTY_MOST 1.15
 #define PATIENCE_MOST 64u
-/* A clock that follows its own load makes a low rung as slow as a better one. Whether it does is tried: */
-#define TRIAL_BUSY 0.92 /* of the target: a rung that takes less at rest may be so because of it, */
-#define TRIAL_MOST 1.25 /* and one is tried that is expected to take at most so much of it, */
-#define TRIAL_WAIT 1800u /* frames at rest until then where nothing is known of the clock, */
-#define TRIAL_AGAIN 300u /* or after one that failed where clocks have followed: both double, */
-/* Of the expected time: a shorter time shows that the clock has followed. */
+/* A clock that follows its load makes a cheap rung as slow as a better one. Trials find out: */
+#define TRIAL_BUSY 0.92  /* of the target: trials only below this time, at a steady load, */
+#define TRIAL_MOST 1.25  /* and only of rungs predicted to take less than this factor times it */
+#define TRIAL_WAIT 1800u /* frames of steady load before the first trial, */
+#define TRIAL_AGAIN 300u /* or after a failed trial if earlier ones succeeded: both double */
+/* Factor on the predicted time: a shorter time shows that the clock has followed. */
 #define TRIAL_FOLLOWS 0.96
-#define TRIALS_MOST 6u  /* so often */
-#define TRIALS_DOUBT 3u /* failures in a row, and nothing is known of the clock any more */
-#define HOLD 8u         /* frames: the least that a rung is kept for while the target is */
-#define NO_GAIN 1.05    /* rungs within this factor of the least cost are the same */
-#define SPIKE_RANGE 1.1 /* factor up to which a load is one of the remembered spikes */
-#define UNDONE_FRAMES 12u /* a jump so soon after a rise undoes it */
+#define TRIALS_MOST 6u    /* maximum number of trials */
+#define TRIALS_DOUBT 3u   /* consecutive failures that reset the knowledge about the clock */
+#define HOLD 8u           /* frames: minimum time on a rung without a missed target */
+#define NO_GAIN 1.05      /* rungs within this factor of the lowest cost are equal */
+#define SPIKE_RANGE 1.1   /* factor within which a load is one of the remembered spikes */
+#define UNDONE_FRAMES 12u /* a jump of the load this soon after a rise undoes the rise */
 /* The survey. */
 #define SURVEY_MOST 1.25 /* times the cheapest's time: rungs predicted below it are measured, */
 #define SURVEY_FIXED 0.5 /* all, if so much of the cheapest's time is fixed */
-#define SURVEY_REST 16u  /* frames of a steady load before a survey */
-#define SURVEY_SLOPE 0.05 /* change of the load in a dwell up to which it counts as steady */
-/* Factors of the time within which the survey's answer holds: above the target, and below it. */
+#define SURVEY_REST 16u  /* frames of steady load before a survey */
+#define SURVEY_SLOPE 0.05 /* relative change of load per dwell that is steady */
+/* Factors of the time within which the result of a survey remains valid: above the target, and
+ * below. */
 #define SURVEY_RANGE 1.15
 #define SURVEY_RANGE_FITS 1.08
 
@@ -56,7 +56,7 @@ _Static_assert(MASU_SURVEY_RUNGS == MASU_GOVERNOR_RUNGS, "a survey of every rung
 
 /* ---- Init ------------------------------------------------------------------------------------ */
 
-/* What can be changed later of a description; what is out of range counts as 0. */
+/* Applies the fields that may change later. Fields out of range are treated as 0. */
 static void apply_desc(masu_governor *g, const masu_governor_desc *desc) {
     g->mode = desc->mode;
     g->asked = desc->target_ms >= 1.0f && desc->target_ms <= 1000.0f ? (double)desc->target_ms
@@ -94,10 +94,10 @@ void masu_governor_init(masu_governor *g, const masu_governor_desc *desc,
                                                : MASU_GOVERNOR_REASON_NONE;
 }
 
-/* ---- The laws -------------------------------------------------------------------------------- */
+/* ---- Rules ----------------------------------------------------------------------------------- */
 
-/* The best rung below the present one that meets the target for a dwell, at the present slope; if
- * none does, the worst. */
+/* The best rung below the present one that meets the target for a dwell, at the present slope; the
+ * worst rung if none does. */
 static uint32_t fall(const masu_governor *g, double lead, int *fits) {
     double last = lead + (g->follows ? 0.0 : FALL_AHEAD * (double)g->dwell);
     *fits = 1;
@@ -110,17 +110,17 @@ static uint32_t fall(const masu_governor *g, double lead, int *fits) {
     return g->worst;
 }
 
-/* Whether a rung keeps the target at this load. */
+/* Whether a rung meets the target at this load. */
 static int fits_load(const masu_governor *g, uint32_t rung, double load) {
     return (g->fixed + g->cost[rung] * load) * (1.0 + MARGIN * g->noise) <= g->target;
 }
 
-/* The best rung that keeps the target with headroom, now and for a dwell; else the present one. */
+/* The best rung that meets the target with headroom, now and for a dwell; else the present one. */
 static uint32_t rise(masu_governor *g, uint64_t frame, double lead) {
     uint32_t barrier =
         masu_survey_barrier(&g->survey, frame, masu_governor_predict(g, g->survey.below), g->noise);
     double most = g->target * (1.0 - g->headroom), peak = masu_spikes_peak(&g->spikes);
-    if (peak > 0.0 && !fits_load(g, g->worst, peak)) peak = 0.0; /* no rung meets it */
+    if (peak > 0.0 && !fits_load(g, g->worst, peak)) peak = 0.0; /* no rung meets the target then */
     for (uint32_t r = barrier > g->best ? barrier : g->best; r < g->rung; r++) {
         if (peak > 0.0 && !fits_load(g, r, peak)) continue;
         double now = masu_governor_upper(g, r, lead, 1, MARGIN),
@@ -156,9 +156,9 @@ static void raise_to(masu_governor *g, uint64_t frame, uint32_t rung, masu_gover
 
 static int is_near(double a, double b, double factor) { return a < factor * b && b < factor * a; }
 
-/* Whether a rise now would repeat one that was taken back, with nothing but noise in between:
- * then what its rung has taken counts against it and all better ones, and waiting for the next
- * doubles. */
+/* Whether a rise now would repeat one that was undone, with only noise in between. If so, the time
+ * measured at that rung is a penalty for the rung and all better ones, and the wait before the next
+ * rise doubles. */
 static int repeats_a_mistake(masu_governor *g) {
     if (!g->failed || !is_near(g->load, g->raised_load, MISTAKE_LOAD) ||
         !is_near(g->load_low, g->raised_load, MISTAKE_RANGE) ||
@@ -179,8 +179,8 @@ void masu_governor_forget_mistakes(masu_governor *g) {
     g->failed = 0;
 }
 
-/* 0: the load does not rise; 1: it does, for certain. What a clock does that follows is no rise: it ends
- * before the target is missed. */
+/* 0: the load does not rise; 1: it certainly does. A clock that follows the load is not
+ * treated as a rise, because it stops before the target is missed. */
 static double rises(const masu_governor *g) {
     if (g->follows) return 0.0;
     double part = g->slope * (double)g->dwell / g->load;
@@ -191,7 +191,7 @@ static double rises(const masu_governor *g) {
 
 /* ---- The survey ------------------------------------------------------------------------------ */
 
-/* The next rung to measure; `low` if there is none: it is the answer then. */
+/* The next rung to measure, or `low` if there is none: `low` is the result then. */
 static uint32_t next_to_measure(masu_governor *g) {
     masu_survey *s = &g->survey;
     double least = s->mean[s->cheapest];
@@ -205,7 +205,7 @@ static uint32_t next_to_measure(masu_governor *g) {
     return s->low > from && s->any ? s->low - 1 : s->low;
 }
 
-/* One step of an active survey; 0: none is active. */
+/* One step of an active survey. Returns 0 if none is active. */
 static int survey(masu_governor *g, uint64_t frame) {
     masu_survey *s = &g->survey;
     if (!s->active) return 0;
@@ -232,9 +232,9 @@ static int survey(masu_governor *g, uint64_t frame) {
     return 1;
 }
 
-/* ---- Clocks that follow the load ------------------------------------------------------------- */
+/* ---- Trials of clocks that follow the load --------------------------------------------------- */
 
-/* A trial ends: the rung is kept if it takes no longer than it may by now, whatever the reason. */
+/* Ends a trial. The rung is kept if its time is within the target, for whatever reason. */
 static void end_trial(masu_governor *g, uint64_t frame, int over) {
     g->trial = 0;
     g->trial_load = g->load;
@@ -251,7 +251,7 @@ static void end_trial(masu_governor *g, uint64_t frame, int over) {
     g->rising = 0;
 }
 
-/* Nothing better fits, and there is room: begins a trial if it is time for one. */
+/* If no better rung fits but there is headroom, starts a trial when one is due. */
 static void try_clock(masu_governor *g, uint64_t frame, uint64_t still) {
     uint32_t r = g->rung - 1;
     if (g->rung <= g->best || g->steady_clock || g->odd_count || masu_governor_moves(g) > 0.0 ||
@@ -262,7 +262,7 @@ static void try_clock(masu_governor *g, uint64_t frame, uint64_t still) {
     if (masu_governor_predict(g, g->rung) > TRIAL_BUSY * g->target ||
         masu_governor_predict(g, r) > TRIAL_MOST * g->target)
         return;
-    /* Elsewhere the clock may have room again. */
+    /* At another load the clock may have headroom again. */
     if (g->follows && !is_near(g->load, g->trial_load, FORGET_LOAD)) g->trials = 0;
     uint64_t wait = !g->follows ? TRIAL_WAIT : g->trials ? TRIAL_AGAIN : g->dwell;
     if (still < (g->follows ? g->dwell : TRIAL_WAIT) ||
@@ -274,7 +274,7 @@ static void try_clock(masu_governor *g, uint64_t frame, uint64_t still) {
     change(g, frame, r, MASU_GOVERNOR_REASON_TRIAL);
 }
 
-/* The rung is predicted to miss the target, or has missed it: falls if a cheaper one helps. */
+/* The rung is predicted to miss the target, or has missed it: falls if a cheaper rung helps. */
 static void leave(masu_governor *g, uint64_t frame, double lead, masu_governor_reason why,
                   int may_rise) {
     int fits, enough = g->survey.count[g->rung] >= masu_survey_enough(g->noise);
@@ -298,11 +298,11 @@ static void leave(masu_governor *g, uint64_t frame, double lead, masu_governor_r
         g->reason = MASU_GOVERNOR_REASON_HOLD;
         return;
     }
-    if (r < g->rung) { /* what it has cost in quality has saved nothing */
+    if (r < g->rung) { /* the lower quality has gained nothing: returns to the better rung */
         raise_to(g, frame, r, why);
         return;
     }
-    /* A jump so soon after a rise: the cost of the rung is wrong, not the load. */
+    /* A jump right after a rise: the cost of the rung is wrong, not the load. */
     uint32_t below = g->survey.below;
     if (g->rising && frame - g->changed <= UNDONE_FRAMES && why == MASU_GOVERNOR_REASON_JUMP &&
         below > g->rung && below <= g->worst)
@@ -318,8 +318,8 @@ static void leave(masu_governor *g, uint64_t frame, double lead, masu_governor_r
     change(g, frame, r, why);
 }
 
-/* After a fall under a steady load, if the rung takes as long as the better one took: measures
- * the better one again. */
+/* After a fall at a steady load, if the rung takes as long as the better one did: measures the
+ * better one again. */
 static int fell_in_vain(masu_governor *g, uint64_t frame, uint64_t still) {
     masu_survey *s = &g->survey;
     if (!s->left || still < SURVEY_REST || s->count[g->rung] < masu_survey_enough(g->noise))
@@ -353,7 +353,7 @@ static void choose(masu_governor *g, uint64_t frame) {
     double peak_before = masu_spikes_peak(&g->spikes);
     masu_spikes_follow(&g->spikes, frame, g->load, over);
     double peak = masu_spikes_peak(&g->spikes);
-    if (peak_before > 0.0 && peak == 0.0) { /* the rung was kept for spikes: it has not settled */
+    if (peak_before > 0.0 && peak == 0.0) { /* the rung was kept for spikes and has not settled */
         g->settled_load = -1.0;
         g->restless = frame;
         g->survey.barrier = g->survey.failures = 0;
@@ -385,7 +385,7 @@ static void choose(masu_governor *g, uint64_t frame) {
     }
     if (g->urged && (held >= HOLD || g->urged > 1)) {
         g->urged = 0;
-        g->rising = 0; /* what is found there is no mistake of this load */
+        g->rising = 0; /* the result is no failed rise at this load */
         change(g, frame, r, MASU_GOVERNOR_REASON_UP);
         return;
     }
@@ -399,7 +399,7 @@ static void choose(masu_governor *g, uint64_t frame) {
     raise_to(g, frame, r, MASU_GOVERNOR_REASON_UP);
 }
 
-/* Whether it is asked for this frame for the first time. */
+/* Whether this frame is requested for the first time. */
 static int begin(masu_governor *g, uint64_t frame) {
     if (g->started && frame <= g->frame) return 0;
     if (!g->started) g->changed = frame;
@@ -416,7 +416,7 @@ static void pace(masu_governor *g, uint64_t frame, int excluded) {
     masu_pacing_choose(&g->pacing, frame, masu_largest(ms, g->trust.cpu), g->target, excluded);
 }
 
-/* The host may have changed the mode or moved the range. */
+/* Applies changes of mode and range by the host. */
 static void obey(masu_governor *g, uint64_t frame) {
     int fixed = g->mode == MASU_GOVERNOR_FIXED;
     uint32_t best = fixed ? g->fixed_rung : g->best, worst = fixed ? g->fixed_rung : g->worst;
@@ -467,7 +467,7 @@ void masu_governor_override(masu_governor *g, uint64_t frame, uint32_t rung, int
     if (g->mode == MASU_GOVERNOR_ON) {
         g->started = 1;
         g->frame = frame;
-        /* The range is the governor's own: what comes next is chosen within it. */
+        /* The range applies to the governor's choices: they are clamped to it. */
         rung = rung < g->best ? g->best : rung > g->worst ? g->worst : rung;
         g->survey.active = 0;
         change(g, frame, rung, MASU_GOVERNOR_REASON_HOST);
@@ -483,7 +483,7 @@ void masu_governor_shown(masu_governor *g, uint64_t frame, uint64_t ns, uint64_t
         g->missed += (uint64_t)masu_pacing_shown(&g->pacing, frame, ns, refresh_ns);
 }
 
-/* ---- What the host changes ------------------------------------------------------------------- */
+/* ---- Settings -------------------------------------------------------------------------------- */
 
 void masu_governor_adjust(masu_governor *g, const masu_governor_desc *desc) {
     masu_governor old = *g;
@@ -493,7 +493,7 @@ void masu_governor_adjust(masu_governor *g, const masu_governor_desc *desc) {
     if (old.asked == g->asked && old.headroom == g->headroom && old.best == g->best &&
         old.worst == g->worst && old.mode == g->mode)
         return;
-    /* Where the load has settled and which rises were mistakes was learnt beside the old target. */
+    /* The settled load and the failed rises refer to the old target. */
     masu_governor_forget_mistakes(g);
     memset(&g->survey, 0, sizeof g->survey);
     g->settled_load = -1.0;

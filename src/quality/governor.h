@@ -1,43 +1,45 @@
-/* governor.h: frame times in, a rung of the ladder out. A pure function of its own state: no clock,
- * no Vulkan, no allocation; sqrt and arithmetic of doubles alone, so that every machine decides
- * alike.
+/* governor.h: selects a rung of the ladder from frame times. A pure function of its state: no
+ * clock, no Vulkan, no allocation. It uses only sqrt and double arithmetic, so that all machines
+ * decide alike.
  *
  *   masu_governor_init(&g, &desc, rungs, count);
  *   for each frame:
- *       masu_governor_sample_in(&g, &sample);   what is known by then, of frames long submitted
+ *       masu_governor_sample_in(&g, &sample);   times of finished frames, some frames late
  *       rung = masu_governor_pick(&g, frame);
  *
- * The model is   ms = fixed + cost[rung] * load   with the load moving by `slope` each frame. Fixed
- * part, load and slope are the state of a Kalman filter; costs begin at the prior (scale^2) and are
- * corrected by what each rung has measured. docs/design/19-governor.md has laws and measurements.
+ * The model is   ms = fixed + cost[rung] * load   in which the load changes by `slope` per frame.
+ * Fixed cost, load and slope are the state of a Kalman filter. Costs start at the prior (scale^2)
+ * and are corrected by the times of each rung. docs/design/19-governor.md has the rules and
+ * measurements.
  *
- * Any sample may be given: what cannot be a frame's time is left out, and the rung handed out is
- * one of best .. worst whatever comes in. */
+ * Any sample is accepted: implausible times are ignored, and the rung is always one of best ..
+ * worst. */
 #ifndef MASU_GOVERNOR_H
 #define MASU_GOVERNOR_H
 
 #include "quality/governor_model.h"
 
-/* Out-of-range fields of `desc` count as 0; a count of 0 or above MASU_GOVERNOR_RUNGS is
+/* Out-of-range fields of `desc` are treated as 0; a count of 0 or above MASU_GOVERNOR_RUNGS is
  * clamped. */
 void masu_governor_init(masu_governor *g, const masu_governor_desc *desc,
                         const masu_governor_rung *rungs, uint32_t count);
-/* The rung for a frame; asked for again, the same one. */
+/* The rung for a frame. Repeated calls for a frame return the same rung. */
 uint32_t masu_governor_pick(masu_governor *g, uint64_t frame);
-/* The host draws this frame at a rung of its own choice. */
+/* The host renders this frame at a rung that it chooses. */
 void masu_governor_override(masu_governor *g, uint64_t frame, uint32_t rung, int excluded);
-/* The same as masu_governor_pick for a frame whose times will say nothing: the rung stays. */
+/* Like masu_governor_pick for a frame whose times will be ignored: keeps the rung. */
 uint32_t masu_governor_hold(masu_governor *g, uint64_t frame);
-/* From this frame on the picture has nothing to do with the one before: so may its cost. */
+/* Camera cut: from this frame on, the load may be different. */
 void masu_governor_cut(masu_governor *g, uint64_t frame);
-/* When the display showed a frame: see masu_pacing_shown. */
+/* Time at which the display showed a frame: see masu_pacing_shown. */
 void masu_governor_shown(masu_governor *g, uint64_t frame, uint64_t ns, uint64_t refresh_ns);
-/* Mode, target, headroom, range, dwell and fixed rung from the next frame on; costs stay. What was learnt
- * of times stays. Fields out of range as of masu_governor_init. */
+/* Changes mode, target, headroom, range, dwell and fixed rung from the next frame on. Measured
+ * costs and times are kept. Out-of-range fields are treated as in masu_governor_init. */
 void masu_governor_adjust(masu_governor *g, const masu_governor_desc *desc);
-/* Before the first frame, with a load that is known: to the best rung that keeps the target. */
+/* Before the first frame, if an earlier renderer has measured the load: selects the best rung
+ * within the target. */
 void masu_governor_settle_at_best(masu_governor *g);
-/* Which rises were taken back. */
+/* Forgets failed rises. */
 void masu_governor_forget_mistakes(masu_governor *g);
 void masu_governor_report(const masu_governor *g, masu_governor_info *out);
 

@@ -20,7 +20,7 @@ static masu_result bad(masu_detail *detail, const char *what, double given, doub
 masu_result masu_governor_check(const masu_governor_desc *g, uint32_t rungs, masu_detail *detail) {
     if ((unsigned)g->mode > MASU_GOVERNOR_FIXED)
         return bad(detail, "governor.mode", (unsigned)g->mode, 0, MASU_GOVERNOR_FIXED);
-    for (uint32_t r = 0; r < rungs; r++) { /* also told by the plan, without a governor */
+    for (uint32_t r = 0; r < rungs; r++) { /* the plan reports these even without a governor */
         if (!(g->costs[r] >= 0.0f && g->costs[r] <= 1e6f))
             return bad(detail, "governor.costs", (double)g->costs[r], 0, 1e6);
     }
@@ -29,7 +29,8 @@ masu_result masu_governor_check(const masu_governor_desc *g, uint32_t rungs, mas
     if (!(g->headroom <= 0.5f && g->headroom >= -1.0f))
         return bad(detail, "governor.headroom", (double)g->headroom, -1, 0.5);
     if (g->dwell > 600) return bad(detail, "governor.dwell", g->dwell, 0, 600);
-    if (g->mode == MASU_GOVERNOR_OFF) return MASU_OK; /* the rungs may be those of another host */
+    /* the rungs may have been selected by another program */
+    if (g->mode == MASU_GOVERNOR_OFF) return MASU_OK;
     if (g->worst_rung >= rungs)
         return bad(detail, "governor.worst_rung", g->worst_rung, 0, rungs - 1);
     if (g->best_rung > (g->worst_rung ? g->worst_rung : rungs - 1))

@@ -1,5 +1,6 @@
-/* governor_model.c: the model of frame times: a Kalman filter for fixed part, load and slope, and
- * the cost of each rung. governor.c selects a rung by its predictions; trust.c selects the clock.
+/* governor_model.c: the model of frame times: a Kalman filter for fixed cost, load and slope, and
+ * the cost of each rung. governor.c uses its predictions to select a rung; trust.c selects the
+ * clock.
  *
  * Only bounded variances accumulate, so nothing winds up at the ends of the ladder. */
 #include "quality/governor_model.h"
@@ -9,35 +10,36 @@
 #include <math.h>
 #include <string.h>
 
-/* ---- Constants: all are times in frames, deviations, or parts -------------------------------- */
+/* ---- Constants: times in frames, standard deviations, or ratios ------------------------------ */
 
-#define PAUSE 1e3 /* ms: longer is rather a pause than a frame */
+#define PAUSE 1e3 /* ms: a longer frame is a pause, not load */
 #define NOISE_FIRST 0.02
-#define NOISE_LEAST 0.003 /* timers are no better */
+#define NOISE_LEAST 0.003 /* the best that timers achieve */
 #define NOISE_MOST 0.5
 #define NOISE_WINDOW 64u
-#define FIXED_PRIOR 0.1   /* of the first time, as is its deviation */
-#define LOAD_DRIFT 0.0025 /* relative deviation of what a load changes by from frame to frame, */
-#define SLOPE_DRIFT 0.009 /* and of what its slope does, while it moves */
-#define REST 0.04         /* of both, while it does not */
-#define TREND_WEIGHT 0.2  /* of the last innovation in their mean */
-#define TREND_REST 0.7    /* deviations: below it a mean of white noise is at rest, */
-#define TREND_MOVES 1.1   /* and from here on the load moves for certain; */
-#define TREND_MOST 6.0    /* the faster, the looser the filter, up to this factor */
-#define SLOPE_MOST 0.5    /* of the load in a frame: more is a jump and no slope */
-/* Of a prior cost, relative. Not more: costs would take from a moving load what is the load's. */
+#define FIXED_PRIOR 0.1   /* initial fixed cost and its deviation, of the first time */
+#define LOAD_DRIFT 0.0025 /* process noise: relative deviation of the load per frame, */
+#define SLOPE_DRIFT 0.009 /* and of its slope, while the load changes */
+#define REST 0.04         /* factor on both while the load is steady */
+#define TREND_WEIGHT 0.2  /* weight of the newest innovation in their mean */
+#define TREND_REST 0.7    /* deviations: white noise has a smaller mean, */
+#define TREND_MOVES 1.1   /* from this one on the load certainly changes; */
+#define TREND_MOST 6.0    /* upper bound of the factor that loosens a lagging filter */
+#define SLOPE_MOST 0.5    /* of the load per frame: more is a jump */
+/* Relative deviation of a prior cost. A larger one would attribute changes of the load to the
+ * cost. */
 #define COST_DEVIATION 0.005
-#define COST_RANGE 4.0    /* how far a cost may come from its prior, as a factor */
-#define GATE 3.0          /* deviations: what is farther is odd, */
-#define GATE_LEAST 0.2    /* unless it is nearer than this part of what is expected */
-#define ODD_AGREE 1.5     /* factor within which odd samples say the same */
-#define ODD_FAR 4.0       /* factor: without a wall to confirm it, odd samples of so much */
-#define ODD_FAR_COUNT 3u  /* more need as many that agree, */
-#define ODD_NEAR_COUNT 8u /* of so much less, as many; */
-#define ODD_LIE_COUNT 90u /* and less than a frame can take: a timer that has stopped is likelier */
-#define LEAST_TIME 0.02   /* of the target, and half of the fixed part: what a frame can take */
+#define COST_RANGE 4.0    /* largest ratio of a cost to its prior, either way */
+#define GATE 3.0          /* deviations: samples farther away are outliers, */
+#define GATE_LEAST 0.2    /* except within this fraction of the prediction */
+#define ODD_AGREE 1.5     /* factor within which two outliers agree */
+#define ODD_FAR 4.0       /* factor: outliers farther above, not confirmed by the wall clock, */
+#define ODD_FAR_COUNT 3u  /* need this many that agree; */
+#define ODD_NEAR_COUNT 8u /* less far above: this many; */
+#define ODD_LIE_COUNT 90u /* below the least plausible time: likely a stopped timer */
+#define LEAST_TIME 0.02   /* of the target; plausible is above this and half the fixed cost */
 #define ODD_PAUSE_COUNT 8u
-#define LEAD_MOST 8.0    /* frames: farther than this no slope is followed to reach the present */
+#define LEAD_MOST 8.0      /* frames: limit of extrapolation to the present */
 #define RISE_FOLLOWS 0.8   /* of the first time after a rise: less shows a clock that follows */
 
 #define NEVER UINT64_MAX
@@ -54,16 +56,15 @@ void masu_governor_model_init(masu_governor *g) {
 
 /* ---- The filter ------------------------------------------------------------------------------ */
 
-/* 0: at rest; 1: the load moves; more: the filter is late. */
+/* 0: steady load; 1: changing load; more: the filter lags. */
 static double late(const masu_governor *g) {
     return masu_within((fabs(g->trend) - TREND_REST) / (TREND_MOVES - TREND_REST), 0.0, TREND_MOST);
 }
 
 double masu_governor_moves(const masu_governor *g) { return masu_within(late(g), 0.0, 1.0); }
 
-/* Timers that count in coarse steps give the same time again and again; real ones never do. The
- * step is the least difference that is seen; a time is then off by a variance of a twelfth of
- * its square. */
+/* A coarse timer repeats exact values, which fine timers do not. The step is the smallest
+ * difference observed; the variance of a time is then a twelfth of the square of the step. */
 static void follow_grain(masu_governor *g, double raw) {
     double d = fabs(raw - g->raw);
     if (d > 0.0 && (g->grain == 0.0 || d < g->grain)) g->grain = d;
@@ -72,13 +73,13 @@ static void follow_grain(masu_governor *g, double raw) {
     g->raw = raw;
 }
 
-/* Variance of one sample of this time. */
+/* Variance of one sample with this time. */
 static double sample_variance(const masu_governor *g, double ms) {
     double r = g->noise * ms;
     return r * r + g->grain * g->grain / 12.0;
 }
 
-/* The load is where this time says; how it moves is forgotten, the fixed part is kept. */
+/* Restarts the filter at the load of this time: forgets the slope, keeps the fixed cost. */
 static void restart(masu_governor *g, uint32_t rung, double ms) {
     double c = g->cost[rung], variance = g->p[0][0];
     g->fixed = masu_within(g->fixed, 0.0, 0.5 * ms);
@@ -94,9 +95,9 @@ static void restart(masu_governor *g, uint32_t rung, double ms) {
     g->settled_load = -1.0;
 }
 
-/* Samples of a rung that was just changed to contradict the model: with the load as it was, two
- * rungs and their times give both parts. Returns 0 if they do not, because the load has moved as
- * well. */
+/* Used if samples of a newly selected rung contradict the model. With an unchanged load, two rungs
+ * and their times determine fixed cost and load. Returns 0 if the result is implausible, because
+ * the load has changed as well. */
 static int refit(masu_governor *g, uint32_t rung, double ms) {
     uint32_t other = g->fitted;
     double c = g->cost[rung], step = g->cost[other] - c;
@@ -124,12 +125,12 @@ static void start(masu_governor *g, uint32_t rung, double ms) {
     g->known = 1;
 }
 
-/* Second differences of three samples in a row at one rung know nothing of level and slope, and
- * have 6 times the variance of one. Their mean size, not the root of a mean square: outliers
- * count less. */
+/* Estimates the noise from second differences of three consecutive samples at one rung. These do
+ * not depend on level and slope, and have 6 times the variance of a sample. Uses the mean absolute
+ * value instead of the mean square, to give outliers less weight. */
 static void follow_noise(masu_governor *g, uint32_t rung, double ms) {
     if (g->before_count && g->before_rung != rung) g->before_count = 0;
-    /* The steps of a coarse timer are no noise, nor is it at rest while it stands still. */
+    /* Steps of a coarse timer are not noise, and repeated values do not mean zero noise. */
     if (g->grain > 0.0 || (g->before_count && g->before[0] == ms)) return;
     if (g->before_count >= 2) {
         double d = fabs(ms - 2.0 * g->before[0] + g->before[1]) / ms * (1.2533 / 2.4495);
@@ -144,7 +145,7 @@ static void follow_noise(masu_governor *g, uint32_t rung, double ms) {
     if (g->before_count < 2) g->before_count++;
 }
 
-/* Time update: constant slope, and what it and the load may drift by. */
+/* Time update: constant slope, plus process noise. */
 static void advance(masu_governor *g, double frames) {
     double(*p)[3] = g->p;
     double q = REST + (1.0 - REST) * late(g);
@@ -160,7 +161,7 @@ static void advance(masu_governor *g, double frames) {
     p[2][1] = p[1][2];
 }
 
-/* Measurement update with value = h . state + noise of this variance. */
+/* Measurement update with value = h . state + noise with this variance. */
 static void correct(masu_governor *g, const double h[3], double innovation, double variance) {
     double ph[3], k[3], s = variance;
     for (int i = 0; i < 3; i++) {
@@ -177,7 +178,7 @@ static void correct(masu_governor *g, const double h[3], double innovation, doub
     }
 }
 
-/* A sample that nothing explains. Returns 1 once enough of them have said the same. */
+/* An outlier. Returns 1 once enough outliers agree. */
 static int is_certain(masu_governor *g, const masu_governor_sample *s, double ms, double expected,
                       int sure) {
     int sign = ms > expected ? 1 : -1;
@@ -197,8 +198,8 @@ static int is_certain(masu_governor *g, const masu_governor_sample *s, double ms
     return g->odd_count >= needed;
 }
 
-/* What passes at output size have taken says what the fixed part is, roughly: they are not all
- * of it, and not all of them are fixed. */
+/* The times of passes at output size are an estimate of the fixed cost. It is rough: they are not
+ * all of the fixed cost, and not all their cost is fixed. */
 static void follow_fixed(masu_governor *g, const masu_governor_sample *s, double ms) {
     static const double h[3] = {1.0, 0.0, 0.0};
     double fixed = s->fixed_ms * g->trust.unit;
@@ -230,7 +231,7 @@ static void follow(masu_governor *g, const masu_governor_sample *s, double ms, i
     if (ms < ODD_FAR * expected && ms * ODD_FAR > expected) follow_noise(g, s->rung, ms);
     if (fabs(innovation) > masu_largest(GATE * deviation, GATE_LEAST * expected)) {
         if (is_certain(g, s, ms, expected, sure)) {
-            /* At a new rung the cost may be wrong; at the old one the load has changed. */
+            /* At a new rung the cost may be wrong; at the same rung the load has changed. */
             if (s->rung == g->fitted) masu_survey_forget(&g->survey);
             masu_survey_sample(&g->survey, s->frame, s->rung, ms);
             if (!refit(g, s->rung, ms)) restart(g, s->rung, ms);
@@ -238,7 +239,7 @@ static void follow(masu_governor *g, const masu_governor_sample *s, double ms, i
             g->jumped = 1;
             return;
         }
-        g->load = load; /* as if it had not come */
+        g->load = load; /* ignores the sample */
         g->newest = newest;
         memcpy(g->p, p, sizeof p);
         return;
@@ -249,8 +250,9 @@ static void follow(masu_governor *g, const masu_governor_sample *s, double ms, i
     follow_grain(g, g->trust.source == MASU_GOVERNOR_SOURCE_GPU ? s->gpu_ms * g->trust.unit : ms);
     g->trend += TREND_WEIGHT * (innovation / deviation - g->trend);
     correct(g, h, innovation, own + rung);
-    /* What the rung's own cost is to blame for. Its covariance with the load is left out: while it
-     * matters, just after the first visit, the two are still apart. */
+    /* The share of the innovation that the cost of the rung causes. Its covariance with the load
+     * is neglected: it matters only right after the first visit, when the two are still
+     * independent. */
     double share = rung / variance;
     if (pixel > 0.0) {
         double cost = c * (1.0 + share * innovation / pixel);
@@ -265,8 +267,8 @@ static void follow(masu_governor *g, const masu_governor_sample *s, double ms, i
     g->slope = masu_within(g->slope, -most, most);
 }
 
-/* A frame over the target just after a rise, and a few frames later the same rung takes much less:
- * loads seldom fall just then, clocks that follow them rise. */
+/* Detects a clock that follows the load: a frame misses the target right after a rise, and the same
+ * rung takes much less a few frames later. The load seldom falls just then. */
 static void watch_clock(masu_governor *g, const masu_governor_sample *s, double ms) {
     if (s->rung != g->seen_rung) {
         g->seen_ms = s->rung < g->seen_rung && ms > g->target ? ms : 0.0;
@@ -285,7 +287,7 @@ static int is_sound(const masu_governor *g) {
         if (!(g->p[i][i] >= 0.0)) return 0;
         for (int j = 0; j < 3; j++) sum += g->p[i][j];
     }
-    return sum - sum == 0.0; /* neither infinite nor NaN */
+    return sum - sum == 0.0; /* finite */
 }
 
 void masu_governor_sample_in(masu_governor *g, const masu_governor_sample *s) {
@@ -301,14 +303,15 @@ void masu_governor_sample_in(masu_governor *g, const masu_governor_sample *s) {
         return;
     }
     double ms = masu_trust_time(&g->trust, g->target, s, &sure);
-    if (!(ms > 0.0) || !g->warm) { /* drivers still compile in the first frame */
+    if (!(ms > 0.0) || !g->warm) { /* drivers may still compile in the first frame */
         g->warm = g->warm || ms > 0.0;
         g->rejected++;
         return;
     }
     watch_clock(g, s, ms);
     g->samples++;
-    if (g->pacing.refresh == 0.0) g->missed += ms > g->target; /* else the display tells */
+    /* else the display reports late frames */
+    if (g->pacing.refresh == 0.0) g->missed += ms > g->target;
     if (s->rung == g->rung && s->frame >= g->changed)
         g->misses = ms > g->target ? g->misses + (g->misses < 1000) : 0;
     if (!g->known) {
@@ -326,8 +329,8 @@ void masu_governor_sample_in(masu_governor *g, const masu_governor_sample *s) {
 
 /* ---- Predictions ----------------------------------------------------------------------------- */
 
-/* What a frame `lead` frames past the newest sample takes at a rung, and `margin` deviations more.
- * falls: a load that falls is followed too; else it is taken as it is. */
+/* Predicted time of a frame `lead` frames after the newest sample at a rung, plus `margin`
+ * deviations. falls: extrapolate a falling load too; otherwise only a rising one. */
 double masu_governor_upper(const masu_governor *g, uint32_t rung, double lead, int falls,
                            double margin) {
     double c = g->cost[rung], slope = g->slope < 0.0 && !falls ? 0.0 : g->slope;

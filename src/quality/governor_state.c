@@ -11,7 +11,7 @@
 #define LOAD_MOST 1e13
 #define OUTPUT_MOST (1u << 20)
 
-/* ---- Kept ------------------------------------------------------------------------------------ */
+/* ---- Export ---------------------------------------------------------------------------------- */
 
 void masu_governor_export_state(const masu_governor *g, VkExtent2D output,
                                 masu_governor_state *out) {
@@ -49,13 +49,13 @@ void masu_governor_export_state(const masu_governor *g, VkExtent2D output,
     }
 }
 
-/* ---- Checked --------------------------------------------------------------------------------- */
+/* ---- Validation ------------------------------------------------------------------------------ */
 
 static masu_result in_range(double x, double low, double high, const char *what,
                             masu_detail *detail) {
-    if (x >= low && x <= high) return MASU_OK; /* NaN is not */
-    return masu_fail(detail, MASU_ERROR_ARGUMENT, what, 0, 0, "%s is %g, allowed are %g to %g", what,
-                     x, low, high);
+    if (x >= low && x <= high) return MASU_OK; /* false for NaN */
+    return masu_fail(detail, MASU_ERROR_ARGUMENT, what, 0, 0, "%s is %g, allowed are %g to %g",
+                     what, x, low, high);
 }
 
 masu_result masu_governor_state_check(const masu_governor_state *s, masu_detail *detail) {
@@ -103,12 +103,12 @@ masu_result masu_governor_state_check(const masu_governor_state *s, masu_detail 
     return bad;
 }
 
-/* ---- Taken over ------------------------------------------------------------------------------ */
+/* ---- Import ---------------------------------------------------------------------------------- */
 
 static int same(double a, double b) { return fabs(a - b) <= 1e-6 * fabs(b); }
 
-/* What was learnt of a rung goes to the one that was described alike: rungs are in the same order on both
- * sides, and of several alike each is taken once. Returns whether all of them are the same. */
+/* Imports measured costs for rungs that have the same description. Rungs have the same order on
+ * both sides, and each is used once. Returns whether all rungs are the same. */
 static int import_costs(masu_governor *g, const masu_governor_state *s) {
     uint32_t from = 0, found = 0;
     for (uint32_t r = 0; r < g->count; r++) {

@@ -18,7 +18,13 @@ static const masu_word march_words[] = {MASU_MARCH_WORDS(WORD_ROW)};
 static const masu_word easu_words[] = {MASU_EASU_WORDS(WORD_ROW)};
 static const masu_word aa_words[] = {MASU_AA_WORDS(WORD_ROW)};
 
-/* What the C type of a row says of it: kind, and the words of an enum. */
+#define SAME_VALUE(name, value, ...)                                                               \
+    _Static_assert(name == (value), #name " is not that of the table: make docs-tables");
+MASU_SWITCH_WORDS(SAME_VALUE)
+MASU_EASU_WORDS(SAME_VALUE)
+MASU_AA_WORDS(SAME_VALUE)
+
+/* Properties of a row that follow from its C type: kind, and the names of enum values. */
 #define KIND_float MASU_KNOB_FLOAT
 #define KIND_uint32_t MASU_KNOB_COUNT
 #define KIND_masu_per_cascade MASU_KNOB_COUNT
@@ -31,7 +37,7 @@ static const masu_word aa_words[] = {MASU_AA_WORDS(WORD_ROW)};
     static const char where_##name[] = where, missing_##name[] = missing;
 MASU_KNOB_USES(USE_TEXTS)
 
-/* A value is four bytes, whatever it is. */
+/* Every value has four bytes, independent of its type. */
 #define FIELD(type, name)                                                                          \
     .offset = offsetof(masu_rung, name), .values = sizeof(((masu_rung *)0)->name) / 4
 #define NUMBER_ROW(type, id, low, high, becomes, of, is, does, costs)                              \
@@ -62,9 +68,21 @@ MASU_KNOB_USES(USE_TEXTS)
      .words = WORDS_##type,                                                                        \
      .word_count = sizeof(WORDS_##type) / sizeof *(WORDS_##type)},
 
+/* masu_rung, which make_structs.c writes, has a member of the type of each row, in order. */
+#define RUNG_MEMBER(type, name, ...) type name;
+typedef struct rung_of_table {
+    MASU_KNOBS(RUNG_MEMBER, RUNG_MEMBER)
+} rung_of_table;
+#define SAME_MEMBER(type, name, ...)                                                               \
+    _Static_assert(offsetof(masu_rung, name) == offsetof(rung_of_table, name) &&                   \
+                       _Generic(&((masu_rung *)0)->name, type *: 1, default: 0),                   \
+                   "masu_rung." #name " is not that of the table: make docs-tables");
+MASU_KNOBS(SAME_MEMBER, SAME_MEMBER)
+_Static_assert(sizeof(masu_rung) == sizeof(rung_of_table), "masu_rung has members without a row");
+
 static const masu_knob knobs[] = {MASU_KNOBS(NUMBER_ROW, WORD_ROW_OF){.name = NULL}};
 
-/* What is wrong with a knob, as masu_detail.what has it. */
+/* The names as in masu_detail.what. */
 #define WHAT(type, name, ...) "rungs[]." #name,
 static const char *const whats[] = {MASU_KNOBS(WHAT, WHAT)};
 
@@ -72,7 +90,7 @@ const masu_knob *masu_knob_table(void) { return knobs; }
 
 /* ---- Values ---------------------------------------------------------------------------------- */
 
-/* Enums of four bytes are read and written as numbers, too. */
+/* Enums are read and written as 32-bit integers. */
 _Static_assert(sizeof(float) == 4 && sizeof(masu_switch) == 4 && sizeof(masu_easu) == 4 &&
                    sizeof(masu_aa) == 4,
                "every value of a knob has four bytes");
@@ -116,12 +134,13 @@ void masu_rung_defaults(masu_rung *rung) {
     }
 }
 
-/* The bound that a number is beyond, for those that are whole. */
+/* The bound that a number violates, for integers. */
 static masu_result refuse(const masu_knob *k, uint32_t r, uint32_t i, double is,
                           masu_detail *detail) {
     char one[16] = "";
     if (k->values > 1) snprintf(one, sizeof one, "[%u]", i);
-    int whole = k->kind != MASU_KNOB_FLOAT, gap = k->min > (whole ? 1.0 : 0.0); /* beside 0 */
+    /* 0 is allowed in addition */
+    int whole = k->kind != MASU_KNOB_FLOAT, gap = k->min > (whole ? 1.0 : 0.0);
     uint64_t given = whole ? (uint64_t)is : 0;
     uint64_t needed = !whole ? 0 : (uint64_t)(is < k->min ? k->min : k->max);
     return masu_fail(detail, MASU_ERROR_ARGUMENT, whats[k - knobs], needed, given,

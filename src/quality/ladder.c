@@ -1,6 +1,7 @@
 /* ladder.c: see ladder.h. */
 #include "quality/ladder.h"
 
+#include "base/error.h"
 #include "quality/ladder_devices.h"
 #include "quality/ladder_tables.h"
 #include "scene/scene.h"
@@ -9,7 +10,7 @@
 
 /* ---- Classes --------------------------------------------------------------------------------- */
 
-/* Classes without traced reflections, which come first. */
+/* Number of classes without traced reflections, which are first in the enum. */
 enum { KINDS = MASU_SCENE_POLYGONS_TRACED };
 
 masu_scene_class masu_scene_class_of(const masu_scene *scene) {
@@ -18,7 +19,7 @@ masu_scene_class masu_scene_class_of(const masu_scene *scene) {
     uint32_t kind = s->sdf ? s->instances ? MASU_SCENE_BOTH : MASU_SCENE_SDF
                     : s->lods && s->placed_occluders ? MASU_SCENE_WORLD
                                                      : MASU_SCENE_POLYGONS;
-    /* A scene may ask for reflections and have nothing that is glossy enough. */
+    /* A scene may request reflections but have no surface that is glossy enough. */
     uint32_t traced = s->reflections && s->glossiest < s->specular_cutoff;
     return (masu_scene_class)(kind + (traced ? KINDS : 0));
 }
@@ -37,8 +38,9 @@ const masu_ladder *masu_ladder_of_class(masu_scene_class scene_class) {
 }
 
 const masu_ladder *masu_ladder_for(const masu_scene *scene) {
-    /* Which kinds are alike. What is traced costs more than what it is traced through: a class that
-     * traces alike comes before one that is drawn alike. */
+    /* Similar kinds of scenes, most similar first. Tracing a kind
+ * of geometry costs more than rasterising it, so a class with the same traced geometry precedes one
+ * with the same rasterised geometry. */
     static const uint8_t nearest[KINDS][KINDS] = {
         [MASU_SCENE_POLYGONS] = {MASU_SCENE_POLYGONS, MASU_SCENE_WORLD, MASU_SCENE_BOTH,
                                  MASU_SCENE_SDF},
@@ -77,8 +79,8 @@ uint32_t masu_ladder_kept(const masu_ladder *l, uint32_t keep, uint32_t nth) {
     return r;
 }
 
-/* Measured without a governor, with which AUTO of temporal would be another thing. costs: takes the
- * rungs' times. */
+/* Uses the rungs of a ladder, which were measured without a governor (with one, AUTO of `temporal`
+ * differs). costs: set to the rungs' costs. */
 static void give(const masu_ladder *l, masu_desc *desc, float costs[MASU_MAX_RUNGS]) {
     uint32_t r = 0;
     memset(desc->rungs, 0, sizeof desc->rungs);
@@ -95,9 +97,20 @@ static void give(const masu_ladder *l, masu_desc *desc, float costs[MASU_MAX_RUN
     }
 }
 
-masu_result masu_ladder_of(const masu_scene *scene, masu_desc *desc, const char **from) {
+masu_result masu_ladder_of(const masu_scene *scene, masu_desc *desc, const char **from,
+                           masu_detail *detail) {
+    masu_detail own;
     const masu_ladder *l = masu_ladder_for(scene);
-    if (!scene || !desc || !l) return MASU_ERROR_ARGUMENT;
+    if (!scene || !desc) {
+        masu_result result = masu_fail_null(&own, scene ? "desc" : "scene");
+        return masu_finish_desc(desc, result, &own, detail);
+    }
+    if (desc->bytes != sizeof *desc)
+        return masu_fail_bytes(detail, "masu_desc", sizeof *desc, desc->bytes);
+    if (!l) {
+        masu_fail(&own, MASU_ERROR_ARGUMENT, "scene", 1, 0, "there is no ladder for the scene");
+        return masu_finish_desc(desc, own.result, &own, detail);
+    }
     give(l, desc, desc->governor.costs);
     if (from) *from = l->from;
     return MASU_OK;

@@ -5,14 +5,14 @@
 
 #define REFRESH_LEAST 1e6 /* ns */
 #define REFRESH_MOST 1e9
-#define SAME_REFRESH 0.01 /* what differs by less is jitter of the one who tells */
-#define TOLERANCE 0.05    /* of a refresh: so much more than whole ones is taken for these */
-#define OVER_FRAMES 4u    /* in a row that want more */
+#define SAME_REFRESH 0.01 /* smaller differences are jitter of the reporting side */
+#define TOLERANCE 0.05    /* of a refresh: tolerated excess over whole refreshes */
+#define OVER_FRAMES 4u    /* consecutive frames that need more refreshes */
 #define LATE_FRAMES 4u    /* of the last 16 shown */
 #define LATE_WINDOW 0xFFFFu
-#define UNDER_FRAMES 60u  /* in a row that want fewer, times the patience */
-#define UNDER_ROOM 1.1    /* what they are expected to take must leave so much room */
-#define MISTAKE_FRAMES 240u /* a rise so soon after a fall: that was one */
+#define UNDER_FRAMES 60u    /* consecutive frames that need fewer, times the back-off factor */
+#define UNDER_ROOM 1.1      /* headroom that their predicted time must leave */
+#define MISTAKE_FRAMES 240u /* a rise this soon after a fall: the fall has failed */
 #define PATIENCE_MOST 16u
 
 static uint32_t whole(double ms, double refresh, double tolerance) {
@@ -39,7 +39,7 @@ static void raise(masu_pacing *p, uint64_t frame, uint32_t refreshes) {
 static void follow(masu_pacing *p, uint64_t frame, double ms, double target) {
     uint32_t least = whole(target, p->refresh, TOLERANCE), fits = whole(ms, p->refresh, 1e-3);
     uint32_t roomy = whole(UNDER_ROOM * ms, p->refresh, 1e-3);
-    if (!p->refreshes || least != p->least) { /* the host wants something else */
+    if (!p->refreshes || least != p->least) { /* the host's target has changed */
         p->least = least;
         p->refreshes = fits > least ? fits : least;
         p->over = p->under = p->late = 0;
@@ -47,7 +47,8 @@ static void follow(masu_pacing *p, uint64_t frame, double ms, double target) {
         return;
     }
     p->over = fits > p->refreshes ? p->over + 1 : 0;
-    p->under = roomy < p->refreshes && least < p->refreshes && !(p->late & LATE_WINDOW) ? p->under + 1 : 0;
+    p->under =
+        roomy < p->refreshes && least < p->refreshes && !(p->late & LATE_WINDOW) ? p->under + 1 : 0;
     if (p->over >= OVER_FRAMES) {
         raise(p, frame, fits);
     } else if (bits(p->late & LATE_WINDOW) >= LATE_FRAMES) {
@@ -68,8 +69,8 @@ void masu_pacing_choose(masu_pacing *p, uint64_t frame, double ms, double target
     p->kept[at].excluded = excluded != 0;
 }
 
-/* Refreshes from the frame shown last to this one, as they were planned; 0: that is not known. Frames in
- * between that were not chosen for are of other viewports, and take none of their own. */
+/* Planned refreshes from the frame shown last to this frame; 0: unknown. Frames in between without
+ * a choice are of other viewports and need no refresh. */
 static uint32_t planned(const masu_pacing *p, uint64_t frame) {
     uint32_t sum = 0;
     if (!p->shown || frame - p->shown_frame > MASU_PACING_KEPT) return 0;
@@ -87,7 +88,8 @@ int masu_pacing_shown(masu_pacing *p, uint64_t frame, uint64_t ns, uint64_t refr
         memset(p, 0, sizeof *p);
         return 0;
     }
-    if (!(refresh < (1.0 + SAME_REFRESH) * p->refresh && p->refresh < (1.0 + SAME_REFRESH) * refresh)) {
+    if (!(refresh < (1.0 + SAME_REFRESH) * p->refresh &&
+          p->refresh < (1.0 + SAME_REFRESH) * refresh)) {
         memset(p, 0, sizeof *p);
         p->refresh = refresh;
     }

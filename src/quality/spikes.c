@@ -3,8 +3,8 @@
 
 #include <string.h>
 
-#define LENGTH_MOST 16u  /* frames; what lasts longer is a load of its own */
-#define PERIOD_MOST 320u /* frames from one spike to the next; rarer ones are answered one by one */
+#define LENGTH_MOST 16u  /* frames; a longer rise is a separate load */
+#define PERIOD_MOST 320u /* maximum frames between spikes; rarer ones are handled one by one */
 #define ALIKE 1.4        /* factor within which peaks are similar */
 #define ENOUGH 3u        /* spikes that are remembered */
 #define PERIODS_KEPT 2u  /* the memory ends after this many periods without a spike, */

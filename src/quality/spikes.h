@@ -1,8 +1,9 @@
-/* spikes.h: loads that rise for a few frames again and again: garbage collection, streaming, work
- * of the system. Without this module each spike causes a fall, and a rise follows before the next
- * one. After three similar spikes the rung that meets the target during a spike is kept in between.
+/* spikes.h: periodic spikes of the load, of a few frames each: garbage collection, streaming, work
+ * of the operating system. Without this module each spike causes a fall, and a rise before the next
+ * spike. After three similar spikes, the rung that is fast enough during a spike is kept in
+ * between.
  *
- * A pure function of its own state. docs/design/19-governor.md, "Periodic spikes". */
+ * A pure function of its state. docs/design/19-governor.md, "Periodic spikes". */
 #ifndef MASU_SPIKES_H
 #define MASU_SPIKES_H
 
@@ -16,9 +17,9 @@ typedef struct masu_spikes {
     uint32_t count;  /* similar spikes in a row */
     double peak;     /* their load */
     uint64_t last;   /* frame of the last one */
-    uint32_t period; /* most frames between two of them */
+    uint32_t period; /* most frames between two spikes */
     uint32_t kept;   /* periods without a spike after which the memory ends */
-    int high;        /* the load is that of a spike, */
+    int high;        /* a spike is in progress, */
     uint64_t rose;   /* since this frame */
 } masu_spikes;
 
@@ -26,9 +27,9 @@ typedef struct masu_spikes {
 void masu_spikes_follow(masu_spikes *s, uint64_t frame, double load, int over);
 /* The governor falls because of the load. */
 void masu_spikes_fell(masu_spikes *s, uint64_t frame, double load);
-/* The load of the remembered spikes, for which a rung must be fit; 0: none. */
+/* The load of the remembered spikes, for which the rung must be fast enough; 0: none. */
 double masu_spikes_peak(const masu_spikes *s);
-/* Whether the present load is one of these spikes. */
+/* Whether the present load is a remembered spike. */
 int masu_spikes_now(const masu_spikes *s, uint64_t frame, double load);
 
 #endif

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#define KEPT 16u         /* a new time has at least a weight of one in so many in the mean */
+#define KEPT 16u         /* minimum weight of a new time in the mean: 1 / KEPT */
 #define FRESH 180u       /* frames; older times belong to another load */
 #define RESOLUTION 0.017 /* relative standard error of a difference of means: a third of the gain */
 #define ENOUGH_LEAST 6u

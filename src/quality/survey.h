@@ -1,10 +1,10 @@
-/* survey.h: compares measured times of rungs with each other. From the costs of the ladder alone, a
+/* survey.h: compares measured times of rungs with each other. From only the costs of the ladder, a
  * load that no rung changes (CPU time, the display, a pass that all rungs share) looks like one
  * that has just grown. A survey therefore measures: the cheapest rung first, then better ones,
  * until the best rung is found that takes at most MASU_SURVEY_GAIN times as long. It is kept until
  * the load changes.
  *
- * A pure function of its own state. docs/design/19-governor.md, "Survey". */
+ * A pure function of its state. docs/design/19-governor.md, "Survey". */
 #ifndef MASU_SURVEY_H
 #define MASU_SURVEY_H
 
@@ -44,7 +44,7 @@ typedef struct masu_survey {
     uint32_t left; /* 1 + the rung that the last fall left; 0: none, or compared already */
 
     /* Failed rises: undone although the rung below takes as long as before. Their rung takes longer
-     * than the costs of the ladder say. */
+     * than the costs of the ladder predict. */
     double before;              /* time of the rung below before the last rise; 0: unknown */
     uint32_t below, tried;      /* the two rungs of that rise */
     int undone;                 /* it has been undone; not compared yet */
@@ -64,7 +64,7 @@ void masu_survey_answer(masu_survey *s, uint64_t frame);
 uint32_t masu_survey_enough(double noise);
 /* Whether a rung takes longer than the cheapest. */
 masu_survey_verdict masu_survey_compare(const masu_survey *s, uint32_t rung, double noise);
-/* Whether two rungs can take equally long, as far as the few times of the first one tell. */
+/* Whether two rungs can take equally long, as far as the few times of the first one show. */
 int masu_survey_may_be_same(const masu_survey *s, uint32_t rung, uint32_t other, double noise);
 /* Whether the answer holds in this frame. ms: predicted time at `rung`. */
 int masu_survey_holds(masu_survey *s, uint64_t frame, uint32_t rung, double ms);

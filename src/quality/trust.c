@@ -4,22 +4,24 @@
 #include <math.h>
 #include <string.h>
 
-#define NEAREST 0.5 /* of the wall: GPU times between the two are believed */
+#define NEAREST 0.5 /* of the wall-clock time: GPU times in between are accepted */
 #define FARTHEST 1.05
-#define BUSY 0.8 /* below it the wall is what counts: what it has on top follows the rung */
-#define DISTRUST_MOST 30.0 /* GPU times that the wall contradicts, and it alone is believed */
-#define UNIT_SAMPLES 16u   /* that agree on a factor of the clock's unit */
-#define FROZEN_SAMPLES 4u  /* the same GPU time to the bit, while the wall moves */
-#define SCALE_RANGE 64.0   /* a wall time so far from the target says nothing of units */
-#define LATE 1.1           /* of the host's own work: a wall no longer is that of a host that came late */
-#define VSYNC_RANGE 0.015 /* of a refresh: how far times may be from whole ones */
+#define BUSY 0.8 /* below it the wall clock is used: its excess depends on the rung */
+/* GPU times contradicted by the wall clock, after which only the latter is used */
+#define DISTRUST_MOST 30.0
+#define UNIT_SAMPLES 16u  /* consecutive samples that agree on a factor of the clock's unit */
+#define FROZEN_SAMPLES 4u /* bit-identical GPU times while the wall-clock time changes */
+#define SCALE_RANGE 64.0  /* wall-clock times this far from the target are not used to find units */
+/* of the host's own work: a shorter wall-clock time means that the host was late */
+#define LATE 1.1
+#define VSYNC_RANGE 0.015 /* of a refresh: tolerance for whole multiples */
 #define VSYNC_STEPS 32u   /* times that must fit, */
-#define VSYNC_TURNS 4u    /* with so many changes of the multiple */
-#define VSYNC_ODD 2u      /* times in a row that do not fit end it */
+#define VSYNC_TURNS 4u    /* with this many changes of the multiple */
+#define VSYNC_ODD 2u      /* consecutive times that do not fit end the detection */
 #define VSYNC_WEIGHT 0.05 /* of a new time in the refresh interval */
 #define VSYNC_MOST 16.0   /* largest multiple */
-#define CPU_WEIGHT 0.25    /* of a new time of the host's work in what is taken for it, */
-#define CPU_STEP 0.1       /* and how far one may be from that, as part of it */
+#define CPU_WEIGHT 0.25   /* weight of a new time of the host's work in the estimate, */
+#define CPU_STEP 0.1      /* and its maximum relative distance from the estimate */
 
 void masu_trust_start(masu_trust *t) {
     memset(t, 0, sizeof *t);
@@ -30,9 +32,9 @@ static int agrees(double gpu, double wall) {
     return gpu >= NEAREST * wall && gpu <= FARTHEST * wall;
 }
 
-/* A clock whose unit is wrong is off by thousands, by the same factor always. A timer that lies
- * may come near such a factor by chance, not so often in a row. Of the two clocks the wall is
- * taken as the right one, if what it says can be a frame of this target. */
+/* A clock with a wrong unit has a constant factor of thousands. An unreliable timer may come close
+ * to such a factor by chance, but not this often in a row. The wall clock is assumed to be correct
+ * if its time is plausible for this target. */
 static void find_unit(masu_trust *t, double target, double raw, double wall) {
     static const double units[] = {1e-9, 1e-6, 1e-3, 1.0, 1e3, 1e6, 1e9};
     double unit = 0.0;
@@ -47,7 +49,7 @@ static void find_unit(masu_trust *t, double target, double raw, double wall) {
     if (unit > 0.0 && t->unit_count >= UNIT_SAMPLES) t->unit = unit;
 }
 
-/* Whether the GPU's clock stands still while the other moves, or the rung does. */
+/* Whether the GPU clock stands still while the wall clock or the rung changes. */
 static int is_frozen(masu_trust *t, double gpu, double wall, uint32_t rung) {
     if (gpu == t->frozen_gpu && rung != t->frozen_rung) {
         t->frozen = FROZEN_SAMPLES;
@@ -68,7 +70,8 @@ static void follow_cpu(masu_trust *t, double target, double cpu) {
     t->cpu = t->cpu > 0.0 ? t->cpu + CPU_WEIGHT * masu_within(cpu - t->cpu, -most, most) : cpu;
 }
 
-/* Wall and GPU agree: what the wall has on top is followed slowly: it is scheduling, and has spikes. */
+/* If wall clock and GPU agree: follows the excess of the wall clock slowly, because it is
+ * scheduling with spikes. */
 static void follow_overhead(masu_trust *t, double target, double gpu, double wall) {
     double step = wall - gpu - t->overhead, most = 0.02 * target;
     t->overhead =
@@ -104,8 +107,9 @@ static void find_vsync(masu_trust *t, double wall) {
 
 double masu_trust_time(masu_trust *t, double target, const masu_governor_sample *s, int *sure) {
     double wall = masu_is_time(s->wall_ms) ? s->wall_ms : 0.0;
-    /* A host that is busy longer than the GPU finds the fence signalled long ago: its wall is its own
-     * work, and all that it says of the GPU is that it took no longer. Nor is it one to find units by. */
+    /* If the host is busy longer than the GPU, the fence was signalled before the host waits. The
+     * wall-clock time is then the host's own work: it is only an upper bound of the GPU time, and
+     * is not used to find units. */
     int late = wall > 0.0 && masu_is_time(s->cpu_ms) && wall <= LATE * s->cpu_ms;
     follow_cpu(t, target, s->cpu_ms);
     if (!late) find_unit(t, target, s->gpu_ms, wall);

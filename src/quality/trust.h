@@ -1,53 +1,53 @@
-/* trust.h: what is believed of a frame's times. Two clocks may tell of it, that of the GPU by timestamps
- * and the host's ("the wall"), and either may lie, stand still, have a wrong unit or be missing. A pure
- * function of its own state; any values may be given. docs/design/19-governor.md, "Clock
- * selection". */
+/* trust.h: selects the clock for a frame's time. There may be GPU timestamps and the host's clock
+ * ("wall"). Either may be implausible, stand still, have a wrong unit or be missing. A pure
+ * function of its state; accepts any values. docs/design/19-governor.md, "Clock selection". */
 #ifndef MASU_TRUST_H
 #define MASU_TRUST_H
 
 #include "masu.h"
 
-/* One finished frame. What is not known is 0, negative or NaN. */
+/* One finished frame. Unknown values are 0, negative or NaN. */
 typedef struct masu_governor_sample {
-    uint64_t frame;  /* samples come in rising order; others are left out */
-    uint32_t rung;   /* that it was drawn at */
-    double gpu_ms;   /* by timestamps */
-    double wall_ms;  /* by the host's clock: from its submit, or the end of the previous frame if that
-                       was later, to its end */
-    double fixed_ms; /* of gpu_ms: passes whose cost does not follow the rung */
-    double cpu_ms;   /* what the host was busy with for it, without waiting */
-    int exclude_from_timing; /* its times say nothing of other frames' */
+    uint64_t frame; /* ascending; other samples are ignored */
+    uint32_t rung;  /* rung of the frame */
+    double gpu_ms;  /* from timestamps */
+    /* host clock: from the submit, or the end of the previous frame if later, to the end of the
+     * frame */
+    double wall_ms;
+    double fixed_ms;         /* part of gpu_ms: passes whose cost does not depend on the rung */
+    double cpu_ms;           /* the host's work for the frame, without waiting */
+    int exclude_from_timing; /* not representative for other frames */
 } masu_governor_sample;
 
 typedef struct masu_trust {
     masu_governor_source source;
-    double overhead; /* wall - gpu, ms, where both are believed */
+    double overhead; /* wall - gpu, ms, while both are accepted */
     int overhead_known;
-    double distrust; /* rises with each GPU time that the wall contradicts */
+    double distrust; /* increases with each GPU time that the wall clock contradicts */
     int wall_only;
-    double unit, unit_try; /* what GPU times are multiplied by */
+    double unit, unit_try; /* factor on GPU times */
     uint32_t unit_count;
     double frozen_gpu, frozen_wall;
     uint32_t frozen, frozen_rung;
     /* Wall times in whole refreshes: the host waits for the display before it measures. */
     double vsync;         /* refresh interval, ms; 0: not found */
     double step;          /* candidate for it */
-    uint32_t steps;       /* times that are multiples of it */
+    uint32_t steps;       /* times that are multiples of the step */
     uint32_t turns;       /* changes of the multiple */
-    uint32_t odd;         /* times in a row that are none */
+    uint32_t odd;         /* consecutive times that are no multiples */
     uint32_t multiple;    /* of the last time */
-    double cpu; /* the host's own work for a frame, ms, without single long ones; 0: not known */
+    double cpu;           /* the host's own work per frame, ms, without outliers; 0: unknown */
 } masu_trust;
 
 static inline double masu_within(double x, double low, double high) {
-    return x >= low ? x <= high ? x : high : low; /* NaN: low */
+    return x >= low ? x <= high ? x : high : low; /* NaN gives low */
 }
 static inline double masu_largest(double a, double b) { return a > b ? a : b; }
-/* Whether it can be a frame's time, ms. NaN cannot. */
+/* Whether a time in ms is plausible for a frame. False for NaN. */
 static inline int masu_is_time(double ms) { return ms > 0.0 && ms <= 1e4; }
 
 void masu_trust_start(masu_trust *t);
-/* The time of a sample on the GPU, ms; 0: it has none. *sure: two clocks say so. `target`: of a frame. */
+/* GPU time of a sample, ms; 0: none. *sure: two clocks agree. `target`: target time of a frame. */
 double masu_trust_time(masu_trust *t, double target, const masu_governor_sample *s, int *sure);
 
 #endif

@@ -21,7 +21,7 @@ uint32_t masu_scene_range(const uint32_t *numbers, size_t stride, uint32_t count
                           uint32_t *first) {
 #define NUMBER(i) (*(const uint32_t *)(const void *)((const char *)numbers + (i) * stride))
     uint32_t low = 0, high = count;
-    while (low < high) { /* the first that is not below */
+    while (low < high) { /* lower bound: the first that is not less */
         uint32_t middle = low + (high - low) / 2;
         if (NUMBER(middle) < wanted)
             low = middle + 1;

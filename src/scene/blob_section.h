@@ -1,5 +1,5 @@
-/* blob_section.h: pointers to the sections of a validated blob, and lookups in them. reader.c and
- * check_*.c have validated everything; nothing is checked here. */
+/* blob_section.h: pointers to the sections of a validated blob, and look-ups in them. Nothing is
+ * checked here: reader.c and check_*.c have validated everything. */
 #ifndef MASU_BLOB_SECTION_H
 #define MASU_BLOB_SECTION_H
 
@@ -8,7 +8,7 @@
 
 #include <stddef.h>
 
-/* Sections of a validated blob; absent ones are NULL with count 0. */
+/* Sections of a validated blob. Absent sections are NULL with count 0. */
 typedef struct masu_scene_view {
     uint64_t hash; /* of the blob */
     const masu_blob_vertex *vertices;
@@ -24,28 +24,28 @@ typedef struct masu_scene_view {
     uint64_t material_count;
     const masu_blob_camera_key *camera_keys;
     const masu_blob_environment *environment;
-    const masu_blob_shadow *shadow; /* NULL: none */
-    const masu_blob_sdf *sdf;       /* NULL: none */
+    const masu_blob_shadow *shadow; /* NULL if absent; the same for the pointers below */
+    const masu_blob_sdf *sdf;
     const masu_blob_sdf_param *sdf_params;
     const float *slots;
     uint64_t slot_count;
     const float *texcoords;
-    const uint32_t *colors;   /* of vertices; NULL: none */
-    const float *texcoords_1; /* NULL: none */
+    const uint32_t *colors; /* one per vertex */
+    const float *texcoords_1;
     const masu_blob_texture *textures;
     const masu_blob_texture_set *texture_sets;
     const unsigned char *texels;
     const masu_blob_meso *meso;
     const masu_blob_light *lights;
-    const masu_blob_probes *probes; /* NULL: none */
+    const masu_blob_probes *probes;
     const uint32_t *probe_data;
     uint64_t probe_words;
-    const masu_blob_environment_map *environment_map; /* NULL: none */
+    const masu_blob_environment_map *environment_map;
     const uint32_t *environment_texels;
-    const masu_blob_reflections *reflections; /* NULL: none */
+    const masu_blob_reflections *reflections;
     const masu_blob_trace_texture *trace_textures;
     const uint32_t *trace_texels;
-    const masu_blob_trace_node *trace_nodes; /* NULL: no rays; nor are the next three */
+    const masu_blob_trace_node *trace_nodes; /* NULL without ray tracing, like the next three */
     const masu_blob_trace_triangle *trace_triangles;
     const masu_blob_trace_mesh *trace_meshes;
     const uint32_t *trace_instances;
@@ -60,31 +60,32 @@ typedef struct masu_scene_view {
     const masu_blob_morph_target *morph_targets;
     const masu_blob_morph_delta *morph_deltas;
     struct {
-        const uint32_t *words; /* NULL: none */
+        const uint32_t *words; /* NULL if absent */
         uint64_t count;
     } code[MASU_BLOB_KIND_COUNT]; /* the SPIR-V sections, by kind */
     const char *names;
     uint64_t name_bytes;
 } masu_scene_view;
 
-/* World box of an instance as the scene places it. */
+/* World-space box of an instance, as placed in the scene. */
 masu_cull_box masu_scene_box(const masu_scene_view *view, uint32_t instance);
 
-/* Of `count` elements of `stride` bytes that are sorted by a number: those with this one. `numbers` points to the
- * first element's. `*first` is the index of the first of them, the result how many there are. */
+/* Binary search in `count` elements of `stride` bytes that are sorted by a 32-bit key; `numbers`
+ * points to the key of the first element. Sets *first to the first element with the key `wanted`.
+ * Returns the number of such elements. */
 uint32_t masu_scene_range(const uint32_t *numbers, size_t stride, uint32_t count, uint32_t wanted,
                           uint32_t *first);
 
-/* FNV-1a 64 of a name, 0: none. */
+/* FNV-1a 64 of a name; 0 without a name. */
 uint64_t masu_scene_name_hash(const masu_scene_view *view, uint32_t name);
 
-/* The LODs of a mesh, finest first: `*first` is the first one's index in view->lods, the
- * result how many there are (0 to MASU_BLOB_LODS_MAX). */
+/* The LODs of a mesh, finest first. Sets *first to the index of the first one in view->lods.
+ * Returns their number (0 to MASU_BLOB_LODS_MAX). */
 uint32_t masu_scene_mesh_lods(const masu_scene_view *view, uint32_t lod_count, uint32_t mesh,
                               uint32_t *first);
 
-/* Range of instances [first, first + count) that place mesh `mesh`: instances are sorted by mesh.
- * `from` is where the search starts; returns the end. */
+/* Range [*first, result) of the instances of mesh `mesh`; instances are sorted by mesh. The search
+ * starts at `from`. */
 uint32_t masu_scene_mesh_instances(const masu_scene_view *view, uint32_t instance_count,
                                    uint32_t mesh, uint32_t from, uint32_t *first);
 

@@ -1,6 +1,7 @@
-/* check_code.c: the SPIR-V of a scene with an SDF: that each module holds together (code.h), asks for nothing that its
- * pass does not bind, and was compiled for the counts that the blob has. The rows below say of each what
- * src/plan/passes.inc says of the pass; tests/unit/test_code.c compares the two. */
+/* check_code.c: validates the SPIR-V of a scene with an SDF. Each module must be well-formed
+ * (code.h), use only the resources that its pass binds, and be compiled for the counts of the blob.
+ * The table below repeats the resources of src/plan/passes.inc; tests/unit/test_code.c compares the
+ * two. */
 #include "scene/check.h"
 #include "scene/code.h"
 
@@ -8,18 +9,19 @@
 
 #include <string.h>
 
-#define COMPUTE 5u /* the execution model GLCompute */
+#define COMPUTE 5u /* execution model GLCompute */
 
 #define AT(name) ((uint64_t)1 << MASU_BIND_##name)
 #define FIELD (AT(FRAME) | AT(COUNTERS) | AT(SLOTS) | AT(TILES))
 
 #define PUSH(name) (uint8_t)(sizeof(struct masu_push) + sizeof(struct masu_push_##name))
 
-/* reads: of set 1, images with samplers from binding 0 on; raster_reads: the same of a scene with polygons; writes:
- * storage images behind them. rows: the other edge of a workgroup; of update the other count of invocations. */
+/* columns, rows: workgroup size; the update passes may have 64x1 instead. reads: combined image
+ * samplers of set 1, from binding 0 on; raster_reads: the same in scenes with polygons. writes:
+ * storage images, in the bindings that follow. */
 static const struct {
     uint8_t kind, columns, rows, reads, raster_reads, writes, push;
-    uint64_t global; /* of set 0 */
+    uint64_t global; /* bindings of set 0 */
 } rules[] = {
     {MASU_BLOB_MARCH_SPIRV, 8, 8, 1, 1, 4, PUSH(march), FIELD},
     {MASU_BLOB_CLASSIFY_SPIRV, 8, 8, 0, 1, 1, sizeof(struct masu_push), FIELD},
@@ -41,14 +43,16 @@ static const struct {
      FIELD | AT(SPECULAR_TILES) | AT(PREVIOUS)},
     {MASU_BLOB_BOUNCE_SDF_SPIRV, 8, 8, 0, 0, 0, PUSH(bounce_sdf),
      FIELD | AT(PROBES) | AT(BOUNCE) | AT(BOUNCE_RAYS)},
-    {MASU_BLOB_LOCAL_SHADOW_SPIRV, 8, 8, 0, 0, 1, sizeof(struct masu_push), FIELD | AT(LOCAL_FACES)},
+    {MASU_BLOB_LOCAL_SHADOW_SPIRV, 8, 8, 0, 0, 1, sizeof(struct masu_push),
+     FIELD | AT(LOCAL_FACES)},
 };
 _Static_assert(MASU_BIND_COUNT <= 64, "a bit for each binding of set 0");
 
-/* What the pass binds there. */
+/* The resource class that the pass binds at (set, binding). */
 static masu_module_class bound_at(uint32_t rule, uint32_t raster, uint32_t set, uint32_t binding) {
     if (set == MASU_SET_GLOBAL) {
-        if (binding >= MASU_BIND_COUNT || !(rules[rule].global >> binding & 1u)) return MASU_MODULE_NOTHING;
+        if (binding >= MASU_BIND_COUNT || !(rules[rule].global >> binding & 1u))
+            return MASU_MODULE_NOTHING;
         const uint64_t uniforms = AT(FRAME) | AT(PREVIOUS) | AT(SKY) | AT(LOCAL_FACES);
         return uniforms >> binding & 1u ? MASU_MODULE_UNIFORMS : MASU_MODULE_STORAGE;
     }
@@ -83,13 +87,14 @@ static int readable(const char *text) {
 
 static masu_result check_record(reader *r, uint32_t kind, const masu_module *code) {
     const masu_blob_sdf *s = r->view.sdf;
-    const masu_module_counts counts = {.kind = kind,
-                                     .parts = s->part_count,
-                                     .slots = (uint32_t)r->view.slot_count,
-                                     .block_words = s->block_words,
-                                     .raster = s->has_raster,
-                                     .anchored = s->flags & MASU_SDF_ANCHORED,
-                                     .moves = r->view.code[MASU_BLOB_UPDATE_PREVIOUS_SPIRV].words != NULL};
+    const masu_module_counts counts = {
+        .kind = kind,
+        .parts = s->part_count,
+        .slots = (uint32_t)r->view.slot_count,
+        .block_words = s->block_words,
+        .raster = s->has_raster,
+        .anchored = s->flags & MASU_SDF_ANCHORED,
+        .moves = r->view.code[MASU_BLOB_UPDATE_PREVIOUS_SPIRV].words != NULL};
     char wanted[MASU_MODULE_RECORD_BYTES], found[MASU_MODULE_RECORD_BYTES];
     masu_module_record(&counts, wanted);
     if (code->record_words != MASU_MODULE_RECORD_WORDS)
@@ -108,7 +113,8 @@ masu_result masu_check_code(reader *r) {
         if (!r->view.code[kind].words) continue;
         masu_module code;
         uint64_t at = 0;
-        const char *problem = masu_module_read(r->view.code[kind].words, r->view.code[kind].count, &code, &at);
+        const char *problem =
+            masu_module_read(r->view.code[kind].words, r->view.code[kind].count, &code, &at);
         if (!problem) problem = check_interface(&code, rule, r->view.sdf->has_raster);
         if (problem) return bad(r, masu_section_name(kind), at, problem);
         masu_result result = check_record(r, kind, &code);

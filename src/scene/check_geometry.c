@@ -1,4 +1,4 @@
-/* check_geometry.c: polygons: vertices, primitives, meshes and their LODs, instances. */
+/* check_geometry.c: validates vertices, primitives, meshes, LODs and instances. */
 #include "scene/check.h"
 
 static masu_result check_primitive(reader *r, uint64_t i) {
@@ -53,7 +53,8 @@ static masu_result check_lods(reader *r, uint64_t *primitives) {
     const masu_scene_view *v = &r->view;
     uint32_t level = 0;
     if (r->counts[MASU_BLOB_LODS] && r->counts[MASU_BLOB_INSTANCES] > MASU_SECTION_MOST / 4) {
-        return bad(r, "lods", 0, "are of over 2^29 instances"); /* listed once for each form */
+        /* an instance has one list entry per LOD */
+        return bad(r, "lods", 0, "are of over 2^29 instances");
     }
     for (uint64_t i = 0; i < r->counts[MASU_BLOB_LODS]; i++) {
         const masu_blob_lod *l = &v->lods[i];
@@ -90,7 +91,7 @@ static masu_result check_lods(reader *r, uint64_t *primitives) {
 
 masu_result masu_check_geometry(reader *r) {
     const masu_scene_view *v = &r->view;
-    /* Ranges may not be shared: else a small blob could ask for quadratic work, here and in every
+    /* Ranges must not overlap: otherwise a small blob could cause quadratic work, here and every
      * frame. */
     uint64_t indices = 0, primitives = 0;
     for (uint64_t i = 0; i < r->counts[MASU_BLOB_VERTICES]; i++) {

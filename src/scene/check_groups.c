@@ -1,11 +1,11 @@
-/* check_groups.c: what culling believes: groups of instances and their bounds, occluders. */
+/* check_groups.c: validates the culling data: groups of instances, their bounds, and occluders. */
 #include "scene/check.h"
 
 #include <string.h>
 
-/* Groups lie in the order of a breadth-first walk, and so do their items: the children of the first
- * group, then those of the second, ... That each has one parent, and that none is its own ancestor,
- * follows without a mark for each. */
+/* Groups and their items are in breadth-first order: the children of group 0, then those of group
+ * 1, ... This order implies that each group has one parent and is not its own ancestor, without a
+ * mark per group. */
 static masu_result check_group(reader *r, uint64_t i, uint64_t *next_child, uint64_t *next_item) {
     const masu_scene_view *v = &r->view;
     const masu_blob_group *g = &v->groups[i];
@@ -76,7 +76,7 @@ masu_result masu_check_groups(reader *r) {
     return MASU_OK;
 }
 
-/* How many pairs of an occluder and an instance of its mesh there are. */
+/* *pairs: number of pairs of an occluder and an instance of its mesh. */
 masu_result masu_check_occluders(reader *r, uint64_t *pairs) {
     const masu_scene_view *v = &r->view;
     uint32_t from = 0, first = 0, end = 0, of_mesh = 0;

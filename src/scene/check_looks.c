@@ -1,5 +1,5 @@
-/* check_looks.c: how a scene looks, but for its textures: materials, the camera path, the sun and its
- * shadow, punctual lights, probes, sky and fog. */
+/* check_looks.c: validates materials (without textures), the camera path, the sun and its shadow,
+ * local lights, probes, sky and fog. */
 #include "scene/check.h"
 
 #include "scene/punctual_light.h"
@@ -23,7 +23,7 @@ static masu_result check_path(reader *r) {
     const masu_scene_view *v = &r->view;
     for (uint64_t i = 0; i < r->counts[MASU_BLOB_CAMERA_KEYS]; i++) {
         const masu_blob_camera_key *k = &v->camera_keys[i];
-        /* Times and places that masu_frame would accept, so that the path works as a whole. */
+        /* The same ranges as in masu_frame, so that the whole path can be rendered. */
         if (!within(&k->time, 1, -1e15f, 1e15f) || !within(k->position, 3, -1e15f, 1e15f) ||
             !within(k->target, 3, -1e15f, 1e15f)) {
             return bad(r, "camera keys", i, "is not finite or beyond 1e15");
@@ -31,7 +31,7 @@ static masu_result check_path(reader *r) {
         if (!(k->fov_y >= 0.001f && k->fov_y <= 3.1f)) {
             return bad(r, "camera keys", i, "field of view is not 0.001 to 3.1 radians");
         }
-        /* As numbers: -0 is where 0 is. */
+        /* Compared as numbers, because -0 equals 0. */
         if (k->position[0] == k->target[0] && k->position[1] == k->target[1] &&
             k->position[2] == k->target[2]) {
             return bad(r, "camera keys", i, "position and target are the same");
@@ -95,7 +95,8 @@ static masu_result check_material(reader *r, uint64_t i) {
     return MASU_OK;
 }
 
-/* The ranges of a state, which a program may set as well; and what a blob has beside it. */
+/* Checks the ranges of a light state, which a host may also set at run time, and the fields that
+ * only the blob has. */
 static masu_result check_light(reader *r, uint64_t i) {
     const masu_blob_light *l = &r->view.lights[i];
     double value;
@@ -116,7 +117,7 @@ static masu_result check_light(reader *r, uint64_t i) {
     return name_ok(r, l->name) ? MASU_OK : bad(r, "lights", i, "name lies outside the names");
 }
 
-/* Of a half, the exponent 31 is infinity or no number. */
+/* Whether both halfs of a 32-bit value are finite: the exponent is not 31. */
 static int finite_halves(uint32_t word) {
     return (word & 0x7C00u) != 0x7C00u && (word >> 16 & 0x7C00u) != 0x7C00u;
 }
@@ -233,14 +234,15 @@ masu_result masu_check_looks(reader *r) {
     return result ? result : check_environment(r);
 }
 
-/* More than albedo, normal, roughness, metallic and emissive. What is blended is in no G-buffer. */
+/* Whether an opaque material has more than albedo, normal, roughness, metallic and emissive.
+ * Transparent materials are not in the G-buffer. */
 static int has_surface(const masu_blob_material *m) {
     if (m->flags & MASU_MATERIAL_IS_BLEND) return 0;
     return m->specular != 0.5f || m->coat > 0.0f || m->meso != MASU_BLOB_NONE ||
            (m->flags & 1u << MASU_SLOT_OCCLUSION) != 0;
 }
 
-/* Which texture set of those that blended things use; one more than there may be if they are too many. */
+/* Collects the texture sets of transparent items, at most one more than the limit. */
 static void note_set(const masu_blob_material *m, uint32_t sets[], uint32_t *count) {
     uint32_t i = 0;
     if (!(m->flags & MASU_MATERIAL_HAS_MAPS)) return;
@@ -268,12 +270,14 @@ static void describe_transparents(const reader *r, masu_scene_data *out) {
 }
 
 void masu_describe_looks(const reader *r, masu_scene_data *out) {
-    const uint32_t own = 1u << MASU_SLOT_COAT | MASU_MATERIAL_COAT_SMOOTH | MASU_MATERIAL_BASE_SMOOTH;
+    const uint32_t own =
+        1u << MASU_SLOT_COAT | MASU_MATERIAL_COAT_SMOOTH | MASU_MATERIAL_BASE_SMOOTH;
     for (uint32_t i = 0; i < out->materials; i++) {
         const masu_blob_material *m = &r->view.materials[i];
         if (has_surface(m)) out->surfaces++;
         if (m->coat > 0.0f) out->coats++;
-        if (!(m->flags & MASU_MATERIAL_IS_BLEND) && m->flags & 1u << MASU_SLOT_NORMAL) out->reliefs = 1;
+        if (!(m->flags & MASU_MATERIAL_IS_BLEND) && m->flags & 1u << MASU_SLOT_NORMAL)
+            out->reliefs = 1;
         if (m->coat > 0.0f && m->flags & own) out->own_coats = 1;
         if (m->flags & MASU_MATERIAL_IS_TINTED)
             out->tints |= (double)m->roughness > MASU_SHARP_GLASS ? 1 | MASU_TINTS_ROUGH : 1;
@@ -297,7 +301,8 @@ void masu_describe_looks(const reader *r, masu_scene_data *out) {
         out->probes = p->counts[0] * p->counts[1] * p->counts[2];
         out->probe_words = r->counts[MASU_BLOB_PROBE_DATA];
         out->probes_unlit = !p->sky_sets;
-        out->bounce = p->live && (r->view.trace_nodes || r->view.code[MASU_BLOB_BOUNCE_SDF_SPIRV].words);
+        out->bounce =
+            p->live && (r->view.trace_nodes || r->view.code[MASU_BLOB_BOUNCE_SDF_SPIRV].words);
         out->bounce_sdf = r->view.code[MASU_BLOB_BOUNCE_SDF_SPIRV].words != NULL;
     }
     if (r->view.environment_map) {

@@ -1,6 +1,6 @@
-/* check_models.c: models that move as one: that their nodes are theirs, and that those of one kind are
- * alike. That a model's transforms are those of its instances is not asked: the first time it moves, they
- * are. */
+/* check_models.c: validates movable models: each node belongs to one model, and models of one kind
+ * are alike. Model and instance transforms need not agree; after the first move of the model they
+ * do. */
 #include "scene/check.h"
 
 static masu_result check_node(reader *r, const masu_blob_model *m, uint64_t n) {
@@ -15,13 +15,15 @@ static masu_result check_node(reader *r, const masu_blob_model *m, uint64_t n) {
                                   : bad(r, "model nodes", n, "name lies outside the names");
 }
 
-/* What stands in for the other shows the same. What bends has a mesh of its own: check_skin.c compares those. */
+/* Models of one kind have the same meshes at the same nodes. Skinned meshes are unique to a model;
+ * check_skin.c compares these. */
 static int alike(const masu_scene_view *v, const masu_blob_model *a, const masu_blob_model *b) {
     for (uint32_t k = 0; k < a->node_count; k++) {
         uint32_t x = v->model_nodes[a->first_node + k].instance;
         uint32_t y = v->model_nodes[b->first_node + k].instance;
         if ((x == MASU_BLOB_NONE) != (y == MASU_BLOB_NONE)) return 0;
-        int bends = v->model_nodes[a->first_node + k].skin && v->model_nodes[b->first_node + k].skin;
+        int bends =
+            v->model_nodes[a->first_node + k].skin && v->model_nodes[b->first_node + k].skin;
         if (x != MASU_BLOB_NONE && !bends && v->instances[x].mesh != v->instances[y].mesh) return 0;
     }
     return 1;

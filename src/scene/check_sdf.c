@@ -1,4 +1,5 @@
-/* check_sdf.c: the SDF of a scene: its numbers, its parameters and slots, that its code is there (check_code.c). */
+/* check_sdf.c: validates the SDF: its numbers, its parameters and evaluated constants, and that its
+ * SPIR-V is present (check_code.c validates the SPIR-V). */
 #include "scene/check.h"
 
 #include "shared/masu_shared.h"
@@ -35,22 +36,28 @@ masu_result masu_check_sdf(reader *r) {
     if (s->part_count < 1 || s->part_count > MASU_SDF_PARTS_MAX) {
         return bad(r, "sdf", 0, "part count is not 1 to 4096");
     }
-    if (s->flags & ~(MASU_SDF_ANCHORED | MASU_SDF_TIMELESS)) return bad(r, "sdf", 0, "flags has an unknown bit");
-    if (s->block_words > MASU_BLOCK_WORDS_MAX) return bad(r, "sdf", 0, "words of a block are not 0 to 2");
+    if (s->flags & ~(MASU_SDF_ANCHORED | MASU_SDF_TIMELESS))
+        return bad(r, "sdf", 0, "flags has an unknown bit");
+    if (s->block_words > MASU_BLOCK_WORDS_MAX)
+        return bad(r, "sdf", 0, "words of a block are not 0 to 2");
     if (!v->slots) return bad(r, "slots", 0, "are missing");
     for (uint64_t i = 0; i < v->slot_count; i++) {
         if (!finite_all(&v->slots[i], 1)) return bad(r, "slots", i, "is not finite");
     }
-    /* Numbers of other things, which the code clamps; beyond these no float becomes one. */
-    for (uint64_t i = 0; i < s->part_count && v->slot_count >= (uint64_t)s->part_count * MASU_BLOB_PART_SLOTS; i++) {
+    /* Form, first argument and material are integers stored as floats. The shaders clamp them; this
+     * range keeps the conversion to an integer defined. */
+    for (uint64_t i = 0;
+         i < s->part_count && v->slot_count >= (uint64_t)s->part_count * MASU_BLOB_PART_SLOTS;
+         i++) {
         uint64_t form = i * MASU_BLOB_PART_SLOTS + 5;
-        if (!within(&v->slots[form], 3, 0.0f, 65536.0f)) return bad(r, "slots", form, "is no number of a form, a slot and a material");
+        if (!within(&v->slots[form], 3, 0.0f, 65536.0f))
+            return bad(r, "slots", form, "is no number of a form, a slot and a material");
     }
     for (uint32_t k = 0; k < MASU_BLOB_KIND_COUNT; k++) {
         int needed = k == MASU_BLOB_MARCH_SPIRV || k == MASU_BLOB_CLASSIFY_SPIRV ||
                      k == MASU_BLOB_CONE8_SPIRV || k == MASU_BLOB_CONE4_SPIRV ||
                      k == MASU_BLOB_VELOCITY_SPIRV || k == MASU_BLOB_SILHOUETTES_SPIRV;
-        /* The slots of an anchored SDF change with the anchor, if with nothing else. */
+        /* The constants of an anchored SDF depend at least on the floating origin. */
         if (k == MASU_BLOB_UPDATE_SPIRV) {
             needed = s->flags & MASU_SDF_ANCHORED || v->code[MASU_BLOB_UPDATE_PREVIOUS_SPIRV].words;
         } else if (k == MASU_BLOB_UPDATE_PREVIOUS_SPIRV) {

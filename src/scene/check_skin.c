@@ -1,20 +1,24 @@
-/* check_skin.c: clips of models, and meshes that joints bend. Ranges of clips, channels and joints are the next
- * of their sections or, of skins, those of an earlier one, so that work is linear in the blob's size. */
+/* check_skin.c: validates clips of models and skinned meshes. Ranges of clips, channels and joints
+ * continue those of the previous element, or are shared with an earlier skin, so that work is
+ * linear in the blob's size. */
 #include "scene/check.h"
 #include "scene/skin.h"
 #include "shared/masu_shared.h"
 
 /* ---- Clips ----------------------------------------------------------------------------------- */
 
-/* Whether a channel before it in its clip moves the same: channels are sorted by node, then path. */
+/* Whether two consecutive channels of a clip are sorted by node, path and target, without
+ * duplicates. */
 static int in_order(const masu_blob_channel *c, const masu_blob_channel *before) {
     if (before->node != c->node) return before->node < c->node;
     return before->path < c->path || (before->path == c->path && before->target < c->target);
 }
 
-/* Morph targets that there are: those of the skin at the node. */
-static const char *wrong_target(const reader *r, const masu_blob_model *m, const masu_blob_channel *c) {
-    if (c->path != MASU_CHANNEL_WEIGHT) return c->target ? "has a morph target, but no weight" : NULL;
+/* The target of a weight channel must exist in the skin of its node. */
+static const char *wrong_target(const reader *r, const masu_blob_model *m,
+                                const masu_blob_channel *c) {
+    if (c->path != MASU_CHANNEL_WEIGHT)
+        return c->target ? "has a morph target, but no weight" : NULL;
     uint32_t skin = r->view.model_nodes[m->first_node + c->node].skin;
     if (!skin || skin > r->counts[MASU_BLOB_SKINS] ||
         c->target >= r->view.skins[skin - 1].target_count)
@@ -24,7 +28,8 @@ static const char *wrong_target(const reader *r, const masu_blob_model *m, const
 
 static masu_result check_channels(reader *r, const masu_blob_clip *clip, uint64_t *next_key) {
     const masu_scene_view *v = &r->view;
-    for (uint64_t c = clip->first_channel; c < (uint64_t)clip->first_channel + clip->channel_count; c++) {
+    for (uint64_t c = clip->first_channel; c < (uint64_t)clip->first_channel + clip->channel_count;
+         c++) {
         const masu_blob_channel *channel = &v->channels[c];
         const char *wrong = masu_wrong_channel(channel, v->models[clip->model].node_count, v->keys,
                                                r->counts[MASU_BLOB_KEYS], *next_key);
@@ -64,12 +69,14 @@ masu_result masu_check_clips(reader *r) {
 
 /* ---- Skins ----------------------------------------------------------------------------------- */
 
-/* Of SKIN_VERTICES and JOINTS: how far they have been given to skins; of VERTICES too, and of all joints. */
+/* Ends of the ranges that skins have used so far: in SKIN_VERTICES, JOINTS, MORPH_TARGETS,
+ * MORPH_DELTAS and VERTICES; and the number of joints of all skins. */
 typedef struct given {
     uint64_t vertices, joints, skinned, slots, targets, deltas;
 } given;
 
-/* That its mesh is its own. */
+/* The mesh of a skin must not be used by another instance, and its primitives must be within the
+ * skin's vertices. */
 static masu_result check_mesh(reader *r, uint64_t i) {
     const masu_scene_view *v = &r->view;
     const masu_blob_skin *s = &v->skins[i];
@@ -89,20 +96,21 @@ static masu_result check_mesh(reader *r, uint64_t i) {
     return MASU_OK;
 }
 
-/* Its morph targets, which no skin before it has: every delta lies in its target's box. */
+/* Validates morph targets that no earlier skin has: every delta is in the box of its target. */
 static masu_result check_targets(reader *r, const masu_blob_skin *s) {
     const masu_scene_view *v = &r->view;
     for (uint32_t t = 0; t < s->target_count; t++) {
         const masu_blob_morph_target *target = &v->morph_targets[s->first_target + t];
         const char *wrong = masu_wrong_morph_target(
-            target, v->morph_deltas + s->first_delta + (uint64_t)t * s->vertex_count, s->vertex_count);
+            target, v->morph_deltas + s->first_delta + (uint64_t)t * s->vertex_count,
+            s->vertex_count);
         if (!wrong && !name_ok(r, target->name)) wrong = "name lies outside the names";
         if (wrong) return bad(r, "morph targets", (uint64_t)s->first_target + t, wrong);
     }
     return MASU_OK;
 }
 
-/* Its joints and vertices, which no skin before it has. */
+/* Validates joints and vertices that no earlier skin has. */
 static masu_result check_own(reader *r, uint64_t i) {
     const masu_scene_view *v = &r->view;
     const masu_blob_skin *s = &v->skins[i];
@@ -145,10 +153,12 @@ static masu_result check_ranges(reader *r, uint64_t i, given *g) {
         s->joint_count > r->counts[MASU_BLOB_JOINTS] - g->joints)
         return bad(r, "skins", i, "joints or vertices are not the next of theirs");
     uint64_t deltas = (uint64_t)s->vertex_count * s->target_count;
-    if (s->target_count > MASU_BLOB_MORPH_TARGETS_MAX || s->first_target != g->targets || s->first_delta != g->deltas ||
+    if (s->target_count > MASU_BLOB_MORPH_TARGETS_MAX || s->first_target != g->targets ||
+        s->first_delta != g->deltas ||
         s->target_count > r->counts[MASU_BLOB_MORPH_TARGETS] - g->targets ||
         deltas > r->counts[MASU_BLOB_MORPH_DELTAS] - g->deltas)
-        return bad(r, "skins", i, "morph targets or their deltas are too many, or not the next of theirs");
+        return bad(r, "skins", i,
+                   "morph targets or their deltas are too many, or not the next of theirs");
     g->vertices += s->vertex_count;
     g->joints += s->joint_count;
     g->targets += s->target_count;
@@ -156,7 +166,7 @@ static masu_result check_ranges(reader *r, uint64_t i, given *g) {
     return check_own(r, i);
 }
 
-/* What culling believes of a mesh holds of one that does not bend alone. */
+/* Occluders and LODs are valid only for rigid meshes. */
 static masu_result check_stiff(reader *r) {
     const masu_scene_view *v = &r->view;
     for (uint64_t i = 0; i < r->counts[MASU_BLOB_LODS] + r->counts[MASU_BLOB_OCCLUDERS]; i++) {
@@ -178,7 +188,8 @@ masu_result masu_check_skins(reader *r) {
     given g = {0, 0, 0, 0, 0, 0};
     if (!skins != !joints || !skins != !vertices)
         return bad(r, "skins", 0, "are there without joints or vertices, or these alone");
-    for (uint64_t n = 0; n < r->counts[MASU_BLOB_MODEL_NODES]; n++) bent += v->model_nodes[n].skin != 0;
+    for (uint64_t n = 0; n < r->counts[MASU_BLOB_MODEL_NODES]; n++)
+        bent += v->model_nodes[n].skin != 0;
     for (uint64_t i = 0; i < skins; i++) {
         const masu_blob_skin *s = &v->skins[i];
         if (s->model >= r->counts[MASU_BLOB_MODELS]) return bad(r, "skins", i, "no such model");
@@ -195,8 +206,10 @@ masu_result masu_check_skins(reader *r) {
     if (bent != skins) return bad(r, "model nodes", 0, "share a skin");
     if (g.vertices != vertices) return bad(r, "skin vertices", g.vertices, "belongs to no skin");
     if (g.joints != joints) return bad(r, "joints", g.joints, "belongs to no skin");
-    if (g.targets != r->counts[MASU_BLOB_MORPH_TARGETS]) return bad(r, "morph targets", g.targets, "belongs to no skin");
-    if (g.deltas != r->counts[MASU_BLOB_MORPH_DELTAS]) return bad(r, "morph deltas", g.deltas, "belongs to no target");
+    if (g.targets != r->counts[MASU_BLOB_MORPH_TARGETS])
+        return bad(r, "morph targets", g.targets, "belongs to no skin");
+    if (g.deltas != r->counts[MASU_BLOB_MORPH_DELTAS])
+        return bad(r, "morph deltas", g.deltas, "belongs to no target");
     if (skins && g.skinned != r->counts[MASU_BLOB_VERTICES])
         return bad(r, "vertices", g.skinned, "follows those of skins");
     return skins ? check_stiff(r) : MASU_OK;

@@ -1,4 +1,4 @@
-/* check_textures.c: textures, the sets that materials bind, and what materials say of both. */
+/* check_textures.c: validates textures, texture sets, and the references of materials to both. */
 #include "scene/check.h"
 
 static masu_result check_texture(reader *r, uint64_t i, uint64_t *end) {
@@ -49,11 +49,12 @@ static masu_result check_texture_set(reader *r, uint64_t i) {
         }
     }
     if (!given) return bad(r, "texture sets", i, "is empty");
-    if ((set->wrap[0] & ~4u) > 2 || set->wrap[1] > 2) return bad(r, "texture sets", i, "no such wrapping");
+    if ((set->wrap[0] & ~4u) > 2 || set->wrap[1] > 2)
+        return bad(r, "texture sets", i, "no such wrapping");
     return MASU_OK;
 }
 
-/* The textures that a material names are there, with that layer. */
+/* The textures of a material exist and have the layer. */
 static masu_result check_maps(reader *r, uint64_t i) {
     const masu_blob_material *m = &r->view.materials[i];
     uint32_t maps = m->flags & MASU_MATERIAL_HAS_MAPS;
@@ -75,8 +76,10 @@ static masu_result check_maps(reader *r, uint64_t i) {
         if (set->texture[slot] == MASU_BLOB_NONE) {
             return bad(r, "materials", i, "its texture set lacks a texture");
         }
-        uint32_t layer = (slot < MASU_SLOT_OCCLUSION ? m->layers >> 8 * slot
-                                                     : m->more_layers >> 8 * (slot - MASU_SLOT_OCCLUSION)) & 0xFF;
+        uint32_t layer =
+            (slot < MASU_SLOT_OCCLUSION ? m->layers >> 8 * slot
+                                        : m->more_layers >> 8 * (slot - MASU_SLOT_OCCLUSION)) &
+            0xFF;
         if (layer >= r->view.textures[set->texture[slot]].layers) {
             return bad(r, "materials", i, "no such layer");
         }
@@ -116,7 +119,8 @@ masu_result masu_check_textures(reader *r) {
     }
     uint64_t colors = r->counts[MASU_BLOB_COLORS], second = r->counts[MASU_BLOB_TEXCOORDS_1];
     if (colors && (!some || colors != r->counts[MASU_BLOB_VERTICES]))
-        return bad(r, "vertex colours", colors, "are not as many as vertices with texture coordinates");
+        return bad(r, "vertex colours", colors,
+                   "are not as many as vertices with texture coordinates");
     if (second && (!some || second != r->counts[MASU_BLOB_VERTICES]))
         return bad(r, "second texture coordinates", second, "are not as many as the first ones");
     for (uint64_t i = 0; i < second; i++) {

@@ -1,13 +1,13 @@
-/* check_trace.c: what rays are traced through.
+/* check_trace.c: validates the ray tracing data.
  *
- * A walk through a tree that has passed ends, stays inside of its sections and needs no more than
- * MASU_TRACE_DEPTH_MAX words of stack, whatever the boxes say. The walk here takes the nodes in the
- * one order that is allowed, so it needs no mark for what it has seen: where the next children must
- * be follows from the count of those before. Boxes that do not hold what they should only lose
- * hits; they are not looked at. */
+ * Traversal of a validated BVH terminates, reads only its sections and needs at most
+ * MASU_TRACE_DEPTH_MAX 32-bit values of stack, for any box contents. The check visits the nodes in
+ * the only permitted order, in which the index of the next children follows from the number of
+ * previous ones, so it needs no visited flags. Boxes that do not contain their items can only lose
+ * hits; they are not checked. */
 #include "scene/check.h"
 
-/* The node `i` of the walk: its children and items are the next. */
+/* Validates node `i`: its children and items must be the next ones. */
 static const char *check_node(const masu_blob_trace_node *n, uint64_t *next_node,
                               uint64_t *next_item, uint32_t *children) {
     uint32_t nodes = 0, items = 0, before = 1;
@@ -23,7 +23,7 @@ static const char *check_node(const masu_blob_trace_node *n, uint64_t *next_node
         return "origin is not finite or too far out";
     for (uint32_t k = 0; k < 3; k++) {
         uint32_t exponent = n->packed >> 8 * k & 0xFFu;
-        /* 255 * 2^43 is the first beyond twice the reach. */
+        /* 255 * 2^43 is the first value beyond twice MASU_TRACE_REACH. */
         if (exponent < 1 || exponent > 127 + 43) return "scale is out of range";
     }
     if (nodes && n->child != *next_node) return "children are not the next nodes";
@@ -39,7 +39,7 @@ static masu_result check_tree(reader *r, const masu_blob_trace_mesh *m) {
     uint64_t next_node = (uint64_t)m->first_node + 1, next_item = m->first_triangle;
     uint64_t end = (uint64_t)m->first_node + m->node_count;
     struct {
-        uint32_t node, left; /* the next of siblings, and how many are left */
+        uint32_t node, left; /* next sibling to visit, number of siblings left */
     } stack[MASU_TRACE_DEPTH_MAX + 1];
     uint32_t levels = 1, deepest = 1;
     stack[0].node = m->first_node;
@@ -144,7 +144,8 @@ static masu_result check_reflections(reader *r) {
     const masu_blob_reflections *f = r->view.reflections;
     int traced = r->view.trace_nodes || r->view.code[MASU_BLOB_TRACE_SDF_SPIRV].words ||
                  r->view.code[MASU_BLOB_BOUNCE_SDF_SPIRV].words;
-    if (!f) return traced ? bad(r, "reflections", 0, "are not there, but what they trace is") : MASU_OK;
+    if (!f)
+        return traced ? bad(r, "reflections", 0, "are not there, but what they trace is") : MASU_OK;
     if (!within(&f->cutoff, 1, 0.0f, 1.0f) || !within(&f->glossiest, 1, 0.0f, 1.0f) ||
         !within(&f->distance, 1, 1e-3f, 1e9f)) {
         return bad(r, "reflections", 0, "a value is out of range");
@@ -168,7 +169,8 @@ static masu_result check_pictures(reader *r) {
         if (!t->width || !t->height || t->width > MASU_TRACE_TEXTURE_MAX ||
             t->height > MASU_TRACE_TEXTURE_MAX)
             return bad(r, "trace textures", i, "a side is not 1 to 256");
-        if (t->first != next) return bad(r, "trace textures", i, "does not begin where the one before ends");
+        if (t->first != next)
+            return bad(r, "trace textures", i, "does not begin where the one before ends");
         next += masu_blob_trace_texels(t->width, t->height);
     }
     if (next != r->counts[MASU_BLOB_TRACE_TEXELS])

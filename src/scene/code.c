@@ -6,7 +6,7 @@
 #define MAGIC 0x07230203u
 #define HEADER 5u
 
-/* Numbers of the specification. */
+/* Numbers from the SPIR-V specification. */
 enum {
     OP_EXT_INST_IMPORT = 11,
     OP_MEMORY_MODEL = 14,
@@ -38,19 +38,41 @@ enum {
     OP_MODULE_PROCESSED = 330
 };
 
-enum { DECORATION_SPEC_ID = 1, DECORATION_BUILT_IN = 11, DECORATION_BINDING = 33, DECORATION_SET = 34, DECORATION_OFFSET = 35 };
+enum {
+    DECORATION_SPEC_ID = 1,
+    DECORATION_BUILT_IN = 11,
+    DECORATION_BINDING = 33,
+    DECORATION_SET = 34,
+    DECORATION_OFFSET = 35
+};
 enum { BUILT_IN_WORKGROUP_SIZE = 25 };
 enum { CLASS_CONSTANT = 0, CLASS_UNIFORM = 2, CLASS_PUSH = 9, CLASS_STORAGE = 12 };
 enum { MODE_LOCAL_SIZE = 17 };
-#define SPEC_IDS 16u /* device/pipelines.c */
+#define SPEC_IDS 16u /* constant_ids that scene code may use (device/pipelines.c) */
 
-/* Where instructions may stand: ranks do not fall. */
-enum { RANK_CAPABILITY, RANK_IMPORT, RANK_MODEL, RANK_ENTRY, RANK_MODE, RANK_DEBUG, RANK_DECORATION, RANK_GLOBAL, RANK_FUNCTION };
+/* Sections of a module, in their order. The rank must not decrease from instruction to
+ * instruction. */
+enum {
+    RANK_CAPABILITY,
+    RANK_IMPORT,
+    RANK_MODEL,
+    RANK_ENTRY,
+    RANK_MODE,
+    RANK_DEBUG,
+    RANK_DECORATION,
+    RANK_GLOBAL,
+    RANK_FUNCTION
+};
 
-/* ---- The instructions ----------------------------------------------------------------------------
- * Operands, a letter each: r its result; t the type of that; y a type; i a value, of what stands before; f an id that may
- * follow; l a label, that may follow; n a number; S a text; N any numbers. In brackets: any number of times. What
- * follows ? may be left out. A result is a type in the ranges of TYPE, a label of OP_LABEL, else a value. */
+/* ---- Instructions ---------------------------------------------------------------------------- */
+
+/* Operands, one letter each:
+ *   r  the result               t  the type of the result     y  a type
+ *   i  a value, defined before  f  an id, possibly a forward reference
+ *   l  a label, possibly a forward reference
+ *   n  a number                 N  any number of numbers      S  a string
+ * [...] repeats any number of times; operands after ? are optional. A result is a type for opcodes
+ * TYPE_FIRST to TYPE_LAST, a label for OP_LABEL, otherwise a value. */
 typedef struct form {
     uint16_t first, last;
     uint8_t rank;
@@ -61,7 +83,7 @@ typedef struct form {
 #define TYPE_LAST 33u
 
 static const form forms[] = {
-    {1, 1, RANK_GLOBAL, "tr"}, /* and in functions, as variables */
+    {1, 1, RANK_GLOBAL, "tr"}, /* in functions too, as a variable */
     {OP_EXT_INST_IMPORT, OP_EXT_INST_IMPORT, RANK_IMPORT, "rS"},
     {12, 12, RANK_FUNCTION, "trin[i]"},
     {OP_MEMORY_MODEL, OP_MEMORY_MODEL, RANK_MODEL, "nn"},
@@ -81,7 +103,8 @@ static const form forms[] = {
     {OP_TYPE_POINTER, OP_TYPE_POINTER, RANK_GLOBAL, "rny"},
     {33, 33, RANK_GLOBAL, "ry[y]"},
     {41, 42, RANK_GLOBAL, "tr"},
-    {OP_CONSTANT, OP_CONSTANT, RANK_GLOBAL, "trn"}, /* of 32 bits: no capability for others is let in */
+    /* 32 bits: larger constants need capabilities that are rejected */
+    {OP_CONSTANT, OP_CONSTANT, RANK_GLOBAL, "trn"},
     {OP_CONSTANT_COMPOSITE, OP_CONSTANT_COMPOSITE, RANK_GLOBAL, "tr[i]"},
     {46, 46, RANK_GLOBAL, "tr"},
     {48, 49, RANK_GLOBAL, "tr"},
@@ -173,13 +196,13 @@ static const form *form_of(uint32_t op) {
     return low < sizeof forms / sizeof *forms && forms[low].first <= op ? &forms[low] : NULL;
 }
 
-/* ---- Ids: what each is, in two bits -------------------------------------------------------------- */
+/* ---- Ids: the kind of each, in two bits ------------------------------------------------------ */
 
 enum { ID_NONE = 0, ID_TYPE = 1, ID_VALUE = 2, ID_LABEL = 3 };
 
 typedef struct walk {
     const uint32_t *words;
-    uint64_t count, globals_end; /* the first function */
+    uint64_t count, globals_end; /* globals_end: the first function */
     uint32_t bound;
     masu_module *out;
     uint32_t rank, entries, functions, local_sizes, push_type, workgroup_size, entry;
@@ -187,38 +210,44 @@ typedef struct walk {
     uint8_t ids[MASU_MODULE_IDS_MAX / 4];
 } walk;
 
-static uint32_t id_kind(const walk *w, uint32_t id) { return id < w->bound ? w->ids[id / 4] >> id % 4 * 2 & 3u : ID_NONE; }
+static uint32_t id_kind(const walk *w, uint32_t id) {
+    return id < w->bound ? w->ids[id / 4] >> id % 4 * 2 & 3u : ID_NONE;
+}
 
-/* ---- Operands ------------------------------------------------------------------------------------ */
+/* ---- Operands -------------------------------------------------------------------------------- */
 
-/* Words of a text that ends within `left` of them; 0: it does not. */
+/* Length of a string literal in 32-bit values; 0 if it does not end within `left` values. */
 static uint32_t text_words(const uint32_t *at, uint32_t left) {
     const void *end = left ? memchr(at, 0, 4 * (size_t)left) : NULL;
     return end ? (uint32_t)(((const char *)end - (const char *)at) / 4 + 1) : 0;
 }
 
-/* late: ids that may follow are looked at, else the others. */
+/* late: checks ids that may be forward references; otherwise all other operands. */
 static const char *check_operand(walk *w, uint32_t op, char letter, uint32_t value, int late) {
     int follows = letter == 'f' || letter == 'l';
     if (letter == 'n' || follows != late) return NULL;
     if (letter == 'r') {
         if (value == 0 || value >= w->bound) return "an id is 0 or not below the bound";
         if (id_kind(w, value) != ID_NONE) return "an id is defined twice";
-        uint32_t kind = op == OP_LABEL ? ID_LABEL : op >= TYPE_FIRST && op <= TYPE_LAST ? ID_TYPE : ID_VALUE;
+        uint32_t kind = op == OP_LABEL                        ? ID_LABEL
+                        : op >= TYPE_FIRST && op <= TYPE_LAST ? ID_TYPE
+                                                              : ID_VALUE;
         w->ids[value / 4] |= (uint8_t)(kind << value % 4 * 2);
         return NULL;
     }
     uint32_t kind = id_kind(w, value);
     if (kind == ID_NONE) return "an id is used that nothing has defined";
     if (letter == 'l') return kind == ID_LABEL ? NULL : "an id is used as a label, which it is not";
-    if (letter == 't' || letter == 'y') return kind == ID_TYPE ? NULL : "an id is used as a type, which it is not";
-    /* What is decorated may be a type. */
+    if (letter == 't' || letter == 'y')
+        return kind == ID_TYPE ? NULL : "an id is used as a type, which it is not";
+    /* OpDecorate may name a type too. */
     if (letter == 'f' && (op == OP_DECORATE || op == OP_MEMBER_DECORATE)) return NULL;
     return kind == ID_VALUE ? NULL : "an id is used as a value, which it is not";
 }
 
-/* Operands from word 1 on: their number and, early or late, what they are. */
-static const char *check_operands(walk *w, const form *f, const uint32_t *word, uint32_t length, int late) {
+/* Checks the number of operands and, in one of two passes (late or not), their kinds. */
+static const char *check_operands(walk *w, const form *f, const uint32_t *word, uint32_t length,
+                                  int late) {
     uint32_t at = 1;
     const char *again = NULL;
     for (const char *p = f->operands;; p++) {
@@ -250,15 +279,17 @@ static const char *check_operands(walk *w, const form *f, const uint32_t *word, 
     }
 }
 
-/* ---- What single instructions ask for ------------------------------------------------------------ */
+/* ---- Rules for single instructions ----------------------------------------------------------- */
 
 static int capability_ok(uint32_t capability) {
-    /* Matrix, Shader, ImageQuery, DerivativeControl: what every device has, and GLSL may come to. */
+    /* Matrix, Shader, ImageQuery, DerivativeControl: supported by every device, and generated from
+     * GLSL. */
     return capability == 0 || capability == 1 || capability == 50 || capability == 51;
 }
 
 static const char *note_decoration(walk *w, const uint32_t *word, uint32_t length) {
-    if (word[2] == DECORATION_BUILT_IN && length > 3 && word[3] == BUILT_IN_WORKGROUP_SIZE) w->workgroup_size = word[1];
+    if (word[2] == DECORATION_BUILT_IN && length > 3 && word[3] == BUILT_IN_WORKGROUP_SIZE)
+        w->workgroup_size = word[1];
     if (word[2] == DECORATION_SPEC_ID && (length != 4 || word[3] >= SPEC_IDS))
         return "a specialization constant has a number that no pass gives";
     if (word[2] != DECORATION_BINDING && word[2] != DECORATION_SET) return NULL;
@@ -268,13 +299,14 @@ static const char *note_decoration(walk *w, const uint32_t *word, uint32_t lengt
     while (k < o->bound_count && o->bound[k].id != word[1]) k++;
     if (k == o->bound_count) {
         if (k == MASU_MODULE_BOUND_MAX) return "more than 32 things have a set and a binding";
-        o->bound[o->bound_count++] = (masu_module_bound){word[1], UINT32_MAX, UINT32_MAX, MASU_MODULE_NOTHING};
+        o->bound[o->bound_count++] =
+            (masu_module_bound){word[1], UINT32_MAX, UINT32_MAX, MASU_MODULE_NOTHING};
     }
     *(word[2] == DECORATION_SET ? &o->bound[k].set : &o->bound[k].binding) = word[3];
     return NULL;
 }
 
-/* Of a global one; its class until its type is looked at. */
+/* Notes a global variable. Images get the class SAMPLED until check_resources looks up the type. */
 static const char *note_variable(walk *w, const uint32_t *word) {
     masu_module *o = w->out;
     uint32_t storage = word[3], k = 0;
@@ -288,14 +320,17 @@ static const char *note_variable(walk *w, const uint32_t *word) {
     if (k == o->bound_count || o->bound[k].set == UINT32_MAX || o->bound[k].binding == UINT32_MAX)
         return "a resource has no set or no binding";
     if (o->bound[k].class) return "a resource is declared twice";
-    o->bound[k].class = storage == CLASS_UNIFORM ? MASU_MODULE_UNIFORMS : storage == CLASS_STORAGE ? MASU_MODULE_STORAGE : MASU_MODULE_SAMPLED;
+    o->bound[k].class = storage == CLASS_UNIFORM   ? MASU_MODULE_UNIFORMS
+                        : storage == CLASS_STORAGE ? MASU_MODULE_STORAGE
+                                                   : MASU_MODULE_SAMPLED;
     return NULL;
 }
 
 static const char *note_entry(walk *w, const uint32_t *word, uint32_t length) {
     static const char name[] = "main";
     if (w->entries++) return "there is more than one entry point";
-    if (length < 5 || memcmp(word + 3, name, sizeof name) != 0) return "the entry point is not main";
+    if (length < 5 || memcmp(word + 3, name, sizeof name) != 0)
+        return "the entry point is not main";
     w->out->model = word[1];
     w->entry = word[2];
     return NULL;
@@ -303,10 +338,13 @@ static const char *note_entry(walk *w, const uint32_t *word, uint32_t length) {
 
 static const char *note(walk *w, const uint32_t *word, uint32_t length) {
     switch (word[0] & 0xFFFFu) {
-    case OP_CAPABILITY: return capability_ok(word[1]) ? NULL : "a capability is asked for that no pass has";
+    case OP_CAPABILITY:
+        return capability_ok(word[1]) ? NULL : "a capability is asked for that no pass has";
     case OP_EXT_INST_IMPORT: {
         static const char set[16] = "GLSL.std.450";
-        return length == 6 && memcmp(word + 2, set, sizeof set) == 0 ? NULL : "instructions are imported that are not GLSL.std.450";
+        return length == 6 && memcmp(word + 2, set, sizeof set) == 0
+                   ? NULL
+                   : "instructions are imported that are not GLSL.std.450";
     }
     case OP_MEMORY_MODEL:
         return word[1] == 0 && word[2] == 1 ? NULL : "the memory model is not logical, GLSL450";
@@ -329,12 +367,13 @@ static const char *note(walk *w, const uint32_t *word, uint32_t length) {
     }
 }
 
-/* ---- Functions and blocks ------------------------------------------------------------------------ */
+/* ---- Functions and blocks -------------------------------------------------------------------- */
 
 static const char *step(walk *w, uint32_t op) {
     int ends = op >= OP_BRANCH && op <= OP_UNREACHABLE;
-    if (w->merging && !(w->merging == OP_LOOP_MERGE ? op == OP_BRANCH || op == OP_BRANCH_CONDITIONAL
-                                                    : op == OP_BRANCH_CONDITIONAL || op == OP_SWITCH))
+    if (w->merging &&
+        !(w->merging == OP_LOOP_MERGE ? op == OP_BRANCH || op == OP_BRANCH_CONDITIONAL
+                                      : op == OP_BRANCH_CONDITIONAL || op == OP_SWITCH))
         return "a merge stands before no branch";
     w->merging = op == OP_LOOP_MERGE || op == OP_SELECTION_MERGE ? (int)op : 0;
     switch (op) {
@@ -344,13 +383,16 @@ static const char *step(walk *w, uint32_t op) {
         w->blocks = 0;
         w->functions++;
         return NULL;
-    case OP_FUNCTION_PARAMETER: return w->in_function && !w->blocks ? NULL : "a parameter is of no function";
+    case OP_FUNCTION_PARAMETER:
+        return w->in_function && !w->blocks ? NULL : "a parameter is of no function";
     case OP_FUNCTION_END:
-        if (!w->in_function || w->in_block || !w->blocks) return "a function ends that has not begun, or within a block";
+        if (!w->in_function || w->in_block || !w->blocks)
+            return "a function ends that has not begun, or within a block";
         w->in_function = 0;
         return NULL;
     case OP_LABEL:
-        if (!w->in_function || w->in_block) return "a block begins outside of functions, or within another";
+        if (!w->in_function || w->in_block)
+            return "a block begins outside of functions, or within another";
         w->in_block = w->blocks = 1;
         return NULL;
     default:
@@ -368,7 +410,7 @@ static const char *check_order(walk *w, const form *f, uint32_t op) {
     return rank == RANK_FUNCTION ? step(w, op) : NULL;
 }
 
-/* ---- The walk ------------------------------------------------------------------------------------ */
+/* ---- Traversal ------------------------------------------------------------------------------- */
 
 static const char *walk_once(walk *w, int late, uint64_t *at) {
     for (*at = HEADER; *at < w->count;) {
@@ -387,12 +429,14 @@ static const char *walk_once(walk *w, int late, uint64_t *at) {
     return NULL;
 }
 
-/* What defines a global id, which has been seen: among what stands before functions. */
+/* The instruction that defines a global id; searches the instructions before the first function. */
 static const uint32_t *find(const walk *w, uint32_t id) {
     for (uint64_t at = HEADER; at < w->globals_end; at += w->words[at] >> 16) {
         const uint32_t *word = w->words + at;
         uint32_t op = word[0] & 0xFFFFu;
-        uint32_t place = op >= TYPE_FIRST && op <= TYPE_LAST ? 1 : (op >= 41 && op <= 52) || op == OP_VARIABLE ? 2 : 0;
+        uint32_t place = op >= TYPE_FIRST && op <= TYPE_LAST           ? 1
+                         : (op >= 41 && op <= 52) || op == OP_VARIABLE ? 2
+                                                                       : 0;
         if (place && word[place] == id) return word;
     }
     return NULL;
@@ -400,7 +444,7 @@ static const uint32_t *find(const walk *w, uint32_t id) {
 
 static int is(const uint32_t *word, uint32_t op) { return word && (word[0] & 0xFFFFu) == op; }
 
-/* What a pointer type points at. */
+/* The instruction of the type that a pointer type points to. */
 static const uint32_t *pointed(const walk *w, uint32_t type) {
     const uint32_t *pointer = find(w, type);
     return is(pointer, OP_TYPE_POINTER) ? find(w, pointer[3]) : NULL;
@@ -411,9 +455,11 @@ static const char *check_resources(walk *w) {
         masu_module_bound *b = &w->out->bound[k];
         if (!b->class) return "a binding is of nothing";
         for (uint32_t j = 0; j < k; j++) {
-            if (w->out->bound[j].set == b->set && w->out->bound[j].binding == b->binding) return "two resources share a binding";
+            if (w->out->bound[j].set == b->set && w->out->bound[j].binding == b->binding)
+                return "two resources share a binding";
         }
-        const uint32_t *variable = find(w, b->id), *type = variable ? pointed(w, variable[1]) : NULL;
+        const uint32_t *variable = find(w, b->id),
+                       *type = variable ? pointed(w, variable[1]) : NULL;
         if (b->class != MASU_MODULE_SAMPLED) {
             if (!is(type, OP_TYPE_STRUCT)) return "a buffer is no block";
             continue;
@@ -428,8 +474,8 @@ static const char *check_resources(walk *w) {
 
 #define PUSH_MEMBERS 16u
 
-/* Where the last member of a struct of push constants ends, which are numbers of 32 bits, or such structs. 0: they are
- * not, or lie beyond what any pass has. */
+/* End, in bytes, of the last member of a push constant struct. Members are 32-bit scalars or, at
+ * the top level, structs of such scalars. 0: other members, or beyond 128 bytes. */
 static uint32_t struct_bytes(const walk *w, const uint32_t *type, int deeper) {
     uint32_t members = is(type, OP_TYPE_STRUCT) ? (type[0] >> 16) - 2 : 0, end = 0;
     uint32_t offset[PUSH_MEMBERS];
@@ -437,37 +483,45 @@ static uint32_t struct_bytes(const walk *w, const uint32_t *type, int deeper) {
     memset(offset, 0xFF, sizeof offset);
     for (uint64_t at = HEADER; at < w->globals_end; at += w->words[at] >> 16) {
         const uint32_t *word = w->words + at;
-        if (is(word, OP_MEMBER_DECORATE) && word[0] >> 16 == 5 && word[1] == type[1] && word[3] == DECORATION_OFFSET && word[2] < members)
+        if (is(word, OP_MEMBER_DECORATE) && word[0] >> 16 == 5 && word[1] == type[1] &&
+            word[3] == DECORATION_OFFSET && word[2] < members)
             offset[word[2]] = word[4];
     }
     for (uint32_t k = 0; k < members; k++) {
         const uint32_t *member = find(w, type[2 + k]);
-        uint32_t bytes = is(member, OP_TYPE_INT) || is(member, OP_TYPE_FLOAT) ? 4 : deeper ? struct_bytes(w, member, 0) : 0;
+        uint32_t bytes = is(member, OP_TYPE_INT) || is(member, OP_TYPE_FLOAT) ? 4
+                         : deeper ? struct_bytes(w, member, 0)
+                                  : 0;
         if (!bytes || offset[k] > 128 || offset[k] % 4 || offset[k] + bytes > 128) return 0;
         if (offset[k] + bytes > end) end = offset[k] + bytes;
     }
     return end;
 }
 
-/* A constant of that name wins over the execution mode. */
+/* The WorkgroupSize constant overrides the execution mode, so both must be equal. */
 static const char *check_local_size(walk *w) {
     if (!w->workgroup_size) return NULL;
     const uint32_t *size = find(w, w->workgroup_size);
-    if (!size) return NULL; /* of nothing that is there */
-    if (!is(size, OP_CONSTANT_COMPOSITE) || size[0] >> 16 != 6) return "the local size is not three numbers, once";
+    if (!size) return NULL; /* decorates an undefined id */
+    if (!is(size, OP_CONSTANT_COMPOSITE) || size[0] >> 16 != 6)
+        return "the local size is not three numbers, once";
     for (uint32_t k = 0; k < 3; k++) {
         const uint32_t *number = find(w, size[3 + k]);
-        if (!is(number, OP_CONSTANT) || number[3] != w->out->local_size[k]) return "there are two local sizes";
+        if (!is(number, OP_CONSTANT) || number[3] != w->out->local_size[k])
+            return "there are two local sizes";
     }
     return NULL;
 }
 
-const char *masu_module_read(const uint32_t *words, uint64_t count, masu_module *out, uint64_t *at) {
+const char *masu_module_read(const uint32_t *words, uint64_t count, masu_module *out,
+                             uint64_t *at) {
     *at = 0;
     memset(out, 0, sizeof *out);
-    if (count < HEADER || count > MASU_MODULE_WORDS_MAX || words[0] != MAGIC) return "is missing or is no SPIR-V";
+    if (count < HEADER || count > MASU_MODULE_WORDS_MAX || words[0] != MAGIC)
+        return "is missing or is no SPIR-V";
     *at = 1;
-    if (words[1] < 0x00010000u || words[1] > 0x00010300u || words[1] & 0xFF0000FFu) return "is of no version from 1.0 to 1.3";
+    if (words[1] < 0x00010000u || words[1] > 0x00010300u || words[1] & 0xFF0000FFu)
+        return "is of no version from 1.0 to 1.3";
     *at = 3;
     if (!words[3] || words[3] > MASU_MODULE_IDS_MAX) return "has no ids, or more than 65,536";
     *at = 4;
@@ -483,12 +537,13 @@ const char *masu_module_read(const uint32_t *words, uint64_t count, masu_module 
     if (!problem) problem = check_local_size(&w);
     if (!problem && w.push_type) {
         out->push_bytes = struct_bytes(&w, pointed(&w, w.push_type), 1);
-        if (!out->push_bytes) problem = "push constants are not numbers of 32 bits within 128 bytes";
+        if (!out->push_bytes)
+            problem = "push constants are not numbers of 32 bits within 128 bytes";
     }
     return problem;
 }
 
-/* ---- The record ---------------------------------------------------------------------------------- */
+/* ---- The record ------------------------------------------------------------------------------ */
 
 static char *put_text(char *to, const char *text) {
     while (*text) *to++ = *text++;
@@ -501,7 +556,7 @@ static char *put_number(char *to, const char *before, uint32_t value, uint32_t d
     return to + digits;
 }
 
-/* As long whatever the counts are: it fills its words. */
+/* Fixed-width numbers: the text has the same length for all counts. */
 void masu_module_record(const masu_module_counts *c, char text[MASU_MODULE_RECORD_BYTES]) {
     memset(text, 0, MASU_MODULE_RECORD_BYTES);
     char *to = put_number(text, "masu code ", c->kind, 2);

@@ -1,6 +1,6 @@
-/* cull.c: see cull.h. Boxes are tested four at a time, by SSE2 or by a loop over four lanes that
- * does the same operations in the same order; groups one at a time. No multiply-add is fused
- * (-ffp-contract=off), so both forms agree bit for bit. */
+/* cull.c: see cull.h. Boxes are tested four at a time, with SSE2 or with a loop over four lanes
+ * that does the same operations in the same order; groups are tested one at a time. No multiply-add
+ * is fused (-ffp-contract=off), so both variants give bit-identical results. */
 #include "scene/cull.h"
 
 #include "shared/floats.h"
@@ -20,7 +20,7 @@
 
 /* ---- Boxes ----------------------------------------------------------------------------------- */
 
-/* The next float at or above v >= 0, or the one after it. */
+/* The next float at or above v >= 0, or the float after that. */
 static float round_up(double v) {
     float f = (float)v;
     return (double)f < v ? f + (f * 0x1p-23f + 0x1p-149f) : f;
@@ -33,7 +33,7 @@ static masu_cull_box box_of(const double low[3], const double high[3]) {
         double c = (double)box.center[k];
         double below = c - low[k], above = high[k] - c;
         box.half[k] = round_up(below > above ? below : above);
-        /* No place: too far, or not a number. Such a box is everywhere. */
+        /* Too far away, or NaN: such a box gets infinite extents. */
         if (!(fabsf(box.center[k]) <= FLT_MAX) || !(box.half[k] <= FLT_MAX)) {
             box.center[k] = 0.0f;
             box.half[k] = INFINITY;
@@ -53,7 +53,8 @@ masu_cull_box masu_cull_place(const float rows[12], const float low[3], const fl
             h += fabs(a) * 0.5 * fabs(u - l);
             most += fabs(a) * (fabs(l) > fabs(u) ? fabs(l) : fabs(u));
         }
-        h += 0x1p-21 * most; /* a sum of four products in fp32, and its two subtractions */
+        /* rounding of a sum of four products in fp32, and of two subtractions */
+        h += 0x1p-21 * most;
         from[i] = c - h;
         to[i] = c + h;
     }
@@ -69,7 +70,7 @@ masu_cull_box masu_cull_widen(const masu_cull_box *box, float scale) {
             wide.half[k] = INFINITY;
             continue;
         }
-        /* Degenerate boxes may be turned inside out; they are then as large as their corners say. */
+        /* A degenerate box may have low > high: uses the distance of its corners. */
         wide.half[k] =
             round_up(fabs((double)h) + (double)(scale * MASU_CULL_SLACK) * (double)c);
     }
@@ -142,15 +143,15 @@ static float radius(const masu_cull_plane *p, const float h[3], uint32_t kind) {
     return ((p->a[0] * h[0] + p->a[1] * h[1]) + p->a[2] * h[2]) + p->slack[kind];
 }
 
-/* The planes of `mask` that cut the group, or ALL_OUT. `last`: the plane to ask first, and the one
- * that rejected it. */
+/* Returns the planes of `mask` that intersect the group, or ALL_OUT. *last: the plane to test
+ * first; set to the plane that rejected the group. */
 #define ALL_OUT 0x80u
 
 static uint32_t test_node(const masu_cull_node *node, const masu_cull_view *view, uint32_t mask,
                           uint8_t *last, uint64_t *tests) {
     uint32_t first = *last & 7u, cut = 0;
     for (uint32_t i = 0; i <= view->count; i++) {
-        /* The remembered plane, then the others in order. */
+        /* The last rejecting plane first, then the others in order. */
         uint32_t p = i ? i - 1 : first;
         if ((i && p == first) || !(mask >> p & 1u)) continue;
         float m = signed_distance(&view->planes[p], node->box.center);
@@ -167,7 +168,7 @@ static uint32_t test_node(const masu_cull_node *node, const masu_cull_view *view
 
 /* ---- Boxes, four at a time ------------------------------------------------------------------- */
 
-/* Bit l: box `at` + l is outside of the plane. */
+/* Bit l: box `at` + l is outside the plane. */
 static uint32_t outside_plain(const masu_cull_set *set, uint32_t at, const masu_cull_plane *p) {
     uint32_t out = 0;
     for (uint32_t l = 0; l < LANES; l++) {
@@ -214,8 +215,8 @@ static inline void test_items(const masu_cull_set *set, const masu_cull_view *vi
         uint32_t kept = (1u << lanes) - 1u;
         for (uint32_t p = 0; p < view->count && kept; p++) {
             if (!(mask >> p & 1u)) continue;
-            /* Boxes that are out already cost nothing in a lane, but they are counted: it is what
-             * four at a time does. */
+            /* Boxes that are rejected already need no work in a lane, but are counted as
+             * tested, because the SIMD variant tests all four. */
             *tests += lanes;
             kept &= ~(simd ? outside_simd(set, at, &view->planes[p])
                            : outside_plain(set, at, &view->planes[p]));
@@ -224,10 +225,10 @@ static inline void test_items(const masu_cull_set *set, const masu_cull_view *vi
     }
 }
 
-/* ---- The walk -------------------------------------------------------------------------------- */
+/* ---- Traversal ------------------------------------------------------------------------------- */
 
 typedef struct level {
-    uint32_t next, end, mask; /* siblings still to be looked at, planes that cut their parent */
+    uint32_t next, end, mask; /* siblings still to visit, planes that intersect their parent */
 } level;
 
 static inline void walk(const masu_cull_set *set, const masu_cull_view *view, uint8_t *state,

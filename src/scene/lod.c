@@ -1,4 +1,4 @@
-/* lod.c: see lod.h. Comparisons are written so that NaN leads to the mesh itself. */
+/* lod.c: see lod.h. Comparisons are written so that NaN selects the full-detail mesh. */
 #include "scene/lod.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/* material.h: a material of the blob as shaders have it. */
+/* material.h: conversion of a blob material to the layout of the shaders. */
 #ifndef MASU_MATERIAL_H
 #define MASU_MATERIAL_H
 
@@ -13,15 +13,15 @@ static inline struct masu_material_data masu_material_data_of(const masu_blob_ma
     return d;
 }
 
-/* Opaque, and emits at least what the shaders take for emission (masu_emissive_least,
- * pack.glsl). */
+/* Whether an opaque material emits at least the minimum that shaders treat as emission
+ * (masu_emissive_least, pack.glsl). */
 static inline int masu_material_emits(const masu_blob_material *m) {
     const float least = 1.0f / 1024.0f;
     if (m->flags & MASU_MATERIAL_IS_BLEND) return 0;
     return m->emissive[0] >= least || m->emissive[1] >= least || m->emissive[2] >= least;
 }
 
-/* Opaque materials of one kind share pipelines. 0: without textures, 1: with, 2: alpha-tested. */
+/* Opaque materials of one kind share pipelines. 0: untextured, 1: textured, 2: alpha-tested. */
 static inline uint32_t masu_draw_kind(uint32_t material_flags) {
     if (!(material_flags & MASU_MATERIAL_HAS_MAPS)) return 0;
     return material_flags & MASU_MATERIAL_IS_MASK ? 2 : 1;

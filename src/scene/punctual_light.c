@@ -1,14 +1,15 @@
-/* punctual_light.c: see punctual_light.h. In double precision up to where the numbers are written. */
+/* punctual_light.c: see punctual_light.h. Computes in double precision until the result is
+ * stored. */
 #include "scene/punctual_light.h"
 
 #include <math.h>
 #include <string.h>
 
 #define PI 3.14159265358979323846
-/* By this share of all lengths that went into it a bounding sphere is larger: 64 units in the last
- * place of fp32, of which light_tiles.comp and lights.glsl together lose fewer than 40. */
+/* Bounding spheres are enlarged by this fraction of all lengths involved: 64 ulp of fp32.
+ * light_tiles.comp and lights.glsl together lose fewer than 40 ulp. */
 #define SLACK 0x1p-17
-/* A range below is none: its square has no reciprocal. */
+/* A smaller range is treated as 0: its square has no finite reciprocal. */
 #define RANGE_LEAST 1e-15
 
 static double length_of(const double v[3]) { return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
@@ -121,7 +122,7 @@ double masu_light_intensity(const masu_punctual_light_state *s, const double dir
         along += direction[k] * direction[k];
         across += (double)s->half_axis[k] * (double)s->half_axis[k];
     }
-    switch (s->shape) { /* radiance times the area that it shows */
+    switch (s->shape) { /* radiance times projected area, / pi */
     case MASU_SHAPE_SPHERE: return brightest * radius * radius;
     case MASU_SHAPE_CAPSULE: return brightest * (radius * radius + 4.0 / PI * sqrt(along) * radius);
     case MASU_SHAPE_RECTANGLE: return brightest * (4.0 / PI) * sqrt(along * across);
@@ -131,8 +132,9 @@ double masu_light_intensity(const masu_punctual_light_state *s, const double dir
 
 /* ---- One light ------------------------------------------------------------------------------- */
 
-/* Of a cone of half angle a and the range as its side: up to 45 degrees the sphere through the tip and
- * the rim, up to 90 the one around the rim's disc, beyond the whole of the range. */
+/* Bounding sphere of a cone with half angle `angle` and slant length `range`. Below 45 degrees: the
+ * sphere through apex and rim. Below 90 degrees: the sphere around the disc of the rim. Otherwise:
+ * the sphere of the whole range. */
 static masu_light_bound bound_of(const double position[3], const double axis[3], double range,
                                  double angle) {
     masu_light_bound b = {{position[0], position[1], position[2]}, range};
@@ -153,8 +155,8 @@ static double versine(double angle) {
     return 2.0 * s * s;
 }
 
-/* What the shaders read of capsules and rectangles, and of a sphere given by its radiance. 0: it lights
- * nothing. */
+/* Fills the fields of capsules, rectangles, and spheres that are given by their radiance. Returns 0
+ * if the light is off. */
 static int place_shape(const masu_punctual_light_state *s, const double direction[3],
                        struct masu_punctual_light_data *out) {
     if (s->shape == MASU_SHAPE_SPHERE) {
@@ -169,7 +171,8 @@ static int place_shape(const masu_punctual_light_state *s, const double directio
             out->color[3] = s->two_sided ? 1.0f : 0.0f;
             out->axis[3] = s->radius;
         }
-        if (!(length_of(direction) <= 1e15)) return 0; /* an instance has moved it beyond */
+        /* transformed by its instance out of the range */
+        if (!(length_of(direction) <= 1e15)) return 0;
         for (uint32_t k = 0; k < 3; k++) {
             if (!(fabsf(out->cone[k]) <= 1e15f)) return 0;
         }
@@ -182,7 +185,7 @@ int masu_light_place(const masu_punctual_light_state *s, const double position[3
                      const double direction[3], struct masu_punctual_light_data *out) {
     double axis[3] = {0, 0, 0}, range = (double)s->range, length = length_of(direction);
     double outer = fmin((double)s->outer, PI);
-    int spot = s->spot && (double)s->inner < PI - 1e-6; /* else it is a point */
+    int spot = s->spot && (double)s->inner < PI - 1e-6; /* else the light is a point light */
     memset(out, 0, sizeof *out);
     if (!(range >= RANGE_LEAST) || !(length_of(position) <= 1e16)) return 0;
     if (!(s->color[0] > 0.0f || s->color[1] > 0.0f || s->color[2] > 0.0f)) return 0;
@@ -198,12 +201,12 @@ int masu_light_place(const masu_punctual_light_state *s, const double position[3
     out->position[3] = (float)(1.0 / (range * range));
     out->color[3] = s->radius * s->radius;
     out->bound[3] = (float)b.radius;
-    /* A point: of no direction the versine is below 4. */
+    /* Point light: every direction has a versine below 4. */
     out->axis[3] = 4.0f;
     out->cone[0] = 1.0f;
     if (s->shape) return place_shape(s, direction, out);
     if (!spot) return 1;
-    /* An edge sharper than fp32 can tell angles apart would be noise. */
+    /* A sharper edge than fp32 can resolve would be noise. */
     double edge = versine(outer) - versine((double)s->inner), sharpest = 0x1p-22 * versine(outer);
     out->axis[3] = (float)versine(outer);
     out->cone[0] = (float)fmin(1.0 / fmax(edge, sharpest), 1e30);

@@ -6,8 +6,8 @@
 typedef struct section_rule {
     const char *name;
     uint32_t stride;
-    uint64_t most; /* elements */
-    int code;      /* it is SPIR-V */
+    uint64_t most; /* maximum number of elements */
+    int code;      /* the section is SPIR-V */
 } section_rule;
 
 #define CODE(kind, name) [kind] = {name, sizeof(uint32_t), (uint64_t)16 << 20, 1}
@@ -54,9 +54,12 @@ static const section_rule rules[MASU_BLOB_KIND_COUNT] = {
     [MASU_BLOB_NAMES] = {"names", 1, MASU_SECTION_MOST, 0},
     [MASU_BLOB_TEXCOORDS] = {"texture coordinates", 2 * sizeof(float), MASU_SECTION_MOST, 0},
     [MASU_BLOB_COLORS] = {"vertex colours", sizeof(uint32_t), MASU_SECTION_MOST, 0},
-    [MASU_BLOB_TEXCOORDS_1] = {"second texture coordinates", 2 * sizeof(float), MASU_SECTION_MOST, 0},
-    [MASU_BLOB_MORPH_TARGETS] = {"morph targets", sizeof(masu_blob_morph_target), MASU_SECTION_MOST, 0},
-    [MASU_BLOB_MORPH_DELTAS] = {"morph deltas", sizeof(masu_blob_morph_delta), MASU_SECTION_MOST, 0},
+    [MASU_BLOB_TEXCOORDS_1] = {"second texture coordinates", 2 * sizeof(float), MASU_SECTION_MOST,
+                               0},
+    [MASU_BLOB_MORPH_TARGETS] = {"morph targets", sizeof(masu_blob_morph_target), MASU_SECTION_MOST,
+                                 0},
+    [MASU_BLOB_MORPH_DELTAS] = {"morph deltas", sizeof(masu_blob_morph_delta), MASU_SECTION_MOST,
+                                0},
     [MASU_BLOB_TEXTURES] = {"textures", sizeof(masu_blob_texture), MASU_TEXTURE_ARRAYS_MAX, 0},
     [MASU_BLOB_TEXTURE_SETS] = {"texture sets", sizeof(masu_blob_texture_set), MASU_SECTION_MOST,
                                 0},
@@ -129,7 +132,7 @@ masu_result masu_read_header(reader *r, uint64_t given) {
     return MASU_OK;
 }
 
-/* start: of each kind that is there. */
+/* Fills a view. start: the first byte of each section that is present. */
 static masu_scene_view view_of(const void *const start[MASU_BLOB_KIND_COUNT],
                                const uint64_t counts[MASU_BLOB_KIND_COUNT]) {
     masu_scene_view v = (masu_scene_view){.vertices = start[MASU_BLOB_VERTICES],
@@ -190,7 +193,7 @@ static masu_scene_view view_of(const void *const start[MASU_BLOB_KIND_COUNT],
     return v;
 }
 
-/* Marches that only a library built with MASU_LAB can run. */
+/* Sphere-tracing variants that only a library built with MASU_LAB can run. */
 static int is_of_lab(uint32_t kind) {
 #ifdef MASU_LAB
     (void)kind;
@@ -228,8 +231,8 @@ masu_result masu_read_sections(reader *r, uint64_t given) {
         start[s.kind] = r->bytes + s.offset;
         r->counts[s.kind] = s.count;
     }
-    /* The count of sections is in front of what the hash covers. Bytes that no section owns, beyond
-     * padding, say that it was damaged. */
+    /* The section count is not covered by the hash. Bytes that belong to no section, except
+     * padding, mean that the count is corrupt. */
     if (given - end >= MASU_BLOB_ALIGN) {
         return bad(r, "section", h.section_count, "is missing: bytes are left behind the last one");
     }

@@ -1,6 +1,6 @@
-/* reader.h: the container of a blob: its header, and where its sections are. Every number of a blob is
- * hostile until it has been checked; sums are done so that they cannot wrap. Counts fit 32 bits
- * (each section is checked), products are taken in 64. */
+/* reader.h: reads the container of a blob: its header and section table. Every number of a blob is
+ * hostile until it is checked. Sums are computed so that they cannot wrap. Counts fit into 32 bits,
+ * which is checked for each section; products are computed in 64 bits. */
 #ifndef MASU_SCENE_READER_H
 #define MASU_SCENE_READER_H
 
@@ -9,7 +9,7 @@
 
 #include <math.h>
 
-#define MASU_SECTION_MOST 0x7FFFFFFFu /* elements of any section */
+#define MASU_SECTION_MOST 0x7FFFFFFFu /* maximum number of elements of a section */
 
 typedef struct reader {
     const unsigned char *bytes;
@@ -46,7 +46,8 @@ static inline int name_ok(const reader *r, uint32_t name) {
     return name == MASU_BLOB_NONE || name < r->view.name_bytes;
 }
 
-/* Culling believes bounds. Two boxes; a point is a box too. */
+/* Whether box [low, high] contains box [from, to], which may be a point. Culling relies on bounds,
+ * so they are validated with this. */
 static inline int box_holds(const float *low, const float *high, const float *from,
                             const float *to) {
     for (uint32_t k = 0; k < 3; k++) {
@@ -55,11 +56,11 @@ static inline int box_holds(const float *low, const float *high, const float *fr
     return 1;
 }
 
-/* Of all `given` bytes: who wrote them, for which version, and whether they are whole. */
+/* Validates the header of `given` bytes: magic, version, length, hash. */
 masu_result masu_read_header(reader *r, uint64_t given);
-/* Fills view and counts; after the header has passed. */
+/* Fills view and counts; call after masu_read_header. */
 masu_result masu_read_sections(reader *r, uint64_t given);
-/* What a section is called in messages. */
+/* Name of a section kind for messages. */
 const char *masu_section_name(uint32_t kind);
 
 #endif

@@ -1,4 +1,4 @@
-/* scene.c: see scene.h. reader.c finds the sections, check_*.c look at what is in them. */
+/* scene.c: see scene.h. reader.c finds the sections, check_*.c validate their contents. */
 #include "scene/scene.h"
 
 #include "base/error.h"
@@ -9,7 +9,7 @@
 
 #include <string.h>
 
-/* Every form of a mesh has draws of its own, and room for the numbers of its instances. */
+/* Every level of detail of a mesh has its own draws, and list entries for the mesh's instances. */
 static void describe_draws(const reader *r, masu_scene_data *out) {
     uint32_t from = 0, first_lod;
     for (uint32_t m = 0; m < out->meshes; m++) {
@@ -32,7 +32,7 @@ static void describe_draws(const reader *r, masu_scene_data *out) {
     }
 }
 
-/* Fills the numbers of a scene that has passed. */
+/* Fills the counts of a validated scene. */
 static void describe(const reader *r, uint64_t blob_bytes, uint64_t pairs, masu_scene_data *out) {
     *out = (masu_scene_data){.blob = r->bytes,
                              .blob_bytes = blob_bytes,
@@ -53,7 +53,7 @@ static void describe(const reader *r, uint64_t blob_bytes, uint64_t pairs, masu_
                              .sdf = r->view.sdf != NULL,
                              .sdf_params = (uint32_t)r->counts[MASU_BLOB_SDF_PARAMS]};
     if (r->view.sdf) masu_describe_sdf(r, out);
-    if (r->view.shadow && out->instances) { /* without polygons there is nothing to draw into it */
+    if (r->view.shadow && out->instances) { /* without polygons the map would be empty */
         out->shadow_cascades = r->view.shadow->cascades;
         out->shadow_resolution = r->view.shadow->resolution;
         out->shadow_distance = r->view.shadow->distance;
@@ -81,7 +81,8 @@ static void describe(const reader *r, uint64_t blob_bytes, uint64_t pairs, masu_
     describe_draws(r, out);
 }
 
-/* Names are hashed for each thing that has one: a long one that many share would be work without measure. */
+/* Every item that has a name hashes it. A long name shared by many items would cause quadratic
+ * work, so the total is limited. */
 static masu_result check_names(reader *r) {
     uint64_t bytes = r->view.name_bytes;
     for (uint64_t at = 0; at < bytes;) {
@@ -128,6 +129,6 @@ masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes, masu_scene *o
 
 masu_scene_view masu_scene_data_view(const masu_scene_data *scene) {
     reader r = {.bytes = scene->blob};
-    (void)masu_read_sections(&r, scene->blob_bytes); /* has passed once on these bytes */
+    (void)masu_read_sections(&r, scene->blob_bytes); /* succeeded on these bytes before */
     return r.view;
 }

@@ -1,7 +1,7 @@
-/* scene.h: access to the content of a validated scene: its numbers (scene_data.h) and the sections
- * of its blob. The layout of the blob is in blob.h. Nothing here allocates or keeps anything.
+/* scene.h: access to a validated scene: its counts (scene_data.h) and the sections of its blob
+ * (blob.h). No allocation, no state.
  *
- * masu_scene_bind (public) validates a blob once, completely. masu_scene_view_of and
+ * masu_scene_bind (public) validates a blob completely, once. masu_scene_view_of and
  * masu_scene_data_view may then be used on the same bytes without further checks. */
 #ifndef MASU_SCENE_H
 #define MASU_SCENE_H

@@ -1,5 +1,5 @@
-/* scene_data.h: the content of a masu_scene: what a validated scene contains, as numbers. scene.c
- * fills it, scene_query.c has the public queries. */
+/* scene_data.h: the content of a masu_scene: counts and flags of a validated scene. scene.c fills
+ * it, scene_query.c implements the public queries. */
 #ifndef MASU_SCENE_DATA_H
 #define MASU_SCENE_DATA_H
 
@@ -36,7 +36,7 @@ typedef struct MASU_MAY_ALIAS masu_scene_data {
     uint32_t skins;                            /* skinned meshes */
     uint32_t skin_vertices, joints;            /* of the shared skins in the blob */
     uint32_t morph_targets, morph_deltas;      /* the same */
-    uint32_t skin_targets;                     /* of all skinned meshes, each counted for itself */
+    uint32_t skin_targets; /* of all skinned meshes; shared targets count once per mesh */
     uint32_t skinned_vertices, skinned_joints; /* of all skinned meshes */
     uint32_t skinned_nodes;                    /* of their BVHs */
     uint32_t first_skinned, max_skinned; /* first skinned vertex; most vertices of any one mesh */
@@ -81,21 +81,22 @@ typedef struct MASU_MAY_ALIAS masu_scene_data {
     uint32_t meso;      /* tables of mesoscale detail */
     uint32_t reliefs;   /* flag: an opaque material has a normal map */
     uint32_t blends;    /* transparent materials */
-    uint32_t tints;     /* a transparent material has coloured transmission; MASU_TINTS_ROUGH: a rough one */
+    uint32_t
+        tints; /* a transparent material has coloured transmission; MASU_TINTS_ROUGH: a rough one */
     uint32_t transparents;     /* transparent primitives, once per instance */
-    uint32_t transparent_sets; /* texture sets of theirs, at least 1 if there are any */
+    uint32_t transparent_sets; /* their texture sets, at least 1 if there are any */
 
     /* Light. */
     uint32_t lights; /* local lights */
     uint32_t area_lights;    /* capsules and rectangles among them */
     uint32_t surface_lights; /* those of a surface of the scene */
     uint32_t shadow_lights;  /* those that cast shadows */
-    uint32_t shadow_spots;   /* of them, spots that have one face */
+    uint32_t shadow_spots;   /* among those, spots that have one face */
     uint32_t probes, probe_sets;
     uint64_t probe_words;                        /* 32-bit values of all sets of all probes */
     uint32_t probes_unlit;                       /* flag: they have no baked light */
     uint32_t bounce;                             /* flag: and rays of the frame add to it */
-    uint32_t bounce_sdf;                         /* flag: which meet the SDF */
+    uint32_t bounce_sdf;                         /* flag: which also trace the SDF */
     uint32_t environment_size, environment_mips; /* texels along an edge of the map; 0: none */
     uint32_t analytic_sky;                       /* flag: the sky follows from the sun */
     uint32_t fog;                                /* flag */
@@ -113,16 +114,17 @@ typedef struct MASU_MAY_ALIAS masu_scene_data {
     uint32_t trace_colors; /* those that hits sample; the others only provide mean roughness */
     uint64_t trace_texels; /* 4 bytes each */
     float specular_cutoff; /* perceptual roughness from which on nothing is traced */
-    float glossiest;       /* least perceptual roughness of any surface */
+    float glossiest;       /* lowest perceptual roughness of any surface */
     float trace_distance;  /* of the longest ray, metres */
 } masu_scene_data;
 _Static_assert(sizeof(masu_scene_data) <= sizeof(masu_scene), "masu_scene.opaque is too small");
 _Static_assert(_Alignof(masu_scene_data) <= _Alignof(masu_scene), "masu_scene is misaligned");
 
-/* The buffer of texture coordinates: the first set of all vertices, then, in scenes that have either, the second
- * set and the colours. The one that is missing is one element, which all vertices share. */
+/* Layout of the buffer of texture coordinates: the first set for all vertices; then, in scenes that
+ * have a second set or vertex colours, both. If one of the two is missing, it has a single element,
+ * which all vertices share. */
 typedef struct masu_texcoord_layout_of {
-    uint64_t second, colors, bytes; /* where they begin */
+    uint64_t second, colors, bytes; /* byte offsets, and the total */
 } masu_texcoord_layout_of;
 
 static inline int masu_has_attributes(const masu_scene_data *s) {
@@ -138,7 +140,7 @@ static inline masu_texcoord_layout_of masu_texcoord_layout(const masu_scene_data
     return at;
 }
 
-/* The content of a scene, and back. NULL for NULL. */
+/* Casts between a scene and its content. NULL for NULL. */
 static inline const masu_scene_data *masu_scene_data_of(const masu_scene *scene) {
     return (const masu_scene_data *)(const void *)scene;
 }

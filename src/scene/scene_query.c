@@ -1,5 +1,4 @@
-/* scene_query.c: the public queries of a validated scene. Nothing here allocates or keeps
- * anything. */
+/* scene_query.c: the public queries of a validated scene. No allocation, no state. */
 #include "scene/scene.h"
 
 #include <string.h>
@@ -28,7 +27,7 @@ static const char *text_of(const masu_scene_view *v, uint32_t name) {
     return name == MASU_BLOB_NONE ? "" : v->names + name;
 }
 
-/* The name of an item that exists. */
+/* The name of an item; `index` must be valid. */
 static const char *name_of(const masu_scene_view *v, masu_scene_item item, uint32_t index) {
     switch (item) {
     case MASU_SCENE_INSTANCE: return text_of(v, v->instances[index].name);
@@ -62,9 +61,9 @@ int32_t masu_scene_find(const masu_scene *scene, masu_scene_item item, const cha
     return -1;
 }
 
-/* ---- Clips: they belong to the first of the models that have the same meshes at the same nodes
- * -- */
+/* ---- Clips ----------------------------------------------------------------------------------- */
 
+/* Clips belong to the first of the models that have the same meshes at the same nodes. */
 uint32_t masu_scene_clip_count(const masu_scene *scene, uint32_t model) {
     const masu_scene_data *s = data_of(scene);
     uint32_t count = 0;
@@ -83,6 +82,16 @@ const char *masu_scene_clip_name(const masu_scene *scene, uint32_t model, uint32
             return text_of(&v, v.clips[i].name);
     }
     return "";
+}
+
+float masu_scene_sdf_range(const masu_scene *scene, uint32_t index, float *minimum,
+                           float *maximum) {
+    const masu_scene_data *s = data_of(scene);
+    masu_blob_sdf_param p = {0};
+    if (s->blob && index < s->sdf_params) p = masu_scene_data_view(s).sdf_params[index];
+    if (minimum) *minimum = p.minimum;
+    if (maximum) *maximum = p.maximum;
+    return p.value;
 }
 
 /* ---- Properties ------------------------------------------------------------------------------ */
@@ -126,7 +135,7 @@ void masu_scene_usage(const masu_scene *scene, masu_limits *out) {
 #define SCENE_HAS(name, ...) .name = s->name,
     *out = (masu_limits){MASU_LIMITS(SCENE_HAS)};
 #undef SCENE_HAS
-    /* A device without textureCompressionBC needs the most. */
+    /* Reports the larger size, which a device without textureCompressionBC needs. */
     if (out->texture_bytes < s->texture_bytes_decoded)
         out->texture_bytes = s->texture_bytes_decoded;
 }

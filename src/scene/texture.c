@@ -1,5 +1,5 @@
-/* texture.c: see texture.h. Everything here has passed masu_scene_bind; blocks may hold any bits, and
- * any bits decode. */
+/* texture.c: see texture.h. The input has been validated by masu_scene_bind. Blocks may hold any
+ * bits, and any bits decode. */
 #include "scene/texture.h"
 
 #include <string.h>
@@ -31,9 +31,10 @@ uint64_t masu_texture_bytes(const masu_blob_texture *t, int compressed) {
     return texels * t->layers * masu_texture_form_of(t->format, 0).block_bytes;
 }
 
-/* ---- The walk -------------------------------------------------------------------------------- */
+/* ---- Iteration ------------------------------------------------------------------------------- */
 
-/* Past the rows just taken: to the next mip, layer, texture where they were the last. */
+/* Advances the cursor by the rows of *taken, and to the next mip, layer or texture after the last
+ * row. */
 static void advance(const masu_blob_texture *textures, masu_texture_cursor *c,
                     const masu_texture_region *taken, uint32_t all_rows) {
     const masu_blob_texture *t = &textures[c->texture];
@@ -70,7 +71,7 @@ int masu_texture_next(const masu_blob_texture *textures, uint32_t count, int com
     if (r.offset >= room) return 0;
     uint64_t rows = (room - r.offset) / r.target_row;
     if (rows > all_rows - cursor->row) rows = all_rows - cursor->row;
-    /* Decoded, the last row of blocks may be cut: fewer texel rows, fewer bytes. */
+    /* In decoded textures the last row of blocks may be partial: fewer texel rows, fewer bytes. */
     uint32_t cut = 4 * all_rows - height;
     if (!compressed && rows + 1 == all_rows - cursor->row && cut &&
         r.offset + rows * r.target_row + (uint64_t)width * (4 - cut) * form.block_bytes <= room) {
@@ -100,7 +101,8 @@ uint32_t masu_texture_chunks(const masu_blob_texture *textures, uint32_t count, 
         while (masu_texture_next(textures, count, compressed, room, &cursor, &used, &region)) {
             taken = 1;
         }
-        if (!taken) return 0; /* no room for one row: not with the sizes of src/device/memory.c */
+        /* not even one row fits: impossible with the sizes of src/device/memory.c */
+        if (!taken) return 0;
         chunks++;
     }
     return chunks;
@@ -110,8 +112,8 @@ uint32_t masu_texture_chunks(const masu_blob_texture *textures, uint32_t count, 
 
 static uint32_t read16(const unsigned char *p) { return p[0] | (uint32_t)p[1] << 8; }
 
-/* Indices of two bits each behind two colours of 5, 6 and 5. `four`: always four colours, as in
- * BC3; BC1 has three and black where the first colour is not the larger. */
+/* Decodes two colours (5, 6 and 5 bits) followed by 2-bit indices. `four`: always four colours, as
+ * in BC3; BC1 has three and black if the first colour is not the larger one. */
 static void decode_color(const unsigned char *block, int four, unsigned char *rgba) {
     uint32_t ends[2] = {read16(block), read16(block + 2)}, color[4][3];
     for (uint32_t e = 0; e < 2; e++) {
@@ -137,7 +139,7 @@ static void decode_color(const unsigned char *block, int four, unsigned char *rg
     }
 }
 
-/* Indices of three bits each behind two values. */
+/* Decodes two 8-bit values followed by 3-bit indices. */
 static void decode_channel(const unsigned char *block, unsigned char *to, uint32_t stride) {
     uint32_t value[8] = {block[0], block[1]};
     uint64_t bits = 0;

@@ -47,7 +47,7 @@ void masu_trace_top_init(masu_trace_top *top, void *memory, uint32_t count) {
     if (count) memset(top->placed, 0, count * sizeof *top->placed);
 }
 
-/* A float that is on that side of x: two units in the last place away. */
+/* A float two ulp below or above x; `side` is -1 or 1. */
 static float beyond(double x, float side) {
     float f = (float)x;
     return f + side * (fabsf(f) * 0x1p-22f + 1e-37f);
@@ -83,7 +83,8 @@ masu_trace_root *masu_trace_top_root(masu_trace_top *top, uint32_t traced) {
 
 _Static_assert(MASU_TRACE_LEVELS_MAX == MASU_TRACE_DEPTH_MAX, "skin_trace.comp sweeps every level");
 
-/* By cofactors, in double: exact enough for any float matrix that is let through. 0: none. */
+/* Inverse by cofactors in double, which is exact enough for every accepted float matrix. Returns 0
+ * if the matrix is rejected. */
 static int invert(const float m[12], float inverse[9], uint32_t *mirrored) {
     double a[3][3], c[3][3], most = 0.0;
     for (uint32_t i = 0; i < 12; i++) {
@@ -136,8 +137,8 @@ static double clamped(double x) {
     return x < -reach ? -reach : x > reach ? reach : x;
 }
 
-/* Where the shader will find it: around the rounded place, and a little larger, since the shader's
- * inverse is rounded as well. */
+/* World box of a placed instance, relative to the floating origin. Based on the rounded position
+ * that the shader uses, and slightly enlarged, because the shader's inverse is rounded too. */
 static masu_trace_box box_of(const struct masu_trace_placed *p, const double anchor[3]) {
     const masu_trace_box *b = &p->root.box;
     masu_trace_box out;
@@ -165,8 +166,9 @@ uint32_t masu_trace_top_levels(uint32_t instances) {
 }
 
 static void build(masu_trace_top *top) {
-    masu_trace_shape shape = masu_trace_tree_shape(top->boxes, top->live, 1, masu_trace_top_levels(top->count),
-                                                   0, 0, top->order, top->work, top->tree);
+    masu_trace_shape shape =
+        masu_trace_tree_shape(top->boxes, top->live, 1, masu_trace_top_levels(top->count), 0, 0,
+                              top->order, top->work, top->tree);
     top->nodes = shape.nodes;
     top->depth = shape.depth;
     top->size = top->built_size =

@@ -32,7 +32,8 @@ uint64_t masu_trace_slot_bytes(const masu_scene_data *scene, int query) {
            16 * (uint64_t)MASU_TRACE_ROWS * scene->trace_instances;
 }
 
-/* The picture of a material's map, or none. They are sorted. */
+/* Index of the ray tracing copy of a material's map, or MASU_TRACE_NONE. Binary search: the copies
+ * are sorted. */
 static uint32_t picture_of(const masu_scene_data *scene, const masu_scene_view *v,
                            const masu_blob_material *m, uint32_t slot) {
     if (!(m->flags & 1u << slot)) return MASU_TRACE_NONE;
@@ -50,8 +51,8 @@ static uint32_t picture_of(const masu_scene_data *scene, const masu_scene_view *
     return MASU_TRACE_NONE;
 }
 
-/* Rays do not look up roughness and metallic: a material has the mean of its map, which as a picture's
- * smallest mip has what its normals do to it as well. */
+/* Ray hits do not sample roughness and metallic but use the mean of the map. It is the smallest mip
+ * of the map's copy, which includes the effect of the normal map on the roughness. */
 static void blur_surface(const masu_scene_data *scene, const masu_scene_view *v,
                          const masu_blob_material *m, struct masu_trace_material *out) {
     uint32_t i = picture_of(scene, v, m, MASU_SLOT_SURFACE);
@@ -81,7 +82,7 @@ struct masu_trace_material masu_trace_material_of(const masu_scene_data *scene,
     return out;
 }
 
-/* One of the 16-byte elements. */
+/* The i-th 16-byte element of the traced scene buffer. */
 static void element(const masu_scene_data *scene, const masu_scene_view *v,
                     const masu_trace_plan *p, uint64_t i, uint32_t out[4]) {
     memset(out, 0, 16);

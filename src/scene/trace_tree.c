@@ -1,16 +1,17 @@
 /* trace_tree.c: see trace_tree.h.
  *
- * Splits are those of the surface area heuristic (Goldsmith and Salmon 1987; MacDonald and Booth
- * 1990): of few items all splits along each axis, of many those between BINS bins (Wald 2007). A
- * node begins as one range of items; the range with the largest box is split until there are four
- * (the greedy collapse of a binary tree, Wald et al. 2008, without making that tree). */
+ * Splits follow the surface area heuristic (Goldsmith and Salmon 1987; MacDonald and Booth 1990):
+ * with few items all splits along each axis are evaluated, with many those between BINS bins (Wald
+ * 2007). A node starts as one range of items; the range with the largest box is split until there
+ * are four ranges (the greedy collapse of a binary tree, Wald et al. 2008, without building that
+ * tree). */
 #include "scene/trace_tree.h"
 
 #include <math.h>
 #include <string.h>
 
 #define BINS 32u
-#define FEW 24u /* items of which all splits are tried */
+#define FEW 24u /* up to this number all splits are evaluated */
 
 typedef struct range {
     uint32_t first, count;
@@ -19,7 +20,7 @@ typedef struct range {
 
 typedef struct builder {
     const masu_trace_box *boxes;
-    uint32_t *work; /* items; a range of it is a range of items */
+    uint32_t *work; /* item indices; a range refers to it */
 } builder;
 
 /* ---- Boxes ----------------------------------------------------------------------------------- */
@@ -35,14 +36,14 @@ static void grow(masu_trace_box *box, const masu_trace_box *by) {
     }
 }
 
-/* Half of the surface. */
+/* Half the surface area. */
 static float area_of(const masu_trace_box *b) {
     float x = b->high[0] - b->low[0], y = b->high[1] - b->low[1], z = b->high[2] - b->low[2];
     return x >= 0.0f ? x * y + y * z + z * x : 0.0f;
 }
 
 static float middle(const masu_trace_box *b, uint32_t axis) {
-    return b->low[axis] + b->high[axis]; /* twice that */
+    return b->low[axis] + b->high[axis]; /* twice the centre */
 }
 
 static range measured(const builder *b, uint32_t first, uint32_t count) {
@@ -53,7 +54,7 @@ static range measured(const builder *b, uint32_t first, uint32_t count) {
 
 /* ---- Splits ---------------------------------------------------------------------------------- */
 
-/* By middle, then by number: the same tree whatever the order before. */
+/* Order by centre, then by index: the tree does not depend on the initial order. */
 static int behind(const builder *b, uint32_t i, uint32_t j, uint32_t axis) {
     float x = middle(&b->boxes[i], axis), y = middle(&b->boxes[j], axis);
     return x > y || (x == y && i > j);
@@ -93,9 +94,10 @@ static uint32_t split_few(const builder *b, range r) {
     return best_at;
 }
 
-/* The middle of all along the axis on which their middles are farthest apart: Hoare's selection,
- * with the middle of three as pivot. Its worst case is quadratic, so it has only as many rounds as
- * a good run needs; after those the halves are as they are, and still halves. */
+/* Partitions at the median along the axis of the largest extent of centres: Hoare's quickselect
+ * with median-of-three pivots. Quickselect is quadratic in the worst case, so the number of rounds
+ * is limited to what normal input needs. After that, the halves are only approximately ordered, but
+ * still halves. */
 static uint32_t split_half(const builder *b, range r, uint32_t axis) {
     uint32_t *items = b->work + r.first, half = r.count / 2;
     uint32_t low = 0, high = r.count - 1;
@@ -125,7 +127,7 @@ static uint32_t split_half(const builder *b, range r, uint32_t axis) {
 }
 
 typedef struct bins {
-    float low[3], scale[3]; /* scale 0: all middles are the same */
+    float low[3], scale[3]; /* scale 0: all centres are equal */
     uint32_t widest;
 } bins;
 
@@ -146,7 +148,7 @@ static bins bins_of(const builder *b, range r) {
     for (uint32_t k = 0; k < 3; k++) {
         float width = high[k] - out.low[k];
         out.scale[k] = width > 0.0f ? (float)BINS * 0.9999f / width : 0.0f;
-        if (!(out.scale[k] <= 1e30f)) out.scale[k] = 0.0f; /* next to nothing apart */
+        if (!(out.scale[k] <= 1e30f)) out.scale[k] = 0.0f; /* nearly equal */
         if (width > high[out.widest] - out.low[out.widest]) out.widest = k;
     }
     return out;
@@ -208,11 +210,11 @@ static uint32_t split_many(const builder *b, range r) {
     return best_count;
 }
 
-/* Which range to split next; 4: none. Where depth is short the one of most items: two rounds of
- * halves then leave no child with more than a quarter. */
+/* Index of the range to split next; 4: none. If the remaining depth is small (tight), the range
+ * with the most items: two rounds of halving leave no child with more than a quarter. */
 static uint32_t next_range(const range *ranges, uint32_t count, uint32_t leaf, int tight) {
     uint32_t best = 4;
-    for (uint32_t least = leaf; least > 0; least--) { /* what fits in a leaf, if places are left */
+    for (uint32_t least = leaf; least > 0; least--) { /* splits leaves too if slots are left */
         for (uint32_t i = 0; i < count; i++) {
             if (ranges[i].count <= least) continue;
             if (best == 4 || (tight ? ranges[i].count > ranges[best].count
@@ -243,7 +245,7 @@ static uint32_t divide(const builder *b, range all, uint32_t leaf, int tight, ra
     return count;
 }
 
-/* ---- Shape ----------------------------------------------------------------------------------- */
+/* ---- Structure ------------------------------------------------------------------------------- */
 
 /* leaf * 4^levels, at most 2^40. */
 static uint64_t most_items(uint32_t leaf, uint32_t levels) {
@@ -275,7 +277,7 @@ masu_trace_shape masu_trace_tree_shape(const masu_trace_box *boxes, uint32_t ite
         uint32_t count = divide(&b, all, leaf, tight, ranges);
         masu_blob_trace_node n = {.child = first_node + out.nodes, .item = first_item + placed};
         if (level > out.depth) out.depth = level;
-        /* Popped from the end: the first child is the next node of the walk. */
+        /* Popped in reverse order: the first child is the next node of the traversal. */
         for (uint32_t i = count; i-- > 0;) {
             if (ranges[i].count <= leaf) continue;
             stack[pending].r = ranges[i];
@@ -295,10 +297,10 @@ masu_trace_shape masu_trace_tree_shape(const masu_trace_box *boxes, uint32_t ite
     return out;
 }
 
-/* ---- Fit ------------------------------------------------------------------------------------- */
+/* ---- Boxes ----------------------------------------------------------------------------------- */
 
-/* The least power of two of which 255 span the extent, as the exponent of a float; coarse enough
- * for origin + 255 scale to be exact in double. */
+/* Exponent of the smallest power of two of which 255 cover the extent; large enough that origin +
+ * 255 * scale is exact in double. */
 static int exponent_of(double extent, float origin) {
     int e = -126, of_origin = -126;
     if (extent > 0.0) {
@@ -321,11 +323,11 @@ static void quantise(masu_blob_trace_node *n, const masu_trace_box boxes[4], uin
         n->packed |= (uint32_t)(e + 127) << 8 * k;
         n->low[k] = n->high[k] = 0;
         for (uint32_t i = 0; i < 4; i++) {
-            double low = 255.0, high = 0.0; /* inside out: nothing */
+            double low = 255.0, high = 0.0; /* low > high: an empty box */
             if (i < count) {
                 low = floor(((double)boxes[i].low[k] - origin) / scale);
                 high = ceil(((double)boxes[i].high[k] - origin) / scale);
-                /* The differences above may have been rounded. */
+                /* Corrects rounding of the differences above. */
                 if (low > 0.0 && origin + low * scale > (double)boxes[i].low[k]) low -= 1.0;
                 if (high < 255.0 && origin + high * scale < (double)boxes[i].high[k]) high += 1.0;
             }
@@ -343,7 +345,7 @@ double masu_trace_tree_fit(masu_blob_trace_node *nodes, uint32_t count, uint32_t
                            uint32_t first_item, const uint32_t *order, const masu_trace_box *boxes,
                            masu_trace_below *below) {
     double sum = 0.0;
-    for (uint32_t i = count; i-- > 0;) { /* children are behind their parents */
+    for (uint32_t i = count; i-- > 0;) { /* children follow their parents */
         masu_blob_trace_node *n = &nodes[i];
         masu_trace_box of[4];
         float costs[4];

@@ -53,7 +53,7 @@ int main(int argc, char **argv) {
             printf("%s: %s\n", argv[i], blob ? detail.text : "cannot be read");
             continue;
         }
-        masu_desc desc = {.scene = &scene, .output = {1280, 720}, .targets = {&image, &view, 1, .storage = 1}};
+        masu_desc desc = {MASU_DESC, .scene = &scene, .output = {1280, 720}, .targets = {&image, &view, 1, .storage = 1}};
         if (masu_compile(&desc, 256, 64, &plan, &detail)) {
             printf("%s: %s\n", argv[i], detail.text);
             continue;

@@ -12,6 +12,7 @@ int main(void) {
     masu_memory need;
     masu_detail detail;
     memset(&desc, 0, sizeof desc);
+    desc.bytes = sizeof desc;
     memset(&detail, 0, sizeof detail);
     masu_result result = masu_memory_query(&desc, &need, &detail);
     if (result != MASU_ERROR_ARGUMENT || detail.result != result || !detail.text[0]) {

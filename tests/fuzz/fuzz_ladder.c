@@ -26,6 +26,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     }
     masu_desc desc;
     memset(&desc, 0, sizeof desc);
+    desc.bytes = sizeof desc;
     masu_ladder_give(&ladder, &desc);
     EXPECT(desc.rung_count == ladder.count);
     return 0;

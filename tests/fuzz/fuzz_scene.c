@@ -23,6 +23,7 @@ static void check_frame(const masu_scene *scene) {
     VkImageView view = (VkImageView)(uintptr_t)1;
     masu_desc desc;
     memset(&desc, 0, sizeof desc);
+    desc.bytes = sizeof desc;
     desc.scene = scene;
     desc.output = (VkExtent2D){64, 64};
     desc.targets = (masu_targets){.images = &image, .views = &view, .count = 1, .storage = 1};

@@ -75,7 +75,7 @@ static void take_picture(masu_session *s, const masu_frame_desc *frame, picture 
     masu_commands commands;
     masu_readback_image image;
     draw(s, frame, &commands, NULL);
-    assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_DEPTH, &image), MASU_OK);
+    assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_DEPTH, &image, NULL), MASU_OK);
     assert_int_equal(image.width, W);
     assert_int_equal(image.height, H);
     assert_int_equal(image.format, VK_FORMAT_R32_SFLOAT);
@@ -237,7 +237,7 @@ static void the_nearer_of_polygon_and_sdf_wins_at_every_pixel(void **state) {
     float rows[12] = {(float)columns[0].x, (float)columns[1].x, (float)columns[2].x, 0,
                       (float)columns[0].y, (float)columns[1].y, (float)columns[2].y, 0,
                       (float)columns[0].z, (float)columns[1].z, (float)columns[2].z, 0};
-    assert_int_equal(masu_instance_set_transform(s.m, masu_instance_find(s.m, "box"), rows),
+    assert_int_equal(masu_instance_set_transform(s.m, masu_instance_find(s.m, "box"), rows, NULL),
                      MASU_OK);
     eye e = make_eye(&cameras[0], W, H);
     masu_frame_desc frame = {.camera = &cameras[0]};
@@ -283,7 +283,7 @@ static void at_the_same_depth_the_polygon_wins(void **state) {
     for (int i = 0; i < 3; i++) {
         /* On the near plane; behind it; on it again. */
         const float rows[12] = {1, 0, 0, 0, 0, 1, 0, i == 1 ? -0.25f : 0, 0, 0, 1, 0};
-        assert_int_equal(masu_instance_set_transform(s.m, masu_instance_find(s.m, "plate"), rows),
+        assert_int_equal(masu_instance_set_transform(s.m, masu_instance_find(s.m, "plate"), rows, NULL),
                          MASU_OK);
         take_picture(&s, &frame, &p);
         for (uint32_t k = 0; k < W * H; k++) {
@@ -309,7 +309,7 @@ static void a_million_metres_from_the_origin_polygons_look_the_same(void **state
     masu_frame_desc frame = {.camera = &c};
     take_picture(&s, &frame, &here);
     float rows[12] = {1, 0, 0, 1048576, 0, 1, 0, -2097152, 0, 0, 1, 524288};
-    assert_int_equal(masu_instance_set_transform(s.m, masu_instance_at(s.m, 0), rows), MASU_OK);
+    assert_int_equal(masu_instance_set_transform(s.m, masu_instance_at(s.m, 0), rows, NULL), MASU_OK);
     c.position[0] += 1048576, c.position[1] -= 2097152, c.position[2] += 524288;
     take_picture(&s, &frame, &there);
     double worst = 0;

@@ -8,13 +8,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+static masu_detail failure; /* of the last call that failed */
+
 enum { SIDE = 96, PIXELS = SIDE * SIDE };
 
 static masu_session s;
 static float clear[4 * PIXELS], foggy[4 * PIXELS], depths[PIXELS];
 
 static void render(const masu_camera *camera, const masu_light *light, float *hdr) {
-    masu_frame_desc frame = {.camera = camera, .light = light};
+    masu_frame_desc frame = {MASU_FRAME_DESC, .camera = camera, .light = light};
     masu_commands commands;
     draw(&s, &frame, &commands, NULL);
     memcpy(depths, read_image(&s, commands.slot, MASU_READBACK_DEPTH), sizeof depths);
@@ -150,10 +152,10 @@ static void a_scene_without_fog_refuses_it(void **state) {
     open_scene("test_texture_quad");
     masu_camera camera = {.position = {0, 0, 3}, .forward = {0, 0, -1}, .fov_y = 1.2f};
     masu_light light = fog_of(0.5f, 0, 0, 0);
-    masu_frame_desc frame = {.camera = &camera, .light = &light};
+    masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &camera, .light = &light};
     masu_commands commands;
-    assert_int_equal(masu_frame(s.m, &frame, &commands), MASU_ERROR_ARGUMENT);
-    assert_string_equal(masu_last_error(s.m)->what, "light.fog_density");
+    assert_int_equal(masu_frame(s.m, &frame, &commands, &failure), MASU_ERROR_ARGUMENT);
+    assert_string_equal(failure.what, "light.fog_density");
     light.fog_density = 0;
     render(&camera, &light, foggy);
     float *values[] = {&light.fog_density, &light.fog_falloff, &light.fog_start, &light.fog_height,
@@ -161,10 +163,10 @@ static void a_scene_without_fog_refuses_it(void **state) {
     for (size_t i = 0; i < 5; i++) {
         float kept = *values[i];
         *values[i] = NAN;
-        assert_int_equal(masu_frame(s.m, &frame, &commands), MASU_ERROR_ARGUMENT);
-        assert_non_null(strstr(masu_last_error(s.m)->text, "fog"));
+        assert_int_equal(masu_frame(s.m, &frame, &commands, &failure), MASU_ERROR_ARGUMENT);
+        assert_non_null(strstr(failure.text, "fog"));
         *values[i] = i == 3 ? 2e9f : -1;
-        assert_int_equal(masu_frame(s.m, &frame, &commands), MASU_ERROR_ARGUMENT);
+        assert_int_equal(masu_frame(s.m, &frame, &commands, &failure), MASU_ERROR_ARGUMENT);
         *values[i] = kept;
     }
     close_session(&s);

@@ -156,7 +156,7 @@ static errors compare(const char *name, double (*at)(const double *, const doubl
     uint8_t *blob = NULL;
     size_t bytes = 0;
     char error[ERROR_SIZE];
-    assert_int_equal(masu_camera_at(s.m, 0, &camera), MASU_OK);
+    assert_int_equal(masu_camera_at(s.m, 0, &camera, NULL), MASU_OK);
     assert_ok(masu_file_read(baked_scene(name), 1u << 30, &blob, &bytes, error, sizeof error));
     assert_int_equal(masu_scene_bind(blob, bytes, &scene, &detail), MASU_OK);
     assert_ok(masu_ao_open(&scene, &world, error, sizeof error));
@@ -312,7 +312,7 @@ static void a_camera_that_creeps_changes_it_little(void **state) {
     uint32_t count = 0, jumps = 0;
     bake_ao("ball", 0.6, ball);
     open_ao("ball", W, H, NULL);
-    assert_int_equal(masu_camera_at(s.m, 0, &camera), MASU_OK);
+    assert_int_equal(masu_camera_at(s.m, 0, &camera, NULL), MASU_OK);
     double x = camera.position[0];
     for (int i = 0; i < 17; i++) {
         camera.position[0] = x + i / 8.0 * 2.6 * 2 * tan((double)camera.fov_y / 2) / H;
@@ -355,7 +355,7 @@ static void nothing_outside_of_the_rectangle_is_looked_at(void **state) {
             masu_frame_desc frame = {.rung = r};
             masu_commands commands;
             draw(&s, &frame, &commands, NULL);
-            assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_OCCLUSION, &out), MASU_OK);
+            assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_OCCLUSION, &out, NULL), MASU_OK);
             assert_int_equal(out.width, r ? 62 : W);
             for (uint32_t y = 0; y < out.height; y++) {
                 const uint32_t *line =
@@ -419,7 +419,7 @@ static void scenes_that_do_not_ask_have_none_of_it(void **state) {
         assert_int_equal(pass_of(&plan, "ao_upsample")->active, i == 2);
         assert_int_equal(pass_of(&plan, "light")->active, i < 2);
         assert_int_equal(pass_of(&plan, "light_occluded")->active, i == 2);
-        assert_int_equal(masu_readback(s.m, 0, MASU_READBACK_OCCLUSION, &out),
+        assert_int_equal(masu_readback(s.m, 0, MASU_READBACK_OCCLUSION, &out, NULL),
                          i == 2 ? MASU_OK : MASU_ERROR_ARGUMENT);
         for (uint32_t k = 0; k < plan.image_count; k++) {
             if (!strcmp(plan.images[k].name, "ao") || !strcmp(plan.images[k].name, "occlusion"))

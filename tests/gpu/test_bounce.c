@@ -93,9 +93,9 @@ static double floor_at(const rooms *r, float x) {
 static void light_up(rooms *r, float color) {
     masu_punctual_light lamp = masu_punctual_light_find(r->s.m, "lamp");
     masu_punctual_light_state state;
-    assert_int_equal(masu_punctual_light_get(r->s.m, lamp, &state), MASU_OK);
+    assert_int_equal(masu_punctual_light_get(r->s.m, lamp, &state, NULL), MASU_OK);
     for (int k = 0; k < 3; k++) state.color[k] = color;
-    assert_int_equal(masu_punctual_light_set(r->s.m, lamp, &state), MASU_OK);
+    assert_int_equal(masu_punctual_light_set(r->s.m, lamp, &state, NULL), MASU_OK);
 }
 
 /* ---- The furnace ----------------------------------------------------------------------------- */
@@ -182,7 +182,7 @@ static void light_comes_rises_rests_and_stays_behind_a_door(void **state) {
     /* The door opens: that is a change, and light goes through. */
     masu_model door = masu_model_find(r.s.m, "door");
     const float away[12] = {1, 0, 0, 3.05f, 0, 1, 0, -20, 0, 0, 1, 1.5f};
-    assert_int_equal(masu_model_set_transform(r.s.m, door, away), MASU_OK);
+    assert_int_equal(masu_model_set_transform(r.s.m, door, away, NULL), MASU_OK);
     frames = 0, at_90 = 0;
     do {
         frame(&r);
@@ -190,7 +190,8 @@ static void light_comes_rises_rests_and_stays_behind_a_door(void **state) {
     } while (r.s.m->bounce.quiet < MASU_BOUNCE_SWIFT_ROUNDS && frames < 4096);
     while (curve[at_90] < 0.9 * curve[frames - 1]) at_90++;
     double open = curve[frames - 1] / floor_at(&r, 0.2f);
-    print_message("behind the open door %.5f, 90 %% after %u frames of %u\n", open, at_90 + 1, frames);
+    print_message("behind the open door %.5f, 90 %% after %u frames of %u\n", open, at_90 + 1,
+                  frames);
     assert_true(open > 0.03 && at_90 + 1 <= bound);
     close_rooms(&r);
 }

@@ -39,7 +39,7 @@ static void help_and_version_are_there_for_every_command(void **state) {
     assert_int_equal(cli_run("help nothing"), 2);
     assert_non_null(strstr(cli_err, "unknown command \"nothing\""));
     assert_int_equal(cli_run("--version"), 0);
-    assert_non_null(strstr(cli_out, "0.1.0"));
+    assert_non_null(strstr(cli_out, "0.2.0"));
 }
 
 static void wrong_command_lines_are_exit_code_2(void **state) {
@@ -329,11 +329,14 @@ static int changed_by(const char *scene, const char *options) {
     return changed;
 }
 
-static void parameters_and_clips_are_set_by_name(void **state) {
+static void parameters_clips_and_light_are_set(void **state) {
     (void)state;
     assert_int_equal(changed_by("test_velocity", "--param radius=0.5"), 0);
     assert_in_range(changed_by("test_velocity", "--param radius=0.9"), 100, 4 * 64 * 48);
     assert_int_equal(changed_by("test_skin", "--clip 0"), 0);
+    assert_in_range(changed_by("test_skin", "--clip Wuson_Walk"), 50, 4 * 64 * 48);
+    assert_in_range(changed_by("test_velocity", "--sun 200,10"), 100, 4 * 64 * 48);
+    assert_in_range(changed_by("test_velocity", "--exposure 3"), 100, 4 * 64 * 48);
     assert_int_equal(cli_run("render %s -o %s/x.png --param none=1", scene_path("test_velocity"), scratch), 1);
     assert_non_null(strstr(cli_err, "no parameter 'none', expected one of radius"));
     assert_int_equal(cli_run("render %s -o %s/x.png --param radius=1e9", scene_path("test_velocity"), scratch), 1);
@@ -625,7 +628,7 @@ int main(void) {
         cmocka_unit_test(render_writes_the_picture_and_its_numbers_under_validation),
         cmocka_unit_test(ladders_are_read_and_shown),
         cmocka_unit_test(a_setting_is_drawn_by_its_name),
-        cmocka_unit_test(parameters_and_clips_are_set_by_name),
+        cmocka_unit_test(parameters_clips_and_light_are_set),
         cmocka_unit_test(linear_light_is_written_in_both_formats),
         cmocka_unit_test(without_options_the_still_is_settled),
         cmocka_unit_test(sequences_are_numbered_files_and_video),

@@ -137,7 +137,7 @@ static void velocities_are_the_same_without_culling(void **state) {
             move_instance(&s[i], "ball3", (float)c.position[0] + 4.0f * c.forward[0],
                  1.0f + 0.1f * (float)frame, (float)c.position[2] + 4.0f * c.forward[2], 1.0f);
             draw(&s[i], &f, &commands, NULL);
-            assert_int_equal(masu_readback(s[i].m, commands.slot, MASU_READBACK_VELOCITY, &image),
+            assert_int_equal(masu_readback(s[i].m, commands.slot, MASU_READBACK_VELOCITY, &image, NULL),
                              MASU_OK);
             for (uint32_t y = 0; y < H; y++) {
                 memcpy(velocity[i] + (size_t)y * W * 8,

@@ -21,10 +21,10 @@ static const float *draw_finite(masu_session *s, const masu_frame_desc *frame,
     masu_commands commands;
     masu_readback_image depth, hdr;
     draw(s, frame, &commands, NULL);
-    assert_int_equal(masu_stats(s->m, commands.slot, stats), MASU_OK);
+    assert_int_equal(masu_stats(s->m, commands.slot, stats, NULL), MASU_OK);
     assert_int_equal(stats->replaced, 0);
-    assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_DEPTH, &depth), MASU_OK);
-    assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_HDR, &hdr), MASU_OK);
+    assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_DEPTH, &depth, NULL), MASU_OK);
+    assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_HDR, &hdr, NULL), MASU_OK);
     for (uint32_t i = 0; i < W * H; i++) {
         float d = ((const float *)depth.pixels)[i];
         assert_true(d >= 0.0f && d <= 1.0f);
@@ -173,7 +173,7 @@ static void a_counter_carries_into_its_high_word(void **state) {
     open_session(&s, &d);
     for (int i = 0; i < 2; i++) { /* and the next frame begins at 0 again */
         draw(&s, &frame, &commands, NULL);
-        assert_int_equal(masu_stats(s.m, commands.slot, &stats), MASU_OK);
+        assert_int_equal(masu_stats(s.m, commands.slot, &stats, NULL), MASU_OK);
         assert_true(stats.sdf_evals > 1u << 15);
         assert_int_equal(stats.replaced, stats.sdf_evals << 17);
     }

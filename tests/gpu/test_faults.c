@@ -80,7 +80,7 @@ static masu_result load(masu_renderer *m) {
     char error[ERROR_SIZE];
     masu_commands commands;
     masu_result r;
-    while ((r = masu_load(m, &commands)) == MASU_INCOMPLETE)
+    while ((r = masu_load(m, &commands, NULL)) == MASU_INCOMPLETE)
         assert_ok(masu_headless_run(&s.host, commands.buffer, error, sizeof error));
     return r;
 }
@@ -89,8 +89,8 @@ static masu_result frames(masu_renderer *m, uint32_t first, uint32_t count, bool
     char error[ERROR_SIZE];
     masu_commands commands;
     for (uint32_t i = first; i < first + count; i++) {
-        masu_frame_desc frame = {.rung = i % 2, .time = 0.1 * i, .time_step = 0.1f, .cut = i == 0};
-        masu_result r = masu_frame(m, &frame, &commands);
+        masu_frame_desc frame = {MASU_FRAME_DESC, .rung = i % 2, .time = 0.1 * i, .time_step = 0.1f, .cut = i == 0};
+        masu_result r = masu_frame(m, &frame, &commands, NULL);
         if (r) return r;
         if (submitted) assert_ok(masu_headless_run(&s.host, commands.buffer, error, sizeof error));
     }
@@ -104,11 +104,11 @@ static masu_result live(masu_renderer *m) {
     masu_material_state state;
     masu_material material = masu_material_at(m, 0);
     const float rows[12] = {1, 0, 0, 0.5f, 0, 1, 0, 0, 0, 0, 1, 0};
-    masu_result r = masu_material_get(m, material, &state);
+    masu_result r = masu_material_get(m, material, &state, NULL);
     state.roughness = 0.4f;
-    if (!r) r = masu_material_set(m, material, &state);
-    if (!r) r = masu_model_show(m, masu_model_find(m, "truck"), 0);
-    if (!r) r = masu_model_set_transform(m, masu_model_find(m, "pane"), rows);
+    if (!r) r = masu_material_set(m, material, &state, NULL);
+    if (!r) r = masu_model_show(m, masu_model_find(m, "truck"), 0, NULL);
+    if (!r) r = masu_model_set_transform(m, masu_model_find(m, "pane"), rows, NULL);
     return r;
 }
 
@@ -147,7 +147,7 @@ static masu_result life(stage *at, masu_detail *detail) {
     }
     if (r && *at == SIZE) { /* without a device all that is left is masu_destroy */
         masu_commands commands;
-        masu_result next = masu_frame(m, &(masu_frame_desc){0}, &commands);
+        masu_result next = masu_frame(m, &(masu_frame_desc){MASU_FRAME_DESC}, &commands, NULL);
         assert_true(r == MASU_ERROR_DEVICE_LOST ? next != MASU_OK : next == MASU_OK || next == r);
     }
     if (r && (*at == INIT || *at == SCENE)) assert_null(m);

@@ -9,6 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+static masu_detail failure; /* of the last call that failed */
+
 enum { W = 64, H = 48 };
 
 /* Heap calls of the library's own are counted without the validation layer, which allocates inside
@@ -37,7 +39,7 @@ static void three_hundred_frames(const char *scene, const char *instance, bool v
     masu_instance box = masu_instance_find(s.m, instance);
     assert_int_not_equal(box.id, 0);
     for (uint32_t i = 0; i < 300; i++) {
-        masu_frame_desc frame = {.rung = i % 50 < 25 ? (i * 7 + i / 3) % 3 : MASU_RUNG_AUTO,
+        masu_frame_desc frame = {MASU_FRAME_DESC, .rung = i % 50 < 25 ? (i * 7 + i / 3) % 3 : MASU_RUNG_AUTO,
                                  .time = 0.01 * i};
         masu_commands commands;
         masu_stats_info stats;
@@ -47,14 +49,14 @@ static void three_hundred_frames(const char *scene, const char *instance, bool v
         float rows[12] = {1, 0, 0, 0.001f * (float)i, 0, 1, 0, 0, 0, 0, 1, 0};
         uint64_t before = masu_allocs_of_thread();
         if (i >= 2) {
-            assert_int_equal(masu_stats(s.m, i % 2, &stats), MASU_OK);
-            assert_int_equal(masu_readback(s.m, i % 2, MASU_READBACK_DEPTH, &depth), MASU_OK);
+            assert_int_equal(masu_stats(s.m, i % 2, &stats, &failure), MASU_OK);
+            assert_int_equal(masu_readback(s.m, i % 2, MASU_READBACK_DEPTH, &depth, &failure), MASU_OK);
             assert_int_equal(stats.frame, i - 2);
         }
         masu_frame_wall(s.m, i % 2, 1.0 + i % 40);
-        assert_int_equal(masu_camera_at(s.m, frame.time, &camera), MASU_OK);
-        assert_int_equal(masu_instance_set_transform(s.m, box, rows), MASU_OK);
-        assert_int_equal(masu_frame(s.m, &frame, &commands), MASU_OK);
+        assert_int_equal(masu_camera_at(s.m, frame.time, &camera, &failure), MASU_OK);
+        assert_int_equal(masu_instance_set_transform(s.m, box, rows, &failure), MASU_OK);
+        assert_int_equal(masu_frame(s.m, &frame, &commands, &failure), MASU_OK);
         heap += masu_allocs_of_thread() - before;
         assert_ok(
             masu_headless_submit(&s.host, commands.buffer, commands.slot, error, sizeof error));
@@ -121,11 +123,11 @@ static void the_block_is_used_to_the_byte(void **state) {
     assert_int_equal(masu_init(&s.desc, block, bytes, &m, &detail), MASU_OK);
     masu_commands commands;
     char error[ERROR_SIZE];
-    masu_frame_desc frame = {0};
-    assert_int_equal(masu_frame(m, &frame, &commands), MASU_ERROR_STATE); /* not loaded yet */
-    assert_non_null(strstr(masu_last_error(m)->text, "masu_load"));
+    masu_frame_desc frame = {MASU_FRAME_DESC};
+    assert_int_equal(masu_frame(m, &frame, &commands, &failure), MASU_ERROR_STATE); /* not loaded yet */
+    assert_non_null(strstr(failure.text, "masu_load"));
     load_all(&s, m);
-    assert_int_equal(masu_frame(m, &frame, &commands), MASU_OK);
+    assert_int_equal(masu_frame(m, &frame, &commands, &failure), MASU_OK);
     assert_ok(masu_headless_run(&s.host, commands.buffer, error, sizeof error));
     assert_memory_equal(copy, outer, 64);
     assert_memory_equal(copy + 64 + bytes, block + bytes, room - bytes);

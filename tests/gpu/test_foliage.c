@@ -117,7 +117,7 @@ static void foliage_covers_the_same_at_any_distance(void **state) {
         masu_scene_view v = masu_scene_view_of(&look);
         masu_instance instance = masu_instance_find(s.m, names[which]);
         masu_instance_state placed;
-        assert_int_equal(masu_instance_get(s.m, instance, &placed), MASU_OK);
+        assert_int_equal(masu_instance_get(s.m, instance, &placed, NULL), MASU_OK);
         const masu_blob_mesh *mesh = &v.meshes[placed.mesh];
         uint32_t material = v.primitives[mesh->first_primitive].material;
         read_mask(v.materials[material].layers & 0xFF);

@@ -38,7 +38,7 @@ static void the_picture_shows_both_worlds(void **state) {
     masu_stats_info stats;
     open_session(&s, &d);
     draw_rung(&s, 0, pixels);
-    assert_int_equal(masu_stats(s.m, 0, &stats), MASU_OK);
+    assert_int_equal(masu_stats(s.m, 0, &stats, NULL), MASU_OK);
     assert_true(stats.sdf_hits > W * H / 100);      /* the SDF is seen */
     assert_true(stats.sdf_hits < W * H * 95 / 100); /* and not everywhere */
     assert_true(stats.triangles > 0);
@@ -144,17 +144,17 @@ static void timestamps_change_nothing_and_name_the_passes_that_ran(void **state)
     masu_session s;
     masu_stats_info stats;
     open_session(&s, &d);
-    assert_int_equal(masu_stats(s.m, 0, &stats), MASU_INCOMPLETE);
+    assert_int_equal(masu_stats(s.m, 0, &stats, NULL), MASU_INCOMPLETE);
     assert_true(stats.frame == UINT64_MAX);
     draw_rung(&s, 2, NULL);
-    assert_int_equal(masu_stats(s.m, 0, &stats), MASU_OK);
+    assert_int_equal(masu_stats(s.m, 0, &stats, NULL), MASU_OK);
     assert_int_equal(stats.timed, 1);
     assert_int_equal(stats.frame, 0);
     assert_int_equal(stats.rung, 2);
     for (uint32_t p = 0; p < stats.pass_count; p++) {
         if (!strcmp(stats.pass_names[p], "present")) assert_int_equal(stats.pass_ns[p], 0);
     }
-    assert_int_equal(masu_stats(s.m, 7, &stats), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_stats(s.m, 7, &stats, NULL), MASU_ERROR_ARGUMENT);
     close_session(&s);
 }
 
@@ -171,23 +171,23 @@ static void a_frame_that_has_not_ended_has_no_times(void **state) {
     masu_readback_image image;
     masu_commands commands;
     char error[ERROR_SIZE];
-    const masu_frame_desc frame = {.rung = 1};
+    const masu_frame_desc frame = {MASU_FRAME_DESC, .rung = 1};
     open_session(&s, &d);
     for (uint32_t n = 0; n < 4; n++) {
-        assert_int_equal(masu_frame(s.m, &frame, &commands), MASU_OK);
-        assert_int_equal(masu_stats(s.m, 0, &stats), MASU_INCOMPLETE);
+        assert_int_equal(masu_frame(s.m, &frame, &commands, NULL), MASU_OK);
+        assert_int_equal(masu_stats(s.m, 0, &stats, NULL), MASU_INCOMPLETE);
         assert_int_equal(stats.frame, n);
         assert_int_equal(stats.rung, 1);
         assert_int_equal(stats.timed, 0);
         assert_int_equal(stats.gpu_ns, 0);
-        assert_int_equal(masu_readback(s.m, 0, MASU_READBACK_DEPTH, &image), MASU_INCOMPLETE);
+        assert_int_equal(masu_readback(s.m, 0, MASU_READBACK_DEPTH, &image, NULL), MASU_INCOMPLETE);
         if (n == 2) continue; /* and one that is never submitted */
         assert_ok(masu_headless_run(&s.host, commands.buffer, error, sizeof error));
-        assert_int_equal(masu_stats(s.m, 0, &stats), MASU_OK);
+        assert_int_equal(masu_stats(s.m, 0, &stats, NULL), MASU_OK);
         assert_int_equal(stats.frame, n);
         assert_int_equal(stats.timed, 1);
         assert_true(stats.gpu_ns > 0);
-        assert_int_equal(masu_readback(s.m, 0, MASU_READBACK_DEPTH, &image), MASU_OK);
+        assert_int_equal(masu_readback(s.m, 0, MASU_READBACK_DEPTH, &image, NULL), MASU_OK);
     }
     close_session(&s);
 }
@@ -235,7 +235,7 @@ static void each_of_several_targets_gets_the_picture(void **state) {
     masu_commands commands;
     open_session(&s, &d);
     for (uint32_t i = 0; i < 9; i++) {
-        masu_frame_desc frame = {.rung = i / 3, .target = i % 3};
+        masu_frame_desc frame = {MASU_FRAME_DESC, .rung = i / 3, .target = i % 3};
         draw(&s, &frame, &commands, pixels);
         assert_int_equal(commands.slot, i % 2);
         assert_int_equal(commands.frame, i);
@@ -308,7 +308,7 @@ static void sizes_from_one_pixel_up_draw(void **state) {
         open_session(&s, &d);
         for (uint32_t r = 0; r < 3; r++) {
             draw_rung(&s, r, pixels);
-            assert_int_equal(masu_stats(s.m, r % 2, &stats), MASU_OK);
+            assert_int_equal(masu_stats(s.m, r % 2, &stats, NULL), MASU_OK);
             assert_int_equal(stats.replaced, 0);
         }
         close_session(&s);

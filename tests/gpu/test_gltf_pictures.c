@@ -99,7 +99,7 @@ static const uint16_t *photograph(masu_session *s, const char *path, shot p, mas
     open_session(s, &d);
     assert_ok(masu_file_read(baked_scene(name), 1u << 30, &blob, &bytes, error, sizeof error));
     assert_int_equal(masu_scene_bind(blob, bytes, &scene, &detail), MASU_OK);
-    assert_int_equal(masu_camera_at(s->m, 0, &camera), MASU_OK);
+    assert_int_equal(masu_camera_at(s->m, 0, &camera, NULL), MASU_OK);
     assert_ok(masu_view_seen(&scene, &camera, SIDE, SIDE, view, error, sizeof error));
     free(blob);
     masu_frame_desc frame = {0};
@@ -496,7 +496,7 @@ static uint32_t picked(const char *material, shot p) {
     photograph(&s, quad_of(material), p, &v);
     masu_frame_desc frame = {.pick = 1, .pick_x = SIDE / 2, .pick_y = SIDE / 2};
     draw(&s, &frame, &commands, NULL);
-    assert_int_equal(masu_pick(s.m, commands.slot, &info), MASU_OK);
+    assert_int_equal(masu_pick(s.m, commands.slot, &info, NULL), MASU_OK);
     close_session(&s);
     return info.kind;
 }

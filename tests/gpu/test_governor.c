@@ -5,6 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+static masu_detail failure; /* of the last call that failed */
+
 enum { W = 64, H = 48 };
 
 static masu_session_desc governed_desc(masu_governor_mode mode) {
@@ -18,11 +20,11 @@ static masu_session_desc governed_desc(masu_governor_mode mode) {
 /* One frame at the governor's rung, whose time by the wall is `load` ms times its pixels.
  * Returns the rung. */
 static uint32_t step(masu_session *s, uint32_t frame, double load, masu_stats_info *stats) {
-    masu_frame_desc f = {.rung = MASU_RUNG_AUTO, .time = 0.01 * frame};
+    masu_frame_desc f = {MASU_FRAME_DESC, .rung = MASU_RUNG_AUTO, .time = 0.01 * frame};
     masu_commands c;
     draw(s, &f, &c, NULL);
     assert_true(c.rung < s->desc.rung_count);
-    assert_int_equal(masu_stats(s->m, c.slot, stats), MASU_OK);
+    assert_int_equal(masu_stats(s->m, c.slot, stats, &failure), MASU_OK);
     assert_int_equal(stats->rung, c.rung);
     assert_int_equal(stats->governor.rung, c.rung);
     assert_true(stats->governor.reason_text && strlen(stats->governor.reason_text) > 10);
@@ -97,15 +99,15 @@ static void the_picture_is_that_of_the_rung(void **state) {
     d.desc.rungs[2].temporal = MASU_ON; /* which AUTO is with a governor */
     open_session(&s, &d);
     draw_rung(&s, 2, plain);
-    masu_frame_desc automatic = {.rung = MASU_RUNG_AUTO};
-    assert_int_equal(masu_frame(s.m, &automatic, &c), MASU_ERROR_ARGUMENT);
-    assert_string_equal(masu_last_error(s.m)->what, "rung");
+    masu_frame_desc automatic = {MASU_FRAME_DESC, .rung = MASU_RUNG_AUTO};
+    assert_int_equal(masu_frame(s.m, &automatic, &c, &failure), MASU_ERROR_ARGUMENT);
+    assert_string_equal(failure.what, "rung");
     close_session(&s);
     d.desc.rungs[2].temporal = MASU_AUTO;
     d.desc.governor = (masu_governor_desc){.mode = MASU_GOVERNOR_FIXED, .rung = 2};
     open_session(&s, &d);
     draw_rung(&s, MASU_RUNG_AUTO, governed);
-    assert_int_equal(masu_stats(s.m, 0, &stats), MASU_OK);
+    assert_int_equal(masu_stats(s.m, 0, &stats, &failure), MASU_OK);
     assert_int_equal(stats.governor.reason, MASU_GOVERNOR_REASON_FIXED);
     assert_int_equal(max_difference(plain, governed, sizeof plain), 0);
     draw_rung(&s, 0, NULL); /* a rung of the host's own goes on being taken */
@@ -148,7 +150,7 @@ static void bad_descriptions_are_named(void **state) {
     assert_int_equal(masu_memory_query(&off, &without, NULL), MASU_OK);
     assert_int_equal(masu_memory_query(&asked, &with, NULL), MASU_OK);
     assert_true(with.host_bytes > without.host_bytes);
-    masu_desc resolved = masu_desc_resolved(&asked);
+    masu_desc resolved = masu_session_resolved(&asked);
     assert_true(fabsf(resolved.governor.target_ms - 16.67f) < 1e-6f);
     assert_int_equal(resolved.governor.worst_rung, 3);
     assert_int_equal(resolved.governor.dwell, 24);

@@ -7,6 +7,8 @@
 #include <math.h>
 #include <string.h>
 
+static masu_detail failure; /* of the last call that failed */
+
 enum { W = 64, H = 48 };
 
 static void open_governed(masu_session *s, uint32_t width, uint32_t height) {
@@ -21,10 +23,10 @@ static void open_governed(masu_session *s, uint32_t width, uint32_t height) {
 static uint32_t step(masu_session *s, double load, uint32_t excluded, double cpu,
                      masu_stats_info *stats) {
     static uint64_t now = 1000000000;
-    masu_frame_desc f = {.rung = MASU_RUNG_AUTO, .exclude_from_timing = excluded};
+    masu_frame_desc f = {MASU_FRAME_DESC, .rung = MASU_RUNG_AUTO, .exclude_from_timing = excluded};
     masu_commands c;
     draw(s, &f, &c, NULL);
-    assert_int_equal(masu_stats(s->m, c.slot, stats), MASU_OK);
+    assert_int_equal(masu_stats(s->m, c.slot, stats, &failure), MASU_OK);
     double scale = (double)s->desc.rungs[c.rung].scale;
     double ms = load * scale * scale * (1.0 + 0.002 * (double)(c.frame % 3));
     uint64_t end = now + (uint64_t)(1e6 * ms);
@@ -47,21 +49,21 @@ static void settings_count_from_the_next_frame_on(void **state) {
     open_governed(&s, W, H);
     assert_int_equal(steps(&s, 80, 30.0, &stats), 2);
     masu_governor_setting now = {.mode = MASU_GOVERNOR_ON, .target_ms = 33.3f};
-    assert_int_equal(masu_governor_set(s.m, &now), MASU_OK);
+    assert_int_equal(masu_governor_set(s.m, &now, &failure), MASU_OK);
     assert_int_equal(steps(&s, 1, 30.0, &stats), 0);
     now = (masu_governor_setting){.mode = MASU_GOVERNOR_FIXED, .rung = 3};
-    assert_int_equal(masu_governor_set(s.m, &now), MASU_OK);
+    assert_int_equal(masu_governor_set(s.m, &now, &failure), MASU_OK);
     assert_int_equal(steps(&s, 3, 30.0, &stats), 3);
     masu_governor_setting bad = {.mode = MASU_GOVERNOR_ON, .target_ms = 0.5f};
-    assert_int_equal(masu_governor_set(s.m, &bad), MASU_ERROR_ARGUMENT);
-    assert_string_equal(masu_last_error(s.m)->what, "governor.target_ms");
+    assert_int_equal(masu_governor_set(s.m, &bad, &failure), MASU_ERROR_ARGUMENT);
+    assert_string_equal(failure.what, "governor.target_ms");
     bad = (masu_governor_setting){.mode = MASU_GOVERNOR_ON, .worst_rung = 4};
-    assert_int_equal(masu_governor_set(s.m, &bad), MASU_ERROR_ARGUMENT);
-    assert_string_equal(masu_last_error(s.m)->what, "governor.worst_rung");
+    assert_int_equal(masu_governor_set(s.m, &bad, &failure), MASU_ERROR_ARGUMENT);
+    assert_string_equal(failure.what, "governor.worst_rung");
     bad = (masu_governor_setting){.target_ms = 20.0f};
-    assert_int_equal(masu_governor_set(s.m, &bad), MASU_ERROR_ARGUMENT);
-    assert_string_equal(masu_last_error(s.m)->what, "governor.mode");
-    assert_int_equal(masu_governor_set(s.m, NULL), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_governor_set(s.m, &bad, &failure), MASU_ERROR_ARGUMENT);
+    assert_string_equal(failure.what, "governor.mode");
+    assert_int_equal(masu_governor_set(s.m, NULL, &failure), MASU_ERROR_ARGUMENT);
     assert_int_equal(steps(&s, 3, 30.0, &stats), 3); /* nothing was changed */
     assert_int_equal(stats.governor.mode, MASU_GOVERNOR_FIXED);
     close_session(&s);
@@ -77,8 +79,8 @@ static void a_frame_that_fails_uses_no_time(void **state) {
     masu_governor governor = *s.m->governor;
     masu_timeline timeline = s.m->timeline;
     masu_commands c;
-    masu_frame_desc bad = {.rung = MASU_RUNG_AUTO, .time = (double)NAN};
-    assert_int_equal(masu_frame(s.m, &bad, &c), MASU_ERROR_ARGUMENT);
+    masu_frame_desc bad = {MASU_FRAME_DESC, .rung = MASU_RUNG_AUTO, .time = (double)NAN};
+    assert_int_equal(masu_frame(s.m, &bad, &c, &failure), MASU_ERROR_ARGUMENT);
     assert_memory_equal(s.m->governor, &governor, sizeof governor);
     assert_memory_equal(&s.m->timeline, &timeline, sizeof timeline);
     uint64_t samples = stats.governor.samples;
@@ -134,9 +136,9 @@ static void a_state_outlives_its_renderer(void **state) {
     masu_stats_info stats;
     masu_governor_state kept, bad;
     open_governed(&s, W, H);
-    assert_int_equal(masu_governor_save(s.m, NULL), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_governor_save(s.m, NULL, &failure), MASU_ERROR_ARGUMENT);
     assert_int_equal(steps(&s, 80, 30.0, &stats), 2);
-    assert_int_equal(masu_governor_save(s.m, &kept), MASU_OK);
+    assert_int_equal(masu_governor_save(s.m, &kept, &failure), MASU_OK);
     close_session(&s);
     open_governed(&s, W, H);
     assert_int_equal(steps(&s, 1, 30.0, &stats), 0); /* without it */
@@ -144,18 +146,18 @@ static void a_state_outlives_its_renderer(void **state) {
     open_governed(&s, W, H);
     bad = kept;
     bad.version = 99;
-    assert_int_equal(masu_governor_restore(s.m, &bad), MASU_ERROR_VERSION);
+    assert_int_equal(masu_governor_restore(s.m, &bad, &failure), MASU_ERROR_VERSION);
     bad = kept;
     bad.noise = (double)NAN;
-    assert_int_equal(masu_governor_restore(s.m, &bad), MASU_ERROR_ARGUMENT);
-    assert_string_equal(masu_last_error(s.m)->what, "state.noise");
-    assert_int_equal(masu_governor_restore(s.m, &kept), MASU_OK);
+    assert_int_equal(masu_governor_restore(s.m, &bad, &failure), MASU_ERROR_ARGUMENT);
+    assert_string_equal(failure.what, "state.noise");
+    assert_int_equal(masu_governor_restore(s.m, &kept, &failure), MASU_OK);
     assert_int_equal(steps(&s, 1, 30.0, &stats), 2);
     assert_int_equal(steps(&s, 30, 30.0, &stats), 2);
     assert_int_equal(stats.governor.missed, 0);
     close_session(&s);
     open_governed(&s, 2 * W, 2 * H); /* four times the pixels */
-    assert_int_equal(masu_governor_restore(s.m, &kept), MASU_OK);
+    assert_int_equal(masu_governor_restore(s.m, &kept, &failure), MASU_OK);
     assert_int_equal(steps(&s, 1, 60.0, &stats), 3);
     close_session(&s);
 }
@@ -167,10 +169,10 @@ static void without_a_governor_it_is_said(void **state) {
     masu_governor_state kept;
     masu_governor_setting on = {.mode = MASU_GOVERNOR_ON};
     open_session(&s, &d);
-    assert_int_equal(masu_governor_set(s.m, &on), MASU_ERROR_STATE);
-    assert_string_equal(masu_last_error(s.m)->what, "governor.mode");
-    assert_int_equal(masu_governor_save(s.m, &kept), MASU_ERROR_STATE);
-    assert_int_equal(masu_governor_restore(s.m, &kept), MASU_ERROR_STATE);
+    assert_int_equal(masu_governor_set(s.m, &on, &failure), MASU_ERROR_STATE);
+    assert_string_equal(failure.what, "governor.mode");
+    assert_int_equal(masu_governor_save(s.m, &kept, &failure), MASU_ERROR_STATE);
+    assert_int_equal(masu_governor_restore(s.m, &kept, &failure), MASU_ERROR_STATE);
     masu_frame_times(s.m, 9, 1, 2, 3.0); /* no such slot: nothing */
     masu_frame_presented(s.m, 5, 1, 2);
     close_session(&s);

@@ -13,6 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+static masu_detail failure; /* of the last call that failed */
+
 enum { W = 160, H = 90, BYTES = W * H * 4, RUNGS = 5, SLOTS = 2 };
 
 static uint8_t pixels[2][BYTES];
@@ -261,19 +263,19 @@ static void finish(masu_session *s, VkCommandBuffer own[MASU_MAX_PARTS]) {
 
 static masu_commands next_frame(own_renderer *x, const masu_frame_desc *frame) {
     masu_commands commands;
-    if (masu_frame(x->m, frame, &commands)) fail_msg("%s", masu_last_error(x->m)->text);
+    if (masu_frame(x->m, frame, &commands, &failure)) fail_msg("%s", failure.text);
     return commands;
 }
 
 static masu_split split_of(own_renderer *x, masu_split_bits which, uint32_t rung, uint32_t viewport) {
     masu_split split;
-    if (masu_split_of(x->m, which, rung, viewport, &split)) fail_msg("%s", masu_last_error(x->m)->text);
+    if (masu_split_of(x->m, which, rung, viewport, &split, &failure)) fail_msg("%s", failure.text);
     return split;
 }
 
 static masu_readback_image readback_of(own_renderer *x, uint32_t slot, masu_readback_bits which) {
     masu_readback_image image;
-    assert_int_equal(masu_readback(x->m, slot, which, &image), MASU_OK);
+    assert_int_equal(masu_readback(x->m, slot, which, &image, &failure), MASU_OK);
     return image;
 }
 
@@ -298,7 +300,7 @@ static void compare_pictures(const char *scene, uint32_t storage, uint32_t split
     for (uint32_t r = 0; r < RUNGS; r++) {
         for (uint32_t k = 0; k < 3; k++) {
             for (uint32_t i = 0; i < 2; i++) {
-                masu_frame_desc frame = {.rung = r, .time = 0.1 * k, .time_step = 0.1f, .cut = k == 0};
+                masu_frame_desc frame = {MASU_FRAME_DESC, .rung = r, .time = 0.1 * k, .time_step = 0.1f, .cut = k == 0};
                 masu_commands commands = next_frame(&x[i], &frame);
                 assert_int_equal(commands.part_count, i ? parts : 1);
                 assert_ptr_equal(commands.buffer, commands.parts[0]);
@@ -306,7 +308,7 @@ static void compare_pictures(const char *scene, uint32_t storage, uint32_t split
                 finish(&s, NULL);
                 read_target(&s, &x[i], pixels[i]);
                 masu_stats_info stats;
-                assert_int_equal(masu_stats(x[i].m, commands.slot, &stats), MASU_OK);
+                assert_int_equal(masu_stats(x[i].m, commands.slot, &stats, &failure), MASU_OK);
                 if (i) assert_true(stats.timed && stats.gpu_ns > 0);
             }
             uint32_t most = max_difference(pixels[0], pixels[1], BYTES);
@@ -349,7 +351,7 @@ static void compare_copies(const char *scene) {
         assert_ok(masu_headless_buffer_create(&s.host, W * H * 8, VK_BUFFER_USAGE_TRANSFER_DST_BIT, &copies[i], error,
                                               sizeof error));
     for (uint32_t k = 0; k < 2 * RUNGS; k++) {
-        masu_frame_desc frame = {.rung = k % RUNGS, .time = 0.1 * k, .time_step = 0.1f};
+        masu_frame_desc frame = {MASU_FRAME_DESC, .rung = k % RUNGS, .time = 0.1 * k, .time_step = 0.1f};
         masu_commands commands = next_frame(&x, &frame);
         masu_split tone = split_of(&x, MASU_SPLIT_BEFORE_TONE, commands.rung, 0);
         masu_split output = split_of(&x, MASU_SPLIT_AFTER_UPSCALE, commands.rung, 0);
@@ -449,7 +451,7 @@ static masu_commands draw_leaning(masu_session *s, own_renderer *x, const painte
     masu_commands commands = next_frame(x, frame);
     masu_split split = split_of(x, MASU_SPLIT_BEFORE_TONE, commands.rung, frame->viewport);
     masu_frame_view view;
-    assert_int_equal(masu_frame_view_of(x->m, &view), MASU_OK);
+    assert_int_equal(masu_frame_view_of(x->m, &view, &failure), MASU_OK);
     assert_int_equal(view.frame, commands.frame);
     assert_int_equal(view.render_width, split.color.width);
     push q = leaning;
@@ -468,7 +470,7 @@ static void check_drawn(own_renderer *x, const masu_commands *commands, const ma
     masu_readback_image before = readback_of(x, commands->slot, MASU_READBACK_HDR);
     masu_split split = split_of(x, MASU_SPLIT_BEFORE_TONE, commands->rung, frame->viewport);
     masu_frame_view view;
-    assert_int_equal(masu_frame_view_of(x->m, &view), MASU_OK);
+    assert_int_equal(masu_frame_view_of(x->m, &view, &failure), MASU_OK);
     uint32_t w = split.color.width, h = split.color.height;
     assert_int_equal(w, depths.width);
     assert_int_equal(h, depths.height);
@@ -525,10 +527,10 @@ static void check_drawing(const char *scene) {
     shaken.jitter[0] = 0.4f;
     shaken.jitter[1] = -0.3f;
     masu_light light;
-    assert_int_equal(masu_light_of(x.m, &light), MASU_OK);
+    assert_int_equal(masu_light_of(x.m, &light, &failure), MASU_OK);
     light.exposure = 1.5f;
     for (uint32_t k = 0; k < 3 * RUNGS; k++) {
-        masu_frame_desc frame = {.camera = k < 2 * RUNGS ? &oblique : &shaken, .light = &light, .rung = k % RUNGS};
+        masu_frame_desc frame = {MASU_FRAME_DESC, .camera = k < 2 * RUNGS ? &oblique : &shaken, .light = &light, .rung = k % RUNGS};
         masu_commands commands = draw_leaning(&s, &x, &p, &frame, &hdr);
         read_target(&s, &x, pixels[0]);
         snprintf(what, sizeof what, "%s, rung %u, frame %u", scene, commands.rung, k);
@@ -581,7 +583,7 @@ static void the_same_in_viewports_and_after_a_resize(void **state) {
             assert_int_equal(again.color.image_width, W);
             assert_int_equal(again.color.width, 130);
         }
-        masu_frame_desc frame = {.camera = &oblique, .rung = k % 4 < 2 ? 0 : 3, .viewport = k % 2};
+        masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &oblique, .rung = k % 4 < 2 ? 0 : 3, .viewport = k % 2};
         masu_commands commands = draw_leaning(&s, &x, &p, &frame, &hdr);
         snprintf(what, sizeof what, "frame %u", k);
         check_drawn(&x, &commands, &frame, hdr.mapped, NULL, 0, what);
@@ -626,12 +628,12 @@ static void matrices_are_those_of_the_picture(void **state) {
     shaken.jitter[1] = -0.3f;
     for (uint32_t k = 0; k < 12; k++) {
         const uint32_t rung = k % 2 ? 3 : 0;
-        masu_frame_desc frame = {.camera = k < 4 ? &oblique : &shaken, .rung = rung};
+        masu_frame_desc frame = {MASU_FRAME_DESC, .camera = k < 4 ? &oblique : &shaken, .rung = rung};
         masu_commands commands = next_frame(&x, &frame);
         submit(&s, &commands, NULL);
         finish(&s, NULL);
         masu_frame_view view;
-        assert_int_equal(masu_frame_view_of(x.m, &view), MASU_OK);
+        assert_int_equal(masu_frame_view_of(x.m, &view, &failure), MASU_OK);
         masu_readback_image depths = readback_of(&x, commands.slot, MASU_READBACK_DEPTH);
         double own = sphere_error(&view, view.projection, depths);
         double other = sphere_error(&view, view.output_projection, depths);
@@ -671,7 +673,7 @@ static void what_is_drawn_over_the_picture_is_shown(void **state) {
               .color = {0.4f, 0.2f, 0.0f, 0.5f}};
     for (uint32_t flying = 0; flying < 2; flying++) {
         for (uint32_t r = 0; r < RUNGS; r++) {
-            masu_frame_desc frame = {.rung = r, .cut = 1};
+            masu_frame_desc frame = {MASU_FRAME_DESC, .rung = r, .cut = 1};
             VkCommandBuffer own[2][MASU_MAX_PARTS] = {{VK_NULL_HANDLE}};
             for (uint32_t i = 0; i < 2; i++) {
                 masu_commands commands = next_frame(&x, &frame);
@@ -715,7 +717,7 @@ static void an_upscaled_source_and_a_storage_target_have_the_point_too(void **st
     assert_true(!split.color.image && !split.color.view);
     assert_int_equal(split.color.layout, VK_IMAGE_LAYOUT_GENERAL);
     assert_int_equal(split.color.width, W);
-    masu_commands commands = next_frame(&x, &(masu_frame_desc){.rung = 1});
+    masu_commands commands = next_frame(&x, &(masu_frame_desc){MASU_FRAME_DESC, .rung = 1});
     char error[ERROR_SIZE];
     masu_headless_buffer copy;
     assert_ok(masu_headless_buffer_create(&s.host, BYTES, VK_BUFFER_USAGE_TRANSFER_DST_BIT, &copy, error, sizeof error));
@@ -737,7 +739,7 @@ static void an_upscaled_source_and_a_storage_target_have_the_point_too(void **st
     d.debug.counters = 0;
     make_own(&s, &x, &d);
     split = split_of(&x, MASU_SPLIT_AFTER_UPSCALE, 0, 0);
-    commands = next_frame(&x, &(masu_frame_desc){0});
+    commands = next_frame(&x, &(masu_frame_desc){MASU_FRAME_DESC});
     assert_int_equal(commands.part_count, 2);
     own[0] = begin_commands(&s);
     copy_out(own[0], &split.color, copy.buffer);
@@ -746,7 +748,7 @@ static void an_upscaled_source_and_a_storage_target_have_the_point_too(void **st
     read_target(&s, &x, pixels[0]);
     assert_memory_equal(copy.mapped, pixels[0], BYTES);
     masu_frame_view view;
-    assert_int_equal(masu_frame_view_of(x.m, &view), MASU_ERROR_STATE);
+    assert_int_equal(masu_frame_view_of(x.m, &view, &failure), MASU_ERROR_STATE);
     unmake_own(&s, &x);
     masu_headless_source_destroy(&s.host, &source);
     masu_headless_buffer_destroy(&s.host, &copy);
@@ -764,14 +766,14 @@ static void what_is_not_there_is_named(void **state) {
     make_own(&s, &x, &d);
     masu_split split;
     masu_frame_view view;
-    assert_int_equal(masu_frame_view_of(x.m, &view), MASU_ERROR_STATE); /* no frame yet */
-    assert_int_equal(masu_split_of(x.m, MASU_SPLIT_AFTER_UPSCALE, 0, 0, &split), MASU_ERROR_ARGUMENT);
-    assert_string_equal(masu_last_error(x.m)->what, "which");
-    assert_int_equal(masu_split_of(x.m, MASU_SPLIT_ALL, 0, 0, &split), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_split_of(x.m, MASU_SPLIT_BEFORE_TONE, RUNGS, 0, &split), MASU_ERROR_ARGUMENT);
-    assert_string_equal(masu_last_error(x.m)->text, "rung 5 does not exist, the last one is 4");
-    assert_int_equal(masu_split_of(x.m, MASU_SPLIT_BEFORE_TONE, 0, 1, &split), MASU_ERROR_ARGUMENT);
-    assert_string_equal(masu_last_error(x.m)->text, "viewport 1 does not exist, the last one is 0");
+    assert_int_equal(masu_frame_view_of(x.m, &view, &failure), MASU_ERROR_STATE); /* no frame yet */
+    assert_int_equal(masu_split_of(x.m, MASU_SPLIT_AFTER_UPSCALE, 0, 0, &split, &failure), MASU_ERROR_ARGUMENT);
+    assert_string_equal(failure.what, "which");
+    assert_int_equal(masu_split_of(x.m, MASU_SPLIT_ALL, 0, 0, &split, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_split_of(x.m, MASU_SPLIT_BEFORE_TONE, RUNGS, 0, &split, &failure), MASU_ERROR_ARGUMENT);
+    assert_string_equal(failure.text, "rung 5 does not exist, the last one is 4");
+    assert_int_equal(masu_split_of(x.m, MASU_SPLIT_BEFORE_TONE, 0, 1, &split, &failure), MASU_ERROR_ARGUMENT);
+    assert_string_equal(failure.text, "viewport 1 does not exist, the last one is 0");
     unmake_own(&s, &x);
     close_session(&s);
 }

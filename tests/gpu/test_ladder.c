@@ -24,8 +24,8 @@ static masu_session_desc ladder_desc(const char *scene) {
 
 /* What the session's renderer has made of no rungs. */
 static uint32_t rungs_of(const masu_session *s, masu_plan_info *plan) {
-    masu_desc ladder = {0};
-    assert_int_equal(masu_ladder_of(&s->scene, &ladder, NULL), MASU_OK);
+    masu_desc ladder = {MASU_DESC};
+    assert_int_equal(masu_ladder_of(&s->scene, &ladder, NULL, NULL), MASU_OK);
     masu_plan_of(s->m, plan);
     assert_int_equal(plan->rung_count, ladder.rung_count);
     for (uint32_t r = 0; r < plan->rung_count; r++) {
@@ -40,11 +40,11 @@ static uint32_t rungs_of(const masu_session *s, masu_plan_info *plan) {
 /* A frame that takes `load` ms at cost 1. */
 static uint32_t step(masu_session *s, const masu_plan_info *plan, uint32_t rung, uint32_t i,
                      double load, uint64_t *heap) {
-    masu_frame_desc f = {.rung = rung, .time = 0.01 * i};
+    masu_frame_desc f = {MASU_FRAME_DESC, .rung = rung, .time = 0.01 * i};
     masu_commands c;
     char error[ERROR_SIZE];
     uint64_t before = masu_allocs_of_thread();
-    assert_int_equal(masu_frame(s->m, &f, &c), MASU_OK);
+    assert_int_equal(masu_frame(s->m, &f, &c, NULL), MASU_OK);
     *heap += masu_allocs_of_thread() - before;
     assert_ok(masu_headless_submit(&s->host, c.buffer, c.slot, error, sizeof error));
     assert_ok(masu_headless_wait(&s->host, c.slot, error, sizeof error));
@@ -101,7 +101,7 @@ static void every_rung_is_drawn_and_nothing_is_made(void **state) {
 /* Frames of the same number after a cut each, so that nothing of other rungs is seen. */
 static void draw_all(masu_session *s, uint32_t count, uint8_t *pixels) {
     for (uint32_t r = 0; r < count; r++) {
-        masu_frame_desc f = {.rung = r, .time = 0.5, .cut = 1};
+        masu_frame_desc f = {MASU_FRAME_DESC, .rung = r, .time = 0.5, .cut = 1};
         masu_commands c;
         draw(s, &f, &c, pixels + r * BYTES);
     }
@@ -116,8 +116,8 @@ static void a_rung_is_the_picture_of_that_rung_given_by_hand(void **state) {
         masu_plan_info plan;
         open_session(&s, &d);
         uint32_t count = rungs_of(&s, &plan);
-        masu_desc own = {0};
-        assert_int_equal(masu_ladder_of(&s.scene, &own, NULL), MASU_OK);
+        masu_desc own = {MASU_DESC};
+        assert_int_equal(masu_ladder_of(&s.scene, &own, NULL, NULL), MASU_OK);
         draw_all(&s, count, baked);
         close_session(&s);
         d = test_desc(scenes[i], W, H);
@@ -150,7 +150,7 @@ static void memory_is_planned_once_for_all_rungs(void **state) {
         masu_session_desc d = ladder_desc(scenes[i]);
         masu_session s;
         masu_memory need, one, eight;
-        masu_desc own = {0};
+        masu_desc own = {MASU_DESC};
         d.no_renderer = true;
         open_session(&s, &d);
         assert_int_equal(masu_memory_query(&s.desc, &need, NULL), MASU_OK);
@@ -163,7 +163,7 @@ static void memory_is_planned_once_for_all_rungs(void **state) {
         assert_int_equal(peaks.device_bytes, need.device_bytes);
         masu_destroy(m);
         free(block);
-        assert_int_equal(masu_ladder_of(&s.scene, &own, NULL), MASU_OK);
+        assert_int_equal(masu_ladder_of(&s.scene, &own, NULL, NULL), MASU_OK);
         masu_desc q = s.desc;
         uint64_t most = 0;
         for (uint32_t r = 0; r < own.rung_count; r++) {
@@ -211,11 +211,11 @@ static void a_gpu_of_a_class_begins_with_what_was_computed_for_it(void **state) 
                    {0x1002, 0x163F, VK_PHYSICAL_DEVICE_TYPE_CPU, ""}};
     masu_session_desc d = ladder_desc("test_both");
     masu_session s;
-    masu_desc own = {0};
+    masu_desc own = {MASU_DESC};
     static masu_plan_info plan;
     d.no_renderer = true;
     open_session(&s, &d);
-    assert_int_equal(masu_ladder_of(&s.scene, &own, NULL), MASU_OK);
+    assert_int_equal(masu_ladder_of(&s.scene, &own, NULL, NULL), MASU_OK);
     real_proc = s.desc.vulkan.get_instance_proc_addr;
     s.desc.vulkan.get_instance_proc_addr = pretending_proc;
     s.desc.governor.costs[2] = 0.123f; /* what the host says is not touched */

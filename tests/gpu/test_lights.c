@@ -16,6 +16,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+static masu_detail failure; /* of the last call that failed */
+
 #define PI 3.14159265358979323846
 #define LIGHTS_MOST 1024
 
@@ -160,11 +162,11 @@ static void set_random(pictures *p, uint32_t lights, double size) {
         masu_punctual_light handle =
             masu_punctual_light_at(p->s.m, (uint32_t)random_between(&seed, 0, lights - 0.01));
         masu_punctual_light_state state;
-        assert_int_equal(masu_punctual_light_get(p->s.m, handle, &state), MASU_OK);
+        assert_int_equal(masu_punctual_light_get(p->s.m, handle, &state, &failure), MASU_OK);
         for (int k = 0; k < 3; k++) state.position[k] = random_between(&seed, -12, 12) * size;
         state.position[1] *= 0.3;
         state.range = (float)(random_spread(&seed, 0.01, 30) * size);
-        assert_int_equal(masu_punctual_light_set(p->s.m, handle, &state), MASU_OK);
+        assert_int_equal(masu_punctual_light_set(p->s.m, handle, &state, &failure), MASU_OK);
     }
 }
 
@@ -329,12 +331,12 @@ static error_info compare_light(pictures *p, const masu_camera *c,
     masu_light sun = no_sun();
     error_info e = {0};
     memset(dark.color, 0, sizeof dark.color);
-    assert_int_equal(masu_punctual_light_set(p->s.m, one, state), MASU_OK);
+    assert_int_equal(masu_punctual_light_set(p->s.m, one, state, &failure), MASU_OK);
     memcpy(local, take(p, c, &sun, TILES, NULL), (size_t)p->width * p->height * 8);
     memcpy(depths, read_image(&p->s, 0, MASU_READBACK_DEPTH), (size_t)p->width * p->height * 4);
     for (uint32_t i = 0; i < p->width * p->height && pane; i++)
         depths[i] = (float)((double)c->near_distance / c->position[2]);
-    assert_int_equal(masu_punctual_light_set(p->s.m, off, &dark), MASU_OK);
+    assert_int_equal(masu_punctual_light_set(p->s.m, off, &dark, &failure), MASU_OK);
     for (uint32_t n = 0; n < 30; n++) {
         uint32_t x = (uint32_t)random_between(&seed, 0, p->width - 0.01), y = (uint32_t)random_between(&seed, 0, p->height - 0.01);
         double at[3], l[3], color[3];
@@ -467,7 +469,7 @@ static void a_particle_scatters_a_quarter_of_each_light(void **state) {
     lights[1].spot = 1, lights[1].inner = 0.2f, lights[1].outer = 0.6f;
     lights[1].direction[0] = 2, lights[1].direction[1] = -1, lights[1].direction[2] = -2;
     for (uint32_t i = 0; i < 2; i++)
-        assert_int_equal(masu_punctual_light_set(p.s.m, masu_punctual_light_at(p.s.m, i), &lights[i]), MASU_OK);
+        assert_int_equal(masu_punctual_light_set(p.s.m, masu_punctual_light_at(p.s.m, i), &lights[i], &failure), MASU_OK);
     memset(sparks, 0, sizeof sparks);
     for (int far = 0; far < 2; far++) {
         masu_particle spark = {.half_width = far ? 3 : 0.5f, .color = {0.5f, 1, 0.75f}, .opacity = 1, .edge = 1, .flags = MASU_PARTICLE_LIT};
@@ -478,7 +480,7 @@ static void a_particle_scatters_a_quarter_of_each_light(void **state) {
             masu_ref_light r = reference_of(&lights[i]);
             double l[3], color[3];
             if (far) lights[i].position[0] = 7.5 + i, r.position[0] = 7.5 + i; /* behind it */
-            if (far) assert_int_equal(masu_punctual_light_set(p.s.m, masu_punctual_light_at(p.s.m, i), &lights[i]), MASU_OK);
+            if (far) assert_int_equal(masu_punctual_light_set(p.s.m, masu_punctual_light_at(p.s.m, i), &lights[i], &failure), MASU_OK);
             masu_ref_light_reaches(&r, spark.position, l, color);
             for (int k = 0; k < 3; k++) want[k] += 0.25 * (double)spark.color[k] * color[k];
         }
@@ -510,10 +512,10 @@ static void extremes_are_finite_and_mean_what_they_say(void **state) {
         .position = {0, 4, 0}, .color = {20, 20, 20}, .range = 30, .radius = 0.01f};
     masu_punctual_light_state s = plain;
     s.color[0] = s.color[1] = s.color[2] = 0;
-    assert_int_equal(masu_punctual_light_set(p.s.m, one, &s), MASU_OK);
+    assert_int_equal(masu_punctual_light_set(p.s.m, one, &s, &failure), MASU_OK);
     uint64_t dark = picture_hash(&p, &c, &lit);
     assert_int_equal(lit, 0);
-    assert_int_equal(masu_punctual_light_set(p.s.m, one, &plain), MASU_OK);
+    assert_int_equal(masu_punctual_light_set(p.s.m, one, &plain, &failure), MASU_OK);
     uint64_t bright = picture_hash(&p, &c, &lit);
     assert_true(lit > 500);
     enum { DARK, SAME, FINITE, LIT };
@@ -550,7 +552,7 @@ static void extremes_are_finite_and_mean_what_they_say(void **state) {
             s.position[k] = cases[i].position[k];
             s.color[k] = (float)cases[i].color;
         }
-        assert_int_equal(masu_punctual_light_set(p.s.m, one, &s), MASU_OK);
+        assert_int_equal(masu_punctual_light_set(p.s.m, one, &s, &failure), MASU_OK);
         uint64_t is = picture_hash(&p, &c, &lit);
         int right = cases[i].expected == DARK   ? is == dark
                     : cases[i].expected == SAME ? is == bright
@@ -576,7 +578,7 @@ static void bad_values_are_refused_with_a_line(void **state) {
     assert_int_equal(masu_punctual_light_find(p.s.m, "l2").id, 0);
     assert_int_equal(masu_punctual_light_find(p.s.m, "").id, 0);
     assert_int_equal(masu_punctual_light_find(NULL, "l0").id, 0);
-    assert_int_equal(masu_punctual_light_get(p.s.m, light, &good), MASU_OK);
+    assert_int_equal(masu_punctual_light_get(p.s.m, light, &good, &failure), MASU_OK);
     assert_int_equal(good.spot, 1);
     static const float wrong[] = {NAN, INFINITY, -INFINITY, -1.0f, 1e16f};
     for (size_t i = 0; i < 5; i++) {
@@ -594,8 +596,8 @@ static void bad_values_are_refused_with_a_line(void **state) {
         static const char *const names[] = {"position", "color",     "range", "radius",  "outer",
                                             "inner",    "direction", "spot",  "instance"};
         for (int k = 0; k < 9; k++) {
-            assert_int_equal(masu_punctual_light_set(p.s.m, light, &s[k]), MASU_ERROR_ARGUMENT);
-            const masu_detail *d = masu_last_error(p.s.m);
+            assert_int_equal(masu_punctual_light_set(p.s.m, light, &s[k], &failure), MASU_ERROR_ARGUMENT);
+            const masu_detail *d = (&failure);
             if (!strstr(d->text, names[k]) || !strstr(d->text, "light 0:") || strchr(d->text, '\n'))
                 fail_msg("%s %g: %s", names[k], (double)wrong[i], d->text);
         }
@@ -606,25 +608,25 @@ static void bad_values_are_refused_with_a_line(void **state) {
         shaped[k].spot = k == 1;
         shaped[k].shape = (masu_light_shape[]){(masu_light_shape)4, MASU_SHAPE_SPHERE, MASU_SHAPE_CAPSULE, MASU_SHAPE_SPHERE}[k];
         shaped[k].has_surface = k == 3;
-        assert_int_equal(masu_punctual_light_set(p.s.m, light, &shaped[k]), MASU_ERROR_ARGUMENT);
-        if (!strstr(masu_last_error(p.s.m)->text, shapes[k]))
-            fail_msg("%s: %s", shapes[k], masu_last_error(p.s.m)->text);
+        assert_int_equal(masu_punctual_light_set(p.s.m, light, &shaped[k], &failure), MASU_ERROR_ARGUMENT);
+        if (!strstr(failure.text, shapes[k]))
+            fail_msg("%s: %s", shapes[k], failure.text);
     }
     masu_punctual_light_state none = good;
     memset(none.direction, 0, sizeof none.direction);
-    assert_int_equal(masu_punctual_light_set(p.s.m, light, &none), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_punctual_light_set(p.s.m, light, &none, &failure), MASU_ERROR_ARGUMENT);
     none = good;
     none.radius = 0;
-    assert_int_equal(masu_punctual_light_set(p.s.m, light, &none), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_punctual_light_set(p.s.m, (masu_punctual_light){light.id + 2}, &good),
+    assert_int_equal(masu_punctual_light_set(p.s.m, light, &none, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_punctual_light_set(p.s.m, (masu_punctual_light){light.id + 2}, &good, &failure),
                      MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_punctual_light_set(p.s.m, (masu_punctual_light){0}, &good),
+    assert_int_equal(masu_punctual_light_set(p.s.m, (masu_punctual_light){0}, &good, &failure),
                      MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_punctual_light_set(NULL, light, &good), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_punctual_light_set(p.s.m, light, NULL), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_punctual_light_get(p.s.m, (masu_punctual_light){9}, &is), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_punctual_light_set(NULL, light, &good, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_punctual_light_set(p.s.m, light, NULL, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_punctual_light_get(p.s.m, (masu_punctual_light){9}, &is, &failure), MASU_ERROR_ARGUMENT);
     /* Nothing of it was taken. */
-    assert_int_equal(masu_punctual_light_get(p.s.m, light, &is), MASU_OK);
+    assert_int_equal(masu_punctual_light_get(p.s.m, light, &is, &failure), MASU_OK);
     assert_memory_equal(&is, &good, offsetof(masu_punctual_light_state, outer) + sizeof is.outer);
     close_session(&p.s);
 }
@@ -642,15 +644,15 @@ static void a_light_moves_with_its_instance(void **state) {
     masu_instance car = masu_instance_find(p.s.m, "thing3");
     masu_punctual_light lamp = masu_punctual_light_find(p.s.m, "lamp");
     masu_punctual_light_state carried, placed;
-    assert_int_equal(masu_punctual_light_get(p.s.m, lamp, &carried), MASU_OK);
+    assert_int_equal(masu_punctual_light_get(p.s.m, lamp, &carried, &failure), MASU_OK);
     assert_int_equal(carried.instance.id, car.id);
     uint64_t before = 0, lit;
     for (int i = 0; i < 6; i++) {
         /* Quarter turns and halves: nothing is rounded. */
         float x = (float)(i - 3) * 0.5f, c4 = i % 2 ? 0.0f : 1.0f, s4 = i % 2 ? 1.0f : 0.0f;
         const float rows[12] = {c4, 0, s4, x, 0, 1, 0, 0.25f, -s4, 0, c4, 1};
-        assert_int_equal(masu_instance_set_transform(p.s.m, car, rows), MASU_OK);
-        assert_int_equal(masu_punctual_light_set(p.s.m, lamp, &carried), MASU_OK);
+        assert_int_equal(masu_instance_set_transform(p.s.m, car, rows, &failure), MASU_OK);
+        assert_int_equal(masu_punctual_light_set(p.s.m, lamp, &carried, &failure), MASU_OK);
         uint64_t moved = picture_hash(&p, &c, &lit);
         assert_true(lit > 20 && moved != before);
         before = moved;
@@ -665,7 +667,7 @@ static void a_light_moves_with_its_instance(void **state) {
             placed.position[k] = at;
             placed.direction[k] = (float)d;
         }
-        assert_int_equal(masu_punctual_light_set(p.s.m, lamp, &placed), MASU_OK);
+        assert_int_equal(masu_punctual_light_set(p.s.m, lamp, &placed, &failure), MASU_OK);
         assert_int_equal(picture_hash(&p, &c, NULL), moved);
     }
     close_session(&p.s);

@@ -13,6 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+static masu_detail failure; /* of the last call that failed */
+
 enum { W = 160, H = 90, BYTES = W * H * 4, FRAMES = 6 };
 
 static uint8_t pictures[3][FRAMES][BYTES];
@@ -32,11 +34,11 @@ static masu_model model_of(masu_session *s, const char *name) {
 
 static void put(masu_session *s, masu_model model, float x, float y, float z) {
     const float rows[12] = {1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z};
-    assert_int_equal(masu_model_set_transform(s->m, model, rows), MASU_OK);
+    assert_int_equal(masu_model_set_transform(s->m, model, rows, &failure), MASU_OK);
 }
 
 static void show(masu_session *s, const char *name, uint32_t shown) {
-    assert_int_equal(masu_model_show(s->m, model_of(s, name), shown), MASU_OK);
+    assert_int_equal(masu_model_show(s->m, model_of(s, name), shown, &failure), MASU_OK);
 }
 
 /* So many frames from number `first` on, after a cut: reflections gather. */
@@ -83,7 +85,7 @@ static void what_comes_back_is_as_it_was(void **state) {
                      5); /* truck, two spare ones, lamp, pane */
     draw_frames(&s, 0, pictures[0]);
     masu_model_state truck;
-    assert_int_equal(masu_model_get(s.m, model_of(&s, "truck"), &truck), MASU_OK);
+    assert_int_equal(masu_model_get(s.m, model_of(&s, "truck"), &truck, &failure), MASU_OK);
     show(&s, "lamp", 1);
     draw_frames(&s, FRAMES, pictures[1]);
     assert_int_equal(stats_of(&s, 1).lights_in_view, 1);
@@ -96,7 +98,7 @@ static void what_comes_back_is_as_it_was(void **state) {
     put(&s, model_of(&s, "truck"), 40, 0, 0);
     draw_frames(&s, 2 * FRAMES, pictures[1]);
     show(&s, "truck", 1);
-    assert_int_equal(masu_model_set_transform(s.m, model_of(&s, "truck"), truck.rows), MASU_OK);
+    assert_int_equal(masu_model_set_transform(s.m, model_of(&s, "truck"), truck.rows, &failure), MASU_OK);
     draw_frames(&s, 3 * FRAMES, pictures[1]);
     assert_int_equal(stats_of(&s, 1).lights_in_view, 0);
     /* Blue noise has come round to other numbers: reflections differ by their noise, the rest by what a
@@ -122,7 +124,7 @@ static void what_is_moved_is_as_if_baked_so(void **state) {
     put(&live, model_of(&live, "truck"), 1.5f, 0.25f, -1.0f);
     put(&live, model_of(&live, "pane"), -2.5f, 0.6f, 2.0f);
     show(&live, "lamp", 1);
-    assert_int_equal(masu_model_add(live.m, model_of(&live, "truck"), second, &added), MASU_OK);
+    assert_int_equal(masu_model_add(live.m, model_of(&live, "truck"), second, &added, &failure), MASU_OK);
     assert_int_equal(added.id, model_of(&live, "truck.1").id);
     draw_frames(&live, 0, pictures[0]);
     draw_frames(&baked, 0, pictures[1]);
@@ -148,9 +150,9 @@ static void what_is_shown_has_not_moved(void **state) {
     for (uint32_t frame = 0; frame < 3; frame++) {
         const float at[12] = {1, 0, 0, 0.5f, 0, 1, 0, 0.2f * (float)frame, 0, 0, 1, 2.0f};
         if (frame == 0)
-            assert_int_equal(masu_model_add(s.m, model_of(&s, "truck"), at, &added), MASU_OK);
+            assert_int_equal(masu_model_add(s.m, model_of(&s, "truck"), at, &added, &failure), MASU_OK);
         else if (frame == 2)
-            assert_int_equal(masu_model_set_transform(s.m, added, at), MASU_OK);
+            assert_int_equal(masu_model_set_transform(s.m, added, at, &failure), MASU_OK);
         const uint16_t *v = draw_image(&s, &(masu_frame_desc){.rung = 0}, MASU_READBACK_VELOCITY, NULL);
         double most = 0;
         for (uint32_t i = 0; i < W * H; i++)
@@ -205,13 +207,13 @@ static void the_last_spare_one_is_the_last(void **state) {
     open_session(&s, &d);
     masu_model truck = model_of(&s, "truck"), added[3];
     const float at[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
-    assert_int_equal(masu_model_add(s.m, truck, at, &added[0]), MASU_OK);
-    assert_int_equal(masu_model_add(s.m, truck, at, &added[1]), MASU_OK);
-    assert_int_equal(masu_model_add(s.m, truck, at, &added[2]), MASU_ERROR_LIMIT);
+    assert_int_equal(masu_model_add(s.m, truck, at, &added[0], &failure), MASU_OK);
+    assert_int_equal(masu_model_add(s.m, truck, at, &added[1], &failure), MASU_OK);
+    assert_int_equal(masu_model_add(s.m, truck, at, &added[2], &failure), MASU_ERROR_LIMIT);
     assert_int_equal(added[2].id, 0);
-    assert_string_equal(masu_last_error(s.m)->what, "models");
-    assert_int_equal(masu_model_show(s.m, added[0], 0), MASU_OK);
-    assert_int_equal(masu_model_add(s.m, added[1], at, &added[2]), MASU_OK);
+    assert_string_equal(failure.what, "models");
+    assert_int_equal(masu_model_show(s.m, added[0], 0, &failure), MASU_OK);
+    assert_int_equal(masu_model_add(s.m, added[1], at, &added[2], &failure), MASU_OK);
     assert_int_equal(added[2].id, added[0].id);
     close_session(&s);
 }

@@ -21,6 +21,7 @@ static void open_scene(masu_session *x, const char *name) {
 
 static masu_desc desc_of(const masu_session *s, const masu_session *x, const masu_desc *more) {
     masu_desc d = *more;
+    d.bytes = sizeof d;
     d.vulkan = s->desc.vulkan;
     d.targets = s->desc.targets;
     d.scene = &x->scene;
@@ -32,7 +33,7 @@ static masu_desc desc_of(const masu_session *s, const masu_session *x, const mas
 }
 
 static masu_frame_desc frame_of(uint32_t n) {
-    return (masu_frame_desc){.rung = n % RUNGS, .time = 0.05 * n, .time_step = 0.05f};
+    return (masu_frame_desc){MASU_FRAME_DESC, .rung = n % RUNGS, .time = 0.05 * n, .time_step = 0.05f};
 }
 
 /* A renderer of the scene that is shown, alone: what its next frame, the n-th, shows. */
@@ -41,7 +42,7 @@ static void draw_alone(masu_session *s, uint32_t n) {
     char error[ERROR_SIZE];
     masu_commands commands;
     masu_frame_desc frame = frame_of(n);
-    assert_int_equal(masu_frame(alone.m, &frame, &commands), MASU_OK);
+    assert_int_equal(masu_frame(alone.m, &frame, &commands, NULL), MASU_OK);
     assert_ok(masu_headless_run(&s->host, commands.buffer, error, sizeof error));
     assert_ok(masu_headless_target_read(&s->host, &alone.target, error, sizeof error));
     memcpy(picture, alone.target.mapped, BYTES);
@@ -64,7 +65,7 @@ static void draw_next(masu_session *s, own_renderer *x, uint32_t n, const masu_c
     masu_commands commands;
     masu_frame_desc frame = frame_of(n);
     draw_alone(s, n);
-    assert_int_equal(masu_frame(x->m, &frame, &commands), MASU_OK);
+    assert_int_equal(masu_frame(x->m, &frame, &commands, NULL), MASU_OK);
     submit(s, step, &commands);
     assert_ok(masu_headless_target_read(&s->host, &x->target, error, sizeof error));
     memcpy(live, x->target.mapped, BYTES);
@@ -102,7 +103,7 @@ static uint32_t load_in_steps(masu_session *s, own_renderer *x, own_renderer *no
     uint64_t sum = 0, left = UINT64_MAX;
     uint32_t steps = 0, submitted = 0, built = 0;
     do {
-        result = masu_load(x->m, &step);
+        result = masu_load(x->m, &step, NULL);
         assert_true(result == MASU_OK || result == MASU_INCOMPLETE);
         assert_true(step.load_bytes <= STEP);
         sum += step.load_bytes;

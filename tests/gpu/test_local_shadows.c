@@ -117,7 +117,7 @@ static double luma(const uint16_t *texel) { return half_float(texel[0]) + half_f
 
 static masu_punctual_light_state state_of(const lamps *l, uint32_t light) {
     masu_punctual_light_state s;
-    assert_int_equal(masu_punctual_light_get(l->s.m, masu_punctual_light_at(l->s.m, light), &s), MASU_OK);
+    assert_int_equal(masu_punctual_light_get(l->s.m, masu_punctual_light_at(l->s.m, light), &s, NULL), MASU_OK);
     return s;
 }
 
@@ -278,6 +278,7 @@ static void visibility_is_that_of_rays(void **state) {
             comparison c = compare_rays(&l, &views[v], texel, cases[i].what);
             assert_true(c.lit > 3000);
             assert_true(c.wrong * 100 <= c.lit);
+            assert_true(c.wrong_near * 40 <= c.lit); /* an edge as wide as the filter: 6 % */
             assert_true(c.seam_wrong * 100 <= c.seam);
         }
         close_lamps(&l);
@@ -337,19 +338,15 @@ static void expect_no_acne(const plane_case *p) {
     close_lamps(&l);
 }
 
-static void the_floor_below_a_near_point_does_not_shadow_itself(void **state) {
-    (void)state;
-    expect_no_acne(&(plane_case){"point, 512", 2048, 0.3, 0, 1});
-}
-
 static void planes_do_not_shadow_themselves(void **state) {
     (void)state;
+    expect_no_acne(&(plane_case){"point, 512", 2048, 0.3, 0, 1});
     expect_no_acne(&(plane_case){"point, 128", 512, 0.3, 0, 1});
     expect_no_acne(&(plane_case){"spot, 512", 2048, 1.5, 1, 1});
 }
 
 /* Clipped to a hundredth of their size, and farther from the camera than from the lamp, whose texels are a twentieth of
- * a pixel. */
+ * a pixel: what the camera's rasteriser does to their depth is more than a texel, if it has few subpixel bits. */
 static void large_triangles_do_not_shadow_themselves(void **state) {
     (void)state;
     expect_no_acne(&(plane_case){"two triangles", 2048, 0.3, 0, 0});
@@ -466,7 +463,7 @@ static void shadows_come_and_go_by_steps(void **state) {
     for (int f = 0; f < 125; f++) {
         if (f == 35 || f == 80) {
             away.color[0] = f == 35 ? 1e6f : 1.0f;
-            assert_int_equal(masu_punctual_light_set(l.s.m, masu_punctual_light_at(l.s.m, 1), &away), MASU_OK);
+            assert_int_equal(masu_punctual_light_set(l.s.m, masu_punctual_light_at(l.s.m, 1), &away, NULL), MASU_OK);
         }
         const uint16_t *hdr = take(&l, &c, SHADOWED);
         assert_int_equal(l.stats.local_shadow_lights <= 1, 1);
@@ -492,6 +489,48 @@ static void shadows_come_and_go_by_steps(void **state) {
     close_lamps(&l);
 }
 
+/* Inside a shut box six faces of the point are due in each frame, two more than are rendered: nothing
+ * outside is lit in any frame. */
+static void a_point_that_moves_keeps_its_walls(void **state) {
+    (void)state;
+    static uint16_t plain[4 * PIXELS_MOST];
+    lamps l;
+    masu_rung rung = {.local_shadow_faces = 4};
+    masu_camera c = look(0, 9, 7, 0, -9, -7, 1.0);
+    uint32_t lit = 0, leaks = 0, waited = 0;
+    begin_scene(24);
+    for (int k = 0; k < 2; k++) {
+        add_box(k ? "right" : "left", 2.2 * k - 1.1, 1.1, 0, 0.2, 2.2, 2.4, 0);
+        add_box(k ? "front" : "back", 0, 1.1, 2.2 * k - 1.1, 2.4, 2.2, 0.2, 0);
+    }
+    add_box("lid", 0, 2.3, 0, 2.4, 0.2, 2.4, 0);
+    add_lights("{\"type\": \"point\", \"position\": [0, 1.1, 0], \"intensity\": 9, \"range\": 14}");
+    bake_scene("lamp_shut", json);
+    open_lamps(&l, "lamp_shut", 96, 60, &rung, 0);
+    memcpy(plain, take(&l, &c, PLAIN), (size_t)l.width * l.height * 8);
+    settle(&l, &c);
+    masu_punctual_light_state lamp = state_of(&l, 0);
+    for (int f = 0; f < 24; f++) {
+        lamp.position[0] = 0.6 * sin(0.3 * f);
+        lamp.position[2] = 0.4 * sin(0.5 * f);
+        assert_int_equal(masu_punctual_light_set(l.s.m, masu_punctual_light_at(l.s.m, 0), &lamp), MASU_OK);
+        const uint16_t *hdr = take(&l, &c, SHADOWED);
+        assert_true(l.stats.local_shadow_faces <= 4);
+        waited += l.stats.local_shadow_waiting != 0;
+        for (uint32_t i = 0; i < l.width * l.height; i++) {
+            double without = luma(plain + 4 * i);
+            if (!(without > 1e-2)) continue;
+            lit++;
+            leaks += luma(hdr + 4 * i) > 0.05 * without;
+        }
+    }
+    print_message("%u of %u pixels lit through the box, faces waited in %u of 24 frames\n", leaks, lit, waited);
+    assert_true(lit > 24 * 1000 && waited > 8);
+    assert_int_equal(leaks, 0);
+    settle(&l, &c); /* it comes to rest, where nothing waits */
+    close_lamps(&l);
+}
+
 /* ---- Live changes ---------------------------------------------------------------------------- */
 
 static void a_thousand_lights_come_and_go(void **state) {
@@ -505,7 +544,7 @@ static void a_thousand_lights_come_and_go(void **state) {
     open_lamps(&l, "lamp_street", 64, 40, NULL, ROOM);
     for (uint32_t n = 0; n < 1000; n++) {
         uint32_t at = (uint32_t)random_between(&seed, 0, ROOM - 0.01);
-        if (handles[at].id) assert_int_equal(masu_punctual_light_remove(l.s.m, handles[at]), MASU_OK);
+        if (handles[at].id) assert_int_equal(masu_punctual_light_remove(l.s.m, handles[at], NULL), MASU_OK);
         masu_punctual_light_state s = {.range = (float)random_between(&seed, 1, 12),
                                        .radius = 0.01f,
                                        .spot = n % 3 == 0,
@@ -517,7 +556,7 @@ static void a_thousand_lights_come_and_go(void **state) {
             s.position[k] = random_between(&seed, -4, 4) + (k == 1 ? 3 : 0);
             s.color[k] = (float)random_between(&seed, 0, 20);
         }
-        assert_int_equal(masu_punctual_light_add(l.s.m, &s, &handles[at]), MASU_OK);
+        assert_int_equal(masu_punctual_light_add(l.s.m, &s, &handles[at], NULL), MASU_OK);
         if (n % 4) continue;
         take(&l, &c, n % 100 == 48 ? PLAIN : SHADOWED);
         assert_true(l.stats.local_shadow_faces <= 4 && l.stats.local_shadow_lights <= 16);
@@ -557,12 +596,12 @@ static void nothing_is_planned_where_no_light_casts(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(visibility_is_that_of_rays),
-        cmocka_unit_test(the_floor_below_a_near_point_does_not_shadow_itself),
         cmocka_unit_test(planes_do_not_shadow_themselves),
         cmocka_unit_test(large_triangles_do_not_shadow_themselves),
         cmocka_unit_test(faces_that_look_away_are_dark),
         cmocka_unit_test(what_is_kept_is_what_would_be_rendered),
         cmocka_unit_test(shadows_come_and_go_by_steps),
+        cmocka_unit_test(a_point_that_moves_keeps_its_walls),
         cmocka_unit_test(a_thousand_lights_come_and_go),
         cmocka_unit_test(nothing_is_planned_where_no_light_casts),
     };

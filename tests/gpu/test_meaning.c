@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+static masu_detail failure; /* of the last call that failed */
+
 enum { W = 96, H = 64, CENTRE = H / 2 * W + W / 2 };
 
 static masu_session s;
@@ -28,10 +30,10 @@ static float depth_at_centre(const masu_frame_desc *frame) {
 static void a_field_of_lipschitz_constant_3_is_stepped_by_a_third(void **state) {
     (void)state;
     masu_stats_info stats;
-    masu_frame_desc frame = {0};
+    masu_frame_desc frame = {MASU_FRAME_DESC};
     open_scene("test_scaled_field", 0);
     assert_float_equal(depth_at_centre(&frame), 3.0f, 1e-3f);
-    assert_int_equal(masu_stats(s.m, 0, &stats), MASU_OK);
+    assert_int_equal(masu_stats(s.m, 0, &stats, &failure), MASU_OK);
     /* Steps three times too long would walk through the rim, or far into the sphere. */
     const float *depth = draw_image(&s, &frame, MASU_READBACK_DEPTH, NULL);
     uint32_t hits = 0;
@@ -50,15 +52,15 @@ static void a_field_of_lipschitz_constant_3_is_stepped_by_a_third(void **state) 
 static void time_moves_the_field_and_the_camera_along_its_path(void **state) {
     (void)state;
     masu_camera c;
-    masu_frame_desc frame = {.time = 1};
+    masu_frame_desc frame = {MASU_FRAME_DESC, .time = 1};
     open_scene("test_scaled_field", 0);
     /* Both are 0.5 apart at time 1: the camera at x = 1, the sphere at x = 0.5. */
     assert_float_equal(depth_at_centre(&frame), 4.0f - sqrtf(0.75f), 0.02f);
-    assert_int_equal(masu_camera_at(s.m, 0.5, &c), MASU_OK);
+    assert_int_equal(masu_camera_at(s.m, 0.5, &c, &failure), MASU_OK);
     assert_float_equal(c.position[0], 0.5, 1e-6);
-    assert_int_equal(masu_camera_at(s.m, -5, &c), MASU_OK); /* held at both ends */
+    assert_int_equal(masu_camera_at(s.m, -5, &c, &failure), MASU_OK); /* held at both ends */
     assert_float_equal(c.position[0], 0, 1e-6);
-    assert_int_equal(masu_camera_at(s.m, 99, &c), MASU_OK);
+    assert_int_equal(masu_camera_at(s.m, 99, &c, &failure), MASU_OK);
     assert_float_equal(c.position[0], 2, 1e-6);
     close_session(&s);
 }
@@ -66,12 +68,12 @@ static void time_moves_the_field_and_the_camera_along_its_path(void **state) {
 static void steps_that_run_out_near_the_surface_still_show_it(void **state) {
     (void)state;
     masu_stats_info stats;
-    masu_frame_desc frame = {0};
+    masu_frame_desc frame = {MASU_FRAME_DESC};
     /* From distance 4 with f / 3: after 24 steps the middle is within 2 pixels, not within 0.1. */
     for (uint32_t steps = 1; steps < 64; steps++) {
         open_scene("test_sphere_sdf", steps);
         depth_at_centre(&frame);
-        assert_int_equal(masu_stats(s.m, 0, &stats), MASU_OK);
+        assert_int_equal(masu_stats(s.m, 0, &stats, &failure), MASU_OK);
         close_session(&s);
         if (stats.sdf_unconverged && stats.sdf_hits)
             return; /* some of them stand for the surface */
@@ -82,7 +84,7 @@ static void steps_that_run_out_near_the_surface_still_show_it(void **state) {
 static void materials_arrive_in_the_g_buffer(void **state) {
     (void)state;
     static const float box[3] = {0.2f, 0.4f, 0.7f}, sphere[3] = {0.7f, 0.6f, 0.2f};
-    masu_frame_desc frame = {0};
+    masu_frame_desc frame = {MASU_FRAME_DESC};
     uint32_t seen[2] = {0};
     open_scene("test_both", 0);
     const uint8_t *albedo = draw_image(&s, &frame, MASU_READBACK_ALBEDO, NULL);
@@ -108,7 +110,7 @@ static void the_sun_lights_as_the_formulas_say(void **state) {
                               .ambient = {0.1f, 0.2f, 0.3f},
                               .sky_zenith = {0, 0, 0},
                               .sky_horizon = {0, 0, 0}};
-    masu_frame_desc frame = {.light = &light};
+    masu_frame_desc frame = {MASU_FRAME_DESC, .light = &light};
     open_scene("test_scaled_field", 0);
     const uint16_t *hdr = (const uint16_t *)draw_image(&s, &frame, MASU_READBACK_HDR, NULL) + 4 * CENTRE;
     static const double albedo[3] = {0.25, 0.5, 1.0};
@@ -143,7 +145,7 @@ static void exposure_is_a_factor_and_the_curve_rises_to_white(void **state) {
     static uint8_t a[W * H * 4], b[W * H * 4];
     masu_light light = {
         .sun_direction = {0, 0, 1}, .sun_color = {0.5f, 0.25f, 0.125f}, .exposure = 2};
-    masu_frame_desc frame = {.light = &light};
+    masu_frame_desc frame = {MASU_FRAME_DESC, .light = &light};
     open_scene("test_sphere_sdf", 0);
     draw_image(&s, &frame, MASU_READBACK_HDR, a);
     for (int k = 0; k < 3; k++) light.sun_color[k] *= 2;
@@ -176,17 +178,17 @@ static void the_log_hears_what_the_detail_says(void **state) {
     (void)state;
     masu_session_desc d = test_desc("test_sphere_sdf", W, H);
     masu_commands commands;
-    masu_frame_desc bad = {.rung = 77};
+    masu_frame_desc bad = {MASU_FRAME_DESC, .rung = 77};
     d.desc.log = keep_log;
     d.desc.log_user = &log_count;
     log_count = 0;
     open_session(&s, &d);
     assert_int_equal(log_count, 1);
     assert_int_equal(logged[0][0], '2'); /* information: the box */
-    assert_int_equal(masu_frame(s.m, &bad, &commands), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_frame(s.m, &bad, &commands, &failure), MASU_ERROR_ARGUMENT);
     assert_int_equal(log_count, 2);
     assert_int_equal(logged[1][0], '0');
-    assert_string_equal(logged[1] + 2, masu_last_error(s.m)->text);
+    assert_string_equal(logged[1] + 2, failure.text);
     masu_detail detail;
     masu_renderer *none;
     assert_int_equal(masu_init(&s.desc, NULL, 0, &none, &detail), MASU_ERROR_MEMORY);

@@ -11,6 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+static masu_detail failure; /* of the last call that failed */
+
 enum { W = 160, H = 90, MOST = 128 };
 
 /* ---- Rays ------------------------------------------------------------------------------------ */
@@ -30,7 +32,7 @@ static world look_around(masu_session *s) {
                .instances = masu_scene_count(&scene, MASU_SCENE_INSTANCE)};
     assert_in_range(w.instances, 0, MOST);
     for (uint32_t i = 0; i < w.instances; i++)
-        assert_int_equal(masu_instance_get(s->m, masu_instance_at(s->m, i), &w.at[i]), MASU_OK);
+        assert_int_equal(masu_instance_get(s->m, masu_instance_at(s->m, i), &w.at[i], &failure), MASU_OK);
     return w;
 }
 
@@ -123,7 +125,7 @@ static masu_pick_info pick_at(masu_session *s, masu_frame_desc frame, uint32_t x
     masu_pick_info info;
     frame.pick = 1, frame.pick_x = x, frame.pick_y = y;
     draw(s, &frame, commands, NULL);
-    assert_int_equal(masu_pick(s->m, commands->slot, &info), MASU_OK);
+    assert_int_equal(masu_pick(s->m, commands->slot, &info, &failure), MASU_OK);
     assert_int_equal(info.frame, commands->frame);
     assert_int_equal(info.x, x);
     assert_int_equal(info.y, y);
@@ -146,7 +148,7 @@ static void check_pixel(masu_session *s, const world *w, const lens *l, const ma
     masu_commands commands;
     masu_pick_info info = pick_at(s, *frame, x, y, &commands);
     masu_readback_image image;
-    assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_DEPTH, &image), MASU_OK);
+    assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_DEPTH, &image, &failure), MASU_OK);
     uint32_t px = (uint32_t)((x + 0.5) * scale), py = (uint32_t)((y + 0.5) * scale);
     float depth = ((const float *)image.pixels)[py * image.width + px];
     vec along = ray_of(l, px + 0.5, py + 0.5);
@@ -196,7 +198,7 @@ static tally check_grid(masu_session *s, masu_frame_desc frame, double scale, do
     const VkExtent2D size = s->desc.output;
     masu_camera c;
     if (!frame.camera) {
-        assert_int_equal(masu_camera_at(s->m, frame.time, &c), MASU_OK);
+        assert_int_equal(masu_camera_at(s->m, frame.time, &c, &failure), MASU_OK);
         c.near_distance = w.v.environment->near_distance;
         frame.camera = &c;
     }
@@ -236,7 +238,7 @@ static void open_picking(masu_session *s, const char *name) { open_reserve(s, na
 
 static uint32_t index_of(masu_session *s, const char *name) {
     masu_instance_state state;
-    assert_int_equal(masu_instance_get(s->m, masu_instance_find(s->m, name), &state), MASU_OK);
+    assert_int_equal(masu_instance_get(s->m, masu_instance_find(s->m, name), &state, &failure), MASU_OK);
     return state.index;
 }
 
@@ -254,11 +256,11 @@ static void polygons_sdf_and_sky_are_told_apart(void **state) {
     (void)state;
     masu_session s;
     open_picking(&s, "test_both");
-    tally t = check_grid(&s, (masu_frame_desc){.time = 0}, 1, 1e-3, trials(11, 11, 15));
+    tally t = check_grid(&s, (masu_frame_desc){MASU_FRAME_DESC, .time = 0}, 1, 1e-3, trials(11, 11, 15));
     assert_true(t.sky > 10 && t.sdf > 5 && t.instances > 5);
     close_picking(&s);
     open_picking(&s, "test_sphere_sdf"); /* no polygons at all */
-    t = check_grid(&s, (masu_frame_desc){.time = 0}, 1, 1e-3, trials(11, 11, 15));
+    t = check_grid(&s, (masu_frame_desc){MASU_FRAME_DESC, .time = 0}, 1, 1e-3, trials(11, 11, 15));
     assert_true(t.sky > 10 && t.sdf > 5 && !t.instances);
     close_picking(&s);
 }
@@ -268,14 +270,14 @@ static void what_moves_hides_and_shines_through_is_found(void **state) {
     masu_session s;
     open_picking(&s, "test_live");
     uint32_t pane = index_of(&s, "pane");
-    tally t = check_grid(&s, (masu_frame_desc){.time = 0}, 1, 1e-3, STEP);
+    tally t = check_grid(&s, (masu_frame_desc){MASU_FRAME_DESC, .time = 0}, 1, 1e-3, STEP);
     assert_true(t.of[pane] > 0 && t.blended > 0 && t.instances > 20);
     masu_model truck = masu_model_find(s.m, "truck");
     const float rows[12] = {1, 0, 0, 0.5f, 0, 1, 0, 0.25f, 0, 0, 1, 1};
-    assert_int_equal(masu_model_set_transform(s.m, truck, rows), MASU_OK);
-    assert_int_equal(masu_model_show(s.m, masu_model_find(s.m, "pane"), 0), MASU_OK);
-    assert_int_equal(masu_model_show(s.m, masu_model_find(s.m, "lamp"), 1), MASU_OK);
-    t = check_grid(&s, (masu_frame_desc){.time = 0}, 1, 1e-3, STEP);
+    assert_int_equal(masu_model_set_transform(s.m, truck, rows, &failure), MASU_OK);
+    assert_int_equal(masu_model_show(s.m, masu_model_find(s.m, "pane"), 0, &failure), MASU_OK);
+    assert_int_equal(masu_model_show(s.m, masu_model_find(s.m, "lamp"), 1, &failure), MASU_OK);
+    t = check_grid(&s, (masu_frame_desc){MASU_FRAME_DESC, .time = 0}, 1, 1e-3, STEP);
     assert_int_equal(t.of[pane], 0);
     assert_int_equal(t.blended, 0);
     close_picking(&s);
@@ -287,14 +289,14 @@ static void a_model_and_its_node_are_named(void **state) {
     masu_commands commands;
     open_picking(&s, "test_live");
     masu_model truck = masu_model_find(s.m, "truck");
-    masu_pick_info info = pick_at(&s, (masu_frame_desc){.time = 0}, 60, 38, &commands);
+    masu_pick_info info = pick_at(&s, (masu_frame_desc){MASU_FRAME_DESC, .time = 0}, 60, 38, &commands);
     assert_int_equal(info.kind, MASU_PICK_INSTANCE);
     assert_int_equal(info.model.id, truck.id);
     masu_node_state node;
-    assert_int_equal(masu_model_node_get(s.m, truck, info.node, &node), MASU_OK);
+    assert_int_equal(masu_model_node_get(s.m, truck, info.node, &node, &failure), MASU_OK);
     assert_int_equal(node.instance.id, info.instance.id);
     /* What is no node of a moving model has none. */
-    info = pick_at(&s, (masu_frame_desc){.time = 0}, 20, 80, &commands);
+    info = pick_at(&s, (masu_frame_desc){MASU_FRAME_DESC, .time = 0}, 20, 80, &commands);
     assert_int_equal(info.instance.id, masu_instance_find(s.m, "floor").id);
     assert_int_equal(info.model.id, 0);
     assert_int_equal(info.node, MASU_NODE_NONE);
@@ -313,26 +315,26 @@ static void a_copy_that_came_later_is_not_named(void **state) {
     masu_camera c;
     open_reserve(&s, "test_reserve", 2);
     masu_model block = masu_model_find(s.m, "block");
-    assert_int_equal(masu_camera_at(s.m, 0, &c), MASU_OK);
+    assert_int_equal(masu_camera_at(s.m, 0, &c, &failure), MASU_OK);
     double length = sqrt((double)(c.forward[0] * c.forward[0] + c.forward[1] * c.forward[1] +
                                   c.forward[2] * c.forward[2]));
     for (uint32_t k = 0; k < 3; k++)
         rows[4 * k + 3] = (float)(c.position[k] + 3 * (double)c.forward[k] / length);
-    assert_int_equal(masu_model_add(s.m, block, rows, &copies[0]), MASU_OK);
-    assert_int_equal(masu_model_add(s.m, block, far_off, &copies[1]), MASU_OK);
-    masu_model now = pick_at(&s, (masu_frame_desc){.time = 0}, W / 2, H / 2, &commands).model;
+    assert_int_equal(masu_model_add(s.m, block, rows, &copies[0], &failure), MASU_OK);
+    assert_int_equal(masu_model_add(s.m, block, far_off, &copies[1], &failure), MASU_OK);
+    masu_model now = pick_at(&s, (masu_frame_desc){MASU_FRAME_DESC, .time = 0}, W / 2, H / 2, &commands).model;
     assert_int_equal(now.id, copies[0].id);
-    assert_int_equal(masu_model_remove(s.m, copies[1]), MASU_OK); /* another slot changes nothing */
-    assert_int_equal(masu_model_add(s.m, block, far_off, &copies[1]), MASU_OK);
-    assert_int_equal(masu_pick(s.m, commands.slot, &info), MASU_OK);
+    assert_int_equal(masu_model_remove(s.m, copies[1], &failure), MASU_OK); /* another slot changes nothing */
+    assert_int_equal(masu_model_add(s.m, block, far_off, &copies[1], &failure), MASU_OK);
+    assert_int_equal(masu_pick(s.m, commands.slot, &info, &failure), MASU_OK);
     assert_int_equal(info.model.id, copies[0].id);
-    assert_int_equal(masu_model_remove(s.m, copies[0]), MASU_OK);
-    assert_int_equal(masu_model_add(s.m, block, rows, &copies[2]), MASU_OK);
-    assert_int_equal(masu_pick(s.m, commands.slot, &info), MASU_OK);
+    assert_int_equal(masu_model_remove(s.m, copies[0], &failure), MASU_OK);
+    assert_int_equal(masu_model_add(s.m, block, rows, &copies[2], &failure), MASU_OK);
+    assert_int_equal(masu_pick(s.m, commands.slot, &info, &failure), MASU_OK);
     assert_int_equal(info.kind, MASU_PICK_INSTANCE);
     assert_int_equal(info.instance.id, 0);
     assert_int_equal(info.model.id, 0);
-    now = pick_at(&s, (masu_frame_desc){.time = 0}, W / 2, H / 2, &commands).model;
+    now = pick_at(&s, (masu_frame_desc){MASU_FRAME_DESC, .time = 0}, W / 2, H / 2, &commands).model;
     assert_int_equal(now.id, copies[2].id);
     close_picking(&s);
 }
@@ -341,7 +343,7 @@ static void a_smaller_rung_picks_its_own_pixels(void **state) {
     (void)state;
     masu_session s;
     open_picking(&s, "test_live");
-    (void)check_grid(&s, (masu_frame_desc){.rung = 1}, 0.5, 0.02, 2 * STEP + 1);
+    (void)check_grid(&s, (masu_frame_desc){MASU_FRAME_DESC, .rung = 1}, 0.5, 0.02, 2 * STEP + 1);
     close_picking(&s);
 }
 
@@ -350,7 +352,7 @@ static void lods_and_culling_change_nothing(void **state) {
     masu_session s;
     open_picking(&s, "test_lods");
     masu_camera c = {.position = {0, 4, 20}, .forward = {0, -0.2f, -1}, .fov_y = 1, .near_distance = 0.1f};
-    tally t = check_grid(&s, (masu_frame_desc){.camera = &c}, 1, 0.05, 9 + 4);
+    tally t = check_grid(&s, (masu_frame_desc){MASU_FRAME_DESC, .camera = &c}, 1, 0.05, 9 + 4);
     assert_true(t.instances > 20);
     close_picking(&s);
 }
@@ -365,7 +367,7 @@ static void holes_of_a_mask_are_not_picked(void **state) {
     masu_camera c = {.position = {1.5, 0, 4}, .forward = {0, 0, -1}, .fov_y = 0.7f, .near_distance = 0.005f};
     for (uint32_t i = 0; i < trials(300, 300, 150); i++) { /* of the rows that have masks, and some sky */
         uint32_t x = i * 37 % W, y = 15 + i * 53 % 60;
-        masu_pick_info info = pick_at(&s, (masu_frame_desc){.camera = &c}, x, y, &commands);
+        masu_pick_info info = pick_at(&s, (masu_frame_desc){MASU_FRAME_DESC, .camera = &c}, x, y, &commands);
         float depth = ((const float *)read_image(&s, commands.slot, MASU_READBACK_DEPTH))[y * W + x];
         assert_true(info.depth == depth);
         assert_int_equal(info.kind, depth > 0 ? MASU_PICK_INSTANCE : MASU_PICK_SKY);
@@ -392,7 +394,7 @@ static void through_a_mask_what_is_behind_is_picked(void **state) {
     masu_camera c = {.position = {0, 0, 4}, .forward = {0, 0, -1}, .fov_y = 0.5f, .near_distance = 0.005f};
     for (uint32_t i = 0; i < trials(400, 400, 200); i++) {
         uint32_t x = i * 37 % W, y = i * 53 % H;
-        masu_pick_info info = pick_at(&s, (masu_frame_desc){.camera = &c}, x, y, &commands);
+        masu_pick_info info = pick_at(&s, (masu_frame_desc){MASU_FRAME_DESC, .camera = &c}, x, y, &commands);
         float depth = ((const float *)read_image(&s, commands.slot, MASU_READBACK_DEPTH))[y * W + x];
         if (depth == 0) continue;
         int first = 0.005f / depth < 4.5f;
@@ -414,10 +416,10 @@ static void what_bends_is_picked_where_it_is(void **state) {
     open_picking(&s, "test_skin");
     masu_model bear = masu_model_find(s.m, "bear");
     masu_clip_use use = {.clip = 0, .loop = 1, .time = 0.4, .weight = 1};
-    assert_int_equal(masu_model_animate(s.m, bear, &use, 1), MASU_OK);
+    assert_int_equal(masu_model_animate(s.m, bear, &use, 1, &failure), MASU_OK);
     world w = look_around(&s);
     masu_camera c;
-    assert_int_equal(masu_camera_at(s.m, 0, &c), MASU_OK);
+    assert_int_equal(masu_camera_at(s.m, 0, &c, &failure), MASU_OK);
     c.near_distance = w.v.environment->near_distance;
     lens l = lens_of(&c, W, H, (double)W / H);
     for (uint32_t i = 0; i < w.instances; i++) w.at[i].shown = 0; /* but the rigid ones */
@@ -425,7 +427,7 @@ static void what_bends_is_picked_where_it_is(void **state) {
     for (uint32_t i = 0; i < 2; i++) w.at[rigid[i]].shown = 1;
     for (uint32_t i = 0; i < trials(150, 150, 50); i++) { /* about what bends */
         uint32_t x = 56 + i * 37 % 54, y = 22 + i * 29 % 38;
-        masu_pick_info info = pick_at(&s, (masu_frame_desc){.camera = &c}, x, y, &commands);
+        masu_pick_info info = pick_at(&s, (masu_frame_desc){MASU_FRAME_DESC, .camera = &c}, x, y, &commands);
         float depth = ((const float *)read_image(&s, commands.slot, MASU_READBACK_DEPTH))[y * W + x];
         assert_true(info.depth == depth);
         if (depth == 0) continue;
@@ -471,18 +473,18 @@ static void a_part_of_the_output_has_pixels_of_its_own(void **state) {
     masu_commands commands;
     masu_pick_info info[2];
     for (uint32_t v = 0; v < 2; v++) { /* in flight at once: each slot has its own answer */
-        masu_frame_desc frame = {.camera = &c, .viewport = v, .pick = 1, .pick_x = 30, .pick_y = v ? 12 : 55};
-        assert_int_equal(masu_frame(x.m, &frame, &commands), MASU_OK);
+        masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &c, .viewport = v, .pick = 1, .pick_x = 30, .pick_y = v ? 12 : 55};
+        assert_int_equal(masu_frame(x.m, &frame, &commands, &failure), MASU_OK);
         assert_ok(masu_headless_run(&s.host, commands.buffer, error, sizeof error));
         assert_int_equal(commands.slot, v);
     }
-    for (uint32_t v = 0; v < 2; v++) assert_int_equal(masu_pick(x.m, v, &info[v]), MASU_OK);
+    for (uint32_t v = 0; v < 2; v++) assert_int_equal(masu_pick(x.m, v, &info[v], &failure), MASU_OK);
     assert_int_equal(info[0].model.id, masu_model_find(x.m, "truck").id);
     assert_int_equal(info[1].instance.id, masu_instance_find(x.m, "wall").id);
     assert_true(fabs(info[1].position[2] - -3.85) < 1e-3);
-    masu_frame_desc frame = {.camera = &c, .viewport = 1, .pick = 1, .pick_x = 60, .pick_y = 0};
-    assert_int_equal(masu_frame(x.m, &frame, &commands), MASU_ERROR_ARGUMENT);
-    assert_string_equal(masu_last_error(x.m)->text,
+    masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &c, .viewport = 1, .pick = 1, .pick_x = 60, .pick_y = 0};
+    assert_int_equal(masu_frame(x.m, &frame, &commands, &failure), MASU_ERROR_ARGUMENT);
+    assert_string_equal(failure.text,
                         "pick_x, pick_y is 60, 0, allowed are pixels of the output, which is 60x60");
     unmake_own(&s, &x);
     close_session(&s);
@@ -498,7 +500,7 @@ static void a_window_of_its_own_is_picked_through(void **state) {
     for (int side = 0; side < 2; side++) {
         c.left = side ? 0.01f : -0.3f, c.right = side ? 0.61f : 0.3f, c.bottom = -0.2f, c.top = 0.2f;
         uint32_t x = side ? 0 : W / 2;
-        masu_pick_info info = pick_at(&s, (masu_frame_desc){.camera = &c}, x, H / 2, &commands);
+        masu_pick_info info = pick_at(&s, (masu_frame_desc){MASU_FRAME_DESC, .camera = &c}, x, H / 2, &commands);
         float depth = ((const float *)read_image(&s, commands.slot, MASU_READBACK_DEPTH))[H / 2 * W + x];
         assert_true(depth > 0 && info.depth == depth);
         double slope = (double)c.left + (x + 0.5) / W * 0.6;
@@ -514,27 +516,27 @@ static void what_is_not_asked_is_not_told(void **state) {
     masu_commands commands;
     masu_pick_info info;
     open_picking(&s, "test_live");
-    assert_int_equal(masu_pick(s.m, 0, &info), MASU_INCOMPLETE);
-    draw(&s, &(masu_frame_desc){.time = 0}, &commands, without);
-    assert_int_equal(masu_pick(s.m, commands.slot, &info), MASU_OK);
+    assert_int_equal(masu_pick(s.m, 0, &info, &failure), MASU_INCOMPLETE);
+    draw(&s, &(masu_frame_desc){MASU_FRAME_DESC, .time = 0}, &commands, without);
+    assert_int_equal(masu_pick(s.m, commands.slot, &info, &failure), MASU_OK);
     assert_int_equal(info.kind, MASU_PICK_NOTHING);
     assert_int_equal(info.instance.id, 0);
-    assert_int_equal(masu_pick(s.m, 9, &info), MASU_ERROR_ARGUMENT);
-    masu_frame_desc beyond = {.pick = 1, .pick_x = 3, .pick_y = H};
-    assert_int_equal(masu_frame(s.m, &beyond, &commands), MASU_ERROR_ARGUMENT);
-    assert_string_equal(masu_last_error(s.m)->what, "pick_x");
+    assert_int_equal(masu_pick(s.m, 9, &info, &failure), MASU_ERROR_ARGUMENT);
+    masu_frame_desc beyond = {MASU_FRAME_DESC, .pick = 1, .pick_x = 3, .pick_y = H};
+    assert_int_equal(masu_frame(s.m, &beyond, &commands, &failure), MASU_ERROR_ARGUMENT);
+    assert_string_equal(failure.what, "pick_x");
     close_picking(&s);
     /* That it may be asked changes no pixel; without, it may not. */
     masu_session_desc d = test_desc("test_live", W, H);
     d.desc.readback = MASU_READBACK_DEPTH;
     set_rungs(&d);
     open_session(&s, &d);
-    draw(&s, &(masu_frame_desc){.time = 0}, &commands, with);
+    draw(&s, &(masu_frame_desc){MASU_FRAME_DESC, .time = 0}, &commands, with);
     assert_memory_equal(with, without, sizeof with);
-    assert_int_equal(masu_pick(s.m, commands.slot, &info), MASU_ERROR_ARGUMENT);
-    masu_frame_desc asks = {.pick = 1};
-    assert_int_equal(masu_frame(s.m, &asks, &commands), MASU_ERROR_ARGUMENT);
-    assert_string_equal(masu_last_error(s.m)->text, "pick is set, needed is desc.picking");
+    assert_int_equal(masu_pick(s.m, commands.slot, &info, &failure), MASU_ERROR_ARGUMENT);
+    masu_frame_desc asks = {MASU_FRAME_DESC, .pick = 1};
+    assert_int_equal(masu_frame(s.m, &asks, &commands, &failure), MASU_ERROR_ARGUMENT);
+    assert_string_equal(failure.text, "pick is set, needed is desc.picking");
     close_session(&s);
 }
 

@@ -172,7 +172,7 @@ static void spheres_are_what_the_picture_sends(void **state) {
     masu_light light;
     bake("");
     open_picture();
-    assert_int_equal(masu_light_of(s.m, &light), MASU_OK);
+    assert_int_equal(masu_light_of(s.m, &light, NULL), MASU_OK);
     for (int k = 0; k < 3; k++) assert_true(fabs((double)light.sun_direction[k] - sun[k]) < 0.01);
     const uint16_t *hdr = render(0, DISTANCE, 0, 0, -1, TANGENT);
     for (int i = 0; i < SPHERES; i++) {
@@ -210,7 +210,7 @@ static void a_scene_has_one_sun(void **state) {
         double middle, beside;
         bake(cases[i].json);
         open_picture();
-        assert_int_equal(masu_light_of(s.m, &light), MASU_OK);
+        assert_int_equal(masu_light_of(s.m, &light, NULL), MASU_OK);
         look_at_sun(&middle, &beside);
         print_message("sun %g, towards it %g, beside it %g\n", (double)light.sun_color[0], middle,
                       beside);

@@ -123,9 +123,9 @@ static void take(uint8_t *pixels, const char *what, uint32_t poisoned) {
     masu_commands commands;
     masu_readback_image depth, hdr, velocity;
     draw(&s, &(masu_frame_desc){.time_step = step_s}, &commands, pixels);
-    assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_DEPTH, &depth), MASU_OK);
-    assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_HDR, &hdr), MASU_OK);
-    assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_VELOCITY, &velocity), MASU_OK);
+    assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_DEPTH, &depth, NULL), MASU_OK);
+    assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_HDR, &hdr, NULL), MASU_OK);
+    assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_VELOCITY, &velocity, NULL), MASU_OK);
     bool image = poisoned && poisoned < MASU_IMAGE_COUNT;
     uint32_t own = image ? masu_images[poisoned].readback : 0;
     for (uint32_t y = 0; y < depth.height && !(own & MASU_READBACK_DEPTH); y++) {

@@ -343,7 +343,7 @@ static void mean_of(masu_session *s, const masu_light *light, double mean[3]) {
     masu_readback_image hdr;
     masu_frame_desc frame = {.light = light};
     draw(s, &frame, &commands, NULL);
-    assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_HDR, &hdr), MASU_OK);
+    assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_HDR, &hdr, NULL), MASU_OK);
     memset(mean, 0, 3 * sizeof *mean);
     for (uint32_t i = 0; i < W * H; i++) {
         for (uint32_t k = 0; k < 3; k++) {

@@ -313,7 +313,7 @@ static void move_all(masu_session *s, const masu_scene_view *v, const double by[
         float rows[12];
         memcpy(rows, v->instances[i].transform, sizeof rows);
         for (uint32_t k = 0; k < 3; k++) rows[4 * k + 3] = (float)((double)rows[4 * k + 3] + by[k]);
-        assert_int_equal(masu_instance_set_transform(s->m, masu_instance_at(s->m, i), rows), MASU_OK);
+        assert_int_equal(masu_instance_set_transform(s->m, masu_instance_at(s->m, i), rows, NULL), MASU_OK);
     }
 }
 
@@ -355,8 +355,8 @@ static void trace_all(const char *scene, masu_switch way, uint32_t split, const 
         }
         /* Far out it then rests: in the last frame nothing but the anchor moves. */
         if (!by || f == 0)
-            assert_int_equal(masu_instance_set_transform(s.m, box, rows), MASU_OK);
-        masu_frame_desc frame = {.camera = &camera, .cut = f == 0};
+            assert_int_equal(masu_instance_set_transform(s.m, box, rows, NULL), MASU_OK);
+        masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &camera, .cut = f == 0};
         draw(&s, &frame, &commands, pixels + (size_t)f * W * H * 4);
         memcpy(hits + (size_t)f * TEXELS, tap.mapped, TEXELS * sizeof(hit));
     }
@@ -472,12 +472,12 @@ static void sixty_frames_create_and_allocate_nothing(void **state) {
     masu_instance box = masu_instance_find(s.m, "moving");
     for (uint32_t i = 0; i < 60; i++) {
         float rows[12] = {1, 0, 0, 0.05f * (float)i, 0, 1, 0, 0.5f, 0, 0, 1, 0};
-        masu_frame_desc frame = {.time = 0.02 * i};
+        masu_frame_desc frame = {MASU_FRAME_DESC, .time = 0.02 * i};
         masu_commands commands;
         assert_ok(masu_headless_wait(&s.host, i % 2, error, sizeof error));
         uint64_t before = masu_allocs_of_thread();
-        assert_int_equal(masu_instance_set_transform(s.m, box, rows), MASU_OK);
-        assert_int_equal(masu_frame(s.m, &frame, &commands), MASU_OK);
+        assert_int_equal(masu_instance_set_transform(s.m, box, rows, NULL), MASU_OK);
+        assert_int_equal(masu_frame(s.m, &frame, &commands, NULL), MASU_OK);
         heap += masu_allocs_of_thread() - before;
         assert_ok(
             masu_headless_submit(&s.host, commands.buffer, commands.slot, error, sizeof error));

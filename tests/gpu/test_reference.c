@@ -122,7 +122,7 @@ static void animate(double time) {
         masu_model model = masu_model_at(s.m, i);
         masu_clip_use use = {.loop = 1, .time = time, .weight = 1.0f};
         if (masu_model_clips(s.m, model))
-            assert_int_equal(masu_model_animate(s.m, model, &use, 1), MASU_OK);
+            assert_int_equal(masu_model_animate(s.m, model, &use, 1, NULL), MASU_OK);
     }
 }
 
@@ -134,9 +134,9 @@ static void no_local_shadows(void) {
         masu_punctual_light light = masu_punctual_light_at(s.m, i);
         if (!light.id) break;
         masu_punctual_light_state state;
-        assert_int_equal(masu_punctual_light_get(s.m, light, &state), MASU_OK);
+        assert_int_equal(masu_punctual_light_get(s.m, light, &state, NULL), MASU_OK);
         state.no_shadow = 1;
-        assert_int_equal(masu_punctual_light_set(s.m, light, &state), MASU_OK);
+        assert_int_equal(masu_punctual_light_set(s.m, light, &state, NULL), MASU_OK);
     }
 }
 

@@ -46,8 +46,8 @@ static round_figures library_round(masu_session *s, const masu_desc *d, void *bl
     if (masu_init(d, block, bytes, &m, &detail)) fail_msg("%s", detail.text);
     load_all(s, m);
     for (int i = 0; i < frames; i++) {
-        masu_frame_desc frame = {.rung = 0};
-        assert_int_equal(masu_frame(m, &frame, &commands), MASU_OK);
+        masu_frame_desc frame = {MASU_FRAME_DESC, .rung = 0};
+        assert_int_equal(masu_frame(m, &frame, &commands, NULL), MASU_OK);
         assert_ok(masu_headless_run(&s->host, commands.buffer, error, sizeof error));
     }
     masu_destroy(m);

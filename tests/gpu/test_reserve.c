@@ -9,6 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+static masu_detail failure; /* of the last call that failed */
+
 enum { W = 160, H = 90, BYTES = W * H * 4, FRAMES = 6 };
 enum { KINDS = 5 };
 
@@ -34,7 +36,7 @@ static masu_session_desc desc_of(const char *scene, uint32_t models, uint32_t li
 
 static masu_result add(masu_session *s, const char *name, const float at[3], masu_model *out) {
     const float rows[12] = {1, 0, 0, at[0], 0, 1, 0, at[1], 0, 0, 1, at[2]};
-    return masu_model_add(s->m, masu_model_find(s->m, name), rows, out);
+    return masu_model_add(s->m, masu_model_find(s->m, name), rows, out, &failure);
 }
 
 static const masu_punctual_light_state spot = {.position = {0, 3, 2},
@@ -50,7 +52,7 @@ static const masu_punctual_light_state spot = {.position = {0, 3, 2},
 static void add_all(masu_session *s, masu_model added[KINDS], masu_punctual_light *light) {
     for (uint32_t k = 0; k < KINDS; k++)
         assert_int_equal(add(s, kinds[k].name, kinds[k].at, &added[k]), MASU_OK);
-    assert_int_equal(masu_punctual_light_add(s->m, &spot, light), MASU_OK);
+    assert_int_equal(masu_punctual_light_add(s->m, &spot, light, &failure), MASU_OK);
 }
 
 /* So many frames after a cut: reflections gather. */
@@ -120,8 +122,8 @@ static void what_is_removed_leaves_nothing(void **state) {
     open_session(&fresh, &d);
     add_all(&s, added, &light);
     draw_frames(&s, pictures[0]);
-    for (uint32_t k = 0; k < KINDS; k++) assert_int_equal(masu_model_remove(s.m, added[k]), MASU_OK);
-    assert_int_equal(masu_punctual_light_remove(s.m, light), MASU_OK);
+    for (uint32_t k = 0; k < KINDS; k++) assert_int_equal(masu_model_remove(s.m, added[k], &failure), MASU_OK);
+    assert_int_equal(masu_punctual_light_remove(s.m, light, &failure), MASU_OK);
     draw_frames(&s, pictures[0]);
     draw_frames(&fresh, pictures[2]);
     draw_frames(&fresh, pictures[1]);
@@ -168,23 +170,23 @@ static void at_the_limit_is_refused(void **state) {
     masu_session_desc d = desc_of("test_reserve", 2, 1);
     open_session(&s, &d);
     assert_int_equal(add(&s, "lamp", kinds[0].at, &added[0]), MASU_OK); /* with its light */
-    assert_int_equal(masu_punctual_light_add(s.m, &spot, &light[0]), MASU_ERROR_LIMIT);
-    assert_string_equal(masu_last_error(s.m)->text, "reserve.lights: 2 are needed, 1 are given");
+    assert_int_equal(masu_punctual_light_add(s.m, &spot, &light[0], &failure), MASU_ERROR_LIMIT);
+    assert_string_equal(failure.text, "reserve.lights: 2 are needed, 1 are given");
     assert_int_equal(add(&s, "lamp", kinds[1].at, &added[1]), MASU_ERROR_LIMIT);
-    assert_string_equal(masu_last_error(s.m)->what, "reserve.lights");
+    assert_string_equal(failure.what, "reserve.lights");
     assert_int_equal(added[1].id, 0);
     assert_int_equal(add(&s, "block", (const float[3]){NAN, 0, 0}, &added[1]), MASU_ERROR_ARGUMENT);
     assert_int_equal(add(&s, "block", kinds[1].at, &added[1]), MASU_OK);
     assert_int_equal(add(&s, "block", kinds[1].at, &added[2]), MASU_ERROR_LIMIT);
-    assert_string_equal(masu_last_error(s.m)->text, "reserve.models: 3 are needed, 2 are given");
+    assert_string_equal(failure.text, "reserve.models: 3 are needed, 2 are given");
     assert_int_equal(added[2].id, 0);
-    assert_int_equal(masu_model_remove(s.m, added[0]), MASU_OK);
-    assert_int_equal(masu_model_remove(s.m, added[0]), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_model_remove(s.m, added[0], &failure), MASU_OK);
+    assert_int_equal(masu_model_remove(s.m, added[0], &failure), MASU_ERROR_ARGUMENT);
     masu_punctual_light_state bad = spot;
     bad.range = -1;
-    assert_int_equal(masu_punctual_light_add(s.m, &bad, &light[0]), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_punctual_light_add(s.m, &spot, &light[0]), MASU_OK); /* the lamp's has gone */
-    assert_int_equal(masu_punctual_light_remove(s.m, masu_punctual_light_find(s.m, "glow")),
+    assert_int_equal(masu_punctual_light_add(s.m, &bad, &light[0], &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_punctual_light_add(s.m, &spot, &light[0], &failure), MASU_OK); /* the lamp's has gone */
+    assert_int_equal(masu_punctual_light_remove(s.m, masu_punctual_light_find(s.m, "glow"), &failure),
                      MASU_ERROR_ARGUMENT);
     draw_rung(&s, 0, pictures[0][0]);
     close_session(&s);
@@ -205,30 +207,30 @@ static void a_copy_is_animated_by_itself(void **state) {
     open_session(&copied, &d);
     swing = masu_model_find(own.m, "swing");
     assert_int_equal(masu_model_clips(own.m, swing), 1);
-    assert_int_equal(masu_model_set_transform(own.m, swing, rows), MASU_OK);
+    assert_int_equal(masu_model_set_transform(own.m, swing, rows, &failure), MASU_OK);
     draw_frames(&own, pictures[2]); /* at rest */
-    assert_int_equal(masu_model_animate(own.m, swing, &turned, 1), MASU_OK);
+    assert_int_equal(masu_model_animate(own.m, swing, &turned, 1, &failure), MASU_OK);
     draw_frames(&own, pictures[1]);
     assert_int_equal(add(&copied, "swing", at, &copy), MASU_OK);
     assert_int_equal(masu_model_clips(copied.m, copy), 1);
     assert_true(masu_model_clip_duration(copied.m, copy, 0) == masu_model_clip_duration(own.m, swing, 0));
     masu_model_state whole;
-    assert_int_equal(masu_model_get(copied.m, copy, &whole), MASU_OK);
+    assert_int_equal(masu_model_get(copied.m, copy, &whole, &failure), MASU_OK);
     uint32_t moved = 0;
     for (uint32_t turn = 0; turn < 2; turn++) {
         for (uint32_t n = 0; n < whole.nodes; n++) {
-            assert_int_equal(masu_model_node_get(copied.m, copy, n, &is), MASU_OK);
-            assert_int_equal(masu_model_node_get(own.m, swing, n, &expected), MASU_OK);
-            assert_int_equal(masu_model_node_get(copied.m, masu_model_find(copied.m, "swing"), n, &rest), MASU_OK);
+            assert_int_equal(masu_model_node_get(copied.m, copy, n, &is, &failure), MASU_OK);
+            assert_int_equal(masu_model_node_get(own.m, swing, n, &expected, &failure), MASU_OK);
+            assert_int_equal(masu_model_node_get(copied.m, masu_model_find(copied.m, "swing"), n, &rest, &failure), MASU_OK);
             if (turn) assert_memory_equal(is.world, expected.world, sizeof is.world);
             else moved += memcmp(is.world, expected.world, sizeof is.world) != 0;
             if (n == whole.nodes - 1 && !turn) before = rest;
             if (n == whole.nodes - 1) assert_memory_equal(rest.world, before.world, sizeof rest.world);
         }
-        if (!turn) assert_int_equal(masu_model_animate(copied.m, copy, &turned, 1), MASU_OK);
+        if (!turn) assert_int_equal(masu_model_animate(copied.m, copy, &turned, 1, &failure), MASU_OK);
     }
     assert_true(moved > 0);
-    assert_int_equal(masu_model_show(copied.m, masu_model_find(copied.m, "swing"), 0), MASU_OK);
+    assert_int_equal(masu_model_show(copied.m, masu_model_find(copied.m, "swing"), 0, &failure), MASU_OK);
     draw_frames(&copied, pictures[0]);
     draw_frames(&copied, pictures[0]); /* of the same numbers */
     uint32_t off = far_off(pictures[0][FRAMES - 1], pictures[1][FRAMES - 1]);
@@ -307,30 +309,30 @@ static void handles_of_what_is_gone_are_refused(void **state) {
     masu_instance_state is;
     masu_punctual_light glow = masu_punctual_light_at(s.m, 1);
     masu_punctual_light_state light;
-    assert_int_equal(masu_instance_get(s.m, bulb, &is), MASU_OK);
+    assert_int_equal(masu_instance_get(s.m, bulb, &is, &failure), MASU_OK);
     assert_int_equal(is.model.id, added.id);
-    assert_int_equal(masu_punctual_light_get(s.m, glow, &light), MASU_OK);
+    assert_int_equal(masu_punctual_light_get(s.m, glow, &light, &failure), MASU_OK);
     assert_int_equal(light.instance.id, bulb.id);
     /* A light of the scene's own that it carries goes dark and is left behind. */
     masu_punctual_light own = masu_punctual_light_find(s.m, "glow");
-    assert_int_equal(masu_punctual_light_set(s.m, own, &light), MASU_OK);
-    assert_int_equal(masu_model_remove(s.m, added), MASU_OK);
-    assert_int_equal(masu_punctual_light_get(s.m, own, &light), MASU_OK);
+    assert_int_equal(masu_punctual_light_set(s.m, own, &light, &failure), MASU_OK);
+    assert_int_equal(masu_model_remove(s.m, added, &failure), MASU_OK);
+    assert_int_equal(masu_punctual_light_get(s.m, own, &light, &failure), MASU_OK);
     assert_int_equal(light.instance.id, 0);
     assert_true(light.color[0] == 0.0f);
     for (uint32_t round = 0; round < 2; round++) {
-        assert_int_equal(masu_model_show(s.m, added, 1), MASU_ERROR_ARGUMENT);
-        assert_non_null(strstr(masu_last_error(s.m)->text, "removed"));
-        assert_int_equal(masu_instance_get(s.m, bulb, &is), MASU_ERROR_ARGUMENT);
-        assert_int_equal(masu_punctual_light_set(s.m, glow, &light), MASU_ERROR_ARGUMENT);
+        assert_int_equal(masu_model_show(s.m, added, 1, &failure), MASU_ERROR_ARGUMENT);
+        assert_non_null(strstr(failure.text, "removed"));
+        assert_int_equal(masu_instance_get(s.m, bulb, &is, &failure), MASU_ERROR_ARGUMENT);
+        assert_int_equal(masu_punctual_light_set(s.m, glow, &light, &failure), MASU_ERROR_ARGUMENT);
         light.instance = bulb;
-        assert_int_equal(masu_punctual_light_set(s.m, own, &light), MASU_ERROR_ARGUMENT);
+        assert_int_equal(masu_punctual_light_set(s.m, own, &light, &failure), MASU_ERROR_ARGUMENT);
         if (round) break;
         assert_int_equal(add(&s, "truck", kinds[0].at, &again), MASU_OK); /* nor does it carry that light */
-        assert_int_equal(masu_punctual_light_get(s.m, own, &light), MASU_OK);
+        assert_int_equal(masu_punctual_light_get(s.m, own, &light, &failure), MASU_OK);
         assert_int_equal(light.instance.id, 0);
     }
-    assert_int_equal(masu_model_remove(s.m, masu_model_find(s.m, "block")), MASU_OK); /* is hidden */
+    assert_int_equal(masu_model_remove(s.m, masu_model_find(s.m, "block"), &failure), MASU_OK); /* is hidden */
     assert_int_equal(add(&s, "block", kinds[0].at, &again), MASU_OK);
     assert_int_equal(again.id, masu_model_find(s.m, "block").id);
     close_session(&s);
@@ -351,34 +353,34 @@ static void refuse_everywhere(masu_renderer *m, uint64_t instance, uint64_t mode
     masu_instance i = {instance};
     masu_model o = {model};
     masu_punctual_light l = {light};
-    assert_int_equal(masu_instance_get(m, i, &is), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_instance_show(m, i, 1), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_instance_set_transform(m, i, rows), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_model_get(m, o, &ms), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_model_set_transform(m, o, rows), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_model_show(m, o, 1), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_model_add(m, o, rows, &added), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_instance_get(m, i, &is, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_instance_show(m, i, 1, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_instance_set_transform(m, i, rows, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_model_get(m, o, &ms, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_model_set_transform(m, o, rows, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_model_show(m, o, 1, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_model_add(m, o, rows, &added, &failure), MASU_ERROR_ARGUMENT);
     assert_int_equal(added.id, 0);
-    assert_int_equal(masu_model_remove(m, o), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_model_remove(m, o, &failure), MASU_ERROR_ARGUMENT);
     assert_int_equal(masu_model_node_find(m, o, "arm"), MASU_NODE_NONE);
-    assert_int_equal(masu_model_node_get(m, o, 0, &ns), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_model_node_set(m, o, 0, rows), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_model_node_get(m, o, 0, &ns, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_model_node_set(m, o, 0, rows, &failure), MASU_ERROR_ARGUMENT);
     assert_int_equal(masu_model_clips(m, o), 0);
     assert_int_equal(masu_model_clip_find(m, o, "swing"), MASU_CLIP_NONE);
     assert_true(masu_model_clip_duration(m, o, 0) == 0.0);
-    assert_int_equal(masu_model_animate(m, o, NULL, 0), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_model_animate(m, o, &use, 1), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_punctual_light_get(m, l, &ls), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_punctual_light_set(m, l, &spot), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_punctual_light_remove(m, l), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_material_get(m, (masu_material){material}, &mat), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_material_set(m, (masu_material){material}, &mat), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_model_animate(m, o, NULL, 0, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_model_animate(m, o, &use, 1, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_punctual_light_get(m, l, &ls, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_punctual_light_set(m, l, &spot, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_punctual_light_remove(m, l, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_material_get(m, (masu_material){material}, &mat, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_material_set(m, (masu_material){material}, &mat, &failure), MASU_ERROR_ARGUMENT);
     if (!instance) return; /* a light that is attached to none */
     carried.instance = i;
     masu_punctual_light none;
-    assert_int_equal(masu_punctual_light_set(m, masu_punctual_light_at(m, 0), &carried),
+    assert_int_equal(masu_punctual_light_set(m, masu_punctual_light_at(m, 0), &carried, &failure),
                      MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_punctual_light_add(m, &carried, &none), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_punctual_light_add(m, &carried, &none, &failure), MASU_ERROR_ARGUMENT);
 }
 
 /* id 0 and removed ids, with and without a reserve, of which slots are free, taken and taken
@@ -399,9 +401,9 @@ static void no_object_is_refused_by_every_call(void **state) {
             masu_instance instance =
                 masu_instance_at(s.m, masu_scene_count(&s.scene, MASU_SCENE_INSTANCE));
             assert_true(instance.id != 0);
-            assert_int_equal(masu_punctual_light_add(s.m, &spot, &light), MASU_OK);
-            assert_int_equal(masu_punctual_light_remove(s.m, light), MASU_OK);
-            assert_int_equal(masu_model_remove(s.m, added), MASU_OK);
+            assert_int_equal(masu_punctual_light_add(s.m, &spot, &light, &failure), MASU_OK);
+            assert_int_equal(masu_punctual_light_remove(s.m, light, &failure), MASU_OK);
+            assert_int_equal(masu_model_remove(s.m, added, &failure), MASU_OK);
             refuse_everywhere(s.m, instance.id, added.id, light.id, UINT64_MAX);
         }
         draw_frames(&s, pictures[0]);
@@ -469,7 +471,7 @@ static masu_material_state material(masu_session *s, const char *model, masu_mat
     masu_material_state state;
     *out = masu_material_find(s->m, model);
     assert_int_not_equal(out->id, 0);
-    assert_int_equal(masu_material_get(s->m, *out, &state), MASU_OK);
+    assert_int_equal(masu_material_get(s->m, *out, &state, &failure), MASU_OK);
     return state;
 }
 
@@ -480,19 +482,19 @@ static void paint(masu_session *s) {
     assert_true(to.roughness == 0.1f && to.metallic == 0.9f && to.base_color[1] == 0.5f);
     to.roughness = 0.3f;
     memcpy(to.base_color, red, sizeof red);
-    assert_int_equal(masu_material_set(s->m, of, &to), MASU_OK);
+    assert_int_equal(masu_material_set(s->m, of, &to, &failure), MASU_OK);
     to = material(s, "wall", &of);
     memcpy(to.emissive, glow, sizeof glow);
-    assert_int_equal(masu_material_set(s->m, of, &to), MASU_OK);
+    assert_int_equal(masu_material_set(s->m, of, &to, &failure), MASU_OK);
     to = material(s, "pane", &of);
     assert_int_equal(to.mode, MASU_MATERIAL_BLENDED);
     to.opacity = 0.8f;
     memcpy(to.base_color, blue, sizeof blue);
-    assert_int_equal(masu_material_set(s->m, of, &to), MASU_OK);
+    assert_int_equal(masu_material_set(s->m, of, &to, &failure), MASU_OK);
     to = material(s, "ball", &of);
     to.metallic = 1;
     to.roughness = 0.25f;
-    assert_int_equal(masu_material_set(s->m, of, &to), MASU_OK);
+    assert_int_equal(masu_material_set(s->m, of, &to, &failure), MASU_OK);
 }
 
 static void what_is_painted_is_as_if_baked_so(void **state) {
@@ -550,7 +552,7 @@ static void what_would_change_a_pass_is_refused(void **state) {
     masu_material of = {1};
     masu_material_state was, to;
     assert_int_equal(masu_material_find(s.m, "floor").id, 0);
-    assert_int_equal(masu_material_get(s.m, of, &was), MASU_ERROR_STATE);
+    assert_int_equal(masu_material_get(s.m, of, &was, &failure), MASU_ERROR_STATE);
     close_session(&s);
     d.desc.mutable_materials = 1;
     open_session(&s, &d);
@@ -560,8 +562,8 @@ static void what_would_change_a_pass_is_refused(void **state) {
     do {                                                                                           \
         to = was;                                                                                  \
         to.field = (value);                                                                        \
-        assert_int_equal(masu_material_set(s.m, of, &to), MASU_ERROR_ARGUMENT);                    \
-        assert_string_equal(masu_last_error(s.m)->what, name);                                     \
+        assert_int_equal(masu_material_set(s.m, of, &to, &failure), MASU_ERROR_ARGUMENT);                    \
+        assert_string_equal(failure.what, name);                                     \
     } while (0)
     REFUSED(mode, MASU_MATERIAL_BLENDED, "mode");
     REFUSED(cutoff, 0.5f, "cutoff");
@@ -572,9 +574,9 @@ static void what_would_change_a_pass_is_refused(void **state) {
     REFUSED(metallic, NAN, "metallic");
     REFUSED(base_color[2], -0.1f, "base_color");
     REFUSED(emissive[1], INFINITY, "emissive");
-    assert_int_equal(masu_material_get(s.m, of, &to), MASU_OK);
+    assert_int_equal(masu_material_get(s.m, of, &to, &failure), MASU_OK);
     assert_memory_equal(&to, &was, sizeof to);
-    assert_int_equal(masu_material_set(s.m, (masu_material){of.id + 100}, &was), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_material_set(s.m, (masu_material){of.id + 100}, &was, &failure), MASU_ERROR_ARGUMENT);
     close_session(&s);
 }
 

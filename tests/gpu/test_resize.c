@@ -12,6 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+static masu_detail failure; /* of the last call that failed */
+
 enum { W = 160, H = 90, BYTES = W * H * 4, RUNGS = 6, FRAMES = 3 };
 
 static uint8_t pixels[2][BYTES];
@@ -48,8 +50,8 @@ static void draw_cut(masu_session *s, own_renderer *x, uint32_t rung, uint32_t f
     char error[ERROR_SIZE];
     masu_commands commands;
     for (uint32_t i = 0; i < frames; i++) {
-        masu_frame_desc frame = {.rung = rung, .time = 0.1 * i, .time_step = 0.1f, .cut = cut && i == 0};
-        assert_int_equal(masu_frame(x->m, &frame, &commands), MASU_OK);
+        masu_frame_desc frame = {MASU_FRAME_DESC, .rung = rung, .time = 0.1 * i, .time_step = 0.1f, .cut = cut && i == 0};
+        assert_int_equal(masu_frame(x->m, &frame, &commands, &failure), MASU_OK);
         assert_ok(masu_headless_run(&s->host, commands.buffer, error, sizeof error));
     }
     assert_ok(masu_headless_target_read(&s->host, &x->target, error, sizeof error));
@@ -226,7 +228,7 @@ static void a_hundred_resizes_take_nothing(void **state) {
            times() - 10, (long long)targets, (long long)own_too, (long long)frames, (long long)all);
     assert_true(own_too <= targets + most);
     masu_stats_info stats;
-    assert_int_equal(masu_stats(x.m, 0, &stats), MASU_OK);
+    assert_int_equal(masu_stats(x.m, 0, &stats, &failure), MASU_OK);
     assert_true(stats.governor.samples > times() * 3 / 2 || masu_session_denied()); /* its knowledge has gone on */
     unmake_own(&s, &x);
     close_session(&s);
@@ -250,7 +252,7 @@ static uint64_t setups_of_a_frame(masu_session *s, own_renderer *x, uint32_t run
     masu_commands commands;
     uint64_t before = wrap.setup_calls;
     assert_int_equal(
-        masu_frame(x->m, &(masu_frame_desc){.rung = rung, .target = target}, &commands), MASU_OK);
+        masu_frame(x->m, &(masu_frame_desc){MASU_FRAME_DESC, .rung = rung, .target = target}, &commands, &failure), MASU_OK);
     uint64_t calls = wrap.setup_calls - before;
     assert_ok(masu_headless_run(&s->host, commands.buffer, error, sizeof error));
     if (!out) return calls;
@@ -318,7 +320,7 @@ static void a_resize_is_allowed_in_any_state(void **state) {
         const VkExtent2D small = {SMALL_W, SMALL_H};
         uint32_t steps = 0;
         if (when == 0) assert_int_equal(masu_resize(x.m, small, &t, NULL, &detail), MASU_OK);
-        while (masu_load(x.m, &commands) == MASU_INCOMPLETE) {
+        while (masu_load(x.m, &commands, &failure) == MASU_INCOMPLETE) {
             if (commands.part_count)
                 assert_ok(masu_headless_run(&s.host, commands.buffer, error, sizeof error));
             if (when == 1 && ++steps == 3)
@@ -336,7 +338,7 @@ static void a_resize_is_allowed_in_any_state(void **state) {
         images[0] = others[2].image, views[0] = others[2].view;
         t.count = 1;
         assert_int_equal(masu_resize(x.m, small, &t, NULL, &detail), MASU_OK);
-        assert_int_equal(masu_frame(x.m, &(masu_frame_desc){.target = 1}, &commands),
+        assert_int_equal(masu_frame(x.m, &(masu_frame_desc){MASU_FRAME_DESC, .target = 1}, &commands, &failure),
                          MASU_ERROR_ARGUMENT);
         (void)setups_of_a_frame(&s, &x, 1, 0, NULL);
         assert_ok(masu_headless_target_read(&s.host, &others[2], error, sizeof error));
@@ -368,10 +370,10 @@ static void what_fails_half_way_is_made_good(void **state) {
         masu_result result = resize(&x, 96, 54, &detail);
         assert_int_equal(result, k <= 6 ? MASU_ERROR_VULKAN : MASU_OK);
         if (result) assert_string_equal(detail.what, wrap.failed_call);
-        assert_int_equal(masu_load(x.m, &commands), MASU_OK); /* the blob is gone */
-        result = masu_frame(x.m, &(masu_frame_desc){.rung = 1}, &commands);
+        assert_int_equal(masu_load(x.m, &commands, &failure), MASU_OK); /* the blob is gone */
+        result = masu_frame(x.m, &(masu_frame_desc){MASU_FRAME_DESC, .rung = 1}, &commands, &failure);
         assert_int_equal(result, k > 6 ? MASU_ERROR_VULKAN : MASU_OK);
-        if (result) assert_int_equal(masu_last_error(x.m)->vulkan, VK_ERROR_OUT_OF_HOST_MEMORY);
+        if (result) assert_int_equal(failure.vulkan, VK_ERROR_OUT_OF_HOST_MEMORY);
         wrap.fail_at = 0;
         (void)setups_of_a_frame(&s, &x, 0, 0, pixels[k > 1]);
         if (k > 1) assert_memory_equal(pixels[0], pixels[1], 96 * 54 * 4);
@@ -384,8 +386,8 @@ static void what_fails_half_way_is_made_good(void **state) {
     assert_int_equal(resize(&x, 96, 54, &detail), MASU_ERROR_DEVICE_LOST);
     assert_int_equal(resize(&x, 96, 54, &detail), MASU_ERROR_DEVICE_LOST);
     assert_int_equal(detail.vulkan, VK_ERROR_DEVICE_LOST);
-    assert_int_equal(masu_load(x.m, &commands), MASU_ERROR_DEVICE_LOST);
-    assert_int_equal(masu_frame(x.m, &(masu_frame_desc){.rung = 0}, &commands),
+    assert_int_equal(masu_load(x.m, &commands, &failure), MASU_ERROR_DEVICE_LOST);
+    assert_int_equal(masu_frame(x.m, &(masu_frame_desc){MASU_FRAME_DESC, .rung = 0}, &commands, &failure),
                      MASU_ERROR_DEVICE_LOST);
     assert_int_equal(wrap.calls_after_loss, 0);
     wrap.fail_at = 0, wrap.persistent = false;

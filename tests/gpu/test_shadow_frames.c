@@ -205,7 +205,7 @@ static void what_moves_reaches_each_cascade_at_its_pace(void **state) {
     for (int i = 0; i < 9; i++) shadow_draw(&t, &home, 0);
     take(map_a, NULL);
     masu_instance mover = masu_instance_find(t.s.m, "mover");
-    assert_int_equal(masu_instance_set_transform(t.s.m, mover, rows), MASU_OK);
+    assert_int_equal(masu_instance_set_transform(t.s.m, mover, rows, NULL), MASU_OK);
     uint32_t since[3] = {0, 0, 0};
     for (uint32_t i = 1; i <= 16; i++) {
         shadow_draw(&t, &home, 0);
@@ -224,7 +224,7 @@ static void what_moves_reaches_each_cascade_at_its_pace(void **state) {
     assert_in_range(since[2], 1, 8);
     assert_true(since[1] != since[2]);
     rows[3] = 3;
-    assert_int_equal(masu_instance_set_transform(t.s.m, mover, rows), MASU_OK);
+    assert_int_equal(masu_instance_set_transform(t.s.m, mover, rows, NULL), MASU_OK);
     shadow_draw(&t, &home, 1);
     take(map_b, seen_b);
     shadow_draw(&t, &home, 1);
@@ -364,7 +364,7 @@ static void a_caster_however_far_leaves_the_others_their_shadows(void **state) {
     masu_instance mover = masu_instance_find(t.s.m, "mover");
     for (int i = 0; i < 5; i++) {
         float rows[12] = {1, 0, 0, places[i][0], 0, 1, 0, places[i][1], 0, 0, 1, places[i][2]};
-        assert_int_equal(masu_instance_set_transform(t.s.m, mover, rows), MASU_OK);
+        assert_int_equal(masu_instance_set_transform(t.s.m, mover, rows, NULL), MASU_OK);
         shadow_draw(&t, &home, 0);
         take(NULL, i ? seen_b : seen_a);
         uint32_t dark = 0, other = 0;
@@ -414,7 +414,7 @@ static void only_scenes_that_ask_have_any_of_it(void **state) {
         assert_int_equal(has_row("shadow uniforms") != 0, i >= 2);
         assert_int_equal(has_row("occlusion") != 0, i >= 2);
         assert_int_equal(has_row("shadow_map"), i < 2 ? 0 : i == 2 ? 2 : 1); /* transient or not */
-        assert_int_equal(masu_readback(t.s.m, 0, MASU_READBACK_SHADOW_MAP, &out),
+        assert_int_equal(masu_readback(t.s.m, 0, MASU_READBACK_SHADOW_MAP, &out, NULL),
                          i >= 2 ? MASU_OK : MASU_ERROR_ARGUMENT);
         masu_peak_info peaks;
         masu_peaks(t.s.m, &peaks);

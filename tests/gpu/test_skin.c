@@ -15,6 +15,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+static masu_detail failure; /* of the last call that failed */
+
 enum { W = 240, H = 136, PIXELS = W * H };
 
 #define MODELS "/usr/share/assimp/models/"
@@ -39,7 +41,7 @@ static masu_model model_of(masu_session *s, const char *name) {
 
 static void pose(masu_session *s, const char *name, uint32_t clip, double time) {
     const masu_clip_use use = {.clip = clip, .time = time, .weight = 1.0f};
-    if (masu_model_animate(s->m, model_of(s, name), &use, 1)) fail_msg("%s", masu_last_error(s->m)->text);
+    if (masu_model_animate(s->m, model_of(s, name), &use, 1, &failure)) fail_msg("%s", failure.text);
 }
 
 static masu_commands frame(masu_session *s, uint32_t cut, uint8_t *pixels) {
@@ -54,7 +56,7 @@ static masu_commands frame(masu_session *s, uint32_t cut, uint8_t *pixels) {
 static const masu_skin *skin_of(masu_session *s, const char *name) {
     masu_model_state state;
     uint32_t first;
-    assert_int_equal(masu_model_get(s->m, model_of(s, name), &state), MASU_OK);
+    assert_int_equal(masu_model_get(s->m, model_of(s, name), &state, &failure), MASU_OK);
     assert_int_equal(masu_skins_of(&s->m->models.skins, &s->m->plan, state.index, &first), 1);
     return &s->m->models.skins.skins[first];
 }
@@ -162,14 +164,14 @@ static void a_copy_has_a_pose_of_its_own(void **state) {
     const float beside[12] = {1, 0, 0, -3, 0, 1, 0, 0, 0, 0, 1, 0};
     open_session(&s, &d);
     if (s.m->plan.staged) skip();
-    assert_int_equal(masu_model_add(s.m, model_of(&s, "arm"), beside, &added), MASU_OK);
+    assert_int_equal(masu_model_add(s.m, model_of(&s, "arm"), beside, &added, &failure), MASU_OK);
     pose(&s, "arm", 0, 0.7);
     pose(&s, "arm.1", 0, 3.3);
     frame(&s, 0, NULL);
     check_pose(&s, "arm", ARM, 0, 0.7);
     check_pose(&s, "arm.1", ARM, 0, 3.3);
-    assert_int_equal(masu_model_animate(s.m, model_of(&s, "arm"), NULL, 0), MASU_OK);
-    assert_int_equal(masu_model_animate(s.m, added, NULL, 0), MASU_OK);
+    assert_int_equal(masu_model_animate(s.m, model_of(&s, "arm"), NULL, 0, &failure), MASU_OK);
+    assert_int_equal(masu_model_animate(s.m, added, NULL, 0, &failure), MASU_OK);
     frame(&s, 0, NULL);
     const masu_skin *one = skin_of(&s, "arm"), *two = skin_of(&s, "arm.1");
     assert_memory_equal(bent(&s, one), bent(&s, two), one->vertex_count * sizeof(masu_blob_vertex));
@@ -202,10 +204,10 @@ static void the_frame_before_is_kept_to_the_bit(void **state) {
         memcpy(were, are, bytes);
     }
     /* What comes back has not moved, wherever it was. */
-    assert_int_equal(masu_model_show(s.m, model_of(&s, "bear"), 0), MASU_OK);
+    assert_int_equal(masu_model_show(s.m, model_of(&s, "bear"), 0, &failure), MASU_OK);
     frame(&s, 0, NULL);
     pose(&s, "bear", 0, 0.9);
-    assert_int_equal(masu_model_show(s.m, model_of(&s, "bear"), 1), MASU_OK);
+    assert_int_equal(masu_model_show(s.m, model_of(&s, "bear"), 1, &failure), MASU_OK);
     frame(&s, 0, NULL);
     positions(&s, skin, are);
     assert_memory_equal(earlier(&s, skin), are, bytes);
@@ -233,7 +235,7 @@ typedef struct seen {
 
 static seen look(masu_session *s) {
     masu_camera c;
-    assert_int_equal(masu_camera_at(s->m, 0, &c), MASU_OK);
+    assert_int_equal(masu_camera_at(s->m, 0, &c, &failure), MASU_OK);
     seen e = {.eye = {c.position[0], c.position[1], c.position[2]},
               .ahead = vec_unit(vec_of(c.forward)),
               .tan_y = tan((double)c.fov_y / 2)};
@@ -280,7 +282,7 @@ static void a_velocity_is_the_difference_of_positions(void **state) {
     const float *depth = read_image(&s, commands.slot, MASU_READBACK_DEPTH);
     masu_camera camera;
     static float z[PIXELS];
-    assert_int_equal(masu_camera_at(s.m, 0, &camera), MASU_OK);
+    assert_int_equal(masu_camera_at(s.m, 0, &camera, &failure), MASU_OK);
     camera.near_distance = 0.1f; /* as the scene has it */
     view_depths(depth, &camera, z, PIXELS);
     const uint32_t *indices = (const uint32_t *)device_bytes(&s, MASU_BUFFER_INDICES);

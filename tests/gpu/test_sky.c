@@ -17,6 +17,8 @@
 #include "frame/sky.h"
 #include "frame/sky_table.h"
 
+static masu_detail failure; /* of the last call that failed */
+
 #define W 128u
 #define H 96u
 #define PI 3.14159265358979323846
@@ -73,7 +75,7 @@ static void pixels_of_the_sky_are_what_the_tables_say(void **state) {
             double tilt = 0.9 * view;
             masu_light light = light_at(suns[n][0], suns[n][1], 2 + (float)n);
             masu_camera camera = camera_of(tilt);
-            masu_frame_desc frame = {.light = &light, .camera = &camera};
+            masu_frame_desc frame = {MASU_FRAME_DESC, .light = &light, .camera = &camera};
             const uint16_t *hdr;
             const float *depth;
             uint32_t seen = 0;
@@ -104,7 +106,7 @@ static void a_matt_surface_shows_the_irradiance(void **state) {
     (void)state;
     masu_light light = light_at(-1, 120, 3);
     masu_camera camera = camera_of(0);
-    masu_frame_desc frame = {.light = &light, .camera = &camera};
+    masu_frame_desc frame = {MASU_FRAME_DESC, .light = &light, .camera = &camera};
     const uint16_t *hdr;
     const float *depth;
     double worst = 0;
@@ -141,7 +143,7 @@ static void metals_mirror_the_sky_by_their_roughness(void **state) {
     for (int a = 0; a < 3; a++) {
         masu_light light = light_at(-1, azimuths[a], 3);
         masu_camera camera = camera_of(0);
-        masu_frame_desc frame = {.light = &light, .camera = &camera};
+        masu_frame_desc frame = {MASU_FRAME_DESC, .light = &light, .camera = &camera};
         const uint16_t *hdr;
         const float *depth;
         images(&frame, &hdr, &depth);
@@ -193,7 +195,7 @@ static void a_gradient_is_the_same_where_an_analytic_sky_is_possible(void **stat
     masu_light light = light_at(30, 120, 0), analytic = light_at(30, 120, 4);
     light.sun_color[0] = 1, light.ambient[1] = 0.2f, light.sky_zenith[2] = 0.7f;
     light.sky_horizon[0] = 0.6f;
-    masu_frame_desc frame = {.light = &light}, other = {.light = &analytic};
+    masu_frame_desc frame = {MASU_FRAME_DESC, .light = &light}, other = {.light = &analytic};
     open_sky("test_sphere_mesh", 0);
     images(&frame, &hdr, &depth);
     memcpy(without, hdr, sizeof without);
@@ -214,21 +216,21 @@ static void a_sky_that_was_not_planned_is_refused(void **state) {
     (void)state;
     masu_commands commands;
     masu_light light = light_at(30, 120, 3);
-    masu_frame_desc frame = {.light = &light};
+    masu_frame_desc frame = {MASU_FRAME_DESC, .light = &light};
     open_sky("test_sphere_mesh", 0);
-    assert_int_equal(masu_frame(s.m, &frame, &commands), MASU_ERROR_ARGUMENT);
-    assert_string_equal(masu_last_error(s.m)->what, "light.turbidity");
+    assert_int_equal(masu_frame(s.m, &frame, &commands, &failure), MASU_ERROR_ARGUMENT);
+    assert_string_equal(failure.what, "light.turbidity");
     close_session(&s);
     open_sky("test_sphere_mesh", 1);
     static const float bad[] = {1.4f, 10.1f, -3, NAN, INFINITY};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         light.turbidity = bad[i];
-        assert_int_equal(masu_frame(s.m, &frame, &commands), MASU_ERROR_ARGUMENT);
-        assert_string_equal(masu_last_error(s.m)->what, "light.turbidity");
+        assert_int_equal(masu_frame(s.m, &frame, &commands, &failure), MASU_ERROR_ARGUMENT);
+        assert_string_equal(failure.what, "light.turbidity");
     }
     light.turbidity = 3, light.ground[1] = 1.1f;
-    assert_int_equal(masu_frame(s.m, &frame, &commands), MASU_ERROR_ARGUMENT);
-    assert_string_equal(masu_last_error(s.m)->what, "light.ground");
+    assert_int_equal(masu_frame(s.m, &frame, &commands, &failure), MASU_ERROR_ARGUMENT);
+    assert_string_equal(failure.what, "light.ground");
     close_session(&s);
 }
 
@@ -276,7 +278,7 @@ static void a_picture_is_seen_and_lights(void **state) {
     open_session(&s, &d);
     for (int view = -1; view <= 1; view++) {
         masu_camera camera = camera_of(0.9 * view);
-        masu_frame_desc frame = {.camera = &camera};
+        masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &camera};
         const uint16_t *hdr;
         const float *depth;
         images(&frame, &hdr, &depth);

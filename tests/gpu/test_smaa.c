@@ -468,7 +468,7 @@ static void a_scene_is_smoothed_as_its_picture_is(void **state) {
             frame.rung = 1 + p;
             draw(&scene, &frame, &commands, gpu);
             reference_smaa(plain, WIDTH, HEIGHT, (int)p, cpu);
-            assert_int_equal(masu_stats(scene.m, commands.slot, &stats), MASU_OK);
+            assert_int_equal(masu_stats(scene.m, commands.slot, &stats, NULL), MASU_OK);
             assert_true(stats.smaa_tiles > 0 && stats.smaa_tiles <= 60);
             /* It comes in 10 bits, the picture in 8. */
             assert_true(compare(plain, gpu, cpu, WIDTH, HEIGHT, 1) <= 2);

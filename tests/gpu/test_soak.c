@@ -13,6 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+static masu_detail failure; /* of the last call that failed */
+
 enum { W = 64, H = 36, BYTES = W * H * 4, SCENES = 3, SCENE_FRAMES = 100, SIZE_FRAMES = 20 };
 
 static const char *const scenes[SCENES] = {"test_live", "test_velocity", "test_sky"};
@@ -56,10 +58,10 @@ static VkCommandBuffer frame_of(own_renderer *x, const masu_frame_desc *frame) {
     char error[ERROR_SIZE];
     masu_commands commands;
     masu_stats_info stats;
-    if (masu_frame(x->m, frame, &commands)) fail_msg("%s", masu_last_error(x->m)->text);
+    if (masu_frame(x->m, frame, &commands, &failure)) fail_msg("%s", failure.text);
     assert_ok(masu_headless_run(&opened[0].host, commands.buffer, error, sizeof error));
     masu_frame_wall(x->m, commands.slot, 0.1 + 30.0 * (double)share());
-    assert_int_equal(masu_stats(x->m, commands.slot, &stats), MASU_OK);
+    assert_int_equal(masu_stats(x->m, commands.slot, &stats, &failure), MASU_OK);
     if (stats.replaced) fail_msg("frame %llu: %llu values replaced", (unsigned long long)commands.frame,
                                  (unsigned long long)stats.replaced);
     return commands.buffer;
@@ -83,18 +85,18 @@ static void resize(own_renderer *x, uint32_t w, uint32_t h) {
 static void change(own_renderer *x, uint32_t scene) {
     masu_material material = masu_material_at(x->m, scene ? 0 : roll(2));
     masu_material_state state;
-    if (!masu_material_get(x->m, material, &state)) {
+    if (!masu_material_get(x->m, material, &state, &failure)) {
         state.roughness = share();
         state.emissive[roll(3)] = share() < 0.1f ? 1e6f : share();
-        assert_int_equal(masu_material_set(x->m, material, &state), MASU_OK);
+        assert_int_equal(masu_material_set(x->m, material, &state, &failure), MASU_OK);
     }
     if (scene) return;
     masu_model truck = masu_model_find(x->m, "truck"), added;
     const float rows[12] = {1, 0, 0, share() - 0.5f, 0, 1, 0, 0, 0, 0, share(), share()};
-    assert_int_equal(masu_model_show(x->m, truck, roll(2)), MASU_OK);
-    assert_int_equal(masu_model_set_transform(x->m, truck, rows), MASU_OK);
-    if (!masu_model_add(x->m, truck, rows, &added) && roll(2))
-        assert_int_equal(masu_model_remove(x->m, added), MASU_OK);
+    assert_int_equal(masu_model_show(x->m, truck, roll(2), &failure), MASU_OK);
+    assert_int_equal(masu_model_set_transform(x->m, truck, rows, &failure), MASU_OK);
+    if (!masu_model_add(x->m, truck, rows, &added, &failure) && roll(2))
+        assert_int_equal(masu_model_remove(x->m, added, &failure), MASU_OK);
 }
 
 /* So many frames with a life of their own; a renderer is made anew every SCENE_FRAMES. */
@@ -106,7 +108,7 @@ static void soak(uint32_t frames) {
             if (x.m) unmake_own(&opened[0], &x);
             scene = i / SCENE_FRAMES % SCENES;
             make(&x, scene);
-            frame_of(&x, &(masu_frame_desc){.cut = 1});
+            frame_of(&x, &(masu_frame_desc){MASU_FRAME_DESC, .cut = 1});
             picture_of(&x, now);
             if (i / SCENE_FRAMES < SCENES) memcpy(first[scene], now, BYTES);
             assert_memory_equal(now, first[scene], BYTES); /* whatever has been before */
@@ -117,7 +119,7 @@ static void soak(uint32_t frames) {
                          .forward = {share() - 0.5f, share() - 0.7f, -1},
                          .fov_y = 0.2f + 2.5f * share(),
                          .near_distance = 0.05f};
-        masu_frame_desc frame = {.camera = roll(3) ? &c : NULL,
+        masu_frame_desc frame = {MASU_FRAME_DESC, .camera = roll(3) ? &c : NULL,
                                  .time = 100.0 * (double)share(),
                                  .time_step = roll(5) ? 1.0f / 60 : 10 * share(),
                                  .rung = roll(6) == 5 ? MASU_RUNG_AUTO : roll(5),
@@ -135,7 +137,7 @@ static int64_t bare(uint32_t frames) {
         char error[ERROR_SIZE];
         VkCommandBuffer rungs[5];
         make(&x, scene);
-        for (uint32_t r = 0; r < 5; r++) rungs[r] = frame_of(&x, &(masu_frame_desc){.rung = r});
+        for (uint32_t r = 0; r < 5; r++) rungs[r] = frame_of(&x, &(masu_frame_desc){MASU_FRAME_DESC, .rung = r});
         uint64_t before = heap();
         for (uint32_t i = 0; i < frames / SCENES; i++)
             assert_ok(masu_headless_run(&opened[0].host, rungs[i % 5], error, sizeof error));

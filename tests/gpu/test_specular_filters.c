@@ -296,7 +296,7 @@ static void another_render_size_keeps_the_history_and_a_cut_does_not(void **stat
         open_session(&s, &d);
         masu_camera camera;
         masu_commands commands;
-        assert_int_equal(masu_camera_at(s.m, 0.8, &camera), MASU_OK);
+        assert_int_equal(masu_camera_at(s.m, 0.8, &camera, NULL), MASU_OK);
         for (uint32_t k = 0; k < 17; k++) {
             masu_frame_desc f = {.camera = &camera,
                                  .time_step = 1.0f / 60.0f,
@@ -323,7 +323,7 @@ static void the_first_frame_has_few_fireflies(void **state) {
     masu_commands commands;
     uint32_t fireflies = 0;
     double sum = 0, all = 0;
-    assert_int_equal(masu_camera_at(s.m, 0.8, &camera), MASU_OK);
+    assert_int_equal(masu_camera_at(s.m, 0.8, &camera, NULL), MASU_OK);
     for (uint32_t k = 0; k < 16; k++) { /* other rays in each */
         draw(&s, &(masu_frame_desc){.camera = &camera, .time_step = 1.0f / 60.0f, .cut = 1},
              &commands, NULL);
@@ -357,9 +357,9 @@ static void means_of_pixels_are_not_taken_up_after_a_rung_without(void **state) 
         masu_camera camera;
         masu_light light;
         masu_commands commands;
-        assert_int_equal(masu_camera_at(s.m, 0.8, &camera), MASU_OK);
+        assert_int_equal(masu_camera_at(s.m, 0.8, &camera, NULL), MASU_OK);
         for (uint32_t k = 0; k < 12; k++) {
-            assert_int_equal(masu_light_of(s.m, &light), MASU_OK);
+            assert_int_equal(masu_light_of(s.m, &light, NULL), MASU_OK);
             for (int c = 0; way && k < 4 && c < 3; c++) light.sky_zenith[c] = light.sky_horizon[c] = 20;
             masu_frame_desc f = {.camera = &camera,
                                  .light = &light,
@@ -388,7 +388,7 @@ static void red_then_blue(bool cut, float *rgb, float depths[2][PIXELS]) {
         masu_commands commands;
         place_instance(&s, "turning", (float[12]){c, 0, n, -1, 0, 1, 0, 0, -n, 0, c, 0});
         move_instance(&s, "sliding", last ? 4 : 0.7f, 0, 1, 1);
-        assert_int_equal(masu_light_of(s.m, &light), MASU_OK);
+        assert_int_equal(masu_light_of(s.m, &light, NULL), MASU_OK);
         light.sky_zenith[last ? 0 : 2] = light.sky_horizon[last ? 0 : 2] = 0.1f;
         masu_frame_desc f = {.light = &light, .time_step = 1.0f / 60.0f, .cut = k == 0 || (last && cut)};
         draw(&s, &f, &commands, NULL);

@@ -465,10 +465,10 @@ static void picture_of(const char *path, const masu_camera *camera, uint8_t *to,
     d.desc.rungs[0].scale = 1;
     open_session(&s, &d);
     draw(&s, &frame, &commands, to);
-    assert_int_equal(masu_stats(s.m, commands.slot, stats), MASU_OK);
+    assert_int_equal(masu_stats(s.m, commands.slot, stats, NULL), MASU_OK);
     if (hdr) {
         masu_readback_image image;
-        assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_HDR, &image), MASU_OK);
+        assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_HDR, &image, NULL), MASU_OK);
         for (uint32_t y = 0; y < HIGH; y++)
             memcpy(hdr + 4 * WIDE * y, (const uint8_t *)image.pixels + y * image.row_bytes, 8 * WIDE);
     }

@@ -187,7 +187,7 @@ static void tracer(const char *name, const char *json, uint32_t materials, const
     double chi, far, worst;
     bake_scene(name, json);
     open_scene(name, W, H, NULL, 1);
-    assert_int_equal(masu_camera_at(s.m, 0, &camera), MASU_OK);
+    assert_int_equal(masu_camera_at(s.m, 0, &camera, NULL), MASU_OK);
     draw_frames(frames, NULL);
     assert_int_equal(stats_of(&s, slot).replaced, 0);
     masu_scene scene;

@@ -12,6 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+static masu_detail failure; /* of the last call that failed */
+
 enum { SIDE = 96, PIXELS = SIDE * SIDE, ROOM = 64 };
 
 static masu_session s;
@@ -51,7 +53,7 @@ static masu_stats_info render(masu_frame_desc frame, float *hdr) {
 }
 
 static masu_frame_desc with_particles(const masu_particle *p, uint32_t count) {
-    return (masu_frame_desc){.camera = &camera, .particles = p, .particle_count = count};
+    return (masu_frame_desc){MASU_FRAME_DESC, .camera = &camera, .particles = p, .particle_count = count};
 }
 
 /* ---- Particles ------------------------------------------------------------------------------- */
@@ -115,7 +117,7 @@ static const masu_particle disc = {.position = {0.2, -0.1, 2},
 
 static void a_particle_is_blended_in_linear_light(void **state) {
     (void)state;
-    const masu_frame_desc none = {.camera = &camera};
+    const masu_frame_desc none = {MASU_FRAME_DESC, .camera = &camera};
     open_room("test_pane");
     read_base(&none);
     for (uint32_t form = 0; form < 6; form++) {
@@ -167,7 +169,7 @@ static void hides_and_is_hidden(masu_particle *p, uint32_t count, double pane_z)
 
 static void particles_and_transparents_are_sorted_as_one(void **state) {
     (void)state;
-    const masu_frame_desc none = {.camera = &camera};
+    const masu_frame_desc none = {MASU_FRAME_DESC, .camera = &camera};
     masu_particle p[4];
     open_room("test_pane");
     read_base(&none);
@@ -196,7 +198,7 @@ static void a_lit_particle_has_sun_shadow_and_ambient_light(void **state) {
                            .opacity = 1,
                            .edge = 1,
                            .flags = MASU_PARTICLE_LIT};
-        masu_frame_desc frame = {.camera = &above, .light = &light, .particles = &p, .particle_count = 1};
+        masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &above, .light = &light, .particles = &p, .particle_count = 1};
         render(frame, picture);
         /* Its middle, by the same camera. */
         double len = sqrt(1.09), f[3] = {0, -0.3 / len, -1 / len}, up[3] = {0, 1 / len, -0.3 / len};
@@ -220,13 +222,13 @@ static void fog_lies_over_particles(void **state) {
     masu_light light;
     const masu_camera level = {.position = {0, 5, 0}, .forward = {0, 0, -1}, .fov_y = 0.8f};
     open_room("test_fog");
-    assert_int_equal(masu_light_of(s.m, &light), MASU_OK);
+    assert_int_equal(masu_light_of(s.m, &light, &failure), MASU_OK);
     light.fog_density = 0.05f;
     light.fog_falloff = 0;
     light.fog_start = 2;
     light.fog_color[0] = 0.5f, light.fog_color[1] = 0.25f, light.fog_color[2] = 1;
     masu_particle p = {.position = {0, 5, -12}, .half_width = 2, .color = {3, 0, 1}, .opacity = 1, .edge = 1};
-    render((masu_frame_desc){.camera = &level, .light = &light, .particles = &p, .particle_count = 1}, picture);
+    render((masu_frame_desc){MASU_FRAME_DESC, .camera = &level, .light = &light, .particles = &p, .particle_count = 1}, picture);
     double left = exp(-0.05 * 10);
     for (uint32_t k = 0; k < 3; k++) {
         double want = (double)p.color[k] * left + (double)light.fog_color[k] * (1 - left);
@@ -280,8 +282,8 @@ static void cover(const masu_decal *d, double share, double surface[5]) {
 
 static void compare_decals(const masu_decal *decals, uint32_t count, uint32_t touched[2]) {
     static buffers before, after;
-    const masu_frame_desc none = {.camera = &camera};
-    masu_frame_desc frame = {.camera = &camera, .decals = decals, .decal_count = count};
+    const masu_frame_desc none = {MASU_FRAME_DESC, .camera = &camera};
+    masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &camera, .decals = decals, .decal_count = count};
     masu_stats_info stats;
     read_base(&none);
     read_buffers(&none, &before, NULL);
@@ -398,7 +400,7 @@ static void soft_edges_on_metal_have_no_rings(void **state) {
     const float colors[] = {0, 0.25f};
     double rings = 0;
     static float bare[4 * PIXELS];
-    render((masu_frame_desc){.camera = &camera}, bare);
+    render((masu_frame_desc){MASU_FRAME_DESC, .camera = &camera}, bare);
     for (uint32_t form = 0; form < 4; form++) {
         const float color = colors[form % 2];
         masu_decal soft = {.rows = {2.2f, 0, 0, 0, 0, 9, 0, 0, 0, 0, 9, 0},
@@ -408,7 +410,7 @@ static void soft_edges_on_metal_have_no_rings(void **state) {
                            .outer = 3.2f,
                            .inner = 3.1f};
         if (form / 2) soft.metallic = -1;
-        render((masu_frame_desc){.camera = &camera, .decals = &soft, .decal_count = 1}, picture);
+        render((masu_frame_desc){MASU_FRAME_DESC, .camera = &camera, .decals = &soft, .decal_count = 1}, picture);
         double least = 1, ring = 0;
         for (uint32_t x = 4; x < SIDE / 2; x++) {
             uint32_t at = 4 * (SIDE * (SIDE / 2) + x) + 1;
@@ -429,7 +431,7 @@ static void what_is_painted_is_lit(void **state) {
     (void)state;
     const masu_light dark = {.sun_direction = {0, 0, 1}, .ambient = {0, 0, 0}, .sun_color = {1, 1, 1}};
     const masu_decal black = {.rows = {9, 0, 0, 0, 0, 9, 0, 0, 0, 0, 9, 0}, .opacity = 1, .roughness = 1, .outer = 3.2f, .inner = 3.1f};
-    masu_frame_desc frame = {.camera = &camera, .light = &dark};
+    masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &camera, .light = &dark};
     double sum[2] = {0};
     open_room("test_pane");
     for (int there = 0; there < 2; there++) {
@@ -454,7 +456,7 @@ static void what_is_painted_shines_no_more(void **state) {
     for (int half = 0; half < 3; half++) {
         const masu_decal black = {.rows = {1, 0, 0, 0, 0, 9, 0, 0, 0, 0, 9, 0}, .opacity = half ? 0.5f * (float)half : 0.0f, .roughness = 1,
                                   .outer = 3.2f, .inner = 3.1f};
-        masu_frame_desc frame = {.camera = &camera, .light = &dark, .decals = &black, .decal_count = 1};
+        masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &camera, .light = &dark, .decals = &black, .decal_count = 1};
         render(frame, picture);
         for (uint32_t k = 0; k < 3; k++) {
             double middle = (double)picture[4 * (SIDE / 2 * SIDE + SIDE / 2) + k], edge = (double)picture[4 * (SIDE / 2 * SIDE + 2) + k];
@@ -485,7 +487,7 @@ static masu_line line_between(double x0, double y0, double z0, double x1, double
 }
 
 static void draw_lines(const masu_line *l, uint32_t count, uint32_t rung) {
-    masu_frame_desc none = {.camera = &camera, .rung = rung, .cut = 1}, frame = none;
+    masu_frame_desc none = {MASU_FRAME_DESC, .camera = &camera, .rung = rung, .cut = 1}, frame = none;
     masu_commands commands;
     draw(&s, &none, &commands, plain);
     frame.lines = l;
@@ -592,19 +594,19 @@ static void more_than_was_reserved_is_refused(void **state) {
         static const char *const names[] = {"reserve.particles", "reserve.decals", "reserve.lines"};
         for (uint32_t null = 0; null < 2; null++) {
             uint32_t count = null ? 1 : ROOM + 1;
-            masu_frame_desc f = {.camera = &camera};
+            masu_frame_desc f = {MASU_FRAME_DESC, .camera = &camera};
             if (kind == 0) f.particles = null ? NULL : particles, f.particle_count = count;
             if (kind == 1) f.decals = null ? NULL : decals, f.decal_count = count;
             if (kind == 2) f.lines = null ? NULL : lines, f.line_count = count;
-            assert_int_equal(masu_frame(s.m, &f, &commands), null ? MASU_ERROR_ARGUMENT : MASU_ERROR_LIMIT);
-            const masu_detail *e = masu_last_error(s.m);
+            assert_int_equal(masu_frame(s.m, &f, &commands, &failure), null ? MASU_ERROR_ARGUMENT : MASU_ERROR_LIMIT);
+            const masu_detail *e = (&failure);
             assert_string_equal(e->what, null ? names[kind] + 8 : names[kind]);
             assert_int_equal(e->needed, count);
             assert_int_equal(e->given, null ? 0 : ROOM);
         }
     }
     /* None of it has moved the frame's number; as many as there is room for are taken. */
-    masu_frame_desc f = {.camera = &camera, .particles = particles, .particle_count = ROOM, .decals = decals,
+    masu_frame_desc f = {MASU_FRAME_DESC, .camera = &camera, .particles = particles, .particle_count = ROOM, .decals = decals,
                          .decal_count = ROOM, .lines = lines, .line_count = ROOM};
     draw(&s, &f, &commands, NULL);
     assert_int_equal(commands.frame, 0);
@@ -651,7 +653,7 @@ static void any_numbers_give_a_finite_picture(void **state) {
             d[i].inner = any_float(&seed), d[i].outer = any_float(&seed);
             p[i].flags = random_word(&seed), d[i].flags = random_word(&seed), l[i].flags = random_word(&seed);
         }
-        masu_stats_info stats = render((masu_frame_desc){.camera = &camera, .particles = p, .particle_count = ROOM,
+        masu_stats_info stats = render((masu_frame_desc){MASU_FRAME_DESC, .camera = &camera, .particles = p, .particle_count = ROOM,
                                                          .decals = d, .decal_count = ROOM, .lines = l, .line_count = ROOM},
                                        picture);
         for (uint32_t i = 0; i < 4 * PIXELS; i++) assert_true(isfinite(picture[i]));
@@ -686,14 +688,14 @@ static void what_is_no_number_is_left_out(void **state) {
             float *const fields[] = {&x.color[0], &x.color[1], &x.color[2], &x.opacity, &x.roughness,
                                      &x.metallic, &x.edge,     &x.inner,    &x.outer};
             *(field < 12 ? &x.rows[field] : fields[field - 12]) = bad[b];
-            masu_stats_info stats = render((masu_frame_desc){.camera = &camera, .decals = &x, .decal_count = 1}, picture);
+            masu_stats_info stats = render((masu_frame_desc){MASU_FRAME_DESC, .camera = &camera, .decals = &x, .decal_count = 1}, picture);
             assert_int_equal(stats.decals, 0);
             assert_memory_equal(shown, plain, sizeof shown);
         }
         for (uint32_t field = 0; field < 6; field++) {
             masu_line x = line_between(10, 10, 3, 80, 80, 3, 0);
             (field < 3 ? x.from : x.to)[field % 3] = (double)bad[b];
-            masu_stats_info stats = render((masu_frame_desc){.camera = &camera, .lines = &x, .line_count = 1}, picture);
+            masu_stats_info stats = render((masu_frame_desc){MASU_FRAME_DESC, .camera = &camera, .lines = &x, .line_count = 1}, picture);
             assert_int_equal(stats.lines, 0);
             assert_memory_equal(shown, plain, sizeof shown);
         }
@@ -716,7 +718,7 @@ static void room_alone_changes_nothing(void **state) {
         masu_plan_of(s.m, &plan);
         static const char *const names[] = {"particles", "decals", "lines", "lines_show"};
         for (uint32_t k = 0; k < 4; k++) assert_int_equal(pass_of(&plan, names[k])->active, (uint32_t)room);
-        masu_frame_desc frame = {.camera = &camera};
+        masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &camera};
         masu_commands commands;
         draw(&s, &frame, &commands, room ? shown : without);
         /* The buffer is as large as its three kinds say: the report has it, and without room there is none. */
@@ -753,8 +755,8 @@ static void each_frame_has_its_own(void **state) {
     static uint8_t first[4 * PIXELS];
     const masu_decal d = {.rows = {2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0}, .opacity = 1};
     const masu_line l = line_between(10, 10, 3, 80, 80, 3, 0);
-    const masu_frame_desc none = {.camera = &camera};
-    const masu_frame_desc all = {.camera = &camera, .particles = &disc, .particle_count = 1, .decals = &d,
+    const masu_frame_desc none = {MASU_FRAME_DESC, .camera = &camera};
+    const masu_frame_desc all = {MASU_FRAME_DESC, .camera = &camera, .particles = &disc, .particle_count = 1, .decals = &d,
                                  .decal_count = 1, .lines = &l, .line_count = 1};
     masu_commands commands;
     masu_session_desc desc = room_desc("test_pane");
@@ -808,7 +810,7 @@ static void no_trail_stays(void **state) {
         pane_at(100);
         uint32_t seen = 0, gone = AFTER;
         for (uint32_t i = 0; i < WARM + AFTER; i++) {
-            masu_frame_desc f = {.camera = &camera, .time_step = 1.0f / 60};
+            masu_frame_desc f = {MASU_FRAME_DESC, .camera = &camera, .time_step = 1.0f / 60};
             f.particles = i < WARM ? &smoke : &smoke_away;
             f.decals = i < WARM ? &d : &d_away;
             f.particle_count = kind == 3 || (kind == 1 && i < WARM);
@@ -836,7 +838,7 @@ static uint8_t other[4 * PIXELS];
 static void run_own(own_renderer *x, masu_frame_desc frame, uint8_t *out) {
     char error[ERROR_SIZE];
     masu_commands commands;
-    assert_int_equal(masu_frame(x->m, &frame, &commands), MASU_OK);
+    assert_int_equal(masu_frame(x->m, &frame, &commands, &failure), MASU_OK);
     assert_ok(masu_headless_run(&s.host, commands.buffer, error, sizeof error));
     assert_ok(masu_headless_target_read(&s.host, &x->target, error, sizeof error));
     memcpy(out, x->target.mapped, (size_t)x->target.width * x->target.height * 4);
@@ -848,7 +850,7 @@ static void viewports_and_sizes_are_right(void **state) {
     enum { W = 61, H = 43 };
     const masu_decal d = {.rows = {0.3f, 0, 0, 1.5f, 0, 0.4f, 0, 0, 0, 0, 2, 0}, .color = {1, 0, 0}, .opacity = 1};
     const masu_line l = {.from = {-2, -1, 1}, .to = {2, 1, 1}, .from_color = {255, 255, 0}, .to_color = {0, 255, 255}};
-    masu_frame_desc frame = {.camera = &camera, .cut = 1, .particles = &disc, .particle_count = 1, .decals = &d,
+    masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &camera, .cut = 1, .particles = &disc, .particle_count = 1, .decals = &d,
                              .decal_count = 1, .lines = &l, .line_count = 1};
     masu_session_desc session = room_desc("test_pane");
     session.no_renderer = true;
@@ -886,7 +888,7 @@ static void viewports_and_sizes_are_right(void **state) {
     own.viewports[0] = (masu_viewport){0, 0, SIDE, SIDE};
     own.viewports[1] = (masu_viewport){20, 30, W, H};
     make_own(&s, &parts, &own);
-    run_own(&parts, (masu_frame_desc){.camera = &camera}, other);
+    run_own(&parts, (masu_frame_desc){MASU_FRAME_DESC, .camera = &camera}, other);
     frame.viewport = 1;
     run_own(&parts, frame, shown);
     for (uint32_t y = 0; y < SIDE; y++) {
@@ -917,7 +919,7 @@ static void lines_have_their_colour_in_every_encoding(void **state) {
         d.desc.targets.white = 160; /* of floats 1 is 80 */
         open_session(&s, &d);
         pane_at(100);
-        masu_frame_desc frame = {.camera = &camera, .lines = &l, .line_count = 1};
+        masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &camera, .lines = &l, .line_count = 1};
         masu_commands commands;
         char error[ERROR_SIZE];
         draw(&s, &frame, &commands, NULL);

@@ -31,7 +31,7 @@ static masu_session_desc temporal_desc(const char *scene, float scale) {
 /* As the scene's camera, seen a little from the side. */
 static masu_camera aside(const masu_session *s, double metres) {
     masu_camera camera;
-    assert_int_equal(masu_camera_at(s->m, 0.0, &camera), MASU_OK);
+    assert_int_equal(masu_camera_at(s->m, 0.0, &camera, NULL), MASU_OK);
     camera.position[0] += metres;
     return camera;
 }
@@ -73,7 +73,7 @@ static void find_truth(const char *scene, const float *ball, const masu_light *l
     const uint32_t places = trials(64, 64, 32);
     assert_ok(masu_picture_open(&d, places, &s, error, sizeof error));
     if (ball) move_instance(&s, "ball", ball[0], ball[1], ball[2], 1.0f);
-    masu_frame_desc f = {.light = light};
+    masu_frame_desc f = {MASU_FRAME_DESC, .light = light};
     assert_ok(masu_picture_truth(&s, &f, places, 1, &(masu_picture_means){.display = truth.rgba},
                                  NULL, error, sizeof error));
     close_session(&s);
@@ -91,8 +91,8 @@ static void a_frame_left_out_without_a_cut_shows_no_old_memory(void **state) {
     masu_session_desc d = temporal_desc("test_shadows", 1.0f);
     open_session(&s, &d);
     last.scene = NULL; /* `truth` is another now */
-    masu_frame_desc f = {.cut = 1};
-    for (int i = 0; i < 2; i++) assert_int_equal(masu_frame(s.m, &f, &commands), MASU_OK);
+    masu_frame_desc f = {MASU_FRAME_DESC, .cut = 1};
+    for (int i = 0; i < 2; i++) assert_int_equal(masu_frame(s.m, &f, &commands, NULL), MASU_OK);
     draw(&s, &f, &commands, truth.rgba); /* as it is without a past */
     close_session(&s);
     d.no_renderer = true;
@@ -114,7 +114,7 @@ static void a_frame_left_out_without_a_cut_shows_no_old_memory(void **state) {
     assert_ok(masu_session_start(&s, error, sizeof error));
     f.cut = 0;
     draw(&s, &f, &commands, NULL);
-    assert_int_equal(masu_frame(s.m, &f, &commands), MASU_OK);
+    assert_int_equal(masu_frame(s.m, &f, &commands, NULL), MASU_OK);
     draw(&s, &f, &commands, a.rgba);
     double off = rms(a.rgba, truth.rgba);
     print_message("  off by %.2f of 255 (root mean square) from a picture without a past\n", off);
@@ -142,7 +142,7 @@ static void at_rest_it_comes_near_the_truth(void **state) {
             d.desc.rung_count = 2;
             d.desc.rungs[1] = (masu_rung){.scale = scales[i]};
             open_session(&s, &d);
-            frames(&s, 64, (masu_frame_desc){0}, a.rgba);
+            frames(&s, 64, (masu_frame_desc){MASU_FRAME_DESC}, a.rgba);
             draw_rung(&s, 1, b.rgba);
             double with = rms(a.rgba, truth.rgba), without = rms(b.rgba, truth.rgba);
             print_message("  %s, scale %.2f: rms %.2f of 255, without a past %.2f\n", scenes[k], (double)scales[i], with,
@@ -167,7 +167,7 @@ static void in_motion_it_is_no_worse(void **state) {
         masu_commands commands;
         for (int k = 24; k >= 0; k--) {
             masu_camera camera = aside(&s, 0.02 * k);
-            draw(&s, &(masu_frame_desc){.camera = &camera}, &commands, a.rgba);
+            draw(&s, &(masu_frame_desc){MASU_FRAME_DESC, .camera = &camera}, &commands, a.rgba);
         }
         draw_rung(&s, 1, b.rgba);
         double with = rms(a.rgba, truth.rgba), without = rms(b.rgba, truth.rgba);
@@ -193,7 +193,7 @@ static void a_thin_rod_in_motion_keeps_its_light(void **state) {
         for (int k = 0; k < 144; k++) {
             const int way = k < 48 ? k : k < 96 ? 96 - k : k - 96;
             move_instance(&s, "rod", (float)(1.3 * pixel * (way - 24)), 0.0f, 0.0f, 1.0f);
-            frames(&s, 1, (masu_frame_desc){0}, a.rgba);
+            frames(&s, 1, (masu_frame_desc){MASU_FRAME_DESC}, a.rgba);
             for (uint32_t y = 30; y < 66 && k >= 8; y++) {
                 const double wall = linear_of(a.rgba[4 * (SIZE * y + 2)]);
                 for (uint32_t x = 0; x < SIZE; x++)
@@ -204,8 +204,8 @@ static void a_thin_rod_in_motion_keeps_its_light(void **state) {
         print_message("  scale %.1f: %.3f of the rod's light\n", half ? 0.5 : 1.0, sum / expected);
         assert_true(sum > 0.8 * expected && sum < 1.2 * expected);
         move_instance(&s, "rod", 0.0f, 0.0f, -20.0f, 1.0f);
-        frames(&s, 12, (masu_frame_desc){0}, a.rgba);
-        frames(&s, 40, (masu_frame_desc){0}, b.rgba);
+        frames(&s, 12, (masu_frame_desc){MASU_FRAME_DESC}, a.rgba);
+        frames(&s, 40, (masu_frame_desc){MASU_FRAME_DESC}, b.rgba);
         assert_in_range(max_difference(a.rgba, b.rgba, BYTES), 0, 2);
         close_session(&s);
     }
@@ -246,14 +246,14 @@ static void what_leaves_leaves_no_ghost(void **state) {
             masu_session_desc d = temporal_desc("test_shadows", scales[i]);
             find_truth("test_shadows", away, NULL);
             open_session(&s, &d);
-            frames(&s, 40, (masu_frame_desc){0}, b.rgba);
+            frames(&s, 40, (masu_frame_desc){MASU_FRAME_DESC}, b.rgba);
             for (int k = 1; k <= 8 && !jumps; k++) {
                 float t = (float)k / 8.0f;
                 move_instance(&s, "ball", 0.8f + t * (away[0] - 0.8f), 0.8f, 0.6f + t * (away[2] - 0.6f), 1.0f);
-                frames(&s, 1, (masu_frame_desc){0}, NULL);
+                frames(&s, 1, (masu_frame_desc){MASU_FRAME_DESC}, NULL);
             }
             move_instance(&s, "ball", away[0], away[1], away[2], 1.0f);
-            frames(&s, 8, (masu_frame_desc){0}, a.rgba);
+            frames(&s, 8, (masu_frame_desc){MASU_FRAME_DESC}, a.rgba);
             uint32_t all, off = ghosts(b.rgba, a.rgba, 2, &all);
             print_message("  scale %.2f, %s: %u of %u pixels are more than 2 of 255 off\n", (double)scales[i],
                           jumps ? "a jump" : "a path", off, all);
@@ -275,7 +275,7 @@ static void smoke_leaves_no_trail(void **state) {
         open_session(&s, &d);
         masu_particle puff = {.position = {-0.5, 1.2, 2.0}, .half_width = 0.5f, .opacity = 0.7f, .edge = 0.5f,
                               .color = {0.3f, 0.6f, 0.9f}};
-        masu_frame_desc f = {.particles = &puff, .particle_count = 1};
+        masu_frame_desc f = {MASU_FRAME_DESC, .particles = &puff, .particle_count = 1};
         frames(&s, 60, f, b.rgba);
         for (int k = 1; k <= 20; k++) {
             puff.position[0] = -0.5 + 0.05 * k;
@@ -302,10 +302,10 @@ static void sky_that_is_uncovered_shows_no_pole(void **state) {
         move_instance(&s, "ball", 0.0f, 1.0f, -3.0f, 0.3f);
         for (int k = 0; k <= 12; k++) {
             camera.position[0] = k * metres;
-            frames(&s, k ? 1 : 60, (masu_frame_desc){.camera = &camera}, k ? a.rgba : b.rgba);
+            frames(&s, k ? 1 : 60, (masu_frame_desc){MASU_FRAME_DESC, .camera = &camera}, k ? a.rgba : b.rgba);
         }
-        frames(&s, 1, (masu_frame_desc){.camera = &camera, .cut = 1}, NULL);
-        frames(&s, trials(150, 150, 75), (masu_frame_desc){.camera = &camera}, truth.rgba);
+        frames(&s, 1, (masu_frame_desc){MASU_FRAME_DESC, .camera = &camera, .cut = 1}, NULL);
+        frames(&s, trials(150, 150, 75), (masu_frame_desc){MASU_FRAME_DESC, .camera = &camera}, truth.rgba);
         last.scene = NULL;
         uint32_t all, off = ghosts(b.rgba, a.rgba, 2, &all);
         print_message("  scale %.1f: %u of %u pixels are more than 2 of 255 off\n", half ? 0.5 : 1.0, off, all);
@@ -320,12 +320,12 @@ static void light_that_changes_is_seen(void **state) {
     masu_light light;
     masu_session_desc d = temporal_desc("test_shadows", 0.5f);
     open_session(&s, &d);
-    assert_int_equal(masu_light_of(s.m, &light), MASU_OK);
-    frames(&s, 40, (masu_frame_desc){0}, b.rgba);
+    assert_int_equal(masu_light_of(s.m, &light, NULL), MASU_OK);
+    frames(&s, 40, (masu_frame_desc){MASU_FRAME_DESC}, b.rgba);
     for (int k = 0; k < 3; k++) light.sun_color[k] *= 0.6f;
     light.sun_direction[0] = -light.sun_direction[0]; /* shadows fall elsewhere */
     find_truth("test_shadows", NULL, &light);
-    frames(&s, 8, (masu_frame_desc){.light = &light}, a.rgba);
+    frames(&s, 8, (masu_frame_desc){MASU_FRAME_DESC, .light = &light}, a.rgba);
     uint32_t all, off = ghosts(b.rgba, a.rgba, 2, &all);
     print_message("  %u of %u pixels are more than 2 of 255 off\n", off, all);
     assert_true(all > 1000 && off < all / 100);
@@ -342,15 +342,15 @@ static void a_lamp_that_goes_out_is_seen(void **state) {
     for (int goes = 0; goes < 2; goes++) {
         open_session(&s, &d);
         masu_punctual_light light = masu_punctual_light_find(s.m, "glow");
-        assert_int_equal(masu_punctual_light_get(s.m, light, &lamp), MASU_OK);
+        assert_int_equal(masu_punctual_light_get(s.m, light, &lamp, NULL), MASU_OK);
         lamp.instance.id = 0; /* what carries it is hidden */
         lamp.position[0] = 2, lamp.position[1] = 1.5, lamp.position[2] = -2.5;
         lamp.range = 20;
-        assert_int_equal(masu_punctual_light_set(s.m, light, &lamp), MASU_OK);
-        if (goes) frames(&s, 40, (masu_frame_desc){0}, b.rgba);
+        assert_int_equal(masu_punctual_light_set(s.m, light, &lamp, NULL), MASU_OK);
+        if (goes) frames(&s, 40, (masu_frame_desc){MASU_FRAME_DESC}, b.rgba);
         for (int k = 0; k < 3; k++) lamp.color[k] = 0;
-        assert_int_equal(masu_punctual_light_set(s.m, light, &lamp), MASU_OK);
-        frames(&s, goes ? 8 : 48, (masu_frame_desc){0}, goes ? a.rgba : truth.rgba);
+        assert_int_equal(masu_punctual_light_set(s.m, light, &lamp, NULL), MASU_OK);
+        frames(&s, goes ? 8 : 48, (masu_frame_desc){MASU_FRAME_DESC}, goes ? a.rgba : truth.rgba);
         close_session(&s);
     }
     uint32_t all, off = ghosts(b.rgba, a.rgba, 6, &all);
@@ -371,13 +371,13 @@ static void light_that_changes_in_motion_is_seen(void **state) {
             masu_commands commands;
             masu_session_desc d = temporal_desc("test_shadows", scales[i]);
             open_session(&s, &d);
-            assert_int_equal(masu_light_of(s.m, &bright), MASU_OK);
+            assert_int_equal(masu_light_of(s.m, &bright, NULL), MASU_OK);
             dark = bright;
             for (int k = 0; k < 3; k++) dark.sun_color[k] *= 0.3f;
             find_truth("test_shadows", NULL, rises ? &bright : &dark);
             for (int k = 13; k >= 0; k--) {
                 masu_camera camera = aside(&s, 0.02 * k);
-                masu_frame_desc f = {.camera = &camera, .light = (k < 2) == rises ? &bright : &dark};
+                masu_frame_desc f = {MASU_FRAME_DESC, .camera = &camera, .light = (k < 2) == rises ? &bright : &dark};
                 draw(&s, &f, &commands, k == 2 ? b.rgba : a.rgba);
             }
             uint32_t all, off = ghosts(b.rgba, a.rgba, 6, &all);
@@ -397,12 +397,12 @@ static void white_is_white_in_every_frame(void **state) {
         masu_light light;
         masu_session_desc d = temporal_desc("test_shadows", half ? 0.5f : 1.0f);
         open_session(&s, &d);
-        assert_int_equal(masu_light_of(s.m, &light), MASU_OK);
+        assert_int_equal(masu_light_of(s.m, &light, NULL), MASU_OK);
         light.exposure = 1e6f;
         for (uint32_t i = 0; i < 24; i++) {
             masu_commands commands;
             masu_camera camera = aside(&s, i < 12 ? 0.0 : 0.01 * i);
-            draw(&s, &(masu_frame_desc){.light = &light, .camera = &camera}, &commands, a.rgba);
+            draw(&s, &(masu_frame_desc){MASU_FRAME_DESC, .light = &light, .camera = &camera}, &commands, a.rgba);
             for (uint32_t p = 0; p < BYTES; p++) {
                 if (a.rgba[p] != 255) fail_msg("frame %u, scale %g: byte %u is %u", i, half ? 0.5 : 1.0, p, a.rgba[p]);
             }
@@ -434,7 +434,7 @@ static void twice_the_size_is_the_same(void **state) {
             masu_camera camera = aside(&s, 0.02 * (i < 12 ? i : 12));
             camera.jitter[0] = i < 24 ? 0.0f : 0.05f * (float)(i - 16); /* up to a whole pixel */
             camera.jitter[1] = -0.7f * camera.jitter[0];
-            draw(&s, &(masu_frame_desc){.camera = &camera}, &commands, pixels[k][i / 12]);
+            draw(&s, &(masu_frame_desc){MASU_FRAME_DESC, .camera = &camera}, &commands, pixels[k][i / 12]);
         }
         close_session(&s);
     }
@@ -475,7 +475,7 @@ static void depth_is_found_in_a_larger_image(void **state) {
         masu_commands commands;
         for (int i = 0; i < 16; i++) {
             masu_camera camera = aside(&s, 0.03 * i);
-            draw(&s, &(masu_frame_desc){.camera = &camera, .rung = (uint32_t)k}, &commands, k ? b.rgba : a.rgba);
+            draw(&s, &(masu_frame_desc){MASU_FRAME_DESC, .camera = &camera, .rung = (uint32_t)k}, &commands, k ? b.rgba : a.rgba);
         }
         close_session(&s);
     }
@@ -501,7 +501,7 @@ static void equal_frames_give_equal_bytes(void **state) {
         for (int i = 0; i < 16; i++) {
             masu_camera camera = aside(&s, 0.1 * i);
             camera.position[1] += 0.1 * (i / 4);
-            draw(&s, &(masu_frame_desc){.camera = &camera, .rung = (uint32_t)("0011230443130141"[i] - '0')}, &commands,
+            draw(&s, &(masu_frame_desc){MASU_FRAME_DESC, .camera = &camera, .rung = (uint32_t)("0011230443130141"[i] - '0')}, &commands,
                  k ? b.rgba : a.rgba);
         }
         close_session(&s);
@@ -517,14 +517,14 @@ static void a_cut_forgets_all(void **state) {
         open_session(&s, &d);
         masu_camera elsewhere = aside(&s, k ? 3.0 : -2.0);
         masu_light light;
-        assert_int_equal(masu_light_of(s.m, &light), MASU_OK);
-        frames(&s, 9, (masu_frame_desc){.camera = &elsewhere}, NULL);
+        assert_int_equal(masu_light_of(s.m, &light, NULL), MASU_OK);
+        frames(&s, 9, (masu_frame_desc){MASU_FRAME_DESC, .camera = &elsewhere}, NULL);
         light.sun_color[0] *= k ? 0.5f : 1.0f; /* what changes before counts no more than what is seen */
         move_instance(&s, "ball", k ? 2.0f : 0.8f, 0.8f, 0.6f, 1.0f);
-        frames(&s, 1, (masu_frame_desc){.camera = &elsewhere, .light = &light}, NULL);
+        frames(&s, 1, (masu_frame_desc){MASU_FRAME_DESC, .camera = &elsewhere, .light = &light}, NULL);
         move_instance(&s, "ball", 0.8f, 0.8f, 0.6f, 1.0f);
-        frames(&s, 1, (masu_frame_desc){.cut = 1}, NULL);
-        frames(&s, 3, (masu_frame_desc){0}, k ? b.rgba : a.rgba);
+        frames(&s, 1, (masu_frame_desc){MASU_FRAME_DESC, .cut = 1}, NULL);
+        frames(&s, 3, (masu_frame_desc){MASU_FRAME_DESC}, k ? b.rgba : a.rgba);
         close_session(&s);
     }
     assert_memory_equal(a.rgba, b.rgba, BYTES);
@@ -539,10 +539,10 @@ static void a_change_of_scale_keeps_the_past(void **state) {
     d.desc.rungs[1] = (masu_rung){.temporal = MASU_ON, .scale = 0.5f};
     find_truth("test_shadows", NULL, NULL);
     open_session(&s, &d);
-    frames(&s, 40, (masu_frame_desc){0}, b.rgba);
-    frames(&s, 1, (masu_frame_desc){.rung = 1}, a.rgba);
+    frames(&s, 40, (masu_frame_desc){MASU_FRAME_DESC}, b.rgba);
+    frames(&s, 1, (masu_frame_desc){MASU_FRAME_DESC, .rung = 1}, a.rgba);
     double before = rms(b.rgba, truth.rgba), after = rms(a.rgba, truth.rgba), pop = rms(a.rgba, b.rgba);
-    frames(&s, 1, (masu_frame_desc){.rung = 1, .cut = 1}, b.rgba);
+    frames(&s, 1, (masu_frame_desc){MASU_FRAME_DESC, .rung = 1, .cut = 1}, b.rgba);
     double anew = rms(b.rgba, truth.rgba);
     print_message("  rms %.2f of 255 before, %.2f in the frame after, which differs by %.2f; anew it would be %.2f\n", before,
                   after, pop, anew);
@@ -568,7 +568,7 @@ static void nothing_breaks_it(void **state) {
             if (i % 3 == 2) camera.position[1] = -0.5;
             if (i % 8 == 7) camera.forward[0] = 5.0f;
             camera.jitter[0] = i % 2 ? 1.0f : -1.0f;
-            masu_frame_desc f = {.camera = &camera, .rung = i % 5, .time = i % 6 == 5 ? 1e9 : 10.0 * i,
+            masu_frame_desc f = {MASU_FRAME_DESC, .camera = &camera, .rung = i % 5, .time = i % 6 == 5 ? 1e9 : 10.0 * i,
                                  .time_step = i % 2 ? 10.0f : 0.0f};
             masu_commands commands;
             draw(&s, &f, &commands, a.rgba);
@@ -596,7 +596,7 @@ static void all_targets_are_served(void **state) {
         d.desc.targets.encoding = cases[i].encoding;
         d.desc.targets.storage = 0;
         open_session(&s, &d);
-        frames(&s, 3, (masu_frame_desc){0}, NULL);
+        frames(&s, 3, (masu_frame_desc){MASU_FRAME_DESC}, NULL);
         close_session(&s);
     }
 }
@@ -611,7 +611,7 @@ static double roughness_of(float scale, double metres, uint8_t *albedo) {
     open_session(&s, &d);
     for (int k = 3; k >= 0; k--) {
         masu_camera camera = aside(&s, k * metres);
-        draw(&s, &(masu_frame_desc){.camera = &camera}, &commands, NULL);
+        draw(&s, &(masu_frame_desc){MASU_FRAME_DESC, .camera = &camera}, &commands, NULL);
     }
     uint32_t size = (uint32_t)(SIZE * scale);
     const uint8_t *image = read_image(&s, commands.slot, MASU_READBACK_ALBEDO);
@@ -647,7 +647,7 @@ static void velocity_in_mirror(masu_switch fine, uint32_t rung, double metres, d
     for (int k = 5; k >= 0; k--) {
         masu_camera camera = aside(&s, k * metres);
         camera.position[1] -= 0.5 * k * metres;
-        draw(&s, &(masu_frame_desc){.camera = &camera, .rung = rung}, &commands, NULL);
+        draw(&s, &(masu_frame_desc){MASU_FRAME_DESC, .camera = &camera, .rung = rung}, &commands, NULL);
     }
     const uint16_t *image = read_image(&s, commands.slot, MASU_READBACK_VELOCITY);
     for (int k = 0; k < 2; k++) v[k] = half_float(image[4 * (SIZE / 2 * SIZE + SIZE / 2) + k]);

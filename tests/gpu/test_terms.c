@@ -80,7 +80,7 @@ static void same(const char *scene, float scale, double time) {
 static void unions_cuts_and_repetitions(void **state) {
     (void)state;
     same("city", 1, 0);
-    if (whole_run()) same("tunnel", 1, 0); /* elsewhere one of its kind: a scene takes seconds to compile */
+    if (long_run()) same("tunnel", 1, 0); /* else one of its kind: a scene takes seconds to compile */
     same("rods", 1, 0);
 }
 
@@ -89,7 +89,7 @@ static void blends_and_parts_that_move(void **state) {
     same("blobs", 1, 0.7);
     same("blobs", 1, 3.1);
     same("creature", 1, 0.4);
-    if (whole_run()) same("wet_city", 1, 2.3);
+    if (long_run()) same("wet_city", 1, 2.3);
 }
 
 static void lists_of_parts(void **state) {

@@ -73,7 +73,7 @@ static void draw_variant(int variant, uint32_t readback) {
             draw(&s, &f, &commands, NULL);
             memcpy(albedo[to], read_image(&s, commands.slot, MASU_READBACK_ALBEDO), sizeof albedo[to]);
             memcpy(depth[to], read_image(&s, commands.slot, MASU_READBACK_DEPTH), sizeof depth[to]);
-            assert_int_equal(masu_stats(s.m, commands.slot, &stats), MASU_OK);
+            assert_int_equal(masu_stats(s.m, commands.slot, &stats, NULL), MASU_OK);
             drawn[way] += stats.triangles;
             if (memcmp(albedo[0], albedo[to], sizeof albedo[0]) ||
                 memcmp(depth[0], depth[to], sizeof depth[0])) {

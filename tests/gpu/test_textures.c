@@ -265,7 +265,7 @@ static void a_floor_to_the_horizon_is_finite_and_grey(void **state) {
             assert_true(isfinite(half_float(hdr[i])) && half_float(hdr[i]) >= 0);
         }
         masu_stats_info stats;
-        assert_int_equal(masu_stats(s.m, 0, &stats), MASU_OK);
+        assert_int_equal(masu_stats(s.m, 0, &stats, NULL), MASU_OK);
         assert_int_equal(stats.replaced, 0);
         close_session(&s);
     }
@@ -433,7 +433,7 @@ static void a_scene_without_textures_has_nothing_of_them(void **state) {
             }
         }
         masu_stats_info stats;
-        assert_int_equal(masu_stats(s.m, 0, &stats), MASU_OK);
+        assert_int_equal(masu_stats(s.m, 0, &stats, NULL), MASU_OK);
         assert_int_equal(stats.draws, 1);
         close_session(&s);
     }
@@ -451,13 +451,13 @@ static void the_demo_draws_finite_pixels_at_every_rung(void **state) {
         masu_readback_image image;
         masu_frame_desc frame = {.rung = rung, .time = rung};
         draw(&s, &frame, &commands, NULL);
-        assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_HDR, &image), MASU_OK);
+        assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_HDR, &image, NULL), MASU_OK);
         const uint16_t *hdr = image.pixels;
         for (uint32_t i = 0; i < 4 * image.width * image.height; i++) {
             assert_true(isfinite(half_float(hdr[i])));
         }
         masu_stats_info stats;
-        assert_int_equal(masu_stats(s.m, commands.slot, &stats), MASU_OK);
+        assert_int_equal(masu_stats(s.m, commands.slot, &stats, NULL), MASU_OK);
         assert_int_equal(stats.replaced, 0);
         assert_int_equal(stats.draws, 6);
     }

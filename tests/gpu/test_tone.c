@@ -171,7 +171,7 @@ static float exposed(float scale, float step, int cut, uint8_t *pixels, double *
     masu_light light;
     masu_commands commands;
     masu_stats_info stats;
-    assert_int_equal(masu_light_of(s.m, &light), MASU_OK);
+    assert_int_equal(masu_light_of(s.m, &light, NULL), MASU_OK);
     for (int c = 0; c < 3; c++) {
         light.sun_color[c] *= scale, light.ambient[c] *= scale;
         light.sky_zenith[c] *= scale, light.sky_horizon[c] *= scale;
@@ -179,7 +179,7 @@ static float exposed(float scale, float step, int cut, uint8_t *pixels, double *
     light.exposure = 1;
     masu_frame_desc frame = {.light = &light, .time_step = step, .cut = (uint32_t)cut};
     draw(&s, &frame, &commands, pixels);
-    assert_int_equal(masu_stats(s.m, commands.slot, &stats), MASU_OK);
+    assert_int_equal(masu_stats(s.m, commands.slot, &stats, NULL), MASU_OK);
     if (mean) {
         static double rgb[W * H][3];
         const uint16_t *hdr = read_image(&s, commands.slot, MASU_READBACK_HDR);
@@ -270,7 +270,7 @@ static void a_scene_may_ask_for_it(void **state) {
     static double rgb[W * H][3];
     masu_session_desc d = test_desc("test_exposure", W, H);
     d.desc.readback = MASU_READBACK_HDR;
-    d.desc = masu_desc_resolved(&d.desc); /* before the scene is known, as tools do */
+    d.desc = masu_session_resolved(&d.desc); /* before the scene is known, as tools do */
     for (int off = 0; off < 2; off++) {
         masu_stats_info stats;
         masu_readback_image image;
@@ -278,8 +278,8 @@ static void a_scene_may_ask_for_it(void **state) {
         d.desc.exposure.metered = off ? MASU_OFF : MASU_AUTO;
         open_session(&s, &d);
         draw_rung(&s, 0, NULL);
-        assert_int_equal(masu_stats(s.m, 0, &stats), MASU_OK);
-        assert_int_equal(masu_readback(s.m, 0, MASU_READBACK_HDR, &image), MASU_OK);
+        assert_int_equal(masu_stats(s.m, 0, &stats, NULL), MASU_OK);
+        assert_int_equal(masu_readback(s.m, 0, MASU_READBACK_HDR, &image, NULL), MASU_OK);
         const uint16_t *hdr = image.pixels;
         for (uint32_t i = 0; i < W * H; i++) {
             for (uint32_t c = 0; c < 3; c++) rgb[i][c] = half_float(hdr[4 * i + c]);
@@ -322,7 +322,7 @@ static void what_is_not_metered_costs_nothing(void **state) {
     for (uint32_t i = 0; i < n; i++) assert_string_not_equal(rows[i].name, "exposure");
     draw_rung(&s, 0, NULL);
     masu_stats_info stats;
-    assert_int_equal(masu_stats(s.m, 0, &stats), MASU_OK);
+    assert_int_equal(masu_stats(s.m, 0, &stats, NULL), MASU_OK);
     assert_true(stats.exposure == 0);
     close_session(&s);
 }

@@ -135,7 +135,7 @@ static void move(uint32_t i) {
     const pane *p = &panes[i];
     const float rows[12] = {(float)p->half, 0, 0, (float)p->x, 0,          (float)p->half, 0,
                             (float)p->y,    0, 0, 1,           (float)p->z};
-    assert_int_equal(masu_instance_set_transform(s.m, masu_instance_at(s.m, i), rows), MASU_OK);
+    assert_int_equal(masu_instance_set_transform(s.m, masu_instance_at(s.m, i), rows, NULL), MASU_OK);
 }
 
 static masu_stats_info render(const masu_camera *camera, float *hdr) {
@@ -372,14 +372,14 @@ static void a_pane_cuts_an_sdf_and_polygons_alike(void **state) {
     masu_stats_info stats;
     for (int there = 0; there < 2; there++) {
         rows[11] = there ? 0.5f : 100;
-        assert_int_equal(masu_instance_set_transform(s.m, pane_handle, rows), MASU_OK);
+        assert_int_equal(masu_instance_set_transform(s.m, pane_handle, rows, NULL), MASU_OK);
         draw(&s, &frame, &commands, NULL);
-        assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_HDR, &image), MASU_OK);
+        assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_HDR, &image, NULL), MASU_OK);
         float *to = there ? picture : base;
         floats_of_halves(image.pixels, to, 4 * PIXELS);
-        assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_DEPTH, &image), MASU_OK);
+        assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_DEPTH, &image, NULL), MASU_OK);
         memcpy(depth[there], image.pixels, sizeof depth[there]);
-        assert_int_equal(masu_stats(s.m, commands.slot, &stats), MASU_OK);
+        assert_int_equal(masu_stats(s.m, commands.slot, &stats, NULL), MASU_OK);
         assert_int_equal(stats.transparents, there);
     }
     assert_memory_equal(depth[0], depth[1], sizeof depth[0]); /* a pane is in no depth */

@@ -116,7 +116,7 @@ static void a_jitter_moves_all_alike(void **state) {
         double angle = 0.1235 + (jitters[i][0] != 0.0f ? 0.0 : acos(0.0)), x[3], y[3];
         plane_of(angle, x, y);
         masu_camera camera = rolled(angle);
-        masu_frame_desc f = {.camera = &camera, .cut = 1};
+        masu_frame_desc f = {MASU_FRAME_DESC, .camera = &camera, .cut = 1};
         masu_commands commands;
         double still[2], moved[2], all[2];
         draw(&s, &f, &commands, picture);
@@ -154,13 +154,13 @@ static void velocities_hold_the_jitter(void **state) {
     d.desc.readback = MASU_READBACK_VELOCITY;
     open_session(&s, &d);
     masu_camera camera = rolled(0.3);
-    masu_frame_desc f = {.camera = &camera};
+    masu_frame_desc f = {MASU_FRAME_DESC, .camera = &camera};
     masu_commands commands;
     masu_readback_image image;
     draw(&s, &f, &commands, NULL);
     camera.jitter[0] = 0.5f, camera.jitter[1] = -0.25f;
     draw(&s, &f, &commands, NULL);
-    assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_VELOCITY, &image), MASU_OK);
+    assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_VELOCITY, &image, NULL), MASU_OK);
     for (uint32_t p = 0; p < PIXELS; p++) {
         uint16_t v[4];
         memcpy(v, (const uint8_t *)image.pixels + image.row_bytes * (p / SIZE) + 8 * (p % SIZE),
@@ -170,9 +170,9 @@ static void velocities_hold_the_jitter(void **state) {
         assert_true(fabsf(half_float(v[1]) + 0.25f) < 2e-3f);
     }
     camera.jitter[0] = 1.01f;
-    assert_int_equal(masu_frame(s.m, &f, &commands), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_frame(s.m, &f, &commands, NULL), MASU_ERROR_ARGUMENT);
     camera.jitter[0] = nanf("");
-    assert_int_equal(masu_frame(s.m, &f, &commands), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_frame(s.m, &f, &commands, NULL), MASU_ERROR_ARGUMENT);
     close_session(&s);
 }
 
@@ -190,7 +190,7 @@ static void an_edge_is_as_wide_as_it_covers(void **state) {
         double x[3], y[3], worst[2] = {0, 0}, sum[2] = {0, 0}, count[2] = {0, 0}, white = 0;
         plane_of(angles[i], x, y);
         masu_camera camera = rolled(angles[i]);
-        masu_frame_desc f = {.camera = &camera};
+        masu_frame_desc f = {MASU_FRAME_DESC, .camera = &camera};
         assert_ok(masu_picture_truth(&s, &f, PLACES, 1, &(masu_picture_means){.linear = radiance},
                                      NULL, error, sizeof error));
         for (uint32_t p = 0; p < PIXELS; p++)
@@ -233,8 +233,8 @@ static void light_beyond_white_is_averaged_before_clipping(void **state) {
            white = 0;
     plane_of(0.12, x, y);
     masu_camera camera = rolled(0.12);
-    assert_int_equal(masu_light_of(s.m, &light), MASU_OK);
-    masu_frame_desc f = {.camera = &camera, .light = &light};
+    assert_int_equal(masu_light_of(s.m, &light, NULL), MASU_OK);
+    masu_frame_desc f = {MASU_FRAME_DESC, .camera = &camera, .light = &light};
     const masu_picture_means means = {.linear = radiance, .display = picture};
     for (int pass = 0; pass < 2; pass++) { /* the first finds the surface's radiance */
         assert_ok(
@@ -278,7 +278,7 @@ static void tone_curves_are_those_of_the_pass(void **state) {
         masu_camera camera = {.forward = {0, 0.6f, 1}, .fov_y = 1.2f, .near_distance = 0.1f};
         int steps = 0;
         for (light.exposure = 0.25f; light.exposure < 5.0f; light.exposure *= 4.0f) {
-            masu_frame_desc f = {.camera = &camera, .light = &light, .cut = 1};
+            masu_frame_desc f = {MASU_FRAME_DESC, .camera = &camera, .light = &light, .cut = 1};
             masu_commands commands;
             draw(&s, &f, &commands, picture);
             assert_true(masu_linear_read(s.m, commands.slot, s.desc.output, linear));
@@ -324,7 +324,7 @@ static void a_silhouette_is_as_wide_as_it_covers(int bright) {
             memcpy(camera.jitter, jitters[j], sizeof camera.jitter);
             x[2] += (double)jitters[j][0] * x[0] + (double)jitters[j][1] * x[1];
             y[2] += (double)jitters[j][0] * y[0] + (double)jitters[j][1] * y[1];
-            masu_frame_desc f = {.camera = &camera, .light = bright ? &light : NULL, .cut = 1};
+            masu_frame_desc f = {MASU_FRAME_DESC, .camera = &camera, .light = bright ? &light : NULL, .cut = 1};
             masu_commands commands;
             draw(&s, &f, &commands, picture);
             f.rung = 1;
@@ -400,7 +400,7 @@ static void silhouettes_stand_beside_everything_else(void **state) {
         d.desc.debug.counters = 1;
         d.desc.debug.poison = 1;
         open_session(&s, &d);
-        masu_frame_desc f = {.cut = 1};
+        masu_frame_desc f = {MASU_FRAME_DESC, .cut = 1};
         masu_commands commands;
         draw(&s, &f, &commands, picture);
         uint64_t with = stats_of(&s, commands.slot).sdf_evals;
@@ -426,7 +426,7 @@ static void silhouettes_read_what_was_written(void **state) {
         d.desc.rungs[0] = (masu_rung){.silhouettes = MASU_ON};
         d.desc.debug.poison = poison;
         open_session(&s, &d);
-        masu_frame_desc f = {.time = 0.8, .cut = 1};
+        masu_frame_desc f = {MASU_FRAME_DESC, .time = 0.8, .cut = 1};
         masu_commands commands;
         draw(&s, &f, &commands, poison ? poisoned : picture);
         close_session(&s);
@@ -443,7 +443,7 @@ static void silhouettes_go_towards_the_truth(void **state) {
     for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
         masu_session s;
         char error[ERROR_SIZE];
-        masu_frame_desc f = {.time = 0.8, .cut = 1};
+        masu_frame_desc f = {MASU_FRAME_DESC, .time = 0.8, .cut = 1};
         masu_session_desc d = test_desc(scenes[i], SIZE, SIZE);
         assert_ok(masu_picture_open(&d, 16, &s, error, sizeof error));
         assert_true(masu_picture_truth(&s, &f, 16, 16, &(masu_picture_means){.display = truth},

@@ -549,7 +549,7 @@ static void a_scene_says_how_many_tiles_left_early(void **state) {
         masu_commands commands;
         masu_stats_info stats;
         draw(&scene, &frame, &commands, pixels[r]);
-        assert_int_equal(masu_stats(scene.m, commands.slot, &stats), MASU_OK);
+        assert_int_equal(masu_stats(scene.m, commands.slot, &stats, NULL), MASU_OK);
         early[r] = stats.easu_tiles_early;
     }
     close_session(&scene);

@@ -192,7 +192,7 @@ static void take(masu_session *s, const moment *m, uint32_t cut, picture *p) {
     draw(s, &frame, &commands, NULL);
     if (!p) return;
     view_depths(read_image(s, commands.slot, MASU_READBACK_DEPTH), &m->camera, p->depth, W * H);
-    assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_VELOCITY, &image), MASU_OK);
+    assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_VELOCITY, &image, NULL), MASU_OK);
     assert_int_equal(image.format, VK_FORMAT_R16G16B16A16_SFLOAT);
     assert_int_equal(image.row_bytes, W * 8);
     const uint16_t *velocity = image.pixels;
@@ -426,9 +426,9 @@ static void a_field_by_hand_is_followed_along_its_normal(void **state) {
     draw(&s, &frame, &commands, NULL);
     radius = 1.0f;
     draw(&s, &frame, &commands, NULL);
-    assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_DEPTH, &image), MASU_OK);
+    assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_DEPTH, &image, NULL), MASU_OK);
     const float *depth = image.pixels;
-    assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_VELOCITY, &image), MASU_OK);
+    assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_VELOCITY, &image, NULL), MASU_OK);
     const uint16_t *texels = image.pixels;
     eye e = eye_of(&c);
     double worst = 0, longest = 0;

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+static masu_detail failure; /* of the last call that failed */
+
 enum { W = 160, H = 90, VIEWS = 3 };
 
 static const masu_viewport left_right_map[VIEWS] = {{0, 0, 81, 90}, {81, 0, 79, 90}, {97, 7, 40, 24}};
@@ -35,8 +37,9 @@ static masu_commands frame_of(masu_session *s, own_renderer *x, uint32_t view, u
     char error[ERROR_SIZE];
     masu_commands commands;
     masu_frame_desc frame = {
+        MASU_FRAME_DESC,
         .camera = &cameras[view], .rung = rungs[view], .viewport = viewport, .cut = (uint32_t)cut};
-    assert_int_equal(masu_frame(x->m, &frame, &commands), MASU_OK);
+    assert_int_equal(masu_frame(x->m, &frame, &commands, &failure), MASU_OK);
     assert_ok(masu_headless_run(&s->host, commands.buffer, error, sizeof error));
     return commands;
 }
@@ -61,7 +64,7 @@ static void compare(masu_session *s, own_renderer *x, const masu_viewport *views
     for (uint32_t k = 0; k < VIEWS; k++) {
         masu_commands commands = frame_of(s, x, k, k, 0);
         masu_readback_image depth;
-        assert_int_equal(masu_readback(x->m, commands.slot, MASU_READBACK_DEPTH, &depth), MASU_OK);
+        assert_int_equal(masu_readback(x->m, commands.slot, MASU_READBACK_DEPTH, &depth, &failure), MASU_OK);
         if (rungs[k] != 1) assert_int_equal(depth.width, views[k].width);
         if (rungs[k] == 1) assert_int_equal(depth.height, (uint32_t)(views[k].height * 0.6 + 0.5));
     }
@@ -142,25 +145,25 @@ static void what_is_no_part_is_refused(void **state) {
     assert_int_equal(masu_memory_query(&d, &need, &detail), MASU_ERROR_ARGUMENT);
     assert_non_null(strstr(detail.text, "of storage targets they begin at 0, 0"));
     masu_commands commands;
-    assert_int_equal(masu_frame(x.m, &(masu_frame_desc){.viewport = 1}, &commands), MASU_ERROR_ARGUMENT);
-    assert_string_equal(masu_last_error(x.m)->text, "viewport 1 does not exist, the last one is 0");
+    assert_int_equal(masu_frame(x.m, &(masu_frame_desc){MASU_FRAME_DESC, .viewport = 1}, &commands, &failure), MASU_ERROR_ARGUMENT);
+    assert_string_equal(failure.text, "viewport 1 does not exist, the last one is 0");
     unmake_own(&s, &x);
     d = desc_of(&s, W, H);
     d.governor.mode = MASU_GOVERNOR_ON;
     d.viewport_count = VIEWS;
     memcpy(d.viewports, left_right_map, sizeof left_right_map);
     make_own(&s, &x, &d);
-    const masu_frame_desc by_itself = {.viewport = 1, .rung = MASU_RUNG_AUTO};
-    assert_int_equal(masu_frame(x.m, &by_itself, &commands), MASU_ERROR_ARGUMENT);
-    assert_string_equal(masu_last_error(x.m)->what, "rung");
+    const masu_frame_desc by_itself = {MASU_FRAME_DESC, .viewport = 1, .rung = MASU_RUNG_AUTO};
+    assert_int_equal(masu_frame(x.m, &by_itself, &commands, &failure), MASU_ERROR_ARGUMENT);
+    assert_string_equal(failure.what, "rung");
     static masu_plan_info before, after; /* what is refused has not been looked at */
     masu_plan_of(x.m, &before);
-    assert_int_equal(masu_frame(x.m, &(masu_frame_desc){.viewport = VIEWS}, &commands), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_frame(x.m, &(masu_frame_desc){MASU_FRAME_DESC, .viewport = VIEWS}, &commands, &failure), MASU_ERROR_ARGUMENT);
     masu_plan_of(x.m, &after);
     assert_memory_equal(before.rungs, after.rungs, sizeof before.rungs);
     for (uint32_t i = 0; i < 12; i++) (void)frame_of(&s, &x, 0, i % VIEWS, 1);
     masu_stats_info stats;
-    assert_int_equal(masu_stats(x.m, 0, &stats), MASU_OK);
+    assert_int_equal(masu_stats(x.m, 0, &stats, &failure), MASU_OK);
     assert_in_range(stats.governor.samples + stats.governor.rejected, 1, 4); /* of the first alone */
     unmake_own(&s, &x);
     close_session(&s);

@@ -1,10 +1,19 @@
 #!/bin/sh
-# docs/knobs.md, docs/passes.md and docs/sdf-shapes.md are up to date with the tables they are generated from, and the help shows the same
-# knobs.
+# The structs of include/masu_knobs.h, docs/knobs.md, docs/passes.md and docs/sdf-shapes.md are up to date with the
+# tables they are generated from, and the help shows the same knobs.
 set -e
 masu=${BUILD:-build}/bin/masu
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
+${CC:-gcc} -std=c11 -Wall -Wextra -Werror -DMASU_LAB -Iinclude tools/generate/make_structs.c -o "$folder/make_structs"
+"$folder/make_structs" < include/masu_knobs.h | diff -u include/masu_knobs.h - || {
+    echo "the structs of include/masu_knobs.h are not what its tables say: make docs-tables"
+    exit 1
+}
+if grep -v 'written by make_structs.c: masu_rung' include/masu_knobs.h | "$folder/make_structs" > "$folder/knobs.h" 2>&1; then
+    echo "make_structs accepts a header without its markers"
+    exit 1
+fi
 "$masu" plan --knobs=md > "$folder/knobs.md"
 diff -u docs/knobs.md "$folder/knobs.md" || {
     echo "docs/knobs.md is not what include/masu_knobs.h says: make docs-tables"

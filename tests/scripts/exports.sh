@@ -35,7 +35,7 @@ ${CC:-gcc} -shared -fPIC "$folder/x.c" -o "$folder/x.so" || fail 'self-test: doe
 version=$(sed -n 's/^.define MASU_VERSION_[A-Z]* //p' include/masu.h | paste -sd.)
 library=$build/lib/libmasu.so.$version
 soname=$(objdump -p "$library" | awk '$1 == "SONAME" { print $2 }')
-[ "$soname" = "libmasu.so.${version%%.*}" ] || fail "the soname is $soname"
+[ "$soname" = "libmasu.so.${version%.*}" ] || fail "the soname is $soname"
 [ "$(readlink -f "$build/lib/libmasu.so")" = "$(readlink -f "$library")" ] || fail 'libmasu.so is not that'
 others=$(objdump -p "$library" | awk '$1 == "NEEDED" && $2 !~ /^lib[cm]\.so/ { print $2 }')
 [ -z "$others" ] || fail "it needs $others"

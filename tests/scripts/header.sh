@@ -13,6 +13,10 @@ ${CC:-gcc} -std=c11 $strict -c "$folder/header.c" -o "$folder/c.o"
 # shellcheck disable=SC2086
 ${CXX:-g++} -std=c++17 $strict -c "$folder/header.cpp" -o "$folder/cpp.o"
 
+printf '#include "masu.hpp"\n#include "masu.hpp"\nint main() { return 0; }\n' > "$folder/wrapper.cpp"
+# shellcheck disable=SC2086
+${CXX:-g++} -std=c++17 $strict -c "$folder/wrapper.cpp" -o "$folder/wrapper.o"
+
 others=$(sed -n 's/^ *# *include *//p' include/*.h |
     grep -vxE '<(stddef|stdint|stdbool)\.h>|<vulkan/vulkan_core\.h>|"masu_(knobs|study)\.h"' || true)
 [ -z "$others" ] || { echo "masu.h includes $others"; exit 1; }

@@ -33,13 +33,14 @@ sort > "$folder/expected" << END
 .$prefix/bin/masu-meso
 .$prefix/bin/masu-sdfc$view
 .$prefix/include/masu.h
+.$prefix/include/masu.hpp
 .$prefix/include/masu_knobs.h
 .$prefix/include/masu_study.h
 .$prefix/lib/cmake/masu/masu-config-version.cmake
 .$prefix/lib/cmake/masu/masu-config.cmake
 .$prefix/lib/libmasu.a
 .$prefix/lib/libmasu.so
-.$prefix/lib/libmasu.so.${version%%.*}
+.$prefix/lib/libmasu.so.${version%.*}
 .$prefix/lib/libmasu.so.$version
 .$prefix/lib/pkgconfig/masu-static.pc
 .$prefix/lib/pkgconfig/masu.pc
@@ -47,7 +48,7 @@ $(for f in README.md ARCHITECTURE.md CONTRIBUTING.md CHANGELOG.md LICENSE docs/*
     echo ".$prefix/share/doc/masu/$f"
 done)
 .$prefix/share/doc/masu/folders
-$(for f in examples/*.[ch] examples/*.frag examples/*.vert examples/shared/*.[ch] examples/drive/*.[ch] \
+$(for f in examples/*.[ch] examples/*.cpp examples/*.lua examples/*.frag examples/*.vert examples/shared/*.[ch] examples/drive/*.[ch] \
     examples/Makefile examples/host_pass_frag.spv.h examples/host_pass_vert.spv.h; do
     echo ".$prefix/share/doc/masu/$f"
 done)
@@ -57,6 +58,7 @@ done)
 $(for p in masu masu-bake masu-meso masu-sdfc ${view:+masu-view}; do
     printf '%s\n' ".$prefix/share/man/man1/$p.1" ".$prefix/share/bash-completion/completions/$p"
 done)
+.$prefix/share/masu/masu.cdef
 .$prefix/share/masu/suites/extreme.json
 .$prefix/share/masu/suites/full.json
 .$prefix/share/masu/suites/smoke.json$scenes
@@ -77,7 +79,7 @@ extra=
 warnings='-Wall -Wextra -Wpedantic -Werror'
 
 # needs PROGRAM: whether it asks for the shared library by its soname
-needs() { objdump -p "$1" | grep -q "NEEDED *libmasu.so.${version%%.*}\$"; }
+needs() { objdump -p "$1" | grep -q "NEEDED *libmasu.so.${version%.*}\$"; }
 
 # works PROGRAM: says what it should
 works() {
@@ -131,7 +133,7 @@ if [ "${config:-release}" = release ]; then # a sanitized library needs its exam
     cp -r "$doc/examples" "$folder/examples"
     make -C "$folder/examples" PREFIX="$stage$prefix" CC="${CC:-gcc}" CFLAGS=-O0 > "$folder/said" 2>&1 ||
         { cat "$folder/said" && exit 1; }
-    for f in minimal split_screen host_pass; do
+    for f in minimal split_screen host_pass raii; do
         [ -x "$folder/examples/$f" ] || { echo "$f is not built from the prefix"; exit 1; }
     done
 fi

@@ -210,6 +210,38 @@ read -r frames turns < <(sed -n 's/.*: \([0-9]*\) frames in \([0-9]*\) loop iter
     fail "while it was minimised $((turns - frames)) turns drew nothing, not 20 and a few"
 cd ..
 
+# Files that are named by named files: an include, a material of an OBJ.
+printf 'include "colour.sdf";\n%s\n' "$(grep -v red red.sdf)
+part ball : red = translate((0, 1, 0), sphere(1));" > including.sdf
+grep red red.sdf | head -1 > colour.sdf
+sed 's/ball.sdf/including.sdf/' ball.json > including.json
+printf 'mtllib quad.mtl\nv -1 0 0\nv 1 0 0\nv 0 2 0\nusemtl m\nf 1 2 3\nf 3 2 1\n' > quad.obj
+printf 'newmtl m\nKd 0.8 0.1 0.1\n' > quad.mtl
+for file in including.json quad.obj; do
+    edit="sed -i 's/0.8, 0.2, 0.1/0.1, 0.2, 0.8/' ../colour.sdf"
+    [ $file != quad.obj ] || edit="sed -i 's/Kd .*/Kd 0.1 0.1 0.8/' ../quad.mtl"
+    play "$file.d" ../$file --size 160x90 --rung 0 << END
+frame 0 key F1
+frame 0 key F1
+frame 0 key Space
+frame 3 screenshot before.png
+frame 4 run $edit
+frame 7 screenshot after.png
+frame 8 quit
+END
+    differ "$file.d/before.png" "$file.d/after.png" 160x45+0+0
+done
+
+# A signal during a bake ends it as closing the window does. The folder of the bake is looked for at the end.
+printf '#!/bin/sh\ntouch %s/started\nexec sleep 100\n' "$folder" > sleeper
+chmod +x sleeper
+"$view" red.sdf --bake ./sleeper --size 64x48 > out 2>&1 &
+child=$!
+for ((i = 0; i < 600; i++)); do [ -e started ] && break || sleep 0.1; done
+kill "$child"
+wait "$child" || fail "a signal: exit code $?: $(cat out)"
+[ -e started ] || fail "the bake has not begun"
+
 # Every frame depends on the script alone. (A rung without a past: what was flown is not to be seen in what follows.)
 for run in 1 2; do
     play fly$run "$both" --size 160x90 --ladder ../sizes.json --rung 0 << 'END'

@@ -10,6 +10,7 @@ masu_scene_data support_scene;
 static masu_desc desc_of(uint32_t width, uint32_t height) {
     masu_desc d;
     memset(&d, 0, sizeof d);
+    d.bytes = sizeof d;
     for (uint32_t i = 0; i < MASU_MAX_TARGETS; i++) {
         support_images[i] = FAKE(VkImage, i);
         support_views[i] = FAKE(VkImageView, 16 + i);

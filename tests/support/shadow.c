@@ -66,9 +66,9 @@ const void *shadow_image(shadow_test *t, masu_readback_bits which) {
     masu_readback_image out;
     masu_stats_info a, b;
     uint32_t slot = 0; /* of the newest frame */
-    assert_int_equal(masu_stats(t->s.m, 0, &a), MASU_OK);
-    if (masu_stats(t->s.m, 1, &b) == MASU_OK && b.frame > a.frame) slot = 1;
-    assert_int_equal(masu_readback(t->s.m, slot, which, &out), MASU_OK);
+    assert_int_equal(masu_stats(t->s.m, 0, &a, NULL), MASU_OK);
+    if (masu_stats(t->s.m, 1, &b, NULL) == MASU_OK && b.frame > a.frame) slot = 1;
+    assert_int_equal(masu_readback(t->s.m, slot, which, &out, NULL), MASU_OK);
     return out.pixels;
 }
 

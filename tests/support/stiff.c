@@ -39,7 +39,7 @@ void stiff_head(void) {
 static void copy_image(masu_session *s, uint32_t slot, masu_readback_bits which, size_t texel,
                        const stiff_case *c, void *out) {
     masu_readback_image image;
-    assert_int_equal(masu_readback(s->m, slot, which, &image), MASU_OK);
+    assert_int_equal(masu_readback(s->m, slot, which, &image, NULL), MASU_OK);
     assert_int_equal(image.width, c->width);
     assert_int_equal(image.height, c->height);
     for (uint32_t y = 0; y < c->height; y++)
@@ -64,7 +64,7 @@ static void draw_once(masu_session *s, const stiff_case *c, uint8_t *shown) {
                              .sdf_param_count = c->param_count};
     masu_commands commands;
     draw(s, &frame, &commands, shown);
-    assert_int_equal(masu_stats(s->m, commands.slot, &own.picture.stats), MASU_OK);
+    assert_int_equal(masu_stats(s->m, commands.slot, &own.picture.stats, NULL), MASU_OK);
     copy_image(s, commands.slot, MASU_READBACK_DEPTH, 4, c, own.depth);
     copy_image(s, commands.slot, MASU_READBACK_NORMAL, 4, c, own.normal);
     copy_image(s, commands.slot, MASU_READBACK_ALBEDO, 4, c, own.albedo);

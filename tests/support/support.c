@@ -55,7 +55,7 @@ void draw(masu_session *s, const masu_frame_desc *frame, masu_commands *commands
 }
 
 void draw_rung(masu_session *s, uint32_t rung, uint8_t *pixels) {
-    masu_frame_desc frame = {.rung = rung};
+    masu_frame_desc frame = {MASU_FRAME_DESC, .rung = rung};
     masu_commands commands;
     draw(s, &frame, &commands, pixels);
 }
@@ -68,7 +68,7 @@ uint32_t memory_rows(const masu_renderer *m, masu_memory_row rows[MEMORY_ROWS]) 
 
 const void *read_image(const masu_session *s, uint32_t slot, masu_readback_bits which) {
     masu_readback_image image;
-    assert_int_equal(masu_readback(s->m, slot, which, &image), MASU_OK);
+    assert_int_equal(masu_readback(s->m, slot, which, &image, NULL), MASU_OK);
     uint32_t texel = image.format == VK_FORMAT_R16G16B16A16_SFLOAT ? 8 : 4;
     assert_int_equal(image.row_bytes, image.width * texel);
     return image.pixels;
@@ -90,14 +90,14 @@ void view_depths(const void *depth, const masu_camera *camera, float *out, size_
 
 masu_stats_info stats_of(const masu_session *s, uint32_t slot) {
     masu_stats_info stats;
-    assert_int_equal(masu_stats(s->m, slot, &stats), MASU_OK);
+    assert_int_equal(masu_stats(s->m, slot, &stats, NULL), MASU_OK);
     return stats;
 }
 
 void place_instance(masu_session *s, const char *name, const float rows[12]) {
     masu_instance instance = masu_instance_find(s->m, name);
     assert_int_not_equal(instance.id, 0);
-    assert_int_equal(masu_instance_set_transform(s->m, instance, rows), MASU_OK);
+    assert_int_equal(masu_instance_set_transform(s->m, instance, rows, NULL), MASU_OK);
 }
 
 void move_instance(masu_session *s, const char *name, float x, float y, float z, float size) {
@@ -138,7 +138,7 @@ uint32_t load_all(masu_session *s, masu_renderer *m) {
     masu_commands commands;
     masu_result result;
     uint32_t parts = 0;
-    while ((result = masu_load(m, &commands)) == MASU_INCOMPLETE) {
+    while ((result = masu_load(m, &commands, NULL)) == MASU_INCOMPLETE) {
         if (!commands.part_count) continue; /* what was in the block already */
         assert_ok(masu_headless_run(&s->host, commands.buffer, error, sizeof error));
         parts++;
@@ -186,10 +186,10 @@ void draw_rungs_of(masu_session *s, const masu_desc *d, uint8_t *const *out,
     masu_commands commands;
     make_own(s, &x, d);
     for (uint32_t r = 0; r < d->rung_count; r++) {
-        masu_frame_desc frame = {.rung = r};
-        assert_int_equal(masu_frame(x.m, &frame, &commands), MASU_OK);
+        masu_frame_desc frame = {MASU_FRAME_DESC, .rung = r};
+        assert_int_equal(masu_frame(x.m, &frame, &commands, NULL), MASU_OK);
         assert_ok(masu_headless_run(&s->host, commands.buffer, error, sizeof error));
-        if (stats) assert_int_equal(masu_stats(x.m, commands.slot, &stats[r]), MASU_OK);
+        if (stats) assert_int_equal(masu_stats(x.m, commands.slot, &stats[r], NULL), MASU_OK);
         assert_ok(masu_headless_target_read(&s->host, &x.target, error, sizeof error));
         memcpy(out[r], x.target.mapped, (size_t)x.target.width * x.target.height * 4);
     }

@@ -49,7 +49,7 @@ static void the_camera_path_is_linear_between_its_keys_and_held_at_its_ends(void
     make_renderer(SUPPORT_ALL, 0);
     for (size_t i = 0; i < COUNT(cases); i++) {
         masu_camera c;
-        assert_int_equal(masu_camera_at(&m, cases[i].time, &c), MASU_OK);
+        assert_int_equal(masu_camera_at(&m, cases[i].time, &c, NULL), MASU_OK);
         for (int k = 0; k < 3; k++) {
             assert_near(c.position[k], cases[i].position[k], 1e-6);
             assert_near((double)c.forward[k], cases[i].target[k] - cases[i].position[k], 1e-6);
@@ -65,12 +65,12 @@ static void a_camera_path_that_is_missing_or_asked_for_nonsense_says_so(void **s
     masu_camera c;
     masu_detail detail;
     make_renderer(SUPPORT_ALL, 0);
-    assert_int_equal(masu_camera_at(&m, (double)NAN, &c), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_camera_at(&m, (double)INFINITY, &c), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_camera_at(&m, 0.0, NULL), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_camera_at(NULL, 0.0, &c), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_camera_at(&m, (double)NAN, &c, NULL), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_camera_at(&m, (double)INFINITY, &c, NULL), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_camera_at(&m, 0.0, NULL, NULL), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_camera_at(NULL, 0.0, &c, NULL), MASU_ERROR_ARGUMENT);
     make_renderer(SUPPORT_RASTER, 0);
-    assert_int_equal(masu_camera_at(&m, 0.0, &c), MASU_ERROR_STATE);
+    assert_int_equal(masu_camera_at(&m, 0.0, &c, NULL), MASU_ERROR_STATE);
     masu_frame_desc f = {.time = 0.0};
     assert_int_equal(write_frame(&f, 0, &detail), MASU_ERROR_ARGUMENT);
     assert_string_equal(detail.what, "camera");
@@ -82,7 +82,7 @@ static void a_path_of_one_key_stands_still(void **state) {
     m.plan.scene.camera_keys = 1;
     for (double time = -3.0; time < 4.0; time += 1.0) {
         masu_camera c;
-        assert_int_equal(masu_camera_at(&m, time, &c), MASU_OK);
+        assert_int_equal(masu_camera_at(&m, time, &c, NULL), MASU_OK);
         assert_near(c.position[2], 5.0, 0.0);
         assert_near((double)c.fov_y, 0.8, 1e-6);
     }
@@ -96,7 +96,7 @@ static void keys_that_cross_over_keep_a_direction(void **state) {
     keys[1] = (masu_blob_camera_key){2.0f, {1.0f, 0.0f, 0.0f}, {-1.0f, 0.0f, 0.0f}, 1.0f};
     m.plan.scene.camera_keys = 2;
     masu_camera c;
-    assert_int_equal(masu_camera_at(&m, 1.0, &c), MASU_OK);
+    assert_int_equal(masu_camera_at(&m, 1.0, &c, NULL), MASU_OK);
     assert_near((double)c.forward[0], 2.0, 0.0);
     masu_frame_desc f = {.time = 1.0};
     write_good(&f, 0);
@@ -433,7 +433,7 @@ static void a_light_that_an_environment_map_replaces_is_named(void **state) {
     assert_frame_refused(&(masu_frame_desc){.light = &hazy}, "light.turbidity");
     m.plan.needs.sky = 0;
     masu_light own;
-    assert_int_equal(masu_light_of(&m, &own), MASU_OK);
+    assert_int_equal(masu_light_of(&m, &own, NULL), MASU_OK);
     own.exposure = 2.0f;
     masu_frame_desc f = {.light = &own};
     assert_int_equal(write_frame(&f, 0, &detail), MASU_OK);

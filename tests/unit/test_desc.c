@@ -17,6 +17,7 @@
 #include "plan/compile.h"
 #include "quality/governor_desc.h"
 #include "scene/blob.h"
+#include "plan/desc.h"
 #include "support/desc.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
@@ -938,14 +939,64 @@ static void a_missing_callback_of_the_allocator_is_named(void **state) {
 static void every_result_has_its_text(void **state) {
     (void)state;
     const char *const unknown = "unknown result";
-#define CHECK(name, value, text)                                                                   \
-    assert_int_equal(name, value);                                                                 \
-    assert_string_equal(masu_result_string(name), text);
-    MASU_RESULTS(CHECK)
-#undef CHECK
+    for (int i = MASU_ERROR_STATE; i <= MASU_INCOMPLETE; i++) {
+        const char *text = masu_result_string((masu_result)i);
+        assert_true(*text && strcmp(text, unknown) != 0);
+    }
+    assert_string_equal(masu_result_string(MASU_OK), "success");
     assert_string_equal(masu_result_string((masu_result)-1000), unknown);
     assert_string_equal(masu_result_string((masu_result)2), unknown);
     assert_string_equal(masu_result_string(MASU_RESULT_FORCE_32), unknown);
+}
+
+static char last_log[256];
+
+static void keep_log(void *user, masu_log_level level, const char *text) {
+    (void)user, (void)level;
+    snprintf(last_log, sizeof last_log, "%s", text);
+}
+
+/* A description of another header is not read: not even its log. */
+static void a_description_of_another_size_is_refused(void **state) {
+    (void)state;
+    static _Alignas(64) unsigned char block[64];
+    const uint32_t sizes[] = {0, sizeof(masu_desc) - 8, sizeof(masu_desc) + 8};
+    masu_renderer *m;
+    masu_memory need;
+    static masu_plan_info plan;
+    for (size_t i = 0; i < 3; i++) {
+        masu_desc d = scene_desc(RASTER, 64, 64), out;
+        d.bytes = sizes[i];
+        d.log = keep_log;
+        last_log[0] = '\0';
+        for (int call = 0; call < 5; call++) {
+            masu_detail detail = {0};
+            masu_result result = call == 0   ? masu_memory_query(&d, &need, &detail)
+                                 : call == 1 ? masu_plan(&d, &plan, &detail)
+                                 : call == 2 ? masu_init(&d, block, sizeof block, &m, &detail)
+                                 : call == 3 ? masu_desc_resolve(&d, &out, &detail)
+                                             : masu_ladder_of(d.scene, &d, NULL, &detail);
+            assert_int_equal(result, MASU_ERROR_ARGUMENT);
+            assert_string_equal(detail.what, "bytes");
+            assert_int_equal(detail.needed, sizeof(masu_desc));
+            assert_int_equal(detail.given, sizes[i]);
+            assert_non_null(strstr(detail.text, "sizeof(masu_desc)"));
+            assert_string_equal(last_log, "");
+        }
+    }
+    /* Of the right size, errors go to its log. */
+    masu_desc d = scene_desc(RASTER, 64, 64);
+    masu_detail detail;
+    d.log = keep_log;
+    assert_int_equal(masu_desc_resolve(&d, NULL, &detail), MASU_ERROR_ARGUMENT);
+    assert_string_equal(last_log, detail.text);
+    last_log[0] = '\0';
+    d.output.width = 0;
+    assert_int_equal(masu_memory_query(&d, &need, &detail), MASU_ERROR_ARGUMENT);
+    assert_string_equal(last_log, detail.text);
+    assert_int_equal(masu_desc_resolve(&d, &d, &detail), MASU_OK); /* in place */
+    assert_int_equal(d.bytes, sizeof d);
+    assert_int_equal(masu_version() / 1000, MASU_VERSION / 1000);
 }
 
 /* Arrays without their count, and a source beside a scene, would silently have no effect. */
@@ -1026,6 +1077,7 @@ int main(void) {
         cmocka_unit_test(a_missing_callback_of_the_allocator_is_named),
         cmocka_unit_test(an_unused_number_is_checked_too),
         cmocka_unit_test(every_result_has_its_text),
+        cmocka_unit_test(a_description_of_another_size_is_refused),
     };
     return cmocka_run_group_tests_name("desc", tests, NULL, NULL);
 }

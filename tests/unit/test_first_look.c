@@ -63,12 +63,14 @@ static void the_model_fills_the_frame(void **state) {
         bool ground;
     } things[] = {{{1, 1, 1}, true},     {{1, 8, 1}, true},   {{8, 1, 1}, true},
                   {{1, 1, 9}, true},     {{10, 0.2, 10}, false}, {{0.01, 3, 0.01}, true},
-                  {{4, 1.3, 1.8}, true}, {{0.001, 1, 1}, true}};
+                  {{4, 1.3, 1.8}, true}, {{0.001, 1, 1}, true},
+                  {{2, 1.25, 3.6}, true}};
     static const double scales[] = {1e-2, 1, 3e3};
     static const double places[][3] = {{0, 0, 0}, {5, -3, 11}, {-1000, 200, 400}};
     for (size_t n = 0; n < sizeof things / sizeof *things; n++) {
         for (size_t s = 0; s < 3; s++) {
             for (size_t p = 0; p < 3; p++) {
+                bool plays = p == 1;
                 if (scales[s] < 1 && p == 2) continue; /* floats of a thousand metres are no model of a centimetre */
                 const double *e = things[n].size, *at = places[p];
                 masu_bake_content content = {0};
@@ -77,13 +79,18 @@ static void the_model_fills_the_frame(void **state) {
                             masu_bake_v3(at[0], at[1], at[2]));
                 masu_bake_affine identity = masu_bake_identity();
                 masu_bake_box bounds = masu_bake_bounds(&content, &identity);
+                masu_blob_clip clip = {0};
+                if (plays) masu_bake_append(&content.section[MASU_BLOB_CLIPS], &clip, sizeof clip);
                 masu_bake_make_first_look(&bounds, &content, &d);
                 assert_true(masu_bake_build_models(&d, 0, MASU_BAKE_TEXTURES_OFF, &content));
                 assert_int_equal(d.look.key_count, 1);
                 double most[2];
                 project(&content, 1, d.look.keys, most);
-                assert_true(fmax(most[0], most[1]) > 0.85 && fmax(most[0], most[1]) < 0.92);
+                double share = plays ? 0.75 : 0.89; /* room to move */
+                assert_true(fabs(fmax(most[0], most[1]) - share) < 0.03);
                 assert_int_equal(masu_bake_count(&content, MASU_BLOB_INSTANCES), things[n].ground ? 2 : 1);
+                if (e[1] < 0.5 * fmax(e[0], e[2])) /* a long table is seen from above, not along its top */
+                    assert_true((double)d.look.keys[0].position[1] > bounds.high.y + 0.25 * e[1] * scales[s]);
                 masu_bake_box all = masu_bake_bounds(&content, &identity);
                 if (things[n].ground) { /* below it, but by no more than a gap that nobody sees */
                     double gap = bounds.low.y - all.low.y;

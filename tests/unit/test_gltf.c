@@ -446,10 +446,15 @@ static void factors_of_materials(void **state) {
     assert_near((double)m->opacity, 1 - 0.9, 1e-6); /* the colour is that of what shines through */
     assert_int_equal(MASU_BAKE_MAPS_OF(&piece)->alpha, MASU_BAKE_ALPHA_BLEND);
     assert_int_equal(MASU_BAKE_MAPS_OF(&piece)->tinted, 1);
-    /* Two surfaces and 0.5 m of what leaves a quarter of the red in 0.25 m: a sixteenth in all. */
-    m = only("\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,1,1,1],\"metallicFactor\":0},\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1},"
-             "\"KHR_materials_volume\":{\"thicknessFactor\":0.5,\"attenuationDistance\":0.25,\"attenuationColor\":[0.25,1,1]}}");
+    /* 0.5 m of what leaves a quarter of the red in 0.25 m: a sixteenth, by one surface, or by front and back. */
+#define VOLUME                                                                                                              \
+    "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,1,1,1],\"metallicFactor\":0},"                                      \
+    "\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1},\"KHR_materials_volume\":"                   \
+    "{\"thicknessFactor\":0.5,\"attenuationDistance\":0.25,\"attenuationColor\":[0.25,1,1]}}"
+    m = only("\"doubleSided\":true," VOLUME);
     assert_near((double)m->base_color[0], 0.5 * 0.25, 1e-6);
+    m = only(VOLUME);
+    assert_near((double)m->base_color[0], 0.5 * 0.0625, 1e-6);
     assert_near((double)m->base_color[1], 1, 0);
     m = only("\"extensions\":{\"KHR_materials_pbrSpecularGlossiness\":{\"diffuseFactor\":[0.5,0.25,0.125,1],\"specularFactor\":[0.04,0.04,0.04],\"glossinessFactor\":0.75}}");
     assert_near((double)m->base_color[0], 0.5, 1e-5);
@@ -472,6 +477,9 @@ static void what_is_not_read_is_told(void **state) {
     char attributes[64];
     snprintf(attributes, sizeof attributes, ",\"_WETNESS\":%d", quad_positions);
     import_warned(finish_quad(attributes, "", ""), "1 primitives have _WETNESS, which is not supported (first: quad)");
+    begin_quad();
+    snprintf(attributes, sizeof attributes, ",\"_FEATURE_ID_0\":%d", quad_positions);
+    import_quietly(finish_quad(attributes, "", ",\"extensionsUsed\":[\"EXT_structural_metadata\"],\"extensions\":{\"EXT_structural_metadata\":{}}"));
     begin_quad();
     import_warned(finish("\"meshes\":[{\"name\":\"quad\",\"primitives\":[{\"attributes\":{\"POSITION\":%d},\"indices\":%d},{\"attributes\":{\"POSITION\":%d},\"mode\":1}]}],\"nodes\":[{\"mesh\":0}]",
                          quad_positions, quad_indices, quad_positions),

@@ -22,6 +22,7 @@
 #include "image.h"
 #include "quality/ladder.h"
 #include "plan/compile.h"
+#include "plan/desc.h"
 #include "support/desc.h"
 #include "support/files.h"
 #include "support/random.h"
@@ -325,22 +326,22 @@ static void a_host_may_take_it_and_change_it(void **state) {
     (void)state;
     masu_desc d = scene_desc(RASTER | SDF, 640, 360), own = d;
     const char *from = NULL;
-    assert_int_equal(masu_ladder_of(NULL, &own, &from), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_ladder_of(d.scene, NULL, &from), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_ladder_of(NULL, &own, &from, NULL), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_ladder_of(d.scene, NULL, &from, NULL), MASU_ERROR_ARGUMENT);
     assert_null(from);
     own.governor.costs[0] = 9.0f; /* of another ladder */
     own.rungs[7].scale = 0.1f;
-    assert_int_equal(masu_ladder_of(d.scene, &own, &from), MASU_OK);
+    assert_int_equal(masu_ladder_of(d.scene, &own, &from, NULL), MASU_OK);
     assert_ladder(&own, masu_ladder_for(d.scene));
     assert_non_null(from);
-    assert_int_equal(masu_ladder_of(d.scene, &own, NULL), MASU_OK);
+    assert_int_equal(masu_ladder_of(d.scene, &own, NULL, NULL), MASU_OK);
     own.rungs[0].aa = MASU_AA_SMAA_HIGH;
     compile(&own);
     assert_int_equal(plan.desc.rungs[0].aa, MASU_AA_SMAA_HIGH);
     /* Unchanged it is what ON takes. */
     d.ladder = MASU_ON;
     masu_desc is = masu_desc_resolved(&d);
-    assert_int_equal(masu_ladder_of(d.scene, &own, NULL), MASU_OK);
+    assert_int_equal(masu_ladder_of(d.scene, &own, NULL, NULL), MASU_OK);
     own = masu_desc_resolved(&own);
     for (uint32_t r = 0; r < is.rung_count; r++) {
         for (const masu_knob *k = masu_knob_table(); k->name; k++)

@@ -16,6 +16,8 @@
 #include "support/dry_renderer.h"
 #include "support/scene_data.h"
 
+static masu_detail failure; /* of the last call that failed */
+
 /* ---- Rules of the blob ----------------------------------------------------------------------- */
 
 static support_blob broken;
@@ -104,11 +106,11 @@ static void models_and_nodes_are_found(void **state) {
     assert_int_equal(masu_model_node_find(&m, lid, "plate"), MASU_NODE_NONE);
     assert_int_equal(masu_model_node_find(&m, (masu_model){0}, "lid"), MASU_NODE_NONE);
     masu_node_state node;
-    assert_int_equal(masu_model_node_get(&m, lid, 1, &node), MASU_OK);
+    assert_int_equal(masu_model_node_get(&m, lid, 1, &node, &failure), MASU_OK);
     assert_int_equal(node.parent, 0);
     assert_int_equal(node.instance.id, masu_instance_find(&m, "lid").id);
     masu_instance_state instance;
-    assert_int_equal(masu_instance_get(&m, node.instance, &instance), MASU_OK);
+    assert_int_equal(masu_instance_get(&m, node.instance, &instance, &failure), MASU_OK);
     assert_int_equal(instance.model.id, lid.id);
     assert_int_equal(instance.mesh, 1);
     assert_int_equal(instance.index, 2);
@@ -124,11 +126,11 @@ static void a_model_carries_its_nodes(void **state) {
     masu_instance instance = masu_instance_find(&m, "lid");
     masu_instance_state is;
     masu_model_state model;
-    assert_int_equal(masu_model_set_transform(&m, lid, there), MASU_OK);
-    assert_int_equal(masu_instance_get(&m, instance, &is), MASU_OK);
+    assert_int_equal(masu_model_set_transform(&m, lid, there, &failure), MASU_OK);
+    assert_int_equal(masu_instance_get(&m, instance, &is, &failure), MASU_OK);
     const float turned[12] = {0, 0, 1, 10, 0, 1, 0, 20, -1, 0, 0, 30};
     assert_rows(is.rows, turned);
-    assert_int_equal(masu_model_get(&m, lid, &model), MASU_OK);
+    assert_int_equal(masu_model_get(&m, lid, &model, &failure), MASU_OK);
     assert_rows(model.rows, there);
     assert_int_equal(model.nodes, 2);
     for (uint32_t k = 0; k < 3; k++) { /* its mesh is 4 x 4 x 0, turned */
@@ -138,12 +140,12 @@ static void a_model_carries_its_nodes(void **state) {
         assert_true(model.box_low[k] == is.box_low[k] && model.box_high[k] == is.box_high[k]);
     }
     const float up[12] = {1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 1, 2};
-    assert_int_equal(masu_model_node_set(&m, lid, 1, up), MASU_OK);
-    assert_int_equal(masu_instance_get(&m, instance, &is), MASU_OK);
+    assert_int_equal(masu_model_node_set(&m, lid, 1, up, &failure), MASU_OK);
+    assert_int_equal(masu_instance_get(&m, instance, &is, &failure), MASU_OK);
     const float raised[12] = {0, 0, 1, 12, 0, 1, 0, 21, -1, 0, 0, 30}; /* z of the node is x out here */
     assert_rows(is.rows, raised);
     /* The others have not moved. */
-    assert_int_equal(masu_instance_get(&m, masu_instance_at(&m, 0), &is), MASU_OK);
+    assert_int_equal(masu_instance_get(&m, masu_instance_at(&m, 0), &is, &failure), MASU_OK);
     const float unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     assert_rows(is.rows, unit);
 }
@@ -154,31 +156,31 @@ static void what_cannot_be_changes_nothing(void **state) {
     masu_model lid = masu_model_find(&m, "lid"), none = {0}, beyond = {lid.id + 1};
     masu_model_state before, after;
     masu_node_state node;
-    assert_int_equal(masu_model_get(&m, lid, &before), MASU_OK);
+    assert_int_equal(masu_model_get(&m, lid, &before, &failure), MASU_OK);
     float bad[12];
     memcpy(bad, there, sizeof bad);
     bad[5] = (float)NAN;
-    assert_int_equal(masu_model_set_transform(&m, lid, bad), MASU_ERROR_ARGUMENT);
-    assert_non_null(strstr(masu_last_error(&m)->text, "rows[5] is nan"));
-    assert_int_equal(masu_model_node_set(&m, lid, 0, bad), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_model_set_transform(&m, lid, bad, &failure), MASU_ERROR_ARGUMENT);
+    assert_non_null(strstr(failure.text, "rows[5] is nan"));
+    assert_int_equal(masu_model_node_set(&m, lid, 0, bad, &failure), MASU_ERROR_ARGUMENT);
     const float far_out[12] = {3e38f, 0, 0, 0, 0, 3e38f, 0, 0, 0, 0, 3e38f, 0};
-    assert_int_equal(masu_model_node_set(&m, lid, 0, far_out), MASU_OK); /* it is still a float */
-    assert_int_equal(masu_model_set_transform(&m, lid, far_out), MASU_ERROR_ARGUMENT);
-    assert_non_null(strstr(masu_last_error(&m)->text, "beyond"));
-    assert_int_equal(masu_model_get(&m, lid, &after), MASU_OK);
+    assert_int_equal(masu_model_node_set(&m, lid, 0, far_out, &failure), MASU_OK); /* it is still a float */
+    assert_int_equal(masu_model_set_transform(&m, lid, far_out, &failure), MASU_ERROR_ARGUMENT);
+    assert_non_null(strstr(failure.text, "beyond"));
+    assert_int_equal(masu_model_get(&m, lid, &after, &failure), MASU_OK);
     assert_rows(after.rows, before.rows);
-    assert_int_equal(masu_model_set_transform(&m, none, there), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_model_set_transform(&m, beyond, there), MASU_ERROR_ARGUMENT);
-    assert_string_equal(masu_last_error(&m)->what, "model");
-    assert_int_equal(masu_model_node_set(&m, lid, 2, there), MASU_ERROR_ARGUMENT);
-    assert_non_null(strstr(masu_last_error(&m)->text, "node 2 does not exist, the last one is 1"));
-    assert_int_equal(masu_model_node_get(&m, lid, UINT32_MAX, &node), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_model_set_transform(&m, lid, NULL), MASU_ERROR_ARGUMENT);
-    assert_string_equal(masu_last_error(&m)->text, "rows is NULL");
-    assert_int_equal(masu_model_get(&m, lid, NULL), MASU_ERROR_ARGUMENT);
-    assert_string_equal(masu_last_error(&m)->text, "out is NULL");
-    assert_int_equal(masu_model_set_transform(NULL, lid, there), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_instance_show(&m, (masu_instance){0}, 1), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_model_set_transform(&m, none, there, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_model_set_transform(&m, beyond, there, &failure), MASU_ERROR_ARGUMENT);
+    assert_string_equal(failure.what, "model");
+    assert_int_equal(masu_model_node_set(&m, lid, 2, there, &failure), MASU_ERROR_ARGUMENT);
+    assert_non_null(strstr(failure.text, "node 2 does not exist, the last one is 1"));
+    assert_int_equal(masu_model_node_get(&m, lid, UINT32_MAX, &node, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_model_set_transform(&m, lid, NULL, &failure), MASU_ERROR_ARGUMENT);
+    assert_string_equal(failure.text, "rows is NULL");
+    assert_int_equal(masu_model_get(&m, lid, NULL, &failure), MASU_ERROR_ARGUMENT);
+    assert_string_equal(failure.text, "out is NULL");
+    assert_int_equal(masu_model_set_transform(NULL, lid, there, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_instance_show(&m, (masu_instance){0}, 1, &failure), MASU_ERROR_ARGUMENT);
 }
 
 /* Hidden ones of a kind are shown one after the other; the last is the last. */
@@ -188,24 +190,24 @@ static void a_spare_one_is_shown(void **state) {
     masu_model plate = masu_model_find(&m, "plate"), added = {7};
     masu_instance_state is;
     assert_int_equal(m.instances.hidden_count, 1);
-    assert_int_equal(masu_instance_get(&m, masu_instance_at(&m, 1), &is), MASU_OK);
+    assert_int_equal(masu_instance_get(&m, masu_instance_at(&m, 1), &is, &failure), MASU_OK);
     assert_false(is.shown);
-    assert_int_equal(masu_model_add(&m, plate, there, &added), MASU_OK);
+    assert_int_equal(masu_model_add(&m, plate, there, &added, &failure), MASU_OK);
     assert_int_equal(added.id, masu_model_at(&m, 1).id);
-    assert_int_equal(masu_instance_get(&m, masu_instance_at(&m, 1), &is), MASU_OK);
+    assert_int_equal(masu_instance_get(&m, masu_instance_at(&m, 1), &is, &failure), MASU_OK);
     assert_true(is.shown);
     assert_rows(is.rows, there);
     assert_int_equal(m.instances.hidden_count, 0);
-    assert_int_equal(masu_model_add(&m, plate, there, &added), MASU_ERROR_LIMIT);
+    assert_int_equal(masu_model_add(&m, plate, there, &added, &failure), MASU_ERROR_LIMIT);
     assert_int_equal(added.id, 0);
-    assert_int_equal(masu_model_show(&m, plate, 0), MASU_OK);
-    assert_int_equal(masu_model_show(&m, plate, 0), MASU_OK); /* once is enough */
+    assert_int_equal(masu_model_show(&m, plate, 0, &failure), MASU_OK);
+    assert_int_equal(masu_model_show(&m, plate, 0, &failure), MASU_OK); /* once is enough */
     assert_int_equal(m.instances.hidden_count, 1);
-    assert_int_equal(masu_model_add(&m, masu_model_at(&m, 1), there, &added), MASU_OK);
+    assert_int_equal(masu_model_add(&m, masu_model_at(&m, 1), there, &added, &failure), MASU_OK);
     assert_int_equal(added.id, plate.id);
     /* Nothing stands in for what is of another kind. */
-    assert_int_equal(masu_model_show(&m, plate, 0), MASU_OK);
-    assert_int_equal(masu_model_add(&m, masu_model_find(&m, "lid"), there, &added), MASU_ERROR_LIMIT);
+    assert_int_equal(masu_model_show(&m, plate, 0, &failure), MASU_OK);
+    assert_int_equal(masu_model_add(&m, masu_model_find(&m, "lid"), there, &added, &failure), MASU_ERROR_LIMIT);
 }
 
 /* ---- Places for copies ----------------------------------------------------------------------- */

@@ -1,6 +1,6 @@
 /* test_null.c: every public function with each of its pointers NULL in turn. Nothing crashes; what has a result
- * says MASU_ERROR_ARGUMENT, unless the pointer is one that may be NULL, and the detail that it leaves, its own or
- * the renderer's, names the argument. What there is to be called, and how its arguments are called, is read in
+ * says MASU_ERROR_ARGUMENT, unless the pointer is one that may be NULL, and its detail, which is the last parameter,
+ * names the argument. What there is to be called, and how its arguments are called, is read in
  * include/: a function that is new there and has no row here is a failure. */
 #include <ctype.h>
 #include <setjmp.h>
@@ -21,7 +21,7 @@ enum { NO_RESULT = 1000, PARAMETERS_MAX = 8 };
 
 /* ---- The calls ------------------------------------------------------------------------------- */
 
-static masu_desc desc;
+static masu_desc desc, resolved;
 static masu_pipelines pool;
 static masu_pipelines_info pool_info;
 static masu_viewport screen;
@@ -30,6 +30,7 @@ static masu_governor_state learnt;
 static masu_detail detail;
 static masu_scene look;
 static uint32_t resolution;
+static float range[2];
 static masu_limits usage;
 static masu_commands commands;
 static masu_camera camera;
@@ -56,7 +57,7 @@ static masu_rung rung;
 static const char *from;
 static float unpacked[3];
 static _Alignas(64) unsigned char block[64];
-static const masu_frame_desc still = {.rung = 0};
+static const masu_frame_desc still = {MASU_FRAME_DESC};
 static const float unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
 /* The pointer of that number, counted from 0, or NULL where it is its turn. */
@@ -69,6 +70,7 @@ static const float unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
 /* Each function of the public header: an expression that is its result, or NO_RESULT. */
 #define CALLS(X)                                                                                   \
+    X(masu_version, (masu_version(), NO_RESULT))                                                   \
     X(masu_result_string, (masu_result_string(MASU_OK), NO_RESULT))                                \
     X(masu_scene_bind,                                                                             \
       masu_scene_bind(P(0, masu_scene_data_of(&scene)->blob),                                      \
@@ -78,6 +80,8 @@ static const float unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     X(masu_scene_find, (masu_scene_find(P(0, &scene), MASU_SCENE_MODEL, P(1, "a")), NO_RESULT))    \
     X(masu_scene_clip_count, (masu_scene_clip_count(P(0, &scene), 0), NO_RESULT))                  \
     X(masu_scene_clip_name, (masu_scene_clip_name(P(0, &scene), 0, 0), NO_RESULT))                 \
+    X(masu_scene_sdf_range,                                                                        \
+      ((void)masu_scene_sdf_range(P(0, &scene), 0, P(1, &range[0]), P(2, &range[1])), NO_RESULT))  \
     X(masu_scene_features, (masu_scene_features(P(0, &scene)), NO_RESULT))                         \
     X(masu_scene_triangles, (masu_scene_triangles(P(0, &scene)), NO_RESULT))                       \
     X(masu_scene_texture_bytes, (masu_scene_texture_bytes(P(0, &scene), 1), NO_RESULT))            \
@@ -103,60 +107,59 @@ static const float unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     X(masu_pipelines_info_of, (masu_pipelines_info_of(P(0, &pool), P(1, &pool_info)), NO_RESULT))  \
     X(masu_resize, masu_resize(P(0, &m), (VkExtent2D){8, 8}, P(1, &desc.targets), P(2, &screen),   \
                                P(3, &detail)))                                                     \
-    X(masu_desc_resolved, ((void)masu_desc_resolved(P(0, &desc)), NO_RESULT))                      \
-    X(masu_ladder_of, masu_ladder_of(P(0, &scene), P(1, &desc), P(2, &from)))                      \
+    X(masu_desc_resolve, masu_desc_resolve(P(0, &desc), P(1, &resolved), P(2, &detail)))           \
+    X(masu_ladder_of, masu_ladder_of(P(0, &scene), P(1, &desc), P(2, &from), P(3, &detail)))       \
     X(masu_memory_report,                                                                          \
       ((void)masu_memory_report(P(0, &m), P(1, rows_of_memory), 2), NO_RESULT))                    \
     X(masu_plan, masu_plan(P(0, &desc), P(1, &plan), P(2, &detail)))                               \
     X(masu_plan_of, (masu_plan_of(P(0, &m), P(1, &plan)), NO_RESULT))                              \
-    X(masu_load, masu_load(P(0, &m), P(1, &commands)))                                             \
-    X(masu_frame, masu_frame(P(0, &m), P(1, &still), P(2, &commands)))                             \
-    X(masu_split_of, masu_split_of(P(0, &m), MASU_SPLIT_BEFORE_TONE, 0, 0, P(1, &split)))          \
-    X(masu_frame_view_of, masu_frame_view_of(P(0, &m), P(1, &view)))                               \
+    X(masu_load, masu_load(P(0, &m), P(1, &commands), P(2, &detail)))                              \
+    X(masu_frame, masu_frame(P(0, &m), P(1, &still), P(2, &commands), P(3, &detail)))              \
+    X(masu_split_of, masu_split_of(P(0, &m), MASU_SPLIT_BEFORE_TONE, 0, 0, P(1, &split), P(2, &detail))) \
+    X(masu_frame_view_of, masu_frame_view_of(P(0, &m), P(1, &view), P(2, &detail)))                \
     X(masu_frame_wall, (masu_frame_wall(P(0, &m), 0, 1.0), NO_RESULT))                             \
     X(masu_frame_times, (masu_frame_times(P(0, &m), 0, 1, 2, 0.0), NO_RESULT))                     \
     X(masu_frame_presented, (masu_frame_presented(P(0, &m), 0, 1, 2), NO_RESULT))                  \
-    X(masu_governor_set, masu_governor_set(P(0, &m), P(1, &setting)))                              \
-    X(masu_governor_save, masu_governor_save(P(0, &m), P(1, &learnt)))                             \
-    X(masu_governor_restore, masu_governor_restore(P(0, &m), P(1, &learnt)))                       \
-    X(masu_last_error, (masu_last_error(P(0, &m)), NO_RESULT))                                     \
-    X(masu_camera_at, masu_camera_at(P(0, &m), 0.0, P(1, &camera)))                                \
-    X(masu_light_of, masu_light_of(P(0, &m), P(1, &light)))                                        \
+    X(masu_governor_set, masu_governor_set(P(0, &m), P(1, &setting), P(2, &detail)))               \
+    X(masu_governor_save, masu_governor_save(P(0, &m), P(1, &learnt), P(2, &detail)))              \
+    X(masu_governor_restore, masu_governor_restore(P(0, &m), P(1, &learnt), P(2, &detail)))        \
+    X(masu_camera_at, masu_camera_at(P(0, &m), 0.0, P(1, &camera), P(2, &detail)))                 \
+    X(masu_light_of, masu_light_of(P(0, &m), P(1, &light), P(2, &detail)))                         \
     X(masu_instance_find, ((void)masu_instance_find(P(0, &m), P(1, "a")), NO_RESULT))              \
-    X(masu_instance_set_transform, masu_instance_set_transform(P(0, &m), INSTANCE, P(1, unit)))    \
+    X(masu_instance_set_transform, masu_instance_set_transform(P(0, &m), INSTANCE, P(1, unit), P(2, &detail))) \
     X(masu_instance_at, ((void)masu_instance_at(P(0, &m), 0), NO_RESULT))                          \
-    X(masu_instance_get, masu_instance_get(P(0, &m), INSTANCE, P(1, &instance_state)))             \
-    X(masu_instance_show, masu_instance_show(P(0, &m), INSTANCE, 1))                               \
+    X(masu_instance_get, masu_instance_get(P(0, &m), INSTANCE, P(1, &instance_state), P(2, &detail))) \
+    X(masu_instance_show, masu_instance_show(P(0, &m), INSTANCE, 1, P(1, &detail)))                \
     X(masu_model_find, ((void)masu_model_find(P(0, &m), P(1, "a")), NO_RESULT))                    \
     X(masu_model_at, ((void)masu_model_at(P(0, &m), 0), NO_RESULT))                                \
-    X(masu_model_get, masu_model_get(P(0, &m), MODEL, P(1, &model_state)))                         \
-    X(masu_model_set_transform, masu_model_set_transform(P(0, &m), MODEL, P(1, unit)))             \
-    X(masu_model_show, masu_model_show(P(0, &m), MODEL, 1))                                        \
-    X(masu_model_add, masu_model_add(P(0, &m), MODEL, P(1, unit), P(2, &added)))                   \
-    X(masu_model_remove, masu_model_remove(P(0, &m), MODEL))                                       \
+    X(masu_model_get, masu_model_get(P(0, &m), MODEL, P(1, &model_state), P(2, &detail)))          \
+    X(masu_model_set_transform, masu_model_set_transform(P(0, &m), MODEL, P(1, unit), P(2, &detail))) \
+    X(masu_model_show, masu_model_show(P(0, &m), MODEL, 1, P(1, &detail)))                         \
+    X(masu_model_add, masu_model_add(P(0, &m), MODEL, P(1, unit), P(2, &added), P(3, &detail)))    \
+    X(masu_model_remove, masu_model_remove(P(0, &m), MODEL, P(1, &detail)))                        \
     X(masu_model_node_find, ((void)masu_model_node_find(P(0, &m), MODEL, P(1, "a")), NO_RESULT))   \
-    X(masu_model_node_get, masu_model_node_get(P(0, &m), MODEL, 0, P(1, &node_state)))             \
-    X(masu_model_node_set, masu_model_node_set(P(0, &m), MODEL, 0, P(1, unit)))                    \
+    X(masu_model_node_get, masu_model_node_get(P(0, &m), MODEL, 0, P(1, &node_state), P(2, &detail))) \
+    X(masu_model_node_set, masu_model_node_set(P(0, &m), MODEL, 0, P(1, unit), P(2, &detail)))     \
     X(masu_model_clips, ((void)masu_model_clips(P(0, &m), MODEL), NO_RESULT))                      \
     X(masu_model_clip_find, ((void)masu_model_clip_find(P(0, &m), MODEL, P(1, "a")), NO_RESULT))   \
     X(masu_model_clip_duration, ((void)masu_model_clip_duration(P(0, &m), MODEL, 0), NO_RESULT))   \
-    X(masu_model_animate, masu_model_animate(P(0, &m), MODEL, P(1, &clip_use), 1))                 \
-    X(masu_model_morph_set, masu_model_morph_set(P(0, &m), MODEL, P(1, "up"), 1.0f))             \
+    X(masu_model_animate, masu_model_animate(P(0, &m), MODEL, P(1, &clip_use), 1, P(2, &detail)))  \
+    X(masu_model_morph_set, masu_model_morph_set(P(0, &m), MODEL, P(1, "up"), 1.0f, P(2, &detail))) \
     X(masu_punctual_light_find, ((void)masu_punctual_light_find(P(0, &m), P(1, "a")), NO_RESULT))  \
     X(masu_punctual_light_at, ((void)masu_punctual_light_at(P(0, &m), 0), NO_RESULT))              \
-    X(masu_punctual_light_get, masu_punctual_light_get(P(0, &m), LIGHT, P(1, &light_state)))       \
-    X(masu_punctual_light_set, masu_punctual_light_set(P(0, &m), LIGHT, P(1, &light_state)))       \
+    X(masu_punctual_light_get, masu_punctual_light_get(P(0, &m), LIGHT, P(1, &light_state), P(2, &detail))) \
+    X(masu_punctual_light_set, masu_punctual_light_set(P(0, &m), LIGHT, P(1, &light_state), P(2, &detail))) \
     X(masu_punctual_light_add,                                                                     \
-      masu_punctual_light_add(P(0, &m), P(1, &light_state), P(2, &made_light)))                    \
-    X(masu_punctual_light_remove, masu_punctual_light_remove(P(0, &m), LIGHT))                     \
+      masu_punctual_light_add(P(0, &m), P(1, &light_state), P(2, &made_light), P(3, &detail)))                    \
+    X(masu_punctual_light_remove, masu_punctual_light_remove(P(0, &m), LIGHT, P(1, &detail)))      \
     X(masu_material_find, ((void)masu_material_find(P(0, &m), P(1, "a")), NO_RESULT))              \
     X(masu_material_at, ((void)masu_material_at(P(0, &m), 0), NO_RESULT))                          \
-    X(masu_material_get, masu_material_get(P(0, &m), (masu_material){1}, P(1, &material_state)))   \
-    X(masu_material_set, masu_material_set(P(0, &m), (masu_material){1}, P(1, &material_state)))   \
-    X(masu_stats, masu_stats(P(0, &m), 0, P(1, &stats)))                                           \
+    X(masu_material_get, masu_material_get(P(0, &m), (masu_material){1}, P(1, &material_state), P(2, &detail))) \
+    X(masu_material_set, masu_material_set(P(0, &m), (masu_material){1}, P(1, &material_state), P(2, &detail))) \
+    X(masu_stats, masu_stats(P(0, &m), 0, P(1, &stats), P(2, &detail)))                            \
     X(masu_peaks, (masu_peaks(P(0, &m), P(1, &peaks)), NO_RESULT))                                 \
-    X(masu_readback, masu_readback(P(0, &m), 0, MASU_READBACK_DEPTH, P(1, &image)))                \
-    X(masu_pick, masu_pick(P(0, &m), 0, P(1, &pick)))                                              \
+    X(masu_readback, masu_readback(P(0, &m), 0, MASU_READBACK_DEPTH, P(1, &image), P(2, &detail))) \
+    X(masu_pick, masu_pick(P(0, &m), 0, P(1, &pick), P(2, &detail)))                               \
     X(masu_unpack_normal, (masu_unpack_normal(0, P(0, unpacked)), NO_RESULT))
 
 #define DEFINE_CALL(name, expression)                                                              \
@@ -183,7 +186,6 @@ typedef struct parameter {
 typedef struct function {
     char name[64];
     int has_result;       /* it is a masu_result */
-    int leaves_error;     /* in masu_last_error: what changes nothing of its renderer cannot */
     int pointers;         /* of its parameters, in order: */
     parameter parameter[PARAMETERS_MAX];
 } function;
@@ -232,14 +234,12 @@ static const char *read_function(const char *at, function *f) {
     last_word(at, (size_t)(open - at), f->name, sizeof f->name);
     const char *result = strstr(at, "masu_result ");
     f->has_result = result && result < open && !memchr(result, '*', (size_t)(open - result));
-    f->leaves_error = f->has_result && !strncmp(open, "(masu_renderer *", 16);
     for (const char *p = open + 1; p < end;) {
         size_t length = strcspn(p, ",;");
         if (memchr(p, '*', length) || memchr(p, '[', length)) {
             assert_true(f->pointers < PARAMETERS_MAX);
             parameter *to = &f->parameter[f->pointers++];
             last_word(p, length, to->name, sizeof to->name);
-            if (!strcmp(to->name, "detail")) f->leaves_error = 0; /* it has one of its own */
         }
         p += length + 1;
     }
@@ -254,12 +254,11 @@ static int may_be_null(const char *parameter) {
 
 static void begin(void) {
     make_renderer(SUPPORT_ALL | SUPPORT_LIVE | SUPPORT_LIGHTING, 0);
-    while (masu_load(&m, &commands) == MASU_INCOMPLETE) continue;
+    while (masu_load(&m, &commands, &detail) == MASU_INCOMPLETE) continue;
     desc = scene_desc(0, 64, 64);
     desc.scene = &scene;
-    assert_int_equal(masu_punctual_light_get(&m, LIGHT, &light_state), MASU_OK);
+    assert_int_equal(masu_punctual_light_get(&m, LIGHT, &light_state, &detail), MASU_OK);
     memset(&detail, 0, sizeof detail);
-    m.error = (masu_detail){.what = "stale", .text = "stale"};
 }
 
 static void call_with_null(const function *f, int row, int null) {
@@ -271,11 +270,10 @@ static void call_with_null(const function *f, int row, int null) {
     if (result != MASU_ERROR_ARGUMENT && !(result == MASU_ERROR_MEMORY && !strcmp(name, "block")))
         fail_msg("%s with %s NULL: %d", f->name, name, result);
     snprintf(expected, sizeof expected, "%s is NULL", name);
-    int own = !strcmp(f->parameter[f->pointers - 1].name, "detail");
-    if (own && !strstr(detail.text, expected))
+    if (strcmp(f->parameter[f->pointers - 1].name, "detail") != 0)
+        fail_msg("the last parameter of %s is not a masu_detail", f->name);
+    if (!strstr(detail.text, expected))
         fail_msg("%s with %s NULL: \"%s\"", f->name, name, detail.text);
-    if (f->leaves_error && null > 0 && !strstr(m.error.text, expected))
-        fail_msg("%s with %s NULL: masu_last_error is \"%s\"", f->name, name, m.error.text);
 }
 
 static void nothing_crashes_and_the_argument_is_named(void **state) {
@@ -297,8 +295,6 @@ static void nothing_crashes_and_the_argument_is_named(void **state) {
 static void what_has_nothing_to_tell_says_so(void **state) {
     (void)state;
     begin();
-    assert_string_equal(masu_last_error(NULL)->text, "renderer is NULL");
-    assert_int_equal(masu_last_error(NULL)->result, MASU_ERROR_ARGUMENT);
     memset(&peaks, 0xFF, sizeof peaks);
     masu_peaks(NULL, &peaks);
     assert_int_equal(peaks.instances, 0);

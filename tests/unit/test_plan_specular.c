@@ -12,6 +12,7 @@
 
 #include "plan/compile.h"
 #include "plan/push.h"
+#include "plan/desc.h"
 #include "support/desc.h"
 
 static masu_frame_plan with, without;

@@ -32,6 +32,12 @@ static masu_scene bound(uint32_t parts) {
     return scene;
 }
 
+static void assert_no_sdf_param(const masu_scene *scene, uint32_t index) {
+    float minimum = 9.0f, maximum = 9.0f;
+    assert_true(masu_scene_sdf_range(scene, index, &minimum, &maximum) == 0.0f);
+    assert_true(minimum == 0.0f && maximum == 0.0f);
+}
+
 static void assert_empty(const masu_scene *scene) {
     uint32_t resolution = 9;
     masu_limits usage, none;
@@ -44,6 +50,7 @@ static void assert_empty(const masu_scene *scene) {
     }
     assert_int_equal(masu_scene_clip_count(scene, 0), 0);
     assert_string_equal(masu_scene_clip_name(scene, 0, 0), "");
+    assert_no_sdf_param(scene, 0);
     assert_int_equal(masu_scene_features(scene), 0);
     assert_int_equal(masu_scene_triangles(scene), 0);
     assert_int_equal(masu_scene_texture_bytes(scene, 0), 0);
@@ -84,6 +91,8 @@ static void what_is_out_of_range_does_not_exist(void **state) {
         assert_int_equal(masu_scene_find(&scene, item, ""), -1);
         assert_int_equal(masu_scene_find(&scene, item, NULL), -1);
     }
+    assert_no_sdf_param(&scene, masu_scene_count(&scene, MASU_SCENE_SDF_PARAM));
+    assert_no_sdf_param(&scene, UINT32_MAX);
     uint32_t models = masu_scene_count(&scene, MASU_SCENE_MODEL);
     assert_int_equal(masu_scene_clip_count(&scene, models), 0);
     assert_int_equal(masu_scene_clip_count(&scene, UINT32_MAX), 0);
@@ -113,6 +122,11 @@ static void items_are_found_by_their_names(void **state) {
         }
     }
     assert_int_equal(found, (1u << MASU_SCENE_CAMERA_KEY) - 1); /* whose keys have no names */
+    float minimum, maximum;
+    int32_t bend = masu_scene_find(&scene, MASU_SCENE_SDF_PARAM, "bend");
+    assert_true(masu_scene_sdf_range(&scene, (uint32_t)bend, &minimum, &maximum) == -1.0f);
+    assert_true(minimum == -1.0f && maximum == 1.0f);
+    assert_true(masu_scene_sdf_range(&scene, 0, NULL, NULL) == 0.5f);
     int32_t lid = masu_scene_find(&scene, MASU_SCENE_MODEL, "lid");
     assert_int_equal(lid, 2);
     assert_int_equal(masu_scene_clip_count(&scene, (uint32_t)lid), 2);

@@ -412,6 +412,58 @@ static void patterns_fade_where_pixels_are_wider(void **state) {
     field_stop(&r);
 }
 
+/* ---- noise ---- */
+
+/* Least upper bound of |gradient|^2 of noise() in a box within a cell, of values at the cell's corners: per axis the
+ * steepest fade times the largest difference across the cell, which is bilinear in the fades of the other two axes. */
+static double noise_slope2(const double corner[8], const double low[3], const double high[3]) {
+    double sum = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        int b = (axis + 1) % 3, c = (axis + 2) % 3;
+        double x = fmin(fmax(0.5, low[axis]), high[axis]), most = 0;
+        for (int k = 0; k < 4; k++) {
+            double u = k & 1 ? high[b] : low[b], v = k & 2 ? high[c] : low[c], difference = 0;
+            u = u * u * (3 - 2 * u);
+            v = v * v * (3 - 2 * v);
+            for (int i = 0; i < 4; i++) {
+                int at = (i & 1) << b | i >> 1 << c;
+                difference += (i & 1 ? u : 1 - u) * (i & 2 ? v : 1 - v) * (corner[at | 1 << axis] - corner[at]);
+            }
+            most = fmax(most, fabs(difference));
+        }
+        sum += pow(6 * x * (1 - x) * most, 2);
+    }
+    return sum;
+}
+
+static bool is_below(const double corner[8], double low[3], double high[3], int depth, double bound) {
+    if (noise_slope2(corner, low, high) <= bound * bound) return true;
+    if (depth == 60) return false;
+    int axis = depth % 3;
+    double from = low[axis], to = high[axis], middle = (from + to) / 2;
+    high[axis] = middle;
+    bool good = is_below(corner, low, high, depth + 1, bound);
+    high[axis] = to;
+    low[axis] = middle;
+    good = good && is_below(corner, low, high, depth + 1, bound);
+    low[axis] = from;
+    return good;
+}
+
+/* |gradient|^2 is convex in the values at the corners, so its maximum over -1..1 is at values of -1 and 1. */
+static void noise_is_no_steeper_than_its_constant(void **state) {
+    (void)state;
+    for (int pattern = 0; pattern < 128; pattern++) { /* the others are these with the other sign */
+        double corner[8], low[3] = {0}, high[3] = {1, 1, 1};
+        for (int i = 0; i < 8; i++) corner[i] = pattern >> i & 1 ? 1 : -1;
+        if (!is_below(corner, low, high, 0, SDFC_NOISE_SLOPE)) fail_msg("corners %d", pattern);
+    }
+    const double x_only[8] = {-1, 1, -1, 1, -1, 1, -1, 1};
+    double middle[3] = {0.5, 0.5, 0.5};
+    assert_true(fabs(noise_slope2(x_only, middle, middle) - 9) < 1e-12);
+    assert_false(is_below(x_only, (double[3]){0}, (double[3]){1, 1, 1}, 0, 2.999));
+}
+
 /* ---- the language ---- */
 
 static void defs_and_functions_mean_what_they_say(void **state) {
@@ -534,6 +586,7 @@ int main(void) {
         cmocka_unit_test(materials_blend_as_their_shapes_do),
         cmocka_unit_test(colours_depend_on_the_place),
         cmocka_unit_test(patterns_fade_where_pixels_are_wider),
+        cmocka_unit_test(noise_is_no_steeper_than_its_constant),
         cmocka_unit_test(defs_and_functions_mean_what_they_say),
         cmocka_unit_test(several_mistakes_are_told_at_once),
         cmocka_unit_test(mistakes_of_the_new_words_name_their_place),

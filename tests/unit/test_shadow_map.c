@@ -307,7 +307,7 @@ static void casters_that_move_away_stay_in_reach(void **state) {
     assert_true(before[0][0] <= -1 && before[1][0] >= 4); /* "plate" at 0 and at 3 */
     float rows[12] = {1, 0, 0, 1e6f, 0, 1, 0, 500, 0, 0, 1, 0};
     masu_instance i = masu_instance_find(&m, "plate");
-    assert_int_equal(masu_instance_set_transform(&m, i, rows), MASU_OK);
+    assert_int_equal(masu_instance_set_transform(&m, i, rows, NULL), MASU_OK);
     assert_true(m.bounds.swept[1][0] >= 1e6 && m.bounds.swept[1][1] >= 502);
     assert_true(m.bounds.swept[0][0] == before[0][0]);
     draw_frame(&still, 0, 0);
@@ -317,7 +317,7 @@ static void casters_that_move_away_stay_in_reach(void **state) {
         assert_true(dot3(m.shadow.cascades[k].axis[2], p) <= m.shadow.cascades[k].ahead);
     }
     rows[3] = 3e38f; /* finite, as is asked */
-    assert_int_equal(masu_instance_set_transform(&m, i, rows), MASU_OK);
+    assert_int_equal(masu_instance_set_transform(&m, i, rows, NULL), MASU_OK);
     draw_frame(&still, 0, 0);
     assert_true(isfinite(m.shadow.cascades[0].ahead));
 }

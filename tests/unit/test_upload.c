@@ -21,6 +21,8 @@
 #include "support/desc.h"
 #include "support/dry_renderer.h"
 
+static masu_detail failure; /* of the last call that failed */
+
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 
 static const float not_finite[] = {(float)NAN, (float)INFINITY, (float)-INFINITY};
@@ -44,11 +46,11 @@ static void mapped_memory_is_loaded_at_once(void **state) {
     (void)state;
     masu_commands commands;
     make_renderer(SUPPORT_ALL, 0);
-    assert_int_equal(masu_load(&m, &commands), MASU_OK);
+    assert_int_equal(masu_load(&m, &commands, &failure), MASU_OK);
     assert_null(commands.buffer);
     assert_resident(slot_bytes(MASU_BUFFER_VERTICES, 0), slot_bytes(MASU_BUFFER_INDICES, 0),
                     slot_bytes(MASU_BUFFER_MATERIALS, 0), slot_bytes(MASU_BUFFER_SLOTS, 0));
-    assert_int_equal(masu_load(&m, &commands), MASU_OK); /* again, without the blob */
+    assert_int_equal(masu_load(&m, &commands, &failure), MASU_OK); /* again, without the blob */
 }
 
 /* Every size of staging buffer, also such as cut a vertex, an index or a material in two. */
@@ -60,7 +62,7 @@ static void chunks_of_any_size_add_up_to_the_scene(void **state) {
         uint32_t submitted = 0;
         make_renderer(SUPPORT_ALL, staging);
         memset(copy, NOISE, sizeof copy);
-        while (masu_load(&m, &commands) == MASU_INCOMPLETE) {
+        while (masu_load(&m, &commands, &failure) == MASU_INCOMPLETE) {
             masu_chunk chunk = masu_load_chunk(&m.plan, submitted);
             assert_ptr_equal(commands.buffer, loads[submitted]);
             assert_true(chunk.bytes > 0 && chunk.bytes <= staging);
@@ -89,7 +91,7 @@ static void steps_of_any_size_add_up_to_the_scene(void **state) {
     masu_commands commands;
     const masu_rung rung = {.local_shadows = MASU_OFF}; /* whose atlas is cleared by a step of its own */
     make_renderer_with(SUPPORT_ALL | SUPPORT_LIGHTING, 0, &rung, 1);
-    assert_int_equal(masu_load(&m, &commands), MASU_OK);
+    assert_int_equal(masu_load(&m, &commands, &failure), MASU_OK);
     memcpy(at_once, memory[MASU_ROLE_DEVICE], ROOM);
     uint64_t all = commands.load_bytes;
     assert_true(all > 11 * sizeof(masu_blob_vertex) + 4 * MASU_TABLE_WORDS);
@@ -100,7 +102,7 @@ static void steps_of_any_size_add_up_to_the_scene(void **state) {
         make_renderer_with(SUPPORT_ALL | SUPPORT_LIGHTING, 0, &rung, 1);
         m.plan.desc.load_step = step;
         do {
-            result = masu_load(&m, &commands);
+            result = masu_load(&m, &commands, &failure);
             sum += commands.load_bytes;
             calls++;
             assert_null(commands.buffer);
@@ -128,7 +130,7 @@ static void chunks_of_probes_add_up_to_grid_data_and_room(void **state) {
         assert_int_equal(v.probe_words, 74);
         assert_int_equal(bytes, sizeof *v.probes + (76 + 2 * MASU_PROBE_LIT_WORDS) * 4);
         memset(copy, NOISE, sizeof copy);
-        while (masu_load(&m, &commands) == MASU_INCOMPLETE) {
+        while (masu_load(&m, &commands, &failure) == MASU_INCOMPLETE) {
             masu_chunk chunk = masu_load_chunk(&m.plan, submitted++);
             if (chunk.buffer != MASU_BUFFER_PROBES) continue;
             memcpy(copy + chunk.offset, slot_bytes(MASU_BUFFER_STAGING, 0), (size_t)chunk.bytes);
@@ -147,20 +149,20 @@ static void without_a_scene_there_is_nothing_to_load(void **state) {
     memset(memory, NOISE, sizeof memory);
     m.plan.desc.scene = NULL;
     masu_copy_scene(&m);
-    assert_int_equal(masu_load(&m, &commands), MASU_OK);
+    assert_int_equal(masu_load(&m, &commands, &failure), MASU_OK);
     for (size_t i = 0; i < ROOM; i++) assert_int_equal(memory[MASU_ROLE_DEVICE][i], NOISE);
-    assert_int_equal(masu_load(NULL, &commands), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_load(&m, NULL), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_load(NULL, &commands, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_load(&m, NULL, &failure), MASU_ERROR_ARGUMENT);
 }
 
 static void the_blob_is_not_looked_at_after_loading(void **state) {
     (void)state;
     masu_commands commands;
     make_renderer(SUPPORT_ALL, 0);
-    assert_int_equal(masu_load(&m, &commands), MASU_OK);
+    assert_int_equal(masu_load(&m, &commands, &failure), MASU_OK);
     assert_null(m.plan.scene.blob);
-    masu_frame_desc f = {.rung = 1, .target = 1};
-    assert_int_equal(masu_frame(&m, &f, &commands), MASU_OK);
+    masu_frame_desc f = {MASU_FRAME_DESC, .rung = 1, .target = 1};
+    assert_int_equal(masu_frame(&m, &f, &commands, &failure), MASU_OK);
 }
 
 /* ---- Frames ---------------------------------------------------------------------------------- */
@@ -169,10 +171,10 @@ static void frames_take_their_slots_in_turn(void **state) {
     (void)state;
     masu_commands commands;
     make_renderer(SUPPORT_ALL, 0);
-    assert_int_equal(masu_load(&m, &commands), MASU_OK);
+    assert_int_equal(masu_load(&m, &commands, &failure), MASU_OK);
     for (uint32_t n = 0; n < 7; n++) {
-        masu_frame_desc f = {.rung = n % 3, .target = n % 2, .time = n};
-        assert_int_equal(masu_frame(&m, &f, &commands), MASU_OK);
+        masu_frame_desc f = {MASU_FRAME_DESC, .rung = n % 3, .target = n % 2, .time = n};
+        assert_int_equal(masu_frame(&m, &f, &commands, &failure), MASU_OK);
         assert_int_equal(commands.frame, n);
         assert_int_equal(commands.slot, n % 2);
         assert_int_equal(commands.rung, n % 3);
@@ -186,36 +188,47 @@ static void a_frame_that_is_refused_changes_nothing(void **state) {
     static unsigned char before[ROOM];
     masu_commands commands, untouched;
     make_renderer(SUPPORT_ALL, 0);
-    masu_frame_desc f = {.rung = 0};
-    assert_int_equal(masu_frame(&m, &f, &commands), MASU_ERROR_STATE);
-    assert_string_equal(masu_last_error(&m)->what, "masu_load");
-    assert_int_equal(masu_load(&m, &commands), MASU_OK);
-    assert_int_equal(masu_frame(&m, &f, &commands), MASU_OK);
+    masu_frame_desc f = {MASU_FRAME_DESC, .rung = 0};
+    assert_int_equal(masu_frame(&m, &f, &commands, &failure), MASU_ERROR_STATE);
+    assert_string_equal(failure.what, "masu_load");
+    assert_int_equal(masu_load(&m, &commands, &failure), MASU_OK);
+    assert_int_equal(masu_frame(&m, &f, &commands, &failure), MASU_OK);
     memcpy(before, memory[MASU_ROLE_UPLOAD], ROOM);
     memset(&commands, 0x5A, sizeof commands);
     untouched = commands;
     masu_camera camera = {.forward = {1.0f, 0.0f, 0.0f}, .fov_y = (float)NAN};
     const masu_frame_desc bad[] = {
-        {.rung = 3},           {.rung = UINT32_MAX},           {.target = 2},
-        {.time = (double)NAN}, {.time_step = (float)INFINITY}, {.camera = &camera}};
-    static const char *const names[] = {"rung", "rung", "target", "time", "time_step", "camera.fov_y"};
+        {MASU_FRAME_DESC, .rung = 3},
+        {MASU_FRAME_DESC, .rung = UINT32_MAX},
+        {MASU_FRAME_DESC, .target = 2},
+        {MASU_FRAME_DESC, .time = (double)NAN},
+        {MASU_FRAME_DESC, .time_step = (float)INFINITY},
+        {MASU_FRAME_DESC, .camera = &camera},
+        {.bytes = 0},
+        {.bytes = sizeof(masu_frame_desc) - 8}};
+    static const char *const names[] = {"rung",      "rung",         "target", "time",
+                                        "time_step", "camera.fov_y", "bytes",  "bytes"};
     for (size_t i = 0; i < COUNT(bad); i++) {
-        assert_int_equal(masu_frame(&m, &bad[i], &commands), MASU_ERROR_ARGUMENT);
-        assert_string_equal(masu_last_error(&m)->what, names[i]);
+        assert_int_equal(masu_frame(&m, &bad[i], &commands, &failure), MASU_ERROR_ARGUMENT);
+        assert_string_equal(failure.what, names[i]);
+        if (!strcmp(names[i], "bytes")) {
+            assert_int_equal(failure.needed, sizeof(masu_frame_desc));
+            assert_int_equal(failure.given, bad[i].bytes);
+        }
         assert_memory_equal(memory[MASU_ROLE_UPLOAD], before, ROOM);
         assert_memory_equal(&commands, &untouched, sizeof commands);
     }
-    assert_int_equal(masu_frame(NULL, &f, &commands), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_frame(&m, NULL, &commands), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_frame(&m, &f, NULL), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_frame(&m, &f, &commands), MASU_OK);
+    assert_int_equal(masu_frame(NULL, &f, &commands, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_frame(&m, NULL, &commands, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_frame(&m, &f, NULL, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_frame(&m, &f, &commands, &failure), MASU_OK);
     assert_int_equal(commands.frame, 1);
 }
 
 /* ---- Instances ------------------------------------------------------------------------------- */
 
 static void write_instances(uint32_t slot) {
-    masu_frame_data f = begin_frame(&(masu_frame_desc){.rung = 0}, slot);
+    masu_frame_data f = begin_frame(&(masu_frame_desc){MASU_FRAME_DESC, .rung = 0}, slot);
     f.cut = 0;
     masu_instances_write(&m.instances, &f);
 }
@@ -245,7 +258,7 @@ static void a_moved_instance_reaches_every_slot_once(void **state) {
                                 v.instances[i].transform, size);
         }
     }
-    assert_int_equal(masu_instance_set_transform(&m, masu_instance_at(&m, 1), rows), MASU_OK);
+    assert_int_equal(masu_instance_set_transform(&m, masu_instance_at(&m, 1), rows, &failure), MASU_OK);
     for (uint32_t frame = 0; frame < 4; frame++) { /* slots come in turn */
         unsigned char *to = masu_buffer_pointer(&m.device, MASU_BUFFER_INSTANCES, frame % 2);
         memset(to, NOISE, 3 * size);
@@ -294,7 +307,7 @@ static void moving_twice_before_a_frame_keeps_the_last(void **state) {
     for (uint32_t slot = 0; slot < 2; slot++) write_instances(slot);
     for (int n = 1; n <= 5; n++) {
         rows[3] = (float)n;
-        assert_int_equal(masu_instance_set_transform(&m, masu_instance_at(&m, 2), rows), MASU_OK);
+        assert_int_equal(masu_instance_set_transform(&m, masu_instance_at(&m, 2), rows, &failure), MASU_OK);
     }
     for (uint32_t slot = 0; slot < 2; slot++) {
         struct masu_instance_data got;
@@ -313,23 +326,23 @@ static void a_bad_instance_or_transform_is_refused(void **state) {
     const uint64_t first = masu_instance_at(&m, 0).id;
     const uint64_t ids[] = {0, first - 1, first + 3, first + (1u << 31), first + (1ull << 32)};
     for (size_t i = 0; i < COUNT(ids); i++) {
-        assert_int_equal(masu_instance_set_transform(&m, (masu_instance){ids[i]}, good),
+        assert_int_equal(masu_instance_set_transform(&m, (masu_instance){ids[i]}, good, &failure),
                          MASU_ERROR_ARGUMENT);
-        assert_string_equal(masu_last_error(&m)->what, "instance");
+        assert_string_equal(failure.what, "instance");
     }
     for (size_t i = 0; i < COUNT(not_finite); i++) {
         for (int k = 0; k < 12; k++) {
             float bad[12];
             memcpy(bad, good, sizeof bad);
             bad[k] = not_finite[i];
-            assert_int_equal(masu_instance_set_transform(&m, masu_instance_at(&m, 0), bad),
+            assert_int_equal(masu_instance_set_transform(&m, masu_instance_at(&m, 0), bad, &failure),
                              MASU_ERROR_ARGUMENT);
-            assert_int_equal(masu_last_error(&m)->given, k);
+            assert_int_equal(failure.given, k);
         }
     }
-    assert_int_equal(masu_instance_set_transform(&m, masu_instance_at(&m, 0), NULL),
+    assert_int_equal(masu_instance_set_transform(&m, masu_instance_at(&m, 0), NULL, &failure),
                      MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_instance_set_transform(NULL, masu_instance_at(&m, 0), good),
+    assert_int_equal(masu_instance_set_transform(NULL, masu_instance_at(&m, 0), good, &failure),
                      MASU_ERROR_ARGUMENT);
     assert_int_equal(m.instances.dirty_count, 0);
 }
@@ -351,8 +364,8 @@ static void times_of_a_clock_that_wraps_are_right(void **state) {
         m.device.vk.queue_family.timestampValidBits = bits[i];
         m.plan.buffers[MASU_BUFFER_READBACK].bytes = m.plan.buffers[MASU_BUFFER_READBACK].stride = 4096;
         m.device.vk.properties.limits.timestampPeriod = 2.0f;
-        assert_int_equal(masu_load(&m, &commands), MASU_OK);
-        assert_int_equal(masu_frame(&m, &(masu_frame_desc){.rung = 0}, &commands), MASU_OK);
+        assert_int_equal(masu_load(&m, &commands, &failure), MASU_OK);
+        assert_int_equal(masu_frame(&m, &(masu_frame_desc){MASU_FRAME_DESC, .rung = 0}, &commands, &failure), MASU_OK);
         uint64_t *stamps = (uint64_t *)(void *)masu_buffer_pointer(&m.device, MASU_BUFFER_READBACK, commands.slot);
         uint64_t mask = bits[i] == 64 ? UINT64_MAX : (UINT64_C(1) << bits[i]) - 1;
         uint32_t count = masu_stamps(&m.plan.desc);
@@ -361,7 +374,7 @@ static void times_of_a_clock_that_wraps_are_right(void **state) {
         for (uint32_t k = 0; k < count; k++) stamps[k] = (mask - 999 + 500 * (uint64_t)k) & mask;
         assert_true(masu_slot_sample(&m, commands.slot, &sample));
         assert_true(fabs(sample.gpu_ms - 500.0 * (count - 1) * 2.0 * 1e-6) < 1e-9);
-        assert_int_equal(masu_stats(&m, commands.slot, &stats), MASU_OK);
+        assert_int_equal(masu_stats(&m, commands.slot, &stats, &failure), MASU_OK);
         assert_true(stats.timed);
         assert_int_equal(stats.gpu_ns, 1000 * (count - 1));
         for (uint32_t k = 0; k + 1 < count; k++) assert_true(stats.pass_ns[k] == 0 || stats.pass_ns[k] == 1000);

@@ -217,6 +217,7 @@ int main(int argc, char **argv) {
             "and\n"
             "an SDF; docs/scene.md describes it. An SDF needs glslangValidator, spirv-val and\n"
             "spirv-opt. The same input gives the same bytes.\n\n"
+            "MASU_PROGRESS in the environment prints progress even if stderr is not a terminal.\n\n"
             "Exit code: 0 success, 1 error (one line with the reason), 2 wrong usage.\n",
         .run = run,
     };

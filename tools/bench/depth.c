@@ -102,7 +102,7 @@ static const reference *find_reference(const masu_depth_bench *b, float scale) {
 static bool see(masu_depth_bench *b, uint32_t width, uint32_t height, masu_view *view) {
     VkExtent2D size = b->s.desc.output;
     masu_camera camera;
-    if (masu_camera_at(b->s.m, b->time, &camera)) return failed(b, "the scene has no camera");
+    if (masu_camera_at(b->s.m, b->time, &camera, NULL)) return failed(b, "the scene has no camera");
     bool good = b->exact ? masu_view_of(&b->scene, &camera, b->time, size.width, size.height, view,
                                         b->error, b->error_size)
                          : masu_view_seen(&b->scene, &camera, size.width, size.height, view,
@@ -196,7 +196,7 @@ static bool draw_job(masu_depth_bench *b, const job *j, uint32_t rung) {
     masu_view view;
     if (!masu_motion_frame(&b->s, rung, b->time, MASU_MOTION_STEP, true, &commands, b->error, b->error_size))
         return false;
-    if (masu_readback(b->s.m, commands.slot, MASU_READBACK_DEPTH, &image))
+    if (masu_readback(b->s.m, commands.slot, MASU_READBACK_DEPTH, &image, NULL))
         return failed(b, "no depth to read back");
     return see(b, image.width, image.height, &view) &&
            (j->is_reference ? keep(b, &image, &view, j->rung.scale)

@@ -280,7 +280,7 @@ static bool sample(sweep *w, uint32_t rung, const masu_rung *knobs, bool kept) {
         uint64_t start = masu_clock_ns(NULL);
         if (!draw(w, rung, !warm, &commands)) return false;
         wall += (double)(masu_clock_ns(NULL) - start) / 1e6;
-        if (!masu_stats(w->s.m, commands.slot, &stats) && stats.timed)
+        if (!masu_stats(w->s.m, commands.slot, &stats, NULL) && stats.timed)
             gpu += (double)stats.gpu_ns / 1e6;
     }
     if (kept) masu_samples_add(&w->samples[rung], wall, gpu, period);

@@ -171,11 +171,11 @@ void masu_extreme_describe(const masu_case *of, masu_desc *desc) {
 static bool set_material(masu_session *s, const masu_extreme *x, uint32_t number) {
     masu_material_state state;
     masu_material material = masu_material_at(s->m, x->material);
-    if (masu_material_get(s->m, material, &state)) return false;
+    if (masu_material_get(s->m, material, &state, &s->detail)) return false;
     double roughness = x->roughness[0] + x->roughness[1] * number;
     state.roughness = (float)fmin(fmax(roughness, 0.0), 1.0);
     for (int i = 0; i < 3 && x->has_emissive; i++) state.emissive[i] = (float)x->emissive;
-    return !masu_material_set(s->m, material, &state);
+    return !masu_material_set(s->m, material, &state, &s->detail);
 }
 
 bool masu_extreme_frame(masu_session *s, const masu_case *of, uint32_t number,
@@ -188,12 +188,13 @@ bool masu_extreme_frame(masu_session *s, const masu_case *of, uint32_t number,
     frame->cut = x->cut && !(settles && x->settle);
     frame->rung = x->cycle && !settles ? number % of->rung_count : 0;
     if (x->has_transform && !number &&
-        masu_instance_set_transform(s->m, masu_instance_at(s->m, x->instance), x->transform)) {
-        snprintf(error, error_size, "transform: %s", masu_last_error(s->m)->text);
+        masu_instance_set_transform(s->m, masu_instance_at(s->m, x->instance), x->transform,
+                                    &s->detail)) {
+        snprintf(error, error_size, "transform: %s", s->detail.text);
         return false;
     }
     if (x->has_material && !set_material(s, x, number)) {
-        snprintf(error, error_size, "material: %s", masu_last_error(s->m)->text);
+        snprintf(error, error_size, "material: %s", s->detail.text);
         return false;
     }
     return true;
@@ -213,12 +214,13 @@ double masu_extreme_count(const masu_readback_image *image, bool depth) {
 
 bool masu_extreme_non_finite(const masu_session *s, uint32_t slot, double *count, char *error,
                              size_t error_size) {
+    masu_detail detail;
     static const masu_readback_bits kinds[] = {MASU_READBACK_DEPTH, MASU_READBACK_HDR,
                                                MASU_READBACK_VELOCITY};
     for (int k = 0; k < 3; k++) {
         masu_readback_image image;
-        if (masu_readback(s->m, slot, kinds[k], &image)) {
-            snprintf(error, error_size, "readback: %s", masu_last_error(s->m)->text);
+        if (masu_readback(s->m, slot, kinds[k], &image, &detail)) {
+            snprintf(error, error_size, "readback: %s", detail.text);
             return false;
         }
         *count += masu_extreme_count(&image, !k);
@@ -274,7 +276,7 @@ bool masu_field_compare(const masu_session *s, uint32_t slot, const char *scene_
     masu_readback_image image;
     char path[4096];
     size_t pixels = (size_t)view->width * view->height;
-    if (masu_readback(s->m, slot, MASU_READBACK_DEPTH, &image) || image.width != view->width ||
+    if (masu_readback(s->m, slot, MASU_READBACK_DEPTH, &image, NULL) || image.width != view->width ||
         image.height != view->height) {
         snprintf(error, error_size, "field: expected a depth image of %ux%u", view->width,
                  view->height);

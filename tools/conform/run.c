@@ -225,7 +225,7 @@ static bool submit(masu_session *s, const masu_frame_desc *frame, masu_conform_r
         return false;
     }
     uint64_t before = masu_allocs_of_thread();
-    masu_result result = masu_frame(s->m, frame, commands);
+    masu_result result = masu_frame(s->m, frame, commands, &s->detail);
     uint64_t allocations = masu_allocs_of_thread() - before;
     /* The layer allocates inside the calls that it wraps. */
     if (masu_alloc_counting() && !s->host.validating) {
@@ -233,10 +233,10 @@ static bool submit(masu_session *s, const masu_frame_desc *frame, masu_conform_r
         *all = (isnan(*all) ? 0.0 : *all) + (double)allocations;
     }
     if (result) {
-        find(r, MASU_VERDICT_FAIL, "masu_frame: %s", masu_last_error(s->m)->text);
+        find(r, MASU_VERDICT_FAIL, "masu_frame: %s", s->detail.text);
         return false;
     }
-    s->next_slot = (commands->slot + 1) % masu_desc_resolved(&s->desc).frames_in_flight;
+    s->next_slot = (commands->slot + 1) % masu_session_resolved(&s->desc).frames_in_flight;
     if (masu_headless_submit(&s->host, commands->buffer, commands->slot, error, sizeof error))
         return true;
     find(r, MASU_VERDICT_FAIL, "%s", error);
@@ -251,7 +251,7 @@ static bool wait(masu_session *s, uint32_t slot, masu_conform_result *r) {
 }
 
 static masu_frame_desc frame_at(const masu_case *of, uint32_t number) {
-    return (masu_frame_desc){.time = of->time + of->move * number, .time_step = 1.0f / 60.0f};
+    return (masu_frame_desc){MASU_FRAME_DESC, .time = of->time + of->move * number, .time_step = 1.0f / 60.0f};
 }
 
 static void take_counts(const masu_stats_info *s, masu_conform_result *r) {
@@ -332,7 +332,7 @@ static uint8_t *draw_frames(masu_conform *c, const masu_case *of, masu_conform_r
         if (keep_counts && !look(c, of, commands.slot, r)) return NULL;
     }
     if (!wait(s, commands.slot, r)) return NULL;
-    if (keep_counts && counts(of) && !masu_stats(s->m, commands.slot, &stats))
+    if (keep_counts && counts(of) && !masu_stats(s->m, commands.slot, &stats, NULL))
         take_counts(&stats, r);
     if (keep_counts && !look_at_field(c, of, commands.slot, r)) return NULL;
     size_t bytes = 4 * (size_t)of->width * of->height;
@@ -356,7 +356,7 @@ static void run_governed(masu_conform *c, const masu_case *of, masu_conform_resu
     masu_stats_info stats;
     masu_commands commands;
     uint32_t last = 0;
-    const masu_desc is = masu_desc_resolved(&s->desc); /* with the rungs of a measured ladder */
+    const masu_desc is = masu_session_resolved(&s->desc); /* with the rungs of a measured ladder */
     uint32_t worst = of->measured && !g->worst ? is.rung_count - 1 : g->worst;
     memset(&stats, 0, sizeof stats);
     for (uint32_t i = 0; i < g->frames; i++) {
@@ -374,7 +374,7 @@ static void run_governed(masu_conform *c, const masu_case *of, masu_conform_resu
         double scale = (double)is.rungs[last].scale, ratio = (double)is.governor.costs[last];
         double cost = of->measured && ratio > 0.0 ? ratio : scale * scale;
         masu_frame_wall(s->m, commands.slot, g->told ? g->fixed_ms + g->load_ms * cost : wall);
-        if (masu_stats(s->m, commands.slot, &stats)) {
+        if (masu_stats(s->m, commands.slot, &stats, NULL)) {
             find(r, MASU_VERDICT_FAIL, "frame %u: no statistics", i);
             return;
         }

@@ -136,9 +136,9 @@ static int print_text(const masu_session *s, const masu_plan_info *p, const char
         printf("sky: %s\n", content->analytic_sky ? "analytic" : "two colours");
     }
     printf("class: %s", masu_scene_class_name(masu_scene_class_of(&s->scene)));
-    masu_desc ladder;
+    masu_desc ladder = {MASU_DESC};
     const char *from;
-    if (s->desc.ladder == MASU_ON && !masu_ladder_of(&s->scene, &ladder, &from))
+    if (s->desc.ladder == MASU_ON && !masu_ladder_of(&s->scene, &ladder, &from, NULL))
         printf("; ladder: %s%s%s", from, *p->computed_for ? ", times computed for " : "",
                p->computed_for);
     printf("\noutput %ux%u\n\nrungs\n", s->desc.output.width, s->desc.output.height);

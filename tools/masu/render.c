@@ -109,13 +109,13 @@ static bool measure(masu_session *s, const masu_render_options *o, uint32_t fram
                     masu_commands *drawn, char *error, size_t size) {
     masu_light light;
     bool own_light = o->own_sun || o->turbidity > 0.0 || o->exposure > 0.0;
-    if (own_light && masu_light_of(s->m, &light)) {
+    if (own_light && masu_light_of(s->m, &light, NULL)) {
         snprintf(error, size, "--sun, --turbidity and --exposure: the scene has no light");
         return false;
     }
     if (own_light) set_light(o, &light);
     const uint32_t rays = o->rays ? o->rays : 1, image = o->still ? 0 : frame / rays;
-    masu_frame_desc f = {.light = own_light ? &light : NULL,
+    masu_frame_desc f = {MASU_FRAME_DESC, .light = own_light ? &light : NULL,
                          .sdf_params = o->sdf_param_count ? o->sdf_params : NULL,
                          .sdf_param_count = o->sdf_param_count,
                          .time = o->time + (double)(o->first + image) * o->time_step,
@@ -128,8 +128,8 @@ static bool measure(masu_session *s, const masu_render_options *o, uint32_t fram
     uint64_t callbacks = counts->allocations + counts->reallocations;
     uint64_t thread = masu_allocs_of_thread();
     uint64_t start = masu_clock_ns(NULL);
-    if (masu_frame(s->m, &f, &commands)) {
-        snprintf(error, size, "%s", masu_last_error(s->m)->text);
+    if (masu_frame(s->m, &f, &commands, &s->detail)) {
+        snprintf(error, size, "%s", s->detail.text);
         return false;
     }
     out->library_allocs = masu_allocs_of_thread() - thread;
@@ -143,7 +143,7 @@ static bool measure(masu_session *s, const masu_render_options *o, uint32_t fram
     masu_frame_wall(s->m, commands.slot, (double)(end - submitted) / 1e6);
     out->driver_allocs = masu_allocs_of_process() - process;
     out->driver_callbacks = counts->allocations + counts->reallocations - callbacks;
-    (void)masu_stats(s->m, commands.slot, stats);
+    (void)masu_stats(s->m, commands.slot, stats, NULL);
     out->gpu_ms = (double)stats->gpu_ns / 1e6;
     *drawn = commands;
     out->rung = commands.rung;
@@ -172,7 +172,7 @@ static int truth_frame(masu_session *s, const masu_render_options *o, const masu
                        uint32_t frame, masu_video *video, uint8_t *rgba, float *linear) {
     char error[1024], name[4096] = "";
     const bool file = o->output && (strchr(o->output, '#') || frame + 1 == o->frames);
-    masu_frame_desc f = {.light = light,
+    masu_frame_desc f = {MASU_FRAME_DESC, .light = light,
                          .sdf_params = o->sdf_param_count ? o->sdf_params : NULL,
                          .sdf_param_count = o->sdf_param_count,
                          .time = o->time + (double)(o->first + frame) * o->time_step};
@@ -193,7 +193,7 @@ static int truth_frame(masu_session *s, const masu_render_options *o, const masu
 static int render_truth(masu_session *s, const masu_render_options *o, masu_video *video) {
     masu_light light;
     bool own_light = o->own_sun || o->turbidity > 0.0 || o->exposure > 0.0;
-    if (own_light && masu_light_of(s->m, &light))
+    if (own_light && masu_light_of(s->m, &light, NULL))
         return masu_cli_error("--sun, --turbidity and --exposure: the scene has no light");
     if (own_light) set_light(o, &light);
     VkExtent2D size = s->desc.output;
@@ -341,7 +341,7 @@ static void make_ladder(masu_desc *d) {
 
 /* The scene is known by now, and with it its ladder. */
 static void turn(masu_desc *d, const masu_turned *t) {
-    *d = masu_desc_resolved(d);
+    *d = masu_session_resolved(d);
     for (uint32_t r = 0; r < d->rung_count; r++) {
         masu_rung *rung = &d->rungs[r];
         if (t->cull_given) rung->frustum = t->cull < 2 ? MASU_ON : MASU_OFF;

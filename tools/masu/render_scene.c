@@ -3,8 +3,6 @@
 #include "masu/render.h"
 
 #include "image.h"
-#include "scene/blob_section.h"
-#include "scene/scene.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -38,11 +36,11 @@ static bool set_param(const masu_scene *scene, const char *text, float *values, 
                  *known ? ", expected one of " : "; it has none", known);
         return false;
     }
-    masu_scene_view s = masu_scene_view_of(scene);
-    const masu_blob_sdf_param *p = &s.sdf_params[at];
-    if (!((float)value >= p->minimum && (float)value <= p->maximum)) { /* floats, as the range is */
+    float minimum, maximum;
+    (void)masu_scene_sdf_range(scene, (uint32_t)at, &minimum, &maximum);
+    if (!((float)value >= minimum && (float)value <= maximum)) { /* floats, as the range is */
         snprintf(error, size, "--param: %.100s: expected %g to %g, found %.30s", name,
-                 (double)p->minimum, (double)p->maximum, equals + 1);
+                 (double)minimum, (double)maximum, equals + 1);
         return false;
     }
     values[at] = (float)value;
@@ -87,10 +85,9 @@ bool masu_render_read_scene(masu_render_options *o, char *error, size_t size) {
         return false;
     bool good = !masu_scene_bind(bytes, count, &scene, &detail);
     if (good) {
-        masu_scene_view view = masu_scene_view_of(&scene);
         o->sdf_param_count = o->param_count ? masu_scene_count(&scene, MASU_SCENE_SDF_PARAM) : 0;
         for (uint32_t i = 0; i < o->sdf_param_count; i++)
-            o->sdf_params[i] = view.sdf_params[i].value;
+            o->sdf_params[i] = masu_scene_sdf_range(&scene, i, NULL, NULL);
         for (uint32_t i = 0; i < o->param_count && good; i++)
             good = set_param(&scene, o->params[i], o->sdf_params, error, size);
         good = good && (!o->clip || has_clip(&scene, o->clip, error, size));
@@ -108,8 +105,9 @@ bool masu_render_animate(masu_session *s, const masu_render_options *o, double t
         uint32_t clip = o->clip ? find_clip(s, model, o->clip) : 0;
         masu_clip_use use = {
             .clip = clip == MASU_CLIP_NONE ? 0 : clip, .loop = 1, .time = time, .weight = 1.0f};
-        if (!masu_model_clips(s->m, model) || !masu_model_animate(s->m, model, &use, 1)) continue;
-        snprintf(error, size, "%s", masu_last_error(s->m)->text);
+        if (!masu_model_clips(s->m, model) || !masu_model_animate(s->m, model, &use, 1, &s->detail))
+            continue;
+        snprintf(error, size, "%s", s->detail.text);
         return false;
     }
     return true;

@@ -8,7 +8,7 @@
 
 bool masu_linear_read(const masu_renderer *m, uint32_t slot, VkExtent2D size, float *rgb) {
     masu_readback_image image;
-    if (masu_readback(m, slot, MASU_READBACK_HDR, &image)) return false;
+    if (masu_readback(m, slot, MASU_READBACK_HDR, &image, NULL)) return false;
     if (image.width != size.width || image.height != size.height) return false;
     for (uint32_t y = 0; y < image.height; y++) {
         const uint8_t *row = (const uint8_t *)image.pixels + (size_t)y * image.row_bytes;
@@ -27,15 +27,15 @@ bool masu_linear_read(const masu_renderer *m, uint32_t slot, VkExtent2D size, fl
 }
 
 bool masu_linear_is_metered(const masu_session *s) {
-    return masu_desc_resolved(&s->desc).exposure.metered == MASU_ON;
+    return masu_session_resolved(&s->desc).exposure.metered == MASU_ON;
 }
 
 double masu_linear_exposure(masu_session *s, uint32_t slot, const masu_light *light) {
     masu_stats_info stats;
     masu_light own;
-    if (masu_linear_is_metered(s) && !masu_stats(s->m, slot, &stats) && stats.exposure > 0.0f)
+    if (masu_linear_is_metered(s) && !masu_stats(s->m, slot, &stats, NULL) && stats.exposure > 0.0f)
         return (double)stats.exposure;
-    if (!light && !masu_light_of(s->m, &own)) light = &own;
+    if (!light && !masu_light_of(s->m, &own, NULL)) light = &own;
     return light && light->exposure > 0.0f ? (double)light->exposure : 1.0;
 }
 
@@ -58,7 +58,7 @@ static void neutral(double x[3]) {
 
 void masu_linear_show(const masu_session *s, const float *rgb, size_t pixels, double exposure,
                       float *shown) {
-    const masu_tone tone = masu_desc_resolved(&s->desc).tone;
+    const masu_tone tone = masu_session_resolved(&s->desc).tone;
     for (size_t p = 0; p < pixels; p++) {
         double x[3];
         for (size_t c = 0; c < 3; c++) {

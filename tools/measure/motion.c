@@ -8,7 +8,7 @@
 bool masu_motion_frame(masu_session *s, uint32_t rung, double time, double step, bool cut,
                        masu_commands *commands, char *error, size_t error_size) {
     masu_camera camera;
-    if (masu_camera_at(s->m, time, &camera)) {
+    if (masu_camera_at(s->m, time, &camera, NULL)) {
         snprintf(error, error_size, "the scene has no camera");
         return false;
     }

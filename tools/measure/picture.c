@@ -102,7 +102,7 @@ bool masu_picture_camera(masu_session *s, masu_frame_desc *frame, masu_camera *c
                          size_t error_size) {
     if (frame->camera) {
         *camera = *frame->camera;
-    } else if (masu_camera_at(s->m, frame->time, camera)) {
+    } else if (masu_camera_at(s->m, frame->time, camera, NULL)) {
         snprintf(error, error_size, "the scene has no camera");
         return false;
     }
@@ -143,7 +143,7 @@ static bool settle_lights(masu_session *s, const masu_frame_desc *frame, char *e
     for (int k = 0; k < FRAMES_MAX && masu_picture_settles(&stats); k++) {
         masu_commands commands;
         if (!masu_session_frame(s, frame, true, &commands, error, error_size)) return false;
-        if (masu_stats(s->m, commands.slot, &stats)) stats.local_shadow_waiting = 1;
+        if (masu_stats(s->m, commands.slot, &stats, NULL)) stats.local_shadow_waiting = 1;
     }
     return true;
 }

@@ -11,7 +11,7 @@
 #include <string.h>
 
 uint32_t masu_specular_slot(const masu_session *s) {
-    uint32_t flights = masu_desc_resolved(&s->desc).frames_in_flight;
+    uint32_t flights = masu_session_resolved(&s->desc).frames_in_flight;
     return (s->next_slot + flights - 1) % flights;
 }
 
@@ -21,7 +21,7 @@ static const uint8_t *row_of(const masu_readback_image *image, uint32_t y) {
 
 bool masu_specular_read(masu_session *s, float *rgb) {
     masu_readback_image image;
-    if (masu_readback(s->m, masu_specular_slot(s), MASU_READBACK_HDR, &image)) return false;
+    if (masu_readback(s->m, masu_specular_slot(s), MASU_READBACK_HDR, &image, NULL)) return false;
     const VkExtent2D size = s->desc.output;
     for (uint32_t y = 0; y < size.height; y++) {
         for (uint32_t x = 0; x < size.width; x++) {
@@ -41,7 +41,7 @@ static bool place(masu_session *s, const masu_specular_run *run, uint32_t frame,
         rows[3] -= (float)(run->distance * (double)left * (double)run->step);
     if (run->motion == MASU_SPECULAR_JUMP && frame < run->frames) rows[3] -= (float)run->distance;
     if (run->motion != MASU_SPECULAR_OBJECT && run->motion != MASU_SPECULAR_JUMP) return true;
-    return masu_instance_set_transform(s->m, run->object, rows) == MASU_OK;
+    return masu_instance_set_transform(s->m, run->object, rows, NULL) == MASU_OK;
 }
 
 static double difference(const uint8_t *a, const uint8_t *b, const uint8_t *classes, uint32_t pixels) {
@@ -68,7 +68,7 @@ bool masu_specular_draw(masu_session *s, const masu_specular_run *run, float *rg
         masu_camera camera;
         double time = run->time;
         if (run->motion == MASU_SPECULAR_CAMERA) time -= (double)(total - 1 - k) * (double)run->step;
-        if (masu_camera_at(s->m, time, &camera) || !place(s, run, k, total - 1 - k)) {
+        if (masu_camera_at(s->m, time, &camera, NULL) || !place(s, run, k, total - 1 - k)) {
             snprintf(error, error_size, "no camera, or nothing to move");
             good = false;
             break;
@@ -100,9 +100,9 @@ bool masu_specular_draw(masu_session *s, const masu_specular_run *run, float *rg
 bool masu_specular_classes(masu_session *s, float cutoff, uint8_t *classes) {
     masu_readback_image albedo, normal, depth;
     uint32_t slot = masu_specular_slot(s);
-    if (masu_readback(s->m, slot, MASU_READBACK_ALBEDO, &albedo) ||
-        masu_readback(s->m, slot, MASU_READBACK_NORMAL, &normal) ||
-        masu_readback(s->m, slot, MASU_READBACK_DEPTH, &depth)) {
+    if (masu_readback(s->m, slot, MASU_READBACK_ALBEDO, &albedo, NULL) ||
+        masu_readback(s->m, slot, MASU_READBACK_NORMAL, &normal, NULL) ||
+        masu_readback(s->m, slot, MASU_READBACK_DEPTH, &depth, NULL)) {
         return false;
     }
     const VkExtent2D size = s->desc.output;

@@ -585,7 +585,7 @@ sdfc_facts sdfc_operator_facts(sdfc *c, sdfc_shape *s) {
     }
     case SDFC_KIND_DISPLACE_NOISE: {
         double a = sdfc_most(c, n[0]), k = sdfc_most(c, n[1]);
-        f.lipschitz += a * k * 3.4641016151377549;
+        f.lipschitz += a * k * SDFC_NOISE_SLOPE;
         f.symmetric = 0;
         f.cost += 8;
         sdfc_widen(&f, a / f.growth);

@@ -214,7 +214,7 @@ static double slope_of(const sdfc *c, int op, const int *a) {
         double by_x = fmax(fabs(x->low), fabs(x->high)), by_y = fmax(fabs(y->low), fabs(y->high));
         return times(x->slope, by_y) + times(y->slope, by_x);
     }
-    case SDFC_noise: return 3.4641016151377549 * hypot(hypot(x->slope, y->slope), c->exprs[a[2]].slope);
+    case SDFC_noise: return SDFC_NOISE_SLOPE * hypot(hypot(x->slope, y->slope), c->exprs[a[2]].slope);
     default: return SDFC_INFINITY;
     }
 }

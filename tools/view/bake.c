@@ -27,6 +27,7 @@
 #include <unistd.h>
 
 #define LOOK_NS 500000000u
+#define COUNT(array) (sizeof(array) / sizeof *(array))
 
 /* ---- Watching -------------------------------------------------------------------------------- */
 
@@ -39,6 +40,9 @@ static void look_at(masu_watch *w) {
     w->bytes = (int64_t)s.st_size;
 }
 
+static void watch_contents(masu_baker *b, const char *path);
+
+/* A regular file, and the files that it names. */
 static void watch(masu_baker *b, const char *path) {
     if (b->count == MASU_WATCHES_MAX || strlen(path) >= sizeof b->watches[0].path) return;
     for (uint32_t i = 0; i < b->count; i++) {
@@ -47,38 +51,67 @@ static void watch(masu_baker *b, const char *path) {
     masu_watch *w = &b->watches[b->count++];
     snprintf(w->path, sizeof w->path, "%s", path);
     look_at(w);
+    if (masu_file_is_regular(path)) watch_contents(b, path);
 }
 
-/* Any text of the description that is the path of a file beside it. */
-static void watch_named(masu_baker *b, const char *folder, const json_t *value) {
+/* `name`, as the file `from` names it, if there is such a file. */
+static void watch_named(masu_baker *b, const char *from, const char *name) {
+    char path[1100];
+    struct stat s;
+    const char *slash = *name == '/' ? NULL : strrchr(from, '/');
+    int n = snprintf(path, sizeof path, "%.*s%s", slash ? (int)(slash - from) + 1 : 0, from, name);
+    if (*name && n > 0 && n < (int)sizeof path && !stat(path, &s) && S_ISREG(s.st_mode))
+        watch(b, path);
+}
+
+static void watch_strings(masu_baker *b, const char *from, const json_t *value) {
     const char *key;
     json_t *child;
     size_t i;
     if (json_is_string(value)) {
-        char path[1100];
-        struct stat s;
-        const char *text = json_string_value(value);
-        int n = snprintf(path, sizeof path, "%s%s", *text == '/' ? "" : folder, text);
-        if (*text && n > 0 && n < (int)sizeof path && !stat(path, &s) && S_ISREG(s.st_mode))
-            watch(b, path);
+        watch_named(b, from, json_string_value(value));
     } else if (json_is_object(value)) {
-        json_object_foreach((json_t *)value, key, child) watch_named(b, folder, child);
+        json_object_foreach((json_t *)value, key, child) watch_strings(b, from, child);
     } else if (json_is_array(value)) {
-        json_array_foreach(value, i, child) watch_named(b, folder, child);
+        json_array_foreach(value, i, child) watch_strings(b, from, child);
     }
 }
 
-/* A description that cannot be read is watched by itself; the baker says what is wrong with it. So
- * are other files. */
-static void watch_source(masu_baker *b, const char *json) {
-    char folder[1024] = "";
-    const char *slash = strrchr(json, '/');
-    if (slash && (size_t)(slash - json) + 2 < sizeof folder)
-        snprintf(folder, sizeof folder, "%.*s", (int)(slash - json) + 1, json);
-    watch(b, json);
-    json_t *root = masu_file_is_regular(json) ? json_load_file(json, 0, NULL) : NULL;
-    watch_named(b, folder, root);
-    json_decref(root);
+/* Files that a line of an SDF (include "NAME"), an OBJ (mtllib NAME) or an MTL (map_Kd -s 1 1 1
+ * NAME) names: the rest of the line after the first word, and its last word. */
+static void watch_line(masu_baker *b, const char *from, char *line) {
+    static const char *const words[] = {"include", "mtllib", "map_", "bump", "norm", "disp"};
+    size_t at = 0;
+    line += strspn(line, " \t");
+    while (at < COUNT(words) && strncmp(line, words[at], strlen(words[at]))) at++;
+    if (at == COUNT(words)) return;
+    line += strcspn(line, " \t\"");
+    line += strspn(line, " \t\"");
+    line[strcspn(line, at ? "\r\n" : "\"\r\n")] = '\0';
+    watch_named(b, from, line);
+    char *last = strrchr(line, ' ');
+    if (last) watch_named(b, from, last + 1);
+}
+
+/* Names of files in the strings of a JSON file or a .gltf, and in the first 64 KiB of other texts.
+ * A file that cannot be read names nothing; the baker reports what is wrong with it. */
+static void watch_contents(masu_baker *b, const char *path) {
+    const char *dot = strrchr(path, '.');
+    char line[1024];
+    long read = 0;
+    if (!dot) return;
+    if (!strcmp(dot, ".json") || !strcmp(dot, ".gltf")) {
+        json_t *root = json_load_file(path, 0, NULL);
+        watch_strings(b, path, root);
+        json_decref(root);
+    } else if (!strcmp(dot, ".sdf") || !strcmp(dot, ".obj") || !strcmp(dot, ".mtl")) {
+        FILE *f = fopen(path, "r");
+        while (f && read < 65536 && fgets(line, sizeof line, f)) {
+            read += (long)strlen(line);
+            watch_line(b, path, line);
+        }
+        if (f) fclose(f);
+    }
 }
 
 /* What is not there at the moment is being written. */
@@ -252,7 +285,7 @@ static bool finish(masu_viewer *v, bool good) {
     masu_baker *b = &v->baker;
     bool fresh = b->opens;
     b->count = 0; /* it may name other files now */
-    watch_source(b, b->source);
+    watch(b, b->source);
     if (!good) return fail(v), true;
     b->opens = false;
     snprintf(b->blob, sizeof b->blob, "%s", b->output);
@@ -283,7 +316,7 @@ static bool open_it(masu_viewer *v, const char *path) {
         return masu_viewer_load(v, path, true);
     }
     snprintf(b->source, sizeof b->source, "%s", path);
-    watch_source(b, path);
+    watch(b, path);
     masu_baker_read_variants(v);
     if (!begin(v)) fail(v);
     return true;
@@ -300,7 +333,7 @@ bool masu_baker_start(masu_viewer *v) {
     if (scene && json) { /* baked already: the description is for changes */
         snprintf(b->source, sizeof b->source, "%s", json);
         snprintf(b->blob, sizeof b->blob, "%s", scene);
-        watch_source(b, json);
+        watch(b, json);
         return masu_viewer_load(v, scene, true);
     }
     if (!scene && !json) return masu_gallery_open(v), true;

@@ -64,7 +64,7 @@ void masu_fly_camera(const masu_fly *fly, masu_camera *out) {
 
 static bool rests(const masu_renderer *m, double time, const masu_camera *end) {
     masu_camera at;
-    return masu_camera_at(m, time, &at) == MASU_OK &&
+    return masu_camera_at(m, time, &at, NULL) == MASU_OK &&
            !memcmp(at.position, end->position, sizeof at.position) &&
            !memcmp(at.forward, end->forward, sizeof at.forward) &&
            !memcmp(at.up, end->up, sizeof at.up);
@@ -74,7 +74,7 @@ static bool rests(const masu_renderer *m, double time, const masu_camera *end) {
  * where "it is where it will always be" begins. */
 double masu_fly_path_end(const masu_renderer *m) {
     masu_camera end;
-    if (masu_camera_at(m, FOREVER, &end) || rests(m, 0.0, &end) || !rests(m, LONGEST, &end)) return 0.0;
+    if (masu_camera_at(m, FOREVER, &end, NULL) || rests(m, 0.0, &end) || !rests(m, LONGEST, &end)) return 0.0;
     double moving = 0.0, resting = LONGEST;
     while (resting - moving > 1e-4) {
         double middle = 0.5 * (moving + resting);

@@ -15,10 +15,9 @@ static bool vulkan_failed(masu_viewer *v, const char *call, VkResult r) {
     return masu_headless_fail(v->error, sizeof v->error, call, r);
 }
 
-static bool masu_failed(masu_viewer *v, const masu_renderer *m) {
-    const masu_detail *detail = masu_last_error(m);
-    if (detail->result == MASU_ERROR_DEVICE_LOST) v->lost = true;
-    snprintf(v->error, sizeof v->error, "%s", detail->text);
+static bool masu_failed(masu_viewer *v) {
+    if (v->detail.result == MASU_ERROR_DEVICE_LOST) v->lost = true;
+    snprintf(v->error, sizeof v->error, "%s", v->detail.text);
     return false;
 }
 
@@ -39,7 +38,7 @@ static bool wait_for_slot(masu_viewer *v, uint32_t slot) {
         uint64_t begin = v->submitted_ns[slot] > v->finished_ns ? v->submitted_ns[slot] : v->finished_ns;
         if (seen && v->show == MASU_SHOW_A && !v->scripted)
             masu_frame_wall(v->a.m, v->slot_of_a[slot], (double)(now - begin) / 1e6);
-        (void)masu_stats(v->a.m, v->slot_of_a[slot], &v->stats);
+        (void)masu_stats(v->a.m, v->slot_of_a[slot], &v->stats, NULL);
         masu_pick_take(v, slot);
     }
     v->finished_ns = now;
@@ -49,14 +48,15 @@ static bool wait_for_slot(masu_viewer *v, uint32_t slot) {
 static bool let_draw(masu_viewer *v, uint32_t slot) {
     masu_camera camera;
     masu_viewer_camera(v, &camera);
-    masu_frame_desc frame = {.camera = &camera,
+    masu_frame_desc frame = {MASU_FRAME_DESC,
+                             .camera = &camera,
                              .time = v->time,
                              .time_step = v->time_step,
                              .rung = v->governed ? MASU_RUNG_AUTO : v->rung,
                              .cut = v->cut};
     masu_pick_ask(v, &frame);
-    if (!masu_look_apply(v, v->a.m, &frame)) return masu_failed(v, v->a.m);
-    if (masu_frame(v->a.m, &frame, &v->a.last)) return masu_failed(v, v->a.m);
+    if (!masu_look_apply(v, v->a.m, &frame)) return masu_failed(v);
+    if (masu_frame(v->a.m, &frame, &v->a.last, &v->detail)) return masu_failed(v);
     v->slot_of_a[slot] = v->a.last.slot;
     v->slot_known[slot] = true;
     masu_pick_asked(v, slot);
@@ -64,8 +64,8 @@ static bool let_draw(masu_viewer *v, uint32_t slot) {
     if (v->show == MASU_SHOW_A) return true;
     frame.rung = 0;
     frame.pick = 0;
-    if (!masu_look_apply(v, v->b.m, &frame)) return masu_failed(v, v->b.m);
-    return masu_frame(v->b.m, &frame, &v->b.last) == MASU_OK || masu_failed(v, v->b.m);
+    if (!masu_look_apply(v, v->b.m, &frame)) return masu_failed(v);
+    return masu_frame(v->b.m, &frame, &v->b.last, &v->detail) == MASU_OK || masu_failed(v);
 }
 
 static void draw_ui(masu_viewer *v) {

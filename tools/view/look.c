@@ -19,7 +19,7 @@ static uint32_t listed(const masu_viewer *v, masu_scene_item item) {
 
 static void read_light(masu_viewer *v) {
     masu_look *l = &v->look;
-    l->has_light = masu_light_of(v->a.m, &l->from) == MASU_OK;
+    l->has_light = masu_light_of(v->a.m, &l->from, NULL) == MASU_OK;
     const float *d = l->from.sun_direction;
     float length = sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
     l->light = l->from;
@@ -32,9 +32,9 @@ static void read_light(masu_viewer *v) {
 
 static void read_params(masu_viewer *v) {
     masu_look *l = &v->look;
-    masu_scene_view s = masu_scene_view_of(&v->scene);
     l->param_count = masu_scene_count(&v->scene, MASU_SCENE_SDF_PARAM);
-    for (uint32_t i = 0; i < l->param_count; i++) l->params[i] = s.sdf_params[i].value;
+    for (uint32_t i = 0; i < l->param_count; i++)
+        l->params[i] = masu_scene_sdf_range(&v->scene, i, NULL, NULL);
 }
 
 void masu_look_reset(masu_viewer *v) {
@@ -49,7 +49,7 @@ void masu_look_reset(masu_viewer *v) {
     for (uint32_t i = 0; i < listed(v, MASU_SCENE_MODEL); i++) {
         masu_model_state model;
         masu_model m = masu_model_at(v->a.m, i);
-        l->hidden[i] = !masu_model_get(v->a.m, m, &model) && !model.shown;
+        l->hidden[i] = !masu_model_get(v->a.m, m, &model, NULL) && !model.shown;
     }
 }
 
@@ -81,14 +81,14 @@ void masu_look_light(masu_viewer *v) {
 
 /* ---- Frames ---------------------------------------------------------------------------------- */
 
-static bool pose(masu_renderer *m, masu_model model, masu_playback *p) {
+static bool pose(masu_renderer *m, masu_model model, masu_playback *p, masu_detail *detail) {
     uint32_t clips = masu_model_clips(m, model);
     if (!clips) return true;
     if (p->clip >= clips) p->clip = 0;
     if (p->other >= clips) p->other = 0;
     masu_clip_use uses[2] = {{p->clip, p->loops, p->time, 1.0f - p->blend},
                              {p->other, p->loops, p->time, p->blend}};
-    return !masu_model_animate(m, model, uses, p->blend > 0.0f ? 2 : 1);
+    return !masu_model_animate(m, model, uses, p->blend > 0.0f ? 2 : 1, detail);
 }
 
 /* Only what differs: a light that is set is looked at anew. */
@@ -96,14 +96,14 @@ static bool light_lamp(masu_viewer *v, masu_renderer *m, uint32_t i) {
     masu_punctual_light light = masu_punctual_light_at(m, i);
     masu_punctual_light_state state;
     masu_scene_view s = masu_scene_view_of(&v->scene);
-    if (masu_punctual_light_get(m, light, &state)) return true;
+    if (masu_punctual_light_get(m, light, &state, NULL)) return true;
     bool same = true;
     for (int c = 0; c < 3; c++) {
         float wanted = s.lights[i].color[c] * v->look.lamps[i];
         same = same && state.color[c] == wanted;
         state.color[c] = wanted;
     }
-    return same || !masu_punctual_light_set(m, light, &state);
+    return same || !masu_punctual_light_set(m, light, &state, &v->detail);
 }
 
 bool masu_look_apply(masu_viewer *v, masu_renderer *m, masu_frame_desc *frame) {
@@ -116,9 +116,9 @@ bool masu_look_apply(masu_viewer *v, masu_renderer *m, masu_frame_desc *frame) {
     for (uint32_t i = 0; i < listed(v, MASU_SCENE_MODEL) && good; i++) {
         masu_model model = masu_model_at(m, i);
         masu_model_state state;
-        if (masu_model_get(m, model, &state)) continue;
-        if (!state.shown != l->hidden[i]) good = !masu_model_show(m, model, !l->hidden[i]);
-        good = good && pose(m, model, &l->clips[i]);
+        if (masu_model_get(m, model, &state, NULL)) continue;
+        if (!state.shown != l->hidden[i]) good = !masu_model_show(m, model, !l->hidden[i], &v->detail);
+        good = good && pose(m, model, &l->clips[i], &v->detail);
     }
     return good;
 }

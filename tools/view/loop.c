@@ -6,6 +6,7 @@
 #include "clock.h"
 
 #include <math.h>
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -87,12 +88,27 @@ static bool recover(masu_viewer *v) {
     return masu_viewer_recover(v);
 }
 
+static volatile sig_atomic_t told_to_end;
+
+static void note_signal(int number) {
+    (void)number;
+    told_to_end = 1;
+}
+
+void masu_viewer_catch_signals(void) {
+    static const int ending[] = {SIGINT, SIGTERM, SIGHUP};
+    struct sigaction action = {.sa_handler = note_signal, .sa_flags = (int)SA_RESETHAND | SA_RESTART};
+    sigemptyset(&action.sa_mask);
+    for (size_t i = 0; i < sizeof ending / sizeof *ending; i++)
+        (void)sigaction(ending[i], &action, NULL);
+}
+
 int masu_viewer_run(masu_viewer *v, masu_script *script) {
     masu_hands hands = {0};
     const masu_viewer_options *o = v->o;
     uint64_t last = masu_clock_ns(NULL), drawn = last;
     bool good = true;
-    while (good && !v->quit) {
+    while (good && !v->quit && !told_to_end) {
         uint64_t now = masu_clock_ns(NULL), frames = v->frames;
         double seconds = v->recorder.films ? MASU_VIEWER_FILM_STEP
                          : v->scripted    ? MASU_VIEWER_STEP

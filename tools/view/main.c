@@ -95,6 +95,7 @@ static int view(const masu_viewer_options *o) {
     v->hud = MASU_HUD_SHORT;
     v->fly.speed = 4.0;
     masu_script script = {0};
+    masu_viewer_catch_signals();
     int code = describe(o, v);
     bool read = code || !o->script || masu_script_read(o->script, &script, v->error, sizeof v->error);
     if (!code && read && masu_viewer_open(v)) code = masu_viewer_run(v, &script);
@@ -139,8 +140,8 @@ int main(int argc, char **argv) {
         .summary = "show a scene in a window",
         .details =
             "FILE is a baked scene (.masu), a scene description (.json), an SDF (.sdf) or a model (.glb, .gltf,\n"
-            ".obj, ...); all but the first are baked, and baked again when they change. Without it the start page\n"
-            "opens. A file that is dropped on the window is opened.\n\n"
+            ".obj, ...); all but the first are baked, and baked again when they or files that they name change.\n"
+            "Without it the start page opens. A file that is dropped on the window is opened.\n\n"
             "Keys:\n"
             "  W A S D, Q E          move the camera; Shift: faster; mouse wheel: speed\n"
             "  right mouse button    turn the camera\n"

@@ -5,6 +5,8 @@
 
 #include "settings/setting.h"
 
+#include "session.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -46,7 +48,7 @@ static double of_scene(const masu_viewer *v, const masu_knob *k) {
     if (!strcmp(k->name, "shadow_cascades")) return cascades;
     if (!strcmp(k->name, "specular_cutoff")) return (double)masu_scene_specular_cutoff(&v->scene);
     masu_desc plain = {.rung_count = 1, .rungs = {{.temporal = v->want.rungs[v->rung].temporal}}};
-    plain = masu_desc_resolved(&plain);
+    plain = masu_session_resolved(&plain);
     return masu_knob_get(k, &plain.rungs[0], 0);
 }
 

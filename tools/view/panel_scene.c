@@ -2,9 +2,6 @@
  * and what there is. */
 #include "view/viewer.h"
 
-#include "scene/blob_section.h"
-#include "scene/scene.h"
-
 #include <stdio.h>
 #include <string.h>
 
@@ -12,20 +9,21 @@
 
 static void parameters(masu_viewer *v) {
     masu_look *l = &v->look;
-    masu_scene_view s = masu_scene_view_of(&v->scene);
     char format[32];
     if (!l->param_count || !masu_ui_section("Parameters", true)) return;
     for (uint32_t i = 0; i < l->param_count; i++) {
-        const masu_blob_sdf_param *p = &s.sdf_params[i];
-        float span = p->maximum - p->minimum;
+        float minimum, maximum;
+        (void)masu_scene_sdf_range(&v->scene, i, &minimum, &maximum);
+        float span = maximum - minimum;
         snprintf(format, sizeof format, "%%.%df", span > 50.0f ? 1 : span > 5.0f ? 2 : 3);
         masu_ui_push(i);
         masu_ui_slider(masu_scene_name(&v->scene, MASU_SCENE_SDF_PARAM, i), &l->params[i],
-                       p->minimum, p->maximum, format, false);
+                       minimum, maximum, format, false);
         masu_ui_pop();
     }
     if (masu_ui_button("Defaults##parameters"))
-        for (uint32_t i = 0; i < l->param_count; i++) l->params[i] = s.sdf_params[i].value;
+        for (uint32_t i = 0; i < l->param_count; i++)
+            l->params[i] = masu_scene_sdf_range(&v->scene, i, NULL, NULL);
 }
 
 static void clips(masu_viewer *v, uint32_t model, masu_playback *p) {

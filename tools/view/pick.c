@@ -31,7 +31,7 @@ void masu_pick_ask(masu_viewer *v, masu_frame_desc *frame) {
 void masu_pick_asked(masu_viewer *v, uint32_t slot) {
     masu_frame_view view;
     v->picked.of_slot[slot] = v->picked.asked;
-    if (v->picked.asked && !masu_frame_view_of(v->a.m, &view)) v->picked.near_distance = (double)view.near_distance;
+    if (v->picked.asked && !masu_frame_view_of(v->a.m, &view, NULL)) v->picked.near_distance = (double)view.near_distance;
     v->picked.asked = false;
 }
 
@@ -44,11 +44,11 @@ static void name_it(const masu_viewer *v, const masu_pick_info *p, char *out, si
         snprintf(out, size, "%s", p->kind == MASU_PICK_SDF ? "the SDF" : "the sky");
         return;
     }
-    if (p->model.id && !masu_model_get(v->a.m, p->model, &model)) {
+    if (p->model.id && !masu_model_get(v->a.m, p->model, &model, NULL)) {
         used = snprintf(out, size, "node %u of model '%.60s', ", p->node,
                         masu_scene_name(&v->scene, MASU_SCENE_MODEL, model.index));
     }
-    if (!p->instance.id || masu_instance_get(v->a.m, p->instance, &instance)) {
+    if (!p->instance.id || masu_instance_get(v->a.m, p->instance, &instance, NULL)) {
         snprintf(out + used, size - (size_t)used, "an edge of an instance");
         return;
     }
@@ -61,7 +61,7 @@ void masu_pick_take(masu_viewer *v, uint32_t slot) {
     char name[200];
     if (!v->picked.of_slot[slot]) return;
     v->picked.of_slot[slot] = false;
-    if (masu_pick(v->a.m, v->slot_of_a[slot], &p) || p.kind == MASU_PICK_NOTHING) return;
+    if (masu_pick(v->a.m, v->slot_of_a[slot], &p, NULL) || p.kind == MASU_PICK_NOTHING) return;
     name_it(v, &p, name, sizeof name);
     if (p.depth > 0.0f)
         snprintf(v->picked.text, sizeof v->picked.text, "%s, depth %.3f m, at %.3f %.3f %.3f", name,

@@ -85,12 +85,10 @@ static void point_to_target(masu_stage *s, masu_desc *d) {
 static bool load(masu_stage *s, char *error, size_t size) {
     masu_commands commands;
     masu_result result;
-    while ((result = masu_load(s->m, &commands)) == MASU_INCOMPLETE) {
+    while ((result = masu_load(s->m, &commands, &s->detail)) == MASU_INCOMPLETE) {
         if (!masu_headless_run(s->host, commands.buffer, error, size)) return false;
     }
-    if (!result) return true;
-    s->detail = *masu_last_error(s->m);
-    return said(s, error, size);
+    return !result || said(s, error, size);
 }
 
 bool masu_stage_start(masu_stage *s, masu_headless *host, const masu_desc *desc, char *error,

@@ -6,6 +6,7 @@
 #include "clock.h"
 #include "file_kind.h"
 #include "image.h"
+#include "session.h"
 #include "view/stage.h"
 
 #include <stdarg.h>
@@ -63,7 +64,7 @@ static void place_camera(masu_viewer *v) {
     v->path_end = masu_fly_path_end(v->a.m);
     masu_camera camera = {.position = {0.0, 1.7, 6.0}, .forward = {0.0f, -0.1f, -1.0f}, .fov_y = 1.0f};
     bool has = masu_scene_count(&v->scene, MASU_SCENE_CAMERA_KEY) &&
-               masu_camera_at(v->a.m, v->time, &camera) == MASU_OK;
+               masu_camera_at(v->a.m, v->time, &camera, NULL) == MASU_OK;
     masu_fly_from(&v->fly, &camera);
     v->on_path = has;
 }
@@ -221,13 +222,13 @@ bool masu_viewer_attach_ui(masu_viewer *v) {
 static void want_given(masu_viewer *v) {
     v->want = v->given;
     v->want.scene = &v->scene;
-    v->want = masu_desc_resolved(&v->want);
+    v->want = masu_session_resolved(&v->want);
     for (uint32_t r = 0; r < v->want.rung_count; r++) {
         masu_desc plain = v->want; /* what a rung of that scale would be if nothing were said of it */
         plain.rung_count = 1;
         plain.rungs[0] = (masu_rung){.scale = v->want.rungs[r].scale};
         plain.governor.mode = MASU_GOVERNOR_OFF; /* as masu bench measures, whose names these are */
-        plain = masu_desc_resolved(&plain);
+        plain = masu_session_resolved(&plain);
         for (const masu_knob *k = masu_knob_table(); k->name; k++) {
             if (!strcmp(k->name, "scale")) continue;
             for (uint32_t i = 0; i < k->values; i++) {
@@ -377,5 +378,5 @@ void masu_viewer_close(masu_viewer *v) {
 
 void masu_viewer_camera(const masu_viewer *v, masu_camera *out) {
     if (masu_capture_camera(v, out)) return;
-    if (!v->on_path || masu_camera_at(v->a.m, v->time, out)) masu_fly_camera(&v->fly, out);
+    if (!v->on_path || masu_camera_at(v->a.m, v->time, out, NULL)) masu_fly_camera(&v->fly, out);
 }

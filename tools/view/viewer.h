@@ -166,6 +166,7 @@ typedef struct masu_viewer {
 
     void *blob;
     masu_scene scene;
+    masu_detail detail;          /* of the masu_* call that failed */
     masu_desc want;              /* rungs, governor and all else that is asked of A */
     masu_desc given;             /* as the command line has it, before defaults are filled in */
     masu_rung reference;         /* the setting of B */
@@ -330,6 +331,9 @@ void masu_program_beside(char *out, size_t size, const char *name);
 
 /* loop.c: an exit code */
 struct masu_script;
+/* SIGINT, SIGTERM and SIGHUP end masu_viewer_run as closing the window does; a second one ends the
+ * process. */
+void masu_viewer_catch_signals(void);
 int masu_viewer_run(masu_viewer *v, struct masu_script *script);
 
 #endif

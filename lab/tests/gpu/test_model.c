@@ -77,7 +77,7 @@ static void a_loop_is_counted_round_by_round(void **state) {
 static void counters_change_no_pixel(void **state) {
     enum { W = 96, H = 64 };
     static uint8_t plain[W * H * 4], counted[W * H * 4];
-    static const char *const scenes[] = {"wet_city", "mirrors"};
+    static const char *const scenes[] = {"mirrors", "wet_city"};
     static masu_frame_plan plan;
     (void)state;
     for (size_t i = 0; i < (long_run() ? sizeof scenes / sizeof *scenes : 1); i++) {

@@ -29,7 +29,22 @@ keys=$(grep -c '"time"' "$folder/a/city.json")
 frame() { sed -n "s/.*\"time\": $1, \"position\": \[\([^]]*\)\].*/\1/p" "$folder/a/city.json"; }
 [ "$(frame 0.0000)" != "$(frame 10.0000)" ] || fail "the camera stands still"
 
-# Its meshes are baked without LODs here: those take ten seconds, and tests of their own.
+# By night it is the same city, lit by its lamps and by the windows of some facades.
+for member in '"models"' '"ambient_occlusion": {' '"lambda"'; do
+    for name in city city_night; do
+        grep -q -e "$member" "$folder/a/$name.json" || fail "$name.json has no $member"
+    done
+done
+parts() { grep -o '"file": "[^"]*", "group": "[^"]*", "translate": [^]]*' "$folder/a/$1.json"; }
+[ "$(parts city)" = "$(parts city_night)" ] || fail "the city by night has other parts than by day"
+between "lamps of the night" "$(grep -c '"type": "point"' "$folder/a/city_night.json")" 200 1024
+between "lit facades" "$(grep -c '"match": "glass", "emissive"' "$folder/a/city_night.json")" 300 700
+grep -q '"type": "point"\|"emissive"' "$folder/a/city.json" && fail "a lamp is lit by day"
+
+# Baked without light probes, which take half a minute; and its meshes without LODs here: those take ten seconds, and
+# tests of their own.
+grep -q '"probes": {' "$folder/a/city.json" || fail "the city has no probes"
+sed -i '/"probes": {/d' "$folder/a/city.json" "$folder/b/city.json"
 sed 's/"lods": 3/"lods": 0/' "$folder/a/city.json" > "$folder/a/plain.json"
 "$bake" "$folder/a/plain.json" -o "$folder/city.masu" --stats "$folder/city.stats" --quiet \
     2> "$folder/stderr" || fail "the city does not bake: $(cat "$folder/stderr")"
@@ -39,7 +54,7 @@ between "drawn triangles" "$(number "$folder/city.stats" drawn_triangles)" 25000
 between "stored triangles" "$(number "$folder/city.stats" triangles)" 10000 60000
 between "meshes" "$(count_of "$folder/city.stats" meshes)" 20 60 # one per part and colour
 between "occluders" "$(count_of "$folder/city.stats" occluders)" 8 60
-if [ "${config:-}" != sanitize ]; then # there it takes minutes, and the peak is the sanitizer's
+if [ -n "${LONG:-}" ]; then # ten seconds
     "$bake" "$folder/b/city.json" -o "$folder/b.masu" --stats "$folder/b.stats" --quiet ||
         fail "the city does not bake with LODs"
     between "LODs" "$(count_of "$folder/b.stats" lods)" 30 120
@@ -79,6 +94,13 @@ torcs=/usr/share/games/torcs
 if [ -d $torcs/tracks/road/forza ] && [ -d $torcs/cars/p406 ]; then
     "$lab" world forza "$folder/forza" > "$folder/stdout" 2> /dev/null || fail "masu-lab world forza"
     grep -q 'a lap of 57[0-9][0-9] m' "$folder/stdout" || fail "the lap: $(cat "$folder/stdout")"
+    # Lamps stand outside of the barriers along all of the lap, by night only; a plain lies below the lowest ground.
+    between "forza's lamps" "$(grep -c '"intensity": 400' "$folder/forza/forza_night.json")" 120 180
+    between "their poles" "$(grep -c '\[0.16, 10, 0.16\]' "$folder/forza/forza_night.json")" 120 180
+    grep -q '"intensity": 400' "$folder/forza/forza.json" && fail "a lamp of forza is lit by day"
+    for name in forza forza_night; do
+        grep -q '"name": "plain"' "$folder/forza/$name.json" || fail "$name.json has no plain"
+    done
     # Ten cars on four wheels each: a wheel's scale is its diameter, its middle half of that above
     # the road, and the road a hand's breadth below the body's origin; two are turned about.
     awk -F'[][,]+' '

@@ -203,6 +203,7 @@ static void a_counted_shader_is_a_valid_one_that_counts_each_access(void **state
  * that. */
 static void plan_upscaling(uint32_t width, uint32_t height, masu_frame_plan *plan) {
     masu_desc d = {
+        MASU_DESC,
         .source = {.width = width / 2, .height = height / 2, .format = VK_FORMAT_R8G8B8A8_UNORM},
         .output = {width, height},
         .targets = {.storage = 1, .count = 1},

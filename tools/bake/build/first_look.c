@@ -12,8 +12,12 @@
 #include <string.h>
 
 #define FRAME_SHARE 0.89   /* of the height or width of the picture, whichever the model meets first */
+#define MOVING_SHARE 0.75 /* of a model that plays clips, which is framed at rest */
 #define ASPECT (16.0 / 9) /* of the picture that it is made for: in narrower ones a wide model is cut off */
 #define FLAT 0.12         /* height / the shorter side of what is a place, not a thing: no ground, seen from higher up */
+#define STEEP 0.85        /* height / depth of the camera's direction for these */
+#define LOW 0.5           /* height / the longer side of what is looked down on */
+#define LOOK_DOWN 0.3     /* of its height: the camera's height above the top */
 #define GROUND_RADII 60   /* half a side of the ground, in radii of the model: it ends in the haze */
 
 typedef struct axes {
@@ -71,7 +75,8 @@ static masu_blob_camera_key frame(const masu_bake_content *c, const masu_bake_bo
                                   masu_bake_vec3 towards) {
     const masu_bake_vec3 zero = {0, 0, 0};
     axes at = axes_of(towards);
-    double b = tan(fov_y * (MASU_BAKE_PI / 360)) * FRAME_SHARE, a = b * ASPECT;
+    double share = masu_bake_count(c, MASU_BLOB_CLIPS) ? MOVING_SHARE : FRAME_SHARE;
+    double b = tan(fov_y * (MASU_BAKE_PI / 360)) * share, a = b * ASPECT;
     reach r;
     reach_of(c, &at, a, b, &r);
     masu_bake_vec3 center = masu_bake_mad(box->low, extent_of(box), 0.5);
@@ -84,6 +89,20 @@ static masu_blob_camera_key frame(const masu_bake_content *c, const masu_bake_bo
     masu_blob_camera_key key = {.fov_y = (float)(fov_y * (MASU_BAKE_PI / 180))};
     masu_bake_store(masu_bake_mad(across, at.forward, z), key.position);
     masu_bake_store(masu_bake_mad(across, at.forward, fmax(middle, z + radius * 0.25)), key.target);
+    return key;
+}
+
+/* The near end of a long, low model, such as a table, fills the frame: the camera rises until it sees the top. */
+static masu_blob_camera_key frame_from_above(const masu_bake_content *c, const masu_bake_box *box,
+                                             double fov_y, bool flat) {
+    masu_bake_vec3 e = extent_of(box);
+    double rise = flat ? STEEP : 0.38, seen = box->high.y + LOOK_DOWN * e.y;
+    bool low = e.y < LOW * fmax(e.x, e.z);
+    masu_blob_camera_key key = frame(c, box, fov_y, masu_bake_v3(0.62, rise, 1.0));
+    while (low && rise < STEEP && !((double)key.position[1] > seen)) {
+        rise += 0.1;
+        key = frame(c, box, fov_y, masu_bake_v3(0.62, rise, 1.0));
+    }
     return key;
 }
 
@@ -152,8 +171,7 @@ void masu_bake_make_first_look(const masu_bake_box *bounds, const masu_bake_cont
     d->look = masu_bake_default_look();
     d->look.keys = masu_bake_take(&d->pool, sizeof *d->look.keys);
     d->look.key_count = 1;
-    d->look.keys[0] = frame(content, bounds, d->look.fov_y,
-                            masu_bake_v3(0.62, flat ? 0.85 : 0.38, 1.0));
+    d->look.keys[0] = frame_from_above(content, bounds, d->look.fov_y, flat);
     set_light(bounds, flat, &d->look);
     d->reflections.smallest = radius * 2 * MASU_BAKE_TRACED_SHARE; /* the ground is not to count */
     if (!flat) add_ground(bounds, d);

@@ -470,10 +470,11 @@ static bool read_coat(masu_gltf *g, const json_t *about, masu_blob_material *to,
            read_texture(g, coat, "clearcoatRoughnessTexture", &m->all[MASU_BAKE_COAT_ROUGHNESS]);
 }
 
-/* KHR_materials_volume: the light that is left after the thickness, as a factor for each of the two surfaces that a ray
- * crosses. The refraction of the ray is not followed. */
+/* KHR_materials_volume: the light that is left after the thickness, as a factor of each surface that a ray crosses: one
+ * if back faces are culled, else two. The refraction of the ray is not followed. */
 static bool read_volume(masu_gltf *g, const json_t *about, float color[3]) {
     const json_t *volume = masu_gltf_extension(g, about, "KHR_materials_volume");
+    double share = json_is_true(json_object_get(about, "doubleSided")) ? 0.5 : 1;
     double thickness = 0, distance = 0, left[3] = {1, 1, 1};
     if (!masu_gltf_number(g, volume, "thicknessFactor", &thickness) ||
         !masu_gltf_number(g, volume, "attenuationDistance", &distance) ||
@@ -482,7 +483,7 @@ static bool read_volume(masu_gltf *g, const json_t *about, float color[3]) {
     note_texture(g, volume, "thicknessTexture");
     if (!(thickness > 0 && distance > 0)) return true;
     limit_all(g, left, 3, 1, "attenuationColor");
-    for (int k = 0; k < 3; k++) color[k] *= (float)pow(left[k], 0.5 * thickness / distance);
+    for (int k = 0; k < 3; k++) color[k] *= (float)pow(left[k], share * thickness / distance);
     return true;
 }
 

@@ -143,6 +143,7 @@ static void note_attributes(masu_gltf *g, const source *s, const masu_gltf_mater
         bool joints = strncmp(key, "JOINTS_", 7) == 0 || strncmp(key, "WEIGHTS_", 8) == 0;
         if (!strcmp(key, "POSITION") || !strcmp(key, "NORMAL") || !strcmp(key, "TANGENT") ||
             !strcmp(key, "COLOR_0") || !strncmp(key, "TEXCOORD_", 9) ||
+            !strncmp(key, "_FEATURE_ID_", 12) ||
             (joints && skinned && strtol(strchr(key, '_') + 1, NULL, 10) < JOINT_SETS))
             continue;
         snprintf(what, sizeof what, "primitives have %.48s, which is not supported", key);
