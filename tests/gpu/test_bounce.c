@@ -190,7 +190,8 @@ static void light_comes_rises_rests_and_stays_behind_a_door(void **state) {
     } while (r.s.m->bounce.quiet < MASU_BOUNCE_SWIFT_ROUNDS && frames < 4096);
     while (curve[at_90] < 0.9 * curve[frames - 1]) at_90++;
     double open = curve[frames - 1] / floor_at(&r, 0.2f);
-    print_message("behind the open door %.5f, 90 %% after %u frames of %u\n", open, at_90 + 1, frames);
+    print_message("behind the open door %.5f, 90 %% after %u frames of %u\n", open, at_90 + 1,
+                  frames);
     assert_true(open > 0.03 && at_90 + 1 <= bound);
     close_rooms(&r);
 }
