@@ -333,7 +333,7 @@ bakes "$scene"
 [ "$(counts textures)" = 0 ] || fail "a map of no coat: $(counts textures) textures"
 quad "\"coat\": 1, \"coat_map\": \"$pictures/gradient.png\", \"blend\": \"tinted\", \"opacity\": 0.25"
 bakes "$scene"
-warns 1 'transparent materials have no coat map: ignored'
+warns 1 'transparent materials have no maps of coat, specular or sheen: ignored'
 refuses 'expected' '"coat_smooth": 1'
 
 # As many blended things as a renderer draws, and one more.

@@ -1,4 +1,5 @@
 /* texture.c: see texture.h.
+ * Over 700 lines: kinds of maps, requests and arrays, of one structure.
  *
  *   maps of a material -> requests (what is to be made of which pictures), each made once
  *   request -> texture: pictures read, mips filtered, blocks made
