@@ -153,8 +153,8 @@ static int by_value(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* Distance, in texels, from the centre of a pixel to what may be lit: to the nearest such pixel, or to the nearest of
- * points around it on its tangent plane, since a pixel may be larger than many texels. */
+/* Distance, in texels, from the centre of a pixel to what may be lit: to the nearest such pixel, or
+ * to the nearest of points around it on its tangent plane, since a pixel may be larger than texels. */
 static double depth_of(const study *w, const ref_light *light, size_t at) {
     const int width = (int)w->d->size.width, height = (int)w->d->size.height;
     const int x0 = (int)(at % (size_t)width), y0 = (int)(at / (size_t)width);

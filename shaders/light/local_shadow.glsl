@@ -4,8 +4,8 @@
  * Needs lights.glsl's buffer before it.
  *
  * A point light has six faces of a cube along the world's axes, a spot one along its own; a texel is lit or not,
- * and nine texels are weighted by a quadratic B-spline around the point. The edge of a shadow is where their sum is a
- * half. Around it the sum is made steeper, up to three times, if the penumbra of the source is narrower than the filter.
+ * and nine texels are weighted by a quadratic B-spline around the point. The edge of a shadow is where their sum is one
+ * half. The sum is made up to three times as steep there if the penumbra of the source is narrower than the filter.
  *
  * BIAS. The depth near / z of a plane is affine in the face. Each of the nine is compared with the surface's own
  * plane there where that rises towards the light, and with the point's depth where it falls: exact on a plane.
@@ -36,11 +36,10 @@ vec3 masu_local_spline(float f)
     return vec3(0.5 * a * a, 0.75 - f * f, 0.5 * b * b);
 }
 
-/* Of a row of texels those that are lit. above: how far they are above the point. Depths are at most 1: a clamp to
- * 0..1 costs no instruction. */
-vec3 masu_local_lit(vec3 across, float down, vec3 above)
+/* Of a row of texels those that are lit. Depths are at most 1: a clamp to 0..1 costs no instruction. */
+vec3 masu_local_lit(vec3 across, float down, float depth, vec3 nearest)
 {
-    return vec3(greaterThanEqual(clamp(across + down, 0.0, 1.0), above));
+    return vec3(greaterThanEqual(clamp(across + down, 0.0, 1.0), nearest - depth));
 }
 
 #ifdef MASU_LOCAL_SHADOWS_FOUR
@@ -75,17 +74,16 @@ float masu_local_filter(vec2 at, float depth, vec2 slope, float texel, out float
     [[dont_unroll]] for (int i = 0; i < 2; i++) {
         vec4 left = textureGather(local_shadow_atlas, uv);
         vec4 right = textureGather(local_shadow_atlas, uv + vec2(texel, 0.0));
+        gap = max(max(gap, max(left.x, left.y)), max(max(left.z, left.w), max(right.y, right.z)));
         vec3 columns = vec3(across - slope.x, across, across + slope.x);
-        vec3 low_above = vec3(left.w, left.z, right.z) - depth, high_above = vec3(left.x, left.y, right.y) - depth;
-        float low = dot(weight, masu_local_lit(columns, down, low_above));
-        float high = dot(weight, masu_local_lit(columns, down + slope.y, high_above));
-        gap = max(gap, max(max(low_above.x, low_above.y), low_above.z));
-        gap = max(gap, max(max(high_above.x, high_above.y), high_above.z));
+        float low = dot(weight, masu_local_lit(columns, down, depth, vec3(left.w, left.z, right.z)));
+        float high = dot(weight, masu_local_lit(columns, down + slope.y, depth, vec3(left.x, left.y, right.y)));
         sum += rows.x * low + rows.y * high;
         rows.xy = vec2(0.0, rows.z);
         down += slope.y;
         uv.y += texel;
     }
+    gap -= depth;
     return sum;
 }
 #endif
@@ -141,14 +139,17 @@ float masu_light_seen(masu_punctual_light_data light, vec3 rel, vec3 n)
     float facing = min(along, -1.0 / masu_local_steepest);
     vec2 slope = across * (step / facing);
     float lift = uintBitsToFloat(masu_lights_header.w) * masu_sqrt(dot(rel, rel)) * (inverse / width); /* texels */
-    float bias = masu_local_least_bias * step + masu_local_snap * (abs(slope.x) + abs(slope.y)) - lift * (step / facing);
+    float bias = masu_local_least_bias * step + masu_local_snap * (abs(slope.x) + abs(slope.y));
+    bias -= lift * (step / facing);
+    /* What does not need the filter's result comes first: fewer values are kept meanwhile. */
+    float radius = masu_area_lights && masu_light_kind(light) != MASU_KIND_POINT ? near : masu_sqrt(light.color.w);
+    float narrow = masu_local_width * near * width / max(radius, 1e-6);
+    float facing_share = clamp(1.0 - (along - depth) * masu_local_behind, 0.0, 1.0);
     float gap;
     float lit = masu_local_filter(at, depth + bias, slope, uintBitsToFloat(masu_lights_header.z), gap);
     /* Half the penumbra, in texels: radius * gap / (near * width). */
-    float radius = masu_area_lights && masu_light_kind(light) != MASU_KIND_POINT ? near : masu_sqrt(light.color.w);
-    float steeper = clamp(masu_local_width * near * width / max(radius * gap, 1e-12), 1.0, masu_local_steeper);
-    lit = clamp((lit - 0.5) * steeper + 0.5, 0.0, 1.0);
-    lit *= clamp(1.0 - (along - depth) * masu_local_behind, 0.0, 1.0);
+    float steeper = clamp(narrow / max(gap, 1e-9), 1.0, masu_local_steeper);
+    lit = clamp((lit - 0.5) * steeper + 0.5, 0.0, 1.0) * facing_share;
     float fade = float(word >> MASU_LOCAL_FADE_SHIFT & 15u) * (1.0 / float(MASU_LOCAL_FADE));
     return lit * fade + (1.0 - fade);
 }
