@@ -165,7 +165,7 @@ struct masu_shelved_look {
     uvec2 albedo, emissive;
     uint metallic;
 #ifdef MASU_SURFACE
-    uvec2 coat;
+    uint coat;
 #endif
 };
 
@@ -184,9 +184,9 @@ masu_shelved_look masu_shelve(masu_surface s)
     masu_shelved_look p;
     p.albedo = masu_pack_halves(vec4(s.albedo, s.roughness));
     p.emissive = masu_pack_halves(vec4(s.emissive, s.specular));
-    p.metallic = packHalf2x16(vec2(s.metallic, s.occlusion));
+    p.metallic = packHalf2x16(vec2(s.metallic, 0.0));
 #ifdef MASU_SURFACE
-    p.coat = masu_pack_halves(vec4(s.coat, s.coat_roughness, s.edge, s.shadow));
+    p.coat = packHalf2x16(vec2(s.coat, s.coat_roughness));
 #endif
     return p;
 }
@@ -199,15 +199,11 @@ void masu_unshelve(masu_shelved_look p, inout masu_surface s)
     v = masu_unpack_halves(p.emissive);
     s.emissive = v.xyz;
     s.specular = v.w;
-    vec2 numbers = unpackHalf2x16(p.metallic);
-    s.metallic = numbers.x;
-    s.occlusion = numbers.y;
+    s.metallic = unpackHalf2x16(p.metallic).x;
 #ifdef MASU_SURFACE
-    v = masu_unpack_halves(p.coat);
-    s.coat = v.x;
-    s.coat_roughness = v.y;
-    s.edge = v.z;
-    s.shadow = v.w;
+    vec2 coat = unpackHalf2x16(p.coat);
+    s.coat = coat.x;
+    s.coat_roughness = coat.y;
 #endif
 }
 
