@@ -20,7 +20,9 @@ static inline uint32_t masu_hue_code(const float color[3]) {
 }
 
 /* 0, 0, 0 is gray too. */
-static inline int masu_is_colored(const float hue[3]) { return hue[0] != hue[1] || hue[1] != hue[2]; }
+static inline int masu_is_colored(const float hue[3]) {
+    return hue[0] != hue[1] || hue[1] != hue[2];
+}
 
 /* The 23 bits of pack.glsl that stand for a lobe beyond GGX with a grey f0 up to 0.08; 0: it has none. */
 static inline uint32_t masu_lobe_code(const masu_blob_material *m) {
@@ -28,8 +30,8 @@ static inline uint32_t masu_lobe_code(const masu_blob_material *m) {
     float most = sheen[0] > sheen[1] ? sheen[0] : sheen[1];
     most = most > sheen[2] ? most : sheen[2];
     if (most > 0.0f) {
-        return MASU_LOBE_SHEEN << 21 | masu_hue_code(sheen) << 10 | masu_root_steps(most, 31.0f) << 5 |
-               (uint32_t)(m->sheen_roughness * 31.0f + 0.5f);
+        return MASU_LOBE_SHEEN << 21 | masu_hue_code(sheen) << 10 |
+               masu_root_steps(most, 31.0f) << 5 | (uint32_t)(m->sheen_roughness * 31.0f + 0.5f);
     }
     if (m->anisotropy > 0.0f) {
         uint32_t angle = (uint32_t)(m->anisotropy_rotation / pi * 128.0f + 0.5f) & 127u;
@@ -38,9 +40,11 @@ static inline uint32_t masu_lobe_code(const masu_blob_material *m) {
     }
     const float gray[3] = {1.0f, 1.0f, 1.0f};
     int colored = masu_is_colored(hue);
-    if (!colored && m->specular <= 1.0f && (m->flags & MASU_MATERIAL_IS_BLEND || !(m->flags & MASU_MATERIAL_LOBE_MAP)))
+    if (!colored && m->specular <= 1.0f &&
+        (m->flags & MASU_MATERIAL_IS_BLEND || !(m->flags & MASU_MATERIAL_LOBE_MAP)))
         return 0;
-    return MASU_LOBE_COLORED << 21 | masu_hue_code(colored ? hue : gray) << 8 | masu_root_steps(m->specular * 0.08f, 255.0f);
+    return MASU_LOBE_COLORED << 21 | masu_hue_code(colored ? hue : gray) << 8 |
+           masu_root_steps(m->specular * 0.08f, 255.0f);
 }
 
 /* Shaders have a lobe in the place of the specular factor, below 0. */
