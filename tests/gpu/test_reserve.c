@@ -580,6 +580,30 @@ static void what_would_change_a_pass_is_refused(void **state) {
     close_session(&s);
 }
 
+/* A reflectance above 0.08, a sheen or an anisotropy stay as they are, and other factors change. */
+static void lobes_are_kept(void **state) {
+    (void)state;
+    masu_session s;
+    masu_session_desc d = desc_of("reference_materials", 0, 0);
+    masu_material of;
+    masu_material_state was, to;
+    d.desc.mutable_materials = 1;
+    open_session(&s, &d);
+    was = material(&s, "sheen", &of);
+    assert_true(was.specular == 0.5f);
+    REFUSED(specular, 0.6f, "specular");
+    was = material(&s, "ior 2.4", &of);
+    if (!(fabsf(was.specular * 0.08f - 0.1696f) < 0.003f)) fail_msg("specular is %g", (double)was.specular);
+    REFUSED(specular, 0.5f, "specular");
+    REFUSED(coat, 0.5f, "coat");
+    to = was;
+    to.base_color[0] = 0.25f;
+    assert_int_equal(masu_material_set(s.m, of, &to, &failure), MASU_OK);
+    assert_int_equal(masu_material_get(s.m, of, &was, &failure), MASU_OK);
+    assert_memory_equal(&to, &was, sizeof to);
+    close_session(&s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_added_is_as_if_baked_so),
@@ -595,6 +619,7 @@ int main(void) {
         cmocka_unit_test(what_is_painted_is_as_if_baked_so),
         cmocka_unit_test(a_history_is_told),
         cmocka_unit_test(what_would_change_a_pass_is_refused),
+        cmocka_unit_test(lobes_are_kept),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
