@@ -100,8 +100,9 @@ static void without_a_scene_it_is_what_the_device_has(void **state) {
 }
 
 /* masu_init reports what it would use and the host has not enabled; `gpu`: the device pretends to be
- * one, since CPUs use neither ray queries nor 16-bit floats. */
-static void compare_with_log(const char *scene, int gpu) {
+ * one, since CPUs use neither ray queries nor 16-bit floats; `traced`: reflections have a use for
+ * rays. */
+static void compare_with_log(const char *scene, int gpu, int traced) {
     char error[ERROR_SIZE];
     open_scene(scene);
     wrap.fake_memory = gpu;
@@ -118,6 +119,7 @@ static void compare_with_log(const char *scene, int gpu) {
     assert_int_equal(strstr(logged, "vulkan.shader_float16 is 0") != NULL,
                      (info.used & HALVES) != 0);
     if (gpu) assert_int_equal(info.used & HALVES, info.supported & HALVES);
+    if (gpu && traced) assert_int_equal(info.used & RAYS, info.supported & RAYS);
     if (!gpu) assert_int_equal(info.used & (RAYS | HALVES), 0);
     if (!masu_scene_texture_bytes(&s.scene, 0))
         assert_int_equal(info.used & (BC | ANISOTROPY), 0);
@@ -126,10 +128,10 @@ static void compare_with_log(const char *scene, int gpu) {
 
 static void with_a_scene_it_is_what_init_uses(void **state) {
     (void)state;
-    compare_with_log("test_texture_quad", 0);
-    compare_with_log("test_texture_quad", 1);
-    compare_with_log("test_reflections", 0);
-    compare_with_log("test_reflections", 1);
+    compare_with_log("test_texture_quad", 0, 0);
+    compare_with_log("test_texture_quad", 1, 0);
+    compare_with_log("test_reflections", 0, 1);
+    compare_with_log("test_reflections", 1, 1);
 }
 
 static void expect_missing(const masu_desc *d, masu_result result, const char *what, int needed,
