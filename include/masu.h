@@ -50,8 +50,8 @@
  *    and sampled image. No optional feature is required; masu_detail names a missing required one.
  *    These optional features are used if the host has enabled them (masu_vulkan):
  *    textureCompressionBC and samplerAnisotropy for textures, VK_KHR_ray_query for reflections,
- *    shaderFloat16 for upscaling. masu_init logs each one that the scene would use and the device
- *    offers, but the host has not enabled.
+ *    shaderFloat16 for upscaling. masu_device_query reports which ones a scene would use, before
+ *    the device exists. masu_init logs each of those that the host has not enabled.
  *  - Command buffers: primary, for `queue_family`, recorded in masu_init. Submit each one once per
  *    call that returns it, all to the same queue, in the order returned. Each starts with a full
  *    barrier against the previous frame. With desc.split a frame has several (masu_commands.parts).
