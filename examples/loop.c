@@ -1,6 +1,7 @@
 /* loop.c SCENE.masu [SCRIPT]: a scene in a window, at the rung that keeps 16.7 ms. The window may have any size:
  * masu_resize where it is smaller than planned for, else masu_destroy and masu_init in a larger block. The
- * window is that of shared/window.h; with a script (shared/script.h) the validation layer looks on. */
+ * window is that of shared/window.h; with a script (shared/script.h) the validation layer looks on. LOOP_SURFACE in
+ * the environment may contain "srgb" (an sRGB format for the swapchain) and "unpaced" (MAILBOX or IMMEDIATE). */
 #include "masu.h"
 #include "overlay.h"
 #include "script.h"
@@ -119,6 +120,8 @@ int main(int argc, char **argv) {
     static view v;
     bool quit = false, outdated = false;
     if (argc != 2 && argc != 3) return fprintf(stderr, "usage: loop SCENE.masu [SCRIPT]\n"), 2;
+    const char *wish = getenv("LOOP_SURFACE");
+    v.window.srgb = wish && strstr(wish, "srgb"), v.window.unpaced = wish && strstr(wish, "unpaced");
     bool good = script_open(&v.script, argv[2]) && read_scene(&v, argv[1]) &&
                 window_open(&v.window, "Masu: loop", 640, 360, v.script.text) &&
                 overlay_open(&v.overlay, &v.window) && build(&v);
@@ -132,8 +135,8 @@ int main(int argc, char **argv) {
         if (good && outdated) good = follow_window(&v, &outdated);
         if (good && !outdated && !quit) good = draw(&v, picture, &outdated);
     }
-    if (v.m) printf("frames %u rungs 0x%02x resizes %d inits %d validation %d\n", v.frames, v.rungs, v.resizes,
-                    v.inits, v.window.messages);
+    if (v.m) printf("frames %u rungs 0x%02x resizes %d inits %d format %d validation %d\n", v.frames, v.rungs,
+                    v.resizes, v.inits, (int)v.window.format, v.window.messages);
     if (v.window.device) vkDeviceWaitIdle(v.window.device);
     masu_destroy(v.m);
     overlay_close(&v.overlay);

@@ -50,8 +50,8 @@
  *    and sampled image. No optional feature is required; masu_detail names a missing required one.
  *    These optional features are used if the host has enabled them (masu_vulkan):
  *    textureCompressionBC and samplerAnisotropy for textures, VK_KHR_ray_query for reflections,
- *    shaderFloat16 for upscaling. masu_init logs each one that the scene would use and the device
- *    offers, but the host has not enabled.
+ *    shaderFloat16 for upscaling. masu_device_query reports which ones a scene would use, before
+ *    the device exists. masu_init logs each of those that the host has not enabled.
  *  - Command buffers: primary, for `queue_family`, recorded in masu_init. Submit each one once per
  *    call that returns it, all to the same queue, in the order returned. Each starts with a full
  *    barrier against the previous frame. With desc.split a frame has several (masu_commands.parts).
@@ -191,6 +191,7 @@ typedef void (*masu_log_fn)(void *user, masu_log_level level, const char *text);
 
 typedef struct masu_scene masu_scene;           /* 1. a validated scene */
 typedef struct masu_desc masu_desc;             /* 2. everything that masu_init needs */
+typedef struct masu_device_info masu_device_info; /*  the device features that it would use */
 typedef struct masu_memory masu_memory;         /*    the memory that it would need */
 typedef struct masu_renderer masu_renderer;     /* 3. stored in the caller's block */
 typedef struct masu_commands masu_commands;     /* 4. the command buffers to submit */
@@ -211,6 +212,21 @@ typedef struct masu_viewport masu_viewport;
  *   MASU_ERROR_SCENE      the blob is corrupt; the detail names section and element */
 MASU_API MASU_MUST_USE masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes,
                                                    masu_scene *out, masu_detail *detail);
+
+/* Reports which optional features of a physical device masu_init would use, before the device
+ * exists. The host enables the features and extensions of `used`, creates the device, and sets the
+ * flags of masu_vulkan. Creates no object, and checks the required features and limits that
+ * masu_init checks. Does not plan memory.
+ *
+ * Reads vulkan.get_instance_proc_addr, .instance, .physical_device and .queue_family. With a scene
+ * it reads the rest of `desc`, except the handles of targets, and evaluates the scene as masu_init
+ * does; targets.count may be 0. Without a scene `used` has every supported feature except those of
+ * ray_query and half_floats at OFF, for a host that loads its scenes later.
+ *   MASU_ERROR_DEVICE   the device lacks a required feature, or one that `desc` sets to MASU_ON:
+ *                       the detail has its name, the required and the given value
+ * Other errors as masu_init. On failure `*out` is unchanged. */
+MASU_API MASU_MUST_USE masu_result masu_device_query(const masu_desc *desc, masu_device_info *out,
+                                                     masu_detail *detail);
 
 /* Memory that masu_init would need for `desc`, by the same code. Creates no lasting object. Like
  * masu_plan and masu_init, it reads the scene's blob, which must still be readable. Errors as
@@ -373,6 +389,26 @@ typedef struct masu_vulkan {
     masu_pipelines *pipelines; /* valid until masu_destroy; NULL: no pool, masu_destroy destroys the
                                   pipelines */
 } masu_vulkan;
+
+/* Optional features of a device (masu_device_query). */
+typedef enum masu_feature_bits {
+    MASU_FEATURE_TEXTURE_COMPRESSION_BC = 1, /* VkPhysicalDeviceFeatures.textureCompressionBC */
+    MASU_FEATURE_SAMPLER_ANISOTROPY = 2,     /* VkPhysicalDeviceFeatures.samplerAnisotropy */
+    /* rayQuery of VkPhysicalDeviceRayQueryFeaturesKHR, accelerationStructure of
+     * VkPhysicalDeviceAccelerationStructureFeaturesKHR and bufferDeviceAddress of
+     * VkPhysicalDeviceBufferDeviceAddressFeatures */
+    MASU_FEATURE_RAY_QUERY = 4,
+    MASU_FEATURE_SHADER_FLOAT16 = 8 /* shaderFloat16 of VkPhysicalDeviceShaderFloat16Int8Features */
+} masu_feature_bits;
+
+#define MASU_MAX_EXTENSIONS 8u
+typedef struct masu_device_info {
+    uint32_t supported;       /* MASU_FEATURE_* that the device offers with their extensions */
+    uint32_t used;            /* those of `supported` that masu_init would use if enabled */
+    float max_anisotropy;     /* maxSamplerAnisotropy; 0 if samplerAnisotropy is not supported */
+    uint32_t extension_count; /* device extensions to enable for `used`, by static names: */
+    const char *extensions[MASU_MAX_EXTENSIONS];
+} masu_device_info;
 
 /* Encoding of the target. White is the colour of a radiance of 1 / exposure without a tone
  * curve. */

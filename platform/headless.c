@@ -3,6 +3,8 @@
 #define _POSIX_C_SOURCE 200809L
 #include "headless.h"
 
+#include "masu.h"
+
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -207,53 +209,6 @@ static bool choose_device(masu_headless *host, char *error, size_t size) {
     return false;
 }
 
-/* What ray queries take on an instance of Vulkan 1.1, whose core has nothing of it. */
-static const char *const ray_extensions[] = {
-    VK_KHR_RAY_QUERY_EXTENSION_NAME,           VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
-    VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME, VK_KHR_BUFFER_DEVICE_ADDRESS_EXTENSION_NAME,
-    VK_EXT_DESCRIPTOR_INDEXING_EXTENSION_NAME, VK_KHR_SPIRV_1_4_EXTENSION_NAME,
-    VK_KHR_SHADER_FLOAT_CONTROLS_EXTENSION_NAME};
-#define RAY_EXTENSIONS (sizeof ray_extensions / sizeof *ray_extensions)
-
-typedef struct ray_features {
-    VkPhysicalDeviceRayQueryFeaturesKHR query;
-    VkPhysicalDeviceAccelerationStructureFeaturesKHR structure;
-    VkPhysicalDeviceBufferDeviceAddressFeatures address;
-} ray_features;
-
-static bool offers_halves(VkPhysicalDevice device) {
-    static const char *const name[] = {VK_KHR_SHADER_FLOAT16_INT8_EXTENSION_NAME};
-    VkPhysicalDeviceShaderFloat16Int8Features halves = {
-        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_FLOAT16_INT8_FEATURES};
-    VkPhysicalDeviceFeatures2 all = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
-                                     .pNext = &halves};
-    if (!has_extensions(device, name, 1)) return false;
-    vkGetPhysicalDeviceFeatures2(device, &all);
-    return halves.shaderFloat16;
-}
-
-/* Whether the device has all of it; `to` then asks for it. */
-static bool offers_rays(VkPhysicalDevice device, ray_features *to) {
-    if (!has_extensions(device, ray_extensions, RAY_EXTENSIONS)) return false;
-    memset(to, 0, sizeof *to);
-    to->query.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR;
-    to->structure.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR;
-    to->address.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_BUFFER_DEVICE_ADDRESS_FEATURES;
-    to->query.pNext = &to->structure;
-    to->structure.pNext = &to->address;
-    VkPhysicalDeviceFeatures2 all = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
-                                     .pNext = &to->query};
-    vkGetPhysicalDeviceFeatures2(device, &all);
-    bool has = to->query.rayQuery && to->structure.accelerationStructure &&
-               to->address.bufferDeviceAddress;
-    /* Of what else they offer, nothing is wanted. */
-    to->structure = (VkPhysicalDeviceAccelerationStructureFeaturesKHR){
-        .sType = to->structure.sType, .pNext = &to->address, .accelerationStructure = VK_TRUE};
-    to->address = (VkPhysicalDeviceBufferDeviceAddressFeatures){.sType = to->address.sType,
-                                                                .bufferDeviceAddress = VK_TRUE};
-    return has;
-}
-
 static bool create_device(masu_headless *host, char *error, size_t size) {
     float priority = 1.0f;
     VkDeviceQueueCreateInfo queue = {.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
@@ -262,39 +217,51 @@ static bool create_device(masu_headless *host, char *error, size_t size) {
                                      .pQueuePriorities = &priority};
     VkPhysicalDeviceFeatures offered;
     vkGetPhysicalDeviceFeatures(host->physical, &offered);
-    if (host->desc.deny) offered = (VkPhysicalDeviceFeatures){0};
-    VkPhysicalDeviceFeatures features = {.samplerAnisotropy = offered.samplerAnisotropy,
-                                         .textureCompressionBC = offered.textureCompressionBC};
+    masu_device_info can;
+    masu_detail detail;
+    masu_desc ask = {MASU_DESC,
+                     .vulkan = {.get_instance_proc_addr = vkGetInstanceProcAddr,
+                                .instance = host->instance,
+                                .physical_device = host->physical,
+                                .queue_family = host->family},
+                     .ray_query = host->desc.ray_query ? MASU_AUTO : MASU_OFF};
+    if (masu_device_query(&ask, &can, &detail)) return snprintf(error, size, "%s", detail.text), false;
+    if (host->desc.deny) can = (masu_device_info){0}, offered = (VkPhysicalDeviceFeatures){0};
+    host->compressed = (can.used & MASU_FEATURE_TEXTURE_COMPRESSION_BC) != 0;
+    host->ray_query = (can.used & MASU_FEATURE_RAY_QUERY) != 0;
+    host->float16 = (can.used & MASU_FEATURE_SHADER_FLOAT16) != 0;
+    host->most_anisotropy = can.max_anisotropy;
     host->stores = host->desc.stores && offered.vertexPipelineStoresAndAtomics &&
                    offered.fragmentStoresAndAtomics;
-    features.vertexPipelineStoresAndAtomics = host->stores;
-    features.fragmentStoresAndAtomics = host->stores;
-    host->compressed = offered.textureCompressionBC;
-    host->most_anisotropy =
-        offered.samplerAnisotropy ? host->properties.limits.maxSamplerAnisotropy : 0.0f;
+    VkPhysicalDeviceFeatures features = {.samplerAnisotropy = host->most_anisotropy > 0.0f,
+                                         .textureCompressionBC = host->compressed,
+                                         .vertexPipelineStoresAndAtomics = host->stores,
+                                         .fragmentStoresAndAtomics = host->stores};
     if (host->properties.deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU)
         host->usual_anisotropy = host->most_anisotropy < 8.0f ? host->most_anisotropy : 8.0f;
     VkDeviceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                .queueCreateInfoCount = 1,
                                .pQueueCreateInfos = &queue,
                                .pEnabledFeatures = &features};
-    const char *names[RAY_EXTENSIONS + 2];
+    VkPhysicalDeviceBufferDeviceAddressFeatures address = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_BUFFER_DEVICE_ADDRESS_FEATURES,
+        .bufferDeviceAddress = VK_TRUE};
+    VkPhysicalDeviceAccelerationStructureFeaturesKHR structure = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR,
+        .pNext = &address,
+        .accelerationStructure = VK_TRUE};
+    VkPhysicalDeviceRayQueryFeaturesKHR rays = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR,
+        .pNext = &structure,
+        .rayQuery = VK_TRUE};
     VkPhysicalDeviceShaderFloat16Int8Features halves = {
-        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_FLOAT16_INT8_FEATURES};
-    ray_features rays;
-    host->ray_query = !host->desc.deny && host->desc.ray_query && offers_rays(host->physical, &rays);
-    if (host->ray_query) {
-        info.pNext = &rays.query;
-        info.enabledExtensionCount = RAY_EXTENSIONS;
-        memcpy(names, ray_extensions, sizeof ray_extensions);
-    }
-    host->float16 = !host->desc.deny && offers_halves(host->physical);
-    if (host->float16) {
-        halves.shaderFloat16 = VK_TRUE;
-        halves.pNext = (void *)info.pNext;
-        info.pNext = &halves;
-        names[info.enabledExtensionCount++] = VK_KHR_SHADER_FLOAT16_INT8_EXTENSION_NAME;
-    }
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_FLOAT16_INT8_FEATURES,
+        .shaderFloat16 = VK_TRUE};
+    if (host->ray_query) info.pNext = &rays;
+    if (host->float16) halves.pNext = (void *)info.pNext, info.pNext = &halves;
+    const char *names[MASU_MAX_EXTENSIONS + 1];
+    info.enabledExtensionCount = can.extension_count;
+    memcpy(names, can.extensions, sizeof can.extensions);
     if (host->desc.surface_extension_count)
         names[info.enabledExtensionCount++] = swapchain_extension[0];
     info.ppEnabledExtensionNames = names;

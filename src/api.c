@@ -96,13 +96,7 @@ void masu_write_scene(masu_renderer *m) {
 
 /* ---- Plan and query -------------------------------------------------------------------------- */
 
-/* A plan needs sizes from the driver, so images and buffers are created. The caller keeps or
- * destroys them. */
-static masu_result create_plan(const masu_desc *desc, masu_vk *vk, masu_frame_plan *plan,
-                               masu_texture_plan textures[MASU_TEXTURE_ARRAYS_MAX],
-                               masu_objects *objects, masu_detail *detail) {
-    memset(objects, 0, sizeof *objects);
-    memset(textures, 0, MASU_TEXTURE_ARRAYS_MAX * sizeof *textures);
+static masu_result check_desc(const masu_desc *desc, masu_detail *detail) {
     if (!desc) return masu_fail_null(detail, "desc");
     if (desc->bytes != sizeof *desc)
         return masu_fail_bytes(detail, "masu_desc", sizeof *desc, desc->bytes);
@@ -110,24 +104,40 @@ static masu_result create_plan(const masu_desc *desc, masu_vk *vk, masu_frame_pl
         return masu_fail(detail, MASU_ERROR_ARGUMENT, "scene", 1, 0,
                          "scene was not filled by masu_scene_bind");
     }
-    masu_result result =
-        /* checks without the driver precede the first Vulkan call */
-        masu_compile(desc, 1, 1, plan, detail);
-    if (!result) result = masu_governor_check(&desc->governor, plan->desc.rung_count, detail);
-    if (!result) result = masu_vk_load(desc, vk, detail);
-    if (result) return result;
+    return MASU_OK;
+}
+
+/* Replaces `plan`, that of `desc` for any device, by the plan that this device can run. */
+static masu_result fit_plan(const masu_desc *desc, const masu_vk *vk, masu_frame_plan *plan,
+                            masu_detail *detail) {
     const VkPhysicalDeviceLimits *limits = &vk->properties.limits;
     masu_desc possible = *desc;
     const char *computed_for;
-    result = masu_capabilities_fit(&possible, plan, vk, &computed_for, detail);
+    masu_result result = masu_capabilities_fit(&possible, plan, vk, &computed_for, detail);
     if (result) return result;
     result = masu_compile(
         &possible,
         limits->minUniformBufferOffsetAlignment ? limits->minUniformBufferOffsetAlignment : 1,
         limits->minStorageBufferOffsetAlignment ? limits->minStorageBufferOffsetAlignment : 1, plan,
         detail);
+    if (!result) plan->computed_for = computed_for;
+    return result;
+}
+
+/* A plan needs sizes from the driver, so images and buffers are created. The caller keeps or
+ * destroys them. */
+static masu_result create_plan(const masu_desc *desc, masu_vk *vk, masu_frame_plan *plan,
+                               masu_texture_plan textures[MASU_TEXTURE_ARRAYS_MAX],
+                               masu_objects *objects, masu_detail *detail) {
+    memset(objects, 0, sizeof *objects);
+    memset(textures, 0, MASU_TEXTURE_ARRAYS_MAX * sizeof *textures);
+    masu_result result = check_desc(desc, detail);
+    /* checks without the driver precede the first Vulkan call */
+    if (!result) result = masu_compile(desc, 1, 1, plan, detail);
+    if (!result) result = masu_governor_check(&desc->governor, plan->desc.rung_count, detail);
+    if (!result) result = masu_vk_load(desc, vk, detail);
+    if (!result) result = fit_plan(desc, vk, plan, detail);
     if (result) return result;
-    plan->computed_for = computed_for;
     masu_ray_sizes(plan, vk);
     result = masu_capabilities_check(plan, vk, detail);
     if (!result) result = masu_code_check(plan, detail);
@@ -136,6 +146,65 @@ static masu_result create_plan(const masu_desc *desc, masu_vk *vk, masu_frame_pl
     result = masu_objects_create(vk, plan, objects, detail);
     if (result) masu_objects_destroy(vk, plan, objects);
     return result;
+}
+
+/* The features of `supported` that a renderer of `desc` uses. */
+static masu_result features_used(const masu_desc *desc, masu_vk *vk, uint32_t supported,
+                                 uint32_t *used, masu_detail *detail) {
+    VkImage images[MASU_MAX_TARGETS]; /* stand in for images that do not exist yet */
+    VkImageView views[MASU_MAX_TARGETS];
+    for (uint32_t i = 0; i < MASU_MAX_TARGETS; i++) {
+        images[i] = (VkImage)(uintptr_t)1;
+        views[i] = (VkImageView)(uintptr_t)1;
+    }
+    masu_frame_plan plan;
+    masu_desc d = *desc;
+    d.targets.images = images;
+    d.targets.views = views;
+    if (!d.targets.count) d.targets.count = 1;
+    d.vulkan.texture_compression_bc = (supported & MASU_FEATURE_TEXTURE_COMPRESSION_BC) != 0;
+    d.vulkan.ray_query = (supported & MASU_FEATURE_RAY_QUERY) != 0;
+    d.vulkan.shader_float16 = (supported & MASU_FEATURE_SHADER_FLOAT16) != 0;
+    masu_result result = masu_compile(&d, 1, 1, &plan, detail);
+    if (!result) result = masu_governor_check(&d.governor, plan.desc.rung_count, detail);
+    if (!result && d.vulkan.ray_query) result = masu_vk_load_ray_limits(&d, vk, detail);
+    if (!result) result = fit_plan(&d, vk, &plan, detail);
+    if (!result) result = masu_capabilities_check(&plan, vk, detail);
+    if (!result) result = masu_code_check(&plan, detail);
+    if (result) return result;
+    if (!plan.scene.textures) supported &= ~(uint32_t)MASU_FEATURE_SAMPLER_ANISOTROPY;
+    if (!plan.scene.textures || !plan.compressed)
+        supported &= ~(uint32_t)MASU_FEATURE_TEXTURE_COMPRESSION_BC;
+    if (!plan.needs.query) supported &= ~(uint32_t)MASU_FEATURE_RAY_QUERY;
+    if (plan.desc.half_floats == MASU_OFF) supported &= ~(uint32_t)MASU_FEATURE_SHADER_FLOAT16;
+    *used = supported;
+    return MASU_OK;
+}
+
+static masu_result query_device(const masu_desc *desc, masu_device_info *out,
+                                masu_detail *detail) {
+    masu_vk vk;
+    masu_device_info found = {0};
+    masu_result result = check_desc(desc, detail);
+    if (!result) result = masu_vk_load_physical(desc, &vk, detail);
+    if (result) return result;
+    found.supported = masu_query_offers(&vk, desc->vulkan.get_instance_proc_addr);
+    found.used = found.supported;
+    if (desc->ray_query == MASU_OFF) found.used &= ~(uint32_t)MASU_FEATURE_RAY_QUERY;
+    if (desc->half_floats == MASU_OFF) found.used &= ~(uint32_t)MASU_FEATURE_SHADER_FLOAT16;
+    if (desc->scene) result = features_used(desc, &vk, found.supported, &found.used, detail);
+    if (result) return result;
+    if (found.supported & MASU_FEATURE_SAMPLER_ANISOTROPY)
+        found.max_anisotropy = vk.properties.limits.maxSamplerAnisotropy;
+    masu_list_extensions(&found);
+    *out = found;
+    return MASU_OK;
+}
+
+masu_result masu_device_query(const masu_desc *desc, masu_device_info *out, masu_detail *detail) {
+    masu_detail own;
+    masu_result result = out ? query_device(desc, out, &own) : masu_fail_null(&own, "out");
+    return masu_finish_desc(desc, result, &own, detail);
 }
 
 static masu_result plan_and_forget(const masu_desc *desc, masu_frame_plan *plan,

@@ -116,7 +116,8 @@ bool overlay_record(overlay *o, uint32_t slot, uint32_t image, const overlay_lin
 bool overlay_save(overlay *o, const char *file) {
     window *w = o->window;
     int width = (int)w->size.width, height = (int)w->size.height;
-    bool is_bgr = w->format == VK_FORMAT_B8G8R8A8_UNORM, fits = (unsigned)width * (unsigned)height * 4 <= COPY_BYTES;
+    bool is_bgr = w->format == VK_FORMAT_B8G8R8A8_UNORM || w->format == VK_FORMAT_B8G8R8A8_SRGB;
+    bool fits = (unsigned)width * (unsigned)height * 4 <= COPY_BYTES;
     if (vkDeviceWaitIdle(w->device)) return false;
     /* SDL names channels from the highest byte of a number: this is B, G, R, unused in memory. */
     SDL_Surface *s = !fits ? NULL : SDL_CreateRGBSurfaceWithFormatFrom(o->copy.mapped, width, height, 32, 4 * width,

@@ -1,5 +1,6 @@
 /* window.c: see window.h. */
 #include "window.h"
+#include "surface.h"
 
 #include <SDL_vulkan.h>
 #include <math.h>
@@ -72,14 +73,17 @@ static bool choose_device(window *w) {
 
 static bool create_device(window *w) {
     const char *swapchain = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
-    VkPhysicalDeviceFeatures has;
+    masu_desc ask = {MASU_DESC, .vulkan = window_vulkan(w)};
+    masu_device_info can;
+    masu_detail detail;
     VkPhysicalDeviceProperties gpu;
-    vkGetPhysicalDeviceFeatures(w->gpu, &has);
+    if (masu_device_query(&ask, &can, &detail)) return fprintf(stderr, "%s\n", detail.text), false;
     vkGetPhysicalDeviceProperties(w->gpu, &gpu);
-    w->features = (VkPhysicalDeviceFeatures){.textureCompressionBC = has.textureCompressionBC,
-                                             .samplerAnisotropy = has.samplerAnisotropy};
-    if (has.samplerAnisotropy && gpu.deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU) /* 20 times as long */
-        w->anisotropy = fminf(8, gpu.limits.maxSamplerAnisotropy);
+    w->features = (VkPhysicalDeviceFeatures){
+        .textureCompressionBC = (can.used & MASU_FEATURE_TEXTURE_COMPRESSION_BC) != 0,
+        .samplerAnisotropy = (can.used & MASU_FEATURE_SAMPLER_ANISOTROPY) != 0};
+    if (gpu.deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU) /* 20 times as long */
+        w->anisotropy = fminf(8, can.max_anisotropy);
     VkDeviceQueueCreateInfo queue = {INFO(DEVICE_QUEUE_CREATE_INFO), .queueFamilyIndex = w->family,
                                      .queueCount = 1, .pQueuePriorities = (float[1]){1}};
     VkDeviceCreateInfo info = {INFO(DEVICE_CREATE_INFO), .pEnabledFeatures = &w->features,
@@ -108,11 +112,8 @@ static bool choose_format(window *w) {
     VkSurfaceFormatKHR formats[64];
     uint32_t n = 64;
     TRY(vkGetPhysicalDeviceSurfaceFormatsKHR(w->gpu, w->surface, &n, formats));
-    for (uint32_t i = 0; i < n; i++) {
-        w->format = formats[i].format;
-        if (w->format == VK_FORMAT_B8G8R8A8_UNORM || w->format == VK_FORMAT_R8G8B8A8_UNORM) return true;
-    }
-    return fprintf(stderr, "the window's surface has no 8-bit format\n"), false;
+    w->format = surface_format(formats, n, w->srgb);
+    return w->format || (fprintf(stderr, "the window's surface has no 8-bit format\n"), false);
 }
 
 bool window_open(window *w, const char *title, int width, int height, bool validate) {
@@ -141,9 +142,12 @@ masu_targets window_targets(const window *w) {
 
 bool window_swapchain(window *w) {
     VkSurfaceCapabilitiesKHR can;
+    VkPresentModeKHR modes[MANY];
+    uint32_t mode_count = MANY;
     int width, height;
     SDL_Vulkan_GetDrawableSize(w->sdl, &width, &height); /* where the surface leaves it to the host */
     TRY(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(w->gpu, w->surface, &can));
+    TRY(vkGetPhysicalDeviceSurfacePresentModesKHR(w->gpu, w->surface, &mode_count, modes));
     VkExtent2D size = {(uint32_t)width, (uint32_t)height};
     if (can.currentExtent.width != UINT32_MAX) size = can.currentExtent;
     if (!size.width || !size.height) return false;
@@ -155,8 +159,9 @@ bool window_swapchain(window *w) {
         .imageFormat = w->format, .imageColorSpace = VK_COLOR_SPACE_SRGB_NONLINEAR_KHR,
         .imageExtent = size, .imageArrayLayers = 1,
         .imageUsage = VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
-        .preTransform = can.currentTransform, .compositeAlpha = VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR,
-        .presentMode = VK_PRESENT_MODE_FIFO_KHR, .clipped = VK_TRUE};
+        .preTransform = surface_transform(&can), .compositeAlpha = VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR,
+        .presentMode = surface_mode(modes, mode_count, !w->unpaced), .clipped = VK_TRUE};
+    w->rotated = info.preTransform != can.currentTransform;
     TRY(vkCreateSwapchainKHR(w->device, &info, NULL, &w->swapchain));
     memset(w->submit_ns, 0, sizeof w->submit_ns); /* what is between two sizes is no frame's time */
     w->count = WINDOW_IMAGES;
@@ -194,7 +199,8 @@ VkResult window_end(window *w, uint32_t slot, uint32_t image, const VkCommandBuf
                                 &image, NULL};
     if (!r) r = vkQueuePresentKHR(w->queue, &present);
     if (r != VK_ERROR_OUT_OF_DATE_KHR) (void)check(r, "showing a frame");
-    return r;
+    /* Presenting an unrotated image to a rotated surface is suboptimal every time: no reason to make it anew. */
+    return r == VK_SUBOPTIMAL_KHR && w->rotated ? VK_SUCCESS : r;
 }
 
 bool window_run(window *w, VkCommandBuffer commands) {

@@ -26,6 +26,8 @@ typedef struct window {
     VkDevice device;
     VkQueue queue;
     VkCommandPool pool;
+    bool srgb, unpaced; /* set before window_open: prefer an sRGB format; do not wait for the display */
+    bool rotated; /* the compositor rotates the images (surface.h) */
     VkFormat format;
     VkExtent2D size;
     VkSwapchainKHR swapchain, replaced;

@@ -95,9 +95,10 @@ static masu_result choose_ray_query(masu_desc *desc, const masu_frame_plan *plan
     if (plan->needs.bounce) return MASU_OK;
     if (!desc->vulkan.ray_query) {
         return masu_fail(
-            detail, MASU_ERROR_DEVICE, "vulkan.ray_query", 1, 0,
-            "ray_query is MASU_ON, but vulkan.ray_query says that the device was created "
-            "without VK_KHR_ray_query");
+            detail, MASU_ERROR_DEVICE, "vulkan.ray_query", 1, 0, "ray_query is MASU_ON, but %s",
+            vk->device ? "vulkan.ray_query says that the device was created without "
+                         "VK_KHR_ray_query"
+                       : "the device does not offer VK_KHR_ray_query");
     }
     if (plan->scene.skins && forced) {
         return masu_fail(
@@ -123,8 +124,10 @@ static masu_result choose_half_floats(masu_desc *desc, const masu_vk *vk, masu_d
     if (used && forced && !desc->vulkan.shader_float16) {
         return masu_fail(
             detail, MASU_ERROR_DEVICE, "vulkan.shader_float16", 1, 0,
-            "half_floats is MASU_ON, but vulkan.shader_float16 says that the device was "
-            "created without shaderFloat16");
+            "half_floats is MASU_ON, but %s",
+            vk->device ? "vulkan.shader_float16 says that the device was created without "
+                         "shaderFloat16"
+                       : "the device does not offer shaderFloat16");
     }
     int wished =
         forced || (desc->half_floats == MASU_AUTO && desc->vulkan.shader_float16 && is_gpu(vk));

@@ -4,31 +4,77 @@
 #include "base/error.h"
 
 #include <stdio.h>
+#include <string.h>
 
-typedef struct offers {
-    int blocks, anisotropy, ray_query, half_floats;
-} offers;
+/* Extensions of Vulkan 1.1. Later versions contain some of them, but devices list them still. */
+static const struct {
+    uint32_t feature;
+    const char *name;
+} extensions[] = {
+    {MASU_FEATURE_RAY_QUERY, VK_KHR_RAY_QUERY_EXTENSION_NAME},
+    {MASU_FEATURE_RAY_QUERY, VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME},
+    {MASU_FEATURE_RAY_QUERY, VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME},
+    {MASU_FEATURE_RAY_QUERY, VK_KHR_BUFFER_DEVICE_ADDRESS_EXTENSION_NAME},
+    {MASU_FEATURE_RAY_QUERY, VK_EXT_DESCRIPTOR_INDEXING_EXTENSION_NAME},
+    {MASU_FEATURE_RAY_QUERY, VK_KHR_SPIRV_1_4_EXTENSION_NAME},
+    {MASU_FEATURE_RAY_QUERY, VK_KHR_SHADER_FLOAT_CONTROLS_EXTENSION_NAME},
+    {MASU_FEATURE_SHADER_FLOAT16, VK_KHR_SHADER_FLOAT16_INT8_EXTENSION_NAME},
+};
+#define EXTENSIONS (sizeof extensions / sizeof *extensions)
+_Static_assert(EXTENSIONS == MASU_MAX_EXTENSIONS, "MASU_MAX_EXTENSIONS");
+
+/* The features of `wanted` whose extensions are among the first EXTENSIONS_READ of the device. */
+#define EXTENSIONS_READ 512u
+static uint32_t with_extensions(const masu_vk *vk, PFN_vkGetInstanceProcAddr get_proc,
+                                uint32_t wanted) {
+    PFN_vkEnumerateDeviceExtensionProperties enumerate =
+        (PFN_vkEnumerateDeviceExtensionProperties)get_proc(vk->instance,
+                                                           "vkEnumerateDeviceExtensionProperties");
+    VkExtensionProperties list[EXTENSIONS_READ];
+    uint32_t n = EXTENSIONS_READ;
+    VkResult r = enumerate ? enumerate(vk->physical, NULL, &n, list) : VK_NOT_READY;
+    if (r != VK_SUCCESS && r != VK_INCOMPLETE) n = 0;
+    for (uint32_t e = 0; e < EXTENSIONS; e++) {
+        uint32_t i = 0;
+        while (i < n && strcmp(list[i].extensionName, extensions[e].name)) i++;
+        if (i == n) wanted &= ~extensions[e].feature;
+    }
+    return wanted;
+}
 
 /* Drivers leave structures that they do not support unchanged (specification, "Valid Usage for
  * Structure Pointer Chains"), so they remain 0. */
-static int query_features(const masu_device *m, offers *out) {
-    const masu_vulkan *v = &m->plan->desc.vulkan;
-    PFN_vkGetPhysicalDeviceFeatures2 get =
-        (PFN_vkGetPhysicalDeviceFeatures2)v->get_instance_proc_addr(v->instance,
-                                                                   "vkGetPhysicalDeviceFeatures2");
+uint32_t masu_query_offers(const masu_vk *vk, PFN_vkGetInstanceProcAddr get_proc) {
+    PFN_vkGetPhysicalDeviceFeatures2 get = (PFN_vkGetPhysicalDeviceFeatures2)get_proc(
+        vk->instance, "vkGetPhysicalDeviceFeatures2");
     if (!get) return 0;
     VkPhysicalDeviceShaderFloat16Int8Features half = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_FLOAT16_INT8_FEATURES};
+    VkPhysicalDeviceBufferDeviceAddressFeatures address = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_BUFFER_DEVICE_ADDRESS_FEATURES, .pNext = &half};
+    VkPhysicalDeviceAccelerationStructureFeaturesKHR structure = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR,
+        .pNext = &address};
     VkPhysicalDeviceRayQueryFeaturesKHR rays = {
-        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR, .pNext = &half};
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR, .pNext = &structure};
     VkPhysicalDeviceFeatures2 all = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
                                      .pNext = &rays};
-    get(v->physical_device, &all);
-    *out = (offers){.blocks = all.features.textureCompressionBC == VK_TRUE,
-                    .anisotropy = all.features.samplerAnisotropy == VK_TRUE,
-                    .ray_query = rays.rayQuery == VK_TRUE,
-                    .half_floats = half.shaderFloat16 == VK_TRUE};
-    return 1;
+    get(vk->physical, &all);
+    uint32_t has = 0;
+    if (all.features.textureCompressionBC) has |= MASU_FEATURE_TEXTURE_COMPRESSION_BC;
+    if (all.features.samplerAnisotropy) has |= MASU_FEATURE_SAMPLER_ANISOTROPY;
+    if (rays.rayQuery && structure.accelerationStructure && address.bufferDeviceAddress)
+        has |= MASU_FEATURE_RAY_QUERY;
+    if (half.shaderFloat16) has |= MASU_FEATURE_SHADER_FLOAT16;
+    return with_extensions(vk, get_proc, has);
+}
+
+void masu_list_extensions(masu_device_info *out) {
+    out->extension_count = 0;
+    for (uint32_t e = 0; e < EXTENSIONS; e++) {
+        if (out->used & extensions[e].feature)
+            out->extensions[out->extension_count++] = extensions[e].name;
+    }
 }
 
 static void log_offer(const masu_device *m, masu_log_level level, const char *field,
@@ -42,17 +88,18 @@ static void log_offer(const masu_device *m, masu_log_level level, const char *fi
 void masu_report_offers(const masu_device *m) {
     const masu_desc *d = &m->plan->desc;
     const masu_scene_data *s = &m->plan->scene;
-    offers o;
-    if (!d->log || !query_features(m, &o)) return;
-    if (o.blocks && !d->vulkan.texture_compression_bc && s->textures &&
-        !d->deny.compressed_textures) {
+    if (!d->log) return;
+    uint32_t has = masu_query_offers(&m->vk, d->vulkan.get_instance_proc_addr);
+    if ((has & MASU_FEATURE_TEXTURE_COMPRESSION_BC) && !d->vulkan.texture_compression_bc &&
+        s->textures && !d->deny.compressed_textures) {
         char gain[128];
         snprintf(gain, sizeof gain, "textures take %llu bytes, compressed %llu",
                  (unsigned long long)s->texture_bytes_decoded,
                  (unsigned long long)s->texture_bytes);
         log_offer(m, MASU_LOG_WARNING, "texture_compression_bc", "textureCompressionBC", gain);
     }
-    if (o.anisotropy && !(d->vulkan.max_anisotropy > 0.0f) && s->textures)
+    if ((has & MASU_FEATURE_SAMPLER_ANISOTROPY) && !(d->vulkan.max_anisotropy > 0.0f) &&
+        s->textures)
         log_offer(m, MASU_LOG_INFO, "max_anisotropy", "samplerAnisotropy",
                   "slanted textures would be sharper");
     VkPhysicalDeviceType type = m->vk.properties.deviceType;
@@ -61,10 +108,10 @@ void masu_report_offers(const masu_device *m) {
     if (!gpu) return; /* software devices: the features bring nothing */
     int fast = 0;
     for (uint32_t r = 0; r < d->rung_count; r++) fast |= d->rungs[r].easu == MASU_EASU_FAST;
-    if (o.ray_query && !d->vulkan.ray_query && m->plan->needs.traced)
+    if ((has & MASU_FEATURE_RAY_QUERY) && !d->vulkan.ray_query && m->plan->needs.traced)
         log_offer(m, MASU_LOG_INFO, "ray_query", "VK_KHR_ray_query",
                   "reflections are traced by the library's own tree");
-    if (o.half_floats && !d->vulkan.shader_float16 && fast)
+    if ((has & MASU_FEATURE_SHADER_FLOAT16) && !d->vulkan.shader_float16 && fast)
         log_offer(m, MASU_LOG_INFO, "shader_float16", "shaderFloat16",
                   "fast EASU weighs texels in 32 bits");
 }

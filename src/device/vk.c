@@ -114,6 +114,22 @@ static masu_result check_floor(const masu_desc *desc, const masu_vk *vk, masu_de
     return check_sizes(desc, vk, detail);
 }
 
+masu_result masu_vk_load_ray_limits(const masu_desc *desc, masu_vk *vk, masu_detail *detail) {
+    PFN_vkGetPhysicalDeviceProperties2 get = (PFN_vkGetPhysicalDeviceProperties2)
+        desc->vulkan.get_instance_proc_addr(vk->instance, "vkGetPhysicalDeviceProperties2");
+    if (!get) {
+        return masu_fail(
+            detail, MASU_ERROR_DEVICE, "vkGetPhysicalDeviceProperties2", 1, 0,
+            "the host's get_instance_proc_addr knows no vkGetPhysicalDeviceProperties2");
+    }
+    vk->rays.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_PROPERTIES_KHR;
+    VkPhysicalDeviceProperties2 properties = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &vk->rays};
+    get(vk->physical, &properties);
+    vk->rays.pNext = NULL;
+    return MASU_OK;
+}
+
 /* Loads the ray query functions. The host states that they are enabled, so a missing one is an
  * error. */
 static masu_result load_rays(const masu_desc *desc, masu_vk *vk, masu_detail *detail) {
@@ -135,19 +151,7 @@ static masu_result load_rays(const masu_desc *desc, masu_vk *vk, masu_detail *de
     }
     MASU_VK_RAYS(MASU_VK_CHECK_RAYS)
 #undef MASU_VK_CHECK_RAYS
-    PFN_vkGetPhysicalDeviceProperties2 get = (PFN_vkGetPhysicalDeviceProperties2)
-        desc->vulkan.get_instance_proc_addr(vk->instance, "vkGetPhysicalDeviceProperties2");
-    if (!get) {
-        return masu_fail(
-            detail, MASU_ERROR_DEVICE, "vkGetPhysicalDeviceProperties2", 1, 0,
-            "the host's get_instance_proc_addr knows no vkGetPhysicalDeviceProperties2");
-    }
-    vk->rays.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_PROPERTIES_KHR;
-    VkPhysicalDeviceProperties2 properties = {
-        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &vk->rays};
-    get(vk->physical, &properties);
-    vk->rays.pNext = NULL;
-    return MASU_OK;
+    return masu_vk_load_ray_limits(desc, vk, detail);
 }
 
 /* Vulkan's requirements on the host's allocation callbacks. Drivers call them without checks. */
@@ -163,23 +167,17 @@ static masu_result check_allocator(const VkAllocationCallbacks *a, masu_detail *
                      "%s is NULL, and the other one is not", what);
 }
 
-masu_result masu_vk_load(const masu_desc *desc, masu_vk *vk, masu_detail *detail) {
+masu_result masu_vk_load_physical(const masu_desc *desc, masu_vk *vk, masu_detail *detail) {
     const masu_vulkan *host = &desc->vulkan;
     memset(vk, 0, sizeof *vk);
-    if (!host->get_instance_proc_addr || !host->instance || !host->physical_device ||
-        !host->device) {
+    if (!host->get_instance_proc_addr || !host->instance || !host->physical_device) {
         const char *what = !host->get_instance_proc_addr ? "vulkan.get_instance_proc_addr"
                            : !host->instance             ? "vulkan.instance"
-                           : !host->physical_device      ? "vulkan.physical_device"
-                                                         : "vulkan.device";
+                                                         : "vulkan.physical_device";
         return masu_fail_null(detail, what);
     }
-    masu_result result = check_allocator(host->allocator, detail);
-    if (result) return result;
     vk->instance = host->instance;
     vk->physical = host->physical_device;
-    vk->device = host->device;
-    vk->allocator = host->allocator;
 #define MASU_VK_LOAD_INSTANCE(name)                                                                \
     vk->name = (PFN_vk##name)host->get_instance_proc_addr(host->instance, "vk" #name);             \
     if (!vk->name) {                                                                               \
@@ -188,20 +186,6 @@ masu_result masu_vk_load(const masu_desc *desc, masu_vk *vk, masu_detail *detail
     }
     MASU_VK_INSTANCE(MASU_VK_LOAD_INSTANCE)
 #undef MASU_VK_LOAD_INSTANCE
-#define MASU_VK_LOAD_DEVICE(name)                                                                  \
-    vk->name = (PFN_vk##name)vk->GetDeviceProcAddr(host->device, "vk" #name);                      \
-    if (!vk->name) {                                                                               \
-        return masu_fail(detail, MASU_ERROR_DEVICE, "vk" #name, 1, 0,                              \
-                         "the device knows no vk" #name);                                          \
-    }
-    MASU_VK_DEVICE(MASU_VK_LOAD_DEVICE)
-#undef MASU_VK_LOAD_DEVICE
-    if (desc->debug.labels) {
-#define MASU_VK_LOAD_OPTIONAL(name)                                                                \
-    vk->name = (PFN_vk##name)host->get_instance_proc_addr(host->instance, "vk" #name);
-        MASU_VK_OPTIONAL(MASU_VK_LOAD_OPTIONAL)
-#undef MASU_VK_LOAD_OPTIONAL
-    }
     vk->GetPhysicalDeviceProperties(vk->physical, &vk->properties);
     vk->GetPhysicalDeviceMemoryProperties(vk->physical, &vk->memory);
     uint32_t families = 0;
@@ -220,6 +204,30 @@ masu_result masu_vk_load(const masu_desc *desc, masu_vk *vk, masu_detail *detail
                          host->queue_family, listed);
     }
     vk->queue_family = list[host->queue_family];
-    result = check_floor(desc, vk, detail);
-    return result ? result : load_rays(desc, vk, detail);
+    return check_floor(desc, vk, detail);
+}
+
+masu_result masu_vk_load(const masu_desc *desc, masu_vk *vk, masu_detail *detail) {
+    const masu_vulkan *host = &desc->vulkan;
+    masu_result result = check_allocator(host->allocator, detail);
+    if (!result) result = masu_vk_load_physical(desc, vk, detail);
+    if (result) return result;
+    if (!host->device) return masu_fail_null(detail, "vulkan.device");
+    vk->device = host->device;
+    vk->allocator = host->allocator;
+#define MASU_VK_LOAD_DEVICE(name)                                                                  \
+    vk->name = (PFN_vk##name)vk->GetDeviceProcAddr(host->device, "vk" #name);                      \
+    if (!vk->name) {                                                                               \
+        return masu_fail(detail, MASU_ERROR_DEVICE, "vk" #name, 1, 0,                              \
+                         "the device knows no vk" #name);                                          \
+    }
+    MASU_VK_DEVICE(MASU_VK_LOAD_DEVICE)
+#undef MASU_VK_LOAD_DEVICE
+    if (desc->debug.labels) {
+#define MASU_VK_LOAD_OPTIONAL(name)                                                                \
+    vk->name = (PFN_vk##name)host->get_instance_proc_addr(host->instance, "vk" #name);
+        MASU_VK_OPTIONAL(MASU_VK_LOAD_OPTIONAL)
+#undef MASU_VK_LOAD_OPTIONAL
+    }
+    return load_rays(desc, vk, detail);
 }

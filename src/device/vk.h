@@ -116,7 +116,12 @@ typedef struct masu_vk {
     VkPhysicalDeviceAccelerationStructurePropertiesKHR rays;
 } masu_vk;
 
-/* Loads the table and checks the device floor: API version, queue family, formats, limits. */
+/* Loads the functions of the instance and checks the device floor: API version, queue family,
+ * formats, limits. Needs no device. */
+masu_result masu_vk_load_physical(const masu_desc *desc, masu_vk *vk, masu_detail *detail);
+/* Sets vk->rays: limits of acceleration structures. Needs no device. */
+masu_result masu_vk_load_ray_limits(const masu_desc *desc, masu_vk *vk, masu_detail *detail);
+/* The same as masu_vk_load_physical, and the functions of the device. */
 masu_result masu_vk_load(const masu_desc *desc, masu_vk *vk, masu_detail *detail);
 
 #endif

@@ -75,7 +75,7 @@ frame 30 quit
 END
 timeout 300 "$examples/loop" "$scenes/test_live.masu" "$folder/script" > "$folder/out" 2> "$folder/err" ||
     fail "loop: $? $(cat "$folder/out" "$folder/err")"
-grep -Eq 'frames 30 rungs 0x[0-9a-f]+ resizes 2 inits 2 validation 0' "$folder/out" || fail "loop: $(cat "$folder/out")"
+grep -Eq 'frames 30 rungs 0x[0-9a-f]+ resizes 2 inits 2 format (37|44) validation 0' "$folder/out" || fail "loop: $(cat "$folder/out")"
 [ "$(identify -format '%wx%h ' "$folder"/{first,small,large}.bmp)" = "640x360 320x180 800x450 " ] ||
     fail "sizes of the pictures"
 for shot in first small large; do
@@ -84,6 +84,15 @@ done
 # No rung keeps 16.7 ms on a CPU: it has left the first.
 rungs=$(sed -n 's/.* rungs \([^ ]*\) .*/\1/p' "$folder/out")
 [ $((rungs)) -gt 1 ] || fail "no rung but the first: $(cat "$folder/out")"
+# A swapchain of an sRGB format shows the same bytes, also in another present mode.
+sed -n '1,2p' "$folder/script" | sed 's/first/srgb/' > "$folder/srgb"
+echo 'frame 10 quit' >> "$folder/srgb"
+LOOP_SURFACE=srgb,unpaced timeout 300 "$examples/loop" "$scenes/test_live.masu" "$folder/srgb" > "$folder/out2" \
+    2> "$folder/err" || fail "loop, sRGB: $? $(cat "$folder/out2" "$folder/err")"
+grep -Eq 'format (43|50) validation 0' "$folder/out2" || fail "loop, sRGB: $(cat "$folder/out2")"
+mean() { convert "$1" -format '%[fx:int(1000*mean)]' info:; }
+off=$(($(mean "$folder/first.bmp") - $(mean "$folder/srgb.bmp")))
+[ "${off#-}" -le 8 ] || fail "the sRGB window differs by $off thousandths"
 echo 'frame 1 fly' > "$folder/script"
 "$examples/loop" "$scenes/test_live.masu" "$folder/script" 2> "$folder/err" > /dev/null && fail "loop flies"
 grep -q 'script: unknown command: fly' "$folder/err" || fail "loop: $(cat "$folder/err")"

@@ -326,6 +326,25 @@ static VKAPI_ATTR void VKAPI_CALL get_families(VkPhysicalDevice device, uint32_t
     }
 }
 
+static VKAPI_ATTR void VKAPI_CALL get_features(VkPhysicalDevice device,
+                                               VkPhysicalDeviceFeatures2 *out) {
+    vkGetPhysicalDeviceFeatures2(device, out);
+    if (wrap.no_features) memset(&out->features, 0, sizeof out->features);
+    for (VkBaseOutStructure *s = wrap.no_features ? out->pNext : NULL; s; s = s->pNext) {
+        if (s->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR)
+            ((VkPhysicalDeviceRayQueryFeaturesKHR *)(void *)s)->rayQuery = VK_FALSE;
+        if (s->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_FLOAT16_INT8_FEATURES)
+            ((VkPhysicalDeviceShaderFloat16Int8Features *)(void *)s)->shaderFloat16 = VK_FALSE;
+    }
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL get_extensions(VkPhysicalDevice device, const char *layer,
+                                                     uint32_t *n, VkExtensionProperties *out) {
+    if (!wrap.no_extensions) return vkEnumerateDeviceExtensionProperties(device, layer, n, out);
+    *n = 0;
+    return VK_SUCCESS;
+}
+
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL wrap_get_instance_proc_addr(VkInstance instance,
                                                                      const char *name) {
     if (wrap.unknown_function && !strcmp(name, wrap.unknown_function)) return NULL;
@@ -338,6 +357,9 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL wrap_get_instance_proc_addr(VkInstance 
         real_label = (PFN_vkCmdBeginDebugUtilsLabelEXT)vkGetInstanceProcAddr(instance, name);
         return real_label ? (PFN_vkVoidFunction)cmd_label : NULL;
     }
+    if (!strcmp(name, "vkGetPhysicalDeviceFeatures2")) return (PFN_vkVoidFunction)get_features;
+    if (!strcmp(name, "vkEnumerateDeviceExtensionProperties"))
+        return (PFN_vkVoidFunction)get_extensions;
     if (!strcmp(name, "vkGetPhysicalDeviceFormatProperties")) return (PFN_vkVoidFunction)get_format;
     if (!strcmp(name, "vkGetPhysicalDeviceQueueFamilyProperties"))
         return (PFN_vkVoidFunction)get_families;

@@ -34,6 +34,8 @@ typedef struct wrap_state {
     uint32_t max_groups;          /* maxComputeWorkGroupCount along x; 0: the truth */
     uint32_t max_framebuffer;     /* maxFramebufferHeight; 0: the truth */
     const char *unknown_function; /* not found */
+    bool no_features;   /* vkGetPhysicalDeviceFeatures2 has none of those that Masu can use */
+    bool no_extensions; /* the device has no extensions, whatever its features */
     /* 1: a discrete GPU: device-local memory that the host cannot see, and memory that it can.
      * 2: an APU: as 1, and a third type that is both. Behind all stands the driver's type 0. */
     int fake_memory;

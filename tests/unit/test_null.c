@@ -38,6 +38,7 @@ static masu_light light;
 static masu_split split;
 static masu_frame_view view;
 static masu_plan_info plan;
+static masu_device_info device;
 static masu_memory need;
 static masu_memory_row rows_of_memory[2];
 static masu_peak_info peaks;
@@ -99,6 +100,7 @@ static const float unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     X(masu_limit_table, (masu_limit_table(), NO_RESULT))                                           \
     X(masu_governor_reason_string,                                                                 \
       (masu_governor_reason_string(MASU_GOVERNOR_REASON_NONE), NO_RESULT))                         \
+    X(masu_device_query, masu_device_query(P(0, &desc), P(1, &device), P(2, &detail)))             \
     X(masu_memory_query, masu_memory_query(P(0, &desc), P(1, &need), P(2, &detail)))               \
     X(masu_init, masu_init(P(0, &desc), P(1, block), sizeof block, P(2, &made), P(3, &detail)))    \
     X(masu_destroy, (masu_destroy(P(0, &m)), NO_RESULT))                                           \
