@@ -667,6 +667,9 @@ typedef struct masu_desc {
      * material and frame in flight, and copying the latter in each frame; with reflections of
      * polygons 84 and 112 bytes. Scene only. */
     uint32_t mutable_materials;
+    /* Flag: masu_instance_set_position and masu_model_set_position are available. Costs 24 host
+     * bytes per instance and per model. Scene only. */
+    uint32_t double_positions;
     uint64_t host_budget;   /* bytes; 0: none. A larger plan is MASU_ERROR_LIMIT */
     uint64_t device_budget; /* bytes, all roles together; 0: none */
     masu_device_block device_blocks[MASU_ROLE_COUNT];
@@ -894,6 +897,7 @@ typedef struct masu_decal {
     /* 3x4 matrix from box space, -1..1 along each axis, to the world, row by row. The decal is
      * projected along the z axis of box space, on surfaces that face it. */
     float rows[12];
+    double position[3]; /* added to the translation of `rows`; for boxes far from the origin */
     float color[3]; /* albedo, linear, 0..1 */
     float opacity;  /* 0..1 */
     /* Perceptual, 0..1; 0: that of the surface. Smooth decals reflect by ray tracing, if the scene
@@ -1236,6 +1240,19 @@ MASU_API MASU_MUST_USE masu_result masu_instance_set_transform(masu_renderer *re
                                                                const float rows[12],
                                                                masu_detail *detail);
 
+/* Replaces the translation of an instance by `position`, world, metres, in double precision. Far
+ * from the origin, where a float resolves 1 m at 1e7 m, polygons are then placed relative to the
+ * camera as exactly as near the origin. Culling, LODs and the boxes of masu_instance_state remain
+ * in single precision, which is conservative. Scenes with probes of baked or bounced light, and
+ * those with an SDF and shadows of punctual lights, are placed in single precision.
+ * masu_instance_set_transform sets the translation again.
+ *   MASU_ERROR_ARGUMENT   the handle is invalid, or a value is not within -1e15..1e15
+ *   MASU_ERROR_STATE      desc.double_positions is 0 */
+MASU_API MASU_MUST_USE masu_result masu_instance_set_position(masu_renderer *renderer,
+                                                              masu_instance instance,
+                                                              const double position[3],
+                                                              masu_detail *detail);
+
 /* The instance with that index: first those of the scene, in the order of MASU_SCENE_INSTANCE,
  * then those of copied models (desc.reserve). id 0 after the last one, and for an unused slot. */
 MASU_API masu_instance masu_instance_at(const masu_renderer *renderer, uint32_t index);
@@ -1254,6 +1271,7 @@ typedef struct masu_instance_state {
     uint32_t mesh;
     uint32_t shown;   /* 0: hidden */
     masu_model model; /* the model whose node it is; id 0: none */
+    double position[3]; /* translation of `rows`, before rounding to float */
 } masu_instance_state;
 
 /* State of an instance in the next masu_frame. MASU_ERROR_ARGUMENT: a pointer is NULL, or the
@@ -1287,6 +1305,7 @@ typedef struct masu_model_state {
     uint32_t index;                /* for masu_model_at */
     uint32_t shown;                /* 0: hidden */
     uint32_t nodes;                /* number of nodes; parents have lower indices than children */
+    double position[3];            /* translation of `rows`, before rounding to float */
 } masu_model_state;
 
 /* State of a model in the next masu_frame. Errors as masu_instance_get. */
@@ -1300,6 +1319,13 @@ MASU_API MASU_MUST_USE masu_result masu_model_get(masu_renderer *renderer, masu_
 MASU_API MASU_MUST_USE masu_result masu_model_set_transform(masu_renderer *renderer,
                                                             masu_model model, const float rows[12],
                                                             masu_detail *detail);
+
+/* As masu_instance_set_position, for the model with all its nodes. After masu_model_add, call it
+ * before the next masu_frame. masu_model_set_transform sets the translation again. */
+MASU_API MASU_MUST_USE masu_result masu_model_set_position(masu_renderer *renderer,
+                                                           masu_model model,
+                                                           const double position[3],
+                                                           masu_detail *detail);
 
 /* As masu_instance_show, for all instances of the model. */
 MASU_API MASU_MUST_USE masu_result masu_model_show(masu_renderer *renderer, masu_model model,

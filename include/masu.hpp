@@ -131,6 +131,9 @@ public:
     void transform(const rows &to) {
         call([&](masu_detail *d) { return masu_instance_set_transform(m_, id_, to.data(), d); });
     }
+    void position(const double (&to)[3]) {
+        call([&](masu_detail *d) { return masu_instance_set_position(m_, id_, to, d); });
+    }
     void show(bool shown) {
         call([&](masu_detail *d) { return masu_instance_show(m_, id_, shown, d); });
     }
@@ -154,6 +157,9 @@ public:
     }
     void transform(const rows &to) {
         call([&](masu_detail *d) { return masu_model_set_transform(m_, id_, to.data(), d); });
+    }
+    void position(const double (&to)[3]) {
+        call([&](masu_detail *d) { return masu_model_set_position(m_, id_, to, d); });
     }
     void show(bool shown) {
         call([&](masu_detail *d) { return masu_model_show(m_, id_, shown, d); });

@@ -422,6 +422,7 @@ masu_result masu_write_frame(masu_renderer *m, masu_frame_data *f) {
     if (result) return result;
 
     masu_sun_sky_write(&m->sun_sky, f);
+    masu_history_rebase(&m->history, f);
     masu_reflections_read(&m->reflections, f);
     masu_lights_cast(&m->lights, &m->local_shadows, &m->instances, &m->bounds, f);
     masu_temporal_read(&m->temporal, &m->history, &m->instances, &m->lights, &m->materials, f);

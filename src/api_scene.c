@@ -35,6 +35,22 @@ masu_result masu_instance_set_transform(masu_renderer *m, masu_instance instance
     return result;
 }
 
+masu_result masu_instance_set_position(masu_renderer *m, masu_instance instance,
+                                       const double position[3], masu_detail *detail) {
+    uint32_t i;
+    if (!m || !position) return masu_finish_null(m, "position", detail);
+    masu_result result = check_instance(m, instance, &i, detail);
+    if (!result)
+        result = masu_finish(m, masu_position_check(&m->plan, position, &m->error), detail);
+    if (result) return result;
+    float rows[12];
+    masu_instance_rows(&m->instances.now[i], rows);
+    rows[3] = rows[7] = rows[11] = 0.0f;
+    masu_instances_place_at(&m->instances, &m->plan, i, rows, position);
+    masu_bounds_move(&m->bounds, &m->plan, &m->instances, i);
+    return MASU_OK;
+}
+
 masu_result masu_instance_get(masu_renderer *m, masu_instance instance, masu_instance_state *out,
                               masu_detail *detail) {
     uint32_t i;
@@ -46,6 +62,7 @@ masu_result masu_instance_get(masu_renderer *m, masu_instance instance, masu_ins
                                  .mesh = m->instances.meshes[i],
                                  .shown = !masu_instance_hidden(&m->instances, i)};
     masu_instance_rows(&m->instances.now[i], out->rows);
+    masu_instance_position(&m->instances, i, out->position);
     masu_bounds_of(&m->bounds, i, box);
     for (uint32_t k = 0; k < 3; k++) {
         out->box_low[k] = box[k] - box[3 + k];
@@ -91,6 +108,10 @@ masu_result masu_model_get(masu_renderer *m, masu_model model, masu_model_state 
     const masu_placed_model *of = &m->models.models[i];
     *out = (masu_model_state){.index = i, .shown = of->shown, .nodes = of->node_count};
     memcpy(out->rows, of->rows, sizeof out->rows);
+    for (uint32_t k = 0; k < 3; k++) {
+        out->position[k] = (double)of->rows[4 * k + 3] + masu_models_offset(&m->models, i, k);
+        out->rows[4 * k + 3] = (float)out->position[k];
+    }
     masu_models_box(&m->models, &m->bounds, i, out->box_low, out->box_high);
     return MASU_OK;
 }
@@ -104,6 +125,18 @@ masu_result masu_model_set_transform(masu_renderer *m, masu_model model, const f
     return masu_finish(
         m, masu_models_move(&m->models, &m->instances, &m->bounds, &m->plan, i, rows, &m->error),
         detail);
+}
+
+masu_result masu_model_set_position(masu_renderer *m, masu_model model, const double position[3],
+                                    masu_detail *detail) {
+    uint32_t i;
+    if (!m || !position) return masu_finish_null(m, "position", detail);
+    masu_result result = check_model(m, model, &i, detail);
+    if (result) return result;
+    return masu_finish(m,
+                       masu_models_set_position(&m->models, &m->instances, &m->bounds, &m->plan, i,
+                                                position, &m->error),
+                       detail);
 }
 
 masu_result masu_model_show(masu_renderer *m, masu_model model, uint32_t shown,
@@ -138,6 +171,8 @@ masu_result masu_model_node_get(masu_renderer *m, masu_model model, uint32_t nod
     if (of->instance != MASU_BLOB_NONE) out->instance = masu_instance_at(m, of->instance);
     memcpy(out->rows, of->local, sizeof out->rows);
     memcpy(out->world, of->world, sizeof out->world);
+    for (uint32_t k = 3; k < 12; k += 4)
+        out->world[k] = (float)((double)of->world[k] + masu_models_offset(&m->models, i, k / 4));
     return MASU_OK;
 }
 

@@ -163,9 +163,7 @@ static void project(const masu_camera *c, const float right[3], const float up[3
     }
     double tan_x = l.half[0], tan_y = l.half[1];
     for (uint32_t i = 0; i < 3; i++) {
-        float high = (float)c->position[i];
-        u->eye_hi[i] = high;
-        u->eye_lo[i] = (float)(c->position[i] - (double)high);
+        masu_split_double(c->position[i] - f->origin[i], &u->eye_hi[i], &u->eye_lo[i]);
         u->right[i] = (float)((double)right[i] * tan_x);
         u->up[i] = (float)((double)up[i] * tan_y);
         u->forward[i] = forward[i];
@@ -184,6 +182,12 @@ static void project(const masu_camera *c, const float right[3], const float up[3
     u->forward[3] = near_distance;
 }
 
+/* Shaders compare the eye with probes in world space, and shadow faces with the SDF's space. */
+static int has_origin(const masu_frame_plan *plan) {
+    return plan->desc.double_positions && !plan->scene.probes && !plan->needs.bounce &&
+           !(plan->needs.local_shadows && plan->needs.sdf);
+}
+
 masu_result masu_camera_read(const masu_camera_path *path, masu_frame_data *f,
                              masu_detail *detail) {
     masu_camera c;
@@ -199,6 +203,7 @@ masu_result masu_camera_read(const masu_camera_path *path, masu_frame_data *f,
     if (!result) result = check_lens(&c, near_distance, detail);
     if (result) return result;
     memcpy(f->eye, c.position, sizeof f->eye);
+    if (has_origin(f->plan)) masu_far_origin(f->eye, f->origin);
     project(&c, right, up, forward, near_distance, f);
     return MASU_OK;
 }

@@ -36,7 +36,7 @@ static int is_fine(const masu_decal *d) {
     int fine = isfinite(d->opacity) && isfinite(d->roughness) && isfinite(d->metallic) && isfinite(d->edge) &&
                isfinite(d->inner) && isfinite(d->outer) && d->opacity > 0.0f;
     for (uint32_t k = 0; k < 12; k++) fine &= isfinite(d->rows[k]) != 0;
-    for (uint32_t k = 0; k < 3; k++) fine &= isfinite(d->color[k]) != 0;
+    for (uint32_t k = 0; k < 3; k++) fine &= isfinite(d->color[k]) != 0 && isfinite(d->position[k]) != 0;
     return fine;
 }
 
@@ -48,7 +48,7 @@ static int find_pixels(const masu_decal *d, const masu_sprite_eye *eye, const ui
     for (uint32_t corner = 0; corner < 8; corner++) {
         double rel[3], seen[3];
         for (uint32_t i = 0; i < 3; i++) {
-            rel[i] = (double)d->rows[4 * i + 3] - eye->at[i];
+            rel[i] = (d->position[i] - eye->at[i]) + (double)d->rows[4 * i + 3];
             for (uint32_t j = 0; j < 3; j++)
                 rel[i] += (corner >> j & 1u ? 1.0 : -1.0) * (double)d->rows[4 * i + j];
         }
@@ -86,7 +86,7 @@ static void write_decal(const masu_decal *d, const masu_sprite_eye *eye, double 
         double moved = 0.0;
         for (uint32_t j = 0; j < 3; j++) {
             v[4 * i + j] = (float)into[i][j];
-            moved += into[i][j] * (eye->at[j] - (double)d->rows[4 * j + 3]);
+            moved += into[i][j] * ((eye->at[j] - d->position[j]) - (double)d->rows[4 * j + 3]);
         }
         v[4 * i + 3] = (float)fmax(fmin(moved, most), -most);
         v[12 + i] = masu_clamped(d->color[i], 0.0f, 1.0f);

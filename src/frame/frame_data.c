@@ -52,6 +52,25 @@ masu_result masu_frame_read_time(masu_frame_data *f, masu_detail *detail) {
     return MASU_OK;
 }
 
+void masu_far_origin(const double eye[3], double origin[3]) {
+    int far = 0;
+    for (uint32_t k = 0; k < 3; k++) far |= fabs(eye[k]) >= MASU_ANCHOR_FROM;
+    for (uint32_t k = 0; k < 3; k++)
+        origin[k] = far ? floor(eye[k] / MASU_ANCHOR_GRID + 0.5) * MASU_ANCHOR_GRID : 0.0;
+}
+
+void masu_history_rebase(masu_history *history, const masu_frame_data *f) {
+    double moved[3];
+    for (uint32_t k = 0; k < 3; k++) {
+        moved[k] = history->origin[k] - f->origin[k];
+        history->origin[k] = f->origin[k];
+        if (moved[k] == 0.0 || f->cut || !f->plan->needs.velocity) continue;
+        struct masu_frame_uniforms *u = history->previous;
+        double eye = (moved[k] + (double)u->eye_hi[k]) + (double)u->eye_lo[k];
+        masu_split_double(eye, &u->eye_hi[k], &u->eye_lo[k]);
+    }
+}
+
 void masu_frame_write_uniforms(masu_history *history, const masu_frame_data *f) {
     unsigned char *to = masu_frame_slot(f, MASU_BUFFER_FRAME);
     memcpy(to, &f->u, sizeof f->u);

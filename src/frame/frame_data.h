@@ -21,6 +21,9 @@ typedef struct masu_frame_data {
 
     /* What its steps have found. */
     double eye[3];
+    /* World position that eye, instances and their boxes, cascades and shadow faces are relative to
+     * on the device: 0, or with desc.double_positions a point near an eye that is far out. */
+    double origin[3];
     /* Tangents of the angles between `forward` and the picture's farthest sides, in any frame with this lens: as if
      * jitter moved them as far out as it does in any, so that what is made wide enough for it stays as it is. */
     double widest[2];
@@ -34,6 +37,7 @@ typedef struct masu_frame_data {
  * so that no state crosses frames there and frames in flight need not know of each other. */
 typedef struct masu_history {
     struct masu_frame_uniforms *previous;
+    double origin[3]; /* of its eye */
 } masu_history;
 
 void masu_history_alloc(masu_history *history, masu_arena *arena, const masu_frame_plan *plan);
@@ -44,6 +48,19 @@ masu_frame_data masu_frame_begin(const masu_frame_plan *plan, const masu_device 
                                  const masu_frame_desc *desc);
 const masu_rung *masu_frame_rung(const masu_frame_data *f);
 const masu_rung_plan *masu_frame_rung_plan(const masu_frame_data *f);
+
+/* A double as a float and what that leaves. Volatile: GCC 12 vectorises a loop of these and then takes
+ * the conversion to float and back for the identity, which makes `low` 0. */
+static inline void masu_split_double(double value, float *high, float *low) {
+    volatile float rounded = (float)value;
+    *high = rounded;
+    *low = (float)(value - (double)*high);
+}
+
+/* 0, or where the eye is far out a point near it that rarely moves. */
+void masu_far_origin(const double eye[3], double origin[3]);
+/* The previous frame's eye becomes relative to this frame's origin. */
+void masu_history_rebase(masu_history *history, const masu_frame_data *f);
 
 /* The frame's part of a buffer. */
 unsigned char *masu_frame_slot(const masu_frame_data *f, masu_buffer_id buffer);

@@ -28,6 +28,9 @@ typedef struct masu_instances {
     uint32_t *lives;
     uint32_t own; /* instances of the blob; the reserve's come behind */
     masu_handles handles;
+    /* With desc.double_positions: what rounding to float leaves of translations; else NULL. */
+    float (*low)[3], (*previous_low)[3];
+    double slot_origin[MASU_MAX_FLIGHT][3]; /* that translations in the slot are relative to */
 } masu_instances;
 
 void masu_instances_alloc(masu_instances *in, masu_arena *arena, const masu_frame_plan *plan);
@@ -47,6 +50,9 @@ int masu_instance_moved(const masu_instances *in, const masu_frame_plan *plan, u
 /* Of finite rows. */
 void masu_instances_place(masu_instances *in, const masu_frame_plan *plan, uint32_t instance,
                           const float rows[12]);
+/* With desc.double_positions: the translation of the rows plus `offset`. */
+void masu_instances_place_at(masu_instances *in, const masu_frame_plan *plan, uint32_t instance,
+                             const float rows[12], const double offset[3]);
 /* It stays where it is, but not as it is: joints have bent it. */
 void masu_instances_touch(masu_instances *in, const masu_frame_plan *plan, uint32_t instance);
 /* What is hidden is in no view, in no reflection, and carries no light. */
@@ -60,6 +66,10 @@ uint32_t masu_instances_find(const masu_instances *in, const masu_frame_plan *pl
 masu_result masu_instances_set(masu_instances *in, const masu_frame_plan *plan, uint32_t instance,
                                const float rows[12], masu_detail *detail);
 
+/* MASU_ERROR_STATE without desc.double_positions, MASU_ERROR_ARGUMENT if out of range. */
+masu_result masu_position_check(const masu_frame_plan *plan, const double position[3],
+                                masu_detail *detail);
+
 /* One of the reserve becomes one of a mesh, hidden as yet, or is none any more. */
 void masu_instances_add(masu_instances *in, uint32_t instance, uint32_t mesh);
 void masu_instances_remove(masu_instances *in, const masu_frame_plan *plan, uint32_t instance);
@@ -72,6 +82,13 @@ static inline uint32_t masu_instances_next(const masu_instances *in, uint32_t in
 }
 
 void masu_instance_rows(const struct masu_instance_data *at, float rows[12]);
+/* Its translation in world space. */
+void masu_instance_position(const masu_instances *in, uint32_t instance, double position[3]);
+/* Rows relative to an origin; low: what rounding has left of their translation, or NULL. */
+void masu_instance_rows_from(const struct masu_instance_data *at, const float *low,
+                             const double origin[3], float rows[12]);
+/* Whether the slot has another origin than the frame, so that all of it is to be written. */
+int masu_instances_rebased(const masu_instances *in, const masu_frame_data *f);
 
 /* Those that are dirty to the slot, and one frame less dirty: what else depends on that comes before. */
 void masu_instances_write(masu_instances *in, const masu_frame_data *f);

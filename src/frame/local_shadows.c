@@ -361,16 +361,15 @@ static void clear_draws(const masu_frame_data *f, uint32_t number) {
     for (uint32_t d = 0; d < f->plan->draws; d++) draws[d].instanceCount = 0;
 }
 
-static void write_face(const masu_local_light *light, const masu_local_face *face, uint32_t square, uint32_t number,
-                       struct masu_local_face_uniforms *u) {
+static void write_face(const masu_local_light *light, const masu_local_face *face, const double origin[3],
+                       uint32_t square, uint32_t number, struct masu_local_face_uniforms *u) {
     double edge = face->tile.size, slope = light->tangent > 0.0 ? light->tangent : 1.0;
     double part = edge / square, width = 2.0 * slope / (edge - 2.0 * MASU_LOCAL_GUARD);
     for (uint32_t k = 0; k < 3; k++) {
         u->row0[number][k] = (float)face->axis[0][k];
         u->row1[number][k] = (float)face->axis[1][k];
         u->row2[number][k] = (float)face->axis[2][k];
-        u->origin_hi[number][k] = (float)light->position[k];
-        u->origin_lo[number][k] = (float)(light->position[k] - (double)u->origin_hi[number][k]);
+        masu_split_double(light->position[k] - origin[k], &u->origin_hi[number][k], &u->origin_lo[number][k]);
     }
     u->row0[number][3] = (float)(2.0 / (width * square)); /* from slopes to -1..1 of the square */
     u->row1[number][3] = (float)(part - 1.0);
@@ -554,7 +553,7 @@ int masu_local_shadows_write(masu_local_shadows *s, const masu_instances *in, co
             masu_shadow_tile_give(&s->tiles, &face->tile);
         } else if (find_tile(s, light, face)) {
             if (reached) take_groups(face, number, &out);
-            write_face(light, face, f->plan->local_tile, number++, &out);
+            write_face(light, face, f->origin, f->plan->local_tile, number++, &out);
         } else {
             face->drawn = 0;
             continue;

@@ -14,6 +14,10 @@ void masu_models_alloc(masu_models *s, masu_arena *arena, const masu_frame_plan 
         masu_arena_alloc(arena, "models of instances", scene->models ? scene->instances : 0,
                          sizeof *s->of_instance, 4);
     s->lives = masu_arena_alloc(arena, "reserve models", plan->reserve.models, sizeof *s->lives, 4);
+    s->offsets = NULL;
+    if (plan->desc.double_positions)
+        s->offsets =
+            masu_arena_alloc(arena, "model positions", scene->models, sizeof *s->offsets, 8);
     masu_animation_alloc(&s->animation, arena, plan);
     masu_skins_alloc(&s->skins, arena, plan);
 }
@@ -56,6 +60,7 @@ void masu_models_copy_scene(masu_models *s, masu_instances *in, const masu_frame
             .name = masu_scene_name_hash(v, from->name), .parent = from->parent, .instance = from->instance};
         memcpy(to->local, from->local, sizeof to->local);
     }
+    if (s->offsets) memset(s->offsets, 0, scene->models * sizeof *s->offsets);
     masu_animation_copy_scene(&s->animation, plan, v);
     masu_skins_copy_scene(&s->skins, plan, v);
     for (uint32_t i = 0; i < masu_own_models(plan); i++) {
@@ -122,7 +127,10 @@ static void settle(masu_models *s, masu_instances *in, masu_bounds *b, const mas
     for (uint32_t n = m->first_node; n < m->first_node + m->node_count; n++) {
         const masu_node *node = &s->nodes[n];
         if (node->instance == MASU_BLOB_NONE) continue;
-        masu_instances_place(in, plan, node->instance, node->world);
+        if (s->offsets)
+            masu_instances_place_at(in, plan, node->instance, node->world, s->offsets[model]);
+        else
+            masu_instances_place(in, plan, node->instance, node->world);
         masu_bounds_move(b, plan, in, node->instance);
     }
     masu_skins_settle(&s->skins, in, b, plan, model);
@@ -154,7 +162,34 @@ static masu_result replace(masu_models *s, masu_instances *in, masu_bounds *b,
 masu_result masu_models_move(masu_models *s, masu_instances *in, masu_bounds *b,
                              const masu_frame_plan *plan, uint32_t model, const float rows[12],
                              masu_detail *detail) {
-    return replace(s, in, b, plan, model, s->models[model].rows, rows, detail);
+    double before[3];
+    if (!s->offsets) return replace(s, in, b, plan, model, s->models[model].rows, rows, detail);
+    memcpy(before, s->offsets[model], sizeof before);
+    memset(s->offsets[model], 0, sizeof before);
+    masu_result result = replace(s, in, b, plan, model, s->models[model].rows, rows, detail);
+    if (result) memcpy(s->offsets[model], before, sizeof before);
+    return result;
+}
+
+/* Nodes are placed relative to the position, so that their translations are exact in float. */
+masu_result masu_models_set_position(masu_models *s, masu_instances *in, masu_bounds *b,
+                                     const masu_frame_plan *plan, uint32_t model,
+                                     const double position[3], masu_detail *detail) {
+    float rows[12];
+    double before[3];
+    masu_result result = masu_position_check(plan, position, detail);
+    if (result) return result;
+    memcpy(rows, s->models[model].rows, sizeof rows);
+    rows[3] = rows[7] = rows[11] = 0.0f;
+    memcpy(before, s->offsets[model], sizeof before);
+    memcpy(s->offsets[model], position, sizeof before);
+    result = replace(s, in, b, plan, model, s->models[model].rows, rows, detail);
+    if (result) memcpy(s->offsets[model], before, sizeof before);
+    return result;
+}
+
+double masu_models_offset(const masu_models *s, uint32_t model, uint32_t axis) {
+    return s->offsets ? s->offsets[model][axis] : 0.0;
 }
 
 masu_result masu_models_check_node(const masu_models *s, uint32_t model, uint32_t node,
@@ -270,7 +305,9 @@ void masu_models_box(const masu_models *s, const masu_bounds *b, uint32_t model,
                      float high[3]) {
     const masu_placed_model *m = &s->models[model];
     int any = 0;
-    for (uint32_t k = 0; k < 3; k++) low[k] = high[k] = m->rows[4 * k + 3];
+    for (uint32_t k = 0; k < 3; k++)
+        low[k] = high[k] =
+            (float)((double)m->rows[4 * k + 3] + masu_models_offset(s, model, k));
     for (uint32_t n = m->first_node; n < m->first_node + m->node_count; n++) {
         float box[6];
         if (s->nodes[n].instance == MASU_BLOB_NONE) continue;

@@ -23,6 +23,7 @@ typedef struct masu_models {
     uint32_t *of_instance; /* [instance]: its model, or MASU_BLOB_NONE; none without models */
     masu_handles handles; /* of the last plan->reserve.models, which come and go */
     uint32_t *lives;
+    double (*offsets)[3]; /* with desc.double_positions: added to the translation of rows; else NULL */
     masu_animation animation;
     masu_skins skins; /* bent by what the nodes are */
 } masu_models;
@@ -47,6 +48,12 @@ masu_result masu_models_move(masu_models *s, masu_instances *in, masu_bounds *b,
 masu_result masu_models_move_node(masu_models *s, masu_instances *in, masu_bounds *b,
                                   const masu_frame_plan *plan, uint32_t model, uint32_t node,
                                   const float rows[12], masu_detail *detail);
+/* Replaces the translation, in double precision. */
+masu_result masu_models_set_position(masu_models *s, masu_instances *in, masu_bounds *b,
+                                     const masu_frame_plan *plan, uint32_t model,
+                                     const double position[3], masu_detail *detail);
+/* 0 without desc.double_positions. */
+double masu_models_offset(const masu_models *s, uint32_t model, uint32_t axis);
 /* masu_model_animate of the public header. */
 masu_result masu_models_animate(masu_models *s, masu_instances *in, masu_bounds *b,
                                 const masu_frame_plan *plan, uint32_t model,

@@ -96,12 +96,14 @@ void masu_occlusion_write_scene(const masu_device *device, const masu_draws *dra
 
 void masu_occlusion_write_boxes(const masu_bounds *bounds, const masu_instances *in,
                                 const masu_frame_data *f) {
-    if (!f->plan->occlusion || !in->dirty_count) return;
+    int all = masu_instances_rebased(in, f);
+    if (!f->plan->occlusion || !(in->dirty_count || all)) return;
     uint32_t *to = drawn_words(f->device, f->slot) + f->plan->drawn.boxes;
     for (uint32_t i = 0; i < f->plan->scene.instances; i++) {
         float box[6];
-        if (!masu_instance_dirty(in, i)) continue;
+        if (!masu_instance_dirty(in, i) && !all) continue;
         masu_bounds_of(bounds, i, box);
+        for (uint32_t k = 0; k < 3; k++) box[k] = (float)((double)box[k] - f->origin[k]);
         memcpy(to + 6 * (uint64_t)i, box, sizeof box);
     }
 }

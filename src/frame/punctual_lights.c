@@ -55,9 +55,9 @@ static void carry(const masu_instances *in, masu_punctual_light_state *s, double
     const struct masu_instance_data *to =
         &in->now[s->instance.id - 1]; /* states keep its index + 1 */
     const float *rows[3] = {to->row0, to->row1, to->row2};
+    masu_instance_position(in, (uint32_t)s->instance.id - 1, position);
     for (uint32_t k = 0; k < 3; k++) {
         const float *row = rows[k];
-        position[k] = (double)row[3];
         direction[k] = 0.0;
         for (uint32_t j = 0; j < 3; j++) {
             position[k] += (double)row[j] * s->position[j];

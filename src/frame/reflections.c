@@ -67,17 +67,26 @@ void masu_reflections_clear(masu_reflections *s, const masu_frame_plan *plan, ui
     for (; next < end; next++) s->traced[next] = MASU_BLOB_NONE;
 }
 
-/* Those that have moved, or all where nothing has been written yet, are placed anew. */
+static const double zero[3] = {0, 0, 0};
+
+static int origin_moved(const masu_reflections *s) {
+    return memcmp(s->previous_origin, s->origin, sizeof s->origin) != 0;
+}
+
+/* Those that have moved, or all where nothing has been written yet, are placed anew. With double positions they are
+ * placed relative to the origin, and so anew when it moves. */
 static void place(masu_reflections *s, const masu_instances *in, const masu_bounds *b,
                   const masu_frame_data *f) {
-    if (!in->dirty_count && s->versions) return;
+    int all = !s->versions || (in->low && origin_moved(s));
+    if (!in->dirty_count && !all) return;
     for (uint32_t i = 0; i < f->plan->scene.trace_instances; i++) {
         uint32_t instance = s->traced[i];
         int none = instance == MASU_BLOB_NONE;
-        if (!none && !masu_instance_dirty(in, instance) && s->versions) continue;
+        if (!none && !masu_instance_dirty(in, instance) && !all) continue;
         float rows[12] = {0}; /* no place: hidden ones are not seen */
         if (!none && !masu_instance_hidden(in, instance))
-            masu_instance_rows(&in->now[instance], rows);
+            masu_instance_rows_from(&in->now[instance], in->low ? in->low[instance] : NULL, in->low ? s->origin : zero,
+                                    rows);
         if (f->plan->scene.skins && s->bends[i]) { /* its tree is fitted on the device */
             masu_trace_root *root = masu_trace_top_root(&s->tree, i);
             memcpy(root->box.low, b->meshes[in->meshes[instance]], sizeof root->box.low);
@@ -91,19 +100,18 @@ static void place(masu_reflections *s, const masu_instances *in, const masu_boun
 }
 
 /* Whether what instances are measured from, or the tree over them, has changed. */
-static int update(masu_reflections *s, const masu_frame_data *f) {
-    if (!f->plan->needs.query) return masu_trace_top_update(&s->tree, s->origin) != MASU_TRACE_SAME;
-    int moved = memcmp(s->previous_origin, s->origin, sizeof s->origin) != 0;
+static int update(masu_reflections *s, const masu_instances *in, const masu_frame_data *f) {
+    int moved = origin_moved(s);
     memcpy(s->previous_origin, s->origin, sizeof s->origin);
+    if (!f->plan->needs.query) return masu_trace_top_update(&s->tree, in->low ? zero : s->origin) != MASU_TRACE_SAME;
     return moved;
 }
 
-static void rows_of(const struct masu_instance_data *from, const double origin[3], float to[3][4]) {
-    const float *rows[3] = {from->row0, from->row1, from->row2};
-    for (uint32_t k = 0; k < 3; k++) {
-        memcpy(to[k], rows[k], 3 * sizeof(float));
-        to[k][3] = (float)((double)rows[k][3] - origin[k]);
-    }
+static void rows_of(const struct masu_instance_data *from, const float *low,
+                    const double origin[3], float to[3][4]) {
+    float rows[12];
+    masu_instance_rows_from(from, low, origin, rows);
+    memcpy(to, rows, sizeof rows);
 }
 
 /* All of a slot, where anything has changed since it was written last: a frame in which nothing moves writes
@@ -113,7 +121,7 @@ void masu_reflections_write_instances(masu_reflections *s, const masu_instances 
     const masu_frame_plan *plan = f->plan;
     if (!plan->needs.traced) return;
     place(s, in, b, f);
-    int changed = update(s, f);
+    int changed = update(s, in, f);
     /* What has moved stands still one frame later: that is a change of where it was. */
     if (changed || in->dirty_count || !s->versions) s->versions++;
     if (s->slot_version[f->slot] == s->versions) return;
@@ -131,10 +139,12 @@ void masu_reflections_write_instances(masu_reflections *s, const masu_instances 
         if (instance == MASU_BLOB_NONE) instance = masu_own_instances(plan); /* of the reserve: not looked at */
         const struct masu_instance_data *now = &in->now[instance];
         const struct masu_instance_data *before = plan->needs.velocity ? &in->previous[instance] : now;
+        const float *low = in->low ? in->low[instance] : NULL;
         float both[2][3][4];
-        rows_of(now, s->origin, both[0]);
+        rows_of(now, low, s->origin, both[0]);
         int comes = f->cut || in->flags[instance] & MASU_INSTANCE_COMES;
-        rows_of(comes ? now : before, s->origin, both[1]);
+        if (low && !comes && plan->needs.velocity) low = in->previous_low[instance];
+        rows_of(comes ? now : before, low, s->origin, both[1]);
         memcpy(to + at + i * sizeof both, both, sizeof both);
         if (plan->needs.query) {
             masu_ray_write_instance(f->device, f->slot, i, in->meshes[instance], s->live[i],
@@ -145,20 +155,11 @@ void masu_reflections_write_instances(masu_reflections *s, const masu_instances 
 
 /* ---- The frame ------------------------------------------------------------------------------- */
 
-/* Where traced things are measured from: the origin, or where the eye is far out a point near it that rarely
- * moves, as the SDF's (sdf.c). */
-static void origin_of(const double eye[3], double origin[3]) {
-    int far = 0;
-    for (uint32_t k = 0; k < 3; k++) far |= fabs(eye[k]) >= MASU_ANCHOR_FROM;
-    for (uint32_t k = 0; k < 3; k++)
-        origin[k] = far ? floor(eye[k] / MASU_ANCHOR_GRID + 0.5) * MASU_ANCHOR_GRID : 0.0;
-}
-
 void masu_reflections_read(masu_reflections *s, masu_frame_data *f) {
     struct masu_frame_uniforms *u = &f->u;
     if (!f->plan->needs.reflections && !f->plan->needs.bounce) return;
     const masu_rung_plan *rp = masu_frame_rung_plan(f);
-    origin_of(f->eye, s->origin);
+    masu_far_origin(f->eye, s->origin);
     for (uint32_t k = 0; k < 3; k++) {
         u->trace_anchor[k] = (float)s->origin[k];
         u->trace_eye[k] = (float)(f->eye[k] - s->origin[k]);

@@ -87,16 +87,15 @@ int masu_cascade_holds(const masu_cascade *drawn, const masu_cascade *wanted) {
            wanted->radius - z <= drawn->behind && wanted->radius + z <= drawn->ahead;
 }
 
-void masu_cascade_write(const masu_cascade *c, const double eye[3], const int32_t place[2],
-                        uint32_t k, struct masu_shadow_uniforms *u) {
+void masu_cascade_write(const masu_cascade *c, const double eye[3], const double origin[3],
+                        const int32_t place[2], uint32_t k, struct masu_shadow_uniforms *u) {
     double to_eye[3], metre = 1.0 / (c->behind + c->ahead);
     for (uint32_t i = 0; i < 3; i++) {
         to_eye[i] = eye[i] - c->center[i];
         u->row0[k][i] = (float)(c->axis[0][i] / c->half);
         u->row1[k][i] = (float)(c->axis[1][i] / c->half);
         u->row2[k][i] = (float)(c->axis[2][i] * metre);
-        u->origin_hi[k][i] = (float)c->center[i];
-        u->origin_lo[k][i] = (float)(c->center[i] - (double)u->origin_hi[k][i]);
+        masu_split_double(c->center[i] - origin[i], &u->origin_hi[k][i], &u->origin_lo[k][i]);
     }
     u->row0[k][3] = (float)(dot(c->axis[0], to_eye) / c->half);
     u->row1[k][3] = (float)(dot(c->axis[1], to_eye) / c->half);
@@ -158,7 +157,7 @@ void masu_shadow_write(masu_shadow *s, const masu_bounds *bounds, masu_frame_dat
             f->cascades |= 1u << k;
         }
         VkOffset2D place = masu_cascade_place(f->plan, k);
-        masu_cascade_write(c, f->eye, (int32_t[2]){place.x, place.y}, k, &out);
+        masu_cascade_write(c, f->eye, f->origin, (int32_t[2]){place.x, place.y}, k, &out);
     }
     /* A recording that draws all that its rung has does not keep the rest (record.c). */
     for (uint32_t k = rp->cascades; k < MASU_CASCADES_MAX; k++) {

@@ -64,9 +64,10 @@ masu_cascade masu_cascade_fit(const masu_shadow_view *view, double depth, double
 /* Whether a cascade drawn earlier still holds all that `wanted` was made for. */
 int masu_cascade_holds(const masu_cascade *drawn, const masu_cascade *wanted);
 
-/* Element k of the uniforms, for an eye and a first texel in the map. */
-void masu_cascade_write(const masu_cascade *c, const double eye[3], const int32_t place[2],
-                        uint32_t k, struct masu_shadow_uniforms *u);
+/* Element k of the uniforms, for an eye and a first texel in the map. origin: instances are relative
+ * to it. */
+void masu_cascade_write(const masu_cascade *c, const double eye[3], const double origin[3],
+                        const int32_t place[2], uint32_t k, struct masu_shadow_uniforms *u);
 
 /* ---- Of a frame ------------------------------------------------------------------------------ */
 

@@ -114,12 +114,13 @@ void masu_transparents_clear(masu_transparents *s, const masu_frame_plan *plan, 
 }
 
 /* Square of the distance from the eye to the middle of a thing's box: finite, since all of it is. */
-static float distance_of(const masu_transparent *t, const struct masu_instance_data *at,
-                         const double eye[3]) {
+static float distance_of(const masu_transparent *t, const masu_instances *in, const double eye[3]) {
+    const struct masu_instance_data *at = &in->now[t->instance];
     const float *rows[3] = {at->row0, at->row1, at->row2};
-    double square = 0.0;
+    double square = 0.0, position[3];
+    masu_instance_position(in, t->instance, position);
     for (uint32_t k = 0; k < 3; k++) {
-        double d = (double)rows[k][3] - eye[k];
+        double d = position[k] - eye[k];
         for (uint32_t j = 0; j < 3; j++) d += (double)rows[k][j] * (double)t->center[j];
         square += d * d;
     }
@@ -134,7 +135,7 @@ void masu_transparents_write(masu_transparents *s, const masu_instances *in,
     for (uint32_t i = 0; i < count; i++) {
         const masu_transparent *t = &s->things[i];
         if (t->instance == MASU_BLOB_NONE || !(visible->marks[t->instance] & 1u)) continue;
-        s->order[seen++] = (masu_back_to_front){distance_of(t, &in->now[t->instance], f->eye), i};
+        s->order[seen++] = (masu_back_to_front){distance_of(t, in, f->eye), i};
     }
     const masu_back_to_front *order = masu_sort_back_to_front(s->order, s->order + count, seen);
     /* Never read: upload memory may be write-combined. */

@@ -1,6 +1,7 @@
 /* test_far.c: a scene of signed distance fields a million and ten million metres from the origin is
  * the picture that it is at the origin: coverage, depth, material and velocity. The scene is written
- * and baked here, with another offset each time; without anchors the same comparison fails. */
+ * and baked here, with another offset each time; without anchors the same comparison fails. Polygons, lights and
+ * decals that are placed by double positions are the picture that they are at the origin, too. */
 #include "scene/scene.h"
 #include "support/files.h"
 #include "support/floats.h"
@@ -257,12 +258,149 @@ static void a_large_ball_is_a_smooth_ground(void **state) {
     }
 }
 
+/* ---- Polygons -------------------------------------------------------------------------------- */
+
+static masu_detail failure;
+
+typedef struct placed {
+    uint8_t color[W * H * 4], albedo[W * H * 4];
+    float depth[W * H];
+    uint16_t velocity[W * H * 4];
+} placed;
+
+static placed near_by[2], far_out[2];
+
+static const struct {
+    const char *name;
+    double at[3];
+} movers[] = {{"ground", {0, 0, 0}},
+              {"block", {-1.3, 0.5, 0.3}},
+              {"ball", {0.4, 0.6, -0.5}},
+              {"pane", {1.1, 0.7, 1.2}}};
+enum { MOVERS = sizeof movers / sizeof *movers };
+
+static const char *const polygons =
+    "{\"camera\": {\"near\": 0.1}, \"ambient\": [0.2, 0.2, 0.25], \"ambient_occlusion\": false,"
+    "\"sun\": {\"azimuth\": 40, \"elevation\": 50, \"shadows\": false}, \"reflections\": {}, \"models\": ["
+    "{\"name\": \"ground\", \"mesh\": {\"plane\": {\"size_x\": 20, \"size_z\": 20}}, \"moving\": true,"
+    " \"material\": {\"base_color\": [0.5, 0.5, 0.5], \"roughness\": 0.1, \"metallic\": 0.9}},"
+    "{\"name\": \"block\", \"mesh\": {\"box\": {\"size\": [1, 1, 1]}}, \"rotate_y\": 30, \"moving\": true,"
+    " \"material\": {\"base_color\": [0.8, 0.2, 0.2]}},"
+    "{\"name\": \"ball\", \"mesh\": {\"sphere\": {\"radius\": 0.5, \"subdivisions\": 3}}, \"moving\": true,"
+    " \"material\": {\"base_color\": [0.2, 0.8, 0.2]}},"
+    "{\"name\": \"pane\", \"mesh\": {\"box\": {\"size\": [1, 1, 0.05]}}, \"moving\": true,"
+    " \"material\": {\"base_color\": [0.2, 0.3, 0.9], \"opacity\": 0.5}}],"
+    "\"lights\": [{\"name\": \"lamp\", \"type\": \"point\", \"color\": [4, 3, 2], \"range\": 6,"
+    " \"position\": [0, 1.5, 0], \"instance\": \"ball\"}]}";
+
+/* The ball by its instance, the others as models. */
+static void place_all(masu_session *s, const double offset[3], int number, int doubles) {
+    for (uint32_t i = 0; i < MOVERS; i++) {
+        masu_model model = masu_model_find(s->m, movers[i].name);
+        double at[3];
+        for (int k = 0; k < 3; k++) at[k] = offset[k] + movers[i].at[k];
+        at[0] += i == 1 ? 0.03 * number : 0;
+        const float rows[12] = {1, 0, 0, (float)at[0], 0, 1, 0, (float)at[1], 0, 0, 1, (float)at[2]};
+        if (!doubles)
+            assert_int_equal(masu_model_set_transform(s->m, model, rows, &failure), MASU_OK);
+        else if (i == 2)
+            assert_int_equal(masu_instance_set_position(s->m, masu_instance_find(s->m, "ball"), at, &failure), MASU_OK);
+        else
+            assert_int_equal(masu_model_set_position(s->m, model, at, &failure), MASU_OK);
+    }
+}
+
+/* Three frames: the camera crosses the boundary at which the device's origin moves on, the block moves. The last
+ * two are kept. */
+static void take_polygons(const double offset[3], int doubles, placed out[2]) {
+    masu_session s;
+    masu_commands commands;
+    if (!is_in_scratch("polygons.masu")) bake_scene("polygons", polygons);
+    masu_session_desc d = test_desc(NULL, W, H);
+    d.scene_path = baked_scene("polygons");
+    d.desc.readback = MASU_READBACK_DEPTH | MASU_READBACK_ALBEDO | MASU_READBACK_VELOCITY;
+    d.desc.rung_count = 1;
+    d.desc.double_positions = (uint32_t)doubles;
+    d.desc.reserve.decals = 1;
+    open_session(&s, &d);
+    for (int i = 0; i < 3; i++) {
+        masu_camera c = {.position = {offset[0] - 0.06 + 0.04 * i, offset[1] + 1.4, offset[2] + 5},
+                         .forward = {0.02f * (float)i, -0.2f, -1},
+                         .fov_y = 0.9f,
+                         .near_distance = 0.1f};
+        const double at[3] = {offset[0] - 0.2, offset[1], offset[2] + 1.5};
+        masu_decal decal = {.rows = {0.5f, 0, 0, 0, 0, 0, 0.5f, 0, 0, -0.4f, 0, 0}, .color = {0.9f, 0.7f, 0.1f},
+                            .opacity = 1, .roughness = 0.8f};
+        for (int k = 0; k < 3; k++) {
+            if (doubles)
+                decal.position[k] = at[k];
+            else
+                decal.rows[4 * k + 3] = (float)at[k];
+        }
+        place_all(&s, offset, i, doubles);
+        draw(&s, &(masu_frame_desc){.camera = &c, .time_step = 0.02f, .decals = &decal, .decal_count = 1}, &commands,
+             out[i ? i - 1 : 0].color);
+        if (!i) continue;
+        placed *p = &out[i - 1];
+        view_depths(read_image(&s, commands.slot, MASU_READBACK_DEPTH), &c, p->depth, W * H);
+        memcpy(p->albedo, read_image(&s, commands.slot, MASU_READBACK_ALBEDO), sizeof p->albedo);
+        memcpy(p->velocity, read_image(&s, commands.slot, MASU_READBACK_VELOCITY), sizeof p->velocity);
+    }
+    close_session(&s);
+}
+
+typedef struct placed_difference {
+    uint32_t hits, steps, velocity; /* pixels; whose colour is more than 1/255 off; that move by 0.01 px otherwise */
+    int worst;                      /* of colours */
+} placed_difference;
+
+static placed_difference compare_placed(const char *what) {
+    placed_difference d = {0, 0, 0, 0};
+    for (int n = 0; n < 2; n++) {
+        const placed *a = &near_by[n], *b = &far_out[n];
+        for (uint32_t i = 0; i < W * H; i++) {
+            int off = 0;
+            for (uint32_t k = 0; k < 3; k++) {
+                int one = abs(a->color[4 * i + k] - b->color[4 * i + k]);
+                off = one > off ? one : off;
+            }
+            d.hits += a->depth[i] > 0;
+            d.steps += off > 1;
+            d.worst = off > d.worst ? off : d.worst;
+            d.velocity += hypot(half_float(a->velocity[4 * i]) - half_float(b->velocity[4 * i]),
+                                half_float(a->velocity[4 * i + 1]) - half_float(b->velocity[4 * i + 1])) > 0.01;
+        }
+    }
+    print_message("  polygons, %s: %u hits; %u pixels more than 1/255 off, at most %d; %u move otherwise\n", what,
+                  d.hits, d.steps, d.worst, d.velocity);
+    return d;
+}
+
+static void double_positions_look_as_at_the_origin(void **state) {
+    (void)state;
+    const double origin[3] = {0, 0, 0}, away[3] = {10000032, 0, -10000000}, odd[3] = {10000032.375, 1000.5, -9999968.25};
+    take_polygons(origin, 0, near_by);
+    take_polygons(origin, 1, far_out);
+    placed_difference d = compare_placed("at the origin, by doubles");
+    assert_true(d.hits > W * H / 2 && !d.worst && !d.velocity);
+    take_polygons(away, 1, far_out);
+    d = compare_placed("1e7 m away");
+    assert_true(d.steps == 0 && d.velocity == 0);
+    take_polygons(odd, 1, far_out);
+    d = compare_placed("1e7 m away, between floats");
+    assert_true(d.steps <= 8 && d.velocity <= 8);
+    take_polygons(odd, 0, far_out); /* the comparison can tell */
+    d = compare_placed("1e7 m away, by floats");
+    assert_true(d.steps > 1000);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(far_from_the_origin_it_looks_the_same),
         cmocka_unit_test(without_anchors_it_does_not),
         cmocka_unit_test(a_large_ball_is_a_smooth_ground),
         cmocka_unit_test(the_plan_says_whether_it_is_anchored),
+        cmocka_unit_test(double_positions_look_as_at_the_origin),
     };
     return cmocka_run_group_tests_name("far", tests, make_scratch, remove_scratch);
 }

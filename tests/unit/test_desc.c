@@ -99,6 +99,7 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
     SAME(reserve.models);
     SAME(reserve.lights);
     SAME(mutable_materials);
+    SAME(double_positions);
     SAME(vulkan.texture_compression_bc);
     SAME(vulkan.max_anisotropy);
     SAME(vulkan.ray_query);
@@ -272,6 +273,7 @@ static masu_desc full_desc(void) {
     MASU_LIMITS(SET_LIMIT)
     d.reserve = (masu_reserve){.models = 12, .lights = 13};
     d.mutable_materials = 1;
+    d.double_positions = 1;
     d.host_budget = 14;
     d.device_budget = 15;
     for (uint32_t k = 0; k < MASU_ROLE_COUNT; k++) {

@@ -150,6 +150,50 @@ static void a_model_carries_its_nodes(void **state) {
     assert_rows(is.rows, unit);
 }
 
+/* Nodes far from the origin are where they are to the 48 bits of two floats. */
+static void a_double_position_is_exact(void **state) {
+    (void)state;
+    const double away[3] = {10000000.3, -2.7, 1e12 + 0.125}, nowhere[3] = {0, HUGE_VAL, 0};
+    masu_instance_state is;
+    masu_model_state model;
+    make_renderer(SUPPORT_ALL | SUPPORT_LIVE, 0);
+    masu_model lid = masu_model_find(&m, "lid");
+    masu_instance instance = masu_instance_find(&m, "lid");
+    assert_int_equal(masu_model_set_position(&m, lid, away, &failure), MASU_ERROR_STATE);
+    assert_int_equal(masu_instance_set_position(&m, instance, away, &failure), MASU_ERROR_STATE);
+    static float low[4][3], previous_low[4][3];
+    static double offsets[4][3];
+    assert_true(m.plan.scene.instances <= 4 && m.plan.scene.models <= 4);
+    m.plan.desc.double_positions = 1;
+    m.instances.low = low;
+    m.instances.previous_low = previous_low;
+    m.models.offsets = offsets;
+    const float up[12] = {1, 0, 0, 0.25f, 0, 1, 0, 0.5f, 0, 0, 1, 0};
+    assert_int_equal(masu_model_node_set(&m, lid, 1, up, &failure), MASU_OK);
+    assert_int_equal(masu_instance_get(&m, instance, &is, &failure), MASU_OK);
+    assert_int_equal(masu_model_get(&m, lid, &model, &failure), MASU_OK);
+    double inside[3];
+    for (int k = 0; k < 3; k++) inside[k] = is.position[k] - model.position[k];
+    assert_int_equal(masu_model_set_position(&m, lid, away, &failure), MASU_OK);
+    assert_int_equal(masu_instance_get(&m, instance, &is, &failure), MASU_OK);
+    assert_int_equal(masu_model_get(&m, lid, &model, &failure), MASU_OK);
+    for (int k = 0; k < 3; k++) {
+        assert_true(model.position[k] == away[k] && model.rows[4 * k + 3] == (float)away[k]);
+        assert_true(fabs(is.position[k] - (away[k] + inside[k])) <= fabs(away[k]) * 0x1p-47 + 1e-6);
+        assert_true(is.rows[4 * k + 3] == (float)is.position[k]);
+    }
+    assert_int_equal(masu_model_set_position(&m, lid, nowhere, &failure), MASU_ERROR_ARGUMENT);
+    assert_non_null(strstr(failure.text, "position[1] is inf"));
+    assert_int_equal(masu_instance_set_position(&m, instance, nowhere, &failure), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_instance_set_position(&m, instance, away, &failure), MASU_OK);
+    assert_int_equal(masu_instance_get(&m, instance, &is, &failure), MASU_OK);
+    assert_true(fabs(is.position[0] - away[0]) < 1e-6);
+    assert_int_equal(masu_model_set_transform(&m, lid, there, &failure), MASU_OK); /* takes it back */
+    assert_int_equal(masu_model_get(&m, lid, &model, &failure), MASU_OK);
+    assert_rows(model.rows, there);
+    for (int k = 0; k < 3; k++) assert_true(model.position[k] == (double)there[4 * k + 3]);
+}
+
 static void what_cannot_be_changes_nothing(void **state) {
     (void)state;
     make_renderer(SUPPORT_ALL | SUPPORT_LIVE, 0);
@@ -262,6 +306,7 @@ int main(void) {
         cmocka_unit_test(models_and_nodes_are_found),
         cmocka_unit_test(a_model_carries_its_nodes),
         cmocka_unit_test(what_cannot_be_changes_nothing),
+        cmocka_unit_test(a_double_position_is_exact),
         cmocka_unit_test(a_spare_one_is_shown),
         cmocka_unit_test(places_are_as_large_as_the_largest),
     };

@@ -60,6 +60,7 @@ static float unpacked[3];
 static _Alignas(64) unsigned char block[64];
 static const masu_frame_desc still = {MASU_FRAME_DESC};
 static const float unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+static const double unit_position[3] = {1, 2, 3};
 
 /* The pointer of that number, counted from 0, or NULL where it is its turn. */
 #define P(number, pointer) (null == (number) ? NULL : (pointer))
@@ -130,6 +131,7 @@ static const float unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     X(masu_instance_find, ((void)masu_instance_find(P(0, &m), P(1, "a")), NO_RESULT))              \
     X(masu_instance_set_transform, masu_instance_set_transform(P(0, &m), INSTANCE, P(1, unit), P(2, &detail))) \
     X(masu_instance_at, ((void)masu_instance_at(P(0, &m), 0), NO_RESULT))                          \
+    X(masu_instance_set_position, masu_instance_set_position(P(0, &m), INSTANCE, P(1, unit_position), P(2, &detail))) \
     X(masu_instance_get, masu_instance_get(P(0, &m), INSTANCE, P(1, &instance_state), P(2, &detail))) \
     X(masu_instance_show, masu_instance_show(P(0, &m), INSTANCE, 1, P(1, &detail)))                \
     X(masu_model_find, ((void)masu_model_find(P(0, &m), P(1, "a")), NO_RESULT))                    \
@@ -137,6 +139,7 @@ static const float unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     X(masu_model_get, masu_model_get(P(0, &m), MODEL, P(1, &model_state), P(2, &detail)))          \
     X(masu_model_set_transform, masu_model_set_transform(P(0, &m), MODEL, P(1, unit), P(2, &detail))) \
     X(masu_model_show, masu_model_show(P(0, &m), MODEL, 1, P(1, &detail)))                         \
+    X(masu_model_set_position, masu_model_set_position(P(0, &m), MODEL, P(1, unit_position), P(2, &detail))) \
     X(masu_model_add, masu_model_add(P(0, &m), MODEL, P(1, unit), P(2, &added), P(3, &detail)))    \
     X(masu_model_remove, masu_model_remove(P(0, &m), MODEL, P(1, &detail)))                        \
     X(masu_model_node_find, ((void)masu_model_node_find(P(0, &m), MODEL, P(1, "a")), NO_RESULT))   \

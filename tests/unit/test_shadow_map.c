@@ -193,7 +193,7 @@ static void drawn_and_looked_up_is_the_same_place(void **state) {
         masu_cascade c = masu_cascade_fit(&v, 50, 0, 1024);
         int32_t place[2] = {1024, 0};
         memset(&u, 0, sizeof u);
-        masu_cascade_write(&c, v.eye, place, 2, &u);
+        masu_cascade_write(&c, v.eye, (double[3]){0, 0, 0}, place, 2, &u);
         assert_true(u.rect[2][0] == 1024 && u.rect[2][1] == 0 && u.rect[2][2] == 1024);
         const float *rows[] = {u.row0[2], u.row1[2], u.row2[2]};
         for (int a = 0; a < 3; a++) {
