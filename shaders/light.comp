@@ -158,10 +158,7 @@ void main()
                 }
                 vec3 n = masu_unpack_normal(normal);
 #ifdef MASU_LIGHTS
-                /* First of all, and with the surface as halves: the lookup of probes takes the most registers. */
-                masu_shelved_look look = masu_shelve(s);
-                masu_around around = masu_ambient_at(rel, masu_base_normal(s, n));
-                masu_unshelve(look, s);
+                masu_around around = masu_ambient_first(s, rel, masu_base_normal(s, n));
 #endif
                 masu_mirrored sky = masu_mirrored_sky(s, n, -direction, kept);
 #ifdef MASU_LIGHTS

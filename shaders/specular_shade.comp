@@ -64,10 +64,7 @@ vec3 radiance(met m, vec3 rel, vec3 direction)
         return m.surface.emissive;
     }
 #ifdef MASU_LIGHTS
-    /* First of all, and with the surface as halves: the lookup takes the most registers. */
-    masu_shelved_look look = masu_shelve(m.surface);
-    masu_around around = masu_ambient_at(rel, masu_base_normal(m.surface, m.normal));
-    masu_unshelve(look, m.surface);
+    masu_around around = masu_ambient_first(m.surface, rel, masu_base_normal(m.surface, m.normal));
 #endif
     masu_mirrored sky = masu_mirrored_sky(m.surface, m.normal, -direction, vec2(1.0));
     vec2 seen = vec2(1.0);

@@ -160,15 +160,6 @@ masu_mirrored masu_mirrored_sky(masu_surface s, vec3 n, vec3 v, vec2 kept)
 }
 
 #ifdef MASU_LIGHTS
-/* A surface as halves, while other things need its registers. */
-struct masu_shelved_look {
-    uvec2 albedo, emissive;
-    uint metallic;
-#ifdef MASU_SURFACE
-    uint coat;
-#endif
-};
-
 uvec2 masu_pack_halves(vec4 v)
 {
     return uvec2(packHalf2x16(v.xy), packHalf2x16(v.zw));
@@ -178,6 +169,16 @@ vec4 masu_unpack_halves(uvec2 v)
 {
     return vec4(unpackHalf2x16(v.x), unpackHalf2x16(v.y));
 }
+
+#ifdef MASU_PROBES
+/* A surface as half floats, while a lookup of probes needs its registers. */
+struct masu_shelved_look {
+    uvec2 albedo, emissive;
+    uint metallic;
+#ifdef MASU_SURFACE
+    uint coat;
+#endif
+};
 
 masu_shelved_look masu_shelve(masu_surface s)
 {
@@ -204,6 +205,21 @@ void masu_unshelve(masu_shelved_look p, inout masu_surface s)
     vec2 coat = unpackHalf2x16(p.coat);
     s.coat = coat.x;
     s.coat_roughness = coat.y;
+#endif
+}
+#endif
+
+/* Ambient light at a point relative to the eye, before a bsdf is made: a lookup of probes takes the most registers.
+ * n: the normal of the base layer. With probes s is rounded to half floats. */
+masu_around masu_ambient_first(inout masu_surface s, vec3 rel, vec3 n)
+{
+#ifdef MASU_PROBES
+    masu_shelved_look look = masu_shelve(s);
+    masu_around around = masu_ambient_at(rel, n);
+    masu_unshelve(look, s);
+    return around;
+#else
+    return masu_ambient_at(rel, n);
 #endif
 }
 
