@@ -167,15 +167,19 @@ static masu_result check_allocator(const VkAllocationCallbacks *a, masu_detail *
                      "%s is NULL, and the other one is not", what);
 }
 
+static masu_result check_handles(const masu_vulkan *host, masu_detail *detail) {
+    if (!host->get_instance_proc_addr)
+        return masu_fail_null(detail, "vulkan.get_instance_proc_addr");
+    if (!host->instance) return masu_fail_null(detail, "vulkan.instance");
+    if (!host->physical_device) return masu_fail_null(detail, "vulkan.physical_device");
+    return MASU_OK;
+}
+
 masu_result masu_vk_load_physical(const masu_desc *desc, masu_vk *vk, masu_detail *detail) {
     const masu_vulkan *host = &desc->vulkan;
     memset(vk, 0, sizeof *vk);
-    if (!host->get_instance_proc_addr || !host->instance || !host->physical_device) {
-        const char *what = !host->get_instance_proc_addr ? "vulkan.get_instance_proc_addr"
-                           : !host->instance             ? "vulkan.instance"
-                                                         : "vulkan.physical_device";
-        return masu_fail_null(detail, what);
-    }
+    masu_result result = check_handles(host, detail);
+    if (result) return result;
     vk->instance = host->instance;
     vk->physical = host->physical_device;
 #define MASU_VK_LOAD_INSTANCE(name)                                                                \
@@ -209,10 +213,11 @@ masu_result masu_vk_load_physical(const masu_desc *desc, masu_vk *vk, masu_detai
 
 masu_result masu_vk_load(const masu_desc *desc, masu_vk *vk, masu_detail *detail) {
     const masu_vulkan *host = &desc->vulkan;
-    masu_result result = check_allocator(host->allocator, detail);
+    masu_result result = check_handles(host, detail);
+    if (!result && !host->device) result = masu_fail_null(detail, "vulkan.device");
+    if (!result) result = check_allocator(host->allocator, detail);
     if (!result) result = masu_vk_load_physical(desc, vk, detail);
     if (result) return result;
-    if (!host->device) return masu_fail_null(detail, "vulkan.device");
     vk->device = host->device;
     vk->allocator = host->allocator;
 #define MASU_VK_LOAD_DEVICE(name)                                                                  \

@@ -442,7 +442,7 @@ static bool timed(masu_session *s, const masu_frame_desc *frame, uint32_t n, mas
 static void time_case(masu_conform *c, const masu_case *of, masu_conform_result *r) {
     double own = MASU_UNKNOWN, other = MASU_UNKNOWN;
     if (!calibrate(c, r)) return;
-    masu_frame_desc frame = frame_at(of, of->frames - 1), none = {0};
+    masu_frame_desc frame = frame_at(of, of->frames - 1), none = {MASU_FRAME_DESC};
     masu_conform_result unused = {.of = of};
     masu_session *s = &c->calibration;
     bool good =
