@@ -30,16 +30,16 @@
 
 layout(local_size_x = 64) in;
 
-/* Part of the light from a direction of that cosine that a surface reflects, or by reciprocity of light from everywhere
- * that it reflects there. Probes see light of low frequency only, so that the specular part may leave as the diffuse
- * part does. Without it wet asphalt of albedo 0.045 would reflect a third of what it does. */
+/* Directional albedo, diffuse and specular, for incident light at that cosine to the normal; by reciprocity also for
+ * uniform incident light that leaves at that cosine. Probes store light of low frequency only, so the specular part is
+ * spread over the hemisphere like the diffuse part. Without it wet asphalt of albedo 0.045 would reflect a third. */
 vec3 reflectance(masu_surface s, float cosine)
 {
     vec2 t = masu_table(uint(MASU_TABLE_LOSS), masu_row_of(masu_sane(s.roughness, 0.0, 1.0)), clamp(cosine, 0.0, 1.0));
     vec3 albedo = clamp(s.albedo, vec3(0.0), vec3(1.0));
     float f0 = 0.08 * masu_sane(s.specular, 0.0, 1.0);
     float matte = f0 * (1.0 - t.x) + (min(50.0 * f0, 1.0) - f0) * t.y;
-    /* Of metals the light that the lobe loses leaves after another reflection. */
+    /* Metals: energy that single scattering loses is reflected again, once more coloured. */
     vec3 metal = albedo * (1.0 - t.x + t.x * albedo) + (1.0 - albedo) * t.y;
     return mix(albedo * (1.0 - matte) + matte, metal, masu_sane(s.metallic, 0.0, 1.0));
 }

@@ -63,7 +63,7 @@ static double sheen_integral(double roughness, double cosine) {
     return fmin(sum / STEPS / STEPS * 2 * REF_PI, 1);
 }
 
-/* Of the last roughnesses, by 64 cosines: a scene has few. */
+/* Cached tables of 64 cosines for the most recent roughnesses; a scene has few of them. */
 static double sheen_albedo(double roughness, double cosine) {
     enum { KEPT = 8, COSINES = 64 };
     static _Thread_local double table[KEPT][COSINES + 1], of[KEPT];

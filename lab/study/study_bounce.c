@@ -296,8 +296,8 @@ static ref_vec added(const float *a, const float *b, size_t pixel) {
     return ref_v((double)(p[0] - q[0]), (double)(p[1] - q[1]), (double)(p[2] - q[2]));
 }
 
-/* What the bounce adds to a pixel, over its diffuse albedo. bare: without ambient occlusion, which is known from what
- * uniform light adds to the pixel. */
+/* Indirect irradiance at a pixel: the light that the bounce adds, divided by the diffuse albedo. bare: divided by
+ * ambient occlusion too, which follows from what uniform light adds to the pixel. */
 static double irradiance_at(const study *w, const point *p, bool bare) {
     ref_vec light = added(w->image, w->direct, p->at), one = p->soft, uniform = added(w->uniform, w->direct, p->at);
     if (bare) one = ref_mul(one, ref_v(ratio(uniform.x, p->all.x), ratio(uniform.y, p->all.y), ratio(uniform.z, p->all.z)));

@@ -83,11 +83,11 @@ struct masu_bsdf {
     vec3 coat_n;
     float coat_n_v;
     float coat_gain;   /* factor of the coat's lobe, 1 */
-    vec3 sheen;        /* its colour; 0 without one, as the next ones are */
+    vec3 sheen;        /* colour of the sheen; 0 without a sheen, like the next members */
     float sheen_alpha;
     float sheen_bend;  /* of masu_sheen_masking, at a cosine of 0.5 */
     float sheen_v;     /* masking of v */
-    float bared;       /* share of light that what lies below a sheen has, by v; 1 without one */
+    float bared;       /* factor of the layers below a sheen, for v; 1 without a sheen */
     vec3 grain;        /* unit; along it alpha is grain_alpha. 0 without one */
     float grain_alpha;
 #endif

@@ -257,7 +257,8 @@ bool masu_add_local_light(inout masu_light_sum sum, masu_surface s, masu_bsdf b,
     if (!(strength > 0.0)) {
         return false;
     }
-    /* Computed again, and written in another way: kept, they would take six registers while the atlas is read. */
+    /* Computed again, in another form so that the compiler does not merge them: kept alive, they would take six
+     * registers while the atlas is read. */
     to = -(rel - light.position.xyz);
     l = to * masu_rsqrt(dot(to, to));
 #endif
@@ -302,7 +303,7 @@ bool masu_add_local_light(inout masu_light_sum sum, masu_surface s, masu_bsdf b,
         directed = b.f90 < 0.0; /* never; a constant would let the compiler keep more registers */
 #endif
         if (!directed) {
-            /* What is left is the light between facets and the one from below, which know of no direction. */
+            /* Multiple scattering and diffuse light, which do not depend on the direction. */
             masu_albedo lit = masu_albedo_of(b, clamp(form.z, 0.01, 1.0), 0.0);
             color *= form.x;
             sum.light += color * masu_sane(b.diffuse * (1.0 - masu_matte(b, lit)), 0.0, masu_huge);

@@ -141,7 +141,7 @@ float masu_light_seen(masu_punctual_light_data light, vec3 rel, vec3 n)
     float lift = uintBitsToFloat(masu_lights_header.w) * masu_sqrt(dot(rel, rel)) * (inverse / width); /* texels */
     float bias = masu_local_least_bias * step + masu_local_snap * (abs(slope.x) + abs(slope.y));
     bias -= lift * (step / facing);
-    /* What does not need the filter's result comes first: fewer values are kept meanwhile. */
+    /* Terms that do not depend on the filter's result are computed first, so that fewer registers are live in it. */
     float radius = masu_area_lights && masu_light_kind(light) != MASU_KIND_POINT ? near : masu_sqrt(light.color.w);
     float narrow = masu_local_width * near * width / max(radius, 1e-6);
     float facing_share = clamp(1.0 - (along - depth) * masu_local_behind, 0.0, 1.0);

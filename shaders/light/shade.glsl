@@ -209,8 +209,8 @@ void masu_unshelve(masu_shelved_look p, inout masu_surface s)
 }
 #endif
 
-/* Ambient light at a point relative to the eye, before a bsdf is made: a lookup of probes takes the most registers.
- * n: the normal of the base layer. With probes s is rounded to half floats. */
+/* Ambient light at a point relative to the eye. Called before masu_bsdf_make, since the lookup of probes needs the most
+ * registers. n: the normal of the base layer. With probes, s is rounded to half floats. */
 masu_around masu_ambient_first(inout masu_surface s, vec3 rel, vec3 n)
 {
 #ifdef MASU_PROBES
