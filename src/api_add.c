@@ -54,7 +54,9 @@ static masu_result check_room(masu_renderer *m, uint32_t like) {
 
 /* Copies the meshes, shadow and reflection state and lights of instance `from` to `to`. */
 static void copy_instance(masu_renderer *m, uint32_t place, uint32_t from, uint32_t to) {
+    const masu_look plain = {.flags = 0};
     masu_instances_add(&m->instances, to, m->instances.meshes[from]);
+    if (m->plan.needs.looks) masu_instances_set_look(&m->instances, &m->plan, to, &plain);
     masu_transparents_copy(&m->transparents, &m->plan, place, from, to);
     masu_reflections_copy(&m->reflections, &m->plan, place, from, to);
     for (uint32_t i = 0, light; i < m->plan.scene.lights; i++) {
