@@ -172,13 +172,14 @@ static bool read_change(const masu_bake_json *at, masu_bake_reader *r,
         "coat_roughness", "detail",         "match",       "opacity",
         "blend",          "meso",           "name",        "single_sided",
         "coat_map",       "coat_roughness_map", "coat_smooth", "unlit", "depth_bias",
+        "repeat",
         NULL};
     out->value = masu_bake_default_material();
     out->maps = masu_bake_no_maps();
     masu_bake_vec3 color = {0, 0, 0}, emissive = {0, 0, 0};
     double roughness = 0, metallic = 0, specular = 0, coat = 0, coat_roughness = 0;
     const char *match = NULL, *name = NULL;
-    bool single = false, even = false, unlit = false;
+    bool single = false, even = false, unlit = false, repeat = false;
     double bias = 0;
     if (!masu_bake_json_object(at, members) ||
         !masu_bake_json_vec3(at, "base_color", 0, 1, &color) ||
@@ -191,6 +192,7 @@ static bool read_change(const masu_bake_json *at, masu_bake_reader *r,
         !masu_bake_json_string(at, "name", &name) || !masu_bake_json_boolean(at, "single_sided", &single) ||
         !masu_bake_json_boolean(at, "coat_smooth", &even) ||
         !masu_bake_json_boolean(at, "unlit", &unlit) ||
+        !masu_bake_json_boolean(at, "repeat", &repeat) ||
         !masu_bake_json_number(at, "depth_bias", -0.01, 0.01, &bias) ||
         !masu_bake_json_vec3(at, "emissive", 0, 65504, &emissive) || !read_meso(at, r, change) ||
         !read_maps(at, r, change) || !read_alpha(at, out) || !read_blend(at, out)) {
@@ -208,6 +210,7 @@ static bool read_change(const masu_bake_json *at, masu_bake_reader *r,
     out->relief_of = masu_bake_json_has(at, "coat_smooth");
     out->maps.relief_of = even ? MASU_BAKE_RELIEF_OF_BASE : MASU_BAKE_RELIEF_OF_BOTH;
     out->unlit = unlit;
+    out->repeat = repeat;
     out->depth_bias = masu_bake_json_has(at, "depth_bias");
     out->value.depth_bias = (float)bias;
     out->value.specular = (float)specular;

@@ -21,7 +21,7 @@ static bool same_override(const masu_bake_override *a, const masu_bake_override 
            x->coat == y->coat && x->coat_roughness == y->coat_roughness && a->meso == b->meso &&
            x->meso == y->meso && a->opacity == b->opacity && x->opacity == y->opacity &&
            a->detail == b->detail && memcmp(x->detail, y->detail, sizeof x->detail) == 0 &&
-           a->unlit == b->unlit && a->depth_bias == b->depth_bias && x->depth_bias == y->depth_bias &&
+           a->unlit == b->unlit && a->repeat == b->repeat && a->depth_bias == b->depth_bias && x->depth_bias == y->depth_bias &&
            strcmp(a->match, b->match) == 0;
 }
 
@@ -128,6 +128,7 @@ static void apply_override(const masu_bake_override *o, masu_blob_material *to,
     if (o->shadowless) maps->shadowless = 1;
     if (o->relief_of) maps->relief_of = o->maps.relief_of;
     if (o->depth_bias) to->depth_bias = v->depth_bias;
+    if (o->repeat) maps->wrap[0] = maps->wrap[1] = MASU_BAKE_WRAP_REPEAT;
     if (o->unlit) make_unlit(to, maps, own);
     drop_lobes(o, to, maps);
 }
