@@ -681,8 +681,8 @@ typedef struct masu_desc {
     /* Flag: frames may set light.turbidity although the scene has no analytic sky. No effect with
      * an environment map. Scene only. */
     uint32_t analytic_sky;
-    /* Flag: frames may set light.environment. Costs about 20 instructions per sample of an
-     * environment map. Scene only. */
+    /* Flag: frames may set light.environment. Costs 9 multiply-adds and 6 multiplications per
+     * sample of an environment map. Scene only. */
     uint32_t live_environment;
     /* Flag: local lights may be capsules and rectangles, or have a surface, although those of the
      * scene do not. Costs up to 84 KiB of device memory, and registers in the passes that light
@@ -846,7 +846,7 @@ typedef struct masu_camera {
  *
  * A rotation about +Y is exact. After another rotation, the part of diffuse light that is beyond
  * second-order spherical harmonics is approximated: tilted by 90 degrees, three skies differ by at
- * most 0.4 % of their brightest irradiance from the same skies baked with that tilt. */
+ * most 2.1 % of their brightest irradiance from the same skies baked with that tilt. */
 typedef struct masu_environment {
     float intensity; /* factor on the radiance, up to 1e6; 0: 1; below 0: black */
     float tint[3];   /* factors on red, green and blue, 0..1; all 0: white */
