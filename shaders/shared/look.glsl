@@ -6,6 +6,8 @@
 #ifndef MASU_LOOK_GLSL
 #define MASU_LOOK_GLSL
 
+#define MASU_FADE_STEPS 16777216.0
+
 #ifdef MASU_LOOK_OUT
 layout(location = 6) flat out vec4 out_tint;
 layout(location = 7) flat out uvec2 out_fade;
@@ -15,7 +17,8 @@ void masu_pass_look(uint id)
     if (masu_looks) {
         masu_instance_data look = masu_look_of(id);
         out_tint = look.row0;
-        out_fade = uvec2(floatBitsToUint(look.row2.x), frame.temporal.x != 0u ? frame.history.x : 0u);
+        float fade = masu_sane(look.row2.x, 0.0, 1.0);
+        out_fade = uvec2(uint(fade * MASU_FADE_STEPS), frame.temporal.x != 0u ? frame.history.x : 0u);
     }
 }
 #else
@@ -41,14 +44,14 @@ void masu_take_look(inout masu_surface s)
 
 float masu_fade()
 {
-    return masu_looks ? masu_sane(uintBitsToFloat(in_fade.x), 0.0, 1.0) : 0.0;
+    return masu_looks ? float(in_fade.x) / MASU_FADE_STEPS : 0.0;
 }
 
 /* Whether the fade leaves a pixel out: by R2 (shared/dither.glsl), which is even at every scale. */
 bool masu_faded(uvec2 at)
 {
     uint noise = at.x * 0xC13FA9A9u + at.y * 0x91E10DA5u + in_fade.y * 0x9E3779B9u;
-    return masu_looks && float(noise >> 8) < masu_fade() * 16777216.0;
+    return masu_looks && noise >> 8 < in_fade.x;
 }
 #endif
 

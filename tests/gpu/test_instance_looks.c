@@ -344,6 +344,26 @@ static void a_view_that_hides_an_instance_keeps_its_shadow(void **state) {
     close_session(&s);
 }
 
+/* Two viewports of one place: an instance that the first one does not show is in the second. */
+static void viewports_show_what_their_bit_says(void **state) {
+    (void)state;
+    masu_session_desc d = desc_of("plain", 1);
+    d.desc.rungs[0].specular = MASU_OFF;
+    d.desc.viewport_count = 2;
+    for (uint32_t k = 0; k < 2; k++) d.desc.viewports[k] = (masu_viewport){0, 0, W, H};
+    open_session(&s, &d);
+    for (uint32_t hidden = 0; hidden < 4; hidden++) {
+        set("box", &(masu_look){.hidden_views = hidden});
+        for (uint32_t k = 0; k < 2; k++) {
+            masu_commands commands;
+            draw(&s, &(masu_frame_desc){.viewport = k}, &commands, images[k]);
+            if (!hidden) memcpy(images[2 + k], images[k], BYTES);
+            assert_int_equal(differing(images[k], images[2 + k], 4) > 200, hidden >> k & 1u);
+        }
+    }
+    close_session(&s);
+}
+
 static void queries_pass_through_what_they_do_not_pick(void **state) {
     (void)state;
     const uint32_t x = 40, y = 42; /* of the box */
@@ -373,6 +393,7 @@ int main(void) {
         cmocka_unit_test(what_is_behind_a_fade_is_drawn),
         cmocka_unit_test(flags_remove_from_one_thing_only),
         cmocka_unit_test(a_view_that_hides_an_instance_keeps_its_shadow),
+        cmocka_unit_test(viewports_show_what_their_bit_says),
         cmocka_unit_test(queries_pass_through_what_they_do_not_pick),
     };
     return cmocka_run_group_tests(tests, make_scratch, remove_scratch);

@@ -138,8 +138,6 @@ static void compare(int kind, quaternion q, const char *more, double most, const
     close_session(&s);
     open_scene("straight", 1);
     draw_with(&e, images[1]);
-    close_session(&s);
-    open_scene("straight", 0);
     draw_with(NULL, images[2]);
     close_session(&s);
     double off = error_of(images[1], images[0], 0, W), before = error_of(images[2], images[0], 0, W);
@@ -151,14 +149,14 @@ static void compare(int kind, quaternion q, const char *more, double most, const
 
 static void a_rotation_is_that_of_the_picture(void **state) {
     (void)state;
-    compare(0, about(0, 1, 0, 90), "", 0.003, "90 degrees about +Y");
+    compare(0, about(0, 1, 0, 90), "\"reflections\": {}, \"probes\": {\"spacing\": [0.6, 0.6, 0.6]},", 0.003,
+            "90 degrees about +Y, with probes");
     compare(0, about(0, 1, 0, -37), "", 0.01, "-37 degrees about +Y");
-    compare(0, about(0, 1, 0, 90), "\"reflections\": {},", 0.01, "with reflections");
-    compare(0, about(0, 1, 0, 90), "\"probes\": {\"spacing\": [0.6, 0.6, 0.6]},", 0.01, "with probes");
+    if (!whole_run()) return;
+    compare(0, about(0.6, 0, 0.8, 90), "", 0.02, "tilted by 90 degrees");
     frames = 100;
     compare(0, about(0, 1, 0, 90), "\"reflections\": {}, \"bounce\": {\"spacing\": 0.7},", 0.01, "with a bounce");
     frames = 4;
-    compare(0, about(0.6, 0, 0.8, 90), "", 0.02, "tilted by 90 degrees");
 }
 
 /* What P4 of y cannot have of a tilted sky (masu_environment in masu.h). */
@@ -166,6 +164,7 @@ static void tilted_irradiance_is_off_by_little(void **state) {
     (void)state;
     double worst = 0;
     for (int kind = 0; kind < 3; kind++) {
+        if (kind != 1 && !whole_run()) continue; /* the worst */
         bake("straight", kind, none, white, "");
         bake("turned", kind, about(1, 0, 0, 90), white, "");
         masu_environment e = rotated(about(1, 0, 0, 90));
