@@ -689,8 +689,9 @@ typedef struct masu_desc {
     uint32_t double_positions;
     /* Flag: masu_instance_set_look and masu_model_set_look are available. Costs 49 host bytes per
      * instance; device: 48 bytes per instance and frame in flight (twice that with velocities),
-     * counted in multiples of 8 instances, and 32 bytes per traced instance and frame in flight. The
-     * G-buffer pass tests the fade of each pixel, and so loses the early depth test. Scene only. */
+     * counted in multiples of 8 instances, and 32 bytes per traced instance and frame in flight.
+     * The G-buffer pass tests the fade of each pixel, and so loses the early depth test. Scene
+     * only. */
     uint32_t instance_looks;
     uint64_t host_budget;   /* bytes; 0: none. A larger plan is MASU_ERROR_LIMIT */
     uint64_t device_budget; /* bytes, all roles together; 0: none */
@@ -712,7 +713,7 @@ typedef struct masu_desc {
      * Costs a set of recordings per viewport. Without a scene a count is MASU_ERROR_ARGUMENT. */
     uint32_t viewport_count;
     masu_viewport viewports[MASU_MAX_VIEWPORTS];
-    /* Flag: masu_resize may change the output size, up to `output`, and the targets. Costs 32 host
+    /* Flag: masu_resize may change the output size, up to `output`, and the targets. Costs 44 host
      * bytes per draw of a G-buffer pass, LODs included, a bounds test in the last pass, and command
      * buffers and descriptor sets for MASU_MAX_TARGETS targets. Scene only. */
     uint32_t resizable;
@@ -861,9 +862,9 @@ typedef struct masu_camera {
 } masu_camera;
 
 /* Changes of the sky at run time: day and night, a sky that stays while the world tilts. All zero:
- * the sky as it is in the scene. `intensity`, `tint` and `rotation` apply to an environment map, and
- * must be zero without one. They affect its ambient light, its reflections and the sky alike; baked
- * probes and live bounces follow. The sun is separate (sun_direction, sun_color).
+ * the sky as it is in the scene. `intensity`, `tint` and `rotation` apply to an environment map,
+ * and must be zero without one. They affect its ambient light, its reflections and the sky alike;
+ * baked probes and live bounces follow. The sun is separate (sun_direction, sun_color).
  *
  * A rotation about +Y is exact. After another rotation, the part of diffuse light that is beyond
  * second-order spherical harmonics is approximated: tilted by 90 degrees, three skies differ by at
@@ -1357,22 +1358,23 @@ typedef struct masu_look {
     /* Texture coordinate = scale * coordinate of the mesh + offset, -1e4..1e4, for all maps; in
      * alpha tests of reflection rays the mesh's own. A scale of 0 is 1. */
     float uv_offset[2], uv_scale[2];
-    /* Fraction of its pixels that are not drawn, 0..1: fades by dithering; 1: it is hidden. Two
+    /* Fraction of its pixels that are not drawn, 0..1: fades by dithering; 1: it is hidden, but
+     * its lights stay on. Two
      * instances at one pixel have the same pattern, which with rung.temporal differs in each frame
      * and so is averaged. Transparent materials fade smoothly. Shadows and reflections stay solid
      * below 1: one depth per shadow texel cannot hold a part, and dithered shadow texels would
      * flicker. Picking finds it below 1. */
     float fade;
     uint32_t flags; /* MASU_LOOK_* */
-    /* Bit per viewport (masu_frame_desc.viewport) in which the camera does not see the instance. Its
-     * shadows and reflections stay. */
+    /* Bit per viewport (masu_frame_desc.viewport) in which the camera does not see the instance.
+     * Its shadows and reflections stay. */
     uint32_t hidden_views;
     uint32_t pick_mask; /* picked by frames with one of these bits in pick_mask; 0: all bits */
 } masu_look;
 
-/* Sets the look of an instance from the next masu_frame on. A copied model starts with a look of all
- * zero. Velocities ignore uv_offset. Live bounces follow within some rounds of their probes; baked
- * light and the lights of the scene do not change. A change of shadows has the delay of
+/* Sets the look of an instance from the next masu_frame on. masu_model_add gives the model a look
+ * of all zero. Velocities ignore uv_offset. Live bounces follow within some rounds of their probes;
+ * baked light and the lights of the scene do not change. A change of shadows has the delay of
  * masu_instance_show.
  *   MASU_ERROR_ARGUMENT   a pointer is NULL, the handle is invalid, or a value is out of range or
  *                         not finite, or an unknown flag

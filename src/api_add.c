@@ -54,9 +54,7 @@ static masu_result check_room(masu_renderer *m, uint32_t like) {
 
 /* Copies the meshes, shadow and reflection state and lights of instance `from` to `to`. */
 static void copy_instance(masu_renderer *m, uint32_t place, uint32_t from, uint32_t to) {
-    const masu_look plain = {.flags = 0};
     masu_instances_add(&m->instances, to, m->instances.meshes[from]);
-    if (m->plan.needs.looks) masu_instances_set_look(&m->instances, &m->plan, to, &plain);
     masu_transparents_copy(&m->transparents, &m->plan, place, from, to);
     masu_reflections_copy(&m->reflections, &m->plan, place, from, to);
     for (uint32_t i = 0, light; i < m->plan.scene.lights; i++) {
@@ -107,6 +105,9 @@ masu_result masu_model_add(masu_renderer *m, masu_model like, const float rows[1
                                   &m->error);
     }
     if (result) return masu_finish(m, result, detail);
+    const masu_look plain = {.flags = 0};
+    if (m->plan.needs.looks)
+        masu_models_set_look(&m->models, &m->instances, &m->plan, added, &plain);
     masu_models_show(&m->models, &m->instances, &m->plan, added, 1);
     *out = masu_model_at(m, added);
     return MASU_OK;

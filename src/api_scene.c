@@ -175,13 +175,8 @@ masu_result masu_model_set_look(masu_renderer *m, masu_model model, const masu_l
     if (!m || !look) return masu_finish_null(m, "look", detail);
     masu_result result = check_model(m, model, &i, detail);
     if (!result) result = masu_finish(m, masu_looks_check(&m->plan, look, &m->error), detail);
-    if (result) return result;
-    const masu_placed_model *of = &m->models.models[i];
-    for (uint32_t n = of->first_node; n < of->first_node + of->node_count; n++) {
-        uint32_t at = m->models.nodes[n].instance;
-        if (at != MASU_BLOB_NONE) masu_instances_set_look(&m->instances, &m->plan, at, look);
-    }
-    return MASU_OK;
+    if (!result) masu_models_set_look(&m->models, &m->instances, &m->plan, i, look);
+    return result;
 }
 
 /* ---- Nodes ----------------------------------------------------------------------------------- */

@@ -204,7 +204,7 @@ static void values_out_of_range_are_rejected(void **state) {
     close_session(&s);
 }
 
-/* A copy is plain, whatever the model that it was copied from; its look is its own. */
+/* A copy is plain, whatever the model that it was copied from, and whatever its slot has had; its look is its own. */
 static void copies_have_a_look_of_their_own(void **state) {
     (void)state;
     const masu_look red = {.tint = {1, 0.1f, 0.1f}}, dark = {.tint = {1e-6f, 0, 0}};
