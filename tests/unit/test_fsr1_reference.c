@@ -1,8 +1,7 @@
-/*
- * test_fsr1_reference.c: is the judge itself right? Properties that EASU and RCAS must have,
- * numbers worked out by hand, and the documented size of the effect of the approximate reciprocals
- * (wrong constants would change it). The GPU is compared with this reference elsewhere.
- */
+/* test_fsr1_reference.c: tests of the FSR1 reference itself: properties that EASU and RCAS must
+ * have, numbers computed by hand, and the documented size of the effect of the approximate
+ * reciprocals (wrong constants would change it). The GPU is compared with this reference in other
+ * tests. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -18,7 +17,7 @@
 
 #define SIDE_MAX 512
 
-/* Scratch pictures, large enough for every case below. */
+/* Scratch images, large enough for every case below. */
 static uint8_t bytes_in[SIDE_MAX * SIDE_MAX * 4];
 static float picture[SIDE_MAX * SIDE_MAX * 3];
 static float mirrored[SIDE_MAX * SIDE_MAX * 3];
@@ -69,7 +68,7 @@ static void a_flat_picture_comes_out_of_easu_unchanged_to_the_bit(void **state)
 static void easu_stays_within_its_four_centre_taps(void **state)
 {
     (void)state;
-    const uint32_t w = 30, h = 22, out_w = 53, out_h = 47; /* no output lies on a texel centre */
+    const uint32_t w = 30, h = 22, out_w = 53, out_h = 47; /* no output is on a texel centre */
     struct masu_ref_image in = pattern_picture(MASU_PATTERN_WHITE_NOISE, 3, w, h);
     masu_ref_easu(&in, out_w, out_h, MASU_REF_BIT_TRICK, result);
     uint32_t strictly_between = 0;
