@@ -215,8 +215,8 @@ static float effect_of_the_bit_tricks(const struct masu_ref_image *in, uint32_t 
     return 255.0f * masu_ref_max_difference(result, other, (size_t)out_w * out_h * 3);
 }
 
-/* Up to 74 on binary noise, 37 on white noise, 16 to 41 on hard edges (by picture), 17 on dots.
- * Both ends matter: 0 would mean that the tricks are not in use. */
+/* Up to 74 on binary noise, 37 on white noise, 16 to 41 on hard edges (by image), 17 on dots. Both
+ * ends matter: 0 would mean that the tricks are not in use. */
 static void bit_tricks_change_each_kind_of_picture_by_the_documented_amount(void **state)
 {
     (void)state;
@@ -339,8 +339,8 @@ struct cross {
     float up, left, centre, right, down;
 };
 
-/* The middle pixel of a 3x3 picture with these crosses in R, G, B; corners are poison: the filter
- * must not look at them. */
+/* The centre pixel of a 3x3 image with these crosses in R, G, B. The corners are poison: the filter
+ * must not read them. */
 static void sharpen_cross(const struct cross channel[3], float strength, float rgb[3])
 {
     float texels[9 * 3];
@@ -382,7 +382,7 @@ static void rcas_matches_cases_computed_by_hand(void **state)
      * (-.0625*2 + .55)/(1 - .25) = .425/.75 = .5666667 */
     struct cross mixed = { 0.2f, 0.4f, 0.55f, 0.6f, 0.8f };
     assert_sharpens_grey(mixed, 1.0f, 0.425 / 0.75);
-    /* hitMin counts the centre too: .1/2 = .05, hitMax .5/-2 = -.25: lobe -.05;
+    /* hitMin includes the centre: .1/2 = .05, hitMax .5/-2 = -.25: lobe -.05;
      * (-.05*2 + .1)/(1 - .2) = 0: driven exactly to black, not below */
     struct cross dip = { 0.5f, 0.5f, 0.1f, 0.5f, 0.5f };
     assert_sharpens_grey(dip, 1.0f, 0.0);
@@ -395,9 +395,9 @@ static void rcas_matches_cases_computed_by_hand(void **state)
     assert_sharpens_grey(peak, 0.5f, 0.925 / 0.95);
 }
 
-/* Channels alone would take the lobes -.1875 (R), -.1875 (G: hitMin .25, hitMax .1/(3.6-4) = -.25)
- * and -.0625 (B); the weakest serves all: R (-.125+.6)/.75, G (-.0625*3.6+.9)/.75 = .9,
- * B (-.125+.55)/.75. Which channel is the weakest must not matter. */
+/* Separate channels would have the lobes -.1875 (R), -.1875 (G: hitMin .25, hitMax .1/(3.6-4) =
+ * -.25) and -.0625 (B); the weakest serves all: R (-.125+.6)/.75, G (-.0625*3.6+.9)/.75 = .9, B
+ * (-.125+.55)/.75. Which channel is the weakest must not matter. */
 static void rcas_uses_one_lobe_for_all_channels(void **state)
 {
     (void)state;
@@ -506,7 +506,7 @@ static void differences_are_found_wherever_they_are(void **state)
     assert_true(isnan(masu_ref_max_difference(x, y, 2)));
 }
 
-/* Names of pictures that other tests' numbers were measured on: a change here invalidates them. */
+/* Hashes of the images that other tests' numbers were measured on: a change invalidates them. */
 static void patterns_are_the_same_everywhere(void **state)
 {
     (void)state;
