@@ -272,8 +272,7 @@ static void slots_are_updated_only_if_something_changes_them(void **state) {
     assert_string_equal(why_of(&d, MASU_PASS_UPDATE), "the scene has no SDF");
 }
 
-/* Light probes are a pass, a buffer and a permutation of light; without them there is none of
- * these. */
+/* Light probes are a pass, a buffer and a permutation of light; scenes without them have none. */
 static void light_probes_cost_only_scenes_that_have_them(void **state) {
     (void)state;
     static masu_frame_plan plan;
@@ -696,7 +695,7 @@ static void picking_costs_nothing_unless_it_is_asked_for(void **state) {
     }
 }
 
-/* Transparent surfaces: a pass over the lit image, and memory by their number; none of it in scenes
+/* Transparent surfaces: a pass over the lit image, and memory by their number; nothing in scenes
  * without them. */
 static void what_is_blended_comes_over_the_light_if_there_is_any(void **state) {
     (void)state;
@@ -778,7 +777,7 @@ static void what_is_reserved_has_passes_and_nothing_else_has(void **state) {
 }
 
 /* Shadows and ambient occlusion of the SDF: a pass and an image more, another permutation of light;
- * none of it in scenes that do not request them. */
+ * nothing in scenes that do not request them. */
 static void sdf_occlusion_comes_between_march_and_light_if_asked(void **state) {
     (void)state;
     static masu_frame_plan plan;
@@ -974,7 +973,7 @@ static void images_live_from_their_first_to_their_last_pass(void **state) {
                  STORAGE | SAMPLED);
     assert_image(&plan, MASU_IMAGE_HDR, MASU_PASS_MARCH, MASU_PASS_TONEMAP, 1920, 1080,
                  STORAGE | SAMPLED);
-    /* The first rung has none of these: they are as large as the largest rung that has. */
+    /* The first rung does not use the images: they have the size of the largest rung that does. */
     assert_image(&plan, MASU_IMAGE_LDR, MASU_PASS_TONEMAP, MASU_PASS_EASU, 1536, 864,
                  STORAGE | SAMPLED);
     assert_image(&plan, MASU_IMAGE_UPSCALED, MASU_PASS_EASU, MASU_PASS_RCAS, 1920, 1080,
@@ -1036,7 +1035,7 @@ static void a_pass_that_writes_the_target_has_a_set_for_each_target(void **state
     assert_int_equal(plan.pass_sets, 6 + 2 * 8);
 }
 
-/* A coat brings its tables, but for SDF hits, which have none. */
+/* A coat adds its tables, except for SDF hits, which have none. */
 static void only_what_is_coated_has_the_tables_of_coats(void **state) {
     (void)state;
     static masu_frame_plan plan;
@@ -1049,7 +1048,7 @@ static void only_what_is_coated_has_the_tables_of_coats(void **state) {
     s.coats = 1;
     compile(&d, &plan);
     assert_int_equal(plan.buffers[MASU_BUFFER_TABLES].bytes, 4 * MASU_TABLE_WORDS_COAT);
-    s.surfaces = 0; /* of what is blended */
+    s.surfaces = 0; /* only transparent ones */
     compile(&d, &plan);
     assert_int_equal(plan.buffers[MASU_BUFFER_TABLES].bytes, 4 * MASU_TABLE_WORDS_COAT);
     assert_false(plan.needs.surface);
@@ -1085,7 +1084,7 @@ static void buffers_are_sized_by_the_scene_and_the_frames_in_flight(void **state
     assert_int_equal(b[MASU_BUFFER_SLOTS].bytes, 7 * 4);
     assert_int_equal(b[MASU_BUFFER_TILES].bytes, (8 + 120 * 68 * 2) * 4);
     assert_int_equal(b[MASU_BUFFER_READBACK].bytes, 0);
-    assert_int_equal(b[MASU_BUFFER_STAGING].bytes, 0); /* known only with a device */
+    assert_int_equal(b[MASU_BUFFER_STAGING].bytes, 0); /* computed with a device */
     assert_int_equal(b[MASU_BUFFER_FRAME].role, MASU_ROLE_UPLOAD);
     assert_int_equal(b[MASU_BUFFER_INSTANCES].role, MASU_ROLE_UPLOAD);
     assert_int_equal(b[MASU_BUFFER_READBACK].role, MASU_ROLE_READBACK);
@@ -1099,7 +1098,7 @@ static void buffers_are_sized_by_the_scene_and_the_frames_in_flight(void **state
     }
 }
 
-/* Passes, images and the other buffers stay as they are. */
+/* Passes, images and the other buffers are unchanged. */
 static void a_sky_that_follows_from_the_sun_is_a_buffer_more(void **state) {
     (void)state;
     static masu_frame_plan without, with;
@@ -1131,7 +1130,7 @@ static void a_sky_that_follows_from_the_sun_is_a_buffer_more(void **state) {
     assert_int_equal(with.buffers[MASU_BUFFER_SKY].bytes, 0);
 }
 
-/* Nothing of it, in a scene without: no image, no byte. */
+/* A scene without mesoscale detail has no images and no bytes for it. */
 static void a_small_relief_costs_its_curves_and_the_surface_image(void **state) {
     (void)state;
     static masu_frame_plan plan;
@@ -1163,7 +1162,7 @@ static void tiles_have_room_for_lists_at_the_largest_rung(void **state) {
         d.rungs[2].scale = 0.4f;
         compile(&d, &plan);
         const masu_buffer_plan *tiles = &plan.buffers[MASU_BUFFER_TILES];
-        /* 125x13 blocks of 4x4 pixels: where each one's cone stops, and four pieces */
+        /* 125x13 blocks of 4x4 pixels: the cone's end distance, and four pieces */
         uint32_t block = cases[i].block_words ? 1 + 4 * cases[i].block_words : 0;
         assert_int_equal(tiles->count, 8 + 32 * 4 * cases[i].words + 125 * 13 * block);
         assert_int_equal(tiles->bytes, 4 * tiles->count);
@@ -1171,7 +1170,7 @@ static void tiles_have_room_for_lists_at_the_largest_rung(void **state) {
         assert_true(tiles->usage & VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
         assert_true(tiles->usage & VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
     }
-    masu_desc d = scene_desc(RASTER, 1000, 100); /* no SDF, none of either */
+    masu_desc d = scene_desc(RASTER, 1000, 100); /* no SDF: neither */
     compile(&d, &plan);
     assert_int_equal(plan.buffers[MASU_BUFFER_TILES].bytes, 0);
     assert_int_equal(plan.buffers[MASU_BUFFER_SLOTS].bytes, 0);
@@ -1293,7 +1292,7 @@ static void images_that_are_used_and_those_left_out_are_all_images(void **state)
             saved[1],
         all);
     assert_int_equal(saved[0] - saved[1], 2 * 4 * 100 * 100); /* silhouettes, ldr */
-    d = scene_desc(RASTER, 100, 100); /* neither scene_depth nor the march's two */
+    d = scene_desc(RASTER, 100, 100); /* neither scene_depth nor the two images of the march */
     assert_int_equal(image_bytes(d, (masu_rung){.scale = 1}, &saved[1]) + saved[1], all);
     assert_int_equal(saved[1] - saved[0], 4 * (100 * 100 + 25 * 25 + 13 * 13));
 }
@@ -1342,7 +1341,7 @@ static void lights_add_a_pass_and_two_buffers(void **state) {
     assert_int_equal(dark.buffers[MASU_BUFFER_LIGHTS].bytes, 0);
     assert_int_equal(dark.buffers[MASU_BUFFER_LIGHT_TILES].bytes, 0);
     static const struct {
-        uint32_t lights, words; /* of a list */
+        uint32_t lights, words; /* for a list */
     } cases[] = {{1, 2}, {62, 63}, {63, 64}, {64, 64}, {4096, 64}};
     for (size_t i = 0; i < COUNT(cases); i++) {
         support_scene.lights = cases[i].lights;
@@ -1368,7 +1367,7 @@ static void lights_add_a_pass_and_two_buffers(void **state) {
             assert_int_equal(plan.images[id].usage, dark.images[id].usage);
         }
     }
-    d.rungs[0].light_tiles = MASU_OFF; /* then the lists are bound, but nobody reads them */
+    d.rungs[0].light_tiles = MASU_OFF; /* the lists are still bound, but no pass reads them */
     compile(&d, &plan);
     assert_int_equal(plan.buffers[MASU_BUFFER_LIGHT_TILES].bytes, 4);
     assert_string_equal(plan.why[MASU_PASS_LIGHT_TILES], "rung.light_tiles is off");
@@ -1383,8 +1382,8 @@ static void lights_add_a_pass_and_two_buffers(void **state) {
 
 #define EDGES(from, to) "smaa_edges(r:" from " wb:edges w:" to ") smaa_blend(r:" from " rb:edges u:" to ")"
 
-/* It stands between what makes the picture and what makes it larger; where nothing follows, both of its
- * passes write the target. */
+/* SMAA runs between tone mapping and upscaling. If no pass follows, both of its passes write the
+ * target. */
 static void anti_aliasing_reads_what_is_shown_and_hands_it_on(void **state) {
     (void)state;
     masu_desc d = scene_desc(RASTER, 640, 480);
@@ -1415,7 +1414,7 @@ static void anti_aliasing_reads_what_is_shown_and_hands_it_on(void **state) {
     assert_string_equal(why_of(&d, MASU_PASS_SMAA_EDGES), "rung.aa does not select it");
 }
 
-/* A rung without has none of its memory; the largest rung with it counts. */
+/* A rung without it uses none of its memory; the size is that of the largest rung with it. */
 static void only_smaa_has_tables_and_tiles(void **state) {
     (void)state;
     static masu_frame_plan plan;
@@ -1445,9 +1444,10 @@ static void only_smaa_has_tables_and_tiles(void **state) {
     assert_int_equal(plan.buffers[MASU_BUFFER_COUNTERS].bytes, 8 * MASU_COUNTER_COUNT);
 }
 
-/* ---- Reflections: who finds polygons ---------------------------------------------------------- */
+/* ---- Reflections: ray-tracing backend -------------------------------------------------------- */
 
-/* AUTO is the device's kind, of which nothing is known here: the renderer puts ON or OFF in its place. */
+/* AUTO depends on the device, which this test does not have: the renderer replaces it by ON or
+ * OFF. */
 static void ray_queries_stand_in_for_the_own_tree(void **state) {
     (void)state;
     static masu_frame_plan plan, with;
@@ -1473,7 +1473,7 @@ static void ray_queries_stand_in_for_the_own_tree(void **state) {
     assert_string_equal(with.why[MASU_PASS_SPECULAR_TRACE], "specular_query runs instead");
     assert_string_equal(plan.why[MASU_PASS_SPECULAR_QUERY],
                         "no ray queries, or desc.ray_query is off");
-    /* Nodes of 48 bytes and the tree over instances go. */
+    /* Nodes of 48 bytes and the BVH over instances are omitted. */
     assert_int_equal(plan.buffers[MASU_BUFFER_TRACE].bytes - with.buffers[MASU_BUFFER_TRACE].bytes,
                      9 * 48);
     assert_int_equal(with.buffers[MASU_BUFFER_TRACE_FRAME].stride,
@@ -1483,7 +1483,7 @@ static void ray_queries_stand_in_for_the_own_tree(void **state) {
     assert_int_equal(with.buffers[MASU_BUFFER_VERTICES].usage,
                      plan.buffers[MASU_BUFFER_VERTICES].usage | input);
     assert_int_equal(plan.buffers[MASU_BUFFER_VERTICES].usage & input, 0);
-    support_scene.trace_instances = 0; /* nothing to ask about: as without */
+    support_scene.trace_instances = 0; /* nothing to trace: as without reflections */
     compile(&d, &with);
     assert_null(strstr(frame_text(&with, 0), "specular_query"));
     assert_string_equal(with.why[MASU_PASS_SPECULAR_QUERY], "no instance is traced");
@@ -1493,7 +1493,7 @@ static void ray_queries_stand_in_for_the_own_tree(void **state) {
     assert_string_equal(detail.what, "ray_query");
 }
 
-/* What the custom index of an instance can say, or the device takes, whichever is less. */
+/* The limit of an instance's custom index or of the device, whichever is lower. */
 static void ray_queries_have_limits(void **state) {
     (void)state;
     masu_scene_data s = {.trace_triangles = 1u << 24, .trace_instances = 7};

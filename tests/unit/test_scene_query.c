@@ -23,7 +23,7 @@ static const uint32_t everything = SUPPORT_RASTER | SUPPORT_SDF | SUPPORT_CAMERA
 
 static support_blob blob;
 
-/* The scene of a blob that stays readable. */
+/* The scene of a blob that remains readable. */
 static masu_scene bound(uint32_t parts) {
     masu_scene scene;
     masu_detail detail;
@@ -155,7 +155,7 @@ static void each_feature_has_its_bit(void **state) {
     for (size_t i = 0; i < COUNT(features); i++) {
         masu_scene_data one;
         memset(&one, 0, sizeof one);
-        for (uint32_t value = 1; value <= 3; value += 2) { /* of a flag, of a count */
+        for (uint32_t value = 1; value <= 3; value += 2) { /* for a flag, for a count */
             memcpy((char *)&one + features[i].member, &value, sizeof value);
             assert_int_equal(masu_scene_features(masu_scene_of(&one)), features[i].bit);
             memcpy((char *)&every + features[i].member, &value, sizeof value);
@@ -164,7 +164,7 @@ static void each_feature_has_its_bit(void **state) {
         all |= features[i].bit;
     }
     assert_int_equal(masu_scene_features(masu_scene_of(&every)), all);
-    assert_int_equal(all, 2 * MASU_SCENE_HAS_DEFAULT_AA - 1); /* there is no other */
+    assert_int_equal(all, 2 * MASU_SCENE_HAS_DEFAULT_AA - 1); /* there are no others */
 }
 
 static void numbers_are_those_of_the_blob(void **state) {
@@ -216,7 +216,7 @@ static void limits_equal_to_the_usage_accept_and_lower_ones_do_not(void **state)
     char what[64];
     masu_scene_usage(scene, &usage);
     assert_int_equal(usage.texture_bytes, 1000);
-    if (check(scene, &usage, &detail)) fail_msg("refused: %s", detail.text);
+    if (check(scene, &usage, &detail)) fail_msg("rejected: %s", detail.text);
     for (const masu_limit *row = masu_limit_table(); row->name; row++) {
         limits = usage;
         uint64_t used = *limit_at(&limits, row);
