@@ -1,4 +1,5 @@
-/* test_meso.c: shaders/brdf/meso.glsl on the GPU is tools/meso/model.c, and finite for anything. */
+/* test_meso.c: shaders/brdf/meso.glsl on the GPU equals tools/meso/model.c, and is finite for any
+ * input. */
 #include "meso/model.h"
 #include "support/support.h"
 #include "support/floats.h"
@@ -99,8 +100,8 @@ static void the_gpu_says_what_the_model_says(void **unused) {
         memcpy(got, &results[i], sizeof got);
         for (int k = 0; k < 12; k++) worst = worst_of(worst, fabs((double)got[k] - want[k]));
     }
-    print_message("  off by %.1e at most\n", worst);
-    /* A tilt that all but turns the normal over leaves a short vector to be normalised. */
+    print_message("  error of %.1e at most\n", worst);
+    /* A tilt that almost flips the normal leaves a short vector to be normalised. */
     assert_true(worst < 1e-3);
 }
 
