@@ -101,7 +101,7 @@ static void without_a_scene_it_is_what_the_device_has(void **state) {
 }
 
 /* masu_init reports supported features that the host has not enabled. `gpu`: the device is
- * presented as a GPU, because CPUs use neither ray queries nor 16-bit floats; `traced`: reflections
+ * presented as a GPU, because CPUs use no ray queries and no 16-bit floats; `traced`: reflections
  * use rays. */
 static void compare_with_log(const char *scene, int gpu, int traced) {
     char error[ERROR_SIZE];

@@ -1,4 +1,4 @@
-/* test_fixed_memory.c: the fixed memory block: its size is known in advance, it never grows, and
+/* test_fixed_memory.c: the fixed memory block: its size is fixed in advance, it never grows, and
  * nothing is allocated outside. */
 #include "support/support.h"
 #include "support/random.h"

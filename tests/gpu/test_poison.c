@@ -188,8 +188,8 @@ static void poison_each(const char *scene, const masu_rung *rung, uint32_t slack
      * LONG=1 uses all. */
     uint32_t every = long_run() ? 1 : heals > 64 || !whole_run() ? WORDS : 3;
     open_case(scene, rung);
-    heals *= heals > 1 && on_gpu(&s) ? 3 : 1; /* an NVIDIA H200 takes about 16 frames where others
-                                                 take 8 */
+    /* an NVIDIA H200 takes about 16 frames where others take 8 */
+    heals *= heals > 1 && on_gpu(&s) ? 3 : 1;
     /* And it has an error of 26 after 24 frames in one case; others are within 24. */
     uint32_t most = settle(heals > 1) + slack + (slack > 8 && on_gpu(&s) ? 8 : 0);
     const masu_rung_plan *rp = &s.m->plan.rungs[0];

@@ -532,8 +532,8 @@ static void a_cut_forgets_all(void **state) {
         masu_light light;
         assert_int_equal(masu_light_of(s.m, &light, NULL), MASU_OK);
         frames(&s, 9, (masu_frame_desc){MASU_FRAME_DESC, .camera = &elsewhere}, NULL);
-        light.sun_color[0] *= k ? 0.5f : 1.0f; /* earlier changes have no influence, as earlier
-                                                  images do not */
+        /* earlier changes have no influence, as earlier images do not */
+        light.sun_color[0] *= k ? 0.5f : 1.0f;
         move_instance(&s, "ball", k ? 2.0f : 0.8f, 0.8f, 0.6f, 1.0f);
         frames(&s, 1, (masu_frame_desc){MASU_FRAME_DESC, .camera = &elsewhere, .light = &light}, NULL);
         move_instance(&s, "ball", 0.8f, 0.8f, 0.6f, 1.0f);

@@ -130,8 +130,8 @@ static void a_jitter_moves_all_alike(void **state) {
         double want =
             ((double)jitters[i][0] * x[0] + (double)jitters[i][1] * x[1]) / hypot(x[0], x[1]);
         for (int half = 0; half < 2; half++) {
-            double length = all[half] / SIZE; /* approximate length of the edge: one side of the
-                                                 swept area */
+            /* approximate length of the edge: one side of the swept area */
+            double length = all[half] / SIZE;
             double got = (moved[half] - still[half]) / (length / fabs(cos(0.1235)));
             if (fabs(got - want) > 0.1)
                 fail_msg("jitter %g,%g, %s: edge moved by %g pixels, expected %g",

@@ -9,9 +9,8 @@
 #define MASU_REFERENCE_OCCLUSION_H
 
 typedef struct masu_ref_field {
-    double (*step)(const double *params, double time, const double p[3]); /* never more than the
-                                                                             distance to the
-                                                                             surface */
+    /* never more than the distance to the surface */
+    double (*step)(const double *params, double time, const double p[3]);
     const double *params;
     double time;
     double low[3], high[3]; /* nothing outside casts a shadow */

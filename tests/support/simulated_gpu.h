@@ -64,8 +64,8 @@ typedef struct sim_model {
     uint32_t event; /* the frame from which the settling time is counted */
     double (*load)(const struct sim_model *model, uint32_t frame); /* NULL: a */
     double (*clock)(uint32_t frame);                           /* factor on times; NULL: 1 */
-    const sim_dvfs *dvfs;                                      /* or a clock that depends on the
-                                                                  load */
+    /* or a clock that depends on the load */
+    const sim_dvfs *dvfs;
     double a, b, period;                                       /* parameters of the load */
     double fixed;                                              /* ms; 0: 2 */
     double exponent;                                           /* 0: 2 */

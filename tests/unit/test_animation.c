@@ -273,8 +273,8 @@ static void rotations_go_the_shorter_way(void **state) {
     (void)state;
     const double half = acos(-1.0) / 2, root = sqrt(0.5);
     start();
-    float *key = m.models.animation.keys[3].value; /* a quarter of a full rotation, on the other
-                                                      side */
+    /* a quarter of a full rotation, on the other side */
+    float *key = m.models.animation.keys[3].value;
     key[0] = key[1] = 0.0f;
     key[2] = key[3] = (float)-root;
     pose_at(0, 1.0, 0);

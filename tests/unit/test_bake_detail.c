@@ -203,8 +203,8 @@ static void a_deviation_is_a_bound_and_not_much_more(void **state) {
             most = fmax(most, own_distance_all((const vec3(*)[3])b, 12, a[i / 3][i % 3]));
         }
         assert_true(bound >= most);
-        assert_true(bound <= most * 1.25 + 0.02); /* a tenth of slack, and samples miss the
-                                                     maximum */
+        /* a tenth of slack, and samples miss the maximum */
+        assert_true(bound <= most * 1.25 + 0.02);
         assert_true(masu_bake_surface_deviation(&from, &to, most / 2) == DBL_MAX);
         assert_true(masu_bake_surface_deviation(&from, &from, DBL_MAX) < 1e-12);
         masu_bake_surface_release(&from);

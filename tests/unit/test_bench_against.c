@@ -193,8 +193,8 @@ static void runs_are_added_merged_and_read(void **state) {
     assert_true(m.cpu[0] && m.threads > 0 && strlen(m.date) == 20);
     assert_false(masu_machine_read(in_scratch("m1"), 0, &read));
     assert_true(masu_machine_append(in_scratch("m1"), &m, error, sizeof error));
-    m.date[15] = m.date[15] == '0' ? '1' : '0'; /* a minute later: the same run, as far as the file
-                                                   states */
+    /* a minute later: the same run, as far as the file states */
+    m.date[15] = m.date[15] == '0' ? '1' : '0';
     assert_true(masu_machine_append(in_scratch("m1"), &m, error, sizeof error));
     assert_false(masu_machine_read(in_scratch("m1"), 1, &read));
     snprintf(m.date, sizeof m.date, "another day");

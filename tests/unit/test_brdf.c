@@ -175,8 +175,8 @@ static void a_leaning_coat_makes_no_light(void **state) {
     }
     print_message("  dielectrics %.4f to %.4f, metals %.4f to %.4f\n", low[0], high[0], low[1], high[1]);
     assert_true(low[0] > 0.97 && high[0] < 1.001);
-    assert_true(low[1] > 0.82 && high[1] < 1.025); /* the table has no light that leaves the metal
-                                                      at a steep angle */
+    /* the table has no light that leaves the metal at a steep angle */
+    assert_true(low[1] > 0.82 && high[1] < 1.025);
 }
 
 int main(void) {

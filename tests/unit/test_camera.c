@@ -635,8 +635,8 @@ static void a_frame_is_written_to_its_slot_alone(void **state) {
     (void)state;
     make_renderer(SUPPORT_ALL, 0);
     static unsigned char expected[ROOM];
-    memcpy(expected, memory[MASU_ROLE_UPLOAD], ROOM); /* data that frames do not write: commands, as
-                                                         init left them */
+    /* data that frames do not write: commands, as init left them */
+    memcpy(expected, memory[MASU_ROLE_UPLOAD], ROOM);
     masu_frame_desc f = {.time = 1.0};
     write_good(&f, 1);
     for (uint32_t b = 0; b < MASU_BUFFER_COUNT; b++) {

@@ -524,8 +524,8 @@ static void the_shipped_suites_are_good(void **state) {
         if (!masu_suite_parse(files[i], bytes, n, &suite, error, sizeof error))
             fail_msg("%s", error);
         assert_true(suite.count >= 20);
-        for (uint32_t k = 0; k < suite.count; k++) { /* each case can fail because of an
-                                                        allocation */
+        /* each case can fail because of an allocation */
+        for (uint32_t k = 0; k < suite.count; k++) {
             assert_true(suite.cases[k].bounds[MASU_MEASURE_ALLOCATIONS].fail == 0);
         }
         masu_suite_free(&suite);

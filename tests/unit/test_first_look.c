@@ -91,8 +91,8 @@ static void the_model_fills_the_frame(void **state) {
                 double share = plays ? 0.75 : 0.89; /* room to move */
                 assert_true(fabs(fmax(most[0], most[1]) - share) < 0.03);
                 assert_int_equal(masu_bake_count(&content, MASU_BLOB_INSTANCES), things[n].ground ? 2 : 1);
-                if (e[1] < 0.5 * fmax(e[0], e[2])) /* a long table is viewed from above, not along
-                                                      its top */
+                /* a long table is viewed from above, not along its top */
+                if (e[1] < 0.5 * fmax(e[0], e[2]))
                     assert_true((double)d.look.keys[0].position[1] > bounds.high.y + 0.25 * e[1] * scales[s]);
                 masu_bake_box all = masu_bake_bounds(&content, &identity);
                 if (things[n].ground) { /* below it, but by an invisible gap at most */
