@@ -98,7 +98,7 @@ vec3 furnace(masu_bsdf b, vec3 v, float coat_alpha, uint steps)
                     row += masu_bsdf_eval(coat, l) * size / (pi * visible_pdf(coat_alpha, v, l));
                 }
             }
-            /* N.l = u^4: it may change within 0.001 of the horizon. */
+            /* N.l = u^4, because it can change within 0.001 of the horizon. */
             float z = u.x * u.x * u.x * u.x;
             l = vec3(sqrt(1.0 - z * z) * vec2(cos(pi * u.y), sin(pi * u.y)), z);
             vec3 f = masu_bsdf_eval(b, l) - masu_bsdf_eval(lobes, l);

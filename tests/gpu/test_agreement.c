@@ -280,7 +280,7 @@ static void at_the_same_depth_the_polygon_wins(void **state) {
     masu_frame_desc frame = {.camera = &c};
     uint32_t plate[3] = {0};
     for (int i = 0; i < 3; i++) {
-        /* On the near plane; behind it; on it again. */
+        /* On the near plane; behind it; again on it. */
         const float rows[12] = {1, 0, 0, 0, 0, 1, 0, i == 1 ? -0.25f : 0, 0, 0, 1, 0};
         assert_int_equal(masu_instance_set_transform(s.m, masu_instance_find(s.m, "plate"), rows, NULL),
                          MASU_OK);

@@ -54,7 +54,7 @@ static double compare(const masu_camera *camera, masu_light light) {
         if (depths[i] > 0) {
             depth = integral(&light, height, climb,
                              (double)camera->near_distance / (double)depths[i] * length);
-        } else if (light.fog_falloff > 0 && climb > 0) { /* the rest of an endless ray: nothing */
+        } else if (light.fog_falloff > 0 && climb > 0) { /* the rest of an infinite ray: nothing */
             double end = (double)light.fog_start + 40 / ((double)light.fog_falloff * climb);
             depth = integral(&light, height, climb, end);
         } else {

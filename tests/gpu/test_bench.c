@@ -619,7 +619,7 @@ static void a_row_without_its_picture_is_measured_again(void **state) {
     (void)state;
     char path[512];
     uint32_t before, after;
-    const char *setting = "scale=0.4"; /* it has been timed again */
+    const char *setting = "scale=0.4"; /* it has been measured again */
     masu_row *old = rows_of("whole", &before);
     spoil("whole", "steady.csv", setting);
     snprintf(path, sizeof path, "%s/whole/pictures/%s.png", scratch, setting);

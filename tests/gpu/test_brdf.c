@@ -334,7 +334,7 @@ static void a_frame_shows_what_the_formulas_say(void **unused) {
         if (!normals[i]) continue;
         float unpacked[3];
         masu_unpack_normal(normals[i], unpacked);
-        int coated = (normals[i] >> 26 & 15) == 12; /* the row that is 0.8 metallic */
+        int coated = (normals[i] >> 26 & 15) == 12; /* the row with metallic 0.8 */
         double n[3] = {(double)unpacked[0], (double)unpacked[1], (double)unpacked[2]};
         double scale = tan(0.3), v[3] = {-((i % W + 0.5) / W * 2 - 1) * scale * W / H,
                                          ((i / W + 0.5) / H * 2 - 1) * scale, 1};

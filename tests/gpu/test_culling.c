@@ -97,7 +97,7 @@ static void compare_path(masu_session *s, uint32_t frames, int moving) {
     assert_true(triangles[BOTH] < triangles[FRUSTUM] * 9 / 10);
     assert_true(triangles[OCCLUSION] < triangles[NEITHER]);
     assert_true(!moving || casters[OCCLUSION] < casters[NEITHER]);
-    assert_true(seen > (uint64_t)frames * W * H / 8); /* there is something to compare */
+    assert_true(seen > (uint64_t)frames * W * H / 8); /* the image has content */
 }
 
 static void the_picture_is_the_same_without_culling(void **state) {

@@ -125,7 +125,7 @@ static void views_beside_behind_and_far_from_the_bounds_draw_only_sky(void **sta
     close_session(&s);
 }
 
-/* Rays along the axes have zero components: the slab test divides by them. */
+/* Rays along the axes have zero components, by which the slab test divides. */
 static void axis_parallel_views_are_not_special(void **state) {
     (void)state;
     masu_session s;
@@ -161,7 +161,7 @@ static void light_beyond_what_halves_hold_is_clamped_and_not_infinite(void **sta
     close_session(&s);
 }
 
-/* The field adds 2^17 to a counter in each of its evaluations, which another counter counts. */
+/* Each evaluation of the field adds 2^17 to one counter, and 1 to another. */
 static void a_counter_carries_into_its_high_word(void **state) {
     (void)state;
     masu_session s;

@@ -170,7 +170,8 @@ static void what_the_device_lacks_is_named(void **state) {
     assert_int_equal(detail.given, 16);
     assert_non_null(strstr(detail.text, "may be (16)"));
     wrap_reset();
-    s.desc.output = (VkExtent2D){48, 48}; /* enough for each axis, not for all tiles of a list */
+    s.desc.output = (VkExtent2D){48, 48}; /* enough workgroups for each axis, but not for all tiles
+                                             of a list */
     wrap.max_groups = 7;
     expect_device_error("maxComputeWorkGroupCount");
     assert_int_equal(masu_memory_query(&s.desc, &need, &detail), MASU_ERROR_DEVICE);
@@ -200,7 +201,7 @@ static void storage_buffers_are_counted_as_they_are_bound(void **state) {
         d.host.get_instance_proc_addr = wrap_get_instance_proc_addr;
         open_session(&own, &d);
         uint32_t bound = wrap.most_storage_buffers;
-        size_t bytes; /* the session has freed its blob, which textures are planned by */
+        size_t bytes; /* the session has freed its blob, which planning textures needs */
         void *blob = read_file(scene_path(scenes[i]), &bytes);
         masu_scene scene;
         assert_int_equal(masu_scene_bind(blob, bytes, &scene, NULL), MASU_OK);

@@ -233,7 +233,7 @@ static void a_device_lost_before_any_frame_leaves_a_good_renderer(void **state) 
     wrap_reset();
     for (uint32_t lost_at = 0; lost_at <= 2 * FRAMES; lost_at++) {
         assert_int_equal(masu_init(&d, block, block_bytes, &m, &detail), MASU_OK);
-        if (lost_at != 1) assert_int_equal(load(m), MASU_OK); /* 1: lost while it loads */
+        if (lost_at != 1) assert_int_equal(load(m), MASU_OK); /* 1: lost during the load */
         if (lost_at != 1) assert_int_equal(frames(m, 0, lost_at, false), MASU_OK);
         masu_destroy(m);
         assert_int_equal(wrap.live, 0);

@@ -36,7 +36,7 @@ static void three_hundred_frames(const char *scene, const char *instance, bool v
     open_session(&s, &d);
     uint64_t setup = wrap.setup_calls, heap = 0;
     int64_t live = wrap.live;
-    assert_true(setup > 50); /* the wrapper is in the way */
+    assert_true(setup > 50); /* the wrapper is active */
     masu_instance box = masu_instance_find(s.m, instance);
     assert_int_not_equal(box.id, 0);
     for (uint32_t i = 0; i < 300; i++) {

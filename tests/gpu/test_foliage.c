@@ -20,7 +20,7 @@ static uint8_t *blob; /* the reference's own copy */
 static masu_scene look;
 static double mips[MIPS][TEXELS * TEXELS]; /* alpha; plain averages of the first */
 
-/* Layer `layer` of the scene's masks: mip 0 as the blob has it. */
+/* Reads mip 0 of a layer of the scene's alpha-tested textures from the blob. */
 static void read_mask(uint32_t layer) {
     masu_scene_view v = masu_scene_view_of(&look);
     const masu_blob_texture *t = v.textures;

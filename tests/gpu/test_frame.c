@@ -181,7 +181,7 @@ static void a_frame_that_has_not_ended_has_no_times(void **state) {
         assert_int_equal(stats.timed, 0);
         assert_int_equal(stats.gpu_ns, 0);
         assert_int_equal(masu_readback(s.m, 0, MASU_READBACK_DEPTH, &image, NULL), MASU_INCOMPLETE);
-        if (n == 2) continue; /* and one that is never submitted */
+        if (n == 2) continue; /* and one frame that is never submitted */
         assert_ok(masu_headless_run(&s.host, commands.buffer, error, sizeof error));
         assert_int_equal(masu_stats(s.m, 0, &stats, NULL), MASU_OK);
         assert_int_equal(stats.frame, n);

@@ -22,7 +22,7 @@ enum { SIDE = 64, FACES = 8 };
 /* ---- Expected images ------------------------------------------------------------------------- */
 
 typedef struct face {
-    double at[3], u[3], v[3]; /* a corner, the two edges there */
+    double at[3], u[3], v[3]; /* a corner, and the two edges from it */
     double look[8];           /* albedo, roughness, emissive, metallic */
     bool single;              /* invisible from behind, the side away from u x v */
     const brdf_surface *coat; /* replaces look; normals of coat and base, relative to the face's (0,
@@ -173,7 +173,7 @@ static void compare(const char *path, shot p, const face *faces, int count, doub
         if (rim) continue;
         if (at < 0) {
             masu_shade_sky(&v, ray.direction, want);
-        } else if (faces[at].glass) { /* the first; behind it is the second */
+        } else if (faces[at].glass) { /* the first face hit; behind it is the second */
             masu_shade_surface(&v, ray.direction, normal, faces[at + 1].look, want);
             shade_glass(&v, ray.direction, normal, &faces[at], want);
         } else if (faces[at].leans) {

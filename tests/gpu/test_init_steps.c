@@ -109,7 +109,7 @@ static void rungs_become_ready_one_after_another(void **state) {
     } while (result == MASU_INCOMPLETE);
     assert_int_equal(masu_init_step(x.m, &progress, &failure), MASU_OK); /* nothing is left */
     assert_int_equal(progress.done, steps);
-    memset(s.blob, 0, 4096); /* from now on it is the host's */
+    memset(s.blob, 0, 4096); /* from now on the blob is the host's */
     uint64_t calls = wrap.setup_calls;
     for (uint32_t r = 0; r < RUNGS; r++) compare_in(&x, &whole, r);
     assert_int_equal(wrap.setup_calls, calls);

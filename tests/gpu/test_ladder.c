@@ -17,7 +17,7 @@ enum { SCENES = sizeof scenes / sizeof *scenes };
 
 static masu_session_desc ladder_desc(const char *scene) {
     masu_session_desc d = test_desc(scene, W, H);
-    d.desc.governor.mode = MASU_GOVERNOR_ON; /* and with it the ladder */
+    d.desc.governor.mode = MASU_GOVERNOR_ON; /* which enables the ladder */
     d.desc.governor.wall_only = 1;
     return d;
 }

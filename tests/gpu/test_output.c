@@ -155,13 +155,13 @@ static void assert_target(const target_case *t, float scale) {
         pixel(t->format, mapped, got, step);
         for (int c = 0; c < 3; c++) {
             double off = fabs(got[c] - expected(t, colors[i], c)) / step[c];
-            /* In 10 bits before EASU, to 8 bits or less after it: another half of a step of 10. */
+            /* 10 bits before EASU, 8 bits or less after it: another half of a step of 10 bits. */
             int twice = scale < 1 && bytes_of(t->format) <= 4 && step[c] > 1 / 300.0;
             /* The lit image is half float, which some drivers truncate: 2^-11. */
-            /* PQ in halves, there and back through it: 2^-12 of its range. */
+            /* PQ encoding and decoding in half floats: 2^-12 of its range. */
             int linear = scale < 1 && t->format == VK_FORMAT_R16G16B16A16_SFLOAT &&
                          t->encoding != MASU_ENCODING_SRGB;
-            /* Halves before EASU, in 10 bits after it: a quarter of a step more. */
+            /* Half floats before EASU, 10 bits after it: a quarter of a step more. */
             int ten = scale < 1 && bytes_of(t->format) == 4 && step[c] < 1 / 1000.0;
             double allowed = twice ? 0.505 + 0.5 / 1023 / step[c] : linear ? 4 : ten ? 0.77 : bytes_of(t->format) == 8 ? 1.01 : 0.505;
             if (!(off <= allowed)) {
@@ -567,7 +567,7 @@ static void a_broken_pixel_stays_in_its_footprint(void **state) {
         for (uint32_t i = 0; i < OUT_W * OUT_H; i++) {
             if (!memcmp(good + 4 * i, bad + 4 * i, 4)) continue;
             changed++;
-            /* EASU: two texels around; RCAS: a pixel. */
+            /* EASU reads two texels around; RCAS reads a pixel around. */
             double dx = fabs((i % OUT_W + 0.5) / 2 - (x + 0.5)), dy = fabs((i / OUT_W + 0.5) / 2 - (y + 0.5));
             assert_true(dx <= 2.5 && dy <= 2.5);
         }

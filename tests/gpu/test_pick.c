@@ -73,7 +73,7 @@ typedef struct hit {
     double z;
 } hit;
 
-/* along has a view z of 1. */
+/* `along` has a view z of 1. */
 static hit cast(const world *w, vec from, vec along, double near_distance) {
     hit best = {UINT32_MAX, 0, 1e30};
     for (uint32_t i = 0; i < w->instances; i++) {

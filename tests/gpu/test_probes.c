@@ -272,7 +272,7 @@ static void hold_together(const masu_scene_view *v) {
         }
     }
     print_message("%u probes: error of the light %.2e at most\n", probes, worst);
-    assert_true(worst < 4.5e-3); /* two steps of 511; arc cosines are coarse */
+    assert_true(worst < 4.5e-3); /* two steps of 511; arc cosines are imprecise */
     const float(*found)[4] = (const float(*)[4])b.buffers[PLACES].mapped;
     uint32_t outside = 0;
     worst = 0;

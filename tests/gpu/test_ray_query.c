@@ -496,7 +496,7 @@ static void what_is_built_comes_through_the_staging_buffer_too(void **state) {
     (void)state;
     static uint8_t straight[W * H * 4], staged[W * H * 4];
     if (!has_ray_queries()) return;
-    skip_unless_host_sees_all_memory(); /* or there is one already */
+    skip_unless_host_sees_all_memory(); /* or the scene is already uploaded through one */
     for (int fake = 0; fake < 2; fake++) {
         masu_session_desc d = ray_desc(MASU_ON);
         masu_session s;

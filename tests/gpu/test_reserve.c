@@ -273,7 +273,7 @@ static void rays_of_the_device_meet_copies(void **state) {
         assert_ok(masu_session_start(&s, error, sizeof error));
         masu_plan_of(s.m, &plan);
         assert_int_equal(pass_of(&plan, "specular_query")->active, ways[i] == MASU_ON);
-        if (i < 2) add_all(&s, added, &light); /* the third one has no copies */
+        if (i < 2) add_all(&s, added, &light); /* the third scene has no copies */
         draw_frames(&s, pictures[i]);
         close_session(&s);
     }

@@ -40,7 +40,7 @@ static void begin(void) {
 #define GROUND "{\"mesh\": {\"plane\": {\"size_x\": 60, \"size_z\": 60}}}"
 #define SPOT "{\"mesh\": {\"plane\": {\"size_x\": 3, \"size_z\": 3}}}"
 
-/* The last of the models, then the rest of the scene. */
+/* Adds the last of the models, then the rest of the scene, and bakes it. */
 static void finish(const char *name, const char *last, uint32_t resolution, const char *more) {
     add("%s], \"sun\": {\"shadows\": {\"cascades\": 2, \"resolution\": %u, \"distance\": 40}}, "
         "\"camera\": {\"near\": 0.1}%s}",
@@ -366,7 +366,7 @@ static void a_sheet_above_the_ground_casts_from_a_few_texels_on(void **state) {
     double lost[4] = {0};
     for (int k = 1; k <= 8; k++) {
         double height = 0.01 * k;
-        /* From between the two, straight down. */
+        /* From halfway between the two, straight down. */
         masu_camera low = {.position = {0, height / 2, 0},
                            .forward = {0, -1, -0.2f},
                            .fov_y = 1,

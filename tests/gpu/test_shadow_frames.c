@@ -133,7 +133,7 @@ static void texels_move_by_whole_steps_while_the_view_flies(void **state) {
                     by[a] += one.axis[a][j] * (two.center[j] - one.center[j]);
             int32_t dx = (int32_t)lround(by[0] / texel), dy = (int32_t)lround(by[1] / texel);
             assert_true(fabs(by[0] / texel - dx) < 1e-3 && fabs(by[1] / texel - dy) < 1e-3);
-            /* A step along the sun moves the far side, and with it all depths. */
+            /* A step along the sun moves the far plane, and with it all depths. */
             if (fabs(by[2]) > 1e-9) continue;
             for (int32_t y = 0; y < SIZE; y++) {
                 for (int32_t x = 0; x < SIZE; x++) {
@@ -454,7 +454,7 @@ static void what_exceeds_a_limit_is_named(void **state) {
     char error[ERROR_SIZE];
     masu_session_desc d = test_desc(NULL, W, H);
     d.scene_path = baked_scene("still");
-    d.desc.deny.image_size = 2 * SIZE - 1; /* a texel too few for a square of cascades */
+    d.desc.deny.image_size = 2 * SIZE - 1; /* a texel too small for a square of cascades */
     assert_false(masu_session_open(&d, &t.s, error, sizeof error));
     assert_int_equal(t.s.detail.result, MASU_ERROR_DEVICE);
     assert_string_equal(t.s.detail.what, "maxImageDimension2D");

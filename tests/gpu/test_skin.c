@@ -259,7 +259,7 @@ static int shares_at(const double c[3][3], double x, double y, double out[3]) {
     for (int k = 0; k < 3; k++) {
         const double *a = c[(k + 1) % 3], *b = c[(k + 2) % 3];
         double own = ((b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0])) / area;
-        if (!(own > 0.02)) return 0; /* at an edge rasterisers differ */
+        if (!(own > 0.02)) return 0; /* rasterisers differ at edges */
         out[k] = own / c[k][2];
         sum += out[k];
     }

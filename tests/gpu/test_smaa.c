@@ -498,7 +498,7 @@ static void a_smaller_rung_reads_nothing_of_a_larger_one(void **state) {
 /* Without a scene, too, the table has to reach memory that the host cannot write. */
 static void a_discrete_device_gets_the_table_through_a_staging_buffer(void **state) {
     (void)state;
-    skip_unless_host_sees_all_memory(); /* or there is one already */
+    skip_unless_host_sees_all_memory(); /* or the upload already uses one */
     static uint8_t in[4 * MOST], here[4 * MOST], there[4 * MOST];
     fill(MASU_PATTERN_TEXT, 80, 60, in);
     run(in, 80, 60, MASU_AA_SMAA_HIGH, here);

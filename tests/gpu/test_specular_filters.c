@@ -294,7 +294,7 @@ static void another_render_size_keeps_the_history_and_a_cut_does_not(void **stat
     d.desc.rungs[0] = (masu_rung){.specular_reuse = MASU_OFF, .specular_filter = MASU_OFF};
     d.desc.rungs[1] = d.desc.rungs[0];
     d.desc.rungs[1].scale = 0.75f;
-    for (int way = 0; way < 3; way++) { /* the same size, another one, another one and a cut */
+    for (int way = 0; way < 3; way++) { /* the same size, another one, another one with a cut */
         open_session(&s, &d);
         masu_camera camera;
         masu_commands commands;

@@ -30,7 +30,7 @@ static void open_scene(const char *path) {
     if (path) d.scene_path = path;
     d.desc.readback = MASU_READBACK_HDR;
     d.desc.rung_count = 1;
-    d.desc.debug.reference = 1; /* each pixel has its ray */
+    d.desc.debug.reference = 1; /* one ray per pixel */
     open_session(&s, &d);
 }
 
@@ -121,7 +121,7 @@ static double compare_source(const char *what, double tile, uint32_t level, cons
 
 static uint8_t *blob;
 static size_t blob_bytes;
-static masu_scene scene; /* as read_blob has found it */
+static masu_scene scene; /* as read by read_blob */
 static masu_scene_view view;
 
 static void read_blob(void) {

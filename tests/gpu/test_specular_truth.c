@@ -131,7 +131,7 @@ static void compare(const char *name, const masu_ref_mirror *m, const double coa
         double lit[3], mirrored[3], mean = 0, truth = 0, error2 = 0;
         if (!masu_ref_surface_of(m, i % W, i / W, depth[i], &albedo[4 * i], normal[i], &surface))
             continue;
-        if (surface.look[3] >= 0.45) continue; /* traced in part, or not at all */
+        if (surface.look[3] >= 0.45) continue; /* traced only in part, or not at all */
         uint32_t key;
         memcpy(&key, &albedo[4 * i], sizeof key);
         group *g = group_of(key ^ (normal[i] >> 26 & 15) << 20);

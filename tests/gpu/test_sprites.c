@@ -878,7 +878,7 @@ static void viewports_and_sizes_are_right(void **state) {
     run_own(&fresh, frame, plain);
     frame.particle_count = frame.decal_count = frame.line_count = 0;
     run_own(&fresh, frame, other);
-    assert_true(max_difference(plain, other, W * H * 4) > 50); /* there is something to compare */
+    assert_true(max_difference(plain, other, W * H * 4) > 50); /* the image has content */
     frame.particle_count = frame.decal_count = frame.line_count = 1;
     unmake_own(&s, &fresh);
 

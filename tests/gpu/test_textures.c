@@ -445,7 +445,7 @@ static void a_scene_without_textures_has_nothing_of_them(void **state) {
 static void the_demo_draws_finite_pixels_at_every_rung(void **state) {
     (void)state;
     masu_session_desc d = test_desc("textures", 160, 90);
-    d.desc.readback = MASU_READBACK_ALL; /* velocities too: the other set of shaders */
+    d.desc.readback = MASU_READBACK_ALL; /* velocities too, for the other set of shaders */
     d.desc.debug.poison = 1;
     open_session(&s, &d);
     for (uint32_t rung = 0; rung < 3; rung++) {

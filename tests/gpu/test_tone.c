@@ -199,7 +199,7 @@ static void the_mean_becomes_grey(void **state) {
         float low = shares[i][0] < 0 ? 0 : shares[i][0] > 0 ? shares[i][0] : 0.1f;
         float high = shares[i][1] < 0 ? 0 : shares[i][1] > 0 ? shares[i][1] : 0.1f;
         open_metered(&e);
-        for (int k = -2; k <= 2; k += 2) { /* each a cut: at once */
+        for (int k = -2; k <= 2; k += 2) { /* each after a cut: adapts at once */
             double mean;
             float got = exposed(exp2f((float)(2 * k)), 0, 1, NULL, &mean, low, high);
             double wanted = fmin(1024, 0.18 / exp2(mean));

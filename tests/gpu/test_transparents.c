@@ -324,7 +324,7 @@ static void walls_hide_what_is_behind_them(void **state) {
     panes[11] = (pane){.z = 0.25, .half = 1.7, .color = {0.25f, 1, 4}, .opacity = 1, .opaque = 1};
     open_panes();
     masu_camera camera = camera_at(0, 0, 9);
-    for (uint32_t i = 0; i < 30; i++) { /* all but the wall out of the way */
+    for (uint32_t i = 0; i < 30; i++) { /* moves everything except the wall away */
         if (i == 11) continue;
         panes[i].z += 100;
         move(i);

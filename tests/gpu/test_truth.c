@@ -239,7 +239,7 @@ static void light_beyond_white_is_averaged_before_clipping(void **state) {
     assert_int_equal(masu_light_of(s.m, &light, NULL), MASU_OK);
     masu_frame_desc f = {MASU_FRAME_DESC, .camera = &camera, .light = &light};
     const masu_picture_means means = {.linear = radiance, .display = picture};
-    for (int pass = 0; pass < 2; pass++) { /* the first finds the surface's radiance */
+    for (int pass = 0; pass < 2; pass++) { /* the first pass finds the surface's radiance */
         assert_ok(
             masu_picture_truth(&s, &f, pass ? PLACES : 1, 1, &means, NULL, error, sizeof error));
         if (pass) break;

@@ -395,7 +395,7 @@ static void an_srgb_view_is_filtered_as_the_linear_numbers_it_gives(void **state
         print_message("  easu %d: error of %u\n", easu, off);
         /* decoded and filtered by a sampler: an NVIDIA H200 has an error of 3 */
         assert_true(off <= (on_gpu(&s) ? 3u : 1u));
-        reference_upscale(&j, in, cpu); /* and not as the bytes */
+        reference_upscale(&j, in, cpu); /* and not equal to filtered bytes */
         assert_true(masu_ref_max_difference_rgba8(gpu, cpu, (size_t)j.out_w * j.out_h) > 20);
     }
 }

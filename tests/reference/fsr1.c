@@ -105,7 +105,7 @@ static float source_position(uint32_t o, uint32_t in_size, uint32_t out_size)
     return moved + offset;
 }
 
-/* How straight the luma runs through three texels in a row: 1 = monotonic, 0 = a reversal. */
+/* Monotonicity of the luma over three texels in a row: 1 = monotonic, 0 = a reversal. */
 static float straightness(float before, float centre, float after, enum masu_ref_math math)
 {
     float largest = high(fabsf(after - centre), fabsf(centre - before));

@@ -28,12 +28,12 @@ typedef struct masu_ref_triangles {
 int masu_ref_triangles_open(const masu_scene *scene, masu_ref_triangles *out);
 void masu_ref_triangles_close(masu_ref_triangles *t);
 
-/* The first triangle with distance (in units of `direction`) in (nearest, farthest): its index, its
- * distance in *t. -1: none. */
+/* The first triangle with a distance (in units of `direction`) in (nearest, farthest): returns its
+ * index, or -1 for none, and its distance in *t. */
 int64_t masu_ref_hit(const masu_ref_triangles *scene, const double from[3],
                      const double direction[3], double nearest, double farthest, double *t);
 
-/* Unit normal of a triangle, on the side of `towards`. 0: it has no area. */
+/* Unit normal of a triangle, on the side of `towards`. Returns 0 if the triangle has no area. */
 int masu_ref_normal(const masu_ref_triangle *triangle, const double towards[3], double out[3]);
 
 /* Visible fraction of a sun disc with that tangent, from a surface point; 1 ray: to its centre.

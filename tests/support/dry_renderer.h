@@ -21,7 +21,7 @@ void make_renderer(uint32_t parts, uint64_t staging);
 /* The same with the given rungs; none: the defaults. */
 void make_renderer_with(uint32_t parts, uint64_t staging, const masu_rung *rungs, uint32_t count);
 
-/* Bytes and uniforms as the GPU would see them. */
+/* Bytes and uniforms that the GPU would read. */
 const unsigned char *slot_bytes(masu_buffer_id buffer, uint32_t slot);
 struct masu_frame_uniforms uniforms(uint32_t slot);
 

@@ -13,7 +13,7 @@
 extern char scratch[];
 int make_scratch(void **state);
 int remove_scratch(void **state);
-int remove_empty_scratch(void **state); /* fails if anything is left in it */
+int remove_empty_scratch(void **state); /* fails unless the folder is empty */
 
 /* Path of a file in it; static storage, four names at a time. */
 const char *in_scratch(const char *name);
@@ -27,7 +27,8 @@ bool is_in_scratch(const char *name);
  * be NULL. */
 void *read_file(const char *path, size_t *bytes);
 
-/* $BUILD, or build: programs. $MADE, or that: SPIR-V in gen/, baked scenes. $CC, or cc. */
+/* $BUILD or "build": programs. $MADE, or the same folder: SPIR-V in gen/, baked scenes. $CC or
+ * "cc". */
 const char *build_dir(void);
 const char *made_dir(void);
 const char *c_compiler(void);

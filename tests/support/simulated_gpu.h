@@ -78,13 +78,13 @@ typedef struct sim_model {
     sim_lie lie;
     uint32_t lie_from, lie_until;
     uint32_t wall;  /* the wall-clock time is available too: true time + 0.3 ms, 2 % noise */
-    uint32_t pause; /* at this frame: a time of 10 s, then 200 frames without samples; 0: none */
+    uint32_t pause; /* from this frame: a time of 10 s, then 200 frames without samples; 0: none */
     const sim_trace *trace; /* instead of fixed and load */
 } sim_model;
 
 #define SIM_BUDGET 16.67
 #define SIM_SETTLED                                                                              \
-    180u /* frames after the event: from then on a constant load is no reason to change */
+    180u /* frames after the event, from which on a constant load should cause no changes */
 
 extern const sim_model sim_models[];
 extern const uint32_t sim_model_count;

@@ -16,7 +16,7 @@
 #include "session.h"
 
 #define ERROR_SIZE 1024u
-#define MEMORY_ROWS 256u /* of a masu_memory_report, with room */
+#define MEMORY_ROWS 256u /* capacity for a masu_memory_report */
 
 /* $MADE/scenes/NAME.masu; static storage, four names at a time. */
 const char *scene_path(const char *name);

@@ -8,7 +8,7 @@ wrap_state wrap;
 
 void wrap_reset(void) { memset(&wrap, 0, sizeof wrap); }
 
-/* True if this call is to fail. */
+/* True if this call must fail. */
 static bool fails(const char *name) {
     wrap.setup_calls++;
     if (wrap.lost) wrap.calls_after_loss++;

@@ -239,7 +239,7 @@ static void ends_hold_or_come_round(void **state) {
     assert_bend(1, 0.5);
     pose_at(0, -0.5, 1);
     assert_bend(3, 1.5);
-    pose_at(0, 1e300, 1); /* some time in the clip */
+    pose_at(0, 1e300, 1); /* an arbitrary time in the clip */
     masu_node_state is;
     assert_int_equal(masu_model_node_get(&m, lid, 0, &is, &failure), MASU_OK);
     assert_true(is.rows[3] >= 0.0f && is.rows[3] <= 4.0f);

@@ -289,7 +289,7 @@ static void errors_of_lods_are_bounds(void **state) {
     torus(&s, 4, 1, 32, 12, false);
     add_mesh(&ring, &s, "ring");
     check_lods(&ring, 2, 11);
-    s.count = 0; /* of many parts, which no collapse removes */
+    s.count = 0; /* with many parts, which no collapse removes */
     cuboid(&s, masu_bake_v3(0, 0, 0), masu_bake_v3(10, 0.1, 0.1), -1);
     cuboid(&s, masu_bake_v3(0, 1, 0), masu_bake_v3(10, 1.1, 0.1), -1);
     for (int i = 0; i < 40; i++) {

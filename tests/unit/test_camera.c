@@ -200,7 +200,7 @@ static void the_header_has_the_matrix(void **state) {
     assert_near(clip[3], z, 1e-5);
 }
 
-/* Symmetric, of fov_y: the same bits. */
+/* A symmetric window given by fov_y: bit-identical. */
 static void a_window_straight_ahead_is_a_field_of_view(void **state) {
     (void)state;
     static struct masu_frame_uniforms by_fov, by_window;
@@ -403,7 +403,7 @@ static void a_bad_light_is_named(void **state) {
     BAD_LIGHT("light.fog_color", l.fog_color[2] = -1.0f);
     BAD_LIGHT("light.turbidity", l.turbidity = 1.0f);
     BAD_LIGHT("light.ground", (l.turbidity = 2.0f, l.ground[1] = 2.0f));
-    BAD_LIGHT("light.turbidity", l.turbidity = 2.0f); /* the scene has no such sky */
+    BAD_LIGHT("light.turbidity", l.turbidity = 2.0f); /* the scene has no analytic sky */
 }
 
 /* An environment map replaces the sky and the ambient light: black, and the values of

@@ -140,7 +140,7 @@ static void some_normal(int i, int count, double out[3]) {
     out[2] = flat * sin(a);
 }
 
-/* Irradiance / pi at normals, of the pixels. */
+/* Irradiance / pi at normals, from the pixels. */
 enum { COUNT = 40 };
 
 static void light_on(const masu_bake_panorama *p, double normals[COUNT][3], double out[COUNT][3]) {

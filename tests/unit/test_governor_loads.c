@@ -25,8 +25,8 @@ struct load {
     double (*ms)(const load *l, uint64_t frame, uint32_t rung, double scale);
     double a, b, noise; /* relative standard deviation */
     uint32_t split, period, until;
-    int gpu;   /* timestamps, three frames late; else the wall, two */
-    int vsync; /* the wall in whole refreshes */
+    int gpu;   /* timestamps, three frames late; otherwise the wall clock, two frames late */
+    int vsync; /* wall-clock times in whole refreshes */
     uint32_t rungs;
 };
 

@@ -79,7 +79,7 @@ static int files_in_directory(void)
     return count;
 }
 
-/* Tests call their files by these names only, so that any other one is a leftover. */
+/* Tests give files only these names, so that any other file is a leftover. */
 static int remove_directory(void **state)
 {
     static const char *const known[] = { "a.png", "b.png", "a.pfm", "a.bin", "link.png", "pipe" };

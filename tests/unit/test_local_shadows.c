@@ -104,7 +104,8 @@ static void the_least_important_shrink_first(void **state) {
     const double scores[4] = {3, 1, 0.5, 2};
     masu_shadow_sizes_fit(sizes, faces, scores, 4, 2048); /* 13 + 6/4 of 16 squares of 512 */
     assert_true(sizes[0] == 512 && sizes[1] == 512 && sizes[2] == 256 && sizes[3] == 512);
-    masu_shadow_sizes_fit(sizes, faces, scores, 4, 1024); /* 4: all are halved, and two again */
+    /* 4: all are halved, and two of them again */
+    masu_shadow_sizes_fit(sizes, faces, scores, 4, 1024);
     assert_true(sizes[0] == 256 && sizes[1] == 256 && sizes[2] == 128 && sizes[3] == 256);
     masu_shadow_sizes_fit(sizes, faces, scores, 4, 512);
     assert_true(sizes[0] == 128 && sizes[1] == 128 && sizes[2] == 128 && sizes[3] == 128);

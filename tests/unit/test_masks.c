@@ -209,7 +209,8 @@ static void compression_moves_no_texel_across_the_cut_off(void **state) {
     static uint8_t alpha[TEXELS];
     uint64_t seed = 1;
     uint32_t moved = 0, plain = 0;
-    for (int kind = 0; kind < 3; kind++) { /* noise; nearly the cut-off; nearly there or not */
+    for (int kind = 0; kind < 3; kind++) { /* noise; close to the cut-off; almost opaque or
+                                              transparent */
         for (uint32_t i = 0; i < TEXELS; i++) {
             float a = (float)random_unit(&seed);
             if (kind == 1) a = (124.0f + 8.0f * a) / 255.0f;

@@ -142,7 +142,7 @@ static void a_model_carries_its_nodes(void **state) {
     const float up[12] = {1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 1, 2};
     assert_int_equal(masu_model_node_set(&m, lid, 1, up, &failure), MASU_OK);
     assert_int_equal(masu_instance_get(&m, instance, &is, &failure), MASU_OK);
-    /* z of the node is x out here */
+    /* the node's z axis is x in the world */
     const float raised[12] = {0, 0, 1, 12, 0, 1, 0, 21, -1, 0, 0, 30};
     assert_rows(is.rows, raised);
     /* The others have not moved. */

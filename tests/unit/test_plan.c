@@ -1015,7 +1015,7 @@ static void images_are_as_large_as_the_largest_rung_in_any_order(void **state) {
                  STORAGE | SAMPLED);
     assert_image(&plan, MASU_IMAGE_UPSCALED, MASU_PASS_EASU, MASU_PASS_RCAS, 1000, 10,
                  STORAGE | SAMPLED);
-    /* Blocks are counted up: 900x9 has two rows of 8x8, three of 4x4. */
+    /* Numbers of blocks are rounded up: 900x9 has two rows of 8x8, three of 4x4. */
     assert_image(&plan, MASU_IMAGE_CONE8, MASU_PASS_CONE8, MASU_PASS_CONE4, 113, 2,
                  STORAGE | SAMPLED);
     assert_image(&plan, MASU_IMAGE_CONE4, MASU_PASS_CONE4, MASU_PASS_MARCH, 225, 3,
@@ -1028,7 +1028,7 @@ static void a_pass_that_writes_the_target_has_a_set_for_each_target(void **state
     masu_desc d = scene_desc(RASTER | SDF, 1920, 1080);
     d.targets.count = 3;
     compile(&d, &plan);
-    /* classify, cone8, cone4, march, light, tonemap x 3; then twice: these once, easu, rcas x 3 */
+    /* classify, cone8, cone4, march, light, 3 x tonemap; then twice: these once, easu, 3 x rcas */
     assert_int_equal(plan.pass_sets, (5 + 3) + 2 * (7 + 3));
     d.targets.storage = 0; /* the blit needs none */
     compile(&d, &plan);
@@ -1079,7 +1079,8 @@ static void buffers_are_sized_by_the_scene_and_the_frames_in_flight(void **state
     assert_int_equal(b[MASU_BUFFER_COUNTERS].count, 2 * MASU_COUNTER_COUNT);
     assert_int_equal(b[MASU_BUFFER_FRAME].stride, frame);
     assert_int_equal(b[MASU_BUFFER_FRAME].bytes, 3 * frame);
-    assert_int_equal(b[MASU_BUFFER_INSTANCES].stride, 192); /* 3 * 48 up to a multiple of 64 */
+    /* 3 * 48, rounded up to a multiple of 64 */
+    assert_int_equal(b[MASU_BUFFER_INSTANCES].stride, 192);
     assert_int_equal(b[MASU_BUFFER_INSTANCES].bytes, 3 * 192);
     assert_int_equal(b[MASU_BUFFER_SLOTS].bytes, 7 * 4);
     assert_int_equal(b[MASU_BUFFER_TILES].bytes, (8 + 120 * 68 * 2) * 4);
@@ -1258,7 +1259,7 @@ static void the_public_plan_tells_what_was_compiled(void **state) {
     assert_int_equal(info.passes[MASU_PASS_LIGHT].pipeline_ns, 0);
 }
 
-/* Bytes of the images that a plan with these settings uses; also those that it does without. */
+/* Bytes of the images that a plan with these settings uses; *saved: of those that it omits. */
 static uint64_t image_bytes(masu_desc d, masu_rung rung, uint64_t *saved) {
     static masu_frame_plan plan;
     static masu_plan_info info;

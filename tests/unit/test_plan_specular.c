@@ -190,7 +190,7 @@ static void the_reference_is_of_full_size_and_keeps_its_sum(void **state) {
     assert_true(masu_images[MASU_IMAGE_SPECULAR_SUM].kept);
     assert_int_equal(with.images[MASU_IMAGE_SPECULAR_SUM].width, 640);
     assert_int_equal(with.images[MASU_IMAGE_SPECULAR_LIGHT].height, 360);
-    d = scene_desc(RASTER, 640, 360); /* without reflections the switch does nothing */
+    d = scene_desc(RASTER, 640, 360); /* without reflections the setting has no effect */
     d.debug.reference = 1;
     compile(&d, &with);
     d.debug.reference = 0;

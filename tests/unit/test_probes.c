@@ -252,7 +252,7 @@ static void light_is_near_the_truth(void **state) {
     uint32_t rows = masu_bake_judge_probes(&c, &s, trace, 128, 1024, errors);
     static const struct {
         const char *light;
-        double most, better; /* than without probes, by this factor */
+        double most, better; /* lower than without probes, by this factor */
     } bounds[] = {{"sky", 0.25, 4}, {"sun, first baked", 0.3, 3}, {"sun, in between", 0.35, 3}};
     for (size_t i = 0; i < sizeof bounds / sizeof *bounds; i++) {
         double probes = error_of(errors, rows, bounds[i].light, "probes, as baked");

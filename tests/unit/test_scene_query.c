@@ -121,7 +121,7 @@ static void items_are_found_by_their_names(void **state) {
             found |= 1u << i;
         }
     }
-    assert_int_equal(found, (1u << MASU_SCENE_CAMERA_KEY) - 1); /* whose keys have no names */
+    assert_int_equal(found, (1u << MASU_SCENE_CAMERA_KEY) - 1); /* keys have no names */
     float minimum, maximum;
     int32_t bend = masu_scene_find(&scene, MASU_SCENE_SDF_PARAM, "bend");
     assert_true(masu_scene_sdf_range(&scene, (uint32_t)bend, &minimum, &maximum) == -1.0f);
@@ -199,7 +199,7 @@ static uint64_t *limit_at(masu_limits *limits, const masu_limit *row) {
     return (uint64_t *)(void *)((char *)limits + row->offset);
 }
 
-/* A scene with at least 2 of everything: a limit of 0 would be none. */
+/* A scene with at least 2 of everything, because a limit of 0 means none. */
 static void limits_equal_to_the_usage_accept_and_lower_ones_do_not(void **state) {
     (void)state;
     masu_scene_data data;

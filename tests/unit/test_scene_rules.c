@@ -466,10 +466,10 @@ static void a_name_of_over_255_bytes_is_refused(void **state) {
     support_blob_seal(blob.bytes, blob.size);
     masu_scene scene;
     support_accepted(&blob, &scene); /* 255 */
-    AT(NAMES, char)[0] = 'x';        /* was the end of an empty one */
+    AT(NAMES, char)[0] = 'x';        /* the end of an empty name */
     assert_refused("names", 0);
     AT(NAMES, char)[0] = '\0';
-    AT(NAMES, char)[256] = 'x';      /* the end of the long one */
+    AT(NAMES, char)[256] = 'x';      /* the end of the long name */
     assert_refused("names", 1);
 }
 
@@ -512,7 +512,7 @@ static void an_index_outside_its_primitive_is_refused(void **state) {
     REFUSED("indices", 8, INDEX[8] = 3); /* a vertex, but the next primitive's */
     REFUSED("indices", 14, INDEX[14] = UINT32_MAX);
     ACCEPTED(INDEX[5] = 0);
-    ACCEPTED(INDEX[9] = 3); /* the first behind a primitive of three vertices */
+    ACCEPTED(INDEX[9] = 3); /* the first vertex after a primitive of three */
     ACCEPTED(PRIMITIVE[1].vertex_count = 1, INDEX[7] = INDEX[8] = 0);
 }
 

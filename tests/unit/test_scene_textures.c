@@ -96,7 +96,7 @@ static void a_texture_out_of_range_is_refused(void **state) {
     REFUSED("textures", 0, TEXTURE[0].width = MASU_TEXTURE_SIZE_MAX + 1);
     REFUSED("textures", 2, TEXTURE[2].height = UINT32_MAX);
     REFUSED("textures", 0, TEXTURE[0].mips = 0);
-    REFUSED("textures", 0, TEXTURE[0].mips = 5); /* 8 x 8 has 4 */
+    REFUSED("textures", 0, TEXTURE[0].mips = 5); /* 8 x 8 has 4 mips */
     REFUSED("textures", 1, TEXTURE[1].mips = UINT32_MAX);
     REFUSED("textures", 0, TEXTURE[0].layers = 0);
     REFUSED("textures", 0, TEXTURE[0].layers = MASU_TEXTURE_LAYERS_MAX + 1);
@@ -116,7 +116,7 @@ static void textures_lie_one_behind_the_other_and_fill_the_texels(void **state) 
     REFUSED("textures", 1, TEXTURE[1].offset = 0);
     REFUSED("textures", 1, TEXTURE[1].offset = 208);
     REFUSED("textures", 1, TEXTURE[1].offset = UINT64_MAX - 15);
-    REFUSED("textures", 1, TEXTURE[0].mips = 3); /* then the second begins too late */
+    REFUSED("textures", 1, TEXTURE[0].mips = 3); /* then the second array begins too late */
     REFUSED("textures", 1, TEXTURE[0].layers = 1);
     REFUSED("textures", 2, TEXTURE[2].width = 100); /* larger than the remaining bytes */
     REFUSED("textures", 2, TEXTURE[2].layers = 256);
@@ -181,7 +181,7 @@ static void a_material_asks_for_maps_that_are_there(void **state) {
     REFUSED("materials", 1, MATERIAL[1].flags = MASU_MATERIAL_IS_MASK, MATERIAL[1].texture_set = 0);
     ACCEPTED(MATERIAL[1].flags = MASU_MATERIAL_IS_BLEND, MATERIAL[1].texture_set = 0);
     ACCEPTED(MATERIAL[0].flags &= ~(uint32_t)MASU_MATERIAL_IS_MASK);
-    ACCEPTED(MATERIAL[0].layers = 0xFF000000u); /* of a slot that is not used */
+    ACCEPTED(MATERIAL[0].layers = 0xFF000000u); /* of an unused slot */
 }
 
 int main(void) {

@@ -39,7 +39,7 @@ static double apart(const double p[3], const double q[3]) {
 /* ---- every shape ---- */
 
 typedef enum claim {
-    BOUND,    /* L, and positive outside of its bounds */
+    BOUND,    /* constant L, and positive outside its bounds */
     EXACT,    /* the distance outside too */
     ESTIMATE, /* no solid within f / L, except for 1 in 200 */
     SAFE      /* no solid within f / L, ever */
@@ -572,7 +572,7 @@ static void other_scenes_pay_nothing(void **state) {
     assert_null(strstr(a.glsl, "masu_look"));
     assert_null(strstr(a.glsl, "masu_footprint"));
     assert_non_null(strstr(b.glsl, "masu_look_0("));
-    /* and the march of the one that does is the same */
+    /* and the march of the scene with fractals is the same */
     const char *from_a = strstr(a.glsl, "real masu_shape_0("), *from_b = strstr(b.glsl, "real masu_shape_0(");
     const char *to_a = strstr(from_a, "\n}\n"), *to_b = strstr(from_b, "\n}\n");
     assert_true(to_a - from_a == to_b - from_b && memcmp(from_a, from_b, (size_t)(to_a - from_a)) == 0);

@@ -450,7 +450,7 @@ static void one_sphere_has_the_code_of_one_sphere(void **state) {
     masu_sdfc_release(&result);
 }
 
-/* Each function of the library that a scene's GLSL defines is called in it. */
+/* A scene's GLSL calls each library function that it defines. */
 static void no_scene_has_a_function_that_it_does_not_call(void **state) {
     (void)state;
     uint32_t functions = 0;
@@ -874,7 +874,7 @@ static void compare_copies(const char *text, const field *r, const rows *of, uin
             if (n % 8 == 0) p[k] = of->period[k] * round(2 * p[k]) / 2 + 1e-7 * way[k];
         }
         double f = field_value(r, 0, p), u = union_of_copies(r, of, p);
-        for (int k = 0; k < 3 && n % 3 == 2; k++) { /* to where the union falls */
+        for (int k = 0; k < 3 && n % 3 == 2; k++) { /* towards falling values of the union */
             memcpy(q, p, sizeof q);
             q[k] += 1e-5;
             way[k] = u - union_of_copies(r, of, q) + 1e-12 * way[k];

@@ -68,7 +68,7 @@ static vec2 by_sobol(uint32_t texel, uint32_t frame) {
     return unit2(owen(p[0], seed), owen(p[1], masu_hash(seed + 1)));
 }
 
-/* One scramble for all pixels, shifted by blue noise as R2 is. */
+/* One scramble for all pixels, shifted by blue noise, as is done with R2. */
 static vec2 by_sobol_blue(uint32_t texel, uint32_t frame) {
     uint32_t p[2], w = masu_blue_noise[texel];
     sobol(frame, p);

@@ -179,7 +179,7 @@ static void compare_strides(const spirv_module *m, const layout *l, uint32_t id,
     }
 }
 
-/* Compares every struct of that name which has a layout; counts them. Glslang makes a second type,
+/* Compares every struct with that name that has a layout; counts them. glslang makes a second type,
  * without offsets, for values that are in no buffer. */
 static void compare(const spirv_module *m, const layout *l, const char *path, uint32_t *found,
                     uint32_t *arrays) {

@@ -22,7 +22,7 @@
 #define AROUND 96
 
 static const float ground[3] = {0.2f, 0.2f, 0.2f};
-static masu_sky sky; /* with its tables, from test to test */
+static masu_sky sky; /* with its tables, kept from test to test */
 
 static void place_sun(double elevation, double azimuth, float turbidity) {
     double e = elevation * PI / 180, a = azimuth * PI / 180;
@@ -275,8 +275,8 @@ static void the_sky_does_not_jump_as_the_sun_crosses_the_zenith_or_the_air_gets_
 
 /* ---- Meaning of the numbers ------------------------------------------------------------------ */
 
-/* The same depths by a sum of many steps: air of scale height 8 km, aerosol of 1.2 km, ozone between
- * 15 and 35 km. */
+/* The same optical depths by a sum of many steps: air of scale height 8 km, aerosol of 1.2 km,
+ * ozone between 15 and 35 km. */
 static double summed_depth(double height, double mu, double turbidity, int color) {
     static const double air[3] = {5.802e-3, 13.558e-3, 33.1e-3};
     static const double ozone[3] = {0.650e-3, 1.881e-3, 0.085e-3};

@@ -235,7 +235,7 @@ static void solid_blocks_are_as_near_as_can_be(void **state) {
     }
 }
 
-/* Blocks by hand, texels from the definition of the format. */
+/* Hand-made blocks, texels from the definition of the format. */
 static void blocks_decode_as_the_formats_say(void **state) {
     (void)state;
     uint8_t t[64];

@@ -122,7 +122,7 @@ static void spheres_are_hit_where_they_are(void **state) {
     (void)state;
     masu_view v = make_view(SPHERE, 0.3, -0.2, 3);
     check_sphere(&v, 1e-12);
-    v.params[5] = 50; /* the field grows 50 times too fast, the step does not */
+    v.params[5] = 50; /* the field grows 50 times too fast, the step is correct */
     check_sphere(&v, 1e-12);
     v.params[5] = 0.02;
     check_sphere(&v, 1e-9); /* and 50 times too slowly: the tolerance is of the field */

@@ -172,7 +172,7 @@ static void other_sizes_are_refused(void **state) {
     t.words = whole;
     tear_down(&more);
 
-    t.packed.run = 1; /* and as many bytes from there */
+    t.packed.run = 1; /* and the same number of bytes from there */
     assert_false(unpack(&t));
     t.packed.run = UINT32_MAX;
     assert_false(unpack(&t));

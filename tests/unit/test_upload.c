@@ -351,7 +351,7 @@ static void a_bad_instance_or_transform_is_refused(void **state) {
 
 /* ---- Times ----------------------------------------------------------------------------------- */
 
-/* A counter of few bits, from just below its end to just beyond it. */
+/* A counter of few bits, from just below its maximum to just beyond. */
 static void times_of_a_clock_that_wraps_are_right(void **state) {
     (void)state;
     masu_commands commands;
