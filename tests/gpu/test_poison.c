@@ -5,8 +5,8 @@
  *
  * A command buffer is recorded for each case, with a fill at the pass's label. The fill uses a
  * buffer of the test that aliases the memory block, as debug.poison does. Data from the host
- * (uniforms, lists) and loaded data (meshes, materials) is checked on input and not filled; neither
- * are the first elements of lists, which are arguments of an indirect dispatch.
+ * (uniforms, lists) and loaded data (meshes, materials) is checked on input, so it is not filled.
+ * The first elements of lists are not filled either: they are arguments of an indirect dispatch.
  *
  * SwiftShader does not check bounds of buffers: a read outside ends the process, as with a tile
  * number from poisoned memory; a case in reflections still does. lavapipe reads 0 and hides it. */

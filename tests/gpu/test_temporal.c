@@ -140,7 +140,7 @@ static void at_rest_it_comes_near_the_truth(void **state) {
     static const double most[] = {0.35, 0.35, 0.35, 0.45};
     for (size_t k = 0; k < sizeof scenes / sizeof *scenes; k++) {
         find_truth(scenes[k], NULL, NULL);
-        /* otherwise 1, and a half */
+        /* if it is no whole run: scale 1 in one scene, a half in the other */
         for (size_t i = whole_run() ? 0 : 2 * k; i < sizeof scales / sizeof *scales;
              i += whole_run() ? 1 : 4) {
             masu_session s;
