@@ -410,7 +410,8 @@ static void free_float_source(float_source *f) {
     vkFreeMemory(s.host.device, f->memory, NULL);
 }
 
-/* Each invalid pixel acts like a black or a white one: it changes no other pixels. */
+/* Each invalid pixel acts like a black or a white one: it changes no pixels that such a pixel
+ * would not change. */
 static void broken_pixels_are_black_or_white_ones(void **state) {
     (void)state;
     enum { WIDTH = 48, HEIGHT = 40 };
