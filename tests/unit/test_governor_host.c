@@ -90,7 +90,7 @@ static void a_setting_counts_from_the_next_frame_on(void **state) {
     d.target_ms = 16.67f;
     masu_governor_adjust(&g, &d);
     p.missed = 0;
-    assert_int_equal(frame(&g, &p), before); /* and back at once: no sample is lost */
+    assert_int_equal(frame(&g, &p), before); /* and back at once, before frames are missed */
     frames(&g, &p, 100);
     assert_true(p.missed <= 1);
 
@@ -535,7 +535,7 @@ static void missed_frames_are_those_shown_late(void **state) {
     masu_governor_shown(&g, p.frame - 1, at + 50 * (uint64_t)HZ60, HZ60); /* reported twice */
     masu_governor_shown(&g, p.frame - 3, at + 50 * (uint64_t)HZ60, HZ60); /* out of order */
     assert_int_equal(report(&g).missed, missed + 5);
-    p.load = 60.0; /* misses of the governor itself are for the display to report */
+    p.load = 60.0; /* with a display, only its reports add misses */
     frames(&g, &p, 3);
     assert_int_equal(report(&g).missed, missed + 5);
 }
