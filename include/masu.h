@@ -13,7 +13,8 @@
  *    movable models without skins, punctual lights, particles, decals and debug lines, each up to
  *    desc.reserve;
  *  - cast shadows from particles or transparent surfaces;
- *  - refract light, order intersecting transparent surfaces, or reflect particles and decals;
+ *  - refract light beyond a bent lookup of the lit image, order intersecting transparent
+ *    surfaces, or reflect particles and decals;
  *  - verify that the SPIR-V of a scene with an SDF is harmless: trust such a blob like a program.
  *
  * TERMS
@@ -825,7 +826,7 @@ typedef struct masu_camera {
     double position[3];  /* world, metres */
     float forward[3];    /* need not be unit length */
     float up[3];         /* not parallel to forward; all zero: +Y */
-    float fov_y;         /* vertical field of view, radians, 0.001..3.1; with a window it is unused,
+    float fov_y;         /* vertical field of view, radians, 0.0005..3.1; with a window it is unused,
                             but must be finite */
     float near_distance; /* metres, 1e-9..1e9; 0: the scene's. There is no far plane */
     /* Offset of the sample position in every pixel, in pixels of the render size, right and down,
@@ -1585,7 +1586,8 @@ MASU_API MASU_MUST_USE masu_result masu_material_get(masu_renderer *renderer,
  *                         pipeline: `mode`; `cutoff`; `opacity` of a material that is not blended;
  *                         `specular` and `coat` if no opaque material of the scene has a
  *                         specular factor, a clear coat, mesoscale detail or an occlusion map;
- *                         `coat` if no material has a clear coat
+ *                         `coat` if no material has a clear coat; `metallic` above 0 of a material
+ *                         with a thickness (KHR_materials_volume), which stays as it is
  *   MASU_ERROR_STATE      desc.mutable_materials is 0 */
 MASU_API MASU_MUST_USE masu_result masu_material_set(masu_renderer *renderer,
                                                      masu_material material,

@@ -71,7 +71,7 @@ masu_material_state masu_materials_get(const masu_materials *s, uint32_t materia
     const struct masu_material_data *now = &s->now[material];
     uint32_t cutoff = s->flags[material] >> MASU_MATERIAL_CUTOFF_SHIFT & 255u;
     masu_material_state state = {.roughness = now->base_color[3],
-                                 .metallic = now->emissive[3],
+                                 .metallic = fmaxf(now->emissive[3], 0.0f), /* below 0: refracts */
                                  .specular = specular_in(now->more[0]),
                                  .coat = now->more[1],
                                  .coat_roughness = now->more[2],
@@ -127,6 +127,8 @@ static masu_result check_fixed(const masu_materials *s, const masu_frame_plan *p
         return fixed(i, "cutoff", "recordings hold it", detail);
     if (!blends && to->opacity != now.opacity)
         return fixed(i, "opacity", "the material is not blended", detail);
+    if (s->now[i].emissive[3] < 0.0f && to->metallic > 0.0f)
+        return fixed(i, "metallic", "the material refracts", detail);
     if (to->coat > 0.0f && !plan->scene.coats)
         return fixed(i, "coat", "the scene has no material with one, and no tables for it", detail);
     if (s->now[i].more[0] < 0.0f) {
@@ -143,12 +145,14 @@ static masu_result check_fixed(const masu_materials *s, const masu_frame_plan *p
 masu_result masu_materials_set(masu_materials *s, const masu_frame_plan *plan, uint32_t material,
                                const masu_material_state *state, masu_detail *detail) {
     int lobe = s->now[material].more[0] < 0.0f;
+    float volume = s->now[material].emissive[3];
     masu_result result = check_factors(material, state, lobe, detail);
     if (!result) result = check_fixed(s, plan, material, state, detail);
     if (result) return result;
     struct masu_material_data to = {
         {state->base_color[0], state->base_color[1], state->base_color[2], state->roughness},
-        {state->emissive[0], state->emissive[1], state->emissive[2], state->metallic},
+        {state->emissive[0], state->emissive[1], state->emissive[2],
+         volume < 0.0f ? volume : state->metallic},
         {lobe ? s->now[material].more[0] : state->specular, state->coat, state->coat_roughness, state->opacity}};
     s->changes += memcmp(&s->now[material], &to, sizeof to) != 0;
     s->now[material] = to;

@@ -136,10 +136,10 @@ static void compile_rung(masu_frame_plan *plan, uint32_t r) {
         for (uint32_t a = 0; a < MASU_PASS_ACCESSES && row->access[a].image; a++) {
             masu_usage usage = (masu_usage)row->access[a].usage;
             uint8_t resource = resolve(row->access[a].image, &l);
-            /* Without rough glass the shader does not read the background, but the binding must be
-             * valid. */
+            /* Without rough or refracting glass the shader does not read the background, but the
+             * binding must be valid. */
             if (p == MASU_PASS_TRANSPARENTS && resource == MASU_IMAGE_BACKGROUND &&
-                !plan->needs.rough_glass) {
+                !plan->needs.rough_glass && !plan->needs.refraction) {
                 resource = l.image[MASU_CLASS_DEPTH];
                 usage = MASU_READ;
             }
@@ -354,6 +354,8 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
         .shadow = d->scene && plan->scene.shadow_cascades,
         .transparents = d->scene && plan->scene.transparents,
         .rough_glass = d->scene && plan->scene.transparents && plan->scene.tints & MASU_TINTS_ROUGH,
+        .refraction =
+            d->scene && plan->scene.transparents && plan->scene.tints & MASU_TINTS_REFRACTED,
         .lights = d->scene && plan->scene.lights,
         .local_shadows = d->scene && any.local_shadows,
         .area_lights =

@@ -212,6 +212,8 @@ VkExtent2D masu_extent_of(masu_image_extent extent, VkExtent2D render, VkExtent2
         return (VkExtent2D){1, 1};
     if (extent == MASU_EXTENT_LEVELS)
         return (VkExtent2D){(render.width + 63) / 64 * 32, (render.height + 63) / 64 * 48};
+    if (extent == MASU_EXTENT_ALL_LEVELS)
+        return (VkExtent2D){(render.width + 63) / 64 * 64, (render.height + 63) / 64 * 96};
     if (extent == MASU_EXTENT_PICK) return (VkExtent2D){2, 2};
     if (extent == MASU_EXTENT_SHADOW || extent == MASU_EXTENT_LOCAL_FACES ||
         extent == MASU_EXTENT_LOCAL_ATLAS || extent == MASU_EXTENT_LOCAL_PAIRS)

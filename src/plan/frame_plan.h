@@ -53,6 +53,7 @@ typedef enum masu_image_extent {
     MASU_EXTENT_HALF,   /* one texel per 2x2 render pixels */
     MASU_EXTENT_TRACED, /* the same, for reflections; per pixel with debug.reference */
     MASU_EXTENT_LEVELS, /* 1/2 to 1/64 of the render size side by side: light/background.glsl */
+    MASU_EXTENT_ALL_LEVELS, /* and the render size itself */
     MASU_EXTENT_BLOCK8,
     MASU_EXTENT_BLOCK4,
     MASU_EXTENT_TILE,  /* one workgroup per tile of 16x16 pixels */
@@ -187,7 +188,8 @@ typedef struct masu_needs {
     int local_shadows; /* a rung has local shadows: there is an atlas */
     int shadow;        /* polygons cast sun shadows: there is a shadow map */
     int transparents;  /* the scene has transparent surfaces, */
-    int rough_glass;   /* and some show a blurred background */
+    int rough_glass;   /* and some show a blurred background, */
+    int refraction;    /* or a refracted one */
     int reflections;   /* a rung traces reflections */
     int traced;        /* rays trace polygons */
     int traced_sdf;    /* rays trace the SDF */
