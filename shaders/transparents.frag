@@ -55,6 +55,7 @@ layout(constant_id = 0) const bool tints = false;
 layout(constant_id = 12) const uint tinted_glass = 0u; /* the scene has some; MASU_TINTS_ROUGH: and rough one */
 const bool any_tints = tinted_glass != 0u;
 const bool any_rough = (tinted_glass & MASU_TINTS_ROUGH) != 0u;
+layout(constant_id = 22) const bool masu_live_maps = false;
 layout(constant_id = 2) const bool foggy = false; /* the scene has fog */
 
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D depth_image;
@@ -84,6 +85,7 @@ layout(location = 5) in vec4 in_color;
 #define MASU_MAPS_FLAGS in_thing.y
 #define MASU_MAPS_LAYERS in_thing.z
 #define MASU_MAPS_DETAIL in_detail
+#define MASU_MAPS_LIVE
 #include "shared/maps.glsl"
 #endif
 
@@ -166,7 +168,7 @@ void main()
     masu_take_specular(s, m.more.x);
     s.coat = m.more.y;
     s.coat_roughness = m.more.z;
-    float opacity = m.more.w;
+    float opacity = masu_live_maps ? m.more.w - 2.0 * floor(0.5 * m.more.w) : m.more.w;
     float cover = 1.0;
     vec3 direction = masu_normalize(in_rel, frame.forward.xyz);
     vec3 n = masu_normalize(in_normal, -direction);
@@ -178,7 +180,7 @@ void main()
     bool elsewhere = twice && away != (in_thing.w == 0u);
 #ifdef MASU_TEXTURES
     /* Everything that takes derivatives comes before the discard. */
-    cover = masu_sample_maps(in_texcoord, s);
+    cover = masu_sample_maps(in_texcoord, floor(0.5 * m.more.w), s);
     if ((tinted_glass & MASU_TINTS_MAPPED) != 0u && (in_thing.y & MASU_MAP_TRANSMISSION) != 0u) {
         opacity = 1.0 - (1.0 - opacity) * cover;
         cover = 1.0;

@@ -444,6 +444,7 @@ masu_result masu_write_frame(masu_renderer *m, masu_frame_data *f) {
     masu_picking_write(&m->picking, &m->visible, &m->bounds, &m->instances, f);
     masu_transparents_write(&m->transparents, &m->instances, &m->visible, f);
     masu_sprites_write(&m->sprites, &m->transparents, f);
+    masu_textures_write_frame(&m->textures, f);
     masu_occlusion_write(&m->occlusion, &m->visible, &m->instances, &m->views, f);
     return MASU_OK;
 }

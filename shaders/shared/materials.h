@@ -48,7 +48,9 @@ struct masu_instance_data {
 struct masu_material_data {
     masu_vec4 base_color; /* rgb linear albedo; w perceptual roughness 0..1 */
     masu_vec4 emissive;   /* rgb linear radiance, 0: not emissive; w metallic 0..1 */
-    masu_vec4 more;       /* specular (below 0: -1 - lobe), coat, coat roughness, opacity: each 0..1 */
+    /* specular (below 0: -1 - lobe), coat, coat roughness, opacity: each 0..1; opacity plus twice the
+     * number of the live texture, 0: none */
+    masu_vec4 more;
 };
 
 #endif
