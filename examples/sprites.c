@@ -42,7 +42,7 @@ static void paint(void) {
         double u = (x % CELL + 0.5) / CELL * 2 - 1, v = (y % CELL + 0.5) / CELL * 2 - 1, cloud = 0;
         for (int octave = 0; octave < 4; octave++)
             cloud += smooth_noise((x + 1000.0 * (y / CELL)) * (1 << octave) / 24, y * (1 << octave) / 24.0) / (2 << octave);
-        set(smoke, i, 0.6 + 0.4 * cloud, 2.2 * (1 - hypot(u, v)) * cloud);
+        set(smoke, i, 0.3 + 0.9 * cloud, fmax(0, 3 * (1 - hypot(u, v)) * (cloud - 0.1)));
         double a = (x + 0.5) / SIDE * 2 - 1, b = (y + 0.5) / SIDE * 2 - 1, r = hypot(a, b);
         int ring = r < 0.95 && r > 0.75, bar = r < 0.75 && (fabs(a - b) < 0.16);
         set(sign, i, 1, ring || bar);
@@ -102,20 +102,20 @@ int main(int argc, char **argv) {
         CHECK(masu_camera_at(m, 0, &camera, &detail) == MASU_OK);
         for (uint32_t k = 0; k < PUFFS; k++) { /* older ones are larger, higher and fainter */
             float age = (float)k / PUFFS, u = 0.25f * (float)(k % 4), v = 0.25f * (float)(k / 4 % 4);
-            puffs[k] = (masu_particle){.half_width = 0.15f + 0.5f * age, .rotation = (float)k, .color = {0.7f, 0.7f, 0.75f},
-                                       .opacity = 0.7f * (1 - age), .soft = 0.3f, .flags = MASU_PARTICLE_LIT, .texture = SMOKE,
+            puffs[k] = (masu_particle){.half_width = 0.12f + 0.3f * age, .rotation = (float)k, .color = {0.7f, 0.7f, 0.75f},
+                                       .opacity = 0.9f * (1 - age), .soft = 0.3f, .flags = MASU_PARTICLE_LIT, .texture = SMOKE,
                                        .uv = {u, v, u + 0.25f, v + 0.25f}};
-            place(&camera, -1.2 + 0.5 * (double)age * sin(k), -0.8 + 2.2 * (double)age, 5 + 0.3 * cos(k), puffs[k].position);
+            place(&camera, -1 + 0.4 * (double)age * sin(k), -0.7 + 1.4 * (double)age, 3 + 0.2 * cos(k), puffs[k].position);
         }
         for (uint32_t k = 0; k < POINTS; k++) { /* a spiral, brightest at its head */
             double along = (double)k / (POINTS - 1);
             points[k] = (masu_trail_point){.half_width = (float)(0.01 + 0.09 * along), .color = {6, 2.5f, 0.6f}, .opacity = (float)along};
-            place(&camera, 1.4 + 0.8 * cos(12 * along), -0.9 + 1.8 * along, 5 + 0.8 * sin(12 * along), points[k].position);
+            place(&camera, 0.7 + 0.5 * cos(12 * along), -0.6 + 1.2 * along, 2.5 + 0.5 * sin(12 * along), points[k].position);
         }
         const masu_trail trail = {.points = points, .point_count = POINTS, .flags = MASU_PARTICLE_ADDITIVE, .texture = STREAK, .repeat = 1};
         masu_decal decal = {.rows = {0.9f, 0, 0, 0, 0, 0, 4, 0, 0, -0.9f, 0, 0}, /* on the ground ahead */
                             .color = {0.9f, 0.1f, 0.05f}, .opacity = 0.9f, .roughness = 0.6f, .texture = SIGN};
-        place(&camera, 0.2, -1, 6, decal.position);
+        place(&camera, 0, -1, 4, decal.position);
         if (i < 3) CHECK(masu_texture_write(m, i + 1, NULL, textures[i], 0, &detail) == MASU_OK);
         masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &camera, .time = i / 60.0, .particles = puffs, .particle_count = PUFFS,
                                  .trails = &trail, .trail_count = 1, .decals = &decal, .decal_count = 1};
