@@ -966,6 +966,9 @@ typedef struct masu_decal {
      * `opacity`. The cell fills the box: its left edge is at x = -1, its top at y = 1. */
     uint32_t texture;
     float uv[4];
+    /* Radiance that the decal emits, 0..1e6, times its colour and the texture's. Requires
+     * desc.reserve.textures. */
+    float emission;
 } masu_decal;
 
 #define MASU_LINE_ON_TOP 1u /* no depth test; else surfaces more than 0.5 % closer occlude it */
@@ -1017,6 +1020,9 @@ typedef struct masu_frame_desc {
     uint32_t particle_count, decal_count, line_count;
     const masu_trail *trails; /* with at most desc.reserve.trail_points points together */
     uint32_t trail_count;
+    /* Flag: commands of the host have changed textures (masu_texture_image_of) since the previous
+     * frame. Rungs with temporal then shorten their history, as they do after masu_texture_write. */
+    uint32_t textures_changed;
     /* pick: flag. masu_pick reports the object at this pixel of the output (or viewport), counted
      * from the upper left corner: 0 .. width - 1, 0 .. height - 1. Requires desc.picking. */
     uint32_t pick, pick_x, pick_y;

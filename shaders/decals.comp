@@ -143,6 +143,9 @@ void paint(ivec2 at, uvec2 size, uint words)
                 if ((floatBitsToUint(look.w) & MASU_SPRITE_KEEP_COLOR) == 0u) {
                     cover(s, color.rgb, look.y >= 0.0 ? look.y : s.metallic, share);
                 }
+#ifdef MASU_LIVE_TEXTURES
+                s.emissive += color.rgb * (share * sprites[decal + 8u].y);
+#endif
                 s.roughness = mix(s.roughness, look.x >= 0.0 ? look.x : s.roughness, share);
             }
         }

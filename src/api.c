@@ -425,7 +425,8 @@ masu_result masu_write_frame(masu_renderer *m, masu_frame_data *f) {
     masu_history_rebase(&m->history, f);
     masu_reflections_read(&m->reflections, f);
     masu_lights_cast(&m->lights, &m->local_shadows, &m->instances, &m->bounds, f);
-    masu_temporal_read(&m->temporal, &m->history, &m->instances, &m->lights, &m->materials, f);
+    masu_temporal_read(&m->temporal, &m->history, &m->instances, &m->lights, &m->materials,
+                       &m->textures, f);
     masu_frame_write_uniforms(&m->history, f);
 
     masu_shadow_write(&m->shadow, &m->bounds, f);

@@ -27,8 +27,8 @@
  *   decal      DECAL_VEC4S: three rows of the matrix camera-relative -> box; colour, opacity;
  *              roughness, metallic, edge, flags (integer); unit z axis, 0; first and last pixel, 16
  *              bits per coordinate (integers), cos(outer), 1 / (cos(inner) - cos(outer)). With
- *              textures or trails TEXTURED_DECAL_VEC4S: corners of the cell; texture (integer), 0,
- *              0, 0 */
+ *              textures or trails TEXTURED_DECAL_VEC4S: corners of the cell; texture (integer),
+ *              emission, 0, 0 */
 #define MASU_SPRITE_DISPATCH 0u
 #define MASU_SPRITE_PLACE 1u
 #define MASU_SPRITE_LINES 2u

@@ -36,6 +36,7 @@ static int is_fine(const masu_decal *d) {
     int fine = isfinite(d->opacity) && isfinite(d->roughness) && isfinite(d->metallic) && isfinite(d->edge) &&
                isfinite(d->inner) && isfinite(d->outer) && d->opacity > 0.0f;
     for (uint32_t k = 0; k < 12; k++) fine &= isfinite(d->rows[k]) != 0;
+    fine &= isfinite(d->emission) != 0;
     if (d->texture) fine &= masu_is_cell(d->uv);
     for (uint32_t k = 0; k < 3; k++) fine &= isfinite(d->color[k]) != 0 && isfinite(d->position[k]) != 0;
     return fine;
@@ -108,6 +109,7 @@ static void write_decal(const masu_decal *d, const masu_sprite_eye *eye, double 
         masu_cell_write(d->uv, &v[28]);
         memcpy(&v[32], &d->texture, sizeof d->texture);
     }
+    v[33] = masu_clamped(d->emission, 0.0f, 1e6f);
     memcpy(to, v, bytes);
 }
 

@@ -6,6 +6,8 @@
 #include "frame/frame_data.h"
 #include "frame/transparents.h"
 
+#include <math.h>
+
 typedef struct masu_sprite_eye {
     double at[3];
     double right[3], up[3], forward[3]; /* unit */
@@ -29,9 +31,17 @@ static inline float masu_clamped(float v, float low, float high) {
 }
 
 /* Whether a cell of a texture has only numbers. */
-int masu_is_cell(const float uv[4]);
+static inline int masu_is_cell(const float uv[4]) {
+    return isfinite(uv[0]) && isfinite(uv[1]) && isfinite(uv[2]) && isfinite(uv[3]);
+}
+
 /* A cell to two corners within 0..1; of all 0 the whole texture. */
-void masu_cell_write(const float uv[4], float to[4]);
+static inline void masu_cell_write(const float uv[4], float to[4]) {
+    static const float whole[4] = {0.0f, 0.0f, 1.0f, 1.0f};
+    int none = 1;
+    for (uint32_t k = 0; k < 4; k++) none &= uv[k] == 0.0f;
+    for (uint32_t k = 0; k < 4; k++) to[k] = none ? whole[k] : masu_clamped(uv[k], 0.0f, 1.0f);
+}
 
 /* Each writes what it draws from `to` on and returns how many. draws: of the particles, before each slot of what is
  * blended and after the last; *segments: how many of the result are segments of trails. part: the smallest rectangle

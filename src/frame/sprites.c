@@ -5,7 +5,6 @@
 
 #include "base/error.h"
 
-#include <math.h>
 #include <string.h>
 
 _Static_assert(sizeof(VkDrawIndirectCommand) == sizeof(masu_vec4), "a command is a vec4");
@@ -68,21 +67,15 @@ masu_result masu_sprites_check(const masu_desc *d, const masu_frame_desc *frame,
     if (!result) result = check("reserve.lines", frame->lines, frame->line_count, r->lines, detail);
     for (uint32_t i = 0; i < frame->particle_count && !result; i++)
         result = check_texture(d, "particles", i, frame->particles[i].texture, detail);
-    for (uint32_t i = 0; i < frame->decal_count && !result; i++)
+    for (uint32_t i = 0; i < frame->decal_count && !result; i++) {
         result = check_texture(d, "decals", i, frame->decals[i].texture, detail);
+        if (!result && frame->decals[i].emission != 0.0f && !r->textures) {
+            result = masu_fail(detail, MASU_ERROR_ARGUMENT, "reserve.textures", 1, 0,
+                               "reserve.textures is 0, decals[%u].emission needs at least 1", i);
+        }
+    }
     if (!result) result = check_trails(d, frame, detail);
     return result;
-}
-
-int masu_is_cell(const float uv[4]) {
-    return isfinite(uv[0]) && isfinite(uv[1]) && isfinite(uv[2]) && isfinite(uv[3]);
-}
-
-void masu_cell_write(const float uv[4], float to[4]) {
-    static const float whole[4] = {0.0f, 0.0f, 1.0f, 1.0f};
-    int none = 1;
-    for (uint32_t k = 0; k < 4; k++) none &= uv[k] == 0.0f;
-    for (uint32_t k = 0; k < 4; k++) to[k] = none ? whole[k] : masu_clamped(uv[k], 0.0f, 1.0f);
 }
 
 static masu_sprite_eye eye_of(const masu_frame_data *f) {

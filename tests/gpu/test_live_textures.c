@@ -327,6 +327,75 @@ static void a_decal_has_colour_and_alpha_of_its_cell(void **state) {
     close_session(&s);
 }
 
+/* Paint that glows in the dark: half of it, on a square that does not emit. */
+static void a_decal_emits_the_colour_of_its_cell(void **state) {
+    (void)state;
+    static const float whole[4] = {0, 0, 1, 1};
+    const masu_light dark = {.exposure = 1, .sun_direction = {0, 0, 1}};
+    const flat f = {0, 0, 3, 0.8, 0.8, 0};
+    open_room(TEXELS);
+    fill(2, TEXELS, 2, 255, 7);
+    write_whole(2);
+    masu_decal d = {.rows = {0.8f, 0, 0, 0, 0, 0.8f, 0, 0, 0, 0, 1, 0}, .color = {1, 0.5f, 0.25f},
+                    .opacity = 0.5f, .texture = 2, .emission = 4};
+    render((masu_frame_desc){.light = &dark}, base);
+    render((masu_frame_desc){.light = &dark, .decals = &d, .decal_count = 1}, picture);
+    double worst = 0;
+    for (uint32_t i = 0; i < PIXELS; i++) {
+        double t[4];
+        if (!mean(&f, 2, TEXELS, whole, i, t)) continue;
+        for (uint32_t k = 0; k < 3; k++) {
+            double want = t[k] * (double)d.color[k] * 2;
+            assert_true(base[4 * i + k] < 1e-3f);
+            worst = fmax(worst, fabs(want - (double)picture[4 * i + k]));
+        }
+    }
+    print_message("off by %.4f at most\n", worst);
+    assert_true(worst < 0.03);
+    close_session(&s);
+}
+
+/* A texture that changes leaves nothing in the history of a rung with temporal: 16 frames later the
+ * picture is that of a material which never showed the old one. */
+static void a_texture_that_changes_leaves_no_trail(void **state) {
+    (void)state;
+    enum { WARM = 40, AFTER = 16 };
+    static uint8_t shown[2][4 * PIXELS];
+    uint32_t left[AFTER] = {0};
+    masu_session_desc desc = room_desc(TEXELS);
+    desc.desc.rungs[0] = (masu_rung){.scale = 0.75f, .temporal = MASU_ON};
+    masu_session other;
+    open_session(&s, &desc);
+    open_session(&other, &desc);
+    masu_session *both[2] = {&s, &other};
+    for (uint32_t i = 0; i < WARM + AFTER; i++) {
+        for (uint32_t k = 0; k < 2; k++) {
+            masu_frame_desc f = {MASU_FRAME_DESC, .camera = &camera, .time_step = 1.0f / 60};
+            masu_commands commands;
+            if (i == 0 || i == WARM) { /* red at first, or green from the start */
+                masu_material_state state_of;
+                masu_material material = masu_material_at(both[k]->m, 0);
+                uint8_t *t = texels[0];
+                for (uint32_t n = 0; n < TEXELS * TEXELS; n++)
+                    memcpy(t + 4 * n, k == 0 && i == 0 ? "\377\0\0\377" : "\0\377\0\377", 4);
+                assert_int_equal(masu_texture_write(both[k]->m, 1, NULL, t, 0, &failure), MASU_OK);
+                assert_int_equal(masu_material_get(both[k]->m, material, &state_of, &failure),
+                                 MASU_OK);
+                state_of.texture = 1;
+                assert_int_equal(masu_material_set(both[k]->m, material, &state_of, &failure),
+                                 MASU_OK);
+            }
+            draw(both[k], &f, &commands, shown[k]);
+        }
+        if (i < WARM) continue;
+        for (uint32_t p = 0; p < 4 * PIXELS; p++) left[i - WARM] += abs(shown[0][p] - shown[1][p]) > 3;
+    }
+    print_message("bytes that differ: %u, after 4 frames %u, after 15 %u\n", left[0], left[4], left[15]);
+    assert_true(left[4] < 200 && left[15] < 20);
+    close_session(&other);
+    close_session(&s);
+}
+
 /* The square of the scene, 1 m around the origin. */
 static void a_material_shows_a_live_texture(void **state) {
     (void)state;
@@ -668,6 +737,13 @@ static masu_result frame_of(masu_frame_desc frame) {
 static void frames_have_limits(void **state) {
     (void)state;
     static masu_trail_point points[POINTS + 1];
+    const masu_decal glows = {.opacity = 1, .emission = 1};
+    masu_session_desc none = room_desc(TEXELS);
+    none.desc.reserve.textures = 0;
+    open_session(&s, &none);
+    refused(frame_of((masu_frame_desc){.decals = &glows, .decal_count = 1}), MASU_ERROR_ARGUMENT,
+            "reserve.textures", 1, 0);
+    close_session(&s);
     masu_trail t[2] = {{.points = points, .point_count = POINTS}, {.points = points}};
     masu_particle p = sheet;
     masu_decal d = {.texture = COUNT + 1};
@@ -796,6 +872,8 @@ int main(void) {
         cmocka_unit_test(small_ones_do_not_alias),
         cmocka_unit_test(cells_of_an_atlas_do_not_bleed),
         cmocka_unit_test(a_decal_has_colour_and_alpha_of_its_cell),
+        cmocka_unit_test(a_decal_emits_the_colour_of_its_cell),
+        cmocka_unit_test(a_texture_that_changes_leaves_no_trail),
         cmocka_unit_test(a_material_shows_a_live_texture),
         cmocka_unit_test(the_host_clears_and_blits_into_the_image),
         cmocka_unit_test(a_trail_is_shaded_along_its_length),
