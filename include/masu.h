@@ -1695,11 +1695,12 @@ MASU_API MASU_MUST_USE masu_result masu_texture_write(masu_renderer *renderer, u
  * submits them to the same queue between two frames. Its first barrier waits for
  * VK_PIPELINE_STAGE_ALL_COMMANDS_BIT and changes the layout of the layer from `layout`; its last
  * one restores the layout and makes the writes available. The next frame begins with a barrier
- * after all commands. A view may have the format R8G8B8A8_UNORM, to store encoded values. */
+ * after all commands. Views of the host need a VkImageViewUsageCreateInfo with the usage below, and
+ * may have the format R8G8B8A8_UNORM, for values that are encoded already. */
 typedef struct masu_texture_image {
     VkImage image;
     VkFormat format;         /* R8G8B8A8_SRGB */
-    VkImageUsageFlags usage; /* SAMPLED, COLOR_ATTACHMENT, TRANSFER_SRC, TRANSFER_DST and others */
+    VkImageUsageFlags usage; /* SAMPLED, COLOR_ATTACHMENT, TRANSFER_SRC, TRANSFER_DST */
     VkImageLayout layout;    /* SHADER_READ_ONLY_OPTIMAL */
     uint32_t width, height, layers;
 } masu_texture_image;

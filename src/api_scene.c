@@ -352,7 +352,8 @@ masu_result masu_texture_image_of(const masu_renderer *m, masu_texture_image *ou
     const masu_image_plan *image = &m->plan.images[MASU_IMAGE_TEXTURES];
     *out = (masu_texture_image){.image = m->device.objects.images[MASU_IMAGE_TEXTURES],
                                 .format = masu_plan_format(&m->plan, MASU_IMAGE_TEXTURES),
-                                .usage = image->usage,
+                                .usage =
+                                    image->usage & ~(VkImageUsageFlags)VK_IMAGE_USAGE_STORAGE_BIT,
                                 .layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
                                 .width = image->width,
                                 .height = image->height,

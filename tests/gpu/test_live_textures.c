@@ -480,6 +480,7 @@ static void the_host_clears_and_blits_into_the_image(void **state) {
     open_room(TEXELS);
     assert_int_equal(masu_texture_image_of(s.m, &t, &failure), MASU_OK);
     assert_true(t.width == TEXELS && t.height == TEXELS && t.layers == COUNT);
+    assert_int_equal(t.usage & VK_IMAGE_USAGE_STORAGE_BIT, 0);
     const VkCommandBufferAllocateInfo info = {
         .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
         .commandPool = s.host.pool,
