@@ -55,8 +55,8 @@ masu_result masu_textures_add(masu_textures *t, const masu_device *device,
     uint32_t slot = (uint32_t)(timeline->frame % d->frames_in_flight);
     unsigned char *to = masu_buffer_pointer(device, MASU_BUFFER_TEXELS, slot);
     const uint32_t write[MASU_TEXTURE_WRITE_WORDS] = {
-        (uint32_t)r.offset.x, (uint32_t)r.offset.y, r.extent.width, r.extent.height,
-        texture - 1,          MASU_TEXELS_FIRST + t->words};
+        (uint32_t)r.offset.x, (uint32_t)r.offset.y, r.extent.width,
+        r.extent.height,      texture - 1,          MASU_TEXELS_FIRST + t->words};
     memcpy(to + 4 * (MASU_TEXELS_HEAD + MASU_TEXTURE_WRITE_WORDS * t->count), write, sizeof write);
     to += 4 * (uint64_t)(MASU_TEXELS_FIRST + t->words);
     for (uint32_t y = 0; y < r.extent.height; y++) {

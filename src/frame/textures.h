@@ -7,8 +7,8 @@
 
 /* Of the next frame, whose slot has the writes and the texels already. */
 typedef struct masu_textures {
-    uint32_t count, words;   /* writes; texels */
-    uint32_t width, height;  /* of the largest rectangle */
+    uint32_t count, words;  /* writes; texels */
+    uint32_t width, height; /* of the largest rectangle */
 } masu_textures;
 
 /* masu_texture_write. */

@@ -1,9 +1,9 @@
 /* test_live_textures.c: textures that the host fills at run time, on particles, trails, decals and
  * materials, against a filter in doubles; cells of an atlas; commands of the host that copy into the
  * image; trails and their order; limits. */
-#include "support/support.h"
 #include "support/floats.h"
 #include "support/random.h"
+#include "support/support.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -115,7 +115,8 @@ typedef struct flat {
 
 static int mean(const flat *f, uint32_t texture, uint32_t side, const float cell[4], uint32_t pixel,
                 double out[4]) {
-    const double pixel_size = 2 * tan_y * f->z / SIDE, texel_size = 2 * fmin(f->width, f->height) / side;
+    const double pixel_size = 2 * tan_y * f->z / SIDE,
+                 texel_size = 2 * fmin(f->width, f->height) / side;
     const uint32_t steps = texel_size > pixel_size ? 1 : 16;
     double c = cos(f->rotation), n = sin(f->rotation);
     memset(out, 0, 4 * sizeof *out);
@@ -220,8 +221,11 @@ static void small_ones_do_not_alias(void **state) {
     write_whole(1);
     for (uint32_t i = 0; i < sizeof across / sizeof *across; i++) {
         double worst;
-        masu_particle p = {.position = {0, 0, 1}, .rotation = 0.4f, .color = {1, 1, 1},
-                           .opacity = 1, .texture = 1};
+        masu_particle p = {.position = {0, 0, 1},
+                           .rotation = 0.4f,
+                           .color = {1, 1, 1},
+                           .opacity = 1,
+                           .texture = 1};
         p.half_width = (float)(LARGE / (double)across[i] / SIDE * tan_y * 2);
         masu_frame_desc frame = {.particles = &p, .particle_count = 1};
         render(frame, picture);
@@ -269,8 +273,13 @@ static void cells_of_an_atlas_do_not_bleed(void **state) {
         }
     }
     /* Red, a quarter of it blue. */
-    masu_particle p = {.position = {0, 0, 1}, .half_width = 0.5f, .color = {1, 1, 1}, .opacity = 1,
-                       .texture = 1, .uv = {0, 0, 0.5f, 0.5f}, .uv_next = {0, 0.5f},
+    masu_particle p = {.position = {0, 0, 1},
+                       .half_width = 0.5f,
+                       .color = {1, 1, 1},
+                       .opacity = 1,
+                       .texture = 1,
+                       .uv = {0, 0, 0.5f, 0.5f},
+                       .uv_next = {0, 0.5f},
                        .blend = 0.25f};
     masu_frame_desc frame = {.particles = &p, .particle_count = 1};
     render(frame, picture);
@@ -336,8 +345,11 @@ static void a_decal_emits_the_colour_of_its_cell(void **state) {
     open_room(TEXELS);
     fill(2, TEXELS, 2, 255, 7);
     write_whole(2);
-    masu_decal d = {.rows = {0.8f, 0, 0, 0, 0, 0.8f, 0, 0, 0, 0, 1, 0}, .color = {1, 0.5f, 0.25f},
-                    .opacity = 0.5f, .texture = 2, .emission = 4};
+    masu_decal d = {.rows = {0.8f, 0, 0, 0, 0, 0.8f, 0, 0, 0, 0, 1, 0},
+                    .color = {1, 0.5f, 0.25f},
+                    .opacity = 0.5f,
+                    .texture = 2,
+                    .emission = 4};
     render((masu_frame_desc){.light = &dark}, base);
     render((masu_frame_desc){.light = &dark, .decals = &d, .decal_count = 1}, picture);
     double worst = 0;
@@ -455,16 +467,16 @@ static void a_material_shows_a_live_texture(void **state) {
 
 static VkImageMemoryBarrier of_layer(const masu_texture_image *t, uint32_t layer,
                                      VkImageLayout from, VkImageLayout to) {
-    return (VkImageMemoryBarrier){
-        .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
-        .srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT,
-        .dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT,
-        .oldLayout = from,
-        .newLayout = to,
-        .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-        .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-        .image = t->image,
-        .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, layer, 1}};
+    return (VkImageMemoryBarrier){.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
+                                  .srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT,
+                                  .dstAccessMask =
+                                      VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT,
+                                  .oldLayout = from,
+                                  .newLayout = to,
+                                  .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                  .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                  .image = t->image,
+                                  .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, layer, 1}};
 }
 
 static void change(VkCommandBuffer cmd, const VkImageMemoryBarrier *b) {
@@ -481,26 +493,24 @@ static void the_host_clears_and_blits_into_the_image(void **state) {
     assert_int_equal(masu_texture_image_of(s.m, &t, &failure), MASU_OK);
     assert_true(t.width == TEXELS && t.height == TEXELS && t.layers == COUNT);
     assert_int_equal(t.usage & VK_IMAGE_USAGE_STORAGE_BIT, 0);
-    const VkCommandBufferAllocateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-        .commandPool = s.host.pool,
-        .commandBufferCount = 1};
+    const VkCommandBufferAllocateInfo info = {.sType =
+                                                  VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                              .commandPool = s.host.pool,
+                                              .commandBufferCount = 1};
     const VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     VkCommandBuffer cmd;
     assert_int_equal(vkAllocateCommandBuffers(s.host.device, &info, &cmd), VK_SUCCESS);
     assert_int_equal(vkBeginCommandBuffer(cmd, &begin), VK_SUCCESS);
     const VkImageLayout to = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                         from = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
-    const VkImageMemoryBarrier steps[] = {of_layer(&t, 0, t.layout, to), of_layer(&t, 0, to, from),
-                                          of_layer(&t, 2, t.layout, to),
-                                          of_layer(&t, 2, to, t.layout),
-                                          of_layer(&t, 0, from, t.layout)};
+    const VkImageMemoryBarrier steps[] = {
+        of_layer(&t, 0, t.layout, to), of_layer(&t, 0, to, from), of_layer(&t, 2, t.layout, to),
+        of_layer(&t, 2, to, t.layout), of_layer(&t, 0, from, t.layout)};
     const VkClearColorValue color = {.float32 = {0.5f, 0.25f, 1, 1}};
-    const VkImageBlit blit = {
-        .srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
-        .srcOffsets = {{0, 0, 0}, {TEXELS / 2, TEXELS, 1}},
-        .dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 2, 1},
-        .dstOffsets = {{0, 0, 0}, {TEXELS, TEXELS, 1}}};
+    const VkImageBlit blit = {.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                              .srcOffsets = {{0, 0, 0}, {TEXELS / 2, TEXELS, 1}},
+                              .dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 2, 1},
+                              .dstOffsets = {{0, 0, 0}, {TEXELS, TEXELS, 1}}};
     change(cmd, &steps[0]);
     vkCmdClearColorImage(cmd, t.image, to, &color, 1, &steps[0].subresourceRange);
     change(cmd, &steps[1]);
@@ -517,8 +527,7 @@ static void the_host_clears_and_blits_into_the_image(void **state) {
     for (uint32_t n = 0; n < 2; n++) {
         render(frame, picture);
         const float *center = &picture[4 * (SIDE / 2 * SIDE + SIDE / 2)];
-        for (uint32_t k = 0; k < 3; k++)
-            assert_true(fabsf(center[k] - color.float32[k]) < 0.01f);
+        for (uint32_t k = 0; k < 3; k++) assert_true(fabsf(center[k] - color.float32[k]) < 0.01f);
     }
     vkFreeCommandBuffers(s.host.device, s.host.pool, 1, &cmd);
     close_session(&s);
@@ -537,10 +546,11 @@ static void a_trail_is_shaded_along_its_length(void **state) {
     (void)state;
     masu_trail_point p[3];
     for (uint32_t i = 0; i < 3; i++)
-        p[i] = (masu_trail_point){.position = {-0.6 + 0.6 * i, 0, 1}, /* level with the camera: sides are upright */
-                                  .half_width = 0.2f,
-                                  .color = {1, (float)i, 0.5f},
-                                  .opacity = 0.25f + 0.25f * (float)i};
+        p[i] = (masu_trail_point){
+            .position = {-0.6 + 0.6 * i, 0, 1}, /* level with the camera: sides are upright */
+            .half_width = 0.2f,
+            .color = {1, (float)i, 0.5f},
+            .opacity = 0.25f + 0.25f * (float)i};
     static const float whole[4] = {0, 0, 1, 1};
     open_room(TEXELS);
     fill(1, TEXELS, 8, 200, 6);
@@ -600,17 +610,18 @@ static void segments_of_a_trail_share_their_edges(void **state) {
         masu_trail_point p[POINTS];
         for (uint32_t i = 0; i < POINTS; i++) {
             double turn = (form + 1) * 0.1 * (double)i;
-            p[i] = (masu_trail_point){
-                .position = {0.45 * cos(turn), 0.45 * sin(turn), 1 + 0.02 * i},
-                .half_width = 0.12f,
-                .color = {4, 4, 4},
-                .opacity = 0.5f};
+            p[i] =
+                (masu_trail_point){.position = {0.45 * cos(turn), 0.45 * sin(turn), 1 + 0.02 * i},
+                                   .half_width = 0.12f,
+                                   .color = {4, 4, 4},
+                                   .opacity = 0.5f};
         }
         masu_trail t = {.points = p, .point_count = form == 3 ? 14 : POINTS, .texture = 1};
         render((masu_frame_desc){.trails = &t, .trail_count = 1}, picture);
         uint32_t once = 0, partly = 0;
         for (uint32_t i = 0; i < PIXELS; i++) {
-            double gain = ((double)picture[4 * i] - (double)base[4 * i]) / (4 - (double)base[4 * i]);
+            double gain =
+                ((double)picture[4 * i] - (double)base[4 * i]) / (4 - (double)base[4 * i]);
             assert_true(gain < 0.51);
             once += gain > 0.49;
             partly += gain > 0.01 && gain < 0.49;
@@ -640,21 +651,27 @@ static void sprites_are_ordered_within_their_bound(void **state) {
             double x = random_between(&seed, -0.3, 0.3), y = random_between(&seed, -0.3, 0.3);
             if (i < DISCS) {
                 radius[i] = 0.15 * sqrt(2.0);
-                p[i] = (masu_particle){.position = {x, y, 3 - z[i]}, .half_width = 0.15f,
-                                       .color = {color, 0, 0}, .opacity = 1, .edge = 1};
+                p[i] = (masu_particle){.position = {x, y, 3 - z[i]},
+                                       .half_width = 0.15f,
+                                       .color = {color, 0, 0},
+                                       .opacity = 1,
+                                       .edge = 1};
                 continue;
             }
             radius[i] = hypot(0.25, 0.1);
             for (uint32_t e = 0; e < 2; e++)
-                points[i - DISCS][e] = (masu_trail_point){
-                    .position = {x + (e ? 0.25 : -0.25), y, 3 - z[i]}, .half_width = 0.1f,
-                    .color = {color, 0, 0}, .opacity = 1};
+                points[i - DISCS][e] =
+                    (masu_trail_point){.position = {x + (e ? 0.25 : -0.25), y, 3 - z[i]},
+                                       .half_width = 0.1f,
+                                       .color = {color, 0, 0},
+                                       .opacity = 1};
             trails[i - DISCS] =
                 (masu_trail){.points = points[i - DISCS], .point_count = 2, .edge = 1};
         }
-        render((masu_frame_desc){.particles = p, .particle_count = DISCS, .trails = trails,
-                                 .trail_count = TRAILS},
-               picture);
+        render(
+            (masu_frame_desc){
+                .particles = p, .particle_count = DISCS, .trails = trails, .trail_count = TRAILS},
+            picture);
         for (uint32_t i = 0; i < PIXELS; i++) {
             int front = -1, rim = 0;
             double next = 1e9;
@@ -699,8 +716,8 @@ static void refused(masu_result result, masu_result want, const char *what, uint
 static void writes_have_limits(void **state) {
     (void)state;
     open_room(TEXELS);
-    const VkRect2D out[] = {{{-1, 0}, {4, 4}}, {{0, 13}, {4, 4}}, {{0, 0}, {0, 4}},
-                            {{0, 0}, {TEXELS + 1, 1}}};
+    const VkRect2D out[] = {
+        {{-1, 0}, {4, 4}}, {{0, 13}, {4, 4}}, {{0, 0}, {0, 4}}, {{0, 0}, {TEXELS + 1, 1}}};
     const VkRect2D one = {{TEXELS - 1, TEXELS - 1}, {1, 1}};
     for (uint32_t t = 0; t < 2; t++)
         refused(masu_texture_write(s.m, t ? COUNT + 1 : 0, NULL, texels[0], 0, &failure),
@@ -771,8 +788,12 @@ static void frames_have_limits(void **state) {
     refused(frame_of((masu_frame_desc){.decals = &d, .decal_count = 1}), MASU_ERROR_LIMIT,
             "reserve.textures", COUNT + 1, COUNT);
     t[0].texture = p.texture = d.texture = COUNT; /* the last ones are taken */
-    render((masu_frame_desc){.trails = t, .trail_count = 1, .particles = &p, .particle_count = 1,
-                             .decals = &d, .decal_count = 1},
+    render((masu_frame_desc){.trails = t,
+                             .trail_count = 1,
+                             .particles = &p,
+                             .particle_count = 1,
+                             .decals = &d,
+                             .decal_count = 1},
            picture);
     close_session(&s);
 }
@@ -800,7 +821,8 @@ static void any_numbers_give_a_finite_picture(void **state) {
         for (uint32_t i = 0; i < ROOM; i++) {
             p[i] = sheet;
             p[i].texture = random_word(&seed) % (COUNT + 1);
-            d[i] = (masu_decal){.rows = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, .opacity = 1,
+            d[i] = (masu_decal){.rows = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0},
+                                .opacity = 1,
                                 .texture = p[i].texture};
             for (uint32_t k = 0; k < 4; k++)
                 p[i].uv[k] = any_float(&seed), d[i].uv[k] = any_float(&seed);
@@ -809,8 +831,8 @@ static void any_numbers_give_a_finite_picture(void **state) {
             p[i].half_width = i % 4 ? p[i].half_width : any_float(&seed);
         }
         for (uint32_t i = 0; i < POINTS; i++) {
-            points[i] = (masu_trail_point){.half_width = any_float(&seed),
-                                           .opacity = any_float(&seed)};
+            points[i] =
+                (masu_trail_point){.half_width = any_float(&seed), .opacity = any_float(&seed)};
             for (uint32_t k = 0; k < 3; k++) {
                 points[i].position[k] = random_word(&seed) % 8 ? random_between(&seed, -1, 3.2)
                                                                : (double)any_float(&seed);
@@ -818,14 +840,18 @@ static void any_numbers_give_a_finite_picture(void **state) {
             }
         }
         for (uint32_t i = 0; i < 2; i++) {
-            if (random_word(&seed) % 2) t[i].repeat = any_float(&seed), t[i].offset = any_float(&seed);
+            if (random_word(&seed) % 2)
+                t[i].repeat = any_float(&seed), t[i].offset = any_float(&seed);
             t[i].texture = random_word(&seed) % (COUNT + 1);
             t[i].flags = random_word(&seed);
             t[i].soft = random_word(&seed) % 2 ? any_float(&seed) : 0;
         }
-        masu_stats_info stats = render((masu_frame_desc){.particles = p, .particle_count = ROOM,
-                                                         .decals = d, .decal_count = ROOM,
-                                                         .trails = t, .trail_count = 2},
+        masu_stats_info stats = render((masu_frame_desc){.particles = p,
+                                                         .particle_count = ROOM,
+                                                         .decals = d,
+                                                         .decal_count = ROOM,
+                                                         .trails = t,
+                                                         .trail_count = 2},
                                        picture);
         for (uint32_t i = 0; i < 4 * PIXELS; i++) assert_true(isfinite(picture[i]));
         segments += stats.trail_segments;

@@ -18,7 +18,7 @@ fail() {
 }
 colors() { convert "$1" ${2:+-crop "$2"} -format '%k' info:; }
 
-for example in minimal loop split_screen sprites; do
+for example in minimal loop split_screen; do
     lines=$(wc -l < examples/$example.c)
     [ "$lines" -le 150 ] || fail "$example.c has $lines lines: at most 150"
 done
