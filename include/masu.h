@@ -10,11 +10,11 @@
  * MASU DOES NOT
  *  - submit, wait for the GPU, present, start threads, open files, print, or keep global state;
  *  - stream or create geometry: all geometry is in the blob. At run time a host may add copies of
- *    movable models without skins, punctual lights, particles, decals and debug lines, each up to
- *    desc.reserve;
- *  - cast shadows from particles or transparent surfaces;
+ *    movable models without skins, punctual lights, textures, particles, trails, decals and debug
+ *    lines, each up to desc.reserve;
+ *  - cast shadows from particles, trails or transparent surfaces;
  *  - refract light beyond a bent lookup of the lit image, order intersecting transparent
- *    surfaces, or reflect particles and decals;
+ *    surfaces, or reflect particles, trails and decals;
  *  - verify that the SPIR-V of a scene with an SDF is harmless: trust such a blob like a program.
  *
  * TERMS
@@ -312,7 +312,8 @@ MASU_API MASU_MUST_USE masu_result masu_load(masu_renderer *renderer, masu_comma
  *   MASU_ERROR_ARGUMENT   `bytes` is not sizeof(masu_frame_desc);
  *                         rung, target, camera, light or a parameter is out of range or not finite;
  *                         MASU_RUNG_AUTO without a governor; an array is NULL with a count above 0
- *   MASU_ERROR_LIMIT      more particles, decals or lines than desc.reserve
+ *   MASU_ERROR_LIMIT      more particles, trail points, decals or lines than desc.reserve, or one
+ *                         with a texture that does not exist
  *   MASU_ERROR_STATE      masu_load has not finished; the rung is not ready (masu_init_step)
  *   MASU_ERROR_VULKAN, _DEVICE_LOST   as masu_resize, after it
  * After an error nothing has been written, and the frame number has not advanced. */
@@ -497,6 +498,18 @@ typedef struct masu_reserve {
     uint32_t decals;    /* 0..1024; device: 112 bytes each per frame in flight */
     uint32_t lines;     /* 0..65536; device: 32 bytes each per frame in flight, and 4 for each pixel
                            of the output */
+    /* Points of all trails, 0..65536; device: 128 bytes each per frame in flight, and 16 for each
+     * transparent primitive; host: 16 bytes each. With trail points or textures a particle takes
+     * 128 bytes instead of 64, and a decal 144 instead of 112. */
+    uint32_t trail_points;
+    /* Textures that the host fills at run time, 0..256 (masu_texture_write). They have one size,
+     * 1..4096 texels along each axis, 0: 256, and at most 2^28 texels together. Device: 4 bytes per
+     * texel. */
+    uint32_t textures;
+    VkExtent2D texture_size;
+    /* Bytes that masu_texture_write accepts between two frames, 4..2^28; 0: those of one texture.
+     * Device: as many and 2064 more, per frame in flight. */
+    uint32_t texture_bytes;
 } masu_reserve;
 
 /* Roles of device memory. On unified memory one block of role MASU_ROLE_DEVICE serves all. */
@@ -890,7 +903,9 @@ typedef struct masu_light {
 #define MASU_PARTICLE_ADDITIVE 2u
 /* A particle: a camera-facing sprite of elliptical shape with soft edges, for smoke, sparks, dust.
  * It is sorted with transparent surfaces by the distance of its centre, blended in linear light
- * before exposure, and tested against depth. Reflections and shadows do not include particles. They
+ * before exposure, and tested against depth. Two of them may be in the wrong order only at pixels
+ * where their distances from the camera differ by less than the sum of the radii of their bounding
+ * spheres. Reflections and shadows do not include particles. They
  * are exposed, metered and anti-aliased with the image. Particles with a non-finite number, beyond
  * 1e15 m, or without size or opacity are skipped; values out of range are clamped. */
 typedef struct masu_particle {
@@ -906,7 +921,44 @@ typedef struct masu_particle {
      * intersection; 0: no fade. */
     float soft;
     uint32_t flags; /* MASU_PARTICLE_*; other bits are ignored, as in decals and lines */
+    /* 1 .. desc.reserve.textures: the whole rectangle of the particle shows this texture, whose
+     * colour and alpha are multiplied by `color` and `opacity`; `edge` is then unused. 0: none. */
+    uint32_t texture;
+    /* Cell of the texture to show: left, top, right, bottom, 0..1 of the texture from its upper
+     * left corner; left > right and top > bottom mirror. All 0: the whole texture. Texels outside
+     * are never mixed in, so cells of an atlas need no margin. */
+    float uv[4];
+    /* Flipbooks: left and top of a second cell of the same size, and its share, 0..1. */
+    float uv_next[2];
+    float blend;
 } masu_particle;
+
+/* A point of a trail. A non-finite number, or a position beyond 1e15 m, leaves out the two segments
+ * at the point; values out of range are clamped. */
+typedef struct masu_trail_point {
+    double position[3]; /* world, metres */
+    float half_width;   /* metres, 0..1e9 */
+    float color[3];     /* as in masu_particle */
+    float opacity;      /* 0..1 */
+} masu_trail_point;
+
+/* A trail: a ribbon through points that faces the camera, for smoke, blades and tracers. Its
+ * segments share their edges, and keep their width at bends of up to 120 degrees. Each segment is a
+ * particle between two points: sorted by the distance of its centre, lit at both points, blended
+ * and fading out as a particle. */
+typedef struct masu_trail {
+    const masu_trail_point *points; /* read during the call */
+    uint32_t point_count;           /* below 2: no trail */
+    uint32_t flags;                 /* MASU_PARTICLE_* */
+    float edge; /* without a texture: fraction of the half width at which the fade begins, 0..1 */
+    float soft; /* as in masu_particle */
+    /* As in masu_particle. The left edge of the cell is at the first point, and its top on the left
+     * side of the trail, seen along it. */
+    uint32_t texture;
+    float uv[4];
+    float repeat; /* metres of trail per repetition of the cell; 0: once over the whole trail */
+    float offset; /* metres of trail before the first point; unused with a repeat of 0 */
+} masu_trail;
 
 #define MASU_DECAL_ROUND 1u      /* an ellipse in x and y of the box; else a rectangle */
 #define MASU_DECAL_KEEP_COLOR 2u /* keeps colour and metallic: a puddle changes roughness only */
@@ -931,6 +983,13 @@ typedef struct masu_decal {
      * outer on. Both 0: 1.05 and 1.4. */
     float inner, outer;
     uint32_t flags; /* MASU_DECAL_* */
+    /* As in masu_particle: the colour and alpha of the texture are multiplied by `color` and
+     * `opacity`. The cell fills the box: its left edge is at x = -1, its top at y = 1. */
+    uint32_t texture;
+    float uv[4];
+    /* Radiance that the decal emits, 0..1e6, times its colour and the texture's. Requires
+     * desc.reserve.textures. */
+    float emission;
 } masu_decal;
 
 #define MASU_LINE_ON_TOP 1u /* no depth test; else surfaces more than 0.5 % closer occlude it */
@@ -980,6 +1039,11 @@ typedef struct masu_frame_desc {
     const masu_decal *decals;
     const masu_line *lines;
     uint32_t particle_count, decal_count, line_count;
+    const masu_trail *trails; /* with at most desc.reserve.trail_points points together */
+    uint32_t trail_count;
+    /* Flag: commands of the host have changed textures (masu_texture_image_of) since the previous
+     * frame. Rungs with temporal then shorten their history, as they do after masu_texture_write. */
+    uint32_t textures_changed;
     /* pick: flag. masu_pick reports the object at this pixel of the output (or viewport), counted
      * from the upper left corner: 0 .. width - 1, 0 .. height - 1. Requires desc.picking. */
     uint32_t pick, pick_x, pick_y;
@@ -1560,6 +1624,11 @@ typedef struct masu_material_state {
     float coat_roughness;    /* perceptual, 0..1; unused while `coat` is 0 */
     masu_material_mode mode; /* read only */
     float cutoff;            /* read only */
+    /* 1 .. desc.reserve.textures: this texture replaces the base-colour map of the material, its
+     * alpha included, and its emission map: a screen has a base colour of 0 and emits. 0: the maps
+     * of the scene, initially. Requires a base-colour map, whose coordinates and wrapping it has.
+     * Shadows and traced reflections have the maps of the scene. */
+    uint32_t texture;
 } masu_material_state;
 
 /* The first material with that name in the scene; id 0 if there is none. */
@@ -1586,13 +1655,62 @@ MASU_API MASU_MUST_USE masu_result masu_material_get(masu_renderer *renderer,
  *                         pipeline: `mode`; `cutoff`; `opacity` of a material that is not blended;
  *                         `specular` and `coat` if no opaque material of the scene has a
  *                         specular factor, a clear coat, mesoscale detail or an occlusion map;
- *                         `coat` if no material has a clear coat; `metallic` above 0 of a material
- *                         with a thickness (KHR_materials_volume), which stays as it is
+ *                         `coat` if no material has a clear coat; `texture` of a material without a
+ *                         base-colour map; `metallic` above 0 of a material with a thickness
+ *                         (KHR_materials_volume), which stays as it is
+ *   MASU_ERROR_LIMIT      `texture` is above desc.reserve.textures
  *   MASU_ERROR_STATE      desc.mutable_materials is 0 */
 MASU_API MASU_MUST_USE masu_result masu_material_set(masu_renderer *renderer,
                                                      masu_material material,
                                                      const masu_material_state *state,
                                                      masu_detail *detail);
+
+/* ---- Live scene: textures -------------------------------------------------------------------- */
+
+/* Textures of desc.reserve, which particles, trails, decals and materials show by their numbers, 1
+ * to desc.reserve.textures. All are layers of one image: sRGB-encoded red, green and blue, not
+ * multiplied by alpha, and alpha; transparent black after masu_load. The image has no mips: shaders
+ * average up to 4 x 4 samples per pixel, one for each texel along both axes of the pixel. Textures
+ * with up to four texels per pixel are thus filtered without aliasing; those with more alias
+ * gradually. */
+
+/* Writes texels from the next masu_frame on, which must be submitted. Copies them into the slot of
+ * that frame: call it when the slot is free, as masu_frame. Later writes replace earlier ones.
+ *   `rect`        within the texture; NULL: all of it
+ *   `texels`      4 bytes each, red, green, blue, alpha, from the upper left corner
+ *   `row_bytes`   from one row to the next, a multiple of 4; 0: no gaps
+ *
+ *   MASU_ERROR_ARGUMENT   a pointer is NULL, the rectangle is empty or not within the texture, or
+ *                         row_bytes is too small or not a multiple of 4
+ *   MASU_ERROR_LIMIT      `texture` is 0 or above desc.reserve.textures; or since the last frame
+ *                         there have been more than desc.reserve.texture_bytes bytes, or more than
+ *                         64 calls: write the remainder after the next frame
+ *   MASU_ERROR_STATE      masu_load has not finished */
+#define MASU_MAX_TEXTURE_WRITES 64u
+MASU_API MASU_MUST_USE masu_result masu_texture_write(masu_renderer *renderer, uint32_t texture,
+                                                      const VkRect2D *rect, const void *texels,
+                                                      uint32_t row_bytes, masu_detail *detail);
+
+/* The image of all textures, for commands of the host that copy, blit or render into it: a video, a
+ * mirror, the picture of another camera on a screen. Texture t is array layer t - 1. The host
+ * submits them to the same queue between two frames. Its first barrier waits for
+ * VK_PIPELINE_STAGE_ALL_COMMANDS_BIT and changes the layout of the layer from `layout`; its last
+ * one restores the layout and makes the writes available. The next frame begins with a barrier
+ * after all commands. Views of the host need a VkImageViewUsageCreateInfo with the usage below, and
+ * may have the format R8G8B8A8_UNORM, for values that are encoded already. */
+typedef struct masu_texture_image {
+    VkImage image;
+    VkFormat format;         /* R8G8B8A8_SRGB */
+    VkImageUsageFlags usage; /* SAMPLED, COLOR_ATTACHMENT, TRANSFER_SRC, TRANSFER_DST */
+    VkImageLayout layout;    /* SHADER_READ_ONLY_OPTIMAL */
+    uint32_t width, height, layers;
+} masu_texture_image;
+
+/* Fills `*out`. MASU_ERROR_ARGUMENT: a pointer is NULL. MASU_ERROR_STATE: masu_load has not
+ * finished, or desc.reserve.textures is 0. */
+MASU_API MASU_MUST_USE masu_result masu_texture_image_of(const masu_renderer *renderer,
+                                                         masu_texture_image *out,
+                                                         masu_detail *detail);
 
 /* ---- Queries: scene -------------------------------------------------------------------------- */
 
@@ -1910,7 +2028,7 @@ typedef struct masu_stats_info {
     uint64_t triangles;          /* in `draws`; with debug.counters after occlusion culling */
     uint64_t transparents;       /* transparent primitives drawn, each with its own draw */
     /* Entries of this frame that were drawn: not skipped, and not culled against the view. */
-    uint32_t particles, decals, lines;
+    uint32_t particles, decals, lines, trail_segments;
     uint64_t occlusion_tests; /* with debug.counters */
     /* Punctual lights of the scene; those whose bounding sphere intersects the view. */
     uint32_t lights, lights_in_view;

@@ -59,6 +59,7 @@ layout(constant_id = 12) const uint tinted_glass = 0u; /* the scene has some; MA
 const bool any_tints = tinted_glass != 0u;
 const bool any_rough = (tinted_glass & MASU_TINTS_ROUGH) != 0u;
 const bool any_refracted = (tinted_glass & MASU_TINTS_REFRACTED) != 0u;
+layout(constant_id = 23) const bool masu_live_maps = false;
 layout(constant_id = 2) const bool foggy = false; /* the scene has fog */
 
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D depth_image;
@@ -88,6 +89,7 @@ layout(location = 5) in vec4 in_color;
 #define MASU_MAPS_FLAGS in_thing.y
 #define MASU_MAPS_LAYERS in_thing.z
 #define MASU_MAPS_DETAIL in_detail
+#define MASU_MAPS_LIVE
 #include "shared/maps.glsl"
 #endif
 
@@ -192,7 +194,7 @@ void main()
     masu_take_specular(s, m.more.x);
     s.coat = m.more.y;
     s.coat_roughness = m.more.z;
-    float opacity = m.more.w;
+    float opacity = masu_live_maps ? m.more.w - 2.0 * floor(0.5 * m.more.w) : m.more.w;
     float cover = 1.0;
     vec3 direction = masu_normalize(in_rel, frame.forward.xyz);
     vec3 n = masu_normalize(in_normal, -direction);
@@ -205,7 +207,7 @@ void main()
     bool elsewhere = twice && away != first;
 #ifdef MASU_TEXTURES
     /* Everything that takes derivatives comes before the discard. */
-    cover = masu_sample_maps(in_texcoord, s);
+    cover = masu_sample_maps(in_texcoord, floor(0.5 * m.more.w), s);
     if ((tinted_glass & MASU_TINTS_MAPPED) != 0u && (in_thing.y & MASU_MAP_TRANSMISSION) != 0u) {
         opacity = 1.0 - (1.0 - opacity) * cover;
         cover = 1.0;

@@ -463,7 +463,8 @@ masu_result masu_write_frame(masu_renderer *m, masu_frame_data *f) {
     masu_history_rebase(&m->history, f);
     masu_reflections_read(&m->reflections, f);
     masu_lights_cast(&m->lights, &m->local_shadows, &m->instances, &m->bounds, f);
-    masu_temporal_read(&m->temporal, &m->history, &m->instances, &m->lights, &m->materials, f);
+    masu_temporal_read(&m->temporal, &m->history, &m->instances, &m->lights, &m->materials,
+                       &m->textures, f);
     masu_frame_write_uniforms(&m->history, f);
 
     masu_shadow_write(&m->shadow, &m->bounds, f);
@@ -482,6 +483,7 @@ masu_result masu_write_frame(masu_renderer *m, masu_frame_data *f) {
     masu_picking_write(&m->picking, &m->visible, &m->bounds, &m->instances, f);
     masu_transparents_write(&m->transparents, &m->instances, &m->visible, f);
     masu_sprites_write(&m->sprites, &m->transparents, f);
+    masu_textures_write_frame(&m->textures, f);
     masu_occlusion_write(&m->occlusion, &m->visible, &m->instances, &m->views, f);
     return MASU_OK;
 }

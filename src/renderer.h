@@ -32,6 +32,7 @@
 #include "frame/sprites.h"
 #include "frame/sun_sky.h"
 #include "frame/temporal.h"
+#include "frame/textures.h"
 #include "frame/timeline.h"
 #include "frame/transparents.h"
 #include "frame/visible.h"
@@ -74,6 +75,7 @@ struct masu_renderer {
     masu_occlusion occlusion;
     masu_transparents transparents;
     masu_sprites sprites;
+    masu_textures textures;
     masu_reflections reflections;
     masu_bounce bounce;
 };

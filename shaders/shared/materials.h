@@ -51,7 +51,9 @@ struct masu_material_data {
     /* rgb linear radiance, 0: not emissive; w metallic 0..1. Materials that refract have none: w is
      * negative, the bits of two halves: thickness, then -index of refraction. */
     masu_vec4 emissive;
-    masu_vec4 more;       /* specular (below 0: -1 - lobe), coat, coat roughness, opacity: each 0..1 */
+    /* specular (below 0: -1 - lobe), coat, coat roughness, opacity: each 0..1; opacity plus twice the
+     * number of the live texture, 0: none */
+    masu_vec4 more;
 };
 
 #endif

@@ -21,6 +21,7 @@ masu_use masu_use_of(masu_usage usage, masu_pass_kind kind) {
     switch (usage) {
     case MASU_READ:
     case MASU_READ_LINEAR:
+    case MASU_READ_MAP:
         return (masu_use){1, shader, VK_ACCESS_SHADER_READ_BIT,
                           VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, 0};
     case MASU_READ_VERTICES:
@@ -128,7 +129,7 @@ VkImageMemoryBarrier masu_image_barrier(const masu_recorder *rec, masu_image_id 
         .subresourceRange = {.aspectMask =
                                  depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT,
                              .levelCount = 1,
-                             .layerCount = masu_images[id].layers}};
+                             .layerCount = VK_REMAINING_ARRAY_LAYERS}};
 }
 
 void masu_barrier_before(masu_recorder *rec, uint32_t pass) {

@@ -121,7 +121,7 @@ static void clear_image(const masu_recorder *rec, masu_image_id image, const mas
 }
 
 /* Puts persistent images into the layout that the first frame expects. Their content is not read,
- * except in images with two layers (ping-pong), which are cleared: if a host skips a frame without
+ * except in ping-pong images and live textures, which are cleared: if a host skips a frame without
  * setting frame.cut, the next frame reads a layer that was never written, and 0 means "no
  * samples". */
 static void record_persistent_images(masu_device *m, VkCommandBuffer cmd) {
@@ -132,7 +132,7 @@ static void record_persistent_images(masu_device *m, VkCommandBuffer cmd) {
         if (!m->plan->images[i].used || !masu_images[i].kept) continue;
         masu_use from = {.stages = VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT,
                          .layout = VK_IMAGE_LAYOUT_UNDEFINED};
-        if (masu_images[i].layers > 1) {
+        if (masu_images[i].layers != 1) {
             clear_image(&rec, (masu_image_id)i, &copy);
             from = copy;
         }
@@ -338,8 +338,8 @@ static uint64_t write_textures(masu_device *m, const masu_scene_view *v, unsigne
     masu_texture_region region;
     while (masu_texture_next(v->textures, m->plan->scene.texture_arrays, m->plan->compressed, room,
                              &m->texture_next, &used, &region)) {
-        masu_texture_write(&v->textures[region.texture], v->texels, m->plan->compressed, &region,
-                           to);
+        masu_texture_write_region(&v->textures[region.texture], v->texels, m->plan->compressed,
+                                  &region, to);
         bytes += used - region.offset;
     }
     return bytes;

@@ -94,6 +94,9 @@ static void record_compute(masu_recorder *rec, uint32_t pass, VkDescriptorSet se
                                 rec->flight * rec->m->plan->buffers[MASU_BUFFER_BOUNCE].stride +
                                     (rays ? offsetof(struct masu_bounce_header, rays)
                                           : offsetof(struct masu_bounce_header, probes)));
+    } else if (masu_passes[pass].extent == MASU_EXTENT_TEXTURES) {
+        vk->CmdDispatchIndirect(rec->cmd, rec->m->objects.buffers[MASU_BUFFER_TEXELS],
+                                rec->flight * rec->m->plan->buffers[MASU_BUFFER_TEXELS].stride);
     } else if (masu_passes[pass].extent == MASU_EXTENT_LOCAL_SDF) {
         VkDeviceSize slot = rec->flight * rec->m->plan->buffers[MASU_BUFFER_LOCAL_FACES].stride;
         vk->CmdDispatchIndirect(rec->cmd, rec->m->objects.buffers[MASU_BUFFER_LOCAL_FACES],

@@ -167,7 +167,8 @@ static void compile_rung(masu_frame_plan *plan, uint32_t r) {
 static VkImageUsageFlags usage_flag(masu_usage usage) {
     switch (usage) {
     case MASU_READ:
-    case MASU_READ_LINEAR: return VK_IMAGE_USAGE_SAMPLED_BIT;
+    case MASU_READ_LINEAR:
+    case MASU_READ_MAP: return VK_IMAGE_USAGE_SAMPLED_BIT;
     case MASU_READ_COPY:
     case MASU_READ_BACK: return VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     case MASU_READ_HOST: return HOST_READS;
@@ -214,7 +215,10 @@ static void gather_images(masu_frame_plan *plan) {
                 if (image->height < size.height) image->height = size.height;
                 image->usage |= usage_flag((masu_usage)rp->access[p][a].usage);
                 /* cleared by masu_load */
-                if (masu_images[id].layers > 1) image->usage |= VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+                if (masu_images[id].layers != 1) image->usage |= VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+                if (id == MASU_IMAGE_TEXTURES) /* the host may render into it and copy from it */
+                    image->usage |=
+                        VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
             }
             if (!masu_has_pass(&rp->active, p) || !masu_has_set(p)) continue;
             plan->pass_sets += writes_target ? plan->targets_max : 1;
@@ -386,9 +390,13 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                     (d->split & MASU_SPLIT_VELOCITY) != 0 || any.specular ||
                     any_rung(d, masu_rung_resolves),
         .dropped = d->deny.storage_buffers & MASU_DROPPED_ANY,
-        .particles = d->scene && d->reserve.particles,
+        .particles = d->scene && (d->reserve.particles || d->reserve.trail_points),
         .decals = d->scene && d->reserve.decals,
         .lines = d->scene && d->reserve.lines,
+        .textures = d->scene && (d->reserve.textures || d->reserve.trail_points),
+        .texture_writes = d->scene && d->reserve.textures,
+        .texture_maps = d->scene && d->reserve.textures && d->mutable_materials &&
+                        plan->scene.texture_arrays,
         .blit = !d->targets.storage};
     int emits = plan->needs.raster && (plan->scene.emissions || d->mutable_materials);
     uint32_t attachments = 3u + (plan->needs.surface != 0) + (plan->needs.velocity != 0);
@@ -582,7 +590,7 @@ void masu_plan_export(const masu_frame_plan *plan, const uint64_t *pipeline_ns,
             (masu_plan_image){masu_images[i].name, masu_plan_format(plan, i), image->width,
                               image->height,       (uint32_t)image->used,     image->bytes,
                               image->offset,       image->first,              image->last,
-                              masu_images[i].layers};
+                              masu_plan_layers(plan, i)};
     }
     out->saved_bytes = saved_bytes(plan);
 }

@@ -5,13 +5,16 @@
 /* ---- Images ---------------------------------------------------------------------------------- */
 
 #define MASU_READBACK_NONE 0
-enum { LIFETIME_FRAME = 0, LIFETIME_KEPT = 1, LIFETIME_PING_PONG = 2 };
+enum { LIFETIME_FRAME = 0, LIFETIME_KEPT = 1, LIFETIME_PING_PONG = 2, LIFETIME_TEXTURES = 3 };
 
 const masu_image_row masu_images[MASU_IMAGE_COUNT] = {
 #define IMAGE(ID, name, format, extent, class_of, readback, lifetime, when, content)               \
     [MASU_IMAGE_##ID] = {#name, VK_FORMAT_##format, MASU_EXTENT_##extent, MASU_CLASS_##class_of,   \
                          MASU_READBACK_##readback, LIFETIME_##lifetime != LIFETIME_FRAME,          \
-                         LIFETIME_##lifetime == LIFETIME_PING_PONG ? 2 : 1, content},
+                         LIFETIME_##lifetime == LIFETIME_PING_PONG ? 2                             \
+                         : LIFETIME_##lifetime == LIFETIME_TEXTURES ? 0                            \
+                                                                    : 1,                           \
+                         content},
 #include "plan/images.inc"
 #undef IMAGE
 };
@@ -132,6 +135,7 @@ static const char *no_upscale(const masu_needs *n) {
 #define IMAGE_ACCESS(id, usage) {MASU_IMAGE_##id, MASU_##usage}
 #define READ(id) IMAGE_ACCESS(id, READ)
 #define READ_LINEAR(id) IMAGE_ACCESS(id, READ_LINEAR)
+#define MAP(id) IMAGE_ACCESS(id, READ_MAP)
 #define WRITE(id) IMAGE_ACCESS(id, WRITE)
 #define UPDATE(id) IMAGE_ACCESS(id, UPDATE)
 #define PING_PONG(id) IMAGE_ACCESS(id, PING_PONG)
@@ -208,7 +212,7 @@ VkExtent2D masu_extent_of(masu_image_extent extent, VkExtent2D render, VkExtent2
     if (extent == MASU_EXTENT_ONE || extent == MASU_EXTENT_KEPT || extent == MASU_EXTENT_BATCHES ||
         extent == MASU_EXTENT_PROBES || extent == MASU_EXTENT_RAYS ||
         extent == MASU_EXTENT_TRACED_PROBES || extent == MASU_EXTENT_SKINS ||
-        extent == MASU_EXTENT_SKIN_TREES)
+        extent == MASU_EXTENT_SKIN_TREES || extent == MASU_EXTENT_TEXTURES)
         return (VkExtent2D){1, 1};
     if (extent == MASU_EXTENT_LEVELS)
         return (VkExtent2D){(render.width + 63) / 64 * 32, (render.height + 63) / 64 * 48};

@@ -74,6 +74,8 @@ typedef enum masu_image_extent {
     MASU_EXTENT_RAYS,
     /* one workgroup per live probe of the frame: indirect, written by the host */
     MASU_EXTENT_TRACED_PROBES,
+    /* one live texture; passes: one invocation per texel written, indirect, by the host */
+    MASU_EXTENT_TEXTURES,
     MASU_EXTENT_PICK,   /* the 2x2 pixels that contain the picked one */
     MASU_EXTENT_SHADOW, /* all cascades of the shadow map; size from plan.c */
     /* the local_shadow_faces squares that a frame renders; size from plan.c */
@@ -91,7 +93,8 @@ typedef struct masu_image_row {
     masu_image_class class_of;
     uint32_t readback; /* masu_readback_bits that requests it */
     int kept;          /* persistent: the next frame reads the content */
-    uint32_t layers;   /* 2: ping-pong: this frame writes one layer and reads the other */
+    /* 2: ping-pong: this frame writes one layer and reads the other; 0: one per live texture */
+    uint32_t layers;
     const char *content;
 } masu_image_row;
 
@@ -99,6 +102,7 @@ typedef enum masu_usage {
     MASU_USE_NONE = 0,
     MASU_READ,           /* sampled, nearest */
     MASU_READ_LINEAR,    /* sampled, linear filter */
+    MASU_READ_MAP,       /* sampled as a texture of materials: binding of set 2 */
     MASU_READ_BUFFER,    /* storage buffer, or arguments of the pass's indirect dispatch */
     MASU_READ_VERTICES,  /* vertex buffer */
     MASU_READ_COPY,      /* transfer source */
@@ -205,6 +209,9 @@ typedef struct masu_needs {
     uint32_t dropped;  /* MASU_DROPPED_*: AUTO features that are off for lack of storage buffers */
     int sprites;       /* frames may have sprites of these kinds: */
     int particles, decals, lines;
+    int textures;       /* sprites may have textures: there is an image of live textures, */
+    int texture_writes; /* which the host may write, */
+    int texture_maps;   /* and materials may show */
     masu_switches any; /* some rung has the switch on, and the scene can use it */
     /* For one rung: */
     masu_switches on; /* the same for this rung */

@@ -78,10 +78,11 @@ typedef struct masu_drawn_plan {
         faces, words;
 } masu_drawn_plan;
 
-/* Offsets of the three kinds of sprites in a slot of MASU_BUFFER_SPRITES, in vec4; layout in
- * masu_shared.h. */
+/* Offsets of the three kinds of sprites in a slot of MASU_BUFFER_SPRITES, and the size of a
+ * particle and a decal, in vec4; layout in masu_shared.h. */
 typedef struct masu_sprites_plan {
     uint64_t particles, lines, decals, end;
+    uint32_t particle, decal;
 } masu_sprites_plan;
 
 /* A texture array on the device. A renderer's plan has them in the host memory block; a plan that
@@ -221,6 +222,7 @@ VkExtent2D masu_plan_extent(const masu_frame_plan *plan, masu_image_extent exten
  * every device supports storing to the former. */
 VkFormat masu_plan_format(const masu_frame_plan *plan, uint32_t image);
 VkFormat masu_plan_store_format(const masu_frame_plan *plan, uint32_t image);
+uint32_t masu_plan_layers(const masu_frame_plan *plan, uint32_t image);
 /* Whether temporal histories are stored as half floats instead of 16-bit unorm: if the device
  * cannot filter the latter, or if the target exceeds white, where a step of 1/65535 of its peak is
  * visible in the dark. */

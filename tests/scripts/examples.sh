@@ -1,7 +1,7 @@
 #!/bin/bash
 # The small examples beside minimal.c: loop in a window of a screen of its own, under the validation layer, with a
 # smaller window (masu_resize), a larger one (masu_destroy, masu_init) and rungs of the governor; split_screen,
-# whose halves show the scene from two places; host_pass, with commands of its own in a frame. drive.sh has the game.
+# whose halves show the scene from two places; sprites; host_pass, with commands of its own in a frame. drive.sh has the game.
 set -u
 cd "$(dirname "$0")/../.." || exit 1
 examples=${BUILD:-build}/examples
@@ -38,6 +38,15 @@ done
 "$examples/split_screen" 2> /dev/null
 [ $? = 2 ] || fail "split_screen without arguments"
 "$examples/split_screen" /dev/null "$folder/none.png" 2> /dev/null && fail "split_screen takes an empty scene"
+
+# ---- sprites ---------------------------------------------------------------------------------------
+
+"$examples/sprites" "$scenes/test_texture_floor.masu" "$folder/sprites.png" > "$folder/out" 2> "$folder/err" ||
+    fail "sprites: $(cat "$folder/out" "$folder/err")"
+grep -q 'validation 0' "$folder/out" || fail "sprites: $(cat "$folder/out")"
+[ "$(colors "$folder/sprites.png" 480x540+480+0)" -gt 300 ] || fail "the trail of sprites is not there"
+"$examples/sprites" 2> /dev/null
+[ $? = 2 ] || fail "sprites without arguments"
 
 # ---- host_pass -------------------------------------------------------------------------------------
 
