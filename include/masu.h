@@ -467,8 +467,8 @@ typedef struct masu_viewport {
  *                           4 with vertex colours; 12 if velocities are read
  *    device, per triangle   12 bytes; 70 if rays trace polygons (16, and 54 for its share of nodes)
  *    host and device        the slot as an instance, a model with one node, and a draw (masu_limits)
- *    GPU                    three empty dispatches per frame for all kinds together, and an empty
- *                           draw per free slot and view */
+ *    GPU                    three empty dispatches per frame for all kinds together; an empty draw
+ *                           per free slot and view; if rays trace polygons, a workgroup per slot */
 typedef struct masu_mesh_kind {
     uint32_t meshes;    /* slots, 0..1024 of all kinds together; 0: the kind is unused */
     uint32_t material;  /* index, MASU_SCENE_MATERIAL: neither transparent nor with mesoscale detail */

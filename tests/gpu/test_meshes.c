@@ -85,6 +85,7 @@ static void take(const masu_session *s, const char *name, given *g) {
 static void take_from(const char *scene, const char *name, given *g) {
     masu_session s;
     masu_session_desc d = desc_of(scene);
+    d.no_renderer = true; /* the blob is freed once it is loaded */
     open_session(&s, &d);
     take(&s, name, g);
     close_session(&s);
@@ -122,8 +123,8 @@ static void compare(const char *scene, const char *name, given *g, uint32_t flig
     masu_session s;
     masu_session_desc d = desc_of(scene);
     d.desc.frames_in_flight = flight;
+    take_from(scene, name, g);
     open_session(&s, &d);
-    take(&s, name, g);
     draw_frames(&s, pictures[1]);
     draw_frames(&s, pictures[1]);
     masu_stats_info baked = stats_of(&s, (2 * FRAMES - 1) % flight);
@@ -167,28 +168,35 @@ static void maps_masks_and_emission_are_as_if_baked(void **state) {
     for (uint32_t i = 0; i < (whole_run() ? 3 : 1); i++) {
         masu_session s;
         masu_session_desc d = desc_of("test_mirror_textures");
-        masu_camera camera = {.position = {i == 0 ? 6 : i == 1 ? -6 : 0, 0.5, 6}, .forward = {0, -0.1f, -1}, .fov_y = 0.7f};
+        /* between the mirror and the quads: frames look into it, the last one at the quads */
+        const float x = i == 0 ? 6 : i == 1 ? -6 : 0;
+        masu_camera in = {.position = {(double)x, 0.2, 1}, .forward = {0, -0.1f, -1}, .fov_y = 0.7f};
+        masu_camera at = {.position = {(double)x, 0.2, 0.1}, .forward = {0, -0.1f, 1}, .fov_y = 0.7f};
         masu_commands commands;
+        take_from("test_mirror_textures", names[i], &quad);
         open_session(&s, &d);
-        take(&s, names[i], &quad);
         for (uint32_t k = 0; k < 4; k++)
-            draw(&s, &(masu_frame_desc){.camera = &camera, .cut = !k}, &commands, pictures[1][0]);
+            draw(&s, &(masu_frame_desc){.camera = &in, .cut = !k}, &commands, pictures[1][0]);
+        draw(&s, &(masu_frame_desc){.camera = &at, .cut = 1}, &commands, pictures[1][1]);
         close_session(&s);
         reserve(&d, 0, &quad, 1);
         open_session(&s, &d);
         hide(&s, names[i]);
         (void)create(&s, 0, &quad);
         for (uint32_t k = 0; k < 4; k++)
-            draw(&s, &(masu_frame_desc){.camera = &camera, .cut = !k}, &commands, pictures[0][0]);
-        uint32_t off = far_off(pictures[0][0], pictures[1][0]);
+            draw(&s, &(masu_frame_desc){.camera = &in, .cut = !k}, &commands, pictures[0][0]);
+        draw(&s, &(masu_frame_desc){.camera = &at, .cut = 1}, &commands, pictures[0][1]);
+        uint32_t off = far_off(pictures[0][0], pictures[1][0]) + far_off(pictures[0][1], pictures[1][1]);
         quad.data.texcoords = NULL; /* all 0: another image */
         assert_int_equal(masu_mesh_replace(s.m, masu_model_at(s.m, masu_scene_count(&s.scene, MASU_SCENE_MODEL)), &quad.data, &failure), MASU_OK);
         for (uint32_t k = 0; k < 4; k++)
-            draw(&s, &(masu_frame_desc){.camera = &camera, .cut = !k}, &commands, pictures[2][0]);
-        uint32_t plain = far_off(pictures[2][0], pictures[1][0]);
-        printf("  %s: %u of %u bytes differ by more than 4; without texture coordinates %u\n", names[i], off, BYTES, plain);
+            draw(&s, &(masu_frame_desc){.camera = &in, .cut = !k}, &commands, pictures[2][0]);
+        draw(&s, &(masu_frame_desc){.camera = &at, .cut = 1}, &commands, pictures[2][1]);
+        uint32_t mirrored = far_off(pictures[2][0], pictures[1][0]), seen = far_off(pictures[2][1], pictures[1][1]);
+        printf("  %s: %u of %u bytes differ by more than 4; without texture coordinates %u in the mirror, %u seen directly\n",
+               names[i], off, 2 * BYTES, mirrored, seen);
         assert_true(off <= BYTES / 1000);
-        assert_true(plain > 200);
+        assert_true(mirrored > 200 && seen > 200);
         close_session(&s);
     }
 }
@@ -302,8 +310,6 @@ static void slots_are_reused(void **state) {
     d.desc.picking = 1;
     d.desc.rungs[0].scale = 0.5f;
     open_session(&s, &d);
-    draw_frames(&s, pictures[2]);
-    draw_frames(&s, pictures[1]); /* of the same numbers: noise goes by them */
     for (uint32_t i = 0; i < CHANGES; i++) {
         uint32_t k = random_word(&random) % KINDS, j = random_word(&random) % SLOTS, what = random_word(&random) % 4;
         given *g = k ? &block : &ball;
@@ -340,11 +346,14 @@ static void slots_are_reused(void **state) {
         masu_model *m = &mesh[k / SLOTS][k % SLOTS];
         if (m->id) assert_int_equal(masu_model_remove(s.m, *m, &failure), MASU_OK);
     }
-    while ((stats_of(&s, 0).frame + 1) % FRAMES && stats_of(&s, 1).frame % 2 == 0) draw_rung(&s, 0, NULL);
     draw_frames(&s, pictures[0]);
+    close_session(&s);
+    open_session(&s, &d); /* of the same numbers: noise goes by them */
+    for (uint32_t i = 0; i < CHANGES / 4; i++) draw_rung(&s, 0, NULL);
+    draw_frames(&s, pictures[1]);
     printf("  %llu of %u changes refused; %u bytes differ afterwards\n", (unsigned long long)refused, CHANGES,
            far_off(pictures[0][0], pictures[1][0]));
-    assert_true(far_off(pictures[0][0], pictures[1][0]) < BYTES / 500); /* noise by the frame's number */
+    assert_int_equal(max_difference(pictures[0][0], pictures[1][0], sizeof pictures[0]), 0);
     close_session(&s);
 }
 
@@ -360,7 +369,7 @@ static void a_mesh_is_picked(void **state) {
     open_session(&s, &d);
     given near = ball;
     near.data.positions = near.positions[0]; /* of the copy */
-    near.rows[3] = 0, near.rows[7] = 0.7f, near.rows[11] = 4;
+    near.rows[3] = 0, near.rows[7] = 1.73f, near.rows[11] = 4; /* on the axis of the camera */
     masu_model mesh = create(&s, 0, &near);
     draw(&s, &(masu_frame_desc){.pick = 1, .pick_x = W / 2, .pick_y = H / 2}, &commands, NULL);
     assert_int_equal(masu_pick(s.m, commands.slot, &picked, &failure), MASU_OK);
@@ -444,8 +453,7 @@ static void what_does_not_fit_is_refused(void **state) {
                 16ull * ball.data.vertex_count + 12ull * ball.data.triangle_count);
     REFUSED(masu_mesh_create(s.m, 1, &ball.data, ball.rows, &other, &failure), MASU_ERROR_LIMIT, "reserve.meshes");
     assert_string_equal(failure.text, "reserve.meshes[1]: 2 are needed, 1 are given");
-    REFUSED(masu_mesh_deform(s.m, mesh, ball.positions[0], ball.normals[0], ball.data.vertex_count, &failure),
-            MASU_ERROR_LIMIT, "reserve.mesh_upload");
+    REFUSED(masu_mesh_replace(s.m, mesh, &ball.data, &failure), MASU_ERROR_LIMIT, "reserve.mesh_upload");
     draw_rung(&s, 0, NULL);
     REFUSED(masu_mesh_deform(s.m, mesh, ball.positions[0], ball.normals[0], ball.data.vertex_count - 1, &failure),
             MASU_ERROR_ARGUMENT, "vertex_count");
@@ -470,7 +478,7 @@ static void wrong_reserves_are_refused(void **state) {
     do {                                                                                           \
         s.desc = plain;                                                                            \
         *kind = (masu_mesh_kind){.meshes = 1, .material = block.material, .vertices = 24, .triangles = 12}; \
-        assert_int_equal(masu_memory_query(&s.desc, &need, &failure), MASU_OK);                    \
+        if (masu_memory_query(&s.desc, &need, &failure)) fail_msg("%s", failure.text);           \
         s.desc.member = (value);                                                                   \
         REFUSED(masu_memory_query(&s.desc, &need, &failure), code, name);                          \
     } while (0)
@@ -483,7 +491,7 @@ static void wrong_reserves_are_refused(void **state) {
     WRONG(reserve.meshes[1].triangles, 0, MASU_ERROR_ARGUMENT, "reserve.meshes[].triangles");
     WRONG(reserve.meshes[1].triangles, 262145, MASU_ERROR_ARGUMENT, "reserve.meshes[].triangles");
     WRONG(reserve.meshes[1].meshes, 1025, MASU_ERROR_ARGUMENT, "reserve.meshes[].meshes");
-    WRONG(reserve.mesh_upload, 24 * 16 + 12 * 12 + 8 * 48 - 1, MASU_ERROR_ARGUMENT, "reserve.mesh_upload");
+    WRONG(reserve.mesh_upload, 24 * (16 + 8) + 12 * 12 + 8 * 48 - 1, MASU_ERROR_ARGUMENT, "reserve.mesh_upload");
     s.desc.reserve.mesh_upload++;
     assert_int_equal(masu_memory_query(&s.desc, &need, &failure), MASU_OK);
     WRONG(reserve.mesh_upload, (1u << 30) + 1, MASU_ERROR_ARGUMENT, "reserve.mesh_upload");
@@ -523,7 +531,7 @@ static void the_memory_is_as_stated(void **state) {
         s.desc.reserve.meshes[0] = (masu_mesh_kind){.meshes = 1 + i * 10, .vertices = 3000, .triangles = 4000};
         assert_int_equal(masu_memory_query(&s.desc, &need[i], &failure), MASU_OK);
     }
-    double stated = 3000 * (16.0 + 12) + 4000 * (12.0 + 70);
+    double stated = 3000 * (16.0 + 12 + 8) + 4000 * (12.0 + 70);
     double is = (double)(need[1].device_bytes - need[0].device_bytes) / 10;
     printf("  a slot of 3000 vertices and 4000 triangles: %.0f bytes on the device, stated %.0f\n", is, stated);
     assert_true(is > 0.98 * stated && is < 1.02 * stated);
