@@ -47,6 +47,7 @@ static masu_readback_image image;
 static masu_pick_info pick;
 static masu_instance_state instance_state;
 static masu_model_state model_state;
+static masu_mesh_data mesh_data;
 static masu_model added;
 static const masu_clip_use clip_use = {.weight = 1.0f};
 static masu_node_state node_state;
