@@ -13,6 +13,11 @@ static uint32_t place_of(const masu_renderer *m, uint32_t model) {
     return model - masu_own_models(&m->plan);
 }
 
+/* A free slot for a copy; UINT32_MAX: none. */
+static uint32_t free_model(const masu_renderer *m) {
+    return masu_handle_free(&m->models.handles, masu_own_models(&m->plan), m->plan.reserve.models);
+}
+
 /* The instance of a node of a model; UINT32_MAX: none. */
 static uint32_t instance_of(const masu_renderer *m, uint32_t model, uint32_t node) {
     return m->models.nodes[m->models.models[model].first_node + node].instance;
@@ -42,7 +47,7 @@ static masu_result check_room(masu_renderer *m, uint32_t like) {
                          like,
                          models ? ", desc.reserve holds none that bend" : ", desc.reserve too");
     }
-    if (masu_handle_free(&m->models.handles, masu_own_models(&m->plan), m->plan.reserve.models) == UINT32_MAX) {
+    if (free_model(m) == UINT32_MAX) {
         return masu_fail(&m->error, MASU_ERROR_LIMIT, "reserve.models", models + 1, models,
                          "reserve.models: %u are needed, %u are given", models + 1, models);
     }
@@ -76,7 +81,7 @@ static masu_result copy_model(masu_renderer *m, uint32_t like, const float rows[
                               uint32_t *added) {
     masu_result result = check_room(m, like);
     if (result) return result;
-    uint32_t model = masu_handle_free(&m->models.handles, masu_own_models(&m->plan), m->plan.reserve.models), place = place_of(m, model);
+    uint32_t model = free_model(m), place = place_of(m, model);
     uint32_t instance = masu_own_instances(&m->plan) + place * m->plan.reserve.place.instances;
     masu_models_copy(&m->models, &m->plan, place, like);
     result =

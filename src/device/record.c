@@ -101,7 +101,8 @@ static void record_compute(masu_recorder *rec, uint32_t pass, VkDescriptorSet se
                                 slot + offsetof(struct masu_local_face_uniforms, groups));
     } else if (masu_passes[pass].extent == MASU_EXTENT_MESHES) {
         vk->CmdDispatchIndirect(rec->cmd, rec->m->objects.buffers[MASU_BUFFER_MESH_UPLOAD],
-                                rec->flight * rec->m->plan->buffers[MASU_BUFFER_MESH_UPLOAD].stride);
+                                rec->flight *
+                                    rec->m->plan->buffers[MASU_BUFFER_MESH_UPLOAD].stride);
     } else if (tiles != MASU_BUFFER_COUNT) {
         vk->CmdDispatchIndirect(rec->cmd, rec->m->objects.buffers[tiles], 0);
     } else {

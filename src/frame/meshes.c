@@ -105,7 +105,8 @@ masu_result masu_meshes_check(const masu_meshes *s, const masu_frame_plan *plan,
     masu_result result =
         check_count(slot, "vertex_count", data->vertex_count, 3, room.vertices, detail);
     if (!result)
-        result = check_count(slot, "triangle_count", data->triangle_count, 1, room.triangles, detail);
+        result =
+            check_count(slot, "triangle_count", data->triangle_count, 1, room.triangles, detail);
     if (!result)
         result = check_upload(
             s, plan, slot,
@@ -184,7 +185,8 @@ static void write_colors(unsigned char *to, const masu_mesh_data *data) {
     }
 }
 
-/* Builds the BVH: nodes to `to`, the order of triangles to s->order. Returns the number of nodes. */
+/* Builds the BVH: nodes to `to`, the order of triangles to s->order. Returns the number of
+ * nodes. */
 static uint32_t build(masu_meshes *s, const masu_frame_plan *plan, const masu_mesh_slot *room,
                       const masu_mesh_data *data, unsigned char *to) {
     masu_blob_trace_node *nodes = (masu_blob_trace_node *)(void *)to;
@@ -321,7 +323,8 @@ static uint32_t write_job(const masu_meshes *s, const masu_frame_data *f, uint32
 static void write_refit(masu_host_mesh *mesh, const masu_frame_data *f, uint32_t slot) {
     const masu_scene_data *scene = &f->plan->scene;
     const masu_mesh_slot room = slot_of(f->plan, slot);
-    int refits = mesh->stale && masu_has_pass(&masu_frame_rung_plan(f)->active, MASU_PASS_SKIN_TRACE);
+    int refits =
+        mesh->stale && masu_has_pass(&masu_frame_rung_plan(f)->active, MASU_PASS_SKIN_TRACE);
     const uint32_t header[MASU_SKIN_HEADER_BYTES / 4] = {
         0, 0, 0, 0, scene->trace_nodes - scene->host_nodes + room.first_node,
         refits ? mesh->nodes : 0, scene->skinned_nodes - scene->host_nodes + room.first_node, 0};

@@ -7,7 +7,7 @@
  * the host writes, and a frame without changes has no jobs.
  *
  * BVH. The call also builds the BVH of a new mesh, and orders the triangles by it. The pass
- * skin_trace refits it to moved vertices, as for skins; it does so in the next frame whose rung traces. */
+ * skin_trace refits it to moved vertices, as for skins, in the next frame whose rung traces. */
 #ifndef MASU_MESHES_H
 #define MASU_MESHES_H
 

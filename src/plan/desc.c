@@ -220,7 +220,9 @@ static masu_result check_reserve(const masu_desc *d, masu_detail *detail) {
                              MASU_MESH_TRIANGLES_MAX);
     }
     if (meshes > MASU_RESERVE_MESHES_MAX)
-        return bad_range(detail, "reserve.meshes[].meshes", (uint32_t)(meshes < UINT32_MAX ? meshes : UINT32_MAX), 0, MASU_RESERVE_MESHES_MAX);
+        return bad_range(detail, "reserve.meshes[].meshes",
+                         (uint32_t)(meshes < UINT32_MAX ? meshes : UINT32_MAX), 0,
+                         MASU_RESERVE_MESHES_MAX);
     return MASU_OK;
 }
 

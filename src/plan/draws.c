@@ -135,7 +135,8 @@ static void add_transparents(masu_draws *draws, const masu_frame_plan *plan,
 masu_draw_material masu_draw_material_of(const masu_scene_view *v, const masu_batch *batch,
                                          uint32_t draw) {
     int own = batch->material == MASU_BLOB_NONE;
-    const masu_blob_primitive *primitive = own ? &v->primitives[batch->first_primitive + draw] : NULL;
+    const masu_blob_primitive *primitive =
+        own ? &v->primitives[batch->first_primitive + draw] : NULL;
     uint32_t number = own ? primitive->material : batch->material;
     const masu_blob_material *of = &v->materials[number];
     int meso = of->meso != MASU_BLOB_NONE;
