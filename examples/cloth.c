@@ -79,9 +79,10 @@ int main(int argc, char **argv) {
     masu_camera camera;
     masu_model flag;
     CHECK(masu_camera_at(m, 0, &camera, &detail) == MASU_OK);
-    const float at[12] = {1, 0, 0, (float)camera.position[0] + 4 * camera.forward[0] - 0.75f,
-                          0, 1, 0, (float)camera.position[1] + 4 * camera.forward[1] - 0.5f,
-                          0, 0, 1, (float)camera.position[2] + 4 * camera.forward[2]};
+    const float ahead = 4 / hypotf(hypotf(camera.forward[0], camera.forward[1]), camera.forward[2]);
+    const float at[12] = {1, 0, 0, (float)camera.position[0] + ahead * camera.forward[0] - 0.75f,
+                          0, 1, 0, (float)camera.position[1] + ahead * camera.forward[1] - 0.5f,
+                          0, 0, 1, (float)camera.position[2] + ahead * camera.forward[2]};
     weave();
     wave(0);
     const masu_mesh_data data = {.positions = positions[0], .normals = normals[0], .indices = indices[0],

@@ -156,11 +156,6 @@ static void a_mesh_is_as_if_baked(void **state) {
         if (flight == 2 || whole_run()) compare("test_reserve", "ball", &ball, flight, BYTES / 1000);
     }
     compare("test_reserve", "block", &block, 2, BYTES / 1000);
-    if (getenv("MESHES_PNG")) {
-        FILE *f = fopen(getenv("MESHES_PNG"), "wb");
-        for (uint32_t k = 0; f && k < 3; k++) fwrite(pictures[k][FRAMES - 1], 1, BYTES, f);
-        if (f) fclose(f);
-    }
 }
 
 static void maps_masks_and_emission_are_as_if_baked(void **state) {
@@ -512,10 +507,27 @@ static void wrong_reserves_are_refused(void **state) {
     assert_int_equal(masu_memory_query(&s.desc, &need, &failure), MASU_OK);
     *kind = (masu_mesh_kind){.meshes = 17, .material = block.material, .vertices = 1048576, .triangles = 12};
     REFUSED(masu_memory_query(&s.desc, &need, &failure), MASU_ERROR_LIMIT, "reserve.meshes");
-    kind->meshes = 1;
+    close_session(&s);
+}
+
+/* Of devices that have them: MASU_ON is refused by name, MASU_AUTO uses the built-in BVH. */
+static void ray_queries_are_not_used(void **state) {
+    (void)state;
+    masu_session s;
+    static masu_plan_info plan;
+    masu_session_desc d = desc_of("test_reserve");
+    d.host.ray_query = true;
+    d.no_renderer = true;
+    reserve(&d, 0, &block, 1);
+    open_session(&s, &d);
+    assert_int_equal(masu_plan(&s.desc, &plan, &failure), MASU_OK);
+    assert_int_equal(pass_of(&plan, "specular_query")->active, 0);
+    assert_true(pass_of(&plan, "mesh_trees")->active != 0);
     s.desc.ray_query = MASU_ON;
-    s.desc.vulkan.ray_query = 1;
-    REFUSED(masu_memory_query(&s.desc, &need, &failure), MASU_ERROR_ARGUMENT, "ray_query");
+    if (s.host.ray_query)
+        REFUSED(masu_plan(&s.desc, &plan, &failure), MASU_ERROR_ARGUMENT, "ray_query");
+    else
+        assert_int_equal(masu_plan(&s.desc, &plan, &failure), MASU_ERROR_DEVICE);
     close_session(&s);
 }
 
@@ -568,6 +580,7 @@ int main(void) {
         cmocka_unit_test(a_reserve_that_is_not_used_changes_no_bit),
         cmocka_unit_test(what_does_not_fit_is_refused),
         cmocka_unit_test(wrong_reserves_are_refused),
+        cmocka_unit_test(ray_queries_are_not_used),
         cmocka_unit_test(a_scene_without_polygons_has_no_room),
         cmocka_unit_test(the_memory_is_as_stated),
     };
