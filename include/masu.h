@@ -9,9 +9,9 @@
  *
  * MASU DOES NOT
  *  - submit, wait for the GPU, present, start threads, open files, print, or keep global state;
- *  - stream or create geometry: all geometry is in the blob. At run time a host may add copies of
- *    movable models without skins, punctual lights, textures, particles, trails, decals and debug
- *    lines, each up to desc.reserve;
+ *  - stream geometry: it is in the blob, or the host's own (masu_mesh_create). At run time a host
+ *    may add meshes, copies of movable models without skins, punctual lights, textures, particles,
+ *    trails, decals and debug lines, each up to desc.reserve;
  *  - cast shadows from particles, trails or transparent surfaces;
  *  - refract light beyond a bent lookup of the lit image, order intersecting transparent
  *    surfaces, or reflect particles, trails and decals;
@@ -478,10 +478,27 @@ typedef struct masu_viewport {
 } masu_viewport;
 #define MASU_MAX_VIEWPORTS 4u
 
+#define MASU_MAX_MESH_KINDS 8u
+/* A kind of meshes that the host creates at run time (masu_mesh_create): slots of equal size for
+ * meshes of one material, because draws are recorded with their material. Costs per slot, whether
+ * used or not:
+ *    device, per vertex     16 bytes; 8 in scenes with textures, 8 with second texture coordinates,
+ *                           4 with vertex colours; 12 if velocities are read
+ *    device, per triangle   12 bytes; 70 if rays trace polygons (16, and 54 for its share of nodes)
+ *    host and device        an instance, a model with one node, and a draw (masu_limits)
+ *    GPU                    three empty dispatches per frame for all kinds together; an empty draw
+ *                           per free slot and view; if rays trace polygons, a workgroup per slot */
+typedef struct masu_mesh_kind {
+    uint32_t meshes;    /* slots, 0..1024 of all kinds together; 0: the kind is unused */
+    uint32_t material;  /* MASU_SCENE_MATERIAL: neither transparent nor with mesoscale detail */
+    uint32_t vertices;  /* capacity of each slot, 3..1048576 */
+    uint32_t triangles; /* capacity of each slot, 1..262144 */
+} masu_mesh_kind;
+
 /* Capacities for objects that the host adds at run time. masu_memory includes their memory. Models
  * and lights of the reserve count towards limits and peaks like those of the scene. 0: none, at no
  * cost. Without a scene all members are unused; so is `models` if the scene has no movable model
- * without skins. */
+ * without skins. Meshes require a scene with polygons. */
 typedef struct masu_reserve {
     /* Slots for copies of movable models, in addition to the pooled copies of the scene
      * (masu_model_add), 0..16384. Any movable model without skins fits into a slot, so each slot
@@ -510,6 +527,14 @@ typedef struct masu_reserve {
     /* Bytes that masu_texture_write accepts between two frames, 4..2^28; 0: those of one texture.
      * Device: as many and 2064 more, per frame in flight. */
     uint32_t texture_bytes;
+    masu_mesh_kind meshes[MASU_MAX_MESH_KINDS];
+    /* Bytes of mesh data that one frame uploads: the sum over the calls of masu_mesh_create,
+     * _replace and _deform between two frames, at most 1 GiB, and at least the largest mesh that
+     * fits into a slot (masu_mesh_bytes). It also bounds the host's time, which is proportional to
+     * the bytes. 0: the largest mesh. Costs these bytes on the host, and again per frame in flight
+     * on the device, with 64 bytes per slot; and 51 host bytes per triangle of the largest slot if
+     * rays trace polygons. */
+    uint32_t mesh_upload;
 } masu_reserve;
 
 /* Roles of device memory. On unified memory one block of role MASU_ROLE_DEVICE serves all. */
@@ -726,7 +751,8 @@ typedef struct masu_desc {
      * BVH, which needs no device feature. The image is the same.
      *   AUTO   ray query if vulkan.ray_query is set, the device is a discrete or integrated GPU and
      *          its limits suffice (on CPUs the BVH is faster)
-     *   ON     ray query, else MASU_ERROR_DEVICE. Scenes with skins need OFF or AUTO
+     *   ON     ray query, else MASU_ERROR_DEVICE. Scenes with skins, and reserve.meshes, need OFF
+     *          or AUTO, which then uses the BVH
      *   OFF    built-in BVH
      * Ray query needs more memory, which masu_memory includes. No effect without reflections of
      * polygons. */
@@ -1422,8 +1448,9 @@ MASU_API MASU_MUST_USE masu_result masu_model_show(masu_renderer *renderer, masu
  * it makes a copy in a slot of desc.reserve.models, without a name. The nodes get the current
  * transforms of the nodes of `like`. Lights attached to `like` are copied too, into
  * desc.reserve.lights. Allocates nothing. The model has a velocity of 0 in its first frame.
- *   MASU_ERROR_LIMIT      all models of the kind are shown, and the reserve is full or `like` has
- *                         skins, which cannot be copied; or desc.reserve.lights is too small
+ *   MASU_ERROR_LIMIT      all models of the kind are shown, and the reserve is full, or `like` has
+ *                         skins or is a mesh of the host, which cannot be copied; or
+ *                         desc.reserve.lights is too small
  *   MASU_ERROR_ARGUMENT   as masu_model_set_transform
  * Nothing has changed after an error. */
 MASU_API MASU_MUST_USE masu_result masu_model_add(masu_renderer *renderer, masu_model like,
@@ -1436,6 +1463,62 @@ MASU_API MASU_MUST_USE masu_result masu_model_add(masu_renderer *renderer, masu_
  * valid. MASU_ERROR_ARGUMENT: the handle is invalid. */
 MASU_API MASU_MUST_USE masu_result masu_model_remove(masu_renderer *renderer, masu_model model,
                                                      masu_detail *detail);
+
+/* The vertices and triangles of a mesh of the host; read during the call. Object space, metres. */
+typedef struct masu_mesh_data {
+    const float *positions; /* 3 per vertex, within -1e15..1e15 */
+    const float *normals;   /* 3 per vertex, of any length; one of length 0 becomes +Y */
+    const float *texcoords; /* 2 per vertex, of every map; NULL: all 0. Not read without textures */
+    const float *colors;    /* linear red, green, blue, alpha per vertex, 0..1; NULL: white. Only in
+                               scenes with vertex colours */
+    const uint32_t *indices; /* 3 per triangle, counter-clockwise from the front */
+    uint32_t vertex_count;   /* 3 .. masu_mesh_kind.vertices */
+    uint32_t triangle_count; /* 1 .. masu_mesh_kind.triangles */
+} masu_mesh_data;
+
+/* Creates a mesh from the next masu_frame on, in a slot of desc.reserve.meshes[kind]. The result is
+ * a model with one node, without a name: masu_model_set_transform moves it, masu_model_show hides
+ * it, masu_model_remove frees its slot, masu_model_node_get has its instance. In the image, in
+ * shadows, for culling, for picking and in traced reflections it is like a mesh of the scene,
+ * without LODs. Occlusion culling does not use it as an occluder, and baked light does not include
+ * it. Rays trace it if they trace any polygon of the scene; the call then also builds its BVH, so
+ * reflections show it in the same frame.
+ *
+ * A frame that is not submitted loses what was uploaded for it: replace these meshes again.
+ * Allocates nothing. Nothing has changed after an error.
+ *   MASU_ERROR_LIMIT      no slot of the kind is free; the mesh is larger than its slot; or the
+ *                         calls since the last masu_frame have more bytes than
+ *                         desc.reserve.mesh_upload: call again after the next masu_frame
+ *   MASU_ERROR_ARGUMENT   a pointer is NULL; the kind is unused; a number is not finite or out of
+ *                         range; an index is not below vertex_count; `colors` in a scene without
+ *                         vertex colours; or as masu_model_set_transform */
+MASU_API MASU_MUST_USE masu_result masu_mesh_create(masu_renderer *renderer, uint32_t kind,
+                                                    const masu_mesh_data *data,
+                                                    const float rows[12], masu_model *out,
+                                                    masu_detail *detail);
+
+/* Replaces vertices and triangles of a mesh from the next masu_frame on. Its velocity in that frame
+ * is that of its transform only. Errors as masu_mesh_create; MASU_ERROR_ARGUMENT also if `mesh` is
+ * not from masu_mesh_create. */
+MASU_API MASU_MUST_USE masu_result masu_mesh_replace(masu_renderer *renderer, masu_model mesh,
+                                                     const masu_mesh_data *data,
+                                                     masu_detail *detail);
+
+/* Moves the vertices of a mesh from the next masu_frame on, for cloth, water or trails: any number
+ * of meshes per frame, within desc.reserve.mesh_upload, at 16 bytes per vertex. Triangles, texture
+ * coordinates and colours are kept. Velocities follow from the previous positions. The device
+ * refits the BVH to the new positions; after a large change masu_mesh_replace builds a better one.
+ * `positions` and `normals` as in masu_mesh_data; `vertex_count` must be that of the mesh. Errors
+ * as masu_mesh_replace. */
+MASU_API MASU_MUST_USE masu_result masu_mesh_deform(masu_renderer *renderer, masu_model mesh,
+                                                    const float *positions, const float *normals,
+                                                    uint32_t vertex_count, masu_detail *detail);
+
+/* Bytes that a mesh of these counts takes of desc.reserve.mesh_upload in masu_mesh_create and
+ * masu_mesh_replace: 16 per vertex, 8 more with textures and 4 with vertex colours; 12 per
+ * triangle, and up to 32 more if rays trace polygons. 0 for NULL. */
+MASU_API uint64_t masu_mesh_bytes(const masu_renderer *renderer, uint32_t vertex_count,
+                                  uint32_t triangle_count);
 
 #define MASU_NODE_NONE UINT32_MAX
 

@@ -21,6 +21,7 @@
 #include "frame/instances.h"
 #include "frame/local_shadows.h"
 #include "frame/materials.h"
+#include "frame/meshes.h"
 #include "frame/models.h"
 #include "frame/occlusion.h"
 #include "frame/picking.h"
@@ -78,6 +79,7 @@ struct masu_renderer {
     masu_textures textures;
     masu_reflections reflections;
     masu_bounce bounce;
+    masu_meshes meshes;
 };
 
 /* The result of a public function whose error is in m->error: logs it and copies it to `detail`,

@@ -26,7 +26,8 @@ masu_use masu_use_of(masu_usage usage, masu_pass_kind kind) {
                           VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, 0};
     case MASU_READ_VERTICES:
         return (masu_use){1, VK_PIPELINE_STAGE_VERTEX_INPUT_BIT,
-                          VK_ACCESS_VERTEX_ATTRIBUTE_READ_BIT, VK_IMAGE_LAYOUT_UNDEFINED, 0};
+                          VK_ACCESS_VERTEX_ATTRIBUTE_READ_BIT | VK_ACCESS_INDEX_READ_BIT,
+                          VK_IMAGE_LAYOUT_UNDEFINED, 0};
     case MASU_READ_COPY:
     case MASU_READ_BACK:
         return (masu_use){1, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_READ_BIT,

@@ -98,9 +98,12 @@ static int keeps_access(const masu_frame_plan *plan, uint32_t pass, uint8_t reso
     switch (resource) {
     case MASU_IMAGE_NONE: return 0;
     case MASU_RESOURCE(MASU_BUFFER_DRAWS): return n->occlusion;
-    case MASU_RESOURCE(MASU_BUFFER_VERTICES): return n->skins;
-    case MASU_RESOURCE(MASU_BUFFER_TRACE): return n->skins && n->traced && !n->query;
-    case MASU_RESOURCE(MASU_BUFFER_PREVIOUS_VERTICES): return n->skins && n->velocity;
+    case MASU_RESOURCE(MASU_BUFFER_VERTICES): return n->skins || n->meshes;
+    case MASU_RESOURCE(MASU_BUFFER_TRACE):
+        return (n->skins || n->meshes) && n->traced && !n->query;
+    case MASU_RESOURCE(MASU_BUFFER_PREVIOUS_VERTICES):
+        return (n->skins || n->meshes) && n->velocity;
+    case MASU_RESOURCE(MASU_BUFFER_MESH_INDICES): return n->meshes;
     case MASU_RESOURCE(MASU_BUFFER_PROBES): return n->probes;
     case MASU_RESOURCE(MASU_BUFFER_EXPOSURE): return n->metered;
     case MASU_RESOURCE(MASU_BUFFER_LIGHT_TILES): return n->on.light_tiles;
@@ -349,6 +352,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
         .scene = d->scene != NULL,
         .raster = d->scene && plan->scene.instances,
         .skins = d->scene && plan->scene.skins,
+        .meshes = d->scene && plan->scene.host_meshes,
         .sdf = d->scene && plan->scene.sdf,
         .dynamic = d->scene && plan->scene.sdf_dynamic,
         .timed = d->scene && plan->scene.sdf_timed,
@@ -412,6 +416,11 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
     plan->targets_max = d->resizable && d->scene ? MASU_MAX_TARGETS : d->targets.count;
     masu_output_plan(plan);
     if (plan->needs.query) plan->scene.trace_nodes = 0; /* the driver builds its own BVHs */
+    if (!plan->needs.traced) {
+        plan->scene.trace_nodes -= plan->scene.host_nodes;
+        plan->scene.trace_triangles -= plan->scene.host_nodes ? plan->scene.host_triangles : 0;
+        plan->scene.host_nodes = 0;
+    }
     masu_shadow_peak(d, &plan->cascades, &plan->cascade_size);
     if (plan->needs.local_shadows) resolve_local_shadows(plan);
     /* Views of the sun: one per cascade, else one for the whole scene. */

@@ -220,6 +220,24 @@ static masu_result check_reserve(const masu_desc *d, masu_detail *detail) {
         return bad_range(detail, "reserve.decals", r->decals, 0, MASU_DECALS_MAX);
     if (r->lines > MASU_LINES_MAX)
         return bad_range(detail, "reserve.lines", r->lines, 0, MASU_LINES_MAX);
+    if (r->mesh_upload > MASU_MESH_UPLOAD_MAX)
+        return bad_range(detail, "reserve.mesh_upload", r->mesh_upload, 0, MASU_MESH_UPLOAD_MAX);
+    uint64_t meshes = 0;
+    for (uint32_t k = 0; k < MASU_MAX_MESH_KINDS; k++) {
+        const masu_mesh_kind *kind = &r->meshes[k];
+        meshes += kind->meshes;
+        if (!kind->meshes) continue;
+        if (kind->vertices < 3 || kind->vertices > MASU_MESH_VERTICES_MAX)
+            return bad_range(detail, "reserve.meshes[].vertices", kind->vertices, 3,
+                             MASU_MESH_VERTICES_MAX);
+        if (kind->triangles < 1 || kind->triangles > MASU_MESH_TRIANGLES_MAX)
+            return bad_range(detail, "reserve.meshes[].triangles", kind->triangles, 1,
+                             MASU_MESH_TRIANGLES_MAX);
+    }
+    if (meshes > MASU_RESERVE_MESHES_MAX)
+        return bad_range(detail, "reserve.meshes[].meshes",
+                         (uint32_t)(meshes < UINT32_MAX ? meshes : UINT32_MAX), 0,
+                         MASU_RESERVE_MESHES_MAX);
     if (r->trail_points > MASU_PARTICLES_MAX)
         return bad_range(detail, "reserve.trail_points", r->trail_points, 0, MASU_PARTICLES_MAX);
     if (r->textures > MASU_LIVE_TEXTURES_MAX)

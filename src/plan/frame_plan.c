@@ -77,7 +77,13 @@ static const char *no_skins(const masu_needs *n) {
     return n->scene ? "the scene has no skinned meshes" : NO_SCENE;
 }
 
-static int has_skin_trees(const masu_needs *n) { return n->skins && n->traced && !n->query; }
+static const char *no_meshes(const masu_needs *n) {
+    return n->scene ? "desc.reserve.meshes is 0" : NO_SCENE;
+}
+
+static int has_skin_trees(const masu_needs *n) {
+    return (n->skins || n->meshes) && n->traced && !n->query;
+}
 
 static const char *no_shadow_map(const masu_needs *n) {
     return n->raster ? "the scene has no shadow map" : "the scene has no instances";
@@ -212,7 +218,8 @@ VkExtent2D masu_extent_of(masu_image_extent extent, VkExtent2D render, VkExtent2
     if (extent == MASU_EXTENT_ONE || extent == MASU_EXTENT_KEPT || extent == MASU_EXTENT_BATCHES ||
         extent == MASU_EXTENT_PROBES || extent == MASU_EXTENT_RAYS ||
         extent == MASU_EXTENT_TRACED_PROBES || extent == MASU_EXTENT_SKINS ||
-        extent == MASU_EXTENT_SKIN_TREES || extent == MASU_EXTENT_TEXTURES)
+        extent == MASU_EXTENT_SKIN_TREES || extent == MASU_EXTENT_TEXTURES ||
+        extent == MASU_EXTENT_MESHES)
         return (VkExtent2D){1, 1};
     if (extent == MASU_EXTENT_LEVELS)
         return (VkExtent2D){(render.width + 63) / 64 * 32, (render.height + 63) / 64 * 48};

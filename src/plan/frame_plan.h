@@ -68,7 +68,9 @@ typedef enum masu_image_extent {
     MASU_EXTENT_KEPT,       /* one invocation per instance and view */
     MASU_EXTENT_BATCHES,    /* see compact.comp */
     MASU_EXTENT_SKINS,      /* one invocation per vertex of the largest skin, for each skin */
-    MASU_EXTENT_SKIN_TREES, /* one workgroup per skin */
+    MASU_EXTENT_SKIN_TREES, /* one workgroup per skin, and per mesh of the host */
+    /* one invocation per element of the frame's changed meshes: indirect, written by the host */
+    MASU_EXTENT_MESHES,
     MASU_EXTENT_PROBES,     /* one invocation per light probe */
     /* one invocation per ray of the frame's live probes: indirect, written by the host */
     MASU_EXTENT_RAYS,
@@ -168,6 +170,7 @@ typedef struct masu_needs {
     int scene;         /* with a scene (else: upscaling of a source image) */
     int raster;        /* it has instances */
     int skins;         /* some of them are skinned */
+    int meshes;        /* the host may create meshes */
     int sdf;           /* it has an SDF */
     uint32_t readback; /* masu_readback_bits */
     uint32_t split;    /* masu_split_bits */

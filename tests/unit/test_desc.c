@@ -113,6 +113,13 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
     SAME(reserve.texture_size.width);
     SAME(reserve.texture_size.height);
     SAME(reserve.texture_bytes);
+    SAME(reserve.mesh_upload);
+    for (uint32_t k = 0; k < MASU_MAX_MESH_KINDS; k++) {
+        SAME(reserve.meshes[k].meshes);
+        SAME(reserve.meshes[k].material);
+        SAME(reserve.meshes[k].vertices);
+        SAME(reserve.meshes[k].triangles);
+    }
     SAME(host_budget);
     SAME(device_budget);
     for (uint32_t k = 0; k < MASU_ROLE_COUNT; k++) {

@@ -48,6 +48,7 @@ static masu_readback_image image;
 static masu_pick_info pick;
 static masu_instance_state instance_state;
 static masu_model_state model_state;
+static masu_mesh_data mesh_data;
 static masu_model added;
 static const masu_clip_use clip_use = {.weight = 1.0f};
 static masu_node_state node_state;
@@ -143,6 +144,10 @@ static const double unit_position[3] = {1, 2, 3};
     X(masu_model_set_position, masu_model_set_position(P(0, &m), MODEL, P(1, unit_position), P(2, &detail))) \
     X(masu_model_add, masu_model_add(P(0, &m), MODEL, P(1, unit), P(2, &added), P(3, &detail)))    \
     X(masu_model_remove, masu_model_remove(P(0, &m), MODEL, P(1, &detail)))                        \
+    X(masu_mesh_create, masu_mesh_create(P(0, &m), 0, P(1, &mesh_data), P(2, unit), P(3, &added), P(4, &detail))) \
+    X(masu_mesh_replace, masu_mesh_replace(P(0, &m), MODEL, P(1, &mesh_data), P(2, &detail)))      \
+    X(masu_mesh_deform, masu_mesh_deform(P(0, &m), MODEL, P(1, unit), P(2, unit), 0, P(3, &detail))) \
+    X(masu_mesh_bytes, ((void)masu_mesh_bytes(P(0, &m), 1, 1), NO_RESULT))                          \
     X(masu_model_node_find, ((void)masu_model_node_find(P(0, &m), MODEL, P(1, "a")), NO_RESULT))   \
     X(masu_model_node_get, masu_model_node_get(P(0, &m), MODEL, 0, P(1, &node_state), P(2, &detail))) \
     X(masu_model_node_set, masu_model_node_set(P(0, &m), MODEL, 0, P(1, unit), P(2, &detail)))     \
