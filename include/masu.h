@@ -726,12 +726,21 @@ typedef struct masu_desc {
     /* Flag: masu_instance_set_position and masu_model_set_position are available. Costs 24 host
      * bytes per instance and per model. Scene only. */
     uint32_t double_positions;
+    /* Flag: masu_instance_set_look and masu_model_set_look are available. Costs 49 host bytes per
+     * instance; device: 48 bytes per instance and frame in flight (twice that with velocities),
+     * counted in multiples of 8 instances, and 32 bytes per traced instance and frame in flight.
+     * The G-buffer pass tests the fade of each pixel, and so loses the early depth test. Scene
+     * only. */
+    uint32_t instance_looks;
     uint64_t host_budget;   /* bytes; 0: none. A larger plan is MASU_ERROR_LIMIT */
     uint64_t device_budget; /* bytes, all roles together; 0: none */
     masu_device_block device_blocks[MASU_ROLE_COUNT];
     /* Flag: frames may set light.turbidity although the scene has no analytic sky. No effect with
      * an environment map. Scene only. */
     uint32_t analytic_sky;
+    /* Flag: frames may set light.environment. Costs 9 multiply-adds and 6 multiplications per
+     * sample of an environment map. Scene only. */
+    uint32_t live_environment;
     /* Flag: local lights may be capsules and rectangles, or have a surface, although those of the
      * scene do not. Costs up to 84 KiB of device memory, and registers in the passes that light
      * surfaces. Scene only. */
@@ -743,7 +752,7 @@ typedef struct masu_desc {
      * Costs a set of recordings per viewport. Without a scene a count is MASU_ERROR_ARGUMENT. */
     uint32_t viewport_count;
     masu_viewport viewports[MASU_MAX_VIEWPORTS];
-    /* Flag: masu_resize may change the output size, up to `output`, and the targets. Costs 32 host
+    /* Flag: masu_resize may change the output size, up to `output`, and the targets. Costs 44 host
      * bytes per draw of a G-buffer pass, LODs included, a bounds test in the last pass, and command
      * buffers and descriptor sets for MASU_MAX_TARGETS targets. Scene only. */
     uint32_t resizable;
@@ -892,6 +901,27 @@ typedef struct masu_camera {
     float left, right, bottom, top;
 } masu_camera;
 
+/* Changes of the sky at run time: day and night, a sky that stays while the world tilts. All zero:
+ * the sky as it is in the scene. `intensity`, `tint` and `rotation` apply to an environment map,
+ * and must be zero without one. They affect its ambient light, its reflections and the sky alike;
+ * baked probes and live bounces follow. The sun is separate (sun_direction, sun_color).
+ *
+ * A rotation about +Y is exact. After another rotation, the part of diffuse light that is beyond
+ * second-order spherical harmonics is approximated: tilted by 90 degrees, three skies differ by at
+ * most 2.1 % of their brightest irradiance from the same skies baked with that tilt. */
+typedef struct masu_environment {
+    float intensity; /* factor on the radiance, up to 1e6; 0: 1; below 0: black */
+    float tint[3];   /* factors on red, green and blue, 0..1; all 0: white */
+    /* Quaternion x, y, z, w from the axes of the map to the world's: by an angle a about +Y it is
+     * 0, sin(a / 2), 0, cos(a / 2). Need not be of unit length; all 0: no rotation. */
+    float rotation[4];
+    /* The background that the camera sees where there is no surface, with any kind of sky:
+     * background_intensity * (sky and sun disc) + background_color. Fog is in front of it.
+     * Ambient light, reflections and fog colour do not change. */
+    float background_intensity; /* factor, up to 1e6; 0: 1; below 0: black */
+    float background_color[3];  /* radiance, 0..1e9 */
+} masu_environment;
+
 typedef struct masu_light {
     float sun_direction[3];              /* towards the sun; need not be unit length */
     float sun_color[3];                  /* irradiance on a perpendicular surface / pi */
@@ -911,6 +941,7 @@ typedef struct masu_light {
      * one millisecond on the CPU. */
     float turbidity;
     float ground[3]; /* albedo below the horizon of the analytic sky, 0..1; else unused */
+    masu_environment environment; /* requires desc.live_environment unless all zero */
     /* Fog, for scenes that have it; for others fog_density must be 0. Density at height y:
      * fog_density * exp(-fog_falloff * (y - fog_height)). */
     float fog_color[3]; /* radiance of thick fog, 0..1e9; all 0: that of the sky at the horizon */
@@ -1073,6 +1104,9 @@ typedef struct masu_frame_desc {
     /* pick: flag. masu_pick reports the object at this pixel of the output (or viewport), counted
      * from the upper left corner: 0 .. width - 1, 0 .. height - 1. Requires desc.picking. */
     uint32_t pick, pick_x, pick_y;
+    /* Bits of masu_look.pick_mask: the query passes through instances that have none of them. 0:
+     * all bits. */
+    uint32_t pick_mask;
 } masu_frame_desc;
 
 /* Starts an initializer: masu_frame_desc frame = {MASU_FRAME_DESC, .time = time}; */
@@ -1401,6 +1435,51 @@ MASU_API MASU_MUST_USE masu_result masu_instance_show(masu_renderer *renderer,
                                                       masu_instance instance, uint32_t shown,
                                                       masu_detail *detail);
 
+/* Flags of masu_look. */
+#define MASU_LOOK_NO_SHADOW 1u  /* casts no shadow of sun or punctual lights */
+#define MASU_LOOK_NOT_TRACED 2u /* absent in reflections, and for live bounces */
+#define MASU_LOOK_NOT_PICKED 4u /* masu_pick passes through it */
+
+/* The look of one instance, on top of its materials. All zero: unchanged. */
+typedef struct masu_look {
+    /* Multiplies the base colour, and the emission of unlit materials; 0..1. All 0: white; black is
+     * {1e-6f, 0, 0}. */
+    float tint[3];
+    float emission; /* factor on the emission, up to 1e6; 0: 1; below 0: off */
+    /* Texture coordinate = scale * coordinate of the mesh + offset, -1e4..1e4, for all maps; in
+     * alpha tests of reflection rays the mesh's own. A scale of 0 is 1. */
+    float uv_offset[2], uv_scale[2];
+    /* Fraction of its pixels that are not drawn, 0..1: fades by dithering; 1: it is hidden, but
+     * its lights stay on. Two
+     * instances at one pixel have the same pattern, which with rung.temporal differs in each frame
+     * and so is averaged. Transparent materials fade smoothly. Shadows and reflections stay solid
+     * below 1: one depth per shadow texel cannot hold a part, and dithered shadow texels would
+     * flicker. Picking finds it below 1. */
+    float fade;
+    uint32_t flags; /* MASU_LOOK_* */
+    /* Bit per viewport (masu_frame_desc.viewport) in which the camera does not see the instance.
+     * Its shadows and reflections stay. */
+    uint32_t hidden_views;
+    uint32_t pick_mask; /* picked by frames with one of these bits in pick_mask; 0: all bits */
+} masu_look;
+
+/* Sets the look of an instance from the next masu_frame on. masu_model_add gives the model a look
+ * of all zero. Velocities ignore uv_offset. Live bounces follow within some rounds of their probes;
+ * baked light and the lights of the scene do not change. A change of shadows has the delay of
+ * masu_instance_show.
+ *   MASU_ERROR_ARGUMENT   a pointer is NULL, the handle is invalid, or a value is out of range or
+ *                         not finite, or an unknown flag
+ *   MASU_ERROR_STATE      desc.instance_looks is 0 */
+MASU_API MASU_MUST_USE masu_result masu_instance_set_look(masu_renderer *renderer,
+                                                          masu_instance instance,
+                                                          const masu_look *look,
+                                                          masu_detail *detail);
+
+/* The look as it was set. Errors as masu_instance_set_look. */
+MASU_API MASU_MUST_USE masu_result masu_instance_get_look(masu_renderer *renderer,
+                                                          masu_instance instance, masu_look *out,
+                                                          masu_detail *detail);
+
 /* The first model with that name in the scene description; id 0 if there is none. */
 MASU_API masu_model masu_model_find(const masu_renderer *renderer, const char *name);
 
@@ -1442,6 +1521,10 @@ MASU_API MASU_MUST_USE masu_result masu_model_set_position(masu_renderer *render
 /* As masu_instance_show, for all instances of the model. */
 MASU_API MASU_MUST_USE masu_result masu_model_show(masu_renderer *renderer, masu_model model,
                                                    uint32_t shown, masu_detail *detail);
+
+/* As masu_instance_set_look, for all instances of the model. */
+MASU_API MASU_MUST_USE masu_result masu_model_set_look(masu_renderer *renderer, masu_model model,
+                                                       const masu_look *look, masu_detail *detail);
 
 /* Adds a model of the same kind as `like` at `rows` from the next masu_frame on. It takes a hidden
  * model of that kind from the scene, a pooled copy ("spare") for example. If all of them are shown,

@@ -37,6 +37,7 @@
 #include "shared/globals.glsl"
 #include "shared/facing.glsl"
 #include "shared/pack.glsl"
+#include "shared/look.glsl"
 #include "light/air.glsl"
 #include "light/background.glsl"
 #include "light/shade.glsl"
@@ -228,6 +229,8 @@ void main()
 #else
     n = masu_normalize(masu_lean_to_eye(away ? -n : n, in_rel, 0.0), -direction);
 #endif
+    masu_take_look(s);
+    cover *= 1.0 - masu_fade();
     float nearest = texelFetch(depth_image, ivec2(gl_FragCoord.xy), 0).r;
     bool back = (in_thing.y & MASU_MAP_SINGLE) != 0u && !gl_FrontFacing;
     if (elsewhere || back || !(gl_FragCoord.z >= nearest)) {

@@ -115,6 +115,9 @@ masu_result masu_model_add(masu_renderer *m, masu_model like, const float rows[1
                                   &m->error);
     }
     if (result) return masu_finish(m, result, detail);
+    const masu_look plain = {.flags = 0};
+    if (m->plan.needs.looks)
+        masu_models_set_look(&m->models, &m->instances, &m->plan, added, &plain);
     masu_models_show(&m->models, &m->instances, &m->plan, added, 1);
     *out = masu_model_at(m, added);
     return MASU_OK;

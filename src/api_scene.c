@@ -82,6 +82,27 @@ masu_result masu_instance_show(masu_renderer *m, masu_instance instance, uint32_
     return result;
 }
 
+masu_result masu_instance_set_look(masu_renderer *m, masu_instance instance, const masu_look *look,
+                                   masu_detail *detail) {
+    uint32_t i;
+    if (!m || !look) return masu_finish_null(m, "look", detail);
+    masu_result result = check_instance(m, instance, &i, detail);
+    if (!result) result = masu_finish(m, masu_looks_check(&m->plan, look, &m->error), detail);
+    if (!result) masu_instances_set_look(&m->instances, &m->plan, i, look);
+    return result;
+}
+
+masu_result masu_instance_get_look(masu_renderer *m, masu_instance instance, masu_look *out,
+                                   masu_detail *detail) {
+    const masu_look plain = {.flags = 0};
+    uint32_t i;
+    if (!m || !out) return masu_finish_null(m, "out", detail);
+    masu_result result = check_instance(m, instance, &i, detail);
+    if (!result) result = masu_finish(m, masu_looks_check(&m->plan, &plain, &m->error), detail);
+    if (!result) *out = m->instances.looks.now[i];
+    return result;
+}
+
 /* ---- Models ---------------------------------------------------------------------------------- */
 
 static masu_result check_model(masu_renderer *m, masu_model model, uint32_t *index,
@@ -145,6 +166,16 @@ masu_result masu_model_show(masu_renderer *m, masu_model model, uint32_t shown,
     if (!m) return masu_fail_null(detail, "renderer");
     masu_result result = check_model(m, model, &i, detail);
     if (!result) masu_models_show(&m->models, &m->instances, &m->plan, i, shown != 0);
+    return result;
+}
+
+masu_result masu_model_set_look(masu_renderer *m, masu_model model, const masu_look *look,
+                                masu_detail *detail) {
+    uint32_t i;
+    if (!m || !look) return masu_finish_null(m, "look", detail);
+    masu_result result = check_model(m, model, &i, detail);
+    if (!result) result = masu_finish(m, masu_looks_check(&m->plan, look, &m->error), detail);
+    if (!result) masu_models_set_look(&m->models, &m->instances, &m->plan, i, look);
     return result;
 }
 

@@ -57,15 +57,6 @@ vec2 masu_map_at(uint slot, vec2 at)
 #endif
 }
 
-#ifdef MASU_ATTRIBUTES
-/* By the colour of vertices: what is lit, and of an unlit surface, whose light it is, what it emits. */
-void masu_tint(inout masu_surface s, vec3 color)
-{
-    s.emissive *= masu_is_unlit(s) ? color : vec3(1.0);
-    s.albedo *= color;
-}
-#endif
-
 float masu_layer(uint slot)
 {
     return float(MASU_MAPS_LAYERS >> 8 * slot & 0xFFu);

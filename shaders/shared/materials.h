@@ -39,12 +39,18 @@
 #define MASU_LOBE_SHEEN 2u
 #define MASU_LOBE_GRAIN 3u /* anisotropic */
 
-/* Transform of an instance: the rows of the 3x4 matrix object -> world space. */
+/* Transform of an instance: the rows of the 3x4 matrix object -> world space. With looks of instances
+ * (MASU_DRAWS_LOOKS) the second half of the buffer has them: row0 rgb factor on the base colour, w on
+ * the emission; row1 texture coordinates: xy offset, zw scale; row2.x fraction of pixels not drawn. */
 struct masu_instance_data {
     masu_vec4 row0;
     masu_vec4 row1;
     masu_vec4 row2;
 };
+
+/* Parts that vertex shaders add to a draw: bits of specialisation constant 22. */
+#define MASU_DRAWS_LOOKS 1u  /* looks of instances: tint, fade, texture coordinates */
+#define MASU_DRAWS_BIASES 2u /* depth biases of materials */
 
 struct masu_material_data {
     masu_vec4 base_color; /* rgb linear albedo; w perceptual roughness 0..1 */

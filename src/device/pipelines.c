@@ -55,8 +55,9 @@ static uint64_t now(const masu_device *m) {
  *   20  skins have morph targets           21  opaque materials have lobes (specular colour, sheen,
  *                                              anisotropy)
  *   22  orthographic cameras: few bits of depth are kept as those of 1 - depth
- *   23  materials may show live textures */
-enum { SPECIAL_COUNT = 24 };
+ *   23  materials may show live textures
+ *   24  MASU_DRAWS_* of materials.h           25  frames change the environment */
+enum { SPECIAL_COUNT = 26 };
 
 static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
                                        VkBool32 constants[SPECIAL_COUNT]) {
@@ -66,7 +67,7 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
         ENTRY(0),  ENTRY(1),  ENTRY(2),  ENTRY(3),  ENTRY(4),  ENTRY(5),  ENTRY(6),
         ENTRY(7),  ENTRY(8),  ENTRY(9),  ENTRY(10), ENTRY(11), ENTRY(12), ENTRY(13),
         ENTRY(14), ENTRY(15), ENTRY(16), ENTRY(17), ENTRY(18), ENTRY(19), ENTRY(20),
-        ENTRY(21), ENTRY(22), ENTRY(23)};
+        ENTRY(21), ENTRY(22), ENTRY(23), ENTRY(24), ENTRY(25)};
 #undef ENTRY
     constants[0] = first;
     constants[1] = m->plan->needs.sky != 0;
@@ -101,6 +102,9 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
     constants[21] = scene->lobes;
     constants[22] = scene->flat_lens;
     constants[23] = m->plan->needs.texture_maps != 0;
+    constants[24] = (m->plan->needs.looks ? MASU_DRAWS_LOOKS : 0u) |
+                    (scene->depth_biases ? MASU_DRAWS_BIASES : 0u);
+    constants[25] = m->plan->desc.live_environment != 0;
     return (VkSpecializationInfo){SPECIAL_COUNT, entries, SPECIAL_COUNT * sizeof *constants,
                                   constants};
 }
@@ -390,10 +394,7 @@ static VkResult create_graphics_pipeline(masu_device *m, uint32_t pass,
             .stage = i ? VK_SHADER_STAGE_FRAGMENT_BIT : VK_SHADER_STAGE_VERTEX_BIT,
             .module = modules[i],
             .pName = "main",
-            .pSpecializationInfo =
-                i || geometry == MASU_GEOMETRY_BLENDED || geometry == MASU_GEOMETRY_SPRITES
-                    ? &special
-                    : NULL};
+            .pSpecializationInfo = &special};
     }
     VkVertexInputBindingDescription bindings[] = {
         {0, sizeof(masu_blob_vertex), VK_VERTEX_INPUT_RATE_VERTEX},

@@ -146,6 +146,8 @@ SAME_PLACE(detail_u, detail_u);
 SAME_PLACE(detail_v, detail_v);
 SAME_PLACE(instances, instances);
 SAME_PLACE(material, blended);
+_Static_assert(offsetof(struct masu_push_pick, nearer) == offsetof(struct masu_push_gbuffer, meso),
+               "what is picked has no meso, and its depth bias there");
 
 #define GRAPHICS_STAGES (VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT)
 
@@ -270,11 +272,14 @@ static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep, int 
                 /* a cascade reads `rise` there */
                 memcpy(&push.meso, &drawn.rise, sizeof push.meso);
             } else if (pick) {
+                float nearer = 1.0f + drawn.depth_bias;
                 push.material = blended ? 1 : 0;
                 push.flags = drawn.flags;
+                memcpy(&push.meso, &nearer, sizeof push.meso); /* `nearer` of a pick */
             } else {
                 push.material = drawn.material;
                 push.meso = drawn.meso;
+                push.nearer = 1.0f + drawn.depth_bias;
             }
             if (sweep) bind_maps(rec, layout, &drawn, &push, &bound);
             memcpy(&block.own, &push, sizeof push);
@@ -376,7 +381,7 @@ static void record_transparents(masu_recorder *rec, const VkDescriptorSet *sets)
             record_sprites(rec, MASU_PASS_PARTICLES, sets[MASU_PASS_PARTICLES],
                            MASU_SPRITE_DRAWS + k);
         if (among || tints) bind_transparents(rec, sets[MASU_PASS_TRANSPARENTS], tints);
-        push.instances = (uint32_t)m->plan->drawn.transparents + MASU_TRANSPARENT_WORDS * k;
+        push.instances = (uint32_t)m->plan->drawn.transparents + masu_transparent_words(m->plan) * k;
         memcpy(&block.own, &push, sizeof push);
         vk->CmdPushConstants(rec->cmd, layout, GRAPHICS_STAGES, 0, sizeof block, &block);
         draw_slot(rec, at, k == 0 || among);

@@ -296,6 +296,15 @@ masu_result masu_models_morph(masu_models *s, masu_instances *in, masu_bounds *b
     return MASU_OK;
 }
 
+void masu_models_set_look(const masu_models *s, masu_instances *in, const masu_frame_plan *plan,
+                          uint32_t model, const masu_look *look) {
+    const masu_placed_model *m = &s->models[model];
+    for (uint32_t n = m->first_node; n < m->first_node + m->node_count; n++) {
+        if (s->nodes[n].instance != MASU_BLOB_NONE)
+            masu_instances_set_look(in, plan, s->nodes[n].instance, look);
+    }
+}
+
 void masu_models_show(masu_models *s, masu_instances *in, const masu_frame_plan *plan,
                       uint32_t model, int shown) {
     masu_placed_model *m = &s->models[model];

@@ -62,6 +62,9 @@ masu_result masu_models_animate(masu_models *s, masu_instances *in, masu_bounds 
 masu_result masu_models_morph(masu_models *s, masu_instances *in, masu_bounds *b,
                               const masu_frame_plan *plan, uint32_t model, const char *name,
                               float weight, masu_detail *detail);
+/* masu_model_set_look of the public header, of a look that masu_looks_check has accepted. */
+void masu_models_set_look(const masu_models *s, masu_instances *in, const masu_frame_plan *plan,
+                          uint32_t model, const masu_look *look);
 void masu_models_show(masu_models *s, masu_instances *in, const masu_frame_plan *plan,
                       uint32_t model, int shown);
 /* A free place of the reserve becomes a copy of a model: its nodes are as they are there; they show nothing yet.

@@ -99,7 +99,8 @@ static void place(masu_reflections *s, const masu_instances *in, const masu_boun
         int none = instance == MASU_BLOB_NONE;
         if (!none && !masu_instance_dirty(in, instance) && !all) continue;
         float rows[12] = {0}; /* no place: hidden ones are not seen */
-        if (!none && !masu_instance_hidden(in, instance))
+        if (!none && !masu_instance_hidden(in, instance) &&
+            !masu_look_untraced(&in->looks, instance))
             masu_instance_rows_from(&in->now[instance], in->low ? in->low[instance] : NULL, in->low ? s->origin : zero,
                                     rows);
         if (!none && s->bends && s->bends[i]) { /* its box changes */
@@ -138,7 +139,8 @@ void masu_reflections_write_instances(masu_reflections *s, const masu_instances 
     place(s, in, b, f);
     int changed = update(s, in, f);
     /* What has moved stands still one frame later: that is a change of where it was. */
-    if (changed || in->dirty_count || !s->versions) s->versions++;
+    if (changed || in->dirty_count || s->looks != in->looks.changes || !s->versions) s->versions++;
+    s->looks = in->looks.changes;
     if (s->slot_version[f->slot] == s->versions) return;
     s->slot_version[f->slot] = s->versions;
     unsigned char *to = masu_frame_slot(f, MASU_BUFFER_TRACE_FRAME);
@@ -161,6 +163,12 @@ void masu_reflections_write_instances(masu_reflections *s, const masu_instances 
         if (low && !comes && plan->needs.velocity) low = in->previous_low[instance];
         rows_of(comes ? now : before, low, s->origin, both[1]);
         memcpy(to + at + i * sizeof both, both, sizeof both);
+        if (plan->needs.looks) {
+            float look[4 * MASU_TRACE_LOOK_ROWS];
+            masu_look_rows(&in->looks.now[instance], look);
+            memcpy(to + at + plan->scene.trace_instances * sizeof both + i * sizeof look, look,
+                   sizeof look);
+        }
         if (plan->needs.query) {
             masu_ray_write_instance(f->device, f->slot, i, in->meshes[instance], s->live[i],
                                     both[0]);

@@ -17,6 +17,7 @@ typedef struct masu_reflections {
     double previous_origin[3];
     uint64_t versions;                      /* so many times something has changed */
     uint64_t slot_version[MASU_MAX_FLIGHT]; /* as of which the slot is */
+    uint32_t looks;                         /* changes of looks, as of the last frame */
     int history;                            /* the previous frame has kept what it traced, */
     uint32_t history_size[2];               /* at this render size; */
     int full_history;                       /* and a history of full resolution */

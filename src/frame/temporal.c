@@ -72,6 +72,9 @@ static int has_changed(const struct masu_frame_uniforms *now, const struct masu_
     float higher = (now->eye_hi[1] - now->air[0]) - (before->eye_hi[1] - before->air[0]);
     if (now->fog[3] > 0.0f && fabsf(higher) > 1e-3f * (1.0f + fabsf(now->eye_hi[1]))) return 1;
     if (plan->needs.timed && now->eye_hi[3] != before->eye_hi[3]) return 1;
+    if (memcmp(now->environment, before->environment, sizeof now->environment) != 0 ||
+        memcmp(now->background, before->background, sizeof now->background) != 0)
+        return 1;
     return memcmp(now->sdf_params, before->sdf_params, sizeof now->sdf_params) != 0;
 }
 
@@ -159,7 +162,7 @@ void masu_temporal_read(masu_temporal *t, const masu_history *history, const mas
         find_between(&f->u, k);
     }
     if (kept) {
-        int changed = has_changed(&f->u, history->previous, f->plan) || t->instances != in->changes ||
+        int changed = has_changed(&f->u, history->previous, f->plan) || t->instances != in->changes + in->looks.changes ||
                       t->lights != lights->changes || t->sprites != sprites ||
                       t->materials != materials->changes || textures->count ||
                       f->desc.textures_changed ||
@@ -174,7 +177,7 @@ void masu_temporal_read(masu_temporal *t, const masu_history *history, const mas
     t->size[1] = has_resolve(f) ? rp->render_height : 0;
     t->lights = lights->changes;
     t->materials = materials->changes;
-    t->instances = in->changes;
+    t->instances = in->changes + in->looks.changes;
     t->sprites = sprites;
     t->rung = f->desc.rung;
 }

@@ -125,6 +125,11 @@ static void mark(masu_visible *s, const masu_bounds *bounds, const masu_instance
     for (uint32_t i = 0; in->hidden_count && i < scene->instances; i++) {
         if (masu_instance_hidden(in, i)) s->marks[i] &= (uint8_t)~bit;
     }
+    for (uint32_t i = 0; in->looks.given && i < scene->instances; i++) {
+        if (view ? masu_look_shadowless(&in->looks, i)
+                 : masu_look_unseen(&in->looks, i, f->desc.viewport))
+            s->marks[i] &= (uint8_t)~bit;
+    }
 }
 
 typedef struct lister {

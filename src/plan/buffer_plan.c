@@ -27,6 +27,14 @@ const masu_buffer_row masu_buffers[MASU_BUFFER_COUNT] = {
 /* With velocities, each slot has a half for this frame and a half for the previous frame. */
 static uint64_t masu_halves(const masu_frame_plan *plan) { return plan->needs.velocity ? 2 : 1; }
 
+/* Transforms, then looks. Multiples of 8 are aligned for every device, so that looks begin in the
+ * middle of the binding. */
+static uint64_t masu_instance_bytes(const masu_frame_plan *plan) {
+    uint64_t count = plan->scene.instances;
+    if (plan->desc.instance_looks) count = 2 * masu_look_capacity(plan->scene.instances);
+    return count * sizeof(struct masu_instance_data);
+}
+
 static uint64_t masu_counter_words(const masu_frame_plan *plan) {
     return plan->needs.scene || plan->needs.smoothing ? 2 * MASU_COUNTER_COUNT : 0;
 }
@@ -184,7 +192,7 @@ static void layout_drawn(masu_frame_plan *plan) {
         }
     }
     d->transparents = next;
-    d->picks = next + MASU_TRANSPARENT_WORDS * (uint64_t)s->transparents;
+    d->picks = next + masu_transparent_words(plan) * (uint64_t)s->transparents;
     d->faces = d->picks + (plan->needs.picking ? plan->listed : 0);
     d->words = d->faces + (uint64_t)plan->local_faces * plan->listed;
 }

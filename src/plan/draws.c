@@ -149,7 +149,8 @@ masu_draw_material masu_draw_material_of(const masu_scene_view *v, const masu_ba
         .more_layers = of->more_layers,
         .detail = {of->detail[0], of->detail[1]},
         .rise = own ? primitive->rise : 0.0f,
-        .meso = meso ? (uint32_t)(v->material_count + 2 * (uint64_t)of->meso) : 0};
+        .meso = meso ? (uint32_t)(v->material_count + 2 * (uint64_t)of->meso) : 0,
+        .depth_bias = of->depth_bias};
 }
 
 void masu_draws_build(masu_draws *draws, const masu_frame_plan *plan, const masu_scene_view *v) {

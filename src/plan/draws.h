@@ -17,7 +17,11 @@ enum { MASU_TEXTURED_OPAQUE, MASU_TEXTURED_MASK, MASU_TEXTURED_COUNT };
 /* Pipelines of single-sided materials: without textures, then as above. */
 #define MASU_CULLED_COUNT (1u + MASU_TEXTURED_COUNT)
 
-#define MASU_TRANSPARENT_WORDS 6u /* 32-bit values per slot in the buffer of drawn instances */
+/* 32-bit values per slot of transparent surfaces in the buffer of drawn instances. */
+static inline uint32_t masu_transparent_words(const masu_frame_plan *plan) {
+    return plan->scene.depth_biases ? 7 : 6;
+}
+#define MASU_TRANSPARENT_WORDS_MAX 7u
 
 /* A batch: one level of detail of a mesh, its instances, and one draw per primitive. The mesh
  * itself is first, then its LODs, if the plan has any, finest first. The slots of
@@ -45,6 +49,7 @@ typedef struct masu_draw_material {
     float detail[2];
     float rise;    /* masu_blob_primitive.rise */
     uint32_t meso; /* index of its mesoscale detail in the materials buffer; 0: none */
+    float depth_bias;
 } masu_draw_material;
 
 typedef struct masu_draws {

@@ -182,6 +182,7 @@ typedef struct masu_needs {
     int unculled;      /* and a mesh with too many primitives or instances for occlusion culling */
     int surface;     /* some material has more parameters than the albedo and normal images hold */
     int environment; /* the sky is an environment map */
+    int looks;       /* instances have looks */
     int sky;         /* the sky may be analytic */
     int emissive;    /* polygons may emit: the G-buffer pass writes their radiance to hdr, */
     int emission_packed; /* or to albedo (pack.glsl), if the device has too few attachments */

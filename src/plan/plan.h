@@ -188,6 +188,9 @@ static inline uint64_t masu_live_material_bytes(const masu_frame_plan *p) {
 }
 
 /* Counts of the blob, without the reserve. */
+/* With looks, the instance that the looks begin at in the buffer of transforms: a multiple of 8. */
+static inline uint32_t masu_look_capacity(uint32_t instances) { return (instances + 7u) & ~7u; }
+
 static inline uint32_t masu_own_instances(const masu_frame_plan *p) {
     return p->scene.instances - p->reserve.places.instances;
 }

@@ -359,6 +359,7 @@ typedef struct masu_blob_material {
     /* With IS_TINTED, without metal: refraction of the background by a volume. */
     float thickness; /* of the volume below the surface, object space: 0..65504; 0: no refraction */
     float ior;       /* index of refraction, 1..1000; 0 if thickness is 0 */
+    float depth_bias; /* -0.01..0.01: drawn nearer by this fraction of its view depth */
 } masu_blob_material;
 
 /* Appearance, by viewing angle, of surface detail too small for polygons: the curves of
@@ -675,7 +676,7 @@ _Static_assert(sizeof(masu_blob_joint) == 80, "blob joint");
 _Static_assert(sizeof(masu_blob_skin_vertex) == 32, "blob skin vertex");
 _Static_assert(sizeof(masu_blob_group) == 48, "blob group");
 _Static_assert(sizeof(masu_blob_occluder) == 32, "blob occluder");
-_Static_assert(sizeof(masu_blob_material) == 124, "blob material");
+_Static_assert(sizeof(masu_blob_material) == 128, "blob material");
 _Static_assert(sizeof(masu_blob_texture) == 32, "blob texture");
 _Static_assert(sizeof(masu_blob_texture_set) == 32, "blob texture set");
 _Static_assert(sizeof(masu_blob_camera_key) == 32, "blob camera key");

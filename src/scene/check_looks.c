@@ -99,6 +99,8 @@ static masu_result check_material(reader *r, uint64_t i) {
         return bad(r, "materials", i, "detail is not 0.001 to 10000");
     if (m->meso != MASU_BLOB_NONE && m->meso >= r->counts[MASU_BLOB_MESO])
         return bad(r, "materials", i, "no such meso");
+    if (!within(&m->depth_bias, 1, -0.01f, 0.01f))
+        return bad(r, "materials", i, "depth bias is not -0.01 to 0.01");
     if (!lobes_fit(m)) return bad(r, "materials", i, "a lobe is out of range, or not the only one");
     uint32_t blends = m->flags & MASU_MATERIAL_IS_BLEND;
     if (blends && m->flags & MASU_MATERIAL_IS_TINTED && m->flags & MASU_MATERIAL_IS_ADDITIVE)
@@ -306,6 +308,7 @@ void masu_describe_looks(const reader *r, masu_scene_data *out) {
     for (uint32_t i = 0; i < out->materials; i++) {
         const masu_blob_material *m = &r->view.materials[i];
         if (has_surface(m)) out->surfaces++;
+        if (m->depth_bias != 0.0f) out->depth_biases = 1;
         if (m->coat > 0.0f) out->coats++;
         if (!(m->flags & MASU_MATERIAL_IS_BLEND) && m->flags & 1u << MASU_SLOT_NORMAL)
             out->reliefs = 1;

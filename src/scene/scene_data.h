@@ -108,6 +108,7 @@ typedef struct MASU_MAY_ALIAS masu_scene_data {
     uint32_t probes_unlit;                       /* flag: they have no baked light */
     uint32_t bounce;                             /* flag: and rays of the frame add to it */
     uint32_t bounce_sdf;                         /* flag: which also trace the SDF */
+    uint32_t depth_biases;                       /* flag: some material has one */
     uint32_t environment_size, environment_mips; /* texels along an edge of the map; 0: none */
     uint32_t analytic_sky;                       /* flag: the sky follows from the sun */
     uint32_t fog;                                /* flag */

@@ -28,9 +28,9 @@ uint64_t masu_trace_rows_at(const masu_scene_data *scene, int query) {
     return query ? 16 : masu_trace_frame_bytes(scene->trace_instances);
 }
 
-uint64_t masu_trace_slot_bytes(const masu_scene_data *scene, int query) {
-    return masu_trace_rows_at(scene, query) +
-           16 * (uint64_t)MASU_TRACE_ROWS * scene->trace_instances;
+uint64_t masu_trace_slot_bytes(const masu_scene_data *scene, int query, int looks) {
+    uint64_t rows = MASU_TRACE_ROWS + (looks ? MASU_TRACE_LOOK_ROWS : 0u);
+    return masu_trace_rows_at(scene, query) + 16 * rows * scene->trace_instances;
 }
 
 /* Index of the ray tracing copy of a material's map, or MASU_TRACE_NONE. Binary search: the copies

@@ -47,6 +47,7 @@ static masu_stats_info stats;
 static masu_readback_image image;
 static masu_pick_info pick;
 static masu_instance_state instance_state;
+static masu_look instance_look;
 static masu_model_state model_state;
 static masu_mesh_data mesh_data;
 static masu_model added;
@@ -136,6 +137,9 @@ static const double unit_position[3] = {1, 2, 3};
     X(masu_instance_set_position, masu_instance_set_position(P(0, &m), INSTANCE, P(1, unit_position), P(2, &detail))) \
     X(masu_instance_get, masu_instance_get(P(0, &m), INSTANCE, P(1, &instance_state), P(2, &detail))) \
     X(masu_instance_show, masu_instance_show(P(0, &m), INSTANCE, 1, P(1, &detail)))                \
+    X(masu_instance_set_look, masu_instance_set_look(P(0, &m), INSTANCE, P(1, &instance_look), P(2, &detail))) \
+    X(masu_instance_get_look, masu_instance_get_look(P(0, &m), INSTANCE, P(1, &instance_look), P(2, &detail))) \
+    X(masu_model_set_look, masu_model_set_look(P(0, &m), MODEL, P(1, &instance_look), P(2, &detail)))       \
     X(masu_model_find, ((void)masu_model_find(P(0, &m), P(1, "a")), NO_RESULT))                    \
     X(masu_model_at, ((void)masu_model_at(P(0, &m), 0), NO_RESULT))                                \
     X(masu_model_get, masu_model_get(P(0, &m), MODEL, P(1, &model_state), P(2, &detail)))          \

@@ -184,6 +184,8 @@ static void what_lights_a_scene_is_checked(void **state) {
     }
     LIT("materials", 0, MATERIAL_OF[0].specular = 12.6f);
     LIT("materials", 0, MATERIAL_OF[0].anisotropy = 1.5f);
+    LIT("materials", 0, MATERIAL_OF[0].depth_bias = 0.0101f);
+    LIT("materials", 0, MATERIAL_OF[0].depth_bias = -0.0101f);
     LIT("materials", 0, MATERIAL_OF[0].specular_color[1] = 0.5f); /* and no channel is 1 */
     LIT("materials", 0, (MATERIAL_OF[0].sheen_color[0] = 1.0f, MATERIAL_OF[0].specular = 0.3f));
     LIT("materials", 0, (MATERIAL_OF[0].sheen_color[0] = 1.0f, MATERIAL_OF[0].specular = 0.5f, MATERIAL_OF[0].anisotropy = 1.0f));

@@ -84,7 +84,7 @@ typedef struct masu_playback {
 #define MASU_LOOK_ITEMS 64u      /* models and lights that panels list */
 
 /* What panels have changed in the scene, until another one is opened. */
-typedef struct masu_look {
+typedef struct masu_view_look {
     masu_light light, from;      /* of frames; of the scene */
     bool has_light;
     float azimuth, elevation, sun, stops; /* of `light`: degrees; factor on the scene's sun; exposure, powers of two */
@@ -93,7 +93,7 @@ typedef struct masu_look {
     float lamps[MASU_LOOK_ITEMS]; /* factors on the colours of lights */
     bool hidden[MASU_LOOK_ITEMS]; /* models */
     masu_playback clips[MASU_LOOK_ITEMS];
-} masu_look;
+} masu_view_look;
 
 #define MASU_PATH_KEYS 512u
 
@@ -189,7 +189,7 @@ typedef struct masu_viewer {
     double split;                /* where the line is, 0..1 */
     uint32_t hud;
     masu_panels panels;
-    masu_look look;
+    masu_view_look look;
     masu_capture recorder;
     masu_gallery gallery;
     masu_picked picked;

@@ -172,14 +172,15 @@ static bool read_change(const masu_bake_json *at, masu_bake_reader *r,
         "coat_roughness", "detail",         "match",       "opacity",
         "blend",          "meso",           "name",        "single_sided",
         "coat_map",       "coat_roughness_map", "coat_smooth", "thickness",
-        "ior",
+        "ior",            "unlit",              "depth_bias",  "repeat",
         NULL};
     out->value = masu_bake_default_material();
     out->maps = masu_bake_no_maps();
     masu_bake_vec3 color = {0, 0, 0}, emissive = {0, 0, 0};
     double roughness = 0, metallic = 0, specular = 0, coat = 0, coat_roughness = 0, thickness = 0, ior = 1.5;
     const char *match = NULL, *name = NULL;
-    bool single = false, even = false;
+    bool single = false, even = false, unlit = false, repeat = false;
+    double bias = 0;
     if (!masu_bake_json_object(at, members) ||
         !masu_bake_json_vec3(at, "base_color", 0, 1, &color) ||
         !masu_bake_json_number(at, "roughness", 0, 1, &roughness) ||
@@ -192,6 +193,9 @@ static bool read_change(const masu_bake_json *at, masu_bake_reader *r,
         !read_detail(at, out) || !masu_bake_json_string(at, "match", &match) ||
         !masu_bake_json_string(at, "name", &name) || !masu_bake_json_boolean(at, "single_sided", &single) ||
         !masu_bake_json_boolean(at, "coat_smooth", &even) ||
+        !masu_bake_json_boolean(at, "unlit", &unlit) ||
+        !masu_bake_json_boolean(at, "repeat", &repeat) ||
+        !masu_bake_json_number(at, "depth_bias", -0.01, 0.01, &bias) ||
         !masu_bake_json_vec3(at, "emissive", 0, 65504, &emissive) || !read_meso(at, r, change) ||
         !read_maps(at, r, change) || !read_alpha(at, out) || !read_blend(at, out)) {
         return false;
@@ -207,6 +211,10 @@ static bool read_change(const masu_bake_json *at, masu_bake_reader *r,
     out->maps.single = single;
     out->relief_of = masu_bake_json_has(at, "coat_smooth");
     out->maps.relief_of = even ? MASU_BAKE_RELIEF_OF_BASE : MASU_BAKE_RELIEF_OF_BOTH;
+    out->unlit = unlit;
+    out->repeat = repeat;
+    out->depth_bias = masu_bake_json_has(at, "depth_bias");
+    out->value.depth_bias = (float)bias;
     out->value.specular = (float)specular;
     out->value.coat = (float)coat;
     out->thickness = masu_bake_json_has(at, "thickness");
@@ -218,6 +226,8 @@ static bool read_change(const masu_bake_json *at, masu_bake_reader *r,
     masu_bake_store(emissive, out->value.emissive);
     out->value.roughness = (float)roughness;
     out->value.metallic = (float)metallic;
+    if (unlit && out->emissive)
+        return masu_bake_json_wrong(at, "\"emissive\": an unlit material emits its \"base_color\"");
     if (match && strlen(match) >= sizeof out->match)
         return masu_bake_json_wrong(at, "\"match\": expected at most %u bytes",
                                     MASU_BAKE_MATCH - 1);

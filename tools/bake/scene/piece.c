@@ -22,6 +22,7 @@ static bool same_override(const masu_bake_override *a, const masu_bake_override 
            a->thickness == b->thickness && a->ior == b->ior && x->thickness == y->thickness && x->ior == y->ior &&
            x->meso == y->meso && a->opacity == b->opacity && x->opacity == y->opacity &&
            a->detail == b->detail && memcmp(x->detail, y->detail, sizeof x->detail) == 0 &&
+           a->unlit == b->unlit && a->repeat == b->repeat && a->depth_bias == b->depth_bias && x->depth_bias == y->depth_bias &&
            strcmp(a->match, b->match) == 0;
 }
 
@@ -72,6 +73,30 @@ static void set_ior(masu_blob_material *to, float ior, bool own_specular) {
     if (!own_specular && !shines) to->specular = root * root / 0.08f;
 }
 
+/* The base colour becomes the emission of a black material of roughness 1, which shaders do not
+ * light. */
+static void make_unlit(masu_blob_material *to, masu_bake_maps *maps, bool own[MASU_BAKE_MAPS]) {
+    const float *base = to->base_color;
+    if (maps->unlit && base[0] == 0.0f && base[1] == 0.0f && base[2] == 0.0f) return; /* it is one */
+    memcpy(to->emissive, to->base_color, sizeof to->emissive);
+    maps->image[MASU_BAKE_EMISSIVE] = maps->image[MASU_BAKE_BASE];
+    maps->channel[MASU_BAKE_EMISSIVE] = maps->channel[MASU_BAKE_BASE];
+    own[MASU_BAKE_EMISSIVE] = own[MASU_BAKE_BASE];
+    for (int k = 0; k < 3; k++)
+        to->base_color[k] = to->specular_color[k] = to->sheen_color[k] = 0;
+    to->metallic = to->coat = 0;
+    to->specular = 0.5f; /* the default needs no image */
+    to->sheen_roughness = to->anisotropy = to->anisotropy_rotation = 0;
+    to->roughness = 1;
+    to->meso = MASU_BLOB_NONE;
+    for (int i = 0; i < MASU_BAKE_MAPS; i++) {
+        if (i != MASU_BAKE_BASE && i != MASU_BAKE_EMISSIVE && i != MASU_BAKE_OPACITY)
+            maps->image[i] = MASU_BLOB_NONE;
+    }
+    maps->dark = 0;
+    maps->unlit = 1;
+}
+
 static void apply_override(const masu_bake_override *o, masu_blob_material *to,
                            masu_bake_maps *maps, bool own[MASU_BAKE_MAPS]) {
     const masu_blob_material *v = &o->value;
@@ -115,6 +140,9 @@ static void apply_override(const masu_bake_override *o, masu_blob_material *to,
     if (o->single) maps->single = o->maps.single;
     if (o->shadowless) maps->shadowless = 1;
     if (o->relief_of) maps->relief_of = o->maps.relief_of;
+    if (o->depth_bias) to->depth_bias = v->depth_bias;
+    if (o->repeat) maps->wrap[0] = maps->wrap[1] = MASU_BAKE_WRAP_REPEAT;
+    if (o->unlit) make_unlit(to, maps, own);
     drop_lobes(o, to, maps);
 }
 

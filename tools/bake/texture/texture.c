@@ -686,6 +686,10 @@ bool masu_bake_make_textures(masu_bake_content *content, const char *directories
     size_t images = content->images.bytes / sizeof(masu_bake_image);
     maker m = {.content = content, .directories = directories};
     clamp_what_is_shown_once(content);
+    for (size_t i = 0; i < 2 * materials; i++) {
+        uint8_t *wrap = &MASU_BAKE_MAPS_OF(content)[i / 2].wrap[i % 2];
+        if (*wrap == MASU_BAKE_WRAP_REPEAT) *wrap = 0;
+    }
     uint32_t(*slots)[MASU_SLOT_COUNT] = masu_bake_allocate(materials * sizeof *slots);
     m.failed = masu_bake_allocate(images);
     memset(m.failed, 0, images);
