@@ -319,3 +319,11 @@ masu_result masu_material_set(masu_renderer *m, masu_material material,
     if (result) return result;
     return masu_finish(m, masu_materials_set(&m->materials, &m->plan, i, state, &m->error), detail);
 }
+
+/* ---- Effects on the image -------------------------------------------------------------------- */
+
+masu_result masu_lut_set(masu_renderer *m, const float *colors, uint32_t size,
+                         masu_detail *detail) {
+    if (!m) return masu_finish_null(m, "renderer", detail);
+    return masu_finish(m, masu_post_set_lut(&m->post, &m->plan, colors, size, &m->error), detail);
+}

@@ -24,6 +24,7 @@
 #include "frame/models.h"
 #include "frame/occlusion.h"
 #include "frame/picking.h"
+#include "frame/post.h"
 #include "frame/punctual_lights.h"
 #include "frame/bounce.h"
 #include "frame/reflections.h"
@@ -74,6 +75,7 @@ struct masu_renderer {
     masu_sprites sprites;
     masu_reflections reflections;
     masu_bounce bounce;
+    masu_post_state post;
 };
 
 /* The result of a public function whose error is in m->error: logs it and copies it to `detail`,

@@ -379,6 +379,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
         .any = any,
         .any_resolved = any_rung(d, rung_has_resolved),
         .picking = d->scene && d->picking,
+        .post = d->scene ? d->post : 0,
         .metered = d->scene && d->exposure.metered == MASU_ON,
         .velocity = (d->readback & MASU_READBACK_VELOCITY) != 0 ||
                     (d->split & MASU_SPLIT_VELOCITY) != 0 || any.specular ||
