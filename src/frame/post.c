@@ -44,7 +44,7 @@ masu_result masu_post_set_lut(masu_post_state *s, const masu_frame_plan *plan, c
 typedef struct range {
     const char *name;
     float value, low, high;
-    uint32_t of; /* masu_post_bits */
+    uint32_t of; /* masu_post_bits that it requires; 0: none */
     const char *allowed;
 } range;
 
@@ -53,7 +53,7 @@ masu_result masu_post_read(const masu_frame_data *f, masu_detail *detail) {
     const range ranges[] = {
         {"post.bloom", p->bloom, 0.0f, 1.0f, MASU_POST_BLOOM, "0 to 1"},
         {"post.aperture", p->aperture, 0.0f, 1e6f, MASU_POST_FOCUS, "0 to 1e6 m"},
-        {"post.focus", p->focus, p->aperture > 0.0f ? 1e-6f : 0.0f, 1e9f, MASU_POST_FOCUS,
+        {"post.focus", p->focus, p->aperture > 0.0f ? 1e-6f : 0.0f, 1e9f, 0,
          "1e-6 to 1e9 m"},
         {"post.vignette", p->vignette, 0.0f, 1.0f, MASU_POST_GRADE, "0 to 1"},
         {"post.brightness", p->brightness, -8.0f, 8.0f, MASU_POST_GRADE, "-8 to 8 stops"},
@@ -66,7 +66,7 @@ masu_result masu_post_read(const masu_frame_data *f, masu_detail *detail) {
         const range *r = &ranges[i];
         if (!(r->value >= r->low && r->value <= r->high))
             return masu_fail_number(detail, r->name, (double)r->value, r->allowed);
-        if (r->value != 0.0f && !(f->plan->needs.post & r->of)) {
+        if (r->of && r->value != 0.0f && !(f->plan->needs.post & r->of)) {
             return masu_fail(detail, MASU_ERROR_ARGUMENT, r->name, r->of, f->plan->needs.post,
                              "%s is %g, but desc.post does not have %s", r->name,
                              (double)r->value, names[r->of]);
