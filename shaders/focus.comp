@@ -22,7 +22,7 @@ void main()
     if (!(post.lens.y > 0.0) || any(greaterThanEqual(at, uvec2(pc.render_width, pc.render_height)))) {
         return;
     }
-    float radius = abs(masu_focus_radius(texelFetch(depth_image, ivec2(at), 0).r));
+    float radius = masu_focus_radius(texelFetch(depth_image, ivec2(at), 0).r);
     /* Bilinear, of four texels: their weights make texels without a layer count for nothing. */
     vec2 place = 0.5 * (vec2(at) + 0.5) - 0.5, part = fract(place);
     ivec2 first = ivec2(floor(place)), last = (ivec2(pc.render_width, pc.render_height) + 1) / 2 - 1;
@@ -33,13 +33,19 @@ void main()
         behind += weights.x * weights.y * masu_sane(texelFetch(far_image, texel, 0), 0.0, 65504.0);
         front += weights.x * weights.y * masu_sane(texelFetch(near_image, texel, 0), 0.0, 65504.0);
     }
-    float blurred = clamp(radius - 0.5, 0.0, 1.0);
+    float blurred = masu_focus_share(radius);
     if (!(front.a > 0.0) && !(blurred > 0.0 && behind.a > 0.0)) {
         return;
     }
     vec4 lit = imageLoad(hdr_image, ivec2(at));
-    vec3 color = masu_sane(lit.rgb, 0.0, 65504.0);
-    color = behind.a > 1e-3 ? mix(color, behind.rgb / behind.a, blurred) : color;
-    color = color * (1.0 - min(front.a, 1.0)) + front.rgb;
+    vec3 color = masu_sane(lit.rgb, 0.0, 65504.0), distant = behind.a > 1e-3 ? behind.rgb / behind.a : color;
+    if (radius < 0.0 && blurred > 0.0) {
+        /* Discs around have the share of this one. Without it, they cover the pixel as far as the surface does. */
+        front /= max(blurred, max(front.a, 1e-3));
+        front += max(0.5 - front.a, 0.0) * vec4(color, 1.0); /* half of it at the edge */
+        color = mix(color, distant * (1.0 - front.a) + front.rgb, blurred);
+    } else {
+        color = mix(color, distant, blurred) * (1.0 - min(front.a, 1.0)) + front.rgb;
+    }
     MASU_STORE_HALF(hdr_image, at, vec4(color, lit.a));
 }

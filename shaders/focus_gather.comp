@@ -59,27 +59,28 @@ void main()
     barrier();
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
     vec4 own = masu_sane(texelFetch(source_image, min(at, last), 0), -65504.0, 65504.0);
-    float radius = max(own.a, uintBitsToFloat(nearest)) * 0.5; /* here and below: texels of half size */
+    float widest = max(own.a, uintBitsToFloat(nearest));
+    float radius = max(0.5 * masu_focus_disc(widest), 0.5); /* here and below: texels of half size */
+    float own_disc = max(0.5 * masu_focus_disc(max(own.a, 0.0)), 0.5);
     vec4 behind = vec4(0.0), front = vec4(0.0);
-    if (radius > 0.25) {
+    if (widest > 0.5) {
         uint noise = uint(at.x) * 0xC13FA9A9u + uint(at.y) * 0x91E10DA5u + (push.vary != 0u ? frame.history.x * 0x9E3779B9u : 0u);
         float turn = float(noise >> 8) * (6.2831853 / 16777216.0);
         float area = radius * radius / float(SAMPLES);
         for (int k = 0; k < SAMPLES; k++) {
-            /* Evenly over the disc: the golden angle; H. Vogel, 1979. */
-            float away = radius * masu_sqrt((float(k) + 0.5) / float(SAMPLES)), angle = turn + 2.3999632 * float(k);
+            /* Evenly over the disc, from its centre on: the golden angle; H. Vogel, 1979. */
+            float away = radius * masu_sqrt(float(k) / float(SAMPLES)), angle = turn + 2.3999632 * float(k);
             ivec2 from = ivec2(floor(vec2(at) + 0.5 + away * vec2(cos(angle), sin(angle))));
             vec4 there = masu_sane(texelFetch(source_image, clamp(from, ivec2(0), last), 0), -65504.0, 65504.0);
-            float reach = 0.5 * there.a;
+            float disc = max(0.5 * masu_focus_disc(there.a), 0.5);
             /* Behind. */
-            float least = max(min(reach, 0.5 * own.a), 0.5);
-            float weight = own.a > 0.0 ? clamp(least - away + 0.5, 0.0, 1.0) * clamp(2.0 * reach, 0.0, 1.0) / (least * least)
-                                       : clamp(2.0 * reach - own.a - 1.0, 0.0, 1.0);
+            float least = min(disc, own_disc);
+            float weight = own.a > 0.0 ? clamp(least - away + 0.5, 0.0, 1.0) * clamp(there.a, 0.0, 1.0) / (least * least)
+                                       : clamp(there.a - own.a - 1.0, 0.0, 1.0);
             behind += weight * vec4(there.rgb, 1.0);
-            /* In front: discs of less than half a pixel are sharp. */
-            float size = max(-reach, 0.5);
-            float covers = clamp(size - away + 0.5, 0.0, 1.0) * clamp(-2.0 * reach - 0.5, 0.0, 1.0);
-            front += covers * area / (size * size) * vec4(there.rgb, 1.0);
+            /* In front. */
+            float covers = there.a < 0.0 ? clamp(disc - away + 0.5, 0.0, 1.0) * masu_focus_share(there.a) : 0.0;
+            front += covers * area / (disc * disc) * vec4(there.rgb, 1.0);
         }
         behind = behind.a > 1e-4 ? vec4(behind.rgb / behind.a, 1.0) : vec4(0.0);
         front *= front.a > 1.0 ? 1.0 / front.a : 1.0;

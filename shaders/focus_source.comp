@@ -2,8 +2,8 @@
  * focus_source.comp: depth of field: halves the lit image, and finds the nearest circle of confusion of each 16x16
  * pixels. A workgroup has one such tile.
  *
- * Of 2x2 pixels the most blurred one decides; pixels whose radius differs from its by more than a pixel do not
- * contribute, so that sharp and blurred surfaces do not mix.
+ * Of 2x2 pixels the most blurred one decides: in front of the sharp plane if at least two are there, else behind it.
+ * Pixels whose radius differs from its by two pixels do not contribute, so that sharp and blurred surfaces do not mix.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -33,12 +33,14 @@ void main()
     barrier();
     uvec2 at = gl_GlobalInvocationID.xy;
     ivec2 last = ivec2(pc.render_width, pc.render_height) - 1;
-    float radius[4], most = 0.0;
+    vec4 radius;
     for (int k = 0; k < 4; k++) {
         ivec2 pixel = min(2 * ivec2(at) + ivec2(k & 1, k >> 1), last);
         radius[k] = masu_focus_radius(texelFetch(depth_image, pixel, 0).r);
-        most = abs(radius[k]) > abs(most) ? radius[k] : most;
     }
+    bool front = dot(step(radius, vec4(-0.5)), vec4(1.0)) > 1.5;
+    float most = front ? min(min(radius.x, radius.y), min(radius.z, radius.w))
+                       : max(max(radius.x, radius.y), max(radius.z, radius.w));
     vec4 sum = vec4(0.0);
     for (int k = 0; k < 4; k++) {
         ivec2 pixel = min(2 * ivec2(at) + ivec2(k & 1, k >> 1), last);

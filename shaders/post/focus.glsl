@@ -20,4 +20,17 @@ float masu_focus_radius(float depth)
     return masu_sane((post.lens.y - post.lens.z * masu_sane(depth, 0.0, 1.0)) * height, -most, most);
 }
 
+/* Halving and magnifying the image blurs it with a variance of 1 pixel^2 per axis, a disc of radius r with r^2 / 4.
+ * From a radius of 2 pixels on, the gathered disc is smaller by as much. Below, the disc is one texel, and its layer is
+ * mixed with the sharp image so that the variances agree, from half a pixel on. */
+float masu_focus_disc(float radius)
+{
+    return masu_sqrt(radius * radius - 4.0);
+}
+
+float masu_focus_share(float radius)
+{
+    return clamp((radius * radius - 0.25) / 3.75, 0.0, 1.0);
+}
+
 #endif
