@@ -7,8 +7,9 @@
  * push.silhouettes not 0: silhouettes.comp says what some pixels show; push.roots not 0: what follows is rung.temporal, whose
  * samples are roots of display light (upscale/roots.glsl).
  *
- * MASU_BLOOM, MASU_GRADE: the effects of desc.post. Bloom mixes the scattered light into the radiance. Pixels of
- * silhouettes.comp are after the tone curve: they change by as much as the pixel itself does.
+ * MASU_LENS: bloom and grading of desc.post. Bloom mixes the scattered light into the radiance; without it, its image
+ * is another one and not read. Pixels of silhouettes.comp are after the tone curve: they change by as much as the pixel
+ * itself does.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -23,15 +24,9 @@
 #ifdef MASU_SILHOUETTES
 #include "shared/silhouettes.glsl"
 #endif
-#ifdef MASU_BLOOM
+#ifdef MASU_LENS
 #include "post/bloom.glsl"
-#endif
-#ifdef MASU_GRADE
 #include "post/grade.glsl"
-#endif
-#if defined(MASU_BLOOM) || defined(MASU_GRADE)
-#define MASU_LENS
-#include "post/post.glsl"
 #endif
 
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
@@ -43,7 +38,7 @@ layout(set = MASU_SET_PASS, binding = 1) uniform usampler2D silhouettes_image;
 #else
 #define MASU_AT_BLOOM 1
 #endif
-#ifdef MASU_BLOOM
+#ifdef MASU_LENS
 layout(set = MASU_SET_PASS, binding = MASU_AT_BLOOM) uniform sampler2D bloom_image;
 #define MASU_FIRST_WRITE (MASU_AT_BLOOM + 1)
 #else
@@ -77,17 +72,13 @@ vec3 shown(vec3 radiance)
 /* Radiance behind the lens. */
 vec3 through_lens(vec3 radiance, ivec2 at)
 {
-#ifdef MASU_BLOOM
     if (post.lens.x > 0.0) {
         vec2 place = (vec2(at) + 0.5) * 0.25, size = vec2(masu_bloom_size(4u));
         radiance = mix(radiance, masu_post_spline(bloom_image, place, size, 0.0), post.lens.x);
     }
-#endif
-#ifdef MASU_GRADE
     if (post.lens.w != 0.0) {
         radiance *= masu_vignette(vec2(at), vec2(pc.render_width, pc.render_height));
     }
-#endif
     return radiance;
 }
 #endif
@@ -133,7 +124,7 @@ void main()
     uvec2 at = gl_GlobalInvocationID.xy;
     if (all(lessThan(at, uvec2(pc.output_width, pc.output_height)))) {
         vec3 y = display_light(ivec2(at));
-#ifdef MASU_GRADE
+#ifdef MASU_LENS
         if (post.lens.w != 0.0) {
             y = masu_graded(y, push.peak);
         }

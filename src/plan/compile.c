@@ -143,6 +143,10 @@ static void compile_rung(masu_frame_plan *plan, uint32_t r) {
                 resource = l.image[MASU_CLASS_DEPTH];
                 usage = MASU_READ;
             }
+            /* Nor does grading alone read the scattered light. */
+            if (p == MASU_PASS_TONEMAP && resource == MASU_IMAGE_BLOOM &&
+                plan->needs.post & MASU_POST_GRADE && !(plan->needs.post & MASU_POST_BLOOM))
+                resource = MASU_IMAGE_HDR;
             if (!keeps_access(plan, p, resource, usage)) continue;
             rp->access[p][rp->access_count[p]++] = (masu_access){resource, (uint8_t)usage};
             if (masu_usage_writes(usage) && !masu_is_buffer(resource)) write_latest(&l, resource);

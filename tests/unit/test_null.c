@@ -57,6 +57,7 @@ static masu_renderer *made;
 static masu_rung rung;
 static const char *from;
 static float unpacked[3];
+static const float white[24];
 static _Alignas(64) unsigned char block[64];
 static const masu_frame_desc still = {MASU_FRAME_DESC};
 static const float unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
