@@ -10,8 +10,8 @@ _Static_assert(MASU_LUT_POINTS == MASU_LUT_MAX, "the shader accepts every table 
 
 void masu_post_alloc(masu_post_state *s, masu_arena *arena, const masu_frame_plan *plan) {
     memset(s, 0, sizeof *s);
-    s->lut = masu_arena_alloc(arena, "colour table", masu_lut_points(plan->desc.lut_size),
-                              sizeof *s->lut, 4);
+    uint32_t size = plan->needs.post ? plan->desc.lut_size : 0;
+    s->lut = masu_arena_alloc(arena, "colour table", masu_lut_points(size), sizeof *s->lut, 4);
 }
 
 /* ---- Colour table ---------------------------------------------------------------------------- */
@@ -87,7 +87,8 @@ void masu_post_write(masu_post_state *s, const masu_frame_data *f) {
     struct masu_post_uniforms u = {{p->bloom, 0, 0, 0}, {p->vignette, 1, 1, (float)s->size}};
     u.grade[1] = exp2f(p->brightness);
     if (p->gamma > 0.0f) u.grade[2] = 1.0f / p->gamma;
-    u.lens[3] = p->vignette > 0.0f || p->brightness != 0.0f || u.grade[2] != 1.0f || s->size ? 1.0f : 0.0f;
+    int graded = p->vignette > 0.0f || p->brightness != 0.0f || u.grade[2] != 1.0f || s->size;
+    u.lens[3] = graded ? 1.0f : 0.0f;
     if (p->aperture > 0.0f) {
         double radius = (double)p->aperture / (4.0 * (double)p->focus * (double)f->u.up[3]);
         u.lens[1] = (float)radius;

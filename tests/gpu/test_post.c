@@ -250,7 +250,7 @@ typedef struct lens_case {
 static void depth_of_field_is_near_the_mean_over_a_lens(void **state) {
     (void)state;
     static const lens_case cases[] = {
-        {"test_both", {.aperture = 0.12f, .focus = 3.4f}, 1.1}, /* nearly all is sharp */,
+        {"test_both", {.aperture = 0.12f, .focus = 3.4f}, 1.1}, /* nearly all is sharp */
         {"test_both", {.aperture = 0.1f, .focus = 2.4f}, 0.7},
         {"test_both", {.aperture = 0.1f, .focus = 6.0f}, 0.75},
         {"test_town", {.aperture = 0.5f, .focus = 12.0f}, 0.4}};

@@ -1,5 +1,5 @@
-/* render_post.c: the effects of `masu render` on the image: --bloom, --aperture and others, and the colour table of
- * --lut, a .cube file (Adobe, "Cube LUT Specification" 1.0). */
+/* render_post.c: the effects of `masu render` on the image: --bloom, --aperture and others, and the
+ * colour table of --lut, a .cube file (Adobe, "Cube LUT Specification" 1.0). */
 #include "masu/render.h"
 
 #include <stdio.h>
@@ -47,7 +47,8 @@ bool masu_render_read_post(masu_render_options *o, char *error, size_t size) {
     }
     o->post = (masu_post){(float)o->bloom,    (float)o->aperture,   (float)o->focus,
                           (float)o->vignette, (float)o->brightness, (float)o->gamma};
-    bool graded = o->lut_size || o->vignette > 0.0 || o->brightness < 0.0 || o->brightness > 0.0 || o->gamma > 0.0;
+    bool graded = o->lut_size || o->vignette > 0.0 || o->brightness < 0.0 || o->brightness > 0.0 ||
+                  o->gamma > 0.0;
     d->post = (o->bloom > 0.0 ? MASU_POST_BLOOM : 0u) | (o->aperture > 0.0 ? MASU_POST_FOCUS : 0u) |
               (graded ? MASU_POST_GRADE : 0u);
     d->lut_size = o->lut_size;
