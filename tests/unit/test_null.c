@@ -1,7 +1,8 @@
-/* test_null.c: every public function with each of its pointers NULL in turn. Nothing crashes; what has a result
- * says MASU_ERROR_ARGUMENT, unless the pointer is one that may be NULL, and its detail, which is the last parameter,
- * names the argument. What there is to be called, and how its arguments are called, is read in
- * include/: a function that is new there and has no row here is a failure. */
+/* test_null.c: every public function with each of its pointers NULL, one at a time. Nothing
+ * crashes. A function with a result returns MASU_ERROR_ARGUMENT, unless the pointer may be NULL,
+ * and its detail (the last parameter) names the argument. The list of functions and the names of
+ * their arguments are read from include/: a new function there that has no row here is a
+ * failure. */
 #include <ctype.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -63,7 +64,7 @@ static const masu_frame_desc still = {MASU_FRAME_DESC};
 static const float unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 static const double unit_position[3] = {1, 2, 3};
 
-/* The pointer of that number, counted from 0, or NULL where it is its turn. */
+/* The pointer with this number, counted from 0, or NULL if it is the one under test. */
 #define P(number, pointer) (null == (number) ? NULL : (pointer))
 
 #define INSTANCE masu_instance_at(&m, 0)
@@ -184,7 +185,7 @@ static const struct {
     CALLS(CALL_ROW)};
 enum { CALL_COUNT = sizeof calls / sizeof *calls };
 
-/* ---- What the header says -------------------------------------------------------------------- */
+/* ---- Declarations of the header -------------------------------------------------------------- */
 
 typedef struct parameter {
     char name[32];
@@ -192,8 +193,8 @@ typedef struct parameter {
 
 typedef struct function {
     char name[64];
-    int has_result;       /* it is a masu_result */
-    int pointers;         /* of its parameters, in order: */
+    int has_result;       /* it returns a masu_result */
+    int pointers;         /* for its parameters, in order: */
     parameter parameter[PARAMETERS_MAX];
 } function;
 
@@ -221,7 +222,7 @@ static int free_header(void **state) {
     return 0;
 }
 
-/* The last word of a declaration, without what stands in brackets behind it. */
+/* The last identifier of a declaration, without an array size in brackets. */
 static void last_word(const char *text, size_t length, char *to, size_t room) {
     const char *bracket = memchr(text, '[', length);
     if (bracket) length = (size_t)(bracket - text);
@@ -233,7 +234,7 @@ static void last_word(const char *text, size_t length, char *to, size_t room) {
     to[length - start] = '\0';
 }
 
-/* The declaration that begins at `at`; where it ends. */
+/* Reads the declaration that begins at `at`; returns its end. */
 static const char *read_function(const char *at, function *f) {
     const char *open = strchr(at, '('), *end = strchr(at, ';');
     assert_true(open && end && open < end);
@@ -312,7 +313,7 @@ static void what_has_nothing_to_tell_says_so(void **state) {
     assert_int_equal(plan.memory.host_bytes, 0);
     uint32_t count = masu_memory_report(&m, rows_of_memory, 2);
     assert_true(count > 2);
-    assert_int_equal(masu_memory_report(&m, NULL, 1000), count); /* counted alone */
+    assert_int_equal(masu_memory_report(&m, NULL, 1000), count); /* counted by itself */
     assert_int_equal(masu_memory_report(NULL, rows_of_memory, 2), 0);
     assert_true(masu_knob_get(NULL, &rung, 0) == 0.0);
     assert_int_equal(masu_knob_accepts(NULL, 0.0), 0);
