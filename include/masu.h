@@ -641,6 +641,23 @@ typedef struct masu_exposure {
     float min, max; /* bounds of the metered factor, 1e-9..1e9; 0: 1/1024 and 1024 */
 } masu_exposure;
 
+/* Effects on the image, for masu_desc.post. Each is reserved at initialisation: its passes, images
+ * and shader variants exist only then. Frames set its strength in masu_frame_desc.post; at strength
+ * 0 a reserved effect changes no bit of the image and its passes end at once. P below is the number
+ * of pixels of the largest render size. */
+typedef enum masu_post_bits {
+    /* Light scattered by the lens: a glow around bright parts. Conserves energy; its width is
+     * relative to the image height. 4 passes; 1.2 P bytes of transient images. */
+    MASU_POST_BLOOM = 1,
+    /* Depth of field. 3 passes; 6.1 P bytes of transient images. */
+    MASU_POST_FOCUS = 2,
+    /* Vignette, brightness, gamma and a colour table, in the tone curve's pass. */
+    MASU_POST_GRADE = 4,
+    MASU_POST_ALL = 7
+} masu_post_bits;
+
+#define MASU_LUT_MAX 33u /* points per axis of a colour table */
+
 #define MASU_LOAD_STEP_MIN 65536u /* bytes of the longest row of texels */
 
 /* ---- Description: governor ------------------------------------------------------------------- */
@@ -776,6 +793,13 @@ typedef struct masu_desc {
     masu_switch half_floats;
     masu_exposure exposure;
     masu_tone tone;
+    /* masu_post_bits: effects that frames may have; 0: none. Any costs 32 bytes per frame in
+     * flight. Scene only. */
+    uint32_t post;
+    /* Largest number of points per axis of a colour table (masu_lut_set), 2..MASU_LUT_MAX; requires
+     * MASU_POST_GRADE. Costs 4 lut_size^3 host bytes and the same number of device bytes per frame
+     * in flight: 143,748 for 33. 0: there is no table. Scene only. */
+    uint32_t lut_size;
     /* Dithers the final rounding to the target's steps, which prevents banding in smooth gradients.
      * The pattern depends on pixel position and frame number only; its average is correct. Exact
      * steps (0 and 1 included) do not change. AUTO: off for storage targets, which tools compare;
@@ -951,6 +975,26 @@ typedef struct masu_light {
     float fog_start;    /* metres from the camera, 0..1e9; the air is clear up to there */
 } masu_light;
 
+/* The effects of a frame. All zero: none. A member other than 0 whose effect is not in desc.post is
+ * MASU_ERROR_ARGUMENT. */
+typedef struct masu_post {
+    /* MASU_POST_BLOOM: fraction of the light that is scattered, 0..1; 0.03 to 0.15 are usual. Half
+     * of the scattered light is within 1.6 to 1.8 % of the image height, 90 % within 5.0 to 5.8 %,
+     * at render sizes of 480 to 2160 rows. */
+    float bloom;
+    /* MASU_POST_FOCUS: diameter of the lens, metres, 0..1e6; 0: all distances are sharp. A camera
+     * with a sensor of 24 mm height at f-number N has 0.012 / (N tan(fov_y / 2)). The blur radius
+     * is at most 2 % of the image height. Transparent surfaces and particles are blurred like the
+     * surface behind them. */
+    float aperture;
+    float focus; /* view z of the sharp plane, metres, 1e-6..1e9; unused if aperture is 0 */
+    /* MASU_POST_GRADE. Vignette: darkening of the corners before the tone curve, 0..1; by half as
+     * much halfway to them in area. */
+    float vignette;
+    float brightness; /* after the tone curve, stops, -8..8: doubles linear light per stop */
+    float gamma;      /* encoded values become v^(1 / gamma), 0.1..10; 0: 1 */
+} masu_post;
+
 /* Flags of particles. LIT: `color` is an albedo; without the flag, a radiance. A lit particle
  * scatters light evenly, as thin smoke does: color * (visibility * sun_color / 4 + ambient + the
  * sum over punctual lights of (what a white surface facing the light would send) / 4): 1/4 is the
@@ -1101,6 +1145,7 @@ typedef struct masu_frame_desc {
     /* Flag: commands of the host have changed textures (masu_texture_image_of) since the previous
      * frame. Rungs with temporal then shorten their history, as they do after masu_texture_write. */
     uint32_t textures_changed;
+    masu_post post; /* effects on the image, of desc.post */
     /* pick: flag. masu_pick reports the object at this pixel of the output (or viewport), counted
      * from the upper left corner: 0 .. width - 1, 0 .. height - 1. Requires desc.picking. */
     uint32_t pick, pick_x, pick_y;
@@ -1125,6 +1170,17 @@ typedef struct masu_commands {
     /* For masu_load: bytes that this step has written, and bytes that remain. */
     uint64_t load_bytes, load_left;
 } masu_commands;
+
+/* Sets the colour table from the next masu_frame on. `colors`: size^3 colours of red, green and
+ * blue in display encoding, 0..1 (other values are clamped, NaN is 0), stored with 10 bits; red
+ * varies fastest, then green, as in .cube files. The table maps colours after the tone curve,
+ * brightness and gamma, in sRGB encoding; with LINEAR and PQ, 1 is the peak. Between its points it
+ * is interpolated linearly in tetrahedra. NULL with a size of 0: no table, as initially. Copies the
+ * colours; the next frames write them once to each slot, 4 size^3 bytes.
+ *   MASU_ERROR_ARGUMENT   `size` is not 0 or 2..desc.lut_size, or a pointer is NULL
+ * Nothing has changed after an error. */
+MASU_API MASU_MUST_USE masu_result masu_lut_set(masu_renderer *renderer, const float *colors,
+                                                uint32_t size, masu_detail *detail);
 
 /* ---- Frame: host passes inside it ------------------------------------------------------------ */
 

@@ -53,6 +53,7 @@ static void alloc_host(masu_arena *arena, const masu_frame_plan *plan, masu_rend
     masu_reflections_alloc(&to->reflections, arena, plan);
     masu_bounce_alloc(&to->bounce, arena, plan);
     masu_meshes_alloc(&to->meshes, arena, plan);
+    masu_post_alloc(&to->post, arena, plan);
     int governed = plan->desc.governor.mode != MASU_GOVERNOR_OFF;
     to->governor = masu_arena_alloc(arena, "governor", governed, sizeof *to->governor, 8);
     if (!governed) to->governor = NULL;
@@ -459,14 +460,16 @@ masu_result masu_write_frame(masu_renderer *m, masu_frame_data *f) {
     if (!result) result = masu_sun_sky_read(&m->sun_sky, f, &m->error);
     if (!result) result = masu_sdf_read(&m->sdf, f, &m->error);
     if (!result) result = masu_picking_read(f, &m->error);
+    if (!result) result = masu_post_read(f, &m->error);
     if (result) return result;
 
     masu_sun_sky_write(&m->sun_sky, f);
     masu_history_rebase(&m->history, f);
     masu_reflections_read(&m->reflections, f);
     masu_lights_cast(&m->lights, &m->local_shadows, &m->instances, &m->bounds, f);
+    masu_post_write(&m->post, f);
     masu_temporal_read(&m->temporal, &m->history, &m->instances, &m->lights, &m->materials,
-                       &m->textures, f);
+                       &m->textures, &m->post, f);
     masu_frame_write_uniforms(&m->history, f);
 
     masu_shadow_write(&m->shadow, &m->bounds, f);

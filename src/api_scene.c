@@ -391,3 +391,11 @@ masu_result masu_texture_image_of(const masu_renderer *m, masu_texture_image *ou
                                 .layers = masu_plan_layers(&m->plan, MASU_IMAGE_TEXTURES)};
     return MASU_OK;
 }
+
+/* ---- Effects on the image -------------------------------------------------------------------- */
+
+masu_result masu_lut_set(masu_renderer *m, const float *colors, uint32_t size,
+                         masu_detail *detail) {
+    if (!m) return masu_finish_null(m, "renderer", detail);
+    return masu_finish(m, masu_post_set_lut(&m->post, &m->plan, colors, size, &m->error), detail);
+}

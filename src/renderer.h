@@ -25,6 +25,7 @@
 #include "frame/models.h"
 #include "frame/occlusion.h"
 #include "frame/picking.h"
+#include "frame/post.h"
 #include "frame/punctual_lights.h"
 #include "frame/bounce.h"
 #include "frame/reflections.h"
@@ -80,6 +81,7 @@ struct masu_renderer {
     masu_reflections reflections;
     masu_bounce bounce;
     masu_meshes meshes;
+    masu_post_state post;
 };
 
 /* The result of a public function whose error is in m->error: logs it and copies it to `detail`,

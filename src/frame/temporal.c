@@ -148,7 +148,8 @@ static void find_between(struct masu_frame_uniforms *u, int k) {
 
 void masu_temporal_read(masu_temporal *t, const masu_history *history, const masu_instances *in,
                         const masu_lights *lights, const masu_materials *materials,
-                        const masu_textures *textures, masu_frame_data *f) {
+                        const masu_textures *textures, const masu_post_state *post,
+                        masu_frame_data *f) {
     const masu_rung_plan *rp = masu_frame_rung_plan(f);
     int kept = t->kept && !f->cut;
     if (!kept) t->changed = 0;
@@ -164,8 +165,8 @@ void masu_temporal_read(masu_temporal *t, const masu_history *history, const mas
     if (kept) {
         int changed = has_changed(&f->u, history->previous, f->plan) || t->instances != in->changes + in->looks.changes ||
                       t->lights != lights->changes || t->sprites != sprites ||
-                      t->materials != materials->changes || textures->count ||
-                      f->desc.textures_changed ||
+                      t->materials != materials->changes || t->post != post->changes ||
+                      textures->count || f->desc.textures_changed ||
                       !shows_the_same(masu_frame_rung(f), &f->plan->desc.rungs[t->rung]);
         t->changed = changed ? settling(f) : t->changed ? t->changed - 1 : 0;
         f->u.temporal[0] = t->size[0];
@@ -177,6 +178,7 @@ void masu_temporal_read(masu_temporal *t, const masu_history *history, const mas
     t->size[1] = has_resolve(f) ? rp->render_height : 0;
     t->lights = lights->changes;
     t->materials = materials->changes;
+    t->post = post->changes;
     t->instances = in->changes + in->looks.changes;
     t->sprites = sprites;
     t->rung = f->desc.rung;

@@ -146,6 +146,10 @@ static void compile_rung(masu_frame_plan *plan, uint32_t r) {
                 resource = l.image[MASU_CLASS_DEPTH];
                 usage = MASU_READ;
             }
+            /* Nor does grading alone read the scattered light. */
+            if (p == MASU_PASS_TONEMAP && resource == MASU_IMAGE_BLOOM &&
+                plan->needs.post & MASU_POST_GRADE && !(plan->needs.post & MASU_POST_BLOOM))
+                resource = MASU_IMAGE_HDR;
             if (!keeps_access(plan, p, resource, usage)) continue;
             rp->access[p][rp->access_count[p]++] = (masu_access){resource, (uint8_t)usage};
             if (masu_usage_writes(usage) && !masu_is_buffer(resource)) write_latest(&l, resource);
@@ -390,6 +394,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
         .any = any,
         .any_resolved = any_rung(d, rung_has_resolved),
         .picking = d->scene && d->picking,
+        .post = d->scene ? d->post : 0,
         .metered = d->scene && d->exposure.metered == MASU_ON,
         .velocity = (d->readback & MASU_READBACK_VELOCITY) != 0 ||
                     (d->split & MASU_SPLIT_VELOCITY) != 0 || any.specular ||

@@ -262,6 +262,20 @@ static masu_result check_reserve(const masu_desc *d, masu_detail *detail) {
     return MASU_OK;
 }
 
+static masu_result check_post(const masu_desc *d, masu_detail *detail) {
+    if (!d->scene) return MASU_OK;
+    if (d->post & ~(uint32_t)MASU_POST_ALL)
+        return bad_range(detail, "post", d->post, 0, MASU_POST_ALL);
+    if (d->lut_size && (d->lut_size < 2 || d->lut_size > MASU_LUT_MAX))
+        return bad_range(detail, "lut_size", d->lut_size, 2, MASU_LUT_MAX);
+    if (d->lut_size && !(d->post & MASU_POST_GRADE)) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "lut_size", 0, d->lut_size,
+                         "lut_size is %u, but desc.post does not have MASU_POST_GRADE",
+                         d->lut_size);
+    }
+    return MASU_OK;
+}
+
 static masu_result bad_split(const masu_desc *d, uint32_t needed, const char *problem,
                              masu_detail *detail) {
     return masu_fail(detail, MASU_ERROR_ARGUMENT, "split", needed, d->split, "split is %u: %s",
@@ -418,5 +432,6 @@ masu_result masu_desc_check(const masu_desc *d, masu_detail *detail) {
     if (!result) result = check_split(d, detail);
     if (!result) result = check_viewports(d, detail);
     if (!result) result = check_reserve(d, detail);
+    if (!result) result = check_post(d, detail);
     return result ? result : masu_output_check(d, detail);
 }

@@ -120,6 +120,10 @@ static const char *no_resolve(const masu_needs *n) {
                     : NO_SCENE;
 }
 
+static const char *no_post(const masu_needs *n) {
+    return n->scene ? "desc.post does not have it" : NO_SCENE;
+}
+
 static const char *no_upscale(const masu_needs *n) {
     return n->resolve   ? "temporal runs instead"
            : n->upscale ? "rung.easu selects another filter"
@@ -205,9 +209,16 @@ int masu_access_binds(masu_access access, int writes) {
     return access.usage == MASU_WRITE || access.usage == MASU_UPDATE;
 }
 
+/* Levels of `size` one below the other, from 1 / `block` of it on, each half the one above. */
+static VkExtent2D stacked(VkExtent2D size, uint32_t block, uint32_t levels) {
+    VkExtent2D out = {(size.width + block - 1) / block, 0};
+    for (; levels; levels--, block *= 2) out.height += (size.height + block - 1) / block;
+    return out;
+}
+
 VkExtent2D masu_extent_of(masu_image_extent extent, VkExtent2D render, VkExtent2D output) {
     uint32_t block = extent == MASU_EXTENT_HALF || extent == MASU_EXTENT_TRACED ||
-                             extent == MASU_EXTENT_GLOSSY
+                             extent == MASU_EXTENT_GLOSSY || extent == MASU_EXTENT_FOCUS
                          ? 2
                      : extent == MASU_EXTENT_BLOCK8 ? 8
                      : extent == MASU_EXTENT_BLOCK4 ? 4
@@ -225,6 +236,8 @@ VkExtent2D masu_extent_of(masu_image_extent extent, VkExtent2D render, VkExtent2
         return (VkExtent2D){(render.width + 63) / 64 * 32, (render.height + 63) / 64 * 48};
     if (extent == MASU_EXTENT_ALL_LEVELS)
         return (VkExtent2D){(render.width + 63) / 64 * 64, (render.height + 63) / 64 * 96};
+    if (extent == MASU_EXTENT_BLOOM_16) return stacked(render, 8, 2);
+    if (extent == MASU_EXTENT_BLOOM_128) return stacked(render, 32, 3);
     if (extent == MASU_EXTENT_PICK) return (VkExtent2D){2, 2};
     if (extent == MASU_EXTENT_SHADOW || extent == MASU_EXTENT_LOCAL_FACES ||
         extent == MASU_EXTENT_LOCAL_ATLAS || extent == MASU_EXTENT_LOCAL_PAIRS)

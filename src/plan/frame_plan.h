@@ -54,6 +54,9 @@ typedef enum masu_image_extent {
     MASU_EXTENT_TRACED, /* the same, for reflections; per pixel with debug.reference */
     MASU_EXTENT_LEVELS, /* 1/2 to 1/64 of the render size side by side: light/background.glsl */
     MASU_EXTENT_ALL_LEVELS, /* and the render size itself */
+    MASU_EXTENT_FOCUS,  /* one texel per 2x2 render pixels, for depth of field */
+    MASU_EXTENT_BLOOM_16,  /* 1/8 and 1/16 of the render size, one below the other */
+    MASU_EXTENT_BLOOM_128, /* 1/32, 1/64 and 1/128 */
     MASU_EXTENT_BLOCK8,
     MASU_EXTENT_BLOCK4,
     MASU_EXTENT_TILE,  /* one workgroup per tile of 16x16 pixels */
@@ -210,6 +213,7 @@ typedef struct masu_needs {
     int smoothing;     /* SMAA */
     int picking;       /* the host may pick pixels */
     int metered;       /* auto-exposure */
+    uint32_t post;     /* masu_post_bits */
     uint32_t dropped;  /* MASU_DROPPED_*: AUTO features that are off for lack of storage buffers */
     int sprites;       /* frames may have sprites of these kinds: */
     int particles, decals, lines;
@@ -312,6 +316,9 @@ static inline int masu_is_smaa(masu_aa aa) { return aa >= MASU_AA_SMAA_LOW; }
  * true in the product; the lab build has other marches. */
 int masu_march_has_tiles(const masu_needs *needs);
 int masu_march_has_blocks(const masu_needs *needs);
+
+/* Number of points of a colour table. */
+static inline uint64_t masu_lut_points(uint32_t size) { return (uint64_t)size * size * size; }
 
 /* Whether the host's own commands get the scene's per-pixel data, such as depth. */
 static inline int masu_split_shows_scene(uint32_t split) {

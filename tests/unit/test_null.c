@@ -60,6 +60,7 @@ static masu_renderer *made;
 static masu_rung rung;
 static const char *from;
 static float unpacked[3];
+static const float white[24];
 static _Alignas(64) unsigned char block[64];
 static const masu_frame_desc still = {MASU_FRAME_DESC};
 static const float unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
@@ -171,6 +172,7 @@ static const double unit_position[3] = {1, 2, 3};
     X(masu_material_at, ((void)masu_material_at(P(0, &m), 0), NO_RESULT))                          \
     X(masu_material_get, masu_material_get(P(0, &m), (masu_material){1}, P(1, &material_state), P(2, &detail))) \
     X(masu_material_set, masu_material_set(P(0, &m), (masu_material){1}, P(1, &material_state), P(2, &detail))) \
+    X(masu_lut_set, masu_lut_set(P(0, &m), P(1, white), 2, P(2, &detail)))                          \
     X(masu_stats, masu_stats(P(0, &m), 0, P(1, &stats), P(2, &detail)))                            \
     X(masu_peaks, (masu_peaks(P(0, &m), P(1, &peaks)), NO_RESULT))                                 \
     X(masu_readback, masu_readback(P(0, &m), 0, MASU_READBACK_DEPTH, P(1, &image), P(2, &detail))) \

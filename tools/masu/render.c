@@ -120,6 +120,7 @@ static bool measure(masu_session *s, const masu_render_options *o, uint32_t fram
                          .sdf_param_count = o->sdf_param_count,
                          .time = o->time + (double)(o->first + image) * o->time_step,
                          .time_step = o->rays ? MASU_PICTURE_STEP : (float)o->time_step,
+                         .post = o->post,
                          .rung = o->target_ms > 0.0 ? MASU_RUNG_AUTO : o->rung,
                          /* The sum begins with the first one that counts. */
                          .cut = o->rays && frame % rays == 0};
@@ -175,6 +176,7 @@ static int truth_frame(masu_session *s, const masu_render_options *o, const masu
     masu_frame_desc f = {MASU_FRAME_DESC, .light = light,
                          .sdf_params = o->sdf_param_count ? o->sdf_params : NULL,
                          .sdf_param_count = o->sdf_param_count,
+                         .post = o->post,
                          .time = o->time + (double)(o->first + frame) * o->time_step};
     if (file && !output_name(o->output, frame, name, sizeof name))
         return masu_cli_error("--output: the file name is too long");
@@ -517,6 +519,20 @@ static const masu_option rows[] = {
              "scene's factor without auto-exposure (default: the scene's)"),
     MASU_CHOICE(masu_render_options, tone, "tone", "CURVE", tones,
                 "tone curve: none, aces (filmic), neutral; auto is aces"),
+    MASU_REAL(masu_render_options, bloom, "bloom", "SHARE", 0.0, 1.0,
+              "fraction of the light that the lens scatters; 0.03 to 0.15 are usual (default 0)"),
+    MASU_REAL(masu_render_options, aperture, "aperture", "METRES", 0.0, 1e6,
+              "diameter of the lens, for depth of field (default 0: everything is sharp)"),
+    MASU_REAL(masu_render_options, focus, "focus", "METRES", 1e-6, 1e9,
+              "distance of the sharp plane, with --aperture (default 10)"),
+    MASU_REAL(masu_render_options, vignette, "vignette", "SHARE", 0.0, 1.0,
+              "darken the corners by this fraction (default 0)"),
+    MASU_REAL(masu_render_options, brightness, "brightness", "STOPS", -8.0, 8.0,
+              "double the displayed light per stop, after the tone curve (default 0)"),
+    MASU_REAL(masu_render_options, gamma, "gamma", "G", 0.1, 10.0,
+              "exponent 1/G of the displayed values (default 1)"),
+    MASU_FILE(masu_render_options, lut_path, "lut", "FILE.cube",
+              "colour table of up to 33 points per axis, after all of these"),
     MASU_FLAG(masu_render_options, dither, "dither", "dither to 8 bits to avoid banding"),
     MASU_HEADING("Debugging"),
     MASU_FLAG(masu_render_options, poison, "poison",
@@ -611,6 +627,7 @@ static int run(masu_cli *cli) {
         .d = {.desc = {.output = {1920, 1080}, .targets = {.storage = 1}},
               .host = {.message = masu_print_message}},
         .frames = 1,
+        .focus = 10.0,
         .time_step = 1.0 / 60.0};
     masu_given given = {.most = 1, .excess = "expected one scene"};
     masu_vk_alloc_counts counts;
@@ -623,7 +640,9 @@ static int run(masu_cli *cli) {
     if (code) return code;
     if ((o.stats || o.times || o.target_ms > 0.0) && !masu_clock_advances())
         return masu_cli_error("%s", MASU_CLOCK_STOPPED);
-    if (!masu_render_read_scene(&o, error, sizeof error)) return masu_cli_error("%s", error);
+    if (!masu_render_read_scene(&o, error, sizeof error) ||
+        !masu_render_read_post(&o, error, sizeof error))
+        return masu_cli_error("%s", error);
     o.d.host.allocator = o.stats ? &allocator : NULL;
     masu_cli_progress("building pipelines");
     if (o.positions && !masu_picture_open(&o.d, o.positions, &s, error, sizeof error))
@@ -633,9 +652,11 @@ static int run(masu_cli *cli) {
         masu_cli_progress_clear();
         fprintf(stderr, "masu: %s\n", s.host.driver);
     }
+    bool set = masu_render_set_lut(&s, &o, error, sizeof error);
+    free(o.lut);
     masu_video video = {0};
-    code = MASU_CLI_OK;
-    if (o.video && !masu_video_open(&video, o.video, o.d.desc.output.width, o.d.desc.output.height,
+    code = set ? MASU_CLI_OK : masu_cli_error("%s", error);
+    if (!code && o.video && !masu_video_open(&video, o.video, o.d.desc.output.width, o.d.desc.output.height,
                                     o.time_step, error, sizeof error))
         code = masu_cli_error("%s", error);
     if (!code)

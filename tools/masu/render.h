@@ -28,6 +28,11 @@ typedef struct masu_render_options {
     double sun[2], turbidity; /* azimuth and elevation, degrees */
     double exposure;          /* 0: the scene's */
     double anisotropy;
+    double bloom, aperture, focus, vignette, brightness, gamma;
+    const char *lut_path;
+    float *lut;        /* colours of that file, */
+    uint32_t lut_size; /* points per axis; 0: there is none */
+    masu_post post;    /* of every frame */
     bool own_sun, casters, poison, split, dither;
     const char *clip;         /* that models play; NULL: the first */
     const char *params[MASU_RENDER_PARAMS_MAX]; /* "NAME=VALUE" */
@@ -41,6 +46,10 @@ typedef struct masu_render_options {
 bool masu_render_read_scene(masu_render_options *o, char *error, size_t size);
 /* Every model that has clips plays one. */
 bool masu_render_animate(masu_session *s, const masu_render_options *o, double time, char *error, size_t size);
+
+/* render_post.c: the effects on the image, and the colour table's file. On false `error` is one line. */
+bool masu_render_read_post(masu_render_options *o, char *error, size_t size);
+bool masu_render_set_lut(masu_session *s, const masu_render_options *o, char *error, size_t size);
 
 /* One measured frame. */
 typedef struct masu_sample {
