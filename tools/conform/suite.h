@@ -67,7 +67,7 @@ bool masu_verdict_failed(masu_verdict verdict);      /* exit code 1 */
     X(FLIP_P99, flip_p99, "error", 0)                                                              \
     X(STEPS, steps, "error", 0)   /* largest difference of a channel */                            \
     X(PIXELS, pixels, "error", 0) /* pixels that differ */                                         \
-    /* The next three need a reference. MEAN_OFF: |ratio of the means - 1| */                       \
+    /* The next three need a reference. MEAN_OFF: |ratio of the means - 1| */                      \
     X(MEAN_OFF, mean_off, "error", 0)                                                              \
     X(PATCH_P95, patch_p95, "error", 0) /* measure/patches.h */                                    \
     X(PATCH_Z2, patch_z2, "error", 0)                                                              \

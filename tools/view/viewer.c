@@ -59,8 +59,7 @@ static bool read_scene(masu_viewer *v, const char *path, void **blob, masu_scene
     return true;
 }
 
-/* Uses the camera path if there is one, else a camera that looks towards the origin from a few metres
- * away. */
+/* Uses the camera path if there is one, else a camera a few metres from the origin, facing it. */
 static void place_camera(masu_viewer *v) {
     v->time = v->o->time;
     v->path_end = masu_fly_path_end(v->a.m);
