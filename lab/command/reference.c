@@ -1,5 +1,5 @@
-/* reference.c: `masu-lab reference`: an image of a scene by the path tracer of lab/reference,
- * which shares nothing with the renderer. */
+/* reference.c: `masu-lab reference`: renders an image of a scene by the path tracer of
+ * lab/reference, which shares nothing with the renderer. */
 #include "bake/light/environment.h"
 #include "image.h"
 #include "lab/command/commands.h"
@@ -138,7 +138,7 @@ static void command_line(const options *o, const char *scene, char *text, size_t
         snprintf(text + at, size - at, " --sdf-ambient-strength %g", o->occlusion[1]);
 }
 
-/* With the curve of shaders/shared/tone.glsl. */
+/* Uses the curve of shaders/shared/tone.glsl. */
 static bool save_png(const char *path, const ref_image *image, double exposure, char *error,
                      size_t size) {
     const size_t pixels = (size_t)image->width * image->height;
@@ -180,7 +180,7 @@ static bool save(const options *o, const char *scene, double exposure, const ref
     return good;
 }
 
-/* Features of the scene that the reference does not judge. */
+/* Warns about features of the scene that the reference does not check. */
 static void warn(const options *o, const ref_scene *s) {
     if (s->blob.section[MASU_BLOB_OCCLUSION_SPIRV] && !(o->occlusion[0] > 0) && !o->physics)
         masu_cli_warn("the blob does not tell whether the field occludes ambient light: give the "
@@ -260,7 +260,7 @@ static int open_sky(const options *o, const ref_scene *scene, ref_sky *sky, floa
     if (o->sky) {
         masu_bake_panorama p = {.turn = 0, .factor = 1, .name = o->sky};
         if (!masu_bake_load_panorama(o->sky, &p))
-            return MASU_CLI_FAILURE; /* it has been reported */
+            return MASU_CLI_FAILURE; /* already reported */
         sky->octahedron = NULL;
         sky->panorama = *pixels = p.rgb;
         sky->width = p.width;
@@ -288,7 +288,8 @@ static int run_reference(const options *o, const char *path) {
         code = masu_cli_error(
             "%s: the scene has a signed distance field: give its source by --sdf FILE", path);
     if (!scene.sdf && o->sdf) code = masu_cli_error("--sdf: %s has no signed distance field", path);
-    /* It lights the scene and has its sun: without it nothing could be compared. */
+    /* The analytic sky lights the scene and contains its sun: without an image of it no comparison
+     * is possible. */
     if (!code && (double)scene.environment->turbidity > 0 && !o->sky)
         code = masu_cli_error("%s: the scene has an analytic sky (turbidity %g): give an image of "
                               "it by --sky FILE",

@@ -5,8 +5,8 @@
 
 #include "lab/model/sheet.h"
 
-/* `gpus`: a list "tgl,kbl,raven,vangogh,a630"; scene, ladder (or NULL) and size are those of the
- * sheet. Returns an exit code, having reported a failure. */
+/* `gpus`: a list "tgl,kbl,raven,vangogh,a630"; scene, ladder (or NULL) and size as for the sheet.
+ * Returns an exit code and reports failures. */
 int masu_model_ask(const char *gpus, const char *scene, const char *ladder, VkExtent2D size,
                    masu_issued issued[MASU_MODEL_CLASSES]);
 

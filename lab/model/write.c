@@ -64,7 +64,7 @@ bool masu_model_run(const masu_model_desc *d, masu_model_sheet *out, uint32_t *m
 
 /* ---- Text ------------------------------------------------------------------------------------ */
 
-/* "1.23b": bytes decide; "1.23f": operations do. */
+/* "1.23b": bytes dominate; "1.23f": operations do. */
 static void floor_text(const masu_model_row *row, uint32_t k, char out[24]) {
     bool by_bytes;
     double ms = masu_model_floor(row, k, &by_bytes);
@@ -191,7 +191,7 @@ bool masu_model_csv(const masu_model_sheet *m, FILE *f) {
 
 /* ---- XHTML ----------------------------------------------------------------------------------- */
 
-/* columns: markup of ours. */
+/* columns: markup from this file. */
 static void put_head(FILE *f, const char *caption, const char *columns) {
     masu_markup(f, "<div class=\"wide\"><table>\n<caption>COMPUTED, not measured: %s</caption>\n<tr>", caption);
     fputs(columns, f);
