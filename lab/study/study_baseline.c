@@ -1,5 +1,5 @@
-/* study_baseline.c: `masu-lab study baseline`: settings beside a baseline renderer, at their own
- * errors and at equal error: the command line of lab/study/baseline.h, and its tables. */
+/* study_baseline.c: `masu-lab study baseline`: settings compared with a baseline renderer, at their
+ * own errors and at equal error: the command line of lab/study/baseline.h, and its tables. */
 #include "lab/study/study.h"
 
 #include "settings/ladder_file.h"
@@ -32,8 +32,8 @@ static const masu_study_options *const o = &given.study;
 
 /* ---- Tables ---------------------------------------------------------------------------------- */
 
-/* Shown: with how many samples the baseline is as near to the truth (k), and how many times as
- * long as the setting it then takes (b). */
+/* Shown: the number of samples with which the baseline has the same error (k), and its time then
+ * divided by the setting's (b). */
 static const masu_column columns[] = {
     {"scene", NULL, NULL, NULL},
     {"setting", "\"", "setting", NULL},
@@ -171,7 +171,7 @@ static void add_pair(masu_table *t, const char *name, double a, double b) {
     masu_table_number(t, b > 0.0 ? b : (double)NAN);
 }
 
-/* Where the time went. The passes are the same rows in both plans. */
+/* Times by pass. The passes are the same rows in both plans. */
 static int print_passes(const masu_baseline *w) {
     const masu_baseline_entry *a = &w->entries[0], *b = &w->entries[w->plain_count];
     const masu_column pair[] = {{NULL, NULL, "pass, ms", NULL},
@@ -238,7 +238,7 @@ static int add_ladder(void) {
     return MASU_CLI_OK;
 }
 
-/* The settings; the usual ones where none is given. */
+/* The given settings, or the default ones. */
 static int choose_rungs(void) {
     static const char *const usual[] = {"base",
                                         "aa=smaa-high",

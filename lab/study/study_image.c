@@ -1,11 +1,10 @@
-/* study_image.c: `masu-lab study image`: how far each chain of the finished picture (anti-aliasing,
- * upscaling, sharpening, at some render sizes) is from the picture without shortcuts, and what it
- * costs.
+/* study_image.c: `masu-lab study image`: how far each chain of anti-aliasing, upscaling and
+ * sharpening, at some render sizes, is from the picture without shortcuts, and what it costs.
  *
- * The truth is that of `masu render --truth`. A chain is a row of the table below, and a rung of
- * a renderer; as many as a renderer takes are drawn in turns. The picture is that of a scene at
- * rest, after as many frames as the filters of reflections need; times are the least of frames in
- * turns. Nothing is judged. */
+ * The truth is drawn as by `masu render --truth`. A chain is a row of the table below, and a rung
+ * of a renderer; a renderer draws as many as it can hold in turns. The picture shows the scene with
+ * a still camera, after as many frames as the filters of reflections need; times are the least of
+ * frames in turns. The study only reports. */
 #include "lab/study/study.h"
 
 #include "measure/picture.h"
@@ -19,11 +18,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* coarse: mips of the render size instead of the output's, as an upscaler would have them that
- * nobody told. */
+/* coarse: mips of the render size instead of the output's, as with an upscaler that ignores
+ * this. */
 typedef struct chain {
     const char *name;
-    masu_rung rung; /* but for its scale */
+    masu_rung rung; /* without its scale */
     uint32_t coarse;
 } chain;
 
@@ -42,7 +41,7 @@ static const chain native[] = {
     {"smaa high+rcas", {SHARP, .aa = MASU_AA_SMAA_HIGH}, 0},
 };
 
-/* Below it. */
+/* Below the output's size. */
 static const chain upscaled[] = {
     {"bilinear", {BLUNT, .easu = MASU_EASU_BILINEAR}, 0},
     {"easu", {BLUNT}, 0},
@@ -67,7 +66,7 @@ typedef struct options {
     masu_study_options study;
     double ppd, anisotropy, scales[SCALES_MOST];
     uint32_t scale_count, rays;
-    masu_headless_desc host; /* with what --rays asks for */
+    masu_headless_desc host; /* with the extension for --rays */
     masu_switch ray_query;
 } options;
 
@@ -108,7 +107,7 @@ static bool failed(bench *b, const char *text) {
 static masu_session_desc session_of(void) {
     masu_session_desc d = masu_picture_session(o->scene, o->size, &given.host);
     d.desc.ray_query = given.ray_query;
-    d.desc.vulkan.max_anisotropy = (float)given.anisotropy; /* of the chains: the truth takes none */
+    d.desc.vulkan.max_anisotropy = (float)given.anisotropy; /* of the chains: the truth uses none */
     return d;
 }
 
@@ -144,7 +143,8 @@ static void plan_rows(bench *b) {
     }
 }
 
-/* How many rows from `first` on a renderer can have: debug.mip_bias is one for all of its rungs. */
+/* How many rows from `first` one renderer can hold: debug.mip_bias is the same for all its
+ * rungs. */
 static uint32_t batch_of(const bench *b, uint32_t first) {
     uint32_t n = 1;
     while (n < MASU_MAX_RUNGS && first + n < b->row_count &&
@@ -176,7 +176,7 @@ static bool save(bench *b, const row *r, const uint8_t *rgba) {
     return masu_study_save_grey(path, b->map, o->size, b->error, sizeof b->error);
 }
 
-/* A scene that traces no reflections looks the same in every frame. */
+/* Without reflections every frame of the scene is the same. */
 static bool compare(bench *b, masu_session *s, uint32_t rung, row *r) {
     masu_plan_info plan;
     masu_plan_of(s->m, &plan);
@@ -198,7 +198,7 @@ static bool compare(bench *b, masu_session *s, uint32_t rung, row *r) {
     return !o->images || save(b, r, shown);
 }
 
-/* The passes behind the tone curve. */
+/* The time of the passes after the tone curve. */
 static double chain_ns(const masu_stats_info *stats) {
     uint64_t sum = 0;
     bool behind = false;
@@ -213,7 +213,7 @@ static void least(double *value, double candidate) {
     if (*value == 0.0 || candidate < *value) *value = candidate;
 }
 
-/* One more run than asked for: the first after another rung's is dropped with the warm-up. */
+/* One run more than requested: the first after a change of rung is dropped with the warm-up. */
 static bool measure(bench *b, masu_session *s, uint32_t first, uint32_t count) {
     for (uint32_t run = 0; run <= o->runs && o->runs; run++) {
         masu_cli_progress("timing, run %u of %u", run, o->runs);

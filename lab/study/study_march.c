@@ -1,5 +1,5 @@
-/* study_march.c: `masu-lab study march`: the ways of marching a scene's SDF compared: evaluations,
- * time, and error against the double-precision truth. */
+/* study_march.c: `masu-lab study march`: compares the marches of a scene's SDF: evaluations, time,
+ * and error against the double-precision truth. */
 #include "lab/study/study.h"
 
 #include "lab/study/marches.h"
@@ -15,7 +15,7 @@
 static masu_study_options given = {.size = {960, 540}, .runs = 9, .stride = 1};
 static const masu_study_options *const o = &given;
 
-/* What the last lines sum up, over the scenes that have both. */
+/* Totals for the last lines, over the scenes that have both values. */
 typedef struct summary {
     double log_evals, log_plain, log_seed; /* sums of logarithms: masu against plain, seed */
     uint32_t evals_count, plain_count, seed_count;
@@ -25,7 +25,7 @@ typedef struct summary {
 
 /* ---- Numbers --------------------------------------------------------------------------------- */
 
-/* 0 or NAN: not known. */
+/* 0 or NAN: unknown. */
 static double plain_ms(const masu_bench *b) {
     return b->rows[MASU_BENCH_PLAIN].there ? b->rows[MASU_BENCH_PLAIN].ms : 0.0;
 }
@@ -88,7 +88,7 @@ static const masu_column columns[] = {
     {"driver", "\"", NULL, NULL},
     {NULL, NULL, NULL, NULL}};
 
-/* What is not known is absent. */
+/* An unknown value is printed as absent. */
 static void cell(masu_table *t, bool known, double value) {
     masu_table_number(t, known ? value : (double)NAN);
 }

@@ -1,10 +1,10 @@
-/* study_reflections.c: `masu-lab study reflections`: what each filter of reflections buys: the
- * error of frames at rest, with the camera in motion, with an object in motion, and after it has
- * jumped, each beside the mean of very many rays per pixel; flicker; and time of the passes.
+/* study_reflections.c: `masu-lab study reflections`: the gain from each filter of reflections: the
+ * error of still frames, with the camera in motion, with an object in motion, and after it has
+ * jumped, each against the mean of very many rays per pixel; also flicker and pass times.
  *
- * One renderer with a rung for each set of filters, and one that traces every pixel and adds up. Its first
- * frames are what unfiltered rays would bring, later ones after a cut are the truth: no ray is in both. Times
- * are the least of nine frames at rest. Nothing is judged. */
+ * One renderer has a rung for each set of filters; another traces every pixel and sums the rays.
+ * The latter's first frames are the unfiltered rays, and its frames after a cut are the truth: no
+ * ray is in both. Times are the least of nine still frames. The study only reports. */
 #include "lab/study/study.h"
 
 #include "measure/specular.h"
@@ -103,7 +103,7 @@ static bool open_all(bench *b) {
     return (b->classes && b->truth && b->unfiltered && b->rgb) || failed(b, "out of memory");
 }
 
-/* The object that moves, if the scene has it. */
+/* Finds the moving object, if the scene has it. */
 static bool find_object(bench *b) {
     size_t bytes = 0;
     masu_scene scene;
@@ -122,8 +122,8 @@ static bool sum_up(bench *b, uint32_t frames, float *rgb, const char *what) {
     return masu_specular_draw(&b->full, &run, rgb, NULL, NULL, b->error, sizeof b->error);
 }
 
-/* From the file, if there is one, else by rays, and into the file. One of another size is of another picture,
- * or none at all, and is not written over. */
+/* Reads the file if it exists; otherwise computes the truth and writes it there. A file of another
+ * size is not used and not overwritten: it is another picture, or none. */
 static bool find_truth(bench *b) {
     size_t floats = 3 * (size_t)b->pixels;
     FILE *f =
@@ -145,7 +145,7 @@ static bool find_truth(bench *b) {
     return true;
 }
 
-/* The shown picture, and one of the errors: 0.25 of relMSE and more is white. */
+/* Saves the shown picture, and one of the errors, in which a relMSE of 0.25 is white. */
 static bool save(bench *b, uint32_t way, uint32_t motion) {
     char path[4096], scene[256];
     masu_study_scene_name(o->scene, scene, sizeof scene);

@@ -51,7 +51,7 @@ static const masu_column columns[] = {
     {"driver", "\"", NULL, NULL},
     {NULL, NULL, NULL, NULL}};
 
-/* The row without a past of that size. NULL: it was not asked for. */
+/* The row of that scale without history; NULL: not requested. */
 static const masu_past_row *without(const masu_past *w, double scale) {
     for (uint32_t i = 0; i < w->row_count; i++) {
         if (w->rows[i].way == MASU_PAST_NONE && !(fabs(w->rows[i].scale - scale) > 0.0)) return &w->rows[i];

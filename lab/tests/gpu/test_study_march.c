@@ -46,7 +46,7 @@ static int make_truth(void **state) {
                  scratch);
 }
 
-/* The field of that name in the line of that variant. */
+/* The value of a column in the line of a variant. */
 static const char *csv_field(const char *csv, const char *variant, const char *column) {
     static char value[256];
     char start[128];
@@ -103,7 +103,7 @@ static void a_sphere_is_measured(void **state) {
             strcmp(csv_field(cli_out, masu_bench_names[v], "hits"), "n/a") ? "3072" : "n/a");
 }
 
-/* The truth is shaded as the GPU shades: away from the rim no byte is off by more than 2. */
+/* The truth is shaded like on the GPU: away from the rim all bytes are within 2. */
 static void the_shaded_truth_is_the_picture(void **state) {
     (void)state;
     enum { W = 120, H = 90 };
@@ -125,8 +125,8 @@ static void the_shaded_truth_is_the_picture(void **state) {
         different += d > 0;
         rim += d > 2;
     }
-    /* The rim is some 250 pixels long; one in ten of them lies within 0.1 of a pixel of it, and
-     * light changes fast there. */
+    /* The rim is about 250 pixels long; a tenth of these pixels are within 0.1 pixel of it, where
+     * light changes fast. */
     if (rim > 75) fail_msg("%u pixels are off by more than 2", rim);
     assert_true(different < W * H / 4);
     for (int i = 0; i < 2; i++) masu_image_free(&image[i]);
