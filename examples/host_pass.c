@@ -238,7 +238,8 @@ int main(int argc, char **argv) {
         masu_camera camera;
         masu_frame_view view;
         CHECK(masu_camera_at(m, 0.0, &camera, &detail) == MASU_OK);
-        masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &camera, .rung = i < 3 ? 2 : 1}; /* upscaled */
+        /* Both rungs are upscaled. */
+        masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &camera, .rung = i < 3 ? 2 : 1};
         CHECK(masu_frame(m, &frame, &commands, &detail) == MASU_OK);
         CHECK(masu_frame_view_of(m, &view, &detail) == MASU_OK);
         for (int k = 0; k < 2; k++) /* the rendered part of the images depends on the rung */

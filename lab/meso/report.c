@@ -12,7 +12,7 @@
 
 #define DEGREES (180 / MASU_BAKE_PI)
 
-/* ---- text ---- */
+/* ---- text ------------------------------------------------------------------------------------ */
 
 typedef struct text {
     char *data;
@@ -47,7 +47,7 @@ static bool save(const char *path, text *t) {
     return good;
 }
 
-/* ---- numbers ---- */
+/* ---- numbers --------------------------------------------------------------------------------- */
 
 masu_meso_pair masu_meso_compare(const masu_meso_study *study, uint32_t view) {
     const masu_meso_view *m = &study->made.views[view];
@@ -127,7 +127,7 @@ void masu_meso_print(const char *name, const masu_meso_study *study) {
     }
 }
 
-/* ---- plots ---- */
+/* ---- plots ----------------------------------------------------------------------------------- */
 
 static void add_data(FILE *f, const masu_meso_study *study) {
     fprintf(f, "$curves << end\n");

@@ -22,7 +22,7 @@ static void set_judged(masu_meso_setup *s) {
     masu_meso_set_lights(s, elevation, COUNT(elevation), azimuth, COUNT(azimuth));
 }
 
-/* ---- comparison ---- */
+/* ---- comparison ------------------------------------------------------------------------------ */
 
 static void shade(const masu_meso_shader *shader, const masu_meso_texel *texel, masu_meso_vec3 v,
                   double azimuth, const masu_meso_setup *setup, double weight, double *out) {
@@ -175,7 +175,7 @@ static void judge_texels(masu_meso_study *study, const masu_meso_tracer *tracer,
     free(got);
 }
 
-/* ---- the shadow's distribution ---- */
+/* ---- the shadow's distribution --------------------------------------------------------------- */
 
 double masu_meso_bin_value(uint32_t bin) {
     return BIN_LOW + (BIN_HIGH - BIN_LOW) * (bin + 0.5) / MASU_MESO_BINS;
@@ -210,7 +210,7 @@ static void count_shadows(masu_meso_study *study, const masu_meso_tracer *tracer
     }
 }
 
-/* ---- all of it ---- */
+/* ---- The study ------------------------------------------------------------------------------- */
 
 bool masu_meso_study_run(const masu_meso_patch *patch, const masu_meso_options *options,
                          masu_meso_study *study) {

@@ -81,7 +81,7 @@ static double sheen_albedo(double roughness, double cosine) {
     return table[i][left] + (at - left) * (table[i][left + 1] - table[i][left]);
 }
 
-/* ---- Grain: GGX with two alphas; x of the frame is along it ---- */
+/* ---- Grain: GGX with two alphas; x of the frame is along it ---------------------------------- */
 
 static ref_vec stretched(const ref_bsdf *b, ref_vec w) { return ref_v(b->along * w.x, b->alpha * w.y, w.z); }
 

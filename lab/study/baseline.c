@@ -20,7 +20,7 @@ enum { SETTLE_FRAMES = 4, COUNT_FRAMES = 3 };
 
 typedef struct timing {
     masu_samples of[MASU_BASELINE_PHASES];
-    uint64_t frame; /* frames drawn in motion since the picture */
+    uint64_t frame; /* frames drawn in motion since the image */
 } timing;
 
 typedef struct bench {
@@ -141,7 +141,7 @@ static bool find_entries(bench *w) {
     return true;
 }
 
-/* ---- Pictures -------------------------------------------------------------------------------- */
+/* ---- Images ---------------------------------------------------------------------------------- */
 
 static bool draw(bench *w, masu_session *s, double time, bool cut, masu_commands *commands) {
     return masu_motion_frame(s, 0, time, MASU_MOTION_STEP, cut, commands, w->error, w->error_size);
@@ -180,7 +180,7 @@ static bool draw_setting(bench *w, uint32_t e) {
 }
 
 /* A renderer has one set of mips: with textures, a new one is made for each k. Culling and light
- * tiles do not change the picture (tests/gpu/test_culling.c, test_lights.c), and save most of the
+ * tiles do not change the image (tests/gpu/test_culling.c, test_lights.c), and save most of the
  * time in a large world. */
 static bool open_plain(bench *w, uint32_t k, masu_march march) {
     bool kept = w->plain_for == k || (w->plain_for && !w->textured);
@@ -252,7 +252,7 @@ static const masu_baseline_point *find_point(const masu_baseline *out, uint32_t 
     return NULL;
 }
 
-/* The march of the pictures for which samples are counted. */
+/* The march of the images for which samples are counted. */
 static masu_march counted_march(const bench *w) {
     return w->d->own_march ? w->rungs[0].march : MASU_MARCH_AUTO;
 }

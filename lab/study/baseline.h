@@ -7,11 +7,11 @@
  * kept between frames. It is a renderer with debug.reference and debug.ao_full whose frames are all
  * cuts; masu_baseline_spare() returns the work in it that such a renderer would not need.
  *
- * PICTURES. A setting's picture is the last of several frames in which the camera follows its path
- * up to the time of the truth, in steps of `step`. The baseline's picture with k samples is the
- * mean of k frames, each with another position in the pixel and other rays, like the truth
+ * IMAGES. A setting's image is the last of several frames in which the camera follows its path up
+ * to the time of the ground truth, in steps of `step`. The baseline's image with k samples is the
+ * mean of k frames, each with another position in the pixel and other rays, like the ground truth
  * (measure/picture.h); textures then have the mips for k times the pixels. Equal error is searched
- * with Masu's own march in the baseline's pictures, which finds surfaces to 0.002 of a pixel: the
+ * with Masu's own march in the baseline's images, which finds surfaces to 0.002 of a pixel: the
  * plain march stops at 0.1, an error that more samples do not reduce. Times, and the error of the
  * plain renderer itself, use the plain march.
  *
@@ -41,8 +41,8 @@ typedef struct masu_baseline_desc {
     const char *image_dir;  /* NULL: none; else SCENE.NAME.png of all compared images */
     VkExtent2D size;
     double time;
-    uint32_t positions, rays; /* of the truth */
-    uint32_t frames;          /* before a picture is taken, */
+    uint32_t positions, rays; /* of the ground truth */
+    uint32_t frames;          /* before an image is taken, */
     double step;              /* this many seconds apart along the camera's path; 0: at rest */
     uint32_t runs;            /* timed ones of each phase; 0: none */
     uint32_t most;            /* samples of the baseline, at most MASU_BASELINE_SAMPLES */

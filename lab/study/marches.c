@@ -128,7 +128,7 @@ static bool draw(bench *b, renderer *r, masu_stats_info *stats, double *wall_ms)
     return true;
 }
 
-/* ---- Truth ----------------------------------------------------------------------------------- */
+/* ---- Ground truth ---------------------------------------------------------------------------- */
 
 static size_t grid_pixels(const bench *b) {
     return (size_t)masu_truth_columns(b->d->width, b->d->stride) *
@@ -143,7 +143,7 @@ static bool save(bench *b, const char *name, const uint8_t *rgba, uint32_t width
            failed(b, error);
 }
 
-/* A truth that was not named may be missing: then nothing is compared. */
+/* A ground truth that was not named may be missing: then nothing is compared. */
 static bool find_truth(bench *b, bool *there) {
     char path[4096], error[512];
     const char *wanted = b->d->truth_path;
@@ -208,7 +208,7 @@ static const void *texel_at(const masu_readback_image *image, uint32_t x, uint32
 }
 
 /* Pairs each true sample with the frame's pixel, and shades the pixel. UNSURE samples are skipped
- * here, and have the truth's colour in the pictures. */
+ * here, and have the ground truth's colour in the images. */
 static uint64_t pair(bench *b, const gbuffer *g) {
     uint32_t columns = masu_truth_columns(b->d->width, b->d->stride);
     uint64_t count = 0;

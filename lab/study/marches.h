@@ -42,11 +42,11 @@ typedef struct masu_bench_row {
     double ms;          /* of the SDF passes, see masu_bench.by_timestamps; NAN: lost in the rest */
     double spread;      /* median / least of the wall times: how busy the machine was */
     uint32_t plausible; /* frames whose timestamps fit the wall clock */
-    masu_march_errors errors; /* from here only with a truth */
-    /* The frame's G-buffer compared with the truth, both shaded by measure/shade.h. */
+    masu_march_errors errors; /* from here only with a ground truth */
+    /* The frame's G-buffer compared with the ground truth, both shaded by measure/shade.h. */
     double rmse, ssim;
     masu_flip flip;
-    masu_flip shown; /* of the GPU's picture: includes the driver's rounding */
+    masu_flip shown; /* of the GPU's image: includes the driver's rounding */
 } masu_bench_row;
 
 typedef struct masu_bench {
@@ -55,7 +55,7 @@ typedef struct masu_bench {
     masu_bench_row rows[MASU_BENCH_VARIANTS];
     double rest_wall_ms; /* least time of a frame whose march takes one step */
     bool by_timestamps;  /* ms is gpu_ms; else wall_ms - rest_wall_ms */
-    bool compared;       /* there is a truth */
+    bool compared;       /* there is a ground truth */
     uint64_t truth_samples, truth_unsure;
     double truth_seconds, truth_evals; /* evaluations per ray */
 } masu_bench;

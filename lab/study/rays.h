@@ -49,7 +49,7 @@ void masu_bench_rays_close(masu_bench_rays *rays);
 double masu_bench_rays_embree(const masu_bench_rays *rays, const masu_bench_ray *in, uint32_t count,
                               uint32_t threads, masu_bench_hit *out);
 
-/* One ray per pixel of the camera's picture, in tiles of 8x8 pixels, in blocks of 4x2 inside
+/* One ray per pixel of the camera's image, in tiles of 8x8 pixels, in blocks of 4x2 inside
  * them. */
 void masu_bench_rays_primary(const masu_bench_rays *rays, const masu_blob_camera_key *camera,
                              uint32_t width, uint32_t height, masu_bench_ray *out);

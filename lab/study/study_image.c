@@ -1,10 +1,10 @@
 /* study_image.c: `masu-lab study image`: how far each chain of anti-aliasing, upscaling and
- * sharpening, at some render sizes, is from the picture without shortcuts, and what it costs.
+ * sharpening, at some render sizes, is from the image without shortcuts, and what it costs.
  *
- * The truth is drawn as by `masu render --truth`. A chain is a row of the table below, and a rung
- * of a renderer; a renderer draws as many as it can hold in turns. The picture shows the scene with
- * a still camera, after as many frames as the filters of reflections need; times are the least of
- * frames in turns. The study only reports. */
+ * The ground truth is drawn as by `masu render --truth`. A chain is a row of the table below, and a
+ * rung of a renderer; a renderer draws as many as it can hold in turns. The image shows the scene
+ * with a still camera, after as many frames as the filters of reflections need; times are the least
+ * of frames in turns. The study only reports. */
 #include "lab/study/study.h"
 
 #include "measure/picture.h"
@@ -102,12 +102,12 @@ static bool failed(bench *b, const char *text) {
     return false;
 }
 
-/* ---- The truth ------------------------------------------------------------------------------- */
+/* ---- The ground truth ------------------------------------------------------------------------ */
 
 static masu_session_desc session_of(void) {
     masu_session_desc d = masu_picture_session(o->scene, o->size, &given.host);
     d.desc.ray_query = given.ray_query;
-    d.desc.vulkan.max_anisotropy = (float)given.anisotropy; /* of the chains: the truth uses none */
+    d.desc.vulkan.max_anisotropy = (float)given.anisotropy; /* only for the chains */
     return d;
 }
 

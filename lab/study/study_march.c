@@ -1,5 +1,5 @@
 /* study_march.c: `masu-lab study march`: compares the marches of a scene's SDF: evaluations, time,
- * and error against the double-precision truth. */
+ * and error against the double-precision ground truth. */
 #include "lab/study/study.h"
 
 #include "lab/study/marches.h"

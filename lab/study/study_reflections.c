@@ -3,8 +3,8 @@
  * jumped, each against the mean of very many rays per pixel; also flicker and pass times.
  *
  * One renderer has a rung for each set of filters; another traces every pixel and sums the rays.
- * The latter's first frames are the unfiltered rays, and its frames after a cut are the truth: no
- * ray is in both. Times are the least of nine still frames. The study only reports. */
+ * The latter's first frames are the unfiltered rays, and its frames after a cut are the ground
+ * truth: no ray is in both. Times are the least of nine still frames. The study only reports. */
 #include "lab/study/study.h"
 
 #include "measure/specular.h"
@@ -122,8 +122,8 @@ static bool sum_up(bench *b, uint32_t frames, float *rgb, const char *what) {
     return masu_specular_draw(&b->full, &run, rgb, NULL, NULL, b->error, sizeof b->error);
 }
 
-/* Reads the file if it exists; otherwise computes the truth and writes it there. A file of another
- * size is not used and not overwritten: it is another picture, or none. */
+/* Reads the file if it exists; otherwise computes the ground truth and writes it there. A file of
+ * another size is not used and not overwritten: it is another image, or none. */
 static bool find_truth(bench *b) {
     size_t floats = 3 * (size_t)b->pixels;
     FILE *f =
@@ -145,7 +145,7 @@ static bool find_truth(bench *b) {
     return true;
 }
 
-/* Saves the shown picture, and one of the errors, in which a relMSE of 0.25 is white. */
+/* Saves the shown image, and one of the errors, in which a relMSE of 0.25 is white. */
 static bool save(bench *b, uint32_t way, uint32_t motion) {
     char path[4096], scene[256];
     masu_study_scene_name(o->scene, scene, sizeof scene);

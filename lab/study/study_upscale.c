@@ -1,11 +1,11 @@
-/* study_upscale.c: `masu-lab study upscale`: times what a frame does to the finished picture:
+/* study_upscale.c: `masu-lab study upscale`: times what a frame does to the finished image:
  * upscaling and sharpening, by the library's rungs and by shaders of this study.
  *
- * A case is a row of the table below: a rung, which the library runs on the picture as in a frame,
+ * A case is a row of the table below: a rung, which the library runs on the image as in a frame,
  * or a chain of shaders. All cases take turns; the first run of each is dropped; the least and the
  * median of the rest count, as wall time from submit to fence. Also printed is the time between the
  * device's timestamps, which Mesa 22.3's lavapipe gets wrong: a case where the two differ by more
- * than a tenth and 0.2 ms is marked. Then each picture is compared with that of the case in `like`.
+ * than a tenth and 0.2 ms is marked. Then each image is compared with that of the case in `like`.
  * The study only reports. */
 #include "lab/study/study.h"
 
@@ -30,7 +30,7 @@
 #define RCAS_02 0.870550563f /* exp2(-0.2) */
 
 /* fetches: texels per output pixel, a gather counted as one; middle: images of the output's size
- * between passes; like: the case with which the picture is compared. */
+ * between passes; like: the case with which the image is compared. */
 typedef struct bench_case {
     const char *name;
     double fetches;
@@ -102,7 +102,7 @@ typedef struct bench {
 
 static bool on(const bench *b, uint32_t i) { return b->only >> i & 1u; }
 
-/* ---- The picture ----------------------------------------------------------------------------- */
+/* ---- The image ------------------------------------------------------------------------------- */
 
 /* A third sky (a ramp of few steps), a third flat and striped discs, a third noise, to reach every
  * branch of an upscaler. */

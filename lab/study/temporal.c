@@ -48,7 +48,7 @@ static bool save(study *w, const char *name, const uint8_t *rgba) {
     return masu_image_save_png(file, rgba, w->d->size.width, w->d->size.height, 0, w->error, w->error_size);
 }
 
-/* ---- The truth --------------------------------------------------------------------------------- */
+/* ---- The ground truth ------------------------------------------------------------------------ */
 
 static masu_session_desc session_of(const study *w, VkExtent2D size) {
     return masu_picture_session(w->d->scene_path, size, &w->d->host);
@@ -98,11 +98,11 @@ static bool draw_own(study *w, masu_past_motion motion) {
     return true;
 }
 
-/* ---- Rows --------------------------------------------------------------------------------------- */
+/* ---- Rows ------------------------------------------------------------------------------------ */
 
 static uint32_t starts_of(const study *w) { return w->d->starts ? w->d->starts : 1; }
 
-/* Adds a picture's errors to the means. */
+/* Adds an image's errors to the means. */
 static bool compare(study *w, masu_past_row *row, masu_past_motion motion) {
     const uint32_t width = w->d->size.width, height = w->d->size.height;
     char name[96];

@@ -26,10 +26,10 @@ typedef struct masu_past_desc {
     const char *image_dir;  /* NULL: none; else SCENE.SCALE.WAY.MOTION.png and SCENE.truth.png */
     VkExtent2D size;
     double time;               /* of the last frame */
-    uint32_t positions, rays;  /* of the truth */
+    uint32_t positions, rays;  /* of the ground truth */
     uint32_t frames;           /* with still camera and in slow motion, 1/60 s apart */
     uint32_t fast_frames;      /* 1/8 s apart */
-    uint32_t starts;           /* means are over this many pictures, each 5 frames longer than the
+    uint32_t starts;           /* means are over this many images, each 5 frames longer than the
                                 * last; 0: one */
     uint32_t only;             /* bits 1 << MASU_PAST_...: the ways to draw; 0: all */
     double scales[MASU_PAST_SCALES];

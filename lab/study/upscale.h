@@ -1,4 +1,4 @@
-/* upscale.h: a chain of compute shaders from one picture to another, bound like the passes of a
+/* upscale.h: a chain of compute shaders from one image to another, bound like the passes of a
  * frame but outside the library: `masu-lab study upscale` compares it with the library's rungs.
  *
  * A stage reads binding 0 of set 1 (the output of the stage before, clamped to its edge, nearest

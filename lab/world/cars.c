@@ -3,7 +3,7 @@
  * A car's XML has the positions of its wheels, in the space of the body's model: x ahead, y to the
  * left (our -z), the road "ride height" below the origin. Wheels are models of one metre in every
  * direction with the rim's face at -z; they are scaled to the height and width of the tyres. Three
- * of the cars name no wheel: TORCS draws a disc with a picture for them, we use one of its stock
+ * of the cars name no wheel: TORCS draws a textured disc for them, we use one of its stock
  * wheels.
  *
  * A car's height and tilt come from the plane through the ground below its wheels. */

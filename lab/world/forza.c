@@ -8,7 +8,7 @@
  *
  *   grounds  road, grass and sand get the reliefs asphalt, grass and gravel of masu-meso, whose
  *            files must be in the scene's folder; their colours are the track's
- *   camera   a lap at 50 m/s from 0 s on; then, for pictures, the stands ("crowd") and a view
+ *   camera   a lap at 50 m/s from 0 s on; then, for images, the stands ("crowd") and a view
  *            from above ("high"); their times are printed
  *   lights   two spots that are off, "head0" and "head1", which a program may attach to a car.
  *            forza_night.json has the same track at night, with lamps along it
@@ -265,7 +265,7 @@ static void key(FILE *out, double time, masu_bake_vec3 eye, masu_bake_vec3 at, c
             time, eye.x, eye.y, eye.z, at.x, at.y, at.z, end);
 }
 
-/* For the track's pictures: the metres that one usually spans along u and v. A relief's period is a
+/* For the track's textures: the metres that one usually spans along u and v. A relief's period is a
  * quarter of a metre. */
 static void grounds(FILE *out) {
     static const struct {

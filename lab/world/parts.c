@@ -30,7 +30,7 @@ static const char materials[] = "newmtl " WALL "\nKd 0.80 0.74 0.64\nNs 4\n"
 
 typedef masu_world_mesh mesh;
 
-/* ---- facades: a slice 6 m wide, `floors` high, in front of the wall ---- */
+/* ---- facades: a slice 6 m wide, `floors` high, in front of the wall -------------------------- */
 
 /* A window of w x h whose lower edge's centre is (x, y): frame, sill and a pane. */
 static void window(mesh *m, double x, double y, double w, double h) {

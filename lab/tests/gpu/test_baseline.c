@@ -1,6 +1,6 @@
 /* test_baseline.c: `masu-lab study baseline`: the baseline traces one ray per pixel and Masu one
- * per four pixels; its mean over many samples is the truth; the sample counts of equal error are
- * right; earlier frames matter more at rest than in motion; invalid settings are errors. */
+ * per four pixels; its mean over many samples is the ground truth; the sample counts of equal error
+ * are right; earlier frames matter more at rest than in motion; invalid settings are errors. */
 #include "support/support.h"
 #include "support/cli.h"
 
@@ -39,7 +39,7 @@ static const masu_baseline_point *point(uint32_t k) {
     return NULL;
 }
 
-/* The mirror fills the picture; its textures require a renderer for each sample count. */
+/* The mirror fills the image; its textures require a renderer for each sample count. */
 static void a_ray_a_pixel_is_measured_beside_one_in_four(void **state) {
     (void)state;
     static const char *const settings[] = {"base", "scale=0.5+sharpen=off", NULL};
@@ -105,7 +105,7 @@ static void many_plain_samples_are_the_truth(void **state) {
     assert_true(point(MOST)->errors.of[MASU_BASELINE_FLIP] < 0.04);
     for (uint32_t e = baseline.plain_count; e < baseline.entry_count; e++)
         check_samples(&baseline.entries[e], MOST);
-    /* A picture of fewer pixels has a larger error than a full one, and does not need more
+    /* An image of fewer pixels has a larger error than a full one, and does not need more
      * samples. */
     for (int m = 0; m < MASU_BASELINE_METRICS; m++) {
         const masu_baseline_entry *base = &baseline.entries[baseline.plain_count], *small = base + 1;

@@ -72,7 +72,7 @@ static void a_loop_is_counted_round_by_round(void **state) {
     free(t.words);
 }
 
-/* Polygons, SDF, reflections of both, with and without a shadow map: the picture with counters
+/* Polygons, SDF, reflections of both, with and without a shadow map: the image with counters
  * equals the one without, and every written pixel is counted once. */
 static void counters_change_no_pixel(void **state) {
     enum { W = 96, H = 64 };

@@ -1,5 +1,6 @@
-/* test_study_march.c: `masu-lab study march` on a sphere whose truth is a few lines of C, compiled
- * here: the numbers, the CSV, and the shading in double precision against the GPU's picture. */
+/* test_study_march.c: `masu-lab study march` on a sphere whose ground truth is a few lines of C,
+ * compiled here: the numbers, the CSV, and the shading in double precision against the GPU's
+ * image. */
 #include "support/support.h"
 #include "support/files.h"
 #include "support/cli.h"
@@ -103,7 +104,7 @@ static void a_sphere_is_measured(void **state) {
             strcmp(csv_field(cli_out, masu_bench_names[v], "hits"), "n/a") ? "3072" : "n/a");
 }
 
-/* The truth is shaded like on the GPU: away from the rim all bytes are within 2. */
+/* The ground truth is shaded like on the GPU: away from the rim all bytes are within 2. */
 static void the_shaded_truth_is_the_picture(void **state) {
     (void)state;
     enum { W = 120, H = 90 };

@@ -67,7 +67,7 @@ static void a_past_brings_a_picture_nearer_to_the_truth(void **state) {
     assert_ok(masu_past_run(&two, &past, error, sizeof error));
     double mean = past.rows[0].flip[MASU_PAST_SLOW];
     assert_true(fabs(mean - first.flip[MASU_PAST_SLOW]) < 0.1 * mean);
-    assert_true(fabs(mean - first.flip[MASU_PAST_SLOW]) > 1e-6); /* it includes another picture */
+    assert_true(fabs(mean - first.flip[MASU_PAST_SLOW]) > 1e-6); /* it includes another image */
     assert_ok(masu_past_run(&one, &past, error, sizeof error));
     assert_true(fabs(past.rows[0].flip[MASU_PAST_SLOW] - first.flip[MASU_PAST_SLOW]) < 1e-9);
 }

@@ -200,7 +200,7 @@ static void a_counted_shader_is_a_valid_one_that_counts_each_access(void **state
 
 /* ---- The sheet ------------------------------------------------------------------------------- */
 
-/* A picture from elsewhere, upscaled from half to full size and sharpened; drawn at half of
+/* An image from elsewhere, upscaled from half to full size and sharpened; drawn at half of
  * that. */
 static void plan_upscaling(uint32_t width, uint32_t height, masu_frame_plan *plan) {
     masu_desc d = {
