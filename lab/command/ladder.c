@@ -42,7 +42,7 @@ static uint32_t class_of(const char *argument, const char **rest) {
         return c;
     }
     masu_cli_usage_error(
-        "expected CLASS=FILE, with a class of polygons, world, sdf, both, or one of them with -traced: "
+        "expected CLASS=FILE, with a class of polygons, world, sdf, both, or one with -traced: "
         "found '%s'",
         argument);
     return MASU_SCENE_CLASSES;
@@ -396,7 +396,7 @@ static const masu_option rows[] = {
     MASU_FLAG(
         options, costs, "costs",
         "write costs.csv into each DIR of masu bench: the cost of each setting on these classes, in ms;\n"
-        "masu bench then chooses no rung that another setting dominates on one of them"),
+        "masu bench then chooses no rung that another setting dominates on any class"),
     {.name = NULL}};
 
 static int run(masu_cli *cli) {

@@ -210,8 +210,8 @@ static const masu_option rows[] = {
     MASU_TEXT(options, plots, "plots", "DIR",
               "times and scales of each model as DIR/MODEL.svg, with gnuplot"),
     MASU_UINT(options, seeds, "seeds", 1, 10000, "runs of each, with other noise"),
-    MASU_TEXT(options, model, "model", "NAME", "this one alone"),
-    MASU_OWN("controller", "NAME", read_controller, "this one alone"),
+    MASU_TEXT(options, model, "model", "NAME", "only this one"),
+    MASU_OWN("controller", "NAME", read_controller, "only this one"),
     MASU_TEXT(options, record.scene, "record", "SCENE.masu",
               "draw the scene along its path at four scales and write the times to TRACE.csv\n"
               "instead"),
@@ -248,7 +248,7 @@ const masu_cli_command lab_simulate = {
     .summary = "run the governor and other engines' controllers on simulated GPUs",
     .details =
         "over: frames longer than the budget. changes: of the scale. settle: frames from the model's\n"
-        "event until 30 in a row keep the budget and the scale does not fall. oracle: the mean scale of\n"
-        "who knows every time before. Traces are times of a recorded scene: a line \"frame,SCALE,...\",\n"
+        "event until 30 in a row keep the budget and the scale does not fall. oracle: the mean scale\n"
+        "with all times known in advance. Traces are times of a recorded scene: a line \"frame,SCALE,...\",\n"
         "then a line per frame (lab/simulate/traces).\n",
     .run = run};

@@ -28,7 +28,7 @@ const masu_isa_gpu *masu_isa_gpu_find(const char *name); /* NULL: no such GPU */
 
 /* Sets the environment of later child processes for this GPU; the file at `icd`, a new one,
  * describes drivers that are not installed to the loader. On false its driver is missing, and
- * `error` names what is missing. */
+ * `error` holds the reason. */
 bool masu_isa_gpu_environment(const masu_isa_gpu *gpu, const char *icd, char *error, size_t error_size);
 
 /* Restores the environment. */

@@ -230,7 +230,7 @@ bool masu_meso_study_run(const masu_meso_patch *patch, const masu_meso_options *
         judge_texels(study, tracer, patch, &judged);
         count_shadows(study, tracer, patch, &judged);
     } else {
-        masu_cli_error("no ray meets the patch");
+        masu_cli_error("no ray hits the patch");
     }
     masu_cli_progress_clear();
     masu_meso_tracer_free(tracer);

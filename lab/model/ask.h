@@ -1,4 +1,4 @@
-/* ask.h: instruction counts for the model sheet, from the compilers of its classes
+/* ask.h: instruction counts of the model sheet, from the compilers of its classes
  * (lab/isa/ask.h). */
 #ifndef MASU_MODEL_ASK_H
 #define MASU_MODEL_ASK_H

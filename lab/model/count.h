@@ -24,7 +24,7 @@ typedef struct masu_count_number {
     double amount;
 } masu_count_number;
 
-/* Of one pass in one rung, per frame. */
+/* Counts of one pass in one rung, per frame. */
 typedef struct masu_pass_count {
     double vertices, invocations; /* of vertex shaders; of fragment or compute shaders */
     double vertex_plain, vertex_weighted, plain, weighted; /* operations */
@@ -49,7 +49,7 @@ typedef struct masu_count {
     char driver[1024];
     masu_frame_plan drawn, sheet; /* `scene` must not be read in either */
     masu_pass_count passes[MASU_MAX_RUNGS][MASU_PASS_COUNT];
-    /* Of the camera, of the cascades; before occlusion culling. */
+    /* For the camera, for the cascades; before occlusion culling. */
     double triangles[MASU_MAX_RUNGS][2];
     double texture_bytes; /* of materials, on the device */
     /* Plain operations of a pass's shaders with each instruction once: fragment and compute

@@ -12,10 +12,10 @@ typedef struct masu_spirv_cost {
     uint32_t plain, weighted;
 } masu_spirv_cost;
 
-/* Of one instruction; 0 and 0 for moves, names, branches and fetches. */
+/* The cost of one instruction; 0 and 0 for moves, names, branches and fetches. */
 masu_spirv_cost masu_spirv_cost_of(const spirv_module *module, const spirv_instruction *i);
 
-/* Of all instructions, each once, ignoring branches and loops. */
+/* The cost of all instructions, each once, ignoring branches and loops. */
 masu_spirv_cost masu_spirv_cost_straight(const spirv_module *module);
 
 /* Components of a type: 1 for a scalar, n for a vector, n * m for a matrix; 0 for other types. */

@@ -175,7 +175,7 @@ static bool add_instruction(maker *k, const spirv_instruction *i, sums s) {
     case 97: return touched(k, i->word[3], MASU_TALLY_FETCHED, 4, s); /* gathers */
     case 99: return touched(k, i->word[1], MASU_TALLY_WRITTEN, 1, s);
     default:
-        if (i->op >= 229 && i->op <= 242) /* atomics with a result: what they store */
+        if (i->op >= 229 && i->op <= 242) /* atomics with a result: their stores */
             return touched_buffer(k, i->word[3], i->word[1], MASU_TALLY_STORED, s);
         return true;
     }

@@ -36,7 +36,7 @@ typedef struct masu_tally_number {
 
 typedef struct masu_tally {
     uint32_t model; /* 0: vertex, 4: fragment, 5: compute */
-    bool late;      /* a fragment shader that discards: the depth test comes after it */
+    bool late;      /* a fragment shader that discards: the depth test is after it */
     uint32_t count;
     masu_tally_number numbers[MASU_TALLY_NUMBERS]; /* the first two: plain, weighted */
     uint32_t *words;

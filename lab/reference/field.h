@@ -8,7 +8,7 @@
 #include "lab/reference/scene.h"
 #include "sdfc/sdfc.h"
 
-/* A part of the C and the box that contains it. */
+/* A part of the C and its bounds. */
 typedef struct ref_field_box {
     ref_vec low, high;
     int part;
@@ -65,7 +65,7 @@ void ref_field_surface(const ref_field *f, ref_vec p, ref_vec n, ref_surface *ou
 
 /* field_light.c. Finds bounded emissive parts of a .sdf source. */
 bool ref_field_find_emitters(ref_field *f, const masu_sdfc_result *made);
-/* A direction towards a point distributed uniformly in one of the boxes; and the density of these
+/* A direction towards a point distributed uniformly in one of the boxes; and the density of such
  * directions over the solid angle. */
 ref_vec ref_towards_box(const ref_light_box *boxes, uint32_t count, ref_vec from, ref_random *r);
 double ref_box_pdf(const ref_light_box *boxes, uint32_t count, ref_vec from, ref_vec direction);

@@ -29,7 +29,7 @@ bool ref_field_find_emitters(ref_field *f, const masu_sdfc_result *made) {
     double sum = 0, origin[3] = {0, 0, 0};
     f->emitters = calloc(made->part_count + 1, sizeof *f->emitters);
     if (!f->emitters) return false;
-    f->step(f->params, f->time, origin); /* materials are those of the last call */
+    f->step(f->params, f->time, origin); /* materials are evaluated for the last call */
     for (uint32_t i = 0; i < made->part_count; i++) {
         const masu_sdfc_part *part = &made->parts[i];
         double power = power_of(f, part, (int)i);

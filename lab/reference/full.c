@@ -71,7 +71,7 @@ static void sample_emitter(const ref_tracer *t, const ref_hit *hit, const ref_bs
     for (int i = 0; i < REF_LOBES; i++) out->of[i] = ref_add(out->of[i], ref_mul(f.of[i], light));
 }
 
-/* Samples an emissive part of the field: its first surface, if nothing is in front of it. */
+/* Samples an emissive part of the field: its first surface, if not occluded. */
 static void sample_field(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, ref_random *r,
                          ref_lobes *out) {
     const ref_field *field = t->world->field;

@@ -30,8 +30,8 @@ typedef struct ref_tracer {
     ref_light_box window; /* samples the sky through this box; cumulative 0: none */
     double cutoff;        /* roughness from which no reflection is traced; 0: none */
     const masu_blob_environment *environment;
-    /* ref_irradiance excludes the direct light of those of sun, local lights and emissive materials
-     * that are `true` here; NULL: all light. */
+    /* ref_irradiance excludes the direct light of the sun, of local lights and of emissive
+     * materials with `true` here; NULL: includes all light. */
     const bool *direct;
     bool diffuse_hits; /* ref_irradiance: surfaces reflect diffusely by their base colour, as in
                         * probe rays */

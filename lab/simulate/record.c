@@ -1,5 +1,5 @@
 /* record.c: records the frame times of a scene along its path, for `masu-lab simulate`. Each moment
- * is drawn at every scale in turn, so that other load on the machine affects all of them
+ * is drawn at every scale before the next, so that other load on the machine affects all scales
  * equally. */
 #include "lab/simulate/record.h"
 

@@ -14,8 +14,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Times at rest start after SETTLE_FRAMES frames, when temporal accumulation has its cost at rest.
- * Counters are of the last of COUNT_FRAMES frames in motion. */
+/* With a still camera, timing starts after SETTLE_FRAMES frames, when temporal accumulation costs
+ * least. Counters are of the last of COUNT_FRAMES frames in motion. */
 enum { SETTLE_FRAMES = 4, COUNT_FRAMES = 3 };
 
 typedef struct timing {
@@ -329,7 +329,7 @@ static bool time_phase(bench *w, int phase) {
     for (uint32_t run = 0; run <= w->d->runs; run++) {
         char text[64];
         snprintf(text, sizeof text, "round %u of %u", run, w->d->runs);
-        say(w, phase == MASU_BASELINE_REST ? "timing at rest" : "timing in motion", text);
+        say(w, phase == MASU_BASELINE_REST ? "timing with still camera" : "timing in motion", text);
         for (uint32_t e = 0; e < w->out->entry_count; e++) {
             for (uint32_t k = 0; run == 0 && k < settle && !w->out->entries[e].plain; k++) {
                 if (!sample(w, e, phase, false)) return false;
@@ -369,7 +369,7 @@ static bool time_all(bench *w) {
     return true;
 }
 
-/* The share of passes whose names start with one of these. */
+/* The share of passes whose name starts with one of `names`. */
 static double share_of(const masu_baseline_entry *e, const char *const *names, size_t count) {
     double all = 0.0, sum = 0.0;
     for (uint32_t p = 0; p < e->pass_count; p++) {

@@ -1,5 +1,5 @@
 /* baseline.h: compares whole frames of some settings with a baseline renderer: at their own errors,
- * and at equal error, where the baseline takes as many samples per pixel as needed.
+ * and at equal error, with as many samples per pixel of the baseline as needed.
  *
  * THE BASELINE draws everything in the scene without shortcuts: at the output's size, with a
  * separate march per pixel, every instance unculled in its finest form, every light at every pixel,
@@ -16,7 +16,7 @@
  * plain renderer itself, use the plain march.
  *
  * TIMES. Each entry has its own renderer, so that its history is kept as in a game. They take
- * turns: first in motion along the path, then at rest. The first round of both is dropped. Ratios
+ * turns: first in motion along the path, then still. The first round of both is dropped. Ratios
  * are medians over rounds (measure/samples.h). A frame of k samples is assumed to take k times as
  * long as one of one sample, except for the shadow maps, which a moment needs once; computing the
  * mean is free. */
@@ -43,7 +43,7 @@ typedef struct masu_baseline_desc {
     double time;
     uint32_t positions, rays; /* of the ground truth */
     uint32_t frames;          /* before an image is taken, */
-    double step;              /* this many seconds apart along the camera's path; 0: at rest */
+    double step;              /* this many seconds apart along the camera's path; 0: still */
     uint32_t runs;            /* timed ones of each phase; 0: none */
     uint32_t most;            /* samples of the baseline, at most MASU_BASELINE_SAMPLES */
     bool own_march;           /* for equal error use the scene's own march */
@@ -75,11 +75,11 @@ typedef struct masu_baseline_entry {
     uint32_t pass_count;
     const char *pass_names[MASU_MAX_PASSES];
     double pass_ms[MASU_MAX_PASSES]; /* least, in motion; 0: does not run */
-    /* Of one frame. */
+    /* Counts of one frame. */
     uint64_t evals, occlusion_evals, specular_rays, specular_nodes, specular_evals, light_tests;
     uint64_t draws, triangles;
-    /* Of a setting: the lowest sample count found at which the baseline's error is at most this
-     * one; 0: not with `most`. */
+    /* The lowest sample count found at which the baseline's error is at most this setting's; 0: not
+     * with `most`. */
     uint32_t samples[MASU_BASELINE_METRICS];
 } masu_baseline_entry;
 

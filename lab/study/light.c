@@ -62,7 +62,7 @@ static bool draw(study *w, uint32_t frames, float *rgb) {
            failed(w, "no image of linear light");
 }
 
-/* Light i alone; UINT32_MAX: no light. */
+/* Only light i; UINT32_MAX: no light. */
 static bool choose(study *w, uint32_t chosen, bool shadows,
                    const masu_punctual_light_state *states) {
     for (uint32_t i = 0; i < w->scene.light_count; i++) {
@@ -126,7 +126,7 @@ static bool find_points(study *w, uint32_t slot) {
     return true;
 }
 
-/* Whether the whole source is visible from a point (1), nothing of it (0) or a part (-1). */
+/* Visibility of the source from a point: all (1), none (0) or a part (-1). */
 static int8_t seen_from(const study *w, const ref_light *light, ref_vec p) {
     ref_vec to = ref_sub(light->position, p), l = ref_unit(to);
     ref_frame f = ref_frame_of(l);

@@ -24,7 +24,7 @@ static const masu_march marches[MASU_BENCH_VARIANTS] = {
     [MASU_BENCH_MASU] = MASU_MARCH_AUTO,
     [MASU_BENCH_CHECKERBOARD] = MASU_MARCH_CHECKERBOARD};
 
-/* The passes whose time counts for the SDF: their names start with one of these. */
+/* Names of the passes whose time is the SDF's: prefixes. */
 static const char *const sdf_passes[] = {"update", "classify", "cone", "march"};
 
 enum { REST = MASU_BENCH_VARIANTS, RENDERERS };
@@ -158,7 +158,7 @@ static bool find_truth(bench *b, bool *there) {
     return *there || failed(b, error);
 }
 
-/* Uses the camera of the frame, which only a renderer knows. */
+/* Uses the frame's camera, which only a renderer has. */
 static bool make_truth(bench *b, const renderer *r) {
     masu_camera camera;
     char error[512];
@@ -177,7 +177,7 @@ static bool make_truth(bench *b, const renderer *r) {
     b->shown = malloc(4 * n);
     if (!b->samples || !b->compared || !b->true_image || !b->shaded || !b->shown)
         return failed(b, "out of memory for the ground truth");
-    say(b, "marching", "the truth");
+    say(b, "marching", "the ground truth");
     uint64_t start = masu_clock_ns(NULL);
     masu_truth_image(&b->truth, &b->view, b->d->stride, b->samples);
     b->out->truth_seconds = (double)(masu_clock_ns(NULL) - start) / 1e9;
@@ -311,8 +311,9 @@ static bool plausible(const masu_stats_info *stats, double wall_ms) {
     return stats->timed && gpu >= 0.5 * wall_ms && gpu <= 1.05 * wall_ms;
 }
 
-/* Times all variants in turn, starting with another one in each round, so that other load on the
- * machine affects all of them equally. Round 0 is not counted: drivers compile at first use. */
+/* Times one frame of each variant per round, starting with another variant in each round, so that
+ * other load on the machine affects all equally. Round 0 is not counted: drivers compile at first
+ * use. */
 static bool time_all(bench *b) {
     masu_bench *o = b->out;
     for (uint32_t round = 0; round <= b->d->runs; round++) {

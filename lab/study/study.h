@@ -9,7 +9,7 @@
 #include "command/output.h"
 #include "lab/study/table.h"
 
-/* The options of all studies; each uses some of them. A study with more options makes a struct that
+/* The options of all studies; each study uses some. A study with more options makes a struct that
  * begins with this one. The values before the command line is read are the defaults. */
 typedef struct masu_study_options {
     masu_given given;
@@ -50,7 +50,7 @@ typedef struct masu_study {
               "compare every N-th pixel of every N-th row; an even N is raised by one")
 #define MASU_STUDY_TIME MASU_MOMENT_ROW(masu_study_options, time)
 #define MASU_STUDY_IMAGES(help) MASU_TEXT(masu_study_options, images, "images", "DIR", help)
-#define MASU_STUDY_ONLY MASU_TEXT(masu_study_options, only, "only", "NAME,...", "these rows alone")
+#define MASU_STUDY_ONLY MASU_TEXT(masu_study_options, only, "only", "NAME,...", "only these rows")
 #define MASU_STUDY_FIELD                                                                           \
     MASU_TEXT(masu_study_options, field, "truth", "FILE.so",                                       \
               "the SDF in double precision (default: SCENE.truth.so, if it is there)")

@@ -1,10 +1,10 @@
 /* study_image.c: `masu-lab study image`: how far each chain of anti-aliasing, upscaling and
- * sharpening, at some render sizes, is from the image without shortcuts, and what it costs.
+ * sharpening, at some render sizes, is from the ground truth, and its cost.
  *
  * The ground truth is drawn as by `masu render --truth`. A chain is a row of the table below, and a
- * rung of a renderer; a renderer draws as many as it can hold in turns. The image shows the scene
+ * rung of a renderer; a renderer holds several, which alternate. The image shows the scene
  * with a still camera, after as many frames as the filters of reflections need; times are the least
- * of frames in turns. The study only reports. */
+ * over frames. The study only reports. */
 #include "lab/study/study.h"
 
 #include "measure/picture.h"
@@ -302,7 +302,7 @@ static int print(const bench *b) {
     masu_table t;
     masu_table_open(&t, columns, "n/a");
     for (uint32_t i = 0; i < b->row_count; i++) add_row(&t, b, &b->rows[i]);
-    fprintf(o->text, "%s at %ux%u, %.3g s, truth of %u positions, %.1f pixels per degree; %s\n",
+    fprintf(o->text, "%s at %ux%u, %.3g s, ground truth of %u positions, %.1f pixels per degree; %s\n",
             b->scene, o->size.width, o->size.height, o->time, o->truth.positions, given.ppd,
             b->driver);
     masu_table_print(&t, o->text);
@@ -343,15 +343,15 @@ static const masu_option rows[] = {
     MASU_STUDY_SIZE,
     MASU_STUDY_TIME,
     MASU_STUDY_TRUTH,
-    MASU_STUDY_FRAMES(10000, "at rest, before a picture with reflections is taken"),
+    MASU_STUDY_FRAMES(10000, "with a still camera, before an image with reflections is measured"),
     MASU_REAL(options, ppd, "ppd", "N", 1.0, 1000.0,
               "pixels per degree of sight, for FLIP: 67 at 0.7 m before 3840 on 0.7 m"),
     MASU_STUDY_RUNS(0, 999),
     MASU_OWN("scales", "S,...", read_scales, "of the render size (default 1,0.8,0.5,0.4)"),
-    MASU_TEXT(options, study.only, "only", "TEXT", "chains with that in their name"),
+    MASU_TEXT(options, study.only, "only", "TEXT", "chains whose names contain this"),
     MASU_REAL(options, anisotropy, "anisotropy", "N", 1.0, 64.0,
               "samples of the chains' textures along the longer axis (default 1)"),
-    MASU_STUDY_IMAGES("the pictures, and the maps of FLIP, as PNG"),
+    MASU_STUDY_IMAGES("the images, and the maps of FLIP, as PNG"),
     MASU_STUDY_CSV,
     MASU_RAYS_ROW(options, rays),
     MASU_STUDY_DEVICE,
@@ -359,15 +359,15 @@ static const masu_option rows[] = {
 
 const masu_study masu_study_image = {
     .name = "image",
-    .purpose = "anti-aliasing, upscaling and sharpening against the picture without shortcuts",
+    .purpose = "anti-aliasing, upscaling and sharpening, compared with the ground truth",
     .arguments = "SCENE.masu [options]",
     .scenes_min = 1,
     .scenes_max = 1,
     .options = rows,
     .given = &given.study,
     .run = run,
-    .details = "The truth is that of masu render --truth. RMSE, PSNR and SSIM are of the shown\n"
-               "8 bits. Chain ms: GPU time of all behind the tone curve; frame ms: wall time from\n"
+    .details = "The ground truth is drawn as by masu render --truth. RMSE, PSNR and SSIM are of the shown\n"
+               "8 bits. Chain ms: GPU time of the passes after the tone curve; frame ms: wall time from\n"
                "masu_frame to the fence, with a full barrier around each pass; both the least of "
                "the runs, in\n"
-               "which all chains of a renderer take turns.\n"};
+               "which the chains of a renderer alternate.\n"};

@@ -1,8 +1,8 @@
 /* study_rays.c: `masu-lab study rays`: rays per second through a scene's trees in a compute shader,
- * compared with Embree with the same triangles, transforms and rays. Both take turns; the shortest
- * run counts, as wall time from submit to fence. Also printed is the CPU time of all threads of
- * this process: on a software driver that is the work itself, independent of other load on the
- * machine. Rays: from the camera, and rough reflections from their hits. */
+ * compared with Embree with the same triangles, transforms and rays. Their runs alternate; the
+ * shortest run counts, as wall time from submit to fence. Also printed is the CPU time of all
+ * threads of this process: on a software driver that is the work itself, independent of other load
+ * on the machine. Rays: from the camera, and rough reflections from their hits. */
 #include "lab/study/study.h"
 
 #include "lab/study/rays.h"
@@ -50,8 +50,8 @@ typedef struct bench {
     char error[1024];
 } bench;
 
-/* They differ in hit or miss, or in t by over 1e-4 of it plus the rounding of coordinates as large
- * as the ray's. */
+/* Whether one hits and the other misses, or t differs by more than 1e-4 t plus the rounding of
+ * coordinates as large as the ray's. */
 static bool differs(const masu_bench_ray *ray, const masu_bench_hit *a, const masu_bench_hit *b) {
     float most = fmaxf(fabsf(ray->origin[0]), fmaxf(fabsf(ray->origin[1]), fabsf(ray->origin[2])));
     if ((a->t >= 0) != (b->t >= 0)) return true;
@@ -261,8 +261,8 @@ static const masu_option rows[] = {
     MASU_STUDY_SIZE,
     MASU_STUDY_RUNS(1, 1000),
     MASU_REAL(options, roughness, "roughness", "R", 0, 1,
-              "of the surfaces that specular rays leave"),
-    MASU_UINT(options, threads, "threads", 1, 16, "that Embree may use"),
+              "of the surfaces that reflect specular rays"),
+    MASU_UINT(options, threads, "threads", 1, 16, "threads of Embree"),
     MASU_FLAG(options, flat, "flat", "give Embree all triangles in world space instead of instances"),
     MASU_STUDY_CSV,
     MASU_STUDY_DEVICE,
@@ -270,7 +270,7 @@ static const masu_option rows[] = {
 
 const masu_study masu_study_rays = {
     .name = "rays",
-    .purpose = "rays through a scene's trees, beside Embree: rays a second, differences",
+    .purpose = "rays through a scene's trees, compared with Embree: rays per second, differences",
     .arguments = "SCENE.masu [options]",
     .scenes_min = 1,
     .scenes_max = 1,

@@ -188,25 +188,25 @@ static const masu_option rows[] = {
     MASU_TEXT(options, reference, "reference", "FILE.pfm",
               "image of masu-lab reference, of the same size"),
     MASU_STUDY_FRAMES(10000, "frames of one moment"),
-    MASU_UINT(options, last, "last", 2, 10000, "of these the last ones are measured"),
+    MASU_UINT(options, last, "last", 2, 10000, "measured frames, at the end of --frames"),
     MASU_REAL(options, floor, "above", "RADIANCE", 0, 1e6,
-              "least light of the reference in what is counted as glow"),
+              "minimum radiance of the reference in the glow"),
     MASU_STUDY_CSV,
     MASU_STUDY_DEVICE,
     MASU_STUDY_END};
 
 const masu_study masu_study_rest = {
     .name = "rest",
-    .purpose = "glow of small lamps in glossy surfaces, and its noise at rest",
+    .purpose = "glow of small lamps in glossy surfaces, and its noise with a still camera",
     .arguments = "SCENE.masu --reference FILE.pfm [options]",
     .scenes_min = 1,
     .scenes_max = 1,
     .options = rows,
     .given = &given.study,
     .run = run,
-    .details = "Glow: light of the pixels around which the reference has a mean radiance of --above "
+    .details = "Glow: the light of pixels around which the reference has a mean radiance of --above "
                "or more, and none of 1,\n"
-               "over that of the reference.\n"
+               "divided by the reference's light.\n"
                "Deviation: standard deviation over the last frames of each pixel of the shown "
                "image, of 255, without tone\n"
                "curve: its mean, 99th percentile and maximum.\n"};

@@ -1,12 +1,12 @@
-/* study_upscale.c: `masu-lab study upscale`: times what a frame does to the finished image:
- * upscaling and sharpening, by the library's rungs and by shaders of this study.
+/* study_upscale.c: `masu-lab study upscale`: times the last passes of a frame, which process the
+ * finished image: upscaling and sharpening, by the library's rungs and by shaders of this study.
  *
- * A case is a row of the table below: a rung, which the library runs on the image as in a frame,
- * or a chain of shaders. All cases take turns; the first run of each is dropped; the least and the
- * median of the rest count, as wall time from submit to fence. Also printed is the time between the
- * device's timestamps, which Mesa 22.3's lavapipe gets wrong: a case where the two differ by more
- * than a tenth and 0.2 ms is marked. Then each image is compared with that of the case in `like`.
- * The study only reports. */
+ * A case is a row of the table below: a rung, which the library runs on the image as in a frame, or
+ * a chain of shaders. The runs of all cases alternate; the first run of each is dropped; the least
+ * and the median of the rest count, as wall time from submit to fence. Also printed is the time
+ * between the device's timestamps, which Mesa 22.3's lavapipe gets wrong: a case where the two
+ * differ by more than a tenth and 0.2 ms is marked. Then each image is compared with that of the
+ * case in `like`. The study only reports. */
 #include "lab/study/study.h"
 
 #include "lab/study/upscale.h"
@@ -136,7 +136,7 @@ static bool make_source(bench *b) {
     if (o->scene) {
         if (!masu_image_load_png(o->scene, &image, b->error, sizeof b->error)) return false;
         if (image.width != width || image.height != height) {
-            snprintf(b->error, sizeof b->error, "%s is %ux%u, --from says %ux%u", o->scene,
+            snprintf(b->error, sizeof b->error, "%s is %ux%u, --from is %ux%u", o->scene,
                      image.width, image.height, width, height);
             masu_image_free(&image);
             return false;
@@ -343,7 +343,7 @@ static int print(bench *b) {
     for (uint32_t i = 0; i < CASES; i++) {
         if (on(b, i)) add_row(&t, b, i, &base);
     }
-    fprintf(o->text, "%s\n%ux%u to %ux%u, %u runs in turns\n", b->s.host.driver, given.from.width,
+    fprintf(o->text, "%s\n%ux%u to %ux%u, %u alternating runs\n", b->s.host.driver, given.from.width,
             given.from.height, o->size.width, o->size.height, o->runs);
     masu_table_print(&t, o->text);
     return masu_table_close(&t, o->csv);
@@ -387,21 +387,21 @@ static int run(void) {
 }
 
 static const masu_option rows[] = {
-    MASU_SIZE(options, from, "from", "size of the picture"),
+    MASU_SIZE(options, from, "from", "size of the image"),
     MASU_STUDY_SIZE,
     MASU_STUDY_RUNS(1, RUNS_MOST),
     MASU_STUDY_ONLY,
-    MASU_STUDY_IMAGES("write what each case makes there, CASE.png"),
+    MASU_STUDY_IMAGES("write each case's image there, CASE.png"),
     MASU_STUDY_CSV,
     MASU_STUDY_DEVICE,
     MASU_STUDY_END};
 
 const masu_study masu_study_upscale = {
     .name = "upscale",
-    .purpose = "what is done to the finished picture, upscaling and sharpening: times, errors",
+    .purpose = "upscaling and sharpening of a finished image: times, errors",
     .arguments = "[IN.png] [options]",
     .scenes_max = 1,
     .options = rows,
     .given = &given.study,
     .run = run,
-    .details = "Without a picture one is made: a third ramp, a third discs, a third noise.\n"};
+    .details = "The default image is generated: a third ramp, a third discs, a third noise.\n"};

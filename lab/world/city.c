@@ -286,7 +286,7 @@ static void key(FILE *out, double time, const double eye[3], double yaw, double 
  * look over the shoulder or up. A key per frame. */
 static void walk(FILE *out) {
     static const struct {
-        double from, to, yaw; /* yaw turns to this at `from` */
+        double from, to, yaw; /* yaw rotates to this from `from` on */
     } turns[] = {{0.0, 0.0, 0},    {2.0, 2.10, 90}, {3.4, 3.48, 270}, {3.8, 3.88, 90},
                  {6.0, 6.10, 180}, {7.2, 7.5, 540}, {8.0, 8.12, 450}, {9.2, 9.3, 270}};
     static const double corners[][3] = {/* time, x, z */

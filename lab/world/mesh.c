@@ -7,7 +7,7 @@
 #define TAU 6.28318530717958647692
 
 static uint32_t vertex(masu_world_mesh *m, double x, double y, double z) {
-    /* + 0 turns a rounded -0 into 0 if the sum is exact; "-0.0000" still reads as zero. */
+    /* + 0 changes a rounded -0 to 0 if the sum is exact; "-0.0000" still reads as zero. */
     fprintf(m->out, "v %.4f %.4f %.4f\n", x + 0, y + 0, z + 0);
     return ++m->vertices; /* OBJ counts from one */
 }

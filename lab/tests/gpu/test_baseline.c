@@ -1,6 +1,7 @@
 /* test_baseline.c: `masu-lab study baseline`: the baseline traces one ray per pixel and Masu one
  * per four pixels; its mean over many samples is the ground truth; the sample counts of equal error
- * are right; earlier frames matter more at rest than in motion; invalid settings are errors. */
+ * are right; earlier frames matter more with a still camera than in motion; invalid settings are
+ * errors. */
 #include "support/support.h"
 #include "support/cli.h"
 
@@ -35,7 +36,7 @@ static const masu_baseline_point *point(uint32_t k) {
     for (uint32_t i = 0; i < baseline.point_count; i++) {
         if (baseline.points[i].samples == k) return &baseline.points[i];
     }
-    fail_msg("nothing is known of %u samples", k);
+    fail_msg("no point for %u samples", k);
     return NULL;
 }
 
@@ -126,7 +127,7 @@ static void steps_are_those_between_frames(void **state) {
             "engine", settings);
         const masu_baseline_entry *e = &baseline.entries[baseline.plain_count];
         with[i] = e[1].errors.of[MASU_BASELINE_RMSE] / e[0].errors.of[MASU_BASELINE_RMSE];
-        print_message("  %g s: RMSE %.4f, with a past %.4f\n", steps[i], e[0].errors.of[MASU_BASELINE_RMSE],
+        print_message("  %g s: RMSE %.4f, with history %.4f\n", steps[i], e[0].errors.of[MASU_BASELINE_RMSE],
                       e[1].errors.of[MASU_BASELINE_RMSE]);
     }
     assert_true(with[0] < 0.7 && with[1] > 1.2 * with[0]);

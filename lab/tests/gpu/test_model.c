@@ -1,6 +1,5 @@
-/* test_model.c: `masu-lab model` on a driver: shaders with counters count what they run, known
- * passes have the bytes that follow from their sizes, sums are right, and rungs have rows for the
- * passes that they run. */
+/* test_model.c: `masu-lab model` on a driver: counts of shaders with counters, bytes of passes
+ * with given sizes, sums, and that rungs have rows for the passes that they run. */
 #include "support/support.h"
 #include "plan/compile.h"
 

@@ -126,8 +126,8 @@ static void the_shaded_truth_is_the_picture(void **state) {
         different += d > 0;
         rim += d > 2;
     }
-    /* The rim is about 250 pixels long; a tenth of these pixels are within 0.1 pixel of it, where
-     * light changes fast. */
+    /* The rim is about 250 pixels long; a tenth of its pixels have their centre within 0.1 pixel of
+     * the edge, near which light changes fast. */
     if (rim > 75) fail_msg("%u pixels are off by more than 2", rim);
     assert_true(different < W * H / 4);
     for (int i = 0; i < 2; i++) masu_image_free(&image[i]);

@@ -42,7 +42,7 @@ static void curves_are_twice_as_near_as_plain_maps(void **state) {
             assert_true(v->far[MASU_MESO_CURVES] < v->far[MASU_MESO_OCCLUDED]);
         }
         print_message(
-            "  %s: %.2f times nearer at worst, at %g degrees; a mip's mean is off by %.3f "
+            "  %s: %.2f times closer at worst, at %g degrees; a mip's mean differs by %.3f "
             "at worst, mips between by %.3f\n",
             *name, gain, angle, kept, between);
         assert_true(gain >= 2);

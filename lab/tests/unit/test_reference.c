@@ -183,7 +183,7 @@ static void matt_surfaces_under_skies(void **state) {
         }
         for (int i = 0; i < 7; i++) {
             double error, found = tilted_square(s, tilts[i], kind == 0 ? 40000 : 6000, &error);
-            /* A bilinear lookup turns a step between two rows of the image into a ramp as wide as
+            /* A bilinear lookup changes a step between two rows of the image to a ramp as wide as
              * a row. */
             check(found, expected[kind][i], fmax(error, kind ? 2e-4 : 1e-5),
                   "irradiance under a sky");

@@ -1,4 +1,4 @@
-/* test_reference_field.c: fields of the reference path tracer with known distances: a GLSL source,
+/* test_reference_field.c: distances of fields of the reference path tracer: a GLSL source,
  * blocks of GLSL in a .sdf source, reports of mistakes; also its ambient occlusion, and parts that
  * emit light. */
 #include <setjmp.h>
