@@ -1,5 +1,5 @@
-// raii.cpp SCENE.masu OUT.png: minimal.c in C++, with include/masu.hpp: objects release their resources, errors are
-// exceptions. platform/headless.h provides the device and the image.
+// raii.cpp SCENE.masu OUT.png: minimal.c in C++, with include/masu.hpp: objects release
+// their resources, errors are exceptions. platform/headless.h provides the device and the image.
 #include "masu.hpp"
 
 extern "C" {
