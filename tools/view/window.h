@@ -29,6 +29,7 @@ typedef struct masu_window {
     VkSemaphore acquired[MASU_WINDOW_FLIGHT]; /* per frame in flight */
     VkSemaphore finished[MASU_WINDOW_IMAGES]; /* per image: presenting waits for it */
     bool stale;                               /* the swapchain must be recreated */
+    bool rotated;                             /* the compositor rotates the images */
 } masu_window;
 
 /* Opens the window. */
