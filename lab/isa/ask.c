@@ -1,4 +1,4 @@
-/* ask.c: see ask.h. */
+/* The two sides of ask.h: the child, which compiles, and its parent. */
 #include "lab/isa/ask.h"
 
 #include "bake/base/file.h"

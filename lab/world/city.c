@@ -5,7 +5,7 @@
  *
  *   groups   "deck/i.j/building": used by the culling tree
  *   camera   0 to 10 s a walk through the streets with fast turns (600 frames at 60 Hz),
- *            20 s the crowd on the central square, 30 s all of it from above
+ *            20 s the crowd on the central square, 30 s all decks from above
  *
  * All random values come from one generator with a fixed seed. */
 #include "lab/world/world.h"
@@ -221,7 +221,7 @@ static void put_tile(city *c, int level, int i, int j, unsigned edge) {
     double x = k->x + TILE * (i - (k->columns - 1) / 2.0);
     double z = k->z + TILE * (j - (k->rows - 1) / 2.0);
     bool middle = level == GROUND && i == 3 && j == 3;
-    bool dense = level == GROUND && i > 0 && i < 6 && j > 0 && j < 6; /* where the camera walks */
+    bool dense = level == GROUND && i > 0 && i < 6 && j > 0 && j < 6; /* along the camera's walk */
     snprintf(c->group, sizeof c->group, "deck%d/%d.%d", level, i, j);
     put_at(c, "deck", x, k->y, z, 0);
     put_edge(c, x, k->y, z, edge);
