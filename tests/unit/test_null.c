@@ -1,7 +1,8 @@
-/* test_null.c: every public function with each of its pointers NULL in turn. Nothing crashes; what has a result
- * says MASU_ERROR_ARGUMENT, unless the pointer is one that may be NULL, and its detail, which is the last parameter,
- * names the argument. What there is to be called, and how its arguments are called, is read in
- * include/: a function that is new there and has no row here is a failure. */
+/* test_null.c: every public function with each of its pointers NULL, one at a time. Nothing
+ * crashes. A function with a result returns MASU_ERROR_ARGUMENT, unless the pointer may be NULL,
+ * and its detail (the last parameter) names the argument. The list of functions and the names of
+ * their arguments are read from include/: a new function there that has no row here is a
+ * failure. */
 #include <ctype.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -47,6 +48,7 @@ static masu_readback_image image;
 static masu_pick_info pick;
 static masu_instance_state instance_state;
 static masu_model_state model_state;
+static masu_mesh_data mesh_data;
 static masu_model added;
 static const masu_clip_use clip_use = {.weight = 1.0f};
 static masu_node_state node_state;
@@ -62,7 +64,7 @@ static const masu_frame_desc still = {MASU_FRAME_DESC};
 static const float unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 static const double unit_position[3] = {1, 2, 3};
 
-/* The pointer of that number, counted from 0, or NULL where it is its turn. */
+/* The pointer with this number, counted from 0, or NULL if it is the one under test. */
 #define P(number, pointer) (null == (number) ? NULL : (pointer))
 
 #define INSTANCE masu_instance_at(&m, 0)
@@ -142,6 +144,10 @@ static const double unit_position[3] = {1, 2, 3};
     X(masu_model_set_position, masu_model_set_position(P(0, &m), MODEL, P(1, unit_position), P(2, &detail))) \
     X(masu_model_add, masu_model_add(P(0, &m), MODEL, P(1, unit), P(2, &added), P(3, &detail)))    \
     X(masu_model_remove, masu_model_remove(P(0, &m), MODEL, P(1, &detail)))                        \
+    X(masu_mesh_create, masu_mesh_create(P(0, &m), 0, P(1, &mesh_data), P(2, unit), P(3, &added), P(4, &detail))) \
+    X(masu_mesh_replace, masu_mesh_replace(P(0, &m), MODEL, P(1, &mesh_data), P(2, &detail)))      \
+    X(masu_mesh_deform, masu_mesh_deform(P(0, &m), MODEL, P(1, unit), P(2, unit), 0, P(3, &detail))) \
+    X(masu_mesh_bytes, ((void)masu_mesh_bytes(P(0, &m), 1, 1), NO_RESULT))                          \
     X(masu_model_node_find, ((void)masu_model_node_find(P(0, &m), MODEL, P(1, "a")), NO_RESULT))   \
     X(masu_model_node_get, masu_model_node_get(P(0, &m), MODEL, 0, P(1, &node_state), P(2, &detail))) \
     X(masu_model_node_set, masu_model_node_set(P(0, &m), MODEL, 0, P(1, unit), P(2, &detail)))     \
@@ -182,7 +188,7 @@ static const struct {
     CALLS(CALL_ROW)};
 enum { CALL_COUNT = sizeof calls / sizeof *calls };
 
-/* ---- What the header says -------------------------------------------------------------------- */
+/* ---- Declarations of the header -------------------------------------------------------------- */
 
 typedef struct parameter {
     char name[32];
@@ -190,8 +196,8 @@ typedef struct parameter {
 
 typedef struct function {
     char name[64];
-    int has_result;       /* it is a masu_result */
-    int pointers;         /* of its parameters, in order: */
+    int has_result;       /* it returns a masu_result */
+    int pointers;         /* for its parameters, in order: */
     parameter parameter[PARAMETERS_MAX];
 } function;
 
@@ -219,7 +225,7 @@ static int free_header(void **state) {
     return 0;
 }
 
-/* The last word of a declaration, without what stands in brackets behind it. */
+/* The last identifier of a declaration, without an array size in brackets. */
 static void last_word(const char *text, size_t length, char *to, size_t room) {
     const char *bracket = memchr(text, '[', length);
     if (bracket) length = (size_t)(bracket - text);
@@ -231,7 +237,7 @@ static void last_word(const char *text, size_t length, char *to, size_t room) {
     to[length - start] = '\0';
 }
 
-/* The declaration that begins at `at`; where it ends. */
+/* Reads the declaration that begins at `at`; returns its end. */
 static const char *read_function(const char *at, function *f) {
     const char *open = strchr(at, '('), *end = strchr(at, ';');
     assert_true(open && end && open < end);
@@ -310,7 +316,7 @@ static void what_has_nothing_to_tell_says_so(void **state) {
     assert_int_equal(plan.memory.host_bytes, 0);
     uint32_t count = masu_memory_report(&m, rows_of_memory, 2);
     assert_true(count > 2);
-    assert_int_equal(masu_memory_report(&m, NULL, 1000), count); /* counted alone */
+    assert_int_equal(masu_memory_report(&m, NULL, 1000), count); /* counted by itself */
     assert_int_equal(masu_memory_report(NULL, rows_of_memory, 2), 0);
     assert_true(masu_knob_get(NULL, &rung, 0) == 0.0);
     assert_int_equal(masu_knob_accepts(NULL, 0.0), 0);

@@ -1,9 +1,7 @@
-/*
- * test_shared_layout.c: the structs of shaders/shared/masu_shared.h are the same bytes on both
- * sides: member by member, what glslang has decorated in the compiled shaders against offsetof and
- * sizeof in C. A struct that is in no shader, or has a member that the table below does not know,
- * fails.
- */
+/* test_shared_layout.c: the structs of shaders/shared/masu_shared.h have the same bytes on both
+ * sides: the decorations by glslang in the compiled shaders are compared, member by member, with
+ * offsetof and sizeof in C. A struct that is in no shader, or has a member that is missing in the
+ * table below, fails. */
 #define _XOPEN_SOURCE 700
 #include <glob.h>
 #include <setjmp.h>
@@ -181,7 +179,7 @@ static void compare_strides(const spirv_module *m, const layout *l, uint32_t id,
     }
 }
 
-/* Compares every struct of that name which has a layout; counts them. Glslang makes a second type,
+/* Compares every struct with that name that has a layout; counts them. glslang makes a second type,
  * without offsets, for values that are in no buffer. */
 static void compare(const spirv_module *m, const layout *l, const char *path, uint32_t *found,
                     uint32_t *arrays) {
@@ -218,7 +216,7 @@ static void every_shared_struct_is_laid_out_alike_in_c_and_in_every_shader(void 
     }
 }
 
-/* The table above leaves no byte of a struct out. */
+/* The table above covers every byte of a struct. */
 static void every_member_in_c_is_in_the_table(void **state) {
     (void)state;
     for (size_t l = 0; l < LAYOUTS; l++) {
@@ -231,7 +229,7 @@ static void every_member_in_c_is_in_the_table(void **state) {
     }
 }
 
-/* What every device has: 16 KiB of uniforms. */
+/* The minimum of every device: 16 KiB of uniforms. */
 _Static_assert(sizeof(struct masu_frame_uniforms) <= 16384, "uniforms fit any device");
 _Static_assert(sizeof(struct masu_frame_uniforms) % 16 == 0, "uniforms are whole vec4s");
 _Static_assert(MASU_SDF_PARAM_VEC4S * 4 == MASU_SDF_PARAMS_MAX, "each parameter has its place");
