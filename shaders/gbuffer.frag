@@ -58,6 +58,8 @@ float mip_bias;
 const float share_per_pixel = 0.12; /* of push.mip_moving; */
 const float most_shares = 2.3;
 #endif
+#define MASU_MAPS_LIVE
+layout(constant_id = 23) const bool masu_live_maps = false;
 #include "shared/maps.glsl"
 layout(location = 3) in vec2 in_texcoord;
 #endif
@@ -113,7 +115,7 @@ void main()
     mip_bias = min(push.mip_bias + push.mip_moving * min(share_per_pixel * speed, most_shares), max(push.mip_bias, 0.0));
 #endif
     /* Everything that takes derivatives comes before the discard. */
-    float alpha = masu_sample_maps(in_texcoord, s);
+    float alpha = masu_sample_maps(in_texcoord, floor(0.5 * m.more.w), s);
 #ifdef MASU_ATTRIBUTES
     masu_tint(s, in_color.rgb);
 #endif

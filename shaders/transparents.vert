@@ -31,12 +31,14 @@ layout(location = 5) out vec4 out_color;
 #include "shared/look.glsl"
 
 layout(constant_id = 0) const bool tints = false;
+layout(constant_id = 12) const uint tinted_glass = 0u;
 
 /* Meshes with textures and without have edges in common. */
 invariant gl_Position;
 layout(location = 0) out vec3 out_normal;
 layout(location = 1) out vec3 out_rel;
-layout(location = 2) flat out uvec4 out_thing; /* material, flags, layers; which instance */
+/* Material, flags, layers; which instance, with refraction the scale in the upper half. */
+layout(location = 2) flat out uvec4 out_thing;
 
 void main()
 {
@@ -48,6 +50,10 @@ void main()
     masu_pass_look(id);
     out_thing = uvec4(drawn[push.instances + 1u], drawn[push.instances + 2u], drawn[push.instances + 3u],
                       uint(gl_InstanceIndex));
+    if ((tinted_glass & MASU_TINTS_REFRACTED) != 0u) { /* of thickness: the mean square over all directions */
+        float squares = dot(m.row0.xyz, m.row0.xyz) + dot(m.row1.xyz, m.row1.xyz) + dot(m.row2.xyz, m.row2.xyz);
+        out_thing.w |= packHalf2x16(vec2(0.0, masu_sqrt(squares / 3.0)));
+    }
 #ifdef MASU_TEXTURES
     out_texcoord = masu_moved_texcoord(id, texcoord);
 #ifdef MASU_ATTRIBUTES

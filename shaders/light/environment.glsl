@@ -15,7 +15,7 @@
 
 layout(constant_id = 3) const bool masu_has_environment = false;
 /* Frames may rotate and tint it, and change the background (masu_environment of masu.h). */
-layout(constant_id = 23) const bool masu_live_environment = false;
+layout(constant_id = 25) const bool masu_live_environment = false;
 
 vec3 masu_unpack_9995(uint texel)
 {

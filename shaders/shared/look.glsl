@@ -22,7 +22,7 @@ void masu_pass_look(uint id)
     }
 }
 #else
-layout(constant_id = 22) const uint masu_draws_more = 0u; /* MASU_DRAWS_* */
+layout(constant_id = 24) const uint masu_draws_more = 0u; /* MASU_DRAWS_* */
 const bool masu_looks = (masu_draws_more & MASU_DRAWS_LOOKS) != 0u;
 layout(location = 6) flat in vec4 in_tint;
 layout(location = 7) flat in uvec2 in_fade;

@@ -21,7 +21,7 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_DRAWN, std430) readonly buffer
 
 #include "shared/push.glsl"
 
-layout(constant_id = 22) const uint masu_draws_more = 0u; /* MASU_DRAWS_* */
+layout(constant_id = 24) const uint masu_draws_more = 0u; /* MASU_DRAWS_* */
 const bool masu_looks = (masu_draws_more & MASU_DRAWS_LOOKS) != 0u;
 const bool masu_depth_biases = (masu_draws_more & MASU_DRAWS_BIASES) != 0u;
 

@@ -76,7 +76,7 @@ vec4 masu_trace_row(uint traced, uint row)
 
 /* Row of a traced instance's look, if masu_looks: 0 tint, and factor on the emission; 1 offset and scale of texture
  * coordinates. */
-layout(constant_id = 22) const uint masu_draws_more = 0u; /* MASU_DRAWS_* */
+layout(constant_id = 24) const uint masu_draws_more = 0u; /* MASU_DRAWS_* */
 const bool masu_looks = (masu_draws_more & MASU_DRAWS_LOOKS) != 0u;
 vec4 masu_trace_look(uint traced, uint row)
 {

@@ -54,8 +54,10 @@ static uint64_t now(const masu_device *m) {
  *   19  bit 0: rays sample vertex colours; bit 1: maps on the second texture coordinates
  *   20  skins have morph targets           21  opaque materials have lobes (specular colour, sheen,
  *                                              anisotropy)
- *   22  MASU_DRAWS_* of materials.h           23  frames change the environment */
-enum { SPECIAL_COUNT = 24 };
+ *   22  orthographic cameras: few bits of depth are kept as those of 1 - depth
+ *   23  materials may show live textures
+ *   24  MASU_DRAWS_* of materials.h           25  frames change the environment */
+enum { SPECIAL_COUNT = 26 };
 
 static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
                                        VkBool32 constants[SPECIAL_COUNT]) {
@@ -65,7 +67,7 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
         ENTRY(0),  ENTRY(1),  ENTRY(2),  ENTRY(3),  ENTRY(4),  ENTRY(5),  ENTRY(6),
         ENTRY(7),  ENTRY(8),  ENTRY(9),  ENTRY(10), ENTRY(11), ENTRY(12), ENTRY(13),
         ENTRY(14), ENTRY(15), ENTRY(16), ENTRY(17), ENTRY(18), ENTRY(19), ENTRY(20),
-        ENTRY(21), ENTRY(22), ENTRY(23)};
+        ENTRY(21), ENTRY(22), ENTRY(23), ENTRY(24), ENTRY(25)};
 #undef ENTRY
     constants[0] = first;
     constants[1] = m->plan->needs.sky != 0;
@@ -98,9 +100,11 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
     constants[19] = scene->vertex_colors | scene->second_texcoords << 1;
     constants[20] = scene->skin_targets != 0;
     constants[21] = scene->lobes;
-    constants[22] = (m->plan->needs.looks ? MASU_DRAWS_LOOKS : 0u) |
+    constants[22] = scene->flat_lens;
+    constants[23] = m->plan->needs.texture_maps != 0;
+    constants[24] = (m->plan->needs.looks ? MASU_DRAWS_LOOKS : 0u) |
                     (scene->depth_biases ? MASU_DRAWS_BIASES : 0u);
-    constants[23] = m->plan->desc.live_environment != 0;
+    constants[25] = m->plan->desc.live_environment != 0;
     return (VkSpecializationInfo){SPECIAL_COUNT, entries, SPECIAL_COUNT * sizeof *constants,
                                   constants};
 }
@@ -132,16 +136,16 @@ static int draws_polygons(uint32_t pass) {
            g == MASU_GEOMETRY_BLENDED || g == MASU_GEOMETRY_PICK || g == MASU_GEOMETRY_CASTERS;
 }
 
-/* Set 2: the textures of a draw. */
+/* Set 2: the textures of a draw, and live textures. */
 static masu_result create_texture_layout(masu_device *m, masu_detail *detail) {
     if (!m->plan->scene.texture_arrays) return MASU_OK;
-    VkDescriptorSetLayoutBinding bindings[MASU_SLOT_COUNT];
-    for (uint32_t i = 0; i < MASU_SLOT_COUNT; i++) {
+    VkDescriptorSetLayoutBinding bindings[MASU_MAP_COUNT];
+    for (uint32_t i = 0; i < MASU_MAP_COUNT; i++) {
         bindings[i] =
             (VkDescriptorSetLayoutBinding){i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1,
                                            VK_SHADER_STAGE_FRAGMENT_BIT, NULL};
     }
-    return create_set_layout(m, bindings, MASU_SLOT_COUNT, &m->texture_layout, detail);
+    return create_set_layout(m, bindings, MASU_MAP_COUNT, &m->texture_layout, detail);
 }
 
 /* Set 1: reads first, then writes, in the order of the pass's row. */

@@ -47,6 +47,8 @@ static void init_reserve(masu_instances *in, const masu_frame_plan *plan) {
         memset(&in->now[i], 0, sizeof in->now[i]);
         if (plan->needs.velocity) in->previous[i] = in->now[i];
         in->names[i] = in->meshes[i] = 0;
+        if (i >= masu_mesh_instances(plan))
+            in->meshes[i] = masu_own_meshes(plan) + i - masu_mesh_instances(plan);
         in->flags[i] = (uint8_t)(MASU_INSTANCE_HIDDEN | frames_to_write(plan));
         in->hidden_count++;
     }

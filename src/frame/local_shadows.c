@@ -44,7 +44,7 @@ void masu_local_shadows_write_scene(const masu_device *device, const masu_draws 
     if (!plan->needs.local_shadows || !draws->batch_count) return;
     for (uint32_t slot = 0; slot < plan->desc.frames_in_flight; slot++) {
         for (uint32_t face = 0; face < plan->local_faces; face++)
-            (void)masu_draws_write(draws, v, draws_of(device, slot, face));
+            (void)masu_draws_write(draws, v, plan, draws_of(device, slot, face));
     }
 }
 

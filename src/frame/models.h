@@ -21,7 +21,7 @@ typedef struct masu_models {
     masu_placed_model *models;
     masu_node *nodes;
     uint32_t *of_instance; /* [instance]: its model, or MASU_BLOB_NONE; none without models */
-    masu_handles handles; /* of the last plan->reserve.models, which come and go */
+    masu_handles handles; /* the last ones come and go: copies, then meshes of the host */
     uint32_t *lives;
     double (*offsets)[3]; /* with desc.double_positions: added to the translation of rows; else NULL */
     masu_animation animation;

@@ -15,7 +15,8 @@ void masu_picking_alloc(masu_picking *p, masu_arena *arena, const masu_frame_pla
                          plan->needs.picking ? plan->scene.groups : 0, sizeof *p->group_states, 1);
     p->added =
         masu_arena_alloc(arena, "first frames of copies",
-                         plan->needs.picking ? plan->reserve.models : 0, sizeof *p->added, 8);
+                         plan->needs.picking ? plan->reserve.models + plan->reserve.meshes : 0,
+                         sizeof *p->added, 8);
 }
 
 static unsigned char *draws_of(const masu_device *device, uint32_t slot) {
@@ -28,7 +29,8 @@ void masu_picking_write_scene(const masu_device *device, const masu_draws *draws
     const masu_frame_plan *plan = device->plan;
     if (!plan->needs.picking || !draws->batch_count) return;
     for (uint32_t slot = 0; slot < plan->desc.frames_in_flight; slot++)
-        masu_draws_write(draws, v, (VkDrawIndexedIndirectCommand *)(void *)draws_of(device, slot));
+        masu_draws_write(draws, v, plan,
+                         (VkDrawIndexedIndirectCommand *)(void *)draws_of(device, slot));
 }
 
 masu_result masu_picking_read(masu_frame_data *f, masu_detail *detail) {

@@ -44,6 +44,10 @@ struct masu_trace_material masu_trace_material_of(const masu_scene_data *scene,
                                                   const masu_scene_view *v,
                                                   const masu_blob_material *m);
 
+/* The material of a triangle for ray hits, with its flags (shaders/shared/trace.h). */
+uint32_t masu_trace_word_of(const masu_scene_data *scene, const masu_scene_view *v,
+                            uint32_t material);
+
 /* 1: some traced surface is alpha-tested. Selects the shader permutation that tests alpha at
  * hits. */
 uint32_t masu_ray_masks(const masu_scene_data *scene);

@@ -1,6 +1,6 @@
-/* look.c: what the panels change in the scene without baking it: light, parameters of the SDF,
- * lamps, which models are shown, how their clips play. It is applied before each frame, to A and to
- * B, so that it outlives a new renderer. */
+/* look.c: changes of the panels to the scene that need no bake: light, SDF parameters, lamps,
+ * visible models and clips. They are applied to A and B before each frame, so that they outlive a
+ * renderer. */
 #include "view/viewer.h"
 
 #include "scene/blob_section.h"
@@ -53,7 +53,7 @@ void masu_look_reset(masu_viewer *v) {
     }
 }
 
-/* What was changed is not forgotten because a file was saved: light and values by their place. */
+/* A saved file does not reset the changes: parameters and lamps are matched by index. */
 void masu_look_keep(masu_viewer *v) {
     masu_view_look before = v->look;
     masu_look_reset(v);
@@ -91,7 +91,7 @@ static bool pose(masu_renderer *m, masu_model model, masu_playback *p, masu_deta
     return !masu_model_animate(m, model, uses, p->blend > 0.0f ? 2 : 1, detail);
 }
 
-/* Only what differs: a light that is set is looked at anew. */
+/* Sets only changed lights, because the renderer processes each light that is set. */
 static bool light_lamp(masu_viewer *v, masu_renderer *m, uint32_t i) {
     masu_punctual_light light = masu_punctual_light_at(m, i);
     masu_punctual_light_state state;

@@ -12,7 +12,7 @@ static void restart(masu_viewer *v, const char *what) {
     snprintf(v->change, sizeof v->change, "%s", what);
 }
 
-/* A sky that follows from the sun; a scene without one gets it when it is asked for. */
+/* An analytic sky; a scene without one gets it on request. */
 static void sky(masu_viewer *v) {
     masu_view_look *l = &v->look;
     bool map = masu_scene_view_of(&v->scene).environment_map != NULL,

@@ -1,5 +1,5 @@
-/* panel_scene.c: the panel "Scene": parameters of the SDF, models with their clips and variants,
- * and what there is. */
+/* panel_scene.c: the panel "Scene": SDF parameters, models with their clips and variants, and the
+ * scene's counts. */
 #include "view/viewer.h"
 
 #include <stdio.h>

@@ -171,13 +171,13 @@ static bool read_change(const masu_bake_json *at, masu_bake_reader *r,
         "alpha_cutoff",   "occlusion_map",  "specular",    "coat",
         "coat_roughness", "detail",         "match",       "opacity",
         "blend",          "meso",           "name",        "single_sided",
-        "coat_map",       "coat_roughness_map", "coat_smooth", "unlit", "depth_bias",
-        "repeat",
+        "coat_map",       "coat_roughness_map", "coat_smooth", "thickness",
+        "ior",            "unlit",              "depth_bias",  "repeat",
         NULL};
     out->value = masu_bake_default_material();
     out->maps = masu_bake_no_maps();
     masu_bake_vec3 color = {0, 0, 0}, emissive = {0, 0, 0};
-    double roughness = 0, metallic = 0, specular = 0, coat = 0, coat_roughness = 0;
+    double roughness = 0, metallic = 0, specular = 0, coat = 0, coat_roughness = 0, thickness = 0, ior = 1.5;
     const char *match = NULL, *name = NULL;
     bool single = false, even = false, unlit = false, repeat = false;
     double bias = 0;
@@ -188,6 +188,8 @@ static bool read_change(const masu_bake_json *at, masu_bake_reader *r,
         !masu_bake_json_number(at, "specular", 0, 1, &specular) ||
         !masu_bake_json_number(at, "coat", 0, 1, &coat) ||
         !masu_bake_json_number(at, "coat_roughness", 0, 1, &coat_roughness) ||
+        !masu_bake_json_number(at, "thickness", 0, 65504, &thickness) ||
+        !masu_bake_json_number(at, "ior", 1, 1000, &ior) ||
         !read_detail(at, out) || !masu_bake_json_string(at, "match", &match) ||
         !masu_bake_json_string(at, "name", &name) || !masu_bake_json_boolean(at, "single_sided", &single) ||
         !masu_bake_json_boolean(at, "coat_smooth", &even) ||
@@ -215,6 +217,10 @@ static bool read_change(const masu_bake_json *at, masu_bake_reader *r,
     out->value.depth_bias = (float)bias;
     out->value.specular = (float)specular;
     out->value.coat = (float)coat;
+    out->thickness = masu_bake_json_has(at, "thickness");
+    out->ior = masu_bake_json_has(at, "ior");
+    out->value.thickness = (float)thickness;
+    out->value.ior = (float)ior;
     out->value.coat_roughness = (float)coat_roughness;
     masu_bake_store(color, out->value.base_color);
     masu_bake_store(emissive, out->value.emissive);

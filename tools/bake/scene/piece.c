@@ -19,6 +19,7 @@ static bool same_override(const masu_bake_override *a, const masu_bake_override 
            a->specular == b->specular && a->coat == b->coat &&
            a->coat_roughness == b->coat_roughness && x->specular == y->specular &&
            x->coat == y->coat && x->coat_roughness == y->coat_roughness && a->meso == b->meso &&
+           a->thickness == b->thickness && a->ior == b->ior && x->thickness == y->thickness && x->ior == y->ior &&
            x->meso == y->meso && a->opacity == b->opacity && x->opacity == y->opacity &&
            a->detail == b->detail && memcmp(x->detail, y->detail, sizeof x->detail) == 0 &&
            a->unlit == b->unlit && a->repeat == b->repeat && a->depth_bias == b->depth_bias && x->depth_bias == y->depth_bias &&
@@ -64,6 +65,14 @@ static void drop_lobes(const masu_bake_override *o, masu_blob_material *to, masu
     maps->image[MASU_BAKE_LOBE_COLOR] = maps->image[MASU_BAKE_LOBE_STRENGTH] = MASU_BLOB_NONE;
 }
 
+/* The index of refraction also is the reflectance, unless `specular` is given or fixed by a sheen. */
+static void set_ior(masu_blob_material *to, float ior, bool own_specular) {
+    float root = (ior - 1) / (ior + 1);
+    to->ior = ior;
+    bool shines = to->sheen_color[0] > 0 || to->sheen_color[1] > 0 || to->sheen_color[2] > 0;
+    if (!own_specular && !shines) to->specular = root * root / 0.08f;
+}
+
 /* The base colour becomes the emission of a black material of roughness 1, which shaders do not
  * light. */
 static void make_unlit(masu_blob_material *to, masu_bake_maps *maps, bool own[MASU_BAKE_MAPS]) {
@@ -100,6 +109,10 @@ static void apply_override(const masu_bake_override *o, masu_blob_material *to,
     if (o->meso) to->meso = v->meso;
     if (o->detail) memcpy(to->detail, v->detail, sizeof v->detail);
     if (o->opacity) to->opacity = v->opacity;
+    if (o->thickness) to->thickness = v->thickness;
+    if (o->ior) set_ior(to, v->ior, o->specular);
+    if (to->thickness > 0 && !(to->ior >= 1)) to->ior = v->ior; /* the default */
+    if (!(to->thickness > 0)) to->ior = 0;
     if (o->emissive) {
         memcpy(to->emissive, v->emissive, sizeof v->emissive);
         maps->dark = 0;

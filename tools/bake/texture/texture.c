@@ -620,6 +620,12 @@ static void point(maker *m, masu_blob_material *material, const masu_bake_maps *
     }
     if (maps->additive && flags & MASU_MATERIAL_IS_BLEND) flags |= MASU_MATERIAL_IS_ADDITIVE;
     if (maps->tinted && flags & MASU_MATERIAL_IS_BLEND) flags |= MASU_MATERIAL_IS_TINTED;
+    if (material->thickness > 0 &&
+        (!(flags & MASU_MATERIAL_IS_TINTED) || flags & MASU_MATERIAL_HAS_METAL || material->metallic > 0)) {
+        masu_cli_warn("material \"%s\": its thickness is ignored: it is metallic, or not blended as \"tinted\"",
+                      masu_bake_name_text(m->content, material->name));
+        material->thickness = material->ior = 0;
+    }
     if (maps->single) flags |= MASU_MATERIAL_IS_SINGLE;
     if (maps->shadowless) flags |= MASU_MATERIAL_NO_SHADOW;
     if (material->coat > 0 && flags & 1u << MASU_SLOT_NORMAL) {
