@@ -212,11 +212,11 @@ static uint32_t list_drops(effects *e, const race *r, double time) {
                         fall.z * time - r->eye.z};
         for (uint32_t k = 0; k < 3; k++)
             at[k] = remainder(at[k] + RAIN_BOX * noise(i, k), RAIN_BOX);
-        vec p = add((vec){at[0], at[1], at[2]}, r->eye, 1), tail = add(p, step, SHUTTER);
+        vec far = {at[0], at[1], at[2]}, p = add(far, r->eye, 1), tail = add(p, step, SHUTTER);
         const masu_trail_point point = {.position = {p.x, p.y, p.z},
-                                        .half_width = 0.008f,
-                                        .color = {1, 1, 1},
-                                        .opacity = 0.5f};
+                                        .half_width = 0.01f,
+                                        .color = {3, 3, 3}, /* drops show the sky behind you */
+                                        .opacity = (float)clamp(dot(far, far) / 16 - 0.2, 0, 0.5)};
         e->points[i][0] = e->points[i][1] = point;
         memcpy(e->points[i][1].position, (double[3]){tail.x, tail.y, tail.z},
                sizeof point.position);

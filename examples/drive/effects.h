@@ -9,7 +9,7 @@
 #define MARK_CHUNKS 8 /* meshes; the oldest one makes room for new marks */
 #define MARK_QUADS 128 /* per mesh */
 #define PUFFS 320
-#define DROPS 500
+#define DROPS 700
 #define ATLAS 256 /* texels along an edge; 4x4 cells */
 
 typedef struct mark_chunk {

@@ -170,8 +170,8 @@ static masu_result place_car(render *r, int i, const car *c, const track_car *st
         vec at = add(add(add(c->at, road[0], w->ahead), road[2], w->right), road[1], w->radius);
         result = place(r, r->wheels[i][k], (vec[3]){front, cross(right, front), right}, at, start);
     }
-    /* The scene has the emission of a braking car: tail lights have a part of it. */
-    const masu_look look = {.emission = c->braking ? 1 : dusk ? 0.1f : -1};
+    /* The scene has the emission of a braking car by day. At dusk its tail lights are on. */
+    const masu_look look = {.emission = c->braking ? dusk ? 0.15f : 1 : dusk ? 0.03f : -1};
     for (int k = 0; !result && k < 2 && r->brakes[i][k].id; k++) {
         vec from = r->brake_at[i][k], at = add(add(c->at, road[0], from.x), road[2], from.z);
         at = add(at, c->up, start->clearance + from.y);
@@ -206,8 +206,8 @@ static masu_result set_light(render *r, const render_view *view, masu_light *lig
         memset(light->sun_color, 0, sizeof light->sun_color); /* the sun's behind so much air */
     }
     if (view->rain) { /* clouds: little sun, a gray background */
-        float gray = view->dusk ? 0.02f : 0.35f, sun = view->dusk ? 0.01f : 0.1f;
-        light->exposure *= 0.6f;
+        float gray = view->dusk ? 0.02f : 0.2f, sun = view->dusk ? 0.01f : 0.25f;
+        light->exposure *= 0.6f, light->turbidity = 9;
         light->environment.background_intensity = 0.3f;
         for (int k = 0; k < 3; k++)
             light->environment.background_color[k] = gray, light->sun_color[k] = sun;
