@@ -4,8 +4,6 @@
  * images. */
 #include "effects.h"
 
-#include <string.h>
-
 #define SKIDS 0.3       /* car.skid from which a tyre leaves a mark and smokes */
 #define MARK_LENGTH 0.4 /* metres of a quad, at least */
 #define MARK_HALF 0.1   /* half its width */
@@ -74,7 +72,8 @@ void effects_reserve(const masu_scene *scene, masu_reserve *reserve) {
                                           .triangles = 2 * MARK_QUADS};
 }
 
-void effects_reset(effects *e) {
+void effects_reset(effects *e, const masu_scene *scene) {
+    e->has_marks = masu_scene_find(scene, MASU_SCENE_MATERIAL, "skid") >= 0;
     e->atlas_written = false;
     for (int i = 0; i < MARK_CHUNKS; i++)
         e->marks[i].model.id = 0, e->marks[i].dirty = e->marks[i].quads > 0;
@@ -89,11 +88,11 @@ static void add_quad(effects *e, const mark_wheel *from, const mark_wheel *to) {
         c = &e->marks[e->chunk], c->quads = 0;
     }
     const vec corners[4] = {from->left, from->right, to->right, to->left};
-    const vec ups[4] = {from->up, from->up, to->up, to->up};
     for (uint32_t k = 0; k < 4; k++) {
+        vec at = corners[k], up = k < 2 ? from->up : to->up;
         float *p = c->positions[4 * c->quads + k], *n = c->normals[4 * c->quads + k];
-        p[0] = (float)corners[k].x, p[1] = (float)corners[k].y, p[2] = (float)corners[k].z;
-        n[0] = (float)ups[k].x, n[1] = (float)ups[k].y, n[2] = (float)ups[k].z;
+        p[0] = (float)at.x, p[1] = (float)at.y, p[2] = (float)at.z;
+        n[0] = (float)up.x, n[1] = (float)up.y, n[2] = (float)up.z;
     }
     c->quads++, c->dirty = true;
 }
@@ -122,7 +121,7 @@ static masu_result upload_marks(effects *e, masu_renderer *masu, masu_detail *de
     const masu_look look = {.flags = MASU_LOOK_NO_SHADOW | MASU_LOOK_NOT_TRACED};
     for (int i = 0; i < MARK_CHUNKS; i++) {
         mark_chunk *c = &e->marks[i];
-        if (!c->dirty) continue;
+        if (!c->dirty || !e->has_marks) continue;
         const masu_mesh_data data = {.positions = c->positions[0],
                                      .normals = c->normals[0],
                                      .indices = e->indices[0],
@@ -218,8 +217,8 @@ static uint32_t list_drops(effects *e, const race *r, double time) {
                                         .color = {3, 3, 3}, /* drops show the sky behind you */
                                         .opacity = (float)clamp(dot(far, far) / 16 - 0.2, 0, 0.5)};
         e->points[i][0] = e->points[i][1] = point;
-        memcpy(e->points[i][1].position, (double[3]){tail.x, tail.y, tail.z},
-               sizeof point.position);
+        double *end = e->points[i][1].position;
+        end[0] = tail.x, end[1] = tail.y, end[2] = tail.z;
         e->trails[i] = (masu_trail){.points = e->points[i], .point_count = 2,
                                     .flags = MASU_PARTICLE_LIT, .soft = 0.1f, .texture = 1};
         cell_of(15, e->trails[i].uv);

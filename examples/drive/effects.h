@@ -38,7 +38,7 @@ typedef struct effects {
     uint32_t chunk, random, next_puff;
     double due[TRACK_CARS]; /* puffs that a car owes, the fraction of the next one included */
     puff puffs[PUFFS];
-    bool atlas_written;
+    bool has_marks, atlas_written;
     uint8_t atlas[ATLAS * ATLAS * 4];
     masu_particle particles[PUFFS];
     masu_trail_point points[DROPS][2];
@@ -50,7 +50,7 @@ void effects_open(effects *e);
 /* The capacities that the effects need. A scene without a material "skid" gets no marks. */
 void effects_reserve(const masu_scene *scene, masu_reserve *reserve);
 /* A new renderer has nothing yet: the next frames upload everything again. */
-void effects_reset(effects *e);
+void effects_reset(effects *e, const masu_scene *scene);
 void effects_step(effects *e, const race *race, double dt, bool rain);
 /* Uploads what has changed, and adds particles and trails to the frame. */
 masu_result effects_frame(effects *e, masu_renderer *masu, const race *race, bool rain,

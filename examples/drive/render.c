@@ -60,7 +60,7 @@ static bool show_progress(render *r, const masu_progress *p) {
 /* A renderer for the window as large as it is, in the blocks. */
 static bool build(render *r) {
     masu_desc desc = describe(r);
-    effects_reset(&r->effects);
+    effects_reset(&r->effects, &r->scene);
     return !masu_init(&desc, host_block, sizeof host_block, &r->masu, &r->detail) ||
            failed(&r->detail);
 }
@@ -171,7 +171,7 @@ static masu_result place_car(render *r, int i, const car *c, const track_car *st
         result = place(r, r->wheels[i][k], (vec[3]){front, cross(right, front), right}, at, start);
     }
     /* The scene has the emission of a braking car by day. At dusk its tail lights are on. */
-    const masu_look look = {.emission = c->braking ? dusk ? 0.15f : 1 : dusk ? 0.03f : -1};
+    const masu_look look = {.emission = c->braking ? dusk ? 0.6f : 1 : dusk ? 0.06f : -1};
     for (int k = 0; !result && k < 2 && r->brakes[i][k].id; k++) {
         vec from = r->brake_at[i][k], at = add(add(c->at, road[0], from.x), road[2], from.z);
         at = add(at, c->up, start->clearance + from.y);

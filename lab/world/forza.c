@@ -369,8 +369,8 @@ static bool write_models(const track *t, ground *g, const char *torcs, bool is_n
     if (!cars(t, g, torcs, out, road)) return false;
     plain(out, torcs);
     fputs(",\n    {\"mesh\": {\"plane\": {\"size_x\": 1, \"size_z\": 1}}, \"name\": \"skid\", "
-          "\"hidden\": true,\n     \"material\": {\"name\": \"skid\", \"base_color\": [0.012, "
-          "0.012, 0.012], \"specular\": 0, \"roughness\": 1, \"depth_bias\": 0.001}}",
+          "\"hidden\": true,\n     \"material\": {\"name\": \"skid\", \"base_color\": [0.03, "
+          "0.03, 0.03], \"specular\": 0, \"roughness\": 1, \"depth_bias\": 0.001}}",
           out);
     if (is_night) lamp_models(t, out);
     return true;
