@@ -170,8 +170,8 @@ static masu_result place_car(render *r, int i, const car *c, const track_car *st
         vec at = add(add(add(c->at, road[0], w->ahead), road[2], w->right), road[1], w->radius);
         result = place(r, r->wheels[i][k], (vec[3]){front, cross(right, front), right}, at, start);
     }
-    /* The scene has the emission of a braking car by day. At dusk its tail lights are on. */
-    const masu_look look = {.emission = c->braking ? dusk ? 0.6f : 1 : dusk ? 0.06f : -1};
+    /* The scene has the emission of a braking car. At dusk its tail lights are on. */
+    const masu_look look = {.emission = c->braking ? 1 : dusk ? 0.1f : -1};
     for (int k = 0; !result && k < 2 && r->brakes[i][k].id; k++) {
         vec from = r->brake_at[i][k], at = add(add(c->at, road[0], from.x), road[2], from.z);
         at = add(at, c->up, start->clearance + from.y);

@@ -120,7 +120,7 @@ static void brakes(FILE *out, int index, const masu_bake_box *body, masu_bake_ve
                 ",\n    {\"mesh\": {\"box\": {\"size\": [0.16, 0.11, 0.3]}}, \"name\": "
                 "\"car%d/brake%d\", \"moving\": true,\n     \"rotate\": [%.3f, %.3f, %.3f], "
                 "\"translate\": [%.3f, %.3f, %.3f], \"area_light\": false,\n     \"material\": "
-                "{\"base_color\": [0.2, 0.01, 0.01], \"emissive\": [4, 0.06, 0.04]}}",
+                "{\"base_color\": [0.2, 0.01, 0.01], \"emissive\": [2.4, 0.036, 0.024]}}",
                 index, i, angles.x, angles.y, angles.z, p.x, p.y, p.z);
     }
 }

@@ -77,6 +77,32 @@ static void barriers_hold(void **state) {
     }
 }
 
+static void tyres_skid_when_locked_spinning_or_sliding(void **state) {
+    (void)state;
+    race_start(&r, &road);
+    const car *c = &r.cars[0];
+    race_step(&r, &(car_input){.throttle = 0.5}, 1.0 / 60);
+    assert_true(c->skid == 0 && !c->braking);
+    for (int i = 0; i < 15; i++) race_step(&r, &(car_input){.throttle = 1}, 1.0 / 60);
+    assert_true(c->skid > 0.3); /* spinning */
+    for (int i = 0; i < 60; i++) race_step(&r, &(car_input){.throttle = 1}, 1.0 / 60);
+    assert_true(c->skid == 0);
+    race_step(&r, &(car_input){.brake = 0.5}, 1.0 / 60);
+    assert_true(c->skid == 0 && c->braking);
+    race_step(&r, &(car_input){.brake = 1}, 1.0 / 60);
+    assert_true(c->skid > 0.3 && c->braking); /* locked */
+    double across[2];
+    for (int hand = 0; hand < 2; hand++) {
+        race_start(&r, &road);
+        for (int i = 0; i < 90; i++) race_step(&r, &(car_input){.throttle = 1}, 1.0 / 60);
+        for (int i = 0; i < 20; i++)
+            race_step(&r, &(car_input){.steer = -1, .hand = hand}, 1.0 / 60);
+        across[hand] = fabs(dot(c->velocity, cross(c->ahead, c->up)));
+        assert_true((c->skid > 0.3) == (hand == 1));
+    }
+    assert_true(across[1] > 2 * across[0]);
+}
+
 static void grass_is_slow(void **state) {
     (void)state;
     double speed[2];
@@ -152,6 +178,7 @@ int main(void) {
         cmocka_unit_test(ground_rises_from_the_edge_to_the_barrier),
         cmocka_unit_test(a_lap_counts_once),
         cmocka_unit_test(barriers_hold),
+        cmocka_unit_test(tyres_skid_when_locked_spinning_or_sliding),
         cmocka_unit_test(grass_is_slow),
         cmocka_unit_test(the_others_drive_the_lap),
         cmocka_unit_test(the_same_drive_twice),
