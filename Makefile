@@ -75,8 +75,9 @@ $(BUILD)/obj/tests/unit/%.o $(BUILD)/obj/tests/gpu/%.o: FOLDER_FLAGS += -O1 -g1
 endif
 # So does, with the sanitizers, everything that no test spends its time in: a quarter of the time to compile.
 ifeq ($(config),sanitize)
-$(foreach f,examples src tools/bench tools/command tools/conform tools/masu tools/measure tools/view \
-    tools/bake/description tools/bake/import tools/bake/write,$(BUILD)/obj/$(f)/%.o): FOLDER_FLAGS += -O0
+$(foreach f,examples src platform tests/fuzz tests/unit $(addprefix tools/,bench cli command conform masu measure meso \
+    metric settings spirv view) $(addprefix tools/bake/,base build description import write), \
+    $(BUILD)/obj/$(f)/%.o): FOLDER_FLAGS += -O0
 endif
 
 # ---- Rules ---------------------------------------------------------------------------------------
