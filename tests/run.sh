@@ -242,7 +242,7 @@ use() {
     [ ! -e "build/drivers/$1/env" ] || . "build/drivers/$1/env"
     # Compiled shaders stay with the build, not in the home of the user. Those for another width of vectors are not
     # told apart in the driver's cache, and crash.
-    export MESA_SHADER_CACHE_DIR=$PWD/$build/cache/$1${LP_NATIVE_VECTOR_WIDTH:+-$LP_NATIVE_VECTOR_WIDTH}
+    export MESA_SHADER_CACHE_DIR=$cache/$1${LP_NATIVE_VECTOR_WIDTH:+-$LP_NATIVE_VECTOR_WIDTH}
     mkdir -p "$MESA_SHADER_CACHE_DIR"
     if ! MASU_DRIVER_INFO=$("$build/tests/driver_info" 2>&1); then
         reason="it does not start: $MASU_DRIVER_INFO"
@@ -256,6 +256,12 @@ rm -rf "$results"
 mkdir -p "$results/baked"
 # Scenes that tests bake themselves are baked for the first driver, and kept for the next.
 export MASU_BAKED=$PWD/$results/baked
+
+# Scripts draw on the system's driver. The programs with the sanitizers and those of lab/ have the shaders of $MADE, and
+# take what was compiled of them.
+cache=$(realpath -m "$MADE")/cache
+export MESA_SHADER_CACHE_DIR=$cache/system
+mkdir -p "$MESA_SHADER_CACHE_DIR"
 
 # The check that builds the tree anew and runs this again takes half of the processors. It goes on beside the GPU
 # tests, which build nothing, and not beside scripts that do.

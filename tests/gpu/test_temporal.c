@@ -71,7 +71,7 @@ static void find_truth(const char *scene, const float *ball, const masu_light *l
     if (ball) memcpy(last.ball, ball, sizeof last.ball);
     if (light) last.light = *light;
     masu_session_desc d = test_desc(scene, SIZE, SIZE);
-    const uint32_t places = trials(64, 64, 32);
+    const uint32_t places = trials(64, 32, 32);
     assert_ok(masu_picture_open(&d, places, &s, error, sizeof error));
     if (ball) move_instance(&s, "ball", ball[0], ball[1], ball[2], 1.0f);
     masu_frame_desc f = {MASU_FRAME_DESC, .light = light};
