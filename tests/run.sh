@@ -39,7 +39,7 @@ jobs=${MASU_TEST_JOBS:-$(nproc)}
 once=" test_bench test_cli test_gpu_av test_reference test_soak "
 # Of all three drivers the first runs every test. The others leave out what stands here, which LONG=1 runs too.
 # lavapipe 25: decisions of the host; means over many rays and filters; what tests/full/denied.sh runs on it (frame,
-# fixed_memory, governor, ladder, live, upscale); what SwiftShader runs as well (far, faults, output, poison, stiff, trace).
+# fixed_memory, upscale); what SwiftShader runs as well (far, faults, output, poison, stiff, trace).
 not_lavapipe_25=" test_ao test_bounce test_failures test_far test_faults test_fixed_memory test_frame test_governor test_governor_host "
 not_lavapipe_25+="test_host_pass test_ladder test_live test_load test_occlusion test_output test_pick test_poison test_reserve "
 not_lavapipe_25+="test_local_shadows test_resize test_sdf_casters test_shadow test_shadow_frames test_small_lamps test_specular_filters "
