@@ -114,7 +114,7 @@ $(BUILD)/flags: force
 $(BUILD)/obj/%.o: %.c $(BUILD)/flags | $(GENERATED)
 	@mkdir -p $(@D)
 	@echo "  CC      $<"
-	$(V)$(CC) $(ALL_FLAGS) $(FOLDER_FLAGS) -MMD -MP -c $< -o $@
+	$(V)$(reuse) $(CC) $(ALL_FLAGS) $(FOLDER_FLAGS) -MMD -MP -c $< -o $@
 
 # What libraries without an interface for C need. clang's sanitizers are not gcc's. What clang calls virtually it would
 # ask its C++ library about, which programs that clang links are without.

@@ -55,21 +55,21 @@ static const row rows[] = {
     /* A mirror of roughness 0: the reference uses the smallest lobe, whose tail takes 0.8 % of
      * small bright lamps */
     {.scene = "test_reflections", .rays = 32, .ratio = 0.015, .p95 = 0.15},
-    {.scene = "test_skin", .time = 0.5, .animate = true, .rays = 16},
-    {.scene = "test_swing", .time = 0.3, .animate = true, .rays = 16},
+    {.scene = "test_skin", .time = 0.5, .animate = true, .rays = 8},
+    {.scene = "test_swing", .time = 0.3, .animate = true, .rays = 8},
     /* Vertex colours, lit, unlit and fading; emission with the second coordinates; a morph
      * target */
-    {.scene = "reference_attributes", .time = 0.5, .animate = true, .rays = 16},
+    {.scene = "reference_attributes", .time = 0.5, .animate = true, .rays = 8},
     {.scene = "test_foliage"},
     {.scene = "test_texture_mask"},
     {.scene = "test_texture_normals"},
     {.scene = "test_texture_quad"},
     {.scene = "test_town"},
-    {.scene = "test_trace", .rays = 32},
+    {.scene = "test_trace", .rays = 16},
     {.scene = "test_lods"},
     /* Glints of the sun from mirror to mirror: few pixels, half of whose light depends on the 16
      * positions */
-    {.scene = "mirrors", .rays = 32, .ratio = 0.06},
+    {.scene = "mirrors", .rays = 16, .ratio = 0.06},
     {.scene = "probe_open"},
     {.scene = "city"},
     {.scene = "blobs"},
