@@ -28,7 +28,7 @@ TEXT_TESTS   += $(BUILD)/tests/unit/test_shader_gates
 LONG_TESTS   := $(addprefix tests/scripts/,bake_blocks.sh bake_limits.sh bake_probes.sh bake_rays.sh bake_reflected_sdf.sh \
     compare.sh drive.sh meso.sh scene_forms.sh sdfc.sh view.sh)
 # Nor sums and simulated loads, which touch no memory but their own variables.
-SUM_TESTS    := $(addprefix $(BUILD)/tests/unit/test_,brdf camera cull environment governor governor_host governor_loads \
+SUM_TESTS    := $(addprefix $(BUILD)/tests/unit/test_,brdf camera cull device_class environment governor governor_host governor_loads \
     ladder masks sequence sky vndf)
 once_is_enough = $(filter-out $(if $(NESTED),$(TEXT_TESTS) $(LONG_TESTS) $(SUM_TESTS)),$(1))
 UNIT_TESTS   := $(call once_is_enough,$(call test_programs,tests/unit/test_*.c))
