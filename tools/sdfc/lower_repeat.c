@@ -19,6 +19,7 @@ static int lower_in_cell(sdfc_lowering *l, const sdfc_shape *s, sdfc_point q, in
     if (s->cell) {
         if (l->cells == SDFC_CELLS_DEEP) sdfc_fail(l->c, s->token, "expected at most 4 repetitions with names inside each other");
         l->cell[l->cells] = s->cell - 1;
+        l->sector[l->cells] = s->kind == SDFC_KIND_POLAR;
         l->seed[l->cells++] = seed;
     }
     int d = sdfc_lower_shape(l, s->child[0], q);
@@ -56,6 +57,41 @@ static int lower_nearest(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p, in
     }
     sdfc_point at = {q[0], q[1], q[2], {p.offset[0], p.offset[1], p.offset[2]}};
     return lower_in_cell(l, s, at, seed);
+}
+
+/* Whether rays may go from cell to cell: all cells beside the own one keep so far from its border that steps there are
+ * worth more than evaluating them. In a city of boxes, of half a side of a quarter of the period, rays evaluated 53 cells
+ * each instead of 98; of 0.45 periods 69 instead of 125. */
+#define STREET_LEAST 0.05
+
+static bool has_street(const sdfc_lowering *l, const sdfc_shape *s) {
+    const sdfc_facts *child = &l->c->shapes[s->child[0]].facts;
+    if (!(l->street > 0) || !(l->stretch > 0) || !(child->growth > 0) || l->surface) return false;
+    for (int i = 0; i < 3; i++) {
+        double h = fmax(fabs(child->box.low[i]), fabs(child->box.high[i]));
+        double period = l->c->exprs[s->number[i]].low;
+        if (s->extra[i] > 2 || (s->extra[i] == 2 && !(h <= (0.5 - STREET_LEAST) * period))) return false;
+    }
+    return true;
+}
+
+/* The least value of the cells beside the own one: that of the nearest on each axis, whose shape ends `h` from its middle and,
+ * on the axes that do not repeat, with its box. */
+static int least_beside(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p, int cell[3][SDFC_CELLS_MAX], int growth) {
+    const sdfc_box *box = &l->c->shapes[s->child[0]].facts.box;
+    int at[3] = {p.x, p.y, p.z}, beside = 0, off[2] = {sdfc_literal(l, 0), 0}, count = 0;
+    off[1] = off[0];
+    for (int i = 0; i < 3; i++) {
+        if (s->extra[i] == 2) {
+            double h = fmax(fabs(box->low[i]), fabs(box->high[i]));
+            int side = OP(l, sub, OP(l, abs, cell[i][1]), sdfc_literal(l, h));
+            beside = beside ? OP(l, min, beside, side) : side;
+        } else if (s->extra[i] == 0 && isfinite(box->low[i]) && isfinite(box->high[i])) {
+            int from = OP(l, sub, at[i], sdfc_relative(l, &p, i, (box->low[i] + box->high[i]) / 2));
+            off[count++] = OP(l, sub, OP(l, abs, from), sdfc_literal(l, (box->high[i] - box->low[i]) / 2));
+        }
+    }
+    return OP(l, beside_cell, beside, off[0], off[1], growth);
 }
 
 int sdfc_lower_repeat(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p) {
@@ -125,13 +161,20 @@ int sdfc_lower_repeat(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p) {
     reach[3] = sdfc_literal(l, l->stretch > 0 ? child->growth : 0);
     reach[4] = sdfc_literal(l, s->extra[11]);
     reach[5] = sdfc_literal(l, child->lipschitz * fmax(l->stretch, 1e-30));
-    int names[9];
+    int names[9], street[2] = {0};
+    bool streets = has_street(l, s);
     add_names(l, s, in, names);
+    if (streets) {
+        street[0] = least_beside(l, s, p, cell, reach[3]);
+        street[1] = sdfc_literal(l, fmax(l->street, child->lipschitz));
+    }
     sdfc_instr *call = sdfc_add_instr(l, l->surface ? SDFC_CALL_NEAREST : SDFC_CALL_MIN);
     call->aux = function;
     call->points = 1 << bits;
     call->named = s->cell != 0;
     call->around = (int16_t)l->cells;
+    call->street = streets;
+    memcpy(call->operand + 27, street, sizeof street);
     memcpy(call->operand + 18, names, sizeof names);
     memcpy(call->operand + 12, reach, sizeof reach);
     memcpy(call->operand, cell, sizeof cell);
@@ -168,18 +211,22 @@ static sdfc_point fold_sectors(sdfc_lowering *l, int count, sdfc_point p) {
     return p;
 }
 
-/* The least of a function's values at two points of the same y. */
-static int least_of_two(sdfc_lowering *l, int function, sdfc_point q, sdfc_point r, bool nearest) {
+/* The least of a function's values at two points of the same y. `sectors`: theirs, if the function takes it. */
+static int least_of_two(sdfc_lowering *l, const sdfc_shape *s, int function, sdfc_point q, sdfc_point r, const int *sectors,
+                        bool nearest) {
     int none = sdfc_literal(l, 0);
+    if (l->cells > 3) sdfc_fail(l->c, s->token, "expected at most 4 repetitions with names inside each other");
     sdfc_instr *call = sdfc_add_instr(l, nearest ? SDFC_CALL_NEAREST : SDFC_CALL_MIN);
     *call = (sdfc_instr){.op = nearest ? SDFC_CALL_NEAREST : SDFC_CALL_MIN,
-                         .around = (int16_t)(l->cells < 3 ? l->cells : 3),
+                         .around = (int16_t)l->cells,
+                         .named = s->cell ? 2 : 0,
                          .aux = function,
                          .points = 2,
                          .select = {1, 0, 1},
                          .bits = {1, 0, 1},
                          .operand = {q.x, r.x, q.x, q.x, q.y, q.y, q.y, q.y, q.z, r.z, q.z, q.z}};
     for (int i = 12; i < 18; i++) call->operand[i] = none;
+    for (int i = 0; i < 2 && s->cell; i++) call->operand[18 + i] = sectors[i];
     for (int i = 0; i < call->around; i++) call->operand[24 + i] = l->seed[i];
     return sdfc_last_variable(l);
 }
@@ -194,7 +241,7 @@ static sdfc_point nearer(sdfc_lowering *l, int second, sdfc_point a, sdfc_point 
 /* The copies next to +x, as many as the analysis found. */
 static int lower_copies(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p) {
     const double pi = 3.14159265358979323846;
-    int copies = (int)s->extra[11], d = 0;
+    int copies = (int)s->extra[11], d = 0, number = 0;
     sdfc_point best = p;
     if (s->extra[0] == 5) p = fold_sectors(l, s->whole[0], p);
     double stretch = l->stretch;
@@ -203,28 +250,38 @@ static int lower_copies(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p) {
     l->stretch = stretch;
     for (int i = 0; i < copies; i += 2) {
         sdfc_point q[2] = {p, p};
+        int sectors[2] = {0};
         for (int k = 0; k < 2 && i + k < copies; k++) { /* sectors 0, 1, -1, 2, ... */
             int n = i + k, sector = n % 2 ? (n + 1) / 2 : -n / 2;
             double a = 2 * pi * sector / s->whole[0];
             int cosine = sdfc_literal(l, cos(a)), sine = sdfc_literal(l, sin(a)),
                 minus = sdfc_literal(l, -sin(a));
+            if (s->cell) sectors[k] = sdfc_literal(l, (sector + s->whole[0]) % s->whole[0]);
             if (!sector) continue;
             q[k].x = OP(l, dot2, p.x, p.z, cosine, sine);
             q[k].z = OP(l, dot2, p.x, p.z, minus, cosine);
         }
-        if (i + 1 == copies) q[1] = q[0];
-        int e = least_of_two(l, function, q[0], q[1], false);
+        if (i + 1 == copies) {
+            q[1] = q[0];
+            sectors[1] = sectors[0];
+        }
+        int e = least_of_two(l, s, function, q[0], q[1], sectors, false);
         if (l->surface) {
-            sdfc_point at = nearer(l, least_of_two(l, function, q[0], q[1], true), q[0], q[1]);
-            best = i ? nearer(l, OP(l, less, e, d), best, at) : at;
+            int second = least_of_two(l, s, function, q[0], q[1], sectors, true), closer = i ? OP(l, less, e, d) : 0;
+            sdfc_point at = nearer(l, second, q[0], q[1]);
+            best = i ? nearer(l, closer, best, at) : at;
+            if (s->cell) {
+                int own = OP(l, select, second, sectors[1], sectors[0]);
+                number = i ? OP(l, select, closer, own, number) : own;
+            }
         }
         d = i ? OP(l, min, d, e) : e;
     }
-    return l->surface ? sdfc_lower_shape(l, s->child[0], best) : d;
+    return l->surface ? lower_in_cell(l, s, best, number) : d;
 }
 
 int sdfc_lower_polar(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p) {
-    if (s->extra[0] == 0) return sdfc_lower_shape(l, s->child[0], p);
+    if (s->extra[0] == 0) return lower_in_cell(l, s, p, s->cell ? sdfc_literal(l, 0) : 0);
     if (s->extra[0] == 1) return sdfc_lower_whole(l, s->child[0], fold_sectors(l, s->whole[0], p));
     if (s->extra[0] >= 4) return lower_copies(l, s, p);
     int sector = sdfc_literal(l, 6.283185307179586 / s->whole[0]);
@@ -237,8 +294,10 @@ int sdfc_lower_polar(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p) {
     l->stretch = 0;
     int function = sdfc_child_function(l, s->child[0], s->extra[10] != 0, s, p.offset);
     l->stretch = stretch;
-    int d = least_of_two(l, function, q, r, l->surface);
-    if (l->surface) return sdfc_lower_shape(l, s->child[0], nearer(l, d, q, r));
+    int sectors[2] = {0}, count = sdfc_literal(l, s->whole[0]), inverse = sdfc_literal(l, s->whole[0] / 6.283185307179586);
+    for (int k = 0; k < 2 && s->cell; k++) sectors[k] = OP(l, sector_number, k ? b : a, inverse, count);
+    int d = least_of_two(l, s, function, q, r, sectors, l->surface);
+    if (l->surface) return lower_in_cell(l, s, nearer(l, d, q, r), s->cell ? OP(l, select, d, sectors[1], sectors[0]) : 0);
     if (s->extra[0] == 2) return d;
     int edge = OP(l, mul, OP(l, len2, p.x, p.z), sdfc_literal(l, s->extra[3] * s->facts.lipschitz));
     return sdfc_capped(l, d, edge, &s->facts, p);
