@@ -171,7 +171,7 @@ static bool read_change(const masu_bake_json *at, masu_bake_reader *r,
         "alpha_cutoff",   "occlusion_map",  "specular",    "coat",
         "coat_roughness", "detail",         "match",       "opacity",
         "blend",          "meso",           "name",        "single_sided",
-        "coat_map",       "coat_roughness_map", "coat_smooth",
+        "coat_map",       "coat_roughness_map", "coat_smooth", "detail_color",
         NULL};
     out->value = masu_bake_default_material();
     out->maps = masu_bake_no_maps();
@@ -189,6 +189,7 @@ static bool read_change(const masu_bake_json *at, masu_bake_reader *r,
         !read_detail(at, out) || !masu_bake_json_string(at, "match", &match) ||
         !masu_bake_json_string(at, "name", &name) || !masu_bake_json_boolean(at, "single_sided", &single) ||
         !masu_bake_json_boolean(at, "coat_smooth", &even) ||
+        !masu_bake_json_boolean(at, "detail_color", &out->color_repeats) ||
         !masu_bake_json_vec3(at, "emissive", 0, 65504, &emissive) || !read_meso(at, r, change) ||
         !read_maps(at, r, change) || !read_alpha(at, out) || !read_blend(at, out)) {
         return false;
@@ -202,6 +203,7 @@ static bool read_change(const masu_bake_json *at, masu_bake_reader *r,
     out->coat_roughness = masu_bake_json_has(at, "coat_roughness");
     out->single = masu_bake_json_has(at, "single_sided");
     out->maps.single = single;
+    out->detail_color = masu_bake_json_has(at, "detail_color");
     out->relief_of = masu_bake_json_has(at, "coat_smooth");
     out->maps.relief_of = even ? MASU_BAKE_RELIEF_OF_BASE : MASU_BAKE_RELIEF_OF_BOTH;
     out->value.specular = (float)specular;
