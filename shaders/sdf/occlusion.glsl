@@ -107,8 +107,7 @@ float least_ratio(lit_point p, vec3 towards, float tangent, inout uint evals)
             break;
         }
         bool usable;
-        /* Beyond that the disc is free. A ray that is long on its way takes the longest steps. */
-        MASU_EXACT_BELOW(2u * uint(i) < push.steps ? 2.0 * max(tangent * t, p.offset) / frame.sdf_min.w : 1e30)
+        MASU_EXACT_BELOW(2.0 * max(tangent * t, p.offset) / frame.sdf_min.w) /* beyond that the disc is free */
         float f = field_at(start + towards * t, usable);
         evals++;
         /* Close to the start the surface that the ray leaves is still the nearest; in a crease the
