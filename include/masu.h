@@ -87,8 +87,8 @@
  *                                         second renderer in other blocks (masu_load)
  *
  * LIFETIMES
- *    blob                                          until masu_load has returned MASU_OK
- *    masu_desc, its arrays, pipeline_cache         during the call
+ *    blob                     until masu_load (and masu_init_step, if used) has returned MASU_OK
+ *    masu_desc, its arrays    during the call; pipeline_cache also during masu_init_step
  *    device, allocator, log, clock, source view, masu_pipelines                 until masu_destroy
  *    target images and views                       until masu_resize or masu_destroy
  *    strings that functions return                 static, or in the blob (masu_scene_name)
@@ -254,6 +254,23 @@ MASU_API MASU_MUST_USE masu_result masu_init(const masu_desc *desc, void *block,
                                              uint64_t block_bytes, masu_renderer **out,
                                              masu_detail *detail);
 
+typedef struct masu_progress {
+    uint32_t done, total; /* steps */
+    uint32_t rungs;       /* bit n: frames may use rung n */
+} masu_progress;
+
+/* With desc.init_in_steps: creates the pipelines of one pass, or records the frames of one rung,
+ * for a loading bar without a thread. The time of a step is that of its pipelines in the driver.
+ * Calls of masu_load may come before, between or after. Once a rung is in progress->rungs, and
+ * masu_load has finished, masu_frame renders in it while the steps go on; MASU_RUNG_AUTO uses those
+ * rungs only. To cancel, call masu_destroy. Blob and vulkan.pipeline_cache must be valid until
+ * MASU_OK. `progress` may be NULL; an error sets it too.
+ *   MASU_INCOMPLETE   call again
+ *   MASU_OK           all rungs are ready; without init_in_steps at the first call
+ *   MASU_ERROR_VULKAN, _DEVICE_LOST   only masu_destroy is of use */
+MASU_API MASU_MUST_USE masu_result masu_init_step(masu_renderer *renderer, masu_progress *progress,
+                                                  masu_detail *detail);
+
 /* Copies the scene to the device.
  *   MASU_INCOMPLETE   submit commands->buffer, wait for it, call again
  *   MASU_OK           finished; there is nothing to submit
@@ -295,7 +312,7 @@ MASU_API MASU_MUST_USE masu_result masu_load(masu_renderer *renderer, masu_comma
  *                         rung, target, camera, light or a parameter is out of range or not finite;
  *                         MASU_RUNG_AUTO without a governor; an array is NULL with a count above 0
  *   MASU_ERROR_LIMIT      more particles, decals or lines than desc.reserve
- *   MASU_ERROR_STATE      masu_load has not finished
+ *   MASU_ERROR_STATE      masu_load has not finished; the rung is not ready (masu_init_step)
  *   MASU_ERROR_VULKAN, _DEVICE_LOST   as masu_resize, after it
  * After an error nothing has been written, and the frame number has not advanced. */
 MASU_API MASU_MUST_USE masu_result masu_frame(masu_renderer *renderer, const masu_frame_desc *frame,
@@ -732,6 +749,10 @@ typedef struct masu_desc {
      * staging buffer, if there is one, is no larger than this. 0: steps of at most 4 MiB through
      * the staging buffer; host-visible memory is written in one step. */
     uint64_t load_step;
+    /* Flag: masu_init returns before it has created pipelines and recorded frames;
+     * masu_init_step then does. Costs host memory for the largest shader, at most 256 KiB. */
+    uint32_t init_in_steps;
+    uint32_t first_rung; /* the rung that is ready first; the others follow by number */
     masu_governor_desc governor;
     masu_debug debug; /* for tests and studies (masu_study.h) */
     masu_deny deny;   /* device features to leave unused (masu_study.h) */

@@ -7,6 +7,7 @@
 #include "device/device_objects.h"
 #include "device/load.h"
 #include "device/offers.h"
+#include "device/prepare.h"
 #include "device/ray_query.h"
 #include "device/recordings.h"
 #include "device/shaders.h"
@@ -357,6 +358,34 @@ masu_result masu_check_lost(const masu_renderer *m, masu_detail *detail) {
     return result;
 }
 
+static int is_prepared(const masu_renderer *m) { return m->device.steps_done == m->device.steps; }
+
+/* The host may free the blob after the last step of masu_init_step and masu_load. */
+static void forget_blob(masu_renderer *m) {
+    if (m->loaded && is_prepared(m)) m->plan.scene.blob = NULL;
+}
+
+static masu_result check_prepared(masu_renderer *m) {
+    if (!m->broken) return masu_check_lost(m, &m->error);
+    return masu_fail(&m->error, MASU_ERROR_STATE, "masu_init_step", m->device.steps,
+                     m->device.steps_done,
+                     "masu_init_step has failed: only masu_destroy is of use");
+}
+
+masu_result masu_init_step(masu_renderer *m, masu_progress *progress, masu_detail *detail) {
+    if (!m) return masu_finish_null(m, "renderer", detail);
+    masu_result result = check_prepared(m);
+    if (!result && !is_prepared(m)) {
+        result = masu_prepare_step(&m->device, &m->draws, &m->error);
+        m->lost |= result == MASU_ERROR_DEVICE_LOST;
+        m->broken = result < 0;
+        forget_blob(m);
+    }
+    if (progress)
+        *progress = (masu_progress){m->device.steps_done, m->device.steps, m->device.ready};
+    return result == MASU_INCOMPLETE ? result : masu_finish(m, result, detail);
+}
+
 masu_result masu_load(masu_renderer *m, masu_commands *commands, masu_detail *detail) {
     if (!m || !commands) return masu_finish_null(m, "commands", detail);
     memset(commands, 0, sizeof *commands);
@@ -370,7 +399,7 @@ masu_result masu_load(masu_renderer *m, masu_commands *commands, masu_detail *de
     commands->load_left = masu_load_bytes(&m->device) - m->device.load_done;
     if (step.more) return MASU_INCOMPLETE;
     m->loaded = 1;
-    m->plan.scene.blob = NULL; /* the host may free the blob now */
+    forget_blob(m);
     return MASU_OK;
 }
 
@@ -378,7 +407,8 @@ masu_result masu_load(masu_renderer *m, masu_commands *commands, masu_detail *de
 
 static masu_result check_frame(masu_renderer *m, const masu_frame_desc *frame) {
     const masu_desc *d = &m->plan.desc;
-    if (m->lost) return masu_check_lost(m, &m->error);
+    masu_result result = check_prepared(m);
+    if (result) return result;
     if (!m->loaded) {
         return masu_fail(&m->error, MASU_ERROR_STATE, "masu_load", 1, 0,
                          "masu_frame was called before masu_load had returned MASU_OK");
@@ -391,6 +421,14 @@ static masu_result check_frame(masu_renderer *m, const masu_frame_desc *frame) {
         return masu_fail(&m->error, MASU_ERROR_ARGUMENT, "rung", d->rung_count - 1, frame->rung,
                          "rung %u does not exist, the last one is %u", frame->rung,
                          d->rung_count - 1);
+    }
+    uint32_t rung = frame->rung == MASU_RUNG_AUTO ? 0 : frame->rung;
+    uint32_t ready = masu_ready_rung(&m->device, rung);
+    if (ready == UINT32_MAX || (frame->rung != MASU_RUNG_AUTO && ready != rung)) {
+        return masu_fail(&m->error, MASU_ERROR_STATE, "masu_init_step", m->device.steps,
+                         m->device.steps_done,
+                         "rung %u is not ready: masu_init_step has completed %u of %u steps", rung,
+                         m->device.steps_done, m->device.steps);
     }
     uint32_t viewports = d->viewport_count ? d->viewport_count : 1;
     if (frame->viewport >= viewports) {
@@ -492,6 +530,11 @@ masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_comm
     if (m->governor) governor = *m->governor;
     masu_result result = check_frame(m, frame);
     if (!result && m->governor) masu_governed_pick(m, &f);
+    uint32_t given = frame->rung;
+    if (!result && !is_prepared(m)) { /* as if the host had selected a rung that is ready */
+        uint32_t ready = masu_ready_rung(&m->device, f.desc.rung);
+        if (ready != f.desc.rung) f.desc.rung = given = ready;
+    }
     if (!result) result = record_missing(m, &f);
     if (!result) result = m->plan.desc.scene ? masu_write_frame(m, &f) : check_plain_frame(m, &f);
     if (result) { /* the next attempt needs the times of this slot again */
@@ -507,7 +550,7 @@ masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_comm
                                      .viewport = f.desc.viewport,
                                      .render = {rp->render_width, rp->render_height},
                                      .exclude_from_timing = f.desc.exclude_from_timing != 0});
-    if (m->governor) masu_governed_begin(m, &f, frame->rung);
+    if (m->governor) masu_governed_begin(m, &f, given);
     if (m->plan.desc.scene) masu_frame_view_write(&m->view, &f);
     const VkCommandBuffer *parts = pick_recording(m, &f);
     *commands = (masu_commands){.buffer = parts[0],

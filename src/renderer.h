@@ -43,7 +43,9 @@
 
 struct masu_renderer {
     uint32_t cookie;
-    int loaded, lost; /* lost: a call found the device lost; only masu_destroy is of use */
+    int loaded;
+    int lost, broken; /* a call found the device lost; masu_init_step failed: only masu_destroy is
+                         of use */
     uint32_t rung;    /* of the frame that was returned last; 0: there was none */
     masu_arena arena; /* rows for the report; its base is this struct */
     masu_detail error;

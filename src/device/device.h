@@ -59,6 +59,7 @@ typedef struct masu_device {
     VkPipeline emitting[2 * MASU_CULLED_COUNT];
     VkSampler samplers[MASU_SAMPLER_COUNT]; /* by masu_sampler_of; only those in use */
     uint64_t pipeline_ns[MASU_PASS_COUNT];
+    uint32_t *code_room; /* masu_code_room bytes for unpacking shaders; NULL: a mapped block */
     uint64_t *pool_keys; /* pool.c: MASU_POOL_KEYS keys; empty without a pool */
 
     /* descriptors.c */
@@ -76,6 +77,11 @@ typedef struct masu_device {
      * recorded */
     uint8_t *recorded;
     VkQueryPool queries;     /* [flight][MASU_PASS_COUNT + 1] */
+
+    /* prepare.c */
+    uint8_t made[MASU_PASS_COUNT]; /* forms of the pass whose pipelines exist */
+    uint32_t ready;                /* bit n: rung n is recorded */
+    uint32_t steps, steps_done;
 
     /* load.c */
     VkCommandBuffer *loads;           /* one per staging chunk */

@@ -5,8 +5,10 @@
 #include "device/load.h"
 #include "device/pipelines.h"
 #include "device/pool.h"
+#include "device/prepare.h"
 #include "device/ray_query.h"
 #include "device/recordings.h"
+#include "device/shaders.h"
 
 void masu_device_alloc(masu_device *m, masu_arena *arena, const masu_frame_plan *plan) {
     uint64_t frames = (uint64_t)plan->desc.frames_in_flight * plan->recordings * plan->parts;
@@ -23,6 +25,9 @@ void masu_device_alloc(masu_device *m, masu_arena *arena, const masu_frame_plan 
     m->pool_keys =
         masu_arena_alloc(arena, "pipeline keys", plan->desc.vulkan.pipelines ? MASU_POOL_KEYS : 0,
                          sizeof *m->pool_keys, 8);
+    uint64_t room = plan->desc.init_in_steps ? masu_code_room(plan) : 0;
+    m->code_room = masu_arena_alloc(arena, "shader code", room, 1, 8);
+    if (!room) m->code_room = NULL;
     m->ray_meshes =
         masu_arena_alloc(arena, "bottom levels", plan->needs.query ? plan->scene.meshes : 0,
                          sizeof *m->ray_meshes, 8);
@@ -44,8 +49,13 @@ masu_result masu_device_create(masu_device *m, const masu_draws *draws, masu_det
     masu_result result = masu_bind_memory(m, detail);
     if (!result) result = masu_create_views(m, detail);
     if (!result) result = masu_ray_create(m, detail);
-    if (!result) result = masu_create_pipelines(m, detail);
-    if (!result) result = masu_record(m, draws, detail);
+    if (!result) result = masu_create_layouts(m, detail);
+    if (!result) result = masu_record_begin(m, detail);
+    if (!result) masu_prepare_begin(m);
+    if (!result && !m->plan->desc.init_in_steps) {
+        do result = masu_prepare_step(m, draws, detail);
+        while (result == MASU_INCOMPLETE);
+    }
     return result;
 }
 

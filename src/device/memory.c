@@ -369,7 +369,7 @@ static void layout_blocks(const masu_vk *vk, masu_frame_plan *plan) {
         if (role == MASU_ROLE_DEVICE) place_images(vk, plan, block);
     }
     masu_block_plan *block = &plan->blocks[masu_code_role(plan)];
-    uint64_t room = masu_code_room(plan);
+    uint64_t room = plan->desc.init_in_steps ? 0 : masu_code_room(plan);
     if (!block->bytes && room) add_to_block(block, sizeof(uint32_t), UINT32_MAX);
     if (block->bytes < room) block->bytes = room;
 }

@@ -15,12 +15,12 @@
 
 #include <string.h>
 
-/* Unpacks the shader into a mapped block that nothing else uses yet. The driver keeps its own copy,
- * so the module's memory can be used again. */
+/* Unpacks the shader into a mapped block that nothing else uses yet, or into host memory if frames
+ * may use the block already. The driver keeps its own copy, so the memory can be used again. */
 static masu_result create_module(masu_device *m, masu_code code, VkShaderModule *module,
                                  masu_detail *detail) {
-    uint32_t role = masu_code_role(m->plan);
-    const uint32_t *words = masu_code_read(&code, (uint32_t *)(void *)m->mapped[role]);
+    uint32_t *mapped = (uint32_t *)(void *)m->mapped[masu_code_role(m->plan)];
+    const uint32_t *words = masu_code_read(&code, m->code_room ? m->code_room : mapped);
     if (!words)
         return masu_fail(detail, MASU_ERROR_DEVICE, "shader", code.bytes, 0,
                          "a shader of %llu bytes cannot be unpacked",
@@ -212,8 +212,8 @@ static void name_form(const masu_device *m, uint32_t pass, int last, VkPipeline 
     masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(pipeline), name);
 }
 
-static masu_result create_compute_form(masu_device *m, uint32_t pass, int last, VkPipeline *out,
-                                       masu_detail *detail) {
+static masu_result create_compute(masu_device *m, uint32_t pass, int last, VkPipeline *out,
+                                  masu_detail *detail) {
     VkShaderModule module = VK_NULL_HANDLE;
     VkBool32 constants[SPECIAL_COUNT];
     VkSpecializationInfo special = specialise(m, m->plan->desc.debug.counters != 0, constants);
@@ -239,19 +239,6 @@ static masu_result create_compute_form(masu_device *m, uint32_t pass, int last, 
     masu_pool_add(m, out, key);
     name_form(m, pass, last, *out);
     return MASU_OK;
-}
-
-/* Creates the pipelines that the rungs need: for the pass as the last one, otherwise, or both. */
-static masu_result create_compute(masu_device *m, uint32_t pass, masu_detail *detail) {
-    masu_result result = MASU_OK;
-    for (uint32_t r = 0; r < m->plan->desc.rung_count && !result; r++) {
-        const masu_rung_plan *rp = &m->plan->rungs[r];
-        if (!masu_has_pass(&rp->active, pass)) continue;
-        int last = masu_comes_last(rp, pass);
-        VkPipeline *out = last ? &m->last[pass] : &m->pipelines[pass];
-        if (!*out) result = create_compute_form(m, pass, last, out, detail);
-    }
-    return result;
 }
 
 /* ---- Graphics -------------------------------------------------------------------------------- */
@@ -594,8 +581,6 @@ static masu_result create_masked_picks(masu_device *m, uint32_t pass, masu_detai
 static masu_result create_graphics(masu_device *m, uint32_t pass, masu_detail *detail) {
     masu_geometry geometry = masu_passes[pass].geometry;
     int textures = m->texture_layout != VK_NULL_HANDLE;
-    /* All cascades use the objects of the first one. */
-    if (geometry == MASU_GEOMETRY_CASCADE && pass != MASU_PASS_CASCADE_0) return MASU_OK;
     masu_result result = create_render_pass(m, pass, detail);
     /* Without polygons the pass only clears its attachments. */
     if (geometry == MASU_GEOMETRY_POLYGONS && !m->plan->needs.raster) return result;
@@ -669,7 +654,7 @@ static masu_result create_sampler(masu_device *m, uint32_t number, const VkSampl
     return MASU_OK;
 }
 
-masu_result masu_create_pipelines(masu_device *m, masu_detail *detail) {
+masu_result masu_create_layouts(masu_device *m, masu_detail *detail) {
     VkSamplerCreateInfo nearest = {.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
                                    .magFilter = VK_FILTER_NEAREST,
                                    .minFilter = VK_FILTER_NEAREST,
@@ -683,15 +668,18 @@ masu_result masu_create_pipelines(masu_device *m, masu_detail *detail) {
     if (!result) result = create_texture_layout(m, detail);
     if (!result) result = create_samplers(m, detail);
     for (uint32_t p = 0; p < MASU_PASS_COUNT && !result; p++) {
-        if (masu_passes[p].kind != MASU_PASS_GRAPHICS && masu_passes[p].kind != MASU_PASS_COMPUTE)
-            continue;
-        result = create_pass_layout(m, p, detail);
-        if (result || !m->layouts[p]) continue;
-        int graphics = masu_passes[p].kind == MASU_PASS_GRAPHICS;
-        result = graphics ? create_graphics(m, p, detail) : create_compute(m, p, detail);
-        if (!result && graphics)
-            masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(m->pipelines[p]),
-                      masu_passes[p].name);
+        if (masu_passes[p].kind == MASU_PASS_GRAPHICS || masu_passes[p].kind == MASU_PASS_COMPUTE)
+            result = create_pass_layout(m, p, detail);
     }
+    return result;
+}
+
+masu_result masu_create_pipelines(masu_device *m, uint32_t pass, int last, masu_detail *detail) {
+    if (masu_passes[pass].kind == MASU_PASS_COMPUTE)
+        return create_compute(m, pass, last, last ? &m->last[pass] : &m->pipelines[pass], detail);
+    masu_result result = create_graphics(m, pass, detail);
+    if (!result)
+        masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(m->pipelines[pass]),
+                  masu_passes[pass].name);
     return result;
 }

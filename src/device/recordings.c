@@ -1,6 +1,6 @@
 /* recordings.c: the list of recordings. There is one per frame in flight, viewport, rung and
  * target. If a rung renders some shadow cascades less often than every frame, there is also one
- * variant per set of cascades. masu_init records all; after masu_resize the first frame that needs
+ * variant per set of cascades. prepare.c records all; after masu_resize the first frame that needs
  * a recording records it. Recordings are submitted many times. */
 #include "device/recordings.h"
 
@@ -92,7 +92,12 @@ static masu_result record_rung(masu_device *m, const masu_draws *draws, uint32_t
     return result;
 }
 
-masu_result masu_record(masu_device *m, const masu_draws *draws, masu_detail *detail) {
+masu_result masu_record_rung(masu_device *m, const masu_draws *draws, uint32_t rung,
+                             masu_detail *detail) {
+    return record_rung(m, draws, rung, 0, detail);
+}
+
+masu_result masu_record_begin(masu_device *m, masu_detail *detail) {
     const masu_desc *d = &m->plan->desc;
     masu_result result = masu_create_sets(m, detail);
     if (!result) result = masu_create_pass_sets(m, detail);
@@ -100,8 +105,6 @@ masu_result masu_record(masu_device *m, const masu_draws *draws, masu_detail *de
     if (!result)
         result = create_command_buffers(
             m, d->frames_in_flight * m->plan->recordings * m->plan->parts, detail);
-    for (uint32_t r = 0; r < d->rung_count && !result; r++)
-        result = record_rung(m, draws, r, 0, detail);
     return result ? result : masu_load_record(m, detail);
 }
 
@@ -109,7 +112,7 @@ masu_result masu_record_again(masu_device *m, const masu_draws *draws, uint32_t 
                               masu_detail *detail) {
     memset(m->recorded, 0, (size_t)m->plan->desc.frames_in_flight * m->plan->recordings);
     masu_write_pass_sets(m);
-    return record_rung(m, draws, rung, 1, detail);
+    return m->ready >> rung & 1u ? record_rung(m, draws, rung, 1, detail) : MASU_OK;
 }
 
 masu_result masu_record_missing(masu_device *m, const masu_draws *draws, masu_recording_id id,

@@ -16,12 +16,16 @@ static inline uint32_t masu_recording_of(const masu_frame_plan *plan, masu_recor
            rp->first_recording + id.target * rp->variants;
 }
 
-/* Creates descriptor sets and queries, and records the frames and the loading. Pipelines must
+/* Creates descriptor sets, queries and command buffers, and records the loading. Layouts must
  * exist. */
-masu_result masu_record(masu_device *m, const masu_draws *draws, masu_detail *detail);
+masu_result masu_record_begin(masu_device *m, masu_detail *detail);
 
-/* Discards all frame recordings, of which none may be pending, and records those of one rung for
- * the current plan and targets. masu_record_missing records the others, also those missing after a
+/* Records the frames of one rung for the first time. Its pipelines must exist. */
+masu_result masu_record_rung(masu_device *m, const masu_draws *draws, uint32_t rung,
+                             masu_detail *detail);
+
+/* Discards all frame recordings, of which none may be pending, and records those of one rung, if it
+ * is ready, for the current plan and targets. masu_record_missing records the others, also those missing after a
  * failure. */
 masu_result masu_record_again(masu_device *m, const masu_draws *draws, uint32_t rung,
                               masu_detail *detail);

@@ -350,6 +350,11 @@ masu_result masu_desc_check(const masu_desc *d, masu_detail *detail) {
         masu_result result = masu_rung_check(&d->rungs[r], r, detail);
         if (result) return result;
     }
+    if (d->first_rung >= d->rung_count) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "first_rung", d->rung_count - 1,
+                         d->first_rung, "first_rung %u does not exist, the last one is %u",
+                         d->first_rung, d->rung_count - 1);
+    }
     if (d->load_step && d->load_step < MASU_LOAD_STEP_MIN) {
         return masu_fail(detail, MASU_ERROR_ARGUMENT, "load_step", MASU_LOAD_STEP_MIN, d->load_step,
                          "load_step is %llu bytes, allowed are 0 and %u or more",

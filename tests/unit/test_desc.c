@@ -122,6 +122,8 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
     SAME(readback);
     SAME(picking);
     SAME(load_step);
+    SAME(init_in_steps);
+    SAME(first_rung);
     SAME(debug.timestamps);
     SAME(debug.counters);
     SAME(debug.labels);
@@ -577,6 +579,7 @@ static void a_knob_out_of_its_range_is_named(void **state) {
     BAD("debug.share_rays", d.debug.share_rays = (masu_switch)3);
     BAD("half_floats", d.half_floats = (masu_switch)3);
     BAD("load_step", d.load_step = MASU_LOAD_STEP_MIN - 1);
+    BAD("first_rung", d.first_rung = d.rung_count);
     BAD("reserve.particles", d.reserve.particles = MASU_PARTICLES_MAX + 1);
     BAD("reserve.decals", d.reserve.decals = MASU_DECALS_MAX + 1);
     BAD("reserve.lines", d.reserve.lines = MASU_LINES_MAX + 1);

@@ -193,6 +193,10 @@ bool masu_window_swapchain(masu_window *w, bool vsync, char *error, size_t size)
     if (caps.maxImageCount && count > caps.maxImageCount) count = caps.maxImageCount;
     VkCompositeAlphaFlagBitsKHR alpha = VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR;
     if (!(caps.supportedCompositeAlpha & alpha)) alpha = VK_COMPOSITE_ALPHA_INHERIT_BIT_KHR;
+    /* The picture is not rotated: the compositor rotates it on a rotated display. */
+    VkSurfaceTransformFlagBitsKHR transform = VK_SURFACE_TRANSFORM_IDENTITY_BIT_KHR;
+    if (!(caps.supportedTransforms & transform)) transform = caps.currentTransform;
+    w->rotated = transform != caps.currentTransform;
     VkSwapchainKHR old = w->swapchain;
     VkSwapchainCreateInfoKHR info = {.sType = VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR,
                                      .surface = w->surface,
@@ -203,7 +207,7 @@ bool masu_window_swapchain(masu_window *w, bool vsync, char *error, size_t size)
                                      .imageArrayLayers = 1,
                                      .imageUsage = VK_IMAGE_USAGE_TRANSFER_DST_BIT,
                                      .imageSharingMode = VK_SHARING_MODE_EXCLUSIVE,
-                                     .preTransform = caps.currentTransform,
+                                     .preTransform = transform,
                                      .compositeAlpha = alpha,
                                      .presentMode = choose_mode(w, vsync),
                                      .clipped = VK_TRUE,
@@ -222,7 +226,7 @@ VkResult masu_window_acquire(masu_window *w, uint32_t slot, uint32_t *image) {
     VkResult r = vkAcquireNextImageKHR(w->host->device, w->swapchain, MASU_HEADLESS_TIMEOUT_NS,
                                        w->acquired[slot], VK_NULL_HANDLE, image);
     if (r == VK_SUBOPTIMAL_KHR) { /* it can be drawn, and its semaphore will be signalled */
-        w->stale = true;
+        w->stale |= !w->rotated; /* for an unrotated swapchain on a rotated display it stays so */
         return VK_SUCCESS;
     }
     if (r == VK_ERROR_OUT_OF_DATE_KHR) w->stale = true;
@@ -237,6 +241,6 @@ VkResult masu_window_present(masu_window *w, uint32_t image) {
                              .pSwapchains = &w->swapchain,
                              .pImageIndices = &image};
     VkResult r = vkQueuePresentKHR(w->host->queue, &info);
-    if (r == VK_SUBOPTIMAL_KHR || r == VK_ERROR_OUT_OF_DATE_KHR) w->stale = true;
+    if ((r == VK_SUBOPTIMAL_KHR && !w->rotated) || r == VK_ERROR_OUT_OF_DATE_KHR) w->stale = true;
     return r == VK_SUBOPTIMAL_KHR ? VK_SUCCESS : r;
 }

@@ -29,6 +29,7 @@ typedef struct masu_window {
     VkSemaphore acquired[MASU_WINDOW_FLIGHT]; /* of each frame in flight */
     VkSemaphore finished[MASU_WINDOW_IMAGES]; /* of each image: presenting waits for it */
     bool stale;                               /* the swapchain must be made again */
+    bool rotated;                             /* the compositor rotates the pictures */
 } masu_window;
 
 /* Opens the window itself. */
