@@ -297,6 +297,7 @@ static void put_call_min(sdfc_writer *w, int group, const sdfc_group *g, const s
     }
     PUT(w, "    }\n");
     if (skips || nearest) PUT(w, "    }\n");
+    if (i->street && !w->glsl) PUT(w, "    (void)v%d;\n", i->operand[27]); /* for marches only */
     if (nearest) return;
     unsigned bits = w->glsl && g->term_count ? bits_of(p, i->aux) : 0;
     if (!bits) return;
