@@ -101,7 +101,6 @@ void main()
             }
 #endif
             vec3 p = world_at(r.direction, at_t);
-            MASU_EXACT_BELOW(3.0 * k * t / safe_step) /* a cone stops far below that */
             float f = masu_sdf(p) * safe_step;
             evals++;
 #if MASU_WRITES_BLOCKS

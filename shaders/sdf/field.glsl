@@ -182,14 +182,6 @@ vec3 masu_normal = vec3(0.0);
 #include "sdf/terms.glsl"
 #include "sdf_scene.glsl"
 
-/* From this value on the field may be any lower bound of itself that is as large: of repetitions with gaps, rays then go
- * from cell to cell by one of them at a time. Until it is set, and to keep terms, all is exact. */
-#ifdef MASU_SDF_STREETS
-#define MASU_EXACT_BELOW(value) masu_exact_below = (value);
-#else
-#define MASU_EXACT_BELOW(value)
-#endif
-
 /* Bits of terms: tiles know none, and ask for all. */
 uint masu_all_terms(int word)
 {
@@ -304,7 +296,6 @@ float field_margin(ray r, float t, float radius)
 
 float field_at(ray r, float t)
 {
-    MASU_EXACT_BELOW(2.5 * r.pixel * t / safe_step) /* what a march may take for a surface is within two pixels */
     return masu_sdf(world_at(r.direction, t)) * safe_step;
 }
 

@@ -107,7 +107,6 @@ float least_ratio(lit_point p, vec3 towards, float tangent, inout uint evals)
             break;
         }
         bool usable;
-        MASU_EXACT_BELOW(2.0 * max(tangent * t, p.offset) / frame.sdf_min.w) /* beyond that the disc is free */
         float f = field_at(start + towards * t, usable);
         evals++;
         /* Close to the start the surface that the ray leaves is still the nearest; in a crease the
@@ -191,7 +190,6 @@ float ambient_seen(lit_point p, out uint evals)
         vec2 around = i == 2 ? vec2(1.0, 0.0) : vec2(-0.5, i == 3 ? 0.8660254 : -0.8660254);
         vec3 direction = tilted ? (n + u * around.x + v * around.y) * 0.70710678 : n;
         bool usable;
-        MASU_EXACT_BELOW(h / frame.sdf_min.w) /* from there on nothing is lacking */
         float f = field_at(p.place + direction * h, usable);
         evals++;
         /* Above 1 inside something: that deep a corner hides more than the samples' directions. */

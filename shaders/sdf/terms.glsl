@@ -68,11 +68,9 @@ uint masu_keep_least(uint kept, float joined, float e, float slack, uint bit, ui
     MASU_IF_KEEPING(kept = masu_keep_least(kept, -(joined), -(e), masu_margin * (lipschitz) + max(blend, 0.0), bit, before))
 #define MASU_KEEP_ALL(all, bits) MASU_IF_KEEPING(kept |= (all) ? bits : 0u)
 #define MASU_KEPT MASU_IF_KEEPING(masu_kept_terms |= kept)
-#define MASU_SDF_EXACT_BELOW (masu_keeping ? 1e30 : masu_exact_below)
 
 #else
 #define MASU_SDF_MARGIN 0.0
-#define MASU_SDF_EXACT_BELOW masu_exact_below
 #ifdef MASU_SDF_ASK
 #define masu_term_bits(word) masu_part_bits(word)
 #else

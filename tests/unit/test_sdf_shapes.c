@@ -122,20 +122,9 @@ typedef struct pair {
     double p[3], q[3], slope;
 } pair;
 
-/* What a march sees: of repetitions with a street, the least that it may. */
-static double march_value(const field *r, const double p[3], double exact_below, long *cells) {
-    sdfc_steps steps = {exact_below, 0};
-    double f = sdfc_run_steps(r->c, &r->c->parts[0].program, p, r->room, &steps);
-    if (cells) *cells += steps.cells;
-    return f;
-}
-
 static void measure(const field *r, pair *at) {
     double d = apart(at->p, at->q);
-    bool street = sdfc_has_street(&r->c->parts[0].program);
-    double f = street ? march_value(r, at->p, 0, NULL) : field_value(r, 0, at->p);
-    double g = street ? march_value(r, at->q, 0, NULL) : field_value(r, 0, at->q);
-    at->slope = d > 1e-12 ? fabs(f - g) / d : 0;
+    at->slope = d > 1e-12 ? fabs(field_value(r, 0, at->p) - field_value(r, 0, at->q)) / d : 0;
 }
 
 /* The steepest of many pairs, each then moved to wherever it is steeper. */
@@ -344,74 +333,6 @@ static void sectors_that_differ_are_all_there(void **state) {
         }
         double most = steepest(&r, 20000, &seed);
         if (most > facts(&r, 0)->lipschitz * (1 + 1e-6)) fail_msg("%s: a slope of %.9g", text, most);
-        field_stop(&r);
-    }
-}
-
-/* ---- repetitions that rays cross cell by cell ---- */
-
-static double distance_on_ray(const field *r, const double from[3], const double way[3], bool street, long *cells, long *steps) {
-    double t = 0;
-    for (int n = 0; n < 500 && t < 200; n++) {
-        double p[3];
-        for (int k = 0; k < 3; k++) p[k] = from[k] + t * way[k];
-        double f = march_value(r, p, street ? 1e-3 * t : 1e30, cells) / facts(r, 0)->lipschitz;
-        ++*steps;
-        if (f < 1e-4) return t;
-        t += f;
-    }
-    return 1e30;
-}
-
-static void rays_go_from_cell_to_cell(void **state) {
-    (void)state;
-    static const struct {
-        const char *text;
-        bool street;
-        double most; /* cells evaluated, against evaluating all that may be near */
-    } cases[] = {
-        {"repeat((8, 0, 8) as c, translate((0, 10 * c.hash(0), 0), box((2, 10 * c.hash(0), 2))))", true, 0.6},
-        {"repeat((8, 0, 8) as c, translate((0, 10 * c.hash(0), 0), box((3.6, 10 * c.hash(0), 3.6))))", true, 0.65},
-        {"repeat((8, 0, 8) as c, translate((0, 10 * c.hash(0), 0), box((3.61, 10 * c.hash(0), 3))))", false, 1},
-        {"repeat((8, 0, 0), translate((0.5, 9, 0.3), box((2, 9, 20))))", true, 1},
-        {"union(translate((1, 0, 2), rotate((0, 1, 0), 0.4, repeat_limited((8, 0, 8), (40, 1, 31) as c, translate((0, 9 * c.hash(1), 0), "
-         "scale((1, 1, 0.5), box((2, 9 * c.hash(1), 2))))))), translate((0, -2, 0), box((300, 1, 300))))", true, 0.8},
-        {"smooth_union(0.5, repeat((8, 0, 8) as c, sphere(2 + c.hash(0))), plane((0, 1, 0), 0))", false, 1},
-        {"difference(box((50, 1, 50)), repeat((8, 0, 8) as c, sphere(2 + c.hash(0))))", false, 1},
-    };
-    const char *long_run = getenv("LONG");
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        char text[1024];
-        field r;
-        uint64_t seed = 21;
-        snprintf(text, sizeof text, "part a = %s;", cases[i].text);
-        must_start(&r, text);
-        if (sdfc_has_street(&r.c->parts[0].program) != cases[i].street) fail_msg("%s: street %d", text, !cases[i].street);
-        double L = facts(&r, 0)->lipschitz, most = steepest(&r, long_run ? 1000000 : 20000, &seed);
-        if (most > L * (1 + 1e-6)) fail_msg("%s: a slope of %.9g, not %.9g", text, most, L);
-        for (int n = 0; n < 20000; n++) {
-            double p[3], exact = 3 * random_between(&seed, 0, 1);
-            any_point(facts(&r, 0), &seed, p);
-            double f = field_value(&r, 0, p), bound = march_value(&r, p, exact, NULL);
-            if (bound > f + 1e-9 || (bound < f - 1e-9 && bound < exact * L))
-                fail_msg("%s: %.12g for %.12g at (%g, %g, %g), exact below %g", text, bound, f, p[0], p[1], p[2], exact);
-        }
-        long cells[2] = {0}, steps[2] = {0};
-        int hits = 0;
-        for (int n = 0; n < 3000; n++) {
-            double from[3] = {random_between(&seed, -4, 4), random_between(&seed, 2, 24), 4}, way[3], length = 0, t[2];
-            for (int k = 0; k < 3; k++) way[k] = random_between(&seed, -1, 1) * (k == 1 ? 0.3 : 1);
-            for (int k = 0; k < 3; k++) length += way[k] * way[k];
-            for (int k = 0; k < 3; k++) way[k] /= sqrt(length);
-            if (field_value(&r, 0, from) < 0) continue;
-            for (int k = 0; k < 2; k++) t[k] = distance_on_ray(&r, from, way, k, &cells[k], &steps[k]);
-            hits += t[0] < 1e30;
-            /* both end within 1e-4 of the surface, which a grazing ray may meet much farther on */
-            if (fabs(t[0] - t[1]) > 0.05 && t[0] < 150 && t[1] < 150) fail_msg("%s: %g, from cell to cell %g", text, t[0], t[1]);
-        }
-        print_message("%-60.60s %ld cells in %ld steps, from cell to cell %ld in %ld\n", text, cells[0], steps[0], cells[1], steps[1]);
-        assert_true(hits > 500);
-        if ((double)cells[1] > cases[i].most * (double)cells[0]) fail_msg("%s: %ld cells, before %ld", text, cells[1], cells[0]);
         field_stop(&r);
     }
 }
@@ -712,7 +633,6 @@ int main(void) {
         cmocka_unit_test(every_shape_is_what_its_table_says),
         cmocka_unit_test(cells_that_differ_are_all_there),
         cmocka_unit_test(sectors_that_differ_are_all_there),
-        cmocka_unit_test(rays_go_from_cell_to_cell),
         cmocka_unit_test(a_blend_does_not_depend_on_the_order),
         cmocka_unit_test(materials_blend_as_their_shapes_do),
         cmocka_unit_test(colours_depend_on_the_place),

@@ -1025,18 +1025,7 @@ static void size_is_limited(void **state) {
 
 /* ---- mistakes in the analysis, planted ---- */
 
-typedef enum fault { FAULT_NONE, FAULT_LIPSCHITZ, FAULT_BOX, FAULT_SPHERE, FAULT_CELL, FAULT_STREET } fault;
-
-/* Of a march that goes from cell to cell: the least value of the cells beside its own is taken half as large again. */
-static void plant_in_street(sdfc *c, sdfc_program *p) {
-    for (int f = 0; f < p->function_count; f++) {
-        for (int k = 0; k < p->functions[f].count; k++) {
-            const sdfc_instr *call = &p->functions[f].instrs[k];
-            if (!call->street) continue;
-            p->args[~p->functions[f].instrs[call->operand[27] - 3].operand[3]] = sdfc_number(c, 1.5);
-        }
-    }
-}
+typedef enum fault { FAULT_NONE, FAULT_LIPSCHITZ, FAULT_BOX, FAULT_SPHERE, FAULT_CELL } fault;
 
 static bool check_finds(const char *text, fault planted, char *error, size_t error_size) {
     sdfc *c = calloc(1, sizeof *c);
@@ -1060,7 +1049,6 @@ static bool check_finds(const char *text, fault planted, char *error, size_t err
     if (planted == FAULT_CELL)
         c->shapes[c->parts[0].shape].extra[0] = 1; /* only the nearest cell */
     sdfc_lower(c, &c->parts[0]);
-    if (planted == FAULT_STREET) plant_in_street(c, &c->parts[0].program);
     sdfc_group_parts(c);
     sdfc_check(c, 20000);
     sdfc_free(c);
@@ -1079,7 +1067,6 @@ static void planted_faults_are_found(void **state) {
         {"part a = torus(2, 0.3);", FAULT_SPHERE},
         {"part a = repeat((4, 0, 0), translate((0.7, 0, 0), box((1, 1, 1))));", FAULT_CELL},
         {"part a = polar(5, translate((3, 0, 0.8), box((0.5, 1, 1))));", FAULT_CELL},
-        {"part a = repeat((4, 0, 4) as c, box((1.2, 1 + c.hash(0), 1.2)));", FAULT_STREET},
     };
     char error[1024];
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {

@@ -4,8 +4,6 @@
  *   constant   |f(p) - f(q)| <= L |p - q| for pairs far apart, near each other, and, found by
  *              bisection, just left and right of the border of two cells of a repetition
  *   estimates  (fractals) within f / L of a point there is no solid
- *   streets    what a march may take instead of the cells beside its own (SDFC_CALL_MIN, `street`): with the
- *              same constant, and never above the value
  *   bounds     outside of the box and of the sphere f is positive and at least growth * distance
  *   mirrors    what stands in mirrored sectors (polar) is its own mirror image: what is mirrored wrongly is a
  *              field as good as any, of something else
@@ -40,28 +38,13 @@ static void note_cell(uint64_t *cells, int op, const double *a, double result) {
 }
 
 static double run_function(const sdfc *c, const sdfc_program *p, int function, const double point[3],
-                           const double *inputs, const sdfc_place_of *at, double *variables, uint64_t *cells,
-                           sdfc_steps *steps);
-
-/* Bits of the points that are left out, by what the own cell has. */
-static int skipped(const sdfc_instr *i, const double *a, double own) {
-    int skip = 0;
-    if (!(a[15] > 0)) return 0;
-    for (int k = 0; k < 3; k++) {
-        int bit = i->select[k] ? 1 << (i->select[k] - 1) : 0;
-        if (i->bits[k] > 0 && own < (a[12 + k] - fabs(a[4 * k])) * a[15]) skip |= i->bits[k] == 2 ? 3 * bit : bit;
-        if (i->bits[k] == 2 && own < (a[12 + k] + fabs(a[4 * k])) * a[15]) skip |= 2 * bit;
-    }
-    return skip;
-}
+                           const double *inputs, const sdfc_place_of *at, double *variables, uint64_t *cells);
 
 /* The least of the values at the points, or with `nearest` the number of the point that has it. */
 static double run_call(const sdfc *c, const sdfc_program *p, const sdfc_instr *i, const double *a, bool nearest,
-                       double *variables, uint64_t *cells, sdfc_steps *steps) {
+                       double *variables, uint64_t *cells) {
     double least = 1e30, number = 0;
-    int skip = 0;
     for (int n = 0; n < i->points; n++) {
-        if (n & skip) continue;
         double q[3], inputs[SDFC_OPERANDS_MAX];
         for (int j = 0; j < 3; j++) {
             int cell = i->select[j] ? n >> (i->select[j] - 1) & ((1 << i->bits[j]) - 1) : 0;
@@ -73,35 +56,29 @@ static double run_call(const sdfc *c, const sdfc_program *p, const sdfc_instr *i
             inputs[i->around] = a[18 + (n & 1)];
         else if (i->named)
             inputs[i->around] = sdfc_ops[SDFC_cell_seed].run(seed);
-        double d = run_function(c, p, i->aux, q, inputs, NULL, variables, cells, steps);
+        double d = run_function(c, p, i->aux, q, inputs, NULL, variables, cells);
         if (d < least) number = n;
         least = d < least ? d : least;
-        if (!steps) continue;
-        steps->cells++;
-        if (n == 0) skip = skipped(i, a, least);
-        if (n == 0 && i->street && least > a[27] && a[27] > steps->exact_below * a[28]) return a[27];
     }
     return nearest ? number : least;
 }
 
 static double run_function(const sdfc *c, const sdfc_program *p, int function, const double point[3],
-                           const double *inputs, const sdfc_place_of *at, double *variables, uint64_t *cells,
-                           sdfc_steps *steps) {
+                           const double *inputs, const sdfc_place_of *at, double *variables, uint64_t *cells) {
     const sdfc_function *f = &p->functions[function];
     double *v = variables + f->first_variable;
     for (int k = 0; k < 3; k++) v[k] = point[k];
     for (int k = 0; k < f->count; k++) {
         const sdfc_instr *i = &f->instrs[k];
         bool calls = i->op == SDFC_CALL_MIN || i->op == SDFC_CALL_NEAREST;
-        int count = !calls ? sdfc_ops[i->op].operands : i->named || i->around || steps ? SDFC_OPERANDS_MAX : 12;
+        int count = !calls ? sdfc_ops[i->op].operands : i->named || i->around ? SDFC_OPERANDS_MAX : 12;
         double a[SDFC_OPERANDS_MAX] = {0}, r = 1e30;
         for (int j = 0; j < count; j++) {
             a[j] = i->operand[j] >= 0 ? v[i->operand[j]] : c->values[p->args[~i->operand[j]]];
         }
         switch (i->op) {
         case SDFC_CALL_MIN:
-        case SDFC_CALL_NEAREST: r = run_call(c, p, i, a, i->op == SDFC_CALL_NEAREST, variables, cells, steps);
-            break;
+        case SDFC_CALL_NEAREST: r = run_call(c, p, i, a, i->op == SDFC_CALL_NEAREST, variables, cells); break;
         case SDFC_CALL_USER: break;
         case SDFC_INPUT: r = inputs[k]; break;
         case SDFC_NORMAL: r = at ? at->normal[i->aux] : 0; break;
@@ -116,30 +93,17 @@ static double run_function(const sdfc *c, const sdfc_program *p, int function, c
 }
 
 double sdfc_run(const sdfc *c, const sdfc_program *p, const double p3[3], uint64_t *cells) {
-    return run_function(c, p, 0, p3, NULL, NULL, c->variables, cells, NULL);
+    return run_function(c, p, 0, p3, NULL, NULL, c->variables, cells);
 }
 
 double sdfc_run_in(const sdfc *c, const sdfc_program *p, const double p3[3], double *room) {
-    return run_function(c, p, 0, p3, NULL, NULL, room, NULL, NULL);
-}
-
-double sdfc_run_steps(const sdfc *c, const sdfc_program *p, const double p3[3], double *room, sdfc_steps *steps) {
-    return run_function(c, p, 0, p3, NULL, NULL, room, NULL, steps);
-}
-
-bool sdfc_has_street(const sdfc_program *p) {
-    for (int f = 0; f < p->function_count; f++) {
-        for (int k = 0; k < p->functions[f].count; k++) {
-            if (p->functions[f].instrs[k].street) return true;
-        }
-    }
-    return false;
+    return run_function(c, p, 0, p3, NULL, NULL, room, NULL);
 }
 
 void sdfc_run_look(const sdfc *c, const sdfc_part *part, const double p3[3], const sdfc_place_of *at, double *room,
                    double out[8]) {
     const sdfc_program *p = &part->program;
-    if (p->surface) run_function(c, p, p->surface, p3, NULL, at, room, NULL, NULL);
+    if (p->surface) run_function(c, p, p->surface, p3, NULL, at, room, NULL);
     for (int k = 0; k < 8; k++) {
         int operand = p->look[k];
         if (!p->surface)
@@ -234,26 +198,6 @@ static void check_constant(checker *k, bool borders) {
     double fq = field(k, q, borders ? &cells_q : NULL);
     check_pair(k, p, q, fp, fq);
     if (borders && cells_p != cells_q) check_border(k, p, q, cells_p);
-}
-
-/* What a march sees of a repetition that it crosses cell by cell. The least of the bounds, for exact_below 0, is as steep
- * as the field at most. */
-static void check_street(checker *k) {
-    sdfc_steps least = {0, 0}, some = {k->size * unit(k), 0};
-    double p[3], q[3], way[3], length = k->size * pow(10, -6 * unit(k));
-    any_point(k, p);
-    direction(k, way);
-    for (int i = 0; i < 3; i++) q[i] = p[i] + way[i] * length;
-    const sdfc_program *program = &k->part->program;
-    double whole = field(k, p, NULL), fp = sdfc_run_steps(k->c, program, p, k->c->variables, &least);
-    double bound = sdfc_run_steps(k->c, program, p, k->c->variables, &some), rounding = k->tiny * fmax(k->facts->lipschitz, 1);
-    bool exact = bound == whole || bound >= some.exact_below * k->facts->lipschitz;
-    check_pair(k, p, q, fp, sdfc_run_steps(k->c, program, q, k->c->variables, &least));
-    if (fp <= whole + rounding && bound <= whole + rounding && exact) return;
-    sdfc_fail(k->c, k->part->token,
-              "part %s: the field is %.17g at (%.17g, %.17g, %.17g), its bound by the own cell %.17g, and %.17g where %.9g is "
-              "wanted exactly, at time %.17g",
-              k->part->name, whole, p[0], p[1], p[2], fp, bound, some.exact_below, k->time);
 }
 
 /* Fractals have no Lipschitz constant. What the march needs is that no solid is nearer than f / L;
@@ -432,13 +376,11 @@ void sdfc_check(sdfc *c, uint32_t pairs) {
             if (k.facts->user) continue;
             double share = (double)pairs * thin / c->groups[k.part->group].part_count;
             int rounds = (int)ceil(share / environments);
-            bool street = sdfc_has_street(&k.part->program);
             for (int n = 0; n < rounds; n++) {
                 if (k.facts->estimate)
                     check_estimate(&k);
                 else
                     check_constant(&k, n % 4 == 0);
-                if (street && n % 4 == 1) check_street(&k);
                 check_bounds(&k);
             }
         }

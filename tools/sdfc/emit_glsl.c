@@ -453,13 +453,6 @@ static void put_looks(sdfc_writer *w) {
     }
 }
 
-static bool any_streets(const sdfc *c) {
-    for (int g = 0; g < c->group_count; g++) {
-        if (sdfc_has_street(&c->parts[c->groups[g].first_part].program)) return true;
-    }
-    return false;
-}
-
 static bool any_looks(const sdfc *c) {
     for (int i = 0; i < c->part_count; i++) {
         if (c->parts[i].program.surface) return true;
@@ -506,10 +499,6 @@ void sdfc_put_glsl(sdfc_writer *w) {
     if (any_looks(c)) {
         PUT(w, "#define MASU_SDF_PAINTED 1 /* materials ask for masu_normal and a pixel's width */\n"
                "float masu_footprint = 0.0;\n\n");
-    }
-    if (any_streets(c)) {
-        PUT(w, "#define MASU_SDF_STREETS 1 /* values from masu_exact_below on may be lower bounds */\n"
-               "float masu_exact_below = 1e30;\n\n");
     }
     sdfc_put_users(w);
     PUT(w, "#include \"sdf/terms.glsl\"\n#define real float\n#define TO_INT(x) int(x)\n");

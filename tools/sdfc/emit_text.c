@@ -206,12 +206,6 @@ static void put_skips(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p
             put_bound(w, g, p, i, variable, k, "-", bit | (i->bits[k] == 2 ? 2 * bit : 0));
         if (i->bits[k] == 2) put_bound(w, g, p, i, variable, k, "+", 2 * bit);
     }
-    if (i->street) {
-        PUT(w, "            if (v%d > v%d && v%d > MASU_SDF_EXACT_BELOW * ", variable, i->operand[27], i->operand[27]);
-        sdfc_put_operand(w, g, p, i->operand[28]);
-        PUT(w, ") {\n                v%d = v%d;\n                skip = %uu;\n            }\n", variable, i->operand[27],
-            (unsigned)i->points - 1);
-    }
     PUT(w, "        }\n");
 }
 
@@ -297,7 +291,6 @@ static void put_call_min(sdfc_writer *w, int group, const sdfc_group *g, const s
     }
     PUT(w, "    }\n");
     if (skips || nearest) PUT(w, "    }\n");
-    if (i->street && !w->glsl) PUT(w, "    (void)v%d;\n", i->operand[27]); /* for marches only */
     if (nearest) return;
     unsigned bits = w->glsl && g->term_count ? bits_of(p, i->aux) : 0;
     if (!bits) return;

@@ -19,7 +19,7 @@
 /* Steepest gradient of noise() of the library, proved by test_sdf_shapes.c; attained: 3. */
 #define SDFC_NOISE_SLOPE 3.001
 #define SDFC_INFINITY ((double)INFINITY) /* <math.h>'s is a float */
-#define SDFC_OPERANDS_MAX 29
+#define SDFC_OPERANDS_MAX 27
 #define SDFC_SECTORS_MAX 4096
 #define SDFC_COPIES_MAX 16 /* around an axis, the same */
 #define SDFC_CELLS_MAX 4 /* copies in a row that a repetition evaluates */
@@ -170,14 +170,10 @@ typedef struct sdfc_instr {
                                            cells that are not evaluated; 17: the constant of the
                                            values per metre of the world; 18..20: the coordinates
                                            before the fold; 21..23: 1 / period or 0; 24..26: cells
-                                           around it; 27: the least value of the cells beside its
-                                           own, all of them; 28: the constant of the values per
-                                           metre of the part */
+                                           around it */
     int16_t named, around;              /* CALL_MIN: whether the function takes its own cell (1: of 18
                                            to 23; 2: sector 18, of the odd points 19), and of how many
                                            around it */
-    int16_t street;                     /* CALL_MIN: 1: 27 and 28 hold. Instead of evaluating the
-                                           cells beside its own, a march may stop at 27 */
     int32_t operand[SDFC_OPERANDS_MAX]; /* >= 0: a variable, < 0: argument ~operand */
 } sdfc_instr;
 
@@ -471,14 +467,6 @@ void sdfc_free(sdfc *c);                 /* and all it has taken */
 double sdfc_run(const sdfc *c, const sdfc_program *p, const double p3[3], uint64_t *cells);
 /* The same with room for the program's variables. */
 double sdfc_run_in(const sdfc *c, const sdfc_program *p, const double p3[3], double *room);
-/* As the GLSL evaluates repetitions: cells that are too far to matter are left out, and where the result is at least
- * `exact_below` it may be any lower bound of the value that is not below that either. */
-typedef struct sdfc_steps {
-    double exact_below;
-    long cells; /* evaluated, counted up */
-} sdfc_steps;
-double sdfc_run_steps(const sdfc *c, const sdfc_program *p, const double p3[3], double *room, sdfc_steps *steps);
-bool sdfc_has_street(const sdfc_program *p);
 typedef struct sdfc_place_of {
     double normal[3], footprint;
 } sdfc_place_of;

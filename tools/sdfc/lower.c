@@ -473,7 +473,7 @@ static int lower_displace_noise(sdfc_lowering *l, const sdfc_shape *s, sdfc_poin
     return OP(l, add, d, OP(l, mul, w, a));
 }
 
-static int lower_any(sdfc_lowering *l, int shape, sdfc_point p) {
+int sdfc_lower_shape(sdfc_lowering *l, int shape, sdfc_point p) {
     sdfc *c = l->c;
     /* A copy: expressions made below may move the array. */
     const sdfc_shape copy = c->shapes[shape], *s = &copy;
@@ -545,33 +545,8 @@ static int lower_any(sdfc_lowering *l, int shape, sdfc_point p) {
     }
 }
 
-/* Through these a lower bound of an operand leads to a lower bound of the result, and to one that is as large. */
-static bool keeps_bounds(int kind) {
-    switch (kind) {
-    case SDFC_KIND_TRANSLATE:
-    case SDFC_KIND_ROTATE:
-    case SDFC_KIND_ROTATE_EULER:
-    case SDFC_KIND_MIRROR:
-    case SDFC_KIND_PAINT:
-    case SDFC_KIND_REPEAT:
-    case SDFC_KIND_REPEAT_LIMITED:
-    case SDFC_KIND_INTERSECTION:
-    case SDFC_KIND_UNION: return true;
-    default: return false;
-    }
-}
-
-int sdfc_lower_shape(sdfc_lowering *l, int shape, sdfc_point p) {
-    double street = l->street;
-    if (!keeps_bounds(l->c->shapes[shape].kind)) l->street = 0;
-    int d = lower_any(l, shape, p);
-    l->street = street;
-    return d;
-}
-
 void sdfc_lower(sdfc *c, sdfc_part *part) {
     sdfc_lowering l = {.c = c, .program = &part->program, .root = true, .stretch = 1, .scale = 1, .fractal = -1};
-    l.street = c->shapes[part->shape].facts.lipschitz;
     c->at = part->token;
     sdfc_open_function(&l);
     int root = l.function;

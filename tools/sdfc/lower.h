@@ -31,7 +31,6 @@ typedef struct sdfc_lowering {
     double stretch; /* metres here for one of the world, at most; 0: not known */
     unsigned folded; /* axes that jump from cell to cell: what is alike on both sides alone is continuous */
     bool at_fold;    /* nothing has been done to the point since */
-    double street;   /* the constant of the part, if nothing around but movements and unions has been met; 0: else */
     bool in_cells;   /* of a repetition that looks at several: what is left out of a cut makes a cell nearer */
     int cell[SDFC_CELLS_DEEP], seed[SDFC_CELLS_DEEP], cells; /* that it stands in; operands: of sectors their number */
     bool sector[SDFC_CELLS_DEEP];

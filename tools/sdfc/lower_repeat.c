@@ -59,41 +59,6 @@ static int lower_nearest(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p, in
     return lower_in_cell(l, s, at, seed);
 }
 
-/* Whether rays may go from cell to cell: all cells beside the own one keep so far from its border that steps there are
- * worth more than evaluating them. In a city of boxes, of half a side of a quarter of the period, rays evaluated 53 cells
- * each instead of 98; of 0.45 periods 69 instead of 125. */
-#define STREET_LEAST 0.05
-
-static bool has_street(const sdfc_lowering *l, const sdfc_shape *s) {
-    const sdfc_facts *child = &l->c->shapes[s->child[0]].facts;
-    if (!(l->street > 0) || !(l->stretch > 0) || !(child->growth > 0) || l->surface) return false;
-    for (int i = 0; i < 3; i++) {
-        double h = fmax(fabs(child->box.low[i]), fabs(child->box.high[i]));
-        double period = l->c->exprs[s->number[i]].low;
-        if (s->extra[i] > 2 || (s->extra[i] == 2 && !(h <= (0.5 - STREET_LEAST) * period))) return false;
-    }
-    return true;
-}
-
-/* The least value of the cells beside the own one: that of the nearest on each axis, whose shape ends `h` from its middle and,
- * on the axes that do not repeat, with its box. */
-static int least_beside(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p, int cell[3][SDFC_CELLS_MAX], int growth) {
-    const sdfc_box *box = &l->c->shapes[s->child[0]].facts.box;
-    int at[3] = {p.x, p.y, p.z}, beside = 0, off[2] = {sdfc_literal(l, 0), 0}, count = 0;
-    off[1] = off[0];
-    for (int i = 0; i < 3; i++) {
-        if (s->extra[i] == 2) {
-            double h = fmax(fabs(box->low[i]), fabs(box->high[i]));
-            int side = OP(l, sub, OP(l, abs, cell[i][1]), sdfc_literal(l, h));
-            beside = beside ? OP(l, min, beside, side) : side;
-        } else if (s->extra[i] == 0 && isfinite(box->low[i]) && isfinite(box->high[i])) {
-            int from = OP(l, sub, at[i], sdfc_relative(l, &p, i, (box->low[i] + box->high[i]) / 2));
-            off[count++] = OP(l, sub, OP(l, abs, from), sdfc_literal(l, (box->high[i] - box->low[i]) / 2));
-        }
-    }
-    return OP(l, beside_cell, beside, off[0], off[1], growth);
-}
-
 int sdfc_lower_repeat(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p) {
     bool limited = s->kind == SDFC_KIND_REPEAT_LIMITED;
     sdfc_point rest = p; /* the offset that the axes which do not repeat keep */
@@ -161,20 +126,13 @@ int sdfc_lower_repeat(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p) {
     reach[3] = sdfc_literal(l, l->stretch > 0 ? child->growth : 0);
     reach[4] = sdfc_literal(l, s->extra[11]);
     reach[5] = sdfc_literal(l, child->lipschitz * fmax(l->stretch, 1e-30));
-    int names[9], street[2] = {0};
-    bool streets = has_street(l, s);
+    int names[9];
     add_names(l, s, in, names);
-    if (streets) {
-        street[0] = least_beside(l, s, p, cell, reach[3]);
-        street[1] = sdfc_literal(l, fmax(l->street, child->lipschitz));
-    }
     sdfc_instr *call = sdfc_add_instr(l, l->surface ? SDFC_CALL_NEAREST : SDFC_CALL_MIN);
     call->aux = function;
     call->points = 1 << bits;
     call->named = s->cell != 0;
     call->around = (int16_t)l->cells;
-    call->street = streets;
-    memcpy(call->operand + 27, street, sizeof street);
     memcpy(call->operand + 18, names, sizeof names);
     memcpy(call->operand + 12, reach, sizeof reach);
     memcpy(call->operand, cell, sizeof cell);
