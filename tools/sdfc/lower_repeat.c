@@ -225,8 +225,9 @@ static int lower_copies(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p) {
         }
         int e = least_of_two(l, s, function, q[0], q[1], sectors, false);
         if (l->surface) {
-            int second = least_of_two(l, s, function, q[0], q[1], sectors, true), closer = i ? OP(l, less, e, d) : 0;
+            int second = least_of_two(l, s, function, q[0], q[1], sectors, true);
             sdfc_point at = nearer(l, second, q[0], q[1]);
+            int closer = i ? OP(l, less, e, d) : 0;
             best = i ? nearer(l, closer, best, at) : at;
             if (s->cell) {
                 int own = OP(l, select, second, sectors[1], sectors[0]);
