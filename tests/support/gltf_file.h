@@ -1,6 +1,6 @@
 /* gltf_file.h: small glTF files, written as a test wants them: views and accessors one after the other, then the rest
- * of the JSON. One file at a time, static; included by the tests that read them (test_gltf.c) and look at
- * their pictures (test_gltf_pictures.c). After cmocka.h. What does not fit fails the test. */
+ * of the JSON. One file at a time, static; included by the tests that read them (test_gltf.c) or
+ * render them (test_gltf_pictures.c, test_bounce.c). After cmocka.h. What does not fit fails the test. */
 #ifndef SUPPORT_GLTF_FILE_H
 #define SUPPORT_GLTF_FILE_H
 
