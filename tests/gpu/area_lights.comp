@@ -1,8 +1,6 @@
-/*
- * area_lights.comp: masu_add_local_light (shaders/light/lights.glsl) by itself, for
- * tests/gpu/test_area_lights.c: a point at the origin whose normal is +z, a surface and a view for each case,
- * lit by the light of its number.
- */
+/* area_lights.comp: runs masu_add_local_light (shaders/light/lights.glsl) for
+ * tests/gpu/test_area_lights.c: a point at the origin with normal +z; each case has a surface, a
+ * view and the number of its light. */
 #version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_AREA_LIGHTS
@@ -10,7 +8,7 @@
 #define MASU_SURFACE
 #include "brdf/bsdf.glsl"
 
-/* Of a frame and of light/shade.glsl what lights.glsl needs here. */
+/* The declarations of a frame and of light/shade.glsl that lights.glsl needs. */
 #define MASU_SHADE_GLSL
 struct test_frame {
     vec4 forward;
@@ -41,7 +39,7 @@ layout(local_size_x = 64) in;
 
 layout(push_constant) uniform Push
 {
-    uvec4 pc; /* x how many cases */
+    uvec4 pc; /* x number of cases */
 };
 
 struct test_case {
@@ -57,7 +55,7 @@ layout(set = 0, binding = 0, std430) readonly buffer Cases
 
 layout(set = 0, binding = 1, std430) writeonly buffer Results
 {
-    vec4 results[]; /* x diffuse, y specular of a channel */
+    vec4 results[]; /* x diffuse, y specular, for one channel */
 };
 
 void main()

@@ -1,12 +1,10 @@
-/*
- * brdf.comp: shaders/brdf/bsdf.glsl by itself, for tests/gpu/test_brdf.c. The normal is +z unless a case
- * says otherwise.
+/* brdf.comp: runs shaders/brdf/bsdf.glsl for tests/gpu/test_brdf.c. The normal is +z unless a case
+ * sets another.
  *
  *   pc.x 0: f * N.L * pi of each case; the three factors of ambient light
  *        1: the white furnace: f * N.L over all l
- *   pc.y    how many cases
- *   pc.z    steps of each angle of the furnace
- */
+ *   pc.y    number of cases
+ *   pc.z    steps per angle of the furnace */
 #version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_OWN_COATS
@@ -29,9 +27,9 @@ struct test_case {
 };
 
 struct test_result {
-    vec4 light;    /* or of the furnace */
+    vec4 light;    /* or the furnace result */
     vec4 diffuse;
-    vec4 specular; /* w the coat's */
+    vec4 specular; /* w for the coat */
 };
 
 layout(set = 0, binding = 0, std430) readonly buffer Cases
@@ -69,9 +67,10 @@ vec3 visible_direction(float alpha, vec3 v, vec2 u)
     return 2.0 * dot(v, h) * h - v;
 }
 
-/* eval is a sum of the base's lobe, the coat's and what depends on N.l alone; taken apart by leaving out
- * the factors of the others, each is integrated where it lies, on a grid of midpoints: no randomness, and
- * no lobe that falls between the points. v lies in the plane of x and z; half of the directions do. */
+/* eval is a sum of the base's lobe, the coat's, and terms that depend only on N.l. By setting the
+ * factors of the others to 0, each is integrated over its own directions, on a grid of midpoints:
+ * without randomness, and no lobe falls between the points. v is in the plane of x and z, and so
+ * are half of the directions. */
 vec3 furnace(masu_bsdf b, vec3 v, float coat_alpha, uint steps)
 {
     masu_bsdf lobes = b, coat = b;
@@ -84,7 +83,8 @@ vec3 furnace(masu_bsdf b, vec3 v, float coat_alpha, uint steps)
         vec3 row = vec3(0.0);
         for (uint k = 0u; k < steps; k++) {
             vec2 u = (vec2(i, k) + 0.5) / float(steps);
-            /* Normals far out are few but cut off sharply where l sets: smaller steps there. */
+            /* Normals far out are few, but end abruptly at the horizon of l: smaller steps
+             * there. */
             vec2 w = vec2(1.0 - (1.0 - u.x) * (1.0 - u.x), u.y);
             float size = 2.0 * (1.0 - u.x);
             vec3 l = visible_direction(b.alpha, v, w);
@@ -98,7 +98,7 @@ vec3 furnace(masu_bsdf b, vec3 v, float coat_alpha, uint steps)
                     row += masu_bsdf_eval(coat, l) * size / (pi * visible_pdf(coat_alpha, v, l));
                 }
             }
-            /* N.l = u^4: it may change within 0.001 of the horizon. */
+            /* N.l = u^4, because it can change within 0.001 of the horizon. */
             float z = u.x * u.x * u.x * u.x;
             l = vec3(sqrt(1.0 - z * z) * vec2(cos(pi * u.y), sin(pi * u.y)), z);
             vec3 f = masu_bsdf_eval(b, l) - masu_bsdf_eval(lobes, l);

@@ -1,4 +1,4 @@
-/* meso.comp: shaders/brdf/meso.glsl by itself, for tests/gpu/test_meso.c. pc.y: how many cases. */
+/* meso.comp: runs shaders/brdf/meso.glsl for tests/gpu/test_meso.c. pc.y: number of cases. */
 #version 440
 #extension GL_GOOGLE_include_directive : require
 #include "brdf/meso.glsl"

@@ -8,7 +8,7 @@ layout(local_size_x = 64) in;
 
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_INSTANCES, std430) buffer Points
 {
-    vec4 points[]; /* position and how many, normal; the second becomes what was found */
+    vec4 points[]; /* position and number of points, normal; the result replaces the second */
 };
 
 void main()

@@ -1,5 +1,5 @@
-/* store.comp: the macros of shaders/shared/store.glsl on an image of words, for test_store.c: what would be stored
- * where, and how often something was replaced. */
+/* store.comp: the macros of shaders/shared/store.glsl on an image of integers, for test_store.c:
+ * the values and positions stored, and how often a value was replaced. */
 #version 440
 #extension GL_GOOGLE_include_directive : require
 
@@ -34,7 +34,7 @@ void keep(uvec4 v)
 
 #include "shared/store.glsl"
 
-/* Of each value: as UNORM, HALF, R32F, TEN within the image, then UNORM at places around it. */
+/* For each value: UNORM, HALF, R32F, TEN inside the image, then UNORM at positions around it. */
 void main()
 {
     uint i = gl_GlobalInvocationID.x;

@@ -1,4 +1,4 @@
-/* tally.comp: a loop of as many rounds as the invocation's number says, for test_model. */
+/* tally.comp: a loop with the invocation's number of iterations, for test_model. */
 #version 440
 
 layout(local_size_x = 64) in;

@@ -1,6 +1,5 @@
-/* test_agreement.c: polygons and SDF see the same world: a sphere given once as fine mesh and once
- * as SDF, and a box that cuts through an SDF sphere, both against rays intersected in double
- * precision. */
+/* test_agreement.c: polygons and SDF give the same image: a sphere as a fine mesh and as an SDF,
+ * and a box that cuts through an SDF sphere, both against rays intersected in double precision. */
 #include "support/support.h"
 #include "support/floats.h"
 #include "reference/vec.h"
@@ -14,7 +13,7 @@ enum { W = 256, H = 192 };
 /* ---- Rays in double precision ---------------------------------------------------------------- */
 
 typedef struct eye {
-    vec position, forward, right, up; /* right and up carry the tangents */
+    vec position, forward, right, up; /* right and up include the tangents of the field of view */
     double pixel;                     /* pixel size at view depth 1 */
 } eye;
 
@@ -30,8 +29,8 @@ static eye make_eye(const masu_camera *c, uint32_t width, uint32_t height) {
     return e;
 }
 
-/* Through pixel coordinates (x, y), the centre of the first pixel being (0.5, 0.5); length 1 in
- * view depth. */
+/* Ray through pixel coordinates (x, y), with the centre of the first pixel at (0.5, 0.5); length 1
+ * in view depth. */
 static vec ray_through(const eye *e, double x, double y) {
     return vec_add(e->forward, vec_add(vec_scale(e->right, 2 * x / W - 1), vec_scale(e->up, 1 - 2 * y / H)));
 }
@@ -63,7 +62,7 @@ static double silhouette_pixels(const eye *e, vec d, double radius) {
     return (sqrt(vec_dot(nearest, nearest)) - radius) / (e->pixel * along);
 }
 
-/* ---- Pictures -------------------------------------------------------------------------------- */
+/* ---- Images ---------------------------------------------------------------------------------- */
 
 typedef struct picture {
     float depth[W * H]; /* view depth, 0: nothing */
@@ -109,9 +108,9 @@ static const masu_camera cameras[] = {
 
 /* ---- Tests ----------------------------------------------------------------------------------- */
 
-/* How far (relative) the depth of a pixel moves when the surface moves by `grid` pixels across the
- * screen: a rasteriser snaps vertices to a grid (16 steps a pixel on one driver, 256 on another),
- * which at grazing angles is more than 1e-3. */
+/* Relative change of a pixel's depth when the surface moves by `grid` pixels across the screen: a
+ * rasteriser snaps vertices to a grid (16 steps per pixel on one driver, 256 on another), which at
+ * grazing angles is more than 1e-3. */
 static double grid_slack(const eye *e, double x, double y, double truth, double radius,
                          double grid) {
     double most = 0;
@@ -123,7 +122,7 @@ static double grid_slack(const eye *e, double x, double y, double truth, double 
     return most;
 }
 
-/* grid: of the rasteriser, pixels; 0 for a march, which gets no slack. */
+/* grid: of the rasteriser, pixels; 0 for sphere tracing, which has no tolerance. */
 static void compare_with_truth(const picture *p, const eye *e, double radius, double grid,
                                const char *what) {
     double worst_pixels = 0, worst_depth = 0, worst_beyond = 0, worst_angle = 0;
@@ -138,7 +137,7 @@ static void compare_with_truth(const picture *p, const eye *e, double radius, do
                 continue;
             }
             if (!(got > 0) || off < 1)
-                continue; /* at the rim depth changes without bound per pixel */
+                continue; /* at the rim, depth has no bounded change per pixel */
             hits++;
             worst_depth = worst_of(worst_depth, fabs(got / truth - 1));
             double slack = grid > 0 ? grid_slack(e, x + 0.5, y + 0.5, truth, radius, grid) : 0;
@@ -151,7 +150,7 @@ static void compare_with_truth(const picture *p, const eye *e, double radius, do
         }
     }
     print_message(
-        "  %s: %u pixels, silhouette off by %.3f px, depth by %.2e, normal by %.3f degrees\n", what,
+        "  %s: %u pixels, silhouette error %.3f px, depth %.2e, normal %.3f degrees\n", what,
         hits, worst_pixels, worst_depth, worst_angle);
     assert_true(hits > 2000);
     assert_true(worst_pixels < 1.0);
@@ -225,7 +224,7 @@ static void the_nearer_of_polygon_and_sdf_wins_at_every_pixel(void **state) {
     static picture p;
     masu_session s;
     open_for_pictures(&s, "test_both");
-    /* A rotation of our own, so that the test knows it: about (1, 2, 3) by 0.8. */
+    /* The test sets its own rotation: about (1, 2, 3) by 0.8. */
     vec k = vec_unit((vec){1, 2, 3});
     double cosine = cos(0.8), sine = sin(0.8);
     vec columns[3], unit_axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -246,7 +245,7 @@ static void the_nearer_of_polygon_and_sdf_wins_at_every_pixel(void **state) {
     uint32_t counts[3] = {0}, border = 0;
     for (uint32_t y = 0; y < H; y++) {
         for (uint32_t x = 0; x < W; x++) {
-            /* Pixels within one pixel of a border may go either way. */
+            /* Pixels within one pixel of a border may be either. */
             int want = nearest(&e, x + 0.5, y + 0.5, columns), same = 1;
             for (int n = 0; n < 9; n++)
                 same &= nearest(&e, x + n % 3 - 0.5, y + n / 3 - 0.5, columns) == want;
@@ -256,7 +255,7 @@ static void the_nearer_of_polygon_and_sdf_wins_at_every_pixel(void **state) {
             }
             const uint8_t *albedo = &p.albedo[4 * (y * W + x)];
             int got = p.depth[y * W + x] <= 0 ? NOTHING : albedo[2] > albedo[0] ? BOX : SPHERE;
-            if (got != want) fail_msg("pixel %u,%u shows %d, the truth is %d", x, y, got, want);
+            if (got != want) fail_msg("pixel %u,%u shows %d, the reference is %d", x, y, got, want);
             counts[want]++;
         }
     }
@@ -266,8 +265,8 @@ static void the_nearer_of_polygon_and_sdf_wins_at_every_pixel(void **state) {
     close_session(&s);
 }
 
-/* The camera is inside an SDF solid, which a ray meets where it begins: at the near plane, depth 1.
- * A plate lies exactly there, with numbers that floats hold. */
+/* The camera is inside an SDF solid, which a ray hits at its start: at the near plane, depth 1. A
+ * plate is exactly there, with numbers that floats represent exactly. */
 static void at_the_same_depth_the_polygon_wins(void **state) {
     (void)state;
     static picture p;
@@ -281,17 +280,18 @@ static void at_the_same_depth_the_polygon_wins(void **state) {
     masu_frame_desc frame = {.camera = &c};
     uint32_t plate[3] = {0};
     for (int i = 0; i < 3; i++) {
-        /* On the near plane; behind it; on it again. */
+        /* On the near plane; behind it; again on it. */
         const float rows[12] = {1, 0, 0, 0, 0, 1, 0, i == 1 ? -0.25f : 0, 0, 0, 1, 0};
         assert_int_equal(masu_instance_set_transform(s.m, masu_instance_find(s.m, "plate"), rows, NULL),
                          MASU_OK);
         take_picture(&s, &frame, &p);
         for (uint32_t k = 0; k < W * H; k++) {
-            assert_true(p.depth[k] >= 0.5f && p.depth[k] < 0.500001f); /* view depth: near / 1; GPUs divide a little off */
+            /* view depth: near / 1; GPU divisions are slightly inexact */
+            assert_true(p.depth[k] >= 0.5f && p.depth[k] < 0.500001f);
             plate[i] += p.albedo[4 * k + 2] > p.albedo[4 * k];
         }
     }
-    /* A plate of 0.25 at 0.5, where the picture's height is 0.365. */
+    /* A plate of 0.25 at 0.5, at which the image's height is 0.365. */
     print_message("  the plate has %u pixels on the near plane, %u behind it\n", plate[0],
                   plate[1]);
     assert_in_range(plate[0], 131 * 131, 133 * 133);

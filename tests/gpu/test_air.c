@@ -1,5 +1,6 @@
-/* test_air.c: fog in the picture. Each pixel with fog, against the same pixel without and what a numeric
- * integral in double along its ray says that the fog leaves of it and adds. */
+/* test_air.c: fog in the image. Each pixel with fog is compared with the same pixel without fog,
+ * times the transmittance plus the in-scattered light, from numeric integration in double precision
+ * along its ray. */
 #include "support/support.h"
 #include "support/floats.h"
 
@@ -35,7 +36,7 @@ static double integral(const masu_light *l, double height, double climb, double 
     return (double)l->fog_density * sum * step / 3;
 }
 
-/* The largest difference from what is expected, as a share of the pixel. */
+/* The largest difference from the expected value, relative to the pixel. */
 static double compare(const masu_camera *camera, masu_light light) {
     double tan_y = tan((double)camera->fov_y / 2), worst = 0;
     float density = light.fog_density;
@@ -44,7 +45,7 @@ static double compare(const masu_camera *camera, masu_light light) {
     light.fog_density = density;
     render(camera, &light, foggy);
     for (uint32_t i = 0; i < PIXELS; i++) {
-        /* Seen along -z. */
+        /* The camera looks along -z. */
         double ray[3] = {((i % SIDE + 0.5) / SIDE * 2 - 1) * tan_y,
                          (1 - (i / SIDE + 0.5) / SIDE * 2) * tan_y, -1};
         double length = sqrt(ray[0] * ray[0] + ray[1] * ray[1] + 1);
@@ -53,7 +54,7 @@ static double compare(const masu_camera *camera, masu_light light) {
         if (depths[i] > 0) {
             depth = integral(&light, height, climb,
                              (double)camera->near_distance / (double)depths[i] * length);
-        } else if (light.fog_falloff > 0 && climb > 0) { /* the rest of an endless ray: nothing */
+        } else if (light.fog_falloff > 0 && climb > 0) { /* the rest of an infinite ray: nothing */
             double end = (double)light.fog_start + 40 / ((double)light.fog_falloff * climb);
             depth = integral(&light, height, climb, end);
         } else {
@@ -105,14 +106,14 @@ static void fog_is_what_an_integral_says(void **state) {
                               .fov_y = 1.2f,
                               .near_distance = 0.1f};
         double off = compare(&camera, fog_of(r[0], r[1], r[2], r[3]));
-        print_message("density %g, falloff %g, start %g, eye at %g: off by %.5f of itself\n",
+        print_message("density %g, falloff %g, start %g, eye at %g: relative error %.5f\n",
                       (double)r[0], (double)r[2], (double)r[3], (double)r[4], off);
-        assert_true(off < 0.003); /* halves are off by 2^-11, twice */
+        assert_true(off < 0.003); /* half floats have an error of 2^-11, twice */
     }
     close_session(&s);
 }
 
-/* A million metres up, and the same down here. */
+/* A million metres up, compared with the origin. */
 static void fog_has_its_height_anywhere(void **state) {
     (void)state;
     static float here[4 * PIXELS];
@@ -129,7 +130,7 @@ static void fog_has_its_height_anywhere(void **state) {
     close_session(&s);
 }
 
-/* Of the sky at the horizon, there is no edge, and thick fog is what the horizon is. */
+/* Fog over the sky has no edge at the horizon, and thick fog has the horizon's colour. */
 static void fog_of_the_sky_meets_the_horizon(void **state) {
     (void)state;
     open_scene("test_fog");

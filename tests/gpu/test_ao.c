@@ -1,8 +1,8 @@
-/* test_ao.c: ambient occlusion in screen space against the truth of scenes that have one in closed form
- * (a corner of three planes, a ball on a floor), that truth against rays (tests/support/ao.h), and
- * what must hold whatever the error: planes hide nothing of themselves, a camera at rest sees a
- * picture at rest, nothing outside of the picture's rectangle is looked at, the SDF's own occlusion
- * is kept, and scenes that do not ask have none of it. */
+/* test_ao.c: screen-space ambient occlusion: its error in scenes with a closed-form reference (a
+ * corner of three planes, a ball on a floor), and that reference against ray tracing
+ * (tests/support/ao.h). Properties that hold at any error: planes do not occlude themselves, a
+ * stationary camera gives a constant image, nothing outside of the rendered rectangle is read, the
+ * SDF's own occlusion is kept, and scenes that do not request it have no cost. */
 #include "support/files.h"
 #include "support/floats.h"
 #include "support/shadow.h"
@@ -19,11 +19,11 @@
 enum { W = 160, H = 120, RAYS = 512 };
 
 static masu_session s;
-static uint32_t slot; /* of the frame drawn last */
+static uint32_t slot; /* of the last rendered frame */
 
 /* ---- Scenes ---------------------------------------------------------------------------------- */
 
-/* models: the members of the scene but for the occlusion. radius 0: it asks for none. */
+/* models: the members of the scene except the occlusion. radius 0: it requests none. */
 static void bake_ao(const char *name, double radius, const char *members) {
     char json[2048];
     if (radius > 0) {
@@ -68,15 +68,15 @@ static const char floor_alone[] =
     "\"camera\": {\"fov_y\": 70, \"near\": 0.05, \"keys\": [{\"position\": [0, 0.4, 0], "
     "\"target\": [0.3, 0.3, -2]}]}";
 
-/* A plate in front of a wall that faces the same way. */
+/* A plate in front of a wall with the same orientation. */
 static const char plate[] =
     "\"models\": [{\"mesh\": {\"box\": {\"size\": [8, 8, 0.1]}}, \"translate\": [0, 0, -0.05]},"
     "{\"mesh\": {\"box\": {\"size\": [1, 1, 0.02]}}, \"translate\": [0, 0, 0.29]}],"
     "\"camera\": {\"fov_y\": 40, \"near\": 0.05, \"keys\": [{\"position\": [0, 0, 4], \"target\": [0, 0, 0]}]}";
 
-/* ---- Truth ----------------------------------------------------------------------------------- */
+/* ---- Reference ------------------------------------------------------------------------------- */
 
-/* Distance of the nearest surface along a ray that starts on one, by formula. */
+/* Distance of the nearest surface along a ray that starts on a surface, by formula. */
 static double corner_at(const double p[3], const double d[3]) {
     double nearest = 1e30;
     for (int k = 0; k < 3; k++) {
@@ -142,7 +142,7 @@ static int surface_at(const masu_camera *c, double near, uint32_t i, surface *ou
 }
 
 typedef struct errors {
-    /* rays, none: root mean square of what the truth by rays is off by, and a 1 everywhere. */
+    /* rays: RMS difference of the ray-traced reference; none: error of a constant 1 */
     double rmse, mean, worst, rays, none;
     uint32_t count;
 } errors;
@@ -200,14 +200,14 @@ static void the_error_against_the_truth_is_as_stated(void **state) {
         draw_from(NULL);
         errors e = compare(stated[i].name, stated[i].at, stated[i].radius);
         close_session(&s);
-        assert_true(2 * e.rmse < e.none); /* than without any of it */
+        assert_true(2 * e.rmse < e.none); /* than without ambient occlusion */
         assert_true(e.rays < 0.02);
         assert_true(e.rmse <= stated[i].rmse && fabs(e.mean) <= stated[i].mean &&
                     e.worst <= stated[i].worst);
     }
 }
 
-/* More samples are nearer to the truth. */
+/* More samples have a lower error. */
 static void more_samples_are_nearer_to_the_truth(void **state) {
     (void)state;
     double before = 1;
@@ -224,12 +224,13 @@ static void more_samples_are_nearer_to_the_truth(void **state) {
     }
 }
 
-/* ---- What holds whatever the error ----------------------------------------------------------- */
+/* ---- Properties at any error ----------------------------------------------------------------- */
 
 static void a_plane_hides_nothing_of_itself(void **state) {
     (void)state;
     static const double radii[] = {0.05, 1, 1000};
-    /* SwiftShader's and GPUs' depths of a floor that is cut by the near plane are off by up to millimetres. */
+    /* On SwiftShader and GPUs, depths of a floor that the near plane clips have errors of up to
+     * millimetres. */
     const char *driver = getenv("MASU_TEST_DRIVER");
     int third = driver && strstr(driver, "swiftshader");
     for (int i = 0; i < 3; i++) {
@@ -242,7 +243,8 @@ static void a_plane_hides_nothing_of_itself(void **state) {
         uint32_t sky = 0, surface = 0, low = 0;
         double least = 1, sum = 0;
         for (uint32_t k = 0; k < 256 * 192; k++) {
-            assert_int_equal(seen[k] & 0xFFFF, 0xFFFF); /* no shadow map, no SDF: all of the sun */
+            /* no shadow map, no SDF: the sun is fully visible */
+            assert_int_equal(seen[k] & 0xFFFF, 0xFFFF);
             if (!(depths[k] > 0)) {
                 assert_int_equal(seen[k] >> 16, 0xFFFF);
                 sky++;
@@ -254,8 +256,8 @@ static void a_plane_hides_nothing_of_itself(void **state) {
             low += ambient_share(seen, k) < 0.985;
         }
         close_session(&s);
-        print_message("radius %g: seen part of a plane %.4f at least, %.4f in the mean, %u of %u below "
-                      "0.985\n",
+        print_message("radius %g: visibility on a plane %.4f at least, %.4f in the mean, %u of %u "
+                      "below 0.985\n",
                       radii[i], least, sum / surface, low, surface);
         assert_true(sky > 1000 && surface > 1000);
         assert_true(least > (coarse ? 0.85 : 0.985));
@@ -263,7 +265,7 @@ static void a_plane_hides_nothing_of_itself(void **state) {
     }
 }
 
-/* What the wall sees little of beside the plate's edge is the wall's: the plate stands free. */
+/* Occlusion of the wall near the plate's edge is only on the wall: the plate is unoccluded. */
 static void what_lies_behind_darkens_nothing_before_it(void **state) {
     (void)state;
     bake_ao("plate", 1, plate);
@@ -279,7 +281,8 @@ static void what_lies_behind_darkens_nothing_before_it(void **state) {
         if (fabs(z - 4.0) < 0.01) dark += share < 0.8;
     }
     close_session(&s);
-    print_message("%u pixels of the plate, %.4f seen at least; %u dark ones of the wall\n", before, least, dark);
+    print_message("%u pixels of the plate, visibility %.4f at least; %u dark ones of the wall\n",
+                  before, least, dark);
     assert_true(before > 1000 && dark > 200);
     assert_true(least > 0.97);
 }
@@ -302,8 +305,8 @@ static void a_camera_at_rest_sees_a_picture_at_rest(void **state) {
     close_session(&s);
 }
 
-/* By an eighth of a pixel at the ball, sixteen times. The pattern of directions stands still on the
- * screen, the surfaces move under it. */
+/* Moves by an eighth of a pixel at the ball, sixteen times. The pattern of directions is fixed on
+ * the screen, the surfaces move under it. */
 static void a_camera_that_creeps_changes_it_little(void **state) {
     (void)state;
     static double before[W * H];
@@ -323,7 +326,7 @@ static void a_camera_that_creeps_changes_it_little(void **state) {
             float n[3];
             masu_unpack_normal(normals[k], n);
             double now = ambient_share(seen, k), d = fabs(now - before[k]);
-            /* The ball's outline moves over the pixels: there it may jump. */
+            /* The ball's outline moves over the pixels: jumps are allowed there. */
             if (i && n[1] > 0.999f) squares += d * d, most = worst_of(most, d), jumps += d > 0.1, count++;
             before[k] = now;
         }
@@ -336,7 +339,8 @@ static void a_camera_that_creeps_changes_it_little(void **state) {
     assert_true(jumps * 1000 <= count);
 }
 
-/* Two sizes in the same images, with and without NaN in all that this frame has not written. */
+/* Two sizes in the same images, with and without NaN in everything that this frame has not
+ * written. */
 static void nothing_outside_of_the_rectangle_is_looked_at(void **state) {
     (void)state;
     static uint32_t kept[2][W * H];
@@ -373,7 +377,7 @@ static const char sdf_members[] =
     "\"target\": [0, 0.4, 0]}]}, \"sdf\": {\"source\": \"ao.sdf\", \"bounds\": [[-20, -1, -20], "
     "[20, 6, 20]], \"max_distance\": 60%s}";
 
-/* Of both, the lesser at each pixel. */
+/* The smaller of both, at each pixel. */
 static void of_both_occlusions_the_lesser_counts(void **state) {
     (void)state;
     static uint32_t own[W * H], screen[W * H];
@@ -381,7 +385,7 @@ static void of_both_occlusions_the_lesser_counts(void **state) {
     write_text("ao.sdf",
                "part ground = plane((0, 1, 0), 0);\npart a = translate((0, 0.6, 0), sphere(0.6));\n"
                "part b = translate((0.9, 0.3, 0.3), box((0.3, 0.3, 0.3)));\n");
-    for (int i = 0; i < 3; i++) { /* its own, by the screen, both */
+    for (int i = 0; i < 3; i++) { /* the SDF's own, screen space, both */
         snprintf(text, sizeof text, sdf_members, i == 1 ? "" : ", \"ambient_occlusion\": {}");
         bake_ao("field", i ? 1 : 0, text);
         open_ao("field", W, H, NULL);
@@ -393,7 +397,7 @@ static void of_both_occlusions_the_lesser_counts(void **state) {
             assert_int_equal(seen[k] >> 16, a < b ? a : b);
             less += a < b;
         }
-        if (i == 2) assert_in_range(less, 100, W * H - 100); /* neither is always the lesser */
+        if (i == 2) assert_in_range(less, 100, W * H - 100); /* neither is always the smaller one */
         if (i < 2) memcpy(i ? screen : own, seen, sizeof own);
         close_session(&s);
     }
@@ -405,7 +409,7 @@ static void scenes_that_do_not_ask_have_none_of_it(void **state) {
     static uint8_t lit[3][4 * W * H];
     uint64_t device[3], host[3], texels[3] = {0};
     masu_readback_image out;
-    for (int i = 0; i < 3; i++) { /* asks for none, asks but the rung has it off, has it */
+    for (int i = 0; i < 3; i++) { /* not requested; requested but off in the rung; on */
         masu_session_desc d = test_desc(NULL, W, H);
         bake_ao("corner", i ? 1 : 0, corner);
         d.scene_path = baked_scene("corner");

@@ -37,7 +37,7 @@ static uint32_t light_count;
 
 static void begin(void) { case_count = light_count = 0; }
 
-/* Its number. The range is so large that the window is 1. */
+/* Returns its number. The range is so large that the window is 1. */
 static uint32_t add_light(masu_punctual_light_state s) {
     double position[3], direction[3], value;
     s.range = 1e6f;
@@ -115,7 +115,8 @@ static void matte_surfaces_have_the_irradiance_of_closed_forms(void **unused) {
         add_matte(add_light((masu_punctual_light_state){.shape = MASU_SHAPE_RECTANGLE, .position = {0, 0, h},
             .direction = {1.5f, 0, 0}, .half_axis = {0, -0.4f, 0}}));
     }
-    for (int i = 0; i < 3; i++) { /* a capsule end on is a disc; long, from aside, a cylinder */
+    for (int i = 0; i < 3; i++) { /* a capsule end-on is a disc; a long one, from the side, a
+                                     cylinder */
         double d = (double[]){3, 4, 20}[i];
         expected[case_count] = i ? 0 : 1 / 9.0;
         if (i) expected[case_count] = 0.1 / d; /* pi r L / d over an infinite one, halves at right angles: 2 r / d * pi / 2 / pi */
@@ -160,22 +161,24 @@ static void mirrors_show_the_radiance_and_surroundings_the_albedo(void **unused)
     for (uint32_t i = 0; i < mirrors; i++)
         assert_true(fabs((double)results[i][1] - 1) < 0.02);
     for (uint32_t i = mirrors; i < case_count; i++) {
-        /* White metal with the light between its facets, or white and matte: all of it returns. */
+        /* White metal with interreflection between its facets, or white and matte: all light is
+         * returned. */
         double is = (double)results[i][0] + (double)results[i][1];
-        /* At grazing views the light between facets is off: one cosine stands for all of the light. */
+        /* At grazing views the interreflection has an error: one cosine represents all of the
+         * light. */
         if (fabs(is - 1) > (cases[i].view[2] > 0.3f ? 0.025 : 0.03)) fail_msg("roughness %g: %g", (double)cases[i].roughness, is);
     }
 }
 
 /* ---- Numerical integration ------------------------------------------------------------------- */
 
-/* A light as the integral needs it: radiance 1 where a direction meets it. */
+/* A light for the integral: radiance 1 if a direction hits it. */
 static int meets_sphere(const double d[3], const double center[3], double s2) {
     double along = dot3(d, center) / sqrt(dot3(center, center));
     return along > 0 && 1 - along * along < s2;
 }
 
-/* Distance along d to the plane's part within the half axes; 0: it misses. */
+/* Distance along d to the plane's part within the half axes; 0: no hit. */
 static double meets_rectangle(const double d[3], const double c[3], const double u[3], const double v[3]) {
     double n[3], at[3];
     cross3(u, v, n);
@@ -186,7 +189,7 @@ static double meets_rectangle(const double d[3], const double c[3], const double
 }
 
 static double meets_capsule(const double d[3], const double c[3], const double u[3], double r) {
-    /* The smallest distance of the ray to the axis, by a fine walk along the axis: slow and plain. */
+    /* The smallest distance of the ray to the axis, from the closest points of both lines. */
     double length = sqrt(dot3(u, u)), e[3], best = 1e30;
     for (int k = 0; k < 3; k++) e[k] = u[k] / length;
     double de = dot3(d, e), ce = dot3(c, e), cd = dot3(c, d), x = de * de < 1 ? (de * cd - ce) / (1 - de * de) : 0;
@@ -200,7 +203,7 @@ static double meets_capsule(const double d[3], const double c[3], const double u
 
 enum { SAMPLES = 200 };
 
-/* A direction of the lobe's visible normals, and its density. */
+/* Probability density of a direction in the lobe's visible normals. */
 static double lobe_density(double alpha, const double v[3], const double l[3]) {
     double h[3] = {v[0] + l[0], v[1] + l[1], v[2] + l[2]}, a2 = alpha * alpha;
     unit3(h);
@@ -232,7 +235,8 @@ static double light_sample(const masu_punctual_light_state *s, const double c[3]
         return facing > 0 ? d2 / (4 * facing) : 0;
     }
     double r = (double)s->radius, axis[3], t[3], across[3], far, low;
-    /* Within the cone around the sphere, or around a capsule's bounding sphere: what misses is 0. */
+    /* Within the cone around the sphere, or around a capsule's bounding sphere: misses contribute
+     * 0. */
     double length = 0;
     for (int k = 0; k < 3; k++) length += s->shape == MASU_SHAPE_CAPSULE ? (double)s->direction[k] * (double)s->direction[k] : 0;
     r += sqrt(length);
@@ -256,7 +260,7 @@ static int light_meets(const masu_punctual_light_state *s, const double c[3], co
     return meets_sphere(l, c, (double)s->radius * (double)s->radius / dot3(c, c));
 }
 
-/* What the surface of a case mirrors, by samples of the light and of the lobe (balance heuristic). */
+/* Reflected light in a case, by samples of the light and of the lobe (balance heuristic). */
 static double integral(const test_case *t) {
     const masu_punctual_light_state *s = &states[(int)t->light];
     brdf_surface surface = {{1, 1, 1}, (double)t->roughness, 1, 0, 0, 0};
@@ -275,7 +279,7 @@ static double integral(const test_case *t) {
         }
         if (!(l[2] > 0) || !light_meets(s, c, l)) continue;
         other = lobe_density(alpha, v, l);
-        if (!(i & 1)) { /* the density of the light's samples there */
+        if (!(i & 1)) { /* the density of the light's samples in this direction */
             if (s->shape == MASU_SHAPE_RECTANGLE) {
                 double u[3], w[3], n[3];
                 for (int k = 0; k < 3; k++) u[k] = (double)s->direction[k], w[k] = (double)s->half_axis[k];
@@ -295,9 +299,9 @@ static double integral(const test_case *t) {
 static const double roughnesses[] = {0.045, 0.1, 0.2, 0.4, 0.7, 1};
 enum { ROUGHNESSES = sizeof roughnesses / sizeof *roughnesses };
 
-/* Integral over all directions of a sphere's centre, more of them near the mirror direction, over the exact
- * one: each direction of light is within the sphere for a solid angle of centres, and white metal with the
- * light between its facets returns all of it. */
+/* Integral over all directions of a sphere's centre, denser near the mirror direction, relative to
+ * the exact one: each light direction is inside the sphere for a solid angle of centres, and white
+ * metal with interreflection between the facets returns all light. */
 static double sphere_energy(double roughness, double sine, double elevation, double *worst) {
     static double weights[LIGHTS_MOST];
     enum { RINGS = 64, TURNS = 12 };

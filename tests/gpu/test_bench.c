@@ -1,7 +1,6 @@
-/* test_bench.c: `masu bench` as a stranger runs it: what lies in the folder, that a run which was
- * stopped goes on where it was, that shards together are the whole, that rungs are timed again, and what
- * is refused. Times are
- * only looked at for being times. */
+/* test_bench.c: runs `masu bench` as a user does: the content of the folder, resuming an
+ * interrupted run, merging shards, timing rungs again, and rejected input. Times are only checked
+ * for being times. */
 #include "support/support.h"
 #include "support/cli.h"
 
@@ -46,8 +45,8 @@ static masu_row *rows_of(const char *folder, uint32_t *count) {
 
 /* ---- Well-formed ----------------------------------------------------------------------------- */
 
-/* Tags close in the order in which they were opened, values of attributes are quoted, and no '<' or
- * lone '&' stands elsewhere: what XML asks for, but for names. */
+/* Tags close in the reverse order of opening, attribute values are quoted, and there is no stray
+ * '<' or '&': the rules of XML, except for names. */
 static void check_markup(const char *name) {
     char *text = read_file(in_scratch(name), NULL), stack[64][32];
     uint32_t depth = 0, elements = 0;
@@ -58,7 +57,7 @@ static void check_markup(const char *name) {
             continue;
         }
         if (c[1] == '!' ||
-            c[1] == '?') { /* comments have no '>' inside, as we and gnuplot write them */
+            c[1] == '?') { /* comments have no '>' inside, in our and gnuplot's output */
             const char *end = strncmp(c, "<!--", 4) ? strchr(c, '>') : strstr(c, "-->");
             assert_non_null(end);
             c = end + 1;
@@ -102,7 +101,7 @@ static void check_markup(const char *name) {
 
 #define SMALL "--quick --size 64x36"
 
-/* Finite where it is promised, NaN where there is none. */
+/* Finite if expected, otherwise NaN. */
 static void there_is(double value, bool wanted, const char *what, const masu_row *row) {
     if (wanted != (isfinite(value) && value >= 0))
         fail_msg("%s: %s is %g", row->setting, what, value);
@@ -141,10 +140,11 @@ static void check_rows(const char *folder, uint32_t least) {
         assert_true(r->flip > 0 && r->flip <= r->flip_p99 && r->rmse > 0 && r->ssim < 1);
         assert_true(fabs(r->psnr_db - 20 * log10(255 / r->rmse)) < 1e-4);
         assert_true(r->rest_flip > 0 && r->rest_flip <= 1 && r->fast_flip > 0 && r->fast_flip <= 1);
-        if (strstr(r->setting, "temporal=on")) { /* at rest it has all of the samples */
+        if (strstr(r->setting, "temporal=on")) { /* the still has all of the samples */
             const masu_row *without = masu_rows_find(rows, count, r->parent);
-            print_message("  %s: at rest %.4f, slow %.4f, fast %.4f; %s: %.4f\n", r->setting, r->rest_flip, r->flip,
-                          r->fast_flip, r->parent, without ? without->flip : (double)NAN);
+            print_message("  %s: still %.4f, slow %.4f, fast %.4f; %s: %.4f\n",
+                          r->setting, r->rest_flip, r->flip, r->fast_flip, r->parent,
+                          without ? without->flip : (double)NAN);
             assert_true(without && r->rest_flip < 0.8 * without->rest_flip);
             if (r->render_width < 64) assert_true(r->rest_flip < 0.9 * r->flip && fabs(r->fast_flip - r->flip) > 0);
         }
@@ -152,8 +152,7 @@ static void check_rows(const char *folder, uint32_t least) {
         assert_non_null(masu_rows_find(rows, count, r->parent));
         for (uint32_t k = 0; k < i; k++) assert_string_not_equal(rows[k].setting, r->setting);
     }
-    /* A scene at rest without reflections does not flicker; fewer pixels are further from the
-     * truth. */
+    /* A static scene without reflections does not flicker; fewer pixels have a higher error. */
     const masu_row *least_pixels = masu_rows_find(rows, count, "scale=0.4");
     assert_non_null(least_pixels);
     assert_true(least_pixels->flip > rows[0].flip && least_pixels->rmse > rows[0].rmse);
@@ -170,7 +169,7 @@ static uint8_t *picture_at_rest(const char *folder, const char *setting, struct 
     return size->rgba;
 }
 
-/* Those that are no jump from the one before. */
+/* Settings that are no jump from the one before. */
 static uint32_t without_jumps(const char *folder, const masu_row *rows, uint32_t *rungs,
                               uint32_t n) {
     uint32_t kept = 0;
@@ -190,7 +189,7 @@ static uint32_t without_jumps(const char *folder, const masu_row *rows, uint32_t
     return kept;
 }
 
-/* The rungs of ladder.json are those of the rows, each with all knobs. */
+/* The rungs of ladder.json match the rows, each with all knobs. */
 static void check_ladder(const char *folder) {
     uint32_t count, rungs[MASU_SETTINGS_MOST];
     masu_ladder_point points[MASU_SETTINGS_MOST];
@@ -239,7 +238,8 @@ static void a_folder_has_rows_rungs_and_a_page(void **state) {
     uint32_t count;
     masu_row *rows = rows_of("whole", &count);
     check_columns(rows, count, true, false);
-    /* The same march: its surfaces are those of the most exact rung. Few steps miss some. */
+    /* The same march: its surfaces are equal to those of the most exact rung. Few steps miss
+     * some. */
     const masu_row *few = masu_rows_find(rows, count, "march_steps=64");
     assert_non_null(few);
     assert_true(rows[0].hitmiss_pct <= 0 && rows[0].depth_mean_px <= 0);
@@ -253,7 +253,7 @@ static void a_folder_has_rows_rungs_and_a_page(void **state) {
     }
     char *page = read_file(in_scratch("whole/index.html"), NULL);
     assert_non_null(strstr(page, "data:image/png;base64,iVBOR"));
-    assert_null(strstr(page, "src=\"h")); /* nothing from elsewhere */
+    assert_null(strstr(page, "src=\"h")); /* no external files */
     assert_non_null(strstr(page, "The ladder"));
     static const char *const parts[] = {"HDR-FLIP",   "hit/miss", "relMSE",
                                         "<td>-</td>", "Masu 0.",  " UTC: "};
@@ -271,7 +271,7 @@ static void a_folder_has_rows_rungs_and_a_page(void **state) {
     free(json);
 }
 
-/* The folder of the test before, against itself. What it says is test_bench_against's. */
+/* Compares the folder of the test before with itself. test_bench_against tests the content. */
 static void two_folders_are_compared(void **state) {
     (void)state;
     char *text;
@@ -295,7 +295,7 @@ static void reflections_have_an_error_of_their_own(void **state) {
     (void)state;
     const char *scene = scene_path("test_reflections");
     uint32_t count, again;
-    /* The base, no reflections, and the same at half size are those with numbers 0, 10 and 11. */
+    /* The base, no reflections, and the same at half size have the numbers 0, 10 and 11. */
     for (int i = 0; i < 3; i++) {
         assert_int_equal(bench("%s " SMALL " --reference 4 --runs 1 --shard %d/24 --validate"
                                " --truth %s/mirror.png --out %s/mirror%d",
@@ -310,10 +310,10 @@ static void reflections_have_an_error_of_their_own(void **state) {
     check_columns(rows, count, true, true);
     const masu_row *none = masu_rows_find(rows, count, "specular=off");
     assert_non_null(none);
-    /* Mirrors of no roughness: a ray is exact. Without them what they show is missing. */
+    /* Perfect mirrors: a ray is exact. Without reflections their light is missing. */
     assert_true(rows[0].specular_relmse < 1e-4 && none->specular_relmse > 0.01);
     assert_true(none->hdr_flip > rows[0].hdr_flip);
-    /* What was drawn first, read again from the files beside the truth. */
+    /* The first images, read again from the files, and compared with the ground truth. */
     assert_int_equal(bench("%s " SMALL " --reference 4 --runs 1 --shard 0/24"
                            " --truth %s/mirror.png --out %s/again",
                            scene, scratch, scratch),
@@ -326,8 +326,8 @@ static void reflections_have_an_error_of_their_own(void **state) {
     free(rows);
 }
 
-/* One row makes a page. The field in double precision is beside this scene, and is what depth is
- * compared with. */
+/* One row makes a page. The field in double precision is next to this scene, and depth is compared
+ * with it. */
 static void one_row_is_a_page_and_depth_is_compared_with_the_field(void **state) {
     (void)state;
     char path[512];
@@ -347,13 +347,13 @@ static void one_row_is_a_page_and_depth_is_compared_with_the_field(void **state)
     uint32_t count;
     masu_row *rows = rows_of("exact", &count);
     assert_int_equal(count, 1);
-    /* Not 0: the field's own march is of double precision. */
+    /* Not 0: the field's own march is in double precision. */
     assert_true(rows[0].depth_mean_px > 0 && rows[0].depth_mean_px < 0.1);
     assert_true(rows[0].hitmiss_pct < 1);
     free(rows);
 }
 
-/* The folder of the test before, with its last rows cut off, one of them in the middle. */
+/* The folder of the test before, with its last rows removed, one of them cut in half. */
 static void a_run_that_was_stopped_goes_on(void **state) {
     (void)state;
     uint32_t before, after;
@@ -370,12 +370,13 @@ static void a_run_that_was_stopped_goes_on(void **state) {
     assert_int_equal(after, before);
     for (uint32_t i = 0; i < after; i++) {
         assert_string_equal(rows[i].setting, old[i].setting);
-        assert_true(fabs(rows[i].flip - old[i].flip) <= 0); /* pictures are the same in every run */
+        assert_true(fabs(rows[i].flip - old[i].flip) <= 0); /* images are the same in every run */
     }
     check_rows("whole", 10);
     free(rows);
     free(old);
-    /* Stills of the rungs, by a reference of the same moment: the first rung has its light. */
+    /* Stills of the rungs, compared with a reference of the same moment: the first rung has its
+     * light. */
     assert_int_equal(cli_run("render %s -o %s/golden.exr --truth=16 --time 1 --size 128x72",
                              scene_path("test_both"), scratch),
                      0);
@@ -397,8 +398,8 @@ static void a_run_that_was_stopped_goes_on(void **state) {
     said("another sweep");
 }
 
-/* The rows of the text from `line` on as another build would have written them; at most `most` of
- * them remain. */
+/* Changes the rows of the text from `line` on to those of another build; at most `most` of the rows
+ * remain. */
 static void paint(char *line, uint32_t most) {
     for (char *next; (next = strchr(line, '\n')); line = next + 1, most--) {
         if (!most) break;
@@ -408,7 +409,7 @@ static void paint(char *line, uint32_t most) {
     *line = '\0';
 }
 
-/* One program measures into a folder, and one build of it. */
+/* Only one program, and one build, measures into a folder. */
 static void rows_of_two_programs_are_refused(void **state) {
     (void)state;
     char path[256];
@@ -427,7 +428,7 @@ static void rows_of_two_programs_are_refused(void **state) {
     write_text("whole/results.csv", changed);
     assert_int_equal(bench("%s " SMALL " --out %s/whole", scene_path("test_both"), scratch), 1);
     said("another build of the program: found 0123456789abcdef");
-    /* All by another build, and one that is still to be measured. */
+    /* All by another build, with one still to be measured. */
     strcpy(changed, text);
     paint(strchr(changed, '\n') + 1, count - 1);
     write_text("whole/results.csv", changed);
@@ -466,7 +467,7 @@ static void shards_together_are_the_whole(void **state) {
     assert_true(is_in_scratch("merged/truth.png") && is_in_scratch("merged/machine.json"));
     check_ladder("merged");
     check_markup("merged/index.html");
-    /* What is merged into itself stays; what is not of the same sweep is refused. */
+    /* Merging a folder into itself changes nothing; a folder of another sweep is rejected. */
     assert_int_equal(bench("--merge %s/merged --out %s/merged --quiet", scratch, scratch), 0);
     assert_string_equal(cli_out, "");
     assert_int_equal(bench("%s --quick --size 48x27 --shard 0/20 --out %s/other", scene, scratch), 0);
@@ -476,7 +477,7 @@ static void shards_together_are_the_whole(void **state) {
     said("sweep.json");
 }
 
-/* Slow cascades and what a scene remembers. */
+/* Slow cascades and temporal state. */
 static void slow_shadows_are_timed_over_their_whole_period(void **state) {
     (void)state;
     assert_int_equal(bench("%s " SMALL " --runs 1 --shard 8/13 --validate --out %s/slow",
@@ -498,7 +499,8 @@ static masu_setting_list rungs_in(const char *folder) {
     return rungs;
 }
 
-/* All rows of the folder's tables have those errors, and the times of steady.csv where it has some. */
+/* All rows of the folder's tables have those errors, and the times of steady.csv if they have
+ * any. */
 static void check_steady(const char *folder, const masu_row *old, uint32_t old_count) {
     char name[256], error[512];
     uint32_t count, steady_count;
@@ -529,7 +531,7 @@ static void check_steady(const char *folder, const masu_row *old, uint32_t old_c
     free(text);
 }
 
-/* A table of a folder alone, not with the times of the other. */
+/* One table of a folder, without the times of the other. */
 static masu_row *table_of(const char *folder, const char *file, uint32_t *count) {
     char name[256], error[512];
     snprintf(name, sizeof name, "%s/%s", folder, file);
@@ -551,7 +553,7 @@ static void write_table(const char *folder, const char *file, const masu_row *ro
     assert_int_equal(fclose(f), 0);
 }
 
-/* Times that no frame has, in a table of those settings or of all. */
+/* Impossible times, in a table, for one setting or for all. */
 static void spoil(const char *folder, const char *file, const char *setting) {
     uint32_t count;
     masu_row *rows = table_of(folder, file, &count);
@@ -567,7 +569,7 @@ static void spoil(const char *folder, const char *file, const char *setting) {
 
 static bool spoilt(const masu_row *row) { return row->wall_min > 12344 || row->ratio < 2e-3; }
 
-/* At rest that setting looks as the last rung does: it is no jump. */
+/* Makes the setting's still equal to the last rung's: it is no jump. */
 static void no_jump(const char *folder, const char *setting) {
     const masu_setting_list rungs = rungs_in(folder);
     struct masu_image shown = {0};
@@ -579,8 +581,8 @@ static void no_jump(const char *folder, const char *setting) {
     masu_image_free(&shown);
 }
 
-/* The folder of the first test, in which nothing else is left to do. One of its rows has a time so short
- * that it is a rung for sure: measured again it has not. */
+/* The folder of the first test, in which nothing else is left to do. One of its rows has a time so
+ * short that it is certainly a rung; measured again, it is not. */
 static void rungs_are_timed_again(void **state) {
     (void)state;
     const char *scene = scene_path("test_both"), *quick = "scale=0.4";
@@ -612,12 +614,12 @@ static void rungs_are_timed_again(void **state) {
     free(old);
 }
 
-/* As in a clone of the project, which has the rows of its reports alone. */
+/* As in a clone of the project, which has only the rows of its reports. */
 static void a_row_without_its_picture_is_measured_again(void **state) {
     (void)state;
     char path[512];
     uint32_t before, after;
-    const char *setting = "scale=0.4"; /* it has been timed again */
+    const char *setting = "scale=0.4"; /* it has been measured again */
     masu_row *old = rows_of("whole", &before);
     spoil("whole", "steady.csv", setting);
     snprintf(path, sizeof path, "%s/whole/pictures/%s.png", scratch, setting);
@@ -658,7 +660,7 @@ static void both_tables_are_joined_and_forgotten_together(void **state) {
     assert_int_equal(bench("--merge %s/whole --out %s/joined", scratch, scratch), 0);
     check_same_table("whole", "joined", "results.csv");
     check_same_table("whole", "joined", "steady.csv");
-    /* Times of a row that is gone are gone with it, though its picture is there. */
+    /* Times of a removed row are removed too, although its image exists. */
     spoil("joined", "steady.csv", NULL);
     snprintf(path, sizeof path, "%s/joined/results.csv", scratch);
     assert_int_equal(unlink(path), 0);
@@ -697,8 +699,8 @@ static void rungs_alone_are_measured_elsewhere(void **state) {
     free(whole);
 }
 
-/* The folder odd: that of the tests before, but of its rows only the base and one that is quick for sure,
- * by a name that no scene has. */
+/* A folder "odd" with only two rows of the tests before: the base, and one that is certainly fast,
+ * under a name that no scene has. */
 static void make_odd(void) {
     char path[256];
     uint32_t count;

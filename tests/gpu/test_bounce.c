@@ -1,5 +1,6 @@
-/* test_bounce.c: live probes in whole frames, under the validation layer: a white furnace, two rooms with a door
- * and a lamp, a corner under baked daylight. What the probes hold is read where the device has it. */
+/* test_bounce.c: live probes in whole frames, under the validation layer: a white furnace, two
+ * rooms with a door and a lamp, a corner under baked daylight. The probes are read in device
+ * memory. */
 #include "support/support.h"
 #include "support/files.h"
 #include "support/gltf_file.h"
@@ -26,7 +27,7 @@ typedef struct rooms {
     void *blob;
     masu_scene_view v;
     uint32_t probes;
-    uint32_t *live, *sets; /* on the device */
+    uint32_t *live, *sets; /* in device memory */
 } rooms;
 
 static void open_rooms_at(rooms *r, const char *path) {
@@ -68,7 +69,7 @@ static void frame(rooms *r) {
     draw(&r->s, &(masu_frame_desc){.time_step = 1.0f / 60}, &commands, NULL);
 }
 
-/* Frames until so many rounds without a change have passed. */
+/* Renders frames until this number of rounds without a change has passed. */
 static uint32_t settle(rooms *r, uint32_t rounds) {
     uint32_t frames = 0;
     do frame(r), frames++;
@@ -83,7 +84,7 @@ static float half_at(const uint32_t *words, uint32_t i) {
 
 static int is_valid(const rooms *r, uint32_t probe) { return half_at(r->live + (size_t)probe * MASU_PROBE_LIT_WORDS, 3) > 0; }
 
-/* Mean irradiance / pi, green, of points on the floor from x to x + 1.6, by the lookup of the picture. */
+/* Mean irradiance / pi, green, of points on the floor from x to x + 1.6, by the shader's lookup. */
 static double floor_at(const rooms *r, float x) {
     uint64_t random = 5;
     double sum = 0;
@@ -107,7 +108,8 @@ static void light_up(rooms *r, float color) {
 
 /* ---- The furnace ----------------------------------------------------------------------------- */
 
-/* Walls that emit 0.5 and reflect half, of which the specular part is 0.0221 beside a base colour of 0.4887: all is 1. */
+/* Walls that emit 0.5 and reflect half, with a specular part of 0.0221 and a base colour of 0.4887:
+ * the result is 1 everywhere. */
 static void a_furnace_is_1_everywhere(void **state) {
     (void)state;
     rooms r;
@@ -184,7 +186,7 @@ static void a_furnace_of_strong_dielectrics(void **state) {
     close_rooms(&r);
 }
 
-/* What is no number in a set is gone with the set, and in no picture. */
+/* NaN in a set disappears with the set, and never appears in the image. */
 static void poison_is_gone_after_a_window(void **state) {
     (void)state;
     rooms r;
@@ -196,7 +198,7 @@ static void poison_is_gone_after_a_window(void **state) {
         const uint16_t *pixels = draw_image(&r.s, &(masu_frame_desc){.time_step = 0.01f}, MASU_READBACK_HDR, NULL);
         for (uint32_t i = 0; i < W * H * 4; i++) assert_true((pixels[i] & 0x7C00u) != 0x7C00u);
     }
-    (void)settle(&r, 28); /* set 0 has had its turn */
+    (void)settle(&r, 28); /* set 0 has been replaced */
     uint32_t words = r.probes * MASU_BOUNCE_SETS * MASU_PROBE_WORDS;
     for (uint32_t i = 0; i < words; i++)
         assert_true((r.sets[i] & 0x7C00u) != 0x7C00u && (r.sets[i] >> 16 & 0x7C00u) != 0x7C00u);
@@ -215,7 +217,7 @@ static void light_comes_rises_rests_and_stays_behind_a_door(void **state) {
     light_up(&r, 0);
     (void)settle(&r, 8);
     assert_true(floor_at(&r, 0.2f) == 0);
-    /* On: it rises until it is there. */
+    /* Switched on: the light rises to its final value. */
     static double curve[4096];
     uint32_t frames = 0, at_90 = 0;
     light_up(&r, 2);
@@ -233,7 +235,8 @@ static void light_comes_rises_rests_and_stays_behind_a_door(void **state) {
     print_message("%u probes: 90 %% after %u frames, at most %u; largest fall %.4f, most %.4f\n", r.s.m->bounce.valid,
                   at_90 + 1, bound, fall, most);
     assert_true(final > 0.01 && at_90 + 1 <= bound && fall < 0.01 && most < 1.02);
-    /* Rest loses nothing: two more windows would leave the same words. Then nothing is traced. */
+    /* Pausing loses nothing: two more windows would give bit-identical data. Then nothing is
+     * traced. */
     uint64_t at_rest = hash_of(&r);
     r.s.m->bounce.quiet = MASU_BOUNCE_REST - 2 * MASU_BOUNCE_WINDOW;
     (void)settle(&r, MASU_BOUNCE_REST);
@@ -244,7 +247,7 @@ static void light_comes_rises_rests_and_stays_behind_a_door(void **state) {
     double behind = floor_at(&r, 3.3f) / final;
     print_message("behind the shut door %.5f of the light before it\n", behind);
     assert_true(behind <= 0.01);
-    /* The door opens: that is a change, and light goes through. */
+    /* Opening the door is a change, and light passes. */
     masu_model door = masu_model_find(r.s.m, "door");
     const float away[12] = {1, 0, 0, 3.05f, 0, 1, 0, -20, 0, 0, 1, 1.5f};
     assert_int_equal(masu_model_set_transform(r.s.m, door, away, NULL), MASU_OK);
@@ -263,7 +266,7 @@ static void light_comes_rises_rests_and_stays_behind_a_door(void **state) {
 
 /* ---- Daylight -------------------------------------------------------------------------------- */
 
-/* Sky and sun are baked: rays find nothing more, to the bit. */
+/* Sky and sun are baked: rays add exactly nothing. */
 static void baked_daylight_counts_once(void **state) {
     (void)state;
     rooms r;
@@ -277,7 +280,7 @@ static void baked_daylight_counts_once(void **state) {
     }
     assert_true(valid > r.probes / 2); /* they have been traced */
     for (uint32_t i = 0; i < r.probes * MASU_BOUNCE_SETS * MASU_PROBE_WORDS; i++) assert_int_equal(r.sets[i], 0);
-    /* Neither is a change of the sun one to them. */
+    /* A change of the sun is no change for them either. */
     uint32_t quiet = r.s.m->bounce.quiet;
     masu_light light = {.sun_direction = {0.2f, 0.6f, 0.75f}, .sun_color = {2, 2, 2}, .ambient = {1, 1, 1}};
     masu_commands commands;
@@ -288,7 +291,7 @@ static void baked_daylight_counts_once(void **state) {
 
 /* ---- Ray queries ----------------------------------------------------------------------------- */
 
-/* Rays of probes walk the library's own tree. */
+/* Rays of probes traverse the library's own BVH. */
 static void ray_queries_are_refused(void **state) {
     (void)state;
     masu_session_desc d = test_desc("test_bounce", W, H);

@@ -1,6 +1,6 @@
 /* test_brdf.c: shaders/brdf/bsdf.glsl on the GPU: equal to the model in double precision
- * (tests/reference/brdf.h, which tests/unit/test_brdf.c has tested), reciprocal, white in the white furnace,
- * finite for whatever it is given; and the same from the G-buffer of a frame. */
+ * (tests/reference/brdf.h, tested by tests/unit/test_brdf.c), reciprocal, white in the white
+ * furnace, finite for any input; and the same from the G-buffer of a frame. */
 #include "reference/brdf.h"
 #include "shared/masu_shared.h"
 #include "split_sum.h"
@@ -18,7 +18,8 @@
 typedef struct test_case {
     float albedo[3], roughness;
     float metallic, specular, coat, coat_roughness;
-    float normal[4], view[4], light[4]; /* normal[3], view[3]: where what lies below a coat leans to */
+    float normal[4], view[4], light[4]; /* normal[3], view[3]: components of the base's normal under
+                                           a coat */
 } test_case;
 
 typedef struct test_result {
@@ -59,7 +60,7 @@ static test_case any_case(void) {
     c.normal[2] = 1;
     direction(c.view);
     direction(c.light);
-    /* Half of them near the mirror direction, where a lobe is. */
+    /* Half are near the mirror direction, inside the lobe. */
     if (random_word(&state) & 1) {
         double spread = 0.3 * (double)(c.roughness * c.roughness), size = 0;
         for (int k = 0; k < 3; k++) {
@@ -108,14 +109,16 @@ static void surfaces_are_those_of_the_reference(void **unused) {
             worst = worst_of(worst, off);
         }
     }
-    print_message("  off by %.1e of (0.001 + itself) at most, %.1e where roughness is above 0.2\n",
+    print_message("  error of %.1e relative to (0.001 + value) at most, %.1e if roughness is "
+                  "above 0.2\n",
                   worst, worst_broad);
-    /* Of a lobe 0.002 wide, the step of a component of h, 6e-8, is a thousandth of 0.06 of its width. */
+    /* In a lobe 0.002 wide, the step of a component of h, 6e-8, is a thousandth of 0.06 of its
+     * width. */
     assert_true(worst < 2e-3);
     assert_true(worst_broad < 1e-4);
 }
 
-/* A coat whose normal is not that of what lies below it, +z: half a right angle away at most. */
+/* A coat with a different normal from the base's, +z: by 45 degrees at most. */
 static void coats_may_lean(void **unused) {
     (void)unused;
     for (int i = 0; i < MANY; i++) {
@@ -125,17 +128,19 @@ static void coats_may_lean(void **unused) {
         c->roughness = fmaxf(c->roughness, 0.1f);
         c->coat_roughness = fmaxf(c->coat_roughness, 0.1f);
         double z = 0.7 + 0.3 * (double)random_float(&state), phi = 6.283185307179586 * (double)random_float(&state);
-        if (i & 1) z = -z, c->view[2] = -c->view[2], c->light[2] = -c->light[2]; /* and its axes are turned round */
+        /* and with its axes inverted */
+        if (i & 1) z = -z, c->view[2] = -c->view[2], c->light[2] = -c->light[2];
         c->normal[0] = (float)(sqrt(1 - z * z) * cos(phi));
         c->normal[1] = (float)(sqrt(1 - z * z) * sin(phi));
         c->normal[2] = (float)z;
         double n[3] = {(double)c->normal[0], (double)c->normal[1], (double)c->normal[2]};
-        float *v = c->view; /* which the coat sees, as pictures show none that does not */
+        float *v = c->view; /* visible from the coat's side, as in images */
         while ((double)v[0] * n[0] + (double)v[1] * n[1] + (double)v[2] * n[2] < 1e-3) {
             direction(v);
             if (i & 1) v[2] = -v[2];
         }
-        double s = n[2] < 0 ? -1 : 1; /* below is (0, 0, s): what it has along both axes (masu_lean_axes) */
+        double s = n[2] < 0 ? -1 : 1; /* the base's normal is (0, 0, s): its components along both
+                                         axes (masu_lean_axes) */
         c->normal[3] = (float)(s * -s * n[0]);
         c->view[3] = (float)(s * -n[1]);
     }
@@ -143,7 +148,8 @@ static void coats_may_lean(void **unused) {
     double worst = 0, beneath = 0;
     for (int i = 0; i < MANY; i++) {
         brdf_surface s = surface_of(&cases[i]);
-        double v[3], l[3], n[3], truth[3], turn = i & 1 ? -1 : 1; /* about the axis x: -z becomes z, y becomes -y */
+        /* about the axis x: -z becomes z, y becomes -y */
+        double v[3], l[3], n[3], truth[3], turn = i & 1 ? -1 : 1;
         for (int k = 0; k < 3; k++) {
             double t = k ? turn : 1;
             v[k] = t * (double)cases[i].view[k], l[k] = t * (double)cases[i].light[k];
@@ -154,7 +160,9 @@ static void coats_may_lean(void **unused) {
         for (int k = 0; k < 3; k++)
             worst = worst_of(worst, fabs((double)results[i].light[k] - truth[k]) / (1e-3 + truth[k]));
     }
-    print_message("  off by %.1e of (0.001 + itself) at most; of %.0f lights the coat sees nothing\n", worst, beneath);
+    print_message("  error of %.1e relative to (0.001 + value) at most; %.0f lights are below the "
+                  "coat's horizon\n",
+                  worst, beneath);
     assert_true(worst < 1e-3);
     assert_true(beneath > 100);
 }
@@ -226,14 +234,14 @@ static void in_the_white_furnace_no_light_is_lost_or_made(void **unused) {
             const test_result *r = &results[m * each + i];
             low = fmin(low, (double)r->light[0]);
             high = fmax(high, (double)r->light[0]);
-            /* The three factors of ambient light are what the furnace measures. */
+            /* The three factors of ambient light agree with the furnace. */
             double all = (double)r->diffuse[0] + (double)r->specular[0] + (double)r->coat;
             apart = worst_of(apart, fabs(all - 1));
         }
         print_message("  %-26s %.4f to %.4f\n", materials[m].name, low, high);
         assert_true(low > 0.99 && high < 1.01);
     }
-    print_message("  ambient factors: off by %.1e\n", apart);
+    print_message("  ambient factors: error %.1e\n", apart);
     assert_true(apart < 1e-5);
 }
 
@@ -246,7 +254,7 @@ static int finite_result(const test_result *r) {
     return isfinite(r->coat);
 }
 
-/* Roughness 0, 1e-4, 1 and NaN; views from below; then words of random bits. */
+/* Roughness 0, 1e-4, 1 and NaN; views from below; then random bits. */
 static void any_bits_give_finite_light(void **unused) {
     (void)unused;
     const float roughness[] = {0, 1e-4f, 1, NAN, INFINITY, -1, 1e30f};
@@ -270,7 +278,7 @@ static void any_bits_give_finite_light(void **unused) {
             if (random_word(&state) % 8 == 0) words[k] |= 0x7F800000u; /* NaN or Inf */
         }
         memcpy(&cases[count], words, sizeof words);
-        if (count % 4 == 0) { /* only one thing is odd */
+        if (count % 4 == 0) { /* only one member is unusual */
             test_case c = any_case();
             ((uint32_t *)(void *)&c)[random_word(&state) % (sizeof c / 4)] = words[0];
             cases[count] = c;
@@ -287,8 +295,8 @@ static void any_bits_give_finite_light(void **unused) {
 
 enum { W = 160, H = 90 };
 
-/* scenes/surfaces.json under the sun alone, from the G-buffer's own texels: plain surfaces and those with
- * a coat. The rest is the half float of the picture. */
+/* scenes/surfaces.json with only the sun, from the G-buffer's own texels: plain surfaces and coated
+ * ones. The remaining error is the half float of the image. */
 static void a_frame_shows_what_the_formulas_say(void **unused) {
     (void)unused;
     static uint32_t normals[W * H];
@@ -315,7 +323,7 @@ static void a_frame_shows_what_the_formulas_say(void **unused) {
     for (size_t i = 0; i < 3; i++) {
         memcpy(images[i].to, read_image(&s, commands.slot, images[i].bit), images[i].bytes);
     }
-    double most = on_gpu(&s) ? 0.01 : 0.005; /* an NVIDIA H200: 0.0071; why is not known */
+    double most = on_gpu(&s) ? 0.01 : 0.005; /* an NVIDIA H200: 0.0071, for an unknown reason */
     close_session(&s);
     double sun[3] = {0.3, 0.6, 0.742}, size = sqrt(0.3 * 0.3 + 0.6 * 0.6 + 0.742 * 0.742);
     double worst[2] = {0, 0}, sum[2] = {0, 0};
@@ -326,7 +334,7 @@ static void a_frame_shows_what_the_formulas_say(void **unused) {
         if (!normals[i]) continue;
         float unpacked[3];
         masu_unpack_normal(normals[i], unpacked);
-        int coated = (normals[i] >> 26 & 15) == 12; /* the row that is 0.8 metallic */
+        int coated = (normals[i] >> 26 & 15) == 12; /* the row with metallic 0.8 */
         double n[3] = {(double)unpacked[0], (double)unpacked[1], (double)unpacked[2]};
         double scale = tan(0.3), v[3] = {-((i % W + 0.5) / W * 2 - 1) * scale * W / H,
                                          ((i / W + 0.5) / H * 2 - 1) * scale, 1};
@@ -359,7 +367,8 @@ static void a_frame_shows_what_the_formulas_say(void **unused) {
         counts[coated] += 3;
     }
     for (int c = 0; c < 2; c++) {
-        print_message("  %s: %u values, off by %.4f of (0.05 + itself) at most, %.5f in the mean\n",
+        print_message("  %s: %u values, error of %.4f relative to (0.05 + value) at most, %.5f in "
+                      "the mean\n",
                       c ? "coated" : "plain", counts[c], worst[c], sum[c] / counts[c]);
         assert_true(counts[c] > 1000);
         assert_true(worst[c] < most && sum[c] / counts[c] < 0.001);

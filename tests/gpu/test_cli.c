@@ -1,5 +1,4 @@
-/* test_cli.c: the program `masu` as a stranger runs it: what it makes, and what it says when it
- * cannot. */
+/* test_cli.c: runs the program `masu` as a user does: its output files and its error messages. */
 #include "support/support.h"
 #include "support/cli.h"
 
@@ -183,7 +182,7 @@ static void render_writes_the_picture_and_its_numbers_under_validation(void **st
     for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
         if (!strstr(cli_out, keys[i])) fail_msg("%s is not in the statistics", keys[i]);
     }
-    assert_null(strstr(cli_out, "\"exposure\"")); /* nothing is metered */
+    assert_null(strstr(cli_out, "\"exposure\"")); /* no auto-exposure */
     assert_int_equal(cli_run("render %s -o %s/a.png --size 64x48 --stats - --exposure auto --tone neutral "
                           "--dither --validate --quiet",
                           scene, scratch),
@@ -193,7 +192,7 @@ static void render_writes_the_picture_and_its_numbers_under_validation(void **st
     assert_int_equal(cli_run("render %s -o %s/f-###.png --size 16x16 --frames 2 --quiet", scene, scratch),
                      0);
     assert_true(is_in_scratch("f-000.png") && is_in_scratch("f-001.png") && !is_in_scratch("f-002.png"));
-    /* Clips play unless they are not to. */
+    /* Clips play unless they are disabled. */
     static const char *const ways[] = {"", " --animate", " --animate=off", " --animate=off --time 0"};
     uint64_t hash[4];
     for (size_t i = 0; i < 4; i++) {
@@ -211,7 +210,7 @@ static void render_writes_the_picture_and_its_numbers_under_validation(void **st
     assert_int_equal(cli_run("render %s --animate=on", scene), 2);
 }
 
-/* A target of a second fits whatever the machine does. */
+/* A target of a second fits on any machine. */
 static void the_governor_reports_what_it_has_done(void **state) {
     (void)state;
     const char *scene = scene_path("test_sphere_sdf");
@@ -260,7 +259,7 @@ static void ladders_are_read_and_shown(void **state) {
     cli_complained("rungs[1]: ratio: expected less than the previous rung, 1, found 1.5");
     assert_int_equal(cli_run("bench --ladder"), 2);
     cli_complained("no ladder");
-    /* In programs. */
+    /* In programs that plan or render. */
     assert_int_equal(cli_run("plan %s --size 32x24 --ladder %s/l.json", scene, scratch), 0);
     assert_non_null(strstr(cli_out, "1  renders 16x12, "));
     assert_non_null(strstr(cli_out, "time 0.500, FLIP 0.2500"));
@@ -282,7 +281,7 @@ static void ladders_are_read_and_shown(void **state) {
     cli_complained("bad.json: rungs[1]: ratio");
 }
 
-/* By the name that masu bench gives a setting: as other options, ladders of the library and files have
+/* By the name that masu bench gives a setting: other options, ladders of the library and files have
  * the same knobs. */
 static void a_setting_is_drawn_by_its_name(void **state) {
     (void)state;
@@ -311,7 +310,8 @@ static void a_setting_is_drawn_by_its_name(void **state) {
     }
 }
 
-/* Bytes of the image that `masu render` with these options differs by from the one without. */
+/* Number of bytes by which the image of `masu render` with these options differs from the one
+ * without. */
 static int changed_by(const char *scene, const char *options) {
     struct masu_image images[2];
     char name[256], error[ERROR_SIZE];
@@ -347,7 +347,7 @@ static void parameters_clips_and_light_are_set(void **state) {
     assert_non_null(strstr(cli_err, "no model has the clip 'none', expected one of "));
 }
 
-/* Both formats have the same floats; what they are is the image that the PNG shows. */
+/* Both formats have the same floats; encoded, they are the image in the PNG. */
 static void linear_light_is_written_in_both_formats(void **state) {
     (void)state;
     static const char *const ends[] = {"exr", "pfm", "png"};
@@ -378,8 +378,8 @@ static void linear_light_is_written_in_both_formats(void **state) {
     masu_image_free(&images[0]);
 }
 
-/* A still of an edge has grey levels that no raw frame has, and is the raw frame where it is
- * flat. */
+/* A still of an edge has grey levels that no raw frame has, and equals the raw frame in flat
+ * areas. */
 static void without_options_the_still_is_settled(void **state) {
     (void)state;
     enum { W = 64, H = 48 };
@@ -429,7 +429,7 @@ static void sequences_are_numbered_files_and_video(void **state) {
         assert_true(fabs(255 * (y + 1.8556 * cb) - image.rgba[4 * i + 2]) < 3);
     }
     masu_image_free(&image);
-    /* The truth of a later frame is that of its moment. */
+    /* The ground truth of a later frame is rendered at its time. */
     assert_int_equal(
         cli_run("render %s -o %s/v#.png --truth=2 --frames 2 --time 1 --time-step 0.5 --size 16x12",
                 town, scratch),
@@ -440,7 +440,7 @@ static void sequences_are_numbered_files_and_video(void **state) {
     assert_ok(masu_image_load_png(name, &image, error, sizeof error));
     snprintf(name, sizeof name, "%s/one.png", scratch);
     assert_ok(masu_image_load_png(name, &other, error, sizeof error));
-    /* Noise of reflections goes by the frame's number. */
+    /* The noise of reflections depends on the frame's number. */
     double same = masu_metric_rmse(image.rgba, other.rgba, W, H);
     masu_image_free(&image);
     snprintf(name, sizeof name, "%s/v0.png", scratch);
@@ -453,7 +453,8 @@ static void sequences_are_numbered_files_and_video(void **state) {
     masu_image_free(&other);
 }
 
-/* All that has followed from it, too: reflections have the means of pictures without a past. */
+/* Including its consequences: reflections have the temporal filters of images without temporal
+ * upscaling. */
 static void other_anti_aliasing_takes_a_past_out_of_a_rung(void **state) {
     (void)state;
     char name[256], with[512], error[ERROR_SIZE];
@@ -481,7 +482,7 @@ static void plan_says_what_is_in_and_what_was_left_out(void **state) {
     assert_non_null(strstr(cli_out, "\"left_out_bytes\""));
 }
 
-/* Ray queries where the device has them, else one line; the own tree anywhere. */
+/* Ray queries if the device has them, otherwise one line; the library's BVH on any device. */
 static void rays_choose_what_finds_polygons(void **state) {
     (void)state;
     assert_int_equal(cli_run("plan %s --size 64x64 --rays compute", scene_path("mirrors")), 0);
@@ -541,7 +542,7 @@ static void upscale_runs_the_passes_of_the_frame_on_a_file_and_keeps_alpha(void 
     assert_true(sums[0] > 2 * sums[1] && sums[1] > 0);
 }
 
-/* Whatever colour a sprite has where it is transparent. */
+/* For any colour of a sprite's transparent pixels. */
 static void upscaled_sprites_have_no_fringe(void **state) {
     (void)state;
     enum { SIDE = 24 };
@@ -570,7 +571,7 @@ static void upscaled_sprites_have_no_fringe(void **state) {
     masu_image_free(&image);
 }
 
-/* At its own size a picture is smoothed and nothing else, whether its size is given or not. */
+/* At its own size an image is only anti-aliased, whether its size is given or not. */
 static void upscale_smooths_edges(void **state) {
     (void)state;
     enum { W = 50, H = 38, BYTES = W * H * 4 };

@@ -1,5 +1,5 @@
-/* test_conform.c: `masu conform` as a stranger runs it: a part of the smoke suite passes, what is
- * planted is found and can be replayed, and what is no suite is refused in one line. */
+/* test_conform.c: runs `masu conform` as a user does: a part of the smoke suite passes, planted
+ * errors are found and can be replayed, and an invalid suite is rejected with one line. */
 #include "support/support.h"
 #include "support/cli.h"
 #include "support/files.h"
@@ -34,7 +34,7 @@ static int planted(const char *more) { return conform("--suite %s/suite.json %s"
 
 /* ---- Tests ----------------------------------------------------------------------------------- */
 
-/* A ninth; each driver has another one. */
+/* A ninth of the suite; each driver runs another part. */
 static void a_part_of_the_smoke_suite_passes(void **state) {
     (void)state;
     const char *driver = getenv("MASU_TEST_DRIVER");
@@ -45,19 +45,20 @@ static void a_part_of_the_smoke_suite_passes(void **state) {
     assert_string_equal(cli_err, "");
 }
 
-/* An untouched build has no warning: of memory, which each change of the library may add to. */
+/* An unmodified build has no warning about memory, which each change of the library may
+ * increase. */
 static void memory_is_within_its_limits(void **state) {
     (void)state;
     const char *driver = getenv("MASU_TEST_DRIVER");
-    /* The limits are the worst of all drivers. */
+    /* The limits are the maximum over all drivers. */
     if (driver && strcmp(driver, "system") != 0) return;
     int code = conform("--suite suites/smoke.json --case 'memory.*'");
     if (code) fail_msg("exit code %d\n%s%s", code, cli_out, cli_err);
     cli_said(" 0 quality warnings, 0 not supported, 0 resource errors, 0 failed");
 }
 
-/* A golden file of the scene itself passes; another sun fails by the patches; files that are not
- * there are named. */
+/* A golden file of the scene itself passes; another sun fails in the patches; missing files are
+ * named. */
 static void cases_are_judged_by_golden_files(void **state) {
     (void)state;
     const char *scene = scene_path("test_both");
@@ -84,7 +85,7 @@ static void cases_are_judged_by_golden_files(void **state) {
     cli_said("none.ref: cannot open");
 }
 
-/* Whatever ends the run: files are complete and say which case it was. */
+/* However the run ends, files are complete and name the case that ran. */
 static void a_run_that_is_killed_leaves_complete_reports(void **state) {
     (void)state;
     char text[8192];
@@ -108,7 +109,8 @@ static void a_run_that_is_killed_leaves_complete_reports(void **state) {
     assert_true(is_in_scratch("new/images"));
 }
 
-/* A fifteenth of what docs/stability.md shows, a third of that on the drivers that CI sees second; each has another one. */
+/* A fifteenth of the table in docs/stability.md, and a third of that on the secondary drivers of
+ * CI; each runs another part. */
 static void a_part_of_the_extreme_suite_passes(void **state) {
     (void)state;
     const char *driver = getenv("MASU_TEST_DRIVER");
@@ -118,10 +120,11 @@ static void a_part_of_the_extreme_suite_passes(void **state) {
     cli_said("0 resource errors, 0 failed");
 }
 
-/* What is planted in an extreme case is found: another view, a field that is not met, another material. */
+/* Errors planted in an extreme case are found: another view, a field that is not hit, another
+ * material. */
 static void extreme_cases_judge(void **state) {
     (void)state;
-    if (!whole_run()) return; /* what the program makes of answers, whoever gives them */
+    if (!whole_run()) return; /* how the program judges results, on any driver */
     char table[8192];
     write_suite("{\"name\": \"here\"},"
                 "{\"name\": \"same\", \"extreme\": {\"cut\": true}, \"error\": {\"against\": \"here\", \"pixels\": 0}},"
@@ -156,10 +159,10 @@ static void extreme_cases_judge(void **state) {
     assert_non_null(strstr(table, "pixels = 0, against here | "));
 }
 
-/* Odd frames have the other camera; a cut, a step, settling change what frames before have left. */
+/* Odd frames have the other camera; a cut, a step and settling change the temporal state. */
 static void extreme_frames_are_told(void **state) {
     (void)state;
-    if (!whole_run()) return; /* what the program makes of answers, whoever gives them */
+    if (!whole_run()) return; /* how the program judges results, on any driver */
     char cases[4096];
     const char *here = "\"camera\": {\"position\": [1.2, 0.9, 3.2], \"forward\": [-0.3, -0.25, -1]}";
     const char *there = "{\"position\": [0, 0, 4]}", *t = "\"rung\": {\"temporal\": \"on\"}, \"frames\": 6";
@@ -197,7 +200,7 @@ static double column(const char *name) {
 
 static void budgets_hold_to_the_byte(void **state) {
     (void)state;
-    if (!whole_run()) return; /* what the program makes of answers, whoever gives them */
+    if (!whole_run()) return; /* how the program judges results, on any driver */
     static const char *const names[] = {"host_bytes", "device_bytes"};
     write_suite("{\"name\": \"a\", \"exact_memory\": true}");
     assert_int_equal(planted("--quiet --csv -"), 0);
@@ -263,7 +266,7 @@ static void a_failure_is_replayed_by_its_token(void **state) {
 
 static void what_is_planted_has_its_verdict(void **state) {
     (void)state;
-    if (!whole_run()) return; /* what the program makes of answers, whoever gives them */
+    if (!whole_run()) return; /* how the program judges results, on any driver */
     write_suite("{\"name\": \"count\", \"counts\": {\"triangles\": 3}},"
                 "{\"name\": \"least\", \"at_least\": {\"specular_rays\": 1}},"
                 "{\"name\": \"warns\", \"counts\": {\"triangles\": {\"warn\": 3, \"fail\": 1000}}},"
@@ -285,7 +288,7 @@ static void what_is_planted_has_its_verdict(void **state) {
     cli_said("not supported    rays");
     cli_said("the device has no ray-query");
     cli_said("6 cases: 0 passed, 1 quality warning, 1 not supported, 0 resource errors, 4 failed");
-    assert_int_equal(planted("--rays compute --case warns"), 0); /* neither of these is a failure */
+    assert_int_equal(planted("--rays compute --case warns"), 0); /* neither case is a failure */
     assert_int_equal(planted("--rays compute --case rays"), 0);
 }
 
@@ -301,7 +304,7 @@ static void time_is_a_ratio_to_the_calibration(void **state) {
 
 static void parts_are_chosen_and_listed(void **state) {
     (void)state;
-    if (!whole_run()) return; /* what the program makes of answers, whoever gives them */
+    if (!whole_run()) return; /* how the program judges results, on any driver */
     assert_int_equal(conform("--list --case 'memory.*'"), 0);
     cli_said("memory.both");
     assert_null(strstr(cli_out, "march."));
@@ -310,7 +313,7 @@ static void parts_are_chosen_and_listed(void **state) {
     assert_int_equal(conform("--list --suite suites/full.json"), 0);
     static char by_file[sizeof cli_out];
     snprintf(by_file, sizeof by_file, "%s", cli_out);
-    assert_int_equal(conform("--list --suite full"), 0); /* by its name, beside the program */
+    assert_int_equal(conform("--list --suite full"), 0); /* by its name, next to the program */
     assert_string_equal(cli_out, by_file);
     assert_int_equal(conform("--list --suite none"), 1);
     cli_complained("suites/none.json");
@@ -331,7 +334,7 @@ static void parts_are_chosen_and_listed(void **state) {
 
 static void what_is_no_suite_is_refused_in_one_line(void **state) {
     (void)state;
-    if (!whole_run()) return; /* what the program makes of answers, whoever gives them */
+    if (!whole_run()) return; /* how the program judges results, on any driver */
     assert_int_equal(conform("--suite %s/none.json", scratch), 1);
     cli_complained("none.json");
     write_suite("{\"name\": \"a\", \"rung\": {\"scale\": 2}}");

@@ -1,5 +1,5 @@
-/* test_culling.c: what is not drawn cannot be seen: pictures with and without culling are the same
- * in every bit, wherever the camera turns and whatever moves, and less is drawn. */
+/* test_culling.c: culling never changes the image: images with and without culling are
+ * bit-identical for any camera rotation and any moving objects, and fewer triangles are drawn. */
 #include "scene/scene.h"
 #include "support/files.h"
 #include "support/shadow.h"
@@ -24,8 +24,8 @@ static masu_session_desc town_desc(void) {
     return d;
 }
 
-/* Fast turns, all around and up and down, through the town's streets; an own field of view in
- * each frame, and now and then a cut. */
+/* Fast rotations, all around and up and down, through the town's streets; a different field of view
+ * in each frame, and now and then a cut. */
 static masu_camera path(uint32_t frame) {
     double t = frame;
     masu_camera c = {
@@ -53,7 +53,8 @@ static void compare_path(masu_session *s, uint32_t frames, int moving) {
         if (moving) {
             float t = (float)frame;
             move_instance(s, "ball2", 30.0f * sinf(t * 0.2f), 1.0f, 30.0f * cosf(t * 0.13f), 1.0f);
-            /* These stand in groups, which do not know where they are now; a house hides as well. */
+            /* These instances are in groups, whose bounds do not follow them; a house occludes as
+             * well. */
             move_instance(s, "late1", 25.0f * cosf(t * 0.3f), 3.0f, 3.0f, 2.0f);
             move_instance(s, "b17/block", 20.0f * sinf(t * 0.11f), 0.0f, 30.0f,
                  frame % 20 < 10 ? 3.0f : 0.0f);
@@ -96,14 +97,14 @@ static void compare_path(masu_session *s, uint32_t frames, int moving) {
     assert_true(triangles[BOTH] < triangles[FRUSTUM] * 9 / 10);
     assert_true(triangles[OCCLUSION] < triangles[NEITHER]);
     assert_true(!moving || casters[OCCLUSION] < casters[NEITHER]);
-    assert_true(seen > (uint64_t)frames * W * H / 8); /* there is something to compare */
+    assert_true(seen > (uint64_t)frames * W * H / 8); /* the image has content */
 }
 
 static void the_picture_is_the_same_without_culling(void **state) {
     (void)state;
     masu_session_desc d = town_desc();
     masu_session s;
-    d.host.validate = false; /* the long path; the others have the layers */
+    d.host.validate = false; /* the long path; the other tests run with the layers */
     open_session(&s, &d);
     assert_true(masu_scene_data_of(&s.scene)->groups > 5);
     compare_path(&s, trials(600, 180, 60), 0);
@@ -165,10 +166,10 @@ static void bake_shadows(void) {
         0);
 }
 
-/* Each way of culling in a renderer of its own: what a slow cascade has kept is of that way alone. The
- * sun moves from low over the roofs to high and to the other side. A map of slow cascades is the same in
- * every bit. Others lack what casts no shadow into the picture: how much of the sun each pixel sees is
- * the same, and so is the picture. */
+/* Each culling mode has its own renderer, so the content of a slow cascade is from that mode only.
+ * The sun moves from low over the roofs to high and to the other side. A map of slow cascades is
+ * bit-identical. Other maps lack casters without a shadow in the image: the sun's visibility at
+ * each pixel is the same, and so is the image. */
 static void compare_shadows(uint32_t frames, const uint32_t refresh[3], uint64_t casters[WAYS]) {
     static uint8_t map[2][3 * 192 * 192 * 4], lit[2][W * H * 4];
     masu_session s[WAYS];
@@ -237,7 +238,8 @@ static void shadows_are_the_same_without_culling(void **state) {
     assert_true(every[FRUSTUM] < every[NEITHER] * 9 / 10);
     assert_true(every[BOTH] < every[FRUSTUM]);
     assert_true(every[OCCLUSION] < every[NEITHER]);
-    /* A frame's; a sun that jumps has slow cascades drawn more often than they ask. */
+    /* Per frame; a jumping sun has slow cascades rendered more often than shadow_refresh
+     * requests. */
     assert_true(slow[NEITHER] > 0 && 4 * slow[NEITHER] * frames < 3 * every[NEITHER] * slow_frames);
 }
 

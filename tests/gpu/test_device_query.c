@@ -1,6 +1,7 @@
 /* test_device_query.c: masu_device_query before the device exists: it names the features that
- * masu_init then uses, or reports as offered and not enabled, and the required ones that are
- * missing. With MASU_DENY=all the description denies what it can, and the host enables nothing. */
+ * masu_init then uses, or reports as supported but not enabled, and the required ones that are
+ * missing. With MASU_DENY=all the description disables all optional features, and the host enables
+ * none. */
 #include "support/support.h"
 #include "support/wrap.h"
 
@@ -81,7 +82,7 @@ static void without_a_scene_it_is_what_the_device_has(void **state) {
     assert_int_equal(names(&info, VK_KHR_RAY_QUERY_EXTENSION_NAME), (info.supported & RAYS) != 0);
     assert_int_equal(names(&info, VK_KHR_SHADER_FLOAT16_INT8_EXTENSION_NAME),
                      (info.supported & HALVES) != 0);
-    if (!masu_session_denied()) { /* the host has enabled just these */
+    if (!masu_session_denied()) { /* the host has enabled exactly these */
         assert_int_equal(s.host.ray_query, (info.used & RAYS) != 0);
         assert_int_equal(s.host.float16, (info.used & HALVES) != 0);
     }
@@ -99,9 +100,9 @@ static void without_a_scene_it_is_what_the_device_has(void **state) {
     close_session(&s);
 }
 
-/* masu_init reports what it would use and the host has not enabled; `gpu`: the device pretends to be
- * one, since CPUs use neither ray queries nor 16-bit floats; `traced`: reflections have a use for
- * rays. */
+/* masu_init reports supported features that the host has not enabled. `gpu`: the device is
+ * presented as a GPU, because CPUs use no ray queries and no 16-bit floats; `traced`: reflections
+ * use rays. */
 static void compare_with_log(const char *scene, int gpu, int traced) {
     char error[ERROR_SIZE];
     open_scene(scene);
@@ -146,7 +147,7 @@ static void expect_missing(const masu_desc *d, masu_result result, const char *w
     assert_string_equal(detail.what, what);
     assert_true(!needed || detail.needed != detail.given);
     if (!strstr(detail.text, text)) fail_msg("'%s' without '%s'", detail.text, text);
-    /* Of a description with another size the log is unknown. */
+    /* The log of a description with another size is unknown. */
     assert_true(d->bytes != sizeof *d || strstr(logged, detail.text));
     assert_memory_equal(&info, &was, sizeof info);
 }

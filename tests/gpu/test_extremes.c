@@ -1,4 +1,4 @@
-/* test_extremes.c: fields and views at the edge of sense give a defined, finite picture. */
+/* test_extremes.c: extreme fields and views give a defined, finite image. */
 #include "support/support.h"
 
 #include <math.h>
@@ -15,7 +15,7 @@ static void open_for_depth(masu_session *s, const char *scene, uint32_t steps) {
     open_session(s, &d);
 }
 
-/* Draws, checks that everything is finite, returns the depth image. */
+/* Renders, checks that everything is finite, returns the depth image. */
 static const float *draw_finite(masu_session *s, const masu_frame_desc *frame,
                                 masu_stats_info *stats) {
     masu_commands commands;
@@ -47,7 +47,7 @@ static void a_field_of_nan_and_infinity_is_a_miss_and_breaks_nothing_beside_it(v
         if (depth[i] > 0) *(i % W < W / 2 ? &left : &right) += 1;
     }
     assert_int_equal(left, 0);
-    assert_true(right > 100); /* the sphere of the healthy quarter */
+    assert_true(right > 100); /* the sphere of the valid quarter */
     close_session(&s);
 }
 
@@ -93,7 +93,8 @@ static void rays_that_run_out_of_steps_are_counted_and_never_drawn_by_default(vo
     draw_finite(&s, &frame, &stats);
     close_session(&s);
     assert_true(stats.sdf_unconverged > 0);
-    /* At most those whose best sample came within 2 pixels: a rim of that width around the disc. */
+    /* At most the pixels whose best sample came within 2 pixels: a rim of that width around the
+     * disc. */
     double rim = 2.0 * 2.0 * sqrt(3.14159265 * (double)full.sdf_hits);
     assert_true((double)stats.sdf_hits <= (double)full.sdf_hits + 1.1 * rim);
     assert_true(stats.sdf_evals < full.sdf_evals);
@@ -117,14 +118,14 @@ static void views_beside_behind_and_far_from_the_bounds_draw_only_sky(void **sta
         masu_frame_desc frame = {.camera = &cameras[i], .time = i ? 1e9 : -1e9};
         draw_finite(&s, &frame, &stats);
         assert_int_equal(stats.sdf_hits, 0);
-        /* The bounds keep the field from being asked, but for a cone here and there where their
-         * rounding slack is as large as they are. */
+        /* The bounds prevent evaluations of the field, except for single cones whose rounding slack
+         * is as large as the bounds. */
         assert_true(stats.sdf_evals < W * H / 64);
     }
     close_session(&s);
 }
 
-/* Rays along the axes have zero components: the slab test divides by them. */
+/* Rays along the axes have zero components, by which the slab test divides. */
 static void axis_parallel_views_are_not_special(void **state) {
     (void)state;
     masu_session s;
@@ -160,7 +161,7 @@ static void light_beyond_what_halves_hold_is_clamped_and_not_infinite(void **sta
     close_session(&s);
 }
 
-/* The field adds 2^17 to a counter in each of its evaluations, which another counter counts. */
+/* Each evaluation of the field adds 2^17 to one counter, and 1 to another. */
 static void a_counter_carries_into_its_high_word(void **state) {
     (void)state;
     masu_session s;

@@ -1,5 +1,5 @@
-/* test_failures.c: when things go wrong: the n-th Vulkan call fails, the device lacks something,
- * the host asks for nonsense. Each gives a named error, leaves nothing behind, and a second try
+/* test_failures.c: failures: the n-th Vulkan call fails, the device lacks a feature, the host
+ * passes invalid values. Each gives an error with a name, leaves nothing behind, and a second try
  * succeeds. */
 #include "support/support.h"
 #include "support/files.h"
@@ -67,7 +67,8 @@ static masu_result try_init(masu_renderer **m, masu_detail *detail) {
     return masu_init(&s.desc, block, s.need.host_bytes + 4096, m, detail);
 }
 
-/* Fails call 1, 1 + step, ...; the step is a prime, so that kinds of calls that take turns are all met. */
+/* Fails call 1, 1 + step, ...; the step is a prime, so that alternating kinds of calls are all
+ * tested. */
 static void fail_calls_of_init(VkResult with, bool persistent, uint32_t split, uint32_t step) {
     masu_detail detail;
     masu_renderer *m;
@@ -96,7 +97,7 @@ static void fail_calls_of_init(VkResult with, bool persistent, uint32_t split, u
         assert_int_equal(wrap.calls_after_loss, 0);
     }
     wrap_reset();
-    assert_int_equal(try_init(&m, &detail), MASU_OK); /* the block is as good as new */
+    assert_int_equal(try_init(&m, &detail), MASU_OK); /* the block can be used again */
     masu_destroy(m);
     assert_int_equal(wrap.live, 0);
     s.desc.deny.unified_memory = 0;
@@ -160,7 +161,7 @@ static void what_the_device_lacks_is_named(void **state) {
     wrap.max_image = 16;
     expect_device_error("output");
     wrap_reset();
-    wrap.max_framebuffer = 16; /* images may be larger than what is drawn to */
+    wrap.max_framebuffer = 16; /* images may be larger than the rendered area */
     masu_detail detail;
     masu_memory need;
     expect_device_error("output");
@@ -169,7 +170,8 @@ static void what_the_device_lacks_is_named(void **state) {
     assert_int_equal(detail.given, 16);
     assert_non_null(strstr(detail.text, "may be (16)"));
     wrap_reset();
-    s.desc.output = (VkExtent2D){48, 48}; /* enough for each axis, not for all tiles of a list */
+    s.desc.output = (VkExtent2D){48, 48}; /* enough workgroups for each axis, but not for all tiles
+                                             of a list */
     wrap.max_groups = 7;
     expect_device_error("maxComputeWorkGroupCount");
     assert_int_equal(masu_memory_query(&s.desc, &need, &detail), MASU_ERROR_DEVICE);
@@ -183,8 +185,8 @@ static void what_the_device_lacks_is_named(void **state) {
     wrap_reset();
 }
 
-/* What is asked of a device is what the largest layout has: with as many storage buffers nothing is
- * left out, with one fewer reflections are, and the plan says why. */
+/* The requirement on a device is that of the largest layout: with exactly as many storage buffers
+ * all features are on; with one fewer, reflections are off, and the plan gives the reason. */
 static void storage_buffers_are_counted_as_they_are_bound(void **state) {
     (void)state;
     static const char *const scenes[] = {"test_reflections", "test_reserve", "test_skin"};
@@ -199,7 +201,7 @@ static void storage_buffers_are_counted_as_they_are_bound(void **state) {
         d.host.get_instance_proc_addr = wrap_get_instance_proc_addr;
         open_session(&own, &d);
         uint32_t bound = wrap.most_storage_buffers;
-        size_t bytes; /* the session has freed its blob, which textures are planned by */
+        size_t bytes; /* the session has freed its blob, which planning textures needs */
         void *blob = read_file(scene_path(scenes[i]), &bytes);
         masu_scene scene;
         assert_int_equal(masu_scene_bind(blob, bytes, &scene, NULL), MASU_OK);
@@ -216,7 +218,7 @@ static void storage_buffers_are_counted_as_they_are_bound(void **state) {
         assert_false(pass_of(&plan, "specular_composite")->active);
         assert_non_null(
             strstr(pass_of(&plan, "specular_composite")->why, "too few storage buffers"));
-        /* Occlusion culling needs fewer of them: it stays. */
+        /* Occlusion culling needs fewer, so it remains on. */
         assert_int_equal(pass_of(&plan, "cull")->active, culls);
         own.desc.rung_count = 1;
         own.desc.rungs[0] = (masu_rung){.specular = MASU_ON};
@@ -224,7 +226,8 @@ static void storage_buffers_are_counted_as_they_are_bound(void **state) {
         assert_int_equal(detail.needed, bound);
         assert_int_equal(detail.given, bound - 1);
         assert_non_null(strstr(detail.text, "rungs[0].specular needs"));
-        if (!strcmp(scenes[i], "test_reserve")) { /* lights on glass and particles: what every device has is enough */
+        /* lights on glass and particles: the minimum of every device is enough */
+        if (!strcmp(scenes[i], "test_reserve")) {
             own.desc.rungs[0] = (masu_rung){.specular = MASU_OFF, .occlusion = MASU_OFF};
             own.desc.reserve.particles = 1;
             wrap.max_storage_buffers = 4;
@@ -251,7 +254,8 @@ static VkFormat format_of(const char *image) {
     return VK_FORMAT_UNDEFINED;
 }
 
-/* No device needs to filter 16-bit unorm: what does not keeps means over frames in halves. */
+/* No device needs to filter 16-bit unorm: a device that does not keeps the history in half
+ * floats. */
 static void a_device_that_does_not_filter_unorm_has_halves(void **state) {
     (void)state;
     masu_desc was = s.desc;
@@ -309,7 +313,7 @@ static void nonsense_in_a_frame_is_refused_by_name(void **state) {
     expect_frame_error(m, &f, "sun_direction");
     bad_light = l, bad_light.ambient[1] = NAN, expect_frame_error(m, &f, "light");
     bad_light = l, bad_light.exposure = -1, expect_frame_error(m, &f, "exposure");
-    /* Not only where another number makes them matter. */
+    /* Also if no other value makes them relevant. */
     bad_light = l, bad_light.ground[2] = NAN, expect_frame_error(m, &f, "light.ground");
     bad_light = l, bad_light.fog_color[0] = INFINITY, expect_frame_error(m, &f, "light.fog_color");
     bad_light = l, bad_light.fog_start = NAN, expect_frame_error(m, &f, "light.fog_start");
@@ -322,7 +326,7 @@ static void nonsense_in_a_frame_is_refused_by_name(void **state) {
     expect_frame_error(m, &f, "sdf_param_count");
     f.sdf_params = params, f.sdf_param_count = 300, expect_frame_error(m, &f, "sdf_param_count"),
     f.sdf_params = NULL, f.sdf_param_count = 0;
-    /* None of these has moved the frame number, and extreme but sane values work. */
+    /* The failed calls have not advanced the frame number, and extreme but valid values work. */
     c.fov_y = 3.1f, c.position[0] = 1e12, c.forward[0] = 1e-30f, c.forward[2] = -1e-30f,
     c.near_distance = 1e-6f;
     assert_int_equal(masu_frame(m, &f, &commands, &failure), MASU_OK);
@@ -407,13 +411,16 @@ static void errors_of_live_calls_reach_the_log(void **state) {
     LOGGED(masu_model_show(m, (masu_model){0}, 1, &failure));
     LOGGED(masu_model_add(m, (masu_model){0}, rows, &added, &failure));
     LOGGED(masu_model_remove(m, (masu_model){0}, &failure));
+    LOGGED(masu_mesh_create(m, 0, &(masu_mesh_data){0}, rows, &added, &failure)); /* no reserve */
+    LOGGED(masu_mesh_replace(m, (masu_model){0}, &(masu_mesh_data){0}, &failure));
+    LOGGED(masu_mesh_deform(m, (masu_model){0}, rows, rows, 1, &failure));
     LOGGED(masu_model_node_get(m, (masu_model){0}, 0, &node, &failure));
     LOGGED(masu_model_node_set(m, (masu_model){0}, 0, rows, &failure));
     LOGGED(masu_model_animate(m, (masu_model){0}, NULL, 0, &failure));
     LOGGED(masu_punctual_light_get(m, (masu_punctual_light){0}, &light, &failure));
     LOGGED(masu_punctual_light_set(m, (masu_punctual_light){0}, &light, &failure));
     LOGGED(masu_punctual_light_add(m, &light, &made, &failure)); /* no reserve */
-    light.inner = NAN;                                 /* of a light that is no spot */
+    light.inner = NAN;                                 /* for a light that is no spot */
     LOGGED(masu_punctual_light_add(m, &light, &made, &failure));
     assert_non_null(strstr(logged.last, "inner"));
     LOGGED(masu_punctual_light_remove(m, (masu_punctual_light){0}, &failure));
@@ -455,7 +462,7 @@ static void blocks_of_the_host_are_checked(void **state) {
     assert_int_equal(masu_memory_query(&s.desc, &need, NULL), MASU_OK);
     assert_true(need.roles[0].host_visible && need.roles[0].alignment > 1); /* on a CPU driver */
     masu_device_block *b = &s.desc.device_blocks[0];
-    b->memory = (VkDeviceMemory)(uintptr_t)64; /* nothing is called with it */
+    b->memory = (VkDeviceMemory)(uintptr_t)64; /* no Vulkan call uses it */
     b->bytes = need.roles[0].bytes;
     b->memory_type = need.roles[0].type;
     b->mapped = (unsigned char *)block + 1;
@@ -473,8 +480,8 @@ static void blocks_of_the_host_are_checked(void **state) {
 
 /* ---- Waits ----------------------------------------------------------------------------------- */
 
-/* On a CPU driver, whose work stops with the process, a wait has no limit. On others it has, and
- * nothing that may be in use is destroyed then. */
+/* On a CPU driver, whose work stops with the process, a wait has no limit. On other drivers it has,
+ * and after a timeout no object that may be in use is destroyed. */
 static void a_wait_that_times_out_fails_cleanly(void **state) {
     (void)state;
     masu_detail detail;
@@ -493,7 +500,7 @@ static void a_wait_that_times_out_fails_cleanly(void **state) {
     s.host.properties.deviceType = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
     int finished = 1;
     for (uint32_t i = 0; i < 100 && finished;
-         i++) { /* it may be faster than 120 looks at a fence */
+         i++) { /* it may be faster than 120 checks of a fence */
         assert_int_equal(masu_frame(m, &(masu_frame_desc){MASU_FRAME_DESC}, &commands, &failure), MASU_OK);
         finished = masu_headless_run(&s.host, commands.buffer, error, sizeof error);
     }
@@ -508,7 +515,7 @@ static void a_wait_that_times_out_fails_cleanly(void **state) {
     masu_destroy(m);
 }
 
-/* Neither plan nor query leaves anything behind. */
+/* Neither plan nor query leaves objects behind. */
 static void any_call_of_a_query_may_fail(void **state) {
     (void)state;
     static masu_plan_info plan;
@@ -533,8 +540,7 @@ static void any_call_of_a_query_may_fail(void **state) {
     wrap_reset();
 }
 
-/* Singular, mirrored, huge and tiny transforms: a defined picture without a single replaced value.
- * */
+/* Singular, mirrored, huge and tiny transforms: a defined image without a single replaced value. */
 static void extreme_transforms_stay_finite(void **state) {
     (void)state;
     static const float diagonals[][3] = {{0, 0, 0},

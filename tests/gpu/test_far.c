@@ -1,7 +1,7 @@
-/* test_far.c: a scene of signed distance fields a million and ten million metres from the origin is
- * the picture that it is at the origin: coverage, depth, material and velocity. The scene is written
- * and baked here, with another offset each time; without anchors the same comparison fails. Polygons, lights and
- * decals that are placed by double positions are the picture that they are at the origin, too. */
+/* test_far.c: an SDF scene a million and ten million metres from the origin gives the same image as
+ * at the origin: coverage, depth, material and velocity. The scene is written and baked here, with
+ * another offset each time; without anchors the same comparison fails. Polygons, lights and decals
+ * with double positions give the same image as at the origin, too. */
 #include "scene/scene.h"
 #include "support/files.h"
 #include "support/floats.h"
@@ -14,12 +14,12 @@
 
 enum { W = 128, H = 72 };
 
-/* Where the middle of what is seen stands from the offset: where the anchor goes over to the next
- * point of its grid, so that small movements of the camera move it. */
+/* Position of the visible region's centre, from the offset: at a border of the anchor's grid, so
+ * that small movements of the camera change the anchor. */
 #define MIDDLE 32
 
-/* Offsets are multiples of the periods 4, 3.2 and 1000000 / 303000, so that what is repeated without
- * being moved looks the same. The turned part's middle is turned back by hand. */
+/* Offsets are multiples of the periods 4, 3.2 and 1000000 / 303000, so that repeated parts without
+ * an offset look the same. The rotated part's centre is rotated back by hand. */
 static const char *const text =
     "param radius = 0.5 [0.2, 0.9];\n"
     "let o = (%d + %d, 0, %d); let a = 0.3;\n"
@@ -49,7 +49,7 @@ typedef struct picture {
     double velocity[W * H][4];
 } picture;
 
-/* The blob, baked when it is asked for first. member: of the SDF's description, or "". */
+/* The blob, baked on first use. member: a member of the SDF's description, or "". */
 static const char *baked(int offset, const char *member) {
     static char scene[4096], json[1024], name[64], blob[80];
     snprintf(name, sizeof name, "%d-%zu", offset, strlen(member));
@@ -73,7 +73,7 @@ static void open_at(masu_session *s, int offset, const char *member) {
     open_session(s, &d);
 }
 
-/* Frame 0 or 1 of a camera that goes past the middle, while the crate moves and the ball grows. */
+/* Frame 0 or 1 of a camera that passes the centre, while the crate moves and the ball grows. */
 static void take(masu_session *s, int offset, int number, picture *p) {
     masu_commands commands;
     float radius = 0.5f + 0.03f * (float)number;
@@ -90,8 +90,8 @@ static void take(masu_session *s, int offset, int number, picture *p) {
     for (uint32_t i = 0; i < 4 * W * H; i++) p->velocity[i / 4][i % 4] = half_float(velocity[i]);
 }
 
-/* The other picture has a surface of that depth and material within a pixel: at a silhouette, where
- * the least rounding decides whether a ray hits, that is all that can be asked. */
+/* The depth changes within a pixel: at a silhouette, the smallest rounding decides whether a ray
+ * hits, so depth differences there count as another surface. */
 static int near_a_border(const picture *a, uint32_t i) {
     for (int dy = -1; dy <= 1; dy++) {
         for (int dx = -1; dx <= 1; dx++) {
@@ -105,9 +105,11 @@ static int near_a_border(const picture *a, uint32_t i) {
 }
 
 typedef struct difference {
-    uint32_t hits, coverage, surface; /* pixels; that differ in what they hit at all, or in which */
-    double depth, velocity;           /* of the others: relative, pixels */
-    uint32_t deep;                    /* of the others: pixels with depths over 1e-4 apart */
+    uint32_t hits, coverage, surface; /* pixels; with a hit in one image only, or on different
+                                         surfaces */
+    double depth, velocity;           /* among the others: relative, pixels */
+    uint32_t deep;                    /* among the others: pixels with a depth difference over
+                                         1e-4 */
 } difference;
 
 static difference compare(const picture *a, const picture *b) {
@@ -177,7 +179,7 @@ static void far_from_the_origin_it_looks_the_same(void **state) {
     }
 }
 
-/* The comparison can tell: world coordinates in single precision are 0.06 m apart there. */
+/* The comparison can fail: world coordinates in single precision are 0.06 m apart there. */
 static void without_anchors_it_does_not(void **state) {
     (void)state;
     take_both(0, "", here);
@@ -206,9 +208,9 @@ static void the_plan_says_whether_it_is_anchored(void **state) {
     }
 }
 
-/* A ground of 3 km: normals as exact as those of a small ball, where the scene has a floating
- * origin and where it has none. In single precision the difference of two lengths turns them by up
- * to 20 degrees near the camera. */
+/* A ground of 3 km: normals as exact as on a small ball, in scenes with a floating origin and
+ * without. In single precision the difference of two lengths rotates them by up to 20 degrees near
+ * the camera. */
 static void a_large_ball_is_a_smooth_ground(void **state) {
     (void)state;
     static float depths[W * H];
@@ -293,7 +295,7 @@ static const char *const polygons =
     "\"lights\": [{\"name\": \"lamp\", \"type\": \"point\", \"color\": [4, 3, 2], \"range\": 6,"
     " \"position\": [0, 1.5, 0], \"instance\": \"ball\"}]}";
 
-/* The ball by its instance, the others as models. */
+/* The ball as an instance, the others as models. */
 static void place_all(masu_session *s, const double offset[3], int number, int doubles) {
     for (uint32_t i = 0; i < MOVERS; i++) {
         masu_model model = masu_model_find(s->m, movers[i].name);
@@ -310,8 +312,8 @@ static void place_all(masu_session *s, const double offset[3], int number, int d
     }
 }
 
-/* Three frames: the camera crosses the boundary at which the device's origin moves on, the block moves. The last
- * two are kept. */
+/* Three frames: the camera crosses the border at which the device's origin moves, and the block
+ * moves. The last two frames are kept. */
 static void take_polygons(const double offset[3], int doubles, placed out[2]) {
     masu_session s;
     masu_commands commands;
@@ -350,8 +352,9 @@ static void take_polygons(const double offset[3], int doubles, placed out[2]) {
 }
 
 typedef struct placed_difference {
-    uint32_t hits, steps, velocity; /* pixels; whose colour is more than 1/255 off; that move by 0.01 px otherwise */
-    int worst;                      /* of colours */
+    uint32_t hits, steps, velocity; /* pixels; with colours more than 1/255 apart; with velocities
+                                       0.01 px apart */
+    int worst;                      /* of the colours */
 } placed_difference;
 
 static placed_difference compare_placed(const char *what) {
@@ -389,7 +392,7 @@ static void double_positions_look_as_at_the_origin(void **state) {
     take_polygons(odd, 1, far_out);
     d = compare_placed("1e7 m away, between floats");
     assert_true(d.steps <= 8 && d.velocity <= 8);
-    take_polygons(odd, 0, far_out); /* the comparison can tell */
+    take_polygons(odd, 0, far_out); /* the comparison can fail */
     d = compare_placed("1e7 m away, by floats");
     assert_true(d.steps > 1000);
 }

@@ -1,10 +1,10 @@
-/* test_faults.c: a whole life of a renderer in which one call fails: query, init, load, frames, live changes, another
- * size, another scene with the pipelines of the first. Whatever call of Vulkan it is and however it fails, the stage
- * says so by name, later stages refuse, nothing lives on, and the next life is good. A device that is lost between any
- * two frames; blocks and budgets a byte short.
+/* test_faults.c: the whole life of a renderer with one failing call: query, init, load, frames,
+ * run-time changes, resize, another scene with the pipelines of the first. For any Vulkan call and
+ * any failure, the stage names it, later stages return errors, no object is leaked, and the next
+ * life is good. Also: a device lost between any two frames; blocks and budgets a byte short.
  *
- * A call that can fail is one that returns a VkResult. The library makes none after masu_init but in masu_resize,
- * which is a part of what is checked. */
+ * A call that can fail is one that returns a VkResult. After masu_init the library makes none
+ * except in masu_resize, which this test checks too. */
 #include "support/files.h"
 #include "support/support.h"
 #include "support/wrap.h"
@@ -19,7 +19,7 @@ typedef enum stage { QUERY, INIT, LOAD, DRAW, LIVE, SIZE, SCENE, DRAW_AGAIN, STA
 static const char *const stage_names[] = {"query", "init",   "load",  "frames",
                                           "live",  "resize", "scene", "its frames"};
 
-static masu_session s, other; /* both on devices of their own; other: for its scene */
+static masu_session s, other; /* each with its own device; other: for its scene */
 static masu_headless_target target;
 static void *block;
 static size_t block_bytes;
@@ -48,7 +48,8 @@ static int open_all(void **state) {
     (void)state;
     wrap_reset();
     d.no_renderer = e.no_renderer = true;
-    d.host.validate = false; /* time: what the layer would say of lives without a fault, other tests ask */
+    d.host.validate = false; /* to save time: other tests run lives without a fault under the
+                                layer */
     d.host.get_instance_proc_addr = wrap_get_instance_proc_addr;
     open_session(&s, &d);
     open_session(&other, &e);
@@ -58,7 +59,7 @@ static int open_all(void **state) {
     for (int i = 0; i < 2; i++) {
         masu_memory need;
         masu_detail detail;
-        static masu_pipelines pool; /* the places of what is taken from one are host bytes, too */
+        static masu_pipelines pool; /* the slots for shared pipelines need host memory, too */
         masu_desc own = desc_of(scenes[i], &pool);
         if (masu_memory_query(&own, &need, &detail)) fail_msg("%s", detail.text);
         block_bytes = need.host_bytes > block_bytes ? need.host_bytes : block_bytes;
@@ -112,7 +113,7 @@ static masu_result live(masu_renderer *m) {
     return r;
 }
 
-/* What a stage gives; 0 .. STAGES - 1 of *at: where it ended, STAGES: nowhere. */
+/* The result of a stage; *at: the stage 0 .. STAGES - 1 that ended the life, STAGES: none. */
 static masu_result life(stage *at, masu_detail *detail) {
     masu_pipelines *pool = calloc(1, sizeof *pool);
     masu_desc first = desc_of(&s.scene, pool), second = desc_of(&other.scene, pool);
@@ -145,7 +146,7 @@ static masu_result life(stage *at, masu_detail *detail) {
         calls_of[*at] = wrap.setup_calls - before;
         if (r) break;
     }
-    if (r && *at == SIZE) { /* without a device all that is left is masu_destroy */
+    if (r && *at == SIZE) { /* without a device only masu_destroy is possible */
         masu_commands commands;
         masu_result next = masu_frame(m, &(masu_frame_desc){MASU_FRAME_DESC}, &commands, NULL);
         assert_true(r == MASU_ERROR_DEVICE_LOST ? next != MASU_OK : next == MASU_OK || next == r);
@@ -180,11 +181,11 @@ static void any_call_of_a_life_may_fail(void **state) {
     printf("  calls that can fail:");
     for (int i = 0; i < STAGES; i++)
         printf(" %s %llu%s", stage_names[i], (unsigned long long)calls_of[i], i < STAGES - 1 ? "," : "\n");
-    /* After masu_init nothing is made: there is nothing that could fail. */
+    /* After masu_init no object is created: no call can fail. */
     assert_true(calls_of[LOAD] == 0 && calls_of[DRAW] == 0 && calls_of[LIVE] == 0);
     assert_true(calls_of[DRAW_AGAIN] == 0 && calls_of[SIZE] > 5 && calls_of[INIT] > 100);
     uint64_t step = trials(1, 9, 31);
-    /* Resizes are few: each of their calls. */
+    /* Resizes have few calls: each is tested. */
     uint64_t size_from = calls_of[QUERY] + calls_of[INIT], size_to = size_from + calls_of[SIZE];
     for (size_t w = 0; w < sizeof ways / sizeof *ways; w++) {
         for (uint64_t k = 1 + w, next; k <= calls; k = next) {
@@ -221,8 +222,8 @@ static void any_call_of_a_life_may_fail(void **state) {
     assert_true(of[INIT] > 5 && of[SIZE] > 5 && of[SCENE] > 5);
 }
 
-/* The host gets VK_ERROR_DEVICE_LOST from a submit: it destroys the renderer, and makes it again. The picture is that
- * of a renderer that has lost nothing. */
+/* A submit returns VK_ERROR_DEVICE_LOST to the host, which destroys the renderer and creates a new
+ * one. The image equals that of a renderer without a loss. */
 static void a_device_lost_before_any_frame_leaves_a_good_renderer(void **state) {
     (void)state;
     static uint8_t good[BYTES];
@@ -232,7 +233,7 @@ static void a_device_lost_before_any_frame_leaves_a_good_renderer(void **state) 
     wrap_reset();
     for (uint32_t lost_at = 0; lost_at <= 2 * FRAMES; lost_at++) {
         assert_int_equal(masu_init(&d, block, block_bytes, &m, &detail), MASU_OK);
-        if (lost_at != 1) assert_int_equal(load(m), MASU_OK); /* 1: lost while it loads */
+        if (lost_at != 1) assert_int_equal(load(m), MASU_OK); /* 1: lost during the load */
         if (lost_at != 1) assert_int_equal(frames(m, 0, lost_at, false), MASU_OK);
         masu_destroy(m);
         assert_int_equal(wrap.live, 0);

@@ -1,4 +1,5 @@
-/* test_fixed_memory.c: the promise of the box: known before, never grown, nothing outside. */
+/* test_fixed_memory.c: the fixed memory block: its size is fixed in advance, it never grows, and
+ * nothing is allocated outside. */
 #include "support/support.h"
 #include "support/random.h"
 #include "support/wrap.h"
@@ -13,8 +14,8 @@ static masu_detail failure; /* of the last call that failed */
 
 enum { W = 64, H = 48 };
 
-/* Heap calls of the library's own are counted without the validation layer, which allocates inside
- * the calls it wraps. */
+/* The library's own heap allocations are counted without the validation layer, which allocates
+ * inside the calls it wraps. */
 static void three_hundred_frames(const char *scene, const char *instance, bool validate) {
     masu_session_desc d = test_desc(scene, W, H);
     masu_session s;
@@ -26,7 +27,7 @@ static void three_hundred_frames(const char *scene, const char *instance, bool v
     d.desc.governor.mode = MASU_GOVERNOR_ON;
     d.desc.readback = MASU_READBACK_DEPTH;
     d.desc.rung_count = 3;
-    for (uint32_t r = 0; r < 3; r++) { /* the last two draw their cascades by turns, if any */
+    for (uint32_t r = 0; r < 3; r++) { /* the last two alternate their cascades, if any */
         d.desc.rungs[r].scale = r == 0 ? 1.0f : r == 1 ? 0.8f : 0.4f;
         d.desc.rungs[r].shadow_resolution = 128 >> r;
         d.desc.rungs[r].temporal = r == 2 ? MASU_OFF : MASU_AUTO; /* AUTO is on */
@@ -35,7 +36,7 @@ static void three_hundred_frames(const char *scene, const char *instance, bool v
     open_session(&s, &d);
     uint64_t setup = wrap.setup_calls, heap = 0;
     int64_t live = wrap.live;
-    assert_true(setup > 50); /* the wrapper is in the way */
+    assert_true(setup > 50); /* the wrapper is active */
     masu_instance box = masu_instance_find(s.m, instance);
     assert_int_not_equal(box.id, 0);
     for (uint32_t i = 0; i < 300; i++) {
@@ -91,8 +92,8 @@ static void the_counter_counts(void **state) {
     free(p);
 }
 
-/* A noisy block between canaries: the renderer assumes nothing about it and writes nothing beside
- * it. */
+/* A block of noise between canaries: the renderer assumes nothing about its content and writes
+ * nothing outside. */
 static void the_block_is_used_to_the_byte(void **state) {
     (void)state;
     masu_session_desc d = test_desc("test_both", W, H);
@@ -171,8 +172,8 @@ static void query_and_use(const char *scene) {
         masu_peaks(m, &peaks);
         assert_int_equal(peaks.host_bytes, need.host_bytes);
         assert_int_equal(peaks.device_bytes, need.device_bytes);
-        /* The report's host rows fill the block to its last byte; device rows stay inside theirs.
-         * */
+        /* The report's host rows fill the block to its last byte; device rows are inside their
+         * blocks. */
         masu_memory_row rows[MEMORY_ROWS];
         uint32_t n = memory_rows(m, rows);
         uint64_t end = 0;

@@ -1,6 +1,6 @@
-/* test_foliage.c: masks over distance. A plane of repeating needles, or leaves, fills the picture; how
- * much of it is drawn, against the first mip's alpha sampled at 64 places in each pixel, in double.
- * Beside it what mips without care would give, sampled as the device does. */
+/* test_foliage.c: alpha-tested textures over distance. A plane of repeating needles, or leaves,
+ * fills the image. Its coverage is compared with the first mip's alpha sampled at 64 positions in
+ * each pixel, in double precision. For comparison: plain mips, sampled as the device does. */
 #include "support/support.h"
 
 #include "scene/blob.h"
@@ -18,9 +18,9 @@ enum { SIDE = 128, PIXELS = SIDE * SIDE, TEXELS = 128, MIPS = 8, TILES = 32 };
 static masu_session s;
 static uint8_t *blob; /* the reference's own copy */
 static masu_scene look;
-static double mips[MIPS][TEXELS * TEXELS]; /* alpha; made from the first by plain means */
+static double mips[MIPS][TEXELS * TEXELS]; /* alpha; plain averages of the first */
 
-/* Layer `layer` of the scene's masks: mip 0 as the blob has it. */
+/* Reads mip 0 of a layer of the scene's alpha-tested textures from the blob. */
 static void read_mask(uint32_t layer) {
     masu_scene_view v = masu_scene_view_of(&look);
     const masu_blob_texture *t = v.textures;
@@ -55,11 +55,11 @@ static double sample(uint32_t m, double u, double v) {
            fy * ((1 - fx) * row[1][left] + fx * row[1][right]);
 }
 
-/* The camera is rolled: along the rows of a texture every pixel would fall on the same place of a
- * texel, its middle say, and what lies between them would not be looked at. */
+/* The camera is rolled. Otherwise, along the rows of a texture, every pixel would sample the same
+ * position in a texel, such as its centre, and nothing in between would be tested. */
 #define ROLL 0.4
 
-/* Alpha of a mip where the picture shows it, at `texels` of mip 0 a pixel. */
+/* Alpha of a mip at a position of the image, at `texels` of mip 0 per pixel. */
 static double alpha_at(uint32_t m, double x, double y, double texels) {
     double right = (x - SIDE / 2.0) * texels / TEXELS, down = (y - SIDE / 2.0) * texels / TEXELS;
     return sample(m, TILES / 2.0 + cos(ROLL) * right - sin(ROLL) * down,
@@ -87,7 +87,7 @@ static double plain(double texels) {
 }
 
 static double drawn(double texels, double x) {
-    double height = texels * SIDE * 2 / (TEXELS * TILES); /* of the picture, world */
+    double height = texels * SIDE * 2 / (TEXELS * TILES); /* of the image, in world units */
     masu_camera camera = {.position = {x, 0, height / (2 * tan(0.35))},
                           .forward = {0, 0, -1},
                           .up = {(float)sin(ROLL), (float)cos(ROLL), 0},
@@ -131,7 +131,7 @@ static void foliage_covers_the_same_at_any_distance(void **state) {
             if (fabs(got - want) > worst) worst = fabs(got - want);
             if (fabs(without - want) > lost) lost = fabs(without - want);
         }
-        print_message("%s: off by %.4f at most, %.4f with plain mips\n", names[which], worst, lost);
+        print_message("%s: error %.4f at most, %.4f with plain mips\n", names[which], worst, lost);
         assert_true(worst < 0.025);
         assert_true(which || lost > 4 * worst);
     }

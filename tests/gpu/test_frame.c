@@ -1,6 +1,5 @@
-/* test_frame.c: frames are the same whatever should not matter: poison, memory split by role, who
- * owns the memory, how many frames are in flight, which rung came before, how the target is
- * reached. */
+/* test_frame.c: frames do not depend on irrelevant conditions: poison, memory split by role, the
+ * owner of the memory, frames in flight, the previous rung, the way to the target. */
 #include "support/kept.h"
 #include "support/support.h"
 
@@ -39,11 +38,11 @@ static void the_picture_shows_both_worlds(void **state) {
     open_session(&s, &d);
     draw_rung(&s, 0, pixels);
     assert_int_equal(masu_stats(s.m, 0, &stats, NULL), MASU_OK);
-    assert_true(stats.sdf_hits > W * H / 100);      /* the SDF is seen */
+    assert_true(stats.sdf_hits > W * H / 100);      /* the SDF is visible */
     assert_true(stats.sdf_hits < W * H * 95 / 100); /* and not everywhere */
     assert_true(stats.triangles > 0);
     assert_int_equal(stats.replaced, 0);
-    /* Not one flat colour: a quarter of the picture differs from its first pixel. */
+    /* Not one flat colour: a quarter of the image differs from its first pixel. */
     uint32_t different = 0;
     for (uint32_t i = 0; i < W * H; i++) different += memcmp(pixels, pixels + 4 * i, 3) != 0;
     assert_true(different > W * H / 4);
@@ -57,14 +56,14 @@ static void a_second_run_gives_the_same_bits(void **state) {
     compare_all_rungs(&d);
 }
 
-/* Software drivers split work over threads: no result may depend on how. (Other drivers ignore the
- * variable.) */
+/* Software drivers split work over threads: results must not depend on the split. (Other drivers
+ * ignore the variable.) */
 static void the_number_of_worker_threads_changes_nothing(void **state) {
     (void)state;
     static const char *const counts[] = {"0", "1", "2"};
     for (size_t i = 0; i < 3; i++) {
         setenv("LP_NUM_THREADS", counts[i], 1);
-        kept_forget(); /* the variable is read when a device is made */
+        kept_forget(); /* the variable is read at device creation */
         masu_session_desc d = test_desc("test_both", W, H);
         uint32_t compiled = kept.compiled;
         compare_all_rungs(&d);
@@ -74,7 +73,7 @@ static void the_number_of_worker_threads_changes_nothing(void **state) {
     kept_forget();
 }
 
-/* What support/kept.h promises: the same pipelines are not compiled again, others are. */
+/* The guarantees of support/kept.h: equal pipelines are not compiled again, different ones are. */
 static void sessions_share_what_is_compiled_and_nothing_else(void **state) {
     (void)state;
     masu_session_desc d = test_desc("test_both", W, H);
@@ -82,13 +81,14 @@ static void sessions_share_what_is_compiled_and_nothing_else(void **state) {
     kept_counts before = kept;
     compare_all_rungs(&d);
     uint32_t asked = kept.asked - before.asked;
-    print_message("%u pipelines asked for, %u compiled\n", asked, kept.compiled - before.compiled);
+    print_message("%u pipelines requested, %u compiled\n", asked, kept.compiled - before.compiled);
     assert_true(asked >= 8 && kept.compiled > before.compiled && kept.compiled - before.compiled <= asked);
     before = kept;
     compare_all_rungs(&d);
     assert_int_equal(kept.asked - before.asked, asked);
     assert_int_equal(kept.compiled, before.compiled);
-    /* Another tone curve is a constant of one pass, which has a form for rungs that it ends and one for others. */
+    /* Another tone curve is a constant of one pass, which has one pipeline for rungs that it ends
+     * and one for others. */
     masu_session s;
     d.desc.tone = MASU_TONE_NEUTRAL;
     open_session(&s, &d);
@@ -158,7 +158,7 @@ static void timestamps_change_nothing_and_name_the_passes_that_ran(void **state)
     close_session(&s);
 }
 
-/* A slot that is handed out again does not tell the times of its last frame as those of the next. */
+/* A reused slot does not report the times of its last frame as the next frame's. */
 static void a_frame_that_has_not_ended_has_no_times(void **state) {
     (void)state;
     if (masu_session_denied()) skip(); /* no timestamps */
@@ -181,7 +181,7 @@ static void a_frame_that_has_not_ended_has_no_times(void **state) {
         assert_int_equal(stats.timed, 0);
         assert_int_equal(stats.gpu_ns, 0);
         assert_int_equal(masu_readback(s.m, 0, MASU_READBACK_DEPTH, &image, NULL), MASU_INCOMPLETE);
-        if (n == 2) continue; /* and one that is never submitted */
+        if (n == 2) continue; /* and one frame that is never submitted */
         assert_ok(masu_headless_run(&s.host, commands.buffer, error, sizeof error));
         assert_int_equal(masu_stats(s.m, 0, &stats, NULL), MASU_OK);
         assert_int_equal(stats.frame, n);
@@ -192,8 +192,8 @@ static void a_frame_that_has_not_ended_has_no_times(void **state) {
     close_session(&s);
 }
 
-/* Smaller rungs draw into a corner of larger images: what an earlier frame left beyond it must not
- * show. */
+/* Smaller rungs render into a corner of larger images: remains of an earlier frame outside must not
+ * be visible. */
 static void a_rung_does_not_see_what_larger_rungs_left(void **state) {
     (void)state;
     masu_session_desc d = test_desc("test_both", W, H);
@@ -212,7 +212,7 @@ static void a_blitted_bgra_target_has_the_same_colours(void **state) {
     masu_session_desc d = test_desc("test_both", W, H);
     d.desc.targets.storage = 0;
     d.desc.targets.format = VK_FORMAT_B8G8R8A8_UNORM;
-    d.desc.dither = MASU_OFF; /* such targets are dithered, if nothing is said */
+    d.desc.dither = MASU_OFF; /* such targets are dithered by default */
     masu_session s;
     open_session(&s, &d);
     for (uint32_t r = 0; r < 3; r++) {
@@ -244,7 +244,7 @@ static void each_of_several_targets_gets_the_picture(void **state) {
     close_session(&s);
 }
 
-/* The scene with its memory brought by the host, in blocks at odd places of larger allocations. */
+/* The scene in memory provided by the host, in blocks at odd offsets of larger allocations. */
 static void memory_of_the_host_works(void **state) {
     (void)state;
     for (uint32_t split = 0; split < 2; split++) {
@@ -274,7 +274,7 @@ static void memory_of_the_host_works(void **state) {
             s.desc.device_blocks[r] =
                 (masu_device_block){memory[r], offset, need->bytes, mapped, need->type};
         }
-        /* One byte too few is refused by name. */
+        /* One byte too few is rejected with the member's name. */
         masu_detail detail;
         masu_renderer *none = NULL;
         s.desc.device_blocks[MASU_ROLE_DEVICE].bytes--;

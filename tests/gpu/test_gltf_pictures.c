@@ -1,8 +1,9 @@
-/* test_gltf_pictures.c: pictures of glTF files: each shows one thing that glTF can say. What must be seen is known from how
- * a file was made: parallelograms in world space, found and shaded here ray by ray in double precision
- * (measure/shade.h). Nothing of geometry or materials comes from what was baked.
+/* test_gltf_pictures.c: rendered glTF files, each with one feature of glTF. The expected image
+ * follows from how a file was made: parallelograms in world space, intersected and shaded here ray
+ * by ray in double precision (measure/shade.h), independent of the baked geometry and materials.
  *
- * Compared is the lit picture before exposure. Pixels near an edge, whose neighbourhood lies on two faces, are left out. */
+ * The lit image before exposure is compared. Pixels near an edge, with a neighbourhood on two
+ * faces, are skipped. */
 #include "support/support.h"
 #include "support/floats.h"
 #include "support/gltf_file.h"
@@ -18,16 +19,18 @@
 
 enum { SIDE = 64, FACES = 8 };
 
-/* ---- What must be seen ----------------------------------------------------------------------- */
+/* ---- Expected images ------------------------------------------------------------------------- */
 
 typedef struct face {
-    double at[3], u[3], v[3]; /* a corner, the two edges there */
+    double at[3], u[3], v[3]; /* a corner, and the two edges from it */
     double look[8];           /* albedo, roughness, emissive, metallic */
-    bool single;              /* not seen from behind: from where u x v points away */
-    const brdf_surface *coat; /* instead of look; normals of coat and of what lies below, (0, 0, 1) being the face's */
+    bool single;              /* invisible from behind, the side away from u x v */
+    const brdf_surface *coat; /* replaces look; normals of coat and base, relative to the face's (0,
+                                 0, 1) */
     double over[3], below[3];
-    bool leans;               /* its normals do: over, turned to where the eye is, and until they are edge-on */
-    bool glass;               /* all of the light goes through: the faces behind, times the colour of look */
+    bool leans;               /* normal = over, flipped towards the camera, limited at grazing
+                                 angles */
+    bool glass;               /* fully transmitting: the faces behind, times the colour of look */
 } face;
 
 static void cross(const double a[3], const double b[3], double out[3]) {
@@ -36,7 +39,7 @@ static void cross(const double a[3], const double b[3], double out[3]) {
 
 static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/* The nearest face along a ray, or -1; its normal, towards the eye. */
+/* The nearest face along a ray, or -1; its normal, towards the camera. */
 static int face_at(const face *faces, int count, const double eye[3], const double direction[3], double normal[3]) {
     double nearest = 1e30;
     int found = -1;
@@ -61,17 +64,18 @@ static int face_at(const face *faces, int count, const double eye[3], const doub
     return found;
 }
 
-/* ---- What is seen ---------------------------------------------------------------------------- */
+/* ---- Rendered images ------------------------------------------------------------------------- */
 
 typedef struct shot {
     double from[3], to[3];
 } shot;
 
 static const shot ahead = {{1, 0.5, 3}, {1, 0.5, 0}};
-static const shot in_the_glare = {{-0.23, -1.22, 2.13}, {1, 0.5, 0}}; /* the sun is mirrored in the middle */
+/* the sun is reflected in the centre */
+static const shot in_the_glare = {{-0.23, -1.22, 2.13}, {1, 0.5, 0}};
 static const shot behind = {{1, 0.5, -3}, {1, 0.5, 0}};
 
-static bool few_attachments; /* as of a device with four for the colours of a pass */
+static bool few_attachments; /* as on a device with four colour attachments */
 
 static const uint16_t *photograph(masu_session *s, const char *path, shot p, masu_view *view) {
     static unsigned made;
@@ -106,7 +110,7 @@ static const uint16_t *photograph(masu_session *s, const char *path, shot p, mas
     return draw_image(s, &frame, MASU_READBACK_HDR, NULL);
 }
 
-/* Light of a coated surface by the formulas alone; `toward` the eye, both normals unit. */
+/* Light of a coated surface by the formulas; `toward` the camera, both normals unit. */
 static void shade_coated(const masu_view *v, const double direction[3], const face *f, double out[3]) {
     double axes[3][3] = {{0, 0, 0}, {0, 0, 0}, {f->below[0], f->below[1], f->below[2]}}, size;
     const double aside[3] = {f->below[2], 0, -f->below[0]};
@@ -119,7 +123,8 @@ static void shade_coated(const masu_view *v, const double direction[3], const fa
         sun[k] = dot(axes[k], v->sun_direction);
         over[k] = dot(axes[k], f->over);
     }
-    for (int i = 0; i < 2; i++) { /* as blurred as the surface is rough, which is the share of the ambient light */
+    for (int i = 0; i < 2; i++) { /* blurred by roughness, which is the weight of the ambient
+                                     light */
         const double *n = i ? f->over : f->below;
         double rough = i ? f->coat->coat_roughness : f->coat->roughness;
         for (int k = 0; k < 3; k++) way[k] = direction[k] - 2 * dot(n, direction) * n[k];
@@ -132,7 +137,7 @@ static void shade_coated(const masu_view *v, const double direction[3], const fa
         out[k] = out[k] * v->sun_color[k] + diffuse[k] * v->ambient[k] + mirrors[k] * sky[0][k] + coat * sky[1][k];
 }
 
-/* What glass without a colour of its own sends, and what it lets through of `behind`. */
+/* The reflection of colourless glass, plus its transmission of `behind`. */
 static void shade_glass(const masu_view *v, const double direction[3], const double n[3], const face *f, double out[3]) {
     face own = *f;
     const brdf_surface black = {.roughness = f->look[3], .specular = 0.5};
@@ -143,11 +148,12 @@ static void shade_glass(const masu_view *v, const double direction[3], const dou
     brdf_ambient(masu_split_sum, &black, upright, eye, diffuse, mirrors, &coat);
     double behind[3] = {out[0], out[1], out[2]};
     shade_coated(v, direction, &own, out);
-    for (int k = 0; k < 3; k++) /* nothing comes from below a surface that lets all through */
+    for (int k = 0; k < 3; k++) /* no diffuse light from a fully transmitting surface */
         out[k] += f->look[k] * (1 - mirrors[0]) * behind[k] - diffuse[k] * v->ambient[k];
 }
 
-/* Every pixel against the faces; of each face there must be some. loose: how far rounding may take it. */
+/* Compares every pixel with the faces, each of which must be visible. loose: tolerance for
+ * rounding. */
 static void compare(const char *path, shot p, const face *faces, int count, double loose) {
     masu_session s;
     masu_view v;
@@ -167,7 +173,7 @@ static void compare(const char *path, shot p, const face *faces, int count, doub
         if (rim) continue;
         if (at < 0) {
             masu_shade_sky(&v, ray.direction, want);
-        } else if (faces[at].glass) { /* the first; behind it is the second */
+        } else if (faces[at].glass) { /* the first face hit; behind it is the second */
             masu_shade_surface(&v, ray.direction, normal, faces[at + 1].look, want);
             shade_glass(&v, ray.direction, normal, &faces[at], want);
         } else if (faces[at].leans) {
@@ -215,7 +221,7 @@ static const char *quad_of(const char *material) {
 
 #define CLAY "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,0.4,0.3,1],\"metallicFactor\":0,\"roughnessFactor\":0.75}"
 
-/* ---- Light that a surface sends itself ------------------------------------------------------- */
+/* ---- Emission -------------------------------------------------------------------------------- */
 
 static void emission_is_added(void **state) {
     (void)state;
@@ -249,7 +255,7 @@ static void emission_needs_no_fifth_attachment(void **state) {
     few_attachments = false;
 }
 
-/* A lamp behind black glass: the glass still shines. And black chalk, which does nothing but emit. */
+/* A lamp behind black glass: the glass still reflects. And black chalk, which only emits. */
 static void what_is_black_and_emits_still_mirrors(void **state) {
     (void)state;
     face f = flat(0, 0, 0, 2, 1, 0, 0, 0, 0.25);
@@ -271,7 +277,7 @@ static void what_is_unlit_sends_its_colour(void **state) {
     compare(quad_of(CLAY ",\"extensions\":{\"KHR_materials_unlit\":{}}"), ahead, &f, 1, 0);
 }
 
-/* Four squares of one picture: sRGB bytes. */
+/* Four squares of one texture: sRGB bytes. */
 static void write_squares(const char *name, const uint8_t colors[4][3]) {
     static uint8_t rgba[64 * 64 * 4];
     char error[ERROR_SIZE];
@@ -283,7 +289,7 @@ static void write_squares(const char *name, const uint8_t colors[4][3]) {
     assert_ok(masu_image_save_png(in_scratch(name), rgba, 64, 64, 0, error, sizeof error));
 }
 
-/* Two sets of coordinates: the first says nothing. */
+/* Two sets of coordinates: the first is constant. */
 static const char *mapped(const char *picture, const char *about) {
     static const float first[8] = {9, 9, 9, 9, 9, 9, 9, 9}, second[8] = {0, 1, 1, 1, 1, 0, 0, 0};
     char attributes[128], rest[1024];
@@ -296,12 +302,12 @@ static const char *mapped(const char *picture, const char *about) {
 
 static double linear(int byte) { return byte <= 10 ? byte / 255.0 / 12.92 : pow((byte / 255.0 + 0.055) / 1.055, 2.4); }
 
-/* The quad in four parts, in the order of the squares as they are seen. */
+/* The quad in four parts, in the order of the squares in the image. */
 static void quarter(face *f) {
     for (int i = 0; i < 4; i++) f[i] = flat(i & 1, i & 2 ? 0 : 0.5, 0, 1, 0.5, 0.5, 0.4, 0.3, 0.75);
 }
 
-/* Some of them shine less than a fifth: they were dark. */
+/* Weak emission, some less than a fifth, must not be rounded to black. */
 static void weak_maps_of_emission_shine(void **state) {
     (void)state;
     static const uint8_t colors[4][3] = {{0, 0, 0}, {100, 100, 100}, {60, 60, 60}, {255, 255, 255}};
@@ -321,7 +327,7 @@ static void weak_maps_of_emission_shine(void **state) {
 #define COAT(more) ",\"extensions\":{\"KHR_materials_clearcoat\":{\"clearcoatFactor\":1,\"clearcoatRoughnessFactor\":0.4" more "}}"
 static const brdf_surface lacquered = {{0.5, 0.4, 0.3}, 0.5, 0, 0.5, 1, 0.4};
 
-/* A picture of one normal, 30 degrees to the right. */
+/* A normal map with one normal, 30 degrees to the right. */
 static void a_coat_is_smooth_unless_it_names_a_picture(void **state) {
     (void)state;
     static const uint8_t leaning[4][3] = {{192, 128, 238}, {192, 128, 238}, {192, 128, 238}, {192, 128, 238}};
@@ -349,7 +355,8 @@ static void coats_have_maps(void **state) {
     for (int i = 0; i < 4; i++) {
         each[i] = lacquered;
         each[i].coat = squares[i][0] / 255.0;
-        each[i].coat_roughness = rint(0.4 * 15 * squares[i][1] / 255.0) / 15; /* as far as it is kept */
+        /* as rounded in the G-buffer */
+        each[i].coat_roughness = rint(0.4 * 15 * squares[i][1] / 255.0) / 15;
         f[i].coat = &each[i];
         f[i].over[2] = f[i].below[2] = 1;
     }
@@ -357,7 +364,7 @@ static void coats_have_maps(void **state) {
                                             "\"clearcoatRoughnessTexture\":{\"index\":0,\"texCoord\":1}")), in_the_glare, f, 4, 0.01);
 }
 
-/* A pane before a wall that sends light of three colours. */
+/* A pane before a wall that emits three colours. */
 static void glass_colours_what_is_behind(void **state) {
     (void)state;
     face f[2] = {flat(0, 0, 0, 2, 1, 0.8, 0.3, 0.1, 0.05), flat(-0.5, -0.5, -1, 3, 2, 0, 0, 0, 1)};
@@ -375,12 +382,86 @@ static void glass_colours_what_is_behind(void **state) {
             (shot){{1, 0.5, 2.5}, {1, 0.5, 0}}, f, 2, 0.01);
 }
 
-/* ---- Coordinates, pictures, colours ---------------------------------------------------------- */
+/* Fractions of a face's edges at the nearest point of it along a ray; false if the ray misses it by more than `margin`. */
+static bool along_edges(const face *f, const double eye[3], const double direction[3], double margin, double uv[2], double point[3]) {
+    double n[3], from[3], on[3], across[3];
+    cross(f->u, f->v, n);
+    for (int k = 0; k < 3; k++) from[k] = f->at[k] - eye[k];
+    double t = dot(from, n) / dot(n, direction);
+    for (int k = 0; k < 3; k++) point[k] = eye[k] + t * direction[k];
+    for (int k = 0; k < 3; k++) on[k] = point[k] - f->at[k];
+    cross(on, f->v, across);
+    uv[0] = dot(across, n) / dot(n, n);
+    cross(f->u, on, across);
+    uv[1] = dot(across, n) / dot(n, n);
+    return uv[0] > margin && uv[0] < 1 - margin && uv[1] > margin && uv[1] < 1 - margin;
+}
+
+/* A pane that only transmits, before a wall whose colour tells the position on it. The wall is seen where the refracted
+ * ray has gone the thickness (of the node's scale); error and shift in pixels of the picture. */
+static void volumes_refract_what_is_behind(void **state) {
+    (void)state;
+    static const float colors[16] = {0, 0, 0.25f, 1, 1, 0, 0.25f, 1, 1, 1, 0.25f, 1, 0, 1, 0.25f, 1};
+    static const struct {
+        double thickness, ior, scale; /* ior 0: infinite */
+    } cases[] = {{0, 1.5, 1}, {0.4, 1, 1}, {0.4, 1.5, 1}, {0.4, 2.4, 1}, {0.4, 0, 1}, {0.25, 1.5, 2}};
+    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+        double scale = cases[c].scale, thickness = cases[c].thickness * scale, ior = cases[c].ior, mean = 0, most = 0, shift = 0;
+        face pane = flat(0, 0, 0, 2 * scale, scale, 1, 1, 1, 0), wall = flat(-1, -1, -1.5, 4, 3, 0, 0, 0, 1);
+        shot p = {{-0.8, 1.6, 2.5}, {scale, 0.5 * scale, 0}};
+        char volume[512];
+        masu_session s;
+        masu_view v;
+        uint32_t count = 0;
+        begin_quad();
+        int shades = floats(colors, "VEC4", 4, 4);
+        snprintf(volume, sizeof volume,
+                 "{\"pbrMetallicRoughness\":{\"metallicFactor\":0,\"roughnessFactor\":0},\"extensions\":{"
+                 "\"KHR_materials_transmission\":{\"transmissionFactor\":1},\"KHR_materials_specular\":{\"specularFactor\":0},"
+                 "\"KHR_materials_volume\":{\"thicknessFactor\":%g},\"KHR_materials_ior\":{\"ior\":%g}}}",
+                 cases[c].thickness, ior);
+        const char *path =
+            finish("\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":%d},\"indices\":%d,\"material\":0}]},"
+                   "{\"primitives\":[{\"attributes\":{\"POSITION\":%d,\"COLOR_0\":%d},\"indices\":%d,\"material\":1}]}],"
+                   "\"nodes\":[{\"mesh\":0,\"scale\":[%g,%g,%g]},{\"mesh\":1,\"scale\":[2,3,1],\"translation\":[-1,-1,-1.5]}],"
+                   "\"materials\":[%s,{\"pbrMetallicRoughness\":{},\"extensions\":{\"KHR_materials_unlit\":{}}}]",
+                   quad_positions, quad_indices, quad_positions, shades, quad_indices, scale, scale, scale, volume);
+        const uint16_t *hdr = photograph(&s, path, p, &v);
+        for (uint32_t i = 0; i < SIDE * SIDE; i++) {
+            double d[3], at[3], exit[3], uv[2], seen[2], unbent[2], width = 0, off = 0, away = 0;
+            masu_view_ray ray = masu_view_ray_at(&v, i % SIDE, i / SIDE);
+            if (i % SIDE < 8 || i % SIDE >= SIDE - 8 || i / SIDE < 8 || i / SIDE >= SIDE - 8) continue; /* clamped there */
+            if (!along_edges(&pane, v.eye, ray.direction, 0.03, uv, at)) continue;
+            /* Snell's law at a surface of z: the tangential part is divided by the index. */
+            for (int k = 0; k < 2; k++) d[k] = ior > 0 ? ray.direction[k] / ior : 0;
+            d[2] = -sqrt(1 - d[0] * d[0] - d[1] * d[1]);
+            for (int k = 0; k < 3; k++) exit[k] = at[k] + thickness * d[k] - v.eye[k];
+            if (!along_edges(&wall, v.eye, ray.direction, 0.03, unbent, at) || !along_edges(&wall, v.eye, exit, 0.03, uv, at)) continue;
+            for (int k = 0; k < 2; k++) seen[k] = half_float(hdr[4 * i + (uint32_t)k]);
+            for (int k = 0; k < 3; k++) d[k] = ray.direction[k] * ray.z_scale + v.right[k] * (2.0 / SIDE);
+            (void)along_edges(&wall, v.eye, d, 0, exit, at);
+            width = (exit[0] - unbent[0]) * 4; /* of a pixel on the wall */
+            off = hypot((seen[0] - uv[0]) * 4, (seen[1] - uv[1]) * 3) / width;
+            away = hypot((unbent[0] - uv[0]) * 4, (unbent[1] - uv[1]) * 3) / width;
+            mean += off, shift += away, count++;
+            most = fmax(most, off);
+        }
+        close_session(&s);
+        print_message("thickness %g, ior %g, scale %g: shifted by %.2f pixels in the mean, error %.3f, at most %.3f\n",
+                      cases[c].thickness, ior, scale, shift / count, mean / count, most);
+        assert_true(count > 200);
+        assert_true(mean / count < 0.1 && most < 0.5);
+        assert_true(thickness * (ior - 1) == 0 ? shift / count < 1e-9 : shift / count > 1);
+    }
+}
+
+/* ---- Coordinates, textures, colours ---------------------------------------------------------- */
 
 static void pictures_are_of_the_second_set_and_turned(void **state) {
     (void)state;
     static const uint8_t colors[4][3] = {{255, 0, 0}, {0, 255, 0}, {0, 0, 255}, {255, 255, 255}};
-    /* A quarter turn moves (u, v) to (v, -u) + (0, 1): what is seen at upper left lies at lower left. */
+    /* A rotation by 90 degrees moves (u, v) to (v, -u) + (0, 1): the upper left of the image has
+     * the lower left of the texture. */
     static const int seen[4] = {2, 0, 3, 1};
     face f[4];
     write_squares("squares.png", colors);
@@ -396,7 +477,8 @@ static void pictures_are_of_the_second_set_and_turned(void **state) {
             ahead, f, 4, 0);
 }
 
-/* Of eight texels along a side: interpolated, the squares would be an eighth wider than they are. */
+/* With eight texels along a side: interpolated, the squares would be an eighth wider than they
+ * are. */
 static void pixels_of_a_picture_stay_sharp(void **state) {
     (void)state;
     static const uint8_t colors[4][3] = {{255, 0, 0}, {0, 255, 0}, {0, 0, 255}, {255, 255, 255}};
@@ -450,11 +532,11 @@ static void vertices_have_colours(void **state) {
 static void single_sided_materials_are_not_seen_from_behind(void **state) {
     (void)state;
     face f = flat(0, 0, 0, 2, 1, 0.5, 0.4, 0.3, 0.75);
-    compare(quad_of(CLAY ",\"doubleSided\":true"), behind, &f, 1, 0); /* its normal is turned */
+    compare(quad_of(CLAY ",\"doubleSided\":true"), behind, &f, 1, 0); /* its normal is flipped */
     f.single = true;
     compare(quad_of(CLAY), ahead, &f, 1, 0);
     compare(quad_of(CLAY), behind, &f, 1, 0);
-    /* What a node mirrors is seen from where it was; it may be from the other side too. */
+    /* A mirrored node is still visible from the same side; or from both sides. */
     begin_quad();
     compare(finish("\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":%d},\"indices\":%d,\"material\":0}]}],"
                    "\"nodes\":[{\"mesh\":0,\"scale\":[-1,1,1],\"translation\":[2,0,0]}],\"materials\":[{" CLAY "}]",
@@ -462,8 +544,8 @@ static void single_sided_materials_are_not_seen_from_behind(void **state) {
             ahead, &f, 1, 0);
 }
 
-/* Normals of a coarse mesh near its silhouette: half of what is seen leans away from the eye. The triangle says on which
- * side that is, so none of it is turned around. */
+/* Normals of a coarse mesh near its silhouette: half of the visible ones point away from the
+ * camera. The facing side follows the triangle, so none is flipped. */
 static void normals_may_lean_away(void **state) {
     (void)state;
     float normal[12];
@@ -484,10 +566,10 @@ static void nor_where_they_are_blended(void **state) {
     (void)state;
     face f = flat(0, 0, 0, 2, 1, 0.5, 0.4, 0.3, 1);
     f.single = true;
-    compare(quad_of(THIN), behind, &f, 1, 0); /* sky alone */
+    compare(quad_of(THIN), behind, &f, 1, 0); /* only sky */
 }
 
-/* What a click into the middle finds. */
+/* The result of picking in the centre. */
 static uint32_t picked(const char *material, shot p) {
     masu_session s;
     masu_view v;
@@ -513,7 +595,7 @@ static void nor_by_a_click(void **state) {
     }
 }
 
-/* Pixels of a mirror, 2 behind a quad that shines red, that show it: its back. */
+/* Number of pixels of a mirror, 2 behind a quad that emits red, that show the quad's back. */
 static uint32_t seen_in_mirror(const char *material) {
     static unsigned made;
     char json[1024], name[32];
@@ -537,7 +619,7 @@ static uint32_t seen_in_mirror(const char *material) {
     draw(&s, &frame, &commands, NULL);
     const uint16_t *hdr = read_image(&s, commands.slot, MASU_READBACK_HDR);
     const float *depth = read_image(&s, commands.slot, MASU_READBACK_DEPTH);
-    /* The quad itself is nearer than 4. */
+    /* The quad itself is closer than 4. */
     for (uint32_t i = 0; i < SIDE * SIDE; i++)
         red += depth[i] > 0 && 0.05f / depth[i] > 4 && half_float(hdr[4 * i]) > 2;
     close_session(&s);
@@ -548,7 +630,7 @@ static void nor_in_mirrors(void **state) {
     (void)state;
 #define RED "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0,0,0,1]},\"emissiveFactor\":[1,0,0],\"extensions\":{\"KHR_materials_emissive_strength\":{\"emissiveStrength\":8}}"
     uint32_t both = seen_in_mirror(RED ",\"doubleSided\":true"), one = seen_in_mirror(RED);
-    printf("  %u pixels of the mirror show the back of what has two sides\n", both);
+    printf("  %u pixels of the mirror show the back of the two-sided quad\n", both);
     assert_true(both > 40);
     assert_int_equal(one, 0);
 }
@@ -557,7 +639,7 @@ static void nor_in_mirrors(void **state) {
 
 #define MATERIALS ",\"materials\":[{" CLAY "}]"
 
-/* Shorts, in a cube of 2 that its node makes 1 x 0.5 x 1; two of its faces are seen. */
+/* Shorts, in a cube of 2 that its node scales to 1 x 0.5 x 1; two of its faces are visible. */
 static void a_quantized_cube(void **state) {
     (void)state;
     int16_t p[24][4] = {{0}};
@@ -612,7 +694,7 @@ static void morphs_have_their_weights(void **state) {
     (void)state;
     static const float away[12] = {0, 0, 0, 0, 0, 0, 0, 0, -4, 0, 0, -4};
     face f = flat(0, 0, 0, 2, 1, 0.5, 0.4, 0.3, 0.75);
-    f.v[2] = -1; /* a quarter of it */
+    f.v[2] = -1; /* a quarter of the target */
     begin_quad();
     int target = floats(away, "VEC3", 4, 3);
     compare(finish("\"meshes\":[{\"weights\":[1],\"primitives\":[{\"attributes\":{\"POSITION\":%d},\"indices\":%d,\"material\":0,"
@@ -625,41 +707,91 @@ static void skins_stand_as_their_joints_have_them(void **state) {
     (void)state;
     static const float moves[9] = {0, 0, 0, 3, 0, 0, 3, 4, 0};
     face f = flat(0, 0, 0, 2, 1, 1, 1, 1, 1);
-    f.v[0] = 5; /* the upper joint lies 5 to the right of where it was bound */
+    f.v[0] = 5; /* the upper joint is 5 to the right of its bind position */
     f.look[7] = 1;
     compare(skinned("STEP", moves, 3), (shot){{3.5, 0.5, 2.5}, {3.5, 0.5, 0}}, &f, 1, 0);
 }
 
-/* Two boxes of one size, the second ten metres behind the first: as large in the picture. */
+/* First of the pixels of a row that shine; last: one beyond. */
+static uint32_t first_lit(const uint16_t *row, uint32_t count, uint32_t *last) {
+    uint32_t first = count;
+    for (uint32_t x = 0; x < count; x++) {
+        if (half_float(row[4 * x]) <= 10) continue;
+        first = first == count ? x : first;
+        *last = x + 1;
+    }
+    return first;
+}
+
+/* Boxes at the edge of the picture, half a height before the target, at it and behind: where an exact orthographic
+ * projection has their sides, in pixels of 1920 x 1080. The picture has 15360 columns of these 1920: a pixel is rounded
+ * to an eighth. Upright or oblique; the depths and the nearness to the camera are no matter. */
 static void an_orthographic_camera_sees_no_depth(void **state) {
     (void)state;
-    static const char json[] =
-        "{\"models\": [{\"mesh\": {\"box\": {}}, \"translate\": [-1.5, 0, 0], \"material\": {\"emissive\": [50, 50, 50]}}, "
-        "{\"mesh\": {\"box\": {}}, \"translate\": [1.5, 0, -10], \"material\": {\"emissive\": [50, 50, 50]}}], "
-        "\"camera\": {%s, \"keys\": [{\"position\": [0, 0, 6], \"target\": [0, 0, -4.5]}]}}";
-    static const char *const lenses[] = {"\"height\": 4", "\"fov_y\": 40"};
-    double width[2][2];
-    for (int i = 0; i < 2; i++) {
-        char text[1024], name[16];
+    enum { COLUMNS = 15360, ROWS = 16 };
+    static const struct {
+        double height, depth, turn, away; /* of the picture; of the box, in heights; of the camera, radians and metres */
+    } cases[] = {{4, 0, 0, 10}, {4, 0.5, 0, 10}, {4, -0.5, 0, 10}, {4, 0.5, 0.6, 30}, {400, -0.5, 0.6, 1000}, {0.02, 0.5, -0.9, 0.1}};
+    double most = 0;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        double h = cases[i].height, turn = cases[i].turn, aspect = 1920.0 / 1080, side = 0.02 * h;
+        /* A thin tall box, whose front is seen; its left and right side in heights from the middle. */
+        double at = (aspect / 2 - 0.05) * h, z = cases[i].depth * h, error;
+        double x = at * cos(turn) + z * sin(turn), y = -at * sin(turn) + z * cos(turn);
+        char text[1024];
         masu_session s;
-        snprintf(text, sizeof text, json, lenses[i]);
-        snprintf(name, sizeof name, "depth%d", i);
-        bake_scene(name, text);
-        masu_session_desc d = test_desc(NULL, SIDE, SIDE);
-        d.scene_path = baked_scene(name);
+        snprintf(text, sizeof text,
+                 "{\"models\": [{\"mesh\": {\"box\": {\"size\": [%.9g, %.9g, %.9g]}}, \"translate\": [%.9g, 0, %.9g], \"rotate\": [0, %.9g, 0], "
+                 "\"material\": {\"emissive\": [50, 50, 50]}}], \"camera\": {\"height\": %.9g, \"keys\": [{\"position\": "
+                 "[%.9g, 0, %.9g], \"target\": [0, 0, 0]}]}}",
+                 side, h, side, x, y, turn * 57.29577951308232, h, cases[i].away * sin(turn), cases[i].away * cos(turn));
+        bake_scene("flat", text);
+        masu_session_desc d = test_desc(NULL, COLUMNS, ROWS);
+        d.scene_path = baked_scene("flat");
         d.desc.readback = MASU_READBACK_HDR;
         d.desc.rung_count = 1;
         open_session(&s, &d);
         masu_frame_desc frame = {0};
+        masu_camera camera;
+        assert_int_equal(masu_camera_at(s.m, 0, &camera, NULL), MASU_OK);
+        /* The window of the 1920 x 1080 picture. */
+        camera.top = tanf(0.5f * camera.fov_y), camera.bottom = -camera.top;
+        camera.right = (float)aspect * camera.top, camera.left = -camera.right;
+        frame.camera = &camera;
         const uint16_t *seen = draw_image(&s, &frame, MASU_READBACK_HDR, NULL);
-        width[i][0] = width[i][1] = 0;
-        for (int x = 0; x < SIDE; x++)
-            width[i][x >= SIDE / 2] += half_float(seen[4 * (SIDE / 2 * SIDE + x)]) > 10;
+        uint32_t last = 0;
+        double first = first_lit(seen + 4 * COLUMNS * (ROWS / 2), COLUMNS, &last) * 1920.0 / COLUMNS;
+        double want = 960 + (at - side / 2) / h * 1080;
+        error = fmax(fabs(first - want), fabs(last * 1920.0 / COLUMNS - want - side / h * 1080));
         close_session(&s);
+        print_message("height %g, depth %g heights, turned by %g: %.3f pixels\n", h, cases[i].depth, turn, error);
+        assert_true(last > 0 && error <= (cases[i].depth == 0 ? 0.2 : 0.5));
+        most = fmax(most, error);
     }
-    /* 64 texels for four metres. */
-    assert_true(fabs(width[0][0] - 16) <= 1 && fabs(width[0][1] - 16) <= 1);
-    assert_true(width[1][0] > 1.8 * width[1][1]);
+    assert_true(most > 0.2); /* else the boxes are not where the test has them */
+}
+
+/* The camera stays as far away between keys whose directions are a quarter turn apart: no chord, which would bring what is
+ * near behind the near plane. */
+static void orthographic_cameras_turn_about_their_target(void **state) {
+    (void)state;
+    masu_session s;
+    bake_scene("turns", "{\"models\": [{\"mesh\": {\"box\": {}}}], \"camera\": {\"height\": 4, \"keys\": ["
+                        "{\"time\": 0, \"position\": [0, 0, 10], \"target\": [0, 0, 0]}, {\"time\": 2, \"position\": [10, 0, 0], \"target\": [0, 0, 0]}]}}");
+    masu_session_desc d = test_desc(NULL, SIDE, SIDE);
+    d.scene_path = baked_scene("turns");
+    open_session(&s, &d);
+    double far = 0;
+    for (int i = 0; i <= 100; i++) {
+        masu_camera c;
+        assert_int_equal(masu_camera_at(s.m, 0.02 * i, &c, NULL), MASU_OK);
+        double size = sqrt(dot(c.position, c.position)), want[3] = {0.1 * i, 0, 10 - 0.1 * i}, toward = 0;
+        far = i ? far : size;
+        assert_true(fabs(size - far) < 0.05 * 4);
+        for (int k = 0; k < 3; k++) toward += want[k] * c.position[k];
+        assert_true(toward / size / sqrt(dot(want, want)) > 1 - 1e-6);
+    }
+    close_session(&s);
 }
 
 int main(void) {
@@ -672,6 +804,7 @@ int main(void) {
         cmocka_unit_test(a_coat_is_smooth_unless_it_names_a_picture),
         cmocka_unit_test(coats_have_maps),
         cmocka_unit_test(glass_colours_what_is_behind),
+        cmocka_unit_test(volumes_refract_what_is_behind),
         cmocka_unit_test(pictures_are_of_the_second_set_and_turned),
         cmocka_unit_test(pixels_of_a_picture_stay_sharp),
         cmocka_unit_test(pictures_are_webp),
@@ -686,6 +819,7 @@ int main(void) {
         cmocka_unit_test(nodes_have_instances),
         cmocka_unit_test(morphs_have_their_weights),
         cmocka_unit_test(an_orthographic_camera_sees_no_depth),
+        cmocka_unit_test(orthographic_cameras_turn_about_their_target),
         cmocka_unit_test(skins_stand_as_their_joints_have_them),
     };
     return cmocka_run_group_tests(tests, make_scratch, remove_scratch);

@@ -1,5 +1,6 @@
-/* test_governor.c: governed frames. Times that decide are given by the test, so that every driver
- * decides alike; where they are the driver's own, only what holds for any times is asked. */
+/* test_governor.c: governed frames. The test supplies the times that matter, so that every driver
+ * decides alike; with the driver's own times, only properties that hold for any times are
+ * checked. */
 #include "support/support.h"
 
 #include <math.h>
@@ -17,8 +18,8 @@ static masu_session_desc governed_desc(masu_governor_mode mode) {
     return d;
 }
 
-/* One frame at the governor's rung, whose time by the wall is `load` ms times its pixels.
- * Returns the rung. */
+/* One frame at the governor's rung, with a wall-clock time of `load` ms times its pixels. Returns
+ * the rung. */
 static uint32_t step(masu_session *s, uint32_t frame, double load, masu_stats_info *stats) {
     masu_frame_desc f = {MASU_FRAME_DESC, .rung = MASU_RUNG_AUTO, .time = 0.01 * frame};
     masu_commands c;
@@ -46,7 +47,7 @@ static void it_follows_the_wall_clock(void **state) {
     assert_int_equal(rung, 0);
     assert_int_equal(stats.governor.reason, MASU_GOVERNOR_REASON_BEST);
     assert_int_equal(stats.governor.source, MASU_GOVERNOR_SOURCE_WALL);
-    assert_int_equal(stats.gpu_ns, 0); /* no timestamps were asked for */
+    assert_int_equal(stats.gpu_ns, 0); /* timestamps were not requested */
     for (uint32_t i = 0; i < 8; i++, frame++) rung = step(&s, frame, 30.0, &stats);
     assert_int_equal(rung, 2); /* 0.36 * 30 ms fits, 0.64 * 30 ms does not */
     assert_int_equal(stats.governor.changes, 1);
@@ -61,8 +62,8 @@ static void it_follows_the_wall_clock(void **state) {
     close_session(&s);
 }
 
-/* By the driver's own timestamps, and a target that is far off: whatever it does, it stays in the
- * range and says why; each frame is told to it once. */
+/* With the driver's own timestamps and an unreachable target: the governor keeps to the range and
+ * gives a reason; each frame is reported to it once. */
 static void it_stays_in_range_with_real_times(void **state) {
     (void)state;
     if (masu_session_denied()) skip(); /* no timestamps */
@@ -96,7 +97,7 @@ static void the_picture_is_that_of_the_rung(void **state) {
     masu_session s;
     masu_stats_info stats;
     masu_commands c;
-    d.desc.rungs[2].temporal = MASU_ON; /* which AUTO is with a governor */
+    d.desc.rungs[2].temporal = MASU_ON; /* the value of AUTO with a governor */
     open_session(&s, &d);
     draw_rung(&s, 2, plain);
     masu_frame_desc automatic = {MASU_FRAME_DESC, .rung = MASU_RUNG_AUTO};
@@ -110,7 +111,7 @@ static void the_picture_is_that_of_the_rung(void **state) {
     assert_int_equal(masu_stats(s.m, 0, &stats, &failure), MASU_OK);
     assert_int_equal(stats.governor.reason, MASU_GOVERNOR_REASON_FIXED);
     assert_int_equal(max_difference(plain, governed, sizeof plain), 0);
-    draw_rung(&s, 0, NULL); /* a rung of the host's own goes on being taken */
+    draw_rung(&s, 0, NULL); /* a rung chosen by the host is still used */
     close_session(&s);
 }
 
@@ -143,7 +144,7 @@ static void bad_descriptions_are_named(void **state) {
     EXPECT_BAD(dwell, 601, "dwell");
     EXPECT_BAD(costs[1], -1.0f, "costs");
 #undef EXPECT_BAD
-    /* What there is no governor for costs no memory. */
+    /* Without a governor there is no memory for it. */
     masu_memory without, with;
     masu_desc off = s.desc, asked = s.desc;
     asked.governor = on;

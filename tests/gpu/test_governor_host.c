@@ -1,6 +1,6 @@
-/* test_governor_host.c: what a host asks of the governor of a renderer between frames: settings,
- * excluded frames, times, a state kept over masu_destroy and masu_init. Times that decide are given
- * by the test. */
+/* test_governor_host.c: the host's use of a renderer's governor between frames: settings, excluded
+ * frames, times, state kept across masu_destroy and masu_init. The test supplies the times that
+ * matter. */
 #include "renderer.h"
 #include "support/support.h"
 
@@ -19,7 +19,7 @@ static void open_governed(masu_session *s, uint32_t width, uint32_t height) {
     open_session(s, &d);
 }
 
-/* A frame of `load` ms at scale 1, told by times. Returns its rung. */
+/* A frame of `load` ms at scale 1, with times from the host. Returns its rung. */
 static uint32_t step(masu_session *s, double load, uint32_t excluded, double cpu,
                      masu_stats_info *stats) {
     static uint64_t now = 1000000000;
@@ -69,7 +69,7 @@ static void settings_count_from_the_next_frame_on(void **state) {
     close_session(&s);
 }
 
-/* Neither the governor nor the times of a slot: the next attempt uses them. */
+/* The times remain unused, in the governor and in the slot: the next attempt uses them. */
 static void a_frame_that_fails_uses_no_time(void **state) {
     (void)state;
     masu_session s;
@@ -89,7 +89,7 @@ static void a_frame_that_fails_uses_no_time(void **state) {
     close_session(&s);
 }
 
-/* What was not handed out was not shown. */
+/* A frame that was not returned cannot have been presented. */
 static void a_frame_to_come_has_not_been_presented(void **state) {
     (void)state;
     masu_session s;

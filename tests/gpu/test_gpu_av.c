@@ -1,7 +1,7 @@
-/* test_gpu_av.c: shaders read and write only what is theirs. Software rasterisers check bounds
- * silently, so this is invisible without the layer's GPU-assisted mode; a planted fault proves that
- * the mode is awake. `make gpu-av` names scenes in GPU_AV_SCENES: each is drawn for two frames at each of two rungs,
- * with the layer's best practices too. */
+/* test_gpu_av.c: shaders access only their own memory. Software rasterisers check bounds silently,
+ * so violations are invisible without the layer's GPU-assisted mode; a planted fault proves that
+ * the mode is active. `make gpu-av` names scenes in GPU_AV_SCENES: each is rendered for two frames
+ * at each of two rungs, with the layer's best practices too. */
 #include "support/support.h"
 #include "support/files.h"
 
@@ -22,7 +22,8 @@ static masu_session_desc gpu_av_desc(const char *scene) {
 
 static void every_pass_stays_inside_its_buffers_and_images(void **state) {
     (void)state;
-    /* The first three have the passes of the others; an instrumented pipeline takes long to compile. */
+    /* The first three have the passes of the others; an instrumented pipeline takes long to
+     * compile. */
     static const char *const scenes[] = {"test_both", "test_shadows", "textures", "test_broken_field", "engine"};
     for (size_t i = 0; i < trials(5, 3, 1); i++) {
         masu_session_desc d = gpu_av_desc(scenes[i]);
@@ -50,16 +51,19 @@ static void a_planted_fault_is_seen(void **state) {
     masu_session_close(&s);
 }
 
-/* What has been said, by its name in brackets, which stands first. */
+/* A message that was reported, by its name in brackets at the start. */
 enum { KINDS = 64 };
-/* Advice that is not taken. */
+/* Advice that is not followed. */
 static const struct {
     const char *name, *why;
 } declined[] = {
-    {"BestPractices-DevLimit-", "the host of the tests asks once, with room for all there can be"},
-    {"BestPractices-pipeline-stage-flags", "loading, and what lies around a pass of the host, waits for everything"},
-    {"BestPractices-vkCmdBeginRenderPass-ClearValue", "one array for all passes; what has no image or is loaded is ignored"},
-    {"BestPractices-ImageBarrierAccessLayout", "what the host's copy waits for is not told it"},
+    {"BestPractices-DevLimit-", "the tests' host queries once, with room for the maximum"},
+    {"BestPractices-pipeline-stage-flags",
+     "loading, and the barriers around a pass of the host, wait for everything"},
+    {"BestPractices-vkCmdBeginRenderPass-ClearValue",
+     "one array for all passes; values for absent or loaded images are ignored"},
+    {"BestPractices-ImageBarrierAccessLayout",
+     "the renderer does not know the host's copy, which waits for this"},
     {"BestPractices-TransitionUndefinedToReadOnly", "a history that nothing has been written to is not looked at"},
 };
 static struct {
@@ -94,7 +98,7 @@ static void each_scene_asked_for_stays_inside(void **state) {
     (void)state;
     char *list = getenv("GPU_AV_SCENES"), *rest = list;
     uint32_t scenes = 0, wrong = 0;
-    if (!list || !*list) return; /* minutes: not asked for */
+    if (!list || !*list) return; /* takes minutes: not requested */
     for (char *path = strtok_r(list, " ", &rest); path; path = strtok_r(NULL, " ", &rest)) {
         char error[ERROR_SIZE];
         masu_session_desc d = gpu_av_desc(NULL);

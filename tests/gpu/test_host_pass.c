@@ -1,6 +1,7 @@
-/* test_host_pass.c: the host's own commands between the parts of a frame (masu_desc.split). Without any, the picture is
- * the one without a split, byte for byte; what they copy is what desc.readback reads; what they draw lands on the
- * pixels and depths that rays through the camera say, and is shown as the tone curve says. */
+/* test_host_pass.c: the host's own commands between the parts of a frame (masu_desc.split). Without
+ * any, the image is bit-identical to the one without a split. Copies equal the images of
+ * desc.readback. Geometry drawn by the host covers the pixels, at the depths, of rays through the
+ * camera, and passes through the tone curve. */
 #include "reference/tone.h"
 #include "support/floats.h"
 #include "support/support.h"
@@ -41,7 +42,7 @@ static void open_scene(masu_session *s, const char *scene) {
 
 /* ---- A host ---------------------------------------------------------------------------------- */
 
-/* A parallelogram, as host_pass.vert takes it. */
+/* A parallelogram, in the layout of host_pass.vert. */
 typedef struct push {
     float clip_from_world[16];
     float corner[4], along[4], across[4];
@@ -49,7 +50,7 @@ typedef struct push {
 } push;
 _Static_assert(sizeof(push) == 128, "what every device has room for");
 
-/* Draws into an image of a split point, tested against depth where there is one. */
+/* Draws into an image of a split point, with a depth test if the point has depth. */
 typedef struct painter {
     masu_session *s;
     VkRenderPass pass;
@@ -199,7 +200,7 @@ static void paint(VkCommandBuffer cmd, const painter *p, const masu_split_image 
     vkCmdEndRenderPass(cmd);
 }
 
-/* Out of an image as it is handed out, and back to its layout. */
+/* Copies an image in the layout of the split point, and restores the layout. */
 static void copy_out(VkCommandBuffer cmd, const masu_split_image *from, VkBuffer to) {
     VkImageAspectFlags aspect =
         from->format == VK_FORMAT_D32_SFLOAT ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
@@ -240,7 +241,8 @@ static VkCommandBuffer begin_commands(masu_session *s) {
     return cmd;
 }
 
-/* The parts of a frame with the host's commands between them, own[i] behind part i, each null or ended here. */
+/* Submits the parts of a frame with the host's commands between them: own[i] after part i, each
+ * null or ended here. */
 static void submit(masu_session *s, const masu_commands *commands, VkCommandBuffer own[MASU_MAX_PARTS]) {
     VkCommandBuffer all[2 * MASU_MAX_PARTS];
     uint32_t n = 0;
@@ -285,7 +287,7 @@ static void read_target(masu_session *s, own_renderer *x, uint8_t *out) {
     memcpy(out, x->target.mapped, (size_t)x->target.width * x->target.height * 4);
 }
 
-/* ---- Without anything between the parts ------------------------------------------------------ */
+/* ---- Nothing between the parts --------------------------------------------------------------- */
 
 static void compare_pictures(const char *scene, uint32_t storage, uint32_t split, uint32_t parts) {
     masu_session s;
@@ -312,7 +314,9 @@ static void compare_pictures(const char *scene, uint32_t storage, uint32_t split
                 if (i) assert_true(stats.timed && stats.gpu_ns > 0);
             }
             uint32_t most = max_difference(pixels[0], pixels[1], BYTES);
-            if (most) fail_msg("%s, storage %u, split %u, rung %u, frame %u: off by %u", scene, storage, split, r, k, most);
+            if (most)
+                fail_msg("%s, storage %u, split %u, rung %u, frame %u: error of %u",
+                         scene, storage, split, r, k, most);
         }
     }
     for (uint32_t i = 0; i < 2; i++) unmake_own(&s, &x[i]);
@@ -327,13 +331,13 @@ static void with_nothing_between_the_picture_is_the_same(void **state) {
     compare_pictures("test_live", 0, MASU_SPLIT_ALL, 3);
 }
 
-/* ---- What can be read ------------------------------------------------------------------------ */
+/* ---- Reading the images ---------------------------------------------------------------------- */
 
 static void assert_same_image(const masu_split_image *image, const void *copied, masu_readback_image read,
                               const char *what) {
     if (image->width != read.width || image->height != read.height || memcmp(copied, read.pixels, read.row_bytes * read.height) != 0)
-        fail_msg("%s: %ux%u is not what is read back, %ux%u", what, image->width, image->height, read.width,
-                 read.height);
+        fail_msg("%s: %ux%u differs from the readback, %ux%u",
+                 what, image->width, image->height, read.width, read.height);
 }
 
 static void compare_copies(const char *scene) {
@@ -385,7 +389,7 @@ static void what_is_copied_is_what_is_read_back(void **state) {
     compare_copies("test_live");
 }
 
-/* ---- What is drawn --------------------------------------------------------------------------- */
+/* ---- Drawing --------------------------------------------------------------------------------- */
 
 static void multiply(const float a[16], const float b[16], float out[16]) {
     for (int i = 0; i < 16; i++) {
@@ -395,7 +399,7 @@ static void multiply(const float a[16], const float b[16], float out[16]) {
     }
 }
 
-/* Through the scenes' middle, which hides a part of it, and is hidden by a part. */
+/* Through the centre of the scenes, occluding a part of it, and partly occluded. */
 static const push leaning = {.corner = {-1.6f, -0.7f, 0.5f, 0},
                              .along = {3.1f, 0.2f, -0.9f, 0},
                              .across = {0.2f, 1.7f, -0.4f, 0},
@@ -415,7 +419,8 @@ static void unit(double v[3]) {
     for (int i = 0; i < 3; i++) v[i] /= length;
 }
 
-/* What a ray through a place of a picture meets of the parallelogram: 1 and the depth, 0 beside it, -1 near its rim. */
+/* Intersection of a ray through an image position with the parallelogram: 1 and the depth, 0 for a
+ * miss, -1 near its rim. */
 static int meets(const push *q, const masu_camera *c, double ndc_x, double ndc_y, double aspect, double *depth) {
     double forward[3], right[3], up[3] = {0, 1, 0}, ray[3], to[3], normal[3], u[3], v[3], at[3];
     for (int i = 0; i < 3; i++) {
@@ -440,12 +445,12 @@ static int meets(const push *q, const masu_camera *c, double ndc_x, double ndc_y
     return t > 0 && rim > 0.03 ? 1 : t <= 0 || rim < -0.03 ? 0 : -1;
 }
 
-/* What is drawn, where, and whether the tone curve has it. */
+/* Numbers of pixels: visible and occluded ones of the parallelogram, and others. */
 typedef struct drawn {
     uint32_t seen, hidden, beside;
 } drawn;
 
-/* A frame with the parallelogram; HDR as it is then to `hdr`. */
+/* A frame with the parallelogram; copies the HDR image at that point to `hdr`. */
 static masu_commands draw_leaning(masu_session *s, own_renderer *x, const painter *p, const masu_frame_desc *frame,
                                   const masu_headless_buffer *hdr) {
     masu_commands commands = next_frame(x, frame);
@@ -497,11 +502,11 @@ static void check_drawn(own_renderer *x, const masu_commands *commands, const ma
             n.hidden += met;
             n.beside += !met;
             if (memcmp(&hdr[4 * i], (const uint16_t *)before.pixels + 4 * i, 8) != 0)
-                fail_msg("%s: %u, %u: drawn over what is nearer, or beside", what, i % w, i / w);
+                fail_msg("%s: %u, %u: drawn over a closer surface, or outside", what, i % w, i / w);
         }
     }
     if (n.seen < w * h / 50 || n.hidden < w * h / 50 || n.beside < w * h / 50)
-        fail_msg("%s: %u seen, %u hidden, %u beside", what, n.seen, n.hidden, n.beside);
+        fail_msg("%s: %u visible, %u occluded, %u outside", what, n.seen, n.hidden, n.beside);
 }
 
 static masu_desc drawing_desc(const masu_session *s) {
@@ -594,7 +599,8 @@ static void the_same_in_viewports_and_after_a_resize(void **state) {
     close_session(&s);
 }
 
-/* Mean relative error of the depths of the unit sphere at the origin, where rays by a projection meet it. */
+/* Mean relative error of the depths of the unit sphere at the origin, at the rays of a projection
+ * that hit it. */
 static double sphere_error(const masu_frame_view *v, const float p[16], masu_readback_image depths) {
     double sum = 0.0;
     uint32_t n = 0, w = depths.width, h = depths.height;
@@ -637,7 +643,7 @@ static void matrices_are_those_of_the_picture(void **state) {
         masu_readback_image depths = readback_of(&x, commands.slot, MASU_READBACK_DEPTH);
         double own = sphere_error(&view, view.projection, depths);
         double other = sphere_error(&view, view.output_projection, depths);
-        if (!(own < 1e-4)) fail_msg("frame %u: depths are off by %g", k, own);
+        if (!(own < 1e-4)) fail_msg("frame %u: depths have an error of %g", k, own);
         int resolves = rung == 3, shifted = fabsf(view.jitter[0]) + fabsf(view.jitter[1]) > 0.1f;
         if (resolves && shifted && !(other > 5.0 * own)) fail_msg("frame %u: %g without jitter, %g with", k, other, own);
         if (!resolves) assert_memory_equal(view.projection, view.output_projection, sizeof view.projection);
@@ -650,13 +656,14 @@ static void matrices_are_those_of_the_picture(void **state) {
     close_session(&s);
 }
 
-/* ---- Over the picture ------------------------------------------------------------------------ */
+/* ---- Over the final image -------------------------------------------------------------------- */
 
-/* Half transparent, on the left half of what is shown, and again with frames in flight: nobody waits between. */
+/* Half transparent, on the left half of the output, and again with frames in flight, without waits
+ * between them. */
 static void what_is_drawn_over_the_picture_is_shown(void **state) {
     (void)state;
     masu_session s;
-    open_scene(&s, "test_velocity_mesh"); /* nothing in it has noise of its own in each frame */
+    open_scene(&s, "test_velocity_mesh"); /* no surface has noise of each frame */
     own_renderer x;
     masu_desc d = desc_of(&s, MASU_SPLIT_AFTER_UPSCALE);
     d.targets.storage = 0;
@@ -693,8 +700,10 @@ static void what_is_drawn_over_the_picture_is_shown(void **state) {
                 if (i / 4 % W < W / 2 && i % 4 < 3) expected = expected * 0.5 + 255.0 * (double)q.color[i % 4];
                 off += fabs(pixels[1][i] - expected) > 1.5;
             }
-            /* Reflections have other noise in the second frame, a rung with temporal other places too. */
-            if (off > (r == 3 ? BYTES / 4 : BYTES / 50)) fail_msg("rung %u: %u bytes are not as said", r, off);
+            /* In the second frame, reflections have other noise, and a rung with temporal has other
+             * jitter too. */
+            if (off > (r == 3 ? BYTES / 4 : BYTES / 50))
+                fail_msg("rung %u: %u bytes are not as expected", r, off);
             double sum = 0;
             for (uint32_t i = 0; i < BYTES; i += 4) sum += abs(pixels[1][i] - pixels[0][i]) * (i / 4 % W < W / 2);
             assert_true(sum > 5.0 * W * H / 2);
@@ -705,7 +714,7 @@ static void what_is_drawn_over_the_picture_is_shown(void **state) {
     close_session(&s);
 }
 
-/* Without a scene, and of a storage target, which is the host's. */
+/* Without a scene, and with a storage target, which is the host's. */
 static void an_upscaled_source_and_a_storage_target_have_the_point_too(void **state) {
     (void)state;
     masu_session s;
@@ -755,7 +764,7 @@ static void an_upscaled_source_and_a_storage_target_have_the_point_too(void **st
     close_session(&s);
 }
 
-/* ---- What is not there ----------------------------------------------------------------------- */
+/* ---- Missing objects ------------------------------------------------------------------------- */
 
 static void what_is_not_there_is_named(void **state) {
     (void)state;
@@ -778,7 +787,7 @@ static void what_is_not_there_is_named(void **state) {
     close_session(&s);
 }
 
-/* What a split costs in bytes is said by the plan, and is nothing where it is not asked for. */
+/* The plan reports the bytes of a split; without a split there are none. */
 static void memory_is_what_it_was_without(void **state) {
     (void)state;
     masu_session s;
@@ -791,7 +800,8 @@ static void memory_is_what_it_was_without(void **state) {
     d.targets.images = &image;
     d.targets.views = &target_view;
     d.targets.count = 1;
-    /* Upscaling is the peak, across which is kept what had given its memory away. */
+    /* The peak is at upscaling; the split keeps images across it that otherwise share their
+     * memory. */
     d.rung_count = 1;
     d.rungs[0] = (masu_rung){.scale = 0.5f};
     assert_int_equal(masu_memory_query(&d, &plain, &detail), MASU_OK);
@@ -801,7 +811,7 @@ static void memory_is_what_it_was_without(void **state) {
     assert_int_equal(masu_memory_query(&d, &keeping, &detail), MASU_OK);
     assert_true(with.transient_unaliased > plain.transient_unaliased);   /* split_depth */
     assert_true(keeping.transient_aliased > with.transient_aliased);
-    assert_true(with.host_bytes > plain.host_bytes); /* two command buffers more for each */
+    assert_true(with.host_bytes > plain.host_bytes); /* two more command buffers for each */
     d.split = 0;
     masu_memory again;
     assert_int_equal(masu_memory_query(&d, &again, &detail), MASU_OK);

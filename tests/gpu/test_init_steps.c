@@ -1,5 +1,6 @@
-/* test_init_steps.c: a renderer that is prepared in steps: frames are those of one that masu_init has prepared at once,
- * a rung can be used before the others are ready, every step can be the last one, and every call in it can fail. */
+/* test_init_steps.c: a renderer that is prepared in steps: its frames equal those of one prepared
+ * at once by masu_init; a rung can be used before the others are ready; every step can be the last
+ * one; and every call in it can fail. */
 #include "support/files.h"
 #include "support/support.h"
 #include "support/wrap.h"
@@ -47,7 +48,7 @@ static masu_result frame_in(own_renderer *x, uint32_t rung, masu_commands *comma
     return masu_frame(x->m, &frame, commands, &failure);
 }
 
-/* The rung that the frame was rendered in. */
+/* Returns the rung that the frame was rendered in. */
 static uint32_t draw_in(own_renderer *x, uint32_t rung, uint8_t *pixels) {
     char error[ERROR_SIZE];
     masu_commands commands;
@@ -58,7 +59,7 @@ static uint32_t draw_in(own_renderer *x, uint32_t rung, uint8_t *pixels) {
     return commands.rung;
 }
 
-/* Both have rendered as many frames. */
+/* Both have rendered the same number of frames. */
 static void compare_in(own_renderer *a, own_renderer *b, uint32_t rung) {
     static uint8_t pixels[2][BYTES];
     assert_int_equal(draw_in(a, rung, pixels[0]), rung);
@@ -90,7 +91,8 @@ static void rungs_become_ready_one_after_another(void **state) {
         assert_int_equal(result == MASU_OK, progress.rungs == 7);
         if (progress.rungs == before.rungs) continue;
         assert_int_equal(progress.rungs, !before.rungs ? 2 : before.rungs == 2 ? 3 : 7);
-        assert_true(before.rungs || steps + RUNGS < progress.total); /* first_rung does not need all */
+        /* first_rung does not need all */
+        assert_true(before.rungs || steps + RUNGS < progress.total);
         for (uint32_t r = 0; r < RUNGS; r++) {
             if (progress.rungs >> r & 1u) {
                 compare_in(&x, &whole, r);
@@ -107,7 +109,7 @@ static void rungs_become_ready_one_after_another(void **state) {
     } while (result == MASU_INCOMPLETE);
     assert_int_equal(masu_init_step(x.m, &progress, &failure), MASU_OK); /* nothing is left */
     assert_int_equal(progress.done, steps);
-    memset(s.blob, 0, 4096); /* from now on it is the host's */
+    memset(s.blob, 0, 4096); /* from now on the blob is the host's */
     uint64_t calls = wrap.setup_calls;
     for (uint32_t r = 0; r < RUNGS; r++) compare_in(&x, &whole, r);
     assert_int_equal(wrap.setup_calls, calls);

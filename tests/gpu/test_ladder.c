@@ -1,6 +1,6 @@
-/* test_ladder.c: renderers with the ladder that was measured for their class of scenes: each of its
- * rungs is drawn, as it would be if a host had given it; memory is planned once for all of them; and
- * nothing is made after masu_init. Times are given by the test, so that every driver decides alike. */
+/* test_ladder.c: renderers with the measured ladder of their scene class: each rung renders as it
+ * would if the host had given it; memory is planned once for all; and no object is created after
+ * masu_init. The test supplies the times, so that every driver decides alike. */
 #include "support/support.h"
 #include "support/wrap.h"
 
@@ -17,12 +17,12 @@ enum { SCENES = sizeof scenes / sizeof *scenes };
 
 static masu_session_desc ladder_desc(const char *scene) {
     masu_session_desc d = test_desc(scene, W, H);
-    d.desc.governor.mode = MASU_GOVERNOR_ON; /* and with it the ladder */
+    d.desc.governor.mode = MASU_GOVERNOR_ON; /* which enables the ladder */
     d.desc.governor.wall_only = 1;
     return d;
 }
 
-/* What the session's renderer has made of no rungs. */
+/* The rungs that the session's renderer uses if none are given. */
 static uint32_t rungs_of(const masu_session *s, masu_plan_info *plan) {
     masu_desc ladder = {MASU_DESC};
     assert_int_equal(masu_ladder_of(&s->scene, &ladder, NULL, NULL), MASU_OK);
@@ -98,7 +98,7 @@ static void every_rung_is_drawn_and_nothing_is_made(void **state) {
     for (uint32_t i = 0; i < SCENES; i++) go_through(scenes[i], i % 2);
 }
 
-/* Frames of the same number after a cut each, so that nothing of other rungs is seen. */
+/* Frames with the same numbers, each after a cut, so that other rungs have no influence. */
 static void draw_all(masu_session *s, uint32_t count, uint8_t *pixels) {
     for (uint32_t r = 0; r < count; r++) {
         masu_frame_desc f = {MASU_FRAME_DESC, .rung = r, .time = 0.5, .cut = 1};
@@ -127,15 +127,15 @@ static void a_rung_is_the_picture_of_that_rung_given_by_hand(void **state) {
         draw_all(&s, count, given);
         close_session(&s);
         assert_int_equal(max_difference(baked, given, count * BYTES), 0);
-        /* The best and the cheapest are two pictures, and neither is empty. */
+        /* The best and the cheapest give different images, and neither is empty. */
         uint8_t *last = baked + (count - 1) * BYTES;
         assert_true(count > 1 && max_difference(baked, last, BYTES) > 8);
-        /* And alone, where no rung has anything to share with. */
+        /* And as the only rung, which shares with no other. */
         for (uint32_t r = 0; r < count && !i; r += count - 1) {
             d.desc.rung_count = 1;
             d.desc.rungs[0] = own.rungs[r];
             open_session(&s, &d);
-            /* Temporal jitter goes by the frame's number. */
+            /* Temporal jitter depends on the frame's number. */
             for (uint32_t k = 0; k <= r; k++) draw_all(&s, 1, given);
             close_session(&s);
             assert_int_equal(max_difference(baked + r * BYTES, given, BYTES), 0);
@@ -143,7 +143,7 @@ static void a_rung_is_the_picture_of_that_rung_given_by_hand(void **state) {
     }
 }
 
-/* Eight rungs take what one takes, if they are alike; and what the largest takes, if not. */
+/* Eight equal rungs need the memory of one; different ones that of the largest. */
 static void memory_is_planned_once_for_all_rungs(void **state) {
     (void)state;
     for (uint32_t i = 0; i + 1 < SCENES; i++) {
@@ -177,7 +177,7 @@ static void memory_is_planned_once_for_all_rungs(void **state) {
             assert_int_equal(eight.transient_aliased, one.transient_aliased);
             if (one.transient_lower_bound > most) most = one.transient_lower_bound;
         }
-        /* No less than the largest rung needs, and far from the sum. */
+        /* At least the memory of the largest rung, and far less than the sum. */
         assert_true(need.transient_lower_bound >= most);
         assert_true(need.transient_aliased <= need.transient_unaliased);
         close_session(&s);
@@ -218,7 +218,7 @@ static void a_gpu_of_a_class_begins_with_what_was_computed_for_it(void **state) 
     assert_int_equal(masu_ladder_of(&s.scene, &own, NULL, NULL), MASU_OK);
     real_proc = s.desc.vulkan.get_instance_proc_addr;
     s.desc.vulkan.get_instance_proc_addr = pretending_proc;
-    s.desc.governor.costs[2] = 0.123f; /* what the host says is not touched */
+    s.desc.governor.costs[2] = 0.123f; /* a value from the host is kept */
     for (size_t i = 0; i < sizeof devices / sizeof *devices; i++) {
         pretended.vendorID = devices[i].vendor, pretended.deviceID = devices[i].device;
         pretended.deviceType = devices[i].type;
@@ -228,7 +228,7 @@ static void a_gpu_of_a_class_begins_with_what_was_computed_for_it(void **state) 
         assert_true(plan.rungs[2].ratio == 0.123f);
         uint32_t last = plan.rung_count - 1;
         assert_true((plan.rungs[last].ratio == own.governor.costs[last]) == !*devices[i].name);
-        /* Rungs of the host's own have no costs but scale^2. */
+        /* Rungs of the host's own have only the costs scale^2. */
         masu_desc given = s.desc;
         given.rung_count = own.rung_count;
         memcpy(given.rungs, own.rungs, sizeof given.rungs);

@@ -1,7 +1,7 @@
-/* test_lights.c: punctual lights. What a light without a size does to a pixel is what a sun of that direction and colour
- * would do, with both from the reference in double precision (tests/reference/lights.h); lists by
- * tile change no bit of any picture; nothing is out of bounds; what the host may set and what not. Panes and
- * particles are lit as well. */
+/* test_lights.c: punctual lights. A light without a size lights a pixel like a sun with the
+ * direction and colour of the double-precision reference (tests/reference/lights.h); tile lists
+ * give bit-identical images; no access is out of bounds; valid and invalid values of the host.
+ * Panes and particles are lit as well. */
 #include "support/files.h"
 #include "support/floats.h"
 #include "support/random.h"
@@ -33,7 +33,7 @@ static void add(const char *format, ...) {
 }
 
 static uint64_t seed;
-static int blends; /* scenes have panes and bubbles, frames particles */
+static int blends; /* scenes have panes and bubbles, frames have particles */
 static masu_particle sparks[8];
 static uint64_t blend_seed;
 
@@ -100,7 +100,7 @@ static void add_lights(uint32_t count, double size, double low, double high) {
     add("]}");
 }
 
-/* ---- Pictures -------------------------------------------------------------------------------- */
+/* ---- Images ---------------------------------------------------------------------------------- */
 
 typedef struct pictures {
     masu_session s;
@@ -197,7 +197,7 @@ static void compare_ways(pictures *p, uint32_t lights, uint32_t frames, double s
             if (memcmp(first[way], first[0], pixels * 8))
                 fail_msg("%ux%u, %u lights, frame %u: way %u differs", p->width, p->height, lights,
                          f, way);
-            /* What reaches a pixel reaches it by any list. */
+            /* Every list has the lights that reach a pixel. */
             assert_int_equal(stats[way].light_shaded, stats[0].light_shaded);
             sum->tests[way] += stats[way].light_tests;
         }
@@ -214,12 +214,12 @@ static void compare_ways(pictures *p, uint32_t lights, uint32_t frames, double s
 
 static void bake_many(const char *name, uint32_t lights, double size, double low, double high) {
     begin_scene(size);
-    if (size == 1 && lights >= 200) add_sdf(); /* takes longer to bake than all else */
+    if (size == 1 && lights >= 200) add_sdf(); /* takes longer to bake than the rest */
     add_lights(lights, size, low, high);
     bake_scene(name, json);
 }
 
-/* A light that is nearer than any surface of a tile, or before the sky, lights the pane between. */
+/* A light closer than every surface of a tile, or before the sky, lights the pane in between. */
 static void tiles_begin_at_the_near_plane(void **state) {
     (void)state;
     static uint16_t by_tiles[4 * 96 * 64];
@@ -264,7 +264,7 @@ static void tiles_change_no_bit(void **state) {
         close_session(&p.s);
         double pixels = (double)cases[i].width * cases[i].height * cases[i].frames;
         print_message(
-            "%4u lights %3ux%-3u: in view %4.0f %%, lit %3.0f %% of pixels; per pixel asked "
+            "%4u lights %3ux%-3u: in view %4.0f %%, lit %3.0f %% of pixels; tests per pixel "
             "%6.2f by tiles, %7.2f without, shaded %5.2f; full tiles %llu\n",
             cases[i].lights, cases[i].width, cases[i].height,
             100.0 * (double)sum.in_view / (double)sum.of, 100 * (double)sum.lit / pixels,
@@ -280,7 +280,7 @@ static void tiles_change_no_bit(void **state) {
     blends = 0;
 }
 
-/* ---- Against the truth ----------------------------------------------------------------------- */
+/* ---- Comparison with the reference ----------------------------------------------------------- */
 
 /* The point under a pixel, by its depth; 0: none. */
 static int point_at(const pictures *p, const masu_camera *c, const float *depths, uint32_t x,
@@ -316,11 +316,12 @@ static masu_ref_light reference_of(const masu_punctual_light_state *s) {
 static masu_light no_sun(void) { return (masu_light){.sun_direction = {0, 1, 0}, .exposure = 1}; }
 
 typedef struct error {
-    double most; /* relative, of what is at least a thousandth of the case's brightest */
+    double most; /* relative, for values of at least a thousandth of the case's maximum */
     uint32_t compared, lit;
 } error_info;
 
-/* One light, by its own and pixel by pixel as a sun. pane: not 0: it is on z = 0, which is in no depth image. */
+/* One light, compared pixel by pixel with a sun. pane not 0: the surface is a pane on z = 0, which
+ * is in no depth image. */
 static error_info compare_light(pictures *p, const masu_camera *c,
                                 const masu_punctual_light_state *state, int pane) {
     static uint16_t local[4 * 256 * 256];
@@ -352,7 +353,7 @@ static error_info compare_light(pictures *p, const masu_camera *c,
         for (int k = 0; k < 3; k++) {
             double a = half_float(is[k]), b = half_float(should[k]);
             if (!reached && a != 0.0)
-                fail_msg("%u %u is lit by what does not reach it: %g", x, y, a);
+                fail_msg("%u %u is lit by a light that does not reach it: %g", x, y, a);
             if (b > 1e-3) e.most = worst_of(e.most, fabs(a - b) / b);
             if (b <= 1e-3 && fabs(a - b) > 2e-5) fail_msg("%u %u: %g should be %g", x, y, a, b);
             e.lit += b > 1e-3;
@@ -361,7 +362,7 @@ static error_info compare_light(pictures *p, const masu_camera *c,
     return e;
 }
 
-/* The tolerance: halves have 11 bits, depth and normal are the same in both; near the range and the
+/* The tolerance: halves have 11 bits; depth and normal are the same in both. Near the range and the
  * edge of a cone the falloff is steep, and fp32 positions matter. */
 static void a_light_is_a_sun_of_its_direction(void **state) {
     (void)state;
@@ -445,13 +446,15 @@ static void a_pane_is_lit_as_by_a_sun_of_the_lights_direction(void **state) {
         spot.direction[0] = 2, spot.direction[1] = -1, spot.direction[2] = -3;
         seed = 3;
         error_info a = compare_light(&p, &c, &near, 1), b = compare_light(&p, &c, &spot, 1);
-        print_message("pane {%s}: off by %.1e and %.1e, %u and %u lit\n", kinds[i], a.most, b.most, a.lit, b.lit);
+        print_message("pane {%s}: error of %.1e and %.1e, %u and %u lit\n",
+                      kinds[i], a.most, b.most, a.lit, b.lit);
         assert_true(a.lit > 20 && b.lit > 20 && a.most < 3e-3 && b.most < 3e-3);
         close_session(&p.s);
     }
 }
 
-/* The mean over all directions n of max(n.l, 0) is 1/4; the centre's light, also where it is out of view. */
+/* The mean over all directions n of max(n.l, 0) is 1/4. The light is that at the centre, also if
+ * the centre is out of view. */
 static void a_particle_scatters_a_quarter_of_each_light(void **state) {
     (void)state;
     static uint16_t culled[4 * 96 * 64];
@@ -479,7 +482,8 @@ static void a_particle_scatters_a_quarter_of_each_light(void **state) {
         for (uint32_t i = 0; i < 2; i++) {
             masu_ref_light r = reference_of(&lights[i]);
             double l[3], color[3];
-            if (far) lights[i].position[0] = 7.5 + i, r.position[0] = 7.5 + i; /* behind it */
+            /* behind the particle */
+            if (far) lights[i].position[0] = 7.5 + i, r.position[0] = 7.5 + i;
             if (far) assert_int_equal(masu_punctual_light_set(p.s.m, masu_punctual_light_at(p.s.m, i), &lights[i], &failure), MASU_OK);
             masu_ref_light_reaches(&r, spark.position, l, color);
             for (int k = 0; k < 3; k++) want[k] += 0.25 * (double)spark.color[k] * color[k];
@@ -532,7 +536,7 @@ static void extremes_are_finite_and_mean_what_they_say(void **state) {
         {"range 1e15", LIT, {0, 4, 0}, 20, 1e15f, 0.01f, -1, -1},
         {"the brightest there is, on the ground", LIT, {0, 0, 0}, 1e9, 1e9f, 1e-6f, -1, -1},
         {"inside the near plane", LIT, {2.999, 3.499, 8.997}, 20, 30, 0.01f, -1, -1},
-        {"at the eye", LIT, {3, 3.5, 9}, 20, 30, 0.01f, -1, -1},
+        {"at the camera", LIT, {3, 3.5, 9}, 20, 30, 0.01f, -1, -1},
         {"behind the camera", LIT, {5, 5, 14}, 20, 30, 0.01f, -1, -1},
         {"behind the camera, out of reach", DARK, {6, 7, 18}, 20, 3, 0.01f, -1, -1},
         {"as far as may be", FINITE, {1e15, -1e15, 1e15}, 1e9, 1e15f, 0.01f, -1, -1},
@@ -563,7 +567,7 @@ static void extremes_are_finite_and_mean_what_they_say(void **state) {
     close_session(&p.s);
 }
 
-/* ---- What the host sets ---------------------------------------------------------------------- */
+/* ---- Values set by the host ------------------------------------------------------------------ */
 
 static void bad_values_are_refused_with_a_line(void **state) {
     (void)state;
@@ -625,13 +629,13 @@ static void bad_values_are_refused_with_a_line(void **state) {
     assert_int_equal(masu_punctual_light_set(NULL, light, &good, &failure), MASU_ERROR_ARGUMENT);
     assert_int_equal(masu_punctual_light_set(p.s.m, light, NULL, &failure), MASU_ERROR_ARGUMENT);
     assert_int_equal(masu_punctual_light_get(p.s.m, (masu_punctual_light){9}, &is, &failure), MASU_ERROR_ARGUMENT);
-    /* Nothing of it was taken. */
+    /* The call had no effect. */
     assert_int_equal(masu_punctual_light_get(p.s.m, light, &is, &failure), MASU_OK);
     assert_memory_equal(&is, &good, offsetof(masu_punctual_light_state, outer) + sizeof is.outer);
     close_session(&p.s);
 }
 
-/* A headlight: where its instance goes, it goes, in the same bits as one that is put there. */
+/* A headlight follows its instance, bit-identical to a light that is set there. */
 static void a_light_moves_with_its_instance(void **state) {
     (void)state;
     pictures p;
@@ -648,7 +652,7 @@ static void a_light_moves_with_its_instance(void **state) {
     assert_int_equal(carried.instance.id, car.id);
     uint64_t before = 0, lit;
     for (int i = 0; i < 6; i++) {
-        /* Quarter turns and halves: nothing is rounded. */
+        /* Rotations by 90 degrees, and halves: nothing is rounded. */
         float x = (float)(i - 3) * 0.5f, c4 = i % 2 ? 0.0f : 1.0f, s4 = i % 2 ? 1.0f : 0.0f;
         const float rows[12] = {c4, 0, s4, x, 0, 1, 0, 0.25f, -s4, 0, c4, 1};
         assert_int_equal(masu_instance_set_transform(p.s.m, car, rows, &failure), MASU_OK);

@@ -1,6 +1,7 @@
-/* test_live.c: models that come, go and move while frames go on. What a hidden one leaves is the picture of a
- * scene that never had it: no shadow, no reflection, no light, no pane; but for the rounding of rays, whose
- * tree and shaders differ, to the byte. What was moved and added is the picture of a scene that was baked so. */
+/* test_live.c: models that are added, removed and moved between frames. A hidden model leaves the
+ * image of a scene that never had it: no shadow, reflection, light or pane. The image is
+ * bit-identical, except for the rounding of rays, whose BVH and shaders differ. Moved and added
+ * models give the image of a scene baked with them. */
 #include "support/floats.h"
 #include "support/support.h"
 
@@ -41,7 +42,7 @@ static void show(masu_session *s, const char *name, uint32_t shown) {
     assert_int_equal(masu_model_show(s->m, model_of(s, name), shown, &failure), MASU_OK);
 }
 
-/* So many frames from number `first` on, after a cut: reflections gather. */
+/* Renders FRAMES frames from number `first`, after a cut: reflections accumulate. */
 static void draw_frames(masu_session *s, uint32_t first, uint8_t out[FRAMES][BYTES]) {
     for (uint32_t i = 0; i < FRAMES; i++) {
         masu_commands commands;
@@ -50,7 +51,7 @@ static void draw_frames(masu_session *s, uint32_t first, uint8_t out[FRAMES][BYT
     }
 }
 
-/* ---- What is hidden -------------------------------------------------------------------------- */
+/* ---- Hiding ---------------------------------------------------------------------------------- */
 
 static void what_is_hidden_has_never_been(void **state) {
     (void)state;
@@ -58,7 +59,7 @@ static void what_is_hidden_has_never_been(void **state) {
     masu_session_desc d = desc_of("test_live"), bare = desc_of("test_live_bare");
     open_session(&without, &bare);
     open_session(&with, &d);
-    draw_frames(&with, 0, pictures[0]); /* the truck and the pane are seen */
+    draw_frames(&with, 0, pictures[0]); /* the truck and the pane are visible */
     draw_frames(&without, 0, pictures[1]);
     assert_true(max_difference(pictures[0][FRAMES - 1], pictures[1][FRAMES - 1], BYTES) > 60);
     show(&with, "truck", 0);
@@ -75,14 +76,14 @@ static void what_is_hidden_has_never_been(void **state) {
     close_session(&without);
 }
 
-/* A hidden lamp's light is off, a shown one's on; what comes back is as it was. */
+/* A hidden lamp is off, a shown one is on. A model that is shown again is unchanged. */
 static void what_comes_back_is_as_it_was(void **state) {
     (void)state;
     masu_session s;
     masu_session_desc d = desc_of("test_live");
     open_session(&s, &d);
     assert_int_equal(masu_scene_count(&s.scene, MASU_SCENE_MODEL),
-                     5); /* truck, two spare ones, lamp, pane */
+                     5); /* truck, its two copies, lamp, pane */
     draw_frames(&s, 0, pictures[0]);
     masu_model_state truck;
     assert_int_equal(masu_model_get(s.m, model_of(&s, "truck"), &truck, &failure), MASU_OK);
@@ -101,8 +102,8 @@ static void what_comes_back_is_as_it_was(void **state) {
     assert_int_equal(masu_model_set_transform(s.m, model_of(&s, "truck"), truck.rows, &failure), MASU_OK);
     draw_frames(&s, 3 * FRAMES, pictures[1]);
     assert_int_equal(stats_of(&s, 1).lights_in_view, 0);
-    /* Blue noise has come round to other numbers: reflections differ by their noise, the rest by what a
-     * float keeps of a place. */
+    /* Blue noise has other numbers in these frames: reflections differ by their noise, the rest by
+     * the rounding of a position to float. */
     double sum = 0;
     for (uint32_t i = 0; i < BYTES; i++)
         sum += abs(pictures[0][FRAMES - 1][i] - pictures[1][FRAMES - 1][i]);
@@ -111,7 +112,7 @@ static void what_comes_back_is_as_it_was(void **state) {
     close_session(&s);
 }
 
-/* ---- What moves ------------------------------------------------------------------------------ */
+/* ---- Moving ---------------------------------------------------------------------------------- */
 
 static void what_is_moved_is_as_if_baked_so(void **state) {
     (void)state;
@@ -137,7 +138,7 @@ static void what_is_moved_is_as_if_baked_so(void **state) {
     close_session(&baked);
 }
 
-/* Of what has just been shown nothing was anywhere before: no velocity, though it stood elsewhere. */
+/* A model that has just been shown has no velocity, although it was elsewhere before. */
 static void what_is_shown_has_not_moved(void **state) {
     (void)state;
     masu_session s;
@@ -164,8 +165,8 @@ static void what_is_shown_has_not_moved(void **state) {
     close_session(&s);
 }
 
-/* Rays read where things were in the previous frame, too. What has come to rest is there where it is, in every slot, although
- * nothing is written once nothing moves. True: the device has ray queries. */
+/* Rays read positions of the previous frame, too. After a model stops, both positions are equal in
+ * every slot, although nothing is written once nothing moves. True: the device has ray queries. */
 static bool comes_to_rest(masu_switch queries) {
     masu_session s;
     masu_session_desc d = desc_of("test_live");
@@ -198,7 +199,7 @@ static void what_has_come_to_rest_is_where_it_was(void **state) {
     if (comes_to_rest(MASU_OFF)) comes_to_rest(MASU_ON);
 }
 
-/* ---- Its limits ------------------------------------------------------------------------------ */
+/* ---- Limits ---------------------------------------------------------------------------------- */
 
 static void the_last_spare_one_is_the_last(void **state) {
     (void)state;

@@ -1,6 +1,7 @@
-/* test_load.c: a scene that is loaded in steps while frames of another go on: no step writes more than desc.load_step,
- * the pictures meanwhile are to the byte those of the scene that is shown, and afterwards those of the new one, as
- * if it had been loaded at once; a third scene comes into the blocks that the first has left; pipelines are both's. */
+/* test_load.c: a scene that is loaded in steps while another renders. No step writes more than
+ * desc.load_step. Meanwhile the images are bit-identical to those of the rendering scene, and
+ * afterwards to those of the new one loaded at once. A third scene uses the blocks that the first
+ * has left; pipelines are shared. */
 #include "support/support.h"
 
 #include <stdio.h>
@@ -12,7 +13,7 @@ enum { W = 96, H = 64, BYTES = W * H * 4, RUNGS = 2, AFTER = 3 };
 
 static uint8_t picture[BYTES], live[BYTES];
 
-/* A blob for as long as it is needed. */
+/* Keeps a blob for as long as it is needed. */
 static void open_scene(masu_session *x, const char *name) {
     masu_session_desc d = test_desc(name, W, H);
     d.no_renderer = true;
@@ -36,7 +37,7 @@ static masu_frame_desc frame_of(uint32_t n) {
     return (masu_frame_desc){MASU_FRAME_DESC, .rung = n % RUNGS, .time = 0.05 * n, .time_step = 0.05f};
 }
 
-/* A renderer of the scene that is shown, alone: what its next frame, the n-th, shows. */
+/* A separate renderer of the rendering scene; returns the image of its next frame, the n-th. */
 static own_renderer alone;
 static void draw_alone(masu_session *s, uint32_t n) {
     char error[ERROR_SIZE];
@@ -48,7 +49,7 @@ static void draw_alone(masu_session *s, uint32_t n) {
     memcpy(picture, alone.target.mapped, BYTES);
 }
 
-/* A step, where there is one, and a frame in one submit. */
+/* A step, if there is one, and a frame in one submit. */
 static void submit(masu_session *s, const masu_commands *step, const masu_commands *frame) {
     VkCommandBuffer all[2];
     uint32_t count = 0;
@@ -59,7 +60,8 @@ static void submit(masu_session *s, const masu_commands *step, const masu_comman
     assert_int_equal(vkQueueWaitIdle(s->host.queue), VK_SUCCESS);
 }
 
-/* The n-th frame of x, in the same submit as a step of another, is the n-th of its scene alone. */
+/* The n-th frame of x, in one submit with a step of another renderer, equals the n-th of its scene
+ * alone. */
 static void draw_next(masu_session *s, own_renderer *x, uint32_t n, const masu_commands *step) {
     char error[ERROR_SIZE];
     masu_commands commands;
@@ -70,10 +72,10 @@ static void draw_next(masu_session *s, own_renderer *x, uint32_t n, const masu_c
     assert_ok(masu_headless_target_read(&s->host, &x->target, error, sizeof error));
     memcpy(live, x->target.mapped, BYTES);
     if (memcmp(live, picture, BYTES) != 0)
-        fail_msg("frame %u: off by %u", n, max_difference(live, picture, BYTES));
+        fail_msg("frame %u: error of %u", n, max_difference(live, picture, BYTES));
 }
 
-/* masu_init in given host memory, and no step yet. */
+/* masu_init in the given host memory, without a step yet. */
 static void begin(masu_session *s, own_renderer *x, const masu_desc *desc, void *block, uint64_t bytes) {
     masu_desc d = *desc;
     masu_detail detail;
@@ -95,8 +97,8 @@ static uint64_t host_bytes_of(const masu_desc *d) {
     return need.host_bytes;
 }
 
-/* All steps of x, each in the submit of a frame of `now`, whose next frame is number *n. Returns how many are submitted
- * without a byte. */
+/* All steps of x, each in the submit of a frame of `now`, whose next frame is number *n. Returns
+ * the number of submitted steps without a byte. */
 static uint32_t load_in_steps(masu_session *s, own_renderer *x, own_renderer *now, uint32_t *n) {
     masu_commands step;
     masu_result result;
@@ -111,17 +113,18 @@ static uint32_t load_in_steps(masu_session *s, own_renderer *x, own_renderer *no
         left = step.load_left;
         steps++;
         submitted += step.part_count;
-        built += step.part_count && !step.load_bytes; /* structures of ray queries; kept images get their layout */
+        /* acceleration structures; the first layout of persistent images */
+        built += step.part_count && !step.load_bytes;
         draw_next(s, now, (*n)++, &step);
     } while (result == MASU_INCOMPLETE);
     assert_int_equal(left, 0);
     assert_true(steps > 1 && steps >= sum / STEP);
-    printf("  %llu bytes in %u steps, %u of them submitted, %u without any\n", (unsigned long long)sum, steps,
-           submitted, built);
+    printf("  %llu bytes in %u steps, %u submitted, %u without any\n",
+           (unsigned long long)sum, steps, submitted, built);
     return built;
 }
 
-/* Three scenes one after the other in two blocks, with a frame to each step. */
+/* Three scenes one after the other in two blocks, with a frame per step. */
 static void change_scenes(masu_session *device, const char *const names[3], const masu_desc *more) {
     masu_session scenes[3];
     masu_desc all[3];
@@ -198,7 +201,7 @@ static void through_a_staging_buffer(void **state) {
     change_on_device(&more);
 }
 
-/* Their structures are built in steps, too. */
+/* Acceleration structures are built in steps, too. */
 static void with_ray_queries(void **state) {
     (void)state;
     masu_desc more = {.ray_query = MASU_ON};

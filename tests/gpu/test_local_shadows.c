@@ -1,6 +1,6 @@
-/* test_local_shadows.c: shadows of punctual lights. What a pixel sees of a light beside exact rays; planes do not
- * shadow themselves; what is kept has the bits of what is rendered again; how many faces a frame renders; shadows
- * come and go by steps. */
+/* test_local_shadows.c: shadows of punctual lights: a light's visibility per pixel compared with
+ * exact rays; planes do not shadow themselves; cached faces are bit-identical to re-rendered ones;
+ * number of faces rendered per frame; shadows fade in and out in steps. */
 #include "support/files.h"
 #include "support/floats.h"
 #include "support/random.h"
@@ -100,7 +100,7 @@ static const uint16_t *take(lamps *l, const masu_camera *camera, uint32_t rung) 
     return read_image(&l->s, commands.slot, MASU_READBACK_HDR);
 }
 
-/* Until nothing changes any more. */
+/* Renders until nothing changes any more. */
 static const uint16_t *settle(lamps *l, const masu_camera *camera) {
     const uint16_t *hdr = NULL;
     for (uint32_t f = 0, still = 0; still < 10; f++) {
@@ -113,7 +113,7 @@ static const uint16_t *settle(lamps *l, const masu_camera *camera) {
 
 static double luma(const uint16_t *texel) { return half_float(texel[0]) + half_float(texel[1]) + half_float(texel[2]); }
 
-/* ---- Beside exact rays ----------------------------------------------------------------------- */
+/* ---- Comparison with exact rays -------------------------------------------------------------- */
 
 static masu_punctual_light_state state_of(const lamps *l, uint32_t light) {
     masu_punctual_light_state s;
@@ -122,7 +122,7 @@ static masu_punctual_light_state state_of(const lamps *l, uint32_t light) {
 }
 
 typedef struct hit_point {
-    double at[3], normal[3]; /* on the side of the light */
+    double at[3], normal[3]; /* on the light's side */
     uint32_t triangle;
 } hit_point;
 
@@ -157,7 +157,8 @@ static int sees(const lamps *l, const double at[3], const double normal[3], cons
     return masu_ref_hit(&l->world, from, d, 0, 1 - near / length, &t) < 0;
 }
 
-/* Whether the light is seen alike from all of the point's plane that lies within so many texels of its face. */
+/* Whether the light's visibility is the same on the point's plane within this number of texels of
+ * its face. */
 static int is_clear(const lamps *l, const hit_point *p, const double light[3], double texel, double texels, int seen,
                     double near) {
     double d[3], major = 0;
@@ -183,10 +184,11 @@ static int is_clear(const lamps *l, const hit_point *p, const double light[3], d
 }
 
 typedef struct comparison {
-    uint32_t lit, wrong, wrong_near, seam, seam_wrong; /* pixels; of wrong_near: two texels from an edge */
+    /* pixels; wrong_near: within two texels of an edge */
+    uint32_t lit, wrong, wrong_near, seam, seam_wrong;
 } comparison;
 
-/* As wide as the light's faces have it for that camera; now: the size that they had, and get. */
+/* Texel width of the light's faces for this camera; now: their previous size, and the new one. */
 static double texel_of(const lamps *l, const masu_camera *c, double tangent, uint32_t most, uint32_t *now) {
     masu_punctual_light_state s = state_of(l, 0);
     double d[3], pixels = 0.5 * l->height / tan((double)c->fov_y / 2);
@@ -225,8 +227,9 @@ static comparison compare_rays(lamps *l, const masu_camera *c, double texel, con
         sum.seam_wrong += seam && is_clear(l, &p, s.position, texel, 2, truth, near);
         sum.wrong_near++;
     }
-    print_message("%-24s %6u lit, off by more than 0.1: %5u, of them beyond 2 texels of an edge %4u (%.2f %%); at seams "
-                  "%u, off %u\n", what, sum.lit, sum.wrong_near, sum.wrong, 100.0 * sum.wrong / sum.lit, sum.seam,
+    print_message("%-24s %6u lit, error over 0.1: %5u, beyond 2 texels of an edge %4u (%.2f %%); "
+                  "at seams %u, off %u\n",
+                  what, sum.lit, sum.wrong_near, sum.wrong, 100.0 * sum.wrong / sum.lit, sum.seam,
                   sum.seam_wrong);
     return sum;
 }
@@ -292,10 +295,11 @@ typedef struct plane_case {
     uint32_t atlas;
     double height;
     int spot;
-    int tiles; /* the ground is many small ones, and the camera is near; else two triangles */
+    int tiles; /* the ground is many small triangles, and the camera is near; else two triangles */
 } plane_case;
 
-/* The ground alone, under a lamp close above it: it is lit at all angles, and fills the lamp's faces. */
+/* Only the ground, under a lamp close above: it is lit at all angles, and fills the lamp's
+ * faces. */
 static void expect_no_acne(const plane_case *p) {
     static uint16_t plain[4 * PIXELS_MOST];
     lamps l;
@@ -345,14 +349,16 @@ static void planes_do_not_shadow_themselves(void **state) {
     expect_no_acne(&(plane_case){"spot, 512", 2048, 1.5, 1, 1});
 }
 
-/* Clipped to a hundredth of their size, and farther from the camera than from the lamp, whose texels are a twentieth of
- * a pixel: what the camera's rasteriser does to their depth is more than a texel, if it has few subpixel bits. */
+/* Clipped to a hundredth of their size, and farther from the camera than from the lamp, whose
+ * texels are a twentieth of a pixel: with few subpixel bits, the camera's rasteriser changes their
+ * depth by more than a texel. */
 static void large_triangles_do_not_shadow_themselves(void **state) {
     (void)state;
     expect_no_acne(&(plane_case){"two triangles", 2048, 0.3, 0, 0});
 }
 
-/* Two lamps behind the plane of a box's face, whose normals lean to one of them by 30 degrees: both are dark there. */
+/* Two lamps behind the plane of a box's face with normals tilted towards one of the lamps by 30
+ * degrees: both are dark there. */
 static void faces_that_look_away_are_dark(void **state) {
     (void)state;
     static uint16_t plain[4 * PIXELS_MOST];
@@ -375,7 +381,7 @@ static void faces_that_look_away_are_dark(void **state) {
     }
     print_message("%u pixels are lit from behind without shadows, %u with them\n", lit, bright);
     assert_true(lit > 300);
-    assert_true(bright * 100 <= lit); /* SwiftShader: 3 at the edge of the box */
+    assert_true(bright * 100 <= lit); /* SwiftShader: 3 at the edge of the face */
     close_lamps(&l);
 }
 
@@ -416,7 +422,7 @@ static void expect_kept(uint32_t atlas) {
     memcpy(kept, settle(&l, &end), (size_t)l.width * l.height * 8);
     assert_int_equal(most, 4);
     print_message("%u faces rendered in 90 frames\n", rendered);
-    /* At rest nothing is rendered. */
+    /* Nothing is rendered in a static scene. */
     for (int f = 0; f < 8; f++) {
         assert_memory_equal(take(&l, &end, SHADOWED), kept, (size_t)l.width * l.height * 8);
         assert_int_equal(l.stats.local_shadow_faces, 0);
@@ -435,14 +441,14 @@ static void expect_kept(uint32_t atlas) {
     close_lamps(&fresh);
 }
 
-/* Also in an atlas without room for the sizes that its 14 faces would have. */
+/* Also in an atlas without room for the preferred sizes of its 14 faces. */
 static void what_is_kept_is_what_would_be_rendered(void **state) {
     (void)state;
     expect_kept(2048);
     expect_kept(1024);
 }
 
-/* Two lights and one slot: a third one, brighter and out of sight, takes it. */
+/* Two lights and one slot: a third light, brighter and out of view, takes it. */
 static void shadows_come_and_go_by_steps(void **state) {
     (void)state;
     static uint16_t plain[4 * PIXELS_MOST], before[4 * PIXELS_MOST];
@@ -473,7 +479,7 @@ static void shadows_come_and_go_by_steps(void **state) {
             if (!(without > 1e-3)) continue;
             now += luma(hdr + 4 * i) < 0.05 * without;
             double step = fabs(luma(hdr + 4 * i) - luma(before + 4 * i)) / without;
-            if (f < 20) continue; /* after a cut they come at once */
+            if (f < 20) continue; /* after a cut they appear at once */
             most = fmax(most, step);
             changed |= step > 0.01;
         }
@@ -489,8 +495,8 @@ static void shadows_come_and_go_by_steps(void **state) {
     close_lamps(&l);
 }
 
-/* Inside a shut box six faces of the point are due in each frame, two more than are rendered: nothing
- * outside is lit in any frame. */
+/* Inside a closed box six faces of the point light need rendering in each frame, two more than
+ * allowed: no pixel outside is lit in any frame. */
 static void a_point_that_moves_keeps_its_walls(void **state) {
     (void)state;
     static uint16_t plain[4 * PIXELS_MOST];
@@ -524,14 +530,15 @@ static void a_point_that_moves_keeps_its_walls(void **state) {
             leaks += luma(hdr + 4 * i) > 0.05 * without;
         }
     }
-    print_message("%u of %u pixels lit through the box, faces waited in %u of 24 frames\n", leaks, lit, waited);
+    print_message("%u of %u pixels lit outside, faces waited in %u of 24 frames\n",
+                  leaks, lit, waited);
     assert_true(lit > 24 * 1000 && waited > 8);
     assert_int_equal(leaks, 0);
-    settle(&l, &c); /* it comes to rest, where nothing waits */
+    settle(&l, &c); /* after the light stops, no face waits */
     close_lamps(&l);
 }
 
-/* ---- Live changes ---------------------------------------------------------------------------- */
+/* ---- Changes at run time --------------------------------------------------------------------- */
 
 static void a_thousand_lights_come_and_go(void **state) {
     (void)state;

@@ -1,6 +1,6 @@
-/* test_lods.c: LODs of meshes. The choice depends on the camera alone: with and without culling
- * the same picture, bit for bit. What is drawn is as wrong as the rung allows, and no more: no outline
- * is farther from that of the meshes themselves. And less is drawn. */
+/* test_lods.c: LODs of meshes. The choice depends only on the camera: the image with and without
+ * culling is bit-identical. The error is at most the one that the rung allows: no outline is
+ * farther from that of the full meshes. And fewer triangles are drawn. */
 #include "support/support.h"
 #include "support/files.h"
 
@@ -13,7 +13,7 @@
 
 enum { W = 96, H = 64, BYTES = W * H * 4, FRAMES = 200, PIXELS = W * H };
 
-/* Rungs: stages of culling that are on; then without culling as the meshes are, and by the coarsest. */
+/* Rungs: culling stages that are on; then without culling: full meshes, and the coarsest. */
 enum { BOTH, FRUSTUM, OCCLUSION, NEITHER, FINE, COARSE, WAYS };
 
 static uint8_t pixels[WAYS][BYTES], covered[WAYS][PIXELS];
@@ -49,8 +49,8 @@ static masu_stats_info draw_frame(masu_session *s, const masu_camera *c, uint32_
     return stats_of(s, commands.slot);
 }
 
-/* How many pixels `b` does not have that lie 2 pixels deep in `a`: an error of one pixel, and one for
- * where in a pixel its sample is. */
+/* Number of pixels missing in `b` that are at least 2 pixels inside `a`: an error of one pixel, and
+ * one for the sample position in a pixel. */
 static uint32_t astray(const uint8_t *a, const uint8_t *b) {
     uint32_t n = 0;
     for (int y = 2; y < H - 2; y++) {
@@ -87,7 +87,7 @@ static void compare_path(masu_session *s, uint32_t frames, int moving) {
                 assert_int_equal(stats.views[0].instances,
                                  masu_scene_count(&s->scene, MASU_SCENE_INSTANCE));
             if (way == FINE) assert_int_equal(stats.triangles, masu_scene_triangles(&s->scene));
-            /* Both views draw the same forms. */
+            /* Both views draw the same LODs. */
             if (way >= NEITHER) assert_int_equal(stats.views[1].triangles, stats.triangles);
         }
         for (uint32_t way = 0; way < NEITHER; way++) {
@@ -110,15 +110,16 @@ static void compare_path(masu_session *s, uint32_t frames, int moving) {
     assert_true(triangles[NEITHER] < triangles[FINE] * 3 / 4);
     assert_true(triangles[FRUSTUM] < triangles[NEITHER] / 2);
     assert_true(triangles[BOTH] < triangles[FRUSTUM]);
-    assert_true(changed > frames / 2); /* LODs were seen */
-    assert_true(coarse_astray > 0);    /* else nothing says that outlines can be found wrong */
+    assert_true(changed > frames / 2); /* LODs were visible */
+    assert_true(coarse_astray > 0);    /* otherwise nothing shows that wrong outlines are
+                                          detected */
 }
 
 static void the_picture_is_the_same_without_culling(void **state) {
     (void)state;
     masu_session_desc d = lods_desc();
     masu_session s;
-    d.host.validate = false; /* the long path; the other has the layers */
+    d.host.validate = false; /* the long path; the other test runs with the layers */
     open_session(&s, &d);
     compare_path(&s, trials(FRAMES, FRAMES, 30), 0);
     close_session(&s);
@@ -133,15 +134,15 @@ static void what_moves_is_drawn_by_where_it_is(void **state) {
     close_session(&s);
 }
 
-/* From afar, and whatever may be wrong: the last form of each. Occluders that it does not hold are left
- * out, and no others. */
+/* From a distance, with any error allowed: the last LOD of each mesh. Only the occluders that the
+ * LOD does not contain are omitted. */
 static void the_coarsest_form_is_the_last_one(void **state) {
     (void)state;
     masu_session_desc d = lods_desc();
     masu_session s;
     d.desc.rungs[OCCLUSION].lod_error = 1e9f;
     open_session(&s, &d);
-    uint8_t *bytes; /* that of the session is gone when it is loaded */
+    uint8_t *bytes; /* the session frees its blob after loading */
     size_t size;
     char error[256];
     masu_scene scene;
@@ -177,7 +178,7 @@ static void the_coarsest_form_is_the_last_one(void **state) {
     c.forward[2] = 1.0f;
     stats = draw_frame(&s, &c, COARSE, 0);
     assert_int_equal(stats.triangles, least);
-    /* What the camera is in, large1, is drawn as it is. */
+    /* A mesh that contains the camera, large1, is drawn in full detail. */
     c.position[0] = -4.5;
     c.position[1] = 3.0;
     c.position[2] = 16.5;

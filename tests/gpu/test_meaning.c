@@ -1,5 +1,5 @@
-/* test_meaning.c: what goes in comes out: constants of the field, time, camera path, materials,
- * light, exposure, and what is said to the log. */
+/* test_meaning.c: inputs have their documented effect: constants of the field, time, camera path,
+ * materials, light, exposure, and log messages. */
 #include "support/support.h"
 #include "support/floats.h"
 
@@ -22,7 +22,7 @@ static void open_scene(const char *scene, uint32_t steps) {
     open_session(&s, &d);
 }
 
-/* View depth at the middle of the picture. */
+/* View depth at the centre of the image. */
 static float depth_at_centre(const masu_frame_desc *frame) {
     return 0.1f / ((const float *)draw_image(&s, frame, MASU_READBACK_DEPTH, NULL))[CENTRE];
 }
@@ -34,7 +34,7 @@ static void a_field_of_lipschitz_constant_3_is_stepped_by_a_third(void **state) 
     open_scene("test_scaled_field", 0);
     assert_float_equal(depth_at_centre(&frame), 3.0f, 1e-3f);
     assert_int_equal(masu_stats(s.m, 0, &stats, &failure), MASU_OK);
-    /* Steps three times too long would walk through the rim, or far into the sphere. */
+    /* Steps three times too long would pass through the rim, or go far into the sphere. */
     const float *depth = draw_image(&s, &frame, MASU_READBACK_DEPTH, NULL);
     uint32_t hits = 0;
     for (uint32_t i = 0; i < W * H; i++) {
@@ -43,7 +43,7 @@ static void a_field_of_lipschitz_constant_3_is_stepped_by_a_third(void **state) 
         assert_true(0.1f / depth[i] >= 2.999f && 0.1f / depth[i] <= 4.0f);
     }
     assert_int_equal(stats.sdf_hits, hits);
-    /* A disc of radius tan(asin(1/4)) in a picture 2 tan(20 degrees) high. */
+    /* A disc of radius tan(asin(1/4)) in an image 2 tan(20 degrees) high. */
     double radius = tan(asin(0.25)) / tan(20 / 57.29578) * H / 2;
     assert_true(fabs(hits - 3.14159265 * radius * radius) < 0.02 * hits);
     close_session(&s);
@@ -69,14 +69,14 @@ static void steps_that_run_out_near_the_surface_still_show_it(void **state) {
     (void)state;
     masu_stats_info stats;
     masu_frame_desc frame = {MASU_FRAME_DESC};
-    /* From distance 4 with f / 3: after 24 steps the middle is within 2 pixels, not within 0.1. */
+    /* From distance 4 with f / 3: after 24 steps the centre is within 2 pixels, not within 0.1. */
     for (uint32_t steps = 1; steps < 64; steps++) {
         open_scene("test_sphere_sdf", steps);
         depth_at_centre(&frame);
         assert_int_equal(masu_stats(s.m, 0, &stats, &failure), MASU_OK);
         close_session(&s);
         if (stats.sdf_unconverged && stats.sdf_hits)
-            return; /* some of them stand for the surface */
+            return; /* some of the unconverged rays give the surface */
     }
     fail_msg("no number of steps leaves rays unconverged and drawn");
 }
@@ -102,7 +102,7 @@ static void materials_arrive_in_the_g_buffer(void **state) {
     close_session(&s);
 }
 
-/* Radiance of the sphere's middle against the formulas of light.comp in plain C. */
+/* Radiance at the sphere's centre against the formulas of light.comp in plain C. */
 static void the_sun_lights_as_the_formulas_say(void **state) {
     (void)state;
     const masu_light light = {.sun_direction = {0, 0.6f, 0.8f},
@@ -126,13 +126,13 @@ static void the_sun_lights_as_the_formulas_say(void **state) {
         double ambient = (double)light.ambient[c] * (albedo[c] + 0.04 * 0.5);
         assert_float_equal((float)half_float(hdr[c]), (float)(sun + ambient), (float)(0.05 * (sun + ambient)));
     }
-    /* The same light from behind leaves the ambient alone. */
+    /* The same light from behind leaves only the ambient light. */
     masu_light behind = light;
     behind.sun_direction[2] = -0.8f, behind.sun_direction[1] = 0, behind.sun_direction[0] = 0;
     frame.light = &behind;
     hdr = (const uint16_t *)draw_image(&s, &frame, MASU_READBACK_HDR, NULL) + 4 * CENTRE;
     assert_float_equal((float)half_float(hdr[0]), 0.1f * (0.25f + 0.02f), 0.003f);
-    /* What glows is as bright as it says, whatever the light. */
+    /* Emission has its given radiance, under any light. */
     uint32_t glowing = 0;
     hdr = draw_image(&s, &frame, MASU_READBACK_HDR, NULL);
     for (uint32_t i = 0; i < W * H; i++) glowing += fabs(half_float(hdr[4 * i]) - 4) < 0.1;
@@ -152,7 +152,7 @@ static void exposure_is_a_factor_and_the_curve_rises_to_white(void **state) {
     light.exposure = 0; /* 1 */
     const uint16_t *hdr = draw_image(&s, &frame, MASU_READBACK_HDR, b);
     assert_true(max_difference(a, b, sizeof a) <= 1);
-    /* The curve, in double, at every pixel. */
+    /* The tone curve, in double precision, at every pixel. */
     for (uint32_t i = 0; i < W * H; i++) {
         for (int k = 0; k < 3; k++) {
             double x = half_float(hdr[4 * i + k]);
@@ -184,7 +184,7 @@ static void the_log_hears_what_the_detail_says(void **state) {
     log_count = 0;
     open_session(&s, &d);
     assert_int_equal(log_count, 1);
-    assert_int_equal(logged[0][0], '2'); /* information: the box */
+    assert_int_equal(logged[0][0], '2'); /* information: the memory block */
     assert_int_equal(masu_frame(s.m, &bad, &commands, &failure), MASU_ERROR_ARGUMENT);
     assert_int_equal(log_count, 2);
     assert_int_equal(logged[1][0], '0');

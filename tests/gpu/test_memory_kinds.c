@@ -1,5 +1,5 @@
-/* test_memory_kinds.c: memory as other devices have it, and what a recording must hold that no
- * software driver would miss: both seen through support_wrap. */
+/* test_memory_kinds.c: memory types of other devices, and contents of recordings whose absence no
+ * software driver would show: both observed through support_wrap. */
 #include "renderer.h"
 #include "support/support.h"
 #include "support/wrap.h"
@@ -27,7 +27,8 @@ static void draw_reference(void) {
     close_session(&s);
 }
 
-/* Draws with the memory that `wrap` pretends; returns how often the scene had to be copied. */
+/* Draws with the memory types that `wrap` simulates; returns how often the scene had to be
+ * copied. */
 static uint32_t draw_with(masu_session *s, const masu_session_desc *d, masu_memory *need) {
     masu_session_desc without = *d;
     without.no_renderer = true;
@@ -57,7 +58,7 @@ static void one_type_for_everything_is_one_allocation_without_copies(void **stat
     close_session(&s);
     d.desc.deny.unified_memory = 1;
     wrap.allocate_calls = 0;
-    assert_int_equal(draw_with(&s, &d, &need), 0); /* still visible: written in place */
+    assert_int_equal(draw_with(&s, &d, &need), 0); /* still host-visible: written directly */
     assert_int_equal(need.unified, 0);
     assert_int_equal(wrap.allocate_calls, 3);
     close_session(&s);
@@ -82,7 +83,7 @@ static void a_discrete_device_gets_the_scene_through_a_staging_buffer_in_chunks(
     wrap_reset();
 }
 
-/* The first device-local type of such a device cannot be seen by the host: it must not mislead. */
+/* The host cannot access the first device-local type of such a device: it must not be chosen. */
 static void an_apu_gets_one_block_of_the_type_that_is_both(void **state) {
     (void)state;
     skip_unless_host_sees_all_memory();
@@ -168,7 +169,7 @@ static void recordings_hold_the_barriers_that_only_real_devices_need(void **stat
     wrap_reset();
 }
 
-/* ---- Bytes that several images have one after another ------------------------------------------ */
+/* ---- Images that share memory ---------------------------------------------------------------- */
 
 typedef struct noted {
     VkCommandBuffer cmd;
@@ -186,7 +187,7 @@ static void note(VkCommandBuffer cmd, VkPipelineStageFlags from, VkPipelineStage
     noted_count++;
 }
 
-/* 0: none of the renderer's. */
+/* 0: not an image of the renderer. */
 static uint32_t image_of(const masu_session *s, VkImage image) {
     for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
         if (image && s->m->device.objects.images[i] == image) return i;
@@ -194,8 +195,8 @@ static uint32_t image_of(const masu_session *s, VkImage image) {
     return 0;
 }
 
-/* The first use of an image waits for whatever the same recording has done in its bytes, and for what it has written
- * there: no driver of this processor's would show it. */
+/* The first use of an image waits for everything that the same recording has done in its memory,
+ * and for what was written there: no software driver would show a missing wait. */
 static void an_image_waits_for_those_that_had_its_bytes(void **state) {
     (void)state;
     const VkAccessFlags writes = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT |
@@ -218,7 +219,7 @@ static void an_image_waits_for_those_that_had_its_bytes(void **state) {
         if (!own || n->image.oldLayout != VK_IMAGE_LAYOUT_UNDEFINED) continue;
         const masu_image_plan *here = &s.m->plan.images[own];
         uint8_t seen[MASU_IMAGE_SOURCE] = {0};
-        for (uint32_t j = i; j-- > 0;) { /* of each image the last barrier */
+        for (uint32_t j = i; j-- > 0;) { /* the last barrier of each image */
             const noted *before = &all_noted[j];
             uint32_t other = image_of(&s, before->image.image);
             if (before->cmd != n->cmd || !other || other == own || seen[other]) continue;
@@ -230,10 +231,12 @@ static void an_image_waits_for_those_that_had_its_bytes(void **state) {
             if (!(before->image.dstAccessMask & writes)) continue;
             written++;
             if (!(n->image.srcAccessMask & before->image.dstAccessMask & writes))
-                fail_msg("image %u does not wait for what is written to image %u", own, other);
+                fail_msg("image %u does not wait for the writes to image %u", own, other);
         }
     }
-    print_message("%u waits for images that had the bytes before, %u of them had been written last\n", waits, written);
+    print_message("%u waits for images that used the memory before, of which %u were written "
+                  "last\n",
+                  waits, written);
     assert_true(waits > 10);
     close_session(&s);
     wrap_reset();

@@ -1,4 +1,5 @@
-/* test_meso.c: shaders/brdf/meso.glsl on the GPU is tools/meso/model.c, and finite for anything. */
+/* test_meso.c: shaders/brdf/meso.glsl on the GPU equals tools/meso/model.c, and is finite for any
+ * input. */
 #include "meso/model.h"
 #include "support/support.h"
 #include "support/floats.h"
@@ -55,7 +56,7 @@ static void the_gpu_says_what_the_model_says(void **unused) {
         test_case *c = &cases[i];
         for (uint32_t k = 0; k < MASU_MESO_NUMBERS; k++) c->curves[k] = between(-2, 2);
         c->curves[3] = between(0, 1);  /* facet */
-        c->curves[7] = between(-4, 4); /* spread, here to past its clamps */
+        c->curves[7] = between(-4, 4); /* spread, from here on beyond its clamps */
         c->curves[19] = between(-8, 8);
         c->curves[23] = between(-8, 8);
         c->curves[11] = between(0, 3); /* alpha */
@@ -99,12 +100,12 @@ static void the_gpu_says_what_the_model_says(void **unused) {
         memcpy(got, &results[i], sizeof got);
         for (int k = 0; k < 12; k++) worst = worst_of(worst, fabs((double)got[k] - want[k]));
     }
-    print_message("  off by %.1e at most\n", worst);
-    /* A tilt that all but turns the normal over leaves a short vector to be normalised. */
+    print_message("  error of %.1e at most\n", worst);
+    /* A tilt that almost flips the normal leaves a short vector to be normalised. */
     assert_true(worst < 1e-3);
 }
 
-/* The widest numbers that a blob may have, and surfaces at their limits. */
+/* The extreme numbers that a blob may have, and surfaces at their limits. */
 static void the_widest_numbers_give_finite_surfaces(void **unused) {
     (void)unused;
     for (int i = 0; i < MANY; i++) {

@@ -1,8 +1,8 @@
-/* test_occluders.c: occlusion culling never hides what can be seen. Every object has a colour of its
- * own, so albedo and depth at full resolution are a buffer of ids; they are the same bit for bit with
- * and without. Scenes are random (boxes turned, stretched, sheared, mirrored and flat; eyes in, at and
- * between them; near planes that cut them open), or gaps that are narrower than a texel of the
- * atlas. */
+/* test_occluders.c: occlusion culling never removes visible objects. Every object has a different
+ * colour, so albedo and depth at full resolution are an ID buffer; it is bit-identical with and
+ * without culling. Scenes are random (boxes rotated, stretched, sheared, mirrored and flat; cameras
+ * in, at and between them; near planes that cut them open), or have gaps narrower than a texel of
+ * the atlas. */
 #include "scene/scene.h"
 #include "support/files.h"
 #include "support/random.h"
@@ -25,7 +25,7 @@ static void open_scene(masu_session *s, uint32_t width, uint32_t height) {
     d.desc.readback = MASU_READBACK_ALBEDO | MASU_READBACK_DEPTH;
     open_session(s, &d);
     assert_int_equal(masu_scene_data_of(&s->scene)->placed_occluders,
-                     WALLS + 1); /* and that of hollow0 */
+                     WALLS + 1); /* and of hollow0 */
 }
 
 static void place(masu_session *s, const char *kind, uint32_t i, const float rows[12]) {
@@ -41,7 +41,7 @@ static void place_box(masu_session *s, const char *kind, uint32_t i, double x, d
     place(s, kind, i, rows);
 }
 
-/* Draws both ways; the same in every pixel. Returns the numbers of the one with occlusion. */
+/* Renders both ways and compares every pixel. Returns the statistics with occlusion culling. */
 static masu_stats_info compare(masu_session *s, const masu_camera *c, int cut, const char *what,
                                uint64_t number) {
     masu_stats_info stats[2];
@@ -55,7 +55,7 @@ static masu_stats_info compare(masu_session *s, const masu_camera *c, int cut, c
         memcpy(depth[way], read_image(s, commands.slot, MASU_READBACK_DEPTH), bytes);
     }
     for (size_t i = 0; i < bytes; i += 4) {
-        /* Albedo is not defined where nothing is. */
+        /* Albedo is undefined where no surface is. */
         uint32_t here;
         memcpy(&here, depth[OFF] + i, 4);
         if (memcmp(depth[ON] + i, depth[OFF] + i, 4) ||
@@ -68,7 +68,7 @@ static masu_stats_info compare(masu_session *s, const masu_camera *c, int cut, c
 
 /* ---- Random scenes --------------------------------------------------------------------------- */
 
-/* Unit vectors across each other, by turning about the three axes. */
+/* Orthonormal vectors, by rotation about the three axes. */
 static void turn(double out[3][3]) {
     double a[3] = {random_between(&seed, 0, 6.3), random_between(&seed, 0, 6.3), random_between(&seed, 0, 6.3)};
     if (random_between(&seed, 0, 1) < 0.3) a[0] = a[1] = a[2] = 0;
@@ -137,7 +137,7 @@ static void random_scenes(uint32_t width, uint32_t height, uint64_t trials) {
                 c.forward[k] = (float)(center[k] - c.position[k] +
                                        random_between(&seed, -0.5, 0.5) * space);
             }
-            /* A cut, then frames that remember. */
+            /* A cut, then frames with visibility from the previous frame. */
             for (int frame = 0; frame < 2; frame++) {
                 masu_stats_info stats = compare(&s, &c, frame == 0 && view == 0, "scene", t);
                 if (!frame) continue;
@@ -147,7 +147,7 @@ static void random_scenes(uint32_t width, uint32_t height, uint64_t trials) {
             }
         }
     }
-    print_message("%ux%u: in view %llu, not hidden %llu, seen %llu\n", width, height,
+    print_message("%ux%u: in view %llu, not occluded %llu, visible %llu\n", width, height,
                   (unsigned long long)kept, (unsigned long long)left, (unsigned long long)visible);
     assert_true(left < kept * 9 / 10);
     assert_true(left >= visible);
@@ -157,7 +157,7 @@ static void random_scenes(uint32_t width, uint32_t height, uint64_t trials) {
 static void nothing_that_is_seen_is_left_out_at_more_than_a_pixel_per_texel(void **state) {
     (void)state;
     if (whole_run()) random_scenes(384, 256, trials(60, 15, 15));
-    else random_scenes(256, 170, 8); /* of 192 texels still */
+    else random_scenes(256, 170, 8); /* still 192 texels */
 }
 
 static void nothing_that_is_seen_is_left_out_at_less_than_a_pixel_per_texel(void **state) {
@@ -169,7 +169,8 @@ static void nothing_that_is_seen_is_left_out_at_less_than_a_pixel_per_texel(void
 
 enum { GAP_W = 768, GAP_H = 32 };
 
-/* Two walls at 10 m, between them a gap of a part of a texel, behind it a thing as wide as both. */
+/* Two walls at 10 m with a gap of a fraction of a texel between them, and behind it an object as
+ * wide as both. */
 static void gaps_narrower_than_a_texel_are_looked_through(void **state) {
     (void)state;
     masu_session s;
@@ -186,7 +187,7 @@ static void gaps_narrower_than_a_texel_are_looked_through(void **state) {
         double gap = n % 8 == 0 ? -0.01 : random_between(&seed, 0.0, 1.0) * 20.0 / 192.0;
         double at = random_between(&seed, -6.0, 6.0), depth_of = n % 2 ? 0.0 : random_between(&seed, 0.0, 3.0);
         double height = 30.0, width = 6.0;
-        int lying = n % 3 == 2; /* above each other */
+        int lying = n % 3 == 2; /* one above the other */
         double low = at - gap / 2 - width / 2, high = at + gap / 2 + width / 2;
         if (lying) {
             double y = random_between(&seed, -0.3, 0.3), g = gap / 3;
@@ -204,13 +205,13 @@ static void gaps_narrower_than_a_texel_are_looked_through(void **state) {
         hidden += stats.views[0].visible_instances < 3;
         if (seen) assert_int_equal(stats.views[0].visible_instances, 3);
     }
-    print_message("%u of %u seen through a gap, %u hidden\n", through, gaps, hidden);
+    print_message("%u of %u visible through a gap, %u occluded\n", through, gaps, hidden);
     assert_true(through > gaps / 4);
     close_session(&s);
 }
 
-/* An occluder that is smaller than its mesh is a promise about the mesh as a whole. Where the near plane
- * has cut it open, or the eye is inside, what is behind the occluder can be seen. */
+/* An occluder smaller than its mesh is valid only for the whole mesh. If the near plane has cut the
+ * mesh open, or the camera is inside, objects behind the occluder can be visible. */
 static void a_mesh_that_is_cut_open_hides_nothing(void **state) {
     (void)state;
     masu_session s;
@@ -220,7 +221,7 @@ static void a_mesh_that_is_cut_open_hides_nothing(void **state) {
     place_box(&s, "hollow", 0, 0, 0, 0, 10, 10, 10);
     place_box(&s, "thing", 1, 0, 0, -4, 1, 1, 1);
     uint32_t seen = 0, gone = 0, eyes = 0;
-    for (uint32_t n = 0; n < 40; n += whole_run() ? 1 : 3) { /* of both near planes in turn */
+    for (uint32_t n = 0; n < 40; n += whole_run() ? 1 : 3) { /* near planes of both alternately */
         eyes++;
         masu_camera c = {.position = {0.1 * (n % 5), 0.1, 3.2 + 0.1 * n},
                          .forward = {0, 0, -1},
@@ -235,8 +236,8 @@ static void a_mesh_that_is_cut_open_hides_nothing(void **state) {
     close_session(&s);
 }
 
-/* A wall along the street: across a texel it goes from near to far. What stands just before it, where
- * it is far, is nearer than the middle of the wall's texel says. */
+/* A wall along the street: across a texel its depth goes from near to far. An object just before
+ * its far part is closer than the wall's depth at the texel's centre. */
 static void what_stands_before_a_slanted_wall_is_drawn(void **state) {
     (void)state;
     masu_session s;
@@ -257,24 +258,24 @@ static void what_stands_before_a_slanted_wall_is_drawn(void **state) {
         seed = n;
         double u = random_between(&seed, 0.1, 0.95);
         double x = a[0] + u * (b[0] - a[0]), z = a[1] + u * (b[1] - a[1]);
-        /* 1 to 6 % nearer than the wall, a third of a texel wide. */
+        /* 1 to 6 % closer than the wall, a third of a texel wide. */
         double nearer = random_between(&seed, 0.94, 0.99), size = -z * 0.0035;
         place_box(&s, "thing", 1, x * nearer, 0, z * nearer, size, 4 * size, size * 0.1);
         (void)compare(&s, &c, n % 5 == 0, "thing", n);
         seen += colours_seen((size_t)GAP_W * GAP_H) > 1;
     }
-    print_message("%u of %u seen before the wall\n", seen, places);
+    print_message("%u of %u visible before the wall\n", seen, places);
     assert_true(seen > places * 2 / 3);
     close_session(&s);
 }
 
-/* The other way round: what stands well behind one wall is hidden, from every side and however the
- * wall is turned, in the frame in which it comes to be and until the one in which it no longer is. */
+/* The reverse: an object well behind a wall is culled, from every side and at any rotation of the
+ * wall, from the first frame in which it is occluded to the last. */
 static void what_a_wall_hides_is_not_drawn(void **state) {
     (void)state;
     masu_session s;
     uint32_t hidden = 0;
-    const uint32_t turns = trials(64, 64, 24); /* 24 go round once */
+    const uint32_t turns = trials(64, 64, 24); /* 24 are a full circle */
     open_scene(&s, 96, 64);
     for (uint32_t i = 0; i < WALLS; i++) place_box(&s, "wall", i, 0, -1e4, 0, 1, 1, 1);
     for (uint32_t i = 0; i < THINGS; i++) place_box(&s, "thing", i, 0, -1e4, 0, 1, 1, 1);
@@ -284,14 +285,14 @@ static void what_a_wall_hides_is_not_drawn(void **state) {
                                 0, 4, 0, 0,
                                 (float)(-8 * sin(b)), 0, (float)(2 * cos(b)), (float)(10 * sa)};
         place(&s, "wall", 3, wall);
-        /* Small, in the shadow of its middle; every fourth time high above it. */
+        /* Small, behind the wall's centre; every fourth time high above it. */
         place_box(&s, "thing", 7, 30 * ca, n % 4 == 3 ? 14 : 0.3, 30 * sa, 0.5, 0.5, 0.5);
         masu_camera c = {.forward = {(float)ca, 0, (float)sa}, .fov_y = 1.2f};
         masu_stats_info stats = compare(&s, &c, 0, "wall", n);
         int gone = stats.views[0].visible_instances == 1;
         assert_int_equal(stats.views[0].instances, 2);
         if (n % 4 == 3) assert_false(gone);
-        /* What was visible is asked again within five frames that cull. */
+        /* A visible object is tested again within five frames with culling. */
         for (int again = 0; again < 4 && n % 4 != 3 && !gone; again++) {
             gone = compare(&s, &c, 0, "wall", n).views[0].visible_instances == 1;
         }

@@ -1,9 +1,9 @@
-/* test_occlusion.c: SDF shadows and SDF ambient occlusion against the truth in double precision
- * (tests/reference/occlusion.h), and what must hold whatever the error: no acne, the same picture
- * shadows on polygons, nothing of it in scenes that do not ask.
+/* test_occlusion.c: SDF shadows and SDF ambient occlusion against a reference in double precision
+ * (tests/reference/occlusion.h), and properties that hold at any error: no acne, equal shadows on
+ * polygons, no cost in scenes that do not request them.
  *
- * The scenes of scenes/ are baked here again with the options; the fields of the truth come from the
- * SDF compiler and go through the C compiler. The table of errors is printed
+ * The scenes of scenes/ are baked here again with the options; the reference's fields are generated
+ * by the SDF compiler and compiled by the C compiler. The table of errors is printed
  * (docs/design/06-ambient-occlusion.md). */
 #include "support/support.h"
 #include "support/floats.h"
@@ -24,8 +24,8 @@ static masu_session s;
 
 /* ---- Scenes ---------------------------------------------------------------------------------- */
 
-/* NAME.json, of scenes/ or of tests/scenes/, with more members of its "sdf", instead of what turns
- * them off. */
+/* NAME.json, from scenes/ or tests/scenes/, with more members in its "sdf", replacing those that
+ * turn the effects off. */
 static void bake_with(const char *name, const char *options) {
     static char json[1 << 15];
     char path[256], root[1024];
@@ -62,7 +62,7 @@ static void draw_once(void) {
     draw(&s, &frame, &commands, NULL);
 }
 
-/* The session has let go of its blob: the scene is read again. */
+/* The session has freed its blob: the scene is read again. */
 static void look_at(const char *name, const masu_camera *camera, masu_view *view) {
     char error[ERROR_SIZE];
     masu_scene scene;
@@ -73,11 +73,12 @@ static void look_at(const char *name, const masu_camera *camera, masu_view *view
     free(blob);
 }
 
-/* ---- Against the truth ----------------------------------------------------------------------- */
+/* ---- Comparison with the reference ----------------------------------------------------------- */
 
 typedef struct errors {
     double squares, most;
-    uint32_t count, wrong; /* wrong: seen or not seen where the truth is sure of the opposite */
+    uint32_t count, wrong; /* wrong: visible or not, while the reference is certain of the
+                              opposite */
 } errors;
 
 static void note(errors *e, double truth, double is) {
@@ -105,7 +106,7 @@ static void compare(const masu_truth *truth, const masu_view *view, double tange
             masu_truth_sample hit;
             masu_truth_march(truth, view, &ray, &hit);
             if (hit.kind != MASU_TRUTH_HIT || !(depths[at] > 0) || normals[at] >> 30) continue;
-            /* Another surface than the march found is an error of the march. */
+            /* A surface other than the march found is an error of the march. */
             double t = view->near_distance / (double)depths[at] * ray.z_scale;
             if (fabs(t - hit.t) > 0.01 * hit.t) continue;
             double p[3], n_l = 0;
@@ -116,7 +117,7 @@ static void compare(const masu_truth *truth, const masu_view *view, double tange
             if (ambient)
                 note(ambient, masu_ref_ambient_seen(&field, p, hit.normal, 1, 256),
                      ambient_share(seen, at));
-            if (n_l <= 0.02) continue; /* the sun hardly matters there */
+            if (n_l <= 0.02) continue; /* the sun hardly matters at this angle */
             note(sun,
                  masu_ref_sun_seen(&field, p, hit.normal, view->sun_direction, tangent,
                                    view->max_distance, 128),
@@ -125,7 +126,7 @@ static void compare(const masu_truth *truth, const masu_view *view, double tange
     }
 }
 
-/* The stated bounds: root mean square and greatest error of the sun, of the ambient light. */
+/* The stated bounds: RMS and maximum error of the sun, of the ambient light. */
 static const struct {
     const char *scene;
     double radius; /* of the sun, degrees */
@@ -135,8 +136,8 @@ static const struct {
               {"city", 0.27, 0.05, 0.9, 0.05, 0.4, LONG_RUN},        {"city", 2, 0.03, 0.3, 0.05, 0.4, LONG_RUN},
               {"blobs", 0.27, 0.03, 0.5, 0.06, 0.4, LONG_RUN},   {"blobs", 2, 0.03, 0.3, 0.06, 0.4, LONG_RUN},
               {"tunnel", 0.27, 0.02, 0.3, 0.05, 0.4, EVERYWHERE},
-              /* So many parts that each block of pixels lists a few of them: one that is missing in
-               * a list is an error here. */
+              /* So many parts that each block of pixels lists only a few: a part missing in a list
+               * is an error here. */
               {"parts300", 1, 0.03, 0.3, 0.06, 0.4, EVERYWHERE}};
 
 static void the_error_against_the_truth_is_as_stated(void **state) {
@@ -155,7 +156,7 @@ static void the_error_against_the_truth_is_as_stated(void **state) {
                   "%s -std=c11 -O2 -w -shared -fPIC -o %s/%s.so %s/%s.c -lm; }",
                   scratch, name, build_dir(), strcmp(name, "parts300") ? "scenes" : "tests/scenes",
                   name, scratch, name, cc && *cc ? cc : "cc", scratch, name, scratch, name))
-            fail_msg("no truth of %s", name);
+            fail_msg("no reference of %s", name);
         masu_truth truth;
         masu_view view;
         masu_camera camera;
@@ -168,7 +169,7 @@ static void the_error_against_the_truth_is_as_stated(void **state) {
         assert_int_equal(masu_camera_at(s.m, 0, &camera, NULL), MASU_OK);
         stats = stats_of(&s, 0);
         look_at(name, &camera, &view);
-        /* Each evaluation of 300 parts takes as long as a hundred of the others. */
+        /* Each evaluation of 300 parts takes as long as a hundred in other scenes. */
         uint32_t stride = strcmp(name, "parts300") ? trials(5, 7, 7) : trials(5, 8, 8);
         compare(&truth, &view, tan(stated[i].radius * 3.14159265358979 / 180), stride, &sun,
                 &ambient);
@@ -189,10 +190,10 @@ static void the_error_against_the_truth_is_as_stated(void **state) {
     assert_false(failed);
 }
 
-/* ---- What holds whatever the error ----------------------------------------------------------- */
+/* ---- Properties at any error ----------------------------------------------------------------- */
 
-/* A scene of one .sdf text under a sun of 40 degrees, seen along -z and a little down. scale: of all
- * lengths; the texts use it as SCALE. */
+/* A scene of one .sdf text under a sun at 40 degrees, viewed along -z and slightly down. scale: of
+ * all lengths; the texts use it as SCALE. */
 static void bake_sdf(const char *name, const char *sdf, const char *models, const char *sun,
                      double scale, const char *options) {
     char text[1024], json[2048];
@@ -212,8 +213,8 @@ static void bake_sdf(const char *name, const char *sdf, const char *models, cons
 static const char *const plain_sun = "\"azimuth\": 70, \"elevation\": 40";
 static const char *const hard = "\"shadows\": {}, \"ambient_occlusion\": {}";
 
-/* Nothing but a plane, a sphere, a box: no point of a convex solid hides the sun or the sky from
- * another that faces it. */
+/* Only a plane, a sphere, a box: no point of a convex solid occludes the sun or the sky for another
+ * point that faces it. */
 static void nothing_shadows_itself(void **state) {
     (void)state;
     static const double scales[] = {1, 1000};
@@ -221,7 +222,8 @@ static void nothing_shadows_itself(void **state) {
                                          "part a = rotate_euler((0.3, 0.5, 0.2), box((k, 2 * k, k)));"};
     for (int i = 0; i < 6; i++) {
         const double scale = scales[i % 2];
-        /* Else each field at one size, and on drivers after the first two of them: each takes seconds to compile. */
+        /* Otherwise each field at one size; on drivers after the first two fields only: each takes
+         * seconds to compile. */
         if ((i == 0 || i == 3 || i == 4) && !long_run()) continue;
         if (i == 1 && !whole_run()) continue;
         char options[128];
@@ -245,7 +247,8 @@ static void nothing_shadows_itself(void **state) {
             closed += ambient_share(seen, k) < 0.98;
         }
         close_session(&s);
-        /* The normal of an edge is between those of its faces: the box loses some sky there. */
+        /* The normal at an edge is between those of its faces: the box itself occludes some sky
+         * there. */
         if (dark || (closed && i / 2 < 2) || closed * 100 > looked)
             fail_msg("field %d, scale %g: %u of %u in the shadow, %u occluded", i / 2, scale, dark,
                      looked, closed);
@@ -253,8 +256,8 @@ static void nothing_shadows_itself(void **state) {
     }
 }
 
-/* The sphere is left of the picture, its shadow is in it. Tiles do not have the sphere in their
- * lists; the pass's own lists must. */
+/* The sphere is left of the image, its shadow is inside. The lists of tiles do not have the sphere;
+ * the pass's own lists must. */
 static void what_is_out_of_sight_casts_its_shadow(void **state) {
     (void)state;
     bake_sdf("aside",
@@ -269,7 +272,7 @@ static void what_is_out_of_sight_casts_its_shadow(void **state) {
     uint32_t dark = 0;
     for (uint32_t k = 0; k < 128 * 96; k++) dark += normals[k] && sun_share(seen, k) < 0.1;
     assert_true(sun_share(seen, 48 * 128 + 64) < 0.01); /* the origin: on the line to the sun */
-    /* An ellipse of half axes 1.5 and 1.5 / sin(33.7 degrees) at distance 5.8, near enough. */
+    /* An ellipse of half axes 1.5 and 1.5 / sin(33.7 degrees) at distance 5.8, approximately. */
     assert_in_range(dark, 300, 4000);
     assert_true(sun_share(seen, 90 * 128 + 120) > 0.99);
     close_session(&s);
@@ -308,7 +311,7 @@ static void a_scene_that_does_not_ask_has_none_of_it(void **state) {
     static const char *const options[] = {"", "\"shadows\": {}, ", "\"ambient_occlusion\": {}, "};
     masu_readback_image out;
     masu_stats_info stats;
-    if (!whole_run()) return; /* the plan knows no driver */
+    if (!whole_run()) return; /* the plan does not depend on the driver */
     for (int i = 0; i < 3; i++) {
         bake_with("test_sphere_sdf", options[i]);
         open_scene("test_sphere_sdf", 64, 48);
@@ -330,7 +333,8 @@ static void a_scene_that_does_not_ask_has_none_of_it(void **state) {
     }
 }
 
-/* Of a point sun, of endless rays and radii, of a field that is not finite: a picture all the same. */
+/* With a point sun, infinite rays and radii, or a field that is not finite, the image is still
+ * finite. */
 static void extremes_give_finite_pixels(void **state) {
     (void)state;
     static const char *const options[] = {
@@ -340,7 +344,8 @@ static void extremes_give_finite_pixels(void **state) {
         "1e-3}, "};
     static const char *const scenes[] = {"test_broken_field", "spheres", "test_both"};
     for (int i = 0; i < 6; i++) {
-        /* Else each scene once, and both options; on drivers after the first two of them. */
+        /* Otherwise each scene once, and both options; on drivers after the first two scenes
+         * only. */
         if (i != 0 && i != 3 && i != 4 && !long_run()) continue;
         if (i == 4 && !whole_run()) continue;
         bake_with(scenes[i / 2], options[i % 2]);
@@ -358,7 +363,7 @@ static void extremes_give_finite_pixels(void **state) {
             lit += sun_share(seen, k);
         }
         assert_true(surface > 100);
-        /* A ray of a millimetre leaves all but the terminator in the sun. */
+        /* With a ray of a millimetre only the terminator is in shadow. */
         if (i % 2 && i / 2) assert_true(lit > 0.9 * surface);
         close_session(&s);
     }

@@ -1,5 +1,5 @@
-/* test_output.c: what arrives in targets of every format and encoding; dither; constant pictures; what
- * 8 bits between tone curve and target cost; hostile input of the chain of colour passes. */
+/* test_output.c: values written to targets of every format and encoding; dither; constant images;
+ * the error of 8 bits between tone curve and target; invalid input of the colour passes. */
 #include "reference/tone.h"
 #include "support/support.h"
 #include "support/floats.h"
@@ -11,7 +11,7 @@
 enum { W = 32, H = 24 };
 static masu_session s;
 
-/* A scene in whose picture is nothing but sky of one colour: looked at from outside, away from it. */
+/* A scene with an image of only sky of one colour: viewed from outside, facing away. */
 static masu_session_desc sky_desc(uint32_t width, uint32_t height) {
     masu_session_desc d = test_desc("test_sphere_mesh", width, height);
     d.desc.tone = MASU_TONE_NONE;
@@ -34,8 +34,8 @@ static void draw_sky(const float zenith[3], const float horizon[3], uint32_t run
 
 /* ---- Formats --------------------------------------------------------------------------------- */
 
-/* What is in a pixel, each channel as its format reads: 0..1, floats as they are. sRGB formats as their
- * bytes. */
+/* The content of a pixel, each channel as its format reads: 0..1, floats unchanged. sRGB formats as
+ * their bytes. */
 static void pixel(VkFormat format, const uint8_t *at, double out[3], double step[3]) {
     uint32_t word;
     uint16_t h[4];
@@ -70,7 +70,7 @@ static void pixel(VkFormat format, const uint8_t *at, double out[3], double step
         assert_int_equal(h[3], 0x3C00);
         for (int c = 0; c < 3; c++) {
             out[c] = half_float(h[c]);
-            step[c] = fmax(out[c], 1e-4) / 1024; /* of a half; what is lit is one, too */
+            step[c] = fmax(out[c], 1e-4) / 1024; /* for a half; the lit image is one, too */
         }
         return;
     default: {
@@ -127,7 +127,7 @@ static double expected(const target_case *t, const float color[3], int c) {
     return floats ? linear[c] : masu_ref_srgb_encode(linear[c]);
 }
 
-/* The device's, or 0: it has no such target. */
+/* The device's format, or 0: it has no such target. */
 static int has_format(const target_case *t) {
     VkFormatProperties p;
     vkGetPhysicalDeviceFormatProperties(s.host.physical, t->format, &p);
@@ -136,7 +136,7 @@ static int has_format(const target_case *t) {
     return (p.optimalTilingFeatures & needed) != 0;
 }
 
-/* scale 1: tonemap writes what is shown; below: RCAS does. */
+/* scale 1: tonemap writes the output; below: RCAS does. */
 static void assert_target(const target_case *t, float scale) {
     masu_session_desc d = sky_desc(W, H);
     d.desc.targets.format = t->format;
@@ -155,13 +155,13 @@ static void assert_target(const target_case *t, float scale) {
         pixel(t->format, mapped, got, step);
         for (int c = 0; c < 3; c++) {
             double off = fabs(got[c] - expected(t, colors[i], c)) / step[c];
-            /* In 10 bits before EASU, to 8 bits or less after it: another half of a step of 10. */
+            /* 10 bits before EASU, 8 bits or less after it: another half of a step of 10 bits. */
             int twice = scale < 1 && bytes_of(t->format) <= 4 && step[c] > 1 / 300.0;
-            /* What is lit is a half already, which some drivers cut off: 2^-11. */
-            /* PQ in halves, there and back through it: 2^-12 of its range. */
+            /* The lit image is half float, which some drivers truncate: 2^-11. */
+            /* PQ encoding and decoding in half floats: 2^-12 of its range. */
             int linear = scale < 1 && t->format == VK_FORMAT_R16G16B16A16_SFLOAT &&
                          t->encoding != MASU_ENCODING_SRGB;
-            /* Halves before EASU, in 10 bits after it: a quarter of a step more. */
+            /* Half floats before EASU, 10 bits after it: a quarter of a step more. */
             int ten = scale < 1 && bytes_of(t->format) == 4 && step[c] < 1 / 1000.0;
             double allowed = twice ? 0.505 + 0.5 / 1023 / step[c] : linear ? 4 : ten ? 0.77 : bytes_of(t->format) == 8 ? 1.01 : 0.505;
             if (!(off <= allowed)) {
@@ -171,7 +171,7 @@ static void assert_target(const target_case *t, float scale) {
             worst = worst_of(worst, off);
         }
     }
-    print_message("%-18s scale %.1f: off by %.3f steps at most\n", t->name, (double)scale, worst);
+    print_message("%-18s scale %.1f: error of %.3f steps at most\n", t->name, (double)scale, worst);
     close_session(&s);
 }
 
@@ -268,7 +268,7 @@ static void what_is_brighter_than_white_stays_so(void **state) {
     }
 }
 
-/* ---- Constant pictures and dither ------------------------------------------------------------ */
+/* ---- Constant images and dither -------------------------------------------------------------- */
 
 static double mean_of(const uint8_t *rgba, uint32_t pixels) {
     double sum = 0;
@@ -304,14 +304,15 @@ static void constant_pictures_stay_what_they_are(void **state) {
                 if (dither) print_message("rung %u, %7.3f: %7.3f, %u to %u\n", r, wanted, mean, low, high);
                 assert_true(fabs(mean - wanted) <= 0.505);
                 assert_true(high - low <= 1);
-                /* A step stays one, whatever the noise; without it everything is rounded. Upscaled, a step of
-                 * 8 bits is one of 10 only at the ends. */
+                /* A step remains one step, at any noise; without dither everything is rounded.
+                 * Upscaled, a step of 8 bits is one of 10 bits only at the ends. */
                 int ends = i == 0 || i == 4;
                 if (!dither || ends || (r == 0 && i != 2)) assert_true(i == 3 || low == high);
                 if (dither) assert_true(fabs(mean - wanted) <= 0.13);
                 if (i == 0) assert_int_equal(high, 0);
                 if (i == 4) assert_int_equal(low, 255);
-                /* At full size the mean is that of the radiance, which is a half: 2^-12 of it. */
+                /* At full size the mean is that of the radiance, which is a half: a relative
+                 * 2^-12. */
                 if (dither && r == 0) assert_true(fabs(mean - wanted) < 0.05);
                 if (!dither && r == 0 && i != 2) assert_int_equal(low, (int)floor(wanted + 0.5));
             }
@@ -320,8 +321,8 @@ static void constant_pictures_stay_what_they_are(void **state) {
     }
 }
 
-/* Of a slow ramp: error of the mean over 8x8 pixels against the truth, RMS in steps; the longest run of
- * one value along a column. */
+/* A slow ramp: error of the mean over 8x8 pixels against the exact value, RMS in steps; the longest
+ * run of one value along a column. */
 static void ramp(int dither, uint8_t *rgba, uint32_t side, double *rms, uint32_t *run) {
     static const float low[3] = {0.2f, 0.2f, 0.2f}, high[3] = {0.235f, 0.235f, 0.235f};
     masu_session_desc d = sky_desc(side, side);
@@ -360,15 +361,16 @@ static void dither_takes_the_bands_from_a_ramp(void **state) {
     uint32_t run[2];
     ramp(0, plain, SIDE, &rms[0], &run[0]);
     ramp(1, dithered, SIDE, &rms[1], &run[1]);
-    print_message("mean of 8x8 off by %.4f steps RMS, with dither %.4f; longest band %u pixels, %u\n",
+    print_message("mean of 8x8: error %.4f steps RMS, with dither %.4f; longest band %u pixels, "
+                  "%u\n",
                   rms[0], rms[1], run[0], run[1]);
     assert_true(rms[1] < 0.25 * rms[0]);
     assert_true(2 * run[1] < run[0]);
     assert_true(max_difference(plain, dithered, sizeof plain) <= 1);
 }
 
-/* Upscaled, 8 bits before EASU would leave little to dither: RMS step of means over 8x8 pixels against a
- * straight line through them, column by column. */
+/* With upscaling, 8 bits before EASU would leave little to dither: RMS deviation of means over 8x8
+ * pixels from a straight line, column by column. */
 static double unevenness(int dither, masu_switch deep) {
     enum { SIDE = 128, MEANS = SIDE / 8 };
     static const float low[3] = {0.2f, 0.2f, 0.2f}, high[3] = {0.235f, 0.235f, 0.235f};
@@ -397,8 +399,8 @@ static void upscaled_pictures_are_dithered_too(void **state) {
     (void)state;
     double plain = unevenness(0, MASU_OFF), dithered = unevenness(1, MASU_OFF);
     double deep = unevenness(0, MASU_ON), both = unevenness(1, MASU_ON);
-    print_message("upscaled ramp, bends of means of 8x8: %.4f steps, dithered %.4f; deep colour %.4f, "
-                  "dithered %.4f\n",
+    print_message("upscaled ramp, deviation of means of 8x8: %.4f steps, dithered %.4f; deep "
+                  "colour %.4f, dithered %.4f\n",
                   plain, dithered, deep, both);
     assert_true(dithered < 0.4 * plain);
     assert_true(both < 0.4 * plain);
@@ -429,9 +431,9 @@ static void dither_is_the_reference_and_depends_on_the_frame_alone(void **state)
     assert_true(max_difference(runs[0][0], runs[0][1], sizeof runs[0][0]) == 1);
 }
 
-/* ---- Bits in between ------------------------------------------------------------------------- */
+/* ---- Intermediate bits ----------------------------------------------------------------------- */
 
-/* RMS difference to the picture that has 16 bits all the way. */
+/* RMS difference from the image with 16 bits throughout. */
 static void deeper_colour_is_nearer_to_the_truth(void **state) {
     (void)state;
     enum { SIDE = 96 };
@@ -472,16 +474,17 @@ static void deeper_colour_is_nearer_to_the_truth(void **state) {
     print_message("10 bits in between: %.4f of 255 off, RMS; floats in between: %.4f; %llu, %llu bytes\n",
                   sqrt(rms[0]), sqrt(rms[1]), (unsigned long long)bytes[0],
                   (unsigned long long)bytes[1]);
-    print_message("from the picture at full size: %.3f and %.3f of 255, RMS\n", sqrt(native[0]),
+    print_message("from the image at full size: %.3f and %.3f of 255, RMS\n", sqrt(native[0]),
                   sqrt(native[1]));
-    assert_true(sqrt(rms[1]) < 0.32); /* what rounding alone costs is 0.289 */
+    assert_true(sqrt(rms[1]) < 0.32); /* rounding by itself causes 0.289 */
     assert_true(rms[1] < rms[0]);
     assert_true(bytes[0] < bytes[1]);
 }
 
-/* ---- Whatever comes last --------------------------------------------------------------------- */
+/* ---- The last pass --------------------------------------------------------------------------- */
 
-/* Each pass that can come last, after 10 bits and after floats; and into a target whose blue comes first. */
+/* Each pass that can be the last, after 10 bits and after floats; and into a target with blue as
+ * its first channel. */
 static void every_chain_makes_the_same_output(void **state) {
     (void)state;
     enum { SIDE = 96, CHAINS = 8, KINDS = 3 };
@@ -519,17 +522,18 @@ static void every_chain_makes_the_same_output(void **state) {
             uint32_t swapped = k % 4 == 3 ? k : k / 4 * 4 + 2 - k % 4;
             assert_int_equal(rgba[0][r][k], rgba[2][r][swapped]);
         }
-        print_message("chain %u: 10 bits between passes, rms %.3f of 255 beside floats\n", r, sqrt(sum));
+        print_message("chain %u: 10 bits between passes, rms %.3f of 255 compared with floats\n",
+                      r, sqrt(sum));
         assert_true(sqrt(sum) < 2.5);
         if (r) assert_true(memcmp(rgba[0][r], rgba[0][0], sizeof rgba[0][0]) != 0);
     }
 }
 
-/* ---- Hostile pictures ------------------------------------------------------------------------ */
+/* ---- Invalid images -------------------------------------------------------------------------- */
 
 enum { IN_W = 24, IN_H = 16, OUT_W = 48, OUT_H = 32 };
 
-/* A picture of halves through EASU and RCAS. */
+/* Sends a half-float image through EASU and RCAS. */
 static void upscale(const uint16_t *halves, uint8_t *out) {
     char error[ERROR_SIZE];
     masu_headless_source source;
@@ -563,7 +567,7 @@ static void a_broken_pixel_stays_in_its_footprint(void **state) {
         for (uint32_t i = 0; i < OUT_W * OUT_H; i++) {
             if (!memcmp(good + 4 * i, bad + 4 * i, 4)) continue;
             changed++;
-            /* EASU: two texels around; RCAS: a pixel. */
+            /* EASU reads two texels around; RCAS reads a pixel around. */
             double dx = fabs((i % OUT_W + 0.5) / 2 - (x + 0.5)), dy = fabs((i / OUT_W + 0.5) / 2 - (y + 0.5));
             assert_true(dx <= 2.5 && dy <= 2.5);
         }

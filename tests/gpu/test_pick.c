@@ -1,6 +1,7 @@
-/* test_pick.c: what a pixel shows, by desc.picking, against rays that this file casts by itself through every
- * triangle of every instance as masu_instance_get says that it stands; and where it is, against the depth that is
- * read back. A ray that passes an edge within a pixel may find either side: such pixels are counted. */
+/* test_pick.c: the results of desc.picking against rays that this file traces through every
+ * triangle of every instance, at the transform of masu_instance_get; and picked positions against
+ * the depth that is read back. A ray that passes an edge within a pixel may hit either side: such
+ * pixels are counted. */
 #include "support/support.h"
 #include "support/files.h"
 #include "reference/vec.h"
@@ -23,7 +24,7 @@ typedef struct world {
     masu_instance_state at[MOST];
 } world;
 
-/* The scene once more: the session has let go of its own. */
+/* The scene a second time: the session has freed its blob. */
 static void *blob;
 static masu_scene scene;
 
@@ -56,7 +57,7 @@ static int meets_box(const masu_instance_state *s, vec from, vec along) {
     return in <= out;
 }
 
-/* Distance in units of `along`; 1e30: none. */
+/* Distance in units of `along`; 1e30: no hit. */
 static double meets_triangle(const vec p[3], vec from, vec along) {
     vec e = vec_sub(p[1], p[0]), f = vec_sub(p[2], p[0]), q = vec_cross(along, f);
     double det = vec_dot(e, q);
@@ -72,7 +73,7 @@ typedef struct hit {
     double z;
 } hit;
 
-/* along has a view z of 1. */
+/* `along` has a view z of 1. */
 static hit cast(const world *w, vec from, vec along, double near_distance) {
     hit best = {UINT32_MAX, 0, 1e30};
     for (uint32_t i = 0; i < w->instances; i++) {
@@ -97,7 +98,7 @@ static hit cast(const world *w, vec from, vec along, double near_distance) {
 }
 
 typedef struct lens {
-    vec eye, forward, right, up; /* the latter two times the tangents */
+    vec eye, forward, right, up; /* right and up times the tangents */
     double width, height, near_distance;
 } lens;
 
@@ -108,7 +109,7 @@ static lens lens_of(const masu_camera *c, double width, double height, double as
                   vec_scale(u, tangent), width, height, (double)c->near_distance};
 }
 
-/* Through a place of the render size, pixels. */
+/* Ray through a position at the render size, in pixels. */
 static vec ray_of(const lens *l, double x, double y) {
     return vec_add(l->forward, vec_add(vec_scale(l->right, 2 * x / l->width - 1),
                                        vec_scale(l->up, 1 - 2 * y / l->height)));
@@ -132,7 +133,7 @@ static masu_pick_info pick_at(masu_session *s, masu_frame_desc frame, uint32_t x
     return info;
 }
 
-/* Whether a ray within a pixel of this one finds that instance (UINT32_MAX: none). */
+/* Whether a ray within a pixel of this one hits that instance (UINT32_MAX: none). */
 static int is_near(const world *w, const lens *l, double x, double y, uint32_t instance) {
     for (int i = 0; i < 81; i++) {
         vec along = ray_of(l, x + (i % 9 - 4) / 4.0, y + (i / 9 - 4) / 4.0);
@@ -141,8 +142,9 @@ static int is_near(const world *w, const lens *l, double x, double y, uint32_t i
     return 0;
 }
 
-/* One pixel of a frame against rays. slack: share of the depth that the surface may lie beside its finest form, or by
- * the grid that drivers put vertices on: SwiftShader's is a sixteenth of a pixel, which on ground is some of it. */
+/* Compares one pixel of a frame with a ray. slack: relative depth difference allowed for the LOD,
+ * and for the driver's vertex grid: SwiftShader's is a sixteenth of a pixel, which matters on the
+ * ground. */
 static void check_pixel(masu_session *s, const world *w, const lens *l, const masu_frame_desc *frame, uint32_t x,
                         uint32_t y, double scale, double slack, tally *t) {
     masu_commands commands;
@@ -154,7 +156,8 @@ static void check_pixel(masu_session *s, const world *w, const lens *l, const ma
     vec along = ray_of(l, px + 0.5, py + 0.5);
     hit truth = cast(w, l->eye, along, l->near_distance);
     double z = depth > 0 ? l->near_distance / (double)depth : 1e30;
-    uint32_t expected = truth.z < z * (1 + slack) ? truth.instance : UINT32_MAX; /* else the SDF, or the sky */
+    /* otherwise the SDF, or the sky */
+    uint32_t expected = truth.z < z * (1 + slack) ? truth.instance : UINT32_MAX;
     uint32_t got = UINT32_MAX;
     for (uint32_t i = 0; i < w->instances && info.kind == MASU_PICK_INSTANCE; i++)
         if (masu_instance_at(s->m, i).id == info.instance.id) got = i;
@@ -179,18 +182,19 @@ static void check_pixel(masu_session *s, const world *w, const lens *l, const ma
         t->blended++;
         assert_true(info.depth > depth);
     } else {
-        assert_true(info.depth == depth); /* to the bit */
+        assert_true(info.depth == depth); /* bit-identical */
     }
     if (info.kind == MASU_PICK_SKY) return;
     z = l->near_distance / (double)info.depth;
     vec p = vec_add(l->eye, vec_scale(along, z));
     vec off = vec_sub(p, (vec){info.position[0], info.position[1], info.position[2]});
-    if (!(sqrt(vec_dot(off, off)) <= 1e-5 * z)) fail_msg("pixel %u,%u: the point is off by %g m", x, y, sqrt(vec_dot(off, off)));
+    if (!(sqrt(vec_dot(off, off)) <= 1e-5 * z))
+        fail_msg("pixel %u,%u: the point has an error of %g m", x, y, sqrt(vec_dot(off, off)));
     if (got != UINT32_MAX && !(fabs(z - truth.z) <= fmax(slack, whole_run() ? 1e-3 : 2e-3) * z))
         fail_msg("pixel %u,%u: depth %g, expected %g", x, y, z, truth.z);
 }
 
-/* A grid of them. */
+/* A grid of pixels. */
 static tally check_grid(masu_session *s, masu_frame_desc frame, double scale, double slack, uint32_t step) {
     tally t;
     memset(&t, 0, sizeof t);
@@ -206,13 +210,14 @@ static tally check_grid(masu_session *s, masu_frame_desc frame, double scale, do
                      (double)size.width / size.height);
     for (uint32_t y = step / 2; y < size.height; y += step)
         for (uint32_t x = step / 2; x < size.width; x += step) check_pixel(s, &w, &l, &frame, x, y, scale, slack, &t);
-    print_message("  %u pixels: %u sky, %u SDF, %u of instances, %u of them blended; %u at edges\n", t.pixels, t.sky,
-                  t.sdf, t.instances, t.blended, t.edges);
+    print_message("  %u pixels: %u sky, %u SDF, %u of instances, %u transparent; %u at edges\n",
+                  t.pixels, t.sky, t.sdf, t.instances, t.blended, t.edges);
     assert_in_range(t.edges, 0, t.pixels / 20);
     return t;
 }
 
-/* On drivers after the first without reflections, which take most of a frame and are not picked. */
+/* On drivers after the first, without reflections, which take most of a frame and are not
+ * picked. */
 static void set_rungs(masu_session_desc *d) {
     masu_switch specular = whole_run() ? MASU_AUTO : MASU_OFF;
     d->desc.rung_count = 2;
@@ -249,7 +254,8 @@ static void close_picking(masu_session *s) {
 
 /* ---- Scenes ---------------------------------------------------------------------------------- */
 
-/* Every eleventh pixel of a row and of a column; on drivers after the first every 17th, of each kind some. */
+/* Every eleventh pixel of a row and of a column; on drivers after the first every 17th, with some
+ * of each kind. */
 #define STEP trials(11, 11, 17)
 
 static void polygons_sdf_and_sky_are_told_apart(void **state) {
@@ -295,7 +301,7 @@ static void a_model_and_its_node_are_named(void **state) {
     masu_node_state node;
     assert_int_equal(masu_model_node_get(s.m, truck, info.node, &node, &failure), MASU_OK);
     assert_int_equal(node.instance.id, info.instance.id);
-    /* What is no node of a moving model has none. */
+    /* An instance outside all movable models has no node. */
     info = pick_at(&s, (masu_frame_desc){MASU_FRAME_DESC, .time = 0}, 20, 80, &commands);
     assert_int_equal(info.instance.id, masu_instance_find(s.m, "floor").id);
     assert_int_equal(info.model.id, 0);
@@ -303,7 +309,7 @@ static void a_model_and_its_node_are_named(void **state) {
     close_picking(&s);
 }
 
-/* A copy that has come to the slot of another one since the query is not what was seen. */
+/* A copy added to another one's slot after the query is not the picked one. */
 static void a_copy_that_came_later_is_not_named(void **state) {
     (void)state;
     const float far_off[12] = {1, 0, 0, 0, 0, 1, 0, 900, 0, 0, 1, 0};
@@ -357,7 +363,8 @@ static void lods_and_culling_change_nothing(void **state) {
     close_picking(&s);
 }
 
-/* A mask is picked where it is, and not through its holes: where the picture has depth. */
+/* An alpha-tested surface is picked where it is opaque, not in its holes: where the image has
+ * depth. */
 static void holes_of_a_mask_are_not_picked(void **state) {
     (void)state;
     masu_session s;
@@ -365,7 +372,8 @@ static void holes_of_a_mask_are_not_picked(void **state) {
     uint32_t there = 0, holes = 0;
     open_picking(&s, "test_foliage");
     masu_camera c = {.position = {1.5, 0, 4}, .forward = {0, 0, -1}, .fov_y = 0.7f, .near_distance = 0.005f};
-    for (uint32_t i = 0; i < trials(300, 300, 150); i++) { /* of the rows that have masks, and some sky */
+    /* of the rows with alpha-tested surfaces, and some sky */
+    for (uint32_t i = 0; i < trials(300, 300, 150); i++) {
         uint32_t x = i * 37 % W, y = 15 + i * 53 % 60;
         masu_pick_info info = pick_at(&s, (masu_frame_desc){MASU_FRAME_DESC, .camera = &c}, x, y, &commands);
         float depth = ((const float *)read_image(&s, commands.slot, MASU_READBACK_DEPTH))[y * W + x];
@@ -382,7 +390,7 @@ static void holes_of_a_mask_are_not_picked(void **state) {
     close_picking(&s);
 }
 
-/* Through the holes of a mask what is behind them. */
+/* Through the holes of an alpha-tested surface, the surface behind is picked. */
 static void through_a_mask_what_is_behind_is_picked(void **state) {
     (void)state;
     masu_session s;
@@ -407,7 +415,7 @@ static void through_a_mask_what_is_behind_is_picked(void **state) {
     close_picking(&s);
 }
 
-/* As joints have bent it: what the picture shows beside the rigid floor and wall is one of the skinned. */
+/* Skinned: the image shows skinned meshes next to the rigid floor and wall. */
 static void what_bends_is_picked_where_it_is(void **state) {
     (void)state;
     masu_session s;
@@ -422,10 +430,10 @@ static void what_bends_is_picked_where_it_is(void **state) {
     assert_int_equal(masu_camera_at(s.m, 0, &c, &failure), MASU_OK);
     c.near_distance = w.v.environment->near_distance;
     lens l = lens_of(&c, W, H, (double)W / H);
-    for (uint32_t i = 0; i < w.instances; i++) w.at[i].shown = 0; /* but the rigid ones */
+    for (uint32_t i = 0; i < w.instances; i++) w.at[i].shown = 0; /* only the rigid ones */
     uint32_t rigid[2] = {index_of(&s, "floor"), index_of(&s, "wall")};
     for (uint32_t i = 0; i < 2; i++) w.at[rigid[i]].shown = 1;
-    for (uint32_t i = 0; i < trials(150, 150, 50); i++) { /* about what bends */
+    for (uint32_t i = 0; i < trials(150, 150, 50); i++) { /* around the skinned meshes */
         uint32_t x = 56 + i * 37 % 54, y = 22 + i * 29 % 38;
         masu_pick_info info = pick_at(&s, (masu_frame_desc){MASU_FRAME_DESC, .camera = &c}, x, y, &commands);
         float depth = ((const float *)read_image(&s, commands.slot, MASU_READBACK_DEPTH))[y * W + x];
@@ -444,12 +452,12 @@ static void what_bends_is_picked_where_it_is(void **state) {
             assert_int_not_equal(info.model.id, 0);
         }
     }
-    print_message("  %u pixels of what bends, %u of the bear\n", bent, moved);
+    print_message("  %u pixels of skinned meshes, %u of the bear\n", bent, moved);
     assert_true(bent > 10 && moved > 3);
     close_picking(&s);
 }
 
-/* ---- Beside the picture ---------------------------------------------------------------------- */
+/* ---- Viewports and windows ------------------------------------------------------------------- */
 
 static void a_part_of_the_output_has_pixels_of_its_own(void **state) {
     (void)state;
@@ -490,7 +498,7 @@ static void a_part_of_the_output_has_pixels_of_its_own(void **state) {
     close_session(&s);
 }
 
-/* A window that looks aside: the middle of the picture is not where the eye looks. */
+/* An off-centre window: the image's centre is not on the camera's axis. */
 static void a_window_of_its_own_is_picked_through(void **state) {
     (void)state;
     masu_session s;
@@ -526,7 +534,7 @@ static void what_is_not_asked_is_not_told(void **state) {
     assert_int_equal(masu_frame(s.m, &beyond, &commands, &failure), MASU_ERROR_ARGUMENT);
     assert_string_equal(failure.what, "pick_x");
     close_picking(&s);
-    /* That it may be asked changes no pixel; without, it may not. */
+    /* Enabled picking changes no pixel; without it, a pick is an error. */
     masu_session_desc d = test_desc("test_live", W, H);
     d.desc.readback = MASU_READBACK_DEPTH;
     set_rungs(&d);

@@ -1,6 +1,6 @@
-/* test_picture_sky.c: a picture with a sun as the sky: what spheres of several materials send to
- * the camera, against integrals of the surface model (tests/reference/brdf.h) over the picture, and
- * whose sun it is. */
+/* test_picture_sky.c: an environment map with a sun: radiance of spheres of several materials
+ * against integrals of the surface model (tests/reference/brdf.h) over the map, and which sun
+ * applies. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,7 +24,7 @@ static masu_session s;
 static float rgb[WIDE * HIGH * 3];
 static const double sun[3] = {-0.48, 0.6, 0.64};
 
-/* Towards the middle of a pixel of a panorama of that height; its solid angle is returned. */
+/* Direction of a pixel's centre in a panorama of that height; returns the solid angle. */
 static double toward(int x, int y, int high, double out[3]) {
     double polar = (y + 0.5) / high * PI, azimuth = (0.5 - (x + 0.5) / (2 * high)) * 2 * PI;
     out[0] = sin(polar) * sin(azimuth);
@@ -33,7 +33,7 @@ static double toward(int x, int y, int high, double out[3]) {
     return (cos(PI * y / high) - cos(PI * (y + 1.0) / high)) * PI / high;
 }
 
-/* A blue sky with an aureole over a brown ground; 0.6 of all light comes from the sun. */
+/* A blue sky with an aureole over a brown ground; the sun emits 0.6 of all light. */
 static void paint(void) {
     for (int i = 0; i < WIDE * HIGH; i++) {
         double d[3];
@@ -100,7 +100,7 @@ static double dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Radiance of a surface of normal n towards v: a sum over the picture, 2 x 2 pixels at a time. */
+/* Radiance of a surface with normal n towards v: a sum over the map, 2 x 2 pixels at a time. */
 static void shade(const brdf_surface *surface, const double n[3], const double v[3],
                   double out[3]) {
     double across[3] = {n[1], -n[0], 0}, up[3], view[3];
@@ -154,9 +154,9 @@ static double error_of(const uint16_t *hdr, int sphere, const brdf_surface *surf
     return sqrt(square / counted);
 }
 
-/* With order 2 of the whole picture and lookups in the mirror direction the matt sphere is off by
- * 18 and 24 %, the rims of metal by 51 and 50 %, those of the dielectric by 62 and 85 %. With the
- * sun cut and no bent lookups the rims are off by 13 and 11, 22 and 18 %. */
+/* With order 2 of the whole map and look-ups in the mirror direction, errors are 18 and 24 % on the
+ * matt sphere, 51 and 50 % at the rims of metal, and 62 and 85 % at the rims of the dielectric.
+ * With the sun removed but unshifted look-ups, the rims have errors of 13 and 11, 22 and 18 %. */
 static void spheres_are_what_the_picture_sends(void **state) {
     (void)state;
     static const struct {
@@ -178,13 +178,13 @@ static void spheres_are_what_the_picture_sends(void **state) {
     for (int i = 0; i < SPHERES; i++) {
         double all = error_of(hdr, i, &cases[i].surface, 0.4, 1),
                rim = error_of(hdr, i, &cases[i].surface, 0.15, 0.4);
-        print_message("sphere %d: off by %.4f, at the rim by %.4f\n", i, all, rim);
+        print_message("sphere %d: error %.4f, at the rim %.4f\n", i, all, rim);
         assert_true(all <= cases[i].inner && rim <= cases[i].rim);
     }
     close_session(&s);
 }
 
-/* The middle of an image that looks at the sun, and a pixel 5 degrees beside it. */
+/* The centre of an image towards the sun, and a pixel 5 degrees away. */
 static void look_at_sun(double *middle, double *beside) {
     const uint16_t *hdr = render(9, 0, sun[0], sun[1], sun[2], 0.2);
     *middle = 0;
@@ -194,9 +194,8 @@ static void look_at_sun(double *middle, double *beside) {
     *beside = half_float(hdr[4 * (H / 2 * W + W / 2 + 21)]);
 }
 
-/* The picture's sun is the scene's unless the description has one, which replaces it; a black one
- * leaves the picture as it is. Around the disc there is the picture's own aureole and nothing more.
- */
+/* The map's sun is the scene's unless the description has one, which replaces it; a black one
+ * leaves the map unchanged. Around the disc there is only the map's own aureole. */
 static void a_scene_has_one_sun(void **state) {
     (void)state;
     static const struct {
@@ -212,8 +211,8 @@ static void a_scene_has_one_sun(void **state) {
         open_picture();
         assert_int_equal(masu_light_of(s.m, &light, NULL), MASU_OK);
         look_at_sun(&middle, &beside);
-        print_message("sun %g, towards it %g, beside it %g\n", (double)light.sun_color[0], middle,
-                      beside);
+        print_message("sun %g, towards it %g, 5 degrees away %g\n",
+                      (double)light.sun_color[0], middle, beside);
         assert_true(fabs((double)light.sun_color[0] - cases[i].color) <= 0.05);
         assert_true(middle > cases[i].least && middle < cases[i].most);
         assert_true(beside > 0.68 && beside < 0.75);

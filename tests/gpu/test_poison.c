@@ -1,13 +1,15 @@
-/* test_poison.c: passes are total. Each image and buffer that a pass reads, and that the GPU itself has written, is
- * filled with NaN, infinities, denormals, huge and negative numbers right before the pass, one after the other: the
- * frame's radiance, depth and velocity stay finite, and the picture is that of before within a few frames.
+/* test_poison.c: passes are total. Each image and buffer that a pass reads, and that the GPU itself
+ * has written, is filled with NaN, infinities, denormals, huge and negative numbers right before
+ * the pass, one at a time: the frame's radiance, depth and velocity remain finite, and the image
+ * recovers within a few frames.
  *
- * A recording is made anew for each, with a fill at the pass's label; the fill goes through a buffer of the test's own
- * that lies over the block of memory, as debug.poison does. What the host writes (uniforms, lists) and what is loaded
- * (meshes, materials) is checked when it comes in; first words of lists that are arguments of an indirect dispatch stay.
+ * A command buffer is recorded for each case, with a fill at the pass's label. The fill uses a
+ * buffer of the test that aliases the memory block, as debug.poison does. Data from the host
+ * (uniforms, lists) and loaded data (meshes, materials) is checked on input, so it is not filled.
+ * The first elements of lists are not filled either: they are arguments of an indirect dispatch.
  *
- * SwiftShader looks at no bounds of buffers: what is read beside one ends the process there, as the number of a tile
- * from poisoned memory did; of the reflections something still does. lavapipe reads 0 and shows nothing. */
+ * SwiftShader does not check bounds of buffers: a read outside ends the process, as with a tile
+ * number from poisoned memory; a case in reflections still does. lavapipe reads 0 and hides it. */
 #include "support/support.h"
 #include "support/files.h"
 #include "support/floats.h"
@@ -22,7 +24,7 @@
 
 enum { W = 40, H = 24, BYTES = W * H * 4, WARM = 6, REST = 64 };
 
-/* As fp32, as two fp16 and as bytes. */
+/* As fp32, as two fp16, and as bytes. */
 static const struct {
     const char *name;
     uint32_t word;
@@ -34,7 +36,7 @@ static masu_session s;
 static VkBuffer over;
 static VkDeviceSize fill_at, fill_bytes;
 static uint32_t fill_word, fills;
-static uint32_t halves; /* means over frames are kept so, as where the device does not filter unorm */
+static uint32_t halves; /* history in half floats, as on devices that do not filter unorm */
 static float step_s = 1.0f / 60;
 static const char *fill_pass; /* NULL: none */
 static PFN_vkCmdFillBuffer fill;
@@ -64,7 +66,7 @@ static void open_case(const char *scene, const masu_rung *rung) {
     d.host.get_instance_proc_addr = wrap_get_instance_proc_addr;
     d.desc.debug.labels = 1;
     d.desc.deny.unorm16 = halves;
-    d.desc.resizable = 1; /* it keeps what recordings are made of */
+    d.desc.resizable = 1; /* the renderer keeps the data for recording again */
     d.desc.readback = MASU_READBACK_DEPTH | MASU_READBACK_HDR | MASU_READBACK_VELOCITY;
     d.desc.rung_count = 1;
     d.desc.rungs[0] = *rung;
@@ -118,7 +120,7 @@ static void check_halves(const masu_readback_image *image, const char *what) {
     }
 }
 
-/* A frame of a view at rest. What is read back of the image that is itself full of it is left out. */
+/* A frame of a static view. Readback of the filled image itself is skipped. */
 static void take(uint8_t *pixels, const char *what, uint32_t poisoned) {
     masu_commands commands;
     masu_readback_image depth, hdr, velocity;
@@ -139,8 +141,8 @@ static void take(uint8_t *pixels, const char *what, uint32_t poisoned) {
     if (!(own & MASU_READBACK_VELOCITY)) check_halves(&velocity, what);
 }
 
-/* What the GPU has written: not a depth attachment, whose bits the driver may have packed; nor the shadow faces of lights,
- * which keep what they have until a light or a caster moves. */
+/* The GPU's data, except a depth attachment, whose bits the driver may have packed, and the shadow
+ * faces of lights, which keep their content until a light or a caster moves. */
 static bool is_poisoned(uint32_t resource) {
     if (resource == MASU_IMAGE_LOCAL_SHADOW_ATLAS) return false;
     static const uint32_t buffers[] = {MASU_BUFFER_TILES,       MASU_BUFFER_EXPOSURE,   MASU_BUFFER_LIGHT_TILES,
@@ -161,32 +163,34 @@ static bool is_read(uint8_t usage) {
 
 static uint8_t kept[BYTES], now[BYTES];
 
-/* The picture at rest is kept within so many steps: what flickers by itself. Without history it does not: a look will do. With one a ray
- * that has met a lamp is seen for a hundred frames. */
+/* Stores the image of the static view; returns how much it differs from itself. Without history it
+ * does not flicker, and a few frames are enough. With history, a ray that has hit a lamp is visible
+ * for a hundred frames. */
 static uint32_t settle(bool gathers) {
     uint32_t steps = 0, rest = gathers ? REST : REST / 8;
-    for (int i = 0; i < WARM + (gathers ? 200 : 0); i++) take(kept, "at rest", 0);
+    for (int i = 0; i < WARM + (gathers ? 200 : 0); i++) take(kept, "static view", 0);
     for (uint32_t i = 0; i < rest; i++) {
-        take(now, "at rest", 0);
+        take(now, "static view", 0);
         uint32_t d = max_difference(kept, now, BYTES);
         steps = d > steps ? d : steps;
     }
     return steps;
 }
 
-/* slack: beyond what the picture at rest differs from itself; heals: frames. What gathers over frames may gather anew,
- * as after a cut; all else is what it was in the next frame. */
+/* slack: allowed difference beyond that of the static view; heals: frames. Temporal accumulation
+ * may start over, as after a cut; everything else is back in the next frame. */
 static void poison_each(const char *scene, const masu_rung *rung, uint32_t slack, uint32_t heals) {
-    /* With the scene of reflections. */
+    /* In the scene of reflections. */
     static bool done[MASU_PASS_COUNT][MASU_RESOURCE(MASU_BUFFER_COUNT)];
     const bool reflects = strcmp(scene, "test_reflections") == 0;
     uint32_t cases = 0, longest = 0, pairs = 0;
-    /* Of the words every third; one of them where hundreds of frames follow, and on drivers after
-     * the first; LONG=1 takes all. */
+    /* Every third value; only one if hundreds of frames follow, and on drivers after the first;
+     * LONG=1 uses all. */
     uint32_t every = long_run() ? 1 : heals > 64 || !whole_run() ? WORDS : 3;
     open_case(scene, rung);
-    heals *= heals > 1 && on_gpu(&s) ? 3 : 1; /* an NVIDIA H200 takes some 16 frames for what others do in 8 */
-    /* And is off by 26 after 24 frames in one case, where others are within 24. */
+    /* an NVIDIA H200 takes about 16 frames where others take 8 */
+    heals *= heals > 1 && on_gpu(&s) ? 3 : 1;
+    /* And it has an error of 26 after 24 frames in one case; others are within 24. */
     uint32_t most = settle(heals > 1) + slack + (slack > 8 && on_gpu(&s) ? 8 : 0);
     const masu_rung_plan *rp = &s.m->plan.rungs[0];
     for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
@@ -195,8 +199,8 @@ static void poison_each(const char *scene, const masu_rung *rung, uint32_t slack
             masu_access access = rp->access[p][a];
             if (!is_read(access.usage) || !is_poisoned(access.image)) continue;
             pairs++;
-            /* With a past they take longest: on drivers after the first, what only that case
-             * has. */
+            /* With temporal upscaling this takes longest: on drivers after the first, only the
+             * inputs that no other case has. */
             if (reflects && done[p][access.image] && !whole_run()) continue;
             done[p][access.image] |= reflects;
             for (uint32_t w = (pairs + a) % every; w < WORDS; w += every) {
@@ -213,8 +217,8 @@ static void poison_each(const char *scene, const masu_rung *rung, uint32_t slack
                 do take(now, what, 0);
                 while (++frames < heals && max_difference(kept, now, BYTES) > most);
                 if (max_difference(kept, now, BYTES) > most)
-                    fail_msg("%s: after %u frames a byte is still off by %u, at most %u", what, frames,
-                             max_difference(kept, now, BYTES), most);
+                    fail_msg("%s: after %u frames a byte still has an error of %u, at most %u",
+                             what, frames, max_difference(kept, now, BYTES), most);
                 longest = frames > longest ? frames : longest;
             }
         }
@@ -227,15 +231,15 @@ static void poison_each(const char *scene, const masu_rung *rung, uint32_t slack
 
 static void inputs_of_temporal_passes(void **state) {
     (void)state;
-    /* Of `found` a light may come that a frame could have stored: it goes by one in 31 a frame, and a dark pixel shows
-     * a thousandth of it. */
+    /* `found` can contain light that a frame could have stored: it decays by one in 31 per frame,
+     * and a dark pixel shows a thousandth of the difference. */
     poison_each("test_velocity", &(masu_rung){.scale = 0.7f, .temporal = MASU_ON}, 2, 256);
-    halves = 1; /* which can hold NaN, as unorm cannot */
+    halves = 1; /* half floats can hold NaN, unorm cannot */
     poison_each("test_velocity", &(masu_rung){.scale = 0.7f, .temporal = MASU_ON}, 2, 256);
     halves = 0;
 }
 
-/* More parts than bits: tiles have lists of numbers. */
+/* More parts than bits: tiles have lists of part numbers. */
 static void inputs_of_lists_of_parts(void **state) {
     (void)state;
     poison_each("parts300", &(masu_rung){.scale = 1.0f}, 0, 1);
@@ -256,7 +260,7 @@ static void inputs_of_reflections(void **state) {
     poison_each("test_reflections", &(masu_rung){.scale = 1.0f}, 24, 8);
 }
 
-/* And what they tell a rung with a past of their motion. */
+/* Including their velocities, for a rung with temporal upscaling. */
 static void inputs_of_reflections_with_a_past(void **state) {
     (void)state;
     poison_each("test_reflections", &(masu_rung){.scale = 0.7f, .temporal = MASU_ON}, 24, 256);
@@ -264,7 +268,7 @@ static void inputs_of_reflections_with_a_past(void **state) {
 
 static void inputs_of_the_meter(void **state) {
     (void)state;
-    step_s = 0.1f; /* it adapts over time, from wherever in its range it may be */
+    step_s = 0.1f; /* it adapts over time, from any value in its range */
     poison_each("test_exposure", &(masu_rung){.scale = 1.0f}, 2, 64);
     step_s = 1.0f / 60;
 }

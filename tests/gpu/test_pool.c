@@ -1,6 +1,6 @@
-/* test_pool.c: pipelines that outlive their renderer. Another scene, another size, and back again make only those
- * that no renderer before had; pictures are the same byte for byte; whatever fails, none is lost, destroyed twice
- * or left behind. */
+/* test_pool.c: pipelines that outlive their renderer. Another scene, another size, and the first
+ * again create only pipelines that no renderer before had; images are bit-identical; whatever
+ * fails, none is lost, destroyed twice or leaked. */
 #include "device/pool.h"
 #include "support/support.h"
 #include "support/wrap.h"
@@ -29,7 +29,7 @@ static masu_session_desc desc_of(const char *scene, uint32_t width, uint32_t hei
     return d;
 }
 
-/* On the device of an open session without a renderer. */
+/* With the device of an open session without a renderer. */
 static void draw_scene(masu_session *s, const char *scene, uint32_t w, uint32_t h, int pooled,
                        uint8_t *out) {
     masu_session_desc d = desc_of(scene, w, h, pooled);
@@ -66,8 +66,8 @@ static void what_is_known_is_not_made_again(void **state) {
                told().created - before.created, told().reused - before.reused);
         uint32_t made = told().created - before.created;
         if (i == 0) assert_int_equal(told().reused, 0);
-        if (i == 1 || i == 2 || i == 4) assert_int_equal(made, 0); /* all of it is known */
-        if (i == 5) assert_true(made <= 7); /* for its other features; what it shares is known */
+        if (i == 1 || i == 2 || i == 4) assert_int_equal(made, 0); /* all pipelines exist */
+        if (i == 5) assert_true(made <= 7); /* for its other features; shared pipelines exist */
     }
     assert_int_equal(told().count, told().created);
     masu_pipelines_destroy(&s.desc.vulkan, &pool);
@@ -77,8 +77,8 @@ static void what_is_known_is_not_made_again(void **state) {
     close_session(&s);
 }
 
-/* A session of test_both without a renderer, whose objects are counted, with the pool. Returns how
- * many live. */
+/* A session of test_both without a renderer, with counted objects and the pool. Returns the number
+ * of live objects. */
 static int64_t open_counted(masu_session *s) {
     masu_session_desc d = desc_of("test_both", W, H, 1);
     wrap_reset();
@@ -90,8 +90,8 @@ static int64_t open_counted(masu_session *s) {
     return wrap.live;
 }
 
-/* A full pool makes room: of what no renderer uses, what has been unused for the longest time goes.
- * If all of it is in use, nothing is added. */
+/* A full pool evicts the unused pipeline that has been unused for the longest time. If all are in
+ * use, nothing is added. */
 static void a_full_pool_makes_room(void **state) {
     (void)state;
     enum { USED = 10 };
@@ -109,7 +109,7 @@ static void a_full_pool_makes_room(void **state) {
         in->info.count = MASU_MAX_PIPELINES;
         in->clock = MASU_MAX_PIPELINES;
         for (uint32_t i = 0; i < MASU_MAX_PIPELINES;
-             i++) /* of no pipeline, which may be destroyed */
+             i++) /* of no pipeline, so it can be destroyed */
             in->rows[i] = (masu_pool_row){
                 .key = 1 + i, .users = i < USED || all_used, .used = MASU_MAX_PIPELINES - i};
         for (uint32_t again = 0; again < 2; again++) {
@@ -134,8 +134,8 @@ static void a_full_pool_makes_room(void **state) {
     close_session(&s);
 }
 
-/* Every call of masu_init fails in turn: what had been taken is back, nothing lives that the pool does not
- * have. */
+/* Every call of masu_init fails once: taken pipelines are returned, and only the pool's objects
+ * live. */
 static void failures_lose_nothing(void **state) {
     (void)state;
     masu_session s;

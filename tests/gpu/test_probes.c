@@ -1,7 +1,7 @@
-/* test_probes.c: what the GPU makes of light probes is what tools/bake/light/probe_light.c says: the light of a
- * frame at each, and at points anywhere; nothing is infinite, whatever is asked for. The two shaders
- * are dispatched here by hand, on the grid of a real scene. Then whole frames, under the validation
- * layer: a room is darker with its probes, and the sun's colour comes back from its walls. */
+/* test_probes.c: light probes on the GPU equal tools/bake/light/probe_light.c: the light of a frame
+ * at each probe, and at any point; everything is finite for any input. The two shaders are
+ * dispatched here directly, on the grid of a real scene. Then whole frames, under the validation
+ * layer: a room is darker with its probes, and its walls reflect the sun's colour. */
 #include "support/support.h"
 #include "support/files.h"
 #include "support/random.h"
@@ -206,7 +206,7 @@ static void set_points(const masu_blob_probes *p) {
         float z = random_float(&random) * 2 - 1, a = random_float(&random) * 6.2831853f, r = sqrtf(1 - z * z);
         const float n[3] = {r * cosf(a), r * sinf(a), z};
         for (int k = 0; k < 3; k++) {
-            /* From two cells outside of the grid to two on the other side. */
+            /* From two cells outside the grid to two on the other side. */
             float cells = (float)p->counts[k] + 4;
             points[2 * i][k] = p->origin[k] + p->spacing[k] * (random_float(&random) * cells - 2.5f);
             points[2 * i + 1][k] = n[k];
@@ -220,7 +220,7 @@ static void set_points(const masu_blob_probes *p) {
     }
 }
 
-/* On that grid with those data. */
+/* Compares both on that grid with those data. */
 static void hold_together(const masu_scene_view *v) {
     const masu_blob_probes *p = v->probes;
     const uint32_t probes = p->counts[0] * p->counts[1] * p->counts[2];
@@ -271,8 +271,8 @@ static void hold_together(const masu_scene_view *v) {
             worst = worst_of(worst, fabs((double)g - (double)w) / 511);
         }
     }
-    print_message("%u probes: light off by %.2e at most\n", probes, worst);
-    assert_true(worst < 4.5e-3); /* two steps of 511; arc cosines are coarse */
+    print_message("%u probes: error of the light %.2e at most\n", probes, worst);
+    assert_true(worst < 4.5e-3); /* two steps of 511; arc cosines are imprecise */
     const float(*found)[4] = (const float(*)[4])b.buffers[PLACES].mapped;
     uint32_t outside = 0;
     worst = 0;
@@ -280,7 +280,7 @@ static void hold_together(const masu_scene_view *v) {
         float out[3],
             inside = masu_probe_lookup(p, words, lit, asked[2 * i], asked[2 * i + 1], out);
         for (int k = 0; k < 4; k++) assert_true(isfinite(found[2 * i + 1][k]));
-        if (i >= POINTS - 512) continue; /* odd ones need to be finite, no more */
+        if (i >= POINTS - 512) continue; /* unusual ones only need to be finite */
         assert_float_equal(found[2 * i + 1][3], inside, 1e-3);
         outside += !(inside > 0);
         for (int k = 0; k < 3 && inside > 0; k++) {
@@ -288,7 +288,7 @@ static void hold_together(const masu_scene_view *v) {
             worst = worst_of(worst, e / ((double)fabsf(out[k]) + 0.01));
         }
     }
-    print_message("%u points, %u of them beyond the grid: off by %.2e at most\n", POINTS, outside,
+    print_message("%u points, %u beyond the grid: error %.2e at most\n", POINTS, outside,
                   worst);
     assert_true(outside > 100 && outside < POINTS * 9 / 10 && worst < 1e-4);
     free(own);
@@ -314,7 +314,8 @@ static void the_gpu_says_what_the_twin_says(void **state) {
     free(blob);
 }
 
-/* Grids that are one probe thick, the same data in other shapes: there the next along that axis is the same again. */
+/* Grids that are one probe thick, the same data in other shapes: the neighbour along that axis is
+ * the probe itself. */
 static void the_two_agree_on_grids_that_are_one_probe_thick(void **state) {
     (void)state;
     masu_scene_view v;
@@ -337,7 +338,7 @@ static void the_two_agree_on_grids_that_are_one_probe_thick(void **state) {
 
 enum { W = 96, H = 64 };
 
-/* Mean radiance of the picture under that light. */
+/* Mean radiance of the image under that light. */
 static void mean_of(masu_session *s, const masu_light *light, double mean[3]) {
     masu_commands commands;
     masu_readback_image hdr;

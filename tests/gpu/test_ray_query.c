@@ -1,8 +1,8 @@
-/* test_ray_query.c: ray queries of the device find what the library's own tree finds. The oracle is
- * the own traversal: two that share no code, on the same rays.
+/* test_ray_query.c: the device's ray queries find the same hits as the library's own BVH. The
+ * reference is the own traversal: two implementations that share no code, on the same rays.
  *
- * Where the driver has no ray queries, what is tested is that they are refused by name; which of
- * the drivers of the test suite has them is known. */
+ * On drivers without ray queries the test checks that they are rejected by name; it lists the
+ * drivers of the test suite that have them. */
 #include "support/support.h"
 #include "support/wrap.h"
 
@@ -24,8 +24,8 @@ typedef struct hit {
     uint32_t instance, triangle, barycentrics;
 } hit;
 
-/* Stands between renderer and driver: the image of hits can be copied from, and is, at the end of
- * the pass that fills it. */
+/* Hooks between renderer and driver: they allow copies from the image of hits, and copy it at the
+ * end of the pass that fills it. */
 static struct {
     VkImage image;
     VkBuffer buffer;
@@ -33,8 +33,8 @@ static struct {
     const hit *mapped;
     int tracing;
     uint32_t copies;
-    /* What no layer looks at: barriers in front of builds, and between the build and the queries of
-     * a frame. */
+    /* Not checked by any layer: barriers before builds, and between the build and the queries of a
+     * frame. */
     uint32_t before_builds, before_queries;
 } tap;
 
@@ -153,7 +153,7 @@ static masu_session_desc ray_desc_of(const char *scene, masu_switch way) {
     d.host.ray_query = true;
     d.desc.ray_query = way;
     d.desc.rung_count = 1;
-    /* Without the images of pixels, that of hits is the one of its format: tap_create_image. */
+    /* Without the images of pixels, only the hit image has this format: tap_create_image. */
     d.desc.rungs[0] = (masu_rung){.scale = 1.0f,
                                   .specular = MASU_ON,
                                   .specular_fine = MASU_OFF,
@@ -165,8 +165,8 @@ static masu_session_desc ray_desc(masu_switch way) { return ray_desc_of("mirrors
 
 static int offered = -1;
 
-/* Asks the driver, once; where it has no ray queries the test ends, with what is to happen then
- * asserted. */
+/* Queries the driver, once. Without ray queries the test ends, after an assertion of the behaviour
+ * in that case. */
 static int has_ray_queries(void) {
     masu_session_desc d = ray_desc(MASU_ON);
     masu_session s;
@@ -206,7 +206,7 @@ static uint64_t row_bytes(const masu_renderer *m, const char *kind, const char *
     return 0;
 }
 
-/* ---- Who is asked ---------------------------------------------------------------------------- */
+/* ---- Which backend is used ------------------------------------------------------------------- */
 
 static void a_device_without_them_is_refused_by_name(void **state) {
     (void)state;
@@ -227,7 +227,7 @@ static void a_device_without_them_is_refused_by_name(void **state) {
     assert_string_equal(detail.what, "ray_query");
     s.desc.ray_query = MASU_AUTO;
     assert_int_equal(masu_memory_query(&s.desc, &need, NULL), MASU_OK);
-    /* Nothing is reflected: nothing is asked. */
+    /* Nothing is reflected: no ray queries. */
     s.desc.ray_query = MASU_ON;
     s.desc.rungs[0].specular = MASU_OFF;
     assert_int_equal(masu_memory_query(&s.desc, &need, NULL), MASU_OK);
@@ -244,7 +244,7 @@ static void a_device_that_lacks_a_function_is_refused_by_name(void **state) {
     d.host.get_instance_proc_addr = wrap_get_instance_proc_addr;
     d.no_renderer = true;
     open_session(&s, &d);
-    s.desc.vulkan.ray_query = 1; /* whether or not it is true */
+    s.desc.vulkan.ray_query = 1; /* even if it is not true */
     wrap.unknown_function = "vkCmdBuildAccelerationStructuresKHR";
     assert_int_equal(masu_memory_query(&s.desc, &need, &detail), MASU_ERROR_DEVICE);
     assert_string_equal(detail.what, "vkCmdBuildAccelerationStructuresKHR");
@@ -254,7 +254,7 @@ static void a_device_that_lacks_a_function_is_refused_by_name(void **state) {
     close_session(&s);
 }
 
-/* As the device's kind says, unless told. A CPU that pretends to be a GPU is believed. */
+/* By the device's type, unless set. A CPU that is presented as a GPU is treated as one. */
 static void auto_takes_them_on_gpus_alone(void **state) {
     (void)state;
     static const struct {
@@ -271,7 +271,7 @@ static void auto_takes_them_on_gpus_alone(void **state) {
         wrap.fake_memory = cases[i].fake;
         open_session(&s, &d);
         if (!cases[i].fake && s.host.properties.deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU) {
-            close_session(&s); /* a real GPU: what AUTO does there, the pretences say */
+            close_session(&s); /* a real GPU: AUTO is tested by the simulated ones */
             continue;
         }
         assert_int_equal(runs(s.m, "specular_query"), cases[i].query);
@@ -288,8 +288,8 @@ static void auto_takes_them_on_gpus_alone(void **state) {
 
 /* ---- The same hits --------------------------------------------------------------------------- */
 
-/* Every tile traces something, so that all of the image is written. The box is turned, squeezed,
- * mirrored, and in the fourth frame has no inverse: it is not seen. */
+/* Every tile traces a ray, so that all of the image is written. The box is rotated, scaled and
+ * mirrored, and in the fourth frame its matrix is singular: it is invisible. */
 static void pose(uint32_t f, masu_camera *camera, float rows[12]) {
     static const double eyes[FRAMES][3] = {
         {0, 5, 5}, {2, 4.5, 4.5}, {-3, 4.5, 3}, {0, 5, -5}, {1, 6, 0.5}};
@@ -307,7 +307,7 @@ static void pose(uint32_t f, masu_camera *camera, float rows[12]) {
     memcpy(rows, placed, sizeof placed);
 }
 
-/* All that is not the box, moved far out, where rays live relative to an anchor. */
+/* Everything except the moving box, moved far out, where rays are relative to an anchor. */
 static void move_all(masu_session *s, const masu_scene_view *v, const double by[3]) {
     for (uint32_t i = 0; i < masu_scene_count(&s->scene, MASU_SCENE_INSTANCE); i++) {
         float rows[12];
@@ -336,7 +336,7 @@ static void trace_all(const char *scene, masu_switch way, uint32_t split, const 
         malloc(masu_scene_count(&s.scene, MASU_SCENE_INSTANCE) * sizeof *instances);
     memcpy(instances, v.instances,
            masu_scene_count(&s.scene, MASU_SCENE_INSTANCE) * sizeof *instances);
-    v.instances = instances; /* the blob goes when the scene is loaded */
+    v.instances = instances; /* loading frees the blob */
     assert_ok(masu_session_start(&s, error, sizeof error));
     assert_int_equal(tap.copies, 2);
     assert_int_equal(runs(s.m, "specular_query"), way == MASU_ON);
@@ -353,7 +353,7 @@ static void trace_all(const char *scene, masu_switch way, uint32_t split, const 
             camera.position[k] += by[k];
             rows[4 * k + 3] = (float)((double)rows[4 * k + 3] + by[k]);
         }
-        /* Far out it then rests: in the last frame nothing but the anchor moves. */
+        /* Far out it is then stationary: in the last frame only the anchor moves. */
         if (!by || f == 0)
             assert_int_equal(masu_instance_set_transform(s.m, box, rows, NULL), MASU_OK);
         masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &camera, .cut = f == 0};
@@ -385,7 +385,7 @@ static void trace_both(const char *scene, uint32_t split, const double by[3]) {
     trace_all(scene, MASU_OFF, split, by, by_tree, tree_pixels);
 }
 
-/* Floats that say the same of where a triangle is met: with another order of roundings. */
+/* Equal hits, up to a different order of roundings. */
 static void compare(const char *what, uint32_t least) {
     uint32_t met = 0, missed = 0, other = 0, differ = 0;
     double worst = 0.0, worst_weight = 0.0;
@@ -402,7 +402,7 @@ static void compare(const char *what, uint32_t least) {
         met++;
         double off = fabs((double)q->t - (double)t->t) / (double)t->t;
         if (off > worst) worst = off;
-        /* Where two triangles share an edge that is met, either will do. */
+        /* On an edge shared by two triangles, either is correct. */
         if (q->instance != t->instance || q->triangle != t->triangle) {
             other++;
             continue;
@@ -414,7 +414,7 @@ static void compare(const char *what, uint32_t least) {
         }
     }
     uint32_t picture = max_difference(query_pixels, tree_pixels, sizeof tree_pixels);
-    printf("%s: %u rays met something, %u nothing, %u differ; t within %.1e, weights within %.1e, "
+    printf("%s: %u rays hit, %u missed, %u differ; t within %.1e, weights within %.1e, "
            "%u other triangles, pixels within %u\n",
            what, met, missed, differ, worst, worst_weight, other, picture);
     assert_int_equal(differ, 0);
@@ -430,22 +430,22 @@ static void the_same_rays_meet_the_same(void **state) {
     if (!has_ray_queries()) return;
     trace_both("mirrors", 0, NULL);
     compare("near", 500);
-    printf("%llu bytes of structures, %llu of the own trees in their place\n",
+    printf("%llu bytes of structures, %llu of the replaced own BVHs\n",
            (unsigned long long)structures, (unsigned long long)own);
     assert_true(structures > 0 && own > 0);
 }
 
 static void far_out_the_same_rays_meet_the_same(void **state) {
     (void)state;
-    /* Where the last eye is beyond the middle between two places of the anchor, and the one before
-     * is not. */
+    /* The last camera is beyond the midpoint between two anchor positions, and the one before is
+     * not. */
     const double far_out[3] = {(31250.0 + 0.5) * MASU_ANCHOR_GRID - 0.5, 0.0, -1.0e6};
     if (!has_ray_queries()) return;
-    trace_both("mirrors", 1, far_out); /* and with a block for each role */
+    trace_both("mirrors", 1, far_out); /* and with a separate block for each role */
     compare("far out", 500);
 }
 
-/* Leaves over a mirror: a ray goes on through their holes, in both ways as often. */
+/* Leaves over a mirror: a ray passes through their holes, equally often in both backends. */
 static void through_the_holes_of_masks_they_meet_the_same(void **state) {
     (void)state;
     if (!has_ray_queries()) return;
@@ -490,13 +490,13 @@ static void sixty_frames_create_and_allocate_nothing(void **state) {
     assert_int_equal(wrap.live, 0);
 }
 
-/* A discrete GPU: the scene and the triangles that structures are built of go through the staging
+/* A discrete GPU: the scene and the triangles for the structures are uploaded through the staging
  * buffer. */
 static void what_is_built_comes_through_the_staging_buffer_too(void **state) {
     (void)state;
     static uint8_t straight[W * H * 4], staged[W * H * 4];
     if (!has_ray_queries()) return;
-    skip_unless_host_sees_all_memory(); /* or there is one already */
+    skip_unless_host_sees_all_memory(); /* or the scene is already uploaded through one */
     for (int fake = 0; fake < 2; fake++) {
         masu_session_desc d = ray_desc(MASU_ON);
         masu_session s;
@@ -512,7 +512,7 @@ static void what_is_built_comes_through_the_staging_buffer_too(void **state) {
     assert_int_equal(max_difference(straight, staged, sizeof staged), 0);
 }
 
-/* A block of the host's own serves if it was allocated as the query says. */
+/* A block of the host's is accepted if it was allocated as the query requires. */
 static void a_block_of_the_host_serves(void **state) {
     (void)state;
     static uint8_t given[W * H * 4], taken[W * H * 4];
@@ -556,7 +556,7 @@ static void a_block_of_the_host_serves(void **state) {
     assert_int_equal(max_difference(given, taken, sizeof taken), 0);
 }
 
-/* Each call up to the first shader fails in turn; the rest of init is test_failures'. */
+/* Each call up to the first shader fails once; the rest of init is tested in test_failures.c. */
 static void a_structure_that_cannot_be_made_leaves_nothing_behind(void **state) {
     (void)state;
     masu_session_desc d = ray_desc(MASU_ON);

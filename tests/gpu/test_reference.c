@@ -1,10 +1,8 @@
-/*
- * test_reference.c: the renderer against stored images of the path tracer of lab/reference,
- * which shares no code with it and follows the light paths and the closed material model that
+/* test_reference.c: the renderer against stored images of the path tracer of lab/reference, which
+ * shares no code with it and follows the light paths and the closed material model that
  * docs/scene.md promises. Each scene is rendered with the most exact settings and compared by
- * patches (tools/measure/patches.h): what a wrong light, a missing shadow or a wrong lobe
- * changes is a patch's mean, not a pixel. lab/reference/stored.sh makes the images.
- */
+ * patches (tools/measure/patches.h), because a wrong light, a missing shadow or a wrong lobe
+ * changes the mean of a patch, not a pixel. lab/reference/stored.sh makes the images. */
 #include "support/files.h"
 #include "support/support.h"
 
@@ -28,13 +26,14 @@ enum { W = 128, H = 72, POSITIONS = 16 };
 typedef struct row {
     const char *scene;
     double time;
-    uint32_t rays;              /* of reflections from a pixel; 0: one each position */
-    double ratio, p95, trimmed; /* limits; 0: those above. A wider one has its reason in the row */
+    uint32_t rays;              /* reflection rays per pixel; 0: one per position */
+    double ratio, p95, trimmed; /* limits; 0: those above. A higher limit has its reason in the
+                                   row */
     bool animate, baked;        /* baked: by this program, from sky_scene */
 } row;
 
 static const row rows[] = {
-    /* The scene's own sun is black, so the picture keeps its sun, which rough lookups blur */
+    /* The scene's own sun is black, so the image keeps its sun, which rough look-ups blur */
     {.scene = "reference_sky", .baked = true, .p95 = 0.08, .trimmed = 1.3},
     {.scene = "test_shadows"},
     {.scene = "reference_rows"},
@@ -44,19 +43,22 @@ static const row rows[] = {
     {.scene = "reference_air"},
     {.scene = "test_fog"},
     {.scene = "glass"},
-    /* Blur by one gap a pixel, of a picture at half its size: p95 0.150, worst patch 0.32; drawn sharp 0.324, 0.66 */
+    /* Blurred over one gap per pixel, from an image at half size: p95 0.150, worst patch 0.32;
+     * rendered sharp 0.324, 0.66 */
     {.scene = "reference_glass", .p95 = 0.17, .trimmed = 1.3},
-    /* Lobes: colours and strengths of specular light, sheen, anisotropy; a coat's own normals, a map of transmission */
+    /* Lobes: colours and strengths of specular light, sheen, anisotropy; separate coat normals, a
+     * transmission map */
     {.scene = "reference_materials"},
     {.scene = "test_pane_maps"},
     {.scene = "test_pane"},
     {.scene = "night"},
-    /* A mirror of roughness 0: the reference has the least lobe, whose tail takes 0.8 % of
-     * bright small lamps */
+    /* A mirror of roughness 0: the reference uses the smallest lobe, whose tail takes 0.8 % of
+     * small bright lamps */
     {.scene = "test_reflections", .rays = 128, .ratio = 0.015, .p95 = 0.15},
     {.scene = "test_skin", .time = 0.5, .animate = true, .rays = 64},
     {.scene = "test_swing", .time = 0.3, .animate = true, .rays = 64},
-    /* Vertex colours, lit, unlit and fading; emission of the second coordinates; a morph target */
+    /* Vertex colours, lit, unlit and fading; emission with the second coordinates; a morph
+     * target */
     {.scene = "reference_attributes", .time = 0.5, .animate = true, .rays = 64},
     {.scene = "test_foliage"},
     {.scene = "test_texture_mask"},
@@ -65,8 +67,8 @@ static const row rows[] = {
     {.scene = "test_town"},
     {.scene = "test_trace", .rays = 128},
     {.scene = "test_lods"},
-    /* Glints of the sun from mirror to mirror: few pixels, half of whose light 16 positions find
-     * or miss */
+    /* Glints of the sun from mirror to mirror: few pixels, half of whose light depends on the 16
+     * positions */
     {.scene = "mirrors", .rays = 128, .ratio = 0.06},
     {.scene = "probe_open"},
     {.scene = "city"},
@@ -82,8 +84,8 @@ enum { ROWS = sizeof rows / sizeof *rows };
 static masu_session s;
 static float radiance[3 * W * H];
 
-/* A panorama with a strong sun over a bright sky and a dark ground; then a scene of eight
- * materials in it. */
+/* A panorama with a strong sun over a bright sky and a dark ground; then a scene of eight materials
+ * in it. */
 static void write_sky(const char *path) {
     enum { WIDE = 64, HIGH = 32 };
     static float rgb[3 * WIDE * HIGH];
@@ -130,7 +132,7 @@ static void animate(double time) {
 
 static double or_else(double limit, double otherwise) { return limit > 0 ? limit : otherwise; }
 
-/* The reference's light paths have none. */
+/* The reference's light paths have no shadows of punctual lights. */
 static void no_local_shadows(void) {
     for (uint32_t i = 0;; i++) {
         masu_punctual_light light = masu_punctual_light_at(s.m, i);

@@ -1,7 +1,8 @@
-/* test_reinit.c: ten times masu_init, masu_load, masu_destroy on one device, without a frame and with one: each time as
- * many objects of Vulkan and allocations of the driver's as before, none of them left. What the heap grows by all the
- * same is printed, beside what a bare loop grows by that makes and destroys as many objects of the same kinds.
- * Without the layer and without kept objects (tests/support/kept.h): they have books of their own. */
+/* test_reinit.c: ten times masu_init, masu_load, masu_destroy on one device, without a frame and
+ * with one: the same number of Vulkan objects and driver allocations each time, all of them
+ * released. Remaining heap growth is printed, next to the growth of a plain loop that creates and
+ * destroys the same objects. Without the layer and without cached objects (tests/support/kept.h),
+ * which keep their own data. */
 #include "support/support.h"
 #include "support/wrap.h"
 
@@ -15,9 +16,9 @@
 enum { ROUNDS = 10, KINDS = 11 };
 
 typedef struct round_figures {
-    uint64_t creates, allocations; /* objects of Vulkan; what the driver asked the callbacks for */
-    int64_t live, live_objects;    /* of these, left */
-    int64_t heap;                  /* bytes more than before the first of its kind */
+    uint64_t creates, allocations; /* Vulkan objects; allocations through the callbacks */
+    int64_t live, live_objects;    /* those that remain */
+    int64_t heap;                  /* bytes more than before the first round of its kind */
 } round_figures;
 
 static masu_vk_alloc_counts counts;
@@ -36,7 +37,7 @@ static void let_go(const masu_session *s) {
     assert_int_equal(vkQueueWaitIdle(s->host.queue), VK_SUCCESS);
 }
 
-/* `frames` of them are drawn: what runs shaders, the driver grows by. */
+/* Renders `frames` frames: drivers allocate when shaders run. */
 static round_figures library_round(masu_session *s, const masu_desc *d, void *block, uint64_t bytes, int frames) {
     char error[ERROR_SIZE];
     masu_renderer *m;
@@ -55,7 +56,7 @@ static round_figures library_round(masu_session *s, const masu_desc *d, void *bl
     return figures(&start);
 }
 
-/* Once each kind, all destroyed again. */
+/* Creates and destroys one object of each kind. */
 static void bare_objects(masu_session *s) {
     const VkDevice device = s->host.device;
     const VkAllocationCallbacks *a = s->host.desc.allocator;
@@ -171,7 +172,8 @@ static void ten_inits_leave_nothing_of_theirs(void **state) {
         printf("\n");
     }
     for (int way = 0; way < WAYS; way++) {
-        int64_t left = 0; /* the first makes what the driver keeps for the device; it may give one back late */
+        int64_t left = 0; /* the first round creates the driver's data for the device; one may be
+                             freed late */
         for (int i = 1; i < ROUNDS; i++) left += all[way][i].live;
         assert_in_range(left + 2, 0, 4);
         for (int i = 0; way < BARE && i < ROUNDS; i++) {

@@ -1,6 +1,7 @@
-/* test_reserve.c: what is added to a scene while it runs is the picture of a scene that was baked so: copies of models in
- * the reserve with all that they cast, mirror, hide, blend and carry; lights; factors of materials. Room that is not
- * used changes no bit; the box is as large as was said; at its end it is refused; what was removed is refused. */
+/* test_reserve.c: objects added at run time give the image of a scene that was baked with them:
+ * copies of models in the reserve, with their shadows, reflections, occlusion, transparency and
+ * attached lights; lights; material factors. An unused reserve changes no bit; the memory is as
+ * large as reported; a full reserve is an error; removed objects are rejected. */
 #include "support/files.h"
 #include "support/support.h"
 
@@ -18,7 +19,7 @@ static uint8_t pictures[3][FRAMES][BYTES];
 
 static const struct {
     const char *name;
-    float at[3]; /* of the second one, as test_reserve_baked.json has it */
+    float at[3]; /* of the second copy, as in test_reserve_baked.json */
 } kinds[KINDS] = {{"truck", {1.2f, 0.25f, -0.5f}},
                   {"lamp", {-1, 1, 1.2f}},
                   {"pane", {-2, 0.6f, 2.5f}},
@@ -28,7 +29,8 @@ static const struct {
 static masu_session_desc desc_of(const char *scene, uint32_t models, uint32_t lights) {
     masu_session_desc d = test_desc(scene, W, H);
     d.desc.rung_count = 1;
-    d.desc.rungs[0] = (masu_rung){.scale = 1.0f, .local_shadows = MASU_OFF}; /* which lights have shadows depends on the past */
+    /* which lights have shadows depends on earlier frames */
+    d.desc.rungs[0] = (masu_rung){.scale = 1.0f, .local_shadows = MASU_OFF};
     d.desc.reserve.models = models;
     d.desc.reserve.lights = lights;
     return d;
@@ -48,14 +50,14 @@ static const masu_punctual_light_state spot = {.position = {0, 3, 2},
                                                .inner = 0.2617994f,
                                                .outer = 0.5235988f};
 
-/* Adds all that the other scene has. */
+/* Adds everything that the other scene has. */
 static void add_all(masu_session *s, masu_model added[KINDS], masu_punctual_light *light) {
     for (uint32_t k = 0; k < KINDS; k++)
         assert_int_equal(add(s, kinds[k].name, kinds[k].at, &added[k]), MASU_OK);
     assert_int_equal(masu_punctual_light_add(s->m, &spot, light, &failure), MASU_OK);
 }
 
-/* So many frames after a cut: reflections gather. */
+/* Renders FRAMES frames after a cut: reflections accumulate. */
 static void draw_frames(masu_session *s, uint8_t out[FRAMES][BYTES]) {
     for (uint32_t i = 0; i < FRAMES; i++) {
         masu_commands commands;
@@ -79,19 +81,21 @@ static void what_is_added_is_as_if_baked_so(void **state) {
     masu_session_desc d = desc_of("test_reserve", KINDS, 2), truth = desc_of("test_reserve_baked", 0, 0);
     masu_stats_info expected = {0}, is;
     for (uint32_t flight = 1; flight <= 3; flight++) {
-        if (flight != 2 && !whole_run()) continue; /* which frames are under way is the host's business */
+        /* the number of frames in flight depends on the host only */
+        if (flight != 2 && !whole_run()) continue;
         d.desc.frames_in_flight = flight;
-        if (flight == 3) d.desc.rungs[0].lod_error = -1.0f; /* lists then have none of LODs between them */
+        /* then the lists have no other LODs in between */
+        if (flight == 3) d.desc.rungs[0].lod_error = -1.0f;
         truth.desc.rungs[0] = d.desc.rungs[0];
-        if (flight != 2 || !whole_run()) { /* two has the rung and the picture of one */
+        if (flight != 2 || !whole_run()) { /* two has the rung and the image of one */
             open_session(&baked, &truth);
             draw_frames(&baked, pictures[1]);
-            draw_frames(&baked, pictures[1]); /* of the same numbers: noise goes by them */
+            draw_frames(&baked, pictures[1]); /* with the same numbers, which determine the noise */
             expected = stats_of(&baked, 1);
             close_session(&baked);
         }
         open_session(&live, &d);
-        draw_frames(&live, pictures[2]); /* and then, in the midst */
+        draw_frames(&live, pictures[2]); /* and then, with frames in flight */
         add_all(&live, added, &light);
         draw_frames(&live, pictures[0]);
         uint32_t off = far_off(pictures[0][FRAMES - 1], pictures[1][FRAMES - 1]);
@@ -111,7 +115,8 @@ static void what_is_added_is_as_if_baked_so(void **state) {
     }
 }
 
-/* Models and lights that go leave the picture as it was; what takes their places is as if it were the first. */
+/* Removing models and lights restores the image; objects added to their slots are as the first
+ * ones. */
 static void what_is_removed_leaves_nothing(void **state) {
     (void)state;
     masu_session s, fresh;
@@ -129,7 +134,7 @@ static void what_is_removed_leaves_nothing(void **state) {
     draw_frames(&fresh, pictures[1]);
     assert_int_equal(stats_of(&s, 1).lights, 1);
     assert_int_equal(max_difference(pictures[0][0], pictures[1][0], sizeof pictures[0]), 0);
-    /* All places hold something else now. */
+    /* Now all slots hold another object. */
     for (uint32_t k = 0; k < KINDS; k++) {
         uint32_t kind = (k + 2) % KINDS;
         const char *name = kinds[kind].name;
@@ -185,15 +190,16 @@ static void at_the_limit_is_refused(void **state) {
     masu_punctual_light_state bad = spot;
     bad.range = -1;
     assert_int_equal(masu_punctual_light_add(s.m, &bad, &light[0], &failure), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_punctual_light_add(s.m, &spot, &light[0], &failure), MASU_OK); /* the lamp's has gone */
+    /* the lamp's light was removed */
+    assert_int_equal(masu_punctual_light_add(s.m, &spot, &light[0], &failure), MASU_OK);
     assert_int_equal(masu_punctual_light_remove(s.m, masu_punctual_light_find(s.m, "glow"), &failure),
                      MASU_ERROR_ARGUMENT);
     draw_rung(&s, 0, pictures[0][0]);
     close_session(&s);
 }
 
-/* A copy has clips and a pose of its own: its nodes are where those of the model are that it is a copy of, when that
- * stands there in that pose, and it looks like it; the model itself rests meanwhile. */
+/* A copy has its own clips and pose. Its nodes and its image equal those of the original in the
+ * same position and pose, while the original remains in its bind pose. */
 static void a_copy_is_animated_by_itself(void **state) {
     (void)state;
     masu_session own, copied;
@@ -208,7 +214,7 @@ static void a_copy_is_animated_by_itself(void **state) {
     swing = masu_model_find(own.m, "swing");
     assert_int_equal(masu_model_clips(own.m, swing), 1);
     assert_int_equal(masu_model_set_transform(own.m, swing, rows, &failure), MASU_OK);
-    draw_frames(&own, pictures[2]); /* at rest */
+    draw_frames(&own, pictures[2]); /* bind pose */
     assert_int_equal(masu_model_animate(own.m, swing, &turned, 1, &failure), MASU_OK);
     draw_frames(&own, pictures[1]);
     assert_int_equal(add(&copied, "swing", at, &copy), MASU_OK);
@@ -232,18 +238,19 @@ static void a_copy_is_animated_by_itself(void **state) {
     assert_true(moved > 0);
     assert_int_equal(masu_model_show(copied.m, masu_model_find(copied.m, "swing"), 0, &failure), MASU_OK);
     draw_frames(&copied, pictures[0]);
-    draw_frames(&copied, pictures[0]); /* of the same numbers */
+    draw_frames(&copied, pictures[0]); /* with the same numbers */
     uint32_t off = far_off(pictures[0][FRAMES - 1], pictures[1][FRAMES - 1]);
     uint32_t turned_off = far_off(pictures[2][FRAMES - 1], pictures[1][FRAMES - 1]);
-    printf("  %u nodes moved by the clip; %u bytes differ by more than 4, at rest %u\n", moved, off, turned_off);
+    printf("  %u nodes moved by the clip; %u bytes differ by more than 4, in the bind pose %u\n",
+           moved, off, turned_off);
     assert_int_equal(off, 0);
     assert_true(turned_off > 20);
     close_session(&own);
     close_session(&copied);
 }
 
-/* Queries of the device find copies where the library's own trees find them; where there are none, that is asserted by
- * test_ray_query. */
+/* The device's ray queries find copies as the library's own BVHs do. test_ray_query covers drivers
+ * without them. */
 static void rays_of_the_device_meet_copies(void **state) {
     (void)state;
     masu_model added[KINDS];
@@ -266,7 +273,7 @@ static void rays_of_the_device_meet_copies(void **state) {
         assert_ok(masu_session_start(&s, error, sizeof error));
         masu_plan_of(s.m, &plan);
         assert_int_equal(pass_of(&plan, "specular_query")->active, ways[i] == MASU_ON);
-        if (i < 2) add_all(&s, added, &light); /* the third one has no copies */
+        if (i < 2) add_all(&s, added, &light); /* the third scene has no copies */
         draw_frames(&s, pictures[i]);
         close_session(&s);
     }
@@ -277,7 +284,7 @@ static void rays_of_the_device_meet_copies(void **state) {
     assert_true(without > BYTES / 10);
 }
 
-/* Of skins there are none; a scene of them alone pays nothing. */
+/* Skinned models cannot be copied; a scene of only such models pays nothing. */
 static void what_bends_is_not_copied(void **state) {
     (void)state;
     masu_session s;
@@ -291,7 +298,7 @@ static void what_bends_is_not_copied(void **state) {
     masu_peaks(s.m, &is[1]);
     assert_int_equal(is[0].device_bytes, is[1].device_bytes);
     assert_int_equal(is[0].host_bytes, is[1].host_bytes);
-    assert_int_equal(add(&s, "arm", kinds[0].at, &added), MASU_OK); /* its spare one */
+    assert_int_equal(add(&s, "arm", kinds[0].at, &added), MASU_OK); /* its baked copy */
     assert_int_equal(add(&s, "arm", kinds[0].at, &added), MASU_ERROR_LIMIT);
     close_session(&s);
 }
@@ -313,7 +320,7 @@ static void handles_of_what_is_gone_are_refused(void **state) {
     assert_int_equal(is.model.id, added.id);
     assert_int_equal(masu_punctual_light_get(s.m, glow, &light, &failure), MASU_OK);
     assert_int_equal(light.instance.id, bulb.id);
-    /* A light of the scene's own that it carries goes dark and is left behind. */
+    /* A light of the scene that is attached to the copy is switched off and detached. */
     masu_punctual_light own = masu_punctual_light_find(s.m, "glow");
     assert_int_equal(masu_punctual_light_set(s.m, own, &light, &failure), MASU_OK);
     assert_int_equal(masu_model_remove(s.m, added, &failure), MASU_OK);
@@ -328,18 +335,19 @@ static void handles_of_what_is_gone_are_refused(void **state) {
         light.instance = bulb;
         assert_int_equal(masu_punctual_light_set(s.m, own, &light, &failure), MASU_ERROR_ARGUMENT);
         if (round) break;
-        assert_int_equal(add(&s, "truck", kinds[0].at, &again), MASU_OK); /* nor does it carry that light */
+        /* the new copy does not get that light */
+        assert_int_equal(add(&s, "truck", kinds[0].at, &again), MASU_OK);
         assert_int_equal(masu_punctual_light_get(s.m, own, &light, &failure), MASU_OK);
         assert_int_equal(light.instance.id, 0);
     }
-    assert_int_equal(masu_model_remove(s.m, masu_model_find(s.m, "block"), &failure), MASU_OK); /* is hidden */
+    /* hides it */
+    assert_int_equal(masu_model_remove(s.m, masu_model_find(s.m, "block"), &failure), MASU_OK);
     assert_int_equal(add(&s, "block", kinds[0].at, &again), MASU_OK);
     assert_int_equal(again.id, masu_model_find(s.m, "block").id);
     close_session(&s);
 }
 
-/* Every call that takes a handle, with ids that are no object: all refuse them and change
- * nothing. */
+/* Every call that takes a handle, with invalid ids: all return an error and change nothing. */
 static void refuse_everywhere(masu_renderer *m, uint64_t instance, uint64_t model, uint64_t light,
                               uint64_t material) {
     static const float rows[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
@@ -375,7 +383,7 @@ static void refuse_everywhere(masu_renderer *m, uint64_t instance, uint64_t mode
     assert_int_equal(masu_punctual_light_remove(m, l, &failure), MASU_ERROR_ARGUMENT);
     assert_int_equal(masu_material_get(m, (masu_material){material}, &mat, &failure), MASU_ERROR_ARGUMENT);
     assert_int_equal(masu_material_set(m, (masu_material){material}, &mat, &failure), MASU_ERROR_ARGUMENT);
-    if (!instance) return; /* a light that is attached to none */
+    if (!instance) return; /* a light without an instance */
     carried.instance = i;
     masu_punctual_light none;
     assert_int_equal(masu_punctual_light_set(m, masu_punctual_light_at(m, 0), &carried, &failure),
@@ -383,8 +391,7 @@ static void refuse_everywhere(masu_renderer *m, uint64_t instance, uint64_t mode
     assert_int_equal(masu_punctual_light_add(m, &carried, &none, &failure), MASU_ERROR_ARGUMENT);
 }
 
-/* id 0 and removed ids, with and without a reserve, of which slots are free, taken and taken
- * again. */
+/* id 0 and removed ids, with and without a reserve, with slots that are free, used and reused. */
 static void no_object_is_refused_by_every_call(void **state) {
     (void)state;
     for (uint32_t reserve = 0; reserve < 3; reserve++) {
@@ -411,7 +418,7 @@ static void no_object_is_refused_by_every_call(void **state) {
     }
 }
 
-/* The box is as large as was said, with and without; a smaller one is refused. */
+/* The memory block has the reported size, with and without a reserve; a smaller one is rejected. */
 static void the_box_is_as_large_as_was_said(void **state) {
     (void)state;
     masu_session s;
@@ -420,7 +427,7 @@ static void the_box_is_as_large_as_was_said(void **state) {
     masu_detail detail;
     masu_session_desc d = desc_of("test_reserve", 8, 16);
     d.desc.mutable_materials = 1;
-    d.no_renderer = true; /* a plan with places looks at the blob, which is gone once it is loaded */
+    d.no_renderer = true; /* planning a reserve reads the blob, which is freed after loading */
     open_session(&s, &d);
     masu_desc plain = s.desc;
     plain.reserve = (masu_reserve){.models = 0};
@@ -458,7 +465,7 @@ static void the_box_is_as_large_as_was_said(void **state) {
     tight.reserve = (masu_reserve){.lights = 4097};
     assert_int_equal(masu_memory_query(&tight, &need[0], &detail), MASU_ERROR_ARGUMENT);
     assert_string_equal(detail.what, "reserve.lights");
-    tight.reserve.lights = 4096; /* with the scene's one too many */
+    tight.reserve.lights = 4096; /* one too many, together with the scene's */
     assert_int_equal(masu_memory_query(&tight, &need[0], &detail), MASU_ERROR_LIMIT);
     assert_string_equal(detail.what, "limits.lights");
     unmake_own(&s, &made);
@@ -511,7 +518,7 @@ static void what_is_painted_is_as_if_baked_so(void **state) {
         open_session(&live, &d);
         draw_frames(&live, pictures[2]);
         paint(&live);
-        draw_frames(&live, pictures[0]); /* the first frame already */
+        draw_frames(&live, pictures[0]); /* already in the first frame */
         uint32_t off = 0, before = far_off(pictures[2][0], pictures[1][0]);
         for (uint32_t i = 0; i < FRAMES; i++) off += far_off(pictures[0][i], pictures[1][i]);
         printf("  %u in flight: %u of %u bytes differ by more than 4 from the scene baked so, before %u\n",
@@ -523,7 +530,7 @@ static void what_is_painted_is_as_if_baked_so(void **state) {
     close_session(&baked);
 }
 
-/* While a history gathers, a change is found as that of a light is. */
+/* With temporal upscaling, a change is detected as for a light. */
 static void a_history_is_told(void **state) {
     (void)state;
     masu_session s;
@@ -580,7 +587,7 @@ static void what_would_change_a_pass_is_refused(void **state) {
     close_session(&s);
 }
 
-/* A reflectance above 0.08, a sheen or an anisotropy stay as they are, and other factors change. */
+/* A reflectance above 0.08, a sheen or an anisotropy is kept, while other factors change. */
 static void lobes_are_kept(void **state) {
     (void)state;
     masu_session s;

@@ -1,6 +1,7 @@
-/* test_resize.c: another output size and other targets in the images that are there: the pictures are, byte
- * for byte, those of a renderer made for that size; nothing is allocated, built or loaded, the blob is gone
- * by then; what is refused leaves everything as it was; a hundred times, and memory is flat. */
+/* test_resize.c: a resize renders into the existing images with another output size and other
+ * targets. The images are bit-identical to those of a renderer made for that size. Nothing is
+ * allocated, built or loaded, and the blob has been freed. A rejected resize changes nothing. A
+ * hundred resizes use no more memory. */
 #include "scene/scene.h"
 #include "support/files.h"
 #include "support/support.h"
@@ -34,7 +35,7 @@ static masu_desc desc_of(masu_session *s, uint32_t width, uint32_t height) {
 }
 
 static masu_result resize(own_renderer *x, uint32_t width, uint32_t height, masu_detail *detail) {
-    /* Not where the ones before were: what is drawn to are those that are given. */
+    /* At another address than the previous arrays: the renderer must use the given images. */
     static VkImage images[2];
     static VkImageView views[2];
     static int turn;
@@ -45,7 +46,7 @@ static masu_result resize(own_renderer *x, uint32_t width, uint32_t height, masu
     return masu_resize(x->m, (VkExtent2D){width, height}, &t, NULL, detail);
 }
 
-/* So many frames of a rung; the number of the first says which noise they have. cut: what the host says of it. */
+/* Renders frames of a rung; the number of the first determines the noise. cut: set by the host. */
 static void draw_cut(masu_session *s, own_renderer *x, uint32_t rung, uint32_t frames, uint8_t *out, int cut) {
     char error[ERROR_SIZE];
     masu_commands commands;
@@ -64,7 +65,7 @@ static void draw_frames(masu_session *s, own_renderer *x, uint32_t rung, uint32_
 
 static const uint32_t sizes[][2] = {{97, 61}, {160, 90}, {2, 90}, {1, 1}, {160, 1}, {33, 20}, {128, 88}};
 
-/* halves: means over frames are kept so, as where the device does not filter unorm. */
+/* halves: history in half floats, as on devices that do not filter unorm. */
 static void compare_sizes(const char *scene, size_t count, int halves) {
     masu_session s;
     masu_session_desc d = test_desc(scene, W, H);
@@ -72,35 +73,36 @@ static void compare_sizes(const char *scene, size_t count, int halves) {
     open_session(&s, &d);
     own_renderer live;
     masu_desc own = desc_of(&s, W, H);
-    own.debug.poison = 3; /* beyond the picture, too */
+    own.debug.poison = 3; /* outside the image, too */
     own.deny.unorm16 = halves;
     make_own(&s, &live, &own);
     uint32_t drawn = 0;
     for (size_t i = 0; i < count; i++) {
         uint32_t w = sizes[i][0], h = sizes[i][1];
         masu_detail detail;
-        /* The targets of before are still there, and are not drawn to. */
+        /* The previous targets still exist, and must not be written. */
         own_renderer before = live, next = live;
         make_target(&s, &next, w, h, 1);
         if (resize(&next, w, h, &detail)) fail_msg("%s", detail.text);
         live = next;
         own_renderer fresh;
         masu_desc fit = desc_of(&s, w, h);
-        fit.debug.poison = 3; /* what it draws is of no memory that it has not written */
+        fit.debug.poison = 3; /* its image must not depend on memory that it has not written */
         fit.deny.unorm16 = halves;
         make_own(&s, &fresh, &fit);
-        if (drawn) draw_frames(&s, &fresh, 1, drawn, pixels[1]); /* to the same frame number */
-        /* Before and after another size the one that has a past, which masu_resize ends by itself. */
+        if (drawn) draw_frames(&s, &fresh, 1, drawn, pixels[1]); /* up to the same frame number */
+        /* Temporal rungs before and after another size: masu_resize ends their history itself. */
         static const uint32_t order[] = {3, 0, 1, 2, 4, 5, 3};
         for (uint32_t k = 0; k <= RUNGS; k++) {
             uint32_t r = order[k];
             draw_cut(&s, &live, r, FRAMES, pixels[0], k > 0);
             draw_frames(&s, &fresh, r, FRAMES, pixels[1]);
             uint32_t most = max_difference(pixels[0], pixels[1], (size_t)w * h * 4);
-            /* Of one pixel a fresh rung does not upscale, a resized one does as it always has. The history's
-             * linear fetches are at parts of its size: drivers may round them otherwise. */
+            /* For a single pixel, a new rung does not upscale, but a resized one does. The
+             * history's linear fetches use a part of its size: drivers may round them
+             * differently. */
             if (most > (w * h == 1 ? 2u : r == 3 || r == 5 ? 1u : 0u))
-                fail_msg("%s, rung %u at %ux%u: off by %u", scene, r, w, h, most);
+                fail_msg("%s, rung %u at %ux%u: error of %u", scene, r, w, h, most);
         }
         drawn += (RUNGS + 1) * FRAMES;
         unmake_own(&s, &fresh);
@@ -113,7 +115,7 @@ static void compare_sizes(const char *scene, size_t count, int halves) {
 static void a_smaller_picture_is_that_of_its_size(void **state) {
     (void)state;
     const uint32_t all = sizeof sizes / sizeof *sizes;
-    compare_sizes("test_both", trials(all, all, 4), 0); /* at least one pixel, too */
+    compare_sizes("test_both", trials(all, all, 4), 0); /* including an output of one pixel */
     compare_sizes("test_both", trials(all, 2, 1), 1);
 }
 
@@ -122,7 +124,7 @@ static void the_same_with_reflections_shadows_textures(void **state) {
     compare_sizes("test_live", trials(3, 3, 2), 0);
 }
 
-/* ---- What is refused ------------------------------------------------------------------------- */
+/* ---- Rejected resizes ------------------------------------------------------------------------ */
 
 static void what_cannot_be_leaves_all_as_it_was(void **state) {
     (void)state;
@@ -178,11 +180,11 @@ static void what_cannot_be_leaves_all_as_it_was(void **state) {
 
 /* ---- A hundred times ------------------------------------------------------------------------- */
 
-/* On drivers after the first 20: what the library holds does not depend on them. */
+/* 20 on drivers after the first: the library's own memory does not depend on them. */
 static uint32_t times(void) { return trials(100, 100, 20); }
 
-/* What the process holds more after 100 times than after 10: of a target made anew, resized to or not, drawn to
- * or not. What frames take is the driver's. */
+/* Heap growth of the process between 10 and 100 new targets, with or without resizes and frames.
+ * Memory for frames is the driver's. */
 static int64_t grown(masu_session *s, own_renderer *x, int resizes, int frames) {
     size_t before = 0;
     for (uint32_t i = 0; i < times(); i++) {
@@ -207,7 +209,7 @@ static void a_hundred_resizes_take_nothing(void **state) {
     masu_session_desc d = test_desc("test_live", W, H);
     wrap_reset();
     d.host.get_instance_proc_addr = wrap_get_instance_proc_addr;
-    d.host.validate = false; /* the layer keeps books of its own */
+    d.host.validate = false; /* the layer allocates for itself */
     d.no_renderer = true;
     open_session(&s, &d);
     own_renderer x;
@@ -215,28 +217,30 @@ static void a_hundred_resizes_take_nothing(void **state) {
     own.governor.mode = MASU_GOVERNOR_ON;
     make_own(&s, &x, &own);
     memset(s.blob, 0xEE,
-           (size_t)masu_scene_data_of(&s.scene)->blob_bytes); /* it is not looked at again */
-    /* A leak is there in every round; what the driver's heap has kept by chance, some kilobytes, is not: of four rounds one
-     * has to be without. Less than the smallest thing that could be left behind each time. */
+           (size_t)masu_scene_data_of(&s.scene)->blob_bytes); /* the blob must not be read again */
+    /* A leak occurs in every round; the driver's heap may retain some kilobytes at random. So one
+     * of four rounds must be without growth, less than the smallest object that could leak each
+     * time. */
     const int64_t most = 45 * (int64_t)(times() - 10);
     int64_t frames = grown(&s, &x, 0, 1), targets = 0, own_too = INT64_MAX / 2;
     for (int i = 0; i < 4 && own_too > targets + most; i++)
         targets = grown(&s, &x, 0, 0), own_too = grown(&s, &x, 1, 0);
     int64_t all = grown(&s, &x, 1, 1);
-    printf("  heap bytes more after %u times: targets made anew %lld, resized to them too %lld;\n"
+    printf("  heap growth after %u times: new targets %lld, with resizes %lld;\n"
            "  2 frames of one size %lld, of each size %lld\n",
            times() - 10, (long long)targets, (long long)own_too, (long long)frames, (long long)all);
     assert_true(own_too <= targets + most);
     masu_stats_info stats;
     assert_int_equal(masu_stats(x.m, 0, &stats, &failure), MASU_OK);
-    assert_true(stats.governor.samples > times() * 3 / 2 || masu_session_denied()); /* its knowledge has gone on */
+    /* its estimates were kept */
+    assert_true(stats.governor.samples > times() * 3 / 2 || masu_session_denied());
     unmake_own(&s, &x);
     close_session(&s);
 }
 
 /* ---- In any state ---------------------------------------------------------------------------- */
 
-/* A session without a renderer through the layer that counts, and a description. */
+/* A session without a renderer through the counting wrapper, and a description. */
 static masu_desc open_wrapped(masu_session *s, const char *scene) {
     masu_session_desc d = test_desc(scene, W, H);
     wrap_reset();
@@ -261,8 +265,8 @@ static uint64_t setups_of_a_frame(masu_session *s, own_renderer *x, uint32_t run
     return calls;
 }
 
-/* The rung in use is recorded by masu_resize; another by its first frame in each slot, and then no
- * more. */
+/* masu_resize records the rung in use; another rung is recorded by its first frame in each slot,
+ * and then no more. */
 static void the_rung_in_use_is_recorded_first(void **state) {
     (void)state;
     masu_session s;
@@ -282,8 +286,8 @@ static void the_rung_in_use_is_recorded_first(void **state) {
     close_session(&s);
 }
 
-/* Before a load, between its steps and after it, to more targets and to fewer, larger than what is
- * drawn: the image is that of a renderer made for that size. */
+/* Before a load, between its steps and after it, to more targets and to fewer, larger than the
+ * rendered area: the image equals that of a renderer made for that size. */
 static void a_resize_is_allowed_in_any_state(void **state) {
     (void)state;
     enum { SMALL_W = 80, SMALL_H = 44 };
@@ -329,7 +333,7 @@ static void a_resize_is_allowed_in_any_state(void **state) {
         if (when == 1) assert_true(steps > 3);
         if (when == 2) assert_int_equal(masu_resize(x.m, small, &t, NULL, &detail), MASU_OK);
         memset(images, 0, sizeof images),
-            memset(views, 0, sizeof views); /* read during the call only */
+            memset(views, 0, sizeof views); /* read only during the call */
         assert_int_equal(setups_of_a_frame(&s, &x, 1, 4, NULL), 3);
         assert_ok(masu_headless_target_read(&s.host, &others[3], error, sizeof error));
         for (uint32_t y = 0; y < SMALL_H; y++)
@@ -349,8 +353,8 @@ static void a_resize_is_allowed_in_any_state(void **state) {
     close_session(&s);
 }
 
-/* Each call of masu_resize, and of the frame that records what it has left, fails in turn. Every
- * other call then works or fails; once nothing fails any more, the next frame is right. */
+/* Each call of masu_resize, and of the frame that records the rest, fails once. Every other call
+ * then works or fails; once no call fails, the next frame is correct. */
 static void what_fails_half_way_is_made_good(void **state) {
     (void)state;
     masu_session s;
@@ -370,7 +374,7 @@ static void what_fails_half_way_is_made_good(void **state) {
         masu_result result = resize(&x, 96, 54, &detail);
         assert_int_equal(result, k <= 6 ? MASU_ERROR_VULKAN : MASU_OK);
         if (result) assert_string_equal(detail.what, wrap.failed_call);
-        assert_int_equal(masu_load(x.m, &commands, &failure), MASU_OK); /* the blob is gone */
+        assert_int_equal(masu_load(x.m, &commands, &failure), MASU_OK); /* the blob was freed */
         result = masu_frame(x.m, &(masu_frame_desc){MASU_FRAME_DESC, .rung = 1}, &commands, &failure);
         assert_int_equal(result, k > 6 ? MASU_ERROR_VULKAN : MASU_OK);
         if (result) assert_int_equal(failure.vulkan, VK_ERROR_OUT_OF_HOST_MEMORY);

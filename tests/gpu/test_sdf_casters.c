@@ -1,6 +1,7 @@
-/* test_sdf_casters.c: shadows of points and spots that the SDF casts, against rays to its balls and boxes in double
- * precision: on polygons, on itself, on a pane, on a particle and in a mirror; polygons cast theirs on the SDF; a
- * light inside of its bulb; a field that moves. Visibility is the picture with shadows by that without. */
+/* test_sdf_casters.c: shadows of point and spot lights cast by the SDF, against rays to its balls
+ * and boxes in double precision: on polygons, on the SDF itself, on a pane, on a particle and in a
+ * mirror; polygons also cast theirs on the SDF; a light inside its bulb; a moving field. Visibility
+ * is the image with shadows divided by the one without. */
 #include "support/support.h"
 #include "support/files.h"
 #include "support/floats.h"
@@ -15,15 +16,15 @@
 
 enum { WIDTH = 128, HEIGHT = 96, PIXELS = WIDTH * HEIGHT, SHADOWS = 0, NONE = 1, SETTLED = 24 };
 
-static uint64_t evals; /* of the field, for the last pictures */
+static uint64_t evals; /* of the field, in the last images */
 static uint32_t faces;
 static float lit[4 * PIXELS], open[4 * PIXELS], depths[PIXELS];
 
-/* ---- What blocks ----------------------------------------------------------------------------- */
+/* ---- Occluders ------------------------------------------------------------------------------- */
 
 typedef struct shape {
     int box;
-    double middle[3], half[3]; /* a ball: its radius first */
+    double middle[3], half[3]; /* a ball: its radius in half[0] */
 } shape;
 
 static const shape *shapes;
@@ -56,7 +57,7 @@ static int blocks(const shape *s, const double from[3], const double to[3]) {
     return enter < leave;
 }
 
-/* How far from the surface of a shape, roughly. */
+/* Approximate distance from the surface of a shape. */
 static double off(const shape *s, const double p[3]) {
     double d[3], most = -1e9;
     for (int k = 0; k < 3; k++) {
@@ -66,7 +67,8 @@ static double off(const shape *s, const double p[3]) {
     return s->box ? most : sqrt(dot3(d, d)) - s->half[0];
 }
 
-/* Whether nothing but `own` is between a point and the light. A light shines out of what it is inside of. */
+/* Whether only `own` is between a point and the light. Shapes that contain the light do not block
+ * it. */
 static int sees(const double at[3], const double light[3], uint32_t own) {
     for (uint32_t i = 0; i < shape_count; i++) {
         if (i != own && blocks(&shapes[i], at, light) && !inside(&shapes[i], light)) return 0;
@@ -74,8 +76,8 @@ static int sees(const double at[3], const double light[3], uint32_t own) {
     return 1;
 }
 
-/* 1: it is seen from all around, as far as the filter reaches across the light's rays, 0: from nowhere there; -1: an
- * edge. at: moved a little off what it is on. */
+/* 1: visible from all around, within the filter's extent across the light's rays; 0: from no point
+ * there; -1: an edge. at: slightly off its surface. */
 static int around(const double at[3], const double light[3]) {
     double to[3], u[3], v[3], up[3] = {0.1, 1, 0.2}, reach = 0;
     uint32_t own = shape_count;
@@ -95,7 +97,7 @@ static int around(const double at[3], const double light[3]) {
     return here;
 }
 
-/* ---- Pictures -------------------------------------------------------------------------------- */
+/* ---- Images ---------------------------------------------------------------------------------- */
 
 static const masu_camera camera = {.position = {0, 3, 8}, .forward = {0, -0.3f, -1}, .fov_y = 0.8f, .near_distance = 0.1f};
 
@@ -153,7 +155,7 @@ typedef struct tally {
     uint32_t dark, bright, wrong, leaks, acne;
 } tally;
 
-/* A pixel whose truth is clear, of what is seen there at `at`. */
+/* Adds a pixel with an unambiguous reference, for the surface at `at`. */
 static void take(tally *t, uint32_t pixel, const double at[3], const double light[3]) {
     double without = (double)open[4 * pixel], with = (double)lit[4 * pixel];
     if (!(without > 2e-3)) return;
@@ -172,7 +174,7 @@ static void take(tally *t, uint32_t pixel, const double at[3], const double ligh
 
 static const double by_depth = (double)NAN;
 
-/* plane_z: what is looked at is a pane there, which is in no depth image; or by_depth. */
+/* plane_z: the surface is a pane there, which is in no depth image; or by_depth. */
 static tally compare(const double light[3], double plane_z) {
     tally t = {0};
     for (uint32_t i = 0; i < PIXELS; i++) {
@@ -188,8 +190,9 @@ static tally compare(const double light[3], double plane_z) {
 }
 
 static void expect(const char *what, tally t, uint32_t dark, uint32_t bright, int blurred) {
-    print_message("%-34s %5u dark, %5u bright, %u off by more than 0.1, %u below 0.99\n", what, t.dark, t.bright, t.wrong, t.acne);
-    if (t.dark < dark || t.bright < bright) fail_msg("%s: too few to tell", what);
+    print_message("%-34s %5u dark, %5u bright, %u with an error over 0.1, %u below 0.99\n",
+                  what, t.dark, t.bright, t.wrong, t.acne);
+    if (t.dark < dark || t.bright < bright) fail_msg("%s: too few pixels", what);
     if (t.wrong * 100 > t.dark + t.bright) fail_msg("%s: %u of %u pixels", what, t.wrong, t.dark + t.bright);
     if (t.leaks * 20 > t.dark) fail_msg("%s: %u of %u dark pixels are lit", what, t.leaks, t.dark);
     if (!blurred && t.acne * 200 > t.bright) fail_msg("%s: acne, %u of %u", what, t.acne, t.bright);
@@ -224,7 +227,7 @@ static void points_and_spots_see_the_sdf(void **state) {
     }
 }
 
-/* No polygon at all; many parts, whose lists are numbers. */
+/* No polygon at all; many parts, whose lists contain numbers. */
 static void the_sdf_alone_has_shadows(void **state) {
     (void)state;
     char text[8192];
@@ -259,7 +262,7 @@ static void polygons_shade_the_sdf(void **state) {
     render(&s, SHADOWS, SETTLED, (masu_frame_desc){0}, lit);
     expect("a polygon over the SDF", compare(lamp, by_depth), 150, 1500, 0);
     assert_true(evals > 0);
-    /* The SDF's depth of the faces is kept while only a polygon moves. */
+    /* The SDF's part of the faces is kept while only a polygon moves. */
     both[0].middle[0] = 0.4;
     move_instance(&s, "roof", 0.4f, 1.5f, 0, 1);
     render(&s, SHADOWS, 8, (masu_frame_desc){0}, lit);
@@ -270,7 +273,8 @@ static void polygons_shade_the_sdf(void **state) {
     close_session(&s);
 }
 
-/* A lamp in its bulb below a roof, both of the SDF: it lights the ground, not what stands on the roof. */
+/* A lamp in its bulb below a roof, both of the SDF: it lights the ground, but not an object on the
+ * roof. */
 static void a_bulb_lets_its_light_out_and_a_roof_does_not(void **state) {
     (void)state;
     static const shape lantern[] = {{0, {0, 1, 0}, {0.15, 0, 0}}, {1, {0, 1.5, 0}, {1, 0.1, 1}}};
@@ -300,10 +304,10 @@ static void a_pane_and_a_particle_lie_in_the_shadow(void **state) {
     render(&s, NONE, 1, (masu_frame_desc){0}, open);
     render(&s, SHADOWS, SETTLED, (masu_frame_desc){0}, lit);
     for (uint32_t i = 0; i < PIXELS; i++) {
-        if (depths[i] > 0) open[4 * i] = 0; /* what stands before it */
+        if (depths[i] > 0) open[4 * i] = 0; /* a surface in front of it */
     }
     expect("a pane behind", compare(front, -2.5), 200, 2000, 0);
-    /* Behind the ball, seen above it; and beside. */
+    /* Behind the ball, visible above it; and next to it. */
     for (int bright = 0; bright < 2; bright++) {
         spark.position[0] = bright ? 0.4 : -2.1, spark.position[1] = bright ? 2.4 : 1.8, spark.position[2] = -2;
         masu_frame_desc frame = {.particles = &spark, .particle_count = 1};
@@ -324,7 +328,7 @@ static void a_pane_and_a_particle_lie_in_the_shadow(void **state) {
     close_session(&s);
 }
 
-/* A mirror for a floor before a wall: what is seen in it of the wall is as dark as the wall. */
+/* A mirror as the floor in front of a wall: the wall's reflection is as dark as the wall. */
 static void a_mirror_shows_the_shadow(void **state) {
     (void)state;
     masu_session s;
@@ -347,14 +351,14 @@ static void a_mirror_shows_the_shadow(void **state) {
         wall_t = (-3 - at[2]) / ray[2];
         const double on_floor[3] = {at[0], 1e-3, at[2]};
         for (int k = 0; k < 3; k++) at[k] += wall_t * (k == 1 ? -ray[k] : ray[k]);
-        if (at[1] > 5 || !sees(on_floor, at, 1)) continue; /* the ball is mirrored there */
+        if (at[1] > 5 || !sees(on_floor, at, 1)) continue; /* the ball is reflected there */
         take(&t, i, at, front);
     }
     expect("in a mirror", t, 100, 1000, 1);
     close_session(&s);
 }
 
-/* A ball that a parameter moves: faces are rendered again, and shadows are where it is. */
+/* A ball moved by a parameter: faces are rendered again, and shadows follow. */
 static void shadows_follow_a_parameter(void **state) {
     (void)state;
     masu_session s;
@@ -368,9 +372,10 @@ static void shadows_follow_a_parameter(void **state) {
         ball.middle[0] = (double)x;
         render(&s, NONE, 1, frame, open);
         render(&s, SHADOWS, SETTLED, frame, lit);
-        expect(i ? "a ball that has moved" : "a ball that moves", compare(lamp, by_depth), 40, 2000, 0);
+        expect(i ? "a ball after its motion" : "a ball in motion", compare(lamp, by_depth), 40,
+               2000, 0);
         if (i) break;
-        /* From frame to frame of the same rung, with two frames for the faces of a point. */
+        /* From frame to frame of the same rung, with two frames for the faces of a point light. */
         x = ball.middle[0] = -0.5;
         render(&s, SHADOWS, 4, frame, lit);
         render(&s, NONE, 1, frame, open);

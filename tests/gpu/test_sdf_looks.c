@@ -1,8 +1,7 @@
-/*
- * test_sdf_looks.c: a picture of every newer shape and of every way to colour one, pixel by pixel against the same field in
- * double precision: a hit lies on the surface of a part, what is missed misses there too, and the albedo is that of the
- * material at the point, with the picture's normal and the width of a pixel.
- */
+/* test_sdf_looks.c: an image of every newer shape and of every way to colour one, pixel by pixel
+ * against the same field in double precision: a hit is on the surface of a part, a miss misses
+ * there too, and the albedo equals the material at the point, with the image's normal and the
+ * width of a pixel. */
 #include "support/files.h"
 #include "support/support.h"
 
@@ -33,7 +32,8 @@ static double least(const check *c, const double p[3], uint32_t *nearest) {
     return d;
 }
 
-/* Whether a ray from the eye is within `near` of something, for whoever says that it hits nothing. */
+/* Whether a ray from the camera passes within `slack` of a surface, for pixels that report a
+ * miss. */
 static bool hits(const check *c, const double eye[3], const double way[3], double slack) {
     double t = 8, length = sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
     for (int n = 0; n < 400 && t < 16; n++) {

@@ -1,8 +1,8 @@
-/* test_shadow.c: what the shadow map says of each pixel against rays towards the sun through the
- * scene's triangles in double precision: hard shadows by one ray to the sun's middle, the filter by
- * 256 over its disc; no acne, how much light leaks in at the foot of a caster, SDF and polygons
- * together. The figures are printed (docs/design/08-lights-shadows.md). test_shadow_frames.c has
- * what holds from frame to frame. */
+/* test_shadow.c: the shadow map at each pixel against rays towards the sun through the scene's
+ * triangles in double precision: hard shadows by one ray to the sun's centre, the filter by 256
+ * rays over its disc; no acne, light leaks at the foot of a caster, SDF and polygons together. The
+ * figures are printed (docs/design/08-lights-shadows.md). test_shadow_frames.c has the properties
+ * over frames. */
 #include "support/files.h"
 #include "support/floats.h"
 #include "support/shadow.h"
@@ -36,11 +36,11 @@ static void begin(void) {
     add("{\"models\": [");
 }
 
-/* Not larger: SwiftShader draws a plane of 200 m up to 0.2 % off in depth. */
+/* Not larger: in SwiftShader, depths of a plane of 200 m have errors of up to 0.2 %. */
 #define GROUND "{\"mesh\": {\"plane\": {\"size_x\": 60, \"size_z\": 60}}}"
 #define SPOT "{\"mesh\": {\"plane\": {\"size_x\": 3, \"size_z\": 3}}}"
 
-/* The last of the models, then the rest of the scene. */
+/* Adds the last of the models, then the rest of the scene, and bakes it. */
 static void finish(const char *name, const char *last, uint32_t resolution, const char *more) {
     add("%s], \"sun\": {\"shadows\": {\"cascades\": 2, \"resolution\": %u, \"distance\": 40}}, "
         "\"camera\": {\"near\": 0.1}%s}",
@@ -57,7 +57,7 @@ static double in(uint32_t *r, double low, double high) {
     return low + (high - low) * next(r) / (double)(1 << 24);
 }
 
-/* Forty boxes of 0.1 to 2 m, turned at will. */
+/* Forty boxes of 0.1 to 2 m, with arbitrary rotations. */
 static void bake_boxes(void) {
     uint32_t r = 5;
     begin();
@@ -85,13 +85,14 @@ static void bake_thin(void) {
     finish("thin", GROUND, 512, "");
 }
 
-/* ---- Against the truth ----------------------------------------------------------------------- */
+/* ---- Comparison with the reference ----------------------------------------------------------- */
 
 typedef struct errors {
     uint32_t looked, wrong,
-        far;              /* wrong: on the other side than the sun; of them beyond 1.5 texels */
-    double farthest;      /* of the wrong ones from an edge, texels */
-    double squares, most; /* of the filter against the disc */
+        far;              /* wrong: sunlit instead of shadowed or the reverse; far: beyond 1.5
+                             texels */
+    double farthest;      /* distance of the wrong pixels from an edge, texels */
+    double squares, most; /* error of the filter relative to the disc */
     uint32_t sampled;
 } errors;
 
@@ -127,8 +128,8 @@ static errors compare(const masu_camera *camera) {
     return e;
 }
 
-/* The stated bounds: pixels on the wrong side of an edge, per thousand; how far from it, texels;
- * root mean square of the filter's error against the disc. */
+/* The stated bounds: pixels on the wrong side of an edge, per thousand; their distance from it,
+ * texels; RMS error of the filter relative to the disc. */
 static const struct {
     const char *scene;
     double elevation, wrong, farthest, rmse;
@@ -163,7 +164,7 @@ static void the_error_against_the_truth_is_as_stated(void **state) {
 
 /* ---- Acne ------------------------------------------------------------------------------------ */
 
-/* Pixels that the sun sees by the truth and not by the map. */
+/* Pixels that are sunlit in the reference and not in the map. */
 static uint32_t dark_in_the_sun(const masu_camera *camera, uint32_t *looked) {
     const uint32_t *seen = shadow_image(&t, MASU_READBACK_OCCLUSION);
     const float *depths = shadow_image(&t, MASU_READBACK_DEPTH);
@@ -179,7 +180,7 @@ static uint32_t dark_in_the_sun(const masu_camera *camera, uint32_t *looked) {
     return dark;
 }
 
-/* Convex things alone hide the sun from nothing that faces it. */
+/* Convex objects do not occlude the sun for surfaces that face it. */
 static void a_plane_has_no_acne_under_any_sun(void **state) {
     (void)state;
     static const double elevations[] = {1, 2, 3, 5, 8, 13, 21, 34, 45, 55, 67, 78, 85, 89};
@@ -231,7 +232,7 @@ static void balls_boxes_and_sheets_have_no_acne(void **state) {
     }
 }
 
-/* Up to its terminator a smooth ball is in the sun, whatever its triangles are turned to: no
+/* A smooth ball is sunlit up to its terminator, whatever the orientation of its triangles: no
  * saw-teeth. */
 static void smooth_balls_are_lit_to_their_terminator(void **state) {
     (void)state;
@@ -253,7 +254,7 @@ static void smooth_balls_are_lit_to_their_terminator(void **state) {
             double n_l = 0;
             for (int c = 0; c < 3; c++) n_l += (double)n[c] * t.sun[c];
             if (n_l < 0.01) continue;
-            looked++; /* turned away from the sun, and its surface is not */
+            looked++; /* the shading normal faces away from the sun, the triangle does not */
             dark += sun_share(seen, i) < 0.9;
         }
     }
@@ -264,7 +265,8 @@ static void smooth_balls_are_lit_to_their_terminator(void **state) {
     assert_true(dark * 50 < looked);
 }
 
-/* Half a spider's leg: eight sides around a radius of 5 cm, smooth, with a knee between two long parts. */
+/* Half a spider's leg: eight sides around a radius of 5 cm, smooth, with a knee between two long
+ * parts. */
 static void write_leg(const char *name) {
     FILE *file = fopen(in_scratch(name), "w");
     assert_non_null(file);
@@ -286,7 +288,7 @@ static void write_leg(const char *name) {
     assert_int_equal(fclose(file), 0);
 }
 
-/* What smooths terminators takes no more than a tenth of a leg's radius off its shadow. */
+/* Terminator smoothing reduces a leg's shadow by at most a tenth of its radius. */
 static void thin_smooth_casters_keep_their_shadow(void **state) {
     (void)state;
     double dark = 0, truth = 0;
@@ -309,14 +311,15 @@ static void thin_smooth_casters_keep_their_shadow(void **state) {
         }
     }
     shadow_close(&t);
-    print_message("  the shadow of a leg is %.3f of what it should be\n", dark / truth);
+    print_message("  the shadow of a leg is %.3f of its exact size\n", dark / truth);
     assert_true(truth > 200);
     assert_true(dark > 0.88 * truth && dark < 1.05 * truth);
 }
 
-/* ---- Light that leaks in --------------------------------------------------------------------- */
+/* ---- Light leaks ----------------------------------------------------------------------------- */
 
-/* Behind a sheet and a box that stand on the ground: how far from the foot the first shadow is. */
+/* Behind a sheet and a box that stand on the ground: distance of the shadow's start from the
+ * foot. */
 static void shadows_begin_at_the_foot_of_their_caster(void **state) {
     (void)state;
     static const char *const casters[] = {
@@ -356,14 +359,14 @@ static void shadows_begin_at_the_foot_of_their_caster(void **state) {
     }
 }
 
-/* A sheet that lies parallel to the ground: from how high on it casts a shadow. */
+/* A sheet parallel to the ground: the height from which on it casts a shadow. */
 static void a_sheet_above_the_ground_casts_from_a_few_texels_on(void **state) {
     (void)state;
     static const double elevations[4] = {10, 30, 60, 85};
     double lost[4] = {0};
     for (int k = 1; k <= 8; k++) {
         double height = 0.01 * k;
-        /* From between the two, straight down. */
+        /* From halfway between the two, straight down. */
         masu_camera low = {.position = {0, height / 2, 0},
                            .forward = {0, -1, -0.2f},
                            .fov_y = 1,
@@ -374,7 +377,7 @@ static void a_sheet_above_the_ground_casts_from_a_few_texels_on(void **state) {
         finish("above", SPOT, 512, "");
         shadow_open(&t, "above", 64, 48, NULL);
         for (int i = 0; i < 4; i++) {
-            /* All that it sees is ground, and dark. */
+            /* All visible surfaces are ground, and dark. */
             shadow_point p = {.z = height / 2};
             uint32_t cascade = 0, inside = 0, lit = 0;
             shadow_sun(&t, 200, elevations[i]);
@@ -399,8 +402,8 @@ static void a_sheet_above_the_ground_casts_from_a_few_texels_on(void **state) {
 
 /* ---- SDF and polygons ------------------------------------------------------------------------ */
 
-/* What both leave of the sun is the product of what each leaves, on either's pixels; the ambient
- * part is the SDF's alone. */
+/* The sun's visibility is the product of both, on pixels of either; the ambient part is only the
+ * SDF's. */
 static void sdf_and_polygons_shadow_each_other(void **state) {
     (void)state;
     static uint32_t seen[3][W * H];
@@ -434,11 +437,11 @@ static void sdf_and_polygons_shadow_each_other(void **state) {
         assert_int_equal(seen[1][k] >> 16, 0xFFFF);
         by_ball += sdf < 0.1;
         by_box += map < 0.1;
-        /* The ball is left of the middle, and nothing else is that near. */
+        /* The ball is left of the centre, and nothing else is that close. */
         double z = 0.1 / (double)depths[k];
         on_ball += map < 0.1 && k % W > W / 4 && k % W < W / 2 && z < 6.3;
     }
-    print_message("dark by the ball %u, by the box %u, of these on the ball about %u\n", by_ball,
+    print_message("dark by the ball %u, by a box %u, on the ball about %u\n", by_ball,
                   by_box, on_ball);
     assert_true(by_ball > 300 && by_box > 500 && on_ball > 100);
 }

@@ -1,6 +1,6 @@
-/* test_shadow_frames.c: the shadow map from frame to frame: texels that do not change while the
- * view moves, cascades that are not drawn in every frame, rungs with cascades of their own; far
- * from the origin; what a plan has of it and when it is refused. */
+/* test_shadow_frames.c: the shadow map over frames: stable texels while the view moves, cascades
+ * that are not rendered in every frame, rungs with different cascades; far from the origin; a
+ * plan's shadow images, and rejected descriptions. */
 #include "scene/scene.h"
 #include "support/files.h"
 #include "support/floats.h"
@@ -18,7 +18,7 @@ static shadow_test t;
 static const masu_camera home = {
     .position = {1, 3, 6}, .forward = {-1, -3, -6}, .fov_y = 0.873f, .near_distance = 0.125f};
 
-/* Boxes on a ground, all of it in sixteenths of a metre: exact at a million too. */
+/* Boxes on a ground, with all coordinates in sixteenths of a metre: exact at a million too. */
 static void bake(const char *name, double x, double z, const char *shadows, const char *more) {
     char json[4096];
     snprintf(
@@ -52,7 +52,7 @@ static void turn(masu_camera *c, double yaw, double pitch) {
     c->forward[1] += (float)pitch;
 }
 
-/* Where a cascade lies for a camera, in whole texels across the sun. */
+/* The position of a cascade for a camera, in whole texels across the sun. */
 static masu_cascade cascade_of(const masu_camera *c, uint32_t k) {
     masu_shadow_view v;
     memset(&v, 0, sizeof v);
@@ -73,8 +73,8 @@ static masu_cascade cascade_of(const masu_camera *c, uint32_t k) {
 
 /* ---- Stability ------------------------------------------------------------------------------- */
 
-/* A camera that creeps by a tenth of a texel, and turns: where no cascade has stepped, not a bit of
- * the map differs. */
+/* A camera that moves by a tenth of a texel, and rotates: while no cascade has stepped, the map is
+ * bit-identical. */
 static void texels_stay_the_same_while_the_view_creeps(void **state) {
     (void)state;
     uint32_t same = 0, frames = 0;
@@ -106,13 +106,14 @@ static void texels_stay_the_same_while_the_view_creeps(void **state) {
     assert_true(same > frames / 2 && same < frames);
 }
 
-/* A camera that flies and turns by much more: the cascades move by whole texels, so that those that
- * two frames share are drawn at the same places. */
+/* A camera that flies and rotates by much more: the cascades move by whole texels, so that texels
+ * shared by two frames are rendered at the same positions. */
 static void texels_move_by_whole_steps_while_the_view_flies(void **state) {
     (void)state;
     uint64_t shared = 0, changed = 0;
     double most = 0;
-    static const masu_rung all = {.frustum = MASU_OFF}; /* else what the picture does not ask for lacks */
+    /* otherwise casters without a shadow in the image are missing */
+    static const masu_rung all = {.frustum = MASU_OFF};
     shadow_open(&t, "still", W, H, &all);
     masu_camera c = home;
     shadow_draw(&t, &c, 0);
@@ -132,7 +133,7 @@ static void texels_move_by_whole_steps_while_the_view_flies(void **state) {
                     by[a] += one.axis[a][j] * (two.center[j] - one.center[j]);
             int32_t dx = (int32_t)lround(by[0] / texel), dy = (int32_t)lround(by[1] / texel);
             assert_true(fabs(by[0] / texel - dx) < 1e-3 && fabs(by[1] / texel - dy) < 1e-3);
-            /* A step along the sun moves the far side, and with it all depths. */
+            /* A step along the sun moves the far plane, and with it all depths. */
             if (fabs(by[2]) > 1e-9) continue;
             for (int32_t y = 0; y < SIZE; y++) {
                 for (int32_t x = 0; x < SIZE; x++) {
@@ -155,7 +156,7 @@ static void texels_move_by_whole_steps_while_the_view_flies(void **state) {
     assert_true(shared > 3000000 && changed * 20000 < shared);
 }
 
-/* ---- Cascades that are not drawn in every frame ---------------------------------------------- */
+/* ---- Cascades that are not rendered in every frame ------------------------------------------- */
 
 static uint32_t differing(const uint32_t *a, const uint32_t *b) {
     uint32_t n = 0;
@@ -163,7 +164,8 @@ static uint32_t differing(const uint32_t *a, const uint32_t *b) {
     return n;
 }
 
-/* Nothing moves: whatever the pace, every frame shows the same; with all other memory poisoned. */
+/* Nothing moves: at any refresh interval, every frame is the same; with all other memory
+ * poisoned. */
 static void a_pace_changes_nothing_that_stands_still(void **state) {
     (void)state;
     static const masu_rung rung = {.shadow_refresh = {1, 3, 8}};
@@ -195,8 +197,8 @@ static void a_pace_changes_nothing_that_stands_still(void **state) {
     }
 }
 
-/* A box moves once: the fast cascade shows it at once, the slow ones when it is their turn, and a
- * cut brings them all. */
+/* A box moves once: the fast cascade shows it at once, the slow ones at their next refresh, and a
+ * cut updates them all. */
 static void what_moves_reaches_each_cascade_at_its_pace(void **state) {
     (void)state;
     static const masu_rung rung = {.shadow_refresh = {1, 4, 8}};
@@ -235,7 +237,7 @@ static void what_moves_reaches_each_cascade_at_its_pace(void **state) {
 }
 
 /* While the camera flies, slow cascades are larger and older: shadows shift by less than a texel or
- * two, none go missing. */
+ * two, and none are missing. */
 static void a_flight_with_slow_cascades_keeps_its_shadows(void **state) {
     (void)state;
     static const masu_rung rungs[] = {{.shadow_refresh = {1, 1, 1}}, {.shadow_refresh = {2, 4, 8}}};
@@ -261,8 +263,9 @@ static void a_flight_with_slow_cascades_keeps_its_shadows(void **state) {
     assert_true(worst * 100 < W * H);
 }
 
-/* A shadow's edge along the texels of both cascades runs away from the camera: the coarse ones have it somewhere
- * else, and the picture goes from one to the other in steps that are a part of that. */
+/* A shadow's edge along the texels of both cascades leads away from the camera. The coarse cascade
+ * has it at another position, and the image blends between both in steps that are a fraction of
+ * that difference. */
 static void cascades_meet_without_a_step(void **state) {
     (void)state;
     bake_scene("edge",
@@ -277,7 +280,7 @@ static void cascades_meet_without_a_step(void **state) {
     shadow_close(&t);
     double step = 0, between = 0;
     for (uint32_t y = 0; y + 8 < H; y++) {
-        for (uint32_t x = 0; x < W / 2; x++) { /* to the right stands what casts it */
+        for (uint32_t x = 0; x < W / 2; x++) { /* the caster is to the right */
             double here = sun_share(seen_a, y * W + x);
             step = worst_of(step, fabs(sun_share(seen_a, (y + 1) * W + x) - here));
             between = worst_of(between, fabs(sun_share(seen_a, (y + 8) * W + x) - here));
@@ -295,7 +298,7 @@ static const masu_rung ladder[] = {
     {.shadow_cascades = 1, .shadow_distance = 10},
 };
 
-/* Each rung by itself, then all of them by turns: the same pictures. */
+/* Each rung by itself, then all of them alternately: the same images. */
 static void rungs_by_turns_show_what_each_shows_alone(void **state) {
     (void)state;
     static uint32_t alone[3][W * H];
@@ -313,13 +316,13 @@ static void rungs_by_turns_show_what_each_shows_alone(void **state) {
                 draw(&t.s, &f, &commands, NULL);
                 take(NULL, seen_a);
                 if (!all) memcpy(alone[r], seen_a, sizeof seen_a);
-                /* A slow cascade of another moment is larger, but nothing has moved. */
+                /* A slow cascade of another frame is larger, but nothing has moved. */
                 assert_true(differing(alone[all ? f.rung : r], seen_a) == 0);
             }
             close_session(&t.s);
         }
     }
-    assert_true(differing(alone[0], alone[1]) > 20); /* they are not the same rung */
+    assert_true(differing(alone[0], alone[1]) > 20); /* the rungs do differ */
 }
 
 /* ---- Far away -------------------------------------------------------------------------------- */
@@ -347,11 +350,11 @@ static void a_million_metres_away_it_is_the_same(void **state) {
     print_message(
         "far away: %u of %u pixels differ by more than 0.02, %u by more than half; %u dark\n", off,
         W * H, other, dark);
-    /* Texels lie elsewhere there, so edges differ within theirs. */
+    /* Texels are at other positions there, so edges differ within a texel. */
     assert_true(dark > 300 && other * 200 < W * H);
 }
 
-/* The box around all casters then reaches there, and so do the cascades, along the sun: depths get
+/* The bounds of all casters then extend there, and so do the cascades, along the sun: depths get
  * small and keep their precision. */
 static void a_caster_however_far_leaves_the_others_their_shadows(void **state) {
     (void)state;
@@ -451,7 +454,7 @@ static void what_exceeds_a_limit_is_named(void **state) {
     char error[ERROR_SIZE];
     masu_session_desc d = test_desc(NULL, W, H);
     d.scene_path = baked_scene("still");
-    d.desc.deny.image_size = 2 * SIZE - 1; /* a texel too few for a square of cascades */
+    d.desc.deny.image_size = 2 * SIZE - 1; /* a texel too small for a square of cascades */
     assert_false(masu_session_open(&d, &t.s, error, sizeof error));
     assert_int_equal(t.s.detail.result, MASU_ERROR_DEVICE);
     assert_string_equal(t.s.detail.what, "maxImageDimension2D");

@@ -1,6 +1,6 @@
-/* test_skin.c: meshes that joints bend. Where their vertices are, against Assimp's bones and keys in double
- * precision; where they were in the frame before; that the velocity of a pixel is the difference of both; and
- * that picture, shadow and mirror image are those of a mesh that was baked in that pose. */
+/* test_skin.c: skinned meshes: positions of their vertices against Assimp's bones and keys in
+ * double precision; positions in the previous frame; pixel velocities, the difference of both; and
+ * image, shadow and reflection, equal to those of a mesh baked in that pose. */
 #include "support/files.h"
 #include "support/floats.h"
 #include "support/posed.h"
@@ -61,7 +61,7 @@ static const masu_skin *skin_of(masu_session *s, const char *name) {
     return &s->m->models.skins.skins[first];
 }
 
-/* Software drivers have one memory: the host reads what a finished frame has left. */
+/* Software drivers have one memory: the host reads the results of a finished frame. */
 static const void *device_bytes(masu_session *s, masu_buffer_id buffer) {
     const void *bytes = masu_buffer_pointer(&s->m->device, buffer, 0);
     assert_non_null(bytes);
@@ -92,14 +92,14 @@ static vec decoded(const int16_t normal[2]) {
     return vec_unit((vec){x, y, z});
 }
 
-/* How large a metre of the file is in the scene. */
+/* Size of a metre of the file in the scene. */
 static double scale_of(masu_session *s, const masu_skin *skin) {
     float rows[12];
     masu_instance_rows(&s->m->instances.now[skin->instance], rows);
     return sqrt((double)rows[0] * (double)rows[0] + (double)rows[4] * (double)rows[4] + (double)rows[8] * (double)rows[8]);
 }
 
-/* The session's own copy of the blob is gone by now. */
+/* The session has already freed its copy of the blob. */
 static masu_scene_view blob_of(void **blob) {
     masu_scene scene;
     masu_detail detail;
@@ -155,7 +155,7 @@ static void vertices_are_where_their_bones_put_them(void **state) {
     close_session(&s);
 }
 
-/* Two of a kind, each in its own pose; both back at rest are alike. */
+/* Two copies, each in its own pose; both are equal in the bind pose. */
 static void a_copy_has_a_pose_of_its_own(void **state) {
     (void)state;
     masu_session s;
@@ -178,7 +178,7 @@ static void a_copy_has_a_pose_of_its_own(void **state) {
     close_session(&s);
 }
 
-/* ---- The frame before ------------------------------------------------------------------------ */
+/* ---- The previous frame ---------------------------------------------------------------------- */
 
 static void positions(masu_session *s, const masu_skin *skin, float *out) {
     for (uint32_t i = 0; i < skin->vertex_count; i++)
@@ -195,15 +195,16 @@ static void the_frame_before_is_kept_to_the_bit(void **state) {
     const masu_skin *skin = skin_of(&s, "bear");
     size_t bytes = 3 * skin->vertex_count * sizeof *were;
     for (uint32_t i = 0; i < 6; i++) {
-        if (i != 3) pose(&s, "bear", 0, 0.2 + 0.05 * i); /* the fourth stands still */
+        if (i != 3) pose(&s, "bear", 0, 0.2 + 0.05 * i); /* the fourth frame is stationary */
         frame(&s, i == 5, NULL);
         positions(&s, skin, are);
         if (i && i < 5) assert_memory_equal(earlier(&s, skin), were, bytes);
-        if (i == 3 || i == 5) assert_memory_equal(earlier(&s, skin), are, bytes); /* nor after a cut */
+        /* and not after a cut */
+        if (i == 3 || i == 5) assert_memory_equal(earlier(&s, skin), are, bytes);
         if (i && i != 3) assert_memory_not_equal(are, were, bytes);
         memcpy(were, are, bytes);
     }
-    /* What comes back has not moved, wherever it was. */
+    /* A model that is shown again has not moved, wherever it was. */
     assert_int_equal(masu_model_show(s.m, model_of(&s, "bear"), 0, &failure), MASU_OK);
     frame(&s, 0, NULL);
     pose(&s, "bear", 0, 0.9);
@@ -252,13 +253,13 @@ static void project(const seen *e, vec p, double out[3]) {
     out[1] = (1 - vec_dot(rel, e->up) / out[2] / e->tan_y) * H / 2;
 }
 
-/* Perspective-right shares of a triangle's corners at a pixel's middle; 0: it lies outside. */
+/* Perspective-correct barycentric coordinates at a pixel's centre; 0: outside the triangle. */
 static int shares_at(const double c[3][3], double x, double y, double out[3]) {
     double area = (c[1][0] - c[0][0]) * (c[2][1] - c[0][1]) - (c[2][0] - c[0][0]) * (c[1][1] - c[0][1]), sum = 0;
     for (int k = 0; k < 3; k++) {
         const double *a = c[(k + 1) % 3], *b = c[(k + 2) % 3];
         double own = ((b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0])) / area;
-        if (!(own > 0.02)) return 0; /* at an edge rasterisers differ */
+        if (!(own > 0.02)) return 0; /* rasterisers differ at edges */
         out[k] = own / c[k][2];
         sum += out[k];
     }
@@ -283,7 +284,7 @@ static void a_velocity_is_the_difference_of_positions(void **state) {
     masu_camera camera;
     static float z[PIXELS];
     assert_int_equal(masu_camera_at(s.m, 0, &camera, &failure), MASU_OK);
-    camera.near_distance = 0.1f; /* as the scene has it */
+    camera.near_distance = 0.1f; /* as in the scene */
     view_depths(depth, &camera, z, PIXELS);
     const uint32_t *indices = (const uint32_t *)device_bytes(&s, MASU_BUFFER_INDICES);
     void *blob;
@@ -303,7 +304,7 @@ static void a_velocity_is_the_difference_of_positions(void **state) {
         for (uint32_t i = 0; i < PIXELS; i++) {
             if (!shares_at((const double(*)[3])now, i % W + 0.5, i / W + 0.5, share)) continue;
             double own = share[0] * now[0][2] + share[1] * now[1][2] + share[2] * now[2][2];
-            if (fabs(own - (double)z[i]) > 1e-3 * own) continue; /* something is before it */
+            if (fabs(own - (double)z[i]) > 1e-3 * own) continue; /* another surface is in front */
             project(&e, vec_add(vec_scale(before[0], share[0]), vec_add(vec_scale(before[1], share[1]), vec_scale(before[2], share[2]))), was);
             double x = half_float(velocity[4 * i]), y = half_float(velocity[4 * i + 1]);
             worst = fmax(worst, hypot(x - (was[0] - (i % W + 0.5)), y - (was[1] - (i / W + 0.5))));
@@ -316,7 +317,7 @@ static void a_velocity_is_the_difference_of_positions(void **state) {
     assert_true(checked > 500);
     assert_true(most > 2.0);
     assert_true(worst < 0.03);
-    /* What stands still has a velocity of 0. */
+    /* Stationary surfaces have a velocity of 0. */
     commands = frame(&s, 0, NULL);
     velocity = read_image(&s, commands.slot, MASU_READBACK_VELOCITY);
     for (uint32_t i = 0; i < PIXELS; i++) assert_true(half_float(velocity[4 * i]) == 0.0);
@@ -325,7 +326,7 @@ static void a_velocity_is_the_difference_of_positions(void **state) {
 
 /* ---- Shadow and mirror ----------------------------------------------------------------------- */
 
-/* The pose of both skins, as files that are baked. */
+/* Writes the pose of both skins as files to bake. */
 static void write_pose(masu_session *s, const char *name, const char *file) {
     static char text[1 << 20];
     const masu_skin *skin = skin_of(s, name);
@@ -342,7 +343,7 @@ static void write_pose(masu_session *s, const char *name, const char *file) {
         vec w = {(double)rows[0] * n.x + (double)rows[1] * n.y + (double)rows[2] * n.z,
                  (double)rows[4] * n.x + (double)rows[5] * n.y + (double)rows[6] * n.z,
                  (double)rows[8] * n.x + (double)rows[9] * n.y + (double)rows[10] * n.z};
-        w = vec_unit(w); /* scaled alike in all directions */
+        w = vec_unit(w); /* uniformly scaled */
         used += (size_t)snprintf(text + used, sizeof text - used, "v %.9g %.9g %.9g\nvn %.9g %.9g %.9g\n",
                                  p.x, p.y, p.z, w.x, w.y, w.z);
     }
@@ -426,7 +427,7 @@ static void a_pose_looks_like_a_mesh_baked_so(void **state) {
     assert_true(off[1] > PIXELS / 200);
     assert_true(off[2] > PIXELS / 40);
     compare(&live, &baked, off);
-    printf("  from what was baked so: %u, %u, %u\n", off[0], off[1], off[2]);
+    printf("  difference from the baked pose: %u, %u, %u\n", off[0], off[1], off[2]);
     assert_true(off[0] < PIXELS / 1000);
     assert_true(off[1] < PIXELS / 200);
     assert_true(off[2] < PIXELS / 200);

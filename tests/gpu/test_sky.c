@@ -1,8 +1,6 @@
-/*
- * test_sky.c: the analytic sky on the GPU: what the shader makes of the tables against src/frame/sky.c, the
- * light of the sky on a matt sphere, and that a renderer which may have such a sky draws a gradient as
- * one that may not.
- */
+/* test_sky.c: the analytic sky on the GPU: the shader's table look-ups against src/frame/sky.c, the
+ * sky's light on a matt sphere, and a renderer with an optional analytic sky renders a gradient
+ * like one without. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -49,7 +47,8 @@ static void images(const masu_frame_desc *frame, const uint16_t **hdr, const flo
     *depth = read_image(&s, commands.slot, MASU_READBACK_DEPTH);
 }
 
-/* Unit vector through the middle of a pixel of a camera at z = 4 that looks along -z, up by `tilt`. */
+/* Unit vector through the centre of a pixel of a camera at z = 4 that looks along -z, up by
+ * `tilt`. */
 static void pixel_ray(uint32_t i, double tilt, float out[3]) {
     double t = tan(PI / 6), x = ((i % W + 0.5) / W * 2 - 1) * t * W / H;
     double y = -((i / W + 0.5) / H * 2 - 1) * t;
@@ -64,7 +63,7 @@ static masu_camera camera_of(double tilt) {
                          .fov_y = (float)(PI / 3)};
 }
 
-/* Halves have 11 bits; the sun's disc and a pixel around it are left out. */
+/* Halves have 11 bits; the sun's disc and a pixel around it are skipped. */
 static void pixels_of_the_sky_are_what_the_tables_say(void **state) {
     (void)state;
     static const double suns[][2] = {{60, 160}, {15, 200}, {1, 180}, {-3, 170}, {-20, 10}, {90, 0}};
@@ -96,7 +95,7 @@ static void pixels_of_the_sky_are_what_the_tables_say(void **state) {
             assert_true(seen > W * H / 2);
         }
     }
-    print_message("pixels are off by %.5f at most\n", worst);
+    print_message("pixels have an error of %.5f at most\n", worst);
     assert_true(worst < 0.002);
     close_session(&s);
 }
@@ -118,7 +117,7 @@ static void a_matt_surface_shows_the_irradiance(void **state) {
         float d[3], n[3], want[3];
         pixel_ray(i, 0, d);
         double b = 4 * (double)d[2], root = b * b - 15, t = -b - sqrt(fmax(root, 0));
-        if (!(depth[i] > 0) || root < 0.1) continue; /* the rim apart */
+        if (!(depth[i] > 0) || root < 0.1) continue; /* except the rim */
         for (int k = 0; k < 3; k++) n[k] = (float)(t * (double)d[k] + (k == 2 ? 4 : 0));
         masu_sky_irradiance_at(&sky.irradiance, n, want);
         seen++;
@@ -127,14 +126,15 @@ static void a_matt_surface_shows_the_irradiance(void **state) {
             worst = worst_of(worst, fabs(got - w) / w);
         }
     }
-    print_message("%u pixels, irradiance off by %.4f at most\n", seen, worst);
+    print_message("%u pixels, irradiance error %.4f at most\n", seen, worst);
     assert_true(seen > 1000 && worst < 0.02);
     close_session(&s);
 }
 
-/* Four spheres of grey metal: the sky by three looks, by those and the table, by the table, and with order 2; their sun is
- * below the horizon. Seen from above such a metal mirrors the same share everywhere, of all colours; a white one would send more
- * than a hundredth of its light only after a second meeting with the surface, from elsewhere. */
+/* Four spheres of grey metal use the sky by three look-ups, by look-ups and the table, by the
+ * table, and by order 2; the sun is below the horizon. Viewed from above, such a metal reflects the
+ * same fraction everywhere, in all colours. A white one would reflect more than a hundredth of its
+ * light after a second interaction with the surface, from other directions. */
 static void metals_mirror_the_sky_by_their_roughness(void **state) {
     (void)state;
     static const double roughness[] = {0.2, 0.35, 0.45, 0.7};
@@ -162,7 +162,7 @@ static void metals_mirror_the_sky_by_their_roughness(void **state) {
                     square += eye[k] * eye[k];
                 }
                 double root = half * half - square;
-                if (!(depth[i] > 0) || root < 0.13) continue; /* the rim apart */
+                if (!(depth[i] > 0) || root < 0.13) continue; /* except the rim */
                 double t = -half - sqrt(root), facing = 0;
                 for (int k = 0; k < 3; k++) {
                     n[k] = (eye[k] + t * (double)d[k]) / 0.45;
@@ -234,7 +234,7 @@ static void a_sky_that_was_not_planned_is_refused(void **state) {
     close_session(&s);
 }
 
-/* ---- A sky from a picture -------------------------------------------------------------------- */
+/* ---- Environment map ------------------------------------------------------------------------- */
 
 /* A radiance linear in the direction: its irradiance / pi has two thirds of the slope. */
 static double linear_sky(const float d[3], int c, double share) {
@@ -300,7 +300,8 @@ static void a_picture_is_seen_and_lights(void **state) {
         }
     }
     close_session(&s);
-    print_message("a picture's sky is off by %.4f, its light by %.4f\n", sky_error, light_error);
+    print_message("an environment map's sky has an error of %.4f, its light %.4f\n",
+                  sky_error, light_error);
     assert_true(sky_error < 0.01 && light_error < 0.005 && lit > 1000);
 }
 

@@ -1,7 +1,7 @@
-/* test_smaa.c: SMAA and FXAA on the GPU against the scalar form in tests/reference/smaa.c,
- * through the library's own frame: pictures that are hard on it in different ways, all settings,
- * with a scene and without; that nothing changes away from edges; what a picture without edges
- * costs; broken pixels. */
+/* test_smaa.c: SMAA and FXAA on the GPU against the scalar implementation in
+ * tests/reference/smaa.c, through the library's own frame: images that are hard in different ways,
+ * all settings, with a scene and without; nothing changes away from edges; the cost of an image
+ * without edges; invalid pixels. */
 #include "support/support.h"
 #include "support/wrap.h"
 
@@ -14,9 +14,9 @@
 
 #define MOST ((size_t)160 * 120)
 #define PRESETS 4
-enum { WAYS = 5 }; /* FXAA and the presets: as many rungs at the most */
+enum { WAYS = 5 }; /* FXAA and the presets: the maximum number of rungs */
 
-static masu_session s; /* a device without a renderer; each job makes its own */
+static masu_session s; /* a device without a renderer; each job creates one */
 
 static int open_group(void **state) {
     (void)state;
@@ -32,8 +32,8 @@ static int close_group(void **state) {
 
 /* ---- Running --------------------------------------------------------------------------------- */
 
-/* One frame over a source image for each rung, into out[rung]; says how many tiles each has
- * blended. */
+/* One frame of a source image for each rung, into out[rung]; returns the number of tiles that each
+ * has blended. */
 static void run_view(VkImageView view, uint32_t width, uint32_t height, const masu_rung *rungs,
                      uint32_t count, uint32_t out_width, uint32_t out_height, uint8_t *const *out,
                      uint64_t *tiles) {
@@ -49,7 +49,7 @@ static void run_view(VkImageView view, uint32_t width, uint32_t height, const ma
     for (uint32_t r = 0; r < count && tiles; r++) tiles[r] = stats[r].smaa_tiles;
 }
 
-/* The same of pixels in the corner of a larger image full of `beyond`. */
+/* The same for pixels in the corner of a larger image full of `beyond`. */
 static void run_to(const uint8_t *rgba, uint32_t width, uint32_t height, uint32_t beyond,
                    const masu_rung *rungs, uint32_t count, uint32_t out_width, uint32_t out_height,
                    uint8_t *const *out, uint64_t *tiles) {
@@ -61,7 +61,7 @@ static void run_to(const uint8_t *rgba, uint32_t width, uint32_t height, uint32_
     masu_headless_source_destroy(&s.host, &source);
 }
 
-/* Returns the tiles. */
+/* Returns the number of tiles. */
 static uint64_t run(const uint8_t *rgba, uint32_t width, uint32_t height, masu_aa aa,
                     uint8_t *out) {
     masu_rung rung = {.aa = aa};
@@ -70,7 +70,7 @@ static uint64_t run(const uint8_t *rgba, uint32_t width, uint32_t height, masu_a
     return tiles;
 }
 
-/* All of them: FXAA, then SMAA from LOW to ULTRA. */
+/* All methods: FXAA, then SMAA from LOW to ULTRA. */
 static const masu_rung ways[WAYS] = {{.aa = MASU_AA_FXAA},
                                      {.aa = MASU_AA_SMAA_LOW},
                                      {.aa = MASU_AA_SMAA_MEDIUM},
@@ -81,15 +81,14 @@ static uint8_t *const all_ways[WAYS] = {by_way[0], by_way[1], by_way[2], by_way[
 static uint8_t *const all_ways_too[WAYS] = {by_way_too[0], by_way_too[1], by_way_too[2],
                                             by_way_too[3], by_way_too[4]};
 
-/* ---- Pictures -------------------------------------------------------------------------------- */
+/* ---- Images ---------------------------------------------------------------------------------- */
 
 static void set_grey(uint8_t *rgba, size_t i, int v) {
     memset(rgba + 4 * i, v < 0 ? 0 : v > 255 ? 255 : v, 3);
     rgba[4 * i + 3] = 255;
 }
 
-/* Lines of one pixel at 24 angles, and half-planes: what lies on one side of one through the
- * middle. */
+/* Lines of one pixel at 24 angles, and half-planes: one side of a line through the centre. */
 static void fill_fan(uint32_t width, uint32_t height, uint8_t *rgba) {
     for (uint32_t i = 0; i < width * height; i++) set_grey(rgba, i, 230);
     double cx = 0.5 * (double)width, cy = 0.5 * (double)height;
@@ -127,7 +126,7 @@ static void fill_stairs(uint32_t width, uint32_t height, uint8_t *rgba) {
     }
 }
 
-/* Edges that run out of the picture on all sides. */
+/* Edges that leave the image on all sides. */
 static void fill_crossing(uint32_t width, uint32_t height, uint8_t *rgba) {
     for (uint32_t i = 0; i < width * height; i++) {
         uint32_t x = i % width, y = i / width;
@@ -158,11 +157,11 @@ static void fill(uint32_t picture, uint32_t width, uint32_t height, uint8_t *rgb
         fill_crossing(width, height, rgba);
 }
 
-/* ---- The judge ------------------------------------------------------------------------------- */
+/* ---- The reference --------------------------------------------------------------------------- */
 
 static uint8_t ref_edges[2 * MOST], ref_weights[4 * MOST];
 
-/* Leaves edges and weights behind. */
+/* Keeps edges and weights. */
 static void reference_smaa(const uint8_t *rgba, uint32_t width, uint32_t height, int preset,
                            uint8_t *out) {
     static float rgb[3 * MOST], result[3 * MOST];
@@ -175,7 +174,7 @@ static void reference_smaa(const uint8_t *rgba, uint32_t width, uint32_t height,
     masu_ref_to_rgba8(result, width, height, out);
 }
 
-/* Whether the pixel has no weight of its own, and takes none from the right or from below. */
+/* Whether the pixel has no weight, and uses none from the right or from below. */
 static int is_away(uint32_t i, uint32_t width, uint32_t height) {
     uint32_t x = i % width, y = i / width;
     const uint8_t *own = ref_weights + 4 * i;
@@ -184,7 +183,7 @@ static int is_away(uint32_t i, uint32_t width, uint32_t height) {
     return !(own[0] | own[2] | right[3] | below[1]);
 }
 
-/* rounded_before: steps by which a pixel may differ that is not blended. */
+/* rounded_before: steps by which an unblended pixel may differ. */
 static uint32_t compare(const uint8_t *in, const uint8_t *gpu, const uint8_t *cpu, uint32_t width,
                         uint32_t height, uint32_t rounded_before) {
     uint32_t worst = 0;
@@ -200,7 +199,7 @@ static uint32_t compare(const uint8_t *in, const uint8_t *gpu, const uint8_t *cp
 static const masu_aa presets[PRESETS] = {MASU_AA_SMAA_LOW, MASU_AA_SMAA_MEDIUM, MASU_AA_SMAA_HIGH,
                                          MASU_AA_SMAA_ULTRA};
 
-/* FXAA has no weights that would say where nothing changes. */
+/* FXAA has no weights that show unchanged pixels. */
 static void check_fxaa(uint32_t picture, const uint8_t *in, uint32_t width, uint32_t height) {
     static float rgb[3 * MOST], result[3 * MOST];
     static uint8_t cpu[4 * MOST];
@@ -233,7 +232,7 @@ static void both_are_the_scalar_reference_within_two_steps(void **state) {
         print_message("  %-12s %6u pixels blended, worst %u %u %u %u/255\n", picture_name(picture),
                       changed, worst[0], worst[1], worst[2], worst[3]);
         for (uint32_t p = 0; p < PRESETS; p++) assert_true(worst[p] <= 2);
-        /* Each of them is a test: all but the smooth ones have something to blend. */
+        /* Every image is a test: all except the smooth ones have pixels to blend. */
         assert_true((changed > 0) ==
                     (picture != MASU_PATTERN_RAMP && picture != MASU_PATTERN_FLAT));
         check_fxaa(picture, in, width, height);
@@ -254,7 +253,7 @@ static void sizes_that_no_tile_divides_are_right_to_the_last_pixel(void **state)
     }
 }
 
-/* ---- What it costs --------------------------------------------------------------------------- */
+/* ---- Cost ------------------------------------------------------------------------------------ */
 
 static void a_picture_without_edges_has_no_tile(void **state) {
     (void)state;
@@ -270,8 +269,8 @@ static void a_picture_without_edges_has_no_tile(void **state) {
     }
 }
 
-/* A dot has edges in its own tile, and in those to the right and below where it touches them; it
- * changes its neighbours, which may lie in tiles to the left and above. */
+/* A dot has edges in its own tile, and in those to the right and below if it touches them; it
+ * changes its neighbours, which may be in tiles to the left and above. */
 static void only_tiles_at_edges_are_blended(void **state) {
     (void)state;
     static const uint32_t dots[][3] = {{40, 40, 1}, {47, 40, 2}, {48, 40, 2}, {40, 32, 2},
@@ -284,7 +283,7 @@ static void only_tiles_at_edges_are_blended(void **state) {
     }
 }
 
-/* ---- Around it ------------------------------------------------------------------------------- */
+/* ---- Surroundings of the image --------------------------------------------------------------- */
 
 static void what_lies_beyond_the_valid_rectangle_is_never_read(void **state) {
     (void)state;
@@ -320,11 +319,11 @@ static void the_chain_is_smaa_then_easu_then_rcas(void **state) {
     s.desc.debug.exact = 0;
     uint32_t off = 0;
     for (uint32_t i = 0; i < 16 * PIXELS; i++) off += abs(gpu[i] - cpu[i]) > 1;
-    print_message("  %u of %u numbers off by more than 1/255\n", off, 12 * PIXELS);
-    assert_true(off <= PIXELS / 100); /* where a step of what was blended turns an edge */
+    print_message("  %u of %u numbers with an error over 1/255\n", off, 12 * PIXELS);
+    assert_true(off <= PIXELS / 100); /* a step in the source image can flip an edge */
 }
 
-/* ---- Broken pixels --------------------------------------------------------------------------- */
+/* ---- Invalid pixels -------------------------------------------------------------------------- */
 
 typedef struct float_source {
     VkImage image;
@@ -411,8 +410,8 @@ static void free_float_source(float_source *f) {
     vkFreeMemory(s.host.device, f->memory, NULL);
 }
 
-/* Each of them is to the picture what a black or a white pixel is: it changes nothing that such
- * a one would not. */
+/* Each invalid pixel acts like a black or a white one: it changes no pixels that such a pixel
+ * would not change. */
 static void broken_pixels_are_black_or_white_ones(void **state) {
     (void)state;
     enum { WIDTH = 48, HEIGHT = 40 };
@@ -444,8 +443,8 @@ static void broken_pixels_are_black_or_white_ones(void **state) {
 
 /* ---- With a scene ---------------------------------------------------------------------------- */
 
-/* What a scene shows without is what the reference begins with. Targets that are drawn into, and
- * such as are blitted to; with poison in all images before each frame. */
+/* The reference starts from the scene's image without anti-aliasing. Targets that are rendered to,
+ * and targets that are blitted to; with poison in all images before each frame. */
 static void a_scene_is_smoothed_as_its_picture_is(void **state) {
     (void)state;
     enum { WIDTH = 150, HEIGHT = 90 };
@@ -454,7 +453,7 @@ static void a_scene_is_smoothed_as_its_picture_is(void **state) {
     for (uint32_t storage = 0; storage < 2; storage++) {
         masu_session_desc d = test_desc("test_both", WIDTH, HEIGHT);
         d.desc.targets.storage = storage;
-        d.desc.dither = MASU_OFF; /* the judge has none */
+        d.desc.dither = MASU_OFF; /* the reference has none */
         d.desc.debug.poison = 1;
         d.desc.rung_count = 5;
         d.desc.rungs[0].aa = MASU_AA_OFF;
@@ -470,14 +469,14 @@ static void a_scene_is_smoothed_as_its_picture_is(void **state) {
             reference_smaa(plain, WIDTH, HEIGHT, (int)p, cpu);
             assert_int_equal(masu_stats(scene.m, commands.slot, &stats, NULL), MASU_OK);
             assert_true(stats.smaa_tiles > 0 && stats.smaa_tiles <= 60);
-            /* It comes in 10 bits, the picture in 8. */
+            /* The input has 10 bits, the image 8. */
             assert_true(compare(plain, gpu, cpu, WIDTH, HEIGHT, 1) <= 2);
         }
         close_session(&scene);
     }
 }
 
-/* A lower rung works in a corner of images that a higher one has left full. */
+/* A lower rung uses a corner of images that a higher one has filled. */
 static void a_smaller_rung_reads_nothing_of_a_larger_one(void **state) {
     (void)state;
     enum { WIDTH = 150, HEIGHT = 90 };
@@ -497,10 +496,10 @@ static void a_smaller_rung_reads_nothing_of_a_larger_one(void **state) {
 
 /* ---- Memory ---------------------------------------------------------------------------------- */
 
-/* Without a scene, too, the table has to get to memory that the host cannot write. */
+/* Without a scene, too, the table has to reach memory that the host cannot write. */
 static void a_discrete_device_gets_the_table_through_a_staging_buffer(void **state) {
     (void)state;
-    skip_unless_host_sees_all_memory(); /* or there is one already */
+    skip_unless_host_sees_all_memory(); /* or the upload already uses one */
     static uint8_t in[4 * MOST], here[4 * MOST], there[4 * MOST];
     fill(MASU_PATTERN_TEXT, 80, 60, in);
     run(in, 80, 60, MASU_AA_SMAA_HIGH, here);

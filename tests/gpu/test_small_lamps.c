@@ -1,6 +1,7 @@
-/* test_small_lamps.c: a small bright ball above a rough mirror. Its light reaches the mirror as an area light
- * and by reflection rays that hit the ball: together they are as bright as an area light without a ball, they
- * are still at rest, and a part that is no light is left to the rays. */
+/* test_small_lamps.c: a small bright ball above a rough mirror. Its light reaches the mirror as an
+ * area light and by reflection rays that hit the ball: together they are as bright as an area light
+ * without a ball, they are stable in a static view, and an emissive part that is no light is left
+ * to the rays. */
 #include "support/files.h"
 #include "support/floats.h"
 #include "support/shadow.h"
@@ -13,11 +14,12 @@ enum { WIDTH = 96, HEIGHT = 64, FRAMES = 48, KEPT = 16 };
 
 typedef struct glow {
     double light;     /* mean radiance of the mirror */
-    double deviation; /* largest of a pixel over the last frames, in steps of 1/255 of display light */
+    double deviation; /* largest deviation of a pixel over the last frames, in steps of 1/255 of
+                         display light */
     uint32_t lights;
 } glow;
 
-/* lamp: how the ball is described, or a light in its place. */
+/* lamp: the description of the ball, or a light instead. */
 static glow glow_of(const char *models, const char *lights) {
     static double sum[WIDTH * HEIGHT], square[WIDTH * HEIGHT];
     char json[2048];
@@ -69,14 +71,16 @@ static void rays_and_lobe_share_the_light(void **state) {
     glow alone = glow_of("", "{\"type\": \"sphere\", \"position\": [0, 1, 0], \"radius\": 0.05, \"color\": [16, 14, 10], "
                              "\"range\": 100}");
     glow shared = glow_of(with, ""), rays = glow_of(without, "");
-    print_message("  light %.4g alone, %.4g shared, %.4g by rays; deviation %.2f, %.2f, %.2f of 255\n", alone.light,
-                  shared.light, rays.light, alone.deviation, shared.deviation, rays.deviation);
+    print_message("  light %.4g as a light, %.4g shared, %.4g by rays; deviation %.2f, %.2f, %.2f "
+                  "of 255\n",
+                  alone.light, shared.light, rays.light, alone.deviation, shared.deviation,
+                  rays.deviation);
     assert_int_equal(shared.lights, 1);
     assert_int_equal(rays.lights, 0);
     assert_true(alone.light > 1e-3);
     assert_true(fabs(shared.light / alone.light - 1) < 0.05);
     assert_true(shared.deviation < 1);
-    assert_true(rays.deviation > 4 * shared.deviation); /* else there is nothing to share */
+    assert_true(rays.deviation > 4 * shared.deviation); /* otherwise there is nothing to share */
 }
 
 int main(void) {

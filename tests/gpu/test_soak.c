@@ -1,7 +1,8 @@
-/* test_soak.c: long runs: at random other rungs, cameras, times, cuts, materials, models that come and go, sizes and
- * scenes. Nothing is replaced at a store, the picture of the beginning is that of the end, byte for byte, and the memory
- * of the process does not grow but by what the driver takes for itself: beside it stands what it takes when a
- * recording is submitted as often and nothing of the library is called in between.
+/* test_soak.c: long runs with random rungs, cameras, times, cuts, materials, added and removed
+ * models, sizes and scenes. No stored value is replaced, the image at the end is bit-identical to
+ * the one at the start, and the process's memory grows only by the driver's own allocations. For
+ * comparison, the growth when the same number of recordings is submitted without calls of the
+ * library is printed.
  *
  * SOAK_FRAMES: 1,000, and 20,000 with `make soak`. */
 #include "support/files.h"
@@ -18,7 +19,7 @@ static masu_detail failure; /* of the last call that failed */
 enum { W = 64, H = 36, BYTES = W * H * 4, SCENES = 3, SCENE_FRAMES = 100, SIZE_FRAMES = 20 };
 
 static const char *const scenes[SCENES] = {"test_live", "test_velocity", "test_sky"};
-static masu_session opened[SCENES]; /* of the first the device */
+static masu_session opened[SCENES]; /* the first has the device */
 static masu_pipelines pool;
 static uint8_t first[SCENES][BYTES], now[BYTES];
 static uint64_t random_state = 12345;
@@ -99,7 +100,7 @@ static void change(own_renderer *x, uint32_t scene) {
         assert_int_equal(masu_model_remove(x->m, added, &failure), MASU_OK);
 }
 
-/* So many frames with a life of their own; a renderer is made anew every SCENE_FRAMES. */
+/* Random frames; a new renderer every SCENE_FRAMES. */
 static void soak(uint32_t frames) {
     own_renderer x = {0};
     uint32_t scene = 0;
@@ -111,7 +112,7 @@ static void soak(uint32_t frames) {
             frame_of(&x, &(masu_frame_desc){MASU_FRAME_DESC, .cut = 1});
             picture_of(&x, now);
             if (i / SCENE_FRAMES < SCENES) memcpy(first[scene], now, BYTES);
-            assert_memory_equal(now, first[scene], BYTES); /* whatever has been before */
+            assert_memory_equal(now, first[scene], BYTES); /* for any history */
         }
         if (i % SIZE_FRAMES == SIZE_FRAMES - 1) resize(&x, 1 + roll(W), 1 + roll(H));
         if (roll(4) == 0) change(&x, scene);
@@ -129,7 +130,7 @@ static void soak(uint32_t frames) {
     unmake_own(&opened[0], &x);
 }
 
-/* What the driver takes for itself: frames of each scene, submitted again and again. */
+/* The driver's own growth: frames of each scene, submitted again and again. */
 static int64_t bare(uint32_t frames) {
     int64_t grown = 0;
     for (uint32_t scene = 0; scene < SCENES; scene++) {
@@ -157,11 +158,12 @@ static void memory_is_flat_and_nothing_is_left_of_what_was(void **state) {
     for (uint32_t i = 0; i < SCENES; i++) {
         masu_session_desc d = test_desc(scenes[i], W, H);
         d.no_renderer = true;
-        d.host.validate = false; /* the layer keeps books of its own */
-        if (getenv("SOAK_VALIDATE")) d.host.validate = true; /* then memory says nothing */
+        d.host.validate = false; /* the layer allocates for itself */
+        /* then the memory figures are meaningless */
+        if (getenv("SOAK_VALIDATE")) d.host.validate = true;
         open_session(&opened[i], &d);
     }
-    soak(round); /* what is compiled and kept once */
+    soak(round); /* objects compiled and cached once */
     double resident = resident_mb();
     uint64_t before = heap();
     uint32_t parts = frames / round > 10 ? 10 : frames / round;

@@ -1,6 +1,7 @@
-/* test_specular_filters.c: the filters of reflections (shaders/specular_reuse.comp and those behind it): nearer
- * to the truth than each fewer of them, at rest and in motion; a world of one colour stays it, whatever it is
- * made of; nothing that is not finite lives on; the frame rate, another render size and a cut. */
+/* test_specular_filters.c: the filters of reflections (shaders/specular_reuse.comp and the next
+ * passes): each reduces the error, in static views and in motion; a world of one colour keeps it,
+ * for all materials; values that are not finite disappear; the frame rate, another render size and
+ * a cut. */
 #include "support/files.h"
 #include "support/floats.h"
 #include "support/shadow.h"
@@ -21,7 +22,7 @@ static char error[1024];
 
 /* ---- Scenes ---------------------------------------------------------------------------------- */
 
-/* A checker of four, spheres from a mirror to a rough one, a box that moves, one that shines. */
+/* A checker of four, spheres from a mirror to a rough one, a moving box, an emissive one. */
 #define BALL(x, roughness)                                                                           \
     "{\"mesh\": {\"sphere\": {\"radius\": 0.6, \"subdivisions\": 4}}, \"translate\": [" x ", 0.6, 0],"    \
     "\"material\": {\"base_color\": [0.9, 0.85, 0.8], \"roughness\": " roughness ", \"metallic\": 1}},"
@@ -42,7 +43,7 @@ static const char spheres[] =
     "\"ambient\": [0.3, 0.33, 0.4], \"sky\": {\"zenith\": [0.25, 0.4, 0.8], \"horizon\": [0.7, 0.75, 0.85]},"
     "\"reflections\": {\"cutoff\": 0.5}}";
 
-/* White spheres under a white sky, no sun: all light that arrives leaves again. */
+/* White spheres under a white sky, no sun: all incoming light is reflected. */
 #define WHITE(x, roughness)                                                                          \
     "{\"mesh\": {\"sphere\": {\"radius\": 0.5, \"subdivisions\": 4}}, \"translate\": [" x ", 0, 0],"        \
     "\"material\": {\"base_color\": [1, 1, 1], \"roughness\": " roughness ", \"metallic\": 1}}"
@@ -53,8 +54,8 @@ static const char furnace[] =
     "\"sun\": {\"azimuth\": 0, \"elevation\": 45, \"intensity\": 0}, \"ambient\": [0.5, 0.5, 0.5],"
     "\"sky\": {\"zenith\": [0.5, 0.5, 0.5], \"horizon\": [0.5, 0.5, 0.5]}, \"reflections\": {\"cutoff\": 0.5}}";
 
-/* Panels of rough metal, all of what they mirror the sky: one that turns about its middle, and one that slides
- * away from before another that faces the same way. No light comes from elsewhere. */
+/* Panels of rough metal that reflect only the sky: one rotates about its centre, and one slides
+ * away from the front of another with the same orientation. There is no other light. */
 #define PANEL(name, width, x, z)                                                                     \
     "{\"name\": \"" name "\", \"mesh\": {\"box\": {\"size\": [" width ", 1.6, 0.05]}},"                    \
     "\"translate\": [" x ", 0, " z "],"                                                               \
@@ -66,7 +67,7 @@ static const char panels[] =
     "\"sun\": {\"azimuth\": 0, \"elevation\": 45, \"intensity\": 0}, \"ambient\": [0.5, 0.5, 0.5],"
     "\"sky\": {\"zenith\": [0.5, 0.5, 0.5], \"horizon\": [0.5, 0.5, 0.5]}, \"reflections\": {\"cutoff\": 0.5}}";
 
-/* A red box that glides over a smooth metal floor, before a grey wall. */
+/* A red box moves over a smooth metal floor, in front of a grey wall. */
 #define GLIDE(roughness)                                                                             \
     "{\"models\": [{\"mesh\": {\"plane\": {\"size_x\": 14, \"size_z\": 14}}, \"material\": {\"base_color\": "       \
     "[0.8, 0.8, 0.8], \"metallic\": 1, \"roughness\": " roughness "}},"                                \
@@ -78,8 +79,8 @@ static const char panels[] =
     "\"sun\": {\"azimuth\": 0, \"elevation\": 45, \"intensity\": 0}, \"ambient\": [0, 0, 0],"            \
     "\"reflections\": {\"cutoff\": 0.5}}"
 
-/* A fence of square bars seen edge on, whose faces are a pixel wide and look left and right by turns; one
- * side of the world is warm and bright. */
+/* A fence of square bars viewed edge-on, whose faces are a pixel wide and alternately face left and
+ * right; one side of the world is warm and bright. */
 enum { BARS = 36 };
 static void make_fence(char *text, size_t size) {
     size_t at = (size_t)snprintf(text, size, "{\"models\": [");
@@ -142,7 +143,7 @@ static double error_of(const masu_specular_run *run) {
     return masu_specular_compare(picture, truth, classes, PIXELS).value[MASU_SPECULAR_ALL];
 }
 
-/* The truth of the scene of spheres, and what 64 rays of each pixel are off by. */
+/* Finds the ground truth of the sphere scene; returns the error of 64 rays per pixel. */
 static double find_truth(void) {
     masu_session_desc d = desc_of("filters");
     masu_specular_run run = {.frames = RAYS, .time = 0.8};
@@ -192,13 +193,13 @@ static void a_ray_for_four_pixels_and_the_filters_are_worth_many_rays_for_each(v
            RAYS, rays, none, still, rest, camera, object, jump, flicker);
     assert_true(rest < 0.25 * none && rest < 0.5 * still && still < none);
     assert_true(rest <= rays && camera <= rays && object <= rays && jump <= rays);
-    /* The box is a tenth of the picture here, and what lies beside it has just come into view. */
+    /* The box is a tenth of the image here, and the pixels next to it have just come into view. */
     assert_true(camera <= 2 * rest && object <= 4 * rest && jump <= 4.5 * rest);
     assert_true(flicker <= 0.5);
 }
 
-/* Where the pixels of a 2x2 are different surfaces each has a mean of its own; without those the means of the
- * 2x2 begin anew in each frame. */
+/* If the pixels of a 2x2 quad are different surfaces, each has a separate history; without separate
+ * histories the quad's starts over in each frame. */
 static void faces_as_narrow_as_a_pixel_come_to_rest(void **state) {
     (void)state;
     masu_session_desc d = desc_of("fence");
@@ -234,12 +235,13 @@ static void a_white_world_stays_white(void **state) {
         for (int k = 0; k < 3; k++)
             worst = worst_of(worst, fabs((double)picture[3 * i + (uint32_t)k] / 0.5 - 1));
     }
-    printf("%u pixels, off by at most %.4f\n", count, worst);
+    printf("%u pixels, error of %.4f at most\n", count, worst);
     assert_true(count > 300);
     assert_true(worst < 0.01);
 }
 
-/* Where nothing has been traced the images hold anything: a texel without a guide must not be looked at. */
+/* Texels where nothing was traced have undefined content: a texel without a guide must not be
+ * read. */
 static void what_other_images_left_behind_is_not_seen(void **state) {
     (void)state;
     masu_specular_run run;
@@ -256,12 +258,12 @@ static void what_other_images_left_behind_is_not_seen(void **state) {
     }
 }
 
-/* Eight frames of 1/60 s forget a box that has jumped as far as four of 1/30 s: what is left is the difference
- * from the same frames without a jump, which have the same noise. */
+/* Eight frames of 1/60 s reduce the trace of a jumping box as much as four of 1/30 s: the
+ * difference from the same frames without a jump, which have the same noise. */
 static void the_frame_rate_does_not_change_what_is_remembered(void **state) {
     (void)state;
     double left[2];
-    if (!whole_run()) return; /* how fast it forgets is arithmetic */
+    if (!whole_run()) return; /* the decay rate is arithmetic */
     masu_session_desc d = desc_of("filters");
     for (int slow = 0; slow < 2; slow++) {
         open_session(&s, &d);
@@ -283,7 +285,7 @@ static void the_frame_rate_does_not_change_what_is_remembered(void **state) {
     assert_true(left[0] > 0 && left[1] < 2 * left[0] && left[0] < 2 * left[1]);
 }
 
-/* The history is found again at another render size, and not after a cut. */
+/* The history is found again at another render size, and dropped after a cut. */
 static void another_render_size_keeps_the_history_and_a_cut_does_not(void **state) {
     (void)state;
     double errors[3];
@@ -292,7 +294,7 @@ static void another_render_size_keeps_the_history_and_a_cut_does_not(void **stat
     d.desc.rungs[0] = (masu_rung){.specular_reuse = MASU_OFF, .specular_filter = MASU_OFF};
     d.desc.rungs[1] = d.desc.rungs[0];
     d.desc.rungs[1].scale = 0.75f;
-    for (int way = 0; way < 3; way++) { /* the same size, another one, another one and a cut */
+    for (int way = 0; way < 3; way++) { /* the same size, another one, another one with a cut */
         open_session(&s, &d);
         masu_camera camera;
         masu_commands commands;
@@ -312,8 +314,8 @@ static void another_render_size_keeps_the_history_and_a_cut_does_not(void **stat
     assert_true(errors[0] < 0.8 * errors[2] && errors[1] < 0.8 * errors[2]);
 }
 
-/* Without a history each ray of a rough surface is seen. A firefly: twice as bright as all that the
- * truth has around. */
+/* Without history each ray of a rough surface is visible. A firefly: twice as bright as every pixel
+ * of the ground truth around it. */
 static void the_first_frame_has_few_fireflies(void **state) {
     (void)state;
     masu_session_desc d = desc_of("filters");
@@ -340,13 +342,15 @@ static void the_first_frame_has_few_fireflies(void **state) {
         }
     }
     close_session(&s);
-    printf("%u fireflies in 16 first frames, light %.3f of the truth's\n", fireflies, sum / all);
+    printf("%u fireflies in 16 first frames, light %.3f of the ground truth's\n",
+           fireflies, sum / all);
     assert_true(fireflies < 34); /* 25; 43 without a limit */
     assert_true(sum > 0.9 * all && sum < 1.1 * all);
 }
 
-/* A rung without full-resolution history does not keep them: the next one that has them must not take older ones for
- * those of the previous frame. Two histories that differ, cut off; what follows is the same to the bit. */
+/* A rung without full-resolution history does not maintain it: the next rung with it must not use
+ * older values as the previous frame's. Two different histories, cut; the following frames are
+ * bit-identical. */
 static void means_of_pixels_are_not_taken_up_after_a_rung_without(void **state) {
     (void)state;
     masu_session_desc d = desc_of("filters");
@@ -374,8 +378,8 @@ static void means_of_pixels_are_not_taken_up_after_a_rung_without(void **state) 
     for (uint32_t i = 0; i < 3 * PIXELS; i++) assert_true(picture[i] == other[i]);
 }
 
-/* Twelve frames under a red sky, then one under a blue one, in which the panels have moved; with a cut that one
- * has no history. depths: of the frame before it, and of it. */
+/* Twelve frames under a red sky, then one under a blue one, in which the panels have moved. With a
+ * cut the last has no history. depths: of the frame before it, and of the last frame. */
 static void red_then_blue(bool cut, float *rgb, float depths[2][PIXELS]) {
     masu_session_desc d = desc_of("panels");
     d.desc.rungs[0] = (masu_rung){
@@ -399,8 +403,9 @@ static void red_then_blue(bool cut, float *rgb, float depths[2][PIXELS]) {
     close_session(&s);
 }
 
-/* What has turned by 50 degrees, and what stood behind something, were not what the history is of, though a point of
- * it was there: what they show is their first frame, as after a cut. What neither turned nor was hidden remembers. */
+/* After a rotation by 50 degrees, and on disoccluded surfaces, the history belongs to another
+ * surface, although a point was there: these pixels start over, as after a cut. All others keep
+ * their history. */
 static void the_history_of_another_surface_is_not_taken_up(void **state) {
     (void)state;
     enum { TURNED, UNCOVERED, SAME, PLACES };
@@ -424,15 +429,15 @@ static void the_history_of_another_surface_is_not_taken_up(void **state) {
             }
         }
     }
-    printf("pixels that remember: %u of %u that turned, %u of %u uncovered, %u of %u that stay\n", kept[TURNED],
-           count[TURNED], kept[UNCOVERED], count[UNCOVERED], kept[SAME], count[SAME]);
+    printf("pixels with history: %u of %u rotated, %u of %u uncovered, %u of %u unchanged\n",
+           kept[TURNED], count[TURNED], kept[UNCOVERED], count[UNCOVERED], kept[SAME], count[SAME]);
     assert_true(count[TURNED] > 200 && count[UNCOVERED] > 100 && count[SAME] > 100);
-    /* A texel of 2x2 beside an edge may have another surface for its neighbour. */
+    /* A texel of 2x2 next to an edge may have a neighbour on another surface. */
     assert_true(10 * kept[TURNED] < count[TURNED] && 10 * kept[UNCOVERED] < count[UNCOVERED]);
     assert_true(10 * kept[SAME] > 9 * count[SAME]);
 }
 
-/* The box after 40 frames of motion, or at rest there. */
+/* The box after 40 frames of motion, or stationary at its end. */
 static void glide(const char *scene, bool moves, float *rgb) {
     enum { STEPS = 40 };
     masu_session_desc d = desc_of(scene);
@@ -448,8 +453,8 @@ static void glide(const char *scene, bool moves, float *rgb) {
     close_session(&s);
 }
 
-/* Neither the floor nor what stands behind the box moves: that its reflection has gone only rays
- * tell. */
+/* Neither the floor nor the surface behind the box moves: only rays show that its reflection has
+ * disappeared. */
 static void what_glides_over_a_mirror_leaves_no_trail(void **state) {
     (void)state;
     static const char *const names[] = {"glide_smooth", "glide_rough"};

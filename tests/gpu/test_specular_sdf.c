@@ -1,6 +1,7 @@
-/* test_specular_sdf.c: rays of reflections and the SDF: each ray's hit against the scene's field in double
- * precision, from surfaces that the truth has found too; rays that begin in a solid, hold any bits, meet slots
- * of any bits; what moves; and pictures: SDF and polygons in each other's mirrors. */
+/* test_specular_sdf.c: reflection rays and the SDF: each ray's hit against the scene's field in
+ * double precision, from surfaces that the reference has found too; rays that begin in a solid or
+ * hold any bits, and slots of any bits; moving parts; and images: SDF and polygons in each other's
+ * reflections. */
 #include "support/floats.h"
 #include "support/files.h"
 #include "support/random.h"
@@ -26,7 +27,7 @@ static struct {
 
 static uint64_t state;
 
-/* ---- Words as the shaders pack them ---------------------------------------------------------- */
+/* ---- Packing as in the shaders --------------------------------------------------------------- */
 
 static void oct_encode(const double n[3], double p[2]) {
     double sum = fabs(n[0]) + fabs(n[1]) + fabs(n[2]), x = n[0] / sum, y = n[1] / sum;
@@ -61,7 +62,7 @@ static void unpack_direction(uint32_t word, double d[3]) {
 
 typedef struct stage {
     masu_session session;
-    masu_view view; /* of 2W x 2H pixels */
+    masu_view view; /* for 2W x 2H pixels */
     masu_truth truth;
     masu_scene_view blob;
     reflect_job job;
@@ -121,7 +122,7 @@ static void pixel_of(uint32_t i, uint32_t *x, uint32_t *y) {
     *y = 2 * (i / W) + (k >> 1);
 }
 
-/* What the guide's texel says, as the shader understands it. */
+/* The guide's texel, decoded as the shader does. */
 typedef struct beginning {
     double point[3], normal[3], direction[3]; /* point: world */
     double z, pixel, lift;
@@ -147,8 +148,9 @@ static beginning beginning_of(const stage *s, uint32_t i) {
     return b;
 }
 
-/* A ray for each texel whose pixel shows something: mirrored, and scattered by up to `rough`. One of four
- * has met a polygon. inside: that deep behind the surface, metres; every: of so many texels one has a ray. */
+/* A ray for each texel whose pixel shows a surface: reflected, and scattered by up to `rough`. One
+ * of four has hit a polygon. inside: depth of the origin behind the surface, metres; every: one of
+ * this number of texels has a ray. */
 static void make_rays(const stage *s, double rough, double inside, uint32_t every) {
     state = 1;
     for (uint32_t i = 0; i < TEXELS; i++) {
@@ -188,7 +190,7 @@ static void trace(stage *s) {
 
 static bool sdf_wins(uint32_t i) { return own.hit[4 * i + 1] >> 31; }
 
-/* ---- Against the truth ----------------------------------------------------------------------- */
+/* ---- Comparison with the reference ----------------------------------------------------------- */
 
 typedef struct figures {
     uint32_t rays, wrong, unsure, true_hits;
@@ -267,7 +269,7 @@ static figures compare(const stage *s) {
     return f;
 }
 
-/* Compares with the truth and prints a row; asserts what every scene keeps. */
+/* Compares with the reference and prints a row; asserts the limits for every scene. */
 static figures judge(stage *s, const char *name, double rough, uint32_t every) {
     make_rays(s, rough, 0, every);
     trace(s);
@@ -309,8 +311,8 @@ static void hits_are_those_of_the_truth(void **unused) {
     }
 }
 
-/* Rays along the rows of 4096 balls, and back from a wall past 90 rods whose bounding spheres each meets: more
- * than a list holds. */
+/* Rays along the rows of 4096 balls, and back from a wall past 90 rods whose bounding spheres each
+ * ray hits: more than a list holds. */
 static void rays_past_many_parts_meet_the_first(void **unused) {
     (void)unused;
     const masu_camera low = {.position = {0, 3, 38}, .forward = {0, -0.1f, -1}, .fov_y = 0.3f,
@@ -330,7 +332,8 @@ static void rays_past_many_parts_meet_the_first(void **unused) {
 static void who_begins_in_a_solid_has_met_it(void **unused) {
     (void)unused;
     stage s = open_stage("mirrors", &around);
-    make_rays(&s, 0, 0.05, 1); /* two widths of a pixel at least, less than any part but the rod is thick */
+    make_rays(&s, 0, 0.05, 1); /* at least two widths of a pixel, and less than the thickness of any
+                                  part except the rod */
     trace(&s);
     uint32_t inside = 0, met = 0, at_once = 0;
     for (uint32_t i = 0; i < TEXELS; i++) {
@@ -342,14 +345,15 @@ static void who_begins_in_a_solid_has_met_it(void **unused) {
         met += sdf_wins(i);
         at_once += sdf_wins(i) && (double)float_of_bits(own.hit[4 * i]) < 0.7 * b.z * b.pixel;
     }
-    printf("  %u rays begin inside, %u meet something, %u there\n", inside, met, at_once);
+    printf("  %u rays begin inside, %u hit, %u there\n", inside, met, at_once);
     assert_true(inside > TEXELS / 20);
     assert_int_equal(met, inside);
     assert_int_equal(at_once, inside);
     close_stage(&s);
 }
 
-/* Steps used up without coming near anything are a miss, and never the surface that the ray leaves. */
+/* Running out of steps without coming near a surface is a miss, and never a hit of the ray's own
+ * surface. */
 static void rays_without_steps_miss(void **unused) {
     (void)unused;
     stage s = open_stage("mirrors", &around);
@@ -383,7 +387,7 @@ static void a_part_that_moves_says_by_how_much(void **unused) {
     (void)unused;
     stage s = open_stage("mirrors", &around);
     make_rays(&s, 0, 0, 1);
-    /* The ball that `shift` moves is the only one whose arguments hold its default. */
+    /* The ball that `shift` moves is the only one whose arguments have its default. */
     uint32_t found = 0, n = (uint32_t)s.blob.slot_count;
     for (uint32_t i = 8 * s.blob.sdf->part_count; i < n; i++) {
         if (fabsf(fabsf(own.slots[i]) - 0.7129f) > 1e-6f) continue;
@@ -408,7 +412,7 @@ static void a_part_that_moves_says_by_how_much(void **unused) {
     close_stage(&s);
 }
 
-/* ---- Anything -------------------------------------------------------------------------------- */
+/* ---- Arbitrary bits -------------------------------------------------------------------------- */
 
 static void check_sane(const stage *s, const char *what) {
     for (uint32_t i = 0; i < TEXELS; i++) {
@@ -434,7 +438,8 @@ static void any_bits_give_finite_hits(void **unused) {
         trace(&s);
         check_sane(&s, "bits");
         make_rays(&s, 0.3, 0, 1);
-        uint32_t from = 8 * s.blob.sdf->part_count; /* what numbers parts and forms is made by masu-bake */
+        /* masu-bake makes the numbers of parts and shapes */
+        uint32_t from = 8 * s.blob.sdf->part_count;
         for (uint32_t k = from; k < s.job.slot_count; k++)
             if (random_word(&state) % 3 == 0) own.slots[k] = senseless[random_word(&state) % 8];
         trace(&s);
@@ -447,7 +452,7 @@ static void any_bits_give_finite_hits(void **unused) {
     }
 }
 
-/* ---- Pictures -------------------------------------------------------------------------------- */
+/* ---- Images ---------------------------------------------------------------------------------- */
 
 enum { WIDE = 2 * W, HIGH = 2 * H, PIXELS = WIDE * HIGH };
 
@@ -495,8 +500,9 @@ static void a_million_units_away_it_is_the_same(void **unused) {
     assert_true(other * 100 <= PIXELS);
 }
 
-/* tests/scenes/test_reflections.json: a floor that mirrors, left of x = 0 a polygon, else the SDF; over it balls that
- * shine, red ones of the SDF, green ones polygons. In front of the camera there is only the floor. */
+/* tests/scenes/test_reflections.json: a mirror floor, left of x = 0 a polygon, otherwise the SDF;
+ * above it emissive balls, red ones of the SDF, green ones of polygons. In front of the camera
+ * there is only the floor. */
 typedef struct ball {
     double center[3], radius;
     int color; /* 0 red: SDF; 1 green: polygons */

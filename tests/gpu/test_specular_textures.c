@@ -1,12 +1,10 @@
-/*
- * test_specular_textures.c: textures in a mirror: what a ray looks up against the same quads drawn
- * directly: pictures as large as the texture and smaller ones, the ways to wrap, what glows, the mean of what
- * is far, holes of masks; and that a scene which keeps no pictures runs none of it.
+/* test_specular_textures.c: textures in reflections: ray look-ups against the same quads rendered
+ * directly: images as large as the texture and smaller ones, wrap modes, emission, means of distant
+ * textures, holes of alpha-tested surfaces; and a scene without trace textures has no cost.
  *
- * The mirror is the plane z = 0, the quads face it from z = 2. A camera at z = 1 sees one in the mirror 3
- * away, one at z = 0.5 sees it 1.5 away in front of itself: with twice the tangent of its field of
- * view that is the same picture turned left to right.
- */
+ * The mirror is the plane z = 0, the quads face it from z = 2. A camera at z = 1 sees one in the
+ * mirror at distance 3, one at z = 0.5 sees it at distance 1.5 directly: with twice the tangent of
+ * its field of view that is the same image flipped left to right. */
 #include "support/support.h"
 #include "support/files.h"
 #include "support/floats.h"
@@ -32,7 +30,7 @@ static void open_scene(const char *path) {
     if (path) d.scene_path = path;
     d.desc.readback = MASU_READBACK_HDR;
     d.desc.rung_count = 1;
-    d.desc.debug.reference = 1; /* each pixel has its ray */
+    d.desc.debug.reference = 1; /* one ray per pixel */
     open_session(&s, &d);
 }
 
@@ -46,7 +44,7 @@ static void look(masu_camera camera, float out[PIXELS][3]) {
     }
 }
 
-/* The quad at x, of which 1.8 x 1.8 fill the picture, in the mirror and directly. */
+/* The quad at x, of which 1.8 x 1.8 fill the image, reflected and directly. */
 static void look_both(double x) {
     look((masu_camera){.position = {x, 0, 1}, .forward = {0, 0, -1}, .fov_y = 2 * atanf(0.3f)},
          mirrored);
@@ -54,7 +52,8 @@ static void look_both(double x) {
          direct);
 }
 
-/* Largest and mean difference, and the variance of what is seen directly: that it is a picture. */
+/* Largest and mean difference, and the variance of the direct image, which shows that it has
+ * content. */
 static double compare(const char *what, double *mean) {
     double worst = 0, sum = 0, first = 0, second = 0;
     for (uint32_t i = 0; i < PIXELS; i++) {
@@ -70,7 +69,7 @@ static double compare(const char *what, double *mean) {
     *mean = sum / (3.0 * PIXELS);
     first /= PIXELS;
     second = second / PIXELS - first * first;
-    print_message("%s: off by %.4f at most, %.5f in the mean; variance %.4f\n", what, worst, *mean,
+    print_message("%s: error %.4f at most, %.5f in the mean; variance %.4f\n", what, worst, *mean,
                   second);
     assert_true(second > 0.001);
     return worst;
@@ -84,7 +83,7 @@ static int wrapped(int i, int size, uint32_t wrap) {
     return k < size ? k : period - 1 - k;
 }
 
-/* Along one side; the picture is separable. Mips are means of linear light. */
+/* Along one side; the image is separable. Mips are means of linear light. */
 static double gradient(double at, uint32_t level, uint32_t wrap) {
     int size = 64 >> level;
     double x = at * size - 0.5, sum = 0;
@@ -98,7 +97,7 @@ static double gradient(double at, uint32_t level, uint32_t wrap) {
     return sum;
 }
 
-/* What the mirror shows of a quad, against the source of its picture. */
+/* The reflection of a quad, against the source of its texture. */
 static double compare_source(const char *what, double tile, uint32_t level, const uint32_t wrap[2],
                              double *mean) {
     double worst = 0;
@@ -122,7 +121,7 @@ static double compare_source(const char *what, double tile, uint32_t level, cons
 
 static uint8_t *blob;
 static size_t blob_bytes;
-static masu_scene scene; /* as read_blob has found it */
+static masu_scene scene; /* as read by read_blob */
 static masu_scene_view view;
 
 static void read_blob(void) {
@@ -133,7 +132,7 @@ static void read_blob(void) {
     view = masu_scene_view_of(&scene);
 }
 
-/* Opens the blob as it has been changed in place. */
+/* Opens the blob after direct changes. */
 static void open_changed(void) {
     masu_blob_header h;
     memcpy(&h, blob, sizeof h);
@@ -160,30 +159,33 @@ static void a_mirror_shows_textures_as_they_are(void **state) {
     (void)state;
     double mean;
     open_scene(NULL);
-    double most = on_gpu(&s) ? 0.1 : 0.08; /* blocks are decoded within the errors that a format allows */
+    double most = on_gpu(&s) ? 0.1 : 0.08; /* blocks are decoded within the errors that a format
+                                              allows */
     assert_int_equal(masu_scene_data_of(&s.scene)->trace_colors, 4);
     assert_int_equal(masu_scene_data_of(&s.scene)->trace_textures, 5); /* and a mean of roughness */
-    /* The picture has all texels of the texture, 8 bits each. What is drawn directly has gone through
-     * blocks, which are further off. */
+    /* The trace texture has all texels of the texture, 8 bits each. The direct rendering uses
+     * compressed blocks, which have a larger error. */
     static const uint32_t repeat[2] = {0, 0};
     look_both(-12);
     assert_true(compare_source("64 texels", 1, 0, repeat, &mean) < 0.01);
     assert_true(compare("64 texels", &mean) < most);
     assert_true(mean < 0.02);
-    look_both(-6); /* 2.7 texels a pixel: the mip of two; what is drawn mixes it with the next */
-    /* At the seam from 1 to 0 the least error of a direction shows. */
+    look_both(-6); /* 2.7 texels per pixel: the mip of two; direct rendering mixes it with the
+                      next */
+    /* At the seam from 1 to 0 the smallest error of a direction is visible. */
     assert_true(compare_source("three tiles", 3, 1, repeat, &mean) < 0.4);
     assert_true(mean < 0.01);
     (void)compare("three tiles", &mean);
     assert_true(mean < 0.05);
-    look_both(0); /* radiance 2; as above, blocks are further off */
+    look_both(0); /* radiance 2; as above, blocks have a larger error */
     for (uint32_t i = 0; i < PIXELS; i++) {
         for (uint32_t k = 0; k < 3; k++) mirrored[i][k] /= 2, direct[i][k] /= 2;
     }
     assert_true(compare_source("what glows", 1, 0, repeat, &mean) < 0.01);
     assert_true(compare("what glows", &mean) < most);
     assert_true(mean < 0.02);
-    /* A quarter of the texels each way: as much as a pixel asks for, and a quarter of it close up. */
+    /* A quarter of the texels in each direction: the resolution of a pixel, and a quarter of that
+     * close up. */
     look_both(12);
     assert_true(compare("256 texels by 64", &mean) < most);
     assert_true(mean < 0.012);
@@ -218,7 +220,7 @@ static void textures_wrap_as_they_do_when_drawn(void **state) {
         assert_true(mean < 0.06);
         for (uint32_t i = 0; i < PIXELS; i++)
             moved += fabs((double)mirrored[i][0] - (double)before[i][0]) / PIXELS;
-        assert_true(moved > 0.1); /* another picture than black, and than the other way */
+        assert_true(moved > 0.1); /* different from black, and from the other direction */
         memcpy(before, mirrored, sizeof before);
         close_session(&s);
     }
@@ -226,7 +228,7 @@ static void textures_wrap_as_they_do_when_drawn(void **state) {
 
 static void what_is_far_is_its_mean(void **state) {
     (void)state;
-    /* A metre has a whole picture, and a pixel is half a metre. */
+    /* A metre has a whole texture, and a pixel is half a metre. */
     read_blob();
     masu_blob_instance *instances = find(MASU_BLOB_INSTANCES);
     uint32_t far = 0;
@@ -270,7 +272,7 @@ static void through_holes_a_mirror_shows_what_is_behind(void **state) {
         discs += mirrored[i][1] > 0.1f && mirrored[i][0] < 1.5f;
         differ += is_panel(mirrored[i]) != is_panel(direct[other]);
     }
-    /* The disc has 24 of 64 texels as its radius, of which 57.6 fill the picture. */
+    /* The disc has a radius of 24 of 64 texels, of which 57.6 fill the image. */
     double want = 3.14159265 * 24 * 24 / (57.6 * 57.6);
     print_message("holes: %.4f, disc: %.4f of %.4f; %u pixels are not as drawn\n",
                   (double)holes / PIXELS, (double)discs / PIXELS, want, differ);
@@ -279,7 +281,7 @@ static void through_holes_a_mirror_shows_what_is_behind(void **state) {
     assert_true(differ <= PIXELS / 100);
     close_session(&s);
 
-    /* Without the mask's flag there are none. */
+    /* Without the flag for alpha testing there are none. */
     read_blob();
     masu_blob_material *materials = find(MASU_BLOB_MATERIALS);
     for (uint32_t i = 0; i < masu_scene_count(&scene, MASU_SCENE_MATERIAL); i++)
@@ -305,8 +307,8 @@ static void without_pictures_factors_are_seen(void **state) {
     close_session(&s);
 }
 
-/* A mirror's ray has no noise: with a ray for each fourth pixel, and each pixel's own kept from frame to frame, the
- * same is kept however long it is looked at. */
+/* A mirror's ray has no noise: with a ray for each fourth pixel, and each pixel's history kept from
+ * frame to frame, the result is constant over any number of frames. */
 static void a_mirror_looked_at_for_long_shows_the_same_to_the_bit(void **state) {
     (void)state;
     static uint16_t first[4 * PIXELS];

@@ -1,11 +1,13 @@
-/* test_specular_truth.c: the reference of reflections (debug.reference, masu render --reference) against an
- * independent tracer in double precision (tests/reference/specular.h) and in the white furnace; means over frames
- * have the colours of the reference; what the plan and the tiles leave out is not traced; odd materials give finite pixels.
+/* test_specular_truth.c: the reflection reference (debug.reference, masu render --reference)
+ * against an independent tracer in double precision (tests/reference/specular.h) and in the white
+ * furnace; temporal accumulation has the colours of the reference; pixels and tiles that the plan
+ * skips are not traced; invalid materials give finite pixels.
  *
- * Both truths are noisy. What a pixel mirrors is the frame's radiance less what the sun and the ambient
- * light give it, by formula. Standard errors are those of independent rays, for the GPU's too, which are
- * more even than that. Pixels are told apart by their material, and the mean of each material must lie
- * within 3 standard errors, and 0.2 % for what images round: 9 bits of a ray's worth, halves of its light. */
+ * Both references are noisy. A pixel's reflection is the frame's radiance minus sun and ambient
+ * light, by formula. Standard errors assume independent rays, also for the GPU, whose rays are more
+ * uniform. Pixels are grouped by material, and the mean of each material must be within 3 standard
+ * errors, and 0.2 % for the rounding of images: 9 bits of a ray's weight, half floats of its
+ * light. */
 #include "reference/specular.h"
 #include "measure/shade.h"
 #include "image.h"
@@ -24,7 +26,7 @@ enum { W = 64, H = 48, MATERIALS = 16, PIXELS = 192 /* of a material, at most */
 static masu_session s;
 static uint32_t slot;
 
-/* On drivers after the first an eighth; what that leaves open is in the errors that are expected. */
+/* On drivers after the first an eighth; the loss of precision is part of the expected errors. */
 static uint32_t frames_of(uint32_t frames) {
     if (whole_run()) return frames;
     return frames / 8 > 48 ? frames / 8 : 48;
@@ -38,8 +40,9 @@ static uint32_t frames_of(uint32_t frames) {
     "\"target\": [0, 0.45, 0]}]}, \"reflections\": {\"cutoff\": 0.6}"
 #define SKY "\"sky\": {\"zenith\": [0.25, 0.4, 0.8], \"horizon\": [0.7, 0.75, 0.85]}, "
 
-/* Round and flat ones that see each other, matt things and one that shines, without a sun: its highlight on
- * one as smooth as 0.05 seen in another is so rare and bright that no number of rays here would settle it. */
+/* Round and flat ones that reflect each other, matt objects and an emissive one, without a sun: its
+ * highlight on a surface as smooth as 0.05, reflected in another, is so rare and bright that no
+ * practical number of rays would converge. */
 static const char round_ones[] =
     "{\"models\": ["
     "{\"mesh\": {\"plane\": {\"size_x\": 9, \"size_z\": 9}}, " METAL(0.2) "}, "
@@ -57,7 +60,7 @@ static const char round_ones[] =
     "{\"base_color\": [0, 0, 0], \"emissive\": [3, 2, 1]}, \"area_light\": false}], "
     "\"sun\": {\"intensity\": 0}, \"ambient\": [0.3, 0.33, 0.4], " SKY VIEW "}";
 
-/* Things lit by the sun, all matt, in glossy ones that do not see each other. */
+/* Sunlit objects, all matt, reflected in glossy ones that do not reflect each other. */
 static const char sunny[] =
     "{\"models\": ["
     "{\"mesh\": {\"plane\": {\"size_x\": 9, \"size_z\": 9}}, \"material\": "
@@ -91,13 +94,14 @@ static void draw_frames(uint32_t frames, const masu_light *light) {
     }
 }
 
-/* ---- Against the tracer ---------------------------------------------------------------------- */
+/* ---- Comparison with the tracer -------------------------------------------------------------- */
 
 typedef struct group {
-    uint32_t key, pixels, values, far; /* far: values that are 4 of their standard errors off */
+    uint32_t key, pixels, values, far; /* far: values with an error of more than 4 standard
+                                          errors */
     double gpu, cpu, error2; /* sums over pixels, of the mean of colours */
     double square;           /* sum of (difference / its standard error)^2 */
-    double worst;            /* of those */
+    double worst;            /* maximum of those */
 } group;
 
 static group groups[MATERIALS];
@@ -112,7 +116,8 @@ static group *group_of(uint32_t key) {
     return NULL;
 }
 
-/* The frame drawn last against rays; `off` times the roughness, which must be seen if it is not 1. */
+/* Compares the last frame with rays; `off` scales the roughness, which must be detected unless it
+ * is 1. */
 static void compare(const char *name, const masu_ref_mirror *m, const double coat[2], uint32_t frames,
                     uint32_t rays, double off) {
     const float *depth = read_image(&s, slot, MASU_READBACK_DEPTH);
@@ -121,12 +126,12 @@ static void compare(const char *name, const masu_ref_mirror *m, const double coa
     const uint16_t *hdr = read_image(&s, slot, MASU_READBACK_HDR);
     memset(groups, 0, sizeof groups);
     for (uint32_t k = 0; k < W * H; k++) {
-        uint32_t i = k * 1009 % (W * H); /* all over the picture, for what shows in many */
+        uint32_t i = k * 1009 % (W * H); /* all over the image, for materials in many pixels */
         masu_ref_surface surface;
         double lit[3], mirrored[3], mean = 0, truth = 0, error2 = 0;
         if (!masu_ref_surface_of(m, i % W, i / W, depth[i], &albedo[4 * i], normal[i], &surface))
             continue;
-        if (surface.look[3] >= 0.45) continue; /* traced in part, or not at all */
+        if (surface.look[3] >= 0.45) continue; /* traced only in part, or not at all */
         uint32_t key;
         memcpy(&key, &albedo[4 * i], sizeof key);
         group *g = group_of(key ^ (normal[i] >> 26 & 15) << 20);
@@ -144,8 +149,10 @@ static void compare(const char *name, const masu_ref_mirror *m, const double coa
             assert_true(isfinite(gpu));
             mean += gpu / 3;
             truth += e.mean[c] / 3;
-            error2 += e.variance[c] * (1.0 / rays + 1.0 / frames) / 3; /* colours go together */
-            g->square += fmin(z2, 16); /* a pixel on an edge, for which the two find another neighbour */
+            /* the errors of the colours are correlated */
+            error2 += e.variance[c] * (1.0 / rays + 1.0 / frames) / 3;
+            g->square += fmin(z2, 16); /* a pixel on an edge, for which the two find another
+                                          neighbour */
             g->far += z2 > 16;
             g->worst = worst_of(g->worst, sqrt(z2));
             g->values++;
@@ -178,7 +185,7 @@ static double worst_group(double *chi, double *far) {
     return worst;
 }
 
-/* coat: of all that mirrors, and its roughness. */
+/* coat: its fraction of the reflections, and its roughness. */
 static void tracer(const char *name, const char *json, uint32_t materials, const double coat[2],
                    uint32_t frames) {
     masu_ref_mirror m;
@@ -209,7 +216,7 @@ static void tracer(const char *name, const char *json, uint32_t materials, const
     assert_true(worst < 1);
     assert_true(chi < 1.2);
     assert_true(far < 0.02);
-    /* And lobes half as rough again are told apart. */
+    /* And lobes that are half as rough again are distinguished. */
     compare("half as rough again", &m, coat, frames, rays / 4, 1.5);
     worst = worst_group(&chi, &far);
     assert_true(worst > 1 || chi > 1.5);
@@ -228,8 +235,8 @@ static void sunny_ones_agree_with_the_tracer(void **state) {
     tracer("sunny", sunny, 2, (const double[]){0, 0}, frames_of(192));
 }
 
-/* One that has a coat and nothing beside it, so that none is seen in another: without sun and ambient light,
- * of which a coat takes its share from what is below. */
+/* A coated object with no other around, so that none is reflected in another. Without sun and
+ * ambient light, of which a coat takes a part from the base. */
 #define COATED(roughness)                                                                          \
     "{\"models\": [{\"mesh\": {\"sphere\": {\"radius\": 1, \"subdivisions\": 5}}, \"translate\": "    \
     "[0, 0.6, 0], \"material\": {\"base_color\": [0.9, 0.5, 0.2], \"metallic\": 1, "                 \
@@ -252,8 +259,8 @@ static void coats_agree_with_the_tracer(void **state) {
     "{\"mesh\": {\"sphere\": {\"radius\": 0.42, \"subdivisions\": 4}}, \"translate\": [" #x ", " #y  \
     ", 0], \"material\": {\"base_color\": [1, 1, 1], " rest "}}"
 
-/* From the left: smoother to rougher; then coats, of which the last but one is rougher than the cut-off and
- * what lies below it, and the last the other way round. */
+/* From the left: smoother to rougher; then coats, of which the last but one is rougher than the
+ * cut-off and than its base, and the last the reverse. */
 #define BALLS                                                                                      \
     BALL(-2, 1, "\"metallic\": 1, \"roughness\": 0")                                               \
     ", " BALL(-1, 1, "\"metallic\": 1, \"roughness\": 1e-4") ", "                                  \
@@ -285,7 +292,7 @@ static uint32_t ball_of(uint32_t x, uint32_t y) {
     return (uint32_t)(rint(px) + 2) + 5 * (uint32_t)(1 - rint(py));
 }
 
-/* All that is white returns all of the light; of each ball the mean, and any pixel. */
+/* White surfaces return all light; for each ball the mean, and any single pixel. */
 static void furnace_with(const char *how, uint32_t reference, uint32_t frames, double of_pixel) {
     static double sum[15], low[15], high[15];
     static uint32_t pixels[15];
@@ -329,10 +336,11 @@ static void all_light_comes_back_in_the_white_furnace(void **state) {
     furnace_with("frames", 0, 2, 0.01);
 }
 
-/* ---- What a ray is worth --------------------------------------------------------------------- */
+/* ---- Ray weights ----------------------------------------------------------------------------- */
 
-/* A dull dark street towards a red wall, under a blue sky. It begins before the eye: of what the near plane cuts SwiftShader has
- * depths that are a few thousandths off, and rays begin below it. */
+/* A dull dark street towards a red wall, under a blue sky. It begins in front of the camera: on
+ * surfaces that the near plane clips, SwiftShader's depths have errors of a few thousandths, and
+ * rays begin below them. */
 static const char street[] =
     "{\"models\": ["
     "{\"mesh\": {\"plane\": {\"size_x\": 24, \"size_z\": 18}}, \"translate\": [0, 0, -5], \"material\": "
@@ -344,7 +352,7 @@ static const char street[] =
     "\"camera\": {\"fov_y\": 40, \"near\": 0.05, \"keys\": [{\"position\": [0, 1, 6], \"target\": [0, 0.4, -4]}]}, "
     "\"reflections\": {\"cutoff\": 0.6}}";
 
-/* Of the lower two fifths of the picture, all street, the mean of each colour. */
+/* The mean of each colour in the lower two fifths of the image, which is all street. */
 static void colors_of_street(const masu_rung *rung, uint32_t reference, uint32_t frames, double mean[3]) {
     open_scene("street", W, H, rung, reference);
     draw_frames(frames, NULL);
@@ -357,8 +365,8 @@ static void colors_of_street(const masu_rung *rung, uint32_t reference, uint32_t
     close_session(&s);
 }
 
-/* Fresnel's term makes the rays that go on to the wall worth several times those that go up. As if each were worth the same
- * red is off by a quarter. */
+/* By Fresnel's term, rays towards the wall have several times the weight of rays that go up. With
+ * equal weights red would have an error of a quarter. */
 static void means_have_the_colors_of_the_reference(void **state) {
     (void)state;
     bake_scene("street", street);
@@ -368,15 +376,16 @@ static void means_have_the_colors_of_the_reference(void **state) {
     for (int i = 0; i < 2; i++) {
         colors_of_street(rungs[i], 0, 96, mean);
         for (int c = 0; c < 3; c++) worst = worst_of(worst, fabs(mean[c] / reference[c] - 1));
-        print_message("  street%s: %.4f %.4f %.4f, reference %.4f %.4f %.4f\n", i ? " with a past" : "", mean[0],
-                      mean[1], mean[2], reference[0], reference[1], reference[2]);
+        print_message("  street%s: %.4f %.4f %.4f, reference %.4f %.4f %.4f\n",
+                      i ? " with temporal upscaling" : "", mean[0], mean[1], mean[2],
+                      reference[0], reference[1], reference[2]);
     }
     assert_true(worst < 0.03);
 }
 
-/* ---- What is left out ------------------------------------------------------------------------ */
+/* ---- Skipped pixels -------------------------------------------------------------------------- */
 
-/* Seen from the front: a matt wall, before it two plates, each before a quarter of it. */
+/* From the front: a matt wall, and before it two plates, each covering a quarter of the wall. */
 static const char plates[] =
     "{\"models\": [{\"mesh\": {\"box\": {\"size\": [40, 40, 0.1]}}, \"translate\": [0, 0, -1], \"material\": "
     "{\"base_color\": [0.4, 0.4, 0.4], \"roughness\": 0.9}}, "
@@ -414,7 +423,7 @@ static void only_tiles_that_mirror_are_traced(void **state) {
     }
 }
 
-/* ---- Odd materials and light ----------------------------------------------------------------- */
+/* ---- Invalid materials and light ------------------------------------------------------------- */
 
 static const char bright[] =
     "{\"models\": [" BALLS ", {\"mesh\": {\"box\": {\"size\": [8, 0.2, 8]}}, \"translate\": [0, 3, 0], "
@@ -422,7 +431,7 @@ static const char bright[] =
     "\"sun\": {\"intensity\": 1000}, \"ambient\": [1, 1, 1], " BALLS_SEEN ", "
     "\"reflections\": {\"cutoff\": 1}}";
 
-/* Under light that leaves the range of halves, and from memory full of NaN and Inf. */
+/* Under light beyond the range of half floats, and from memory full of NaN and Inf. */
 static void pixels_are_finite(void **state) {
     (void)state;
     static uint16_t pictures[4][4 * 100 * 60];
@@ -457,8 +466,8 @@ static const masu_memory_row *row_of(const char *name) {
     return NULL;
 }
 
-/* A blob with a NaN is refused; here it gets past, into the memory of the device, where the raster and the
- * rays have their materials. */
+/* A blob with a NaN is rejected; here it is written to the device's memory, to the materials of the
+ * raster and of the rays. */
 static void materials_of_nan_give_finite_pixels(void **state) {
     (void)state;
     static const uint32_t bits[] = {0x7FC00000u, 0x7F800000u, 0xFF800000u, 0x00000001u, 0xC2C80000u};
@@ -474,7 +483,7 @@ static void materials_of_nan_give_finite_pixels(void **state) {
         open_session(&s, &d);
         assert_int_equal(masu_memory_query(&s.desc, &s.need, NULL), MASU_OK);
         const masu_role_need *need = &s.need.roles[MASU_ROLE_DEVICE];
-        if (!need->host_visible) { /* its materials cannot be written past masu_init */
+        if (!need->host_visible) { /* its materials cannot be written after masu_init */
             close_session(&s);
             skip();
         }
@@ -493,9 +502,10 @@ static void materials_of_nan_give_finite_pixels(void **state) {
         traced += 4 * (size_t)traced[4 * traced[3]]; /* shaders/trace/scene.glsl */
         uint32_t materials = masu_scene_count(&s.scene, MASU_SCENE_MATERIAL), given;
         memcpy(&given, &raster[3], sizeof given);
-        assert_int_equal(traced[3], given); /* a roughness: the right place */
+        assert_int_equal(traced[3], given); /* a roughness: the correct position */
         for (size_t b = 0; b < sizeof bits / sizeof *bits; b++) {
-            for (uint32_t i = 0; i < 12 * materials; i++) { /* each material another of its numbers, some all */
+            /* each material has another invalid value, some have all */
+            for (uint32_t i = 0; i < 12 * materials; i++) {
                 uint32_t m = i / 12, k = i % 12;
                 if (k != 3 && m % 4 && (m + b) % 12 != k) continue;
                 raster[i] = traced[16 * m + k] = bits[b];

@@ -1,7 +1,8 @@
-/* test_sprites.c: particles, decals and debug lines against scalar answers: what a particle is blended to, in which
- * order with what is transparent, how it fades before a surface and is lit; what a decal makes of the G-buffer of a
- * ball of polygons and one of the SDF, and that nothing beside it changes; which pixels a line has. Then that any
- * numbers are safe, that capacity alone changes nothing, and that no trail stays in a history. */
+/* test_sprites.c: particles, decals and debug lines against scalar references: blending of a
+ * particle, its order relative to transparent surfaces, its fade in front of a surface, its
+ * lighting; a decal's effect on the G-buffer of a polygon ball and an SDF ball, and on nothing
+ * around them; the pixels of a line. Also: arbitrary numbers are safe, unused capacity changes
+ * nothing, and no trail remains in a history. */
 #include "support/support.h"
 #include "support/files.h"
 #include "support/floats.h"
@@ -20,7 +21,7 @@ static masu_session s;
 static float base[4 * PIXELS], picture[4 * PIXELS], depths[PIXELS];
 static uint8_t plain[4 * PIXELS], shown[4 * PIXELS];
 
-/* test_pane: a ball of the SDF to the left, one of polygons to the right, a pane of opacity 0.5. */
+/* test_pane: an SDF ball on the left, a polygon ball on the right, a pane of opacity 0.5. */
 static const masu_camera camera = {
     .position = {0, 0, 6}, .forward = {0, 0, -1}, .fov_y = 0.8726646f, .near_distance = 0.1f};
 
@@ -58,7 +59,8 @@ static masu_frame_desc with_particles(const masu_particle *p, uint32_t count) {
 
 /* ---- Particles ------------------------------------------------------------------------------- */
 
-/* How much of a particle covers a pixel: of what is at view depth z behind it, 0: the sky. Below 0: at its rim. */
+/* A particle's coverage of a pixel, with a surface at view depth z behind it, 0: the sky. Below 0:
+ * at its rim. */
 static double cover_of(const masu_particle *p, uint32_t pixel, double z) {
     double tan_y = tan((double)camera.fov_y / 2), depth = camera.position[2] - p->position[2];
     double x = ((pixel % SIDE + 0.5) / SIDE * 2 - 1) * tan_y * depth + camera.position[0] - p->position[0];
@@ -77,7 +79,7 @@ static double cover_of(const masu_particle *p, uint32_t pixel, double z) {
     return t * t * (3 - 2 * t) * room;
 }
 
-/* The largest difference of `picture` from particles over `base`, in the order given. */
+/* The largest difference of `picture` from particles blended over `base`, in the given order. */
 static double compare(const masu_particle *p, uint32_t count, uint32_t *covered) {
     double worst = 0;
     *covered = 0;
@@ -126,19 +128,20 @@ static void a_particle_is_blended_in_linear_light(void **state) {
         if (form == 2) p.edge = 0;
         if (form == 3) p.edge = 0.5f, p.soft = 3;
         if (form == 4) p.position[2] = 0, p.half_width = p.half_height = 2, p.soft = 1; /* cuts both balls */
-        if (form == 5) p.position[2] = 5.4, p.soft = 1; /* fades out before the eye */
+        if (form == 5) p.position[2] = 5.4, p.soft = 1; /* fades out in front of the camera */
         masu_stats_info stats = render(with_particles(&p, 1), picture);
         assert_int_equal(stats.particles, 1);
         uint32_t covered;
         double worst = compare(&p, 1, &covered);
-        print_message("form %u: %u pixels, off by %.2f of 255 at most\n", form, covered, 255 * worst);
+        print_message("form %u: %u pixels, error of %.2f of 255 at most\n",
+                      form, covered, 255 * worst);
         assert_true(covered > 300 && worst <= 2.0 / 255);
     }
     close_session(&s);
 }
 
 static void hides_and_is_hidden(masu_particle *p, uint32_t count, double pane_z) {
-    /* Far to near: what a reference blends by hand, the pane as a particle without an edge. */
+    /* Far to near: the reference blends them, with the pane as a particle without an edge. */
     masu_particle all[8];
     uint32_t n = 0, covered;
     int pane_done = 0;
@@ -162,7 +165,8 @@ static void hides_and_is_hidden(masu_particle *p, uint32_t count, double pane_z)
         assert_int_equal(stats.particles, count);
         assert_int_equal(stats.transparents, 1);
         double worst = compare(all, n, &covered);
-        print_message("pane at %g, order %u: off by %.2f of 255 at most\n", pane_z, turn, 255 * worst);
+        print_message("pane at %g, order %u: error of %.2f of 255 at most\n",
+                      pane_z, turn, 255 * worst);
         assert_true(covered > PIXELS / 2 && worst <= 2.0 / 255);
     }
 }
@@ -185,7 +189,7 @@ static void particles_and_transparents_are_sorted_as_one(void **state) {
     close_session(&s);
 }
 
-/* A spot in the sun and one in the shadow of the tower, under a light that is given. */
+/* One particle in the sun and one in the shadow of the tower, under a given light. */
 static void a_lit_particle_has_sun_shadow_and_ambient_light(void **state) {
     (void)state;
     const masu_light light = {.sun_direction = {1, 1, 0}, .sun_color = {4, 2, 1}, .ambient = {0.25f, 0.5f, 0.125f}};
@@ -200,7 +204,7 @@ static void a_lit_particle_has_sun_shadow_and_ambient_light(void **state) {
                            .flags = MASU_PARTICLE_LIT};
         masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &above, .light = &light, .particles = &p, .particle_count = 1};
         render(frame, picture);
-        /* Its middle, by the same camera. */
+        /* Its centre, by the same camera. */
         double len = sqrt(1.09), f[3] = {0, -0.3 / len, -1 / len}, up[3] = {0, 1 / len, -0.3 / len};
         double d[3] = {p.position[0] + 7, p.position[1] - 6, p.position[2] + 2};
         double z = d[1] * f[1] + d[2] * f[2], y = d[1] * up[1] + d[2] * up[2], t = tan(0.6);
@@ -216,7 +220,7 @@ static void a_lit_particle_has_sun_shadow_and_ambient_light(void **state) {
     close_session(&s);
 }
 
-/* Air between: what is behind 1 - e^-depth of it is the fog's own colour. */
+/* Fog in front: a part of 1 - e^-depth is the fog's own colour. */
 static void fog_lies_over_particles(void **state) {
     (void)state;
     masu_light light;
@@ -253,7 +257,7 @@ static void read_buffers(const masu_frame_desc *frame, buffers *out, masu_stats_
     if (stats) *stats = stats_of(&s, commands.slot);
 }
 
-/* Boxes that lie along the axes: how much of one is at a point; below 0: at a limit. */
+/* Coverage at a point by a decal with axis-aligned bounds; below 0: at a limit. */
 static double painted(const masu_decal *d, const double at[3], const float n[3]) {
     double p[3], slack = 0.01;
     for (uint32_t k = 0; k < 3; k++) p[k] = (at[k] - (double)d->rows[4 * k + 3]) / (double)d->rows[5 * k];
@@ -266,8 +270,8 @@ static double painted(const masu_decal *d, const double at[3], const float n[3])
     return edge * fmax(0, fmin(1, facing));
 }
 
-/* A decal's share of a surface: colour and metallic so that what it scatters is mixed, and what it
- * scatters and mirrors. */
+/* Blends a decal into a surface: colour and metallic such that diffuse light is mixed, and likewise
+ * the sum of diffuse and specular light. */
 static void cover(const masu_decal *d, double share, double surface[5]) {
     double own = fmax(surface[0], fmax(surface[1], surface[2])) + 1 / 256.0;
     double other =
@@ -342,14 +346,15 @@ static void a_decal_paints_polygons_and_the_sdf_alike(void **state) {
         if (form == 3) d.flags = MASU_DECAL_KEEP_COLOR;
         if (form == 4) d.roughness = 0, d.inner = 0.2f, d.outer = 0.9f;
         if (form == 5) d.rows[10] = 8, d.rows[11] = 2; /* through the near plane */
-        if (form == 6) d.rows[10] = 0.2f, d.rows[11] = 0.6f, d.rows[5] = 2; /* a slice before the middles */
+        /* a slice in front of the centres */
+        if (form == 6) d.rows[10] = 0.2f, d.rows[11] = 0.6f, d.rows[5] = 2;
         if (form == 7) d.metallic = -1, d.opacity = 0.5f;
         uint32_t touched[2];
         compare_decals(&d, 1, touched);
         print_message("form %u: %u pixels of the SDF, %u of polygons\n", form, touched[0], touched[1]);
         assert_true(touched[0] > 100 && touched[1] > 100);
     }
-    /* Small ones, whose last pixels are the first of a workgroup at some of these places. */
+    /* Small ones, whose last pixels are the first of a workgroup at some positions. */
     uint32_t small = 0;
     for (uint32_t place = 0; place < 8; place++) {
         float by = 0.06f * (float)place;
@@ -385,8 +390,8 @@ static double display(double x) {
     return 255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * pow(fmin(x, 1), 1 / 2.4) - 0.055);
 }
 
-/* Towards the middle of soft dark paint on polished metal, of what the bare metal shows there the
- * share only falls: a ring is where it rises. */
+/* Towards the centre of soft dark paint on polished metal, the fraction of the bare metal's light
+ * only falls: a rise would be a ring. */
 static void soft_edges_on_metal_have_no_rings(void **state) {
     (void)state;
     bake_scene(
@@ -426,7 +431,8 @@ static void soft_edges_on_metal_have_no_rings(void **state) {
     assert_true(rings < 1);
 }
 
-/* What is painted is lit: the picture of a painted ball is that of a ball that is so. */
+/* Painted surfaces are lit: the image of a painted ball equals that of a ball with the paint's
+ * material. */
 static void what_is_painted_is_lit(void **state) {
     (void)state;
     const masu_light dark = {.sun_direction = {0, 0, 1}, .ambient = {0, 0, 0}, .sun_color = {1, 1, 1}};
@@ -444,7 +450,7 @@ static void what_is_painted_is_lit(void **state) {
     close_session(&s);
 }
 
-/* And it covers what shines: of a black wall its share of the light is taken away. */
+/* Paint covers emission: on a black wall the covered fraction of its light is removed. */
 static void what_is_painted_shines_no_more(void **state) {
     (void)state;
     const masu_light dark = {.sun_direction = {0, 0, 1}};
@@ -461,7 +467,7 @@ static void what_is_painted_shines_no_more(void **state) {
         for (uint32_t k = 0; k < 3; k++) {
             double middle = (double)picture[4 * (SIDE / 2 * SIDE + SIDE / 2) + k], edge = (double)picture[4 * (SIDE / 2 * SIDE + 2) + k];
             double shines = 2.0 / (1u << k);
-            assert_true(fabs(edge - shines) < 0.001 * shines); /* beside it */
+            assert_true(fabs(edge - shines) < 0.001 * shines); /* next to it */
             if (fabs(middle - (1 - 0.5 * half) * shines) > 0.001 * shines)
                 fail_msg("half %d, channel %u: %g of %g", half, k, middle, shines);
         }
@@ -471,7 +477,7 @@ static void what_is_painted_shines_no_more(void **state) {
 
 /* ---- Lines ----------------------------------------------------------------------------------- */
 
-/* The point at the middle of an output pixel, at a view depth. */
+/* The point at the centre of an output pixel, at a view depth. */
 static void point_at(double px, double py, double z, double out[3]) {
     double t = tan((double)camera.fov_y / 2) * z;
     out[0] = ((px + 0.5) / SIDE * 2 - 1) * t;
@@ -516,11 +522,12 @@ static void expect_line(uint32_t rung, uint32_t x0, uint32_t y0, uint32_t x1, ui
         double off = n == 0 ? abs(x - (int)x0) + abs(y - (int)y0)
                      : steep ? x - (x0 + dx * (double)k / n)
                              : y - (y0 + dy * (double)k / n);
-        int on = k >= 0 && k <= n && fabs(off) < 0.42, beside = k < 0 || k > n || fabs(off) > 0.58; /* 1/16 pixel is all that drivers promise */
+        /* drivers guarantee only 1/16 pixel */
+        int on = k >= 0 && k <= n && fabs(off) < 0.42, beside = k < 0 || k > n || fabs(off) > 0.58;
         if (on && !is_pixel((uint32_t)x, (uint32_t)y, pink)) fail_msg("%d, %d is not of the line", x, y);
-        /* Rungs with temporal look beside each pixel's middle, elsewhere in each frame. */
+        /* Temporal rungs sample off the pixel's centre, at a different position in each frame. */
         int changed = rung == 2 ? is_pixel((uint32_t)x, (uint32_t)y, pink) : memcmp(shown + 4 * i, plain + 4 * i, 4) != 0;
-        if (beside && changed) fail_msg("%d, %d is beside the line", x, y);
+        if (beside && changed) fail_msg("%d, %d is outside the line", x, y);
     }
 }
 
@@ -547,7 +554,7 @@ static void lines_are_hidden_cut_and_coloured(void **state) {
     (void)state;
     static const uint8_t pink[3] = {255, 0, 128}, blue[3] = {0, 0, 255}, red[3] = {255, 0, 0};
     open_room("test_pane");
-    /* Behind the polygons' ball, whose middle is 6 m away; the SDF's; and on top. */
+    /* Behind the polygon ball, whose centre is 6 m away; the SDF ball; and on top. */
     for (uint32_t ball = 0; ball < 2; ball++) {
         uint32_t y = SIDE / 2, x0 = ball ? 48 : 2, x1 = ball ? 93 : 47;
         for (uint32_t top = 0; top < 2; top++) {
@@ -559,7 +566,7 @@ static void lines_are_hidden_cut_and_coloured(void **state) {
             if (!top) assert_true(n > 5 && n < 30);
         }
     }
-    /* From behind the eye to far away, through the picture's middle: cut off, nothing odd. */
+    /* From behind the camera to far away, through the image's centre: clipped, no artefacts. */
     masu_line l = {.from = {0.3, 0.2, 20}, .to = {-0.3, -0.2, 2}, .from_color = {255, 0, 128}, .to_color = {255, 0, 128}};
     draw_lines(&l, 1, 0);
     uint32_t n = pixels_of(pink);
@@ -567,10 +574,10 @@ static void lines_are_hidden_cut_and_coloured(void **state) {
     l = (masu_line){.from = {-1e15, 0.01, 3}, .to = {1e15, 0.01, 3}, .from_color = {255, 0, 128}, .to_color = {255, 0, 128}};
     draw_lines(&l, 1, 0);
     assert_int_equal(pixels_of(pink), SIDE);
-    l.from[2] = l.to[2] = 7; /* behind the eye */
+    l.from[2] = l.to[2] = 7; /* behind the camera */
     draw_lines(&l, 1, 0);
     assert_memory_equal(shown, plain, sizeof shown);
-    /* Each end its own colour; of lines that cross the later one. */
+    /* Each end has its colour; at crossings the later line wins. */
     masu_line two[2] = {line_between(10, 30, 3, 90, 30, 3, 0), line_between(50, 20, 3, 50, 80, 3, 0)};
     memcpy(two[0].from_color, red, 3);
     memcpy(two[0].to_color, blue, 3);
@@ -581,7 +588,7 @@ static void lines_are_hidden_cut_and_coloured(void **state) {
     close_session(&s);
 }
 
-/* ---- Limits, any numbers, nothing ------------------------------------------------------------ */
+/* ---- Limits, arbitrary numbers, unused capacity ---------------------------------------------- */
 
 static void more_than_was_reserved_is_refused(void **state) {
     (void)state;
@@ -605,7 +612,8 @@ static void more_than_was_reserved_is_refused(void **state) {
             assert_int_equal(e->given, null ? 0 : ROOM);
         }
     }
-    /* None of it has moved the frame's number; as many as there is room for are taken. */
+    /* The failed calls have not advanced the frame's number; as many as the capacity are
+     * accepted. */
     masu_frame_desc f = {MASU_FRAME_DESC, .camera = &camera, .particles = particles, .particle_count = ROOM, .decals = decals,
                          .decal_count = ROOM, .lines = lines, .line_count = ROOM};
     draw(&s, &f, &commands, NULL);
@@ -613,7 +621,7 @@ static void more_than_was_reserved_is_refused(void **state) {
     close_session(&s);
 }
 
-/* A float of any bits, or one that is about right. */
+/* A float with arbitrary bits, or a plausible one. */
 static float any_float(uint64_t *seed) {
     uint32_t kind = random_word(seed) % 8;
     static const float odd[] = {0, -1, 1e-30f, 1e9f, 3e38f, -3e38f};
@@ -665,7 +673,7 @@ static void any_numbers_give_a_finite_picture(void **state) {
     close_session(&s);
 }
 
-/* One bad number in a good entry: it is left out, and the others are not. */
+/* One bad number in a good entry: only this entry is skipped. */
 static void what_is_no_number_is_left_out(void **state) {
     (void)state;
     static const float bad[] = {NAN, INFINITY, -INFINITY};
@@ -703,7 +711,7 @@ static void what_is_no_number_is_left_out(void **state) {
     close_session(&s);
 }
 
-/* With room for all of it and nothing in it the picture is what it is without, and memory is what was asked for. */
+/* With unused capacity the image is the same as without, and memory is as requested. */
 static void room_alone_changes_nothing(void **state) {
     (void)state;
     static uint8_t without[4 * PIXELS];
@@ -721,7 +729,8 @@ static void room_alone_changes_nothing(void **state) {
         masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &camera};
         masu_commands commands;
         draw(&s, &frame, &commands, room ? shown : without);
-        /* The buffer is as large as its three kinds say: the report has it, and without room there is none. */
+        /* The buffer has the size of its three kinds: the report lists it, and without capacity
+         * there is none. */
         masu_memory_row rows[MEMORY_ROWS];
         uint32_t count = memory_rows(s.m, rows), found = 0;
         for (uint32_t i = 0; i < count && i < 200; i++) {
@@ -749,7 +758,7 @@ static void room_alone_changes_nothing(void **state) {
 
 /* ---- Frames ---------------------------------------------------------------------------------- */
 
-/* Slots take turns: what one frame brings the next does not have. */
+/* Slots alternate: content of one frame does not appear in the next. */
 static void each_frame_has_its_own(void **state) {
     (void)state;
     static uint8_t first[4 * PIXELS];
@@ -773,7 +782,8 @@ static void each_frame_has_its_own(void **state) {
     close_session(&s);
 }
 
-/* No edge within two pixels: beside one, samples that the jitter has not brought yet are missing for longer. */
+/* No edge within two pixels: next to one, samples missing from the jitter are missing for
+ * longer. */
 static int is_flat(const uint8_t *p, uint32_t x, uint32_t y) {
     if (x < 2 || y < 2 || x + 2 >= SIDE || y + 2 >= SIDE) return 0;
     for (uint32_t i = 0; i < 25; i++) {
@@ -789,8 +799,9 @@ static int is_off(const uint8_t *a, const uint8_t *b, int most) {
     return abs(a[0] - b[0]) > most || abs(a[1] - b[1]) > most || abs(a[2] - b[2]) > most;
 }
 
-/* Particles and decals that were there, or are as many as before but elsewhere, leave no trail in a history: so many
- * frames after, a hundredth of the pixels that they covered is more than 3 of 255 off a picture that never had any. */
+/* Particles and decals that end, or move while their number is constant, leave no trail in a
+ * history: AFTER frames later, at most a hundredth of the covered pixels differ by more than 3 of
+ * 255 from an image without them. */
 static void no_trail_stays(void **state) {
     (void)state;
     enum { AFTER = 16, WARM = 40 };
@@ -805,7 +816,8 @@ static void no_trail_stays(void **state) {
     masu_session_desc desc = room_desc("test_pane");
     desc.desc.rungs[0] = (masu_rung){.scale = 0.75f, .temporal = MASU_ON};
     masu_commands commands;
-    for (uint32_t kind = 0; kind < trials(5, 5, 3); kind++) { /* elsewhere those that end, not those that go away */
+    /* on other drivers those that end, not those that move away */
+    for (uint32_t kind = 0; kind < trials(5, 5, 3); kind++) {
         open_session(&s, &desc);
         pane_at(100);
         uint32_t seen = 0, gone = AFTER;
@@ -828,7 +840,8 @@ static void no_trail_stays(void **state) {
         }
         close_session(&s);
         if (!kind) continue;
-        print_message("%s: %u pixels, gone after %u frames\n", kind % 2 ? "particle" : "decal", seen, gone);
+        print_message("%s: %u pixels, clear after %u frames\n",
+                      kind % 2 ? "particle" : "decal", seen, gone);
         assert_true(seen > 150 && gone <= 4);
     }
 }
@@ -844,7 +857,7 @@ static void run_own(own_renderer *x, masu_frame_desc frame, uint8_t *out) {
     memcpy(out, x->target.mapped, (size_t)x->target.width * x->target.height * 4);
 }
 
-/* A viewport and a resized renderer show what a renderer of that size does. */
+/* A viewport and a resized renderer give the image of a renderer of that size. */
 static void viewports_and_sizes_are_right(void **state) {
     (void)state;
     enum { W = 61, H = 43 };
@@ -865,7 +878,7 @@ static void viewports_and_sizes_are_right(void **state) {
     run_own(&fresh, frame, plain);
     frame.particle_count = frame.decal_count = frame.line_count = 0;
     run_own(&fresh, frame, other);
-    assert_true(max_difference(plain, other, W * H * 4) > 50); /* there is something to compare */
+    assert_true(max_difference(plain, other, W * H * 4) > 50); /* the image has content */
     frame.particle_count = frame.decal_count = frame.line_count = 1;
     unmake_own(&s, &fresh);
 
@@ -897,7 +910,7 @@ static void viewports_and_sizes_are_right(void **state) {
             const uint8_t *want = in ? plain + 4 * ((y - 30) * W + x - 20) : other + 4 * (y * SIDE + x);
             for (uint32_t k = 0; k < 3; k++) {
                 int off = abs(want[k] - shown[4 * (y * SIDE + x) + k]);
-                if (off > 0) fail_msg("%u, %u is off by %d", x, y, off);
+                if (off > 0) fail_msg("%u, %u has an error of %d", x, y, off);
             }
         }
     }
@@ -905,7 +918,7 @@ static void viewports_and_sizes_are_right(void **state) {
     close_session(&s);
 }
 
-/* Targets of floats and of nits, and a dithered one: the colour that is asked for, as each has it. */
+/* Targets of floats and of nits, and a dithered one: the requested colour, in each encoding. */
 static void lines_have_their_colour_in_every_encoding(void **state) {
     (void)state;
     masu_line l = line_between(10, 20, 3, 80, 20, 3, MASU_LINE_ON_TOP);
@@ -916,7 +929,7 @@ static void lines_have_their_colour_in_every_encoding(void **state) {
         d.desc.targets.storage = form == 1;
         if (form == 1 || form == 2) d.desc.targets.format = VK_FORMAT_R16G16B16A16_SFLOAT;
         if (form == 3) d.desc.targets.format = VK_FORMAT_A2B10G10R10_UNORM_PACK32, d.desc.targets.encoding = MASU_ENCODING_PQ;
-        d.desc.targets.white = 160; /* of floats 1 is 80 */
+        d.desc.targets.white = 160; /* in floats 1 is 80 */
         open_session(&s, &d);
         pane_at(100);
         masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &camera, .lines = &l, .line_count = 1};

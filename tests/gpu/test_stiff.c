@@ -1,11 +1,11 @@
-/* test_stiff.c: the march on fields and views that are hard for it: steep, thin, endless, tiny,
- * huge, far away, empty, and parameters without sense. Each case claims how far it may be from its
- * field marched in double precision, and why so far and no nearer.
+/* test_stiff.c: the sphere tracer on difficult fields and views: steep, thin, infinite, tiny, huge,
+ * far away, empty, and invalid parameters. Each case states its maximum difference from the field
+ * traced in double precision, and the reason.
  *
- * The bounds are a quarter above what was measured (evaluations: a half), on lavapipe 22.3 and 25.0
- * and SwiftShader alike. They are there to be lowered when the march gets better. Depth is the
- * distance along the ray, relative; at a silhouette it may be that of the surface behind, so that
- * depth_max is bounded only where there is none. */
+ * The bounds are a quarter above the measured values (evaluations: a half), which are the same on
+ * lavapipe 22.3 and 25.0 and SwiftShader. They are to be lowered when the tracer improves. Depth is
+ * the distance along the ray, relative; at a silhouette it may be that of the surface behind, so
+ * depth_max is bounded only in cases without silhouettes. */
 #include "support/stiff.h"
 
 #include "measure/truth.h"
@@ -19,7 +19,7 @@
 static masu_detail failure; /* of the last call that failed */
 
 #define ANY_DEPTH 1.0 /* of the distance */
-#define NO_CLAIM (-1.0) /* a figure that nothing bounds, and of which nothing is claimed */
+#define NO_CLAIM (-1.0) /* a figure without a bound and without a claim */
 
 #define LOOK(x, y, z, fx, fy, fz, fov, near)                                                       \
     { .position = {x, y, z}, .forward = {fx, fy, fz}, .fov_y = fov, .near_distance = near }
@@ -35,7 +35,7 @@ static const stiff_case steep[] = {
      .least_hits = 50,
      .most = {0.37, 0, 2.9e-05, 0.059, ANY_DEPTH, 1.1, 119, 145, 0},
      .why = "needles 4 pixels apart; the steps are a fiftieth of the field, hence the "
-            "evaluations, and the rays that part from the truth pass between needles"},
+            "evaluations, and the rays that differ from the reference pass between needles"},
     {.name = "displace, noise, L = 43",
      .scene = "displace_noise",
      .camera = LOOK(0.4, 0.5, 3.2, -0.1f, -0.15f, -1, 0.9f, 0.05f),
@@ -51,7 +51,7 @@ static const stiff_case steep[] = {
      .height = 128,
      .least_hits = 25,
      .most = {0.032, 0, 3.4e-05, 0.00061, 0.15, 0.13, 40, 13, 0},
-     .why = "L = 10.7; at edges of the twisted bar a ray sees the next turn"},
+     .why = "L = 10.7; at edges of the twisted bar a ray hits the next winding"},
 };
 
 /* ---- Deep zooms ------------------------------------------------------------------------------ */
@@ -133,7 +133,7 @@ static const stiff_case fractals[] = {
      .why = "as above; the powers of fp32 differ between drivers by 1 % of the distance"},
 };
 
-/* ---- Thin and endless things ----------------------------------------------------------------- */
+/* ---- Thin and infinite objects --------------------------------------------------------------- */
 
 static const stiff_case thin[] = {
     {.name = "rods of 0.2 pixel",
@@ -155,7 +155,7 @@ static const stiff_case grazing[] = {
      .height = 96,
      .least_hits = 60,
      .most = {0, 0, 1.1e-07, 1e-06, 3.3e-05, 0.08, 0.25, 2.2, 0},
-     .why = "a half-space is met in closed form, however small the angle"},
+     .why = "a half-space is intersected in closed form, at any angle"},
     {.name = "plain to 1e5 units, from 0.01",
      .scene = "ground",
      .camera = LOOK(0, 0.01, 0, 0, 0, -1, 0.3f, 0.01f),
@@ -166,7 +166,7 @@ static const stiff_case grazing[] = {
      .why = "as from 1 unit"},
 };
 
-/* ---- Where the camera is --------------------------------------------------------------------- */
+/* ---- Camera positions ------------------------------------------------------------------------ */
 
 static const stiff_case cameras[] = {
     {.name = "inside a solid",
@@ -192,7 +192,7 @@ static const stiff_case cameras[] = {
      .height = 64,
      .least_hits = 49,
      .most = {0, 0, 1e-07, 1e-06, 1e-06, 0.08, 0.25, 11, 0},
-     .why = "the tangent plane divides the picture; rays of one side begin in the solid"},
+     .why = "the tangent plane divides the image; rays of one side begin in the solid"},
     {.name = "on a ball, inwards",
      .scene = "figures",
      .camera = LOOK(-1, 1, 1, 0, 0.1f, -1, 0.8f, 0.001f),
@@ -240,10 +240,10 @@ static const stiff_case figures[FIGURES_COUNT] = {
              .height = 96,
              .least_hits = 70,
              .most = {0, 0, 1e-07, 3.5e-06, ANY_DEPTH, 0.08, 0.25, 6, 0},
-             .why = "the field is anchored near the eye (docs/sdf.md): as at the origin"},
+             .why = "the field is anchored near the camera (docs/sdf.md): same as at the origin"},
 };
 
-/* Pixels whose depth differs by more than that from the first's, in %. */
+/* Percentage of pixels whose depth differs by more than `by` from the first's. */
 static double differing(const float *here, const float *there, uint32_t count, double by) {
     uint32_t n = 0;
     for (uint32_t i = 0; i < count; i++)
@@ -261,7 +261,7 @@ static const stiff_case sizes[] = {
      .height = 96,
      .least_hits = 4,
      .most = {0, 0, 1e-07, 1e-06, 1e-06, 113, 113, 1.4, 0},
-     .why = "points and lines are not there unless a ray meets them exactly; plates are exact. On "
+     .why = "points and lines are invisible unless a ray hits them exactly; plates are exact. On "
             "a plate the gradient is zero: it has no normal to compare"},
 };
 
@@ -273,7 +273,7 @@ static const stiff_case point = {
     .height = 96,
     .least_hits = 0,
     .most = {0, 0, 1e-07, 1e-06, 1e-06, 0.08, 0.25, 0.05, 0},
-    .why = "one pixel of 12,288 at most; and only the tile around the point may be asked at all"};
+    .why = "one pixel of 12,288 at most; only the tile around the point may be evaluated"};
 
 static const stiff_case blends[] = {
     {.name = "smooth union of radius 0",
@@ -320,8 +320,8 @@ static const stiff_case many[] = {
      .why = "balls of 3 pixels"},
 };
 
-/* By itself: Mesa 22.3's lavapipe ends every loop of an invocation after 65,535 rounds of all its
- * loops together, in silence; 4096 parts are 16 samples. */
+/* In a separate test: Mesa 22.3's lavapipe silently ends every loop of an invocation after 65,535
+ * iterations of all its loops together; 4096 parts are 16 samples. */
 static const stiff_case many_at_once = {.name = "4096 parts, all in a tile",
                                         .scene = "many",
                                         .camera = LOOK(0, 8, 38, 0, -0.3f, -1, 0.8f, 0.05f),
@@ -436,8 +436,8 @@ static void of_two_surfaces_in_one_place_the_first_part_shows(void **state) {
         assert_true(abs((int)a[0] - (int)a[2]) > 100); /* one or the other, nothing between */
         count[i % coincident.width > coincident.width / 2][a[2] > a[0]]++;
     }
-    /* The same form, hence the same number: the tie goes to the part declared first. The crate's
-     * forms round differently: either may win, the same one in each frame (stiff_draw). */
+    /* The same shape, hence the same number: on ties the part declared first wins. The crate's
+     * shapes round differently: either may win, the same one in each frame (stiff_draw). */
     assert_true(count[0][0] > 500);
     assert_int_equal(count[0][1], 0);
     assert_true(count[1][0] + count[1][1] > 500);
@@ -467,7 +467,7 @@ static void a_parameter_of_any_number_gives_a_finite_picture(void **state) {
     masu_session s;
     stiff_open(&s, &c);
     for (size_t v = 0; v < sizeof senseless / sizeof *senseless; v++) {
-        for (uint32_t p = 0; p <= PARAMS; p++) { /* each alone, then all together */
+        for (uint32_t p = 0; p <= PARAMS; p++) { /* each separately, then all together */
             memcpy(c.params, usual, sizeof usual);
             for (uint32_t i = 0; i < PARAMS; i++)
                 if (i == p || p == PARAMS) c.params[i] = senseless[v];

@@ -1,6 +1,7 @@
-/* test_store.c: what shaders store (shaders/shared/store.glsl): NaN and infinities become 0 and are counted, the rest
- * is clamped to what the format holds, and nothing goes beside the image. The macros run with an image that is a
- * buffer (store.comp), since what a format does with an infinity differs by driver. */
+/* test_store.c: values that shaders store (shaders/shared/store.glsl): NaN and infinities become 0
+ * and are counted, other values are clamped to the format's range, and nothing is stored outside
+ * the image. The macros run with a buffer instead of an image (store.comp), because the handling
+ * of infinities in image formats differs by driver. */
 #include "support/compute.h"
 #include "support/support.h"
 
@@ -27,7 +28,7 @@ enum { COUNT = sizeof values / sizeof *values };
 
 static float sane(float x, float low, float high) { return isfinite(x) ? fminf(fmaxf(x, low), high) : 0.0f; }
 
-/* A driver may take what is less than the least normal number for 0. */
+/* A driver may flush denormals to 0. */
 static void assert_stored(float found, float wanted) {
     if (fabsf(wanted) < FLT_MIN && found == 0.0f) wanted = 0.0f;
     assert_float_equal(found, wanted, 0.0f);

@@ -1,7 +1,8 @@
-/* test_temporal.c: rung.temporal against the truth of many samples: at rest it comes near it, at full size and at half;
- * what leaves, lights and shadows leave nothing behind; a cut, NaN and the order of frames before it change nothing;
- * a change of scale keeps the past; equal frames give equal bytes; what a mirror shows moves as that does; and nothing
- * breaks it. The scene is of polygons with a shadow map, or the edge of test_truth.c. */
+/* test_temporal.c: rung.temporal against a ground truth of many samples. A static view comes close
+ * to it, at full size and at half; disoccluded pixels, changed lights and shadows leave no trails.
+ * A cut, NaN and the previous frames have no influence. A change of scale keeps the history; equal
+ * frames are bit-identical; reflections move with the reflected surfaces; arbitrary input is safe.
+ * The scene is polygons with a shadow map, or the edge of test_truth.c. */
 #include "support/files.h"
 #include "support/floats.h"
 #include "support/support.h"
@@ -28,7 +29,7 @@ static masu_session_desc temporal_desc(const char *scene, float scale) {
     return d;
 }
 
-/* As the scene's camera, seen a little from the side. */
+/* The scene's camera, moved slightly to the side. */
 static masu_camera aside(const masu_session *s, double metres) {
     masu_camera camera;
     assert_int_equal(masu_camera_at(s->m, 0.0, &camera, NULL), MASU_OK);
@@ -52,7 +53,7 @@ static double linear_of(uint8_t byte) {
     return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
 }
 
-/* The truth of a scene, whose ball may stand elsewhere. The one that was found last is not found again. */
+/* The ground truth of a scene, with an optional position of its ball. The last one is cached. */
 static struct {
     const char *scene;
     int moved, lit;
@@ -79,10 +80,10 @@ static void find_truth(const char *scene, const float *ball, const masu_light *l
     close_session(&s);
 }
 
-/* ---- What the host forgets -------------------------------------------------------------------- */
+/* ---- Missing cuts ---------------------------------------------------------------------------- */
 
-/* A frame that is not submitted is to be followed by a cut. Without, the next looks where none has drawn: not at what the
- * memory held before, which would be a picture of many samples. */
+/* A frame that is not submitted must be followed by a cut. Without it, the next frame must not use
+ * the memory's previous content as a history, which would be an image of many samples. */
 static void a_frame_left_out_without_a_cut_shows_no_old_memory(void **state) {
     (void)state;
     masu_session s;
@@ -90,16 +91,16 @@ static void a_frame_left_out_without_a_cut_shows_no_old_memory(void **state) {
     char error[ERROR_SIZE];
     masu_session_desc d = temporal_desc("test_shadows", 1.0f);
     open_session(&s, &d);
-    last.scene = NULL; /* `truth` is another now */
+    last.scene = NULL; /* `truth` has other content now */
     masu_frame_desc f = {MASU_FRAME_DESC, .cut = 1};
     for (int i = 0; i < 2; i++) assert_int_equal(masu_frame(s.m, &f, &commands, NULL), MASU_OK);
-    draw(&s, &f, &commands, truth.rgba); /* as it is without a past */
+    draw(&s, &f, &commands, truth.rgba); /* the image without history */
     close_session(&s);
     d.no_renderer = true;
     open_session(&s, &d);
     if (on_gpu(&s)) {
         close_session(&s);
-        skip(); /* the host does not see its memory */
+        skip(); /* the host cannot access its memory */
     }
     assert_int_equal(masu_memory_query(&s.desc, &s.need, NULL), MASU_OK);
     const masu_role_need *need = &s.need.roles[MASU_ROLE_DEVICE];
@@ -117,8 +118,10 @@ static void a_frame_left_out_without_a_cut_shows_no_old_memory(void **state) {
     assert_int_equal(masu_frame(s.m, &f, &commands, NULL), MASU_OK);
     draw(&s, &f, &commands, a.rgba);
     double off = rms(a.rgba, truth.rgba);
-    print_message("  off by %.2f of 255 (root mean square) from a picture without a past\n", off);
-    assert_true(off < 4.0); /* 2.7; 39 if the memory counts */
+    print_message("  error of %.2f of 255 (root mean square) relative to the image without "
+                  "history\n",
+                  off);
+    assert_true(off < 4.0); /* 2.7; 39 if the memory is used */
     masu_destroy(s.m);
     s.m = NULL;
     vkFreeMemory(s.host.device, memory, NULL);
@@ -130,13 +133,16 @@ static void a_frame_left_out_without_a_cut_shows_no_old_memory(void **state) {
 static void at_rest_it_comes_near_the_truth(void **state) {
     (void)state;
     static const char *const scenes[] = {"test_truth", "test_shadows"};
-    /* Not 0.37 or 0.45: for some jitters, with temporal or without, SwiftShader then sees all of the near ground in
-     * shadow, whose triangle of 40 m passes below the eye. */
+    /* Not 0.37 or 0.45: for some jitters, with temporal upscaling or without, SwiftShader renders
+     * all of the near ground in shadow; its triangle of 40 m passes below the camera. */
     static const float scales[] = {1.0f, 0.7f, 0.5f, 0.4f};
-    static const double most[] = {0.35, 0.35, 0.35, 0.45}; /* of the error of one frame without a past */
+    /* fraction of the error of one frame without history */
+    static const double most[] = {0.35, 0.35, 0.35, 0.45};
     for (size_t k = 0; k < sizeof scenes / sizeof *scenes; k++) {
         find_truth(scenes[k], NULL, NULL);
-        for (size_t i = whole_run() ? 0 : 2 * k; i < sizeof scales / sizeof *scales; i += whole_run() ? 1 : 4) { /* else 1, and a half */
+        /* if it is no whole run: scale 1 in one scene, a half in the other */
+        for (size_t i = whole_run() ? 0 : 2 * k; i < sizeof scales / sizeof *scales;
+             i += whole_run() ? 1 : 4) {
             masu_session s;
             masu_session_desc d = temporal_desc(scenes[k], scales[i]);
             d.desc.rung_count = 2;
@@ -145,15 +151,16 @@ static void at_rest_it_comes_near_the_truth(void **state) {
             frames(&s, 64, (masu_frame_desc){MASU_FRAME_DESC}, a.rgba);
             draw_rung(&s, 1, b.rgba);
             double with = rms(a.rgba, truth.rgba), without = rms(b.rgba, truth.rgba);
-            print_message("  %s, scale %.2f: rms %.2f of 255, without a past %.2f\n", scenes[k], (double)scales[i], with,
-                          without);
+            print_message("  %s, scale %.2f: rms %.2f of 255, without history %.2f\n",
+                          scenes[k], (double)scales[i], with, without);
             assert_true(without > 1.0 && with < most[i] * without);
             close_session(&s);
         }
     }
 }
 
-/* The camera goes along at half a pixel a frame: edges are smoother than those of one frame, and nothing trails. */
+/* The camera moves at half a pixel per frame: edges are smoother than in a single frame, without
+ * trails. */
 static void in_motion_it_is_no_worse(void **state) {
     (void)state;
     static const float scales[] = {1.0f, 0.5f};
@@ -171,18 +178,19 @@ static void in_motion_it_is_no_worse(void **state) {
         }
         draw_rung(&s, 1, b.rgba);
         double with = rms(a.rgba, truth.rgba), without = rms(b.rgba, truth.rgba);
-        print_message("  scale %.2f: rms %.2f of 255, without a past %.2f\n", (double)scales[i], with, without);
+        print_message("  scale %.2f: rms %.2f of 255, without history %.2f\n",
+                      (double)scales[i], with, without);
         assert_true(with < 0.8 * without);
         close_session(&s);
     }
 }
 
-/* A white rod half a pixel wide passes a wall at 1.3 pixels a frame: most frames of half size miss
- * it. Its light in linear steps of display, less the wall's, is its area of pixels, (1 - wall)
- * each. Twelve frames after it has gone, nothing is left. */
+/* A white rod half a pixel wide passes in front of a wall at 1.3 pixels per frame: most frames at
+ * half size miss it. The sum of its display-linear light, minus the wall's, is its area in pixels,
+ * times (1 - wall) each. Twelve frames after it has left, no trace remains. */
 static void a_thin_rod_in_motion_keeps_its_light(void **state) {
     (void)state;
-    /* Metres, where the rod is. */
+    /* In metres, at the distance of the rod. */
     const double pixel = 2.0 * 10.0 * tan(20.0 * acos(-1.0) / 180.0) / SIZE;
     for (uint32_t half = 0; half < 2; half++) {
         masu_session s;
@@ -211,9 +219,10 @@ static void a_thin_rod_in_motion_keeps_its_light(void **state) {
     }
 }
 
-/* ---- What changes ---------------------------------------------------------------------------- */
+/* ---- Changes --------------------------------------------------------------------------------- */
 
-/* Pixels that the change has changed, in whose surroundings the truth is smooth: what is off by more than `off` of 255. */
+/* Pixels that the change affects, in regions where the ground truth is smooth: those with an error
+ * of more than `off` of 255. */
 static uint32_t ghosts(const uint8_t *before, const uint8_t *now, uint32_t off, uint32_t *all) {
     uint32_t count = 0;
     *all = 0;
@@ -240,7 +249,7 @@ static void what_leaves_leaves_no_ghost(void **state) {
     static const float scales[] = {1.0f, 0.5f};
     const float away[3] = {3.5f, 0.8f, -3.0f};
     for (size_t i = 0; i < sizeof scales / sizeof *scales; i++) {
-        for (int jumps = 0; jumps < 2; jumps++) { /* at once, or in eight steps that velocities know */
+        for (int jumps = 0; jumps < 2; jumps++) { /* at once, or in eight steps with velocities */
             if (jumps != (int)i && !whole_run()) continue;
             masu_session s;
             masu_session_desc d = temporal_desc("test_shadows", scales[i]);
@@ -263,8 +272,8 @@ static void what_leaves_leaves_no_ghost(void **state) {
     }
 }
 
-/* Smoke has no velocity of its own: eight frames after a puff has drifted away from before what rests. `truth` is of the puff
- * where it has come to, after it has stayed there. */
+/* Smoke has no velocities: eight frames after a puff has moved away from a static background.
+ * `truth` is the image of the puff after a long time at its final position. */
 static void smoke_leaves_no_trail(void **state) {
     (void)state;
     for (uint32_t half = !whole_run(); half < 2; half++) {
@@ -290,7 +299,7 @@ static void smoke_leaves_no_trail(void **state) {
     }
 }
 
-/* The eye goes past a pole: the sky behind it rests in the picture, and is not what was seen there. */
+/* The camera passes a pole: the sky behind it is static in the image, but was occluded before. */
 static void sky_that_is_uncovered_shows_no_pole(void **state) {
     (void)state;
     const double metres = 0.08;
@@ -323,7 +332,7 @@ static void light_that_changes_is_seen(void **state) {
     assert_int_equal(masu_light_of(s.m, &light, NULL), MASU_OK);
     frames(&s, 40, (masu_frame_desc){MASU_FRAME_DESC}, b.rgba);
     for (int k = 0; k < 3; k++) light.sun_color[k] *= 0.6f;
-    light.sun_direction[0] = -light.sun_direction[0]; /* shadows fall elsewhere */
+    light.sun_direction[0] = -light.sun_direction[0]; /* shadows move to other positions */
     find_truth("test_shadows", NULL, &light);
     frames(&s, 8, (masu_frame_desc){MASU_FRAME_DESC, .light = &light}, a.rgba);
     uint32_t all, off = ghosts(b.rgba, a.rgba, 2, &all);
@@ -332,7 +341,7 @@ static void light_that_changes_is_seen(void **state) {
     close_session(&s);
 }
 
-/* The same of a lamp, which no number of the frame tells of: as if it had never been on. */
+/* The same for a lamp, which is in no member of the frame: as if it had never been on. */
 static void a_lamp_that_goes_out_is_seen(void **state) {
     (void)state;
     masu_session s;
@@ -343,7 +352,7 @@ static void a_lamp_that_goes_out_is_seen(void **state) {
         open_session(&s, &d);
         masu_punctual_light light = masu_punctual_light_find(s.m, "glow");
         assert_int_equal(masu_punctual_light_get(s.m, light, &lamp, NULL), MASU_OK);
-        lamp.instance.id = 0; /* what carries it is hidden */
+        lamp.instance.id = 0; /* the lamp's model is hidden */
         lamp.position[0] = 2, lamp.position[1] = 1.5, lamp.position[2] = -2.5;
         lamp.range = 20;
         assert_int_equal(masu_punctual_light_set(s.m, light, &lamp, NULL), MASU_OK);
@@ -358,8 +367,9 @@ static void a_lamp_that_goes_out_is_seen(void **state) {
     assert_true(all > 100 && off < all / 20);
 }
 
-/* The same while the camera goes along: what moves is held within what is there now, from above where the light goes
- * out, from below where it comes on. Two frames later two thirds of two thirds of it would still be seen. */
+/* The same while the camera moves: moving pixels are clamped to the current colours, from above
+ * when the light goes out, from below when it comes on. Otherwise two frames later two thirds of
+ * two thirds of the old light would still be visible. */
 static void light_that_changes_in_motion_is_seen(void **state) {
     (void)state;
     static const float scales[] = {1.0f, 0.5f};
@@ -389,7 +399,7 @@ static void light_that_changes_in_motion_is_seen(void **state) {
     }
 }
 
-/* What is rounded up by chance is never rounded beyond white: red's step above it would be one of green's. */
+/* Stochastic rounding never exceeds white: red's step above white would be one of green's. */
 static void white_is_white_in_every_frame(void **state) {
     (void)state;
     for (int half = 0; half < 2; half++) {
@@ -411,10 +421,11 @@ static void white_is_white_in_every_frame(void **state) {
     }
 }
 
-/* ---- What must not matter -------------------------------------------------------------------- */
+/* ---- Conditions without influence ------------------------------------------------------------ */
 
-/* Twice the width and height is a pass of its own, and an output that keeps its size has no care for what lies beyond it: what
- * temporal.comp shows of a scale that gives the same render size, in motion, at rest, and of a host with a jitter. */
+/* The 2x variant is a separate pass, and an output of fixed size needs no guard at its border: the
+ * images equal those of temporal.comp at a scale with the same render size, in motion, static, and
+ * with a host's jitter. */
 static void twice_the_size_is_the_same(void **state) {
     (void)state;
     static const struct {
@@ -447,9 +458,10 @@ static void twice_the_size_is_the_same(void **state) {
             }
             print_message("  scale %.3f, resizable %u, halves %u: %u of %d bytes differ, by %u at most\n",
                           (double)ways[k].scale, ways[k].resizable, ways[k].halves, others, BYTES, most);
-            /* Halves are coarser: up to a tenth of a step of what is shown. While the view moves,
-             * the history of a thin surface that the samples miss is kept if it differs by more
-             * than a threshold, which a texel or two of halves or of another size are at. */
+            /* Half floats are coarser: up to a tenth of an output step. While the view moves, the
+             * history of a thin surface that the samples miss is kept if it differs by more than a
+             * threshold, and a texel or two are at the threshold with half floats or another
+             * size. */
             const bool same = ways[k].scale == ways[0].scale && !ways[k].halves;
             assert_true(most <= (i ? 1u : same ? 2u : 8u) && twos <= (i ? 0u : same ? 1u : 48u));
             assert_true(others < (ways[k].halves ? BYTES / 5 : BYTES / 50));
@@ -457,8 +469,8 @@ static void twice_the_size_is_the_same(void **state) {
     }
 }
 
-/* Images are as large as the largest rung that has them: of an SDF alone that of velocity is smaller than that of depth where
- * only a smaller rung has a past. */
+/* Images have the size of the largest rung that uses them: with only an SDF, velocity is smaller
+ * than depth if only a smaller rung has temporal upscaling. */
 static void depth_is_found_in_a_larger_image(void **state) {
     (void)state;
     for (int k = 0; k < 2; k++) {
@@ -480,7 +492,7 @@ static void depth_is_found_in_a_larger_image(void **state) {
         close_session(&s);
     }
     uint32_t most = max_difference(a.rgba, b.rgba, BYTES);
-    print_message("  beside a larger rung a byte is off by %u at most\n", most);
+    print_message("  next to a larger rung a byte has an error of %u at most\n", most);
     assert_true(most <= 1);
 }
 
@@ -490,8 +502,9 @@ static void equal_frames_give_equal_bytes(void **state) {
     for (int k = 0; k < 3; k++) {
         masu_session s;
         masu_session_desc d = temporal_desc("test_fog", 1.0f);
-        d.desc.debug.poison = poison[k]; /* nor does what images hold before they are written, */
-        d.desc.rung_count = 5;           /* or beyond the part of them that a rung has */
+        d.desc.debug.poison = poison[k]; /* including the images' content before they are
+                                            written, */
+        d.desc.rung_count = 5;           /* or outside the part that a rung uses */
         d.desc.rungs[1] = (masu_rung){.temporal = MASU_ON, .scale = 0.33f, .sharpen = MASU_ON};
         d.desc.rungs[2] = (masu_rung){.scale = 0.6f, .aa = MASU_AA_SMAA_LOW};
         d.desc.rungs[3] = (masu_rung){.temporal = MASU_ON, .scale = 0.02f};
@@ -519,7 +532,8 @@ static void a_cut_forgets_all(void **state) {
         masu_light light;
         assert_int_equal(masu_light_of(s.m, &light, NULL), MASU_OK);
         frames(&s, 9, (masu_frame_desc){MASU_FRAME_DESC, .camera = &elsewhere}, NULL);
-        light.sun_color[0] *= k ? 0.5f : 1.0f; /* what changes before counts no more than what is seen */
+        /* earlier changes have no influence, as earlier images do not */
+        light.sun_color[0] *= k ? 0.5f : 1.0f;
         move_instance(&s, "ball", k ? 2.0f : 0.8f, 0.8f, 0.6f, 1.0f);
         frames(&s, 1, (masu_frame_desc){MASU_FRAME_DESC, .camera = &elsewhere, .light = &light}, NULL);
         move_instance(&s, "ball", 0.8f, 0.8f, 0.6f, 1.0f);
@@ -530,7 +544,7 @@ static void a_cut_forgets_all(void **state) {
     assert_memory_equal(a.rgba, b.rgba, BYTES);
 }
 
-/* The first frame of another scale goes on from where the last one was. */
+/* The first frame at another scale continues the history. */
 static void a_change_of_scale_keeps_the_past(void **state) {
     (void)state;
     masu_session s;
@@ -544,13 +558,15 @@ static void a_change_of_scale_keeps_the_past(void **state) {
     double before = rms(b.rgba, truth.rgba), after = rms(a.rgba, truth.rgba), pop = rms(a.rgba, b.rgba);
     frames(&s, 1, (masu_frame_desc){MASU_FRAME_DESC, .rung = 1, .cut = 1}, b.rgba);
     double anew = rms(b.rgba, truth.rgba);
-    print_message("  rms %.2f of 255 before, %.2f in the frame after, which differs by %.2f; anew it would be %.2f\n", before,
-                  after, pop, anew);
+    print_message("  rms %.2f of 255 before, %.2f in the frame after, which differs by %.2f; "
+                  "after a cut %.2f\n",
+                  before, after, pop, anew);
     assert_true(after < 0.35 * anew && pop < 1.5);
     close_session(&s);
 }
 
-/* Whatever comes: rungs that change, jumps, walls, steps of time; every pixel is opaque, and none had to be replaced. */
+/* Arbitrary changes: of rungs, jumps, walls, time steps; every pixel is opaque, and no stored value
+ * was replaced. */
 static void nothing_breaks_it(void **state) {
     (void)state;
     static const char *const scenes[] = {"test_shadows", "test_both", "test_pane", "wet_city"};
@@ -563,7 +579,8 @@ static void nothing_breaks_it(void **state) {
         d.desc.rungs[3] = (masu_rung){.temporal = MASU_ON, .scale = 0.01f};
         d.desc.rungs[4] = (masu_rung){.temporal = MASU_ON, .scale = 0.5f};
         open_session(&s, &d);
-        for (uint32_t i = 0; i < trials(24, 24, 12); i++) { /* of 8 everything has been once */
+        /* in 8 frames every change has occurred once */
+        for (uint32_t i = 0; i < trials(24, 24, 12); i++) {
             masu_camera camera = aside(&s, i % 6 == 4 ? 1e6 : 0.3 * (i % 7));
             if (i % 3 == 2) camera.position[1] = -0.5;
             if (i % 8 == 7) camera.forward[0] = 5.0f;
@@ -579,7 +596,7 @@ static void nothing_breaks_it(void **state) {
     }
 }
 
-/* Targets beyond 8 bits and beyond white show what those of 8 bits do. */
+/* Targets beyond 8 bits and beyond white have the same image as 8-bit targets. */
 static void all_targets_are_served(void **state) {
     (void)state;
     static const struct {
@@ -601,8 +618,8 @@ static void all_targets_are_served(void **state) {
     }
 }
 
-/* How much the colours of surfaces differ from pixel to pixel, in the frame that ends at the scene's camera, which has moved
- * by so many metres in each. */
+/* Difference of surface colours from pixel to pixel, in the last frame of a camera path that ends
+ * at the scene's camera, with a motion of `metres` per frame. */
 static double roughness_of(float scale, double metres, uint8_t *albedo) {
     masu_session s;
     masu_session_desc d = temporal_desc("test_texture_floor", scale);
@@ -622,19 +639,21 @@ static double roughness_of(float scale, double metres, uint8_t *albedo) {
     return sum;
 }
 
-/* Below full size what moves is drawn with coarser mips than what rests: its samples are few. */
+/* Below full size, moving surfaces are rendered with coarser mips than static ones, because they
+ * have few samples. */
 static void what_moves_has_coarser_mips(void **state) {
     (void)state;
     double rests = roughness_of(0.5f, 0.0, a.rgba), moves = roughness_of(0.5f, 3.0, b.rgba);
-    print_message("  differences of neighbours: moving %.3f of resting\n", moves / rests);
+    print_message("  differences of neighbours: moving %.3f of static\n", moves / rests);
     assert_true(moves < 0.9 * rests && moves > 0.1 * rests);
     (void)roughness_of(1.0f, 0.0, a.rgba);
     (void)roughness_of(1.0f, 3.0, b.rgba);
     assert_memory_equal(a.rgba, b.rgba, BYTES);
 }
 
-/* Velocity of the middle pixel, which shows a wall two metres before a mirror that is a metre away; the camera goes along both,
- * to the right and up. Rung 1 has no past. */
+/* Velocity of the centre pixel, which shows the reflection of a wall two metres in front of a
+ * mirror, which is a metre away. The camera moves parallel to both, to the right and up. Rung 1 has
+ * no temporal upscaling. */
 static void velocity_in_mirror(masu_switch fine, uint32_t rung, double metres, double v[2]) {
     masu_session s;
     masu_session_desc d = temporal_desc("test_mirror_plain", 1.0f);
@@ -654,7 +673,8 @@ static void velocity_in_mirror(masu_switch fine, uint32_t rung, double metres, d
     close_session(&s);
 }
 
-/* What a mirror shows lies behind it: three metres from the eye, and moves by a third of what the mirror's surface does. */
+/* The reflected image is behind the mirror, three metres from the camera, and moves a third as fast
+ * as the mirror's surface. */
 static void what_a_mirror_shows_is_found_where_it_was(void **state) {
     (void)state;
     const double metres = 0.05, pixels = metres * 0.5 * SIZE / tan(20.0 * acos(-1.0) / 180.0);
@@ -663,9 +683,10 @@ static void what_a_mirror_shows_is_found_where_it_was(void **state) {
     velocity_in_mirror(MASU_ON, 0, metres, image);
     velocity_in_mirror(MASU_ON, 1, metres, plain);
     for (int k = 0; k < 2; k++) {
-        const double moved = k ? -0.5 * pixels : -pixels; /* where the pixel was, less where it is */
-        print_message("  %c: without a past %.3f of %.3f pixels, surface %.3f, what it mirrors %.3f\n", "xy"[k], plain[k], moved,
-                      surface[k], image[k]);
+        /* previous minus current position of the pixel */
+        const double moved = k ? -0.5 * pixels : -pixels;
+        print_message("  %c: without history %.3f of %.3f pixels, surface %.3f, reflection %.3f\n",
+                      "xy"[k], plain[k], moved, surface[k], image[k]);
         assert_true(fabs(plain[k] - moved) < 0.02);
         assert_true(fabs(surface[k] - moved) < 1.0); /* the change of the jitter is in both */
         assert_true(fabs(surface[k] - image[k] - moved * 2.0 / 3.0) < 0.05);
@@ -678,7 +699,7 @@ int main(void) {
         cmocka_unit_test(at_rest_it_comes_near_the_truth),
         cmocka_unit_test(in_motion_it_is_no_worse),
         cmocka_unit_test(a_thin_rod_in_motion_keeps_its_light),
-        cmocka_unit_test(a_change_of_scale_keeps_the_past), /* of the same truth */
+        cmocka_unit_test(a_change_of_scale_keeps_the_past), /* with the same ground truth */
         cmocka_unit_test(what_leaves_leaves_no_ghost),
         cmocka_unit_test(smoke_leaves_no_trail),
         cmocka_unit_test(sky_that_is_uncovered_shows_no_pole),

@@ -1,6 +1,7 @@
-/* test_terms.c: what a march leaves out because it does not matter to its block of pixels: not one bit of what it
- * finds depends on that, in scenes with unions, cuts, blends, repetitions, fractals, parts that move, lists of parts, and
- * a field that is written by hand; and how much is asked for instead, as the counter of evaluations does not tell. */
+/* test_terms.c: terms that the march skips because they do not affect a block of pixels: the result
+ * is bit-identical with and without skipping, in scenes with unions, cuts, blends, repetitions,
+ * fractals, moving parts, lists of parts, and a hand-written field. Also the cost of the selection,
+ * which the counter of evaluations does not show. */
 #include "support/files.h"
 #include "support/support.h"
 
@@ -14,7 +15,7 @@ static masu_session s;
 typedef struct picture {
     uint32_t albedo[W * H], normal[W * H];
     float depth[W * H];
-    uint8_t shown[4 * W * H]; /* silhouettes ask for it as well */
+    uint8_t shown[4 * W * H]; /* silhouettes use it as well */
     uint64_t evaluations;
 } picture;
 
@@ -23,8 +24,8 @@ static void march(const char *scene, int all_terms, masu_switch share, float sca
     d.desc.readback = MASU_READBACK_ALBEDO | MASU_READBACK_NORMAL | MASU_READBACK_DEPTH;
     d.desc.rung_count = 1;
     d.desc.rungs[0] = (masu_rung){.scale = scale, .silhouettes = MASU_ON};
-    /* A tile here may have to ask for all of 300 parts, and of silhouettes an invocation marches three rays: Mesa 22.3 ends loops after
-     * 65,535 rounds in all. */
+    /* A tile here may evaluate all of 300 parts, and for silhouettes an invocation marches three
+     * rays: Mesa 22.3 ends loops after 65,535 iterations in all. */
     if (!strcmp(scene, "parts300")) d.desc.rungs[0].march_steps = 48;
     d.desc.debug.all_terms = (uint32_t)all_terms;
     d.desc.debug.share_rays = share;
@@ -50,17 +51,18 @@ static void same(const char *scene, float scale, double time) {
     march(scene, 0, MASU_ON, scale, time, shared);
     uint32_t hits = 0;
     for (uint32_t i = 0; i < W * H; i++) hits += all->depth[i] > 0;
-    print_message("%s at %g, second %g: %u pixels hit, %llu evaluations, %llu for what is looked at before\n", scene, (double)scale, time,
-                  hits, (unsigned long long)all->evaluations, (unsigned long long)(chosen->evaluations - all->evaluations));
+    print_message("%s at %g, second %g: %u pixels hit, %llu evaluations, %llu for the selection\n",
+                  scene, (double)scale, time, hits, (unsigned long long)all->evaluations,
+                  (unsigned long long)(chosen->evaluations - all->evaluations));
     assert_true(hits > (uint32_t)(W * H * scale * scale / 4));
     assert_memory_equal(all->depth, chosen->depth, sizeof all->depth);
-    for (uint32_t i = 0; i < W * H; i++) { /* where nothing is, nothing was written */
+    for (uint32_t i = 0; i < W * H; i++) { /* pixels without a surface are not written */
         if (!(all->depth[i] > 0)) continue;
         assert_int_equal(all->normal[i], chosen->normal[i]);
         assert_int_equal(all->albedo[i], chosen->albedo[i]);
     }
     assert_memory_equal(all->shown, chosen->shown, sizeof all->shown);
-    /* Nor does it matter who marches a ray. */
+    /* The invocation that marches a ray does not matter either. */
     assert_memory_equal(all->shown, shared->shown, sizeof all->shown);
     assert_memory_equal(chosen->depth, shared->depth, sizeof chosen->depth);
     for (uint32_t i = 0; i < W * H; i++) {
@@ -69,7 +71,7 @@ static void same(const char *scene, float scale, double time) {
         assert_int_equal(chosen->albedo[i], shared->albedo[i]);
     }
     assert_int_equal(chosen->evaluations, shared->evaluations);
-    /* Each block looks: at most once for each of its pieces. */
+    /* Each block evaluates at most once for each of its pieces. */
     assert_true(chosen->evaluations > all->evaluations);
     assert_true(chosen->evaluations - all->evaluations <= (uint64_t)W * H / 16 * 4);
     free(all);
@@ -80,7 +82,8 @@ static void same(const char *scene, float scale, double time) {
 static void unions_cuts_and_repetitions(void **state) {
     (void)state;
     same("city", 1, 0);
-    if (long_run()) same("tunnel", 1, 0); /* else one of its kind: a scene takes seconds to compile */
+    if (long_run()) same("tunnel", 1, 0); /* otherwise one of its kind: a scene takes seconds to
+                                             compile */
     same("rods", 1, 0);
 }
 

@@ -1,10 +1,10 @@
-/* test_texture_order.c: polygons are drawn in sweeps (without textures, with, masks), while the
- * commands that say how many instances of each are drawn lie in another order, mesh by mesh, and
- * twice over where occluders cull. Whatever finds the wrong command draws the wrong mesh.
+/* test_texture_order.c: polygons are drawn in sweeps (without textures, with textures,
+ * alpha-tested), while the commands with the instance counts are in another order, mesh by mesh,
+ * and exist twice with occlusion culling. A wrong command draws the wrong mesh.
  *
- * The scene has all three kinds side by side, also within one mesh. It is drawn as it is, with masks
- * that cut nothing away, and with its textures taken off in memory: the last is one sweep in the order
- * of the commands, so its depth is the truth for the second. */
+ * The scene has all three kinds side by side, also within one mesh. It is rendered unchanged, with
+ * alpha tests that cut nothing away, and with its textures removed in memory: the last is one sweep
+ * in the order of the commands, so its depth is the reference for the second. */
 #include "support/files.h"
 #include "support/support.h"
 
@@ -18,7 +18,7 @@ enum { W = 96, H = 64, PIXELS = W * H, FRAMES = 36 };
 enum { BOTH, FRUSTUM, OCCLUSION, NEITHER, WAYS }; /* rungs: stages of culling that are on */
 enum { MAPPED, WHOLE, PLAIN, VARIANTS };
 
-/* On drivers after the first a third of them, of the same path. */
+/* On drivers after the first a third of the frames, on the same path. */
 static uint32_t frames(void) { return trials(FRAMES, FRAMES, FRAMES / 3); }
 
 static uint32_t albedo[2][PIXELS];
@@ -58,14 +58,14 @@ static void open_variant(masu_session *s, int variant, uint32_t readback) {
     assert_ok(masu_session_start(s, error, sizeof error));
 }
 
-/* All ways, along the camera's path; depth is left in kept[variant]. */
+/* All culling modes, along the camera's path; depth is stored in kept[variant]. */
 static void draw_variant(int variant, uint32_t readback) {
     masu_session s;
     uint64_t drawn[WAYS] = {0};
     open_variant(&s, variant, readback);
     assert_int_equal(masu_scene_data_of(&s.scene)->masks, variant != PLAIN);
     for (uint32_t frame = 0; frame < frames(); frame++) {
-        for (uint32_t way = WAYS; way-- > 0;) { /* NEITHER is what the others are compared with */
+        for (uint32_t way = WAYS; way-- > 0;) { /* the others are compared with NEITHER */
             masu_frame_desc f = {.rung = way, .time = 3.0 * frame / frames()};
             masu_commands commands;
             masu_stats_info stats;
@@ -88,7 +88,7 @@ static void draw_variant(int variant, uint32_t readback) {
     close_session(&s);
 }
 
-/* Pixels whose depths are apart: two shaders may round differently. */
+/* Number of pixels with different depths: two shaders may round differently. */
 static uint32_t differing(int a, int b) {
     uint32_t count = 0;
     for (uint32_t f = 0; f < frames(); f++) {
@@ -110,7 +110,7 @@ static void sweeps_find_their_commands(void **state) {
     assert_true(holes > frames() * PIXELS / 500);
 }
 
-/* The other set of shaders. */
+/* With the other set of shaders. */
 static void sweeps_find_their_commands_with_velocities(void **state) {
     (void)state;
     draw_variant(WHOLE, MASU_READBACK_VELOCITY);

@@ -1,6 +1,6 @@
 /* test_textures.c: textures from blob to pixel, against the same blob sampled on the CPU: mips and
- * their bias, blocks taken by the device and blocks decoded on the host, masks, normal maps, light,
- * grazing views, memory. */
+ * their bias, blocks sampled by the device and blocks decoded on the host, alpha tests, normal
+ * maps, light, grazing views, memory. */
 #include "support/support.h"
 #include "support/floats.h"
 
@@ -97,14 +97,15 @@ static double sample(const mip *m, double u, double v, uint32_t k) {
 
 /* ---- Mips ------------------------------------------------------------------------------------ */
 
-/* A quad 2 x 2 seen face-on from where one pixel of the render size is `texels` of its 256. */
+/* A quad of 2 x 2, viewed face-on from the distance at which one pixel of the render size covers
+ * `texels` of its 256. */
 static masu_camera face_on(double texels, uint32_t render) {
     double pixel = texels * 2 / 256, height = pixel * render; /* world units */
     return (masu_camera){
         .position = {0, 0, height / (2 * tan(0.35))}, .forward = {0, 0, -1}, .fov_y = 0.7f};
 }
 
-/* Draws and compares sqrt of albedo, bytes, with one mip. Returns the largest error. */
+/* Renders, and compares sqrt of albedo, in bytes, with one mip. Returns the largest error. */
 static double compare_face_on(double texels, uint32_t render, uint32_t level, uint32_t *compared,
                               double *mean) {
     masu_camera camera = face_on(texels, render);
@@ -117,7 +118,7 @@ static double compare_face_on(double texels, uint32_t render, uint32_t level, ui
         for (uint32_t x = 0; x < render; x++) {
             double u = 0.5 + (x + 0.5 - render / 2.0) * texels / 256;
             double v = 0.5 + (y + 0.5 - render / 2.0) * texels / 256;
-            double rim = texels / 256 * 1.5; /* the rim's pixels may not be covered */
+            double rim = texels / 256 * 1.5; /* pixels at the rim may be uncovered */
             if (u < rim || u > 1 - rim || v < rim || v > 1 - rim) continue;
             for (uint32_t k = 0; k < 3; k++) {
                 double want = 255 * sqrt(sample(&m, u, v, k));
@@ -135,7 +136,7 @@ static double compare_face_on(double texels, uint32_t render, uint32_t level, ui
 
 static void a_quad_shows_the_mip_of_its_distance(void **state) {
     (void)state;
-    /* Texels per pixel and the mip they ask for: trilinear filtering has nothing to mix. */
+    /* Texels per pixel and the resulting mip: trilinear filtering has nothing to mix. */
     static const struct {
         double texels;
         uint32_t level;
@@ -146,14 +147,14 @@ static void a_quad_shows_the_mip_of_its_distance(void **state) {
             uint32_t compared;
             double mean,
                 worst = compare_face_on(rows[i].texels, SIDE, rows[i].level, &compared, &mean);
-            print_message("%s, %g texels a pixel: mip %u, off by %.2f at most, %.3f in the mean "
+            print_message("%s, %g texels a pixel: mip %u, error %.2f at most, %.3f in the mean "
                           "(of 255, %u pixels)\n",
                           decoded ? "decoded" : "blocks ", rows[i].texels, rows[i].level, worst,
                           mean, compared);
             assert_true(compared > (rows[i].texels < 8 ? 500 : 20));
             assert_true(worst <= 3.0);
             assert_true(mean <= 0.8);
-            if (rows[i].level) { /* and not the mip before */
+            if (rows[i].level) { /* and not the previous mip */
                 double other;
                 assert_true(compare_face_on(rows[i].texels, SIDE, rows[i].level - 1, &compared,
                                             &other) > 8);
@@ -165,7 +166,7 @@ static void a_quad_shows_the_mip_of_its_distance(void **state) {
 
 static void fewer_pixels_take_the_mip_of_the_output(void **state) {
     (void)state;
-    /* At half size a pixel has twice the texels; the bias of -1 takes that back. */
+    /* At half size a pixel has twice the texels; the bias of -1 compensates. */
     uint32_t compared;
     double mean;
     open_textured("test_texture_quad", 0, 0.5f);
@@ -174,7 +175,7 @@ static void fewer_pixels_take_the_mip_of_the_output(void **state) {
     close_session(&s);
 }
 
-/* RMS difference, of 255, of a picture drawn at half size to the one drawn at full size. */
+/* RMS difference, of 255, between images rendered at half size and at full size. */
 static double upscaled_error(const char *scene, uint32_t no_bias) {
     static uint8_t pictures[2][4 * PIXELS];
     masu_session_desc d = test_desc(scene, SIDE, SIDE);
@@ -195,8 +196,8 @@ static double upscaled_error(const char *scene, uint32_t no_bias) {
 
 static void upscaled_textures_are_nearer_with_their_bias(void **state) {
     (void)state;
-    /* Not so the checker to the horizon, whose far fields are finer than any pixel: bias lets more of
-     * them through than half as many pixels can show. */
+    /* The checker to the horizon behaves differently: its far fields are finer than any pixel, and
+     * the bias passes more of them than half as many pixels can show. */
     static const char *const scenes[] = {"test_texture_quad", "test_texture_large",
                                          "test_texture_floor"};
     for (int i = 0; i < 3; i++) {
@@ -231,10 +232,11 @@ static void blocks_and_decoded_texels_give_one_picture(void **state) {
         close_session(&s);
     }
     uint32_t worst = max_difference(pictures[0], pictures[1], sizeof pictures[0]);
-    print_message("blocks: %llu bytes, decoded: %llu; pictures differ by %u of 255\n",
+    print_message("blocks: %llu bytes, decoded: %llu; images differ by %u of 255\n",
                   (unsigned long long)bytes[0], (unsigned long long)bytes[1], worst);
-    assert_true(worst <= 9); /* a step of the hue of what shines and is lit; 3 without */
-    uint32_t colours = 0; /* it is a picture */
+    assert_true(worst <= 9); /* a step of the hue of lit and emissive surfaces; 3 without
+                                emission */
+    uint32_t colours = 0; /* the image has content */
     for (uint32_t i = 4; i < 4 * PIXELS; i += 4) {
         colours += memcmp(pictures[0] + i, pictures[0] + i - 4, 3) != 0;
     }
@@ -254,7 +256,7 @@ static void a_floor_to_the_horizon_is_finite_and_grey(void **state) {
         for (uint32_t y = SIDE * 3 / 4; y < SIDE; y++) {
             for (uint32_t x = 0; x < SIDE; x++) {
                 double v = albedo[4 * (y * SIDE + x)] / 255.0;
-                sum += v * v; /* 37 fields of an odd checker: half of them and half a field */
+                sum += v * v; /* 37 fields of an odd checker: half of the fields and half a field */
                 count++;
             }
         }
@@ -271,7 +273,7 @@ static void a_floor_to_the_horizon_is_finite_and_grey(void **state) {
     }
 }
 
-/* ---- Masks ----------------------------------------------------------------------------------- */
+/* ---- Alpha tests ----------------------------------------------------------------------------- */
 
 static void a_mask_has_the_silhouette_of_its_alpha(void **state) {
     (void)state;
@@ -299,11 +301,11 @@ static void a_mask_has_the_silhouette_of_its_alpha(void **state) {
         }
         free(m.rgba);
         double radius = 24.0 / 64 * 2 / pixel, area = 3.14159265 * radius * radius;
-        print_message("mask: %u pixels of %.0f, %u wrong, %u too near to tell\n", there, area,
+        print_message("alpha test: %u pixels of %.0f, %u wrong, %u ambiguous\n", there, area,
                       wrong, near);
         assert_int_equal(wrong, 0);
         assert_true(fabs(there - area) < 0.03 * area);
-        /* The same picture without its alpha is all there. */
+        /* The same image without its alpha is completely opaque. */
         camera.position[0] = 3;
         depth = draw_image(&s, &frame, MASU_READBACK_DEPTH, NULL);
         uint32_t whole = 0;
@@ -313,7 +315,7 @@ static void a_mask_has_the_silhouette_of_its_alpha(void **state) {
     }
 }
 
-/* A mask far away covers what it covers near by. */
+/* An alpha-tested surface keeps its coverage with distance. */
 static void a_mask_keeps_its_area_with_distance(void **state) {
     (void)state;
     open_textured("test_texture_mask", 0, 1.0f);
@@ -336,7 +338,7 @@ static void a_mask_keeps_its_area_with_distance(void **state) {
 
 /* ---- Normal maps ----------------------------------------------------------------------------- */
 
-/* Where the pixel's ray from (0, 0, 8) meets the unit sphere about (x, 0, 0); 0: it does not. */
+/* Intersection of the pixel's ray from (0, 0, 8) with the unit sphere about (x, 0, 0); 0: none. */
 static int hit(uint32_t px, uint32_t py, double center, vec *normal, vec *view) {
     double half_size = tan(0.25);
     vec ray = vec_unit((vec){(2 * (px + 0.5) / SIDE - 1) * half_size,
@@ -349,8 +351,8 @@ static int hit(uint32_t px, uint32_t py, double center, vec *normal, vec *view) 
     return 1;
 }
 
-/* The left sphere leans by 30 degrees to where its picture's right is: east, as seen from outside;
- * the right one, which is mirrored, up. */
+/* The left sphere's normals are tilted by 30 degrees to its texture's right: east, viewed from
+ * outside; the right one, which is mirrored, up. */
 static vec bent(int right, vec n) {
     vec east = vec_unit((vec){n.z, 0, -n.x}),
         north = vec_unit((vec){-n.x * n.y, 1 - n.y * n.y, -n.z * n.y});
@@ -358,7 +360,7 @@ static vec bent(int right, vec n) {
                 vec_scale(n, cos(3.14159265358979 / 6)));
 }
 
-/* light.comp in double: sun alone, no metal. The model has its normal along z. */
+/* light.comp in double precision: only the sun, no metal. The model has its normal along z. */
 static double lit(vec n, vec v, vec l, double albedo, double roughness) {
     brdf_surface surface = {{albedo, albedo, albedo}, roughness, 0, 0.5, 0, 0};
     vec x = vec_unit((vec){n.z, 0, -n.x}), y = {n.y * x.z - n.z * x.y, n.z * x.x - n.x * x.z,
@@ -388,7 +390,7 @@ static void normal_maps_lean_as_their_pictures_say(void **state) {
             float got[3];
             if (!hit(i % SIDE, i / SIDE, right ? 1.2 : -1.2, &n, &view)) continue;
             vec want = bent(right, n);
-            /* The poles have no east; rims are turned to the viewer, or not covered. */
+            /* The poles have no east; rims face the viewer, or are not covered. */
             if (fabs(n.y) > 0.85 || vec_dot(n, view) < 0.3 || vec_dot(want, view) < 0.2) continue;
             masu_unpack_normal(normals[i], got);
             vec g = {(double)got[0], (double)got[1], (double)got[2]};
@@ -402,8 +404,8 @@ static void normal_maps_lean_as_their_pictures_say(void **state) {
             dim += fabs(found - expected) / (0.05 + expected);
         }
     }
-    print_message("normals of %u pixels: %.2f degrees off at most, %.2f in the mean; light off by "
-                  "%.3f at most, %.4f in the mean\n",
+    print_message("normals of %u pixels: error of %.2f degrees at most, %.2f in the mean; light "
+                  "error %.3f at most, %.4f in the mean\n",
                   count, worst, sum / count, dark, dim / count);
     assert_true(count > 2000);
     assert_true(worst < 2.0 && sum / count < 0.6);
@@ -411,7 +413,7 @@ static void normal_maps_lean_as_their_pictures_say(void **state) {
     close_session(&s);
 }
 
-/* ---- What scenes without textures have -------------------------------------------------------- */
+/* ---- Scenes without textures ----------------------------------------------------------------- */
 
 static void a_scene_without_textures_has_nothing_of_them(void **state) {
     (void)state;
@@ -443,7 +445,7 @@ static void a_scene_without_textures_has_nothing_of_them(void **state) {
 static void the_demo_draws_finite_pixels_at_every_rung(void **state) {
     (void)state;
     masu_session_desc d = test_desc("textures", 160, 90);
-    d.desc.readback = MASU_READBACK_ALL; /* velocities too: the other set of shaders */
+    d.desc.readback = MASU_READBACK_ALL; /* velocities too, for the other set of shaders */
     d.desc.debug.poison = 1;
     open_session(&s, &d);
     for (uint32_t rung = 0; rung < 3; rung++) {
@@ -476,7 +478,7 @@ static void anisotropy_is_taken_and_checked(void **state) {
     assert_string_equal(detail.what, "vulkan.max_anisotropy");
     s.desc.vulkan.max_anisotropy = (float)NAN;
     assert_int_equal(masu_memory_query(&s.desc, &need, &detail), MASU_ERROR_ARGUMENT);
-    s.desc.vulkan.max_anisotropy = s.host.most_anisotropy; /* 0 where there is none */
+    s.desc.vulkan.max_anisotropy = s.host.most_anisotropy; /* 0 if there is none */
     s.desc.limits.textures = 1;
     assert_int_equal(masu_memory_query(&s.desc, &need, &detail), MASU_ERROR_LIMIT);
     assert_string_equal(detail.what, "limits.textures");
@@ -492,7 +494,7 @@ static void anisotropy_is_taken_and_checked(void **state) {
     close_session(&s);
 }
 
-/* ---- What is lost silently otherwise --------------------------------------------------------- */
+/* ---- Failures that would be silent ----------------------------------------------------------- */
 
 static char logged[4096];
 
@@ -502,7 +504,8 @@ static void collect(void *user, masu_log_level level, const char *text) {
     snprintf(logged + used, sizeof logged - used, "%d %s\n", (int)level, text);
 }
 
-/* Every driver here has blocks and anisotropy; a CPU has no queries that would be missed. */
+/* Every driver here has block compression and anisotropy; on a CPU, missing ray queries are not
+ * reported. */
 static void what_is_offered_and_not_enabled_is_told(void **state) {
     (void)state;
     masu_session_desc d = test_desc("test_texture_quad", 16, 16);
@@ -517,7 +520,8 @@ static void what_is_offered_and_not_enabled_is_told(void **state) {
         if (given == 2) s.desc.vulkan.texture_compression_bc = 0, s.desc.deny.compressed_textures = 1;
         assert_ok(masu_session_start(&s, error, sizeof error));
         const char *blocks = strstr(logged, "1 vulkan.texture_compression_bc is 0");
-        assert_true((blocks != NULL) == (given == 0)); /* denied is not missed */
+        /* a denied feature is not reported as missing */
+        assert_true((blocks != NULL) == (given == 0));
         if (blocks) {
             char numbers[80];
             snprintf(numbers, sizeof numbers, "textures take %llu bytes, compressed %llu",

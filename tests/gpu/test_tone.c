@@ -1,5 +1,5 @@
-/* test_tone.c: tone curves, encodings and metered exposure on the GPU against tests/reference/tone.h,
- * which has them in double precision: by themselves on whatever they may be given, and in frames. */
+/* test_tone.c: tone curves, encodings and auto-exposure on the GPU against tests/reference/tone.h
+ * in double precision: separately for arbitrary input, and in frames. */
 #include "reference/tone.h"
 #include "scene/scene.h"
 #include "shared/masu_shared.h"
@@ -31,7 +31,7 @@ static void run(uint32_t count, float most) {
     compute_run(masu_spv_tone_comp, sizeof masu_spv_tone_comp, buffers, 2, push, (count + 63) / 64);
 }
 
-/* Spread over 2^-20 to 2^14, now and then black. */
+/* Spread over 2^-20 to 2^14, sometimes black. */
 static float random_radiance(void) {
     uint32_t r = random_word(&seed);
     return r % 16 ? exp2f((float)(r >> 8) / 16777216.0f * 34.0f - 20.0f) : 0.0f;
@@ -41,7 +41,7 @@ static double worst_code(const float got[4], const double linear[3]) {
     double worst = 0;
     for (int c = 0; c < 3; c++) {
         double d = fabs((double)got[c] - masu_ref_srgb_encode(linear[c]));
-        worst = d < worst ? worst : d; /* NaN counts */
+        worst = d < worst ? worst : d; /* NaN is the worst */
     }
     return worst;
 }
@@ -71,8 +71,8 @@ static void curves_are_those_of_the_reference(void **state) {
             neutral = worst_of(neutral, worst_code(results[i].neutral, y));
             assert_float_equal(results[i].neutral[3], (float)y[0], 1e-4f * (float)(1 + fabs(y[0])));
         }
-        print_message("most %g: off by 255ths: none %.4f, filmic %.4f, neutral %.4f; PQ %.6f of 1, "
-                      "there and back %.5f of itself\n",
+        print_message("most %g: error in 255ths: none %.4f, filmic %.4f, neutral %.4f; PQ %.6f of "
+                      "1, there and back %.5f of itself\n",
                       (double)mosts[m], 255 * none, 255 * filmic, 255 * neutral, pq, back);
         assert_true(none < 0.1 / 255 && filmic < 0.1 / 255 && neutral < 0.1 / 255);
         assert_true(pq < 0.25 / 1023);
@@ -125,7 +125,7 @@ static void whatever_comes_in_a_finite_colour_goes_out(void **state) {
             if (k % 4 == 3) continue;
             if (!(all[k] >= 0 && all[k] <= 1.00001f)) fail_msg("case %u, number %u: %g", i, k, (double)all[k]);
         }
-        /* What is not finite is metered in no bin; NaN and -Inf are black, Inf is white. */
+        /* Values that are not finite are in no bin; NaN and -Inf are black, Inf is white. */
         uint32_t bits[2];
         memcpy(bits, cases[i], sizeof bits);
         if ((bits[0] & 0x7F800000u) == 0x7F800000u || (bits[1] & 0x7F800000u) == 0x7F800000u)
@@ -165,7 +165,7 @@ static void open_metered(const masu_exposure *exposure) {
     open_session(&s, &d);
 }
 
-/* A picture lit `scale` times as brightly; the exposure that it was shown with. */
+/* Renders the scene with `scale` times the light; returns the exposure of the image. */
 static float exposed(float scale, float step, int cut, uint8_t *pixels, double *mean, float low,
                      float high) {
     masu_light light;
@@ -199,7 +199,7 @@ static void the_mean_becomes_grey(void **state) {
         float low = shares[i][0] < 0 ? 0 : shares[i][0] > 0 ? shares[i][0] : 0.1f;
         float high = shares[i][1] < 0 ? 0 : shares[i][1] > 0 ? shares[i][1] : 0.1f;
         open_metered(&e);
-        for (int k = -2; k <= 2; k += 2) { /* each a cut: at once */
+        for (int k = -2; k <= 2; k += 2) { /* each after a cut: adapts at once */
             double mean;
             float got = exposed(exp2f((float)(2 * k)), 0, 1, NULL, &mean, low, high);
             double wanted = fmin(1024, 0.18 / exp2(mean));
@@ -207,14 +207,14 @@ static void the_mean_becomes_grey(void **state) {
         }
         close_session(&s);
     }
-    /* Bounds hold. */
+    /* The bounds are kept. */
     open_metered(&(masu_exposure){.min = 0.5f, .max = 2.0f});
     assert_float_equal(exposed(1000, 0, 1, NULL, NULL, 0, 0), 0.5f, 1e-5f);
     assert_float_equal(exposed(0.001f, 0, 1, NULL, NULL, 0, 0), 2.0f, 1e-5f);
     close_session(&s);
 }
 
-/* Exposure after `seconds` in steps of 1 / rate, having seen a picture of brightness `from`. */
+/* Exposure after `seconds` in steps of 1 / rate, starting from an image of brightness `from`. */
 static float after(float from, float to, uint32_t rate, float seconds, float *wanted) {
     *wanted = exposed(to, 0, 1, NULL, NULL, 0, 0);
     float e = exposed(from, 0, 1, NULL, NULL, 0, 0);
@@ -232,22 +232,22 @@ static void it_adapts_by_time_and_not_by_frames(void **state) {
         float wanted, a = after(ways[i][0], ways[i][1], 30, 0.2f, &wanted);
         float b = after(ways[i][0], ways[i][1], 120, 0.2f, &wanted);
         float from = exposed(ways[i][0], 0, 1, NULL, NULL, 0, 0);
-        double share = exp(-0.2 * (i ? 3.0 : 8.0)); /* brighter picture: darken */
+        double share = exp(-0.2 * (i ? 3.0 : 8.0)); /* brighter image: darken */
         double exact = exp2(log2((double)wanted) + share * log2((double)(from / wanted)));
         print_message("%s: %g of %g; 30 and 120 frames a second differ by %.4f %%, %.4f %% off\n",
                       i ? "brightens" : "darkens", (double)a, (double)wanted,
                       100 * fabs((double)(a / b) - 1), 100 * fabs((double)a / exact - 1));
         assert_float_equal(a, b, 0.01f * b);
         assert_float_equal(a, (float)exact, 0.01f * (float)exact);
-        assert_true(fabs(log2((double)(a / wanted))) > 0.3); /* on its way */
+        assert_true(fabs(log2((double)(a / wanted))) > 0.3); /* still adapting */
     }
-    /* No time, none that runs backwards, and all of it. */
+    /* A time step of 0, a negative one, and a huge one. */
     float wanted = exposed(4, 0, 1, NULL, NULL, 0, 0), still = exposed(1, 0, 1, NULL, NULL, 0, 0);
     assert_true(exposed(4, 0, 0, NULL, NULL, 0, 0) == still);
     assert_true(exposed(4, -5, 0, NULL, NULL, 0, 0) == still);
     assert_float_equal(exposed(4, 1e15f, 0, NULL, NULL, 0, 0), wanted, 1e-4f * wanted);
     close_session(&s);
-    open_metered(&(masu_exposure){0}); /* the first frame of all */
+    open_metered(&(masu_exposure){0}); /* the very first frame */
     assert_float_equal(exposed(4, 0.01f, 0, NULL, NULL, 0, 0), wanted, 1e-4f * wanted);
     close_session(&s);
 }
@@ -270,7 +270,7 @@ static void a_scene_may_ask_for_it(void **state) {
     static double rgb[W * H][3];
     masu_session_desc d = test_desc("test_exposure", W, H);
     d.desc.readback = MASU_READBACK_HDR;
-    d.desc = masu_session_resolved(&d.desc); /* before the scene is known, as tools do */
+    d.desc = masu_session_resolved(&d.desc); /* before the scene is given, as tools do */
     for (int off = 0; off < 2; off++) {
         masu_stats_info stats;
         masu_readback_image image;
@@ -315,7 +315,7 @@ static void what_is_not_metered_costs_nothing(void **state) {
                   (unsigned long long)(with.memory.device_bytes - without.memory.device_bytes));
     assert_true(with.memory.device_bytes >= without.memory.device_bytes); /* there may be padding */
     assert_true(with.memory.device_bytes < without.memory.device_bytes + 4096);
-    s.desc.exposure.metered = MASU_AUTO; /* the scene does not ask for it */
+    s.desc.exposure.metered = MASU_AUTO; /* the scene does not request it */
     char error[ERROR_SIZE];
     assert_ok(masu_session_start(&s, error, sizeof error));
     uint32_t n = memory_rows(s.m, rows);

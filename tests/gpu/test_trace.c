@@ -1,16 +1,16 @@
-/* test_trace.c: rays through shaders/trace/bvh.glsl against Embree 3 (its robust mode), which walks
- * the same triangles under the same transforms; and against triangles one by one in double where
- * the two differ.
+/* test_trace.c: rays through shaders/trace/bvh.glsl against Embree 3 (its robust mode), with the
+ * same triangles under the same transforms; and against single triangles in double precision if the
+ * two differ.
  *
- * THE RULE. Where hit or miss differs, or t by over 1e-4 of it, arithmetic in double decides, with
- * each triangle grown and shrunk by a margin of MARGIN times the coordinates that went into it:
- * what fp32 cannot tell. A hit of ours stands if a grown triangle is hit at its t, and no shrunk
- * one is hit nearer; a miss stands if no shrunk triangle is hit. A t may be off by 1e-4 of it, by
- * the margin over the cosine at which the triangle is met, and, for a needle, by what rounding
- * makes of its weights (of a needle 1e5 times as long as thin the watertight test knows for sure
- * whether it is hit, and to a hundredth of its length where). Whatever does not stand is an error;
- * there may be none. A crack between triangles would hide in that rule, so closed meshes are asked
- * by themselves: from inside no ray gets out. */
+ * THE RULE. If hit or miss differs, or t by a relative 1e-4, double-precision arithmetic decides,
+ * with each triangle enlarged and shrunk by a margin of MARGIN times the coordinates that went into
+ * it: the uncertainty of fp32. A hit of the shader is accepted if an enlarged triangle is hit at
+ * its t, and no shrunk triangle is hit closer; a miss is accepted if no shrunk triangle is hit. A t
+ * may differ by a relative 1e-4, by the margin over the cosine at which the triangle is hit, and,
+ * for a needle, by the rounding of its weights (for a needle 1e5 times as long as thin, the
+ * watertight test decides the hit exactly, but the position only to a hundredth of its length).
+ * Every other answer is an error; there may be none. A crack between triangles would be hidden by
+ * that rule, so closed meshes have a separate test: no ray from inside escapes. */
 #include "support/files.h"
 #include "support/support.h"
 #include "support/random.h"
@@ -51,7 +51,7 @@ typedef struct hit {
 
 typedef struct world {
     masu_blob_vertex vertices[VERTICES_MAX];
-    masu_blob_trace_triangle triangles[TRIANGLES_MAX]; /* in the order of the trees, once planted */
+    masu_blob_trace_triangle triangles[TRIANGLES_MAX]; /* in the order of the BVHs, after build */
     masu_blob_trace_node nodes[TRIANGLES_MAX];
     uint32_t vertex_count, triangle_count, node_count;
     struct {
@@ -107,7 +107,7 @@ static uint32_t between(uint32_t a, uint32_t b, uint32_t first) {
     return vertex(m[0], m[1], m[2]);
 }
 
-/* Closed: an octahedron, its triangles divided. */
+/* Closed: an octahedron with subdivided triangles. */
 static void add_icosphere(uint32_t levels) {
     static const float corners[6][3] = {{1, 0, 0},  {-1, 0, 0}, {0, 1, 0},
                                         {0, -1, 0}, {0, 0, 1},  {0, 0, -1}};
@@ -244,7 +244,7 @@ static void move_to(uint32_t mesh, float x, float y, float z) {
     place(mesh, (float[12]){1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z});
 }
 
-/* Turned, stretched, some mirrored; at multiples of an eighth, so that a shift by a million is
+/* Rotated, stretched, some mirrored; at multiples of an eighth, so that a shift by a million is
  * exact. */
 static void throw_in(uint32_t mesh) {
     double q[4], length = 0;
@@ -359,9 +359,10 @@ static void make_ray(ray *r, uint32_t i) {
     *r = (ray){.t_max = 1e30f};
     point_on(instance, of, 0, at);
     for (int k = 0; k < 3; k++) r->origin[k] = (float)at[k] + number(-20, 20);
-    if (kind < 3) { /* from anywhere at anything */
+    if (kind < 3) { /* from anywhere to any object */
         aim(r, at, 0);
-    } else if (kind < 5) { /* at corners and edges, and a unit in the last place beside */
+    } else if (kind < 5) { /* at corners and edges, and next to them by one unit in the last
+                              digit */
         point_on(instance, of, kind - 2, at);
         aim(r, at, 1);
     } else if (kind == 5) { /* along an axis; the zeros have either sign */
@@ -389,7 +390,7 @@ static void make_ray(ray *r, uint32_t i) {
         aim(r, at, 0);
         r->t_max = number(0.5f, 1.5f);
     }
-    /* The shader's limits are not what is asked here. */
+    /* The shader's limits are not tested here. */
     float most =
         fmaxf(fabsf(r->direction[0]), fmaxf(fabsf(r->direction[1]), fabsf(r->direction[2])));
     if (!(most > 1e-5f)) r->direction[0] = 1;
@@ -426,11 +427,11 @@ static float embree(const ray *in) {
     return r.hit.geomID == RTC_INVALID_GEOMETRY_ID ? -1.0f : r.ray.tfar;
 }
 
-/* ---- In double ------------------------------------------------------------------------------- */
+/* ---- Double precision ------------------------------------------------------------------------ */
 
 typedef struct verdict {
-    double nearest_sure; /* t of the nearest triangle that is hit though shrunk */
-    bool found;          /* a grown triangle is hit at the t in question */
+    double nearest_sure; /* t of the nearest shrunk triangle that is hit */
+    bool found;          /* an enlarged triangle is hit at the t in question */
 } verdict;
 
 static void judge_triangle(const ray *r, uint32_t instance, uint32_t of, float t, verdict *v) {
@@ -440,7 +441,7 @@ static void judge_triangle(const ray *r, uint32_t instance, uint32_t of, float t
         const float *object = w.vertices[w.triangles[of].vertex[c]].position;
         world_point(instance, object, p[c]);
         for (int k = 0; k < 3; k++) {
-            /* Products of a matrix with large entries are as uncertain as they are large. */
+            /* The uncertainty of products of a matrix grows with its entries. */
             double most = 0;
             for (int j = 0; j < 3; j++)
                 most += fabs((double)w.transforms[instance][4 * k + j] * (double)object[j]);
@@ -462,8 +463,8 @@ static void judge_triangle(const ray *r, uint32_t instance, uint32_t of, float t
         double s = -dot3(across, p[c]) / (sqrt(dot3(across, across)) + 1e-300);
         inside = fmin(inside, slope > 0 ? -s : s);
     }
-    /* t is a mean of the corners', by weights whose error is that of an edge function over the
-     * area. */
+    /* t is a mean of the corners' values, with weights whose error is that of an edge function over
+     * the area. */
     double off = 0, first = (double)INFINITY, last = -(double)INFINITY;
     for (int c = 0; c < 3; c++) {
         double across[3], along = dot3(p[c], d) / (length * length);
@@ -473,7 +474,7 @@ static void judge_triangle(const ray *r, uint32_t instance, uint32_t of, float t
         last = fmax(last, along);
     }
     double noise = fmin(1, 0x1p-20 * off * length / fabs(slope));
-    if (cosine < 1e-9) { /* edge-on: nobody can tell, but it must be there */
+    if (cosine < 1e-9) { /* edge-on: undecidable, but the ray must be near the triangle */
         if (fabs(inside) <= margin && (double)t >= first - 1e-4 && (double)t <= last + 1e-4)
             v->found = true;
         return;
@@ -487,7 +488,7 @@ static void judge_triangle(const ray *r, uint32_t instance, uint32_t of, float t
         v->nearest_sure = fmin(v->nearest_sure, at + loose);
 }
 
-/* Whether a ray's line comes near an instance: what is far from it needs no triangle's answer. */
+/* Whether a ray's line passes near an instance: distant instances need no test of triangles. */
 static bool comes_near(const ray *r, uint32_t instance) {
     const masu_trace_box *b = &w.meshes[w.mesh_of[instance]].box;
     double middle[3], corner[3], d[3], across[3], radius = 0;
@@ -508,7 +509,7 @@ static bool comes_near(const ray *r, uint32_t instance) {
     return dot3(across, across) <= 1.1 * radius * dot3(d, d);
 }
 
-/* Whether an answer stands, by the rule above. */
+/* Whether an answer is accepted, by the rule above. */
 static bool stands(const ray *r, float t) {
     verdict v = {(double)INFINITY, false};
     for (uint32_t i = 0; i < w.instance_count; i++) {
@@ -571,7 +572,7 @@ static void rays_hit_what_embree_hits(void **state) {
         }
     }
     print_message(
-        "%u rays, %u hit; %u unlike Embree (%u hit or miss); %u asked in double: %u wrong\n", count,
+        "%u rays, %u hit; %u unlike Embree (%u hit or miss); %u in double: %u wrong\n", count,
         met, differing, missed, checked, wrong);
     print_message(
         "unlike by kind: anything %u, corners and edges %u, axes %u, from surfaces %u, grazing "
@@ -582,12 +583,12 @@ static void rays_hit_what_embree_hits(void **state) {
     assert_int_equal(wrong, 0);
     assert_true(by_kind[0] + by_kind[1] + by_kind[2] <= count / 1000);
 
-    /* Any hit is there when the nearest is. */
+    /* An any-hit query hits exactly if the nearest-hit query does. */
     TRACE(masu_spv_trace_rays_comp, rays, others, count, 1);
     for (uint32_t i = 0; i < count; i++) unlike += (others[i].t >= 0) != (hits[i].t >= 0);
     assert_int_equal(unlike, 0);
 
-    /* A million out, with the anchor there: the same in every bit. */
+    /* A million metres out, with the anchor there: bit-identical. */
     const double far_anchor[3] = {1e6, -1e6, 524288};
     for (uint32_t i = 0; i < w.instance_count; i++)
         for (int k = 0; k < 3; k++) w.transforms[i][4 * k + 3] += (float)far_anchor[k];
@@ -601,7 +602,7 @@ static void rays_hit_what_embree_hits(void **state) {
     free(others);
 }
 
-/* Vertices a million out, where a unit in the last place is 6 cm. */
+/* Vertices a million out, with a rounding of 6 cm. */
 static void coordinates_may_be_large(void **state) {
     (void)state;
     uint32_t count = on_swiftshader() ? 2000 : 20000, wrong = 0, met = 0, differing = 0;
@@ -627,7 +628,7 @@ static void coordinates_may_be_large(void **state) {
     free(hits);
 }
 
-/* Through corners and edges too, and a unit in the last place beside them; under a transform as
+/* Through corners and edges too, and next to them by the smallest float step; under a transform as
  * well. */
 static void no_ray_leaves_a_closed_mesh(void **state) {
     (void)state;
@@ -651,7 +652,7 @@ static void no_ray_leaves_a_closed_mesh(void **state) {
             point_on(0, triangle_of(0), i % 3, at);
             for (int k = 0; k < 3; k++) rays[i].origin[k] = (float)from[k];
             aim(&rays[i], at, 1);
-            if (i % 7 == 0 && !turned) { /* along an axis through the middle: through a corner */
+            if (i % 7 == 0 && !turned) { /* along an axis through the centre: through a corner */
                 memset(rays[i].origin, 0, sizeof rays[i].origin);
                 for (uint32_t k = 0; k < 3; k++)
                     rays[i].direction[k] = k == i % 3 ? (i & 8 ? 1.0f : -1.0f) : -0.0f;
@@ -701,7 +702,7 @@ static void what_is_no_ray_hits_nothing(void **state) {
     for (int i = 0; i < 75; i++) assert_true(hits[i].t == -1.0f && hits[i].nodes == 0);
 }
 
-/* Thousands of things at one place, whose boxes a ray meets, but not what is in them. */
+/* Thousands of objects at one position, whose boxes a ray hits, but not their triangles. */
 static void a_ray_that_sees_too_much_is_given_up(void **state) {
     (void)state;
     ray rays[2] = {{{0.9f, 0.9f, -5}, 0, {0, 0, 1}, 1e30f}, {{5, 5, -5}, 0, {0, 0, 1}, 1e30f}};
@@ -750,7 +751,7 @@ static void a_hook_lets_rays_pass(void **state) {
     assert_true(passed > 100 && stopped > 100);
 }
 
-/* Where a hit says that it is: weights and triangle give the point that t gives. */
+/* The position of a hit: weights and triangle give the same point as t. */
 static void weights_and_distance_say_the_same(void **state) {
     (void)state;
     uint32_t count = 5000, met = 0;
@@ -759,7 +760,7 @@ static void weights_and_distance_say_the_same(void **state) {
     w.instance_count = 0;
     for (int i = 0; i < 30; i++) throw_in(i % 2 ? SOUP : ICOSPHERE);
     set_world(origin);
-    for (uint32_t i = 0; i < count; i++) make_ray(&rays[i], 10 * i); /* those from anywhere */
+    for (uint32_t i = 0; i < count; i++) make_ray(&rays[i], 10 * i); /* rays from anywhere */
     TRACE(masu_spv_trace_rays_comp, rays, hits, count, 0);
     for (uint32_t i = 0; i < count; i++) {
         if (!(hits[i].t >= 0)) continue;

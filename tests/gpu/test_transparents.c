@@ -1,7 +1,7 @@
-/* test_transparents.c: blended panes against a reference in double that sorts and blends them pixel by
- * pixel; additive ones in any order; before and behind polygons and an SDF; a camera that moves through
- * them; none, one and 256 of them. The panes are quads of z = const that glow and are not lit, so that
- * their colour is known; their scenes are written here. */
+/* test_transparents.c: transparent panes against a reference in double precision that sorts and
+ * blends them pixel by pixel; additive ones in any order; in front of and behind polygons and an
+ * SDF; a camera that moves through the panes; none, one and 256 panes. The panes are emissive unlit
+ * quads of z = const, so their colour is exact; their scenes are written here. */
 #include "support/support.h"
 #include "support/blob.h"
 #include "support/files.h"
@@ -33,7 +33,7 @@ static float picture[4 * PIXELS], base[4 * PIXELS];
 
 /* ---- Scenes ---------------------------------------------------------------------------------- */
 
-/* A blob of its sections, in rising kind. */
+/* A blob from its sections, in rising kind. */
 typedef struct panes_blob {
     _Alignas(16) uint8_t bytes[1 << 19];
     uint64_t end;
@@ -64,7 +64,7 @@ static void end_blob(const char *name) {
     write_bytes(name, blob.bytes, blob.end);
 }
 
-/* A mesh of two triangles for each pane, with a material and an instance of its own. */
+/* A mesh of two triangles for each pane, with a separate material and instance. */
 static void write_scene(const char *name) {
     static uint32_t indices[6 * (PANES_MAX + 1)];
     static masu_blob_primitive primitives[PANES_MAX + 1];
@@ -148,7 +148,7 @@ static masu_stats_info render(const masu_camera *camera, float *hdr) {
     return stats;
 }
 
-/* Floats that are exact in what they are stored as: opacity and colour in 32nds. */
+/* Floats that are exact in their storage format: opacity and colour in 32nds. */
 static void random_panes(uint32_t count) {
     pane_count = count;
     for (uint32_t i = 0; i < count; i++) {
@@ -177,8 +177,8 @@ static int farther(const void *a, const void *b) {
     return x > y ? -1 : x < y;
 }
 
-/* The largest difference of a picture from what `base` becomes; pixels at the edge of a pane, which may
- * fall to one side or the other, are left out. */
+/* The largest difference between the image and the blended `base`; pixels at the edge of a pane,
+ * which can be on either side, are skipped. */
 static double compare(const masu_camera *camera, uint32_t *compared) {
     uint32_t order[PANES_MAX + 1];
     for (uint32_t i = 0; i < pane_count; i++) order[i] = i;
@@ -232,7 +232,7 @@ static void panes_are_blended_the_farthest_first(void **state) {
     (void)state;
     seed = 1;
     for (uint32_t i = 0; i < PIXELS; i++)
-        base[4 * i] = base[4 * i + 1] = base[4 * i + 2] = 0.5f; /* sky alone, without a sun */
+        base[4 * i] = base[4 * i + 1] = base[4 * i + 2] = 0.5f; /* only sky, without a sun */
     static const uint32_t counts[] = {1, 2, 17, 64, 256};
     for (size_t c = 0; c < sizeof counts / sizeof *counts; c++) {
         random_panes(counts[c]);
@@ -251,7 +251,7 @@ static void panes_are_blended_the_farthest_first(void **state) {
                 move(i);
             }
         }
-        print_message("%u panes: off by %.2f of 255 at most, %u pixels at least\n", counts[c],
+        print_message("%u panes: error of %.2f of 255 at most, %u pixels at least\n", counts[c],
                       255 * worst, least);
         assert_true(worst <= 2.0 / 255);
         assert_true(least > (counts[c] < 100 ? PIXELS / 4 : 50));
@@ -272,7 +272,7 @@ static void what_adds_up_does_so_in_any_order(void **state) {
     }
     open_panes();
     masu_camera camera =
-        camera_at(0, 0, 1e6); /* far away the place in z is seen of nothing but the order */
+        camera_at(0, 0, 1e6); /* at this distance z only affects the order */
     camera.fov_y = 0.001f;
     for (uint32_t i = 0; i < pane_count; i++) panes[i].half *= 100;
     for (uint32_t i = 0; i < pane_count; i++) move(i);
@@ -308,14 +308,14 @@ static void a_camera_moves_through_them(void **state) {
         worst = worst_of(worst, compare(&camera, &compared));
         sum += compared;
     }
-    print_message("a camera through 40 panes: off by %.2f of 255 at most\n", 255 * worst);
+    print_message("a camera through 40 panes: error of %.2f of 255 at most\n", 255 * worst);
     assert_true(worst <= 2.0 / 255);
     assert_true(sum > 10 * PIXELS);
-    assert_int_equal(fewest, 0); /* what is behind is not drawn */
+    assert_int_equal(fewest, 0); /* panes behind the camera are not drawn */
     close_session(&s);
 }
 
-/* A wall in the midst of them: those behind it are hidden, and the wall is as it was. */
+/* A wall among the panes: those behind it are occluded, and the wall itself is unchanged. */
 static void walls_hide_what_is_behind_them(void **state) {
     (void)state;
     static float kept[4 * PIXELS];
@@ -324,7 +324,7 @@ static void walls_hide_what_is_behind_them(void **state) {
     panes[11] = (pane){.z = 0.25, .half = 1.7, .color = {0.25f, 1, 4}, .opacity = 1, .opaque = 1};
     open_panes();
     masu_camera camera = camera_at(0, 0, 9);
-    for (uint32_t i = 0; i < 30; i++) { /* all but the wall out of the way */
+    for (uint32_t i = 0; i < 30; i++) { /* moves everything except the wall away */
         if (i == 11) continue;
         panes[i].z += 100;
         move(i);
@@ -341,9 +341,9 @@ static void walls_hide_what_is_behind_them(void **state) {
     memcpy(kept, base, sizeof kept);
     uint32_t compared;
     double worst = compare(&camera, &compared);
-    print_message("around a wall: off by %.2f of 255 at most\n", 255 * worst);
+    print_message("around a wall: error of %.2f of 255 at most\n", 255 * worst);
     assert_true(compared > PIXELS / 4 && worst <= 2.0 / 255);
-    for (uint32_t i = 0; i < 30; i++) { /* all of them behind it */
+    for (uint32_t i = 0; i < 30; i++) { /* all panes behind it */
         if (i == 11) continue;
         panes[i].z = -2 - random_unit(&seed);
         panes[i].x *= 0.2, panes[i].y *= 0.2, panes[i].half = 0.5;
@@ -355,7 +355,7 @@ static void walls_hide_what_is_behind_them(void **state) {
     for (uint32_t i = 0; i < PIXELS; i++) base[4 * i] = base[4 * i + 1] = base[4 * i + 2] = 0.5f;
 }
 
-/* A pane through the middle of a ball of the SDF and a ball of polygons. */
+/* A pane through the centre of an SDF ball and a polygon ball. */
 static void a_pane_cuts_an_sdf_and_polygons_alike(void **state) {
     (void)state;
     static float depth[2][PIXELS];
@@ -382,7 +382,7 @@ static void a_pane_cuts_an_sdf_and_polygons_alike(void **state) {
         assert_int_equal(masu_stats(s.m, commands.slot, &stats, NULL), MASU_OK);
         assert_int_equal(stats.transparents, there);
     }
-    assert_memory_equal(depth[0], depth[1], sizeof depth[0]); /* a pane is in no depth */
+    assert_memory_equal(depth[0], depth[1], sizeof depth[0]); /* a pane is in no depth image */
     uint32_t before[2] = {0}, behind[2] = {0};
     for (uint32_t i = 0; i < PIXELS; i++) {
         /* The pane is at view depth 5.5, near 0.1; balls at x = -1.5 and 1.5. */
@@ -410,7 +410,7 @@ static void place(const char *name, double x, double y, double z, float rows[12]
     place_instance(&s, name, rows);
 }
 
-/* The picture under a sky of that radiance; the sun is behind the camera. */
+/* The image under a sky of that radiance; the sun is behind the camera. */
 static void under_sky(float sky, float *hdr) {
     const masu_light light = {.sun_direction = {0, 1, 1},
                               .sun_color = {1, 1, 1},
@@ -423,8 +423,8 @@ static void under_sky(float sky, float *hdr) {
     floats_of_halves(read_image(&s, commands.slot, MASU_READBACK_HDR), hdr, 4 * PIXELS);
 }
 
-/* Two panes of different texture sets: what each adds and takes follows from how it looks before black
- * and before white; from that, how both look in either order. */
+/* Two panes with different texture sets: the colour and transmission of each follow from its image
+ * in front of black and of white; from those, the image of both in either order. */
 static void panes_of_different_sets_take_turns(void **state) {
     (void)state;
     static float adds[2][4 * PIXELS], keeps[2][4 * PIXELS];
@@ -444,7 +444,7 @@ static void panes_of_different_sets_take_turns(void **state) {
         for (uint32_t k = 0; k < 4 * PIXELS; k++) keeps[i][k] -= adds[i][k];
     }
     for (int front = 0; front < 2; front++) {
-        /* The same size in the picture: both at one depth, but for a hair. */
+        /* The same size in the image: both at one depth, except for a tiny difference. */
         place("a", 0, 0, front ? 0 : 1e-4, rows);
         place("b", 0, 0, front ? 1e-4 : 0, rows);
         under_sky(0, picture);
@@ -457,11 +457,12 @@ static void panes_of_different_sets_take_turns(void **state) {
             worst = worst_of(worst, fabs(want - (double)picture[i]));
             both += keeps[0][i] < 0.9f && keeps[1][i] < 0.9f;
         }
-        print_message("%s in front: off by %.2f of 255 at most\n", front ? "b" : "a", 255 * worst);
+        print_message("%s in front: error of %.2f of 255 at most\n",
+                      front ? "b" : "a", 255 * worst);
         assert_true(both > PIXELS / 16);
         assert_true(worst <= 2.0 / 255);
     }
-    /* What lies between the sun and a pane takes the sun from it. */
+    /* An object between the sun and a pane shadows the pane. */
     static float dark[4 * PIXELS];
     place("a", 0, 0, 0, rows);
     place("b", 0, 0, 100, rows);
@@ -480,7 +481,8 @@ static void panes_of_different_sets_take_turns(void **state) {
     close_session(&s);
 }
 
-/* Two faces of one mesh, the near one towards the viewer, the far one away from him, in either order. */
+/* Two faces of one mesh, the near one towards the viewer, the far one away from the viewer, in
+ * either order. */
 static void write_faces(const char *name, int near_first) {
     static const uint32_t orders[2][12] = {{0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7},
                                            {4, 5, 6, 4, 6, 7, 0, 2, 1, 0, 3, 2}};
@@ -490,7 +492,7 @@ static void write_faces(const char *name, int near_first) {
         int near = i / 4;
         vertices[i] = (masu_blob_vertex){
             {corners[i % 4][0], corners[i % 4][1], near ? 1.0f : -1.0f},
-            {(int16_t)(near ? 14043 : 32767), (int16_t)(near ? 0 : 32767)}}; /* leaning; straight */
+            {(int16_t)(near ? 14043 : 32767), (int16_t)(near ? 0 : 32767)}}; /* tilted; upright */
     }
     masu_blob_primitive primitive = {0, 12, 0, 8, 0, {-1, -1, -1}, {1, 1, 1}, 0};
     masu_blob_mesh mesh = {0, 1, {-1, -1, -1}, {1, 1, 1}, MASU_BLOB_NONE, 0};
@@ -520,8 +522,8 @@ static void write_faces(const char *name, int near_first) {
     end_blob(name);
 }
 
-/* A closed thing is right in itself, whatever the order of its triangles. The sun is low: the leaning
- * face gets next to none of it, the other one much. */
+/* A closed mesh is blended correctly in itself, in any order of its triangles. The sun is low: the
+ * tilted face gets almost none of its light, the other one much. */
 static void the_far_side_of_a_thing_comes_first(void **state) {
     (void)state;
     static float pictures[2][4 * PIXELS];
@@ -535,9 +537,9 @@ static void the_far_side_of_a_thing_comes_first(void **state) {
     uint32_t differ = 0;
     for (uint32_t i = 0; i < 4 * PIXELS; i++)
         differ += memcmp(&pictures[0][i], &pictures[1][i], sizeof **pictures) != 0;
-    /* Half of the far face through the near one, which adds nothing; behind both is nothing. */
+    /* Half of the far face through the near one, which adds nothing; behind both is black. */
     double seen = (double)pictures[0][4 * (PIXELS / 2 + SIDE / 2)], far = 2 * 0.447 * 0.5;
-    print_message("%u values differ; %.4f is seen, %.4f sent\n", differ, seen, far);
+    print_message("%u values differ; %.4f in the image, %.4f emitted\n", differ, seen, far);
     assert_int_equal(differ, 0);
     assert_true(fabs(seen - 0.5 * far) < 0.02 * far);
 }

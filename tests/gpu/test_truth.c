@@ -1,7 +1,7 @@
-/* test_truth.c: a shifted projection moves polygons, SDF and velocities by one and the same part
- * of a pixel; the truth of a picture with an edge in it is the area that the edge leaves of each
- * pixel; and the table of errors is made. The scene's box and SDF share an edge at x = -0.013 on
- * the plane z = -5, glowing before black: the box above y = 0, the SDF below. */
+/* test_truth.c: a shifted projection moves polygons, SDF and velocities by the same fraction of a
+ * pixel; the ground truth of an image with an edge is the area of each pixel on one side of it; and
+ * the table of errors is printed. The scene's polygon box and SDF share an edge at x = -0.013 on
+ * the plane z = -5, emissive in front of black: polygons above y = 0, the SDF below. */
 #include "support/support.h"
 #include "support/files.h"
 
@@ -15,14 +15,14 @@
 
 enum { SIZE = 96, PIXELS = SIZE * SIZE, PLACES = 64 };
 
-#define EDGE -0.013 /* the camera is on the glowing side, and sees no other face */
+#define EDGE -0.013 /* the camera is on the emissive side, and no other face is visible */
 #define AWAY 5.0
 #define FOV 0.7
 
 static uint8_t picture[4 * PIXELS];
 static float radiance[3 * PIXELS];
 
-/* The camera rolled by an angle, and with it the edge. */
+/* The camera, and with it the edge, rolled by an angle. */
 static masu_camera rolled(double angle) {
     return (masu_camera){.forward = {0, 0, -1},
                          .up = {(float)sin(angle), (float)cos(angle), 0},
@@ -43,10 +43,11 @@ static double at(const double a[3], double px, double py) { return a[0] * px + a
 
 static double positive_square(double v) { return v > 0 ? v * v : 0; }
 
-/* Share of the pixel whose corner is (px, py) where a is above 0. */
+/* Fraction of the pixel with corner (px, py) in which a is above 0. */
 static double share(const double a[3], double px, double py) {
     double n[2] = {fabs(a[0]), fabs(a[1])};
-    double least = at(a, px, py) + fmin(a[0], 0) + fmin(a[1], 0); /* of its four corners */
+    /* the smallest of its four corners */
+    double least = at(a, px, py) + fmin(a[0], 0) + fmin(a[1], 0);
     double most = least + n[0] + n[1];
     if (!(fmin(n[0], n[1]) > 1e-6 * fmax(n[0], n[1])))
         return fmin(fmax(most / fmax(n[0], n[1]), 0), 1);
@@ -76,7 +77,7 @@ static void places_are_even(void **state) {
         }
         for (uint32_t i = 0; i < n; i++) assert_true(across[i] == 1 && down[i] == 1);
     }
-    float far[2]; /* of numbers that are no power of two as well */
+    float far[2]; /* also for numbers that are no power of two */
     for (uint32_t i = 0; i < 4095; i++) {
         masu_picture_place(i, 4095, far);
         assert_true(fabsf(far[0]) <= 0.5f && fabsf(far[1]) <= 0.5f);
@@ -91,7 +92,7 @@ static void eight_bits_come_back(void **state) {
     assert_int_equal(masu_srgb_encoded(nanf("")), 0);
 }
 
-/* Lit pixels of the box's half, and of the SDF's; rows that count. */
+/* Numbers of lit pixels in the polygon half and in the SDF half, and of all pixels in each. */
 static void count_lit(const double y[3], double lit[2], double all[2]) {
     lit[0] = lit[1] = all[0] = all[1] = 0;
     double pixel = hypot(y[0], y[1]);
@@ -103,8 +104,8 @@ static void count_lit(const double y[3], double lit[2], double all[2]) {
     }
 }
 
-/* An edge that leans by one pixel in 8 crosses the pixels' centres at as many places as there are
- * rows: the number of lit pixels tells where it is to some hundredths of a pixel. */
+/* An edge tilted by one pixel in 8 crosses the pixels' centres at as many positions as there are
+ * rows: the number of lit pixels gives its position to some hundredths of a pixel. */
 static void a_jitter_moves_all_alike(void **state) {
     (void)state;
     static const float jitters[][2] = {{0.6f, 0}, {-0.35f, 0}, {0, 0.6f}, {0, -1.0f}, {1.0f, 0.3f}};
@@ -124,11 +125,13 @@ static void a_jitter_moves_all_alike(void **state) {
         memcpy(camera.jitter, jitters[i], sizeof camera.jitter);
         draw(&s, &f, &commands, picture);
         count_lit(y, moved, all);
-        /* Pixels by which the edge has come nearer to the dark side, and what the jitter says. */
+        /* Distance in pixels by which the edge has moved to the dark side, and the expected
+         * distance. */
         double want =
             ((double)jitters[i][0] * x[0] + (double)jitters[i][1] * x[1]) / hypot(x[0], x[1]);
         for (int half = 0; half < 2; half++) {
-            double length = all[half] / SIZE; /* of the edge, about: what it sweeps has that side */
+            /* approximate length of the edge: one side of the swept area */
+            double length = all[half] / SIZE;
             double got = (moved[half] - still[half]) / (length / fabs(cos(0.1235)));
             if (fabs(got - want) > 0.1)
                 fail_msg("jitter %g,%g, %s: edge moved by %g pixels, expected %g",
@@ -176,14 +179,14 @@ static void velocities_hold_the_jitter(void **state) {
     close_session(&s);
 }
 
-/* Along an axis 64 places are right to half of a 64th, along others to four of them at worst. On
- * top what the raster snaps. */
+/* Along an axis 64 samples are exact to half of a 64th, along other directions to four 64ths at
+ * worst, plus the snapping of the raster. */
 static void an_edge_is_as_wide_as_it_covers(void **state) {
     (void)state;
     static const double angles[] = {0, 0.12, 0.5, 0.785398, 1.570796};
     masu_session s;
     open_truth(&s);
-    /* Steps of the raster, 64ths of a pixel: a vertex is moved by up to one. */
+    /* Steps of the raster in 64ths of a pixel: a vertex moves by up to one. */
     double grid = ldexp(64.0, -(int)s.host.properties.limits.subPixelPrecisionBits);
     for (size_t i = 0; i < sizeof angles / sizeof *angles; i += whole_run() ? 1 : 2) { /* at least both axes */
         char error[ERROR_SIZE];
@@ -218,8 +221,8 @@ static void an_edge_is_as_wide_as_it_covers(void **state) {
     close_session(&s);
 }
 
-/* A surface four times as bright as white: the mean of linear light keeps what the mean of display
- * light has clipped. */
+/* A surface four times as bright as white: the mean of linear light keeps what a mean of display
+ * light would have clipped. */
 static void light_beyond_white_is_averaged_before_clipping(void **state) {
     (void)state;
     enum { BRIGHT = 4 };
@@ -236,7 +239,7 @@ static void light_beyond_white_is_averaged_before_clipping(void **state) {
     assert_int_equal(masu_light_of(s.m, &light, NULL), MASU_OK);
     masu_frame_desc f = {MASU_FRAME_DESC, .camera = &camera, .light = &light};
     const masu_picture_means means = {.linear = radiance, .display = picture};
-    for (int pass = 0; pass < 2; pass++) { /* the first finds the surface's radiance */
+    for (int pass = 0; pass < 2; pass++) { /* the first pass finds the surface's radiance */
         assert_ok(
             masu_picture_truth(&s, &f, pass ? PLACES : 1, 1, &means, NULL, error, sizeof error));
         if (pass) break;
@@ -259,7 +262,7 @@ static void light_beyond_white_is_averaged_before_clipping(void **state) {
     assert_true(counted > SIZE / 4);
 }
 
-/* measure/linear.c is the tone curve's pass, to one step of rounding. */
+/* measure/linear.c equals the pass of the tone curve, to one step of rounding. */
 static void tone_curves_are_those_of_the_pass(void **state) {
     (void)state;
     static const masu_tone tones[] = {MASU_TONE_ACES, MASU_TONE_NEUTRAL};
@@ -295,15 +298,16 @@ static void tone_curves_are_those_of_the_pass(void **state) {
     }
 }
 
-/* Whether a neighbour across an edge with that normal lies outside of the picture. */
+/* Whether a neighbour across an edge with that normal is outside the image. */
 static int on_rim(uint32_t p, const double normal[2]) {
     uint32_t x = p % SIZE, y = p / SIZE;
     int steep = fabs(normal[0]) > fabs(normal[1]);
     return steep ? x == 0 || x == SIZE - 1 : y == 0 || y == SIZE - 1;
 }
 
-/* rung.silhouettes: the SDF's edge is that of four samples a pixel: 0.1 of it off where one is by 0.25, and no worse at the one angle and
- * place where all of an edge's pixels lie as one sample likes it best. Polygons' stays as it is. */
+/* rung.silhouettes: the SDF's edge is as good as with four samples per pixel: an error of 0.1 of a
+ * pixel instead of 0.25, and no worse at the one angle and position at which a single sample is
+ * exact for all pixels of an edge. Polygon edges are unchanged. */
 static void a_silhouette_is_as_wide_as_it_covers(int bright) {
     static const double angles[] = {0, 0.02, 0.12, 0.5, 0.785398, 1.2, 1.570796, 2.5};
     static const float jitters[][2] = {{0, 0}, {0.4f, -0.3f}};
@@ -340,7 +344,7 @@ static void a_silhouette_is_as_wide_as_it_covers(int bright) {
                 double covered = share(x, p % SIZE, p / SIZE);
                 if (fabs(v) < 3 * hypot(y[0], y[1])) continue;
                 int edge = covered > 1e-6 && covered < 1 - 1e-6;
-                if (v > 0 || !edge) { /* a box, or within a surface */
+                if (v > 0 || !edge) { /* a box, or inside a surface */
                     assert_int_equal(picture[4 * p + 1], plain[4 * p + 1]);
                     continue;
                 }
@@ -350,7 +354,7 @@ static void a_silhouette_is_as_wide_as_it_covers(int bright) {
                     ((double)masu_srgb_decoded(plain[4 * p + 1]) - dark) / (white - dark);
                 double off = (bright ? 1 - shown : shown) - covered;
                 double was = (bright ? 1 - alone : alone) - covered;
-                if (on_rim(p, x)) { /* the side of the edge that it would be known by may lie outside of the picture */
+                if (on_rim(p, x)) { /* the determining side of the edge may be outside the image */
                     assert_true(fabs(off) < fabs(was) + 0.04);
                     continue;
                 }
@@ -377,19 +381,21 @@ static void silhouettes_before_the_dark(void **state) {
     a_silhouette_is_as_wide_as_it_covers(0);
 }
 
-/* What is thirty times as bright as white is shown as white, and covers no more for it. */
+/* A surface thirty times as bright as white is shown as white, and its coverage is not larger. */
 static void silhouettes_before_what_is_too_bright(void **state) {
     (void)state;
     a_silhouette_is_as_wide_as_it_covers(1);
 }
 
-/* A metered exposure counts, as the field's samples do; a curve or none; what is not in memory yet must not be read. */
+/* Auto-exposure applies to the samples of the field as well; with and without a tone curve; memory
+ * that is not yet written must not be read. */
 static void silhouettes_stand_beside_everything_else(void **state) {
     (void)state;
     static const masu_tone tones[] = {MASU_TONE_NONE, MASU_TONE_ACES};
     static uint8_t plain[4 * PIXELS];
     for (uint32_t i = 0; i < 8; i++) {
-        if (!whole_run() && (i ^ i >> 1 ^ i >> 2) & 1) continue; /* each two of them together are left */
+        /* every two settings together are still covered */
+        if (!whole_run() && (i ^ i >> 1 ^ i >> 2) & 1) continue;
         masu_session s;
         masu_session_desc d = test_desc(i & 1 ? "spheres" : "test_both", SIZE, SIZE);
         d.desc.rung_count = 2;
@@ -415,7 +421,8 @@ static void silhouettes_stand_beside_everything_else(void **state) {
     }
 }
 
-/* What a ray meets may be what no pixel beside it shows: it must not be lit by texels that nobody has written. */
+/* A ray can hit a surface that no adjacent pixel shows: it must not be lit by texels that were not
+ * written. */
 static void silhouettes_read_what_was_written(void **state) {
     (void)state;
     static uint8_t poisoned[4 * PIXELS];
@@ -434,8 +441,9 @@ static void silhouettes_read_what_was_written(void **state) {
     assert_memory_equal(picture, poisoned, sizeof poisoned);
 }
 
-/* Most of a picture is nearer to the truth with them: for each pixel that is farther off by 16 of 255 there are fifty that are
- * nearer by as much. Rods are metal, and mirror what their own normal says. */
+/* Most of an image has a lower error with silhouettes: for each pixel whose error grows by 16 of
+ * 255 there are fifty whose error falls by as much. Rods are metal, and reflect by their own
+ * normal. */
 static void silhouettes_go_towards_the_truth(void **state) {
     (void)state;
     static const char *const scenes[] = {"city", "tunnel", "rods"};
@@ -463,7 +471,8 @@ static void silhouettes_go_towards_the_truth(void **state) {
             uint32_t with = max_difference(picture + p, truth + p, 3), without = max_difference(plain + p, truth + p, 3);
             nearer += with + 16 < without, farther += with > without + 16;
         }
-        print_message("  %s: %u pixels nearer to the truth, %u farther off\n", scenes[i], nearer, farther);
+        print_message("  %s: %u pixels with a lower error, %u with a higher one\n",
+                      scenes[i], nearer, farther);
         assert_true(nearer > 100 && 50 * farther < nearer);
     }
 }

@@ -1,5 +1,5 @@
 /* test_upscale.c: EASU and RCAS on the GPU against the scalar transcription in
- * tests/reference/fsr1.c, through the library's own frame: six kinds of picture (nine patterns),
+ * tests/reference/fsr1.c, through the library's own frame: six kinds of image (nine patterns),
  * ratios from 1 to 2.5, garbage around the valid rectangle. */
 #include "support/support.h"
 
@@ -16,12 +16,12 @@ typedef struct job {
     masu_switch upscale, sharpen;
     float stops;
     masu_easu easu;
-    VkFormat format; /* of the source; 0: R8G8B8A8_UNORM, which the renderer is not told */
+    VkFormat format; /* of the source; 0: R8G8B8A8_UNORM, not given to the renderer */
     masu_switch half;
-    int shipped; /* not 0: as it is without debug.exact */
+    int shipped; /* not 0: without debug.exact */
 } job;
 
-static masu_session s; /* a device without a renderer; each job makes its own */
+static masu_session s; /* a device without a renderer; each job creates one */
 
 static int open_group(void **state) {
     (void)state;
@@ -35,7 +35,7 @@ static int close_group(void **state) {
     return 0;
 }
 
-/* Runs a job on texels in the corner of a larger image full of `beyond`. */
+/* Runs a job with the source in the corner of a larger image full of `beyond`. */
 static void run_gpu(const job *j, const void *texels, uint32_t beyond, uint8_t *out) {
     char error[ERROR_SIZE];
     masu_headless_source source;
@@ -97,7 +97,7 @@ static const uint32_t sizes[][4] = {{48, 40, 96, 80},  {64, 36, 96, 54}, {50, 30
 
 #define SIZES (sizeof sizes / sizeof *sizes)
 #define MOST ((size_t)128 * 128 * 4)
-#define HALF_STEPS 2 /* of 255, by which floats of 16 bits may change EASU */
+#define HALF_STEPS 2 /* of 255, the largest change of EASU by 16-bit floats */
 
 static void is_the_reference_within_one_step(masu_easu easu, const char *name) {
     static uint8_t in[MOST], gpu[MOST], cpu[MOST];
@@ -124,7 +124,7 @@ static void easu_is_the_scalar_reference_within_one_step(void **state) {
     is_the_reference_within_one_step(MASU_EASU_AUTO, "easu");
 }
 
-/* Without debug.exact a pixel differs where one unit in the last place decides how straight an edge is. */
+/* Without debug.exact a pixel differs if the last bit decides how straight an edge is. */
 typedef struct difference {
     uint32_t worst, pixels, over; /* over: pixels that differ by more than 1/255 */
 } difference;
@@ -160,8 +160,8 @@ static void easu_as_shipped_differs_where_the_last_bit_decides(void **state) {
     }
 }
 
-/* Twice the width and height is a pass of its own (easu_twice.comp). Odd sizes, one pixel, and what does not fill a
- * workgroup; the picture's last row and column are of texels that repeat. */
+/* The 2x variant is a separate pass (easu_twice.comp). Odd sizes, one pixel, and sizes that do not
+ * fill a workgroup; the image's last row and column use repeated texels. */
 static void twice_the_size_is_easu_as_shipped(void **state) {
     (void)state;
     static const uint32_t from[][2] = {{48, 40}, {31, 50}, {7, 3}, {1, 1}, {8, 8}, {64, 57}};
@@ -188,7 +188,7 @@ static void rcas_as_shipped_is_the_scalar_reference_within_one_step(void **state
     for (uint32_t pattern = 0; pattern < MASU_PATTERN_COUNT; pattern++) {
         difference d = {0, 0, 0};
         for (size_t i = 0; i < 4; i++) {
-            /* One of whole workgroups, too. */
+            /* A size of whole workgroups, too. */
             job j = {i ? 61 : 64, i ? 47 : 48, i ? 61 : 64, i ? 47 : 48, MASU_AUTO, MASU_ON, stops[i], .shipped = 1};
             masu_pattern_fill((enum masu_pattern)pattern, 5 + (uint32_t)i, j.in_w, j.in_h, in);
             run_gpu(&j, in, 0xFFFFFFFFu, gpu);
@@ -231,7 +231,7 @@ static void rcas_is_the_scalar_reference_within_one_step(void **state) {
     }
 }
 
-/* What is between EASU and RCAS. */
+/* The format between EASU and RCAS. */
 typedef enum between { FLOATS, TEN_BITS, BYTES } between;
 
 static void reference_chain(const job *j, const uint8_t *rgba, between held, uint8_t *out) {
@@ -269,7 +269,7 @@ static void the_chain_is_easu_then_rcas_with_10_bits_between(void **state) {
     }
 }
 
-/* RCAS makes up to seven times as much of what rounding has lost before it. */
+/* RCAS amplifies rounding errors before it by up to seven times. */
 static void the_chain_is_near_the_one_with_floats_between(void **state) {
     (void)state;
     static uint8_t in[MOST], gpu[MOST], floats[MOST], bytes[MOST];
@@ -285,16 +285,18 @@ static void the_chain_is_near_the_one_with_floats_between(void **state) {
             add_difference(gpu, floats, j.out_w * j.out_h, &d);
             add_difference(bytes, floats, j.out_w * j.out_h, &of_bytes);
         }
-        print_message("  %-12s %6u texels beside floats: %5.2f %% off by more than 1/255, worst %u; with 8 bits "
-                      "%5.2f %%, worst %u\n",
-                      masu_pattern_name((enum masu_pattern)pattern), d.pixels, 100.0 * d.over / d.pixels,
-                      d.worst, 100.0 * of_bytes.over / d.pixels, of_bytes.worst);
+        print_message("  %-12s %6u texels compared with floats: %5.2f %% with an error over "
+                      "1/255, worst %u; with 8 bits %5.2f %%, worst %u\n",
+                      masu_pattern_name((enum masu_pattern)pattern), d.pixels,
+                      100.0 * d.over / d.pixels, d.worst, 100.0 * of_bytes.over / d.pixels,
+                      of_bytes.worst);
         assert_true(d.worst <= of_bytes.worst && d.over <= d.pixels / 1000);
-        assert_true(pattern != MASU_PATTERN_PHOTO || of_bytes.over > d.pixels / 4); /* else it would say nothing */
+        /* otherwise the comparison proves nothing */
+        assert_true(pattern != MASU_PATTERN_PHOTO || of_bytes.over > d.pixels / 4);
     }
 }
 
-/* In halves, too: 1/255 is none. What comes out is the nearest step of 8 bits. */
+/* In half floats, too: 1/255 is not one. The output is the nearest step of 8 bits. */
 static void constants_of_floats_come_out_as_the_nearest_byte(void **state) {
     (void)state;
     static const uint32_t halves[] = {0, 0x1C04, 0x3800, 0x3C00};
@@ -349,7 +351,7 @@ static void what_lies_beyond_the_valid_rectangle_is_never_read(void **state) {
     }
 }
 
-/* ---- Inputs of other kinds ------------------------------------------------------------------- */
+/* ---- Other input formats --------------------------------------------------------------------- */
 
 static void an_input_known_to_have_8_bits_gives_the_same_picture(void **state) {
     (void)state;
@@ -366,7 +368,7 @@ static void an_input_known_to_have_8_bits_gives_the_same_picture(void **state) {
     }
 }
 
-/* What an sRGB view gives is linear, and is filtered as it is: masu.h says so. */
+/* An sRGB view returns linear values, and these are filtered, as masu.h states. */
 static void an_srgb_view_is_filtered_as_the_linear_numbers_it_gives(void **state) {
     (void)state;
     static uint8_t in[MOST], gpu[MOST], cpu[MOST];
@@ -390,21 +392,22 @@ static void an_srgb_view_is_filtered_as_the_linear_numbers_it_gives(void **state
         run_gpu(&j, in, 0, gpu);
         reference_of_floats(&j, rgb, cpu);
         uint32_t off = masu_ref_max_difference_rgba8(gpu, cpu, (size_t)j.out_w * j.out_h);
-        print_message("  easu %d: off by %u\n", easu, off);
-        assert_true(off <= (on_gpu(&s) ? 3u : 1u)); /* decoded and filtered by a sampler: an NVIDIA H200's is off by 3 */
-        reference_upscale(&j, in, cpu); /* and not as the bytes */
+        print_message("  easu %d: error of %u\n", easu, off);
+        /* decoded and filtered by a sampler: an NVIDIA H200 has an error of 3 */
+        assert_true(off <= (on_gpu(&s) ? 3u : 1u));
+        reference_upscale(&j, in, cpu); /* and not equal to filtered bytes */
         assert_true(masu_ref_max_difference_rgba8(gpu, cpu, (size_t)j.out_w * j.out_h) > 20);
     }
 }
 
-/* Of 0, or a number of 1/64 to 1 that a half holds. */
+/* 0, or a number from 1/64 to 1 that a half float represents. */
 static uint32_t half_of(float v) {
     uint32_t bits;
     memcpy(&bits, &v, sizeof bits);
     return v > 0.0f ? (bits >> 13) - (112u << 10) : 0;
 }
 
-/* Whether an output pixel looks at an input texel: 12 taps lie in 4x4. */
+/* Whether an output pixel reads an input texel: the 12 taps are within 4x4. */
 static int looks_at(const job *j, int x, int y, int bad_x, int bad_y) {
     if (x < 0 || y < 0 || x >= (int)j->out_w || y >= (int)j->out_h) return 0;
     double fx = floor((x + 0.5) * j->in_w / j->out_w - 0.5);
@@ -412,8 +415,8 @@ static int looks_at(const job *j, int x, int y, int bad_x, int bad_y) {
     return bad_x >= fx - 1 && bad_x <= fx + 2 && bad_y >= fy - 1 && bad_y <= fy + 2;
 }
 
-/* NaN, infinities and numbers out of range, as 16-bit floats: they count as 0 or 1, and touch no
- * more than the taps of EASU and, sharpened, the cross of RCAS around them. */
+/* NaN, infinities and numbers out of range, as 16-bit floats: they are read as 0 or 1, and affect
+ * only the taps of EASU and, sharpened, the cross of RCAS around them. */
 static void assert_footprint(masu_switch half) {
     static const uint32_t bad[] = {0x7E00, 0xFE01, 0x7C00, 0xFC00, 0xC500, 0x70E2, 0x8001};
     static const float counts_as[] = {0, 0, 0, 0, 0, 1, 0};
@@ -435,7 +438,7 @@ static void assert_footprint(masu_switch half) {
                      half, 0};
             j.shipped = sharpen;
             for (uint32_t i = 0; i < 32 * 24; i++) {
-                /* Half of it flat: fast EASU leaves there. */
+                /* Half of the image is flat: fast EASU exits early there. */
                 float v = i % 32 < 16 ? 0.5f : (float)(masu_pattern_hash(i) % 64) / 64.0f;
                 in[i] = half_of(v) * 0x10001u;
                 rgb[3 * i] = rgb[3 * i + 1] = v;
@@ -511,7 +514,7 @@ static void halves_change_easu_by_this_much(void **state) {
                      MASU_ON,   1};
             masu_pattern_fill(pattern, 11 + (uint32_t)i, j.in_w, j.in_h, in);
             run_gpu(&j, in, 0, gpu);
-            /* What decides is in 32 bits in both: of full EASU the same edges are found. */
+            /* Decisions use 32 bits in both: full EASU finds the same edges. */
             j.half = MASU_OFF;
             run_gpu(&j, in, 0, cpu);
             for (size_t p = 0; p < (size_t)j.out_w * j.out_h * 4; p++) {
@@ -525,11 +528,12 @@ static void halves_change_easu_by_this_much(void **state) {
                       masu_pattern_name(pattern), sqrt(sum / count), worst);
         assert_true(worst <= HALF_STEPS && sqrt(sum / count) < 0.75);
         assert_true(pattern != MASU_PATTERN_FLAT || worst == 0);
-        assert_true(pattern != MASU_PATTERN_PHOTO || worst > 0); /* else it was not in halves */
+        /* otherwise it was not in half floats */
+        assert_true(pattern != MASU_PATTERN_PHOTO || worst > 0);
     }
 }
 
-/* ---- Tiles that leave early ------------------------------------------------------------------ */
+/* ---- Tiles with an early exit ---------------------------------------------------------------- */
 
 static void a_scene_says_how_many_tiles_left_early(void **state) {
     (void)state;

@@ -1,7 +1,7 @@
-/* test_velocity.c: where each pixel's surface was in the previous frame, against double precision: the
- * point that the depth names is carried back by the same motions in plain C (for what changes in
- * itself by the C that masu-sdfc writes of the scene, compiled here), seen by the previous camera,
- * and compared in pixels. tests/scenes/test_velocity.sdf says how its parts move. */
+/* test_velocity.c: the previous position of each pixel's surface, against double precision: the
+ * point given by the depth is moved back by the same motions in plain C (for deforming parts by
+ * masu-sdfc's C code of the scene, compiled here), projected by the previous camera, and compared
+ * in pixels. tests/scenes/test_velocity.sdf documents the motion of its parts. */
 #include "reference/vec.h"
 #include "scene/scene.h"
 #include "support/files.h"
@@ -15,7 +15,7 @@
 #include <string.h>
 
 enum { W = 160, H = 120 };
-enum { SKY, MOVER, GROWER, MORPHER, GROUND, BOX, KINDS }; /* parts as in the compiler's order */
+enum { SKY, MOVER, GROWER, MORPHER, GROUND, BOX, KINDS }; /* parts in the compiler's order */
 static const char *const kind_names[KINDS] = {"sky",     "mover",  "grower",
                                               "morpher", "ground", "polygon"};
 
@@ -53,17 +53,17 @@ static int remove_truth(void **state) {
     return remove_scratch(state);
 }
 
-/* ---- One moment ------------------------------------------------------------------------------ */
+/* ---- One frame ------------------------------------------------------------------------------- */
 
 typedef struct moment {
     masu_camera camera;
     double time;
     float radius;
-    float rows[12]; /* of the polygons' box */
-    int rests;      /* nobody tells of it */
+    float rows[12]; /* of the polygon box */
+    int rests;      /* no setter is called */
 } moment;
 
-/* The parts stand in the order of their forms: of this scene, of the text. */
+/* The field of a part. In this scene, shapes have the order of the parts in the text. */
 static double field(const moment *m, vec p, int kind) {
     double radius = (double)m->radius, at[3] = {p.x, p.y, p.z};
     return part_distance(&radius, m->time, at, kind - MOVER);
@@ -97,14 +97,14 @@ static vec ray_through(const eye *e, double x, double y) {
                                vec_scale(e->up, (1 - 2 * y / H) * e->tan_y)));
 }
 
-/* Pixel coordinates of a direction from the eye. */
+/* Pixel coordinates of a direction from the camera. */
 static void project(const eye *e, vec rel, double *x, double *y, double *z) {
     *z = vec_dot(rel, e->forward);
     *x = (vec_dot(rel, e->right) / *z / e->tan_x + 1) * W / 2;
     *y = (1 - vec_dot(rel, e->up) / *z / e->tan_y) * H / 2;
 }
 
-/* ---- What moved where ------------------------------------------------------------------------ */
+/* ---- Previous positions ---------------------------------------------------------------------- */
 
 static vec mover_in(double t, vec p) {
     vec q = vec_sub(p, (vec){-1.6 + 0.3 * t, 0.2 * t, 0.1 * t});
@@ -120,7 +120,7 @@ static vec row(const float *rows, int i) {
     return (vec){(double)rows[4 * i], (double)rows[4 * i + 1], (double)rows[4 * i + 2]};
 }
 
-/* The matrices of this test turn and move, no more. */
+/* The matrices of this test only rotate and translate. */
 static vec box_before(const moment *now, const moment *was, vec p) {
     vec q = vec_sub(p, (vec){(double)now->rows[3], (double)now->rows[7], (double)now->rows[11]});
     vec own = vec_add(vec_scale(row(now->rows, 0), q.x),
@@ -130,9 +130,9 @@ static vec box_before(const moment *now, const moment *was, vec p) {
                  vec_dot(row(was->rows, 2), own) + (double)was->rows[11]};
 }
 
-/* The surface that was along the normal: steps of the field's change over its slope until nothing is
- * left. (Which normal, the present or the previous one, is a matter of definition and up to 0.04
- * pixels here; it is the previous one.) */
+/* The surface along the normal: steps of the field's change over its slope until the change is 0.
+ * (Which normal, the present or the previous one, is a matter of definition and up to 0.04 pixels
+ * here; it is the previous one.) */
 static vec surface_before(const moment *now, const moment *was, vec p, int kind) {
     double level = field(now, p, kind);
     for (int i = 0; i < 30; i++) {
@@ -142,7 +142,7 @@ static vec surface_before(const moment *now, const moment *was, vec p, int kind)
     return p;
 }
 
-/* Within two pixels of an edge of a surface that changes, "along the normal" says nothing. */
+/* Within two pixels of an edge of a deforming surface, "along the normal" is undefined. */
 static int at_crease(const moment *m, vec p, double reach) {
     vec n = vec_unit(gradient(m, p, MORPHER));
     for (int i = 0; i < 6; i++) {
@@ -166,7 +166,7 @@ static vec before(const moment *now, const moment *was, vec p, int kind) {
     }
 }
 
-/* ---- Pictures -------------------------------------------------------------------------------- */
+/* ---- Images ---------------------------------------------------------------------------------- */
 
 typedef struct picture {
     float depth[W * H]; /* view depth, 0: nothing */
@@ -247,7 +247,7 @@ static errors compare(const masu_session *s, const picture *p, const moment *now
 static void assert_right(const errors *e, double limit, const char *what) {
     for (int k = 0; k < KINDS; k++) {
         if (!e->count[k]) continue;
-        print_message("  %s, %s: %u pixels, longest motion %.2f px, off by %.4f px, depth by %.1e\n",
+        print_message("  %s, %s: %u pixels, longest motion %.2f px, error %.4f px, depth %.1e\n",
                       what, kind_names[k], e->count[k], e->longest[k], e->pixels[k], e->depth[k]);
     }
     if (e->creases) print_message("  %s, at edges of the morph: %u pixels\n", what, e->creases);
@@ -325,7 +325,7 @@ static void what_moves_and_what_changes_is_followed(void **state) {
                 assert_right(&e, 0.02, i & 1 ? "all moves" : "all but the camera");
             else
                 for (int k = 0; k < KINDS; k++) assert_true(e.pixels[k] < 0.02);
-            /* Not by chance: a truth with another past is missed by far. */
+            /* Not by coincidence: a reference with a different previous state has a large error. */
             moment wrong = was;
             wrong.time -= 0.1;
             wrong.radius -= 0.03f;
@@ -334,15 +334,17 @@ static void what_moves_and_what_changes_is_followed(void **state) {
             for (int k = MOVER; k < KINDS; k++) assert_true(k == GROUND || f.pixels[k] > 0.1);
             was = now;
         }
-        /* The frame after, nothing moves, and nobody says so: in every slot the past is forgotten. */
+        /* In the next frame nothing moves, and no setter is called: every slot drops the previous
+         * state. */
         was.rests = 1;
         for (uint32_t i = 0; i < flights + 1; i++) {
             take(&s, &was, 0, &p);
-            /* A GPU may round the same place differently now and before. */
+            /* A GPU may round one position differently in both frames. */
             for (int k = 0; k < 3 * W * H; k++) {
                 double v = p.velocity[k / 3][k % 3];
                 if (!(fabs(v) <= (on_gpu(&s) ? 1e-3 : 0.0)))
-                    fail_msg("%u slots, at rest: %g of pixel %d, component %d", flights, v, k / 3, k % 3);
+                    fail_msg("%u slots, static: %g of pixel %d, component %d",
+                             flights, v, k / 3, k % 3);
             }
         }
         close_session(&s);
@@ -385,7 +387,7 @@ static void a_cut_forgets_the_frame_before(void **state) {
     close_session(&s);
 }
 
-/* What the camera has passed has no place in the picture before. */
+/* A point that the camera has passed has no position in the previous image. */
 static void a_point_that_was_behind_the_camera_says_so(void **state) {
     (void)state;
     static picture p;
@@ -404,12 +406,12 @@ static void a_point_that_was_behind_the_camera_says_so(void **state) {
         for (int c = 0; c < 4; c++) assert_true(p.velocity[i][c] == 0);
         untold++;
     }
-    print_message("  %u pixels without a past\n", untold);
+    print_message("  %u pixels without history\n", untold);
     assert_true(untold > W * H / 10 && untold < W * H);
     close_session(&s);
 }
 
-/* A field by hand has no parts that move; its surface is followed along its normal all the same. */
+/* A hand-written field has no moving parts, but its surface is followed along its normal. */
 static void a_field_by_hand_is_followed_along_its_normal(void **state) {
     (void)state;
     masu_session s;
@@ -440,7 +442,7 @@ static void a_field_by_hand_is_followed_along_its_normal(void **state) {
         worst = worst_of(worst, hypot(half_float(texels[4 * i]) - (px - x), half_float(texels[4 * i + 1]) - (py - y)));
         longest = fmax(longest, hypot(px - x, py - y));
     }
-    print_message("  longest motion %.2f px, off by %.4f px\n", longest, worst);
+    print_message("  longest motion %.2f px, error %.4f px\n", longest, worst);
     assert_true(longest > 3 && worst < 0.02);
     close_session(&s);
 }

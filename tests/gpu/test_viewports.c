@@ -1,5 +1,6 @@
-/* test_viewports.c: several views of one scene in one renderer. Each part of the target is, byte for byte, the
- * picture of a renderer of that size with that camera and rung, and what is beside it stays. */
+/* test_viewports.c: several views of one scene in one renderer. Each part of the target is
+ * bit-identical to the image of a renderer of that size with that camera and rung, and the rest is
+ * unchanged. */
 #include "support/support.h"
 
 #include <stdio.h>
@@ -32,7 +33,7 @@ static masu_desc desc_of(const masu_session *s, uint32_t width, uint32_t height)
     return d;
 }
 
-/* cut: whether the host says that nothing goes on from the frame before; from one view to another it need not. */
+/* cut: whether the host requests a cut; between different views it is not needed. */
 static masu_commands frame_of(masu_session *s, own_renderer *x, uint32_t view, uint32_t viewport, int cut) {
     char error[ERROR_SIZE];
     masu_commands commands;
@@ -50,7 +51,7 @@ static void read_target(masu_session *s, own_renderer *x, uint8_t *out) {
     memcpy(out, x->target.mapped, (size_t)x->target.width * x->target.height * 4);
 }
 
-/* Whether view k shows at a pixel: the last one that covers it. */
+/* Whether view k is visible at a pixel: the last one that covers it. */
 static uint32_t view_at(const masu_viewport *views, uint32_t x, uint32_t y) {
     uint32_t found = 0;
     for (uint32_t k = 0; k < VIEWS; k++) {
@@ -73,7 +74,8 @@ static void compare(masu_session *s, own_renderer *x, const masu_viewport *views
         own_renderer fresh;
         masu_desc d = desc_of(s, views[k].width, views[k].height);
         make_own(s, &fresh, &d);
-        for (uint32_t i = 0; i < first + k; i++) (void)frame_of(s, &fresh, k, 0, 1); /* to the same number */
+        /* to the same frame number */
+        for (uint32_t i = 0; i < first + k; i++) (void)frame_of(s, &fresh, k, 0, 1);
         (void)frame_of(s, &fresh, k, 0, 1);
         read_target(s, &fresh, alone);
         uint32_t off = 0, seen = 0;
@@ -156,7 +158,7 @@ static void what_is_no_part_is_refused(void **state) {
     const masu_frame_desc by_itself = {MASU_FRAME_DESC, .viewport = 1, .rung = MASU_RUNG_AUTO};
     assert_int_equal(masu_frame(x.m, &by_itself, &commands, &failure), MASU_ERROR_ARGUMENT);
     assert_string_equal(failure.what, "rung");
-    static masu_plan_info before, after; /* what is refused has not been looked at */
+    static masu_plan_info before, after; /* a rejected description has not been read */
     masu_plan_of(x.m, &before);
     assert_int_equal(masu_frame(x.m, &(masu_frame_desc){MASU_FRAME_DESC, .viewport = VIEWS}, &commands, &failure), MASU_ERROR_ARGUMENT);
     masu_plan_of(x.m, &after);
@@ -164,7 +166,7 @@ static void what_is_no_part_is_refused(void **state) {
     for (uint32_t i = 0; i < 12; i++) (void)frame_of(&s, &x, 0, i % VIEWS, 1);
     masu_stats_info stats;
     assert_int_equal(masu_stats(x.m, 0, &stats, &failure), MASU_OK);
-    assert_in_range(stats.governor.samples + stats.governor.rejected, 1, 4); /* of the first alone */
+    assert_in_range(stats.governor.samples + stats.governor.rejected, 1, 4); /* only of the first */
     unmake_own(&s, &x);
     close_session(&s);
 }

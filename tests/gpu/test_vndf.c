@@ -1,6 +1,6 @@
 /* test_vndf.c: shaders/brdf/vndf.glsl and shaders/noise/sequence.glsl on the GPU: equal to the same
- * text compiled as C, which tests/unit has tested, and total: finite directions, weights of 0..1,
- * for whatever is given. */
+ * source compiled as C, which tests/unit has tested, and total: finite directions, weights of 0..1,
+ * for any input. */
 #include "support/support.h"
 #include "support/floats.h"
 #include "support/random.h"
@@ -77,8 +77,9 @@ static double apart(const float got[3], vec3 want) {
     return fmax(off, fabs((double)got[2] - (double)want.z));
 }
 
-/* Directions by the width of the lobe. Vulkan lets a sine be off by 2^-11, and SwiftShader's are:
- * that turns a direction a little round the lobe's middle, the more the farther out it is. */
+/* Directions relative to the width of the lobe. Vulkan allows errors of 2^-11 in sine, and
+ * SwiftShader has them: they rotate a direction slightly about the lobe's centre, the more the
+ * farther out it is. */
 static void the_gpu_draws_what_c_draws(void **unused) {
     (void)unused;
     for (int i = 0; i < MANY; i++) cases[i] = any_case();
@@ -92,7 +93,8 @@ static void the_gpu_draws_what_c_draws(void **unused) {
         float alpha = masu_alpha(c->roughness);
         masu_vndf_ray r = masu_vndf_reflect(v, alpha, vec2(c->u[0], c->u[1]));
         l_off = worst_of(l_off, apart(got->l, r.l) / (double)alpha);
-        /* Density and weight of the device's own l: the other l differs by more than they do. */
+        /* Density and weight of the device's own l, because the different l has a larger effect
+         * than their errors. */
         vec3 own = vec3(got->l[0], got->l[1], got->l[2]);
         float pdf = masu_vndf_pdf(v, own, alpha), weight = masu_vndf_weight(v, own, alpha);
         pdf_off = worst_of(pdf_off, fabs((double)(got->pdf - pdf)) / (1e-3 + (double)pdf));
@@ -104,7 +106,7 @@ static void the_gpu_draws_what_c_draws(void **unused) {
         masu_axes f = masu_axes_of(vec3(c->normal[0], c->normal[1], c->normal[2]));
         frame_off = worst_of(frame_off, apart(got->around, masu_axes_out(f, own)));
         frame_off = worst_of(frame_off, fabs((double)got->across));
-        /* Integers: nothing is off. */
+        /* Integers: exact. */
         vec2 n = masu_noise2(c->noise[0], c->noise[1]);
         uint32_t hash = masu_hash(c->noise[2]) >> 9 | 0x3F800000u, there;
         memcpy(&there, &got->hash, sizeof there);
@@ -163,7 +165,7 @@ static void odd_surfaces_give_finite_directions(void **unused) {
         }
     }
     assert_total(count, "odd");
-    /* A mirror is one. */
+    /* A perfect mirror. */
     for (count = 0; count < 64; count++) {
         cases[count] = any_case();
         cases[count].roughness = count & 1 ? 1e-4f : 0;
@@ -184,7 +186,7 @@ static void any_bits_give_finite_directions(void **unused) {
             if (random_word(&state) % 8 == 0) words[k] |= 0x7F800000u; /* NaN or Inf */
         }
         memcpy(&cases[i], words, sizeof words);
-        if (i % 4 == 0) { /* only one thing is odd */
+        if (i % 4 == 0) { /* only one member is unusual */
             cases[i] = any_case();
             ((uint32_t *)(void *)&cases[i])[random_word(&state) % 12] = words[0];
         }

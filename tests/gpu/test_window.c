@@ -1,5 +1,5 @@
-/* test_window.c: projections whose middle is not straight ahead. Four quarters of a window, each drawn by
- * itself, are the four quarters of the picture of the whole: colour, depth and velocity. */
+/* test_window.c: off-centre projections. Four quarters of a window, rendered separately, equal the
+ * quarters of the whole image: colour, depth and velocity. */
 #include "support/support.h"
 #include "support/floats.h"
 
@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Quarters are whole tiles, cones and turns of the noise of reflections. */
+/* Quarters are multiples of tiles, cones and the noise pattern of reflections. */
 enum { W = 256, H = 256, HALF_W = W / 2, HALF_H = H / 2 };
 
 typedef struct picture {
@@ -19,7 +19,8 @@ typedef struct picture {
 
 static picture whole, quarters;
 
-/* What the host adds to each frame, where `added` is set: beside the middle, where quarters meet. */
+/* Content that the host adds to each frame if `added` is set: near the centre, at the common corner
+ * of the quarters. */
 static int added;
 static const masu_particle particles[] = {
     {.position = {0.3, 0.2, 1.2}, .half_width = 0.4f, .color = {3, 1, 0.2f}, .opacity = 0.7f},
@@ -33,14 +34,15 @@ static void open_at(masu_session *s, const char *scene, uint32_t width, uint32_t
     masu_session_desc d = test_desc(scene, width, height);
     d.desc.readback = MASU_READBACK_DEPTH | MASU_READBACK_VELOCITY;
     d.desc.rung_count = 1;
-    /* In screen space, and so of another reach; over neighbours, and so another one at the edge of a quarter. */
+    /* Off: effects in screen space, whose radius would differ, and filters over neighbours, which
+     * differ at the edge of a quarter. */
     d.desc.rungs[0] = (masu_rung){.scale = 1, .ao = MASU_OFF, .specular_filter = MASU_OFF,
                                   .specular_reuse = MASU_OFF, .specular_temporal = MASU_OFF};
     if (added) d.desc.reserve.particles = 2, d.desc.reserve.decals = 1, d.desc.reserve.lines = 1;
     open_session(s, &d);
 }
 
-/* Two frames, so that there are velocities: the eye and the window move. */
+/* Two frames, so that there are velocities: the camera and the window move. */
 static void draw_two(masu_session *s, const masu_camera *camera, const float window[4], picture *out,
                      uint32_t at_x, uint32_t at_y, uint32_t width, uint32_t height) {
     static uint8_t pixels[W * H * 4];
@@ -75,7 +77,7 @@ typedef struct differences {
     uint32_t worst; /* byte */
 } differences;
 
-/* seam: pixels beside the edges of quarters whose colour is of neighbours across them. */
+/* seam: pixels near the edges of quarters whose colour depends on neighbours in another one. */
 static differences compare(int seam) {
     differences d = {0, 0, 0, 0, 0, 0};
     for (uint32_t i = 0; i < W * H; i++) {
@@ -104,7 +106,7 @@ static void quarters_of(const char *scene, masu_camera camera, double budget, in
     open_at(&s, scene, W, H);
     draw_two(&s, &camera, window, &whole, 0, 0, W, H);
     close_session(&s);
-    for (uint32_t q = 0; q < 4; q++) { /* from frame 0 each: rays differ by its number */
+    for (uint32_t q = 0; q < 4; q++) { /* each from frame 0: rays depend on its number */
         open_at(&s, scene, HALF_W, HALF_H);
         uint32_t x = q & 1, y = q >> 1;
         float part[4] = {x ? 0 : -0.5f, x ? 0.5f : 0, y ? -0.5f : 0, y ? 0 : 0.5f};
@@ -121,7 +123,7 @@ static void quarters_of(const char *scene, masu_camera camera, double budget, in
         fail_msg("%s: more than %u pixels differ", scene, most);
 }
 
-/* Edges that pass within rounding of a pixel's middle may fall to either side. */
+/* Edges that pass within rounding of a pixel's centre may fall on either side. */
 #define EDGES 0.002
 
 static const masu_camera before_it = {.position = {1.2, 0.9, 3.2}, .forward = {-1.2f, -0.9f, -3.2f}, .near_distance = 0.1f};
@@ -160,7 +162,7 @@ static void quarters_make_the_whole_of_blended_things_and_an_analytic_sky(void *
     quarters_of("glass", (masu_camera){.position = {0, 2, 7}, .forward = {0, -0.2f, -1}, .near_distance = 0.1f}, EDGES, 0);
 }
 
-/* They are also seen: the picture without them is another one. */
+/* They are also visible: the image without them differs. */
 static void quarters_make_the_whole_with_what_the_host_adds(void **state) {
     (void)state;
     static uint8_t without[sizeof whole.color];
@@ -174,7 +176,7 @@ static void quarters_make_the_whole_with_what_the_host_adds(void **state) {
     assert_in_range(changed, W * H / 16, W * H);
 }
 
-/* A portal's window far to the side, narrow and high: what is seen through it is what a wide picture shows there. */
+/* A portal's window far to the side, narrow and high, equals that part of a wide image. */
 static void a_window_far_to_the_side_is_part_of_a_wide_picture(void **state) {
     (void)state;
     enum { PART_W = 16, PART_H = 64 };
@@ -185,7 +187,7 @@ static void a_window_far_to_the_side_is_part_of_a_wide_picture(void **state) {
     close_session(&s);
     memset(&quarters, 0, sizeof quarters);
     open_at(&s, "test_both", PART_W, PART_H);
-    uint32_t x = 124, y = 96; /* the pixel where it begins */
+    uint32_t x = 124, y = 96; /* the window's first pixel */
     float l = -4 + 8.0f * (float)x / W, t = 4 - 8.0f * (float)y / H;
     draw_two(&s, &c, (float[4]){l, l + 8.0f * PART_W / W, t - 8.0f * PART_H / H, t}, &quarters, x, y, PART_W, PART_H);
     close_session(&s);
@@ -200,7 +202,8 @@ static void a_window_far_to_the_side_is_part_of_a_wide_picture(void **state) {
     if (off > 8 || seen < 16) fail_msg("%u pixels differ, %u are of surfaces", off, seen);
 }
 
-/* With temporal: what rests under a window that moves is not smeared, and at rest jitter is all that moves. */
+/* With temporal upscaling: static surfaces under a moving window are not blurred, and later only
+ * the jitter moves. */
 static void history_follows_a_window_that_moves(void **state) {
     (void)state;
     static uint8_t last[W * H * 4], fresh[W * H * 4];
@@ -212,14 +215,15 @@ static void history_follows_a_window_that_moves(void **state) {
     open_session(&s, &d);
     masu_camera c = before_it;
     for (uint32_t i = 0; i < 48; i++) {
-        float off = i < 24 ? 0.004f * (float)i : 0.096f; /* moves, then rests */
+        float off = i < 24 ? 0.004f * (float)i : 0.096f; /* moves, then stationary */
         c.left = -0.5f + off, c.right = 0.5f + off, c.bottom = -0.5f - off, c.top = 0.5f - off;
         draw(&s, &(masu_frame_desc){.camera = &c, .cut = !i}, &commands, i == 24 ? fresh : last);
     }
     double moving = 0;
     for (uint32_t i = 0; i < W * H * 4; i++) moving += abs(fresh[i] - last[i]);
     moving /= W * H * 4;
-    print_message("  mean difference of a moving window from one at rest: %.3f of 255\n", moving);
+    print_message("  mean difference of a moving window from a stationary one: %.3f of 255\n",
+                  moving);
     assert_true(moving < 0.5);
     close_session(&s);
 }

@@ -1,7 +1,5 @@
-/*
- * tone.comp: shaders/shared/tone.glsl by itself, for tests/gpu/test_tone.c. pc.x: how many cases; pc.y:
- * bits of the float that the neutral curve ends at.
- */
+/* tone.comp: runs shaders/shared/tone.glsl for tests/gpu/test_tone.c. pc.x: number of cases; pc.y:
+ * bits of the float at which the neutral curve ends. */
 #version 440
 #extension GL_GOOGLE_include_directive : require
 #include "shared/tone.glsl"

@@ -1,5 +1,5 @@
-/* trace_mask.comp: rays through shaders/trace/bvh.glsl with a hook: triangles below push.y are
- * passed through where the weight of the second corner is below a half. Bindings and answers of
+/* trace_mask.comp: rays through shaders/trace/bvh.glsl with a hook: rays pass through triangles
+ * below push.y if the weight of the second corner is below a half. Bindings and results as in
  * shaders/trace_rays.comp. */
 #version 440
 #extension GL_GOOGLE_include_directive : require

@@ -1,9 +1,6 @@
-/*
- * vndf.comp: shaders/brdf/vndf.glsl and shaders/noise/sequence.glsl by themselves, for
- * tests/gpu/test_vndf.c.
+/* vndf.comp: runs shaders/brdf/vndf.glsl and shaders/noise/sequence.glsl for tests/gpu/test_vndf.c.
  *
- *   pc.y  how many cases
- */
+ *   pc.y  number of cases */
 #version 440
 #extension GL_GOOGLE_include_directive : require
 #include "brdf/vndf.glsl"
@@ -18,9 +15,9 @@ layout(push_constant) uniform Push
 
 struct test_case {
     vec4 view;   /* w roughness, by masu_alpha; above 1: roughness - 1 is alpha itself */
-    vec4 u;      /* zw: of l, x and y, for density and weight by themselves */
+    vec4 u;      /* zw: x and y of l, for separate density and weight */
     vec4 normal; /* w: z of l */
-    uvec4 noise; /* word, frame, x of masu_hash */
+    uvec4 noise; /* 32-bit value, frame, x of masu_hash */
 };
 
 struct test_result {

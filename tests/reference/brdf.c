@@ -27,13 +27,13 @@ static double masking(double alpha, double mu_v, double mu_l) {
 /* ---- Integrals ------------------------------------------------------------------------------- */
 
 typedef struct sample {
-    double weight; /* the lobe's share, times N.l dl */
+    double weight; /* the lobe, times N.l dl */
     double v_h, n_l;
 } sample;
 
-/* Half vectors as D has them: D cosine dh is dt dphi / 2 pi where tan^2 = alpha^2 t / (1 - t). The lobe
- * times N.l dl is then G2 (v.h) / (N.v N.h). With t = 1 - (1 - u)^2 that stays finite where N.h is 0.
- * phi over half a turn, the other half being the same. */
+/* Half vectors distributed by D: D cosine dh is dt dphi / 2 pi with tan^2 = alpha^2 t / (1 - t).
+ * The lobe times N.l dl is then G2 (v.h) / (N.v N.h). With t = 1 - (1 - u)^2 that remains finite
+ * for N.h = 0. phi covers half a circle; the other half is symmetric. */
 static sample sample_of(double alpha, double mu, int i, int k, int steps) {
     double u = (i + 0.5) / steps, phi = PI * (k + 0.5) / steps;
     double rest = (1 - u) * (1 - u), t = 1 - rest;
@@ -96,7 +96,8 @@ static double average_at(const uint32_t *words, int table, int count, int k, dou
 
 /* ---- The model ------------------------------------------------------------------------------- */
 
-/* What of a lobe comes back below the coat, Fresnel term 1 and (1 - h.v)^5; what of the coat. */
+/* The part of a lobe that passes the coat, for Fresnel term 1 and for (1 - h.v)^5, and the coat's
+ * reflection. */
 typedef struct returned {
     double white, weight, coat, lost;
 } returned;
@@ -122,7 +123,7 @@ static returned combine(const model *m, const double base[4], const double coat[
     return r;
 }
 
-/* over: the cosine with the coat's normal, which is what covers. */
+/* over: cosine with the coat's normal, which determines the coverage. */
 static returned returned_over(const model *m, double mu, double over) {
     double base[4], covered[4], coat[4];
     brdf_looked_up(m->words, m->s->roughness, mu, base);
@@ -135,7 +136,7 @@ static returned returned_over(const model *m, double mu, double over) {
 
 static returned returned_of(const model *m, double mu) { return returned_over(m, mu, mu); }
 
-/* Interreflection between facets: F^2 (1.35 - 0.35 F) E / (1 - F (1 - E)), F being Schlick's
+/* Interreflection between facets: F^2 (1.35 - 0.35 F) E / (1 - F (1 - E)), where F is Schlick's
  * average over the hemisphere. */
 static double rest_color(double f0, double f90, double lost) {
     double f = f0 * 20 / 21 + f90 / 21;
@@ -166,7 +167,7 @@ static model model_of(const uint32_t *words, const brdf_surface *s) {
     return m;
 }
 
-/* Factors of what is lost of l, and of what is left of it, times pi. */
+/* Factors of the light that the lobes lose from l, and of the remaining light, times pi. */
 static void broad_factors(const model *m, returned v, int channel, double *rest, double *diffuse) {
     double albedo = m->s->albedo[channel], metallic = m->s->metallic;
     double color =
@@ -200,7 +201,7 @@ void brdf_over(const uint32_t *words, const brdf_surface *s, const double n[3], 
     double h[3] = {v[0] + l[0], v[1] + l[1], v[2] + l[2]}, size = sqrt(dot3(h, h));
     out[0] = out[1] = out[2] = 0;
     if (!(mu_l > 0) && !(over_l > 0)) return;
-    /* v.h of unit vectors; those of fp32 are unit up to 1e-7, which counts where v + l is as short. */
+    /* v.h of unit vectors. fp32 vectors are unit up to 1e-7, which matters if v + l is as short. */
     double v_h = size / 2, n_h = h[2] / size;
     returned from = returned_over(&m, mu_v, over_v), to = returned_over(&m, mu_l, over_l);
     for (int k = 0; k < 3; k++) {
@@ -250,8 +251,8 @@ void brdf_furnace(const uint32_t *words, const brdf_surface *s, double mu, int s
                 out[c] += s->coat * coat.weight * (0.04 + 0.96 * power5(coat.v_h));
         }
     }
-    /* The rest depends on N.l alone. In x = mu^(1/4), since it may change within mu = 0.001: 2 mu dmu is
-     * 8 x^7 dx. */
+    /* The rest depends only on N.l. In x = mu^(1/4), because it can change within mu = 0.001: 2 mu
+     * dmu is 8 x^7 dx. */
     const int rings = 1024;
     for (int i = 0; i < rings; i++) {
         double x = (i + 0.5) / rings;

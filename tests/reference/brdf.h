@@ -1,6 +1,6 @@
-/* brdf.h: the surface model in double precision, from the formulas of shaders/brdf/bsdf.glsl but not from
- * their code: Smith's Lambda instead of a visibility term, the cosine form of D, integrals over half
- * vectors instead of visible normals. */
+/* brdf.h: the surface model in double precision, from the formulas of shaders/brdf/bsdf.glsl but
+ * not from its code: Smith's Lambda instead of a visibility term, the cosine form of D, and
+ * integrals over half vectors instead of visible normals. */
 #ifndef MASU_REFERENCE_BRDF_H
 #define MASU_REFERENCE_BRDF_H
 
@@ -12,27 +12,29 @@ typedef struct brdf_surface {
 
 enum { BRDF_WHITE, BRDF_WEIGHT, BRDF_COVERED, BRDF_COVERED_WEIGHT, BRDF_INTEGRALS };
 
-/* Of a lobe of this roughness and a direction with cosine mu > 0: what a white one returns, its weight of
- * (1 - h.v)^5, and both times max((1 - N.v)^5, (1 - N.l)^5). steps: in each of the two angles. */
+/* For a lobe of this roughness and a direction with cosine mu > 0: the reflectance of a white lobe,
+ * its weight of (1 - h.v)^5, and both times max((1 - N.v)^5, (1 - N.l)^5). steps: per angle. */
 void brdf_integrals(double roughness, double mu, int steps, double out[BRDF_INTEGRALS]);
 
-/* The same from the table, `words` of which are masu_split_sum of gen/split_sum.h. */
+/* The same from the table; `words` are masu_split_sum of gen/split_sum.h. */
 void brdf_looked_up(const uint32_t *words, double roughness, double mu, double out[BRDF_INTEGRALS]);
 
-/* f * N.L * pi, the normal being +z. 0 where l is below; v counts as at least 1e-4 above. */
+/* f * N.L * pi, with normal +z. 0 if l is below the horizon; v is raised to at least 1e-4 above
+ * it. */
 void brdf_eval(const uint32_t *words, const brdf_surface *s, const double v[3], const double l[3],
                double out[3]);
 
-/* The same of a coat with a unit normal of its own: +z is that of what lies below. */
+/* The same with a coat that has a separate unit normal; +z is the normal of the base. */
 void brdf_over(const uint32_t *words, const brdf_surface *s, const double coat_normal[3], const double v[3],
                const double l[3], double out[3]);
 
-/* What the surface returns of light from everywhere: of irradiance / pi, of what lies in the mirror of the base, and
- * in that of the coat. v is unit, the normal of what lies below +z. */
+/* Reflected light under uniform illumination: factors of irradiance / pi, of the radiance in the
+ * base's mirror direction, and of the radiance in the coat's. v is unit, the normal of the base
+ * +z. */
 void brdf_ambient(const uint32_t *words, const brdf_surface *s, const double coat_normal[3], const double v[3],
                   double diffuse[3], double specular[3], double *coat);
 
-/* All that the surface returns of light of radiance 1 from everywhere, by quadrature of each lobe. */
+/* The total reflected light of uniform radiance 1, by quadrature of each lobe. */
 void brdf_furnace(const uint32_t *words, const brdf_surface *s, double mu, int steps,
                   double out[3]);
 

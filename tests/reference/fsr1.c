@@ -1,14 +1,12 @@
-/*
- * fsr1.c: see fsr1.h. Two things here are easy to break without noticing:
+/* fsr1.c: see fsr1.h. Two things here are easy to break without noticing:
  *
  * 1. Rounding. Three decisions in EASU are discontinuous (which texel floor(p) picks, the "no
- *    gradient" test, and 0/0-like length terms of equal-luma neighbours), so one unit in the last
- *    place can move a pixel by tens of 255ths. Every multiply and add therefore stands alone, and
- *    the file must be compiled without contraction into fused operations (-std=c11 gives that on
- *    gcc; the pragma below gives it on clang, whose default differs).
+ * gradient" test, and 0/0-like length terms of equal-luma neighbours), so one unit in the last
+ * digit can move a pixel by tens of 255ths. Every multiply and add is therefore a separate
+ * statement, and the file must be compiled without contraction into fused operations (-std=c11
+ * gives that on gcc; the pragma below gives it on clang, whose default differs).
  *
- * 2. The reciprocals. They look like a speed trick to be improved; they are the specification.
- */
+ * 2. The reciprocals. They look like a speed trick to be improved; they are the specification. */
 #include "reference/fsr1.h"
 
 #include "shared/floats.h"
@@ -107,7 +105,7 @@ static float source_position(uint32_t o, uint32_t in_size, uint32_t out_size)
     return moved + offset;
 }
 
-/* How straight the luma runs through three texels in a row: 1 = monotonic, 0 = a reversal. */
+/* Monotonicity of the luma over three texels in a row: 1 = monotonic, 0 = a reversal. */
 static float straightness(float before, float centre, float after, enum masu_ref_math math)
 {
     float largest = high(fabsf(after - centre), fabsf(centre - before));
@@ -220,7 +218,7 @@ static float weighted(const float w[4], float f, float g, float j, float k)
     return w[0] * f + w[1] * g + w[2] * j + w[3] * k;
 }
 
-/* Half a step of 8 bits of grey in twice the luma: where there is less, no edge is looked for. */
+/* Half a step of 8 bits of grey, in twice the luma: smaller differences are no edge. */
 static float fast_straightness(float before, float centre, float after)
 {
     float largest = high(fabsf(after - centre), fabsf(centre - before)) + 1.0f / 256.0f;
@@ -239,12 +237,12 @@ static struct edge fast_edge_of(const float l[TAP_COUNT], const float w[4])
                          fast_straightness(left, centre, right)
                              + fast_straightness(above, centre, below) };
     if (edge.dir_x * edge.dir_x + edge.dir_y * edge.dir_y < 1.0f / 32768.0f) {
-        edge.dir_x = edge.dir_y = 0.0f; /* then kernel_of takes (1, 0) */
+        edge.dir_x = edge.dir_y = 0.0f; /* kernel_of then uses (1, 0) */
     }
     return edge;
 }
 
-/* The four around differ by no more than a step of 8 bits. */
+/* The four nearest texels differ by at most one step of 8 bits. */
 static int is_flat(float colour[TAP_COUNT][3])
 {
     for (int c = 0; c < 3; c++) {
@@ -356,8 +354,8 @@ void masu_ref_bilinear(const struct masu_ref_image *in, uint32_t out_width, uint
     }
 }
 
-/* Rings darker than the first, or closer to white than the second, have no room on that side: the
- * quotient there would be 0/0. Far below one step of 8 bits, far above a denormal. */
+/* Rings darker than the first, or closer to white than the second, have no headroom on that side:
+ * the quotient would be 0/0. Far below one step of 8 bits, far above a denormal. */
 #define RCAS_DARK 1e-6f
 #define RCAS_BRIGHT (1.0f - 1e-6f)
 
@@ -373,7 +371,7 @@ void masu_ref_rcas_pixel(const struct masu_ref_image *in, uint32_t x, uint32_t y
     fetch(in, ix + 1, iy, right);
     fetch(in, ix, iy + 1, down);
 
-    /* The most negative lobe that drives no channel below 0 or above 1. */
+    /* The most negative lobe that keeps all channels within 0..1. */
     float lobe = -1.0f;
     for (int c = 0; c < 3; c++) {
         float least = low(low(up[c], left[c]), low(right[c], down[c]));
@@ -448,7 +446,7 @@ float masu_ref_max_difference(const float *a, const float *b, size_t count)
     float worst = 0.0f;
     for (size_t i = 0; i < count; i++) {
         float d = fabsf(a[i] - b[i]);
-        if (!(d <= worst)) { /* a NaN difference is the worst of all */
+        if (!(d <= worst)) { /* a NaN difference is the largest of all */
             worst = d;
         }
     }

@@ -1,7 +1,7 @@
-/* glsl.h: so much of GLSL and of shaders/shared/guard.glsl that texts without vector arithmetic
- * compile as C: shaders/brdf/vndf.glsl, shaders/noise/sequence.glsl. Include it last, and those
- * after it; it redefines min, sqrt and uint(x). Its floats are floats; constants are doubles, so
- * that what is computed here is at least as precise as on a device. */
+/* glsl.h: the part of GLSL and of shaders/shared/guard.glsl that sources without vector arithmetic
+ * need to compile as C: shaders/brdf/vndf.glsl, shaders/noise/sequence.glsl. Include it last, and
+ * the shader sources after it; it redefines min, sqrt and uint(x). Its floats are floats, but
+ * constants are doubles, so that results are at least as precise as on a device. */
 #ifndef MASU_REFERENCE_GLSL_H
 #define MASU_REFERENCE_GLSL_H
 
@@ -28,7 +28,7 @@ typedef struct masu_vndf_ray masu_vndf_ray;
 
 static inline float dot(vec3 a, vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-/* As guard.glsl says. */
+/* As defined in guard.glsl. */
 #define MASU_GUARD_GLSL
 static inline float masu_sane(float x, double lo, double hi) {
     return min(max(isfinite(x) ? x : 0, lo), hi);
@@ -43,7 +43,7 @@ static inline vec3 masu_normalize(vec3 v, vec3 fallback) {
     return vec3(u.x * r, u.y * r, u.z * r);
 }
 
-/* The last: casts above are C's. There is no float(x): clang warns of it. */
+/* The last: casts above are C's. There is no float(x), because clang warns about it. */
 #define uint(x) ((uint)(x))
 
 #endif

@@ -6,14 +6,14 @@
 
 #define PI 3.14159265358979323846
 
-/* Angle between two vectors by both of its legs: exact for small and for large ones. */
+/* Angle between two vectors by atan2: exact for small and for large angles. */
 static double angle_between(const double a[3], const double b[3]) {
     double c[3];
     cross3(a, b, c);
     return atan2(sqrt(dot3(c, c)), dot3(a, b));
 }
 
-/* Share of a spot's light at an angle from its axis: KHR_lights_punctual, "Inner and Outer Cone
+/* Intensity of a spot at an angle from its axis: KHR_lights_punctual, "Inner and Outer Cone
  * Angles". */
 static double cone_share(const masu_ref_light *light, double angle) {
     if (light->outer >= PI) return 1.0;

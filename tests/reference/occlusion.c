@@ -1,6 +1,6 @@
-/* occlusion.c: see occlusion.h. Rays are spread by the sunflower's spiral: the k-th of n at radius
- * sqrt((k + 1/2) / n), each a golden angle further. The same spiral on the unit disc, lifted to the
- * hemisphere, is cosine-weighted. */
+/* occlusion.c: see occlusion.h. Rays follow a sunflower spiral: the k-th of n at radius sqrt((k +
+ * 1/2) / n), each rotated by the golden angle from the last. The same spiral on the unit disc,
+ * projected up to the hemisphere, is cosine-weighted. */
 #include "occlusion.h"
 
 #include <math.h>
@@ -13,8 +13,8 @@ static double extent(const double p[3]) {
     return fmax(1, fmax(fabs(p[0]), fmax(fabs(p[1]), fabs(p[2]))));
 }
 
-/* Distance of the first hit before the limit, or -1. A ray that is still under way after all steps
- * creeps along something: it counts as hit there. */
+/* Distance of the first hit before the limit, or -1. A ray that is still active after all steps is
+ * creeping along a surface: it is treated as a hit there. */
 static double hit(const masu_ref_field *f, const double from[3], const double d[3], double limit) {
     for (int k = 0; k < 3; k++) {
         if (fabs(d[k]) < 1e-300) continue;
@@ -32,7 +32,7 @@ static double hit(const masu_ref_field *f, const double from[3], const double d[
     return t;
 }
 
-/* Two directions that are orthogonal to n and to each other. */
+/* Two unit directions orthogonal to n and to each other. */
 static void across(const double n[3], double u[3], double v[3]) {
     int least = fabs(n[0]) < fabs(n[1]) ? 0 : 1;
     if (fabs(n[2]) < fabs(n[least])) least = 2;
@@ -43,7 +43,7 @@ static void across(const double n[3], double u[3], double v[3]) {
         v[k] = n[(k + 1) % 3] * u[(k + 2) % 3] - n[(k + 2) % 3] * u[(k + 1) % 3];
 }
 
-/* n cos + the k-th of `rays` on a disc of that radius, unit length. */
+/* The k-th of `rays` directions: n cos + a point on a disc of that radius, normalised. */
 static void spread(const double n[3], double cosine, double radius, int k, double out[3]) {
     double u[3], v[3], length = 0;
     across(n, u, v);
@@ -54,7 +54,7 @@ static void spread(const double n[3], double cosine, double radius, int k, doubl
     for (int i = 0; i < 3; i++) out[i] /= sqrt(length);
 }
 
-/* A little off the surface, so that it is not hit at once. */
+/* A point slightly off the surface, so that the ray does not hit it at once. */
 static void lift(const double point[3], const double normal[3], double out[3]) {
     for (int k = 0; k < 3; k++) out[k] = point[k] + normal[k] * 1e-7 * extent(point);
 }

@@ -100,7 +100,7 @@ static double value_noise(uint32_t seed, double x, double y, double cell)
     return mix(top, bottom, tv);
 }
 
-/* Octaves whose amplitude falls as their frequency rises: the spectrum of natural pictures. */
+/* Octaves whose amplitude falls as their frequency rises: the spectrum of natural images. */
 static double texture(const struct canvas *c, uint32_t salt, double x, double y)
 {
     double sum = 0.0;
@@ -121,8 +121,8 @@ static double shorter_side(const struct canvas *c)
     return (double)(c->width < c->height ? c->width : c->height);
 }
 
-/* Sky gradient, then eight lit balls painted back to front. Far ones have a soft rim (defocus),
- * near ones a one-pixel rim, as an anti-aliased camera picture has. */
+/* Sky gradient, then eight lit balls painted back to front. Distant ones have a soft rim (defocus),
+ * near ones a one-pixel rim, as in an anti-aliased photograph. */
 static struct colour photo(const struct canvas *c, uint32_t px, uint32_t py)
 {
     double x = (double)px;

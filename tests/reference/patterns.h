@@ -1,10 +1,8 @@
-/*
- * patterns.h: deterministic test images, so that no picture file has to be carried along.
+/* patterns.h: deterministic test images, so that no image file is needed.
  *
- * Six kinds, each hard on something else: a photo-like picture, a zone plate, hard edges, noise
- * (white and binary), thin marks (text and dots), and smooth areas (ramp and flat). The same
- * pattern, seed and size give the same bytes on every machine and compiler.
- */
+ * Six kinds, each difficult for another algorithm: a photo-like image, a zone plate, hard edges,
+ * noise (white and binary), thin marks (text and dots), and smooth areas (ramp and flat). The same
+ * pattern, seed and size give the same bytes on every machine and compiler. */
 #ifndef MASU_TESTS_REFERENCE_PATTERNS_H
 #define MASU_TESTS_REFERENCE_PATTERNS_H
 
@@ -33,7 +31,7 @@ void masu_pattern_fill(enum masu_pattern pattern, uint32_t seed, uint32_t width,
 /* The generator behind them: a well-mixed 32-bit hash, useful to tests on its own. */
 uint32_t masu_pattern_hash(uint32_t x);
 
-/* FNV-1a over bytes: the short name of a picture in tests and logs. */
+/* FNV-1a over bytes: the short name of an image in tests and logs. */
 uint32_t masu_pattern_fnv1a(const uint8_t *bytes, uint64_t count);
 
 #endif

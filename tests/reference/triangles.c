@@ -194,7 +194,7 @@ double masu_ref_sun_share(const masu_ref_triangles *scene, const double point[3]
     double length = sqrt(dot3(u, u));
     for (int k = 0; k < 3; k++) u[k] /= length;
     cross3(sun, u, v);
-    /* Neighbours in the same plane are not in the way. */
+    /* Neighbours in the same plane do not occlude. */
     double off = 1e-9 * fmax(1, fmax(fabs(point[0]), fmax(fabs(point[1]), fabs(point[2]))));
     for (int i = 0; i < rays; i++) {
         double r = rays == 1 ? 0 : tangent * sqrt((i + 0.5) / rays), a = 2.399963229728653 * i,

@@ -1,5 +1,5 @@
-/* vec.h: three numbers in double precision: as a struct, which expressions read best in, and as an
- * array, which loops over axes want. */
+/* vec.h: 3D vectors in double precision: a struct, for readable expressions, and an array, for
+ * loops over axes. */
 #ifndef MASU_REF_VEC_H
 #define MASU_REF_VEC_H
 
@@ -31,7 +31,7 @@ static inline void cross3(const double a[3], const double b[3], double out[3]) {
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* Makes it one long, unless it is nothing; returns how long it was. */
+/* Normalises it, unless its length is 0; returns the length. */
 static inline double unit3(double v[3]) {
     double length = sqrt(dot3(v, v));
     for (int k = 0; k < 3; k++) v[k] /= length > 0 ? length : 1;

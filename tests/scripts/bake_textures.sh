@@ -354,6 +354,8 @@ refuses 'from 0 to 1' '"alpha_cutoff": 2'
 refuses 'another member sets the same map' '"surface_map": "a.png", "roughness_map": "b.png"'
 refuses 'unknown key' '"colour_map": "a.png"'
 refuses 'from 0 to 1' '"opacity": 1.5'
+refuses 'from 0 to 65504' '"thickness": 65505'
+refuses 'from 1 to 1000' '"ior": 0.99'
 refuses 'expected "alpha", "additive" or "tinted"' '"blend": "multiply"'
 refuses 'needs "alpha": "blend"' '"alpha": "mask", "opacity": 0.5'
 refuses 'needs "alpha": "blend"' '"alpha": "opaque", "blend": "additive"'
@@ -370,6 +372,12 @@ quad "\"coat\": 1, \"coat_map\": \"$pictures/gradient.png\", \"blend\": \"tinted
 bakes "$scene"
 warns 1 'transparent materials have no maps of coat, specular or sheen: ignored'
 refuses 'expected' '"coat_smooth": 1'
+quad '"thickness": 65504, "ior": 1000, "blend": "tinted", "opacity": 0, "metallic": 0'
+bakes "$scene"
+warns 0
+quad '"thickness": 0.1, "opacity": 0.5'
+bakes "$scene"
+warns 1 'its thickness is ignored: it is metallic, or not blended as "tinted"'
 
 # As many blended things as a renderer draws, and one more.
 pane='{"mesh": {"plane": {}}, "material": {"opacity": 0.5}}'

@@ -14,7 +14,7 @@ static const double golden = 2.399963229728653;
 
 /* ---- Polygons -------------------------------------------------------------------------------- */
 
-/* One mesh as a scene of its own, for its instances. */
+/* One mesh as a separate Embree scene, for its instances. */
 static RTCScene mesh_scene(RTCDevice device, const masu_scene_view *v, uint32_t mesh) {
     RTCScene scene = rtcNewScene(device);
     for (uint32_t p = 0; p < v->meshes[mesh].primitive_count; p++) {
@@ -100,8 +100,8 @@ static double polygon_at(const masu_ao_world *w, const double from[3], const dou
 
 /* ---- The SDF --------------------------------------------------------------------------------- */
 
-/* Nothing outside the bounds is drawn, and nothing outside hides anything. A ray that is under way
- * after all steps creeps along something: it counts as hit there. */
+/* Only geometry inside the bounds is rendered or occludes. A ray that is still active after all
+ * steps is creeping along a surface: it is treated as a hit there. */
 static double field_at(const masu_ao_world *w, const double from[3], const double d[3],
                        double limit) {
     double end = limit, t = 0, size = 1;
@@ -125,7 +125,7 @@ static double field_at(const masu_ao_world *w, const double from[3], const doubl
 
 /* ---- A point --------------------------------------------------------------------------------- */
 
-/* Two directions that are orthogonal to n and to each other. */
+/* Two unit directions orthogonal to n and to each other. */
 static void across(const double n[3], double u[3], double v[3]) {
     int least = fabs(n[0]) < fabs(n[1]) ? 0 : 1;
     if (fabs(n[2]) < fabs(n[least])) least = 2;

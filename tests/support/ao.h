@@ -1,13 +1,14 @@
-/* ao.h: the true ambient occlusion of points of a scene, by rays: polygons by Embree, in single
- * precision, the SDF by marching its field in double.
+/* ao.h: reference ambient occlusion at points of a scene, by ray tracing: polygons with Embree, in
+ * single precision; the SDF by sphere tracing, in double precision.
  *
- * Seen part = mean over cosine-weighted directions about the normal of min(t / radius, 1), t the
- * distance of the nearest surface from either side: something at t < radius hides 1 - t / radius. The
- * same words define it for the SDF (shaders/sdf/occlusion.glsl, tests/reference/occlusion.h).
+ * Visibility = mean over cosine-weighted directions about the normal of min(t / radius, 1), where t
+ * is the distance to the nearest surface, from either side: a hit at t < radius occludes 1 - t /
+ * radius. The SDF has the same definition (shaders/sdf/occlusion.glsl,
+ * tests/reference/occlusion.h).
  *
- * Rays are spread by the sunflower's spiral, turned for each point by a hash of its number, so that an
- * error of too few rays is noise and no pattern. With 256 rays a point's own error is some 0.01. The
- * structure owns Embree's scene; nothing of the blob is kept. */
+ * Ray directions follow a sunflower spiral, rotated for each point by a hash of its number, so that
+ * the error of too few rays is noise without a pattern. With 256 rays the error of one point is
+ * about 0.01. The structure owns Embree's scene and does not refer to the blob. */
 #ifndef SUPPORT_AO_H
 #define SUPPORT_AO_H
 
@@ -16,15 +17,16 @@
 typedef struct masu_ao_world {
     void *device, *scene; /* Embree's; NULL: no polygons */
     const masu_truth *field; /* NULL: no SDF */
-    const masu_view *view;   /* of the field: parameters, time, bounds */
+    const masu_view *view;   /* for the field: parameters, time, bounds */
 } masu_ao_world;
 
-/* All instances of the scene where it places them, in the finest form. The blob behind the scene must
- * be readable. False, with one line in `error`: no memory, or Embree's reason. */
+/* All instances of the scene at their baked transforms, in the most detailed LOD. The blob behind
+ * the scene must be readable. On failure: false, and one line in `error` (no memory, or Embree's
+ * reason). */
 bool masu_ao_open(const masu_scene *scene, masu_ao_world *world, char *error, size_t error_size);
 void masu_ao_close(masu_ao_world *world);
 
-/* point: world space, on a surface; `lift`: how far off it rays start, metres. */
+/* point: world space, on a surface. lift: distance from the surface at which rays start, metres. */
 double masu_ao_seen(const masu_ao_world *world, const double point[3], const double normal[3],
                     double lift, double radius, uint32_t rays, uint32_t number);
 

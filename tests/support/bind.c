@@ -28,7 +28,7 @@ int support_make_edge(void **state) {
     return mprotect(edge, page_bytes, PROT_NONE);
 }
 
-/* As near to the edge as 16-byte alignment allows. */
+/* As close to the edge as the 16-byte alignment allows. */
 static const unsigned char *at_the_edge(const unsigned char *bytes, size_t size) {
     unsigned char *to = edge - (size + MASU_BLOB_ALIGN - 1) / MASU_BLOB_ALIGN * MASU_BLOB_ALIGN;
     memset(to, 0xEE, (size_t)(edge - to));
@@ -63,5 +63,6 @@ masu_result support_bind(const unsigned char *bytes, size_t size, masu_scene *sc
 
 void support_accepted(const support_blob *blob, masu_scene *scene) {
     masu_detail detail;
-    if (support_bind(blob->bytes, blob->size, scene, &detail)) fail_msg("refused: %s", detail.text);
+    if (support_bind(blob->bytes, blob->size, scene, &detail))
+        fail_msg("rejected: %s", detail.text);
 }

@@ -1,6 +1,6 @@
-/* bind.h: masu_scene_bind under observation. The blob is bound as a copy that ends at the
- * edge of a page that may not be read, and what every call promises is checked: a refusal leaves
- * the output alone and fills a useful detail; what is accepted, a second reader agrees with. */
+/* bind.h: masu_scene_bind with checks around each call. The blob is bound as a copy that ends at an
+ * unreadable page. Each call is checked for its contract: an error leaves the output unchanged and
+ * fills in a useful detail; an accepted blob also passes an independent reader (scene_walk.h). */
 #ifndef SUPPORT_BIND_H
 #define SUPPORT_BIND_H
 
@@ -9,7 +9,7 @@
 #include "masu.h"
 #include "support/blob.h"
 
-/* Group set-up: makes the pages. */
+/* Group set-up: allocates the pages. */
 int support_make_edge(void **state);
 
 masu_result support_bind(const unsigned char *bytes, size_t size, masu_scene *scene,

@@ -28,7 +28,7 @@ static const masu_blob_vertex vertices[] = {
     {{-2.0f, 2.0f, 0.0f}, {0, 0}},
 };
 
-/* The last three are those of SUPPORT_DETAIL. */
+/* The last three are for SUPPORT_DETAIL. */
 static const uint32_t indices[] = {0, 1, 2, 0, 2, 3, 0, 1, 2, 0, 1, 2, 0, 2, 3, 0, 1, 2};
 
 static const masu_blob_primitive primitives[] = {
@@ -143,7 +143,7 @@ static const masu_blob_texture_set texture_sets[] = {
     {{MASU_BLOB_NONE, MASU_BLOB_NONE, MASU_BLOB_NONE, 2, MASU_BLOB_NONE, MASU_BLOB_NONE}, {1, 1}},
 };
 
-/* 7 blocks of 16 bytes twice, 2 + 1 + 1 of 16, 1 of 8 and padding. */
+/* 7 blocks of 16 bytes twice, 2 + 1 + 1 of 16, 1 of 8, and padding. */
 static const unsigned char texels[19][16] = {{1, 2, 3}, {0xFF, 0, 0x5A}};
 
 static const masu_blob_meso meso[] = {
@@ -179,7 +179,7 @@ static const masu_blob_probes probes[] = {{.origin = {-1.0f, 0.0f, 0.0f},
                                            .sun_direction = {{0.0f, 1.0f, 0.0f, 0.0f}},
                                            .sun_inverse = {{1.0f}}}};
 
-/* Two sets and a map of 3 x 3 of each. */
+/* Two sets, and a map of 3 x 3 for each. */
 static const uint32_t probe_data[2 * (2 * MASU_PROBE_WORDS + 9)] = {0x3C003800u, 0x80000001u};
 
 static const masu_blob_environment_map environment_map[] = {
@@ -220,10 +220,11 @@ static const masu_blob_model_node model_nodes[] = {
     {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, 2, 2, NAME_LID, 0},
 };
 
-/* The square of mesh 1, by "bend", which is turned, and by "lid" below it. */
+/* The square of mesh 1, skinned to "bend", which is rotated, and to its child "lid". */
 static const masu_blob_skin skins[] = {{2, 3, 0, 7, 4, 0, 0, 2, 0, 0, 0, 0}};
 
-/* With SUPPORT_MORPH: "up" lifts it, "wide" pulls two corners apart and is half there at rest. */
+/* With SUPPORT_MORPH: "up" lifts the square; "wide" pulls two corners apart, with a default weight
+ * of one half. */
 static const masu_blob_morph_target morph_targets[] = {
     {{0, 0, 0}, {0, 1, 0}, 0.0f, NAME_BEND},
     {{-1, 0, 0}, {1, 0, 0}, 0.5f, NAME_GLOW},
@@ -246,7 +247,7 @@ static const masu_blob_skin_vertex skin_vertices[] = {
     {{{-2.0f, 2.0f, 0.0f}, {0, 0}}, {1, 0, 0, 0}, {65535, 0, 0, 0}},
 };
 
-/* Of the last model: "bend" moves both and turns "lid", "glow" grows it in one step. */
+/* Clips of the last model: "bend" moves both and rotates "lid"; "glow" enlarges it in one step. */
 static const masu_blob_clip clips[] = {{2, 0, 2, 2.0f, NAME_BEND, {0}}, {2, 2, 1, 0.5f, NAME_GLOW, {0}}};
 
 static const masu_blob_channel channels[] = {
@@ -255,7 +256,7 @@ static const masu_blob_channel channels[] = {
     {1, MASU_CHANNEL_SCALE, 1, 4, 2, 0, {0}},
 };
 
-/* The same, and "bend" raises the first target of the skin at its node. */
+/* The same, and "bend" raises the weight of the first morph target of the skin at its node. */
 static const masu_blob_clip morph_clips[] = {{2, 0, 3, 2.0f, NAME_BEND, {0}}, {2, 3, 1, 0.5f, NAME_GLOW, {0}}};
 static const masu_blob_channel morph_channels[] = {
     {0, MASU_CHANNEL_TRANSLATION, 0, 0, 2, 0, {0}},
@@ -303,7 +304,8 @@ static int is_code(uint32_t kind) {
            kind == MASU_BLOB_SILHOUETTES_SPIRV || kind == MASU_BLOB_LOCAL_SHADOW_SPIRV;
 }
 
-/* The smallest module that its pass could run: main returns. The record is filled in when all of the blob is there. */
+/* The smallest valid module for its pass: main returns. The compilation record is filled in when
+ * the blob is complete. */
 static void add_code(support_blob *blob, enum masu_blob_kind kind) {
     uint32_t update = kind == MASU_BLOB_UPDATE_SPIRV || kind == MASU_BLOB_UPDATE_PREVIOUS_SPIRV;
     uint32_t columns = update ? 1 : kind == MASU_BLOB_SEED_SPIRV ? 4 : 8;

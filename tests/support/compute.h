@@ -1,5 +1,5 @@
-/* compute.h: runs one compute shader of tests/gpu by itself, on storage buffers of set 0. For
- * functions of the shader library, apart from any frame. */
+/* compute.h: runs one compute shader of tests/gpu on storage buffers of set 0, without a frame. For
+ * functions of the shader library. */
 #ifndef MASU_TEST_SUPPORT_COMPUTE_H
 #define MASU_TEST_SUPPORT_COMPUTE_H
 
@@ -10,7 +10,7 @@
 
 typedef struct compute_buffer {
     uint32_t binding;
-    void *data; /* what it holds before, and afterwards */
+    void *data; /* content, before and after the run */
     size_t bytes;
 } compute_buffer;
 

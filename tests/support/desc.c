@@ -29,7 +29,7 @@ masu_desc scene_desc(uint32_t parts, uint32_t width, uint32_t height) {
     if (parts & RASTER) {
         s->vertices = 11, s->indices = 15, s->primitives = 3, s->meshes = 2;
         s->instances = 3, s->materials = 2, s->draws = 3, s->triangles = 8;
-        /* Numbers for the limits alone: no arrays, so that nobody looks for them in a blob. */
+        /* Counts for the limits, without arrays, so that nothing looks for them in a blob. */
         s->textures = 4, s->texture_bytes = 200, s->texture_bytes_decoded = 1000;
     }
     if (parts & SDF) {

@@ -32,7 +32,7 @@ static uint8_t instance_flags[4];
 static masu_placed_model placed_models[4];
 static masu_node model_nodes[4];
 static uint32_t models_of[4];
-static _Alignas(64) unsigned char own[1 << 16]; /* clips, skins, shadows of lights */
+static _Alignas(64) unsigned char own[1 << 16]; /* for clips, skins and shadows of lights */
 static struct masu_frame_uniforms history;
 static struct masu_instance_data previous[4];
 static masu_blob_sdf_param params[4];
@@ -50,7 +50,7 @@ static uint32_t box_items[4], box_positions[4], moved[4], instance_meshes[4];
 
 VkCommandBuffer *frames = frame_handles, *loads = load_handles;
 
-/* Lays the buffers of each role one behind the other. */
+/* Places the buffers of each role one after the other. */
 void make_renderer(uint32_t parts, uint64_t staging) {
     make_renderer_with(parts, staging, NULL, 0);
 }
@@ -84,6 +84,7 @@ void make_renderer_with(uint32_t parts, uint64_t staging, const masu_rung *rungs
     m.device.frames = frames;
     memset(recorded, 1, sizeof recorded);
     m.device.recorded = recorded;
+    m.device.ready = (1u << MASU_MAX_RUNGS) - 1;
     m.device.loads = loads;
     m.instances.now = instances;
     m.instances.names = instance_names;
@@ -148,6 +149,6 @@ masu_result write_frame(const masu_frame_desc *frame, uint32_t slot, masu_detail
 
 uint32_t write_good(const masu_frame_desc *frame, uint32_t slot) {
     masu_frame_data f = begin_frame(frame, slot);
-    if (masu_write_frame(&m, &f)) fail_msg("refused: %s", m.error.text);
+    if (masu_write_frame(&m, &f)) fail_msg("rejected: %s", m.error.text);
     return f.cascades;
 }

@@ -126,7 +126,7 @@ static int is_input(const struct dirent *entry) {
     return end && end[1] && strcmp(end, ".masu") && strcmp(end, ".so");
 }
 
-/* Of what a scene may be made of: all files of the scratch folder. */
+/* Hash of all possible inputs of a scene: every file of the scratch folder. */
 static uint64_t hash_of_inputs(const char *name) {
     struct dirent **list;
     uint64_t h = HASH_START;
@@ -157,7 +157,7 @@ void bake_scene(const char *name, const char *json) {
     if (shell("%s/bin/masu-bake %s/%s -o %s/%s.masu --bare --quiet", build_dir(), scratch, file,
               scratch, name))
         fail_msg("%s cannot be baked", file);
-    /* Whole or not at all: another driver's run may look for it now. */
+    /* Published atomically: the run of another driver may be looking for it. */
     if (*kept)
         assert_int_equal(shell("cp %s/%s.masu %s.%ld && mv %s.%ld %s", scratch, name, kept, (long)getpid(), kept,
                                (long)getpid(), kept),

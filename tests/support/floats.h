@@ -1,4 +1,4 @@
-/* floats.h: floats and their bits, and halves as the images of a frame hold them. */
+/* floats.h: floats and their bits, and half floats as in the images of a frame. */
 #ifndef SUPPORT_FLOATS_H
 #define SUPPORT_FLOATS_H
 
@@ -7,7 +7,7 @@
 #include <stdint.h>
 #include <string.h>
 
-/* A float of 16 bits; NaN and infinities as such. */
+/* Value of a 16-bit float; NaN and infinities are kept. */
 static inline double half_float(uint16_t half) {
     int exponent = half >> 10 & 31, mantissa = half & 1023;
     double v = exponent == 31 ? (mantissa ? (double)NAN : (double)INFINITY)
@@ -16,12 +16,12 @@ static inline double half_float(uint16_t half) {
     return half & 0x8000 ? -v : v;
 }
 
-/* All channels of a picture of halves. */
+/* Converts all channels of a half-float image. */
 static inline void floats_of_halves(const void *halves, float *out, size_t count) {
     for (size_t i = 0; i < count; i++) out[i] = (float)half_float(((const uint16_t *)halves)[i]);
 }
 
-/* The larger of two errors; NaN is larger than any number, for good, where fmax would forget it. */
+/* The larger of two errors. NaN is treated as larger than any number and is kept, unlike in fmax. */
 static inline double worst_of(double worst, double error) {
     return isnan(worst) || error <= worst ? worst : error;
 }

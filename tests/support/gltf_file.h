@@ -1,6 +1,7 @@
-/* gltf_file.h: small glTF files, written as a test wants them: views and accessors one after the other, then the rest
- * of the JSON. One file at a time, static; included by the tests that read them (test_gltf.c) or
- * render them (test_gltf_pictures.c, test_bounce.c). After cmocka.h. What does not fit fails the test. */
+/* gltf_file.h: writes small glTF files: buffer views and accessors one after the other, then the
+ * rest of the JSON. One file at a time, in static storage. Included by the tests that read the
+ * files (test_gltf.c) and those that render them (test_gltf_pictures.c,
+ * test_bounce.c), after cmocka.h. Overflow fails the test. */
 #ifndef SUPPORT_GLTF_FILE_H
 #define SUPPORT_GLTF_FILE_H
 
@@ -65,7 +66,7 @@ static inline int shorts(const uint16_t *indices, unsigned count) {
     return accessor(view(indices, count * sizeof *indices, 0), USHORT, "SCALAR", count, "");
 }
 
-/* The rest of the file's members; written as a .glb. Returns its path. */
+/* Adds the rest of the file's members, writes it as a .glb and returns its path. */
 static inline const char *finish(const char *format, ...) {
     static unsigned char out[65536];
     static char text[32768], rest[16384];
@@ -88,7 +89,7 @@ static inline const char *finish(const char *format, ...) {
     return write_bytes("x.glb", out, 28 + length + file.bytes);
 }
 
-/* A quad in z = 0, with these members besides in its primitive. */
+/* A quad in z = 0, with these additional members in its primitive. */
 static const float corners[12] = {0, 0, 0, 2, 0, 0, 2, 1, 0, 0, 1, 0};
 static const uint16_t two[6] = {0, 1, 2, 0, 2, 3};
 static int quad_positions, quad_indices;
@@ -105,7 +106,8 @@ static inline const char *finish_quad(const char *attributes, const char *primit
                   quad_positions, attributes, quad_indices, primitive, rest);
 }
 
-/* A quad of 2 x 1, positions as attribute 0 and coordinates as 1, by draco::Encoder of 11 and 10 bits. */
+/* A quad of 2 x 1, with positions as attribute 0 and texture coordinates as 1, encoded by
+ * draco::Encoder with 11 and 10 bits. */
 static const unsigned char packed_quad[132] = {
     0x44, 0x52, 0x41, 0x43, 0x4F, 0x02, 0x02, 0x01, 0x01, 0x00, 0x00, 0x00, 0x04, 0x02, 0x01, 0x02,
     0x00, 0x00, 0x01, 0x1F, 0xFF, 0x01, 0x11, 0xFF, 0x01, 0x11, 0x02, 0xFF, 0x00, 0x00, 0x00, 0x00,
@@ -132,8 +134,8 @@ static const unsigned char webp[36] = {0x52, 0x49, 0x46, 0x46, 0x1c, 0x00, 0x00,
                                        0x56, 0x50, 0x38, 0x4c, 0x0f, 0x00, 0x00, 0x00, 0x2f, 0x03, 0xc0, 0x00,
                                        0x00, 0x07, 0x10, 0xfd, 0x8f, 0xfe, 0x07, 0x22, 0xa2, 0xff, 0x01, 0x00};
 
-/* Two joints: the second, of the upper vertices, lies 5 to the right of where it was bound. how: the interpolation of
- * a clip of it, of three keys of values `moves`. */
+/* Two joints. The second, which the upper vertices follow, is 5 to the right of its bind position.
+ * how: interpolation of an animation clip of that joint, with three keys of values `moves`. */
 static inline const char *skinned(const char *how, const float *moves, unsigned count) {
     static const uint8_t joints[16] = {0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
     static const float weights[16] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};

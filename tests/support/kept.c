@@ -1,5 +1,5 @@
-/* kept.c: see kept.h. A description is written out as a string of bytes, in which other kept objects
- * stand as their handles: equal bytes, equal objects. */
+/* kept.c: see kept.h. A description is serialized to a byte string, with handles in place of other
+ * cached objects: equal strings, equal objects. */
 #include "support/kept.h"
 
 #include "support/files.h"
@@ -17,7 +17,7 @@ kept_counts kept;
 typedef struct key {
     uint8_t *bytes;
     size_t count, room;
-    bool whole; /* false: something of it is not known here */
+    bool whole; /* false: it contains something that the cache does not support */
 } key;
 
 static void add(key *k, const void *bytes, size_t count) {
@@ -37,7 +37,7 @@ static void add_array(key *k, const void *first, size_t count, size_t size) {
 
 static void add_text(key *k, const char *text) { add_array(k, text, text ? strlen(text) : 0, 1); }
 
-/* Adds the members of a struct one by one: padding says nothing. */
+/* Adds the members of a struct one by one, because padding has no defined content. */
 #define ADD(k, member) add(k, &(member), sizeof(member))
 
 static key key_of(VkStructureType type, VkDevice device, const void *next, const void *allocator) {
@@ -49,7 +49,7 @@ static key key_of(VkStructureType type, VkDevice device, const void *next, const
 
 #define HANDLE(h) ((uint64_t)(uintptr_t)(h))
 
-/* ---- What is kept ---------------------------------------------------------------------------- */
+/* ---- Cached objects -------------------------------------------------------------------------- */
 
 typedef struct entry {
     struct entry *next;
@@ -60,7 +60,7 @@ typedef struct entry {
     uint8_t key[];
 } entry;
 
-static entry *entries; /* the youngest first */
+static entry *entries; /* newest first */
 
 static uint64_t hash_of(const key *k) {
     uint64_t h = HASH_START;
@@ -75,7 +75,7 @@ static entry *find(const key *k) {
     return e;
 }
 
-/* Every handle is as wide as the number that is kept of it. */
+/* Every handle is as wide as the number stored for it. */
 static bool found(const key *k, void *out) {
     const entry *e = find(k);
     if (e) memcpy(out, &e->handle, sizeof e->handle);
@@ -91,26 +91,26 @@ static entry *holder(VkStructureType type, uint64_t handle) {
 static void destroy_all(void);
 
 static void keep(const key *k, VkStructureType type, VkDevice device, uint64_t handle) {
-    /* What was made on a device that is not kept goes with it. */
+    /* Objects of an uncached device are destroyed with it, so they are not cached. */
     if (!k->whole || (device && !holder(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, HANDLE(device)))) return;
     entry *e = malloc(sizeof *e + k->count);
     if (!e) abort();
-    /* Again after kept_forget, which has unloaded the driver: what is registered last runs first, and so before
-     * the driver that is loaded then takes itself down. */
+    /* Registered again after kept_forget, which unloads the driver: handlers run in reverse order
+     * of registration, so this one runs before the handler of the driver that is loaded next. */
     if (!entries) atexit(destroy_all);
     *e = (entry){entries, type, device, handle, hash_of(k), k->count};
     memcpy(e->key, k->bytes, k->count);
     entries = e;
 }
 
-/* The functions themselves, which the linker has under this name. */
+/* The real functions, under the name that the linker gives them. */
 #define REAL(name) __real_vk##name
 #define OURS(name) __wrap_vk##name
 
-/* ---- Objects that are compiled or few -------------------------------------------------------- */
+/* ---- Objects that are compiled, or few ------------------------------------------------------- */
 
-/* Whether a kept module, whose key ends in its code, has the specialisation constant: renderers give each module the
- * constants of all. */
+/* Whether a cached module, whose key ends in its code, declares the specialization constant:
+ * renderers pass the constants of all modules to each. */
 static bool declares(const entry *module, uint32_t id) {
     enum { OP_DECORATE = 71, SPEC_ID = 1, OP_FUNCTION = 54 };
     const size_t head = sizeof module->type + sizeof module->device + sizeof(VkShaderModuleCreateFlags) + sizeof(size_t);
@@ -148,7 +148,7 @@ static void describe_ShaderModule(key *k, const VkShaderModuleCreateInfo *info) 
 }
 
 static void describe_Sampler(key *k, const VkSamplerCreateInfo *info) {
-    /* From the first member after pNext on it is 4-byte members alone. */
+    /* From the first member after pNext on, all members have 4 bytes. */
     add(k, &info->flags, sizeof *info - offsetof(VkSamplerCreateInfo, flags));
 }
 
@@ -198,7 +198,7 @@ static void describe_Compute(key *k, const VkComputePipelineCreateInfo *info) {
     ADD(k, info->layout);
 }
 
-/* States that are left out, and those with an extension, are not known here. */
+/* Absent states and states with an extension are not supported. */
 #define KNOWN(k, state) ((k)->whole = (k)->whole && (state) && !(state)->pNext, (k)->whole)
 
 static void describe_Graphics(key *k, const VkGraphicsPipelineCreateInfo *info) {
@@ -265,7 +265,7 @@ static void describe_Graphics(key *k, const VkGraphicsPipelineCreateInfo *info) 
         add_array(k, dynamic->pDynamicStates, dynamic->dynamicStateCount, sizeof *dynamic->pDynamicStates);
 }
 
-/* What a session has of kept objects and of others, that it is to give back before its device. */
+/* Number of objects that a session must destroy before its device, cached ones included. */
 static int64_t held;
 
 #define KEPT(Name)                                                                                 \
@@ -324,7 +324,7 @@ KINDS(KEPT)
         return r;                                                                                  \
     }
 
-/* One type for both kinds of pipelines, which have one destroy function. */
+/* One type for both kinds of pipelines, because they share a destroy function. */
 #define TYPE_PIPELINE VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO
 
 KEPT_PIPELINES(Compute)
@@ -372,7 +372,7 @@ static void add_names(key *k, const char *const *names, uint32_t count) {
     for (uint32_t i = 0; i < count; i++) add_text(k, names[i]);
 }
 
-/* The extensions that hosts and tests here know: what of them is not a pointer. */
+/* The extension structs that hosts and tests here use: their members that are not pointers. */
 static bool add_next(key *k, const VkBaseInStructure *next) {
     for (; next; next = next->pNext) {
         ADD(k, next->sType);
@@ -464,8 +464,8 @@ void OURS(DestroyDevice)(VkDevice device, const VkAllocationCallbacks *allocator
     if (!holder(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, HANDLE(device))) REAL(DestroyDevice)(device, allocator);
 }
 
-/* The youngest stand first, so nothing goes before what was made of it. A session that a failed test has
- * left open still has objects on its device: then all is left as it is. */
+/* The newest are first, so no object is destroyed before the ones made from it. If a failed test
+ * has left a session open, its objects still use the device: then nothing is destroyed. */
 static void destroy_all(void) {
     for (entry *e = entries, *next; e; e = next) {
         next = e->next;
@@ -488,14 +488,14 @@ static void destroy_all(void) {
 }
 
 void kept_forget(void) {
-    if (open_devices) { /* it would go on with what is gone */
+    if (open_devices) { /* the session would continue with destroyed objects */
         fprintf(stderr, "a session is still open: its device cannot be forgotten\n");
         abort();
     }
     destroy_all();
 }
 
-/* ---- Looking up ------------------------------------------------------------------------------ */
+/* ---- Look-up --------------------------------------------------------------------------------- */
 
 PFN_vkVoidFunction REAL(GetInstanceProcAddr)(VkInstance, const char *);
 PFN_vkVoidFunction REAL(GetDeviceProcAddr)(VkDevice, const char *);
@@ -519,7 +519,7 @@ static PFN_vkVoidFunction ours(const char *name) {
     return NULL;
 }
 
-/* What the driver or the loader does not have, is not had here. */
+/* Functions that the driver or loader does not have are not offered here. */
 PFN_vkVoidFunction OURS(GetInstanceProcAddr)(VkInstance instance, const char *name) {
     PFN_vkVoidFunction real = REAL(GetInstanceProcAddr)(instance, name), our = real ? ours(name) : NULL;
     return our ? our : real;

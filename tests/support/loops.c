@@ -9,7 +9,7 @@
 typedef struct block {
     uint32_t label;
     size_t first, last; /* instructions; last is the terminator */
-    uint32_t *next;     /* blocks that may follow */
+    uint32_t *next;     /* blocks that can follow */
     uint32_t next_count;
     int merge; /* has an OpLoopMerge */
 } block;
@@ -18,10 +18,10 @@ typedef struct graph {
     const spirv_module *m;
     block *blocks; /* [0] is the entry of the function */
     uint32_t count;
-    /* Of the loop under test: */
+    /* The loop under test: */
     uint32_t header;
-    unsigned char *in_loop, *latch; /* latch: the header is next, from inside */
-    unsigned char *seen;            /* scratch of walks */
+    unsigned char *in_loop, *latch; /* latch: the block is in the loop and branches to the header */
+    unsigned char *seen;            /* scratch of the traversal */
 } graph;
 
 /* ---- Blocks ---------------------------------------------------------------------------------- */
@@ -33,7 +33,7 @@ static uint32_t block_of(const graph *g, uint32_t label) {
     return UINT32_MAX;
 }
 
-/* The block in which an instruction stands, or UINT32_MAX: outside the function. */
+/* The block that contains an instruction, or UINT32_MAX outside the function. */
 static uint32_t home_of(const graph *g, const spirv_instruction *i) {
     size_t at = (size_t)(i - g->m->list);
     for (uint32_t b = 0; b < g->count; b++) {
@@ -54,7 +54,7 @@ static void add_next(graph *g, block *b, uint32_t label) {
     if (to != UINT32_MAX) b->next[b->next_count++] = to;
 }
 
-/* A branch whose condition is a constant has one way only. */
+/* A branch whose condition is a constant has only one successor. */
 static void link_block(graph *g, block *b) {
     const spirv_instruction *end = &g->m->list[b->last];
     b->next = calloc(end->count + 1, sizeof *b->next);
@@ -72,7 +72,7 @@ static void link_block(graph *g, block *b) {
     }
 }
 
-/* Blocks of the function that starts at instruction `at`; returns the instruction behind it. */
+/* Reads the blocks of the function that starts at instruction `at`; returns the index after it. */
 static size_t read_function(graph *g, size_t at) {
     const spirv_module *m = g->m;
     size_t end = at;
@@ -105,8 +105,8 @@ static void forget_function(graph *g) {
 
 #define NOWHERE UINT32_MAX
 
-/* Marks in g->seen what can be reached from `from` without entering `closed`; with `inside`, only
- * over blocks of the loop and not over its header again. */
+/* Marks in g->seen the blocks that are reachable from `from` without entering `closed`. With
+ * `inside`, walks only blocks of the loop and does not pass its header again. */
 static void walk(graph *g, uint32_t from, uint32_t closed, int inside) {
     memset(g->seen, 0, g->count);
     uint32_t *stack = calloc(g->count, sizeof *stack), top = 0;
@@ -125,7 +125,7 @@ static void walk(graph *g, uint32_t from, uint32_t closed, int inside) {
     free(stack);
 }
 
-/* Fills latch and in_loop for the header. Returns 0 when nothing leads back to it. */
+/* Fills latch and in_loop for the header. Returns 0 if no branch leads back to it. */
 static int find_loop(graph *g, uint32_t header) {
     g->header = header;
     memset(g->latch, 0, g->count);
@@ -142,7 +142,8 @@ static int find_loop(graph *g, uint32_t header) {
     }
     memcpy(g->in_loop, g->latch, g->count);
     g->in_loop[header] = 1;
-    for (int changed = any; changed;) { /* and all that leads to a latch without the header */
+    for (int changed = any; changed;) { /* plus all blocks that lead to a latch without the
+                                           header */
         changed = 0;
         for (uint32_t b = 0; b < g->count; b++) {
             if (g->in_loop[b]) continue;
@@ -158,7 +159,7 @@ static int find_loop(graph *g, uint32_t header) {
     return any;
 }
 
-/* Every round of the loop passes the block. */
+/* Every iteration of the loop passes the block. */
 static int in_every_round(graph *g, uint32_t b) {
     if (b == g->header) return 1;
     walk(g, g->header, b, 1);
@@ -192,10 +193,10 @@ static int is_step(const graph *g, const spirv_instruction *i, uint32_t *x, int6
     return i->op == SPIRV_I_ADD && constant_of(g, i->word[3], 1, step);
 }
 
-/* Where a counter starts at worst, and how it moves. */
+/* Worst-case start of a counter, and its steps. */
 typedef struct counter {
     int64_t low, high;     /* starts */
-    int64_t step, longest; /* nearest to and farthest from 0; 0: none seen */
+    int64_t step, longest; /* smallest and largest absolute value; 0: none found */
     int has_start;
 } counter;
 
@@ -215,7 +216,7 @@ static int add_step(counter *c, int64_t step) {
     return 1;
 }
 
-/* A pointer is used for something else than loads and stores. */
+/* A pointer has uses other than loads and stores. */
 static int is_passed_on(const spirv_instruction *i, uint32_t pointer) {
     uint32_t from;
     switch (i->op) {
@@ -245,7 +246,7 @@ static int load_of_this_round(const graph *g, uint32_t id, uint32_t pointer) {
     return home != NOWHERE && g->in_loop[home];
 }
 
-/* A variable that each round moves by a constant, as glslang writes it. */
+/* A variable that each iteration changes by a constant, as glslang writes it. */
 static int read_variable(graph *g, uint32_t pointer, int is_signed, counter *c) {
     const spirv_instruction *variable = def_of(g, pointer);
     int moved = 0;
@@ -269,8 +270,8 @@ static int read_variable(graph *g, uint32_t pointer, int is_signed, counter *c) 
     return moved && c->has_start;
 }
 
-/* The value is the phi moved by constants on each way through the round. `met` are the phis on the
- * way: one that leads back to itself adds nothing. */
+/* The value is the phi plus constants, on each path through the iteration. `met` are the phis on
+ * the path; one that leads back to itself adds nothing. */
 static int moves(graph *g, uint32_t id, uint32_t phi, const uint32_t *met, int depth, counter *c) {
     const spirv_instruction *i = def_of(g, id);
     uint32_t from, path[DEPTH_MOST];
@@ -351,7 +352,8 @@ static int comparison_of(uint32_t op, comparison *c) {
     }
 }
 
-/* Staying means that a counter has not passed a constant, a few rounds from its start. */
+/* Remaining in the loop means that a counter has not passed a constant, within a bounded number of
+ * iterations. */
 static int counted_comparison(graph *g, const spirv_instruction *i, int value) {
     comparison is;
     int64_t limit, shift, rounds;
@@ -368,7 +370,7 @@ static int counted_comparison(graph *g, const spirv_instruction *i, int value) {
     if (!read_counter(g, counted, is.is_signed, &c, &shift)) return 0;
     limit -= shift;
     if ((c.step > 0) != is.less) return 0;
-    /* From the last value that stays, a step must not leave the range of the type. */
+    /* A step from the last value inside the loop must not overflow the type. */
     int64_t lowest = is.is_signed ? INT32_MIN : 0;
     int64_t highest = is.is_signed ? INT32_MAX : UINT32_MAX;
     int64_t last = limit + (is.equal ? 0 : is.less ? -1 : 1);
@@ -379,7 +381,7 @@ static int counted_comparison(graph *g, const spirv_instruction *i, int value) {
 
 static int counted(graph *g, uint32_t id, int value, int depth);
 
-/* On the way into the block, a branch was taken for which a counted comparison had to hold, or that
+/* On the path into the block, a branch was taken that requires a counted comparison, or that
  * contradicts `id` being `value`. */
 static int counted_on_the_way(graph *g, uint32_t from, uint32_t to, uint32_t id, int value,
                               int depth) {
@@ -422,7 +424,7 @@ static int counted(graph *g, uint32_t id, int value, int depth) {
     const spirv_instruction *i = def_of(g, id);
     if (!i || depth > DEPTH_MOST) return 0;
     switch (i->op) {
-    case SPIRV_CONSTANT_TRUE: return !value; /* cannot be: implies anything */
+    case SPIRV_CONSTANT_TRUE: return !value; /* impossible: implies anything */
     case SPIRV_CONSTANT_FALSE: return value;
     case SPIRV_LOGICAL_NOT: return counted(g, i->word[3], !value, depth + 1);
     case SPIRV_LOGICAL_AND:
@@ -441,7 +443,7 @@ static int counted(graph *g, uint32_t id, int value, int depth) {
 }
 
 static int is_bounded(graph *g, uint32_t header) {
-    if (!find_loop(g, header)) return 1; /* comes round never */
+    if (!find_loop(g, header)) return 1; /* never iterates */
     for (uint32_t b = 0; b < g->count; b++) {
         const spirv_instruction *end = &g->m->list[g->blocks[b].last];
         if (!g->in_loop[b] || end->op != SPIRV_BRANCH_CONDITIONAL) continue;

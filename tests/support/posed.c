@@ -40,7 +40,7 @@ static matrix times(const matrix *a, const matrix *b) {
 
 /* ---- Keys ------------------------------------------------------------------------------------ */
 
-/* How far a time is on the way from one key to the next. */
+/* Fraction of a time between one key and the next. */
 static double share_of(double from, double to, double t) {
     return to > from && t > from ? (t - from) / (to - from) : 0;
 }
@@ -91,7 +91,7 @@ static matrix channel_at(const struct aiNodeAnim *c, double t) {
 
 typedef struct file {
     const struct aiScene *scene;
-    const struct aiAnimation *animation; /* NULL: at rest */
+    const struct aiAnimation *animation; /* NULL: bind pose */
     double ticks;
     posed out;
 } file;
@@ -123,7 +123,7 @@ static vec apply(const matrix *m, const struct aiVector3D *v, double one) {
                  m->m[2][0] * x + m->m[2][1] * y + m->m[2][2] * z + m->m[2][3] * one};
 }
 
-/* By the cofactors. */
+/* Uses the cofactors of the matrix. */
 static vec turned(const matrix *m, const struct aiVector3D *v) {
     const vec r0 = {m->m[0][0], m->m[0][1], m->m[0][2]}, r1 = {m->m[1][0], m->m[1][1], m->m[1][2]},
               r2 = {m->m[2][0], m->m[2][1], m->m[2][2]}, n = {(double)v->x, (double)v->y, (double)v->z};
@@ -187,7 +187,7 @@ const posed_vertex *posed_find(const posed *all, const float rest[3], vec positi
     for (size_t i = 0; i < all->count; i++) {
         const posed_vertex *v = &all->vertices[i];
         if (v->rest[0] != rest[0] || v->rest[1] != rest[1] || v->rest[2] != rest[2]) continue;
-        /* Vertices at one place have the same joints as a rule: the normal tells them apart. */
+        /* Vertices at one position usually have the same joints: the normal distinguishes them. */
         double off = length_of(vec_sub(v->position, position)) + 1e-3 * (1 - vec_dot(v->normal, normal));
         if (off < least) least = off, best = v;
     }

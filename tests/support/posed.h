@@ -1,5 +1,5 @@
-/* posed.h: where the vertices of a file's skins are at a time of one of its animations, in double precision, by
- * what Assimp says of bones, nodes and keys: the truth of skinning. */
+/* posed.h: reference skinning: positions of the vertices of a file's skins at a time of one of its
+ * animations, in double precision, from the bones, nodes and keys that Assimp reads. */
 #ifndef SUPPORT_POSED_H
 #define SUPPORT_POSED_H
 
@@ -9,22 +9,23 @@
 #include <stdint.h>
 
 typedef struct posed_vertex {
-    float rest[3]; /* as the file has it */
+    float rest[3]; /* bind position in the file */
     vec position;  /* the file's space */
-    vec normal;    /* of unit length; of none where the file has none */
+    vec normal;    /* of unit length; 0 if the file has no normals */
 } posed_vertex;
 
 typedef struct posed {
-    posed_vertex *vertices; /* of all meshes with bones, for each node that shows them */
+    posed_vertex *vertices; /* of all meshes with bones, once per node that shows them */
     size_t count;
     double duration; /* of the animation, s */
 } posed;
 
-/* Of `animation`, at `time` seconds in it; below 0: at rest. free(vertices). Fails the test that asks. */
+/* The pose of `animation` at `time` seconds; below 0: the bind pose. free(vertices). Failure fails
+ * the calling test. */
 posed posed_at(const char *path, unsigned animation, double time);
 
-/* The one that was at `rest` and is nearest to `position`; of several, that whose normal is nearest. NULL: none
- * was there. */
+/* The vertex with bind position `rest` that is closest to `position`; among equals, the one with
+ * the closest normal. NULL: no vertex has that bind position. */
 const posed_vertex *posed_find(const posed *all, const float rest[3], vec position, vec normal);
 
 #endif

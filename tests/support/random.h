@@ -1,5 +1,5 @@
 /* random.h: the random numbers of the tests: splitmix64 (S. Vigna), the same sequence with every
- * compiler. A seed is the number of the case, so that a failing case can be named. */
+ * compiler. The seed is the number of the case, so that a failing case can be reported. */
 #ifndef SUPPORT_RANDOM_H
 #define SUPPORT_RANDOM_H
 
@@ -18,7 +18,7 @@ static inline uint64_t support_random_in(uint64_t *state, uint64_t low, uint64_t
     return low + support_random(state) % (high - low + 1);
 }
 
-/* 0 up to but not 1, in steps of 2^-53. */
+/* Uniform in [0, 1), in steps of 2^-53. */
 static inline double random_unit(uint64_t *state) {
     return (double)(support_random(state) >> 11) * 0x1p-53;
 }
@@ -27,12 +27,13 @@ static inline double random_between(uint64_t *state, double low, double high) {
     return low + (high - low) * random_unit(state);
 }
 
-/* By magnitude. */
+/* Log-uniform. */
 static inline double random_spread(uint64_t *state, double low, double high) {
     return exp(random_between(state, log(low), log(high)));
 }
 
-/* 32 bits; and of those a float of 0 up to but not 1, in steps of 2^-24: for what goes to a shader. */
+/* 32 random bits, and a float in [0, 1) made from them, in steps of 2^-24: for data that shaders
+ * read. */
 static inline uint32_t random_word(uint64_t *state) { return (uint32_t)support_random(state); }
 static inline float random_float(uint64_t *state) {
     return (float)(random_word(state) >> 8) * 0x1p-24f;

@@ -1,4 +1,4 @@
-/* reflect.c: see reflect.h. One run makes everything and gives it back. */
+/* reflect.c: see reflect.h. Each run creates all objects and destroys them. */
 #include "support/reflect.h"
 
 #include "headless.h"

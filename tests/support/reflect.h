@@ -1,6 +1,7 @@
-/* reflect.h: specular_trace_sdf.comp of a baked scene by itself: rays that the test has made, and what
- * they meet. Everything that the pass reads of a frame is given here, so that rays can begin anywhere and hold
- * any bits, and be compared one by one with the truth, which a picture does not allow. */
+/* reflect.h: runs specular_trace_sdf.comp of a baked scene with rays made by the test, and returns
+ * their hits. All inputs that the pass reads from a frame are given here. So rays can start
+ * anywhere and hold any bits, and each is compared with a reference, which is not possible in an
+ * image. */
 #ifndef MASU_TEST_SUPPORT_REFLECT_H
 #define MASU_TEST_SUPPORT_REFLECT_H
 
@@ -12,18 +13,20 @@
 typedef struct reflect_job {
     const uint32_t *spirv;
     size_t words;
-    struct masu_frame_uniforms frame; /* previous is the same */
-    const float *slots; /* of the present; where the code knows motion, then those of the previous frame */
+    struct masu_frame_uniforms frame; /* the previous frame has the same */
+    const float *slots; /* this frame's; if the code supports motion, followed by those of the
+                           previous frame */
     size_t slot_count;
     uint32_t width, height;     /* traced texels, multiples of MASU_GROUP */
     const uint32_t *guide;      /* width * height * 2 */
     const uint32_t *ray;        /* the same */
-    uint32_t *hit;              /* width * height * 4: before, and afterwards */
+    uint32_t *hit;              /* width * height * 4: before and after the run */
     uint32_t steps;
-    uint64_t evals, sdf_hits, unconverged; /* out */
+    uint64_t evals, sdf_hits, unconverged; /* results */
 } reflect_job;
 
-/* Under the validation layer; fails the test on any error or message. The render size is twice the texels'. */
+/* Runs under the validation layer and fails the test on any error or message. The render size is
+ * twice the size in texels. */
 void reflect_run(reflect_job *job);
 
 #endif

@@ -55,7 +55,7 @@ void shadow_sun(shadow_test *t, double azimuth, double elevation) {
     t->light = (masu_light){.sun_color = {1, 1, 1}, .exposure = 1};
     for (int k = 0; k < 3; k++) {
         t->light.sun_direction[k] = (float)sun[k];
-        t->sun[k] = (double)t->light.sun_direction[k]; /* as the GPU knows it */
+        t->sun[k] = (double)t->light.sun_direction[k]; /* rounded to float, as on the GPU */
         length += t->sun[k] * t->sun[k];
     }
     for (int k = 0; k < 3; k++) t->sun[k] /= sqrt(length);
@@ -72,7 +72,7 @@ const void *shadow_image(shadow_test *t, masu_readback_bits which) {
     return out.pixels;
 }
 
-/* ---- The truth ------------------------------------------------------------------------------- */
+/* ---- Reference ------------------------------------------------------------------------------- */
 
 /* Direction of a pixel's ray, of view depth 1. */
 static void ray_of(const shadow_test *t, const masu_camera *c, uint32_t x, uint32_t y,
@@ -138,7 +138,7 @@ double shadow_texel(const shadow_test *t, const masu_camera *c, const shadow_poi
         for (int i = 0; i < 3; i++) d[i] = p->at[i] - cascade_k.center[i];
         for (int i = 0; i < 2; i++)
             far = fmax(far, fabs(dot3(cascade_k.axis[i], d)) / cascade_k.half);
-        /* The next one has a share in the last tenth. */
+        /* The next cascade is blended in over the last tenth. */
         *cascade = k;
         if (far <= 0.9 - 3.0 / size || (k + 1 == n && far <= 1)) return 2 * cascade_k.half / size;
     }

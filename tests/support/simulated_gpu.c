@@ -36,7 +36,7 @@ static double sine(const sim_model *p, uint32_t f) {
 static double burst(const sim_model *p, uint32_t f) {
     return f % (uint32_t)p->period < 20 && f >= (uint32_t)p->period ? p->b : p->a;
 }
-/* Steps at frames nobody can foresee, by a factor of 0.6 to 1.8, and a slope in between. */
+/* Steps at unpredictable frames, by a factor of 0.6 to 1.8, with a slope in between. */
 static double scenes(const sim_model *p, uint32_t f) {
     double load = p->a, slope = 0.0;
     uint64_t random = 7;
@@ -49,7 +49,7 @@ static double scenes(const sim_model *p, uint32_t f) {
     }
     return load;
 }
-/* A walk that is drawn back to its middle, smoothed over ten frames. */
+/* A random walk that is pulled back to its mean, smoothed over ten frames. */
 static double walk(const sim_model *p, uint32_t f) {
     double x = 0.0, y = 0.0;
     uint64_t random = 11;
@@ -66,7 +66,7 @@ static double thermal(uint32_t f) {
 }
 static double flips(uint32_t f) { return f / 200 % 2 ? 1040.0 / 200.0 : 1.0; }
 
-/* A handheld's, by figures of SteamOS; two of Linux's devfreq on a phone. */
+/* One of a handheld, with values of SteamOS; two of Linux's devfreq on a phone. */
 static const sim_dvfs handheld = {200, 1040, 0.9, 0.7, 1.15, 4};
 static const sim_dvfs ondemand = {200, 1040, 0.9, 0.85, 0, 3};
 static const sim_dvfs slow_ondemand = {200, 1040, 0.9, 0.85, 0, 12};
@@ -98,7 +98,7 @@ const sim_model sim_models[] = {
     {"spikes", "one frame in a hundred takes three times as long", STEADY, .a = 30, .spikes = 0.01},
     {"thermal", "clocks sink to 62 % in some seconds", STEADY, .event = 300, .a = 20,
      .clock = thermal},
-    {"clock_flips", "1040 and 200 MHz by turns, 200 frames each", STEADY, .event = 200, .a = 4,
+    {"clock_flips", "1040 and 200 MHz alternately, 200 frames each", STEADY, .event = 200, .a = 4,
      .fixed = 0.5, .clock = flips},
     {"dvfs_steps", "the clock steps up above 90 % busy, down below 70 %; the load steps", .frames = 4000,
      .event = 300, .load = step, .a = 8, .b = 20, .dvfs = &handheld},
@@ -110,7 +110,7 @@ const sim_model sim_models[] = {
      .a = 4, .b = 10, .dvfs = &ondemand},
     {"dvfs_peak", "a load that no clock carries at scale 1 for 100 frames", .frames = 4000, .event = 400,
      .load = burst, .a = 9, .b = 40, .period = 300, .dvfs = &handheld},
-    {"dvfs_fixed", "three rungs and 5 ms that none of them changes", .frames = 4000, .event = 300, .load = step,
+    {"dvfs_fixed", "three rungs and 5 ms of fixed cost", .frames = 4000, .event = 300, .load = step,
      .a = 6, .b = 15, .fixed = 5, .rungs = 3, .dvfs = &ondemand},
     {"latency_1", "the standard model, samples a frame late", .frames = 1800, .event = 600,
      .load = standard, .latency = 1},
@@ -123,15 +123,15 @@ const sim_model sim_models[] = {
      .b = 28.8, .fixed = 4, .missing = 0.5},
     {"wall_only", "no timestamps, a step", STEADY, .event = 300, .load = step, .a = 16, .b = 28.8,
      .lie = SIM_ZERO, .lie_until = 1500, .wall = 1},
-    {"lies_tenth", "0.1 ms for 60 frames, the wall tells", STEADY, .event = 300, .a = 30,
+    {"lies_tenth", "0.1 ms for 60 frames; wall clock", STEADY, .event = 300, .a = 30,
      .lie = SIM_TENTH, .lie_from = 300, .lie_until = 360, .wall = 1},
-    {"lies_tenth_blind", "0.1 ms for 60 frames, and no wall to tell", STEADY, .event = 300, .a = 30,
+    {"lies_tenth_blind", "0.1 ms for 60 frames; no wall clock", STEADY, .event = 300, .a = 30,
      .lie = SIM_TENTH, .lie_from = 300, .lie_until = 360},
-    {"lies_lavapipe", "about 0.1 ms always, the wall tells", STEADY, .event = 300, .load = step,
+    {"lies_lavapipe", "about 0.1 ms always; wall clock", STEADY, .event = 300, .load = step,
      .a = 16, .b = 30, .lie = SIM_LAVAPIPE, .lie_until = 1500, .wall = 1},
-    {"lies_low", "60 % of the truth, the wall tells", STEADY, .event = 300, .load = step, .a = 16,
+    {"lies_low", "60 % of the true time; wall clock", STEADY, .event = 300, .load = step, .a = 16,
      .b = 30, .lie = SIM_LOW, .lie_until = 1500, .wall = 1},
-    {"lies_frozen", "timestamps stand still for 300 frames, the wall tells", STEADY, .event = 400,
+    {"lies_frozen", "timestamps stand still for 300 frames; wall clock", STEADY, .event = 400,
      .load = step, .a = 16, .b = 30, .lie = SIM_FROZEN, .lie_from = 300, .lie_until = 600,
      .wall = 1},
     {"lies_huge", "2^64 - 1 for 60 frames", STEADY, .event = 300, .a = 30, .lie = SIM_HUGE,
@@ -140,21 +140,21 @@ const sim_model sim_models[] = {
      .lie = SIM_NEGATIVE, .lie_from = 300, .lie_until = 360},
     {"lies_nan", "not a number for 60 frames", STEADY, .event = 300, .a = 30, .lie = SIM_NAN,
      .lie_from = 300, .lie_until = 360},
-    {"unit_us", "microseconds for milliseconds, the wall tells", STEADY, .event = 300, .load = step,
+    {"unit_us", "microseconds for milliseconds; wall clock", STEADY, .event = 300, .load = step,
      .a = 16, .b = 30, .lie = SIM_MICRO, .lie_until = 1500, .wall = 1},
-    {"unit_ns", "nanoseconds for milliseconds, the wall tells", STEADY, .event = 300, .load = step,
+    {"unit_ns", "nanoseconds for milliseconds; wall clock", STEADY, .event = 300, .load = step,
      .a = 16, .b = 30, .lie = SIM_NANO, .lie_until = 1500, .wall = 1},
-    {"unit_s", "seconds for milliseconds, the wall tells", STEADY, .event = 300, .load = step,
+    {"unit_s", "seconds for milliseconds; wall clock", STEADY, .event = 300, .load = step,
      .a = 16, .b = 30, .lie = SIM_SECONDS, .lie_until = 1500, .wall = 1},
-    {"garbage", "any bits for timestamps, the wall tells", STEADY, .event = 300, .load = step,
+    {"garbage", "any bits for timestamps; wall clock", STEADY, .event = 300, .load = step,
      .a = 16, .b = 30, .lie = SIM_GARBAGE, .lie_until = 1500, .wall = 1},
     {"garbage_blind", "any bits in a tenth of the frames, and no wall", STEADY, .event = 300,
      .load = step, .a = 16, .b = 30, .lie = SIM_GARBAGE, .lie_from = 1, .lie_until = 0},
     {"pause", "10 s in one frame, then 200 frames without samples", STEADY, .event = 500, .a = 30,
      .pause = 500},
-    {"prior_flat", "cost goes with s^1.4, not s^2", STEADY, .event = 300, .load = step, .a = 10,
+    {"prior_flat", "cost grows with s^1.4, not s^2", STEADY, .event = 300, .load = step, .a = 10,
      .b = 40, .exponent = 1.4},
-    {"prior_steep", "cost goes with s^3", STEADY, .event = 300, .load = step, .a = 10, .b = 40,
+    {"prior_steep", "cost grows with s^3", STEADY, .event = 300, .load = step, .a = 10, .b = 40,
      .exponent = 3},
     {"fixed_heavy", "10 ms of 16.67 are fixed", STEADY, .event = 300, .load = step, .a = 8, .b = 24,
      .fixed = 10},
@@ -162,7 +162,7 @@ const sim_model sim_models[] = {
      .b = 25, .rungs = 3},
     {"overload", "no rung keeps the budget, until the load drops at 1000", STEADY, .event = 1000,
      .load = step, .a = 200, .b = 12},
-    {"cpu_bound", "40 ms whatever the rung", STEADY, .a = 0.2, .fixed = 40},
+    {"cpu_bound", "40 ms at every rung", STEADY, .a = 0.2, .fixed = 40},
 };
 const uint32_t sim_model_count = sizeof sim_models / sizeof *sim_models;
 
@@ -247,7 +247,7 @@ static sim_result judge(const sim_model *p, const sim_frame *frames) {
         if (window > out.most_changes_150) out.most_changes_150 = window;
         if (f < p->event || out.settle >= 0) continue;
         good = over || (f && frames[f].scale < frames[f - 1].scale) ? 0 : good + 1;
-        /* The frame of a fall that is within the budget is the first good one. */
+        /* A frame that lowers the scale and is within the budget is the first good one. */
         if (!over && !good) good = 1;
         if (good == 30) out.settle = (int32_t)(f + 1 - 30 - p->event);
     }

@@ -1,5 +1,5 @@
-/* sky_mirror.h: masu_ambient_mirror of shaders/light/ambient.glsl once more, in double, for an analytic sky: how
- * surfaces mirror it by their roughness. Of unit directions. */
+/* sky_mirror.h: masu_ambient_mirror of shaders/light/ambient.glsl in double precision, for an
+ * analytic sky: the sky's reflection by roughness. Directions are unit vectors. */
 #ifndef MASU_TEST_SKY_MIRROR_H
 #define MASU_TEST_SKY_MIRROR_H
 

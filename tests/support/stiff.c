@@ -1,5 +1,4 @@
-/* stiff.c: see stiff.h. One case at a time; its buffers are static, of the largest
- * picture that a case may have. */
+/* stiff.c: see stiff.h. One case at a time, in static buffers for the largest image of a case. */
 #include "support/files.h"
 #include "support/stiff.h"
 
@@ -158,7 +157,7 @@ static void open_scene(masu_session *s, const stiff_case *c) {
     d.desc.rung_count = 1;
     d.desc.rungs[0].scale = 1.0f;
     d.desc.rungs[0].march_steps = c->steps;
-    d.no_renderer = true; /* the blob, which the truth asks too, is given back with the renderer */
+    d.no_renderer = true; /* the reference reads the blob too: it is freed with the renderer */
     open_session(s, &d);
 }
 
@@ -187,7 +186,7 @@ const stiff_picture *stiff_draw(const stiff_case *c) {
     own.picture.gpu = on_gpu(&s);
     for (int i = 0; i < 2; i++) draw_once(&s, c, own.shown[i]);
     if (memcmp(own.shown[0], own.shown[1], 4 * pixels))
-        fail_msg("%s: the same frame twice is not the same picture", c->name);
+        fail_msg("%s: the same frame twice gives different images", c->name);
     close_session(&s);
     compare(c, &view);
     const stiff_figures *f = &own.picture.figures;
@@ -202,7 +201,7 @@ const stiff_picture *stiff_draw(const stiff_case *c) {
 }
 
 static void claim(const stiff_case *c, const char *what, double is, double most) {
-    if (most < 0) return; /* nothing is */
+    if (most < 0) return; /* no limit */
     if (!(is <= most)) fail_msg("%s: %s is %g, at most %g: %s", c->name, what, is, most, c->why);
 }
 
@@ -210,10 +209,11 @@ const stiff_picture *stiff_run(const stiff_case *c) {
     const stiff_picture *p = stiff_draw(c);
     const stiff_figures *f = &p->figures, *most = &c->most;
     if (!(p->true_hits >= c->least_hits))
-        fail_msg("%s: the truth hits in %.2f %% of the pixels only", c->name, p->true_hits);
+        fail_msg("%s: the reference hits in %.2f %% of the pixels only", c->name, p->true_hits);
     claim(c, "hit/miss %", f->hitmiss, most->hitmiss);
     claim(c, "lost %", f->lost, most->lost);
-    double slack = p->gpu ? 1e-5 : 0; /* quotients and roots are 2 to 3 ulp off, which a plain's horizon makes more of */
+    double slack = p->gpu ? 1e-5 : 0; /* GPU quotients and roots have errors of 2 to 3 ulp, which
+                                         the horizon of a plain amplifies */
     claim(c, "depth p50", f->depth_p50, most->depth_p50 + slack);
     claim(c, "depth p99", f->depth_p99, most->depth_p99 + slack);
     claim(c, "depth max", f->depth_max, most->depth_max + slack);

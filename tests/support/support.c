@@ -139,7 +139,7 @@ uint32_t load_all(masu_session *s, masu_renderer *m) {
     masu_result result;
     uint32_t parts = 0;
     while ((result = masu_load(m, &commands, NULL)) == MASU_INCOMPLETE) {
-        if (!commands.part_count) continue; /* what was in the block already */
+        if (!commands.part_count) continue; /* the block already contains the data */
         assert_ok(masu_headless_run(&s->host, commands.buffer, error, sizeof error));
         parts++;
     }

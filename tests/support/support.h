@@ -1,8 +1,8 @@
-/* support.h: what the GPU tests share: sessions under the validation layer, renderers on their
- * devices, what a frame leaves to be read, and pictures compared.
+/* support.h: shared code of the GPU tests: sessions under the validation layer, renderers on their
+ * devices, readback of a frame's images, and comparisons.
  *
  * Every session validates (core and synchronisation); a message fails the test that closes it. The
- * driver is the one that the environment names: tests/run.sh runs each program once per driver. */
+ * environment selects the driver: tests/run.sh runs each program once per driver. */
 #ifndef MASU_TEST_SUPPORT_H
 #define MASU_TEST_SUPPORT_H
 
@@ -16,7 +16,7 @@
 #include "session.h"
 
 #define ERROR_SIZE 1024u
-#define MEMORY_ROWS 256u /* of a masu_memory_report, with room */
+#define MEMORY_ROWS 256u /* capacity for a masu_memory_report */
 
 /* $MADE/scenes/NAME.masu; static storage, four names at a time. */
 const char *scene_path(const char *name);
@@ -24,32 +24,34 @@ const char *scene_path(const char *name);
 /* A description with validation, counters and a storage target. scene may be NULL. */
 masu_session_desc test_desc(const char *scene, uint32_t width, uint32_t height);
 
-/* Open, asserting success; close, asserting that the layer was there and stayed silent. */
+/* Opens, asserting success. Closes, asserting that the layer was active and reported nothing. */
 void open_session(masu_session *s, const masu_session_desc *d);
 void close_session(masu_session *s);
 
-/* One frame, waited for. Pixels (width * height * 4 bytes) may be NULL. */
+/* Renders one frame and waits for it. pixels (width * height * 4 bytes) may be NULL. */
 void draw(masu_session *s, const masu_frame_desc *frame, masu_commands *commands, uint8_t *pixels);
-/* The same with nothing but a rung. */
+/* The same with only a rung. */
 void draw_rung(masu_session *s, uint32_t rung, uint8_t *pixels);
 
-/* All rows of the renderer's memory, asserting that they had room. Returns how many. */
+/* All rows of the renderer's memory report, asserting that they fit. Returns their number. */
 uint32_t memory_rows(const masu_renderer *m, masu_memory_row rows[MEMORY_ROWS]);
 
-/* An image of the frame in that slot, which has no gaps between rows; valid until the slot's next. */
+/* An image of the frame in this slot, without padding between rows; valid until the slot's next
+ * frame. */
 const void *read_image(const masu_session *s, uint32_t slot, masu_readback_bits which);
 /* draw and read_image. */
 const void *draw_image(masu_session *s, const masu_frame_desc *frame, masu_readback_bits which,
                        uint8_t *pixels);
-/* Of a depth image: view depths, 0 where nothing is. */
+/* Converts a depth image to view depths, 0 where no surface is. */
 void view_depths(const void *depth, const masu_camera *camera, float *out, size_t pixels);
 masu_stats_info stats_of(const masu_session *s, uint32_t slot);
 
-/* Places an instance, which must be there: by its matrix, or unturned at a point in a size. */
+/* Sets the transform of an instance, which must exist: by a matrix, or unrotated by position and
+ * size. */
 void place_instance(masu_session *s, const char *name, const float rows[12]);
 void move_instance(masu_session *s, const char *name, float x, float y, float z, float size);
 
-/* What a texel of MASU_READBACK_OCCLUSION says: how much is seen of the sun, and of ambient light. */
+/* Decodes a texel of MASU_READBACK_OCCLUSION: visibility of the sun and of ambient light. */
 static inline double sun_share(const uint32_t *occlusion, uint32_t pixel) {
     return (occlusion[pixel] & 0xFFFF) / 65535.0;
 }
@@ -57,25 +59,25 @@ static inline double ambient_share(const uint32_t *occlusion, uint32_t pixel) {
     return (occlusion[pixel] >> 16) / 65535.0;
 }
 
-/* The row of a pass; there must be one. */
+/* The row of a pass, which must exist. */
 const masu_plan_pass *pass_of(const masu_plan_info *plan, const char *name);
 
-/* A device without a renderer, for a test that makes its own. */
+/* Opens a device without a renderer, for tests that create their own. */
 void open_device(masu_session *s);
 
-/* What tests expect of the device, so that they run on GPUs as well as on the drivers of CI, which are processors. A GPU divides, takes
- * roots and filters within the errors that Vulkan allows (2.5 ulp, 3 ulp, 1/256 between texels), and keeps its scene in memory
- * that the host cannot see. */
+/* Whether the device is a GPU. Tests use it to run on GPUs and on the software drivers of CI. A GPU
+ * divides, takes roots and filters within the errors that Vulkan allows (2.5 ulp, 3 ulp, 1/256
+ * between texels), and keeps its scene in memory that the host cannot access. */
 bool on_gpu(const masu_session *s);
-void skip_unless_host_sees_all_memory(void); /* opens a device and closes it */
+void skip_unless_host_sees_all_memory(void); /* opens and closes a device */
 
-/* masu_load to its end, each of its parts run. Returns how many there were. */
+/* Runs masu_load to its end, with all of its parts. Returns their number. */
 uint32_t load_all(masu_session *s, masu_renderer *m);
 
-/* Host memory as masu_init wants it; free(). */
+/* Host memory aligned for masu_init; free(). */
 void *host_block(uint64_t bytes);
 
-/* A renderer of a test's own on the device of a session, and its one target, of the size d->output: loaded. */
+/* A second renderer on the device of a session, loaded, with one target of size d->output. */
 typedef struct own_renderer {
     masu_renderer *m;
     void *block;
@@ -85,8 +87,8 @@ void make_target(masu_session *s, own_renderer *x, uint32_t width, uint32_t heig
 void make_own(masu_session *s, own_renderer *x, const masu_desc *d);
 void unmake_own(masu_session *s, own_renderer *x);
 
-/* Such a renderer: one frame
- * with each rung, its pixels to out[rung], its numbers to stats[rung] unless that is NULL. */
+/* Renders one frame with each rung of such a renderer: pixels to out[rung], statistics to
+ * stats[rung] unless stats is NULL. */
 void draw_rungs_of(masu_session *s, const masu_desc *d, uint8_t *const *out,
                    masu_stats_info *stats);
 

@@ -1,5 +1,5 @@
-/* wrap.c: see wrap.h. Outputs of a call that is made to fail are filled with
- * garbage: the specification allows a driver that. */
+/* wrap.c: see wrap.h. The outputs of a call that is made to fail are filled with garbage, because
+ * the specification allows a driver to do so. */
 #include "support/wrap.h"
 
 #include <string.h>
@@ -8,7 +8,7 @@ wrap_state wrap;
 
 void wrap_reset(void) { memset(&wrap, 0, sizeof wrap); }
 
-/* True if this call is to fail. */
+/* True if this call must fail. */
 static bool fails(const char *name) {
     wrap.setup_calls++;
     if (wrap.lost) wrap.calls_after_loss++;
@@ -88,7 +88,7 @@ create_counted_set_layout(VkDevice device, const VkDescriptorSetLayoutCreateInfo
         VkPipeline *out) {                                                                         \
         if (fails("vkCreate" #Kind "Pipelines")) {                                                 \
             memset(out, 0,                                                                         \
-                   n * sizeof *out); /* pipelines are the exception: null where they failed */     \
+                   n * sizeof *out); /* except pipelines: null if they failed */                   \
             return wrap.fail_with;                                                                 \
         }                                                                                          \
         VkResult r = REAL(Create##Kind##Pipelines)(device, cache, n, info, allocator, out);        \
@@ -127,7 +127,7 @@ static VKAPI_ATTR void VKAPI_CALL free_Memory(VkDevice device, VkDeviceMemory me
     REAL(FreeMemory)(device, memory, allocator);
 }
 
-/* Command buffers and descriptor sets go with their pools. */
+/* Command buffers and descriptor sets are freed with their pools. */
 static VKAPI_ATTR VkResult VKAPI_CALL allocate_CommandBuffers(
     VkDevice device, const VkCommandBufferAllocateInfo *info, VkCommandBuffer *out) {
     if (fails("vkAllocateCommandBuffers")) {
@@ -181,7 +181,7 @@ static VKAPI_ATTR void VKAPI_CALL image_requirements(VkDevice device, VkImage im
     if (wrap.fake_memory) out->memoryTypeBits = wrap.fake_memory == 2 ? 7 : 3;
 }
 
-/* Dispatchable objects without a device parameter: the real functions are kept at look-up. */
+/* Dispatchable objects without a device parameter: the real functions are stored at look-up. */
 static PFN_vkBeginCommandBuffer real_begin;
 static PFN_vkEndCommandBuffer real_end;
 static PFN_vkResetCommandBuffer real_reset;
@@ -281,7 +281,7 @@ static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr(VkDevice de
     return vkGetDeviceProcAddr(device, name);
 }
 
-/* ---- Pretences ------------------------------------------------------------------------------- */
+/* ---- Simulated limitations ------------------------------------------------------------------- */
 
 static VKAPI_ATTR void VKAPI_CALL get_properties(VkPhysicalDevice device,
                                                  VkPhysicalDeviceProperties *out) {

@@ -1,5 +1,5 @@
 #version 440
-/* sdfc_wrap.comp: what a shader must provide for the GLSL of masu-sdfc, at its plainest. For tests. */
+/* sdfc_wrap.comp: the minimal shader around the GLSL of masu-sdfc. For tests. */
 #extension GL_GOOGLE_include_directive : require
 #define MASU_SDF_SETUP 1
 #include "shared/guard.glsl"

@@ -1,6 +1,7 @@
-/* test_animation.c: clips of models and skins without a device: the rules for them in a blob, each broken alone;
- * poses at times of a clip against what its keys say; blends, ends, loops; what is refused, and that nothing has
- * changed then; matrices and boxes of joints; what a frame's slot is told. */
+/* test_animation.c: clips of models and skins, without a device: each rule for them in a blob,
+ * broken one at a time; poses at times of a clip against the clip's keys; blends, ends, loops;
+ * rejected calls, which change nothing; matrices and bounds of joints; the data written to a
+ * frame's slot. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -44,7 +45,7 @@ static support_blob broken;
             fail_msg("%s was accepted", #__VA_ARGS__);                                             \
         assert_int_equal(detail.result, MASU_ERROR_SCENE);                                         \
         if (strcmp(detail.what, section) || detail.given != (element))                             \
-            fail_msg("%s was refused as %s", #__VA_ARGS__, detail.text);                           \
+            fail_msg("%s was rejected as %s", #__VA_ARGS__, detail.text);                          \
     } while (0)
 
 static void a_blob_tells_its_clips_and_skins(void **state) {
@@ -77,7 +78,7 @@ static void clips_that_are_none_are_refused(void **state) {
     REFUSED("clips", 0, support_blob_drop(&broken, MASU_BLOB_KEYS));
     REFUSED("clips", 0, support_blob_drop(&broken, MASU_BLOB_CLIPS));
     REFUSED("clips", 1, CLIP[1].model = 3);
-    REFUSED("clips", 0, CLIP[0].model = 1); /* which is like model 0 */
+    REFUSED("clips", 0, CLIP[0].model = 1); /* model 1 is a copy of model 0 */
     REFUSED("clips", 1, CLIP[1].model = 0);
     REFUSED("clips", 0, CLIP[0].name = 1u << 20);
     REFUSED("clips", 0, CLIP[0].duration = -1.0f);
@@ -92,13 +93,14 @@ static void clips_that_are_none_are_refused(void **state) {
     REFUSED("channels", 1, CHANNEL[1].first_key = 1);
     REFUSED("channels", 1, CHANNEL[1].key_count = 0);
     REFUSED("channels", 2, CHANNEL[2].key_count = UINT32_MAX);
-    REFUSED("channels", 1, CHANNEL[1].node = 0, CHANNEL[1].path = 0, KEY[2].value[0] = 0); /* again */
+    /* the same node and path as channel 0 */
+    REFUSED("channels", 1, CHANNEL[1].node = 0, CHANNEL[1].path = 0, KEY[2].value[0] = 0);
     REFUSED("keys", 5, CHANNEL[2].key_count = 1);
     REFUSED("channels", 0, KEY[1].time = 0.0f);
     REFUSED("channels", 0, KEY[1].time = (float)NAN);
     REFUSED("channels", 0, KEY[0].time = -0.5f);
     REFUSED("channels", 0, KEY[1].value[2] = INFINITY);
-    REFUSED("channels", 1, KEY[2].value[3] = 0.5f); /* of no unit length */
+    REFUSED("channels", 1, KEY[2].value[3] = 0.5f); /* not of unit length */
 }
 
 static void skins_that_are_none_are_refused(void **state) {
@@ -137,7 +139,8 @@ static void skins_that_are_none_are_refused(void **state) {
     REFUSED("skin vertices", 3, SKIN_VERTEX[3].rest.position[1] = (float)NAN);
     REFUSED("occluders", 0, OF(OCCLUDERS, masu_blob_occluder)[0].mesh = 1,
             OF(OCCLUDERS, masu_blob_occluder)[0] = (masu_blob_occluder){{-1, -1, 0}, {1, 2, 0}, 1, 0});
-    REFUSED("skins", 0, OF(INSTANCES, masu_blob_instance)[1].mesh = 1, /* no longer alone */
+    /* the mesh has a second instance */
+    REFUSED("skins", 0, OF(INSTANCES, masu_blob_instance)[1].mesh = 1,
             OF(MODELS, masu_blob_model)[1].like = 1, OF(OCCLUDERS, masu_blob_occluder)[0].mesh = 0);
 }
 
@@ -169,13 +172,13 @@ static void assert_node(uint32_t node, const double expected[12]) {
     }
 }
 
-/* "bend" keeps its turn about y, and is moved. */
+/* "bend" keeps its rotation about y and is moved. */
 static void assert_bend(double x, double z) {
     const double rows[12] = {0, 0, 1, x, 0, 1, 0, 0, -1, 0, 0, z};
     assert_node(0, rows);
 }
 
-/* "lid" turned about z by an angle, and grown. */
+/* "lid" rotated about z by an angle, and scaled. */
 static void assert_lid(double angle, double sx, double sy, double sz) {
     double c = cos(angle), s = sin(angle);
     const double rows[12] = {c * sx, -s * sy, 0, 0, s * sx, c * sy, 0, 0, 0, 0, sz, 0};
@@ -206,16 +209,17 @@ static void a_pose_is_what_the_keys_say(void **state) {
     pose_at(0, 0.0, 0);
     assert_bend(0, 0);
     assert_lid(0, 1, 1, 1);
-    pose_at(0, 0.75, 0); /* a quarter of half a turn */
+    pose_at(0, 0.75, 0); /* a quarter of 180 degrees */
     assert_bend(1.5, 0.75);
     assert_lid(0.25 * 2 * half, 1, 1, 1);
     pose_at(0, 1.0, 0);
     assert_bend(2, 1);
     assert_lid(half, 1, 1, 1);
-    pose_at(0, 1.8, 0); /* behind the last key of the turn */
+    pose_at(0, 1.8, 0); /* after the last rotation key */
     assert_bend(3.6, 1.8);
     assert_lid(2 * half, 1, 1, 1);
-    pose_at(1, 0.2, 0); /* a step holds until the next key; what the clip does not move is at rest */
+    pose_at(1, 0.2, 0); /* a step holds until the next key; nodes without channels keep their bind
+                           pose */
     assert_bend(0, 0);
     assert_lid(0, 1, 1, 1);
     pose_at(1, 0.25, 0);
@@ -235,7 +239,7 @@ static void ends_hold_or_come_round(void **state) {
     assert_bend(1, 0.5);
     pose_at(0, -0.5, 1);
     assert_bend(3, 1.5);
-    pose_at(0, 1e300, 1); /* some time in the clip */
+    pose_at(0, 1e300, 1); /* an arbitrary time in the clip */
     masu_node_state is;
     assert_int_equal(masu_model_node_get(&m, lid, 0, &is, &failure), MASU_OK);
     assert_true(is.rows[3] >= 0.0f && is.rows[3] <= 4.0f);
@@ -252,23 +256,25 @@ static void clips_are_blended_by_weight(void **state) {
     assert_bend(3, 1.5);
     /* Quaternions (0 0 1 0) and (0 0 0 1), 3 to 1: the angle whose half has the tangent 3. */
     assert_lid(2 * atan(3.0), 1.25, 1.5, 1.75);
-    both[0].weight = both[1].weight = 0.0f; /* no weight at all: at rest */
+    both[0].weight = both[1].weight = 0.0f; /* total weight 0: bind pose */
     assert_int_equal(pose(both, 3), MASU_OK);
     assert_bend(0, 0);
     assert_lid(0, 1, 1, 1);
-    both[0].weight = 3e38f; /* more than a float holds together */
+    both[0].weight = 3e38f; /* the sum overflows a float */
     both[1].weight = 3e38f;
     both[0].time = 1.0;
     assert_int_equal(pose(both, 2), MASU_OK);
     assert_lid(half / 2, 1.5, 2, 2.5);
 }
 
-/* A quaternion and its negative are one rotation: between keys and between clips the way is the shorter one. */
+/* A quaternion and its negative are the same rotation: interpolation between keys and between clips
+ * takes the shorter way. */
 static void rotations_go_the_shorter_way(void **state) {
     (void)state;
     const double half = acos(-1.0) / 2, root = sqrt(0.5);
     start();
-    float *key = m.models.animation.keys[3].value; /* a quarter of a turn, on the other side */
+    /* a quarter of a full rotation, on the other side */
+    float *key = m.models.animation.keys[3].value;
     key[0] = key[1] = 0.0f;
     key[2] = key[3] = (float)-root;
     pose_at(0, 1.0, 0);
@@ -308,16 +314,16 @@ static void what_cannot_be_posed_changes_nothing(void **state) {
     assert_int_equal(masu_model_animate(&m, (masu_model){0}, &use, 1, &failure), MASU_ERROR_ARGUMENT);
     use.time = 1.5;
     assert_int_equal(masu_model_set_transform(&m, lid, grown, &failure), MASU_OK);
-    assert_int_equal(pose(&use, 1), MASU_ERROR_ARGUMENT); /* 3 times 1.5e38 is beyond */
-    assert_non_null(strstr(failure.text, "beyond what a float holds"));
+    assert_int_equal(pose(&use, 1), MASU_ERROR_ARGUMENT); /* 3 times 1.5e38 overflows */
+    assert_non_null(strstr(failure.text, "overflow of a float"));
     assert_bend(2, 1);
-    /* A model without clips has a pose all the same: its own. */
+    /* A model without clips still has a pose: its own. */
     assert_int_equal(masu_model_animate(&m, masu_model_at(&m, 0), NULL, 0, &failure), MASU_OK);
 }
 
 /* ---- Joints ---------------------------------------------------------------------------------- */
 
-/* Where the skin's vertices are by the matrices that the slot was told. */
+/* Positions of the skin's vertices by the matrices in the slot. */
 static void bend_all(const unsigned char *slot, double out[4][3]) {
     const masu_skin *skin = &m.models.skins.skins[0];
     support_blob_write(&broken, PARTS);
@@ -371,20 +377,20 @@ static void a_slot_has_matrices_of_both_frames(void **state) {
     assert_memory_equal(before, first, sizeof first);
     assert_true(memcmp(now, first, sizeof now) != 0);
     assert_in_box(now);
-    /* The next frame stands still: both halves of its slot say so. */
+    /* The next frame is unchanged: both halves of its slot are equal. */
     write_good(&frame, 0);
     bend_all(slot_bytes(MASU_BUFFER_JOINTS, 0), first);
     bend_all(slot_bytes(MASU_BUFFER_JOINTS, 0) + half, before);
     assert_memory_equal(first, now, sizeof now);
     assert_memory_equal(before, now, sizeof now);
-    /* After a cut nothing was elsewhere. */
+    /* After a cut there are no previous positions. */
     pose_at(0, 2.0, 0);
     frame.cut = 1;
     write_good(&frame, 1);
     bend_all(slot_bytes(MASU_BUFFER_JOINTS, 1), now);
     bend_all(slot_bytes(MASU_BUFFER_JOINTS, 1) + half, before);
     assert_memory_equal(before, now, sizeof now);
-    /* What is hidden has no vertices to bend. */
+    /* Hidden models have no vertices to skin. */
     uint32_t header[4];
     memcpy(header, slot_bytes(MASU_BUFFER_JOINTS, 1), sizeof header);
     const uint32_t shown[4] = {0, 7, 4, 2};
@@ -395,7 +401,8 @@ static void a_slot_has_matrices_of_both_frames(void **state) {
     assert_int_equal(header[2], 0);
 }
 
-/* The skin's place in the world follows from its joints alone: moving the node that shows it moves nothing. */
+/* The skin's position in the world follows only from its joints: moving the node that shows it has
+ * no effect. */
 static void a_skin_is_where_its_joints_are(void **state) {
     (void)state;
     start();
@@ -404,7 +411,7 @@ static void a_skin_is_where_its_joints_are(void **state) {
     for (int turn = 0; turn < 2; turn++) {
         const float aside[12] = {0.5f, 0, 0, 3, 0, 2, 0, -1, 0, 0, 1, 7};
         masu_instance_state is;
-        /* Joint 1 is the node itself: by weights of joint 0 alone. */
+        /* Joint 1 is the node itself, so only weights of joint 0 are used. */
         if (turn) assert_int_equal(masu_model_node_set(&m, lid, 1, aside, &failure), MASU_OK);
         write_good(&frame, (uint32_t)turn);
         const masu_skin *skin = &m.models.skins.skins[0];
@@ -426,7 +433,7 @@ static void a_skin_is_where_its_joints_are(void **state) {
     }
 }
 
-/* At many times of the clip no vertex leaves the box that culling believes. */
+/* At many times of the clip no vertex leaves the bounds that culling uses. */
 static void boxes_hold_what_bends(void **state) {
     (void)state;
     start();
@@ -453,7 +460,7 @@ static void without_skins_there_is_nothing_of_it(void **state) {
         assert_false(masu_has_pass(&m.plan.rungs[r].active, MASU_PASS_SKIN_PREVIOUS));
     }
     assert_int_equal(masu_model_clips(&m, masu_model_at(&m, 0)), 0);
-    /* And with skins, a rung that reads no velocities has the first pass alone. */
+    /* Also with skins, a rung that reads no velocities has only the first pass. */
     make_renderer(PARTS, 0);
     assert_true(masu_has_pass(&m.plan.rungs[0].active, MASU_PASS_SKIN));
     assert_false(masu_has_pass(&m.plan.rungs[0].active, MASU_PASS_SKIN_PREVIOUS));
@@ -494,7 +501,7 @@ static void start_morphs(void) {
     assert_int_not_equal(lid.id, 0);
 }
 
-/* The targets that do anything, as the slot has them: first delta and weight. */
+/* The morph targets with an effect, as written to the slot: first delta and weight. */
 static uint32_t told_morphs(const unsigned char *slot, uint32_t out[2][2]) {
     uint32_t header[8], count;
     memcpy(header, slot, sizeof header);
@@ -517,12 +524,12 @@ static void weights_are_those_of_clips_and_of_the_host(void **state) {
     float box[6], before[6];
     start_morphs();
     const masu_skins *s = &m.models.skins;
-    assert_true(fabs((double)s->weights[0] - (0)) <= 0); /* at rest */
+    assert_true(fabs((double)s->weights[0] - (0)) <= 0); /* default weight */
     assert_true(fabs((double)s->weights[1] - (0.5)) <= 0);
     pose_at(0, 0.5, 0);
-    assert_true(fabs((double)s->weights[0] - (0.25)) <= 1e-6); /* a quarter of its way */
+    assert_true(fabs((double)s->weights[0] - (0.25)) <= 1e-6); /* a quarter of the way */
     assert_true(fabs((double)s->weights[1] - (0.5)) <= 0);      /* no clip changes it */
-    /* With as much of a clip that does not have it: half of that. */
+    /* Blended with an equal weight of a clip without this target: half of the value. */
     const masu_clip_use both[2] = {{.clip = 0, .time = 0.5, .weight = 1.0f}, {.clip = 1, .weight = 1.0f}};
     assert_int_equal(pose(both, 2), MASU_OK);
     assert_true(fabs((double)s->weights[0] - (0.125)) <= 1e-6);
@@ -535,11 +542,11 @@ static void weights_are_those_of_clips_and_of_the_host(void **state) {
     assert_int_equal(masu_model_morph_set(&m, lid, NULL, 1.0f, &failure), MASU_ERROR_ARGUMENT);
     assert_int_equal(masu_model_morph_set(&m, (masu_model){0}, "bend", 1.0f, &failure), MASU_ERROR_ARGUMENT);
     assert_true(fabs((double)s->weights[1] - (-2)) <= 0);
-    /* The slot: of both moments. */
+    /* The slot has both this frame and the previous one. */
     masu_frame_desc frame = {.rung = 0};
     write_good(&frame, 0);
     assert_int_equal(told_morphs(slot_bytes(MASU_BUFFER_JOINTS, 0), told), 2);
-    assert_int_equal(told[0][0], 8); /* behind four vertices of two elements */
+    assert_int_equal(told[0][0], 8); /* after four vertices of two elements */
     assert_int_equal(told[1][0], 12);
     assert_true(fabs((double)as_float(told[1][1]) - (-2)) <= 0);
     assert_int_equal(masu_model_morph_set(&m, lid, "bend", 0.0f, &failure), MASU_OK);
@@ -548,7 +555,8 @@ static void weights_are_those_of_clips_and_of_the_host(void **state) {
     const unsigned char *slot = slot_bytes(MASU_BUFFER_JOINTS, 1);
     assert_int_equal(told_morphs(slot, told), 1);
     assert_int_equal(told[0][0], 12);
-    assert_int_equal(told_morphs(slot + masu_joints_bytes(&m.plan.scene), told), 2); /* the frame before */
+    /* the previous frame */
+    assert_int_equal(told_morphs(slot + masu_joints_bytes(&m.plan.scene), told), 2);
 }
 
 int main(void) {

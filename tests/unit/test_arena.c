@@ -1,8 +1,6 @@
-/*
- * test_arena.c: the host block's layout walk. A walk that counts and a walk that gives must agree
- * to the byte, a block that is too small by any amount must be told so with the whole need, and no
- * byte outside the block may change.
- */
+/* test_arena.c: the layout walk of the host block. The counting walk and the assigning walk must
+ * agree exactly; a block that is too small by any amount must be rejected with the full
+ * requirement; no byte outside the block may change. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -14,7 +12,7 @@
 #include "base/arena.h"
 #include "support/random.h"
 
-#define ROWS_MOST (MASU_ARENA_ROWS + 4u) /* more than the report keeps */
+#define ROWS_MOST (MASU_ARENA_ROWS + 4u) /* more than the report has room for */
 #define ROWS_RANDOM 20u
 #define BLOCK_BYTES (64u << 10)
 #define GUARD_BYTES 256u
@@ -98,7 +96,7 @@ static void counting_and_giving_agree_to_the_byte(void **state) {
         assert_int_equal(given.used, counted.used);
         assert_int_equal(given.row_count, counted.row_count);
         assert_memory_equal(given.rows, counted.rows, sizeof given.rows);
-        uint64_t end = 0; /* rows follow one another, with less than an alignment between them */
+        uint64_t end = 0; /* rows are contiguous, with gaps smaller than an alignment */
         for (uint32_t i = 0; i < set.count; i++) {
             const row *r = &set.rows[i];
             assert_non_null(pointers[i]);
@@ -168,7 +166,7 @@ static void what_is_given_is_zero_and_what_is_not_is_left_alone(void **state) {
         unsigned char *pointers[ROWS_MOST];
         fill_memory(BLOCK_BYTES);
         walk(&arena, &set, block, BLOCK_BYTES, pointers);
-        unsigned char *end = block; /* padding keeps its noise */
+        unsigned char *end = block; /* padding is not written */
         for (uint32_t i = 0; i < set.count; i++) {
             uint64_t bytes = set.rows[i].count * set.rows[i].element_bytes;
             while (end < pointers[i]) assert_int_equal(*end++, NOISE);
@@ -188,7 +186,7 @@ static void nothing_takes_no_bytes_but_has_an_address(void **state) {
     assert_int_equal(arena.used, 16);
     assert_true(arena.used <= arena.size);
     assert_null(masu_arena_alloc(&arena, "one", 1, 1, 1));
-    assert_null(masu_arena_alloc(&arena, "none", 0, 1, 1)); /* the block has ended before */
+    assert_null(masu_arena_alloc(&arena, "none", 0, 1, 1)); /* the block is already used up */
 }
 
 static void the_report_keeps_the_first_rows(void **state) {
@@ -210,7 +208,7 @@ static void the_report_keeps_the_first_rows(void **state) {
     }
 }
 
-/* A walk in which a product or a sum leaves 64 bits. It may never come back to a size that fits. */
+/* A walk in which a product or a sum overflows 64 bits. It must never wrap to a size that fits. */
 static void assert_overflows(uint64_t count, uint64_t element_bytes, uint64_t before,
                              uint64_t alignment) {
     masu_arena arena;

@@ -1,8 +1,6 @@
-/*
- * test_atomic_file.c: drafts of files (platform/atomic_file.h) and folders for scratch
- * (bake/base/file.h): what a maker that is killed leaves is gone when the next one comes; what a
- * running one holds stays.
- */
+/* test_atomic_file.c: drafts of files (platform/atomic_file.h) and scratch folders
+ * (bake/base/file.h): files left by a killed process are removed by the next one; files of a
+ * running process are kept. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -26,7 +24,7 @@
 #include "image.h"
 #include "support/files.h"
 
-/* How many names of the folder there are. */
+/* Number of names in the folder. */
 static int entries(const char *path) {
     int count = 0;
     DIR *folder = opendir(path);
@@ -38,10 +36,10 @@ static int entries(const char *path) {
 
 typedef struct maker {
     pid_t child;
-    int go; /* closed: it goes on */
+    int go; /* closing it lets the process continue */
 } maker;
 
-/* A process that has begun, and waits. body is told to go on by the end of the pipe. */
+/* A process that has started, and waits. Closing the pipe lets body continue. */
 static maker start(void (*body)(int wait)) {
     int ready[2], go[2];
     char byte;
@@ -122,7 +120,7 @@ static void the_draft_of_a_running_maker_stays(void **state) {
     assert_holds("x.png", "new");
     end(m, 0);
     assert_int_equal(entries(scratch), 1);
-    assert_holds("x.png", "old"); /* it came last */
+    assert_holds("x.png", "old"); /* it was written last */
 }
 
 static void write_a_draft_and_catch(int wait) {
@@ -130,7 +128,7 @@ static void write_a_draft_and_catch(int wait) {
     write_a_draft(wait);
 }
 
-/* Each ends the maker as it would without a handler. */
+/* Each signal ends the process as it would without a handler. */
 static void a_maker_that_is_ended_takes_its_draft_along(void **state) {
     (void)state;
     static const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
@@ -179,7 +177,7 @@ static void statuses_are_words(void **state) {
     assert_string_equal(masu_cli_signal(SIGTERM), "signal 15 (SIGTERM)");
 }
 
-/* Names that are like a draft's are somebody's. */
+/* Names that resemble a draft's belong to the user. */
 static void what_is_no_draft_stays(void **state) {
     (void)state;
     static const char *const names[] = {"x.png.part", "x.png.1.part", "x.png.1-.part", "x.png.a-1.part", "x.png.1-2.part2",

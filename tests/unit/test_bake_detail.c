@@ -1,8 +1,6 @@
-/*
- * test_bake_detail.c: what masu-bake makes of meshes holds what it promises, judged here by dense
- * samples and rays in double precision that share no code with what is judged: errors of LODs are
- * bounds, occluders lie inside, merged meshes show the same triangles.
- */
+/* test_bake_detail.c: checks the guarantees of masu-bake's mesh processing by dense samples and
+ * rays in double precision that share no code with it: errors of LODs are bounds, occluders are
+ * inside their mesh, merged meshes show the same triangles. */
 #include <float.h>
 #include <math.h>
 #include <setjmp.h>
@@ -24,9 +22,9 @@
 
 typedef masu_bake_vec3 vec3;
 
-/* ---- an own judge ---- */
+/* ---- independent reference ---- */
 
-/* Distance from p to a triangle by its seven features, written apart from tools/bake/mesh/surface.c. */
+/* Distance from p to a triangle by its seven features, independent of tools/bake/mesh/surface.c. */
 static double own_distance(const vec3 t[3], vec3 p) {
     vec3 e0 = masu_bake_sub(t[1], t[0]), e1 = masu_bake_sub(t[2], t[0]), d = masu_bake_sub(t[0], p);
     double a = masu_bake_dot(e0, e0), b = masu_bake_dot(e0, e1), c = masu_bake_dot(e1, e1);
@@ -117,7 +115,7 @@ static void torus(soup *s, double radius, double thickness, int n, int m, bool i
         for (int k = 0; k < m; k++) {
             vec3 v[4];
             for (int c = 0; c < 4; c++) {
-                /* whole steps taken modulo, so that the ends meet bit for bit */
+                /* whole steps modulo n, so that the ends are bit-identical */
                 double a = 2 * MASU_BAKE_PI * ((i + (c == 1 || c == 2)) % n) / n;
                 double b = 2 * MASU_BAKE_PI * ((k + (c >= 2)) % m) / m;
                 double r = radius + thickness * cos(b);
@@ -205,7 +203,8 @@ static void a_deviation_is_a_bound_and_not_much_more(void **state) {
             most = fmax(most, own_distance_all((const vec3(*)[3])b, 12, a[i / 3][i % 3]));
         }
         assert_true(bound >= most);
-        assert_true(bound <= most * 1.25 + 0.02); /* a tenth of slack, and samples miss the worst */
+        /* a tenth of slack, and samples miss the maximum */
+        assert_true(bound <= most * 1.25 + 0.02);
         assert_true(masu_bake_surface_deviation(&from, &to, most / 2) == DBL_MAX);
         assert_true(masu_bake_surface_deviation(&from, &from, DBL_MAX) < 1e-12);
         masu_bake_surface_release(&from);
@@ -290,7 +289,7 @@ static void errors_of_lods_are_bounds(void **state) {
     torus(&s, 4, 1, 32, 12, false);
     add_mesh(&ring, &s, "ring");
     check_lods(&ring, 2, 11);
-    s.count = 0; /* of many parts, which no collapse removes */
+    s.count = 0; /* with many parts, which no collapse removes */
     cuboid(&s, masu_bake_v3(0, 0, 0), masu_bake_v3(10, 0.1, 0.1), -1);
     cuboid(&s, masu_bake_v3(0, 1, 0), masu_bake_v3(10, 1.1, 0.1), -1);
     for (int i = 0; i < 40; i++) {
@@ -310,8 +309,9 @@ static void errors_of_lods_are_bounds(void **state) {
     masu_bake_content_release(&small);
 }
 
-/* Lamps on a wall: all of them is where the wall is, whatever becomes of their outlines. Each level shows a lamp whose color
- * is nowhere farther from the lamp's than it says, or leaves one out that is no larger than that. */
+/* Lamps on a wall: their union is where the wall is, whatever happens to their outlines. Each level
+ * shows a lamp whose colour is nowhere farther from the lamp than its stated error, or omits a lamp
+ * that is no larger than the error. */
 static void a_level_is_judged_by_each_of_its_materials(void **state) {
     (void)state;
     enum { LAMPS = 3, CORNERS = 48 };
@@ -370,8 +370,8 @@ static vec3 point_of_box(uint64_t *state, const masu_blob_occluder *o) {
     return masu_bake_v3(p[0], p[1], p[2]);
 }
 
-/* From any eye outside the mesh's box, these primitives are in front of every point of the occluder;
- * or not, somewhere. */
+/* From every camera position outside the mesh's box, these primitives are in front of every point
+ * of the occluder; or not, at one position. */
 static bool hides(const masu_bake_content *c, const masu_blob_occluder *o, uint32_t first,
                   uint64_t seed) {
     masu_blob_mesh m = MASU_BAKE_MESHES(c)[o->mesh];
@@ -395,7 +395,8 @@ static bool hides(const masu_bake_content *c, const masu_blob_occluder *o, uint3
     return hidden;
 }
 
-/* All occluders: by their meshes, and by as many LODs as they say. Returns how many LODs in all. */
+/* Checks all occluders, against their meshes and the number of LODs that they state. Returns the
+ * total number of LODs. */
 static uint32_t check_occluders(const masu_bake_content *c, uint64_t seed) {
     uint32_t lods = 0;
     for (uint64_t i = 0; i < masu_bake_count(c, MASU_BLOB_OCCLUDERS); i++) {
@@ -433,11 +434,11 @@ static void occluders_lie_inside(void **state) {
             torus(&s, random_between(&random, 4, 9), random_between(&random, 1, 3), 24, 10, round % 8);
         if (round % 4 == 1) masu_bake_sphere(&c, random_between(&random, 1, 9), 3, 0);
         if (round % 4 ==
-            2) { /* a box of many faces in one that is open, so only the inner counts */
+            2) { /* a box of many faces inside an open one, so that only the inner one occludes */
             cuboid(&s, low, high, 3);
             torus(&s, 6, 2, 16, 8, false);
         }
-        if (round % 4 == 3) { /* a box, and one that is open */
+        if (round % 4 == 3) { /* a box, and an open one */
             cuboid(&s, low, high, round % 8 == 3 ? -1 : 4);
         }
         if (s.count) add_mesh(&c, &s, "solid");
@@ -468,7 +469,7 @@ static void what_is_open_thin_or_small_has_no_occluder(void **state) {
     static soup s;
     masu_bake_content c = {0};
     masu_bake_occluder_report report = {0};
-    s.count = 0; /* open, and too many to draw as they are */
+    s.count = 0; /* open, and too many triangles to render directly */
     torus(&s, 6, 2, 16, 8, false);
     s.count -= 3;
     add_mesh(&c, &s, "open");
@@ -497,7 +498,7 @@ static void an_occluder_says_which_lods_hold_it(void **state) {
             add_mesh(&c, &s, "ring");
         }
         masu_bake_make_occluders(&c, 0.5, &report);
-        if (round % 3 == 2) { /* one of half the size is in more of them */
+        if (round % 3 == 2) { /* an occluder of half the size is inside more LODs */
             masu_blob_occluder *o = MASU_BAKE_OCCLUDERS(&c);
             for (int k = 0; k < 3; k++) {
                 float middle = 0.5f * (o->low[k] + o->high[k]);
@@ -514,7 +515,7 @@ static void an_occluder_says_which_lods_hold_it(void **state) {
         masu_bake_content_release(&c);
     }
     assert_true(held > 0);
-    assert_true(not_held > 0); /* else nothing says that the proof can fail */
+    assert_true(not_held > 0); /* otherwise nothing shows that the check can fail */
 }
 
 static void boxes_that_stick_out_are_not_inside(void **state) {
@@ -528,14 +529,14 @@ static void boxes_that_stick_out_are_not_inside(void **state) {
         double x = out == 0 ? 5 : out == 1 ? 5.5 : -1;
         masu_bake_box box = {{x, -0.5, -0.5}, {x + (out == 1 ? 3 : 1.5), 0.5, 0.5}};
         assert_int_equal(masu_bake_is_inside((const vec3(*)[3])t, s.count / 3, &box), out == 0);
-        /* Nothing is inside of what is open. */
+        /* An open mesh has no inside. */
         assert_false(masu_bake_is_inside((const vec3(*)[3])t, s.count / 3 - 1, &box));
     }
 }
 
 /* ---- merging ---- */
 
-/* Sums that no order of triangles changes much. */
+/* Sums that the order of the triangles hardly changes. */
 static void measure(const masu_bake_content *c, uint64_t *triangles, double *area, vec3 *flux) {
     *triangles = 0;
     *area = 0;
@@ -592,11 +593,11 @@ static void merging_shows_the_same_triangles_in_small_meshes(void **state) {
         const masu_blob_mesh *m = &MASU_BAKE_MESHES(&c)[i];
         bool ring = strcmp(masu_bake_name_text(&c, m->name), "ring") == 0;
         rings += ring;
-        for (int k = 0; k < 3 && !ring; k++) { /* a cell, and what stands out of it */
+        for (int k = 0; k < 3 && !ring; k++) { /* a cell, and the parts that stick out of it */
             assert_true(m->aabb_max[k] - m->aabb_min[k] <= 25 + 2 * 3);
         }
     }
-    assert_int_equal(rings, 1); /* shown twice and large: left as it is */
+    assert_int_equal(rings, 1); /* used twice and large: unchanged */
     masu_bake_content_release(&c);
 }
 
@@ -632,7 +633,7 @@ static int by_value(const void *a, const void *b) {
     return 0;
 }
 
-/* Each corner of each triangle shown, sorted. */
+/* Each corner of each visible triangle, sorted. */
 static masu_bake_buffer mapped_corners(const masu_bake_content *c) {
     masu_bake_buffer out = {0};
     const float *texcoords = MASU_BAKE_ARRAY(c, MASU_BLOB_TEXCOORDS, const float);
@@ -660,14 +661,14 @@ static void merging_carries_texture_coordinates(void **state) {
     (void)state;
     masu_bake_content c = {0};
     uint64_t random = 9;
-    masu_bake_sphere(&c, 3, 2, 5); /* 320 triangles: kept where shown twice */
+    masu_bake_sphere(&c, 3, 2, 5); /* 320 triangles: kept if used twice */
     for (int i = 0; i < 40; i++) masu_bake_cuboid(&c, masu_bake_v3(2, 3, 4), 1 + i);
     masu_bake_instance(&c, &(masu_bake_affine){{1, 0, 0, 60, 0, 1, 0, 0, 0, 0, 1, 0}}, 0,
                        MASU_BLOB_NONE, MASU_BLOB_NONE);
     for (uint64_t i = 0; i < masu_bake_count(&c, MASU_BLOB_INSTANCES); i++) {
         masu_blob_instance *n = &MASU_BAKE_INSTANCES(&c)[i];
         for (int k = 0; k < 3; k++) n->transform[4 * k + 3] = (float)random_between(&random, -50, 50);
-        if (i % 3 == 1) n->transform[0] = -2; /* mirrored: corners change their order */
+        if (i % 3 == 1) n->transform[0] = -2; /* mirrored: the corner order is reversed */
     }
     masu_bake_buffer before = mapped_corners(&c);
     assert_true(before.bytes > 2000 * sizeof(mapped_corner));

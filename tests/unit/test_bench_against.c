@@ -1,6 +1,6 @@
-/* test_bench_against.c: two folders of `masu bench` beside each other: differences worked out by
- * hand, rows that are missing, folders that do not belong together; and machine.json: what it says
- * of a CPU, runs added, merged and read again. */
+/* test_bench_against.c: comparison of two folders of `masu bench`: differences computed by hand,
+ * missing rows, folders that do not belong together; and machine.json: the description of a CPU,
+ * and runs that are added, merged and read again. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -93,7 +93,7 @@ static void differences_are_those_worked_out_by_hand(void **state) {
         fail_msg("%s", error);
     assert_int_equal(a.count, 4);
     assert_int_equal(a.missing, 1);
-    assert_false(a.by_timestamps); /* only one of the two goes by them */
+    assert_false(a.by_timestamps); /* only one of the two uses timestamps */
     assert_true(a.rungs[1].here && !a.rungs[1].there);
     near(a.rungs[0].flip_off, 0);
     near(a.rungs[2].flip_off, -0.2);
@@ -109,7 +109,7 @@ static void differences_are_those_worked_out_by_hand(void **state) {
     near(a.rungs[3].time_off, -0.2);
     assert_int_equal(a.worst_time, 3);
     make_folder("there", "wall");
-    /* The same folder twice: nothing is off, and nothing is missing. */
+    /* The same folder twice: no differences and no missing rows. */
     assert_true(masu_against_compare(in_scratch("here"), in_scratch("here"), &a, error, sizeof error));
     assert_int_equal(a.missing, 0);
     for (uint32_t i = 0; i < a.count; i++) {
@@ -193,7 +193,8 @@ static void runs_are_added_merged_and_read(void **state) {
     assert_true(m.cpu[0] && m.threads > 0 && strlen(m.date) == 20);
     assert_false(masu_machine_read(in_scratch("m1"), 0, &read));
     assert_true(masu_machine_append(in_scratch("m1"), &m, error, sizeof error));
-    m.date[15] = m.date[15] == '0' ? '1' : '0'; /* a minute later: the same run, as far as it says */
+    /* a minute later: the same run, as far as the file states */
+    m.date[15] = m.date[15] == '0' ? '1' : '0';
     assert_true(masu_machine_append(in_scratch("m1"), &m, error, sizeof error));
     assert_false(masu_machine_read(in_scratch("m1"), 1, &read));
     snprintf(m.date, sizeof m.date, "another day");

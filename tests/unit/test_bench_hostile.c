@@ -1,5 +1,5 @@
-/* test_bench_hostile.c: folders of `masu bench` that somebody else has made: whatever stands in their texts is text in
- * the page, in the plots' commands and on the disk. */
+/* test_bench_hostile.c: folders of `masu bench` from an untrusted source: any text in them remains
+ * text in the page, in the plots' commands and on the disk. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -85,12 +85,13 @@ static void what_a_folder_says_is_text_in_its_page(void **state) {
     assert_null(strstr(page, "<script"));
     uint32_t shown = 0;
     for (const char *at = page; (at = strstr(at, "&lt;script&gt;")); at++) shown++;
-    assert_true(shown >= 8); /* scene twice, hash, driver, depth, one of machine.json's, what is left out */
+    assert_true(shown >= 8); /* scene twice, hash, driver, depth, one of machine.json's, the omitted
+                                rows */
     assert_non_null(strstr(page, "; scene &lt;script&gt;"));
     free(page);
 }
 
-/* Within single quotes gnuplot sees nothing but their end. */
+/* Inside single quotes gnuplot interprets only the closing quote. */
 static void a_title_is_no_command_of_gnuplot(void **state) {
     (void)state;
     char error[1024], path[256];
@@ -143,7 +144,7 @@ static void a_setting_does_not_lead_out_of_the_folder(void **state) {
         snprintf(path, sizeof path, "out%zu", i);
         make_folder("part", names[i], "x");
         mkdir(in_scratch("part/pictures/a"), 0777);
-        make_picture("ESCAPED.png"); /* part/pictures/../../ESCAPED.png: there is something to read */
+        make_picture("ESCAPED.png"); /* part/pictures/../../ESCAPED.png: the file exists */
         make_picture("part/pictures/a/ESCAPED.png");
         assert_false(merge("part", path, error, sizeof error));
         assert_non_null(strstr(error, "results.csv"));

@@ -1,6 +1,6 @@
 /* test_bench_ladder.c: Pareto fronts and ladders of random clouds, checked against their
- * definition; ties, things that are no numbers, single points; and the table of rows as CSV and
- * back. */
+ * definition; ties, values that are not numbers, single points; and the table of rows written as
+ * CSV and read back. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -22,8 +22,8 @@ static bool usable(masu_ladder_point p) {
     return isfinite(p.time) && isfinite(p.error) && p.time > 0 && p.error >= 0;
 }
 
-/* On a coarse grid in every other cloud, so that ties are many; in every third what takes longer
- * tends to be better, so that fronts are long; a few values are none. */
+/* Every other cloud is on a coarse grid, for many ties. In every third, slower points tend to be
+ * better, for long fronts. A few values are invalid. */
 static uint32_t cloud(uint64_t seed, masu_ladder_point *out) {
     uint64_t state = seed;
     uint32_t n = (uint32_t)support_random_in(&state, 1, POINTS);
@@ -100,7 +100,7 @@ static void rungs_fall_in_time_and_rise_in_error(void **state) {
     assert_int_equal(longest, MOST); /* the clouds are wide enough to fill a ladder */
 }
 
-/* With room for all, and no distance asked for, it is the whole front. */
+/* With enough room, and no minimum distance, the result is the whole front. */
 static void nothing_is_left_out_without_need(void **state) {
     (void)state;
     for (uint64_t seed = 1; seed <= 50; seed++) {
@@ -117,7 +117,7 @@ static void the_nearest_neighbours_go_first(void **state) {
     const masu_ladder_point p[] = {{8, 0.1}, {4, 0.2}, {3.8, 0.25}, {2, 0.3}, {1, 0.4}};
     uint32_t rungs[5];
     assert_int_equal(masu_ladder_rungs(p, 5, MASU_LADDER_APART, 1.0, 4, rungs), 4);
-    const uint32_t wanted[] = {0, 1, 3, 4}; /* 4 / 2 is less than 8 / 3.8: so 3.8 goes */
+    const uint32_t wanted[] = {0, 1, 3, 4}; /* 4 / 2 is less than 8 / 3.8: so 3.8 is dropped */
     assert_memory_equal(rungs, wanted, sizeof wanted);
     assert_int_equal(masu_ladder_rungs(p, 5, MASU_LADDER_APART, 1.0, 2, rungs), 2);
     assert_true(rungs[0] == 0 && rungs[1] == 4);
@@ -126,8 +126,8 @@ static void the_nearest_neighbours_go_first(void **state) {
     assert_int_equal(masu_ladder_rungs(p, 5, MASU_LADDER_APART, 1.0, 0, rungs), 0);
 }
 
-/* By the definition: of all kept, each is better by that than every quicker one; what went has a quicker
- * one that is hardly worse. */
+/* By definition: each kept point is better by the distance than every faster one; each dropped
+ * point has a faster one that is hardly worse. */
 static void hardly_better_is_no_reason_to_take_longer(void **state) {
     (void)state;
     for (uint64_t seed = 1; seed <= CLOUDS; seed++) {
@@ -155,8 +155,7 @@ static void hardly_better_is_no_reason_to_take_longer(void **state) {
     }
 }
 
-/* With several costs: what is left is dominated by nothing in any column, and what went is in
- * one. */
+/* With several costs: kept points are not dominated in any column; dropped points are, in one. */
 static void what_another_dominates_by_any_cost_is_excluded(void **state) {
     (void)state;
     enum { COLUMNS = 3 };
@@ -166,7 +165,7 @@ static void what_another_dominates_by_any_cost_is_excluded(void **state) {
     for (uint64_t seed = 1; seed <= CLOUDS; seed++) {
         uint64_t r = seed;
         uint32_t n = cloud(seed, p);
-        /* Alike in all columns, so that some are on all fronts. */
+        /* Similar in all columns, so that some points are on all fronts. */
         for (uint32_t i = 0; i < n; i++) {
             for (uint32_t c = 0; c < COLUMNS; c++)
                 costs[i * COLUMNS + c] =
@@ -274,7 +273,7 @@ static void rows_come_back_as_they_were_written(void **state) {
     assert_int_equal(fread(again, 1, sizeof again - 1, f), n);
     fclose(f);
     assert_string_equal(text, again);
-    /* Stopped at any byte of the last row: that row alone is lost. */
+    /* Truncated at any byte of the last row: only that row is lost. */
     size_t last = n - 1;
     while (text[last - 1] != '\n') last--;
     for (size_t cut = last; cut < n; cut++) {
@@ -288,7 +287,8 @@ static void rows_come_back_as_they_were_written(void **state) {
     }
 }
 
-/* A folder of before has two columns less: nothing is known of them, and the ladder goes by what is. */
+/* A folder of an older version has two columns less: they are unknown, and the ladder uses the
+ * others. */
 static void a_table_of_before_is_read(void **state) {
     (void)state;
     static char text[1 << 14], old[1 << 14], error[256];

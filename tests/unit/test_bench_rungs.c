@@ -1,6 +1,6 @@
-/* test_bench_rungs.c: which settings of a folder of `masu bench` become rungs, from pictures and
- * costs that are made here: no rung is a jump from the one before, and none is dominated on a class
- * of GPUs. */
+/* test_bench_rungs.c: selects settings of a folder of `masu bench` as rungs, from images and costs
+ * that are made here: no rung differs too much from the one before, and none is dominated on a
+ * class of GPUs. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -23,7 +23,7 @@
 
 enum { SIDE = 8 };
 
-/* In falling quality; the grays of its pictures in motion and at rest. */
+/* By falling quality; grey values of the images in motion and of stills. */
 static const struct {
     const char *setting;
     uint8_t motion, rest;
@@ -89,15 +89,16 @@ static void expect(const char *const *settings, const double *steps, uint32_t co
     }
 }
 
-/* scale=0.5 changes 18 of 255 at rest; 0.4 is near 0.75, whatever they show in motion. */
+/* scale=0.5 changes the still by 18 of 255; 0.4 is close to 0.75, whatever the images in motion
+ * show. */
 static void a_jump_is_no_rung(void **state) {
     (void)state;
     static const char *const settings[] = {"base", "scale=0.75", "scale=0.4"};
     const double steps[] = {0, 2, 3};
     make_folder();
     expect(settings, steps, 3);
-    /* Without the stills nothing is known of steps, and nothing is left out: pictures in motion do
-     * not stand for them. */
+    /* Without stills the steps are unknown, and no setting is dropped: images in motion do not
+     * replace them. */
     for (int i = 0; i < MADE; i++) {
         char name[256];
         snprintf(name, sizeof name, "f/pictures/%s.rest.png", made[i].setting);
@@ -116,7 +117,7 @@ static void what_a_class_of_gpus_has_nearer_and_cheaper_is_no_rung(void **state)
     masu_setting_list list;
     make_folder();
     make_picture("scale=0.4", ".rest", 101);
-    /* On one class 0.75 costs more than the base; of 0.5 there are no costs. */
+    /* On one class 0.75 costs more than the base; 0.5 has no costs. */
     write_text("f/" MASU_COSTS,
                MASU_COSTS_HEADER "\nbase,9,9,9,9,9\nscale=0.75,8,8,9.5,8,8\nscale=0.4,5,5,5,5,5\n");
     expect(settings, steps, 2);

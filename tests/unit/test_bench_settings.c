@@ -1,6 +1,6 @@
-/* test_bench_settings.c: the settings of `masu bench`: each has one name, a parent that comes
- * before it and differs from it; what a scene has no use for is dropped with a reason, and
- * nothing else. */
+/* test_bench_settings.c: the settings of `masu bench`: each has one name, and a parent that
+ * precedes it and differs from it; settings without effect in a scene are dropped with a reason,
+ * and no others. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -24,7 +24,8 @@ static uint32_t find(uint32_t count, const char *id) {
 }
 
 static void check_names(uint32_t count) {
-    static const char good[] = "abcdefghijklmnopqrstuvwxyz0123456789_.=+-"; /* of file names */
+    /* allowed in file names */
+    static const char good[] = "abcdefghijklmnopqrstuvwxyz0123456789_.=+-";
     assert_string_equal(settings[0].id, "base");
     for (uint32_t i = 0; i < count; i++) {
         const masu_setting *s = &settings[i];
@@ -97,7 +98,7 @@ static void a_scene_of_nothing_leaves_what_is_done_to_pictures(void **state) {
     check_dropped("shadow_distance=0.5", count, "no shadow map");
     check_dropped("specular_cutoff=0.25", count, "no reflections");
     check_dropped("specular_frames=64", count, "no reflections");
-    /* What is left of the bundles: the cheap one at 0.4 has fast EASU and no RCAS, the lean one is
+    /* The remaining bundles: the cheap one at 0.4 has fast EASU and no RCAS, the lean one is
      * temporal. */
     assert_true(find(count, "scale=0.4+easu=fast+sharpen=off") < count);
     check_dropped(
@@ -120,8 +121,8 @@ static void a_scene_of_everything_keeps_everything(void **state) {
     masu_settings_fit(settings, count, masu_scene_of(&everything), &plan);
     check_names(count);
     for (uint32_t i = 0; i < count; i++) dropped += settings[i].dropped[0] != 0;
-    /* SMAA HIGH and temporal at 1 and 0.5 are techniques and bundles; so is no sharpening, nothing at 1:
-     * there the soft bundles are their other knob alone. */
+    /* SMAA HIGH and temporal at 1 and 0.5 are both techniques and bundles, and so is sharpen=off.
+     * At scale 1 nothing is sharpened, so the soft bundles there equal their other knob. */
     assert_int_equal(dropped, 9);
     check_dropped("sharpen=off", count, "nothing is sharpened");
     check_dropped("scale=0.5+sharpen=off", count, "equal to another setting");
@@ -240,8 +241,8 @@ static void check_names_read_again(uint32_t count) {
     }
 }
 
-/* Names lead back to the rung, of every setting that is measured: before and after they are fitted to a
- * scene whose numbers are not round. */
+/* Names can be parsed back to the rung, for every measured setting: before and after they are
+ * fitted to a scene with odd sizes. */
 static void names_are_read_again(void **state) {
     (void)state;
     static const char *const passes[] = {"ao", "specular_guide", "cascade_0"};
@@ -256,7 +257,7 @@ static void names_are_read_again(void **state) {
         masu_settings_fit(settings, count, masu_scene_of(&scene), &plan);
         check_names_read_again(count);
     }
-    /* In any order; values of all kinds. */
+    /* In any order, with values of all kinds. */
     assert_true(masu_setting_parse("ao_steps=3+lod_error=-1+shadow_refresh=1-2-4-8+scale=0.625+"
                                    "shadow_distance=1e+09+frustum=off",
                                    &rung, error, sizeof error));
@@ -265,7 +266,7 @@ static void names_are_read_again(void **state) {
                               "shadow_refresh=1-2-4-8+frustum=off");
 }
 
-/* Both ends and the middle of each knob, by itself and all together. */
+/* Both ends and the centre of each knob, separately and all together. */
 static void every_knob_has_its_part_of_a_name(void **state) {
     (void)state;
     char error[600], name[1024], part[64];

@@ -1,6 +1,6 @@
-/* test_blue_noise.c: the tile of tools/generate/make_blue_noise.c: each rank once, and blue: its spectrum is
- * dark where that of white noise is as bright as anywhere. Also after a shift round the range of
- * values, which shaders/noise/sequence.glsl does from frame to frame. */
+/* test_blue_noise.c: the tile of tools/generate/make_blue_noise.c has each rank once, and a blue
+ * spectrum: dark at the low frequencies, where white noise is as bright as anywhere. Also after a
+ * shift modulo the range of values, which shaders/noise/sequence.glsl does from frame to frame. */
 #include "blue_noise.h"
 #include "shared/masu_shared.h"
 #include "support/random.h"
@@ -34,7 +34,7 @@ static void white(uint64_t seed, double out[TEXELS]) {
     }
 }
 
-/* Mean power of each ring of frequencies, cycles in the tile; white noise of these values is 1. */
+/* Mean power of each ring of frequencies, cycles per tile; white noise of equal variance has 1. */
 static void spectrum(const double value[TEXELS], double ring[RINGS]) {
     static double rows[2][N][N];
     double cosine[N], sine[N], count[RINGS] = {0};
@@ -69,7 +69,7 @@ static void spectrum(const double value[TEXELS], double ring[RINGS]) {
             count[at] += 1;
         }
     }
-    /* Of TEXELS values at even steps of 0..1 the variance is 1/12. */
+    /* TEXELS values at even steps of 0..1 have the variance 1/12. */
     for (int r = 1; r < RINGS; r++) ring[r] *= 12 / (count[r] * TEXELS);
 }
 
@@ -122,7 +122,7 @@ static void it_is_blue(void **state) {
     spectrum(value, ring);
     print_message("  a permutation at random    %9.5f %9.5f %9.4f %9.3f\n", band(ring, 1, 4),
                   band(ring, 5, 8), band(ring, 9, 16), band(ring, 17, 31));
-    /* So the bounds above tell one from the other. */
+    /* So the bounds above distinguish the two. */
     assert_true(band(ring, 1, 4) > 0.5 && band(ring, 5, 8) > 0.7);
 }
 
@@ -135,7 +135,7 @@ static void channels_do_not_know_each_other(void **state) {
         sum += 12 * a * b / TEXELS;
     }
     print_message("  correlation of the channels %.4f\n", sum);
-    assert_true(fabs(sum) < 0.05); /* three deviations of chance */
+    assert_true(fabs(sum) < 0.05); /* three standard deviations */
 }
 
 int main(void) {

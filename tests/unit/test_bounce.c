@@ -1,4 +1,4 @@
-/* test_bounce.c: which live probes trace rays in a frame (src/frame/bounce.h). */
+/* test_bounce.c: selection of the live probes that trace rays in a frame (src/frame/bounce.h). */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -38,7 +38,7 @@ static uint32_t probe_of(uint32_t word) { return word & MASU_BOUNCE_PROBE; }
 static uint32_t set_of(uint32_t word) { return word >> MASU_BOUNCE_SET_SHIFT & (MASU_BOUNCE_SETS - 1u); }
 static uint32_t count_of(uint32_t word) { return word >> MASU_BOUNCE_COUNT_SHIFT; }
 
-/* Frames of a whole round; `seen` is how often each probe has had its turn. */
+/* Runs the frames of a whole round; `seen` counts how often each probe was selected. */
 static uint32_t run_round(grid *g, uint32_t seen[PROBES]) {
     uint32_t round = g->b.round, frames = 0;
     for (; g->b.round == round; frames++) {
@@ -61,7 +61,8 @@ static void a_round_takes_every_probe_that_is_not_off_once(void **state) {
     free(g);
 }
 
-/* Four sets, the same again with the light of later bounces, the other twelve, then all around. */
+/* Four sets, then the same with the light of later bounces, then the other twelve, then all in a
+ * cycle. */
 static void sets_go_around_and_count_from_a_restart_on(void **state) {
     (void)state;
     grid *g = make();
@@ -82,7 +83,7 @@ static void sets_go_around_and_count_from_a_restart_on(void **state) {
     free(g);
 }
 
-/* Else a light that moves in every frame would leave each probe with its first set alone. */
+/* Otherwise a light that changes in every frame would restrict each probe to its first set. */
 static void changes_that_follow_each_other_slide_the_window(void **state) {
     (void)state;
     grid *g = make();
@@ -115,7 +116,8 @@ static void at_rest_nothing_is_traced_until_something_changes(void **state) {
     free(g);
 }
 
-/* An SDF that depends on parameters rests while these are the same; one that depends on time does not. */
+/* An SDF that depends on parameters is static while they are unchanged; one that depends on time is
+ * not. */
 static void only_time_keeps_a_field_of_parameters_awake(void **state) {
     (void)state;
     for (int timed = 0; timed < 2; timed++) {
@@ -141,7 +143,7 @@ static void only_time_keeps_a_field_of_parameters_awake(void **state) {
     }
 }
 
-/* Twice the rays until all sets are traced, but not where one change follows another. */
+/* Twice the rays until all sets are traced, but not if one change follows another. */
 static void a_change_brings_more_rays_for_some_rounds(void **state) {
     (void)state;
     grid *g = make();
@@ -164,7 +166,7 @@ static void a_change_brings_more_rays_for_some_rounds(void **state) {
 static void what_is_in_view_comes_first(void **state) {
     (void)state;
     grid *g = make();
-    /* Looks along -z from beyond the grid's middle: what is in front has z below 1. */
+    /* Looks along -z from beyond the grid's centre: probes in front have z below 1. */
     const float clip[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, -1, 0, 0, 0.05f, 0};
     const masu_bounce_view view = {clip, {2.75, 1.25, 1.0}};
     uint32_t before = 0, count, last = 0;
@@ -173,7 +175,7 @@ static void what_is_in_view_comes_first(void **state) {
         count = masu_bounce_choose(&g->b, &view, MOST, g->words);
         for (uint32_t i = 0; i < count && before + i < g->b.valid; i++) {
             uint32_t z = probe_of(g->words[i]) / 72;
-            behind |= z > 4; /* two cells around the eye count as seen */
+            behind |= z > 4; /* two cells around the camera are treated as visible */
             if (z < 2) last = before + i;
             if (behind && z == 0) last = UINT32_MAX;
         }

@@ -1,6 +1,6 @@
 /* test_brdf.c: the surface model in double precision with the tables that the GPU gets: the tables
- * against integrals made otherwise, the white furnace, reciprocity. tests/gpu/test_brdf.c then compares the
- * shader with this model. */
+ * against independently computed integrals, the white furnace test, reciprocity.
+ * tests/gpu/test_brdf.c then compares the shader with this model. */
 #include "reference/brdf.h"
 #include "shared/masu_shared.h"
 #include "split_sum.h"
@@ -24,7 +24,7 @@ enum { ANGLES = sizeof angles / sizeof *angles };
 
 static double cosine_of(double degrees) { return cos(degrees * 3.14159265358979323846 / 180); }
 
-/* Between the nodes too: roughnesses that are none of the rows', angles that are none of the columns'. */
+/* Between the nodes too: roughnesses between the rows, angles between the columns. */
 static void tables_are_near_their_integrals(void **state) {
     (void)state;
     static const char *const names[] = {"white", "weight of s", "covered", "covered, weight of s"};
@@ -45,7 +45,7 @@ static void tables_are_near_their_integrals(void **state) {
         }
     }
     for (int k = 0; k < BRDF_INTEGRALS; k++) {
-        print_message("  %-22s off by %.5f at most, at roughness %.3f, %.1f degrees\n", names[k],
+        print_message("  %-22s error of %.5f at most, at roughness %.3f, %.1f degrees\n", names[k],
                       worst[k], at[k][0], at[k][1]);
         assert_true(worst[k] < 0.0075);
     }
@@ -149,7 +149,8 @@ static void no_surface_gives_more_light_than_it_gets(void **state) {
     assert_true(most < 1.01);
 }
 
-/* A coat that leans 20 degrees over white surfaces, by quadrature of directions: rough enough for that. */
+/* A coat tilted by 20 degrees over white surfaces, by quadrature over directions: rough enough for
+ * it. */
 static void a_leaning_coat_makes_no_light(void **state) {
     (void)state;
     const int rings = 160, turns = 160;
@@ -164,7 +165,8 @@ static void a_leaning_coat_makes_no_light(void **state) {
             for (int t = 0; t < turns; t++) {
                 double z = 2 * (r + 0.5) / rings - 1, phi = 6.283185307179586 * (t + 0.5) / turns, f[3];
                 const double l[3] = {sqrt(1 - z * z) * cos(phi), sqrt(1 - z * z) * sin(phi), z};
-                brdf_over(masu_split_sum, &s, n, v, l, f); /* times pi; dl is 4 pi / (rings turns) */
+                /* times pi; dl is 4 pi / (rings * directions) */
+                brdf_over(masu_split_sum, &s, n, v, l, f);
                 for (int k = 0; k < 3; k++) all[k] += f[k] * 4 / (rings * turns);
             }
         }
@@ -173,7 +175,8 @@ static void a_leaning_coat_makes_no_light(void **state) {
     }
     print_message("  dielectrics %.4f to %.4f, metals %.4f to %.4f\n", low[0], high[0], low[1], high[1]);
     assert_true(low[0] > 0.97 && high[0] < 1.001);
-    assert_true(low[1] > 0.82 && high[1] < 1.025); /* what leaves the metal steeply is not seen by the table */
+    /* the table has no light that leaves the metal at a steep angle */
+    assert_true(low[1] > 0.82 && high[1] < 1.025);
 }
 
 int main(void) {

@@ -1,5 +1,5 @@
-/* test_bump.c: heights to normals against a slope that is known, and which pictures are heights, whatever they are
- * called. */
+/* test_bump.c: height maps to normals, checked with an exact slope; and detection of height maps by
+ * content, independent of file names. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -22,7 +22,8 @@ static void set(uint32_t x, uint32_t y, double r, double g, double b) {
     t[0] = (uint8_t)(r + 0.5), t[1] = (uint8_t)(g + 0.5), t[2] = (uint8_t)(b + 0.5), t[3] = 255;
 }
 
-/* A ramp of 2 bytes a texel along u and 1 up the picture: a slope of 2 / 255 of a height of 0.64 texels. */
+/* A ramp of 2 bytes per texel along u and 1 up the image: a slope of 2 / 255 of a height of 0.64
+ * texels. */
 static void a_ramp_has_one_slope(void **state) {
     (void)state;
     const bool clamped[2] = {true, true};
@@ -47,7 +48,7 @@ static void a_ramp_has_one_slope(void **state) {
     }
 }
 
-/* At the edge of what is repeated the other side goes on; of what is not, nothing does. */
+/* A repeated image continues at the opposite edge; a clamped one ends. */
 static void edges_are_as_they_are_wrapped(void **state) {
     (void)state;
     for (uint32_t y = 0; y < SIDE; y++) {
@@ -67,7 +68,8 @@ static void edges_are_as_they_are_wrapped(void **state) {
         }
     }
     const bool repeated[2] = {false, false};
-    masu_bump_normals(picture, SIDE, SIDE, 1e6, repeated, normals); /* no steeper than it may be */
+    /* limited to the steepest slope */
+    masu_bump_normals(picture, SIDE, SIDE, 1e6, repeated, normals);
     double slope = -(double)(normals[4 * (SIDE / 2)] / normals[4 * (SIDE / 2) + 2]);
     assert_true(fabs(slope - MASU_BUMP_SLOPE_MAX) < 1e-3);
     masu_bump_normals(picture, 1, 1, 1, repeated, normals);
@@ -82,7 +84,7 @@ static void texels_say_what_they_are(void **state) {
             for (uint32_t x = 0; x < SIDE; x++) {
                 double n = support_random_in(&seed, 0, 20), u = sin(x * 0.4) * 0.6, v = cos(y * 0.3) * 0.6;
                 double z = sqrt(1 - u * u - v * v), grey = 40 + 3 * (x % 40u);
-                if (kind == 0) set(x, y, grey, grey + n, grey + n / 2); /* as JPEG leaves it */
+                if (kind == 0) set(x, y, grey, grey + n, grey + n / 2); /* like JPEG noise */
                 if (kind == 1) set(x, y, 128 + 127 * u, 128 + 127 * v, 128 + 127 * z);
                 if (kind == 2) set(x, y, 120 + n, 80 + n, 50 + n); /* wood */
                 if (kind == 3) set(x, y, 255, 255, 255);

@@ -1,8 +1,6 @@
-/*
- * test_camera.c: the uniforms of a frame: the scene's camera path, the camera's matrix (compared
- * with projection done the long way in double), light, SDF parameters, and what is refused. Without
- * a GPU: see tests/support/dry_renderer.h.
- */
+/* test_camera.c: the uniforms of a frame: the scene's camera path, the camera's matrix (compared
+ * with an explicit projection in double precision), light, SDF parameters, and rejected frames.
+ * Without a GPU: see tests/support/dry_renderer.h. */
 #include <float.h>
 #include <math.h>
 #include <setjmp.h>
@@ -88,7 +86,7 @@ static void a_path_of_one_key_stands_still(void **state) {
     }
 }
 
-/* Half-way, position and target meet in one point: there is no direction there. */
+/* Half-way, position and target coincide: the direction is undefined there. */
 static void keys_that_cross_over_keep_a_direction(void **state) {
     (void)state;
     make_renderer(SUPPORT_ALL, 0);
@@ -134,7 +132,7 @@ static void the_matrix_projects_as_a_camera_does(void **state) {
         double forward[3], wish[3], right[3], up[3], clip[4];
         direction_of(c.forward, forward);
         direction_of(c.up, wish);
-        if (fabs(dot3(forward, wish)) > 0.99) continue; /* all but parallel */
+        if (fabs(dot3(forward, wish)) > 0.99) continue; /* almost parallel */
         cross3(forward, wish, right);
         unit3(right);
         cross3(right, forward, up);
@@ -168,7 +166,7 @@ static void the_matrix_projects_as_a_camera_does(void **state) {
         assert_near((double)u.jitter[1], above, 2e-6 * (1 + fabs(above)));
         assert_near((double)u.jitter[2], 2.0 * (double)c.jitter[0] / 1280.0, 1e-6);
         assert_near((double)u.jitter[3], 2.0 * (double)c.jitter[1] / 720.0, 1e-6);
-        for (int k = 0; k < 3; k++) { /* what the march makes its rays of */
+        for (int k = 0; k < 3; k++) { /* the basis of the sphere tracer's rays */
             assert_near((double)u.right[k], right[k] * tan_x, 1e-5);
             assert_near((double)u.up[k], up[k] * tan_y, 1e-5);
             assert_near((double)u.forward[k], forward[k], 1e-6);
@@ -179,7 +177,7 @@ static void the_matrix_projects_as_a_camera_does(void **state) {
     }
 }
 
-/* What the header tells a host that draws something itself. */
+/* The formula in the header for hosts that render something themselves. */
 static void the_header_has_the_matrix(void **state) {
     (void)state;
     make_renderer(SUPPORT_ALL, 0);
@@ -202,7 +200,7 @@ static void the_header_has_the_matrix(void **state) {
     assert_near(clip[3], z, 1e-5);
 }
 
-/* Symmetric, of fov_y: the same bits. */
+/* A symmetric window given by fov_y: bit-identical. */
 static void a_window_straight_ahead_is_a_field_of_view(void **state) {
     (void)state;
     static struct masu_frame_uniforms by_fov, by_window;
@@ -241,7 +239,8 @@ static void the_eye_keeps_its_precision_in_two_floats(void **state) {
     }
 }
 
-/* What a rung with a past is told of the frame before: whether the view is another, and whether the world may be. */
+/* Inputs of temporal rungs about the previous frame: whether the view differs, and whether the
+ * world may differ. */
 static void a_past_is_told_what_has_moved(void **state) {
     (void)state;
     enum { NOTHING = 0, MOVES = MASU_TEMPORAL_MOVES, BOTH = MASU_TEMPORAL_MOVES | MASU_TEMPORAL_CHANGES };
@@ -263,7 +262,8 @@ static void a_past_is_told_what_has_moved(void **state) {
         m.timeline.frame = i; /* the first is a cut */
         write_good(&(masu_frame_desc){.camera = &camera, .light = &light}, i & 1);
         if (uniforms(i & 1).temporal[2] != frames[i].told)
-            fail_msg("frame %u: told is %u, not %u", i, uniforms(i & 1).temporal[2], frames[i].told);
+            fail_msg("frame %u: the flags are %u, not %u", i, uniforms(i & 1).temporal[2],
+                     frames[i].told);
     }
 }
 
@@ -297,9 +297,9 @@ static void the_near_distance_of_the_scene_is_the_default(void **state) {
     assert_true(uniforms(0).clip_from_rel[14] == 0.05f);
 }
 
-/* ---- Refusals -------------------------------------------------------------------------------- */
+/* ---- Rejected frames ------------------------------------------------------------------------- */
 
-static masu_detail detail; /* of the last frame that was refused */
+static masu_detail detail; /* of the last rejected frame */
 
 static void assert_frame_refused(const masu_frame_desc *f, const char *what) {
     static unsigned char before[ROOM];
@@ -308,7 +308,7 @@ static void assert_frame_refused(const masu_frame_desc *f, const char *what) {
     if (!write_frame(f, 1, &detail)) fail_msg("%s was accepted", what);
     assert_int_equal(detail.result, MASU_ERROR_ARGUMENT);
     assert_string_equal(detail.what, what);
-    /* The text has the thing, what is given and what is allowed. */
+    /* The text has the name, the given value and the allowed range. */
     if (strncmp(detail.text, what, strlen(what)) || !strstr(detail.text, " is ") ||
         (!strstr(detail.text, ", allowed are ") && !strstr(detail.text, ", needed is ") &&
          !strstr(detail.text, ", the scene has "))) {
@@ -403,11 +403,11 @@ static void a_bad_light_is_named(void **state) {
     BAD_LIGHT("light.fog_color", l.fog_color[2] = -1.0f);
     BAD_LIGHT("light.turbidity", l.turbidity = 1.0f);
     BAD_LIGHT("light.ground", (l.turbidity = 2.0f, l.ground[1] = 2.0f));
-    BAD_LIGHT("light.turbidity", l.turbidity = 2.0f); /* the scene has no such sky */
+    BAD_LIGHT("light.turbidity", l.turbidity = 2.0f); /* the scene has no analytic sky */
 }
 
-/* An environment map is the sky and the ambient light: black, and what masu_light_of says, change
- * nothing. */
+/* An environment map replaces the sky and the ambient light: black, and the values of
+ * masu_light_of, change nothing. */
 static void a_light_that_an_environment_map_replaces_is_named(void **state) {
     (void)state;
     make_renderer(SUPPORT_ALL, 0);
@@ -429,7 +429,7 @@ static void a_light_that_an_environment_map_replaces_is_named(void **state) {
     memset(hazy.sky_zenith, 0, sizeof hazy.sky_zenith);
     memset(hazy.sky_horizon, 0, sizeof hazy.sky_horizon);
     hazy.turbidity = 3.0f;
-    m.plan.needs.sky = 1; /* desc.analytic_sky: half of the light would be the map's */
+    m.plan.needs.sky = 1; /* desc.analytic_sky: half of the light would come from the map */
     assert_frame_refused(&(masu_frame_desc){.light = &hazy}, "light.turbidity");
     m.plan.needs.sky = 0;
     masu_light own;
@@ -447,7 +447,7 @@ static void the_text_has_what_is_given(void **state) {
         if (strcmp(detail.text, __VA_ARGS__)) fail_msg("\"%s\"", detail.text);                     \
     } while (0)
     BAD_CAMERA("camera.fov_y", c.fov_y = 4.0f);
-    TEXT("camera.fov_y is 4, allowed are 0.001 to 3.1 radians");
+    TEXT("camera.fov_y is 4, allowed are 0.0005 to 3.1 radians");
     BAD_CAMERA("camera.position", c.position[1] = -2e15);
     TEXT("camera.position[1] is -2e+15, allowed are -1e15 to 1e15 m");
     BAD_CAMERA("camera.jitter", c.jitter[1] = 1.5f);
@@ -473,7 +473,7 @@ static void a_bad_sdf_parameter_is_named(void **state) {
         assert_frame_refused(&f, "sdf_param_count");
         f.sdf_param_count = UINT32_MAX;
         assert_frame_refused(&f, "sdf_param_count");
-        f.sdf_param_count = 1; /* the bad one is not given */
+        f.sdf_param_count = 1; /* the bad parameter is not given */
         write_good(&f, 0);
     }
 }
@@ -485,7 +485,7 @@ static void the_extremes_of_each_range_are_accepted(void **state) {
     masu_light l = good_light();
     masu_frame_desc f = {.camera = &c, .light = &l};
     c.position[0] = 1e15, c.position[1] = -1e15;
-    c.fov_y = 0.001f, c.near_distance = 1e-9f, l.exposure = 1e-9f, l.ambient[0] = 1e9f;
+    c.fov_y = 0.0005f, c.near_distance = 1e-9f, l.exposure = 1e-9f, l.ambient[0] = 1e9f;
     write_good(&f, 0);
     c.fov_y = 3.1f, c.near_distance = 1e9f, l.exposure = 1e9f, l.sky_horizon[2] = 1e9f;
     write_good(&f, 0);
@@ -495,7 +495,7 @@ static void the_extremes_of_each_range_are_accepted(void **state) {
     write_good(&f, 0);
 }
 
-/* The shaders trust every uniform to be finite: whatever is accepted must be. */
+/* The shaders rely on finite uniforms, so every accepted frame must have them. */
 static void whatever_is_accepted_makes_finite_uniforms(void **state) {
     (void)state;
     static const float values[] = {0.0f,   -0.0f,  1.0f,   -1.0f,  1e-45f,  -1e-45f, FLT_MIN,
@@ -625,7 +625,7 @@ static void sdf_parameters_are_defaulted_and_clamped(void **state) {
     masu_frame_desc none = {.sdf_param_count = 0};
     write_good(&none, 0);
     assert_true(uniforms(0).sdf_params[0][0] == 0.5f);
-    for (uint32_t count = 1; count <= 3; count++) { /* one less than there are, all, one more */
+    for (uint32_t count = 1; count <= 3; count++) { /* one less than the scene has, all, one more */
         none.sdf_param_count = count;
         assert_frame_refused(&none, count <= 2 ? "sdf_params" : "sdf_param_count");
     }
@@ -635,7 +635,8 @@ static void a_frame_is_written_to_its_slot_alone(void **state) {
     (void)state;
     make_renderer(SUPPORT_ALL, 0);
     static unsigned char expected[ROOM];
-    memcpy(expected, memory[MASU_ROLE_UPLOAD], ROOM); /* with what no frame writes: commands, as init left them */
+    /* data that frames do not write: commands, as init left them */
+    memcpy(expected, memory[MASU_ROLE_UPLOAD], ROOM);
     masu_frame_desc f = {.time = 1.0};
     write_good(&f, 1);
     for (uint32_t b = 0; b < MASU_BUFFER_COUNT; b++) {

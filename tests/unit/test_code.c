@@ -1,8 +1,6 @@
-/*
- * test_code.c: the SPIR-V of a blob, as masu_scene_bind looks at it: what a pass could not run is refused and names
- * its section, whatever words there are; what was compiled for other counts than the blob's is refused; the rows of
- * check_code.c say what src/plan/passes.inc says.
- */
+/* test_code.c: masu_scene_bind's checks of a blob's SPIR-V. Code that its pass could not run, and
+ * code compiled for other counts than the blob's, is rejected with the name of its section, for any
+ * content. The rows of check_code.c agree with src/plan/passes.inc. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -36,7 +34,7 @@ static void assert_refused(const char *what, const char *why) {
 
 static uint32_t *words_of(enum masu_blob_kind kind) { return support_blob_find(&blob, kind); }
 
-/* ---- What it was compiled for ---------------------------------------------------------------- */
+/* ---- The compilation record ------------------------------------------------------------------ */
 
 static void other_counts_than_the_code_was_compiled_for_are_refused(void **state) {
     (void)state;
@@ -59,7 +57,7 @@ static void other_counts_than_the_code_was_compiled_for_are_refused(void **state
     field = support_blob_find(&blob, MASU_BLOB_SDF);
     field->flags = MASU_SDF_ANCHORED;
     assert_refused("march SPIR-V", "in place");
-    /* It was compiled to read the slots' second half, which is there no more. */
+    /* The code reads the second half of the slots, which no longer exists. */
     support_blob_write(&blob, SUPPORT_ALL);
     support_blob_drop(&blob, MASU_BLOB_UPDATE_PREVIOUS_SPIRV);
     support_blob_drop(&blob, MASU_BLOB_UPDATE_SPIRV);
@@ -83,21 +81,21 @@ static void code_that_does_not_say_what_for_is_refused(void **state) {
     support_blob_write(&blob, SUPPORT_ALL);
     uint32_t *words = words_of(MASU_BLOB_MARCH_SPIRV);
     uint64_t at = masu_module_record_place(words, support_blob_row(&blob, MASU_BLOB_MARCH_SPIRV)->count) - MASU_MODULE_RECORD_WORDS;
-    words[at + 2] = 0x0A0A0A0Au; /* no line of it reaches a message */
+    words[at + 2] = 0x0A0A0A0Au; /* none of its lines reaches a message */
     assert_refused("march SPIR-V", "made for '?'");
     assert_null(strchr(detail.text, '\n'));
-    words[at] = OP(MASU_MODULE_RECORD_WORDS, 7); /* OpString: a text, but none that says it */
+    words[at] = OP(MASU_MODULE_RECORD_WORDS, 7); /* OpString: a text, but not the record */
     assert_refused("march SPIR-V", "none that shaders are made of");
 }
 
-/* ---- Modules that do not hold together ---------------------------------------------------------- */
+/* ---- Malformed modules ----------------------------------------------------------------------- */
 
 typedef struct change {
     uint32_t at, value;
     const char *why;
 } change;
 
-/* Where the smallest module has what: tests/support/blob.c. */
+/* Offsets into the smallest module: tests/support/blob.c. */
 enum { CAPABILITY = 5, MODEL = 7, ENTRY = 10, MODE = 15, TAIL = 21 + MASU_MODULE_RECORD_WORDS };
 
 static void what_no_pass_could_run_is_refused(void **state) {
@@ -153,9 +151,9 @@ static void a_module_that_is_cut_anywhere_is_refused(void **state) {
     }
 }
 
-/* ---- What it asks for ----------------------------------------------------------------------------- */
+/* ---- Required resources ---------------------------------------------------------------------- */
 
-/* A module of one resource: of that class in set, binding. */
+/* A module with one resource, of this class, in set and binding. */
 static uint32_t resource_module(uint32_t *words, uint32_t set, uint32_t binding, uint32_t class) {
     static const uint32_t storage[] = {0, 2, 12, 0, 0, 9};
     const uint32_t head[] = {0x07230203u, 0x00010300u, 0, 16, 0, OP(2, 17), 1, OP(3, 14), 0, 1, OP(5, 15), 5, 1, 0x6E69616Du, 0,
@@ -201,11 +199,11 @@ static void what_a_module_asks_for_is_found(void **state) {
     assert_null(masu_module_read(words, count, &code, &at));
     assert_int_equal(code.push_bytes, 28);
     assert_int_equal(code.bound_count, 0);
-    words[25] = 128; /* the offset: beyond what devices have */
+    words[25] = 128; /* the offset: beyond all device limits */
     assert_non_null(masu_module_read(words, count, &code, &at));
 }
 
-/* The march's pass: cone4 as an image with a sampler, three storage images; frame, counters, slots, tiles. */
+/* The march pass: cone4 as a sampled image, three storage images; frame, counters, slots, tiles. */
 static void a_resource_that_the_pass_does_not_bind_is_refused(void **state) {
     (void)state;
     for (uint32_t set = 0; set < 4; set++) {
@@ -218,7 +216,7 @@ static void a_resource_that_the_pass_does_not_bind_is_refused(void **state) {
                 support_blob_write(&blob, SUPPORT_ALL);
                 masu_blob_section *march = support_blob_row(&blob, MASU_BLOB_MARCH_SPIRV);
                 memcpy(words + place, words_of(MASU_BLOB_MARCH_SPIRV) + 21, 4 * MASU_MODULE_RECORD_WORDS);
-                /* Behind all else, where there is room. */
+                /* After everything else, where the buffer has room. */
                 blob.size = (blob.size + 15) / 16 * 16;
                 march->offset = blob.size;
                 march->count = count + MASU_MODULE_RECORD_WORDS;
@@ -241,10 +239,10 @@ static void a_resource_that_the_pass_does_not_bind_is_refused(void **state) {
     }
 }
 
-/* ---- Whatever the words are ------------------------------------------------------------------------ */
+/* ---- Arbitrary content ----------------------------------------------------------------------- */
 
-/* Every word of a small module, changed in many ways, each alone: an answer, within the words (tests/support/bind.c has
- * a page behind them that nobody may read). */
+/* Each 32-bit value of a small module, changed in many ways, one at a time: the check ends, and
+ * reads only the module (tests/support/bind.c has an unreadable page after it). */
 static void any_word_gives_an_answer(void **state) {
     (void)state;
     static const uint32_t values[] = {0, 1, 2, 5, 0xFFFF, 0x10000, 0x20011, 0x5000F, 0x1000F, 0x80000000, 0xFFFFFFFF, 0x0001003B};

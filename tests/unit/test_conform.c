@@ -1,5 +1,5 @@
-/* test_conform.c: suites of `masu conform`: what is read, what is refused and with which words,
- * which cases are chosen, what makes a verdict, and reports that other programs can read. */
+/* test_conform.c: suites of `masu conform`: parsing, rejected input and its messages, selection of
+ * cases, verdicts, and reports that other programs can read. */
 #include "cli/markup.h"
 #include "conform/report.h"
 #include "settings/knobs.h"
@@ -21,7 +21,7 @@ static bool parse(const char *text) {
     return masu_suite_parse("s.json", text, strlen(text), &suite, error, sizeof error);
 }
 
-/* A suite of one case with these members besides name, scene and size. */
+/* A suite of one case with these members in addition to name, scene and size. */
 static bool parse_case(const char *members) {
     char text[2048];
     snprintf(
@@ -39,7 +39,7 @@ static void refuses(bool parsed, const char *part) {
 }
 
 static void accepts(bool parsed) {
-    if (!parsed) fail_msg("refused: %s", error);
+    if (!parsed) fail_msg("rejected: %s", error);
 }
 
 /* ---- Reading --------------------------------------------------------------------------------- */
@@ -151,7 +151,7 @@ static void extreme_input_is_read(void **state) {
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) refuses(parse(bad[i][0]), bad[i][1]);
 }
 
-/* Two rows, with a gap behind each that holds anything. */
+/* Two rows, with arbitrary bytes in the gap after each. */
 static void what_is_not_finite_is_counted(void **state) {
     (void)state;
     const float depths[8] = {0.0f, 1.0f, NAN, NAN, -0.001f, 1.001f, INFINITY, NAN};
@@ -278,7 +278,7 @@ static void a_bad_case_is_named_with_its_key(void **state) {
     masu_suite_free(&suite);
 }
 
-/* Every prefix of a suite is refused, and none is read beyond its end. */
+/* Every prefix of a suite is rejected, and no read goes beyond its end. */
 static void a_suite_that_is_cut_is_refused(void **state) {
     (void)state;
     static const char text[] =
@@ -322,7 +322,7 @@ static void limits_make_verdicts(void **state) {
                  masu_verdict_failed(MASU_VERDICT_UNSUPPORTED));
 }
 
-/* ---- Which ----------------------------------------------------------------------------------- */
+/* ---- Selection ------------------------------------------------------------------------------- */
 
 static const char *five =
     "{\"format\": 1, \"defaults\": {\"scene\": \"s\", \"size\": [8, 4]}, \"cases\": [{\"name\": "
@@ -338,10 +338,10 @@ static void globs_and_fractions_choose(void **state) {
     assert_int_equal(masu_suite_select(&suite, "a.*", 0, 1, marks), 4);
     assert_false(marks[2]);
     assert_int_equal(masu_suite_select(&suite, "a.*", 1, 2, marks), 2);
-    assert_true(marks[1] && marks[4]); /* the second and the fourth of those that fit */
+    assert_true(marks[1] && marks[4]); /* the second and the fourth of the matching cases */
     assert_int_equal(masu_suite_select(&suite, "?.1", 0, 1, marks), 2);
     assert_int_equal(masu_suite_select(&suite, "c*", 0, 1, marks), 0);
-    for (uint32_t i = 0; i < 3; i++) { /* the parts are the whole */
+    for (uint32_t i = 0; i < 3; i++) { /* the shards add up to the whole */
         masu_suite_select(&suite, NULL, i, 3, marks);
         for (int k = 0; k < 5; k++) parts[k] += marks[k];
     }
@@ -411,8 +411,8 @@ static void names_are_escaped(void **state) {
     quoted("", "''");
 }
 
-/* Tags that close in the order in which they were opened, one root, nothing outside of it, no markup
- * or quotes where they would end something early. Of XML what the reports use. */
+/* Tags close in the reverse order of opening; one root and nothing outside it; no markup or quotes
+ * that would end something early. Only the subset of XML that the reports use. */
 static void well_formed(const char *p) {
     char open[16][32];
     size_t depth = 0, roots = 0;
@@ -506,7 +506,7 @@ static void reports_count_what_there_is(void **state) {
     snprintf(line, sizeof line, "    replay: masu conform --replay %08x:5:8x4\n", suite.hash);
     assert_non_null(strstr(text, line));
     const char *replay = strstr(text, "replay");
-    assert_null(strstr(replay + 1, "replay:")); /* what has passed has none */
+    assert_null(strstr(replay + 1, "replay:")); /* passed cases have none */
     masu_suite_free(&suite);
 }
 
@@ -524,15 +524,16 @@ static void the_shipped_suites_are_good(void **state) {
         if (!masu_suite_parse(files[i], bytes, n, &suite, error, sizeof error))
             fail_msg("%s", error);
         assert_true(suite.count >= 20);
-        for (uint32_t k = 0; k < suite.count; k++) { /* each case can fail by allocating */
+        /* each case can fail because of an allocation */
+        for (uint32_t k = 0; k < suite.count; k++) {
             assert_true(suite.cases[k].bounds[MASU_MEASURE_ALLOCATIONS].fail == 0);
         }
         masu_suite_free(&suite);
     }
 }
 
-/* Out of the table, so that a new knob is not forgotten: every switch and every other choice is set
- * by a case. */
+/* Generated from the table, so that a new knob is not forgotten: every switch and every other
+ * choice is set by a case. */
 static void every_choice_is_in_a_suite(void **state) {
     (void)state;
     static const char *const files[] = {"suites/smoke.json", "suites/full.json",
@@ -561,7 +562,8 @@ static void every_choice_is_in_a_suite(void **state) {
     for (int i = 0; i < 3; i++) masu_suite_free(&suites[i]);
 }
 
-/* What was not run is an error in every report, with its reason; a complete file. */
+/* A case that was not run is an error in every report, with its reason, and the file is
+ * complete. */
 static void a_case_that_was_not_run_is_an_error(void **state) {
     (void)state;
     char *text = NULL;

@@ -1,5 +1,5 @@
-/* test_creases.c: normals of triangles that come without any: sharp edges, smooth ones, and neither how vertices are shared
- * nor how polygons are cut matters. */
+/* test_creases.c: normals of triangles without any: sharp edges and smooth ones, independent of
+ * vertex sharing and of the triangulation. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -62,7 +62,7 @@ static void a_cube_is_flat(void **state) {
     }
 }
 
-/* A tube of `sides`: smooth round it from six on. Its caps are not. */
+/* A tube of `sides`: smooth from six sides on, except its caps. */
 static void a_tube_is_round(void **state) {
     (void)state;
     for (uint32_t sides = 3; sides <= 12; sides++) {
@@ -84,13 +84,15 @@ static void a_tube_is_round(void **state) {
             const float *p = positions + 3 * corners[i];
             double face[3];
             face_normal(i / 3, face);
-            if (i < 6 * sides && sides >= 6) expect(i, (double)p[0], (double)p[1], 0); /* however its sides are cut */
+            /* for any triangulation of its sides */
+            if (i < 6 * sides && sides >= 6) expect(i, (double)p[0], (double)p[1], 0);
             else expect(i, face[0], face[1], face[2]);
         }
     }
 }
 
-/* More faces around a point than any surface has: each for itself, and soon. None at all. */
+/* More faces around a point than any surface has: each gets its own normal, quickly. No faces at
+ * all. */
 static void whatever_comes(void **state) {
     (void)state;
     const uint32_t blades = CORNERS / 3;
@@ -108,7 +110,7 @@ static void whatever_comes(void **state) {
     }
     make(1, 0);
     assert_int_equal(normals[0][0], 0);
-    /* 0 is -0: a roof that is cut at its ridge. */
+    /* 0 is -0: a roof that is split at its ridge. */
     static const float roof[18] = {0, 0, 0, 0, 0, 1, -2, -1, 0, -0.0f, -0.0f, 0, 2, -1, 0, 0, 0, 1};
     memcpy(positions, roof, sizeof roof);
     for (uint32_t i = 0; i < 6; i++) corners[i] = i;

@@ -1,8 +1,7 @@
-/*
- * test_cull.c: culling of boxes against the same question in double precision: nothing is culled
- * that the exact test keeps, however degenerate box or view are; little is kept that it culls; the
- * tree keeps what one by one would keep, with few tests; SIMD and plain C agree in every bit.
- */
+/* test_cull.c: frustum culling of boxes, compared with an exact test in double precision: it culls
+ * nothing that the exact test keeps, however degenerate box or view are; it keeps little that the
+ * exact test culls; the hierarchy keeps the same boxes as testing each one, with few tests; SIMD
+ * and plain C are bit-identical. */
 #include <float.h>
 #include <math.h>
 #include <setjmp.h>
@@ -37,8 +36,8 @@ typedef struct exact_view {
     double n[6][3], d[6];
 } exact_view;
 
-/* Doubles hold the products of floats exactly, and their sums to 2^-52: what is within that of the
- * border is neither kept nor culled for certain, and counts as culled. */
+/* Doubles hold the products of floats exactly, and their sums to 2^-52. A box within that distance
+ * of the border is neither kept nor culled for certain, and is treated as culled. */
 static int kept_exactly(const exact_view *v, const masu_cull_box *b) {
     for (uint32_t p = 0; p < v->count; p++) {
         double m = v->d[p], r = 0.0, size = fabs(v->d[p]);
@@ -52,7 +51,7 @@ static int kept_exactly(const exact_view *v, const masu_cull_box *b) {
     return 1;
 }
 
-/* A camera as src/frame/camera.c makes one, and its five planes as the GPU's matrix says. */
+/* A camera as in src/frame/camera.c, and its five planes from the GPU's matrix. */
 static void camera(const double eye[3], const double forward[3], double fov, double aspect,
                    double near_distance, masu_cull_view *view, exact_view *exact) {
     double f[3], r[3], u[3], length = 0.0;
@@ -100,7 +99,7 @@ static void random_camera(double span, masu_cull_view *view, exact_view *exact) 
            support_random(&seed) % 2 ? 0.1 : exp(random_between(&seed, log(1e-9), log(1e9))), view, exact);
 }
 
-/* The six planes of the box |axis[i].(x - center)| <= half[i]; axes need not be unit vectors. */
+/* The six planes of the region |axis[i].(x - center)| <= half[i]; axes need not be unit vectors. */
 static void set_box_planes(masu_cull_view *view, const double center[3], const double axis[3][3],
                            const double half[3]) {
     view->count = 0;
@@ -152,7 +151,7 @@ static masu_cull_box random_box(double span) {
     return b;
 }
 
-/* A box that all but touches a plane from outside or inside, a few ulp away. */
+/* A box that almost touches a plane from outside or inside, a few ulp away. */
 static masu_cull_box bordering_box(double span, const exact_view *v) {
     masu_cull_box b = random_box(span);
     uint32_t p = (uint32_t)(support_random(&seed) % v->count);
@@ -181,7 +180,7 @@ static int is_number(const masu_cull_box *b) {
 typedef struct field {
     float arrays[6][FIELD + 3];
     uint32_t items[FIELD];
-    masu_cull_box boxes[FIELD]; /* as they were given, by position */
+    masu_cull_box boxes[FIELD]; /* in the given order, by position */
     masu_cull_node nodes[2 * FIELD];
     uint8_t states[2 * FIELD], marks[FIELD];
     masu_cull_set set;
@@ -214,7 +213,7 @@ static masu_cull_box wide_at(const field *f, uint32_t at) {
     return b;
 }
 
-/* A tree over the positions in their order: groups of `leaf`, eight groups to each parent, in
+/* A hierarchy over the positions in their order: groups of `leaf`, eight groups per parent, in
  * breadth-first order. */
 static void grow(field *f, uint32_t leaf) {
     uint32_t sizes[16], levels = 0, n = (f->set.count + leaf - 1) / leaf;
@@ -251,7 +250,7 @@ static masu_cull_counts cull(field *f, const masu_cull_view *view, int plain) {
     return counts;
 }
 
-/* ---- One by one ------------------------------------------------------------------------------ */
+/* ---- Testing each box ------------------------------------------------------------------------ */
 
 static void no_box_of_a_million_is_culled_that_the_exact_test_keeps(void **state) {
     (void)state;
@@ -278,7 +277,7 @@ static void no_box_of_a_million_is_culled_that_the_exact_test_keeps(void **state
         cull(f, &view, 0);
         for (uint32_t i = 0; i < batch; i++) {
             int here = f->marks[i] == 0xFF;
-            assert_true(here || f->marks[i] == 0xFD); /* no other bit is touched */
+            assert_true(here || f->marks[i] == 0xFD); /* no other bit changes */
             tried++;
             kept += here;
             if (!is_number(&f->boxes[i])) {
@@ -293,20 +292,20 @@ static void no_box_of_a_million_is_culled_that_the_exact_test_keeps(void **state
                          (double)f->boxes[i].center[2], (double)f->boxes[i].half[0],
                          (double)f->boxes[i].half[1], (double)f->boxes[i].half[2]);
             }
-            /* The boxes that border on a plane are kept for the slack's sake, and those beyond
-             * MASU_CULL_FAR have no place. */
+            /* Not counted as kept falsely: boxes at the border of a plane, which the slack keeps,
+             * and boxes beyond MASU_CULL_FAR, which have no defined position. */
             masu_cull_box wide = wide_at(f, i);
             if (i % 4 && is_number(&wide)) falsely += here && !there;
         }
     }
-    print_message("kept %llu of %llu, %llu of them falsely\n", (unsigned long long)kept,
+    print_message("kept %llu of %llu, %llu falsely\n", (unsigned long long)kept,
                   (unsigned long long)tried, (unsigned long long)falsely);
     assert_int_equal(tried, 1000000);
     assert_in_range(exact_kept, tried / 20, tried * 19 / 20); /* both answers are common */
     assert_true(falsely < tried / 1000);
 }
 
-/* The slack is what it says: a box that is further out than that is culled. */
+/* The slack has its documented size: a box further outside is culled. */
 static void boxes_beyond_the_slack_are_culled(void **state) {
     (void)state;
     field *f = &fields[0];
@@ -337,8 +336,8 @@ static void boxes_beyond_the_slack_are_culled(void **state) {
     assert_true(tried > 1000);
 }
 
-/* Around the origin the group's share of the slack is all that it has: its middle says nothing of how large the
- * numbers are. */
+/* Around the origin the group's share of the slack is all that it has: its centre does not reflect
+ * the magnitude of the numbers. */
 static void a_group_is_kept_where_its_only_box_is(void **state) {
     (void)state;
     field *f = &fields[0];
@@ -388,7 +387,7 @@ static void an_empty_set_and_an_empty_view_keep_nothing(void **state) {
     for (uint32_t i = 0; i < 5; i++) assert_int_equal(f->marks[i], 2);
 }
 
-/* ---- Placing --------------------------------------------------------------------------------- */
+/* ---- Transforming ---------------------------------------------------------------------------- */
 
 static void a_placed_box_holds_what_floats_make_of_its_points(void **state) {
     (void)state;
@@ -431,7 +430,7 @@ static void boxes_around_boxes_hold_them(void **state) {
         masu_cull_box around = masu_cull_around(boxes, 5);
         for (uint32_t i = 0; i < 5; i++) {
             assert_true(masu_cull_holds(&around, &boxes[i]));
-            /* Its own members, but for an ulp, say how large it is. */
+            /* Its own members give its size, except for an ulp. */
             if (isfinite(around.half[0])) assert_true(around.half[0] >= boxes[i].half[0]);
         }
         around.half[1] = nextafterf(around.half[1] * 0.999f, 0.0f);
@@ -441,11 +440,11 @@ static void boxes_around_boxes_hold_them(void **state) {
     }
 }
 
-/* ---- The tree -------------------------------------------------------------------------------- */
+/* ---- The hierarchy --------------------------------------------------------------------------- */
 
 static int by_place(const void *a, const void *b) {
     const masu_cull_box *p = a, *q = b;
-    /* Cells of a Morton curve: a tree over this order has neighbours in a group. */
+    /* Cells of a Morton curve: in this order, groups contain neighbours. */
     for (int level = 9; level >= 0; level--) {
         for (uint32_t k = 0; k < 3; k++) {
             int i = (int)((double)p->center[k] / 2.0 + 512) >> level & 1;
@@ -496,13 +495,14 @@ static void the_tree_keeps_what_one_by_one_keeps(void **state) {
             put(flat, i, &b);
         }
         grow(tree, leaves[round % COUNT(leaves)]);
-        for (uint32_t again = 0; again < 3; again++) { /* with what it has learnt, too */
+        /* also with the rejecting planes it has stored */
+        for (uint32_t again = 0; again < 3; again++) {
             cull(tree, &view, 0);
             cull(flat, &view, 0);
             for (uint32_t i = 0; i < count; i++) {
                 if ((tree->marks[i] & 2) != (flat->marks[i] & 2)) {
-                    fail_msg("round %u: box %u of %u: %d in the tree, %d alone", (unsigned)round, i,
-                             count, tree->marks[i] & 2, flat->marks[i] & 2);
+                    fail_msg("round %u: box %u of %u: %d in the hierarchy, %d by itself",
+                             (unsigned)round, i, count, tree->marks[i] & 2, flat->marks[i] & 2);
                 }
             }
             if (again == 1) random_ortho(span, &view, &exact);
@@ -522,7 +522,8 @@ static void a_path_through_a_town_takes_few_tests(void **state) {
         exact_view exact;
         street_view(frame, &view, &exact);
         in_tree += cull(tree, &view, 0).plane_tests;
-        /* One by one with the first rejecting plane ending it, which four at a time does not do. */
+        /* Tested one by one, ending at the first rejecting plane, unlike the test of four at a
+         * time. */
         for (uint32_t i = 0; i < FIELD; i++) {
             int here = 1;
             for (uint32_t p = 0; p < 5 && here; p++) {
@@ -586,7 +587,7 @@ static void what_has_moved_is_tested_where_it_is(void **state) {
             assert_true(f->marks[i] & 2);
         if (i % 4 == 0) here += f->marks[i] >> 1 & 1u;
     }
-    assert_in_range(here, COUNT(moved) / 50, COUNT(moved) / 2); /* and not all of them */
+    assert_in_range(here, COUNT(moved) / 50, COUNT(moved) / 2); /* and not all */
 }
 
 static void simd_and_plain_agree_in_every_bit(void **state) {

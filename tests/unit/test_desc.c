@@ -1,7 +1,5 @@
-/*
- * test_desc.c: descriptions. What a zero becomes, what is refused and by which name, and what the
- * public functions refuse before they would need a device.
- */
+/* test_desc.c: descriptions: the defaults for zeros, rejected descriptions and the member that the
+ * error names, and errors of the public functions that need no device. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -27,8 +25,8 @@ static void compile(const masu_desc *d, masu_frame_plan *plan) {
     memset(&detail, 0x5A, sizeof detail);
     before = detail;
     masu_result result = masu_compile(d, 256, 64, plan, &detail);
-    if (result) fail_msg("refused: %s", detail.text);
-    assert_memory_equal(&detail, &before, sizeof detail); /* untouched by success */
+    if (result) fail_msg("rejected: %s", detail.text);
+    assert_memory_equal(&detail, &before, sizeof detail); /* unchanged by success */
 }
 
 static void assert_refused(const masu_desc *d, masu_result expected, const char *what) {
@@ -110,6 +108,18 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
     SAME(reserve.particles);
     SAME(reserve.decals);
     SAME(reserve.lines);
+    SAME(reserve.trail_points);
+    SAME(reserve.textures);
+    SAME(reserve.texture_size.width);
+    SAME(reserve.texture_size.height);
+    SAME(reserve.texture_bytes);
+    SAME(reserve.mesh_upload);
+    for (uint32_t k = 0; k < MASU_MAX_MESH_KINDS; k++) {
+        SAME(reserve.meshes[k].meshes);
+        SAME(reserve.meshes[k].material);
+        SAME(reserve.meshes[k].vertices);
+        SAME(reserve.meshes[k].triangles);
+    }
     SAME(host_budget);
     SAME(device_budget);
     for (uint32_t k = 0; k < MASU_ROLE_COUNT; k++) {
@@ -146,7 +156,7 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
     SAME(clock_user);
 }
 
-/* Words that depend on the scene or on sizes are not known yet. */
+/* Values that depend on the scene or on sizes are not yet resolved. */
 static masu_rung default_rung(float scale, float sharpness) {
     return (masu_rung){.scale = scale,
                        .easu = MASU_EASU_FULL,
@@ -178,7 +188,7 @@ static masu_rung default_rung(float scale, float sharpness) {
                        .bounce_rays = 48};
 }
 
-/* Without a scene nothing more of the output is known. */
+/* Without a scene, no further member of the output is resolved. */
 static void default_output(masu_desc *d) { d->tone = MASU_TONE_ACES; }
 
 static void every_zero_becomes_its_documented_default(void **state) {
@@ -215,7 +225,7 @@ static void zeros_inside_given_rungs_become_defaults_too(void **state) {
     default_output(&given);
     given.rungs[0] = default_rung(1.0f, 0.2f);
     given.rungs[1] = default_rung(1.0f, 1.5f);
-    assert_same_desc(&expected, &given); /* rungs 2 to 7 stay zero */
+    assert_same_desc(&expected, &given); /* rungs 2 to 7 remain zero */
 }
 
 static PFN_vkVoidFunction VKAPI_CALL no_function(VkInstance instance, const char *name) {
@@ -232,7 +242,7 @@ static uint64_t no_clock(void *user) {
     return 0;
 }
 
-/* Not 0, and taken. */
+/* Not 0, and accepted. */
 static double some_value(const masu_knob *k, uint32_t n) {
     double floor_ = k->kind == MASU_KNOB_FLOAT || k->min > 1.0 ? k->min : 1.0;
     double value = k->kind == MASU_KNOB_FLOAT ? floor_ + (k->max - floor_) * (n + 1) / 17.0
@@ -293,7 +303,7 @@ static masu_desc full_desc(void) {
     return d;
 }
 
-/* What follows from the target and the scene. */
+/* Defaults that follow from the target and the scene. */
 static void output_follows_from_target_and_scene(void **state) {
     (void)state;
     static const struct {
@@ -342,7 +352,7 @@ static void output_follows_from_target_and_scene(void **state) {
     assert_true(resolved.exposure.brighten == 7 && resolved.exposure.darken == 3);
     d.exposure.metered = MASU_OFF;
     assert_int_equal(masu_desc_resolved(&d).exposure.metered, MASU_OFF);
-    /* Resolved before the scene is known, and again with it. */
+    /* Resolved before the scene is given, and again with it. */
     masu_desc early = scene_desc(RASTER, 64, 64);
     support_scene.metered = 1;
     early.targets.storage = 0;
@@ -362,7 +372,8 @@ static void what_is_given_stays_as_it_is(void **state) {
     assert_same_desc(&resolved, &given);
 }
 
-/* What is left at AUTO is what masu.h names; resolved again it is the same, and masu_compile has the same. */
+/* Only the members that masu.h names remain AUTO. Resolving again gives the same, as does
+ * masu_compile. */
 static void words_are_resolved_by_the_rule_of_the_plan(void **state) {
     (void)state;
     static masu_frame_plan plan;
@@ -390,7 +401,8 @@ static void words_are_resolved_by_the_rule_of_the_plan(void **state) {
                 fail_msg("rungs[%u].%s is still AUTO", r, k->name);
         }
     }
-    /* What the scene has no use for is off; what a device may lack the buffers for stays. */
+    /* Features that the scene does not use are off; features for which a device may lack buffers
+     * remain. */
     assert_int_equal(is.rungs[0].occlusion, support_scene.placed_occluders ? MASU_AUTO : MASU_OFF);
     support_scene.placed_occluders = 3;
     assert_int_equal(masu_desc_resolved(&d).rungs[0].occlusion, MASU_AUTO);
@@ -403,7 +415,7 @@ static void words_are_resolved_by_the_rule_of_the_plan(void **state) {
     assert_int_equal(masu_desc_resolved(&d).rungs[0].specular, MASU_AUTO);
     support_scene.glossiest = 0.9f;
     assert_int_equal(masu_desc_resolved(&d).rungs[0].specular, MASU_OFF);
-    /* A scene may ask for smooth edges, of rungs that nobody gave. */
+    /* A scene can request anti-aliased edges, for the default rungs. */
     masu_desc none = d;
     none.rung_count = 0;
     assert_int_equal(masu_desc_resolved(&none).rungs[2].aa, MASU_AA_OFF);
@@ -413,8 +425,8 @@ static void words_are_resolved_by_the_rule_of_the_plan(void **state) {
     support_scene.smooth_edges = 0;
 }
 
-/* A governor says that frames follow each other; several viewports, what a host draws or follows itself, or a rung's own
- * words about how it is resolved, that no past is wanted. */
+/* A governor implies consecutive frames. Several viewports, frames that a host renders or upscales
+ * itself, or a rung's own anti-aliasing and upscaling settings imply no temporal upscaling. */
 static void with_a_governor_many_samples_come_from_one(void **state) {
     (void)state;
     masu_desc d = scene_desc(RASTER | SDF, 640, 360);
@@ -437,10 +449,11 @@ static void with_a_governor_many_samples_come_from_one(void **state) {
         for (uint32_t r = 0; r < 7; r++) {
             assert_int_equal(is.rungs[r].temporal, r < 2 ? MASU_ON : MASU_OFF);
             assert_int_equal(twice.rungs[r].temporal, is.rungs[r].temporal);
-            assert_int_equal(is.rungs[r].specular_frames, r == 0 ? 24 : r == 1 ? 8 : 32); /* a host's own stays */
+            /* the host's value is kept */
+            assert_int_equal(is.rungs[r].specular_frames, r == 0 ? 24 : r == 1 ? 8 : 32);
             assert_int_equal(twice.rungs[r].specular_frames, is.rungs[r].specular_frames);
         }
-        assert_int_equal(is.rungs[1].sharpen, MASU_OFF); /* nothing is upscaled by EASU there */
+        assert_int_equal(is.rungs[1].sharpen, MASU_OFF); /* EASU does not run in that rung */
         assert_int_equal(is.rungs[2].sharpen, MASU_ON);
         d.viewport_count = 1;
         assert_int_equal(masu_desc_resolved(&d).rungs[1].temporal, MASU_ON);
@@ -456,7 +469,7 @@ static void with_a_governor_many_samples_come_from_one(void **state) {
         assert_int_equal(masu_desc_resolved(&d).rungs[1].temporal, MASU_OFF);
         d.debug.reference = 0;
     }
-    /* Rungs that nobody gave, and edges that are to be smooth. */
+    /* Default rungs, with anti-aliased edges requested. */
     d.rung_count = 0;
     d.ladder = MASU_OFF;
     support_scene.smooth_edges = 1;
@@ -471,7 +484,7 @@ static void with_a_governor_many_samples_come_from_one(void **state) {
     assert_int_equal(masu_desc_resolved(&source).rungs[0].temporal, MASU_OFF);
 }
 
-/* More rungs than there are is an error for later, not a reason to write behind the array. */
+/* Too many rungs are a later error, and no reason to write behind the array. */
 static void an_absurd_number_of_rungs_is_resolved_without_harm(void **state) {
     (void)state;
     masu_desc given = full_desc();
@@ -480,9 +493,9 @@ static void an_absurd_number_of_rungs_is_resolved_without_harm(void **state) {
     assert_same_desc(&resolved, &given);
 }
 
-/* ---- Refusals -------------------------------------------------------------------------------- */
+/* ---- Rejected descriptions ------------------------------------------------------------------- */
 
-/* A good description with one thing wrong: refused, and that thing is named. */
+/* A valid description with one wrong member: rejected, and the error names the member. */
 #define BAD(what, ...)                                                                             \
     do {                                                                                           \
         masu_desc d = scene_desc(RASTER | SDF, 640, 480);                                          \
@@ -525,7 +538,7 @@ static void a_missing_target_is_named(void **state) {
     BAD("targets.views", support_views[1] = VK_NULL_HANDLE);
     masu_desc d = scene_desc(RASTER, 64, 64);
     static masu_frame_plan plan;
-    support_images[2] = VK_NULL_HANDLE, support_views[2] = VK_NULL_HANDLE; /* behind the count */
+    support_images[2] = VK_NULL_HANDLE, support_views[2] = VK_NULL_HANDLE; /* beyond the count */
     compile(&d, &plan);
 }
 
@@ -549,7 +562,7 @@ static void a_bad_source_is_named(void **state) {
     BAD("source.height", d = source_desc(10, 16385));
 }
 
-/* Each value of each knob in each rung: refused by the knob's name. */
+/* Each bad value of each knob in each rung: rejected with the knob's name. */
 static void a_knob_out_of_its_range_is_named(void **state) {
     (void)state;
     const double nan = (double)NAN, infinity = (double)INFINITY;
@@ -574,7 +587,7 @@ static void a_knob_out_of_its_range_is_named(void **state) {
     masu_desc d = scene_desc(RASTER, 64, 64);
     static masu_frame_plan plan;
     d.rung_count = 1;
-    d.rungs[1].scale = (float)NAN; /* behind the count */
+    d.rungs[1].scale = (float)NAN; /* beyond the count */
     compile(&d, &plan);
     BAD("debug.share_rays", d.debug.share_rays = (masu_switch)3);
     BAD("half_floats", d.half_floats = (masu_switch)3);
@@ -583,10 +596,30 @@ static void a_knob_out_of_its_range_is_named(void **state) {
     BAD("reserve.particles", d.reserve.particles = MASU_PARTICLES_MAX + 1);
     BAD("reserve.decals", d.reserve.decals = MASU_DECALS_MAX + 1);
     BAD("reserve.lines", d.reserve.lines = MASU_LINES_MAX + 1);
+    BAD("reserve.trail_points", d.reserve.trail_points = MASU_PARTICLES_MAX + 1);
+    BAD("reserve.textures", d.reserve.textures = MASU_LIVE_TEXTURES_MAX + 1);
+    BAD("reserve.texture_size.width", (d.reserve.textures = 1, d.reserve.texture_size.width = 4097));
+    BAD("reserve.texture_size.height", (d.reserve.textures = 1, d.reserve.texture_size.height = 4097));
+    BAD("reserve.texture_bytes", (d.reserve.textures = 1, d.reserve.texture_bytes = 3));
+    BAD("reserve.texture_bytes", (d.reserve.textures = 1, d.reserve.texture_bytes = (1u << 28) + 1));
     d = scene_desc(RASTER, 64, 64);
     d.reserve = (masu_reserve){.particles = MASU_PARTICLES_MAX, .decals = MASU_DECALS_MAX, .lines = MASU_LINES_MAX};
     compile(&d, &plan);
-    /* Without a scene there is no eye to see them: nothing is planned for them. */
+    /* 2^28 texels, and one texture more; sizes that are not given. */
+    d.reserve = (masu_reserve){.trail_points = MASU_PARTICLES_MAX, .textures = 16, .texture_size = {4096, 4096}, .texture_bytes = 1u << 28};
+    compile(&d, &plan);
+    assert_int_equal(plan.images[MASU_IMAGE_TEXTURES].width, 4096);
+    d.reserve.textures = 17;
+    masu_detail detail;
+    assert_int_equal(masu_compile(&d, 1, 1, &plan, &detail), MASU_ERROR_LIMIT);
+    assert_string_equal(detail.what, "reserve.textures");
+    assert_true(detail.needed == 17ull << 24 && detail.given == 1ull << 28);
+    d.reserve = (masu_reserve){.textures = MASU_LIVE_TEXTURES_MAX};
+    compile(&d, &plan);
+    assert_int_equal(plan.desc.reserve.texture_size.height, 256);
+    assert_int_equal(plan.desc.reserve.texture_bytes, 4 * 256 * 256);
+    d.reserve = (masu_reserve){.particles = MASU_PARTICLES_MAX, .lines = MASU_LINES_MAX, .textures = 1};
+    /* Without a scene there is no camera, and no passes are planned for them. */
     masu_desc none = source_desc(64, 64);
     none.reserve = d.reserve;
     assert_int_equal(masu_desc_resolved(&none).reserve.lines, 0);
@@ -594,7 +627,7 @@ static void a_knob_out_of_its_range_is_named(void **state) {
     assert_int_equal(plan.buffers[MASU_BUFFER_SPRITES].bytes, 0);
 }
 
-/* What says which knob: as a whole and once in words, for each kind. */
+/* The text about a knob's values, in full and once as names, for each kind. */
 static void a_refused_knob_says_what_it_takes(void **state) {
     (void)state;
     static masu_frame_plan plan;
@@ -625,7 +658,7 @@ static void a_refused_knob_says_what_it_takes(void **state) {
     }
 }
 
-/* What shaders and scene files are built for is what the table promises. */
+/* The ranges that shaders and scene files are built for are those of the table. */
 static void ranges_are_those_of_shaders_and_blobs(void **state) {
     (void)state;
     static const struct {
@@ -659,7 +692,8 @@ static void ranges_are_those_of_shaders_and_blobs(void **state) {
     }
 }
 
-/* Tables that programs walk: every field of masu_rung and masu_limits, once, with its texts. */
+/* Tables that programs iterate over: each field of masu_rung and masu_limits once, with its
+ * texts. */
 static void tables_have_every_field_once(void **state) {
     (void)state;
     uint32_t end = 0;
@@ -681,7 +715,7 @@ static void tables_have_every_field_once(void **state) {
             assert_non_null(strstr(k->text, rule));
         }
         masu_rung rung = {.scale = 0.5f};
-        masu_knob_set(k, &rung, k->values, 1.0); /* behind the last: nothing */
+        masu_knob_set(k, &rung, k->values, 1.0); /* beyond the last: nothing */
         assert_true(masu_knob_get(k, &rung, k->values) == 0.0 && rung.scale == 0.5f);
     }
     assert_int_equal(end, sizeof(masu_rung));
@@ -706,7 +740,7 @@ static void meshes_too_large_for_occlusion_are_a_limit(void **state) {
         compile(&d, &plan);
         assert_int_equal(plan.occlusion, 0);
         support_scene.placed_occluders = 1;
-        compile(&d, &plan); /* AUTO goes without, and says so */
+        compile(&d, &plan); /* AUTO disables the feature, and reports it */
         assert_int_equal(plan.occlusion, 0);
         assert_string_equal(plan.why[MASU_PASS_CULL], "a mesh has too many primitives or instances");
         d.rung_count = 1;
@@ -784,7 +818,7 @@ static void a_scene_beyond_a_limit_is_refused_with_both_numbers(void **state) {
         masu_desc d = scene_desc(RASTER | SDF, 640, 480);
         masu_detail detail;
         char what[80];
-        assert_true(i < COUNT(rows)); /* a new limit takes a row here */
+        assert_true(i < COUNT(rows)); /* a new limit needs a row here */
         assert_string_equal(l->name, rows[i].name);
         uint64_t limit = rows[i].needed;
         snprintf(what, sizeof what, "limits.%s", l->name);
@@ -810,13 +844,13 @@ static void a_scene_beyond_a_limit_is_refused_with_both_numbers(void **state) {
     }
 }
 
-/* Whatever the description allows: the recordings have a draw for each of them. */
+/* For every allowed description, the recordings have a draw for each transparent surface. */
 static void more_transparents_than_can_be_recorded_are_refused(void **state) {
     (void)state;
     static masu_frame_plan plan;
     static const struct {
         uint32_t transparents, sets;
-        const char *what; /* NULL: taken */
+        const char *what; /* NULL: accepted */
     } rows[] = {{4096, 16, NULL},
                 {4097, 1, "limits.transparents"},
                 {UINT32_MAX, 1, "limits.transparents"},
@@ -835,7 +869,7 @@ static void more_transparents_than_can_be_recorded_are_refused(void **state) {
     }
 }
 
-/* What the public functions refuse before they would need a device. */
+/* Errors of the public functions that need no device. */
 static void what_no_device_is_needed_for_is_refused_without_one(void **state) {
     (void)state;
     masu_desc d = scene_desc(RASTER, 640, 480);
@@ -885,7 +919,7 @@ static void a_missing_vulkan_handle_is_named(void **state) {
     d.vulkan = full_desc().vulkan;
     d.vulkan.allocator = NULL;
     assert_int_equal(masu_memory_query(&d, &memory, &detail), MASU_ERROR_DEVICE);
-    assert_string_equal(detail.what, "vkGetDeviceProcAddr"); /* no_function knows none */
+    assert_string_equal(detail.what, "vkGetDeviceProcAddr"); /* no_function returns none */
 }
 
 static void *VKAPI_PTR no_allocation(void *user, size_t size, size_t align, VkSystemAllocationScope s) {
@@ -903,7 +937,7 @@ static void VKAPI_PTR no_notice(void *user, size_t size, VkInternalAllocationTyp
     (void)user, (void)size, (void)t, (void)s;
 }
 
-/* A driver calls them without a look. */
+/* A driver calls the callbacks without a check. */
 static void a_missing_callback_of_the_allocator_is_named(void **state) {
     (void)state;
     const VkAllocationCallbacks all = {
@@ -922,7 +956,7 @@ static void a_missing_callback_of_the_allocator_is_named(void **state) {
         if (missing == 2) some.pfnFree = NULL;
         if (missing == 3 || missing == 5) some.pfnInternalAllocation = NULL;
         if (missing == 4 || missing == 5) some.pfnInternalFree = NULL;
-        if (missing < 0 || missing == 5) { /* taken: what comes next is missing */
+        if (missing < 0 || missing == 5) { /* accepted: the next argument is missing */
             assert_int_equal(masu_memory_query(&d, &memory, &detail), MASU_ERROR_DEVICE);
             continue;
         }
@@ -961,7 +995,7 @@ static void keep_log(void *user, masu_log_level level, const char *text) {
     snprintf(last_log, sizeof last_log, "%s", text);
 }
 
-/* A description of another header is not read: not even its log. */
+/* A description with another struct size is not read: not even its log. */
 static void a_description_of_another_size_is_refused(void **state) {
     (void)state;
     static _Alignas(64) unsigned char block[64];
@@ -989,7 +1023,7 @@ static void a_description_of_another_size_is_refused(void **state) {
             assert_string_equal(last_log, "");
         }
     }
-    /* Of the right size, errors go to its log. */
+    /* With the right size, errors go to its log. */
     masu_desc d = scene_desc(RASTER, 64, 64);
     masu_detail detail;
     d.log = keep_log;
@@ -999,12 +1033,13 @@ static void a_description_of_another_size_is_refused(void **state) {
     d.output.width = 0;
     assert_int_equal(masu_memory_query(&d, &need, &detail), MASU_ERROR_ARGUMENT);
     assert_string_equal(last_log, detail.text);
-    assert_int_equal(masu_desc_resolve(&d, &d, &detail), MASU_OK); /* in place */
+    /* source and result are the same object */
+    assert_int_equal(masu_desc_resolve(&d, &d, &detail), MASU_OK);
     assert_int_equal(d.bytes, sizeof d);
     assert_int_equal(masu_version() / 1000, MASU_VERSION / 1000);
 }
 
-/* Arrays without their count, and a source beside a scene, would silently have no effect. */
+/* Arrays without a count, and a source together with a scene, would silently have no effect. */
 static void what_would_have_no_effect_is_refused(void **state) {
     (void)state;
     masu_desc d = scene_desc(RASTER, 640, 480);
@@ -1024,8 +1059,7 @@ static void what_would_have_no_effect_is_refused(void **state) {
     assert_refused(&d, MASU_ERROR_ARGUMENT, "source");
 }
 
-/* A number is checked even where nothing makes it matter: without a scene, or without a
- * governor. */
+/* A number is checked even if it has no effect: without a scene, or without a governor. */
 static void an_unused_number_is_checked_too(void **state) {
     (void)state;
     masu_desc d = source_desc(320, 200);

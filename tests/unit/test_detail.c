@@ -1,7 +1,5 @@
-/*
- * test_detail.c: LODs in a blob: what the reader refuses, by element, what the accessor finds, and which
- * form masu_lod_choose takes.
- */
+/* test_detail.c: LODs in a blob: rejected ones, with their element; the accessor; and the LOD that
+ * masu_lod_choose selects. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -70,7 +68,7 @@ static void a_lod_that_breaks_a_rule_is_refused(void **state) {
     REFUSED("lods", 0, "out of the bounds", PRIMITIVE[3].aabb_max[1] = 2.5f);
 }
 
-/* The blob with so many LODs, which are written over the one, behind all else. */
+/* The blob with `count` LODs instead of its one, after everything else. */
 static void write_lods(const masu_blob_lod *lods, size_t count) {
     support_blob_write(&blob, SUPPORT_ALL | SUPPORT_DETAIL);
     masu_blob_section *row = support_blob_row(&blob, MASU_BLOB_LODS);
@@ -93,7 +91,7 @@ static void lods_that_share_primitives_or_are_out_of_order_are_refused(void **st
     }
 }
 
-/* Three of a mesh without primitives: sharing them is none. */
+/* Three LODs of a mesh without primitives: sharing the primitives adds none. */
 static void a_fourth_lod_is_refused(void **state) {
     (void)state;
     masu_blob_lod four[4];
@@ -142,7 +140,7 @@ static void choosing_is_total_and_falls_back_to_the_mesh(void **state) {
     const float bad[] = {(float)NAN, -1.0f, 0.0f, (float)-INFINITY};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         assert_int_equal(masu_lod_choose(forms, 3, 1, bad[i], 900, 0.5f), 0);
-        if (bad[i] == 0.0f) continue; /* no error allowed: an exact form still is */
+        if (bad[i] == 0.0f) continue; /* no error allowed: an exact LOD is still chosen */
         assert_int_equal(masu_lod_choose(forms, 3, (float)NAN, 10, 900, 0.5f), 0);
         assert_int_equal(masu_lod_choose(forms, 3, 1, 10, (float)NAN, 0.5f), 0);
         assert_int_equal(masu_lod_choose(forms, 3, 1, 10, 900, bad[i]), 0);

@@ -1,5 +1,5 @@
-/* test_device_class.c: which class of GPUs a device belongs to, what the built-in ladders cost on it, and
- * what the governor makes of that. */
+/* test_device_class.c: the class of a GPU, the computed costs of the built-in ladders for it, and
+ * how the governor uses them. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -59,7 +59,7 @@ static void known_devices_have_their_class(void **state) {
         {0x5143, 0x6030001, MASU_DEVICE_MOBILE},
         {0x13B5, 0x70930000, MASU_DEVICE_MOBILE},
         {0x1010, 0x1, MASU_DEVICE_MOBILE},
-        {0x10DE, 0x1C03, MASU_DEVICE_OTHER}, /* no compiler of NVIDIA's was asked */
+        {0x10DE, 0x1C03, MASU_DEVICE_OTHER}, /* no NVIDIA compiler was used */
         {0x106B, 0, MASU_DEVICE_OTHER},
     };
     for (size_t i = 0; i < COUNT(known); i++) {
@@ -70,7 +70,7 @@ static void known_devices_have_their_class(void **state) {
             if (is != known[i].wanted)
                 fail_msg("%04x:%04x is of '%s'", known[i].vendor, known[i].device, masu_device_class_name(is));
         }
-        /* A CPU that says it is one of these is a CPU. */
+        /* A CPU with the IDs of a GPU is a CPU. */
         assert_int_equal(class_of(known[i].vendor, known[i].device, VK_PHYSICAL_DEVICE_TYPE_CPU), MASU_DEVICE_OTHER);
     }
     assert_string_equal(masu_device_class_name(MASU_DEVICE_OTHER), "");
@@ -93,7 +93,8 @@ static void every_rung_of_every_ladder_has_its_cost_on_every_class(void **state)
             assert_true(costs[0] == 1.0f);
             double off = 0;
             for (uint32_t r = 0; r < MASU_MAX_RUNGS; r++) {
-                /* tests/scripts/docs_tables.sh asks whether it is of the ladder that is measured now. */
+                /* tests/scripts/docs_tables.sh checks that it belongs to the ladder that is
+                 * measured now. */
                 assert_true(r < l->count ? costs[r] > 0.01f && costs[r] < 1.2f : costs[r] == 0.0f);
                 if (r < l->count)
                     off = fmax(off, fabs((double)costs[r] - (double)(l->ratios[r] / l->ratios[0])));
@@ -104,8 +105,9 @@ static void every_rung_of_every_ladder_has_its_cost_on_every_class(void **state)
     }
 }
 
-/* Frames of a GPU that takes `load` ms at rung 0 and elsewhere what was computed for its class. Returns
- * how many are over the target of 16.67 ms; *lost: rungs that were worse than the best that fits, summed up. */
+/* Frames on a GPU that takes `load` ms at rung 0, and the computed costs of its class elsewhere.
+ * Returns the number of frames over the target of 16.67 ms. *lost: sum of the rungs by which frames
+ * were worse than the best that fits. */
 static uint32_t play(const masu_ladder *l, const float *truth, const float *prior, double load,
                      uint64_t seed, uint32_t *lost) {
     enum { FRAMES = 600, LATENCY = 2 };
@@ -133,9 +135,9 @@ static uint32_t play(const masu_ladder *l, const float *truth, const float *prio
     return over;
 }
 
-/* Of the governor, on a GPU that behaves as computed: what it makes of the mean of the classes,
- * which a GPU of no class has as well, and of the costs of its own. Costs from a CPU driver were
- * wrong for up to 71 frames. */
+/* The governor on a GPU that behaves as computed: with the mean of the classes, which an unknown
+ * GPU gets as well, and with the costs of its own class. Costs from a CPU driver were wrong for up
+ * to 71 frames. */
 static void a_first_estimate_misses_a_few_frames_at_most(void **state) {
     (void)state;
     for (uint32_t c = 0; c < MASU_SCENE_CLASSES; c++) {

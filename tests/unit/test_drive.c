@@ -1,5 +1,5 @@
-/* test_drive.c: the game's physics, without a picture: the track file of the test scene, laps, barriers, the
- * other cars. */
+/* test_drive.c: the game's physics, without rendering: the track file of the test scene, laps,
+ * barriers, the other cars. */
 #include "../../examples/drive/race.h"
 
 #include <setjmp.h>
@@ -20,7 +20,8 @@ static void places_are_found_again(void **state) {
     for (double along = 0; along < road.length; along += 1.7) {
         for (double side = -4; side <= 4; side += 4) {
             track_place p = track_along(&road, along, side), found = track_find(&road, p.ground, -1);
-            /* Between two points the road is straight, and a place beside a corner has two answers. */
+            /* The road is straight between two points, and a position next to a corner has two
+             * solutions. */
             assert_true(fabs(found.along - along) < 0.8 || fabs(found.along - along) > road.length - 0.8);
             assert_true(fabs(found.side - side) < 0.1);
         }
@@ -52,7 +53,7 @@ static void a_lap_counts_once(void **state) {
     assert_int_equal(r.laps, 2);
     assert_true(r.best > 20 && r.best < 40);
     assert_true(r.cars[0].travelled >= 2 * road.length && started < road.length);
-    /* Back over the line and forth again: no third lap. */
+    /* Back over the line and forward again: no third lap. */
     for (int i = 0; i < 240; i++) race_step(&r, &(car_input){.brake = 1}, 1.0 / 60);
     assert_true(r.cars[0].travelled < 2 * road.length && car_speed(&r.cars[0]) < -3);
     for (int i = 0; i < 240; i++) race_step(&r, &(car_input){.throttle = 1}, 1.0 / 60);
@@ -81,7 +82,7 @@ static void grass_is_slow(void **state) {
     double speed[2];
     for (int grass = 0; grass < 2; grass++) {
         race_start(&r, &road);
-        if (grass) r.cars[0].at.z += 4; /* 27 + 4: 6 m beside the middle, whose edge is at 5 */
+        if (grass) r.cars[0].at.z += 4; /* 27 + 4: 6 m from the centre line; the edge is at 5 */
         for (int i = 0; i < 150; i++) race_step(&r, &(car_input){.throttle = 1}, 1.0 / 60);
         assert_int_equal(r.cars[0].off, grass);
         speed[grass] = car_speed(&r.cars[0]);
@@ -114,7 +115,7 @@ static void the_same_drive_twice(void **state) {
     assert_true(r.distance == first.distance && r.distance > 50);
 }
 
-/* The real file behind another head. */
+/* The real file with another header. */
 static bool takes(const char *head, size_t bytes) {
     static char text[1 << 16];
     static track t;

@@ -1,6 +1,6 @@
-/* test_emission.c: the two texels of surfaces that emit (measure/texel.h, the twin of
- * shaders/shared/pack.glsl), of ray hits and of the G-buffer: how far rounding takes a material,
- * which of them are lit, and that any texels give numbers in range. */
+/* test_emission.c: the two texels of emissive surfaces (measure/texel.h, the C copy of
+ * shaders/shared/pack.glsl), of ray hits and of the G-buffer: rounding errors of materials, the lit
+ * flag, and that any texels decode to numbers in range. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,8 +1,6 @@
-/*
- * test_environment.c: skies from pictures: what masu-bake reads and refuses, what a texel holds, and
- * the blurred mips and the irradiance against integrals over the picture in double precision. The
- * bounds are what was measured, rounded up.
- */
+/* test_environment.c: environment maps from images: formats that masu-bake accepts and rejects,
+ * texel encoding, and the blurred mips and the irradiance against integrals over the image in
+ * double precision. The bounds are the measured errors, rounded up. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -27,7 +25,7 @@
 #define WIDE 256u
 #define HIGH 128u
 
-/* ---- Pictures -------------------------------------------------------------------------------- */
+/* ---- Images ---------------------------------------------------------------------------------- */
 
 static float pixels[WIDE * HIGH * 3];
 
@@ -69,7 +67,7 @@ static void forget(masu_bake_content *content) {
     memset(content, 0, sizeof *content);
 }
 
-/* Average over a GGX lobe that is seen from above, weighted by the cosine. */
+/* Average over a GGX lobe viewed from above, weighted by the cosine. */
 static void integrate(const masu_bake_panorama *p, const double n[3], double roughness,
                       double out[3]) {
     double a2 = pow(roughness, 4), weight = 0;
@@ -91,7 +89,7 @@ static void integrate(const masu_bake_panorama *p, const double n[3], double rou
     for (int c = 0; c < 3; c++) out[c] /= weight;
 }
 
-/* RMS over directions and colours as a share of the picture's mean. */
+/* RMS over directions and colours relative to the image's mean. */
 static double error_at(const masu_bake_panorama *p, const masu_blob_environment_map *map,
                        const uint32_t *texels, double roughness) {
     double square = 0, mean = 0;
@@ -115,7 +113,8 @@ static void mips_are_the_picture_averaged_by_the_lobe(void **state) {
     static const struct {
         double window, between, at[2], rest;
     } cases[] = {{0, 0, {0.006, 0.026}, 0.055}, {30, 0, {0.02, 0.06}, 0.22}};
-    for (size_t i = whole_run() ? 0 : 1; i < sizeof cases / sizeof *cases; i++) { /* the harder one */
+    /* the harder case */
+    for (size_t i = whole_run() ? 0 : 1; i < sizeof cases / sizeof *cases; i++) {
         masu_bake_content content;
         paint(cases[i].window);
         masu_bake_panorama p = picture(0.4);
@@ -125,7 +124,7 @@ static void mips_are_the_picture_averaged_by_the_lobe(void **state) {
             double r = (double)mip / (map->mips - 1);
             double at = error_at(&p, map, texels_of(&content), r);
             double between = error_at(&p, map, texels_of(&content), r - 0.1);
-            print_message("window %g: roughness %.1f off by %.4f of the mean, %.1f by %.4f\n",
+            print_message("window %g: roughness %.1f error %.4f of the mean, %.1f error %.4f\n",
                           cases[i].window, r, at, r - 0.1, between);
             assert_true(at <= cases[i].at[mip > 1]);
             assert_true(between <= cases[i].rest);
@@ -141,7 +140,7 @@ static void some_normal(int i, int count, double out[3]) {
     out[2] = flat * sin(a);
 }
 
-/* Irradiance / pi at normals, of the pixels. */
+/* Irradiance / pi at normals, from the pixels. */
 enum { COUNT = 40 };
 
 static void light_on(const masu_bake_panorama *p, double normals[COUNT][3], double out[COUNT][3]) {
@@ -160,7 +159,8 @@ static void light_on(const masu_bake_panorama *p, double normals[COUNT][3], doub
     }
 }
 
-/* Relative RMS over normals of what sun and coefficients give, against the picture with its sun. */
+/* Relative RMS over normals of the irradiance from sun and coefficients, against the image with its
+ * sun. */
 static double irradiance_error(const masu_bake_panorama *whole, const masu_bake_picture_sun *sun,
                                const masu_blob_environment_map *map) {
     double normals[COUNT][3], truth[COUNT][3], square = 0;
@@ -179,10 +179,10 @@ static double irradiance_error(const masu_bake_panorama *whole, const masu_bake_
     return sqrt(square);
 }
 
-/* The picture as painted, before its sun is cut. */
+/* The image as painted, before its sun is removed. */
 static float whole_pixels[WIDE * HIGH * 3];
 
-/* Cuts the sun of the painted pixels, if there is one, and fits the rest. */
+/* Removes the sun of the painted image, if there is one, and fits the rest. */
 static int cut_and_fit(double turn, masu_bake_picture_sun *sun, double *error) {
     masu_blob_environment_map map;
     masu_bake_panorama p = picture(turn), whole = p;
@@ -195,7 +195,7 @@ static int cut_and_fit(double turn, masu_bake_picture_sun *sun, double *error) {
     return found;
 }
 
-/* Adds a disc of constant radiance; angles in degrees, azimuths of a picture that is not turned. */
+/* Adds a disc of constant radiance; angles in degrees, azimuths of an unrotated image. */
 static void add_disc(double azimuth, double elevation, double radius, double light) {
     double e = elevation * PI / 180, a = azimuth * PI / 180;
     const double to[3] = {cos(e) * sin(a), sin(e), cos(e) * cos(a)};
@@ -208,7 +208,7 @@ static void add_disc(double azimuth, double elevation, double radius, double lig
     }
 }
 
-/* Order 2 alone is off by 0.4 and 5.3 %, and by 47 % with two lamps over little light. */
+/* Order 2 by itself has errors of 0.4 and 5.3 %, and of 47 % with two lamps over little light. */
 static void irradiance_is_that_of_the_picture(void **state) {
     (void)state;
     static const struct {
@@ -219,19 +219,19 @@ static void irradiance_is_that_of_the_picture(void **state) {
     for (int i = 0; i < 2; i++) {
         paint(cases[i].window);
         assert_false(cut_and_fit(-1, &sun, &error));
-        print_message("window %g: irradiance off by %.4f of itself\n", cases[i].window, error);
+        print_message("window %g: relative irradiance error %.4f\n", cases[i].window, error);
         assert_true(error <= cases[i].bound);
     }
     for (uint32_t i = 0; i < WIDE * HIGH * 3; i++) pixels[i] = 0.02f;
     add_disc(90, 20, 8, 30);
     add_disc(-140, 35, 5, 70);
     assert_false(cut_and_fit(0, &sun, &error));
-    print_message("two lamps: irradiance off by %.4f of itself\n", error);
+    print_message("two lamps: relative irradiance error %.4f\n", error);
     assert_true(error <= 0.35);
 }
 
-/* Wherever it stands: at the zenith and the nadir, across the picture's edge, below the horizon,
- * and with another one beside it, which stays in the picture. */
+/* At any position: the zenith and the nadir, across the image's edge, below the horizon, and with a
+ * second sun next to it, which is kept in the image. */
 static void a_sun_is_cut_out_of_the_picture(void **state) {
     (void)state;
     static const struct {
@@ -258,7 +258,7 @@ static void a_sun_is_cut_out_of_the_picture(void **state) {
     }
 }
 
-/* Pictures without a sun: black, evenly bright, a source too large or too weak, too few pixels.
+/* Images without a sun: black, uniform, a source that is too large or too weak, too few pixels.
  * They are unchanged. */
 static void what_is_no_sun_stays_in_the_picture(void **state) {
     (void)state;
@@ -293,7 +293,8 @@ static void what_is_no_sun_stays_in_the_picture(void **state) {
     }
 }
 
-/* Of a black picture every coefficient is 0; radiances near the end of floats give finite ones. */
+/* A black image has coefficients of 0; radiances near the limit of floats give finite
+ * coefficients. */
 static void no_picture_gives_coefficients_that_are_not_finite(void **state) {
     (void)state;
     for (int bright = 0; bright < 2; bright++) {
@@ -346,7 +347,7 @@ static void hear(void *user, const char *text) {
     snprintf(heard, sizeof heard, "%s", text);
 }
 
-/* A texel holds radiances up to 65408; what is above is clamped, and said. */
+/* A texel holds radiances up to 65408; larger ones are clamped and reported. */
 static void what_no_texel_holds_is_told(void **state) {
     (void)state;
     float rgb[3 * 8];
@@ -381,7 +382,7 @@ static void a_square_covers_all_directions(void **state) {
     assert_true(fabs(down[1] + 1) < 1e-12);
 }
 
-/* The middle of the picture lies at the azimuth it is turned to; right of it the azimuth falls. */
+/* The centre of the image is at the azimuth of its rotation; the azimuth falls to the right. */
 static void a_picture_is_turned_and_scaled(void **state) {
     (void)state;
     memset(pixels, 0, sizeof pixels);
@@ -441,7 +442,7 @@ static void radiance_files_are_read_and_damaged_ones_refused(void **state) {
         free(p.rgb);
         for (size_t k = 0; k < n; k++) assert_false(loads(bytes, k, &p));
         uint64_t random = 11;
-        for (int i = 0; i < 500; i++) { /* whatever a byte becomes: read or refused */
+        for (int i = 0; i < 500; i++) { /* any byte changed: read or rejected */
             memcpy(cut, bytes, n);
             cut[support_random(&random) % n] = (uint8_t)support_random(&random);
             if (loads(cut, n, &p)) free(p.rgb);

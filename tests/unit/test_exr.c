@@ -1,5 +1,5 @@
-/* test_exr.c: OpenEXR files. Floats come back bit for bit, compressed files of other writers are
- * read, damaged ones are refused with one line. tests/scripts/compare.sh exchanges files with
+/* test_exr.c: OpenEXR files. Floats are read back bit for bit, compressed files of other writers
+ * are read, damaged ones are rejected with one line. tests/scripts/compare.sh exchanges files with
  * ImageMagick. */
 #ifndef _XOPEN_SOURCE
 #define _XOPEN_SOURCE 700
@@ -146,7 +146,7 @@ static void other_kinds_are_named(void **state) {
     refused(m.bytes, m.count, "truncated or damaged");
 }
 
-/* Each block is its own allocation, so that sanitizers see a read beyond it. */
+/* Each block is a separate allocation, so that sanitizers detect a read beyond it. */
 static void damaged_files_are_refused_or_read(void **state) {
     (void)state;
     made m = run_lengths();

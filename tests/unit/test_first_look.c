@@ -1,6 +1,6 @@
-/* test_first_look.c: what masu-bake makes of a model without a scene, judged by projecting each vertex here: the model
- * fills the frame and does not leave it, at any size and place; what stands free has a ground that hides none of
- * it, shadows and reflections. */
+/* test_first_look.c: the default scene that masu-bake makes for a model, checked by projecting each
+ * vertex here: the model fills the frame and does not leave it, at any size and position; an object
+ * without surroundings gets a ground that does not occlude it, with shadows and reflections. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -30,7 +30,8 @@ static void place_shape(masu_bake_content *content, masu_bake_vec3 size, double 
     masu_bake_content_release(&piece);
 }
 
-/* Most of |x| and |y| on the picture, 1 at its edge, of the first `instances`; and that all is in front of `near`. */
+/* Largest |x| and |y| in the image (1 at its edge) of the first `instances`. All are in front of
+ * `near`. */
 static void project(const masu_bake_content *c, uint64_t instances, const masu_blob_camera_key *key,
                     double most[2]) {
     masu_bake_vec3 eye = masu_bake_v3f(key->position);
@@ -71,7 +72,8 @@ static void the_model_fills_the_frame(void **state) {
         for (size_t s = 0; s < 3; s++) {
             for (size_t p = 0; p < 3; p++) {
                 bool plays = p == 1;
-                if (scales[s] < 1 && p == 2) continue; /* floats of a thousand metres are no model of a centimetre */
+                /* a model of a centimetre is not possible in floats of a thousand metres */
+                if (scales[s] < 1 && p == 2) continue;
                 const double *e = things[n].size, *at = places[p];
                 masu_bake_content content = {0};
                 masu_bake_description d = {.reflections = {.wanted = true}};
@@ -89,10 +91,11 @@ static void the_model_fills_the_frame(void **state) {
                 double share = plays ? 0.75 : 0.89; /* room to move */
                 assert_true(fabs(fmax(most[0], most[1]) - share) < 0.03);
                 assert_int_equal(masu_bake_count(&content, MASU_BLOB_INSTANCES), things[n].ground ? 2 : 1);
-                if (e[1] < 0.5 * fmax(e[0], e[2])) /* a long table is seen from above, not along its top */
+                /* a long table is viewed from above, not along its top */
+                if (e[1] < 0.5 * fmax(e[0], e[2]))
                     assert_true((double)d.look.keys[0].position[1] > bounds.high.y + 0.25 * e[1] * scales[s]);
                 masu_bake_box all = masu_bake_bounds(&content, &identity);
-                if (things[n].ground) { /* below it, but by no more than a gap that nobody sees */
+                if (things[n].ground) { /* below it, but by an invisible gap at most */
                     double gap = bounds.low.y - all.low.y;
                     assert_true(gap > 0 && gap < 0.002 * scales[s] * fmax(e[0], fmax(e[1], e[2])));
                     assert_true(all.high.y == bounds.high.y && all.low.x < bounds.low.x);
@@ -108,8 +111,8 @@ static void the_model_fills_the_frame(void **state) {
     }
 }
 
-/* The near plane of a scene that says nothing: a centimetre whatever the scene's size, so that no
- * wall before the camera is cut away; less where the whole scene is small. */
+/* The near plane of a scene without one: a centimetre for any size of scene, so that no wall before
+ * the camera is clipped; less for a scene that is small as a whole. */
 static void the_near_plane_is_near(void **state) {
     (void)state;
     static const double cases[][2] = {

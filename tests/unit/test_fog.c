@@ -14,8 +14,8 @@
 #include "support/floats.h"
 #include "support/random.h"
 
-/* What the text takes of GLSL and of guard.glsl. Its floats are floats: constants too, which are
- * doubles in C, so that what is computed here is at least as precise as on a device. */
+/* The parts of GLSL and guard.glsl that the source uses. Its floats are floats, but constants are
+ * doubles in C, so that results are at least as precise as on a device. */
 #define MASU_GUARD_GLSL
 #define min(a, b) fminf((float)(a), (float)(b))
 #define max(a, b) fmaxf((float)(a), (float)(b))
@@ -30,7 +30,7 @@ static float masu_exp2(double x) { return exp2f(clamp(x, -126, 126)); }
 #include "light/fog.glsl"
 #pragma GCC diagnostic pop
 
-/* Simpson's rule; pieces so short that the density changes by a fortieth or less in each. */
+/* Simpson's rule, with pieces so short that the density changes by a fortieth or less in each. */
 static double integral(double density, double falloff, double height, double climb, double from,
                        double to) {
     if (!(to > from)) return 0;
@@ -69,8 +69,8 @@ static void depths_are_those_of_numeric_integrals(void **state) {
         relative = worst_of(relative, fabs(got / want - 1));
     }
     print_message(
-        "fog: depth off by %.1e of itself, what is left by %.1e; %d rays neither clear nor "
-        "lost\n",
+        "fog: relative error of the depth %.1e, of the transmittance %.1e; "
+        "%d rays neither clear nor lost\n",
         relative, worst, seen);
     assert_true(seen > 1500 && relative < 1e-4 && worst < 2e-6);
 }
@@ -90,14 +90,14 @@ static void a_ray_to_the_sky_is_one_of_great_length(void **state) {
         double sky =
             (double)masu_fog_left(masu_fog_depth_sky(density, falloff, height, climb, start));
         worst = worst_of(worst, fabs(sky - exp(-want)));
-        /* And as what is far away, whatever it is. */
+        /* Equal to a point at a great distance. */
         double far =
             (double)masu_fog_left(masu_fog_depth(density, falloff, height, climb, start, 1e12f));
         worst = worst_of(worst, fabs(sky - far));
     }
-    print_message("fog: what is left of the sky off by %.1e\n", worst);
+    print_message("fog: relative error of the sky's transmittance %.1e\n", worst);
     assert_true(worst < 2e-6);
-    /* The horizon and below: nothing, without a step on the way there. */
+    /* At the horizon and below, transmittance is 0, and it decreases to 0 continuously. */
     double before = (double)masu_fog_left(masu_fog_depth_sky(0.01f, 0.1f, 2, 1, 0));
     for (float climb = 1; climb > 1e-12f; climb *= 0.9f) {
         double left = (double)masu_fog_left(masu_fog_depth_sky(0.01f, 0.1f, 2, climb, 0));
@@ -111,7 +111,7 @@ static void a_ray_to_the_sky_is_one_of_great_length(void **state) {
                 1e-6f); /* does not thin out */
 }
 
-/* The same from both ends, and in two pieces as in one. */
+/* The same in both directions, and in two pieces as in one. */
 static void fog_is_the_same_both_ways_and_adds_up(void **state) {
     (void)state;
     uint64_t seed = 7;
@@ -148,7 +148,7 @@ static void any_bits_give_a_depth(void **state) {
     }
 }
 
-/* What is no distance counts as 0, and so does one behind the eye. */
+/* An invalid distance is treated as 0, as is one behind the camera. */
 static void fog_that_starts_nowhere_starts_at_the_eye(void **state) {
     (void)state;
     static const float odd[] = {-30, -INFINITY, INFINITY, NAN};

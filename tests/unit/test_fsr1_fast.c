@@ -1,6 +1,6 @@
-/* test_fsr1_fast.c: what goes beyond AMD's shaders, asked of the scalar reference: RCAS keeps
- * constants, which an approximate reciprocal does not; and EASU's early way out is within a step of
- * 8 bits of the filter, on pictures made to be hard for it. */
+/* test_fsr1_fast.c: changes relative to AMD's shaders, tested in the scalar reference: RCAS keeps
+ * constants, which an approximate reciprocal does not; and EASU's early exit is within a step of 8
+ * bits of the filter, on images made to be hard for it. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -29,7 +29,7 @@ static float float_of(uint32_t u) {
     return x;
 }
 
-/* AMD's medium reciprocal: a guess from the bits, and one step of Newton's. */
+/* AMD's medium reciprocal: an estimate from the bits, and one Newton step. */
 static float medium_rcp(float a) {
     uint32_t bits;
     memcpy(&bits, &a, sizeof bits);
@@ -57,13 +57,14 @@ static void rcas_keeps_constants_to_the_last_bits(void **state) {
         double lost = fabs((double)ours - (double)v) / (v > 0.0f ? (double)v : 1.0);
         if (lost > approximate) approximate = lost;
     }
-    print_message("  constants: off by %.5f %%, by AMD's reciprocal %.2f %%\n", 100 * worst,
+    print_message("  constants: error %.5f %%, with AMD's reciprocal %.2f %%\n", 100 * worst,
                   100 * approximate);
-    assert_true(worst < 1e-6);                             /* 0.0001 %; asked for: 0.02 % */
-    assert_true(approximate > 2e-3 && approximate < 5e-3); /* or the comparison says nothing */
+    assert_true(worst < 1e-6);                             /* 0.0001 %; required: 0.02 % */
+    /* otherwise the comparison proves nothing */
+    assert_true(approximate > 2e-3 && approximate < 5e-3);
 }
 
-/* ---- EASU, flat places ----------------------------------------------------------------------- */
+/* ---- EASU, flat regions ---------------------------------------------------------------------- */
 
 typedef enum kind {
     SLOW_RAMP,  /* a step every few texels */
@@ -74,13 +75,13 @@ typedef enum kind {
     LINES,      /* the same, bright */
     CHECKER_1,
     CHECKER,
-    BESIDE, /* flat to one step right beside an edge: the kernel is turned and stretched */
+    BESIDE, /* flat to one step next to an edge: the kernel is rotated and stretched */
     KINDS
 } kind;
 
 static const char *const names[KINDS] = {"slow ramp", "steep ramp", "noise 1",
                                          "noise 2",   "lines 1",    "lines",
-                                         "checker 1", "checker",    "beside an edge"};
+                                         "checker 1", "checker",    "next to an edge"};
 
 static int level(kind k, uint32_t x, uint32_t y, uint32_t c) {
     uint32_t hash = masu_pattern_hash((y * W + x) * 3 + c);
@@ -134,8 +135,8 @@ static void sharpen(const float *from, uint32_t w, uint32_t h, float *to) {
     masu_ref_rcas(&in, exp2f(-0.2f), to);
 }
 
-/* No output pixel may lie on a texel centre, where this test and the reference could take different
- * texels: sizes without odd:odd ratios. */
+/* No output pixel may be on a texel centre, where this test and the reference could choose
+ * different texels: sizes without odd:odd ratios. */
 static const uint32_t outputs[][2] = {{80, 72}, {61, 55}, {100, 91}, {97, 38}, {43, 107}};
 
 static void a_flat_place_left_early_is_within_a_step_of_the_filter(void **state) {
@@ -179,7 +180,8 @@ static void a_flat_place_left_early_is_within_a_step_of_the_filter(void **state)
     }
 }
 
-/* The other pixels: the same taps and clamp, a kernel that another straightness has stretched. */
+/* The other pixels: the same taps and clamp, with a kernel stretched by a different
+ * straightness. */
 static void elsewhere_the_fast_way_stays_within_the_four_texels_too(void **state) {
     (void)state;
     for (int p = 0; p < MASU_PATTERN_COUNT; p++) {
@@ -197,7 +199,7 @@ static void elsewhere_the_fast_way_stays_within_the_four_texels_too(void **state
         }
         print_message("  %-12s fast against full: rms %.2f, worst %.0f of 255\n",
                       masu_pattern_name((enum masu_pattern)p), sqrt(sum / (80 * 72 * 3)), worst);
-        /* What is smooth hardly changes; of noise, each pixel may. */
+        /* Smooth images hardly change; in noise, each pixel may. */
         double most = p == MASU_PATTERN_RAMP || p == MASU_PATTERN_FLAT ? 1.02
                       : p == MASU_PATTERN_PHOTO                        ? 60
                                                                        : 255;

@@ -1,8 +1,7 @@
-/*
- * test_fsr1_reference.c: is the judge itself right? Properties that EASU and RCAS must have,
- * numbers worked out by hand, and the documented size of the effect of the approximate reciprocals
- * (wrong constants would change it). The GPU is compared with this reference elsewhere.
- */
+/* test_fsr1_reference.c: tests of the FSR1 reference itself: properties that EASU and RCAS must
+ * have, numbers computed by hand, and the documented size of the effect of the approximate
+ * reciprocals (wrong constants would change it). The GPU is compared with this reference in other
+ * tests. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -18,7 +17,7 @@
 
 #define SIDE_MAX 512
 
-/* Scratch pictures, large enough for every case below. */
+/* Scratch images, large enough for every case below. */
 static uint8_t bytes_in[SIDE_MAX * SIDE_MAX * 4];
 static float picture[SIDE_MAX * SIDE_MAX * 3];
 static float mirrored[SIDE_MAX * SIDE_MAX * 3];
@@ -69,7 +68,7 @@ static void a_flat_picture_comes_out_of_easu_unchanged_to_the_bit(void **state)
 static void easu_stays_within_its_four_centre_taps(void **state)
 {
     (void)state;
-    const uint32_t w = 30, h = 22, out_w = 53, out_h = 47; /* no output lies on a texel centre */
+    const uint32_t w = 30, h = 22, out_w = 53, out_h = 47; /* no output is on a texel centre */
     struct masu_ref_image in = pattern_picture(MASU_PATTERN_WHITE_NOISE, 3, w, h);
     masu_ref_easu(&in, out_w, out_h, MASU_REF_BIT_TRICK, result);
     uint32_t strictly_between = 0;
@@ -216,8 +215,8 @@ static float effect_of_the_bit_tricks(const struct masu_ref_image *in, uint32_t 
     return 255.0f * masu_ref_max_difference(result, other, (size_t)out_w * out_h * 3);
 }
 
-/* Up to 74 on binary noise, 37 on white noise, 16 to 41 on hard edges (by picture), 17 on dots.
- * Both ends matter: 0 would mean that the tricks are not in use. */
+/* Up to 74 on binary noise, 37 on white noise, 16 to 41 on hard edges (by image), 17 on dots. Both
+ * ends matter: 0 would mean that the tricks are not in use. */
 static void bit_tricks_change_each_kind_of_picture_by_the_documented_amount(void **state)
 {
     (void)state;
@@ -340,8 +339,8 @@ struct cross {
     float up, left, centre, right, down;
 };
 
-/* The middle pixel of a 3x3 picture with these crosses in R, G, B; corners are poison: the filter
- * must not look at them. */
+/* The centre pixel of a 3x3 image with these crosses in R, G, B. The corners are poison: the filter
+ * must not read them. */
 static void sharpen_cross(const struct cross channel[3], float strength, float rgb[3])
 {
     float texels[9 * 3];
@@ -383,7 +382,7 @@ static void rcas_matches_cases_computed_by_hand(void **state)
      * (-.0625*2 + .55)/(1 - .25) = .425/.75 = .5666667 */
     struct cross mixed = { 0.2f, 0.4f, 0.55f, 0.6f, 0.8f };
     assert_sharpens_grey(mixed, 1.0f, 0.425 / 0.75);
-    /* hitMin counts the centre too: .1/2 = .05, hitMax .5/-2 = -.25: lobe -.05;
+    /* hitMin includes the centre: .1/2 = .05, hitMax .5/-2 = -.25: lobe -.05;
      * (-.05*2 + .1)/(1 - .2) = 0: driven exactly to black, not below */
     struct cross dip = { 0.5f, 0.5f, 0.1f, 0.5f, 0.5f };
     assert_sharpens_grey(dip, 1.0f, 0.0);
@@ -396,9 +395,9 @@ static void rcas_matches_cases_computed_by_hand(void **state)
     assert_sharpens_grey(peak, 0.5f, 0.925 / 0.95);
 }
 
-/* Channels alone would take the lobes -.1875 (R), -.1875 (G: hitMin .25, hitMax .1/(3.6-4) = -.25)
- * and -.0625 (B); the weakest serves all: R (-.125+.6)/.75, G (-.0625*3.6+.9)/.75 = .9,
- * B (-.125+.55)/.75. Which channel is the weakest must not matter. */
+/* Separate channels would have the lobes -.1875 (R), -.1875 (G: hitMin .25, hitMax .1/(3.6-4) =
+ * -.25) and -.0625 (B); the weakest serves all: R (-.125+.6)/.75, G (-.0625*3.6+.9)/.75 = .9, B
+ * (-.125+.55)/.75. Which channel is the weakest must not matter. */
 static void rcas_uses_one_lobe_for_all_channels(void **state)
 {
     (void)state;
@@ -507,7 +506,7 @@ static void differences_are_found_wherever_they_are(void **state)
     assert_true(isnan(masu_ref_max_difference(x, y, 2)));
 }
 
-/* Names of pictures that other tests' numbers were measured on: a change here invalidates them. */
+/* Hashes of the images that other tests' numbers were measured on: a change invalidates them. */
 static void patterns_are_the_same_everywhere(void **state)
 {
     (void)state;

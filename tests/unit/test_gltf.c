@@ -1,5 +1,6 @@
-/* test_gltf.c: each thing that glTF says, as it is baked: small files are written here, with what they must become
- * known from how they were made. What is not read is told; what is wrong or hostile is refused in one line. */
+/* test_gltf.c: imports each feature of glTF: small files are written here, and the baked result is
+ * compared with the values they were made from. Unsupported features are reported; invalid or
+ * hostile files are rejected with one line. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -19,7 +20,7 @@
 #include "support/files.h"
 #include "support/gltf_file.h"
 
-/* ---- What they become ------------------------------------------------------------------------ */
+/* ---- Baked results --------------------------------------------------------------------------- */
 
 static masu_bake_content piece;
 static char heard[8192];
@@ -47,7 +48,7 @@ static void import_warned(const char *path, const char *warning) {
     if (!strstr(heard, warning) || strchr(heard, '\n') != strrchr(heard, '\n')) fail_msg("heard: %s", heard);
 }
 
-/* Read alone, without the process around it: the line that says why not. */
+/* Imports in this process, without the sandbox, and expects an error that contains `why`. */
 static void refused(const char *path, const char *variant, const char *why) {
     masu_bake_content content = {0};
     masu_bake_buffer warnings = {0}, error = {0};
@@ -73,7 +74,7 @@ static void assert_near(double a, double b, double error) {
     if (!(fabs(a - b) <= error)) fail_msg("%.9g is not %.9g within %g", a, b, error);
 }
 
-/* The vertex at that place; its number. */
+/* Index of the vertex at this position. */
 static uint32_t vertex_at(double x, double y, double z, double error) {
     for (uint32_t i = 0; i < masu_bake_count(&piece, MASU_BLOB_VERTICES); i++) {
         const float *p = MASU_BAKE_VERTICES(&piece)[i].position;
@@ -135,7 +136,8 @@ static void indices_of_all_types_strips_and_fans(void **state) {
                           "{\"attributes\":{\"POSITION\":%d},\"indices\":%d,\"mode\":6}]}],\"nodes\":[{\"mesh\":0}]",
                           quad_positions, quad_indices, quad_positions, strip, quad_positions, fan));
     assert_int_equal(triangles(), 6);
-    for (uint32_t i = 0; i < masu_bake_count(&piece, MASU_BLOB_VERTICES); i++) { /* none is turned over */
+    /* the winding is kept */
+    for (uint32_t i = 0; i < masu_bake_count(&piece, MASU_BLOB_VERTICES); i++) {
         masu_bake_vec3 n = masu_bake_decode_normal(MASU_BAKE_VERTICES(&piece)[i].normal);
         assert_near(n.z, 1, 1e-4);
     }
@@ -150,7 +152,7 @@ static void sparse_accessors_change_some_elements(void **state) {
     char sparse[256];
     snprintf(sparse, sizeof sparse,
              ",\"sparse\":{\"count\":2,\"indices\":{\"bufferView\":%d,\"componentType\":5121},\"values\":{\"bufferView\":%d}}", at, values);
-    int positions = accessor(-1, FLOAT, "VEC3", 3, sparse); /* zeros else */
+    int positions = accessor(-1, FLOAT, "VEC3", 3, sparse); /* otherwise zeros */
     import_quietly(finish("\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":%d}}]}],\"nodes\":[{\"mesh\":0}]", positions));
     assert_int_equal(triangles(), 1);
     vertex_at(0, 0, 0, 0);
@@ -171,7 +173,7 @@ static void morph_weights_of_the_node_rest(void **state) {
     vertex_at(2, 1, 0.25, 1e-6);
 }
 
-/* Of a model that moves they are kept, and its clips change their weights. */
+/* Morph targets of a movable model are kept, and its clips change their weights. */
 static void morph_targets_are_kept_to_move(void **state) {
     (void)state;
     static const float up[12] = {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, aside[12] = {0, 0, 0, -3, 0, 0};
@@ -194,7 +196,7 @@ static void morph_targets_are_kept_to_move(void **state) {
     assert_near((double)m[0].weight, 0.5, 0);
     assert_near((double)m[0].high[2], 1, 0);
     assert_near((double)m[1].low[0], -3, 0);
-    vertex_at(2, 6, 0.5, 1e-6); /* the scene as it is baked: at rest, where the node is */
+    vertex_at(2, 6, 0.5, 1e-6); /* the baked scene: default weights, at the node's position */
     const masu_blob_channel *c = MASU_BAKE_ARRAY(&piece, MASU_BLOB_CHANNELS, masu_blob_channel);
     assert_int_equal(masu_bake_count(&piece, MASU_BLOB_CHANNELS), 2);
     const masu_blob_skin *skin = MASU_BAKE_ARRAY(&piece, MASU_BLOB_SKINS, masu_blob_skin);
@@ -256,7 +258,7 @@ static void meshopt_unpacks(void **state) {
     assert_int_equal(triangles(), 2);
     assert_int_equal(masu_bake_count(&piece, MASU_BLOB_VERTICES), 4);
     vertex_at(7, 8, 0, 0);
-    file.data[at[0]] ^= 0x55; /* the head of the packed vertices */
+    file.data[at[0]] ^= 0x55; /* the header of the packed vertices */
     refused(finish("%s", rest), NULL, "EXT_meshopt_compression: the bytes are damaged");
 }
 
@@ -276,7 +278,7 @@ static void draco_unpacks(void **state) {
 
 /* ---- Textures and colours -------------------------------------------------------------------- */
 
-/* Two textures of one picture, and a material. */
+/* Two textures with one image, and a material. */
 static const char *finish_textured(const char *attributes, const char *about) {
     char rest[2048];
     int v = view(webp, sizeof webp, 0);
@@ -318,7 +320,8 @@ static void maps_of_other_coordinates_are_told(void **state) {
     (void)state;
     char attributes[128];
     begin_mapped(attributes, sizeof attributes);
-    /* A second set of coordinates for what wants other ones, but not of what is blended. */
+    /* A second set of coordinates for textures that need different ones, but not for transparent
+     * materials. */
     import_quietly(finish_textured(attributes, "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0,\"texCoord\":1}},"
                                                "\"normalTexture\":{\"index\":1,\"texCoord\":0}}"));
     assert_int_not_equal(MASU_BAKE_MAPS_OF(&piece)->image[MASU_BAKE_NORMAL], MASU_BLOB_NONE);
@@ -336,7 +339,7 @@ static void maps_of_other_coordinates_are_told(void **state) {
     assert_near((double)material(0)->detail[1], 8, 1e-5);
 }
 
-/* What is said of a material's coat, and which of both has the relief then. */
+/* Properties of a material's coat, and which of both has the normal map then. */
 static void coats_have_pictures_of_their_own(void **state) {
     (void)state;
 #define NORMAL "\"normalTexture\":{\"index\":1,\"texCoord\":1},"
@@ -396,7 +399,7 @@ static void colours_of_vertices_become_materials(void **state) {
     assert_near((double)material(0)->base_color[2], 0.125, 1e-6);
     assert_int_equal(masu_bake_count(&piece, MASU_BLOB_VERTICES), 4);
     assert_int_equal(masu_bake_count(&piece, MASU_BLOB_COLORS), 0);
-    /* What changes within a triangle is kept: one material, roots of linear light. */
+    /* Variation within a triangle is kept: one material, square roots of linear colours. */
     import_quietly(colored(many, ""));
     assert_int_equal(masu_bake_count(&piece, MASU_BLOB_MATERIALS), 1);
     assert_int_equal(triangles(), 2);
@@ -446,10 +449,11 @@ static void factors_of_materials(void **state) {
     assert_near((double)m->emissive[1], 0.5, 0);
     assert_near((double)m->specular, 0, 0);
     m = only("\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.25,0.5,0.125,1],\"metallicFactor\":0,\"roughnessFactor\":0},\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":0.9}}");
-    assert_near((double)m->opacity, 1 - 0.9, 1e-6); /* the colour is that of what shines through */
+    assert_near((double)m->opacity, 1 - 0.9, 1e-6); /* the colour of the transmitted light */
     assert_int_equal(MASU_BAKE_MAPS_OF(&piece)->alpha, MASU_BAKE_ALPHA_BLEND);
     assert_int_equal(MASU_BAKE_MAPS_OF(&piece)->tinted, 1);
-    /* 0.5 m of what leaves a quarter of the red in 0.25 m: a sixteenth, by one surface, or by front and back. */
+    /* 0.5 m of a medium that transmits a quarter of the red in 0.25 m: a sixteenth, by one surface,
+     * or by front and back. */
 #define VOLUME                                                                                                              \
     "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,1,1,1],\"metallicFactor\":0},"                                      \
     "\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1},\"KHR_materials_volume\":"                   \
@@ -459,6 +463,18 @@ static void factors_of_materials(void **state) {
     m = only(VOLUME);
     assert_near((double)m->base_color[0], 0.5 * 0.0625, 1e-6);
     assert_near((double)m->base_color[1], 1, 0);
+    assert_near((double)m->thickness, 0.5, 0);
+    assert_near((double)m->ior, 1.5, 0);
+#define GLASS(ior, rest)                                                                                                    \
+    "\"pbrMetallicRoughness\":{\"metallicFactor\":0},\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1}," \
+    "\"KHR_materials_ior\":{\"ior\":" ior "},\"KHR_materials_volume\":{\"thicknessFactor\":2}" rest "}"
+    m = only(GLASS("2.4", "")); /* beyond 1.79: reflectance and refraction are both those of 2.4 */
+    assert_near((double)m->ior, 2.4, 1e-6);
+    assert_near((double)m->specular * 0.08, (1.4 / 3.4) * (1.4 / 3.4), 1e-6);
+    m = only(GLASS("0", ""));
+    assert_near((double)m->ior, 1000, 0);
+    m = only(GLASS("1.5", ",\"KHR_materials_unlit\":{}"));
+    assert_near((double)m->thickness + (double)m->ior, 0, 0);
     m = only("\"extensions\":{\"KHR_materials_pbrSpecularGlossiness\":{\"diffuseFactor\":[0.5,0.25,0.125,1],\"specularFactor\":[0.04,0.04,0.04],\"glossinessFactor\":0.75}}");
     assert_near((double)m->base_color[0], 0.5, 1e-5);
     assert_near((double)m->roughness, 0.25, 1e-6);
@@ -498,8 +514,7 @@ static const masu_blob_material *finished(const char *path) {
     return material(0);
 }
 
-/* A map that is left out: an emission that it was meant for is dark; what is unlit has its
- * factor. */
+/* If a map is omitted, an emission that needs it is dark; an unlit material has its factor. */
 static void without_its_map_a_material_has_its_factor(void **state) {
     (void)state;
 #define EMISSION(texture) "{\"emissiveFactor\":[1,0.5,0.25],\"emissiveTexture\":{" texture "}"
@@ -554,13 +569,13 @@ static void occlusion_has_a_strength(void **state) {
         finished(finish_quad(attributes, ",\"material\":0", rest));
         assert_string_equal(heard, "");
         assert_int_equal(masu_bake_count(&piece, MASU_BLOB_TEXTURES), 1);
-        /* An end of a block of BC4. */
+        /* An endpoint of a BC4 block. */
         assert_int_equal(piece.section[MASU_BLOB_TEXELS].data[0], cases[i].value);
     }
 }
 
-/* A texture whose coordinates stay in 0..1 along an axis does not repeat there: its far edge would
- * bleed in. */
+/* A texture whose coordinates are within 0..1 along an axis does not repeat there: its far edge
+ * would bleed in. */
 static void textures_that_are_shown_once_are_clamped(void **state) {
     (void)state;
     static const struct {
@@ -594,7 +609,7 @@ static void textures_that_are_shown_once_are_clamped(void **state) {
     }
 }
 
-/* What is beyond what a blob holds, or drawn as something simpler, is told. */
+/* Values that are out of a blob's range, or simplified, are reported. */
 static void clamped_and_simplified_values_are_told(void **state) {
     (void)state;
 #define EXTENSION(name, members) "{\"extensions\":{\"KHR_materials_" name "\":{" members "}}}"
@@ -628,8 +643,8 @@ static void clamped_and_simplified_values_are_told(void **state) {
     }
 }
 
-/* Reflectance at normal incidence, as KHR_materials_ior and KHR_materials_specular have it: ((n - 1) / (n + 1))^2 times
- * the colour, at most 1, times the factor. */
+/* Reflectance at normal incidence, as KHR_materials_ior and KHR_materials_specular define it: ((n -
+ * 1) / (n + 1))^2 times the colour, at most 1, times the factor. */
 static void reflectance_is_of_any_colour_and_strength(void **state) {
     (void)state;
     static const struct {
@@ -660,8 +675,8 @@ static void reflectance_is_of_any_colour_and_strength(void **state) {
     assert_near((double)material(0)->sheen_roughness, 0.3, 1e-6);
 }
 
-/* Each extension that the specification or its registry has, and that is not read, gives one line with its name.
- * masu-bake --strict treats any such line as an error (tests/scripts/bake_placement.sh). */
+/* Each extension in the specification or its registry that is not supported gives one line with its
+ * name. masu-bake --strict treats any such line as an error (tests/scripts/bake_placement.sh). */
 static void nothing_is_dropped_in_silence(void **state) {
     (void)state;
     static const char *const of_materials[] = {
@@ -701,6 +716,12 @@ static void nothing_is_dropped_in_silence(void **state) {
              "\"thicknessFactor\":1,\"attenuationDistance\":1,\"thicknessTexture\":{\"index\":0}}},"
              "\"pbrMetallicRoughness\":{\"metallicFactor\":0}}",
          "1 materials have a \"thicknessTexture\", which is not supported"},
+        {"", "{\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1},\"KHR_materials_volume\":{"
+             "\"thicknessFactor\":1}},\"pbrMetallicRoughness\":{\"metallicFactor\":0.5}}",
+         "1 materials have a thickness and a metallic factor: they do not refract"},
+        {"", "{\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1},\"KHR_materials_volume\":{"
+             "\"thicknessFactor\":1},\"KHR_materials_ior\":{\"ior\":2000}},\"pbrMetallicRoughness\":{\"metallicFactor\":0}}",
+         "1 materials have a \"ior\" beyond 1 to 1000: clamped"},
         {"", "{\"extensions\":{\"KHR_materials_pbrSpecularGlossiness\":{}}},{\"pbrMetallicRoughness\":{}}",
          "1 of 2 materials have specular and glossiness"},
     };
@@ -713,7 +734,7 @@ static void nothing_is_dropped_in_silence(void **state) {
     }
 }
 
-/* PLY and OBJ have colours at vertices too; theirs are of a screen (sRGB). */
+/* PLY and OBJ have vertex colours too, encoded in sRGB. */
 static void colours_of_vertices_in_other_formats(void **state) {
     (void)state;
 #define PLY(rows) "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n" \
@@ -775,7 +796,7 @@ static void skins_rest_as_their_joints_have_them(void **state) {
     import_warned(path, "this one has its rest pose");
     assert_int_equal(masu_bake_count(&piece, MASU_BLOB_SKINS), 0);
     assert_int_equal(masu_bake_count(&piece, MASU_BLOB_KEYS), 0);
-    vertex_at(2, 0, 0, 1e-6); /* the node of the mesh does not move it */
+    vertex_at(2, 0, 0, 1e-6); /* the mesh's node does not move it */
     vertex_at(7, 1, 0, 1e-6);
     import_as(path, (masu_bake_wanted){.moving = true});
     assert_string_equal(heard, "");
@@ -791,7 +812,7 @@ static void skins_rest_as_their_joints_have_them(void **state) {
 
 static void cubic_keys_are_cut_into_lines(void **state) {
     (void)state;
-    /* In-tangent, value, out-tangent of each. */
+    /* In-tangent, value and out-tangent of each key. */
     static const float moves[27] = {0, 0, 0, 0, 0, 0, 6, 0, 0, 0, 0, 0, 2, 0, 0, 0, 5, 0, -4, 0, 0, 0, 1, 0, 0, 0, 0};
     import_as(skinned("CUBICSPLINE", moves, 9), (masu_bake_wanted){.moving = true});
     const masu_blob_key *k = MASU_BAKE_ARRAY(&piece, MASU_BLOB_KEYS, masu_blob_key);
@@ -854,7 +875,7 @@ static const char *triangle_of(const char *uri) {
     return write_text("x.gltf", text);
 }
 
-/* What is not below a node of the scene counts for nothing (UniGLTF writes such nodes). */
+/* Nodes outside the scene's hierarchy are ignored (UniGLTF writes such nodes). */
 static void nodes_outside_of_the_scene_are_ignored(void **state) {
     (void)state;
     static const char *const graphs[] = {
@@ -888,13 +909,13 @@ static void data_uris_of_all_forms(void **state) {
     for (size_t i = 0; i < sizeof heads / sizeof *heads; i++) {
         char uri[512] = "";
         add(uri, sizeof uri, "%s", heads[i]);
-        /* Letters as they are, everything else in hexadecimal. */
+        /* Letters unchanged, everything else in hexadecimal. */
         for (size_t k = 0; i < 3 && k < sizeof corner; k++) {
             unsigned char c = ((const unsigned char *)corner)[k];
             add(uri, sizeof uri, c >= 'A' && c <= 'Z' ? "%c" : k & 1 ? "%%%02x" : "%%%02X", c);
         }
         if (i == 3) add(uri, sizeof uri, "%s", base64);
-        /* A letter in hexadecimal, too. */
+        /* One letter in hexadecimal, too. */
         if (i == 4) add(uri, sizeof uri, "%.10s%%41%s", base64, base64 + 11);
         if (i == 5) add(uri, sizeof uri, "%.24s\\r\\n%s", base64, base64 + 24);
         import_quietly(triangle_of(uri));
@@ -932,7 +953,7 @@ static void older_versions_are_refused(void **state) {
     refused(write_bytes("x.glb", head, sizeof head), NULL, "glTF 1");
 }
 
-/* ---- Files that are wrong -------------------------------------------------------------------- */
+/* ---- Invalid files --------------------------------------------------------------------------- */
 
 static void names_with_percent_signs(void **state) {
     (void)state;

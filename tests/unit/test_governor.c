@@ -1,6 +1,6 @@
-/* test_governor.c: the governor on simulated GPUs (tests/support/simulated_gpu.h): what it promises
- * on each of them, what it does with samples that are none, its modes. Counts of frames and of
- * changes, no times. */
+/* test_governor.c: the governor on simulated GPUs (tests/support/simulated_gpu.h): its guarantees
+ * on each of them, invalid samples, its modes. The results are numbers of frames and of changes,
+ * not times. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -37,14 +37,15 @@ static void it_keeps_the_bar_on_the_standard_model(void **state) {
         fail_msg("%.1f frames over the budget, %.1f changes, mean scale %.4f", over, changes,
                  r.mean_scale);
     }
-    assert_true(sim_oracle(named("standard")) < 0.73); /* nobody can do much better */
+    /* close to the upper bound for any controller */
+    assert_true(sim_oracle(named("standard")) < 0.73);
 }
 
 /* ---- No limit cycles
  * --------------------------------------------------------------------------- */
 
-/* 500 loads from what leaves the best rung alone to what no rung keeps. Where costs are not what
- * the governor begins with, it may try a rung and find that out: not more than once past ten
+/* 500 loads, from one that the best rung carries to one that no rung carries. If costs differ from
+ * the governor's initial ones, it may try a rung and discover that: at most once after ten
  * seconds. */
 static void it_settles_under_every_constant_load(void **state) {
     static const double exponents[] = {2.0, 1.4, 3.0};
@@ -109,7 +110,7 @@ static void it_settles_soon_after_a_step(void **state) {
     }
 }
 
-/* The rung that a fall goes to is at most one below that which is kept in the end. */
+/* A fall overshoots the rung that is kept in the end by one at most. */
 static void it_does_not_overshoot(void **state) {
     (void)state;
     const sim_model *p = named("step_1.8x");
@@ -123,8 +124,8 @@ static void it_does_not_overshoot(void **state) {
     }
 }
 
-/* 95 % of what the load allows within 90 frames of its drop; and the first rise within 40,
- * however long it has been too high: nothing winds up. */
+/* 95 % of the possible scale within 90 frames of a drop of the load, and the first rise within 40,
+ * however long the load was too high: nothing winds up. */
 static void it_comes_back(void **state) {
     static const char *const models[] = {"step_down", "overload"};
     (void)state;
@@ -151,10 +152,10 @@ static void it_comes_back(void **state) {
     }
 }
 
-/* ---- Times that lie
- * ---------------------------------------------------------------------------- */
+/* ---- Wrong timestamps ------------------------------------------------------------------------ */
 
-/* For 60 frames of a constant load: at most one rung, at most 5 % of the frames over the budget. */
+/* Wrong for 60 frames at a constant load: at most one rung down, at most 5 % of the frames over the
+ * budget. */
 static void it_is_not_moved_by_lies(void **state) {
     static const sim_lie lies[] = {SIM_TENTH,    SIM_LAVAPIPE, SIM_FROZEN, SIM_ZERO,
                                      SIM_NEGATIVE, SIM_HUGE,     SIM_NAN,    SIM_MICRO,
@@ -176,7 +177,7 @@ static void it_is_not_moved_by_lies(void **state) {
                     over += frames[f].ms > SIM_BUDGET;
                 }
                 if (high - low > 1 || over > 8) {
-                    fail_msg("lie %d, seed %u, wall %u: rungs %u to %u, %u frames over",
+                    fail_msg("timestamps %d, seed %u, wall %u: rungs %u to %u, %u frames over",
                              (int)lies[i], seed, wall, low, high, over);
                 }
             }
@@ -192,7 +193,7 @@ static void spikes_change_nothing(void **state) {
         p.a = 20.0 + seed;
         sim_frame frames[SIM_FRAMES_MOST];
         sim_result r = sim_run(&p, ours, seed, frames, NULL);
-        for (uint32_t f = 20; f < p.frames; f++) /* two in a row are what a step looks like */
+        for (uint32_t f = 20; f < p.frames; f++) /* two in a row look like a step */
             pairs += frames[f].ms > 2.0 * SIM_BUDGET && frames[f - 1].ms > 2.0 * SIM_BUDGET;
         changes += r.late_changes;
     }
@@ -200,7 +201,7 @@ static void spikes_change_nothing(void **state) {
     assert_true(pairs < 2 * SEEDS);
 }
 
-/* Timestamps that the wall contradicts: found out for good, and said so. */
+/* Timestamps that the wall clock contradicts: detected permanently, and reported. */
 static void it_reports_what_it_trusts(void **state) {
     static const struct {
         const char *model;
@@ -224,7 +225,7 @@ static void it_reports_what_it_trusts(void **state) {
     }
 }
 
-/* The parts of the model, where the plant knows them. */
+/* The estimates of the model's parts, where the simulation has them exactly. */
 static void it_finds_the_fixed_part(void **state) {
     (void)state;
     for (uint32_t seed = 1; seed <= SEEDS; seed++) {
@@ -232,18 +233,17 @@ static void it_finds_the_fixed_part(void **state) {
         sim_run(named("step_4x"), ours, seed, NULL, &s);
         masu_governor_info info;
         masu_governor_report(&s.governor, &info);
-        for (uint32_t r = 8; r < SIM_RUNGS; r++) { /* from 0.61 down: where it has been */
+        for (uint32_t r = 8; r < SIM_RUNGS; r++) { /* from 0.61 down: rungs that it has used */
             double truth = 2.0 + 40.0 * pow(0.4, r / 7.5);
             double error = masu_governor_predict(&s.governor, r) / truth - 1.0;
-            if (fabs(error) > 0.1) fail_msg("seed %u, rung %u: off by %.3f", seed, r, error);
+            if (fabs(error) > 0.1) fail_msg("seed %u, rung %u: error %.3f", seed, r, error);
         }
         assert_true(info.noise > 0.008f && info.noise < 0.016f); /* 0.04 / sqrt(12) */
         assert_true(info.start_delay_ms >= 0.0f && info.start_delay_ms < 4.0f);
     }
 }
 
-/* ---- Whatever comes in
- * ------------------------------------------------------------------------- */
+/* ---- Arbitrary input ------------------------------------------------------------------------- */
 
 static double any_time(uint64_t *random) {
     static const double values[] = {
@@ -312,7 +312,7 @@ static void it_stays_sound_under_a_million_samples(void **state) {
                    isfinite(info.noise) && isfinite(info.start_delay_ms) && isfinite(info.unit);
         for (uint32_t r = 0; r < MASU_MAX_RUNGS; r++) good = good && isfinite(info.predicted_ms[r]);
         if (!good || !info.reason_text) fail_msg("not finite at %u", i);
-        /* What was learnt of a rung stays within a factor of what the ladder says of it. */
+        /* The estimated cost of a rung remains within a factor of the ladder's cost. */
         for (uint32_t r = 0; r < g.count; r++) {
             double learnt = g.cost[r] / g.prior[r];
             if (!(learnt > 0.2499 && learnt < 4.001)) fail_msg("rung %u: %g of its cost at %u", r, learnt, i);
@@ -320,7 +320,7 @@ static void it_stays_sound_under_a_million_samples(void **state) {
     }
 }
 
-/* However sure the samples are, and however little is known of the cost. */
+/* However certain the samples are, and however uncertain the cost. */
 static void what_it_learns_of_a_rung_stays_near_what_the_ladder_says(void **state) {
     (void)state;
     static const double times[] = {200.0, 0.2};
@@ -342,7 +342,7 @@ static void what_it_learns_of_a_rung_stays_near_what_the_ladder_says(void **stat
             double off = g.cost[1] > prior ? g.cost[1] / prior : prior / g.cost[1];
             most = off > most ? off : most;
         }
-        assert_true(most > 2.0); /* it was learnt */
+        assert_true(most > 2.0); /* it has been updated */
         assert_true(most < 4.0001);
     }
 }
@@ -388,7 +388,7 @@ static void it_keeps_its_modes_and_range(void **state) {
     assert_int_equal(feed(&g, &frame, 100, 100.0), 1);
     masu_governor_report(&g, &info);
     assert_int_equal(info.reason, MASU_GOVERNOR_REASON_FIXED);
-    assert_true(info.predicted_ms[1] > 50.0f); /* it watches all the same */
+    assert_true(info.predicted_ms[1] > 50.0f); /* it still measures */
     assert_int_equal(info.missed, info.samples);
 
     frame = 0;
@@ -437,7 +437,7 @@ static void it_says_why(void **state) {
     feed(&g, &frame, 60, 10.0);
     masu_governor_report(&g, &info);
     assert_int_equal(info.reason, MASU_GOVERNOR_REASON_BEST);
-    assert_int_equal(feed(&g, &frame, 3, 22.0), 1); /* two samples say that the load has jumped */
+    assert_int_equal(feed(&g, &frame, 3, 22.0), 1); /* two samples show that the load has jumped */
     masu_governor_report(&g, &info);
     assert_int_equal(info.reason, MASU_GOVERNOR_REASON_JUMP);
     assert_int_equal(info.changes, 1);
@@ -445,7 +445,7 @@ static void it_says_why(void **state) {
     masu_governor_report(&g, &info);
     assert_int_equal(info.reason, MASU_GOVERNOR_REASON_WAIT);
     assert_int_equal(feed(&g, &frame, 60, 12.0), 0);
-    assert_int_equal(masu_governor_pick(&g, frame + 100), 0); /* no samples for long */
+    assert_int_equal(masu_governor_pick(&g, frame + 100), 0); /* no samples for a long time */
     masu_governor_report(&g, &info);
     assert_int_equal(info.reason, MASU_GOVERNOR_REASON_STALE);
     assert_int_equal(info.locked, MASU_GOVERNOR_LOCKED_STALE);
@@ -456,7 +456,7 @@ static void it_says_why(void **state) {
     assert_string_equal(masu_governor_reason_string((masu_governor_reason)99), "unknown reason");
 }
 
-/* After a cut one sample is enough; without it two are needed. */
+/* After a cut one sample is enough; without a cut two are needed. */
 static void a_cut_is_believed_at_once(void **state) {
     (void)state;
     for (uint32_t cut = 0; cut < 2; cut++) {
@@ -485,7 +485,7 @@ static void it_takes_the_hosts_rungs(void **state) {
     assert_int_equal(feed(&g, &frame, 60, 10.0), 0); /* and back, after the dwell */
 }
 
-/* What passes have taken says what is fixed before any rung has changed. */
+/* The times of passes give the fixed part before any rung has changed. */
 static void it_learns_from_fixed_passes(void **state) {
     (void)state;
     masu_governor g;

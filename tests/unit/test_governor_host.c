@@ -1,6 +1,7 @@
-/* test_governor_host.c: what a game asks of the governor between frames: another target, frames that do not
- * count, what was learnt kept over a new renderer, times of frames that overlap, the host's own work, the
- * display's refresh, a clock that follows its load. Simulated; counts, no times of this machine. */
+/* test_governor_host.c: how a game uses the governor between frames: another target, excluded
+ * frames, state that is kept for a new renderer, times of overlapping frames, the host's own work,
+ * the display's refresh, a clock that follows its load. Simulated: the results are counts, no times
+ * of this machine. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -82,14 +83,14 @@ static void a_setting_counts_from_the_next_frame_on(void **state) {
     assert_true(before >= 2);
     d.target_ms = 33.3f;
     masu_governor_adjust(&g, &d);
-    assert_true(g.load == load && g.fixed == fixed); /* the model knows no target */
+    assert_true(g.load == load && g.fixed == fixed); /* the model does not depend on the target */
     assert_int_equal(frame(&g, &p), 0);
     assert_int_equal(report(&g).reason, MASU_GOVERNOR_REASON_UP);
     frames(&g, &p, 60);
     d.target_ms = 16.67f;
     masu_governor_adjust(&g, &d);
     p.missed = 0;
-    assert_int_equal(frame(&g, &p), before); /* and back at once: nothing is missed */
+    assert_int_equal(frame(&g, &p), before); /* and back at once, before frames are missed */
     frames(&g, &p, 100);
     assert_true(p.missed <= 1);
 
@@ -116,7 +117,8 @@ static void a_setting_counts_from_the_next_frame_on(void **state) {
     assert_int_equal(frame(&g, &p), before + 2);
 }
 
-/* A host that cannot make up its mind: up only every 8 frames. The same setting again is none. */
+/* A host that keeps changing the limits: it rises only every 8 frames. The same setting again has
+ * no effect. */
 static void a_rung_is_held_for_eight_frames(void **state) {
     (void)state;
     masu_governor g;
@@ -144,7 +146,7 @@ static void a_rung_is_held_for_eight_frames(void **state) {
     assert_true(settled.settled_load == 7.0 && !settled.urged);
 }
 
-/* ---- Frames that do not count ---------------------------------------------------------------- */
+/* ---- Excluded frames ------------------------------------------------------------------------- */
 
 static void unusual_frames_say_nothing(void **state) {
     (void)state;
@@ -156,7 +158,7 @@ static void unusual_frames_say_nothing(void **state) {
         assert_int_equal(p.rung, 0);
         masu_governor_info before = report(&g);
         uint32_t worst = 0;
-        for (uint32_t i = 0; i < 50; i++, p.frame++) { /* a level is loaded */
+        for (uint32_t i = 0; i < 50; i++, p.frame++) { /* a level is being loaded */
             uint32_t rung = told ? masu_governor_hold(&g, p.frame) : masu_governor_pick(&g, p.frame);
             worst = rung > worst ? rung : worst;
             masu_governor_sample k = {.frame = p.frame,
@@ -175,14 +177,14 @@ static void unusual_frames_say_nothing(void **state) {
             frames(&g, &p, 100);
             assert_int_equal(p.changes, 0);
         } else {
-            assert_int_equal(worst, RUNGS - 1); /* which is what it is for */
+            assert_int_equal(worst, RUNGS - 1); /* without the exclusion it does fall */
         }
     }
 }
 
 /* ---- State ----------------------------------------------------------------------------------- */
 
-/* Drawn for 300 frames at hd, then 120 in a new renderer, with `pixels` times the pixels. */
+/* Runs 300 frames at hd, then 120 in a new renderer, with `pixels` times the pixels. */
 typedef struct handed {
     uint32_t next, first, missed;
 } handed;
@@ -238,7 +240,7 @@ static void it_is_scaled_by_pixels(void **state) {
             fail_msg("%u x %u: %u missed with a state, %u without", sizes[i].width, sizes[i].height,
                      with, without);
     }
-    /* In one renderer: masu_resize. Frames of the old size that come in later say nothing. */
+    /* In one renderer: masu_resize. Frames of the old size that arrive later have no effect. */
     masu_governor g;
     start(&g, (masu_governor_desc){.dwell = 24});
     gpu p = gpu_of(10.0, 9);
@@ -253,7 +255,7 @@ static void it_is_scaled_by_pixels(void **state) {
     assert_int_equal(g.rejected, rejected + 2);
 }
 
-/* The two best rungs are gone, one is new, one is another. */
+/* The two best rungs are removed, one is new, one is different. */
 static void other_rungs_take_what_is_theirs(void **state) {
     (void)state;
     masu_governor old, g;
@@ -274,7 +276,7 @@ static void other_rungs_take_what_is_theirs(void **state) {
     uint32_t first = masu_governor_pick(&g, 0);
     assert_true(masu_governor_predict(&g, first) <= 16.67);
     assert_true(!first || masu_governor_predict(&g, first - 1) > 0.9 * 16.67);
-    /* One that has measured nothing says nothing. */
+    /* A governor without measurements saves nothing. */
     start(&old, (masu_governor_desc){.dwell = 24});
     masu_governor_export_state(&old, hd, &s);
     assert_int_equal(masu_governor_state_check(&s, NULL), MASU_OK);
@@ -311,7 +313,7 @@ static void garbage_is_no_state(void **state) {
     s.rungs[2].cost = -1.0;
     assert_int_equal(masu_governor_state_check(&s, &detail), MASU_ERROR_ARGUMENT);
     uint32_t taken = 0;
-    for (uint32_t i = 0; i < 200000; i++) { /* some bits are others; then any bytes */
+    for (uint32_t i = 0; i < 200000; i++) { /* a few changed bits; then arbitrary bytes */
         s = good;
         unsigned char *bytes = (unsigned char *)&s;
         uint32_t flips = i % 100 ? 1 + i % 4 : sizeof s;
@@ -338,9 +340,9 @@ static void garbage_is_no_state(void **state) {
     assert_true(taken > 1000);
 }
 
-/* ---- Times that overlap ---------------------------------------------------------------------- */
+/* ---- Overlapping frames ---------------------------------------------------------------------- */
 
-/* A GPU that draws one frame after another, `flight` of them submitted ahead. */
+/* A GPU that renders one frame after another, with `flight` frames submitted ahead. */
 static void frames_in_flight_are_told_apart(void **state) {
     (void)state;
     for (uint32_t flight = 1; flight <= 3; flight++) {
@@ -354,7 +356,7 @@ static void frames_in_flight_are_told_apart(void **state) {
                 if (f >= flight && done[f - flight] > now) now = done[f - flight]; /* the fence */
                 for (uint32_t k = 0; f >= flight && k < flight; k++) { /* in any order, or again */
                     uint64_t of = f - flight + (reverse ? flight - 1 - k : k);
-                    if (of > f - flight && done[of] > now) continue; /* not seen yet */
+                    if (of > f - flight && done[of] > now) continue; /* not signalled yet */
                     t.slots[of % flight].submit_ns = submit[of];
                     t.slots[of % flight].done_ns = done[of];
                 }
@@ -372,7 +374,7 @@ static void frames_in_flight_are_told_apart(void **state) {
                 uint64_t from = f && done[f - 1] > submit[f] ? done[f - 1] : submit[f];
                 done[f] = from + took[f];
             }
-            if (flight > 1) assert_true(twice > 1.8 * whole); /* what submit to end would say */
+            if (flight > 1) assert_true(twice > 1.8 * whole); /* the time from submission to end */
         }
     }
 }
@@ -383,14 +385,15 @@ static void an_unknown_end_is_no_time(void **state) {
     masu_timeline_start(&t);
     for (uint32_t f = 0; f < 6; f++) {
         double ms = f < 2 ? 0.0 : masu_timeline_wall(&t, f % 2, 2);
-        static const double truth[] = {0, 0, 10, 0, 0, 10}; /* of frame f - 2; 1 was not told: nor is 2 */
+        /* of frame f - 2; 1 was not reported, and neither was 2 */
+        static const double truth[] = {0, 0, 10, 0, 0, 10};
         assert_true(fabs(ms - truth[f]) < 1e-9);
         masu_timeline_begin(&t, f % 2, &(masu_slot){.rung = 0});
         if (f == 1) continue;
         t.slots[f % 2].submit_ns = 1 + f * 10000000u;
         t.slots[f % 2].done_ns = 1 + (f + 1) * 10000000u;
     }
-    t.slots[0] = (masu_slot){.frame = 6, .wall_ms = 7.0}; /* masu_frame_wall alone goes on working */
+    t.slots[0] = (masu_slot){.frame = 6, .wall_ms = 7.0}; /* only masu_frame_wall still works */
     assert_true(masu_timeline_wall(&t, 0, 2) == 7.0);
     assert_true(masu_timeline_wall(&t, 0, 2) == 0.0);
 }
@@ -412,7 +415,8 @@ static masu_governor_info run_cpu(const cpu_case *c) {
         masu_governor_sample k = {.frame = f,
                                   .rung = rung,
                                   .gpu_ms = c->stamps ? ms : 0.0,
-                                  .wall_ms = ms > cpu ? ms : cpu, /* the fence is seen when the host comes */
+                                  /* the fence is checked when the host arrives */
+                                  .wall_ms = ms > cpu ? ms : cpu,
                                   .cpu_ms = c->told ? cpu : 0.0};
         masu_governor_sample_in(&g, &k);
     }
@@ -428,23 +432,24 @@ static void the_hosts_work_drives_no_rung_down(void **state) {
         assert_int_equal(info.missed, 0);
         assert_int_equal(info.locked, MASU_GOVERNOR_LOCKED_CPU);
         assert_true(fabsf(info.cpu_ms - 30.0f) < 0.3f);
-        info = run_cpu(&(cpu_case){30.0, 8.0, stamps, 0}); /* what it is for */
+        info = run_cpu(&(cpu_case){30.0, 8.0, stamps, 0}); /* the feature is needed */
         assert_true(info.changes > 0);
-        /* A GPU that is slower still does what it did; so does one beside a host that is quick. */
+        /* With a slower GPU it works as before, as it does with a fast host. */
         info = run_cpu(&(cpu_case){30.0, 100.0, stamps, 1});
         assert_true(info.rung > 3);
         info = run_cpu(&(cpu_case){5.0, 24.0, stamps, 1});
         assert_true(info.rung > 1 && info.locked == MASU_GOVERNOR_FREE);
     }
     masu_governor_info info = run_cpu(&(cpu_case){30.0, 8.0, 1, 1});
-    assert_int_equal(info.source, MASU_GOVERNOR_SOURCE_GPU); /* timestamps are not to blame */
+    assert_int_equal(info.source, MASU_GOVERNOR_SOURCE_GPU); /* not caused by timestamps */
 }
 
 /* ---- The display ----------------------------------------------------------------------------- */
 
 #define HZ60 16666667u
 
-/* Shown at the first refresh after its time at which it is due. Returns changes of the number of refreshes. */
+/* Shows each frame at the first refresh after it is ready. Returns the number of changes of the
+ * refresh count. */
 static uint32_t show(masu_governor *g, gpu *p, uint64_t refresh, uint64_t *at, uint32_t count,
                      double wave) {
     uint32_t last = g->pacing.refreshes, changes = 0;
@@ -455,7 +460,8 @@ static uint32_t show(masu_governor *g, gpu *p, uint64_t refresh, uint64_t *at, u
         uint32_t due = g->pacing.refreshes ? g->pacing.refreshes : 1;
         uint32_t needs = (uint32_t)ceil(p->ms * 1e6 / (double)refresh - 1e-9);
         *at += (needs > due ? needs : due) * refresh;
-        /* The frame's own time is its previous one's refreshes: near enough for a simulated display. */
+        /* The frame's own time is the refresh count of the previous one: close enough for a
+         * simulated display. */
         masu_governor_shown(g, p->frame - 1, *at, refresh);
         changes += last && g->pacing.refreshes != last;
         last = g->pacing.refreshes;
@@ -486,13 +492,13 @@ static void frames_are_shown_for_whole_refreshes(void **state) {
         double interval = info.refreshes * cases[i].refresh * 1e-6;
         double delay = interval - (double)info.predicted_ms[info.rung];
         assert_true((double)info.start_delay_ms <= delay && (double)info.start_delay_ms > delay - 2.0);
-        masu_governor_shown(&g, p.frame - 1, at + 1, 0); /* no longer known */
+        masu_governor_shown(&g, p.frame - 1, at + 1, 0); /* no longer available */
         frame(&g, &p);
         assert_int_equal(report(&g).refreshes, 0);
     }
 }
 
-/* At the worst rung, a load that goes over and under one refresh every 40 frames. */
+/* At the worst rung, a load that crosses one refresh every 40 frames, up and down. */
 static void refreshes_do_not_alternate(void **state) {
     (void)state;
     masu_governor g;
@@ -523,13 +529,13 @@ static void missed_frames_are_those_shown_late(void **state) {
         masu_governor_shown(&g, p.frame - 1, at, HZ60);
     }
     assert_int_equal(report(&g).missed, missed + 5);
-    for (uint32_t i = 0; i < 5; i++) frame(&g, &p); /* five that nobody tells of */
+    for (uint32_t i = 0; i < 5; i++) frame(&g, &p); /* five frames without a report */
     masu_governor_shown(&g, p.frame - 1, at + 5 * (uint64_t)HZ60, HZ60);
     assert_int_equal(report(&g).missed, missed + 5);
-    masu_governor_shown(&g, p.frame - 1, at + 50 * (uint64_t)HZ60, HZ60); /* told twice */
+    masu_governor_shown(&g, p.frame - 1, at + 50 * (uint64_t)HZ60, HZ60); /* reported twice */
     masu_governor_shown(&g, p.frame - 3, at + 50 * (uint64_t)HZ60, HZ60); /* out of order */
     assert_int_equal(report(&g).missed, missed + 5);
-    p.load = 60.0; /* the governor's own misses are the display's to tell */
+    p.load = 60.0; /* with a display, only its reports add misses */
     frames(&g, &p, 3);
     assert_int_equal(report(&g).missed, missed + 5);
 }
@@ -560,7 +566,7 @@ static void it_is_not_kept_low_by_a_low_clock(void **state) {
     }
 }
 
-/* Where the clock does not follow, what was tried is taken back, and tried more and more seldom. */
+/* If the clock does not follow, a trial is undone, and trials become rarer. */
 static void trials_are_few(void **state) {
     (void)state;
     uint32_t tried = 0;

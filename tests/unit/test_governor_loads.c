@@ -25,8 +25,8 @@ struct load {
     double (*ms)(const load *l, uint64_t frame, uint32_t rung, double scale);
     double a, b, noise; /* relative standard deviation */
     uint32_t split, period, until;
-    int gpu;   /* timestamps, three frames late; else the wall, two */
-    int vsync; /* the wall in whole refreshes */
+    int gpu;   /* timestamps, three frames late; otherwise the wall clock, two frames late */
+    int vsync; /* wall-clock times in whole refreshes */
     uint32_t rungs;
 };
 
@@ -96,7 +96,7 @@ static result run(const load *l, uint64_t seed, uint64_t from) {
     return out;
 }
 
-/* Above the target: after three seconds the best rung is kept, whatever the noise. */
+/* Above the target: after three seconds the best rung is kept, at any noise. */
 static void a_load_that_no_rung_changes_keeps_the_best_rung(void **state) {
     static const double times[] = {17.0, 18.0, 20.0, 25.0, 33.0, 40.0, 100.0};
     static const double noises[] = {0.002, 0.005, 0.016, 0.03, 0.045, 0.06};
@@ -117,7 +117,7 @@ static void a_load_that_no_rung_changes_keeps_the_best_rung(void **state) {
     if (100 * wrong > runs) fail_msg("%u of %u runs keep another rung", wrong, runs);
 }
 
-/* Just below the target, noise alone causes single falls. They must not repeat. */
+/* Just below the target, noise by itself causes single falls. They must not repeat. */
 static void a_load_just_below_the_target_changes_seldom(void **state) {
     static const double times[] = {12.0, 14.0, 15.0, 15.5, 16.0, 16.4};
     static const double noises[] = {0.002, 0.005, 0.016, 0.03, 0.045, 0.06};

@@ -1,5 +1,5 @@
-/* test_handles.c: handles of the public interface: each means one thing; none of another scene, of
- * another kind or of a removed object is accepted. */
+/* test_handles.c: handles of the public interface: each identifies one object; handles of another
+ * scene, of another kind or of a removed object are rejected. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -48,7 +48,7 @@ static void a_handle_is_its_index_and_back(void **state) {
     }
 }
 
-/* The ids of a scene's own objects are the same whatever there is in reserve. */
+/* The ids of a scene's own objects do not depend on the reserve. */
 static void a_reserve_changes_no_id_of_the_scene(void **state) {
     (void)state;
     uint32_t lives[5];
@@ -58,8 +58,8 @@ static void a_reserve_changes_no_id_of_the_scene(void **state) {
         assert_true(masu_handle_at(&without, i) == masu_handle_at(&with, i));
 }
 
-/* Each object in a slot of the reserve has an id of its own, none of which is accepted once it is
- * removed; nor is 0, where a slot is free. A slot is used 2^31 - 1 times. */
+/* Each object in a slot of the reserve has a new id, which is rejected after its removal, as is 0
+ * for a free slot. A slot is used 2^31 - 1 times. */
 static void what_was_removed_is_refused(void **state) {
     (void)state;
     enum { LIVES = 70000 };
@@ -70,7 +70,7 @@ static void what_was_removed_is_refused(void **state) {
         masu_handles h = masu_handles_of(c, MASU_HANDLE_MODEL, own, reserve, lives);
         masu_detail detail;
         assert_int_equal(masu_handle_at(&h, own), 0);
-        assert_int_equal(masu_handle_free(&h), own);
+        assert_int_equal(masu_handle_free(&h, own, reserve), own);
         assert_int_equal(masu_handle_check(&h, "model", 0, &index, &detail), MASU_ERROR_ARGUMENT);
         uint64_t first = 0, before = 0;
         for (uint32_t life = 0; life < LIVES; life++) {
@@ -91,16 +91,17 @@ static void what_was_removed_is_refused(void **state) {
         assert_int_equal(masu_handle_check(&h, "model", before, &index, &detail),
                          MASU_ERROR_ARGUMENT);
         assert_non_null(strstr(detail.text, "removed"));
-        for (uint32_t i = 0; i < own; i++) /* those of the scene go on */
+        for (uint32_t i = 0; i < own; i++) /* the ids of the scene remain valid */
             assert_int_equal(masu_handle_index(&h, masu_handle_at(&h, i)), i);
-        for (uint32_t i = 0; i < reserve; i++) lives[i] = UINT32_MAX - 3; /* one more object each */
-        assert_int_equal(masu_handle_free(&h), own);
+        /* one more object in each */
+        for (uint32_t i = 0; i < reserve; i++) lives[i] = UINT32_MAX - 3;
+        assert_int_equal(masu_handle_free(&h, own, reserve), own);
         masu_handle_turn(&h, own);
         uint64_t id = masu_handle_at(&h, own);
         assert_int_equal(masu_handle_index(&h, id), own);
         masu_handle_turn(&h, own);
         assert_int_equal(masu_handle_index(&h, id), UINT32_MAX);
-        assert_int_equal(masu_handle_free(&h),
+        assert_int_equal(masu_handle_free(&h, own, reserve),
                          reserve > 1 ? own + 1 : UINT32_MAX); /* that slot is retired */
     }
 }
@@ -155,7 +156,7 @@ static void handles_of_another_scene_are_refused(void **state) {
     assert_int_equal(masu_punctual_light_get(&m, light_of, &carried, &failure), MASU_OK);
     assert_int_equal(carried.instance.id, instance_of.id);
 
-    make_renderer(with, 0); /* another renderer of the same scene: the same things */
+    make_renderer(with, 0); /* another renderer of the same scene: the same objects */
     assert_int_equal(masu_instance_at(&m, 0).id, instance_of.id);
     assert_int_equal(masu_model_at(&m, 0).id, model_of.id);
     assert_int_equal(masu_punctual_light_at(&m, 0).id, light_of.id);

@@ -1,10 +1,8 @@
-/*
- * test_image.c: picture files. What is written must come back; what is damaged, too large or
- * unwritable must be refused with one line that names the file, and must leave nothing behind.
+/* test_image.c: image files. Written images must read back identically; damaged, oversized or
+ * unwritable files must be rejected with one line that names the file, and leave nothing behind.
  *
- * Each test has a fresh directory of its own, removed afterwards; a file left in it by the code
- * under test makes the removal, and so the test, fail.
- */
+ * Each test has a new directory, removed afterwards. A file that the tested code leaves there makes
+ * the removal, and so the test, fail. */
 #ifndef _XOPEN_SOURCE
 #define _XOPEN_SOURCE 700
 #endif
@@ -81,7 +79,7 @@ static int files_in_directory(void)
     return count;
 }
 
-/* Tests call their files by these names only, so that any other one is a leftover. */
+/* Tests give files only these names, so that any other file is a leftover. */
 static int remove_directory(void **state)
 {
     static const char *const known[] = { "a.png", "b.png", "a.pfm", "a.bin", "link.png", "pipe" };
@@ -122,7 +120,7 @@ static void a_png_comes_back_as_it_was_written(void **state)
             uint8_t pixels[64 * 48 * 4];
             masu_pattern_fill((enum masu_pattern)p, 1, w, h, pixels);
             for (uint32_t i = 0; i < w * h; i++) {
-                pixels[i * 4 + 3] = (uint8_t)(i * 37); /* alpha must survive too */
+                pixels[i * 4 + 3] = (uint8_t)(i * 37); /* alpha must be kept too */
             }
             struct masu_image image;
             assert_true(masu_image_save_png(path, pixels, w, h, 0, error, sizeof error));
@@ -209,7 +207,7 @@ static void a_png_with_any_byte_changed_is_refused(void **state)
     }
 }
 
-/* One bit at a time, unlike the code under test. */
+/* Bit by bit, unlike the code under test. */
 static void seal(uint8_t *chunk)
 {
     uint32_t count = (uint32_t)chunk[2] << 8 | chunk[3];
@@ -443,7 +441,7 @@ static void a_write_replaces_the_file_whole(void **state)
     assert_int_equal(count, 5);
     free(bytes);
     char old[32];
-    assert_int_equal(read(open_before, old, sizeof old), 19); /* readers keep what they opened */
+    assert_int_equal(read(open_before, old, sizeof old), 19); /* readers keep the opened file */
     (void)close(open_before);
     assert_int_equal(files_in_directory(), 1);
 }
@@ -461,7 +459,7 @@ static void a_link_is_followed_and_a_pipe_is_not_replaced(void **state)
     assert_int_equal(stat(in_scratch("b.png"), &info), 0);
     assert_int_equal(info.st_size, 2);
 
-    /* A pipe stands for all that is not a regular file; think of a replaced /dev/null. */
+    /* A pipe represents everything that is not a regular file, such as a replaced /dev/null. */
     const char *pipe = in_scratch("pipe");
     assert_int_equal(mkfifo(pipe, 0600), 0);
     int reader = open(pipe, O_RDONLY | O_NONBLOCK);

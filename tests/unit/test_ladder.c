@@ -1,6 +1,6 @@
-/* test_ladder.c: measured ladders: the tables that are built in, which scene takes which, what a
- * description makes of them, and files of masu bench read back, whole and damaged. The numbers of the
- * tables are those of a measurement: nothing here knows them. */
+/* test_ladder.c: measured ladders: the built-in tables, the ladder of each scene class, the rungs
+ * of a description, and files of masu bench read back, complete and damaged. No test depends on the
+ * measured numbers. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -33,7 +33,7 @@ static masu_frame_plan plan; /* large */
 
 static void compile(const masu_desc *d) {
     masu_detail detail;
-    if (masu_compile(d, 256, 64, &plan, &detail)) fail_msg("refused: %s", detail.text);
+    if (masu_compile(d, 256, 64, &plan, &detail)) fail_msg("rejected: %s", detail.text);
 }
 
 /* ---- Classes and tables ---------------------------------------------------------------------- */
@@ -46,7 +46,7 @@ static void scenes_have_the_class_of_what_they_are_made_of(void **state) {
         const char *name = masu_scene_class_name((masu_scene_class)c);
         for (uint32_t k = 0; k < c; k++)
             assert_string_not_equal(name, masu_scene_class_name((masu_scene_class)k));
-        /* Coarser forms or occluders alone make no world, nor do both with an SDF. */
+        /* Only additional LODs or occluders make no world, and neither do both with an SDF. */
         if (c % 4 == MASU_SCENE_WORLD) {
             s.lods = 0;
             assert_int_equal(masu_scene_class_of(masu_scene_of(&s)), c - 1);
@@ -92,7 +92,7 @@ static void tables_are_well_formed(void **state) {
                 assert_true((double)l->ratios[r - 1] >=
                             MASU_LADDER_APART * (double)l->ratios[r] * (1 - 1e-5));
             if (r) assert_true(l->flips[r] > l->flips[r - 1]);
-            /* What not every device or blob can do is not built in. */
+            /* Features that some devices or blobs lack are not built in. */
             assert_true(rung->specular != MASU_ON && rung->occlusion != MASU_ON);
             assert_true(rung->scale > 0 && rung->upscale != MASU_OFF);
             assert_true(rung->shadow_distance <= 0 && rung->specular_cutoff <= 0);
@@ -103,7 +103,7 @@ static void tables_are_well_formed(void **state) {
     assert_true(measured >= 1);
 }
 
-/* On a class of GPUs a worse rung that is not cheaper is never of use. */
+/* On a class of GPUs a worse rung that is not cheaper is useless. */
 static void on_every_class_of_gpus_a_worse_rung_is_cheaper(void **state) {
     (void)state;
     for (uint32_t c = 0; c < MASU_SCENE_CLASSES; c++) {
@@ -130,8 +130,8 @@ static void report_of(const masu_ladder *l, const char *file, char out[512]) {
     snprintf(out, 512, "docs/report/%.*s%s%s", (int)n, l->from, *file ? "/" : "", file);
 }
 
-/* Of all that was measured, not of the ladder alone: nothing is nearer and on one of the classes
- * cheaper than a rung. */
+/* Compared with all measured settings, not only with the ladder: none has a lower error than a rung
+ * and is cheaper on one of the classes. */
 static void no_setting_dominates_a_rung_on_a_class_of_gpus(void **state) {
     (void)state;
     for (uint32_t c = 0; c < MASU_SCENE_CLASSES; c++) {
@@ -199,7 +199,7 @@ static void every_class_has_the_nearest_ladder(void **state) {
                           *own = masu_ladder_of_class((masu_scene_class)c);
         assert_true(l && l->count >= 1);
         if (own->count) assert_ptr_equal(l, own);
-        /* From a class that traces alike, if there is one. */
+        /* From a class with the same reflections, if there is one. */
         uint32_t alike = 0, taken = 0;
         for (uint32_t k = c / 4 * 4; k < c / 4 * 4 + 4; k++) {
             const masu_ladder *o = masu_ladder_of_class((masu_scene_class)k);
@@ -215,7 +215,7 @@ static void every_class_has_the_nearest_ladder(void **state) {
 static void assert_ladder(const masu_desc *d, const masu_ladder *l) {
     assert_int_equal(d->rung_count, l->count);
     for (uint32_t r = 0; r < l->count; r++) {
-        const masu_rung *is = &d->rungs[r], *row = &l->rungs[r]; /* which has words at AUTO */
+        const masu_rung *is = &d->rungs[r], *row = &l->rungs[r]; /* which has enum values at AUTO */
         assert_true(is->scale == row->scale && is->sharpness == row->sharpness);
         assert_true(is->easu == row->easu || (!row->easu && is->easu == MASU_EASU_FULL));
         if (row->specular) assert_int_equal(is->specular, row->specular);
@@ -260,7 +260,7 @@ static void the_switch_says_which_rungs(void **state) {
         for (uint32_t r = 0; r < l->count; r++) {
             assert_true(info.rungs[r].ratio == l->ratios[r] && info.rungs[r].flip == l->flips[r]);
         }
-        /* As `temporal` at AUTO: not with several views, or host passes. */
+        /* Like `temporal` at AUTO: not with several views, or host passes. */
         for (uint32_t k = 0; k < 2; k++) {
             d.split = k ? MASU_SPLIT_BEFORE_TONE : 0;
             d.viewport_count = k ? 0 : 2;
@@ -296,7 +296,7 @@ static void what_the_host_gives_wins(void **state) {
     d.ladder = MASU_ON;
     d.governor.costs[0] = l.ratios[0] = 3.5f;
     masu_desc is = masu_desc_resolved(&d);
-    assert_ladder(&is, &l); /* that cost, and the others of the table */
+    assert_ladder(&is, &l); /* that cost, and the table's others */
     d.rung_count = 2;
     d.rungs[1].scale = 0.7f;
     d.flips[1] = 0.25f;
@@ -329,7 +329,7 @@ static void a_host_may_take_it_and_change_it(void **state) {
     assert_int_equal(masu_ladder_of(NULL, &own, &from, NULL), MASU_ERROR_ARGUMENT);
     assert_int_equal(masu_ladder_of(d.scene, NULL, &from, NULL), MASU_ERROR_ARGUMENT);
     assert_null(from);
-    own.governor.costs[0] = 9.0f; /* of another ladder */
+    own.governor.costs[0] = 9.0f; /* for another ladder */
     own.rungs[7].scale = 0.1f;
     assert_int_equal(masu_ladder_of(d.scene, &own, &from, NULL), MASU_OK);
     assert_ladder(&own, masu_ladder_for(d.scene));
@@ -338,7 +338,7 @@ static void a_host_may_take_it_and_change_it(void **state) {
     own.rungs[0].aa = MASU_AA_SMAA_HIGH;
     compile(&own);
     assert_int_equal(plan.desc.rungs[0].aa, MASU_AA_SMAA_HIGH);
-    /* Unchanged it is what ON takes. */
+    /* Unchanged, it is the ladder that ON uses. */
     d.ladder = MASU_ON;
     masu_desc is = masu_desc_resolved(&d);
     assert_int_equal(masu_ladder_of(d.scene, &own, NULL, NULL), MASU_OK);
@@ -391,7 +391,7 @@ static void no_rung_drops_a_feature_to_keep(void **state) {
             assert_true(n > 0 && n == is.rung_count);
             assert_true(n == MASU_MAX_RUNGS || is.governor.costs[n] == 0.0f);
             compile(&d);
-            /* And the host's own. */
+            /* And the host's own rungs. */
             d.rung_count = 2;
             d.rungs[1].ao = keep & MASU_KEEP_OCCLUSION ? MASU_OFF : MASU_AUTO;
             d.rungs[1].specular = keep == MASU_KEEP_REFLECTIONS ? MASU_OFF : MASU_AUTO;
@@ -405,7 +405,7 @@ static void no_rung_drops_a_feature_to_keep(void **state) {
                     detail.text, keep & MASU_KEEP_OCCLUSION ? "rungs[1].ao" : "rungs[1].specular"));
         }
     }
-    /* Reflections all at once are a jump: no built-in ladder drops them. */
+    /* Dropping all reflections at once would be a jump: no built-in ladder does it. */
     assert_int_equal(omitted, 0);
     masu_desc d = scene_desc(RASTER, 640, 360);
     masu_detail detail;
@@ -416,8 +416,7 @@ static void no_rung_drops_a_feature_to_keep(void **state) {
 
 /* ---- Every scene, every ladder --------------------------------------------------------------- */
 
-/* A plan of the whole ladder has for each image the largest that one of its rungs needs, not the
- * sum. */
+/* In a plan of the whole ladder each image has the largest size that a rung needs, not the sum. */
 static void check_shared(const masu_desc *whole) {
     static struct {
         uint32_t width, height;
@@ -441,8 +440,8 @@ static void check_shared(const masu_desc *whole) {
     compile(whole);
     for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
         assert_int_equal(plan.images[i].used, most[i].used);
-        /* What is kept for the next frame is kept at the size of the largest rung that traces, whatever
-         * rung reads it. */
+        /* Images kept for the next frame have the size of the largest rung that traces, whichever
+         * rung reads them. */
         const uint32_t k = masu_images[i].kept ? MASU_IMAGE_SPECULAR_HISTORY_GUIDE : i;
         assert_true(plan.images[i].width >= most[i].width && plan.images[i].height >= most[i].height);
         assert_true(plan.images[i].width <= most[k].width || plan.images[i].width == most[i].width);
@@ -489,7 +488,7 @@ static void every_ladder_fits_every_baked_scene(void **state) {
                      1u << MASU_SCENE_POLYGONS | 1u << MASU_SCENE_SDF | 1u << MASU_SCENE_BOTH);
 }
 
-/* A rung that turns everything that a scene of nothing but walls or a field has not. */
+/* A rung that sets every knob that a scene of only walls, or only a field, does not use. */
 static void what_a_scene_lacks_is_ignored(void **state) {
     (void)state;
     static const masu_rung wish = {.scale = 0.5f,
@@ -576,7 +575,7 @@ static void check_round_trip(const masu_rung *rungs, uint32_t count) {
     for (uint32_t r = 0; r < count; r++) {
         for (const masu_knob *k = masu_knob_table(); k->name; k++) {
             if (masu_knob_differs(k, &rungs[r], &f.rungs[r]))
-                fail_msg("rung %u: %s comes back otherwise", r, k->name);
+                fail_msg("rung %u: %s is not read back", r, k->name);
         }
     }
 }
@@ -622,7 +621,7 @@ static void what_is_written_reads_back_knob_for_knob(void **state) {
     assert_true(d.governor.costs[6] == 0.0f && d.rungs[6].scale == 0.0f);
     assert_string_equal(f.settings[3], "s3");
     assert_true(fabs(f.rmses[2] - 2.5) < 1e-9 && f.width == 320 && f.height == 180);
-    /* What it takes, masu_init takes too. */
+    /* Accepted here means accepted by masu_init. */
     for (uint32_t r = 0; r < 4; r++) d.rungs[r].upscale = MASU_AUTO;
     compile(&d);
 }
@@ -638,7 +637,7 @@ static void expect_error(const char *find, const char *replace, const char *says
     if (masu_ladder_parse("l.json", changed, strlen(changed), &f, error, sizeof error))
         fail_msg("%s is accepted", replace);
     if (!strstr(error, says) || strncmp(error, "l.json: ", 8) || strchr(error, '\n'))
-        fail_msg("'%s' does not say '%s'", error, says);
+        fail_msg("'%s' does not contain '%s'", error, says);
 }
 
 static void mistakes_are_named_in_one_line(void **state) {
@@ -695,7 +694,7 @@ static void mistakes_are_named_in_one_line(void **state) {
     assert_non_null(strstr(error, "expected an object, found an array"));
     assert_false(masu_ladder_read("there/is/none.json", &f, error, sizeof error));
     assert_non_null(strstr(error, "there/is/none.json"));
-    /* Texts end up in comments and constants of C. */
+    /* Texts are written to comments and constants of C. */
     written(rungs, 1);
     char *at = strstr(text, "D 1.0");
     memcpy(at, "*/ ?\b", 5);
@@ -705,7 +704,7 @@ static void mistakes_are_named_in_one_line(void **state) {
     assert_string_equal(f.driver, "./ ..");
 }
 
-/* Whatever the bytes: no crash, one line, and what is accepted a scene takes. */
+/* For any bytes: no crash, one line, and a scene can use what is accepted. */
 static void damaged_files_are_refused_or_good(void **state) {
     (void)state;
     static const masu_rung rungs[2] = {{.scale = 1.0f}, {.scale = 0.5f, .march_steps = 64}};

@@ -1,8 +1,6 @@
-/*
- * test_lights.c: punctual lights on the host: the sphere around what a light reaches holds every point
- * that the reference says is reached, what is left out of a frame lights nothing in the picture, and
- * the numbers for the shaders are finite for all that a state may hold. (Pictures: tests/gpu.)
- */
+/* test_lights.c: punctual lights on the host: the bounding sphere of a light contains every point
+ * that the reference lights; a culled light would light nothing in the image; and the numbers for
+ * the shaders are finite for every valid state. (Images: tests/gpu.) */
 #include <float.h>
 #include <math.h>
 #include <setjmp.h>
@@ -50,7 +48,7 @@ static masu_ref_light reference_of(const masu_punctual_light_state *s) {
     return r;
 }
 
-/* A point that the light may reach: within its range, and mostly within its cone. */
+/* A point that the light can reach: within its range, and mostly within its cone. */
 static void point_of(const masu_punctual_light_state *s, double out[3]) {
     double d[3], length = 0, reach = (double)s->range * (seed & 256 ? random_between(&seed, 0, 1) : 0.99999);
     double wide = s->spot ? 1.2 * tan(fmin((double)s->outer, 1.5)) : 3;
@@ -92,7 +90,7 @@ static void a_bound_holds_all_that_is_reached(void **state) {
                          sqrt(square) - (double)data.bound[3], (double)data.bound[3]);
             reached++;
         }
-        /* And is no larger than the range asks. */
+        /* And is no larger than the range requires. */
         double far = 0, slack = (double)s.range;
         for (int k = 0; k < 3; k++) far += fabs(s.position[k]);
         slack += far;
@@ -101,7 +99,7 @@ static void a_bound_holds_all_that_is_reached(void **state) {
     assert_true(reached > 30000);
 }
 
-/* A camera like src/frame/camera.c's: clip rows of a picture of those tangents. */
+/* A camera as in src/frame/camera.c: clip rows of an image with these tangents. */
 static void make_camera(float clip[16], double right[3], double up[3], double forward[3],
                         double tan_x, double tan_y) {
     double length;
@@ -151,14 +149,14 @@ static void what_is_left_out_lights_nothing_in_the_picture(void **state) {
             }
             if (!(z > 0) || fabs(x) > tan_x * z || fabs(y) > tan_y * z) continue;
             if (!masu_ref_light_reaches(&ref, p, l, color)) continue;
-            if (out) fail_msg("light %d is left out, but seen at %g %g %g", i, p[0], p[1], p[2]);
+            if (out) fail_msg("light %d is culled, but visible at %g %g %g", i, p[0], p[1], p[2]);
             seen++;
         }
     }
     assert_true(outside > 1000 && seen > 1000);
 }
 
-/* Every value that is accepted: placed without a number that is none. */
+/* Every accepted value is written as finite numbers. */
 static void extremes_give_finite_numbers(void **state) {
     (void)state;
     static const double places[] = {0, 1e-30, 1, -1e7, 1e15, -1e15};

@@ -1,5 +1,6 @@
-/* test_local_shadows.c: shadows of punctual lights, the decisions: which lights have one (frame/shadow_choice.h), where
- * faces lie in the atlas (frame/shadow_tiles.h), which faces a cone reaches into and how large they are. */
+/* test_local_shadows.c: decisions about shadows of punctual lights: which lights have one
+ * (frame/shadow_choice.h), positions of faces in the atlas (frame/shadow_tiles.h), which faces a
+ * cone overlaps and how large they are. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -89,7 +90,7 @@ static void tiles_move_together(void **state) {
             }
             assert_true(moves < 10000);
         }
-        /* All but less than two squares of what is free is in whole ones. */
+        /* The free area consists of whole squares, except for less than two. */
         uint32_t free_squares = (uint32_t)((2048ull * 2048 - area) / (512 * 512)), found = 0;
         while (masu_shadow_tile_take(&t, 512).size) found++;
         assert_true(found + 2 > free_squares);
@@ -103,7 +104,8 @@ static void the_least_important_shrink_first(void **state) {
     const double scores[4] = {3, 1, 0.5, 2};
     masu_shadow_sizes_fit(sizes, faces, scores, 4, 2048); /* 13 + 6/4 of 16 squares of 512 */
     assert_true(sizes[0] == 512 && sizes[1] == 512 && sizes[2] == 256 && sizes[3] == 512);
-    masu_shadow_sizes_fit(sizes, faces, scores, 4, 1024); /* 4: all are halved, and two again */
+    /* 4: all are halved, and two of them again */
+    masu_shadow_sizes_fit(sizes, faces, scores, 4, 1024);
     assert_true(sizes[0] == 256 && sizes[1] == 256 && sizes[2] == 128 && sizes[3] == 256);
     masu_shadow_sizes_fit(sizes, faces, scores, 4, 512);
     assert_true(sizes[0] == 128 && sizes[1] == 128 && sizes[2] == 128 && sizes[3] == 128);
@@ -127,7 +129,7 @@ static void on_left(void *user, uint32_t slot) {
     s->lost++;
 }
 
-/* A frame with so many lights; a score of 0: it is gone. */
+/* A frame with these lights; a score of 0: the light was removed. */
 static void step(stage *s, uint32_t most, const double *scores, uint32_t count, int cut) {
     masu_shadow_wish wish;
     wish.count = 0;
@@ -170,7 +172,7 @@ static void the_best_have_shadows(void **state) {
     assert_non_null(slot_of(&s, 3));
     assert_non_null(slot_of(&s, 5));
     assert_non_null(slot_of(&s, 1));
-    assert_non_null(slot_of(&s, 2)); /* of equals the first */
+    assert_non_null(slot_of(&s, 2)); /* the first of equals */
     assert_null(slot_of(&s, 4));
     assert_int_equal(slot_of(&s, 3)->fade, MASU_LOCAL_FADE);
 }
@@ -197,7 +199,7 @@ static void a_shadow_is_held_then_faded_then_given_away(void **state) {
         assert_true(frame < 100);
         step(&s, 1, after, 2, 0);
     }
-    /* The first age is that of the frame after it was chosen. */
+    /* The first age belongs to the frame after the choice. */
     assert_in_range(frame, MASU_SHADOW_HOLD + MASU_LOCAL_FADE, MASU_SHADOW_HOLD + MASU_LOCAL_FADE + 2);
     assert_non_null(slot_of(&s, 1));
     assert_int_equal(slot_of(&s, 1)->fade, 0);
@@ -205,7 +207,7 @@ static void a_shadow_is_held_then_faded_then_given_away(void **state) {
     assert_int_equal(slot_of(&s, 1)->fade, MASU_LOCAL_FADE);
 }
 
-/* As long as nobody else needs the slot, it is kept; and after a cut it is not. */
+/* A slot is kept until another light needs it; but not after a cut. */
 static void nobody_leaves_for_nothing(void **state) {
     (void)state;
     stage s = {0};
@@ -216,14 +218,14 @@ static void nobody_leaves_for_nothing(void **state) {
     step(&s, 2, other, 3, 1);
     assert_int_equal(s.lost, 1);
     assert_non_null(slot_of(&s, 2));
-    /* A light that is gone fades, whoever waits. */
+    /* A removed light fades out, whoever waits. */
     double gone[3] = {9, 0, 0};
     for (int f = 0; f < 12; f++) step(&s, 2, other, 3, 0);
     for (int f = 0; f < MASU_LOCAL_FADE + 1; f++) step(&s, 2, gone, 3, 0);
     assert_null(slot_of(&s, 2));
 }
 
-/* A neon tube is bright to look at, but lights less than a lamp; a cone reaches less than a sphere. */
+/* A neon tube is bright, but lights less than a lamp; a cone reaches less than a sphere. */
 static void scores_are_of_what_a_light_adds(void **state) {
     (void)state;
     const double none[3] = {0, 0, 0}, half[3] = {0, 0.75, 0};

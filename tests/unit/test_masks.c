@@ -1,9 +1,8 @@
-/*
- * test_masks.c: mips of masks keep their coverage, after compression and as the device filters them.
- * Five pictures of foliage, 128x128, are drawn with 16 samples a texel; their mips are made as
- * masu-bake makes them, decoded by the runtime's own decoder, and sampled in double at places drawn at
- * random. Beside that what plain mips give, and mips that keep the share of their texels.
- */
+/* test_masks.c: mips of alpha-tested textures keep their coverage, after compression and with the
+ * device's filtering. Five foliage images, 128x128, are rendered with 16 samples per texel;
+ * masu-bake's mips of them are decoded by the runtime's own decoder, and sampled in double
+ * precision at random positions. For comparison: plain mips, and mips that keep the fraction of
+ * opaque texels. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -61,7 +60,7 @@ static void draw(int picture) {
         masu_texel_halve(levels[m - 1], SIDE >> (m - 1), SIDE >> (m - 1), true, levels[m]);
 }
 
-/* What the runtime's decoder says of the blocks. */
+/* Decodes the blocks with the runtime's decoder. */
 static void decode(uint32_t side, uint8_t *alpha) {
     uint32_t across = (side + 3) / 4;
     for (uint32_t i = 0; i < side * side; i++) {
@@ -78,7 +77,7 @@ static double share(const uint8_t *alpha, uint32_t texels) {
     return (double)there / texels;
 }
 
-/* Castano's first form, before compression: the share of the texels. */
+/* Castano's first method, before compression: the fraction of the texels. */
 static float share_scale(const float *level, uint32_t texels, double wanted) {
     float low = 1.0f / 16, high = 16;
     for (int i = 0; i < 24; i++) {
@@ -94,7 +93,7 @@ static float share_scale(const float *level, uint32_t texels, double wanted) {
     return high;
 }
 
-/* As a device without our care has it: blocks of the scaled alpha. */
+/* Mips without this processing: blocks of the scaled alpha. */
 static void plain_blocks(const float *level, uint32_t side, float scale) {
     static uint8_t bytes[4 * TEXELS];
     for (uint32_t i = 0; i < 4 * side * side; i++)
@@ -134,7 +133,7 @@ static double sample(const uint8_t *alpha, uint32_t side, double u, double v) {
            fy * ((1 - fx) * row[1][left] + fx * row[1][right]);
 }
 
-/* What a trilinear sampler leaves of the picture at a level between mips. */
+/* Coverage that a trilinear sampler gives at a level between mips. */
 static double seen(int way, double lod) {
     uint32_t m = (uint32_t)lod, there = 0, count = 40000;
     double f = lod - m;
@@ -162,7 +161,7 @@ static void every_mip_covers_what_the_first_covers(void **state) {
             double texel = 1.0 / (side * side);
             assert_true(fabs(got[MADE] - first) <= (texel > 0.01 ? texel : 0.01));
         }
-        if (picture == 2 || picture == 4) { /* what is thin was lost */
+        if (picture == 2 || picture == 4) { /* thin shapes were lost */
             assert_true(masu_mask_coverage(alphas[PLAIN][3], SIDE >> 3, SIDE >> 3, CUTOFF) < 0.01);
             assert_true(masu_mask_coverage(alphas[SHARE][3], SIDE >> 3, SIDE >> 3, CUTOFF) <
                         0.8 * first);
@@ -185,20 +184,20 @@ static void a_sampler_sees_that_coverage_between_mips_too(void **state) {
         }
     }
     print_message(
-        "seen through a trilinear sampler, down to 8 texels: off by %.3f plain, %.3f by share of "
+        "coverage in a trilinear sampler, down to 8 texels: error %.3f plain, %.3f by share of "
         "texels, %.3f as made\n",
         worst[PLAIN], worst[SHARE], worst[MADE]);
     assert_true(worst[PLAIN] > 0.09 && worst[SHARE] > 2 * worst[MADE]);
 }
 
-/* The measure against places drawn at random. */
+/* The measure against random positions. */
 static void coverage_is_what_random_places_say(void **state) {
     (void)state;
     for (int picture = 0; picture < PICTURES; picture++) {
         make_mips(picture);
         for (uint32_t m = 0; m < 5; m++) {
             double c = masu_mask_coverage(alphas[MADE][m], SIDE >> m, SIDE >> m, CUTOFF);
-            assert_true(fabs(c - seen(MADE, m)) < 0.012); /* 4 sigma of 40,000 places */
+            assert_true(fabs(c - seen(MADE, m)) < 0.012); /* 4 sigma of 40,000 positions */
         }
     }
 }
@@ -210,7 +209,8 @@ static void compression_moves_no_texel_across_the_cut_off(void **state) {
     static uint8_t alpha[TEXELS];
     uint64_t seed = 1;
     uint32_t moved = 0, plain = 0;
-    for (int kind = 0; kind < 3; kind++) { /* noise; nearly the cut-off; nearly there or not */
+    for (int kind = 0; kind < 3; kind++) { /* noise; close to the cut-off; almost opaque or
+                                              transparent */
         for (uint32_t i = 0; i < TEXELS; i++) {
             float a = (float)random_unit(&seed);
             if (kind == 1) a = (124.0f + 8.0f * a) / 255.0f;
@@ -228,7 +228,7 @@ static void compression_moves_no_texel_across_the_cut_off(void **state) {
             plain += (alphas[PLAIN][0][i] >= CUTOFF) != there;
         }
     }
-    print_message("%u of %d texels on another side of the cut-off, %u by the encoder alone\n",
+    print_message("%u of %d texels on another side of the cut-off, %u by only the encoder\n",
                   moved, 3 * TEXELS, plain);
     assert_int_equal(moved, 0);
     assert_true(plain > 100);
@@ -252,7 +252,7 @@ static void masks_of_everything_or_nothing_stay_so(void **state) {
     assert_float_equal(masu_mask_coverage(alpha, 1, 1, 0), 1, 0);
 }
 
-/* What is a mask by its histogram alone: the foliage above is, a gloss or a smoke is not. */
+/* Masks are detected by their histogram: the foliage above is one, gloss or smoke is not. */
 static void masks_are_told_from_what_else_is_in_alpha(void **state) {
     (void)state;
     uint64_t histogram[256];
@@ -266,9 +266,9 @@ static void masks_are_told_from_what_else_is_in_alpha(void **state) {
         for (int a = 0; a < 256; a++)
             histogram[a] = kind == 0   ? 1                        /* a gradient */
                            : kind == 1 ? (a < 200 ? 256u - (unsigned)a : 0) /* a gloss, mostly dull */
-                           : kind == 2 ? a == 0                   /* nothing is there */
-                           : kind == 3 ? a >= 200                 /* nothing is below */
-                                       : a == 0 || a == 120;      /* nothing is solid */
+                           : kind == 2 ? a == 0                   /* all texels at 0 */
+                           : kind == 3 ? a >= 200                 /* no texel below the cut-off */
+                                       : a == 0 || a == 120;      /* no solid texel */
         if (masu_mask_is_meant(histogram, CUTOFF)) fail_msg("kind %d is a mask", kind);
     }
 }

@@ -1,7 +1,5 @@
-/*
- * test_meso.c: masu-meso's parts: the patches that it makes, rays through a period, what is measured
- * (held against closed forms: a plane, V-grooves, hemispheres), and the model's bounds.
- */
+/* test_meso.c: the parts of masu-meso: generated patches, rays through a period, measurements
+ * (against closed forms: a plane, V-grooves, hemispheres), and the bounds of the model. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -65,7 +63,7 @@ static void made_patches_are_the_same_twice_and_whole(void **state) {
     assert_false(masu_meso_make("sand", 1, 1, &none));
 }
 
-/* A wall that stands on the edge of the period is met from all sides, in all periods. */
+/* A wall on the edge of the period is hit from all sides, in all periods. */
 static void rays_cross_periods(void **state) {
     (void)state;
     masu_meso_patch p = {0};
@@ -82,7 +80,7 @@ static void rays_cross_periods(void **state) {
     masu_meso_hit h;
     for (int side = -1; side <= 1; side += 2) {
         for (double z = 0.05; z < 1; z += 0.1) {
-            /* From 0.4 above the middle of a period, falling by 0.1 before the wall. */
+            /* From 0.4 above the centre of a period, falling by 0.1 before the wall. */
             masu_meso_vec3 down = masu_bake_v3(side, -0.2, 0.3);
             masu_bake_normalize(&down);
             assert_true(masu_meso_trace(t, masu_bake_v3(0.5, 0.4, z), down, &h));
@@ -130,9 +128,10 @@ static void a_plane_is_a_plane(void **state) {
 }
 
 /* Grooves along z whose walls rise at 45 degrees. Facing walls are strips of equal width w under an
- * opening of sqrt(2) w: by the crossed-strings rule (Hottel) a wall sees the opening by
- * (sqrt 2 w + w - w) / (2 w) = sqrt 2 / 2. Seen across at 60 degrees, beyond the slope, the wall that
- * turns away is hidden, and all of what is seen leans 45 degrees to the viewer. */
+ * opening of sqrt(2) w: by the crossed-strings rule (Hottel) the form factor from a wall to the
+ * opening is (sqrt 2 w + w - w) / (2 w) = sqrt 2 / 2. Viewed across at 60 degrees, beyond the
+ * slope, the wall that faces away is hidden, and all visible surfaces are tilted by 45 degrees to
+ * the viewer. */
 static void grooves_have_their_closed_form(void **state) {
     (void)state;
     enum { SIDE = 16 };
@@ -159,9 +158,9 @@ static void grooves_have_their_closed_form(void **state) {
     masu_meso_patch_free(&p);
 }
 
-/* Hemispheres on a plane, of which a share s = pi r^2 of the plane is covered. From above the normal's
- * mean is (1 - s) + s 2/3 up. Seen along the ground only the half that faces the viewer is left: its
- * mean normal is 2/3 as long and horizontal but for nothing: mean of the projected half disc. */
+/* Hemispheres on a plane, covering a fraction s = pi r^2. From above, the mean normal is (1 - s) +
+ * s 2/3 up. Along the ground only the half that faces the viewer is visible: its mean normal has
+ * the length 2/3 and is horizontal, as the mean over the projected half disc. */
 static void hemispheres_have_theirs(void **state) {
     (void)state;
     enum { SIDE = 512 };
@@ -216,7 +215,7 @@ static void identity_changes_nothing(void **state) {
     assert_near(s.shadow, 1, 0);
 }
 
-/* Whatever the curves: unit normals, shares within 0..1. */
+/* For any curves: unit normals, fractions within 0..1. */
 static void any_curves_stay_in_range(void **state) {
     (void)state;
     for (uint64_t i = 0; i < 20000; i++) {

@@ -1,5 +1,5 @@
-/* test_metrics.c: the measures themselves: values worked out by hand, second slow forms of SSIM and
- * FLIP, and error lists whose answer is known. */
+/* test_metrics.c: the metrics themselves: values computed by hand, independent slow implementations
+ * of SSIM and FLIP, and error lists with exact results. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -43,7 +43,7 @@ static void rmse_and_psnr_are_those_worked_out_by_hand(void **state) {
     uint8_t a[8] = {10, 20, 30, 1, 40, 50, 60, 2}, b[8] = {13, 20, 30, 9, 40, 46, 60, 7};
     near(masu_metric_rmse(a, b, 2, 1), sqrt(25.0 / 6) / 255, 1e-15);
     near(masu_metric_rmse(a, a, 2, 1), 0, 0);
-    near(masu_metric_difference(a, b, 2, 1), 7.0 / 6, 1e-15); /* 3 and 4; alpha is not looked at */
+    near(masu_metric_difference(a, b, 2, 1), 7.0 / 6, 1e-15); /* 3 and 4; alpha is ignored */
     near(masu_metric_difference(b, a, 1, 2), 7.0 / 6, 1e-15);
     near(masu_metric_difference(a, a, 2, 1), 0, 0);
     assert_true(isinf(masu_metric_psnr(0)));
@@ -118,7 +118,8 @@ static void ssim_of_flat_pictures_is_that_of_their_means(void **state) {
 
 /* ---- FLIP ------------------------------------------------------------------------------------ */
 
-/* The paper's formulas pixel by pixel with whole 2-D kernels: nothing shared with tools/metric/flip.c. */
+/* The paper's formulas pixel by pixel with whole 2-D kernels, independent of
+ * tools/metric/flip.c. */
 typedef struct color {
     double c[3];
 } color;
@@ -277,7 +278,8 @@ static void flip_agrees_with_a_slow_form(void **state) {
             }
             for (int i = 0; i < W * H; i++) {
                 double wanted = slow_flip(u, v, W, H, i % W, i / W, ppd);
-                near((double)map[i], wanted, 2e-5); /* the slow form's matrix has 7 digits */
+                /* the slow implementation's matrix has 7 digits */
+                near((double)map[i], wanted, 2e-5);
                 mean += wanted / (W * H);
                 most = fmax(most, wanted);
             }
@@ -300,9 +302,9 @@ static masu_flip flip_of_flat(int a, int b) {
 
 static void flip_of_flat_pictures_is_that_worked_out_by_hand(void **state) {
     (void)state;
-    /* Black and white: lightness differs by 100, chroma by nothing, and a flat picture has no
-     * features. 100^0.7 = 25.1189; green to blue is 203.48, 41.31 after the exponent; so
-     * 0.95 + (25.1189 - 16.52) / (41.31 - 16.52) * 0.05. */
+    /* Black and white: lightness differs by 100, chroma by nothing, and a flat image has no
+     * features. 100^0.7 = 25.1189; green to blue is 203.48, 41.31 after the exponent; so 0.95 +
+     * (25.1189 - 16.52) / (41.31 - 16.52) * 0.05. */
     masu_flip flip = flip_of_flat(0, 255);
     near(flip.mean, 0.967, 1e-3);
     near(flip.mean, spread_out(100), 1e-6);
@@ -335,13 +337,13 @@ static void flip_grows_with_the_error_and_is_the_same_both_ways(void **state) {
 
 /* ---- HDR-FLIP -------------------------------------------------------------------------------- */
 
-/* The paper's curve as its author has it: 0.6 first, then his five numbers. */
+/* The paper's curve in its original form: 0.6 first, then his five numbers. */
 static double slow_tone(double x) {
     double v = 0.6 * x, y = v * (2.51 * v + 0.03) / (v * (2.43 * v + 0.59) + 0.14);
     return y < 0 ? 0 : y > 1 ? 1 : y;
 }
 
-/* What it shows at 0.85, found by bisection. */
+/* The luminance that is shown at 0.85, found by bisection. */
 static double slow_bright(void) {
     double low = 0, high = 10;
     for (int i = 0; i < 200; i++)
@@ -367,7 +369,7 @@ static void exposures_are_those_worked_out_by_hand(void **state) {
     near(r.first, log2(slow_bright() / 8), 1e-9);
     near(r.last, log2(slow_bright() / 1), 1e-9);
     assert_int_equal(r.count, 3);
-    /* Green alone counts for 0.7152, and of an even number the median is between two. */
+    /* Green by itself has the weight 0.7152, and the median of an even number is between two. */
     const float two[] = {0, 1, 0, 0, 4, 0};
     assert_true(masu_hdr_flip_exposures(two, 2, &r));
     near(r.first, log2(slow_bright() / (4 * 0.7152)), 1e-6);
@@ -380,7 +382,7 @@ static void exposures_are_those_worked_out_by_hand(void **state) {
     assert_true(masu_hdr_flip_exposures(black, 2, &r));
     near(r.first, 0, 0);
     near(r.last, 0, 0);
-    /* Black in most of it: 20 stops, no more. */
+    /* Mostly black: 20 stops, no more. */
     const float night[] = {0, 0, 0, 0, 0, 0, 1, 1, 1};
     assert_true(masu_hdr_flip_exposures(night, 3, &r));
     near(r.last - r.first, 20, 1e-9);
@@ -425,8 +427,8 @@ static void hdr_flip_agrees_with_a_slow_form(void **state) {
     near(flip.max, 0, 0);
 }
 
-/* Flat pictures, so that nothing but the curve and FLIP of greys is left: 1 and 2 at the only
- * exposure there is, which shows 1 at 0.85. */
+/* Flat images, so that only the curve and FLIP of greys have an effect: 1 and 2 at the only
+ * exposure, which shows 1 at 0.85. */
 static void hdr_flip_of_flat_pictures_is_that_worked_out_by_hand(void **state) {
     (void)state;
     enum { W = 16, H = 12 };
@@ -441,7 +443,7 @@ static void hdr_flip_of_flat_pictures_is_that_worked_out_by_hand(void **state) {
     assert_true(masu_metric_hdr_flip(a, b, W, H, 0, NULL, &flip));
     near(flip.mean, spread_out(apart), 1e-6);
     near(flip.max, flip.mean, 1e-9);
-    /* An error in the dark, which the exposure for the brightest alone would hide. */
+    /* An error in the dark, which the exposure for the brightest would hide. */
     for (int i = 0; i < 3 * W * H; i++) {
         a[i] = b[i] = i < 3 * W ? 1000 : 0.01f;
         if (i >= 3 * W * (H - 3)) b[i] = 0.02f;
@@ -458,12 +460,12 @@ static void hdr_flip_of_flat_pictures_is_that_worked_out_by_hand(void **state) {
 static void march_errors_are_those_worked_out_by_hand(void **state) {
     (void)state;
     const masu_march_sample samples[] = {
-        {1, 1, 10.0, 10.0, 0.01, 1.0},  /* right */
+        {1, 1, 10.0, 10.0, 0.01, 1.0},  /* correct */
         {2, 1, 10.05, 10.0, 0.01, 3.0}, /* half a pixel too far, 0.5 % */
         {3, 2, 12.0, 10.0, 0.01, 8.0},  /* 20 % */
         {0, 5, -1.0, 10.0, 0.01, 0.0},  /* missed */
         {4, 4, 7.0, -1.0, 0.01, 0.0},   /* hit nothing */
-        {5, 4, -1.0, -1.0, 0.01, 0.0},  /* rightly missed */
+        {5, 4, -1.0, -1.0, 0.01, 0.0},  /* correctly missed */
     };
     masu_march_errors e;
     assert_true(masu_march_errors_of(samples, 6, &e));
@@ -473,7 +475,7 @@ static void march_errors_are_those_worked_out_by_hand(void **state) {
     near(e.depth_off_pct, 100.0 / 3, 1e-12);
     near(e.depth_mean_px, (0 + 0.5 + 20) / 3, 1e-9);
     near(e.depth_max_px, 20, 1e-9);
-    near(e.depth_p99_px, 20, 1e-9); /* of three the third */
+    near(e.depth_p99_px, 20, 1e-9); /* the third of three */
     near(e.normal_mean, 4, 1e-12);
     near(e.normal_max, 8, 1e-12);
     /* Even: (1,1) right, (4,4) wrong. Odd: one miss, one far, two right. */
@@ -481,9 +483,9 @@ static void march_errors_are_those_worked_out_by_hand(void **state) {
     assert_int_equal(e.checker.wrong[0], 1);
     assert_int_equal(e.checker.count[1], 4);
     assert_int_equal(e.checker.wrong[1], 2);
-    assert_int_equal(e.border.count[0], 1); /* (0,5) alone is on a rim */
+    assert_int_equal(e.border.count[0], 1); /* only (0,5) is on a rim */
     assert_int_equal(e.border.wrong[0], 1);
-    near(e.checker.error[1], (0.5 + 4.0) / 2, 1e-9); /* 20 pixels count as 4 */
+    near(e.checker.error[1], (0.5 + 4.0) / 2, 1e-9); /* 20 pixels are limited to 4 */
     assert_true(masu_march_errors_of(samples, 0, &e));
     near(e.hitmiss_pct, 0, 0);
 }
@@ -508,7 +510,7 @@ static void class_tests_are_those_worked_out_by_hand(void **state) {
     near(t.p, 1, 0);
 }
 
-/* Errors strewn at random must not look like a pattern, planted ones must. */
+/* Randomly distributed errors must not be reported as a pattern, planted ones must. */
 static void a_planted_pattern_is_found_and_chance_is_not(void **state) {
     (void)state;
     enum { W = 320, H = 180 };
@@ -533,7 +535,7 @@ static void a_planted_pattern_is_found_and_chance_is_not(void **state) {
         assert_true(planted == 2 ? e.border.z > 5 && e.border.p < 1e-6
                                  : fabs(e.border.z) < 3.5 && e.border.p > 1e-3);
     }
-    /* A depth error that only one phase has, too small to be called wrong. */
+    /* A depth error in only one phase, too small to be called wrong. */
     masu_march_errors e;
     uint64_t seed = 7;
     for (uint32_t i = 0; i < W * H; i++) {
@@ -547,7 +549,7 @@ static void a_planted_pattern_is_found_and_chance_is_not(void **state) {
     free(samples);
 }
 
-/* Of 201 the p99 is that with the number 198 of 0 to 200, whatever their order. */
+/* With 201 values the p99 is number 198 of 0 to 200, in any order. */
 static void the_99th_percentile_of_depth_leaves_out_the_worst(void **state) {
     (void)state;
     enum { N = 201 };

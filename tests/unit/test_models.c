@@ -1,5 +1,5 @@
-/* test_models.c: models that move as one: the rules for them in a blob, each broken alone; what moving, hiding
- * and adding them does to the host's truth; what is refused, and that nothing has changed then. */
+/* test_models.c: movable models: each rule for them in a blob, broken one at a time; effects of
+ * moving, hiding and adding them on the host's data; rejected calls, which change nothing. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -36,7 +36,7 @@ static support_blob broken;
             fail_msg("%s was accepted", #__VA_ARGS__);                                             \
         assert_int_equal(detail.result, MASU_ERROR_SCENE);                                         \
         if (strcmp(detail.what, section) || detail.given != (element))                             \
-            fail_msg("%s was refused as %s", #__VA_ARGS__, detail.text);                           \
+            fail_msg("%s was rejected as %s", #__VA_ARGS__, detail.text);                          \
     } while (0)
 
 static void a_blob_tells_its_models(void **state) {
@@ -72,8 +72,8 @@ static void models_that_are_none_are_refused(void **state) {
     REFUSED("models", 0, MODEL[0].like = 1);
     REFUSED("models", 1, MODEL[1].like = UINT32_MAX);
     REFUSED("models", 2, MODEL[2].like = 0);
-    REFUSED("models", 2, MODEL[2].like = 1); /* which is of another kind itself */
-    REFUSED("models", 1, NODE[1].instance = 2); /* another mesh than its kind's */
+    REFUSED("models", 2, MODEL[2].like = 1); /* which is a copy itself */
+    REFUSED("models", 1, NODE[1].instance = 2); /* another mesh than its original's */
     REFUSED("models", 1, NODE[1].instance = MASU_BLOB_NONE);
     REFUSED("model nodes", 0, NODE[0].local[0] = INFINITY);
     REFUSED("model nodes", 3, NODE[3].instance = 3);
@@ -83,7 +83,7 @@ static void models_that_are_none_are_refused(void **state) {
     REFUSED("model nodes", 2, NODE[2].name = 1u << 20);
 }
 
-/* ---- What they do ---------------------------------------------------------------------------- */
+/* ---- Operations ------------------------------------------------------------------------------ */
 
 static const float there[12] = {1, 0, 0, 10, 0, 1, 0, 20, 0, 0, 1, 30};
 
@@ -118,7 +118,7 @@ static void models_and_nodes_are_found(void **state) {
     assert_true(instance.shown);
 }
 
-/* The lid lies two nodes deep: turned about y by the node above, carried by the model. */
+/* The lid is two nodes deep: rotated about y by the node above, moved by the model. */
 static void a_model_carries_its_nodes(void **state) {
     (void)state;
     make_renderer(SUPPORT_ALL | SUPPORT_LIVE, 0);
@@ -133,7 +133,7 @@ static void a_model_carries_its_nodes(void **state) {
     assert_int_equal(masu_model_get(&m, lid, &model, &failure), MASU_OK);
     assert_rows(model.rows, there);
     assert_int_equal(model.nodes, 2);
-    for (uint32_t k = 0; k < 3; k++) { /* its mesh is 4 x 4 x 0, turned */
+    for (uint32_t k = 0; k < 3; k++) { /* its mesh is 4 x 4 x 0, rotated */
         const float half[3] = {0, 2, 2};
         assert_true(fabsf(model.box_low[k] - (there[4 * k + 3] - half[k])) < 1e-4f);
         assert_true(fabsf(model.box_high[k] - (there[4 * k + 3] + half[k])) < 1e-4f);
@@ -142,7 +142,8 @@ static void a_model_carries_its_nodes(void **state) {
     const float up[12] = {1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 1, 2};
     assert_int_equal(masu_model_node_set(&m, lid, 1, up, &failure), MASU_OK);
     assert_int_equal(masu_instance_get(&m, instance, &is, &failure), MASU_OK);
-    const float raised[12] = {0, 0, 1, 12, 0, 1, 0, 21, -1, 0, 0, 30}; /* z of the node is x out here */
+    /* the node's z axis is x in the world */
+    const float raised[12] = {0, 0, 1, 12, 0, 1, 0, 21, -1, 0, 0, 30};
     assert_rows(is.rows, raised);
     /* The others have not moved. */
     assert_int_equal(masu_instance_get(&m, masu_instance_at(&m, 0), &is, &failure), MASU_OK);
@@ -150,7 +151,7 @@ static void a_model_carries_its_nodes(void **state) {
     assert_rows(is.rows, unit);
 }
 
-/* Nodes far from the origin are where they are to the 48 bits of two floats. */
+/* Positions of nodes far from the origin are exact to the 48 bits of two floats. */
 static void a_double_position_is_exact(void **state) {
     (void)state;
     const double away[3] = {10000000.3, -2.7, 1e12 + 0.125}, nowhere[3] = {0, HUGE_VAL, 0};
@@ -208,7 +209,8 @@ static void what_cannot_be_changes_nothing(void **state) {
     assert_non_null(strstr(failure.text, "rows[5] is nan"));
     assert_int_equal(masu_model_node_set(&m, lid, 0, bad, &failure), MASU_ERROR_ARGUMENT);
     const float far_out[12] = {3e38f, 0, 0, 0, 0, 3e38f, 0, 0, 0, 0, 3e38f, 0};
-    assert_int_equal(masu_model_node_set(&m, lid, 0, far_out, &failure), MASU_OK); /* it is still a float */
+    /* the sum is still a float */
+    assert_int_equal(masu_model_node_set(&m, lid, 0, far_out, &failure), MASU_OK);
     assert_int_equal(masu_model_set_transform(&m, lid, far_out, &failure), MASU_ERROR_ARGUMENT);
     assert_non_null(strstr(failure.text, "beyond"));
     assert_int_equal(masu_model_get(&m, lid, &after, &failure), MASU_OK);
@@ -227,7 +229,7 @@ static void what_cannot_be_changes_nothing(void **state) {
     assert_int_equal(masu_instance_show(&m, (masu_instance){0}, 1, &failure), MASU_ERROR_ARGUMENT);
 }
 
-/* Hidden ones of a kind are shown one after the other; the last is the last. */
+/* Hidden copies are shown one after the other, until none is left. */
 static void a_spare_one_is_shown(void **state) {
     (void)state;
     make_renderer(SUPPORT_ALL | SUPPORT_LIVE, 0);
@@ -249,12 +251,12 @@ static void a_spare_one_is_shown(void **state) {
     assert_int_equal(m.instances.hidden_count, 1);
     assert_int_equal(masu_model_add(&m, masu_model_at(&m, 1), there, &added, &failure), MASU_OK);
     assert_int_equal(added.id, plate.id);
-    /* Nothing stands in for what is of another kind. */
+    /* A model of another kind cannot serve as a copy. */
     assert_int_equal(masu_model_show(&m, plate, 0, &failure), MASU_OK);
     assert_int_equal(masu_model_add(&m, masu_model_find(&m, "lid"), there, &added, &failure), MASU_ERROR_LIMIT);
 }
 
-/* ---- Places for copies ----------------------------------------------------------------------- */
+/* ---- Slots for copies ------------------------------------------------------------------------ */
 
 static masu_frame_plan plan_with(uint32_t parts, masu_reserve reserve, uint32_t live) {
     static support_blob blob;
@@ -271,7 +273,7 @@ static masu_frame_plan plan_with(uint32_t parts, masu_reserve reserve, uint32_t 
     return plan;
 }
 
-/* Of each place the size is that of the largest kind; a reserve of nothing, and of what nothing can be copied of,
+/* Each slot has the size of the largest kind. A reserve of 0, or for models that cannot be copied,
  * changes no buffer. */
 static void places_are_as_large_as_the_largest(void **state) {
     (void)state;
@@ -281,7 +283,7 @@ static void places_are_as_large_as_the_largest(void **state) {
     assert_int_equal(none.buffers[MASU_BUFFER_LIVE_MATERIALS].bytes, 0);
     some = plan_with(SUPPORT_ALL | SUPPORT_LIVE, (masu_reserve){.models = 5, .lights = 3}, 1);
     assert_int_equal(some.scene.models, none.scene.models + 5);
-    assert_int_equal(some.scene.model_nodes, none.scene.model_nodes + 5 * 2); /* of the lid */
+    assert_int_equal(some.scene.model_nodes, none.scene.model_nodes + 5 * 2); /* the lid's */
     assert_int_equal(some.scene.instances, none.scene.instances + 5);
     assert_int_equal(some.scene.lights, none.scene.lights + 3);
     assert_int_equal(masu_own_models(&some), none.scene.models);

@@ -1,6 +1,6 @@
-/* test_normal_filter.c: bumps seen from afar. Truth is the mean of the light that the texels under a
- * pixel return, each with its own normal and roughness; against it the light of one mean normal with the
- * roughness that tools/bake/texture/texture.c gives the mip. */
+/* test_normal_filter.c: normal maps under minification. The reference is the mean light returned by
+ * the texels under a pixel, each with its own normal and roughness. It is compared with one mean
+ * normal and the roughness that tools/bake/texture/texture.c gives the mip. */
 #include "bake/texture/texel.h"
 #include "reference/brdf.h"
 #include "reference/vec.h"
@@ -23,7 +23,7 @@ typedef struct texel {
 
 typedef struct relief {
     const char *name;
-    double height; /* most slope, about */
+    double height; /* maximum slope, approximately */
     int waves_x, waves_y;
     double smooth, rough; /* of checkered texels */
 } relief;
@@ -73,10 +73,10 @@ static void direction(double degrees, double around, double out[3]) {
     out[2] = cos(a);
 }
 
-/* Ways to give a pixel one roughness. */
+/* Methods to compute one roughness for a pixel. */
 enum {
-    PLAIN,    /* the mean roughness: what lies in the normals is lost */
-    FOLDED,   /* that, and the variance of the normals: masu-bake's */
+    PLAIN,    /* the mean roughness: the variance of the normals is lost */
+    FOLDED,   /* that, plus the variance of the normals: the method of masu-bake */
     OF_ALPHA, /* the same, from the mean of alpha^2 */
     WAYS
 };
@@ -120,7 +120,7 @@ static void folded_normals_are_nearer_to_the_relief_than_plain_ones(void **state
         compare(texels, off);
         print_message("  %-26s %8.3f %8.3f %11.3f\n", reliefs[i].name, off[PLAIN], off[FOLDED],
                       off[OF_ALPHA]);
-        /* One lobe is no sum of lobes: what is left is their shape. */
+        /* One lobe is no sum of lobes: the remaining error is their shape. */
         int even = reliefs[i].smooth == reliefs[i].rough;
         assert_true(off[FOLDED] < (even ? 0.6 : 0.9));
         if (even) assert_true(off[FOLDED] < off[PLAIN] / 3);

@@ -1,12 +1,10 @@
-/*
- * test_normal_packing.c: masu_unpack_normal against the packing of shaders/shared/pack.glsl,
- * written down here a second time and in double, so that the only error measured is that of the 26
- * bits and of the decoder.
+/* test_normal_packing.c: masu_unpack_normal against the packing of shaders/shared/pack.glsl,
+ * written a second time here and in double precision, so that the measured error is only that of
+ * the 26 bits and of the decoder.
  *
- * How large it may be: rounding moves each coordinate by up to h = 0.5 / 4095. Where x, y and z are
- * equal, (h, h) on the square is (h, h, -2h) on the octahedron, sqrt(6) h long and at right angles
- * to a radius of 1/sqrt(3): sqrt(18) h = 0.0297 degrees. No other place is worse.
- */
+ * Error bound: rounding moves each coordinate by up to h = 0.5 / 4095. For equal x, y and z, (h, h)
+ * on the square is (h, h, -2h) on the octahedron, sqrt(6) h long and at right angles to a radius of
+ * 1/sqrt(3): sqrt(18) h = 0.0297 degrees. This is the worst case. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -25,7 +23,7 @@
 
 static uint32_t packed_component(double c) { return (uint32_t)(nearbyint(c * 4095.0) + 4095.0); }
 
-/* masu_pack_normal without material: what GLSL's masu_oct_encode does, in double. */
+/* masu_pack_normal without material: GLSL's masu_oct_encode in double precision. */
 static uint32_t packed(const double n[3]) {
     double sum = fabs(n[0]) + fabs(n[1]) + fabs(n[2]);
     double x = n[0] / sum, y = n[1] / sum;
@@ -37,7 +35,7 @@ static uint32_t packed(const double n[3]) {
     return packed_component(x) | packed_component(y) << 13;
 }
 
-/* Degrees between a unit vector and what came back; atan2 keeps its precision near 0. */
+/* Degrees between a unit vector and the decoded one; atan2 keeps its precision near 0. */
 static double error_degrees(const double n[3], const float out[3]) {
     double o[3] = {(double)out[0], (double)out[1], (double)out[2]};
     double cross[3] = {n[1] * o[2] - n[2] * o[1], n[2] * o[0] - n[0] * o[2],
@@ -52,7 +50,7 @@ static double length(const float v[3]) {
     return sqrt(x * x + y * y + z * z);
 }
 
-/* Even over the sphere: z and the angle are uniform. */
+/* Uniform over the sphere: z and the angle are uniform. */
 static void random_direction(uint64_t *random, double n[3]) {
     double z = (double)(support_random(random) >> 11) / 4503599627370496.0 - 1.0;
     double angle = (double)(support_random(random) >> 11) / 9007199254740992.0 * 2.0 * PI;
@@ -76,7 +74,7 @@ static void a_direction_comes_back_within_the_rounding_of_13_bits(void **state) 
         if (!(error <= worst)) worst = error;
         if (!(off <= worst_length)) worst_length = off;
     }
-    printf("%d directions: largest error %.5f degrees, mean %.5f; length off by %.1e at most\n",
+    printf("%d directions: largest error %.5f degrees, mean %.5f; length error %.1e at most\n",
            DIRECTIONS, worst, mean, worst_length);
     assert_true(worst <= WORST_DEGREES);
     assert_true(worst_length <= 1e-6);

@@ -1,7 +1,8 @@
-/* test_null.c: every public function with each of its pointers NULL in turn. Nothing crashes; what has a result
- * says MASU_ERROR_ARGUMENT, unless the pointer is one that may be NULL, and its detail, which is the last parameter,
- * names the argument. What there is to be called, and how its arguments are called, is read in
- * include/: a function that is new there and has no row here is a failure. */
+/* test_null.c: every public function with each of its pointers NULL, one at a time. Nothing
+ * crashes. A function with a result returns MASU_ERROR_ARGUMENT, unless the pointer may be NULL,
+ * and its detail (the last parameter) names the argument. The list of functions and the names of
+ * their arguments are read from include/: a new function there that has no row here is a
+ * failure. */
 #include <ctype.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -46,7 +47,10 @@ static masu_stats_info stats;
 static masu_readback_image image;
 static masu_pick_info pick;
 static masu_instance_state instance_state;
+static masu_look instance_look;
+static masu_progress progress;
 static masu_model_state model_state;
+static masu_mesh_data mesh_data;
 static masu_model added;
 static const masu_clip_use clip_use = {.weight = 1.0f};
 static masu_node_state node_state;
@@ -57,12 +61,13 @@ static masu_renderer *made;
 static masu_rung rung;
 static const char *from;
 static float unpacked[3];
+static const float white[24];
 static _Alignas(64) unsigned char block[64];
 static const masu_frame_desc still = {MASU_FRAME_DESC};
 static const float unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 static const double unit_position[3] = {1, 2, 3};
 
-/* The pointer of that number, counted from 0, or NULL where it is its turn. */
+/* The pointer with this number, counted from 0, or NULL if it is the one under test. */
 #define P(number, pointer) (null == (number) ? NULL : (pointer))
 
 #define INSTANCE masu_instance_at(&m, 0)
@@ -134,6 +139,10 @@ static const double unit_position[3] = {1, 2, 3};
     X(masu_instance_set_position, masu_instance_set_position(P(0, &m), INSTANCE, P(1, unit_position), P(2, &detail))) \
     X(masu_instance_get, masu_instance_get(P(0, &m), INSTANCE, P(1, &instance_state), P(2, &detail))) \
     X(masu_instance_show, masu_instance_show(P(0, &m), INSTANCE, 1, P(1, &detail)))                \
+    X(masu_init_step, masu_init_step(P(0, &m), P(1, &progress), P(2, &detail)))                    \
+    X(masu_instance_set_look, masu_instance_set_look(P(0, &m), INSTANCE, P(1, &instance_look), P(2, &detail))) \
+    X(masu_instance_get_look, masu_instance_get_look(P(0, &m), INSTANCE, P(1, &instance_look), P(2, &detail))) \
+    X(masu_model_set_look, masu_model_set_look(P(0, &m), MODEL, P(1, &instance_look), P(2, &detail)))       \
     X(masu_model_find, ((void)masu_model_find(P(0, &m), P(1, "a")), NO_RESULT))                    \
     X(masu_model_at, ((void)masu_model_at(P(0, &m), 0), NO_RESULT))                                \
     X(masu_model_get, masu_model_get(P(0, &m), MODEL, P(1, &model_state), P(2, &detail)))          \
@@ -142,6 +151,10 @@ static const double unit_position[3] = {1, 2, 3};
     X(masu_model_set_position, masu_model_set_position(P(0, &m), MODEL, P(1, unit_position), P(2, &detail))) \
     X(masu_model_add, masu_model_add(P(0, &m), MODEL, P(1, unit), P(2, &added), P(3, &detail)))    \
     X(masu_model_remove, masu_model_remove(P(0, &m), MODEL, P(1, &detail)))                        \
+    X(masu_mesh_create, masu_mesh_create(P(0, &m), 0, P(1, &mesh_data), P(2, unit), P(3, &added), P(4, &detail))) \
+    X(masu_mesh_replace, masu_mesh_replace(P(0, &m), MODEL, P(1, &mesh_data), P(2, &detail)))      \
+    X(masu_mesh_deform, masu_mesh_deform(P(0, &m), MODEL, P(1, unit), P(2, unit), 0, P(3, &detail))) \
+    X(masu_mesh_bytes, ((void)masu_mesh_bytes(P(0, &m), 1, 1), NO_RESULT))                          \
     X(masu_model_node_find, ((void)masu_model_node_find(P(0, &m), MODEL, P(1, "a")), NO_RESULT))   \
     X(masu_model_node_get, masu_model_node_get(P(0, &m), MODEL, 0, P(1, &node_state), P(2, &detail))) \
     X(masu_model_node_set, masu_model_node_set(P(0, &m), MODEL, 0, P(1, unit), P(2, &detail)))     \
@@ -161,6 +174,7 @@ static const double unit_position[3] = {1, 2, 3};
     X(masu_material_at, ((void)masu_material_at(P(0, &m), 0), NO_RESULT))                          \
     X(masu_material_get, masu_material_get(P(0, &m), (masu_material){1}, P(1, &material_state), P(2, &detail))) \
     X(masu_material_set, masu_material_set(P(0, &m), (masu_material){1}, P(1, &material_state), P(2, &detail))) \
+    X(masu_lut_set, masu_lut_set(P(0, &m), P(1, white), 2, P(2, &detail)))                          \
     X(masu_stats, masu_stats(P(0, &m), 0, P(1, &stats), P(2, &detail)))                            \
     X(masu_peaks, (masu_peaks(P(0, &m), P(1, &peaks)), NO_RESULT))                                 \
     X(masu_readback, masu_readback(P(0, &m), 0, MASU_READBACK_DEPTH, P(1, &image), P(2, &detail))) \
@@ -182,7 +196,7 @@ static const struct {
     CALLS(CALL_ROW)};
 enum { CALL_COUNT = sizeof calls / sizeof *calls };
 
-/* ---- What the header says -------------------------------------------------------------------- */
+/* ---- Declarations of the header -------------------------------------------------------------- */
 
 typedef struct parameter {
     char name[32];
@@ -190,8 +204,8 @@ typedef struct parameter {
 
 typedef struct function {
     char name[64];
-    int has_result;       /* it is a masu_result */
-    int pointers;         /* of its parameters, in order: */
+    int has_result;       /* it returns a masu_result */
+    int pointers;         /* for its parameters, in order: */
     parameter parameter[PARAMETERS_MAX];
 } function;
 
@@ -219,7 +233,7 @@ static int free_header(void **state) {
     return 0;
 }
 
-/* The last word of a declaration, without what stands in brackets behind it. */
+/* The last identifier of a declaration, without an array size in brackets. */
 static void last_word(const char *text, size_t length, char *to, size_t room) {
     const char *bracket = memchr(text, '[', length);
     if (bracket) length = (size_t)(bracket - text);
@@ -231,7 +245,7 @@ static void last_word(const char *text, size_t length, char *to, size_t room) {
     to[length - start] = '\0';
 }
 
-/* The declaration that begins at `at`; where it ends. */
+/* Reads the declaration that begins at `at`; returns its end. */
 static const char *read_function(const char *at, function *f) {
     const char *open = strchr(at, '('), *end = strchr(at, ';');
     assert_true(open && end && open < end);
@@ -252,7 +266,8 @@ static const char *read_function(const char *at, function *f) {
 }
 
 static int may_be_null(const char *parameter) {
-    return !strcmp(parameter, "detail") || !strcmp(parameter, "viewports") || !strcmp(parameter, "from");
+    return !strcmp(parameter, "detail") || !strcmp(parameter, "progress") ||
+           !strcmp(parameter, "viewports") || !strcmp(parameter, "from");
 }
 
 /* ---- Tests ----------------------------------------------------------------------------------- */
@@ -310,7 +325,7 @@ static void what_has_nothing_to_tell_says_so(void **state) {
     assert_int_equal(plan.memory.host_bytes, 0);
     uint32_t count = masu_memory_report(&m, rows_of_memory, 2);
     assert_true(count > 2);
-    assert_int_equal(masu_memory_report(&m, NULL, 1000), count); /* counted alone */
+    assert_int_equal(masu_memory_report(&m, NULL, 1000), count); /* counted by itself */
     assert_int_equal(masu_memory_report(NULL, rows_of_memory, 2), 0);
     assert_true(masu_knob_get(NULL, &rung, 0) == 0.0);
     assert_int_equal(masu_knob_accepts(NULL, 0.0), 0);

@@ -1,5 +1,6 @@
-/* test_pacing.c: how many refreshes of the display frames are planned for: when it rises, when it falls, that it does not
- * alternate, and that no number upsets it. A display of 60 Hz that says when each frame was shown. */
+/* test_pacing.c: the number of display refreshes that frames are planned for: when it rises, when
+ * it falls, that it does not alternate, and that no input breaks it. A display of 60 Hz that
+ * reports when each frame was shown. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -16,7 +17,7 @@
 
 static masu_pacing p;
 static uint64_t frame, now;
-static uint32_t last; /* for how many refreshes the frame before is shown */
+static uint32_t last; /* number of refreshes for which the previous frame is shown */
 
 static int start(void **state) {
     (void)state;
@@ -38,7 +39,7 @@ static uint32_t one(double ms, uint32_t late) {
     return refreshes;
 }
 
-/* How many frames of `ms` until another number than now is chosen; at most `most`. */
+/* Number of frames of `ms` until the choice changes; at most `most`. */
 static uint32_t until_other(double ms, uint32_t most) {
     uint32_t before = p.refreshes, n = 0;
     do n++;
@@ -52,7 +53,7 @@ static void without_a_display_it_says_nothing(void **state) {
     masu_pacing_choose(&none, 1, 5, 16, 0);
     assert_int_equal(none.refreshes, 0);
     assert_true(masu_pacing_target(&none, 20) == 20);
-    assert_true(fabs(masu_pacing_target(&p, 17) - MS) < 1e-9); /* they are to fit into one */
+    assert_true(fabs(masu_pacing_target(&p, 17) - MS) < 1e-9); /* frames are to fit into one */
     assert_true(masu_pacing_target(&p, 10) == 10);
 }
 
@@ -61,13 +62,14 @@ static void it_rises_when_frames_want_more_and_falls_a_second_after(void **state
     assert_int_equal(one(10, 0), 1);
     assert_int_equal(until_other(20, 100), 4);
     assert_int_equal(p.refreshes, 2);
-    for (int i = 0; i < 500; i++) assert_int_equal(one(20, 0), 2); /* the mistake, if it was one, is long ago */
-    for (int i = 0; i < 300; i++) assert_int_equal(one(16, 0), 2); /* it fits, without room */
+    /* the possible mistake is long ago */
+    for (int i = 0; i < 500; i++) assert_int_equal(one(20, 0), 2);
+    for (int i = 0; i < 300; i++) assert_int_equal(one(16, 0), 2); /* it fits, without margin */
     assert_int_equal(until_other(10, 1000), 60);
     assert_int_equal(p.refreshes, 1);
 }
 
-/* Each fall that was a mistake makes the next wait twice as long, up to sixteen times. */
+/* Each mistaken fall doubles the next wait, up to sixteen times. */
 static void it_does_not_alternate(void **state) {
     (void)state;
     uint32_t wait = 60;
@@ -81,14 +83,15 @@ static void it_does_not_alternate(void **state) {
     }
     assert_int_equal(until_other(10, 10000), wait);
     for (int i = 0; i < 240; i++) one(10, 0);
-    assert_int_equal(until_other(20, 10000), 4); /* so long after, it was right */
+    assert_int_equal(until_other(20, 10000), 4); /* after so long, it was correct */
     assert_int_equal(until_other(10, 10000), 60);
 }
 
 static void it_rises_when_frames_come_late(void **state) {
     (void)state;
     for (int i = 0; i < 40; i++) one(10, 0);
-    for (int i = 0; i < 60; i++) assert_int_equal(one(10, i % 6 == 0), 1); /* three of sixteen are let pass */
+    /* three of sixteen are tolerated */
+    for (int i = 0; i < 60; i++) assert_int_equal(one(10, i % 6 == 0), 1);
     for (int i = 0; i < 16; i++) assert_int_equal(one(10, 0), 1);
     for (int i = 0; i < 4; i++) assert_int_equal(one(10, 1), 1);
     assert_int_equal(one(10, 0), 2);
@@ -105,7 +108,8 @@ static void no_number_upsets_it(void **state) {
     }
     masu_pacing_choose(&p, UINT64_MAX, 10, MS, 0);
     assert_int_equal(masu_pacing_shown(&p, UINT64_MAX, UINT64_MAX, REFRESH), 0);
-    assert_int_equal(masu_pacing_shown(&p, 3, 5, 1), 0); /* no refresh lasts a nanosecond: all is forgotten */
+    /* no refresh lasts a nanosecond: the state is cleared */
+    assert_int_equal(masu_pacing_shown(&p, 3, 5, 1), 0);
     assert_true(p.refresh == 0);
 }
 

@@ -1,4 +1,4 @@
-/* test_picture_path.c: where pictures are looked for that models name, in folders made here. */
+/* test_picture_path.c: search paths for the textures that models name, in folders made here. */
 #define _XOPEN_SOURCE 700
 #include <setjmp.h>
 #include <stdarg.h>
@@ -15,7 +15,8 @@
 #include "bake/import/picture_path.h"
 #include "support/files.h"
 
-/* Of a model below the scratch folder a name leads to a path below it, or to an absolute one. */
+/* For a model below the scratch folder, a name resolves to a path below it, or to an absolute
+ * one. */
 static void leads(const char *model, const char *name, const char *expected) {
     char from[512], to[512];
     masu_bake_buffer out = {0};
@@ -33,7 +34,7 @@ static void names_of_other_machines(void **state) {
     leads("m/x.dae", "a%20b.png", "m/a b.png");
     leads("m/x.dae", "./maps/a%20c.png", "m/maps/a c.png");
     leads("m/x.dae", "50%25.png", "m/50%.png");
-    leads("m/x.dae", "9%20.png", "m/9%20.png"); /* called so */
+    leads("m/x.dae", "9%20.png", "m/9%20.png"); /* its literal name */
     leads("m/x.dae", ".\\maps\\a c.png", "m/maps/a c.png");
     leads("m/x.dae", "C:\\textures\\a b.png", "m/a b.png");
     leads("m/x.dae", "/home/somebody/a%20b.png", "m/a b.png");
@@ -41,7 +42,7 @@ static void names_of_other_machines(void **state) {
     leads("m/x.dae", "gone%20.png", "m/gone%20.png");
     leads("m/x.dae", "C:\\gone.png", "m/C:/gone.png");
     leads("m/x.dae", "/gone/gone.png", "/gone/gone.png");
-    leads("m/x.dae", "%2Fetc%2Fpasswd", "m/%2Fetc%2Fpasswd"); /* no way out */
+    leads("m/x.dae", "%2Fetc%2Fpasswd", "m/%2Fetc%2Fpasswd"); /* no escape from the folder */
     leads("m/x.dae", "/", "/");
 }
 
@@ -65,7 +66,8 @@ static void tracks_have_textures_in_common(void **state) {
     leads("t/tracks/road/r/r.acc", "tree.rgb", "t/data/textures/tree.rgb");
     leads("t/tracks/road/r/r.acc", "../../x/tree.rgb", "t/data/textures/tree.rgb");
     leads("t/cars/c/c.acc", "tree.rgb", "t/data/textures/tree.rgb");
-    leads("t/cars/c/c.acc", "secret", "t/cars/c/secret"); /* beside the folder of textures, not in it */
+    /* next to the folder of textures, not inside it */
+    leads("t/cars/c/c.acc", "secret", "t/cars/c/secret");
     leads("t/tracks/road/r/r.ac", "tree.rgb", "t/tracks/road/r/tree.rgb");
     leads("t/other/road/r/r.acc", "tree.rgb", "t/other/road/r/tree.rgb");
     leads("t/tracks/r.acc", "tree.rgb", "t/tracks/tree.rgb");
@@ -74,7 +76,7 @@ static void tracks_have_textures_in_common(void **state) {
     snprintf(here, sizeof here, "%s/t/tracks/road/r", scratch);
     assert_int_equal(chdir(here), 0);
     masu_bake_buffer out = {0};
-    masu_bake_picture_path("r.acc", "tree.rgb", &out); /* by a path that does not say where it is */
+    masu_bake_picture_path("r.acc", "tree.rgb", &out); /* by a relative path */
     snprintf(here, sizeof here, "%s/t/data/textures/tree.rgb", scratch);
     assert_string_equal((const char *)out.data, here);
     masu_bake_release(&out);

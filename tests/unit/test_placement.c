@@ -1,8 +1,6 @@
-/*
- * test_placement.c: sharing bytes among images that are not alive together. Whatever masu_place
- * answers must be a placement (checked pair by pair and row by row), and over many random sets it
- * must stay near the lower bound, which is checked against a sum taken row by row.
- */
+/* test_placement.c: memory aliasing of images with disjoint lifetimes. Every result of masu_place
+ * must be a valid placement (checked pair by pair and row by row). Over many random sets it must be
+ * close to the lower bound, which is checked against a sum taken row by row. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -25,7 +23,7 @@ typedef struct item_set {
 } item_set;
 
 /* Like a driver's images: sizes of very different magnitude, each a multiple of its alignment. Each
- * fourth set is of a few bytes, where neighbours meet and miss by one. */
+ * fourth set is of a few bytes, where neighbours touch and miss by one. */
 static item_set random_items(uint64_t seed, uint32_t most) {
     static const uint64_t alignments[] = {1, 16, 256, 4096, 65536};
     item_set set;
@@ -39,7 +37,7 @@ static item_set random_items(uint64_t seed, uint32_t most) {
         uint32_t last = (uint32_t)support_random_in(&seed, first, LAST_ROW);
         uint64_t bytes = support_random_in(&seed, magnitude, 2 * magnitude);
         bytes = (bytes + alignment - 1) / alignment * alignment;
-        /* What was in `offset` may not matter. */
+        /* The initial value of `offset` must not matter. */
         set.items[i] = (masu_placement){bytes, alignment, first, last, support_random(&seed)};
     }
     return set;
@@ -111,7 +109,7 @@ static uint64_t place_by_size(item_set *set) {
         masu_placement item = set->items[largest];
         for (uint32_t i = largest; i > k; i--) set->items[i] = set->items[i - 1];
         item.offset = 0;
-        for (uint32_t i = 0; i < k;) { /* climb over whatever is in the way, until nothing is */
+        for (uint32_t i = 0; i < k;) { /* move above every overlap, until there is none */
             const masu_placement *other = &set->items[i++];
             if (other->first > item.last || item.first > other->last) continue;
             if (other->offset >= item.offset + item.bytes) continue;
@@ -229,7 +227,7 @@ static void a_gap_between_two_items_is_used(void **state) {
     assert_int_equal(masu_place_lower_bound(items, 3), 200);
 }
 
-/* The frame at 1920x1080 with polygons and SDF, from 1.0 down: what the demo places. */
+/* The images of the demo's frame at 1920x1080 with polygons and SDF, from scale 1.0 down. */
 static void the_frame_of_the_demo_reaches_its_lower_bound(void **state) {
     (void)state;
     const uint64_t texels = 1920 * 1080;

@@ -1,12 +1,10 @@
-/*
- * test_plan.c: from a description to a compiled frame, without a device: which passes run and why,
- * what each reads and writes, how large and how long-lived each image is. (What is refused:
+/* test_plan.c: from a description to a compiled frame, without a device: which passes run and why,
+ * their reads and writes, and size and lifetime of each image. (Rejected descriptions:
  * test_desc.c.)
  *
- * Frames are compared as text, one word per pass: light(r:albedo r:normal r:depth u:hdr).
- * r sampled, w written, u updated, c colour and d depth attachment, from and to of a copy; rb and
- * wb a buffer that is read or written.
- */
+ * Frames are compared as text, one item per pass: light(r:albedo r:normal r:depth u:hdr). r
+ * sampled, w written, u updated, c colour and d depth attachment, from and to of a copy; rb and wb
+ * a buffer that is read or written. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -33,8 +31,8 @@ static void compile(const masu_desc *d, masu_frame_plan *plan) {
     memset(&detail, 0x5A, sizeof detail);
     before = detail;
     masu_result result = masu_compile(d, 256, 64, plan, &detail);
-    if (result) fail_msg("refused: %s", detail.text);
-    assert_memory_equal(&detail, &before, sizeof detail); /* untouched by success */
+    if (result) fail_msg("rejected: %s", detail.text);
+    assert_memory_equal(&detail, &before, sizeof detail); /* unchanged by success */
 }
 
 /* ---- Frames as text -------------------------------------------------------------------------- */
@@ -42,7 +40,8 @@ static void compile(const masu_desc *d, masu_frame_plan *plan) {
 static const char *usage_text(uint8_t usage) {
     static const char *const texts[] = {
         [MASU_USE_NONE] = "?",        [MASU_READ] = "r",
-        [MASU_READ_LINEAR] = "rl",    [MASU_READ_COPY] = "from",
+        [MASU_READ_LINEAR] = "rl",    [MASU_READ_MAP] = "m",
+        [MASU_READ_COPY] = "from",
         [MASU_READ_BACK] = "from",    [MASU_WRITE] = "w",
         [MASU_UPDATE] = "u",          [MASU_PING_PONG] = "rw",
         [MASU_WRITE_COLOR] = "c",     [MASU_WRITE_DEPTH] = "d",
@@ -107,10 +106,10 @@ static const char *why_of(const masu_desc *d, masu_pass_id pass) {
 _Static_assert(MASU_PASS_COUNT <= MASU_MAX_PASSES, "the export has room for every pass");
 _Static_assert(MASU_IMAGE_COUNT <= MASU_MAX_RESOURCES, "the export has room for every image");
 
-/* The export has room for what a row reads and writes; set 1 takes reads first, then writes. */
+/* The export has room for the accesses of each row; set 1 has the reads first, then the writes. */
 static void every_row_of_the_table_fits_what_is_derived_from_it(void **state) {
     (void)state;
-    const masu_plan_pass *room = NULL; /* for its sizes alone */
+    const masu_plan_pass *room = NULL; /* only for its sizes */
     for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
         const masu_pass_row *row = &masu_passes[p];
         uint32_t reads = 0, writes = 0;
@@ -198,7 +197,7 @@ static void any_scale_of_any_size_gives_a_size_within_half_a_pixel(void **state)
     }
 }
 
-/* An upscale of a picture onto itself would cost a pass for nothing. */
+/* Upscaling an image to its own size would cost a pass for nothing. */
 static void a_rung_that_rounds_to_the_output_size_is_not_upscaled(void **state) {
     (void)state;
     masu_desc d = scene_desc(SDF, 1, 1);
@@ -259,7 +258,7 @@ static void without_instances_nothing_is_rasterised(void **state) {
     assert_string_equal(why_of(&d, MASU_PASS_MARCH), "the scene has an SDF");
 }
 
-/* Before anything that reads the slots, in whatever way they are read. */
+/* Before any pass that reads the slots, by any kind of access. */
 static void slots_are_updated_only_if_something_changes_them(void **state) {
     (void)state;
     masu_desc d = scene_desc(RASTER | SDF, 64, 64);
@@ -274,7 +273,7 @@ static void slots_are_updated_only_if_something_changes_them(void **state) {
     assert_string_equal(why_of(&d, MASU_PASS_UPDATE), "the scene has no SDF");
 }
 
-/* Light probes are a pass, a buffer and a build of light; without them there is none of it. */
+/* Light probes are a pass, a buffer and a permutation of light; scenes without them have none. */
 static void light_probes_cost_only_scenes_that_have_them(void **state) {
     (void)state;
     static masu_frame_plan plan;
@@ -370,7 +369,7 @@ static void switches_force_upscaling_and_sharpening_on_and_off(void **state) {
     }
 }
 
-/* Bilinear is the plain base: nothing sharpens it unasked. */
+/* Bilinear is the plain baseline: it is not sharpened by default. */
 static void a_rung_says_how_it_is_upscaled(void **state) {
     (void)state;
     masu_desc d = scene_desc(SDF, 1920, 1080);
@@ -398,8 +397,9 @@ static void a_rung_says_how_it_is_upscaled(void **state) {
     assert_string_equal(why_of(&d, MASU_PASS_BILINEAR), "render size is output size");
 }
 
-/* Four pixels look at the same texels where the output is twice as wide and high, and nothing asks for the bits of the
- * specification or for halves. Of a scene the rung's scale decides, whatever the output is now. */
+/* Four pixels share texels if the output is exactly twice as wide and high, and neither bit-exact
+ * results nor half floats are requested. In a scene the rung's scale decides, at any output
+ * size. */
 static void twice_the_size_has_a_pass_of_its_own(void **state) {
     (void)state;
     masu_desc d = source_desc(960, 540);
@@ -442,7 +442,7 @@ static void a_target_that_is_no_storage_image_is_blitted_to(void **state) {
     assert_string_equal(why_of(&d, MASU_PASS_PRESENT), "the last pass writes the target itself");
 }
 
-/* Exposure that follows the picture: two passes before tonemap, which reads what they leave. */
+/* Auto-exposure: two passes before tonemap, which reads their result. */
 static void a_metered_exposure_is_two_passes(void **state) {
     (void)state;
     masu_desc d = scene_desc(RASTER, 1920, 1080);
@@ -452,12 +452,12 @@ static void a_metered_exposure_is_two_passes(void **state) {
                  GBUFFER LIGHT_RASTER "meter(r:hdr wb:exposure) expose(wb:exposure) "
                                       "tonemap(rb:exposure r:hdr w:target)");
     assert_string_equal(why_of(&d, MASU_PASS_EXPOSE), "the exposure is metered");
-    d = source_desc(640, 360); /* nothing is exposed there */
+    d = source_desc(640, 360); /* without exposure */
     d.exposure.metered = MASU_ON;
     assert_string_equal(why_of(&d, MASU_PASS_METER), "no scene: a source image is upscaled");
 }
 
-/* The pass that comes last in its rung rounds and dithers, and no other. */
+/* Only the last pass of a rung rounds and dithers. */
 static void the_last_pass_of_a_rung_makes_the_output(void **state) {
     (void)state;
     static masu_frame_plan plan;
@@ -496,7 +496,7 @@ static void the_reason_of_a_pass_is_that_of_the_first_rung_that_runs_it(void **s
     assert_string_equal(why_of(&d, MASU_PASS_EASU), "render size is output size");
     assert_string_equal(why_of(&d, MASU_PASS_RCAS), "nothing was upscaled, or rung.sharpen is off");
     d.rung_count = 3;
-    d.rungs[1].scale = 0.5f; /* in this one alone */
+    d.rungs[1].scale = 0.5f; /* only in this one */
     assert_string_equal(why_of(&d, MASU_PASS_EASU_TWICE), "the output has twice the render size");
     assert_string_equal(why_of(&d, MASU_PASS_READBACK), "desc.readback requests no image");
     assert_string_equal(why_of(&d, MASU_PASS_LIGHT), "a scene is lit");
@@ -528,7 +528,7 @@ static void readback_copies_what_is_asked_for(void **state) {
         assert_frame(&d, 0, expected);
         assert_string_equal(why_of(&d, MASU_PASS_READBACK), "desc.readback requests images");
     }
-    masu_desc d = source_desc(64, 64); /* has none of these images */
+    masu_desc d = source_desc(64, 64); /* uses none of these images */
     d.readback = MASU_READBACK_ALL;
     assert_frame(&d, 0, "easu(r:source w:upscaled) rcas(r:upscaled w:target)");
 }
@@ -552,7 +552,7 @@ static void silhouettes_are_a_pass_where_a_rung_asks_for_them(void **state) {
     d.rungs[0] = (masu_rung){.silhouettes = MASU_ON};
     compile(&d, &plan);
     assert_non_null(strstr(frame_text(&plan, 0), "silhouettes(r:depth r:scene_depth r:albedo r:normal r:hdr rb:tiles "));
-    d = scene_desc(RASTER, 64, 64); /* there is nothing to smooth */
+    d = scene_desc(RASTER, 64, 64); /* there are no edges to anti-alias */
     d.rung_count = 1;
     d.rungs[0] = (masu_rung){.silhouettes = MASU_ON};
     assert_string_equal(why_of(&d, MASU_PASS_SILHOUETTES), "the scene has no SDF");
@@ -579,7 +579,7 @@ static void temporal_stands_in_for_anti_aliasing_and_upscaling(void **state) {
     assert_non_null(strstr(frame_text(&plan, 1), " rcas(r:upscaled w:target)"));
     assert_null(strstr(frame_text(&plan, 0), "smaa"));
     assert_null(strstr(frame_text(&plan, 0), "fsr1"));
-    /* Twice the size is for all pixels of an output that keeps its size. */
+    /* The 2x variant covers all pixels of an output with a fixed size. */
     d.rung_count = 1;
     assert_string_equal(why_of(&d, MASU_PASS_TEMPORAL), "temporal_twice runs instead");
     static const char other[] = "temporal runs instead: for any size, and with debug.exact";
@@ -595,7 +595,7 @@ static void temporal_stands_in_for_anti_aliasing_and_upscaling(void **state) {
     d.debug.exact = 0;
     d.rung_count = 2;
     compile(&d, &plan);
-    /* At full size 2 * 8 + 4 bytes for each pixel outlive the frame, 8 do not. */
+    /* At full size 2 * 8 + 4 bytes per pixel outlive the frame, 8 do not. */
     static const masu_image_id own[] = {MASU_IMAGE_HISTORY, MASU_IMAGE_HISTORY_DEPTH, MASU_IMAGE_FOUND};
     uint64_t bytes = 0;
     for (size_t i = 0; i < sizeof own / sizeof *own; i++) {
@@ -605,7 +605,8 @@ static void temporal_stands_in_for_anti_aliasing_and_upscaling(void **state) {
                  masu_format_bytes(masu_plan_format(&plan, own[i]));
     }
     assert_int_equal(bytes, 28 * 64 * 64);
-    /* Mips: at rest two levels finer than the output's pixels ask for, in motion as at full size. */
+    /* Mips: stationary surfaces two levels finer than the output resolution, moving ones as at full
+     * size. */
     const float half = -3.0f, full = -2.0f;
     const uint32_t bias = offsetof(struct masu_push_gbuffer, mip_bias) / 4, moving = offsetof(struct masu_push_gbuffer, mip_moving) / 4;
     const masu_push_block first = masu_push_of(&plan, 0, MASU_PASS_GBUFFER, 0);
@@ -616,7 +617,7 @@ static void temporal_stands_in_for_anti_aliasing_and_upscaling(void **state) {
     compile(&d, &plan);
     const masu_push_block without = masu_push_of(&plan, 0, MASU_PASS_GBUFFER, 0);
     assert_true(without.own.real[bias] == -1.0f && without.own.real[moving] == 0.0f);
-    masu_desc source = source_desc(64, 64); /* has neither depth nor motion */
+    masu_desc source = source_desc(64, 64); /* has neither depth nor velocities */
     source.rungs[0] = (masu_rung){.temporal = MASU_ON};
     assert_frame(&source, 0, "easu(r:source w:upscaled) rcas(r:upscaled w:target)");
 }
@@ -665,7 +666,8 @@ static void velocities_keep_the_frame_before_and_nothing_else_does(void **state)
     assert_string_equal(plan.why[MASU_PASS_UPDATE_PREVIOUS], "nothing reads velocities");
 }
 
-/* What a pixel shows: two small passes, 2x2 pixels and six words where a host may ask; else nothing. */
+/* Picking: two small passes, 2x2 pixels and six 32-bit values if desc.picking is set; otherwise
+ * nothing. */
 static void picking_costs_nothing_unless_it_is_asked_for(void **state) {
     (void)state;
     static masu_frame_plan with, without;
@@ -694,8 +696,8 @@ static void picking_costs_nothing_unless_it_is_asked_for(void **state) {
     }
 }
 
-/* What is blended: a pass over the lit picture, and memory by how much there is; nothing of it in
- * scenes that have nothing of the kind. */
+/* Transparent surfaces: a pass over the lit image, and memory by their number; nothing in scenes
+ * without them. */
 static void what_is_blended_comes_over_the_light_if_there_is_any(void **state) {
     (void)state;
     static masu_frame_plan with, without;
@@ -705,7 +707,7 @@ static void what_is_blended_comes_over_the_light_if_there_is_any(void **state) {
     assert_string_equal(without.why[MASU_PASS_TRANSPARENTS],
                         "the scene has no transparent materials");
     d = scene_desc(RASTER, 64, 64);
-    support_scene.blends = 2; /* materials that nothing has */
+    support_scene.blends = 2; /* materials that no instance has */
     compile(&d, &with);
     assert_string_equal(with.why[MASU_PASS_TRANSPARENTS], "the scene has no transparent materials");
     assert_int_equal(with.pass_sets, without.pass_sets);
@@ -715,7 +717,7 @@ static void what_is_blended_comes_over_the_light_if_there_is_any(void **state) {
     compile(&d, &with);
     assert_string_equal(with.why[MASU_PASS_TRANSPARENTS], "the scene has transparent materials");
     assert_true(with.images[MASU_IMAGE_HDR].usage & VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
-    assert_int_equal(with.pass_sets, without.pass_sets + 3); /* a rung each */
+    assert_int_equal(with.pass_sets, without.pass_sets + 3); /* one per rung */
     const masu_buffer_plan *b = with.buffers, *other = without.buffers;
     assert_int_equal(b[MASU_BUFFER_DRAWS].count, other[MASU_BUFFER_DRAWS].count + 10);
     assert_int_equal(with.transparent_draws, other[MASU_BUFFER_DRAWS].count);
@@ -729,13 +731,13 @@ static void what_is_blended_comes_over_the_light_if_there_is_any(void **state) {
     support_scene.transparents = 1, support_scene.transparent_sets = 1;
     support_scene.shadow_cascades = 1, support_scene.shadow_resolution = 64;
     support_scene.shadow_distance = 50;
-    compile(&d, &with); /* the nearer of both depths, and the sun's map */
+    compile(&d, &with); /* the smaller of both depths, and the sun's map */
     assert_non_null(strstr(frame_text(&with, 0),
                            " transparents(r:scene_depth r:shadow_map r:scene_depth b:hdr) tonemap(r:hdr "));
 }
 
-/* What a frame may bring: a pass for each kind that there is room for, one buffer for all, an image for lines. Without room,
- * or for others, nothing. */
+/* Per-frame content: a pass for each kind with a reserve, one buffer for all, an image for lines.
+ * Without a reserve nothing. */
 static void what_is_reserved_has_passes_and_nothing_else_has(void **state) {
     (void)state;
     static masu_frame_plan plan, bare;
@@ -758,6 +760,25 @@ static void what_is_reserved_has_passes_and_nothing_else_has(void **state) {
                  "decals(r:scene_depth u:albedo u:normal u:hdr) " LIGHT_SDF TONEMAP);
     compile(&d, &plan);
     assert_int_equal(plan.buffers[MASU_BUFFER_SPRITES].stride, 64 * ((16 * (3 + 7 * 7) + 63) / 64));
+    /* Textures, whether for sprites or not: a pass that writes them, larger sprites. */
+    d.reserve = (masu_reserve){.textures = 2, .texture_size = {8, 16}};
+    compile(&d, &plan);
+    assert_non_null(strstr(frame_text(&plan, 0), "textures(u:textures) gbuffer(m:textures c:albedo "));
+    assert_true(plan.images[MASU_IMAGE_TEXTURES].persistent);
+    assert_int_equal(plan.images[MASU_IMAGE_TEXTURES].height, 16);
+    assert_int_equal(masu_plan_layers(&plan, MASU_IMAGE_TEXTURES), 2);
+    assert_int_equal(plan.buffers[MASU_BUFFER_TEXELS].stride, 64 * ((2064 + 4 * 8 * 16 + 63) / 64));
+    d.reserve.decals = 7, d.reserve.trail_points = 5;
+    compile(&d, &plan);
+    assert_non_null(strstr(frame_text(&plan, 0), "decals(r:scene_depth rl:textures u:albedo "));
+    assert_non_null(strstr(frame_text(&plan, 0), "particles(r:scene_depth rl:textures b:hdr)"));
+    assert_int_equal(plan.buffers[MASU_BUFFER_SPRITES].stride,
+                     64 * ((16 * (3 + 1 + 8 * 5 + 9 * 7) + 63) / 64));
+    d.reserve = (masu_reserve){.trail_points = 5}; /* an image of one texel, which nothing writes */
+    compile(&d, &plan);
+    assert_null(strstr(frame_text(&plan, 0), "u:textures"));
+    assert_int_equal(plan.images[MASU_IMAGE_TEXTURES].width, 1);
+    assert_int_equal(plan.buffers[MASU_BUFFER_TEXELS].bytes, 0);
     d.reserve = (masu_reserve){.lines = 7};
     assert_frame(&d, 0,
                  GBUFFER MARCH_ON_RASTER LIGHT_SDF
@@ -765,18 +786,18 @@ static void what_is_reserved_has_passes_and_nothing_else_has(void **state) {
     compile(&d, &plan);
     assert_true(plan.images[MASU_IMAGE_OVERLAY].used);
     assert_int_equal(plan.buffers[MASU_BUFFER_SPRITES].stride, 64 * ((16 * (3 + 2 * 7) + 63) / 64));
-    d.targets.storage = 0; /* they are in what is blitted */
+    d.targets.storage = 0; /* they are in the image that is blitted */
     compile(&d, &plan);
     assert_non_null(strstr(frame_text(&plan, 0), "lines_show(r:overlay u:final) present(from:final to:target)"));
-    /* Draws among what is blended: one before each slot, one behind. */
+    /* Draws among the transparent surfaces: one before each slot, one after. */
     d.reserve = (masu_reserve){.particles = 2};
     support_scene.blends = 1, support_scene.transparents = 5, support_scene.transparent_sets = 1;
     compile(&d, &plan);
     assert_int_equal(plan.sprites.particles, 3 + 6);
 }
 
-/* Shadows and ambient occlusion of the SDF: a pass and an image more, another way to light; nothing
- * of it in scenes that do not ask. */
+/* Shadows and ambient occlusion of the SDF: a pass and an image more, another permutation of light;
+ * nothing in scenes that do not request them. */
 static void sdf_occlusion_comes_between_march_and_light_if_asked(void **state) {
     (void)state;
     static masu_frame_plan plan;
@@ -831,7 +852,7 @@ static void ao_comes_after_all_that_writes_occlusion(void **state) {
     compile(&d, &plan);
     assert_int_equal(plan.images[MASU_IMAGE_AO].width, 101);
     d.debug.ao_full = 0;
-    /* Off in one of two rungs: that one reads and copies nothing that it has not written. */
+    /* Off in one of two rungs: that rung reads and copies only images that it has written. */
     d.rung_count = 2;
     d.rungs[1].scale = 1;
     d.rungs[1].ao = MASU_OFF;
@@ -854,7 +875,7 @@ static void ao_comes_after_all_that_writes_occlusion(void **state) {
 }
 
 
-/* Over everything that shapes a frame: the properties that no frame may lack. */
+/* Over all settings that shape a frame: the properties that every frame must have. */
 static void in_every_frame_the_last_colour_writer_alone_writes_the_target(void **state) {
     (void)state;
     static masu_frame_plan plan;
@@ -869,7 +890,7 @@ static void in_every_frame_the_last_colour_writer_alone_writes_the_target(void *
         d.rungs[0].easu = (masu_easu)(c % 4);
         uint32_t size = (n /= 3) % 3, source = n / 3;
         d.rungs[0].scale = size ? 0.5f : 1.0f;
-        if (d.rungs[0].upscale == MASU_OFF && size) continue; /* refused */
+        if (d.rungs[0].upscale == MASU_OFF && size) continue; /* rejected */
         if (source) {
             d.scene = NULL;
             d.source = (masu_source){FAKE(VkImageView, 1), size ? 320 : 640, size ? 240 : 480,
@@ -906,8 +927,8 @@ static void in_every_frame_the_last_colour_writer_alone_writes_the_target(void *
     }
 }
 
-/* hdr is attached to the G-buffer pass where polygons may emit, unless that takes more attachments
- * than there are. */
+/* hdr is attached to the G-buffer pass if polygons can emit, unless that exceeds the number of
+ * attachments. */
 static void emission_goes_into_hdr(void **state) {
     (void)state;
     static masu_frame_plan plan;
@@ -917,7 +938,7 @@ static void emission_goes_into_hdr(void **state) {
     compile(&d, &plan);
     assert_int_equal(masu_has_emission_subpass(&plan), 1);
     support_scene.emissions = 0;
-    d.mutable_materials = 1; /* a material may begin to */
+    d.mutable_materials = 1; /* a material can become emissive */
     assert_frame(&d, 0, "gbuffer(c:albedo c:normal uc:hdr d:depth) " LIGHT_RASTER TONEMAP);
     compile(&d, &plan);
     assert_int_equal(masu_has_emission_subpass(&plan), 0);
@@ -972,7 +993,7 @@ static void images_live_from_their_first_to_their_last_pass(void **state) {
                  STORAGE | SAMPLED);
     assert_image(&plan, MASU_IMAGE_HDR, MASU_PASS_MARCH, MASU_PASS_TONEMAP, 1920, 1080,
                  STORAGE | SAMPLED);
-    /* The first rung has none of these: they are as large as the largest rung that has. */
+    /* The first rung does not use the images: they have the size of the largest rung that does. */
     assert_image(&plan, MASU_IMAGE_LDR, MASU_PASS_TONEMAP, MASU_PASS_EASU, 1536, 864,
                  STORAGE | SAMPLED);
     assert_image(&plan, MASU_IMAGE_UPSCALED, MASU_PASS_EASU, MASU_PASS_RCAS, 1920, 1080,
@@ -1014,7 +1035,7 @@ static void images_are_as_large_as_the_largest_rung_in_any_order(void **state) {
                  STORAGE | SAMPLED);
     assert_image(&plan, MASU_IMAGE_UPSCALED, MASU_PASS_EASU, MASU_PASS_RCAS, 1000, 10,
                  STORAGE | SAMPLED);
-    /* Blocks are counted up: 900x9 has two rows of 8x8, three of 4x4. */
+    /* Numbers of blocks are rounded up: 900x9 has two rows of 8x8, three of 4x4. */
     assert_image(&plan, MASU_IMAGE_CONE8, MASU_PASS_CONE8, MASU_PASS_CONE4, 113, 2,
                  STORAGE | SAMPLED);
     assert_image(&plan, MASU_IMAGE_CONE4, MASU_PASS_CONE4, MASU_PASS_MARCH, 225, 3,
@@ -1027,14 +1048,14 @@ static void a_pass_that_writes_the_target_has_a_set_for_each_target(void **state
     masu_desc d = scene_desc(RASTER | SDF, 1920, 1080);
     d.targets.count = 3;
     compile(&d, &plan);
-    /* classify, cone8, cone4, march, light, tonemap x 3; then twice: these once, easu, rcas x 3 */
+    /* classify, cone8, cone4, march, light, 3 x tonemap; then twice: these once, easu, 3 x rcas */
     assert_int_equal(plan.pass_sets, (5 + 3) + 2 * (7 + 3));
     d.targets.storage = 0; /* the blit needs none */
     compile(&d, &plan);
     assert_int_equal(plan.pass_sets, 6 + 2 * 8);
 }
 
-/* A coat brings its tables, but for SDF hits, which have none. */
+/* A coat adds its tables, except for SDF hits, which have none. */
 static void only_what_is_coated_has_the_tables_of_coats(void **state) {
     (void)state;
     static masu_frame_plan plan;
@@ -1047,7 +1068,7 @@ static void only_what_is_coated_has_the_tables_of_coats(void **state) {
     s.coats = 1;
     compile(&d, &plan);
     assert_int_equal(plan.buffers[MASU_BUFFER_TABLES].bytes, 4 * MASU_TABLE_WORDS_COAT);
-    s.surfaces = 0; /* of what is blended */
+    s.surfaces = 0; /* only transparent ones */
     compile(&d, &plan);
     assert_int_equal(plan.buffers[MASU_BUFFER_TABLES].bytes, 4 * MASU_TABLE_WORDS_COAT);
     assert_false(plan.needs.surface);
@@ -1078,12 +1099,13 @@ static void buffers_are_sized_by_the_scene_and_the_frames_in_flight(void **state
     assert_int_equal(b[MASU_BUFFER_COUNTERS].count, 2 * MASU_COUNTER_COUNT);
     assert_int_equal(b[MASU_BUFFER_FRAME].stride, frame);
     assert_int_equal(b[MASU_BUFFER_FRAME].bytes, 3 * frame);
-    assert_int_equal(b[MASU_BUFFER_INSTANCES].stride, 192); /* 3 * 48 up to a multiple of 64 */
+    /* 3 * 48, rounded up to a multiple of 64 */
+    assert_int_equal(b[MASU_BUFFER_INSTANCES].stride, 192);
     assert_int_equal(b[MASU_BUFFER_INSTANCES].bytes, 3 * 192);
     assert_int_equal(b[MASU_BUFFER_SLOTS].bytes, 7 * 4);
     assert_int_equal(b[MASU_BUFFER_TILES].bytes, (8 + 120 * 68 * 2) * 4);
     assert_int_equal(b[MASU_BUFFER_READBACK].bytes, 0);
-    assert_int_equal(b[MASU_BUFFER_STAGING].bytes, 0); /* known only with a device */
+    assert_int_equal(b[MASU_BUFFER_STAGING].bytes, 0); /* computed with a device */
     assert_int_equal(b[MASU_BUFFER_FRAME].role, MASU_ROLE_UPLOAD);
     assert_int_equal(b[MASU_BUFFER_INSTANCES].role, MASU_ROLE_UPLOAD);
     assert_int_equal(b[MASU_BUFFER_READBACK].role, MASU_ROLE_READBACK);
@@ -1097,7 +1119,7 @@ static void buffers_are_sized_by_the_scene_and_the_frames_in_flight(void **state
     }
 }
 
-/* Passes, images and the other buffers stay as they are. */
+/* Passes, images and the other buffers are unchanged. */
 static void a_sky_that_follows_from_the_sun_is_a_buffer_more(void **state) {
     (void)state;
     static masu_frame_plan without, with;
@@ -1129,7 +1151,7 @@ static void a_sky_that_follows_from_the_sun_is_a_buffer_more(void **state) {
     assert_int_equal(with.buffers[MASU_BUFFER_SKY].bytes, 0);
 }
 
-/* Nothing of it, in a scene without: no image, no byte. */
+/* A scene without mesoscale detail has no images and no bytes for it. */
 static void a_small_relief_costs_its_curves_and_the_surface_image(void **state) {
     (void)state;
     static masu_frame_plan plan;
@@ -1161,7 +1183,7 @@ static void tiles_have_room_for_lists_at_the_largest_rung(void **state) {
         d.rungs[2].scale = 0.4f;
         compile(&d, &plan);
         const masu_buffer_plan *tiles = &plan.buffers[MASU_BUFFER_TILES];
-        /* 125x13 blocks of 4x4 pixels: where each one's cone stops, and four pieces */
+        /* 125x13 blocks of 4x4 pixels: the cone's end distance, and four pieces */
         uint32_t block = cases[i].block_words ? 1 + 4 * cases[i].block_words : 0;
         assert_int_equal(tiles->count, 8 + 32 * 4 * cases[i].words + 125 * 13 * block);
         assert_int_equal(tiles->bytes, 4 * tiles->count);
@@ -1169,7 +1191,7 @@ static void tiles_have_room_for_lists_at_the_largest_rung(void **state) {
         assert_true(tiles->usage & VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
         assert_true(tiles->usage & VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
     }
-    masu_desc d = scene_desc(RASTER, 1000, 100); /* no SDF, none of either */
+    masu_desc d = scene_desc(RASTER, 1000, 100); /* no SDF: neither */
     compile(&d, &plan);
     assert_int_equal(plan.buffers[MASU_BUFFER_TILES].bytes, 0);
     assert_int_equal(plan.buffers[MASU_BUFFER_SLOTS].bytes, 0);
@@ -1257,7 +1279,7 @@ static void the_public_plan_tells_what_was_compiled(void **state) {
     assert_int_equal(info.passes[MASU_PASS_LIGHT].pipeline_ns, 0);
 }
 
-/* Bytes of the images that a plan with these settings uses; also those that it does without. */
+/* Bytes of the images that a plan with these settings uses; *saved: of those that it omits. */
 static uint64_t image_bytes(masu_desc d, masu_rung rung, uint64_t *saved) {
     static masu_frame_plan plan;
     static masu_plan_info info;
@@ -1291,7 +1313,7 @@ static void images_that_are_used_and_those_left_out_are_all_images(void **state)
             saved[1],
         all);
     assert_int_equal(saved[0] - saved[1], 2 * 4 * 100 * 100); /* silhouettes, ldr */
-    d = scene_desc(RASTER, 100, 100); /* neither scene_depth nor the march's two */
+    d = scene_desc(RASTER, 100, 100); /* neither scene_depth nor the two images of the march */
     assert_int_equal(image_bytes(d, (masu_rung){.scale = 1}, &saved[1]) + saved[1], all);
     assert_int_equal(saved[1] - saved[0], 4 * (100 * 100 + 25 * 25 + 13 * 13));
 }
@@ -1340,7 +1362,7 @@ static void lights_add_a_pass_and_two_buffers(void **state) {
     assert_int_equal(dark.buffers[MASU_BUFFER_LIGHTS].bytes, 0);
     assert_int_equal(dark.buffers[MASU_BUFFER_LIGHT_TILES].bytes, 0);
     static const struct {
-        uint32_t lights, words; /* of a list */
+        uint32_t lights, words; /* for a list */
     } cases[] = {{1, 2}, {62, 63}, {63, 64}, {64, 64}, {4096, 64}};
     for (size_t i = 0; i < COUNT(cases); i++) {
         support_scene.lights = cases[i].lights;
@@ -1366,7 +1388,7 @@ static void lights_add_a_pass_and_two_buffers(void **state) {
             assert_int_equal(plan.images[id].usage, dark.images[id].usage);
         }
     }
-    d.rungs[0].light_tiles = MASU_OFF; /* then the lists are bound, but nobody reads them */
+    d.rungs[0].light_tiles = MASU_OFF; /* the lists are still bound, but no pass reads them */
     compile(&d, &plan);
     assert_int_equal(plan.buffers[MASU_BUFFER_LIGHT_TILES].bytes, 4);
     assert_string_equal(plan.why[MASU_PASS_LIGHT_TILES], "rung.light_tiles is off");
@@ -1381,8 +1403,8 @@ static void lights_add_a_pass_and_two_buffers(void **state) {
 
 #define EDGES(from, to) "smaa_edges(r:" from " wb:edges w:" to ") smaa_blend(r:" from " rb:edges u:" to ")"
 
-/* It stands between what makes the picture and what makes it larger; where nothing follows, both of its
- * passes write the target. */
+/* SMAA runs between tone mapping and upscaling. If no pass follows, both of its passes write the
+ * target. */
 static void anti_aliasing_reads_what_is_shown_and_hands_it_on(void **state) {
     (void)state;
     masu_desc d = scene_desc(RASTER, 640, 480);
@@ -1413,7 +1435,7 @@ static void anti_aliasing_reads_what_is_shown_and_hands_it_on(void **state) {
     assert_string_equal(why_of(&d, MASU_PASS_SMAA_EDGES), "rung.aa does not select it");
 }
 
-/* A rung without has none of its memory; the largest rung with it counts. */
+/* A rung without it uses none of its memory; the size is that of the largest rung with it. */
 static void only_smaa_has_tables_and_tiles(void **state) {
     (void)state;
     static masu_frame_plan plan;
@@ -1443,9 +1465,10 @@ static void only_smaa_has_tables_and_tiles(void **state) {
     assert_int_equal(plan.buffers[MASU_BUFFER_COUNTERS].bytes, 8 * MASU_COUNTER_COUNT);
 }
 
-/* ---- Reflections: who finds polygons ---------------------------------------------------------- */
+/* ---- Reflections: ray-tracing backend -------------------------------------------------------- */
 
-/* AUTO is the device's kind, of which nothing is known here: the renderer puts ON or OFF in its place. */
+/* AUTO depends on the device, which this test does not have: the renderer replaces it by ON or
+ * OFF. */
 static void ray_queries_stand_in_for_the_own_tree(void **state) {
     (void)state;
     static masu_frame_plan plan, with;
@@ -1471,7 +1494,7 @@ static void ray_queries_stand_in_for_the_own_tree(void **state) {
     assert_string_equal(with.why[MASU_PASS_SPECULAR_TRACE], "specular_query runs instead");
     assert_string_equal(plan.why[MASU_PASS_SPECULAR_QUERY],
                         "no ray queries, or desc.ray_query is off");
-    /* Nodes of 48 bytes and the tree over instances go. */
+    /* Nodes of 48 bytes and the BVH over instances are omitted. */
     assert_int_equal(plan.buffers[MASU_BUFFER_TRACE].bytes - with.buffers[MASU_BUFFER_TRACE].bytes,
                      9 * 48);
     assert_int_equal(with.buffers[MASU_BUFFER_TRACE_FRAME].stride,
@@ -1481,7 +1504,7 @@ static void ray_queries_stand_in_for_the_own_tree(void **state) {
     assert_int_equal(with.buffers[MASU_BUFFER_VERTICES].usage,
                      plan.buffers[MASU_BUFFER_VERTICES].usage | input);
     assert_int_equal(plan.buffers[MASU_BUFFER_VERTICES].usage & input, 0);
-    support_scene.trace_instances = 0; /* nothing to ask about: as without */
+    support_scene.trace_instances = 0; /* nothing to trace: as without reflections */
     compile(&d, &with);
     assert_null(strstr(frame_text(&with, 0), "specular_query"));
     assert_string_equal(with.why[MASU_PASS_SPECULAR_QUERY], "no instance is traced");
@@ -1491,7 +1514,7 @@ static void ray_queries_stand_in_for_the_own_tree(void **state) {
     assert_string_equal(detail.what, "ray_query");
 }
 
-/* What the custom index of an instance can say, or the device takes, whichever is less. */
+/* The limit of an instance's custom index or of the device, whichever is lower. */
 static void ray_queries_have_limits(void **state) {
     (void)state;
     masu_scene_data s = {.trace_triangles = 1u << 24, .trace_instances = 7};

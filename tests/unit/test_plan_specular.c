@@ -1,7 +1,5 @@
-/*
- * test_plan_specular.c: what traced reflections cost a plan: nothing, where nothing is glossy enough or
- * where they are off; and what is there where they are.
- */
+/* test_plan_specular.c: the cost of traced reflections in a plan: nothing if no surface is glossy
+ * enough or if they are off; otherwise their passes and images. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -19,10 +17,10 @@ static masu_frame_plan with, without;
 
 static void compile(const masu_desc *d, masu_frame_plan *plan) {
     masu_detail detail;
-    if (masu_compile(d, 256, 64, plan, &detail)) fail_msg("refused: %s", detail.text);
+    if (masu_compile(d, 256, 64, plan, &detail)) fail_msg("rejected: %s", detail.text);
 }
 
-/* Of polygons and an SDF, mirrored in something of roughness 0.1. */
+/* Polygons and an SDF, with a reflecting material of roughness 0.1. */
 static masu_desc mirrors(uint32_t parts) {
     masu_desc d = scene_desc(parts, 640, 360);
     masu_scene_data *s = &support_scene;
@@ -40,8 +38,8 @@ static int is_specular(uint32_t pass) {
     return pass >= MASU_PASS_SPECULAR_GUIDE && pass <= MASU_PASS_SPECULAR_COMPOSITE;
 }
 
-/* Passes, what they read and write, images, buffers, needs: all alike but for the scene and the
- * description, which say that there is something to mirror. */
+/* Passes, reads and writes, images, buffers, needs: all equal, except for the scene and the
+ * description, which request the reflections. */
 static void assert_same_plan(const masu_frame_plan *a, const masu_frame_plan *b) {
     assert_memory_equal(a->images, b->images, sizeof a->images);
     for (uint32_t r = 0; r < a->desc.rung_count; r++) {
@@ -92,7 +90,7 @@ static void what_is_not_glossy_or_switched_off_costs_nothing(void **state) {
     }
 }
 
-/* One rung of three has them: its passes alone run. */
+/* Only one rung of three has them, and only it runs their passes. */
 static void a_rung_without_them_runs_none_of_their_passes(void **state) {
     (void)state;
     masu_desc d = mirrors(RASTER);
@@ -127,8 +125,8 @@ static void what_is_glossy_is_traced_in_polygons_in_the_sdf_or_in_both(void **st
     }
 }
 
-/* The mean over frames takes the place of that over neighbours and of the last one over frames, unless they are asked
- * for. */
+/* With temporal upscaling, spatial reuse and the last temporal filter are off unless they are
+ * requested. */
 static void many_samples_from_one_go_without_two_means(void **state) {
     (void)state;
     for (int asked = 0; asked < 2; asked++) {
@@ -141,7 +139,7 @@ static void many_samples_from_one_go_without_two_means(void **state) {
         for (uint32_t r = 0; r < 2; r++) {
             const masu_pass_set *active = &with.rungs[r].active;
             const masu_push_block push = masu_push_of(&with, r, MASU_PASS_SPECULAR_FILTER, 0);
-            float width; /* after `taps`; then how far back the mean reaches that it deviates from */
+            float width; /* after `taps`; then the length of the history */
             memcpy(&width, &push.own.word[1], sizeof width);
             assert_true(width == (r ? 0.5f : 2.0f));
             assert_int_equal(push.own.word[2], r ? 8 : 32);
@@ -163,10 +161,12 @@ static int composes(uint32_t rung, uint32_t image, uint32_t usage) {
     return 0;
 }
 
-/* The velocities of mirrors are for rungs with a past; where one has it, all share its descriptors. */
+/* Velocities of reflections are for rungs with temporal upscaling. If one rung has it, all share
+ * its descriptors. */
 static void velocities_of_mirrors_are_for_rungs_with_a_past(void **state) {
     (void)state;
-    for (int k = 0; k < 4; k++) { /* bit 0: a rung has a past, bit 1: it has each pixel's own means */
+    for (int k = 0; k < 4; k++) { /* bit 0: a rung has temporal upscaling, bit 1: it has
+                                     specular_fine */
         masu_desc d = mirrors(RASTER);
         d.rung_count = 2;
         d.rungs[1] = d.rungs[0];
@@ -190,7 +190,7 @@ static void the_reference_is_of_full_size_and_keeps_its_sum(void **state) {
     assert_true(masu_images[MASU_IMAGE_SPECULAR_SUM].kept);
     assert_int_equal(with.images[MASU_IMAGE_SPECULAR_SUM].width, 640);
     assert_int_equal(with.images[MASU_IMAGE_SPECULAR_LIGHT].height, 360);
-    d = scene_desc(RASTER, 640, 360); /* without reflections the switch does nothing */
+    d = scene_desc(RASTER, 640, 360); /* without reflections the setting has no effect */
     d.debug.reference = 1;
     compile(&d, &with);
     d.debug.reference = 0;

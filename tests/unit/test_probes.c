@@ -1,6 +1,6 @@
-/* test_probes.c: light probes: what rays say of a scene, that a grid is the same whatever the threads,
- * that its light is near the truth and much nearer than without it, and that a wall between two rooms
- * keeps most of their light apart. Bounds are those of a small grid with few rays. */
+/* test_probes.c: light probes: rays in a scene; the grid does not depend on the number of threads;
+ * its light has a low error, much lower than without it; a wall between two rooms keeps most of
+ * their light apart. The bounds are for a small grid with few rays. */
 #define _DEFAULT_SOURCE
 #include <math.h>
 #include <setjmp.h>
@@ -40,8 +40,8 @@ static void add_box(masu_bake_content *scene, masu_bake_vec3 low, masu_bake_vec3
 
 #define V masu_bake_v3
 
-/* A room of 4 x 3 x 4 metres with one side red, open to the sky on the side of +z; `wall`: across its
- * middle, leaving two rooms of which the one at the back has neither window nor lamp. */
+/* A room of 4 x 3 x 4 metres with one side red, open to the sky on the +z side. `wall`: across its
+ * centre, leaving two rooms, of which the rear one has no window and no lamp. */
 static masu_bake_content room(bool wall) {
     masu_bake_content c = {0};
     add_box(&c, V(-2.2, -0.2, -2.2), V(2.2, 0, 2.2), 0.7f, 0.7f, 0.7f, 0);
@@ -96,7 +96,7 @@ static void rays_meet_what_is_there(void **state) {
     assert_false(masu_bake_trace_ray(trace, middle, out, 1e30f, &hit));
     assert_true(masu_bake_trace_free(trace, middle, out, 1e30f));
     assert_false(masu_bake_trace_free(trace, middle, left, 1e30f));
-    /* From within a wall its surface is met from behind. */
+    /* From inside a wall its surface is hit from behind. */
     assert_true(masu_bake_trace_ray(trace, inside, right, 100, &hit));
     assert_true(hit.back);
     assert_float_equal(hit.normal[0], -1, 1e-6);
@@ -112,8 +112,8 @@ static void bake_room(masu_bake_content *c, const masu_bake_probe_settings *s,
     masu_bake_trace_release(trace);
 }
 
-/* A ball of 1 m behind a thin wall with a hole, as text: rays meet what the formulas say, and the nearer of SDF and
- * polygons. */
+/* A ball of 1 m behind a thin wall with a hole, as text: rays hit where the formulas predict, and
+ * the closer of SDF and polygons. */
 static void rays_meet_the_sdf_too(void **state) {
     (void)state;
     static const char text[] = "material red { albedo (0.8, 0.1, 0.2); emissive (1, 2, 3) }\n"
@@ -147,13 +147,13 @@ static void rays_meet_the_sdf_too(void **state) {
     assert_float_equal(hit.albedo[0], 0.5f, 1e-6);
     assert_false(masu_bake_trace_free(trace, aside, back, 100));
     assert_true(masu_bake_trace_free(trace, aside, back, 0.18f));
-    /* From within the back of it; beside it the ceiling, which is of polygons. */
+    /* From inside the rear part; next to it the ceiling, which is of polygons. */
     assert_true(masu_bake_trace_ray(trace, inside, up, 100, &hit));
     assert_true(hit.back && hit.t == 0);
     assert_true(masu_bake_trace_ray(trace, high, up, 100, &hit));
     assert_float_equal(hit.t, 1.5f, 1e-4);
     assert_float_equal(hit.albedo[0], 0.7f, 1e-6);
-    /* Probes in the ball are inside of something. */
+    /* Probes in the ball are inside geometry. */
     masu_bake_probe_report with, without;
     masu_bake_probe_settings s = settings(0);
     s.rays = 32;
@@ -192,7 +192,7 @@ static void threads_change_no_byte(void **state) {
     masu_bake_content_release(&b);
 }
 
-/* Under an even sky in the open, irradiance / pi is the sky's radiance, whatever the normal. */
+/* Under a uniform sky in the open, irradiance / pi is the sky's radiance, for any normal. */
 static void nothing_in_the_way_leaves_the_sky(void **state) {
     (void)state;
     masu_bake_content c = {0};
@@ -220,7 +220,7 @@ static void nothing_in_the_way_leaves_the_sky(void **state) {
         assert_float_equal(got[1], 2, 0.06);
         assert_float_equal(got[2], 0, 1e-6);
     }
-    /* Beyond the grid it fades, and a cell farther on it says nothing. */
+    /* Beyond the grid it fades, and a cell farther out it has no effect. */
     const float beyond[3] = {-2.2f - 0.275f, 1, 0}, far[3] = {-2.2f - 0.56f, 1, 0},
                 up[3] = {0, 1, 0};
     float got[3];
@@ -252,7 +252,7 @@ static void light_is_near_the_truth(void **state) {
     uint32_t rows = masu_bake_judge_probes(&c, &s, trace, 128, 1024, errors);
     static const struct {
         const char *light;
-        double most, better; /* than without probes, by this factor */
+        double most, better; /* lower than without probes, by this factor */
     } bounds[] = {{"sky", 0.25, 4}, {"sun, first baked", 0.3, 3}, {"sun, in between", 0.35, 3}};
     for (size_t i = 0; i < sizeof bounds / sizeof *bounds; i++) {
         double probes = error_of(errors, rows, bounds[i].light, "probes, as baked");
@@ -265,7 +265,7 @@ static void light_is_near_the_truth(void **state) {
     masu_bake_content_release(&c);
 }
 
-/* Mean light on the floor behind the wall, over that in front of it. */
+/* Mean light on the floor behind the wall, relative to the floor in front. */
 static double leak(uint32_t visibility) {
     masu_bake_content c = room(true);
     masu_bake_probe_settings s = settings(0);
@@ -304,7 +304,7 @@ static void walls_keep_light_out(void **state) {
     assert_true(with * 2 < without);
 }
 
-/* Weights of the baked suns: 1 at each, linear along the arc, never a jump, whatever the direction. */
+/* Weights of the baked suns: 1 at each, linear along the arc, continuous for any direction. */
 static void suns_blend_smoothly(void **state) {
     (void)state;
     masu_bake_content c = room(false);
@@ -340,7 +340,7 @@ static void suns_blend_smoothly(void **state) {
     masu_bake_content_release(&c);
 }
 
-/* Halfs as the format has them. */
+/* Half floats as the format defines them. */
 static void halfs_round_to_the_nearest(void **state) {
     (void)state;
     for (uint32_t h = 0; h < 0x7C00; h++) {

@@ -1,5 +1,5 @@
-/* test_reflected_sdf.c: what a plan holds of reflections where rays may meet an SDF: its pass alone, beside
- * polygons' or not at all, and no buffer of polygons where none is traced. */
+/* test_reflected_sdf.c: the plan of reflections whose rays can hit an SDF: only the SDF's pass, or
+ * with the pass of polygons, or none; and no buffer of polygons if none is traced. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -17,7 +17,7 @@
 /* The reflecting passes of the first rung. */
 static uint64_t passes(const masu_desc *d, masu_frame_plan *plan) {
     masu_detail detail;
-    if (masu_compile(d, 256, 64, plan, &detail)) fail_msg("refused: %s", detail.text);
+    if (masu_compile(d, 256, 64, plan, &detail)) fail_msg("rejected: %s", detail.text);
     static const uint32_t all[] = {MASU_PASS_SPECULAR_GUIDE,     MASU_PASS_SPECULAR_RAYS,
                                    MASU_PASS_SPECULAR_SHADE,     MASU_PASS_SPECULAR_COMPOSITE,
                                    MASU_PASS_SPECULAR_TRACE,     MASU_PASS_SPECULAR_TRACE_SDF};

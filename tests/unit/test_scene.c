@@ -1,8 +1,6 @@
-/*
- * test_scene.c: reading baked blobs. Good ones are accepted with the right numbers; what is cut,
- * joined, flipped or of another version is refused. (The rules for the contents:
- * test_scene_rules.c.)
- */
+/* test_scene.c: reading baked blobs. Good ones are accepted with the right numbers; truncated,
+ * concatenated or corrupted blobs and other versions are rejected. (Rules for the contents:
+ * test_scene_rules.c.) */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -41,7 +39,7 @@ static void a_full_blob_is_accepted_with_its_numbers(void **state) {
     assert_int_equal(masu_scene_data_of(&s)->sdf_dynamic, 1);
     /* Two of mesh 0, one of mesh 1. */
     assert_int_equal(masu_scene_data_of(&s)->draws, 3);
-    assert_int_equal(masu_scene_triangles(&s), 2 * (2 + 1) + 2); /* mesh 0 is placed twice */
+    assert_int_equal(masu_scene_triangles(&s), 2 * (2 + 1) + 2); /* mesh 0 has two instances */
 }
 
 static void a_blob_of_any_parts_is_accepted_with_these_alone(void **state) {
@@ -102,7 +100,7 @@ static void sdf_parameters_are_found_by_their_names(void **state) {
     support_accepted(&blob, &s);
     assert_int_equal(masu_scene_find(&s, MASU_SCENE_SDF_PARAM, "radius"), 0);
     assert_int_equal(masu_scene_find(&s, MASU_SCENE_SDF_PARAM, "bend"), 1);
-    /* A name, but a material's. */
+    /* A name, but of a material. */
     assert_int_equal(masu_scene_find(&s, MASU_SCENE_SDF_PARAM, "steel"), -1);
     assert_int_equal(masu_scene_find(&s, MASU_SCENE_SDF_PARAM, "radiu"), -1);
     assert_int_equal(masu_scene_find(&s, MASU_SCENE_SDF_PARAM, "radius "), -1);
@@ -157,7 +155,7 @@ static void a_blob_cut_anywhere_is_refused(void **state) {
     }
 }
 
-/* As if the baker had been cut short and had written a fitting header all the same. */
+/* As if the baker had been interrupted, but had written a matching header. */
 static void a_blob_cut_anywhere_and_sealed_again_is_refused(void **state) {
     (void)state;
     masu_scene scene;
@@ -187,8 +185,8 @@ static void bytes_behind_the_blob_are_refused(void **state) {
     }
 }
 
-/* The hash is over what follows the header; the header's own bits are to be caught one by one. Of those behind it the
- * sanitizers see every seventh. */
+/* The hash covers everything after the header; errors in the header's own bits must be detected one
+ * by one. After the header, the sanitizers test every seventh bit. */
 static void a_blob_with_any_bit_flipped_is_refused(void **state) {
     (void)state;
     masu_scene scene;
@@ -206,7 +204,7 @@ static void a_blob_with_any_bit_flipped_is_refused(void **state) {
     }
 }
 
-/* The second reader inside support_bind is the judge of what is accepted. */
+/* The independent reader inside support_bind checks every accepted blob. */
 static void a_sealed_blob_with_any_byte_changed_is_refused_or_harmless(void **state) {
     (void)state;
     masu_scene scene;
@@ -228,7 +226,7 @@ static void a_sealed_blob_with_any_byte_changed_is_refused_or_harmless(void **st
             }
         }
     }
-    printf("%zu changes harmless, %zu refused\n", accepted, refused);
+    printf("%zu changes harmless, %zu rejected\n", accepted, refused);
     assert_true(refused > 1000 && accepted > 1000);
 }
 
@@ -250,7 +248,7 @@ static void another_version_is_a_version_error(void **state) {
     for (size_t i = 0; i < COUNT(versions); i++) {
         support_blob_write(&blob, SUPPORT_ALL);
         header()->version = versions[i];
-        header()->hash ^= 1; /* whatever else such a version may have changed */
+        header()->hash ^= 1; /* other changes of such a version */
         assert_header_refused(MASU_ERROR_VERSION, "version");
     }
 }
@@ -291,7 +289,7 @@ static void a_header_that_does_not_fit_its_blob_is_refused(void **state) {
     header()->section_count = UINT32_MAX;
     assert_header_refused(MASU_ERROR_SCENE, "section_count");
     blob.size = sizeof(masu_blob_header) + 2 * sizeof(masu_blob_section) - 1;
-    header()->section_count = 2; /* a table that is cut off */
+    header()->section_count = 2; /* a truncated table */
     support_blob_seal(blob.bytes, blob.size);
     assert_header_refused(MASU_ERROR_SCENE, "section_count");
 }

@@ -23,7 +23,7 @@ static const uint32_t everything = SUPPORT_RASTER | SUPPORT_SDF | SUPPORT_CAMERA
 
 static support_blob blob;
 
-/* The scene of a blob that stays readable. */
+/* The scene of a blob that remains readable. */
 static masu_scene bound(uint32_t parts) {
     masu_scene scene;
     masu_detail detail;
@@ -121,7 +121,7 @@ static void items_are_found_by_their_names(void **state) {
             found |= 1u << i;
         }
     }
-    assert_int_equal(found, (1u << MASU_SCENE_CAMERA_KEY) - 1); /* whose keys have no names */
+    assert_int_equal(found, (1u << MASU_SCENE_CAMERA_KEY) - 1); /* keys have no names */
     float minimum, maximum;
     int32_t bend = masu_scene_find(&scene, MASU_SCENE_SDF_PARAM, "bend");
     assert_true(masu_scene_sdf_range(&scene, (uint32_t)bend, &minimum, &maximum) == -1.0f);
@@ -155,7 +155,7 @@ static void each_feature_has_its_bit(void **state) {
     for (size_t i = 0; i < COUNT(features); i++) {
         masu_scene_data one;
         memset(&one, 0, sizeof one);
-        for (uint32_t value = 1; value <= 3; value += 2) { /* of a flag, of a count */
+        for (uint32_t value = 1; value <= 3; value += 2) { /* for a flag, for a count */
             memcpy((char *)&one + features[i].member, &value, sizeof value);
             assert_int_equal(masu_scene_features(masu_scene_of(&one)), features[i].bit);
             memcpy((char *)&every + features[i].member, &value, sizeof value);
@@ -164,7 +164,7 @@ static void each_feature_has_its_bit(void **state) {
         all |= features[i].bit;
     }
     assert_int_equal(masu_scene_features(masu_scene_of(&every)), all);
-    assert_int_equal(all, 2 * MASU_SCENE_HAS_DEFAULT_AA - 1); /* there is no other */
+    assert_int_equal(all, 2 * MASU_SCENE_HAS_DEFAULT_AA - 1); /* there are no others */
 }
 
 static void numbers_are_those_of_the_blob(void **state) {
@@ -199,7 +199,7 @@ static uint64_t *limit_at(masu_limits *limits, const masu_limit *row) {
     return (uint64_t *)(void *)((char *)limits + row->offset);
 }
 
-/* A scene with at least 2 of everything: a limit of 0 would be none. */
+/* A scene with at least 2 of everything, because a limit of 0 means none. */
 static void limits_equal_to_the_usage_accept_and_lower_ones_do_not(void **state) {
     (void)state;
     masu_scene_data data;
@@ -216,7 +216,7 @@ static void limits_equal_to_the_usage_accept_and_lower_ones_do_not(void **state)
     char what[64];
     masu_scene_usage(scene, &usage);
     assert_int_equal(usage.texture_bytes, 1000);
-    if (check(scene, &usage, &detail)) fail_msg("refused: %s", detail.text);
+    if (check(scene, &usage, &detail)) fail_msg("rejected: %s", detail.text);
     for (const masu_limit *row = masu_limit_table(); row->name; row++) {
         limits = usage;
         uint64_t used = *limit_at(&limits, row);

@@ -1,8 +1,6 @@
-/*
- * test_scene_rules.c: the rules for the contents of a blob. Each is broken alone, in an otherwise
- * good and well-sealed blob; the refusal names the section and the element. What is just within a
- * rule is accepted.
- */
+/* test_scene_rules.c: the rules for the contents of a blob. Each is broken separately, in an
+ * otherwise good and well-sealed blob; the error names the section and the element. Content just
+ * within a rule is accepted. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -20,7 +18,7 @@
 
 static support_blob blob;
 
-static masu_detail detail; /* of the last refusal */
+static masu_detail detail; /* of the last error */
 
 static void assert_refused(const char *what, uint64_t element) {
     masu_scene scene;
@@ -28,13 +26,13 @@ static void assert_refused(const char *what, uint64_t element) {
     support_blob_seal(blob.bytes, blob.size);
     if (!support_bind(blob.bytes, blob.size, &scene, &detail)) fail_msg("%s was accepted", what);
     assert_int_equal(detail.result, MASU_ERROR_SCENE);
-    if (strcmp(detail.what, what)) fail_msg("%s was refused as %s", what, detail.text);
+    if (strcmp(detail.what, what)) fail_msg("%s was rejected as %s", what, detail.text);
     assert_int_equal(detail.given, element);
     (void)snprintf(place, sizeof place, "%s[%u]", what, (unsigned)element);
     assert_non_null(strstr(detail.text, place));
 }
 
-/* A full blob, changed: refused by the name of the section and the number of the element. */
+/* A full blob, changed: rejected with the name of the section and the number of the element. */
 #define REFUSED(what, element, ...)                                                                \
     do {                                                                                           \
         support_blob_write(&blob, SUPPORT_ALL);                                                    \
@@ -80,8 +78,8 @@ static void ungroup(void) {
 }
 
 
-/* Whether this build knows a kind of section: only the lab build knows its marches, and no build
- * kind 20. */
+/* Whether this build supports a kind of section: only the lab build has its marches, and no build
+ * has kind 20. */
 static int is_in_build(uint32_t kind) {
 #ifdef MASU_LAB
     return kind != 20;
@@ -90,7 +88,7 @@ static int is_in_build(uint32_t kind) {
 #endif
 }
 
-/* A blob that has a section of that kind, as full as one can be. Returns the section's index. */
+/* A blob that has a section of that kind, as full as possible. Returns the section's index. */
 static uint64_t write_with(uint32_t kind) {
     uint32_t with = kind >= MASU_BLOB_TEXCOORDS && kind <= MASU_BLOB_TEXELS ? SUPPORT_TEXTURES
                     : kind == MASU_BLOB_LODS                                 ? SUPPORT_DETAIL
@@ -118,7 +116,7 @@ static const struct {
              {MASU_BLOB_VELOCITY_SPIRV, "velocity SPIR-V", 1},
              {MASU_BLOB_SILHOUETTES_SPIRV, "silhouettes SPIR-V", 1},
              {MASU_BLOB_UPDATE_PREVIOUS_SPIRV, "update_previous SPIR-V", 1},
-             {MASU_BLOB_UPDATE_SPIRV, "update SPIR-V", 1}, /* beside the one before */
+             {MASU_BLOB_UPDATE_SPIRV, "update SPIR-V", 1}, /* in addition to the one before */
 #ifdef MASU_LAB
              {MASU_BLOB_PLAIN_SPIRV, "march_plain SPIR-V", 0},
              {MASU_BLOB_SEED_SPIRV, "march_seed SPIR-V", 0},
@@ -135,7 +133,7 @@ static const float not_finite[] = {(float)NAN, (float)INFINITY, (float)-INFINITY
 #define PROBES AT(PROBES, masu_blob_probes)
 #define MAP AT(ENVIRONMENT_MAP, masu_blob_environment_map)
 
-/* As REFUSED, of a blob with all that lights. */
+/* Like REFUSED, for a blob with all kinds of lighting. */
 #define LIT(what, element, ...)                                                                    \
     do {                                                                                           \
         support_blob_write(&blob, SUPPORT_ALL | SUPPORT_LIGHTING);                                 \
@@ -151,6 +149,8 @@ static void what_lights_a_scene_is_checked(void **state) {
         LIT("materials", 0, MATERIAL_OF[0].coat = x);
         LIT("materials", 0, MATERIAL_OF[0].coat_roughness = x);
         LIT("materials", 0, MATERIAL_OF[0].opacity = x);
+        LIT("materials", 0, MATERIAL_OF[0].thickness = x);
+        LIT("materials", 0, MATERIAL_OF[0].ior = x);
         LIT("meso", 0, MESO[0].tilt[2] = x);
         LIT("meso", 0, MESO[0].roughness[0] = x);
         LIT("meso", 0, MESO[0].occlusion[1] = x);
@@ -184,14 +184,25 @@ static void what_lights_a_scene_is_checked(void **state) {
     }
     LIT("materials", 0, MATERIAL_OF[0].specular = 12.6f);
     LIT("materials", 0, MATERIAL_OF[0].anisotropy = 1.5f);
+    LIT("materials", 0, MATERIAL_OF[0].depth_bias = 0.0101f);
+    LIT("materials", 0, MATERIAL_OF[0].depth_bias = -0.0101f);
     LIT("materials", 0, MATERIAL_OF[0].specular_color[1] = 0.5f); /* and no channel is 1 */
     LIT("materials", 0, (MATERIAL_OF[0].sheen_color[0] = 1.0f, MATERIAL_OF[0].specular = 0.3f));
     LIT("materials", 0, (MATERIAL_OF[0].sheen_color[0] = 1.0f, MATERIAL_OF[0].specular = 0.5f, MATERIAL_OF[0].anisotropy = 1.0f));
     LIT("materials", 0, (MATERIAL_OF[0].anisotropy = MATERIAL_OF[0].coat = 1.0f)); /* one lobe, and none with a coat */
-    LIT("materials", 0, MATERIAL_OF[0].opacity = 0.5f); /* but not blended */
+    LIT("materials", 0, MATERIAL_OF[0].opacity = 0.5f); /* but not transparent */
     LIT("materials", 0, MATERIAL_OF[0].flags = MASU_MATERIAL_IS_ADDITIVE);
     LIT("materials", 0, MATERIAL_OF[0].flags = MASU_MATERIAL_IS_TINTED);
     LIT("materials", 0, MATERIAL_OF[0].flags = MASU_MATERIAL_IS_TINTED | MASU_MATERIAL_IS_ADDITIVE | MASU_MATERIAL_IS_BLEND);
+#define REFRACTS(t, n, metal, also)                                                                     \
+    (MATERIAL_OF[0].flags |= MASU_MATERIAL_IS_BLEND | (also), MATERIAL_OF[0].thickness = (t), MATERIAL_OF[0].ior = (n), MATERIAL_OF[0].metallic = (metal))
+    LIT("materials", 0, REFRACTS(65536.0f, 1.5f, 0.0f, MASU_MATERIAL_IS_TINTED));
+    LIT("materials", 0, REFRACTS(1.0f, 0.99f, 0.0f, MASU_MATERIAL_IS_TINTED));
+    LIT("materials", 0, REFRACTS(1.0f, 1000.1f, 0.0f, MASU_MATERIAL_IS_TINTED));
+    LIT("materials", 0, REFRACTS(0.0f, 1.5f, 0.0f, MASU_MATERIAL_IS_TINTED)); /* an index, and nothing to go through */
+    LIT("materials", 0, REFRACTS(1.0f, 1.5f, 0.0f, 0));
+    LIT("materials", 0, REFRACTS(1.0f, 1.5f, 0.5f, MASU_MATERIAL_IS_TINTED));
+    LIT("materials", 0, REFRACTS(1.0f, 1.5f, 0.0f, MASU_MATERIAL_IS_TINTED | MASU_MATERIAL_HAS_METAL));
     LIT("materials", 0, MATERIAL_OF[0].meso = 1);
     LIT("meso", 0, MESO[0].alpha = 4.5f);
     LIT("meso", 0, MESO[0].facet = 1.5f);
@@ -199,12 +210,12 @@ static void what_lights_a_scene_is_checked(void **state) {
     LIT("lights", 0, LIGHT[0].type = MASU_LIGHT_RECTANGLE + 1);
     LIT("lights", 0, LIGHT[0].type = MASU_LIGHT_CAPSULE); /* whose half axis is 0 */
     LIT("lights", 0, LIGHT[0].type = 0x10000);
-    LIT("lights", 0, LIGHT[0].type = MASU_LIGHT_SURFACE); /* of a point */
+    LIT("lights", 0, LIGHT[0].type = MASU_LIGHT_SURFACE); /* for a point */
     LIT("lights", 0, LIGHT[0].reserved = 1);
     LIT("lights", 0, (LIGHT[0].type = MASU_LIGHT_RECTANGLE, LIGHT[0].direction[0] = LIGHT[0].half_axis[0] = 1.0f));
     LIT("lights", 0, LIGHT[0].range = -1.0f);
     LIT("lights", 0, LIGHT[0].range = 2e15f);
-    LIT("lights", 0, LIGHT[0].outer = 1.0f); /* of a point */
+    LIT("lights", 0, LIGHT[0].outer = 1.0f); /* for a point */
     LIT("lights", 0, LIGHT[0].color[2] = 2e9f);
     LIT("lights", 0, LIGHT[0].radius = 0.0f);
     LIT("lights", 1, LIGHT[1].direction[2] = -0.5f);
@@ -225,7 +236,7 @@ static void what_lights_a_scene_is_checked(void **state) {
     LIT("probes", 0, PROBES[0].counts[0] = PROBES[0].counts[1] = 1u << 20);
     LIT("probe data", 74, PROBES[0].counts[0] = 3);
     LIT("probe data", 74, PROBES[0].visibility = 2);
-    /* Neither a word too few nor one too many. */
+    /* Neither a value too few nor one too many. */
     LIT("probe data", 73, support_blob_row(&blob, MASU_BLOB_PROBE_DATA)->count--);
     LIT("probe data", 75, support_blob_row(&blob, MASU_BLOB_PROBE_DATA)->count++);
     LIT("probes", 0, PROBES[0].spacing[0] = 0.0f);
@@ -234,7 +245,7 @@ static void what_lights_a_scene_is_checked(void **state) {
     LIT("probes", 0, support_blob_drop(&blob, MASU_BLOB_PROBE_DATA));
     LIT("environment map", 0, MAP[0].size = 12);
     LIT("environment map", 0, MAP[0].size = 4);
-    LIT("environment map", 0, MAP[0].mips = 3); /* of 2 texels */
+    LIT("environment map", 0, MAP[0].mips = 3); /* for 2 texels */
     LIT("environment map", 0, MAP[0].mips = 0);
     LIT("environment map", 1, MAP[0].sh[1][3] = -0.1f);
     LIT("environment map", 0, MAP[0].sh[4][3] = 1.1f);
@@ -254,7 +265,8 @@ static void what_lights_a_scene_is_checked(void **state) {
     support_blob_seal(blob.bytes, blob.size);
     assert_int_equal(masu_scene_bind(blob.bytes, blob.size, &scene, NULL), MASU_OK);
     assert_int_equal(masu_scene_data_of(&scene)->surfaces,
-                     1);                                    /* what is blended is in no G-buffer, */
+                     /* transparent surfaces are in no G-buffer, */
+                     1);
     assert_int_equal(masu_scene_data_of(&scene)->coats, 1); /* but has a coat */
     assert_int_equal(masu_scene_data_of(&scene)->blends, 1);
     assert_int_equal(masu_scene_data_of(&scene)->meso, 1);
@@ -277,7 +289,7 @@ static void a_section_of_an_unknown_kind_is_refused(void **state) {
     REFUSED("section", 1, ROW(INDICES)->kind = MASU_BLOB_KIND_COUNT);
 }
 
-/* As REFUSED, of a blob with trees for rays. */
+/* Like REFUSED, for a blob with BVHs for rays. */
 #define TRACED(what, element, ...)                                                                 \
     do {                                                                                           \
         support_blob_write(&blob, SUPPORT_ALL | SUPPORT_TRACE);                                    \
@@ -290,7 +302,7 @@ static void a_section_of_an_unknown_kind_is_refused(void **state) {
 #define TRACE AT(TRACE_INSTANCES, uint32_t)
 #define MIRRORS AT(REFLECTIONS, masu_blob_reflections)
 
-/* A chain of nodes as deep as is allowed, or one deeper: one leaf at its end. */
+/* A chain of nodes at the maximum depth, or one deeper: one leaf at its end. */
 static masu_result bind_chain(uint32_t depth) {
     masu_scene scene;
     support_blob_write(&blob, SUPPORT_ALL | SUPPORT_TRACE);
@@ -344,11 +356,11 @@ static void what_rays_are_traced_through_is_checked(void **state) {
     TRACED("trace nodes", 0, NODE[0].child = 0xFFFFFFFFu);
     TRACED("trace nodes", 0, NODE[0].item = 1);
     TRACED("trace nodes", 1, NODE[1].item = 0);                 /* a triangle twice */
-    TRACED("trace nodes", 1, NODE[1].packed |= 1u << 26);       /* a node behind a leaf */
-    TRACED("trace nodes", 1, NODE[1].packed |= 2u << 28);       /* a leaf behind nothing */
+    TRACED("trace nodes", 1, NODE[1].packed |= 1u << 26);       /* a node after a leaf */
+    TRACED("trace nodes", 1, NODE[1].packed |= 2u << 28);       /* a leaf after nothing */
     TRACED("trace meshes", 0, NODE[1].packed |= 2u << 26);      /* more than there are */
     TRACED("trace meshes", 0, NODE[1].packed &= 0xFFFFFFu);     /* fewer */
-    TRACED("trace nodes", 0, NODE[0].packed &= ~(1u << 24));    /* a leaf behind nothing */
+    TRACED("trace nodes", 0, NODE[0].packed &= ~(1u << 24));    /* a leaf after nothing */
     TRACED("trace meshes", 0, TREE[0].depth = 1);
     TRACED("trace meshes", 0, TREE[0].depth = 3);
     TRACED("trace meshes", 0, TREE[0].triangle_count = 4);
@@ -433,12 +445,12 @@ static void a_section_outside_the_blob_is_refused(void **state) {
     REFUSED("section", index, ROW(SLOTS)->offset = (blob.size + 31) / 16 * 16);
     REFUSED("section", index, ROW(SLOTS)->offset = UINT64_MAX - 15);
     REFUSED("section", index, ROW(SLOTS)->offset = (uint64_t)1 << 63);
-    /* Misaligned and all inside: bytes of the next ones. */
+    /* Misaligned and entirely inside: bytes of the next sections. */
     index = TABLE_INDEX(VERTICES);
     REFUSED("section", index, ROW(VERTICES)->offset += 8);
 }
 
-/* The hash does not cover the count of sections: what none of them owns tells that it is wrong. */
+/* The hash does not cover the count of sections: bytes without a section reveal a wrong count. */
 static void bytes_that_no_section_owns_are_refused(void **state) {
     (void)state;
     for (uint32_t parts = 0; parts <= SUPPORT_ALL; parts++) {
@@ -460,17 +472,17 @@ static void names_that_do_not_end_are_refused(void **state) {
     REFUSED("names", ROW(NAMES)->count - 1, AT(NAMES, char)[ROW(NAMES)->count - 1] = 'x');
 }
 
-/* Whoever shares it would have it hashed once more. */
+/* Every sharer of the name would have to hash it again. */
 static void a_name_of_over_255_bytes_is_refused(void **state) {
     (void)state;
     support_blob_write(&blob, SUPPORT_LONG_NAME);
     support_blob_seal(blob.bytes, blob.size);
     masu_scene scene;
     support_accepted(&blob, &scene); /* 255 */
-    AT(NAMES, char)[0] = 'x';        /* was the end of an empty one */
+    AT(NAMES, char)[0] = 'x';        /* the end of an empty name */
     assert_refused("names", 0);
     AT(NAMES, char)[0] = '\0';
-    AT(NAMES, char)[256] = 'x';      /* the end of the long one */
+    AT(NAMES, char)[256] = 'x';      /* the end of the long name */
     assert_refused("names", 1);
 }
 
@@ -494,7 +506,7 @@ static void a_primitive_outside_its_sections_is_refused(void **state) {
     REFUSED("primitives", 0, PRIMITIVE[0].vertex_count = 0);
     REFUSED("primitives", 0, PRIMITIVE[0].vertex_count = 0x1000000);
     REFUSED("primitives", 2, PRIMITIVE[2].first_vertex = 8);
-    REFUSED("primitives", 2, PRIMITIVE[2].vertex_count++); /* one too many, that no index asks for */
+    REFUSED("primitives", 2, PRIMITIVE[2].vertex_count++); /* one too many, which no index uses */
     REFUSED("primitives", 1, PRIMITIVE[1].first_vertex = UINT32_MAX - 2);
     REFUSED("primitives", 1, PRIMITIVE[1].material = 2);
     REFUSED("primitives", 1, PRIMITIVE[1].material = UINT32_MAX);
@@ -513,7 +525,7 @@ static void an_index_outside_its_primitive_is_refused(void **state) {
     REFUSED("indices", 8, INDEX[8] = 3); /* a vertex, but the next primitive's */
     REFUSED("indices", 14, INDEX[14] = UINT32_MAX);
     ACCEPTED(INDEX[5] = 0);
-    ACCEPTED(INDEX[9] = 3); /* the first behind a primitive of three vertices */
+    ACCEPTED(INDEX[9] = 3); /* the first vertex after a primitive of three */
     ACCEPTED(PRIMITIVE[1].vertex_count = 1, INDEX[7] = INDEX[8] = 0);
 }
 
@@ -543,7 +555,7 @@ static void bounds_that_do_not_hold_what_they_should_are_refused(void **state) {
     }
     assert_non_null(strstr(detail.text, "do not hold its instances"));
     ACCEPTED(INSTANCE[2].transform[3] = 1e6f); /* in no group */
-    /* A box that just holds a point would cut what rounding makes of it. */
+    /* A box that exactly holds a point would clip the point as rounded. */
     REFUSED("groups", 1, GROUP[1].half[0] = 1.0f);
     ACCEPTED(GROUP[1].half[0] = 1.0001f);
 }
@@ -733,13 +745,13 @@ static void a_camera_key_that_is_not_finite_is_refused(void **state) {
 static void a_camera_key_that_sees_nothing_is_refused(void **state) {
     (void)state;
     REFUSED("camera keys", 2, KEY[2].fov_y = 0.0f);
-    REFUSED("camera keys", 2, KEY[2].fov_y = 0.0009f);
+    REFUSED("camera keys", 2, KEY[2].fov_y = 0.00049f);
     REFUSED("camera keys", 2, KEY[2].fov_y = 3.11f);
     REFUSED("camera keys", 2, KEY[2].fov_y = -1.0f);
     REFUSED("camera keys", 1, memcpy(KEY[1].target, KEY[1].position, sizeof KEY->target));
     REFUSED("camera keys", 1, memset(KEY[1].position, 0, sizeof KEY->position),
             memset(KEY[1].target, 0, sizeof KEY->target), KEY[1].target[1] = -0.0f);
-    ACCEPTED(KEY[0].fov_y = 3.1f, KEY[1].fov_y = 0.001f);
+    ACCEPTED(KEY[0].fov_y = 3.1f, KEY[1].fov_y = 0.0005f);
 }
 
 static void a_camera_path_whose_time_does_not_rise_is_refused(void **state) {
@@ -830,7 +842,7 @@ static void parts_of_an_sdf_that_is_missing_are_refused(void **state) {
             if (kind >= MASU_BLOB_GROUPS && kind <= MASU_BLOB_OCCLUDERS) continue;
             support_blob_drop(&blob, (enum masu_blob_kind)kind);
         }
-        assert_refused("sdf", 0); /* for this part alone */
+        assert_refused("sdf", 0); /* only for this part */
     }
 }
 
@@ -871,7 +883,7 @@ static void marches_of_the_lab_build_are_refused(void **state) {
     static const uint32_t kinds[] = {MASU_BLOB_PLAIN_SPIRV, MASU_BLOB_SEED_SPIRV,
                                      MASU_BLOB_CHECKERBOARD_SPIRV};
     for (size_t i = 0; i < COUNT(kinds); i++) {
-        uint64_t section = write_with(MASU_BLOB_OCCLUSION_SPIRV); /* the order of kinds stays */
+        uint64_t section = write_with(MASU_BLOB_OCCLUSION_SPIRV); /* the order of kinds is kept */
         ROW(OCCLUSION_SPIRV)->kind = kinds[i];
         assert_refused("section", section);
         assert_non_null(strstr(detail.text, "lab build"));
@@ -923,7 +935,7 @@ static void an_sdf_without_code_is_refused(void **state) {
 static void an_anchored_sdf_needs_the_code_that_moves_it(void **state) {
     (void)state;
     REFUSED("sdf", 0, AT(SDF, masu_blob_sdf)->flags = 4);
-    for (uint32_t constant = 0; constant < 2; constant++) { /* but for the anchor */
+    for (uint32_t constant = 0; constant < 2; constant++) { /* except for the anchor */
         masu_scene scene;
         support_blob_write(&blob, SUPPORT_ALL);
         AT(SDF, masu_blob_sdf)->flags = MASU_SDF_ANCHORED;

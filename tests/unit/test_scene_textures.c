@@ -1,7 +1,6 @@
-/*
- * test_scene_textures.c: the rules for textures in a blob. Each is broken alone in an otherwise good
- * blob, and the refusal names section and element; what is just within a rule is accepted.
- */
+/* test_scene_textures.c: the rules for textures in a blob. Each is broken separately in an
+ * otherwise good blob, and the error names section and element; content just within a rule is
+ * accepted. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -27,7 +26,7 @@ static void assert_refused(const char *what, uint64_t element, int line) {
         fail_msg("line %d: %s was accepted", line, what);
     }
     if (strcmp(detail.what, what) || detail.given != element) {
-        fail_msg("line %d: %s was refused as %s", line, what, detail.text);
+        fail_msg("line %d: %s was rejected as %s", line, what, detail.text);
     }
 }
 
@@ -84,7 +83,7 @@ static void sections_of_textures_come_together(void **state) {
     }
     support_blob_write(&blob, WITH);
     for (uint32_t i = 0; i < 4; i++) support_blob_drop(&blob, kinds[i]);
-    assert_refused("materials", 0, __LINE__); /* which ask for them */
+    assert_refused("materials", 0, __LINE__); /* which refer to them */
 }
 
 static void a_texture_out_of_range_is_refused(void **state) {
@@ -97,7 +96,7 @@ static void a_texture_out_of_range_is_refused(void **state) {
     REFUSED("textures", 0, TEXTURE[0].width = MASU_TEXTURE_SIZE_MAX + 1);
     REFUSED("textures", 2, TEXTURE[2].height = UINT32_MAX);
     REFUSED("textures", 0, TEXTURE[0].mips = 0);
-    REFUSED("textures", 0, TEXTURE[0].mips = 5); /* 8 x 8 has 4 */
+    REFUSED("textures", 0, TEXTURE[0].mips = 5); /* 8 x 8 has 4 mips */
     REFUSED("textures", 1, TEXTURE[1].mips = UINT32_MAX);
     REFUSED("textures", 0, TEXTURE[0].layers = 0);
     REFUSED("textures", 0, TEXTURE[0].layers = MASU_TEXTURE_LAYERS_MAX + 1);
@@ -108,7 +107,7 @@ static void a_texture_out_of_range_is_refused(void **state) {
                        (masu_blob_section *)(void *)(blob.bytes + 64)),
             COUNT_OF(TEXTURES) = MASU_TEXTURE_ARRAYS_MAX + 1);
     ACCEPTED(TEXTURE[2].name = MASU_BLOB_NONE);
-    ACCEPTED(TEXTURE[2].format = MASU_TEXTURE_BC1_SRGB); /* as it is */
+    ACCEPTED(TEXTURE[2].format = MASU_TEXTURE_BC1_SRGB); /* unchanged */
 }
 
 static void textures_lie_one_behind_the_other_and_fill_the_texels(void **state) {
@@ -117,9 +116,9 @@ static void textures_lie_one_behind_the_other_and_fill_the_texels(void **state) 
     REFUSED("textures", 1, TEXTURE[1].offset = 0);
     REFUSED("textures", 1, TEXTURE[1].offset = 208);
     REFUSED("textures", 1, TEXTURE[1].offset = UINT64_MAX - 15);
-    REFUSED("textures", 1, TEXTURE[0].mips = 3); /* then the second begins too late */
+    REFUSED("textures", 1, TEXTURE[0].mips = 3); /* then the second array begins too late */
     REFUSED("textures", 1, TEXTURE[0].layers = 1);
-    REFUSED("textures", 2, TEXTURE[2].width = 100); /* larger than what is left */
+    REFUSED("textures", 2, TEXTURE[2].width = 100); /* larger than the remaining bytes */
     REFUSED("textures", 2, TEXTURE[2].layers = 256);
     REFUSED("texels", 18, COUNT_OF(TEXTURES) = 2, SET[1].texture[3] = MASU_BLOB_NONE);
     REFUSED("texels", 18, TEXTURE[1].height = 4, TEXTURE[1].mips = 3, TEXTURE[1].width = 4,
@@ -143,11 +142,11 @@ static void a_texture_set_names_textures_of_the_right_kind(void **state) {
     REFUSED("texture sets", 0, SET[0].texture[0] = 1); /* BC5 is no colour */
     REFUSED("texture sets", 0, SET[0].texture[1] = 0); /* BC3 is no normal */
     REFUSED("texture sets", 0, SET[0].texture[2] = 2);
-    REFUSED("texture sets", 1, SET[1].texture[3] = 0); /* nothing glows with alpha */
+    REFUSED("texture sets", 1, SET[1].texture[3] = 0); /* no emissive texture has alpha */
     REFUSED("texture sets", 1, SET[1].texture[3] = MASU_BLOB_NONE);
     REFUSED("texture sets", 1, SET[1].wrap[0] = 3);
     REFUSED("texture sets", 0, SET[0].wrap[1] = UINT32_MAX);
-    ACCEPTED(SET[1].texture[0] = 0, SET[1].texture[1] = 1); /* more than its materials ask for */
+    ACCEPTED(SET[1].texture[0] = 0, SET[1].texture[1] = 1); /* more than its materials use */
 }
 
 static void a_material_asks_for_maps_that_are_there(void **state) {
@@ -156,7 +155,7 @@ static void a_material_asks_for_maps_that_are_there(void **state) {
     REFUSED("materials", 0, MATERIAL[0].flags |= 0x10); /* its set has no occlusion map */
     REFUSED("materials", 0, MATERIAL[0].texture_set = 2);
     REFUSED("materials", 0, MATERIAL[0].texture_set = UINT32_MAX);
-    REFUSED("materials", 0, MATERIAL[0].flags |= 8); /* its set has nothing that glows */
+    REFUSED("materials", 0, MATERIAL[0].flags |= 8); /* its set has no emissive map */
     REFUSED("materials", 1, MATERIAL[1].texture_set = 0);
     REFUSED("materials", 0, MATERIAL[0].layers = 2); /* of two layers */
     REFUSED("materials", 0, MATERIAL[0].layers = 0x100);
@@ -164,13 +163,16 @@ static void a_material_asks_for_maps_that_are_there(void **state) {
     REFUSED("materials", 1, MATERIAL[1].flags |= MASU_MATERIAL_IS_MASK);
     REFUSED("materials", 1, MATERIAL[1].flags |= MASU_MATERIAL_HAS_METAL);
     REFUSED("texture sets", 0, SET[0].texture[4] = 1); /* BC5 is no occlusion */
-    REFUSED("materials", 0, SET[0].texture[MASU_SLOT_COAT] = 0, MATERIAL[0].flags |= 1u << MASU_SLOT_COAT); /* nor BC3 a coat */
+    /* and BC3 no coat */
+    REFUSED("materials", 0, SET[0].texture[MASU_SLOT_COAT] = 0,
+            MATERIAL[0].flags |= 1u << MASU_SLOT_COAT);
     REFUSED("materials", 0, MATERIAL[0].flags |= MASU_MATERIAL_LOBE_MAP); /* it has none */
     REFUSED("materials", 0, MATERIAL[0].flags |= MASU_MATERIAL_COAT_RELIEF);
     REFUSED("materials", 0, SET[0].texture[MASU_SLOT_COAT] = 1, MATERIAL[0].flags |= 1u << MASU_SLOT_COAT,
             MATERIAL[0].more_layers = 0x900);
     REFUSED("materials", 0, MATERIAL[0].more_layers = 0x10000);
-    REFUSED("materials", 1, MATERIAL[1].flags |= MASU_MATERIAL_COAT_SMOOTH); /* it has no normal map */
+    /* the set has no normal map */
+    REFUSED("materials", 1, MATERIAL[1].flags |= MASU_MATERIAL_COAT_SMOOTH);
     REFUSED("materials", 0, MATERIAL[0].flags |= MASU_MATERIAL_COAT_SMOOTH | MASU_MATERIAL_BASE_SMOOTH);
     ACCEPTED(MATERIAL[0].flags |= MASU_MATERIAL_COAT_SMOOTH);
     ACCEPTED(SET[0].texture[MASU_SLOT_COAT] = 1, MATERIAL[0].flags |= 1u << MASU_SLOT_COAT);
@@ -179,7 +181,7 @@ static void a_material_asks_for_maps_that_are_there(void **state) {
     REFUSED("materials", 1, MATERIAL[1].flags = MASU_MATERIAL_IS_MASK, MATERIAL[1].texture_set = 0);
     ACCEPTED(MATERIAL[1].flags = MASU_MATERIAL_IS_BLEND, MATERIAL[1].texture_set = 0);
     ACCEPTED(MATERIAL[0].flags &= ~(uint32_t)MASU_MATERIAL_IS_MASK);
-    ACCEPTED(MATERIAL[0].layers = 0xFF000000u); /* of a slot that is not used */
+    ACCEPTED(MATERIAL[0].layers = 0xFF000000u); /* of an unused slot */
 }
 
 int main(void) {

@@ -1,9 +1,8 @@
-/*
- * test_sdf_shapes.c: every shape of the table against what the table says of it. Its constant holds for pairs of points
- * and for the steepest of them after climbing: a few thousand, a million with LONG. Where it says exact, a walk of the
- * field's value down its gradient ends on the surface. Cells, blends and colours are compared with formulas written
- * here anew. All runs in double precision, without a GPU.
- */
+/* test_sdf_shapes.c: every shape of the table against its documented properties. Its Lipschitz
+ * constant holds for pairs of points, and for the steepest ones after hill climbing: a few
+ * thousand, a million with LONG. If it claims to be exact, following the gradient by the field's
+ * value ends on the surface. Cells, blends and colours are compared with formulas written
+ * independently here. Everything runs in double precision, without a GPU. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -40,16 +39,16 @@ static double apart(const double p[3], const double q[3]) {
 /* ---- every shape ---- */
 
 typedef enum claim {
-    BOUND,    /* L, and positive outside of its bounds */
+    BOUND,    /* constant L, and positive outside its bounds */
     EXACT,    /* the distance outside too */
-    ESTIMATE, /* no solid within f / L, but for 1 in 200 */
+    ESTIMATE, /* no solid within f / L, except for 1 in 200 */
     SAFE      /* no solid within f / L, ever */
 } claim;
 
 static const struct {
     const char *text;
     claim claim;
-    double solid[3]; /* a point of it */
+    double solid[3]; /* a point inside it */
 } shapes[] = {
     {"round_cone((0, 0, 0), (1, 1, 0), 0.5, 0.2)", EXACT, {0.5, 0.5, 0.1}},
     {"round_cone((0, 0, 0), (0.2, 0, 0), 0.5, 0.2)", EXACT, {0, 0.4, 0}},
@@ -127,7 +126,7 @@ static void measure(const field *r, pair *at) {
     at->slope = d > 1e-12 ? fabs(field_value(r, 0, at->p) - field_value(r, 0, at->q)) / d : 0;
 }
 
-/* The steepest of many pairs, each then moved to wherever it is steeper. */
+/* The steepest of many pairs, each then moved to steeper points nearby. */
 static double steepest(const field *r, uint32_t pairs, uint64_t *seed) {
     enum { KEPT = 64, STEPS = 150 };
     static pair kept[KEPT];
@@ -139,7 +138,8 @@ static double steepest(const field *r, uint32_t pairs, uint64_t *seed) {
         any_point(facts(r, 0), seed, at.p);
         for (int k = 0; k < 3; k++) at.q[k] = at.p[k] + by * random_between(seed, -1, 1);
         measure(r, &at);
-        for (int halves = 0; n % 20 < 2 && halves < 20; halves++) { /* towards the steeper half: finds jumps */
+        /* bisects towards the steeper half: finds jumps */
+        for (int halves = 0; n % 20 < 2 && halves < 20; halves++) {
             pair low = at, high = at;
             for (int k = 0; k < 3; k++) low.q[k] = high.p[k] = (at.p[k] + at.q[k]) / 2;
             if (apart(at.p, at.q) < 4e-6) break;
@@ -178,7 +178,8 @@ static void gradient(const field *r, const double p[3], double g[3]) {
     }
 }
 
-/* With the constant 1 the value is never more than the distance; where the walk ends on the surface, nor less. */
+/* With the constant 1 the value never exceeds the distance; if the walk ends on the surface, it is
+ * not below it either. */
 static void assert_exact(const field *r, const char *text, uint64_t *seed) {
     int missed = 0, tried = 0;
     double worst = 0;
@@ -189,7 +190,7 @@ static void assert_exact(const field *r, const char *text, uint64_t *seed) {
         if (!(f > 0.01)) continue;
         gradient(r, p, g);
         double length = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
-        if (fabs(length - 1) > 1e-5) { /* on a crease; few are */
+        if (fabs(length - 1) > 1e-5) { /* on a crease; these are few */
             missed++;
             continue;
         }
@@ -255,7 +256,7 @@ static void every_shape_is_what_its_table_says(void **state) {
 
 /* ---- cells and blends, by formulas ---- */
 
-/* The number that a cell has is the albedo of the ground there. */
+/* The number of a cell is the albedo of the ground there. */
 static double hash_of(const field *r, double x, double z) {
     double out[8];
     look(r, 1, x, 0, z, out);
@@ -388,7 +389,7 @@ static void materials_blend_as_their_shapes_do(void **state) {
     static const char *const cut = TWO "part a : b = difference(box((1, 1, 1)), paint(r, sphere(1.2)));";
     assert_color(smooth, -1, 0, 0, 1, 0, 0);
     assert_color(smooth, 1, 0.2, 0, 0.5, 0, 0.5);
-    /* fields -0.1 and 0.1: h = (0.5 - 0.2) / 0.5, and half of it is the farther one's */
+    /* fields -0.1 and 0.1: h = (0.5 - 0.2) / 0.5, and half of that is the farther one's */
     assert_color(smooth, 0.9, 0, 0, 1 - 0.3, 0, 0.3);
     assert_color(blend, 1, 0.2, 0, 0.5, 0, 0.5);
     /* -0.1 and 0.1 of k = 0.5: t = (0 - 1 + sqrt(0.5 - 0.04)) / 2 */
@@ -428,7 +429,7 @@ static void colours_depend_on_the_place(void **state) {
                  log(0.5));
     assert_color("def wave(x, k = 2) = k * x; material m { albedo (wave(p.x), wave(p.x, 3), p.zyx.x) } part a : m = sphere(1);", 1, 0, 0.5,
                  2, 3, 0.5);
-    /* Of a fractal's levels: the first meets the point itself. */
+    /* The levels of a fractal: the first traps the point itself. */
     assert_color("material m { albedo (trap.x, trap.y, trap.z) } part a : m = translate((1, 0, 0), mandelbox(1, 2));", 1.3, 0.4, 0, 0.5, 0.3, 0);
     assert_color("material m { albedo (trap.x, trap.y, trap.z) } part a : m = julia((0, 0, 0), 0, 1);", 0.3, 0.4, 0, 0.5, 0.4, 0);
     assert_color("material m { albedo (trap.x, trap.y, trap.z) } part a : m = mandelbulb(8, 1);", 0.3, 0.4, 0, 0.5, 0.3, 0);
@@ -436,7 +437,7 @@ static void colours_depend_on_the_place(void **state) {
                  0.3, 0);
 }
 
-/* A pixel wider than the pattern sees its middle. */
+/* A pixel wider than the pattern has its mean. */
 static void patterns_fade_where_pixels_are_wider(void **state) {
     (void)state;
     static const char text[] = "material m { albedo (checker(4 * p), fbm(p, 4, 0.5, 2), noise(2 * p)) } part a : m = scale(2, box((9, 9, 9)));";
@@ -460,8 +461,9 @@ static void patterns_fade_where_pixels_are_wider(void **state) {
 
 /* ---- noise ---- */
 
-/* Least upper bound of |gradient|^2 of noise() in a box within a cell, of values at the cell's corners: per axis the
- * steepest fade times the largest difference across the cell, which is bilinear in the fades of the other two axes. */
+/* Least upper bound of |gradient|^2 of noise() in a box within a cell, for values at the cell's
+ * corners: per axis the steepest fade times the largest difference across the cell, which is
+ * bilinear in the fades of the other two axes. */
 static double noise_slope2(const double corner[8], const double low[3], const double high[3]) {
     double sum = 0;
     for (int axis = 0; axis < 3; axis++) {
@@ -499,7 +501,7 @@ static bool is_below(const double corner[8], double low[3], double high[3], int 
 /* |gradient|^2 is convex in the values at the corners, so its maximum over -1..1 is at values of -1 and 1. */
 static void noise_is_no_steeper_than_its_constant(void **state) {
     (void)state;
-    for (int pattern = 0; pattern < 128; pattern++) { /* the others are these with the other sign */
+    for (int pattern = 0; pattern < 128; pattern++) { /* the others are these with inverted sign */
         double corner[8], low[3] = {0}, high[3] = {1, 1, 1};
         for (int i = 0; i < 8; i++) corner[i] = pattern >> i & 1 ? 1 : -1;
         if (!is_below(corner, low, high, 0, SDFC_NOISE_SLOPE)) fail_msg("corners %d", pattern);
@@ -551,7 +553,7 @@ static void several_mistakes_are_told_at_once(void **state) {
     for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++) {
         if (!strstr(r.error, wanted[i])) fail_msg("\"%s\" is not in\n%s", wanted[i], r.error);
     }
-    assert_null(strstr(r.error, "x.sdf:4:")); /* k has been spoken of */
+    assert_null(strstr(r.error, "x.sdf:4:")); /* k has been reported */
 }
 
 static void mistakes_of_the_new_words_name_their_place(void **state) {
@@ -607,7 +609,7 @@ static void files_include_others_once(void **state) {
     assert_non_null(strstr(error, "wrong.sdf:2:17: expected a number, found \"heigth\""));
 }
 
-/* What does not use them has nothing of them: neither code nor slots. */
+/* Scenes that do not use them contain neither their code nor their slots. */
 static void other_scenes_pay_nothing(void **state) {
     (void)state;
     static const char plain[] = "material m { albedo (1, 0, 0) } part a : m = repeat((4, 0, 4), union(sphere(1), torus(1.5, 0.1)));";
@@ -620,7 +622,7 @@ static void other_scenes_pay_nothing(void **state) {
     assert_null(strstr(a.glsl, "masu_look"));
     assert_null(strstr(a.glsl, "masu_footprint"));
     assert_non_null(strstr(b.glsl, "masu_look_0("));
-    /* and the march of the one that does is the same */
+    /* and the march of the scene with fractals is the same */
     const char *from_a = strstr(a.glsl, "real masu_shape_0("), *from_b = strstr(b.glsl, "real masu_shape_0(");
     const char *to_a = strstr(from_a, "\n}\n"), *to_b = strstr(from_b, "\n}\n");
     assert_true(to_a - from_a == to_b - from_b && memcmp(from_a, from_b, (size_t)(to_a - from_a)) == 0);

@@ -1,9 +1,7 @@
-/*
- * test_sdfc.c: the SDF compiler. features.sdf has a part for each feature of the language: its GLSL
- * must compile, its C must give the numbers of the formulas below, which are written here anew, and
- * both must keep to the Lipschitz constants and bounds of the table. Mistakes in the text have exact
- * messages; mistakes in the analysis, planted here, are found by the compiler's own check.
- */
+/* test_sdfc.c: the SDF compiler. features.sdf has a part for each feature of the language: its GLSL
+ * must compile, its C must give the numbers of the formulas below, which are written independently,
+ * and both must keep the Lipschitz constants and bounds of the table. Mistakes in the text have
+ * exact messages; mistakes in the analysis, planted here, are found by the compiler's own check. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -98,7 +96,7 @@ static int part_named(const char *name) {
     return -1;
 }
 
-/* ---- formulas, written anew ---- */
+/* ---- independent formulas ------ */
 
 #define R 0.5 /* the parameters' defaults */
 
@@ -180,7 +178,7 @@ static double f_difference(double x, double y, double z) {
 static double f_intersection(double x, double y, double z) {
     return fmax(fmax(ref_box(x, y, z, 1, 1, 1), len(x, y, z) - 1.2), ref_box(x, y, z, 2, 0.5, 0.7));
 }
-/* counterclockwise seen from above: +z turns towards +x */
+/* counterclockwise from above: +z rotates towards +x */
 static double f_rotate(double x, double y, double z) {
     double c = cos(PI / 6), s = sin(PI / 6);
     return ref_box(c * x - s * z, y, s * x + c * z, 1, 2, 3);
@@ -271,8 +269,8 @@ static double f_mixed(double x, double y, double z) {
 
 typedef enum how {
     EQUAL, /* the same number */
-    NEAR,  /* the same up to 0.5, beyond that no more than it and still at least 0.5 */
-    SIGN   /* solid in the same places */
+    NEAR,  /* the same up to 0.5; beyond that at most as large, and still at least 0.5 */
+    SIGN   /* solid at the same points */
 } how;
 
 static const struct {
@@ -326,7 +324,8 @@ static void values_are_those_of_the_formulas(void **state) {
     (void)state;
     const double params[2] = {0.5, 0.5};
     for (size_t i = 0; i < sizeof formulas / sizeof formulas[0]; i++) {
-        uint64_t seed = 1; /* the same for all, so that a new row leaves the points of the others */
+        uint64_t seed = 1; /* the same for all parts, so that a new row does not change the points
+                              of the others */
         int part = part_named(formulas[i].part), solid = 0;
         for (int n = 0; n < POINTS; n++) {
             double reach = n % 2 ? 2 : 12, p[3];
@@ -350,7 +349,7 @@ static void values_are_those_of_the_formulas(void **state) {
     }
 }
 
-/* ---- what the march relies on, of the C that comes out ---- */
+/* ---- guarantees that the march relies on, checked on the generated C ---- */
 
 static double apart(const double p[3], const double q[3]) {
     return len(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
@@ -411,7 +410,7 @@ static void the_scene_is_the_union_of_its_parts(void **state) {
 
 static void assert_glsl_compiles(const masu_sdfc_result *result) {
     static const char *const options[] = {"", "-DMASU_SDF_ASCENDING"};
-    if (!whole_run()) return; /* the sanitizers do not see into that compiler */
+    if (!whole_run()) return; /* the sanitizers do not cover that compiler */
     write_text("sdf_scene.glsl", result->glsl);
     for (int i = 0; i < 2; i++) {
         int code = shell("glslangValidator --quiet -V %s --target-env vulkan1.1 -Ishaders -I%s "
@@ -451,7 +450,7 @@ static void one_sphere_has_the_code_of_one_sphere(void **state) {
     masu_sdfc_release(&result);
 }
 
-/* Each function of the library that a scene's GLSL defines is called in it. */
+/* A scene's GLSL calls each library function that it defines. */
 static void no_scene_has_a_function_that_it_does_not_call(void **state) {
     (void)state;
     uint32_t functions = 0;
@@ -492,7 +491,7 @@ static void parts_of_one_form_share_its_code(void **state) {
     assert_int_equal(count(result.glsl, "real masu_shape_"), 2);
     assert_true(result.dynamic && result.timeless);
     assert_string_equal(result.parts[7].name, "a_7");
-    /* x of a; y, hash and r of b: all else is the same in all of them */
+    /* x of a; y, hash and r of b: everything else is shared */
     uint32_t head = 150 * MASU_SDFC_PART_SLOTS + MASU_SDFC_MATERIAL_SLOTS;
     assert_int_equal(result.slot_count, head + 100 + 3 * 50);
     const float *record = result.slots + 7 * MASU_SDFC_PART_SLOTS;
@@ -503,8 +502,9 @@ static void parts_of_one_form_share_its_code(void **state) {
     masu_sdfc_release(&result);
 }
 
-/* Bits for the parts and for what can be left out of them: worth asking for, continuous in a ball, and not of a
- * scene of many parts, whose lists have a place for each. */
+/* Bits for the parts and their terms that a block can skip: only if the test pays off, if the part
+ * is continuous in a ball, and not in a scene of many parts, which have entries in lists
+ * instead. */
 static void blocks_have_bits_for_what_can_be_left_out(void **state) {
     (void)state;
     static const struct {
@@ -522,15 +522,15 @@ static void blocks_have_bits_for_what_can_be_left_out(void **state) {
         {"part a = chamfer(0.2, sphere(1), stairs(0.1, 3, torus(2, 0.1), cylinder(1, 1)));", 1, 4},
         {"part a = xor(sphere(1), torus(2, 0.1));", 0, 0},
         {"for i in 0..8 { part a = translate((i, 0, 0), union(sphere(1), box((1, 2, 3)))); }", 1, 2},
-        /* more than a word for all of them: none */
+        /* more than 32 bits for all: none */
         {"for i in 0..20 { part a = translate((i, 0, 0), union(sphere(1), box((1, 2, 3)))); }", 1, 0},
-        /* the neighbour is looked at too */
+        /* the neighbour cell is evaluated too */
         {"part a = repeat((9, 0, 0), union(translate((2, 0, 0), sphere(1)), translate((-2, 0, 0), sphere(1))));", 1, 2},
         {"part a = repeat((9, 0, 9), union(sphere(1), box((1, 2, 3))));", 1, 2},
         {"part a = repeat((2, 0, 3), union(translate((2, 0, 1), sphere(1)), translate((0.5, 0, 0), box((1, 2, 3)))));", 1, 2},
         {"part a = repeat_limited((2, 0, 3), (5, 1, 9), union(translate((2, 0, 1), sphere(1)), box((1, 2, 3))));", 1, 2},
         {"part a = repeat((2, 0, 0), torus(1.4, 0.1)); part b = polar(5, box((3, 1, 0.1)));", 1, 0},
-        /* a cut that is left out in one cell would make it nearer than the cells that are not looked at */
+        /* a cut skipped in one cell would bring it closer than the cells that are not evaluated */
         {"part a = repeat((4, 0, 4), intersection(box((1.9, 1.9, 1.9)),"
          " translate((0, 0.2, 0), plane((-0.5, 0.7071, 0.5), 0))));", 0, 0},
         {"part a = polar(5, translate((9, 0, 0), union(sphere(1), box((1, 2, 3)))));", 0, 0},
@@ -548,7 +548,7 @@ static void blocks_have_bits_for_what_can_be_left_out(void **state) {
     }
 }
 
-/* The slots that the function masu_sdf_box reads, or its literals: what is said of low or high. */
+/* The slots that the function masu_sdf_box reads, or its literals, for low or high. */
 static void box_sides(const masu_sdfc_result *result, const char *name, double out[3]) {
     const char *at = strstr(result->glsl, "void masu_sdf_box(");
     assert_non_null(at);
@@ -595,7 +595,7 @@ static void the_box_of_the_parts_follows_the_parameters(void **state) {
     }
 }
 
-/* What sdf_velocity asks: parts that change, by number and as bits, and half-spaces that do. */
+/* Inputs of sdf_velocity: changing parts, by number and as bits, and changing half-spaces. */
 static void parts_that_move_are_told_from_those_that_rest(void **state) {
     (void)state;
     static const struct {
@@ -621,7 +621,7 @@ static void parts_that_move_are_told_from_those_that_rest(void **state) {
         char asked[512];
         snprintf(asked, sizeof asked, "%.*s", (int)(strchr(body, '}') - body), body);
         for (uint32_t i = 0; i < result.part_count; i++) {
-            /* Of a run of several the first and the last are named. */
+            /* In a run of several, the first and the last are named. */
             int moves = result.parts[i].dynamic || result.parts[i].user;
             snprintf(wanted, sizeof wanted, " %uu ", i);
             int alone = (i == 0 || !(result.parts[i - 1].dynamic || result.parts[i - 1].user)) &&
@@ -815,7 +815,7 @@ typedef struct rows {
     int around;   /* > 0: copies around y instead */
 } rows;
 
-/* The least value of all copies of part 1 that can be near. */
+/* The least value of all copies of part 1 that can be close. */
 static double union_of_copies(const field *r, const rows *of, const double p[3]) {
     double least = 1e30;
     for (int i = 0; i < of->around; i++) {
@@ -862,8 +862,7 @@ static void put_rows(writer *w, rows *of, int form) {
     if (form) put(w, "(%d, %d, %d), ", of->count[0] ? of->count[0] : 1, of->count[1] ? of->count[1] : 1, of->count[2] ? of->count[2] : 1);
 }
 
-/* Solid where the union is, nothing else solid, no solid nearer than f / L, and the constant
- * holds. */
+/* Solid where the union is and nowhere else, no solid closer than f / L, and the constant holds. */
 static void compare_copies(const char *text, const field *r, const rows *of, uint64_t *seed) {
     double L = r->c->shapes[r->c->parts[0].shape].facts.lipschitz;
     for (int n = 0; n < 150; n++) {
@@ -871,11 +870,11 @@ static void compare_copies(const char *text, const field *r, const rows *of, uin
         for (int k = 0; k < 3; k++) {
             p[k] = random_between(seed, -reach, reach);
             way[k] = random_between(seed, -1, 1);
-            /* Where the selection changes. */
+            /* At the border where the selection changes. */
             if (n % 8 == 0) p[k] = of->period[k] * round(2 * p[k]) / 2 + 1e-7 * way[k];
         }
         double f = field_value(r, 0, p), u = union_of_copies(r, of, p);
-        for (int k = 0; k < 3 && n % 3 == 2; k++) { /* to where the union falls */
+        for (int k = 0; k < 3 && n % 3 == 2; k++) { /* towards falling values of the union */
             memcpy(q, p, sizeof q);
             q[k] += 1e-5;
             way[k] = u - union_of_copies(r, of, q) + 1e-12 * way[k];
@@ -1008,7 +1007,7 @@ static void depth_is_limited(void **state) {
     }
 }
 
-/* Doubling names: the tree is huge, the text is not. */
+/* Names that double: the tree is huge, the text is not. */
 static void size_is_limited(void **state) {
     (void)state;
     char text[4096], error[256];
@@ -1078,7 +1077,7 @@ static void planted_faults_are_found(void **state) {
     }
 }
 
-/* Where a camera is inside a part it sees nothing: the part is named, at the time of the key. */
+/* A camera inside a part has no view: the part is named, with the time of the key. */
 static void cameras_inside_of_parts_are_told(void **state) {
     (void)state;
     static const char text[] = "part wall = translate((time, 0, 0), box((0.5, 1, 1)));\n"

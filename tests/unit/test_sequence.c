@@ -1,8 +1,6 @@
-/*
- * test_sequence.c: shaders/noise/sequence.glsl, compiled as C: the error of GGX reflections
- * (shaders/brdf/vndf.glsl) integrated by it, by white noise and by Owen-scrambled Sobol points,
- * over frames and over pixels; and that it is as even after 1e9 frames as before.
- */
+/* test_sequence.c: shaders/noise/sequence.glsl, compiled as C: integration error of GGX reflections
+ * (shaders/brdf/vndf.glsl), compared with white noise and Owen-scrambled Sobol points, over frames
+ * and over pixels; and the sequence is as uniform after 1e9 frames as before. */
 #include "blue_noise.h"
 #include "support/floats.h"
 #include "support/random.h"
@@ -29,7 +27,7 @@
 
 enum { TILE = MASU_BLUE_NOISE_SIZE, TEXELS = MASU_BLUE_NOISE_WORDS, FRAMES = 64, PIXELS = 128 };
 
-/* ---- What it is compared with ---------------------------------------------------------------- */
+/* ---- Sequences for comparison ---------------------------------------------------------------- */
 
 static uint32_t reversed(uint32_t x) {
     uint32_t r = 0;
@@ -70,7 +68,7 @@ static vec2 by_sobol(uint32_t texel, uint32_t frame) {
     return unit2(owen(p[0], seed), owen(p[1], masu_hash(seed + 1)));
 }
 
-/* One scramble for all pixels, shifted by blue noise as R2 is. */
+/* One scramble for all pixels, shifted by blue noise, as is done with R2. */
 static vec2 by_sobol_blue(uint32_t texel, uint32_t frame) {
     uint32_t p[2], w = masu_blue_noise[texel];
     sobol(frame, p);
@@ -85,7 +83,7 @@ static vec2 by_r2_blue(uint32_t texel, uint32_t frame) {
     return masu_noise2(masu_blue_noise[texel], frame);
 }
 
-/* What a pixel of a 2x2 gets that takes turns: every fourth. */
+/* The numbers of one pixel of a 2x2 quad that is sampled in every fourth frame. */
 static vec2 by_turns(uint32_t texel, uint32_t frame) {
     return masu_turn_noise2(masu_blue_noise[texel], frame);
 }
@@ -104,11 +102,11 @@ static const struct {
                   {"Sobol, Owen, blue shift", by_sobol_blue},
                   {"R2, white shift", by_r2_white},
                   {"R2, blue shift", by_r2_blue},
-                  {"turns, blue shift", by_turns},
-                  {"turns, every fourth", by_turns_fourth},
+                  {"in order, blue shift", by_turns},
+                  {"in order, every fourth", by_turns_fourth},
                   {"R2, every fourth", by_r2_fourth}};
 
-/* ---- What is integrated ---------------------------------------------------------------------- */
+/* ---- Integrands ------------------------------------------------------------------------------ */
 
 /* A room with an edge of light across it: light from beyond a plane, and a little from above. */
 typedef struct scene {
@@ -140,7 +138,7 @@ static int make_scenes(void **state) {
         s->alpha = masu_alpha(roughness);
         double turn = 6.283185307179586 * (double)(support_random(&seed) >> 40) / 16777216;
         s->plane = vec3(cosf((float)turn), sinf((float)turn), 0);
-        /* Through the lobe, beside its middle. */
+        /* Through the lobe, off its centre. */
         double beside = (double)(support_random(&seed) >> 40) / 16777216 - 0.5;
         s->offset = -s->v.x * s->plane.x + s->alpha * (float)beside;
         const uint32_t many = 1 << 16;
@@ -151,8 +149,8 @@ static int make_scenes(void **state) {
 
 /* ---- Tests ----------------------------------------------------------------------------------- */
 
-/* Relative error of the mean of n frames that begin anywhere, or at 0; root of the mean square over
- * pixels, mean over scenes. */
+/* Relative error of the mean of n frames that begin anywhere, or at 0: RMS over pixels, mean over
+ * scenes. */
 static void over_frames(int kind, int anywhere, double out[7]) {
     memset(out, 0, 7 * sizeof *out);
     for (int i = 0; i < SCENES; i++) {
@@ -200,7 +198,7 @@ static void r2_turned_by_blue_noise_has_the_least_error_over_frames(void **state
         assert_true(off[1][TURNS][i] < 1.4 * off[1][R2_BLUE][i]);
         assert_true(off[1][TURNS_FOURTH][i] < 1.25 * off[1][R2_BLUE][i]);
     }
-    /* Why the other one exists. */
+    /* The reason for the other sequence. */
     assert_true(off[1][R2_FOURTH][3] > 1.5 * off[1][TURNS_FOURTH][3]);
 }
 
@@ -247,7 +245,7 @@ static void r2_turned_by_blue_noise_has_the_least_error_over_pixels(void **state
     }
 }
 
-/* Of 64 frames, from any on, each of 4x4 squares gets 4, within 2; and numbers stay below 1. */
+/* Of any 64 consecutive frames, each of 4x4 squares gets 4, within 2; and numbers are below 1. */
 static void numbers_stay_as_even_after_many_frames(void **state) {
     (void)state;
     static const uint32_t starts[] = {0, 1000, 1000000, 100000000, 4000000000u, 0xFFFFFFF0u};
@@ -262,7 +260,7 @@ static void numbers_stay_as_even_after_many_frames(void **state) {
             for (int k = 0; k < 16; k++) assert_in_range(count[k], 2, 6);
         }
     }
-    /* They are multiples of 1/g and 1/g^2; no frame but each 2^32nd is another's twin. */
+    /* They are multiples of 1/g and 1/g^2; only frames 2^32 apart are equal. */
     const double g = 1.32471795724474602596;
     for (uint32_t n = 0; n < 1000000; n += 997) {
         vec2 u = masu_noise2(0, n);
@@ -274,12 +272,12 @@ static void numbers_stay_as_even_after_many_frames(void **state) {
         vec2 u = masu_noise2(0, 1u << b);
         assert_true(u.x > 0 && u.y > 0);
     }
-    /* All bits of both at once: the largest there is. */
+    /* All bits of both at once: the maximum. */
     vec2 u = masu_noise2(0xFFFFFFFFu, 0);
     assert_true(u.x < 1 && u.y < 1 && u.x > 0.9999f && u.y > 0.9999f);
 }
 
-/* One bit of x turns each bit of the hash in half of the cases; a tile that is moved is a tile. */
+/* One bit of x flips each bit of the hash in half of the cases; a shifted tile is a permutation. */
 static void the_hash_mixes(void **state) {
     (void)state;
     static uint32_t turned[32][32];
@@ -297,9 +295,9 @@ static void the_hash_mixes(void **state) {
     for (int b = 0; b < 32; b++) {
         for (int k = 0; k < 32; k++) worst = worst_of(worst, fabs((double)turned[b][k] / MANY - 0.5));
     }
-    print_message("  a bit of x turns a bit of the hash with 0.5 +- %.3f\n", worst);
-    assert_true(worst < 0.05); /* chance: 4.5 deviations of 0.0078 */
-    /* Every texel once, whatever the key. */
+    print_message("  a bit of x flips a bit of the hash with 0.5 +- %.3f\n", worst);
+    assert_true(worst < 0.05); /* random error: 4.5 deviations of 0.0078 */
+    /* Every texel once, for any key. */
     for (uint32_t key = 0; key < 5; key++) {
         static uint8_t seen[TEXELS];
         memset(seen, 0, sizeof seen);
@@ -312,8 +310,8 @@ static void the_hash_mixes(void **state) {
     assert_int_equal(masu_noise_index(5, 7, 0), 7 * TILE + 5);
 }
 
-/* Of 16 places that frames look at by turns, a pixel that is asked in one of four turns sees all in 64 frames, and in each
- * sixteen frames that begin a round one of each four. */
+/* With a cycle of 16 positions, a pixel that is sampled in one of four frames gets all of them
+ * within 64 frames, and in each sixteen frames that begin a cycle one of each four. */
 static void turns_see_all_places(void **state) {
     (void)state;
     for (uint32_t turn = 0; turn < 4; turn++) {

@@ -1,13 +1,10 @@
-/*
- * test_shader_gates.c: what no shader of ours may do, asked of the SPIR-V: loop for as long as its
- * data says (tests/support/loops.h), and use more than three descriptor sets, of the four that every
+/* test_shader_gates.c: rules for all shaders, checked in the SPIR-V: loops are bounded by constants
+ * (tests/support/loops.h), and at most three descriptor sets are used, of the four that every
  * device has: GPU-assisted validation needs the fourth.
  *
- * Looked at are the shaders of the library as glslang writes them, and those that are compiled
- * together with a scene's field both with the fields of scenes/ before the optimiser and as they
- * stand in the baked blobs. Small shaders compiled here show that the question can be answered with
- * no.
- */
+ * Checked are the library's shaders as glslang compiles them, and shaders compiled together with a
+ * scene's field, both with the fields of scenes/ before the optimiser and from the baked blobs.
+ * Small shaders compiled here show that the checks can fail. */
 #define _XOPEN_SOURCE 700
 #include <glob.h>
 #include <setjmp.h>
@@ -29,7 +26,7 @@
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 #define SETS_MOST 3u
 
-/* Paths that fit a pattern below $MADE, or below the root of the tree; at least one. */
+/* Paths that match a pattern below $MADE, or below the root of the tree; at least one. */
 static glob_t find(const char *root, const char *pattern) {
     char path[512];
     glob_t found;
@@ -38,7 +35,7 @@ static glob_t find(const char *root, const char *pattern) {
     return found;
 }
 
-/* ---- The question ---------------------------------------------------------------------------- */
+/* ---- The checks ------------------------------------------------------------------------------ */
 
 static uint32_t descriptor_sets(const spirv_module *m) {
     uint32_t sets = 0;
@@ -183,12 +180,13 @@ static void a_fourth_descriptor_set_is_noticed(void **state) {
 
 /* ---- The shaders ----------------------------------------------------------------------------- */
 
-/* Those that need a field, as masu-bake compiles them, and how many loops each has at least. */
+/* Shaders that need a field, as masu-bake compiles them, and the minimum number of loops in
+ * each. */
 static const struct {
     const char *source, *define;
     int sides;      /* 2: it differs with and without a raster depth */
-    int dynamic;    /* it needs slots that change, which a hand-written field has not */
-    uint32_t loops; /* of its own, whatever the field */
+    int dynamic;    /* it needs changing slots, which a hand-written field does not have */
+    uint32_t loops; /* apart from the field's */
 } scene_shaders[] = {
     {"update.comp", "-DMASU_PASS=1", 1, 1, 0},
     {"update.comp", "-DMASU_MOTION=1", 1, 1, 0},
@@ -202,7 +200,8 @@ static const struct {
     {"march_seed.comp", "-DMASU_LAB=1", 2, 0, 3},
     {"march_checkerboard.comp", "-DMASU_LAB=1", 1, 0, 3},
     {"sdf_occlusion.comp", "-DMASU_PASS=1", 1, 0, 6}, /* lists 3, rays and their march, samples */
-    {"local_shadow_sdf.comp", "-DMASU_PASS=1", 1, 0, 4}, /* the list 2, leaving and the march, the box */
+    /* 2 for the list, 2 for leaving and the march, and the bounds */
+    {"local_shadow_sdf.comp", "-DMASU_PASS=1", 1, 0, 4},
     {"specular_trace_sdf.comp", "-DMASU_PASS=1", 1, 0, 2}, /* the march, the normal */
     {"specular_trace_sdf.comp", "-DMASU_MOTION=1", 1, 0, 3},
     {"bounce_sdf.comp", "-DMASU_PASS=1", 1, 0, 2},
@@ -226,13 +225,13 @@ static void every_shader_of_the_library_passes(void **state) {
         (void)snprintf(path, sizeof path, "%s/gen/%.*s_%s.spv", made_dir(), (int)stem, name,
                        name + stem + 1);
         spirv_module m;
-        if (needs_a_field(name)) continue; /* below */
+        if (needs_a_field(name)) continue; /* see below */
         if (!spirv_from_file(path, &m)) fail_msg("%s is missing or no SPIR-V", path);
         loops += assert_passes(&m, name);
         spirv_free(&m);
         modules++;
     }
-    /* and those that are compiled a second time with a macro */
+    /* and shaders that are compiled a second time with a macro */
     static const char *const second[] = {"gbuffer_velocity_vert", "gbuffer_velocity_frag",
                                          "light_occluded_comp"};
     for (size_t i = 0; i < COUNT(second); i++) {
@@ -248,8 +247,8 @@ static void every_shader_of_the_library_passes(void **state) {
     globfree(&sources);
 }
 
-/* sdf_scene.glsl as masu-bake writes it: a number for each parameter, the field, and what masu-sdfc
- * would have added. Which number does not matter here. */
+/* sdf_scene.glsl as masu-bake writes it: a number for each parameter, the field, and the
+ * definitions that masu-sdfc adds. The values do not matter here. */
 static const char *write_field(const char *field) {
     static char text[1 << 16];
     char name[128];
@@ -270,7 +269,7 @@ static const char *write_field(const char *field) {
     return write_text("sdf_scene.glsl", text);
 }
 
-/* With sdf_scene.glsl in the test's directory. Returns the loops. */
+/* Compiles with sdf_scene.glsl in the test's directory. Returns the number of loops. */
 static uint32_t assert_scene_shaders_pass(const char *field, int dynamic) {
     uint32_t loops = 0;
     const char *chosen =
@@ -312,7 +311,7 @@ static void scene_shaders_pass_with_every_field_of_the_scenes(void **state) {
     globfree(&fields);
 }
 
-/* Every feature of the language, slots that change among them. */
+/* Every feature of the language, including changing slots. */
 static void scene_shaders_pass_with_what_masu_sdfc_writes(void **state) {
     (void)state;
     uint32_t loops = 0;
@@ -328,7 +327,7 @@ static void scene_shaders_pass_with_what_masu_sdfc_writes(void **state) {
     printf("%u loops\n", loops);
 }
 
-/* Words of march.comp with the field of a .sdf file, and its loops. */
+/* Size of march.comp in 32-bit values with the field of a .sdf file, and its number of loops. */
 static size_t march_words(const char *sdf, uint32_t *loops) {
     char options[256];
     const char *wrapper = in_scratch("sdf_scene.glsl");
@@ -355,12 +354,12 @@ static void a_march_has_the_code_that_its_scene_needs(void **state) {
     size_t pair = march_words(in_scratch("two.sdf"), &loops[1]);
     size_t parts = march_words("tests/scenes/parts300.sdf", &loops[2]);
     size_t city = march_words("scenes/city.sdf", &loops[3]);
-    printf("march.comp: %zu words with a sphere, %zu with a box too, %zu with 300 parts, %zu with "
-           "the city\n",
+    printf("march.comp, 32-bit values: %zu with a sphere, %zu with a box too, %zu with 300 parts, "
+           "%zu with the city\n",
            single, pair, parts, city);
     assert_true(single < pair && pair < parts && parts < city);
-    /* None over parts: those of march.comp itself, and with two parts two over the words of a block, where a ray begins
-     * and where it is looked for. */
+    /* No loops over parts: only those of march.comp itself, and with two parts two over the masks
+     * of a block, at the start of a ray and at its look-up. */
     assert_int_equal(loops[0] + 2, loops[1]);
     assert_true(loops[2] > loops[0]);
     assert_int_equal(remove(in_scratch("one.sdf")), 0);

@@ -1,6 +1,6 @@
-/* test_shadow_map.c: the sun's shadow map without a GPU: the cascades hold what they must, keep
- * their size and move by whole texels; when they are drawn anew; what the plan has of it and what
- * not. */
+/* test_shadow_map.c: the sun's shadow map without a GPU: the cascades contain their part of the
+ * view, keep their size and move by whole texels; when they are rendered again; their images and
+ * passes in the plan. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -79,7 +79,23 @@ static void splits_rise_and_end_at_the_distance(void **state) {
     }
 }
 
-/* The corners of the view up to the depth, and the eye. */
+/* Of orthographic cameras: a narrow lens whose near plane is far away. */
+static void far_near_planes_waste_no_texels(void **state) {
+    (void)state;
+    assert_true(masu_shadow_begin(1, 2) == 0);
+    assert_true(masu_shadow_begin(1.001, 2) == 1.001);
+    assert_true(masu_shadow_begin(3, 2) == 2);
+    masu_shadow_view v = {.forward = {0, 0, -1}, .sun = {0, 1, 0}, .casters = {{-1, -1, -1}, {1, 1, 1}}};
+    for (int tip = 0; tip < 2; tip++) { /* an image 4 m high, 10 m of it */
+        v.tan2 = 2 * 0.0005 * 0.0005;
+        v.begin = tip ? 0 : 3995;
+        masu_cascade c = masu_cascade_fit(&v, 4005, 0, 1024);
+        double radius = tip ? 2002.5 : hypot(5, sqrt(v.tan2) * 4000);
+        assert_true(fabs(c.radius - radius) < 0.001 * radius);
+    }
+}
+
+/* The corners of the view up to the depth, and the eye, or the corners where it begins. */
 static void each_cascade_holds_the_view_up_to_its_depth(void **state) {
     (void)state;
     uint64_t r = 3;
@@ -87,24 +103,24 @@ static void each_cascade_holds_the_view_up_to_its_depth(void **state) {
         masu_shadow_view v = random_view(&r, i % 2 ? 10 : 1e7);
         double depth = random_between(&r, 0.5, 500), tangent = sqrt(v.tan2), right[3], up[3];
         uint32_t size = (uint32_t)support_random_in(&r, 16, 4096);
+        if (i % 4 == 1) v.begin = depth * random_between(&r, 0.5, 1);
         masu_cascade c = masu_cascade_fit(&v, depth, i % 3 ? 0 : 0.1, size);
         double axis[3][3];
         masu_shadow_axes(v.forward, axis);
         memcpy(right, axis[0], sizeof right);
         memcpy(up, axis[1], sizeof up);
-        for (int k = 0; k < 17; k++) {
-            double a = k * 0.3927, p[3];
+        for (int k = 0; k < 32; k++) {
+            double a = k * 0.3927, p[3], at = k < 16 ? depth : v.begin;
             for (int j = 0; j < 3; j++) {
                 p[j] = v.eye[j] - c.center[j];
-                if (k < 16)
-                    p[j] += depth * (v.forward[j] + tangent * (right[j] * cos(a) + up[j] * sin(a)));
+                p[j] += at * (v.forward[j] + tangent * (right[j] * cos(a) + up[j] * sin(a)));
             }
             double most = 1 - 3.0 / size + 1e-7;
             assert_true(fabs(dot3(c.axis[0], p)) <= c.half * most);
             assert_true(fabs(dot3(c.axis[1], p)) <= c.half * most);
             assert_true(dot3(c.axis[2], p) >= -c.behind && dot3(c.axis[2], p) <= c.ahead);
         }
-        /* Towards the sun it reaches to the last of the casters. */
+        /* Towards the sun it extends to the last caster. */
         for (int k = 0; k < 8; k++) {
             double p[3];
             for (int j = 0; j < 3; j++) p[j] = v.casters[k >> j & 1][j] - c.center[j];
@@ -123,7 +139,7 @@ static void size_depends_on_neither_place_nor_direction(void **state) {
         v.tan2 = first.tan2;
         masu_cascade c = masu_cascade_fit(&v, 50, 0, 1024);
         assert_true(c.half == one.half && c.behind == one.behind && c.radius == one.radius);
-        double steps = log2(c.ahead / c.behind); /* the depth's scale: by doubling alone */
+        double steps = log2(c.ahead / c.behind); /* the depth's scale: only by doubling */
         assert_true(steps == floor(steps) && steps >= 0);
     }
 }
@@ -148,7 +164,7 @@ static void centres_lie_on_a_grid_of_texels(void **state) {
             }
             same += !memcmp(c.center, before.center, sizeof c.center);
         }
-        assert_true(same >= 25); /* not one bit, unless a step lies in between */
+        assert_true(same >= 25); /* bit-identical, unless a step is in between */
     }
 }
 
@@ -168,7 +184,7 @@ static void what_a_cascade_still_holds_is_told(void **state) {
         double across = hypot(dot3(drawn.axis[0], by), dot3(drawn.axis[1], by)) * far;
         if (across > 0.17 * drawn.radius) assert_false(holds);
     }
-    /* Along the sun's direction: away from it as far as the map's depth goes, and towards it. */
+    /* Along the sun's direction: away from it up to the map's depth, and towards it. */
     const double away[] = {-0.4 * drawn.radius, -0.05 * drawn.radius, 0.05 * drawn.radius, drawn.ahead};
     for (int i = 0; i < 4; i++) {
         masu_shadow_view next = v;
@@ -182,8 +198,8 @@ static void what_a_cascade_still_holds_is_told(void **state) {
     assert_false(masu_cascade_holds(&drawn, &other));
 }
 
-/* A point by way of the cascade's origin, as it is drawn, and by way of the eye, as it is looked
- * up. */
+/* A point relative to the cascade's origin, as in rendering, and relative to the camera, as in the
+ * look-up. */
 static void drawn_and_looked_up_is_the_same_place(void **state) {
     (void)state;
     uint64_t r = 7;
@@ -230,7 +246,7 @@ static void each_cascade_keeps_its_pace(void **state) {
     (void)state;
     static const masu_rung rungs[] = {{.shadow_refresh = {1, 4}}, {.shadow_refresh = {2, 3}}};
     make_renderer_with(SUPPORT_ALL, 0, rungs, 2);
-    assert_int_equal(draw_frame(&still, 0, 0), 3); /* the first frame draws all */
+    assert_int_equal(draw_frame(&still, 0, 0), 3); /* the first frame renders all */
     uint32_t drawn[2] = {0, 0};
     for (int i = 0; i < 80; i++) {
         uint32_t now = draw_frame(&still, 0, 0);
@@ -256,18 +272,18 @@ static void a_cut_or_a_jump_draws_what_would_not_be_due(void **state) {
     assert_int_equal(draw_frame(&still, 0, 1), 3); /* a cut */
     assert_int_equal(draw_frame(&still, 0, 0), 0);
     masu_camera moved = still;
-    moved.position[0] = 0.3; /* little against 50 m */
+    moved.position[0] = 0.3; /* small compared with 50 m */
     assert_int_equal(draw_frame(&moved, 0, 0), 0);
     moved.position[0] = 1000;
     assert_int_equal(draw_frame(&moved, 0, 0), 3);
-    moved.fov_y = 0.5f; /* another size of sphere */
+    moved.fov_y = 0.5f; /* another size of the bounding sphere */
     assert_int_equal(draw_frame(&moved, 0, 0), 3);
-    moved.forward[2] = 1; /* round about */
+    moved.forward[2] = 1; /* in the opposite direction */
     assert_int_equal(draw_frame(&moved, 0, 0), 3);
     assert_int_equal(draw_frame(&moved, 0, 0), 0);
 }
 
-/* A recording that draws all of its rung's cascades discards the rest of the map. */
+/* A recording that renders all cascades of its rung discards the rest of the map. */
 static void what_a_smaller_rung_discards_is_drawn_again(void **state) {
     (void)state;
     static const masu_rung rungs[] = {{.shadow_refresh = {64, 64}},
@@ -276,11 +292,10 @@ static void what_a_smaller_rung_discards_is_drawn_again(void **state) {
     assert_int_equal(draw_frame(&still, 0, 0), 3);
     assert_int_equal(draw_frame(&still, 0, 0), 0);
     assert_int_equal(draw_frame(&still, 1, 1), 1); /* its only one: all */
-    assert_int_equal(draw_frame(&still, 0, 0), 3); /* the first has another depth there */
+    assert_int_equal(draw_frame(&still, 0, 0), 3); /* the first has a different depth there */
 }
 
-/* A cascade that is not drawn keeps the place that it was drawn with; what follows the eye moves
- * on. */
+/* A cascade that is not rendered keeps its position; data relative to the camera is updated. */
 static void a_stale_cascade_stays_where_it_was_drawn(void **state) {
     (void)state;
     static const masu_rung rung = {.shadow_refresh = {1, 64}};
@@ -295,7 +310,7 @@ static void a_stale_cascade_stays_where_it_was_drawn(void **state) {
     assert_memory_equal(a.origin_hi[1], b.origin_hi[1], sizeof a.origin_hi[1]);
     assert_memory_equal(a.origin_lo[1], b.origin_lo[1], sizeof a.origin_lo[1]);
     assert_memory_not_equal(a.origin_hi[0], b.origin_hi[0], sizeof a.origin_hi[0]);
-    double off = (double)b.row0[1][0] * 1.5; /* the eye has moved within it */
+    double off = (double)b.row0[1][0] * 1.5; /* the camera has moved within it */
     assert_true(fabs((double)b.row0[1][3] - (double)a.row0[1][3] - off) < 1e-6);
 }
 
@@ -316,7 +331,7 @@ static void casters_that_move_away_stay_in_reach(void **state) {
         for (int j = 0; j < 3; j++) p[j] -= m.shadow.cascades[k].center[j];
         assert_true(dot3(m.shadow.cascades[k].axis[2], p) <= m.shadow.cascades[k].ahead);
     }
-    rows[3] = 3e38f; /* finite, as is asked */
+    rows[3] = 3e38f; /* finite, as required */
     assert_int_equal(masu_instance_set_transform(&m, i, rows, NULL), MASU_OK);
     draw_frame(&still, 0, 0);
     assert_true(isfinite(m.shadow.cascades[0].ahead));
@@ -389,7 +404,7 @@ static void cascades_lie_side_by_side_in_one_image(void **state) {
     }
 }
 
-/* The map is as large as the largest rung's; a rung that asks for more gets what the scene has. */
+/* The map has the size of the largest rung's; a rung that requests more gets the scene's size. */
 static void rungs_have_cascades_of_their_own(void **state) {
     (void)state;
     masu_desc d = scene_desc(RASTER, 640, 480);
@@ -408,7 +423,7 @@ static void rungs_have_cascades_of_their_own(void **state) {
     }
     assert_int_equal(plan.images[MASU_IMAGE_SHADOW_MAP].width, 128);
     assert_int_equal(plan.images[MASU_IMAGE_SHADOW_MAP].height, 3 * 128);
-    d.rung_count = 1; /* nothing is kept for what no rung draws */
+    d.rung_count = 1; /* nothing is kept for cascades that no rung renders */
     compile_shadow(&d, 3, 128);
     assert_int_equal(plan.images[MASU_IMAGE_SHADOW_MAP].width, 64);
     assert_int_equal(plan.images[MASU_IMAGE_SHADOW_MAP].height, 2 * 64);
@@ -437,9 +452,9 @@ static void slow_cascades_make_the_map_outlive_the_frame(void **state) {
             assert_int_equal(masu_variant_draws(rp, variant, k), !slow || (drawn >> k & 1));
         }
     }
-    assert_int_equal(masu_recording_variant(rp, 15), 3); /* the last draws them all */
+    assert_int_equal(masu_recording_variant(rp, 15), 3); /* the last variant renders all */
     for (uint32_t k = 0; k < 4; k++) assert_true(masu_variant_draws(&plan.rungs[0], 0, k));
-    d.rungs[1].shadow_cascades = 1; /* the slow ones are not among them */
+    d.rungs[1].shadow_cascades = 1; /* the slow cascades are not among them */
     compile_shadow(&d, 4, 128);
     assert_int_equal(plan.rungs[1].variants, 1);
     assert_false(masu_variant_draws(&plan.rungs[1], 0, 1));
@@ -459,6 +474,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(axes_are_orthonormal_for_any_sun),
         cmocka_unit_test(splits_rise_and_end_at_the_distance),
+        cmocka_unit_test(far_near_planes_waste_no_texels),
         cmocka_unit_test(each_cascade_holds_the_view_up_to_its_depth),
         cmocka_unit_test(size_depends_on_neither_place_nor_direction),
         cmocka_unit_test(centres_lie_on_a_grid_of_texels),

@@ -1,9 +1,7 @@
-/*
- * test_shared_layout.c: the structs of shaders/shared/masu_shared.h are the same bytes on both
- * sides: member by member, what glslang has decorated in the compiled shaders against offsetof and
- * sizeof in C. A struct that is in no shader, or has a member that the table below does not know,
- * fails.
- */
+/* test_shared_layout.c: the structs of shaders/shared/masu_shared.h have the same bytes on both
+ * sides: the decorations by glslang in the compiled shaders are compared, member by member, with
+ * offsetof and sizeof in C. A struct that is in no shader, or has a member that is missing in the
+ * table below, fails. */
 #define _XOPEN_SOURCE 700
 #include <glob.h>
 #include <setjmp.h>
@@ -20,7 +18,7 @@
 #include "support/files.h"
 #include "support/spirv.h"
 
-#define MEMBERS_MOST 31u
+#define MEMBERS_MOST 33u
 
 typedef struct member {
     const char *name;
@@ -58,11 +56,15 @@ static const layout layouts[] = {
       MEMBER(masu_frame_uniforms, temporal),
       MEMBER(masu_frame_uniforms, sdf_params),
       MEMBER(masu_frame_uniforms, shifts), MEMBER(masu_frame_uniforms, between), MEMBER(masu_frame_uniforms, columns),
-      MEMBER(masu_frame_uniforms, rows)}},
+      MEMBER(masu_frame_uniforms, rows), MEMBER(masu_frame_uniforms, environment),
+      MEMBER(masu_frame_uniforms, background)}},
     {STRUCT(masu_instance_data),
      1,
      {MEMBER(masu_instance_data, row0), MEMBER(masu_instance_data, row1),
       MEMBER(masu_instance_data, row2)}},
+    {STRUCT(masu_post_uniforms),
+     0,
+     {MEMBER(masu_post_uniforms, lens), MEMBER(masu_post_uniforms, grade)}},
     {STRUCT(masu_material_data),
      1,
      {MEMBER(masu_material_data, base_color), MEMBER(masu_material_data, emissive),
@@ -181,7 +183,7 @@ static void compare_strides(const spirv_module *m, const layout *l, uint32_t id,
     }
 }
 
-/* Compares every struct of that name which has a layout; counts them. Glslang makes a second type,
+/* Compares every struct with that name that has a layout; counts them. glslang makes a second type,
  * without offsets, for values that are in no buffer. */
 static void compare(const spirv_module *m, const layout *l, const char *path, uint32_t *found,
                     uint32_t *arrays) {
@@ -218,7 +220,7 @@ static void every_shared_struct_is_laid_out_alike_in_c_and_in_every_shader(void 
     }
 }
 
-/* The table above leaves no byte of a struct out. */
+/* The table above covers every byte of a struct. */
 static void every_member_in_c_is_in_the_table(void **state) {
     (void)state;
     for (size_t l = 0; l < LAYOUTS; l++) {
@@ -231,7 +233,7 @@ static void every_member_in_c_is_in_the_table(void **state) {
     }
 }
 
-/* What every device has: 16 KiB of uniforms. */
+/* The minimum of every device: 16 KiB of uniforms. */
 _Static_assert(sizeof(struct masu_frame_uniforms) <= 16384, "uniforms fit any device");
 _Static_assert(sizeof(struct masu_frame_uniforms) % 16 == 0, "uniforms are whole vec4s");
 _Static_assert(MASU_SDF_PARAM_VEC4S * 4 == MASU_SDF_PARAMS_MAX, "each parameter has its place");

@@ -1,8 +1,6 @@
-/*
- * test_sky.c: the analytic sky without a GPU: its irradiance against integrals over the sky in double
- * precision, its depths against sums along the ray, no jump as the sun moves, and what the numbers
- * mean. The bounds are what was measured, rounded up.
- */
+/* test_sky.c: the analytic sky without a GPU: its irradiance against integrals over the sky in
+ * double precision, its optical depths against sums along the ray, continuity as the sun moves, and
+ * the meaning of the numbers. The bounds are the measured errors, rounded up. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -24,7 +22,7 @@
 #define AROUND 96
 
 static const float ground[3] = {0.2f, 0.2f, 0.2f};
-static masu_sky sky; /* with its tables, from test to test */
+static masu_sky sky; /* with its tables, kept from test to test */
 
 static void place_sun(double elevation, double azimuth, float turbidity) {
     double e = elevation * PI / 180, a = azimuth * PI / 180;
@@ -66,7 +64,8 @@ static void integrate(const double n[3], double out[3]) {
     }
 }
 
-/* RMS over normals and colours as a share of the mean; of one colour as a share of its own mean. */
+/* RMS over normals and colours relative to the mean; for one colour relative to that colour's
+ * mean. */
 static void irradiance_errors(double *all, double colors[3]) {
     double square[3] = {0, 0, 0}, mean[3] = {0, 0, 0};
     const int normals = 150;
@@ -112,7 +111,8 @@ static void irradiance_is_the_integral_of_the_sky_within_a_percent(void **state)
 
 /* ---- Mirrors --------------------------------------------------------------------------------- */
 
-/* The lobe of GGX seen from above, weighted by the cosine: 3000 directions by importance. */
+/* The GGX lobe viewed from above, weighted by the cosine: 3000 directions by importance
+ * sampling. */
 static void integrate_lobe(const double n[3], double roughness, double out[3]) {
     double a2 = pow(roughness, 4), weight = 0, s = n[2] < 0 ? -1 : 1, a = -1 / (s + n[2]);
     double b = n[0] * n[1] * a;
@@ -157,7 +157,7 @@ static void mirrors_are_near_the_sky_averaged_by_the_lobe(void **state) {
             sum += square / (mean * mean) / 18;
             worst = worst_of(worst, sqrt(square) / mean);
         }
-        print_message("roughness %.1f: off by %.3f of the mean, at worst %.3f\n", roughness,
+        print_message("roughness %.1f: error %.3f of the mean, at worst %.3f\n", roughness,
                       sqrt(sum), worst);
         assert_true(sqrt(sum) <= bounds[i]);
     }
@@ -175,8 +175,8 @@ static void look(float out[LOOKS][3]) {
     }
 }
 
-/* Everything that a frame takes from the sky, before and after a small step: by how much of the
- * brightest of its kind a number changes at most. */
+/* All values that a frame takes from the sky, before and after a small step: the largest change of
+ * a number, relative to the largest of its kind. */
 typedef struct sight {
     float looks[LOOKS][3], sun[3];
     masu_sky_irradiance irradiance;
@@ -214,7 +214,7 @@ static void compare(const sight *a, const sight *b, jumps *j) {
         j->coefficients = worst_of(j->coefficients, fmax(fmax(glow, ring) / mean, turn));
         j->sun = worst_of(j->sun, fabs((double)(a->sun[c] - b->sun[c])));
     }
-    /* And each direction by itself, above what a display shows of the night. */
+    /* And each direction separately, if it is brighter than a display can show of the night. */
     for (int k = 0; k < LOOKS; k++) {
         for (int c = 0; c < 3; c++) {
             double before = (double)a->looks[k][c], now = (double)b->looks[k][c];
@@ -233,12 +233,12 @@ static jumps sunrise(float turbidity, double from, double step, int steps) {
         before = now;
     }
     print_message("turbidity %g, steps of %g degrees: of the brightest: radiance %.4f, coefficients "
-                  "%.4f; a direction alone %.3f; the sun %.4f\n",
+                  "%.4f; a single direction %.3f; the sun %.4f\n",
                   (double)turbidity, step, j.radiance, j.coefficients, j.single, j.sun);
     return j;
 }
 
-/* A tenth of the step is a tenth of the change: what changes fast is the air's, not a table's edge. */
+/* A tenth of the step is a tenth of the change: fast changes are the air's, not a table's edge. */
 static void the_sky_does_not_jump_as_the_sun_rises(void **state) {
     (void)state;
     static const float turbidities[] = {1.5f, 3, 10};
@@ -257,7 +257,7 @@ static void the_sky_does_not_jump_as_the_sun_crosses_the_zenith_or_the_air_gets_
     static sight before, now;
     double zenith = 0, haze = 0;
     for (int i = 0; i <= 40; i++) {
-        place_sun(88 + 0.1 * i, 40, 3); /* past 90 the azimuth turns round */
+        place_sun(88 + 0.1 * i, 40, 3); /* past 90 degrees the azimuth flips */
         take(&now);
         if (i > 0) zenith = worst_of(zenith, step_of(before.looks[0], now.looks[0], 3 * LOOKS));
         before = now;
@@ -273,10 +273,10 @@ static void the_sky_does_not_jump_as_the_sun_crosses_the_zenith_or_the_air_gets_
     assert_true(haze <= 0.12);
 }
 
-/* ---- What the numbers mean ------------------------------------------------------------------- */
+/* ---- Meaning of the numbers ------------------------------------------------------------------ */
 
-/* The same depths by a sum of many steps: air of scale height 8 km, aerosol of 1.2 km, ozone between
- * 15 and 35 km. */
+/* The same optical depths by a sum of many steps: air of scale height 8 km, aerosol of 1.2 km,
+ * ozone between 15 and 35 km. */
 static double summed_depth(double height, double mu, double turbidity, int color) {
     static const double air[3] = {5.802e-3, 13.558e-3, 33.1e-3};
     static const double ozone[3] = {0.650e-3, 1.881e-3, 0.085e-3};
@@ -310,7 +310,7 @@ static void depth_towards_the_sun_is_the_sum_along_the_ray(void **state) {
             }
         }
     }
-    /* Over the edge of the earth, from high above: the ray falls, then rises. */
+    /* Beyond the horizon, from high above: the ray falls, then rises. */
     for (int i = 1; i <= 8; i++) {
         double got[3], height = 40, mu = -0.01 * i;
         masu_sky_transmittance(height, mu, 3, got);
@@ -354,7 +354,8 @@ static void noon_is_blue_and_the_evening_sun_red(void **state) {
     for (int c = 0; c < 3; c++) assert_true(night[c] > 1e-5 && night[c] < 1e-3 * noon[c]);
 }
 
-/* What comes down is less than what came in: the sun on level ground outside of the air. */
+/* The light that reaches the ground is less than the incoming light: the sun on level ground
+ * outside of the air. */
 static void no_light_is_made(void **state) {
     (void)state;
     static const float turbidities[] = {1.5f, 2, 4, 10};
@@ -372,7 +373,7 @@ static void no_light_is_made(void **state) {
             }
         }
     }
-    print_message("down comes %.3f of the light at most\n", most);
+    print_message("the ground receives %.3f of the light at most\n", most);
     assert_true(most < 1.0);
 }
 

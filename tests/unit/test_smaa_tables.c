@@ -1,5 +1,5 @@
-/* test_smaa_tables.c: the tables of SMAA are those of its authors, byte for byte, and what the
- * library has of them is what they say. */
+/* test_smaa_tables.c: the tables of SMAA are identical to its authors', and the library's part is
+ * an exact excerpt. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -36,8 +36,8 @@ static uint32_t texel(uint32_t x, uint32_t y) {
 _Static_assert(sizeof masu_smaa_area / sizeof *masu_smaa_area == MASU_SMAA_AREA_WORDS,
                "the shaders read the whole table");
 
-/* Of four patterns of the five by five the rest is never met; of a pattern only distances that a
- * search finds. */
+/* Only four of the five edge patterns per side can occur, and of a pattern only the distances that
+ * a search can find. */
 static void the_library_has_the_part_that_is_looked_up(void **state) {
     (void)state;
     static const uint32_t code[4] = {0, 1, 3, 4};

@@ -1,5 +1,5 @@
-/* test_split.c: frames in parts (masu_desc.split): what a plan then has, and that it has nothing more where nobody
- * asks. */
+/* test_split.c: frames in parts (masu_desc.split): the plan with a split, and no cost without
+ * one. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -20,7 +20,7 @@ static masu_frame_plan plan, other;
 
 static void compile(const masu_desc *d, masu_frame_plan *out) {
     masu_detail detail;
-    if (masu_compile(d, 256, 64, out, &detail)) fail_msg("refused: %s", detail.text);
+    if (masu_compile(d, 256, 64, out, &detail)) fail_msg("rejected: %s", detail.text);
 }
 
 static void assert_refused(masu_desc *d, uint32_t split, const char *text) {
@@ -59,7 +59,7 @@ static void what_makes_no_sense_is_refused(void **state) {
     assert_int_equal(plan.parts, 2);
 }
 
-/* All but the numbers of rows, which no plan asks for. */
+/* Everything except the numbers of rows, which do not depend on the plan. */
 static void without_a_split_nothing_is_planned(void **state) {
     (void)state;
     for (uint32_t parts = RASTER; parts <= (RASTER | SDF); parts++) {

@@ -1,5 +1,5 @@
-/* test_surface.c: what examples/shared/surface.h chooses for surfaces that no test machine has: rotated ones, and
- * those without a UNORM format. */
+/* test_surface.c: how examples/shared/surface.h handles surfaces that no test machine has: rotated
+ * ones, and those without a UNORM format. */
 #include "../../examples/shared/surface.h"
 
 #include "support/support.h"

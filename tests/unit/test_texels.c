@@ -1,8 +1,6 @@
-/*
- * test_texels.c: what masu-bake makes of texels (mips, masks, roughness, blocks) and what the runtime
- * makes of blocks (decoding, the walk of chunks). Pictures are patterns whose mean, coverage or
- * error is known without the code under test.
- */
+/* test_texels.c: masu-bake's texel processing (mips, masks, roughness, block compression) and the
+ * runtime's (decoding, the walk of chunks). Images are patterns whose mean, coverage or error is
+ * exact without the code under test. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -39,8 +37,8 @@ static void srgb_goes_to_light_and_back(void **state) {
     assert_int_equal(masu_texel_to_unorm((float)NAN), 0);
 }
 
-/* The mean of all texels is that of the picture, at every mip and for any size: each texel counts by
- * the area that it covers, no more and no less. */
+/* The mean of all texels is the mean of the image, at every mip and for any size: each texel is
+ * weighted exactly by the area that it covers. */
 static void every_mip_has_the_mean_of_the_picture(void **state) {
     (void)state;
     static const uint32_t sizes[][2] = {{64, 64}, {1, 1}, {1, 64}, {64, 1}, {37, 21},
@@ -79,7 +77,7 @@ static void a_checker_becomes_grey_of_half_the_light(void **state) {
 
 static void what_cannot_be_seen_does_not_bleed_into_colour(void **state) {
     (void)state;
-    /* One red texel of four; the others are blue and not there. */
+    /* One red texel of four; the others are blue and transparent. */
     static const float from[16] = {1, 0, 0, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0};
     float to[4];
     masu_texel_halve(from, 2, 2, true, to);
@@ -101,7 +99,7 @@ static void lost_normals_become_roughness(void **state) {
         double s = 0.001 * n * n, sum[3] = {0}, slopes = 0;
         int count = 200000;
         for (int i = 0; i < count; i++) {
-            double x = 0, y = 0; /* near enough to a normal distribution */
+            double x = 0, y = 0; /* close enough to a normal distribution */
             for (int k = 0; k < 12; k++) {
                 x += (double)support_random_in(&seed, 0, 100000) / 100000.0 - 0.5;
                 y += (double)support_random_in(&seed, 0, 100000) / 100000.0 - 0.5;
@@ -157,7 +155,7 @@ static double psnr(uint32_t format, int channels) {
     masu_texture_region region;
     uint64_t used = 0;
     assert_true(masu_texture_next(&t, 1, 0, sizeof decoded, &cursor, &used, &region));
-    masu_texture_write(&t, blocks, 0, &region, decoded);
+    masu_texture_write_region(&t, blocks, 0, &region, decoded);
     uint32_t stride = masu_texture_form_of(format, 0).block_bytes;
     double error = 0;
     for (uint32_t i = 0; i < TEXELS; i++) {
@@ -176,7 +174,7 @@ static void blocks_are_near_their_picture(void **state) {
         uint32_t format;
         int channels;
         const char *name;
-        double least[3]; /* gradient, waves, noise; 1 dB under what was measured */
+        double least[3]; /* gradient, waves, noise; 1 dB below the measured values */
     } rows[] = {{MASU_TEXTURE_BC1_SRGB, 3, "BC1", {35.9, 31.1, 12.6}},
                 {MASU_TEXTURE_BC3_SRGB, 4, "BC3", {37.1, 32.3, 13.8}},
                 {MASU_TEXTURE_BC4, 1, "BC4", {50.4, 44.6, 28.2}},
@@ -208,7 +206,7 @@ static void first_color(const unsigned char *b, int four, double out[3]) {
     }
 }
 
-/* The best that endpoints of 5, 6 and 5 bits and their thirds can do is 4/3; greys stay grey. */
+/* The optimum of endpoints with 5, 6 and 5 bits and their thirds is 4/3; greys remain grey. */
 static void solid_blocks_are_as_near_as_can_be(void **state) {
     (void)state;
     uint64_t seed = 23;
@@ -237,7 +235,7 @@ static void solid_blocks_are_as_near_as_can_be(void **state) {
     }
 }
 
-/* Blocks by hand, texels from the definition of the format. */
+/* Hand-made blocks, texels from the definition of the format. */
 static void blocks_decode_as_the_formats_say(void **state) {
     (void)state;
     uint8_t t[64];
@@ -262,7 +260,7 @@ static void blocks_decode_as_the_formats_say(void **state) {
     masu_texture_decode(MASU_TEXTURE_BC4, up, t);
     static const uint8_t six[8] = {0, 255, 51, 102, 153, 204, 0, 255};
     assert_memory_equal(t, six, 8);
-    /* BC3 is always four colours, whatever comes first. */
+    /* BC3 always has four colours, in either order of the endpoints. */
     unsigned char bc3[16], bc5[16];
     memcpy(bc3, down, 8);
     memcpy(bc3 + 8, three, 8);
@@ -284,7 +282,7 @@ static void blocks_at_an_odd_edge_hold_what_is_there(void **state) {
     draw_picture(0);
     for (uint32_t w = 1; w <= 9; w++) {
         for (uint32_t h = 1; h <= 9; h += 2) {
-            /* One colour: whatever else is put into the blocks must not show. */
+            /* One colour: padding of the blocks must not be visible. */
             for (uint32_t i = 0; i < w * h; i++) memcpy(picture + 4 * i, "\x10\x80\xFF\xFF", 4);
             size_t bytes = masu_texel_blocks(MASU_TEXTURE_BC1_SRGB, picture, w, h, blocks);
             assert_int_equal(bytes, (size_t)((w + 3) / 4) * ((h + 3) / 4) * 8);
@@ -300,7 +298,7 @@ static void blocks_at_an_odd_edge_hold_what_is_there(void **state) {
 /* ---- The walk -------------------------------------------------------------------------------- */
 
 /* Every texel of every mip and layer is in exactly one region, in order; regions of a chunk do not
- * overlap in the staging buffer and end within it. */
+ * overlap in the staging buffer and do not exceed it. */
 static void walk(const masu_blob_texture *textures, uint32_t count, int compressed, uint64_t room) {
     static uint8_t seen[3][2][8][32][32]; /* texture, layer, mip, y, x / 4 texels */
     memset(seen, 0, sizeof seen);

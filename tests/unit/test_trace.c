@@ -1,7 +1,7 @@
-/* test_trace.c: trees for rays (src/scene/trace_tree.h) and the tree over the instances of a frame
- * (src/scene/trace.h): what lies in a leaf lies in the quantised boxes all the way up, after a build, a
- * fit and a thousand moves; shapes have the order that blobs are checked for; nothing goes deeper
- * than it may. */
+/* test_trace.c: BVHs for rays (src/scene/trace_tree.h) and the BVH over the instances of a frame
+ * (src/scene/trace.h): content of a leaf is inside the quantised boxes of all its ancestors, after
+ * a build, a refit and a thousand moves; shapes have the order that blobs are checked for; the
+ * depth is within its limit. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -72,8 +72,8 @@ static void assert_holds(const double low[3], const double high[3], const masu_t
     }
 }
 
-/* Walks as the shader does, and asks each quantised box on the way for all items below. Counts
- * them. */
+/* Traverses as the shader does, and checks each quantised box on the way against all items below.
+ * Counts the items. */
 static uint32_t walk(const masu_blob_trace_node *nodes, const masu_trace_box *boxes,
                      const uint32_t *order, uint32_t first_node, uint32_t first_item, uint32_t node,
                      uint32_t *depth, unsigned char *seen) {
@@ -101,7 +101,7 @@ static uint32_t walk(const masu_blob_trace_node *nodes, const masu_trace_box *bo
     return count;
 }
 
-/* That each quantised box holds all that is below, not just the boxes of the next level. */
+/* Each quantised box contains all items below, not only the boxes of the next level. */
 static void assert_ancestors(const masu_blob_trace_node *nodes, uint32_t count,
                              const masu_trace_box *boxes, const uint32_t *order,
                              uint32_t first_node, uint32_t first_item) {
@@ -112,7 +112,7 @@ static void assert_ancestors(const masu_blob_trace_node *nodes, uint32_t count,
         bounds[0].low[k] = -(double)INFINITY;
         bounds[0].high[k] = (double)INFINITY;
     }
-    for (uint32_t i = 0; i < count; i++) { /* what all boxes above have in common */
+    for (uint32_t i = 0; i < count; i++) { /* the intersection of all boxes above */
         uint32_t child = nodes[i].child, item = nodes[i].item;
         for (uint32_t slot = 0; slot < 4; slot++) {
             uint32_t type = masu_trace_type(&nodes[i], slot);
@@ -181,7 +181,7 @@ static void a_tree_is_never_deeper_than_it_may_be(void **state) {
     for (int kind = 0; kind < 7; kind++) {
         for (uint32_t levels = 1; levels <= 5; levels++) {
             for (uint32_t leaf = 1; leaf <= 2; leaf++) {
-                uint32_t items = leaf << 2 * levels; /* as many as can be */
+                uint32_t items = leaf << 2 * levels; /* as many as possible */
                 masu_trace_box *boxes = clouds(items, kind);
                 tree t = grow(boxes, items, leaf, levels);
                 assert_tree(&t);
@@ -207,8 +207,7 @@ static void the_same_boxes_give_the_same_tree(void **state) {
     free(boxes);
 }
 
-/* Things in rows: a tree that knows where they are costs a small part of one that splits
- * blindly. */
+/* Objects in rows: a BVH built by position costs a small part of one that splits blindly. */
 static void the_heuristic_is_worth_its_name(void **state) {
     (void)state;
     masu_trace_box *boxes = clouds(2000, 0);
@@ -247,7 +246,8 @@ static void make(uint32_t count, float reach) {
     }
 }
 
-/* The box of an instance, once more: its corners in double, around its place as it is rounded. */
+/* The box of an instance, independently: its corners in double precision, around its rounded
+ * position. */
 static void corners_of(uint32_t i, const double anchor[3], double low[3], double high[3]) {
     for (int k = 0; k < 3; k++) {
         low[k] = (double)INFINITY;
@@ -287,7 +287,8 @@ static void assert_top(const double anchor[3], uint32_t live) {
     free(seen);
 }
 
-/* What the shader reads: that the record of a leaf takes the instance's own points home. */
+/* The data that the shader reads: the record of a leaf transforms back to the instance's own
+ * points. */
 static void assert_written(const double anchor[3]) {
     uint64_t bytes = masu_trace_frame_bytes(top.count);
     unsigned char *frame = malloc(bytes + 16);
@@ -363,7 +364,7 @@ static void what_is_mixed_up_is_built_again_and_what_is_not_is_fitted(void **sta
     make(1000, 300);
     assert_int_equal(masu_trace_top_update(&top, zero), MASU_TRACE_BUILT);
     double size = top.size;
-    for (int i = 0; i < 20; i++) { /* everything goes the same way */
+    for (int i = 0; i < 20; i++) { /* all move in the same direction */
         for (uint32_t k = 0; k < 1000; k++) {
             transforms[k][3] += 1.0f;
             (void)masu_trace_top_place(&top, k, transforms[k]);
@@ -372,7 +373,7 @@ static void what_is_mixed_up_is_built_again_and_what_is_not_is_fitted(void **sta
         assert_true(fabs(top.size - size) < 0.01);
     }
     assert_int_equal(top.builds, 1);
-    for (uint32_t k = 0; k < 1000; k++) { /* everything is somewhere else */
+    for (uint32_t k = 0; k < 1000; k++) { /* all are at new positions */
         random_transform(transforms[k], 300);
         (void)masu_trace_top_place(&top, k, transforms[k]);
     }
@@ -412,7 +413,7 @@ static void instances_that_cannot_be_traced_are_left_out(void **state) {
     assert_written(zero);
 }
 
-/* A million metres out, relative to an anchor there, boxes are as sharp as at the origin. */
+/* A million metres out, relative to an anchor there, boxes are as precise as at the origin. */
 static void an_anchor_keeps_far_worlds_sharp(void **state) {
     (void)state;
     const double anchor[3] = {1e6, -3e6, 5e5};

@@ -1,8 +1,6 @@
-/*
- * test_trace_textures.c: the small pictures of textures for rays: texels against the pictures that they were made
- * of, the means of roughness and metallic, what is left out, the numbers in the runtime's buffer, and
- * the rules of their sections, each broken alone.
- */
+/* test_trace_textures.c: the small textures for rays: texels against the images that they were made
+ * from, the means of roughness and metallic, omitted textures, the numbers in the runtime's buffer,
+ * and the rules of their sections, each broken separately. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -112,7 +110,7 @@ static void bind(const masu_bake_content *c) {
     view = masu_scene_view_of(&scene);
 }
 
-/* The picture of a map of the material with these flags set, or NULL. */
+/* The trace texture of a material's map with these flags set, or NULL. */
 static const masu_blob_trace_texture *picture_of(uint32_t slot, uint32_t width) {
     for (uint32_t i = 0; i < masu_scene_count(&scene, MASU_SCENE_MATERIAL); i++) {
         const masu_blob_material *m = &view.materials[i];
@@ -137,7 +135,7 @@ static double stored(const masu_blob_trace_texture *t, uint64_t texel, uint32_t 
     return channel < 3 ? root * root : root;
 }
 
-/* Every mip of a picture against means of the source, in linear light. */
+/* Every mip of an image against means of the source, in linear light. */
 static void compare(const masu_blob_trace_texture *t, uint32_t p) {
     uint64_t at = 0;
     double worst = 0;
@@ -156,7 +154,7 @@ static void compare(const masu_blob_trace_texture *t, uint32_t p) {
         }
         if (w == 1 && h == 1) break;
     }
-    print_message("%ux%u of %ux%u: off by %.3f of a step\n", t->width, t->height, sizes[p][0],
+    print_message("%ux%u of %ux%u: error %.3f of a step\n", t->width, t->height, sizes[p][0],
                   sizes[p][1], worst);
     assert_int_equal(at, masu_blob_trace_texels(t->width, t->height));
     assert_true(worst < 0.51);
@@ -170,7 +168,7 @@ static void pictures_are_their_textures_made_small(void **state) {
         masu_bake_content c = make(side);
         bind(&c);
         assert_int_equal(masu_scene_data_of(&scene)->trace_colors,
-                         3); /* and none of the plane that is not traced */
+                         3); /* and none of the untraced plane */
         assert_int_equal(masu_scene_data_of(&scene)->trace_textures, 4);
         const masu_blob_trace_texture *noise = picture_of(MASU_SLOT_BASE, 128);
         const masu_blob_trace_texture *leaf = picture_of(MASU_SLOT_BASE, 64);
@@ -185,7 +183,7 @@ static void pictures_are_their_textures_made_small(void **state) {
         assert_int_equal(glow->width, side < 16 ? side : 16);
         compare(noise, NOISE);
         compare(glow, GLOW);
-        /* A mask covers what it covers: a disc of 20 texels of 64 as its radius. */
+        /* A mask keeps its coverage: a disc with a radius of 20 of 64 texels. */
         double there = 0, texels = leaf->width * leaf->height;
         for (uint32_t i = 0; i < texels; i++) there += stored(leaf, i, 3) >= 0.5;
         print_message("mask: %.3f of %.3f\n", there / texels, 3.14159265 * 400 / 4096);
@@ -211,12 +209,12 @@ static void roughness_and_metallic_are_their_means(void **state) {
     assert_int_equal(t->width * t->height, 1);
     assert_float_equal(stored(t, 0, 0), mean[0], 0.008);
     assert_float_equal(stored(t, 0, 1), mean[1], 0.008);
-    /* The glossiest is where the map is least. Other surfaces have a roughness of 0.5. */
+    /* The glossiest value is the minimum of the map. Other surfaces have a roughness of 0.5. */
     print_message("glossiest %.4f of %.4f\n", (double)masu_scene_data_of(&scene)->glossiest,
                   0.5 * least);
     assert_true(fabs((double)masu_scene_data_of(&scene)->glossiest - 0.5 * least) < 0.002);
 
-    /* And so materials go to the device. */
+    /* Materials in the buffer of the device. */
     masu_trace_plan plan = masu_trace_layout(masu_scene_data_of(&scene));
     uint32_t found[3] = {0};
     for (uint32_t i = 0; i < masu_scene_count(&scene, MASU_SCENE_MATERIAL); i++) {
@@ -281,7 +279,7 @@ static void assert_refused(const char *what, uint64_t element, int line) {
     if (masu_scene_bind(blob.data, blob.bytes, &refused, &detail) == MASU_OK)
         fail_msg("line %d: accepted", line);
     if (strcmp(detail.what, what) || detail.given != element)
-        fail_msg("line %d: refused as %s", line, detail.text);
+        fail_msg("line %d: rejected as %s", line, detail.text);
 }
 
 #define ROW                                                                                        \
@@ -337,7 +335,8 @@ static void base_at(const masu_bake_trace *trace, double u, float out[3]) {
     memcpy(out, hit.albedo, sizeof hit.albedo);
 }
 
-/* Rays of masu-bake: beyond the picture as its texture set says. The plane shows it once, then from -1 to 2. */
+/* Rays of masu-bake: addressing outside the image follows its texture set. The plane has it once,
+ * then from -1 to 2. */
 static void rays_see_textures_repeated_held_and_mirrored(void **state) {
     (void)state;
     masu_bake_content c = make(16);
@@ -352,7 +351,7 @@ static void rays_see_textures_repeated_held_and_mirrored(void **state) {
             sets[i].wrap[0] = (uint8_t)wrap;
         masu_bake_trace *thrice = masu_bake_trace_make(&c);
         assert_non_null(thrice);
-        for (int k = -64; k < 128; k++) { /* the middles of texels */
+        for (int k = -64; k < 128; k++) { /* the centres of texels */
             double u = (k + 0.5) / 64, within = u - floor(u);
             if (wrap == 1) within = fmin(fmax(u, 0.5 / 64), 1 - 0.5 / 64);
             if (wrap == 2 && (u < 0 || u > 1)) within = 1 - within;

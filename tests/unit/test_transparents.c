@@ -1,7 +1,5 @@
-/*
- * test_transparents.c: the order of what is blended: sorted by falling distance, equal ones as they
- * were, for any number of them.
- */
+/* test_transparents.c: the order of transparent surfaces: by falling distance, equal ones in their
+ * original order, for any number. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -19,7 +17,7 @@ enum { MOST = 4096 };
 
 static masu_back_to_front entries[MOST + 1], scratch[MOST + 1];
 
-/* Every thing once, and in order; behind both arrays nothing was touched. */
+/* Every item once, and in order; nothing after both arrays was written. */
 static void assert_sorted(uint32_t n, const float *keys) {
     static uint8_t seen[MOST];
     const masu_back_to_front guard = {-7, 12345};

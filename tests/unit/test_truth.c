@@ -1,5 +1,5 @@
-/* test_truth.c: the double-precision march against surfaces whose crossing is known in closed form,
- * and the shading's arithmetic at points that can be worked out by hand. */
+/* test_truth.c: the double-precision sphere tracer against surfaces with a closed-form
+ * intersection, and the shading arithmetic at points computed by hand. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -78,7 +78,7 @@ static masu_view_ray ray_along(double x, double y, double z) {
 
 /* ---- The march ------------------------------------------------------------------------------- */
 
-/* First crossing with a sphere, or -1; miss: by how much the ray passes it, in radii. */
+/* First intersection with a sphere, or -1; miss: the ray's distance from it, in radii. */
 static double sphere_at(const masu_view *v, const masu_view_ray *r, double *miss) {
     double o[3], b = 0, c = 0;
     for (int i = 0; i < 3; i++) o[i] = v->eye[i] - v->params[1 + i] - (i ? 0 : v->time);
@@ -108,7 +108,7 @@ static void check_sphere(const masu_view *v, double slack) {
             fail_msg("pixel (%u,%u): %d, passes by %g", x, y, (int)s.kind, miss);
         if (wanted < 0) continue;
         hits++;
-        /* Where the ray grazes, the crossing is as ill-conditioned as 1 / sqrt(miss). */
+        /* For a grazing ray, the intersection is as ill-conditioned as 1 / sqrt(miss). */
         near(s.t / wanted, 1, slack / sqrt(fabs(miss)));
         for (int c = 0; c < 3; c++) {
             double p = v->eye[c] + r.direction[c] * s.t - v->params[1 + c] - (c ? 0 : v->time);
@@ -122,7 +122,7 @@ static void spheres_are_hit_where_they_are(void **state) {
     (void)state;
     masu_view v = make_view(SPHERE, 0.3, -0.2, 3);
     check_sphere(&v, 1e-12);
-    v.params[5] = 50; /* the field grows 50 times too fast, the step does not */
+    v.params[5] = 50; /* the field grows 50 times too fast, the step is correct */
     check_sphere(&v, 1e-12);
     v.params[5] = 0.02;
     check_sphere(&v, 1e-9); /* and 50 times too slowly: the tolerance is of the field */
@@ -175,21 +175,21 @@ static void a_ray_meets_things_between_its_start_and_its_limit(void **state) {
     assert_int_equal(s.kind, MASU_TRUTH_HIT);
     near(s.t, 2, 1e-12);
     assert_int_equal(s.part, SPHERE);
-    r.limit = 2; /* a surface at the limit is not hit */
+    r.limit = 2; /* a surface at the limit is no hit */
     masu_truth_march(&truth, &v, &r, &s);
     assert_int_equal(s.kind, MASU_TRUTH_MISS);
     r.limit = 1.5;
     masu_truth_march(&truth, &v, &r, &s);
     assert_int_equal(s.kind, MASU_TRUTH_MISS);
     r.limit = 100;
-    r.start = 2.5; /* starts inside: seen where it starts */
+    r.start = 2.5; /* starts inside: the hit is at the start */
     masu_truth_march(&truth, &v, &r, &s);
     assert_int_equal(s.kind, MASU_TRUTH_HIT);
     near(s.t, 2.5, 0);
     r.start = 50; /* starts behind */
     masu_truth_march(&truth, &v, &r, &s);
     assert_int_equal(s.kind, MASU_TRUTH_MISS);
-    v.params[0] = BROKEN; /* not a number: nothing there */
+    v.params[0] = BROKEN; /* not a number: no hit */
     masu_truth_march(&truth, &v, &r, &s);
     assert_int_equal(s.kind, MASU_TRUTH_MISS);
     v = make_view(SLAB, 0, 0, 3); /* an infinitely wide plate a micrometre thick */
@@ -207,7 +207,7 @@ static void a_ray_is_clipped_to_the_bounds(void **state) {
         v.sdf_min[i] = -1.5;
         v.sdf_max[i] = 1.5;
     }
-    v.width = 161; /* an odd number of pixels has one in the middle */
+    v.width = 161; /* an odd number of pixels has one at the centre */
     v.height = 91;
     masu_view_ray r = masu_view_ray_at(&v, 80, 45);
     near(r.direction[2], -1, 1e-15);
@@ -215,7 +215,7 @@ static void a_ray_is_clipped_to_the_bounds(void **state) {
     near(r.limit, 4.5, 1e-12);
     near(r.z_scale, 1, 1e-15);
     near(r.pixel, 2.0 / 91, 1e-12);
-    r = masu_view_ray_at(&v, 0, 0); /* up and to the left, past the box */
+    r = masu_view_ray_at(&v, 0, 0); /* up and to the left, past the bounds */
     assert_true(r.direction[0] < 0 && r.direction[1] > 0 && r.start > r.limit);
     near(r.z_scale, sqrt(1 + pow(160.0 / 161 * 160 / 90, 2) + pow(90.0 / 91, 2)), 1e-12);
 }
@@ -248,7 +248,8 @@ static void a_library_is_found_beside_its_scene(void **state) {
     assert_false(masu_truth_path("build/scenes/a.masu", path, 10));
     assert_false(masu_truth_open("/no/such/library.so", &t, error, sizeof error));
     assert_non_null(strstr(error, "library.so"));
-    assert_false(masu_truth_open("libm.so.6", &t, error, sizeof error)); /* not searched for */
+    /* not searched in the library path */
+    assert_false(masu_truth_open("libm.so.6", &t, error, sizeof error));
 }
 
 /* ---- Shading --------------------------------------------------------------------------------- */
@@ -288,8 +289,9 @@ static void surfaces_are_those_worked_out_by_hand(void **state) {
     double m[8] = {1, 1, 1, 1, 0, 0, 0, 0}, out[3];
     memcpy(v.sun_direction, (double[3]){0, 1, 0}, sizeof v.sun_direction);
     v.sun_color[0] = v.ambient[1] = 1;
-    /* White, rough, lit and seen from straight above: what the other model in double says. All of the
-     * ambient light, 1, comes back; all that is mirrored is the ambient too. */
+    /* White, rough, lit and viewed from straight above: compared with the other model in double
+     * precision. All of the ambient light, 1, is returned; the reflection is the ambient light
+     * too. */
     const brdf_surface surface = {.albedo = {1, 1, 1}, .roughness = 1, .specular = 0.5};
     double expected[3];
     brdf_eval(masu_split_sum, &surface, (double[3]){0, 0, 1}, (double[3]){0, 0, 1}, expected);
@@ -298,7 +300,7 @@ static void surfaces_are_those_worked_out_by_hand(void **state) {
     assert_in_range((int)(1000 * out[0]), 950, 1050);
     near(out[1], 1, 1e-9);
     near(out[2], 0, 0);
-    /* Turned away from the sun: no red. */
+    /* Facing away from the sun: no red. */
     masu_shade_surface(&v, (double[3]){0, 1, 0}, (double[3]){0, -1, 0}, m, out);
     near(out[0], 0, 0);
     /* Emission is added. */
@@ -310,7 +312,7 @@ static void surfaces_are_those_worked_out_by_hand(void **state) {
     near(out[0], sun, 1e-12);
     near(out[1], 1 + 4, 1e-9);
     near(out[2], 0, 0);
-    /* Black and as rough as can be: nothing else. */
+    /* Black and at maximum roughness: nothing else. */
     m[0] = m[1] = m[2] = 0;
     masu_shade_surface(&v, (double[3]){0, -1, 0}, (double[3]){0, 1, 0}, m, out);
     near(out[0], 0, 0);

@@ -1,6 +1,6 @@
-/* test_unpack.c: every shader of the library comes back as spirv-opt and whole_vectors left it, to the byte; and
- * whatever is done to what it is packed in, nothing outside of that is read and nothing behind the words is
- * written: each part ends where a page ends behind which nothing is mapped. */
+/* test_unpack.c: every shader of the library unpacks to exactly the output of spirv-opt and
+ * whole_vectors. For any damage to the packed data, nothing outside the pack is read and nothing after
+ * the output is written: each part ends at a page border with nothing mapped after it. */
 #define _DEFAULT_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>
@@ -34,10 +34,10 @@ static const named all[] = {
 
 enum { COUNT = sizeof all / sizeof *all };
 
-/* ---- Memory that ends at a wall -------------------------------------------------------------- */
+/* ---- Memory that ends at an unmapped page ---------------------------------------------------- */
 
 typedef struct walled {
-    void *pages, *at; /* at: its last `bytes` bytes, so where it is aligned to them */
+    void *pages, *at; /* at: its last `bytes` bytes, so aligned if their number is */
     size_t mapped;
 } walled;
 
@@ -59,7 +59,7 @@ static walled wall_around(const void *bytes, size_t count) {
 
 static void tear_down(walled *w) { assert_int_equal(munmap(w->pages, w->mapped), 0); }
 
-/* One module with a pack of its own, of which everything may be changed. */
+/* One module with a separate pack, all of which a test may change. */
 typedef struct trial {
     walled heads, pool, runs, words;
     masu_pack pack;
@@ -108,7 +108,7 @@ static void every_shader_comes_back_to_the_byte(void **state) {
         uint32_t *words = read_file(path, &bytes);
         trial t = begin(&all[i].packed);
         if (bytes != all[i].packed.words * sizeof *words || !unpack(&t) || memcmp(words, t.words.at, bytes))
-            fail_msg("%s is not what is in %s", all[i].name, path);
+            fail_msg("%s differs from %s", all[i].name, path);
         end(&t);
         free(words);
     }
@@ -158,7 +158,7 @@ static void other_sizes_are_refused(void **state) {
         walled fewer = wall(n * sizeof(uint32_t)), whole = t.words;
         t.packed.words = n;
         t.words = fewer;
-        /* At the end of an instruction there is nothing wrong but that more was to come. */
+        /* At the end of an instruction the only error is that more was expected. */
         if (n < 5) assert_false(unpack(&t));
         else (void)unpack(&t);
         t.words = whole;
@@ -172,7 +172,7 @@ static void other_sizes_are_refused(void **state) {
     t.words = whole;
     tear_down(&more);
 
-    t.packed.run = 1; /* and as many bytes from there */
+    t.packed.run = 1; /* and the same number of bytes from there */
     assert_false(unpack(&t));
     t.packed.run = UINT32_MAX;
     assert_false(unpack(&t));
@@ -182,7 +182,7 @@ static void other_sizes_are_refused(void **state) {
     end(&t);
 }
 
-/* Whatever comes out, it returns, and the walls stand. */
+/* For any output, it returns, within the memory. */
 static void changed_bytes_stay_inside(void **state) {
     (void)state;
     uint64_t random = 1;
@@ -208,7 +208,7 @@ static void changed_bytes_stay_inside(void **state) {
         refused += !unpack(of);
         for (uint32_t k = count; k-- > 0;) *changed[k].at = changed[k].was;
     }
-    print_message("%u of %u are refused\n", refused, rounds);
+    print_message("%u of %u are rejected\n", refused, rounds);
     assert_true(refused > rounds / 8);
     assert_true(unpack(&t) && unpack(&small));
     end(&t);
@@ -228,7 +228,7 @@ static void noise_stays_inside(void **state) {
     end(&t);
 }
 
-/* What a module declares of its interface, and of its beginnings no word beyond them. */
+/* The interface that a module declares; truncated modules are not read beyond their end. */
 static void declarations_are_read(void **state) {
     (void)state;
     enum { DECORATE = 4 << 16 | 71, SPEC_ID = 1, BINDING = 33, SET = 34, TYPE_VOID = 2 << 16 | 19 };
@@ -251,7 +251,7 @@ static void declarations_are_read(void **state) {
     const uint32_t bad[] = {0, 0, 0, 0, 0, 0xFFFF0047u, 1, 1, 1}, none[] = {0, 0, 0, 0, 0, 0, 1};
     assert_int_equal(masu_interface_of(bad, 9).constants, 0);
     assert_int_equal(masu_interface_of(none, 7).constants, 0);
-    /* The build has noted it for every shader: the tone curve is a constant of this one,
+    /* The build has recorded it for every shader: the tone curve is a constant of this one,
      * reflections are not. */
     assert_int_equal(find("tonemap_comp")->interface.constants >> 4 & 3, 2);
 }

@@ -1,7 +1,5 @@
-/*
- * test_upload.c: what the host copies for the GPU: the scene, in chunks or at once, frames in their
- * slots, and instances that move. Without a GPU: see tests/support/dry_renderer.h.
- */
+/* test_upload.c: data that the host copies for the GPU: the scene, in chunks or at once, frames in
+ * their slots, and moved instances. Without a GPU: see tests/support/dry_renderer.h. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -53,7 +51,8 @@ static void mapped_memory_is_loaded_at_once(void **state) {
     assert_int_equal(masu_load(&m, &commands, &failure), MASU_OK); /* again, without the blob */
 }
 
-/* Every size of staging buffer, also such as cut a vertex, an index or a material in two. */
+/* Every size of staging buffer, including sizes that cut a vertex, an index or a material in
+ * two. */
 static void chunks_of_any_size_add_up_to_the_scene(void **state) {
     (void)state;
     static unsigned char copy[MASU_BUFFER_COUNT][4 * MASU_TABLE_WORDS];
@@ -84,12 +83,14 @@ static void chunks_of_any_size_add_up_to_the_scene(void **state) {
     }
 }
 
-/* In place, too: any limit, also such as cuts a vertex in two, and what is told of it. */
+/* Also for mapped memory: any limit, including one that cuts a vertex in two, and the reported
+ * progress. */
 static void steps_of_any_size_add_up_to_the_scene(void **state) {
     (void)state;
     static unsigned char at_once[ROOM];
     masu_commands commands;
-    const masu_rung rung = {.local_shadows = MASU_OFF}; /* whose atlas is cleared by a step of its own */
+    /* whose atlas is cleared by a separate step */
+    const masu_rung rung = {.local_shadows = MASU_OFF};
     make_renderer_with(SUPPORT_ALL | SUPPORT_LIGHTING, 0, &rung, 1);
     assert_int_equal(masu_load(&m, &commands, &failure), MASU_OK);
     memcpy(at_once, memory[MASU_ROLE_DEVICE], ROOM);
@@ -117,7 +118,7 @@ static void steps_of_any_size_add_up_to_the_scene(void **state) {
     }
 }
 
-/* The grid of light probes, its data, and room that nothing but zeros comes to. */
+/* The grid of light probes, its data, and a rest of only zeros. */
 static void chunks_of_probes_add_up_to_grid_data_and_room(void **state) {
     (void)state;
     static unsigned char copy[4096];
@@ -259,7 +260,7 @@ static void a_moved_instance_reaches_every_slot_once(void **state) {
         }
     }
     assert_int_equal(masu_instance_set_transform(&m, masu_instance_at(&m, 1), rows, &failure), MASU_OK);
-    for (uint32_t frame = 0; frame < 4; frame++) { /* slots come in turn */
+    for (uint32_t frame = 0; frame < 4; frame++) { /* slots alternate */
         unsigned char *to = masu_buffer_pointer(&m.device, MASU_BUFFER_INSTANCES, frame % 2);
         memset(to, NOISE, 3 * size);
         write_instances(frame % 2);
@@ -268,12 +269,13 @@ static void a_moved_instance_reaches_every_slot_once(void **state) {
         } else {
             assert_int_equal(to[size], NOISE); /* both have it */
         }
-        assert_int_equal(to[0], NOISE); /* the others have not moved */
+        assert_int_equal(to[0], NOISE); /* the others are unchanged */
         assert_int_equal(to[2 * size], NOISE);
     }
 }
 
-/* With three frames in flight too; where motion is told, a frame more, or the last slot would say that it still moves. */
+/* With three frames in flight too. With velocities one frame more, or the last slot would still
+ * report motion. */
 static void a_moved_instance_reaches_as_many_slots_as_there_are(void **state) {
     (void)state;
     static const float rows[12] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
@@ -349,7 +351,7 @@ static void a_bad_instance_or_transform_is_refused(void **state) {
 
 /* ---- Times ----------------------------------------------------------------------------------- */
 
-/* A counter of few bits, from just below its end to just beyond it. */
+/* A counter of few bits, from just below its maximum to just beyond. */
 static void times_of_a_clock_that_wraps_are_right(void **state) {
     (void)state;
     masu_commands commands;

@@ -1,9 +1,7 @@
-/*
- * test_vndf.c: shaders/brdf/vndf.glsl, compiled as C: directions come as often as the density says
- * (chi squared), the density is a density, weights are the lobe over it and at most 1, and their
- * mean is the table's albedo. tests/gpu/test_vndf.c then compares the shader on devices with what
- * is compiled here.
- */
+/* test_vndf.c: shaders/brdf/vndf.glsl, compiled as C: directions have the frequencies of the
+ * density (chi squared), the density integrates to 1, weights are the lobe divided by it and at
+ * most 1, and their mean is the table's albedo. tests/gpu/test_vndf.c then compares the shader on
+ * devices with this compiled C. */
 #include "reference/brdf.h"
 #include "split_sum.h"
 #include "support/floats.h"
@@ -32,7 +30,7 @@
 
 #define PI 3.14159265358979323846
 
-/* 0.0451 is the smoothest lobe that is no mirror. */
+/* 0.0451 is the smoothest lobe that is not a mirror. */
 static const float roughnesses[] = {0.0451f, 0.15f, 0.35f, 0.6f, 1};
 static const double angles[] = {0, 30, 60, 80, 88, 89.7};
 enum { ROUGHNESSES = 5, ANGLES = 6, CASES = ROUGHNESSES * ANGLES };
@@ -46,7 +44,7 @@ static double unit(uint64_t *seed) { return (double)(support_random(seed) >> 40)
 
 static vec2 unit2(uint64_t *seed) { return vec2(unit(seed), unit(seed)); }
 
-/* ---- The uncut cap of Dupuy and Benyoub, in double: the bound is measured against it -------- */
+/* ---- The unbounded cap of Dupuy and Benyoub, in double precision, for comparison ------------ */
 
 typedef struct drawn {
     double l[3], weight;
@@ -73,8 +71,7 @@ static drawn uncut(vec3 view, double a, vec2 u) {
 /* ---- Chi squared ----------------------------------------------------------------------------- */
 
 /* Bins over half vectors: TURNS of the angle; RADII of q, where 1 - (1 - q)^2 is the part of D(h)
- * h.z within this slope. The square takes away the singularity that the density has there: v.h /
- * h.z. */
+ * h.z within this slope. The square removes the singularity of the density there: v.h / h.z. */
 enum { RADII = 16, TURNS = 16, BINS = RADII * TURNS, PARTS = 600, DRAWS = 200000 };
 
 static int bin_of(vec3 v, const double l[3], double alpha) {
@@ -85,14 +82,14 @@ static int bin_of(vec3 v, const double l[3], double alpha) {
     return (r < RADII ? r : RADII - 1) * TURNS + (a < TURNS ? a : TURNS - 1);
 }
 
-/* What the density says falls into each bin; returns their sum. */
+/* The probability of each bin by the density; returns their sum. */
 static double expected(vec3 v, float roughness, double share[BINS]) {
     float alpha = masu_alpha(roughness);
     double all = 0, a2 = (double)alpha * (double)alpha;
     for (int b = 0; b < BINS; b++) {
         double sum = 0;
         for (uint32_t i = 0; i < PARTS; i++) {
-            /* No grid: the horizon, where the density ends, may lie along its lines. */
+            /* No grid: the horizon, at which the density ends, could coincide with its lines. */
             vec2 u = masu_noise2(0x80008000u, i);
             double q = (b / TURNS + (double)u.x) / RADII, r = 1 - (1 - q) * (1 - q);
             double phi = (2 * (b % TURNS + (double)u.y) / TURNS - 1) * PI;
@@ -116,12 +113,13 @@ typedef struct verdict {
     double p, below;
 } verdict;
 
-/* p of Pearson's test, by Wilson and Hilferty's cube root. Bins of less than 25 draws are one. */
+/* p of Pearson's test, by Wilson and Hilferty's cube root. Bins with less than 25 draws are
+ * merged. */
 static verdict chi_squared(vec3 v, float roughness, int cut, const double share[BINS], double all) {
     static double count[BINS + 1];
     float alpha = masu_alpha(roughness);
     uint64_t seed = 1234;
-    int draws = cut ? DRAWS : DRAWS / 4; /* what is wrong shows sooner */
+    int draws = cut ? DRAWS : DRAWS / 4; /* errors show sooner */
     memset(count, 0, sizeof count);
     for (int i = 0; i < draws; i++) {
         drawn d;
@@ -155,8 +153,8 @@ static verdict chi_squared(vec3 v, float roughness, int cut, const double share[
     return (verdict){0.5 * erfc(z / sqrt(2)), count[BINS] / draws};
 }
 
-/* 30 cases and one bound of 1e-4 for each: a right sampler would fail with one seed of 300, and the
- * seed is fixed. What draws from the uncut cap must fail where the bound cuts anything. */
+/* 30 cases and one bound of 1e-4 for each: a correct sampler would fail with one seed of 300, and
+ * the seed is fixed. Samples from the unbounded cap must fail if the bound cuts anything. */
 static void directions_come_as_often_as_the_density_says(void **state) {
     (void)state;
     static double share[BINS];
@@ -176,14 +174,15 @@ static void directions_come_as_often_as_the_density_says(void **state) {
         assert_true(all < 1.002 && fabs(all + own.below - 1) < 0.004);
         if (other.p < 1e-9) caught++;
     }
-    print_message("  the uncut cap is told from the density in %d of %d cases\n", caught, CASES);
+    print_message("  the unbounded cap is distinguished from the density in %d of %d cases\n",
+                  caught, CASES);
     assert_true(caught >= 12);
 }
 
 /* ---- Weights --------------------------------------------------------------------------------- */
 
-/* Lobe times N.l with a Fresnel term of 1, in double: Smith's Lambda and the cosine form of D,
- * which are the formulas of tests/reference/brdf.c and not those of ggx.glsl. */
+/* Lobe times N.l with a Fresnel term of 1, in double precision: Smith's Lambda and the cosine form
+ * of D, the formulas of tests/reference/brdf.c and not of ggx.glsl. */
 static double lobe(double alpha, vec3 view, const double l[3]) {
     double v[3] = {(double)view.x, (double)view.y, (double)view.z}, h[3], size = 0;
     for (int k = 0; k < 3; k++) h[k] = v[k] + l[k], size += h[k] * h[k];
@@ -210,13 +209,14 @@ static void weights_are_the_lobe_over_the_density(void **state) {
         worst = worst_of(worst, fabs((double)r.weight * (double)r.pdf / lobe((double)alpha, v, l) - 1));
         seen++;
     }
-    print_message("  weight * pdf is the lobe within %.1e of it, %d directions; most %.6f\n", worst,
+    print_message("  weight * pdf equals the lobe within a relative %.1e, "
+                  "%d directions; most %.6f\n", worst,
                   seen, most);
     assert_true(seen > 250000 && worst < 2e-3);
     assert_true(most <= 1);
 }
 
-/* The bound may not cut what reflects above the surface, and no weight may grow by it. */
+/* The bound must not cut directions that reflect above the surface, and must not raise a weight. */
 static void the_bound_only_helps(void **state) {
     (void)state;
     print_message("  variance of the weight, cut and uncut; mean\n");
@@ -243,8 +243,8 @@ static void the_bound_only_helps(void **state) {
     }
 }
 
-/* White light from everywhere, one Fresnel term of 1: the mean weight is the table's 1 - loss; and
- * with Schlick's term as a weight, its other number. */
+/* White light from everywhere, with a Fresnel term of 1: the mean weight is the table's 1 - loss;
+ * and with Schlick's term as a weight, its other number. */
 static void a_white_furnace_returns_the_table(void **state) {
     (void)state;
     static const double from[] = {0, 25, 45, 60, 72, 80, 85, 88, 89.3};
@@ -278,7 +278,7 @@ static void a_white_furnace_returns_the_table(void **state) {
         }
     }
     print_message(
-        "  white: off by %.5f at most (roughness %.3f, %.1f degrees); Schlick's weight by "
+        "  white: error %.5f at most (roughness %.3f, %.1f degrees); Schlick's weight by "
         "%.5f (%.3f, %.1f); mirrors by %.5f, up to 80 "
         "degrees by %.5f\n",
         worst[0], at[0][0], at[0][1], worst[1], at[1][0], at[1][1], mirror, mirror_steep);
@@ -307,7 +307,7 @@ static void any_bits_give_a_direction(void **state) {
         masu_axes f = masu_axes_of(v);
         assert_true(fabsf(dot(f.n, f.n) - 1) < 1e-5f && fabsf(dot(f.t, f.t) - 1) < 1e-5f);
     }
-    /* A mirror is one, to the bound and not beyond; no step in its weight. */
+    /* A mirror exactly up to the roughness bound; no step in its weight. */
     vec3 v = view_at(60);
     masu_vndf_ray r = masu_vndf_reflect(v, masu_alpha(0), vec2(0.3, 0.9));
     assert_true(r.l.x == -v.x && r.l.y == -v.y && fabsf(r.l.z - v.z) < 1e-6f && r.weight > 0.9999f);
@@ -336,7 +336,7 @@ static void frames_are_right_angled(void **state) {
         worst = worst_of(worst, fabs((double)(a.x - b.x)) + fabs((double)(a.y - b.y)));
         worst = worst_of(worst, fabs((double)(a.z - b.z)));
     }
-    print_message("  frames are off by %.1e\n", worst);
+    print_message("  tangent frames have an error of %.1e\n", worst);
     assert_true(worst < 2e-6);
 }
 

@@ -1,6 +1,6 @@
-/* test_whole_vectors.c: components of vectors in buffers that are read beside others come from loads of the
- * whole vector, one that is read alone stays alone; stores stay as they are; and of the shaders of
- * the library and of baked scenes none has anything left to change. */
+/* test_whole_vectors.c: components of vectors in buffers are read by a load of the whole vector if
+ * several are needed; a single component is still read by itself, and stores are unchanged. No
+ * shader of the library or of baked scenes has anything left to change. */
 #define _XOPEN_SOURCE 700
 #include <glob.h>
 #include <setjmp.h>
@@ -32,7 +32,7 @@ static void count(const spirv_module *m, uint32_t counts[LOADS_MOST]) {
     }
 }
 
-/* What glslang and spirv-opt make of the body, changed; spirv-val has passed it. */
+/* Compiles the body with glslang and spirv-opt, and transforms it; spirv-val accepts the result. */
 static void check(const char *body, uint32_t floats, uint32_t vectors) {
     static char text[2048];
     spirv_module before, after;
@@ -73,7 +73,7 @@ static void components_beside_others_come_whole(void **state) {
     check("s.x = u.list[n].w + u.list[n].x;", 0, 2);
     check("s.x = s.rows[n].b.z + s.rows[n].b.x;", 0, 2);
     check("s.x = s.rows[n].m[1].z + s.rows[n].m[0].x;", 0, 2);
-    check("s.x = v[n][n & 3u];", 0, 1); /* which one, is known when it runs */
+    check("s.x = v[n][n & 3u];", 0, 1); /* the index is computed at run time */
     check("s.x = v[n][atomicAdd(counter, 1u)];", 0, 1);
     check("s.x = p.x + p.y;", 0, 2);
     check("row r = s.rows[n]; v[0] = r.a; v[1] = r.m[0]; s.x = s.rows[2].a.y;", 0, 1);
@@ -100,14 +100,14 @@ static void what_is_no_module_is_refused(void **state) {
     size_t changed;
     assert_null(masu_whole_vectors(words, 0, &changed));
     assert_null(masu_whole_vectors(words + 1, 5, &changed));
-    assert_null(masu_whole_vectors(words, 6, &changed)); /* an instruction of no words */
+    assert_null(masu_whole_vectors(words, 6, &changed)); /* an instruction of length 0 */
 }
 
-/* Of a module that no tool makes: a chain that is changed stands a second time before all functions, where no type of
- * pointer is known yet (found by fuzz-spirv). It comes out as it went in. */
+/* A module that no tool makes: a changed chain has a second copy before all functions, at which
+ * point no pointer type is declared (found by fuzz-spirv). It is unchanged. */
 static void a_chain_before_all_functions_stays(void **state) {
     (void)state;
-    check("s.x = u.u.w + u.u.x;", 0, 2); /* leaves w.spv */
+    check("s.x = u.u.w + u.u.x;", 0, 2); /* writes w.spv */
     spirv_module m;
     assert_true(spirv_from_file(in_scratch("w.spv"), &m));
     const spirv_instruction *chain = NULL;

@@ -20,8 +20,11 @@ static bool same_override(const masu_bake_override *a, const masu_bake_override 
            a->specular == b->specular && a->coat == b->coat &&
            a->coat_roughness == b->coat_roughness && x->specular == y->specular &&
            x->coat == y->coat && x->coat_roughness == y->coat_roughness && a->meso == b->meso &&
+           a->thickness == b->thickness && a->ior == b->ior && x->thickness == y->thickness && x->ior == y->ior &&
            x->meso == y->meso && a->opacity == b->opacity && x->opacity == y->opacity &&
-           a->detail == b->detail && a->detail_color == b->detail_color && a->color_repeats == b->color_repeats && memcmp(x->detail, y->detail, sizeof x->detail) == 0 &&
+           a->detail_color == b->detail_color && a->color_repeats == b->color_repeats &&
+           a->detail == b->detail && memcmp(x->detail, y->detail, sizeof x->detail) == 0 &&
+           a->unlit == b->unlit && a->repeat == b->repeat && a->depth_bias == b->depth_bias && x->depth_bias == y->depth_bias &&
            strcmp(a->match, b->match) == 0;
 }
 
@@ -64,6 +67,38 @@ static void drop_lobes(const masu_bake_override *o, masu_blob_material *to, masu
     maps->image[MASU_BAKE_LOBE_COLOR] = maps->image[MASU_BAKE_LOBE_STRENGTH] = MASU_BLOB_NONE;
 }
 
+/* The index of refraction also is the reflectance, unless `specular` is given or fixed by a sheen. */
+static void set_ior(masu_blob_material *to, float ior, bool own_specular) {
+    float root = (ior - 1) / (ior + 1);
+    to->ior = ior;
+    bool shines = to->sheen_color[0] > 0 || to->sheen_color[1] > 0 || to->sheen_color[2] > 0;
+    if (!own_specular && !shines) to->specular = root * root / 0.08f;
+}
+
+/* The base colour becomes the emission of a black material of roughness 1, which shaders do not
+ * light. */
+static void make_unlit(masu_blob_material *to, masu_bake_maps *maps, bool own[MASU_BAKE_MAPS]) {
+    const float *base = to->base_color;
+    if (maps->unlit && base[0] == 0.0f && base[1] == 0.0f && base[2] == 0.0f) return; /* it is one */
+    memcpy(to->emissive, to->base_color, sizeof to->emissive);
+    maps->image[MASU_BAKE_EMISSIVE] = maps->image[MASU_BAKE_BASE];
+    maps->channel[MASU_BAKE_EMISSIVE] = maps->channel[MASU_BAKE_BASE];
+    own[MASU_BAKE_EMISSIVE] = own[MASU_BAKE_BASE];
+    for (int k = 0; k < 3; k++)
+        to->base_color[k] = to->specular_color[k] = to->sheen_color[k] = 0;
+    to->metallic = to->coat = 0;
+    to->specular = 0.5f; /* the default needs no image */
+    to->sheen_roughness = to->anisotropy = to->anisotropy_rotation = 0;
+    to->roughness = 1;
+    to->meso = MASU_BLOB_NONE;
+    for (int i = 0; i < MASU_BAKE_MAPS; i++) {
+        if (i != MASU_BAKE_BASE && i != MASU_BAKE_EMISSIVE && i != MASU_BAKE_OPACITY)
+            maps->image[i] = MASU_BLOB_NONE;
+    }
+    maps->dark = 0;
+    maps->unlit = 1;
+}
+
 static void apply_override(const masu_bake_override *o, masu_blob_material *to,
                            masu_bake_maps *maps, bool own[MASU_BAKE_MAPS]) {
     const masu_blob_material *v = &o->value;
@@ -76,6 +111,10 @@ static void apply_override(const masu_bake_override *o, masu_blob_material *to,
     if (o->meso) to->meso = v->meso;
     if (o->detail) memcpy(to->detail, v->detail, sizeof v->detail);
     if (o->opacity) to->opacity = v->opacity;
+    if (o->thickness) to->thickness = v->thickness;
+    if (o->ior) set_ior(to, v->ior, o->specular);
+    if (to->thickness > 0 && !(to->ior >= 1)) to->ior = v->ior; /* the default */
+    if (!(to->thickness > 0)) to->ior = 0;
     if (o->emissive) {
         memcpy(to->emissive, v->emissive, sizeof v->emissive);
         maps->dark = 0;
@@ -103,6 +142,9 @@ static void apply_override(const masu_bake_override *o, masu_blob_material *to,
     if (o->single) maps->single = o->maps.single;
     if (o->shadowless) maps->shadowless = 1;
     if (o->relief_of) maps->relief_of = o->maps.relief_of;
+    if (o->depth_bias) to->depth_bias = v->depth_bias;
+    if (o->repeat) maps->wrap[0] = maps->wrap[1] = MASU_BAKE_WRAP_REPEAT;
+    if (o->unlit) make_unlit(to, maps, own);
     drop_lobes(o, to, maps);
 }
 

@@ -13,7 +13,8 @@ typedef struct masu_bake_override {
     masu_blob_material value;
     bool base_color, roughness, metallic, emissive, specular, coat, coat_roughness, meso;
     masu_bake_maps maps; /* pictures of the scene, by its own numbers */
-    bool map[MASU_BAKE_MAPS], alpha, cutoff, detail, opacity, single, relief_of, shadowless;
+    bool map[MASU_BAKE_MAPS], alpha, cutoff, detail, opacity, single, relief_of, shadowless, thickness, ior;
+    bool unlit, depth_bias, repeat;
     bool detail_color, color_repeats; /* whether the detail is of colour and emission too is given; and is so */
     char name[MASU_BAKE_MATCH];  /* that the host finds it by; "": its own */
     char match[MASU_BAKE_MATCH]; /* of the material's name or its colour's picture; "": all */
