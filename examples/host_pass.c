@@ -1,6 +1,7 @@
-/* host_pass.c SCENE.masu OUT.png: the host's own passes inside of a frame. Before the tone curve a glowing sheet through
- * what the camera looks at, tested against the scene's depth; after upscaling a bar over the picture. Device and
- * image are those of platform/headless.h; both passes share one pair of shaders, host_pass.vert and .frag. */
+/* host_pass.c SCENE.masu OUT.png: the host's own passes within a frame. Before the tone curve it
+ * draws a glowing sheet through the camera's target, depth-tested against the scene; after
+ * upscaling a bar over the image. platform/headless.h provides device and image; both passes use
+ * the same shaders, host_pass.vert and .frag. */
 #include "headless.h"
 #include "image.h"
 #include "masu.h"
@@ -18,12 +19,12 @@
 #define CHECK(call)                                                                                \
     if (!(call)) return fprintf(stderr, "host_pass: %s%s\n", error, detail.text), 1
 
-/* A parallelogram, as the shaders are told it. */
+/* A parallelogram, as in the shaders' push constants. */
 typedef struct sheet {
     float clip_from_world[16], corner[4], along[4], across[4], color[4];
 } sheet;
 
-/* What draws one into the images of a split point. */
+/* Pipeline and targets to draw a sheet into the images of a split point. */
 typedef struct painter {
     VkRenderPass pass;
     VkFramebuffer frame;
@@ -31,7 +32,7 @@ typedef struct painter {
     VkPipeline pipeline;
 } painter;
 
-/* An attachment stays in the layout that the library hands it out in. */
+/* An attachment keeps the layout in which the library provides it. */
 static VkAttachmentDescription attachment(const masu_split_image *image) {
     return (VkAttachmentDescription){.format = image->format,
                                      .samples = VK_SAMPLE_COUNT_1_BIT,
@@ -94,7 +95,7 @@ static VkResult make_pipeline(VkDevice device, const VkShaderModule modules[2], 
     VkPipelineDepthStencilStateCreateInfo depth = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
         .depthTestEnable = tested ? VK_TRUE : VK_FALSE,
-        .depthCompareOp = VK_COMPARE_OP_GREATER}; /* reversed: larger is nearer */
+        .depthCompareOp = VK_COMPARE_OP_GREATER}; /* reversed depth: larger is closer */
     VkPipelineColorBlendAttachmentState blend = {.blendEnable = VK_TRUE,
                                                  .srcColorBlendFactor = VK_BLEND_FACTOR_ONE,
                                                  .dstColorBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA,
@@ -151,9 +152,9 @@ static VkResult record(VkCommandBuffer to, const painter *p, const masu_split_im
     return vkEndCommandBuffer(to);
 }
 
-/* Through the point that the camera looks at, slanting: a part lies before what is there, a part behind it. */
+/* A slanted sheet through the camera's target: one part is in front of the scene, one behind. */
 static sheet slanting(const masu_frame_view *view, double distance) {
-    sheet s = {.color = {0.1f, 0.5f, 0.8f, 0.4f}}; /* linear radiance, multiplied by its alpha */
+    sheet s = {.color = {0.1f, 0.5f, 0.8f, 0.4f}}; /* linear radiance, premultiplied by alpha */
     for (int i = 0; i < 16; i++) {
         for (int k = 0; k < 4; k++)
             s.clip_from_world[i] += view->projection[i / 4 * 4 + k] * view->view[4 * k + i % 4];
@@ -201,7 +202,8 @@ int main(int argc, char **argv) {
         CHECK(masu_headless_run(&host, commands.buffer, error, room));
     }
 
-    /* Images, views, formats and layouts are the same in every frame: all this is made once. */
+    /* Images, views, formats and layouts are the same in every frame: everything is created
+     * once. */
     static const masu_split_bits points[2] = {MASU_SPLIT_BEFORE_TONE, MASU_SPLIT_AFTER_UPSCALE};
     masu_split split[2];
     painter painters[2] = {{0}};
@@ -218,7 +220,7 @@ int main(int argc, char **argv) {
         CHECK(!make_targets(host.device, &split[i], &painters[i]));
         CHECK(!make_pipeline(host.device, modules, split[i].depth.view != VK_NULL_HANDLE, &painters[i]));
     }
-    VkCommandPool pool; /* recorded anew in each frame */
+    VkCommandPool pool; /* recorded in each frame */
     VkCommandPoolCreateInfo reset = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                      .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
                                      .queueFamilyIndex = host.family};
@@ -231,17 +233,19 @@ int main(int argc, char **argv) {
 
     const sheet bar = {.clip_from_world = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1},
                        .corner = {-0.9f, 0.8f}, .along = {0.6f, 0}, .across = {0, 0.06f},
-                       .color = {0.72f, 0.54f, 0.09f, 0.9f}}; /* what is shown, multiplied by its alpha */
+                       .color = {0.72f, 0.54f, 0.09f, 0.9f}}; /* display-encoded; premultiplied */
     for (int i = 0; i < 4; i++) {
         masu_camera camera;
         masu_frame_view view;
         CHECK(masu_camera_at(m, 0.0, &camera, &detail) == MASU_OK);
-        masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &camera, .rung = i < 3 ? 2 : 1}; /* both are upscaled */
+        /* Both rungs are upscaled. */
+        masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &camera, .rung = i < 3 ? 2 : 1};
         CHECK(masu_frame(m, &frame, &commands, &detail) == MASU_OK);
         CHECK(masu_frame_view_of(m, &view, &detail) == MASU_OK);
-        for (int k = 0; k < 2; k++) /* how much of the images is the picture depends on the rung */
+        for (int k = 0; k < 2; k++) /* the rendered part of the images depends on the rung */
             CHECK(masu_split_of(m, points[k], commands.rung, 0, &split[k], &detail) == MASU_OK);
-        const float *f = camera.forward; /* of a scene's camera as long as the way to what it looks at */
+        const float *f = camera.forward; /* for a scene's camera its length is the distance to the
+                                          * target */
         sheet glowing = slanting(&view, sqrt((double)(f[0] * f[0] + f[1] * f[1] + f[2] * f[2])));
         CHECK(!record(own[0], &painters[0], &split[0].color, &glowing));
         CHECK(!record(own[1], &painters[1], &split[1].color, &bar));

@@ -1,5 +1,5 @@
--- inspect.lua LIBRARY CDEF SCENE.masu [ABI]: Masu from LuaJIT: prints what a scene contains and what a description is
--- resolved to. It needs no Vulkan device. The declarations are generated: package/cdef.sh writes CDEF from masu.h.
+-- inspect.lua LIBRARY CDEF SCENE.masu [ABI]: Masu from LuaJIT: prints the contents of a scene and the resolved
+-- description. It needs no Vulkan device. The declarations are generated: package/cdef.sh writes CDEF from masu.h.
 -- With ABI (tests/consumers/abi.txt) it compares LuaJIT's own layout of every struct with the list.
 local ffi = require("ffi")
 
@@ -27,7 +27,7 @@ local function call(name, ...)
     return result
 end
 
--- A description with its size, as MASU_DESC has it in C.
+-- A description with its size, like MASU_DESC in C.
 local function desc()
     local d = ffi.new("masu_desc")
     d.bytes = ffi.sizeof("masu_desc")

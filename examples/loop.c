@@ -1,7 +1,8 @@
-/* loop.c SCENE.masu [SCRIPT]: a scene in a window, at the rung that keeps 16.7 ms. The window may have any size:
- * masu_resize where it is smaller than planned for, else masu_destroy and masu_init in a larger block. The
- * window is that of shared/window.h; with a script (shared/script.h) the validation layer looks on. LOOP_SURFACE in
- * the environment may contain "srgb" (an sRGB format for the swapchain) and "unpaced" (MAILBOX or IMMEDIATE). */
+/* loop.c SCENE.masu [SCRIPT]: a scene in a window, at the rung that keeps 16.7 ms. For a new window
+ * size it calls masu_resize if the size is within the plan, otherwise masu_destroy and masu_init in
+ * a larger block. shared/window.h provides the window; with a script (shared/script.h) the
+ * validation layer is enabled. LOOP_SURFACE in the environment may contain "srgb" (an sRGB format
+ * for the swapchain) and "unpaced" (MAILBOX or IMMEDIATE). */
 #include "masu.h"
 #include "overlay.h"
 #include "script.h"
@@ -16,9 +17,9 @@ typedef struct view {
     masu_scene scene;
     void *blob, *block;
     masu_renderer *m;
-    uint64_t frame; /* since masu_init: its slots begin anew there */
+    uint64_t frame; /* since masu_init, which resets the slots */
     script script;
-    uint32_t frames, rungs; /* drawn, in all; bit per rung that one was drawn at */
+    uint32_t frames, rungs; /* total; one bit per rung that was used */
     int resizes, inits;
 } view;
 
@@ -41,12 +42,13 @@ static masu_desc describe(view *v) {
                        .output = v->window.size,
                        .targets = window_targets(&v->window),
                        .frames_in_flight = WINDOW_SLOTS,
-                       .ladder = MASU_ON, /* rungs as they were measured for scenes of this class */
+                       .ladder = MASU_ON, /* the rungs measured for scenes of this class */
                        .resizable = 1,
                        .governor = {.mode = MASU_GOVERNOR_ON}};
 }
 
-/* A renderer for the window as large as it is. It knows at once what the one before has learnt. */
+/* Creates a renderer for the current size of the window. It inherits the previous renderer's
+ * governor state. */
 static bool build(view *v) {
     masu_governor_state learnt;
     masu_detail detail = {0};
@@ -72,14 +74,15 @@ static bool build(view *v) {
     return !result || failed(&detail);
 }
 
-/* True, and the window still outdated: it has no size now, as one that is rolled up. */
+/* Returns true with *outdated unchanged if the window has no size at present, for example when
+ * minimised. */
 static bool follow_window(view *v, bool *outdated) {
     vkDeviceWaitIdle(v->window.device);
     if (!window_swapchain(&v->window)) return SDL_Delay(20), true;
     masu_desc desc = describe(v);
     bool fits = masu_resize(v->m, desc.output, &desc.targets, NULL, NULL) == MASU_OK;
     bool good = fits || build(v);
-    window_drop(&v->window); /* nothing knows the old images any more */
+    window_drop(&v->window); /* the old images are no longer used */
     v->resizes++;
     *outdated = false;
     return good;

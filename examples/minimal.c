@@ -1,5 +1,5 @@
 /* minimal.c SCENE.masu OUT.png: a minimal port: renders ten frames and saves the last one. A real
- * port brings its own device and target images; here platform/headless.h creates them. */
+ * port has its own device and target images; here platform/headless.h creates them. */
 #include "headless.h"
 #include "image.h"
 #include "masu.h"

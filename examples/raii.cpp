@@ -1,5 +1,5 @@
-// raii.cpp SCENE.masu OUT.png: minimal.c in C++, with include/masu.hpp: objects release what they own, errors are
-// exceptions. The device and the image are those of platform/headless.h.
+// raii.cpp SCENE.masu OUT.png: minimal.c in C++, with include/masu.hpp: objects release
+// their resources, errors are exceptions. platform/headless.h provides the device and the image.
 #include "masu.hpp"
 
 extern "C" {
@@ -66,7 +66,7 @@ static int render(const char *scene_path, const char *image_path) {
     }
     h.save(image_path);
     masu::renderer moved = std::move(m); // one owner
-    try { // a description of another header: an error that says so
+    try { // a description of another header version is rejected
         desc.bytes -= 8;
         masu::renderer other(desc);
         return 1;

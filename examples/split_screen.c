@@ -1,6 +1,6 @@
-/* split_screen.c SCENE.masu OUT.png: two views of one scene in one picture, each with a camera of its own, as of two
- * who play side by side. One renderer: memory for the scene once, images as large as the larger view. The
- * device and the image are those of platform/headless.h, as in minimal.c. */
+/* split_screen.c SCENE.masu OUT.png: two views of one scene in one image, each with its own camera,
+ * as for two players. One renderer: memory for the scene once, images as large as the larger view.
+ * As in minimal.c, platform/headless.h provides the device and the image. */
 #include "headless.h"
 #include "image.h"
 #include "masu.h"
@@ -14,7 +14,7 @@
 
 enum { WIDTH = 640, HEIGHT = 360, FRAMES = 4 };
 
-/* The second player stands two metres to the right of the first, and a metre higher. */
+/* The second player is two metres to the right of the first, and a metre higher. */
 static masu_camera beside(const masu_camera *first) {
     masu_camera second = *first;
     double level = hypot((double)first->forward[0], (double)first->forward[2]);
@@ -46,7 +46,8 @@ int main(int argc, char **argv) {
                    .queue_family = host.family},
         .scene = &scene,
         .output = {WIDTH, HEIGHT},
-        .targets = {.images = &image.image, .count = 1}, /* storage targets have room for a view at 0, 0 alone */
+        .targets = {.images = &image.image, .count = 1}, /* storage targets only support a view at
+                                                          * 0, 0 */
         .viewport_count = 2,
         .viewports = {{0, 0, WIDTH / 2, HEIGHT}, {WIDTH / 2, 0, WIDTH - WIDTH / 2, HEIGHT}}};
     masu_memory need;
@@ -63,7 +64,8 @@ int main(int argc, char **argv) {
         masu_camera cameras[2];
         CHECK(masu_camera_at(m, time, &cameras[0], &detail) == MASU_OK);
         cameras[1] = beside(&cameras[0]);
-        for (uint32_t k = 0; k < 2; k++) { /* the first discards what the image holds, the second keeps it */
+        for (uint32_t k = 0; k < 2; k++) { /* the first view discards the image's contents, the
+                                            * second keeps them */
             masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &cameras[k], .time = time,
                                      .time_step = 1 / 60.0f, .viewport = k};
             CHECK(masu_frame(m, &frame, &commands, &detail) == MASU_OK);

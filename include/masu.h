@@ -9,11 +9,12 @@
  *
  * MASU DOES NOT
  *  - submit, wait for the GPU, present, start threads, open files, print, or keep global state;
- *  - stream or create geometry: all geometry is in the blob. At run time a host may add copies of
- *    movable models without skins, punctual lights, particles, decals and debug lines, each up to
- *    desc.reserve;
- *  - cast shadows from particles or transparent surfaces;
- *  - refract light, order intersecting transparent surfaces, or reflect particles and decals;
+ *  - stream geometry: it is in the blob, or the host's own (masu_mesh_create). At run time a host
+ *    may add meshes, copies of movable models without skins, punctual lights, textures, particles,
+ *    trails, decals and debug lines, each up to desc.reserve;
+ *  - cast shadows from particles, trails or transparent surfaces;
+ *  - refract light beyond a bent lookup of the lit image, order intersecting transparent
+ *    surfaces, or reflect particles, trails and decals;
  *  - verify that the SPIR-V of a scene with an SDF is harmless: trust such a blob like a program.
  *
  * TERMS
@@ -311,7 +312,8 @@ MASU_API MASU_MUST_USE masu_result masu_load(masu_renderer *renderer, masu_comma
  *   MASU_ERROR_ARGUMENT   `bytes` is not sizeof(masu_frame_desc);
  *                         rung, target, camera, light or a parameter is out of range or not finite;
  *                         MASU_RUNG_AUTO without a governor; an array is NULL with a count above 0
- *   MASU_ERROR_LIMIT      more particles, decals or lines than desc.reserve
+ *   MASU_ERROR_LIMIT      more particles, trail points, decals or lines than desc.reserve, or one
+ *                         with a texture that does not exist
  *   MASU_ERROR_STATE      masu_load has not finished; the rung is not ready (masu_init_step)
  *   MASU_ERROR_VULKAN, _DEVICE_LOST   as masu_resize, after it
  * After an error nothing has been written, and the frame number has not advanced. */
@@ -476,10 +478,27 @@ typedef struct masu_viewport {
 } masu_viewport;
 #define MASU_MAX_VIEWPORTS 4u
 
+#define MASU_MAX_MESH_KINDS 8u
+/* A kind of meshes that the host creates at run time (masu_mesh_create): slots of equal size for
+ * meshes of one material, because draws are recorded with their material. Costs per slot, whether
+ * used or not:
+ *    device, per vertex     16 bytes; 8 in scenes with textures, 8 with second texture coordinates,
+ *                           4 with vertex colours; 12 if velocities are read
+ *    device, per triangle   12 bytes; 70 if rays trace polygons (16, and 54 for its share of nodes)
+ *    host and device        an instance, a model with one node, and a draw (masu_limits)
+ *    GPU                    three empty dispatches per frame for all kinds together; an empty draw
+ *                           per free slot and view; if rays trace polygons, a workgroup per slot */
+typedef struct masu_mesh_kind {
+    uint32_t meshes;    /* slots, 0..1024 of all kinds together; 0: the kind is unused */
+    uint32_t material;  /* MASU_SCENE_MATERIAL: neither transparent nor with mesoscale detail */
+    uint32_t vertices;  /* capacity of each slot, 3..1048576 */
+    uint32_t triangles; /* capacity of each slot, 1..262144 */
+} masu_mesh_kind;
+
 /* Capacities for objects that the host adds at run time. masu_memory includes their memory. Models
  * and lights of the reserve count towards limits and peaks like those of the scene. 0: none, at no
  * cost. Without a scene all members are unused; so is `models` if the scene has no movable model
- * without skins. */
+ * without skins. Meshes require a scene with polygons. */
 typedef struct masu_reserve {
     /* Slots for copies of movable models, in addition to the pooled copies of the scene
      * (masu_model_add), 0..16384. Any movable model without skins fits into a slot, so each slot
@@ -496,6 +515,26 @@ typedef struct masu_reserve {
     uint32_t decals;    /* 0..1024; device: 112 bytes each per frame in flight */
     uint32_t lines;     /* 0..65536; device: 32 bytes each per frame in flight, and 4 for each pixel
                            of the output */
+    /* Points of all trails, 0..65536; device: 128 bytes each per frame in flight, and 16 for each
+     * transparent primitive; host: 16 bytes each. With trail points or textures a particle takes
+     * 128 bytes instead of 64, and a decal 144 instead of 112. */
+    uint32_t trail_points;
+    /* Textures that the host fills at run time, 0..256 (masu_texture_write). They have one size,
+     * 1..4096 texels along each axis, 0: 256, and at most 2^28 texels together. Device: 4 bytes per
+     * texel. */
+    uint32_t textures;
+    VkExtent2D texture_size;
+    /* Bytes that masu_texture_write accepts between two frames, 4..2^28; 0: those of one texture.
+     * Device: as many and 2064 more, per frame in flight. */
+    uint32_t texture_bytes;
+    masu_mesh_kind meshes[MASU_MAX_MESH_KINDS];
+    /* Bytes of mesh data that one frame uploads: the sum over the calls of masu_mesh_create,
+     * _replace and _deform between two frames, at most 1 GiB, and at least the largest mesh that
+     * fits into a slot (masu_mesh_bytes). It also bounds the host's time, which is proportional to
+     * the bytes. 0: the largest mesh. Costs these bytes on the host, and again per frame in flight
+     * on the device, with 64 bytes per slot; and 51 host bytes per triangle of the largest slot if
+     * rays trace polygons. */
+    uint32_t mesh_upload;
 } masu_reserve;
 
 /* Roles of device memory. On unified memory one block of role MASU_ROLE_DEVICE serves all. */
@@ -602,6 +641,23 @@ typedef struct masu_exposure {
     float min, max; /* bounds of the metered factor, 1e-9..1e9; 0: 1/1024 and 1024 */
 } masu_exposure;
 
+/* Effects on the image, for masu_desc.post. Each is reserved at initialisation: its passes, images
+ * and shader variants exist only then. Frames set its strength in masu_frame_desc.post; at strength
+ * 0 a reserved effect changes no bit of the image and its passes end at once. P below is the number
+ * of pixels of the largest render size. */
+typedef enum masu_post_bits {
+    /* Light scattered by the lens: a glow around bright parts. Conserves energy; its width is
+     * relative to the image height. 4 passes; 1.2 P bytes of transient images. */
+    MASU_POST_BLOOM = 1,
+    /* Depth of field. 3 passes; 6.1 P bytes of transient images. */
+    MASU_POST_FOCUS = 2,
+    /* Vignette, brightness, gamma and a colour table, in the tone curve's pass. */
+    MASU_POST_GRADE = 4,
+    MASU_POST_ALL = 7
+} masu_post_bits;
+
+#define MASU_LUT_MAX 33u /* points per axis of a colour table */
+
 #define MASU_LOAD_STEP_MIN 65536u /* bytes of the longest row of texels */
 
 /* ---- Description: governor ------------------------------------------------------------------- */
@@ -687,12 +743,21 @@ typedef struct masu_desc {
     /* Flag: masu_instance_set_position and masu_model_set_position are available. Costs 24 host
      * bytes per instance and per model. Scene only. */
     uint32_t double_positions;
+    /* Flag: masu_instance_set_look and masu_model_set_look are available. Costs 49 host bytes per
+     * instance; device: 48 bytes per instance and frame in flight (twice that with velocities),
+     * counted in multiples of 8 instances, and 32 bytes per traced instance and frame in flight.
+     * The G-buffer pass tests the fade of each pixel, and so loses the early depth test. Scene
+     * only. */
+    uint32_t instance_looks;
     uint64_t host_budget;   /* bytes; 0: none. A larger plan is MASU_ERROR_LIMIT */
     uint64_t device_budget; /* bytes, all roles together; 0: none */
     masu_device_block device_blocks[MASU_ROLE_COUNT];
     /* Flag: frames may set light.turbidity although the scene has no analytic sky. No effect with
      * an environment map. Scene only. */
     uint32_t analytic_sky;
+    /* Flag: frames may set light.environment. Costs 9 multiply-adds and 6 multiplications per
+     * sample of an environment map. Scene only. */
+    uint32_t live_environment;
     /* Flag: local lights may be capsules and rectangles, or have a surface, although those of the
      * scene do not. Costs up to 84 KiB of device memory, and registers in the passes that light
      * surfaces. Scene only. */
@@ -704,7 +769,7 @@ typedef struct masu_desc {
      * Costs a set of recordings per viewport. Without a scene a count is MASU_ERROR_ARGUMENT. */
     uint32_t viewport_count;
     masu_viewport viewports[MASU_MAX_VIEWPORTS];
-    /* Flag: masu_resize may change the output size, up to `output`, and the targets. Costs 32 host
+    /* Flag: masu_resize may change the output size, up to `output`, and the targets. Costs 44 host
      * bytes per draw of a G-buffer pass, LODs included, a bounds test in the last pass, and command
      * buffers and descriptor sets for MASU_MAX_TARGETS targets. Scene only. */
     uint32_t resizable;
@@ -712,7 +777,8 @@ typedef struct masu_desc {
      * BVH, which needs no device feature. The image is the same.
      *   AUTO   ray query if vulkan.ray_query is set, the device is a discrete or integrated GPU and
      *          its limits suffice (on CPUs the BVH is faster)
-     *   ON     ray query, else MASU_ERROR_DEVICE. Scenes with skins need OFF or AUTO
+     *   ON     ray query, else MASU_ERROR_DEVICE. Scenes with skins, and reserve.meshes, need OFF
+     *          or AUTO, which then uses the BVH
      *   OFF    built-in BVH
      * Ray query needs more memory, which masu_memory includes. No effect without reflections of
      * polygons. */
@@ -727,6 +793,13 @@ typedef struct masu_desc {
     masu_switch half_floats;
     masu_exposure exposure;
     masu_tone tone;
+    /* masu_post_bits: effects that frames may have; 0: none. Any costs 32 bytes per frame in
+     * flight. Scene only. */
+    uint32_t post;
+    /* Largest number of points per axis of a colour table (masu_lut_set), 2..MASU_LUT_MAX; requires
+     * MASU_POST_GRADE. Costs 4 lut_size^3 host bytes and the same number of device bytes per frame
+     * in flight: 143,748 for 33. 0: there is no table. Scene only. */
+    uint32_t lut_size;
     /* Dithers the final rounding to the target's steps, which prevents banding in smooth gradients.
      * The pattern depends on pixel position and frame number only; its average is correct. Exact
      * steps (0 and 1 included) do not change. AUTO: off for storage targets, which tools compare;
@@ -825,7 +898,7 @@ typedef struct masu_camera {
     double position[3];  /* world, metres */
     float forward[3];    /* need not be unit length */
     float up[3];         /* not parallel to forward; all zero: +Y */
-    float fov_y;         /* vertical field of view, radians, 0.001..3.1; with a window it is unused,
+    float fov_y;         /* vertical field of view, radians, 0.0005..3.1; with a window it is unused,
                             but must be finite */
     float near_distance; /* metres, 1e-9..1e9; 0: the scene's. There is no far plane */
     /* Offset of the sample position in every pixel, in pixels of the render size, right and down,
@@ -852,6 +925,27 @@ typedef struct masu_camera {
     float left, right, bottom, top;
 } masu_camera;
 
+/* Changes of the sky at run time: day and night, a sky that stays while the world tilts. All zero:
+ * the sky as it is in the scene. `intensity`, `tint` and `rotation` apply to an environment map,
+ * and must be zero without one. They affect its ambient light, its reflections and the sky alike;
+ * baked probes and live bounces follow. The sun is separate (sun_direction, sun_color).
+ *
+ * A rotation about +Y is exact. After another rotation, the part of diffuse light that is beyond
+ * second-order spherical harmonics is approximated: tilted by 90 degrees, three skies differ by at
+ * most 2.1 % of their brightest irradiance from the same skies baked with that tilt. */
+typedef struct masu_environment {
+    float intensity; /* factor on the radiance, up to 1e6; 0: 1; below 0: black */
+    float tint[3];   /* factors on red, green and blue, 0..1; all 0: white */
+    /* Quaternion x, y, z, w from the axes of the map to the world's: by an angle a about +Y it is
+     * 0, sin(a / 2), 0, cos(a / 2). Need not be of unit length; all 0: no rotation. */
+    float rotation[4];
+    /* The background that the camera sees where there is no surface, with any kind of sky:
+     * background_intensity * (sky and sun disc) + background_color. Fog is in front of it.
+     * Ambient light, reflections and fog colour do not change. */
+    float background_intensity; /* factor, up to 1e6; 0: 1; below 0: black */
+    float background_color[3];  /* radiance, 0..1e9 */
+} masu_environment;
+
 typedef struct masu_light {
     float sun_direction[3];              /* towards the sun; need not be unit length */
     float sun_color[3];                  /* irradiance on a perpendicular surface / pi */
@@ -871,6 +965,7 @@ typedef struct masu_light {
      * one millisecond on the CPU. */
     float turbidity;
     float ground[3]; /* albedo below the horizon of the analytic sky, 0..1; else unused */
+    masu_environment environment; /* requires desc.live_environment unless all zero */
     /* Fog, for scenes that have it; for others fog_density must be 0. Density at height y:
      * fog_density * exp(-fog_falloff * (y - fog_height)). */
     float fog_color[3]; /* radiance of thick fog, 0..1e9; all 0: that of the sky at the horizon */
@@ -879,6 +974,26 @@ typedef struct masu_light {
     float fog_falloff;  /* 1/m, 0..1e6; 0: the same at every height */
     float fog_start;    /* metres from the camera, 0..1e9; the air is clear up to there */
 } masu_light;
+
+/* The effects of a frame. All zero: none. A member other than 0 whose effect is not in desc.post is
+ * MASU_ERROR_ARGUMENT. */
+typedef struct masu_post {
+    /* MASU_POST_BLOOM: fraction of the light that is scattered, 0..1; 0.03 to 0.15 are usual. Half
+     * of the scattered light is within 1.6 to 1.8 % of the image height, 90 % within 5.0 to 5.8 %,
+     * at render sizes of 480 to 2160 rows. */
+    float bloom;
+    /* MASU_POST_FOCUS: diameter of the lens, metres, 0..1e6; 0: all distances are sharp. A camera
+     * with a sensor of 24 mm height at f-number N has 0.012 / (N tan(fov_y / 2)). The blur radius
+     * is at most 2 % of the image height. Transparent surfaces and particles are blurred like the
+     * surface behind them. */
+    float aperture;
+    float focus; /* view z of the sharp plane, metres, 1e-6..1e9; unused if aperture is 0 */
+    /* MASU_POST_GRADE. Vignette: darkening of the corners before the tone curve, 0..1; by half as
+     * much halfway to them in area. */
+    float vignette;
+    float brightness; /* after the tone curve, stops, -8..8: doubles linear light per stop */
+    float gamma;      /* encoded values become v^(1 / gamma), 0.1..10; 0: 1 */
+} masu_post;
 
 /* Flags of particles. LIT: `color` is an albedo; without the flag, a radiance. A lit particle
  * scatters light evenly, as thin smoke does: color * (visibility * sun_color / 4 + ambient + the
@@ -889,7 +1004,9 @@ typedef struct masu_light {
 #define MASU_PARTICLE_ADDITIVE 2u
 /* A particle: a camera-facing sprite of elliptical shape with soft edges, for smoke, sparks, dust.
  * It is sorted with transparent surfaces by the distance of its centre, blended in linear light
- * before exposure, and tested against depth. Reflections and shadows do not include particles. They
+ * before exposure, and tested against depth. Two of them may be in the wrong order only at pixels
+ * where their distances from the camera differ by less than the sum of the radii of their bounding
+ * spheres. Reflections and shadows do not include particles. They
  * are exposed, metered and anti-aliased with the image. Particles with a non-finite number, beyond
  * 1e15 m, or without size or opacity are skipped; values out of range are clamped. */
 typedef struct masu_particle {
@@ -905,7 +1022,44 @@ typedef struct masu_particle {
      * intersection; 0: no fade. */
     float soft;
     uint32_t flags; /* MASU_PARTICLE_*; other bits are ignored, as in decals and lines */
+    /* 1 .. desc.reserve.textures: the whole rectangle of the particle shows this texture, whose
+     * colour and alpha are multiplied by `color` and `opacity`; `edge` is then unused. 0: none. */
+    uint32_t texture;
+    /* Cell of the texture to show: left, top, right, bottom, 0..1 of the texture from its upper
+     * left corner; left > right and top > bottom mirror. All 0: the whole texture. Texels outside
+     * are never mixed in, so cells of an atlas need no margin. */
+    float uv[4];
+    /* Flipbooks: left and top of a second cell of the same size, and its share, 0..1. */
+    float uv_next[2];
+    float blend;
 } masu_particle;
+
+/* A point of a trail. A non-finite number, or a position beyond 1e15 m, leaves out the two segments
+ * at the point; values out of range are clamped. */
+typedef struct masu_trail_point {
+    double position[3]; /* world, metres */
+    float half_width;   /* metres, 0..1e9 */
+    float color[3];     /* as in masu_particle */
+    float opacity;      /* 0..1 */
+} masu_trail_point;
+
+/* A trail: a ribbon through points that faces the camera, for smoke, blades and tracers. Its
+ * segments share their edges, and keep their width at bends of up to 120 degrees. Each segment is a
+ * particle between two points: sorted by the distance of its centre, lit at both points, blended
+ * and fading out as a particle. */
+typedef struct masu_trail {
+    const masu_trail_point *points; /* read during the call */
+    uint32_t point_count;           /* below 2: no trail */
+    uint32_t flags;                 /* MASU_PARTICLE_* */
+    float edge; /* without a texture: fraction of the half width at which the fade begins, 0..1 */
+    float soft; /* as in masu_particle */
+    /* As in masu_particle. The left edge of the cell is at the first point, and its top on the left
+     * side of the trail, seen along it. */
+    uint32_t texture;
+    float uv[4];
+    float repeat; /* metres of trail per repetition of the cell; 0: once over the whole trail */
+    float offset; /* metres of trail before the first point; unused with a repeat of 0 */
+} masu_trail;
 
 #define MASU_DECAL_ROUND 1u      /* an ellipse in x and y of the box; else a rectangle */
 #define MASU_DECAL_KEEP_COLOR 2u /* keeps colour and metallic: a puddle changes roughness only */
@@ -930,6 +1084,13 @@ typedef struct masu_decal {
      * outer on. Both 0: 1.05 and 1.4. */
     float inner, outer;
     uint32_t flags; /* MASU_DECAL_* */
+    /* As in masu_particle: the colour and alpha of the texture are multiplied by `color` and
+     * `opacity`. The cell fills the box: its left edge is at x = -1, its top at y = 1. */
+    uint32_t texture;
+    float uv[4];
+    /* Radiance that the decal emits, 0..1e6, times its colour and the texture's. Requires
+     * desc.reserve.textures. */
+    float emission;
 } masu_decal;
 
 #define MASU_LINE_ON_TOP 1u /* no depth test; else surfaces more than 0.5 % closer occlude it */
@@ -979,9 +1140,18 @@ typedef struct masu_frame_desc {
     const masu_decal *decals;
     const masu_line *lines;
     uint32_t particle_count, decal_count, line_count;
+    const masu_trail *trails; /* with at most desc.reserve.trail_points points together */
+    uint32_t trail_count;
+    /* Flag: commands of the host have changed textures (masu_texture_image_of) since the previous
+     * frame. Rungs with temporal then shorten their history, as they do after masu_texture_write. */
+    uint32_t textures_changed;
+    masu_post post; /* effects on the image, of desc.post */
     /* pick: flag. masu_pick reports the object at this pixel of the output (or viewport), counted
      * from the upper left corner: 0 .. width - 1, 0 .. height - 1. Requires desc.picking. */
     uint32_t pick, pick_x, pick_y;
+    /* Bits of masu_look.pick_mask: the query passes through instances that have none of them. 0:
+     * all bits. */
+    uint32_t pick_mask;
 } masu_frame_desc;
 
 /* Starts an initializer: masu_frame_desc frame = {MASU_FRAME_DESC, .time = time}; */
@@ -1000,6 +1170,17 @@ typedef struct masu_commands {
     /* For masu_load: bytes that this step has written, and bytes that remain. */
     uint64_t load_bytes, load_left;
 } masu_commands;
+
+/* Sets the colour table from the next masu_frame on. `colors`: size^3 colours of red, green and
+ * blue in display encoding, 0..1 (other values are clamped, NaN is 0), stored with 10 bits; red
+ * varies fastest, then green, as in .cube files. The table maps colours after the tone curve,
+ * brightness and gamma, in sRGB encoding; with LINEAR and PQ, 1 is the peak. Between its points it
+ * is interpolated linearly in tetrahedra. NULL with a size of 0: no table, as initially. Copies the
+ * colours; the next frames write them once to each slot, 4 size^3 bytes.
+ *   MASU_ERROR_ARGUMENT   `size` is not 0 or 2..desc.lut_size, or a pointer is NULL
+ * Nothing has changed after an error. */
+MASU_API MASU_MUST_USE masu_result masu_lut_set(masu_renderer *renderer, const float *colors,
+                                                uint32_t size, masu_detail *detail);
 
 /* ---- Frame: host passes inside it ------------------------------------------------------------ */
 
@@ -1310,6 +1491,51 @@ MASU_API MASU_MUST_USE masu_result masu_instance_show(masu_renderer *renderer,
                                                       masu_instance instance, uint32_t shown,
                                                       masu_detail *detail);
 
+/* Flags of masu_look. */
+#define MASU_LOOK_NO_SHADOW 1u  /* casts no shadow of sun or punctual lights */
+#define MASU_LOOK_NOT_TRACED 2u /* absent in reflections, and for live bounces */
+#define MASU_LOOK_NOT_PICKED 4u /* masu_pick passes through it */
+
+/* The look of one instance, on top of its materials. All zero: unchanged. */
+typedef struct masu_look {
+    /* Multiplies the base colour, and the emission of unlit materials; 0..1. All 0: white; black is
+     * {1e-6f, 0, 0}. */
+    float tint[3];
+    float emission; /* factor on the emission, up to 1e6; 0: 1; below 0: off */
+    /* Texture coordinate = scale * coordinate of the mesh + offset, -1e4..1e4, for all maps; in
+     * alpha tests of reflection rays the mesh's own. A scale of 0 is 1. */
+    float uv_offset[2], uv_scale[2];
+    /* Fraction of its pixels that are not drawn, 0..1: fades by dithering; 1: it is hidden, but
+     * its lights stay on. Two
+     * instances at one pixel have the same pattern, which with rung.temporal differs in each frame
+     * and so is averaged. Transparent materials fade smoothly. Shadows and reflections stay solid
+     * below 1: one depth per shadow texel cannot hold a part, and dithered shadow texels would
+     * flicker. Picking finds it below 1. */
+    float fade;
+    uint32_t flags; /* MASU_LOOK_* */
+    /* Bit per viewport (masu_frame_desc.viewport) in which the camera does not see the instance.
+     * Its shadows and reflections stay. */
+    uint32_t hidden_views;
+    uint32_t pick_mask; /* picked by frames with one of these bits in pick_mask; 0: all bits */
+} masu_look;
+
+/* Sets the look of an instance from the next masu_frame on. masu_model_add gives the model a look
+ * of all zero. Velocities ignore uv_offset. Live bounces follow within some rounds of their probes;
+ * baked light and the lights of the scene do not change. A change of shadows has the delay of
+ * masu_instance_show.
+ *   MASU_ERROR_ARGUMENT   a pointer is NULL, the handle is invalid, or a value is out of range or
+ *                         not finite, or an unknown flag
+ *   MASU_ERROR_STATE      desc.instance_looks is 0 */
+MASU_API MASU_MUST_USE masu_result masu_instance_set_look(masu_renderer *renderer,
+                                                          masu_instance instance,
+                                                          const masu_look *look,
+                                                          masu_detail *detail);
+
+/* The look as it was set. Errors as masu_instance_set_look. */
+MASU_API MASU_MUST_USE masu_result masu_instance_get_look(masu_renderer *renderer,
+                                                          masu_instance instance, masu_look *out,
+                                                          masu_detail *detail);
+
 /* The first model with that name in the scene description; id 0 if there is none. */
 MASU_API masu_model masu_model_find(const masu_renderer *renderer, const char *name);
 
@@ -1352,13 +1578,18 @@ MASU_API MASU_MUST_USE masu_result masu_model_set_position(masu_renderer *render
 MASU_API MASU_MUST_USE masu_result masu_model_show(masu_renderer *renderer, masu_model model,
                                                    uint32_t shown, masu_detail *detail);
 
+/* As masu_instance_set_look, for all instances of the model. */
+MASU_API MASU_MUST_USE masu_result masu_model_set_look(masu_renderer *renderer, masu_model model,
+                                                       const masu_look *look, masu_detail *detail);
+
 /* Adds a model of the same kind as `like` at `rows` from the next masu_frame on. It takes a hidden
  * model of that kind from the scene, a pooled copy ("spare") for example. If all of them are shown,
  * it makes a copy in a slot of desc.reserve.models, without a name. The nodes get the current
  * transforms of the nodes of `like`. Lights attached to `like` are copied too, into
  * desc.reserve.lights. Allocates nothing. The model has a velocity of 0 in its first frame.
- *   MASU_ERROR_LIMIT      all models of the kind are shown, and the reserve is full or `like` has
- *                         skins, which cannot be copied; or desc.reserve.lights is too small
+ *   MASU_ERROR_LIMIT      all models of the kind are shown, and the reserve is full, or `like` has
+ *                         skins or is a mesh of the host, which cannot be copied; or
+ *                         desc.reserve.lights is too small
  *   MASU_ERROR_ARGUMENT   as masu_model_set_transform
  * Nothing has changed after an error. */
 MASU_API MASU_MUST_USE masu_result masu_model_add(masu_renderer *renderer, masu_model like,
@@ -1371,6 +1602,62 @@ MASU_API MASU_MUST_USE masu_result masu_model_add(masu_renderer *renderer, masu_
  * valid. MASU_ERROR_ARGUMENT: the handle is invalid. */
 MASU_API MASU_MUST_USE masu_result masu_model_remove(masu_renderer *renderer, masu_model model,
                                                      masu_detail *detail);
+
+/* The vertices and triangles of a mesh of the host; read during the call. Object space, metres. */
+typedef struct masu_mesh_data {
+    const float *positions; /* 3 per vertex, within -1e15..1e15 */
+    const float *normals;   /* 3 per vertex, of any length; one of length 0 becomes +Y */
+    const float *texcoords; /* 2 per vertex, of every map; NULL: all 0. Not read without textures */
+    const float *colors;    /* linear red, green, blue, alpha per vertex, 0..1; NULL: white. Only in
+                               scenes with vertex colours */
+    const uint32_t *indices; /* 3 per triangle, counter-clockwise from the front */
+    uint32_t vertex_count;   /* 3 .. masu_mesh_kind.vertices */
+    uint32_t triangle_count; /* 1 .. masu_mesh_kind.triangles */
+} masu_mesh_data;
+
+/* Creates a mesh from the next masu_frame on, in a slot of desc.reserve.meshes[kind]. The result is
+ * a model with one node, without a name: masu_model_set_transform moves it, masu_model_show hides
+ * it, masu_model_remove frees its slot, masu_model_node_get has its instance. In the image, in
+ * shadows, for culling, for picking and in traced reflections it is like a mesh of the scene,
+ * without LODs. Occlusion culling does not use it as an occluder, and baked light does not include
+ * it. Rays trace it if they trace any polygon of the scene; the call then also builds its BVH, so
+ * reflections show it in the same frame.
+ *
+ * A frame that is not submitted loses what was uploaded for it: replace these meshes again.
+ * Allocates nothing. Nothing has changed after an error.
+ *   MASU_ERROR_LIMIT      no slot of the kind is free; the mesh is larger than its slot; or the
+ *                         calls since the last masu_frame have more bytes than
+ *                         desc.reserve.mesh_upload: call again after the next masu_frame
+ *   MASU_ERROR_ARGUMENT   a pointer is NULL; the kind is unused; a number is not finite or out of
+ *                         range; an index is not below vertex_count; `colors` in a scene without
+ *                         vertex colours; or as masu_model_set_transform */
+MASU_API MASU_MUST_USE masu_result masu_mesh_create(masu_renderer *renderer, uint32_t kind,
+                                                    const masu_mesh_data *data,
+                                                    const float rows[12], masu_model *out,
+                                                    masu_detail *detail);
+
+/* Replaces vertices and triangles of a mesh from the next masu_frame on. Its velocity in that frame
+ * is that of its transform only. Errors as masu_mesh_create; MASU_ERROR_ARGUMENT also if `mesh` is
+ * not from masu_mesh_create. */
+MASU_API MASU_MUST_USE masu_result masu_mesh_replace(masu_renderer *renderer, masu_model mesh,
+                                                     const masu_mesh_data *data,
+                                                     masu_detail *detail);
+
+/* Moves the vertices of a mesh from the next masu_frame on, for cloth, water or trails: any number
+ * of meshes per frame, within desc.reserve.mesh_upload, at 16 bytes per vertex. Triangles, texture
+ * coordinates and colours are kept. Velocities follow from the previous positions. The device
+ * refits the BVH to the new positions; after a large change masu_mesh_replace builds a better one.
+ * `positions` and `normals` as in masu_mesh_data; `vertex_count` must be that of the mesh. Errors
+ * as masu_mesh_replace. */
+MASU_API MASU_MUST_USE masu_result masu_mesh_deform(masu_renderer *renderer, masu_model mesh,
+                                                    const float *positions, const float *normals,
+                                                    uint32_t vertex_count, masu_detail *detail);
+
+/* Bytes that a mesh of these counts takes of desc.reserve.mesh_upload in masu_mesh_create and
+ * masu_mesh_replace: 16 per vertex, 8 more with textures and 4 with vertex colours; 12 per
+ * triangle, and up to 32 more if rays trace polygons. 0 for NULL. */
+MASU_API uint64_t masu_mesh_bytes(const masu_renderer *renderer, uint32_t vertex_count,
+                                  uint32_t triangle_count);
 
 #define MASU_NODE_NONE UINT32_MAX
 
@@ -1559,6 +1846,11 @@ typedef struct masu_material_state {
     float coat_roughness;    /* perceptual, 0..1; unused while `coat` is 0 */
     masu_material_mode mode; /* read only */
     float cutoff;            /* read only */
+    /* 1 .. desc.reserve.textures: this texture replaces the base-colour map of the material, its
+     * alpha included, and its emission map: a screen has a base colour of 0 and emits. 0: the maps
+     * of the scene, initially. Requires a base-colour map, whose coordinates and wrapping it has.
+     * Shadows and traced reflections have the maps of the scene. */
+    uint32_t texture;
 } masu_material_state;
 
 /* The first material with that name in the scene; id 0 if there is none. */
@@ -1585,12 +1877,62 @@ MASU_API MASU_MUST_USE masu_result masu_material_get(masu_renderer *renderer,
  *                         pipeline: `mode`; `cutoff`; `opacity` of a material that is not blended;
  *                         `specular` and `coat` if no opaque material of the scene has a
  *                         specular factor, a clear coat, mesoscale detail or an occlusion map;
- *                         `coat` if no material has a clear coat
+ *                         `coat` if no material has a clear coat; `texture` of a material without a
+ *                         base-colour map; `metallic` above 0 of a material with a thickness
+ *                         (KHR_materials_volume), which stays as it is
+ *   MASU_ERROR_LIMIT      `texture` is above desc.reserve.textures
  *   MASU_ERROR_STATE      desc.mutable_materials is 0 */
 MASU_API MASU_MUST_USE masu_result masu_material_set(masu_renderer *renderer,
                                                      masu_material material,
                                                      const masu_material_state *state,
                                                      masu_detail *detail);
+
+/* ---- Live scene: textures -------------------------------------------------------------------- */
+
+/* Textures of desc.reserve, which particles, trails, decals and materials show by their numbers, 1
+ * to desc.reserve.textures. All are layers of one image: sRGB-encoded red, green and blue, not
+ * multiplied by alpha, and alpha; transparent black after masu_load. The image has no mips: shaders
+ * average up to 4 x 4 samples per pixel, one for each texel along both axes of the pixel. Textures
+ * with up to four texels per pixel are thus filtered without aliasing; those with more alias
+ * gradually. */
+
+/* Writes texels from the next masu_frame on, which must be submitted. Copies them into the slot of
+ * that frame: call it when the slot is free, as masu_frame. Later writes replace earlier ones.
+ *   `rect`        within the texture; NULL: all of it
+ *   `texels`      4 bytes each, red, green, blue, alpha, from the upper left corner
+ *   `row_bytes`   from one row to the next, a multiple of 4; 0: no gaps
+ *
+ *   MASU_ERROR_ARGUMENT   a pointer is NULL, the rectangle is empty or not within the texture, or
+ *                         row_bytes is too small or not a multiple of 4
+ *   MASU_ERROR_LIMIT      `texture` is 0 or above desc.reserve.textures; or since the last frame
+ *                         there have been more than desc.reserve.texture_bytes bytes, or more than
+ *                         64 calls: write the remainder after the next frame
+ *   MASU_ERROR_STATE      masu_load has not finished */
+#define MASU_MAX_TEXTURE_WRITES 64u
+MASU_API MASU_MUST_USE masu_result masu_texture_write(masu_renderer *renderer, uint32_t texture,
+                                                      const VkRect2D *rect, const void *texels,
+                                                      uint32_t row_bytes, masu_detail *detail);
+
+/* The image of all textures, for commands of the host that copy, blit or render into it: a video, a
+ * mirror, the picture of another camera on a screen. Texture t is array layer t - 1. The host
+ * submits them to the same queue between two frames. Its first barrier waits for
+ * VK_PIPELINE_STAGE_ALL_COMMANDS_BIT and changes the layout of the layer from `layout`; its last
+ * one restores the layout and makes the writes available. The next frame begins with a barrier
+ * after all commands. Views of the host need a VkImageViewUsageCreateInfo with the usage below, and
+ * may have the format R8G8B8A8_UNORM, for values that are encoded already. */
+typedef struct masu_texture_image {
+    VkImage image;
+    VkFormat format;         /* R8G8B8A8_SRGB */
+    VkImageUsageFlags usage; /* SAMPLED, COLOR_ATTACHMENT, TRANSFER_SRC, TRANSFER_DST */
+    VkImageLayout layout;    /* SHADER_READ_ONLY_OPTIMAL */
+    uint32_t width, height, layers;
+} masu_texture_image;
+
+/* Fills `*out`. MASU_ERROR_ARGUMENT: a pointer is NULL. MASU_ERROR_STATE: masu_load has not
+ * finished, or desc.reserve.textures is 0. */
+MASU_API MASU_MUST_USE masu_result masu_texture_image_of(const masu_renderer *renderer,
+                                                         masu_texture_image *out,
+                                                         masu_detail *detail);
 
 /* ---- Queries: scene -------------------------------------------------------------------------- */
 
@@ -1908,7 +2250,7 @@ typedef struct masu_stats_info {
     uint64_t triangles;          /* in `draws`; with debug.counters after occlusion culling */
     uint64_t transparents;       /* transparent primitives drawn, each with its own draw */
     /* Entries of this frame that were drawn: not skipped, and not culled against the view. */
-    uint32_t particles, decals, lines;
+    uint32_t particles, decals, lines, trail_segments;
     uint64_t occlusion_tests; /* with debug.counters */
     /* Punctual lights of the scene; those whose bounding sphere intersects the view. */
     uint32_t lights, lights_in_view;

@@ -172,6 +172,12 @@ public:
         call([&](masu_detail *d) { return masu_model_add(m_, id_, at.data(), &out, d); });
         return {m_, out};
     }
+    void replace(const masu_mesh_data &to) { /* of renderer::create_mesh */
+        call([&](masu_detail *d) { return masu_mesh_replace(m_, id_, &to, d); });
+    }
+    void deform(const float *positions, const float *normals, std::uint32_t count) {
+        call([&](masu_detail *d) { return masu_mesh_deform(m_, id_, positions, normals, count, d); });
+    }
     void remove() {
         call([&](masu_detail *d) { return masu_model_remove(m_, id_, d); });
         id_ = {};
@@ -255,6 +261,11 @@ public:
 
     instance find_instance(const std::string &name) const {
         return {m_, masu_instance_find(m_, name.c_str())};
+    }
+    model create_mesh(std::uint32_t kind, const masu_mesh_data &data, const rows &at) {
+        masu_model out;
+        call([&](masu_detail *d) { return masu_mesh_create(m_, kind, &data, at.data(), &out, d); });
+        return {m_, out};
     }
     model find_model(const std::string &name) const {
         return {m_, masu_model_find(m_, name.c_str())};

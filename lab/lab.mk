@@ -1,7 +1,7 @@
-# lab.mk: the laboratory: the program masu-lab, its tests, and the targets that run it. It is built apart, by
-# config=lab: with the define MASU_LAB, into build/lab. Nothing outside lab/ includes or links anything of it.
+# lab.mk: the laboratory: the program masu-lab, its tests, and the targets that run it. It is a separate build,
+# config=lab: with the define MASU_LAB, in build/lab. Nothing outside lab/ includes or links parts of it.
 #
-# In every other config the targets here start make again with config=lab. Shaders, tables and scenes are those of the
+# In every other config the targets here start make again with config=lab. Shaders, tables and scenes are from the
 # main build (MADE).
 
 ifneq ($(config),lab)
@@ -42,12 +42,12 @@ reference-blender: lab $(BUILD)/bin/masu-bake ## write lab/notes/reference_blend
 	$(V)blender -b --factory-startup --python-exit-code 1 -P lab/reference/blender.py -- \
 	    $(BUILD)/bin/masu-bake $(LAB_BUILD)/bin/masu-lab lab/notes/reference_blender.csv
 
-# ---- Worlds: written by masu-lab and baked like any scene. Not part of `all` or of the tests. ----
+# ---- Worlds: written by masu-lab, and baked like other scenes. Not part of `all` or of the tests. ----
 
 $(LAB_BUILD)/bin/masu-lab: force | $(GENERATED)
 	+$(V)$(lab_make) $@
 
-# Both descriptions of a world are written at once: by day and by night.
+# Both descriptions of a world are written together: by day and by night.
 $(BUILD)/worlds/city/city.json $(BUILD)/worlds/city/city_night.json &: $(LAB_BUILD)/bin/masu-lab
 	@mkdir -p $(@D)
 	$(V)$< world city $(@D) --quiet
@@ -82,7 +82,7 @@ LAB_LINKED  := $(LAB_ARCHIVE) $(call tool_archive,meso) $(MEASURE_ARCHIVES) $(BA
 # Half of the objects do not depend on MASU_LAB.
 reuse = lab/reuse.sh $(MADE)/obj/$*.o $@ '$(subst $() -DMASU_LAB,,$(CC) $(ALL_FLAGS))' ||
 $(BUILD)/obj/lab/%.o: FOLDER_FLAGS := -D_POSIX_C_SOURCE=200809L -I.
-# Sums that are the same for any flags of the machine.
+# So that sums are the same with any machine flags.
 $(BUILD)/obj/lab/reference/%.o: FOLDER_FLAGS := -D_POSIX_C_SOURCE=200809L -I. -ffp-contract=off
 $(BUILD)/obj/lab/tests/%.o: FOLDER_FLAGS := -D_POSIX_C_SOURCE=200809L -UNDEBUG -I.
 
@@ -97,7 +97,7 @@ $(LAB): LIBS = $(MASU_LIBS) $(BAKE_LIBS)
 $(LAB): $(BUILD)/obj/lab/command/main.o $(BUILD)/obj/tests/support/simulated_gpu.o $(KEEP_LOADED) $(LAB_LINKED)
 	$(link)
 
-# masu conform finds a suite and its scenes beside itself.
+# masu conform looks for suites and their scenes next to itself.
 LAB_SUITES := $(patsubst lab/%,$(BUILD)/%,$(wildcard lab/suites/*.json))
 $(LAB_SUITES): $(BUILD)/%.json: lab/%.json
 	@mkdir -p $(@D)
@@ -108,10 +108,10 @@ lab-programs: $(LAB) $(BUILD)/bin/masu $(BUILD)/bin/masu-bake $(LAB_SUITES)
 
 # ---- Scenes with every march ---------------------------------------------------------------------
 
-# For masu-lab study march: each .sdf scene, and its double-precision truth beside it. For study baseline: engine.
+# For masu-lab study march: each .sdf scene, with its double-precision ground truth. For study baseline: engine.
 MARCH_SCENES := $(patsubst scenes/%.sdf,$(BUILD)/march/%.masu,$(wildcard scenes/*.sdf))
 MARCH_SUITE  := $(patsubst %,$(BUILD)/scenes/extreme/%.masu,displace_sine rods)
-# Kept, though made by chains of pattern rules.
+# Kept, although they are intermediate files of pattern rules.
 .SECONDARY: $(LAB_SPIRV:.spv.h=.spv) $(LAB_SPIRV:.spv.h=.opt.spv) $(MARCH_SCENES:.masu=.truth.c) \
     $(MARCH_SUITE:.masu=.truth.c) $(call objects,$(LAB_TESTS_SOURCES))
 
@@ -135,8 +135,8 @@ $(eval $(call stiff_truth,$(BUILD)/scenes/extreme))
 # ---- Targets that run it -------------------------------------------------------------------------
 
 # masu-lab study $(STUDY) on each of its scenes, names as march/city, scenes/engine, worlds/forza, with STUDY_ARGS.
-# The worlds are measured if they are baked (make worlds). march is one run on all scenes, which it sums up; upscale
-# has an image of its own.
+# The worlds are measured if they are baked (make worlds). march is one run on all scenes, for its summary; upscale
+# generates its image.
 STUDY ?= march
 baked_worlds = $(patsubst $(MADE)/%.masu,%,$(wildcard $(WORLDS:%=$(MADE)/worlds/%.masu)))
 SCENES_march       := $(MARCH_SCENES:$(BUILD)/%.masu=%)
@@ -184,7 +184,7 @@ ladders: $(LAB)
 	$(LAB) ladder $$files > $(BUILD)/ladder_tables.h && \
 	{ cmp -s $(BUILD)/ladder_tables.h src/quality/ladder_tables.h || cp $(BUILD)/ladder_tables.h src/quality/ladder_tables.h; }
 
-# From what make bench has left in build/report; merging a folder into itself chooses its rungs anew.
+# From the results of make bench in build/report; merging a folder into itself selects its rungs again.
 ladder_folder = $(MADE)/report/$(lastword $(subst =, ,$(1)))
 ladder_costs = $(LAB) ladder --costs $(call ladder_scene,$(1))=$(call ladder_folder,$(1))$(if $(filter \
     %=forza,$(1)),=146.5) && $(MADE)/bin/masu bench --merge $(call ladder_folder,$(1)) --out $(call ladder_folder,$(1)) && \
@@ -193,14 +193,14 @@ ladder-costs: $(LAB)
 	$(V)$(foreach l,$(LADDERS),$(call ladder_costs,$(l)) &&) true
 	$(V)$(MADE)/bin/masu bench --ladder docs/report/*/ladder.json > docs/report/ladders.txt
 
-# forza at a time at which a car is close, as in make bench.
+# forza at a time when a car is close, as in make bench.
 ladder_device = $(firstword $(subst =, ,$(1)))=$(call ladder_scene,$(1))=$(LADDER_FOLDER)/$(lastword $(subst =, \
     ,$(1)))/ladder.json$(if $(filter %=forza,$(1)),=146.5)
 ladder-devices: $(LAB)
 	$(V)$(LAB) ladder --devices $(foreach l,$(LADDERS),$(call ladder_device,$(l))) > $(BUILD)/ladder_devices.h
 	$(V)cp $(BUILD)/ladder_devices.h src/quality/ladder_devices.h
 
-# Each beside the reference: visibility, indirect light, small lamps, the settled still.
+# Comparisons with the reference: visibility, indirect light, small lamps, images of a still camera.
 LIGHT = $(MADE)/light
 .PHONY: light
 light: $(LAB)

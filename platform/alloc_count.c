@@ -1,4 +1,4 @@
-/* alloc_count.c: see alloc_count.h. The counters are this file's own state, as malloc's is. */
+/* alloc_count.c: see alloc_count.h. The counters are static, like malloc's state. */
 #define _GNU_SOURCE
 #include "alloc_count.h"
 
@@ -34,7 +34,7 @@ uint64_t masu_allocs_of_process(void) { return atomic_load(&process_count); }
 
 #ifdef MASU_INTERPOSER
 
-/* glibc's own names of the real functions, exported for interposers like this one. */
+/* glibc's names of the real functions, exported for interposers like this one. */
 extern void *__libc_malloc(size_t bytes);
 extern void *__libc_calloc(size_t count, size_t bytes);
 extern void *__libc_realloc(void *p, size_t bytes);
@@ -77,7 +77,7 @@ int posix_memalign(void **out, size_t alignment, size_t bytes) {
 
 /* ---- Vulkan callbacks ------------------------------------------------------------------------ */
 
-/* Each block carries its base and size in front, so that it can be grown and freed. */
+/* Each block is preceded by its base and size, so that it can be reallocated and freed. */
 typedef struct block_head {
     void *base;
     size_t bytes;

@@ -37,7 +37,7 @@ int masu_atomic_file_lock_stale(const char *path, bool folder) {
         return -1;
     int file = open(path, O_RDONLY | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
     if (file < 0) return -1;
-    /* Who has renamed it meanwhile has it no more under this name. */
+    /* If its owner has renamed it meanwhile, the file is no longer at this path. */
     if (flock(file, LOCK_EX | LOCK_NB) == 0 && is_at(file, path)) return file;
     (void)close(file);
     return -1;
@@ -92,7 +92,7 @@ static void replace_draft(const char *old, const char *name) {
     }
 }
 
-/* Async-signal-safe. The default action, which SA_RESETHAND restores, then ends the process. */
+/* Async-signal-safe. The default action, restored by SA_RESETHAND, then ends the process. */
 static void remove_drafts(int number) {
     for (int i = 0; i < DRAFTS_MAX && getpid() == drafts_owner; i++)
         if (drafts[i]) (void)unlink(drafts[i]);
@@ -136,7 +136,7 @@ int masu_atomic_file_open(masu_atomic_file *draft, const char *target) {
         }
     }
     if (draft->file >= 0) {
-        if (drafts_owner != getpid()) /* those of the parent are not ours */
+        if (drafts_owner != getpid()) /* the parent's files do not belong to a forked child */
             for (int i = 0; i < DRAFTS_MAX; i++) drafts[i] = NULL;
         drafts_owner = getpid();
         replace_draft(NULL, draft->name);

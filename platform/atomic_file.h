@@ -21,20 +21,20 @@ typedef struct masu_atomic_file {
 int masu_atomic_file_open(masu_atomic_file *draft, const char *target);
 /* Writes all bytes. Returns 0, or errno. */
 int masu_atomic_file_write(masu_atomic_file *draft, const void *bytes, size_t count);
-/* Flushes the file to disk and renames it to the target. Returns 0, or errno; then neither file is
- * there. */
+/* Flushes the file to disk and renames it to the target. Returns 0, or errno, and then removes the
+ * temporary file. */
 int masu_atomic_file_commit(masu_atomic_file *draft, const char *target);
 void masu_atomic_file_discard(masu_atomic_file *draft);
-/* For the start of a program: SIGINT, SIGTERM and SIGHUP remove the temporary files of this process
- * and end it. Signals that are ignored or already handled stay so. A file beyond the size limit of
- * the process makes the write fail instead of ending the process by SIGXFSZ. */
+/* Call it at the start of a program: SIGINT, SIGTERM and SIGHUP then remove the temporary files of
+ * this process and end it. Signals that are ignored or already handled are unchanged. A file beyond
+ * the size limit of the process makes the write fail instead of ending the process by SIGXFSZ. */
 void masu_atomic_file_catch_signals(void);
 /* Removes only the stale files of `target`. */
 void masu_atomic_file_remove_stale(const char *target);
 
-/* The lock itself, for folders too. lock: of a file that was just created; false: another process
- * has removed it. lock_stale: an open file that now holds the lock of a stale file or folder, or
- * -1. */
+/* The lock itself, also for folders. lock: locks a file that was just created; false: another
+ * process has removed it. lock_stale: an open file that now holds the lock of a stale file or
+ * folder, or -1. */
 bool masu_atomic_file_lock(int file, const char *path);
 int masu_atomic_file_lock_stale(const char *path, bool folder);
 

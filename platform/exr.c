@@ -1,9 +1,9 @@
 /* exr.c: OpenEXR files of one part, scan lines, without compression or with RLE, ZIPS or ZIP
- * (OpenEXR "File Layout" of the Academy Software Foundation). Written: 32-bit floats B, G, R
- * without compression.
+ * (OpenEXR "File Layout" of the Academy Software Foundation). Writes 32-bit floats B, G, R without
+ * compression.
  *
- * A file is untrusted: every read of the header and of a chunk is bounded by the bytes that are
- * left. */
+ * Files are untrusted: every read of the header and of a chunk is bounded by the remaining
+ * bytes. */
 #include "image.h"
 #include "image_parts.h"
 
@@ -155,7 +155,7 @@ static bool take_text(reader *r, const char **out) {
     return true;
 }
 
-/* False: damaged, or subsampled. */
+/* Returns false if damaged or subsampled. */
 static bool read_channels(reader value, exr_header *h) {
     static const char *const names[] = {"R", "G", "B", "Y"};
     bool found[4] = {false};
@@ -214,7 +214,8 @@ static bool read_header(reader *r, exr_header *h) {
 
 /* ---- Reading the samples --------------------------------------------------------------------- */
 
-/* Signed counts: below 0 that many bytes follow, else one byte is repeated count + 1 times. */
+/* Signed counts: if negative, that many bytes follow; otherwise one byte is repeated count + 1
+ * times. */
 static bool unpack_runs(const uint8_t *from, size_t count, uint8_t *to, size_t bytes) {
     const uint8_t *end = from + count, *full = to + bytes;
     while (from < end) {
@@ -241,7 +242,7 @@ static void undo_prediction(const uint8_t *from, size_t bytes, uint8_t *to, uint
 static bool unpack(const exr_header *h, const uint8_t *from, size_t count, uint8_t *scratch,
                    uint8_t *to, size_t bytes) {
     uint8_t last = 0;
-    /* Stored where compression gains nothing. */
+    /* Stored uncompressed if compression gains nothing. */
     if (count == bytes) return memcpy(to, from, bytes), true;
     if (h->compression == COMPRESSION_NONE || count > bytes) return false;
     bool good = h->compression == COMPRESSION_RLE ? unpack_runs(from, count, scratch, bytes)
@@ -288,7 +289,7 @@ static bool read_chunks(reader *r, const exr_header *h, uint8_t *scratch, float 
     const uint32_t chunks = (h->height + rows - 1) / rows;
     const size_t row = h->row * h->width;
     const uint8_t *p;
-    /* The table of offsets: chunks say where they belong. */
+    /* The table of offsets is skipped: chunks contain their row. */
     if (!take(r, 8 * (size_t)chunks, &p)) return false;
     for (uint32_t i = 0; i < chunks; i++) {
         uint32_t y, bytes;
@@ -308,7 +309,7 @@ bool masu_image_is_exr(const uint8_t *bytes, size_t count) {
     return count >= 8 && number_of(bytes) == MAGIC;
 }
 
-/* One line about what this reader cannot read; NULL: nothing. */
+/* One line about an unsupported feature; NULL: none. */
 static const char *unread(uint32_t flags, const exr_header *h) {
     if ((flags & 0xFF) != VERSION) return "found another version of OpenEXR, expected 2";
     if (flags & TILED) return "found tiles, expected scan lines";

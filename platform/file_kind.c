@@ -65,7 +65,7 @@ static masu_file_kind kind_of_content(const char *text, size_t count) {
     return MASU_FILE_DESCRIPTION;
 }
 
-/* -1: there is no such regular file. */
+/* -1: no such regular file. */
 static ssize_t read_start(const char *path, char *text) {
     struct stat about;
     int file = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
@@ -108,7 +108,7 @@ const char *masu_file_hint(const char *path, const void *bytes, size_t count,
     return "";
 }
 
-/* Whether `dot` is one of the ends, which have a space between them. */
+/* Whether `dot` is one of the space-separated ends. */
 static bool is_one_of(const char *dot, const char *ends_of) {
     size_t n = strlen(dot);
     for (const char *at = ends_of; *at;) {

@@ -1,5 +1,5 @@
-/* headless.c: instance, device, queue and submits of the headless host; images are in
- * headless_image.c. */
+/* headless.c: instance, device, queue and submits of the headless host; headless_image.c has the
+ * images. */
 #define _POSIX_C_SOURCE 200809L
 #include "headless.h"
 
@@ -32,8 +32,8 @@ static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlag
                                                  void *user) {
     masu_headless *host = user;
     (void)severity;
-    /* The loader reports its own search for drivers as "general": what a missing file or a second
-     * driver means is not ours to judge. The layers' findings are validation or performance. */
+    /* The loader reports its search for drivers as "general"; a missing file or a second driver is
+     * not an error here. The layers' findings are validation or performance. */
     if (!(types & VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT)) return VK_FALSE;
     const char *text = data->pMessage ? data->pMessage : "";
     if (host->messages++ == 0)
@@ -176,7 +176,7 @@ static bool has_extensions(VkPhysicalDevice device, const char *const *names, ui
 
 static const char *const swapchain_extension[] = {VK_KHR_SWAPCHAIN_EXTENSION_NAME};
 
-/* True of a host without a window. */
+/* Always true for a host without a window. */
 static bool can_present(masu_headless *host, VkPhysicalDevice device) {
     const masu_headless_desc *d = &host->desc;
     if (d->surface_extension_count && !has_extensions(device, swapchain_extension, 1)) return false;
@@ -344,7 +344,7 @@ void masu_headless_settle(masu_headless *host) {
     }
 }
 
-#define WAITS 120u /* of a second: a stopped process loses one of them at most */
+#define WAITS 120u /* per timeout: a stopped process loses at most one of them */
 
 VkResult masu_headless_wait_fence(const masu_headless *host, VkFence fence) {
     bool cpu = host->properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;

@@ -1,5 +1,5 @@
-/* headless_image.c: target and source images of the headless host. Each has memory of its own: this
- * is the host's side, outside the renderer's box. */
+/* headless_image.c: target and source images of the headless host. Each has a separate allocation,
+ * because they belong to the host, not to the renderer's memory block. */
 #include "headless.h"
 
 #include <stdio.h>

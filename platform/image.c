@@ -1,10 +1,8 @@
-/*
- * image.c: see image.h. Order: files, then PNG, then PFM. exr.c: OpenEXR.
+/* image.c: see image.h. Order: files, then PNG, then PFM. exr.c: OpenEXR.
  *
- * stb does the PNG coding. It trusts chunk lengths more than a stranger's file deserves and ignores
- * checksums, so a file is first walked chunk by chunk here; only one that is whole, and within the
- * limits by its own header, reaches the decoder.
- */
+ * stb decodes and encodes PNG. It trusts chunk lengths too much for untrusted files and ignores
+ * checksums. So the chunks are validated here first; the decoder only receives files that are
+ * complete and whose header is within the limits. */
 #ifndef _XOPEN_SOURCE
 #define _XOPEN_SOURCE 700 /* realpath, fsync */
 #endif
@@ -24,15 +22,16 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* A few kilobytes of PNG can unfold without end. 16-bit RGBA of the largest size is half this. */
+/* A few kilobytes of PNG can decompress to any size. 16-bit RGBA of the largest size is half
+ * this. */
 #define DECODER_BYTES_MAX ((size_t)1 << 30)
 
 static void *bounded_realloc(void *block, size_t bytes) {
     return bytes > DECODER_BYTES_MAX ? NULL : realloc(block, bytes);
 }
 
-/* Hidden: a shared library of the process may carry its own stb, built with other options, and must
- * not be given this one. */
+/* Hidden: a shared library in the process may contain its own stb, built with other options, which
+ * must not resolve to this one. */
 #if defined(__GNUC__)
 #define STBIDEF extern __attribute__((visibility("hidden")))
 #else
@@ -94,7 +93,8 @@ bool masu_image_size_allowed(const char *path, uint32_t width, uint32_t height, 
 
 /* ---- files ---- */
 
-/* Until `count` bytes or the end of the file; returns how many, or -1 with errno set. */
+/* Reads until `count` bytes or the end of the file; returns the number of bytes, or -1 with errno
+ * set. */
 static ssize_t read_up_to(int file, uint8_t *bytes, size_t count) {
     size_t done = 0;
     while (done < count) {
@@ -170,7 +170,7 @@ static bool write_all(int file, const uint8_t *bytes, size_t count) {
     return true;
 }
 
-/* A FIFO without a reader fails with ENXIO instead of waiting for one. */
+/* A FIFO without a reader fails with ENXIO instead of blocking. */
 static int open_straight(const char *path, char *error, size_t error_size) {
     struct stat info;
     int file = open(path, O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
@@ -200,7 +200,7 @@ static bool write_straight(const char *path, const void *bytes, size_t count, ch
     return good || fail(error, error_size, "%s: cannot write: %s", path, strerror(why));
 }
 
-/* Without leftovers, whenever it ends: atomic_file.h. */
+/* Leaves no temporary files behind: atomic_file.h. */
 static bool write_beside_and_rename(const char *path, const char *target, const void *bytes,
                                     size_t count, char *error, size_t error_size) {
     masu_atomic_file draft;
@@ -215,7 +215,7 @@ static bool write_beside_and_rename(const char *path, const char *target, const 
     return !problem || fail(error, error_size, "%s: cannot write: %s", path, strerror(problem));
 }
 
-/* What stands in the way before anything is tried. */
+/* Checks for obstacles before writing. */
 static bool may_write(const char *path, bool *exists, bool *special, char *error,
                       size_t error_size) {
     struct stat info;
@@ -223,7 +223,7 @@ static bool may_write(const char *path, bool *exists, bool *special, char *error
     *special = *exists && !S_ISREG(info.st_mode);
     if (*exists && S_ISDIR(info.st_mode))
         return fail(error, error_size, "%s: cannot write: it is a directory", path);
-    /* Renaming over a read-only file would succeed; its owner meant it to stay. */
+    /* Renaming over a read-only file would succeed, against its owner's intention. */
     if (*exists && access(path, W_OK) != 0)
         return fail(error, error_size, "%s: cannot write: %s", path, strerror(errno));
     return true;
@@ -251,7 +251,7 @@ bool masu_folder_make(const char *path, char *error, size_t error_size) {
 bool masu_file_writable(const char *path, char *error, size_t error_size) {
     bool exists, special;
     if (!may_write(path, &exists, &special, error, error_size)) return false;
-    /* Left open: to close a FIFO would end the input of its reader. */
+    /* Left open: closing a FIFO would end its reader's input. */
     if (special) return open_straight(path, error, error_size) >= 0;
     char *resolved = exists ? realpath(path, NULL) : NULL;
     masu_atomic_file draft;
@@ -279,7 +279,7 @@ static uint32_t big_endian(const uint8_t *p) {
     return (uint32_t)p[0] << 24 | (uint32_t)p[1] << 16 | (uint32_t)p[2] << 8 | p[3];
 }
 
-/* CRC-32 of ISO 3309, four bits at a time: a table that fits in one line of sight. */
+/* CRC-32 of ISO 3309, four bits at a time, which keeps the table small. */
 static uint32_t crc32_of(const uint8_t *bytes, size_t count) {
     static const uint32_t nibble[16] = {
         0x00000000u, 0x1DB71064u, 0x3B6E20C8u, 0x26D930ACu, 0x76DC4190u, 0x6B6B51F4u,
@@ -308,7 +308,7 @@ static bool chunk_is_whole(const char *path, const uint8_t *chunk, size_t left, 
     return true;
 }
 
-/* The IHDR chunk: its size, first place and the limits on the picture. */
+/* Checks the IHDR chunk: its size, its position as first chunk, and the limits of the image. */
 static bool header_is_allowed(const char *path, const uint8_t *chunk, char *error,
                               size_t error_size) {
     if (memcmp(chunk + 4, "IHDR", 4) != 0 || big_endian(chunk) != 13) {
@@ -428,7 +428,8 @@ struct pfm_header {
     size_t length; /* of the header, bytes */
 };
 
-/* The header is text: kind, width, height, scale, each ended by white space, then the samples. */
+/* The header is text: kind, width, height, scale, each followed by white space, then the
+ * samples. */
 static bool parse_pfm(const uint8_t *bytes, size_t count, struct pfm_header *header) {
     char text[PFM_HEADER_MAX + 1];
     size_t kept = count < PFM_HEADER_MAX ? count : PFM_HEADER_MAX;

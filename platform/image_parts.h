@@ -1,4 +1,5 @@
-/* image_parts.h: what the readers of single formats share; only image.c and exr.c include it. */
+/* image_parts.h: functions shared by the readers of single formats; only image.c and exr.c include
+ * it. */
 #ifndef MASU_PLATFORM_IMAGE_PARTS_H
 #define MASU_PLATFORM_IMAGE_PARTS_H
 
@@ -12,11 +13,11 @@ __attribute__((format(printf, 3, 4)))
 #endif
 bool masu_image_fail(char *error, size_t error_size, const char *format, ...);
 
-/* Whether an image of that size is read or written at all. */
+/* Whether images of that size are allowed. */
 bool masu_image_size_allowed(const char *path, uint32_t width, uint32_t height, char *error,
                              size_t error_size);
 
-/* A zlib stream of exactly `bytes` bytes. */
+/* Decompresses a zlib stream of exactly `bytes` bytes. */
 bool masu_image_inflate(const uint8_t *from, size_t count, uint8_t *to, size_t bytes);
 
 bool masu_image_is_exr(const uint8_t *bytes, size_t count);

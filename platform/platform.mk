@@ -1,4 +1,4 @@
-# platform.mk: what a host does (headless Vulkan host, PNG, clock), for the programs and the tests.
+# platform.mk: parts of a host (headless Vulkan host, PNG, clock), for the programs and the tests.
 # Not installed.
 
 $(BUILD)/lib/libmasu-platform.a: $(call objects,$(wildcard platform/*.c))

@@ -66,7 +66,7 @@ static bool load(masu_session *s, char *error, size_t size) {
     while ((result = masu_load(s->m, &commands, &s->detail)) == MASU_INCOMPLETE) {
         if (!masu_headless_run(&s->host, commands.buffer, error, size)) return false;
     }
-    free(s->blob); /* the renderer has what it needs */
+    free(s->blob); /* the renderer has its own copy */
     s->blob = NULL;
     return result == MASU_OK || failed(s, NULL, error, size);
 }
@@ -88,7 +88,7 @@ bool masu_session_start(masu_session *s, char *error, size_t size) {
 masu_desc masu_session_resolved(const masu_desc *desc) {
     masu_desc d = *desc;
     d.bytes = sizeof d;
-    if (masu_desc_resolve(&d, &d, NULL)) return *desc; /* it fails for another size only */
+    if (masu_desc_resolve(&d, &d, NULL)) return *desc; /* fails only for another struct size */
     return d;
 }
 
@@ -155,7 +155,7 @@ void masu_session_close(masu_session *s) {
 
 bool masu_session_frame(masu_session *s, const masu_frame_desc *frame, bool wait,
                         masu_commands *commands, char *error, size_t error_size) {
-    /* The slot that comes round next must be free before masu_frame writes to it. */
+    /* The next slot must be free before masu_frame writes to it. */
     if (!masu_headless_wait(&s->host, s->next_slot, error, error_size)) return false;
     masu_frame_desc f = *frame;
     if (!f.bytes) f.bytes = sizeof f;

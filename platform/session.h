@@ -1,9 +1,9 @@
-/* session.h: a scene file (or none), a headless host, targets and a renderer in one block: what
- * each tool and most tests need before the first frame. Where a port has its own device and memory,
- * a session has the plain ones.
+/* session.h: a scene file (or none), a headless host, targets and a renderer in one block: the
+ * setup that tools and most tests need before the first frame. A real port has its own device and
+ * memory instead.
  *
- * With MASU_DENY=all in the environment a session is that of a device which offers nothing that is optional: no
- * compressed textures, anisotropy, ray queries, 16-bit floats, unified memory or timestamps. */
+ * With MASU_DENY=all in the environment a session behaves like a device without optional features:
+ * no compressed textures, anisotropy, ray queries, 16-bit floats, unified memory or timestamps. */
 #ifndef MASU_SESSION_H
 #define MASU_SESSION_H
 
@@ -11,18 +11,19 @@
 #include "masu.h"
 
 typedef struct masu_session_desc {
-    const char *scene_path; /* NULL: none */
+    const char *scene_path; /* NULL: no scene */
     masu_desc
-        desc; /* bytes, vulkan (but its pipelines), scene, targets.images and .views are filled in; the rest is as given.
-               * vulkan.max_anisotropy: at most what the device has; below 0: the host's usual_anisotropy */
+        desc; /* masu_session_open fills in bytes, vulkan (except its pipelines), scene,
+               * targets.images and .views; the rest is as given. vulkan.max_anisotropy: limited to
+               * the device's; below 0: the host's usual_anisotropy */
     masu_headless_desc host;
     uint32_t target_count; /* 0: 1 */
-    bool no_renderer;      /* stop before masu_init; masu_session_start goes on */
+    bool no_renderer;      /* stop before masu_init; masu_session_start continues */
 } masu_session_desc;
 
 typedef struct masu_session {
     masu_headless host;
-    masu_desc desc; /* as given to masu_init */
+    masu_desc desc; /* as passed to masu_init */
     masu_memory need;
     masu_detail detail; /* of the masu_* call that failed */
     masu_scene scene;
@@ -37,21 +38,21 @@ typedef struct masu_session {
 
 bool masu_session_denied(void); /* MASU_DENY=all */
 
-/* On false `error` says why in one line and everything is closed again. The session must not be
- * moved afterwards. */
+/* On false `error` has one line and everything is closed. The session must not be moved
+ * afterwards. */
 bool masu_session_open(const masu_session_desc *desc, masu_session *s, char *error,
                        size_t error_size);
 void masu_session_close(masu_session *s);
 
-/* After no_renderer: asks for the memory, makes the renderer from s->desc and loads the scene. The
+/* After no_renderer: queries the memory, creates the renderer from s->desc and loads the scene. The
  * session stays open on failure. */
 bool masu_session_start(masu_session *s, char *error, size_t error_size);
 
-/* masu_desc_resolve of a description whose `bytes` may be 0. */
+/* masu_desc_resolve for a description whose `bytes` may be 0. */
 masu_desc masu_session_resolved(const masu_desc *desc);
 
-/* One frame: waits for its slot, writes it, submits it. With `wait` it has finished on return.
- * frame->bytes may be 0. */
+/* Renders one frame: waits for its slot, writes and submits it. With `wait` it has finished on
+ * return. frame->bytes may be 0. */
 bool masu_session_frame(masu_session *s, const masu_frame_desc *frame, bool wait,
                         masu_commands *commands, char *error, size_t error_size);
 

@@ -1,6 +1,6 @@
 /*
- * background.comp: the lit picture before transparent surfaces and in alpha its depth, in six halvings
- * (light/background.glsl). An invocation reduces 8x8 pixels, a workgroup 64x64; pixels beyond the edge repeat the last
+ * background.comp: the lit picture before transparent surfaces and in alpha its depth, in six halvings, with
+ * MASU_REFRACTED also at full size (light/background.glsl). An invocation reduces 8x8 pixels, a workgroup 64x64; pixels beyond the edge repeat the last
  * ones.
  */
 #version 440
@@ -21,21 +21,32 @@ const float brightest = 4096.0; /* as in transparents.frag */
 
 shared vec4 means[MASU_GROUP * MASU_GROUP];
 
+#ifdef MASU_REFRACTED
+const uint largest = 0u;
+#else
+const uint largest = 1u;
+#endif
+
+void keep(uint level, uvec2 tiles, uvec2 at, vec4 mean)
+{
+    MASU_STORE_HALF(background_image, masu_background_at(level, largest, tiles) + at, mean);
+}
+
 vec4 mean_of_pixels(uvec2 at)
 {
     ivec2 last = max(ivec2(pc.render_width, pc.render_height) - 1, 0);
     vec4 sum = vec4(0.0);
     for (uint k = 0u; k < 4u; k++) {
-        ivec2 pixel = min(ivec2(at * 2u + uvec2(k & 1u, k >> 1)), last);
-        sum.rgb += masu_sane(texelFetch(hdr_image, pixel, 0).rgb, 0.0, brightest);
-        sum.a += masu_sane(texelFetch(depth_image, pixel, 0).r, 0.0, 1.0);
+        uvec2 own = at * 2u + uvec2(k & 1u, k >> 1);
+        ivec2 pixel = min(ivec2(own), last);
+        vec4 seen = vec4(masu_sane(texelFetch(hdr_image, pixel, 0).rgb, 0.0, brightest),
+                         masu_background_depth(masu_sane(texelFetch(depth_image, pixel, 0).r, 0.0, 1.0)));
+#ifdef MASU_REFRACTED
+        keep(0u, gl_NumWorkGroups.xy, own, seen);
+#endif
+        sum += seen;
     }
     return sum * 0.25;
-}
-
-void keep(uint level, uvec2 tiles, uvec2 at, vec4 mean)
-{
-    MASU_STORE_HALF(background_image, masu_background_at(level, tiles) + at, mean);
 }
 
 void main()

@@ -45,7 +45,8 @@ float slope_of(vec3 n, uint k)
 
 void main()
 {
-    masu_instance_data m = instances[masu_instance_id()];
+    uint id = masu_instance_id();
+    masu_instance_data m = instances[id];
     uint k = min(push.cascade, uint(MASU_CASCADES_MAX - 1));
     vec3 thinner = position - push.rise * masu_oct_decode(oct_normal);
     precise vec3 at = masu_point_seen_from(m, thinner, shadow.origin_hi[k].xyz,
@@ -55,7 +56,7 @@ void main()
     precise float z = dot(shadow.row2[k].xyz, at) + shadow.rect[k].w;
     z -= MASU_SHADOW_BIAS * slope_of(masu_turned_normal(m), k);
 #ifdef MASU_TEXTURES
-    out_texcoord = texcoord;
+    out_texcoord = masu_moved_texcoord(id, texcoord);
 #endif
     /* What is nearer to the sun than the box is flattened onto its near side, not clipped. */
     gl_Position = vec4(x, y, min(z, 1.0), 1.0);

@@ -19,10 +19,19 @@
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D depth_image;
-layout(set = MASU_SET_PASS, binding = 1, rgba8) uniform image2D albedo_image;
-layout(set = MASU_SET_PASS, binding = 2, r32ui) uniform uimage2D normal_image;
+#ifdef MASU_LIVE_TEXTURES
+#include "shared/live_textures.glsl"
+layout(set = MASU_SET_PASS, binding = 1) uniform sampler2DArray textures_image;
+#define FIRST_WRITE 2
+#define DECAL_VEC4S MASU_TEXTURED_DECAL_VEC4S
+#else
+#define FIRST_WRITE 1
+#define DECAL_VEC4S MASU_DECAL_VEC4S
+#endif
+layout(set = MASU_SET_PASS, binding = FIRST_WRITE, rgba8) uniform image2D albedo_image;
+layout(set = MASU_SET_PASS, binding = FIRST_WRITE + 1, r32ui) uniform uimage2D normal_image;
 /* Defined only at pixels that emit. */
-layout(set = MASU_SET_PASS, binding = 3, rgba16f) uniform image2D hdr_image;
+layout(set = MASU_SET_PASS, binding = FIRST_WRITE + 2, rgba16f) uniform image2D hdr_image;
 
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SPRITES, std430) readonly buffer Sprites
 {
@@ -65,6 +74,31 @@ void cover(inout masu_surface s, vec3 paint, float metallic, float share)
     s.emissive *= 1.0 - share;
 }
 
+#ifdef MASU_LIVE_TEXTURES
+/* Where the ray of a neighbouring pixel meets the plane of the surface, relative to the point; seen edge-on not far. */
+vec3 to_neighbour(vec3 ray, vec3 rel, vec3 n)
+{
+    float away = dot(n, rel), towards = dot(n, ray);
+    float far = abs(towards) > 0.02 * masu_sqrt(dot(ray, ray)) ? clamp(away / towards, 0.0, masu_huge) : 0.0;
+    return far > 0.0 ? ray * far - rel : vec3(0.0);
+}
+
+/* Colour and opacity of a decal at a point, times those of its texture. dx, dy: to the neighbours. */
+vec4 textured(uint at, vec4 color, vec3 rel, vec3 dx, vec3 dy)
+{
+    uint number = floatBitsToUint(sprites[at + 8u].x);
+    if (number == 0u) {
+        return color;
+    }
+    vec4 row0 = sprites[at], row1 = sprites[at + 1u];
+    vec2 p = vec2(dot(row0.xyz, rel) + row0.w, dot(row1.xyz, rel) + row1.w);
+    vec2 px = vec2(dot(row0.xyz, dx), dot(row1.xyz, dx)), py = vec2(dot(row0.xyz, dy), dot(row1.xyz, dy));
+    const vec2 half_box = vec2(0.5, -0.5);
+    return color * masu_live_mean(textures_image, float(number) - 1.0, sprites[at + 7u], p * half_box + 0.5,
+                                  px * half_box, py * half_box, MASU_LIVE_CLAMP);
+}
+#endif
+
 void paint(ivec2 at, uvec2 size, uint words)
 {
     float depth = texelFetch(depth_image, at, 0).r;
@@ -81,6 +115,10 @@ void paint(ivec2 at, uvec2 size, uint words)
     if (!masu_emission_packed && masu_has_emission(packed_normal)) {
         s.emissive = imageLoad(hdr_image, at).rgb;
     }
+#ifdef MASU_LIVE_TEXTURES
+    vec3 dx = to_neighbour(masu_pixel_ray(uvec2(at) + uvec2(1u, 0u), size), rel, n);
+    vec3 dy = to_neighbour(masu_pixel_ray(uvec2(at) + uvec2(0u, 1u), size), rel, n);
+#endif
     bool changed = false;
     for (uint w = 0u; w < uint(WORDS); w++) {
         if (w >= words) {
@@ -90,14 +128,24 @@ void paint(ivec2 at, uvec2 size, uint words)
         for (uint k = 0u; k < 32u && left != 0u; k++) {
             uint bit = uint(findLSB(left));
             left &= left - 1u;
-            uint decal = push.first + uint(MASU_DECAL_VEC4S) * (32u * w + bit);
+            uint decal = push.first + uint(DECAL_VEC4S) * (32u * w + bit);
             vec4 color = sprites[decal + 3u], look = sprites[decal + 4u];
             float share = masu_sane(color.w * painted(decal, rel, n, look), 0.0, 1.0);
+#ifdef MASU_LIVE_TEXTURES
+            if (share > 0.0) {
+                float opacity = max(color.w, masu_tiny);
+                color = textured(decal, color, rel, dx, dy);
+                share = masu_sane(share * (color.w / opacity), 0.0, 1.0);
+            }
+#endif
             if (share > 0.0) {
                 changed = true;
                 if ((floatBitsToUint(look.w) & MASU_SPRITE_KEEP_COLOR) == 0u) {
                     cover(s, color.rgb, look.y >= 0.0 ? look.y : s.metallic, share);
                 }
+#ifdef MASU_LIVE_TEXTURES
+                s.emissive += color.rgb * (share * sprites[decal + 8u].y);
+#endif
                 s.roughness = mix(s.roughness, look.x >= 0.0 ? look.x : s.roughness, share);
             }
         }
@@ -138,7 +186,7 @@ void main()
         if (i >= count) {
             break;
         }
-        uvec2 ends = floatBitsToUint(sprites[push.first + uint(MASU_DECAL_VEC4S) * i + 6u].xy);
+        uvec2 ends = floatBitsToUint(sprites[push.first + uint(DECAL_VEC4S) * i + 6u].xy);
         uvec2 low = uvec2(ends.x & 0xFFFFu, ends.x >> 16), high = uvec2(ends.y & 0xFFFFu, ends.y >> 16);
         if (all(lessThanEqual(low, last)) && all(greaterThanEqual(high, first))) {
             atomicOr(touched[i >> 5], 1u << (i & 31u));

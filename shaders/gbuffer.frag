@@ -2,7 +2,7 @@
  * gbuffer.frag: the material of a polygon into the G-buffer. push.material is the draw's material. With
  * MASU_MOTION (gbuffer_velocity) its velocity too, with MASU_SURFACE what the surface image holds. With MASU_TEXTURES the material's maps: push.flags
  * its flags, push.layers the layers of its maps, 8 bits each, push.coat_layer that of its coat's (with MASU_ATTRIBUTES: from bit 8 on which maps are of the second coordinates); push.mip_bias the bias of mip levels, push.mip_moving (not
- * below 0) what is added to it of what moves, push.detail_* the scale of texture coordinates of all maps but base colour and emissive.
+ * below 0) what is added to it of what moves, push.nearer the factor on depth of a depth bias, push.detail_* the scale of texture coordinates of all maps but base colour and emissive.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -10,6 +10,7 @@
 #include "shared/materials.h"
 #include "shared/facing.glsl"
 #include "shared/pack.glsl"
+#include "shared/look.glsl"
 
 #ifdef MASU_SURFACE
 layout(location = 2) out vec4 out_surface;
@@ -57,6 +58,8 @@ float mip_bias;
 const float share_per_pixel = 0.12; /* of push.mip_moving; */
 const float most_shares = 2.3;
 #endif
+#define MASU_MAPS_LIVE
+layout(constant_id = 23) const bool masu_live_maps = false;
 #include "shared/maps.glsl"
 layout(location = 3) in vec2 in_texcoord;
 #endif
@@ -112,7 +115,7 @@ void main()
     mip_bias = min(push.mip_bias + push.mip_moving * min(share_per_pixel * speed, most_shares), max(push.mip_bias, 0.0));
 #endif
     /* Everything that takes derivatives comes before the discard. */
-    float alpha = masu_sample_maps(in_texcoord, s);
+    float alpha = masu_sample_maps(in_texcoord, floor(0.5 * m.more.w), s);
 #ifdef MASU_ATTRIBUTES
     masu_tint(s, in_color.rgb);
 #endif
@@ -129,6 +132,10 @@ void main()
     }
 #endif
 #endif
+    masu_take_look(s);
+    if (masu_faded(uvec2(gl_FragCoord.xy))) {
+        discard;
+    }
     /* Two-sided: the normal is turned to the viewer, whichever way the triangle was wound. */
     vec3 n = masu_normalize(in_normal, vec3(0.0, 1.0, 0.0));
     bool away = masu_seen_from_below(n, in_rel);

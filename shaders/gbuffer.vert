@@ -55,6 +55,9 @@ layout(location = 4) out vec2 out_second;
 layout(location = 5) out vec4 out_color;
 #endif
 
+#define MASU_LOOK_OUT
+#include "shared/look.glsl"
+
 /* Meshes with textures and without have edges in common. */
 invariant gl_Position;
 layout(location = 0) out vec3 out_normal;
@@ -67,11 +70,12 @@ void main()
     vec3 rel = masu_seen_from(m, frame.eye_hi.xyz, frame.eye_lo.xyz);
     out_normal = masu_turned_normal(m);
     out_rel = rel;
+    masu_pass_look(id);
 #ifdef MASU_TEXTURES
-    out_texcoord = texcoord;
+    out_texcoord = masu_moved_texcoord(id, texcoord);
 #endif
 #ifdef MASU_ATTRIBUTES
-    out_second = second_texcoord;
+    out_second = masu_moved_texcoord(id, second_texcoord);
     out_color = masu_vertex_color(color);
 #endif
 #ifdef MASU_MOTION
@@ -87,4 +91,7 @@ void main()
                                       previous.eye_lo.xyz);
 #endif
     gl_Position = frame.clip_from_rel * vec4(rel, 1.0);
+    if (masu_depth_biases) {
+        gl_Position.z *= push.nearer;
+    }
 }

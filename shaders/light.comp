@@ -184,7 +184,7 @@ void main()
                 air = masu_air_depth(direction, far);
             }
         }
-        color = masu_seen_along(color, open, direction, foggy, air);
+        color = masu_seen_along(color, open, frame.background, direction, foggy, air);
         MASU_STORE_HALF(hdr_image, at, vec4(color, 1.0));
     }
     masu_count_end();

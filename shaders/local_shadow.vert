@@ -24,7 +24,8 @@ layout(location = 3) out vec2 out_texcoord;
 
 void main()
 {
-    masu_instance_data m = instances[masu_instance_id()];
+    uint id = masu_instance_id();
+    masu_instance_data m = instances[id];
     uint k = min(push.face, uint(MASU_LOCAL_FACES_MAX - 1));
     vec3 thinner = position - push.rise * masu_oct_decode(oct_normal);
     precise vec3 at = masu_point_seen_from(m, thinner, faces.origin_hi[k].xyz, faces.origin_lo[k].xyz);
@@ -32,7 +33,7 @@ void main()
     precise float y = dot(faces.row1[k].xyz, at) * faces.row0[k].w;
     precise float z = dot(faces.row2[k].xyz, at);
 #ifdef MASU_TEXTURES
-    out_texcoord = texcoord;
+    out_texcoord = masu_moved_texcoord(id, texcoord);
 #endif
     gl_Position = vec4(x + z * faces.row1[k].w, y + z * faces.row1[k].w, faces.row2[k].w, z);
 }

@@ -14,12 +14,19 @@
 #include "shared/types.h"
 #include "shared/globals.glsl"
 #include "shared/guard.glsl"
-#ifdef MASU_SUN_MAP
-#define MASU_AT_SUN_MAP 1
-#include "light/sun_map.glsl"
-#define MASU_AT_LOCAL_SHADOWS 2
+#ifdef MASU_LIVE_TEXTURES
+#define FIRST_MAP 2
+#define PARTICLE_VEC4S MASU_TEXTURED_PARTICLE_VEC4S
 #else
-#define MASU_AT_LOCAL_SHADOWS 1
+#define FIRST_MAP 1
+#define PARTICLE_VEC4S MASU_PARTICLE_VEC4S
+#endif
+#ifdef MASU_SUN_MAP
+#define MASU_AT_SUN_MAP FIRST_MAP
+#include "light/sun_map.glsl"
+#define MASU_AT_LOCAL_SHADOWS (FIRST_MAP + 1)
+#else
+#define MASU_AT_LOCAL_SHADOWS FIRST_MAP
 #endif
 #ifdef MASU_LIGHTS
 #include "light/lights.glsl"
@@ -60,12 +67,19 @@ vec3 light_at(vec3 rel)
 
 layout(location = 0) out vec2 out_place; /* in the quad, -1..1 */
 layout(location = 1) out vec3 out_rel;
+#ifdef MASU_LIVE_TEXTURES
+layout(location = 2) out vec4 out_color; /* light that it sends; opacity: of trails they change along a segment */
+layout(location = 4) out vec2 out_at;    /* in the cell, 0..1, along a trail beyond */
+layout(location = 5) flat out vec4 out_cell;
+layout(location = 6) flat out vec4 out_next; /* first corner of the second cell, its share; texture, below 0: of a trail */
+#else
 layout(location = 2) flat out vec4 out_color; /* light that it sends; opacity */
+#endif
 layout(location = 3) flat out vec4 out_more;  /* edge, 1 or 0: it hides or adds; view depth; m over which it is soft */
 
 void main()
 {
-    uint at = push.first + uint(MASU_PARTICLE_VEC4S) * (uint(gl_VertexIndex) / 6u);
+    uint at = push.first + uint(PARTICLE_VEC4S) * (uint(gl_VertexIndex) / 6u);
     uint k = uint(gl_VertexIndex) % 6u;
     uint corner = k < 3u ? k : 6u - k; /* 0 1 2, 3 2 1 */
     vec4 middle = sprites[at], shape = sprites[at + 1u], color = sprites[at + 2u], more = sprites[at + 3u];
@@ -77,6 +91,26 @@ void main()
     vec3 right = frame.right.xyz / max(frame.right.w, masu_tiny);
     vec3 up = frame.up.xyz / max(frame.up.w, masu_tiny);
     vec3 rel = middle.xyz + right * turned.x + up * turned.y;
+#ifdef MASU_LIVE_TEXTURES
+    vec4 cell = sprites[at + 4u], next = sprites[at + 5u];
+    float number = float(floatBitsToUint(more.z));
+    out_at = vec2(0.5, -0.5) * place + 0.5;
+    out_next = vec4(next.xy, more.w, number);
+    if ((flags & MASU_SPRITE_SEGMENT) != 0u) {
+        bool end = place.x > 0.0;
+        vec4 far_side = sprites[at + 6u];
+        middle.xyz = end ? shape.xyz : middle.xyz;
+        rel = middle.xyz + (end ? far_side.xyz : next.xyz) * place.y;
+        color = end ? sprites[at + 7u] : color;
+        out_at.x = end ? more.y : shape.w;
+        out_next = vec4(0.0, 0.0, 0.0, -number);
+        more.y = next.w;
+        place.x = 0.0;
+    }
+    /* All of a textured one is inside: full at any distance from the middle. */
+    place = number > 0.0 ? vec2(0.0) : place;
+    out_cell = cell;
+#endif
     float depth = dot(middle.xyz, frame.forward.xyz);
     vec3 light = vec3(1.0);
     if ((flags & MASU_SPRITE_LIT) != 0u) {

@@ -26,7 +26,7 @@ void main()
     uint id = masu_instance_id();
     out_id = id;
 #ifdef MASU_TEXTURES
-    out_texcoord = texcoord;
+    out_texcoord = masu_moved_texcoord(id, texcoord);
 #endif
     vec3 rel = masu_seen_from(instances[id], frame.eye_hi.xyz, frame.eye_lo.xyz);
     vec4 clip = frame.clip_from_rel * vec4(rel, 1.0);
@@ -36,4 +36,7 @@ void main()
     vec2 middle = vec2(pixel & ~1u) + 1.0;
     precise vec2 moved = clip.xy * (0.5 * size) + clip.w * (0.5 * size - middle);
     gl_Position = vec4(moved, clip.zw);
+    if (masu_depth_biases) {
+        gl_Position.z *= push.nearer;
+    }
 }

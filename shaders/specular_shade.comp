@@ -123,7 +123,7 @@ vec4 light_of(uvec2 texel, masu_guide g)
 #endif
         light = radiance(m, rel, direction);
     }
-    light = masu_seen_along(light, !(t >= 0.0), direction, foggy, air);
+    light = masu_seen_along(light, !(t >= 0.0), vec4(0.0, 0.0, 0.0, 1.0), direction, foggy, air);
     if (push.accumulate != 0u) {
         light *= masu_unpack_shared(ray.y);
     }

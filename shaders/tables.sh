@@ -182,7 +182,7 @@ function add_shader(name, list,    n, words, i) {
     name = trim(head[2])
     file = name
     traced = $0 ~ /\(SPECULAR[_)]/ || $0 ~ /WRITES\(TRACE\)/
-    polygons = $0 ~ /DRAW\((POLYGONS|CASCADE|CASTERS|BOXES|BLENDED),/ || $0 ~ /\((DRAWS|SEEN)\)/ || $0 ~ /WRITES\((VERTICES|PREVIOUS_VERTICES|TRACE)\)/
+    polygons = $0 ~ /DRAW\((POLYGONS|CASCADE|CASTERS|BOXES|BLENDED),/ || $0 ~ /\((DRAWS|SEEN)\)/ || $0 ~ /WRITES\((VERTICES|PREVIOUS_VERTICES|MESH_INDICES|TRACE)\)/
     tail = substr($0, index($0, "PUSH("))
     tail = substr(tail, length(inside(tail, "PUSH")) + 6) # what stands behind it
     if (tail ~ /^\)?, *COMP\(/) {

@@ -6,6 +6,10 @@
  * another one. Push constants: push.white = white, nits; push.peak = the most that is shown, in whites;
  * push.silhouettes not 0: silhouettes.comp says what some pixels show; push.roots not 0: what follows is rung.temporal, whose
  * samples are roots of display light (upscale/roots.glsl).
+ *
+ * MASU_LENS: bloom and grading of desc.post. Bloom mixes the scattered light into the radiance; without it, its image
+ * is another one and not read. Pixels of silhouettes.comp are after the tone curve: they change by as much as the pixel
+ * itself does.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -20,15 +24,25 @@
 #ifdef MASU_SILHOUETTES
 #include "shared/silhouettes.glsl"
 #endif
+#ifdef MASU_LENS
+#include "post/bloom.glsl"
+#include "post/grade.glsl"
+#endif
 
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D hdr_image;
 #ifdef MASU_SILHOUETTES
 layout(set = MASU_SET_PASS, binding = 1) uniform usampler2D silhouettes_image;
-#define MASU_FIRST_WRITE 2
+#define MASU_AT_BLOOM 2
 #else
-#define MASU_FIRST_WRITE 1
+#define MASU_AT_BLOOM 1
+#endif
+#ifdef MASU_LENS
+layout(set = MASU_SET_PASS, binding = MASU_AT_BLOOM) uniform sampler2D bloom_image;
+#define MASU_FIRST_WRITE (MASU_AT_BLOOM + 1)
+#else
+#define MASU_FIRST_WRITE MASU_AT_BLOOM
 #endif
 layout(set = MASU_SET_PASS, binding = MASU_FIRST_WRITE, MASU_COLOR_FORMAT)
     uniform writeonly MASU_COLOR_IMAGE ldr_image;
@@ -40,20 +54,55 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_EXPOSURE, std430) readonly buf
 };
 #endif
 
+float exposure_of_frame()
+{
+#ifdef MASU_METERED
+    return metered_exposure;
+#else
+    return frame.sun_direction.w;
+#endif
+}
+
+vec3 shown(vec3 radiance)
+{
+    return masu_shown(radiance, exposure_of_frame(), max(push.peak, 1.0));
+}
+
+#ifdef MASU_LENS
+/* Radiance behind the lens. */
+vec3 through_lens(vec3 radiance, ivec2 at)
+{
+    if (post.lens.x > 0.0) {
+        vec2 place = (vec2(at) + 0.5) * 0.25, size = vec2(masu_bloom_size(4u));
+        radiance = mix(radiance, masu_post_spline(bloom_image, place, size, 0.0), post.lens.x);
+    }
+    if (post.lens.w != 0.0) {
+        radiance *= masu_vignette(vec2(at), vec2(pc.render_width, pc.render_height));
+    }
+    return radiance;
+}
+#endif
+
 vec3 display_light(ivec2 at)
 {
 #ifdef MASU_SILHOUETTES
     uint seen = push.silhouettes != 0u ? texelFetch(silhouettes_image, at, 0).r : 0u;
     if (seen != 0u) {
-        return masu_unpack_edge(seen) * max(push.peak, 1.0);
+        vec3 edge = masu_unpack_edge(seen) * max(push.peak, 1.0);
+#ifdef MASU_LENS
+        if (post.lens.x > 0.0 || post.lens.w != 0.0) {
+            vec3 radiance = texelFetch(hdr_image, at, 0).rgb;
+            edge = max(edge + shown(through_lens(radiance, at)) - shown(radiance), 0.0);
+        }
+#endif
+        return edge;
     }
 #endif
-#ifdef MASU_METERED
-    float exposure = metered_exposure;
-#else
-    float exposure = frame.sun_direction.w;
+    vec3 radiance = texelFetch(hdr_image, at, 0).rgb;
+#ifdef MASU_LENS
+    radiance = through_lens(radiance, at);
 #endif
-    return masu_shown(texelFetch(hdr_image, at, 0).rgb, exposure, max(push.peak, 1.0));
+    return shown(radiance);
 }
 
 /* Roots, or what a display takes: of display light. */
@@ -75,6 +124,11 @@ void main()
     uvec2 at = gl_GlobalInvocationID.xy;
     if (all(lessThan(at, uvec2(pc.output_width, pc.output_height)))) {
         vec3 y = display_light(ivec2(at));
+#ifdef MASU_LENS
+        if (post.lens.w != 0.0) {
+            y = masu_graded(y, push.peak);
+        }
+#endif
 #if defined(MASU_TEN)
         MASU_STORE_CHECKED(ldr_image, at, vec3, stored(y), uvec4(stored_bits(masu_sane_unit(masu_store_value), at)));
 #elif defined(MASU_DEEP)

@@ -15,6 +15,9 @@
  * Rough glass shows the lit picture without transparent surfaces, blurred (masu_behind), in place of what blending would
  * let through. Both sides of a thing that is not flat are taken to be as rough.
  *
+ * Glass with a thickness shows that picture where the refracted ray leaves the volume (refracted); so does the side of
+ * a thing that faces the eye. Seen from within, the far side is thin glass.
+ *
  * A thing that is not flat is drawn twice, first what is turned away from the eye, then what faces it:
  * a ball is right in itself, whatever the order of its triangles. It goes by the normals, not by the
  * winding, which files get wrong and negative scales turn. Each fragment is drawn once.
@@ -34,6 +37,7 @@
 #include "shared/globals.glsl"
 #include "shared/facing.glsl"
 #include "shared/pack.glsl"
+#include "shared/look.glsl"
 #include "light/air.glsl"
 #include "light/background.glsl"
 #include "light/shade.glsl"
@@ -55,6 +59,8 @@ layout(constant_id = 0) const bool tints = false;
 layout(constant_id = 12) const uint tinted_glass = 0u; /* the scene has some; MASU_TINTS_ROUGH: and rough one */
 const bool any_tints = tinted_glass != 0u;
 const bool any_rough = (tinted_glass & MASU_TINTS_ROUGH) != 0u;
+const bool any_refracted = (tinted_glass & MASU_TINTS_REFRACTED) != 0u;
+layout(constant_id = 23) const bool masu_live_maps = false;
 layout(constant_id = 2) const bool foggy = false; /* the scene has fog */
 
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D depth_image;
@@ -69,11 +75,11 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_MATERIALS, std430) readonly bu
 #else
 #define MASU_AT_BACKGROUND MASU_AT_LOCAL_SHADOWS
 #endif
-layout(set = MASU_SET_PASS, binding = MASU_AT_BACKGROUND) uniform sampler2D background_image; /* if any_rough */
+layout(set = MASU_SET_PASS, binding = MASU_AT_BACKGROUND) uniform sampler2D background_image; /* if any_rough or any_refracted */
 
 layout(location = 0) in vec3 in_normal;
 layout(location = 1) in vec3 in_rel;
-layout(location = 2) flat in uvec4 in_thing; /* material, flags, layers; which instance */
+layout(location = 2) flat in uvec4 in_thing; /* material, flags, layers; which instance, scale: transparents.vert */
 
 #ifdef MASU_TEXTURES
 layout(location = 3) in vec2 in_texcoord;
@@ -84,6 +90,7 @@ layout(location = 5) in vec4 in_color;
 #define MASU_MAPS_FLAGS in_thing.y
 #define MASU_MAPS_LAYERS in_thing.z
 #define MASU_MAPS_DETAIL in_detail
+#define MASU_MAPS_LIVE
 #include "shared/maps.glsl"
 #endif
 
@@ -112,19 +119,21 @@ void add_lights(inout masu_lit lit, masu_surface s, masu_bsdf b, vec3 n)
 }
 #endif
 
-/* One level of the blurred picture around a pixel; in alpha the depth. */
+const uint largest = any_refracted ? 0u : 1u; /* level of the background */
+
+/* One level of the background around a pixel; in alpha masu_background_depth. */
 vec4 background_level(uint level, vec2 pixel)
 {
     uvec2 tiles = masu_background_tiles(uvec2(pc.output_width, pc.output_height));
     vec2 size = vec2(tiles * (MASU_BACKGROUND_TILE >> level));
     vec2 at = clamp(pixel / float(1u << level), vec2(0.5), size - 0.5);
     vec2 whole = vec2(textureSize(background_image, 0));
-    return textureLod(background_image, (vec2(masu_background_at(level, tiles)) + at) / whole, 0.0);
+    return textureLod(background_image, (vec2(masu_background_at(level, largest, tiles)) + at) / whole, 0.0);
 }
 
 vec4 background(vec2 pixel, float apart)
 {
-    float level = clamp(masu_log2(max(apart, 1.0)), 1.0, float(MASU_BACKGROUND_LEVELS));
+    float level = clamp(masu_log2(max(apart, 1.0)), float(largest), float(MASU_BACKGROUND_LEVELS));
     uint low = min(uint(level), MASU_BACKGROUND_LEVELS - 1u);
     return mix(background_level(low, pixel), background_level(low + 1u, pixel), level - float(low));
 }
@@ -140,7 +149,7 @@ vec3 masu_behind(vec2 pixel, float alpha, out float radius)
 {
     float reach = 0.5 * float(pc.output_height) * masu_rcp(length(frame.up.xyz)), gap = 1.0;
     for (int i = 0; i < 2; i++) {
-        float depth = background(pixel, 2.0 * alpha * reach * gap).a;
+        float depth = masu_background_depth(background(pixel, 2.0 * alpha * reach * gap).a);
         gap = masu_sane(1.0 - depth * masu_rcp(gl_FragCoord.z), 0.0, 1.0);
     }
     reach *= gap;
@@ -157,16 +166,36 @@ vec3 masu_behind(vec2 pixel, float alpha, out float radius)
     return sum / float(TAPS);
 }
 
+/* The pixel behind which the refracted ray leaves a volume (KHR_materials_volume); this pixel if a surface in front of
+ * the glass is there, or if it is behind the eye. The clip position of this fragment is that of the pixel: the
+ * offset is added to it, so that a thickness of 0 changes nothing. volume: thickness, -index of refraction. */
+vec2 refracted(vec3 direction, vec3 n, vec2 volume)
+{
+    vec2 size = vec2(pc.output_width, pc.output_height);
+    vec3 inside = refract(direction, n, -masu_rcp(volume.y)) * (volume.x * unpackHalf2x16(in_thing.w).y);
+    vec4 offset = frame.clip_from_rel * vec4(inside, 0.0);
+    float w = frame.forward.w * masu_rcp(gl_FragCoord.z);
+    vec2 ndc = ((gl_FragCoord.xy / size * 2.0 - 1.0) * w + offset.xy) * masu_rcp(w + offset.w);
+    vec2 at = vec2(masu_sane(ndc.x, -1.0, 1.0), masu_sane(ndc.y, -1.0, 1.0)) * 0.5 + 0.5;
+    vec2 pixel = clamp(at * size, vec2(0.5), size - 0.5);
+    bool behind = texelFetch(depth_image, ivec2(pixel), 0).r <= gl_FragCoord.z;
+    return behind && w + offset.w > 0.0 ? pixel : gl_FragCoord.xy;
+}
+
 void main()
 {
     masu_material_data m = materials[in_thing.x];
     masu_surface s = masu_plain_surface(m.base_color.rgb, m.base_color.w);
     s.emissive = m.emissive.rgb;
     s.metallic = m.emissive.w;
+    bool refracts = any_refracted && m.emissive.w < 0.0;
+    if (refracts) {
+        s.metallic = 0.0;
+    }
     masu_take_specular(s, m.more.x);
     s.coat = m.more.y;
     s.coat_roughness = m.more.z;
-    float opacity = m.more.w;
+    float opacity = masu_live_maps ? m.more.w - 2.0 * floor(0.5 * m.more.w) : m.more.w;
     float cover = 1.0;
     vec3 direction = masu_normalize(in_rel, frame.forward.xyz);
     vec3 n = masu_normalize(in_normal, -direction);
@@ -175,10 +204,11 @@ void main()
     vec3 skin = n;
 #endif
     bool twice = (in_thing.y & MASU_MAP_FAR_SIDE_FIRST) != 0u;
-    bool elsewhere = twice && away != (in_thing.w == 0u);
+    bool first = (any_refracted ? in_thing.w & 1u : in_thing.w) == 0u;
+    bool elsewhere = twice && away != first;
 #ifdef MASU_TEXTURES
     /* Everything that takes derivatives comes before the discard. */
-    cover = masu_sample_maps(in_texcoord, s);
+    cover = masu_sample_maps(in_texcoord, floor(0.5 * m.more.w), s);
     if ((tinted_glass & MASU_TINTS_MAPPED) != 0u && (in_thing.y & MASU_MAP_TRANSMISSION) != 0u) {
         opacity = 1.0 - (1.0 - opacity) * cover;
         cover = 1.0;
@@ -199,6 +229,8 @@ void main()
 #else
     n = masu_normalize(masu_lean_to_eye(away ? -n : n, in_rel, 0.0), -direction);
 #endif
+    masu_take_look(s);
+    cover *= 1.0 - masu_fade();
     float nearest = texelFetch(depth_image, ivec2(gl_FragCoord.xy), 0).r;
     bool back = (in_thing.y & MASU_MAP_SINGLE) != 0u && !gl_FrontFacing;
     if (elsewhere || back || !(gl_FragCoord.z >= nearest)) {
@@ -239,14 +271,28 @@ void main()
 #endif
         float mirrored = clamp(dot(lit.mirror, vec3(1.0 / 3.0)), 0.0, 1.0);
         surface = taken = 1.0 - through * (1.0 - mirrored);
-        if (any_rough && (in_thing.y & MASU_MAP_TINTED) != 0u && s.roughness > MASU_SHARP_GLASS) {
-            float alpha = masu_sane(s.roughness * s.roughness, 0.0, 1.0) * (twice ? 1.41421356 : 1.0);
-            float radius;
+        bool rough = any_rough && (in_thing.y & MASU_MAP_TINTED) != 0u && s.roughness > MASU_SHARP_GLASS;
+        refracts = refracts && !away;
+        if (rough || refracts) {
+            vec2 pixel = gl_FragCoord.xy;
+            float shown = 0.0; /* share of the background that this shows and blending does not */
+            if (refracts) {
+                pixel = refracted(direction, n, unpackHalf2x16(floatBitsToUint(m.emissive.w)));
+                behind = background_level(0u, pixel).rgb;
+                shown = 1.0;
+            }
+            if (rough) {
+                float alpha = masu_sane(s.roughness * s.roughness, 0.0, 1.0) * (twice ? 1.41421356 : 1.0);
+                float radius;
+                vec3 blurred = masu_behind(pixel, alpha, radius);
+                float share = smoothstep(1.0, 3.0, radius); /* the finest level may be half as large as the picture */
+                behind = refracts ? mix(behind, blurred, share) : blurred * share;
+                shown = max(shown, share);
+            }
             vec3 passes = hue * (1.0 - taken);
-            behind = masu_behind(gl_FragCoord.xy, alpha, radius) * (twice ? passes * passes : passes);
-            float blurred = smoothstep(1.0, 3.0, radius); /* the finest level is half as large as the picture */
-            behind *= blurred * cover;
-            taken = 1.0 - (1.0 - taken) * (1.0 - blurred);
+            bool both = twice && (in_thing.y & MASU_MAP_SINGLE) == 0u; /* sides are drawn */
+            behind *= (both ? passes * passes : passes) * cover;
+            taken = 1.0 - (1.0 - taken) * (1.0 - shown);
         }
         lit.diffuse += s.emissive;
 #ifdef MASU_LIGHTS

@@ -1,7 +1,7 @@
 /*
  * transparents.vert: one transparent thing, which push.instances of the push constants finds: six words in
  * the buffer of drawn instances, written anew for each frame (src/frame/transparents.c): instance, material,
- * flags, layers and detail of its maps. With MASU_TEXTURES texture coordinates go along, with MASU_ATTRIBUTES colours. Of what is
+ * flags, layers and detail of its maps, with depth biases a seventh: the factor on its depth. With MASU_TEXTURES texture coordinates go along, with MASU_ATTRIBUTES colours. Of what is
  * drawn twice the first instance is for what is turned away from the eye. Where it `tints`
  * (transparents.frag), what has no colour for what is behind it shrinks to a point.
  */
@@ -27,30 +27,44 @@ layout(location = 4) in vec4 color;
 layout(location = 5) out vec4 out_color;
 #endif
 
+#define MASU_LOOK_OUT
+#include "shared/look.glsl"
+
 layout(constant_id = 0) const bool tints = false;
+layout(constant_id = 12) const uint tinted_glass = 0u;
 
 /* Meshes with textures and without have edges in common. */
 invariant gl_Position;
 layout(location = 0) out vec3 out_normal;
 layout(location = 1) out vec3 out_rel;
-layout(location = 2) flat out uvec4 out_thing; /* material, flags, layers; which instance */
+/* Material, flags, layers; which instance, with refraction the scale in the upper half. */
+layout(location = 2) flat out uvec4 out_thing;
 
 void main()
 {
-    masu_instance_data m = instances[drawn[push.instances]];
+    uint id = drawn[push.instances];
+    masu_instance_data m = instances[id];
     vec3 rel = masu_seen_from(m, frame.eye_hi.xyz, frame.eye_lo.xyz);
     out_normal = masu_turned_normal(m);
     out_rel = rel;
+    masu_pass_look(id);
     out_thing = uvec4(drawn[push.instances + 1u], drawn[push.instances + 2u], drawn[push.instances + 3u],
                       uint(gl_InstanceIndex));
+    if ((tinted_glass & MASU_TINTS_REFRACTED) != 0u) { /* of thickness: the mean square over all directions */
+        float squares = dot(m.row0.xyz, m.row0.xyz) + dot(m.row1.xyz, m.row1.xyz) + dot(m.row2.xyz, m.row2.xyz);
+        out_thing.w |= packHalf2x16(vec2(0.0, masu_sqrt(squares / 3.0)));
+    }
 #ifdef MASU_TEXTURES
-    out_texcoord = texcoord;
+    out_texcoord = masu_moved_texcoord(id, texcoord);
 #ifdef MASU_ATTRIBUTES
     out_color = masu_vertex_color(color);
 #endif
     out_detail = vec2(uintBitsToFloat(drawn[push.instances + 4u]), uintBitsToFloat(drawn[push.instances + 5u]));
 #endif
     gl_Position = frame.clip_from_rel * vec4(rel, 1.0);
+    if (masu_depth_biases) {
+        gl_Position.z *= uintBitsToFloat(drawn[push.instances + 6u]);
+    }
     if (tints && (drawn[push.instances + 2u] & MASU_MAP_TINTED) == 0u) {
         gl_Position = vec4(2.0, 2.0, 0.0, 1.0);
     }

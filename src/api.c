@@ -52,6 +52,8 @@ static void alloc_host(masu_arena *arena, const masu_frame_plan *plan, masu_rend
     masu_sprites_alloc(&to->sprites, arena, plan);
     masu_reflections_alloc(&to->reflections, arena, plan);
     masu_bounce_alloc(&to->bounce, arena, plan);
+    masu_meshes_alloc(&to->meshes, arena, plan);
+    masu_post_alloc(&to->post, arena, plan);
     int governed = plan->desc.governor.mode != MASU_GOVERNOR_OFF;
     to->governor = masu_arena_alloc(arena, "governor", governed, sizeof *to->governor, 8);
     if (!governed) to->governor = NULL;
@@ -84,6 +86,7 @@ void masu_copy_scene(masu_renderer *m) {
     masu_transparents_copy_scene(&m->transparents, plan, &m->draws, &v);
     masu_reflections_copy_scene(&m->reflections, plan, &v);
     masu_bounce_copy_scene(&m->bounce, plan, &v);
+    masu_meshes_copy_scene(&m->meshes, plan, &v);
 }
 
 void masu_write_scene(masu_renderer *m) {
@@ -457,13 +460,16 @@ masu_result masu_write_frame(masu_renderer *m, masu_frame_data *f) {
     if (!result) result = masu_sun_sky_read(&m->sun_sky, f, &m->error);
     if (!result) result = masu_sdf_read(&m->sdf, f, &m->error);
     if (!result) result = masu_picking_read(f, &m->error);
+    if (!result) result = masu_post_read(f, &m->error);
     if (result) return result;
 
     masu_sun_sky_write(&m->sun_sky, f);
     masu_history_rebase(&m->history, f);
     masu_reflections_read(&m->reflections, f);
     masu_lights_cast(&m->lights, &m->local_shadows, &m->instances, &m->bounds, f);
-    masu_temporal_read(&m->temporal, &m->history, &m->instances, &m->lights, &m->materials, f);
+    masu_post_write(&m->post, f);
+    masu_temporal_read(&m->temporal, &m->history, &m->instances, &m->lights, &m->materials,
+                       &m->textures, &m->post, f);
     masu_frame_write_uniforms(&m->history, f);
 
     masu_shadow_write(&m->shadow, &m->bounds, f);
@@ -476,12 +482,14 @@ masu_result masu_write_frame(masu_renderer *m, masu_frame_data *f) {
     masu_reflections_write_instances(&m->reflections, &m->instances, &m->bounds, f);
     masu_occlusion_write_boxes(&m->bounds, &m->instances, f);
     masu_skins_write(&m->models.skins, &m->instances, f);
+    masu_meshes_write(&m->meshes, f);
     masu_instances_write(&m->instances, f);
 
     masu_visible_write(&m->visible, &m->bounds, &m->instances, &m->views, f);
     masu_picking_write(&m->picking, &m->visible, &m->bounds, &m->instances, f);
     masu_transparents_write(&m->transparents, &m->instances, &m->visible, f);
     masu_sprites_write(&m->sprites, &m->transparents, f);
+    masu_textures_write_frame(&m->textures, f);
     masu_occlusion_write(&m->occlusion, &m->visible, &m->instances, &m->views, f);
     return MASU_OK;
 }

@@ -13,6 +13,11 @@ static uint32_t place_of(const masu_renderer *m, uint32_t model) {
     return model - masu_own_models(&m->plan);
 }
 
+/* A free slot for a copy; UINT32_MAX: none. */
+static uint32_t free_model(const masu_renderer *m) {
+    return masu_handle_free(&m->models.handles, masu_own_models(&m->plan), m->plan.reserve.models);
+}
+
 /* The instance of a node of a model; UINT32_MAX: none. */
 static uint32_t instance_of(const masu_renderer *m, uint32_t model, uint32_t node) {
     return m->models.nodes[m->models.models[model].first_node + node].instance;
@@ -30,6 +35,11 @@ static int carries(const masu_renderer *m, uint32_t model, uint32_t light) {
 /* Whether the reserve has room for a copy of a model. */
 static masu_result check_room(masu_renderer *m, uint32_t like) {
     uint32_t models = m->plan.reserve.models, lights = 0, free = 0;
+    if (like >= masu_mesh_models(&m->plan)) {
+        return masu_fail(&m->error, MASU_ERROR_LIMIT, "like", 1, 0,
+                         "model %u is a mesh of the host, which has no copies: create it again",
+                         like);
+    }
     if (!models || masu_models_bends(&m->models, &m->plan, like)) {
         return masu_fail(&m->error, MASU_ERROR_LIMIT, "models", 1, 0,
                          "model %u: all of its kind are shown; \"spare\" in its description gives "
@@ -37,7 +47,7 @@ static masu_result check_room(masu_renderer *m, uint32_t like) {
                          like,
                          models ? ", desc.reserve holds none that bend" : ", desc.reserve too");
     }
-    if (masu_handle_free(&m->models.handles) == UINT32_MAX) {
+    if (free_model(m) == UINT32_MAX) {
         return masu_fail(&m->error, MASU_ERROR_LIMIT, "reserve.models", models + 1, models,
                          "reserve.models: %u are needed, %u are given", models + 1, models);
     }
@@ -71,7 +81,7 @@ static masu_result copy_model(masu_renderer *m, uint32_t like, const float rows[
                               uint32_t *added) {
     masu_result result = check_room(m, like);
     if (result) return result;
-    uint32_t model = masu_handle_free(&m->models.handles), place = place_of(m, model);
+    uint32_t model = free_model(m), place = place_of(m, model);
     uint32_t instance = masu_own_instances(&m->plan) + place * m->plan.reserve.place.instances;
     masu_models_copy(&m->models, &m->plan, place, like);
     result =
@@ -105,6 +115,9 @@ masu_result masu_model_add(masu_renderer *m, masu_model like, const float rows[1
                                   &m->error);
     }
     if (result) return masu_finish(m, result, detail);
+    const masu_look plain = {.flags = 0};
+    if (m->plan.needs.looks)
+        masu_models_set_look(&m->models, &m->instances, &m->plan, added, &plain);
     masu_models_show(&m->models, &m->instances, &m->plan, added, 1);
     *out = masu_model_at(m, added);
     return MASU_OK;
@@ -132,6 +145,10 @@ masu_result masu_model_remove(masu_renderer *m, masu_model model, masu_detail *d
         return MASU_OK;
     }
     drop_lights(m, i);
+    if (i >= masu_mesh_models(&m->plan)) {
+        masu_meshes_remove(&m->meshes, &m->models, &m->instances, &m->reflections, &m->plan, i);
+        return MASU_OK;
+    }
     masu_placed_model *gone = &m->models.models[i];
     for (uint32_t n = 0; n < gone->node_count; n++) {
         uint32_t instance = instance_of(m, i, n);

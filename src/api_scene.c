@@ -82,6 +82,27 @@ masu_result masu_instance_show(masu_renderer *m, masu_instance instance, uint32_
     return result;
 }
 
+masu_result masu_instance_set_look(masu_renderer *m, masu_instance instance, const masu_look *look,
+                                   masu_detail *detail) {
+    uint32_t i;
+    if (!m || !look) return masu_finish_null(m, "look", detail);
+    masu_result result = check_instance(m, instance, &i, detail);
+    if (!result) result = masu_finish(m, masu_looks_check(&m->plan, look, &m->error), detail);
+    if (!result) masu_instances_set_look(&m->instances, &m->plan, i, look);
+    return result;
+}
+
+masu_result masu_instance_get_look(masu_renderer *m, masu_instance instance, masu_look *out,
+                                   masu_detail *detail) {
+    const masu_look plain = {.flags = 0};
+    uint32_t i;
+    if (!m || !out) return masu_finish_null(m, "out", detail);
+    masu_result result = check_instance(m, instance, &i, detail);
+    if (!result) result = masu_finish(m, masu_looks_check(&m->plan, &plain, &m->error), detail);
+    if (!result) *out = m->instances.looks.now[i];
+    return result;
+}
+
 /* ---- Models ---------------------------------------------------------------------------------- */
 
 static masu_result check_model(masu_renderer *m, masu_model model, uint32_t *index,
@@ -145,6 +166,16 @@ masu_result masu_model_show(masu_renderer *m, masu_model model, uint32_t shown,
     if (!m) return masu_fail_null(detail, "renderer");
     masu_result result = check_model(m, model, &i, detail);
     if (!result) masu_models_show(&m->models, &m->instances, &m->plan, i, shown != 0);
+    return result;
+}
+
+masu_result masu_model_set_look(masu_renderer *m, masu_model model, const masu_look *look,
+                                masu_detail *detail) {
+    uint32_t i;
+    if (!m || !look) return masu_finish_null(m, "look", detail);
+    masu_result result = check_model(m, model, &i, detail);
+    if (!result) result = masu_finish(m, masu_looks_check(&m->plan, look, &m->error), detail);
+    if (!result) masu_models_set_look(&m->models, &m->instances, &m->plan, i, look);
     return result;
 }
 
@@ -318,4 +349,53 @@ masu_result masu_material_set(masu_renderer *m, masu_material material,
     masu_result result = check_material(m, material, &i, detail);
     if (result) return result;
     return masu_finish(m, masu_materials_set(&m->materials, &m->plan, i, state, &m->error), detail);
+}
+
+/* ---- Textures -------------------------------------------------------------------------------- */
+
+static masu_result not_loaded(const masu_renderer *m, masu_detail *detail) {
+    masu_detail own;
+    masu_fail(&own, MASU_ERROR_STATE, "masu_load", 1, 0,
+              "textures are there once masu_load has returned MASU_OK");
+    return masu_finish_desc(&m->plan.desc, MASU_ERROR_STATE, &own, detail);
+}
+
+masu_result masu_texture_write(masu_renderer *m, uint32_t texture, const VkRect2D *rect,
+                               const void *texels, uint32_t row_bytes, masu_detail *detail) {
+    if (!m || !texels) return masu_finish_null(m, "texels", detail);
+    if (!m->loaded) return not_loaded(m, detail);
+    return masu_finish(m,
+                       masu_textures_add(&m->textures, &m->device, &m->timeline, texture, rect,
+                                         texels, row_bytes, &m->error),
+                       detail);
+}
+
+masu_result masu_texture_image_of(const masu_renderer *m, masu_texture_image *out,
+                                  masu_detail *detail) {
+    if (!m || !out) return masu_finish_null_const(m, "out", detail);
+    if (!m->loaded) return not_loaded(m, detail);
+    if (!m->plan.needs.texture_writes) {
+        masu_detail own;
+        masu_fail(&own, MASU_ERROR_STATE, "reserve.textures", 1, 0,
+                  "there are no textures: desc.reserve.textures is 0");
+        return masu_finish_desc(&m->plan.desc, MASU_ERROR_STATE, &own, detail);
+    }
+    const masu_image_plan *image = &m->plan.images[MASU_IMAGE_TEXTURES];
+    *out = (masu_texture_image){.image = m->device.objects.images[MASU_IMAGE_TEXTURES],
+                                .format = masu_plan_format(&m->plan, MASU_IMAGE_TEXTURES),
+                                .usage =
+                                    image->usage & ~(VkImageUsageFlags)VK_IMAGE_USAGE_STORAGE_BIT,
+                                .layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                                .width = image->width,
+                                .height = image->height,
+                                .layers = masu_plan_layers(&m->plan, MASU_IMAGE_TEXTURES)};
+    return MASU_OK;
+}
+
+/* ---- Effects on the image -------------------------------------------------------------------- */
+
+masu_result masu_lut_set(masu_renderer *m, const float *colors, uint32_t size,
+                         masu_detail *detail) {
+    if (!m || (size && !colors)) return masu_finish_null(m, "colors", detail);
+    return masu_finish(m, masu_post_set_lut(&m->post, &m->plan, colors, size, &m->error), detail);
 }

@@ -178,6 +178,7 @@ masu_result masu_stats(const masu_renderer *m, uint32_t slot, masu_stats_info *o
     out->particles = m->sprites.slots[slot].particles;
     out->decals = m->sprites.slots[slot].decals;
     out->lines = m->sprites.slots[slot].lines;
+    out->trail_segments = m->sprites.slots[slot].segments;
     if (m->plan.desc.debug.counters) read_counters(m, slot, out);
     if (m->device.queries) read_times(m, slot, out);
     return MASU_OK;

@@ -21,9 +21,11 @@
 #include "frame/instances.h"
 #include "frame/local_shadows.h"
 #include "frame/materials.h"
+#include "frame/meshes.h"
 #include "frame/models.h"
 #include "frame/occlusion.h"
 #include "frame/picking.h"
+#include "frame/post.h"
 #include "frame/punctual_lights.h"
 #include "frame/bounce.h"
 #include "frame/reflections.h"
@@ -32,6 +34,7 @@
 #include "frame/sprites.h"
 #include "frame/sun_sky.h"
 #include "frame/temporal.h"
+#include "frame/textures.h"
 #include "frame/timeline.h"
 #include "frame/transparents.h"
 #include "frame/visible.h"
@@ -74,8 +77,11 @@ struct masu_renderer {
     masu_occlusion occlusion;
     masu_transparents transparents;
     masu_sprites sprites;
+    masu_textures textures;
     masu_reflections reflections;
     masu_bounce bounce;
+    masu_meshes meshes;
+    masu_post_state post;
 };
 
 /* The result of a public function whose error is in m->error: logs it and copies it to `detail`,

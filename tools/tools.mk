@@ -1,6 +1,6 @@
-# tools.mk: the programs, and what they and the tests share. A folder of tools/ is one archive; a
-# program is its main file and the archives that hold what it calls, of which the linker takes what
-# is needed.
+# tools.mk: the programs, and the archives that they and the tests share. A folder of tools/ is one archive; a
+# program is its main file and the archives of the functions that it calls, from which the linker takes the objects
+# that it needs.
 
 # ---- Archives: one per folder of tools/ ----------------------------------------------------------
 
@@ -15,13 +15,13 @@ PLATFORM  := $(BUILD)/lib/libmasu-platform.a $(BUILD)/lib/libmasu.a
 BAKE_ARCHIVES := $(foreach f,bake sdfc spirv cli,$(call tool_archive,$(f))) $(PLATFORM)
 MEASURE_ARCHIVES := $(foreach f,command conform bench measure settings metric,$(call tool_archive,$(f)))
 
-# Where ImageMagick has its headers differs by machine. Its headers are not ours to warn about.
+# The path of ImageMagick's headers depends on the machine. Warnings in them are not ours.
 $(BUILD)/obj/tools/bake/texture/image.o: FOLDER_FLAGS += $$(pkg-config --cflags MagickWand | \
     sed 's/-I/-isystem /g; s/-fopenmp//g')
 BAKE_LIBS := -lassimp -ljansson -lmeshoptimizer -ldraco -lembree3 $$(pkg-config --libs MagickWand) -lm -lpthread -lstdc++
 MASU_LIBS := -lvulkan -ljansson -lembree3 -lm -ldl -lpthread
 
-# ---- Suites: beside the programs, where masu conform looks for them ------------------------------
+# ---- Suites: next to the programs, where masu conform looks for them -----------------------------
 
 SUITES := $(patsubst %,$(BUILD)/%,$(wildcard suites/*.json))
 $(BUILD)/suites/%.json: suites/%.json
@@ -43,8 +43,8 @@ $(BUILD)/bin/masu-sdfc: LIBS = -lm
 $(BUILD)/bin/masu-sdfc: $(BUILD)/obj/tools/sdfc/main.o $(call tool_archive,sdfc) $(call tool_archive,cli) $(PLATFORM)
 	$(link)
 
-# masu-view takes SDL2, Dear ImGui and a font, which nothing else does: `make view` installs them, and without them
-# the other programs are built all the same.
+# Only masu-view needs SDL2, Dear ImGui and a font: `make view` installs them, and without them
+# the other programs are built.
 VIEW_FONT  := /usr/share/fonts/truetype/dejavu/DejaVuSans.ttf
 SDL_CFLAGS := $$(pkg-config --cflags sdl2 | sed 's/-I/-isystem /g')
 IMGUI_CFLAGS := $$(pkg-config --cflags imgui | sed 's/-I/-isystem /g') -DMASU_UI_FONT='"$(VIEW_FONT)"'
@@ -61,8 +61,8 @@ $(BUILD)/bin/masu-view: $(VIEW_OBJECTS) $(KEEP_LOADED) $(MEASURE_ARCHIVES) $(BAK
 
 # ---- Tables in documents -------------------------------------------------------------------------
 
-# Committed, for readers; tests/scripts/docs_tables.sh fails where they are not what the headers say.
-# The structs of masu_knobs.h, of which everything else is compiled: first.
+# Committed, for readers; tests/scripts/docs_tables.sh fails if they differ from the headers.
+# The structs of masu_knobs.h come first, because the rest is compiled from them.
 .PHONY: docs-tables struct-tables
 struct-tables:
 	@mkdir -p $(BUILD)/tools
@@ -81,7 +81,7 @@ docs-tables: struct-tables $(BUILD)/bin/masu $(BUILD)/bin/masu-sdfc ## write mas
 
 # ---- Scenes --------------------------------------------------------------------------------------
 
-# Scenes to look at are in scenes/, those of the tests in tests/scenes/; their blobs share one folder. A scene is baked again
+# Scenes to look at are in scenes/, the tests' in tests/scenes/; their blobs share one folder. A scene is baked again
 # when its description, a file that it names or the code of masu-bake changes.
 SCENE_JSON := $(wildcard scenes/*.json tests/scenes/*.json)
 SCENES     := $(patsubst %.json,$(MADE)/scenes/%.masu,$(notdir $(SCENE_JSON)))
@@ -95,13 +95,13 @@ $(MADE)/scenes/$(basename $(notdir $(firstword $(subst :, ,$(1))))).masu: $(firs
 endef
 $(foreach n,$(shell scenes/needs.sh scenes tests/scenes),$(eval $(call scene_rule,$(n))))
 
-# The hash of what masu-bake runs: it changes only if the program does, not if a comment of its sources does.
+# The hash of the program code of masu-bake: it does not change with comments in its sources.
 $(MADE)/bin/masu-bake.code: $(MADE)/bin/masu-bake
 	$(V)objcopy --strip-all -R .note.gnu.build-id $< $@.stripped
 	$(V)cksum < $@.stripped > $@.new && rm $@.stripped
 	$(V)$(call move_if_changed,$@.new,$@)
 
-# The pictures that scenes/textures.json and the tests place: made here, by formula.
+# The textures of scenes/textures.json and of the tests, generated here by formulas.
 # stb's JPEG writer shifts bits out of signed integers.
 $(MADE)/obj/tools/generate/make_textures.o: FOLDER_FLAGS += -fno-sanitize=shift
 $(MADE)/tools/make_textures: LIBS = -lm
@@ -126,8 +126,8 @@ $(BUILD)/examples/%: $(BUILD)/obj/examples/%.o $(KEEP_LOADED) $(BUILD)/lib/libma
 	$(link)
 EXAMPLES := $(patsubst examples/%.c,$(BUILD)/examples/%,$(wildcard examples/*.c))
 
-# Those with a window are of masu.h, Vulkan, SDL2 and examples/shared alone; where there is no SDL2 they are left
-# out. What the game and the library ask of the heap goes to examples/drive/heap.c.
+# Examples with a window use only masu.h, Vulkan, SDL2 and examples/shared; without SDL2 they are not
+# built. Allocations of the game and the library are redirected to examples/drive/heap.c.
 WINDOW_EXAMPLES := $(addprefix $(BUILD)/examples/,drive loop)
 WINDOW_FLAGS    := -Iexamples/shared $$(pkg-config --cflags sdl2)
 EXAMPLES := $(filter-out $(if $(HAVE_SDL2),,$(WINDOW_EXAMPLES)),$(EXAMPLES) $(BUILD)/examples/drive)
@@ -137,7 +137,7 @@ $(WINDOW_EXAMPLES): $(call objects,$(wildcard examples/shared/*.c)) $(KEEP_LOADE
 $(BUILD)/examples/drive: HEAP_FLAGS = $(patsubst %,-Wl$(comma)--wrap=%,malloc calloc realloc)
 $(BUILD)/examples/drive: $(call objects,$(wildcard examples/drive/*.c))
 	$(link)
-# A scene's field in double precision (masu-sdfc --c), beside it as NAME.truth.so.
+# A scene's field in double precision (masu-sdfc --c), next to the scene as NAME.truth.so.
 %.truth.so: %.truth.c
 	@echo "  TRUTH   $@"
 	$(V)$(CC) -std=c11 -O2 -w -shared -fPIC -o $@ $< -lm

@@ -1,5 +1,5 @@
-/* overlay.c: see overlay.h. Words are pixels of their own on a dark ground, which are copied into the picture: no
- * shader, no pipeline, no texture. */
+/* overlay.c: see overlay.h. Text is written as pixels on a dark background, which are copied into
+ * the image: no shader, no pipeline, no texture. */
 #include "overlay.h"
 
 #include <stdio.h>
@@ -14,7 +14,7 @@ static bool take_buffer(window *w, VkDeviceSize bytes, overlay_buffer *b) {
     VkPhysicalDeviceMemoryProperties has;
     VkMemoryRequirements need;
     VkMemoryPropertyFlags wanted = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-    uint32_t type = 0; /* Vulkan promises that there is one */
+    uint32_t type = 0; /* Vulkan guarantees such a type */
     vkGetPhysicalDeviceMemoryProperties(w->gpu, &has);
     if (vkCreateBuffer(w->device, &info, NULL, &b->buffer))
         return fprintf(stderr, "cannot create the overlay's buffer\n"), false;
@@ -38,9 +38,10 @@ void overlay_close(overlay *o) {
     }
 }
 
-/* ---- words ---- */
+/* ---- text ------------------------------------------------------------------------------------ */
 
-/* Signs of 3x5 dots from '-' on: an octal digit is a row from the top, its highest bit the left dot. */
+/* A font of 3x5 dots from '-' on: each octal digit is a row, from the top, with the left dot in its
+ * highest bit. */
 static const uint16_t font[] = {
     000700, 000002, 011244, 075557, 026227, 071747, 071717, 055711, 074717, 074757, /* - . / 0 ... 6 */
     071111, 075757, 075717, 002020, 000000, 000000, 000000, 000000, 000000, 000000, /* 7 8 9 : */
@@ -53,7 +54,8 @@ static bool is_lit(char sign, int x, int y) {
     return font[sign - '-'] >> (14 - 3 * y - x) & 1;
 }
 
-/* Writes the line's pixels from `used` on, and says where they are to be copied to. 0 bytes: it does not fit. */
+/* Writes the line's pixels at `used`, and their destination to *to. Returns 0 if the line does not
+ * fit. */
 static VkDeviceSize write_line(const overlay_line *l, VkExtent2D screen, void *mapped, VkDeviceSize used,
                                VkBufferImageCopy *to) {
     int signs = 0;
@@ -76,7 +78,7 @@ static VkDeviceSize write_line(const overlay_line *l, VkExtent2D screen, void *m
     return bytes;
 }
 
-/* ---- into the picture, and out of it ---- */
+/* ---- into the image, and out of it ----------------------------------------------------------- */
 
 static void barrier(VkCommandBuffer to, VkImage image, VkImageLayout before, VkImageLayout after) {
     VkPipelineStageFlags all = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_HOST_BIT;
@@ -101,7 +103,7 @@ bool overlay_record(overlay *o, uint32_t slot, uint32_t image, const overlay_lin
     barrier(own, picture, read, write);
     for (int i = 0; i < count; i++) {
         if (!(bytes = write_line(&lines[i], w->size, o->words[slot].mapped, used, &to))) continue;
-        barrier(own, picture, write, write); /* one may lie over another */
+        barrier(own, picture, write, write); /* lines may overlap */
         vkCmdCopyBufferToImage(own, o->words[slot].buffer, picture, write, 1, &to);
         used += bytes;
     }
@@ -119,7 +121,7 @@ bool overlay_save(overlay *o, const char *file) {
     bool is_bgr = w->format == VK_FORMAT_B8G8R8A8_UNORM || w->format == VK_FORMAT_B8G8R8A8_SRGB;
     bool fits = (unsigned)width * (unsigned)height * 4 <= COPY_BYTES;
     if (vkDeviceWaitIdle(w->device)) return false;
-    /* SDL names channels from the highest byte of a number: this is B, G, R, unused in memory. */
+    /* SDL names channels from the highest byte of a number: in memory this is B, G, R, unused. */
     SDL_Surface *s = !fits ? NULL : SDL_CreateRGBSurfaceWithFormatFrom(o->copy.mapped, width, height, 32, 4 * width,
                                         is_bgr ? SDL_PIXELFORMAT_XRGB8888 : SDL_PIXELFORMAT_XBGR8888);
     bool good = s && SDL_SaveBMP(s, file) == 0;

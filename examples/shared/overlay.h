@@ -1,13 +1,13 @@
-/* overlay.h: what a host adds to a picture of the library's, in its own command buffer behind the library's:
- * words over it, as on a HUD, and a copy of it for a file. */
+/* overlay.h: draws over the library's image, in its own command buffer after the
+ * library's: text, as on a HUD, and a copy of the image for a file. */
 #ifndef EXAMPLES_OVERLAY_H
 #define EXAMPLES_OVERLAY_H
 
 #include "window.h"
 
 typedef struct overlay_line {
-    int x, y, dot; /* pixels: its upper left corner, the edge of a dot */
-    char text[64]; /* '-' to 'Z' and blanks */
+    int x, y, dot; /* pixels: upper left corner, size of a dot */
+    char text[64]; /* '-' to 'Z' and spaces */
 } overlay_line;
 
 typedef struct overlay_buffer {
@@ -21,13 +21,13 @@ typedef struct overlay {
     overlay_buffer words[WINDOW_SLOTS], copy;
 } overlay;
 
-/* Takes all of its memory: nothing is asked for later. Harmless to close when that failed. */
+/* Allocates all memory; nothing is allocated later. Safe to close after a failure. */
 bool overlay_open(overlay *o, window *w);
 void overlay_close(overlay *o);
-/* Records w->commands[slot]: the lines, as far as they fit into the picture, then the copy. The library has left the
- * image in VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL; afterwards it can be shown. */
+/* Records w->commands[slot]: the lines that fit into the image, then the copy. The library leaves
+ * the image in VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL; afterwards it is ready to be presented. */
 bool overlay_record(overlay *o, uint32_t slot, uint32_t image, const overlay_line *lines, int count, bool copy);
-/* Waits, and writes the copy as a BMP; at most 2560x1440 pixels are there. */
+/* Waits, and writes the copy as a BMP of at most 2560x1440 pixels. */
 bool overlay_save(overlay *o, const char *file);
 
 #endif

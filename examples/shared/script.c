@@ -5,7 +5,7 @@
 #include <string.h>
 
 bool script_open(script *s, const char *path) {
-    if (path) s->text = s->next = SDL_LoadFile(path, NULL); /* with a 0 behind it */
+    if (path) s->text = s->next = SDL_LoadFile(path, NULL); /* null-terminated */
     if (path && !s->text) fprintf(stderr, "cannot read the script: %s\n", SDL_GetError());
     return !path || s->text;
 }

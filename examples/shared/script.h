@@ -1,26 +1,26 @@
-/* script.h: what happens in which frame, read from a file, for drives that are the same each time: a line is
- * "frame N VERB [VALUE [HOW]]", in the order of frames; what starts with # is a comment. */
+/* script.h: actions at given frames, read from a file, for reproducible runs: a line is "frame N
+ * VERB [VALUE [HOW]]", in the order of frames; # starts a comment. */
 #ifndef EXAMPLES_SCRIPT_H
 #define EXAMPLES_SCRIPT_H
 
 #include "window.h"
 
 typedef struct script {
-    char *text, *next; /* NULL: there is none, or it is at its end */
+    char *text, *next; /* NULL: no script, or at its end */
 } script;
 
 typedef struct script_line {
-    char verb[16], value[256], how[8]; /* "": left out */
+    char verb[16], value[256], how[8]; /* "": omitted */
 } script_line;
 
-/* NULL for `path` is fine: no script. False: it cannot be read, which stderr says. */
+/* `path` NULL: no script. Returns false, with a message on stderr, if the script cannot be read. */
 bool script_open(script *s, const char *path);
 void script_close(script *s);
-/* The next line of a frame up to this one; false: there is none. */
+/* The next line of a frame up to this one; false: none. */
 bool script_next(script *s, unsigned frame, script_line *out);
-/* What all scripts can do: resize WxH, after which the window has that size. False: it is no such line. */
+/* Executes a line that all scripts share: resize WxH. Returns false for other lines. */
 bool script_resize(const script_line *line, window *w);
-/* Says on stderr that it is no line of a script. Returns false, for `return`. */
+/* Reports an unknown line on stderr. Returns false, for `return`. */
 bool script_unknown(const script_line *line);
 
 #endif

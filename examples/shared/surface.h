@@ -1,13 +1,14 @@
-/* surface.h: format, transform and present mode of a swapchain whose images are targets of Masu, chosen from what
- * the surface offers. docs/embedding.md (Swapchain) has the reasons. Pure functions: the caller queries the surface. */
+/* surface.h: selects format, transform and present mode of a swapchain whose images are targets of
+ * Masu, from the values that the surface supports. docs/embedding.md (Swapchain) has the reasons.
+ * Pure functions: the caller queries the surface. */
 #ifndef EXAMPLES_SURFACE_H
 #define EXAMPLES_SURFACE_H
 
 #include <stdbool.h>
 #include <vulkan/vulkan_core.h>
 
-/* An 8-bit format of the list: UNORM, or sRGB if there is no UNORM or `srgb` is set. Both get the same bytes; sRGB
- * costs one more image. VK_FORMAT_UNDEFINED: there is none. */
+/* An 8-bit format of the list: UNORM, or sRGB if there is no UNORM or `srgb` is set. Both receive
+ * the same bytes; sRGB costs one more image. VK_FORMAT_UNDEFINED: none. */
 static inline VkFormat surface_format(const VkSurfaceFormatKHR *list, uint32_t count, bool srgb) {
     static const VkFormat unorm[] = {VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_R8G8B8A8_UNORM};
     static const VkFormat encoded[] = {VK_FORMAT_B8G8R8A8_SRGB, VK_FORMAT_R8G8B8A8_SRGB};
@@ -21,14 +22,15 @@ static inline VkFormat surface_format(const VkSurfaceFormatKHR *list, uint32_t c
     return VK_FORMAT_UNDEFINED;
 }
 
-/* Masu renders unrotated images: identity, so that the compositor rotates them. If the surface supports only its
- * current transform, the host must rotate the image itself. */
+/* Masu renders unrotated images: identity, so that the compositor rotates them. If the surface
+ * supports only its current transform, the host must rotate the image itself. */
 static inline VkSurfaceTransformFlagBitsKHR surface_transform(const VkSurfaceCapabilitiesKHR *can) {
     VkSurfaceTransformFlagBitsKHR identity = VK_SURFACE_TRANSFORM_IDENTITY_BIT_KHR;
     return can->supportedTransforms & identity ? identity : can->currentTransform;
 }
 
-/* With `paced` FIFO, which every surface has; else the mode with the lowest latency: MAILBOX, IMMEDIATE (tears). */
+/* With `paced` FIFO, which every surface has; else the mode with the lowest latency: MAILBOX,
+ * IMMEDIATE (tears). */
 static inline VkPresentModeKHR surface_mode(const VkPresentModeKHR *list, uint32_t count, bool paced) {
     VkPresentModeKHR best = VK_PRESENT_MODE_FIFO_KHR;
     for (uint32_t i = 0; i < count && !paced; i++) {

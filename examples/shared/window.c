@@ -50,7 +50,7 @@ static bool create_instance(window *w, bool validate) {
     return true;
 }
 
-/* The first device with a queue family that draws, computes and shows. */
+/* The first device with a queue family for graphics, compute and presentation. */
 static bool choose_device(window *w) {
     VkPhysicalDevice gpus[MANY];
     uint32_t n = MANY;
@@ -82,7 +82,7 @@ static bool create_device(window *w) {
     w->features = (VkPhysicalDeviceFeatures){
         .textureCompressionBC = (can.used & MASU_FEATURE_TEXTURE_COMPRESSION_BC) != 0,
         .samplerAnisotropy = (can.used & MASU_FEATURE_SAMPLER_ANISOTROPY) != 0};
-    if (gpu.deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU) /* 20 times as long */
+    if (gpu.deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU) /* 20 times as slow */
         w->anisotropy = fminf(8, can.max_anisotropy);
     VkDeviceQueueCreateInfo queue = {INFO(DEVICE_QUEUE_CREATE_INFO), .queueFamilyIndex = w->family,
                                      .queueCount = 1, .pQueuePriorities = (float[1]){1}};
@@ -145,7 +145,7 @@ bool window_swapchain(window *w) {
     VkPresentModeKHR modes[MANY];
     uint32_t mode_count = MANY;
     int width, height;
-    SDL_Vulkan_GetDrawableSize(w->sdl, &width, &height); /* where the surface leaves it to the host */
+    SDL_Vulkan_GetDrawableSize(w->sdl, &width, &height); /* if the surface does not set the size */
     TRY(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(w->gpu, w->surface, &can));
     TRY(vkGetPhysicalDeviceSurfacePresentModesKHR(w->gpu, w->surface, &mode_count, modes));
     VkExtent2D size = {(uint32_t)width, (uint32_t)height};
@@ -163,7 +163,8 @@ bool window_swapchain(window *w) {
         .presentMode = surface_mode(modes, mode_count, !w->unpaced), .clipped = VK_TRUE};
     w->rotated = info.preTransform != can.currentTransform;
     TRY(vkCreateSwapchainKHR(w->device, &info, NULL, &w->swapchain));
-    memset(w->submit_ns, 0, sizeof w->submit_ns); /* what is between two sizes is no frame's time */
+    memset(w->submit_ns, 0, sizeof w->submit_ns); /* the time between two sizes is not a frame
+                                                   * time */
     w->count = WINDOW_IMAGES;
     TRY(vkGetSwapchainImagesKHR(w->device, w->swapchain, &w->count, w->images));
     return true;
@@ -185,7 +186,7 @@ VkResult window_begin(window *w, uint32_t slot, uint32_t *image) {
     w->frame_ms = (double)(w->done_ns[slot] - from) / 1e6;
     if (!r) r = vkAcquireNextImageKHR(w->device, w->swapchain, UINT64_MAX, w->acquired[slot], VK_NULL_HANDLE, image);
     if (r != VK_ERROR_OUT_OF_DATE_KHR) (void)check(r, "taking an image of the window");
-    return r == VK_SUBOPTIMAL_KHR ? VK_SUCCESS : r; /* it can be drawn to; window_end tells */
+    return r == VK_SUBOPTIMAL_KHR ? VK_SUCCESS : r; /* usable; window_end reports it */
 }
 
 VkResult window_end(window *w, uint32_t slot, uint32_t image, const VkCommandBuffer *list, uint32_t count) {
@@ -199,7 +200,8 @@ VkResult window_end(window *w, uint32_t slot, uint32_t image, const VkCommandBuf
                                 &image, NULL};
     if (!r) r = vkQueuePresentKHR(w->queue, &present);
     if (r != VK_ERROR_OUT_OF_DATE_KHR) (void)check(r, "showing a frame");
-    /* Presenting an unrotated image to a rotated surface is suboptimal every time: no reason to make it anew. */
+    /* Presenting an unrotated image to a rotated surface is always suboptimal: do not recreate the
+     * swapchain. */
     return r == VK_SUBOPTIMAL_KHR && w->rotated ? VK_SUCCESS : r;
 }
 

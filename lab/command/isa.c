@@ -85,7 +85,7 @@ static int ask_all(const options *o, const masu_isa_gpu *const *gpus, uint32_t c
 
 static const masu_option rows[] = {
     MASU_TEXT(options, gpus, "gpu", "GPU[,GPU...]",
-              "the GPUs whose compilers are asked; --gpu=help lists them"),
+              "the GPUs whose compilers to use; --gpu=help lists them"),
     MASU_OUTPUT_SIZE_ROW(options, desc.output),
     MASU_LADDER_ROW(options, ladder, "1, 0.8 and 0.4 of the size (default off)"),
     MASU_UINT(options, desc.frames_in_flight, "frames-in-flight", 1, MASU_MAX_FLIGHT,

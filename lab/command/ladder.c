@@ -27,7 +27,7 @@ static const char *const constants[MASU_SCENE_CLASSES] = {
     "POLYGONS",        "WORLD",        "SDF",        "BOTH",
     "POLYGONS_TRACED", "WORLD_TRACED", "SDF_TRACED", "BOTH_TRACED"};
 
-/* The class of CLASS=..., and in *rest the text behind it. MASU_SCENE_CLASSES: a wrong argument,
+/* The class of CLASS=...; *rest is the text after it. MASU_SCENE_CLASSES: an invalid argument,
  * already reported. */
 static uint32_t class_of(const char *argument, const char **rest) {
     const char *equals = strchr(argument, '=');
@@ -42,7 +42,7 @@ static uint32_t class_of(const char *argument, const char **rest) {
         return c;
     }
     masu_cli_usage_error(
-        "expected CLASS=FILE, with a class of polygons, world, sdf, both, or one of them with -traced: "
+        "expected CLASS=FILE, with a class of polygons, world, sdf, both, or one with -traced: "
         "found '%s'",
         argument);
     return MASU_SCENE_CLASSES;
@@ -166,7 +166,7 @@ static int print_tables(const masu_given *given) {
 
 /* ---- ladder_devices.h ------------------------------------------------------------------------ */
 
-/* As the program cksum computes it (POSIX). */
+/* The checksum of the program cksum (POSIX). */
 static uint32_t cksum(const uint8_t *bytes, size_t count) {
     uint32_t crc = 0;
     size_t length = count;
@@ -197,14 +197,14 @@ static bool split(const char *argument, char scene[1024], char ladder[1024], dou
            snprintf(ladder, 1024, "%s", second + 1) < 1024;
 }
 
-/* Rounds as the CSV of the model sheet does. */
+/* Rounds like the CSV of the model sheet. */
 static double shown(double ms) {
     char text[32];
     snprintf(text, sizeof text, "%.6g", ms);
     return strtod(text, NULL);
 }
 
-/* What each rung of the ladder takes on each class, computed; *m is freed by the caller. */
+/* Computes the cost of each rung of the ladder on each class; the caller frees *out. */
 static int model(const char *scene, const char *ladder, double time, masu_model_sheet **out) {
     static masu_issued issued[MASU_MODEL_CLASSES];
     const VkExtent2D size = {1920, 1080};
@@ -290,13 +290,14 @@ static int print_devices(const masu_given *given) {
 
 _Static_assert(MASU_COSTS_CLASSES == MASU_MODEL_CLASSES, "a column for each class of the model");
 
-/* Settings that change time alone are for comparison. */
+/* Settings that change only time are for comparison. */
 static bool may_be_rung(const masu_rung *rung) {
     return !not_built_in(rung) && rung->frustum != MASU_OFF && rung->occlusion != MASU_OFF &&
            rung->light_tiles != MASU_OFF;
 }
 
-/* A ladder.json of a part of the rows, for the model: its times and errors are nobody's. */
+/* Writes a ladder.json for some of the rows, as input of the model; its times and errors are
+ * placeholders. */
 static bool write_part(const char *path, const masu_row *rows, const uint32_t *part, uint32_t count,
                        char *error, size_t error_size) {
     char *text = NULL;
@@ -326,7 +327,7 @@ static bool write_part(const char *path, const masu_row *rows, const uint32_t *p
     return good;
 }
 
-/* Twelve settings at a time, as a ladder has at most. */
+/* Processes twelve settings at a time, the maximum of a ladder. */
 static int write_costs(const char *scene, const char *folder, double time) {
     char path[4096], part_path[4096], error[4096], *text = NULL;
     uint32_t count = 0, part[MASU_MAX_RUNGS];
@@ -395,7 +396,7 @@ static const masu_option rows[] = {
     MASU_FLAG(
         options, costs, "costs",
         "write costs.csv into each DIR of masu bench: the cost of each setting on these classes, in ms;\n"
-        "masu bench then chooses no rung that another setting dominates on one of them"),
+        "masu bench then chooses no rung that another setting dominates on any class"),
     {.name = NULL}};
 
 static int run(masu_cli *cli) {

@@ -1,5 +1,5 @@
-/* meso.c: `masu-lab meso`: makes a material as masu-meso does, and compares it with ray tracing
- * under other lights. */
+/* meso.c: `masu-lab meso`: makes a material like masu-meso, and compares it with ray tracing under
+ * other lights. */
 #include "lab/command/commands.h"
 #include "lab/meso/report.h"
 

@@ -24,7 +24,7 @@ static const masu_option rows[] = {
     MASU_REAL(options, time, "time", "SECONDS", -1e9, 1e9, "moment of the scene and its camera"),
     MASU_TEXT(
         options, isa, "isa", "GPU[,GPU...]",
-        "use the instruction counts of these GPUs' own compilers (masu-lab isa): tgl, kbl, raven,\n"
+        "use instruction counts from the compilers of GPUs (masu-lab isa): tgl, kbl, raven,\n"
         "vangogh, a630"),
     MASU_FILE(options, csv, "csv", "FILE", "write every pass of every rung as CSV"),
     MASU_FILE(options, fragment, "html-fragment", "FILE",
@@ -79,5 +79,5 @@ const masu_cli_command lab_model = {
     .summary = "compute each pass's bytes, operations, and least time on five classes of GPU",
     .details =
         "Renders each rung with counters in all shaders, and divides the counts by the peak rates of five\n"
-        "classes of GPU. All times are computed; none of these GPUs is needed.\n",
+        "classes of GPU. All times are computed; no GPU is needed.\n",
     .run = run};

@@ -1,5 +1,5 @@
-/* reference.c: `masu-lab reference`: an image of a scene by the path tracer of lab/reference,
- * which shares nothing with the renderer. */
+/* reference.c: `masu-lab reference`: renders an image of a scene by the path tracer of
+ * lab/reference, which shares nothing with the renderer. */
 #include "bake/light/environment.h"
 #include "image.h"
 #include "lab/command/commands.h"
@@ -83,13 +83,13 @@ static const masu_option rows[] = {
     MASU_REAL(options, scale, "sky-scale", "FACTOR", 1e-6, 1e6, "factor for its radiance"),
     MASU_OWN(
         "window", "X,Y,Z,X,Y,Z", read_window,
-        "box through which the sky is looked for (full): less noise in a room; the mean stays"),
+        "box through which the sky is sampled (full): less noise in a room, the same mean"),
     MASU_HEADING("Light"),
     MASU_FLAG(
         options, physics, "physics",
         "random walks between facets and shadows of all lights instead of Masu's closed model"),
     MASU_CHOICE(options, transport, "transport", "PATHS", transports,
-                "direct: the light paths that Masu promises; full: all of them; auto: full with\n"
+                "direct: the light paths that Masu specifies; full: all paths; auto: full with\n"
                 "--physics and with light probes\n"),
     MASU_UINT(options, bounces, "bounces", 0, 1000, "most bounces of a path (full)"),
     MASU_REAL(options, sun_radius, "sun-radius", "DEGREES", 0, 20,
@@ -138,7 +138,7 @@ static void command_line(const options *o, const char *scene, char *text, size_t
         snprintf(text + at, size - at, " --sdf-ambient-strength %g", o->occlusion[1]);
 }
 
-/* With the curve of shaders/shared/tone.glsl. */
+/* Uses the curve of shaders/shared/tone.glsl. */
 static bool save_png(const char *path, const ref_image *image, double exposure, char *error,
                      size_t size) {
     const size_t pixels = (size_t)image->width * image->height;
@@ -180,14 +180,14 @@ static bool save(const options *o, const char *scene, double exposure, const ref
     return good;
 }
 
-/* Features of the scene that the reference does not judge. */
+/* Warns about features of the scene that the reference does not check. */
 static void warn(const options *o, const ref_scene *s) {
     if (s->blob.section[MASU_BLOB_OCCLUSION_SPIRV] && !(o->occlusion[0] > 0) && !o->physics)
-        masu_cli_warn("the blob does not tell whether the field occludes ambient light: give the "
+        masu_cli_warn("the blob has no data on ambient occlusion by the field: give the "
                       "radius by --sdf-ambient");
-    if (s->meso) masu_cli_warn("mesoscale detail of materials is left out");
+    if (s->meso) masu_cli_warn("mesoscale detail of materials is ignored");
     if (o->output && !masu_image_is_linear(o->output) && (double)s->environment->metered > 0)
-        masu_cli_warn("auto-exposure is left out");
+        masu_cli_warn("auto-exposure is ignored");
 }
 
 static int render(const options *o, const char *path, ref_scene *scene, const ref_field *field,
@@ -260,7 +260,7 @@ static int open_sky(const options *o, const ref_scene *scene, ref_sky *sky, floa
     if (o->sky) {
         masu_bake_panorama p = {.turn = 0, .factor = 1, .name = o->sky};
         if (!masu_bake_load_panorama(o->sky, &p))
-            return MASU_CLI_FAILURE; /* it has been reported */
+            return MASU_CLI_FAILURE; /* already reported */
         sky->octahedron = NULL;
         sky->panorama = *pixels = p.rgb;
         sky->width = p.width;
@@ -288,7 +288,7 @@ static int run_reference(const options *o, const char *path) {
         code = masu_cli_error(
             "%s: the scene has a signed distance field: give its source by --sdf FILE", path);
     if (!scene.sdf && o->sdf) code = masu_cli_error("--sdf: %s has no signed distance field", path);
-    /* It lights the scene and has its sun: without it nothing could be compared. */
+    /* The analytic sky lights the scene and contains its sun: a comparison needs an image of it. */
     if (!code && (double)scene.environment->turbidity > 0 && !o->sky)
         code = masu_cli_error("%s: the scene has an analytic sky (turbidity %g): give an image of "
                               "it by --sky FILE",
@@ -345,8 +345,8 @@ const masu_cli_command lab_reference = {
     .name = "reference",
     .arguments = "SCENE.masu -o X.pfm|X.exr|X.png [options]",
     .summary = "render a scene by a path tracer that shares nothing with the renderer",
-    .details = "The default is the model that Masu promises: a difference from `masu render` is a "
+    .details = "The default is the model that Masu specifies: a difference from `masu render` is a "
                "bug, or\n"
-               "an approximation. --physics shows how far that model is from what it stands for.\n"
+               "an approximation. --physics shows the difference of that model from physics.\n"
                "The result is the same for any number of threads.\n",
     .run = run};

@@ -1,5 +1,5 @@
-/* simulate.c: `masu-lab simulate`: the governor and the rules of other engines on simulated GPUs,
- * as a table, as CSV, as plots. Needs no device. */
+/* simulate.c: `masu-lab simulate`: runs the governor and the rules of other engines on simulated
+ * GPUs, and prints tables, CSV and plots. Needs no device. */
 #include "command/options.h"
 #include "lab/simulate/record.h"
 #include "lab/study/table.h"
@@ -29,7 +29,7 @@ typedef struct options {
 /* Means over the seeds. */
 typedef struct row {
     double over, changes, late, scale, settle;
-    uint32_t unsettled; /* seeds after which it never did */
+    uint32_t unsettled; /* seeds for which it never settled */
     uint32_t invalid;
 } row;
 
@@ -54,8 +54,8 @@ static row measure(const sim_model *p, const sim_controller *c, uint32_t seeds) 
 
 /* ---- Plots ----------------------------------------------------------------------------------- */
 
-/* Times above, scales below, a line for each controller; all data inline, so that gnuplot reads no
- * file of ours. */
+/* Times above, scales below, one line per controller. All data are inline, so that gnuplot reads no
+ * file. */
 static void plot(FILE *to, const sim_model *p, const sim_controller *const *list,
                  uint32_t count) {
     static sim_frame frames[CONTROLLERS_MOST][SIM_FRAMES_MOST];
@@ -93,7 +93,7 @@ static void plot(FILE *to, const sim_model *p, const sim_controller *const *list
 }
 
 typedef struct script {
-    FILE *f; /* NULL: no plots are asked for */
+    FILE *f; /* NULL: no plots requested */
     char *text;
     size_t bytes;
 } script;
@@ -148,7 +148,7 @@ static void add_row(masu_table *t, const sim_model *p, const char *name, const r
     masu_table_text(t, r->unsettled && r->unsettled < seeds ? "(not always)" : "");
 }
 
-/* The table is printed model by model: the best scale that anything could hold stands below each. */
+/* The table is printed model by model; the best constant scale is below each. */
 static void run_model(const sim_model *p, const options *o, masu_table *t, FILE *plots) {
     const sim_controller *list[CONTROLLERS_MOST];
     uint32_t count = 0;
@@ -210,8 +210,8 @@ static const masu_option rows[] = {
     MASU_TEXT(options, plots, "plots", "DIR",
               "times and scales of each model as DIR/MODEL.svg, with gnuplot"),
     MASU_UINT(options, seeds, "seeds", 1, 10000, "runs of each, with other noise"),
-    MASU_TEXT(options, model, "model", "NAME", "this one alone"),
-    MASU_OWN("controller", "NAME", read_controller, "this one alone"),
+    MASU_TEXT(options, model, "model", "NAME", "only this one"),
+    MASU_OWN("controller", "NAME", read_controller, "only this one"),
     MASU_TEXT(options, record.scene, "record", "SCENE.masu",
               "draw the scene along its path at four scales and write the times to TRACE.csv\n"
               "instead"),
@@ -248,7 +248,7 @@ const masu_cli_command lab_simulate = {
     .summary = "run the governor and other engines' controllers on simulated GPUs",
     .details =
         "over: frames longer than the budget. changes: of the scale. settle: frames from the model's\n"
-        "event until 30 in a row keep the budget and the scale does not fall. oracle: the mean scale of\n"
-        "who knows every time before. Traces are times of a recorded scene: a line \"frame,SCALE,...\",\n"
+        "event until 30 in a row keep the budget and the scale does not fall. oracle: the mean scale\n"
+        "with all times known in advance. Traces are times of a recorded scene: a line \"frame,SCALE,...\",\n"
         "then a line per frame (lab/simulate/traces).\n",
     .run = run};

@@ -75,7 +75,7 @@ static int run_forza(masu_cli *cli) {
 
 static int run(masu_cli *cli) {
     static const masu_cli_option options[] = {
-        {"torcs", "DIR", "where the data of TORCS is\n(default " TORCS ")", OPTION_TORCS, 0},
+        {"torcs", "DIR", "folder of TORCS's data\n(default " TORCS ")", OPTION_TORCS, 0},
         {NULL, NULL, NULL, 0, 0},
     };
     static const masu_cli_command city = {

@@ -1,12 +1,13 @@
 #!/bin/bash
-# gallery.sh: every model of strangers, as masu-bake shows it: one HTML page with a picture of each, its name, triangles,
-# bytes, seconds of the processor, and what masu-bake says of it. For people to look at; tests/scripts/bake.sh counts outcomes.
+# gallery.sh: an HTML page of third-party models as masu-bake shows them: for each an image, its name, triangles, bytes,
+# CPU seconds, and masu-bake's messages. It is made to be looked at; tests/scripts/bake.sh counts the outcomes.
 #
-#   gallery.sh OUT FOLDER...     OUT: a new or empty folder for index.html, the pictures, counts.txt (outcomes),
-#                               kinds.txt (warnings and refusals by kind: files in which each occurs)
+#   gallery.sh OUT FOLDER...     OUT: a new or empty folder for index.html, the images, counts.txt (outcomes),
+#                               kinds.txt (warnings and errors by kind: the number of files with each)
 #
-# SIZE (480x270) of the pictures, MATCH a pattern (find -path) of the models, JOBS (all processors) at once.
-# Clips are shown at TIME (0.5) seconds. NO_PICTURES=1 only bakes. PATHS=N, not 0: each row is the reference of N paths a pixel, the settled still, one raw frame.
+# SIZE (480x270) of the images, MATCH a pattern (find -path) of the models, JOBS (all processors) in parallel.
+# Clips are shown at TIME (0.5) seconds. NO_PICTURES=1 only bakes. With PATHS=N, above 0, each row has the reference
+# with N paths per pixel, the converged image of a still camera, and one raw frame.
 set -u
 cd "$(dirname "$0")/../.." || exit 1
 bake=$(realpath "${BUILD:-build}/bin/masu-bake")
@@ -20,7 +21,7 @@ time=${TIME:-0.5}
 
 html() { sed 's/&/\&amp;/g; s/</\&lt;/g; s/>/\&gt;/g'; }
 
-# kinds FILE: the kinds of the warnings on stdin, and of a refusal, without names of files and numbers
+# kinds FILE: the kinds of the warnings and of an error on stdin, without names of files and numbers
 kinds() {
     sed -n "s/^masu-bake: //; s|${1//[|.*&[]/.}|FILE|g; s/.*warning: /warning: /; s/^cannot read FILE: /refused: /
         s/^warning: texture .*: \([^:]*; ignored\)/warning: texture: \1/; s/^warning: unsupported textures.*/warning: unsupported textures/
@@ -29,7 +30,7 @@ kinds() {
         /^\(warning\|refused\): /p" | cut -c 1-120
 }
 
-# beside NUMBER FILE: the other two images of the row, or why there is no reference
+# beside NUMBER FILE: the other two images of the row, or the reason why there is no reference
 beside() {
     local at=$out/$1 sdf=()
     case $2 in

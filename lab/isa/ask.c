@@ -1,4 +1,4 @@
-/* ask.c: see ask.h. */
+/* The two sides of ask.h: the child, which compiles, and its parent. */
 #include "lab/isa/ask.h"
 
 #include "bake/base/file.h"
@@ -47,7 +47,7 @@ int masu_isa_child(const char *scene_path, const char *ladder, masu_desc *desc) 
 
 /* ---- The parent ------------------------------------------------------------------------------ */
 
-/* The rest of the last line that starts so; NULL: there is none. */
+/* The rest of the last line with this start; NULL: none. */
 static const char *last_line(const char *text, const char *start, char *out, size_t size) {
     const char *found = NULL;
     for (const char *line = text; line && *line; line = strchr(line, '\n'), line += line != NULL)
@@ -57,8 +57,8 @@ static const char *last_line(const char *text, const char *start, char *out, siz
     return out;
 }
 
-/* Why a child failed: its error, wherever a driver's own text in front of it ends; else the last
- * line that anything in it has printed, and how it ended. */
+/* Finds why a child failed: its error, even after other text of a driver on the same line;
+ * otherwise the last printed line and the exit status. */
 static const char *reason_of(const char *text, int code, char *out, size_t size) {
     static const char name[] = "masu-lab isa: ";
     const char *found = NULL, *last = NULL;

@@ -1,9 +1,9 @@
 #!/bin/bash
 # drivers.sh FOLDER: builds what `masu-lab isa` needs for Intel's and Adreno's GPUs into FOLDER: ANV, Turnip and
 # Mesa's no-op kernel shims, from Debian's source package of Mesa (the version of Debian 12). Ten minutes on two
-# cores, 1.5 GB while it builds. Not part of any test.
+# cores, 1.5 GB while it builds. No test runs it.
 #
-# PACKAGES_isa of packages.mk are there (make isa-drivers). MASU_DEBIAN_MIRROR replaces http://deb.debian.org/debian.
+# Needs PACKAGES_isa of packages.mk (make isa-drivers). MASU_DEBIAN_MIRROR replaces http://deb.debian.org/debian.
 set -euo pipefail
 folder=${1:?usage: lab/isa/drivers.sh FOLDER}
 version=22.3.6
@@ -25,7 +25,7 @@ curl -fsSL "$mirror/pool/main/m/mesa/mesa_$version.orig.tar.gz" -o "$work/mesa.t
 echo "$sum  $work/mesa.tar.gz" | sha256sum --quiet -c - || fail "the source of Mesa $version is not Debian's"
 tar -xzf "$work/mesa.tar.gz" -C "$work" --strip-components=1
 cd "$work"
-# The tool called python3 may not be Debian's, which has mako.
+# python3 in PATH may not be Debian's, which has mako.
 cat > native.ini << END
 [binaries]
 python3 = '/usr/bin/python3'

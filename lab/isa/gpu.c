@@ -36,7 +36,7 @@ static const char *const variables[] = {"VK_ICD_FILENAMES",        "VK_DRIVER_FI
                                         "MESA_SHADER_CACHE_DISABLE", "NODEVICE_SELECT"};
 enum { VARIABLES = sizeof variables / sizeof *variables };
 
-/* What they were; NULL: they were not set. */
+/* Previous values; NULL: not set. */
 static struct {
     bool entered;
     char *was[VARIABLES];
@@ -84,7 +84,7 @@ static bool use_radv(const char *family, char *error, size_t size) {
     return true;
 }
 
-/* A driver and its shim from the folder. */
+/* Uses a driver and its shim from the folder. */
 static bool use_shim(const char *gpu, const char *driver, const char *shim, const char *icd, char *error,
                      size_t size) {
     const char *folder = getenv("MASU_ISA_DRIVERS");

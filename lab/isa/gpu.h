@@ -1,10 +1,11 @@
-/* gpu.h: the GPUs whose own shader compilers run without them, and how a process gets at them.
+/* gpu.h: GPUs whose shader compilers can run without the GPU, and the environments for them.
  *
- * Three drivers of Mesa compile for a GPU that is not here: RADV by a null device (RADV_FORCE_FAMILY; Debian's
- * package has it), ANV and Turnip on Mesa's no-op kernel shims (drm-shim), which are a libvulkan_X.so and a
- * libX_noop_drm_shim.so each in the folder $MASU_ISA_DRIVERS (make isa-drivers). The loader and the drivers
- * read the environment when they start, and a shim takes the place of the C library's open and ioctl: so each
- * GPU gets a process of its own, which is started with that environment. */
+ * Three drivers of Mesa compile for an absent GPU: RADV with a null device (RADV_FORCE_FAMILY;
+ * included in Debian's package), ANV and Turnip with Mesa's no-op kernel shims (drm-shim), a
+ * libvulkan_X.so and a libX_noop_drm_shim.so each in the folder $MASU_ISA_DRIVERS (make
+ * isa-drivers). The loader and the drivers read the environment at their start, and a shim replaces
+ * the C library's open and ioctl: so each GPU needs a separate process, started with that
+ * environment. */
 #ifndef MASU_ISA_GPU_H
 #define MASU_ISA_GPU_H
 
@@ -17,20 +18,20 @@ typedef enum masu_isa_driver { MASU_ISA_RADV, MASU_ISA_ANV, MASU_ISA_TURNIP } ma
 typedef struct masu_isa_gpu {
     const char *name, *what; /* "vangogh", "Steam Deck: RDNA 2" */
     masu_isa_driver driver;
-    uint32_t waves; /* that a SIMD (RADV) or a core (Turnip) holds at most, in waves of 64; 0: not said */
+    uint32_t waves; /* maximum per SIMD (RADV) or core (Turnip), in waves of 64; 0: unknown */
 } masu_isa_gpu;
 
 extern const masu_isa_gpu masu_isa_gpus[];
 extern const uint32_t masu_isa_gpu_count;
 
-const masu_isa_gpu *masu_isa_gpu_find(const char *name); /* NULL: none of that name */
+const masu_isa_gpu *masu_isa_gpu_find(const char *name); /* NULL: no such GPU */
 
-/* Sets the environment for it, for processes that are started from now on; the file at `icd`, a new one, tells
- * the loader about drivers that are not installed. False: its driver is not here, and `error` says what is
- * missing. */
+/* Sets the environment of later child processes for this GPU; the file at `icd`, a new one,
+ * describes drivers that are not installed to the loader. On false its driver is missing, and
+ * `error` holds the reason. */
 bool masu_isa_gpu_environment(const masu_isa_gpu *gpu, const char *icd, char *error, size_t error_size);
 
-/* Takes it back. */
+/* Restores the environment. */
 void masu_isa_gpu_leave(void);
 
 #endif

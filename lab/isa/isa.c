@@ -12,7 +12,7 @@ const char *const masu_isa_field_names[MASU_ISA_FIELD_COUNT] = {
 #undef MASU_ISA_NAME
 };
 
-/* Handles that nobody follows. */
+/* Handles that are never used. */
 static void give_targets(masu_desc *desc) {
     static const VkImage image = (VkImage)(uintptr_t)1;
     static const VkImageView view = (VkImageView)(uintptr_t)1;
@@ -57,8 +57,8 @@ bool masu_isa_compile(const masu_desc *given, void (*before)(const char *pass), 
                                                       ? device.most_anisotropy
                                                       : desc.vulkan.max_anisotropy,
                                 .shader_float16 = device.float16};
-    desc.ray_query = MASU_OFF; /* our own tree is what these GPUs trace with */
-    desc.debug.labels = 1;     /* names, by which rows know their pass */
+    desc.ray_query = MASU_OFF; /* these GPUs use the built-in BVH */
+    desc.debug.labels = 1;     /* names, from which rows get their pass */
     give_targets(&desc);
     bool good = compile(&desc, error, error_size);
     if (good && rows->failed[0]) {
@@ -79,7 +79,7 @@ bool masu_isa_send(const masu_isa_rows *rows, FILE *f) {
     return fflush(f) == 0;
 }
 
-/* The text up to the next tab, and where it goes on; NULL: there is none. */
+/* Copies the text up to the next tab; returns the position after it, or NULL if there is no tab. */
 static const char *take(const char *at, char out[MASU_ISA_TEXT]) {
     size_t n = strcspn(at, "\t\n");
     if (at[n] != '\t' || n >= MASU_ISA_TEXT) return NULL;

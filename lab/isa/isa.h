@@ -1,9 +1,10 @@
-/* isa.h: what the pipelines of a scene become on a GPU that is not here: registers, waves, instructions,
- * cycles, spills, by the GPU's own compiler (VK_KHR_pipeline_executable_properties).
+/* isa.h: statistics of a scene's pipelines on an absent GPU: registers, waves, instructions,
+ * cycles, spills, from the GPU's compiler (VK_KHR_pipeline_executable_properties).
  *
- * A row is one stage of one pipeline, or one width of it where the compiler makes several. Numbers that a
- * driver does not give are NAN. `cycles` is of one wave: RADV's inverse throughput, ANV's cycle count; loops are
- * guessed by the compilers, so it compares shaders and says nothing of a frame. */
+ * A row is one stage of one pipeline, or one wave width of it if the compiler generates several.
+ * Numbers that a driver does not report are NAN. `cycles` is for one wave: RADV's inverse
+ * throughput, ANV's cycle count. Compilers guess the number of loop iterations, so it compares
+ * shaders and does not predict the time of a frame. */
 #ifndef MASU_ISA_H
 #define MASU_ISA_H
 
@@ -12,7 +13,7 @@
 
 #include <stdio.h>
 
-/* FIELD(ID, name, unit and meaning, its names in RADV, ANV, Turnip; NULL: not given) */
+/* FIELD(ID, name, unit and meaning, its names in RADV, ANV, Turnip; NULL: not reported) */
 #define MASU_ISA_FIELDS(FIELD)                                                                     \
     FIELD(REGISTERS, "registers", "vector registers of a lane (Turnip: of four numbers)", "VGPRs", \
           NULL, "Registers used")                                                                  \
@@ -45,27 +46,29 @@ extern const char *const masu_isa_field_names[MASU_ISA_FIELD_COUNT];
 enum { MASU_ISA_ROWS = 256, MASU_ISA_TEXT = 48 };
 
 typedef struct masu_isa_row {
-    char pipeline[MASU_ISA_TEXT]; /* as the renderer names it: of a pass, or "gbuffer, masks" */
-    char stage[MASU_ISA_TEXT];    /* of the driver's: "Compute Shader", "SIMD16 Fragment Shader" */
-    uint32_t lanes;               /* of a wave */
+    char pipeline[MASU_ISA_TEXT]; /* name from the renderer: of a pass, or "gbuffer, masks" */
+    char stage[MASU_ISA_TEXT];    /* name from the driver: "Compute Shader", "SIMD16 Fragment
+                                   * Shader" */
+    uint32_t lanes;               /* per wave */
     double value[MASU_ISA_FIELD_COUNT];
 } masu_isa_row;
 
 typedef struct masu_isa_rows {
     uint32_t count;
     masu_isa_row row[MASU_ISA_ROWS];
-    char failed[160]; /* the first thing that went wrong; "" */
+    char failed[160]; /* the first failure; "": none */
 } masu_isa_rows;
 
-/* In a process that has the GPU's environment: compiles all pipelines of the plan. `desc` has a scene and
- * neither device nor targets. `before` is called with the pass whose pipelines come next: a compiler that
- * crashes is to be blamed for it by name. False: `error` holds one line. */
+/* Compiles all pipelines of the plan, in a process with the GPU's environment. `desc` has a scene,
+ * but no device or targets. `before` is called with the pass of the next pipelines, so that a
+ * compiler crash can be attributed to it. On false `error` holds one line. */
 bool masu_isa_compile(const masu_desc *desc, void (*before)(const char *pass), masu_isa_rows *rows, char *error,
                       size_t error_size);
 
-/* Rows through a pipe: one line each, which starts with "isa\t". */
+/* Writes rows to a pipe: one line each, which starts with "isa\t". */
 bool masu_isa_send(const masu_isa_rows *rows, FILE *f);
-/* Lines of other kinds are passed over: what a driver says of itself. False: a line is broken. */
+/* Reads rows and skips other lines, such as a driver's messages. Returns false if a line is
+ * malformed. */
 bool masu_isa_receive(const char *text, masu_isa_rows *rows);
 
 #endif

@@ -7,7 +7,7 @@
 
 enum { PIPELINES = 256, EXECUTABLES = 8, STATISTICS = 64 };
 
-/* Room for what a driver would ask of an image: aligned rows, and 16 bytes a texel. */
+/* Image sizes like a driver's: aligned rows, and 16 bytes per texel. */
 #define TEXEL_BYTES 16u
 #define ALIGNMENT 4096u
 
@@ -15,7 +15,7 @@ static struct {
     masu_null_device *device;
     masu_isa_rows *rows;
     void (*before)(const char *pass);
-    /* Rows wait for their pipeline's name, which comes after it was made. */
+    /* Rows wait for their pipeline's name, which is set after creation. */
     struct {
         VkPipeline handle;
         uint32_t first, count;
@@ -102,7 +102,7 @@ static VKAPI_ATTR VkResult VKAPI_CALL create_compute(VkDevice device, VkPipeline
                                                      const VkComputePipelineCreateInfo *info,
                                                      const VkAllocationCallbacks *allocator,
                                                      VkPipeline *out) {
-    VkComputePipelineCreateInfo changed = *info; /* the renderer makes one at a time */
+    VkComputePipelineCreateInfo changed = *info; /* the renderer creates one at a time */
     changed.flags |= VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR;
     VkResult r = null.create_compute(device, cache, n, &changed, allocator, out);
     if (!r) read_pipeline(*out);
@@ -129,14 +129,14 @@ static VKAPI_ATTR VkResult VKAPI_CALL set_name(VkDevice device, const VkDebugUti
             masu_isa_row *row = &null.rows->row[null.pipelines[i].first + k];
             snprintf(row->pipeline, sizeof row->pipeline, "%s", info->pObjectName);
         }
-        break; /* handles of destroyed pipelines come round again: the latest is meant */
+        break; /* handles of destroyed pipelines are reused: the latest matches */
     }
     return VK_SUCCESS;
 }
 
 /* ---- Stand-ins ------------------------------------------------------------------------------- */
 
-/* Behind a handle of a buffer or an image. */
+/* The object of a buffer or image handle. */
 typedef struct thing {
     uint64_t bytes;
 } thing;
@@ -229,7 +229,7 @@ static VKAPI_ATTR void VKAPI_CALL memory_of(VkPhysicalDevice physical, VkPhysica
     out->memoryHeaps[0] = (VkMemoryHeap){(VkDeviceSize)8 << 30, VK_MEMORY_HEAP_DEVICE_LOCAL_BIT};
 }
 
-/* Things of which only the handle is ever used: made of a number, destroyed by nothing. */
+/* Objects of which only the handle is used: a number, not destroyed. */
 #define NUMBERED(create, destroy, type, info_type)                                                 \
     static VKAPI_ATTR VkResult VKAPI_CALL create(VkDevice device, const info_type *info,           \
                                                  const VkAllocationCallbacks *allocator,           \
@@ -282,8 +282,8 @@ static VKAPI_ATTR VkResult VKAPI_CALL end_commands(VkCommandBuffer buffer) {
     return VK_SUCCESS;
 }
 
-/* All vkCmd*: what is recorded goes nowhere. One function for all of them: their arguments are the caller's to
- * clear away, on every machine that these drivers run on. */
+/* All vkCmd*: recording is ignored. One function for all: the caller cleans up the arguments on
+ * every platform of these drivers. */
 static VKAPI_ATTR void VKAPI_CALL nothing(void) {}
 
 /* ---- Looking up ------------------------------------------------------------------------------ */

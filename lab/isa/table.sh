@@ -1,11 +1,11 @@
 #!/bin/sh
-# table.sh GPU[,GPU...]: prints lab/notes/isa.csv: what the GPUs' compilers make of every pipeline of these
+# table.sh GPU[,GPU...]: prints lab/notes/isa.csv: statistics of the GPUs' compilers for every pipeline of these
 # scenes at 1280x720 (masu-lab isa). Reads baked scenes of $MADE, the program of $BUILD.
 set -eu
 build=${BUILD:-build} made=${MADE:-build}
 line='scene,gpu,pipeline,stage,lanes,registers,waves,instructions,cycles,latency,sends,spills,fills,scalar_spills,scratch,lds'
 echo "$line"
-# rows NAME SCENE PIPELINES OPTIONS...: of a scene, as NAME, the pipelines that an expression of grep matches
+# rows NAME SCENE PIPELINES OPTIONS...: of a scene, under NAME, the pipelines that match an expression of grep
 rows() {
     name=$1 scene=$2 which=$3
     shift 3
@@ -19,7 +19,7 @@ for scene in engine wet_city mirrors city textures glass night alley room; do
     rows "$scene" "$scene" ''
 done
 rows skins test_skin 'skin|gbuffer'
-# What no rung has by itself: a ladder of two sizes, with a knob.
+# Pipelines that no rung has by itself: a ladder of two sizes, with a knob.
 ladder=$(mktemp)
 trap 'rm -f "$ladder"' EXIT
 # sized SCALE KNOB: 1 and that scale

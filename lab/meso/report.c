@@ -12,7 +12,7 @@
 
 #define DEGREES (180 / MASU_BAKE_PI)
 
-/* ---- text ---- */
+/* ---- text ------------------------------------------------------------------------------------ */
 
 typedef struct text {
     char *data;
@@ -47,7 +47,7 @@ static bool save(const char *path, text *t) {
     return good;
 }
 
-/* ---- numbers ---- */
+/* ---- numbers --------------------------------------------------------------------------------- */
 
 masu_meso_pair masu_meso_compare(const masu_meso_study *study, uint32_t view) {
     const masu_meso_view *m = &study->made.views[view];
@@ -127,7 +127,7 @@ void masu_meso_print(const char *name, const masu_meso_study *study) {
     }
 }
 
-/* ---- plots ---- */
+/* ---- plots ----------------------------------------------------------------------------------- */
 
 static void add_data(FILE *f, const masu_meso_study *study) {
     fprintf(f, "$curves << end\n");
@@ -157,10 +157,10 @@ bool masu_meso_write_plots(const char *name, const masu_meso_study *study) {
         {"_tilt.svg", "mean visible normal", "degrees towards the viewer",
          "$curves using 1:2 with linespoints title 'measured', '' using 1:3 with linespoints title "
          "'fitted to radiance'"},
-        {"_rough.svg", "roughness of what is seen", "perceptual roughness",
+        {"_rough.svg", "roughness of the visible surface", "perceptual roughness",
          "$curves using 1:4 with linespoints title 'measured', '' using 1:5 with linespoints title "
          "'fitted to radiance'"},
-        {"_ao.svg", "ambient occlusion of what is seen", "share of the sky",
+        {"_ao.svg", "ambient occlusion of the visible surface", "share of the sky",
          "$curves using 1:6 with linespoints title 'measured', '' using 1:7 with linespoints title "
          "'fitted to radiance'"},
         {"_shadow.svg", "local shadow", "share lit",

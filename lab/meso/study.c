@@ -22,7 +22,7 @@ static void set_judged(masu_meso_setup *s) {
     masu_meso_set_lights(s, elevation, COUNT(elevation), azimuth, COUNT(azimuth));
 }
 
-/* ---- comparison ---- */
+/* ---- comparison ------------------------------------------------------------------------------ */
 
 static void shade(const masu_meso_shader *shader, const masu_meso_texel *texel, masu_meso_vec3 v,
                   double azimuth, const masu_meso_setup *setup, double weight, double *out) {
@@ -46,7 +46,7 @@ static double relative_error(const double *got, const double *want, size_t count
     return sqrt(sum / (double)count) / fmax(mean / (double)count, 1e-9);
 }
 
-/* Mean of all texels' radiance against that of the mean texel. */
+/* Mean radiance of all texels against the radiance of the mean texel. */
 static double filtered_error(const masu_meso_study *study, const masu_meso_shader *shader,
                              masu_meso_vec3 v, const masu_meso_setup *setup, double *bias) {
     double mean[MASU_MESO_LIGHTS_MAX * 3] = {0}, got[MASU_MESO_LIGHTS_MAX * 3] = {0};
@@ -64,7 +64,7 @@ static double filtered_error(const masu_meso_study *study, const masu_meso_shade
     return relative_error(got, mean, setup->light_count * 3);
 }
 
-/* Means over all lights, signed, of the radiance of mips against that of the map. */
+/* Signed means over all lights of the radiance of mips against that of the map. */
 static void judge_mips(masu_meso_study *study, const masu_meso_setup *setup) {
     masu_meso_texel *texels[MASU_MESO_MIPS + 1] = {study->made.texels};
     uint32_t size[MASU_MESO_MIPS + 1] = {study->made.size}, numbers = setup->light_count * 3;
@@ -115,7 +115,7 @@ static void judge_far(masu_meso_study *study, const masu_meso_setup *setup,
     }
 }
 
-/* Every `step`th light of the setup. */
+/* A setup with every `step`th light. */
 static masu_meso_setup thinned(const masu_meso_setup *setup, uint32_t step) {
     masu_meso_setup s = *setup;
     s.light_count = 0;
@@ -175,7 +175,7 @@ static void judge_texels(masu_meso_study *study, const masu_meso_tracer *tracer,
     free(got);
 }
 
-/* ---- the shadow's distribution ---- */
+/* ---- the shadow's distribution --------------------------------------------------------------- */
 
 double masu_meso_bin_value(uint32_t bin) {
     return BIN_LOW + (BIN_HIGH - BIN_LOW) * (bin + 0.5) / MASU_MESO_BINS;
@@ -195,7 +195,7 @@ static void count_shadows(masu_meso_study *study, const masu_meso_tracer *tracer
         for (uint32_t j = 0; j < setup->light_count; j++) {
             masu_meso_vec3 l = masu_meso_light_direction(&setup->light[j], t * 2.399963, 1);
             double n_l = masu_bake_dot(n, l);
-            if (!(n_l > 0)) continue; /* unlit without any shadow */
+            if (!(n_l > 0)) continue; /* unlit even without shadows */
             double f = c->offset - c->alpha * (1 - texel->ao);
             double at = (f - BIN_LOW) / (BIN_HIGH - BIN_LOW) * MASU_MESO_BINS;
             uint32_t bin = at < 0 ? 0 : at >= MASU_MESO_BINS ? MASU_MESO_BINS - 1 : (uint32_t)at;
@@ -210,7 +210,7 @@ static void count_shadows(masu_meso_study *study, const masu_meso_tracer *tracer
     }
 }
 
-/* ---- all of it ---- */
+/* ---- The study ------------------------------------------------------------------------------- */
 
 bool masu_meso_study_run(const masu_meso_patch *patch, const masu_meso_options *options,
                          masu_meso_study *study) {
@@ -230,7 +230,7 @@ bool masu_meso_study_run(const masu_meso_patch *patch, const masu_meso_options *
         judge_texels(study, tracer, patch, &judged);
         count_shadows(study, tracer, patch, &judged);
     } else {
-        masu_cli_error("no ray meets the patch");
+        masu_cli_error("no ray hits the patch");
     }
     masu_cli_progress_clear();
     masu_meso_tracer_free(tracer);

@@ -10,9 +10,9 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Means over frames have their usual age by then: what they skip while they are young is not
- * counted. Cascades at a slower pace than one in eight, or at paces that no period of eight holds, are
- * counted for a part of theirs. */
+/* Temporal accumulation has its usual length by then: work that it omits in its first frames is not
+ * counted. Cascades with refresh periods above eight, or that do not divide eight, are counted for
+ * only a part of their period. */
 enum { WARM_UP = 3, PERIOD_MOST = 8 };
 
 static void add_number(masu_pass_count *c, const masu_tally_number *n, double amount) {
@@ -20,13 +20,13 @@ static void add_number(masu_pass_count *c, const masu_tally_number *n, double am
     while (i < c->number_count && (c->numbers[i].kind != n->kind || c->numbers[i].set != n->set ||
                                    c->numbers[i].binding != n->binding))
         i++;
-    if (i == MASU_COUNT_NUMBERS) return; /* more than set 0, 1 and 2 have bindings */
+    if (i == MASU_COUNT_NUMBERS) return; /* exceeds the number of bindings of sets 0, 1 and 2 */
     if (i == c->number_count)
         c->numbers[c->number_count++] = (masu_count_number){n->kind, n->set, n->binding, 0.0};
     c->numbers[i].amount += amount;
 }
 
-/* What the buffer holds, into the passes of a rung; `share`: one by the frames that it is of. */
+/* Adds the buffer's counts to the passes of a rung; `share`: 1 / number of frames. */
 static void add_counts(masu_pass_count *passes, double share) {
     uint32_t shaders;
     const masu_hook_shader *list = masu_hook_shaders(&shaders);
@@ -47,8 +47,8 @@ static void add_counts(masu_pass_count *passes, double share) {
     }
 }
 
-/* Frames that are drawn before one is counted. By then all faces of lights' shadows are rendered and
- * faded in, as a static scene has them. */
+/* Frames rendered before counting. By then all shadow faces of lights are rendered and faded in, as
+ * in a static scene. */
 static uint32_t warm_up(const masu_frame_plan *plan, uint32_t rung) {
     const masu_rung *r = &plan->desc.rungs[rung];
     if (!plan->needs.local_shadows || r->local_shadows == MASU_OFF) return WARM_UP;

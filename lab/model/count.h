@@ -1,9 +1,9 @@
-/* count.h: what the passes of a scene do, counted while they run: operations, texels,
- * bytes of buffers, of each pass in each rung.
+/* count.h: counts the work of a scene's passes while they run: operations, texels and bytes of
+ * buffers, per pass and rung.
  *
- * A renderer of its own draws each rung with counters in all shaders (hook.h), on any
- * device: how often an instruction runs is the same everywhere but for rounding. Counts are of
- * the size that was drawn; sheet.h scales them. */
+ * A separate renderer renders each rung with counters in all shaders (hook.h), on any device: the
+ * number of executions of an instruction is the same everywhere except for rounding. Counts are for
+ * the rendered size; sheet.h scales them. */
 #ifndef MASU_MODEL_COUNT_H
 #define MASU_MODEL_COUNT_H
 
@@ -14,8 +14,8 @@
 
 #define MASU_COUNT_NUMBERS 48u
 
-/* Sums are words of 32 bits, to which an invocation adds up to 1023: 4.1 million fit, of which
- * some are groups that reach over the picture's edge. */
+/* Sums are 32-bit values, to which an invocation adds up to 1023: 4.1 million invocations fit,
+ * including those of groups beyond the image's edge. */
 #define MASU_COUNT_PIXELS_MAX 3800000u
 
 typedef struct masu_count_number {
@@ -24,22 +24,22 @@ typedef struct masu_count_number {
     double amount;
 } masu_count_number;
 
-/* Of one pass in one rung, a frame. */
+/* Counts of one pass in one rung, per frame. */
 typedef struct masu_pass_count {
     double vertices, invocations; /* of vertex shaders; of fragment or compute shaders */
     double vertex_plain, vertex_weighted, plain, weighted; /* operations */
-    double most; /* plain operations of the busiest fragment or compute invocation */
-    bool late;   /* a shader discards: fragments that are hidden are counted, too */
+    double most; /* largest number of plain operations of a fragment or compute invocation */
+    bool late;   /* a shader discards: occluded fragments are counted, too */
     uint32_t number_count;
     masu_count_number numbers[MASU_COUNT_NUMBERS];
 } masu_pass_count;
 
 typedef struct masu_count_desc {
     const char *scene_path;
-    VkExtent2D size;     /* that is drawn */
-    VkExtent2D sheet;    /* whose plan is made */
+    VkExtent2D size;     /* of the counted frames */
+    VkExtent2D sheet;    /* of the sheet's plan */
     double time;         /* of the scene and its camera */
-    uint32_t rung_count; /* 0: the library's own */
+    uint32_t rung_count; /* 0: the default rungs */
     masu_rung rungs[MASU_MAX_RUNGS];
     masu_headless_desc host;
 } masu_count_desc;
@@ -47,24 +47,25 @@ typedef struct masu_count_desc {
 typedef struct masu_count {
     uint32_t rung_count;
     char driver[1024];
-    masu_frame_plan drawn, sheet; /* `scene` of neither may be read */
+    masu_frame_plan drawn, sheet; /* `scene` must not be read in either */
     masu_pass_count passes[MASU_MAX_RUNGS][MASU_PASS_COUNT];
-    /* Of the camera's draws, of the cascades'; before occlusion. */
+    /* For the camera, for the cascades; before occlusion culling. */
     double triangles[MASU_MAX_RUNGS][2];
     double texture_bytes; /* of materials, on the device */
-    /* Plain operations of a pass's shaders once: of fragment and compute shaders, of vertex shaders. Of cascades: the
-     * first has all. */
+    /* Plain operations of a pass's shaders with each instruction once: fragment and compute
+     * shaders; vertex shaders. The first cascade contains all cascades. */
     double straight[MASU_PASS_COUNT][2];
     uint32_t messages;    /* of the validation layer */
 } masu_count;
 
-/* Rows that get a pipeline layout, in order (src/device/pipelines.c, masu_create_pipelines). */
+/* Passes with a pipeline layout, in order (src/device/pipelines.c, masu_create_pipelines). */
 uint32_t masu_count_passes(const masu_frame_plan *plan, uint32_t out[MASU_PASS_COUNT]);
 
-/* Halved until it may be drawn. */
+/* Halves the size until it is allowed. */
 VkExtent2D masu_count_size(VkExtent2D size);
 
-/* `out` is large: not for the stack. `progress` may be NULL. False: `error` holds one line. */
+/* `out` is large: do not put it on the stack. `progress` may be NULL. On false `error` holds one
+ * line. */
 bool masu_count_run(const masu_count_desc *desc, void (*progress)(const char *text),
                     masu_count *out, char *error, size_t error_size);
 

@@ -38,7 +38,7 @@ static struct {
     module modules[MODULES];
     masu_hook_shader shaders[MASU_HOOK_SHADERS];
     uint32_t layout_count, pipeline_count, module_count, shader_count;
-    uint32_t bound; /* layout of the pipeline bound last */
+    uint32_t bound; /* layout of the last bound pipeline */
     VkPipelineBindPoint point;
     char failed[160];
 } hook;
@@ -72,7 +72,7 @@ static VKAPI_ATTR VkResult VKAPI_CALL create_module(VkDevice device,
     return r;
 }
 
-/* Handles of destroyed modules come round again: the latest is meant. */
+/* Handles of destroyed modules are reused: the latest matches. */
 static const module *module_of(VkShaderModule handle) {
     for (uint32_t i = hook.module_count; i-- > 0;) {
         if (hook.modules[i].handle == handle) return &hook.modules[i];
@@ -87,8 +87,8 @@ static uint32_t layout_of(VkPipelineLayout handle) {
     return UINT32_MAX;
 }
 
-/* The same stage with counters in it; its module is destroyed by the caller. VK_NULL_HANDLE: the
- * stage stays as it is. */
+/* The same stage with counters; the caller destroys its module. VK_NULL_HANDLE: the stage is
+ * unchanged. */
 static VkShaderModule tally(const VkPipelineShaderStageCreateInfo *stage, uint32_t layout) {
     const module *m = module_of(stage->module);
     uint32_t at = hook.shader_count, pass = hook.layouts[layout].pass;
@@ -134,7 +134,7 @@ static VKAPI_ATTR VkResult VKAPI_CALL create_compute(VkDevice device, VkPipeline
                                                      const VkComputePipelineCreateInfo *info,
                                                      const VkAllocationCallbacks *allocator,
                                                      VkPipeline *out) {
-    VkComputePipelineCreateInfo changed = *info; /* the renderer makes one at a time */
+    VkComputePipelineCreateInfo changed = *info; /* the renderer creates one at a time */
     uint32_t layout = layout_of(info->layout);
     VkShaderModule made = layout != UINT32_MAX ? tally(&info->stage, layout) : VK_NULL_HANDLE;
     if (made) changed.stage.module = made;
@@ -165,7 +165,7 @@ static VKAPI_ATTR VkResult VKAPI_CALL create_graphics(VkDevice device, VkPipelin
     return r;
 }
 
-/* One set more, behind those of the renderer. */
+/* Adds one descriptor set after those of the renderer. */
 static VKAPI_ATTR VkResult VKAPI_CALL create_layout(VkDevice device,
                                                     const VkPipelineLayoutCreateInfo *info,
                                                     const VkAllocationCallbacks *allocator,
@@ -202,7 +202,8 @@ static VKAPI_ATTR void VKAPI_CALL bind_pipeline(VkCommandBuffer cmd, VkPipelineB
     REAL(CmdBindPipeline)(cmd, point, pipeline);
 }
 
-/* Right before it is needed: sets that the renderer binds may disturb one behind them. */
+/* Bound immediately before use: sets bound by the renderer may disturb a set with a higher
+ * number. */
 static void bind_counters(VkCommandBuffer cmd) {
     if (hook.bound == UINT32_MAX) return;
     REAL(CmdBindDescriptorSets)
@@ -305,7 +306,7 @@ static bool make_set(char *error, size_t error_size) {
     return true;
 }
 
-/* What makes the device's writes visible to the host. */
+/* Records the barrier that makes device writes visible to the host. */
 static bool make_commands(char *error, size_t error_size) {
     VkCommandBufferAllocateInfo allocate = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
                                             .commandPool = hook.host->pool,

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-/* "gbuffer, masks": a pipeline of pass gbuffer. MASU_PASS_COUNT: of none. All cascades share their pipelines, which
- * are named "cascade_0" or "cascades, masks". */
+/* The pass of a pipeline: "gbuffer, masks" belongs to gbuffer. MASU_PASS_COUNT: none. All cascades
+ * share their pipelines, which are named "cascade_0" or "cascades, masks". */
 static uint32_t pass_of(const char *pipeline) {
     size_t length = strcspn(pipeline, ",");
     if (length == strlen("cascades") && !strncmp(pipeline, "cascades", length)) return MASU_PASS_CASCADE_0;
@@ -20,10 +20,11 @@ static bool is_vertex(const masu_isa_row *r) {
     return strstr(r->stage, "ertex") || !strncmp(r->stage, "VS", 2);
 }
 
-/* Intel writes each instruction of 32 lanes as two of 16. */
+/* Intel's compiler writes each instruction of 32 lanes as two of 16. */
 enum { WIDEST = 16 };
 
-/* The same pipeline and stage in waves of more lanes is what runs where it can; binning repeats a part. */
+/* Selects the widest waves of a pipeline and stage, which run if possible; excludes binning
+ * variants, which repeat a part. */
 static bool counts(const masu_isa_rows *rows, uint32_t i) {
     const masu_isa_row *r = &rows->row[i];
     if (strstr(r->stage, "inning")) return false;
@@ -47,6 +48,6 @@ void masu_issued_make(const masu_isa_rows *rows, masu_issued *out) {
         bool twice = rows->row[i].lanes > WIDEST && strstr(rows->row[i].stage, "SIMD");
         out->pass[p].instructions[is_vertex(&rows->row[i])] += v[MASU_ISA_INSTRUCTIONS] * (twice ? 0.5 : 1.0);
         double waits = v[MASU_ISA_LATENCY] / (v[MASU_ISA_WAVES] * v[MASU_ISA_CYCLES]);
-        if (waits > out->pass[p].waits) out->pass[p].waits = waits; /* NAN: not given */
+        if (waits > out->pass[p].waits) out->pass[p].waits = waits; /* NAN: not reported */
     }
 }

@@ -1,14 +1,14 @@
-/* issued.h: operations of SPIR-V as instructions of a GPU, by what its own compiler has made of a scene's
- * pipelines (isa/isa.h).
+/* issued.h: converts SPIR-V operations to instructions of a GPU, with the output of the GPU's
+ * compiler for a scene's pipelines (isa/isa.h).
  *
- * A frame here counts operations as they run, through every loop and branch; a compiler says how many
- * instructions a pipeline is, written down once. What joins them is the pipeline written down once in
- * operations: each operation is as many instructions as all are on average, those for addresses, memory and
- * branches among them. Per pass, its pipelines taken together; vertex shaders apart.
+ * count.h counts operations as they execute, including every loop iteration and branch. A compiler
+ * reports the number of instructions of a pipeline's code, each counted once. The ratio between
+ * them is the pipeline's instructions / its operations, each counted once: an operation corresponds
+ * to the average number of instructions, including those for addresses, memory and branches.
+ * Computed per pass over all its pipelines, separately for vertex shaders.
  *
- * Written down once in operations is what the pipeline's constants leave of the SPIR-V (spirv_reach.h), as in
- * instructions.
- */
+ * Operations are counted in the SPIR-V that the pipeline's constants leave reachable
+ * (spirv_reach.h), as the compiler does for instructions. */
 #ifndef MASU_MODEL_ISSUED_H
 #define MASU_MODEL_ISSUED_H
 
@@ -16,11 +16,12 @@
 #include "plan/frame_plan.h"
 
 typedef struct masu_issued {
-    bool known; /* false: the rest says nothing */
+    bool known; /* false: the rest is undefined */
     struct {
-        double instructions[2]; /* of its pipelines, once: 0 fragment and compute, 1 vertex shaders */
-        /* How many times as long as its instructions a pass takes because too few waves are there to wait for
-         * memory in turns: latency / (waves x inverse throughput), at least 1. RADV says; others: 1. */
+        double instructions[2]; /* code size of its pipelines: 0 fragment and compute, 1 vertex
+                                 * shaders */
+        /* Factor on the time of a pass because too few waves are resident to hide memory latency:
+         * latency / (waves x inverse throughput), at least 1. Only RADV reports it; others: 1. */
         double waits;
     } pass[MASU_PASS_COUNT];
 } masu_issued;

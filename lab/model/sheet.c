@@ -13,8 +13,9 @@ const masu_model_class masu_model_classes[MASU_MODEL_CLASSES] = {
 };
 const double masu_model_budgets[MASU_MODEL_BUDGETS] = {1000.0 / 60.0, 1000.0 / 30.0};
 
-/* Of a fetch of a texture: mips are chosen so that a pixel takes one new texel of its level and a
- * quarter of one of the level above; a texel of blocks is a byte or half of one. */
+/* For a texture fetch: mip levels are selected so that a pixel fetches one new texel of its level
+ * and a quarter of a texel of the level above. A block-compressed texel has one byte or half a
+ * byte. */
 static const double texels_a_fetch = 1.25, texel_bytes_blocks = 1.0, texel_bytes = 4.0;
 static const double bound_by_bytes = 1.3, bound_by_operations = 2.5, bound_by_instructions = 1.5;
 enum { VERTEX_BYTES = 16, TEXCOORD_BYTES = 8, TRIANGLE_BYTES = 12, TILE_PIXELS = 4 };
@@ -51,15 +52,15 @@ static double area(const masu_frame_plan *plan, uint32_t rung, masu_image_extent
     return (double)size.width * size.height;
 }
 
-/* How many times as many pixels the pass has on the sheet as were drawn. Of what does not hang
- * on the picture's size: 1. */
+/* Ratio of the pass's pixels on the sheet to those rendered; 1 if the pass does not depend on the
+ * image size. */
 static double growth(const masu_count *c, uint32_t rung, uint32_t pass) {
     masu_image_extent extent = masu_passes[pass].extent;
     return area(&c->sheet, rung, extent) / fmax(area(&c->drawn, rung, extent), 1.0);
 }
 
-/* Of a pass over listed tiles, the share of the picture that they are; else 1. A group of 8x8 has a
- * tile of 16x16 in march and smaa_blend. */
+/* For a pass over listed tiles, their fraction of the image; otherwise 1. In march and smaa_blend a
+ * group of 8x8 belongs to a tile of 16x16. */
 static double coverage(const masu_count *c, uint32_t rung, uint32_t pass) {
     double n = c->passes[rung][pass].invocations;
     switch (masu_passes[pass].extent) {
@@ -87,8 +88,7 @@ static void worsen(masu_model_sure *to, masu_model_sure sure) {
     if (*to < sure) *to = sure;
 }
 
-/* Texels that are moved: each of those that the pass covers once, and no more than were asked
- * for. */
+/* Texels that are moved: each covered texel once, but not more than were requested. */
 static double once(double texels, double covered, double asked, masu_model_row *row) {
     if (asked >= 0.999 * texels && covered >= 1.0) return texels; /* growth rounds */
     worsen(&row->bytes_sure, MASU_MODEL_MEASURED);
@@ -101,7 +101,7 @@ static double cascade_texels(const masu_frame_plan *plan, uint32_t rung, uint32_
     return (double)rp->cascade_size * rp->cascade_size / (every > 1 ? every : 1);
 }
 
-/* Texels of an attachment, or of what is copied. */
+/* Texels of an attachment, or of a copied image. */
 static double attached(const masu_count *c, uint32_t rung, uint32_t pass, masu_usage usage, double texels,
                        masu_model_row *row) {
     if (usage == MASU_BLEND_COLOR || usage == MASU_KEEP_DEPTH) { /* read and written */
@@ -109,10 +109,10 @@ static double attached(const masu_count *c, uint32_t rung, uint32_t pass, masu_u
         return 2.0 * fmin(texels, growth(c, rung, pass) * c->passes[rung][pass].invocations);
     }
     if (usage == MASU_UPDATE_DEPTH) return cascade_texels(&c->sheet, rung, pass - MASU_PASS_CASCADE_0);
-    return texels; /* attachments are cleared and stored whole, copies are whole */
+    return texels; /* attachments and copies are complete */
 }
 
-/* Images of the row, by their bindings in set 1, or as attachments, or copied. */
+/* Images of the row: bindings in set 1, attachments, or copies. */
 static void add_images(const masu_count *c, uint32_t rung, uint32_t pass, masu_model_row *row) {
     const masu_rung_plan *rp = &c->sheet.rungs[rung];
     const masu_pass_count *counted = &c->passes[rung][pass];
@@ -142,7 +142,7 @@ static void add_images(const masu_count *c, uint32_t rung, uint32_t pass, masu_m
     }
 }
 
-/* The buffer behind a binding of set 0; MASU_BUFFER_COUNT: none that is read at length. */
+/* The buffer of a binding of set 0; MASU_BUFFER_COUNT: none with large reads. */
 static masu_buffer_id buffer_of(uint32_t binding) {
     static const struct {
         uint32_t binding;
@@ -195,7 +195,7 @@ static void add_buffers(const masu_count *c, uint32_t rung, uint32_t pass, masu_
     }
 }
 
-/* What the input assembler reads, and textures of materials. */
+/* Reads by the input assembler, and textures of materials. */
 static void add_geometry(const masu_count *c, uint32_t rung, uint32_t pass, masu_model_row *row) {
     const masu_pass_count *counted = &c->passes[rung][pass];
     bool cascade = masu_is_cascade(pass);
@@ -233,15 +233,16 @@ static void add_operations(const masu_count *c, uint32_t rung, uint32_t pass, ma
     row->invocations = grown * counted->invocations;
     row->plain = counted->vertex_plain + grown * counted->plain;
     row->weighted = counted->vertex_weighted + grown * counted->weighted;
-    /* All go the same way: the busiest does what each does. Those beyond the picture's edge do
-     * less. */
+    /* All invocations take the same path if each has as many operations as the busiest. Those
+     * beyond the image's edge have fewer. */
     bool same = masu_passes[pass].kind == MASU_PASS_COMPUTE &&
                 fabs(counted->plain - counted->most * pixels) <= 1e-3 * counted->plain;
     if (!same && row->plain > 0.0) worsen(&row->weighted_sure, MASU_MODEL_MEASURED);
     if (counted->late) worsen(&row->weighted_sure, MASU_MODEL_ESTIMATED);
 }
 
-/* Operations of no kind that is counted, as in a shader that copies: each invocation runs all of it. */
+/* A shader may have no counted operations, such as a copy: then each invocation executes all
+ * instructions. */
 static double instructions(double plain, double invocations, double straight, double instructions_once) {
     return straight > 0.0 ? plain * instructions_once / straight : invocations * instructions_once;
 }
@@ -272,7 +273,7 @@ static void make_rung(const masu_count *c, const masu_issued *issued, uint32_t r
         masu_model_row *row = &out->rows[masu_is_cascade(p) ? MASU_PASS_CASCADE_0 : p];
         row->runs = true;
         add_images(c, rung, p, row);
-        if (masu_is_cascade(p) && p != MASU_PASS_CASCADE_0) continue; /* its counts have them all */
+        if (masu_is_cascade(p) && p != MASU_PASS_CASCADE_0) continue; /* the first counts all */
         add_buffers(c, rung, p, row);
         add_geometry(c, rung, p, row);
         add_operations(c, rung, p, row);

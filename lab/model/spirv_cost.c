@@ -2,19 +2,20 @@
  * instructions: SPIR-V extended instructions for GLSL, section 2. */
 #include "lab/model/spirv_cost.h"
 
-/* What an operation of one component takes, in units of the peak figure, where an addition is 1
- * and a fused multiply-add 2.
+/* Cost of an operation on one component, in units of the peak figure, in which an addition is 1 and
+ * a fused multiply-add 2.
  *
  * Addition, multiplication, comparison, selection, integer operations, conversions: 1. GPUs issue
- * each at full rate. That two of them may fuse is what makes the peak figure twice the issue rate,
- * and a floor must not assume that they do not.
+ * each at full rate. The peak figure is twice the issue rate because two of them may be fused; a
+ * lower bound must assume that they are.
  *
- * Reciprocal, square root and its inverse, exp2, log2, sin, cos: 4. Quarter rate on Intel's Gen 9
- * to 12, on GCN and RDNA, and on phones. Where they keep the other units waiting they are 8 of
- * these; where those run on beside them (Gen 12's extended math) less: a floor takes the lesser.
+ * Reciprocal, square root and its inverse, exp2, log2, sin, cos: 4. They run at quarter rate on
+ * Intel's Gen 9 to 12, on GCN and RDNA, and on phones. If they block the other units they cost 8 of
+ * these units; if they run in parallel (Gen 12's extended math) less. The lower bound uses the
+ * smaller value.
  *
- * Integer multiplication: 4, quarter rate on GCN, split in halves by Intel. Integer division: 20,
- * a sequence everywhere. Negation, absolute value: 0, modifiers of an operand on all of these. */
+ * Integer multiplication: 4, quarter rate on GCN, split in halves by Intel. Integer division: 20, a
+ * sequence on all. Negation, absolute value: 0, operand modifiers on all of these. */
 enum { ADD = 1, SPECIAL = 4, MULTIPLY_INT = 4, DIVIDE_INT = 20, FREE = 0 };
 
 typedef struct range_cost {
@@ -78,7 +79,7 @@ static const range_cost extended[] = {
 
 uint32_t masu_spirv_components(const spirv_module *m, uint32_t type) {
     uint32_t n = 1;
-    /* A matrix of vectors of scalars; a type may name itself. */
+    /* A matrix of vectors of scalars; a type may refer to itself. */
     for (uint32_t depth = 0; depth < 3; depth++) {
         const spirv_instruction *t = spirv_def(m, type);
         if (!t) return 0;
@@ -104,7 +105,7 @@ static masu_spirv_cost ranged(const range_cost *list, size_t count, uint32_t op,
     masu_spirv_cost cost = {0, 0};
     for (size_t k = 0; k < count; k++) {
         if (op >= list[k].first && op <= list[k].last)
-            cost = times(n, list[k].plain, list[k].weighted); /* the last that fits */
+            cost = times(n, list[k].plain, list[k].weighted); /* the last match */
     }
     return cost;
 }
@@ -136,7 +137,7 @@ masu_spirv_cost masu_spirv_cost_of(const spirv_module *m, const spirv_instructio
     const uint32_t *w = i->word;
     if (i->op == SPIRV_EXT_INST && i->count > 4) return extended_cost(m, i);
     if (i->op < 109 || i->op > 242 || i->count < 3) return times(0, 0, 0);
-    if (i->op == 228) return times(0, 0, 0); /* AtomicStore: it has no result to ask about */
+    if (i->op == 228) return times(0, 0, 0); /* AtomicStore: has no result type */
     uint32_t n = masu_spirv_components(m, w[1]);
     uint32_t in = i->count > 3 ? masu_spirv_components(m, masu_spirv_type_of(m, w[3])) : 0;
     uint32_t in2 = i->count > 4 ? masu_spirv_components(m, masu_spirv_type_of(m, w[4])) : 0;

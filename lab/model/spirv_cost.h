@@ -1,7 +1,7 @@
-/* spirv_cost.h: how many operations an instruction of SPIR-V is, by one table.
+/* spirv_cost.h: number of operations of a SPIR-V instruction, from a table.
  *
- * Two numbers. `plain`: scalar operations, a transcendental as one and a fused multiply-add as one:
- * what a listing of the shader would be counted by. `weighted`: in units of a GPU's peak figure, in
+ * Two numbers. `plain`: scalar operations; a transcendental function and a fused multiply-add are
+ * one each, as in a count of the shader's listing. `weighted`: in units of a GPU's peak figure, in
  * which an addition is one and a fused multiply-add two. */
 #ifndef MASU_SPIRV_COST_H
 #define MASU_SPIRV_COST_H
@@ -12,16 +12,16 @@ typedef struct masu_spirv_cost {
     uint32_t plain, weighted;
 } masu_spirv_cost;
 
-/* Of one instruction; 0 and 0 for what moves, names or branches, and for fetches. */
+/* The cost of one instruction; 0 and 0 for moves, names, branches and fetches. */
 masu_spirv_cost masu_spirv_cost_of(const spirv_module *module, const spirv_instruction *i);
 
-/* Of all instructions once, whatever branches and loops there are. */
+/* The cost of all instructions, each once, ignoring branches and loops. */
 masu_spirv_cost masu_spirv_cost_straight(const spirv_module *module);
 
-/* Components of a type: 1 of a scalar, n of a vector, n * m of a matrix; 0 of what is none. */
+/* Components of a type: 1 for a scalar, n for a vector, n * m for a matrix; 0 for other types. */
 uint32_t masu_spirv_components(const spirv_module *module, uint32_t type);
 
-/* The type of the value with that id; 0: not known. */
+/* The type of the value with that id; 0: unknown. */
 uint32_t masu_spirv_type_of(const spirv_module *module, uint32_t id);
 
 #endif

@@ -1,6 +1,7 @@
-/* spirv_reach.c: see spirv_reach.h. Values and ways are followed together (Wegman and Zadeck, "Constant Propagation
- * with Conditional Branches", TOPLAS 1991): what has not been reached has no value yet and counts for nothing where
- * ways meet; values only get less certain, ways only more, until nothing changes. */
+/* spirv_reach.c: see spirv_reach.h. Propagates values and reachability together (Wegman and Zadeck,
+ * "Constant Propagation with Conditional Branches", TOPLAS 1991): unreached code has no value yet
+ * and is ignored at merges. Values only become less certain and reachability only grows, until
+ * nothing changes. */
 #include "lab/model/spirv_reach.h"
 
 #include <stdlib.h>
@@ -15,20 +16,20 @@ enum {
     DECORATION_SPEC_ID = 1
 };
 
-/* How much is known of a value. */
+/* Knowledge of a value. */
 enum { NOTHING, CONSTANT, ANYTHING };
 
 typedef struct reach {
     const spirv_module *m;
     const VkSpecializationInfo *special;
-    uint32_t *value; /* of ids */
+    uint32_t *value; /* by id */
     uint8_t *state;
     bool *reached; /* labels and functions */
     bool *inside;
     bool changed;
 } reach;
 
-/* What an instruction has come to this time; two different values are any. */
+/* Merges the new result of an instruction; two different values become ANYTHING. */
 static void meet(reach *r, uint32_t id, uint8_t state, uint32_t value) {
     if (id >= r->m->bound) return;
     uint8_t was = r->state[id];
@@ -51,7 +52,7 @@ static uint8_t get(const reach *r, uint32_t id, uint32_t *value) {
     return r->state[id];
 }
 
-/* What the host sets it to, else what the module says. */
+/* The value from the host, else the module's default. */
 static uint32_t specialised(const reach *r, uint32_t id, uint32_t otherwise) {
     uint32_t number, value;
     if (!r->special || !spirv_decoration(r->m, id, DECORATION_SPEC_ID, &number)) return otherwise;
@@ -64,7 +65,7 @@ static uint32_t specialised(const reach *r, uint32_t id, uint32_t otherwise) {
     return otherwise;
 }
 
-/* Of two numbers of 32 bits. */
+/* Evaluates an operation on two 32-bit values. */
 static bool binary(uint32_t op, uint32_t a, uint32_t b, uint32_t *out) {
     int32_t x = (int32_t)a, y = (int32_t)b;
     switch (op) {
@@ -90,7 +91,7 @@ static bool binary(uint32_t op, uint32_t a, uint32_t b, uint32_t *out) {
     }
 }
 
-/* An operation whose operands begin at w. */
+/* Evaluates an operation; its operands start at w. */
 static uint8_t evaluate(const reach *r, uint32_t op, const uint32_t *w, uint32_t count, uint32_t *out) {
     uint32_t a = 0, b = 0;
     uint8_t first = count > 0 ? get(r, w[0], &a) : ANYTHING, second = count > 1 ? get(r, w[1], &b) : ANYTHING;
@@ -103,7 +104,7 @@ static uint8_t evaluate(const reach *r, uint32_t op, const uint32_t *w, uint32_t
         return get(r, a ? w[1] : w[2], out);
     case SPIRV_LOGICAL_AND:
     case SPIRV_LOGICAL_OR:
-        *out = op == SPIRV_LOGICAL_OR; /* one is enough */
+        *out = op == SPIRV_LOGICAL_OR; /* one operand may decide */
         if ((first == CONSTANT && !a == !*out) || (second == CONSTANT && !b == !*out)) return CONSTANT;
         break;
     default: break;
@@ -114,7 +115,7 @@ static uint8_t evaluate(const reach *r, uint32_t op, const uint32_t *w, uint32_t
                                                      : NOTHING;
 }
 
-/* Of all ways that have been reached. */
+/* Merges the values from all reached predecessors. */
 static uint8_t come_together(const reach *r, const spirv_instruction *i, uint32_t *out) {
     uint8_t state = NOTHING;
     for (uint32_t k = 3; k + 1 < i->count; k += 2) {
@@ -174,7 +175,7 @@ static void constant(reach *r, const spirv_instruction *i) {
     }
 }
 
-/* Once over the module: blocks come after those that dominate them. */
+/* One pass over the module: blocks follow the blocks that dominate them. */
 static void walk(reach *r) {
     bool function = false, block = false, first = false;
     for (size_t k = 0; k < r->m->count; k++) {
@@ -184,7 +185,7 @@ static void walk(reach *r) {
         if (i->op == SPIRV_FUNCTION) function = r->reached[i->word[2]], block = false, first = true;
         if (outside) function = block = false;
         if (i->op == SPIRV_LABEL) {
-            /* The first block of a function is where it begins. */
+            /* A function starts with its first block. */
             if (first && function) mark(r, i->word[1]);
             first = false;
             block = function && r->reached[i->word[1]];
@@ -201,7 +202,8 @@ static void walk(reach *r) {
     }
 }
 
-/* Results of instructions have no value yet; all other ids, of globals and parameters say, can have any. */
+/* Results of instructions have no value yet; all other ids, such as globals and parameters, can
+ * have any. */
 static void begin(reach *r) {
     bool function = false;
     memset(r->state, ANYTHING, r->m->bound);

@@ -1,6 +1,6 @@
-/* spirv_reach.h: which instructions of a shader are left once its specialisation constants are set: a branch whose
- * condition follows from constants alone goes one way, and what only the other leads to is compiled away. Nothing
- * is rewritten. */
+/* spirv_reach.h: finds the instructions of a shader that remain after its specialisation constants
+ * are set: a branch with a constant condition takes one path, and code reachable only by the other
+ * path is removed by the compiler. The module is not changed. */
 #ifndef MASU_SPIRV_REACH_H
 #define MASU_SPIRV_REACH_H
 
@@ -9,12 +9,12 @@
 #include <stdbool.h>
 #include <vulkan/vulkan_core.h>
 
-/* inside[k]: whether instruction k of the module can run, of module->count; false of all that is outside of
- * functions. special: NULL: as the module has them. Returns false where memory is short. */
+/* inside[k]: whether instruction k of the module can run, for module->count instructions; false
+ * outside functions. special: NULL: the module's defaults. Returns false if there is no memory. */
 bool masu_spirv_reach(const spirv_module *module, const VkSpecializationInfo *special, bool *inside);
 
-/* Of all instructions that can run once, whatever loops and other branches there are. Where memory is short, of
- * all. */
+/* Cost of all instructions that can run, each once, ignoring loops and other branches. Without
+ * memory: of all instructions. */
 masu_spirv_cost masu_spirv_cost_reached(const spirv_module *module, const VkSpecializationInfo *special);
 
 #endif

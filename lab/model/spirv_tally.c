@@ -1,4 +1,4 @@
-/* spirv_tally.c: see spirv_tally.h. The layout of a module is that of the SPIR-V specification,
+/* spirv_tally.c: see spirv_tally.h. The layout of a module follows the SPIR-V specification,
  * section 2.4: annotations before types, types before functions. */
 #include "lab/model/spirv_tally.h"
 
@@ -43,7 +43,7 @@ typedef struct maker {
     uint32_t uint_type, function; /* type of counts; id of the entry function */
     uint32_t buffer, pointer, low, shift;
     uint32_t variable[MASU_TALLY_NUMBERS];
-    uint32_t index[2 + 2 * MASU_TALLY_NUMBERS]; /* constants: places in the buffer */
+    uint32_t index[2 + 2 * MASU_TALLY_NUMBERS]; /* constants: indices in the buffer */
     uint32_t zero, one;
     struct {
         uint32_t value, id;
@@ -73,7 +73,7 @@ static void put_op(text *t, uint32_t op, uint32_t n, const uint32_t *operands) {
 #define PUT(t, op, ...)                                                                            \
     put_op(t, op, sizeof((uint32_t[]){__VA_ARGS__}) / sizeof(uint32_t), (uint32_t[]){__VA_ARGS__})
 
-/* ---- What a block does ----------------------------------------------------------------------- */
+/* ---- Cost of a block ------------------------------------------------------------------------- */
 
 /* The variable that a pointer, an image or a sampled image comes from. */
 static const spirv_instruction *root_of(const spirv_module *m, uint32_t id) {
@@ -93,8 +93,8 @@ static uint32_t bytes_of(const spirv_module *m, const uint32_t *bytes, uint32_t 
     return type < m->bound ? bytes[type] : 0;
 }
 
-/* Of each type, by its id. In the order of the module, where what a type is made of stands before it: a type that
- * names a later one, or itself, has no size, and none is looked at twice. */
+/* Sizes of types by id, in the order of the module, which defines a type's members first: a type
+ * that refers to a later one or to itself has no size, and each type is visited once. */
 static uint32_t *size_types(const spirv_module *m) {
     uint32_t *bytes = calloc(m->bound + 1u, sizeof *bytes);
     for (size_t i = 0; bytes && i < m->count; i++) {
@@ -144,7 +144,7 @@ static bool touched(maker *k, uint32_t id, masu_tally_kind kind, uint32_t amount
     return true;
 }
 
-/* Bytes of storage buffers; uniform blocks are small and read by all. */
+/* Bytes of storage buffers; uniform blocks are ignored: they are small and read by all. */
 static bool touched_buffer(maker *k, uint32_t pointer, uint32_t type, masu_tally_kind kind,
                            sums s) {
     const spirv_instruction *v = root_of(k->m, pointer);
@@ -175,7 +175,7 @@ static bool add_instruction(maker *k, const spirv_instruction *i, sums s) {
     case 97: return touched(k, i->word[3], MASU_TALLY_FETCHED, 4, s); /* gathers */
     case 99: return touched(k, i->word[1], MASU_TALLY_WRITTEN, 1, s);
     default:
-        if (i->op >= 229 && i->op <= 242) /* atomics with a result: what they store */
+        if (i->op >= 229 && i->op <= 242) /* atomics with a result: their stores */
             return touched_buffer(k, i->word[3], i->word[1], MASU_TALLY_STORED, s);
         return true;
     }
@@ -251,14 +251,14 @@ static void put_flush(maker *k) {
     }
 }
 
-/* ---- Walk ------------------------------------------------------------------------------------ */
+/* ---- Traversal ------------------------------------------------------------------------------- */
 
 static bool ends_block(uint32_t op) {
     return (op >= SPIRV_BRANCH && op <= OP_UNREACHABLE) || op == OP_TERMINATE_INVOCATION;
 }
 
-/* Numbers must all be known before the variables are declared: the sums of each block by its
- * label's place in the list. */
+/* All numbers must exist before the variables are declared: computes the sums of each block,
+ * indexed by its label's position in the list. */
 static sums *sum_blocks(maker *k) {
     const spirv_module *m = k->m;
     sums *all = calloc(m->count, sizeof *all);
@@ -278,8 +278,8 @@ static sums *sum_blocks(maker *k) {
     return all;
 }
 
-/* The functions, with the sums of each block before its end and all of them written where an
- * invocation ends. */
+/* Writes the functions, with the sums of each block at its end, and writes all sums to the buffer
+ * at the end of an invocation. */
 static void put_functions(maker *k, size_t from, sums *all) {
     const spirv_module *m = k->m;
     size_t block = 0;
@@ -289,7 +289,7 @@ static void put_functions(maker *k, size_t from, sums *all) {
         if (one->op == SPIRV_FUNCTION) entry = one->word[2] == k->function;
         if (one->op == SPIRV_LABEL) block = i;
         bool merge = one->op == OP_SELECTION_MERGE || one->op == SPIRV_LOOP_MERGE;
-        /* A merge instruction stands right before its branch. */
+        /* A merge instruction immediately precedes its branch. */
         bool merged =
             i && (m->list[i - 1].op == OP_SELECTION_MERGE || m->list[i - 1].op == SPIRV_LOOP_MERGE);
         if (merge || (ends_block(one->op) && !merged)) put_block_sums(k, all[block]);
@@ -325,7 +325,7 @@ static void look(maker *k, size_t *first_type, size_t *first_function, bool *ear
 static void put_entry(maker *k, const spirv_instruction *one) {
     bool names = k->m->words[1] >= VERSION_1_4;
     uint32_t more = names ? 1 + k->out->count : 0;
-    if (one->count + more > 0xFFFFu) k->to.failed = true; /* more than an instruction can have */
+    if (one->count + more > 0xFFFFu) k->to.failed = true; /* exceeds the size of an instruction */
     put(&k->to, (one->count + more) << 16 | one->op);
     for (uint32_t w = 1; w < one->count; w++) put(&k->to, one->word[w]);
     for (uint32_t n = 0; n < more; n++) put(&k->to, n ? k->variable[n - 1] : k->buffer);
@@ -342,7 +342,7 @@ static bool make(maker *k, sums *all) {
     uint32_t array = k->next++, block = k->next++;
     k->buffer = k->next++;
     k->pointer = k->next++;
-    k->zero = k->next; /* for failures alone */
+    k->zero = k->next; /* only for failures */
     k->zero = constant_of(k, 0);
     k->one = constant_of(k, 1);
     k->low = constant_of(k, 1023);
@@ -363,8 +363,8 @@ static bool make(maker *k, sums *all) {
         } else {
             put_op(&k->to, one->op, one->count - 1, one->word + 1);
         }
-        /* Writing to a buffer would put the depth test behind the shader, and count what it
-         * hides. */
+        /* Writing to a buffer would move the depth test after the shader, and count occluded
+         * fragments. */
         bool last_entry = one->op == OP_ENTRY_POINT && m->list[i + 1].op != OP_ENTRY_POINT;
         if (last_entry && k->out->model == 4 && !early && !k->out->late)
             PUT(&k->to, OP_EXECUTION_MODE, k->function, EARLY_FRAGMENT_TESTS);

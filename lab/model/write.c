@@ -64,7 +64,7 @@ bool masu_model_run(const masu_model_desc *d, masu_model_sheet *out, uint32_t *m
 
 /* ---- Text ------------------------------------------------------------------------------------ */
 
-/* "1.23b": bytes decide; "1.23f": operations do. */
+/* "1.23b": bytes dominate; "1.23f": operations do. */
 static void floor_text(const masu_model_row *row, uint32_t k, char out[24]) {
     bool by_bytes;
     double ms = masu_model_floor(row, k, &by_bytes);
@@ -81,20 +81,18 @@ static void chosen_text(const masu_model_sheet *m, uint32_t k, uint32_t budget, 
 
 static const char *const notes[] = {
     "Floor: the longer of compulsory bytes at the class's bandwidth (b) and operations at its peak "
-    "(f). Realistic: 1.3 times where bytes decide, 2.5 times where operations do.",
-    "Compulsory: each image and buffer read once and written once, no more of it than shaders "
-    "asked "
-    "for; caches are taken to keep all the rest. Vertices, tiles, trees are the scene's own.",
-    "Operations: what each invocation ran, an addition as 1, a reciprocal, root or sine as 4. "
-    "Lanes "
-    "of a wave that wait for others, fetches and branches are not in it.",
-    "Where the class's compiler was asked (--isa), operations are its instructions: each operation as many "
-    "as the pass's pipelines have on average, one for a lane and clock; realistic then 1.5 times the floor, "
-    "and as much more as RADV's latency exceeds what its waves hide.",
-    "exact: every pixel goes the same way; measured here: counted while the scene was drawn; "
+    "(f). Realistic: 1.3 times if bytes dominate, 2.5 times if operations do.",
+    "Compulsory: each image and buffer read once and written once, but only the part that shaders "
+    "read; caches are assumed to hold the rest. Vertices, tiles and trees are the scene's.",
+    "Operations: all operations of each invocation, an addition as 1, a reciprocal, root or sine as 4. "
+    "Idle lanes of a wave, fetches and branches are not included.",
+    "With --isa operations are instructions of the class's compiler, one per lane and clock: each operation "
+    "counts as the mean number of instructions per operation in the pass's pipelines. Realistic is then 1.5 "
+    "times the floor, times the ratio of RADV's latency to the latency that its waves hide, if above 1.",
+    "exact: every pixel takes the same branches; measured here: counted while the scene was drawn; "
     "estimated: textures at 1.25 new texels a fetch, or fragments behind a discard.",
-    "Nothing of it was measured on a GPU of these classes. A measured ratio is of the driver that "
-    "ladder.json names; that of a CPU says little about a GPU.",
+    "Nothing here was measured on a GPU of these classes. A measured ratio is for the driver that "
+    "ladder.json names; a CPU's ratio predicts little about a GPU.",
 };
 
 bool masu_model_print(const masu_model_sheet *m, FILE *f) {
@@ -103,7 +101,7 @@ bool masu_model_print(const masu_model_sheet *m, FILE *f) {
             m->sheet.width, m->sheet.height);
     fprintf(f, "counted at %ux%u on %s\n", m->drawn.width, m->drawn.height, m->driver);
     if (m->drawn.width != m->sheet.width || m->drawn.height != m->sheet.height)
-        fprintf(f, "what is counted by pixel is scaled to the sheet's pixels\n");
+        fprintf(f, "counts per pixel are scaled to the sheet's pixels\n");
     for (uint32_t k = 0; k < MASU_MODEL_CLASSES; k++) {
         if (m->issued[k])
             fprintf(f, "%s: instructions by the compiler of %s\n", masu_model_classes[k].name, masu_model_classes[k].gpu);
@@ -191,7 +189,7 @@ bool masu_model_csv(const masu_model_sheet *m, FILE *f) {
 
 /* ---- XHTML ----------------------------------------------------------------------------------- */
 
-/* columns: markup of ours. */
+/* columns: markup from this file. */
 static void put_head(FILE *f, const char *caption, const char *columns) {
     masu_markup(f, "<div class=\"wide\"><table>\n<caption>COMPUTED, not measured: %s</caption>\n<tr>", caption);
     fputs(columns, f);
@@ -262,9 +260,9 @@ static void put_chosen(const masu_model_sheet *m, FILE *f) {
 bool masu_model_xhtml(const masu_model_sheet *m, FILE *f) {
     masu_markup(f,
             "<section id=\"model\">\n<h2>Model sheet: computed, not measured</h2>\n"
-            "<p>What each pass would take on five classes of GPU, at %ux%u. Counted at %ux%u on %s",
+            "<p>Computed times of each pass on five classes of GPU, at %ux%u. Counted at %ux%u on %s",
             m->sheet.width, m->sheet.height, m->drawn.width, m->drawn.height, m->driver);
-    fputs("; what is counted by pixel is scaled to the sheet's pixels.</p>\n", f);
+    fputs("; counts per pixel are scaled to the sheet's pixels.</p>\n", f);
     put_chosen(m, f);
     put_rungs(m, f);
     put_passes(m, 0, f);

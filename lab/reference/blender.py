@@ -1,10 +1,10 @@
-"""blender.py: the reference path tracer beside Blender's Cycles: five small scenes lit by meshes.
+"""blender.py: compares the reference path tracer with Blender's Cycles: five small scenes lit by meshes.
 
     blender -b --factory-startup --python-exit-code 1 -P lab/reference/blender.py -- MASU-BAKE MASU-LAB TABLE.csv
 
 Writes each scene twice, as glTF for masu-bake and into Blender, renders both and compares the means of 144 patches.
-Fails if a scene's mean, or the root mean square of its patches' errors, is off by more than 2 %. Both have the same
-model of materials: Lambert, and metals whose microfacets have uncorrelated masking and scatter once (masu-lab reference
+Fails if a scene's mean, or the root mean square of its patches' errors, differs by more than 2 %. Both use the same
+material model: Lambert, and metals whose microfacets have uncorrelated masking and scatter once (masu-lab reference
 --cycles; Blender: Principled, metallic 1, distribution GGX). Written for Blender 3.4."""
 import json, math, os, struct, subprocess, sys, tempfile, zlib
 import bpy

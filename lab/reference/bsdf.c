@@ -3,11 +3,11 @@
 
 #include <string.h>
 
-#define SMOOTHEST 0.045 /* Masu's */
+#define SMOOTHEST 0.045 /* as in Masu */
 #define SMOOTHEST_WALKED 0.01
 
-/* cosine: with the base's normal; over: with the coat's, which decides what the coat returns and
- * covers. */
+/* cosine: with the base's normal; over: with the coat's normal, which determines the coat's
+ * reflection and coverage. */
 static ref_returned returned(const ref_bsdf *b, ref_albedo base, ref_albedo covered,
                              ref_albedo coat) {
     double c = b->s.coat, through = 1 - c * b->line[0], less = c * b->line[1];
@@ -23,7 +23,7 @@ static ref_returned returned_at(const ref_bsdf *b, double cosine, double over) {
                     ref_ggx_albedo(b->s.coat_roughness, over));
 }
 
-/* ---- Sheen: Charlie's distribution (Estevez and Kulla 2017), as KHR_materials_sheen has it; design mode alone ----- */
+/* ---- Sheen: Charlie (Estevez and Kulla 2017), as in KHR_materials_sheen; design mode only ---- */
 
 static double sheen_curve(double x, double alpha) {
     static const double rough[5] = {21.5473, 3.82987, 0.19823, -1.97760, -4.32054};
@@ -43,7 +43,7 @@ static double sheen_alpha_of(double roughness) {
     return r * r;
 }
 
-/* f times the cosine of l, white. */
+/* f times the cosine of l, for a white sheen. */
 static double sheen_lobe(double alpha, ref_vec v, ref_vec l) {
     ref_vec h = ref_unit(ref_add(v, l));
     double d = (2 + 1 / alpha) * pow(ref_clamp(1 - h.z * h.z, 0, 1), 0.5 / alpha) / (2 * REF_PI);
@@ -81,7 +81,7 @@ static double sheen_albedo(double roughness, double cosine) {
     return table[i][left] + (at - left) * (table[i][left + 1] - table[i][left]);
 }
 
-/* ---- Grain: GGX with two alphas; x of the frame is along it ---- */
+/* ---- Grain: GGX with two alphas; x of the frame is along it ---------------------------------- */
 
 static ref_vec stretched(const ref_bsdf *b, ref_vec w) { return ref_v(b->along * w.x, b->alpha * w.y, w.z); }
 
@@ -106,7 +106,7 @@ static double grain_pdf(const ref_bsdf *b, ref_vec l) {
     return grain_density(b, h) / (1 + grain_lambda(b, b->v)) / (4 * b->v.z);
 }
 
-/* In the space where the distribution is that of alpha 1. */
+/* In the space in which the distribution has alpha 1. */
 static ref_vec grain_normal(const ref_bsdf *b, double u1, double u2) {
     ref_vec n = ref_ggx_normal(1, ref_unit(stretched(b, b->v)), u1, u2);
     return ref_unit(stretched(b, n));
@@ -125,13 +125,13 @@ static void make_lobes(ref_bsdf *b) {
     b->mean_rough = pow((b->along * b->along + b->alpha * b->alpha) / 2, 0.25);
 }
 
-/* Light that leaves after several bounces, as a factor of what is lost. */
+/* Light that leaves after several bounces, as a factor of the lost energy. */
 static double rest_of(double f0, double f90, double white) {
     double f = f0 + (f90 - f0) / 21;
     return f * f * (1.35 - 0.35 * f) * white / (1 - f * (1 - white));
 }
 
-/* Part of the light that the dielectric's layers return before the colour below. */
+/* Fraction of the light that the dielectric's layers reflect before the colour below. */
 static double matte(const ref_bsdf *b, const ref_returned *r) {
     double f0 = b->matte.f0.x;
     return r->coat + f0 * r->white + (b->matte.f90 - f0) * r->weight + b->matte_rest * r->lost;
@@ -182,7 +182,7 @@ void ref_bsdf_make(ref_bsdf *b, const ref_surface *s, ref_vec v, bool walk) {
         if (b->walk && i == REF_BASE) b->pick[i] += ref_luminance(b->rest_color) * b->seen.lost;
         sum += b->pick[i];
     }
-    /* Every lobe that there is gets some: an estimate of an albedo may be too low. */
+    /* Every existing lobe gets some probability: an estimated albedo may be too low. */
     for (int i = 0; i < REF_LOBES; i++) {
         bool there = i == REF_BASE || (i == REF_COAT ? s->coat > 0 : true);
         b->pick[i] = sum > 0 ? 0.9 * b->pick[i] / sum : 0;
@@ -258,8 +258,7 @@ double ref_bsdf_pdf(const ref_bsdf *b, ref_vec light) {
     return pdf;
 }
 
-/* The half vectors of v and of a direction below the horizon count for nothing: they are drawn
- * and lost. */
+/* Half vectors that reflect v below the horizon contribute nothing: these samples are lost. */
 bool ref_bsdf_sample(const ref_bsdf *b, ref_random *r, ref_vec *l, ref_lobes *weight) {
     double which = ref_draw(r);
     double u1 = ref_draw(r);

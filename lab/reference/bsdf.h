@@ -1,12 +1,13 @@
-/* bsdf.h: how a surface of the reference scatters light.
+/* bsdf.h: the scattering of light at a surface of the reference.
  *
- *   design   the closed model that Masu promises: GGX; what it loses by a product (Kulla and
+ *   design   the closed-form model that Masu specifies: GGX; its lost energy by a product (Kulla
+ *   and
  *            Conty 2017, coloured as in shaders/brdf); diffuse light below by a product (Kelemen
- *            and Szirmay-Kalos 2001); a clear coat that lets 1 - c (a + b max(s(v), s(l))) through
+ *            and Szirmay-Kalos 2001); a clear coat that transmits 1 - c (a + b max(s(v), s(l)))
  *   physics  the same layers by random walks: between facets, through the layers, between layers
  *
- * The result is split into lobes, since Masu lights them differently: mirror of the base, mirror of
- * the coat, and soft: all that has no direction left. */
+ * The result is split into lobes, because Masu lights them differently: mirror of the base, mirror
+ * of the coat, and soft, for all light without a direction. */
 #ifndef LAB_REFERENCE_BSDF_H
 #define LAB_REFERENCE_BSDF_H
 
@@ -16,7 +17,7 @@ typedef struct ref_surface {
     ref_vec albedo, emissive;
     double roughness, metallic, specular; /* specular: f0 / 0.08 */
     double coat, coat_roughness;
-    ref_vec hue;                 /* of the dielectric's f0, which is 0.08 specular times it; 0: white */
+    ref_vec hue;                 /* colour of the dielectric's f0 = 0.08 specular hue; 0: white */
     ref_vec sheen;               /* colour, 0: none */
     double sheen_roughness;
     double anisotropy;           /* 0: none */
@@ -44,30 +45,31 @@ typedef struct ref_bsdf {
     ref_frame base, over;
     ref_vec v, v_over; /* in the two frames */
     double alpha, coat_alpha, line[2];
-    ref_fresnel mixed, metal, matte; /* mixed: of the single bounce of both shares */
+    ref_fresnel mixed, metal, matte; /* mixed: for the single bounce of both parts */
     ref_returned all, seen;
     ref_vec rest_color; /* of metal and dielectric together */
     double matte_rest;
     bool grained;
-    double along;         /* alpha along the grain, which is x of `base` */
-    double mean_rough;    /* roughness whose albedos the base has */
-    double sheen_alpha, sheen_most, bared; /* bared: what lies below a sheen keeps, by v */
+    double along;         /* alpha along the grain, the x axis of `base` */
+    double mean_rough;    /* roughness whose albedos the base uses */
+    double sheen_alpha, sheen_most, bared; /* bared: fraction below a sheen, by v */
     double pick[REF_LOBES]; /* probability of sampling each */
 } ref_bsdf;
 
 /* v: towards the viewer, unit. */
 void ref_bsdf_make(ref_bsdf *b, const ref_surface *s, ref_vec v, bool walk);
-/* f times the cosine, of light from l. `r` is drawn from in walks only. */
+/* f times the cosine, for light from l. Only walks use `r`. */
 ref_lobes ref_bsdf_eval(const ref_bsdf *b, ref_vec l, ref_random *r);
-/* Physics mode: the same, and a direction that a walk leaves by with f times the cosine over its
+/* Physics mode: the same, and a direction in which a walk leaves, with f times the cosine over its
  * density, at most 1. */
 ref_lobes ref_layers_eval(const ref_bsdf *b, ref_vec l, ref_random *r);
 bool ref_layers_sample(const ref_bsdf *b, ref_random *r, ref_vec *l, ref_vec *weight);
-/* Density of ref_bsdf_sample; of a walk an estimate, which weights two strategies as well. */
+/* Density of ref_bsdf_sample; for a walk an estimate, which is also valid as weight of two
+ * strategies. */
 double ref_bsdf_pdf(const ref_bsdf *b, ref_vec l);
-/* A direction and f times the cosine over its density; false: nothing is scattered that way. */
+/* A direction and f times the cosine over its density; false: no scattering in that direction. */
 bool ref_bsdf_sample(const ref_bsdf *b, ref_random *r, ref_vec *l, ref_lobes *weight);
-/* Part of the light from everywhere that each lobe returns. */
+/* Fraction of uniform light that each lobe reflects. */
 ref_lobes ref_bsdf_albedo(const ref_bsdf *b);
 
 #endif

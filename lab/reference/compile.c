@@ -28,7 +28,7 @@ static bool make_folder(ref_library *l, char *error, size_t size) {
     return false;
 }
 
-/* First line of what the program says, from its first "error" on if it has one. */
+/* First line of the program's output, starting at its first "error" if it has one. */
 static void quote(char *said, char *out, size_t size) {
     char *from = strstr(said, "ERROR: ");
     if (!from) from = strstr(said, "error: ");
@@ -92,7 +92,7 @@ void ref_library_close(ref_library *l) {
 
 /* ---- GLSL ------------------------------------------------------------------------------------ */
 
-/* What docs/scene.md and docs/sdf.md let the code of a field call, by their definitions there: all
+/* The functions that docs/scene.md and docs/sdf.md allow in a field's code, as defined there: all
  * terms and all parts are evaluated. */
 static const char before_field[] =
     "#version 450\n"
@@ -195,8 +195,8 @@ static const char after_field[] =
     "#endif\n"
     "}\n";
 
-/* What SPIRV-Cross's C++ takes from the headers of its source tree, which Debian does not package;
- * and GLM's vectors of doubles under the names of those of floats. */
+/* Declarations that SPIRV-Cross's C++ expects from headers that Debian does not package, and GLM's
+ * double vectors under the names of the float vectors. */
 static const char before_cpp[] =
     "#define GLM_FORCE_SWIZZLE\n"
     "#include <glm/glm.hpp>\n"
@@ -248,8 +248,8 @@ static const char before_cpp[] =
     "#define mat4x2 dmat4x2\n"
     "#define mat4x3 dmat4x3\n";
 
-/* In place of the interface at the end of that C++. A shader's private variables are members: one
- * each call. */
+/* Replaces the interface at the end of that C++. A shader's private variables are members: one
+ * object per call. */
 static const char after_cpp[] = "extern \"C\" void ref_run(void *inputs, void *call) {\n"
                                 "    spirv_cross_shader where = {{inputs, call}};\n"
                                 "    Impl::Shader::Resources resources;\n"
@@ -259,7 +259,7 @@ static const char after_cpp[] = "extern \"C\" void ref_run(void *inputs, void *c
                                 "    shader.main();\n"
                                 "}\n";
 
-/* 1.5f, whose value is the float's, becomes 1.5. In place. */
+/* Changes 1.5f, with the float's value, to 1.5. In place. */
 static void drop_suffixes(char *text) {
     char *to = text, last = ' ';
     for (char *from = text; *from; last = *from++) {

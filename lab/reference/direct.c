@@ -1,12 +1,12 @@
-/* direct.c: the light paths that Masu promises; see tracer.h. */
+/* direct.c: the light paths that Masu specifies; see tracer.h. */
 #include "lab/reference/tracer.h"
 
 #include <string.h>
 
 enum { LAYERS_MOST = 64 };
 
-/* docs/scene.md, "Reflections": all of it is traced up to 3/4 of the cut-off, nothing from the
- * cut-off on. */
+/* docs/scene.md, "Reflections": fully traced up to 3/4 of the cut-off, not at all from the cut-off
+ * on. */
 static double traced_share(double roughness, double cutoff) {
     double x = cutoff > 0 ? ref_clamp((roughness - 0.75 * cutoff) / (0.25 * cutoff), 0, 1) : 1;
     return 1 - x * x * (3 - 2 * x);
@@ -14,8 +14,8 @@ static double traced_share(double roughness, double cutoff) {
 
 enum { OCCLUSION_RAYS = 16 };
 
-/* Unoccluded share of a ray: an occluder at the distance t within the radius counts by
- * 1 - t / radius. */
+/* Visibility along a ray: an occluder at the distance t within the radius has the weight 1 - t /
+ * radius. */
 static double open_along(const ref_tracer *t, ref_vec from, ref_vec d, double radius,
                          unsigned flags) {
     ref_hit by;
@@ -24,10 +24,10 @@ static double open_along(const ref_tracer *t, ref_vec from, ref_vec d, double ra
     return met ? by.t / radius : 1;
 }
 
-/* docs/scene.md, "Ambient occlusion": the smaller visibility of two, of all surfaces within the one
- * radius and of the field within the other; by cosine-weighted rays. Whatever the field occludes
- * within no larger a radius is among all surfaces. Only otherwise the smaller one differs from
- * point to point: a ray each says nothing about it, and several are averaged before. */
+/* docs/scene.md, "Ambient occlusion": the smaller of two visibilities, of all surfaces within one
+ * radius and of the field within the other, by cosine-weighted rays. If the field's radius is not
+ * larger, its occluders are among all surfaces. Otherwise the smaller one varies from point to
+ * point: a single ray each cannot decide it, so several are averaged first. */
 static double open_to_sky(const ref_tracer *t, const ref_hit *hit, const ref_surface *s,
                           ref_random *r) {
     double all = t->occlusion_radius, field = t->world->field ? t->field_occlusion_radius : 0;
@@ -46,18 +46,18 @@ static double open_to_sky(const ref_tracer *t, const ref_hit *hit, const ref_sur
         open_field += open_along(t, from, d, field, REF_RAY_NO_TRIANGLES);
     }
     open_field = 1 - t->field_occlusion_strength * (1 - open_field / rays);
-    /* Rays below the surface count as blocked; without a radius none does. */
+    /* Rays below the surface are blocked; without a radius none is. */
     return fmin(all > 0 ? open_all / rays : 1, field > 0 ? open_field : 1);
 }
 
-/* A mirror of roughness `roughness` without a traced ray. */
+/* Mirror reflection for `roughness` without a traced ray. */
 static ref_vec untraced_sky(const ref_tracer *t, ref_vec l, double roughness) {
     if (ref_sky_is_map(t->sky)) return ref_sky_at(t->sky, l);
     return ref_mix(ref_sky_at(t->sky, l), t->sky->ambient, roughness);
 }
 
 typedef struct around {
-    double share[2]; /* traced, of base and coat */
+    double share[2]; /* fraction traced, of base and coat */
     double open;     /* of the sky: ambient occlusion and the material's map */
 } around;
 
@@ -77,7 +77,7 @@ static void add_around(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *
         ref_add(ref_scale(w->of[REF_BASE], a->share[0]), ref_scale(w->of[REF_COAT], a->share[1]));
     if (!(ref_max(traced) > 0)) return;
     ref_vec from = ref_world_leave(t->world, hit, l), seen;
-    if (mis < 1) { /* two strategies for the sky, one for what is in front of it */
+    if (mis < 1) { /* two strategies for the sky, one for surfaces in front of it */
         ref_hit by;
         if (!ref_world_trace(t->world, from, l, HUGE_VAL, REF_RAY_NO_BLENDS | REF_RAY_ONE_SIDED,
                              &by)) {
@@ -92,7 +92,7 @@ static void add_around(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *
     out->of[REF_BASE] = ref_add(out->of[REF_BASE], ref_mul(traced, seen));
 }
 
-/* Light of the sky by a sample of the map, beside that of the BSDF. */
+/* Samples the sky's map, in addition to sampling the BSDF. */
 static void sample_map(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, const around *a,
                        ref_random *r, ref_lobes *out) {
     double pdf;

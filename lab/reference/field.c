@@ -18,7 +18,7 @@ static bool is_sdf(const char *path) {
     return length > 4 && !strcmp(path + length - 4, ".sdf");
 }
 
-/* "#define MASU_PARAM_RADIUS 0" of each parameter, then the GLSL; free() it. */
+/* "#define MASU_PARAM_RADIUS 0" for each parameter, then the GLSL; the caller frees it. */
 static char *with_params(const ref_blob *blob, const char *glsl) {
     enum { LINE = 2 * MASU_BLOB_NAME_MAX };
     const masu_blob_sdf_param *params = blob->section[MASU_BLOB_SDF_PARAMS];
@@ -51,7 +51,7 @@ static bool open_glsl(ref_field *f, const ref_blob *blob, const char *glsl, cons
     return good;
 }
 
-/* The parts that masu-sdfc has no C of: all of their form is GLSL then. */
+/* The parts for which masu-sdfc generates no C: their whole form is GLSL. */
 static bool open_parts(ref_field *f, const ref_blob *blob, const masu_sdfc_result *made,
                        const char *source, char *error, size_t size) {
     f->parts = calloc(made->part_count, sizeof *f->parts);
@@ -163,10 +163,10 @@ static double glsl_at(const ref_field *f, int part, const double p[3]) {
     ref_glsl_call call = {.what = REF_GLSL_FIELD, .part = part};
     memcpy(call.point, p, sizeof call.point);
     f->run(f->inputs, &call);
-    return isnan(call.value) ? HUGE_VAL : call.value; /* nothing is there */
+    return isnan(call.value) ? HUGE_VAL : call.value; /* empty */
 }
 
-/* f / L of the part with the least one; its number and f. */
+/* The smallest f / L over all parts, its part and f. */
 static double least_at(const ref_field *f, const double p[3], int *part, double *distance) {
     if (!f->c.handle) {
         *distance = glsl_at(f, 0, p);
@@ -175,7 +175,7 @@ static double least_at(const ref_field *f, const double p[3], int *part, double 
     }
     double step = f->step(f->params, f->time, p);
     *distance = f->part_count ? f->distance(f->params, f->time, p) : step;
-    *part = -1; /* of the C */
+    *part = -1; /* in the C */
     for (uint32_t i = 0; i < f->part_count; i++) {
         double own = glsl_at(f, f->parts[i], p);
         *distance = fmin(*distance, own * f->steepness[i]);
@@ -204,7 +204,7 @@ double ref_field_distance(const ref_field *f, ref_vec p) {
 
 static double extent(ref_vec p) { return 1 + fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z))); }
 
-/* Where a ray is within a box. */
+/* The interval of a ray within a box. */
 static bool clip(ref_vec lowest, ref_vec highest, ref_vec from, ref_vec d, double *near,
                  double *far) {
     double o[3] = {from.x, from.y, from.z}, w[3] = {d.x, d.y, d.z};
@@ -223,7 +223,7 @@ static bool clip(ref_vec lowest, ref_vec highest, ref_vec from, ref_vec d, doubl
     return true;
 }
 
-/* What a ray has to look at: a part, and where the ray is within its box. */
+/* Work of a ray: a part, and the ray's interval in its box. */
 typedef struct span {
     double near, far;
     const ref_field_box *box;
@@ -241,7 +241,7 @@ static uint32_t spans_of(const ref_field *f, ref_vec from, ref_vec d, double nea
     return count;
 }
 
-/* Safe step of a ray at t: no part is met before its box. */
+/* Safe step of a ray at t: no part is hit before its box. */
 static double step_along(const ref_field *f, ref_vec p, double t, const span *spans,
                          uint32_t count) {
     double at[3] = {p.x, p.y, p.z}, step = HUGE_VAL;

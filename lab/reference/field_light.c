@@ -1,4 +1,4 @@
-/* field_light.c: light that a path looks for by a box: parts of the field that emit, whatever their
+/* field_light.c: light sources that paths sample by a box: emissive parts of the field with any
  * shape, and windows to the sky. See field.h. */
 #include "lab/reference/field.h"
 
@@ -15,7 +15,7 @@ static bool is_bounded(const masu_sdfc_part *part) {
     return true;
 }
 
-/* Of a part whose material is the C's. Parts without bounds are left to chance. */
+/* Power of a part whose material is in the C. Unbounded parts are only hit by chance. */
 static double power_of(const ref_field *f, const masu_sdfc_part *part, int number) {
     double look[8], side[3];
     if (!part->truth || !is_bounded(part)) return 0;
@@ -29,7 +29,7 @@ bool ref_field_find_emitters(ref_field *f, const masu_sdfc_result *made) {
     double sum = 0, origin[3] = {0, 0, 0};
     f->emitters = calloc(made->part_count + 1, sizeof *f->emitters);
     if (!f->emitters) return false;
-    f->step(f->params, f->time, origin); /* materials are those of the last call */
+    f->step(f->params, f->time, origin); /* materials are evaluated for the last call */
     for (uint32_t i = 0; i < made->part_count; i++) {
         const masu_sdfc_part *part = &made->parts[i];
         double power = power_of(f, part, (int)i);
@@ -62,7 +62,7 @@ ref_vec ref_towards_box(const ref_light_box *boxes, uint32_t count, ref_vec from
     return ref_unit(ref_sub(p, from));
 }
 
-/* Of all points of a ray within a box: t^2 dt / V is the solid angle's share of the volume. */
+/* Sum over all points of a ray within a box: t^2 dt / V is the solid angle's part of the volume. */
 double ref_box_pdf(const ref_light_box *boxes, uint32_t count, ref_vec from, ref_vec d) {
     double sum = 0, before = 0;
     for (uint32_t i = 0; i < count; i++) {

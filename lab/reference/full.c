@@ -13,8 +13,8 @@ static ref_vec to_sky(const ref_tracer *t, const ref_hit *hit, ref_vec l) {
     return ref_unoccluded(t, ref_world_leave(t->world, hit, l), l, HUGE_VAL, 0);
 }
 
-/* To a point of another surface; aimed from where the ray starts, or a distant grazing one would
- * occlude itself. */
+/* Visibility of a point on another surface, aimed from the ray's start: otherwise a distant grazing
+ * point would occlude itself. */
 static ref_vec to_point(const ref_tracer *t, const ref_hit *hit, ref_vec p) {
     ref_vec l = ref_sub(p, hit->p), from = ref_world_leave(t->world, hit, l), to = ref_sub(p, from);
     double d = ref_length(to), far = d * (1 - 1e-5) - 2e-6;
@@ -71,7 +71,7 @@ static void sample_emitter(const ref_tracer *t, const ref_hit *hit, const ref_bs
     for (int i = 0; i < REF_LOBES; i++) out->of[i] = ref_add(out->of[i], ref_mul(f.of[i], light));
 }
 
-/* Towards a part of the field that emits: what of the field is met first, if nothing is before it. */
+/* Samples an emissive part of the field: its first surface, if not occluded. */
 static void sample_field(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, ref_random *r,
                          ref_lobes *out) {
     const ref_field *field = t->world->field;
@@ -93,7 +93,7 @@ static void sample_field(const ref_tracer *t, const ref_hit *hit, const ref_bsdf
     for (int i = 0; i < REF_LOBES; i++) out->of[i] = ref_add(out->of[i], ref_mul(f.of[i], light));
 }
 
-/* Towards a window, of a sky that is no map. */
+/* Samples a window, for a sky without a map. */
 static void sample_window(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, ref_random *r,
                           ref_lobes *out) {
     ref_vec l = ref_towards_box(&t->window, 1, hit->p, r);
@@ -109,7 +109,8 @@ static bool field_emits(const ref_tracer *t) {
     return t->world->field && t->world->field->emitter_count && t->light_samples;
 }
 
-/* MIS weight of emission that a ray scattered at `from` meets, beside samples of the emitters. */
+/* MIS weight of emission hit by a ray scattered at `from`, together with samples of the
+ * emitters. */
 static double emission_weight(const ref_tracer *t, const ref_hit *hit, ref_vec from, ref_vec d,
                               double travelled, double pdf, bool camera) {
     const ref_scene *s = t->world->scene;
@@ -124,11 +125,11 @@ static double emission_weight(const ref_tracer *t, const ref_hit *hit, ref_vec f
     return t->bsdf_samples ? power(pdf, other) : 0;
 }
 
-/* White and matt, without a mirror. */
+/* White and diffuse, without a mirror. */
 static const ref_look patch_look = {
     .s = {.albedo = {1, 1, 1}, .roughness = 1, .occlusion = 1}, .cover = 1, .opacity = 1};
 
-/* patch: the first surface, seen along d; NULL: what a ray from there meets. */
+/* patch: the first surface, viewed along d; NULL: the surface hit by a ray. */
 static ref_vec walk(const ref_tracer *t, ref_vec from, ref_vec d, const ref_hit *patch,
                     ref_random *r) {
     ref_vec sum = ref_splat(0), left = ref_splat(1), start = from, scattered = from;

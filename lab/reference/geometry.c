@@ -39,11 +39,11 @@ static void map_at(const ref_world *w, uint32_t triangle, int slot, double u, do
                    at[1] * (plain ? 1 : m->detail[1]), m->wrap, out);
 }
 
-/* Called by Embree for each candidate: what is not there for this ray. */
+/* Called by Embree for each candidate: rejects surfaces that do not exist for this ray. */
 static void filter(const struct RTCFilterFunctionNArguments *a) {
     const context *c = (const context *)a->context;
     if (a->valid[0] != -1) return;
-    const struct RTCRay *ray = (const void *)a->ray; /* of one ray these are plain structs */
+    const struct RTCRay *ray = (const void *)a->ray; /* for one ray these are plain structs */
     const struct RTCHit *hit = (const void *)a->hit;
     uint32_t triangle = hit->primID;
     const ref_material *m = material_of(c->world, triangle);
@@ -126,7 +126,7 @@ static struct RTCRay ray_of(const ref_world *w, ref_vec from, ref_vec d, double 
                            .mask = UINT32_MAX};
 }
 
-/* Distance and barycentric coordinates again in doubles: Embree's are floats. */
+/* Recomputes distance and barycentric coordinates in doubles: Embree's are floats. */
 static void refine(const ref_scene *s, ref_vec from, ref_vec d, ref_hit *hit) {
     const ref_triangle *t = &s->triangles[hit->triangle];
     ref_vec a = s->positions[t->vertex[0]];
@@ -198,7 +198,7 @@ ref_vec ref_world_leave(const ref_world *w, const ref_hit *hit, ref_vec d) {
 
 /* ---- Materials ------------------------------------------------------------------------------- */
 
-/* The colour of vertices, linear, with alpha. */
+/* The linear colour of vertices, with alpha. */
 static void color_at(const ref_world *w, uint32_t triangle, double u, double v, double out[4]) {
     const ref_triangle *t = &w->scene->triangles[triangle];
     for (int k = 0; k < 4; k++) {
@@ -209,7 +209,7 @@ static void color_at(const ref_world *w, uint32_t triangle, double u, double v, 
     }
 }
 
-/* Its light is its colour, and nothing shines on it. */
+/* It only emits its colour and reflects no light. */
 static bool is_unlit(const ref_material *m) {
     return !(ref_dot(m->base, m->base) > 0) && m->roughness >= 1 && !(m->coat > 0);
 }
@@ -222,8 +222,8 @@ ref_vec ref_world_emission(const ref_world *w, uint32_t triangle, double u, doub
     return ref_mul(m->emissive, ref_v(texel[0] * color[0], texel[1] * color[1], texel[2] * color[2]));
 }
 
-/* n turned until v sees it: normals of coarse meshes and maps may point away. least: its cosine
- * then. */
+/* n, rotated until it faces v: normals of coarse meshes and maps may point away. least: minimum
+ * cosine. */
 static ref_vec facing(ref_vec n, ref_vec v, double least) {
     double short_by = least - ref_dot(n, v);
     return short_by > 0 ? ref_unit(ref_along(n, short_by, v)) : n;
@@ -261,7 +261,7 @@ static ref_vec bent(const ref_world *w, const ref_hit *hit, ref_vec n, uint32_t 
                          ref_clamp((texel[1] * 255 - 128) / 127, -1, 1));
 }
 
-/* Lobes of blob.h beyond the plain ones. */
+/* Lobes of blob.h other than the basic ones. */
 static void look_at_lobes(const ref_world *w, const ref_hit *hit, ref_vec n, const ref_material *m, ref_surface *s) {
     double texel[4] = {1, 1, 1, 1}, opaque = !(m->flags & MASU_MATERIAL_IS_BLEND);
     if (opaque && m->flags & MASU_MATERIAL_LOBE_MAP) map_at(w, hit->triangle, MASU_SLOT_COAT, hit->u, hit->v, texel);
@@ -331,7 +331,7 @@ void ref_world_look(const ref_world *w, const ref_hit *hit, ref_vec v, ref_look 
         out->s.coat *= texel[0];
         out->s.coat_roughness *= texel[1];
     }
-    /* The side of the triangle decides, not the order of its vertices. */
+    /* The side of the triangle decides, not its vertex order. */
     double turn = ref_dot(n, hit->ng) < 0 ? -1 : 1;
     look_at_lobes(w, hit, n, m, &out->s);
     ref_vec relief = m->map[MASU_SLOT_NORMAL] ? bent(w, hit, n, MASU_SLOT_NORMAL) : n, own = n;

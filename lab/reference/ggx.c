@@ -20,14 +20,14 @@ double ref_schlick(double cosine) {
     return f2 * f2 * f;
 }
 
-/* Unpolarised, at a dielectric of index 1.5; less 0.04, over 0.96. */
+/* Unpolarised Fresnel term of a dielectric of index 1.5, minus 0.04, over 0.96. */
 static double dielectric(double cosine) {
     double c = ref_clamp(cosine, 0, 1), g = sqrt(1.25 + c * c), a = (g - c) / (g + c);
     double b = (c * (g + c) - 1) / (c * (g - c) + 1);
     return (0.5 * a * a * (1 + b * b) - 0.04) / 0.96;
 }
 
-/* From 0 at normal incidence to 1 at a grazing one: what raises f0 to f90. */
+/* From 0 at normal incidence to 1 at grazing incidence: interpolates from f0 to f90. */
 static double steepness(double cosine) { return cycles ? dielectric(cosine) : ref_schlick(cosine); }
 
 ref_vec ref_fresnel_at(const ref_fresnel *f, double cosine) {
@@ -66,7 +66,7 @@ ref_vec ref_ggx_normal(double alpha, ref_vec v, double u1, double u2) {
     return ref_unit(ref_v(alpha * h.x, alpha * h.y, fmax(h.z, 0)));
 }
 
-/* Area of the facets that v sees, projected to v. */
+/* Area of the facets visible from v, projected to v. */
 static double projected(double alpha, double cosine) {
     return 0.5 * (cosine + sqrt(cosine * cosine + alpha * alpha * fmax(1 - cosine * cosine, 0)));
 }
@@ -79,8 +79,8 @@ double ref_ggx_pdf(double alpha, ref_vec v, ref_vec l) {
 
 /* ---- Integrals ------------------------------------------------------------------------------- */
 
-/* Over visible normals at the midpoints of equal shares, as ref_ggx_normal lays them out; radii
- * shrink outwards, where the reflection sets and the integrand ends. */
+/* Integrates over visible normals at the midpoints of equal areas, in the layout of ref_ggx_normal;
+ * radii shrink outwards, where the reflection passes the horizon and the integrand ends. */
 ref_albedo ref_ggx_integrate(double roughness, double cosine, int steps) {
     double alpha = roughness * roughness, mu = fmax(cosine, 1e-6);
     ref_vec v = ref_v(sqrt(fmax(1 - mu * mu, 0)), 0, mu);
@@ -156,8 +156,8 @@ static void make_tables(void) {
         for (int k = 0; k < COLUMNS; k++) {
             table[i][k] =
                 ref_ggx_integrate(roughness, cosine_of(k), k < COLUMNS / 4 ? STEPS : STEPS / 2);
-            /* Smooth lobes lose nearly nothing: less than nothing would cancel out in the average
-             * what they lose at grazing angles. */
+            /* Smooth lobes lose almost nothing: a negative loss would cancel the loss at grazing
+             * angles in the average. */
             table[i][k].white = fmin(table[i][k].white, 1);
         }
         average[i] = average_of(table[i]);
@@ -196,10 +196,10 @@ void ref_ggx_coat_line(double roughness, double *a, double *b) {
 
 /* ---- Random walk ----------------------------------------------------------------------------- */
 
-/* Heights of facets are even over -1..1; masking does not depend on their distribution. */
+/* Heights of facets are uniform over -1..1; masking does not depend on their distribution. */
 static double share_below(double height) { return ref_clamp(0.5 * (height + 1), 0, 1); }
 
-/* The height at which a ray that goes along w from `height` meets a facet; false: it leaves. */
+/* The height at which a ray along w from `height` hits a facet; false: it leaves. */
 static bool next_height(double alpha, ref_vec w, double *height, double u) {
     if (w.z > 0.999999) return false;
     if (w.z < -0.999999) {

@@ -1,8 +1,8 @@
 /* layers.c: the physics mode of bsdf.h. Light walks between the facets of a layer (ggx.h) until it
- * leaves, or enters the layer at a facet with the probability 1 - F, straight on: no layer
- * refracts. Below a dielectric is a Lambertian base, below a coat the whole base with its facets.
- * A layer reflects as much from inside as from outside. All values are estimates
- * of one walk; their means are reciprocal, and a white surface returns all light. */
+ * leaves, or enters the layer at a facet with the probability 1 - F, without refraction. Below a
+ * dielectric is a Lambertian base, below a coat the complete base with its facets. A layer reflects
+ * equally from inside and outside. All values are estimates by one walk; their means are
+ * reciprocal, and a white surface reflects all light. */
 #include "lab/reference/bsdf.h"
 
 #include <string.h>
@@ -11,14 +11,14 @@ enum { ECHOES_MOST = 64 };
 #define FAINT 1e-4
 static const ref_fresnel lacquer = {{0.04, 0.04, 0.04}, 1};
 
-/* Part of the light along w that enters a layer without colour. */
+/* Fraction of the light along w that enters a layer without colour. */
 static double entered(double alpha, const ref_fresnel *f, ref_vec w, ref_random *r) {
     ref_vec l, weight;
     return ref_walk_sample(alpha, f, w, r, &l, &weight) ? 1 - weight.x : 1;
 }
 
-/* Light through the dielectric to the base colour and out again, with what is mirrored back
- * between the two; times l.z. The base forgets directions, so that both ways are one factor. */
+/* Light through the dielectric to the base colour and out again, with reflections between the two;
+ * times l.z. The base is Lambertian, so both directions are one factor. */
 static ref_vec below(const ref_bsdf *b, ref_vec v, ref_vec l, ref_random *r) {
     double in = entered(b->alpha, &b->matte, l, r);
     double out = entered(b->alpha, &b->matte, v, r);
@@ -40,7 +40,7 @@ static void base_eval(const ref_bsdf *b, ref_vec v, ref_vec l, ref_vec weight, r
     ref_vec h = ref_unit(ref_add(v, l));
     ref_vec mirror =
         ref_scale(ref_fresnel_at(&b->mixed, ref_dot(v, h)), ref_ggx_lobe(b->alpha, v, l));
-    bool metal = ref_draw(r) < m; /* a walk stays within one of the two shares */
+    bool metal = ref_draw(r) < m; /* a walk remains within metal or dielectric */
     mirror = ref_add(mirror, ref_walk_multiple(b->alpha, metal ? &b->metal : &b->matte, v, l, r));
     out->of[REF_BASE] = ref_add(out->of[REF_BASE], ref_mul(weight, mirror));
     if (m >= 1) return;
@@ -48,7 +48,7 @@ static void base_eval(const ref_bsdf *b, ref_vec v, ref_vec l, ref_vec weight, r
     out->of[REF_SOFT] = ref_add(out->of[REF_SOFT], ref_mul(weight, soft));
 }
 
-/* A direction that light from v leaves the base by, and its weight. */
+/* A direction in which light from v leaves the base, and its weight. */
 static bool base_sample(const ref_bsdf *b, ref_vec v, ref_random *r, ref_vec *l, ref_vec *weight) {
     if (ref_draw(r) < ref_clamp(b->s.metallic, 0, 1))
         return ref_walk_sample(b->alpha, &b->metal, v, r, l, weight);

@@ -1,8 +1,9 @@
-/* lights.c: local lights, by samples of their surface and of the BSDF together; see tracer.h.
+/* lights.c: local lights, sampled by their surface and by the BSDF; see tracer.h.
  *
- * A point or spot is a sphere of its radius with that radiant intensity. The camera, and rays of other
- * bounces, do not see these lights: they have no surface in the scene. A light that has one (masu-bake has
- * fitted it) is left to that surface in full mode, and lights only what no ray is traced for in direct mode. */
+ * A point or spot light is a sphere of its radius with that radiant intensity. The camera and rays
+ * of other bounces do not see these lights: they have no surface in the scene. If a light has one
+ * (fitted by masu-bake), full mode samples that surface instead, and in direct mode the light only
+ * affects surfaces without traced rays. */
 #include "lab/reference/tracer.h"
 
 #include <string.h>
@@ -29,13 +30,14 @@ ref_vec ref_light_at(const ref_light *light, ref_vec p, ref_vec *l) {
 
 /* ---- Surfaces of lights ---------------------------------------------------------------------- */
 
-/* A direction from a point to a light's surface, how far away that is, and the density per solid angle. */
+/* A direction from a point to a light's surface, the distance, and the density per solid angle. */
 typedef struct to_light {
     ref_vec l;
     double far, pdf;
 } to_light;
 
-/* 1 - cos of the half angle of a sphere at a distance; from within it, all in front of its centre's side. */
+/* 1 - cos of the half angle of a sphere at a distance; from inside, the hemisphere towards its
+ * centre. */
 static double cap_of(double r, double d) {
     double s2 = r * r / (d * d);
     return d > r ? s2 / (1 + sqrt(1 - s2)) : 1;
@@ -45,7 +47,7 @@ static bool sphere_pdf(const ref_light *light, ref_vec to, ref_vec l, to_light *
     double d = ref_length(to), along = ref_dot(l, to), r = light->radius, cap = cap_of(r, d);
     double aside = ref_dot(to, to) - along * along;
     if (!(along > 0) || (d > r && aside > r * r)) return false;
-    /* A ray ends before it enters the source: a bulb of that size does not occlude it. */
+    /* A ray ends before the source: a bulb of that size does not occlude it. */
     double far = d > r ? along - sqrt(fmax(r * r - aside, 0)) - 2e-3 * r : along;
     *out = (to_light){l, fmax(far, 0), 1 / (2 * REF_PI * cap)};
     return true;
@@ -56,7 +58,7 @@ static bool rectangle_pdf(const ref_light *light, ref_vec to, ref_vec l, to_ligh
     double facing = ref_dot(l, n), far = ref_dot(to, n) / facing;
     if (!(far > 0) || !(far < HUGE_VAL) || (facing > 0 && !light->two_sided)) return false;
     ref_vec at = ref_sub(ref_scale(l, far), to);
-    /* Coordinates along axes that need not be at right angles. */
+    /* Coordinates along axes that may not be perpendicular. */
     double uu = ref_dot(u, u), uv = ref_dot(u, v), vv = ref_dot(v, v), det = uu * vv - uv * uv;
     double a = (vv * ref_dot(at, u) - uv * ref_dot(at, v)) / det;
     double b = (uu * ref_dot(at, v) - uv * ref_dot(at, u)) / det;
@@ -69,7 +71,7 @@ static double capsule_area(const ref_light *light) {
     return 4 * REF_PI * light->radius * (light->radius + ref_length(light->direction));
 }
 
-/* The nearer crossing of a ray with the cylinder or one of the spheres at its ends. */
+/* The closer intersection of a ray with the cylinder or one of the spheres at its ends. */
 static bool capsule_pdf(const ref_light *light, ref_vec to, ref_vec l, to_light *out) {
     double half = ref_length(light->direction), r = light->radius, best = HUGE_VAL, side = 0;
     ref_vec e = ref_scale(light->direction, 1 / half);
@@ -98,7 +100,7 @@ static bool capsule_pdf(const ref_light *light, ref_vec to, ref_vec l, to_light 
     return true;
 }
 
-/* What a direction from a point meets of a light; `to`: from the point to its centre. */
+/* The intersection of a direction from a point with a light; `to`: from the point to its centre. */
 static bool meets(const ref_light *light, ref_vec to, ref_vec l, to_light *out) {
     if (light->type == MASU_LIGHT_CAPSULE) return capsule_pdf(light, to, l, out);
     if (light->type == MASU_LIGHT_RECTANGLE) return rectangle_pdf(light, to, l, out);
@@ -121,7 +123,7 @@ static bool draw(const ref_light *light, ref_vec to, ref_random *r, to_light *ou
         else at.z += (z > 0 ? half : -half) / radius;
         ref_vec point = ref_add(to, ref_scale(ref_from(&f, at), radius));
         to_light seen;
-        /* A point on the far side counts nothing: the same direction is met at the near one. */
+        /* A point on the far side is rejected: its direction hits the near side. */
         if (!capsule_pdf(light, to, ref_unit(point), &seen)) return false;
         if (seen.far < ref_length(point) * (1 - 1e-6) - 1e-9) return false;
         *out = seen;

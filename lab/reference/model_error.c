@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-/* Of the hemisphere, equal in projected solid angle. */
+/* Cells of the hemisphere, equal in projected solid angle. */
 enum { RINGS = 8, SECTORS = 16, PARTS = RINGS * SECTORS };
 
 typedef struct light {
@@ -14,7 +14,7 @@ typedef struct light {
 
 static void add(light *to, ref_vec l, double value) {
     double out = ref_clamp(l.x * l.x + l.y * l.y, 0, 1 - 1e-9);
-    /* The mirror direction is in the middle of a sector. */
+    /* The mirror direction is at the centre of a sector. */
     int sector = (int)((atan2(l.y, l.x) / REF_PI + 1) / 2 * SECTORS + 0.5) % SECTORS;
     to->part[(int)(out * RINGS) * SECTORS + sector] += value;
     to->sum += value;

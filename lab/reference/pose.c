@@ -1,4 +1,4 @@
-/* pose.c: where the instances and skinned vertices of a scene are at one moment. */
+/* pose.c: transforms of the instances and skinned vertices of a scene at one moment. */
 #include "lab/reference/scene.h"
 
 #include <stdlib.h>
@@ -17,8 +17,8 @@ ref_vec ref_transform(const double m[12], ref_vec p) {
     return ref_add(ref_transform_direction(m, p), ref_v(m[3], m[7], m[11]));
 }
 
-/* By the cofactors: the inverse transpose times the determinant, of mirrored and flattened
- * matrices too. */
+/* By the cofactors: the inverse transpose times the determinant, also valid for mirrored and
+ * flattened matrices. */
 ref_vec ref_transform_normal(const double m[12], ref_vec n) {
     ref_vec a = ref_v(m[0], m[4], m[8]), b = ref_v(m[1], m[5], m[9]), c = ref_v(m[2], m[6], m[10]);
     ref_vec bc = ref_cross(b, c), ca = ref_cross(c, a), ab = ref_cross(a, b);
@@ -146,7 +146,7 @@ static void animate_node(const ref_blob *blob, const masu_blob_model *m, uint32_
     }
 }
 
-/* From the nodes' spaces to the model's. */
+/* Matrices from the nodes' spaces to the model's. */
 static void pose_model(const ref_blob *blob, const masu_blob_model *m, double time, bool animate,
                        double *matrices) {
     const masu_blob_model_node *nodes = blob->section[MASU_BLOB_MODEL_NODES];
@@ -205,7 +205,7 @@ static double weight_of(const ref_blob *blob, const masu_blob_skin *skin, uint32
     return rest;
 }
 
-/* Adds the targets of a skin to a rest vertex. */
+/* Adds the morph targets of a skin to a rest vertex. */
 static void morph(const ref_blob *blob, const masu_blob_skin *skin, uint32_t vertex, const double *weights,
                   ref_vec *position, double normal[3]) {
     const masu_blob_morph_delta *deltas = blob->section[MASU_BLOB_MORPH_DELTAS];

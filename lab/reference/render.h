@@ -1,4 +1,4 @@
-/* render.h: an image of the reference: camera, threads, means and their standard errors. */
+/* render.h: renders an image of the reference: camera, threads, means and their standard errors. */
 #ifndef LAB_REFERENCE_RENDER_H
 #define LAB_REFERENCE_RENDER_H
 
@@ -18,7 +18,7 @@ ref_vec ref_camera_ray(const ref_camera *c, double x, double y, double aspect);
 
 typedef struct ref_image {
     uint32_t width, height;
-    float *mean, *error; /* 3 a pixel: of all paths; standard error of the mean */
+    float *mean, *error; /* 3 per pixel: mean of all paths; standard error of the mean */
 } ref_image;
 
 typedef struct ref_render {
@@ -26,11 +26,11 @@ typedef struct ref_render {
     ref_camera camera;
     uint32_t paths, threads;
     uint64_t seed;
-    void (*progress)(double share); /* or NULL; called by one thread */
+    void (*progress)(double share); /* may be NULL; called by one thread */
 } ref_render;
 
-/* A box filter over each pixel. The same bits for any number of threads: paths of a pixel are
- * summed in their order by one thread. False: out of memory. */
+/* A box filter over each pixel. Bit-identical for any number of threads: one thread sums the paths
+ * of a pixel in order. Returns false if out of memory. */
 bool ref_render_image(const ref_render *r, ref_image *image);
 void ref_image_free(ref_image *image);
 

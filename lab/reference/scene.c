@@ -250,7 +250,7 @@ static bool read_lights(ref_scene *s, const double *matrices) {
     return good;
 }
 
-/* Triangles by the light that they send, an emission map counted as white. */
+/* Weighs triangles by their emitted light; an emission map is treated as white. */
 static bool read_emitters(ref_scene *s) {
     double sum = 0;
     s->emitter_pdf = calloc(s->triangle_count + 1, sizeof *s->emitter_pdf);

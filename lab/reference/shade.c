@@ -1,12 +1,12 @@
-/* shade.c: light from the sun, the sky and the air before it, and
- * transparent surfaces: what both kinds of path share; see tracer.h. */
+/* shade.c: light from the sun and the sky, air, and transparent surfaces, shared by both kinds of
+ * paths; see tracer.h. */
 #include "lab/reference/fog.h"
 #include "lab/reference/tracer.h"
 
 #include <string.h>
 
 enum { LAYERS_MOST = 64 };
-static const double sharp_glass = 0.05; /* glass up to this roughness does not blur */
+static const double sharp_glass = 0.05; /* glass up to this roughness is not blurred */
 
 bool ref_is_unlit(const ref_surface *s) {
     return ref_max(s->emissive) > 0 && !(ref_max(s->albedo) > 0) && s->roughness >= 1 &&
@@ -80,7 +80,7 @@ ref_vec ref_light_visible(const ref_tracer *t, const ref_hit *hit, ref_vec l, do
     return ref_unoccluded(t, ref_world_leave(t->world, hit, l), l, far, flags);
 }
 
-/* Adds the sun's light by lobe. */
+/* Adds the sun's light, per lobe. */
 void ref_sun_light(const ref_tracer *t, const ref_hit *hit, const ref_bsdf *b, ref_random *r,
                    ref_lobes *out) {
     ref_vec l = t->sun_direction;
@@ -108,7 +108,7 @@ double ref_air_left(const ref_tracer *t, ref_vec from, ref_vec d, double far) {
                         from.y - (double)e->fog_height, d.y, start, far);
 }
 
-/* docs/scene.md: its own colour, or the sky's at the horizon below the ray, brighter towards the
+/* docs/scene.md: the fog's colour, or the sky's at the horizon below the ray, brighter towards the
  * sun. */
 ref_vec ref_air_color(const ref_tracer *t, ref_vec d) {
     ref_vec own = ref_of(t->environment->fog_color);
@@ -118,7 +118,7 @@ ref_vec ref_air_color(const ref_tracer *t, ref_vec d) {
                      t->sun_color);
 }
 
-/* Masu draws the sun as two glows of fixed size. */
+/* Masu renders the sun as two glows of fixed size. */
 ref_vec ref_sky_seen(const ref_tracer *t, ref_vec d) {
     ref_vec sky = ref_sky_at(t->sky, d);
     if (t->physics) return sky;

@@ -5,7 +5,7 @@
 #include <string.h>
 
 enum { POINTS = 3, GRID_MOST = 1024 };
-#define FLOOR 0.02 /* share of samples that ignore the map: its density is nowhere 0 */
+#define FLOOR 0.02 /* fraction of samples that ignore the map: its density is nowhere 0 */
 
 /* ---- Radiance -------------------------------------------------------------------------------- */
 
@@ -14,7 +14,7 @@ static ref_vec texel_9995(uint32_t texel) {
     return ref_scale(ref_v(texel & 511, texel >> 9 & 511, texel >> 18 & 511), unit);
 }
 
-/* Beyond an edge of the square is the same edge, in the other direction. */
+/* Beyond an edge of the square is the same edge, in the opposite direction. */
 static ref_vec octahedron_texel(const ref_sky *s, int64_t x, int64_t y) {
     int64_t n = s->size;
     if (x < 0 || x >= n) {
@@ -49,7 +49,7 @@ static ref_vec pixel(const ref_sky *s, double column, double row) {
     return ref_of(p);
 }
 
-/* The azimuth grows from +Z to +X, which is to the left of the picture's centre. */
+/* The azimuth increases from +Z to +X, to the left of the image's centre. */
 static ref_vec panorama_at(const ref_sky *s, ref_vec d) {
     double azimuth = atan2(d.x, d.z), polar = acos(ref_clamp(d.y / ref_length(d), -1, 1));
     double x = (0.5 - (azimuth - s->turn) / (2 * REF_PI)) * s->width - 0.5;
@@ -72,7 +72,7 @@ ref_vec ref_sky_soft(const ref_sky *s, ref_vec d) {
 
 /* ---- Distribution ---------------------------------------------------------------------------- */
 
-/* The panorama's own pixels, or cells as small as texels of the octahedron. */
+/* The panorama's pixels, or cells with the size of the octahedron's texels. */
 static ref_vec direction_at(const ref_sky *s, double column, double row) {
     double polar = REF_PI * row / s->grid_height;
     double azimuth = s->turn + (0.5 - column / s->grid_width) * 2 * REF_PI;
@@ -84,7 +84,7 @@ static double solid_angle(const ref_sky *s, uint32_t row) {
     return (a - b) * 2 * REF_PI / s->grid_width;
 }
 
-/* At corners too: a bilinear lookup spreads a bright pixel over its neighbours. */
+/* Includes corners: a bilinear lookup spreads a bright pixel over its neighbours. */
 static double cell(const ref_sky *s, uint32_t column, uint32_t row) {
     double sum = 0;
     for (int i = 0; i < POINTS * POINTS; i++) {
@@ -123,7 +123,7 @@ void ref_sky_close(ref_sky *s) {
     s->rows = s->columns = NULL;
 }
 
-/* The first whose cumulative share exceeds u. */
+/* The first entry whose cumulative share exceeds u. */
 static uint32_t find(const double *shares, uint32_t count, double u) {
     uint32_t low = 0, high = count - 1;
     while (low < high) {

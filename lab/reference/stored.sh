@@ -1,7 +1,7 @@
 #!/bin/bash
-# stored.sh [NAME...]: makes tests/reference/NAME.ref, what tests/gpu/test_reference.c compares the renderer with; all
-# of them unless some are named. Needs make, make lab, and the scenes that are named here (make gpu TESTS=reference
-# bakes them). A few minutes of two processors.
+# stored.sh [NAME...]: writes tests/reference/NAME.ref, with which tests/gpu/test_reference.c compares the renderer;
+# without names all of them. Needs make, make lab, and the scenes named here (make gpu TESTS=reference
+# bakes them). Takes a few minutes on two processors.
 set -eu
 lab=${BUILD:-build}/lab/bin/masu-lab
 scenes=${BUILD:-build}/scenes
@@ -14,7 +14,7 @@ store() {
     "$lab" reference "$scenes/$1.masu" --store "tests/reference/$1.ref" --size 128x72 --paths "$2" "${@:3}"
 }
 
-# The scene and the panorama in it are made by the test.
+# The test writes the scene and its panorama.
 if [ "$wanted" = "  " ] || [[ $wanted == *" reference_sky "* ]]; then
     folder=$(mktemp -d)
     trap 'rm -rf "$folder"' EXIT

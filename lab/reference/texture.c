@@ -1,5 +1,5 @@
-/* texture.c: decodes the block-compressed textures of a blob and looks them up. The formats are
- * those of the Khronos Data Format Specification, chapters S3TC and RGTC. */
+/* texture.c: decodes the block-compressed textures of a blob and samples them. Formats: Khronos
+ * Data Format Specification, chapters S3TC and RGTC. */
 #include "lab/reference/texture.h"
 
 #include <stdlib.h>
@@ -16,7 +16,7 @@ static void decode_color(const uint8_t *block, bool opaque, uint8_t out[64]) {
         palette[e][1] = (ends[e] >> 5 & 63) * (255.0 / 63);
         palette[e][2] = (ends[e] & 31) * (255.0 / 31);
     }
-    bool four = !opaque || c0 > c1; /* BC3 has always four colours */
+    bool four = !opaque || c0 > c1; /* BC3 always has four colours */
     for (int k = 0; k < 3; k++) {
         double a = palette[0][k], b = palette[1][k];
         palette[2][k] = four ? (2 * a + b) / 3 : (a + b) / 2;

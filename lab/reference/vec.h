@@ -68,10 +68,10 @@ static inline ref_vec ref_from(const ref_frame *f, ref_vec w) {
     return ref_along(ref_along(ref_scale(f->x, w.x), w.y, f->y), w.z, f->z);
 }
 
-/* ---- Random numbers --------------------------------------------------------------------------
- * SplitMix64 (Steele, Lea, Flood 2014) from a counter that begins at a hash of pixel and sample:
- * a path's numbers depend on nothing else, so any number of threads draws the same ones. Draw
- * one per statement: C leaves the order of two calls in one expression open. */
+/* ---- Random numbers
+ * SplitMix64 (Steele, Lea, Flood 2014) from a counter that starts at a hash of pixel and sample. So
+ * a path's numbers do not depend on the number of threads. Draw one per statement: C does not
+ * define the order of two calls in one expression. */
 
 typedef struct ref_random {
     uint64_t state;

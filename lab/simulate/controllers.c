@@ -1,13 +1,12 @@
-/* controllers.c: the rules of other engines, written from their descriptions. They see what they
- * see in those engines: a time per frame, and not the scale at which it was measured. Their scales
- * are continuous and are snapped to the ladder, so that the number of changes is comparable. */
+/* controllers.c: the rules of other engines, written from their descriptions. As in those engines,
+ * they get a time per frame, but not the scale at which it was measured. Their scales are
+ * continuous and are snapped to the ladder, so that the number of changes is comparable. */
 #include "lab/simulate/controllers.h"
 
 #include <math.h>
 #include <string.h>
 
-/* ---- Others
- * ------------------------------------------------------------------------------------ */
+/* ---- Others ---------------------------------------------------------------------------------- */
 
 #define OWN_SCALE UINT32_MAX
 
@@ -19,7 +18,7 @@ static void rival_init(sim_state *s, const masu_governor_rung *ladder, uint32_t 
     s->rival.budget = budget;
 }
 
-/* The time of a sample as a rule without checks takes it. */
+/* The time of a sample, for a rule that does not check it. */
 static double plain_time(const masu_governor_sample *k) { return k->gpu_ms; }
 
 static double snap(double scale) {
@@ -27,8 +26,8 @@ static double snap(double scale) {
     return pow(0.4, (r < 0.0 ? 0.0 : r > 15.0 ? 15.0 : r) / 15.0);
 }
 
-/* Three scales; every third frame the last time decides: over 16.67 ms one down, below 11.11 ms one
- * up (the rule of the seed's F0V2, which begins at 0.8). */
+/* Three scales. Every third frame the last time decides: over 16.67 ms one down, below 11.11 ms one
+ * up (the rule of the seed's F0V2, which starts at 0.8). */
 static void three_init(sim_state *s, const masu_governor_rung *ladder, uint32_t rungs,
                        double budget) {
     rival_init(s, ladder, rungs, budget);
@@ -60,8 +59,8 @@ static double median(const double *values, uint32_t n) {
     return n % 2 ? sorted[n / 2] : 0.5 * (sorted[n / 2 - 1] + sorted[n / 2]);
 }
 
-/* Filament: median of 15 times, a PID with dead band whose output changes the area (View.cpp,
- * FrameInfo.cpp: the constants). Its scale ends at 0.5 at home, at 0.4 here. */
+/* Filament: median of 15 times, then a PID with a dead band whose output changes the area
+ * (constants: View.cpp, FrameInfo.cpp). Its scale is at least 0.5 in Filament, 0.4 here. */
 static void filament_take(sim_state *s, const masu_governor_sample *k, double headroom) {
     double ms = plain_time(k);
     if (!(ms > 0.0)) return;
@@ -91,8 +90,8 @@ static uint32_t rival_choose(sim_state *s, uint64_t frame, double *scale) {
 }
 
 /* Unreal: mean of 16 times with weights 0.9^age, 10 % headroom, at least 8 frames between changes,
- * changes under 2 % left out, rises by 0.9 of the way, panic after two frames over the budget
- * (DynamicResolution.cpp, DynamicRenderScaling.h: the constants). The model is time ~ area. */
+ * no changes under 2 %, rises by 0.9 of the difference, panic after two frames over the budget
+ * (constants: DynamicResolution.cpp, DynamicRenderScaling.h). The model is time ~ area. */
 static void unreal_take(sim_state *s, const masu_governor_sample *k) {
     double ms = plain_time(k);
     if (!(ms > 0.0)) return;
@@ -106,7 +105,7 @@ static void unreal_take(sim_state *s, const masu_governor_sample *k) {
     for (uint32_t i = 0; i < n; i++, weight *= 0.9) {
         sum += weight * s->rival.history[(s->rival.count - 1 - i) % 16];
         weights += weight;
-        if (panic && i == 1) break; /* the last two alone */
+        if (panic && i == 1) break; /* only the last two */
     }
     double target = s->rival.budget * 0.9, now = s->rival.scale;
     double area = now * now * target / (sum / weights), scale = sqrt(area);
@@ -114,7 +113,7 @@ static void unreal_take(sim_state *s, const masu_governor_sample *k) {
     scale = fmax(fmin(scale, 1.0), 0.4);
     if (fabs(scale / now - 1.0) < 0.02) return;
     s->rival.scale = scale;
-    s->rival.held = s->rival.count = s->rival.over = 0; /* times of the old scale count no more */
+    s->rival.held = s->rival.count = s->rival.over = 0; /* times of the old scale are dropped */
 }
 
 static const sim_controller three_state = {"three_state", three_init, three_take, three_choose};

@@ -1,6 +1,6 @@
-/* record.c: records the frame times of a scene along its path, for `masu-lab simulate`: each moment
- * is drawn at every scale in turn, so that what else the machine does falls on all of them
- * alike. */
+/* record.c: records the frame times of a scene along its path, for `masu-lab simulate`. Each moment
+ * is drawn at every scale before the next, so that other load on the machine affects all scales
+ * equally. */
 #include "lab/simulate/record.h"
 
 #include "clock.h"
@@ -13,7 +13,7 @@
 
 enum { SCALES = 4, TRIES = 2 };
 
-/* The lesser of two times, from submit to fence. */
+/* The smaller of two times, from submit to fence. */
 static bool measure(masu_session *s, uint32_t rung, double time, double *ms, char *error,
                     size_t size) {
     *ms = 1e9;
@@ -41,7 +41,7 @@ static int record(masu_session *s, const masu_simulate_record *r, FILE *f) {
             r->scene, r->size.width, r->size.height, s->host.driver);
     for (uint32_t c = 0; c < SCALES; c++) fprintf(f, ",%.4f", (double)s->desc.rungs[c].scale);
     fprintf(f, "\n");
-    for (uint32_t c = 0; c < SCALES; c++) { /* drivers compile at the first use */
+    for (uint32_t c = 0; c < SCALES; c++) { /* drivers compile at first use */
         if (!measure(s, c, 0.0, &ms[c], error, sizeof error)) return masu_cli_error("%s", error);
     }
     for (uint32_t i = 0; i < r->frames; i++) {

@@ -12,7 +12,7 @@ typedef struct masu_simulate_record {
     masu_headless_desc host;
 } masu_simulate_record;
 
-/* An exit code. */
+/* Returns an exit code. */
 int masu_simulate_record_run(const masu_simulate_record *record);
 
 #endif

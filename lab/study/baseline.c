@@ -14,23 +14,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* At rest before it is timed at rest: temporal accumulation has then settled to what a resting
- * scene costs. Counted is the frame after so many in motion. */
+/* With a still camera, timing starts after SETTLE_FRAMES frames, when temporal accumulation costs
+ * least. Counters are of the last of COUNT_FRAMES frames in motion. */
 enum { SETTLE_FRAMES = 4, COUNT_FRAMES = 3 };
 
 typedef struct timing {
     masu_samples of[MASU_BASELINE_PHASES];
-    uint64_t frame; /* drawn in motion since the picture */
+    uint64_t frame; /* frames drawn in motion since the image */
 } timing;
 
 typedef struct bench {
     const masu_baseline_desc *d;
     masu_baseline *out;
-    masu_session sessions[MASU_BASELINE_ENTRIES], other; /* may not move, and are large */
+    masu_session sessions[MASU_BASELINE_ENTRIES], other; /* must not move, and are large */
     bool opened[MASU_BASELINE_ENTRIES];
     timing timings[MASU_BASELINE_ENTRIES];
     masu_rung rungs[MASU_BASELINE_ENTRIES];
-    uint32_t plain_for; /* samples that `other` is open for, a plain one; 0: it is not */
+    uint32_t plain_for; /* samples of the plain session in `other`; 0: it is not open */
     masu_march plain_march;
     bool textured, remembers;
     uint32_t pixels;
@@ -75,7 +75,7 @@ static masu_session_desc session_of(const bench *w) {
     return masu_picture_session(w->d->scene_path, w->d->size, &w->d->host);
 }
 
-/* samples: what the mips of a plain one are for. */
+/* samples: of a plain session, for its mips. */
 static masu_session_desc entry_desc(const bench *w, uint32_t e, uint32_t samples) {
     masu_session_desc d = session_of(w);
     d.desc.rung_count = 1;
@@ -115,7 +115,7 @@ static bool open_entries(bench *w) {
     return true;
 }
 
-/* What the scene is, and with it the entries. */
+/* Reads the scene's properties, which decide the entries. */
 static bool find_entries(bench *w) {
     masu_session_desc d = session_of(w);
     masu_baseline *out = w->out;
@@ -141,7 +141,7 @@ static bool find_entries(bench *w) {
     return true;
 }
 
-/* ---- Pictures -------------------------------------------------------------------------------- */
+/* ---- Images ---------------------------------------------------------------------------------- */
 
 static bool draw(bench *w, masu_session *s, double time, bool cut, masu_commands *commands) {
     return masu_motion_frame(s, 0, time, MASU_MOTION_STEP, cut, commands, w->error, w->error_size);
@@ -179,8 +179,8 @@ static bool draw_setting(bench *w, uint32_t e) {
            save(w, w->out->entries[e].name, s->targets[0].mapped);
 }
 
-/* Mips belong to a renderer: where there are textures, one is made for each k. Culling and tiles of
- * lights are not seen in a picture (tests/gpu/test_culling.c, test_lights.c), and save most of the
+/* A renderer has one set of mips: with textures, a new one is made for each k. Culling and light
+ * tiles do not change the image (tests/gpu/test_culling.c, test_lights.c), and save most of the
  * time in a large world. */
 static bool open_plain(bench *w, uint32_t k, masu_march march) {
     bool kept = w->plain_for == k || (w->plain_for && !w->textured);
@@ -252,7 +252,7 @@ static const masu_baseline_point *find_point(const masu_baseline *out, uint32_t 
     return NULL;
 }
 
-/* Of the pictures in which samples are counted. */
+/* The march of the images for which samples are counted. */
 static masu_march counted_march(const bench *w) {
     return w->d->own_march ? w->rungs[0].march : MASU_MARCH_AUTO;
 }
@@ -302,7 +302,7 @@ static void keep_passes(masu_baseline_entry *e, const masu_stats_info *stats) {
     }
 }
 
-/* Where a cascade is drawn in each n-th frame only, the mean of n frames. */
+/* If a cascade is drawn only in every n-th frame: the mean of n frames. */
 static bool sample(bench *w, uint32_t e, int phase, bool kept) {
     masu_session *s = &w->sessions[e];
     timing *t = &w->timings[e];
@@ -329,7 +329,7 @@ static bool time_phase(bench *w, int phase) {
     for (uint32_t run = 0; run <= w->d->runs; run++) {
         char text[64];
         snprintf(text, sizeof text, "round %u of %u", run, w->d->runs);
-        say(w, phase == MASU_BASELINE_REST ? "timing at rest" : "timing in motion", text);
+        say(w, phase == MASU_BASELINE_REST ? "timing with still camera" : "timing in motion", text);
         for (uint32_t e = 0; e < w->out->entry_count; e++) {
             for (uint32_t k = 0; run == 0 && k < settle && !w->out->entries[e].plain; k++) {
                 if (!sample(w, e, phase, false)) return false;
@@ -343,7 +343,7 @@ static bool time_phase(bench *w, int phase) {
 static void sum_up(bench *w, int phase) {
     uint32_t n = w->d->runs;
     for (uint32_t e = w->out->entry_count;
-         e-- > 0;) { /* the plain one last: ratios are to its rounds */
+         e-- > 0;) { /* the plain one last: ratios use its rounds */
         const masu_samples *plain = &w->timings[0].of[phase];
         masu_samples *own = &w->timings[e].of[phase];
         masu_baseline_time *t = &w->out->entries[e].times[phase];
@@ -369,7 +369,7 @@ static bool time_all(bench *w) {
     return true;
 }
 
-/* Names that begin like one of these. */
+/* The share of passes whose name starts with one of `names`. */
 static double share_of(const masu_baseline_entry *e, const char *const *names, size_t count) {
     double all = 0.0, sum = 0.0;
     for (uint32_t p = 0; p < e->pass_count; p++) {
@@ -457,7 +457,7 @@ static bool draw_settings(bench *w) {
     return true;
 }
 
-/* The second plain one is there for its time alone. */
+/* The second plain entry is only for times. */
 static bool find_errors(bench *w) {
     const masu_baseline_point *first = plain_point(w, 1);
     bool good = first != NULL;

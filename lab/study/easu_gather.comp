@@ -1,9 +1,6 @@
-/*
- * easu_gather.comp: EASU with its texels read as AMD's own shader reads them, four gathers for each
- * channel: what `masu-lab study upscale` compares easu.comp with. No pass of a frame. It takes an
- * input that fills its image: at the border of a part of one, a gather would return what lies
- * beyond.
- */
+/* easu_gather.comp: EASU that reads its texels like AMD's shader, with four gathers per channel,
+ * for comparison with easu.comp by `masu-lab study upscale`. It is not a pass of a frame. The input
+ * must fill its image: at the border of a part, a gather would read texels outside it. */
 #version 440
 #extension GL_GOOGLE_include_directive : require
 #include "push/easu.h"
@@ -19,7 +16,7 @@ layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D source; /* perceptual RGB in 0..1 */
 layout(set = MASU_SET_PASS, binding = 1, rgba8) uniform writeonly image2D target;
 
-/* x lower left, y lower right, z upper right, w upper left of the four texels around a corner. */
+/* The four texels around a corner: x lower left, y lower right, z upper right, w upper left. */
 void gather(vec2 corner, out vec3 x, out vec3 y, out vec3 z, out vec3 w)
 {
     vec4 r = textureGather(source, corner, 0);

@@ -10,11 +10,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { AROUND = 16 }; /* pixels to each side within which the edge of a leak is looked for */
+enum { AROUND = 16 }; /* pixels to each side in which the edge of a leak is searched */
 
 typedef struct point {
     ref_vec p, n;
-    bool met; /* the frame and the reference see the same surface */
+    bool met; /* the frame and the reference show the same surface */
 } point;
 
 typedef struct study {
@@ -41,7 +41,7 @@ static bool failed(study *w, const char *text) {
 
 /* ---- Frames ---------------------------------------------------------------------------------- */
 
-/* Without sun, sky and ambient light; the last of so many frames of one moment. */
+/* Without sun, sky and ambient light; the last of `frames` frames of one moment. */
 static bool draw(study *w, uint32_t frames, float *rgb) {
     masu_light light;
     masu_commands commands = {.slot = 0};
@@ -62,7 +62,7 @@ static bool draw(study *w, uint32_t frames, float *rgb) {
            failed(w, "no image of linear light");
 }
 
-/* Light i alone, or none: UINT32_MAX. */
+/* Only light i; UINT32_MAX: no light. */
 static bool choose(study *w, uint32_t chosen, bool shadows,
                    const masu_punctual_light_state *states) {
     for (uint32_t i = 0; i < w->scene.light_count; i++) {
@@ -99,7 +99,7 @@ static ref_vec pixel_ray(const study *w, const ref_camera *c, size_t at) {
                           (double)size.width / size.height);
 }
 
-/* What the centre of each pixel shows, and whether that of the frame is as deep. */
+/* The surface at each pixel's centre, and whether the frame has the same depth there. */
 static bool find_points(study *w, uint32_t slot) {
     masu_readback_image depth;
     ref_camera c = ref_camera_at(&w->scene.blob, w->d->time);
@@ -116,7 +116,7 @@ static bool find_points(study *w, uint32_t slot) {
                              &hit) ||
             !(row[x] > 0))
             continue;
-        /* A transparent surface in front reflects the light too: its part cannot be told apart. */
+        /* A transparent surface in front reflects the light too, which cannot be separated here. */
         if (ref_world_trace(&w->world, c.eye, d, hit.t * (1 - 1e-6), REF_RAY_ONE_SIDED, &front))
             continue;
         double z = near / (double)row[x], expected = hit.t * ref_dot(d, c.forward);
@@ -126,19 +126,19 @@ static bool find_points(study *w, uint32_t slot) {
     return true;
 }
 
-/* Share of the source that a point sees, as 0, 1 or -1. */
+/* Visibility of the source from a point: all (1), none (0) or a part (-1). */
 static int8_t seen_from(const study *w, const ref_light *light, ref_vec p) {
     ref_vec to = ref_sub(light->position, p), l = ref_unit(to);
     ref_frame f = ref_frame_of(l);
     double golden = REF_PI * (3 - sqrt(5));
     uint32_t met = 0, n = w->d->rays;
     for (uint32_t i = 0; i < n; i++) {
-        /* From the middle to the edge. */
+        /* from the centre to the edge */
         double wide = light->radius * sqrt((double)i / (n > 1 ? n - 1 : 1)), phi = i * golden;
         ref_vec q =
             ref_add(light->position, ref_from(&f, ref_v(wide * cos(phi), wide * sin(phi), 0)));
         ref_vec d = ref_sub(q, p);
-        /* The bulb blocks nothing; the reference meets an SDF a little in front of it. */
+        /* The bulb blocks nothing; the reference hits an SDF slightly before its surface. */
         double length = ref_length(d), free = length - 1.05 * light->radius;
         met += !(free > 0) ||
                !ref_world_occluded(&w->world, p, ref_scale(d, 1 / length), free, REF_RAY_NO_BLENDS);
@@ -153,8 +153,9 @@ static int by_value(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* Distance, in texels, from the centre of a pixel to what may be lit: to the nearest such pixel, or
- * to the nearest of points around it on its tangent plane, since a pixel may be larger than texels. */
+/* Distance, in texels, from the centre of a pixel to a position that may be lit: the nearest pixel
+ * that may be, or the nearest of points around it on its tangent plane, since a pixel may be larger
+ * than texels. */
 static double depth_of(const study *w, const ref_light *light, size_t at) {
     const int width = (int)w->d->size.width, height = (int)w->d->size.height;
     const int x0 = (int)(at % (size_t)width), y0 = (int)(at / (size_t)width);
@@ -218,7 +219,7 @@ static bool compare(study *w, uint32_t number, masu_seen_row *row) {
                                w->error_size);
 }
 
-/* The lights that add the most, in their order. */
+/* The lights that add the most, brightest first. */
 static bool rank(study *w, const masu_punctual_light_state *states, uint32_t *chosen,
                  uint32_t *count) {
     double sums[MASU_SEEN_LIGHTS];
@@ -294,7 +295,7 @@ static bool open_renderer(study *w) {
 }
 
 bool masu_seen_run(const masu_seen_desc *desc, masu_seen *out, char *error, size_t error_size) {
-    static study w; /* a session may not move, and is large */
+    static study w; /* a session must not move, and is large */
     memset(&w, 0, sizeof w);
     memset(out, 0, sizeof *out);
     w.d = desc;

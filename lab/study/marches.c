@@ -24,7 +24,7 @@ static const masu_march marches[MASU_BENCH_VARIANTS] = {
     [MASU_BENCH_MASU] = MASU_MARCH_AUTO,
     [MASU_BENCH_CHECKERBOARD] = MASU_MARCH_CHECKERBOARD};
 
-/* The passes whose time is the SDF's: those whose names begin like this. */
+/* Names of the passes whose time is the SDF's: prefixes. */
 static const char *const sdf_passes[] = {"update", "classify", "cone", "march"};
 
 enum { REST = MASU_BENCH_VARIANTS, RENDERERS };
@@ -128,7 +128,7 @@ static bool draw(bench *b, renderer *r, masu_stats_info *stats, double *wall_ms)
     return true;
 }
 
-/* ---- Truth ----------------------------------------------------------------------------------- */
+/* ---- Ground truth ---------------------------------------------------------------------------- */
 
 static size_t grid_pixels(const bench *b) {
     return (size_t)masu_truth_columns(b->d->width, b->d->stride) *
@@ -143,7 +143,7 @@ static bool save(bench *b, const char *name, const uint8_t *rgba, uint32_t width
            failed(b, error);
 }
 
-/* A truth that was not asked for by name may be missing: then nothing is compared. */
+/* A ground truth that was not named may be missing: then nothing is compared. */
 static bool find_truth(bench *b, bool *there) {
     char path[4096], error[512];
     const char *wanted = b->d->truth_path;
@@ -158,7 +158,7 @@ static bool find_truth(bench *b, bool *there) {
     return *there || failed(b, error);
 }
 
-/* The camera of the frame: only a renderer can tell it. */
+/* Uses the frame's camera, which only a renderer has. */
 static bool make_truth(bench *b, const renderer *r) {
     masu_camera camera;
     char error[512];
@@ -177,7 +177,7 @@ static bool make_truth(bench *b, const renderer *r) {
     b->shown = malloc(4 * n);
     if (!b->samples || !b->compared || !b->true_image || !b->shaded || !b->shown)
         return failed(b, "out of memory for the ground truth");
-    say(b, "marching", "the truth");
+    say(b, "marching", "the ground truth");
     uint64_t start = masu_clock_ns(NULL);
     masu_truth_image(&b->truth, &b->view, b->d->stride, b->samples);
     b->out->truth_seconds = (double)(masu_clock_ns(NULL) - start) / 1e9;
@@ -207,8 +207,8 @@ static const void *texel_at(const masu_readback_image *image, uint32_t x, uint32
     return (const uint8_t *)image->pixels + y * image->row_bytes + 4 * (size_t)x;
 }
 
-/* Pairs each true sample with the frame's pixel; shades that. UNSURE ones are left out here, and in
- * the pictures they have the truth's colour. */
+/* Pairs each true sample with the frame's pixel, and shades the pixel. UNSURE samples are skipped
+ * here, and have the ground truth's colour in the images. */
 static uint64_t pair(bench *b, const gbuffer *g) {
     uint32_t columns = masu_truth_columns(b->d->width, b->d->stride);
     uint64_t count = 0;
@@ -233,7 +233,7 @@ static uint64_t pair(bench *b, const gbuffer *g) {
         masu_unpack_normal(texel, n);
         if (hit && truly) s->normal_angle = angle_between(n, truth->normal);
         if (hit) {
-            /* The emission of the part that is truly there: hdr is lit by now. */
+            /* The emission of the true part: hdr contains the lighting already. */
             double material[8] = {0};
             if (truly && texel >> 30 & MASU_SURFACE_EMISSIVE)
                 b->truth.material(truth->part, material);
@@ -267,7 +267,7 @@ static bool compare(bench *b, const renderer *r, masu_bench_row *row) {
 
 /* ---- Measuring ------------------------------------------------------------------------------- */
 
-/* One frame with counters and readback. */
+/* Draws one frame with counters and readback. */
 static bool look_at(bench *b, int variant) {
     masu_bench_row *row = &b->out->rows[variant];
     masu_stats_info stats;
@@ -304,15 +304,16 @@ static double sdf_ms(const masu_stats_info *stats) {
     return (double)ns / 1e6;
 }
 
-/* Mesa 22.3's lavapipe reports 0.1 ms for what takes 100 ms once graphics work has run in the
- * process. */
+/* Mesa 22.3's lavapipe reports 0.1 ms for work of 100 ms, once the process has done graphics
+ * work. */
 static bool plausible(const masu_stats_info *stats, double wall_ms) {
     double gpu = (double)stats->gpu_ns / 1e6;
     return stats->timed && gpu >= 0.5 * wall_ms && gpu <= 1.05 * wall_ms;
 }
 
-/* All variants in turn, another one first in each round, so that whatever else the machine does
- * meets all of them alike. Round 0 is not counted: drivers compile at first use. */
+/* Times one frame of each variant per round, starting with another variant in each round, so that
+ * other load on the machine affects all equally. Round 0 is not counted: drivers compile at first
+ * use. */
 static bool time_all(bench *b) {
     masu_bench *o = b->out;
     for (uint32_t round = 0; round <= b->d->runs; round++) {
@@ -346,9 +347,9 @@ static int by_size(const void *a, const void *b) {
     return x < y ? -1 : x > y;
 }
 
-/* The stamps must fit the wall clock in most frames, and the SDF passes must not take much less
- * than a frame takes more than one without them: a driver may stamp before the work is done. One
- * clock for all variants, or their ratios mean nothing. */
+/* Timestamps must fit the wall clock in most frames, and the SDF passes must not take much less
+ * than the difference to a frame without them: a driver may write timestamps before the work is
+ * done. All variants use the same clock: otherwise their ratios mean nothing. */
 static bool trust_timestamps(const bench *b) {
     for (int v = 0; v < MASU_BENCH_VARIANTS; v++) {
         const masu_bench_row *row = &b->out->rows[v];
@@ -369,8 +370,8 @@ static bool measure(bench *b) {
         if (o->rows[v].there && open_renderer(b, marches[v], 0, false, &b->timed[v]) <= 0)
             return false;
     }
-    /* What a frame costs besides: one whose march takes a single step. Where a scene has no plain
-     * march, its own stands in. */
+    /* The cost of the rest of a frame: of one whose march takes a single step. If a scene has no
+     * plain march, its own is used. */
     masu_march least = o->rows[MASU_BENCH_PLAIN].there ? MASU_MARCH_PLAIN : MASU_MARCH_AUTO;
     if (open_renderer(b, least, 1, false, &b->timed[REST]) <= 0) return false;
     if (!time_all(b)) return false;
@@ -412,7 +413,7 @@ static void close_all(bench *b) {
 
 bool masu_bench_run(const masu_bench_desc *desc, masu_bench *out,
                     void (*progress)(const char *text), char *error, size_t error_size) {
-    static bench b; /* a session may not move, and is large */
+    static bench b; /* a session must not move, and is large */
     memset(&b, 0, sizeof b);
     memset(out, 0, sizeof *out);
     b.d = desc;

@@ -1,4 +1,4 @@
-/* rays.c: rays, and what Embree says of them; see rays.h. */
+/* rays.c: rays, and their hits from Embree; see rays.h. */
 #include "lab/study/rays.h"
 
 #include "clock.h"
@@ -28,7 +28,7 @@ static void moved(const double m[12], const float p[3], double out[3]) {
     }
 }
 
-/* Shares the blob's vertices; Embree wants indices of 12 bytes, so those are copied. */
+/* Shares the blob's vertices; Embree needs indices of 12 bytes, so they are copied. */
 static RTCScene mesh_of(masu_bench_rays *r, uint32_t mesh) {
     const masu_blob_trace_mesh *m = &r->view.trace_meshes[mesh];
     RTCScene scene = rtcNewScene(r->device);
@@ -296,7 +296,7 @@ uint32_t masu_bench_rays_specular(const masu_bench_rays *rays, const masu_bench_
         for (uint32_t k = 0; k < 3; k++) d[k] = (double)in[i].direction[k];
         if (dot(n, d) > 0)
             for (uint32_t k = 0; k < 3; k++) n[k] = -n[k];
-        /* The half vector by GGX's own density (Walter et al. 2007, equation 35). */
+        /* The half vector by GGX's density (Walter et al. 2007, equation 35). */
         double theta = atan(alpha * sqrt(u1 / (1 - u1))), phi = 2 * 3.14159265358979323846 * u2;
         const double any[3] = {fabs(n[0]) < 0.6, fabs(n[0]) >= 0.6, 0};
         cross(n, any, s);

@@ -1,5 +1,5 @@
-/* rays_gpu.c: the compute program of rays.h. Buffers that the host sees: what is
- * measured is the walk, and a software driver has no others. */
+/* rays_gpu.c: the compute program of rays.h. Its buffers are visible to the host: only the
+ * traversal is measured, and a software driver has no others. */
 #include "lab/study/rays.h"
 
 #include "clock.h"

@@ -1,5 +1,4 @@
-/* study.c: `masu-lab study`: the table of studies and the one command line of them all; see
- * study.h. */
+/* study.c: `masu-lab study`: the table of studies and their common command line; see study.h. */
 #include "lab/study/study.h"
 
 #include "lab/command/commands.h"
@@ -33,7 +32,7 @@ static int run_study(masu_cli *cli) {
     if (o->given.count < study->scenes_min)
         return masu_cli_usage_error("no scene given: expected SCENE.masu");
     o->scene = o->given.arguments[0];
-    o->stride |= 1; /* an even one would only see pixels of one parity */
+    o->stride |= 1; /* an even stride would only compare pixels of one parity */
     o->host.message = masu_print_message;
     bool hidden = o->csv && !strcmp(o->csv, "-");
     o->text = hidden ? fopen("/dev/null", "w") : stdout;
@@ -44,7 +43,7 @@ static int run_study(masu_cli *cli) {
     return code;
 }
 
-/* As commands of `masu-lab study`. */
+/* The studies, as commands of `masu-lab study`. */
 static int run(masu_cli *cli) {
     static masu_cli_command commands[STUDIES];
     static const masu_cli_command *list[STUDIES + 1];

@@ -1,5 +1,5 @@
-/* study_baseline.c: `masu-lab study baseline`: settings beside a baseline renderer, at their own
- * errors and at equal error: the command line of lab/study/baseline.h, and its tables. */
+/* study_baseline.c: `masu-lab study baseline`: settings compared with a baseline renderer, at their
+ * own errors and at equal error: the command line of lab/study/baseline.h, and its tables. */
 #include "lab/study/study.h"
 
 #include "settings/ladder_file.h"
@@ -32,8 +32,8 @@ static const masu_study_options *const o = &given.study;
 
 /* ---- Tables ---------------------------------------------------------------------------------- */
 
-/* Shown: with how many samples the baseline is as near to the truth (k), and how many times as
- * long as the setting it then takes (b). */
+/* Shown: the number of samples with which the baseline has the same error (k), and its time then
+ * divided by the setting's (b). */
 static const masu_column columns[] = {
     {"scene", NULL, NULL, NULL},
     {"setting", "\"", "setting", NULL},
@@ -140,20 +140,20 @@ static void add_row(masu_table *t, const masu_baseline *w, uint32_t entry) {
 }
 
 static void print_head(const masu_baseline *w) {
-    fprintf(o->text, "%s at %ux%u, %.4g s, truth of %u places and %u rays; %s\n", w->scene,
+    fprintf(o->text, "%s at %ux%u, %.4g s, ground truth of %u positions and %u rays; %s\n", w->scene,
             o->size.width, o->size.height, o->time, o->truth.positions, o->truth.rays, w->driver);
     fprintf(o->text,
-            "plain: march %s; of its time %.1f %% in passes that no baseline renderer needs, %.1f %% in "
-            "what k samples need once\n",
+            "plain: march %s; %.1f %% of its time in passes that no baseline renderer needs, %.1f %% in "
+            "work that k samples need once\n",
             w->march, 100.0 * masu_baseline_spare(&w->entries[0]),
             100.0 * masu_baseline_once(&w->entries[0]));
-    fprintf(o->text, "a: plain time / own; b: the same with the samples that equal error takes; both in "
+    fprintf(o->text, "a: plain time / own; b: the same with the samples needed for equal error; both in "
                      "motion\n");
 }
 
 static void print_points(const masu_baseline *w) {
     fprintf(o->text, "plain by samples%s: flip rmse ssim:",
-            given.own_march || !strcmp(w->march, "none") ? "" : ", marched as Masu does");
+            given.own_march || !strcmp(w->march, "none") ? "" : ", with Masu's march");
     for (uint32_t p = 0; p < w->point_count; p++) {
         const masu_baseline_point *at = &w->points[p];
         fprintf(o->text, "%s %u: %.4f %.2f %.4f", p ? ";" : "", at->samples,
@@ -163,7 +163,7 @@ static void print_points(const masu_baseline *w) {
     fprintf(o->text, "\n");
 }
 
-/* Of the baseline and the first setting. 0: not present, or not counted. */
+/* A row for the baseline and the first setting. 0: not present, or not counted. */
 static void add_pair(masu_table *t, const char *name, double a, double b) {
     if (!(a > 0.0) && !(b > 0.0)) return;
     masu_table_text(t, name);
@@ -171,7 +171,7 @@ static void add_pair(masu_table *t, const char *name, double a, double b) {
     masu_table_number(t, b > 0.0 ? b : (double)NAN);
 }
 
-/* Where the time went. The passes are the same rows in both plans. */
+/* Times by pass. The passes are the same rows in both plans. */
 static int print_passes(const masu_baseline *w) {
     const masu_baseline_entry *a = &w->entries[0], *b = &w->entries[w->plain_count];
     const masu_column pair[] = {{NULL, NULL, "pass, ms", NULL},
@@ -238,7 +238,7 @@ static int add_ladder(void) {
     return MASU_CLI_OK;
 }
 
-/* The settings; the usual ones where none is given. */
+/* The given settings, or the default ones. */
 static int choose_rungs(void) {
     static const char *const usual[] = {"base",
                                         "aa=smaa-high",
@@ -293,7 +293,7 @@ static int run(void) {
     masu_cli_progress_clear();
     if (!good) return masu_cli_error("%s", error);
     if (w.entries[0].times[MASU_BASELINE_MOTION].plausible < 0.9 && o->runs)
-        masu_cli_warn("timestamps do not fit the wall clock: passes mean little");
+        masu_cli_warn("timestamps do not fit the wall clock: times of passes are unreliable");
     code = print(&w);
     return w.messages ? masu_cli_error("the validation layer has reported %u messages", w.messages)
                       : code;
@@ -303,27 +303,27 @@ static const masu_option rows[] = {
     MASU_STUDY_SIZE,
     MASU_STUDY_TIME,
     MASU_STUDY_TRUTH,
-    MASU_STUDY_FRAMES(10000, "in motion before a picture is taken"),
-    MASU_REAL(options, step, "step", "SECONDS", 0, 10, "between those frames; 0: at rest"),
+    MASU_STUDY_FRAMES(10000, "in motion before an image is measured"),
+    MASU_REAL(options, step, "step", "SECONDS", 0, 10, "between these frames; 0: camera still"),
     MASU_STUDY_RUNS(0, MASU_SAMPLES_MAX),
     MASU_UINT(options, most, "most", 1, MASU_BASELINE_SAMPLES,
-              "samples a pixel that the baseline may have"),
-    MASU_FLAG(options, curve, "curve", "its error with 1, 2, 4, ... of them, needed or not"),
+              "maximum samples per pixel of the baseline"),
+    MASU_FLAG(options, curve, "curve", "its error with 1, 2, 4, ... samples, even if not needed"),
     MASU_FLAG(options, own_march, "own-march",
-              "equal error with the baseline's own march, which stops at 0.1 of a pixel, and\n"
-              "not with Masu's at the plain one's time"),
+              "equal error with the baseline's own march, which stops at 0.1 of a pixel,\n"
+              "instead of Masu's march at the plain march's time"),
     MASU_OWN("rung", "SETTING", read_rung,
-             "as masu bench names it: scale=0.5+aa=fxaa; up to 8 times (default: seven of\n"
-             "full, 0.75 and half the size)"),
+             "in the notation of masu bench: scale=0.5+aa=fxaa; up to 8 times (default:\n"
+             "seven at full, 0.75 and half the size)"),
     MASU_TEXT(options, ladder, "ladder", "FILE", "the rungs of a ladder.json of masu bench"),
     MASU_STUDY_CSV,
-    MASU_STUDY_IMAGES("the truth and the pictures as PNG"),
+    MASU_STUDY_IMAGES("the ground truth and the images as PNG"),
     MASU_STUDY_DEVICE,
     MASU_STUDY_END};
 
 const masu_study masu_study_baseline = {
     .name = "baseline",
-    .purpose = "whole frames against a baseline renderer, at equal error too",
+    .purpose = "whole frames against a baseline renderer, also at equal error",
     .arguments = "SCENE.masu [options]",
     .scenes_min = 1,
     .scenes_max = 1,
@@ -331,13 +331,13 @@ const masu_study masu_study_baseline = {
     .given = &given.study,
     .run = run,
     .details =
-        "Plain: the output's size, each pixel marched by itself, nothing culled, no LODs, ambient\n"
-        "occlusion and one unfiltered specular ray at each pixel, no anti-aliasing, no past. The\n"
-        "pictures are of a camera in motion, or at rest (--step 0); the truth is that of masu render --truth. a is the\n"
-        "median over rounds of plain time / own. b is the same with k plain frames, k the least\n"
-        "count found whose mean is as near to the truth; the work of taking the mean is left out,\n"
-        "shadow maps are drawn once.\n"
-        "k is 1 where a single plain frame is at least as near: b is then a.\n"
+        "Plain: the output's size, a separate march per pixel, nothing culled, no LODs, ambient\n"
+        "occlusion and one unfiltered specular ray at each pixel, no anti-aliasing, no history. The\n"
+        "camera is in motion, or still (--step 0); the ground truth is drawn as by masu render\n"
+        "--truth. a is the median over rounds of plain time / own time. b is the same with k plain\n"
+        "frames, where k is the least count whose mean has at most the setting's error; computing\n"
+        "the mean is not timed, and shadow maps are drawn once.\n"
+        "k is 1 if a single plain frame is at least as good: then b is a.\n"
         "ms is the least wall time from masu_frame to the fence, with a full barrier around each\n"
-        "pass. Scenes with an SDF are to be baked with --variants: else the baseline\n"
+        "pass. Scenes with an SDF must be baked with --variants: otherwise the baseline\n"
         "has Masu's own march.\n"};

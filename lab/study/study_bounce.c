@@ -1,5 +1,6 @@
-/* study_bounce.c: `masu-lab study bounce`: indirect light of a live bounce at points of the image,
- * against paths of the reference, and how it follows a lamp that is switched on. */
+/* study_bounce.c: `masu-lab study bounce`: compares the indirect light of a live bounce at points
+ * of the image with paths of the reference, and measures how it follows a lamp that is switched
+ * on. */
 #include "lab/study/study.h"
 
 #include "lab/reference/render.h"
@@ -43,9 +44,10 @@ static const masu_column columns[] = {{"scene", NULL, NULL, NULL},
 typedef struct point {
     size_t at;        /* pixel */
     double expected;  /* indirect irradiance */
-    double halves[2]; /* the same by every second path */
+    double halves[2]; /* the same from every second path */
     double variance;  /* of `expected` */
-    ref_vec soft, all; /* what of uniform light the surface reflects diffusely, and with the specular part */
+    ref_vec soft, all; /* diffusely reflected share of uniform light; the same including specular
+                        * light */
 } point;
 
 typedef struct study {
@@ -54,7 +56,7 @@ typedef struct study {
     ref_world world;
     ref_sky sky;
     bool has_field;
-    bool *direct_materials; /* whose emission reaches pixels as a light's */
+    bool *direct_materials; /* whose emission reaches pixels like a light's */
     ref_camera camera;
     point *points;
     uint32_t count;
@@ -108,7 +110,7 @@ static void set_lamp(study *w) {
     }
 }
 
-/* Inside the cells of the probes: outside, their light fades. */
+/* Whether a point is inside the grid of probes: outside, their light fades. */
 static bool in_grid(const study *w, ref_vec at) {
     const masu_blob_probes *g = w->scene.blob.section[MASU_BLOB_PROBES];
     const double p[3] = {at.x, at.y, at.z};
@@ -119,7 +121,7 @@ static bool in_grid(const study *w, ref_vec at) {
     return true;
 }
 
-/* Whether an area light in the scene's list stands for the light of a triangle. */
+/* Whether an area light of the scene represents the light of a triangle. */
 static bool is_of_light(const ref_scene *s, const ref_triangle *triangle) {
     ref_vec at = ref_splat(0);
     for (int k = 0; k < 3; k++)
@@ -133,7 +135,7 @@ static bool is_of_light(const ref_scene *s, const ref_triangle *triangle) {
     return false;
 }
 
-/* Materials whose emission pixels have without a bounce. */
+/* Materials whose emission lights pixels without a bounce. */
 static bool find_emitters(study *w) {
     w->direct_materials = calloc((size_t)w->scene.blob.count[MASU_BLOB_MATERIALS] + 1, sizeof *w->direct_materials);
     if (!w->direct_materials) return false;
@@ -205,7 +207,8 @@ static void find_points(study *w) {
     }
 }
 
-/* Points of a file that an earlier run has written, or of paths, which are written there. */
+/* Reads the points from a file of an earlier run; otherwise computes them with paths and writes
+ * them there. */
 static bool read_points(study *w, char *error, size_t size) {
     FILE *file = given.reference ? fopen(given.reference, "rb") : NULL;
     if (file) {
@@ -255,7 +258,7 @@ static bool switch_lamp(study *w, bool on) {
     return masu_punctual_light_set(w->s.m, lamp, &state, NULL) == MASU_OK;
 }
 
-/* Takes the door away. */
+/* Hides the door. */
 static bool open_door(study *w, char *error, size_t size) {
     masu_model door = masu_model_find(w->s.m, given.door ? given.door : "");
     if (!given.door || masu_model_show(w->s.m, door, 0, NULL) == MASU_OK) return true;
@@ -296,8 +299,9 @@ static ref_vec added(const float *a, const float *b, size_t pixel) {
     return ref_v((double)(p[0] - q[0]), (double)(p[1] - q[1]), (double)(p[2] - q[2]));
 }
 
-/* Indirect irradiance at a pixel: the light that the bounce adds, divided by the diffuse albedo. bare: divided by
- * ambient occlusion too, which follows from what uniform light adds to the pixel. */
+/* Indirect irradiance at a pixel: the light added by the bounce, divided by the diffuse albedo.
+ * bare: also divided by ambient occlusion, which is computed from the light that a uniform
+ * environment adds to the pixel. */
 static double irradiance_at(const study *w, const point *p, bool bare) {
     ref_vec light = added(w->image, w->direct, p->at), one = p->soft, uniform = added(w->uniform, w->direct, p->at);
     if (bare) one = ref_mul(one, ref_v(ratio(uniform.x, p->all.x), ratio(uniform.y, p->all.y), ratio(uniform.z, p->all.z)));
@@ -310,7 +314,8 @@ static double mean_of(const study *w) {
     return sum;
 }
 
-/* Two halves of the paths have independent noise, so that its squares are not in the mean of products. */
+/* The two halves of the paths have independent noise, so the mean of their products does not
+ * include its square. */
 static void compare(const study *w, bool bare, double *bias, double *rmse) {
     double sum = 0, off = 0, n = w->count;
     for (uint32_t i = 0; i < w->count; i++) {
@@ -349,7 +354,7 @@ static bool measure(study *w, char *error, size_t size) {
     if (!good) return false;
     w->found = w->series[o->frames - 1];
     w->flicker = w->found > 0 ? fabs(w->found - previous) / w->found : 0;
-    /* The first frame still has what was before, but for the first probes. */
+    /* The first frame still shows the previous state, except for the first probes. */
     before = changes ? w->series[0] : 0;
     for (uint32_t i = o->frames; i > 0; i--) {
         if (fabs(w->series[i - 1] - w->found) > 0.1 * fabs(w->found - before)) {
@@ -357,7 +362,7 @@ static bool measure(study *w, char *error, size_t size) {
             break;
         }
     }
-    if (given.door) w->reference = w->noise = 0; /* paths have met the door */
+    if (given.door) w->reference = w->noise = 0; /* the paths included the door */
     compare(w, false, &w->bias, &w->rmse);
     compare(w, true, &w->bare_bias, &w->bare_rmse);
     return true;
@@ -382,7 +387,7 @@ static int report(study *w) {
 }
 
 static int run(void) {
-    static study w; /* a session may not move, and is large */
+    static study w; /* a session must not move, and is large */
     char error[4096];
     const size_t values = 3 * (size_t)o->size.width * o->size.height;
     w.points = calloc(POINTS_MOST, sizeof *w.points);
@@ -439,17 +444,17 @@ static const masu_option rows[] = {
     MASU_TEXT(options, sdf, "sdf", "FILE", "source of the scene's signed distance field"),
     MASU_UINT(options, points, "points", 1, POINTS_MOST, "points of matt polygons in view"),
     MASU_UINT(options, paths, "paths", 2, 1000000, "paths of the reference from each"),
-    MASU_TEXT(options, reference, "reference", "FILE", "points and what paths found there: read, or else written"),
-    MASU_OWN("window", "X,Y,Z,X,Y,Z", read_window, "box through which the sky is seen: fewer paths needed"),
+    MASU_TEXT(options, reference, "reference", "FILE", "points and results of paths: read if it exists, else written"),
+    MASU_OWN("window", "X,Y,Z,X,Y,Z", read_window, "box through which the sky is visible: fewer paths needed"),
     MASU_UINT(options, probes, "probes", 1, 2048, "rung.bounce_probes (default: the library's)"),
     MASU_UINT(options, rays, "rays", 8, 64, "rung.bounce_rays (default: the library's)"),
     MASU_OWN("camera", "X,Y,Z,X,Y,Z", read_camera, "position and target (default: the scene's)"),
     MASU_FLAG(options, night, "night", "without sun and sky"),
     MASU_FLAG(options, diffuse, "diffuse-hits", "paths reflect diffusely after the first surface, as probe rays do"),
     MASU_TEXT(options, lamp, "lamp", "NAME", "light that is switched on after --frames without it"),
-    MASU_TEXT(options, door, "open", "MODEL", "door that opens after --frames: response to that, with the lamp on"),
+    MASU_TEXT(options, door, "open", "MODEL", "door that opens after --frames, with the lamp on: the response to it"),
     MASU_REAL(options, lamp_color, "lamp-color", "VALUE", 0, 1e9, "its colour, grey"),
-    MASU_STUDY_FRAMES(10000, "frames until the bounce is at rest"),
+    MASU_STUDY_FRAMES(10000, "frames until the bounce has converged"),
     MASU_STUDY_CSV,
     MASU_STUDY_DEVICE,
     MASU_STUDY_END};

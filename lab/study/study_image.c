@@ -1,11 +1,10 @@
-/* study_image.c: `masu-lab study image`: how far each chain of the finished picture (anti-aliasing,
- * upscaling, sharpening, at some render sizes) is from the picture without shortcuts, and what it
- * costs.
+/* study_image.c: `masu-lab study image`: how far each chain of anti-aliasing, upscaling and
+ * sharpening, at some render sizes, is from the ground truth, and its cost.
  *
- * The truth is that of `masu render --truth`. A chain is a row of the table below, and a rung of
- * a renderer; as many as a renderer takes are drawn in turns. The picture is that of a scene at
- * rest, after as many frames as the filters of reflections need; times are the least of frames in
- * turns. Nothing is judged. */
+ * The ground truth is drawn as by `masu render --truth`. A chain is a row of the table below, and a
+ * rung of a renderer; a renderer holds several, which alternate. The image shows the scene
+ * with a still camera, after as many frames as the filters of reflections need; times are the least
+ * over frames. The study only reports. */
 #include "lab/study/study.h"
 
 #include "measure/picture.h"
@@ -19,11 +18,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* coarse: mips of the render size instead of the output's, as an upscaler would have them that
- * nobody told. */
+/* coarse: mips of the render size instead of the output's, as with an upscaler that ignores
+ * this. */
 typedef struct chain {
     const char *name;
-    masu_rung rung; /* but for its scale */
+    masu_rung rung; /* without its scale */
     uint32_t coarse;
 } chain;
 
@@ -42,7 +41,7 @@ static const chain native[] = {
     {"smaa high+rcas", {SHARP, .aa = MASU_AA_SMAA_HIGH}, 0},
 };
 
-/* Below it. */
+/* Below the output's size. */
 static const chain upscaled[] = {
     {"bilinear", {BLUNT, .easu = MASU_EASU_BILINEAR}, 0},
     {"easu", {BLUNT}, 0},
@@ -67,7 +66,7 @@ typedef struct options {
     masu_study_options study;
     double ppd, anisotropy, scales[SCALES_MOST];
     uint32_t scale_count, rays;
-    masu_headless_desc host; /* with what --rays asks for */
+    masu_headless_desc host; /* with the extension for --rays */
     masu_switch ray_query;
 } options;
 
@@ -103,12 +102,12 @@ static bool failed(bench *b, const char *text) {
     return false;
 }
 
-/* ---- The truth ------------------------------------------------------------------------------- */
+/* ---- The ground truth ------------------------------------------------------------------------ */
 
 static masu_session_desc session_of(void) {
     masu_session_desc d = masu_picture_session(o->scene, o->size, &given.host);
     d.desc.ray_query = given.ray_query;
-    d.desc.vulkan.max_anisotropy = (float)given.anisotropy; /* of the chains: the truth takes none */
+    d.desc.vulkan.max_anisotropy = (float)given.anisotropy; /* only for the chains */
     return d;
 }
 
@@ -144,7 +143,8 @@ static void plan_rows(bench *b) {
     }
 }
 
-/* How many rows from `first` on a renderer can have: debug.mip_bias is one for all of its rungs. */
+/* How many rows from `first` one renderer can hold: debug.mip_bias is the same for all its
+ * rungs. */
 static uint32_t batch_of(const bench *b, uint32_t first) {
     uint32_t n = 1;
     while (n < MASU_MAX_RUNGS && first + n < b->row_count &&
@@ -176,7 +176,7 @@ static bool save(bench *b, const row *r, const uint8_t *rgba) {
     return masu_study_save_grey(path, b->map, o->size, b->error, sizeof b->error);
 }
 
-/* A scene that traces no reflections looks the same in every frame. */
+/* Without reflections every frame of the scene is the same. */
 static bool compare(bench *b, masu_session *s, uint32_t rung, row *r) {
     masu_plan_info plan;
     masu_plan_of(s->m, &plan);
@@ -198,7 +198,7 @@ static bool compare(bench *b, masu_session *s, uint32_t rung, row *r) {
     return !o->images || save(b, r, shown);
 }
 
-/* The passes behind the tone curve. */
+/* The time of the passes after the tone curve. */
 static double chain_ns(const masu_stats_info *stats) {
     uint64_t sum = 0;
     bool behind = false;
@@ -213,7 +213,7 @@ static void least(double *value, double candidate) {
     if (*value == 0.0 || candidate < *value) *value = candidate;
 }
 
-/* One more run than asked for: the first after another rung's is dropped with the warm-up. */
+/* One run more than requested: the first after a change of rung is dropped with the warm-up. */
 static bool measure(bench *b, masu_session *s, uint32_t first, uint32_t count) {
     for (uint32_t run = 0; run <= o->runs && o->runs; run++) {
         masu_cli_progress("timing, run %u of %u", run, o->runs);
@@ -302,7 +302,7 @@ static int print(const bench *b) {
     masu_table t;
     masu_table_open(&t, columns, "n/a");
     for (uint32_t i = 0; i < b->row_count; i++) add_row(&t, b, &b->rows[i]);
-    fprintf(o->text, "%s at %ux%u, %.3g s, truth of %u positions, %.1f pixels per degree; %s\n",
+    fprintf(o->text, "%s at %ux%u, %.3g s, ground truth of %u positions, %.1f pixels per degree; %s\n",
             b->scene, o->size.width, o->size.height, o->time, o->truth.positions, given.ppd,
             b->driver);
     masu_table_print(&t, o->text);
@@ -343,15 +343,15 @@ static const masu_option rows[] = {
     MASU_STUDY_SIZE,
     MASU_STUDY_TIME,
     MASU_STUDY_TRUTH,
-    MASU_STUDY_FRAMES(10000, "at rest, before a picture with reflections is taken"),
+    MASU_STUDY_FRAMES(10000, "with a still camera, before an image with reflections is measured"),
     MASU_REAL(options, ppd, "ppd", "N", 1.0, 1000.0,
               "pixels per degree of sight, for FLIP: 67 at 0.7 m before 3840 on 0.7 m"),
     MASU_STUDY_RUNS(0, 999),
     MASU_OWN("scales", "S,...", read_scales, "of the render size (default 1,0.8,0.5,0.4)"),
-    MASU_TEXT(options, study.only, "only", "TEXT", "chains with that in their name"),
+    MASU_TEXT(options, study.only, "only", "TEXT", "chains whose names contain this"),
     MASU_REAL(options, anisotropy, "anisotropy", "N", 1.0, 64.0,
               "samples of the chains' textures along the longer axis (default 1)"),
-    MASU_STUDY_IMAGES("the pictures, and the maps of FLIP, as PNG"),
+    MASU_STUDY_IMAGES("the images, and the maps of FLIP, as PNG"),
     MASU_STUDY_CSV,
     MASU_RAYS_ROW(options, rays),
     MASU_STUDY_DEVICE,
@@ -359,15 +359,15 @@ static const masu_option rows[] = {
 
 const masu_study masu_study_image = {
     .name = "image",
-    .purpose = "anti-aliasing, upscaling and sharpening against the picture without shortcuts",
+    .purpose = "anti-aliasing, upscaling and sharpening, compared with the ground truth",
     .arguments = "SCENE.masu [options]",
     .scenes_min = 1,
     .scenes_max = 1,
     .options = rows,
     .given = &given.study,
     .run = run,
-    .details = "The truth is that of masu render --truth. RMSE, PSNR and SSIM are of the shown\n"
-               "8 bits. Chain ms: GPU time of all behind the tone curve; frame ms: wall time from\n"
+    .details = "The ground truth is drawn as by masu render --truth. RMSE, PSNR and SSIM are of the shown\n"
+               "8 bits. Chain ms: GPU time of the passes after the tone curve; frame ms: wall time from\n"
                "masu_frame to the fence, with a full barrier around each pass; both the least of "
                "the runs, in\n"
-               "which all chains of a renderer take turns.\n"};
+               "which the chains of a renderer alternate.\n"};

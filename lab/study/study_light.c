@@ -88,7 +88,7 @@ static const masu_option rows[] = {
     MASU_STUDY_TIME,
     MASU_TEXT(options, sdf, "sdf", "FILE", "source of the scene's signed distance field"),
     MASU_UINT(options, lights, "lights", 1, MASU_SEEN_LIGHTS,
-              "lights that light the most of the image"),
+              "lights to measure, those that add most to the image"),
     MASU_UINT(options, rays, "points", 1, 4096, "points of a source"),
     MASU_STUDY_FRAMES(10000, "frames of one light until its shadow is complete"),
     MASU_STUDY_IMAGES(
@@ -110,8 +110,8 @@ const masu_study masu_study_light = {
                "over 1/255 of white\n"
                "are compared with rays from their centre to points of the source, where all of "
                "these agree. Pixels\n"
-               "behind transparent surfaces are left out, and so are capsules and rectangles. Too "
+               "behind transparent surfaces, capsules and rectangles are not compared. Too "
                "bright\n"
-               "and too dark: off by over 0.1 of the light. Leak: 99th percentile of the distance "
+               "and too dark: by over 0.1 of the light. Leak: 99th percentile of the distance "
                "of pixels that should\n"
                "be dark from those that may be lit, in texels of a shadow map of 512.\n"};

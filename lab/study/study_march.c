@@ -1,5 +1,5 @@
-/* study_march.c: `masu-lab study march`: the ways of marching a scene's SDF compared: evaluations,
- * time, and error against the double-precision truth. */
+/* study_march.c: `masu-lab study march`: compares the marches of a scene's SDF: evaluations, time,
+ * and error against the double-precision ground truth. */
 #include "lab/study/study.h"
 
 #include "lab/study/marches.h"
@@ -15,7 +15,7 @@
 static masu_study_options given = {.size = {960, 540}, .runs = 9, .stride = 1};
 static const masu_study_options *const o = &given;
 
-/* What the last lines sum up, over the scenes that have both. */
+/* Totals for the last lines, over the scenes that have both values. */
 typedef struct summary {
     double log_evals, log_plain, log_seed; /* sums of logarithms: masu against plain, seed */
     uint32_t evals_count, plain_count, seed_count;
@@ -25,7 +25,7 @@ typedef struct summary {
 
 /* ---- Numbers --------------------------------------------------------------------------------- */
 
-/* 0 or NAN: not known. */
+/* 0 or NAN: unknown. */
 static double plain_ms(const masu_bench *b) {
     return b->rows[MASU_BENCH_PLAIN].there ? b->rows[MASU_BENCH_PLAIN].ms : 0.0;
 }
@@ -88,7 +88,7 @@ static const masu_column columns[] = {
     {"driver", "\"", NULL, NULL},
     {NULL, NULL, NULL, NULL}};
 
-/* What is not known is absent. */
+/* An unknown value is printed as absent. */
 static void cell(masu_table *t, bool known, double value) {
     masu_table_number(t, known ? value : (double)NAN);
 }
@@ -135,17 +135,17 @@ static void add_row(masu_table *t, const masu_bench *b, int v) {
     masu_table_text(t, b->driver);
 }
 
-/* ---- What is shown --------------------------------------------------------------------------- */
+/* ---- Output ---------------------------------------------------------------------------------- */
 
 static void print_scene(masu_table *t, const masu_bench *b) {
     fprintf(o->text, "%s, %" PRIu32 "x%" PRIu32 ", %s\n", b->scene, o->size.width, o->size.height,
            b->driver);
     if (b->compared) {
-        fprintf(o->text, "  truth: %" PRIu64 " rays, %" PRIu64 " undecided and left out, %.1f evaluations a "
+        fprintf(o->text, "  truth: %" PRIu64 " rays, %" PRIu64 " undecided and skipped, %.1f evaluations a "
                "ray, %.1f s\n",
                b->truth_samples, b->truth_unsure, b->truth_evals, b->truth_seconds);
     } else {
-        fprintf(o->text, "  truth: none beside the scene; errors are not measured\n");
+        fprintf(o->text, "  truth: none next to the scene; errors are not measured\n");
     }
     if (!o->runs) {
         fprintf(o->text, "  ms: not measured\n");
@@ -168,7 +168,7 @@ static void print_scene(masu_table *t, const masu_bench *b) {
     for (int v = 0; v < MASU_BENCH_VARIANTS; v++) spread = fmax(spread, b->rows[v].spread);
     if (spread > 1.25) {
         fprintf(o->text, "  the machine was busy: half of the frames of a variant took %.2f times its least; "
-               "more --runs would tell better\n",
+               "use more --runs\n",
                spread);
     }
     fprintf(o->text, "\n");
@@ -260,7 +260,7 @@ static int run(void) {
     if (o->runs && o->runs < 9)
         return masu_cli_usage_error("--runs %u: at least 9, or 0 for no times", o->runs);
     if (o->field && o->given.count > 1)
-        return masu_cli_usage_error("--truth is for one scene, %u are given", o->given.count);
+        return masu_cli_usage_error("--truth is for one scene, not %u", o->given.count);
     masu_table t;
     masu_table_open(&t, columns, "n/a");
     bool good = run_scenes(only, &t);
@@ -276,13 +276,13 @@ static const masu_option rows[] = {
     MASU_STUDY_FIELD,
     MASU_STUDY_STRIDE,
     MASU_STUDY_TIME,
-    MASU_STUDY_IMAGES("write the truth and every variant there, SCENE.VARIANT.png"),
+    MASU_STUDY_IMAGES("write the ground truth and every variant there, SCENE.VARIANT.png"),
     MASU_STUDY_DEVICE,
     MASU_STUDY_END};
 
 const masu_study masu_study_march = {
     .name = "march",
-    .purpose = "the ways of marching an SDF: evaluations, time, and error against the truth",
+    .purpose = "the ways of marching an SDF: evaluations, time, and error against the ground truth",
     .arguments = "SCENE.masu... [options]",
     .scenes_min = 1,
     .scenes_max = MASU_ARGUMENTS_MAX,
@@ -291,10 +291,10 @@ const masu_study masu_study_march = {
     .run = run,
     .details =
         "Bake the scenes with the lab's masu-bake --variants (make study does): a march that a scene lacks has\n"
-        "no numbers. The variants render frames in turn, and each round starts with another variant; times are\n"
-        "the least of at least 9 runs. \"/plain\" and \"/seed\" say how many times faster a march is than plain\n"
-        "and than seed. Errors are against rays marched in double precision: hit instead of miss or the\n"
-        "reverse, in % of pixels; distance off by more than 1 %, in % of hits; distance error in widths of the\n"
+        "no numbers. The variants alternate, and each round starts with another variant; times are\n"
+        "the least of at least 9 runs. \"/plain\" and \"/seed\" are the speed-up over the marches plain\n"
+        "and seed. Errors are against rays marched in double precision: hit instead of miss or the\n"
+        "reverse, in % of pixels; distance error above 1 %, in % of hits; distance error in widths of the\n"
         "pixel at that distance; degrees between normals; LDR-FLIP of the shaded surfaces, mean and 99th\n"
         "percentile, and of the GPU's own image. \"check z\" compares the error rates of even and odd pixels of\n"
         "a checkerboard, and \"tile z\" the rim of 16x16 tiles with their inside, in standard deviations: above 3\n"

@@ -1,8 +1,8 @@
-/* study_rays.c: `masu-lab study rays`: rays per second through a scene's own trees in a compute
- * shader, beside Embree with the same triangles, transforms and rays. Both take turns, and of the
- * runs the least time counts, on the wall from submit to fence; beside it the time of all threads
- * of this process, which on a software driver is the work itself, whatever else the machine does.
- * Rays: those of the camera, and those of rough reflections from what these have hit. */
+/* study_rays.c: `masu-lab study rays`: rays per second through a scene's trees in a compute shader,
+ * compared with Embree with the same triangles, transforms and rays. Their runs alternate; the
+ * shortest run counts, as wall time from submit to fence. Also printed is the CPU time of all
+ * threads of this process: on a software driver that is the work itself, independent of other load
+ * on the machine. Rays: from the camera, and rough reflections from their hits. */
 #include "lab/study/study.h"
 
 #include "lab/study/rays.h"
@@ -18,7 +18,7 @@
 enum { PRIMARY, SPECULAR, KINDS };
 static const char *const kind_names[KINDS] = {"primary", "specular"};
 
-/* Ways to trace on the device; each is a row beside Embree's. */
+/* Ways to trace on the device; each is a row, compared with Embree. */
 enum { COMPUTE, BACKENDS };
 static const char *const backend_names[BACKENDS] = {"compute"};
 
@@ -34,7 +34,7 @@ static const masu_study_options *const o = &given.study;
 
 typedef struct row {
     uint32_t rays, hits, mismatches, given_up;
-    double seconds, embree_seconds, nodes, triangles; /* the last two of a ray */
+    double seconds, embree_seconds, nodes, triangles; /* the last two per ray */
     double cpu, embree_cpu;                           /* seconds of all threads */
 } row;
 
@@ -50,8 +50,8 @@ typedef struct bench {
     char error[1024];
 } bench;
 
-/* Hit or miss, or t by over 1e-4 of it and what rounding makes of coordinates as large as the
- * ray's. */
+/* Whether one hits and the other misses, or t differs by more than 1e-4 t plus the rounding of
+ * coordinates as large as the ray's. */
 static bool differs(const masu_bench_ray *ray, const masu_bench_hit *a, const masu_bench_hit *b) {
     float most = fmaxf(fabsf(ray->origin[0]), fmaxf(fabsf(ray->origin[1]), fabsf(ray->origin[2])));
     if ((a->t >= 0) != (b->t >= 0)) return true;
@@ -78,7 +78,7 @@ static double cpu_seconds(void) {
                : (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
 }
 
-/* A round that counts and compares, then those that are timed. */
+/* One run that counts and compares, then the timed ones. */
 static bool measure(bench *b, uint32_t kind, row *r) {
     double seconds;
     masu_bench_gpu_rays(&b->gpu, b->in[kind], r->rays);
@@ -214,7 +214,7 @@ static bool open_scene(bench *b) {
         snprintf(b->error, sizeof b->error, "%s: has no camera path", o->scene);
         return false;
     }
-    /* As far as a frame's anchor would be. */
+    /* As far away as a frame's anchor would be. */
     double anchor[3];
     for (uint32_t k = 0; k < 3; k++) {
         double at = (double)masu_scene_view_of(&b->scene).camera_keys->position[k];
@@ -261,8 +261,8 @@ static const masu_option rows[] = {
     MASU_STUDY_SIZE,
     MASU_STUDY_RUNS(1, 1000),
     MASU_REAL(options, roughness, "roughness", "R", 0, 1,
-              "of the surfaces that specular rays leave"),
-    MASU_UINT(options, threads, "threads", 1, 16, "that Embree may use"),
+              "of the surfaces that reflect specular rays"),
+    MASU_UINT(options, threads, "threads", 1, 16, "threads of Embree"),
     MASU_FLAG(options, flat, "flat", "give Embree all triangles in world space instead of instances"),
     MASU_STUDY_CSV,
     MASU_STUDY_DEVICE,
@@ -270,7 +270,7 @@ static const masu_option rows[] = {
 
 const masu_study masu_study_rays = {
     .name = "rays",
-    .purpose = "rays through a scene's trees, beside Embree: rays a second, differences",
+    .purpose = "rays through a scene's trees, compared with Embree: rays per second, differences",
     .arguments = "SCENE.masu [options]",
     .scenes_min = 1,
     .scenes_max = 1,

@@ -1,10 +1,10 @@
-/* study_reflections.c: `masu-lab study reflections`: what each filter of reflections buys: the
- * error of frames at rest, with the camera in motion, with an object in motion, and after it has
- * jumped, each beside the mean of very many rays per pixel; flicker; and time of the passes.
+/* study_reflections.c: `masu-lab study reflections`: the gain from each filter of reflections: the
+ * error of still frames, with the camera in motion, with an object in motion, and after it has
+ * jumped, each against the mean of very many rays per pixel; also flicker and pass times.
  *
- * One renderer with a rung for each set of filters, and one that traces every pixel and adds up. Its first
- * frames are what unfiltered rays would bring, later ones after a cut are the truth: no ray is in both. Times
- * are the least of nine frames at rest. Nothing is judged. */
+ * One renderer has a rung for each set of filters; another traces every pixel and sums the rays.
+ * The latter's first frames are the unfiltered rays, and its frames after a cut are the ground
+ * truth: no ray is in both. Times are the least of nine still frames. The study only reports. */
 #include "lab/study/study.h"
 
 #include "measure/specular.h"
@@ -94,7 +94,7 @@ static bool open_all(bench *b) {
     if (!masu_session_open(&d, &b->full, b->error, sizeof b->error)) return false;
     b->opened = 2;
     if (!(masu_scene_features(&b->s.scene) & MASU_SCENE_HAS_REFLECTIONS))
-        return failed(b, "the scene asks for no reflections");
+        return failed(b, "the scene has no reflections");
     b->pixels = o->size.width * o->size.height;
     b->classes = calloc(b->pixels, 1);
     b->truth = calloc(b->pixels, 3 * sizeof *b->truth);
@@ -103,7 +103,7 @@ static bool open_all(bench *b) {
     return (b->classes && b->truth && b->unfiltered && b->rgb) || failed(b, "out of memory");
 }
 
-/* The object that moves, if the scene has it. */
+/* Finds the moving object, if the scene has it. */
 static bool find_object(bench *b) {
     size_t bytes = 0;
     masu_scene scene;
@@ -122,15 +122,15 @@ static bool sum_up(bench *b, uint32_t frames, float *rgb, const char *what) {
     return masu_specular_draw(&b->full, &run, rgb, NULL, NULL, b->error, sizeof b->error);
 }
 
-/* From the file, if there is one, else by rays, and into the file. One of another size is of another picture,
- * or none at all, and is not written over. */
+/* Reads the file if it exists; otherwise computes the ground truth and writes it there. A file of
+ * another size is not used and not overwritten: it is another image, or none. */
 static bool find_truth(bench *b) {
     size_t floats = 3 * (size_t)b->pixels;
     FILE *f =
         o->truth.path && masu_file_is_regular(o->truth.path) ? fopen(o->truth.path, "rb") : NULL;
     bool found = f && fread(b->truth, sizeof *b->truth, floats, f) == floats && fgetc(f) == EOF;
     if (f) fclose(f);
-    if (f && !found) return failed(b, "the file of the truth is not one of this size");
+    if (f && !found) return failed(b, "the ground truth's file has another size");
     if (!sum_up(b, given.rays, b->unfiltered, "unfiltered")) return false;
     if (!masu_specular_classes(&b->full, masu_scene_specular_cutoff(&b->s.scene), b->classes))
         return failed(b, "no readback");
@@ -139,13 +139,13 @@ static bool find_truth(bench *b) {
         f = fopen(o->truth.path, "wb");
         bool good = f && fwrite(b->truth, sizeof *b->truth, floats, f) == floats;
         good = f && !fclose(f) && good;
-        if (!good) return failed(b, "the truth cannot be written");
+        if (!good) return failed(b, "the ground truth cannot be written");
     }
     b->rays = masu_specular_compare(b->unfiltered, b->truth, b->classes, b->pixels);
     return true;
 }
 
-/* The shown picture, and one of the errors: 0.25 of relMSE and more is white. */
+/* Saves the shown image, and one of the errors, in which a relMSE of 0.25 is white. */
 static bool save(bench *b, uint32_t way, uint32_t motion) {
     char path[4096], scene[256];
     masu_study_scene_name(o->scene, scene, sizeof scene);
@@ -308,21 +308,21 @@ static int run(void) {
 static const masu_option rows[] = {
     MASU_STUDY_SIZE,
     MASU_STUDY_CSV,
-    MASU_STUDY_FRAMES(10000, "frames at rest or in motion"),
+    MASU_STUDY_FRAMES(10000, "frames with still or moving camera"),
     MASU_UINT(options, rays, "rays", 1, 1000000, "unfiltered rays per pixel to compare with"),
-    MASU_UINT(options, study.truth.rays, "reference", 1, 1000000, "rays per pixel of the truth"),
+    MASU_UINT(options, study.truth.rays, "reference", 1, 1000000, "rays per pixel of the ground truth"),
     MASU_TEXT(options, study.truth.path, "truth", "FILE",
-              "read the truth from there, or write it there: floats of width x height x 3"),
-    MASU_REAL(options, study.time, "time", "SECONDS", -1e9, 1e9, "where on its path the camera ends"),
-    MASU_TEXT(options, object, "object", "NAME", "instance that moves and jumps"),
+              "ground truth, read if it exists, otherwise written: floats of width x height x 3"),
+    MASU_REAL(options, study.time, "time", "SECONDS", -1e9, 1e9, "time of the camera's path at the last frame"),
+    MASU_TEXT(options, object, "object", "NAME", "instance to move"),
     MASU_STUDY_ONLY,
-    MASU_STUDY_IMAGES("the shown pictures, and their errors, as PNG"),
+    MASU_STUDY_IMAGES("the shown images, and their errors, as PNG"),
     MASU_STUDY_DEVICE,
     MASU_STUDY_END};
 
 const masu_study masu_study_reflections = {
     .name = "reflections",
-    .purpose = "the filters of reflections against many rays per pixel",
+    .purpose = "the filters of reflections, compared with many rays per pixel",
     .arguments = "SCENE.masu [options]",
     .scenes_min = 1,
     .scenes_max = 1,
@@ -331,7 +331,7 @@ const masu_study masu_study_reflections = {
     .run = run,
     .details =
         "One row for each set of filters and motion, after one for unfiltered rays. relmse: mean of\n"
-        "(x - t)^2 / (t^2 + 0.01) over pixels that trace; then the same of those whose roughness is below\n"
-        "0.05, 0.15, 0.25, and above. camera: its path up to --time; object: 1 m/s; jump: 8 frames after the\n"
-        "object was moved by 1 m. flicker: of 64 frames at rest, from the 16th on, in 1/255. Scenes without\n"
+        "(x - t)^2 / (t^2 + 0.01) over pixels that trace; then over their pixels of roughness below 0.05,\n"
+        "0.15, 0.25, and above. camera: its path up to --time; object: 1 m/s; jump: 8 frames after the\n"
+        "object was moved by 1 m. flicker: of 64 still frames, from the 16th on, in 1/255. Scenes without\n"
         "such an instance have no rows for object and jump.\n"};

@@ -1,5 +1,5 @@
-/* study_rest.c: `masu-lab study rest`: how much light of a reference the reflections of lamps have,
- * and how much the image moves at rest. */
+/* study_rest.c: `masu-lab study rest`: how much of the light of lamps in a reference the
+ * reflections have, and how much the image changes with a still camera. */
 #include "lab/study/study.h"
 
 #include "image.h"
@@ -65,9 +65,9 @@ static bool add_frame(masu_session *s, uint32_t slot, size_t values, sums *t, ch
 
 enum { AROUND = 3 };
 
-/* Whether a pixel is of the glow: the mean of the reference around it is at least the floor, and no
- * lamp is near. Single pixels of the reference are noisy: to choose them by their own light would
- * choose those that are too bright. */
+/* Whether a pixel is in the glow: the mean of the reference around it is at least the floor, and no
+ * lamp is near. The mean is used because pixels of the reference are noisy: chosen by themselves,
+ * they would be biased to too bright ones. */
 static bool is_glow(const float *reference, int32_t x, int32_t y) {
     const int32_t width = (int32_t)o->size.width, height = (int32_t)o->size.height;
     double sum = 0, count = 0;
@@ -112,7 +112,7 @@ static void evaluate(const sums *t, const float *reference, size_t pixels, found
 
 static bool measure(masu_switch temporal, const float *reference, found *out, char *error,
                     size_t size) {
-    static masu_session s; /* may not move, and is large */
+    static masu_session s; /* must not move, and is large */
     const size_t pixels = (size_t)o->size.width * o->size.height;
     masu_session_desc d = {.scene_path = o->scene, .host = o->host};
     float *memory = calloc(12 * pixels, sizeof *memory);
@@ -188,25 +188,25 @@ static const masu_option rows[] = {
     MASU_TEXT(options, reference, "reference", "FILE.pfm",
               "image of masu-lab reference, of the same size"),
     MASU_STUDY_FRAMES(10000, "frames of one moment"),
-    MASU_UINT(options, last, "last", 2, 10000, "of these the last ones are measured"),
+    MASU_UINT(options, last, "last", 2, 10000, "measured frames, at the end of --frames"),
     MASU_REAL(options, floor, "above", "RADIANCE", 0, 1e6,
-              "least light of the reference in what is counted as glow"),
+              "minimum radiance of the reference in the glow"),
     MASU_STUDY_CSV,
     MASU_STUDY_DEVICE,
     MASU_STUDY_END};
 
 const masu_study masu_study_rest = {
     .name = "rest",
-    .purpose = "glow of small lamps in glossy surfaces, and its noise at rest",
+    .purpose = "glow of small lamps in glossy surfaces, and its noise with a still camera",
     .arguments = "SCENE.masu --reference FILE.pfm [options]",
     .scenes_min = 1,
     .scenes_max = 1,
     .options = rows,
     .given = &given.study,
     .run = run,
-    .details = "Glow: light of the pixels around which the reference has a mean radiance of --above "
+    .details = "Glow: the light of pixels around which the reference has a mean radiance of --above "
                "or more, and none of 1,\n"
-               "over that of the reference.\n"
+               "divided by the reference's light.\n"
                "Deviation: standard deviation over the last frames of each pixel of the shown "
                "image, of 255, without tone\n"
                "curve: its mean, 99th percentile and maximum.\n"};

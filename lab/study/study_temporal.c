@@ -51,7 +51,7 @@ static const masu_column columns[] = {
     {"driver", "\"", NULL, NULL},
     {NULL, NULL, NULL, NULL}};
 
-/* The row without a past of that size. NULL: it was not asked for. */
+/* The row of that scale without history; NULL: not requested. */
 static const masu_past_row *without(const masu_past *w, double scale) {
     for (uint32_t i = 0; i < w->row_count; i++) {
         if (w->rows[i].way == MASU_PAST_NONE && !(fabs(w->rows[i].scale - scale) > 0.0)) return &w->rows[i];
@@ -103,7 +103,7 @@ static int run(void) {
     masu_study_scene_name(o->scene, scene, sizeof scene);
     masu_table_open(&t, columns, "");
     for (uint32_t i = 0; i < w.row_count; i++) add_row(&t, &w, scene, &w.rows[i]);
-    fprintf(o->text, "%s at %ux%u, %.4g s, truth of %u places and %u rays; %s\n", scene, o->size.width,
+    fprintf(o->text, "%s at %ux%u, %.4g s, ground truth of %u positions and %u rays; %s\n", scene, o->size.width,
             o->size.height, o->time, o->truth.positions, o->truth.rays, w.driver);
     masu_table_print(&t, o->text);
     int code = masu_table_close(&t, o->csv);
@@ -120,19 +120,20 @@ static const masu_option rows[] = {
     MASU_STUDY_TIME,
     MASU_STUDY_TRUTH,
     MASU_UINT(options, study.frames, "frames", 2, 10000,
-              "at rest and in slow motion, 1/60 s apart, before a picture is taken"),
+              "with still camera and in slow motion, 1/60 s apart, before an image is measured"),
     MASU_UINT(options, fast_frames, "fast-frames", 1, 10000, "the same in fast motion, 1/8 s apart"),
-    MASU_UINT(options, starts, "starts", 1, 100, "figures are means of so many pictures, each of 5 frames more than the one before"),
+    MASU_UINT(options, starts, "starts", 1, 100,
+              "figures are means over this many images, each 5 frames longer than the last"),
     MASU_OWN("scales", "S,...", read_scales, "of the render size (default 1,0.5)"),
     MASU_STUDY_ONLY,
-    MASU_STUDY_IMAGES("the truth and the pictures as PNG"),
+    MASU_STUDY_IMAGES("the ground truth and the images as PNG"),
     MASU_STUDY_CSV,
     MASU_STUDY_DEVICE,
     MASU_STUDY_END};
 
 const masu_study masu_study_temporal = {
     .name = "temporal",
-    .purpose = "error and flicker with and without temporal upscaling, at rest and in motion",
+    .purpose = "error and flicker with and without temporal upscaling, of a still and a moving camera",
     .arguments = "SCENE.masu [options]",
     .scenes_min = 1,
     .scenes_max = 1,

@@ -1,12 +1,12 @@
-/* study_upscale.c: `masu-lab study upscale`: what a frame does to the finished picture, timed:
- * upscaling and sharpening, by the library's rungs, and beside them shaders of the bench's own.
+/* study_upscale.c: `masu-lab study upscale`: times the last passes of a frame, which process the
+ * finished image: upscaling and sharpening, by the library's rungs and by shaders of this study.
  *
- * A case is a row of the table below: a rung, which the library runs on the picture as it does in a
- * frame, or a chain of shaders. All cases take turns; the first run of each is dropped; the least
- * and the median of the rest count, on the wall from submit to fence. Beside it the time between
- * the device's timestamps, which Mesa 22.3's lavapipe is known to get wrong: a case where the two
- * differ by more than a tenth and 0.2 ms is marked. Then each picture is compared with that of the
- * case it is like. Nothing is judged. */
+ * A case is a row of the table below: a rung, which the library runs on the image as in a frame, or
+ * a chain of shaders. The runs of all cases alternate; the first run of each is dropped; the least
+ * and the median of the rest count, as wall time from submit to fence. Also printed is the time
+ * between the device's timestamps, which Mesa 22.3's lavapipe gets wrong: a case where the two
+ * differ by more than a tenth and 0.2 ms is marked. Then each image is compared with that of the
+ * case in `like`. The study only reports. */
 #include "lab/study/study.h"
 
 #include "lab/study/upscale.h"
@@ -29,20 +29,20 @@
 #define SPIRV(name) masu_spv_##name, sizeof masu_spv_##name
 #define RCAS_02 0.870550563f /* exp2(-0.2) */
 
-/* fetches: of texels by one output pixel, gathers counted as one; middle: images of the output's
- * size between passes; like: the case whose picture this one's is compared with. */
+/* fetches: texels per output pixel, a gather counted as one; middle: images of the output's size
+ * between passes; like: the case with which the image is compared. */
 typedef struct bench_case {
     const char *name;
     double fetches;
     uint32_t middle;
     const char *like;
-    masu_rung rung;                            /* where there is no chain */
-    masu_bench_stage chain[MASU_BENCH_STAGES]; /* words NULL: there is none */
-    bool half;                                 /* takes shaderFloat16 */
-    masu_bench_stage counted; /* a build of its upscaling that counts tiles left early */
+    masu_rung rung;                            /* without a chain */
+    masu_bench_stage chain[MASU_BENCH_STAGES]; /* words NULL: none */
+    bool half;                                 /* needs shaderFloat16 */
+    masu_bench_stage counted; /* a variant of its upscaling that counts tiles left early */
 } bench_case;
 
-/* The first is what ratios are to. */
+/* Ratios are to the first. */
 static const bench_case cases[] = {
     {"easu+rcas", 17, 1, NULL, .rung = {.upscale = MASU_ON, .sharpen = MASU_ON, .sharpness = 0.2f}},
     {"easu", 12, 0, NULL, .rung = {.upscale = MASU_ON, .sharpen = MASU_OFF}},
@@ -55,7 +55,7 @@ static const bench_case cases[] = {
      .chain = {{SPIRV(easu_fast_bytes_half_comp), 0, 0}}},
     {"bilinear", 4, 0, "easu",
      .rung = {.upscale = MASU_ON, .sharpen = MASU_OFF, .easu = MASU_EASU_BILINEAR}},
-    /* Anti-aliasing of the small picture before: beside easu, what it costs and what it changes. */
+    /* Anti-aliasing before upscaling: its cost and effect, compared with easu. */
     {"fxaa+easu", 12, 0, "easu",
      .rung = {.upscale = MASU_ON, .sharpen = MASU_OFF, .aa = MASU_AA_FXAA}},
     {"smaa-low+easu", 12, 0, "easu",
@@ -65,7 +65,7 @@ static const bench_case cases[] = {
     {"smaa-ultra+easu", 12, 0, "easu",
      .rung = {.upscale = MASU_ON, .sharpen = MASU_OFF, .aa = MASU_AA_SMAA_ULTRA}},
     {"gather", 12, 0, "easu", .chain = {{SPIRV(easu_gather_comp), 0, 0}}},
-    /* The image between the two of 8 bits instead of 10. */
+    /* The image between the two passes has 8 bits instead of 10. */
     {"easu+rcas-8", 17, 1, "easu+rcas",
      .chain = {{SPIRV(easu_bytes_comp), 0, 0}, {SPIRV(rcas_bytes_comp), 0, RCAS_02}}},
 };
@@ -86,9 +86,9 @@ typedef struct subject {
     masu_bench_chain chain;
     uint32_t runs;
     uint8_t *pixels;
-    double rms, flip; /* against the case that this one is like, of 255 and of 1; below 0: none */
+    double rms, flip; /* against the case in `like`, of 255 and of 1; below 0: none */
     uint32_t most;    /* of 255 */
-    double early;     /* tiles that leave early, of all; below 0: nothing counts them */
+    double early;     /* share of tiles left early; below 0: not counted */
     double wall[RUNS_MOST], gpu[RUNS_MOST];
 } subject;
 
@@ -102,10 +102,10 @@ typedef struct bench {
 
 static bool on(const bench *b, uint32_t i) { return b->only >> i & 1u; }
 
-/* ---- The picture ----------------------------------------------------------------------------- */
+/* ---- The image ------------------------------------------------------------------------------- */
 
-/* A third sky (a ramp of few steps), a third of flat and striped discs, a third of noise:
- * something for every branch of an upscaler. */
+/* A third sky (a ramp of few steps), a third flat and striped discs, a third noise, to reach every
+ * branch of an upscaler. */
 static void make_picture(uint8_t *rgba, uint32_t width, uint32_t height) {
     uint32_t hash = 1;
     for (uint32_t y = 0; y < height; y++) {
@@ -136,7 +136,7 @@ static bool make_source(bench *b) {
     if (o->scene) {
         if (!masu_image_load_png(o->scene, &image, b->error, sizeof b->error)) return false;
         if (image.width != width || image.height != height) {
-            snprintf(b->error, sizeof b->error, "%s is %ux%u, --from says %ux%u", o->scene,
+            snprintf(b->error, sizeof b->error, "%s is %ux%u, --from is %ux%u", o->scene,
                      image.width, image.height, width, height);
             masu_image_free(&image);
             return false;
@@ -290,7 +290,7 @@ static double least_of(double *v, uint32_t n) {
     return v[0];
 }
 
-/* Of compulsory traffic: each image once, read or written. */
+/* The minimum traffic: each image read or written once. */
 static double bytes_per_pixel(const bench_case *c) {
     double in = (double)given.from.width * given.from.height;
     double out = (double)o->size.width * o->size.height;
@@ -343,7 +343,7 @@ static int print(bench *b) {
     for (uint32_t i = 0; i < CASES; i++) {
         if (on(b, i)) add_row(&t, b, i, &base);
     }
-    fprintf(o->text, "%s\n%ux%u to %ux%u, %u runs in turns\n", b->s.host.driver, given.from.width,
+    fprintf(o->text, "%s\n%ux%u to %ux%u, %u alternating runs\n", b->s.host.driver, given.from.width,
             given.from.height, o->size.width, o->size.height, o->runs);
     masu_table_print(&t, o->text);
     return masu_table_close(&t, o->csv);
@@ -387,21 +387,21 @@ static int run(void) {
 }
 
 static const masu_option rows[] = {
-    MASU_SIZE(options, from, "from", "size of the picture"),
+    MASU_SIZE(options, from, "from", "size of the image"),
     MASU_STUDY_SIZE,
     MASU_STUDY_RUNS(1, RUNS_MOST),
     MASU_STUDY_ONLY,
-    MASU_STUDY_IMAGES("write what each case makes there, CASE.png"),
+    MASU_STUDY_IMAGES("write each case's image there, CASE.png"),
     MASU_STUDY_CSV,
     MASU_STUDY_DEVICE,
     MASU_STUDY_END};
 
 const masu_study masu_study_upscale = {
     .name = "upscale",
-    .purpose = "what is done to the finished picture, upscaling and sharpening: times, errors",
+    .purpose = "upscaling and sharpening of a finished image: times, errors",
     .arguments = "[IN.png] [options]",
     .scenes_max = 1,
     .options = rows,
     .given = &given.study,
     .run = run,
-    .details = "Without a picture one is made: a third ramp, a third discs, a third noise.\n"};
+    .details = "The default image is generated: a third ramp, a third discs, a third noise.\n"};

@@ -35,7 +35,7 @@ void masu_table_open(masu_table *t, const masu_column *columns, const char *abse
     if (!t->failed) fputc('\n', t->csv);
 }
 
-/* Room for the row's shown cells. */
+/* Returns the next shown cell; grows the table if needed. */
 static char *next_cell(masu_table *t) {
     if (t->at == 0 && t->rows == t->rows_max) {
         uint32_t more = 2 * t->rows_max + 16;
@@ -49,7 +49,7 @@ static char *next_cell(masu_table *t) {
 }
 
 static void end_cell(masu_table *t) {
-    bool more = false; /* columns of the CSV behind this one */
+    bool more = false; /* the CSV has more columns after this one */
     for (uint32_t i = t->at + 1; i < t->count; i++) more = more || t->columns[i].csv;
     if (t->columns[t->at].csv) fputc(more ? ',' : '\n', t->csv);
     if (++t->at < t->count) return;
@@ -88,7 +88,7 @@ void masu_table_numbers(masu_table *t, const double *values, uint32_t count) {
     for (uint32_t i = 0; i < count; i++) masu_table_number(t, values[i]);
 }
 
-/* As wide as the heading and every cell below it. */
+/* The width of the widest cell or heading. */
 static int width_of(const masu_table *t, uint32_t column) {
     size_t width = strlen(t->columns[column].heading);
     for (uint32_t i = 0; i < t->rows; i++) {
@@ -102,7 +102,7 @@ void masu_table_print(masu_table *t, FILE *f) {
     uint32_t last = t->count;
     if (t->failed) return;
     for (uint32_t c = 0; c < t->count; c++) last = t->columns[c].heading ? c : last;
-    for (uint32_t r = 0; r <= t->rows; r++) { /* the first is that of the headings */
+    for (uint32_t r = 0; r <= t->rows; r++) { /* row 0: the headings */
         for (uint32_t c = 0; c <= last && last < t->count; c++) {
             const char *heading = t->columns[c].heading;
             if (!heading) continue;

@@ -24,9 +24,9 @@ typedef struct study {
     char *error;
     size_t error_size;
     uint8_t *memory;
-    uint8_t *truth, *truth_before;  /* of the last frame and of the one before in slow motion */
+    uint8_t *truth, *truth_before;  /* of the last frame, and of the one before in slow motion */
     uint8_t *shown, *shown_before;
-    uint32_t start; /* of the motion: the first, the second... */
+    uint32_t start; /* the start of the motion: 0, 1, ... */
     masu_session s;
 } study;
 
@@ -48,7 +48,7 @@ static bool save(study *w, const char *name, const uint8_t *rgba) {
     return masu_image_save_png(file, rgba, w->d->size.width, w->d->size.height, 0, w->error, w->error_size);
 }
 
-/* ---- The truth --------------------------------------------------------------------------------- */
+/* ---- The ground truth ------------------------------------------------------------------------ */
 
 static masu_session_desc session_of(const study *w, VkExtent2D size) {
     return masu_picture_session(w->d->scene_path, size, &w->d->host);
@@ -74,7 +74,7 @@ static bool find_truths(study *w) {
 
 /* ---- Images ---------------------------------------------------------------------------------- */
 
-/* 5: the sequence's bases are 2 and 3. */
+/* 5 frames per start: no multiple of the jitter sequence's bases, 2 and 3. */
 static uint32_t frames_of(const study *w, masu_past_motion motion) {
     return (motion == MASU_PAST_FAST ? w->d->fast_frames : w->d->frames) + 5 * w->start;
 }
@@ -98,11 +98,11 @@ static bool draw_own(study *w, masu_past_motion motion) {
     return true;
 }
 
-/* ---- Rows --------------------------------------------------------------------------------------- */
+/* ---- Rows ------------------------------------------------------------------------------------ */
 
 static uint32_t starts_of(const study *w) { return w->d->starts ? w->d->starts : 1; }
 
-/* Adds what a picture is off by to the means. */
+/* Adds an image's errors to the means. */
 static bool compare(study *w, masu_past_row *row, masu_past_motion motion) {
     const uint32_t width = w->d->size.width, height = w->d->size.height;
     char name[96];
@@ -121,7 +121,7 @@ static bool compare(study *w, masu_past_row *row, masu_past_motion motion) {
 }
 
 static void find_size(const study *w, masu_past_row *row) {
-    static const masu_scene any; /* without a scene a rung has no size of its own */
+    static const masu_scene any; /* any scene: a rung needs one for its size */
     const masu_desc d = {.scene = &any, .output = w->d->size, .rung_count = 1, .rungs = {{.scale = (float)row->scale}}};
     const VkExtent2D size = masu_render_size(&d, 0);
     row->render_width = size.width;
@@ -173,7 +173,7 @@ static bool run(study *w) {
 }
 
 bool masu_past_run(const masu_past_desc *desc, masu_past *out, char *error, size_t error_size) {
-    static study w; /* a session may not move, and is large */
+    static study w; /* a session must not move, and is large */
     const size_t bytes = bytes_of(desc->size);
     memset(&w, 0, sizeof w);
     memset(out, 0, sizeof *out);

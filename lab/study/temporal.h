@@ -1,10 +1,10 @@
-/* temporal.h: images with and without temporal upscaling, of a stationary and of a moving camera,
- * against ground truth: what `rung.temporal` gains over one frame by itself.
+/* temporal.h: compares images with and without temporal upscaling, with a still and a moving
+ * camera, with ground truth: the gain from `rung.temporal` over single frames.
  *
- * All ways see the same scene and end at the same moment. Flicker is the mean absolute difference, of 255, of the last
- * two frames: at rest as it is, in slow motion less that of the two ground truths. The error of an
- * image of few samples depends by 4 % on where the last samples were, so figures are means over
- * several starts of the jitter sequence. */
+ * All variants end at the same moment. Flicker is the mean absolute difference, of 255, of the last
+ * two frames; in slow motion the difference of the two ground truths is subtracted. The error of an
+ * image of few samples varies by 4 % with the position of the last samples, so figures are means
+ * over several starts of the jitter sequence. */
 #ifndef LAB_TEMPORAL_H
 #define LAB_TEMPORAL_H
 
@@ -21,14 +21,16 @@ enum { MASU_PAST_SCALES = 8 };
 
 typedef struct masu_past_desc {
     const char *scene_path;
-    const char *truth_path; /* PNG, read or written, and FILE.before.png beside it; NULL: neither */
+    const char *truth_path; /* PNG, read or written, and FILE.before.png next to it; NULL:
+                             * neither */
     const char *image_dir;  /* NULL: none; else SCENE.SCALE.WAY.MOTION.png and SCENE.truth.png */
     VkExtent2D size;
     double time;               /* of the last frame */
-    uint32_t positions, rays;  /* of the truth */
-    uint32_t frames;           /* at rest and in slow motion, 1/60 s apart */
+    uint32_t positions, rays;  /* of the ground truth */
+    uint32_t frames;           /* with still camera and in slow motion, 1/60 s apart */
     uint32_t fast_frames;      /* 1/8 s apart */
-    uint32_t starts;           /* means are of so many pictures, each of 5 frames more than the one before; 0: one */
+    uint32_t starts;           /* means are over this many images, each 5 frames longer than the
+                                * last; 0: one */
     uint32_t only;             /* bits 1 << MASU_PAST_...: the ways to draw; 0: all */
     double scales[MASU_PAST_SCALES];
     uint32_t scale_count;
@@ -41,7 +43,7 @@ typedef struct masu_past_row {
     double scale;
     uint32_t render_width, render_height;
     double flip[MASU_PAST_MOTIONS];
-    double flicker[MASU_PAST_FAST]; /* of rest and of slow motion */
+    double flicker[MASU_PAST_FAST]; /* of a still camera and of slow motion */
 } masu_past_row;
 
 typedef struct masu_past {
@@ -51,7 +53,7 @@ typedef struct masu_past {
     uint32_t messages; /* of the validation layer */
 } masu_past;
 
-/* False: `error` holds one line. */
+/* On false `error` holds one line. */
 bool masu_past_run(const masu_past_desc *desc, masu_past *out, char *error, size_t error_size);
 
 #endif

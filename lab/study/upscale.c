@@ -249,6 +249,6 @@ bool masu_bench_chain_run(masu_bench_chain *c, double *wall, double *gpu, char *
 }
 
 uint64_t masu_bench_chain_count(const masu_bench_chain *c, uint32_t counter) {
-    const uint32_t *counted = c->counters.mapped; /* pairs of words: low, high */
+    const uint32_t *counted = c->counters.mapped; /* pairs: low 32 bits, high 32 bits */
     return counted[2 * counter] | (uint64_t)counted[2 * counter + 1] << 32;
 }

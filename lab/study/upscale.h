@@ -1,11 +1,10 @@
-/* upscale.h: a chain of compute shaders from one picture to another, as the frame's passes are
- * bound but outside of the library: what `masu-lab study upscale` puts beside the library's own
- * rungs.
+/* upscale.h: a chain of compute shaders from one image to another, bound like the passes of a
+ * frame but outside the library: `masu-lab study upscale` compares it with the library's rungs.
  *
- * A stage reads binding 0 of set 1 (the stage before, clamped to its edge, nearest texel), writes
- * binding 1; set 0 has nothing but the counters; push constants are those of the frame. The chain
- * owns its objects; the host, the source and the target are the caller's. Functions that can fail
- * return false and write one line to `error`. */
+ * A stage reads binding 0 of set 1 (the output of the stage before, clamped to its edge, nearest
+ * texel) and writes binding 1; set 0 has only the counters; push constants are as in a frame. The
+ * chain owns its objects; the caller owns the host, the source and the target. Functions that can
+ * fail return false and write one line to `error`. */
 #ifndef MASU_BENCH_UPSCALE_H
 #define MASU_BENCH_UPSCALE_H
 
@@ -18,7 +17,7 @@ typedef struct masu_bench_stage {
     const uint32_t *words; /* SPIR-V; NULL: the end of the chain */
     size_t bytes;
     uint32_t block; /* pixels along an edge of a workgroup; 0: MASU_GROUP */
-    float lobe;     /* of RCAS: its push constant */
+    float lobe;     /* RCAS's push constant */
 } masu_bench_stage;
 
 typedef struct masu_bench_chain {
@@ -42,7 +41,8 @@ bool masu_bench_chain_open(masu_headless *host, const masu_bench_stage stages[MA
                            masu_bench_chain *chain, char *error, size_t error_size);
 void masu_bench_chain_close(masu_bench_chain *chain);
 
-/* Runs it and waits. wall: seconds from submit to fence; gpu: between two timestamps, 0 without. */
+/* Runs it and waits. wall: seconds from submit to fence; gpu: between two timestamps; 0: no
+ * timestamps. */
 bool masu_bench_chain_run(masu_bench_chain *chain, double *wall, double *gpu, char *error,
                           size_t error_size);
 uint64_t masu_bench_chain_count(const masu_bench_chain *chain, uint32_t counter);

@@ -1,12 +1,12 @@
 /* cars.c: the ten cars of forza, each a body and four wheels, on the road.
  *
- * A car's XML says where TORCS puts its wheels, in the space of the body's model: x ahead, y to the
+ * A car's XML has the positions of its wheels, in the space of the body's model: x ahead, y to the
  * left (our -z), the road "ride height" below the origin. Wheels are models of one metre in every
- * direction with the rim's face at -z; they become as high and as wide as the tyres. Three of the
- * cars name no wheel: TORCS draws them a disc with a picture, we give them one of its stock wheels.
+ * direction with the rim's face at -z; they are scaled to the height and width of the tyres. Three
+ * of the cars name no wheel: TORCS draws a textured disc for them, we use one of its stock
+ * wheels.
  *
- * A car stands on the road where its wheels do: the plane through the ground below them turns it,
- * and its own height. */
+ * A car's height and tilt come from the plane through the ground below its wheels. */
 #include "lab/world/world.h"
 
 #include "bake/base/file.h"
@@ -19,7 +19,7 @@
 #define INCH 0.0254
 
 typedef struct wheel {
-    double x, left; /* of its middle, from the body's origin */
+    double x, left; /* of its centre, from the body's origin */
     double radius, width;
 } wheel;
 
@@ -86,11 +86,11 @@ static bool measure(const char *path, masu_bake_vec3 *size) {
     return good;
 }
 
-/* Our axes of a car: ahead, up, and to its right, as a rotation about x, then y, then z. */
+/* A car's axes (ahead, up, and to its right) as a rotation about x, then y, then z. */
 static masu_bake_vec3 angles_of(masu_bake_vec3 ahead, masu_bake_vec3 up, masu_bake_vec3 right) {
     double flat = hypot(ahead.x, ahead.y);
     masu_bake_vec3 a = {atan2(up.z, right.z), atan2(-ahead.z, flat), atan2(ahead.y, ahead.x)};
-    if (flat < 1e-9) a = masu_bake_v3(atan2(-right.y, up.y), a.y, 0); /* x and z turn alike then */
+    if (flat < 1e-9) a = masu_bake_v3(atan2(-right.y, up.y), a.y, 0); /* x and z rotate alike */
     const double degrees = 180 / MASU_BAKE_PI;
     return masu_bake_v3(a.x * degrees, a.y * degrees, a.z * degrees);
 }
@@ -116,7 +116,7 @@ static bool put(FILE *out, FILE *road, const char *torcs, const char *name, int 
         under[i] =
             height(user, at.x + ch * w->x - sh * w->left, at.z - sh * w->x - ch * w->left, at.y);
     }
-    /* Four heights have one plane through the means of each pair. */
+    /* The plane through four heights contains the mean of each pair. */
     double base = c->wheels[0].x - c->wheels[2].x;
     double track =
         (c->wheels[1].left - c->wheels[0].left + c->wheels[3].left - c->wheels[2].left) / 2;
@@ -146,7 +146,7 @@ static bool put(FILE *out, FILE *road, const char *torcs, const char *name, int 
         const wheel *w = &c->wheels[i];
         masu_bake_vec3 middle = masu_bake_mad(ground, ahead, w->x);
         middle = masu_bake_mad(masu_bake_mad(middle, right, -w->left), up, w->radius);
-        /* On the right turned about, not mirrored: there is writing on the tyres. */
+        /* On the right rotated, not mirrored: the tyres have writing. */
         double side = w->left > 0 ? 1 : -1;
         masu_bake_vec3 scale = {side * 2 * w->radius / size.x, 2 * w->radius / size.y,
                                 side * w->width / size.z};

@@ -1,13 +1,13 @@
-/* city.c: a city on four decks that hang above each other, as a scene of parts placed many
- * times. Tiles of 48 m: a street of 10 m around a block, which holds four buildings or a square with
- * stalls and people. A building is a plain shell (the occluder) with slices of facade in front of
- * it, a roof, and on the facades balconies, pipes, conditioners and signs.
+/* city.c: a city on four decks above each other, as a scene of parts placed many times. Tiles of 48
+ * m: a street of 10 m around a block, which holds four buildings or a square with stalls and
+ * people. A building is a plain shell (the occluder) with slices of facade in front of it, a roof,
+ * and balconies, pipes, conditioners and signs on the facades.
  *
- *   groups   "deck/i.j/building": the culling tree follows them
+ *   groups   "deck/i.j/building": used by the culling tree
  *   camera   0 to 10 s a walk through the streets with fast turns (600 frames at 60 Hz),
- *            20 s the crowd on the square of the middle, 30 s all of it from above
+ *            20 s the crowd on the central square, 30 s all decks from above
  *
- * Everything comes from one generator of random numbers with a fixed seed. */
+ * All random values come from one generator with a fixed seed. */
 #include "lab/world/world.h"
 
 #include <math.h>
@@ -20,11 +20,11 @@
 
 typedef struct deck {
     int columns, rows; /* tiles */
-    double x, y, z;    /* middle of its top */
+    double x, y, z;    /* centre of its top */
     int missing;       /* of 100 tiles */
 } deck;
 
-/* Whole tiles apart, so that pillars stand on crossings of all decks. */
+/* Tiles of all decks are whole tiles apart, so that pillars stand on crossings of every deck. */
 static const deck decks[] = {
     {2, 3, 72, -40, -96, 10}, {7, 7, 0, 0, 0, 0}, {4, 3, -24, 40, 0, 25}, {2, 3, -24, 80, 0, 20}};
 enum { DECKS = sizeof decks / sizeof decks[0], GROUND = 1 };
@@ -59,7 +59,7 @@ typedef struct place {
     int color; /* of the wall, or -1 */
 } place;
 
-/* Whether the windows of a facade are lit by night: a fifth of them. It does not use the random
+/* Whether the windows of a facade are lit at night: a fifth are. It does not use the random
  * generator, because city and city_night have the same parts. */
 static bool is_lit(uint32_t object) { return (object * 2654435761u) >> 16 < 65536 / 5; }
 
@@ -74,7 +74,7 @@ static void put(city *c, const char *part, place p) {
     if (p.sx != 1 || p.sy != 1 || p.sz != 1) {
         fprintf(c->out, ", \"scale\": [%.3f, %.3f, %.3f]", p.sx, p.sy, p.sz);
     }
-    /* Their light is that of "lights", and of none by day. */
+    /* They are not area lights: "lights" has their light at night; by day there is none. */
     bool lit = c->night && !strncmp(part, "facade", 6) && is_lit(c->objects);
     if (lit || !strcmp(part, "lamp") || !strcmp(part, "sign"))
         fputs(", \"area_light\": false", c->out);
@@ -94,14 +94,14 @@ static void put_at(city *c, const char *part, double x, double y, double z, doub
     put(c, part, (place){x, y, z, turn, 1, 1, 1, -1});
 }
 
-/* ---- buildings ---- */
+/* ---- buildings ------------------------------------------------------------------------------- */
 
 typedef struct building {
-    double x, y, z;      /* middle of its base */
+    double x, y, z;      /* centre of its base */
     double w, d, height; /* w along x */
 } building;
 
-/* What hangs on one slice of facade; (x, z) is the slice's middle on the wall. */
+/* The objects on one slice of facade; (x, z) is the slice's centre on the wall. */
 static void dress(city *c, const building *b, double x, double z, double turn, double base,
                   int floors) {
     double a = turn / DEGREES, rx = cos(a), rz = -sin(a); /* to the right along the wall */
@@ -164,7 +164,7 @@ static void put_tower(city *c, double x, double y, double z) {
     }
 }
 
-/* ---- tiles ---- */
+/* ---- tiles ----------------------------------------------------------------------------------- */
 
 static void put_square(city *c, double x, double y, double z, int people) {
     static const char *const persons[3] = {"person_red", "person_pale", "person_green"};
@@ -182,7 +182,7 @@ static void put_square(city *c, double x, double y, double z, int people) {
     put_at(c, "airship", x, y + 14, z, 30.0 * below(c, 12));
 }
 
-/* Buildings of a `dense` block fill their lots and leave only lanes between them. */
+/* Buildings of a `dense` block fill their lots, with only lanes between them. */
 static void put_block(city *c, double x, double y, double z, bool dense) {
     char tile[sizeof c->group];
     memcpy(tile, c->group, sizeof tile);
@@ -203,7 +203,7 @@ static void put_block(city *c, double x, double y, double z, bool dense) {
     memcpy(c->group, tile, sizeof tile);
 }
 
-/* Railings where the deck ends. `edge`: a bit per side without a neighbour. */
+/* Railings where the deck ends. `edge`: a bit for each side without a neighbour. */
 static void put_edge(city *c, double x, double y, double z, unsigned edge) {
     for (int side = 0; side < 4; side++) {
         if (!(edge >> side & 1)) continue;
@@ -221,7 +221,7 @@ static void put_tile(city *c, int level, int i, int j, unsigned edge) {
     double x = k->x + TILE * (i - (k->columns - 1) / 2.0);
     double z = k->z + TILE * (j - (k->rows - 1) / 2.0);
     bool middle = level == GROUND && i == 3 && j == 3;
-    bool dense = level == GROUND && i > 0 && i < 6 && j > 0 && j < 6; /* where the camera walks */
+    bool dense = level == GROUND && i > 0 && i < 6 && j > 0 && j < 6; /* along the camera's walk */
     snprintf(c->group, sizeof c->group, "deck%d/%d.%d", level, i, j);
     put_at(c, "deck", x, k->y, z, 0);
     put_edge(c, x, k->y, z, edge);
@@ -256,7 +256,7 @@ static void put_deck(city *c, int level) {
     for (int j = 0; j < k->rows; j++) {
         for (int i = 0; i < k->columns; i++) {
             if (!there[j][i]) continue;
-            unsigned edge = 0; /* sides +z, +x, -z, -x: as a facade turns */
+            unsigned edge = 0; /* sides +z, +x, -z, -x: in the order of facades */
             edge |= j + 1 >= k->rows || !there[j + 1][i] ? 1u : 0;
             edge |= i + 1 >= k->columns || !there[j][i + 1] ? 2u : 0;
             edge |= j == 0 || !there[j - 1][i] ? 4u : 0;
@@ -266,7 +266,7 @@ static void put_deck(city *c, int level) {
     }
 }
 
-/* ---- the camera ---- */
+/* ---- the camera ------------------------------------------------------------------------------ */
 
 static double smooth(double t) {
     t = t < 0 ? 0 : t > 1 ? 1 : t;
@@ -282,11 +282,11 @@ static void key(FILE *out, double time, const double eye[3], double yaw, double 
             eye[1] + 10 * sin(pitch / DEGREES), eye[2] + 10 * c * cos(yaw / DEGREES));
 }
 
-/* Along streets at 12 m/s; at each crossing a quarter turn within a tenth of a second, and now and
- * then a look over the shoulder or up. A key per frame. */
+/* Along streets at 12 m/s; at each crossing a quarter turn within a tenth of a second, sometimes a
+ * look over the shoulder or up. A key per frame. */
 static void walk(FILE *out) {
     static const struct {
-        double from, to, yaw; /* yaw turns to this at `from` */
+        double from, to, yaw; /* yaw rotates to this from `from` on */
     } turns[] = {{0.0, 0.0, 0},    {2.0, 2.10, 90}, {3.4, 3.48, 270}, {3.8, 3.88, 90},
                  {6.0, 6.10, 180}, {7.2, 7.5, 540}, {8.0, 8.12, 450}, {9.2, 9.3, 270}};
     static const double corners[][3] = {/* time, x, z */
@@ -315,10 +315,10 @@ static void walk(FILE *out) {
 
 #define DAY "city.json"
 #define NIGHT "city_night.json"
-/* A nearly logarithmic distribution: near cascades have twice the resolution of the default's. */
+/* A nearly logarithmic distribution: near cascades have twice the resolution of the default. */
 #define SHADOWS                                                                                    \
     "\"shadows\": {\"cascades\": 4, \"resolution\": 1024, \"distance\": 400, \"lambda\": 0.92}"
-/* Afternoon: a low sun shines under the decks. */
+/* Afternoon: a low sun lights the space under the decks. */
 static const char day[] =
     "  \"sun\": {\"azimuth\": 150, \"elevation\": 20,\n"
     "          " SHADOWS "},\n"

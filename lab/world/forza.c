@@ -1,19 +1,20 @@
 /* forza.c: the track forza of TORCS (Debian's torcs-data) with ten cars and a lap.
  *
- * The middle of the road comes from the track's XML, as TORCS reads it: straights by length, bends by
- * arc and two radii between which the radius changes evenly. TORCS's plane x-y is our x-(-z). The
- * heights come from the model: under each point that triangle which is nearest to the height before.
- * The model does not start where the XML does; the offset was found by laying the path over the
- * road's triangles (99.5 % of points up to 4.5 m beside the middle then lie on them).
+ * The centre line comes from the track's XML, as TORCS reads it: straights by length, curves by arc
+ * and two radii between which the radius changes evenly. TORCS's plane x-y is our x-(-z). The
+ * heights come from the model: at each point the triangle nearest to the previous height. The model
+ * has another origin than the XML; the offset was found by fitting the path to the road's triangles
+ * (99.5 % of points up to 4.5 m to each side are then on them).
  *
- *   grounds  road, grass and sand get the small reliefs asphalt, grass and gravel of masu-meso, whose files
- *            are to lie beside the scene; their colours stay the track's
- *   camera   a lap at 50 m/s from 0 s on; then, for pictures, a look at the stands ("crowd") and one
- *            from above ("high"): their times are printed
- *   lights   two spots that are off, "head0" and "head1", for a program to give to a car.
- *            forza_night.json has the same track by night, with lamps along it
+ *   grounds  road, grass and sand get the reliefs asphalt, grass and gravel of masu-meso, whose
+ *            files must be in the scene's folder; their colours are the track's
+ *   camera   a lap at 50 m/s from 0 s on; then, for images, the stands ("crowd") and a view
+ *            from above ("high"); their times are printed
+ *   lights   two spots that are off, "head0" and "head1", which a program may attach to a car.
+ *            forza_night.json has the same track at night, with lamps along it
  *   plain    grass below the track, to the horizon: TORCS's ground ends behind the trees
- *   track    forza.track: the road and the cars in numbers, for a program that drives (docs/drive.md) */
+ *   track    forza.track: the road and the cars in numbers, for a driving program
+ *   (docs/drive.md) */
 #include "lab/world/world.h"
 
 #include "bake/base/file.h"
@@ -25,17 +26,17 @@
 #include <string.h>
 
 #define POINTS_MAX 8192
-#define STEP 4.0 /* metres between points, TORCS's own default */
+#define STEP 4.0 /* metres between points, TORCS's default */
 #define SPEED 50.0
 #define OFFSET_X 36.0 /* of the path's least x and y from the model's origin */
 #define OFFSET_Y 45.7
-#define WIDTH 11.0 /* of the road, where the XML names none */
-#define LEAN_AT 4.0 /* metres beside the middle, where the road's lean is measured */
+#define WIDTH 11.0 /* of the road, if the XML names none */
+#define LEAN_AT 4.0 /* metres from the centre line, where the road's lean is measured */
 
 typedef struct point {
     double x, y, heading; /* TORCS's plane, radians */
     double height, along;
-    double wall[2]; /* left, right: metres from the middle to the barrier */
+    double wall[2]; /* left, right: metres from the centre line to the barrier */
     double up[3];   /* world */
     double rise[2]; /* of the ground before the barrier over the plane of the road */
 } point;
@@ -47,7 +48,7 @@ typedef struct track {
     double width;
 } track;
 
-/* ---- the path ---- */
+/* ---- the path -------------------------------------------------------------------------------- */
 
 static bool advance(track *t, double length, double turn) {
     if (t->count >= POINTS_MAX) return false;
@@ -75,7 +76,7 @@ static bool bend(track *t, double arc, double radius0, double radius1, int side)
     return true;
 }
 
-/* Beside the road lie a border and a side, whose width changes evenly; behind them the barrier. */
+/* Next to the road are a border and a side, whose width changes evenly; then the barrier. */
 static void read_sides(track *t, int first, const char *segment) {
     static const char *const names[2][2] = {{"Left Side", "Left Border"},
                                             {"Right Side", "Right Border"}};
@@ -135,7 +136,7 @@ static void shift(track *t) {
     }
 }
 
-/* ---- heights ---- */
+/* ---- heights --------------------------------------------------------------------------------- */
 
 typedef struct ground {
     const masu_bake_content *piece;
@@ -166,7 +167,7 @@ static ground triangles_of(const masu_bake_content *piece) {
     return g;
 }
 
-/* The height nearest to `guess` at (x, z); false: nothing there. */
+/* The height nearest to `guess` at (x, z); false: no ground there. */
 static bool height_at(const ground *g, double x, double z, double guess, double *out) {
     bool found = false;
     for (size_t i = 0; i < g->triangles; i++) {
@@ -182,9 +183,9 @@ static bool height_at(const ground *g, double x, double z, double guess, double 
     return found;
 }
 
-/* A gap in the model, or a wall over one, is bridged; the road may meanwhile climb. */
+/* Bridges a gap in the model, or a wall over one; the road may climb meanwhile. */
 static int find_heights(track *t, const ground *g) {
-    int missing = 0, run = 1000; /* nothing is known of the first */
+    int missing = 0, run = 1000; /* the first height is unknown */
     double last = 0;
     for (int i = 0; i < t->count; i++) {
         point *p = &t->points[i];
@@ -201,9 +202,9 @@ static int find_heights(track *t, const ground *g) {
     return missing;
 }
 
-/* ---- the scene ---- */
+/* ---- the scene ------------------------------------------------------------------------------- */
 
-/* `left` of the middle of point i. */
+/* The position `left` metres to the left of point i, `above` metres above the road. */
 static masu_bake_vec3 beside(const track *t, int i, double left, double above) {
     const point *p = &t->points[i % t->count];
     double x = p->x - sin(p->heading) * left, y = p->y + cos(p->heading) * left;
@@ -215,7 +216,7 @@ static double height_below(void *user, double x, double z, double guess) {
     return height_at(user, x, z, guess, &y) && fabs(y - guess) < 1 ? y : guess;
 }
 
-/* Where the road leans, from the ground on either side of its middle. */
+/* The road's tilt, from the ground on both sides of its centre line. */
 static void find_normals(track *t, ground *g) {
     for (int i = 0; i < t->count; i++) {
         int before = (i + t->count - 1) % t->count, after = (i + 1) % t->count;
@@ -236,7 +237,7 @@ static void find_normals(track *t, ground *g) {
     }
 }
 
-/* docs/drive.md has the format. */
+/* The format is in docs/drive.md. */
 static void write_road(const track *t, FILE *out) {
     fprintf(out, "masu-track 1\npoints %d\n", t->count);
     for (int i = 0; i < t->count; i++) {
@@ -264,7 +265,7 @@ static void key(FILE *out, double time, masu_bake_vec3 eye, masu_bake_vec3 at, c
             time, eye.x, eye.y, eye.z, at.x, at.y, at.z, end);
 }
 
-/* Of the track's pictures: how many metres one spans along u and v, mostly. A relief's period is a
+/* For the track's textures: the metres that one usually spans along u and v. A relief's period is a
  * quarter of a metre. */
 static void grounds(FILE *out) {
     static const struct {
@@ -288,7 +289,7 @@ static void grounds(FILE *out) {
 
 /* TORCS's ground ends behind the trees, where the sky would begin. The plain is just below the
  * model's lowest point, -3.4 m, and wide enough to fade in the fog. It casts no shadows and is not
- * in the BVH, because it would widen both. */
+ * in the BVH, because it would enlarge both. */
 static void plain(FILE *out, const char *torcs) {
     fprintf(
         out,
@@ -300,8 +301,8 @@ static void plain(FILE *out, const char *torcs) {
         torcs);
 }
 
-/* Lamps behind the barriers, on alternating sides. The emission of their heads is visible only;
- * the light comes from the spots of lamp_lights. */
+/* Lamps behind the barriers, on alternating sides. The emission of their heads is only for the
+ * camera; the light comes from the spots of lamp_lights. */
 #define LAMP_EVERY 10 /* points */
 #define LAMP_HEIGHT 9.0
 
@@ -370,7 +371,7 @@ static bool write_models(const track *t, ground *g, const char *torcs, bool is_n
     return true;
 }
 
-/* Prints when the camera is where. */
+/* Writes the camera's keys, and prints the times of its views. */
 static void write_camera(const track *t, FILE *out, const char *folder) {
     fputs("\n  ],\n  \"camera\": {\n    \"fov_y\": 60,\n    \"near\": 0.2,\n    \"keys\": [\n",
           out);

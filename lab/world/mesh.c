@@ -7,7 +7,7 @@
 #define TAU 6.28318530717958647692
 
 static uint32_t vertex(masu_world_mesh *m, double x, double y, double z) {
-    /* + 0 turns a rounded -0 into 0 where the sum is exact; "-0.0000" still reads as zero. */
+    /* + 0 changes a rounded -0 to 0 if the sum is exact; "-0.0000" still reads as zero. */
     fprintf(m->out, "v %.4f %.4f %.4f\n", x + 0, y + 0, z + 0);
     return ++m->vertices; /* OBJ counts from one */
 }
@@ -55,7 +55,8 @@ void masu_world_box(masu_world_mesh *m, double x, double y, double z, double sx,
     quad(m, v[1], v[3], v[7], v[5]);
 }
 
-/* A point at distance `along` on the axis, and (u, v) across it, so that u x v points along it. */
+/* A point at distance `along` on the axis, offset by (u, v) across it; u x v points along the
+ * axis. */
 static uint32_t around(masu_world_mesh *m, int axis, double x, double y, double z, double along,
                        double u, double v) {
     if (axis == 0) return vertex(m, x + along, y + u, z + v);

@@ -1,6 +1,6 @@
-/* parts.c: the parts of the city, one OBJ file each. Metres; y is up, a facade's outside is
- * +z, and a part stands on y = 0 (what hangs, hangs below it). Sizes are multiples of the facade's
- * module: 6 m wide, floors of 3 m. */
+/* parts.c: the parts of the city, one OBJ file each. Metres; y is up, a facade's outside is +z, and
+ * a part stands on y = 0 or hangs below it. Sizes are multiples of the facade's module: 6 m wide,
+ * floors of 3 m. */
 #include "lab/world/mesh.h"
 #include "lab/world/world.h"
 
@@ -30,9 +30,9 @@ static const char materials[] = "newmtl " WALL "\nKd 0.80 0.74 0.64\nNs 4\n"
 
 typedef masu_world_mesh mesh;
 
-/* ---- facades: a slice 6 m wide, `floors` high, in front of the wall ---- */
+/* ---- facades: a slice 6 m wide, `floors` high, in front of the wall -------------------------- */
 
-/* A window of w x h whose lower edge's middle is (x, y): frame, sill and a pane. */
+/* A window of w x h whose lower edge's centre is (x, y): frame, sill and a pane. */
 static void window(mesh *m, double x, double y, double w, double h) {
     masu_world_material(m, TRIM);
     masu_world_box(m, x, y + h / 2, 0.07, w + 0.24, h, 0.14);
@@ -99,7 +99,7 @@ static void facade_6_plain(mesh *m) { facade(m, 6, 0); }
 static void facade_6_arch(mesh *m) { facade(m, 6, 1); }
 static void facade_6_shop(mesh *m) { facade(m, 6, 2); }
 
-/* ---- buildings ---- */
+/* ---- buildings ------------------------------------------------------------------------------- */
 
 /* A metre on each side: placed with a scale. The city's occluders. */
 static void shell(mesh *m) {
@@ -112,7 +112,7 @@ static void round_shell(mesh *m) {
     masu_world_tube(m, 1, 0, 0, 0, 1, 0.5, 0.5, 32);
 }
 
-static void roof_flat(mesh *m) { /* over a square metre, scaled; so is its height */
+static void roof_flat(mesh *m) { /* over a square metre; scaled, with its height */
     masu_world_material(m, STONE);
     masu_world_box(m, 0, 0.2, 0.49, 1.04, 0.4, 0.04);
     masu_world_box(m, 0, 0.2, -0.49, 1.04, 0.4, 0.04);
@@ -145,7 +145,7 @@ static void roof_dome(mesh *m) {
     }
 }
 
-/* ---- what hangs on facades ---- */
+/* ---- objects on facades ---------------------------------------------------------------------- */
 
 static void balcony(mesh *m) {
     masu_world_material(m, STONE);
@@ -211,7 +211,7 @@ static void sign(mesh *m) {
     }
 }
 
-/* ---- streets ---- */
+/* ---- streets --------------------------------------------------------------------------------- */
 
 static void lamp(mesh *m) {
     masu_world_material(m, METAL);
@@ -288,7 +288,7 @@ static void person_red(mesh *m) { person(m, CLOTH); }
 static void person_pale(mesh *m) { person(m, TRIM); }
 static void person_green(mesh *m) { person(m, LEAF); }
 
-/* ---- decks ---- */
+/* ---- decks ----------------------------------------------------------------------------------- */
 
 static void deck(mesh *m) { /* 48 m square, its top at y = 0 */
     masu_world_material(m, STONE);

@@ -1,12 +1,12 @@
-/* xml.c: what is read of TORCS's parameter files, by looking for the tags: sections that hold
- * no sections, and single values. No parser: the files have entities and a DTD, and none of that
- * stands near what is wanted. Values are in the unit that the file names, which is not looked at. */
+/* xml.c: reads values of TORCS's parameter files by searching for tags: sections that hold no
+ * sections, and single values. It is not a parser: the files have entities and a DTD, but none near
+ * the values that are read. Values are in the file's units, which are not checked. */
 #include "lab/world/world.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* The value of <KIND name="NAME" ... val="V"/> between two places: its start, or NULL. */
+/* The start of the value of <KIND name="NAME" ... val="V"/> between two pointers, or NULL. */
 static const char *value_of(const char *from, const char *to, const char *kind, const char *name) {
     char pattern[96];
     snprintf(pattern, sizeof pattern, "<%s name=\"%s\"", kind, name);

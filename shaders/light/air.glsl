@@ -55,11 +55,15 @@ vec3 masu_through_air(vec3 color, vec3 direction, float depth, float alpha)
 }
 
 /* What is seen along a ray. color: of what it meets, or of the sun's disc; open: it meets nothing, and the sky
- * comes to that; depth: of the air before it, where there is fog. */
-vec3 masu_seen_along(vec3 color, bool open, vec3 direction, bool fog, float depth)
+ * comes to that; background: of the frame, or (0, 0, 0, 1): radiance added to the sky, and a factor on it; depth:
+ * of the air before it, where there is fog. */
+vec3 masu_seen_along(vec3 color, bool open, vec4 background, vec3 direction, bool fog, float depth)
 {
     if (open) {
         color += masu_sky(direction);
+        if (masu_live_environment) {
+            color = color * background.w + background.rgb;
+        }
     }
     /* A constant of the scene: of the two ways one is compiled. */
     return fog ? masu_through_air(color, direction, depth, 1.0) : color;

@@ -3,10 +3,13 @@
  *
  * Of the depth's 31 bits without its sign the upper 22 are kept: 14 of the mantissa, so that a view
  * z is off by at most 1 / 32768 of itself, a thirtieth of a pixel's width at 1080 lines. The other
- * ten hold the seen part in steps of 1 / 1023.
+ * ten hold the seen part in steps of 1 / 1023. Of an orthographic camera, a narrow lens far behind its near plane, they
+ * are those of 1 - depth, and the error is that share of the distance from the near plane.
  */
 #ifndef MASU_AO_TEXEL_GLSL
 #define MASU_AO_TEXEL_GLSL
+
+layout(constant_id = 22) const bool masu_flat_lens = false;
 
 /* Beyond this nothing is looked at: the squares below stay within fp32. */
 const float ao_farthest = 1e15;
@@ -51,7 +54,8 @@ vec3 ao_view_normal(uint texel)
 
 uint ao_pack(float seen, float depth)
 {
-    uint bits = min(floatBitsToUint(max(depth, 0.0)), 0x7F7FFDFFu) + 0x100u;
+    float kept = masu_flat_lens ? 1.0 - depth : depth;
+    uint bits = min(floatBitsToUint(max(kept, 0.0)), 0x7F7FFDFFu) + 0x100u;
     return uint(seen * 1023.0 + 0.5) | (bits >> 9) << 10;
 }
 
@@ -62,7 +66,8 @@ float ao_unpack_seen(uint texel)
 
 float ao_unpack_depth(uint texel)
 {
-    return uintBitsToFloat(texel >> 10 << 9);
+    float kept = uintBitsToFloat(texel >> 10 << 9);
+    return masu_flat_lens ? 1.0 - kept : kept;
 }
 
 #endif

@@ -14,6 +14,8 @@
 #include "brdf/tables.glsl"
 
 layout(constant_id = 3) const bool masu_has_environment = false;
+/* Frames may rotate and tint it, and change the background (masu_environment of masu.h). */
+layout(constant_id = 25) const bool masu_live_environment = false;
 
 vec3 masu_unpack_9995(uint texel)
 {
@@ -57,6 +59,12 @@ vec3 masu_environment_mip(vec2 square, int mip, int largest)
 vec3 masu_environment(vec3 direction, float roughness)
 {
     vec3 v = masu_sane(direction, -1e4, 1e4);
+    vec3 factor = vec3(1.0);
+    if (masu_live_environment) {
+        v = vec3(dot(frame.environment[0].xyz, v), dot(frame.environment[1].xyz, v),
+                 dot(frame.environment[2].xyz, v));
+        factor = vec3(frame.environment[0].w, frame.environment[1].w, frame.environment[2].w);
+    }
     v /= max(abs(v.x) + abs(v.y) + abs(v.z), 1e-4);
     vec2 square = v.xz;
     if (v.y < 0.0) {
@@ -67,12 +75,12 @@ vec3 masu_environment(vec3 direction, float roughness)
     int last = clamp(int(frame.sky_horizon.w), 1, 8) - 1;
     float level = clamp(roughness, 0.0, 1.0) * float(last);
     int mip = min(int(level), last);
-    vec3 near = masu_environment_mip(square, mip, size);
+    vec3 near = factor * masu_environment_mip(square, mip, size);
     float part = level - float(mip);
     if (!(part > 0.0)) {
         return near;
     }
-    return mix(near, masu_environment_mip(square, min(mip + 1, last), size), part);
+    return mix(near, factor * masu_environment_mip(square, min(mip + 1, last), size), part);
 }
 
 #endif

@@ -41,6 +41,12 @@ layout(set = MASU_SET_TEXTURES, binding = 4) uniform sampler2DArray occlusion_ma
 layout(set = MASU_SET_TEXTURES, binding = 5) uniform sampler2DArray coat_map;
 #endif
 
+#ifdef MASU_MAPS_LIVE
+/* Live textures (desc.reserve.textures), which materials may show. */
+layout(set = MASU_SET_TEXTURES, binding = 6) uniform sampler2DArray live_map;
+#include "shared/live_textures.glsl"
+#endif
+
 /* Where a map is read: of MASU_MAPS_SECOND, where whoever includes this has it, a bit for each slot. */
 vec2 masu_map_at(uint slot, vec2 at)
 {
@@ -50,15 +56,6 @@ vec2 masu_map_at(uint slot, vec2 at)
     return at;
 #endif
 }
-
-#ifdef MASU_ATTRIBUTES
-/* By the colour of vertices: what is lit, and of an unlit surface, whose light it is, what it emits. */
-void masu_tint(inout masu_surface s, vec3 color)
-{
-    s.emissive *= masu_is_unlit(s) ? color : vec3(1.0);
-    s.albedo *= color;
-}
-#endif
 
 float masu_layer(uint slot)
 {
@@ -80,11 +77,25 @@ vec4 masu_base(vec2 at)
     return texture(base_map, vec3(masu_map_at(0u, at), masu_layer(0u)), MASU_MAPS_BIAS);
 }
 
-/* Multiplies the factors of `s`; returns alpha. */
-float masu_sample_maps(vec2 at, inout masu_surface s)
+/* Multiplies the factors of `s`; returns alpha. live: the number of a live texture in place of the
+ * maps of base colour and emission, 0: none. */
+float masu_sample_maps(vec2 at, float live, inout masu_surface s)
 {
     float bias = MASU_MAPS_BIAS;
-    vec4 base = masu_base(at);
+    vec4 base;
+#ifdef MASU_MAPS_LIVE
+    bool is_live = masu_live_maps && live > 0.0;
+    if (is_live) {
+        vec2 p = masu_map_at(0u, at);
+        base = masu_live_mean(live_map, live - 1.0, vec4(0.0, 0.0, 1.0, 1.0), p, dFdx(p), dFdy(p), MASU_LIVE_WRAP);
+        s.emissive *= base.rgb;
+    } else {
+        base = masu_base(at);
+    }
+#else
+    const bool is_live = false;
+    base = masu_base(at);
+#endif
     s.albedo *= base.rgb;
     if ((MASU_MAPS_FLAGS & MASU_MAP_SURFACE) != 0u) {
         vec2 surface = texture(surface_map, vec3(masu_map_at(2u, at) * MASU_MAPS_DETAIL, masu_layer(2u)), bias).rg;
@@ -93,7 +104,7 @@ float masu_sample_maps(vec2 at, inout masu_surface s)
             s.metallic *= surface.g;
         }
     }
-    if ((MASU_MAPS_FLAGS & MASU_MAP_EMISSIVE) != 0u) {
+    if (!is_live && (MASU_MAPS_FLAGS & MASU_MAP_EMISSIVE) != 0u) {
         s.emissive *= texture(emissive_map, vec3(masu_map_at(3u, at), masu_layer(3u)), bias).rgb;
     }
     if ((MASU_MAPS_FLAGS & MASU_MAP_OCCLUSION) != 0u) {

@@ -15,6 +15,7 @@
 #include "shared/lookup_tables.h"
 #include "shared/materials.h"
 #include "shared/picking.h"
+#include "shared/post.h"
 #include "shared/probes.h"
 #include "shared/push.h"
 #include "shared/reflections.h"

@@ -31,6 +31,7 @@
 /* Transmission: of masu_scene_data.tints, and the roughness up to which glass does not blur. */
 #define MASU_TINTS_ROUGH 2u
 #define MASU_TINTS_MAPPED 4u /* and some with a map of it */
+#define MASU_TINTS_REFRACTED 8u /* and some with a thickness, which refracts the background */
 #define MASU_SHARP_GLASS 0.05
 
 /* Kinds of lobes beyond GGX with a grey f0 up to 0.08 (pack.glsl, masu_lobe_code); bit 1 << kind of masu_extra_lobes. */
@@ -38,17 +39,27 @@
 #define MASU_LOBE_SHEEN 2u
 #define MASU_LOBE_GRAIN 3u /* anisotropic */
 
-/* Transform of an instance: the rows of the 3x4 matrix object -> world space. */
+/* Transform of an instance: the rows of the 3x4 matrix object -> world space. With looks of instances
+ * (MASU_DRAWS_LOOKS) the second half of the buffer has them: row0 rgb factor on the base colour, w on
+ * the emission; row1 texture coordinates: xy offset, zw scale; row2.x fraction of pixels not drawn. */
 struct masu_instance_data {
     masu_vec4 row0;
     masu_vec4 row1;
     masu_vec4 row2;
 };
 
+/* Parts that vertex shaders add to a draw: bits of specialisation constant 22. */
+#define MASU_DRAWS_LOOKS 1u  /* looks of instances: tint, fade, texture coordinates */
+#define MASU_DRAWS_BIASES 2u /* depth biases of materials */
+
 struct masu_material_data {
     masu_vec4 base_color; /* rgb linear albedo; w perceptual roughness 0..1 */
-    masu_vec4 emissive;   /* rgb linear radiance, 0: not emissive; w metallic 0..1 */
-    masu_vec4 more;       /* specular (below 0: -1 - lobe), coat, coat roughness, opacity: each 0..1 */
+    /* rgb linear radiance, 0: not emissive; w metallic 0..1. Materials that refract have none: w is
+     * negative, the bits of two halves: thickness, then -index of refraction. */
+    masu_vec4 emissive;
+    /* specular (below 0: -1 - lobe), coat, coat roughness, opacity: each 0..1; opacity plus twice the
+     * number of the live texture, 0: none */
+    masu_vec4 more;
 };
 
 #endif

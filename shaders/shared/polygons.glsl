@@ -21,6 +21,10 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_DRAWN, std430) readonly buffer
 
 #include "shared/push.glsl"
 
+layout(constant_id = 24) const uint masu_draws_more = 0u; /* MASU_DRAWS_* */
+const bool masu_looks = (masu_draws_more & MASU_DRAWS_LOOKS) != 0u;
+const bool masu_depth_biases = (masu_draws_more & MASU_DRAWS_BIASES) != 0u;
+
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec2 oct_normal;
 
@@ -33,6 +37,21 @@ vec4 masu_vertex_color(vec4 stored)
 uint masu_instance_id()
 {
     return drawn[push.instances + uint(gl_InstanceIndex)];
+}
+
+/* Looks follow the transforms of all instances (masu_instance_data). */
+masu_instance_data masu_look_of(uint id)
+{
+    return instances[uint(instances.length()) / 2u + id];
+}
+
+vec2 masu_moved_texcoord(uint id, vec2 at)
+{
+    if (masu_looks) {
+        vec4 row = masu_look_of(id).row1;
+        at = at * row.zw + row.xy;
+    }
+    return at;
 }
 
 /* Relative to an origin given as a float and what that leaves. */

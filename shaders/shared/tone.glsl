@@ -63,6 +63,12 @@ float masu_srgb_encode_open(float x)
     return x <= 0.0031308 ? 12.92 * x : 1.055 * masu_pow_above(x, 1.0 / 2.4) - 0.055;
 }
 
+/* Encoded to linear; x 0..1. */
+float masu_srgb_decode(float x)
+{
+    return x <= 0.04045 ? x / 12.92 : masu_pow((x + 0.055) / 1.055, 2.4);
+}
+
 /* SMPTE ST 2084: 10000 nits are 1. */
 const float masu_pq_m1 = 2610.0 / 16384.0;
 const float masu_pq_m2 = 2523.0 / 32.0;

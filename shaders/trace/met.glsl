@@ -53,10 +53,15 @@ met met_polygon(uvec4 hit, vec3 direction, float width)
     if (look.maps.x != MASU_TRACE_NONE || look.maps.y != MASU_TRACE_NONE) {
         vec2 uv = masu_trace_uv(triangle.xyz, b);
         vec2 u0 = masu_trace_texcoord(triangle.x, 0u);
+        vec4 moved = vec4(0.0, 0.0, 1.0, 1.0);
+        if (masu_looks) {
+            moved = masu_trace_look(hit.y, 1u);
+            uv = uv * moved.zw + moved.xy;
+        }
         vec2 u1 = masu_trace_texcoord(triangle.y, 0u) - u0, u2 = masu_trace_texcoord(triangle.z, 0u) - u0;
         vec3 w1 = masu_trace_now(hit.y, vec4(p1 - p0, 0.0));
         vec3 w2 = masu_trace_now(hit.y, vec4(p2 - p0, 0.0));
-        float across = length(cross(w1, w2)), wide = abs(u1.x * u2.y - u1.y * u2.x);
+        float across = length(cross(w1, w2)), wide = abs((u1.x * u2.y - u1.y * u2.x) * moved.z * moved.w);
         float density = masu_sqrt(wide * masu_rcp(across)); /* of texture coordinates per metre */
         float lod = masu_log2(max(width, 1e-9) * density /
                               max(masu_sqrt(abs(dot(flat_normal, direction))), 0.1));
@@ -66,7 +71,7 @@ met met_polygon(uvec4 hit, vec3 direction, float width)
             if (map != MASU_TRACE_NONE) {
                 vec2 at = uv;
                 if (masu_attributes >= 2u && i == 1 && (look.maps.w & MASU_TRACE_SECOND) != 0u) {
-                    at = masu_trace_second_uv(triangle.xyz, b);
+                    at = masu_trace_second_uv(triangle.xyz, b) * moved.zw + moved.xy;
                 }
                 vec3 texel = masu_trace_sized(map, at, lod, look.maps.w).rgb;
                 m.surface.albedo *= i == 0 ? texel : vec3(1.0);
@@ -80,6 +85,12 @@ met met_polygon(uvec4 hit, vec3 direction, float width)
         m.surface.albedo *= color;
     }
 #endif
+    if (masu_looks) {
+        vec4 tint = masu_trace_look(hit.y, 0u);
+        m.surface.emissive *= masu_is_unlit(m.surface) ? tint.rgb : vec3(1.0);
+        m.surface.albedo *= tint.rgb;
+        m.surface.emissive *= tint.w;
+    }
     return m;
 }
 #endif

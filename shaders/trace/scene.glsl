@@ -6,7 +6,7 @@
  *                            the tile of noise, four words to an element
  *   masu_trace_static[0].z   how many triangles, masu_trace_frame[0].z how many traced instances there are
  *   masu_trace_frame[0].w    of each traced instance six rows: object to world minus anchor, and the same as
- *                            of the previous frame
+ *                            of the previous frame; then, with looks, two rows of each
  *
  * Triangles hold the number of their material here, not that of their primitive as in the blob; MASU_TRACE_HOLES
  * with it: of a mask that has a picture; MASU_TRACE_SINGLE: of what is not seen from behind. So a ray asks no material
@@ -72,6 +72,16 @@ uvec4 masu_trace_triangle(uint triangle)
 vec4 masu_trace_row(uint traced, uint row)
 {
     return uintBitsToFloat(masu_trace_frame[masu_trace_frame[0].w + 6u * traced + row]);
+}
+
+/* Row of a traced instance's look, if masu_looks: 0 tint, and factor on the emission; 1 offset and scale of texture
+ * coordinates. */
+layout(constant_id = 24) const uint masu_draws_more = 0u; /* MASU_DRAWS_* */
+const bool masu_looks = (masu_draws_more & MASU_DRAWS_LOOKS) != 0u;
+vec4 masu_trace_look(uint traced, uint row)
+{
+    uvec4 head = masu_trace_frame[0];
+    return uintBitsToFloat(masu_trace_frame[head.w + 6u * head.z + 2u * traced + row]);
 }
 
 vec3 masu_trace_now(uint traced, vec4 p)

@@ -12,7 +12,7 @@
 #include "masu.h"
 
 #define MASU_ARENA_ALIGNMENT 64u
-#define MASU_ARENA_ROWS 52u
+#define MASU_ARENA_ROWS 60u
 
 typedef struct masu_arena_row {
     const char *name;

@@ -17,7 +17,7 @@ masu_fail(masu_detail *detail, masu_result result, const char *what, uint64_t ne
 /* The argument named `what` is NULL. */
 masu_result masu_fail_null(masu_detail *detail, const char *what);
 
-/* A number is out of range: "camera.fov_y is 0, allowed are 0.001 to 3.1 radians". */
+/* A number is out of range: "camera.fov_y is 0, allowed are 0.0005 to 3.1 radians". */
 masu_result masu_fail_number(masu_detail *detail, const char *what, double given,
                              const char *allowed);
 /* The same for an array element: "camera.position[1] is nan, allowed are ...". */

@@ -21,11 +21,13 @@ masu_use masu_use_of(masu_usage usage, masu_pass_kind kind) {
     switch (usage) {
     case MASU_READ:
     case MASU_READ_LINEAR:
+    case MASU_READ_MAP:
         return (masu_use){1, shader, VK_ACCESS_SHADER_READ_BIT,
                           VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, 0};
     case MASU_READ_VERTICES:
         return (masu_use){1, VK_PIPELINE_STAGE_VERTEX_INPUT_BIT,
-                          VK_ACCESS_VERTEX_ATTRIBUTE_READ_BIT, VK_IMAGE_LAYOUT_UNDEFINED, 0};
+                          VK_ACCESS_VERTEX_ATTRIBUTE_READ_BIT | VK_ACCESS_INDEX_READ_BIT,
+                          VK_IMAGE_LAYOUT_UNDEFINED, 0};
     case MASU_READ_COPY:
     case MASU_READ_BACK:
         return (masu_use){1, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_READ_BIT,
@@ -128,7 +130,7 @@ VkImageMemoryBarrier masu_image_barrier(const masu_recorder *rec, masu_image_id 
         .subresourceRange = {.aspectMask =
                                  depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT,
                              .levelCount = 1,
-                             .layerCount = masu_images[id].layers}};
+                             .layerCount = VK_REMAINING_ARRAY_LAYERS}};
 }
 
 void masu_barrier_before(masu_recorder *rec, uint32_t pass) {

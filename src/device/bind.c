@@ -162,12 +162,12 @@ static masu_result create_view(masu_device *m, uint32_t image, VkFormat format,
         .pNext = usage == m->plan->images[image].usage ? NULL : &only,
         .image = m->objects.images[image],
         .viewType =
-            masu_images[image].layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D,
+            masu_images[image].layers != 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D,
         .format = format,
         .subresourceRange = {.aspectMask =
                                  depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT,
                              .levelCount = 1,
-                             .layerCount = masu_images[image].layers}};
+                             .layerCount = VK_REMAINING_ARRAY_LAYERS}};
     VkResult r = m->vk.CreateImageView(m->vk.device, &info, m->vk.allocator, view);
     if (MASU_FAILED(r, *view)) return masu_fail_vulkan(detail, r, "vkCreateImageView");
     masu_name(m, VK_OBJECT_TYPE_IMAGE_VIEW, MASU_HANDLE(*view), masu_images[image].name);

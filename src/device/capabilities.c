@@ -100,6 +100,12 @@ static masu_result choose_ray_query(masu_desc *desc, const masu_frame_plan *plan
                          "VK_KHR_ray_query"
                        : "the device does not offer VK_KHR_ray_query");
     }
+    if (plan->scene.host_meshes && forced) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "ray_query", 0, plan->scene.host_meshes,
+                         "ray_query is MASU_ON, but reserve.meshes has %u meshes, which are traced "
+                         "by the built-in BVH: use MASU_AUTO or MASU_OFF",
+                         plan->scene.host_meshes);
+    }
     if (plan->scene.skins && forced) {
         return masu_fail(
             detail, MASU_ERROR_SCENE, "ray_query", 0, plan->scene.skins,
@@ -107,7 +113,7 @@ static masu_result choose_ray_query(masu_desc *desc, const masu_frame_plan *plan
             "has %u skins",
             plan->scene.skins);
     }
-    if (plan->scene.skins) return MASU_OK;
+    if (plan->scene.skins || plan->scene.host_meshes) return MASU_OK;
     masu_result result = masu_ray_check(&plan->scene, vk, detail);
     if (result) return forced ? result : MASU_OK;
     desc->ray_query = MASU_ON;

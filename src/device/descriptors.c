@@ -33,7 +33,7 @@ static masu_result create_pool(masu_device *m, masu_detail *detail) {
         {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1 + uniforms * flights},
         {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1 + buffers * flights},
         {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-         MASU_PASS_ACCESSES * sets + MASU_SLOT_COUNT * m->plan->scene.texture_sets},
+         MASU_PASS_ACCESSES * sets + MASU_MAP_COUNT * m->plan->scene.texture_sets},
         {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, MASU_PASS_ACCESSES * sets},
         {VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1 + structures * flights}};
     VkDescriptorPoolCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
@@ -105,8 +105,8 @@ static masu_result create_global_sets(masu_device *m, uint32_t pass, masu_detail
     return MASU_OK;
 }
 
-/* An unused texture slot gets another slot's texture. The shader does not sample it, but every
- * binding of a set must be valid. */
+/* An unused texture slot gets another slot's texture, and so does the last one, that of live
+ * textures. The shader does not sample it, but every binding of a set must be valid. */
 static masu_result create_texture_sets(masu_device *m, masu_detail *detail) {
     masu_scene_view v = {0};
     if (m->plan->scene.texture_sets) v = masu_scene_data_view(&m->plan->scene);
@@ -116,12 +116,14 @@ static masu_result create_texture_sets(masu_device *m, masu_detail *detail) {
         if (result) return result;
         uint32_t any = 0;
         while (from->texture[any] == MASU_BLOB_NONE) any++;
-        for (uint32_t slot = 0; slot < MASU_SLOT_COUNT; slot++) {
-            uint32_t given = from->texture[slot];
+        for (uint32_t slot = 0; slot < MASU_MAP_COUNT; slot++) {
+            uint32_t given = slot < MASU_SLOT_COUNT ? from->texture[slot] : MASU_BLOB_NONE;
+            int live = slot == MASU_SLOT_COUNT && m->plan->needs.texture_maps;
             if (given == MASU_BLOB_NONE) given = from->texture[any];
             VkDescriptorImageInfo image = {.sampler =
                                                m->samplers[masu_sampler_of(from->wrap)],
-                                           .imageView = m->plan->textures[given].view,
+                                           .imageView = live ? m->views[MASU_IMAGE_TEXTURES]
+                                                             : m->plan->textures[given].view,
                                            .imageLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
             VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                                           .dstSet = m->texture_sets[i],

@@ -121,7 +121,7 @@ static void clear_image(const masu_recorder *rec, masu_image_id image, const mas
 }
 
 /* Puts persistent images into the layout that the first frame expects. Their content is not read,
- * except in images with two layers (ping-pong), which are cleared: if a host skips a frame without
+ * except in ping-pong images and live textures, which are cleared: if a host skips a frame without
  * setting frame.cut, the next frame reads a layer that was never written, and 0 means "no
  * samples". */
 static void record_persistent_images(masu_device *m, VkCommandBuffer cmd) {
@@ -132,7 +132,7 @@ static void record_persistent_images(masu_device *m, VkCommandBuffer cmd) {
         if (!m->plan->images[i].used || !masu_images[i].kept) continue;
         masu_use from = {.stages = VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT,
                          .layout = VK_IMAGE_LAYOUT_UNDEFINED};
-        if (masu_images[i].layers > 1) {
+        if (masu_images[i].layers != 1) {
             clear_image(&rec, (masu_image_id)i, &copy);
             from = copy;
         }
@@ -236,10 +236,6 @@ static void copy(const void *from, masu_chunk chunk, unsigned char *to) {
     memcpy(to, (const unsigned char *)from + chunk.offset, (size_t)chunk.bytes);
 }
 
-static void load_vertices(const source *s, masu_chunk chunk, unsigned char *to) {
-    copy(s->v->vertices, chunk, to);
-}
-
 /* Copies the part of a range that falls into the chunk. The range has `bytes` bytes and begins at
  * offset `at` of the buffer. */
 static void copy_part(const void *from, uint64_t at, uint64_t bytes, masu_chunk chunk,
@@ -249,6 +245,13 @@ static void copy_part(const void *from, uint64_t at, uint64_t bytes, masu_chunk 
     if (first < end)
         memcpy(to + (first - chunk.offset), (const unsigned char *)from + (first - at),
                (size_t)(end - first));
+}
+
+/* The vertices of the blob, then those of desc.reserve.meshes. */
+static void load_vertices(const source *s, masu_chunk chunk, unsigned char *to) {
+    uint64_t own = s->scene->vertices - s->scene->host_vertices;
+    memset(to, 0, s->scene->host_vertices ? (size_t)chunk.bytes : 0);
+    copy_part(s->v->vertices, 0, own * sizeof(masu_blob_vertex), chunk, to);
 }
 
 /* Bind-pose vertices, then the deltas of their morph targets. */
@@ -267,10 +270,14 @@ static void load_texcoords(const source *s, masu_chunk chunk, unsigned char *to)
     static const uint32_t white = MASU_BLOB_WHITE;
     static const float zero[2] = {0.0f, 0.0f};
     const masu_texcoord_layout_of at = masu_texcoord_layout(s->scene);
-    copy_part(s->v->texcoords, 0, at.second, chunk, to);
-    copy_part(s->v->texcoords_1 ? s->v->texcoords_1 : zero, at.second, at.colors - at.second, chunk,
-              to);
-    copy_part(s->v->colors ? s->v->colors : &white, at.colors, at.bytes - at.colors, chunk, to);
+    const uint64_t host = s->scene->host_vertices; /* at the end of each part */
+    uint64_t second = at.colors - at.second, colors = at.bytes - at.colors;
+    if (s->scene->second_texcoords) second -= 8 * host;
+    if (s->scene->vertex_colors) colors -= 4 * host;
+    memset(to, 0, host ? (size_t)chunk.bytes : 0);
+    copy_part(s->v->texcoords, 0, at.second - 8 * host, chunk, to);
+    copy_part(s->v->texcoords_1 ? s->v->texcoords_1 : zero, at.second, second, chunk, to);
+    copy_part(s->v->colors ? s->v->colors : &white, at.colors, colors, chunk, to);
 }
 
 static void load_smaa_area(const source *s, masu_chunk chunk, unsigned char *to) {
@@ -338,8 +345,8 @@ static uint64_t write_textures(masu_device *m, const masu_scene_view *v, unsigne
     masu_texture_region region;
     while (masu_texture_next(v->textures, m->plan->scene.texture_arrays, m->plan->compressed, room,
                              &m->texture_next, &used, &region)) {
-        masu_texture_write(&v->textures[region.texture], v->texels, m->plan->compressed, &region,
-                           to);
+        masu_texture_write_region(&v->textures[region.texture], v->texels, m->plan->compressed,
+                                  &region, to);
         bytes += used - region.offset;
     }
     return bytes;

@@ -204,7 +204,7 @@ static masu_result create_image(const masu_vk *vk, masu_frame_plan *plan, uint32
                               .format = masu_plan_format(plan, i),
                               .extent = {image->width, image->height, 1},
                               .mipLevels = 1,
-                              .arrayLayers = masu_images[i].layers,
+                              .arrayLayers = masu_plan_layers(plan, i),
                               .samples = VK_SAMPLE_COUNT_1_BIT,
                               .tiling = VK_IMAGE_TILING_OPTIMAL,
                               .usage = image->usage,

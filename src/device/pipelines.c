@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "device/bind.h"
+#include "scene/code.h"
 #include "scene/scene.h"
 #include "scene/trace.h"
 #include "shared/masu_shared.h"
@@ -53,18 +54,20 @@ static uint64_t now(const masu_device *m) {
  *   17  capsule or rectangle lights            18  rays share the lighting of surfaces they hit
  *   19  bit 0: rays sample vertex colours; bit 1: maps on the second texture coordinates
  *   20  skins have morph targets           21  opaque materials have lobes (specular colour, sheen,
- *                                              anisotropy) */
-enum { SPECIAL_COUNT = 22 };
+ *                                              anisotropy)
+ *   22  orthographic cameras: few bits of depth are kept as those of 1 - depth
+ *   23  materials may show live textures
+ *   24  MASU_DRAWS_* of materials.h           25  frames change the environment */
 
 static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
-                                       VkBool32 constants[SPECIAL_COUNT]) {
+                                       VkBool32 constants[MASU_SPECIAL_COUNT]) {
 #define ENTRY(n)                                                                                   \
     { n, (n) * sizeof *constants, sizeof *constants }
-    static const VkSpecializationMapEntry entries[SPECIAL_COUNT] = {
+    static const VkSpecializationMapEntry entries[MASU_SPECIAL_COUNT] = {
         ENTRY(0),  ENTRY(1),  ENTRY(2),  ENTRY(3),  ENTRY(4),  ENTRY(5),  ENTRY(6),
         ENTRY(7),  ENTRY(8),  ENTRY(9),  ENTRY(10), ENTRY(11), ENTRY(12), ENTRY(13),
         ENTRY(14), ENTRY(15), ENTRY(16), ENTRY(17), ENTRY(18), ENTRY(19), ENTRY(20),
-        ENTRY(21)};
+        ENTRY(21), ENTRY(22), ENTRY(23), ENTRY(24), ENTRY(25)};
 #undef ENTRY
     constants[0] = first;
     constants[1] = m->plan->needs.sky != 0;
@@ -97,15 +100,20 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
     constants[19] = scene->vertex_colors | scene->second_texcoords << 1;
     constants[20] = scene->skin_targets != 0;
     constants[21] = scene->lobes;
-    return (VkSpecializationInfo){SPECIAL_COUNT, entries, SPECIAL_COUNT * sizeof *constants,
+    constants[22] = scene->flat_lens;
+    constants[23] = m->plan->needs.texture_maps != 0;
+    constants[24] = (m->plan->needs.looks ? MASU_DRAWS_LOOKS : 0u) |
+                    (scene->depth_biases ? MASU_DRAWS_BIASES : 0u);
+    constants[25] = m->plan->desc.live_environment != 0;
+    return (VkSpecializationInfo){MASU_SPECIAL_COUNT, entries, MASU_SPECIAL_COUNT * sizeof *constants,
                                   constants};
 }
 
 /* Key of a pipeline in the pool; 0 without a pool. */
 static uint64_t key_of(const masu_device *m, uint32_t pass, const masu_code codes[2], uint32_t form,
-                       const VkBool32 constants[SPECIAL_COUNT]) {
+                       const VkBool32 constants[MASU_SPECIAL_COUNT]) {
     if (!m->plan->desc.vulkan.pipelines) return 0;
-    return masu_pool_key(m, pass, codes, form, constants, SPECIAL_COUNT);
+    return masu_pool_key(m, pass, codes, form, constants, MASU_SPECIAL_COUNT);
 }
 
 /* ---- Layouts --------------------------------------------------------------------------------- */
@@ -128,16 +136,16 @@ static int draws_polygons(uint32_t pass) {
            g == MASU_GEOMETRY_BLENDED || g == MASU_GEOMETRY_PICK || g == MASU_GEOMETRY_CASTERS;
 }
 
-/* Set 2: the textures of a draw. */
+/* Set 2: the textures of a draw, and live textures. */
 static masu_result create_texture_layout(masu_device *m, masu_detail *detail) {
     if (!m->plan->scene.texture_arrays) return MASU_OK;
-    VkDescriptorSetLayoutBinding bindings[MASU_SLOT_COUNT];
-    for (uint32_t i = 0; i < MASU_SLOT_COUNT; i++) {
+    VkDescriptorSetLayoutBinding bindings[MASU_MAP_COUNT];
+    for (uint32_t i = 0; i < MASU_MAP_COUNT; i++) {
         bindings[i] =
             (VkDescriptorSetLayoutBinding){i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1,
                                            VK_SHADER_STAGE_FRAGMENT_BIT, NULL};
     }
-    return create_set_layout(m, bindings, MASU_SLOT_COUNT, &m->texture_layout, detail);
+    return create_set_layout(m, bindings, MASU_MAP_COUNT, &m->texture_layout, detail);
 }
 
 /* Set 1: reads first, then writes, in the order of the pass's row. */
@@ -215,7 +223,7 @@ static void name_form(const masu_device *m, uint32_t pass, int last, VkPipeline 
 static masu_result create_compute(masu_device *m, uint32_t pass, int last, VkPipeline *out,
                                   masu_detail *detail) {
     VkShaderModule module = VK_NULL_HANDLE;
-    VkBool32 constants[SPECIAL_COUNT];
+    VkBool32 constants[MASU_SPECIAL_COUNT];
     VkSpecializationInfo special = specialise(m, m->plan->desc.debug.counters != 0, constants);
     masu_code codes[2] = {masu_compute_code(m->plan, pass, last), {0}};
     uint64_t key = key_of(m, pass, codes, 0, constants);
@@ -377,7 +385,7 @@ static VkResult create_graphics_pipeline(masu_device *m, uint32_t pass,
                  geometry == MASU_GEOMETRY_BOXES || geometry == MASU_GEOMETRY_PICK ||
                  geometry == MASU_GEOMETRY_DEPTHS || geometry == MASU_GEOMETRY_CASTERS ||
                  geometry == MASU_GEOMETRY_TILES;
-    VkBool32 constants[SPECIAL_COUNT];
+    VkBool32 constants[MASU_SPECIAL_COUNT];
     VkSpecializationInfo special = specialise(m, masked, constants);
     VkPipelineShaderStageCreateInfo stages[2];
     for (uint32_t i = 0; i < 2; i++) {
@@ -386,10 +394,7 @@ static VkResult create_graphics_pipeline(masu_device *m, uint32_t pass,
             .stage = i ? VK_SHADER_STAGE_FRAGMENT_BIT : VK_SHADER_STAGE_VERTEX_BIT,
             .module = modules[i],
             .pName = "main",
-            .pSpecializationInfo =
-                i || geometry == MASU_GEOMETRY_BLENDED || geometry == MASU_GEOMETRY_SPRITES
-                    ? &special
-                    : NULL};
+            .pSpecializationInfo = &special};
     }
     VkVertexInputBindingDescription bindings[] = {
         {0, sizeof(masu_blob_vertex), VK_VERTEX_INPUT_RATE_VERTEX},
@@ -483,7 +488,7 @@ static masu_result create_pipeline(masu_device *m, uint32_t pass, int textured, 
                                    int culled, int emitting, VkPipeline *out, masu_detail *detail) {
     masu_draw_code code = masu_draw_code_of(m->plan, pass, textured);
     const masu_code codes[2] = {code.vertex, code.fragment};
-    VkBool32 constants[SPECIAL_COUNT];
+    VkBool32 constants[MASU_SPECIAL_COUNT];
     (void)specialise(m, masked, constants);
     uint32_t form =
         (uint32_t)textured | (culled ? 2u : 0u) | (masked ? 4u : 0u) | (emitting ? 8u : 0u);

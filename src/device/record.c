@@ -46,7 +46,8 @@ static VkExtent2D groups_of(const masu_recorder *rec, uint32_t pass, const masu_
     case MASU_EXTENT_PROBES: return (VkExtent2D){(plan->scene.probes + 63) / 64, 1};
     case MASU_EXTENT_SKINS:
         return (VkExtent2D){(plan->scene.max_skinned + 63) / 64, plan->scene.skins};
-    case MASU_EXTENT_SKIN_TREES: return (VkExtent2D){plan->scene.skins, 1};
+    case MASU_EXTENT_SKIN_TREES:
+        return (VkExtent2D){plan->scene.skins + plan->scene.host_meshes, 1};
     case MASU_EXTENT_KEPT: return (VkExtent2D){(plan->scene.instances + 63) / 64, views};
     case MASU_EXTENT_BATCHES: return (VkExtent2D){few + rec->draws->large_count, views};
     /* One workgroup per tile. Other extents have one invocation per pixel or block. */
@@ -94,10 +95,17 @@ static void record_compute(masu_recorder *rec, uint32_t pass, VkDescriptorSet se
                                 rec->flight * rec->m->plan->buffers[MASU_BUFFER_BOUNCE].stride +
                                     (rays ? offsetof(struct masu_bounce_header, rays)
                                           : offsetof(struct masu_bounce_header, probes)));
+    } else if (masu_passes[pass].extent == MASU_EXTENT_TEXTURES) {
+        vk->CmdDispatchIndirect(rec->cmd, rec->m->objects.buffers[MASU_BUFFER_TEXELS],
+                                rec->flight * rec->m->plan->buffers[MASU_BUFFER_TEXELS].stride);
     } else if (masu_passes[pass].extent == MASU_EXTENT_LOCAL_SDF) {
         VkDeviceSize slot = rec->flight * rec->m->plan->buffers[MASU_BUFFER_LOCAL_FACES].stride;
         vk->CmdDispatchIndirect(rec->cmd, rec->m->objects.buffers[MASU_BUFFER_LOCAL_FACES],
                                 slot + offsetof(struct masu_local_face_uniforms, groups));
+    } else if (masu_passes[pass].extent == MASU_EXTENT_MESHES) {
+        vk->CmdDispatchIndirect(rec->cmd, rec->m->objects.buffers[MASU_BUFFER_MESH_UPLOAD],
+                                rec->flight *
+                                    rec->m->plan->buffers[MASU_BUFFER_MESH_UPLOAD].stride);
     } else if (tiles != MASU_BUFFER_COUNT) {
         vk->CmdDispatchIndirect(rec->cmd, rec->m->objects.buffers[tiles], 0);
     } else {
@@ -138,6 +146,8 @@ SAME_PLACE(detail_u, detail_u);
 SAME_PLACE(detail_v, detail_v);
 SAME_PLACE(instances, instances);
 SAME_PLACE(material, blended);
+_Static_assert(offsetof(struct masu_push_pick, nearer) == offsetof(struct masu_push_gbuffer, meso),
+               "what is picked has no meso, and its depth bias there");
 
 #define GRAPHICS_STAGES (VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT)
 
@@ -245,10 +255,13 @@ static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep, int 
     if (lamp) push.material = face;
     for (uint32_t b = 0; b < rec->draws->batch_count; b++) {
         const masu_batch *batch = &rec->draws->batches[b];
+        if (b == rec->draws->batch_count - m->plan->reserve.meshes)
+            vk->CmdBindIndexBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_MESH_INDICES], 0,
+                                   VK_INDEX_TYPE_UINT32);
         push.instances = lists + batch->first_listed;
         for (uint32_t d = 0; d < batch->draw_count; d++) {
             masu_draw_material drawn = kept ? rec->draws->materials[batch->first_draw + d]
-                                            : masu_draw_material_of(&v, batch->first_primitive + d);
+                                            : masu_draw_material_of(&v, batch, d);
             int blended = (drawn.flags & MASU_MATERIAL_IS_BLEND) != 0;
             if (batch->mirrored) drawn.flags &= ~(uint32_t)MASU_MATERIAL_IS_SINGLE;
             if ((pick ? pick_sweep_of(&drawn) : sweep_of(&drawn, casters)) != sweep) continue;
@@ -259,11 +272,14 @@ static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep, int 
                 /* a cascade reads `rise` there */
                 memcpy(&push.meso, &drawn.rise, sizeof push.meso);
             } else if (pick) {
+                float nearer = 1.0f + drawn.depth_bias;
                 push.material = blended ? 1 : 0;
                 push.flags = drawn.flags;
+                memcpy(&push.meso, &nearer, sizeof push.meso); /* `nearer` of a pick */
             } else {
                 push.material = drawn.material;
                 push.meso = drawn.meso;
+                push.nearer = 1.0f + drawn.depth_bias;
             }
             if (sweep) bind_maps(rec, layout, &drawn, &push, &bound);
             memcpy(&block.own, &push, sizeof push);
@@ -365,7 +381,7 @@ static void record_transparents(masu_recorder *rec, const VkDescriptorSet *sets)
             record_sprites(rec, MASU_PASS_PARTICLES, sets[MASU_PASS_PARTICLES],
                            MASU_SPRITE_DRAWS + k);
         if (among || tints) bind_transparents(rec, sets[MASU_PASS_TRANSPARENTS], tints);
-        push.instances = (uint32_t)m->plan->drawn.transparents + MASU_TRANSPARENT_WORDS * k;
+        push.instances = (uint32_t)m->plan->drawn.transparents + masu_transparent_words(m->plan) * k;
         memcpy(&block.own, &push, sizeof push);
         vk->CmdPushConstants(rec->cmd, layout, GRAPHICS_STAGES, 0, sizeof block, &block);
         draw_slot(rec, at, k == 0 || among);

@@ -120,7 +120,7 @@ static masu_bounce_cause cause_of(const masu_bounce *b, const masu_lights *light
     const struct masu_frame_uniforms *u = &f->u;
     memset(&c, 0, sizeof c);
     c.lights = lights->changes;
-    c.instances = in->changes;
+    c.instances = in->changes + in->looks.changes;
     c.materials = materials->changes;
     memcpy(c.params, u->sdf_params, sizeof c.params);
     if (f->plan->needs.timed && f->plan->needs.bounce_sdf) c.time = u->eye_hi[3];
@@ -131,6 +131,7 @@ static masu_bounce_cause cause_of(const masu_bounce *b, const masu_lights *light
     memcpy(c.sky[9], u->ambient, sizeof u->ambient);
     memcpy(c.sky[10], u->sky_zenith, sizeof u->sky_zenith);
     memcpy(c.sky[11], u->sky_horizon, sizeof u->sky_horizon);
+    memcpy(c.sky[12], u->environment, sizeof u->environment);
     return c;
 }
 

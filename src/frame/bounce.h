@@ -25,7 +25,7 @@ enum {
 /* What light meets, as far as the host can change it. */
 typedef struct masu_bounce_cause {
     uint32_t lights, instances, materials;
-    float sun[2][3], sky[14][4], params[MASU_SDF_PARAM_VEC4S][4], time;
+    float sun[2][3], sky[15][4], params[MASU_SDF_PARAM_VEC4S][4], time;
 } masu_bounce_cause;
 
 typedef struct masu_bounce {

@@ -63,7 +63,8 @@ void masu_bounds_copy_scene(masu_bounds *b, const masu_frame_plan *plan, const m
     const masu_scene_data *scene = &plan->scene;
     b->box_stride = (uint64_t)scene->instances + MASU_BOX_PADDING;
     for (uint32_t k = 0; k < 3; k++) b->swept[0][k] = 1e30, b->swept[1][k] = -1e30;
-    for (uint32_t mesh = 0; mesh < scene->meshes; mesh++) {
+    memset(b->meshes, 0, scene->meshes * sizeof *b->meshes);
+    for (uint32_t mesh = 0; mesh < masu_own_meshes(plan); mesh++) {
         memcpy(b->meshes[mesh], v->meshes[mesh].aabb_min, sizeof v->meshes[mesh].aabb_min);
         memcpy(b->meshes[mesh] + 3, v->meshes[mesh].aabb_max, sizeof v->meshes[mesh].aabb_max);
     }

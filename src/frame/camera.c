@@ -118,8 +118,8 @@ static masu_result check_lens(const masu_camera *c, float near_distance, masu_de
         if (!result) result = check_sides("camera.bottom", (double)c->bottom, "camera.top", (double)c->top, detail);
         if (result) return result;
     }
-    if (has_window(c) ? !isfinite(c->fov_y) : !(c->fov_y >= 0.001f && c->fov_y <= 3.1f))
-        return masu_fail_number(detail, "camera.fov_y", (double)c->fov_y, "0.001 to 3.1 radians");
+    if (has_window(c) ? !isfinite(c->fov_y) : !(c->fov_y >= 0.0005f && c->fov_y <= 3.1f))
+        return masu_fail_number(detail, "camera.fov_y", (double)c->fov_y, "0.0005 to 3.1 radians");
     for (uint32_t k = 0; k < 2; k++) {
         if (!(fabsf(c->jitter[k]) <= 1.0f))
             return masu_fail_element(detail, "camera.jitter", k, (double)c->jitter[k],

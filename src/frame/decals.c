@@ -36,6 +36,8 @@ static int is_fine(const masu_decal *d) {
     int fine = isfinite(d->opacity) && isfinite(d->roughness) && isfinite(d->metallic) && isfinite(d->edge) &&
                isfinite(d->inner) && isfinite(d->outer) && d->opacity > 0.0f;
     for (uint32_t k = 0; k < 12; k++) fine &= isfinite(d->rows[k]) != 0;
+    fine &= isfinite(d->emission) != 0;
+    if (d->texture) fine &= masu_is_cell(d->uv);
     for (uint32_t k = 0; k < 3; k++) fine &= isfinite(d->color[k]) != 0 && isfinite(d->position[k]) != 0;
     return fine;
 }
@@ -74,8 +76,8 @@ static int find_pixels(const masu_decal *d, const masu_sprite_eye *eye, const ui
 
 /* low, high: its pixels. */
 static void write_decal(const masu_decal *d, const masu_sprite_eye *eye, double into[3][3], const uint32_t low[2],
-                        const uint32_t high[2], unsigned char *to) {
-    float v[4 * MASU_DECAL_VEC4S] = {0};
+                        const uint32_t high[2], uint32_t bytes, unsigned char *to) {
+    float v[4 * MASU_TEXTURED_DECAL_VEC4S] = {0};
     float inner = d->inner, outer = d->outer;
     uint32_t flags = d->flags & (MASU_DECAL_ROUND | MASU_DECAL_KEEP_COLOR), ends[2];
     double length = 0.0;
@@ -103,20 +105,26 @@ static void write_decal(const masu_decal *d, const masu_sprite_eye *eye, double 
     memcpy(&v[24], ends, sizeof ends);
     v[26] = (float)cos((double)outer);
     v[27] = (float)(1.0 / fmax(cos((double)inner) - (double)v[26], 1e-4));
-    memcpy(to, v, sizeof v);
+    if (d->texture) {
+        masu_cell_write(d->uv, &v[28]);
+        memcpy(&v[32], &d->texture, sizeof d->texture);
+    }
+    v[33] = masu_clamped(d->emission, 0.0f, 1e6f);
+    memcpy(to, v, bytes);
 }
 
 uint32_t masu_decals_write(const masu_frame_data *f, const masu_sprite_eye *eye, unsigned char *to,
                            uint32_t part[4]) {
     const masu_rung_plan *rp = masu_frame_rung_plan(f);
     const uint32_t size[2] = {rp->render_width, rp->render_height};
+    const uint32_t bytes = f->plan->sprites.decal * (uint32_t)sizeof(masu_vec4);
     uint32_t count = 0, least[2] = {size[0], size[1]}, greatest[2] = {0, 0};
     for (uint32_t i = 0; i < f->desc.decal_count; i++) {
         const masu_decal *d = &f->desc.decals[i];
         uint32_t low[2], high[2];
         double into[3][3];
         if (!is_fine(d) || !invert(d->rows, into) || !find_pixels(d, eye, size, low, high)) continue;
-        write_decal(d, eye, into, low, high, to + count++ * MASU_DECAL_VEC4S * sizeof(masu_vec4));
+        write_decal(d, eye, into, low, high, bytes, to + (size_t)count++ * bytes);
         for (uint32_t k = 0; k < 2; k++) {
             if (least[k] > low[k]) least[k] = low[k];
             if (greatest[k] < high[k]) greatest[k] = high[k];

@@ -32,8 +32,8 @@ uint32_t masu_handle_index(const masu_handles *handles, uint64_t id) {
     return masu_handle_at(handles, index) == id ? index : UINT32_MAX;
 }
 
-uint32_t masu_handle_free(const masu_handles *handles) {
-    for (uint32_t i = handles->count - handles->reserve; i < handles->count; i++) {
+uint32_t masu_handle_free(const masu_handles *handles, uint32_t first, uint32_t count) {
+    for (uint32_t i = first; i < first + count; i++) {
         uint32_t lives = handles->lives[i - (handles->count - handles->reserve)];
         if (!(lives & 1u) && lives != MASU_HANDLE_RETIRED) return i;
     }

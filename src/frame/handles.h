@@ -52,8 +52,8 @@ static inline void masu_handle_turn(masu_handles *handles, uint32_t index) {
     handles->lives[index - (handles->count - handles->reserve)]++;
 }
 
-/* The first free index of the reserve; UINT32_MAX: none. */
-uint32_t masu_handle_free(const masu_handles *handles);
+/* The first free one of `count` indices of the reserve from `first` on; UINT32_MAX: none. */
+uint32_t masu_handle_free(const masu_handles *handles, uint32_t first, uint32_t count);
 
 /* As masu_handle_index, for ids that the host gives. MASU_ERROR_ARGUMENT: the detail names `what`,
  * "instance" for example. */

@@ -21,6 +21,7 @@ void masu_instances_alloc(masu_instances *in, masu_arena *arena, const masu_fram
         in->previous_low =
             masu_arena_alloc(arena, "previous low positions", count, sizeof *in->low, 4);
     }
+    masu_looks_alloc(&in->looks, arena, plan);
     in->of_mesh = NULL;
     if (!reserve) return;
     in->of_mesh =
@@ -46,6 +47,8 @@ static void init_reserve(masu_instances *in, const masu_frame_plan *plan) {
         memset(&in->now[i], 0, sizeof in->now[i]);
         if (plan->needs.velocity) in->previous[i] = in->now[i];
         in->names[i] = in->meshes[i] = 0;
+        if (i >= masu_mesh_instances(plan))
+            in->meshes[i] = masu_own_meshes(plan) + i - masu_mesh_instances(plan);
         in->flags[i] = (uint8_t)(MASU_INSTANCE_HIDDEN | frames_to_write(plan));
         in->hidden_count++;
     }
@@ -69,6 +72,7 @@ void masu_instances_copy_scene(masu_instances *in, const masu_frame_plan *plan,
                                   plan->reserve.places.instances, in->lives);
     in->dirty_count = plan->scene.instances;
     in->hidden_count = in->changes = 0;
+    masu_looks_init(&in->looks, plan);
     if (plan->reserve.places.instances) init_reserve(in, plan);
 }
 
@@ -126,6 +130,11 @@ void masu_instances_show(masu_instances *in, const masu_frame_plan *plan, uint32
         in->hidden_count++;
     in->changes++;
     mark_dirty(in, plan, i);
+}
+
+void masu_instances_set_look(masu_instances *in, const masu_frame_plan *plan, uint32_t i,
+                             const masu_look *look) {
+    if (masu_looks_set(&in->looks, plan, i, look)) masu_instances_touch(in, plan, i);
 }
 
 uint32_t masu_instances_find(const masu_instances *in, const masu_frame_plan *plan,
@@ -194,6 +203,7 @@ static void write_rows(struct masu_instance_data *to, const struct masu_instance
 }
 
 void masu_instances_write(masu_instances *in, const masu_frame_data *f) {
+    masu_looks_write(&in->looks, f);
     int all = masu_instances_rebased(in, f);
     if (!in->dirty_count && !all) return;
     memcpy(in->slot_origin[f->slot], f->origin, sizeof f->origin);

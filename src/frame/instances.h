@@ -4,6 +4,7 @@
 
 #include "frame/frame_data.h"
 #include "frame/handles.h"
+#include "frame/looks.h"
 #include "scene/blob_section.h"
 
 enum {
@@ -30,6 +31,7 @@ typedef struct masu_instances {
     masu_handles handles;
     /* With desc.double_positions: what rounding to float leaves of translations; else NULL. */
     float (*low)[3], (*previous_low)[3];
+    masu_looks looks;
     double slot_origin[MASU_MAX_FLIGHT][3]; /* that translations in the slot are relative to */
 } masu_instances;
 
@@ -46,6 +48,10 @@ static inline int masu_instance_hidden(const masu_instances *in, uint32_t instan
 
 /* Whether it was moved, bent, shown or hidden since the last frame; to be asked before masu_instances_write. */
 int masu_instance_moved(const masu_instances *in, const masu_frame_plan *plan, uint32_t instance);
+
+/* masu_instance_set_look of the public header, of a look that masu_looks_check has accepted. */
+void masu_instances_set_look(masu_instances *in, const masu_frame_plan *plan, uint32_t instance,
+                             const masu_look *look);
 
 /* Of finite rows. */
 void masu_instances_place(masu_instances *in, const masu_frame_plan *plan, uint32_t instance,

@@ -44,7 +44,7 @@ void masu_local_shadows_write_scene(const masu_device *device, const masu_draws 
     if (!plan->needs.local_shadows || !draws->batch_count) return;
     for (uint32_t slot = 0; slot < plan->desc.frames_in_flight; slot++) {
         for (uint32_t face = 0; face < plan->local_faces; face++)
-            (void)masu_draws_write(draws, v, draws_of(device, slot, face));
+            (void)masu_draws_write(draws, v, plan, draws_of(device, slot, face));
     }
 }
 
@@ -283,13 +283,17 @@ static void touch_faces(masu_local_shadows *s, const float box[6], uint64_t fram
     }
 }
 
+static int casts(const masu_instances *in, uint32_t i) {
+    return !masu_instance_hidden(in, i) && !masu_look_shadowless(&in->looks, i);
+}
+
 static void follow_casters(masu_local_shadows *s, const masu_instances *in, const masu_bounds *bounds,
                            const masu_frame_data *f) {
     for (uint32_t i = 0; in->dirty_count && i < f->plan->scene.instances; i++) {
         if (!masu_instance_moved(in, f->plan, i)) continue;
         touch_faces(s, s->boxes[i], f->number);
         masu_bounds_of(bounds, i, s->boxes[i]);
-        if (masu_instance_hidden(in, i)) s->boxes[i][3] = -1.0f;
+        if (!casts(in, i)) s->boxes[i][3] = -1.0f;
         touch_faces(s, s->boxes[i], f->number);
     }
 }
@@ -339,11 +343,11 @@ static uint32_t list_casters(masu_local_shadows *s, const masu_instances *in, co
         uint32_t kept = 0, end = mesh->first_instance + mesh->instance_count;
         forms = 1 + mesh->lod_count;
         for (uint32_t i = mesh->first_instance; i < end; i++) {
-            if (s->marks[i] && touches(light, face, s->boxes[i]) && !masu_instance_hidden(in, i))
+            if (s->marks[i] && touches(light, face, s->boxes[i]) && casts(in, i))
                 ids[mesh->first_listed + kept++] = i;
         }
         for (uint32_t i = masu_instances_added(in, mesh->mesh); i != MASU_BLOB_NONE; i = masu_instances_next(in, i)) {
-            if (s->marks[i] && touches(light, face, s->boxes[i]) && !masu_instance_hidden(in, i))
+            if (s->marks[i] && touches(light, face, s->boxes[i]) && casts(in, i))
                 ids[mesh->first_listed + kept++] = i;
         }
         for (uint32_t level = 0; level < forms; level++) {

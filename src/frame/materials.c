@@ -67,15 +67,19 @@ static float specular_in(float given) {
                                            : 0.5f;
 }
 
+/* The number of the live texture that a material shows, which is kept with its opacity. */
+static uint32_t texture_in(float opacity) { return (uint32_t)(0.5f * opacity); }
+
 masu_material_state masu_materials_get(const masu_materials *s, uint32_t material) {
     const struct masu_material_data *now = &s->now[material];
     uint32_t cutoff = s->flags[material] >> MASU_MATERIAL_CUTOFF_SHIFT & 255u;
     masu_material_state state = {.roughness = now->base_color[3],
-                                 .metallic = now->emissive[3],
+                                 .metallic = fmaxf(now->emissive[3], 0.0f), /* below 0: refracts */
                                  .specular = specular_in(now->more[0]),
                                  .coat = now->more[1],
                                  .coat_roughness = now->more[2],
-                                 .opacity = now->more[3],
+                                 .opacity = now->more[3] - 2.0f * (float)texture_in(now->more[3]),
+                                 .texture = texture_in(now->more[3]),
                                  .mode = mode_of(s->flags[material]),
                                  .cutoff = (float)cutoff / 255.0f};
     memcpy(state.base_color, now->base_color, sizeof state.base_color);
@@ -116,6 +120,18 @@ static masu_result fixed(uint32_t material, const char *what, const char *why, m
                      "material %u: %s cannot be changed: %s", material, what, why);
 }
 
+static masu_result check_texture(const masu_materials *s, const masu_frame_plan *plan, uint32_t i,
+                                 uint32_t texture, masu_detail *detail) {
+    if (!texture) return MASU_OK;
+    if (texture > plan->desc.reserve.textures) {
+        return masu_fail(detail, MASU_ERROR_LIMIT, "texture", texture, plan->desc.reserve.textures,
+                         "material %u: texture is %u, desc.reserve.textures is %u", i, texture,
+                         plan->desc.reserve.textures);
+    }
+    if (s->flags[i] & MASU_MAP_BASE) return MASU_OK;
+    return fixed(i, "texture", "it has no base-colour map", detail);
+}
+
 /* What would change a pass, a pipeline or an image. */
 static masu_result check_fixed(const masu_materials *s, const masu_frame_plan *plan, uint32_t i,
                                const masu_material_state *to, masu_detail *detail) {
@@ -127,6 +143,8 @@ static masu_result check_fixed(const masu_materials *s, const masu_frame_plan *p
         return fixed(i, "cutoff", "recordings hold it", detail);
     if (!blends && to->opacity != now.opacity)
         return fixed(i, "opacity", "the material is not blended", detail);
+    if (s->now[i].emissive[3] < 0.0f && to->metallic > 0.0f)
+        return fixed(i, "metallic", "the material refracts", detail);
     if (to->coat > 0.0f && !plan->scene.coats)
         return fixed(i, "coat", "the scene has no material with one, and no tables for it", detail);
     if (s->now[i].more[0] < 0.0f) {
@@ -143,13 +161,17 @@ static masu_result check_fixed(const masu_materials *s, const masu_frame_plan *p
 masu_result masu_materials_set(masu_materials *s, const masu_frame_plan *plan, uint32_t material,
                                const masu_material_state *state, masu_detail *detail) {
     int lobe = s->now[material].more[0] < 0.0f;
+    float volume = s->now[material].emissive[3];
     masu_result result = check_factors(material, state, lobe, detail);
     if (!result) result = check_fixed(s, plan, material, state, detail);
+    if (!result) result = check_texture(s, plan, material, state->texture, detail);
     if (result) return result;
     struct masu_material_data to = {
         {state->base_color[0], state->base_color[1], state->base_color[2], state->roughness},
-        {state->emissive[0], state->emissive[1], state->emissive[2], state->metallic},
-        {lobe ? s->now[material].more[0] : state->specular, state->coat, state->coat_roughness, state->opacity}};
+        {state->emissive[0], state->emissive[1], state->emissive[2],
+         volume < 0.0f ? volume : state->metallic},
+        {lobe ? s->now[material].more[0] : state->specular, state->coat, state->coat_roughness,
+         state->opacity + 2.0f * (float)state->texture}};
     s->changes += memcmp(&s->now[material], &to, sizeof to) != 0;
     s->now[material] = to;
     return MASU_OK;

@@ -13,7 +13,8 @@ void masu_models_alloc(masu_models *s, masu_arena *arena, const masu_frame_plan 
     s->of_instance =
         masu_arena_alloc(arena, "models of instances", scene->models ? scene->instances : 0,
                          sizeof *s->of_instance, 4);
-    s->lives = masu_arena_alloc(arena, "reserve models", plan->reserve.models, sizeof *s->lives, 4);
+    s->lives = masu_arena_alloc(arena, "reserve models", plan->reserve.models + plan->reserve.meshes,
+                                sizeof *s->lives, 4);
     s->offsets = NULL;
     if (plan->desc.double_positions)
         s->offsets =
@@ -50,7 +51,7 @@ void masu_models_copy_scene(masu_models *s, masu_instances *in, const masu_frame
                             const masu_scene_view *v) {
     const masu_scene_data *scene = &plan->scene;
     s->handles = masu_handles_of(v->hash, MASU_HANDLE_MODEL, masu_own_models(plan),
-                                 plan->reserve.models, s->lives);
+                                 plan->reserve.models + plan->reserve.meshes, s->lives);
     for (uint32_t i = 0; scene->models && i < scene->instances; i++)
         s->of_instance[i] = MASU_BLOB_NONE;
     for (uint32_t n = 0; n < masu_own_nodes(plan); n++) {
@@ -80,6 +81,17 @@ void masu_models_copy_scene(masu_models *s, masu_instances *in, const masu_frame
     }
     for (uint32_t i = masu_own_models(plan); i < scene->models; i++)
         s->models[i] = (masu_placed_model){.like = MASU_BLOB_NONE};
+    uint32_t first_node = scene->model_nodes - plan->reserve.meshes;
+    for (uint32_t k = 0; k < plan->reserve.meshes; k++) { /* a node without a transform each */
+        masu_node *node = &s->nodes[first_node + k];
+        uint32_t instance = masu_mesh_instances(plan) + k;
+        s->models[masu_mesh_models(plan) + k] = (masu_placed_model){
+            .first_node = first_node + k, .node_count = 1, .like = MASU_BLOB_NONE};
+        *node = (masu_node){.local = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0},
+                            .parent = MASU_BLOB_NONE,
+                            .instance = instance};
+        s->of_instance[instance] = masu_mesh_models(plan) + k;
+    }
 }
 
 void masu_models_copy(masu_models *s, const masu_frame_plan *plan, uint32_t place, uint32_t like) {
@@ -282,6 +294,15 @@ masu_result masu_models_morph(masu_models *s, masu_instances *in, masu_bounds *b
                          "model %u: it has no morph target \"%s\"", model + 1, name);
     masu_skins_settle(&s->skins, in, b, plan, model);
     return MASU_OK;
+}
+
+void masu_models_set_look(const masu_models *s, masu_instances *in, const masu_frame_plan *plan,
+                          uint32_t model, const masu_look *look) {
+    const masu_placed_model *m = &s->models[model];
+    for (uint32_t n = m->first_node; n < m->first_node + m->node_count; n++) {
+        if (s->nodes[n].instance != MASU_BLOB_NONE)
+            masu_instances_set_look(in, plan, s->nodes[n].instance, look);
+    }
 }
 
 void masu_models_show(masu_models *s, masu_instances *in, const masu_frame_plan *plan,

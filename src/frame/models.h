@@ -21,7 +21,7 @@ typedef struct masu_models {
     masu_placed_model *models;
     masu_node *nodes;
     uint32_t *of_instance; /* [instance]: its model, or MASU_BLOB_NONE; none without models */
-    masu_handles handles; /* of the last plan->reserve.models, which come and go */
+    masu_handles handles; /* the last ones come and go: copies, then meshes of the host */
     uint32_t *lives;
     double (*offsets)[3]; /* with desc.double_positions: added to the translation of rows; else NULL */
     masu_animation animation;
@@ -62,6 +62,9 @@ masu_result masu_models_animate(masu_models *s, masu_instances *in, masu_bounds 
 masu_result masu_models_morph(masu_models *s, masu_instances *in, masu_bounds *b,
                               const masu_frame_plan *plan, uint32_t model, const char *name,
                               float weight, masu_detail *detail);
+/* masu_model_set_look of the public header, of a look that masu_looks_check has accepted. */
+void masu_models_set_look(const masu_models *s, masu_instances *in, const masu_frame_plan *plan,
+                          uint32_t model, const masu_look *look);
 void masu_models_show(masu_models *s, masu_instances *in, const masu_frame_plan *plan,
                       uint32_t model, int shown);
 /* A free place of the reserve becomes a copy of a model: its nodes are as they are there; they show nothing yet.

@@ -108,8 +108,15 @@ void masu_occlusion_write_boxes(const masu_bounds *bounds, const masu_instances 
     }
 }
 
-/* Occluders that any view of `marks` keeps, and that lie in what it draws. Those of hidden instances
- * too: what they hide is hidden anyway. */
+/* Whether an instance hides what is behind it in the views of `marks`, in the level that it is drawn
+ * in. A fading one does not in the camera's view, the first. */
+static int occludes(const masu_visible *s, const masu_instances *in, const masu_frame_plan *plan,
+                    uint32_t marks, uint32_t lods, uint32_t i) {
+    if (!(s->marks[i] & marks) || (plan->lods && s->levels[i] > lods)) return 0;
+    return !(marks & 1u) || !masu_look_fades(&in->looks, i);
+}
+
+/* Occluders that any view of `marks` keeps, and that lie in what it draws. */
 static uint32_t write_pairs(const masu_occlusion *o, const masu_visible *s,
                             const masu_instances *in, const masu_frame_plan *plan, uint32_t marks,
                             uint32_t *to) {
@@ -117,14 +124,13 @@ static uint32_t write_pairs(const masu_occlusion *o, const masu_visible *s,
     for (uint32_t k = 0; k < plan->scene.occluders; k++) {
         const masu_placed_occluder *p = &o->occluders[k];
         for (uint32_t i = 0; i < p->instance_count; i++) {
-            if (!(s->marks[p->first_instance + i] & marks)) continue;
-            if (plan->lods && s->levels[p->first_instance + i] > p->lods) continue;
+            if (!occludes(s, in, plan, marks, p->lods, p->first_instance + i)) continue;
             to[2 * (uint64_t)n] = k;
             to[2 * (uint64_t)n++ + 1] = p->first_instance + i;
         }
         for (uint32_t i = masu_instances_added(in, p->mesh); i != MASU_BLOB_NONE;
              i = masu_instances_next(in, i)) {
-            if (!(s->marks[i] & marks) || (plan->lods && s->levels[i] > p->lods)) continue;
+            if (!occludes(s, in, plan, marks, p->lods, i)) continue;
             to[2 * (uint64_t)n] = k;
             to[2 * (uint64_t)n++ + 1] = i;
         }

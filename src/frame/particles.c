@@ -16,6 +16,8 @@ static double square_of(const masu_particle *p, const masu_sprite_eye *eye) {
     double rel[3], seen[3];
     int fine = isfinite(p->half_width) && isfinite(p->half_height) && isfinite(p->rotation) &&
                isfinite(p->opacity) && isfinite(p->edge) && isfinite(p->soft);
+    if (p->texture)
+        fine &= masu_is_cell(p->uv) && isfinite(p->uv_next[0]) && isfinite(p->uv_next[1]) && isfinite(p->blend);
     for (uint32_t k = 0; k < 3; k++) {
         fine &= fabs(p->position[k]) <= farthest && isfinite(p->color[k]);
         rel[k] = p->position[k] - eye->at[k];
@@ -26,8 +28,8 @@ static double square_of(const masu_particle *p, const masu_sprite_eye *eye) {
     return rel[0] * rel[0] + rel[1] * rel[1] + rel[2] * rel[2];
 }
 
-static void write_particle(const masu_particle *p, const masu_sprite_eye *eye, unsigned char *to) {
-    float v[4 * MASU_PARTICLE_VEC4S] = {0};
+static void write_particle(const masu_particle *p, const masu_sprite_eye *eye, uint32_t bytes, unsigned char *to) {
+    float v[4 * MASU_TEXTURED_PARTICLE_VEC4S] = {0};
     const uint32_t flags = p->flags & (MASU_PARTICLE_LIT | MASU_PARTICLE_ADDITIVE);
     double turn = fmod((double)p->rotation, 6.283185307179586);
     for (uint32_t k = 0; k < 3; k++) {
@@ -42,21 +44,40 @@ static void write_particle(const masu_particle *p, const masu_sprite_eye *eye, u
     v[11] = masu_clamped(p->opacity, 0.0f, 1.0f);
     memcpy(&v[12], &flags, sizeof flags);
     v[13] = masu_clamped(p->edge, 0.0f, 1.0f);
-    memcpy(to, v, sizeof v);
+    if (p->texture) {
+        memcpy(&v[14], &p->texture, sizeof p->texture);
+        v[15] = masu_clamped(p->blend, 0.0f, 1.0f);
+        masu_cell_write(p->uv, &v[16]);
+        for (uint32_t k = 0; k < 2; k++) v[20 + k] = masu_clamped(p->uv_next[k], 0.0f, 1.0f);
+    }
+    memcpy(to, v, bytes);
 }
 
 uint32_t masu_particles_write(const masu_frame_data *f, const masu_sprite_eye *eye, masu_back_to_front *order,
                               const masu_back_to_front *blended, uint32_t blended_count,
-                              VkDrawIndirectCommand *draws, unsigned char *to) {
+                              VkDrawIndirectCommand *draws, unsigned char *to, uint32_t *segments) {
     const masu_particle *particles = f->desc.particles;
+    const masu_reserve *r = &f->plan->desc.reserve;
+    const uint32_t bytes = f->plan->sprites.particle * (uint32_t)sizeof(masu_vec4);
     uint32_t count = 0, next = 0, slots = f->plan->scene.transparents;
     for (uint32_t i = 0; i < f->desc.particle_count; i++) {
         double square = square_of(&particles[i], eye);
         if (square >= 0.0) order[count++] = (masu_back_to_front){(float)fmin(square, 3e38), i};
     }
-    const masu_back_to_front *sorted = masu_sort_back_to_front(order, order + f->plan->desc.reserve.particles, count);
-    for (uint32_t k = 0; k < count; k++)
-        write_particle(&particles[sorted[k].thing], eye, to + k * MASU_PARTICLE_VEC4S * sizeof(masu_vec4));
+    *segments = masu_trails_sort(f, eye, order + count);
+    count += *segments;
+    masu_back_to_front *scratch = order + r->particles + r->trail_points;
+    const masu_back_to_front *sorted = masu_sort_back_to_front(order, scratch, count);
+    masu_back_to_front *places = sorted == order ? scratch : order; /* the other half is free */
+    for (uint32_t i = 0; i < r->trail_points; i++) places[i].thing = UINT32_MAX;
+    for (uint32_t k = 0; k < count; k++) {
+        uint32_t thing = sorted[k].thing;
+        if (thing < r->particles)
+            write_particle(&particles[thing], eye, bytes, to + (size_t)k * bytes);
+        else
+            places[thing - r->particles].thing = k;
+    }
+    if (*segments) masu_trails_write(f, eye, places, to);
     for (uint32_t k = 0; k <= slots; k++) {
         uint32_t first = next;
         if (k == slots) next = count;

@@ -15,7 +15,8 @@ void masu_picking_alloc(masu_picking *p, masu_arena *arena, const masu_frame_pla
                          plan->needs.picking ? plan->scene.groups : 0, sizeof *p->group_states, 1);
     p->added =
         masu_arena_alloc(arena, "first frames of copies",
-                         plan->needs.picking ? plan->reserve.models : 0, sizeof *p->added, 8);
+                         plan->needs.picking ? plan->reserve.models + plan->reserve.meshes : 0,
+                         sizeof *p->added, 8);
 }
 
 static unsigned char *draws_of(const masu_device *device, uint32_t slot) {
@@ -28,7 +29,8 @@ void masu_picking_write_scene(const masu_device *device, const masu_draws *draws
     const masu_frame_plan *plan = device->plan;
     if (!plan->needs.picking || !draws->batch_count) return;
     for (uint32_t slot = 0; slot < plan->desc.frames_in_flight; slot++)
-        masu_draws_write(draws, v, (VkDrawIndexedIndirectCommand *)(void *)draws_of(device, slot));
+        masu_draws_write(draws, v, plan,
+                         (VkDrawIndexedIndirectCommand *)(void *)draws_of(device, slot));
 }
 
 masu_result masu_picking_read(masu_frame_data *f, masu_detail *detail) {
@@ -70,9 +72,11 @@ static void set_pixel_view(masu_cull_view *view, const masu_frame_data *f) {
     masu_cull_camera(view, clip, f->eye, f->u.forward[3]);
 }
 
-static void list_one(const masu_visible *visible, const masu_frame_data *f, const masu_batch *mesh,
-                     uint32_t i, uint32_t *ids, uint32_t *kept) {
+static void list_one(const masu_visible *visible, const masu_instances *in,
+                     const masu_frame_data *f, const masu_batch *mesh, uint32_t i, uint32_t *ids,
+                     uint32_t *kept) {
     if ((visible->marks[i] & (MARK | 1u)) != (MARK | 1u)) return;
+    if (masu_look_unpicked(&in->looks, i, f->desc.pick_mask)) return;
     uint32_t level = f->plan->lods ? visible->levels[i] : 0;
     ids[mesh[level].first_listed + kept[level]++] = i;
 }
@@ -88,10 +92,10 @@ static void list(const masu_visible *visible, const masu_instances *in, const ma
         uint32_t end = mesh->first_instance + mesh->instance_count;
         forms = 1 + mesh->lod_count;
         for (uint32_t i = mesh->first_instance; f->desc.pick && i < end; i++)
-            list_one(visible, f, mesh, i, ids, kept);
+            list_one(visible, in, f, mesh, i, ids, kept);
         for (uint32_t i = masu_instances_added(in, mesh->mesh); f->desc.pick && i != MASU_BLOB_NONE;
              i = masu_instances_next(in, i))
-            list_one(visible, f, mesh, i, ids, kept);
+            list_one(visible, in, f, mesh, i, ids, kept);
         for (uint32_t level = 0; level < forms; level++) {
             const masu_batch *batch = &mesh[level];
             for (uint32_t d = 0; d < batch->draw_count; d++)

@@ -18,7 +18,7 @@ typedef struct masu_picking_slot {
 } masu_picking_slot;
 
 typedef struct masu_picking {
-    uint64_t *added; /* [reserve.models]: the first frame of the copy in the slot */
+    uint64_t *added; /* [model of the reserve]: the first frame of the one in the slot */
     uint8_t *group_states; /* [group], of masu_cull */
     masu_picking_slot slots[MASU_MAX_FLIGHT];
 } masu_picking;

@@ -209,7 +209,8 @@ masu_result masu_lights_add(masu_lights *l, const masu_instances *in,
     masu_punctual_light_state to = *state;
     masu_result result = take_state(l, in, "the new light", &to, detail);
     if (result) return result;
-    *light = masu_handle_free(&l->handles);
+    *light = masu_handle_free(&l->handles, l->handles.count - l->handles.reserve,
+                              l->handles.reserve);
     if (*light == UINT32_MAX) {
         return masu_fail(detail, MASU_ERROR_LIMIT, "reserve.lights", l->handles.reserve + (uint64_t)1,
                          l->handles.reserve, "reserve.lights: %u are needed, %u are given",

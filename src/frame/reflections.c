@@ -14,7 +14,8 @@ void masu_reflections_alloc(masu_reflections *s, masu_arena *arena, const masu_f
     uint64_t tree = traced && !plan->needs.query ? masu_trace_top_bytes(traced) : 0;
     s->tree_memory = masu_arena_alloc(arena, "traced instances", tree, 1, 16);
     s->traced = masu_arena_alloc(arena, "traced ids", traced, sizeof *s->traced, 4);
-    if (plan->scene.skins)
+    s->bends = NULL;
+    if (plan->scene.skins || plan->reserve.meshes)
         s->bends = masu_arena_alloc(arena, "traced skins", traced, sizeof *s->bends, 1);
     s->live =
         masu_arena_alloc(arena, "traced flags", plan->needs.query ? traced : 0, sizeof *s->live, 1);
@@ -26,7 +27,8 @@ void masu_reflections_copy_scene(masu_reflections *s, const masu_frame_plan *pla
     if (!plan->needs.traced) return;
     for (uint32_t i = 0; i < count; i++)
         s->traced[i] = i < own ? v->trace_instances[i] : MASU_BLOB_NONE;
-    for (uint32_t i = 0; i < count && plan->scene.skins; i++) s->bends[i] = 0;
+    for (uint32_t i = 0; i < count && s->bends; i++)
+        s->bends[i] = plan->reserve.meshes && i >= masu_mesh_traced(plan);
     for (uint32_t n = 0; n < masu_own_nodes(plan) && plan->scene.skins; n++) {
         for (uint32_t i = 0; i < own && v->model_nodes[n].skin; i++)
             s->bends[i] |= v->trace_instances[i] == v->model_nodes[n].instance;
@@ -67,6 +69,19 @@ void masu_reflections_clear(masu_reflections *s, const masu_frame_plan *plan, ui
     for (; next < end; next++) s->traced[next] = MASU_BLOB_NONE;
 }
 
+void masu_reflections_set_mesh(masu_reflections *s, const masu_frame_plan *plan, uint32_t slot,
+                               uint32_t instance, uint32_t node) {
+    uint32_t traced = masu_mesh_traced(plan) + slot;
+    if (!plan->needs.traced) return;
+    const masu_trace_root root = {.node = node, .instance = instance};
+    s->traced[traced] = instance;
+    masu_trace_top_set(&s->tree, traced, &root);
+}
+
+void masu_reflections_clear_mesh(masu_reflections *s, const masu_frame_plan *plan, uint32_t slot) {
+    if (plan->needs.traced) s->traced[masu_mesh_traced(plan) + slot] = MASU_BLOB_NONE;
+}
+
 static const double zero[3] = {0, 0, 0};
 
 static int origin_moved(const masu_reflections *s) {
@@ -84,10 +99,11 @@ static void place(masu_reflections *s, const masu_instances *in, const masu_boun
         int none = instance == MASU_BLOB_NONE;
         if (!none && !masu_instance_dirty(in, instance) && !all) continue;
         float rows[12] = {0}; /* no place: hidden ones are not seen */
-        if (!none && !masu_instance_hidden(in, instance))
+        if (!none && !masu_instance_hidden(in, instance) &&
+            !masu_look_untraced(&in->looks, instance))
             masu_instance_rows_from(&in->now[instance], in->low ? in->low[instance] : NULL, in->low ? s->origin : zero,
                                     rows);
-        if (f->plan->scene.skins && s->bends[i]) { /* its tree is fitted on the device */
+        if (!none && s->bends && s->bends[i]) { /* its box changes */
             masu_trace_root *root = masu_trace_top_root(&s->tree, i);
             memcpy(root->box.low, b->meshes[in->meshes[instance]], sizeof root->box.low);
             memcpy(root->box.high, b->meshes[in->meshes[instance]] + 3, sizeof root->box.high);
@@ -123,7 +139,8 @@ void masu_reflections_write_instances(masu_reflections *s, const masu_instances 
     place(s, in, b, f);
     int changed = update(s, in, f);
     /* What has moved stands still one frame later: that is a change of where it was. */
-    if (changed || in->dirty_count || !s->versions) s->versions++;
+    if (changed || in->dirty_count || s->looks != in->looks.changes || !s->versions) s->versions++;
+    s->looks = in->looks.changes;
     if (s->slot_version[f->slot] == s->versions) return;
     s->slot_version[f->slot] = s->versions;
     unsigned char *to = masu_frame_slot(f, MASU_BUFFER_TRACE_FRAME);
@@ -146,6 +163,12 @@ void masu_reflections_write_instances(masu_reflections *s, const masu_instances 
         if (low && !comes && plan->needs.velocity) low = in->previous_low[instance];
         rows_of(comes ? now : before, low, s->origin, both[1]);
         memcpy(to + at + i * sizeof both, both, sizeof both);
+        if (plan->needs.looks) {
+            float look[4 * MASU_TRACE_LOOK_ROWS];
+            masu_look_rows(&in->looks.now[instance], look);
+            memcpy(to + at + plan->scene.trace_instances * sizeof both + i * sizeof look, look,
+                   sizeof look);
+        }
         if (plan->needs.query) {
             masu_ray_write_instance(f->device, f->slot, i, in->meshes[instance], s->live[i],
                                     both[0]);

@@ -24,6 +24,10 @@ void masu_shadow_axes(const double sun[3], double axis[3][3]) {
     memcpy(axis[2], sun, 3 * sizeof *sun);
 }
 
+double masu_shadow_begin(double near_distance, double distance) {
+    return near_distance > 0.5 * distance ? fmin(near_distance, distance) : 0.0;
+}
+
 double masu_shadow_split(double near_distance, double distance, double lambda, uint32_t k,
                          uint32_t n) {
     double first = fmin(fmax(near_distance, distance / 256.0), distance);
@@ -33,11 +37,14 @@ double masu_shadow_split(double near_distance, double distance, double lambda, u
 }
 
 /* The smallest sphere around the pyramid from the eye to `depth` touches its tip and its corners,
- * but for wide ones, whose base alone counts. */
-static void sphere_of(double depth, double tan2, double *along, double *radius) {
-    int wide = tan2 >= 1.0;
-    *along = wide ? depth : 0.5 * depth * (1.0 + tan2);
-    *radius = wide ? depth * sqrt(tan2) : *along;
+ * but for wide ones, whose base alone counts. Of one that begins later it touches all corners. */
+static void sphere_of(double begin, double depth, double tan2, double *along, double *radius) {
+    double middle = 0.5 * (begin + depth) * (1.0 + tan2), beyond = depth - middle;
+    int wide = middle >= depth;
+    *along = wide ? depth : middle;
+    *radius = wide          ? depth * sqrt(tan2)
+              : begin > 0.0 ? sqrt(beyond * beyond + depth * depth * tan2)
+                            : middle;
 }
 
 /* v rounded to a multiple of step. */
@@ -57,7 +64,7 @@ masu_cascade masu_cascade_fit(const masu_shadow_view *view, double depth, double
     memset(&c, 0, sizeof c);
     c.size = size;
     masu_shadow_axes(view->sun, c.axis);
-    sphere_of(depth, view->tan2, &along, &c.radius);
+    sphere_of(view->begin, depth, view->tan2, &along, &c.radius);
     for (uint32_t i = 0; i < 3; i++) middle[i] = view->eye[i] + view->forward[i] * along;
     /* Two texels on each side for the filter, half of one for the snapping below. */
     c.half = c.radius * (1.0 + slack) / (1.0 - 4.0 / (double)size);
@@ -137,14 +144,15 @@ void masu_shadow_write(masu_shadow *s, const masu_bounds *bounds, masu_frame_dat
     struct masu_shadow_uniforms out;
     memset(&out, 0, sizeof out);
     double distance = (double)scene->shadow_distance, wish = (double)rung->shadow_distance;
-    if (wish > 0.0 && wish < distance) distance = wish;
+    double begin = view.begin = masu_shadow_begin(view.near_distance, (double)scene->shadow_distance);
+    if (wish > 0.0 && begin + wish < distance) distance = begin + wish;
     s->distance = distance;
     for (uint32_t k = 0; k < rp->cascades; k++) {
         masu_cascade *c = &s->cascades[k];
         uint32_t every = rung->shadow_refresh[k];
         int slow = (rp->slow >> k & 1u) != 0;
-        double depth = masu_shadow_split(view.near_distance, distance, (double)scene->shadow_lambda,
-                                         k, rp->cascades);
+        double depth = begin + masu_shadow_split(view.near_distance - begin, distance - begin,
+                                                 (double)scene->shadow_lambda, k, rp->cascades);
         masu_cascade wanted = masu_cascade_fit(&view, depth, slow ? SLACK : 0.0, rp->cascade_size);
         wanted.trimmed = !slow;
         wanted.lod_error = rung->lod_error;
@@ -164,8 +172,8 @@ void masu_shadow_write(masu_shadow *s, const masu_bounds *bounds, masu_frame_dat
         if (f->cascades + 1 == 1u << rp->cascades) s->cascades[k].drawn = 0;
     }
     out.reach[0] = (float)rp->cascades;
-    out.reach[1] = (float)(distance * (1.0 - FADE));
-    out.reach[2] = (float)(1.0 / (distance * FADE));
+    out.reach[1] = (float)(begin + (distance - begin) * (1.0 - FADE));
+    out.reach[2] = (float)(1.0 / fmax((distance - begin) * FADE, 1e-6));
     out.reach[3] = f->plan->needs.sdf_occlusion ? 1.0f : 0.0f;
     memcpy(masu_frame_slot(f, MASU_BUFFER_SHADOW), &out, sizeof out);
 }

@@ -42,6 +42,7 @@ typedef struct masu_shadow_view {
     double eye[3], forward[3]; /* forward: unit */
     double tan2;               /* square of the tangent of the view's half diagonal */
     double near_distance;
+    double begin; /* view depth from which on it is held: 0, or that of masu_shadow_begin */
     double sun[3];        /* towards it, unit */
     double casters[2][3]; /* box around all of them; low above high: there are none */
 } masu_shadow_view;
@@ -49,6 +50,10 @@ typedef struct masu_shadow_view {
 /* Two unit vectors orthogonal to the sun's direction and to each other, and that direction. They
  * turn continuously with it but for one straight from below. */
 void masu_shadow_axes(const double sun[3], double axis[3][3]);
+
+/* Depth at which the cascades begin: 0, or the near plane if that is beyond half of their distance, as of orthographic
+ * cameras. Splits and fade then count from there. */
+double masu_shadow_begin(double near_distance, double distance);
 
 /* View depth where cascade k of n ends: between even steps (lambda 0) and a constant factor (1),
  * which begins at the near distance, but not below 1/256 of the last depth (the practical split

@@ -261,7 +261,7 @@ static void write_one(const masu_skin *skin, uint32_t index, int hidden,
                       const masu_frame_plan *plan, float (*matrices)[12], const float *weights,
                       unsigned char *to) {
     uint32_t morphs = (uint32_t)(masu_morphs_at(&plan->scene) / 16) + index + skin->first_weight;
-    uint32_t at = MASU_SKIN_HEADER_BYTES / 16 * plan->scene.skins + 3 * skin->first_matrix;
+    uint32_t at = (uint32_t)(masu_skin_headers(&plan->scene) / 16) + 3 * skin->first_matrix;
     const uint32_t header[8] = {skin->first_skin_vertex,
                                 skin->first_vertex,
                                 hidden ? 0 : skin->vertex_count,

@@ -6,6 +6,8 @@
 #include "frame/frame_data.h"
 #include "frame/transparents.h"
 
+#include <math.h>
+
 typedef struct masu_sprite_eye {
     double at[3];
     double right[3], up[3], forward[3]; /* unit */
@@ -28,11 +30,31 @@ static inline float masu_clamped(float v, float low, float high) {
     return !(v > low) ? low : v > high ? high : v;
 }
 
+/* Whether a cell of a texture has only numbers. */
+static inline int masu_is_cell(const float uv[4]) {
+    return isfinite(uv[0]) && isfinite(uv[1]) && isfinite(uv[2]) && isfinite(uv[3]);
+}
+
+/* A cell to two corners within 0..1; of all 0 the whole texture. */
+static inline void masu_cell_write(const float uv[4], float to[4]) {
+    static const float whole[4] = {0.0f, 0.0f, 1.0f, 1.0f};
+    int none = 1;
+    for (uint32_t k = 0; k < 4; k++) none &= uv[k] == 0.0f;
+    for (uint32_t k = 0; k < 4; k++) to[k] = none ? whole[k] : masu_clamped(uv[k], 0.0f, 1.0f);
+}
+
 /* Each writes what it draws from `to` on and returns how many. draws: of the particles, before each slot of what is
- * blended and after the last. part: the smallest rectangle of pixels around all decals: x, y, width, height. */
+ * blended and after the last; *segments: how many of the result are segments of trails. part: the smallest rectangle
+ * of pixels around all decals: x, y, width, height. */
 uint32_t masu_particles_write(const masu_frame_data *f, const masu_sprite_eye *eye, masu_back_to_front *order,
                               const masu_back_to_front *blended, uint32_t blended_count,
-                              VkDrawIndirectCommand *draws, unsigned char *to);
+                              VkDrawIndirectCommand *draws, unsigned char *to, uint32_t *segments);
+/* Segments of trails. The first appends those that are drawn to `order`, with the index of their
+ * first point among all points plus desc.reserve.particles, and returns their number. The second
+ * writes segment i as particle places[i].thing; UINT32_MAX: not drawn. */
+uint32_t masu_trails_sort(const masu_frame_data *f, const masu_sprite_eye *eye, masu_back_to_front *order);
+void masu_trails_write(const masu_frame_data *f, const masu_sprite_eye *eye, const masu_back_to_front *places,
+                       unsigned char *to);
 uint32_t masu_decals_write(const masu_frame_data *f, const masu_sprite_eye *eye, unsigned char *to,
                            uint32_t part[4]);
 uint32_t masu_debug_lines_write(const masu_frame_data *f, const masu_sprite_eye *eye, unsigned char *to);

@@ -9,11 +9,11 @@
 
 /* How many of each a slot's frame draws. */
 typedef struct masu_sprite_counts {
-    uint32_t particles, decals, lines;
+    uint32_t particles, decals, lines, segments;
 } masu_sprite_counts;
 
 typedef struct masu_sprites {
-    masu_back_to_front *order; /* twice desc.reserve.particles */
+    masu_back_to_front *order; /* twice the particles and trail points of desc.reserve */
     masu_sprite_counts slots[MASU_MAX_FLIGHT];
 } masu_sprites;
 

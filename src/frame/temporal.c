@@ -72,6 +72,9 @@ static int has_changed(const struct masu_frame_uniforms *now, const struct masu_
     float higher = (now->eye_hi[1] - now->air[0]) - (before->eye_hi[1] - before->air[0]);
     if (now->fog[3] > 0.0f && fabsf(higher) > 1e-3f * (1.0f + fabsf(now->eye_hi[1]))) return 1;
     if (plan->needs.timed && now->eye_hi[3] != before->eye_hi[3]) return 1;
+    if (memcmp(now->environment, before->environment, sizeof now->environment) != 0 ||
+        memcmp(now->background, before->background, sizeof now->background) != 0)
+        return 1;
     return memcmp(now->sdf_params, before->sdf_params, sizeof now->sdf_params) != 0;
 }
 
@@ -98,12 +101,30 @@ static uint64_t hash_words(uint64_t hash, const void *data, size_t bytes) {
     return hash;
 }
 
-_Static_assert(sizeof(masu_particle) % 8 == 0 && sizeof(masu_decal) % 8 == 0, "whole words, without padding");
+_Static_assert(sizeof(masu_particle) == 24 + 18 * sizeof(float) && sizeof(masu_decal) == 24 + 28 * sizeof(float),
+               "whole words, without padding");
+
+/* A number behind 40 bytes, which padding follows. */
+static uint64_t hash_odd(uint64_t hash, const void *first, float last) {
+    uint32_t bits;
+    memcpy(&bits, &last, sizeof bits);
+    return hash_words(hash ^ bits, first, 40);
+}
+
+_Static_assert(offsetof(masu_trail_point, opacity) == 40 &&
+                   offsetof(masu_trail, offset) - offsetof(masu_trail, point_count) == 40,
+               "one number is left");
 
 /* Of what the frame brings and its history shows: of particles that hang in the air it may be as long as of the rest. */
 static uint64_t sprites_of(const masu_frame_desc *d) {
     uint64_t hash = hash_words(d->particle_count, d->particles, d->particle_count * sizeof *d->particles);
-    return hash_words(hash ^ d->decal_count, d->decals, d->decal_count * sizeof *d->decals);
+    hash = hash_words(hash ^ d->decal_count, d->decals, d->decal_count * sizeof *d->decals);
+    for (uint32_t i = 0; i < d->trail_count; i++) {
+        const masu_trail *t = &d->trails[i];
+        hash = hash_odd(hash, &t->point_count, t->offset);
+        for (uint32_t k = 0; k < t->point_count; k++) hash = hash_odd(hash, &t->points[k], t->points[k].opacity);
+    }
+    return hash;
 }
 
 /* Of an output of twice the size, along axis k: where its pixels lie between texels, and what those count for them, by the
@@ -127,6 +148,7 @@ static void find_between(struct masu_frame_uniforms *u, int k) {
 
 void masu_temporal_read(masu_temporal *t, const masu_history *history, const masu_instances *in,
                         const masu_lights *lights, const masu_materials *materials,
+                        const masu_textures *textures, const masu_post_state *post,
                         masu_frame_data *f) {
     const masu_rung_plan *rp = masu_frame_rung_plan(f);
     int kept = t->kept && !f->cut;
@@ -141,9 +163,10 @@ void masu_temporal_read(masu_temporal *t, const masu_history *history, const mas
         find_between(&f->u, k);
     }
     if (kept) {
-        int changed = has_changed(&f->u, history->previous, f->plan) || t->instances != in->changes ||
+        int changed = has_changed(&f->u, history->previous, f->plan) || t->instances != in->changes + in->looks.changes ||
                       t->lights != lights->changes || t->sprites != sprites ||
-                      t->materials != materials->changes ||
+                      t->materials != materials->changes || t->post != post->changes ||
+                      textures->count || f->desc.textures_changed ||
                       !shows_the_same(masu_frame_rung(f), &f->plan->desc.rungs[t->rung]);
         t->changed = changed ? settling(f) : t->changed ? t->changed - 1 : 0;
         f->u.temporal[0] = t->size[0];
@@ -155,7 +178,8 @@ void masu_temporal_read(masu_temporal *t, const masu_history *history, const mas
     t->size[1] = has_resolve(f) ? rp->render_height : 0;
     t->lights = lights->changes;
     t->materials = materials->changes;
-    t->instances = in->changes;
+    t->post = post->changes;
+    t->instances = in->changes + in->looks.changes;
     t->sprites = sprites;
     t->rung = f->desc.rung;
 }

@@ -6,7 +6,8 @@
  * buffer of drawn instances. Both are written here for each frame:
  *
  *   draw commands      behind those of visible.c: [slot][texture set]
- *   drawn instances    behind its lists: [slot] instance, material, flags, layers, detail
+ *   drawn instances    behind its lists: [slot] instance, material, flags, layers, detail, and
+ *                      with depth biases the factor on its depth
  *
  * What the camera does not see is left out, and the last slots are empty. The order is that of the
  * boxes' centres: of things that reach through each other, or of a large pane and what is close to it,
@@ -41,6 +42,9 @@ masu_back_to_front *masu_sort_back_to_front(masu_back_to_front *entries,
 void masu_transparents_alloc(masu_transparents *s, masu_arena *arena, const masu_frame_plan *plan) {
     uint32_t count = plan->scene.transparents;
     s->things = masu_arena_alloc(arena, "transparents", count, sizeof *s->things, 4);
+    s->nearer = NULL;
+    if (plan->scene.depth_biases)
+        s->nearer = masu_arena_alloc(arena, "depth biases", count, sizeof *s->nearer, 4);
     s->order =
         masu_arena_alloc(arena, "transparents sorted", 2 * (uint64_t)count, sizeof *s->order, 4);
 }
@@ -84,9 +88,10 @@ void masu_transparents_copy_scene(masu_transparents *s, const masu_frame_plan *p
         for (uint32_t k = 0; k < mesh->primitive_count; k++) {
             const masu_blob_primitive *p = &v->primitives[mesh->first_primitive + k];
             const masu_blob_material *material = &v->materials[p->material];
-            if (material->flags & MASU_MATERIAL_IS_BLEND)
-                copy_primitive(next++, draws, i, masu_is_mirrored(v->instances[i].transform), p,
-                               material);
+            if (!(material->flags & MASU_MATERIAL_IS_BLEND)) continue;
+            if (s->nearer) s->nearer[next - s->things] = 1.0f + material->depth_bias;
+            copy_primitive(next++, draws, i, masu_is_mirrored(v->instances[i].transform), p,
+                           material);
         }
     }
     masu_transparent *end = s->things + plan->scene.transparents;
@@ -103,6 +108,7 @@ void masu_transparents_copy(masu_transparents *s, const masu_frame_plan *plan, u
     for (uint32_t i = 0; i < plan->scene.transparents && next < end; i++) {
         if (s->things[i].instance != from) continue;
         *next = s->things[i];
+        if (s->nearer) s->nearer[next - s->things] = s->nearer[i];
         (next++)->instance = to;
     }
 }
@@ -146,16 +152,18 @@ void masu_transparents_write(masu_transparents *s, const masu_instances *in,
         (uint32_t *)(void *)masu_frame_slot(f, MASU_BUFFER_DRAWN) + f->plan->drawn.transparents;
     uint32_t columns = f->plan->scene.transparent_sets;
     for (uint32_t k = 0; k < count; k++) {
-        const masu_transparent *t = &s->things[k < seen ? order[k].thing : 0];
+        uint32_t number = k < seen ? order[k].thing : 0;
+        const masu_transparent *t = &s->things[number];
         for (uint32_t c = 0; c < columns; c++) {
             VkDrawIndexedIndirectCommand draw = t->draw;
             draw.instanceCount = k < seen && c == t->column ? t->draw.instanceCount : 0;
             *draws++ = draw;
         }
-        uint32_t thing[MASU_TRANSPARENT_WORDS] = {t->instance, t->material, t->flags, t->layers};
+        uint32_t thing[MASU_TRANSPARENT_WORDS_MAX] = {t->instance, t->material, t->flags, t->layers};
         memcpy(thing + 4, t->detail, sizeof t->detail);
-        memcpy(words, thing, sizeof thing);
-        words += MASU_TRANSPARENT_WORDS;
+        if (s->nearer) memcpy(thing + 6, &s->nearer[number], sizeof *s->nearer);
+        memcpy(words, thing, masu_transparent_words(f->plan) * sizeof *words);
+        words += masu_transparent_words(f->plan);
     }
     s->sorted = order;
     s->slot_count[f->slot] = seen;

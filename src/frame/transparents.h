@@ -26,6 +26,7 @@ masu_back_to_front *masu_sort_back_to_front(masu_back_to_front *entries,
 
 typedef struct masu_transparents {
     masu_transparent *things;             /* plan->scene.transparents of them */
+    float *nearer; /* [thing]: factor on its depth; NULL if no material has a depth bias */
     masu_back_to_front *order;            /* twice as many */
     const masu_back_to_front *sorted;     /* in one half of it: those drawn by the frame at hand */
     uint32_t slot_count[MASU_MAX_FLIGHT]; /* drawn */

@@ -46,9 +46,17 @@ void masu_visible_copy_scene(masu_visible *s, const masu_frame_plan *plan,
 }
 
 VkDrawIndexedIndirectCommand *masu_draws_write(const masu_draws *draws, const masu_scene_view *v,
+                                               const masu_frame_plan *plan,
                                                VkDrawIndexedIndirectCommand *to) {
+    uint32_t slots = draws->batch_count - plan->reserve.meshes;
     for (uint32_t b = 0; b < draws->batch_count; b++) {
         const masu_batch *batch = &draws->batches[b];
+        if (b >= slots) { /* of a mesh of the host: no triangles yet */
+            const masu_mesh_slot s = masu_mesh_slot_of(&plan->desc.reserve, 0, b - slots);
+            uint32_t vertex = plan->scene.vertices - plan->scene.host_vertices + s.first_vertex;
+            *to++ = (VkDrawIndexedIndirectCommand){0, 0, 3 * s.first_triangle, (int32_t)vertex, 0};
+            continue;
+        }
         for (uint32_t d = 0; d < batch->draw_count; d++) {
             const masu_blob_primitive *p = &v->primitives[batch->first_primitive + d];
             *to++ = (VkDrawIndexedIndirectCommand){p->index_count, 0, p->first_index,
@@ -68,7 +76,7 @@ void masu_visible_write_scene(const masu_device *device, const masu_draws *draws
             (VkDrawIndexedIndirectCommand *)(void *)masu_buffer_pointer(device, MASU_BUFFER_DRAWS,
                                                                         slot);
         uint32_t lists = plan->views * (plan->occlusion ? 2 : 1);
-        for (uint32_t list = 0; list < lists; list++) to = masu_draws_write(draws, v, to);
+        for (uint32_t list = 0; list < lists; list++) to = masu_draws_write(draws, v, plan, to);
     }
 }
 
@@ -116,6 +124,11 @@ static void mark(masu_visible *s, const masu_bounds *bounds, const masu_instance
     }
     for (uint32_t i = 0; in->hidden_count && i < scene->instances; i++) {
         if (masu_instance_hidden(in, i)) s->marks[i] &= (uint8_t)~bit;
+    }
+    for (uint32_t i = 0; in->looks.given && i < scene->instances; i++) {
+        if (view ? masu_look_shadowless(&in->looks, i)
+                 : masu_look_unseen(&in->looks, i, f->desc.viewport))
+            s->marks[i] &= (uint8_t)~bit;
     }
 }
 

@@ -17,6 +17,7 @@ void masu_visible_copy_scene(masu_visible *s, const masu_frame_plan *plan,
                              const masu_scene_view *v);
 /* A command for each draw of a view, but for how many instances it has; returns what follows. */
 VkDrawIndexedIndirectCommand *masu_draws_write(const masu_draws *draws, const masu_scene_view *v,
+                                               const masu_frame_plan *plan,
                                                VkDrawIndexedIndirectCommand *to);
 /* What does not change of the draw commands, to all slots. */
 void masu_visible_write_scene(const masu_device *device, const masu_draws *draws,

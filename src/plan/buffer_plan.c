@@ -27,6 +27,14 @@ const masu_buffer_row masu_buffers[MASU_BUFFER_COUNT] = {
 /* With velocities, each slot has a half for this frame and a half for the previous frame. */
 static uint64_t masu_halves(const masu_frame_plan *plan) { return plan->needs.velocity ? 2 : 1; }
 
+/* Transforms, then looks. Multiples of 8 are aligned for every device, so that looks begin in the
+ * middle of the binding. */
+static uint64_t masu_instance_bytes(const masu_frame_plan *plan) {
+    uint64_t count = plan->scene.instances;
+    if (plan->desc.instance_looks) count = 2 * masu_look_capacity(plan->scene.instances);
+    return count * sizeof(struct masu_instance_data);
+}
+
 static uint64_t masu_counter_words(const masu_frame_plan *plan) {
     return plan->needs.scene || plan->needs.smoothing ? 2 * MASU_COUNTER_COUNT : 0;
 }
@@ -184,7 +192,7 @@ static void layout_drawn(masu_frame_plan *plan) {
         }
     }
     d->transparents = next;
-    d->picks = next + MASU_TRANSPARENT_WORDS * (uint64_t)s->transparents;
+    d->picks = next + masu_transparent_words(plan) * (uint64_t)s->transparents;
     d->faces = d->picks + (plan->needs.picking ? plan->listed : 0);
     d->words = d->faces + (uint64_t)plan->local_faces * plan->listed;
 }
@@ -197,14 +205,22 @@ static void layout_sprites(masu_frame_plan *plan) {
     if (!n->sprites) return;
     uint64_t draws = n->particles ? plan->scene.transparents + (uint64_t)1 : 0;
     s->particles = MASU_SPRITE_DRAWS + draws;
-    s->lines = s->particles + MASU_PARTICLE_VEC4S * (uint64_t)r->particles;
+    s->particle = n->textures ? MASU_TEXTURED_PARTICLE_VEC4S : MASU_PARTICLE_VEC4S;
+    s->decal = n->textures ? MASU_TEXTURED_DECAL_VEC4S : MASU_DECAL_VEC4S;
+    s->lines = s->particles + s->particle * ((uint64_t)r->particles + r->trail_points);
     s->decals = s->lines + MASU_LINE_VEC4S * (uint64_t)r->lines;
-    s->end = s->decals + MASU_DECAL_VEC4S * (uint64_t)r->decals;
+    s->end = s->decals + s->decal * (uint64_t)r->decals;
+}
+
+static uint64_t masu_texel_words(const masu_frame_plan *plan) {
+    if (!plan->needs.texture_writes) return 0;
+    return MASU_TEXELS_FIRST + (uint64_t)plan->desc.reserve.texture_bytes / sizeof(uint32_t);
 }
 
 static uint64_t masu_sprite_count(const masu_frame_plan *plan) {
     const masu_reserve *r = &plan->desc.reserve;
-    return plan->needs.sprites ? (uint64_t)r->particles + r->lines + r->decals : 0;
+    if (!plan->needs.sprites) return 0;
+    return (uint64_t)r->particles + r->trail_points + r->lines + r->decals;
 }
 
 /* Number of draws after frustum culling; with occlusion culling also those of its second stage and

@@ -98,9 +98,12 @@ static int keeps_access(const masu_frame_plan *plan, uint32_t pass, uint8_t reso
     switch (resource) {
     case MASU_IMAGE_NONE: return 0;
     case MASU_RESOURCE(MASU_BUFFER_DRAWS): return n->occlusion;
-    case MASU_RESOURCE(MASU_BUFFER_VERTICES): return n->skins;
-    case MASU_RESOURCE(MASU_BUFFER_TRACE): return n->skins && n->traced && !n->query;
-    case MASU_RESOURCE(MASU_BUFFER_PREVIOUS_VERTICES): return n->skins && n->velocity;
+    case MASU_RESOURCE(MASU_BUFFER_VERTICES): return n->skins || n->meshes;
+    case MASU_RESOURCE(MASU_BUFFER_TRACE):
+        return (n->skins || n->meshes) && n->traced && !n->query;
+    case MASU_RESOURCE(MASU_BUFFER_PREVIOUS_VERTICES):
+        return (n->skins || n->meshes) && n->velocity;
+    case MASU_RESOURCE(MASU_BUFFER_MESH_INDICES): return n->meshes;
     case MASU_RESOURCE(MASU_BUFFER_PROBES): return n->probes;
     case MASU_RESOURCE(MASU_BUFFER_EXPOSURE): return n->metered;
     case MASU_RESOURCE(MASU_BUFFER_LIGHT_TILES): return n->on.light_tiles;
@@ -136,13 +139,17 @@ static void compile_rung(masu_frame_plan *plan, uint32_t r) {
         for (uint32_t a = 0; a < MASU_PASS_ACCESSES && row->access[a].image; a++) {
             masu_usage usage = (masu_usage)row->access[a].usage;
             uint8_t resource = resolve(row->access[a].image, &l);
-            /* Without rough glass the shader does not read the background, but the binding must be
-             * valid. */
+            /* Without rough or refracting glass the shader does not read the background, but the
+             * binding must be valid. */
             if (p == MASU_PASS_TRANSPARENTS && resource == MASU_IMAGE_BACKGROUND &&
-                !plan->needs.rough_glass) {
+                !plan->needs.rough_glass && !plan->needs.refraction) {
                 resource = l.image[MASU_CLASS_DEPTH];
                 usage = MASU_READ;
             }
+            /* Nor does grading alone read the scattered light. */
+            if (p == MASU_PASS_TONEMAP && resource == MASU_IMAGE_BLOOM &&
+                plan->needs.post & MASU_POST_GRADE && !(plan->needs.post & MASU_POST_BLOOM))
+                resource = MASU_IMAGE_HDR;
             if (!keeps_access(plan, p, resource, usage)) continue;
             rp->access[p][rp->access_count[p]++] = (masu_access){resource, (uint8_t)usage};
             if (masu_usage_writes(usage) && !masu_is_buffer(resource)) write_latest(&l, resource);
@@ -167,7 +174,8 @@ static void compile_rung(masu_frame_plan *plan, uint32_t r) {
 static VkImageUsageFlags usage_flag(masu_usage usage) {
     switch (usage) {
     case MASU_READ:
-    case MASU_READ_LINEAR: return VK_IMAGE_USAGE_SAMPLED_BIT;
+    case MASU_READ_LINEAR:
+    case MASU_READ_MAP: return VK_IMAGE_USAGE_SAMPLED_BIT;
     case MASU_READ_COPY:
     case MASU_READ_BACK: return VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     case MASU_READ_HOST: return HOST_READS;
@@ -214,7 +222,10 @@ static void gather_images(masu_frame_plan *plan) {
                 if (image->height < size.height) image->height = size.height;
                 image->usage |= usage_flag((masu_usage)rp->access[p][a].usage);
                 /* cleared by masu_load */
-                if (masu_images[id].layers > 1) image->usage |= VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+                if (masu_images[id].layers != 1) image->usage |= VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+                if (id == MASU_IMAGE_TEXTURES) /* the host may render into it and copy from it */
+                    image->usage |=
+                        VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
             }
             if (!masu_has_pass(&rp->active, p) || !masu_has_set(p)) continue;
             plan->pass_sets += writes_target ? plan->targets_max : 1;
@@ -345,6 +356,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
         .scene = d->scene != NULL,
         .raster = d->scene && plan->scene.instances,
         .skins = d->scene && plan->scene.skins,
+        .meshes = d->scene && plan->scene.host_meshes,
         .sdf = d->scene && plan->scene.sdf,
         .dynamic = d->scene && plan->scene.sdf_dynamic,
         .timed = d->scene && plan->scene.sdf_timed,
@@ -354,6 +366,8 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
         .shadow = d->scene && plan->scene.shadow_cascades,
         .transparents = d->scene && plan->scene.transparents,
         .rough_glass = d->scene && plan->scene.transparents && plan->scene.tints & MASU_TINTS_ROUGH,
+        .refraction =
+            d->scene && plan->scene.transparents && plan->scene.tints & MASU_TINTS_REFRACTED,
         .lights = d->scene && plan->scene.lights,
         .local_shadows = d->scene && any.local_shadows,
         .area_lights =
@@ -363,6 +377,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
         .sdf_casts = d->scene && any.local_shadows && plan->scene.sdf_casts,
         .surface = d->scene && plan->scene.instances && plan->scene.surfaces,
         .environment = d->scene && plan->scene.environment_size,
+        .looks = d->scene && d->instance_looks && plan->scene.instances,
         .sky = d->scene && (plan->scene.analytic_sky || d->analytic_sky),
         .readback = d->readback,
         .split = d->split,
@@ -379,14 +394,19 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
         .any = any,
         .any_resolved = any_rung(d, rung_has_resolved),
         .picking = d->scene && d->picking,
+        .post = d->scene ? d->post : 0,
         .metered = d->scene && d->exposure.metered == MASU_ON,
         .velocity = (d->readback & MASU_READBACK_VELOCITY) != 0 ||
                     (d->split & MASU_SPLIT_VELOCITY) != 0 || any.specular ||
                     any_rung(d, masu_rung_resolves),
         .dropped = d->deny.storage_buffers & MASU_DROPPED_ANY,
-        .particles = d->scene && d->reserve.particles,
+        .particles = d->scene && (d->reserve.particles || d->reserve.trail_points),
         .decals = d->scene && d->reserve.decals,
         .lines = d->scene && d->reserve.lines,
+        .textures = d->scene && (d->reserve.textures || d->reserve.trail_points),
+        .texture_writes = d->scene && d->reserve.textures,
+        .texture_maps = d->scene && d->reserve.textures && d->mutable_materials &&
+                        plan->scene.texture_arrays,
         .blit = !d->targets.storage};
     int emits = plan->needs.raster && (plan->scene.emissions || d->mutable_materials);
     uint32_t attachments = 3u + (plan->needs.surface != 0) + (plan->needs.velocity != 0);
@@ -402,6 +422,11 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
     plan->targets_max = d->resizable && d->scene ? MASU_MAX_TARGETS : d->targets.count;
     masu_output_plan(plan);
     if (plan->needs.query) plan->scene.trace_nodes = 0; /* the driver builds its own BVHs */
+    if (!plan->needs.traced) {
+        plan->scene.trace_nodes -= plan->scene.host_nodes;
+        plan->scene.trace_triangles -= plan->scene.host_nodes ? plan->scene.host_triangles : 0;
+        plan->scene.host_nodes = 0;
+    }
     masu_shadow_peak(d, &plan->cascades, &plan->cascade_size);
     if (plan->needs.local_shadows) resolve_local_shadows(plan);
     /* Views of the sun: one per cascade, else one for the whole scene. */
@@ -580,7 +605,7 @@ void masu_plan_export(const masu_frame_plan *plan, const uint64_t *pipeline_ns,
             (masu_plan_image){masu_images[i].name, masu_plan_format(plan, i), image->width,
                               image->height,       (uint32_t)image->used,     image->bytes,
                               image->offset,       image->first,              image->last,
-                              masu_images[i].layers};
+                              masu_plan_layers(plan, i)};
     }
     out->saved_bytes = saved_bytes(plan);
 }

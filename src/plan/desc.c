@@ -13,6 +13,10 @@
 #include <math.h>
 #include <string.h>
 
+/* Of all live textures together, and of those written per frame. */
+#define TEXTURE_TEXELS_MAX ((uint64_t)1 << 28)
+#define TEXTURE_BYTES_MAX ((uint32_t)1 << 28)
+
 /* ---- Defaults -------------------------------------------------------------------------------- */
 
 /* Render size for a scale: rounded to nearest, at least 1. 1080 lines give 864 at 0.8 and 432 at
@@ -130,7 +134,18 @@ masu_desc masu_desc_resolved(const masu_desc *desc) {
         if (d.scene) resolve_scene(&d, &d.rungs[r]);
         if ((d.scene || d.source.view) && d.output.width && d.output.height) resolve_sizes(&d, r);
     }
-    if (!d.scene) d.reserve.particles = d.reserve.decals = d.reserve.lines = 0;
+    if (!d.scene) {
+        d.reserve.particles = d.reserve.decals = d.reserve.lines = 0;
+        d.reserve.trail_points = d.reserve.textures = 0;
+    }
+    if (d.reserve.textures) {
+        VkExtent2D *size = &d.reserve.texture_size;
+        if (!size->width) size->width = 256;
+        if (!size->height) size->height = 256;
+        uint64_t bytes = 4 * (uint64_t)size->width * size->height;
+        if (!d.reserve.texture_bytes && bytes <= TEXTURE_BYTES_MAX)
+            d.reserve.texture_bytes = (uint32_t)bytes;
+    }
     masu_governor_defaults(&d.governor, d.rung_count);
     if (d.targets.format == VK_FORMAT_UNDEFINED) d.targets.format = VK_FORMAT_R8G8B8A8_UNORM;
     if (d.targets.final_layout == VK_IMAGE_LAYOUT_UNDEFINED) {
@@ -205,6 +220,59 @@ static masu_result check_reserve(const masu_desc *d, masu_detail *detail) {
         return bad_range(detail, "reserve.decals", r->decals, 0, MASU_DECALS_MAX);
     if (r->lines > MASU_LINES_MAX)
         return bad_range(detail, "reserve.lines", r->lines, 0, MASU_LINES_MAX);
+    if (r->mesh_upload > MASU_MESH_UPLOAD_MAX)
+        return bad_range(detail, "reserve.mesh_upload", r->mesh_upload, 0, MASU_MESH_UPLOAD_MAX);
+    uint64_t meshes = 0;
+    for (uint32_t k = 0; k < MASU_MAX_MESH_KINDS; k++) {
+        const masu_mesh_kind *kind = &r->meshes[k];
+        meshes += kind->meshes;
+        if (!kind->meshes) continue;
+        if (kind->vertices < 3 || kind->vertices > MASU_MESH_VERTICES_MAX)
+            return bad_range(detail, "reserve.meshes[].vertices", kind->vertices, 3,
+                             MASU_MESH_VERTICES_MAX);
+        if (kind->triangles < 1 || kind->triangles > MASU_MESH_TRIANGLES_MAX)
+            return bad_range(detail, "reserve.meshes[].triangles", kind->triangles, 1,
+                             MASU_MESH_TRIANGLES_MAX);
+    }
+    if (meshes > MASU_RESERVE_MESHES_MAX)
+        return bad_range(detail, "reserve.meshes[].meshes",
+                         (uint32_t)(meshes < UINT32_MAX ? meshes : UINT32_MAX), 0,
+                         MASU_RESERVE_MESHES_MAX);
+    if (r->trail_points > MASU_PARTICLES_MAX)
+        return bad_range(detail, "reserve.trail_points", r->trail_points, 0, MASU_PARTICLES_MAX);
+    if (r->textures > MASU_LIVE_TEXTURES_MAX)
+        return bad_range(detail, "reserve.textures", r->textures, 0, MASU_LIVE_TEXTURES_MAX);
+    if (!r->textures) return MASU_OK;
+    const VkExtent2D size = r->texture_size;
+    if (size.width > MASU_TEXTURE_SIZE_MAX)
+        return bad_range(detail, "reserve.texture_size.width", size.width, 1,
+                         MASU_TEXTURE_SIZE_MAX);
+    if (size.height > MASU_TEXTURE_SIZE_MAX)
+        return bad_range(detail, "reserve.texture_size.height", size.height, 1,
+                         MASU_TEXTURE_SIZE_MAX);
+    uint64_t texels = (uint64_t)r->textures * size.width * size.height;
+    if (texels > TEXTURE_TEXELS_MAX) {
+        return masu_fail(detail, MASU_ERROR_LIMIT, "reserve.textures", texels, TEXTURE_TEXELS_MAX,
+                         "reserve.textures: %u of %ux%u texels are %llu, the limit is %llu",
+                         r->textures, size.width, size.height, (unsigned long long)texels,
+                         (unsigned long long)TEXTURE_TEXELS_MAX);
+    }
+    if (r->texture_bytes < 4 || r->texture_bytes > TEXTURE_BYTES_MAX)
+        return bad_range(detail, "reserve.texture_bytes", r->texture_bytes, 4, TEXTURE_BYTES_MAX);
+    return MASU_OK;
+}
+
+static masu_result check_post(const masu_desc *d, masu_detail *detail) {
+    if (!d->scene) return MASU_OK;
+    if (d->post & ~(uint32_t)MASU_POST_ALL)
+        return bad_range(detail, "post", d->post, 0, MASU_POST_ALL);
+    if (d->lut_size && (d->lut_size < 2 || d->lut_size > MASU_LUT_MAX))
+        return bad_range(detail, "lut_size", d->lut_size, 2, MASU_LUT_MAX);
+    if (d->lut_size && !(d->post & MASU_POST_GRADE)) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "lut_size", 0, d->lut_size,
+                         "lut_size is %u, but desc.post does not have MASU_POST_GRADE",
+                         d->lut_size);
+    }
     return MASU_OK;
 }
 
@@ -364,5 +432,6 @@ masu_result masu_desc_check(const masu_desc *d, masu_detail *detail) {
     if (!result) result = check_split(d, detail);
     if (!result) result = check_viewports(d, detail);
     if (!result) result = check_reserve(d, detail);
+    if (!result) result = check_post(d, detail);
     return result ? result : masu_output_check(d, detail);
 }

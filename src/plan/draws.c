@@ -25,6 +25,7 @@ static masu_batch *add_batch(masu_draws *draws, const masu_frame_plan *plan,
     *b = (masu_batch){.first_primitive = first_primitive,
                       .draw_count = primitives,
                       .mesh = mesh,
+                      .material = MASU_BLOB_NONE,
                       .first_instance = first,
                       .instance_count = instances,
                       .room = instances + (draws->added ? draws->added[mesh] : 0)};
@@ -69,10 +70,27 @@ static void count_added(masu_draws *draws, const masu_frame_plan *plan, const ma
     }
 }
 
+/* A batch for each slot of desc.reserve.meshes, at the end. */
+static void add_mesh_slots(masu_draws *draws, const masu_frame_plan *plan) {
+    for (uint32_t slot = 0; slot < plan->reserve.meshes; slot++) {
+        const masu_mesh_slot s = masu_mesh_slot_of(&plan->desc.reserve, 0, slot);
+        masu_batch *b = &draws->batches[draws->batch_count++];
+        *b = (masu_batch){.draw_count = 1,
+                          .mesh = masu_own_meshes(plan) + slot,
+                          .material = plan->desc.reserve.meshes[s.kind].material,
+                          .first_instance = masu_mesh_instances(plan) + slot,
+                          .instance_count = 1,
+                          .room = 1};
+        if (draws->batch_count == 1) continue;
+        b->first_draw = b[-1].first_draw + b[-1].draw_count;
+        b->first_listed = b[-1].first_listed + b[-1].room;
+    }
+}
+
 static void add_batches(masu_draws *draws, const masu_frame_plan *plan, const masu_scene_view *v) {
     const masu_scene_data *scene = &plan->scene;
     uint32_t from = 0;
-    for (uint32_t mesh = 0; mesh < scene->meshes; mesh++) {
+    for (uint32_t mesh = 0; mesh < masu_own_meshes(plan); mesh++) {
         uint32_t first, first_lod,
             end = masu_scene_mesh_instances(v, masu_own_instances(plan), mesh, from, &first);
         from = end;
@@ -87,6 +105,7 @@ static void add_batches(masu_draws *draws, const masu_frame_plan *plan, const ma
                             end - first);
         }
     }
+    add_mesh_slots(draws, plan);
 }
 
 /* Adds a transparent item, and its texture set to the list of sets. */
@@ -113,8 +132,12 @@ static void add_transparents(masu_draws *draws, const masu_frame_plan *plan,
     draws->transparent_count += plan->reserve.places.transparents;
 }
 
-masu_draw_material masu_draw_material_of(const masu_scene_view *v, uint32_t primitive) {
-    uint32_t number = v->primitives[primitive].material;
+masu_draw_material masu_draw_material_of(const masu_scene_view *v, const masu_batch *batch,
+                                         uint32_t draw) {
+    int own = batch->material == MASU_BLOB_NONE;
+    const masu_blob_primitive *primitive =
+        own ? &v->primitives[batch->first_primitive + draw] : NULL;
+    uint32_t number = own ? primitive->material : batch->material;
     const masu_blob_material *of = &v->materials[number];
     int meso = of->meso != MASU_BLOB_NONE;
     return (masu_draw_material){
@@ -125,8 +148,9 @@ masu_draw_material masu_draw_material_of(const masu_scene_view *v, uint32_t prim
         .layers = of->layers,
         .more_layers = of->more_layers,
         .detail = {of->detail[0], of->detail[1]},
-        .rise = v->primitives[primitive].rise,
-        .meso = meso ? (uint32_t)(v->material_count + 2 * (uint64_t)of->meso) : 0};
+        .rise = own ? primitive->rise : 0.0f,
+        .meso = meso ? (uint32_t)(v->material_count + 2 * (uint64_t)of->meso) : 0,
+        .depth_bias = of->depth_bias};
 }
 
 void masu_draws_build(masu_draws *draws, const masu_frame_plan *plan, const masu_scene_view *v) {
@@ -136,7 +160,7 @@ void masu_draws_build(masu_draws *draws, const masu_frame_plan *plan, const masu
         const masu_batch *batch = &draws->batches[b];
         for (uint32_t d = 0; d < batch->draw_count; d++)
             draws->materials[batch->first_draw + d] =
-                masu_draw_material_of(v, batch->first_primitive + d);
+                masu_draw_material_of(v, batch, d);
     }
     if (plan->needs.transparents) add_transparents(draws, plan, v);
 }

@@ -17,13 +17,19 @@ enum { MASU_TEXTURED_OPAQUE, MASU_TEXTURED_MASK, MASU_TEXTURED_COUNT };
 /* Pipelines of single-sided materials: without textures, then as above. */
 #define MASU_CULLED_COUNT (1u + MASU_TEXTURED_COUNT)
 
-#define MASU_TRANSPARENT_WORDS 6u /* 32-bit values per slot in the buffer of drawn instances */
+/* 32-bit values per slot of transparent surfaces in the buffer of drawn instances. */
+static inline uint32_t masu_transparent_words(const masu_frame_plan *plan) {
+    return plan->scene.depth_biases ? 7 : 6;
+}
+#define MASU_TRANSPARENT_WORDS_MAX 7u
 
 /* A batch: one level of detail of a mesh, its instances, and one draw per primitive. The mesh
- * itself is first, then its LODs, if the plan has any, finest first. */
+ * itself is first, then its LODs, if the plan has any, finest first. The slots of
+ * desc.reserve.meshes are the last batches, one each. */
 typedef struct masu_batch {
     uint32_t first_primitive, first_draw, draw_count;
     uint32_t mesh;
+    uint32_t material; /* of a slot of desc.reserve.meshes; else MASU_BLOB_NONE */
     uint32_t first_instance, instance_count;
     uint32_t room; /* capacity of its instance list: its instances, and those that may be added */
     uint32_t first_listed;         /* start of its list in a view's lists */
@@ -31,7 +37,7 @@ typedef struct masu_batch {
     uint32_t blended; /* number of draws with transparent materials, which are not recorded here */
     /* 1: some instance is mirrored in the baked scene: its materials are drawn two-sided */
     uint32_t mirrored;
-    uint64_t triangles; /* of one instance, without transparent primitives */
+    uint64_t triangles; /* of one instance, without transparent primitives; of a slot at present */
 } masu_batch;
 
 /* The properties of a material that its recording needs. */
@@ -43,6 +49,7 @@ typedef struct masu_draw_material {
     float detail[2];
     float rise;    /* masu_blob_primitive.rise */
     uint32_t meso; /* index of its mesoscale detail in the materials buffer; 0: none */
+    float depth_bias;
 } masu_draw_material;
 
 typedef struct masu_draws {
@@ -62,7 +69,8 @@ void masu_draws_build(masu_draws *draws, const masu_frame_plan *plan, const masu
 /* Whether a transform reverses the winding of triangles. */
 int masu_is_mirrored(const float rows[12]);
 
-masu_draw_material masu_draw_material_of(const masu_scene_view *v, uint32_t primitive);
+masu_draw_material masu_draw_material_of(const masu_scene_view *v, const masu_batch *batch,
+                                         uint32_t draw);
 
 /* Area of a part of the occluder atlas: 0 camera, 1 sun. */
 VkRect2D masu_atlas_part(uint32_t part);

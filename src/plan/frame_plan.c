@@ -5,13 +5,16 @@
 /* ---- Images ---------------------------------------------------------------------------------- */
 
 #define MASU_READBACK_NONE 0
-enum { LIFETIME_FRAME = 0, LIFETIME_KEPT = 1, LIFETIME_PING_PONG = 2 };
+enum { LIFETIME_FRAME = 0, LIFETIME_KEPT = 1, LIFETIME_PING_PONG = 2, LIFETIME_TEXTURES = 3 };
 
 const masu_image_row masu_images[MASU_IMAGE_COUNT] = {
 #define IMAGE(ID, name, format, extent, class_of, readback, lifetime, when, content)               \
     [MASU_IMAGE_##ID] = {#name, VK_FORMAT_##format, MASU_EXTENT_##extent, MASU_CLASS_##class_of,   \
                          MASU_READBACK_##readback, LIFETIME_##lifetime != LIFETIME_FRAME,          \
-                         LIFETIME_##lifetime == LIFETIME_PING_PONG ? 2 : 1, content},
+                         LIFETIME_##lifetime == LIFETIME_PING_PONG ? 2                             \
+                         : LIFETIME_##lifetime == LIFETIME_TEXTURES ? 0                            \
+                                                                    : 1,                           \
+                         content},
 #include "plan/images.inc"
 #undef IMAGE
 };
@@ -74,7 +77,13 @@ static const char *no_skins(const masu_needs *n) {
     return n->scene ? "the scene has no skinned meshes" : NO_SCENE;
 }
 
-static int has_skin_trees(const masu_needs *n) { return n->skins && n->traced && !n->query; }
+static const char *no_meshes(const masu_needs *n) {
+    return n->scene ? "desc.reserve.meshes is 0" : NO_SCENE;
+}
+
+static int has_skin_trees(const masu_needs *n) {
+    return (n->skins || n->meshes) && n->traced && !n->query;
+}
 
 static const char *no_shadow_map(const masu_needs *n) {
     return n->raster ? "the scene has no shadow map" : "the scene has no instances";
@@ -111,6 +120,10 @@ static const char *no_resolve(const masu_needs *n) {
                     : NO_SCENE;
 }
 
+static const char *no_post(const masu_needs *n) {
+    return n->scene ? "desc.post does not have it" : NO_SCENE;
+}
+
 static const char *no_upscale(const masu_needs *n) {
     return n->resolve   ? "temporal runs instead"
            : n->upscale ? "rung.easu selects another filter"
@@ -132,6 +145,7 @@ static const char *no_upscale(const masu_needs *n) {
 #define IMAGE_ACCESS(id, usage) {MASU_IMAGE_##id, MASU_##usage}
 #define READ(id) IMAGE_ACCESS(id, READ)
 #define READ_LINEAR(id) IMAGE_ACCESS(id, READ_LINEAR)
+#define MAP(id) IMAGE_ACCESS(id, READ_MAP)
 #define WRITE(id) IMAGE_ACCESS(id, WRITE)
 #define UPDATE(id) IMAGE_ACCESS(id, UPDATE)
 #define PING_PONG(id) IMAGE_ACCESS(id, PING_PONG)
@@ -195,9 +209,16 @@ int masu_access_binds(masu_access access, int writes) {
     return access.usage == MASU_WRITE || access.usage == MASU_UPDATE;
 }
 
+/* Levels of `size` one below the other, from 1 / `block` of it on, each half the one above. */
+static VkExtent2D stacked(VkExtent2D size, uint32_t block, uint32_t levels) {
+    VkExtent2D out = {(size.width + block - 1) / block, 0};
+    for (; levels; levels--, block *= 2) out.height += (size.height + block - 1) / block;
+    return out;
+}
+
 VkExtent2D masu_extent_of(masu_image_extent extent, VkExtent2D render, VkExtent2D output) {
     uint32_t block = extent == MASU_EXTENT_HALF || extent == MASU_EXTENT_TRACED ||
-                             extent == MASU_EXTENT_GLOSSY
+                             extent == MASU_EXTENT_GLOSSY || extent == MASU_EXTENT_FOCUS
                          ? 2
                      : extent == MASU_EXTENT_BLOCK8 ? 8
                      : extent == MASU_EXTENT_BLOCK4 ? 4
@@ -208,10 +229,15 @@ VkExtent2D masu_extent_of(masu_image_extent extent, VkExtent2D render, VkExtent2
     if (extent == MASU_EXTENT_ONE || extent == MASU_EXTENT_KEPT || extent == MASU_EXTENT_BATCHES ||
         extent == MASU_EXTENT_PROBES || extent == MASU_EXTENT_RAYS ||
         extent == MASU_EXTENT_TRACED_PROBES || extent == MASU_EXTENT_SKINS ||
-        extent == MASU_EXTENT_SKIN_TREES)
+        extent == MASU_EXTENT_SKIN_TREES || extent == MASU_EXTENT_TEXTURES ||
+        extent == MASU_EXTENT_MESHES)
         return (VkExtent2D){1, 1};
     if (extent == MASU_EXTENT_LEVELS)
         return (VkExtent2D){(render.width + 63) / 64 * 32, (render.height + 63) / 64 * 48};
+    if (extent == MASU_EXTENT_ALL_LEVELS)
+        return (VkExtent2D){(render.width + 63) / 64 * 64, (render.height + 63) / 64 * 96};
+    if (extent == MASU_EXTENT_BLOOM_16) return stacked(render, 8, 2);
+    if (extent == MASU_EXTENT_BLOOM_128) return stacked(render, 32, 3);
     if (extent == MASU_EXTENT_PICK) return (VkExtent2D){2, 2};
     if (extent == MASU_EXTENT_SHADOW || extent == MASU_EXTENT_LOCAL_FACES ||
         extent == MASU_EXTENT_LOCAL_ATLAS || extent == MASU_EXTENT_LOCAL_PAIRS)

@@ -53,6 +53,10 @@ typedef enum masu_image_extent {
     MASU_EXTENT_HALF,   /* one texel per 2x2 render pixels */
     MASU_EXTENT_TRACED, /* the same, for reflections; per pixel with debug.reference */
     MASU_EXTENT_LEVELS, /* 1/2 to 1/64 of the render size side by side: light/background.glsl */
+    MASU_EXTENT_ALL_LEVELS, /* and the render size itself */
+    MASU_EXTENT_FOCUS,  /* one texel per 2x2 render pixels, for depth of field */
+    MASU_EXTENT_BLOOM_16,  /* 1/8 and 1/16 of the render size, one below the other */
+    MASU_EXTENT_BLOOM_128, /* 1/32, 1/64 and 1/128 */
     MASU_EXTENT_BLOCK8,
     MASU_EXTENT_BLOCK4,
     MASU_EXTENT_TILE,  /* one workgroup per tile of 16x16 pixels */
@@ -67,12 +71,16 @@ typedef enum masu_image_extent {
     MASU_EXTENT_KEPT,       /* one invocation per instance and view */
     MASU_EXTENT_BATCHES,    /* see compact.comp */
     MASU_EXTENT_SKINS,      /* one invocation per vertex of the largest skin, for each skin */
-    MASU_EXTENT_SKIN_TREES, /* one workgroup per skin */
+    MASU_EXTENT_SKIN_TREES, /* one workgroup per skin, and per mesh of the host */
+    /* one invocation per element of the frame's changed meshes: indirect, written by the host */
+    MASU_EXTENT_MESHES,
     MASU_EXTENT_PROBES,     /* one invocation per light probe */
     /* one invocation per ray of the frame's live probes: indirect, written by the host */
     MASU_EXTENT_RAYS,
     /* one workgroup per live probe of the frame: indirect, written by the host */
     MASU_EXTENT_TRACED_PROBES,
+    /* one live texture; passes: one invocation per texel written, indirect, by the host */
+    MASU_EXTENT_TEXTURES,
     MASU_EXTENT_PICK,   /* the 2x2 pixels that contain the picked one */
     MASU_EXTENT_SHADOW, /* all cascades of the shadow map; size from plan.c */
     /* the local_shadow_faces squares that a frame renders; size from plan.c */
@@ -90,7 +98,8 @@ typedef struct masu_image_row {
     masu_image_class class_of;
     uint32_t readback; /* masu_readback_bits that requests it */
     int kept;          /* persistent: the next frame reads the content */
-    uint32_t layers;   /* 2: ping-pong: this frame writes one layer and reads the other */
+    /* 2: ping-pong: this frame writes one layer and reads the other; 0: one per live texture */
+    uint32_t layers;
     const char *content;
 } masu_image_row;
 
@@ -98,6 +107,7 @@ typedef enum masu_usage {
     MASU_USE_NONE = 0,
     MASU_READ,           /* sampled, nearest */
     MASU_READ_LINEAR,    /* sampled, linear filter */
+    MASU_READ_MAP,       /* sampled as a texture of materials: binding of set 2 */
     MASU_READ_BUFFER,    /* storage buffer, or arguments of the pass's indirect dispatch */
     MASU_READ_VERTICES,  /* vertex buffer */
     MASU_READ_COPY,      /* transfer source */
@@ -163,6 +173,7 @@ typedef struct masu_needs {
     int scene;         /* with a scene (else: upscaling of a source image) */
     int raster;        /* it has instances */
     int skins;         /* some of them are skinned */
+    int meshes;        /* the host may create meshes */
     int sdf;           /* it has an SDF */
     uint32_t readback; /* masu_readback_bits */
     uint32_t split;    /* masu_split_bits */
@@ -174,6 +185,7 @@ typedef struct masu_needs {
     int unculled;      /* and a mesh with too many primitives or instances for occlusion culling */
     int surface;     /* some material has more parameters than the albedo and normal images hold */
     int environment; /* the sky is an environment map */
+    int looks;       /* instances have looks */
     int sky;         /* the sky may be analytic */
     int emissive;    /* polygons may emit: the G-buffer pass writes their radiance to hdr, */
     int emission_packed; /* or to albedo (pack.glsl), if the device has too few attachments */
@@ -187,7 +199,8 @@ typedef struct masu_needs {
     int local_shadows; /* a rung has local shadows: there is an atlas */
     int shadow;        /* polygons cast sun shadows: there is a shadow map */
     int transparents;  /* the scene has transparent surfaces, */
-    int rough_glass;   /* and some show a blurred background */
+    int rough_glass;   /* and some show a blurred background, */
+    int refraction;    /* or a refracted one */
     int reflections;   /* a rung traces reflections */
     int traced;        /* rays trace polygons */
     int traced_sdf;    /* rays trace the SDF */
@@ -200,9 +213,13 @@ typedef struct masu_needs {
     int smoothing;     /* SMAA */
     int picking;       /* the host may pick pixels */
     int metered;       /* auto-exposure */
+    uint32_t post;     /* masu_post_bits */
     uint32_t dropped;  /* MASU_DROPPED_*: AUTO features that are off for lack of storage buffers */
     int sprites;       /* frames may have sprites of these kinds: */
     int particles, decals, lines;
+    int textures;       /* sprites may have textures: there is an image of live textures, */
+    int texture_writes; /* which the host may write, */
+    int texture_maps;   /* and materials may show */
     masu_switches any; /* some rung has the switch on, and the scene can use it */
     /* For one rung: */
     masu_switches on; /* the same for this rung */
@@ -299,6 +316,9 @@ static inline int masu_is_smaa(masu_aa aa) { return aa >= MASU_AA_SMAA_LOW; }
  * true in the product; the lab build has other marches. */
 int masu_march_has_tiles(const masu_needs *needs);
 int masu_march_has_blocks(const masu_needs *needs);
+
+/* Number of points of a colour table. */
+static inline uint64_t masu_lut_points(uint32_t size) { return (uint64_t)size * size * size; }
 
 /* Whether the host's own commands get the scene's per-pixel data, such as depth. */
 static inline int masu_split_shows_scene(uint32_t split) {

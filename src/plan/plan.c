@@ -59,6 +59,8 @@ VkExtent2D masu_plan_extent(const masu_frame_plan *plan, masu_image_extent exten
     if (extent == MASU_EXTENT_HALF && plan->desc.debug.ao_full) return render;
     int traced = extent == MASU_EXTENT_TRACED || extent == MASU_EXTENT_GLOSSY;
     if (traced && plan->desc.debug.reference) return render;
+    if (extent == MASU_EXTENT_TEXTURES)
+        return plan->needs.texture_writes ? plan->desc.reserve.texture_size : (VkExtent2D){1, 1};
     if (extent == MASU_EXTENT_LOCAL_ATLAS)
         return (VkExtent2D){plan->local_atlas, plan->local_atlas};
     if (extent == MASU_EXTENT_LOCAL_PAIRS)
@@ -104,7 +106,14 @@ VkFormat masu_plan_format(const masu_frame_plan *plan, uint32_t image) {
 VkFormat masu_plan_store_format(const masu_frame_plan *plan, uint32_t image) {
     VkFormat format = masu_plan_format(plan, image);
     if (masu_images[image].format == VK_FORMAT_R16G16B16A16_UNORM) return VK_FORMAT_R32G32_UINT;
-    return format == VK_FORMAT_A2B10G10R10_UNORM_PACK32 ? VK_FORMAT_R32_UINT : format;
+    return format == VK_FORMAT_A2B10G10R10_UNORM_PACK32 || format == VK_FORMAT_R8G8B8A8_SRGB
+               ? VK_FORMAT_R32_UINT
+               : format;
+}
+
+uint32_t masu_plan_layers(const masu_frame_plan *plan, uint32_t image) {
+    uint32_t layers = masu_images[image].layers, textures = plan->desc.reserve.textures;
+    return layers ? layers : textures ? textures : 1;
 }
 
 int masu_comes_last(const masu_rung_plan *rung, uint32_t pass) {

@@ -7,6 +7,7 @@
 #include "plan/frame_plan.h"
 #include "plan/limits.h"
 #include "plan/reserve.h"
+#include "shared/meshes.h"
 #include "scene/scene.h"
 #include "masu.h"
 
@@ -78,10 +79,11 @@ typedef struct masu_drawn_plan {
         faces, words;
 } masu_drawn_plan;
 
-/* Offsets of the three kinds of sprites in a slot of MASU_BUFFER_SPRITES, in vec4; layout in
- * masu_shared.h. */
+/* Offsets of the three kinds of sprites in a slot of MASU_BUFFER_SPRITES, and the size of a
+ * particle and a decal, in vec4; layout in masu_shared.h. */
 typedef struct masu_sprites_plan {
     uint64_t particles, lines, decals, end;
+    uint32_t particle, decal;
 } masu_sprites_plan;
 
 /* A texture array on the device. A renderer's plan has them in the host memory block; a plan that
@@ -157,16 +159,24 @@ static inline uint64_t masu_align_up(uint64_t v, uint64_t a) { return (v + a - 1
 void masu_plan_resize(masu_frame_plan *plan, VkExtent2D output);
 /* The same for the size of a viewport, or for the whole output if there are no viewports. */
 void masu_plan_select_viewport(masu_frame_plan *plan, uint32_t viewport);
-/* Bytes of MASU_BUFFER_JOINTS for one frame: a header per skin, then the matrices. */
+/* Bytes of MASU_BUFFER_JOINTS for one frame: a header per skin and per mesh of the host, whose BVHs
+ * are refitted alike; then the matrices. */
 #define MASU_SKIN_HEADER_BYTES 32u
-static inline uint64_t masu_joints_bytes(const masu_scene_data *s) {
-    uint64_t morphs =
-        s->skin_targets ? (uint64_t)16 * s->skins + (uint64_t)16 * s->skin_targets : 0;
-    return s->skins * (uint64_t)MASU_SKIN_HEADER_BYTES + s->skinned_joints * (uint64_t)48 + morphs;
+static inline uint64_t masu_skin_headers(const masu_scene_data *s) {
+    return (s->skins + (uint64_t)s->host_meshes) * MASU_SKIN_HEADER_BYTES;
 }
 /* Byte offset of the morph weights: an element per skin, then one per target. */
 static inline uint64_t masu_morphs_at(const masu_scene_data *s) {
-    return s->skins * (uint64_t)MASU_SKIN_HEADER_BYTES + s->skinned_joints * (uint64_t)48;
+    return masu_skin_headers(s) + s->skinned_joints * (uint64_t)48;
+}
+static inline uint64_t masu_joints_bytes(const masu_scene_data *s) {
+    uint64_t morphs =
+        s->skin_targets ? (uint64_t)16 * s->skins + (uint64_t)16 * s->skin_targets : 0;
+    return masu_morphs_at(s) + morphs;
+}
+/* Byte offset of the jobs' data in a slot of MASU_BUFFER_MESH_UPLOAD (shaders/shared/meshes.h). */
+static inline uint64_t masu_mesh_data_at(const masu_scene_data *s) {
+    return 16 * (1 + (uint64_t)MASU_MESH_JOB_UVEC4 * s->host_meshes);
 }
 
 /* Bytes of a slot of MASU_BUFFER_LIVE_MATERIALS: all materials, then, with ray tracing, all in the
@@ -178,11 +188,27 @@ static inline uint64_t masu_live_material_bytes(const masu_frame_plan *p) {
 }
 
 /* Counts of the blob, without the reserve. */
+/* With looks, the instance that the looks begin at in the buffer of transforms: a multiple of 8. */
+static inline uint32_t masu_look_capacity(uint32_t instances) { return (instances + 7u) & ~7u; }
+
 static inline uint32_t masu_own_instances(const masu_frame_plan *p) {
     return p->scene.instances - p->reserve.places.instances;
 }
 static inline uint32_t masu_own_models(const masu_frame_plan *p) {
-    return p->scene.models - p->reserve.models;
+    return p->scene.models - p->reserve.models - p->reserve.meshes;
+}
+static inline uint32_t masu_own_meshes(const masu_frame_plan *p) {
+    return p->scene.meshes - p->reserve.meshes;
+}
+/* The first of each that belongs to desc.reserve.meshes; one per slot, the last ones. */
+static inline uint32_t masu_mesh_models(const masu_frame_plan *p) {
+    return p->scene.models - p->reserve.meshes;
+}
+static inline uint32_t masu_mesh_instances(const masu_frame_plan *p) {
+    return p->scene.instances - p->reserve.meshes;
+}
+static inline uint32_t masu_mesh_traced(const masu_frame_plan *p) {
+    return p->scene.trace_instances - (p->scene.host_nodes ? p->reserve.meshes : 0);
 }
 static inline uint32_t masu_own_nodes(const masu_frame_plan *p) {
     return p->scene.model_nodes - p->reserve.places.nodes;
@@ -221,6 +247,7 @@ VkExtent2D masu_plan_extent(const masu_frame_plan *plan, masu_image_extent exten
  * every device supports storing to the former. */
 VkFormat masu_plan_format(const masu_frame_plan *plan, uint32_t image);
 VkFormat masu_plan_store_format(const masu_frame_plan *plan, uint32_t image);
+uint32_t masu_plan_layers(const masu_frame_plan *plan, uint32_t image);
 /* Whether temporal histories are stored as half floats instead of 16-bit unorm: if the device
  * cannot filter the latter, or if the target exceeds white, where a step of 1/65535 of its peak is
  * visible in the dark. */

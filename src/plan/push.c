@@ -64,6 +64,17 @@ static const masu_image_plan *depth_of(const masu_push_input *in) {
     return &in->plan->images[MASU_IMAGE_SCENE_DEPTH];
 }
 
+/* Second texture coordinates and colours of vertices in TEXCOORDS, in 32-bit values; 0: none. */
+static uint32_t masu_second_texcoords_at(const masu_push_input *in) {
+    const masu_scene_data *s = &in->plan->scene;
+    return s->second_texcoords ? (uint32_t)(masu_texcoord_layout(s).second / 4) : 0;
+}
+
+static uint32_t masu_vertex_colors_at(const masu_push_input *in) {
+    const masu_scene_data *s = &in->plan->scene;
+    return s->vertex_colors ? (uint32_t)(masu_texcoord_layout(s).colors / 4) : 0;
+}
+
 /* Per SMAA preset: the luma threshold in the steps of smaa/color.glsl, the search steps, and the
  * diagonal search steps. */
 static float masu_smaa_threshold(masu_aa aa) {

@@ -23,8 +23,8 @@
 #include <stdint.h>
 
 #define MASU_BLOB_MAGIC 0x5553414Du /* the bytes 'M' 'A' 'S' 'U' */
-#define MASU_BLOB_VERSION 18u
-/* layout of version 18: 3896646864 (kinds and elements; tests/scripts/scene_forms.sh) */
+#define MASU_BLOB_VERSION 19u
+/* layout of version 19: 873282246 (kinds and elements; tests/scripts/scene_forms.sh) */
 #define MASU_BLOB_ALIGN 16u
 #define MASU_BLOB_NONE 0xFFFFFFFFu /* "no name", "no parent" */
 /* values per SDF primitive, first in SLOTS: sphere, slope, form, first argument, material */
@@ -356,6 +356,10 @@ typedef struct masu_blob_material {
     float sheen_roughness;   /* perceptual, 0..1 */
     float anisotropy; /* 0..1: alpha along the grain is mix(alpha, 1, anisotropy^2) */
     float anisotropy_rotation; /* 0..2 pi: direction of the grain, from +u to +y of normal maps */
+    /* With IS_TINTED, without metal: refraction of the background by a volume. */
+    float thickness; /* of the volume below the surface, object space: 0..65504; 0: no refraction */
+    float ior;       /* index of refraction, 1..1000; 0 if thickness is 0 */
+    float depth_bias; /* -0.01..0.01: drawn nearer by this fraction of its view depth */
 } masu_blob_material;
 
 /* Appearance, by viewing angle, of surface detail too small for polygons: the curves of
@@ -672,7 +676,7 @@ _Static_assert(sizeof(masu_blob_joint) == 80, "blob joint");
 _Static_assert(sizeof(masu_blob_skin_vertex) == 32, "blob skin vertex");
 _Static_assert(sizeof(masu_blob_group) == 48, "blob group");
 _Static_assert(sizeof(masu_blob_occluder) == 32, "blob occluder");
-_Static_assert(sizeof(masu_blob_material) == 116, "blob material");
+_Static_assert(sizeof(masu_blob_material) == 128, "blob material");
 _Static_assert(sizeof(masu_blob_texture) == 32, "blob texture");
 _Static_assert(sizeof(masu_blob_texture_set) == 32, "blob texture set");
 _Static_assert(sizeof(masu_blob_camera_key) == 32, "blob camera key");

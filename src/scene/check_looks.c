@@ -29,8 +29,8 @@ static masu_result check_path(reader *r) {
             !within(k->target, 3, -1e15f, 1e15f)) {
             return bad(r, "camera keys", i, "is not finite or beyond 1e15");
         }
-        if (!(k->fov_y >= 0.001f && k->fov_y <= 3.1f)) {
-            return bad(r, "camera keys", i, "field of view is not 0.001 to 3.1 radians");
+        if (!(k->fov_y >= 0.0005f && k->fov_y <= 3.1f)) {
+            return bad(r, "camera keys", i, "field of view is not 0.0005 to 3.1 radians");
         }
         /* Compared as numbers, because -0 equals 0. */
         if (k->position[0] == k->target[0] && k->position[1] == k->target[1] &&
@@ -99,6 +99,8 @@ static masu_result check_material(reader *r, uint64_t i) {
         return bad(r, "materials", i, "detail is not 0.001 to 10000");
     if (m->meso != MASU_BLOB_NONE && m->meso >= r->counts[MASU_BLOB_MESO])
         return bad(r, "materials", i, "no such meso");
+    if (!within(&m->depth_bias, 1, -0.01f, 0.01f))
+        return bad(r, "materials", i, "depth bias is not -0.01 to 0.01");
     if (!lobes_fit(m)) return bad(r, "materials", i, "a lobe is out of range, or not the only one");
     uint32_t blends = m->flags & MASU_MATERIAL_IS_BLEND;
     if (blends && m->flags & MASU_MATERIAL_IS_TINTED && m->flags & MASU_MATERIAL_IS_ADDITIVE)
@@ -106,6 +108,12 @@ static masu_result check_material(reader *r, uint64_t i) {
     if (m->flags & MASU_MATERIAL_TRANSMISSION_MAP &&
         (!blends || !(m->flags & MASU_MATERIAL_IS_TINTED)))
         return bad(r, "materials", i, "has a map of transmission, but transmits nothing");
+    if (!within(&m->thickness, 1, 0.0f, 65504.0f) ||
+        !(m->thickness > 0.0f ? m->ior >= 1.0f && m->ior <= 1000.0f : m->ior == 0.0f))
+        return bad(r, "materials", i, "thickness is not 0 to 65504, or ior not 1 to 1000");
+    if (m->thickness > 0.0f && (!blends || !(m->flags & MASU_MATERIAL_IS_TINTED) ||
+                                m->flags & MASU_MATERIAL_HAS_METAL || m->metallic > 0.0f))
+        return bad(r, "materials", i, "has a thickness, but is not tinted, or is a metal");
     if (!blends && m->flags & MASU_MATERIAL_LOBE_MAP &&
         (!(m->flags & 1u << MASU_SLOT_COAT) || masu_lobe_code(m) >> 21 == MASU_LOBE_GRAIN))
         return bad(r, "materials", i, "has no lobe, or no map of it");
@@ -300,6 +308,7 @@ void masu_describe_looks(const reader *r, masu_scene_data *out) {
     for (uint32_t i = 0; i < out->materials; i++) {
         const masu_blob_material *m = &r->view.materials[i];
         if (has_surface(m)) out->surfaces++;
+        if (m->depth_bias != 0.0f) out->depth_biases = 1;
         if (m->coat > 0.0f) out->coats++;
         if (!(m->flags & MASU_MATERIAL_IS_BLEND) && m->flags & 1u << MASU_SLOT_NORMAL)
             out->reliefs = 1;
@@ -308,9 +317,12 @@ void masu_describe_looks(const reader *r, masu_scene_data *out) {
         if (m->flags & MASU_MATERIAL_IS_BLEND && m->flags & MASU_MATERIAL_IS_TINTED) {
             out->tints |= (double)m->roughness > MASU_SHARP_GLASS ? 1 | MASU_TINTS_ROUGH : 1;
             if (m->flags & MASU_MATERIAL_TRANSMISSION_MAP) out->tints |= MASU_TINTS_MAPPED;
+            if (m->thickness > 0.0f) out->tints |= MASU_TINTS_REFRACTED;
         }
         if (m->flags & MASU_MATERIAL_IS_BLEND) out->blends++;
     }
+    for (uint64_t i = 0; i < r->counts[MASU_BLOB_CAMERA_KEYS]; i++)
+        out->flat_lens |= (double)r->view.camera_keys[i].fov_y < MASU_FLAT_LENS;
     describe_transparents(r, out);
     out->meso = (uint32_t)r->counts[MASU_BLOB_MESO];
     out->lights = (uint32_t)r->counts[MASU_BLOB_LIGHTS];

@@ -6,6 +6,7 @@
 #include "shared/masu_shared.h"
 
 #include <math.h>
+#include <string.h>
 
 static inline uint32_t masu_root_steps(float value, float steps) {
     return (uint32_t)(sqrtf(value < 0.0f ? 0.0f : value < 1.0f ? value : 1.0f) * steps + 0.5f);
@@ -55,10 +56,26 @@ static inline float masu_specular_of(const masu_blob_material *m) {
     return code ? -(float)(code + 1u) : m->specular;
 }
 
+/* The nearest half of a number from 0 to 65504; 0 below 2^-14. */
+static inline uint32_t masu_half_of(float value) {
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return value >= 0x1p-14f ? (bits - (112u << 23) + (1u << 12)) >> 13 : 0u;
+}
+
+/* Metallic of the shaders; of a material that refracts the bits of two halves (materials.h). */
+static inline float masu_metallic_of(const masu_blob_material *m) {
+    if (!(m->thickness > 0.0f)) return m->metallic;
+    uint32_t bits = (0x8000u | masu_half_of(m->ior)) << 16 | masu_half_of(m->thickness);
+    float packed;
+    memcpy(&packed, &bits, sizeof packed);
+    return packed;
+}
+
 static inline struct masu_material_data masu_material_data_of(const masu_blob_material *m) {
     struct masu_material_data d = {
         {m->base_color[0], m->base_color[1], m->base_color[2], m->roughness},
-        {m->emissive[0], m->emissive[1], m->emissive[2], m->metallic},
+        {m->emissive[0], m->emissive[1], m->emissive[2], masu_metallic_of(m)},
         {masu_specular_of(m), m->coat, m->coat_roughness, m->opacity}};
     return d;
 }

@@ -13,6 +13,8 @@
 #define MASU_MAY_ALIAS
 #endif
 
+#define MASU_FLAT_LENS 0.01 /* radians, vertical */
+
 /* Numbers of elements unless stated otherwise; flags are 0 or 1. In a masu_frame_plan the numbers
  * include what desc.reserve adds (reserve.h). */
 typedef struct MASU_MAY_ALIAS masu_scene_data {
@@ -28,6 +30,9 @@ typedef struct MASU_MAY_ALIAS masu_scene_data {
     uint32_t max_instances, max_primitives; /* of any one mesh */
     uint32_t draws;                         /* of one G-buffer pass, without LODs */
     uint64_t triangles;                     /* of all instances at their finest level */
+    /* Of these, slots of desc.reserve.meshes and their sizes; nodes: 0 unless rays trace them. All 0
+     * outside of a masu_frame_plan. */
+    uint32_t host_meshes, host_vertices, host_triangles, host_nodes;
 
     /* Movable models, their animations and skins. */
     uint32_t models, model_nodes;              /* models; nodes of all models */
@@ -40,6 +45,9 @@ typedef struct MASU_MAY_ALIAS masu_scene_data {
     uint32_t skinned_vertices, skinned_joints; /* of all skinned meshes */
     uint32_t skinned_nodes;                    /* of their BVHs */
     uint32_t first_skinned, max_skinned; /* first skinned vertex; most vertices of any one mesh */
+
+    /* Flag: a camera key is narrower than MASU_FLAT_LENS, as orthographic cameras are. */
+    uint32_t flat_lens;
 
     /* Exposure. */
     uint32_t metered;       /* flag: metered by default */
@@ -83,7 +91,8 @@ typedef struct MASU_MAY_ALIAS masu_scene_data {
     uint32_t reliefs;   /* flag: an opaque material has a normal map */
     uint32_t blends;    /* transparent materials */
     /* A transparent material has coloured transmission; MASU_TINTS_ROUGH: a rough one,
-     * MASU_TINTS_MAPPED: one with a map of its transmission. */
+     * MASU_TINTS_MAPPED: one with a map of its transmission; MASU_TINTS_REFRACTED: one with a
+     * thickness. */
     uint32_t tints;
     uint32_t transparents;     /* transparent primitives, once per instance */
     uint32_t transparent_sets; /* their texture sets, at least 1 if there are any */
@@ -99,6 +108,7 @@ typedef struct MASU_MAY_ALIAS masu_scene_data {
     uint32_t probes_unlit;                       /* flag: they have no baked light */
     uint32_t bounce;                             /* flag: and rays of the frame add to it */
     uint32_t bounce_sdf;                         /* flag: which also trace the SDF */
+    uint32_t depth_biases;                       /* flag: some material has one */
     uint32_t environment_size, environment_mips; /* texels along an edge of the map; 0: none */
     uint32_t analytic_sky;                       /* flag: the sky follows from the sun */
     uint32_t fog;                                /* flag */

@@ -172,8 +172,8 @@ void masu_texture_decode(uint32_t blob_format, const unsigned char *block, unsig
     }
 }
 
-void masu_texture_write(const masu_blob_texture *texture, const unsigned char *texels,
-                        int compressed, const masu_texture_region *r, unsigned char *to) {
+void masu_texture_write_region(const masu_blob_texture *texture, const unsigned char *texels,
+                               int compressed, const masu_texture_region *r, unsigned char *to) {
     if (compressed) {
         memcpy(to + r->offset, texels + r->source, (size_t)(r->rows * r->source_row));
         return;

@@ -57,8 +57,9 @@ uint32_t masu_texture_chunks(const masu_blob_texture *textures, uint32_t count, 
                              uint64_t room);
 
 /* Writes the texels of a region. `to`: the first byte of the staging buffer. */
-void masu_texture_write(const masu_blob_texture *texture, const unsigned char *texels,
-                        int compressed, const masu_texture_region *region, unsigned char *to);
+void masu_texture_write_region(const masu_blob_texture *texture, const unsigned char *texels,
+                               int compressed, const masu_texture_region *region,
+                               unsigned char *to);
 
 /* Decodes a block to 16 texels, row by row: 4 bytes each for BC1 and BC3, 1 for BC4, 2 for BC5. */
 void masu_texture_decode(uint32_t blob_format, const unsigned char *block, unsigned char *texels);

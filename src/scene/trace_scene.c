@@ -28,9 +28,9 @@ uint64_t masu_trace_rows_at(const masu_scene_data *scene, int query) {
     return query ? 16 : masu_trace_frame_bytes(scene->trace_instances);
 }
 
-uint64_t masu_trace_slot_bytes(const masu_scene_data *scene, int query) {
-    return masu_trace_rows_at(scene, query) +
-           16 * (uint64_t)MASU_TRACE_ROWS * scene->trace_instances;
+uint64_t masu_trace_slot_bytes(const masu_scene_data *scene, int query, int looks) {
+    uint64_t rows = MASU_TRACE_ROWS + (looks ? MASU_TRACE_LOOK_ROWS : 0u);
+    return masu_trace_rows_at(scene, query) + 16 * rows * scene->trace_instances;
 }
 
 /* Index of the ray tracing copy of a material's map, or MASU_TRACE_NONE. Binary search: the copies
@@ -83,6 +83,17 @@ struct masu_trace_material masu_trace_material_of(const masu_scene_data *scene,
     return out;
 }
 
+uint32_t masu_trace_word_of(const masu_scene_data *scene, const masu_scene_view *v,
+                            uint32_t material) {
+    const masu_blob_material *m = &v->materials[material];
+    uint32_t word = material;
+    if (m->flags & MASU_MATERIAL_IS_MASK &&
+        trace_texture_of(scene, v, m, MASU_SLOT_BASE) != MASU_TRACE_NONE)
+        word |= MASU_TRACE_HOLES;
+    if (m->flags & MASU_MATERIAL_IS_SINGLE) word |= MASU_TRACE_SINGLE;
+    return word;
+}
+
 /* The i-th 16-byte element of the traced scene buffer. */
 static void write_element(const masu_scene_data *scene, const masu_scene_view *v,
                           const masu_trace_plan *p, uint64_t i, uint32_t out[4]) {
@@ -92,16 +103,15 @@ static void write_element(const masu_scene_data *scene, const masu_scene_view *v
         memcpy(out, s.header, 16);
         out[3] = (uint32_t)p->more;
     } else if (i < p->triangles) {
-        memcpy(out, (const unsigned char *)v->trace_nodes + 16 * (i - p->nodes), 16);
+        uint32_t own = scene->trace_nodes - scene->host_nodes; /* the others follow at run time */
+        if (i - p->nodes < own * (uint64_t)MASU_TRACE_NODE_UVEC4)
+            memcpy(out, (const unsigned char *)v->trace_nodes + 16 * (i - p->nodes), 16);
     } else if (i < p->more) {
+        uint32_t host = scene->host_nodes ? scene->host_triangles : 0;
+        if (i - p->triangles >= scene->trace_triangles - host) return;
         const masu_blob_trace_triangle *t = &v->trace_triangles[i - p->triangles];
         memcpy(out, t->vertex, sizeof t->vertex);
-        out[3] = v->primitives[t->primitive].material;
-        const masu_blob_material *m = &v->materials[out[3]];
-        if (m->flags & MASU_MATERIAL_IS_MASK &&
-            trace_texture_of(scene, v, m, MASU_SLOT_BASE) != MASU_TRACE_NONE)
-            out[3] |= MASU_TRACE_HOLES;
-        if (m->flags & MASU_MATERIAL_IS_SINGLE) out[3] |= MASU_TRACE_SINGLE;
+        out[3] = masu_trace_word_of(scene, v, v->primitives[t->primitive].material);
     } else if (i < p->noise) {
         out[0] = (uint32_t)p->materials;
         out[1] = (uint32_t)p->pictures;

@@ -16,6 +16,7 @@
 #include "shared/masu_shared.h"
 
 #define MASU_TRACE_ROWS 6u /* of four floats, per traced instance */
+#define MASU_TRACE_LOOK_ROWS 2u /* with looks: tint and emission; texture coordinates */
 
 /* Start of each part, in units of 16 bytes. */
 typedef struct masu_trace_plan {
@@ -25,9 +26,10 @@ typedef struct masu_trace_plan {
 masu_trace_plan masu_trace_layout(const masu_scene_data *scene);
 
 /* Bytes of the first buffer, and of a slot of the second. With ray queries (ray_query.h) neither
- * has a BVH: the plan's copy of the scene has no nodes, and the rows follow the header. */
+ * has a BVH: the plan's copy of the scene has no nodes, and the rows follow the header. Looks of
+ * instances follow the rows. */
 uint64_t masu_trace_scene_bytes(const masu_scene_data *scene);
-uint64_t masu_trace_slot_bytes(const masu_scene_data *scene, int query);
+uint64_t masu_trace_slot_bytes(const masu_scene_data *scene, int query, int looks);
 /* Byte offset of the rows in a slot. */
 uint64_t masu_trace_rows_at(const masu_scene_data *scene, int query);
 
@@ -41,6 +43,10 @@ void masu_trace_write(const masu_scene_data *scene, const masu_scene_view *v, ui
 struct masu_trace_material masu_trace_material_of(const masu_scene_data *scene,
                                                   const masu_scene_view *v,
                                                   const masu_blob_material *m);
+
+/* The material of a triangle for ray hits, with its flags (shaders/shared/trace.h). */
+uint32_t masu_trace_word_of(const masu_scene_data *scene, const masu_scene_view *v,
+                            uint32_t material);
 
 /* 1: some traced surface is alpha-tested. Selects the shader permutation that tests alpha at
  * hits. */

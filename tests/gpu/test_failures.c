@@ -411,6 +411,9 @@ static void errors_of_live_calls_reach_the_log(void **state) {
     LOGGED(masu_model_show(m, (masu_model){0}, 1, &failure));
     LOGGED(masu_model_add(m, (masu_model){0}, rows, &added, &failure));
     LOGGED(masu_model_remove(m, (masu_model){0}, &failure));
+    LOGGED(masu_mesh_create(m, 0, &(masu_mesh_data){0}, rows, &added, &failure)); /* no reserve */
+    LOGGED(masu_mesh_replace(m, (masu_model){0}, &(masu_mesh_data){0}, &failure));
+    LOGGED(masu_mesh_deform(m, (masu_model){0}, rows, rows, 1, &failure));
     LOGGED(masu_model_node_get(m, (masu_model){0}, 0, &node, &failure));
     LOGGED(masu_model_node_set(m, (masu_model){0}, 0, rows, &failure));
     LOGGED(masu_model_animate(m, (masu_model){0}, NULL, 0, &failure));

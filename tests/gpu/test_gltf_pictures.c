@@ -382,6 +382,79 @@ static void glass_colours_what_is_behind(void **state) {
             (shot){{1, 0.5, 2.5}, {1, 0.5, 0}}, f, 2, 0.01);
 }
 
+/* Fractions of a face's edges at the nearest point of it along a ray; false if the ray misses it by more than `margin`. */
+static bool along_edges(const face *f, const double eye[3], const double direction[3], double margin, double uv[2], double point[3]) {
+    double n[3], from[3], on[3], across[3];
+    cross(f->u, f->v, n);
+    for (int k = 0; k < 3; k++) from[k] = f->at[k] - eye[k];
+    double t = dot(from, n) / dot(n, direction);
+    for (int k = 0; k < 3; k++) point[k] = eye[k] + t * direction[k];
+    for (int k = 0; k < 3; k++) on[k] = point[k] - f->at[k];
+    cross(on, f->v, across);
+    uv[0] = dot(across, n) / dot(n, n);
+    cross(f->u, on, across);
+    uv[1] = dot(across, n) / dot(n, n);
+    return uv[0] > margin && uv[0] < 1 - margin && uv[1] > margin && uv[1] < 1 - margin;
+}
+
+/* A pane that only transmits, before a wall whose colour tells the position on it. The wall is seen where the refracted
+ * ray has gone the thickness (of the node's scale); error and shift in pixels of the picture. */
+static void volumes_refract_what_is_behind(void **state) {
+    (void)state;
+    static const float colors[16] = {0, 0, 0.25f, 1, 1, 0, 0.25f, 1, 1, 1, 0.25f, 1, 0, 1, 0.25f, 1};
+    static const struct {
+        double thickness, ior, scale; /* ior 0: infinite */
+    } cases[] = {{0, 1.5, 1}, {0.4, 1, 1}, {0.4, 1.5, 1}, {0.4, 2.4, 1}, {0.4, 0, 1}, {0.25, 1.5, 2}};
+    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+        double scale = cases[c].scale, thickness = cases[c].thickness * scale, ior = cases[c].ior, mean = 0, most = 0, shift = 0;
+        face pane = flat(0, 0, 0, 2 * scale, scale, 1, 1, 1, 0), wall = flat(-1, -1, -1.5, 4, 3, 0, 0, 0, 1);
+        shot p = {{-0.8, 1.6, 2.5}, {scale, 0.5 * scale, 0}};
+        char volume[512];
+        masu_session s;
+        masu_view v;
+        uint32_t count = 0;
+        begin_quad();
+        int shades = floats(colors, "VEC4", 4, 4);
+        snprintf(volume, sizeof volume,
+                 "{\"pbrMetallicRoughness\":{\"metallicFactor\":0,\"roughnessFactor\":0},\"extensions\":{"
+                 "\"KHR_materials_transmission\":{\"transmissionFactor\":1},\"KHR_materials_specular\":{\"specularFactor\":0},"
+                 "\"KHR_materials_volume\":{\"thicknessFactor\":%g},\"KHR_materials_ior\":{\"ior\":%g}}}",
+                 cases[c].thickness, ior);
+        const char *path =
+            finish("\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":%d},\"indices\":%d,\"material\":0}]},"
+                   "{\"primitives\":[{\"attributes\":{\"POSITION\":%d,\"COLOR_0\":%d},\"indices\":%d,\"material\":1}]}],"
+                   "\"nodes\":[{\"mesh\":0,\"scale\":[%g,%g,%g]},{\"mesh\":1,\"scale\":[2,3,1],\"translation\":[-1,-1,-1.5]}],"
+                   "\"materials\":[%s,{\"pbrMetallicRoughness\":{},\"extensions\":{\"KHR_materials_unlit\":{}}}]",
+                   quad_positions, quad_indices, quad_positions, shades, quad_indices, scale, scale, scale, volume);
+        const uint16_t *hdr = photograph(&s, path, p, &v);
+        for (uint32_t i = 0; i < SIDE * SIDE; i++) {
+            double d[3], at[3], exit[3], uv[2], seen[2], unbent[2], width = 0, off = 0, away = 0;
+            masu_view_ray ray = masu_view_ray_at(&v, i % SIDE, i / SIDE);
+            if (i % SIDE < 8 || i % SIDE >= SIDE - 8 || i / SIDE < 8 || i / SIDE >= SIDE - 8) continue; /* clamped there */
+            if (!along_edges(&pane, v.eye, ray.direction, 0.03, uv, at)) continue;
+            /* Snell's law at a surface of z: the tangential part is divided by the index. */
+            for (int k = 0; k < 2; k++) d[k] = ior > 0 ? ray.direction[k] / ior : 0;
+            d[2] = -sqrt(1 - d[0] * d[0] - d[1] * d[1]);
+            for (int k = 0; k < 3; k++) exit[k] = at[k] + thickness * d[k] - v.eye[k];
+            if (!along_edges(&wall, v.eye, ray.direction, 0.03, unbent, at) || !along_edges(&wall, v.eye, exit, 0.03, uv, at)) continue;
+            for (int k = 0; k < 2; k++) seen[k] = half_float(hdr[4 * i + (uint32_t)k]);
+            for (int k = 0; k < 3; k++) d[k] = ray.direction[k] * ray.z_scale + v.right[k] * (2.0 / SIDE);
+            (void)along_edges(&wall, v.eye, d, 0, exit, at);
+            width = (exit[0] - unbent[0]) * 4; /* of a pixel on the wall */
+            off = hypot((seen[0] - uv[0]) * 4, (seen[1] - uv[1]) * 3) / width;
+            away = hypot((unbent[0] - uv[0]) * 4, (unbent[1] - uv[1]) * 3) / width;
+            mean += off, shift += away, count++;
+            most = fmax(most, off);
+        }
+        close_session(&s);
+        print_message("thickness %g, ior %g, scale %g: shifted by %.2f pixels in the mean, error %.3f, at most %.3f\n",
+                      cases[c].thickness, ior, scale, shift / count, mean / count, most);
+        assert_true(count > 200);
+        assert_true(mean / count < 0.1 && most < 0.5);
+        assert_true(thickness * (ior - 1) == 0 ? shift / count < 1e-9 : shift / count > 1);
+    }
+}
+
 /* ---- Coordinates, textures, colours ---------------------------------------------------------- */
 
 static void pictures_are_of_the_second_set_and_turned(void **state) {
@@ -639,36 +712,86 @@ static void skins_stand_as_their_joints_have_them(void **state) {
     compare(skinned("STEP", moves, 3), (shot){{3.5, 0.5, 2.5}, {3.5, 0.5, 0}}, &f, 1, 0);
 }
 
-/* Two boxes of one size, the second ten metres behind the first: equally large in the image. */
+/* First of the pixels of a row that shine; last: one beyond. */
+static uint32_t first_lit(const uint16_t *row, uint32_t count, uint32_t *last) {
+    uint32_t first = count;
+    for (uint32_t x = 0; x < count; x++) {
+        if (half_float(row[4 * x]) <= 10) continue;
+        first = first == count ? x : first;
+        *last = x + 1;
+    }
+    return first;
+}
+
+/* Boxes at the edge of the picture, half a height before the target, at it and behind: where an exact orthographic
+ * projection has their sides, in pixels of 1920 x 1080. The picture has 15360 columns of these 1920: a pixel is rounded
+ * to an eighth. Upright or oblique; the depths and the nearness to the camera are no matter. */
 static void an_orthographic_camera_sees_no_depth(void **state) {
     (void)state;
-    static const char json[] =
-        "{\"models\": [{\"mesh\": {\"box\": {}}, \"translate\": [-1.5, 0, 0], \"material\": {\"emissive\": [50, 50, 50]}}, "
-        "{\"mesh\": {\"box\": {}}, \"translate\": [1.5, 0, -10], \"material\": {\"emissive\": [50, 50, 50]}}], "
-        "\"camera\": {%s, \"keys\": [{\"position\": [0, 0, 6], \"target\": [0, 0, -4.5]}]}}";
-    static const char *const lenses[] = {"\"height\": 4", "\"fov_y\": 40"};
-    double width[2][2];
-    for (int i = 0; i < 2; i++) {
-        char text[1024], name[16];
+    enum { COLUMNS = 15360, ROWS = 16 };
+    static const struct {
+        double height, depth, turn, away; /* of the picture; of the box, in heights; of the camera, radians and metres */
+    } cases[] = {{4, 0, 0, 10}, {4, 0.5, 0, 10}, {4, -0.5, 0, 10}, {4, 0.5, 0.6, 30}, {400, -0.5, 0.6, 1000}, {0.02, 0.5, -0.9, 0.1}};
+    double most = 0;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        double h = cases[i].height, turn = cases[i].turn, aspect = 1920.0 / 1080, side = 0.02 * h;
+        /* A thin tall box, whose front is seen; its left and right side in heights from the middle. */
+        double at = (aspect / 2 - 0.05) * h, z = cases[i].depth * h, error;
+        double x = at * cos(turn) + z * sin(turn), y = -at * sin(turn) + z * cos(turn);
+        char text[1024];
         masu_session s;
-        snprintf(text, sizeof text, json, lenses[i]);
-        snprintf(name, sizeof name, "depth%d", i);
-        bake_scene(name, text);
-        masu_session_desc d = test_desc(NULL, SIDE, SIDE);
-        d.scene_path = baked_scene(name);
+        snprintf(text, sizeof text,
+                 "{\"models\": [{\"mesh\": {\"box\": {\"size\": [%.9g, %.9g, %.9g]}}, \"translate\": [%.9g, 0, %.9g], \"rotate\": [0, %.9g, 0], "
+                 "\"material\": {\"emissive\": [50, 50, 50]}}], \"camera\": {\"height\": %.9g, \"keys\": [{\"position\": "
+                 "[%.9g, 0, %.9g], \"target\": [0, 0, 0]}]}}",
+                 side, h, side, x, y, turn * 57.29577951308232, h, cases[i].away * sin(turn), cases[i].away * cos(turn));
+        bake_scene("flat", text);
+        masu_session_desc d = test_desc(NULL, COLUMNS, ROWS);
+        d.scene_path = baked_scene("flat");
         d.desc.readback = MASU_READBACK_HDR;
         d.desc.rung_count = 1;
         open_session(&s, &d);
         masu_frame_desc frame = {0};
+        masu_camera camera;
+        assert_int_equal(masu_camera_at(s.m, 0, &camera, NULL), MASU_OK);
+        /* The window of the 1920 x 1080 picture. */
+        camera.top = tanf(0.5f * camera.fov_y), camera.bottom = -camera.top;
+        camera.right = (float)aspect * camera.top, camera.left = -camera.right;
+        frame.camera = &camera;
         const uint16_t *seen = draw_image(&s, &frame, MASU_READBACK_HDR, NULL);
-        width[i][0] = width[i][1] = 0;
-        for (int x = 0; x < SIDE; x++)
-            width[i][x >= SIDE / 2] += half_float(seen[4 * (SIDE / 2 * SIDE + x)]) > 10;
+        uint32_t last = 0;
+        double first = first_lit(seen + 4 * COLUMNS * (ROWS / 2), COLUMNS, &last) * 1920.0 / COLUMNS;
+        double want = 960 + (at - side / 2) / h * 1080;
+        error = fmax(fabs(first - want), fabs(last * 1920.0 / COLUMNS - want - side / h * 1080));
         close_session(&s);
+        print_message("height %g, depth %g heights, turned by %g: %.3f pixels\n", h, cases[i].depth, turn, error);
+        assert_true(last > 0 && error <= (cases[i].depth == 0 ? 0.2 : 0.5));
+        most = fmax(most, error);
     }
-    /* 64 texels for four metres. */
-    assert_true(fabs(width[0][0] - 16) <= 1 && fabs(width[0][1] - 16) <= 1);
-    assert_true(width[1][0] > 1.8 * width[1][1]);
+    assert_true(most > 0.2); /* else the boxes are not where the test has them */
+}
+
+/* The camera stays as far away between keys whose directions are a quarter turn apart: no chord, which would bring what is
+ * near behind the near plane. */
+static void orthographic_cameras_turn_about_their_target(void **state) {
+    (void)state;
+    masu_session s;
+    bake_scene("turns", "{\"models\": [{\"mesh\": {\"box\": {}}}], \"camera\": {\"height\": 4, \"keys\": ["
+                        "{\"time\": 0, \"position\": [0, 0, 10], \"target\": [0, 0, 0]}, {\"time\": 2, \"position\": [10, 0, 0], \"target\": [0, 0, 0]}]}}");
+    masu_session_desc d = test_desc(NULL, SIDE, SIDE);
+    d.scene_path = baked_scene("turns");
+    open_session(&s, &d);
+    double far = 0;
+    for (int i = 0; i <= 100; i++) {
+        masu_camera c;
+        assert_int_equal(masu_camera_at(s.m, 0.02 * i, &c, NULL), MASU_OK);
+        double size = sqrt(dot(c.position, c.position)), want[3] = {0.1 * i, 0, 10 - 0.1 * i}, toward = 0;
+        far = i ? far : size;
+        assert_true(fabs(size - far) < 0.05 * 4);
+        for (int k = 0; k < 3; k++) toward += want[k] * c.position[k];
+        assert_true(toward / size / sqrt(dot(want, want)) > 1 - 1e-6);
+    }
+    close_session(&s);
 }
 
 int main(void) {
@@ -681,6 +804,7 @@ int main(void) {
         cmocka_unit_test(a_coat_is_smooth_unless_it_names_a_picture),
         cmocka_unit_test(coats_have_maps),
         cmocka_unit_test(glass_colours_what_is_behind),
+        cmocka_unit_test(volumes_refract_what_is_behind),
         cmocka_unit_test(pictures_are_of_the_second_set_and_turned),
         cmocka_unit_test(pixels_of_a_picture_stay_sharp),
         cmocka_unit_test(pictures_are_webp),
@@ -695,6 +819,7 @@ int main(void) {
         cmocka_unit_test(nodes_have_instances),
         cmocka_unit_test(morphs_have_their_weights),
         cmocka_unit_test(an_orthographic_camera_sees_no_depth),
+        cmocka_unit_test(orthographic_cameras_turn_about_their_target),
         cmocka_unit_test(skins_stand_as_their_joints_have_them),
     };
     return cmocka_run_group_tests(tests, make_scratch, remove_scratch);

@@ -387,7 +387,7 @@ static void read_looks(walker *w) {
         expect(w, all_within(&k->time, 1, -ANY_FLOAT, ANY_FLOAT), "a key's time is not finite");
         expect(w, all_within(k->position, 3, -ANY_FLOAT, ANY_FLOAT), "a key's position");
         expect(w, all_within(k->target, 3, -ANY_FLOAT, ANY_FLOAT), "a key's target");
-        expect(w, all_within(&k->fov_y, 1, 0.0009, 3.1001), "a key's field of view");
+        expect(w, all_within(&k->fov_y, 1, 0.00049, 3.1001), "a key's field of view");
         expect(w, !i || k->time > v->camera_keys[i - 1].time, "time does not rise");
     }
     const masu_blob_environment *e = v->environment;

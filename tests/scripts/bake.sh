@@ -146,6 +146,10 @@ wrong ': models\[0\]: expected either "rotate" or "rotate_y", found both' \
     "{\"models\": [$sphere, \"rotate\": [1, 2, 3], \"rotate_y\": 1}]}"
 wrong ': models\[0\].fit: expected either' \
     "{\"models\": [$sphere, \"fit\": {\"center\": [0,0,0], \"base\": [0,0,0]}}]}"
+wrong ': models\[0\].material.depth_bias: expected a number from -0.01 to 0.01, found 0.02' \
+    '{"models": [{"mesh": {"sphere": {}}, "material": {"depth_bias": 0.02}}]}'
+wrong ': models\[0\].material: "emissive": an unlit material' \
+    '{"models": [{"mesh": {"sphere": {}}, "material": {"unlit": true, "emissive": [1, 1, 1]}}]}'
 wrong ': models\[0\].material.roughness: expected a number from 0 to 1, found 2' \
     "{\"models\": [$sphere, \"material\": {\"roughness\": 2}}]}"
 wrong ': models\[0\].mesh: needs one of' '{"models": [{"mesh": {}}]}'

@@ -41,6 +41,41 @@ quad() {
 
 scene=$folder/scene.json
 
+# ---- detail --------------------------------------------------------------------------------------
+
+# With the colour it is the texture coordinates that are scaled: the same blob as of a plane with four times the tiles, also where
+# the plane comes a second time with other values.
+detail() { # MEMBERS, TILE
+    printf '{"models": [{"mesh": {"plane": {"size_x": 8, "size_z": 8, "tile": %s}}, "material": {%s"base_color_map": "%s"}}%s]}\n' \
+        "$2" "$1" "$pictures/bricks.png" "${3:-}" > "$scene"
+    bakes "$scene"
+    warns 0
+}
+detail '' 8
+cp "$folder/x.masu" "$folder/tiles.masu"
+detail '"detail": 4, "detail_color": true, ' 2
+cmp -s "$folder/x.masu" "$folder/tiles.masu" || fail "detail_color is not four times the tiles"
+detail '"detail": 4, "detail_color": false, ' 2
+cmp -s "$folder/x.masu" "$folder/tiles.masu" && fail "detail_color is read as true"
+detail '"detail": [4, 1], "detail_color": true, ' 2
+cmp -s "$folder/x.masu" "$folder/tiles.masu" && fail "detail_color has one factor for both axes"
+[ "$(counts vertices)" = 4 ] || fail "$(counts vertices) vertices of one plane"
+other=", {\"name\": \"b\", \"mesh\": {\"plane\": {\"size_x\": 8, \"size_z\": 8, \"tile\": 2}}, \"material\": {\"base_color_map\": \"$pictures/bricks.png\"}}"
+detail '"detail": 4, "detail_color": true, ' 2 "$other$other"
+[ "$(counts vertices)" = 8 ] || fail "$(counts vertices) vertices of a plane with two scales of its coordinates"
+detail '"detail": 4, ' 2 "$other$other"
+[ "$(counts vertices)" = 4 ] || fail "$(counts vertices) vertices of a plane with one"
+for times in 32.768 33; do
+    printf '{"models": [{"mesh": {"plane": {"tile": 1000}}, "material": {"detail": %s, "detail_color": true, "base_color_map": "%s"}}]}\n' \
+        $times "$pictures/bricks.png" > "$scene"
+    if [ $times = 33 ]; then
+        "$bake" "$scene" --bare -o "$folder/x.masu" > /dev/null 2> "$folder/stderr" && fail "coordinates of 33000 are baked"
+        grep -q 'models\[0\].*texture coordinates beyond 32768, by "detail_color"' "$folder/stderr" || fail "$(cat "$folder/stderr")"
+    else
+        bakes "$scene"
+    fi
+done
+
 # ---- formats -------------------------------------------------------------------------------------
 
 for name in bricks.png ground.jpg leaf.tga sign.rgb; do
@@ -319,6 +354,8 @@ refuses 'from 0 to 1' '"alpha_cutoff": 2'
 refuses 'another member sets the same map' '"surface_map": "a.png", "roughness_map": "b.png"'
 refuses 'unknown key' '"colour_map": "a.png"'
 refuses 'from 0 to 1' '"opacity": 1.5'
+refuses 'from 0 to 65504' '"thickness": 65505'
+refuses 'from 1 to 1000' '"ior": 0.99'
 refuses 'expected "alpha", "additive" or "tinted"' '"blend": "multiply"'
 refuses 'needs "alpha": "blend"' '"alpha": "mask", "opacity": 0.5'
 refuses 'needs "alpha": "blend"' '"alpha": "opaque", "blend": "additive"'
@@ -335,6 +372,12 @@ quad "\"coat\": 1, \"coat_map\": \"$pictures/gradient.png\", \"blend\": \"tinted
 bakes "$scene"
 warns 1 'transparent materials have no maps of coat, specular or sheen: ignored'
 refuses 'expected' '"coat_smooth": 1'
+quad '"thickness": 65504, "ior": 1000, "blend": "tinted", "opacity": 0, "metallic": 0'
+bakes "$scene"
+warns 0
+quad '"thickness": 0.1, "opacity": 0.5'
+bakes "$scene"
+warns 1 'its thickness is ignored: it is metallic, or not blended as "tinted"'
 
 # As many blended things as a renderer draws, and one more.
 pane='{"mesh": {"plane": {}}, "material": {"opacity": 0.5}}'

@@ -1,7 +1,8 @@
 #!/bin/bash
 # The small examples beside minimal.c: loop in a window of a screen of its own, under the validation layer, with a
 # smaller window (masu_resize), a larger one (masu_destroy, masu_init) and rungs of the governor; split_screen,
-# whose halves show the scene from two places; host_pass, with commands of its own in a frame. drive.sh has the game.
+# whose halves show the scene from two places; sprites; cloth, a mesh that the host deforms; host_pass, with commands of
+# its own in a frame. drive.sh has the game.
 set -u
 cd "$(dirname "$0")/../.." || exit 1
 examples=${BUILD:-build}/examples
@@ -18,7 +19,7 @@ fail() {
 }
 colors() { convert "$1" ${2:+-crop "$2"} -format '%k' info:; }
 
-for example in minimal loop split_screen; do
+for example in minimal loop split_screen cloth; do
     lines=$(wc -l < examples/$example.c)
     [ "$lines" -le 150 ] || fail "$example.c has $lines lines: at most 150"
 done
@@ -38,6 +39,28 @@ done
 "$examples/split_screen" 2> /dev/null
 [ $? = 2 ] || fail "split_screen without arguments"
 "$examples/split_screen" /dev/null "$folder/none.png" 2> /dev/null && fail "split_screen takes an empty scene"
+
+# ---- sprites ---------------------------------------------------------------------------------------
+
+"$examples/sprites" "$scenes/test_texture_floor.masu" "$folder/sprites.png" > "$folder/out" 2> "$folder/err" ||
+    fail "sprites: $(cat "$folder/out" "$folder/err")"
+grep -q 'validation 0' "$folder/out" || fail "sprites: $(cat "$folder/out")"
+[ "$(colors "$folder/sprites.png" 480x540+480+0)" -gt 300 ] || fail "the trail of sprites is not there"
+"$examples/sprites" 2> /dev/null
+[ $? = 2 ] || fail "sprites without arguments"
+# ---- cloth -----------------------------------------------------------------------------------------
+
+"$examples/cloth" "$scenes/test_reserve.masu" ball "$folder/cloth.png" > "$folder/out" 2> "$folder/err" ||
+    fail "cloth: $(cat "$folder/out" "$folder/err")"
+grep -q '768 triangles.*validation 0$' "$folder/out" || fail "cloth: $(cat "$folder/out")"
+# The middle of the flag is yellow.
+[ "$(convert "$folder/cloth.png" -format '%[fx:int(255*(u.p{320,180}.r-u.p{320,180}.b))]' info:)" -gt 40 ] ||
+    fail "the flag is not there"
+"$examples/cloth" "$scenes/test_reserve.masu" none "$folder/none.png" 2> "$folder/err" &&
+    fail "cloth takes an unknown material"
+grep -q 'reserve.meshes\[0\].material' "$folder/err" || fail "cloth: $(cat "$folder/err")"
+"$examples/cloth" 2> /dev/null
+[ $? = 2 ] || fail "cloth without arguments"
 
 # ---- host_pass -------------------------------------------------------------------------------------
 

@@ -133,7 +133,7 @@ if [ "${config:-release}" = release ]; then # a sanitized library needs its exam
     cp -r "$doc/examples" "$folder/examples"
     make -C "$folder/examples" PREFIX="$stage$prefix" CC="${CC:-gcc}" CFLAGS=-O0 > "$folder/said" 2>&1 ||
         { cat "$folder/said" && exit 1; }
-    for f in minimal split_screen host_pass raii; do
+    for f in minimal split_screen cloth host_pass raii; do
         [ -x "$folder/examples/$f" ] || { echo "$f is not built from the prefix"; exit 1; }
     done
 fi

@@ -447,7 +447,7 @@ static void the_text_has_what_is_given(void **state) {
         if (strcmp(detail.text, __VA_ARGS__)) fail_msg("\"%s\"", detail.text);                     \
     } while (0)
     BAD_CAMERA("camera.fov_y", c.fov_y = 4.0f);
-    TEXT("camera.fov_y is 4, allowed are 0.001 to 3.1 radians");
+    TEXT("camera.fov_y is 4, allowed are 0.0005 to 3.1 radians");
     BAD_CAMERA("camera.position", c.position[1] = -2e15);
     TEXT("camera.position[1] is -2e+15, allowed are -1e15 to 1e15 m");
     BAD_CAMERA("camera.jitter", c.jitter[1] = 1.5f);
@@ -485,7 +485,7 @@ static void the_extremes_of_each_range_are_accepted(void **state) {
     masu_light l = good_light();
     masu_frame_desc f = {.camera = &c, .light = &l};
     c.position[0] = 1e15, c.position[1] = -1e15;
-    c.fov_y = 0.001f, c.near_distance = 1e-9f, l.exposure = 1e-9f, l.ambient[0] = 1e9f;
+    c.fov_y = 0.0005f, c.near_distance = 1e-9f, l.exposure = 1e-9f, l.ambient[0] = 1e9f;
     write_good(&f, 0);
     c.fov_y = 3.1f, c.near_distance = 1e9f, l.exposure = 1e9f, l.sky_horizon[2] = 1e9f;
     write_good(&f, 0);

@@ -108,6 +108,18 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
     SAME(reserve.particles);
     SAME(reserve.decals);
     SAME(reserve.lines);
+    SAME(reserve.trail_points);
+    SAME(reserve.textures);
+    SAME(reserve.texture_size.width);
+    SAME(reserve.texture_size.height);
+    SAME(reserve.texture_bytes);
+    SAME(reserve.mesh_upload);
+    for (uint32_t k = 0; k < MASU_MAX_MESH_KINDS; k++) {
+        SAME(reserve.meshes[k].meshes);
+        SAME(reserve.meshes[k].material);
+        SAME(reserve.meshes[k].vertices);
+        SAME(reserve.meshes[k].triangles);
+    }
     SAME(host_budget);
     SAME(device_budget);
     for (uint32_t k = 0; k < MASU_ROLE_COUNT; k++) {
@@ -584,9 +596,29 @@ static void a_knob_out_of_its_range_is_named(void **state) {
     BAD("reserve.particles", d.reserve.particles = MASU_PARTICLES_MAX + 1);
     BAD("reserve.decals", d.reserve.decals = MASU_DECALS_MAX + 1);
     BAD("reserve.lines", d.reserve.lines = MASU_LINES_MAX + 1);
+    BAD("reserve.trail_points", d.reserve.trail_points = MASU_PARTICLES_MAX + 1);
+    BAD("reserve.textures", d.reserve.textures = MASU_LIVE_TEXTURES_MAX + 1);
+    BAD("reserve.texture_size.width", (d.reserve.textures = 1, d.reserve.texture_size.width = 4097));
+    BAD("reserve.texture_size.height", (d.reserve.textures = 1, d.reserve.texture_size.height = 4097));
+    BAD("reserve.texture_bytes", (d.reserve.textures = 1, d.reserve.texture_bytes = 3));
+    BAD("reserve.texture_bytes", (d.reserve.textures = 1, d.reserve.texture_bytes = (1u << 28) + 1));
     d = scene_desc(RASTER, 64, 64);
     d.reserve = (masu_reserve){.particles = MASU_PARTICLES_MAX, .decals = MASU_DECALS_MAX, .lines = MASU_LINES_MAX};
     compile(&d, &plan);
+    /* 2^28 texels, and one texture more; sizes that are not given. */
+    d.reserve = (masu_reserve){.trail_points = MASU_PARTICLES_MAX, .textures = 16, .texture_size = {4096, 4096}, .texture_bytes = 1u << 28};
+    compile(&d, &plan);
+    assert_int_equal(plan.images[MASU_IMAGE_TEXTURES].width, 4096);
+    d.reserve.textures = 17;
+    masu_detail detail;
+    assert_int_equal(masu_compile(&d, 1, 1, &plan, &detail), MASU_ERROR_LIMIT);
+    assert_string_equal(detail.what, "reserve.textures");
+    assert_true(detail.needed == 17ull << 24 && detail.given == 1ull << 28);
+    d.reserve = (masu_reserve){.textures = MASU_LIVE_TEXTURES_MAX};
+    compile(&d, &plan);
+    assert_int_equal(plan.desc.reserve.texture_size.height, 256);
+    assert_int_equal(plan.desc.reserve.texture_bytes, 4 * 256 * 256);
+    d.reserve = (masu_reserve){.particles = MASU_PARTICLES_MAX, .lines = MASU_LINES_MAX, .textures = 1};
     /* Without a scene there is no camera, and no passes are planned for them. */
     masu_desc none = source_desc(64, 64);
     none.reserve = d.reserve;

@@ -463,6 +463,18 @@ static void factors_of_materials(void **state) {
     m = only(VOLUME);
     assert_near((double)m->base_color[0], 0.5 * 0.0625, 1e-6);
     assert_near((double)m->base_color[1], 1, 0);
+    assert_near((double)m->thickness, 0.5, 0);
+    assert_near((double)m->ior, 1.5, 0);
+#define GLASS(ior, rest)                                                                                                    \
+    "\"pbrMetallicRoughness\":{\"metallicFactor\":0},\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1}," \
+    "\"KHR_materials_ior\":{\"ior\":" ior "},\"KHR_materials_volume\":{\"thicknessFactor\":2}" rest "}"
+    m = only(GLASS("2.4", "")); /* beyond 1.79: reflectance and refraction are both those of 2.4 */
+    assert_near((double)m->ior, 2.4, 1e-6);
+    assert_near((double)m->specular * 0.08, (1.4 / 3.4) * (1.4 / 3.4), 1e-6);
+    m = only(GLASS("0", ""));
+    assert_near((double)m->ior, 1000, 0);
+    m = only(GLASS("1.5", ",\"KHR_materials_unlit\":{}"));
+    assert_near((double)m->thickness + (double)m->ior, 0, 0);
     m = only("\"extensions\":{\"KHR_materials_pbrSpecularGlossiness\":{\"diffuseFactor\":[0.5,0.25,0.125,1],\"specularFactor\":[0.04,0.04,0.04],\"glossinessFactor\":0.75}}");
     assert_near((double)m->base_color[0], 0.5, 1e-5);
     assert_near((double)m->roughness, 0.25, 1e-6);
@@ -704,6 +716,12 @@ static void nothing_is_dropped_in_silence(void **state) {
              "\"thicknessFactor\":1,\"attenuationDistance\":1,\"thicknessTexture\":{\"index\":0}}},"
              "\"pbrMetallicRoughness\":{\"metallicFactor\":0}}",
          "1 materials have a \"thicknessTexture\", which is not supported"},
+        {"", "{\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1},\"KHR_materials_volume\":{"
+             "\"thicknessFactor\":1}},\"pbrMetallicRoughness\":{\"metallicFactor\":0.5}}",
+         "1 materials have a thickness and a metallic factor: they do not refract"},
+        {"", "{\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1},\"KHR_materials_volume\":{"
+             "\"thicknessFactor\":1},\"KHR_materials_ior\":{\"ior\":2000}},\"pbrMetallicRoughness\":{\"metallicFactor\":0}}",
+         "1 materials have a \"ior\" beyond 1 to 1000: clamped"},
         {"", "{\"extensions\":{\"KHR_materials_pbrSpecularGlossiness\":{}}},{\"pbrMetallicRoughness\":{}}",
          "1 of 2 materials have specular and glossiness"},
     };

@@ -70,7 +70,7 @@ static void what_was_removed_is_refused(void **state) {
         masu_handles h = masu_handles_of(c, MASU_HANDLE_MODEL, own, reserve, lives);
         masu_detail detail;
         assert_int_equal(masu_handle_at(&h, own), 0);
-        assert_int_equal(masu_handle_free(&h), own);
+        assert_int_equal(masu_handle_free(&h, own, reserve), own);
         assert_int_equal(masu_handle_check(&h, "model", 0, &index, &detail), MASU_ERROR_ARGUMENT);
         uint64_t first = 0, before = 0;
         for (uint32_t life = 0; life < LIVES; life++) {
@@ -95,13 +95,13 @@ static void what_was_removed_is_refused(void **state) {
             assert_int_equal(masu_handle_index(&h, masu_handle_at(&h, i)), i);
         /* one more object in each */
         for (uint32_t i = 0; i < reserve; i++) lives[i] = UINT32_MAX - 3;
-        assert_int_equal(masu_handle_free(&h), own);
+        assert_int_equal(masu_handle_free(&h, own, reserve), own);
         masu_handle_turn(&h, own);
         uint64_t id = masu_handle_at(&h, own);
         assert_int_equal(masu_handle_index(&h, id), own);
         masu_handle_turn(&h, own);
         assert_int_equal(masu_handle_index(&h, id), UINT32_MAX);
-        assert_int_equal(masu_handle_free(&h),
+        assert_int_equal(masu_handle_free(&h, own, reserve),
                          reserve > 1 ? own + 1 : UINT32_MAX); /* that slot is retired */
     }
 }

@@ -47,7 +47,10 @@ static masu_stats_info stats;
 static masu_readback_image image;
 static masu_pick_info pick;
 static masu_instance_state instance_state;
+static masu_look instance_look;
+static masu_progress progress;
 static masu_model_state model_state;
+static masu_mesh_data mesh_data;
 static masu_model added;
 static const masu_clip_use clip_use = {.weight = 1.0f};
 static masu_node_state node_state;
@@ -58,6 +61,7 @@ static masu_renderer *made;
 static masu_rung rung;
 static const char *from;
 static float unpacked[3];
+static const float white[24];
 static _Alignas(64) unsigned char block[64];
 static const masu_frame_desc still = {MASU_FRAME_DESC};
 static const float unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
@@ -135,6 +139,10 @@ static const double unit_position[3] = {1, 2, 3};
     X(masu_instance_set_position, masu_instance_set_position(P(0, &m), INSTANCE, P(1, unit_position), P(2, &detail))) \
     X(masu_instance_get, masu_instance_get(P(0, &m), INSTANCE, P(1, &instance_state), P(2, &detail))) \
     X(masu_instance_show, masu_instance_show(P(0, &m), INSTANCE, 1, P(1, &detail)))                \
+    X(masu_init_step, masu_init_step(P(0, &m), P(1, &progress), P(2, &detail)))                    \
+    X(masu_instance_set_look, masu_instance_set_look(P(0, &m), INSTANCE, P(1, &instance_look), P(2, &detail))) \
+    X(masu_instance_get_look, masu_instance_get_look(P(0, &m), INSTANCE, P(1, &instance_look), P(2, &detail))) \
+    X(masu_model_set_look, masu_model_set_look(P(0, &m), MODEL, P(1, &instance_look), P(2, &detail)))       \
     X(masu_model_find, ((void)masu_model_find(P(0, &m), P(1, "a")), NO_RESULT))                    \
     X(masu_model_at, ((void)masu_model_at(P(0, &m), 0), NO_RESULT))                                \
     X(masu_model_get, masu_model_get(P(0, &m), MODEL, P(1, &model_state), P(2, &detail)))          \
@@ -143,6 +151,10 @@ static const double unit_position[3] = {1, 2, 3};
     X(masu_model_set_position, masu_model_set_position(P(0, &m), MODEL, P(1, unit_position), P(2, &detail))) \
     X(masu_model_add, masu_model_add(P(0, &m), MODEL, P(1, unit), P(2, &added), P(3, &detail)))    \
     X(masu_model_remove, masu_model_remove(P(0, &m), MODEL, P(1, &detail)))                        \
+    X(masu_mesh_create, masu_mesh_create(P(0, &m), 0, P(1, &mesh_data), P(2, unit), P(3, &added), P(4, &detail))) \
+    X(masu_mesh_replace, masu_mesh_replace(P(0, &m), MODEL, P(1, &mesh_data), P(2, &detail)))      \
+    X(masu_mesh_deform, masu_mesh_deform(P(0, &m), MODEL, P(1, unit), P(2, unit), 0, P(3, &detail))) \
+    X(masu_mesh_bytes, ((void)masu_mesh_bytes(P(0, &m), 1, 1), NO_RESULT))                          \
     X(masu_model_node_find, ((void)masu_model_node_find(P(0, &m), MODEL, P(1, "a")), NO_RESULT))   \
     X(masu_model_node_get, masu_model_node_get(P(0, &m), MODEL, 0, P(1, &node_state), P(2, &detail))) \
     X(masu_model_node_set, masu_model_node_set(P(0, &m), MODEL, 0, P(1, unit), P(2, &detail)))     \
@@ -162,6 +174,7 @@ static const double unit_position[3] = {1, 2, 3};
     X(masu_material_at, ((void)masu_material_at(P(0, &m), 0), NO_RESULT))                          \
     X(masu_material_get, masu_material_get(P(0, &m), (masu_material){1}, P(1, &material_state), P(2, &detail))) \
     X(masu_material_set, masu_material_set(P(0, &m), (masu_material){1}, P(1, &material_state), P(2, &detail))) \
+    X(masu_lut_set, masu_lut_set(P(0, &m), P(1, white), 2, P(2, &detail)))                          \
     X(masu_stats, masu_stats(P(0, &m), 0, P(1, &stats), P(2, &detail)))                            \
     X(masu_peaks, (masu_peaks(P(0, &m), P(1, &peaks)), NO_RESULT))                                 \
     X(masu_readback, masu_readback(P(0, &m), 0, MASU_READBACK_DEPTH, P(1, &image), P(2, &detail))) \
@@ -253,7 +266,8 @@ static const char *read_function(const char *at, function *f) {
 }
 
 static int may_be_null(const char *parameter) {
-    return !strcmp(parameter, "detail") || !strcmp(parameter, "viewports") || !strcmp(parameter, "from");
+    return !strcmp(parameter, "detail") || !strcmp(parameter, "progress") ||
+           !strcmp(parameter, "viewports") || !strcmp(parameter, "from");
 }
 
 /* ---- Tests ----------------------------------------------------------------------------------- */

@@ -40,7 +40,8 @@ static void compile(const masu_desc *d, masu_frame_plan *plan) {
 static const char *usage_text(uint8_t usage) {
     static const char *const texts[] = {
         [MASU_USE_NONE] = "?",        [MASU_READ] = "r",
-        [MASU_READ_LINEAR] = "rl",    [MASU_READ_COPY] = "from",
+        [MASU_READ_LINEAR] = "rl",    [MASU_READ_MAP] = "m",
+        [MASU_READ_COPY] = "from",
         [MASU_READ_BACK] = "from",    [MASU_WRITE] = "w",
         [MASU_UPDATE] = "u",          [MASU_PING_PONG] = "rw",
         [MASU_WRITE_COLOR] = "c",     [MASU_WRITE_DEPTH] = "d",
@@ -759,6 +760,25 @@ static void what_is_reserved_has_passes_and_nothing_else_has(void **state) {
                  "decals(r:scene_depth u:albedo u:normal u:hdr) " LIGHT_SDF TONEMAP);
     compile(&d, &plan);
     assert_int_equal(plan.buffers[MASU_BUFFER_SPRITES].stride, 64 * ((16 * (3 + 7 * 7) + 63) / 64));
+    /* Textures, whether for sprites or not: a pass that writes them, larger sprites. */
+    d.reserve = (masu_reserve){.textures = 2, .texture_size = {8, 16}};
+    compile(&d, &plan);
+    assert_non_null(strstr(frame_text(&plan, 0), "textures(u:textures) gbuffer(m:textures c:albedo "));
+    assert_true(plan.images[MASU_IMAGE_TEXTURES].persistent);
+    assert_int_equal(plan.images[MASU_IMAGE_TEXTURES].height, 16);
+    assert_int_equal(masu_plan_layers(&plan, MASU_IMAGE_TEXTURES), 2);
+    assert_int_equal(plan.buffers[MASU_BUFFER_TEXELS].stride, 64 * ((2064 + 4 * 8 * 16 + 63) / 64));
+    d.reserve.decals = 7, d.reserve.trail_points = 5;
+    compile(&d, &plan);
+    assert_non_null(strstr(frame_text(&plan, 0), "decals(r:scene_depth rl:textures u:albedo "));
+    assert_non_null(strstr(frame_text(&plan, 0), "particles(r:scene_depth rl:textures b:hdr)"));
+    assert_int_equal(plan.buffers[MASU_BUFFER_SPRITES].stride,
+                     64 * ((16 * (3 + 1 + 8 * 5 + 9 * 7) + 63) / 64));
+    d.reserve = (masu_reserve){.trail_points = 5}; /* an image of one texel, which nothing writes */
+    compile(&d, &plan);
+    assert_null(strstr(frame_text(&plan, 0), "u:textures"));
+    assert_int_equal(plan.images[MASU_IMAGE_TEXTURES].width, 1);
+    assert_int_equal(plan.buffers[MASU_BUFFER_TEXELS].bytes, 0);
     d.reserve = (masu_reserve){.lines = 7};
     assert_frame(&d, 0,
                  GBUFFER MARCH_ON_RASTER LIGHT_SDF

@@ -149,6 +149,8 @@ static void what_lights_a_scene_is_checked(void **state) {
         LIT("materials", 0, MATERIAL_OF[0].coat = x);
         LIT("materials", 0, MATERIAL_OF[0].coat_roughness = x);
         LIT("materials", 0, MATERIAL_OF[0].opacity = x);
+        LIT("materials", 0, MATERIAL_OF[0].thickness = x);
+        LIT("materials", 0, MATERIAL_OF[0].ior = x);
         LIT("meso", 0, MESO[0].tilt[2] = x);
         LIT("meso", 0, MESO[0].roughness[0] = x);
         LIT("meso", 0, MESO[0].occlusion[1] = x);
@@ -182,6 +184,8 @@ static void what_lights_a_scene_is_checked(void **state) {
     }
     LIT("materials", 0, MATERIAL_OF[0].specular = 12.6f);
     LIT("materials", 0, MATERIAL_OF[0].anisotropy = 1.5f);
+    LIT("materials", 0, MATERIAL_OF[0].depth_bias = 0.0101f);
+    LIT("materials", 0, MATERIAL_OF[0].depth_bias = -0.0101f);
     LIT("materials", 0, MATERIAL_OF[0].specular_color[1] = 0.5f); /* and no channel is 1 */
     LIT("materials", 0, (MATERIAL_OF[0].sheen_color[0] = 1.0f, MATERIAL_OF[0].specular = 0.3f));
     LIT("materials", 0, (MATERIAL_OF[0].sheen_color[0] = 1.0f, MATERIAL_OF[0].specular = 0.5f, MATERIAL_OF[0].anisotropy = 1.0f));
@@ -190,6 +194,15 @@ static void what_lights_a_scene_is_checked(void **state) {
     LIT("materials", 0, MATERIAL_OF[0].flags = MASU_MATERIAL_IS_ADDITIVE);
     LIT("materials", 0, MATERIAL_OF[0].flags = MASU_MATERIAL_IS_TINTED);
     LIT("materials", 0, MATERIAL_OF[0].flags = MASU_MATERIAL_IS_TINTED | MASU_MATERIAL_IS_ADDITIVE | MASU_MATERIAL_IS_BLEND);
+#define REFRACTS(t, n, metal, also)                                                                     \
+    (MATERIAL_OF[0].flags |= MASU_MATERIAL_IS_BLEND | (also), MATERIAL_OF[0].thickness = (t), MATERIAL_OF[0].ior = (n), MATERIAL_OF[0].metallic = (metal))
+    LIT("materials", 0, REFRACTS(65536.0f, 1.5f, 0.0f, MASU_MATERIAL_IS_TINTED));
+    LIT("materials", 0, REFRACTS(1.0f, 0.99f, 0.0f, MASU_MATERIAL_IS_TINTED));
+    LIT("materials", 0, REFRACTS(1.0f, 1000.1f, 0.0f, MASU_MATERIAL_IS_TINTED));
+    LIT("materials", 0, REFRACTS(0.0f, 1.5f, 0.0f, MASU_MATERIAL_IS_TINTED)); /* an index, and nothing to go through */
+    LIT("materials", 0, REFRACTS(1.0f, 1.5f, 0.0f, 0));
+    LIT("materials", 0, REFRACTS(1.0f, 1.5f, 0.5f, MASU_MATERIAL_IS_TINTED));
+    LIT("materials", 0, REFRACTS(1.0f, 1.5f, 0.0f, MASU_MATERIAL_IS_TINTED | MASU_MATERIAL_HAS_METAL));
     LIT("materials", 0, MATERIAL_OF[0].meso = 1);
     LIT("meso", 0, MESO[0].alpha = 4.5f);
     LIT("meso", 0, MESO[0].facet = 1.5f);
@@ -732,13 +745,13 @@ static void a_camera_key_that_is_not_finite_is_refused(void **state) {
 static void a_camera_key_that_sees_nothing_is_refused(void **state) {
     (void)state;
     REFUSED("camera keys", 2, KEY[2].fov_y = 0.0f);
-    REFUSED("camera keys", 2, KEY[2].fov_y = 0.0009f);
+    REFUSED("camera keys", 2, KEY[2].fov_y = 0.00049f);
     REFUSED("camera keys", 2, KEY[2].fov_y = 3.11f);
     REFUSED("camera keys", 2, KEY[2].fov_y = -1.0f);
     REFUSED("camera keys", 1, memcpy(KEY[1].target, KEY[1].position, sizeof KEY->target));
     REFUSED("camera keys", 1, memset(KEY[1].position, 0, sizeof KEY->position),
             memset(KEY[1].target, 0, sizeof KEY->target), KEY[1].target[1] = -0.0f);
-    ACCEPTED(KEY[0].fov_y = 3.1f, KEY[1].fov_y = 0.001f);
+    ACCEPTED(KEY[0].fov_y = 3.1f, KEY[1].fov_y = 0.0005f);
 }
 
 static void a_camera_path_whose_time_does_not_rise_is_refused(void **state) {

@@ -79,7 +79,23 @@ static void splits_rise_and_end_at_the_distance(void **state) {
     }
 }
 
-/* The corners of the view frustum up to the depth, and the camera. */
+/* Of orthographic cameras: a narrow lens whose near plane is far away. */
+static void far_near_planes_waste_no_texels(void **state) {
+    (void)state;
+    assert_true(masu_shadow_begin(1, 2) == 0);
+    assert_true(masu_shadow_begin(1.001, 2) == 1.001);
+    assert_true(masu_shadow_begin(3, 2) == 2);
+    masu_shadow_view v = {.forward = {0, 0, -1}, .sun = {0, 1, 0}, .casters = {{-1, -1, -1}, {1, 1, 1}}};
+    for (int tip = 0; tip < 2; tip++) { /* an image 4 m high, 10 m of it */
+        v.tan2 = 2 * 0.0005 * 0.0005;
+        v.begin = tip ? 0 : 3995;
+        masu_cascade c = masu_cascade_fit(&v, 4005, 0, 1024);
+        double radius = tip ? 2002.5 : hypot(5, sqrt(v.tan2) * 4000);
+        assert_true(fabs(c.radius - radius) < 0.001 * radius);
+    }
+}
+
+/* The corners of the view up to the depth, and the eye, or the corners where it begins. */
 static void each_cascade_holds_the_view_up_to_its_depth(void **state) {
     (void)state;
     uint64_t r = 3;
@@ -87,17 +103,17 @@ static void each_cascade_holds_the_view_up_to_its_depth(void **state) {
         masu_shadow_view v = random_view(&r, i % 2 ? 10 : 1e7);
         double depth = random_between(&r, 0.5, 500), tangent = sqrt(v.tan2), right[3], up[3];
         uint32_t size = (uint32_t)support_random_in(&r, 16, 4096);
+        if (i % 4 == 1) v.begin = depth * random_between(&r, 0.5, 1);
         masu_cascade c = masu_cascade_fit(&v, depth, i % 3 ? 0 : 0.1, size);
         double axis[3][3];
         masu_shadow_axes(v.forward, axis);
         memcpy(right, axis[0], sizeof right);
         memcpy(up, axis[1], sizeof up);
-        for (int k = 0; k < 17; k++) {
-            double a = k * 0.3927, p[3];
+        for (int k = 0; k < 32; k++) {
+            double a = k * 0.3927, p[3], at = k < 16 ? depth : v.begin;
             for (int j = 0; j < 3; j++) {
                 p[j] = v.eye[j] - c.center[j];
-                if (k < 16)
-                    p[j] += depth * (v.forward[j] + tangent * (right[j] * cos(a) + up[j] * sin(a)));
+                p[j] += at * (v.forward[j] + tangent * (right[j] * cos(a) + up[j] * sin(a)));
             }
             double most = 1 - 3.0 / size + 1e-7;
             assert_true(fabs(dot3(c.axis[0], p)) <= c.half * most);
@@ -458,6 +474,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(axes_are_orthonormal_for_any_sun),
         cmocka_unit_test(splits_rise_and_end_at_the_distance),
+        cmocka_unit_test(far_near_planes_waste_no_texels),
         cmocka_unit_test(each_cascade_holds_the_view_up_to_its_depth),
         cmocka_unit_test(size_depends_on_neither_place_nor_direction),
         cmocka_unit_test(centres_lie_on_a_grid_of_texels),

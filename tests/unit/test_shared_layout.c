@@ -18,7 +18,7 @@
 #include "support/files.h"
 #include "support/spirv.h"
 
-#define MEMBERS_MOST 31u
+#define MEMBERS_MOST 33u
 
 typedef struct member {
     const char *name;
@@ -56,11 +56,15 @@ static const layout layouts[] = {
       MEMBER(masu_frame_uniforms, temporal),
       MEMBER(masu_frame_uniforms, sdf_params),
       MEMBER(masu_frame_uniforms, shifts), MEMBER(masu_frame_uniforms, between), MEMBER(masu_frame_uniforms, columns),
-      MEMBER(masu_frame_uniforms, rows)}},
+      MEMBER(masu_frame_uniforms, rows), MEMBER(masu_frame_uniforms, environment),
+      MEMBER(masu_frame_uniforms, background)}},
     {STRUCT(masu_instance_data),
      1,
      {MEMBER(masu_instance_data, row0), MEMBER(masu_instance_data, row1),
       MEMBER(masu_instance_data, row2)}},
+    {STRUCT(masu_post_uniforms),
+     0,
+     {MEMBER(masu_post_uniforms, lens), MEMBER(masu_post_uniforms, grade)}},
     {STRUCT(masu_material_data),
      1,
      {MEMBER(masu_material_data, base_color), MEMBER(masu_material_data, emissive),

@@ -155,7 +155,7 @@ static double psnr(uint32_t format, int channels) {
     masu_texture_region region;
     uint64_t used = 0;
     assert_true(masu_texture_next(&t, 1, 0, sizeof decoded, &cursor, &used, &region));
-    masu_texture_write(&t, blocks, 0, &region, decoded);
+    masu_texture_write_region(&t, blocks, 0, &region, decoded);
     uint32_t stride = masu_texture_form_of(format, 0).block_bytes;
     double error = 0;
     for (uint32_t i = 0; i < TEXELS; i++) {

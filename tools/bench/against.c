@@ -9,11 +9,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What makes two runs one measurement, done twice. The driver may be another. */
+/* Keys that must be equal for two runs to be comparable. The driver may differ. */
 static const char *const same_keys[] = {"hash",      "width", "height", "time",
                                         "positions", "rays",  "frames"};
 
-/* What a rung of one run should keep in another. */
+/* Limits within which a rung counts as reproduced. */
 static const double flip_within = 0.02, time_within = 0.15;
 
 static bool fail(char *error, size_t size, const char *folder, const char *text) {
@@ -32,8 +32,8 @@ static json_t *load(const char *folder, const char *name, char *error, size_t er
     return NULL;
 }
 
-/* What a folder was measured on. A folder of docs/report has no sweep.json (keep.sh): its
- * ladder.json says less. */
+/* The description of a folder. A folder of docs/report has no sweep.json (keep.sh); its ladder.json
+ * has fewer keys. */
 static json_t *about(const char *folder, bool *whole, char *error, size_t error_size) {
     json_t *sweep = load(folder, "sweep.json", error, error_size);
     *whole = sweep != NULL;

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* "NAME,1,2,3,4,5" without its end. */
+/* Parses "NAME,1,2,3,4,5" without a line end. */
 static bool read_row(const char *line, char setting[MASU_SETTING_ID],
                      double costs[MASU_COSTS_CLASSES]) {
     size_t n = strcspn(line, ",");

@@ -1,8 +1,8 @@
-/* costs.h: costs.csv of a folder of `masu bench`: what its settings cost on classes of GPUs, as a
- * cost model computes it (masu-lab ladder --costs). A header, then a row per setting: its name and
- * a number per class, in any unit that the rows share, the base's among them. Where the file
- * exists, rungs are chosen by it instead of by times, and a setting that another one dominates on
- * one of the classes is no rung. */
+/* costs.h: reads costs.csv of a folder of `masu bench`: the costs of its settings on classes of
+ * GPUs, computed by a cost model (masu-lab ladder --costs). A header, then a row per setting,
+ * including the base: its name and a number per class, all in the same unit. If the file exists,
+ * rungs are chosen by costs instead of times, and a setting that is dominated on one of the classes
+ * cannot be a rung. */
 #ifndef MASU_BENCH_COSTS_H
 #define MASU_BENCH_COSTS_H
 

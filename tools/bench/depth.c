@@ -21,7 +21,7 @@ typedef struct result {
     masu_depth_error error;
 } result;
 
-/* Distances along the rays; below 0: nothing is hit; NaN: not known. */
+/* Distances along the rays; below 0: no hit; NaN: unknown. */
 typedef struct reference {
     float scale;
     uint32_t width, height;
@@ -31,9 +31,9 @@ typedef struct reference {
 struct masu_depth_bench {
     masu_session_desc d;
     double time;
-    bool exact; /* there is a truth */
+    bool exact; /* use `truth` as reference */
     masu_truth truth;
-    uint8_t *blob; /* a session lets go of its own: a view needs it */
+    uint8_t *blob; /* sessions free theirs, but a view needs it */
     masu_scene scene;
     masu_session s;
     uint32_t messages, result_count, reference_count;
@@ -53,8 +53,8 @@ static bool failed(masu_depth_bench *b, const char *text) {
     return false;
 }
 
-/* What does not move a surface is as cheap as can be. All fields have four bytes: a rung has no
- * padding, and can be compared as memory. */
+/* Keeps the knobs that affect surfaces and sets the others to their cheapest value. All fields have
+ * four bytes: a rung has no padding and can be compared by memcmp. */
 static masu_rung key_of(const masu_rung *rung) {
     return (masu_rung){.scale = rung->scale,
                        .easu = MASU_EASU_BILINEAR,
@@ -98,7 +98,7 @@ static const reference *find_reference(const masu_depth_bench *b, float scale) {
 
 /* ---- One frame ------------------------------------------------------------------------------- */
 
-/* The frame's proportions are the output's, whatever its size is rounded to. */
+/* The view has the proportions of the output, independent of the rounding of the render size. */
 static bool see(masu_depth_bench *b, uint32_t width, uint32_t height, masu_view *view) {
     VkExtent2D size = b->s.desc.output;
     masu_camera camera;
@@ -188,7 +188,7 @@ static bool compare(masu_depth_bench *b, const masu_readback_image *image, const
     return true;
 }
 
-/* ---- All ------------------------------------------------------------------------------------- */
+/* ---- All settings ---------------------------------------------------------------------------- */
 
 static bool draw_job(masu_depth_bench *b, const job *j, uint32_t rung) {
     masu_commands commands;

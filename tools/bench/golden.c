@@ -14,7 +14,7 @@ enum { WIDTH = 128, HEIGHT = 72, STILL_FRAMES = 64 };
 
 static bool draw_rung(const masu_sweep_desc *d, const char *name, masu_patch patches[MASU_PATCHES],
                       uint32_t *messages, char *error, size_t error_size) {
-    static masu_session s; /* may not move, and is large */
+    static masu_session s; /* static: it may not move, and is large */
     masu_session_desc of =
         masu_picture_session(d->scene_path, (VkExtent2D){WIDTH, HEIGHT}, &d->host);
     of.desc.readback = MASU_READBACK_HDR;

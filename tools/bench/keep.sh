@@ -1,7 +1,7 @@
 #!/bin/sh
-# keep.sh FROM TO: copies what the tree keeps of a folder of `masu bench`: ladder.json, costs.csv, and results.csv with
+# keep.sh FROM TO: copies the committed results of a `masu bench` folder: ladder.json, costs.csv, and results.csv with
 # the times of steady.csv, the second and longer measurement of the rungs. `masu bench --rungs-of TO` and `--against`
-# read these two.
+# read these files.
 set -eu
 from=$1 to=$2
 mkdir -p "$to"

@@ -31,7 +31,7 @@ bool masu_machine_cpu(const char *cpuinfo, char *out, size_t size) {
 void masu_machine_here(const char *driver, masu_machine *out) {
     char text[4096] = "";
     memset(out, 0, sizeof *out);
-    FILE *f = fopen("/proc/cpuinfo", "r"); /* the first processor's lines are enough */
+    FILE *f = fopen("/proc/cpuinfo", "r"); /* the lines of the first processor are enough */
     if (f) {
         text[fread(text, 1, sizeof text - 1, f)] = 0;
         fclose(f);
@@ -60,7 +60,7 @@ void masu_machine_build(char out[17]) {
 
 #define MACHINE_BYTES_MAX ((size_t)16 << 20)
 
-/* An empty array where there is no file. NULL: it is something else. */
+/* Returns an empty array if the file does not exist, and NULL if it has other contents. */
 static json_t *load(const char *folder, char path[4096], char *error, size_t error_size) {
     json_error_t why;
     if (!masu_sweep_path(folder, "machine.json", path)) {

@@ -1,9 +1,9 @@
-/* machine.h: machine.json in the folder of `masu bench`: on what, with what and when each of
- * its runs was made.
+/* machine.h: machine.json in the folder of `masu bench`: machine, driver, version and date of each
+ * run.
  *
- * sweep.json must be the same in all parts of a sweep, so it cannot say that. An array, a run after
- * the other; merged folders have those of all parts. Owns nothing; what fails writes one line to
- * `error`. */
+ * sweep.json must be equal in all parts of a sweep, so it cannot hold these. The file is an array
+ * of runs; merged folders have the runs of all parts. Owns nothing; functions that fail write one
+ * line to `error`. */
 #ifndef MASU_BENCH_MACHINE_H
 #define MASU_BENCH_MACHINE_H
 
@@ -12,32 +12,33 @@
 #include <stdint.h>
 
 typedef struct masu_machine {
-    char cpu[128]; /* "model name" of /proc/cpuinfo; "unknown" where there is none */
+    char cpu[128]; /* "model name" of /proc/cpuinfo, or "unknown" */
     char driver[256], masu[32], date[32]; /* "2026-05-01 12:00 UTC" */
-    uint32_t threads;                     /* that this process may run on */
+    uint32_t threads;                     /* available to this process */
 } masu_machine;
 
-/* This machine, at this moment. */
+/* Describes this machine and the current time. */
 void masu_machine_here(const char *driver, masu_machine *out);
 
-/* The CPU's name out of the text of /proc/cpuinfo. False: it has none; out is "unknown". */
+/* Finds the CPU's name in the text of /proc/cpuinfo. Returns false if there is none; out is
+ * "unknown". */
 bool masu_machine_cpu(const char *cpuinfo, char *out, size_t size);
 
-/* Appends to FOLDER/machine.json, or begins it; not what is the last one's but for the time of day. What is
- * no such file is an error. */
+/* Appends to FOLDER/machine.json or creates it, unless the last entry differs only in the time of
+ * day. It is an error if the file has other contents. */
 bool masu_machine_append(const char *folder, const masu_machine *machine, char *error,
                          size_t error_size);
 
-/* Of a folder that has no row left. */
+/* Removes the file of a folder without rows. */
 void masu_machine_forget(const char *folder);
 
-/* Those of `part` that FOLDER does not have. A part without the file adds nothing. */
+/* Adds the entries of `part` that FOLDER does not have. A part without the file adds nothing. */
 bool masu_machine_merge(const char *folder, const char *part, char *error, size_t error_size);
 
-/* Run i, 0 the first. False: there are not as many, or no file. */
+/* Reads run i; 0 is the first. Returns false if there is no such run or no file. */
 bool masu_machine_read(const char *folder, uint32_t i, masu_machine *out);
 
-/* A hash of the running program's file; "" if the system does not say. */
+/* A hash of the running program's file; "" if it cannot be read. */
 void masu_machine_build(char out[17]);
 
 #endif

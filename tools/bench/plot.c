@@ -11,7 +11,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* What has no error at all has a place on a logarithmic axis, too. */
+/* Zero errors also need a position on a logarithmic axis. */
 #define LEAST_ERROR 1e-5
 
 static double shown_error(const masu_row *row) { return fmax(masu_row_error(row), LEAST_ERROR); }
@@ -20,7 +20,7 @@ static bool drawable(const masu_plot *p, uint32_t i) {
     return isfinite(p->ratios[i]) && p->ratios[i] > 0.0 && isfinite(p->rows[i].flip);
 }
 
-/* Series of points: those that are bundles or sizes by name, single knobs together. */
+/* Series of points: the base, sizes and bundles have one series each, single knobs share one. */
 static const char *const series[] = {"base", "scale", "cheap",   "lean",
                                      "full", "soft",  "soft aa", "soft steps",
                                      "soft cascades", "temporal"};
@@ -39,7 +39,7 @@ static void write_points(FILE *f, const masu_plot *p) {
             if (drawable(p, i) && series_of(&p->rows[i]) == k)
                 fprintf(f, "%.9g %.9g\n", p->ratios[i], shown_error(&p->rows[i]));
         }
-        fprintf(f, "nan nan\nEOD\n"); /* a series without points is no error */
+        fprintf(f, "nan nan\nEOD\n"); /* a series without points is not an error */
     }
 }
 
@@ -51,12 +51,12 @@ static void write_list(FILE *f, const char *name, const masu_plot *p, const uint
     fprintf(f, "EOD\n");
 }
 
-/* Names of arrows that hardly go anywhere would lie on top of each other. */
+/* Labels of very short arrows would overlap. */
 static bool is_far(double from_time, double from_error, double time, double error) {
     return hypot(log(time / from_time), log(error / from_error)) > 0.12;
 }
 
-/* From its parent to each single technique. Returns how many. */
+/* Arrows from the parent to each single technique. Returns their number. */
 static uint32_t write_arrows(FILE *f, const masu_plot *p) {
     uint32_t count = 0;
     fprintf(f, "$arrows << EOD\n");
@@ -88,7 +88,8 @@ static const char style[] =
     "set ytics nomirror format '%g' add (0.002,0.005,0.02,0.05,0.2,0.5)\n"
     "set ylabel 'mean FLIP against the ground truth, in motion and stationary'\n";
 
-/* Left to itself gnuplot goes on to whole powers of ten. To the right there is room for names. */
+/* Explicit ranges, because gnuplot would extend them to powers of ten. The right side has space for
+ * names. */
 static void write_ranges(FILE *f, const masu_plot *p) {
     double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {0.0, 0.0};
     for (uint32_t i = 0; i < p->row_count; i++) {
@@ -133,7 +134,7 @@ static void write_commands(FILE *f, const masu_plot *p) {
         fprintf(f, "  $series%u using 1:2 with points pt %d ps 0.8 lc rgb '%s' title '%s', \\\n", k,
                 marks[k], colors[k], names[k]);
     fprintf(f, "  $rungs using 1:2 with points pt 6 ps 2 lw 2 lc rgb '#d55e00' title 'rungs'");
-    /* gnuplot 5.4 ends by a fault where there is not one label to write. */
+    /* gnuplot 5.4 crashes if there are no labels. */
     if (p->rung_count) {
         fprintf(f, ", \\\n  $rungs using 1:2:3 with labels offset 0,1.2 textcolor rgb '#d55e00' "
                    "notitle");
@@ -150,7 +151,7 @@ static void write_commands(FILE *f, const masu_plot *p) {
     fprintf(f, "\n");
 }
 
-/* The commands are left beside the plots, for who wants to change them. */
+/* The commands are stored with the plots, so that they can be changed. */
 static bool write_file(const masu_plot *p, const char *text, size_t bytes, char folder[4096], char *error,
                        size_t error_size) {
     char path[4096];

@@ -21,8 +21,8 @@ struct masu_radiance_bench {
     masu_session s;
     bool traced;
     uint32_t pixels, messages, result_count;
-    uint8_t *classes;         /* of what traces; the rest are NULL, too, where nothing does */
-    float *reflections, *rgb; /* the reference; what was drawn last */
+    uint8_t *classes;         /* of pixels that trace; NULL if the scene traces none */
+    float *reflections, *rgb; /* the reference; the newest image */
     result results[MASU_SETTINGS_MOST];
     char *error;
     size_t error_size;
@@ -52,7 +52,8 @@ static bool load(masu_radiance_bench *b, bool *there) {
     return fits || failed(b, "the reflection reference has another size");
 }
 
-/* Without a file all rays; with one a single frame, for which pixels trace. */
+/* Renders all rays if there is no file. Otherwise a single frame is enough to find the pixels that
+ * trace. */
 static bool draw_reference(masu_radiance_bench *b) {
     VkExtent2D size = b->d.session.desc.output;
     masu_specular_run run = {.frames = b->d.rays, .time = b->d.motion.time};
@@ -92,7 +93,7 @@ static bool find_reference(masu_radiance_bench *b) {
 
 static bool whole(const masu_rung *rung) { return rung->scale >= 1.0f; }
 
-/* What is done after the tone curve leaves radiance as it is. */
+/* Clears the knobs that act after the tone curve: they do not affect radiance. */
 static masu_rung key_of(const masu_rung *rung) {
     masu_rung key = *rung;
     key.upscale = key.sharpen = MASU_OFF;
@@ -145,7 +146,8 @@ static bool draw_keys(masu_radiance_bench *b, const masu_rung *keys, uint32_t co
 bool masu_radiance_measure(masu_radiance_bench *b, const masu_rung *rungs, uint32_t count,
                            masu_radiance_error *out, char *error, size_t error_size) {
     masu_rung keys[MASU_MAX_RUNGS];
-    /* The noise of reflections goes by the number of the frame: then each has a renderer of its own. */
+    /* The noise of reflections depends on the frame number, so each setting needs its own
+     * renderer. */
     uint32_t n = 0, most = b->d.motion.remembers ? 1 : MASU_MAX_RUNGS;
     b->error = error;
     b->error_size = error_size;

@@ -1,16 +1,16 @@
-/* radiance.h: a setting's image before exposure and tone curve: HDR-FLIP against the truth's,
+/* radiance.h: a setting's image before exposure and tone curve: HDR-FLIP against the ground truth,
  * and the error of its reflections.
  *
- * The same frames in motion as the picture's, of a session of its own that reads radiance back:
- * what is timed reads nothing back. Only at the output's size: below it the image has other pixels
- * than the truth. What is done after the tone curve (anti-aliasing, sharpening) is not in it: such
- * settings have no HDR-FLIP, but the error of reflections that all others have.
+ * Renders the same frames in motion as for the image, in a separate session with radiance readback,
+ * because timed sessions have no readback. Only for the output size: pixels of a smaller image do
+ * not match the ground truth. Steps after the tone curve (anti-aliasing, sharpening) are not
+ * included: such settings have no HDR-FLIP, but do have the error of reflections.
  *
- * REFLECTIONS. relMSE (measure/specular.h) of pixels that trace, against as many rays a pixel as
- * the truth has in all, through its middle. It is radiance of the whole pixel: what other knobs
- * change there is in it, too.
+ * REFLECTIONS. relMSE (measure/specular.h) of pixels that trace. The reference has as many rays per
+ * pixel as the ground truth in total, all through the pixel's centre. Radiance is that of the whole
+ * pixel, so it includes the effect of other knobs.
  *
- * A masu_radiance_bench is allocated by masu_radiance_open. Functions that fail write one line to
+ * masu_radiance_open allocates a masu_radiance_bench. Functions that fail write one line to
  * `error`. */
 #ifndef MASU_BENCH_RADIANCE_H
 #define MASU_BENCH_RADIANCE_H
@@ -20,27 +20,27 @@
 typedef struct masu_radiance_desc {
     masu_session_desc session; /* scene, host, output and targets */
     masu_motion motion;
-    const float *truth;      /* 3 floats a pixel; outlives the bench */
-    const char *reflections; /* the reference as PFM: read if it is there, else written */
-    uint32_t rays;           /* of it */
-    void (*progress)(const char *text); /* or NULL */
+    const float *truth;      /* 3 floats per pixel; outlives the bench */
+    const char *reflections; /* the reference as PFM: read if it exists, otherwise written */
+    uint32_t rays;           /* of the reference */
+    void (*progress)(const char *text); /* may be NULL */
 } masu_radiance_desc;
 
 typedef struct masu_radiance_bench masu_radiance_bench;
 
 typedef struct masu_radiance_error {
-    double hdr_flip, specular_relmse; /* NaN: there is none */
+    double hdr_flip, specular_relmse; /* NaN: none */
 } masu_radiance_error;
 
-/* Reads or draws the reference, if the scene traces reflections. NULL: failed. */
+/* Reads or renders the reference, if the scene traces reflections. NULL: failed. */
 masu_radiance_bench *masu_radiance_open(const masu_radiance_desc *d, char *error,
                                         size_t error_size);
 
 bool masu_radiance_measure(masu_radiance_bench *b, const masu_rung *rungs, uint32_t count,
                            masu_radiance_error *out, char *error, size_t error_size);
 
-/* Of the validation layer, in all sessions so far. */
+/* Messages of the validation layer in all sessions so far. */
 uint32_t masu_radiance_messages(const masu_radiance_bench *b);
-void masu_radiance_close(masu_radiance_bench *b); /* NULL is nothing */
+void masu_radiance_close(masu_radiance_bench *b); /* ignores NULL */
 
 #endif

@@ -1,5 +1,4 @@
-/* report.c: see report.h. The page is XHTML: strict enough to be checked by a
- * machine. */
+/* report.c: see report.h. The page is XHTML, so that a program can validate it. */
 #include "bench/report.h"
 
 #include "settings/ladder.h"
@@ -25,12 +24,12 @@ typedef struct report {
     const char *folder;
     masu_report_result *out;
     json_t *sweep; /* sweep.json */
-    masu_row *rows, *steady; /* of both files, of steady.csv alone */
+    masu_row *rows, *steady; /* of both files; only of steady.csv */
     uint32_t count, rung_count, front_count, steady_count;
-    double *ratios; /* of the clock that the ladder goes by */
+    double *ratios; /* in the clock of the ladder */
     masu_ladder_point *points;
     uint32_t *front, *rungs;
-    /* Mean change at rest from the rung before, of 255; NAN: not known. */
+    /* Mean difference of the static image from the previous rung, of 255; NAN: unknown. */
     double steps[MASU_MAX_RUNGS];
     VkExtent2D size;
     FILE *page;
@@ -63,13 +62,13 @@ static const json_t *setting_of(const report *r, const char *id) {
     return NULL;
 }
 
-/* 0 of what is no side of a picture. */
+/* 0 if the value is not a valid width or height. */
 static uint32_t side_of(const report *r, const char *key) {
     double side = number_of(r, key);
     return side >= 1.0 && side <= MASU_IMAGE_SIDE_MAX ? (uint32_t)side : 0;
 }
 
-/* Rows that sweep.json does not know are of no use: what their knobs are is not known. */
+/* Drops rows that sweep.json does not list: their knobs are unknown. */
 static bool read_all(report *r) {
     char path[4096];
     uint32_t kept = 0;
@@ -100,7 +99,7 @@ static double least_ratio(const report *r, const masu_row *row) {
     return r->out->by_timestamps ? row->gpu_least_ratio : row->least_ratio;
 }
 
-/* An error that one picture does not show: such a setting is no rung, however near its pictures are. */
+/* Flicker is an error that a single image does not show: such a setting cannot be a rung. */
 static bool flickers(const report *r, const masu_row *row) {
     const masu_row *base = masu_rows_find(r->rows, r->count, "base");
     return row->flicker > MASU_LADDER_FLICKER + (base ? base->flicker : 0.0);
@@ -110,7 +109,7 @@ static bool load_rest(const report *r, uint32_t row, uint8_t *out) {
     static const char *const suffixes[] = {MASU_SWEEP_REST, ""};
     char path[4096], error[4096];
     for (int i = 0; i < 2; i++) {
-        /* Without reflections and temporal passes the still is the image in motion. */
+        /* Without reflections and temporal passes the static image equals the image in motion. */
         if (i && r->rows[row].rest_flip != r->rows[row].flip) return false;
         if (masu_sweep_picture(r->folder, r->rows[row].setting, suffixes[i], path) &&
             masu_file_exists(path))
@@ -119,7 +118,7 @@ static bool load_rest(const report *r, uint32_t row, uint8_t *out) {
     return false;
 }
 
-/* Leaves out rungs that are too far from the one before; folders without pictures keep theirs. */
+/* Drops rungs that differ too much from the previous one. Folders without images keep all rungs. */
 static bool limit_steps(report *r) {
     const size_t bytes = 4 * (size_t)r->size.width * r->size.height;
     uint8_t *before = malloc(bytes), *shown = malloc(bytes);
@@ -150,9 +149,8 @@ static bool find_rungs(report *r) {
     return limit_steps(r);
 }
 
-/* Where costs on classes of GPUs are known, they say which settings are worth having, and their
- * geometric mean over the classes, relative to the base's, stands for the time that was measured
- * here. */
+/* If costs on classes of GPUs exist, they select the settings. Their geometric mean over the
+ * classes, relative to the base's, replaces the measured time. */
 static bool go_by_costs(report *r) {
     const uint32_t n = MASU_COSTS_CLASSES;
     double *costs = calloc(r->count, sizeof *costs * n);
@@ -174,7 +172,8 @@ static bool go_by_costs(report *r) {
     return good;
 }
 
-/* Timestamps count where all of them fit the wall clock; times of two clocks are never mixed. */
+/* Timestamps are used if they agree with the wall clock in all rows; times of two clocks are never
+ * mixed. */
 static bool find_ladder(report *r) {
     r->points = calloc(r->count, sizeof *r->points);
     r->ratios = calloc(r->count, sizeof *r->ratios);
@@ -186,7 +185,7 @@ static bool find_ladder(report *r) {
     for (uint32_t i = 0; i < r->count; i++) {
         r->ratios[i] = stamps ? r->rows[i].gpu_ratio : r->rows[i].ratio;
         r->points[i] = (masu_ladder_point){r->ratios[i], masu_row_error(&r->rows[i])};
-        /* Culling switched off is quicker by chance alone. */
+        /* Disabled culling is faster only by measurement noise. */
         const json_t *same = json_object_get(setting_of(r, r->rows[i].setting), "same_picture");
         if (json_is_true(same) || flickers(r, &r->rows[i])) r->points[i].time = 0.0;
     }
@@ -254,8 +253,8 @@ static bool put_image(report *r, const char *path, const char *type, const char 
     return true;
 }
 
-/* Black, violet, red, orange, white, by the square root: most of what is to be seen is below 0.1. In
- * 33 steps, of which a PNG is a third as large. */
+/* Black, violet, red, orange, white, by the square root, since most errors are below 0.1. 33 steps
+ * reduce the size of a PNG to a third. */
 static void heat(float value, uint8_t rgba[4]) {
     static const float ramp[5][3] = {
         {0, 0, 0}, {70, 20, 120}, {190, 45, 90}, {250, 150, 40}, {255, 250, 220}};
@@ -268,7 +267,7 @@ static void heat(float value, uint8_t rgba[4]) {
     rgba[3] = 255;
 }
 
-/* Beside the picture that it was made of. */
+/* Writes the FLIP map of a setting next to its image. */
 static bool make_map(report *r, const char *setting, char path[4096]) {
     size_t pixels = (size_t)r->size.width * r->size.height;
     uint8_t *truth = malloc(4 * pixels), *shown = malloc(4 * pixels);
@@ -308,7 +307,7 @@ static const char head[] =
     ".rung td { background: #fff3e6; }\n"
     "</style>\n<title>masu bench: ";
 
-/* On what and when: one line for each run that added rows. */
+/* Machine and date: one line for each run that added rows. */
 static void put_machines(report *r) {
     masu_machine m;
     fputs("<p>", r->page);
@@ -320,7 +319,7 @@ static void put_machines(report *r) {
     fputs("</p>\n", r->page);
 }
 
-/* What one must know to read the tables, in eight lines. */
+/* Explains the tables. */
 static void put_note(report *r) {
     FILE *f = r->page;
     masu_markup(
@@ -390,7 +389,7 @@ static void put_head(report *r) {
                 r->out->settings);
 }
 
-/* Columns of the long table; those of the short one are marked. */
+/* Columns of the long table; `brief`: also in the short one. */
 static const struct {
     const char *name, *format;
     bool brief;
@@ -427,7 +426,7 @@ static void put_columns(FILE *f, bool brief) {
     fputs("</tr>\n", f);
 }
 
-/* What a setting has no value of is a dash. */
+/* NaN is printed as a dash. */
 static void put_cell(FILE *f, const char *format, double value) {
     char text[64];
     if (isnan(value)) {
@@ -505,7 +504,7 @@ static bool put_plots(report *r) {
     return true;
 }
 
-/* What one knob changes, beside the setting that differs by it alone. */
+/* The effect of one knob, compared with the setting that differs only by this knob. */
 static void put_techniques(report *r) {
     FILE *f = r->page;
     fputs(
@@ -602,7 +601,7 @@ static void release(report *r) {
     free(r->rungs);
 }
 
-/* Those of ladder.json, where there is no sweep.json: a folder of docs/report. */
+/* Reads the rungs of ladder.json for a folder without sweep.json (docs/report). */
 static bool kept_rungs(const char *folder, masu_setting_list *out, char *error, size_t error_size) {
     char path[4096];
     masu_ladder_file ladder;
@@ -630,7 +629,7 @@ bool masu_report_rungs(const char *folder, masu_setting_list *out, char *error, 
     return good;
 }
 
-/* Each round leaves out what it has found; without an end there would be at most count of them. */
+/* Each round excludes the rungs that it has found; there are at most `count` rungs. */
 static bool find_unsteady(report *r, masu_setting_list *out) {
     const uint32_t most = MASU_MAX_RUNGS - 1;
     for (;;) {

@@ -202,7 +202,7 @@ uint32_t masu_settings_make(bool quick, masu_setting out[MASU_SETTINGS_MOST]) {
         const float *scales = quick ? quick_scales : bundle_scales;
         for (size_t i = 0; i < (quick ? COUNT(quick_scales) : COUNT(bundle_scales)); i++)
             add_bundle(&l, one, scales[i]);
-        /* Those that are not eighths: bundle_scales has the others. */
+        /* Sizes that are not eighths: bundle_scales has the eighths. */
         for (int i = 15; i >= 7 && one->when & SIXTEENTHS; i -= 2)
             add_bundle(&l, one, (float)i / 16.0f);
         for (size_t i = 0; i < COUNT(small_scales) && one->when & SMALL && !quick; i++)
@@ -222,7 +222,7 @@ static void refit_parent(masu_setting *s, const masu_setting *all, uint32_t coun
     }
 }
 
-/* Values that only a scene can give a meaning. */
+/* Resolves values that depend on the scene. */
 static void scene_values(masu_rung *rung, const masu_scene *scene, const char **why) {
     if (masu_scene_shadow_distance(scene) > 0.0f)
         rung->shadow_distance *= masu_scene_shadow_distance(scene);
@@ -258,7 +258,7 @@ void masu_settings_fit(masu_setting *settings, uint32_t count, const masu_scene 
             if (strcmp(settings[k].id, fitted) != 0 || settings[k].dropped[0]) continue;
             snprintf(s->dropped, sizeof s->dropped, "%s", why ? why : "equal to another setting");
         }
-        /* What is dropped keeps the name that says what it was to be. */
+        /* A dropped setting keeps its original name. */
         if (!s->dropped[0]) memcpy(s->id, fitted, sizeof s->id);
     }
 }

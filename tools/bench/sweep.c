@@ -89,7 +89,7 @@ static bool fit_settings(sweep *w, masu_plan_info *plans) {
                 snprintf(s->dropped, sizeof s->dropped, "same passes and bytes as its parent");
             }
         }
-        w->settings[i].structural = 0; /* answered */
+        w->settings[i].structural = 0; /* resolved */
     }
     return true;
 }

@@ -279,7 +279,7 @@ bool masu_sweep_append(const char *folder, const char *name, const masu_row *row
     char path[4096];
     if (!masu_sweep_path(folder, name, path))
         return fail(error, error_size, folder, "the path is too long");
-    /* O_NONBLOCK does not wait for a reader of a FIFO. */
+    /* O_NONBLOCK avoids waiting for the reader of a FIFO. */
     int file = open(path, O_WRONLY | O_APPEND | O_CREAT | O_NONBLOCK | O_CLOEXEC, 0666);
     FILE *f = file >= 0 ? fdopen(file, "a") : NULL;
     if (!f && file >= 0) (void)close(file);

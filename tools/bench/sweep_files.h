@@ -30,7 +30,7 @@ bool masu_sweep_one_build(const masu_row *rows, uint32_t count, const char *buil
  * results.csv and steady.csv. A missing file is no error. Release the result by free(). */
 masu_row *masu_sweep_resume(const char *folder, uint32_t *count, char *error, size_t error_size);
 
-/* On the disk when it returns; a new file begins with the header. `name`: MASU_SWEEP_RESULTS or
+/* Appends a row and flushes it; a new file starts with the header. `name`: MASU_SWEEP_RESULTS or
  * MASU_SWEEP_STEADY. */
 bool masu_sweep_append(const char *folder, const char *name, const masu_row *row, char *error,
                        size_t error_size);

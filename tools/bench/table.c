@@ -5,11 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* How a column is found in a row. */
+/* The position of a column in a row. */
 typedef struct column {
     const char *name;
     size_t offset;
-    size_t text; /* its room; 0: a number */
+    size_t text; /* its size in bytes; 0: a number */
 } column;
 
 static const column columns[] = {
@@ -20,7 +20,7 @@ static const column columns[] = {
 #undef NUMBER
 };
 
-/* The last came later, and before it the two in front of it. */
+/* The last column was added last; the two before it were added earlier. */
 enum {
     COLUMNS = sizeof columns / sizeof *columns,
     COLUMNS_BEFORE = COLUMNS - 1,
@@ -46,8 +46,8 @@ int masu_rows_write(FILE *f, const masu_row *row) {
     return fprintf(f, "\n");
 }
 
-/* A setting's name is a file's, a plot's and a page's: knobs and their values have no other characters, and none
- * begins with a dot. */
+/* A setting's name is also used for files, plots and pages. It has only characters of knobs and
+ * their values, and does not start with a dot. */
 static bool is_name(const char *text, size_t n) {
     static const char allowed[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_=+.- ";
     return n < MASU_SETTING_ID && *text != '.' && strspn(text, allowed) >= n;
@@ -55,7 +55,8 @@ static bool is_name(const char *text, size_t n) {
 
 bool masu_setting_is_name(const char *text) { return *text && is_name(text, strlen(text)); }
 
-/* One line without its end, of so many columns, the first. False: not as many fields, a text that is no name, or no number. */
+/* Parses one line, without its line end, of the first `count` columns. Returns false if the number
+ * of fields, a name or a number is wrong. */
 static bool parse(const char *line, uint32_t count, masu_row *out) {
     memset(out, 0, sizeof *out);
     out->rest_flip = out->fast_flip = (double)NAN;
@@ -81,7 +82,7 @@ double masu_row_error(const masu_row *row) {
     return isfinite(row->rest_flip) ? 0.5 * (row->flip + row->rest_flip) : row->flip;
 }
 
-/* How many columns it names: all, or all that there once were. 0: neither. */
+/* Number of columns in the header: all columns, or those of an earlier version. 0: neither. */
 static uint32_t columns_of(const char *text, size_t n) {
     uint32_t c = 0;
     for (; c < COLUMNS && (n || (c != COLUMNS_BEFORE && c != COLUMNS_FIRST)); c++) {

@@ -1,4 +1,4 @@
-/* cli.c: option parsing and messages of every Masu program; cli.h is the manual. */
+/* cli.c: option parsing and messages of all Masu programs; cli.h is the manual. */
 #define _POSIX_C_SOURCE 200809L
 #include "cli/cli.h"
 
@@ -25,11 +25,11 @@ static const masu_cli_option common_options[] = {
 };
 
 static struct {
-    char name[64]; /* "masu-bake" or "masu render": begins messages and the usage line */
+    char name[64]; /* "masu-bake" or "masu render": starts messages and the usage line */
     uint32_t warnings;
     bool quiet;
     bool progress_shown;
-    void (*hears)(void *user, const char *text); /* of warnings */
+    void (*hears)(void *user, const char *text); /* receives warnings */
     void *user;
 } state = {"masu", 0, false, false, NULL, NULL};
 
@@ -101,7 +101,7 @@ bool masu_cli_quiet(void) { return state.quiet; }
 
 void masu_cli_progress(const char *format, ...) {
     if (state.quiet || (!isatty(STDERR_FILENO) && !getenv("MASU_PROGRESS"))) return;
-    char text[72]; /* a line that the terminal wraps could not be wiped */
+    char text[72]; /* a line wrapped by the terminal could not be erased */
     va_list arguments;
     va_start(arguments, format);
     if (vsnprintf(text, sizeof text, format, arguments) < 0) text[0] = '\0';
@@ -179,7 +179,7 @@ static int leave(masu_cli *cli, int exit_code) {
     return MASU_CLI_EXIT;
 }
 
-/* `attached` is the value that came in the same word, or NULL. */
+/* `attached` is the value in the same argument, or NULL. */
 static int take_option(masu_cli *cli, const masu_cli_option *option, const char *attached) {
     if (option->value && option->value[0] == '[') {
         cli->value = attached;
@@ -246,7 +246,7 @@ bool masu_cli_uint(const masu_cli *cli, uint32_t minimum, uint32_t maximum, uint
     char *end = NULL;
     errno = 0;
     unsigned long long number = 0;
-    bool digits = text[0] >= '0' && text[0] <= '9'; /* strtoull would take "-1" and " 1" */
+    bool digits = text[0] >= '0' && text[0] <= '9'; /* strtoull would accept "-1" and " 1" */
     if (digits) number = strtoull(text, &end, 10);
     if (!digits || *end || errno || number < minimum || number > maximum) {
         masu_cli_usage_error("%s: expected a whole number from %u to %u, not \"%s\"",
@@ -346,7 +346,7 @@ const char *masu_cli_status(int status) {
     int code = WIFEXITED(status) ? WEXITSTATUS(status) : 0;
     if (WIFSIGNALED(status))
         snprintf(text, sizeof text, "ended by %s", masu_cli_signal(WTERMSIG(status)));
-    else if (code > 128 && code < 128 + 32) /* as a shell reports the end of its command */
+    else if (code > 128 && code < 128 + 32) /* the form in which a shell reports its command */
         snprintf(text, sizeof text, "exit code %d, which stands for %s", code,
                  masu_cli_signal(code - 128));
     else snprintf(text, sizeof text, "exit code %d", code);
@@ -355,8 +355,8 @@ const char *masu_cli_status(int status) {
 
 /* ---- main ---- */
 
-/* A stream that was closed would give its number to the next file that is opened, and what is
- * printed would go there. The modes are such that its use still fails. */
+/* Without this, the next opened file would get the number of a closed stream, and output would go
+ * there. Uses modes with which the stream's use still fails. */
 static void keep_streams(void) {
     for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; stream++) {
         if (fcntl(stream, F_GETFD) >= 0 || errno != EBADF) continue;
@@ -364,7 +364,7 @@ static void keep_streams(void) {
     }
 }
 
-/* "help a b" as "a b --help", behind the word `help`, which has been read. */
+/* Changes "help a b" to "a b --help"; `help` has been read. */
 static void turn_help(masu_cli *cli) {
     static char option[] = "--help";
     for (int i = cli->next; i < cli->argc; i++) cli->argv[i - 1] = cli->argv[i];

@@ -12,7 +12,7 @@ enum { CANNOT_START = 127 };
 
 static int is_control(char c) { return (unsigned char)c < ' ' || c == 127; }
 
-/* gnuplot doubles the quote itself and knows no other escape within single quotes. */
+/* gnuplot escapes a single quote by doubling it; there is no other escape in single quotes. */
 void masu_gnuplot_quote(FILE *f, const char *text) {
     fputc('\'', f);
     for (; *text; text++) {
@@ -22,7 +22,7 @@ void masu_gnuplot_quote(FILE *f, const char *text) {
     fputc('\'', f);
 }
 
-/* Data are not commands, but a string there ends at the next quote and knows no escape for it. */
+/* Data are not commands, but a string in data ends at the next quote and cannot contain one. */
 void masu_gnuplot_label(FILE *f, const char *text) {
     fputc('"', f);
     for (; *text; text++) fputc(*text == '"' || *text == '\\' ? '\'' : is_control(*text) ? ' ' : *text, f);
@@ -46,7 +46,7 @@ static void draw(const char *folder, int commands) {
     _exit(CANNOT_START);
 }
 
-/* To a reader that may have gone. */
+/* Writes to a reader that may have exited. */
 static void give(int fd, const char *text, size_t bytes) {
     struct sigaction ignore = {.sa_handler = SIG_IGN}, before;
     sigemptyset(&ignore.sa_mask);

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Bytes of the character at `p` if XML 1.0 can hold it, else 0. Overlong forms, surrogates and what
- * lies beyond U+10FFFF are no UTF-8 (RFC 3629). */
+/* Length in bytes of the character at `p` if XML 1.0 allows it, else 0. Overlong forms, surrogates
+ * and codes above U+10FFFF are not UTF-8 (RFC 3629). */
 static size_t character(const unsigned char *p) {
     if (*p < 0x80) return *p >= ' ' || *p == '\t' || *p == '\n' || *p == '\r';
     size_t n = *p >= 0xF0 ? 4 : *p >= 0xE0 ? 3 : 2;
@@ -15,7 +15,7 @@ static size_t character(const unsigned char *p) {
     static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
     if (*p < 0xC0 || *p > 0xF4) return 0;
     for (size_t i = 1; i < n; i++) {
-        if ((p[i] & 0xC0) != 0x80) return 0; /* the terminating 0, too */
+        if ((p[i] & 0xC0) != 0x80) return 0; /* also for the terminating 0 */
         code = code << 6 | (p[i] & 0x3Fu);
     }
     bool good = code >= least[n] && code <= 0x10FFFF && !(code >= 0xD800 && code <= 0xDFFF) &&
@@ -36,14 +36,14 @@ void masu_markup_text(FILE *f, const char *text) {
         case '\'': fputs("&apos;", f); break;
         case '\t':
         case '\n':
-        case '\r': fprintf(f, "&#%u;", *p); break; /* else an attribute would have spaces */
+        case '\r': fprintf(f, "&#%u;", *p); break; /* otherwise attributes would contain spaces */
         default: fwrite(p, 1, n, f);
         }
         p += n ? n : 1;
     }
 }
 
-/* One conversion of the format, from its % on; returns what follows it. */
+/* Prints one conversion of the format, starting at its %; returns the text after it. */
 static const char *put(FILE *f, const char *at, va_list *arguments) {
     size_t n = 1 + strspn(at + 1, "+-# 0123456789.");
     char one[24], letter[2] = {0};

@@ -15,7 +15,7 @@ enum { ROWS_MAX = 64, HELP_MAX = 640 }; /* as many rows as masu_given has bits *
 
 /* ---- Values ---------------------------------------------------------------------------------- */
 
-/* Reported before the work begins, not after it. */
+/* Checked before the work starts. */
 static bool read_size(const masu_cli *cli, VkExtent2D *size) {
     if (!masu_cli_extent(cli, MASU_IMAGE_SIDE_MAX, &size->width, &size->height)) return false;
     if ((uint64_t)size->width * size->height <= MASU_IMAGE_PIXELS_MAX) return true;

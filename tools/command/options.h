@@ -15,28 +15,29 @@ typedef enum masu_take {
     MASU_TAKE_UINT,   /* uint32_t from min to max */
     MASU_TAKE_REAL,   /* double from min to max */
     MASU_TAKE_TEXT,   /* const char * */
-    MASU_TAKE_SIZE,   /* VkExtent2D that a PNG may have: 16384 a side and 64 Mi pixels */
-    MASU_TAKE_FILE,   /* const char *: will be written; whether it can be is found out at once */
+    MASU_TAKE_SIZE,   /* VkExtent2D allowed for PNG: 16384 per side and 64 Mi pixels */
+    MASU_TAKE_FILE,   /* const char *: a file to write; checked immediately */
     MASU_TAKE_PNG,    /* the same, with a name that ends in .png */
     MASU_TAKE_IMAGE,  /* the same, with a name that ends in one of MASU_IMAGE_ENDS */
     MASU_TAKE_OUTPUT, /* as MASU_TAKE_FILE, or "-" for stdout */
-    MASU_TAKE_CHOICE, /* uint32_t: which of the names */
-    MASU_TAKE_KNOB,   /* masu_rung: that knob, with the words and the range of MASU_KNOBS */
-    MASU_TAKE_OWN     /* what `read` makes of it */
+    MASU_TAKE_CHOICE, /* uint32_t: index of the name */
+    MASU_TAKE_KNOB,   /* masu_rung: that knob, with the names and the range of MASU_KNOBS */
+    MASU_TAKE_OWN     /* parsed by `read` */
 } masu_take;
 
 typedef struct masu_option {
     const char *name;  /* without dashes; "": a heading (MASU_HEADING); NULL ends the table */
-    const char *value; /* as masu_cli_option has it */
+    const char *value; /* as in masu_cli_option */
     const char *help;  /* without the default */
     masu_take take;
     char letter;
-    size_t at; /* in the command's struct */
+    size_t at; /* offset in the command's struct */
     double min, max;
     const char *const *names; /* NULL at the end */
     const char *knob;
-    /* MASU_TAKE_OWN: cli->value into the command's struct. On false the command ends: a mistake has been
-     * reported; or where there is nothing else to do, cli->exit_code is set to MASU_CLI_OK. */
+    /* MASU_TAKE_OWN: parses cli->value into the command's struct. On false the command ends: an
+     * error was reported, or cli->exit_code is MASU_CLI_OK because the option was the whole
+     * task. */
     bool (*read)(masu_cli *cli, void *options);
 } masu_option;
 
@@ -72,7 +73,7 @@ typedef struct masu_option {
 #define MASU_HEADING(heading)                                                                      \
     { .name = "", .help = (heading), .take = MASU_TAKE_FLAG }
 
-/* Of every command that opens a device: `host` is a masu_headless_desc. */
+/* For every command that opens a device: `host` is a masu_headless_desc. */
 #define MASU_DEVICE_ROWS(type, host)                                                               \
     MASU_TEXT(type, host.device, "device", "NAME|INDEX",                                           \
               "GPU by index or part of its name (default: the first suitable one)"),               \
@@ -91,7 +92,7 @@ extern const char *const masu_ray_ways[];
     MASU_CHOICE(type, member, "rays", "BACKEND", masu_ray_ways,                                    \
                 "ray-tracing backend for reflections of polygons: compute (built-in BVH),\n"       \
                 "query (VK_KHR_ray_query), or auto: query on GPUs that support it\n")
-/* A device is asked for ray queries unless it is `compute`. */
+/* Requests ray queries from the device unless `way` is `compute`. */
 void masu_use_rays(uint32_t way, masu_switch *ray_query, masu_headless_desc *host);
 
 /* A const char *; then masu_use_ladder. */
@@ -101,7 +102,7 @@ void masu_use_rays(uint32_t way, masu_switch *ray_query, masu_headless_desc *hos
               "  FILE  a ladder.json of `masu bench`\n"                                            \
               "  auto  the built-in ladder of the scene's class\n"                                 \
               "  off   " off)
-/* NULL: it was not given. Sets the ladder, or the rungs out of a file; an exit code. */
+/* NULL: not given. Sets the ladder, or the rungs from a file; returns an exit code. */
 int masu_use_ladder(const char *given, masu_desc *desc);
 
 #define MASU_MOMENT_ROW(type, member)                                                              \
@@ -130,15 +131,14 @@ typedef struct masu_truth_options {
 #define MASU_ARGUMENTS_MAX 64u
 
 typedef struct masu_given {
-    uint32_t most;      /* arguments that may be given, at most MASU_ARGUMENTS_MAX */
+    uint32_t most;      /* maximum number of arguments, at most MASU_ARGUMENTS_MAX */
     const char *excess; /* message for one more: "expected one scene" */
     uint32_t count;
     const char *arguments[MASU_ARGUMENTS_MAX];
     uint64_t options; /* bit i: the i-th row of the table */
 } masu_given;
 
-/* Reads the whole command line into *options and *given. On false nothing is left to do but to return
- * *code. */
+/* Reads the whole command line into *options and *given. On false return *code. */
 bool masu_options_read(masu_cli *cli, const masu_option *rows, void *options, masu_given *given,
                        int *code);
 bool masu_is_given(const masu_given *given, const masu_option *rows, const char *name);

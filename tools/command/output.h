@@ -1,5 +1,5 @@
-/* output.h: what the commands of `masu` and `masu-lab` print in the same way: messages of the
- * validation layer, the device and its memory as JSON, JSON files. */
+/* output.h: output shared by the commands of `masu` and `masu-lab`: messages of the validation
+ * layer, the device and its memory as JSON, JSON files. */
 #ifndef MASU_COMMAND_OUTPUT_H
 #define MASU_COMMAND_OUTPUT_H
 

@@ -18,9 +18,9 @@ typedef struct masu_video {
 /* path: "-" is stdout. seconds: between frames, above 0. */
 bool masu_video_open(masu_video *v, const char *path, uint32_t width, uint32_t height,
                      double seconds, char *error, size_t error_size);
-/* sRGB, 4 bytes a pixel. */
+/* sRGB, 4 bytes per pixel. */
 bool masu_video_frame(masu_video *v, const uint8_t *rgba, char *error, size_t error_size);
-/* False: what was written last has not arrived. Harmless on a zeroed struct. */
+/* Returns false if a write failed. Harmless on a zeroed struct. */
 bool masu_video_close(masu_video *v, char *error, size_t error_size);
 
 #endif

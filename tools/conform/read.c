@@ -67,7 +67,7 @@ bool masu_suite_object(const masu_suite_place *at, const char *key, const json_t
                                                      masu_json_given(value, text, sizeof text));
 }
 
-/* One of the names; their numbers begin at 0. */
+/* Matches one of the names; *out is its index. */
 bool masu_suite_choice(const masu_suite_place *at, const char *key, const json_t *value,
                        const char *const *names, uint32_t *out) {
     char text[80], list[200] = "";
@@ -83,7 +83,7 @@ bool masu_suite_choice(const masu_suite_place *at, const char *key, const json_t
                             masu_json_given(value, text, sizeof text));
 }
 
-/* A list of names, each a bit. */
+/* An array of names; *out has one bit per name. */
 bool masu_suite_names(const masu_suite_place *at, const char *key, const json_t *value,
                       const char *const *names, uint32_t *out) {
     char text[80];

@@ -1,13 +1,13 @@
-/* read.h: values out of a suite's JSON, each within its range, or one line that names the file, the case, the
- * key, what was needed and what was given.
+/* read.h: reads values of a suite's JSON and checks their ranges. An error is one line with the
+ * file, the case, the key, the expected and the given value.
  *
- * Owns nothing; strings are the JSON's. On false the place's error is written. */
+ * Owns nothing; strings belong to the JSON. On false the error of `at` is written. */
 #ifndef MASU_CONFORM_READ_H
 #define MASU_CONFORM_READ_H
 
 #include "conform/suite.h"
 
-/* A place in the file, for messages. */
+/* A position in the file, for messages. */
 typedef struct masu_suite_place {
     masu_suite *suite;
     const char *case_name; /* or "defaults" */

@@ -113,7 +113,7 @@ void masu_conform_csv(FILE *f, const masu_suite *suite, const masu_conform_resul
 
 /* ---- Tables ---------------------------------------------------------------------------------- */
 
-/* A cell of a row: nothing in it ends the cell or the row, or begins a tag. */
+/* Writes a table cell: escapes the characters that end a cell or start a tag. */
 static void cell(FILE *f, const char *text) {
     for (; *text; text++) {
         if (*text == '|' || *text == '<' || *text == '\\') fputc('\\', f);
@@ -131,7 +131,7 @@ static void print_limits(FILE *f, const masu_case *c) {
         bool more = m == MASU_MEASURE_PSNR || m == MASU_MEASURE_SSIM;
         if (masu_bound_is_set(&c->bounds[m])) {
             double limit = limit_of(&c->bounds[m]);
-            if (!limit && !more) /* 0 may not be exceeded: it is what must be */
+            if (!limit && !more) /* 0 cannot be undercut: print equality */
                 fprintf(f, "%s%s = 0", join, name);
             else
                 fprintf(f, "%s%s %s %.4g", join, name, more ? "\xE2\x89\xA5" : "\xE2\x89\xA4", limit);

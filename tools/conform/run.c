@@ -15,15 +15,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The calibration: FSR1 on a picture made by formula. Large enough that what a submit costs does
- * not count, small enough to be run many times. */
+/* The calibration: FSR1 on a synthetic image. Large enough to hide the cost of a submit, small
+ * enough to run many times. */
 enum { FROM_WIDTH = 320, FROM_HEIGHT = 180, TO_WIDTH = 640, TO_HEIGHT = 360 };
 #define ROUNDS_MOST 4u
-#define TURN_MOST 64.0 /* frames of it */
+#define TURN_MOST 64.0 /* largest number of its frames per iteration */
 
 /* ---- Findings -------------------------------------------------------------------------------- */
 
-/* The worst verdict stays; of those equally bad all are told, as far as there is room. */
+/* Keeps the worst verdict; lists all findings of that verdict, if there is space. */
 static void find(masu_conform_result *r, masu_verdict verdict, const char *format, ...) {
     if (verdict < r->verdict || verdict == MASU_VERDICT_PASS) return;
     size_t n = verdict > r->verdict ? 0 : strlen(r->why);
@@ -66,12 +66,12 @@ static void judge_all(masu_conform_result *r, bool validated) {
     }
 }
 
-/* Why masu_session_start has failed. */
+/* The verdict of a failed masu_session_start. */
 static masu_verdict verdict_of(const masu_detail *d) {
     if (d->vulkan == VK_ERROR_OUT_OF_HOST_MEMORY || d->vulkan == VK_ERROR_OUT_OF_DEVICE_MEMORY)
         return MASU_VERDICT_RESOURCE;
     switch (d->result) {
-    case MASU_OK: return MASU_VERDICT_RESOURCE; /* the host block was not to be had */
+    case MASU_OK: return MASU_VERDICT_RESOURCE; /* the host block could not be allocated */
     case MASU_ERROR_MEMORY:
     case MASU_ERROR_LIMIT: return MASU_VERDICT_RESOURCE;
     case MASU_ERROR_DEVICE: return MASU_VERDICT_UNSUPPORTED;
@@ -84,7 +84,7 @@ static masu_verdict verdict_of(const masu_detail *d) {
 typedef struct way {
     uint32_t poison, flight;
     bool split, unculled;
-    bool first; /* the case itself: the one that budgets are for */
+    bool first; /* the case itself: budgets apply only to it */
 } way;
 
 static bool counts(const masu_case *of) {
@@ -137,15 +137,15 @@ static masu_session_desc describe(const masu_conform *c, const masu_case *of, co
     return d;
 }
 
-/* A query, budgets and a block that are a byte short must be refused by name; the exact ones are
- * then used. */
+/* Checks that a query and an init with one byte less than required fail by name, and that the exact
+ * budgets are accepted. */
 static void check_memory(masu_session *s, masu_conform_result *r) {
     masu_desc q = s->desc;
     masu_memory need;
     masu_detail detail;
     masu_renderer *m = NULL;
     q.host_budget = q.device_budget = 0;
-    if (masu_memory_query(&q, &need, &detail)) return; /* the start below says so */
+    if (masu_memory_query(&q, &need, &detail)) return; /* the start below reports the error */
     q.host_budget = need.host_bytes;
     q.device_budget = need.device_bytes;
     if (masu_memory_query(&q, &need, &detail))
@@ -172,7 +172,7 @@ static void check_memory(masu_session *s, masu_conform_result *r) {
     free(block);
 }
 
-/* On false the verdict is found and the session closed. */
+/* On false the verdict is set and the session is closed. */
 static bool open_session(masu_conform *c, const masu_case *of, const way *w,
                          masu_conform_result *r) {
     char path[4096], error[1024];
@@ -206,7 +206,7 @@ static bool open_session(masu_conform *c, const masu_case *of, const way *w,
 static void close_session(masu_conform *c, masu_conform_result *r) {
     masu_session *s = &c->session;
     bool validating = s->host.validating;
-    masu_session_close(s); /* validated too */
+    masu_session_close(s); /* its calls are validated, too */
     if (!validating) return;
     double *all = &r->values[MASU_MEASURE_MESSAGES];
     *all = (isnan(*all) ? 0.0 : *all) + s->host.messages;
@@ -216,7 +216,7 @@ static void close_session(masu_conform *c, masu_conform_result *r) {
 
 /* ---- Frames ---------------------------------------------------------------------------------- */
 
-/* Hands a frame out and submits it. */
+/* Records a frame and submits it. */
 static bool submit(masu_session *s, const masu_frame_desc *frame, masu_conform_result *r,
                    masu_commands *commands) {
     char error[1024];
@@ -227,7 +227,7 @@ static bool submit(masu_session *s, const masu_frame_desc *frame, masu_conform_r
     uint64_t before = masu_allocs_of_thread();
     masu_result result = masu_frame(s->m, frame, commands, &s->detail);
     uint64_t allocations = masu_allocs_of_thread() - before;
-    /* The layer allocates inside the calls that it wraps. */
+    /* The validation layer allocates inside the wrapped calls. */
     if (masu_alloc_counting() && !s->host.validating) {
         double *all = &r->values[MASU_MEASURE_ALLOCATIONS];
         *all = (isnan(*all) ? 0.0 : *all) + (double)allocations;
@@ -286,7 +286,7 @@ static void take_counts(const masu_stats_info *s, masu_conform_result *r) {
         r->values[taken[i].m] = taken[i].value;
 }
 
-/* What is looked at in each frame. */
+/* Measurements after each frame. */
 static bool look(masu_conform *c, const masu_case *of, uint32_t slot, masu_conform_result *r) {
     char error[1024];
     double *count = &r->values[MASU_MEASURE_NON_FINITE];
@@ -315,7 +315,7 @@ static bool look_at_field(masu_conform *c, const masu_case *of, uint32_t slot,
     return true;
 }
 
-/* The last frame's picture: NULL after a failure. */
+/* Renders all frames and returns the last image; NULL after a failure. */
 static uint8_t *draw_frames(masu_conform *c, const masu_case *of, masu_conform_result *r,
                             bool keep_counts) {
     masu_session *s = &c->session;
@@ -356,7 +356,8 @@ static void run_governed(masu_conform *c, const masu_case *of, masu_conform_resu
     masu_stats_info stats;
     masu_commands commands;
     uint32_t last = 0;
-    const masu_desc is = masu_session_resolved(&s->desc); /* with the rungs of a measured ladder */
+    const masu_desc is = masu_session_resolved(&s->desc); /* resolved, with the rungs of a measured
+                                                           * ladder */
     uint32_t worst = of->measured && !g->worst ? is.rung_count - 1 : g->worst;
     memset(&stats, 0, sizeof stats);
     for (uint32_t i = 0; i < g->frames; i++) {
@@ -396,7 +397,7 @@ static bool calibrate(masu_conform *c, masu_conform_result *r) {
     masu_session_desc d = {.host = c->host, .no_renderer = true};
     if (c->calibrated) return true;
     for (uint32_t i = 0; i < FROM_WIDTH * FROM_HEIGHT;
-         i++) { /* discs of a few sizes: edges all over */
+         i++) { /* discs of several sizes: edges everywhere */
         uint32_t x = i % FROM_WIDTH, y = i / FROM_WIDTH, cell = 8 + 8 * (x / 64 % 3);
         uint32_t u = x % cell, v = y % cell, half = cell / 2;
         uint32_t away = (u - half) * (u - half) + (v - half) * (v - half);
@@ -422,7 +423,7 @@ static bool calibrate(masu_conform *c, masu_conform_result *r) {
     return c->calibrated;
 }
 
-/* n frames, one after the other; the least mean of them so far. */
+/* Times n sequential frames; *least becomes the minimum of the means so far. */
 static bool timed(masu_session *s, const masu_frame_desc *frame, uint32_t n, masu_conform_result *r,
                   double *least) {
     masu_commands commands;
@@ -435,10 +436,10 @@ static bool timed(masu_session *s, const masu_frame_desc *frame, uint32_t n, mas
     return true;
 }
 
-/* Both take turns, and the least of each counts: what else the machine does makes single frames
- * longer, none shorter. A turn of the calibration has as many frames as last about as long as one
- * of the case: shorter work finds a quiet moment more easily, and on a loaded machine the ratio
- * would be too large. Where it is too large, more turns may show that it was that. */
+/* Case and calibration alternate, and the minimum of each is used: other work of the machine only
+ * lengthens frames. One iteration of the calibration has as many frames as take about the time of
+ * one frame of the case: shorter work more easily finds a quiet moment, which makes the ratio too
+ * large on a loaded machine. If the ratio exceeds its limit, more rounds may correct it. */
 static void time_case(masu_conform *c, const masu_case *of, masu_conform_result *r) {
     double own = MASU_UNKNOWN, other = MASU_UNKNOWN;
     if (!calibrate(c, r)) return;
@@ -450,7 +451,8 @@ static void time_case(masu_conform *c, const masu_case *of, masu_conform_result 
     if (good && !timed(&c->session, &frame, 1, r, &own)) return;
     uint32_t n = good && own > other ? (uint32_t)fmin(own / other + 0.5, TURN_MOST) : 1;
     for (uint32_t round = 0; round < ROUNDS_MOST && good; round++) {
-        other = round ? other : MASU_UNKNOWN; /* the one above was shorter than a turn */
+        other = round ? other : MASU_UNKNOWN; /* the measurement above was shorter than an
+                                               * iteration */
         for (uint32_t i = 0; i < c->runs && good; i++) {
             good = timed(s, &none, n, &unused, &other);
             if (good && !timed(&c->session, &frame, 1, r, &own)) return;
@@ -461,7 +463,7 @@ static void time_case(masu_conform *c, const masu_case *of, masu_conform_result 
     if (!good) find(r, MASU_VERDICT_FAIL, "calibration: %s", unused.why);
 }
 
-/* ---- Pictures -------------------------------------------------------------------------------- */
+/* ---- Images ---------------------------------------------------------------------------------- */
 
 static void draw_ways(masu_conform *c, const masu_case *of, const uint8_t *picture,
                       masu_conform_result *r) {
@@ -502,7 +504,7 @@ static bool same_truth(const masu_case *a, const masu_case *b) {
            a->time + a->move * (a->frames - 1) == b->time + b->move * (b->frames - 1);
 }
 
-/* The truth of a case; kept for those that ask for the same. */
+/* The ground truth of a case, cached for cases with the same inputs. */
 static const uint8_t *truth_of(masu_conform *c, const masu_case *of, masu_conform_result *r) {
     char path[4096], error[1024];
     for (uint32_t i = 0; i < c->truth_count; i++) {
@@ -540,7 +542,7 @@ static const uint8_t *truth_of(masu_conform *c, const masu_case *of, masu_confor
     return rgba;
 }
 
-/* Linear light: after the case's frames, in the same session. */
+/* Compares linear light, after the case's frames in the same session. */
 static void compare_with_golden(masu_conform *c, const masu_case *of, masu_conform_result *r) {
     char path[4096], error[1024];
     masu_frame_desc frame = frame_at(of, of->frames - 1);

@@ -1,9 +1,9 @@
-/* run.h: runs one case of a suite on a device and judges it.
+/* run.h: runs one case of a suite on a device and determines its verdict.
  *
- * Each case has a renderer and a device of its own, closed again before the next, so that no
- * verdict depends on the order. What is shared: a device that stays open and does nothing, the calibration,
- * which is a renderer that stays open, and truths, which several cases are compared with. A masu_conform owns all; it is
- * large and must not be moved. */
+ * Each case has its own renderer and device, closed before the next case, so that no verdict
+ * depends on the order. Shared are: an idle device that stays open, the calibration's renderer, and
+ * ground-truth images that several cases use. A masu_conform owns them all; it is large and must
+ * not be moved. */
 #ifndef MASU_CONFORM_RUN_H
 #define MASU_CONFORM_RUN_H
 
@@ -14,45 +14,46 @@ typedef struct masu_conform_result {
     const masu_case *of;
     masu_verdict verdict;
     double values[MASU_MEASURE_COUNT]; /* NAN: not measured */
-    char why[600];  /* what made the verdict, on one line; "" where it is a pass */
-    char note[200]; /* what could not be measured here; or "" */
+    char why[600];  /* reason of the verdict, one line; "" for a pass */
+    char note[200]; /* what could not be measured on this machine; or "" */
     double seconds;
 } masu_conform_result;
 
 typedef struct masu_truth_picture {
-    const masu_case *of; /* the first case that has asked for it */
+    const masu_case *of; /* the first case that used it */
     uint8_t *rgba;
 } masu_truth_picture;
 
 typedef struct masu_conform {
     const masu_suite *suite;
     const char *scenes; /* folder */
-    const char *images; /* folder for the pictures; NULL: none */
+    const char *images; /* folder for the images; NULL: none */
     masu_headless_desc host;
     masu_switch ray_query;
-    uint32_t runs; /* of each round of times */
+    uint32_t runs; /* per round of times */
     char driver[1024];
-    uint32_t most_pixels; /* along an edge of an image */
-    masu_headless kept;   /* open all the time, or the loader would load the driver anew for each case: NVIDIA's 580.159 can be
-                             loaded some 30 times by one process, and is not found after that */
-    uint32_t offers;      /* as masu_case.needs */
-    bool clock_stopped; /* nothing can be timed */
+    uint32_t most_pixels; /* largest width or height of an image */
+    masu_headless kept;   /* always open: otherwise the loader reloads the driver for each case, and
+                           * NVIDIA's 580.159 fails to load after about 30 times in one process */
+    uint32_t offers;      /* same bits as masu_case.needs */
+    bool clock_stopped; /* time measurements are impossible */
     bool calibrated;
     masu_session calibration;
     masu_headless_source source;
     masu_session session;
-    masu_view view; /* of a case that is compared with its field */
+    masu_view view; /* of a case with field measures */
     masu_truth_picture *truths;
     uint32_t truth_count;
 } masu_conform;
 
-/* suite, scenes, images, host, ray_query and runs are given; asks the device what it is, and keeps it open until masu_conform_close. */
+/* Set suite, scenes, images, host, ray_query and runs first. Opens a device and queries its
+ * features; it remains open until masu_conform_close. */
 bool masu_conform_open(masu_conform *c, char *error, size_t error_size);
 void masu_conform_close(masu_conform *c);
 
-/* A result without a run: all that is known of the case, and why it was not run. */
+/* Fills the result of a case that was not run, with the reason. */
 void masu_conform_not_run(const masu_case *of, const char *why, masu_conform_result *out);
-/* Never fails itself: whatever goes wrong is the verdict. */
+/* Never fails: every error becomes the verdict. */
 void masu_conform_run(masu_conform *c, const masu_case *of, masu_conform_result *out);
 
 #endif

@@ -46,7 +46,7 @@ bool masu_bound_is_set(const masu_bound *bound) {
     return !isnan(bound->warn) || !isnan(bound->fail);
 }
 
-/* Written so that NaN is beyond. */
+/* Written so that NaN exceeds every limit. */
 static bool beyond(double value, double limit, bool least) {
     return !isnan(limit) && !(least ? value >= limit : value <= limit);
 }
@@ -92,7 +92,7 @@ static bool read_ladder(const masu_suite_place *at, const json_t *value, masu_ca
 
 /* ---- Groups of limits ------------------------------------------------------------------------ */
 
-/* A number: what is beyond fails. Or an object of warn and fail. */
+/* A number is the `fail` limit; an object has `warn` and `fail`. */
 static bool read_bound(const masu_suite_place *at, const char *name, const json_t *value,
                        bool least, masu_bound *bound) {
     const char *key;
@@ -307,7 +307,7 @@ bool masu_case_linear(const masu_case *c) {
     return end && (!strcmp(end, ".ref") || !strcmp(end, ".pfm") || !strcmp(end, ".exr"));
 }
 
-/* Linear light has limits of patches, 8-bit images have the others. */
+/* Linear light uses patch measures, 8-bit images the other ones. */
 static bool check_golden(const masu_suite_place *at, const masu_case *c) {
     const bool reference = c->against && !strcmp(c->against, "reference"),
                linear = masu_case_linear(c);
@@ -329,7 +329,7 @@ static bool check_golden(const masu_suite_place *at, const masu_case *c) {
     return true;
 }
 
-/* What keys alone do not show. */
+/* Checks combinations of keys. */
 static bool check_case(const masu_suite_place *at, masu_case *c) {
     bool compares = false;
     for (int m = MASU_MEASURE_RMSE; m <= MASU_MEASURE_PATCH_Z2; m++)
@@ -358,7 +358,7 @@ static bool check_case(const masu_suite_place *at, masu_case *c) {
                                 "cannot be combined with error, same and ms_ratio, which need an "
                                 "image of one rung");
     }
-    if (c->measured) { /* as long as it is: that is known when the scene is */
+    if (c->measured) { /* its length depends on the scene */
         memset(c->rungs, 0, sizeof c->rungs);
         c->rung_count = 0;
         if (g->worst && g->best > g->worst) {
@@ -368,7 +368,7 @@ static bool check_case(const masu_suite_place *at, masu_case *c) {
         return true;
     }
     if (c->rung_count ==
-        1) { /* eight rungs from the full size to 0.4, as masu render --target-ms --ladder off */
+        1) { /* eight rungs from scale 1 to 0.4, as in masu render --target-ms --ladder off */
         masu_rung first = c->rungs[0];
         c->rung_count = 8;
         for (uint32_t r = 0; r < c->rung_count; r++) {
@@ -404,7 +404,7 @@ static bool append(const masu_suite_place *at, const masu_case *c) {
     return true;
 }
 
-/* ':' parts a token, and what is not shown cannot be typed again. */
+/* ':' separates the parts of a token, and control characters could not be retyped. */
 static bool read_name(masu_suite_place *at, const json_t *value, masu_case *c) {
     if (!masu_suite_string(at, "name", json_object_get(value, "name"), &c->name)) return false;
     size_t n = strlen(c->name);
@@ -448,7 +448,7 @@ static bool read_case(masu_suite_place *at, size_t number, const json_t *value,
     return true;
 }
 
-/* A case is compared with another at the same size that has a picture of its own. */
+/* Finds the other case that a case is compared with: it has the same size and renders an image. */
 static bool find_others(masu_suite_place *at) {
     masu_suite *s = at->suite;
     for (uint32_t i = 0; i < s->count; i++) {
@@ -510,7 +510,7 @@ static bool read_suite(masu_suite_place *at) {
     return find_others(at);
 }
 
-/* FNV-1a (Fowler, Noll, Vo), 32 bits: it tells suites apart, and guards against nothing else. */
+/* FNV-1a (Fowler, Noll, Vo), 32 bits: distinguishes suites; no protection against attacks. */
 static uint32_t hash_of(const char *text, size_t bytes) {
     uint32_t hash = 2166136261u;
     for (size_t i = 0; i < bytes; i++) hash = (hash ^ (unsigned char)text[i]) * 16777619u;
@@ -543,7 +543,7 @@ void masu_suite_free(masu_suite *suite) {
     suite->count = 0;
 }
 
-/* ---- Which of them --------------------------------------------------------------------------- */
+/* ---- Selection ------------------------------------------------------------------------------- */
 
 bool masu_replay_token(const masu_suite *suite, const masu_case *c, char *out, size_t size) {
     int n = snprintf(out, size, "%08x:%s:%ux%u", suite->hash, c->name, c->width, c->height);

@@ -1,15 +1,15 @@
-/* make_blue_noise.c: a tile of blue noise with two channels, as a C header on stdout. Made while
- * building; the same with every compiler.
+/* make_blue_noise.c: generates a tile of blue noise with two channels, as a C header on stdout.
+ * Runs during the build; the result is the same with every compiler.
  *
- * Each channel holds every rank 0..4095 once; at every threshold the texels below it lie as far
- * apart as they can (Ulichney, "The void-and-cluster method for dither array generation", SPIE
- * 1913, 1993). A texel's word is channel 0 in its lower half, channel 1 in its upper half, each
- * (rank + 1/2) / 4096 of 65536. shaders/noise/sequence.glsl reads it.
+ * Each channel contains every rank 0..4095 once. At every threshold the texels below it are as far
+ * apart as possible (Ulichney, "The void-and-cluster method for dither array generation", SPIE
+ * 1913, 1993). A texel is a 32-bit value with channel 0 in its lower half and channel 1 in its
+ * upper half, each (rank + 1/2) / 4096 of 65536. shaders/noise/sequence.glsl reads it.
  *
- * Energies are integers: sums and differences of them are exact, so that nothing depends on the
- * order of rounding. And exact sums save the method's third phase: where the texels set and those
- * not set add up to the same energy everywhere, the tightest cluster of what is not set is the
- * largest void of what is. */
+ * Energies are integers: their sums and differences are exact, so that nothing depends on the order
+ * of rounding. Exact sums also make the method's third phase unnecessary: the energies of set and
+ * unset texels have the same sum everywhere, so the tightest cluster of unset texels is the largest
+ * void of set ones. */
 #include "shared/masu_shared.h"
 
 #include <math.h>
@@ -20,11 +20,11 @@
 
 enum { N = MASU_BLUE_NOISE_SIZE, TEXELS = N * N, START = TEXELS / 10, SWAPS = 100 * START };
 
-/* Ulichney's 1.5. 1.9, which others take, leaves three times as much of what is between an eighth
- * and a quarter of the sampling rate; 1.3 a half more of the lowest frequencies. */
+/* Ulichney's 1.5. The common 1.9 leaves three times as much energy between an eighth and a quarter
+ * of the sampling rate; 1.3 half again as much in the lowest frequencies. */
 #define SIGMA 1.5
 
-static uint32_t weight[N][N]; /* of a texel this far away, round the tile */
+static uint32_t weight[N][N]; /* by distance, on the torus of the tile */
 
 typedef struct pattern {
     uint8_t set[TEXELS];
@@ -53,7 +53,7 @@ static void put(pattern *p, int at, int set) {
     }
 }
 
-/* Of the texels set, that with the most energy; of the others, that with the least. */
+/* The set texel with the most energy, or the unset texel with the least. */
 static int extreme(const pattern *p, int set) {
     int best = -1;
     for (int i = 0; i < TEXELS; i++) {
@@ -71,7 +71,7 @@ static uint32_t scramble(uint32_t *seed) {
     return x ^ x >> 16;
 }
 
-/* 0 where the start does not come to rest, which it always does. */
+/* Returns 0 if the initial pattern does not converge, which does not happen. */
 static int make_channel(uint32_t seed, uint32_t rank[TEXELS]) {
     static pattern p, start;
     memset(&p, 0, sizeof p);

@@ -1,18 +1,22 @@
-/* make_cosines.c: fits linearly transformed cosines to the lobe of shaders/brdf/ggx.glsl; a C table on
- * stdout, which is kept as cosines.inc (half a minute: not made while building):
+/* make_cosines.c: fits linearly transformed cosines to the lobe of shaders/brdf/ggx.glsl. Prints a
+ * C table, which is stored as cosines.inc because the fit takes half a minute:
  *
- *   cc -O2 -Ishaders tools/generate/make_cosines.c -lm -o make_cosines && ./make_cosines > cosines.inc
+ *   cc -O2 -Ishaders tools/generate/make_cosines.c -lm -o make_cosines && ./make_cosines >
+ *   cosines.inc
  *
- * A density g over directions is a clamped cosine after a linear map of its directions (Heitz, Dupuy, Hill,
- * Neubelt, SIGGRAPH 2016). In the plane of view and normal the lobe's axis, its two widths and a shear are
- * fitted by Nelder and Mead's simplex, each node from its neighbour. The error is
+ * The density g over directions is a clamped cosine whose directions are transformed by a linear
+ * map (Heitz, Dupuy, Hill, Neubelt, SIGGRAPH 2016). In the plane of view and normal, Nelder and
+ * Mead's simplex method fits the lobe's axis, its two widths and a shear, starting each node from
+ * its neighbour. The error is
  *
  *   Int (f - g)^2 / (f + g),   f: the lobe over its albedo
  *
- * over visible normals and over directions of g together, each weighted by the sum of both densities.
+ * over samples of the visible normals and of g together, each weighted by the sum of both
+ * densities.
  *
- * Stored is the inverse map, (a 0 b, 0 1 0, c 0 d): c and d fall with alpha and are stored as c / alpha,
- * d / (2 alpha), so that neighbours differ little. shared/lookup_tables.h says how they lie. */
+ * The table stores the inverse map, (a 0 b, 0 1 0, c 0 d). c and d decrease with alpha and are
+ * stored as c / alpha and d / (2 alpha), so that neighbours differ little. shared/lookup_tables.h
+ * describes the layout. */
 #include "shared/lookup_tables.h"
 
 #include <math.h>
@@ -24,7 +28,8 @@
 #define PI 3.14159265358979323846
 
 enum { ROWS = MASU_TRANSFORM_ROWS, COLUMNS = MASU_TRANSFORM_COLUMNS, SIDE = 20, ALL = SIDE * SIDE };
-enum { ALONG, ACROSS, SHEAR, ANGLE, NUMBERS }; /* of a fit: two widths, a shear, of its axis */
+enum { ALONG, ACROSS, SHEAR, ANGLE, NUMBERS }; /* parameters of a fit: two widths, a shear, the
+                                                * axis */
 
 typedef struct direction {
     double x, y, z;
@@ -43,7 +48,7 @@ static direction unit(direction a) {
     return (direction){a.x * s, a.y * s, a.z * s};
 }
 
-/* Lobe times cosine, and the density of l where visible normals reflect the view. */
+/* Lobe times cosine, and the density of l if visible normals reflect the view. */
 static double ggx(double alpha, direction v, direction l, double *density) {
     *density = 0;
     if (l.z <= 0) return 0;

@@ -1,9 +1,9 @@
-/* make_smaa_area.c: what the shaders look up of SMAA's table of areas, as a C header on stdout.
- * Made while building. masu_shared.h says how it lies.
+/* make_smaa_area.c: generates the parts of SMAA's area table that the shaders use, as a C header on
+ * stdout. Runs during the build. masu_shared.h describes the layout.
  *
- * Of the table's 179 200 bytes these are 15 648: one subsample; of 5x5 patterns the 4x4 that
- * there are; of 16x16 roots of distances the 10x10 that the longest search reaches, of diagonals
- * 17x17 distances of 20x20. */
+ * These are 15 648 of the table's 179 200 bytes: one subsample; the 4x4 existing of the 5x5
+ * patterns; the 10x10 of 16x16 square roots of distances that the longest search reaches; 17x17 of
+ * 20x20 distances for diagonals. */
 #include "generate/smaa_tables.h"
 
 #include "shared/masu_shared.h"

@@ -1,25 +1,28 @@
-/* make_split_sum.c: the tables of the specular lobe, as a C header on stdout. Made while building.
+/* make_split_sum.c: generates the tables of the specular lobe, as a C header on stdout. Runs during
+ * the build.
  *
- * The lobe is GGX with height-correlated Smith masking (Heitz, JCGT 3-2, 2014) and alpha = roughness^2;
- * its Fresnel term is f0 + (f90 - f0) s with Schlick's s = (1 - h.v)^5. For a direction v and a
- * roughness the tables hold integrals over all l, N.l included:
+ * The lobe is GGX with height-correlated Smith masking (Heitz, JCGT 3-2, 2014) and alpha =
+ * roughness^2; its Fresnel term is f0 + (f90 - f0) s with Schlick's s = (1 - h.v)^5. For a
+ * direction v and a roughness the tables hold integrals over all l, including N.l:
  *
- *   loss = 1 - Int lobe          B  = Int lobe s            (the split sum: E = f0 (1 - loss) + (f90 - f0) B)
+ *   loss = 1 - Int lobe          B  = Int lobe s            (the split sum: E = f0 (1 - loss) +
+ *   (f90 - f0) B)
  *   X    = Int lobe t            XB = Int lobe s t          t = max((1 - N.v)^5, (1 - N.l)^5)
  *
- * and their averages 2 Int mu dmu. X and XB say how much of the lobe a clear coat above it lets through
- * (shaders/brdf/bsdf.glsl). masu_shared.h says how they lie.
+ * and their averages 2 Int mu dmu. X and XB are the parts of the lobe that a clear coat above it
+ * transmits (shaders/brdf/bsdf.glsl). masu_shared.h describes the layout.
  *
- * They are numbers of 16 bits and not halves: what counts is the absolute error of a sum that has to be
- * 1, and no driver flushes small ones. The averages are those of the rounded numbers, interpolated as the
- * shader does, so that what is looked up twice cancels exactly.
+ * Values are 16-bit integers, not halves: the absolute error of sums that must be 1 matters, and no
+ * driver flushes small integers to 0. The averages are computed from the rounded values with the
+ * shader's interpolation, so that differences of looked-up values cancel exactly.
  *
- * The nearest row counts: the G-buffer has 256 roughnesses too, and it saves half of the reads.
+ * The shader uses the nearest row, which saves half of the reads: the G-buffer has only 256
+ * roughnesses, too.
  *
- * Behind them lies what make_cosines.c has fitted, which takes too long to be made while building.
+ * The fit of make_cosines.c follows the tables; it is too slow for the build.
  *
- * Nodes lie at equal steps of sqrt(N.v). A lobe of alpha 0.002 loses most at N.v = 0.001, which is the
- * second node; equal steps of N.v would see nothing of it. */
+ * Nodes have equal steps of sqrt(N.v). A lobe of alpha 0.002 loses most at N.v = 0.001, which is
+ * the second node; equal steps of N.v would miss it. */
 #include "shared/masu_shared.h"
 
 #include <math.h>
@@ -50,9 +53,9 @@ static double lambda(double alpha, double cosine) {
     return 0.5 * (sqrt(1 + alpha * alpha * (1 - c2) / c2) - 1);
 }
 
-/* Over the normals that v sees (Heitz, JCGT 7-4, 2018): there the lobe times N.l is G2 / G1 times the
- * density. The disc of that paper in polar coordinates, of which one half will do: the other is its
- * mirror image. */
+/* Integrates over the normals visible from v (Heitz, JCGT 7-4, 2018): the lobe times N.l is G2 / G1
+ * times their density. Uses that paper's disc in polar coordinates; one half is enough, the other
+ * is its mirror image. */
 static void integrate(double mu, double alpha, double out[KINDS]) {
     double v[3] = {sqrt(fmax(1 - mu * mu, 0)), 0, mu};
     double w[3] = {alpha * v[0], 0, mu}, length = sqrt(w[0] * w[0] + w[2] * w[2]);
@@ -62,7 +65,8 @@ static void integrate(double mu, double alpha, double out[KINDS]) {
     memset(out, 0, KINDS * sizeof *out);
     for (int i = 0; i < RADII; i++) {
         for (int k = 0; k < ANGLES; k++) {
-            /* Midpoints; of areas that shrink outwards, where l sets and the integrand ends sharply. */
+            /* Midpoints, with areas that shrink outwards, where l passes the horizon and the
+             * integrand ends abruptly. */
             double outer = 1 - (i + 0.5) / RADII, area = 2 * outer;
             double radius = sqrt(1 - outer * outer), angle = PI * ((k + 0.5) / ANGLES - 0.5);
             /* t1 across v, t2 along it; the half t1 > 0 */
@@ -88,7 +92,7 @@ static void integrate(double mu, double alpha, double out[KINDS]) {
     out[LOSS] = 1 - out[LOSS];
 }
 
-/* 2 Int f mu dmu of a row whose numbers are interpolated over x = sqrt(mu): 4 Int f x^3 dx. */
+/* 2 Int f mu dmu of a row that is interpolated over x = sqrt(mu): 4 Int f x^3 dx. */
 static double average(const uint32_t *row) {
     double sum = 0;
     for (int i = 0; i + 1 < N; i++) {
@@ -100,10 +104,10 @@ static double average(const uint32_t *row) {
     return sum;
 }
 
-/* The straight line a + b (1 - mu)^5 that is nowhere below the albedo of a coat of this roughness (f0
- * 0.04) and as near to it as can be, on average, and nowhere above 1 (and, so that rounding turns no
- * difference round, a little more than that). In (1 - mu)^5, whose average is 1/21, that is the edge
- * of the upper hull there. */
+/* Finds the line a + b (1 - mu)^5 that is nowhere below the albedo of a coat of this roughness (f0
+ * 0.04), nowhere above 1, and closest to the albedo on average. (It is a little higher, so that
+ * rounding does not reverse the order.) Over (1 - mu)^5, whose average is 1/21, this is the edge of
+ * the upper hull at 1/21. */
 static int fit_coat(int row) {
     const double middle = 1.0 / 21;
     double x[N], y[N], best = -1;

@@ -16,7 +16,7 @@
 
 enum { COLUMNS = 96 };
 
-/* Comments above a member, wrapped. */
+/* Prints the comment above a member, wrapped. */
 static void print_comment(const char *indent, const char *text) {
     size_t first = strlen(indent) + 3, column = first;
     printf("%s/* ", indent);

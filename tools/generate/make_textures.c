@@ -1,9 +1,9 @@
-/* make_textures.c: the pictures of scenes/textures.json and of the tests, by formula:
+/* make_textures.c: generates the images of scenes/textures.json and of the tests:
  *
  *   make_textures FOLDER
  *
- * One in each file format that matters: PNG, JPEG, TGA with alpha, SGI .rgb. They are made while
- * building, so that the repository holds no binaries. */
+ * One in each file format that matters: PNG, JPEG, TGA with alpha, SGI .rgb. They are generated
+ * during the build, so that the repository contains no binaries. */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -39,7 +39,7 @@ static void set(picture *p, int x, int y, double r, double g, double b, double a
     }
 }
 
-/* Integer noise: Wang's hash of the cell. */
+/* Integer noise: Wang's hash of the cell position. */
 static double noise(int x, int y) {
     uint32_t h = (uint32_t)x * 73856093u ^ (uint32_t)y * 19349663u;
     h = (h ^ 61u) ^ h >> 16;
@@ -76,7 +76,7 @@ static void save(picture *p, const char *name) {
     free(p->rgba);
 }
 
-/* SGI, without compression: a head of 512 bytes, then the channels, each from its lowest row up. */
+/* Uncompressed SGI: a header of 512 bytes, then the channels, each from its lowest row up. */
 static void save_sgi(picture *p, const char *name) {
     uint8_t head[512] = {0x01, 0xDA, 0, 1, 0, 3};
     FILE *f = fopen(path_of(name), "wb");
@@ -126,7 +126,7 @@ static void make_bricks(void) {
             double h = b.height > 0.5 ? 1 : 0;
             set(&color, x, y, h * 0.68 * shade + (1 - h) * 0.66, h * 0.33 * shade + (1 - h) * 0.64,
                 h * 0.25 * shade + (1 - h) * 0.6, 1);
-            /* A relief of 4 texels. The y of a normal map points up the picture. */
+            /* A relief of 4 texels. +y of a normal map points up in the image. */
             double dx = (brick_at(x + 1, y).height - brick_at(x - 1, y).height) * 2;
             double dy = (brick_at(x, y + 1).height - brick_at(x, y - 1).height) * 2;
             double l = sqrt(dx * dx + dy * dy + 1);
@@ -143,7 +143,7 @@ static void make_bricks(void) {
 
 /* ---- the others ---- */
 
-/* A fern: leaflets along a stalk; what is not leaf has alpha 0 and another colour. */
+/* A fern: leaflets along a stalk; the background has alpha 0 and another colour. */
 static void make_leaf(void) {
     picture p = picture_of(128);
     for (int y = 0; y < 128; y++) {
@@ -172,7 +172,7 @@ static void make_ground(void) {
     save(&p, "ground.jpg");
 }
 
-/* A sign: rings, of which some glow in the second picture. */
+/* A sign with rings, some of which glow in the second image. */
 static void make_sign(void) {
     picture p = picture_of(100), glow = picture_of(100);
     for (int y = 0; y < 100; y++) {
@@ -188,7 +188,7 @@ static void make_sign(void) {
     save(&glow, "sign_glow.png");
 }
 
-/* Black and white fields of one texel, of a power of two and odd; for the tests. */
+/* A checkerboard of single texels, with power-of-two and odd sizes, for the tests. */
 static void make_checker(int size, const char *name) {
     picture p = picture_of(size);
     for (int y = 0; y < size; y++) {
@@ -209,7 +209,7 @@ static void make_gradient(void) {
     save(&p, "gradient.png");
 }
 
-/* More texels than one staging buffer takes. */
+/* More texels than one staging buffer holds. */
 static void make_large(void) {
     picture p = picture_of(1200);
     for (int y = 0; y < 1200; y++) {
@@ -221,7 +221,7 @@ static void make_large(void) {
     save(&p, "large.jpg");
 }
 
-/* A disc of alpha 1 in alpha 0. */
+/* An opaque disc on a transparent background. */
 static void make_disc(void) {
     picture p = picture_of(64);
     for (int y = 0; y < 64; y++) {
@@ -233,7 +233,7 @@ static void make_disc(void) {
     save(&p, "disc.png");
 }
 
-/* Smoke: grey, alpha that fades to nothing at the rim, in lumps. */
+/* Smoke: grey, lumpy, with alpha that fades out at the rim. */
 static void make_smoke(void) {
     picture p = picture_of(64);
     for (int y = 0; y < 64; y++) {
@@ -248,7 +248,7 @@ static void make_smoke(void) {
     save(&p, "smoke.png");
 }
 
-/* Needles: alpha that is thin at any distance, 16 samples a texel; repeats without a seam. */
+/* Needles: thin alpha shapes at any distance, 16 samples per texel; tiles seamlessly. */
 static void make_needles(void) {
     enum { SIZE = 128, FINE = 4 * SIZE };
     picture p = picture_of(SIZE);
@@ -278,7 +278,7 @@ static void make_needles(void) {
     save(&p, "needles.png");
 }
 
-/* Normals that lean the same way everywhere: 30 degrees to the right, and 30 degrees up. */
+/* Constant tilted normals: 30 degrees to the right, and 30 degrees up. */
 static void make_slopes(void) {
     picture right = picture_of(16), up = picture_of(16);
     double lean = (128 + 127 * sin(PI / 6)) / 255, rest = (128 + 127 * cos(PI / 6)) / 255;

@@ -1,12 +1,11 @@
-/* pack_spirv.c: pack_spirv FOLDER NAME...: FOLDER/NAME.opt.spv of every name, packed as
- * src/device/unpack.h has it, as a C header on stdout. Made while building. Of names alike the last
- * should be the largest: they are packed from the last to the first. -NAME is one that is left out.
+/* pack_spirv.c: pack_spirv FOLDER NAME...: packs FOLDER/NAME.opt.spv of every name in the format of
+ * src/device/unpack.h, as a C header on stdout. Runs during the build. In a group of similar names
+ * the last should be the largest: modules are packed from the last to the first. -NAME is omitted.
  *
- * First each module becomes tokens. Which words of an instruction are ids, and which is its result, is known
- * of the operations that shaders have (section 3 of the SPIR-V specification); where this is wrong for
- * an operation, it costs bytes and nothing else. Then tokens become runs of what earlier modules
- * had, found by chains of places that begin with the same 4 bytes. What comes out is unpacked and
- * compared before it is written. */
+ * First each module becomes tokens. A table of the operations that shaders use gives the ids and
+ * the result of each instruction (section 3 of the SPIR-V specification); an error in it only costs
+ * bytes. Then tokens become runs copied from earlier modules, found by chains of positions that
+ * start with the same 4 bytes. The result is unpacked and compared before it is written. */
 #include "device/unpack.h"
 
 #include <stdarg.h>
@@ -16,9 +15,9 @@
 
 enum { HEADER = 5, HEADS = 255, LEAST = 4, TRIES = 512, HASH_BITS = 16 };
 
-/* Bytes that a run from elsewhere must save, and one that follows the last. A run of a run costs its own bytes
- * again: modules that come first stay in few pieces, so that those like them need few. The library takes, by the
- * first number: 8: 670 KB, 10: 631, 14: 545, 16: 550, 20: 552, 32: 626. */
+/* Bytes that a run must save if it is from elsewhere, and if it follows the last run. Runs of runs
+ * cost their bytes again: keeping early modules in few pieces keeps similar modules small. Size of
+ * the library by the first number: 8: 670 KB, 10: 631, 14: 545, 16: 550, 20: 552, 32: 626. */
 enum { JUMP_SAVES = 16, NEXT_SAVES = 3 };
 
 static void die(const char *format, ...) {
@@ -87,7 +86,7 @@ static void read_module(const char *folder, module *m) {
 
 /* ---- Heads ----------------------------------------------------------------------------------- */
 
-/* Words behind the first: t type, r result, i id, l literal, w 4 bytes; the last for all that follow. */
+/* Operands after the first word: t type, r result, i id, l literal, w 4 bytes; the last repeats. */
 static const char *words_of(uint32_t op) {
     switch (op) {
         case 7: case 11: return "rw";
@@ -184,7 +183,7 @@ typedef struct recent {
 
 typedef struct packing {
     bytes to;
-    uint32_t bound, *last; /* by id: which result it was last, plus 1; 0: none yet */
+    uint32_t bound, *last; /* by id: index of its last result, plus 1; 0: none */
     uint8_t *local;        /* by id: whether a function computes it */
     uint32_t rows[MASU_PACK_ROWS], result_count;
     recent types, ids;
@@ -246,7 +245,8 @@ static void put_id(packing *p, recent *r, uint32_t id) {
     to_front(&r->ids[1], place - 1, id);
 }
 
-/* Ids of what functions compute are near their uses; types, constants and variables stand before them. */
+/* Ids computed in functions are close to their uses; types, constants and variables are defined
+ * before. */
 static void find_local(packing *p, const module *m) {
     int inside = 0;
     for (uint32_t i = HEADER; i < m->count; i += m->words[i] >> 16) {
@@ -292,7 +292,7 @@ static bytes tokens_of(const module *m, const masu_pack *pack) {
 
 /* ---- Runs ------------------------------------------------------------------------------------ */
 
-/* Places of the pool by the 4 bytes that are there, the latest first. */
+/* Positions in the pool by the 4 bytes found there, the latest first. */
 static uint32_t *first_place, *next_place;
 static size_t places, next_room;
 
@@ -321,7 +321,7 @@ static size_t alike(const bytes *pool, size_t from, const uint8_t *at, size_t co
     return n;
 }
 
-/* What a run saves: the bytes that it brings less those that it takes. */
+/* Bytes that a run saves: its length minus its own size. */
 static int gain(size_t length, size_t from, size_t expected) {
     int cost = 1 + (length >= MASU_PACK_ELSEWHERE ? (int)literal_bytes((uint32_t)length - MASU_PACK_ELSEWHERE) : 0);
     if (from != expected) cost += (int)literal_bytes(code_of((uint32_t)(from - expected)));
@@ -358,11 +358,11 @@ static void put_run(bytes *runs, size_t own, size_t length, uint32_t jump) {
     if (jump) put_literal(runs, code_of(jump));
 }
 
-/* Greedy, but for one byte: where the next place has a run that saves more, it waits. */
+/* Greedy with a lookahead of one byte: it waits if the next position has a run that saves more. */
 static void pack_module(const bytes *tokens, bytes *pool, bytes *runs, module *m) {
     m->packed = (masu_packed){(uint32_t)runs->count, 0, (uint32_t)pool->count, m->count,
                               masu_interface_of(m->words, m->count)};
-    size_t end = 0, own = 0; /* of the last run from elsewhere; own bytes since */
+    size_t end = 0, own = 0; /* end of the last run from elsewhere; own bytes since */
     for (size_t i = 0; i < tokens->count;) {
         size_t from = 0, length = 0, later_from, later;
         int saves = best_run(pool, tokens->at + i, tokens->count - i, end + own, &from, &length);

@@ -1,11 +1,10 @@
-/* smaa_tables.h: the two tables of SMAA, computed. For make_smaa_area.c, which keeps of them
- * what the shaders look up, and for the tests, which hold all of both against the known hashes
- * of the released ones.
+/* smaa_tables.h: computes the two tables of SMAA. make_smaa_area.c uses the parts that the shaders
+ * read; the tests compare hashes of the complete tables with those of the released tables.
  *
  * J. Jimenez et al., "SMAA: Enhanced Subpixel Morphological Antialiasing" (Eurographics 2012),
- * section 4: behind an edge of aliased pixels stands a straight line, which the distances to the
- * edge's two ends and the crossing edges found there tell; the table says how much of a pixel
- * lies on the other side of it. Functions that do not fail; the caller owns the memory. */
+ * section 4: an edge of aliased pixels approximates a straight line. The distances to both ends of
+ * the edge and the crossing edges there determine this line; the table contains the part of a pixel
+ * on its other side. Functions do not fail; the caller owns the memory. */
 #ifndef MASU_SMAA_TABLES_H
 #define MASU_SMAA_TABLES_H
 
@@ -19,7 +18,7 @@ enum {
     MASU_SMAA_AREA_WIDTH = 160,
     MASU_SMAA_AREA_HEIGHT = 560,
     MASU_SMAA_AREA_BYTES = 2 * 160 * 560, /* two channels */
-    MASU_SMAA_CELL = 16,                  /* texels along an edge of a pattern, of straight edges */
+    MASU_SMAA_CELL = 16,                  /* size of a pattern of straight edges, texels */
     MASU_SMAA_DIAGONAL_CELL = 20,         /* and of diagonal ones */
     MASU_SMAA_SEARCH_WIDTH = 64,
     MASU_SMAA_SEARCH_HEIGHT = 16,
@@ -30,8 +29,8 @@ typedef struct masu_smaa_point {
     double x, y;
 } masu_smaa_point;
 
-/* What lies below and above the axis between it and the line from p to q, within the pixel [at,
- * at + 1]. */
+/* Areas below and above the axis between it and the line from p to q, within the pixel [at, at +
+ * 1]. */
 static masu_smaa_point masu_smaa_under(masu_smaa_point p, masu_smaa_point q, double at) {
     masu_smaa_point none = {0, 0};
     if (!((at >= p.x && at < q.x) || (at + 1 > p.x && at + 1 <= q.x))) return none;
@@ -53,14 +52,15 @@ static masu_smaa_point masu_smaa_sum(masu_smaa_point a, masu_smaa_point b) {
     return (masu_smaa_point){a.x + b.x, a.y + b.y};
 }
 
-/* Short U shapes are smoothed more: they are jaggies of a curve rather than a form of their own. */
+/* Short U shapes are smoothed more: they are jaggies of a curve, not separate shapes. */
 static double masu_smaa_softer(double area, double length) {
     double t = fmin(length / 32, 1), soft = sqrt(2 * area) / 2;
     return soft + (area - soft) * t;
 }
 
-/* Of a straight edge: bits of the crossing edges 1 left end down, 2 right end down, 4 left end up,
- * 8 right end up; pixels to the left and to the right of this one; subpixel offset of the line. */
+/* Areas of a straight edge. pattern: bits of the crossing edges, 1 left end down, 2 right end down,
+ * 4 left end up, 8 right end up; left, right: pixels on both sides of this one; offset: subpixel
+ * offset of the line. */
 static masu_smaa_point masu_smaa_straight(int pattern, double left, double right, double offset) {
     int l = (pattern & 1 ? 1 : 0) + (pattern & 4 ? 2 : 0); /* 1 down, 2 up, 3 both */
     int r = (pattern & 2 ? 1 : 0) + (pattern & 8 ? 2 : 0);
@@ -70,7 +70,7 @@ static masu_smaa_point masu_smaa_straight(int pattern, double left, double right
     if ((l == 0 && r == 3) || (l == 3 && r == 0)) return none;
     if (r == 0 && left > right) return none;
     if (l == 0 && left < right) return none;
-    /* An end with both edges goes to the side where the other end does not. */
+    /* If one end has both edges, its line goes to the side where the other end has none. */
     double start = l == 3 ? (r == 1 ? up : down) : l == 2 ? up : down;
     double stop = r == 3 ? (l == 1 ? up : down) : r == 2 ? up : down;
     masu_smaa_point p = {0, start}, q = {d, stop};
@@ -87,8 +87,7 @@ static masu_smaa_point masu_smaa_straight(int pattern, double left, double right
     return (masu_smaa_point){(whole.x + halves.x) / 2, (whole.y + halves.y) / 2};
 }
 
-/* Part of the pixel at (x, y) that lies beyond the line from p to q; all of it where they are
- * one. */
+/* Part of the pixel at (x, y) beyond the line from p to q; 1 if p equals q. */
 static double masu_smaa_beyond(masu_smaa_point p, masu_smaa_point q, double x, double y) {
     enum { SIDE = 30 };
     int inside = 0;
@@ -103,11 +102,11 @@ static double masu_smaa_beyond(masu_smaa_point p, masu_smaa_point q, double x, d
     return (double)inside / (SIDE * SIDE);
 }
 
-/* Of a diagonal edge: bits 1 and 4 add 1 and 2 to the code of the left end, 8 and 2 to that of the
- * right one. */
+/* Areas of a diagonal edge: bits 1 and 4 add 1 and 2 to the code of the left end, 8 and 2 to the
+ * code of the right end. */
 static masu_smaa_point masu_smaa_diagonal(int pattern, double left, double right, double ox,
                                           double oy) {
-    /* Of each pattern the starts of one or two lines and of their ends, as bits: p.x, p.y, q.x,
+    /* Per pattern the offsets of the starts and ends of one or two lines, as bits: p.x, p.y, q.x,
      * q.y. */
     static const char lines[16][2][5] = {
         {"1111", "1010"}, {"1000", "1010"}, {"0010", "1010"}, {"1010", ""},
@@ -128,8 +127,8 @@ static masu_smaa_point masu_smaa_diagonal(int pattern, double left, double right
     return (masu_smaa_point){sum.x / count, sum.y / count};
 }
 
-/* All of the table of areas, both halves, a block of 80 rows for each subsample of the multisampled
- * modes; `blocks` of the first. */
+/* The area table, both halves, with a block of 80 rows for each subsample of the multisampled
+ * modes; only the first `blocks`. */
 static inline void masu_smaa_area_texture(uint8_t texels[MASU_SMAA_AREA_BYTES], int blocks) {
     static const double straight[7] = {0, -0.25, 0.25, -0.125, 0.125, -0.375, 0.375};
     static const double diagonal[5][2] = {
@@ -166,8 +165,8 @@ static inline void masu_smaa_area_texture(uint8_t texels[MASU_SMAA_AREA_BYTES], 
     }
 }
 
-/* The four edges of one kind that a bilinear fetch has met, by what it returns in 1/32; 0: none
- * has. */
+/* Decodes the result of a bilinear fetch, in 1/32, into its four edges of one kind; 0: not a valid
+ * result. */
 static inline int masu_smaa_fetched(int code, int e[4]) {
     for (int k = 0; k < 16; k++) {
         for (int i = 0; i < 4; i++) e[i] = k >> i & 1;
@@ -176,8 +175,8 @@ static inline int masu_smaa_fetched(int code, int e[4]) {
     return 0;
 }
 
-/* The table of searches: how many of the last two pixels of a search, times 127, are still of
- * the edge. */
+/* The search table: how many of the last two pixels of a search, times 127, still belong to the
+ * edge. */
 static inline void masu_smaa_search_texture(uint8_t texels[MASU_SMAA_SEARCH_BYTES]) {
     memset(texels, 0, MASU_SMAA_SEARCH_BYTES);
     for (int y = 17; y < 33; y++) {

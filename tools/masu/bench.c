@@ -76,7 +76,7 @@ static int against(const options *o) {
     return code;
 }
 
-/* The rungs again, and those that have come up in place of what was not as quick as it looked. */
+/* Times the rungs again, and the settings that replace those that were slower than measured. */
 static bool steady(options *o, uint32_t *timed, uint32_t *messages, char *error,
                    size_t error_size) {
     for (;;) {
@@ -89,7 +89,7 @@ static bool steady(options *o, uint32_t *timed, uint32_t *messages, char *error,
         if (!masu_sweep_steady(&o->sweep, &list, &result, error, error_size)) return false;
         *messages += result.messages;
         *timed += result.measured;
-        if (!result.measured) return true; /* the list is the whole of --rungs-of */
+        if (!result.measured) return true; /* the list is the complete --rungs-of */
     }
 }
 
@@ -106,7 +106,7 @@ static int sweep(options *o) {
     }
     o->sweep.scene_path = o->given.arguments[0];
     o->sweep.progress = masu_cli_progress_text;
-    masu_sweep_desc *d = &o->sweep; /* what has not been given is 0 */
+    masu_sweep_desc *d = &o->sweep; /* members that were not given are 0 */
     if (!d->size.width) d->size = d->quick ? (VkExtent2D){128, 72} : (VkExtent2D){640, 360};
     if (!d->positions) d->positions = d->quick ? 4 : MASU_PICTURE_POSITIONS;
     if (!d->runs) d->runs = d->quick ? 2 : 9;

@@ -1,4 +1,4 @@
-/* bench_ladder.c: `masu bench --ladder`: prints what `masu bench` has measured as a table. */
+/* bench_ladder.c: `masu bench --ladder`: prints results of `masu bench` as a table. */
 #include "masu/bench.h"
 
 #include "settings/ladder_file.h"

@@ -1,6 +1,6 @@
-/* compare.c: `masu compare`: the error of one image against another, by the metrics that all
- * benches use (metric/image.h, metric/flip.h). tests/scripts/compare.sh checks them against other
- * programs. Needs no device. */
+/* compare.c: `masu compare`: the error of one image against another, by the metrics of all benches
+ * (metric/image.h, metric/flip.h). tests/scripts/compare.sh checks them against other programs.
+ * Needs no device. */
 #include "masu/cmd.h"
 #include "masu/compare.h"
 #include "command/options.h"
@@ -28,7 +28,7 @@ static bool measure(const struct masu_image *reference, const struct masu_image 
            masu_metric_flip(reference->rgba, test->rgba, w, h, ppd, map, &d->flip);
 }
 
-/* Grey, 0 where nobody sees a difference. Over `pixels`, which nobody needs any more. */
+/* Saves the map as grey levels; 0: no visible difference. Overwrites `pixels`. */
 static bool save_map(const char *path, const float *map, struct masu_image *pixels, char *error,
                      size_t error_size) {
     size_t n = (size_t)pixels->width * pixels->height;
@@ -41,7 +41,7 @@ static bool save_map(const char *path, const float *map, struct masu_image *pixe
 }
 
 static int write_json(const differences *d, const char *path) {
-    /* JSON has no infinity: of equal pictures the PSNR is null. */
+    /* JSON has no infinity: the PSNR of equal images is null. */
     json_t *psnr = isfinite(d->psnr) ? json_real(d->psnr) : json_null();
     json_t *root = json_pack("{s:f, s:o, s:f, s:f, s:f, s:f}", "rmse", 255.0 * d->rmse, "psnr_db",
                              psnr, "ssim", d->ssim, "flip", d->flip.mean, "flip_p99", d->flip.p99,

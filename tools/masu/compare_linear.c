@@ -17,7 +17,7 @@
 typedef struct linear {
     uint32_t width, height;
     float *rgb;
-    bool noisy; /* standard errors are known */
+    bool noisy; /* has standard errors */
     masu_patch patches[MASU_PATCHES];
 } linear;
 
@@ -25,7 +25,7 @@ bool masu_compare_is_linear(const char *path) {
     return masu_reference_is_named(path) || masu_image_is_linear(path);
 }
 
-/* One channel counts as three. */
+/* A single channel is expanded to three. */
 static bool load(const char *path, linear *out, char *error, size_t size) {
     memset(out, 0, sizeof *out);
     if (masu_reference_is_named(path)) {
@@ -63,7 +63,7 @@ static bool same_size(const char *path, const linear *of, const char *as_path, c
     return false;
 }
 
-/* Means of both images' patches, and the standard errors of the reference's. */
+/* Means of both images' patches, and the standard errors of the reference. */
 static bool find_patches(const char *const files[2], linear images[2], const char *errors,
                          char *error, size_t size) {
     linear deviations = {0};

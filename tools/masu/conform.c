@@ -1,5 +1,5 @@
-/* conform.c: `masu conform`: a suite of cases with fixed budgets and error limits, and whether
- * this device and this build keep them. */
+/* conform.c: `masu conform`: runs a suite of cases and checks whether this device and this build
+ * stay within its budgets and error limits. */
 #include "masu/cmd.h"
 #include "masu/data.h"
 #include "command/options.h"
@@ -20,14 +20,14 @@ typedef struct options {
     uint32_t first, of, runs, rays;
     bool rays_given, list;
     char suite_file[MASU_DATA_PATH], scene_folder[MASU_DATA_PATH]; /* as found */
-    char suite_name[256]; /* in results: the same wherever it was found */
+    char suite_name[256]; /* in results: independent of where it was found */
     masu_headless_desc host;
 } options;
 
 typedef void (*writer)(FILE *f, const masu_suite *suite, const masu_conform_result *results,
                        uint32_t n, const char *driver);
 
-/* One report, whole; "-" is stdout. */
+/* Writes one report completely; "-" is stdout. */
 static int write_file(const char *path, writer write, const masu_suite *suite,
                       const masu_conform_result *results, uint32_t n, const char *driver) {
     char *text = NULL;
@@ -41,8 +41,9 @@ static int write_file(const char *path, writer write, const masu_suite *suite,
     return code;
 }
 
-/* All reports, before each case and at the end: whatever ends the run, the files are complete and
- * say which case it was. Standard output, devices and pipes get the last version only. */
+/* Writes all reports, before each case and at the end: if the run is aborted, the files are
+ * complete and name the current case. Standard output, devices and pipes get only the last
+ * version. */
 static int write_reports(const options *o, const masu_suite *suite,
                          const masu_conform_result *results, uint32_t n, const char *driver,
                          bool last) {
@@ -62,7 +63,7 @@ static int write_reports(const options *o, const masu_suite *suite,
     return code;
 }
 
-/* The same settings, as a shell takes them. */
+/* The same settings as shell text. */
 static char *command_of(const options *o) {
     const char *const given[][2] = {{" --suite ", o->suite},
                                     {" --scenes ", o->scenes},
@@ -85,8 +86,8 @@ static char *command_of(const options *o) {
     return NULL;
 }
 
-/* Scenes of these cases that are not in the folder: a warning. False: there is none of them, and
- * `error` says so. */
+/* Warns about missing scenes of these cases. Returns false, with `error` set, if all are
+ * missing. */
 static bool has_scenes(const options *o, const masu_conform_result *results, uint32_t n,
                        char *error, size_t size) {
     char names[200] = "";
@@ -114,7 +115,7 @@ static bool has_scenes(const options *o, const masu_conform_result *results, uin
     return !missing || missing < most;
 }
 
-/* Every case was not run, for this reason. */
+/* Reports that no case was run, with the reason. */
 static int none_run(const options *o, const masu_suite *suite, masu_conform_result *results,
                     uint32_t n, const char *why) {
     for (uint32_t i = 0; i < n; i++) masu_conform_not_run(results[i].of, why, &results[i]);
@@ -133,7 +134,7 @@ static int run_cases(const options *o, const masu_suite *suite, masu_conform_res
                        .images = o->images,
                        .host = o->host,
                        .runs = o->runs};
-    masu_headless_desc asked = o->host; /* each case asks for ray queries by itself */
+    masu_headless_desc asked = o->host; /* each case requests ray queries itself */
     masu_use_rays(o->rays, &c.ray_query, &asked);
     if (!has_scenes(o, results, n, error, sizeof error))
         return none_run(o, suite, results, n, error);
@@ -150,7 +151,7 @@ static int run_cases(const options *o, const masu_suite *suite, masu_conform_res
         masu_cli_progress("case %u of %u: %s", i + 1, n, of->name);
         masu_conform_not_run(of, "the program ended during this case", &results[i]);
         fflush(stdout);
-        /* The disk is full, for example: the cases still run and are printed. */
+        /* The disk may be full: the cases still run and are printed. */
         if (!written) written = write_reports(o, suite, results, n, c.driver, false);
         masu_conform_run(&c, of, &results[i]);
         masu_cli_progress_clear();
@@ -218,7 +219,8 @@ static int conform(const options *o) {
 
 /* ---- Files ----------------------------------------------------------------------------------- */
 
-/* A name, as `smoke`, is that of a suite beside the program; all else is a file. An exit code. */
+/* A plain name such as `smoke` is a suite of the program; anything else is a file. Returns an exit
+ * code. */
 static int find_suite(options *o) {
     const char *name = o->suite;
     bool file = strchr(name, '/') || strchr(name, '.');
@@ -236,7 +238,7 @@ static int find_suite(options *o) {
     return MASU_CLI_OK;
 }
 
-/* An exit code. */
+/* Returns an exit code. */
 static int find_scenes(options *o) {
     if (o->scenes) {
         snprintf(o->scene_folder, sizeof o->scene_folder, "%s", o->scenes);

@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* The folder above that of the running program; "" if the system does not say. */
+/* The parent of the running program's folder; "" if unknown. */
 static void program_root(char path[MASU_DATA_PATH]) {
     ssize_t length = readlink("/proc/self/exe", path, MASU_DATA_PATH - 1);
     path[length > 0 ? length : 0] = 0;

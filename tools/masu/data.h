@@ -1,7 +1,7 @@
-/* data.h: the files that come with the program: suites, baked scenes. They lie beside it: below the folder
- * above its own, as `build/bin/masu` has build/suites, or as an installed PREFIX/bin/masu has
- * PREFIX/share/masu/suites. So they are found from any folder, and where the program is moved together
- * with them. */
+/* data.h: finds the files that belong to the program: suites, baked scenes. They are below the
+ * parent of the program's folder: build/suites for `build/bin/masu`, PREFIX/share/masu/suites for
+ * an installed PREFIX/bin/masu. So they are found from any folder, and if the program is moved
+ * together with them. */
 #ifndef MASU_DATA_H
 #define MASU_DATA_H
 
@@ -10,8 +10,8 @@
 
 #define MASU_DATA_PATH 4096
 
-/* The folder of that kind, "suites" or "scenes". False: there is none, and `path` has what was looked
- * for: "A, B". */
+/* The folder of that kind, "suites" or "scenes". On false there is none, and `path` holds the
+ * searched folders: "A, B". */
 bool masu_data_folder(const char *kind, char path[MASU_DATA_PATH]);
 
 #endif

@@ -1,4 +1,4 @@
-/* main.c: the program `masu`; each command is a file NAME.c beside this one. */
+/* main.c: the program `masu`; each command is a file NAME.c in this folder. */
 #include "cli/cli.h"
 #include "masu/cmd.h"
 

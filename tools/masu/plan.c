@@ -1,5 +1,5 @@
-/* plan.c: `masu plan`: the compiled frame of a scene: passes, resources, bytes, aliasing, and
- * what was left out and why. */
+/* plan.c: `masu plan`: prints the compiled frame of a scene: passes, resources, bytes, aliasing,
+ * and the omitted passes with reasons. */
 #include "command/options.h"
 #include "masu/cmd.h"
 #include "scene/scene.h"
@@ -83,7 +83,7 @@ static void print_pipelines(const masu_plan_info *p) {
     }
 }
 
-/* All rows of the memory report, and how many; free them. NULL where there is no memory for them. */
+/* All rows of the memory report, and their number; the caller frees them. NULL: out of memory. */
 static masu_memory_row *memory_rows(const masu_session *s, uint32_t *count) {
     *count = masu_memory_report(s->m, NULL, 0);
     masu_memory_row *rows = calloc(*count, sizeof *rows);
@@ -225,7 +225,7 @@ static int print_json(const masu_session *s, const masu_plan_info *p, const char
 
 typedef struct plan_options {
     masu_session_desc d;
-    const char *ladder; /* as given; NULL: not at all */
+    const char *ladder; /* as given; NULL: not given */
     uint32_t rays;
     bool json;
 } plan_options;
@@ -245,7 +245,7 @@ static int plan(plan_options *o) {
     return code;
 }
 
-/* Prints, and that is all. */
+/* Prints the knobs and ends the command. */
 static bool print_knobs(masu_cli *cli, void *to) {
     (void)to;
     if (cli->value && strcmp(cli->value, "md") != 0) {
@@ -257,7 +257,7 @@ static bool print_knobs(masu_cli *cli, void *to) {
     return false;
 }
 
-/* The only rung of the plan. */
+/* Sets the only rung of the plan. */
 static bool read_setting(masu_cli *cli, void *to) {
     return masu_read_setting(cli, &((plan_options *)to)->d.desc);
 }

@@ -1,5 +1,5 @@
-/* render.c: `masu render`: frames of a baked scene to image files, headless, with measured times,
- * counts and memory. */
+/* render.c: `masu render`: renders frames of a baked scene to image files, without a window, with
+ * measured times, counts and memory. */
 #include "command/options.h"
 #include "masu/render.h"
 #include "command/video.h"
@@ -18,16 +18,16 @@
 
 #define PI 3.14159265358979323846
 #define FRAMES_MAX 100000u
-#define STILL_FRAMES_MIN 16u /* temporal anti-aliasing has seen each part of a pixel */
+#define STILL_FRAMES_MIN 16u /* temporal anti-aliasing has sampled every part of a pixel */
 #define STILL_FRAMES_MAX 64u
-#define STILL_FRAMES_SETTLING 256u /* and most until shadows and live light are there */
+#define STILL_FRAMES_SETTLING 256u /* maximum while shadows and live light converge */
 #define STILL_CHANGE 0.25
-#define REFERENCE_RAYS 1024u /* per pixel: below it the truth's own noise is seen */
+#define REFERENCE_RAYS 1024u /* per pixel: with fewer, the ground truth has visible noise */
 
 /* ---- Frames ---------------------------------------------------------------------------------- */
 
-/* "frame_####.png" names one file per frame; a name without '#' gets the last frame. Returns false
- * if it is too long. */
+/* "frame_####.png" names one file per frame; a name without '#' is for the last frame. Returns
+ * false if the name is too long. */
 static bool output_name(const char *pattern, uint32_t frame, char *out, size_t size) {
     const char *first = strchr(pattern, '#');
     if (!first) return (size_t)snprintf(out, size, "%s", pattern) < size;
@@ -37,8 +37,8 @@ static bool output_name(const char *pattern, uint32_t frame, char *out, size_t s
     return n > 0 && (size_t)n < size;
 }
 
-/* Writes the format that the file's name selects. linear: three floats a pixel of `size`; rgba: of
- * the output. */
+/* Writes the format that the file's name selects. linear: three floats per pixel, of `size`; rgba:
+ * of the output size. */
 static int write_image(const masu_session *s, const char *path, const uint8_t *rgba,
                        const float *linear, VkExtent2D size) {
     char error[1024];
@@ -67,8 +67,8 @@ static int save_linear(masu_session *s, const char *name, const masu_commands *c
     return code;
 }
 
-/* Writes image number `frame` if it is asked for: each into a video or a numbered file, else the
- * last. */
+/* Writes image number `frame` if requested: every frame into a video or a numbered file, otherwise
+ * only the last. */
 static int save(masu_session *s, const masu_render_options *o, masu_video *video, uint32_t frame,
                 const masu_commands *commands) {
     char error[1024], name[4096];
@@ -89,7 +89,7 @@ static int save(masu_session *s, const masu_render_options *o, masu_video *video
     return file ? write_image(s, name, s->targets[0].mapped, NULL, s->desc.output) : MASU_CLI_OK;
 }
 
-/* The sun's place by angles as in scenes; a sky that follows from it. */
+/* Sets the sun from angles as in scene descriptions, and the analytic sky. */
 static void set_light(const masu_render_options *o, masu_light *light) {
     double azimuth = o->sun[0] * (PI / 180.0), elevation = o->sun[1] * (PI / 180.0);
     if (o->own_sun) {
@@ -120,8 +120,9 @@ static bool measure(masu_session *s, const masu_render_options *o, uint32_t fram
                          .sdf_param_count = o->sdf_param_count,
                          .time = o->time + (double)(o->first + image) * o->time_step,
                          .time_step = o->rays ? MASU_PICTURE_STEP : (float)o->time_step,
+                         .post = o->post,
                          .rung = o->target_ms > 0.0 ? MASU_RUNG_AUTO : o->rung,
-                         /* The sum begins with the first one that counts. */
+                         /* The sum starts with the first counted frame. */
                          .cut = o->rays && frame % rays == 0};
     if (!o->at_rest && !masu_render_animate(s, o, f.time, error, size)) return false;
     masu_commands commands;
@@ -153,7 +154,8 @@ static bool measure(masu_session *s, const masu_render_options *o, uint32_t fram
     return true;
 }
 
-/* What the reference is made of; a scene that traces nothing has none, and its picture is the truth. */
+/* Reports the reference's rays. In a scene without traced reflections the image itself is the
+ * ground truth. */
 static void report_rays(const masu_session *s, const masu_render_options *o, const masu_stats_info *stats) {
     masu_plan_info plan;
     masu_plan_of(s->m, &plan);
@@ -167,7 +169,7 @@ static void report_rays(const masu_session *s, const masu_render_options *o, con
             o->rays, 100.0 * (double)stats->specular_rays / pixels);
 }
 
-/* One ground truth, into the files that ask for it. */
+/* Renders one ground truth image and writes the requested files. */
 static int truth_frame(masu_session *s, const masu_render_options *o, const masu_light *light,
                        uint32_t frame, masu_video *video, uint8_t *rgba, float *linear) {
     char error[1024], name[4096] = "";
@@ -175,6 +177,7 @@ static int truth_frame(masu_session *s, const masu_render_options *o, const masu
     masu_frame_desc f = {MASU_FRAME_DESC, .light = light,
                          .sdf_params = o->sdf_param_count ? o->sdf_params : NULL,
                          .sdf_param_count = o->sdf_param_count,
+                         .post = o->post,
                          .time = o->time + (double)(o->first + frame) * o->time_step};
     if (file && !output_name(o->output, frame, name, sizeof name))
         return masu_cli_error("--output: the file name is too long");
@@ -189,7 +192,7 @@ static int truth_frame(masu_session *s, const masu_render_options *o, const masu
     return file ? write_image(s, name, rgba, linear, s->desc.output) : MASU_CLI_OK;
 }
 
-/* The image without shortcuts. */
+/* Renders the ground truth. */
 static int render_truth(masu_session *s, const masu_render_options *o, masu_video *video) {
     masu_light light;
     bool own_light = o->own_sun || o->turbidity > 0.0 || o->exposure > 0.0;
@@ -218,8 +221,8 @@ static int render_truth(masu_session *s, const masu_render_options *o, masu_vide
 
 /* ---- The settled still ----------------------------------------------------------------------- */
 
-/* Mean difference of two images, of 255, over blocks of 4x4 pixels, in which the noise of dithering
- * averages out. */
+/* Mean difference of two images, of 255, over blocks of 4x4 pixels, which average out the noise of
+ * dithering. */
 static double change(const uint8_t *a, const uint8_t *b, uint32_t width, uint32_t height) {
     double sum = 0.0;
     uint64_t blocks = 0;
@@ -238,8 +241,8 @@ static double change(const uint8_t *a, const uint8_t *b, uint32_t width, uint32_
     return sum / (double)blocks;
 }
 
-/* Frames of one moment until they change by less than a quarter of a step; linear light is their
- * mean. */
+/* Renders frames of one moment until they change by less than a quarter of a step; linear light is
+ * their mean. */
 static int render_still(masu_session *s, const masu_render_options *o,
                         masu_vk_alloc_counts *counts) {
     const uint32_t width = s->desc.output.width, height = s->desc.output.height;
@@ -291,8 +294,8 @@ static int render_still(masu_session *s, const masu_render_options *o,
 
 /* ---- A sequence ------------------------------------------------------------------------------ */
 
-/* With statistics a first frame is drawn and not counted: drivers compile at the first use of a
- * pipeline. */
+/* With statistics an extra first frame is rendered and not counted: drivers compile pipelines at
+ * their first use. */
 static int render_frames(masu_session *s, const masu_render_options *o, masu_video *video,
                          masu_vk_alloc_counts *counts) {
     const uint32_t rays = o->rays ? o->rays : 1;
@@ -330,7 +333,7 @@ static int render_frames(masu_session *s, const masu_render_options *o, masu_vid
 
 /* ---- Rungs ----------------------------------------------------------------------------------- */
 
-/* Eight rungs from the full size to 0.4 of it, each 13 % smaller than the one before. */
+/* Eight rungs from full size to 0.4, each 13 % smaller than the previous one. */
 static void make_ladder(masu_desc *d) {
     d->rung_count = 8;
     for (uint32_t r = 0; r < d->rung_count; r++) {
@@ -339,7 +342,7 @@ static void make_ladder(masu_desc *d) {
     }
 }
 
-/* The scene is known by now, and with it its ladder. */
+/* Called when the scene, and therefore its ladder, is known. */
 static void turn(masu_desc *d, const masu_turned *t) {
     *d = masu_session_resolved(d);
     for (uint32_t r = 0; r < d->rung_count; r++) {
@@ -349,7 +352,7 @@ static void turn(masu_desc *d, const masu_turned *t) {
         if (t->lod_given) rung->lod_error = t->to.lod_error;
         if (t->aa_given) {
             rung->aa = t->to.aa;
-            /* In whose place a rung's past would be, and what has followed from that. */
+            /* --aa replaces temporal upscaling, so the defaults that depend on it are reset. */
             if (rung->temporal == MASU_ON) {
                 rung->sharpen = rung->specular_reuse = rung->specular_taa = MASU_AUTO;
                 rung->specular_frames = 0;
@@ -359,7 +362,7 @@ static void turn(masu_desc *d, const masu_turned *t) {
     }
 }
 
-/* True: s is open, and its rungs are as the command line has them. */
+/* Opens the session with the rungs of the command line. Returns true on success. */
 static bool open_rungs(const masu_render_options *o, masu_session *s, int *code) {
     masu_session_desc d = o->d;
     char error[1024];
@@ -421,7 +424,7 @@ static bool read_truth(masu_cli *cli, void *to) {
     return !cli->value || masu_cli_uint(cli, 1, MASU_PICTURE_POSITIONS_MAX, &o->positions);
 }
 
-/* The one rung, or on `help` what it may be made of. */
+/* Reads the only rung; `help` prints the knobs. */
 static bool read_setting(masu_cli *cli, void *to) {
     if (!strcmp(cli->value, "help")) {
         masu_knobs_print(stdout);
@@ -517,6 +520,20 @@ static const masu_option rows[] = {
              "scene's factor without auto-exposure (default: the scene's)"),
     MASU_CHOICE(masu_render_options, tone, "tone", "CURVE", tones,
                 "tone curve: none, aces (filmic), neutral; auto is aces"),
+    MASU_REAL(masu_render_options, bloom, "bloom", "SHARE", 0.0, 1.0,
+              "fraction of the light that the lens scatters; 0.03 to 0.15 are usual (default 0)"),
+    MASU_REAL(masu_render_options, aperture, "aperture", "METRES", 0.0, 1e6,
+              "diameter of the lens, for depth of field (default 0: everything is sharp)"),
+    MASU_REAL(masu_render_options, focus, "focus", "METRES", 1e-6, 1e9,
+              "distance of the sharp plane, with --aperture (default 10)"),
+    MASU_REAL(masu_render_options, vignette, "vignette", "SHARE", 0.0, 1.0,
+              "darken the corners by this fraction (default 0)"),
+    MASU_REAL(masu_render_options, brightness, "brightness", "STOPS", -8.0, 8.0,
+              "double the displayed light per stop, after the tone curve (default 0)"),
+    MASU_REAL(masu_render_options, gamma, "gamma", "G", 0.1, 10.0,
+              "exponent 1/G of the displayed values (default 1)"),
+    MASU_FILE(masu_render_options, lut_path, "lut", "FILE.cube",
+              "colour table of up to 33 points per axis, after all of these"),
     MASU_FLAG(masu_render_options, dither, "dither", "dither to 8 bits to avoid banding"),
     MASU_HEADING("Debugging"),
     MASU_FLAG(masu_render_options, poison, "poison",
@@ -533,9 +550,9 @@ static const masu_option rows[] = {
     MASU_DEVICE_ROWS(masu_render_options, d.host),
     {.name = NULL}};
 
-/* What does not go together, and what is missing; an exit code. */
+/* Checks combinations and missing options; returns an exit code. */
 static int check(const masu_render_options *o, const masu_given *given) {
-    /* About what --truth has its own mind of. */
+    /* Options that conflict with --truth, which sets them itself. */
     static const char *const decided[] = {"stats", "rung",       "setting", "aa",
                                           "cull",  "lod-error",  "ladder",  "target-ms",
                                           "times", "anisotropy", NULL};
@@ -566,7 +583,7 @@ static int check(const masu_render_options *o, const masu_given *given) {
     return MASU_CLI_OK;
 }
 
-/* The description of the renderer out of the options; an exit code. */
+/* Builds the renderer's description from the options; returns an exit code. */
 static int describe(masu_render_options *o, const masu_given *given) {
     masu_desc *d = &o->d.desc;
     o->d.scene_path = given->arguments[0];
@@ -611,6 +628,7 @@ static int run(masu_cli *cli) {
         .d = {.desc = {.output = {1920, 1080}, .targets = {.storage = 1}},
               .host = {.message = masu_print_message}},
         .frames = 1,
+        .focus = 10.0,
         .time_step = 1.0 / 60.0};
     masu_given given = {.most = 1, .excess = "expected one scene"};
     masu_vk_alloc_counts counts;
@@ -623,7 +641,9 @@ static int run(masu_cli *cli) {
     if (code) return code;
     if ((o.stats || o.times || o.target_ms > 0.0) && !masu_clock_advances())
         return masu_cli_error("%s", MASU_CLOCK_STOPPED);
-    if (!masu_render_read_scene(&o, error, sizeof error)) return masu_cli_error("%s", error);
+    if (!masu_render_read_scene(&o, error, sizeof error) ||
+        !masu_render_read_post(&o, error, sizeof error))
+        return masu_cli_error("%s", error);
     o.d.host.allocator = o.stats ? &allocator : NULL;
     masu_cli_progress("building pipelines");
     if (o.positions && !masu_picture_open(&o.d, o.positions, &s, error, sizeof error))
@@ -633,9 +653,11 @@ static int run(masu_cli *cli) {
         masu_cli_progress_clear();
         fprintf(stderr, "masu: %s\n", s.host.driver);
     }
+    bool set = masu_render_set_lut(&s, &o, error, sizeof error);
+    free(o.lut);
     masu_video video = {0};
-    code = MASU_CLI_OK;
-    if (o.video && !masu_video_open(&video, o.video, o.d.desc.output.width, o.d.desc.output.height,
+    code = set ? MASU_CLI_OK : masu_cli_error("%s", error);
+    if (!code && o.video && !masu_video_open(&video, o.video, o.d.desc.output.width, o.d.desc.output.height,
                                     o.time_step, error, sizeof error))
         code = masu_cli_error("%s", error);
     if (!code)

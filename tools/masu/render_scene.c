@@ -1,5 +1,5 @@
-/* render_scene.c: what `masu render` changes in the scene of a frame: parameters of the SDF
- * (--param), and the clips that models play (--animate, --clip). */
+/* render_scene.c: changes of `masu render` to the scene of a frame: SDF parameters (--param), and
+ * animation clips of models (--animate, --clip). */
 #include "masu/render.h"
 
 #include "image.h"
@@ -10,13 +10,13 @@
 
 #define SCENE_BYTES_MAX ((size_t)2 << 30)
 
-/* ", " between names, into what is left of `out`. */
+/* Appends a name to `out`, separated by ", ". */
 static void list(char *out, size_t size, const char *name) {
     size_t used = strlen(out);
     snprintf(out + used, size - used, "%s%s", used ? ", " : "", name);
 }
 
-/* One of --param; false: `error` says what is wrong. */
+/* Sets one --param. On false `error` has the reason. */
 static bool set_param(const masu_scene *scene, const char *text, float *values, char *error,
                       size_t size) {
     const char *equals = strchr(text, '=');
@@ -38,7 +38,8 @@ static bool set_param(const masu_scene *scene, const char *text, float *values, 
     }
     float minimum, maximum;
     (void)masu_scene_sdf_range(scene, (uint32_t)at, &minimum, &maximum);
-    if (!((float)value >= minimum && (float)value <= maximum)) { /* floats, as the range is */
+    if (!((float)value >= minimum && (float)value <= maximum)) { /* compared as floats, like the
+                                                                  * range */
         snprintf(error, size, "--param: %.100s: expected %g to %g, found %.30s", name,
                  (double)minimum, (double)maximum, equals + 1);
         return false;
@@ -47,7 +48,7 @@ static bool set_param(const masu_scene *scene, const char *text, float *values, 
     return true;
 }
 
-/* A name, or its number. */
+/* Finds a clip by name or number. */
 static uint32_t find_clip(const masu_session *s, masu_model model, const char *clip) {
     char *end;
     uint32_t at = masu_model_clip_find(s->m, model, clip);
@@ -58,7 +59,7 @@ static uint32_t find_clip(const masu_session *s, masu_model model, const char *c
     return at;
 }
 
-/* The same before there is a renderer. */
+/* The same before a renderer exists. */
 static bool has_clip(const masu_scene *scene, const char *clip, char *error, size_t size) {
     char known[512] = "", number[16];
     for (uint32_t i = 0; i < masu_scene_count(scene, MASU_SCENE_MODEL); i++) {
@@ -74,7 +75,7 @@ static bool has_clip(const masu_scene *scene, const char *clip, char *error, siz
     return false;
 }
 
-/* A session keeps no blob, so it is read here, too. */
+/* A session does not keep the blob, so it is read here, too. */
 bool masu_render_read_scene(masu_render_options *o, char *error, size_t size) {
     uint8_t *bytes = NULL;
     size_t count = 0;

@@ -1,4 +1,4 @@
-/* render_stats.c: what `masu render` has measured, as JSON, as CSV, as text; see render.h. */
+/* render_stats.c: prints the measurements of `masu render` as JSON, CSV and text; see render.h. */
 #include "masu/render.h"
 
 #include "alloc_count.h"
@@ -32,8 +32,8 @@ static json_t *times_json(const masu_sample *samples, uint32_t n, size_t field, 
                      percentile(samples, n, field, 0.95, scratch));
 }
 
-/* Mesa 22.3's lavapipe reports 0.1 ms for what takes 100 ms once graphics work has run in the
- * process. Times are quoted only where they fit the wall clock. */
+/* Mesa 22.3's lavapipe reports 0.1 ms instead of 100 ms after graphics work has run in the process.
+ * GPU times are printed only if they agree with the wall clock. */
 static bool plausible(const masu_sample *samples, uint32_t n) {
     uint32_t good = 0;
     for (uint32_t i = 0; i < n; i++) {

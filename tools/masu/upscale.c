@@ -1,5 +1,4 @@
-/* upscale.c: `masu upscale`: anti-aliasing and FSR1 on a PNG, by exactly the passes that a frame ends
- * with. */
+/* upscale.c: `masu upscale`: anti-aliasing and FSR1 of a PNG, with the last passes of a frame. */
 #include "masu/cmd.h"
 #include "command/options.h"
 
@@ -20,7 +19,7 @@ typedef struct options {
 static bool upscale(const masu_session_desc *given, const uint8_t *rgba, uint32_t width,
                     uint32_t height, uint8_t *out, char *error, size_t size) {
     /* The source image needs the device and the renderer needs the source image: so the session
-     * stops before masu_init and goes on when the source is there. */
+     * stops before masu_init and continues when the source exists. */
     static masu_session s;
     masu_session_desc d = *given;
     masu_headless_source source;
@@ -64,12 +63,14 @@ static bool has_alpha(const struct masu_image *image) {
     return false;
 }
 
-/* The colour of a pixel with alpha 0 is not seen, but filters would mix it into the edges beside it. Each such pixel
- * gets the mean of its neighbours that have a colour; repeated as far as EASU and RCAS reach. False: no memory. */
+/* The colour of a pixel with alpha 0 is invisible, but filters would mix it into neighbouring
+ * edges. Each such pixel gets the mean of its coloured neighbours, repeated for the reach of EASU
+ * and RCAS. Returns false if there is no memory. */
 static bool fill_transparent(struct masu_image *image) {
     enum { REACH = 4, NONE = REACH + 1 };
     int width = (int)image->width, height = (int)image->height;
-    uint8_t *filled_in = malloc((size_t)width * (size_t)height); /* round; NONE: not yet */
+    uint8_t *filled_in = malloc((size_t)width * (size_t)height); /* round in which it was filled;
+                                                                  * NONE: not filled */
     if (!filled_in) return false;
     for (int i = 0; i < width * height; i++) filled_in[i] = image->rgba[4 * i + 3] ? 0 : NONE;
     for (int at = 0; at < REACH * width * height; at++) {
@@ -90,7 +91,7 @@ static bool fill_transparent(struct masu_image *image) {
     return true;
 }
 
-/* FSR1 knows three channels. Alpha goes through the same passes as a grey picture of its own. */
+/* FSR1 has three channels. Alpha is processed by the same passes as a separate grey image. */
 static bool upscale_alpha(const masu_session_desc *d, const struct masu_image *image, uint8_t *out,
                           char *error, size_t size) {
     size_t in_pixels = (size_t)image->width * image->height;
@@ -116,7 +117,7 @@ static int upscale_file(const masu_session_desc *given, const char *from, const 
     if (!masu_image_load_png(from, &image, error, sizeof error)) return masu_cli_error("%s", error);
     if (!d->desc.output.width) d->desc.output = (VkExtent2D){image.width, image.height};
     masu_rung *rung = &d->desc.rungs[0];
-    if (rung->sharpness == 0.0f) rung->sharpness = -1.0f; /* 0 stops, and not the default */
+    if (rung->sharpness == 0.0f) rung->sharpness = -1.0f; /* 0 stops, not the default */
     int same = d->desc.output.width == image.width && d->desc.output.height == image.height;
     if (rung->aa > MASU_AA_OFF && same) rung->upscale = rung->sharpen = MASU_OFF;
     uint32_t width = d->desc.output.width, height = d->desc.output.height;

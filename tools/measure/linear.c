@@ -17,7 +17,7 @@ bool masu_linear_read(const masu_renderer *m, uint32_t slot, VkExtent2D size, fl
             memcpy(texel, row + 8 * (size_t)x, sizeof texel);
             for (int c = 0; c < 3; c++) {
                 float value = masu_texel_half(texel[c]);
-                /* As the tone curve takes them. */
+                /* the same limits as the tone curve */
                 if (!isfinite(value)) value = value > 0.0f ? 65504.0f : 0.0f;
                 *rgb++ = value;
             }
@@ -39,12 +39,12 @@ double masu_linear_exposure(masu_session *s, uint32_t slot, const masu_light *li
     return light && light->exposure > 0.0f ? (double)light->exposure : 1.0;
 }
 
-/* Narkowicz's fit of ACES: shaders/shared/tone.glsl. */
+/* The ACES fit of Narkowicz: shaders/shared/tone.glsl. */
 static double filmic(double x) {
     return fmin(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 1.0);
 }
 
-/* Khronos PBR Neutral, ending at white. */
+/* Khronos PBR Neutral, limited to white. */
 static void neutral(double x[3]) {
     const double least = fmin(x[0], fmin(x[1], x[2])), start = 0.76, room = 1.0 - start;
     const double offset = least < 0.08 ? least - 6.25 * least * least : 0.04;

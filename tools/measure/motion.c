@@ -17,7 +17,7 @@ bool masu_motion_frame(masu_session *s, uint32_t rung, double time, double step,
     return masu_session_frame(s, &frame, true, commands, error, error_size);
 }
 
-/* Cascade k is drawn in frames n with n + k divisible by its pace. */
+/* Cascade k is rendered in frames n with n + k divisible by its refresh period. */
 bool masu_motion_draw(masu_session *s, const masu_motion *motion, uint32_t rung,
                       const masu_rung *knobs, uint64_t *next, char *error, size_t error_size) {
     uint32_t period = masu_setting_period(knobs);

@@ -10,8 +10,8 @@
 #include <strings.h>
 
 enum { BYTES_MOST = 1 << 28, SIDE_MOST = 4096 };
-#define TOLERANCE 0.01 /* relative error of a patch that counts as much as a standard error */
-#define DARK 0.01 /* of the image's mean: what is darker counts as this bright */
+#define TOLERANCE 0.01 /* relative error of a patch with the same weight as one standard error */
+#define DARK 0.01 /* of the image's mean: darker patches use this as their base */
 
 /* ---- Patches --------------------------------------------------------------------------------- */
 
@@ -44,10 +44,10 @@ static uint16_t half_of(float value) {
     memcpy(&bits, &value, sizeof bits);
     uint32_t sign = bits >> 16 & 0x8000u;
     double size = fabs((double)value);
-    if (!(size < 65504)) return (uint16_t)(sign | 0x7BFFu); /* the largest; NaN too */
+    if (!(size < 65504)) return (uint16_t)(sign | 0x7BFFu); /* the largest half; also for NaN */
     if (size < 0x1p-14) return (uint16_t)(sign | (uint32_t)lrint(size * 0x1p24));
     int exponent;
-    double part = frexp(size, &exponent); /* 0.5..1 */
+    double part = frexp(size, &exponent); /* 0.5 <= part < 1 */
     uint32_t rounded = ((uint32_t)(exponent + 14) << 10) + (uint32_t)lrint((2 * part - 1) * 1024);
     return (uint16_t)(sign | rounded);
 }

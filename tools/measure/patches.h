@@ -1,10 +1,10 @@
-/* patches.h: compares a linear image with a stored reference: an image with noise, whose errors
- * are known. Whole patches are compared: their noise is small, and a wrong light shows in their
- * means where the error of a single pixel hides it.
+/* patches.h: compares a linear image with a stored reference, a noisy image with known errors. It
+ * compares the means of patches: their noise is small, so they reveal wrong lighting that the error
+ * of a single pixel hides.
  *
- * A stored reference (.ref) is a text header, one "name value" a line, that ends with the line
- * "end"; then 3 half floats a pixel, top row first, and for each of the 144 patches 3 means and
- * 3 standard errors as floats, all little-endian. */
+ * A stored reference (.ref) is a text header, one "name value" per line, up to the line "end"; then
+ * 3 half floats per pixel, top row first; then 3 means and 3 standard errors as floats for each of
+ * the 144 patches. All values are little-endian. */
 #ifndef MASU_MEASURE_PATCHES_H
 #define MASU_MEASURE_PATCHES_H
 
@@ -24,13 +24,13 @@ typedef struct masu_patch {
 
 typedef struct masu_reference {
     uint32_t width, height;
-    char command[1024]; /* that made it */
-    float *pixels;      /* 3 a pixel; free by masu_reference_free */
+    char command[1024]; /* command that rendered it */
+    float *pixels;      /* 3 per pixel; freed by masu_reference_free */
     masu_patch patches[MASU_PATCHES];
 } masu_reference;
 
-/* Means of an image's patches. errors: standard error of each value of `pixels`, independent of
- * the others; NULL: 0. */
+/* Computes the means of an image's patches. errors: standard error of each value of `pixels`,
+ * independent of the other values; NULL: 0. */
 void masu_patches_of(const float *pixels, const float *errors, uint32_t width, uint32_t height,
                      masu_patch out[MASU_PATCHES]);
 
@@ -42,13 +42,13 @@ bool masu_reference_is_named(const char *path); /* ends in .ref, in any case */
 typedef struct masu_patch_judgement {
     double ratio; /* of the means of both images: 1 if they agree */
     double p95;   /* 95th percentile over patches of |ratio - 1| beyond three standard errors */
-    double trimmed; /* mean square of z of the least nine tenths; 1: noise and tolerance */
-    uint32_t worst; /* patch with the largest |ratio - 1|, and that number: */
+    double trimmed; /* mean of the lowest nine tenths of z^2; 1: only noise and tolerance */
+    uint32_t worst; /* patch with the largest |ratio - 1|, and that value: */
     double worst_by;
 } masu_patch_judgement;
 
-/* A relative error of 0.01 of a patch counts as much as a standard error. Dark patches count by
- * a hundredth of the image's mean. */
+/* A relative error of 0.01 of a patch has the same weight as one standard error. Errors of patches
+ * darker than a hundredth of the image's mean are relative to that hundredth. */
 masu_patch_judgement masu_patches_judge(const masu_patch reference[MASU_PATCHES],
                                         const masu_patch image[MASU_PATCHES]);
 

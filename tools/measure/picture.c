@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Digits of i to the base of two, mirrored at the point (J. G. van der Corput, 1935). */
+/* The binary digits of i, mirrored at the point (J. G. van der Corput, 1935). */
 static double mirrored(uint32_t i) {
     double value = 0.0, digit = 0.5;
     for (; i; i >>= 1, digit *= 0.5) value += i & 1u ? digit : 0.0;
@@ -25,9 +25,8 @@ void masu_picture_place(uint32_t i, uint32_t n, float out[2]) {
     out[1] = (float)(fmin(mirrored(i) + half, 1.0) - 0.5);
 }
 
-/* The march is AUTO's, and not the plain one: it finds surfaces to 0.002 of a pixel, with steps
- * that are checked and starts that are proven; the plain one stops at 0.1, and rims are thicker
- * by that. */
+/* March AUTO, not the plain one: AUTO finds surfaces to 0.002 of a pixel, with verified steps and
+ * proven starts. The plain march stops at 0.1 of a pixel, which thickens rims. */
 static const masu_rung exact_rung = {.scale = 1.0f,
                                      .upscale = MASU_OFF,
                                      .sharpen = MASU_OFF,
@@ -59,9 +58,10 @@ bool masu_picture_open(const masu_session_desc *d, uint32_t positions, masu_sess
     own.desc.rungs[0] = exact_rung;
     own.desc.debug.reference = 1;
     own.desc.debug.ao_full = 1;
-    /* Mips as the picture of that many times the pixels would take them. With them a texture seen
-     * at a slant is right too, up to as many pixels to one as there are positions along an axis:
-     * no anisotropy is needed, which a CPU driver has at forty times the price. */
+    /* Uses the mip levels of an image with `positions` times as many pixels. A texture at a grazing
+     * angle is then also correct, for as many pixels per texel as there are positions along an
+     * axis. This needs no anisotropic filtering, which costs forty times as much on a CPU
+     * driver. */
     own.desc.vulkan.max_anisotropy = 0.0f;
     own.desc.debug.mip_bias = -0.5f * log2f((float)positions);
     own.desc.readback |= MASU_READBACK_HDR;
@@ -79,8 +79,8 @@ uint32_t masu_picture_frames(const masu_session *s, uint32_t positions, uint32_t
     return (rays + positions - 1) / positions;
 }
 
-/* One position: the first frame is a cut, with which the reference begins a new sum. Rays differ
- * by the number of the frame, so that no position gets those of another. */
+/* Renders one position. The first frame is a cut, which restarts the sum of the reference. Rays
+ * depend on the frame number, so that no two positions use the same rays. */
 static bool draw_position(masu_session *s, masu_frame_desc frame, uint32_t frames, char *error,
                           size_t error_size) {
     masu_commands commands;
@@ -110,7 +110,7 @@ bool masu_picture_camera(masu_session *s, masu_frame_desc *frame, masu_camera *c
     return true;
 }
 
-/* Sums of all positions; `one` has room for an image. */
+/* Sums over all positions; `one` holds the newest image. */
 typedef struct sums {
     float *linear, *display, *one;
 } sums;
@@ -130,7 +130,8 @@ static bool add_position(masu_session *s, const masu_light *light, sums *sum, ch
     return true;
 }
 
-/* Live probes show all of their sets 20 rounds after a cut; the other 236 settle the bounces between them. */
+/* After a cut, live probes have traced all their ray sets after 20 rounds; in the other 236 the
+ * bounces between probes converge. */
 int masu_picture_settles(const masu_stats_info *stats) {
     return stats->local_shadow_waiting || stats->local_shadow_faces || stats->bounce_rounds_left > 236;
 }
@@ -203,7 +204,7 @@ bool masu_picture_load(const char *path, VkExtent2D size, uint8_t *rgba, char *e
 
 bool masu_picture_find(const masu_session_desc *d, masu_picture_want *t, uint8_t *rgba, char *error,
                        size_t error_size) {
-    static masu_session s; /* may not move, and is large */
+    static masu_session s; /* static: it may not move, and is large */
     VkExtent2D size = d->desc.output;
     t->messages = 0;
     if (t->path && masu_file_exists(t->path))

@@ -1,8 +1,9 @@
-/* samples.h: times of frames of things that take turns, and what is made of them.
+/* samples.h: frame times of alternating candidates, and their statistics.
  *
- * Sample k of all things is of the same round: what the machine did meanwhile hit all of them, so
- * ratios are made round by round and their median is taken. Both clocks are kept: the wall's, from
- * masu_frame to the fence, and the device's timestamps. Owns nothing, allocates nothing. */
+ * Sample k of all candidates is from the same round: a disturbance of the machine affects all of
+ * them. Ratios are therefore computed per round, and their median is used. There are two clocks:
+ * the wall clock, from masu_frame to the fence, and the GPU timestamps. Owns nothing, allocates
+ * nothing. */
 #ifndef MASU_MEASURE_SAMPLES_H
 #define MASU_MEASURE_SAMPLES_H
 
@@ -15,17 +16,18 @@ typedef struct masu_samples {
     uint32_t count, plausible;
 } masu_samples;
 
-/* One more, of so many frames: what both clocks showed in all of them. It is plausible if the
- * timestamps are 0.5 to 1.05 of the wall (Mesa 22.3's lavapipe gets them wrong). */
+/* Adds one sample: the times of `frames` frames on both clocks. It is plausible if the timestamps
+ * are 0.5 to 1.05 of the wall-clock time (Mesa 22.3's lavapipe fails this). */
 void masu_samples_add(masu_samples *s, double wall_ms, double gpu_ms, uint32_t frames);
 
-/* Median over rounds of own[k] / base[k]; NAN if a base is not above 0. Before they are sorted. */
+/* Median over rounds of own[k] / base[k]; NAN if a base is not above 0. Call it before
+ * masu_samples_sort. */
 double masu_samples_ratio(const double *base, const double *own, uint32_t n);
 
-/* Each clock by itself; rounds are lost. */
+/* Sorts each clock separately, which loses the rounds. */
 void masu_samples_sort(masu_samples *s);
 
-/* The nearest one that is there, of n sorted ones; share 0 is the least, 0.5 the median. */
+/* The nearest of n sorted samples; share 0 is the minimum, 0.5 the median. */
 double masu_samples_at(const double *sorted, uint32_t n, double share);
 
 #endif

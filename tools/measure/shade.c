@@ -1,4 +1,4 @@
-/* shade.c: see shade.h. The names are those of the shaders. */
+/* shade.c: see shade.h. Names match the shaders. */
 #include "measure/shade.h"
 
 #include "measure/texel.h"
@@ -71,13 +71,13 @@ static albedo average_of(uint32_t row) {
 
 static double lost(albedo a) { return fmax(1 - a.white, 0); }
 
-/* Colour of what leaves after more than one bounce. */
+/* Colour of light that leaves after multiple bounces. */
 static double rest_color(double f0, double f90, double average_lost) {
     double f = f0 + (f90 - f0) / 21;
     return f * f * (1.35 - 0.35 * f) * (1 - average_lost) / (1 - f * average_lost);
 }
 
-/* What the dielectric's share returns before its light reaches the base colour. */
+/* Light that the dielectric layer reflects before it reaches the base colour. */
 static double matte(double f0, double f90, double rest, albedo a) {
     return f0 * a.white + (f90 - f0) * a.weight + rest * lost(a);
 }
@@ -165,7 +165,8 @@ void masu_shade_image(const masu_truth *truth, const masu_view *view, uint32_t s
                       const masu_truth_sample *samples, uint8_t *rgba) {
     uint32_t columns = masu_truth_columns(view->width, stride);
     uint32_t rows = masu_truth_columns(view->height, stride);
-    (void)truth->step(view->params, view->time, view->eye); /* materials are as of this moment */
+    (void)truth->step(view->params, view->time, view->eye); /* materials are evaluated at this
+                                                             * time */
     for (uint32_t y = 0; y < rows; y++) {
         for (uint32_t x = 0; x < columns; x++) {
             size_t i = (size_t)y * columns + x;

@@ -1,36 +1,38 @@
-/* shade.h: the colour of a true surface: light.comp and tonemap.comp in double precision, so
- * that the truth is a picture too and pictures can be compared by what a viewer sees.
+/* shade.h: shades a surface in double precision like light.comp and tonemap.comp, so that the
+ * ground truth becomes an image and can be compared by perceptual metrics.
  *
- * The material is rounded as the G-buffer's texels are (texel.h): that is no error of the march. Normals, radiance and the tone curve are not.
+ * The material is rounded like the G-buffer's texels (texel.h), because that is not an error of the
+ * march. Normals, radiance and the tone curve are not rounded.
  *
- * A frame's own G-buffer can be shaded too. Two pictures shaded here differ by what the march found
- * and by nothing else; the picture that the GPU shows also has the driver's rounding in it
- * (lavapipe of Mesa 22.3 cuts halves off instead of rounding them: one step of 255 on every eighth
- * pixel of a sphere, which FLIP counts as 0.005 there). Pure functions. */
+ * The G-buffer of a frame can be shaded, too. Two images shaded here differ only by their marches;
+ * an image of the GPU also contains the driver's rounding. (lavapipe of Mesa 22.3 truncates halves:
+ * one step of 255 on every eighth pixel of a sphere, a FLIP error of 0.005 there.) Pure
+ * functions. */
 #ifndef MASU_MEASURE_SHADE_H
 #define MASU_MEASURE_SHADE_H
 
 #include "measure/truth.h"
 
-/* Radiance towards the eye along `direction` (unit), before exposure. */
+/* Radiance towards the camera along `direction` (unit), before exposure. */
 void masu_shade_sky(const masu_view *view, const double direction[3], double out[3]);
-/* material: as masu_truth.material gives it. */
+/* material: the format of masu_truth.material. */
 void masu_shade_surface(const masu_view *view, const double direction[3], const double normal[3],
                         const double material[8], double out[3]);
-/* The sky alone, without the glow around the sun: what surfaces mirror. */
+/* The sky without the glow around the sun, as reflected by surfaces. */
 void masu_shade_open_sky(const masu_view *view, const double direction[3], double out[3]);
-/* A surface without the rounding, in two parts: what it mirrors of the open sky, by the lobe's albedo, and
- * the rest, sun and ambient light, and what it emits. */
+/* A surface without rounding, in two parts. mirrored: its reflection of the sky, weighted by the
+ * lobe's albedo. lit: everything else, which is sun, ambient light and emission. */
 void masu_shade_exact(const masu_view *view, const double direction[3], const double normal[3],
                       const double material[8], double lit[3], double mirrored[3]);
-/* A texel of MASU_READBACK_ALBEDO and one of _NORMAL, and the emission beside them, as light.comp
- * reads them. */
+/* Shades a texel of MASU_READBACK_ALBEDO and one of _NORMAL with a separate emission, as light.comp
+ * does. */
 void masu_shade_texel(const masu_view *view, const double direction[3], const uint8_t albedo[4],
                       uint32_t normal, const double emission[3], double out[3]);
 /* Exposure, tone curve, sRGB encoding, 8 bits. */
 void masu_shade_encode(const masu_view *view, const double radiance[3], uint8_t rgba[4]);
 
-/* All samples of masu_truth_image to RGBA8, as many columns and rows. UNSURE is given the sky. */
+/* Shades all samples of masu_truth_image to RGBA8, with the same columns and rows. UNSURE samples
+ * show the sky. */
 void masu_shade_image(const masu_truth *truth, const masu_view *view, uint32_t stride,
                       const masu_truth_sample *samples, uint8_t *rgba);
 

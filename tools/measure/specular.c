@@ -33,7 +33,7 @@ bool masu_specular_read(masu_session *s, float *rgb) {
     return true;
 }
 
-/* Where the object is in a frame; `left`: how many are still to come. */
+/* Moves the object for a frame; `left`: number of frames that follow. */
 static bool place(masu_session *s, const masu_specular_run *run, uint32_t frame, uint32_t left) {
     float rows[12];
     memcpy(rows, run->rows, sizeof rows);

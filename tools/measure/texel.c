@@ -14,7 +14,7 @@ static double clamped(double x, double low, double high) {
 
 static double brightest_of(const double c[3]) { return fmax(c[0], fmax(c[1], c[2])); }
 
-/* x in 0..1, as one of `steps` + 1 levels. */
+/* Quantizes x in 0..1 to one of `steps` + 1 levels. */
 static uint32_t level_of(double x, double steps) { return (uint32_t)(clamped(x, 0, 1) * steps + 0.5); }
 
 static bool emits(const double material[8]) { return brightest_of(material + 4) >= least; }
@@ -76,7 +76,7 @@ void masu_texel_unpack_met(const uint8_t texel[4], uint32_t normal, double m[8])
         double root = texel[c] / 255.0;
         m[shines ? 4 + c : c] = shines ? range * root * root : root * root;
     }
-    m[3] = shines && !form ? 1 : texel[3] / 255.0; /* light.comp does not ask */
+    m[3] = shines && !form ? 1 : texel[3] / 255.0; /* light.comp ignores it */
     m[7] = shines ? 0 : form / 15.0;
 }
 

@@ -21,7 +21,7 @@ bool masu_truth_path(const char *scene, char *out, size_t size) {
     return (size_t)snprintf(out, size, "%.*s.truth.so", (int)cut, scene) < size;
 }
 
-/* ISO C has no conversion from object to function pointers; POSIX promises that it works. */
+/* ISO C has no conversion from object to function pointers; POSIX guarantees that it works. */
 static bool find(void *library, const char *name, void *function_pointer) {
     void *symbol = dlsym(library, name);
     memcpy(function_pointer, &symbol, sizeof symbol);
@@ -32,7 +32,7 @@ bool masu_truth_open(const char *path, masu_truth *t, char *error, size_t size) 
     memset(t, 0, sizeof *t);
     char name[4096]; /* dlopen searches the system for a name without a slash */
     snprintf(name, sizeof name, "%s%s", strchr(path, '/') ? "" : "./", path);
-    if (!masu_file_is_regular(name)) { /* dlopen would wait for a FIFO */
+    if (!masu_file_is_regular(name)) { /* dlopen would block on a FIFO */
         snprintf(error, size, "%s: is not a regular file", path);
         return false;
     }
@@ -91,8 +91,8 @@ static double tolerance(const walk *w, double t) {
     return fmax(1e-9 * t, 32 * DBL_EPSILON * extent_at(w, t));
 }
 
-/* The crossing between a, where the field is fa > 0, and b, where it is fb <= 0. The secant, with
- * the Illinois halving so that neither end stays for ever; bisection where that does not help. */
+/* Finds the zero crossing between a, where the field is fa > 0, and b, where it is fb <= 0: the
+ * Illinois variant of the secant method, with a bisection in every third iteration. */
 static double crossing(walk *w, double a, double fa, double b, double fb) {
     int side = 0;
     if (fb == 0) return b;
@@ -115,9 +115,9 @@ static double crossing(walk *w, double a, double fa, double b, double fb) {
     return 0.5 * (a + b);
 }
 
-/* Looks for a crossing within reach of t, where the field is f > 0 and has fallen by `slope` a unit
- * of distance. It must fall from probe to probe: what does not may hide a crossing before the one
- * found. Returns the distance, or -1. */
+/* Searches for a crossing within `reach` of t. The field at t is f > 0 and falls by `slope` per
+ * unit of distance. It must fall from probe to probe: otherwise a crossing before the found one is
+ * possible. Returns the distance, or -1. */
 static double leap(walk *w, double t, double f, double slope, double reach, int probes) {
     if (!(slope > 0)) return -1;
     double far = 2 * f / slope, a = t, fa = f;
@@ -134,7 +134,8 @@ static double leap(walk *w, double t, double f, double slope, double reach, int 
 
 static double settled(double t, const masu_view_ray *r) { return t < r->limit ? t : -1; }
 
-/* What the field, f at t and above 0 at the sample before it, says: a distance, -1 for "go on". */
+/* Tests for a surface near t. The field is f at t and was above 0 at the previous sample. Returns
+ * the distance of the hit, or -1 to continue. */
 static double near_surface(walk *w, double before_t, double t, double f, double *tried) {
     bool there = f <= tolerance(w, t);
     if (!there && !(f < 1e-6 * t && f < 0.5 * *tried)) return -1;
@@ -147,7 +148,7 @@ static double near_surface(walk *w, double before_t, double t, double f, double 
     return found >= 0 || !there ? found : t;
 }
 
-/* Distance of the hit, or -1. `sure` is false where it had to give up. */
+/* Distance of the hit, or -1. *sure is false if the search gave up. */
 static double march(walk *w, bool *sure) {
     const masu_view_ray *r = w->ray;
     double t = r->start, before_t = t, tried = HUGE_VAL, best_t = t, best = HUGE_VAL;
@@ -174,7 +175,7 @@ static double march(walk *w, bool *sure) {
             t += step;
             if (!(t > before_t)) t = nextafter(before_t, HUGE_VAL);
         }
-        /* Creeping towards something? */
+        /* The ray may approach a surface at a grazing angle. */
         double f = field(w, before_t), next = field(w, t);
         double found = leap(w, t, next, (f - next) / (t - before_t), r->limit - t, PROBES);
         if (found >= 0) return settled(found, r);
@@ -186,8 +187,8 @@ static double march(walk *w, bool *sure) {
 static void normal_at(walk *w, double t, double out[3]) {
     double p[3], length = 0;
     point_at(w, t, p);
-    /* The field's rounding is a few ulp of the coordinates: far from the origin the step must stay
-     * thousands of times above it. */
+    /* The field's rounding error is a few ulp of the coordinates. The step must be thousands of
+     * times larger even far from the origin. */
     double h = fmax(1e-7 * t, 32e3 * DBL_EPSILON * extent_at(w, t));
     for (int i = 0; i < 3; i++) {
         double a[3] = {p[0], p[1], p[2]}, b[3] = {p[0], p[1], p[2]};
@@ -221,7 +222,7 @@ void masu_truth_march(const masu_truth *truth, const masu_view *view, const masu
     out->evals = w.evals;
 }
 
-/* ---- A picture ------------------------------------------------------------------------------- */
+/* ---- Images ---------------------------------------------------------------------------------- */
 
 typedef struct picture {
     const masu_truth *truth;
@@ -257,7 +258,7 @@ void masu_truth_image(const masu_truth *truth, const masu_view *view, uint32_t s
     pthread_t threads[THREADS_MAX];
     long processors = sysconf(_SC_NPROCESSORS_ONLN);
     int wanted = processors > THREADS_MAX ? THREADS_MAX : (int)processors, made = 0;
-    /* This thread works too; one that cannot be made only makes it slower. */
+    /* This thread works too; a failure to create a thread only costs time. */
     while (made < wanted - 1 && !pthread_create(&threads[made], NULL, work, &p)) made++;
     work(&p);
     while (made > 0) pthread_join(threads[--made], NULL);

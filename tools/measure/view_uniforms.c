@@ -31,7 +31,7 @@ static bool look(const masu_camera *c, masu_view *v) {
     if (c->up[0] != 0.0f || c->up[1] != 0.0f || c->up[2] != 0.0f) widen(c->up, wish);
     if (!unit(v->forward) || !unit(wish)) return false;
     cross(v->forward, wish, v->right);
-    /* Straight up or down: the runtime's choice of a right-hand side. */
+    /* Straight up or down: the same right axis as the runtime. */
     if (!unit(v->right)) memcpy(v->right, (double[3]){1, 0, 0}, sizeof v->right);
     cross(v->right, v->forward, v->up);
     v->tan_y = tan((double)c->fov_y * 0.5);
@@ -76,7 +76,7 @@ bool masu_view_of(const masu_scene *scene, const masu_camera *camera, double tim
         return false;
     }
     if (!masu_view_seen(scene, camera, width, height, out, error, error_size)) return false;
-    out->time = (double)(float)time; /* as the shaders see it */
+    out->time = (double)(float)time; /* as in the shaders */
     widen(blob.sdf->bounds_min, out->sdf_min);
     widen(blob.sdf->bounds_max, out->sdf_max);
     out->max_distance = (double)blob.sdf->max_distance;
@@ -97,7 +97,7 @@ masu_view_ray masu_view_ray_at(const masu_view *v, uint32_t x, uint32_t y) {
     for (int i = 0; i < 3; i++) {
         double d = through[i] / r.z_scale;
         r.direction[i] = d;
-        if (fabs(d) < 1e-12) d = 1e-12; /* the shader's rule: no 0 * Inf */
+        if (fabs(d) < 1e-12) d = 1e-12; /* as in the shader: avoids 0 * Inf */
         double a = (v->sdf_min[i] - v->eye[i]) / d, b = (v->sdf_max[i] - v->eye[i]) / d;
         r.start = fmax(r.start, fmin(a, b));
         r.limit = fmin(r.limit, fmax(a, b));

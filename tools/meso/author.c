@@ -6,9 +6,9 @@
 
 #include "cli/cli.h"
 
-/* Texels that the fit looks at one by one, and those of the map itself, of which it looks at the
- * mean: with FIT_SIDE rays and more to a side. With fewer as many fewer, but at least a sixth: a
- * draft is one in both. */
+/* Texels that the fit uses one by one, and texels of the map of which it uses the mean, for
+ * FIT_SIDE rays per side or more. Fewer rays reduce both proportionally, to a sixth at least: a
+ * draft is a draft in both. */
 #define FIT_TEXELS 144u
 #define FINE_TEXELS 256u
 #define FIT_SIDE 96u
@@ -31,7 +31,7 @@ void masu_meso_set_lights(masu_meso_setup *s, const double *elevation, uint32_t 
 
 #define COUNT(array) ((uint32_t)(sizeof(array) / sizeof *(array)))
 
-/* Azimuths lie closer where the mirror direction is: there radiance changes fastest. */
+/* Azimuths are denser near the mirror direction, where radiance changes fastest. */
 static void set_fitted(masu_meso_setup *s) {
     static const double view[] = {0, 15, 30, 45, 60, 70, 80, 85, 88};
     static const double elevation[] = {5, 10, 20, 30, 45, 60, 80};
@@ -61,7 +61,7 @@ static uint32_t fit_share(uint32_t texels, uint32_t side) {
     return side * 6 > FIT_SIDE ? texels * side / FIT_SIDE : texels / 6;
 }
 
-/* Texels spread over the map, and their radiance from above. */
+/* Selects texels spread over the map, and computes their radiance from above. */
 static void pick_texels(const masu_meso_material *made, const masu_meso_tracer *tracer,
                         const masu_meso_patch *patch, const masu_meso_options *options,
                         masu_meso_samples *samples) {

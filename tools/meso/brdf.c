@@ -10,7 +10,7 @@ static double fresnel(double cosine) {
     return MASU_MESO_F0 + (1 - MASU_MESO_F0) * f2 * f2 * f;
 }
 
-/* 2 G2 / (4 NoL NoV) of the height-correlated form, halved. */
+/* 2 G2 / (4 NoL NoV), height-correlated, halved. */
 static double visibility(double n_l, double n_v, double a2) {
     double g = n_l * sqrt(a2 + (1 - a2) * n_v * n_v) + n_v * sqrt(a2 + (1 - a2) * n_l * n_l);
     return 0.5 / fmax(g, 1e-6);
@@ -32,8 +32,8 @@ masu_meso_lobes masu_meso_brdf(masu_meso_vec3 n, masu_meso_vec3 v, masu_meso_vec
     return lobes;
 }
 
-/* Halfway vectors drawn by D (Walter et al., EGSR 2007, equations 35 and 36); each counts
- * 4 V NoL (v.h) / NoH times Fresnel. */
+/* Samples half vectors by D (Walter et al., EGSR 2007, equations 35 and 36), with weight 4 V NoL
+ * (v.h) / NoH times Fresnel. */
 static double integrate(double n_v, double roughness) {
     enum { RINGS = 24, SPOKES = 24 };
     double alpha = fmax(roughness * roughness, 0.002), a2 = alpha * alpha, sum = 0;

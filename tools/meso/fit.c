@@ -6,16 +6,18 @@
 
 #include "cli/cli.h"
 
-/* facet is given, not fitted. */
+/* facet is measured, not fitted */
 #define FREE 20u
 #define STEPS 60
-/* Times that angles are weighed anew, and how many times better than plain each ought to be. */
+/* Number of reweightings of angles, and the wanted improvement over plain normal mapping at each
+ * angle. */
 #define ROUNDS 4
 #define WANTED 3.0
-/* Lights and views of the filtered residuals: every so many of the setup's. */
+/* The filtered residuals use every n-th light and view of the setup. */
 #define FILTERED_LIGHTS 5u
-/* Weight of the light that a mip is to keep. With 1.2 grass is off by 5.2 % from above; with 5 mips keep no
- * more, and grass is 9 times nearer at 88 degrees instead of 10. */
+/* Weight of the light that a mip must preserve. With 1.2 grass has an error of 5.2 % from above;
+ * with 5 mips preserve no more light, and the error of grass at 88 degrees is 9 times lower instead
+ * of 10. */
 #define KEEP 2.5
 
 typedef union numbers {
@@ -25,8 +27,8 @@ typedef union numbers {
 
 _Static_assert(sizeof(masu_meso_curves) == MASU_MESO_NUMBERS * sizeof(double), "no gaps");
 
-/* What keeps each number near where it is harmless unless the radiance asks for more, and how far it
- * may go: fits to a finite set of lights would else buy a thousandth with absurd curves. */
+/* Limits of each number, and a weight (HOLD) towards its start: otherwise fits to a finite set of
+ * lights would gain a thousandth with absurd curves. */
 typedef struct limit {
     double low, high;
 } limit;
@@ -40,7 +42,7 @@ static const limit limits[MASU_MESO_NUMBERS] = {
     {0, 1},  {-3, 3}, {-3, 3}, {-30, 30}, /* specular, spread by y^2 */
 };
 #define HOLD 0.002
-/* Of spread1 and spread2: multiplied by a spread far below 1, they are larger numbers. */
+/* For spread1 and spread2: they multiply a spread far below 1, so they are larger numbers. */
 #define HOLD_SPREAD 0.0005
 
 typedef struct problem {
@@ -51,7 +53,7 @@ typedef struct problem {
     double weight[MASU_MESO_VIEWS_MAX], plain[MASU_MESO_VIEWS_MAX];
     size_t residuals;
     numbers start;
-    /* Toward the setup's lights and the near ones: fixed, and asked for in every evaluation. */
+    /* Directions of the setup's lights and of the near ones: constant, used in every evaluation. */
     masu_meso_vec3 light[MASU_MESO_LIGHTS_MAX], near_light[MASU_MESO_NEAR_LIGHTS_MAX];
 } problem;
 
@@ -94,7 +96,7 @@ static double *far_residuals(const problem *p, double *r) {
                 *r++ = (got[k] - view->sun[j][k] - MASU_MESO_SKY * view->sky[k]) / mean;
             }
         }
-        /* The sky by itself once more: it must not pay for the sun. */
+        /* Weighs the sky separately again: it must not compensate for the sun. */
         for (int k = 0; k < 3; k++) {
             *r++ = 4 * (sky[k] - MASU_MESO_SKY * view->sky[k]) / mean;
         }
@@ -102,8 +104,8 @@ static double *far_residuals(const problem *p, double *r) {
     return r;
 }
 
-/* A view counts by how wrong plain normal mapping is there: what matters is how many times better the
- * curves are, at the worst angle too. */
+/* A view is weighted by the error of plain normal mapping: the aim is the improvement by the
+ * curves, including the worst angle. */
 static void weigh_views(problem *p, double *r) {
     uint32_t numbers = (p->s->setup->light_count + 1) * 3;
     for (uint32_t i = 0; i < p->s->setup->view_count; i++) p->weight[i] = 1;
@@ -119,7 +121,8 @@ static void weigh_views(problem *p, double *r) {
     }
 }
 
-/* Angles at which the curves are less than WANTED times better weigh more from now on. False: none. */
+/* Increases the weight of angles at which the curves improve by less than WANTED. Returns false if
+ * there are none. */
 static bool weigh_again(problem *p, const numbers *n, double *r) {
     uint32_t views = p->s->setup->view_count, numbers = (p->s->setup->light_count + 1) * 3;
     bool again = false;
@@ -176,8 +179,8 @@ static double *filtered_residuals(const problem *p, double weight, double *r) {
     return r;
 }
 
-/* Mean over lights of the radiance of the mean texel against the map's own texels: a mip may move a
- * highlight, but is to keep the light. */
+/* Mean over lights of the radiance of the mean texel against that of the map's own texels: a mip
+ * may move a highlight, but must preserve the light. */
 static double *kept_residuals(const problem *p, double weight, double *r) {
     const masu_meso_samples *s = p->s;
     uint32_t lights = filtered_lights(s);
@@ -202,7 +205,8 @@ static double *kept_residuals(const problem *p, double weight, double *r) {
     return r;
 }
 
-/* Each kind counts by its mean square, the far one most: it is what the bar is about. */
+/* Each kind is weighted by its mean square; the far kind has the largest weight, because it is the
+ * requirement. */
 static double evaluate(problem *p, const numbers *n, double *r) {
     const masu_meso_samples *s = p->s;
     double far = (double)far_count(s), near = (double)near_count(s);
@@ -219,7 +223,7 @@ static double evaluate(problem *p, const numbers *n, double *r) {
     return sum;
 }
 
-/* Symmetric, positive definite by its diagonal: elimination without pivots. */
+/* Symmetric and positive definite by its diagonal: elimination without pivoting. */
 static void solve(double a[FREE][FREE + 1], double x[FREE]) {
     for (uint32_t i = 0; i < FREE; i++) {
         for (uint32_t j = i + 1; j < FREE; j++) {
@@ -234,15 +238,15 @@ static void solve(double a[FREE][FREE + 1], double x[FREE]) {
     }
 }
 
-/* What is fitted: not the facets' roughness and the tint, which are measured. */
+/* The fitted numbers: all except the facets' roughness and the tint, which are measured. */
 static uint32_t number_of(uint32_t k) {
     static const uint8_t number[FREE] = {0,  1,  2,  4,  5,  6,  7,  8,  9,  10,
                                          11, 12, 13, 14, 15, 19, 20, 21, 22, 23};
     return number[k];
 }
 
-/* A number at its limit that would go on is left out: cut off after the step, it would spoil the
- * step of the others. */
+/* Excludes numbers at their limit whose step would exceed it: clamping after the step would spoil
+ * the step of the others. */
 static void hold_at_limits(const numbers *n, double a[FREE][FREE + 1]) {
     for (uint32_t k = 0; k < FREE; k++) {
         double v = n->v[number_of(k)], push = a[k][FREE];
@@ -306,7 +310,7 @@ static double improve(problem *p, numbers *n, double *r, double *trial, double *
     return best;
 }
 
-/* Least squares of color(y) = color(0) (1 + y^2 tint). */
+/* Least squares for color(y) = color(0) (1 + y^2 tint). */
 static void measured_tint(const masu_meso_samples *s, double tint[3]) {
     for (int k = 0; k < 3; k++) {
         double top = 0, below = 0;
@@ -338,7 +342,7 @@ masu_meso_curves masu_meso_fit(const masu_meso_samples *samples, const masu_meso
     if (!r || !trial || !jacobian) exit(masu_cli_error("out of memory"));
     weigh_views(&p, r);
 
-    /* Tilt, offset, alpha: where valleys have been seen to begin. */
+    /* Tilt, offset, alpha: starting points that lead to known minima. */
     static const double starts[][3] = {
         {0.3, 0.8, 0.5}, {0.1, 0.9, 0.3}, {0.8, 1.0, 1.0}, {0.0, 1.2, 1.5}};
     double tint[3];
@@ -351,7 +355,7 @@ masu_meso_curves masu_meso_fit(const masu_meso_samples *samples, const masu_meso
         n.curves.tilt[0] = starts[i][0];
         n.curves.offset = starts[i][1];
         n.curves.alpha = starts[i][2];
-        n.curves.specular[0] = 0.95; /* off the limit, where differences vanish */
+        n.curves.specular[0] = 0.95; /* inside the limit, where differences do not vanish */
         memcpy(n.curves.tint, tint, sizeof tint);
         n.curves.spread = 1;
         n.curves.ao[0] = 0.2;

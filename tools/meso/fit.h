@@ -1,13 +1,13 @@
-/* fit.h: the curves that come nearest to the ray-traced radiance. Levenberg-Marquardt (Marquardt,
- * SIAM 1963) with differences, from several starts, the best taken. Four kinds of residuals, all
- * relative to the mean radiance of their view:
+/* fit.h: fits the curves to the ray-traced radiance. Levenberg-Marquardt (Marquardt, SIAM 1963)
+ * with finite differences, from several starts, keeping the best result. Four kinds of residuals,
+ * all relative to the mean radiance of their view:
  *
- *   far      the mean texel against the reference, every view and light: what a distant surface is
- *   near     single texels from straight above against the reference: what a shadow is
- *   filtered the mean of the texels' radiance against the radiance of the mean texel: what a mip may
- *            change
- *   kept     the same of the mean over all lights, from the texels of the map itself: what a mip may
- *            not change. Far sees the mean texel alone, so gain and spread can serve both */
+ *   far      the mean texel against the reference, every view and light: a distant surface
+ *   near     single texels from straight above against the reference: the shadows
+ *   filtered the mean of the texels' radiance against the radiance of the mean texel: errors that a
+ *            mip may have
+ *   kept     the same for the mean over all lights, from the texels of the map itself: light that a
+ *            mip must preserve. Far uses only the mean texel, so gain and spread can serve both */
 #ifndef MASU_MESO_FIT_H
 #define MASU_MESO_FIT_H
 
@@ -20,16 +20,16 @@ typedef struct masu_meso_samples {
     const masu_meso_view *views;
     masu_meso_texel mean;
     /* Texels for near and filtered: `near` holds their radiance from above under near_light, by
-     * texel, light and channel, sky included. */
+     * texel, light and channel, including the sky. */
     const masu_meso_texel *texels;
     const double *near;
-    /* Texels of the map itself, spread over it: what a mip is to keep. */
+    /* Texels spread over the map, for the kind `kept`. */
     const masu_meso_texel *fine;
     uint32_t texel_count, near_count, fine_count;
     masu_meso_light near_light[MASU_MESO_NEAR_LIGHTS_MAX];
 } masu_meso_samples;
 
-/* The root mean square of each kind of residual, for messages. */
+/* Root mean square of each kind of residual, for messages. */
 typedef struct masu_meso_misfit {
     double far, near, filtered;
 } masu_meso_misfit;

@@ -1,4 +1,5 @@
-/* height.c: see input.h. The picture is somebody's: what is no whole PNG, or no period by its header, is not decoded. */
+/* height.c: see input.h. The image is untrusted: an incomplete PNG, or one whose header does not
+ * describe a period, is not decoded. */
 #include "meso/input.h"
 
 #include <stdlib.h>

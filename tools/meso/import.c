@@ -1,5 +1,5 @@
-/* import.c: see input.h. The model is read in a child process, as masu-bake reads it; base
- * colours are taken, textures are not. */
+/* import.c: see input.h. A child process reads the model like masu-bake. Base colours are used,
+ * textures are not. */
 #include "meso/input.h"
 
 #include "bake/import/import.h"

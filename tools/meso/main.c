@@ -1,5 +1,5 @@
-/* main.c: the program masu-meso: makes the maps and the angle-dependent curves of a material from a
- * patch of relief. docs/meso.md is its manual. */
+/* main.c: the program masu-meso: builds the maps and the angle-dependent curves of a material from
+ * a patch of relief. docs/meso.md is its manual. */
 #include <stdio.h>
 
 #include "cli/cli.h"

@@ -1,11 +1,11 @@
-/* make.c: asphalt, gravel and grass by formula. All random numbers come from one integer
- * generator that starts at the seed, so that a patch is the same wherever it is made. Lengths are
- * shares of the period, which stands for some 16 cm of asphalt, 40 cm of gravel, 30 cm of grass.
+/* make.c: procedural asphalt, gravel and grass. All random numbers are from one integer generator
+ * that starts at the seed, so that a patch is the same on every machine. Lengths are fractions of
+ * the period, which represents some 16 cm of asphalt, 40 cm of gravel, 30 cm of grass.
  *
- *   asphalt  a height field: rounded stones set in binder, rolled flat on top, with a second, finer
+ *   asphalt  a height field: rounded stones in binder, rolled flat on top, with a second, finer
  *            roughness on stones and binder
- *   gravel   a mesh: ellipsoids that lie on each other, so that there are overhangs and holes
- *   grass    a mesh: blades as bent strips over soil, darker at the root */
+ *   gravel   a mesh: a pile of ellipsoids, with overhangs and holes
+ *   grass    a mesh: blades as curved strips over soil, darker at the root */
 #include "meso/patch.h"
 
 #include <stdlib.h>
@@ -17,7 +17,7 @@ const char *const masu_meso_made[] = {"asphalt", "gravel", "grass", NULL};
 
 #define PI MASU_BAKE_PI
 
-/* SplitMix64 (Steele, Lea and Flood, OOPSLA 2014): every start is a good one. */
+/* SplitMix64 (Steele, Lea and Flood, OOPSLA 2014): every seed is good. */
 static double random_unit(uint64_t *state) {
     uint64_t z = *state += 0x9E3779B97F4A7C15u;
     z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9u;
@@ -29,7 +29,7 @@ static double random_in(uint64_t *state, double low, double high) {
     return low + (high - low) * random_unit(state);
 }
 
-/* Distance of a and b on a circle of length 1, signed, -0.5..0.5. */
+/* Signed distance of a and b on a circle of length 1, -0.5..0.5. */
 static double around(double a, double b) {
     double d = a - b;
     return d - floor(d + 0.5);
@@ -41,7 +41,7 @@ typedef struct disc {
     double x, z, radius, top, turn, longer, shade;
 } disc;
 
-/* Value noise over `cells` cells of the period, smooth, -1..1. */
+/* Smooth value noise over `cells` cells of the period, -1..1. */
 static double noise(double x, double z, int cells, uint64_t seed) {
     double fx = x * cells, fz = z * cells, value[2][2];
     int ix = (int)floor(fx), iz = (int)floor(fz);
@@ -59,7 +59,7 @@ static double noise(double x, double z, int cells, uint64_t seed) {
            (value[1][0] * (1 - u) + value[1][1] * u) * v;
 }
 
-/* Discs thrown until they fit; smaller ones the longer it takes. */
+/* Places random discs without overlap; the radius decreases with the number of attempts. */
 static uint32_t throw_discs(disc *discs, uint32_t most, uint64_t *state) {
     uint32_t count = 0;
     for (uint32_t t = 0; t < 40000 && count < most; t++) {
@@ -104,7 +104,7 @@ static void make_asphalt(uint32_t detail, uint64_t state, masu_meso_patch *patch
                 double v = (dz * cos(d->turn) - dx * sin(d->turn)) / d->radius;
                 double r = u * u + v * v;
                 if (r >= 1) continue;
-                /* An ellipsoid whose top the roller has pressed flat. */
+                /* an ellipsoid with its top rolled flat */
                 double s = sqrt(1 - r), flat = s < 0.75 ? s : 0.75 + 0.25 * (s - 0.75);
                 double y = d->top + (flat - 0.8) * 0.9 * d->radius;
                 if (y > h) {
@@ -138,7 +138,7 @@ typedef struct stone {
 } stone;
 
 /* Top of the ellipsoid above (x, z), or -1. With p = c + A q, |q| = 1, the vertical line through
- * (x, z) meets it where a quadratic in y is zero. */
+ * (x, z) intersects it at the roots of a quadratic in y. */
 static double stone_top(const stone *s, double x, double z) {
     double dx = around(x, s->center.x), dz = around(z, s->center.z), a = 0, b = 0, c = -1;
     for (int k = 0; k < 3; k++) {
@@ -158,7 +158,7 @@ static void random_axes(uint64_t *state, masu_meso_vec3 axis[3]) {
         v[k] =
             masu_bake_v3(random_in(state, -1, 1), random_in(state, -1, 1), random_in(state, -1, 1));
     }
-    /* Stones lie flat rather than stand: the short axis leans towards the vertical. */
+    /* Stones are flat rather than upright: the short axis leans towards the vertical. */
     axis[2] = masu_bake_v3(v[0].x * 0.6, 1, v[0].z * 0.6);
     masu_bake_normalize(&axis[2]);
     axis[0] = masu_bake_cross(v[1], axis[2]);
@@ -166,7 +166,7 @@ static void random_axes(uint64_t *state, masu_meso_vec3 axis[3]) {
     axis[1] = masu_bake_cross(axis[2], axis[0]);
 }
 
-/* A sphere of rings, squeezed to the ellipsoid, dented a little so that no two are alike. */
+/* A sphere of rings, scaled to the ellipsoid, with small dents so that no two are alike. */
 static void add_stone(const stone *s, uint32_t rings, uint64_t *state, const double tint[3],
                       masu_meso_patch *patch) {
     double phase[3] = {random_in(state, 0, 6), random_in(state, 0, 6), random_in(state, 0, 6)};
@@ -216,8 +216,8 @@ static void make_gravel(uint32_t detail, uint64_t state, masu_meso_patch *patch)
             s->axis[k] = masu_bake_mad(masu_bake_v3(0, 0, 0), s->axis[k], size * share[k]);
         }
         s->shade = random_in(&state, 0.6, 1.4);
-        /* It rests on what lies below its middle and four points around that: the mean of the two
-         * highest, so that stones touch without standing on points. */
+        /* The stone rests on the surface below its centre and four points around it: the mean of
+         * the two highest, so that stones touch without standing on points. */
         double top[2] = {0, 0};
         for (int k = 0; k < 5; k++) {
             double x = s->center.x + (k == 1 ? 0.5 : k == 2 ? -0.5 : 0) * size;
@@ -231,7 +231,7 @@ static void make_gravel(uint32_t detail, uint64_t state, masu_meso_patch *patch)
             }
         }
         s->center.y = 0.5 * (top[0] + top[1]) + 0.35 * size * share[2];
-        /* A heap grows no towers: what would lie too high is let fall beside it. */
+        /* Limits the height of the pile: higher stones are placed lower. */
         if (s->center.y > 0.075) s->center.y = random_in(&state, 0.05, 0.075);
         add_stone(s, 6 + 4 * detail, &state, tint, patch);
     }

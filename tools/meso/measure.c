@@ -44,7 +44,8 @@ masu_meso_vec3 masu_meso_cosine_ray(masu_meso_vec3 n, double u, double v) {
     return masu_bake_mad(d, n, up);
 }
 
-/* Sky rays of a hit: the share that leaves, and the light that arrives at the viewer. */
+/* Traces sky rays of a hit: returns the fraction that escapes; `radiance` is the light towards the
+ * viewer. */
 static double look_at_sky(const masu_meso_tracer *tracer, const masu_meso_hit *h, masu_meso_vec3 v,
                           double roughness, uint32_t rays, uint64_t seed, double radiance[3]) {
     double open = 0, diffuse = 0, specular = 0;
@@ -146,7 +147,7 @@ void masu_meso_look_down(const masu_meso_tracer *tracer, const masu_meso_patch *
                 n += 1;
             }
             hits += n;
-            n = n > 0 ? n : 1; /* a hole: black, closed, looking up */
+            n = n > 0 ? n : 1; /* a hole: black, closed, facing up */
             masu_meso_vec3 mean = {t.normal[0] / n, t.normal[1] / n, t.normal[2] / n};
             double length = masu_bake_length(mean);
             if (!masu_bake_normalize(&mean)) mean = masu_bake_v3(0, 1, 0);

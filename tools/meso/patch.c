@@ -52,7 +52,8 @@ void masu_meso_patch_from_grid(masu_meso_patch *patch, const double *height, con
     for (uint32_t z = 0; z < size; z++) {
         for (uint32_t x = 0; x < size; x++) {
             uint32_t a = first + z * row + x, b = a + 1, c = a + row, d = c + 1;
-            /* The diagonal turns from cell to cell: else all slopes would lean one way. */
+            /* The diagonal alternates between cells: otherwise all slopes would lean in one
+             * direction. */
             if ((x ^ z) & 1) {
                 masu_meso_triangle(patch, a, c, b);
                 masu_meso_triangle(patch, b, c, d);

@@ -131,5 +131,5 @@ static int read_request(masu_cli *cli, masu_meso_request *r) {
 
 bool masu_meso_request_read(masu_cli *cli, masu_meso_request *r, int *code) {
     *code = read_request(cli, r);
-    return r->complete; /* not after --help */
+    return r->complete; /* false after --help */
 }

@@ -14,7 +14,7 @@ masu_meso_surface masu_meso_seen(const masu_meso_shader *shader, const masu_meso
         masu_meso_bend(&shader->curves, v, masu_bake_v3(0, 1, 0), &s);
         if (shader->no_specular) s.specular = 0;
     }
-    /* As masu_seen_normal of maps.glsl: a normal that points away is turned until it is all but
+    /* As masu_seen_normal of maps.glsl: a normal that points away is rotated until it is nearly
      * edge-on. */
     double turn = fmax(0.1 - masu_bake_dot(s.normal, v), 0);
     s.normal = masu_bake_mad(s.normal, v, turn);

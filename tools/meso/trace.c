@@ -7,7 +7,7 @@
 
 #include "cli/cli.h"
 
-/* Of the period: 20 times the rounding of a float near 1, a thousandth of a grain of asphalt. */
+/* In periods: 20 times the rounding of a float near 1, a thousandth of a grain of asphalt. */
 #define OFFSET 2e-6
 
 struct masu_meso_tracer {
@@ -18,7 +18,7 @@ struct masu_meso_tracer {
     double low, high;
 };
 
-/* Vertices and triangles of the patch and of its eight neighbours, as far as they reach into the
+/* Vertices and triangles of the patch, and those of its eight neighbours that reach into the
  * period. */
 typedef struct cell {
     float *vertex, *color;
@@ -50,7 +50,7 @@ static size_t count_reaching(const masu_meso_patch *p) {
 }
 
 static bool fill(masu_meso_tracer *t, const masu_meso_patch *p, size_t triangles) {
-    /* Embree reads 16 bytes at each vertex: room for one float more. */
+    /* Embree reads 16 bytes per vertex: one more float at the end. */
     t->vertex = malloc((triangles * 9 + 4) * sizeof(float));
     t->color = malloc((triangles * 9 + 4) * sizeof(float));
     t->index = malloc((triangles * 3 + 4) * sizeof(uint32_t));
@@ -120,11 +120,11 @@ void masu_meso_tracer_free(masu_meso_tracer *tracer) {
     free(tracer);
 }
 
-/* The walk over cells. `at` is within the period; distances are from `at`. */
+/* Traversal of cells. `at` is within the period; distances are from `at`. */
 typedef struct walk {
     double at[3], direction[3];
-    double left;     /* until the relief's slab is left */
-    double shift[2]; /* periods so far */
+    double left;     /* distance to the end of the relief's slab */
+    double shift[2]; /* periods crossed */
 } walk;
 
 static bool begin(const masu_meso_tracer *t, masu_meso_vec3 from, masu_meso_vec3 d, walk *w) {
@@ -151,7 +151,7 @@ static bool begin(const masu_meso_tracer *t, masu_meso_vec3 from, masu_meso_vec3
     return true;
 }
 
-/* How far until the cell ends, and through which wall: axis 0 or 2. */
+/* Distance to the end of the cell; *axis of its wall: 0 or 2. */
 static double to_wall(const walk *w, int *axis) {
     double nearest = 1e9;
     *axis = 0;

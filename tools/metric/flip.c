@@ -1,12 +1,13 @@
-/* flip.c: see flip.h. Owns its planes for the time of a call.
+/* flip.c: see flip.h. Its planes exist during a call.
  *
- * Colour: sRGB -> YCxCz; each channel is blurred by the eye's contrast sensitivity; clamped to what
- * a screen can show; L*a*b*, chroma scaled by lightness (Hunt); HyAB distance, raised to 0.7 and
- * mapped to 0..1 so that 40 % of the largest possible distance is an error of 0.95.
+ * Colour: sRGB -> YCxCz; each channel is filtered by the contrast sensitivity of human vision;
+ * clamped to the gamut of a screen; L*a*b*, chroma scaled by lightness (Hunt); HyAB distance,
+ * raised to 0.7 and mapped to 0..1 so that 40 % of the largest possible distance is an error of
+ * 0.95.
  *
- * Features: first and second derivatives of a Gaussian on the unblurred lightness find edges and
- * points; where one picture has a feature that the other lacks, the colour error counts for more:
- * error = colour ^ (1 - feature).
+ * Features: first and second derivatives of a Gaussian on the unfiltered lightness detect edges and
+ * points. If one image has a feature that the other lacks, the colour error is amplified: error =
+ * colour ^ (1 - feature).
  *
  * All filters are sums of separable kernels: the contrast sensitivities are Gaussians (blue-yellow
  * the sum of two), and x g(x,y) is x g(x) times g(y). */
@@ -31,7 +32,7 @@ typedef struct size2 {
 
 /* ---- Colour ---------------------------------------------------------------------------------- */
 
-/* Linear sRGB to XYZ, D65. White is the image of (1,1,1): the sums of the rows. */
+/* Linear sRGB to XYZ, D65. White is the XYZ of (1,1,1): the sums of the rows. */
 static const double to_xyz[3][3] = {
     {10135552.0 / 24577794, 8788810.0 / 24577794, 4435075.0 / 24577794},
     {2613072.0 / 12288897, 8788810.0 / 12288897, 887015.0 / 12288897},
@@ -42,7 +43,7 @@ static double decode(uint8_t byte) {
     return x > 0.04045 ? pow((x + 0.055) / 1.055, 2.4) : x / 12.92;
 }
 
-/* XYZ divided by white's. */
+/* XYZ divided by the white point. */
 static void relative_xyz(const double rgb[3], double out[3]) {
     for (int r = 0; r < 3; r++) {
         const double *m = to_xyz[r];
@@ -56,7 +57,7 @@ static void opponent(const double xyz[3], double out[3]) {
     out[2] = 200 * (xyz[1] - xyz[2]);
 }
 
-/* Cramer's rule on the matrix above: one source of truth for both directions. */
+/* Cramer's rule on the matrix above, so that both directions share one matrix. */
 static void linear_rgb(const double relative[3], double out[3]) {
     double v[3], inverse[3][3];
     for (int r = 0; r < 3; r++) v[r] = relative[r] * (to_xyz[r][0] + to_xyz[r][1] + to_xyz[r][2]);
@@ -92,7 +93,7 @@ static double hyab(const double a[3], const double b[3]) {
     return fabs(a[0] - b[0]) + hypot(a[1] - b[1], a[2] - b[2]);
 }
 
-/* The largest distance two colours can have, after the exponent: green against blue. */
+/* The largest possible distance of two colours, after the exponent: green against blue. */
 static double largest_distance(void) {
     const double green[3] = {0, 1, 0}, blue[3] = {0, 0, 1};
     double a[3], b[3];
@@ -114,7 +115,8 @@ static uint32_t clamped(int64_t at, uint32_t size) {
     return at < 0 ? 0 : at >= (int64_t)size ? size - 1 : (uint32_t)at;
 }
 
-/* out (+)= horizontal * vertical * in, the picture's edge repeated. scratch is as large as in. */
+/* out (+)= horizontal * vertical * in, with the image's edge repeated. scratch has the size of
+ * in. */
 static void filter(const double *in, size2 s, const kernel *horizontal, const kernel *vertical,
                    bool add, double *scratch, double *out) {
     int r = horizontal->radius;
@@ -151,7 +153,7 @@ static int radius_of(double r) {
 }
 
 /* exp(-pi^2 x^2 / b) in degrees: the Fourier transform of a Gaussian sensitivity of spread b. All
- * channels share the radius of the widest. */
+ * channels use the radius of the widest. */
 static void sensitivity(double b, double ppd, kernel *out) {
     out->radius = radius_of(3 * sqrt(0.04 / (2 * PI * PI)) * ppd);
     for (int i = -out->radius; i <= out->radius; i++)
@@ -163,7 +165,7 @@ typedef struct bank {
     kernel gauss, edge, point;
 } bank;
 
-/* Scales one of a separable pair so that the pair's total is `share`. */
+/* A separable pair, scaled to a total of `share`. */
 static void pair(double b, double share, double ppd, kernel out[2]) {
     sensitivity(b, ppd, &out[0]);
     out[1] = out[0];
@@ -174,8 +176,8 @@ static void pair(double b, double share, double ppd, kernel out[2]) {
     }
 }
 
-/* Positive taps to a sum of 1, negative ones to -1, as the paper's 2-D kernels: the Gaussian of the
- * other axis is positive, so signs and sums separate too. */
+/* Normalizes positive taps to a sum of 1 and negative ones to -1, like the paper's 2-D kernels: the
+ * Gaussian of the other axis is positive, so signs and sums separate too. */
 static void balance(kernel *k) {
     double up = 0.0, down = 0.0;
     for (int i = 0; i <= 2 * k->radius; i++) *(k->tap[i] > 0 ? &up : &down) += fabs(k->tap[i]);
@@ -212,16 +214,16 @@ static void make_bank(double ppd, bank *b) {
     balance(&b->point);
 }
 
-/* ---- One picture ----------------------------------------------------------------------------- */
+/* ---- One image ------------------------------------------------------------------------------- */
 
-enum { L, A, B, EDGE, POINT, LAB_PLANES }; /* what is kept of a picture */
+enum { L, A, B, EDGE, POINT, LAB_PLANES }; /* planes of an image */
 enum { YY, CX, CZ, FX, FY, SCRATCH, WORK_PLANES };
 
 static void magnitude(double *x, const double *y, size_t n) {
     for (size_t i = 0; i < n; i++) x[i] = hypot(x[i], y[i]);
 }
 
-/* One of the two: 4 bytes a pixel of sRGB, or 3 doubles of linear light. */
+/* One of the images: 4 bytes of sRGB per pixel, or 3 doubles of linear light. */
 typedef struct picture {
     const uint8_t *rgba;
     const double *rgb;
@@ -286,8 +288,8 @@ void masu_flip_summarise(double *errors, size_t n, float *map, masu_flip *out) {
     out->max = errors[n - 1];
 }
 
-/* errors: one a pixel. NULL: they go where the block that is returned begins. NULL is returned if
- * there is no memory. */
+/* errors: one per pixel; NULL: at the start of the returned block. Returns NULL if there is no
+ * memory. */
 static double *measure(picture reference, picture test, size2 s, double ppd, double *errors) {
     size_t n = (size_t)s.width * s.height;
     bank *b = malloc(sizeof *b);

@@ -1,4 +1,4 @@
-/* hdr_flip.c: see hdr_flip.h. Owns its pictures for the time of a call. */
+/* hdr_flip.c: see hdr_flip.h. Its images exist during a call. */
 #include "metric/hdr_flip.h"
 
 #include <math.h>
@@ -6,7 +6,7 @@
 
 static const double shown_at = 0.85;
 
-/* (a x + b) x / ((c x + d) x + e), of x times 0.6. */
+/* (a x + b) x / ((c x + d) x + e), for x times 0.6. */
 static const double a = 2.51 * 0.36, b = 0.03 * 0.6, c = 2.43 * 0.36, d = 0.59 * 0.6, e = 0.14;
 
 double masu_hdr_flip_tone(double x) {
@@ -15,7 +15,7 @@ double masu_hdr_flip_tone(double x) {
     return shown > 1.0 ? 1.0 : shown;
 }
 
-/* What the curve shows at 0.85: the positive root of a quadratic. */
+/* The input for which the curve returns 0.85: the positive root of a quadratic. */
 static double seen_at_shown(void) {
     double p = a - shown_at * c, q = b - shown_at * d, r = -shown_at * e;
     return (-q + sqrt(q * q - 4.0 * p * r)) / (2.0 * p);
@@ -43,7 +43,7 @@ bool masu_hdr_flip_exposures(const float *rgb, uint32_t pixels, masu_exposures *
     double most = fmin(luminance[pixels - 1], 1e30);
     double median = 0.5 * (luminance[(pixels - 1) / 2] + luminance[pixels / 2]);
     free(luminance);
-    if (!(most > 0.0)) return true; /* black whatever the exposure */
+    if (!(most > 0.0)) return true; /* black at any exposure */
     median = fmin(fmax(median, most * exp2(-MASU_HDR_FLIP_STOPS_MAX)), most);
     out->first = log2(seen_at_shown() / most);
     out->last = log2(seen_at_shown() / median);

@@ -9,7 +9,7 @@ enum { RADIUS = 5, TAPS = 2 * RADIUS + 1 };
 
 double masu_metric_rmse(const uint8_t *a, const uint8_t *b, uint32_t width, uint32_t height) {
     size_t n = (size_t)width * height;
-    uint64_t sum = 0; /* exact: 3 * 65025 a pixel */
+    uint64_t sum = 0; /* exact: 3 * 65025 per pixel */
     for (size_t i = 0; i < n; i++) {
         for (size_t c = 0; c < 3; c++) {
             int d = a[4 * i + c] - b[4 * i + c];

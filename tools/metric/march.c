@@ -6,7 +6,7 @@
 #include <string.h>
 
 enum { TILE = 16 };
-static const double error_cap = 4.0; /* pixels: a silhouette missed says no more than that */
+static const double error_cap = 4.0; /* pixels: a missed silhouette contributes at most this */
 
 /* ---- Two classes ----------------------------------------------------------------------------- */
 
@@ -14,8 +14,9 @@ static double log_choose(double n, double k) {
     return lgamma(n + 1) - lgamma(k + 1) - lgamma(n - k + 1);
 }
 
-/* Were wrongness independent of class, each of the n wrong pixels would be of class 0 with
- * probability share: the chance of all outcomes no likelier than the one seen. */
+/* If errors were independent of the class, each of the n wrong pixels would be of class 0 with
+ * probability `share`. Returns the probability of all outcomes that are at most as likely as the
+ * observed one. */
 static double binomial_two_sided(uint64_t n, uint64_t seen, double share) {
     if (!n || !(share > 0.0 && share < 1.0)) return 1.0;
     double a = log(share), b = log1p(-share), total = 0.0;

@@ -31,7 +31,7 @@ static void float_text(double value, char *out, size_t size) {
     }
 }
 
-/* One value, whatever the knob's kind. */
+/* One value of any kind of knob. */
 static void value_text(const masu_knob *k, const masu_rung *rung, uint32_t i, char *out,
                        size_t size) {
     double value = masu_knob_get(k, rung, i);
@@ -44,7 +44,7 @@ static void value_text(const masu_knob *k, const masu_rung *rung, uint32_t i, ch
     }
 }
 
-/* All values, with what stands before, between and after several. */
+/* All values, with the text before, between and after several values. */
 static void values_text(const masu_knob *k, const masu_rung *rung, const char *const around[3],
                         char *out, size_t size) {
     size_t used = 0;
@@ -88,7 +88,7 @@ void masu_knob_c(const masu_knob *k, const masu_rung *rung, char *out, size_t si
     }
 }
 
-/* Whether there is a gap between 0, which is always taken, and the other numbers. */
+/* Whether there is a gap between 0, which is always accepted, and the other numbers. */
 static bool has_gap(const masu_knob *k) {
     return k->min > 0.0 && !(k->kind == MASU_KNOB_COUNT && k->min < 2.0);
 }
@@ -140,7 +140,7 @@ const char *masu_json_given(const json_t *value, char *out, size_t size) {
     return out;
 }
 
-/* The place of the word that is the first `length` characters, or -1. */
+/* The index of the word given by the first `length` characters, or -1. */
 static double word_at(const masu_knob *k, const char *text, size_t length) {
     for (uint32_t w = 0; w < k->word_count; w++) {
         if (strlen(k->words[w].word) == length && !strncmp(k->words[w].word, text, length)) return w;
@@ -179,7 +179,8 @@ bool masu_knob_from_json(const masu_knob *k, const json_t *value, masu_rung *run
     return false;
 }
 
-/* The end of one value. "1e+09" is one number: a '+' ends a value only where a number does. */
+/* Returns the end of one value. "1e+09" is one number: a '+' ends a value only at the end of a
+ * number. */
 static const char *text_value(const masu_knob *k, const char *text, double *out) {
     const char *end = text;
     char *after;
@@ -219,7 +220,7 @@ static void zero_text(const masu_knob *k, char *out, size_t size) {
         snprintf(out, size, "%.10g", k->zero);
 }
 
-/* Text in lines of at most `width` characters, each behind `indent` spaces. */
+/* Prints text in lines of at most `width` characters, each indented by `indent` spaces. */
 static void print_wrapped(FILE *to, const char *text, int indent, size_t width) {
     size_t column = 0;
     while (*text) {
@@ -266,7 +267,7 @@ void masu_knobs_print(FILE *to) {
     }
 }
 
-/* The lists of values, each once. */
+/* Prints the lists of values, each once. */
 static void document_words(FILE *to) {
     for (const masu_knob *k = masu_knob_table(); k->name; k++) {
         bool seen = !k->words;

@@ -18,7 +18,7 @@ typedef struct place {
     size_t error_size;
 } place;
 
-/* Text out of the file may hold anything but the end of a line. */
+/* Text from the file may contain any characters except line ends. */
 static bool wrong(const place *at, const char *format, ...) {
     char text[400], rung[24] = "";
     va_list arguments;
@@ -31,7 +31,8 @@ static bool wrong(const place *at, const char *format, ...) {
     return false;
 }
 
-/* Texts go into comments and constants of C: what could end those, or begin a trigraph, becomes a dot. */
+/* The strings are used in C comments and constants: characters that could end these, or start a
+ * trigraph, become dots. */
 static bool read_text(const place *at, const json_t *object, const char *key, char *out,
                       size_t size) {
     char is[80];
@@ -59,7 +60,7 @@ static bool read_number(const place *at, const json_t *object, const char *key, 
                  masu_json_given(value, is, sizeof is));
 }
 
-/* Every key is one of the list, which NULL ends. */
+/* Every key must be in the list, which ends with NULL. */
 static bool known_keys(const place *at, const json_t *object, const char *const *keys) {
     const char *key;
     json_t *value;
@@ -106,7 +107,7 @@ static bool read_rung(const place *at, const json_t *value, masu_ladder_file *ou
         !read_knobs(at, json_object_get(value, "knobs"), &out->rungs[r])) {
         return false;
     }
-    /* As the floats that they become. */
+    /* Compared as floats, as they will be stored. */
     if (r && !((float)out->ratios[r] < (float)out->ratios[r - 1])) {
         return wrong(at, "ratio: expected less than the previous rung, %.6g, found %.6g",
                      out->ratios[r - 1], out->ratios[r]);
@@ -182,7 +183,7 @@ void masu_ladder_give(const masu_ladder_file *ladder, masu_desc *desc) {
     memset(desc->governor.costs, 0, sizeof desc->governor.costs);
     for (uint32_t r = 0; r < ladder->count; r++) {
         desc->rungs[r] = ladder->rungs[r];
-        /* Measured without a governor, with which AUTO would be another thing. */
+        /* Measured without a governor, which would change the meaning of AUTO. */
         if (desc->rungs[r].temporal == MASU_AUTO) desc->rungs[r].temporal = MASU_OFF;
         desc->flips[r] = (float)ladder->flips[r];
         desc->governor.costs[r] = (float)ladder->ratios[r];

@@ -9,7 +9,7 @@
 
 /* ---- Names ----------------------------------------------------------------------------------- */
 
-/* AMD's own choice for its "quality" pictures, and that of the library's own rungs. */
+/* AMD's sharpness for its "quality" mode, and that of the library's default rungs. */
 const masu_rung masu_setting_base = {.scale = 1.0f, .sharpness = 0.2f};
 
 uint32_t masu_setting_period(const masu_rung *rung) {
@@ -49,7 +49,7 @@ static bool wrong(const char *name, char *error, size_t error_size, const char *
 #define ONE(...) +1
 _Static_assert(0 MASU_KNOBS(ONE, ONE) <= 64, "a bit for each knob that was seen");
 
-/* A value ends with its number, with which a '+' may belong ("1e+09"), or else at the next '+'. */
+/* A value ends after its number, which may contain a '+' ("1e+09"), or else at the next '+'. */
 static bool read_part(const char *name, const char **at, masu_rung *rung, uint64_t *seen,
                       char *error, size_t error_size) {
     char range[200];
@@ -84,7 +84,7 @@ bool masu_setting_parse(const char *name, masu_rung *out, char *error, size_t er
     }
 }
 
-/* ---- What a scene has use for ---------------------------------------------------------------- */
+/* ---- Knobs without effect in a scene --------------------------------------------------------- */
 
 static bool has_pass(const masu_plan_info *plan, const char *start) {
     for (uint32_t p = 0; p < plan->pass_count; p++) {

@@ -24,13 +24,13 @@ extern const masu_rung masu_setting_base;
 void masu_setting_name(const masu_rung *rung, char out[MASU_SETTING_ID]);
 
 /* Reads a name, with the knobs in any order. On false, `error` names in one line the part that is
- * not a knob with a value or that comes twice, or the values that the knob accepts and the value
+ * not a knob with a value or that is given twice, or the values that the knob accepts and the value
  * that was given. */
 bool masu_setting_parse(const char *name, masu_rung *out, char *error, size_t error_size);
 
 /* Frames after which the slowest shadow cascade has been rendered again. */
 uint32_t masu_setting_period(const masu_rung *rung);
-/* Whether a frame depends on previous frames, whatever the scene. */
+/* Whether a frame depends on previous frames, for any scene. */
 bool masu_setting_remembers(const masu_rung *rung);
 
 /* Why the knob changes nothing in that rung of that scene, or NULL. `base` is the plan of the base

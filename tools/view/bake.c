@@ -1,12 +1,13 @@
-/* bake.c: files: those that are opened, baked first unless they are a blob, and those that change
- * while their scene is looked at.
+/* bake.c: opens files and watches them for changes. Files other than blobs are baked first.
  *
- * A baked scene is watched itself. Anything else is watched with every file that it names: when one
- * of them changes, a process bakes the scene into a folder of ours, and what comes out is loaded if
- * it succeeds; if not, the line that it has said is shown and the old scene stays. Files are looked
- * at twice a second, by time and size; a script looks at every frame and waits for the baker,
- * except for a file that is opened while it runs. Shaders of the library are part of the program:
- * what can be reloaded is the scene with its .sdf or .glsl. */
+ * A baked scene is watched itself. Any other file is watched together with every file that it
+ * names. When one of them changes, a child process bakes the scene into a temporary folder. If the
+ * bake succeeds, the result is loaded; otherwise the baker's error is shown and the old scene
+ * remains.
+ *
+ * Files are checked twice a second by time and size. A script checks in every frame and waits for
+ * the baker, except for a file that is opened while it runs. Only the scene with its .sdf or .glsl
+ * can be reloaded: the library's shaders are part of the program. */
 #include "view/viewer.h"
 
 #include "bake/base/process.h"
@@ -42,7 +43,7 @@ static void look_at(masu_watch *w) {
 
 static void watch_contents(masu_baker *b, const char *path);
 
-/* A regular file, and the files that it names. */
+/* Watches a regular file and the files that it names. */
 static void watch(masu_baker *b, const char *path) {
     if (b->count == MASU_WATCHES_MAX || strlen(path) >= sizeof b->watches[0].path) return;
     for (uint32_t i = 0; i < b->count; i++) {
@@ -54,7 +55,7 @@ static void watch(masu_baker *b, const char *path) {
     if (masu_file_is_regular(path)) watch_contents(b, path);
 }
 
-/* `name`, as the file `from` names it, if there is such a file. */
+/* Watches `name`, relative to the file `from`, if that file exists. */
 static void watch_named(masu_baker *b, const char *from, const char *name) {
     char path[1100];
     struct stat s;
@@ -77,8 +78,8 @@ static void watch_strings(masu_baker *b, const char *from, const json_t *value) 
     }
 }
 
-/* Files that a line of an SDF (include "NAME"), an OBJ (mtllib NAME) or an MTL (map_Kd -s 1 1 1
- * NAME) names: the rest of the line after the first word, and its last word. */
+/* Watches the files that a line of an SDF (include "NAME"), an OBJ (mtllib NAME) or an MTL (map_Kd
+ * -s 1 1 1 NAME) names. It tries the rest of the line after the keyword, and its last part. */
 static void watch_line(masu_baker *b, const char *from, char *line) {
     static const char *const words[] = {"include", "mtllib", "map_", "bump", "norm", "disp"};
     size_t at = 0;
@@ -93,8 +94,8 @@ static void watch_line(masu_baker *b, const char *from, char *line) {
     if (last) watch_named(b, from, last + 1);
 }
 
-/* Names of files in the strings of a JSON file or a .gltf, and in the first 64 KiB of other texts.
- * A file that cannot be read names nothing; the baker reports what is wrong with it. */
+/* Reads file names from the strings of a JSON file or a .gltf, and from the first 64 KiB of other
+ * text files. An unreadable file yields no names; the baker reports the error. */
 static void watch_contents(masu_baker *b, const char *path) {
     const char *dot = strrchr(path, '.');
     char line[1024];
@@ -114,7 +115,7 @@ static void watch_contents(masu_baker *b, const char *path) {
     }
 }
 
-/* What is not there at the moment is being written. */
+/* A missing file is ignored: it is probably being written. */
 static bool has_changed(masu_baker *b) {
     bool changed = false;
     for (uint32_t i = 0; i < b->count; i++) {
@@ -193,7 +194,7 @@ static bool make_folder(masu_viewer *v) {
     return true;
 }
 
-/* `COMMAND SOURCE -o OUTPUT ...`, what it says into a file. */
+/* Runs `COMMAND SOURCE -o OUTPUT ...` with stderr in the log. */
 static bool begin(masu_viewer *v) {
     masu_baker *b = &v->baker;
     char program[1100], words[4096], turn[32];
@@ -221,7 +222,7 @@ static bool begin(masu_viewer *v) {
     return b->child != 0;
 }
 
-/* The first line that is no warning, else the first there is. */
+/* Finds the first line that is not a warning, or the first line if all are warnings. */
 static void read_complaint(const char *log, char *out, size_t size) {
     char line[512];
     bool found = false;
@@ -229,7 +230,7 @@ static void read_complaint(const char *log, char *out, size_t size) {
     out[0] = '\0';
     while (f && !found && fgets(line, sizeof line, f)) {
         line[strcspn(line, "\n")] = '\0';
-        char *wiped = strrchr(line, '\033'); /* progress before it */
+        char *wiped = strrchr(line, '\033'); /* skip the progress text before it */
         if (wiped && strlen(wiped) > 2) memmove(line, wiped + 3, strlen(wiped + 3) + 1);
         if (!*line) continue;
         found = !strstr(line, ": warning: ");
@@ -238,7 +239,7 @@ static void read_complaint(const char *log, char *out, size_t size) {
     if (f) fclose(f);
 }
 
-/* True: it has ended; *good says how. */
+/* Returns true if the process has ended; *good is its success. */
 static bool ended(masu_viewer *v, bool wait, bool *good) {
     masu_baker *b = &v->baker;
     int status;
@@ -252,7 +253,7 @@ static bool ended(masu_viewer *v, bool wait, bool *good) {
     return true;
 }
 
-/* What it does now, and how much of that is done if it says "N of M". */
+/* The current step of the bake, and the fraction done if the step reports "N of M". */
 void masu_baker_progress(const masu_viewer *v, float *fraction, char *text, size_t size) {
     const masu_baker *b = &v->baker;
     char log[2048] = "", *last;
@@ -284,7 +285,7 @@ static void fail(masu_viewer *v) { snprintf(v->trouble, sizeof v->trouble, "%s",
 static bool finish(masu_viewer *v, bool good) {
     masu_baker *b = &v->baker;
     bool fresh = b->opens;
-    b->count = 0; /* it may name other files now */
+    b->count = 0; /* the source may name different files now */
     watch(b, b->source);
     if (!good) return fail(v), true;
     b->opens = false;
@@ -292,7 +293,7 @@ static bool finish(masu_viewer *v, bool good) {
     return masu_viewer_load(v, b->blob, fresh);
 }
 
-/* True unless the device is lost. */
+/* Returns false only if the device is lost. */
 static bool open_it(masu_viewer *v, const char *path) {
     masu_baker *b = &v->baker;
     if (!masu_file_is_regular(path)) {
@@ -330,7 +331,7 @@ bool masu_baker_start(masu_viewer *v) {
     masu_baker *b = &v->baker;
     const char *json = v->o->json, *scene = v->o->scene;
     b->looked_ns = masu_clock_ns(NULL);
-    if (scene && json) { /* baked already: the description is for changes */
+    if (scene && json) { /* baked already: watch the description for changes */
         snprintf(b->source, sizeof b->source, "%s", json);
         snprintf(b->blob, sizeof b->blob, "%s", scene);
         watch(b, json);

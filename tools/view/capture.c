@@ -1,5 +1,5 @@
-/* capture.c: what is kept of what is seen: a camera path while it is flown, which plays and becomes
- * a scene description; images and videos, under names by date in the current folder. */
+/* capture.c: records a camera path while flying, plays it and saves it as a scene description;
+ * writes screenshots and videos, named by date, to the current folder. */
 #include "view/viewer.h"
 
 #include "cli/cli.h"
@@ -13,7 +13,7 @@
 
 #define KEY_SECONDS 0.25
 
-/* "masu-20260102-030405.png"; by the frame's number in scripts. */
+/* "masu-20260102-030405.png"; scripts use the frame number instead of the date. */
 static void new_name(const masu_viewer *v, const char *end, char *out, size_t size) {
     char date[32];
     time_t now = time(NULL);
@@ -33,7 +33,7 @@ bool masu_capture_still(masu_viewer *v) {
     new_name(v, ".png", name, sizeof name);
     if (masu_viewer_screenshot(v, name, v->recorder.clean))
         return masu_viewer_note(v, "wrote %s", name), true;
-    fail(v); /* a full disk is no reason to end */
+    fail(v); /* a full disk does not end the program */
     return !v->lost;
 }
 
@@ -55,7 +55,7 @@ void masu_capture_film(masu_viewer *v, bool on) {
         fail(v);
 }
 
-/* A window of another size ends it. */
+/* A change of the window's size ends the video. */
 bool masu_capture_frame(masu_viewer *v) {
     masu_capture *r = &v->recorder;
     masu_headless_target *t = r->clean ? &v->a.target : &v->compose.shown;
@@ -108,7 +108,7 @@ void masu_capture_step(masu_viewer *v, double seconds) {
     if (r->count == MASU_PATH_KEYS) masu_capture_path(v, false);
 }
 
-/* Linear between keys, as the library's own paths are. */
+/* Linear interpolation between keys, as for the library's paths. */
 bool masu_capture_camera(const masu_viewer *v, masu_camera *out) {
     const masu_capture *r = &v->recorder;
     uint32_t i = 1;
@@ -136,7 +136,8 @@ static json_t *vector(const double at[3], const float forward[3], double distanc
     return out;
 }
 
-/* In the description that was opened, under another name beside it; else only the camera. */
+/* Writes a copy of the opened description under another name in the same folder, or only the camera
+ * if no description is open. */
 void masu_capture_save(masu_viewer *v) {
     const masu_capture *r = &v->recorder;
     const char *source = v->baker.source, *dot = strrchr(source, '.');
@@ -145,7 +146,8 @@ void masu_capture_save(masu_viewer *v) {
            *keys = json_array();
     char name[1200];
     if (!root) root = json_object();
-    camera = json_incref(json_object_get(root, "camera")); /* near plane and field of view stay */
+    camera = json_incref(json_object_get(root, "camera")); /* keeps the near plane and the field of
+                                                            * view */
     if (!json_is_object(camera)) json_decref(camera), camera = json_object();
     json_object_del(camera, "from");
     for (uint32_t i = 0; i < r->count; i++) {

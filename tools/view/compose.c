@@ -76,7 +76,8 @@ static VkResult make_sets(masu_compose *c) {
     return r ? r : vkAllocateDescriptorSets(c->host->device, &info, c->sets);
 }
 
-/* The headless host's pool takes no resets: command buffers are freed and allocated anew, each frame. */
+/* The headless host's pool does not allow resets: command buffers are freed and allocated in each
+ * frame. */
 bool masu_compose_open(masu_compose *c, masu_headless *host, VkPipelineCache cache, char *error,
                        size_t size) {
     memset(c, 0, sizeof *c);
@@ -156,8 +157,8 @@ static VkImageMemoryBarrier change(VkImage image, VkImageLayout from, VkImageLay
                                   .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
 }
 
-/* The first barrier waits for all that came before: the library's frame, and the last frame's blit out of
- * `shown`. */
+/* The first barrier waits for all earlier commands: the library's frame, and the previous frame's
+ * blit from `shown`. */
 static void draw(masu_compose *c, VkCommandBuffer cmd, uint32_t slot, const masu_composition *what) {
     const VkImageLayout source = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, general = VK_IMAGE_LAYOUT_GENERAL;
     const VkAccessFlags written = VK_ACCESS_MEMORY_WRITE_BIT, read = VK_ACCESS_SHADER_READ_BIT;
@@ -183,7 +184,7 @@ static void draw(masu_compose *c, VkCommandBuffer cmd, uint32_t slot, const masu
                          0, NULL, count - 1, after);
 }
 
-/* Where there is no picture yet. */
+/* Without a renderer the window has one background colour. */
 static void clear(masu_compose *c, VkCommandBuffer cmd) {
     const VkImageLayout general = VK_IMAGE_LAYOUT_GENERAL;
     const VkClearColorValue dark = {.float32 = {0.06f, 0.07f, 0.09f, 1.0f}};
@@ -195,7 +196,7 @@ static void clear(masu_compose *c, VkCommandBuffer cmd) {
     vkCmdClearColorImage(cmd, c->shown.image, general, &dark, 1, &all);
 }
 
-/* The user interface leaves it as the blit wants it. */
+/* Transitions `shown` for the user interface, which leaves it ready for the blit. */
 static void draw_ui(masu_compose *c, VkCommandBuffer cmd) {
     VkImageMemoryBarrier before =
         change(c->shown.image, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
@@ -206,7 +207,7 @@ static void draw_ui(masu_compose *c, VkCommandBuffer cmd) {
     masu_ui_record(cmd);
 }
 
-/* The submit waits for the image at the transfer stage, and so does its first barrier. */
+/* The submit waits for the swapchain image at the transfer stage, as the first barrier does. */
 static void show(masu_compose *c, VkCommandBuffer cmd, VkImage image, VkExtent2D extent) {
     const VkImageLayout to = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
     VkImageMemoryBarrier before =

@@ -1,7 +1,5 @@
-/*
- * compose.comp: what masu-view shows: the picture of A; beside a line, that of B; or a map of their
- * difference. One invocation per pixel.
- */
+/* compose.comp: the image in the window of masu-view: A, A and B on both sides of a line, or a map
+ * of their difference. One invocation per pixel. */
 #version 440
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -9,8 +7,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(push_constant) uniform Push
 {
     ivec2 size;
-    int split;   /* pixels right of it are B's; size.x: there is no B */
-    int map;     /* not 0: the map instead of A and B */
+    int split;   /* pixels to its right show B; size.x: no B */
+    int map;     /* nonzero: show the map instead of A and B */
 } push;
 
 layout(set = 0, binding = 0, rgba8) uniform readonly image2D image_a;

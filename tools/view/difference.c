@@ -1,9 +1,9 @@
-/* difference.c: the FLIP map of A against B, on the processor (tools/metric/flip.h).
+/* difference.c: the FLIP map of A against B, computed on the CPU (tools/metric/flip.h).
  *
- * It takes longer than a frame: pictures of one frame are copied out, a thread works on the copies, and
- * the map appears when it is done. While time runs, the next pictures are taken EVERY frames after the
- * last; while it is paused, once, and again when something was changed. A script waits for it: what it
- * shows then depends on frame numbers alone. */
+ * FLIP takes longer than a frame, so a thread works on copies of the images of one frame, and the
+ * map appears when it is done. While time runs, a new map starts every EVERY frames; while time is
+ * paused, once, and again after each change. A script waits for the thread, so that its result
+ * depends only on frame numbers. */
 #include "view/viewer.h"
 
 #include "metric/flip.h"
@@ -72,11 +72,11 @@ static bool take(masu_viewer *v) {
     }
     SDL_AtomicSet(&d->done, 0);
     if (!d->failed) d->thread = SDL_CreateThread(work, "flip", d);
-    if (!d->thread && !d->failed) (void)work(d); /* no thread to be had: then here */
+    if (!d->thread && !d->failed) (void)work(d); /* without a thread, compute the map here */
     return true;
 }
 
-/* Nothing that reads the map is running: the device is waited for. */
+/* Waits until the device is idle: no command may read the map while it is written. */
 static void show(masu_viewer *v) {
     masu_difference *d = &v->difference;
     uint32_t *to = v->compose.map.mapped;

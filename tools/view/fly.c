@@ -4,9 +4,9 @@
 #include <math.h>
 #include <string.h>
 
-#define STEEPEST 1.55  /* just short of straight up: there yaw means nothing */
-#define FOREVER 1e12   /* a time behind the end of any path, seconds */
-#define LONGEST 1e6    /* the end is looked for until then */
+#define STEEPEST 1.55  /* just below straight up, where yaw is undefined */
+#define FOREVER 1e12   /* seconds, after the end of any path */
+#define LONGEST 1e6    /* seconds, upper bound of the search for the end */
 
 static double clamp(double x, double low, double high) { return x < low ? low : x > high ? high : x; }
 
@@ -37,7 +37,7 @@ bool masu_fly_move(masu_fly *fly, const masu_fly_wish *wish, double seconds) {
     fly->yaw = remainder(fly->yaw + wish->yaw, 2.0 * 3.14159265358979323846);
     fly->pitch = clamp(fly->pitch + wish->pitch, -STEEPEST, STEEPEST);
     if (!(length > 0.0)) return turned;
-    /* Two keys at once are no faster than one; half a stick is half as fast. */
+    /* Two keys at once are no faster than one; half a stick's travel is half as fast. */
     double step = fly->speed * seconds * (wish->fast ? 4.0 : 1.0) / (length > 1.0 ? length : 1.0);
     double forward[3], right[3];
     axes(fly, forward, right);
@@ -70,8 +70,8 @@ static bool rests(const masu_renderer *m, double time, const masu_camera *end) {
            !memcmp(at.up, end->up, sizeof at.up);
 }
 
-/* The library tells where the camera is, not when its path ends: a path is held at its end, so that is
- * where "it is where it will always be" begins. */
+/* The library reports the camera at a time, not the end of the path. A camera stays at the last key
+ * after the end, so a bisection finds the first time with the final camera. */
 double masu_fly_path_end(const masu_renderer *m) {
     masu_camera end;
     if (masu_camera_at(m, FOREVER, &end, NULL) || rests(m, 0.0, &end) || !rests(m, LONGEST, &end)) return 0.0;

@@ -1,7 +1,7 @@
-/* fly.h: the camera: flown by hand, or on the scene's own path.
+/* fly.h: the camera, flown by hand or on the scene's path.
  *
- * Plain state and mathematics: no window, no renderer, no clock. Angles are radians; yaw 0 looks along
- * -Z and grows to the left. */
+ * Plain state and mathematics: no window, renderer or clock. Angles are in radians; yaw 0 looks
+ * along -Z, positive yaw turns left. */
 #ifndef MASU_VIEW_FLY_H
 #define MASU_VIEW_FLY_H
 
@@ -12,10 +12,10 @@
 #define MASU_FLY_SPEED_MIN 0.01
 #define MASU_FLY_SPEED_MAX 10000.0
 
-/* What the hands ask for at the moment: -1..1 along each axis of the camera, radians of turning. */
+/* Current input: -1..1 along each axis of the camera. */
 typedef struct masu_fly_wish {
     double right, up, forward;
-    double yaw, pitch; /* to be added at once */
+    double yaw, pitch; /* radians, added at once */
     bool fast;         /* four times as fast */
 } masu_fly_wish;
 
@@ -26,16 +26,16 @@ typedef struct masu_fly {
     float fov_y, near_distance;
 } masu_fly;
 
-/* Where that camera is; a roll of it is not kept. The speed stays. */
+/* Copies that camera except its roll. Does not change the speed. */
 void masu_fly_from(masu_fly *fly, const masu_camera *camera);
-/* Moves by what is wished for, for so many seconds. True: there was something to do. */
+/* Moves by the input for a time. Returns true if the camera has changed. */
 bool masu_fly_move(masu_fly *fly, const masu_fly_wish *wish, double seconds);
-/* One notch of the wheel, up (1) or down (-1). */
+/* Changes the speed by notches of the mouse wheel: 1 up, -1 down. */
 void masu_fly_faster(masu_fly *fly, double notches);
 void masu_fly_camera(const masu_fly *fly, masu_camera *out);
 
-/* When the scene's path has come to its end: the time from which on its camera rests. 0: it has no
- * path, or one that never moves. */
+/* End of the scene's camera path, in seconds: the camera is stationary from then on. 0: there is no
+ * path, or the camera never moves. */
 double masu_fly_path_end(const masu_renderer *renderer);
 
 #endif

@@ -1,5 +1,5 @@
-/* frame.c: one frame to the window: acquire an image, let the library draw, the user interface over it, show
- * it. Two frames are in flight; the fence of a slot is waited for before the slot comes round. */
+/* frame.c: renders one frame to the window: acquire an image, record and submit, present. Two
+ * frames are in flight; a slot's fence is waited for before the slot is reused. */
 #include "view/viewer.h"
 
 #include "clock.h"
@@ -21,8 +21,8 @@ static bool masu_failed(masu_viewer *v) {
     return false;
 }
 
-/* The governor is told the time by the clock only where the end of the frame was seen: a fence that has
- * been signalled for long says when it was looked at, not when the frame ended. */
+/* The governor receives a wall-clock time only if this call observed the end of the frame. A fence
+ * that was already signalled does not reveal when the frame ended. */
 static bool wait_for_slot(masu_viewer *v, uint32_t slot) {
     if (!v->pending[slot]) return true;
     bool seen = vkGetFenceStatus(v->host.device, v->fences[slot]) == VK_NOT_READY;
@@ -110,7 +110,7 @@ bool masu_viewer_frame(masu_viewer *v) {
     if (!wait_for_slot(v, slot)) return false;
     VkResult r = masu_window_acquire(&v->window, slot, &image);
     if (r == VK_TIMEOUT || r == VK_NOT_READY || r == VK_ERROR_OUT_OF_DATE_KHR) {
-        v->window.stale = true; /* nothing has been drawn; the next turn makes the swapchain anew */
+        v->window.stale = true; /* nothing was drawn; the next iteration recreates the swapchain */
         return true;
     }
     if (r) return vulkan_failed(v, "vkAcquireNextImageKHR", r);
@@ -124,7 +124,7 @@ bool masu_viewer_frame(masu_viewer *v) {
     return !r || r == VK_ERROR_OUT_OF_DATE_KHR || vulkan_failed(v, "vkQueuePresentKHR", r);
 }
 
-/* Of A's last frame, without what the viewer draws over it. */
+/* Saves the HDR image of A's last frame, without the viewer's overlay. */
 static bool save_linear(masu_viewer *v, const char *path) {
     const masu_plan_rung *rung = &v->plan.rungs[v->a.last.rung];
     VkExtent2D size = {rung->render_width, rung->render_height};

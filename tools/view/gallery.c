@@ -1,6 +1,6 @@
-/* gallery.c: the start page: the scenes of a folder as pictures. A picture that is not in the cache
- * is made by a process, one after the other, while the page is shown: baked, unless a blob lies in
- * the cache's folder "scenes", and rendered small. */
+/* gallery.c: the start page, which shows the scenes of a folder as thumbnails. Child processes
+ * render missing thumbnails one after the other while the page is open. They bake the scene unless
+ * the folder "scenes" of the cache contains its blob. */
 #include "view/viewer.h"
 
 #include "image.h"
@@ -39,7 +39,7 @@ static void list_scenes(masu_gallery *g, const char *folder) {
     qsort(g->paths, g->count, sizeof g->paths[0], by_name);
 }
 
-/* False: there is none of that size. */
+/* Returns false if there is no thumbnail of the expected size. */
 static bool read_picture(masu_gallery *g, uint32_t i) {
     struct masu_image image = {0};
     bool good = masu_image_load_png(g->picture, &image, NULL, 0) &&
@@ -59,14 +59,14 @@ static void name_picture(masu_gallery *g, uint32_t i) {
     snprintf(g->picture, sizeof g->picture, "%.800s/%s.png", g->folder, name);
 }
 
-/* A picture older than its description is made anew. */
+/* A thumbnail older than its scene description is rendered again. */
 static bool is_fresh(const masu_gallery *g, uint32_t i) {
     struct stat picture, source;
     return !stat(g->picture, &picture) && !stat(g->paths[i], &source) &&
            picture.st_mtime >= source.st_mtime;
 }
 
-/* $1 the scene, $2 the picture, $3 a blob that may be there, $4 masu; then the baker. */
+/* $1 scene, $2 thumbnail, $3 blob that may exist, $4 masu; then the baker. */
 static void make_picture(masu_viewer *v, uint32_t i) {
     static const char words[] =
         "scene=$1 picture=$2 blob=$3 masu=$4; shift 4; made=; "
@@ -82,7 +82,7 @@ static void make_picture(masu_viewer *v, uint32_t i) {
     name_of(g->paths[i], name, sizeof name);
     snprintf(blob, sizeof blob, "%.800s/../scenes/%s.masu", g->folder, name);
     snprintf(log, sizeof log, "%.1000s/log", g->folder);
-    /* The baker of --bake is words of the shell. */
+    /* The baker of --bake is shell text, not one argument. */
     snprintf(command, sizeof command, "set -- \"$1\" \"$2\" \"$3\" \"$4\" %s; %s",
              v->o->bake ? v->o->bake : "\"$5\"", words);
     g->child = masu_child_start(v, command, log,
@@ -100,8 +100,8 @@ void masu_gallery_open(masu_viewer *v) {
     else
         snprintf(g->folder, sizeof g->folder, "%.900s/masu-view-pictures-%lu",
                  root && *root ? root : "/tmp", (unsigned long)getuid());
-    if (mkdir(g->folder, 0777) && errno != EEXIST) g->made = g->count; /* then without */
-    for (uint32_t i = 0; i < g->count; i++) { /* those that are there, at once */
+    if (mkdir(g->folder, 0777) && errno != EEXIST) g->made = g->count; /* no thumbnails */
+    for (uint32_t i = 0; i < g->count; i++) { /* show the existing thumbnails at once */
         name_picture(g, i);
         if (is_fresh(g, i)) (void)read_picture(g, i);
     }

@@ -1,6 +1,6 @@
-/* hud.c: the numbers at the upper left: F1 has them off, short or full; and what is drawn on the
- * picture. All of it comes from masu_stats of a frame that has finished, from the plan and from the
- * memory that was asked for; nothing is measured here. */
+/* hud.c: the statistics at the upper left (F1: off, short or full) and the overlay on the image.
+ * All numbers are from masu_stats of a finished frame, the plan and the memory query; nothing is
+ * measured here. */
 #include "view/viewer.h"
 
 #include "settings/setting.h"
@@ -23,7 +23,7 @@ static const char *bytes_text(uint64_t bytes, char *out, size_t size) {
     return out;
 }
 
-/* The name of a setting with blanks, where lines may end. */
+/* The setting's name with spaces at which lines may break. */
 static void spaced_setting(const masu_viewer *v, const masu_rung *rung,
                            char out[2 * MASU_SETTING_ID]) {
     char name[MASU_SETTING_ID];
@@ -41,7 +41,7 @@ static void frame_lines(const masu_viewer *v) {
     const masu_governor_info *g = &v->stats.governor;
     const masu_plan_rung *r = &v->plan.rungs[v->rung];
     double gpu = (double)v->stats.gpu_ns / 1e6;
-    char gpu_text[32] = "-"; /* not known yet */
+    char gpu_text[32] = "-"; /* not measured yet */
     if (v->stats.gpu_ns) snprintf(gpu_text, sizeof gpu_text, "%.2f ms", gpu);
     if (v->wall_ms > 0.0 && !v->scripted)
         masu_ui_text(MASU_INK, "%.1f fps   %.2f ms/frame   GPU %s", 1000.0 / v->wall_ms, v->wall_ms,
@@ -113,8 +113,7 @@ static void culling_lines(const masu_viewer *v) {
     }
 }
 
-/* In the frame's order; what takes less than its part goes into one line, where there are too many.
- */
+/* Passes in frame order. If there are too many, the shortest share one line. */
 static void pass_lines(const masu_viewer *v) {
     const masu_stats_info *s = &v->stats;
     uint64_t total = 0, most = 1, least = 0, rest = 0;
@@ -124,7 +123,7 @@ static void pass_lines(const masu_viewer *v) {
         total += s->pass_ns[p];
         if (s->pass_ns[p] > most) most = s->pass_ns[p];
     }
-    if (room < 5) return; /* of a small window */
+    if (room < 5) return; /* the window is too small */
     masu_ui_row(MASU_INK_TITLE, (const char *[]){"passes", "ms"}, 2, 0.0f);
     if (!total) {
         masu_ui_text(MASU_INK_DIM,
@@ -149,7 +148,7 @@ static void pass_lines(const masu_viewer *v) {
     masu_ui_row(MASU_INK_DIM, (const char *[]){"other passes", ms}, 2, 0.0f);
 }
 
-/* The line, and whose side is which, at the bottom where no panel is. */
+/* The dividing line and the labels of both sides, at the lower edge. */
 static void draw_split(const masu_viewer *v) {
     char name[2 * MASU_SETTING_ID], text[2 * MASU_SETTING_ID + 32];
     float width = (float)v->compose.shown.width, height = (float)v->compose.shown.height,
@@ -180,7 +179,7 @@ static void draw_difference(const masu_viewer *v) {
                  "FLIP of rung %u against B (%s): mean %.4f, 99 %% below %.3f, max %.3f", v->rung,
                  name, d->mean, d->p99, d->max);
     masu_ui_label(0.0f, height, 0.0f, 0.0f, MASU_INK, text);
-    /* The scale of the map, in the middle. */
+    /* Colour scale of the map, at the centre. */
     float bar = 0.3f * height, x = 0.5f * width, y = 0.5f * height;
     for (int i = 0; i < 32; i++) {
         uint32_t rgba = masu_difference_color(1.0f - (float)i / 31.0f);

@@ -1,14 +1,14 @@
-/* input.c: what comes from SDL: keys that are held and mouse and sticks move the camera; keys that are
- * pressed go to keys.c. What is held is known from events alone, so that a script's events are as good
- * as a hand's. */
+/* input.c: SDL events. Held keys, mouse and sticks move the camera; key presses are handled by
+ * keys.c. The held state is tracked only from events, so that events of a script work like real
+ * ones. */
 #include "view/viewer.h"
 
 #include <math.h>
 #include <string.h>
 
-#define LOOK 0.0025      /* radians a pixel */
-#define STICK_TURN 2.2   /* radians a second, stick at its end */
-#define STICK_IDLE 0.18  /* of its way: sticks do not rest at 0 */
+#define LOOK 0.0025      /* radians per pixel */
+#define STICK_TURN 2.2   /* radians per second at full deflection */
+#define STICK_IDLE 0.18  /* dead zone, as a fraction of the travel */
 
 enum { FORWARD, BACK, LEFT, RIGHT, UP, DOWN, FAST, TURN };
 
@@ -46,7 +46,7 @@ static bool window_event(masu_viewer *v, masu_hands *h, const SDL_WindowEvent *e
     case SDL_WINDOWEVENT_RESTORED:
     case SDL_WINDOWEVENT_MAXIMIZED:
     case SDL_WINDOWEVENT_SHOWN: v->hidden = false; break;
-    case SDL_WINDOWEVENT_FOCUS_LOST: /* releases that happen elsewhere are not heard of */
+    case SDL_WINDOWEVENT_FOCUS_LOST: /* releases outside the window are not reported */
         memset(h->held, 0, sizeof h->held);
         h->dragging = false;
         break;
@@ -55,7 +55,7 @@ static bool window_event(masu_viewer *v, masu_hands *h, const SDL_WindowEvent *e
     return true;
 }
 
-/* Pixels of the window's image to a point of the window: not 1 on a screen of high density. */
+/* Image pixels per window point: above 1 on high-density displays. */
 static double scale(const masu_viewer *v) {
     int width = 0;
     SDL_GetWindowSize(v->window.sdl, &width, NULL);
@@ -139,7 +139,7 @@ void masu_hands_move(masu_hands *h, masu_viewer *v, double seconds) {
     bool moves = w.right != 0.0 || w.up != 0.0 || w.forward != 0.0 || w.yaw != 0.0 || w.pitch != 0.0;
     if (!moves || !v->a.m) return;
     v->recorder.plays = false;
-    if (v->on_path) { /* who takes the wheel, leaves the path where it is */
+    if (v->on_path) { /* manual control leaves the path at the current camera */
         masu_camera camera;
         masu_viewer_camera(v, &camera);
         masu_fly_from(&v->fly, &camera);

@@ -1,4 +1,5 @@
-/* keys.c: what a pressed key does. Keys that are held are input.c's; what the user interface takes is not seen here. */
+/* keys.c: actions of key presses. input.c handles held keys; keys that the user interface consumes
+ * do not arrive here. */
 #include "view/viewer.h"
 
 #include <math.h>
@@ -29,11 +30,11 @@ static void govern(masu_viewer *v, bool on) {
     masu_viewer_note(v, on ? "governor on" : "rung %u, governor off", v->rung);
 }
 
-/* The next one of the list, up or down. */
+/* Selects the next target of the list, up or down. */
 static void change_target(masu_viewer *v, int way) {
     float now = v->want.governor.target_ms, next = now;
     if (v->want.governor.mode == MASU_GOVERNOR_OFF) {
-        govern(v, true); /* says why not */
+        govern(v, true); /* reports why it cannot */
         return;
     }
     for (int i = 0; i < TARGETS; i++) {
@@ -83,7 +84,7 @@ static void store_reference(masu_viewer *v) {
     snprintf(v->change, sizeof v->change, "B is now %.100s", name);
 }
 
-/* What has a meaning without a scene, too. */
+/* Keys that also work without a scene. */
 static bool always(masu_viewer *v, SDL_Keycode key) {
     bool full;
     switch (key) {
@@ -108,7 +109,7 @@ static bool always(masu_viewer *v, SDL_Keycode key) {
 
 bool masu_key_pressed(masu_viewer *v, SDL_Keycode key, uint16_t modifiers) {
     double far = modifiers & KMOD_SHIFT ? 10.0 : 1.0;
-    v->moved = v->frames; /* whatever it was: what is compared is to be compared again */
+    v->moved = v->frames; /* any key may change the image: compute the difference again */
     if (always(v, key) || !v->a.m) return true;
     if (key >= SDLK_1 && key <= SDLK_8) return take_rung(v, (uint32_t)(key - SDLK_1)), true;
     switch (key) {

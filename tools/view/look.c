@@ -1,6 +1,6 @@
-/* look.c: what the panels change in the scene without baking it: light, parameters of the SDF,
- * lamps, which models are shown, how their clips play. It is applied before each frame, to A and to
- * B, so that it outlives a new renderer. */
+/* look.c: changes of the panels to the scene that need no bake: light, SDF parameters, lamps,
+ * visible models and clips. They are applied to A and B before each frame, so that they outlive a
+ * renderer. */
 #include "view/viewer.h"
 
 #include "scene/blob_section.h"
@@ -18,7 +18,7 @@ static uint32_t listed(const masu_viewer *v, masu_scene_item item) {
 }
 
 static void read_light(masu_viewer *v) {
-    masu_look *l = &v->look;
+    masu_view_look *l = &v->look;
     l->has_light = masu_light_of(v->a.m, &l->from, NULL) == MASU_OK;
     const float *d = l->from.sun_direction;
     float length = sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
@@ -31,14 +31,14 @@ static void read_light(masu_viewer *v) {
 }
 
 static void read_params(masu_viewer *v) {
-    masu_look *l = &v->look;
+    masu_view_look *l = &v->look;
     l->param_count = masu_scene_count(&v->scene, MASU_SCENE_SDF_PARAM);
     for (uint32_t i = 0; i < l->param_count; i++)
         l->params[i] = masu_scene_sdf_range(&v->scene, i, NULL, NULL);
 }
 
 void masu_look_reset(masu_viewer *v) {
-    masu_look *l = &v->look;
+    masu_view_look *l = &v->look;
     memset(l, 0, sizeof *l);
     read_light(v);
     read_params(v);
@@ -53,11 +53,11 @@ void masu_look_reset(masu_viewer *v) {
     }
 }
 
-/* What was changed is not forgotten because a file was saved: light and values by their place. */
+/* A saved file does not reset the changes: parameters and lamps are matched by index. */
 void masu_look_keep(masu_viewer *v) {
-    masu_look before = v->look;
+    masu_view_look before = v->look;
     masu_look_reset(v);
-    masu_look *l = &v->look;
+    masu_view_look *l = &v->look;
     bool same_light = !memcmp(&l->from, &before.from, sizeof l->from);
     if (same_light) {
         l->light = before.light;
@@ -70,7 +70,7 @@ void masu_look_keep(masu_viewer *v) {
 }
 
 void masu_look_light(masu_viewer *v) {
-    masu_look *l = &v->look;
+    masu_view_look *l = &v->look;
     float a = l->azimuth / DEGREES, e = l->elevation / DEGREES;
     l->light.sun_direction[0] = cosf(e) * sinf(a);
     l->light.sun_direction[1] = sinf(e);
@@ -91,7 +91,7 @@ static bool pose(masu_renderer *m, masu_model model, masu_playback *p, masu_deta
     return !masu_model_animate(m, model, uses, p->blend > 0.0f ? 2 : 1, detail);
 }
 
-/* Only what differs: a light that is set is looked at anew. */
+/* Sets only changed lights, because the renderer processes each light that is set. */
 static bool light_lamp(masu_viewer *v, masu_renderer *m, uint32_t i) {
     masu_punctual_light light = masu_punctual_light_at(m, i);
     masu_punctual_light_state state;
@@ -107,7 +107,7 @@ static bool light_lamp(masu_viewer *v, masu_renderer *m, uint32_t i) {
 }
 
 bool masu_look_apply(masu_viewer *v, masu_renderer *m, masu_frame_desc *frame) {
-    masu_look *l = &v->look;
+    masu_view_look *l = &v->look;
     bool good = true;
     frame->light = l->has_light && memcmp(&l->light, &l->from, sizeof l->light) ? &l->light : NULL;
     frame->sdf_params = l->param_count ? l->params : NULL;

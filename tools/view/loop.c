@@ -1,5 +1,5 @@
-/* loop.c: turn after turn: events, time, camera, files, a frame. By the clock, or, where a script or
- * --frames says what happens when, by steps of 1/60 s, whatever the clock says. */
+/* loop.c: the main loop: events, time, camera, files, one frame. It follows the clock; with a
+ * script or --frames each iteration is 1/60 s long. */
 #include "view/script.h"
 
 #include "cli/cli.h"
@@ -10,11 +10,11 @@
 #include <stdio.h>
 #include <string.h>
 
-#define STEP_MAX 0.25     /* s: a pause of the machine is no leap of the camera */
-#define WAIT_HIDDEN 250   /* ms between looks at the world while there is nothing to draw */
-#define RETRY 10          /* ms, where the swapchain is out of date for the moment */
+#define STEP_MAX 0.25     /* s: a pause of the machine must not make the camera jump */
+#define WAIT_HIDDEN 250   /* ms between checks while the window is hidden */
+#define RETRY 10          /* ms, while the swapchain is out of date */
 
-/* Waits for an event while there is nothing to draw, so that nothing spins. */
+/* Blocks while there is nothing to draw, to avoid a busy loop. */
 static void take_events(masu_viewer *v, masu_hands *hands, bool *good) {
     SDL_Event e;
     bool idle = (v->hidden || !v->window.extent.width) && !v->scripted;
@@ -49,7 +49,7 @@ static void restart(masu_viewer *v, bool *good) {
                      v->a.in_place ? "in the same blocks" : "in larger blocks");
 }
 
-/* One turn. False: v->error, or v->lost, says why not. */
+/* One loop iteration. On false v->error has the reason, or v->lost is set. */
 static bool turn(masu_viewer *v, masu_script *script, masu_hands *hands, double seconds) {
     bool good = true;
     if (!masu_script_play(script, v)) return false;
@@ -77,7 +77,7 @@ static bool turn(masu_viewer *v, masu_script *script, masu_hands *hands, double 
     return !shoot || masu_capture_still(v);
 }
 
-/* True: the device is another one now. */
+/* Returns true if the device was recreated. */
 static bool recover(masu_viewer *v) {
     if (++v->losses > 1) {
         snprintf(v->error, sizeof v->error, "the Vulkan device was lost twice in a row");

@@ -1,4 +1,5 @@
-/* main.c: the program masu-view: a scene in a window, from any file. docs/commands.md is its manual. */
+/* main.c: the program masu-view, which shows a scene of any supported file in a window.
+ * docs/commands.md is its manual. */
 #include "view/script.h"
 
 #include "settings/setting.h"
@@ -61,7 +62,7 @@ static void print_message(void *user, const char *text) {
     masu_cli_warn("validation: %s", text);
 }
 
-/* Writes the members of the description that the command line sets. */
+/* Applies the command line to the description. */
 static int describe(const masu_viewer_options *o, masu_viewer *v) {
     masu_desc *d = &v->given;
     char error[1024];

@@ -12,9 +12,9 @@ static void restart(masu_viewer *v, const char *what) {
     snprintf(v->change, sizeof v->change, "%s", what);
 }
 
-/* A sky that follows from the sun; a scene without one gets it when it is asked for. */
+/* An analytic sky; a scene without one gets it on request. */
 static void sky(masu_viewer *v) {
-    masu_look *l = &v->look;
+    masu_view_look *l = &v->look;
     bool map = masu_scene_view_of(&v->scene).environment_map != NULL,
          analytic = l->light.turbidity > 0.0f;
     bool can =
@@ -45,7 +45,7 @@ static void sky(masu_viewer *v) {
 }
 
 static void sun(masu_viewer *v) {
-    masu_look *l = &v->look;
+    masu_view_look *l = &v->look;
     bool moved = masu_ui_slider("Sun azimuth", &l->azimuth, -180.0f, 180.0f, "%.1f degrees", false);
     moved |= masu_ui_slider("Sun elevation", &l->elevation, -10.0f, 90.0f, "%.1f degrees", false);
     moved |= masu_ui_slider("Sun strength", &l->sun, 0.0f, 8.0f, "%.2f", true);
@@ -99,7 +99,7 @@ void masu_panel_light(masu_viewer *v) {
     lamps(v);
     if (!masu_ui_button("Light of the scene")) return;
     v->look.light = v->look.from;
-    masu_look before = v->look;
+    masu_view_look before = v->look;
     masu_look_reset(v);
     memcpy(v->look.params, before.params, sizeof before.params);
     memcpy(v->look.hidden, before.hidden, sizeof before.hidden);

@@ -1,6 +1,6 @@
-/* panel_quality.c: the panel "Quality": rungs, the governor, and the knobs of the rung that is
- * shown. Knobs without use in this scene are left out; a change goes into v->want and takes effect
- * at the end of the turn, when the renderer is made anew. */
+/* panel_quality.c: the panel "Quality": rungs, the governor, and the knobs of the current rung.
+ * Knobs without effect in this scene are omitted. A change is written to v->want and takes effect
+ * at the end of the iteration, when the renderer is recreated. */
 #include "view/viewer.h"
 
 #include "settings/setting.h"
@@ -39,8 +39,7 @@ static void rungs(masu_viewer *v) {
     masu_ui_help("B is what F2 shows beside the current setting, and F3 compares it with.");
 }
 
-/* What 0 stands for: where the row says "the scene's", that; else what it is resolved to, with
- * history or without. */
+/* The value that 0 stands for: the scene's, or the resolved default with or without history. */
 static double of_scene(const masu_viewer *v, const masu_knob *k) {
     uint32_t resolution, cascades = masu_scene_shadow_cascades(&v->scene, &resolution);
     if (!strcmp(k->name, "shadow_distance")) return (double)masu_scene_shadow_distance(&v->scene);
@@ -58,7 +57,7 @@ static void put(masu_viewer *v, const masu_knob *k, uint32_t value, double to) {
     if (to == masu_knob_get(k, rung, value) || !masu_knob_accepts(k, to)) return;
     masu_knob_set(k, rung, value, to);
     masu_knob_text(k, rung, text, sizeof text);
-    v->want.flips[v->rung] = 0.0f; /* it was measured of another setting */
+    v->want.flips[v->rung] = 0.0f; /* it was measured for a different setting */
     v->governed = false;
     v->changed = true;
     snprintf(v->change, sizeof v->change, "%s=%s", k->name, text);
@@ -72,8 +71,8 @@ static void help(const masu_knob *k) {
     masu_ui_help(text);
 }
 
-/* A value is applied when the slider is let go: a new renderer for each step would be too slow to
- * drag. */
+/* A value is applied when the slider is released: recreating the renderer at each step would make
+ * dragging too slow. */
 static void number(masu_viewer *v, const masu_knob *k, uint32_t value, const char *label) {
     static const masu_knob *dragged;
     static uint32_t which;

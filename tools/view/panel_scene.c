@@ -1,5 +1,5 @@
-/* panel_scene.c: the panel "Scene": parameters of the SDF, models with their clips and variants,
- * and what there is. */
+/* panel_scene.c: the panel "Scene": SDF parameters, models with their clips and variants, and the
+ * scene's counts. */
 #include "view/viewer.h"
 
 #include <stdio.h>
@@ -8,7 +8,7 @@
 #define CLIPS_MAX 64u
 
 static void parameters(masu_viewer *v) {
-    masu_look *l = &v->look;
+    masu_view_look *l = &v->look;
     char format[32];
     if (!l->param_count || !masu_ui_section("Parameters", true)) return;
     for (uint32_t i = 0; i < l->param_count; i++) {

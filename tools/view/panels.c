@@ -1,10 +1,10 @@
-/* panels.c: the user interface of a frame: the start page, progress of a bake, panels with tabs,
- * and messages. */
+/* panels.c: the user interface of a frame: the start page, progress of a bake, tabbed panels, and
+ * messages. */
 #include "view/viewer.h"
 
 #include <stdio.h>
 
-#define NOTE_TURNS 240u /* how long a note stays */
+#define NOTE_TURNS 240u /* iterations for which a note is shown */
 
 static const struct {
     const char *name;

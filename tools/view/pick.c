@@ -1,5 +1,6 @@
-/* pick.c: what a click is on: the frame behind it asks for that pixel, and when its slot comes round the answer is shown
- * beside a cross for a while. The blob, which the names lie in, stays in memory. */
+/* pick.c: picking by mouse click. The next frame requests the pixel; when its slot has finished,
+ * the result is shown for a while next to a cross. Names point into the blob, which remains in
+ * memory. */
 #include "view/viewer.h"
 
 #include "cli/cli.h"
@@ -14,14 +15,14 @@ void masu_pick_click(masu_viewer *v, int x, int y) {
     SDL_GetWindowSize(v->window.sdl, &width, &height);
     VkExtent2D e = v->window.extent;
     if (width < 1 || height < 1 || x < 0 || y < 0 || x >= width || y >= height) return;
-    /* Points of the window are pixels but on a screen of high density. */
+    /* Window points differ from pixels on high-density displays. */
     v->picked.x = (uint32_t)((uint64_t)x * e.width / (uint64_t)width);
     v->picked.y = (uint32_t)((uint64_t)y * e.height / (uint64_t)height);
     v->picked.asked = true;
 }
 
 void masu_pick_ask(masu_viewer *v, masu_frame_desc *frame) {
-    /* The window may have become smaller since. */
+    /* The window may have shrunk since the click. */
     if (v->picked.x >= v->a.target.width || v->picked.y >= v->a.target.height) v->picked.asked = false;
     frame->pick = v->picked.asked;
     frame->pick_x = v->picked.x;
@@ -35,7 +36,7 @@ void masu_pick_asked(masu_viewer *v, uint32_t slot) {
     v->picked.asked = false;
 }
 
-/* "instance 'door'", of a model that moves "node 3 of model 'car'" before it. */
+/* "instance 'door'"; for a movable model preceded by "node 3 of model 'car'". */
 static void name_it(const masu_viewer *v, const masu_pick_info *p, char *out, size_t size) {
     masu_instance_state instance;
     masu_model_state model;

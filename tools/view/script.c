@@ -39,7 +39,7 @@ enum { ACTS = sizeof act_names / sizeof *act_names };
 typedef struct masu_script_line {
     uint64_t frame;
     masu_act act;
-    const char *text; /* what follows, in the script's text */
+    const char *text; /* the arguments, within the script's text */
     int x, y;
     SDL_Keycode key;
     uint16_t modifiers;
@@ -86,7 +86,7 @@ static bool read_text(masu_script_line *line) {
     }
 }
 
-/* A line without its comment and the blanks around. "" is none. */
+/* Parses a trimmed, non-empty line. *wrong is the error if it returns false. */
 static bool read_line(char *text, masu_script_line *line, const char **wrong) {
     char word[16];
     int used = 0;
@@ -123,7 +123,8 @@ bool masu_script_read(const char *path, masu_script *s, char *error, size_t size
     memset(s, 0, sizeof *s);
     if (!masu_file_read(path, BYTES_MAX, &bytes, &count, error, size)) return false;
     s->text = malloc(count + 1);
-    s->lines = malloc((count / 8 + 1) * sizeof *s->lines); /* "frame 0 " is the least */
+    s->lines = malloc((count / 8 + 1) * sizeof *s->lines); /* the shortest line starts with "frame 0
+                                                            * " */
     if (!s->text || !s->lines) {
         free(bytes);
         masu_script_free(s);
@@ -178,7 +179,7 @@ static void push_window(const masu_viewer *v, uint8_t what) {
 }
 
 static void push_button(const masu_viewer *v, const masu_script_line *l) {
-    int x = (int)(v->split * v->window.extent.width); /* the left one takes the line where it is */
+    int x = (int)(v->split * v->window.extent.width); /* the left button grabs the dividing line */
     SDL_Event e = {.button = {.type = l->y ? SDL_MOUSEBUTTONDOWN : SDL_MOUSEBUTTONUP,
                               .windowID = SDL_GetWindowID(v->window.sdl),
                               .button = (uint8_t)l->x,

@@ -37,7 +37,7 @@ static bool make_block(masu_stage *s, const masu_role_need *need, masu_device_bl
     return true;
 }
 
-/* With ray queries memory needs a flag that a block from before may lack. */
+/* Ray queries need memory with a flag that an older block may lack. */
 static bool block_serves(const masu_device_block *b, const masu_role_need *need) {
     return b->memory && b->bytes >= need->bytes && need->type_bits >> b->memory_type & 1u &&
            (!need->host_visible || b->mapped) && !need->device_address;
@@ -98,11 +98,12 @@ bool masu_stage_start(masu_stage *s, masu_headless *host, const masu_desc *desc,
     masu_memory need;
     s->host = host;
     memset(d.device_blocks, 0, sizeof d.device_blocks);
-    /* The plan does not depend on which image it is: a target of another size will do for the question. */
+    /* The plan does not depend on the image itself: a target of another size is enough for the
+     * query. */
     if (!s->target.image && !fit_target(s, d.output, error, size)) return false;
     point_to_target(s, &d);
     if (masu_memory_query(&d, &need, &s->detail)) return said(s, error, size);
-    /* From here on there is no way back to the renderer of before. */
+    /* From here on the previous renderer cannot be restored. */
     masu_destroy(s->m);
     s->m = NULL;
     s->frames = 0;
@@ -135,7 +136,7 @@ bool masu_stage_resize(masu_stage *s, VkExtent2D output, char *error, size_t siz
                  output.height);
         return false;
     }
-    /* The old one may go when nothing refers to it. */
+    /* The old target is destroyed when nothing refers to it. */
     memset(&s->target, 0, sizeof s->target);
     bool good = masu_headless_target_create(s->host, output.width, output.height, VK_FORMAT_R8G8B8A8_UNORM,
                                             true, &s->target, error, size);

@@ -1,4 +1,4 @@
-/* ui.cpp: see ui.h: Dear ImGui (libimgui-dev), its renderer for Vulkan, and the events of SDL. */
+/* ui.cpp: implements ui.h with Dear ImGui (libimgui-dev), its Vulkan backend, and SDL's events. */
 #include "ui.h"
 
 #include <backends/imgui_impl_vulkan.h>
@@ -11,7 +11,7 @@
 #include <cstdio>
 #include <cstring>
 
-/* The font is part of the program: DejaVu Sans. */
+/* The font, DejaVu Sans, is embedded in the program. */
 extern "C" const unsigned char masu_ui_font[], masu_ui_font_end[];
 __asm__(".section .rodata\n.globl masu_ui_font, masu_ui_font_end\n.balign 16\n"
         "masu_ui_font:\n.incbin \"" MASU_UI_FONT "\"\nmasu_ui_font_end:\n.byte 0\n.previous\n");
@@ -27,12 +27,14 @@ struct {
     int rects[256];
     uint32_t pictures;
     float right,
-        edge; /* where the panel at the right edge begins: in this frame so far, in the last one */
-    ImVec2 left; /* of the window at the upper left, its size in this frame */
+        edge; /* x of the left edge of the panel at the right: in this frame so far, in the last
+               * frame */
+    ImVec2 left; /* size of the window at the upper left in this frame */
     float bottom,
-        lines; /* height of the lines at the lower edge, of the last frame and so far of this one */
+        lines; /* height of the lines at the lower edge: in the last frame, in this frame so far */
     bool fresh_keys[512],
-        fresh_buttons[3]; /* pressed since the last frame: held for one, however short */
+        fresh_buttons[3]; /* pressed since the last frame: a short press counts as held for one
+                           * frame */
     bool keys[512], buttons[3];
     VkResult failed;
 } ui;
@@ -47,7 +49,7 @@ void check(VkResult r) {
     if (r && !ui.failed) ui.failed = r;
 }
 
-/* About 45 lines of text. Panels of a small window are as wide as that allows. */
+/* About 45 lines of text fit; text is smaller if the window is too narrow for the panels. */
 float font_pixels(VkExtent2D e) {
     return std::floor(std::max(11.0f, std::min((float)e.height / 45.0f, (float)e.width / 60.0f)));
 }
@@ -106,7 +108,7 @@ bool make_pass() {
     return !vkCreateFramebuffer(ui.d.device, &frame, nullptr, &ui.frame);
 }
 
-/* The font in its size, and the pictures, as one texture. */
+/* Packs the font at its size and the thumbnails into one texture. */
 void make_atlas(const uint8_t *const *pictures, uint32_t count) {
     const int w = MASU_UI_PICTURE_WIDTH, h = MASU_UI_PICTURE_HEIGHT;
     ImFontAtlas *atlas = ImGui::GetIO().Fonts;
@@ -181,14 +183,14 @@ bool make_renderer() {
     return ui.renders && upload();
 }
 
-/* The image's part at (x, y) that a window of the wanted size at that corner may have. */
+/* The requested size of a window, limited to the image. */
 ImVec2 within(float width, float height) {
     return ImVec2(std::min(width, (float)ui.d.extent.width),
                   std::min(height, (float)ui.d.extent.height));
 }
 
-/* A label, and behind or below it room for an item that is as wide as the rest; returns the item's
- * hidden name. */
+/* Draws a label. The item uses the rest of the line, or the next line. Returns the item's hidden
+ * name. */
 const char *labelled(const char *label) {
     static char hidden[300];
     float width = ImGui::GetContentRegionAvail().x, column = 0.42f * width;
@@ -205,7 +207,7 @@ const char *labelled(const char *label) {
 
 } // namespace
 
-/* ---- Life ------------------------------------------------------------------------------------ */
+/* ---- Lifetime -------------------------------------------------------------------------------- */
 
 void masu_ui_open(void) {
     IMGUI_CHECKVERSION();
@@ -265,7 +267,7 @@ void masu_ui_detach(void) {
     ui.d.device = VK_NULL_HANDLE;
 }
 
-/* Keys that move between items and change them, while a window has the keyboard. */
+/* Keys that move the focus or change an item, while a window has the keyboard focus. */
 static bool is_of_windows(SDL_Keycode key) {
     switch (key) {
     case SDLK_LEFT:
@@ -304,7 +306,8 @@ bool masu_ui_event(const SDL_Event *e, double scale) {
                                                         : 2;
         ui.buttons[button] = e->type == SDL_MOUSEBUTTONDOWN;
         if (ui.buttons[button]) ui.fresh_buttons[button] = true;
-        /* Whether a window is there is known before the next frame says so. */
+        /* Checks the windows of the last frame, because WantCaptureMouse is updated by the next
+         * one. */
         for (ImGuiWindow *w : ImGui::GetCurrentContext()->Windows) {
             if (w->WasActive && !(w->Flags & ImGuiWindowFlags_NoMouseInputs) &&
                 w->Rect().Contains(io.MousePos))
@@ -425,8 +428,7 @@ bool masu_ui_tab(const char *label, bool select) {
 
 /* ---- Items ----------------------------------------------------------------------------------- */
 
-/* Lines at the lower edge are as wide as the image allows, not as their window, which fits itself
- * to them. */
+/* Lines at the lower edge use the width of the image: their window fits itself to them. */
 static void wrapped(uint32_t color, const char *text) {
     ImGuiWindow *w = ImGui::GetCurrentWindow();
     bool fits = (w->Flags & ImGuiWindowFlags_AlwaysAutoResize) != 0;
@@ -488,8 +490,8 @@ bool masu_ui_slider(const char *label, float *value, float low, float high, cons
                                   (logarithmic ? ImGuiSliderFlags_Logarithmic : 0));
 }
 
-/* A chosen name that is too long for its half of the line is shortened there, and stands below it
- * in full. */
+/* A selected name that is too long for its half of the line is shortened, and shown in full below
+ * the line. */
 bool masu_ui_choice(const char *label, uint32_t *index, const char *const *names, uint32_t count) {
     bool changed = false;
     const char *chosen = *index < count ? names[*index] : "", *hidden = labelled(label);
@@ -535,7 +537,7 @@ void masu_ui_progress(float fraction, const char *text) {
     bool fits = (ImGui::GetCurrentWindow()->Flags & ImGuiWindowFlags_AlwaysAutoResize) != 0;
     float width = fits ? std::min(30.0f * em(), ui.right) - 2.0f * ImGui::GetStyle().WindowPadding.x
                        : ImGui::GetContentRegionAvail().x;
-    if (fraction < 0.0f) { /* to and fro */
+    if (fraction < 0.0f) { /* moves back and forth */
         ImVec2 at = ImGui::GetCursorScreenPos();
         float x = (float)std::fmod(ImGui::GetTime() * 0.5, 2.0);
         x = (x > 1.0f ? 2.0f - x : x) * 0.75f * width;
@@ -577,7 +579,7 @@ bool masu_ui_picture(uint32_t at, const char *label) {
 void masu_ui_push(uint32_t id) { ImGui::PushID((int)id); }
 void masu_ui_pop(void) { ImGui::PopID(); }
 
-/* ---- On the picture -------------------------------------------------------------------------- */
+/* ---- On the image ---------------------------------------------------------------------------- */
 
 float masu_ui_line_height(void) { return ImGui::GetTextLineHeight(); }
 
@@ -592,7 +594,7 @@ uint32_t masu_ui_room(void) {
     return room > 0.0f ? (uint32_t)(room / ImGui::GetTextLineHeightWithSpacing()) : 0;
 }
 
-/* Beside the panels and above the lines at the lower edge. */
+/* Keeps the label clear of the panels and of the lines at the lower edge. */
 void masu_ui_label(float x, float y, float left, float right, uint32_t color, const char *text) {
     const float pad = 0.4f * em();
     if (!(right > left)) left = 0.0f, right = (float)ui.d.extent.width;

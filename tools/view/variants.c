@@ -1,5 +1,5 @@
-/* variants.c: names of the material variants of a glTF file (KHR_materials_variants), for the panel
- * that chooses one. */
+/* variants.c: reads the names of the material variants of a glTF file (KHR_materials_variants) for
+ * the panel "Scene". */
 #include "view/viewer.h"
 
 #include "image.h"

@@ -1,4 +1,4 @@
-/* viewer.c: see viewer.h: what is made, in which order, and in which order it ends. */
+/* viewer.c: see viewer.h. Creates and destroys the viewer's objects, and loads scenes. */
 #include "view/viewer.h"
 
 #include "cli/cli.h"
@@ -24,7 +24,8 @@ void masu_viewer_note(masu_viewer *v, const char *format, ...) {
     v->note_turn = v->turns;
 }
 
-/* Objects that the GPU still uses cannot be destroyed, and waiting for it has no end. */
+/* Ends the process: objects that the GPU still uses cannot be destroyed, and it may never
+ * finish. */
 void masu_viewer_give_up(const masu_viewer *v) {
     (void)masu_cli_error("the GPU did not finish within %u s",
                          (unsigned)(v->host.wait_ns / 1000000000u));
@@ -58,7 +59,7 @@ static bool read_scene(masu_viewer *v, const char *path, void **blob, masu_scene
     return true;
 }
 
-/* The path's camera where there is one, else one that looks at the middle from a few metres. */
+/* Uses the camera path if there is one, else a camera a few metres from the origin, facing it. */
 static void place_camera(masu_viewer *v) {
     v->time = v->o->time;
     v->path_end = masu_fly_path_end(v->a.m);
@@ -69,7 +70,8 @@ static void place_camera(masu_viewer *v) {
     v->on_path = has;
 }
 
-/* As masu bench would call it, without what has no use here: an unscaled rung's sharpness. */
+/* The name that masu bench uses, without knobs that have no effect, such as the sharpness of an
+ * unscaled rung. */
 void masu_viewer_setting(const masu_viewer *v, const masu_rung *rung, char out[MASU_SETTING_ID]) {
     char error[256];
     masu_rung base, shown = *rung;
@@ -84,7 +86,7 @@ void masu_viewer_setting(const masu_viewer *v, const masu_rung *rung, char out[M
 
 /* ---- Stages ---------------------------------------------------------------------------------- */
 
-/* What of the description follows from device and window. */
+/* Fills in the members that depend on device and window. */
 static void complete(masu_viewer *v, masu_desc *d) {
     const masu_headless *h = &v->host;
     d->vulkan = (masu_vulkan){.get_instance_proc_addr = h->desc.get_instance_proc_addr,
@@ -100,13 +102,14 @@ static void complete(masu_viewer *v, masu_desc *d) {
                               .shader_float16 = h->float16};
     d->scene = &v->scene;
     d->output = v->window.extent;
-    if (!d->output.width) /* minimised: the size of before */
+    if (!d->output.width) /* minimised: keep the last size */
         d->output = (VkExtent2D){v->a.target.width, v->a.target.height};
     d->resizable = 1;
     d->frames_in_flight = MASU_WINDOW_FLIGHT;
     d->debug.labels = h->labels;
     d->clock_ns = masu_clock_ns;
-    for (uint32_t r = 0; r < d->rung_count; r++) { /* what a name does not say is off, with the governor too */
+    for (uint32_t r = 0; r < d->rung_count; r++) { /* unnamed knobs are off, with the governor
+                                                    * too */
         if (d->rungs[r].temporal == MASU_AUTO) d->rungs[r].temporal = MASU_OFF;
     }
 }
@@ -150,7 +153,7 @@ bool masu_viewer_restart(masu_viewer *v) {
     masu_viewer_settle(v);
     if (start_a(v)) return v->show == MASU_SHOW_A || start_b(v);
     if (v->lost) return false;
-    /* Refused, or lost on the way: the setting of before is known to do. */
+    /* The new setting was rejected, or failed midway: return to the previous one, which works. */
     snprintf(v->trouble, sizeof v->trouble, "%s", v->error);
     memcpy(v->want.rungs, before.rungs, sizeof before.rungs);
     v->want.governor = before.governor;
@@ -174,7 +177,7 @@ bool masu_viewer_show(masu_viewer *v, uint32_t show) {
     return true;
 }
 
-/* Without a start where the size was planned for. */
+/* Resizes in place if the planned size allows it, else restarts. */
 static bool resize_stages(masu_viewer *v, VkExtent2D now) {
     v->cut = true;
     v->difference.known = false;
@@ -217,17 +220,18 @@ bool masu_viewer_attach_ui(masu_viewer *v) {
     return masu_ui_attach(&d, (const uint8_t *const *)v->gallery.pictures, v->gallery.count, v->error, sizeof v->error);
 }
 
-/* The ladder of the scene, or what the command line says instead. A value that is the default is 0 again,
- * as in the base that names of settings are told from; but for scale, which is 1 there. */
+/* Sets v->want from the command line, or the ladder of the scene. A value equal to the default
+ * becomes 0, as in the base of setting names. Exception: scale, which is 1 in the base. */
 static void want_given(masu_viewer *v) {
     v->want = v->given;
     v->want.scene = &v->scene;
     v->want = masu_session_resolved(&v->want);
     for (uint32_t r = 0; r < v->want.rung_count; r++) {
-        masu_desc plain = v->want; /* what a rung of that scale would be if nothing were said of it */
+        masu_desc plain = v->want; /* the defaults of a rung of this scale */
         plain.rung_count = 1;
         plain.rungs[0] = (masu_rung){.scale = v->want.rungs[r].scale};
-        plain.governor.mode = MASU_GOVERNOR_OFF; /* as masu bench measures, whose names these are */
+        plain.governor.mode = MASU_GOVERNOR_OFF; /* setting names are those of masu bench, which
+                                                  * measures without */
         plain = masu_session_resolved(&plain);
         for (const masu_knob *k = masu_knob_table(); k->name; k++) {
             if (!strcmp(k->name, "scale")) continue;
@@ -239,7 +243,7 @@ static void want_given(masu_viewer *v) {
     }
 }
 
-/* What belongs to a scene that is looked at for the first time. */
+/* Resets the viewer's state for a newly opened scene. */
 static void begin_scene(masu_viewer *v) {
     char title[300];
     v->rung = v->o->rung_given ? v->o->rung : 0;
@@ -267,8 +271,8 @@ bool masu_viewer_load(masu_viewer *v, const char *path, bool fresh) {
     bool same_class = old_blob && masu_scene_class_of(&scene) == masu_scene_class_of(&old);
     v->blob = blob;
     v->scene = scene;
-    if (!same_class || fresh) want_given(v); /* other rungs were measured for it */
-    if (!v->host.device) return true;        /* it is what the program begins with */
+    if (!same_class || fresh) want_given(v); /* rungs are measured per class */
+    if (!v->host.device) return true;        /* the program's first scene */
     if (v->rung >= v->want.rung_count) v->rung = v->want.rung_count - 1;
     masu_viewer_settle(v);
     if (start_a(v)) {
@@ -307,7 +311,7 @@ static bool open_device(masu_viewer *v) {
     }
     if (r) return masu_headless_fail(v->error, sizeof v->error, "vkCreateFence", r);
     if (!masu_compose_open(&v->compose, &v->host, v->cache, v->error, sizeof v->error)) return false;
-    /* A window may be opened minimised: then there is no size yet to begin with. */
+    /* A window that opens minimised has no size yet. */
     for (int i = 0; i < 100; i++) {
         if (!masu_viewer_resize(v)) return false;
         if (v->window.extent.width) return true;
@@ -346,7 +350,7 @@ bool masu_viewer_recover(masu_viewer *v) {
     return v->show == MASU_SHOW_A || start_b(v);
 }
 
-/* What is wrong with files is said before there is a window. */
+/* Files are loaded first, so that their errors are reported before a window opens. */
 bool masu_viewer_open(masu_viewer *v) {
     masu_ui_open();
     if (!masu_baker_start(v)) return false;

@@ -14,7 +14,7 @@ bool masu_window_open(masu_window *w, const char *title, VkExtent2D size, char *
         snprintf(error, n, "no window: %s", SDL_GetError());
         return false;
     }
-    (void)SDL_InitSubSystem(SDL_INIT_GAMECONTROLLER); /* without one there are keys and a mouse */
+    (void)SDL_InitSubSystem(SDL_INIT_GAMECONTROLLER); /* optional: keys and mouse are enough */
     w->sdl = SDL_CreateWindow(title, SDL_WINDOWPOS_UNDEFINED, SDL_WINDOWPOS_UNDEFINED, (int)size.width,
                               (int)size.height,
                               SDL_WINDOW_VULKAN | SDL_WINDOW_RESIZABLE | SDL_WINDOW_ALLOW_HIGHDPI);
@@ -66,7 +66,7 @@ bool masu_window_attach(masu_window *w, const masu_headless_desc *given, masu_he
         if (w->surface_failed) snprintf(error, size, "no window: %s", SDL_GetError());
         return false;
     }
-    host->desc.surface_extensions = NULL; /* names is gone */
+    host->desc.surface_extensions = NULL; /* names is out of scope after this function */
     w->host = host;
     for (uint32_t i = 0; i < MASU_WINDOW_FLIGHT; i++) {
         VkSemaphoreCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO};
@@ -129,8 +129,8 @@ static bool choose_format(masu_window *w, VkSurfaceFormatKHR *out, char *error, 
     return false;
 }
 
-/* FIFO is always there. Without it, frames come as fast as they can: what is measured is then the
- * renderer and not the display. */
+/* FIFO is always supported. Without vsync, frames are presented as fast as possible, so that the
+ * display does not limit measurements. */
 static VkPresentModeKHR choose_mode(const masu_window *w, bool vsync) {
     VkPresentModeKHR list[MODES_MAX], best = VK_PRESENT_MODE_FIFO_KHR;
     uint32_t n = MODES_MAX;
@@ -193,7 +193,7 @@ bool masu_window_swapchain(masu_window *w, bool vsync, char *error, size_t size)
     if (caps.maxImageCount && count > caps.maxImageCount) count = caps.maxImageCount;
     VkCompositeAlphaFlagBitsKHR alpha = VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR;
     if (!(caps.supportedCompositeAlpha & alpha)) alpha = VK_COMPOSITE_ALPHA_INHERIT_BIT_KHR;
-    /* The picture is not rotated: the compositor rotates it on a rotated display. */
+    /* The image is not rotated: the compositor rotates it on a rotated display. */
     VkSurfaceTransformFlagBitsKHR transform = VK_SURFACE_TRANSFORM_IDENTITY_BIT_KHR;
     if (!(caps.supportedTransforms & transform)) transform = caps.currentTransform;
     w->rotated = transform != caps.currentTransform;
@@ -225,8 +225,9 @@ bool masu_window_swapchain(masu_window *w, bool vsync, char *error, size_t size)
 VkResult masu_window_acquire(masu_window *w, uint32_t slot, uint32_t *image) {
     VkResult r = vkAcquireNextImageKHR(w->host->device, w->swapchain, MASU_HEADLESS_TIMEOUT_NS,
                                        w->acquired[slot], VK_NULL_HANDLE, image);
-    if (r == VK_SUBOPTIMAL_KHR) { /* it can be drawn, and its semaphore will be signalled */
-        w->stale |= !w->rotated; /* for an unrotated swapchain on a rotated display it stays so */
+    if (r == VK_SUBOPTIMAL_KHR) { /* usable: the image can be drawn, and its semaphore will be
+                                   * signalled */
+        w->stale |= !w->rotated; /* an unrotated swapchain on a rotated display is always suboptimal */
         return VK_SUCCESS;
     }
     if (r == VK_ERROR_OUT_OF_DATE_KHR) w->stale = true;

@@ -1,6 +1,6 @@
-/* fuzz_tally.c: any bytes as a SPIR-V module, for the cost model: the cost of its instructions,
- * what specialization constants leave of them, and the counters that are added. A module with
- * counters can be read again. */
+/* fuzz_tally.c: feeds any bytes as a SPIR-V module to the cost model: the cost of its instructions,
+ * with and without specialization constants, and the added counters. A module with counters must be
+ * readable again. */
 #include "fuzz/expect.h"
 
 #include "lab/model/spirv_reach.h"

@@ -1,5 +1,5 @@
-/* fuzz_trace.c: any bytes as a trace of `masu-lab simulate`. What is accepted has scales that fall
- * and times that a controller can be run on. */
+/* fuzz_trace.c: feeds any bytes as a trace to `masu-lab simulate`. An accepted trace has falling
+ * scales and times that a controller can run on. */
 #include "fuzz/expect.h"
 
 #include "lab/simulate/trace.h"

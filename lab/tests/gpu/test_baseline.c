@@ -1,7 +1,7 @@
-/* test_baseline.c: `masu-lab study baseline`: the baseline traces a ray a pixel where Masu traces
- * one in four, its mean over many samples is the truth, the samples of equal error are what they
- * are called, frames before count for more at rest than in motion, and what is no setting is
- * refused. */
+/* test_baseline.c: `masu-lab study baseline`: the baseline traces one ray per pixel and Masu one
+ * per four pixels; its mean over many samples is the ground truth; the sample counts of equal error
+ * are right; earlier frames matter more with a still camera than in motion; invalid settings are
+ * errors. */
 #include "support/support.h"
 #include "support/cli.h"
 
@@ -36,11 +36,11 @@ static const masu_baseline_point *point(uint32_t k) {
     for (uint32_t i = 0; i < baseline.point_count; i++) {
         if (baseline.points[i].samples == k) return &baseline.points[i];
     }
-    fail_msg("nothing is known of %u samples", k);
+    fail_msg("no point for %u samples", k);
     return NULL;
 }
 
-/* The mirror fills the picture; its textures make a renderer for each count of samples. */
+/* The mirror fills the image; its textures require a renderer for each sample count. */
 static void a_ray_a_pixel_is_measured_beside_one_in_four(void **state) {
     (void)state;
     static const char *const settings[] = {"base", "scale=0.5+sharpen=off", NULL};
@@ -55,7 +55,7 @@ static void a_ray_a_pixel_is_measured_beside_one_in_four(void **state) {
     assert_int_equal(baseline.entries[1].specular_rays, pixels / 4);
     assert_int_equal(baseline.entries[2].specular_rays, pixels / 16);
     assert_int_equal(baseline.entries[2].render.width, WIDTH / 2);
-    /* Planes behind the eye are drawn by the plain one alone. */
+    /* Only the plain renderer draws planes behind the camera. */
     assert_true(baseline.entries[0].triangles > baseline.entries[1].triangles);
     for (uint32_t e = 0; e < baseline.entry_count; e++) {
         for (int phase = 0; phase < MASU_BASELINE_PHASES; phase++) {
@@ -78,7 +78,7 @@ static void check_samples(const masu_baseline_entry *e, uint32_t most) {
             continue;
         }
         assert_true(point(k)->errors.of[m] <= e->errors.of[m]);
-        while (2 * below < k) below *= 2; /* the last of the doubling that was not enough */
+        while (2 * below < k) below *= 2; /* the last doubled count that was not enough */
         if (k > 1) assert_true(point(below)->errors.of[m] > e->errors.of[m]);
     }
 }
@@ -106,7 +106,8 @@ static void many_plain_samples_are_the_truth(void **state) {
     assert_true(point(MOST)->errors.of[MASU_BASELINE_FLIP] < 0.04);
     for (uint32_t e = baseline.plain_count; e < baseline.entry_count; e++)
         check_samples(&baseline.entries[e], MOST);
-    /* A picture of fewer pixels is worse than one of all, and its samples are no more. */
+    /* An image of fewer pixels has a larger error than a full one, and does not need more
+     * samples. */
     for (int m = 0; m < MASU_BASELINE_METRICS; m++) {
         const masu_baseline_entry *base = &baseline.entries[baseline.plain_count], *small = base + 1;
         assert_true(small->errors.of[m] > base->errors.of[m]);
@@ -115,7 +116,7 @@ static void many_plain_samples_are_the_truth(void **state) {
     }
 }
 
-/* The camera goes along: so far from frame to frame that little is found again, or not at all. */
+/* The camera moves so far between frames that little or nothing is found again. */
 static void steps_are_those_between_frames(void **state) {
     (void)state;
     static const char *const settings[] = {"base", "temporal=on", NULL};
@@ -126,7 +127,7 @@ static void steps_are_those_between_frames(void **state) {
             "engine", settings);
         const masu_baseline_entry *e = &baseline.entries[baseline.plain_count];
         with[i] = e[1].errors.of[MASU_BASELINE_RMSE] / e[0].errors.of[MASU_BASELINE_RMSE];
-        print_message("  %g s: RMSE %.4f, with a past %.4f\n", steps[i], e[0].errors.of[MASU_BASELINE_RMSE],
+        print_message("  %g s: RMSE %.4f, with history %.4f\n", steps[i], e[0].errors.of[MASU_BASELINE_RMSE],
                       e[1].errors.of[MASU_BASELINE_RMSE]);
     }
     assert_true(with[0] < 0.7 && with[1] > 1.2 * with[0]);

@@ -1,5 +1,5 @@
-/* test_lab.c: the program masu-lab from outside: help of every command, and the studies upscale,
- * rays and image on small scenes. Times are not looked at. */
+/* test_lab.c: tests masu-lab from outside: help of every command, and the studies upscale, rays and
+ * image on small scenes. Times are not checked. */
 #include "support/cli.h"
 #include "support/support.h"
 
@@ -97,7 +97,7 @@ static void the_rays_study_agrees_with_embree(void **state) {
     cli_complained("nothing is traced");
 }
 
-/* A row for each chain; a smaller render size has a larger error. */
+/* There is a row for each chain; a smaller render size has a larger error. */
 static void the_image_study_has_a_row_for_each_chain(void **state) {
     (void)state;
     char line[4096];

@@ -1,6 +1,6 @@
-/* test_marches.c: the marches of the lab build find the surfaces that the product's march finds:
- * `plain`, the baseline; `checkerboard`, whose restarts are safe; and `seed`, whose restarts are
- * not, to the tenth of a metre that its rule allows. */
+/* test_marches.c: the lab's marches find the same surfaces as the product's march: `plain`, the
+ * baseline; `checkerboard`, whose restarts are safe; and `seed`, whose restarts are not, within the
+ * tenth of a metre that its rule allows. */
 #include "support/support.h"
 #include "support/files.h"
 
@@ -26,8 +26,8 @@ static void draw_march(const char *name, masu_march march, float *depths) {
     close_session(&s);
 }
 
-/* Pixels where only one march has a surface, or theirs differ by more than that part of the
- * distance. Depth is near / distance. */
+/* Pixels where only one march finds a surface, or their distances differ by more than that share.
+ * Depth is near / distance. */
 static uint32_t differing(double share) {
     uint32_t count = 0;
     for (uint32_t i = 0; i < PIXELS; i++) {
@@ -44,7 +44,8 @@ static void all_marches_find_the_same_surface(void **state) {
         masu_march march;
         const char *name;
         double share, most; /* of the distance; of the pixels */
-    } marches[] = {{MASU_MARCH_PLAIN, "plain", 0.01, 0.04}, /* it stops a tenth of a pixel before a surface: far away at grazing angles */
+    } marches[] = {{MASU_MARCH_PLAIN, "plain", 0.01, 0.04}, /* it stops 0.1 pixel before a surface:
+                                                             * far at grazing angles */
                    {MASU_MARCH_CHECKERBOARD, "checkerboard", 0.01, 0.01},
                    {MASU_MARCH_SEED, "seed", 0.1, 0.05}};
     for (size_t i = 0; i < (long_run() ? sizeof scenes / sizeof *scenes : 1); i++) {

@@ -1,6 +1,5 @@
-/* test_model.c: `masu-lab model` on a driver: shaders with counters count what they run, bytes of
- * known passes are those that follow from sizes, sums are sums, and rungs have the rows that they
- * run. */
+/* test_model.c: `masu-lab model` on a driver: counts of shaders with counters, bytes of passes
+ * with given sizes, sums, and that rungs have rows for the passes that they run. */
 #include "support/support.h"
 #include "plan/compile.h"
 
@@ -16,7 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Two rungs of their own: all there is, and half the size without reflections. */
+/* Two rungs: everything, and half the size without reflections. */
 #define LADDER_HEAD                                                                                \
     "{\"scene\": \"a.masu\", \"driver\": \"D\", \"width\": 32, \"height\": 24, \"clock\": \"wall\", "   \
     "\"error\": \"flip\", \"rungs\": ["
@@ -57,8 +56,8 @@ static void a_loop_is_counted_round_by_round(void **state) {
     compute_run(t.words, t.word_count * 4, buffers, 2, push, N / 64);
     for (uint32_t i = 0; i < N; i++) assert_true(fabsf(values[i] - expected[i]) < 1e-4f);
     assert_int_equal(counts[0], N);
-    /* A round: a comparison, a step, and a fused multiply-add that is two of the peak's; at last
-     * one comparison more. */
+    /* A round: a comparison, a step, and a fused multiply-add, which counts two; at the end one
+     * more comparison. */
     assert_int_equal(counts[1], 3 * (N - 1) + 1);
     assert_int_equal(masu_tally_sum(counts, 0), 3 * (N * (N - 1) / 2) + N);
     assert_int_equal(masu_tally_sum(counts, 1), 4 * (N * (N - 1) / 2) + N);
@@ -72,8 +71,8 @@ static void a_loop_is_counted_round_by_round(void **state) {
     free(t.words);
 }
 
-/* Polygons, SDF, reflections of both, a shadow map or none: the picture with counters is the one
- * without, and every pixel that is written is counted once. */
+/* Polygons, SDF, reflections of both, with and without a shadow map: the image with counters
+ * equals the one without, and every written pixel is counted once. */
 static void counters_change_no_pixel(void **state) {
     enum { W = 96, H = 64 };
     static uint8_t plain[W * H * 4], counted[W * H * 4];
@@ -162,16 +161,16 @@ static void bytes_of_known_passes_are_those_worked_out_by_hand(void **state) {
     assert_near(half[MASU_PASS_EASU_TWICE].bytes, 4.0 * n + 4.0 * P, 1e-9);
     assert_near(half[MASU_PASS_RCAS].bytes, 8.0 * P, 1e-9);
     assert_int_equal(half[MASU_PASS_RCAS].bytes_sure, MASU_MODEL_EXACT);
-    /* depth, normal and the occlusion that is written: what the shadow map adds is the scene's */
+    /* depth, normal and the written occlusion; bytes of the shadow map depend on the scene */
     assert_true(half[MASU_PASS_SHADOW].bytes >= 12.0 * n);
     /* albedo, normal, depth at least, and vertices */
     assert_true(half[MASU_PASS_GBUFFER].bytes > 12.0 * n);
     assert_true(all[MASU_PASS_GBUFFER].bytes > 12.0 * P);
-    /* EASU: 12 fetches for four pixels, of flat ones 4; the sky and what is lit evenly are flat. */
+    /* EASU: 12 fetches for four pixels, 4 for flat ones; the sky and evenly lit parts are flat. */
     double easu = half[MASU_PASS_EASU_TWICE].plain / P;
     if (!(easu > 60.0 && easu < 300.0)) fail_msg("%g operations a pixel", easu);
     assert_false(half[MASU_PASS_EASU].runs || all[MASU_PASS_EASU_TWICE].runs);
-    /* Rows are those of the rung. */
+    /* The rung's passes have rows. */
     uint32_t traced = 0;
     for (uint32_t p = MASU_PASS_SPECULAR_GUIDE; p <= MASU_PASS_SPECULAR_COMPOSITE; p++) {
         traced += all[p].runs;
@@ -181,7 +180,7 @@ static void bytes_of_known_passes_are_those_worked_out_by_hand(void **state) {
     assert_true(traced >= 8);
     assert_true(all[MASU_PASS_SPECULAR_TRACE].weighted > 0.0);
     assert_true(all[MASU_PASS_SPECULAR_TRACE].asked > 0.0);
-    /* More pixels take more; a sheet that is scaled takes what one that is drawn takes. */
+    /* More pixels cost more; a scaled sheet equals one that is drawn at the full size. */
     model_of("mirrors", path, 192, 128, 96, 64, &larger);
     for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
         assert_int_equal(larger.rungs[0].rows[p].runs, all[p].runs);
@@ -195,7 +194,7 @@ static void bytes_of_known_passes_are_those_worked_out_by_hand(void **state) {
     assert_near(larger.rungs[1].rows[MASU_PASS_RCAS].bytes, 8.0 * 192.0 * 128.0, 1e-9);
 }
 
-/* An SDF and nothing else, at the library's own rungs: each quicker than the one before. */
+/* Only an SDF, at the library's own rungs: each is faster than the one before. */
 static void rungs_of_an_sdf_cost_less_one_by_one(void **state) {
     static masu_model_sheet m;
     (void)state;
@@ -233,7 +232,7 @@ static void the_command_writes_its_sheet_and_refuses_what_is_wrong(void **state)
     assert_non_null(strstr(text, "<caption>COMPUTED"));
     assert_null(strstr(text, "instructions by"));
     assert_int_equal(cli_run("model"), 2);
-    /* RADV compiles for raven without one. Other GPUs stand for no class. */
+    /* RADV compiles for raven without the GPU. Other GPUs represent no class. */
     snprintf(arguments, sizeof arguments, "%s --size 64x48 --drawn 64x48 --isa raven --csv %s/i.csv",
              scene_path("test_sphere_mesh"), scratch);
     int code = cli_run("model %s", arguments);

@@ -1,5 +1,6 @@
-/* test_study_march.c: `masu-lab study march` on a sphere whose truth is a few lines of C, compiled
- * here: the numbers, the CSV, and the shading in double precision against the GPU's picture. */
+/* test_study_march.c: `masu-lab study march` on a sphere whose ground truth is a few lines of C,
+ * compiled here: the numbers, the CSV, and the shading in double precision against the GPU's
+ * image. */
 #include "support/support.h"
 #include "support/files.h"
 #include "support/cli.h"
@@ -46,7 +47,7 @@ static int make_truth(void **state) {
                  scratch);
 }
 
-/* The field of that name in the line of that variant. */
+/* The value of a column in the line of a variant. */
 static const char *csv_field(const char *csv, const char *variant, const char *column) {
     static char value[256];
     char start[128];
@@ -103,7 +104,7 @@ static void a_sphere_is_measured(void **state) {
             strcmp(csv_field(cli_out, masu_bench_names[v], "hits"), "n/a") ? "3072" : "n/a");
 }
 
-/* The truth is shaded as the GPU shades: away from the rim no byte is off by more than 2. */
+/* The ground truth is shaded like on the GPU: away from the rim all bytes are within 2. */
 static void the_shaded_truth_is_the_picture(void **state) {
     (void)state;
     enum { W = 120, H = 90 };
@@ -125,8 +126,8 @@ static void the_shaded_truth_is_the_picture(void **state) {
         different += d > 0;
         rim += d > 2;
     }
-    /* The rim is some 250 pixels long; one in ten of them lies within 0.1 of a pixel of it, and
-     * light changes fast there. */
+    /* The rim is about 250 pixels long; a tenth of its pixels have their centre within 0.1 pixel of
+     * the edge, near which light changes fast. */
     if (rim > 75) fail_msg("%u pixels are off by more than 2", rim);
     assert_true(different < W * H / 4);
     for (int i = 0; i < 2; i++) masu_image_free(&image[i]);

@@ -55,11 +55,11 @@ static void a_past_brings_a_picture_nearer_to_the_truth(void **state) {
         assert_true(none->flicker[MASU_PAST_REST] < 1e-9);
         assert_true(fabs(none->flip[MASU_PAST_REST] - none->flip[MASU_PAST_SLOW]) < 1e-9);
     }
-    /* The same but for what moves. */
+    /* Motion increases the error. */
     const masu_past_row first = *row(0.5, MASU_PAST_OWN), *own = &first;
     assert_true(own->flip[MASU_PAST_REST] < 0.8 * own->flip[MASU_PAST_SLOW]);
     assert_true(own->flip[MASU_PAST_SLOW] < own->flip[MASU_PAST_FAST]);
-    /* Of two starts the mean: of this one, and of the one that five frames more give. */
+    /* The mean of two starts: this one, and one with five more frames. */
     masu_past_desc one = d, two = d;
     one.only = two.only = 1u << MASU_PAST_OWN;
     one.scales[0] = two.scales[0] = 0.5, one.scale_count = two.scale_count = 1;
@@ -67,7 +67,7 @@ static void a_past_brings_a_picture_nearer_to_the_truth(void **state) {
     assert_ok(masu_past_run(&two, &past, error, sizeof error));
     double mean = past.rows[0].flip[MASU_PAST_SLOW];
     assert_true(fabs(mean - first.flip[MASU_PAST_SLOW]) < 0.1 * mean);
-    assert_true(fabs(mean - first.flip[MASU_PAST_SLOW]) > 1e-6); /* another picture is in it */
+    assert_true(fabs(mean - first.flip[MASU_PAST_SLOW]) > 1e-6); /* it includes another image */
     assert_ok(masu_past_run(&one, &past, error, sizeof error));
     assert_true(fabs(past.rows[0].flip[MASU_PAST_SLOW] - first.flip[MASU_PAST_SLOW]) < 1e-9);
 }

@@ -1,6 +1,6 @@
 /* test_upscale_chain.c: the chain of compute shaders of `masu-lab study upscale`: fast EASU with
- * counters, outside of a frame, counts the 8x8 tiles that leave early as the scalar transcription
- * in tests/reference/fsr1.c does. */
+ * counters, outside a frame, counts the same 8x8 tiles left early as the scalar transcription in
+ * tests/reference/fsr1.c. */
 #include "support/support.h"
 
 #include "reference/fsr1.h"

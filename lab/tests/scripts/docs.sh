@@ -1,5 +1,5 @@
 #!/bin/bash
-# The documents name commands and options that masu-lab has: tests/scripts/docs.sh with the lab's program.
+# Checks the names of commands and options of masu-lab in the documents: tests/scripts/docs.sh with the lab's program.
 set -u
 cd "$(dirname "$0")/../../.." || exit 1
 LAB_PROGRAM=$(realpath "${BUILD:-build}/bin/masu-lab")

@@ -1,5 +1,5 @@
 #!/bin/bash
-# isa.sh: what RADV's compiler makes of the pipelines is what lab/notes/isa.csv says: no spill to memory, no more
+# isa.sh: checks the output of RADV's compiler for the pipelines against lab/notes/isa.csv: no spill to memory, no more
 # scalar registers kept in vector registers, no scratch memory, at most 5 % more instructions, the same pipelines
 # (make isa-table rewrites it). Then the errors of masu-lab isa.
 set -u
@@ -14,7 +14,7 @@ fail() {
     failed=1
 }
 
-# refuses CODE TEXT ARGUMENTS...: that exit code, and a line that has TEXT
+# refuses CODE TEXT ARGUMENTS...: checks the exit code, and that a line contains TEXT
 refuses() {
     local out code
     out=$("$lab" "${@:3}" 2>&1 > /dev/null)
@@ -22,7 +22,7 @@ refuses() {
     [ "$code" = "$1" ] && [[ $out == *"$2"* ]] || fail "masu-lab ${*:3}: exit code $code, $out"
 }
 
-# worse TABLE NEW: a line for everything that NEW has more of than TABLE
+# worse TABLE NEW: a line for each number that is higher in NEW
 worse() {
     awk -F, '
         FNR == 1 { next }
@@ -35,13 +35,13 @@ worse() {
         END { for (key in was) if (!(key in seen)) print key ": no pipeline any more" }' "$1" "$2"
 }
 
-# The child's compiler needs nothing of the driver that tests use.
+# The child's compiler does not need the tests' driver.
 BUILD=$build MADE=$made lab/isa/table.sh vangogh,raven > "$folder/new.csv" || fail 'table.sh fails'
 worse lab/notes/isa.csv "$folder/new.csv" > "$folder/worse"
 [ ! -s "$folder/worse" ] || fail "$(cat "$folder/worse")
 make isa-table rewrites lab/notes/isa.csv, if that is intended"
 
-# It sees what it is there for.
+# The comparison finds more instructions and spills.
 sed 's/^\(engine,raven,easu,[^,]*,[^,]*,[^,]*,[^,]*\),[0-9]*,/\1,9999,/' "$folder/new.csv" > "$folder/more.csv"
 worse "$folder/new.csv" "$folder/more.csv" | grep -q '^engine,raven,easu,.*9999' || fail 'more instructions are not seen'
 sed 's/^\(engine,raven,rcas\(,[^,]*\)\{8\}\),0,/\1,3,/' "$folder/new.csv" > "$folder/spill.csv"
@@ -57,7 +57,7 @@ refuses 2 'unknown option --drawn' isa "$scene" --gpu vangogh --drawn 64x48
 refuses 1 'cannot' isa "$folder/none.masu" --gpu vangogh
 MASU_ISA_DRIVERS='' refuses 1 'MASU_ISA_DRIVERS is to name the folder' isa "$scene" --gpu tgl
 MASU_ISA_DRIVERS=$folder refuses 1 "has no $folder/libvulkan_intel.so" isa "$scene" --gpu kbl
-# If a driver ends the child, the error is the driver's message alone.
+# If a driver ends the child, the error is only the driver's message.
 printf '#include <stdio.h>\n#include <stdlib.h>\nint vk_icdNegotiateLoaderICDInterfaceVersion(unsigned *v) {
     (void)v; fputs("driver: this chip is not known\\n", stderr); exit(7); }\n' > "$folder/driver.c"
 mkdir "$folder/drivers"

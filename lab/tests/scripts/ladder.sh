@@ -1,6 +1,6 @@
 #!/bin/bash
-# masu-lab ladder: the ladders of docs/report are those of src/quality/ladder_tables.h to the byte; what not every scene
-# of a class or every device can do is rejected.
+# masu-lab ladder: the ladders of docs/report give src/quality/ladder_tables.h byte for byte; settings that some scenes
+# of a class or some devices do not support are rejected.
 set -u
 cd "$(dirname "$0")/../../.." || exit 1
 lab=$(realpath "${BUILD:-build}/bin/masu-lab")
@@ -13,7 +13,7 @@ fail() {
     failed=1
 }
 
-# refuses CODE TEXT ARGUMENTS...: that exit code, and one line that has TEXT
+# refuses CODE TEXT ARGUMENTS...: checks the exit code, and that the output is one line with TEXT
 refuses() {
     local out code
     out=$("$lab" ladder "${@:3}" 2>&1 > /dev/null)
@@ -21,7 +21,7 @@ refuses() {
     [ "$code" = "$1" ] && [[ $out == *"$2"* ]] && [ "$(wc -l <<< "$out")" = 1 ] || fail "ladder ${*:3}: exit code $code, $out"
 }
 
-# LADDERS as the Makefile has it
+# LADDERS of the Makefile
 files=()
 while IFS= read -r pair; do
     files+=("${pair%%=*}=docs/report/${pair#*=}/ladder.json")

@@ -1,6 +1,6 @@
 #!/bin/bash
-# masu conform --suite marches with the lab's programs: the marches plain, seed and checkerboard, which masu-bake
-# --variants bakes, still have the errors of lab/suites/marches.json.
+# masu conform --suite marches with the lab's programs: the marches plain, seed and checkerboard, baked with --variants,
+# still have the errors of lab/suites/marches.json.
 set -u
 cd "$(dirname "$0")/../../.." || exit 1
 bin=$(realpath "${BUILD:-build}/bin")

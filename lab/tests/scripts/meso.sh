@@ -1,5 +1,5 @@
 #!/bin/bash
-# masu-lab meso: the table, the CSV, and plots where gnuplot is.
+# masu-lab meso: the table, the CSV, and the plots if gnuplot is installed.
 set -u
 cd "$(dirname "$0")/../../.." || exit 1
 lab=$(realpath "${BUILD:-build}/bin/masu-lab")
@@ -20,7 +20,7 @@ grep -q '^angle,plain,plain_and_ao,curves' "$folder/g r.csv" || fail 'no rows of
 [ ! -s "$folder/stdout" ] || fail '--quiet prints'
 cmp "$folder/q.csv" "$folder/g r.csv" || fail 'two runs give two results'
 
-# Without gnuplot it goes on with a warning.
+# Without gnuplot there is only a warning.
 mkdir "$folder/bin"
 ln -s "$(command -v sh)" "$folder/bin/sh"
 PATH="$folder/bin" "$lab" meso "${small[@]}" -o "$folder/p" > /dev/null 2> "$folder/stderr" || fail 'without gnuplot it fails'

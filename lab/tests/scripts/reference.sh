@@ -13,7 +13,7 @@ fail() {
     failures=$((failures + 1))
 }
 
-# Radiance .18, .36 and .09 with exposure 2: the curve makes .5036, .7250 and .2669 of them, and sRGB 188, 221 and 141.
+# Radiance .18, .36 and .09 with exposure 2: the curve gives .5036, .7250 and .2669, and sRGB 188, 221 and 141.
 cat > "$folder/sky.json" << 'END'
 {
   "models": [{"mesh": {"sphere": {"radius": 1}}, "translate": [0, -50, 0]}],
@@ -28,7 +28,7 @@ END
 colour=$(convert "$folder/sky.png" -depth 8 rgb:- | od -An -v -tu1 -w3 | sort -u | xargs)
 [ "$colour" = "188 221 141" ] || fail "the sky is $colour"
 
-# The format is the name's; of linear light the sky is what the scene says.
+# The name determines the format; in linear light the sky has the scene's values.
 said=$("$lab" reference "$folder/sky.masu" -o "$folder/sky.jpg" --paths 1 --size 16x16 --quiet 2>&1)
 [ $? = 2 ] && [[ $said == *sky.jpg* ]] && [ ! -e "$folder/sky.jpg" ] || fail "sky.jpg: $said"
 for end in pfm exr; do

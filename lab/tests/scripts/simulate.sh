@@ -1,5 +1,5 @@
 #!/bin/bash
-# masu-lab simulate: the table, the CSV's columns, plots where gnuplot is, and what it refuses.
+# masu-lab simulate: the table, the CSV's columns, plots if gnuplot is installed, and errors.
 set -u
 lab=${BUILD:-build}/bin/masu-lab
 folder=$(mktemp -d)
@@ -11,7 +11,7 @@ fail() {
     failed=1
 }
 
-# refuses CODE TEXT ARGUMENTS...: that exit code, and a line that has TEXT
+# refuses CODE TEXT ARGUMENTS...: checks the exit code, and that a line contains TEXT
 refuses() {
     local out code
     out=$("$lab" simulate "${@:3}" 2>&1 > /dev/null)
@@ -28,7 +28,7 @@ for name in standard constant step_4x lies_lavapipe city; do
             "$folder/all.csv" || fail "the CSV has no row of $name, $controller"
     done
 done
-# No controller leaves the ladder on any model.
+# All controllers use only rungs of the ladder, on every model.
 awk -F, 'NR > 1 && $NF != 0 { print; bad = 1 } END { exit bad }' "$folder/all.csv" || fail 'invalid scales'
 
 [ "$("$lab" simulate --model constant --controller masu --seeds 1 | wc -l)" = 4 ] || fail 'the table is not four lines'
@@ -36,7 +36,7 @@ awk -F, 'NR > 1 && $NF != 0 { print; bad = 1 } END { exit bad }' "$folder/all.cs
 if command -v gnuplot > /dev/null; then
     "$lab" simulate --quiet --seeds 1 --model constant --plots "$folder/plots" || fail 'plots fail'
     grep -q '</svg>' "$folder/plots/constant.svg" || fail 'there is no whole constant.svg'
-    # A name is a title, whatever stands in it.
+    # A name is only a title, whatever it contains.
     trace="$folder/it's \`touch STRUCK\`.csv"
     head -40 lab/simulate/traces/city.csv > "$trace"
     "$lab" simulate --quiet --seeds 1 --model "it's \`touch STRUCK\`" --controller masu \

@@ -1,6 +1,6 @@
 #!/bin/bash
-# masu-lab world, and masu-bake with what it writes: the city is the same every time and as large as promised, and
-# errors are one line. forza is tested only where its data is installed.
+# masu-lab world, and masu-bake with its output: the city is the same every time and has the expected size, and
+# errors are one line. forza is only tested if its data is installed.
 set -u
 cd "$(dirname "$0")/../../.." || exit 1
 lab=$(realpath "${BUILD:-build}/bin/masu-lab")
@@ -29,7 +29,7 @@ keys=$(grep -c '"time"' "$folder/a/city.json")
 frame() { sed -n "s/.*\"time\": $1, \"position\": \[\([^]]*\)\].*/\1/p" "$folder/a/city.json"; }
 [ "$(frame 0.0000)" != "$(frame 10.0000)" ] || fail "the camera stands still"
 
-# By night it is the same city, lit by its lamps and by the windows of some facades.
+# city_night is the same city at night, lit by its lamps and by the windows of some facades.
 for member in '"models"' '"ambient_occlusion": {' '"lambda"'; do
     for name in city city_night; do
         grep -q -e "$member" "$folder/a/$name.json" || fail "$name.json has no $member"
@@ -41,8 +41,8 @@ between "lamps of the night" "$(grep -c '"type": "point"' "$folder/a/city_night.
 between "lit facades" "$(grep -c '"match": "glass", "emissive"' "$folder/a/city_night.json")" 300 700
 grep -q '"type": "point"\|"emissive"' "$folder/a/city.json" && fail "a lamp is lit by day"
 
-# Baked without light probes, which take half a minute; and its meshes without LODs here: those take ten seconds, and
-# tests of their own.
+# Baked without light probes, which take half a minute, and without LODs of its meshes, which take ten seconds and have
+# their own tests.
 grep -q '"probes": {' "$folder/a/city.json" || fail "the city has no probes"
 sed -i '/"probes": {/d' "$folder/a/city.json" "$folder/b/city.json"
 sed 's/"lods": 3/"lods": 0/' "$folder/a/city.json" > "$folder/a/plain.json"
@@ -61,9 +61,9 @@ if [ -n "${LONG:-}" ]; then # ten seconds
     between "peak bytes of the baker" "$(number "$folder/b.stats" peak_bytes)" 1 200000000
 fi
 
-# ---- what can go wrong ---------------------------------------------------------------------------
+# ---- errors --------------------------------------------------------------------------------------
 
-# refuses CODE PATTERN COMMAND...: one line on stderr
+# refuses CODE PATTERN COMMAND...: checks for one line on stderr
 refuses() {
     local wanted=$1 pattern=$2 code
     shift 2
@@ -94,15 +94,15 @@ torcs=/usr/share/games/torcs
 if [ -d $torcs/tracks/road/forza ] && [ -d $torcs/cars/p406 ]; then
     "$lab" world forza "$folder/forza" > "$folder/stdout" 2> /dev/null || fail "masu-lab world forza"
     grep -q 'a lap of 57[0-9][0-9] m' "$folder/stdout" || fail "the lap: $(cat "$folder/stdout")"
-    # Lamps stand outside of the barriers along all of the lap, by night only; a plain lies below the lowest ground.
+    # Lamps are outside the barriers along the whole lap, only at night; a plain is below the lowest ground.
     between "forza's lamps" "$(grep -c '"intensity": 400' "$folder/forza/forza_night.json")" 120 180
     between "their poles" "$(grep -c '\[0.16, 10, 0.16\]' "$folder/forza/forza_night.json")" 120 180
     grep -q '"intensity": 400' "$folder/forza/forza.json" && fail "a lamp of forza is lit by day"
     for name in forza forza_night; do
         grep -q '"name": "plain"' "$folder/forza/$name.json" || fail "$name.json has no plain"
     done
-    # Ten cars on four wheels each: a wheel's scale is its diameter, its middle half of that above
-    # the road, and the road a hand's breadth below the body's origin; two are turned about.
+    # Ten cars on four wheels each: a wheel's scale is its diameter, its centre is half of that above
+    # the road, and the road a hand's breadth below the body's origin; two wheels are rotated.
     awk -F'[][,]+' '
         /cars\/[^"]*\.acc/ { cars++; body = $10 }
         /wheels\/[^"]*\.acc/ {
@@ -114,7 +114,7 @@ if [ -d $torcs/tracks/road/forza ] && [ -d $torcs/cars/p406 ]; then
         END { if (cars != 10 || wheels != 40 || turned != 20) print cars, wheels, turned }
     ' "$folder/forza/forza.json" > "$folder/wheels"
     [ ! -s "$folder/wheels" ] || fail "wheels: $(cat "$folder/wheels")"
-    # The road in numbers: rows of twelve, unit normals, barriers beyond the edges; the cars stand on it.
+    # The road in numbers: rows of twelve, unit normals, barriers beyond the edges; the cars are on it.
     awk '
         NR == 2 { points = $2 }
         NF == 12 && $1 != "car" {

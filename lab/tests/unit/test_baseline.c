@@ -1,5 +1,5 @@
-/* test_baseline.c: what `masu-lab study baseline` is made of, without a device: the search for the
- * least count of samples, medians over rounds, and what the baseline is. */
+/* test_baseline.c: the parts of `masu-lab study baseline` that need no device: the search for the
+ * least sample count, medians over rounds, and the baseline's settings. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -46,7 +46,7 @@ static void the_least_is_found(void **state) {
     assert_int_equal(masu_baseline_least(64, from_on, &s), UINT32_MAX);
 }
 
-/* A machine that is twice as slow in every other round changes no ratio of rounds. */
+/* A machine that is half as fast in every other round does not change the ratio over rounds. */
 static void ratios_are_of_rounds(void **state) {
     (void)state;
     static masu_samples plain, own;
@@ -89,7 +89,7 @@ static void the_plain_renderer_takes_no_short_cut(void **state) {
     }
 }
 
-/* Of 8 ms 2 are the cascades': 3 samples take 8 + 2 * 6. */
+/* 2 of the 8 ms are for cascades: 3 samples take 8 + 2 * 6. */
 static void shadow_maps_are_drawn_once(void **state) {
     (void)state;
     static masu_baseline w;

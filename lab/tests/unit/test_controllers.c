@@ -20,8 +20,8 @@ static const sim_model *named(const char *name) {
     return p;
 }
 
-/* Beside every rival: not one of them misses fewer frames by more than four (a slow drift costs
- * those: it is followed with the least of margins), or changes less by more than four. */
+/* No rival misses fewer frames by more than four (these come from a slow drift, which is followed
+ * with the smallest margin), or changes less often by more than four. */
 static void it_misses_fewer_frames_than_its_rivals(void **state) {
     static const char *const models[] = {
         "standard", "latency_1", "latency_2", "constant", "step_4x",    "step_1.8x", "sine_50",
@@ -42,11 +42,9 @@ static void it_misses_fewer_frames_than_its_rivals(void **state) {
     }
 }
 
-/* ---- Recorded scenes
- * --------------------------------------------------------------------------- */
+/* ---- Recorded scenes ------------------------------------------------------------------------- */
 
-/* Recorded on a machine whose processors were shared: times jump by a fifth for some frames in
- * ten. */
+/* Recorded on a machine with shared processors: times change by a fifth for about ten frames. */
 static void it_misses_least_on_recorded_scenes(void **state) {
     static const char *const paths[] = {"lab/simulate/traces/engine.csv",
                                         "lab/simulate/traces/city.csv"};

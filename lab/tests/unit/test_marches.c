@@ -1,5 +1,5 @@
-/* test_marches.c: the marches that only the lab build has, in the frame plan: which passes each of
- * them runs, what it tells the shaders, and that a blob without its code is an error. */
+/* test_marches.c: the marches that only the lab build has, in the frame plan: the passes of
+ * each, its settings for the shaders, and that a blob without its code is an error. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

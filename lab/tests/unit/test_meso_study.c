@@ -1,4 +1,4 @@
-/* test_meso_study.c: the curves that masu-meso fits come at least twice as close to ray tracing as
+/* test_meso_study.c: the fitted curves of masu-meso are at least twice as close to ray tracing as
  * plain normal mapping, for asphalt, gravel and grass at every view angle of the comparison; a mip
  * of one texel keeps the light of the map within 5 %. */
 #include <math.h>
@@ -38,11 +38,11 @@ static void curves_are_twice_as_near_as_plain_maps(void **state) {
             kept = fmax(kept, fabs(v->mip_mean[2]));
             between = fmax(between, fmax(fabs(v->mip_mean[0]), fabs(v->mip_mean[1])));
             assert_near(v->mip_mean[2], v->filtered_mean[MASU_MESO_CURVES], 1e-6);
-            /* Never behind the AO map either. */
+            /* Never worse than the AO map either. */
             assert_true(v->far[MASU_MESO_CURVES] < v->far[MASU_MESO_OCCLUDED]);
         }
         print_message(
-            "  %s: %.2f times nearer at worst, at %g degrees; a mip's mean is off by %.3f "
+            "  %s: %.2f times closer at worst, at %g degrees; a mip's mean differs by %.3f "
             "at worst, mips between by %.3f\n",
             *name, gain, angle, kept, between);
         assert_true(gain >= 2);

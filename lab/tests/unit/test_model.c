@@ -1,6 +1,6 @@
-/* test_model.c: what the model sheet counts and computes, without a device: costs of
- * instructions on modules made for it and on EASU's, counters put into every kind of shader,
- * rows and sums of a sheet whose counts are given, rungs out of JSON. */
+/* test_model.c: counts and computations of the model sheet, without a device: costs of instructions
+ * on modules made for the test and on EASU's, counters added to every kind of shader, rows and sums
+ * of a sheet with given counts, rungs from JSON. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -47,7 +47,7 @@ static masu_spirv_cost cost_of_source(const char *body) {
     return cost;
 }
 
-/* Each by hand: components, then what one of them takes. */
+/* Each computed by hand: components times the cost of one. */
 static void costs_are_those_counted_by_hand(void **state) {
     static const struct {
         const char *body;
@@ -93,7 +93,8 @@ static masu_spirv_cost straight(const uint32_t *words, size_t bytes) {
     return cost;
 }
 
-/* A branch that constants decide is counted on the side that is left, whatever the constant is asked by. */
+/* For a branch that constants decide, only the taken side counts, however the constant is
+ * tested. */
 static void what_constants_leave_out_is_not_counted(void **state) {
     (void)state;
     static const char source[] =
@@ -106,12 +107,12 @@ static void what_constants_leave_out_is_not_counted(void **state) {
         "    a += b;\n"                                                                      /* 4 */
         "    if (on) { a = a * b + b; }\n"                                                   /* 8 */
         "    if (kind == 1u) { a = sqrt(a); } else if (kind + 1u > 2u) { a = twice(a * b); }\n" /* 4; 8 */
-        "    if (!on && n > 3u) { a.x = exp2(a.x); }\n"                                      /* 1, and 1 to ask; a PHI */
+        "    if (!on && n > 3u) { a.x = exp2(a.x); }\n" /* 1, 1 to test; a PHI */
         "    switch (kind) { case 7u: a *= a; break; default: a.x *= 2.0; }\n"               /* 4; 1 */
         "    for (uint i = 0u; i < 4u; i++) { b += 1.0; if (kind == 9u) { b *= 3.0; } }\n"   /* 4, and the loop's; 4 */
         "}\n";
     static const struct {
-        uint32_t on, kind, counts; /* beside what all have */
+        uint32_t on, kind, counts; /* added to the common ones */
     } cases[] = {{1, 2, 4 + 8 + 8 + 1 + 4},     {0, 2, 4 + 8 + 1 + 4 + 1 + 1}, {0, 1, 4 + 4 + 1 + 4 + 1 + 1},
                  {1, 1, 4 + 8 + 4 + 1 + 4},     {1, 7, 4 + 8 + 8 + 4 + 4},     {1, 9, 4 + 8 + 8 + 1 + 4 + 4},
                  {1, 0, 4 + 8 + 1 + 4}};
@@ -129,16 +130,16 @@ static void what_constants_leave_out_is_not_counted(void **state) {
             fail_msg("%u, %u: %u instead of %u", cases[k].on, cases[k].kind, plain, base + cases[k].counts);
         assert_true(plain < everything);
     }
-    /* Without a word from the host the module's own hold. */
+    /* Without values from the host the module's own values hold. */
     assert_int_equal(masu_spirv_cost_reached(&m, NULL).plain, base + cases[0].counts);
     VkSpecializationInfo other = {1, &(VkSpecializationMapEntry){4, 0, 4}, 4, &(uint32_t){0}};
     assert_int_equal(masu_spirv_cost_reached(&m, &other).plain, base + cases[0].counts);
     spirv_free(&m);
 }
 
-/* With debug.exact EASU has been counted by hand as 794, without what finds and bounds the pixel, and 14 for each
- * of 36 numbers that may be of 10 bits; without, it takes about a third. RCAS of one pixel as 175; it makes two,
- * of 24 numbers. */
+/* By hand, EASU with debug.exact costs 794, without locating and bounding the pixel, plus 14 for
+ * each of 36 numbers that may be of 10 bits; without debug.exact it costs about a third. RCAS costs
+ * 175 per pixel; it computes two, from 24 numbers. */
 static void easu_costs_about_what_was_counted_by_hand(void **state) {
     (void)state;
     masu_spirv_cost easu = straight(masu_spv_easu_bytes_exact_comp, sizeof masu_spv_easu_bytes_exact_comp);
@@ -199,7 +200,7 @@ static void a_counted_shader_is_a_valid_one_that_counts_each_access(void **state
 
 /* ---- The sheet ------------------------------------------------------------------------------- */
 
-/* A picture from elsewhere, upscaled from half to full size and sharpened; drawn at half of
+/* An image from elsewhere, upscaled from half to full size and sharpened; drawn at half of
  * that. */
 static void plan_upscaling(uint32_t width, uint32_t height, masu_frame_plan *plan) {
     masu_desc d = {
@@ -231,7 +232,7 @@ static void count_of(masu_pass_count *c, double pixels, double plain, double wei
                                        {MASU_TALLY_WRITTEN, MASU_SET_PASS, 1, pixels}}};
 }
 
-/* Drawn with 960x540 pixels, the sheet is of four times as many. */
+/* Drawn with 960x540 pixels; the sheet has four times as many. */
 static void count_upscaling(masu_count *count, double pixels) {
     plan_upscaling(960, 540, &count->drawn);
     plan_upscaling(1920, 1080, &count->sheet);
@@ -260,7 +261,8 @@ static void the_sheet_has_the_numbers_worked_out_by_hand(void **state) {
     assert_near(easu->weighted, 850.0 * P);
     assert_int_equal(easu->bytes_sure, MASU_MODEL_EXACT);
     assert_int_equal(easu->weighted_sure, MASU_MODEL_EXACT);
-    /* Xe80: 850 operations of 2.07 M pixels at 1.66 TFLOPS are 1.06 ms, 8 bytes at 68 GB/s 0.24. */
+    /* Xe80: 850 operations for 2.07 M pixels at 1.66 TFLOPS take 1.06 ms, 8 bytes at 68 GB/s
+     * 0.24. */
     bool by_bytes;
     assert_near(masu_model_floor(easu, 0, &by_bytes), 850.0 * P / 1.66e9);
     assert_false(by_bytes);
@@ -271,9 +273,9 @@ static void the_sheet_has_the_numbers_worked_out_by_hand(void **state) {
     assert_near(m.rungs[0].sum.bytes, easu->bytes + rcas->bytes);
     assert_near(m.rungs[0].floor[0], 850.0 * P / 1.66e9 + 8.0 * P / 68e6);
     assert_int_equal(m.chosen[0][0], 0);  /* Xe80 */
-    assert_int_equal(m.chosen[4][0], -1); /* 850 and 150 operations of 2 M pixels at 0.15 TFLOPS */
+    assert_int_equal(m.chosen[4][0], -1); /* 850 and 150 operations for 2 M pixels at 0.15 TFLOPS */
     assert_int_equal(m.chosen[4][1], -1);
-    /* Pixels that go their own way, and texels that were never asked for. */
+    /* Pixels with different branches, and texels that are never fetched. */
     count.passes[0][MASU_PASS_EASU].most = 900.0;
     count.passes[0][MASU_PASS_RCAS].numbers[0].amount = 0.25 * p;
     masu_model_make(&count, NULL, &m);
@@ -295,7 +297,7 @@ static void add_row(masu_isa_rows *rows, const char *pipeline, const char *stage
     r->value[MASU_ISA_LATENCY] = latency;
 }
 
-/* Pipelines of a pass are added up; of several widths the widest is taken, binning not at all. */
+/* Pipelines of a pass are summed; of several widths the widest counts, binning does not. */
 static void instructions_of_compilers_are_found_by_pass_and_stage(void **state) {
     static masu_isa_rows rows;
     static masu_issued issued;
@@ -324,7 +326,8 @@ static void instructions_of_compilers_are_found_by_pass_and_stage(void **state) 
     assert_near(issued.pass[MASU_PASS_GBUFFER].instructions[1], 50);
     assert_near(issued.pass[MASU_PASS_CASCADE_0].instructions[1], 33);
     assert_near(issued.pass[MASU_PASS_CASCADE_0].instructions[0], 44);
-    assert_near(issued.pass[MASU_PASS_TRANSPARENTS].instructions[0], 200); /* of 32 lanes two are one */
+    /* Two of 32 lanes count as one. */
+    assert_near(issued.pass[MASU_PASS_TRANSPARENTS].instructions[0], 200);
     assert_near(issued.pass[MASU_PASS_CASCADE_0].waits, 1);
 }
 
@@ -339,17 +342,18 @@ static void the_sheet_counts_the_compilers_instructions_where_it_was_asked(void 
     issued[0].known = true;
     issued[0].pass[MASU_PASS_EASU].instructions[0] = 600.0;
     issued[0].pass[MASU_PASS_EASU].waits = 1.25;
-    issued[0].pass[MASU_PASS_RCAS].instructions[0] = 90.0; /* no operations of its own: as often as it is called */
+    issued[0].pass[MASU_PASS_RCAS].instructions[0] = 90.0; /* `straight` is 0: once per
+                                                            * invocation */
     issued[0].pass[MASU_PASS_RCAS].waits = 1.0;
     masu_model_make(&count, issued, &m);
     const masu_model_row *easu = &m.rungs[0].rows[MASU_PASS_EASU], *rcas = &m.rungs[0].rows[MASU_PASS_RCAS];
     assert_near(easu->issued[0], 800.0 * P * 1.5);
     assert_near(rcas->issued[0], 90.0 * P);
     assert_near(m.rungs[0].sum.issued[0], 1290.0 * P);
-    /* An instruction of a lane is half of a fused multiply-add's two operations. */
+    /* One instruction of a lane is half of the two operations of a fused multiply-add. */
     assert_near(masu_model_floor(easu, 0, NULL), 1200.0 * P / 0.83e9);
     assert_near(masu_model_realistic(easu, 0), 1.5 * 1.25 * 1200.0 * P / 0.83e9);
-    /* The other classes are as they were. */
+    /* The other classes are unchanged. */
     assert_near(easu->issued[1], 0.0);
     assert_near(masu_model_floor(easu, 1, NULL), 850.0 * P / 0.42e9);
     assert_true(m.issued[0] && !m.issued[1]);

@@ -1,8 +1,6 @@
-/*
- * test_reference.c: the reference path tracer (lab/reference) against closed forms and tabulated
- * integrals, since what is to judge the renderer has to be judged first. Expected values are
- * quadratures or formulas that use none of its code.
- */
+/* test_reference.c: the reference path tracer (lab/reference) against closed forms and tabulated
+ * integrals: it has to be verified before the renderer is compared with it. Expected values are
+ * quadratures or formulas that use none of its code. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -68,7 +66,7 @@ static stage *clear(void) {
     return &s;
 }
 
-/* A quadrilateral; its normal is that of counter-clockwise corners. */
+/* A quadrilateral; its normal follows from counter-clockwise corners. */
 static void quad(stage *s, ref_vec a, ref_vec b, ref_vec c, ref_vec d, uint32_t material) {
     ref_vec corners[4] = {a, b, c, d}, n = ref_unit(ref_cross(ref_sub(b, a), ref_sub(c, a)));
     uint32_t first = (uint32_t)s->scene.vertex_count;
@@ -85,7 +83,7 @@ static void quad(stage *s, ref_vec a, ref_vec b, ref_vec c, ref_vec d, uint32_t 
 
 static void sphere(stage *s, ref_vec center, double radius, uint32_t rings, uint32_t material) {
     uint32_t segments = 2 * rings, first = (uint32_t)s->scene.vertex_count;
-    /* As large on average as the sphere that it is inscribed to. */
+    /* Enlarged, so that it is on average as large as the sphere. */
     double wide = radius * (1 + 0.7 * REF_PI * REF_PI / (6.0 * rings * rings));
     for (uint32_t i = 0; i <= rings; i++) {
         for (uint32_t k = 0; k < segments; k++) {
@@ -153,7 +151,7 @@ static double seen(stage *s, ref_vec from, ref_vec to, int paths, double *error)
 
 static const double tilts[7] = {0, 30, 45, 60, 90, 120, 180};
 
-/* A matt square whose normal is tilted from +Y, seen along its normal. */
+/* A matt square whose normal is tilted from +Y, viewed along its normal. */
 static double tilted_square(stage *s, double degrees, int paths, double *error) {
     double a = degrees * REF_PI / 180;
     ref_vec n = ref_v(sin(a), cos(a), 0), side = ref_v(cos(a), -sin(a), 0), z = ref_v(0, 0, 1);
@@ -185,8 +183,8 @@ static void matt_surfaces_under_skies(void **state) {
         }
         for (int i = 0; i < 7; i++) {
             double error, found = tilted_square(s, tilts[i], kind == 0 ? 40000 : 6000, &error);
-            /* Of a step between two rows of the picture a bilinear lookup makes a ramp as wide
-             * as one of them. */
+            /* A bilinear lookup changes a step between two rows of the image to a ramp as wide as
+             * a row. */
             check(found, expected[kind][i], fmax(error, kind ? 2e-4 : 1e-5),
                   "irradiance under a sky");
         }
@@ -261,7 +259,7 @@ static void area_lights(void **state) {
     }
 }
 
-/* Lights that have no triangles: the same irradiance, whichever of the two strategies finds them. */
+/* Lights without triangles: the same irradiance from both sampling strategies. */
 static void local_lights_have_a_size(void **state) {
     (void)state;
     static const double high[3][2] = {{0, 1.9635}, {1, 1.4050}, {4, .1756}};
@@ -321,8 +319,8 @@ static void a_closed_box_is_a_geometric_series(void **state) {
     }
 }
 
-/* Below a roof with a square hole of 1 m at a height of 1 m, under a sky of radiance 1: the hole's
- * irradiance is that of a square lamp. */
+/* Below a roof with a square hole of 1 m at a height of 1 m, under a sky of radiance 1: the
+ * irradiance equals that from a square lamp. */
 static void a_window_to_the_sky_is_found(void **state) {
     (void)state;
     double error[2];
@@ -385,8 +383,8 @@ static void fog_and_punctual_lights(void **state) {
     check(ref_fog_left(.05, .2, 10, -.3, 0, 30), .5658, 0, "falling ray");
     check(ref_fog_left(.05, .2, 1.7, .3, 5, HUGE_VAL), .6444, 0, "ray into the sky");
     assert_true(ref_fog_left(.05, 0, 1.7, .3, 0, HUGE_VAL) == 0);
-    /* White plane, light at height h, range 20, radius 0.5: 4 cos / max(d^2, 0.25),
-     * KHR_lights_punctual's window. */
+    /* White plane, light at height h, range 20, radius 0.5: 4 cos / max(d^2, 0.25), with the window
+     * of KHR_lights_punctual. */
     static const double points[8][3] = {{2, 0, .9999},  {2, 1, .71510},   {2, 2, .35341},
                                         {2, 4, .08922}, {2, 8, .013854},  {2, 18, .000441},
                                         {.3, 0, 16.0},  {.3, .3, 11.3137}};
@@ -414,7 +412,7 @@ static void fog_and_punctual_lights(void **state) {
     }
 }
 
-/* A sphere on the ground in the sun, from near and from ten kilometres away from the origin. */
+/* A sphere on the ground in the sun, near the origin and ten kilometres away from it. */
 static void the_place_of_a_scene_does_not_matter(void **state) {
     (void)state;
     double found[2], error[2];
@@ -496,7 +494,7 @@ static void the_camera_is_that_of_the_renderer(void **state) {
     blob.count[MASU_BLOB_CAMERA_KEYS] = 2;
     ref_camera c = ref_camera_at(&blob, 1);
     ref_vec d =
-        ref_camera_ray(&c, 1, 0, 2); /* right upper corner of an image twice as wide as high */
+        ref_camera_ray(&c, 1, 0, 2); /* upper right corner of an image twice as wide as high */
     assert_true(fabs(c.eye.x - 1) < 1e-12);
     assert_true(fabs(d.x / -d.z - 2 * tan(.5)) < 1e-6 && fabs(d.y / -d.z - tan(.5)) < 1e-6);
 }

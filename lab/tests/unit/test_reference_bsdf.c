@@ -1,8 +1,6 @@
-/*
- * test_reference_bsdf.c: the materials of the reference path tracer (lab/reference) against
- * tabulated integrals, in both modes. Expected values are quadratures or random walks that use
- * none of its code.
- */
+/* test_reference_bsdf.c: the materials of the reference path tracer (lab/reference) against
+ * tabulated integrals, in both modes. Expected values are quadratures or random walks that use none
+ * of its code. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -25,8 +23,8 @@ static void check(double found, double expected, double error, const char *what)
 
 static ref_vec tilted(double cosine) { return ref_v(sqrt(1 - cosine * cosine), 0, cosine); }
 
-/* Directional albedo of height-correlated GGX: 1e7 visible normals a point, and by quadrature
- * over light directions. */
+/* Directional albedo of height-correlated GGX: from 1e7 visible normals per value, and by
+ * quadrature over light directions. */
 static const struct {
     double roughness, white[5], weight[5], average;
 } lobes[] = {
@@ -52,7 +50,7 @@ static void the_lobe_has_its_albedo(void **state) {
     }
 }
 
-/* Mean weight of directions that are drawn. */
+/* Mean weight of sampled directions. */
 static double sampled(const ref_surface *s, double cosine, bool walk, int paths, double *error) {
     ref_bsdf b;
     double sum = 0, square = 0;
@@ -112,7 +110,7 @@ static void the_closed_model_has_its_albedo(void **state) {
             check(found, closed[i][k], error, "closed metal, sampled");
         }
     }
-    /* Smooth ones lose light at grazing angles alone. */
+    /* Smooth surfaces lose light only at grazing angles. */
     for (int i = 0; i < 5; i++) {
         double error;
         ref_surface s = metal(.9, .05 + .025 * i);
@@ -145,7 +143,7 @@ static void the_random_walk_has_its_albedo(void **state) {
                 double mean = sum / paths;
                 error = sqrt(fmax(square / paths - mean * mean, 0) / paths);
                 check(mean, walked[m][i][k], error, "walk");
-                if (k == 1 || k == 3) { /* the same as an evaluation that another density samples */
+                if (k == 1 || k == 3) { /* also as an evaluation, sampled by another density */
                     ref_surface s = metal(f0, rows_of[i]);
                     double found = sampled(&s, cosines[k], true, 20000, &error);
                     check(found, walked[m][i][k], error, "walk, evaluated");
@@ -155,7 +153,7 @@ static void the_random_walk_has_its_albedo(void **state) {
     }
 }
 
-/* Mean of what light from l sends to v. */
+/* Mean of the light from l scattered to v. */
 static double walked_through(const ref_surface *s, ref_vec v, ref_vec l, double *error) {
     enum { PATHS = 20000 };
     ref_bsdf b;
@@ -172,7 +170,7 @@ static double walked_through(const ref_surface *s, ref_vec v, ref_vec l, double 
     return sum / PATHS;
 }
 
-/* Light that walks leave with, and the integral of what they send to each direction. */
+/* The light with which walks leave, against the integral of what they scatter to each direction. */
 static void walks_are_sampled_as_they_are_evaluated(void **state) {
     (void)state;
     enum { PATHS = 40000 };
@@ -211,8 +209,8 @@ static void layers_are_reciprocal(void **state) {
     }
 }
 
-/* Without facets a dielectric mirrors Schlick's share, what it lets through both ways and what is
- * mirrored back between is a series: 1/21 of Lambertian light. */
+/* Without facets a dielectric mirrors Schlick's share; light that enters and is mirrored inside
+ * forms a series: 1/21 of Lambertian light. */
 static void a_smooth_dielectric_over_a_colour(void **state) {
     (void)state;
     ref_surface s = metal(.5, .1);
@@ -240,7 +238,8 @@ static void what_is_white_returns_all_light(void **state) {
             for (int n = 0; n < 4; n++) {
                 double found = sampled(&kinds[n], cosines[k], false, 6000, &error);
                 check(found, 1, error, "white furnace");
-                /* Rare walks through narrow lobes weigh much: their mean comes from below. */
+                /* Rare walks through narrow lobes have large weights: the mean approaches from
+                 * below. */
                 found = sampled(&kinds[n], cosines[k], true, 6000, &error);
                 assert_true(error < .03 && fabs(found - 1) < .006 + 3 * error);
             }

@@ -1,8 +1,6 @@
-/*
- * test_reference_field.c: fields of the reference path tracer whose distance is known: a source of
- * GLSL, blocks of GLSL in a .sdf source, what becomes of a mistake; its ambient occlusion, and parts
- * that emit light.
- */
+/* test_reference_field.c: distances of fields of the reference path tracer: a GLSL source,
+ * blocks of GLSL in a .sdf source, reports of mistakes; also its ambient occlusion, and parts that
+ * emit light. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -50,8 +48,8 @@ static double sphere(ref_vec p, ref_vec c, double radius) {
     return ref_length(ref_sub(p, c)) - radius;
 }
 
-/* Two times the distance to a sphere that rises with the time and is mirrored: written with what
- * C++ lacks or has otherwise: swizzles, matrices, vector comparisons, arrays, out parameters,
+/* Twice the distance to a mirrored sphere that rises with time, written with features that C++
+ * lacks or has in another form: swizzles, matrices, vector comparisons, arrays, out parameters,
  * globals, files. */
 static const char glsl[] =
     "#include \"half.glsl\"\n"
@@ -87,7 +85,7 @@ static void a_source_of_glsl_is_the_distance_that_it_computes(void **state) {
         ref_vec p = any_point(i);
         double expected = 2 * sphere(ref_v(fabs(p.x), p.y, p.z), ref_v(1, 0.3, 0.5), 0.75);
         double found = ref_field_distance(&f, p);
-        /* In doubles: 1e-6 would be that of floats. Time is 0.3, of doubles as well */
+        /* In doubles, also the time of 0.3: floats would only reach 1e-6. */
         if (!(fabs(found - expected) < 1e-12))
             fail_msg("at %g %g %g: %.17g, expected %.17g", p.x, p.y, p.z, found, expected);
     }
@@ -120,7 +118,7 @@ static void blocks_of_glsl_are_parts_like_any_other(void **state) {
     for (int i = 0; i < 200; i++) {
         ref_vec p = any_point(i);
         double b = sphere(p, ref_v(-3, 0, 0), 1), a = 2 * sphere(p, ref_v(2, 0.3, 0), 0.75);
-        /* A block is intersected with its bounds */
+        /* A block is intersected with its bounds. */
         ref_vec q = ref_sub(p, ref_v(2, 0.3, 0));
         ref_vec out = ref_v(fmax(fabs(q.x) - 1, 0), fmax(fabs(q.y) - 1, 0), fmax(fabs(q.z) - 1, 0));
         a = fmax(a, 2 * ref_length(out));
@@ -148,12 +146,13 @@ static void a_mistake_is_reported_with_its_line(void **state) {
     assert_null(strchr(error, '\n'));
 }
 
-/* Light of a floor, of one everywhere around, over that without ambient occlusion. */
+/* The light of a floor from a uniform environment, divided by the light without ambient
+ * occlusion. */
 static double open_share(ref_tracer *t, double all, double field, double strength) {
     enum { PATHS = 16000 };
     double sum[2] = {0};
     for (int k = 0; k < 2; k++) {
-        uint64_t paths = k && all > 0 && field > all ? PATHS / 16 : PATHS; /* of 16 rays each */
+        uint64_t paths = k && all > 0 && field > all ? PATHS / 16 : PATHS; /* each traces 16 rays */
         t->occlusion_radius = k ? all : 0;
         t->field_occlusion_radius = k ? field : 0;
         t->field_occlusion_strength = strength;
@@ -166,8 +165,8 @@ static double open_share(ref_tracer *t, double all, double field, double strengt
     return sum[1] / sum[0];
 }
 
-/* A ceiling at the height a R occludes directions with cos > a by 1 - a / cos each: in all, weighted
- * by the cosine, by (1 - a)^2. */
+/* A ceiling at the height a R occludes directions with cos > a by 1 - a / cos each; weighted by the
+ * cosine, (1 - a)^2 in total. */
 static void a_ceiling_occludes_by_a_closed_form(void **state) {
     (void)state;
     static const char sdf[] = "param radius = 0.75 [0, 2];\n"
@@ -189,7 +188,7 @@ static void a_ceiling_occludes_by_a_closed_form(void **state) {
                     .sun_direction = {0, 1, 0},
                     .eye = {0, 0.5, 0},
                     .environment = &environment};
-    /* Radii of all surfaces and of the field, its strength; what is left */
+    /* Radii for all surfaces and for the field, its strength; the remaining light. */
     const double rows[][4] = {{0, 2, 1, 0.75},   {0, 4, 1, 0.4375}, {0, 2, 0.4, 0.9},
                               {0, 0.9, 1, 1},    {4, 0, 1, 0.4375}, {4, 2, 1, 0.4375},
                               {2, 4, 1, 0.4375}, {2, 4, 0.2, 0.75}};
@@ -203,8 +202,8 @@ static void a_ceiling_occludes_by_a_closed_form(void **state) {
     ref_field_close(&f);
 }
 
-/* Light of a ball of radius 0.5, 2 m above a white floor, and of a tube, by samples of the lamp, of
- * the scattered ray, and of both. */
+/* The light of a ball of radius 0.5, 2 m above a white floor, and of a tube: by samples of the
+ * lamp, of the scattered ray, and of both. */
 static void parts_that_emit_are_found(void **state) {
     (void)state;
     static const char *const shapes[2] = {"translate((0, 2, 0), sphere(0.5))",

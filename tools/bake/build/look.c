@@ -30,10 +30,11 @@ static masu_blob_camera_key framing_key(const masu_bake_box *box, double fov_y) 
     return key;
 }
 
-/* An orthographic camera is a lens of one degree far behind the image plane, where the near plane then is: the size is
- * exact at the target, and off by 0.9 % at half an image's height in front of it or behind. Everything else of the
- * renderer holds as it is. Returns how far back the camera has moved at least. */
-#define LENS (1 * MASU_BAKE_PI / 180)
+/* An orthographic camera is a narrow lens far behind the image plane, where the near plane then is: the size is exact at
+ * the target, and off by 0.035 % at half an image's height in front of it or behind, 0.34 pixels at the edge of 1920 x
+ * 1080. What floats lose with the distance is 0.1 pixels, and would be more with a narrower one. Returns how far back
+ * the camera has moved at least. */
+#define LENS 0.0007 /* radians */
 
 static double flatten(double height, masu_blob_camera_key *keys, size_t count) {
     double least = HUGE_VAL;
@@ -49,11 +50,47 @@ static double flatten(double height, masu_blob_camera_key *keys, size_t count) {
     return least;
 }
 
+/* Keys between those of a path that turns: positions that far away are interpolated along a chord. At TURN radians it
+ * comes 0.04 of the picture's height nearer than the arc. */
+#define TURN 0.015
+#define HALVINGS 12
+
+static masu_bake_vec3 direction_of(const masu_blob_camera_key *key) {
+    masu_bake_vec3 to = masu_bake_sub(masu_bake_v3f(key->position), masu_bake_v3f(key->target));
+    masu_bake_normalize(&to);
+    return to;
+}
+
+static void append_between(const masu_blob_camera_key *a, const masu_blob_camera_key *b, int halvings,
+                           masu_bake_buffer *out) {
+    masu_blob_camera_key middle = *a;
+    if (halvings == 0 || masu_bake_length(masu_bake_sub(direction_of(b), direction_of(a))) <= TURN) return;
+    middle.time = (float)(((double)a->time + (double)b->time) / 2);
+    for (int k = 0; k < 3; k++) {
+        middle.position[k] = (float)(((double)a->position[k] + (double)b->position[k]) / 2);
+        middle.target[k] = (float)(((double)a->target[k] + (double)b->target[k]) / 2);
+    }
+    masu_bake_vec3 apart = masu_bake_sub(masu_bake_v3f(middle.position), masu_bake_v3f(middle.target));
+    if (!(middle.time > a->time && middle.time < b->time && masu_bake_length(apart) > 0)) return;
+    append_between(a, &middle, halvings - 1, out);
+    masu_bake_append(out, &middle, sizeof middle);
+    append_between(&middle, b, halvings - 1, out);
+}
+
+static void append_keys(const masu_blob_camera_key *keys, size_t count, masu_bake_buffer *out) {
+    for (size_t i = 0; i < count; i++) {
+        masu_bake_append(out, &keys[i], sizeof keys[i]);
+        if (i + 1 < count) append_between(&keys[i], &keys[i + 1], HALVINGS, out);
+    }
+}
+
 static double add_camera(const masu_bake_look *l, const masu_bake_box *bounds,
                          masu_bake_content *content) {
     masu_bake_buffer *keys = &content->section[MASU_BLOB_CAMERA_KEYS];
     masu_blob_camera_key key = framing_key(bounds, l->fov_y);
-    if (l->key_count)
+    if (l->key_count && l->height > 0)
+        append_keys(l->keys, l->key_count, keys);
+    else if (l->key_count)
         masu_bake_append(keys, l->keys, l->key_count * sizeof *l->keys);
     else
         masu_bake_append(keys, &key, sizeof key);

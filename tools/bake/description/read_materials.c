@@ -171,14 +171,17 @@ static bool read_change(const masu_bake_json *at, masu_bake_reader *r,
         "alpha_cutoff",   "occlusion_map",  "specular",    "coat",
         "coat_roughness", "detail",         "match",       "opacity",
         "blend",          "meso",           "name",        "single_sided",
-        "coat_map",       "coat_roughness_map", "coat_smooth",
+        "coat_map",       "coat_roughness_map", "coat_smooth", "thickness",
+        "ior",            "unlit",              "depth_bias",  "repeat",
+        "detail_color",
         NULL};
     out->value = masu_bake_default_material();
     out->maps = masu_bake_no_maps();
     masu_bake_vec3 color = {0, 0, 0}, emissive = {0, 0, 0};
-    double roughness = 0, metallic = 0, specular = 0, coat = 0, coat_roughness = 0;
+    double roughness = 0, metallic = 0, specular = 0, coat = 0, coat_roughness = 0, thickness = 0, ior = 1.5;
     const char *match = NULL, *name = NULL;
-    bool single = false, even = false;
+    bool single = false, even = false, unlit = false, repeat = false;
+    double bias = 0;
     if (!masu_bake_json_object(at, members) ||
         !masu_bake_json_vec3(at, "base_color", 0, 1, &color) ||
         !masu_bake_json_number(at, "roughness", 0, 1, &roughness) ||
@@ -186,9 +189,15 @@ static bool read_change(const masu_bake_json *at, masu_bake_reader *r,
         !masu_bake_json_number(at, "specular", 0, 1, &specular) ||
         !masu_bake_json_number(at, "coat", 0, 1, &coat) ||
         !masu_bake_json_number(at, "coat_roughness", 0, 1, &coat_roughness) ||
+        !masu_bake_json_number(at, "thickness", 0, 65504, &thickness) ||
+        !masu_bake_json_number(at, "ior", 1, 1000, &ior) ||
         !read_detail(at, out) || !masu_bake_json_string(at, "match", &match) ||
         !masu_bake_json_string(at, "name", &name) || !masu_bake_json_boolean(at, "single_sided", &single) ||
         !masu_bake_json_boolean(at, "coat_smooth", &even) ||
+        !masu_bake_json_boolean(at, "unlit", &unlit) ||
+        !masu_bake_json_boolean(at, "repeat", &repeat) ||
+        !masu_bake_json_number(at, "depth_bias", -0.01, 0.01, &bias) ||
+        !masu_bake_json_boolean(at, "detail_color", &out->color_repeats) ||
         !masu_bake_json_vec3(at, "emissive", 0, 65504, &emissive) || !read_meso(at, r, change) ||
         !read_maps(at, r, change) || !read_alpha(at, out) || !read_blend(at, out)) {
         return false;
@@ -202,15 +211,26 @@ static bool read_change(const masu_bake_json *at, masu_bake_reader *r,
     out->coat_roughness = masu_bake_json_has(at, "coat_roughness");
     out->single = masu_bake_json_has(at, "single_sided");
     out->maps.single = single;
+    out->detail_color = masu_bake_json_has(at, "detail_color");
     out->relief_of = masu_bake_json_has(at, "coat_smooth");
     out->maps.relief_of = even ? MASU_BAKE_RELIEF_OF_BASE : MASU_BAKE_RELIEF_OF_BOTH;
+    out->unlit = unlit;
+    out->repeat = repeat;
+    out->depth_bias = masu_bake_json_has(at, "depth_bias");
+    out->value.depth_bias = (float)bias;
     out->value.specular = (float)specular;
     out->value.coat = (float)coat;
+    out->thickness = masu_bake_json_has(at, "thickness");
+    out->ior = masu_bake_json_has(at, "ior");
+    out->value.thickness = (float)thickness;
+    out->value.ior = (float)ior;
     out->value.coat_roughness = (float)coat_roughness;
     masu_bake_store(color, out->value.base_color);
     masu_bake_store(emissive, out->value.emissive);
     out->value.roughness = (float)roughness;
     out->value.metallic = (float)metallic;
+    if (unlit && out->emissive)
+        return masu_bake_json_wrong(at, "\"emissive\": an unlit material emits its \"base_color\"");
     if (match && strlen(match) >= sizeof out->match)
         return masu_bake_json_wrong(at, "\"match\": expected at most %u bytes",
                                     MASU_BAKE_MATCH - 1);

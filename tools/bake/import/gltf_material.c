@@ -557,19 +557,26 @@ static bool read_coat(masu_gltf *g, const json_t *about, masu_blob_material *to,
 }
 
 /* KHR_materials_volume: the light that is left after the thickness, as a factor of each surface that a ray crosses: one
- * if back faces are culled, else two. The refraction of the ray is not followed. */
-static bool read_volume(masu_gltf *g, const json_t *about, float color[3]) {
+ * if back faces are culled, else two. And its refraction. */
+static bool read_volume(masu_gltf *g, const json_t *about, masu_blob_material *to) {
     const json_t *volume = masu_gltf_extension(g, about, "KHR_materials_volume");
+    const json_t *refraction = masu_gltf_extension(g, about, "KHR_materials_ior");
     double share = json_is_true(json_object_get(about, "doubleSided")) ? 0.5 : 1;
-    double thickness = 0, distance = 0, left[3] = {1, 1, 1};
+    double thickness = 0, distance = 0, left[3] = {1, 1, 1}, index = 1.5;
     if (!masu_gltf_number(g, volume, "thicknessFactor", &thickness) ||
         !masu_gltf_number(g, volume, "attenuationDistance", &distance) ||
-        !masu_gltf_numbers(g, volume, "attenuationColor", 3, left))
+        !masu_gltf_numbers(g, volume, "attenuationColor", 3, left) || !masu_gltf_number(g, refraction, "ior", &index))
         return false;
     note_texture(g, volume, "thicknessTexture");
+    if (thickness > 0 && to->metallic > 0) {
+        masu_gltf_note_one(g, "materials have a thickness and a metallic factor: they do not refract", g->where);
+    } else if (thickness > 0) {
+        to->thickness = limited(g, thickness, 0, 65504, "thicknessFactor");
+        to->ior = index == 0 ? 1000 : limited(g, fmax(index, 1), 1, 1000, "ior"); /* 0 stands for infinity */
+    }
     if (!(thickness > 0 && distance > 0)) return true;
     limit_all(g, left, 3, 1, "attenuationColor");
-    for (int k = 0; k < 3; k++) color[k] *= (float)pow(left[k], share * thickness / distance);
+    for (int k = 0; k < 3; k++) to->base_color[k] *= (float)pow(left[k], share * thickness / distance);
     return true;
 }
 
@@ -592,7 +599,7 @@ static bool read_transmission(masu_gltf *g, const json_t *about, masu_gltf_mater
             g->where);
         return true;
     }
-    if (!read_volume(g, about, to->base_color)) return false;
+    if (!read_volume(g, about, to)) return false;
     out->alpha = (out->blends ? out->alpha : 1) * (1 - factor);
     out->given.maps.tinted = 1;
     out->given.maps.transmission = map->image != MASU_BLOB_NONE;
@@ -606,7 +613,7 @@ static void make_unlit(masu_gltf_material *out, maps *m) {
     masu_blob_material *to = &out->given.material;
     memcpy(to->emissive, to->base_color, sizeof to->emissive);
     m->all[MASU_BAKE_EMISSIVE] = m->all[MASU_BAKE_BASE];
-    to->metallic = to->specular = to->coat = to->anisotropy = 0;
+    to->metallic = to->specular = to->coat = to->anisotropy = to->thickness = to->ior = 0;
     to->roughness = 1;
     for (int k = 0; k < 3; k++) to->specular_color[k] = to->sheen_color[k] = 0;
     m->all[MASU_BAKE_LOBE_COLOR].image = m->all[MASU_BAKE_LOBE_STRENGTH].image = MASU_BLOB_NONE;

@@ -140,7 +140,7 @@ static const char *check_maps(const masu_bake_content *c) {
             }
         }
         if (m->gloss > 1 || m->additive > 1 || m->single > 1 || m->colored > MASU_BAKE_COLORED_ALPHA || m->second > MASU_MATERIAL_HAS_MAPS || m->alpha > MASU_BAKE_ALPHA_COVERS || m->relief > 2 ||
-            m->nearest > 1 || m->transmission > 1 || !in_range(&m->coat_scale, 1, -16, 16) || m->wrap[0] > 2 || m->wrap[1] > 2 || !in_range(&m->cutoff, 1, 0, 1) ||
+            m->nearest > 1 || m->transmission > 1 || !in_range(&m->coat_scale, 1, -16, 16) || m->wrap[0] > 3 || m->wrap[1] > 3 || !in_range(&m->cutoff, 1, 0, 1) ||
             !in_range(&m->normal_scale, 1, -16, 16) || !in_range(&m->occlusion, 1, 0, 1)) {
             return "a map out of range";
         }

@@ -90,6 +90,8 @@ enum { MASU_BAKE_RELIEF_OF_BOTH, MASU_BAKE_RELIEF_OF_BASE, MASU_BAKE_RELIEF_OF_C
 /* Whether vertices have colours of their own, which the base colour is multiplied by; and alpha below 1. */
 enum { MASU_BAKE_COLORED_NOT, MASU_BAKE_COLORED, MASU_BAKE_COLORED_ALPHA };
 
+#define MASU_BAKE_WRAP_REPEAT 3 /* repeats even if coordinates stay in 0..1 */
+
 typedef struct masu_bake_maps {
     uint32_t image[MASU_BAKE_MAPS];  /* MASU_BLOB_NONE: no such map */
     uint8_t channel[MASU_BAKE_MAPS]; /* 0..3: of the picture, for maps of one channel */
@@ -97,7 +99,7 @@ typedef struct masu_bake_maps {
     uint8_t alpha;                   /* MASU_BAKE_ALPHA_* */
     uint8_t additive;                /* with ALPHA_BLEND: adds its light, hides nothing */
     uint8_t single;                  /* 1: not seen from behind */
-    uint8_t wrap[2];                 /* as in masu_blob_texture_set */
+    uint8_t wrap[2]; /* as in masu_blob_texture_set; or MASU_BAKE_WRAP_REPEAT */
     uint8_t relief;                  /* MASU_BAKE_RELIEF_* */
     uint8_t relief_of;               /* MASU_BAKE_RELIEF_OF_* */
     uint8_t tinted;                  /* with ALPHA_BLEND: what shines through has the base colour */

@@ -620,6 +620,12 @@ static void point(maker *m, masu_blob_material *material, const masu_bake_maps *
     }
     if (maps->additive && flags & MASU_MATERIAL_IS_BLEND) flags |= MASU_MATERIAL_IS_ADDITIVE;
     if (maps->tinted && flags & MASU_MATERIAL_IS_BLEND) flags |= MASU_MATERIAL_IS_TINTED;
+    if (material->thickness > 0 &&
+        (!(flags & MASU_MATERIAL_IS_TINTED) || flags & MASU_MATERIAL_HAS_METAL || material->metallic > 0)) {
+        masu_cli_warn("material \"%s\": its thickness is ignored: it is metallic, or not blended as \"tinted\"",
+                      masu_bake_name_text(m->content, material->name));
+        material->thickness = material->ior = 0;
+    }
     if (maps->single) flags |= MASU_MATERIAL_IS_SINGLE;
     if (maps->shadowless) flags |= MASU_MATERIAL_NO_SHADOW;
     if (material->coat > 0 && flags & 1u << MASU_SLOT_NORMAL) {
@@ -680,6 +686,10 @@ bool masu_bake_make_textures(masu_bake_content *content, const char *directories
     size_t images = content->images.bytes / sizeof(masu_bake_image);
     maker m = {.content = content, .directories = directories};
     clamp_what_is_shown_once(content);
+    for (size_t i = 0; i < 2 * materials; i++) {
+        uint8_t *wrap = &MASU_BAKE_MAPS_OF(content)[i / 2].wrap[i % 2];
+        if (*wrap == MASU_BAKE_WRAP_REPEAT) *wrap = 0;
+    }
     uint32_t(*slots)[MASU_SLOT_COUNT] = masu_bake_allocate(materials * sizeof *slots);
     m.failed = masu_bake_allocate(images);
     memset(m.failed, 0, images);

@@ -1,0 +1,90 @@
+/*
+ * focus_gather.comp: depth of field: gathers the discs that cover a pixel, at half size, in two layers. After J.
+ * Jimenez, "Next Generation Post Processing in Call of Duty: Advanced Warfare", SIGGRAPH 2014.
+ *
+ * Behind the sharp plane: a sample contributes if both its disc and that of the pixel reach as far as it is away. Sharp
+ * samples thus reach no other pixel, and no distant light spreads over a closer surface. For pixels that are not behind
+ * the plane, the layer has what is farther away nearby: it shows through the edges of closer discs.
+ *
+ * In front: a sample contributes if its disc reaches the pixel, which may be sharp itself. What all discs contribute,
+ * each one per area, is how much of the pixel they cover.
+ *
+ * push.vary: not 0: another rotation of the samples in each frame, for rung.temporal.
+ */
+#version 440
+#extension GL_GOOGLE_include_directive : require
+#include "push/focus_gather.h"
+#include "shared/counters.h"
+#include "shared/types.h"
+#include "shared/counters.glsl"
+#include "shared/globals.glsl"
+#include "shared/store.glsl"
+#include "post/focus.glsl"
+
+layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
+
+layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D source_image;
+layout(set = MASU_SET_PASS, binding = 1) uniform sampler2D tiles_image;
+layout(set = MASU_SET_PASS, binding = 2, rgba16f) uniform writeonly image2D far_image;
+layout(set = MASU_SET_PASS, binding = 3, rgba16f) uniform writeonly image2D near_image;
+
+#define SAMPLES 48
+
+shared uint nearest; /* bits of the largest radius in front of the plane whose disc may reach this tile */
+
+void main()
+{
+    if (!(post.lens.y > 0.0)) {
+        return;
+    }
+    if (gl_LocalInvocationIndex == 0u) {
+        nearest = 0u;
+    }
+    barrier();
+    ivec2 tiles = ivec2(pc.render_width + uint(MASU_TILE) - 1u, pc.render_height + uint(MASU_TILE) - 1u) / MASU_TILE;
+    ivec2 last = ivec2(pc.output_width, pc.output_height) - 1;
+    float most = min(float(MASU_FOCUS_MOST) * float(pc.render_height), masu_focus_reach);
+    int around = int(most / float(MASU_TILE)) + 1; /* 9 at most */
+    for (int k = int(gl_LocalInvocationIndex); k < (2 * around + 1) * (2 * around + 1); k += MASU_GROUP * MASU_GROUP) {
+        ivec2 offset = ivec2(k % (2 * around + 1), k / (2 * around + 1)) - around;
+        ivec2 tile = ivec2(gl_WorkGroupID.xy) + offset;
+        if (all(greaterThanEqual(tile, ivec2(0))) && all(lessThan(tile, tiles))) {
+            float radius = masu_sane(texelFetch(tiles_image, tile, 0).r, 0.0, most);
+            int between = max(max(abs(offset.x), abs(offset.y)) - 1, 0) * MASU_TILE;
+            if (radius > float(between)) {
+                atomicMax(nearest, floatBitsToUint(radius));
+            }
+        }
+    }
+    barrier();
+    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    vec4 own = masu_sane(texelFetch(source_image, min(at, last), 0), -65504.0, 65504.0);
+    float widest = max(own.a, uintBitsToFloat(nearest));
+    float radius = max(0.5 * masu_focus_disc(widest), 0.5); /* here and below: texels of half size */
+    float own_disc = max(0.5 * masu_focus_disc(max(own.a, 0.0)), 0.5);
+    vec4 behind = vec4(0.0), front = vec4(0.0);
+    if (widest > 0.5) {
+        uint noise = uint(at.x) * 0xC13FA9A9u + uint(at.y) * 0x91E10DA5u + (push.vary != 0u ? frame.history.x * 0x9E3779B9u : 0u);
+        float turn = float(noise >> 8) * (6.2831853 / 16777216.0);
+        float area = radius * radius / float(SAMPLES);
+        for (int k = 0; k < SAMPLES; k++) {
+            /* Evenly over the disc, from its centre on: the golden angle; H. Vogel, 1979. */
+            float away = radius * masu_sqrt(float(k) / float(SAMPLES)), angle = turn + 2.3999632 * float(k);
+            ivec2 from = ivec2(floor(vec2(at) + 0.5 + away * vec2(cos(angle), sin(angle))));
+            vec4 there = masu_sane(texelFetch(source_image, clamp(from, ivec2(0), last), 0), -65504.0, 65504.0);
+            float disc = max(0.5 * masu_focus_disc(there.a), 0.5);
+            /* Behind. */
+            float least = min(disc, own_disc);
+            float weight = own.a > 0.0 ? clamp(least - away + 0.5, 0.0, 1.0) * clamp(there.a, 0.0, 1.0) / (least * least)
+                                       : clamp(there.a - own.a - 1.0, 0.0, 1.0);
+            behind += weight * vec4(there.rgb, 1.0);
+            /* In front. */
+            float covers = there.a < 0.0 ? clamp(disc - away + 0.5, 0.0, 1.0) * masu_focus_share(there.a) : 0.0;
+            front += covers * area / (disc * disc) * vec4(there.rgb, 1.0);
+        }
+        behind = behind.a > 1e-4 ? vec4(behind.rgb / behind.a, 1.0) : vec4(0.0);
+        front *= front.a > 1.0 ? 1.0 / front.a : 1.0;
+    }
+    MASU_STORE_HALF(far_image, at, behind);
+    MASU_STORE_HALF(near_image, at, front);
+}
