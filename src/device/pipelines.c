@@ -17,10 +17,11 @@
 
 /* Unpacks the shader into a mapped block that nothing else uses yet, or into host memory if frames
  * may use the block already. The driver keeps its own copy, so the memory can be used again. */
-static masu_result create_module(masu_device *m, masu_code code, VkShaderModule *module,
-                                 masu_detail *detail) {
+static masu_result create_module(masu_device *m, uint32_t pass, masu_code code,
+                                 VkShaderModule *module, masu_detail *detail) {
     uint32_t *mapped = (uint32_t *)(void *)m->mapped[masu_code_role(m->plan)];
-    const uint32_t *words = masu_code_read(&code, m->code_room ? m->code_room : mapped);
+    const uint32_t *words =
+        masu_code_read(m->plan, pass, &code, m->code_room ? m->code_room : mapped);
     if (!words)
         return masu_fail(detail, MASU_ERROR_DEVICE, "shader", code.bytes, 0,
                          "a shader of %llu bytes cannot be unpacked",
@@ -228,7 +229,7 @@ static masu_result create_compute(masu_device *m, uint32_t pass, int last, VkPip
     masu_code codes[2] = {masu_compute_code(m->plan, pass, last), {0}};
     uint64_t key = key_of(m, pass, codes, 0, constants);
     if (masu_pool_acquire(m, key, out)) return MASU_OK;
-    masu_result result = create_module(m, codes[0], &module, detail);
+    masu_result result = create_module(m, pass, codes[0], &module, detail);
     if (result) return result;
     VkComputePipelineCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
@@ -497,9 +498,9 @@ static masu_result create_pipeline(masu_device *m, uint32_t pass, int textured, 
     uint64_t key = key_of(m, pass, codes, form, constants);
     if (masu_pool_acquire(m, key, out)) return MASU_OK;
     VkShaderModule modules[2] = {VK_NULL_HANDLE, VK_NULL_HANDLE};
-    masu_result result = create_module(m, code.vertex, &modules[0], detail);
+    masu_result result = create_module(m, pass, code.vertex, &modules[0], detail);
     if (!result && code.fragment.bytes)
-        result = create_module(m, code.fragment, &modules[1], detail);
+        result = create_module(m, pass, code.fragment, &modules[1], detail);
     if (!result) {
         uint64_t start = now(m);
         VkResult r =
