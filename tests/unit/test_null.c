@@ -48,6 +48,7 @@ static masu_readback_image image;
 static masu_pick_info pick;
 static masu_instance_state instance_state;
 static masu_look instance_look;
+static masu_progress progress;
 static masu_model_state model_state;
 static masu_mesh_data mesh_data;
 static masu_model added;
@@ -138,6 +139,7 @@ static const double unit_position[3] = {1, 2, 3};
     X(masu_instance_set_position, masu_instance_set_position(P(0, &m), INSTANCE, P(1, unit_position), P(2, &detail))) \
     X(masu_instance_get, masu_instance_get(P(0, &m), INSTANCE, P(1, &instance_state), P(2, &detail))) \
     X(masu_instance_show, masu_instance_show(P(0, &m), INSTANCE, 1, P(1, &detail)))                \
+    X(masu_init_step, masu_init_step(P(0, &m), P(1, &progress), P(2, &detail)))                    \
     X(masu_instance_set_look, masu_instance_set_look(P(0, &m), INSTANCE, P(1, &instance_look), P(2, &detail))) \
     X(masu_instance_get_look, masu_instance_get_look(P(0, &m), INSTANCE, P(1, &instance_look), P(2, &detail))) \
     X(masu_model_set_look, masu_model_set_look(P(0, &m), MODEL, P(1, &instance_look), P(2, &detail)))       \
@@ -264,7 +266,8 @@ static const char *read_function(const char *at, function *f) {
 }
 
 static int may_be_null(const char *parameter) {
-    return !strcmp(parameter, "detail") || !strcmp(parameter, "viewports") || !strcmp(parameter, "from");
+    return !strcmp(parameter, "detail") || !strcmp(parameter, "progress") ||
+           !strcmp(parameter, "viewports") || !strcmp(parameter, "from");
 }
 
 /* ---- Tests ----------------------------------------------------------------------------------- */
