@@ -48,7 +48,7 @@ enum {
 enum { BUILT_IN_WORKGROUP_SIZE = 25 };
 enum { CLASS_CONSTANT = 0, CLASS_UNIFORM = 2, CLASS_PUSH = 9, CLASS_STORAGE = 12 };
 enum { MODE_LOCAL_SIZE = 17 };
-#define SPEC_IDS 24u /* constant_ids that scene code may use (device/pipelines.c) */
+#define SPEC_IDS 26u /* constant_ids that scene code may use (device/pipelines.c) */
 
 /* Sections of a module, in their order. The rank must not decrease from instruction to
  * instruction. */
