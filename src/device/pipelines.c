@@ -263,11 +263,12 @@ static uint32_t color_attachments(const masu_device *m, uint32_t pass) {
     return count;
 }
 
-/* gbuffer.frag always declares an emission output, after all others. Without an emission attachment
- * the output gets an unused attachment reference, if the device has enough attachments. */
+/* gbuffer.frag declares an emission output after all others, except with the surface image and
+ * without emission (axis OUTPUTS). Without an emission attachment the output gets an unused
+ * attachment reference; every device has as many attachments. */
 static int has_unused_emission(const masu_device *m, uint32_t pass) {
     return masu_passes[pass].geometry == MASU_GEOMETRY_POLYGONS && !m->plan->needs.emissive &&
-           color_attachments(m, pass) < m->vk.properties.limits.maxColorAttachments;
+           !m->plan->needs.surface;
 }
 
 /* Initial and final layouts are those that the row's barriers set: the render pass transitions
