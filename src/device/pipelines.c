@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "device/bind.h"
+#include "scene/code.h"
 #include "scene/scene.h"
 #include "scene/trace.h"
 #include "shared/masu_shared.h"
@@ -58,13 +59,12 @@ static uint64_t now(const masu_device *m) {
  *   22  orthographic cameras: few bits of depth are kept as those of 1 - depth
  *   23  materials may show live textures
  *   24  MASU_DRAWS_* of materials.h           25  frames change the environment */
-enum { SPECIAL_COUNT = 26 };
 
 static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
-                                       VkBool32 constants[SPECIAL_COUNT]) {
+                                       VkBool32 constants[MASU_SPECIAL_COUNT]) {
 #define ENTRY(n)                                                                                   \
     { n, (n) * sizeof *constants, sizeof *constants }
-    static const VkSpecializationMapEntry entries[SPECIAL_COUNT] = {
+    static const VkSpecializationMapEntry entries[MASU_SPECIAL_COUNT] = {
         ENTRY(0),  ENTRY(1),  ENTRY(2),  ENTRY(3),  ENTRY(4),  ENTRY(5),  ENTRY(6),
         ENTRY(7),  ENTRY(8),  ENTRY(9),  ENTRY(10), ENTRY(11), ENTRY(12), ENTRY(13),
         ENTRY(14), ENTRY(15), ENTRY(16), ENTRY(17), ENTRY(18), ENTRY(19), ENTRY(20),
@@ -106,15 +106,15 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
     constants[24] = (m->plan->needs.looks ? MASU_DRAWS_LOOKS : 0u) |
                     (scene->depth_biases ? MASU_DRAWS_BIASES : 0u);
     constants[25] = m->plan->desc.live_environment != 0;
-    return (VkSpecializationInfo){SPECIAL_COUNT, entries, SPECIAL_COUNT * sizeof *constants,
+    return (VkSpecializationInfo){MASU_SPECIAL_COUNT, entries, MASU_SPECIAL_COUNT * sizeof *constants,
                                   constants};
 }
 
 /* Key of a pipeline in the pool; 0 without a pool. */
 static uint64_t key_of(const masu_device *m, uint32_t pass, const masu_code codes[2], uint32_t form,
-                       const VkBool32 constants[SPECIAL_COUNT]) {
+                       const VkBool32 constants[MASU_SPECIAL_COUNT]) {
     if (!m->plan->desc.vulkan.pipelines) return 0;
-    return masu_pool_key(m, pass, codes, form, constants, SPECIAL_COUNT);
+    return masu_pool_key(m, pass, codes, form, constants, MASU_SPECIAL_COUNT);
 }
 
 /* ---- Layouts --------------------------------------------------------------------------------- */
@@ -224,7 +224,7 @@ static void name_form(const masu_device *m, uint32_t pass, int last, VkPipeline 
 static masu_result create_compute(masu_device *m, uint32_t pass, int last, VkPipeline *out,
                                   masu_detail *detail) {
     VkShaderModule module = VK_NULL_HANDLE;
-    VkBool32 constants[SPECIAL_COUNT];
+    VkBool32 constants[MASU_SPECIAL_COUNT];
     VkSpecializationInfo special = specialise(m, m->plan->desc.debug.counters != 0, constants);
     masu_code codes[2] = {masu_compute_code(m->plan, pass, last), {0}};
     uint64_t key = key_of(m, pass, codes, 0, constants);
@@ -387,7 +387,7 @@ static VkResult create_graphics_pipeline(masu_device *m, uint32_t pass,
                  geometry == MASU_GEOMETRY_BOXES || geometry == MASU_GEOMETRY_PICK ||
                  geometry == MASU_GEOMETRY_DEPTHS || geometry == MASU_GEOMETRY_CASTERS ||
                  geometry == MASU_GEOMETRY_TILES;
-    VkBool32 constants[SPECIAL_COUNT];
+    VkBool32 constants[MASU_SPECIAL_COUNT];
     VkSpecializationInfo special = specialise(m, masked, constants);
     VkPipelineShaderStageCreateInfo stages[2];
     for (uint32_t i = 0; i < 2; i++) {
@@ -490,7 +490,7 @@ static masu_result create_pipeline(masu_device *m, uint32_t pass, int textured, 
                                    int culled, int emitting, VkPipeline *out, masu_detail *detail) {
     masu_draw_code code = masu_draw_code_of(m->plan, pass, textured);
     const masu_code codes[2] = {code.vertex, code.fragment};
-    VkBool32 constants[SPECIAL_COUNT];
+    VkBool32 constants[MASU_SPECIAL_COUNT];
     (void)specialise(m, masked, constants);
     uint32_t form =
         (uint32_t)textured | (culled ? 2u : 0u) | (masked ? 4u : 0u) | (emitting ? 8u : 0u);
