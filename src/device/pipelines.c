@@ -131,12 +131,6 @@ static masu_result create_set_layout(masu_device *m, const VkDescriptorSetLayout
                                 : MASU_OK;
 }
 
-static int draws_polygons(uint32_t pass) {
-    masu_geometry g = masu_passes[pass].geometry;
-    return g == MASU_GEOMETRY_POLYGONS || g == MASU_GEOMETRY_CASCADE ||
-           g == MASU_GEOMETRY_BLENDED || g == MASU_GEOMETRY_PICK || g == MASU_GEOMETRY_CASTERS;
-}
-
 /* Set 2: the textures of a draw, and live textures. */
 static masu_result create_texture_layout(masu_device *m, masu_detail *detail) {
     if (!m->plan->scene.texture_arrays) return MASU_OK;
@@ -186,7 +180,7 @@ static masu_result create_pass_layout(masu_device *m, uint32_t pass, masu_detail
     if (!compute) push.stageFlags = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
     VkPipelineLayoutCreateInfo layout = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                          .setLayoutCount =
-                                             draws_polygons(pass) && m->texture_layout ? 3 : 2,
+                                             masu_draws_polygons(pass) && m->texture_layout ? 3 : 2,
                                          .pSetLayouts = sets,
                                          .pushConstantRangeCount = 1,
                                          .pPushConstantRanges = &push};
@@ -381,7 +375,7 @@ static VkResult create_graphics_pipeline(masu_device *m, uint32_t pass,
                                          VkBool32 masked, int culled, int emitting,
                                          VkPipeline *out) {
     masu_geometry geometry = masu_passes[pass].geometry;
-    int polygons = draws_polygons(pass); /* else the vertex shader generates the vertices */
+    int polygons = masu_draws_polygons(pass); /* else the vertex shader generates the vertices */
     int blends = blends_color(m, pass);
     int depths = geometry == MASU_GEOMETRY_POLYGONS || geometry == MASU_GEOMETRY_CASCADE ||
                  geometry == MASU_GEOMETRY_BOXES || geometry == MASU_GEOMETRY_PICK ||

@@ -206,6 +206,12 @@ static int is_color(uint32_t usage) {
     return usage == MASU_WRITE_COLOR || usage == MASU_BLEND_COLOR || usage == MASU_UPDATE_COLOR;
 }
 
+int masu_draws_polygons(uint32_t pass) {
+    masu_geometry g = masu_passes[pass].geometry;
+    return g == MASU_GEOMETRY_POLYGONS || g == MASU_GEOMETRY_CASCADE ||
+           g == MASU_GEOMETRY_BLENDED || g == MASU_GEOMETRY_PICK || g == MASU_GEOMETRY_CASTERS;
+}
+
 masu_stage_needs masu_stage_needs_of(const masu_frame_plan *plan, uint32_t pass) {
     VkDescriptorSetLayoutBinding bound[MASU_BIND_COUNT];
     masu_binding rows[MASU_BIND_COUNT];
@@ -227,8 +233,8 @@ masu_stage_needs masu_stage_needs_of(const masu_frame_plan *plan, uint32_t pass)
         n.storage_images += masu_has_set(pass) && masu_access_binds(access, 1);
         n.attachments += is_color(access.usage);
     }
-    if (plan->scene.texture_arrays && masu_passes[pass].kind == MASU_PASS_GRAPHICS)
-        n.sampled_images += MASU_SLOT_COUNT;
+    if (plan->scene.texture_arrays && masu_draws_polygons(pass))
+        n.sampled_images += MASU_MAP_COUNT;
     return n;
 }
 

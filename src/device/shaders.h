@@ -38,6 +38,11 @@ masu_interface masu_code_interface(const masu_code *code);
 uint32_t masu_global_bindings(const masu_frame_plan *plan, uint32_t pass,
                               VkDescriptorSetLayoutBinding out[MASU_BIND_COUNT]);
 
+#define MASU_MAP_COUNT (MASU_SLOT_COUNT + 1u) /* bindings of set 2 */
+
+/* Whether the pass draws polygons, with their textures in set 2. */
+int masu_draws_polygons(uint32_t pass);
+
 /* What the layouts of a pass have, each the largest number in one stage. Every sampled image has a
  * sampler. */
 typedef struct masu_stage_needs {
