@@ -54,7 +54,7 @@ void masu_device_row_deny(const masu_device_row *row, VkPhysicalDeviceFeatures *
     features->fragmentStoresAndAtomics &= row->fragment_stores;
 }
 
-/* ---- What the renderer asks -------------------------------------------------------------------- */
+/* ---- Replaced functions ---------------------------------------------------------------------- */
 
 static const masu_device_row *imposed;
 
