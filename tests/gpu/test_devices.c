@@ -29,16 +29,17 @@ typedef struct scene_class {
 static const scene_class classes[] = {
     {"polygons", "test_lods", {.aa = MASU_AA_FXAA}},
     {"SDF, edges", "test_sdf_looks", {.silhouettes = MASU_ON}},
-    {"lights", "small_lamps", {.aa = MASU_AA_AUTO}},
+    {"lights", "small_lamps", {.specular = MASU_OFF}},
     {"shadow maps", "test_shadows", {.aa = MASU_AA_FXAA}},
     {"textures", "test_texture_mask", {.aa = MASU_AA_FXAA}},
-    {"skins, temporal", "test_skin", {.temporal = MASU_ON, .scale = 0.5f}},
+    {"skins, temporal", "test_skin", {.temporal = MASU_ON, .scale = 0.5f, .specular = MASU_OFF}},
     {"transparent", "test_pane", {.aa = MASU_AA_AUTO}},
     {"occluders", "test_occluders", {.aa = MASU_AA_AUTO}},
     {"reflections", "test_reflections", {.aa = MASU_AA_AUTO}},
     {"textured reflections", "test_mirror_textures", {.aa = MASU_AA_AUTO}},
     {"reflections, lights", "test_reserve", {.aa = MASU_AA_AUTO}},
     {"live bounce", "test_bounce_lit", {.aa = MASU_AA_AUTO}},
+    {"all at once", "test_lit_mirror", {.aa = MASU_AA_AUTO}},
 };
 enum { CLASSES = sizeof classes / sizeof *classes };
 
