@@ -34,8 +34,9 @@ vec3 reduced(uvec2 at, uint factor)
     float row = float(masu_bloom_row(push.divisor)), step = 1.0 / float(factor);
     int pairs = int(factor / 2u);
     vec3 sum = vec3(0.0);
-    for (int y = -pairs; y < min(pairs, 4); y++) {
-        for (int x = -pairs; x < min(pairs, 4); x++) {
+    for (int j = 0; j < min(2 * pairs, 8); j++) {
+        for (int i = 0; i < min(2 * pairs, 8); i++) {
+            int x = i - pairs, y = j - pairs;
             /* Texels at 2 k + 1/2 and 2 k + 3/2 from the centre. */
             vec2 k = vec2(x < 0 ? -1 - x : x, y < 0 ? -1 - y : y);
             vec2 weight = 2.0 - (4.0 * k + 2.0) * step;

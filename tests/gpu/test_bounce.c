@@ -20,7 +20,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { W = 64, H = 48, POINTS = 512, RAYS = 94 * 48 };
+enum { W = 24, H = 18, POINTS = 512, RAYS = 94 * 48 };
 
 typedef struct rooms {
     masu_session s;
