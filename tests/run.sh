@@ -40,13 +40,13 @@ once=" test_bench test_cli test_gpu_av test_reference test_soak "
 # Of all three drivers the first runs every test. The others leave out what stands here, which LONG=1 runs too.
 # lavapipe 25: decisions of the host; means over many rays and filters; what tests/full/denied.sh runs on it (frame,
 # fixed_memory, upscale); what SwiftShader runs as well (far, faults, output, poison, stiff, trace).
-not_lavapipe_25=" test_ao test_bounce test_failures test_far test_faults test_fixed_memory test_frame test_governor test_governor_host "
+not_lavapipe_25=" test_ao test_bounce test_devices test_failures test_far test_faults test_fixed_memory test_frame test_governor test_governor_host "
 not_lavapipe_25+="test_host_pass test_ladder test_live test_load test_occlusion test_output test_pick test_poison test_reserve "
 not_lavapipe_25+="test_local_shadows test_resize test_sdf_casters test_shadow test_shadow_frames test_small_lamps test_specular_filters "
 not_lavapipe_25+="test_specular_sdf test_specular_truth test_stiff test_temporal test_terms test_trace test_truth test_upscale "
 # SwiftShader takes four times as long to draw. It leaves out decisions of the host and comparisons of many frames:
 # test_conform draws every pass there, test_poison gives each pass hostile bits, test_stiff marches.
-not_swiftshader=" test_ao test_bounce test_culling test_failures test_fixed_memory test_frame test_gltf_pictures "
+not_swiftshader=" test_ao test_bounce test_culling test_devices test_failures test_fixed_memory test_frame test_gltf_pictures "
 not_swiftshader+="test_governor test_governor_host test_host_pass test_ladder test_lights test_live test_load test_lods test_occluders "
 not_swiftshader+="test_occlusion test_pick test_pool test_reinit test_reserve test_resize test_sdf_casters test_shadow test_shadow_frames test_skin "
 not_swiftshader+="test_small_lamps test_specular_filters test_specular_sdf test_specular_textures test_specular_truth test_sprites test_temporal "

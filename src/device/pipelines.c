@@ -18,10 +18,11 @@
 
 /* Unpacks the shader into a mapped block that nothing else uses yet, or into host memory if frames
  * may use the block already. The driver keeps its own copy, so the memory can be used again. */
-static masu_result create_module(masu_device *m, masu_code code, VkShaderModule *module,
-                                 masu_detail *detail) {
+static masu_result create_module(masu_device *m, uint32_t pass, masu_code code,
+                                 VkShaderModule *module, masu_detail *detail) {
     uint32_t *mapped = (uint32_t *)(void *)m->mapped[masu_code_role(m->plan)];
-    const uint32_t *words = masu_code_read(&code, m->code_room ? m->code_room : mapped);
+    const uint32_t *words =
+        masu_code_read(m->plan, pass, &code, m->code_room ? m->code_room : mapped);
     if (!words)
         return masu_fail(detail, MASU_ERROR_DEVICE, "shader", code.bytes, 0,
                          "a shader of %llu bytes cannot be unpacked",
@@ -130,12 +131,6 @@ static masu_result create_set_layout(masu_device *m, const VkDescriptorSetLayout
                                 : MASU_OK;
 }
 
-static int draws_polygons(uint32_t pass) {
-    masu_geometry g = masu_passes[pass].geometry;
-    return g == MASU_GEOMETRY_POLYGONS || g == MASU_GEOMETRY_CASCADE ||
-           g == MASU_GEOMETRY_BLENDED || g == MASU_GEOMETRY_PICK || g == MASU_GEOMETRY_CASTERS;
-}
-
 /* Set 2: the textures of a draw, and live textures. */
 static masu_result create_texture_layout(masu_device *m, masu_detail *detail) {
     if (!m->plan->scene.texture_arrays) return MASU_OK;
@@ -185,7 +180,7 @@ static masu_result create_pass_layout(masu_device *m, uint32_t pass, masu_detail
     if (!compute) push.stageFlags = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
     VkPipelineLayoutCreateInfo layout = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                          .setLayoutCount =
-                                             draws_polygons(pass) && m->texture_layout ? 3 : 2,
+                                             masu_draws_polygons(pass) && m->texture_layout ? 3 : 2,
                                          .pSetLayouts = sets,
                                          .pushConstantRangeCount = 1,
                                          .pPushConstantRanges = &push};
@@ -228,7 +223,7 @@ static masu_result create_compute(masu_device *m, uint32_t pass, int last, VkPip
     masu_code codes[2] = {masu_compute_code(m->plan, pass, last), {0}};
     uint64_t key = key_of(m, pass, codes, 0, constants);
     if (masu_pool_acquire(m, key, out)) return MASU_OK;
-    masu_result result = create_module(m, codes[0], &module, detail);
+    masu_result result = create_module(m, pass, codes[0], &module, detail);
     if (result) return result;
     VkComputePipelineCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
@@ -262,11 +257,12 @@ static uint32_t color_attachments(const masu_device *m, uint32_t pass) {
     return count;
 }
 
-/* gbuffer.frag always declares an emission output, after all others. Without an emission attachment
- * the output gets an unused attachment reference, if the device has enough attachments. */
+/* gbuffer.frag declares an emission output after all others, except with the surface image and
+ * without emission (axis OUTPUTS). Without an emission attachment the output gets an unused
+ * attachment reference; every device has as many attachments. */
 static int has_unused_emission(const masu_device *m, uint32_t pass) {
     return masu_passes[pass].geometry == MASU_GEOMETRY_POLYGONS && !m->plan->needs.emissive &&
-           color_attachments(m, pass) < m->vk.properties.limits.maxColorAttachments;
+           !m->plan->needs.surface;
 }
 
 /* Initial and final layouts are those that the row's barriers set: the render pass transitions
@@ -379,7 +375,7 @@ static VkResult create_graphics_pipeline(masu_device *m, uint32_t pass,
                                          VkBool32 masked, int culled, int emitting,
                                          VkPipeline *out) {
     masu_geometry geometry = masu_passes[pass].geometry;
-    int polygons = draws_polygons(pass); /* else the vertex shader generates the vertices */
+    int polygons = masu_draws_polygons(pass); /* else the vertex shader generates the vertices */
     int blends = blends_color(m, pass);
     int depths = geometry == MASU_GEOMETRY_POLYGONS || geometry == MASU_GEOMETRY_CASCADE ||
                  geometry == MASU_GEOMETRY_BOXES || geometry == MASU_GEOMETRY_PICK ||
@@ -497,9 +493,9 @@ static masu_result create_pipeline(masu_device *m, uint32_t pass, int textured, 
     uint64_t key = key_of(m, pass, codes, form, constants);
     if (masu_pool_acquire(m, key, out)) return MASU_OK;
     VkShaderModule modules[2] = {VK_NULL_HANDLE, VK_NULL_HANDLE};
-    masu_result result = create_module(m, code.vertex, &modules[0], detail);
+    masu_result result = create_module(m, pass, code.vertex, &modules[0], detail);
     if (!result && code.fragment.bytes)
-        result = create_module(m, code.fragment, &modules[1], detail);
+        result = create_module(m, pass, code.fragment, &modules[1], detail);
     if (!result) {
         uint64_t start = now(m);
         VkResult r =
