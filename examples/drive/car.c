@@ -18,6 +18,8 @@
 #define HOLD 15.0      /* m/s2 that the tyres hold across; on grass HOLD_GRASS */
 #define HOLD_GRASS 6.0
 #define STRAIGHTEN 7.0 /* 1/s: how fast slip is taken away, on grass less */
+#define SLIDE 0.1      /* of STRAIGHTEN while the handbrake is on */
+#define SLIP 1.7       /* m/s across from which tyres skid */
 #define WIDTH 1.0      /* half of a car's */
 #define APART 3.4      /* metres between two cars that touch */
 #define FOLLOW 7.0     /* 1/s: how fast the eye is where it belongs */
@@ -92,11 +94,15 @@ static void drive(car *c, const car_input *in, double dt) {
     if (in->brake > 0 && speed <= 0.1) speed = fmax(speed - in->brake * PUSH / 2 * dt, -BACK);
     else speed = toward(speed, 0, in->brake * BRAKES * dt);
     double grass = c->off ? GRASS * fmin(fabs(speed) / 8, 1) : 0;
-    speed = toward(speed, 0, (ROLLING + AIR * speed * speed + grass) * dt);
+    speed = toward(speed, 0, (ROLLING + AIR * speed * speed + grass + 4 * in->hand) * dt);
     double most = (c->off ? HOLD_GRASS : HOLD) / fmax(fabs(speed), 1);
     double turn = clamp(speed * tan(c->steer) / BASE, -most, most); /* radians/s, right */
-    slip *= exp(-(c->off ? 0.3 : 1) * STRAIGHTEN * dt);
+    slip *= exp(-(c->off ? 0.3 : 1) * (1 - (1 - SLIDE) * in->hand) * STRAIGHTEN * dt);
     c->velocity = add(add((vec){0, 0, 0}, forward, speed), right, slip);
+    bool locked = (in->brake > 0.9 || in->hand > 0.5) && fabs(speed) > 4;
+    bool spinning = in->throttle > 0.9 && speed > 0.2 && speed < 5;
+    c->braking = in->brake > 0 && speed > -0.1;
+    c->skid = fmax(clamp((fabs(slip) - SLIP) / SLIP, 0, 1), locked ? 0.8 : spinning ? 0.5 : 0);
     c->heading -= turn * dt;
     c->roll += speed * dt;
     c->at = add(c->at, c->velocity, dt);

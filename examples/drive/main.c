@@ -36,7 +36,8 @@ static const char usage[] =
     "  -r N     always this rung instead\n"
     "  -f FILE  a script: keys, resizes, screenshots frame by frame\n"
     "  -v       under the Khronos validation layer\n"
-    "keys: arrows or WASD; L lights, N dusk, O autopilot, P pause, F12 photo, Escape\n";
+    "keys: arrows or WASD, Space handbrake; L lights, N dusk, R rain, B bloom, O autopilot, P pause,\n"
+    "      F12 photo, Escape\n";
 
 static void key(game *g, SDL_Scancode code, bool down) {
     g->keys[code] = down;
@@ -46,13 +47,14 @@ static void key(game *g, SDL_Scancode code, bool down) {
     if (code == SDL_SCANCODE_O) g->autopilot = !g->autopilot;
     if (code == SDL_SCANCODE_L) g->view.lamps = !g->view.lamps;
     if (code == SDL_SCANCODE_N) g->view.lamps = g->view.dusk = !g->view.dusk, g->view.cut = true;
+    if (code == SDL_SCANCODE_R) g->view.rain = !g->view.rain;
+    if (code == SDL_SCANCODE_B) g->view.bloom = !g->view.bloom;
     if (code == SDL_SCANCODE_F12) strcpy(g->view.photo, "drive.bmp");
 }
 
 static void pump_events(game *g) {
     SDL_Event e;
     while (SDL_PollEvent(&e)) {
-        bool start = e.cbutton.button == SDL_CONTROLLER_BUTTON_START;
         bool sized = e.type == SDL_WINDOWEVENT && e.window.event == SDL_WINDOWEVENT_SIZE_CHANGED;
         g->quit = g->quit || e.type == SDL_QUIT;
         g->outdated = g->outdated || sized;
@@ -61,7 +63,11 @@ static void pump_events(game *g) {
         if (e.type == SDL_CONTROLLERDEVICEADDED && !g->pad)
             g->pad = SDL_GameControllerOpen(e.cdevice.which);
         if (e.type == SDL_CONTROLLERBUTTONDOWN || e.type == SDL_CONTROLLERBUTTONUP)
-            key(g, start ? SDL_SCANCODE_P : SDL_SCANCODE_L, e.type == SDL_CONTROLLERBUTTONDOWN);
+            key(g, e.cbutton.button == SDL_CONTROLLER_BUTTON_START ? SDL_SCANCODE_P :
+                   e.cbutton.button == SDL_CONTROLLER_BUTTON_A     ? SDL_SCANCODE_L :
+                   e.cbutton.button == SDL_CONTROLLER_BUTTON_X     ? SDL_SCANCODE_R :
+                                                                     SDL_SCANCODE_SPACE,
+                e.type == SDL_CONTROLLERBUTTONDOWN);
     }
 }
 
@@ -77,7 +83,8 @@ static car_input pedals(game *g) {
         .steer = pedal(g, SDL_SCANCODE_RIGHT, SDL_SCANCODE_D, SDL_CONTROLLER_AXIS_LEFTX, 1) -
                  pedal(g, SDL_SCANCODE_LEFT, SDL_SCANCODE_A, SDL_CONTROLLER_AXIS_LEFTX, -1),
         .throttle = pedal(g, SDL_SCANCODE_UP, SDL_SCANCODE_W, SDL_CONTROLLER_AXIS_TRIGGERRIGHT, 1),
-        .brake = pedal(g, SDL_SCANCODE_DOWN, SDL_SCANCODE_S, SDL_CONTROLLER_AXIS_TRIGGERLEFT, 1)};
+        .brake = pedal(g, SDL_SCANCODE_DOWN, SDL_SCANCODE_S, SDL_CONTROLLER_AXIS_TRIGGERLEFT, 1),
+        .hand = g->keys[SDL_SCANCODE_SPACE]};
 }
 
 static bool follow_script(game *g, unsigned frame) {
@@ -128,6 +135,7 @@ static bool play(game *g) {
             car_input input = g->autopilot ? race_autopilot(&g->race, 0) : pedals(g);
             race_step(&g->race, &input, dt / steps);
         }
+        effects_step(&g->render.effects, &g->race, dt, g->view.rain);
         g->view.time += dt, g->view.step = (float)dt;
         if (!render_frame(&g->render, &g->race, &g->view, &g->outdated)) return false;
         g->view.cut = false, g->view.photo[0] = 0;
@@ -137,7 +145,7 @@ static bool play(game *g) {
 
 static bool read_options(game *g, int argc, char **argv) {
     char more;
-    g->width = 1280, g->height = 720, g->step = 1.0 / 60;
+    g->width = 1280, g->height = 720, g->step = 1.0 / 60, g->view.bloom = true;
     g->render.fixed_rung = -1, g->render.target_ms = 33;
     for (int c; (c = getopt(argc, argv, "s:t:r:f:v")) != -1;) {
         if (c == 's' && sscanf(optarg, "%dx%d%c", &g->width, &g->height, &more) == 2) continue;
@@ -151,19 +159,19 @@ static bool read_options(game *g, int argc, char **argv) {
 }
 
 int main(int argc, char **argv) {
-    static game g; /* 600 KB: not for the stack */
+    static game g; /* 1.2 MB: not for the stack */
     if (!read_options(&g, argc, argv)) return fputs(usage, stderr), 2;
     bool good = track_read(&g.track, argv[optind + 1]) &&
                 window_open(&g.window, "Masu: drive", g.width, g.height, g.validates) &&
-                render_open(&g.render, &g.window, argv[optind], &g.track);
+                render_open(&g.render, &g.window, argv[optind]);
     if (good) race_start(&g.race, &g.track);
     heap_closed = true;
-    good = good && play(&g);
+    good = good && render_load(&g.render, &g.track) && play(&g);
     const render *r = &g.render;
     if (good)
         printf("frames %u rungs 0x%02x changes %u over %u laps %d best %.2f distance %.1f "
-               "resizes %d\n", r->frames, r->rungs, r->changes, r->over, g.race.laps, g.race.best,
-               g.race.distance, g.resizes);
+               "resizes %d bars %u late %u\n", r->frames, r->rungs, r->changes, r->over, g.race.laps,
+               g.race.best, g.race.distance, g.resizes, r->bars, r->late);
     render_close(&g.render);
     window_close(&g.window);
     script_close(&g.script);

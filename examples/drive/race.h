@@ -76,6 +76,7 @@ typedef struct car_input {
     double steer;    /* -1 left .. 1 right */
     double throttle; /* 0..1 */
     double brake;    /* 0..1; standing still, it drives backwards */
+    double hand;     /* 0..1: the handbrake locks the rear wheels */
 } car_input;
 
 typedef struct car {
@@ -88,6 +89,8 @@ typedef struct car {
     double lane;        /* of the autopilot: metres right of the middle */
     track_place place;
     bool off; /* beside the road */
+    bool braking; /* its brake lights are on */
+    double skid; /* 0..1: of the rear tyres */
 } car;
 
 typedef struct race {

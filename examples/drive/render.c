@@ -27,26 +27,78 @@ static masu_desc describe(const render *r) {
         .ladder = MASU_ON,
         .analytic_sky = 1, .resizable = 1,
         .exposure = {.metered = MASU_ON},
+        .live_environment = 1, .instance_looks = 1,
+        .post = MASU_POST_BLOOM,
+        .init_in_steps = 1, .first_rung = r->fixed_rung < 0 ? 0 : (uint32_t)r->fixed_rung,
         .governor = {.mode = r->fixed_rung < 0 ? MASU_GOVERNOR_ON : MASU_GOVERNOR_FIXED,
                      .rung = r->fixed_rung < 0 ? 0 : (uint32_t)r->fixed_rung,
                      .target_ms = r->target_ms}};
     memcpy(d.device_blocks, r->blocks, sizeof d.device_blocks);
+    effects_reserve(&r->scene, &d.reserve);
     return d;
 }
 
+/* Shows how many steps are done, at most ten times a second. */
+static bool show_progress(render *r, const masu_progress *p) {
+    window *w = r->window;
+    uint32_t slot = r->bars % WINDOW_SLOTS, image;
+    int dot = w->size.height < 400 ? 1 : (int)w->size.height / 200, x = (int)w->size.width / 2;
+    overlay_line lines[2] = {{x - 42 * dot, (int)w->size.height / 2 - 8 * dot, dot, ""},
+                             {x - 42 * dot, (int)w->size.height / 2, dot, "--------------------"}};
+    if (r->bars && SDL_GetTicks() - r->shown_ms < 100) return true;
+    r->shown_ms = SDL_GetTicks();
+    snprintf(lines[0].text, 64, "LOADING %u/%u", p->done, p->total);
+    lines[1].text[20 * p->done / (p->total ? p->total : 1)] = 0;
+    if (window_begin(w, slot, &image)) return true; /* resized: the first frame follows it */
+    r->bars++, r->overlay.blank = true;
+    bool good = overlay_record(&r->overlay, slot, image, lines, 2, false) &&
+                window_end(w, slot, image, &w->commands[slot], 1) >= VK_ERROR_OUT_OF_DATE_KHR;
+    r->overlay.blank = false;
+    return good;
+}
+
 /* A renderer for the window as large as it is, in the blocks. */
-static bool build(render *r, const track *t) {
-    masu_commands load;
-    masu_result result;
+static bool build(render *r) {
     masu_desc desc = describe(r);
-    if (masu_init(&desc, host_block, sizeof host_block, &r->masu, &r->detail))
-        return failed(&r->detail);
-    while ((result = masu_load(r->masu, &load, &r->detail)) == MASU_INCOMPLETE) {
-        if (!window_run(r->window, load.buffer)) return false;
+    effects_reset(&r->effects, &r->scene);
+    return !masu_init(&desc, host_block, sizeof host_block, &r->masu, &r->detail) ||
+           failed(&r->detail);
+}
+
+/* Where the brake lights of a car are, from the scene: in the axes of the car. */
+static void find_brakes(render *r, int car, const track_car *start) {
+    masu_model_state body, brake;
+    if (masu_model_get(r->masu, r->bodies[car], &body, NULL)) return;
+    for (int k = 0; k < 2; k++) {
+        char name[48];
+        snprintf(name, sizeof name, "%s/brake%d", start->name, k);
+        r->brakes[car][k] = masu_model_find(r->masu, name);
+        if (masu_model_get(r->masu, r->brakes[car][k], &brake, NULL)) continue;
+        vec from = {brake.position[0] - body.position[0], brake.position[1] - body.position[1],
+                    brake.position[2] - body.position[2]};
+        r->brake_at[car][k] = (vec){dot(from, start->ahead), dot(from, start->up),
+                                    dot(from, cross(start->ahead, start->up))};
     }
-    if (result) return failed(&r->detail);
+}
+
+/* The other rungs follow in render_frame, so the game starts early. */
+bool render_load(render *r, const track *t) {
+    masu_result loaded = MASU_INCOMPLETE, stepped;
+    masu_commands load;
+    masu_progress progress;
+    uint32_t first = r->fixed_rung < 0 ? 0 : (uint32_t)r->fixed_rung;
+    do {
+        if (loaded) loaded = masu_load(r->masu, &load, &r->detail);
+        if (loaded == MASU_INCOMPLETE && !window_run(r->window, load.buffer)) return false;
+        stepped = masu_init_step(r->masu, &progress, &r->detail);
+        if (loaded < 0 || stepped < 0) return failed(&r->detail);
+        if (!show_progress(r, &progress)) return false;
+    } while (loaded || !(progress.rungs >> first & 1));
+    r->stepping = stepped == MASU_INCOMPLETE;
+    memset(r->window->submit_ns, 0, sizeof r->window->submit_ns); /* the bar is no frame */
     for (int i = 0; i < t->cars; i++) {
         r->bodies[i] = masu_model_find(r->masu, t->car[i].name);
+        find_brakes(r, i, &t->car[i]);
         for (int k = 0; k < t->car[i].wheels; k++)
             r->wheels[i][k] = masu_model_find(r->masu, t->car[i].wheel[k].name);
     }
@@ -55,7 +107,7 @@ static bool build(render *r, const track *t) {
     return true;
 }
 
-bool render_open(render *r, window *w, const char *path, const track *t) {
+bool render_open(render *r, window *w, const char *path) {
     masu_memory need;
     size_t bytes = 0;
     r->window = w;
@@ -64,8 +116,9 @@ bool render_open(render *r, window *w, const char *path, const track *t) {
     if (masu_scene_bind(blob, bytes, &r->scene, &r->detail)) return failed(&r->detail);
     masu_desc desc = describe(r); /* the blocks are to be of the types that it would take itself */
     if (masu_memory_query(&desc, &need, &r->detail)) return failed(&r->detail);
+    effects_open(&r->effects);
     return window_blocks(w, &need, device_bytes, r->blocks) && overlay_open(&r->overlay, w) &&
-           build(r, t);
+           build(r);
 }
 
 bool render_resize(render *r, const track *t) {
@@ -76,7 +129,7 @@ bool render_resize(render *r, const track *t) {
     if (masu_governor_save(r->masu, &learnt, NULL)) return false;
     masu_destroy(r->masu);
     r->masu = NULL, r->frame = 0;
-    return build(r, t) && masu_governor_restore(r->masu, &learnt, NULL) == MASU_OK;
+    return build(r) && render_load(r, t) && masu_governor_restore(r->masu, &learnt, NULL) == MASU_OK;
 }
 
 void render_close(render *r) {
@@ -105,7 +158,7 @@ static masu_result place(render *r, masu_model model, const vec now[3], vec at,
     return model.id ? masu_model_set_transform(r->masu, model, rows, &r->detail) : MASU_OK;
 }
 
-static masu_result place_car(render *r, int i, const car *c, const track_car *start) {
+static masu_result place_car(render *r, int i, const car *c, const track_car *start, bool dusk) {
     vec road[3] = {c->ahead, c->up, cross(c->ahead, c->up)}, none = {0, 0, 0};
     masu_result result = place(r, r->bodies[i], road, add(c->at, c->up, start->clearance), start);
     for (int k = 0; !result && k < start->wheels; k++) {
@@ -116,6 +169,14 @@ static masu_result place_car(render *r, int i, const car *c, const track_car *st
         vec right = cross(ahead, road[1]);
         vec at = add(add(add(c->at, road[0], w->ahead), road[2], w->right), road[1], w->radius);
         result = place(r, r->wheels[i][k], (vec[3]){front, cross(right, front), right}, at, start);
+    }
+    /* The scene has the emission of a braking car by day. At dusk its tail lights are on. */
+    const masu_look look = {.emission = c->braking ? dusk ? 0.6f : 1 : dusk ? 0.06f : -1};
+    for (int k = 0; !result && k < 2 && r->brakes[i][k].id; k++) {
+        vec from = r->brake_at[i][k], at = add(add(c->at, road[0], from.x), road[2], from.z);
+        at = add(at, c->up, start->clearance + from.y);
+        result = place(r, r->brakes[i][k], road, at, start);
+        if (!result) result = masu_model_set_look(r->masu, r->brakes[i][k], &look, &r->detail);
     }
     return result;
 }
@@ -136,13 +197,21 @@ static masu_result set_lamps(render *r, const car *c, float on) {
     return result;
 }
 
-static masu_result set_light(render *r, bool dusk, masu_light *light) {
+static masu_result set_light(render *r, const render_view *view, masu_light *light) {
     masu_result result = masu_light_of(r->masu, light, &r->detail);
-    if (!dusk) return result;
-    light->turbidity = 4;
-    light->exposure = 0.3f; /* metered: a third of the brightness of a day */
-    memcpy(light->sun_direction, (float[3]){-0.95f, 0.05f, 0.3f}, sizeof light->sun_direction);
-    memset(light->sun_color, 0, sizeof light->sun_color); /* the sun's behind so much air */
+    if (view->dusk) {
+        light->turbidity = 4;
+        light->exposure = 0.3f; /* metered: a third of the brightness of a day */
+        memcpy(light->sun_direction, (float[3]){-0.95f, 0.05f, 0.3f}, sizeof light->sun_direction);
+        memset(light->sun_color, 0, sizeof light->sun_color); /* the sun's behind so much air */
+    }
+    if (view->rain) { /* clouds: little sun, a gray background */
+        float gray = view->dusk ? 0.02f : 0.2f, sun = view->dusk ? 0.01f : 0.25f;
+        light->exposure *= 0.6f, light->turbidity = 9;
+        light->environment.background_intensity = 0.3f;
+        for (int k = 0; k < 3; k++)
+            light->environment.background_color[k] = gray, light->sun_color[k] = sun;
+    }
     return result;
 }
 
@@ -174,9 +243,9 @@ bool render_frame(render *r, const race *race, const render_view *view, bool *ou
         r->over += w->frame_ms > (double)r->target_ms;
     }
     for (int i = 0; !result && i < race->track->cars; i++)
-        result = place_car(r, i, &race->cars[i], &race->track->car[i]);
+        result = place_car(r, i, &race->cars[i], &race->track->car[i], view->dusk);
     if (!result) result = set_lamps(r, &race->cars[0], view->lamps);
-    if (!result) result = set_light(r, view->dusk, &light);
+    if (!result) result = set_light(r, view, &light);
     vec forward = add(race->target, race->eye, -1);
     double speed = fmin(fabs(car_speed(&race->cars[0])), 70);
     masu_camera camera = {.position = {race->eye.x, race->eye.y, race->eye.z},
@@ -185,7 +254,15 @@ bool render_frame(render *r, const race *race, const render_view *view, bool *ou
                           .near_distance = 0.2f};
     masu_frame_desc frame = {MASU_FRAME_DESC, .camera = &camera, .light = &light, .target = image,
                              .cut = view->cut, .time = view->time, .time_step = view->step,
+                             .post.bloom = view->dusk && view->bloom ? 0.1f : 0,
+                             .exclude_from_timing = r->stepping,
                              .rung = MASU_RUNG_AUTO};
+    if (!result) result = effects_frame(&r->effects, r->masu, race, view->rain, &frame, &r->detail);
+    for (Uint32 from = SDL_GetTicks(); !result && r->stepping;) {
+        masu_result step = masu_init_step(r->masu, NULL, &r->detail);
+        r->stepping = step == MASU_INCOMPLETE, result = step < 0 ? step : MASU_OK, r->late++;
+        if ((float)(SDL_GetTicks() - from) > r->target_ms / 2) break;
+    }
     if (result || masu_frame(r->masu, &frame, &commands, &r->detail)) return failed(&r->detail);
     r->changes += r->frames && commands.rung != r->rung;
     r->frame++, r->frames++, r->rungs |= 1u << commands.rung, r->rung = commands.rung;

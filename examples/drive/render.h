@@ -2,8 +2,8 @@
 #ifndef DRIVE_RENDER_H
 #define DRIVE_RENDER_H
 
+#include "effects.h"
 #include "overlay.h"
-#include "race.h"
 
 typedef struct render {
     window *window;
@@ -17,21 +17,29 @@ typedef struct render {
     uint64_t frame;  /* since the renderer was made, as the library counts */
     overlay overlay;
     masu_model bodies[TRACK_CARS], wheels[TRACK_CARS][TRACK_WHEELS];
+    masu_model brakes[TRACK_CARS][2]; /* "CAR/brake0" and "CAR/brake1" */
+    vec brake_at[TRACK_CARS][2];      /* from the body: ahead, up, right */
+    effects effects;
+    bool stepping; /* masu_init_step has not finished */
     masu_punctual_light lamps[2]; /* "head0" and "head1", which your car carries */
     /* What has happened, for the line at the end: */
     uint32_t frames, over; /* the latter took longer than the target */
     uint32_t rungs, rung, changes; /* a bit per rung that was drawn; the last; how often another */
+    uint32_t shown_ms;   /* when the loading bar was drawn last */
+    uint32_t bars, late; /* images of the loading bar; steps of masu_init_step in frames */
 } render;
 
 typedef struct render_view {
     double time;
     float step; /* seconds since the frame before */
-    bool cut, dusk, lamps, paused;
+    bool cut, dusk, rain, bloom, lamps, paused;
     char photo[256]; /* file for a picture of this frame, or "" */
 } render_view;
 
 /* Takes all of its memory: nothing is asked for later. All say what went wrong. */
-bool render_open(render *r, window *w, const char *scene_path, const track *t);
+bool render_open(render *r, window *w, const char *scene_path);
+/* Loads the scene and creates pipelines, with a loading bar, until frames can be drawn. */
+bool render_load(render *r, const track *t);
 /* After window_swapchain, before window_drop: for the size and images that the window has now. */
 bool render_resize(render *r, const track *t);
 bool render_frame(render *r, const race *race, const render_view *view, bool *outdated);

@@ -98,9 +98,12 @@ bool overlay_record(overlay *o, uint32_t slot, uint32_t image, const overlay_lin
                                       .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
     VkBufferImageCopy all = {.imageSubresource = color, .imageExtent = {w->size.width, w->size.height, 1}}, to;
     VkDeviceSize used = 0, bytes;
+    const VkClearColorValue dark = {.float32 = {0.03f, 0.03f, 0.03f, 1}};
+    const VkImageSubresourceRange whole = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
     copy = copy && (VkDeviceSize)w->size.width * w->size.height * 4 <= COPY_BYTES;
     if (vkBeginCommandBuffer(own, &begin)) return false;
-    barrier(own, picture, read, write);
+    barrier(own, picture, o->blank ? VK_IMAGE_LAYOUT_UNDEFINED : read, write);
+    if (o->blank) vkCmdClearColorImage(own, picture, write, &dark, 1, &whole);
     for (int i = 0; i < count; i++) {
         if (!(bytes = write_line(&lines[i], w->size, o->words[slot].mapped, used, &to))) continue;
         barrier(own, picture, write, write); /* lines may overlap */

@@ -17,6 +17,7 @@
 #include <string.h>
 
 #define INCH 0.0254
+#define BRAKE_HEIGHT 0.78 /* of the brake lights above the road, metres */
 
 typedef struct wheel {
     double x, left; /* of its centre, from the body's origin */
@@ -71,16 +72,16 @@ static bool read_car(const char *torcs, const char *name, const char *otherwise,
     return good;
 }
 
-/* The size of a wheel's model. */
-static bool measure(const char *path, masu_bake_vec3 *size) {
+/* The bounding box of a model. */
+static bool measure(const char *path, masu_bake_box *box) {
     masu_bake_content piece = {0};
     bool good = masu_bake_import(path, MASU_BAKE_TEXTURES_WANTED, &piece);
     if (good) {
         masu_bake_affine identity = masu_bake_identity();
-        masu_bake_box box = masu_bake_bounds(&piece, &identity);
-        *size = masu_bake_sub(box.high, box.low);
-        good = size->x > 1e-3 && size->y > 1e-3 && size->z > 1e-3;
-        if (!good) masu_cli_error("%s: no wheel", path);
+        *box = masu_bake_bounds(&piece, &identity);
+        masu_bake_vec3 size = masu_bake_sub(box->high, box->low);
+        good = size.x > 1e-3 && size.y > 1e-3 && size.z > 1e-3;
+        if (!good) masu_cli_error("%s: the model is empty or flat", path);
     }
     masu_bake_content_release(&piece);
     return good;
@@ -105,6 +106,23 @@ static void place(FILE *out, const char *file, const char *name, masu_bake_vec3 
     fprintf(out,
             "\"rotate\": [%.3f, %.3f, %.3f], \"translate\": [%.3f, %.3f, %.3f], \"merge\": 1000%s}",
             angles.x, angles.y, angles.z, at.x, at.y, at.z, more);
+}
+
+/* Brake lights: boxes in the rear of the body, which a program switches by masu_look.emission. The
+ * origin of the body is `at`. */
+static void brakes(FILE *out, int index, const masu_bake_box *body, masu_bake_vec3 angles,
+                   masu_bake_vec3 at, const masu_bake_vec3 axes[3], double clearance) {
+    for (int i = 0; i < 2; i++) {
+        double side = (i ? -0.62 : 0.62) * body->high.z;
+        masu_bake_vec3 p = masu_bake_mad(at, axes[0], body->low.x + 0.06);
+        p = masu_bake_mad(masu_bake_mad(p, axes[1], BRAKE_HEIGHT - clearance), axes[2], side);
+        fprintf(out,
+                ",\n    {\"mesh\": {\"box\": {\"size\": [0.16, 0.11, 0.3]}}, \"name\": "
+                "\"car%d/brake%d\", \"moving\": true,\n     \"rotate\": [%.3f, %.3f, %.3f], "
+                "\"translate\": [%.3f, %.3f, %.3f], \"area_light\": false,\n     \"material\": "
+                "{\"base_color\": [0.2, 0.01, 0.01], \"emissive\": [4, 0.06, 0.04]}}",
+                index, i, angles.x, angles.y, angles.z, p.x, p.y, p.z);
+    }
 }
 
 static bool put(FILE *out, FILE *road, const char *torcs, const char *name, int index, const car *c,
@@ -139,9 +157,13 @@ static bool put(FILE *out, FILE *road, const char *torcs, const char *name, int 
           ",\n     \"material\": {\"roughness\": 0.35, \"coat\": 1, \"coat_roughness\": 0.05}");
     fprintf(road, "car %s  %.3f %.3f %.3f  %.6f %.6f %.6f  %.6f %.6f %.6f  %.3f\n", label, ground.x, ground.y,
             ground.z, ahead.x, ahead.y, ahead.z, up.x, up.y, up.z, c->clearance);
+    masu_bake_box box;
+    if (!measure(file, &box)) return false;
+    brakes(out, index, &box, angles, masu_bake_mad(ground, up, c->clearance),
+           (masu_bake_vec3[3]){ahead, up, right}, c->clearance);
     snprintf(file, sizeof file, "%s/wheels/%s/wheel0.acc", torcs, c->rim);
-    masu_bake_vec3 size;
-    if (!measure(file, &size)) return false;
+    if (!measure(file, &box)) return false;
+    masu_bake_vec3 size = masu_bake_sub(box.high, box.low);
     for (int i = 0; i < 4; i++) {
         const wheel *w = &c->wheels[i];
         masu_bake_vec3 middle = masu_bake_mad(ground, ahead, w->x);

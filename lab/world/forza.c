@@ -12,6 +12,7 @@
  *            from above ("high"); their times are printed
  *   lights   two spots that are off, "head0" and "head1", which a program may attach to a car.
  *            forza_night.json has the same track at night, with lamps along it
+ *   skid     a hidden model with the material of the skid marks, whose meshes a program creates
  *   plain    grass below the track, to the horizon: TORCS's ground ends behind the trees
  *   track    forza.track: the road and the cars in numbers, for a driving program
  *   (docs/drive.md) */
@@ -367,6 +368,10 @@ static bool write_models(const track *t, ground *g, const char *torcs, bool is_n
     fputs("}", out);
     if (!cars(t, g, torcs, out, road)) return false;
     plain(out, torcs);
+    fputs(",\n    {\"mesh\": {\"plane\": {\"size_x\": 1, \"size_z\": 1}}, \"name\": \"skid\", "
+          "\"hidden\": true,\n     \"material\": {\"name\": \"skid\", \"base_color\": [0.03, "
+          "0.03, 0.03], \"specular\": 0, \"roughness\": 1, \"depth_bias\": 0.001}}",
+          out);
     if (is_night) lamp_models(t, out);
     return true;
 }
