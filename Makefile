@@ -75,8 +75,10 @@ $(BUILD)/obj/tests/unit/%.o $(BUILD)/obj/tests/gpu/%.o: FOLDER_FLAGS += -O1 -g1
 endif
 # So does, with the sanitizers, everything that no test spends its time in: a quarter of the time to compile.
 ifeq ($(config),sanitize)
-$(foreach f,examples src tools/bench tools/command tools/conform tools/masu tools/measure tools/view \
-    tools/bake/description tools/bake/import tools/bake/write,$(BUILD)/obj/$(f)/%.o): FOLDER_FLAGS += -O0
+$(foreach f,examples src platform tests/fuzz tests/unit $(addprefix tools/,bench cli command conform masu measure meso \
+    metric settings spirv view) $(addprefix tools/bake/,base build description import write), \
+    $(BUILD)/obj/$(f)/%.o): FOLDER_FLAGS += -O0
+$(BUILD)/obj/tests/unit/test_bake_%.o: FOLDER_FLAGS += -O1
 endif
 
 # ---- Rules ---------------------------------------------------------------------------------------
@@ -113,7 +115,7 @@ $(BUILD)/flags: force
 $(BUILD)/obj/%.o: %.c $(BUILD)/flags | $(GENERATED)
 	@mkdir -p $(@D)
 	@echo "  CC      $<"
-	$(V)$(CC) $(ALL_FLAGS) $(FOLDER_FLAGS) -MMD -MP -c $< -o $@
+	$(V)$(reuse) $(CC) $(ALL_FLAGS) $(FOLDER_FLAGS) -MMD -MP -c $< -o $@
 
 # What libraries without an interface for C need. clang's sanitizers are not gcc's. What clang calls virtually it would
 # ask its C++ library about, which programs that clang links are without.

@@ -1,8 +1,7 @@
 /* loop.c SCENE.masu [SCRIPT]: a scene in a window, at the rung that keeps 16.7 ms. For a new window
  * size it calls masu_resize if the size is within the plan, otherwise masu_destroy and masu_init in
- * a larger block. shared/window.h provides the window; with a script (shared/script.h) the
- * validation layer is enabled. LOOP_SURFACE in the environment may contain "srgb" (an sRGB format
- * for the swapchain) and "unpaced" (MAILBOX or IMMEDIATE). */
+ * a larger block. With a script (shared/script.h) the validation layer is enabled. LOOP_SURFACE in
+ * the environment may contain "srgb" (an sRGB swapchain) and "unpaced" (MAILBOX or IMMEDIATE). */
 #include "masu.h"
 #include "overlay.h"
 #include "script.h"

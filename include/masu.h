@@ -846,8 +846,8 @@ typedef struct masu_desc {
  * depend on the scene (or source) or on the output size remain unresolved if those are missing.
  * Resolve after the last change: a resolved member no longer follows the member that its default
  * depends on. These members remain AUTO:
- *  - rungs[].specular and .occlusion, if the scene has a use for them: on a device with too few
- *    storage buffers AUTO disables the feature, and ON is an error in masu_init;
+ *  - rungs[].specular, .bounce and .occlusion, if the scene has a use for them: with fewer than 9
+ *    storage buffers per stage (docs/devices.md) AUTO may be off, and ON an error in masu_init;
  *  - ray_query, half_floats, debug.share_rays, which depend on the device.
  *
  *   MASU_ERROR_ARGUMENT   a pointer is NULL, or desc.bytes is not sizeof(masu_desc); other members

@@ -79,6 +79,8 @@ LAB_SOURCES := $(filter-out lab/command/main.c,$(wildcard lab/*/*.c))
 LAB_ARCHIVE := $(BUILD)/lib/libmasu-lab.a
 LAB_LINKED  := $(LAB_ARCHIVE) $(call tool_archive,meso) $(MEASURE_ARCHIVES) $(BAKE_ARCHIVES)
 
+# Half of the objects do not depend on MASU_LAB.
+reuse = lab/reuse.sh $(MADE)/obj/$*.o $@ '$(subst $() -DMASU_LAB,,$(CC) $(ALL_FLAGS))' ||
 $(BUILD)/obj/lab/%.o: FOLDER_FLAGS := -D_POSIX_C_SOURCE=200809L -I.
 # So that sums are the same with any machine flags.
 $(BUILD)/obj/lab/reference/%.o: FOLDER_FLAGS := -D_POSIX_C_SOURCE=200809L -I. -ffp-contract=off

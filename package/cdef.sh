@@ -19,6 +19,8 @@ typedef int32_t VkImageLayout;
 typedef uint32_t VkImageUsageFlags;
 typedef uint64_t VkDeviceSize;
 typedef struct VkExtent2D { uint32_t width, height; } VkExtent2D;
+typedef struct VkOffset2D { int32_t x, y; } VkOffset2D;
+typedef struct VkRect2D { VkOffset2D offset; VkExtent2D extent; } VkRect2D;
 typedef struct VkAllocationCallbacks VkAllocationCallbacks;
 typedef void (*PFN_vkVoidFunction)(void);
 typedef PFN_vkVoidFunction (*PFN_vkGetInstanceProcAddr)(VkInstance instance, const char *name);

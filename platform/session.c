@@ -1,5 +1,7 @@
 /* session.c: see session.h. */
 #include "session.h"
+
+#include "devices.h"
 #include "file_kind.h"
 
 #include "clock.h"
@@ -97,6 +99,26 @@ bool masu_session_denied(void) {
     return what && !strcmp(what, "all");
 }
 
+/* The row of devices.inc that MASU_DENY names; NULL: none. false: it names nothing. */
+static bool find_row(const masu_device_row **row, char *error, size_t size) {
+    const char *what = getenv("MASU_DENY");
+    *row = what ? masu_device_row_of(what) : NULL;
+    if (*row || !what || !*what || masu_session_denied()) return true;
+    int n = snprintf(error, size, "MASU_DENY: unknown device '%s', known are all", what);
+    for (uint32_t i = 0; masu_device_row_at(i) && n > 0 && (size_t)n < size; i++)
+        n += snprintf(error + n, size - (size_t)n, ", %s", masu_device_row_at(i)->name);
+    return false;
+}
+
+/* The host enables no feature that the device of the row lacks. */
+static void impose_row(const masu_device_row *row, masu_session *s) {
+    masu_headless *host = &s->host;
+    if (!row->compressed) host->compressed = false, s->desc.deny.compressed_textures = 1;
+    if (!row->anisotropic) host->most_anisotropy = host->usual_anisotropy = 0.0f;
+    if (!row->timestamps) s->desc.debug.timestamps = 0, s->desc.governor.wall_only = 1;
+    host->ray_query = host->float16 = false;
+}
+
 bool masu_session_open(const masu_session_desc *d, masu_session *s, char *error,
                        size_t error_size) {
     memset(s, 0, sizeof *s);
@@ -111,11 +133,17 @@ bool masu_session_open(const masu_session_desc *d, masu_session *s, char *error,
         s->desc.debug.timestamps = 0;
         s->desc.governor.wall_only = 1;
     }
+    const masu_device_row *row;
+    if (!find_row(&row, error, error_size)) return false;
+    masu_device_row_impose(row);
+    if (row && !host.get_instance_proc_addr)
+        host.get_instance_proc_addr = masu_device_row_proc_addr;
     if (!open_scene(d, s, error, error_size) ||
         !masu_headless_open(&host, &s->host, error, error_size)) {
         masu_session_close(s);
         return false;
     }
+    if (row) impose_row(row, s);
     float anisotropy = d->desc.vulkan.max_anisotropy, most = s->host.most_anisotropy;
     if (anisotropy < 0.0f) anisotropy = s->host.usual_anisotropy;
     if (anisotropy > most) anisotropy = most;

@@ -3,7 +3,9 @@
  * memory instead.
  *
  * With MASU_DENY=all in the environment a session behaves like a device without optional features:
- * no compressed textures, anisotropy, ray queries, 16-bit floats, unified memory or timestamps. */
+ * no compressed textures, anisotropy, ray queries, 16-bit floats, unified memory or timestamps.
+ * With MASU_DENY=pi5, or another row of devices.inc, it has the limits and the optional features of
+ * that device, and no ray queries or 16-bit floats. */
 #ifndef MASU_SESSION_H
 #define MASU_SESSION_H
 

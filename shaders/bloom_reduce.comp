@@ -34,8 +34,9 @@ vec3 reduced(uvec2 at, uint factor)
     float row = float(masu_bloom_row(push.divisor)), step = 1.0 / float(factor);
     int pairs = int(factor / 2u);
     vec3 sum = vec3(0.0);
-    for (int y = -pairs; y < pairs; y++) {
-        for (int x = -pairs; x < pairs; x++) {
+    for (uint j = 0u; j < 8u && j < factor; j++) {
+        for (uint i = 0u; i < 8u && i < factor; i++) {
+            int x = int(i) - pairs, y = int(j) - pairs;
             /* Texels at 2 k + 1/2 and 2 k + 3/2 from the centre. */
             vec2 k = vec2(x < 0 ? -1 - x : x, y < 0 ? -1 - y : y);
             vec2 weight = 2.0 - (4.0 * k + 2.0) * step;
@@ -55,7 +56,7 @@ void main()
     }
     uint divisor = push.levels == 1u ? 4u * push.divisor : 2u * push.divisor;
     uint row = 0u;
-    for (uint level = 0u; level < min(push.levels, 3u); level++) {
+    for (uint level = 0u; level < 3u && level < push.levels; level++) {
         uvec2 size = masu_bloom_size(divisor);
         if (at.x < size.x && at.y >= row && at.y < row + size.y) {
             MASU_STORE_HALF(bloom_image, at, vec4(reduced(uvec2(at.x, at.y - row), divisor / max(push.divisor, 1u)), 0.0));

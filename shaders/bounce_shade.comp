@@ -9,6 +9,9 @@
 #version 440
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
+#ifndef MASU_NO_POLYGONS
+#define MASU_SURFACE /* polygons may have lobes */
+#endif
 #include "shared/lights.h"
 #include "shared/trace.h"
 #include "shared/globals.glsl"
@@ -35,13 +38,25 @@ layout(local_size_x = 64) in;
  * spread over the hemisphere like the diffuse part. Without it wet asphalt of albedo 0.045 would reflect a third. */
 vec3 reflectance(masu_surface s, float cosine)
 {
-    vec2 t = masu_table(uint(MASU_TABLE_LOSS), masu_row_of(masu_sane(s.roughness, 0.0, 1.0)), clamp(cosine, 0.0, 1.0));
+    uint row = masu_row_of(masu_sane(s.roughness, 0.0, 1.0));
+    vec2 t = masu_table(uint(MASU_TABLE_LOSS), row, clamp(cosine, 0.0, 1.0));
     vec3 albedo = clamp(s.albedo, vec3(0.0), vec3(1.0));
-    float f0 = 0.08 * masu_sane(s.specular, 0.0, 1.0);
-    float matte = f0 * (1.0 - t.x) + (min(50.0 * f0, 1.0) - f0) * t.y;
+    float f0 = masu_brightest_f0(s), f90 = min(50.0 * f0, 1.0);
+    float matte = f0 * (1.0 - t.x) + (f90 - f0) * t.y;
+    vec3 mirrored = vec3(matte);
+#ifdef MASU_SURFACE
+    /* The colour, and multiple scattering, which is not negligible for an f0 above 0.08. */
+    if (masu_extra_lobes != 0u) {
+        float lost = masu_table_averages(uint(MASU_TABLE_AVERAGE), 2u, row, 0u).x;
+        float rest = masu_rest_color(vec3(f0), f90, lost).r * t.x;
+        vec3 colors = masu_dielectric_f0(s, f0);
+        matte += rest;
+        mirrored = colors * (1.0 - t.x) + (f90 - colors) * t.y + rest;
+    }
+#endif
     /* Metals: energy that single scattering loses is reflected again, once more coloured. */
     vec3 metal = albedo * (1.0 - t.x + t.x * albedo) + (1.0 - albedo) * t.y;
-    return mix(albedo * (1.0 - matte) + matte, metal, masu_sane(s.metallic, 0.0, 1.0));
+    return mix(albedo * (1.0 - matte) + mirrored, metal, masu_sane(s.metallic, 0.0, 1.0));
 }
 
 /* A light that was chosen among those asked so far. */

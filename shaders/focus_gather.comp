@@ -45,10 +45,12 @@ void main()
     ivec2 last = ivec2(pc.output_width, pc.output_height) - 1;
     float most = min(float(MASU_FOCUS_MOST) * float(pc.render_height), masu_focus_reach);
     int around = int(most / float(MASU_TILE)) + 1; /* 9 at most */
-    for (int k = int(gl_LocalInvocationIndex); k < (2 * around + 1) * (2 * around + 1); k += MASU_GROUP * MASU_GROUP) {
-        ivec2 offset = ivec2(k % (2 * around + 1), k / (2 * around + 1)) - around;
+    int side = 2 * around + 1; /* 6 rounds suffice for 19 x 19 tiles */
+    for (int n = 0; n < 6; n++) {
+        int k = n * MASU_GROUP * MASU_GROUP + int(gl_LocalInvocationIndex);
+        ivec2 offset = ivec2(k % side, min(k / side, side)) - around;
         ivec2 tile = ivec2(gl_WorkGroupID.xy) + offset;
-        if (all(greaterThanEqual(tile, ivec2(0))) && all(lessThan(tile, tiles))) {
+        if (k < side * side && all(greaterThanEqual(tile, ivec2(0))) && all(lessThan(tile, tiles))) {
             float radius = masu_sane(texelFetch(tiles_image, tile, 0).r, 0.0, most);
             int between = max(max(abs(offset.x), abs(offset.y)) - 1, 0) * MASU_TILE;
             if (radius > float(between)) {

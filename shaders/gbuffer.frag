@@ -69,8 +69,9 @@ layout(location = 1) in vec3 in_rel;
 
 layout(location = 0) out vec4 out_albedo;
 layout(location = 1) out uint out_normal;
-/* Attached for emitting materials only: dropped elsewhere. */
+#ifndef MASU_NO_EMISSION /* attached for emitting materials only: dropped elsewhere */
 layout(location = MASU_HDR_LOCATION) out vec4 out_hdr;
+#endif
 
 #ifdef MASU_SURFACE
 #include "brdf/meso.glsl"
@@ -177,7 +178,9 @@ void main()
     }
 #endif
     masu_pack_texels(n, s, out_albedo, out_normal);
+#ifndef MASU_NO_EMISSION
     out_hdr = vec4(masu_emitted(s), 1.0);
+#endif
 #if defined(MASU_TEXTURES) && defined(MASU_SURFACE)
     if (two) {
         s.lean = masu_lean_of(masu_unpack_normal(out_normal), masu_normalize(below, even));

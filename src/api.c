@@ -326,12 +326,20 @@ static void log_box(const masu_renderer *m) {
     }
     uint32_t few = m->plan.desc.deny.storage_buffers, dropped = few & MASU_DROPPED_ANY;
     if (!few) return;
-    snprintf(text, sizeof text, "%u storage buffers in a shader stage are too few: rungs lack %s",
-             few & ~MASU_DROPPED_ANY,
-             dropped == MASU_DROPPED_ANY        ? "traced reflections and occlusion culling"
-             : dropped == MASU_DROPPED_SPECULAR ? "traced reflections"
-                                                : "occlusion culling");
-    masu_log(&m->plan.desc, MASU_LOG_WARNING, text);
+    static const struct {
+        uint32_t bit;
+        const char *name;
+    } features[] = {{MASU_DROPPED_SPECULAR, "traced reflections"},
+                    {MASU_DROPPED_BOUNCE, "live bounce"},
+                    {MASU_DROPPED_OCCLUSION, "occlusion culling"}};
+    for (size_t i = 0; i < sizeof features / sizeof *features; i++) {
+        if (!(dropped & features[i].bit)) continue;
+        snprintf(text, sizeof text,
+                 "maxPerStageDescriptorStorageBuffers is %u, too few for a pass of %s: rungs with "
+                 "AUTO lack it",
+                 few & ~MASU_DROPPED_ANY, features[i].name);
+        masu_log(&m->plan.desc, MASU_LOG_WARNING, text);
+    }
 }
 
 masu_result masu_init(const masu_desc *desc, void *block, uint64_t block_bytes, masu_renderer **out,

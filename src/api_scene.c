@@ -396,6 +396,6 @@ masu_result masu_texture_image_of(const masu_renderer *m, masu_texture_image *ou
 
 masu_result masu_lut_set(masu_renderer *m, const float *colors, uint32_t size,
                          masu_detail *detail) {
-    if (!m) return masu_finish_null(m, "renderer", detail);
+    if (!m || (size && !colors)) return masu_finish_null(m, "colors", detail);
     return masu_finish(m, masu_post_set_lut(&m->post, &m->plan, colors, size, &m->error), detail);
 }

@@ -13,6 +13,7 @@ export NODEVICE_SELECT=1 MASU_TEST_DRIVER=$driver
 # shellcheck disable=SC1090
 [ ! -e "build/drivers/$driver/env" ] || . "build/drivers/$driver/env"
 info=$("$build/tests/driver_info") || { echo "masu: device-report: $info" >&2; exit 1; }
+info+=${MASU_DENY:+, limits of MASU_DENY=$MASU_DENY}
 name=${NAME:-$(tr -cs 'A-Za-z0-9.\n' '-' <<< "${info%%, Vulkan*}" | sed 's/^-*//; s/-*$//' | cut -c 1-60)}
 case $name in '' | */* | .*) echo "masu: device-report: NAME is a folder's name, given is '$name'" >&2; exit 1 ;; esac
 out=docs/devices/$name

@@ -39,14 +39,14 @@ jobs=${MASU_TEST_JOBS:-$(nproc)}
 once=" test_bench test_cli test_gpu_av test_reference test_soak "
 # Of all three drivers the first runs every test. The others leave out what stands here, which LONG=1 runs too.
 # lavapipe 25: decisions of the host; means over many rays and filters; what tests/full/denied.sh runs on it (frame,
-# fixed_memory, governor, ladder, live, upscale); what SwiftShader runs as well (far, faults, output, poison, stiff, trace).
-not_lavapipe_25=" test_ao test_bounce test_failures test_far test_faults test_fixed_memory test_frame test_governor test_governor_host "
+# fixed_memory, upscale); what SwiftShader runs as well (far, faults, output, poison, stiff, trace).
+not_lavapipe_25=" test_ao test_bounce test_devices test_failures test_far test_faults test_fixed_memory test_frame test_governor test_governor_host "
 not_lavapipe_25+="test_host_pass test_ladder test_live test_load test_occlusion test_output test_pick test_poison test_reserve "
 not_lavapipe_25+="test_local_shadows test_resize test_sdf_casters test_shadow test_shadow_frames test_small_lamps test_specular_filters "
 not_lavapipe_25+="test_specular_sdf test_specular_truth test_stiff test_temporal test_terms test_trace test_truth test_upscale "
 # SwiftShader takes four times as long to draw. It leaves out decisions of the host and comparisons of many frames:
 # test_conform draws every pass there, test_poison gives each pass hostile bits, test_stiff marches.
-not_swiftshader=" test_ao test_bounce test_culling test_failures test_fixed_memory test_frame test_gltf_pictures "
+not_swiftshader=" test_ao test_bounce test_culling test_devices test_failures test_fixed_memory test_frame test_gltf_pictures "
 not_swiftshader+="test_governor test_governor_host test_host_pass test_ladder test_lights test_live test_load test_lods test_occluders "
 not_swiftshader+="test_occlusion test_pick test_pool test_reinit test_reserve test_resize test_sdf_casters test_shadow test_shadow_frames test_skin "
 not_swiftshader+="test_small_lamps test_specular_filters test_specular_sdf test_specular_textures test_specular_truth test_sprites test_temporal "
@@ -242,7 +242,7 @@ use() {
     [ ! -e "build/drivers/$1/env" ] || . "build/drivers/$1/env"
     # Compiled shaders stay with the build, not in the home of the user. Those for another width of vectors are not
     # told apart in the driver's cache, and crash.
-    export MESA_SHADER_CACHE_DIR=$PWD/$build/cache/$1${LP_NATIVE_VECTOR_WIDTH:+-$LP_NATIVE_VECTOR_WIDTH}
+    export MESA_SHADER_CACHE_DIR=$cache/$1${LP_NATIVE_VECTOR_WIDTH:+-$LP_NATIVE_VECTOR_WIDTH}
     mkdir -p "$MESA_SHADER_CACHE_DIR"
     if ! MASU_DRIVER_INFO=$("$build/tests/driver_info" 2>&1); then
         reason="it does not start: $MASU_DRIVER_INFO"
@@ -256,6 +256,12 @@ rm -rf "$results"
 mkdir -p "$results/baked"
 # Scenes that tests bake themselves are baked for the first driver, and kept for the next.
 export MASU_BAKED=$PWD/$results/baked
+
+# Scripts draw on the system's driver. The programs with the sanitizers and those of lab/ have the shaders of $MADE, and
+# take what was compiled of them.
+cache=$(realpath -m "$MADE")/cache
+export MESA_SHADER_CACHE_DIR=$cache/system
+mkdir -p "$MESA_SHADER_CACHE_DIR"
 
 # The check that builds the tree anew and runs this again takes half of the processors. It goes on beside the GPU
 # tests, which build nothing, and not beside scripts that do.

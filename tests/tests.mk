@@ -25,9 +25,10 @@ FUZZ_TESTS   := $(call test_programs,tests/fuzz/fuzz_*.c)
 TEXT_TESTS   := $(addprefix tests/scripts/,dialect.sh docs.sh docs_tables.sh facts.sh layers.sh source_gates.sh install.sh bundle.sh exports.sh abi.sh bindings.sh sizes.sh floats.sh)
 TEXT_TESTS   += $(BUILD)/tests/unit/test_shader_gates
 # Nor do those that take long for code that unit tests go through, or whose time goes by in a driver.
-LONG_TESTS   := $(addprefix tests/scripts/,bake_blocks.sh drive.sh meso.sh view.sh)
+LONG_TESTS   := $(addprefix tests/scripts/,bake_blocks.sh bake_limits.sh bake_probes.sh bake_rays.sh bake_reflected_sdf.sh \
+    compare.sh drive.sh meso.sh scene_forms.sh sdfc.sh view.sh)
 # Nor sums and simulated loads, which touch no memory but their own variables.
-SUM_TESTS    := $(addprefix $(BUILD)/tests/unit/test_,brdf camera cull environment governor governor_host governor_loads \
+SUM_TESTS    := $(addprefix $(BUILD)/tests/unit/test_,brdf camera cull device_class environment governor governor_host governor_loads \
     ladder masks sequence sky vndf)
 once_is_enough = $(filter-out $(if $(NESTED),$(TEXT_TESTS) $(LONG_TESTS) $(SUM_TESTS)),$(1))
 UNIT_TESTS   := $(call once_is_enough,$(call test_programs,tests/unit/test_*.c))

@@ -168,6 +168,13 @@ float masu_most_specular()
 #endif
 }
 
+/* Reflectance of a dielectric at normal incidence, of the brightest channel, */
+float masu_brightest_f0(masu_surface s)
+{
+    return 0.08 * masu_sane(s.specular, 0.0, masu_most_specular());
+}
+
+/* and of each channel. */
 vec3 masu_dielectric_f0(masu_surface s, float f0)
 {
 #ifdef MASU_SURFACE
@@ -258,7 +265,7 @@ masu_bsdf masu_bsdf_make(masu_surface s, vec3 n, vec3 v)
     masu_bsdf b;
     float roughness = masu_sane(s.roughness, 0.0, 1.0);
     float metallic = masu_sane(s.metallic, 0.0, 1.0);
-    float f0 = 0.08 * masu_sane(s.specular, 0.0, masu_most_specular());
+    float f0 = masu_brightest_f0(s);
     vec3 albedo = masu_sane(s.albedo, 0.0, 1.0);
     b.n = n;
     b.v = v;

@@ -90,7 +90,7 @@ float masu_bend_lookup(masu_surface s, vec3 n, vec3 v, inout vec3 direction, ino
 {
     float r = masu_sane(s.roughness, 0.0, 1.0);
     float c = masu_sane(dot(n, v), 1e-4, 1.0);
-    vec3 colors = mix(vec3(0.08 * masu_sane(s.specular, 0.0, masu_most_specular())), masu_sane(s.albedo, 0.0, 1.0),
+    vec3 colors = mix(vec3(masu_brightest_f0(s)), masu_sane(s.albedo, 0.0, 1.0),
                       masu_sane(s.metallic, 0.0, 1.0));
     float f0 = max(colors.r, max(colors.g, colors.b));
     vec2 table = masu_table(uint(MASU_TABLE_LOSS), masu_row_of(r), c);

@@ -32,9 +32,9 @@ static masu_most most_buffers(const masu_frame_plan *plan, masu_binding_group gr
     const uint32_t optional = 1u << MASU_BINDING_TRACING | 1u << MASU_BINDING_CULLING | bouncing;
     masu_most most = {0, ""};
     for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
-        uint32_t groups, count;
         if (!masu_first_rung(plan, p)) continue;
-        count = masu_storage_buffers(plan, p, &groups);
+        masu_stage_needs needs = masu_stage_needs_of(plan, p);
+        uint32_t groups = needs.groups, count = needs.storage_buffers;
         if (groups & bouncing) groups = bouncing;
         if (group == MASU_BINDING_PLAIN ? groups & optional : !(groups >> group & 1)) continue;
         if (count > most.buffers) most = (masu_most){count, masu_passes[p].name};
@@ -232,11 +232,68 @@ static masu_result check_shadow_map(const masu_frame_plan *plan, masu_detail *de
     return MASU_OK;
 }
 
+static masu_result too_many(const char *limit, const char *what, const char *pass, uint32_t needed,
+                            uint32_t has, masu_detail *detail) {
+    return masu_fail(detail, MASU_ERROR_DEVICE, limit, needed, has,
+                     "the pass %s needs %u %s in a stage, the device has %u (%s)", pass, needed,
+                     what, has, limit);
+}
+
+/* Every layout stays below the minima of the specification (tests/unit/test_needs.c), except for
+ * storage buffers, which fit_buffers counts. A device below a minimum is rejected by name. */
+static masu_result check_layouts(const masu_frame_plan *plan, const VkPhysicalDeviceLimits *limits,
+                                 masu_detail *detail) {
+    for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
+        if (!masu_first_rung(plan, p)) continue;
+        masu_stage_needs n = masu_stage_needs_of(plan, p);
+        const struct {
+            const char *limit, *what;
+            uint32_t needed, has;
+        } rows[] = {
+            {"maxPerStageDescriptorUniformBuffers", "uniform buffers", n.uniform_buffers,
+             limits->maxPerStageDescriptorUniformBuffers},
+            {"maxPerStageDescriptorSampledImages", "sampled images", n.sampled_images,
+             limits->maxPerStageDescriptorSampledImages},
+            {"maxPerStageDescriptorSamplers", "samplers", n.sampled_images,
+             limits->maxPerStageDescriptorSamplers},
+            {"maxPerStageDescriptorStorageImages", "storage images", n.storage_images,
+             limits->maxPerStageDescriptorStorageImages},
+            {"maxPerStageResources", "resources",
+             n.uniform_buffers + n.storage_buffers + n.sampled_images + n.storage_images +
+                 n.attachments,
+             limits->maxPerStageResources}};
+        for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+            if (rows[i].needed > rows[i].has)
+                return too_many(rows[i].limit, rows[i].what, masu_passes[p].name, rows[i].needed,
+                                rows[i].has, detail);
+        }
+    }
+    return MASU_OK;
+}
+
+static masu_result check_images(const masu_frame_plan *plan, const VkPhysicalDeviceLimits *limits,
+                                masu_detail *detail) {
+    for (uint32_t i = 1; i < MASU_IMAGE_COUNT; i++) {
+        const masu_image_plan *image = &plan->images[i];
+        uint32_t widest = image->width > image->height ? image->width : image->height;
+        if (image->used && widest > limits->maxImageDimension2D) {
+            return masu_fail(detail, MASU_ERROR_DEVICE, "maxImageDimension2D", widest,
+                             limits->maxImageDimension2D,
+                             "the image %s is %ux%u texels, the device's may be %u",
+                             masu_images[i].name, image->width, image->height,
+                             limits->maxImageDimension2D);
+        }
+    }
+    return MASU_OK;
+}
+
 masu_result masu_capabilities_check(const masu_frame_plan *plan, const masu_vk *vk,
                                     masu_detail *detail) {
     const VkPhysicalDeviceLimits *limits = &vk->properties.limits;
     masu_result result = check_ranges(plan, limits, detail);
-    return result ? result : check_shadow_map(plan, detail);
+    if (!result) result = check_shadow_map(plan, detail);
+    if (!result) result = check_images(plan, limits, detail);
+    return result ? result : check_layouts(plan, limits, detail);
 }
 
 /* ---- Open choices ---------------------------------------------------------------------------- */
@@ -277,7 +334,12 @@ masu_result masu_capabilities_fit(masu_desc *desc, const masu_frame_plan *plan, 
     desc->deny.storage_buffers = dropped ? has | dropped : 0; /* the plan prints it as the reason */
     uint32_t widest = widest_map(limits);
     if (!desc->deny.image_size || desc->deny.image_size > widest) desc->deny.image_size = widest;
+    /* Fragment shaders store to no buffers or images, so their only outputs are attachments. */
     uint32_t attachments = limits->maxColorAttachments;
+    if (attachments > limits->maxFragmentOutputAttachments)
+        attachments = limits->maxFragmentOutputAttachments;
+    if (attachments > limits->maxFragmentCombinedOutputResources)
+        attachments = limits->maxFragmentCombinedOutputResources;
     if (!desc->deny.color_attachments || desc->deny.color_attachments > attachments)
         desc->deny.color_attachments = attachments;
     if (!result) result = choose_ray_query(desc, plan, vk, detail);

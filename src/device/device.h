@@ -11,7 +11,6 @@
 #include "scene/texture.h"
 
 #define MASU_SAMPLER_COUNT 18u
-#define MASU_MAP_COUNT (MASU_SLOT_COUNT + 1u) /* bindings of set 2 */
 /* Index of the sampler for the wrap modes of a texture set. */
 static inline uint32_t masu_sampler_of(const uint32_t wrap[2]) {
     return (wrap[0] & 3u) + 3u * wrap[1] + (wrap[0] & 4u ? MASU_SAMPLER_COUNT / 2 : 0);

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "device/bind.h"
+#include "scene/code.h"
 #include "scene/scene.h"
 #include "scene/trace.h"
 #include "shared/masu_shared.h"
@@ -17,10 +18,11 @@
 
 /* Unpacks the shader into a mapped block that nothing else uses yet, or into host memory if frames
  * may use the block already. The driver keeps its own copy, so the memory can be used again. */
-static masu_result create_module(masu_device *m, masu_code code, VkShaderModule *module,
-                                 masu_detail *detail) {
+static masu_result create_module(masu_device *m, uint32_t pass, masu_code code,
+                                 VkShaderModule *module, masu_detail *detail) {
     uint32_t *mapped = (uint32_t *)(void *)m->mapped[masu_code_role(m->plan)];
-    const uint32_t *words = masu_code_read(&code, m->code_room ? m->code_room : mapped);
+    const uint32_t *words =
+        masu_code_read(m->plan, pass, &code, m->code_room ? m->code_room : mapped);
     if (!words)
         return masu_fail(detail, MASU_ERROR_DEVICE, "shader", code.bytes, 0,
                          "a shader of %llu bytes cannot be unpacked",
@@ -57,13 +59,12 @@ static uint64_t now(const masu_device *m) {
  *   22  orthographic cameras: few bits of depth are kept as those of 1 - depth
  *   23  materials may show live textures
  *   24  MASU_DRAWS_* of materials.h           25  frames change the environment */
-enum { SPECIAL_COUNT = 26 };
 
 static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
-                                       VkBool32 constants[SPECIAL_COUNT]) {
+                                       VkBool32 constants[MASU_SPECIAL_COUNT]) {
 #define ENTRY(n)                                                                                   \
     { n, (n) * sizeof *constants, sizeof *constants }
-    static const VkSpecializationMapEntry entries[SPECIAL_COUNT] = {
+    static const VkSpecializationMapEntry entries[MASU_SPECIAL_COUNT] = {
         ENTRY(0),  ENTRY(1),  ENTRY(2),  ENTRY(3),  ENTRY(4),  ENTRY(5),  ENTRY(6),
         ENTRY(7),  ENTRY(8),  ENTRY(9),  ENTRY(10), ENTRY(11), ENTRY(12), ENTRY(13),
         ENTRY(14), ENTRY(15), ENTRY(16), ENTRY(17), ENTRY(18), ENTRY(19), ENTRY(20),
@@ -105,15 +106,15 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
     constants[24] = (m->plan->needs.looks ? MASU_DRAWS_LOOKS : 0u) |
                     (scene->depth_biases ? MASU_DRAWS_BIASES : 0u);
     constants[25] = m->plan->desc.live_environment != 0;
-    return (VkSpecializationInfo){SPECIAL_COUNT, entries, SPECIAL_COUNT * sizeof *constants,
+    return (VkSpecializationInfo){MASU_SPECIAL_COUNT, entries, MASU_SPECIAL_COUNT * sizeof *constants,
                                   constants};
 }
 
 /* Key of a pipeline in the pool; 0 without a pool. */
 static uint64_t key_of(const masu_device *m, uint32_t pass, const masu_code codes[2], uint32_t form,
-                       const VkBool32 constants[SPECIAL_COUNT]) {
+                       const VkBool32 constants[MASU_SPECIAL_COUNT]) {
     if (!m->plan->desc.vulkan.pipelines) return 0;
-    return masu_pool_key(m, pass, codes, form, constants, SPECIAL_COUNT);
+    return masu_pool_key(m, pass, codes, form, constants, MASU_SPECIAL_COUNT);
 }
 
 /* ---- Layouts --------------------------------------------------------------------------------- */
@@ -128,12 +129,6 @@ static masu_result create_set_layout(masu_device *m, const VkDescriptorSetLayout
     VkResult r = m->vk.CreateDescriptorSetLayout(m->vk.device, &info, m->vk.allocator, out);
     return MASU_FAILED(r, *out) ? masu_fail_vulkan(detail, r, "vkCreateDescriptorSetLayout")
                                 : MASU_OK;
-}
-
-static int draws_polygons(uint32_t pass) {
-    masu_geometry g = masu_passes[pass].geometry;
-    return g == MASU_GEOMETRY_POLYGONS || g == MASU_GEOMETRY_CASCADE ||
-           g == MASU_GEOMETRY_BLENDED || g == MASU_GEOMETRY_PICK || g == MASU_GEOMETRY_CASTERS;
 }
 
 /* Set 2: the textures of a draw, and live textures. */
@@ -185,7 +180,7 @@ static masu_result create_pass_layout(masu_device *m, uint32_t pass, masu_detail
     if (!compute) push.stageFlags = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
     VkPipelineLayoutCreateInfo layout = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                          .setLayoutCount =
-                                             draws_polygons(pass) && m->texture_layout ? 3 : 2,
+                                             masu_draws_polygons(pass) && m->texture_layout ? 3 : 2,
                                          .pSetLayouts = sets,
                                          .pushConstantRangeCount = 1,
                                          .pPushConstantRanges = &push};
@@ -223,12 +218,12 @@ static void name_form(const masu_device *m, uint32_t pass, int last, VkPipeline 
 static masu_result create_compute(masu_device *m, uint32_t pass, int last, VkPipeline *out,
                                   masu_detail *detail) {
     VkShaderModule module = VK_NULL_HANDLE;
-    VkBool32 constants[SPECIAL_COUNT];
+    VkBool32 constants[MASU_SPECIAL_COUNT];
     VkSpecializationInfo special = specialise(m, m->plan->desc.debug.counters != 0, constants);
     masu_code codes[2] = {masu_compute_code(m->plan, pass, last), {0}};
     uint64_t key = key_of(m, pass, codes, 0, constants);
     if (masu_pool_acquire(m, key, out)) return MASU_OK;
-    masu_result result = create_module(m, codes[0], &module, detail);
+    masu_result result = create_module(m, pass, codes[0], &module, detail);
     if (result) return result;
     VkComputePipelineCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
@@ -262,11 +257,12 @@ static uint32_t color_attachments(const masu_device *m, uint32_t pass) {
     return count;
 }
 
-/* gbuffer.frag always declares an emission output, after all others. Without an emission attachment
- * the output gets an unused attachment reference, if the device has enough attachments. */
+/* gbuffer.frag declares an emission output after all others, except with the surface image and
+ * without emission (axis OUTPUTS). Without an emission attachment the output gets an unused
+ * attachment reference; every device has as many attachments. */
 static int has_unused_emission(const masu_device *m, uint32_t pass) {
     return masu_passes[pass].geometry == MASU_GEOMETRY_POLYGONS && !m->plan->needs.emissive &&
-           color_attachments(m, pass) < m->vk.properties.limits.maxColorAttachments;
+           !m->plan->needs.surface;
 }
 
 /* Initial and final layouts are those that the row's barriers set: the render pass transitions
@@ -379,13 +375,13 @@ static VkResult create_graphics_pipeline(masu_device *m, uint32_t pass,
                                          VkBool32 masked, int culled, int emitting,
                                          VkPipeline *out) {
     masu_geometry geometry = masu_passes[pass].geometry;
-    int polygons = draws_polygons(pass); /* else the vertex shader generates the vertices */
+    int polygons = masu_draws_polygons(pass); /* else the vertex shader generates the vertices */
     int blends = blends_color(m, pass);
     int depths = geometry == MASU_GEOMETRY_POLYGONS || geometry == MASU_GEOMETRY_CASCADE ||
                  geometry == MASU_GEOMETRY_BOXES || geometry == MASU_GEOMETRY_PICK ||
                  geometry == MASU_GEOMETRY_DEPTHS || geometry == MASU_GEOMETRY_CASTERS ||
                  geometry == MASU_GEOMETRY_TILES;
-    VkBool32 constants[SPECIAL_COUNT];
+    VkBool32 constants[MASU_SPECIAL_COUNT];
     VkSpecializationInfo special = specialise(m, masked, constants);
     VkPipelineShaderStageCreateInfo stages[2];
     for (uint32_t i = 0; i < 2; i++) {
@@ -488,7 +484,7 @@ static masu_result create_pipeline(masu_device *m, uint32_t pass, int textured, 
                                    int culled, int emitting, VkPipeline *out, masu_detail *detail) {
     masu_draw_code code = masu_draw_code_of(m->plan, pass, textured);
     const masu_code codes[2] = {code.vertex, code.fragment};
-    VkBool32 constants[SPECIAL_COUNT];
+    VkBool32 constants[MASU_SPECIAL_COUNT];
     (void)specialise(m, masked, constants);
     uint32_t form =
         (uint32_t)textured | (culled ? 2u : 0u) | (masked ? 4u : 0u) | (emitting ? 8u : 0u);
@@ -497,9 +493,9 @@ static masu_result create_pipeline(masu_device *m, uint32_t pass, int textured, 
     uint64_t key = key_of(m, pass, codes, form, constants);
     if (masu_pool_acquire(m, key, out)) return MASU_OK;
     VkShaderModule modules[2] = {VK_NULL_HANDLE, VK_NULL_HANDLE};
-    masu_result result = create_module(m, code.vertex, &modules[0], detail);
+    masu_result result = create_module(m, pass, code.vertex, &modules[0], detail);
     if (!result && code.fragment.bytes)
-        result = create_module(m, code.fragment, &modules[1], detail);
+        result = create_module(m, pass, code.fragment, &modules[1], detail);
     if (!result) {
         uint64_t start = now(m);
         VkResult r =

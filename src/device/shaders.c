@@ -6,6 +6,8 @@
 #include "scene/scene.h"
 #include "scene/trace_scene.h"
 
+#include <string.h>
+
 enum {
 #define AXIS(ID, ...) MASU_AXIS_##ID,
 #include "plan/axes.inc"
@@ -149,6 +151,22 @@ static uint64_t declared_bindings(const masu_frame_plan *plan, uint32_t pass) {
     return bindings;
 }
 
+/* Most compute shaders declare the counters, but use them only with desc.debug.counters, by a
+ * specialisation constant. Otherwise the declaration gets the binding of another storage buffer of
+ * the pass, and costs no descriptor: devices may have as few as 4 per stage. Returns that binding,
+ * or MASU_BIND_COUNTERS. */
+static uint32_t counters_binding(const masu_frame_plan *plan, const masu_binding *rows,
+                                 uint64_t declared) {
+    if (plan->desc.debug.counters) return MASU_BIND_COUNTERS;
+    for (uint32_t i = 0; i < MASU_BIND_COUNT; i++) {
+        if (rows[i].bound && (declared >> rows[i].binding & 1) &&
+            rows[i].type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER &&
+            (rows[i].stages & VK_SHADER_STAGE_COMPUTE_BIT) && rows[i].binding != MASU_BIND_COUNTERS)
+            return rows[i].binding;
+    }
+    return MASU_BIND_COUNTERS;
+}
+
 uint32_t masu_global_bindings(const masu_frame_plan *plan, uint32_t pass,
                               VkDescriptorSetLayoutBinding out[MASU_BIND_COUNT]) {
     masu_binding rows[MASU_BIND_COUNT];
@@ -158,6 +176,8 @@ uint32_t masu_global_bindings(const masu_frame_plan *plan, uint32_t pass,
                                     : VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
     uint32_t count = 0;
     masu_bindings(plan, rows);
+    if (counters_binding(plan, rows, declared) != MASU_BIND_COUNTERS)
+        declared &= ~((uint64_t)1 << MASU_BIND_COUNTERS);
     for (uint32_t i = 0; i < MASU_BIND_COUNT; i++) {
         if (!rows[i].bound || !(declared >> rows[i].binding & 1) || !(rows[i].stages & stages))
             continue;
@@ -167,35 +187,69 @@ uint32_t masu_global_bindings(const masu_frame_plan *plan, uint32_t pass,
     return count;
 }
 
-uint32_t masu_storage_buffers(const masu_frame_plan *plan, uint32_t pass, uint32_t *groups) {
+static uint32_t most_in_a_stage(const VkDescriptorSetLayoutBinding *bound, uint32_t count,
+                                VkDescriptorType type) {
     static const VkShaderStageFlags stages[] = {VK_SHADER_STAGE_VERTEX_BIT,
                                                 VK_SHADER_STAGE_FRAGMENT_BIT,
                                                 VK_SHADER_STAGE_COMPUTE_BIT};
-    VkDescriptorSetLayoutBinding bound[MASU_BIND_COUNT];
-    masu_binding rows[MASU_BIND_COUNT];
-    uint32_t most = 0, count = masu_global_bindings(plan, pass, bound);
-    masu_bindings(plan, rows);
-    *groups = 0;
+    uint32_t most = 0;
     for (uint32_t k = 0; k < sizeof stages / sizeof *stages; k++) {
         uint32_t here = 0;
-        for (uint32_t i = 0; i < count; i++) {
-            here += bound[i].descriptorType == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER &&
-                    (bound[i].stageFlags & stages[k]);
-        }
+        for (uint32_t i = 0; i < count; i++)
+            here += bound[i].descriptorType == type && (bound[i].stageFlags & stages[k]);
         if (here > most) most = here;
-    }
-    for (uint32_t i = 0; i < count; i++) {
-        for (uint32_t r = 0; r < MASU_BIND_COUNT; r++) {
-            if (rows[r].bound && rows[r].binding == bound[i].binding)
-                *groups |= 1u << rows[r].group;
-        }
     }
     return most;
 }
 
-const uint32_t *masu_code_read(const masu_code *code, uint32_t *room) {
-    if (code->words) return code->words;
-    return masu_unpack(&masu_pack_of_all, &code->packed, room) ? room : NULL;
+static int is_color(uint32_t usage) {
+    return usage == MASU_WRITE_COLOR || usage == MASU_BLEND_COLOR || usage == MASU_UPDATE_COLOR;
+}
+
+int masu_draws_polygons(uint32_t pass) {
+    masu_geometry g = masu_passes[pass].geometry;
+    return g == MASU_GEOMETRY_POLYGONS || g == MASU_GEOMETRY_CASCADE ||
+           g == MASU_GEOMETRY_BLENDED || g == MASU_GEOMETRY_PICK || g == MASU_GEOMETRY_CASTERS;
+}
+
+masu_stage_needs masu_stage_needs_of(const masu_frame_plan *plan, uint32_t pass) {
+    VkDescriptorSetLayoutBinding bound[MASU_BIND_COUNT];
+    masu_binding rows[MASU_BIND_COUNT];
+    uint32_t count = masu_global_bindings(plan, pass, bound);
+    masu_stage_needs n = {
+        .uniform_buffers = most_in_a_stage(bound, count, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER),
+        .storage_buffers = most_in_a_stage(bound, count, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER)};
+    masu_bindings(plan, rows);
+    for (uint32_t i = 0; i < count; i++) {
+        for (uint32_t r = 0; r < MASU_BIND_COUNT; r++) {
+            if (rows[r].bound && rows[r].binding == bound[i].binding)
+                n.groups |= 1u << rows[r].group;
+        }
+    }
+    const masu_rung_plan *rp = masu_first_rung(plan, pass);
+    for (uint32_t a = 0; rp && a < rp->access_count[pass]; a++) {
+        masu_access access = rp->access[pass][a];
+        n.sampled_images += masu_has_set(pass) && masu_access_binds(access, 0);
+        n.storage_images += masu_has_set(pass) && masu_access_binds(access, 1);
+        n.attachments += is_color(access.usage);
+    }
+    if (plan->scene.texture_arrays && masu_draws_polygons(pass))
+        n.sampled_images += MASU_MAP_COUNT;
+    return n;
+}
+
+const uint32_t *masu_code_read(const masu_frame_plan *plan, uint32_t pass, const masu_code *code,
+                               uint32_t *room) {
+    masu_binding rows[MASU_BIND_COUNT];
+    masu_bindings(plan, rows);
+    uint32_t counters = counters_binding(plan, rows, declared_bindings(plan, pass));
+    int rebinds = counters != MASU_BIND_COUNTERS &&
+                  (masu_code_interface(code).bindings >> MASU_BIND_COUNTERS & 1);
+    if (code->words && !rebinds) return code->words;
+    if (code->words) memcpy(room, code->words, (size_t)code->bytes);
+    else if (!masu_unpack(&masu_pack_of_all, &code->packed, room)) return NULL;
+    if (rebinds) masu_rebind(room, code->bytes / sizeof *room, MASU_BIND_COUNTERS, counters);
+    return room;
 }
 
 /* ---- Shaders missing from the library -------------------------------------------------------- */
@@ -222,8 +276,10 @@ masu_result masu_code_check(const masu_frame_plan *plan, masu_detail *detail) {
 
 /* ---- Memory for unpacking -------------------------------------------------------------------- */
 
-static uint64_t larger(uint64_t bytes, masu_code code) {
-    return !code.words && code.bytes > bytes ? code.bytes : bytes;
+/* Code of the scene needs room only to be adapted to the layout (counters_binding). */
+static uint64_t larger(uint64_t bytes, const masu_frame_plan *plan, masu_code code) {
+    if (code.words && plan->desc.debug.counters) return bytes;
+    return code.bytes > bytes ? code.bytes : bytes;
 }
 
 uint64_t masu_code_room(const masu_frame_plan *plan) {
@@ -232,10 +288,10 @@ uint64_t masu_code_room(const masu_frame_plan *plan) {
         const masu_rung_plan *rp = &plan->rungs[r];
         for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
             if (!masu_has_pass(&rp->active, p)) continue;
-            bytes = larger(bytes, masu_compute_code(plan, p, masu_comes_last(rp, p)));
+            bytes = larger(bytes, plan, masu_compute_code(plan, p, masu_comes_last(rp, p)));
             for (int textured = 0; textured <= (plan->scene.texture_arrays > 0); textured++) {
                 masu_draw_code code = masu_draw_code_of(plan, p, textured);
-                bytes = larger(larger(bytes, code.vertex), code.fragment);
+                bytes = larger(larger(bytes, plan, code.vertex), plan, code.fragment);
             }
         }
     }

@@ -33,23 +33,38 @@ masu_draw_code masu_draw_code_of(const masu_frame_plan *plan, uint32_t pass, int
 masu_interface masu_code_interface(const masu_code *code);
 
 /* Layout bindings of set 0 of a pass: those that its shaders declare and whose buffers the plan
- * has. Returns their number. */
+ * has; the counters only with desc.debug.counters, if the pass has another storage buffer. Returns
+ * their number. */
 uint32_t masu_global_bindings(const masu_frame_plan *plan, uint32_t pass,
                               VkDescriptorSetLayoutBinding out[MASU_BIND_COUNT]);
 
-/* Largest number of storage buffers in one stage of a pass (all are in set 0). Bit n of *groups is
- * set if the pass binds a buffer of masu_binding_group n. */
-uint32_t masu_storage_buffers(const masu_frame_plan *plan, uint32_t pass, uint32_t *groups);
+#define MASU_MAP_COUNT (MASU_SLOT_COUNT + 1u) /* bindings of set 2 */
 
-/* The SPIR-V of a code. Packed code is unpacked to `room`, which has masu_code_room(plan) bytes.
- * NULL if it cannot be unpacked. */
-const uint32_t *masu_code_read(const masu_code *code, uint32_t *room);
+/* Whether the pass draws polygons, with their textures in set 2. */
+int masu_draws_polygons(uint32_t pass);
+
+/* What the layouts of a pass have, each the largest number in one stage. Every sampled image has a
+ * sampler. */
+typedef struct masu_stage_needs {
+    uint32_t uniform_buffers, storage_buffers; /* in set 0 */
+    uint32_t sampled_images;                   /* in sets 1 and 2 */
+    uint32_t storage_images;
+    uint32_t attachments; /* for colour */
+    uint32_t groups;      /* bit n: the pass binds a buffer of masu_binding_group n */
+} masu_stage_needs;
+
+masu_stage_needs masu_stage_needs_of(const masu_frame_plan *plan, uint32_t pass);
+
+/* The SPIR-V of a code for the layout of a pass. Code that is packed or adapted to the layout is
+ * written to `room`, which has masu_code_room(plan) bytes. NULL if it cannot be unpacked. */
+const uint32_t *masu_code_read(const masu_frame_plan *plan, uint32_t pass, const masu_code *code,
+                               uint32_t *room);
 
 /* MASU_ERROR_LIMIT: the plan needs a shader that the library was built without (make
  * CLASSES=...). */
 masu_result masu_code_check(const masu_frame_plan *plan, masu_detail *detail);
 
-/* Unpacked size, in bytes, of the largest packed shader of the plan's pipelines. */
+/* Size, in bytes, of the largest shader of the plan's pipelines. */
 uint64_t masu_code_room(const masu_frame_plan *plan);
 
 #endif

@@ -43,19 +43,33 @@ static int is_in_set_0(const variables *v, uint32_t id) {
     return v->count > SET_0_MAX;
 }
 
-masu_interface masu_interface_of(const uint32_t *words, uint64_t count) {
-    masu_interface is = {0, 0};
+static variables set_0_of(const uint32_t *words, uint64_t count) {
     variables v = {.count = 0};
     const uint32_t *op;
     for (uint64_t at = HEADER; (op = next_decoration(words, count, &at));) {
-        if (op[2] == SPEC_ID && op[3] < 32) is.constants |= 1u << op[3];
         if (op[2] != DESCRIPTOR_SET || op[3] != 0 || v.count > SET_0_MAX) continue;
         if (v.count < SET_0_MAX) v.ids[v.count] = op[1];
         v.count++;
     }
+    return v;
+}
+
+masu_interface masu_interface_of(const uint32_t *words, uint64_t count) {
+    masu_interface is = {0, 0};
+    variables v = set_0_of(words, count);
+    const uint32_t *op;
     for (uint64_t at = HEADER; (op = next_decoration(words, count, &at));) {
+        if (op[2] == SPEC_ID && op[3] < 32) is.constants |= 1u << op[3];
         if (op[2] == BINDING && op[3] < 64 && is_in_set_0(&v, op[1]))
             is.bindings |= (uint64_t)1 << op[3];
     }
     return is;
+}
+
+void masu_rebind(uint32_t *words, uint64_t count, uint32_t from, uint32_t to) {
+    variables v = set_0_of(words, count);
+    const uint32_t *op;
+    for (uint64_t at = HEADER; (op = next_decoration(words, count, &at));) {
+        if (op[2] == BINDING && op[3] == from && is_in_set_0(&v, op[1])) words[op - words + 3] = to;
+    }
 }

@@ -48,7 +48,6 @@ enum {
 enum { BUILT_IN_WORKGROUP_SIZE = 25 };
 enum { CLASS_CONSTANT = 0, CLASS_UNIFORM = 2, CLASS_PUSH = 9, CLASS_STORAGE = 12 };
 enum { MODE_LOCAL_SIZE = 17 };
-#define SPEC_IDS 24u /* constant_ids that scene code may use (device/pipelines.c) */
 
 /* Sections of a module, in their order. The rank must not decrease from instruction to
  * instruction. */
@@ -290,7 +289,7 @@ static int capability_ok(uint32_t capability) {
 static const char *note_decoration(walk *w, const uint32_t *word, uint32_t length) {
     if (word[2] == DECORATION_BUILT_IN && length > 3 && word[3] == BUILT_IN_WORKGROUP_SIZE)
         w->workgroup_size = word[1];
-    if (word[2] == DECORATION_SPEC_ID && (length != 4 || word[3] >= SPEC_IDS))
+    if (word[2] == DECORATION_SPEC_ID && (length != 4 || word[3] >= MASU_SPECIAL_COUNT))
         return "a specialization constant has a number that no pass gives";
     if (word[2] != DECORATION_BINDING && word[2] != DECORATION_SET) return NULL;
     if (length != 4) return "a decoration has not one number";

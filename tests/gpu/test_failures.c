@@ -200,7 +200,7 @@ static void storage_buffers_are_counted_as_they_are_bound(void **state) {
         wrap_reset();
         d.host.get_instance_proc_addr = wrap_get_instance_proc_addr;
         open_session(&own, &d);
-        uint32_t bound = wrap.most_storage_buffers;
+        uint32_t bound = wrap.most.storage_buffers;
         size_t bytes; /* the session has freed its blob, which planning textures needs */
         void *blob = read_file(scene_path(scenes[i]), &bytes);
         masu_scene scene;

@@ -170,6 +170,7 @@ static void far_from_the_origin_it_looks_the_same(void **state) {
                  {10000000, "", "1e7 m away"}};
     take_both(0, "", here);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        if (i == 1 && !long_run()) continue; /* 1e7 m are harder */
         take_both(cases[i].offset, cases[i].member, there);
         difference d = largest_of(cases[i].what);
         assert_true(d.coverage <= 4);
@@ -196,7 +197,7 @@ static void the_plan_says_whether_it_is_anchored(void **state) {
     for (int i = 0; i < 2; i++) {
         masu_session s;
         masu_plan_info plan;
-        open_at(&s, i * 1000000, "");
+        open_at(&s, i * 10000000, "");
         assert_int_equal(masu_scene_data_of(&s.scene)->sdf_anchored, i);
         masu_plan_of(s.m, &plan);
         for (uint32_t p = 0; p < plan.pass_count; p++) {

@@ -269,6 +269,7 @@ static void visibility_is_that_of_rays(void **state) {
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         lamps l;
+        if (i && is_slow_driver()) continue;
         begin_scene(30);
         add_room();
         add_lights(cases[i].light);
@@ -345,6 +346,7 @@ static void expect_no_acne(const plane_case *p) {
 static void planes_do_not_shadow_themselves(void **state) {
     (void)state;
     expect_no_acne(&(plane_case){"point, 512", 2048, 0.3, 0, 1});
+    if (is_slow_driver()) return;
     expect_no_acne(&(plane_case){"point, 128", 512, 0.3, 0, 1});
     expect_no_acne(&(plane_case){"spot, 512", 2048, 1.5, 1, 1});
 }
@@ -444,6 +446,7 @@ static void expect_kept(uint32_t atlas) {
 /* Also in an atlas without room for the preferred sizes of its 14 faces. */
 static void what_is_kept_is_what_would_be_rendered(void **state) {
     (void)state;
+    if (is_slow_driver()) return; /* the host decides it */
     expect_kept(2048);
     expect_kept(1024);
 }
@@ -451,6 +454,7 @@ static void what_is_kept_is_what_would_be_rendered(void **state) {
 /* Two lights and one slot: a third light, brighter and out of view, takes it. */
 static void shadows_come_and_go_by_steps(void **state) {
     (void)state;
+    if (is_slow_driver()) return; /* the host decides it */
     static uint16_t plain[4 * PIXELS_MOST], before[4 * PIXELS_MOST];
     lamps l;
     masu_rung rung = {.local_shadow_lights = 1};
@@ -540,16 +544,17 @@ static void a_point_that_moves_keeps_its_walls(void **state) {
 
 /* ---- Changes at run time --------------------------------------------------------------------- */
 
-static void a_thousand_lights_come_and_go(void **state) {
+static void lights_come_and_go(void **state) {
     (void)state;
     enum { ROOM = 40 };
+    const uint32_t changes = trials(1000, 400, 120);
     lamps l;
     masu_camera c = look(5, 4.5, 7, -4, -3, -6, 1.1);
     masu_punctual_light handles[ROOM] = {{0}};
     uint64_t seed = 3;
     bake_street();
     open_lamps(&l, "lamp_street", 64, 40, NULL, ROOM);
-    for (uint32_t n = 0; n < 1000; n++) {
+    for (uint32_t n = 0; n < changes; n++) {
         uint32_t at = (uint32_t)random_between(&seed, 0, ROOM - 0.01);
         if (handles[at].id) assert_int_equal(masu_punctual_light_remove(l.s.m, handles[at], NULL), MASU_OK);
         masu_punctual_light_state s = {.range = (float)random_between(&seed, 1, 12),
@@ -573,6 +578,7 @@ static void a_thousand_lights_come_and_go(void **state) {
 
 static void nothing_is_planned_where_no_light_casts(void **state) {
     (void)state;
+    if (is_slow_driver()) return; /* the host decides it */
     for (uint32_t casts = 0; casts < 2; casts++) {
         lamps l;
         masu_plan_info plan;
@@ -609,7 +615,7 @@ int main(void) {
         cmocka_unit_test(what_is_kept_is_what_would_be_rendered),
         cmocka_unit_test(shadows_come_and_go_by_steps),
         cmocka_unit_test(a_point_that_moves_keeps_its_walls),
-        cmocka_unit_test(a_thousand_lights_come_and_go),
+        cmocka_unit_test(lights_come_and_go),
         cmocka_unit_test(nothing_is_planned_where_no_light_casts),
     };
     return cmocka_run_group_tests(tests, make_scratch, remove_scratch);

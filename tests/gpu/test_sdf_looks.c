@@ -54,7 +54,7 @@ static void every_look_is_that_of_the_C(void **state) {
     check c = {.field = masu_sdfc_field_open(text, bytes, SOURCE)};
     assert_non_null(c.field);
     c.parts = masu_sdfc_field_parts(c.field, &c.count);
-    assert_true(c.count == 30);
+    assert_true(c.count == 33);
     c.room = calloc(masu_sdfc_field_room(c.field), sizeof *c.room);
     const masu_camera camera = {.position = {0, 0, 12}, .forward = {0, 0, -1}, .fov_y = 0.95f, .near_distance = 0.1f};
     masu_session s;

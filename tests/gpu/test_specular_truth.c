@@ -28,8 +28,8 @@ static uint32_t slot;
 
 /* On drivers after the first an eighth; the loss of precision is part of the expected errors. */
 static uint32_t frames_of(uint32_t frames) {
-    if (whole_run()) return frames;
-    return frames / 8 > 48 ? frames / 8 : 48;
+    uint32_t quick = frames / 8 > 48 ? frames / 8 : 48;
+    return trials(frames, frames / 2, quick);
 }
 
 /* ---- Scenes ---------------------------------------------------------------------------------- */
@@ -204,7 +204,7 @@ static void tracer(const char *name, const char *json, uint32_t materials, const
     assert_ok(masu_file_read(baked_scene(name), 1u << 30, &blob, &bytes, error, sizeof error));
     assert_int_equal(masu_scene_bind(blob, bytes, &scene, &detail), MASU_OK);
     assert_ok(masu_ref_mirror_open(&scene, &camera, W, H, &m, error, sizeof error));
-    const uint32_t rays = trials(512, 512, 256);
+    const uint32_t rays = trials(512, 256, 256);
     compare(name, &m, coat, frames, rays, 1);
     worst = worst_group(&chi, &far);
     uint32_t found = 0;

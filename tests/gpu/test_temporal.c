@@ -71,7 +71,7 @@ static void find_truth(const char *scene, const float *ball, const masu_light *l
     if (ball) memcpy(last.ball, ball, sizeof last.ball);
     if (light) last.light = *light;
     masu_session_desc d = test_desc(scene, SIZE, SIZE);
-    const uint32_t places = trials(64, 64, 32);
+    const uint32_t places = trials(64, 32, 32);
     assert_ok(masu_picture_open(&d, places, &s, error, sizeof error));
     if (ball) move_instance(&s, "ball", ball[0], ball[1], ball[2], 1.0f);
     masu_frame_desc f = {MASU_FRAME_DESC, .light = light};
@@ -570,7 +570,7 @@ static void a_change_of_scale_keeps_the_past(void **state) {
 static void nothing_breaks_it(void **state) {
     (void)state;
     static const char *const scenes[] = {"test_shadows", "test_both", "test_pane", "wet_city"};
-    for (size_t k = 0; k < trials(4, 4, 3); k++) { /* wet_city takes ten seconds to compile */
+    for (size_t k = 0; k < trials(4, 3, 3); k++) { /* wet_city takes ten seconds to compile */
         masu_session s;
         masu_session_desc d = temporal_desc(scenes[k], 1.0f);
         d.desc.rung_count = 5;

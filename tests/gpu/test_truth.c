@@ -188,7 +188,7 @@ static void an_edge_is_as_wide_as_it_covers(void **state) {
     open_truth(&s);
     /* Steps of the raster in 64ths of a pixel: a vertex moves by up to one. */
     double grid = ldexp(64.0, -(int)s.host.properties.limits.subPixelPrecisionBits);
-    for (size_t i = 0; i < sizeof angles / sizeof *angles; i += whole_run() ? 1 : 2) { /* at least both axes */
+    for (size_t i = 0; i < sizeof angles / sizeof *angles; i += long_run() ? 1 : 2) { /* at least both axes */
         char error[ERROR_SIZE];
         double x[3], y[3], worst[2] = {0, 0}, sum[2] = {0, 0}, count[2] = {0, 0}, white = 0;
         plane_of(angles[i], x, y);
@@ -320,7 +320,7 @@ static void a_silhouette_is_as_wide_as_it_covers(int bright) {
     if (bright) d.desc.tone = MASU_TONE_NONE;
     masu_light light = {.sun_direction = {0, 1, 0}, .sky_zenith = {30, 30, 30}, .sky_horizon = {30, 30, 30}};
     open_session(&s, &d);
-    for (size_t i = 0; i < sizeof angles / sizeof *angles; i += whole_run() ? 1 : 2) {
+    for (size_t i = 0; i < sizeof angles / sizeof *angles; i += long_run() ? 1 : 2) {
         for (size_t j = 0; j < sizeof jitters / sizeof *jitters; j++) {
             double x[3], y[3], worst = 0, sum = 0, before = 0, count = 0, white = 0;
             plane_of(angles[i], x, y);
@@ -395,7 +395,7 @@ static void silhouettes_stand_beside_everything_else(void **state) {
     static uint8_t plain[4 * PIXELS];
     for (uint32_t i = 0; i < 8; i++) {
         /* every two settings together are still covered */
-        if (!whole_run() && (i ^ i >> 1 ^ i >> 2) & 1) continue;
+        if (!long_run() && (i ^ i >> 1 ^ i >> 2) & 1) continue;
         masu_session s;
         masu_session_desc d = test_desc(i & 1 ? "spheres" : "test_both", SIZE, SIZE);
         d.desc.rung_count = 2;

@@ -41,6 +41,41 @@ quad() {
 
 scene=$folder/scene.json
 
+# ---- detail --------------------------------------------------------------------------------------
+
+# With the colour it is the texture coordinates that are scaled: the same blob as of a plane with four times the tiles, also where
+# the plane comes a second time with other values.
+detail() { # MEMBERS, TILE
+    printf '{"models": [{"mesh": {"plane": {"size_x": 8, "size_z": 8, "tile": %s}}, "material": {%s"base_color_map": "%s"}}%s]}\n' \
+        "$2" "$1" "$pictures/bricks.png" "${3:-}" > "$scene"
+    bakes "$scene"
+    warns 0
+}
+detail '' 8
+cp "$folder/x.masu" "$folder/tiles.masu"
+detail '"detail": 4, "detail_color": true, ' 2
+cmp -s "$folder/x.masu" "$folder/tiles.masu" || fail "detail_color is not four times the tiles"
+detail '"detail": 4, "detail_color": false, ' 2
+cmp -s "$folder/x.masu" "$folder/tiles.masu" && fail "detail_color is read as true"
+detail '"detail": [4, 1], "detail_color": true, ' 2
+cmp -s "$folder/x.masu" "$folder/tiles.masu" && fail "detail_color has one factor for both axes"
+[ "$(counts vertices)" = 4 ] || fail "$(counts vertices) vertices of one plane"
+other=", {\"name\": \"b\", \"mesh\": {\"plane\": {\"size_x\": 8, \"size_z\": 8, \"tile\": 2}}, \"material\": {\"base_color_map\": \"$pictures/bricks.png\"}}"
+detail '"detail": 4, "detail_color": true, ' 2 "$other$other"
+[ "$(counts vertices)" = 8 ] || fail "$(counts vertices) vertices of a plane with two scales of its coordinates"
+detail '"detail": 4, ' 2 "$other$other"
+[ "$(counts vertices)" = 4 ] || fail "$(counts vertices) vertices of a plane with one"
+for times in 32.768 33; do
+    printf '{"models": [{"mesh": {"plane": {"tile": 1000}}, "material": {"detail": %s, "detail_color": true, "base_color_map": "%s"}}]}\n' \
+        $times "$pictures/bricks.png" > "$scene"
+    if [ $times = 33 ]; then
+        "$bake" "$scene" --bare -o "$folder/x.masu" > /dev/null 2> "$folder/stderr" && fail "coordinates of 33000 are baked"
+        grep -q 'models\[0\].*texture coordinates beyond 32768, by "detail_color"' "$folder/stderr" || fail "$(cat "$folder/stderr")"
+    else
+        bakes "$scene"
+    fi
+done
+
 # ---- formats -------------------------------------------------------------------------------------
 
 for name in bricks.png ground.jpg leaf.tga sign.rgb; do

@@ -1,6 +1,6 @@
 #!/bin/bash
 # The library is no larger than package/sizes.csv says, 3 % aside (make sizes-table writes it anew), and for one class
-# of scenes at most 2.2 MB. Built for a class it takes every baked scene of that class, and of others at least
+# of scenes at most 2.4 MB. Built for a class it takes every baked scene of that class, and of others at least
 # refuses those that draw or trace what it cannot, by a line that says what to build.
 set -u
 build=${BUILD:-build} made=${MADE:-build}
@@ -22,7 +22,7 @@ grown() {
         { seen[$1] = 1 }
         !($1 in was) { print $1 ": not in the table"; next }
         $2 > was[$1] * 1.03 { print $1 ": " $2 " bytes, in the table " was[$1] }
-        $2 > ($1 == "all" ? 2500000 : 2200000) { print $1 ": " $2 " bytes are more than is promised" }
+        $2 > ($1 == "all" ? 2500000 : 2400000) { print $1 ": " $2 " bytes are more than is promised" }
         $2 < was[$1] * 0.9 { print $1 ": " $2 " bytes, in the table " was[$1] ": it can be written anew" }
         END { for (c in was) if (!(c in seen)) print c ": no size any more" }' "$1" "$2"
 }

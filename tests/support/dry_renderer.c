@@ -84,6 +84,7 @@ void make_renderer_with(uint32_t parts, uint64_t staging, const masu_rung *rungs
     m.device.frames = frames;
     memset(recorded, 1, sizeof recorded);
     m.device.recorded = recorded;
+    m.device.ready = (1u << MASU_MAX_RUNGS) - 1;
     m.device.loads = loads;
     m.instances.now = instances;
     m.instances.names = instance_names;

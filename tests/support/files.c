@@ -95,6 +95,11 @@ bool whole_run(void) {
     return long_run() || !driver || !*driver || !strcmp(driver, "system");
 }
 
+bool is_slow_driver(void) {
+    const char *driver = getenv("MASU_TEST_DRIVER");
+    return !long_run() && driver && !strcmp(driver, "swiftshader");
+}
+
 uint32_t trials(uint32_t all, uint32_t quick, uint32_t elsewhere) {
     return long_run() ? all : whole_run() ? quick : elsewhere;
 }

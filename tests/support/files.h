@@ -41,6 +41,9 @@ bool long_run(void);
  * hardly depend on the driver run a part of their rows. So do unit tests under the sanitizers
  * (NESTED), which make them ten times slower. */
 bool whole_run(void);
+/* True on SwiftShader, unless LONG is set: it takes four times as long as the others, and tests leave
+ * to the others what the host decides. */
+bool is_slow_driver(void);
 /* `all` if LONG is set, `quick` on the system's driver, else `elsewhere`. */
 uint32_t trials(uint32_t all, uint32_t quick, uint32_t elsewhere);
 

@@ -1,7 +1,7 @@
 /* gltf_file.h: writes small glTF files: buffer views and accessors one after the other, then the
  * rest of the JSON. One file at a time, in static storage. Included by the tests that read the
- * files (test_gltf.c) and those that render them (test_gltf_pictures.c), after cmocka.h. Overflow
- * fails the test. */
+ * files (test_gltf.c) and those that render them (test_gltf_pictures.c,
+ * test_bounce.c), after cmocka.h. Overflow fails the test. */
 #ifndef SUPPORT_GLTF_FILE_H
 #define SUPPORT_GLTF_FILE_H
 

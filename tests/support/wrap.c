@@ -66,19 +66,85 @@ static void unmade(uint64_t n) {
 
 CREATES(WRAP_CREATE)
 
+/* Descriptors of a set layout, per stage: vertex, fragment, compute. */
+typedef struct layout_count {
+    VkDescriptorSetLayout layout;
+    struct {
+        uint32_t uniform_buffers, storage_buffers, sampled_images, storage_images, all;
+    } stage[3];
+} layout_count;
+
+static layout_count counts[512];
+static uint32_t count_count;
+
+static const VkShaderStageFlags counted_stages[3] = {
+    VK_SHADER_STAGE_VERTEX_BIT, VK_SHADER_STAGE_FRAGMENT_BIT, VK_SHADER_STAGE_COMPUTE_BIT};
+
 static VKAPI_ATTR VkResult VKAPI_CALL
 create_counted_set_layout(VkDevice device, const VkDescriptorSetLayoutCreateInfo *info,
                           const VkAllocationCallbacks *allocator, VkDescriptorSetLayout *out) {
-    for (uint32_t stage = 1; stage <= VK_SHADER_STAGE_COMPUTE_BIT; stage *= 2) {
-        uint32_t count = 0;
+    layout_count c = {0};
+    for (uint32_t k = 0; k < 3; k++) {
         for (uint32_t i = 0; i < info->bindingCount; i++) {
             const VkDescriptorSetLayoutBinding *b = &info->pBindings[i];
-            if (b->descriptorType == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER && (b->stageFlags & stage))
-                count += b->descriptorCount;
+            uint32_t n = b->stageFlags & counted_stages[k] ? b->descriptorCount : 0;
+            c.stage[k].all += n;
+            if (b->descriptorType == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER) c.stage[k].uniform_buffers += n;
+            if (b->descriptorType == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER) c.stage[k].storage_buffers += n;
+            if (b->descriptorType == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER) c.stage[k].sampled_images += n;
+            if (b->descriptorType == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE) c.stage[k].storage_images += n;
         }
-        if (count > wrap.most_storage_buffers) wrap.most_storage_buffers = count;
     }
-    return create_DescriptorSetLayout(device, info, allocator, out);
+    VkResult r = create_DescriptorSetLayout(device, info, allocator, out);
+    if (r) return r;
+    c.layout = *out;
+    for (uint32_t i = 0; i < sizeof counts / sizeof *counts; i++) {
+        if (i < count_count && counts[i].layout != *out) continue; /* handles come again */
+        counts[i] = c;
+        if (i == count_count) count_count++;
+        break;
+    }
+    return r;
+}
+
+static void raise(uint32_t *most, uint32_t n) {
+    if (n > *most) *most = n;
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL
+create_counted_pipeline_layout(VkDevice device, const VkPipelineLayoutCreateInfo *info,
+                               const VkAllocationCallbacks *allocator, VkPipelineLayout *out) {
+    wrap_most *most = &wrap.most;
+    for (uint32_t k = 0; k < 3; k++) {
+        wrap_most here = {0};
+        for (uint32_t s = 0; s < info->setLayoutCount; s++) {
+            for (uint32_t i = 0; i < count_count; i++) {
+                if (counts[i].layout != info->pSetLayouts[s]) continue;
+                here.uniform_buffers += counts[i].stage[k].uniform_buffers;
+                here.storage_buffers += counts[i].stage[k].storage_buffers;
+                here.sampled_images += counts[i].stage[k].sampled_images;
+                here.storage_images += counts[i].stage[k].storage_images;
+                here.all += counts[i].stage[k].all;
+            }
+        }
+        raise(&most->uniform_buffers, here.uniform_buffers);
+        raise(&most->storage_buffers, here.storage_buffers);
+        raise(&most->sampled_images, here.sampled_images);
+        raise(&most->storage_images, here.storage_images);
+        raise(&most->all, here.all);
+    }
+    raise(&most->sets, info->setLayoutCount);
+    for (uint32_t i = 0; i < info->pushConstantRangeCount; i++)
+        raise(&most->push_bytes, info->pPushConstantRanges[i].offset + info->pPushConstantRanges[i].size);
+    return create_PipelineLayout(device, info, allocator, out);
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL
+create_counted_render_pass(VkDevice device, const VkRenderPassCreateInfo *info,
+                           const VkAllocationCallbacks *allocator, VkRenderPass *out) {
+    for (uint32_t i = 0; i < info->subpassCount; i++)
+        raise(&wrap.most.attachments, info->pSubpasses[i].colorAttachmentCount);
+    return create_RenderPass(device, info, allocator, out);
 }
 
 #define WRAP_PIPELINES(Kind)                                                                       \
@@ -246,6 +312,9 @@ static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr(VkDevice de
     if (wrap.unknown_function && !strcmp(name, wrap.unknown_function)) return NULL;
     if (!strcmp(name, "vkCreateDescriptorSetLayout"))
         return (PFN_vkVoidFunction)create_counted_set_layout;
+    if (!strcmp(name, "vkCreatePipelineLayout"))
+        return (PFN_vkVoidFunction)create_counted_pipeline_layout;
+    if (!strcmp(name, "vkCreateRenderPass")) return (PFN_vkVoidFunction)create_counted_render_pass;
 #define RETURN_CREATE(Name, Info, Handle)                                                          \
     if (!strcmp(name, "vkCreate" #Name)) return (PFN_vkVoidFunction)create_##Name;                 \
     if (!strcmp(name, "vkDestroy" #Name)) return (PFN_vkVoidFunction)destroy_##Name;
@@ -286,6 +355,7 @@ static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr(VkDevice de
 static VKAPI_ATTR void VKAPI_CALL get_properties(VkPhysicalDevice device,
                                                  VkPhysicalDeviceProperties *out) {
     vkGetPhysicalDeviceProperties(device, out);
+    if (wrap.row) masu_device_row_limit(wrap.row, out);
     if (wrap.api_version) out->apiVersion = wrap.api_version;
     if (wrap.max_image) out->limits.maxImageDimension2D = wrap.max_image;
     if (wrap.max_storage_buffers)
@@ -322,13 +392,14 @@ static VKAPI_ATTR void VKAPI_CALL get_families(VkPhysicalDevice device, uint32_t
     vkGetPhysicalDeviceQueueFamilyProperties(device, n, out);
     for (uint32_t i = 0; out && i < *n; i++) {
         if (wrap.no_compute) out[i].queueFlags &= ~(VkQueueFlags)VK_QUEUE_COMPUTE_BIT;
-        if (wrap.no_timestamps) out[i].timestampValidBits = 0;
+        if (wrap.no_timestamps || (wrap.row && !wrap.row->timestamps)) out[i].timestampValidBits = 0;
     }
 }
 
 static VKAPI_ATTR void VKAPI_CALL get_features(VkPhysicalDevice device,
                                                VkPhysicalDeviceFeatures2 *out) {
     vkGetPhysicalDeviceFeatures2(device, out);
+    if (wrap.row) masu_device_row_deny(wrap.row, &out->features);
     if (wrap.no_features) memset(&out->features, 0, sizeof out->features);
     for (VkBaseOutStructure *s = wrap.no_features ? out->pNext : NULL; s; s = s->pNext) {
         if (s->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR)

@@ -9,6 +9,14 @@
 #include <stdint.h>
 #include <vulkan/vulkan.h>
 
+#include "devices.h"
+
+/* Largest numbers in one stage of a pipeline layout that was created, or of a render pass. */
+typedef struct wrap_most {
+    uint32_t uniform_buffers, storage_buffers, sampled_images, storage_images;
+    uint32_t all, sets, push_bytes, attachments;
+} wrap_most;
+
 typedef struct wrap_state {
     /* Counts. `setup` is every vkCreate*, vkAllocate*, vkBegin/EndCommandBuffer, vkBind*,
      * vkMapMemory, vkResetCommandBuffer. */
@@ -32,6 +40,7 @@ typedef struct wrap_state {
     uint32_t max_storage_buffers; /* maxPerStageDescriptorStorageBuffers; 0: the real one */
     uint32_t max_groups;          /* maxComputeWorkGroupCount along x; 0: the real one */
     uint32_t max_framebuffer;     /* maxFramebufferHeight; 0: the real one */
+    const masu_device_row *row;   /* its limits and features; NULL: those of the device */
     const char *unknown_function; /* not found */
     bool no_features;   /* vkGetPhysicalDeviceFeatures2 has none of the features that Masu can
                            use */
@@ -41,7 +50,7 @@ typedef struct wrap_state {
      * all. */
     int fake_memory;
     uint32_t allocate_calls;
-    uint32_t most_storage_buffers; /* most in a stage of a created set layout */
+    wrap_most most;
     /* The barriers that the last recording began and ended with, and those in between. */
     VkPipelineStageFlags first_barrier_from, first_barrier_to;
     bool host_barrier, counter_barrier;

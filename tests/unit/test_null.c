@@ -42,6 +42,8 @@ static masu_plan_info plan;
 static masu_device_info device;
 static masu_memory need;
 static masu_memory_row rows_of_memory[2];
+static masu_texture_image texture_image;
+static VkRect2D rect;
 static masu_peak_info peaks;
 static masu_stats_info stats;
 static masu_readback_image image;
@@ -174,6 +176,8 @@ static const double unit_position[3] = {1, 2, 3};
     X(masu_material_at, ((void)masu_material_at(P(0, &m), 0), NO_RESULT))                          \
     X(masu_material_get, masu_material_get(P(0, &m), (masu_material){1}, P(1, &material_state), P(2, &detail))) \
     X(masu_material_set, masu_material_set(P(0, &m), (masu_material){1}, P(1, &material_state), P(2, &detail))) \
+    X(masu_texture_write, masu_texture_write(P(0, &m), 1, P(1, &rect), P(2, white), 0, P(3, &detail))) \
+    X(masu_texture_image_of, masu_texture_image_of(P(0, &m), P(1, &texture_image), P(2, &detail))) \
     X(masu_lut_set, masu_lut_set(P(0, &m), P(1, white), 2, P(2, &detail)))                          \
     X(masu_stats, masu_stats(P(0, &m), 0, P(1, &stats), P(2, &detail)))                            \
     X(masu_peaks, (masu_peaks(P(0, &m), P(1, &peaks)), NO_RESULT))                                 \
@@ -267,7 +271,7 @@ static const char *read_function(const char *at, function *f) {
 
 static int may_be_null(const char *parameter) {
     return !strcmp(parameter, "detail") || !strcmp(parameter, "progress") ||
-           !strcmp(parameter, "viewports") || !strcmp(parameter, "from");
+           !strcmp(parameter, "viewports") || !strcmp(parameter, "rect") || !strcmp(parameter, "from");
 }
 
 /* ---- Tests ----------------------------------------------------------------------------------- */

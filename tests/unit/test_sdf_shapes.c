@@ -104,6 +104,8 @@ static const struct {
     {"julia((-0.2, 0.6, 0.2), 0.2, 8)", ESTIMATE, {0.05, 0.02, 0}},
     {"julia((0.3, 0.5, 0), 0, 6)", ESTIMATE, {0.05, 0.02, 0}},
 };
+#define PI 3.14159265358979323846
+
 enum { SHAPES = sizeof shapes / sizeof *shapes };
 
 static void any_point(const sdfc_facts *f, uint64_t *seed, double p[3]) {
@@ -290,6 +292,50 @@ static void cells_that_differ_are_all_there(void **state) {
     }
     assert_true(least < 0.05 && most > 0.95);
     field_stop(&r);
+}
+
+static void sectors_that_differ_are_all_there(void **state) {
+    (void)state;
+    static const struct {
+        int count;
+        double x, z, r, more; /* middle of a ball at an angle of 0, its radius, and how much it grows with hash and index */
+    } cases[] = {{12, 3, 0, 0.2, 0.4}, {7, 3, 1.4, 0.3, 0.6}, {2, 1, 0.2, 0.3, 0.5}, {3, 1, 0, 0.4, 0.5}, {1, 1, 0, 0.3, 0.2},
+                 {5, 2, 0.1, 0.7, 0.3}, {40, 9, 0.2, 0.2, 0.2}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[1024];
+        field r;
+        uint64_t seed = 11;
+        int n = cases[i].count;
+        snprintf(text, sizeof text,
+                 "material m { albedo (cell.index / %d, cell.hash(3), 0) }"
+                 "part a : m = polar(%d as s, translate((%g, 0, %g), sphere(%g + %g * s.hash(3) * s.index / %d)));",
+                 n, n, cases[i].x, cases[i].z, cases[i].r, cases[i].more, n);
+        must_start(&r, text);
+        double radius[64], hash[64], low = 1, high = 0;
+        for (int k = 0; k < n; k++) { /* the colour of a ball says what its sector is, and so how large it is */
+            double a = 2 * PI * k / n, out[8];
+            look(&r, 0, cases[i].x * cos(a) - cases[i].z * sin(a), 0, cases[i].x * sin(a) + cases[i].z * cos(a), out);
+            if (fabs(out[0] * n - k) > 1e-9) fail_msg("%s: sector %d has the index %g", text, k, out[0] * n);
+            hash[k] = out[1];
+            low = fmin(low, hash[k]), high = fmax(high, hash[k]);
+            radius[k] = cases[i].r + cases[i].more * hash[k] * k / n;
+        }
+        if (n > 6 && !(low < 0.2 && high > 0.8)) fail_msg("%s: numbers from %g to %g", text, low, high);
+        for (int m = 0; m < 2000; m++) {
+            double p[3] = {random_between(&seed, -12, 12), random_between(&seed, -2, 2), random_between(&seed, -12, 12)}, d = 1e30;
+            if (m % 2) p[0] /= 3, p[2] /= 3;
+            for (int k = 0; k < n; k++) {
+                double a = 2 * PI * k / n, x = cases[i].x * cos(a) - cases[i].z * sin(a), z = cases[i].x * sin(a) + cases[i].z * cos(a);
+                d = fmin(d, sqrt((p[0] - x) * (p[0] - x) + p[1] * p[1] + (p[2] - z) * (p[2] - z)) - radius[k]);
+            }
+            double f = field_value(&r, 0, p);
+            if ((f < 0) != (d < 0) && fabs(d) > 1e-9) fail_msg("%s: %g at (%g, %g, %g), all sectors %g", text, f, p[0], p[1], p[2], d);
+            if (f > d + 1e-9) fail_msg("%s: %g at (%g, %g, %g), all sectors %g", text, f, p[0], p[1], p[2], d);
+        }
+        double most = steepest(&r, 20000, &seed);
+        if (most > facts(&r, 0)->lipschitz * (1 + 1e-6)) fail_msg("%s: a slope of %.9g", text, most);
+        field_stop(&r);
+    }
 }
 
 static void a_blend_does_not_depend_on_the_order(void **state) {
@@ -529,6 +575,10 @@ static void mistakes_of_the_new_words_name_their_place(void **state) {
         {"let a = (1, 2) + (1, 2, 3);", "x.sdf:1:16: expected as many numbers on both sides, found 2 and 3"},
         {"material m { albedo trap.x } part a : m = sphere(1);", "trap: expected a fractal in what this material is of"},
         {"material m { albedo cell.hash(0) } part a : m = sphere(1);", "cell: expected a repetition with a name"},
+        {"material m { albedo cell.index } part a : m = repeat((2, 0, 0) as h, sphere(0.2 + h.hash(0)));",
+         "cell.index: expected polar(count as name, ...) around what this material is of, found repeat"},
+        {"part a = repeat((2, 0, 0) as h, sphere(0.1 * h.index));", "x.sdf:1:48: expected \".hash(\""},
+        {"part a = polar(6 as h, sphere(0.1 * h.number));", "x.sdf:1:39: expected \".index\", or \".hash(\""},
         {"part a = sphere(p.x);", "x.sdf:1:17: expected a number, found \"p\""},
         {"part a = repeat((2, 0, 0) as h, sphere(0.2 + 5 * h.hash(0)));", "x.sdf:1:10: repeat: the shape reaches 5.2 from the centre of its cell"},
         {"include columns;", "x.sdf:1:9: expected a file's name in quotes"},
@@ -584,6 +634,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_shape_is_what_its_table_says),
         cmocka_unit_test(cells_that_differ_are_all_there),
+        cmocka_unit_test(sectors_that_differ_are_all_there),
         cmocka_unit_test(a_blend_does_not_depend_on_the_order),
         cmocka_unit_test(materials_blend_as_their_shapes_do),
         cmocka_unit_test(colours_depend_on_the_place),

@@ -350,7 +350,7 @@ static bool keeps_to_sector(const sdfc *c, int shape, double half) {
 static void polar_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
     int count = s->whole[0];
     double half = PI / count, angle = angle_of(f), wedge = fmax(angle, half);
-    bool even = f->symmetric & 4, fits = angle <= half + 1e-9;
+    bool even = (f->symmetric & 4) && !s->cell, fits = angle <= half + 1e-9;
     double copies = even ? fmin(count, ceil(angle / half - 1e-9)) : count;
     keep_box(s, &f->box);
     if (count == 1)

@@ -52,7 +52,10 @@ static double run_call(const sdfc *c, const sdfc_program *p, const sdfc_instr *i
         }
         for (int j = 0; j < i->around; j++) inputs[j] = a[24 + j];
         const double seed[9] = {a[18], a[19], a[20], q[0], q[1], q[2], a[21], a[22], a[23]};
-        if (i->named) inputs[i->around] = sdfc_ops[SDFC_cell_seed].run(seed);
+        if (i->named == 2)
+            inputs[i->around] = a[18 + (n & 1)];
+        else if (i->named)
+            inputs[i->around] = sdfc_ops[SDFC_cell_seed].run(seed);
         double d = run_function(c, p, i->aux, q, inputs, NULL, variables, cells);
         if (d < least) number = n;
         least = d < least ? d : least;

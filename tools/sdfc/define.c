@@ -154,9 +154,16 @@ bool sdfc_local_name(sdfc *c, int token, sdfc_value *v) {
 }
 
 sdfc_value sdfc_parse_cell(sdfc *c, int token, const sdfc_symbol *s) {
-    int index = s->index;
+    int index = s->index, sectors = index < 0 ? SDFC_SECTORS_MAX : s->value.count;
     (void)token;
-    if (!sdfc_mark(c, '.') || !sdfc_word(c, "hash")) sdfc_expected(c, c->at, "\".hash(\", a number and \")\"");
+    bool dot = sdfc_mark(c, '.');
+    if (dot && sectors && sdfc_word(c, "index")) {
+        int e = sdfc_leaf(c, SDFC_CELL, index, -1, 0, sectors - 1);
+        return (sdfc_value){1, {e, e, e}};
+    }
+    if (!dot || !sdfc_word(c, "hash")) {
+        sdfc_expected(c, c->at, sectors ? "\".index\", or \".hash(\", a number and \")\"" : "\".hash(\", a number and \")\"");
+    }
     sdfc_need_mark(c, '(');
     int channel = (int)sdfc_parse_whole(c, 0, 1000);
     sdfc_need_mark(c, ')');

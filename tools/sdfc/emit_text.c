@@ -103,7 +103,7 @@ static void mark_parts(sdfc *c, bool *used) {
             for (int i = 0; i < p->functions[f].count && live.functions[f]; i++) {
                 if (p->surface && f == p->surface && !live.variables[3 + i]) continue;
                 mark_used(used, p->functions[f].instrs[i].op);
-                if (p->functions[f].instrs[i].named) mark_used(used, SDFC_cell_seed);
+                if (p->functions[f].instrs[i].named == 1) mark_used(used, SDFC_cell_seed);
             }
         }
         forget(&live);
@@ -227,6 +227,13 @@ static void put_inputs(sdfc_writer *w, const sdfc_group *g, const sdfc_program *
         sdfc_put_operand(w, g, p, i->operand[24 + k]);
     }
     if (!i->named) return;
+    if (i->named == 2) {
+        PUT(w, w->glsl ? ", (i & 1u) != 0u ? " : ", (i & 1) != 0 ? ");
+        sdfc_put_operand(w, g, p, i->operand[19]);
+        PUT(w, " : ");
+        sdfc_put_operand(w, g, p, i->operand[18]);
+        return;
+    }
     PUT(w, ", masu_h_cell_seed(");
     for (int k = 0; k < 3; k++) {
         sdfc_put_operand(w, g, p, i->operand[18 + k]);

@@ -20,6 +20,7 @@
 #define SDFC_NOISE_SLOPE 3.001
 #define SDFC_INFINITY ((double)INFINITY) /* <math.h>'s is a float */
 #define SDFC_OPERANDS_MAX 27
+#define SDFC_SECTORS_MAX 4096
 #define SDFC_COPIES_MAX 16 /* around an axis, the same */
 #define SDFC_CELLS_MAX 4 /* copies in a row that a repetition evaluates */
 #define SDFC_EXPRS_MAX (1 << 20)
@@ -41,7 +42,7 @@ enum sdfc_op {
     /* What is known where a surface is, or in a cell: never of slots, always of operations (lower_local.c). */
     SDFC_POINT, SDFC_WORLD, SDFC_NORMAL, SDFC_TRAP, /* a[0]: axis */
     SDFC_FOOTPRINT,
-    SDFC_CELL,  /* a[0]: the repetition, -1: the innermost; a[1]: the channel */
+    SDFC_CELL,  /* a[0]: the repetition, -1: the innermost; a[1]: the channel, -1: the number of the sector */
     SDFC_INPUT, /* of a function: which cell it is called in */
     SDFC_TIME,
 #define T(name, count, text, code) SDFC_##name,
@@ -170,8 +171,9 @@ typedef struct sdfc_instr {
                                            values per metre of the world; 18..20: the coordinates
                                            before the fold; 21..23: 1 / period or 0; 24..26: cells
                                            around it */
-    int16_t named, around;              /* CALL_MIN: whether the function takes its own cell, and of
-                                           how many around it */
+    int16_t named, around;              /* CALL_MIN: whether the function takes its own cell (1: of 18
+                                           to 23; 2: sector 18, of the odd points 19), and of how many
+                                           around it */
     int32_t operand[SDFC_OPERANDS_MAX]; /* >= 0: a variable, < 0: argument ~operand */
 } sdfc_instr;
 
@@ -275,7 +277,7 @@ typedef struct sdfc_file {
 typedef struct sdfc_symbol {
     uint32_t offset, length;
     sdfc_symbol_kind kind;
-    sdfc_value value;
+    sdfc_value value; /* count of a cell: of sectors, 0: not around an axis */
     int index;
 } sdfc_symbol;
 

@@ -178,6 +178,7 @@ int sdfc_child_function(sdfc_lowering *l, int shape, bool join_box, const sdfc_s
         if (l->cells == SDFC_CELLS_DEEP) {
             sdfc_fail(l->c, owner->token, "expected at most %d repetitions with names inside each other", SDFC_CELLS_DEEP);
         }
+        l->sector[l->cells] = owner->kind == SDFC_KIND_POLAR;
         l->cell[l->cells++] = owner->cell - 1;
     }
     for (int i = 0; i < l->cells; i++) {

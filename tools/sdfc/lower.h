@@ -32,7 +32,8 @@ typedef struct sdfc_lowering {
     unsigned folded; /* axes that jump from cell to cell: what is alike on both sides alone is continuous */
     bool at_fold;    /* nothing has been done to the point since */
     bool in_cells;   /* of a repetition that looks at several: what is left out of a cut makes a cell nearer */
-    int cell[SDFC_CELLS_DEEP], seed[SDFC_CELLS_DEEP], cells; /* that it stands in; operands */
+    int cell[SDFC_CELLS_DEEP], seed[SDFC_CELLS_DEEP], cells; /* that it stands in; operands: of sectors their number */
+    bool sector[SDFC_CELLS_DEEP];
     /* of the function that makes materials */
     bool surface;
     bool shallow; /* it asks nothing of the shape, only of the part's own space */

@@ -14,11 +14,13 @@ typedef struct memo {
     int expr[MEMO], operand[MEMO], count;
 } memo;
 
-static int cell_number(sdfc_lowering *l, int cell) {
+static int cell_number(sdfc_lowering *l, int cell, bool sector) {
     for (int i = l->cells; i-- > 0;) {
-        if (cell < 0 || l->cell[i] == cell) return l->seed[i];
+        if (cell >= 0 && l->cell[i] != cell) continue;
+        if (sector && !l->sector[i]) sdfc_fail(l->c, l->c->at, "cell.index: expected polar(count as name, ...) around what this material is of, found repeat");
+        return l->seed[i];
     }
-    if (l->c->any_cell) return sdfc_literal(l, 7);
+    if (l->c->any_cell) return sdfc_literal(l, sector ? 0 : 7);
     sdfc_fail(l->c, l->c->at, "cell: expected a repetition with a name around what this material is of: repeat(periods as name, ...)");
 }
 
@@ -47,7 +49,10 @@ static int leaf(sdfc_lowering *l, const sdfc_expr *e) {
     case SDFC_POINT:
     case SDFC_WORLD: return axis[e->a[0]];
     case SDFC_TRAP: return trap(l, e->a[0]);
-    case SDFC_CELL: return OP(l, cell_hash, cell_number(l, e->a[0]), sdfc_literal(l, e->a[1]));
+    case SDFC_CELL: {
+        int number = cell_number(l, e->a[0], e->a[1] < 0);
+        return e->a[1] < 0 ? number : OP(l, cell_hash, number, sdfc_literal(l, e->a[1]));
+    }
     default: {
         sdfc_add_instr(l, e->op)->aux = e->a[0];
         int v = sdfc_last_variable(l);

@@ -19,6 +19,7 @@ static int lower_in_cell(sdfc_lowering *l, const sdfc_shape *s, sdfc_point q, in
     if (s->cell) {
         if (l->cells == SDFC_CELLS_DEEP) sdfc_fail(l->c, s->token, "expected at most 4 repetitions with names inside each other");
         l->cell[l->cells] = s->cell - 1;
+        l->sector[l->cells] = s->kind == SDFC_KIND_POLAR;
         l->seed[l->cells++] = seed;
     }
     int d = sdfc_lower_shape(l, s->child[0], q);
@@ -168,18 +169,22 @@ static sdfc_point fold_sectors(sdfc_lowering *l, int count, sdfc_point p) {
     return p;
 }
 
-/* The least of a function's values at two points of the same y. */
-static int least_of_two(sdfc_lowering *l, int function, sdfc_point q, sdfc_point r, bool nearest) {
+/* The least of a function's values at two points of the same y. `sectors`: theirs, if the function takes it. */
+static int least_of_two(sdfc_lowering *l, const sdfc_shape *s, int function, sdfc_point q, sdfc_point r, const int *sectors,
+                        bool nearest) {
     int none = sdfc_literal(l, 0);
+    if (l->cells > 3) sdfc_fail(l->c, s->token, "expected at most 4 repetitions with names inside each other");
     sdfc_instr *call = sdfc_add_instr(l, nearest ? SDFC_CALL_NEAREST : SDFC_CALL_MIN);
     *call = (sdfc_instr){.op = nearest ? SDFC_CALL_NEAREST : SDFC_CALL_MIN,
-                         .around = (int16_t)(l->cells < 3 ? l->cells : 3),
+                         .around = (int16_t)l->cells,
+                         .named = s->cell ? 2 : 0,
                          .aux = function,
                          .points = 2,
                          .select = {1, 0, 1},
                          .bits = {1, 0, 1},
                          .operand = {q.x, r.x, q.x, q.x, q.y, q.y, q.y, q.y, q.z, r.z, q.z, q.z}};
     for (int i = 12; i < 18; i++) call->operand[i] = none;
+    for (int i = 0; i < 2 && s->cell; i++) call->operand[18 + i] = sectors[i];
     for (int i = 0; i < call->around; i++) call->operand[24 + i] = l->seed[i];
     return sdfc_last_variable(l);
 }
@@ -194,7 +199,7 @@ static sdfc_point nearer(sdfc_lowering *l, int second, sdfc_point a, sdfc_point 
 /* The copies next to +x, as many as the analysis found. */
 static int lower_copies(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p) {
     const double pi = 3.14159265358979323846;
-    int copies = (int)s->extra[11], d = 0;
+    int copies = (int)s->extra[11], d = 0, number = 0;
     sdfc_point best = p;
     if (s->extra[0] == 5) p = fold_sectors(l, s->whole[0], p);
     double stretch = l->stretch;
@@ -203,28 +208,39 @@ static int lower_copies(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p) {
     l->stretch = stretch;
     for (int i = 0; i < copies; i += 2) {
         sdfc_point q[2] = {p, p};
+        int sectors[2] = {0};
         for (int k = 0; k < 2 && i + k < copies; k++) { /* sectors 0, 1, -1, 2, ... */
             int n = i + k, sector = n % 2 ? (n + 1) / 2 : -n / 2;
             double a = 2 * pi * sector / s->whole[0];
             int cosine = sdfc_literal(l, cos(a)), sine = sdfc_literal(l, sin(a)),
                 minus = sdfc_literal(l, -sin(a));
+            if (s->cell) sectors[k] = sdfc_literal(l, (sector + s->whole[0]) % s->whole[0]);
             if (!sector) continue;
             q[k].x = OP(l, dot2, p.x, p.z, cosine, sine);
             q[k].z = OP(l, dot2, p.x, p.z, minus, cosine);
         }
-        if (i + 1 == copies) q[1] = q[0];
-        int e = least_of_two(l, function, q[0], q[1], false);
+        if (i + 1 == copies) {
+            q[1] = q[0];
+            sectors[1] = sectors[0];
+        }
+        int e = least_of_two(l, s, function, q[0], q[1], sectors, false);
         if (l->surface) {
-            sdfc_point at = nearer(l, least_of_two(l, function, q[0], q[1], true), q[0], q[1]);
-            best = i ? nearer(l, OP(l, less, e, d), best, at) : at;
+            int second = least_of_two(l, s, function, q[0], q[1], sectors, true);
+            sdfc_point at = nearer(l, second, q[0], q[1]);
+            int closer = i ? OP(l, less, e, d) : 0;
+            best = i ? nearer(l, closer, best, at) : at;
+            if (s->cell) {
+                int own = OP(l, select, second, sectors[1], sectors[0]);
+                number = i ? OP(l, select, closer, own, number) : own;
+            }
         }
         d = i ? OP(l, min, d, e) : e;
     }
-    return l->surface ? sdfc_lower_shape(l, s->child[0], best) : d;
+    return l->surface ? lower_in_cell(l, s, best, number) : d;
 }
 
 int sdfc_lower_polar(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p) {
-    if (s->extra[0] == 0) return sdfc_lower_shape(l, s->child[0], p);
+    if (s->extra[0] == 0) return lower_in_cell(l, s, p, s->cell ? sdfc_literal(l, 0) : 0);
     if (s->extra[0] == 1) return sdfc_lower_whole(l, s->child[0], fold_sectors(l, s->whole[0], p));
     if (s->extra[0] >= 4) return lower_copies(l, s, p);
     int sector = sdfc_literal(l, 6.283185307179586 / s->whole[0]);
@@ -237,8 +253,10 @@ int sdfc_lower_polar(sdfc_lowering *l, const sdfc_shape *s, sdfc_point p) {
     l->stretch = 0;
     int function = sdfc_child_function(l, s->child[0], s->extra[10] != 0, s, p.offset);
     l->stretch = stretch;
-    int d = least_of_two(l, function, q, r, l->surface);
-    if (l->surface) return sdfc_lower_shape(l, s->child[0], nearer(l, d, q, r));
+    int sectors[2] = {0}, count = sdfc_literal(l, s->whole[0]), inverse = sdfc_literal(l, s->whole[0] / 6.283185307179586);
+    for (int k = 0; k < 2 && s->cell; k++) sectors[k] = OP(l, sector_number, k ? b : a, inverse, count);
+    int d = least_of_two(l, s, function, q, r, sectors, l->surface);
+    if (l->surface) return lower_in_cell(l, s, nearer(l, d, q, r), s->cell ? OP(l, select, d, sectors[1], sectors[0]) : 0);
     if (s->extra[0] == 2) return d;
     int edge = OP(l, mul, OP(l, len2, p.x, p.z), sdfc_literal(l, s->extra[3] * s->facts.lipschitz));
     return sdfc_capped(l, d, edge, &s->facts, p);

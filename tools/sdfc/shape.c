@@ -37,7 +37,7 @@ static long whole_most(int kind, int place) {
     case SDFC_KIND_STAIRS: return 32;
     case SDFC_KIND_NGON:
     case SDFC_KIND_STAR: return 64;
-    case SDFC_KIND_POLAR: return 4096;
+    case SDFC_KIND_POLAR: return SDFC_SECTORS_MAX;
     case SDFC_KIND_KALEIDOSCOPE: return 12;
     default: return place < 0 ? 0 : 1 << 20;
     }
@@ -156,14 +156,16 @@ static void parse_cell_name(sdfc *c, sdfc_shape *s) {
     if (!sdfc_word(c, "as")) return;
     int name = sdfc_need_name(c, "a name", true);
     s->cell = ++c->cells;
-    sdfc_declare(c, name, SYMBOL_CELL)->index = s->cell - 1;
+    sdfc_symbol *symbol = sdfc_declare(c, name, SYMBOL_CELL);
+    symbol->index = s->cell - 1;
+    symbol->value.count = s->kind == SDFC_KIND_POLAR ? s->whole[0] : 0;
 }
 
 static int parse_call(sdfc *c, int kind, int token) {
     sdfc_shape s = {.kind = kind, .token = token};
     int children[SDFC_CHILDREN_MAX], count = 0, numbers = 0, wholes = 0;
     int around = c->open_kind, symbols = c->symbol_count;
-    bool repeats = kind == SDFC_KIND_REPEAT || kind == SDFC_KIND_REPEAT_LIMITED;
+    bool repeats = kind == SDFC_KIND_REPEAT || kind == SDFC_KIND_REPEAT_LIMITED || kind == SDFC_KIND_POLAR;
     c->open_kind = kind;
     sdfc_need_mark(c, '(');
     bool first = true;

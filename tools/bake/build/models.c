@@ -213,7 +213,7 @@ static bool place(model_builder *b, const masu_bake_model *model, const char *na
     masu_bake_place_cameras(content, &from->piece, &placement, name);
     if (*like == MASU_BLOB_NONE && model->lights > 0) /* not of its pooled copies */
         masu_bake_place_suns(content, &from->piece, &placement, model->lights);
-    from->residence = v->residence;
+    if (!v->residence.scaled) from->residence = v->residence;
     if (!model->moving || masu_bake_count(content, MASU_BLOB_INSTANCES) == first) return true;
     uint32_t made = masu_bake_add_model(content, &from->piece, first, &placement, translation, name,
                                         hidden, *like);

@@ -173,6 +173,7 @@ static bool read_change(const masu_bake_json *at, masu_bake_reader *r,
         "blend",          "meso",           "name",        "single_sided",
         "coat_map",       "coat_roughness_map", "coat_smooth", "thickness",
         "ior",            "unlit",              "depth_bias",  "repeat",
+        "detail_color",
         NULL};
     out->value = masu_bake_default_material();
     out->maps = masu_bake_no_maps();
@@ -196,6 +197,7 @@ static bool read_change(const masu_bake_json *at, masu_bake_reader *r,
         !masu_bake_json_boolean(at, "unlit", &unlit) ||
         !masu_bake_json_boolean(at, "repeat", &repeat) ||
         !masu_bake_json_number(at, "depth_bias", -0.01, 0.01, &bias) ||
+        !masu_bake_json_boolean(at, "detail_color", &out->color_repeats) ||
         !masu_bake_json_vec3(at, "emissive", 0, 65504, &emissive) || !read_meso(at, r, change) ||
         !read_maps(at, r, change) || !read_alpha(at, out) || !read_blend(at, out)) {
         return false;
@@ -209,6 +211,7 @@ static bool read_change(const masu_bake_json *at, masu_bake_reader *r,
     out->coat_roughness = masu_bake_json_has(at, "coat_roughness");
     out->single = masu_bake_json_has(at, "single_sided");
     out->maps.single = single;
+    out->detail_color = masu_bake_json_has(at, "detail_color");
     out->relief_of = masu_bake_json_has(at, "coat_smooth");
     out->maps.relief_of = even ? MASU_BAKE_RELIEF_OF_BASE : MASU_BAKE_RELIEF_OF_BOTH;
     out->unlit = unlit;

@@ -2,6 +2,7 @@
 #include "bake/scene/piece.h"
 
 #include <fnmatch.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,6 +22,7 @@ static bool same_override(const masu_bake_override *a, const masu_bake_override 
            x->coat == y->coat && x->coat_roughness == y->coat_roughness && a->meso == b->meso &&
            a->thickness == b->thickness && a->ior == b->ior && x->thickness == y->thickness && x->ior == y->ior &&
            x->meso == y->meso && a->opacity == b->opacity && x->opacity == y->opacity &&
+           a->detail_color == b->detail_color && a->color_repeats == b->color_repeats &&
            a->detail == b->detail && memcmp(x->detail, y->detail, sizeof x->detail) == 0 &&
            a->unlit == b->unlit && a->repeat == b->repeat && a->depth_bias == b->depth_bias && x->depth_bias == y->depth_bias &&
            strcmp(a->match, b->match) == 0;
@@ -146,8 +148,34 @@ static void apply_override(const masu_bake_override *o, masu_blob_material *to,
     drop_lobes(o, to, maps);
 }
 
+/* Where colour and emission repeat with the detail, it is the texture coordinates that are scaled: rays and lights then see
+ * the same, and nothing is scaled when drawn. What they are scaled by, 1 for nothing. */
+static void scale_all(masu_blob_material *to, masu_bake_maps *maps, float scale[2]) {
+    for (int k = 0; k < 2; k++) {
+        scale[k] = to->detail[k];
+        to->detail[k] = 1;
+        if (scale[k] > 1 && maps->wrap[k] == 1) maps->wrap[k] = 0; /* clamped: would be shown once */
+    }
+}
+
+static bool color_repeats(const masu_bake_content *piece, uint32_t index, const masu_bake_overrides *overrides) {
+    bool repeats = false;
+    for (size_t i = 0; i < overrides->count; i++) {
+        const masu_bake_override *o = &overrides->items[i];
+        if (o->detail_color && matches(piece, index, o)) repeats = o->color_repeats;
+    }
+    return repeats;
+}
+
+static bool any_color_repeats(const masu_bake_content *piece, const masu_bake_overrides *overrides) {
+    for (uint32_t i = 0; i < masu_bake_count(piece, MASU_BLOB_MATERIALS); i++) {
+        if (color_repeats(piece, i, overrides)) return true;
+    }
+    return false;
+}
+
 static uint32_t placed_material(masu_bake_content *scene, const masu_bake_content *piece,
-                                uint32_t index, const masu_bake_overrides *overrides) {
+                                uint32_t index, const masu_bake_overrides *overrides, float scale[2]) {
     masu_blob_material material = MASU_BAKE_MATERIALS(piece)[index];
     const char *name = masu_bake_name_text(piece, material.name);
     masu_bake_maps maps = MASU_BAKE_MAPS_OF(piece)[index];
@@ -157,6 +185,8 @@ static uint32_t placed_material(masu_bake_content *scene, const masu_bake_conten
         apply_override(&overrides->items[i], &material, &maps, own);
         if (*overrides->items[i].name) name = overrides->items[i].name;
     }
+    scale[0] = scale[1] = 1;
+    if (color_repeats(piece, index, overrides)) scale_all(&material, &maps, scale);
     for (int i = 0; i < MASU_BAKE_MAPS; i++) {
         if (own[i] || maps.image[i] == MASU_BLOB_NONE) continue;
         const masu_bake_image *from = &MASU_BAKE_IMAGES(piece)[maps.image[i]];
@@ -184,19 +214,46 @@ static uint32_t copied_name(masu_bake_content *scene, const masu_bake_content *p
     return offset;
 }
 
-/* Primitives and meshes of the piece, with its materials as overridden. Returns the first mesh. */
-static uint32_t place_meshes(masu_bake_content *scene, const masu_bake_content *piece,
-                             uint32_t first_vertex, uint32_t first_index,
-                             const masu_bake_overrides *overrides) {
+/* The coordinates of a primitive that has been copied. `by`: of each vertex of the piece, the material that has scaled it,
+ * from 1. Returns NULL or what is wrong. */
+static const char *scale_coordinates(masu_bake_content *scene, const masu_blob_primitive *p, uint32_t first_vertex,
+                                     uint32_t material, const float scale[2], uint32_t *by) {
+    static const uint32_t kinds[2] = {MASU_BLOB_TEXCOORDS, MASU_BLOB_TEXCOORDS_1};
+    for (uint32_t v = p->first_vertex; v < p->first_vertex + p->vertex_count; v++) {
+        if (by[v] && by[v] != material + 1) return "vertices of two materials, which \"detail_color\" cannot scale";
+        for (int set = 0; set < 2 && !by[v]; set++) {
+            size_t vertex = (size_t)first_vertex + v;
+            if (vertex >= masu_bake_count(scene, kinds[set])) continue;
+            float *at = MASU_BAKE_ARRAY(scene, kinds[set], float) + 2 * vertex;
+            for (int k = 0; k < 2; k++) {
+                at[k] *= scale[k];
+                if (!(fabsf(at[k]) <= MASU_TEXCOORD_MAX))
+                    return "texture coordinates beyond 32768, by \"detail_color\"";
+            }
+        }
+        by[v] = material + 1;
+    }
+    return NULL;
+}
+
+/* Primitives and meshes of the piece, with its materials as overridden. */
+static const char *place_meshes(masu_bake_content *scene, const masu_bake_content *piece,
+                                uint32_t first_vertex, uint32_t first_index,
+                                const masu_bake_overrides *overrides, bool scaled) {
+    const char *problem = NULL;
     uint32_t first_primitive = (uint32_t)masu_bake_count(scene, MASU_BLOB_PRIMITIVES);
-    uint32_t first_mesh = (uint32_t)masu_bake_count(scene, MASU_BLOB_MESHES);
     uint64_t materials = masu_bake_count(piece, MASU_BLOB_MATERIALS);
     uint32_t *material_map = masu_bake_allocate((size_t)materials * sizeof *material_map);
+    float(*scale)[2] = masu_bake_allocate((size_t)materials * sizeof *scale);
+    size_t vertices = (size_t)masu_bake_count(piece, MASU_BLOB_VERTICES) * sizeof(uint32_t);
+    uint32_t *by = scaled ? masu_bake_allocate(vertices) : NULL;
+    if (by) memset(by, 0, vertices);
     for (uint32_t i = 0; i < materials; i++) {
-        material_map[i] = placed_material(scene, piece, i, overrides);
+        material_map[i] = placed_material(scene, piece, i, overrides, scale[i]);
     }
     for (uint64_t i = 0; i < masu_bake_count(piece, MASU_BLOB_PRIMITIVES); i++) {
         masu_blob_primitive p = MASU_BAKE_PRIMITIVES(piece)[i];
+        if (by && !problem) problem = scale_coordinates(scene, &p, first_vertex, p.material, scale[p.material], by);
         p.first_index += first_index;
         p.first_vertex += first_vertex;
         p.material = material_map[p.material];
@@ -209,7 +266,9 @@ static uint32_t place_meshes(masu_bake_content *scene, const masu_bake_content *
         masu_bake_append(&scene->section[MASU_BLOB_MESHES], &m, sizeof m);
     }
     free(material_map);
-    return first_mesh;
+    free(scale);
+    free(by);
+    return problem;
 }
 
 /* The largest counts that the runtime takes, after adding the piece. */
@@ -244,17 +303,21 @@ const char *masu_bake_place(masu_bake_content *scene, const masu_bake_content *p
                             const masu_bake_overrides *overrides, const char *prefix) {
     const char *problem = room_for(scene, piece);
     if (problem) return problem;
-    if (!residence->has_vertices) {
+    bool scaled = !residence->has_meshes && any_color_repeats(piece, overrides);
+    if (!residence->has_vertices || scaled) {
         residence->first_vertex = copy_section(scene, piece, MASU_BLOB_VERTICES);
         copy_section(scene, piece, MASU_BLOB_TEXCOORDS);
         masu_bake_copy_attributes(scene, piece, 0, masu_bake_count(piece, MASU_BLOB_VERTICES));
         residence->has_vertices = true;
+        residence->scaled = scaled;
     }
     uint32_t first_mesh = residence->first_mesh;
     if (!residence->has_meshes) {
         /* Two primitives share no indices (src/scene/scene.c): other materials, other indices. */
         uint32_t first_index = copy_section(scene, piece, MASU_BLOB_INDICES);
-        first_mesh = place_meshes(scene, piece, residence->first_vertex, first_index, overrides);
+        first_mesh = (uint32_t)masu_bake_count(scene, MASU_BLOB_MESHES);
+        problem = place_meshes(scene, piece, residence->first_vertex, first_index, overrides, scaled);
+        if (problem) return problem;
         residence->first_mesh = first_mesh;
         residence->has_meshes = true;
     }

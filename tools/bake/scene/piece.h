@@ -15,6 +15,7 @@ typedef struct masu_bake_override {
     masu_bake_maps maps; /* pictures of the scene, by its own numbers */
     bool map[MASU_BAKE_MAPS], alpha, cutoff, detail, opacity, single, relief_of, shadowless, thickness, ior;
     bool unlit, depth_bias, repeat;
+    bool detail_color, color_repeats; /* whether the detail is of colour and emission too is given; and is so */
     char name[MASU_BAKE_MATCH];  /* that the host finds it by; "": its own */
     char match[MASU_BAKE_MATCH]; /* of the material's name or its colour's picture; "": all */
 } masu_bake_override;
@@ -30,10 +31,11 @@ bool masu_bake_override_matches(const masu_bake_content *piece, const masu_bake_
 bool masu_bake_overrides_equal(const masu_bake_overrides *a, const masu_bake_overrides *b);
 
 /* Where a piece already lies in the scene, for the second and later placements with the same
- * override. Zero at first; with another override, one whose has_meshes is false again. */
+ * override. Zero at first; with another override, one whose has_meshes is false again, of vertices whose texture
+ * coordinates are not scaled. */
 typedef struct masu_bake_residence {
     uint32_t first_vertex, first_mesh;
-    bool has_vertices, has_meshes;
+    bool has_vertices, has_meshes, scaled;
 } masu_bake_residence;
 
 /* Appends `piece` to `scene`: vertices and meshes where the residence says that they are missing,
