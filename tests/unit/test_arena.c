@@ -33,8 +33,8 @@ static const char *const row_names[ROWS_MOST] = {
     "m", "n", "o", "p", "q", "r", "s", "t", "u", "v", "w", "x",
     "y", "z", "a2", "b2", "c2", "d2", "e2", "f2", "g2", "h2", "i2", "j2",
     "k2", "l2", "m2", "n2", "o2", "p2", "q2", "r2", "s2", "t2", "u2", "v2", "w2", "x2", "y2", "z2",
-    "a3", "b3", "c3", "d3", "e3", "f3", "g3", "h3"};
-_Static_assert(ROWS_MOST <= 60, "names");
+    "a3", "b3", "c3", "d3", "e3", "f3", "g3", "h3", "i3", "j3", "k3", "l3"};
+_Static_assert(ROWS_MOST <= 64, "names");
 
 /* guard | block | guard; the block starts at a multiple of MASU_ARENA_ALIGNMENT. */
 static _Alignas(64) unsigned char memory[GUARD_BYTES + BLOCK_BYTES + GUARD_BYTES];
