@@ -490,7 +490,12 @@ typedef struct masu_viewport {
  *                           per free slot and view; if rays trace polygons, a workgroup per slot */
 typedef struct masu_mesh_kind {
     uint32_t meshes;    /* slots, 0..1024 of all kinds together; 0: the kind is unused */
-    uint32_t material;  /* MASU_SCENE_MATERIAL: neither transparent nor with mesoscale detail */
+    /* Index of a material of the scene (masu_scene_find with MASU_SCENE_MATERIAL), which must be
+     * neither transparent nor have mesoscale detail. Back faces are drawn unless the material is
+     * single-sided in the scene description. Scenes contain only the materials that their models
+     * use: place a hidden model with one that meshes alone shall have. masu_model_set_look tints a
+     * single mesh. */
+    uint32_t material;
     uint32_t vertices;  /* capacity of each slot, 3..1048576 */
     uint32_t triangles; /* capacity of each slot, 1..262144 */
 } masu_mesh_kind;
@@ -530,10 +535,11 @@ typedef struct masu_reserve {
     masu_mesh_kind meshes[MASU_MAX_MESH_KINDS];
     /* Bytes of mesh data that one frame uploads: the sum over the calls of masu_mesh_create,
      * _replace and _deform between two frames, at most 1 GiB, and at least the largest mesh that
-     * fits into a slot (masu_mesh_bytes). It also bounds the host's time, which is proportional to
-     * the bytes. 0: the largest mesh. Costs these bytes on the host, and again per frame in flight
-     * on the device, with 64 bytes per slot; and 51 host bytes per triangle of the largest slot if
-     * rays trace polygons. */
+     * fits into a slot. masu_mesh_bytes has the formula. It also bounds the host's time, which is
+     * proportional to the bytes. 0: the largest mesh. A host that creates a mesh of that size must
+     * then wait for the next masu_frame before it deforms the mesh; otherwise add 16 bytes per
+     * vertex. Costs these bytes on the host, and again per frame in flight on the device, with 64
+     * bytes per slot; and 51 host bytes per triangle of the largest slot if rays trace polygons. */
     uint32_t mesh_upload;
 } masu_reserve;
 
@@ -960,9 +966,11 @@ typedef struct masu_light {
     /* 0: gradient sky from sky_zenith and sky_horizon, with `ambient` as ambient light. 1.5 (very
      * clear) to 10 (hazy): analytic sky from the sun direction, which also sets the ambient light;
      * a sun_color of all zero then selects the sun's colour after extinction in the atmosphere, at
-     * sunset too. Requires a scene with an analytic sky or desc.analytic_sky; with an environment
-     * map it must be 0. A change of sun direction, turbidity or ground recomputes the sky, within
-     * one millisecond on the CPU. */
+     * sunset too. Sky and sun become black after dusk: for a night with a moon, use 0 then, with
+     * the moon as the sun and dark sky colours. Auto-exposure would show that night as bright as
+     * the day unless masu_exposure.max limits it. A value other than 0 requires a scene with an
+     * analytic sky or desc.analytic_sky; with an environment map it must be 0. A change of sun
+     * direction, turbidity or ground recomputes the sky, within one millisecond on the CPU. */
     float turbidity;
     float ground[3]; /* albedo below the horizon of the analytic sky, 0..1; else unused */
     masu_environment environment; /* requires desc.live_environment unless all zero */
@@ -1111,7 +1119,9 @@ typedef struct masu_frame_desc {
     const masu_camera *camera; /* NULL: the scene's camera path at `time` */
     const masu_light *light;   /* NULL: the scene's */
     double time;     /* seconds since the start, -1e15..1e15: animates SDF and camera path */
-    float time_step; /* seconds since the previous frame, -1e15..1e15; 0 is allowed */
+    /* Seconds since the previous frame, -1e15..1e15. 0 is allowed, but auto-exposure then does not
+     * adapt: it keeps the exposure of the first frame, or of the last cut. */
+    float time_step;
     uint32_t rung;   /* 0 .. rung_count - 1, or MASU_RUNG_AUTO: selected by the governor */
     uint32_t target; /* 0 .. targets.count - 1 */
     /* 0 .. desc.viewport_count - 1. A frame of viewport 0 discards the contents of the target;
@@ -1496,7 +1506,8 @@ MASU_API MASU_MUST_USE masu_result masu_instance_show(masu_renderer *renderer,
 #define MASU_LOOK_NOT_TRACED 2u /* absent in reflections, and for live bounces */
 #define MASU_LOOK_NOT_PICKED 4u /* masu_pick passes through it */
 
-/* The look of one instance, on top of its materials. All zero: unchanged. */
+/* The look of one instance, on top of its materials. Requires desc.instance_looks. All zero:
+ * unchanged. */
 typedef struct masu_look {
     /* Multiplies the base colour, and the emission of unlit materials; 0..1. All 0: white; black is
      * {1e-6f, 0, 0}. */
@@ -2036,8 +2047,9 @@ MASU_API const char *masu_scene_class_name(masu_scene_class scene_class);
 MASU_API MASU_MUST_USE masu_result masu_camera_at(const masu_renderer *renderer, double time,
                                                   masu_camera *out, masu_detail *detail);
 
-/* The light of the scene, which a host can change and pass to masu_frame. MASU_ERROR_STATE: there
- * is no scene. MASU_ERROR_ARGUMENT: a pointer is NULL. */
+/* The light of the scene, which a host can change and pass to masu_frame. Its sun_color is all zero
+ * if an analytic sky provides the colour. MASU_ERROR_STATE: there is no scene.
+ * MASU_ERROR_ARGUMENT: a pointer is NULL. */
 MASU_API MASU_MUST_USE masu_result masu_light_of(const masu_renderer *renderer, masu_light *out,
                                                  masu_detail *detail);
 
