@@ -106,7 +106,7 @@ static bool find_file(const char *gpu, const char *name, char path[1024], char *
     if (!folder || !*folder) {
         snprintf(error, size,
                  "%s: its compiler is in no Debian package: MASU_ISA_DRIVERS is to name the folder "
-                 "with %s (make isa-drivers builds it)",
+                 "with %s (make isa-drivers)",
                  gpu, name);
         return false;
     }

@@ -14,7 +14,7 @@
 #include <stdio.h>
 
 /* FIELD(ID, name, unit and meaning, its names in RADV, Intel's drivers, Turnip, V3DV; NULL: not
- * reported). PanVK's numbers are read from the lines that it prints. */
+ * reported; V3DV's spills and fills are its bytes again). PanVK's numbers are read from the lines that it prints. */
 #define MASU_ISA_FIELDS(FIELD)                                                                     \
     FIELD(REGISTERS, "registers", "vector registers of a lane (Turnip: of four numbers)", "VGPRs", \
           NULL, "Registers used", NULL)                                                            \
@@ -29,8 +29,8 @@
     FIELD(LATENCY, "latency", "cycles of one wave alone", "Latency", NULL, NULL, NULL)             \
     FIELD(SENDS, "sends", "messages to memory and samplers", NULL, "SEND Count", NULL, NULL)       \
     FIELD(SPILLS, "spills", "registers written to memory", "Spilled VGPRs", "Spill Count",         \
-          "STP Count", "TMU Spills")                                                               \
-    FIELD(FILLS, "fills", "and read again", NULL, "Fill Count", "LDP Count", "TMU Fills")          \
+          "STP Count", NULL)                                                               \
+    FIELD(FILLS, "fills", "and read again", NULL, "Fill Count", "LDP Count", NULL)          \
     FIELD(SCALAR_SPILLS, "scalar_spills", "scalar registers put into vector ones",                 \
           "Spilled SGPRs", NULL, NULL, NULL)                                                       \
     FIELD(SCRATCH, "scratch", "bytes of memory of a lane (Intel, V3DV: of a thread)",              \
@@ -64,7 +64,8 @@ typedef struct masu_isa_rows {
 
 /* Compiles all pipelines of the plan, in a process with the GPU's environment. `desc` has a scene,
  * but no device or targets. `before` is called with the pass of the next pipelines, so that a
- * compiler crash can be attributed to it. On false `error` holds one line. */
+ * compiler crash can be attributed to it. On true the renderer and its device still exist: the
+ * process must end by _Exit. On false `error` holds one line. */
 bool masu_isa_compile(const masu_desc *desc, void (*before)(const char *pass), masu_isa_rows *rows, char *error,
                       size_t error_size);
 
