@@ -3,8 +3,8 @@
  * wins. A hit is written to the G-buffer, so that later passes treat it like a rasterized pixel.
  *
  * One workgroup per active tile of 16x16 pixels, with the tile's list of parts; each invocation
- * begins and ends four pixels. A pixel starts where the cone of its 4x4 block stopped (cone.comp). Compiled by masu-bake
- * together with the scene's field.
+ * begins and ends four pixels. A pixel starts where the cone of its 4x4 block stopped (cone.comp).
+ * Compiled by masu-bake together with the scene's field.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
