@@ -1,7 +1,8 @@
 /*
  * specular_keep.comp: copies the reflection history for the next frame. Command buffers are
  * recorded once, so images cannot alternate and a copy is needed. It copies all
- * texels, not only the listed tiles: a tile without reflections must not leave values of an older frame to the next one.
+ * texels, not only the listed tiles: a tile without reflections must not leave values of an older
+ * frame to the next one.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

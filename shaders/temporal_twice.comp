@@ -1,5 +1,5 @@
 /*
- * temporal_twice.comp: temporal.comp for twice the width and height: the same result at a lower cost.
+ * temporal_twice.comp: temporal.comp for 2x upscaling: the same result at a lower cost.
  *
  * For any jitter, a 2x2 block of output pixels falls between the centres of four texels. The first
  * pixel of every block has odd coordinates, or every one has even ones. An invocation writes one
@@ -50,7 +50,7 @@ void resolve(cell c, ivec2 way)
     uvec2 found = texelFetch(found_image, texel, 0).xy;
     vec4 column = frame.columns[way.x], row = frame.rows[way.y];
     vec2 f = vec2(column.x, row.x);
-    vec2 place = min(vec2(c.before) + f, vec2(push.last_x, push.last_y)); /* samplers clamp values below 0 */
+    vec2 place = min(vec2(c.before) + f, vec2(push.last_x, push.last_y)); /* < 0: clamped */
     masu_past old = masu_history(found, vec2(at) + 0.5, texel, place, vec2(2.0));
     bool stays = masu_has_stayed(found);
     vec2 x = (stays ? column.y * vec2(1 - way.x, way.x) : column.zw) * c.inside_x;
@@ -64,7 +64,7 @@ void resolve(cell c, ivec2 way)
     sum += weights.y * c.light[1];
     sum += weights.z * c.light[2];
     sum += weights.w * c.light[3];
-    if (all(lessThan(uvec2(at), uvec2(pc.output_width, pc.output_height)))) { /* -1 as uint is outside, too */
+    if (all(lessThan(uvec2(at), uvec2(pc.output_width, pc.output_height)))) { /* not -1 */
         vec3 mean = sum * (1.0 / max(count, 1.0));
         uint other = uint(way.x) * masu_chance_step.x + uint(way.y) * masu_chance_step.y;
         masu_show(at, mean, count, old, stays, c.chance + other);
