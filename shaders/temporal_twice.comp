@@ -3,7 +3,7 @@
  *
  * For any jitter, a 2x2 block of output pixels falls between the centres of four texels. The first
  * pixel of every block has odd coordinates, or every one has even ones. An invocation writes one
- * block: it reads the four texels once, and each pixel is closest to one of them. The positions
+ * block: it reads the four texels once, and each pixel is closest to one texel. The positions
  * between the texels are the same in all blocks, so most texel weights are constant or zero.
  *
  * One invocation per four texels. Blocks at the image border include texels outside the image, so
@@ -42,7 +42,7 @@ struct cell {
 };
 
 /* Resolves one of the four pixels. A function that is called four times, not a loop: the cost model
- * counts an unrolled loop as if each iteration ran all of it (docs/design/20-cost-model.md). */
+ * counts an unrolled loop as if each iteration ran the whole loop (docs/design/20-cost-model.md). */
 void resolve(cell c, ivec2 way)
 {
     ivec2 at = c.first + way;
