@@ -31,7 +31,7 @@ void masu_page_slider(FILE *f);
 
 void masu_page_base64(FILE *f, const uint8_t *bytes, size_t count);
 
-/* page_image.c: the image as JPEG of at most `bytes`: first its quality is reduced (85 to 40), then
+/* page_image.c: the image as JPEG of at most `bytes`: first its quality is reduced (97 to 37), then
  * its size is halved until it fits or has a side below 16 pixels. `kind`: the class of the element.
  * False: out of memory. */
 bool masu_page_image(FILE *f, const uint8_t *rgba, uint32_t width, uint32_t height, size_t bytes,

@@ -46,7 +46,7 @@ bool masu_page_image(FILE *f, const uint8_t *rgba, uint32_t width, uint32_t heig
     bool good = e.bytes && copy;
     if (good) memcpy(copy, rgba, all);
     while (good) {
-        for (int quality = 85; quality >= 40 && e.count > e.most; quality -= 15) {
+        for (int quality = 97; quality >= 37 && e.count > e.most; quality -= 15) {
             e.count = 0;
             if (!stbi_write_jpg_to_func(append, &e, (int)width, (int)height, 4, copy, quality)) good = false;
         }
