@@ -28,13 +28,15 @@ static int by_name(const void *a, const void *b) {
 static void put_link(FILE *f, const char *name, const char *file) {
     fputs("<a href=\"./", f);
     for (const unsigned char *c = (const unsigned char *)name; *c; c++) {
-        const bool plain = strchr("-._~0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz", *c);
+        const bool plain =
+            strchr("-._~0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz", *c);
         fprintf(f, plain ? "%c" : "%%%02X", *c);
     }
     masu_markup(f, "/%s\">%s</a>", file, name);
 }
 
-static bool put_scene(FILE *f, const char *folder, const char *name, char *error, size_t error_size) {
+static bool put_scene(FILE *f, const char *folder, const char *name, char *error,
+                      size_t error_size) {
     char path[4096];
     masu_ladder_file *l = malloc(sizeof *l);
     const masu_row *rungs[MASU_MAX_RUNGS];
@@ -48,21 +50,25 @@ static bool put_scene(FILE *f, const char *folder, const char *name, char *error
         good = rungs[i] != NULL;
         found += good;
         if (!good)
-            snprintf(error, error_size, "%.2000s: results.csv lacks rung %u of ladder.json: %s", folder, i,
-                     l->settings[i]);
+            snprintf(error, error_size, "%.2000s: results.csv lacks rung %u of ladder.json: %s",
+                     folder, i, l->settings[i]);
     }
     masu_verdict v;
     if (good && masu_verdict_find(rungs, found, &v)) {
         fputs("<tr><td>", f);
         put_link(f, name, has(folder, "index.html") ? "index.html" : "ladder.json");
-        masu_markup(f, "</td><td class=\"%s\">%s</td><td>%u of %u: %s</td><td>%.2f</td><td>%.4f</td>",
+        masu_markup(f,
+                    "</td><td class=\"%s\">%s</td><td>%u of %u: %s</td><td>%.2f</td><td>%.4f</td>",
                     v.holds ? "holds" : "bad", v.holds ? "holds" : "no rung holds", v.rung, found,
                     rungs[v.rung]->setting, v.ms, v.error);
-        masu_markup(f, "<td>%ux%u</td><td>%s</td><td>%s</td></tr>\n", l->width, l->height, l->date, l->driver);
+        masu_markup(f, "<td>%ux%u</td><td>%s</td><td>%s</td></tr>\n", l->width, l->height, l->date,
+                    l->driver);
     } else if (good) {
         fputs("<tr><td>", f);
         put_link(f, name, has(folder, "index.html") ? "index.html" : "ladder.json");
-        fputs("</td><td>no times</td><td>-</td><td>-</td><td>-</td><td>-</td><td>-</td><td>-</td></tr>\n", f);
+        fputs("</td><td>no "
+              "times</td><td>-</td><td>-</td><td>-</td><td>-</td><td>-</td><td>-</td></tr>\n",
+              f);
     }
     free(rows);
     free(l);
@@ -77,30 +83,34 @@ bool masu_bench_index(const char *folder, uint32_t *count, char *error, size_t e
     bool good = true;
     *count = 0;
     while (d && (e = readdir(d)) && *count < FOLDERS_MAX) {
-        if (*e->d_name == '.' || !masu_sweep_path(folder, e->d_name, path) || !has(path, "ladder.json") ||
-            !has(path, "results.csv"))
+        if (*e->d_name == '.' || !masu_sweep_path(folder, e->d_name, path) ||
+            !has(path, "ladder.json") || !has(path, "results.csv"))
             continue;
         names[*count] = strdup(e->d_name);
         *count += names[*count] != NULL;
     }
     if (d) closedir(d);
     if (!*count) {
-        snprintf(error, error_size, "%.2000s: found no folder with ladder.json and results.csv", folder);
+        snprintf(error, error_size, "%.2000s: found no folder with ladder.json and results.csv",
+                 folder);
         return false;
     }
     qsort(names, *count, sizeof *names, by_name);
     FILE *f = open_memstream(&text, &bytes);
     if (f) {
         masu_page_begin(f, "Error against run time: ", "all scenes");
-        masu_markup(f,
-                    "<p>Verdict: the first rung, in falling quality, whose median frame takes at most %.2f ms "
-                    "(60 Hz), or else the fastest rung.</p>\n<div class=\"wide\"><table class=\"sort\">\n"
-                    "<tr><th>scene</th><th>verdict</th><th>rung</th><th>ms</th><th>error</th><th>size</th>"
-                    "<th>date</th><th>driver</th></tr>\n",
-                    MASU_PAGE_BUDGET_MS);
+        masu_markup(
+            f,
+            "<p>Verdict: the first rung, in falling quality, whose median frame takes at most %.2f "
+            "ms "
+            "(60 Hz), or else the fastest rung.</p>\n<div class=\"wide\"><table class=\"sort\">\n"
+            "<tr><th>scene</th><th>verdict</th><th>rung</th><th>ms</th><th>error</th><th>size</th>"
+            "<th>date</th><th>driver</th></tr>\n",
+            MASU_PAGE_BUDGET_MS);
     }
     for (uint32_t i = 0; f && i < *count && good; i++)
-        good = masu_sweep_path(folder, names[i], path) && put_scene(f, path, names[i], error, error_size);
+        good = masu_sweep_path(folder, names[i], path) &&
+               put_scene(f, path, names[i], error, error_size);
     if (f) {
         fputs("</table></div>\n", f);
         masu_page_end(f);

@@ -126,11 +126,14 @@ void masu_page_verdict(FILE *f, const masu_row *const *rungs, uint32_t count) {
         fputs("<p class=\"verdict\"><b>No rung was found.</b></p>\n", f);
         return;
     }
-    masu_markup(f, v.holds ? "<p class=\"verdict holds\"><b>Holds %.2f ms (60 Hz) at rung %u</b>"
-                           : "<p class=\"verdict\"><b>No rung holds %.2f ms (60 Hz).</b> The fastest is rung %u",
-                MASU_PAGE_BUDGET_MS, v.rung);
-    masu_markup(f, ", %s: %.2f ms a frame (median), error %.4f.</p>\n", rungs[v.rung]->setting, v.ms,
-                v.error);
+    masu_markup(
+        f,
+        v.holds
+            ? "<p class=\"verdict holds\"><b>Holds %.2f ms (60 Hz) at rung %u</b>"
+            : "<p class=\"verdict\"><b>No rung holds %.2f ms (60 Hz).</b> The fastest is rung %u",
+        MASU_PAGE_BUDGET_MS, v.rung);
+    masu_markup(f, ", %s: %.2f ms a frame (median), error %.4f.</p>\n", rungs[v.rung]->setting,
+                v.ms, v.error);
 }
 
 void masu_page_slider(FILE *f) {

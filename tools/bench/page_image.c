@@ -48,15 +48,18 @@ bool masu_page_image(FILE *f, const uint8_t *rgba, uint32_t width, uint32_t heig
     while (good) {
         for (int quality = 97; quality >= 37 && e.count > e.most; quality -= 15) {
             e.count = 0;
-            if (!stbi_write_jpg_to_func(append, &e, (int)width, (int)height, 4, copy, quality)) good = false;
+            if (!stbi_write_jpg_to_func(append, &e, (int)width, (int)height, 4, copy, quality))
+                good = false;
         }
         if (!good || e.count <= e.most || width < 32 || height < 32) break;
         halve(copy, &width, &height);
     }
     good = good && e.count <= e.most;
     if (good) {
-        masu_markup(f, "<img class=\"%s\" width=\"%u\" height=\"%u\" alt=\"%s\" src=\"data:image/jpeg;base64,",
-                    kind, shown_width, shown_height, text);
+        masu_markup(
+            f,
+            "<img class=\"%s\" width=\"%u\" height=\"%u\" alt=\"%s\" src=\"data:image/jpeg;base64,",
+            kind, shown_width, shown_height, text);
         masu_page_base64(f, e.bytes, e.count);
         fputs("\"/>", f);
     }
