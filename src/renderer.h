@@ -59,7 +59,7 @@ struct masu_renderer {
     masu_timeline timeline;
     masu_history history;
     masu_temporal temporal;
-    masu_governor *governor; /* NULL where the description asks for none */
+    masu_governor *governor; /* NULL if the description has none */
     masu_camera_path camera;
     masu_frame_view view; /* of the frame that was handed out last; all 0: there was none */
     masu_sun_sky sun_sky;
@@ -109,12 +109,12 @@ static inline masu_result masu_finish_null_const(const masu_renderer *m, const c
 /* MASU_ERROR_DEVICE_LOST if an earlier call has found that. */
 masu_result masu_check_lost(const masu_renderer *m, masu_detail *detail);
 
-/* Copies what frames need later from the blob into the host block. */
+/* Copies scene data that frames need from the blob into the host block. */
 void masu_copy_scene(masu_renderer *m);
-/* What of it does not change in the slots: draw commands and what culls them. */
+/* Writes the constant data of all slots: draw commands and culling tables. */
 void masu_write_scene(masu_renderer *m);
-/* The steps of masu_frame that write a scene's frame to its slot. Checks come first: a frame that is
- * refused leaves nothing changed. */
+/* The steps of masu_frame that write a scene's frame to its slot. Checks are first: a rejected
+ * frame changes nothing. */
 masu_result masu_write_frame(masu_renderer *m, masu_frame_data *f);
 
 #endif

@@ -6,7 +6,7 @@
 #include "scene/blob_section.h"
 
 typedef struct masu_camera_path {
-    masu_blob_camera_key *keys; /* plan->scene.camera_keys of them */
+    masu_blob_camera_key *keys; /* [plan->scene.camera_keys] */
     float near_distance;        /* of cameras that have none */
 } masu_camera_path;
 

@@ -25,7 +25,7 @@
 #define MASU_SHADOW_BIAS_MOST (MASU_SHADOW_BIAS * MASU_SHADOW_STEEPEST)
 
 typedef struct masu_cascade {
-    int drawn;            /* 0: the map holds nothing of it */
+    int drawn;            /* 0: its map is not rendered yet */
     uint64_t frame;       /* that drew it */
     double axis[3][3];    /* unit: across, across, towards the sun */
     double center[3];     /* world */
@@ -33,22 +33,22 @@ typedef struct masu_cascade {
     double behind, ahead; /* how far it reaches from the centre away from the sun, towards it */
     double radius;        /* of the sphere that it was made for */
     uint32_t size;        /* texels along its edge */
-    int trimmed;          /* what casts no shadow into the picture of its frame was left out */
+    int trimmed;          /* culled to the casters of its frame's image */
     float lod_error;      /* of its rung: which forms of meshes it holds */
 } masu_cascade;
 
-/* What a cascade has to hold. */
+/* Requirements of a cascade. */
 typedef struct masu_shadow_view {
     double eye[3], forward[3]; /* forward: unit */
     double tan2;               /* square of the tangent of the view's half diagonal */
     double near_distance;
     double begin; /* view depth from which on it is held: 0, or that of masu_shadow_begin */
     double sun[3];        /* towards it, unit */
-    double casters[2][3]; /* box around all of them; low above high: there are none */
+    double casters[2][3]; /* box around all casters; low above high: there are none */
 } masu_shadow_view;
 
-/* Two unit vectors orthogonal to the sun's direction and to each other, and that direction. They
- * turn continuously with it but for one straight from below. */
+/* The sun's direction and two unit vectors orthogonal to it and to each other. They change
+ * continuously with it, except at a sun straight from below. */
 void masu_shadow_axes(const double sun[3], double axis[3][3]);
 
 /* Depth at which the cascades begin: 0, or the near plane if that is beyond half of their distance, as of orthographic
@@ -69,8 +69,8 @@ masu_cascade masu_cascade_fit(const masu_shadow_view *view, double depth, double
 /* Whether a cascade drawn earlier still holds all that `wanted` was made for. */
 int masu_cascade_holds(const masu_cascade *drawn, const masu_cascade *wanted);
 
-/* Element k of the uniforms, for an eye and a first texel in the map. origin: instances are relative
- * to it. */
+/* Element k of the uniforms, for a camera position and a first texel in the map. origin: of the
+ * instances. */
 void masu_cascade_write(const masu_cascade *c, const double eye[3], const double origin[3],
                         const int32_t place[2], uint32_t k, struct masu_shadow_uniforms *u);
 

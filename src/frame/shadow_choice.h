@@ -10,9 +10,9 @@
 #include <stdint.h>
 
 #define MASU_SHADOW_HYSTERESIS 1.5
-#define MASU_SHADOW_UNSEEN 0.3 /* factor of what is outside of the view */
+#define MASU_SHADOW_UNSEEN 0.3 /* score factor of lights outside the view */
 #define MASU_SHADOW_HOLD 30u   /* frames */
-#define MASU_SHADOW_CUT 16u    /* frames after a cut in which shadows come without a fade: no one has seen them off */
+#define MASU_SHADOW_CUT 16u    /* frames after a cut in which shadows appear without a fade */
 #define MASU_SHADOW_LIGHTS_MAX 256u /* with shadows at a time, in all viewports */
 
 /* A light with a shadow. */
