@@ -1,12 +1,12 @@
-/* renderer.h: a renderer, and who owns what of it. It lies at the start of the host block, and what
- * depends on the scene behind it: each owner takes its own arrays in api.c's one walk.
+/* renderer.h: the renderer's state and its owners. It is at the start of the host block, before the
+ * arrays whose size depends on the scene: each module allocates its arrays in one pass of api.c.
  *
- *   plan     what every frame is made of; nothing changes it after masu_init, but that the blob of the
- *            scene is forgotten once it is loaded
- *   device   objects of Vulkan
- *   draws    what the recordings draw, in their order
+ *   plan     sizes, passes and resources of every frame; constant after masu_init, except that the
+ *            pointer to the scene's blob is cleared once the scene is loaded
+ *   device   Vulkan objects
+ *   draws    the draws of the recordings, in their order
  *
- * All the rest is what the host knows between frames, a module of src/frame/ each. */
+ * The other members are host state between frames, one module of src/frame/ each. */
 #ifndef MASU_RENDERER_H
 #define MASU_RENDERER_H
 

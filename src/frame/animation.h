@@ -56,8 +56,9 @@ void masu_animation_pose(masu_animation *a, uint32_t first_clip, const masu_clip
                          uint32_t count, uint32_t first_node, uint32_t nodes);
 
 /* The blended weight of a morph target of the skin at a node; `rest` is its rest weight. */
-double masu_animation_weight(const masu_animation *a, uint32_t first_clip, const masu_clip_use *uses,
-                             uint32_t count, uint32_t node, uint32_t target, double rest);
+double masu_animation_weight(const masu_animation *a, uint32_t first_clip,
+                             const masu_clip_use *uses, uint32_t count, uint32_t node,
+                             uint32_t target, double rest);
 
 /* Converts a pose to a row-major matrix and back; shear is dropped. */
 void masu_pose_rows(const masu_node_pose *pose, float rows[12]);

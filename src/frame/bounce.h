@@ -18,8 +18,10 @@ enum {
     MASU_BOUNCE_FIRST = 4,   /* sets of a probe that are shown soon after a change */
     MASU_BOUNCE_WINDOW = 16, /* all sets of a probe */
     MASU_BOUNCE_REST = 256,  /* rounds */
-    MASU_BOUNCE_BURST_ROUNDS = 16, /* after the first frame, or a cut: most of what bounces has come by then */
-    MASU_BOUNCE_SWIFT_ROUNDS = MASU_BOUNCE_FIRST + MASU_BOUNCE_WINDOW, /* after a change that follows no other */
+    /* after the first frame, or a cut: most of what bounces has come by then */
+    MASU_BOUNCE_BURST_ROUNDS = 16,
+    /* after a change that follows no other */
+    MASU_BOUNCE_SWIFT_ROUNDS = MASU_BOUNCE_FIRST + MASU_BOUNCE_WINDOW,
     MASU_BOUNCE_OFF = 0xFF  /* `sets` of a probe that is inside of something */
 };
 
@@ -60,7 +62,8 @@ void masu_bounce_restart(masu_bounce *b);
 /* Chooses at most `most` probes, encoded as in shared/bounce.h; returns their number. */
 /* Probes of the next frame, of `most` in a burst. */
 uint32_t masu_bounce_pace(const masu_bounce *b, uint32_t most);
-uint32_t masu_bounce_choose(masu_bounce *b, const masu_bounce_view *view, uint32_t most, uint32_t *words);
+uint32_t masu_bounce_choose(masu_bounce *b, const masu_bounce_view *view, uint32_t most,
+                            uint32_t *words);
 
 /* Restarts if the inputs of light differ from the previous frame. */
 void masu_bounce_follow(masu_bounce *b, const masu_lights *lights, const masu_instances *in,

@@ -1,4 +1,5 @@
-/* camera.h: the camera of a frame, the host's or a point of the scene's path, and the projection. */
+/* camera.h: the camera of a frame, the host's or a point of the scene's path, and the
+ * projection. */
 #ifndef MASU_CAMERA_H
 #define MASU_CAMERA_H
 

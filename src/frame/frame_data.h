@@ -35,8 +35,9 @@ typedef struct masu_frame_data {
     uint32_t faces;    /* 1: it renders shadow faces of punctual lights */
 } masu_frame_data;
 
-/* The previous frame, of no length where nothing reads velocities. It is kept here and not on the device,
- * so that no state crosses frames there and frames in flight need not know of each other. */
+/* The previous frame, of no length where nothing reads velocities. It is kept here and not on
+ * the device, so that no state crosses frames there and frames in flight need not know of each
+ * other. */
 typedef struct masu_history {
     struct masu_frame_uniforms *previous;
     double origin[3]; /* the previous frame's origin */
@@ -51,8 +52,9 @@ masu_frame_data masu_frame_begin(const masu_frame_plan *plan, const masu_device 
 const masu_rung *masu_frame_rung(const masu_frame_data *f);
 const masu_rung_plan *masu_frame_rung_plan(const masu_frame_data *f);
 
-/* Splits a double into a float and the remainder. Volatile: GCC 12 vectorises a loop of these
- * and then treats the conversion to float and back as the identity, which makes `low` 0. */
+/* Splits a double into a float and the remainder. Volatile: GCC 12 vectorises loops over this
+ * function and then treats the conversion to float and back as the identity, which makes `low`
+ * 0. */
 static inline void masu_split_double(double value, float *high, float *low) {
     volatile float rounded = (float)value;
     *high = rounded;

@@ -75,7 +75,7 @@ typedef struct masu_local_shadows {
     masu_shadow_slot *choice;  /* [capacity] */
     masu_local_light *lights;  /* [capacity] */
     uint32_t *slot_of_light;   /* [light]: 1 + its slot, 0: none */
-    float (*boxes)[6];         /* [instance]: as of the last frame; half sizes below 0: it was hidden */
+    float (*boxes)[6]; /* [instance]: as of the last frame; half sizes below 0: it was hidden */
     uint8_t *group_states, *marks;
     float sdf_box[6];          /* bounds of the SDF casters; negative half sizes: there are none */
     uint64_t sdf_hash;         /* hash of the SDF's inputs in the last frame */
@@ -87,9 +87,11 @@ typedef struct masu_local_shadows {
     masu_local_slot slots[MASU_MAX_FLIGHT];
 } masu_local_shadows;
 
-void masu_local_shadows_alloc(masu_local_shadows *s, masu_arena *arena, const masu_frame_plan *plan);
+void masu_local_shadows_alloc(masu_local_shadows *s, masu_arena *arena,
+                              const masu_frame_plan *plan);
 /* Writes the constant part of the faces' draw commands to all slots. */
-void masu_local_shadows_write_scene(const masu_device *device, const masu_draws *draws, const masu_scene_view *v);
+void masu_local_shadows_write_scene(const masu_device *device, const masu_draws *draws,
+                                    const masu_scene_view *v);
 
 /* A frame: begin, offer each light that may cast shadows, in their order, then write. */
 void masu_local_shadows_begin(masu_local_shadows *s, const masu_frame_data *f);
@@ -97,15 +99,15 @@ void masu_local_shadows_offer(masu_local_shadows *s, const masu_frame_data *f, u
                               const masu_punctual_light_state *state, const double position[3],
                               const double direction[3]);
 /* Before masu_instances_write. Returns whether a shadow may look other than in the last frame. */
-int masu_local_shadows_write(masu_local_shadows *s, const masu_instances *in, const masu_bounds *bounds,
-                             masu_frame_data *f);
+int masu_local_shadows_write(masu_local_shadows *s, const masu_instances *in,
+                             const masu_bounds *bounds, masu_frame_data *f);
 
 /* masu_punctual_light_data.shadow and shadow_origin of a light. */
 void masu_local_shadows_of(const masu_local_shadows *s, uint32_t light, const double eye[3],
                            struct masu_punctual_light_data *out);
 
-/* Texels along the edge of a face: a texel at a third of the range takes three quarters of a pixel, but no fewer than
- * 256. pixels: of a length of one at distance one. */
+/* Texels along the edge of a face: a texel at a third of the range takes three quarters of a
+ * pixel, but no fewer than 256. pixels: of a length of one at distance one. */
 double masu_local_face_wish(double range, double tangent, double distance, double pixels);
 /* The size for a wish, with hysteresis; now: the size that it has, 0: none. */
 uint32_t masu_local_face_size(double wish, uint32_t now, uint32_t most);

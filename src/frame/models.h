@@ -23,7 +23,8 @@ typedef struct masu_models {
     uint32_t *of_instance; /* [instance]: its model, or MASU_BLOB_NONE; none without models */
     masu_handles handles; /* the last ones come and go: copies, then meshes of the host */
     uint32_t *lives;
-    double (*offsets)[3]; /* with desc.double_positions: added to the translation of rows; else NULL */
+    /* with desc.double_positions: added to the translation of rows; else NULL */
+    double (*offsets)[3];
     masu_animation animation;
     masu_skins skins; /* skins deformed by the nodes */
 } masu_models;

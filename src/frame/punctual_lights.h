@@ -44,8 +44,8 @@ void masu_lights_remove(masu_lights *l, uint32_t light);
 void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_local_shadows *shadows,
                        const masu_frame_data *f);
 
-/* Finds the lights that may cast shadows in this frame, and lets masu_local_shadows_write do the rest. After the camera,
- * before masu_temporal_read. */
+/* Finds the lights that may cast shadows in this frame, and lets masu_local_shadows_write do the
+ * rest. After the camera, before masu_temporal_read. */
 void masu_lights_cast(masu_lights *l, masu_local_shadows *shadows, const masu_instances *in,
                       const masu_bounds *bounds, masu_frame_data *f);
 

@@ -11,7 +11,8 @@ typedef struct masu_reflections {
     masu_trace_top tree; /* over instances, in tree_memory; with ray queries the device has one */
     void *tree_memory;
     uint32_t *traced; /* [traced instance]: instance; MASU_BLOB_NONE: a free slot of the reserve */
-    uint8_t *bends;   /* [traced instance]: its box changes: a skin, a mesh of the host; NULL without both */
+    /* [traced instance]: its box changes: a skin, a mesh of the host; NULL without both */
+    uint8_t *bends;
     uint8_t *live;    /* for ray queries, [traced instance]: it is traced */
     double origin[3]; /* that the frame measures traced things from */
     double previous_origin[3];

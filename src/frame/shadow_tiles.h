@@ -5,7 +5,8 @@
 
 #include <stdint.h>
 
-#define MASU_SHADOW_CELLS 32u /* along an edge of the largest atlas, each as large as the smallest tile */
+/* along an edge of the largest atlas, each as large as the smallest tile */
+#define MASU_SHADOW_CELLS 32u
 
 typedef struct masu_shadow_tile {
     uint16_t x, y, size; /* texels; size 0: none */
@@ -34,8 +35,9 @@ masu_shadow_tile masu_shadow_tile_before(const masu_shadow_tiles *t, masu_shadow
 /* There, if there is one. */
 void masu_shadow_tile_move(masu_shadow_tiles *t, masu_shadow_tile *tile);
 
-/* Sizes that have room together in an atlas of size^2 texels: as long as they do not, of the largest ones that with
- * the lowest score is halved. A light has faces[i] tiles of sizes[i]. */
-void masu_shadow_sizes_fit(uint32_t *sizes, const uint32_t *faces, const double *scores, uint32_t count, uint32_t size);
+/* Sizes that have room together in an atlas of size^2 texels: as long as they do not, of the
+ * largest ones that with the lowest score is halved. A light has faces[i] tiles of sizes[i]. */
+void masu_shadow_sizes_fit(uint32_t *sizes, const uint32_t *faces, const double *scores,
+                           uint32_t count, uint32_t size);
 
 #endif

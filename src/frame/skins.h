@@ -54,14 +54,15 @@ uint32_t masu_skins_of(const masu_skins *s, const masu_frame_plan *plan, uint32_
 
 /* Sets the weights of animated targets only; rest weights if count or all weights are 0. uses:
  * as for masu_animation_pose. */
-void masu_skins_play(masu_skins *s, const masu_animation *a, const masu_frame_plan *plan, uint32_t model,
-                     uint32_t first_node, uint32_t first_clip, const masu_clip_use *uses, uint32_t count);
+void masu_skins_play(masu_skins *s, const masu_animation *a, const masu_frame_plan *plan,
+                     uint32_t model, uint32_t first_node, uint32_t first_clip,
+                     const masu_clip_use *uses, uint32_t count);
 /* Sets the weight of all targets of that name. How many there are. */
-uint32_t masu_skins_set(masu_skins *s, const masu_frame_plan *plan, uint32_t model, const char *name,
-                        float weight);
+uint32_t masu_skins_set(masu_skins *s, const masu_frame_plan *plan, uint32_t model,
+                        const char *name, float weight);
 
-/* After nodes of a model have moved: finds the matrices of its joints. 0: one is not finite; they are to be found
- * again once the nodes are back. */
+/* After nodes of a model have moved: finds the matrices of its joints. 0: one is not finite;
+ * they are to be found again once the nodes are back. */
 int masu_skins_pose(masu_skins *s, const masu_frame_plan *plan, uint32_t model,
                     const masu_node *nodes, uint32_t first_node, uint32_t node_count);
 /* Then updates instances and bounds. */

@@ -12,7 +12,8 @@
 /* Radiance towards a unit direction, without the sun's disc: the twin of masu_sky_light. */
 void masu_sky_radiance(const struct masu_sky_uniforms *sky, const float direction[3], float out[3]);
 
-/* Radiance at a sine of elevation, a cosine of azimuth from the sun, and a cosine to the sun, all -1..1. */
+/* Radiance at a sine of elevation, a cosine of azimuth from the sun, and a cosine to the sun,
+ * all -1..1. */
 void masu_sky_evaluate(const struct masu_sky_uniforms *sky, float y, float x, float cosine,
                        float out[3]);
 

@@ -1,6 +1,6 @@
 /* sprite_kinds.h: one writer each for particles, decals and debug lines: writes the visible
- * elements of the host's arrays to the slot, in the shaders' layout. sprites.c calls them and
- * owns their memory; none of them can fail. */
+ * elements of the host's arrays to the slot, in the shaders' layout. sprites.c calls the writers
+ * and owns their memory; no writer can fail. */
 #ifndef MASU_SPRITE_KINDS_H
 #define MASU_SPRITE_KINDS_H
 
@@ -47,17 +47,20 @@ static inline void masu_cell_write(const float uv[4], float to[4]) {
 /* Each writes its elements to `to` and returns their number. draws: of the particles, before
  * each slot of transparents and after the last; *segments: the number of trail segments in the
  * result. part: the smallest rectangle of pixels around all decals: x, y, width, height. */
-uint32_t masu_particles_write(const masu_frame_data *f, const masu_sprite_eye *eye, masu_back_to_front *order,
-                              const masu_back_to_front *blended, uint32_t blended_count,
-                              VkDrawIndirectCommand *draws, unsigned char *to, uint32_t *segments);
-/* Segments of trails. The first appends the drawn segments to `order`, with the index of their
- * first point among all points plus desc.reserve.particles, and returns their number. The second
- * writes segment i as particle places[i].thing; UINT32_MAX: not drawn. */
-uint32_t masu_trails_sort(const masu_frame_data *f, const masu_sprite_eye *eye, masu_back_to_front *order);
-void masu_trails_write(const masu_frame_data *f, const masu_sprite_eye *eye, const masu_back_to_front *places,
-                       unsigned char *to);
+uint32_t masu_particles_write(const masu_frame_data *f, const masu_sprite_eye *eye,
+                              masu_back_to_front *order, const masu_back_to_front *blended,
+                              uint32_t blended_count, VkDrawIndirectCommand *draws,
+                              unsigned char *to, uint32_t *segments);
+/* Segments of trails. masu_trails_sort appends the visible segments to `order`, with the index
+ * of their first point among all points plus desc.reserve.particles, and returns their number.
+ * masu_trails_write writes segment i as particle places[i].thing; UINT32_MAX: not drawn. */
+uint32_t masu_trails_sort(const masu_frame_data *f, const masu_sprite_eye *eye,
+                          masu_back_to_front *order);
+void masu_trails_write(const masu_frame_data *f, const masu_sprite_eye *eye,
+                       const masu_back_to_front *places, unsigned char *to);
 uint32_t masu_decals_write(const masu_frame_data *f, const masu_sprite_eye *eye, unsigned char *to,
                            uint32_t part[4]);
-uint32_t masu_debug_lines_write(const masu_frame_data *f, const masu_sprite_eye *eye, unsigned char *to);
+uint32_t masu_debug_lines_write(const masu_frame_data *f, const masu_sprite_eye *eye,
+                                unsigned char *to);
 
 #endif

@@ -21,10 +21,12 @@ typedef struct masu_sprites {
 void masu_sprites_alloc(masu_sprites *s, masu_arena *arena, const masu_frame_plan *plan);
 
 /* MASU_ERROR_LIMIT: more than desc.reserve. MASU_ERROR_ARGUMENT: NULL with a count. */
-masu_result masu_sprites_check(const masu_desc *d, const masu_frame_desc *frame, masu_detail *detail);
+masu_result masu_sprites_check(const masu_desc *d, const masu_frame_desc *frame,
+                               masu_detail *detail);
 
 /* After masu_transparents_write, which chooses the transparents that are drawn between the
  * particles. */
-void masu_sprites_write(masu_sprites *s, const masu_transparents *transparents, const masu_frame_data *f);
+void masu_sprites_write(masu_sprites *s, const masu_transparents *transparents,
+                        const masu_frame_data *f);
 
 #endif

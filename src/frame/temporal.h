@@ -15,7 +15,7 @@
 typedef struct masu_temporal {
     int kept;         /* the previous frame has left a history, */
     uint32_t size[2]; /* of this render size */
-    uint32_t changed; /* frames for which changes may still be reprojected */
+    uint32_t changed; /* frames for which the history may still differ because of a change */
     uint32_t rung;    /* and this rung */
     uint32_t lights, instances, materials, post; /* change counters at the previous frame */
     uint64_t sprites; /* hash of its particles, trails and decals */

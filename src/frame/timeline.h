@@ -18,7 +18,7 @@ typedef struct masu_slot {
 typedef struct masu_timeline {
     uint64_t frame; /* number of the next one */
     uint32_t viewport; /* of the one before */
-    int cut;        /* the frame has no history, whatever the host passes */
+    int cut;        /* the frame has no history, even if the host did not request a cut */
     /* the newest frame whose wall-clock time was computed, and its end; UINT64_MAX: none */
     uint64_t ended, end_ns;
     masu_slot slots[MASU_MAX_FLIGHT];
