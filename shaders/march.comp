@@ -41,12 +41,12 @@ layout(constant_id = 10) const bool share_rays = false;
 #define INVOCATIONS (MASU_GROUP * MASU_GROUP)
 #define RAYS (MASU_TILE * MASU_TILE)
 
-/* Of each pixel of the tile: minus where the march begins, then what it has found, below 0 if nothing; where it ends; the
- * distance of a half-space, or -1. */
+/* Per pixel of the tile. ray_start: minus the start distance, later the hit distance, negative for a miss. ray_limit: the
+ * end distance. ray_flat: the distance of a half-space, or -1. */
 shared float ray_start[RAYS];
 shared float ray_limit[RAYS];
 shared float ray_flat[RAYS];
-shared uint taken; /* of them, by now */
+shared uint taken; /* rays that are assigned to invocations so far */
 
 /* Of the tile: its first pixel, where that one is, what is between two pixels. Wrong turn: what the first pixel looks through,
  * and sums of what is between two of a row and a column: at the horizon of a plane that is 1e5 units long depths were off by
@@ -54,7 +54,7 @@ shared uint taken; /* of them, by now */
 uvec2 size, corner;
 vec2 ndc_corner, ndc_step;
 
-/* Where in the tile its pixel i is: 8x8 after 8x8. */
+/* Position of pixel i in the tile, in 8x8 blocks. */
 uvec2 place_of(uint i)
 {
     return masu_block_at(i & uint(INVOCATIONS - 1)) + (uvec2(i >> 6 & 1u, i >> 7) << 3u);
@@ -86,8 +86,7 @@ void look_from(uvec2 tile)
     ndc_step = 2.0 / vec2(size);
 }
 
-/* The box of the listed parts as the eye sees it. Not that of the SDF's bounds, too: a Vega has no registers left for what
- * all rays share, and would keep some of it elsewhere. */
+/* Camera-relative bounds of the listed parts. The SDF's bounds are not kept here too: on Vega that would spill registers. */
 vec3 box_low, box_high;
 
 void look_at_boxes()
@@ -97,7 +96,7 @@ void look_at_boxes()
     box_high = box_high - eye_hi - eye_lo;
 }
 
-/* Between which distances the ray is within a box. */
+/* Entry and exit distance of a ray and a box. */
 vec2 within(vec3 low, vec3 high, vec3 inverse)
 {
     vec3 a = low * inverse;
@@ -107,7 +106,7 @@ vec2 within(vec3 low, vec3 high, vec3 inverse)
     return vec2(max(enter.x, max(enter.y, enter.z)), min(leave.x, min(leave.y, leave.z)));
 }
 
-/* Where the cone of a pixel's block has stopped. */
+/* Distance at which the cone of a pixel's block stopped. */
 float cone_end(uvec2 at)
 {
 #if MASU_SDF_BLOCK_WORDS > 0
@@ -138,7 +137,7 @@ vec3 prepare(uvec2 place)
     float end = masu_sdf_flat(eye_hi + eye_lo, r.direction, first_t, part);
     float farthest = min(last_t, end);
     vec2 box = within(box_low, box_high, inverse);
-    /* What ends at the very side of the box may be found a little behind it. */
+    /* A hit at the side of the box may be found slightly behind it. */
     last_t = min(min(last_t, box.y) * (1.0 + newton_reach * r.pixel), farthest);
     first_t = max(max(first_t, box.x), cone_end(at));
     return vec3(first_t, last_t, end <= farthest && end < 1e30 ? end : -1.0);
@@ -183,9 +182,9 @@ march_state begin(uint i, out ray r)
 }
 
 /* In one loop: an invocation that is done with one ray takes the next, instead of waiting for the slowest of its subgroup, which
- * took 1.2 to 1.9 times the steps of the mean. With four rays to each that still was 1.4 times for 8 lanes, 1.6 for 16, 2.2 for
- * 64; with the rays shared it is 1.2, 1.4 and 1.8 (engine). Which invocation marches a ray is chance, what is found is
- * not. A CPU driver gains little and pays for the barrier: 1.1 to 1.4 times the march's time. */
+ * took 1.2 to 1.9 times the mean number of steps. With four rays to each that still was 1.4 times for 8 lanes, 1.6 for 16, 2.2 for
+ * 64; with the rays shared it is 1.2, 1.4 and 1.8 (engine). Which invocation marches a ray is not
+ * deterministic, but the results are. A CPU driver gains little and pays for the barrier: 1.1 to 1.4 times the march's time. */
 uint march_all()
 {
     uint evals = 0u;
@@ -223,7 +222,7 @@ void main()
     }
     span_prepare(size);
     uvec2 own = place_of(gl_LocalInvocationIndex);
-    /* Pixels behind the edge of the picture march nothing. */
+    /* Pixels outside the image are not marched. */
     MASU_LOOP for (int k = 0; k < 4; k++) {
         uint i = gl_LocalInvocationIndex + uint(k * INVOCATIONS);
         uvec2 place = own + uvec2((k & 1) << 3, k >> 1 << 3);
@@ -231,7 +230,7 @@ void main()
         if (all(lessThan(corner + place, size))) {
             piece = prepare(place);
         }
-        /* What has no piece to march is marched: nothing is found. */
+        /* A ray without a segment to march is marked as a miss. */
         bool any = listed && piece.x < piece.y;
         ray_start[i] = any ? -piece.x : -1.0;
         ray_limit[i] = any ? piece.y : -1.0;
@@ -250,7 +249,7 @@ void main()
         uvec2 at = corner + place;
         float t = ray_start[i];
         bool known = !(t >= 0.0);
-        t = known ? ray_flat[i] : t; /* -1 behind the edge of the picture */
+        t = known ? ray_flat[i] : t; /* -1 outside the image */
         if (t >= 0.0) {
             float z_scale;
             ray r = ray_of(place, z_scale);

@@ -1,6 +1,6 @@
 /*
- * specular_keep_fine.comp: the full-resolution history, for the next frame. Of the listed tiles alone: which texels
- * have traced anything the kept guide says (specular_keep.comp).
+ * specular_keep_fine.comp: stores the full-resolution reflection history for the next frame. Only listed tiles are
+ * written: the guide stored by specular_keep.comp marks the texels that have traced samples.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

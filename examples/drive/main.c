@@ -1,5 +1,5 @@
 /* main.c: drive SCENE.masu TRACK: a racing game for one player, and an example of a game on Masu.
- * docs/drive.md explains the controls, and which example each file is.
+ * docs/drive.md explains the controls, and what each file demonstrates.
  *
  * All memory is allocated before the first frame; then heap_closed is set, and any later
  * allocation ends the program. With a script the clock is not used: the same script gives the
@@ -29,15 +29,15 @@ typedef struct game {
     double step; /* seconds of a script's frame */
 } game;
 
-static const char usage[] = "usage: drive [options] SCENE.masu TRACK\n"
-                            "  -s WxH   of the window (1280x720)\n"
-                            "  -t MS    a frame's time, which the governor keeps (33)\n"
-                            "  -r N     always this rung instead\n"
-                            "  -f FILE  a script: keys, resizes, screenshots frame by frame\n"
-                            "  -v       under the Khronos validation layer\n"
-                            "keys: arrows or WASD, Space handbrake; L lights, N dusk, R rain, B "
-                            "bloom, O autopilot, P pause,\n"
-                            "      F12 photo, Escape\n";
+static const char usage[] =
+    "usage: drive [options] SCENE.masu TRACK\n"
+    "  -s WxH   of the window (1280x720)\n"
+    "  -t MS    a frame's time, which the governor keeps (33)\n"
+    "  -r N     always this rung instead\n"
+    "  -f FILE  a script: keys, resizes, screenshots frame by frame\n"
+    "  -v       under the Khronos validation layer\n"
+    "keys: arrows or WASD, Space handbrake; L lights, N dusk, R rain, B bloom, O autopilot, P pause,\n"
+    "      F12 photo, Escape\n";
 
 static void key(game *g, SDL_Scancode code, bool down) {
     g->keys[code] = down;

@@ -161,7 +161,7 @@ void masu_occlusion_write(masu_occlusion *o, masu_visible *s, const masu_instanc
         s->slot_views[f->slot][part].occluders = n;
     }
     for (uint32_t view = 0; view < plan->views; view++) {
-        /* All that stage 1 has kept, one after the other. */
+        /* The instances that stage 1 kept, without gaps. */
         uint32_t *kept = words + d->kept + view * ((uint64_t)plan->scene.instances + 1), count = 0;
         for (uint32_t i = 0; i < plan->scene.instances; i++) {
             if (s->marks[i] >> view & 1u) kept[++count] = i;

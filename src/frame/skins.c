@@ -110,7 +110,7 @@ static void widen(const float from[12], double to[12]) {
     for (uint32_t k = 0; k < 12; k++) to[k] = (double)from[k];
 }
 
-/* 0: it has no inverse. */
+/* Returns 0 if the matrix has no inverse. */
 static int invert(const double a[12], double out[12]) {
     double c[3][3];
     for (uint32_t i = 0; i < 3; i++) {
