@@ -16,8 +16,8 @@ bool masu_bake_read_file(const char *path, size_t limit, masu_bake_buffer *out);
 /* Replaces `path`; a device or pipe (/dev/null, /dev/stdout) is written straight into. */
 bool masu_bake_write_file(const char *path, const void *data, size_t bytes);
 
-/* A new empty directory; removed with all it holds at exit, or by the next call in any process if this one cannot any
- * more. NULL after an error. */
+/* A new empty directory; removed with all it holds at exit, or by the next call in any process
+ * if this one cannot any more. NULL after an error. */
 const char *masu_bake_temporary_directory(void);
 /* Those whose makers are dead. */
 void masu_bake_sweep_temporary(void);

@@ -136,7 +136,8 @@ typedef struct masu_bake_sdf {
 
 typedef struct masu_bake_description {
     const char *file; /* that was read */
-    bool first_look;  /* camera, light, ground and reflections by the model's shape (build/first_look.h) */
+    /* camera, light, ground and reflections by the model's shape (build/first_look.h) */
+    bool first_look;
     bool default_reflections; /* not set by the scene: off for very many triangles */
     masu_bake_model *models;
     size_t model_count;
