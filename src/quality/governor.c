@@ -15,9 +15,10 @@
 #define MARGIN_KEEP (0.5 * MASU_GOVERNOR_MARGIN)
 /* Frames without a sample: half a second at 60 Hz. The longest delay of samples is a few frames. */
 #define STALE_FRAMES 30u
-/* Cost ratio: a rise by less than this waits for a larger one, because each change is visible. */
+/* Cost ratio: a rise by less than this waits for a larger one, because each change is visible, */
 #define STEP_UP 1.5
-/* Dwells at a steady load until a rung is settled. A small rise waits for half of them. */
+#define STEP_WAIT 2.5 /* for this many dwells: two would follow waves of the load of some seconds. */
+/* Dwells at a steady load until a rung is settled: above STEP_WAIT, or no small rise would happen. */
 #define SETTLE_WAIT 4u
 /* Ratio: a load or time that differs by more than this factor is another one. About the step between
  * two rungs of a built-in ladder. */
@@ -303,7 +304,8 @@ static int fell_in_vain(masu_governor *g, uint64_t frame, uint64_t still) {
 }
 
 static void choose(masu_governor *g, uint64_t frame) {
-    double lead = masu_governor_lead(g, frame);
+    double lead = masu_governor_lead(g, frame), keep = MARGIN_KEEP;
+    if (g->slope > 0.0 && !g->follows) keep *= 1.0 + masu_governor_moves(g);
     if (g->jumped || masu_governor_moves(g) > 0.5) g->restless = frame;
     if (g->load < g->load_low) g->load_low = g->load;
     if (g->load > g->load_high) g->load_high = g->load;
@@ -312,7 +314,7 @@ static void choose(masu_governor *g, uint64_t frame) {
     }
     uint64_t held = frame - g->changed + g->held_before;
     uint64_t dwell = (uint64_t)(g->dwell > MASU_GOVERNOR_HOLD ? g->dwell : MASU_GOVERNOR_HOLD) * g->patience;
-    int over = masu_governor_upper(g, g->rung, lead, 1, MARGIN_KEEP) > g->target, urgent = g->misses >= 2;
+    int over = masu_governor_upper(g, g->rung, lead, 1, keep) > g->target, urgent = g->misses >= 2;
     masu_governor_reason why = g->jumped ? MASU_GOVERNOR_REASON_JUMP
                                : over    ? MASU_GOVERNOR_REASON_DOWN
                                          : MASU_GOVERNOR_REASON_EMERGENCY;
@@ -357,7 +359,7 @@ static void choose(masu_governor *g, uint64_t frame) {
         return;
     }
     int worth = g->cost[r] >= STEP_UP * g->cost[g->rung] || r == g->best;
-    if (held < dwell || (!worth && held < SETTLE_WAIT / 2 * dwell) ||
+    if (held < dwell || (!worth && (double)held < STEP_WAIT * (double)dwell) ||
         (g->settled_load >= 0.0 && g->load * MASU_SURVEY_GAIN > g->settled_load) ||
         repeats_a_mistake(g)) {
         g->reason = MASU_GOVERNOR_REASON_WAIT;

@@ -38,6 +38,7 @@
 #define FAR_COUNT 3u /* above: two may be consecutive spikes */
 /* Below the least plausible time: likely a stopped timer. 1.5 s at 60 Hz. */
 #define LIE_COUNT 90u
+#define GATE 3.0 /* deviations: samples farther away are outliers, one of 370 of white noise; */
 /* Of the prediction: samples within this fraction are no outliers. Ordinary changes of load. */
 #define GATE_LEAST 0.2
 #define ODD_AGREE 1.5 /* factor within which two outliers agree */
@@ -230,7 +231,7 @@ static void follow(masu_governor *g, const masu_governor_sample *s, double ms, i
     double pixel = c * g->load, rung = pixel * pixel * g->cost_variance[s->rung];
     double variance = masu_largest(state, 0.0) + rung + own, deviation = sqrt(variance);
     if (ms < FAR * expected && ms * FAR > expected) follow_noise(g, s->rung, ms);
-    if (fabs(innovation) > masu_largest(MASU_GOVERNOR_MARGIN * deviation, GATE_LEAST * expected)) {
+    if (fabs(innovation) > masu_largest(GATE * deviation, GATE_LEAST * expected)) {
         if (is_certain(g, s, ms, expected, sure)) {
             /* At a new rung the cost may be wrong; at the same rung the load has changed. */
             if (s->rung == g->fitted) masu_survey_forget(&g->survey);

@@ -9,8 +9,8 @@
 #include "quality/trust.h"
 
 #define MASU_GOVERNOR_RUNGS 16u
-/* Deviations of one sample: margin for selecting a rung, and distance of outliers. White noise
- * exceeds it in less than one of 100 frames. */
+/* Deviations of one sample: margin for selecting a rung. White noise exceeds it in less than one of
+ * 100 frames. */
 #define MASU_GOVERNOR_MARGIN 2.5
 /* Frames after a rise in which the new rung is judged: a few slow clocks' measurement periods. */
 #define MASU_GOVERNOR_TRIAL 12u
