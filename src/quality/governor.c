@@ -35,8 +35,6 @@
  * measures all rungs. */
 #define SURVEY_FIXED 0.5
 
-_Static_assert(MASU_SURVEY_RUNGS == MASU_GOVERNOR_RUNGS, "a survey of every rung");
-
 /* ---- Init ------------------------------------------------------------------------------------ */
 
 /* Applies the fields that may change later. Fields out of range are treated as 0. */

@@ -8,7 +8,7 @@
 #include "quality/survey.h"
 #include "quality/trust.h"
 
-#define MASU_GOVERNOR_RUNGS 16u
+#define MASU_GOVERNOR_RUNGS MASU_SURVEY_RUNGS
 /* Deviations of one sample: margin for selecting a rung. White noise exceeds it in less than one of
  * 100 frames. */
 #define MASU_GOVERNOR_MARGIN 2.5
