@@ -15,6 +15,7 @@ static void open_governed(masu_session *s, uint32_t width, uint32_t height) {
     masu_session_desc d = test_desc("test_both", width, height);
     d.desc.rung_count = 4;
     for (uint32_t r = 0; r < 4; r++) d.desc.rungs[r].scale = 1.0f - 0.2f * (float)r;
+    d.desc.resizable = 1;
     d.desc.governor = (masu_governor_desc){.mode = MASU_GOVERNOR_ON, .wall_only = 1};
     open_session(s, &d);
 }
