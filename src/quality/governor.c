@@ -17,22 +17,23 @@
 #define STALE_FRAMES 30u
 /* Cost ratio: a rise by less than this waits for a larger one, because each change is visible, */
 #define STEP_UP 1.5
-#define STEP_WAIT 2.5 /* for this many dwells: two would follow waves of the load of some seconds. */
-/* Dwells at a steady load until a rung is settled: above STEP_WAIT, or no small rise would happen. */
+#define STEP_WAIT 2.5 /* for this many dwells: two would follow waves of the load of a second. */
+/* Dwells at a steady load until a rung is settled. Above STEP_WAIT, or no small rise would
+ * happen. */
 #define SETTLE_WAIT 4u
-/* Ratio: a load or time that differs by more than this factor is another one. About the step between
- * two rungs of a built-in ladder. */
+/* Ratio: a load or time that differs by more than this factor is another one. About the step
+ * between two rungs of a built-in ladder. */
 #define OTHER 1.25
-/* A clock that follows its load makes a cheap rung as slow as a better one. Trials find out. Of the
- * target: trials only below this time, because the slowest such clock keeps 90 % busy. */
+/* A clock that follows its load makes a cheap rung as slow as a better one. Trials detect
+ * it. Fraction of the target: trials only below this time, as such clocks keep 90 % busy. */
 #define TRIAL_BUSY 0.92
 /* Frames of steady load before the first trial: 30 s at 60 Hz, as a trial costs missed frames. */
 #define TRIAL_WAIT 1800u
 /* Factor on the predicted time: a shorter time shows that the clock has followed. Outside the 2 to
  * 3 % by which a correct prediction errs. */
 #define TRIAL_FOLLOWS 0.96
-/* Of the cheapest rung's time: with more of it fixed, costs of other rungs say little, and a survey
- * measures all rungs. */
+/* Fraction of the cheapest rung's time: if more is fixed, costs no longer predict the other rungs,
+ * and a survey measures all of them. */
 #define SURVEY_FIXED 0.5
 
 /* ---- Init ------------------------------------------------------------------------------------ */
@@ -77,7 +78,7 @@ void masu_governor_init(masu_governor *g, const masu_governor_desc *desc,
 
 /* ---- Rules ----------------------------------------------------------------------------------- */
 
-/* The best rung below the present one that meets the target for a dwell, at the present slope; the
+/* The best rung below the present one that keeps the target for a dwell, at the present slope; the
  * worst rung if none does. */
 static uint32_t fall(const masu_governor *g, double lead, int *fits) {
     double last = lead + (g->follows ? 0.0 : (double)g->dwell);
@@ -91,17 +92,17 @@ static uint32_t fall(const masu_governor *g, double lead, int *fits) {
     return g->worst;
 }
 
-/* Whether a rung meets the target at this load. */
+/* Whether a rung keeps the target at this load. */
 static int fits_load(const masu_governor *g, uint32_t rung, double load) {
     return (g->fixed + g->cost[rung] * load) * (1.0 + MASU_GOVERNOR_MARGIN * g->noise) <= g->target;
 }
 
-/* The best rung that meets the target with headroom, now and for a dwell; else the present one. */
+/* The best rung that keeps the target with headroom, now and for a dwell; else the present one. */
 static uint32_t rise(masu_governor *g, uint64_t frame, double lead) {
     uint32_t barrier =
         masu_survey_barrier(&g->survey, frame, masu_governor_predict(g, g->survey.below), g->noise);
     double most = g->target * (1.0 - g->headroom), peak = masu_spikes_peak(&g->spikes);
-    if (peak > 0.0 && !fits_load(g, g->worst, peak)) peak = 0.0; /* no rung meets the target then */
+    if (peak > 0.0 && !fits_load(g, g->worst, peak)) peak = 0.0; /* no rung keeps the target then */
     for (uint32_t r = barrier > g->best ? barrier : g->best; r < g->rung; r++) {
         if (peak > 0.0 && !fits_load(g, r, peak)) continue;
         double now = masu_governor_upper(g, r, lead, 1, MASU_GOVERNOR_MARGIN),
@@ -271,8 +272,8 @@ static void leave(masu_governor *g, uint64_t frame, double lead, masu_governor_r
     }
     /* A jump right after a rise: the cost of the rung is wrong, not the load. */
     uint32_t below = g->survey.below;
-    if (g->rising && frame - g->changed <= MASU_GOVERNOR_TRIAL && why == MASU_GOVERNOR_REASON_JUMP &&
-        below > g->rung && below <= g->worst)
+    if (g->rising && frame - g->changed <= MASU_GOVERNOR_TRIAL &&
+        why == MASU_GOVERNOR_REASON_JUMP && below > g->rung && below <= g->worst)
         r = below;
     masu_survey_undo(&g->survey, r);
     int rested = (!g->changes || frame - g->restless > MASU_SPIKE_FRAMES) &&
@@ -311,7 +312,8 @@ static void choose(masu_governor *g, uint64_t frame) {
         if (g->patience > 1) masu_governor_forget_mistakes(g);
     }
     uint64_t held = frame - g->changed + g->held_before;
-    uint64_t dwell = (uint64_t)(g->dwell > MASU_GOVERNOR_HOLD ? g->dwell : MASU_GOVERNOR_HOLD) * g->patience;
+    uint64_t dwell = g->dwell > MASU_GOVERNOR_HOLD ? g->dwell : MASU_GOVERNOR_HOLD;
+    dwell *= g->patience;
     int over = masu_governor_upper(g, g->rung, lead, 1, keep) > g->target, urgent = g->misses >= 2;
     masu_governor_reason why = g->jumped ? MASU_GOVERNOR_REASON_JUMP
                                : over    ? MASU_GOVERNOR_REASON_DOWN

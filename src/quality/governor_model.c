@@ -346,5 +346,6 @@ double masu_governor_predict(const masu_governor *g, uint32_t rung) {
 }
 
 double masu_governor_lead(const masu_governor *g, uint64_t frame) {
-    return masu_within(frame > g->newest ? (double)(frame - g->newest) : 0.0, 0.0, (double)MASU_GOVERNOR_HOLD);
+    double lead = frame > g->newest ? (double)(frame - g->newest) : 0.0;
+    return masu_within(lead, 0.0, (double)MASU_GOVERNOR_HOLD);
 }

@@ -14,10 +14,10 @@
 #define MASU_GOVERNOR_MARGIN 2.5
 /* Frames after a rise in which the new rung is judged: a few slow clocks' measurement periods. */
 #define MASU_GOVERNOR_TRIAL 12u
-/* Frames: shortest stay on a rung, longest extrapolation, and unconfirmed outliers that must agree.
+/* Frames: shortest stay on a rung, longest extrapolation, unconfirmed outliers that must agree.
  * More than the delay of samples, and too short to be noticed. */
 #define MASU_GOVERNOR_HOLD 8u
-/* Largest exponent of back-off: waits grow up to 64 times, half a minute for a dwell of 24 frames. */
+/* Largest exponent of back-off: waits grow up to 64 times, half a minute for 24 frames. */
 #define MASU_GOVERNOR_DOUBLINGS 6u
 /* Relative deviation of a sample: the best that timers achieve, and more than any usable clock. */
 #define MASU_GOVERNOR_NOISE_LEAST 0.003

@@ -113,7 +113,8 @@ uint32_t masu_survey_barrier(masu_survey *s, uint64_t frame, double ms, double n
     }
     if (ms < MASU_SURVEY_RANGE * s->barrier_ms && s->barrier_ms < MASU_SURVEY_RANGE * ms)
         s->barrier_near = frame;
-    int is_old = frame - s->barrier_near > MASU_SPIKE_FRAMES || frame - s->barrier_made > BARRIER_FRAMES;
+    int is_old = frame - s->barrier_near > MASU_SPIKE_FRAMES ||
+                 frame - s->barrier_made > BARRIER_FRAMES;
     if (s->barrier && is_old) s->barrier = s->failures = 0;
     return s->barrier;
 }

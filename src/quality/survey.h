@@ -11,8 +11,8 @@
 #include <stdint.h>
 
 #define MASU_SURVEY_RUNGS 16u
-/* Ratio: times, costs and loads within it are equal. A rung that saves less is not worth its loss of
- * quality. */
+/* Ratio: times, costs and loads within it are equal. A rung that saves less is not worth its loss
+ * of quality. */
 #define MASU_SURVEY_GAIN 1.05
 /* Ratio: a result of measurements holds while times stay within it. Three times the change that
  * counts as equal, so that drift and noise do not end it. */

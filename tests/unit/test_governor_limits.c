@@ -111,7 +111,7 @@ static void noise_follows_within_a_second(void **state) {
     assert_true(g.noise == 0.5);
 }
 
-/* Before noise is known, a sample and the load that it gives deviate by 2 % each. A rung is left at
+/* Before noise is measured, a sample and the load that it gives deviate by 2 % each. A rung is left at
  * 1.25 of their deviations: 2.83 %. */
 static void the_first_time_has_a_margin(void **state) {
     (void)state;
@@ -126,7 +126,7 @@ static void the_first_time_has_a_margin(void **state) {
     }
 }
 
-/* With times known to 0.3 %, a prior cost with a deviation of 0.5 % is corrected by 0.25 / 0.34 of
+/* With a noise of 0.3 %, a prior cost with a deviation of 0.5 % is corrected by 0.25 / 0.34 of
  * the difference. */
 static void a_visit_corrects_the_cost(void **state) {
     (void)state;
@@ -194,6 +194,17 @@ static void a_survey_measures_all_rungs(void **state) {
     }
 }
 
+/* A load that remains high for more than 16 frames after a fall is a new load, not a spike. */
+static void spikes_are_short(void **state) {
+    (void)state;
+    masu_spikes s = {.calm = 10.0};
+    masu_spikes_fell(&s, 100, 20.0);
+    masu_spikes_follow(&s, 116, 20.0, 0);
+    assert_true(s.open && s.calm == 10.0);
+    masu_spikes_follow(&s, 117, 20.0, 0);
+    assert_true(!s.open && s.calm == 20.0);
+}
+
 static void the_limits_of_a_state(void **state) {
     (void)state;
     masu_governor g = certain(0.0, 10.0, 0.01);
@@ -214,8 +225,8 @@ static void the_limits_of_a_state(void **state) {
     assert_int_equal(g.count, 16);
 }
 
-/* A GPU time that stays bit-identical across a change of rung is not measured, even if the wall
- * time stays the same too. */
+/* A GPU time that is bit-identical across a change of rung is not a measurement, even if the wall
+ * time is the same too. */
 static void a_clock_that_ignores_the_rung_is_frozen(void **state) {
     (void)state;
     for (uint32_t rung = 0; rung < 2; rung++) {
@@ -252,6 +263,7 @@ int main(void) {
         cmocka_unit_test(a_small_rise_waits),
         cmocka_unit_test(frames_without_samples),
         cmocka_unit_test(a_survey_measures_all_rungs),
+        cmocka_unit_test(spikes_are_short),
         cmocka_unit_test(the_limits_of_a_state),
         cmocka_unit_test(a_clock_that_ignores_the_rung_is_frozen),
     };
