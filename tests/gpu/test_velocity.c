@@ -462,7 +462,7 @@ static void take_static(const char *scene, float depth[W * H], uint16_t velocity
     masu_plan_of(s.m, &plan);
     for (uint32_t i = 0; i < plan.pass_count; i++) {
         if (strstr(plan.passes[i].name, "velocity"))
-            assert_int_equal(plan.passes[i].rungs, strcmp(plan.passes[i].name, pass) == 0);
+            assert_int_equal(plan.passes[i].active, strcmp(plan.passes[i].name, pass) == 0);
     }
     for (uint32_t n = 0; n < 2; n++) {
         masu_frame_desc frame = {.camera = &cameras[n], .time = n};
