@@ -177,7 +177,10 @@ void main()
         polygon = depth > 0.0 && depth == texelFetch(raster_depth, ivec2(at), 0).r;
 #endif
         if (!polygon) {
-            vec4 velocity = depth > 0.0 ? surface_velocity(at, size, depth) : masu_sky_velocity(at, size);
+            vec4 velocity = masu_sky_velocity(at, size);
+            if (depth > 0.0) {
+                velocity = surface_velocity(at, size, depth);
+            }
             MASU_STORE_HALF(velocity_image, at, velocity);
         }
     }

@@ -149,8 +149,8 @@ typedef struct lister {
     uint32_t kept[MASU_MAX_VIEWS][FORMS]; /* lengths of the lists */
 } lister;
 
-/* Appends an instance to the list of each view that it is marked for. Its LOD does not depend on the
- * view: it is chosen once. */
+/* Appends an instance to the list of each view that it is marked for. Its LOD does not depend on
+ * the view: it is chosen once. */
 static void list_one(lister *l, uint32_t i) {
     uint32_t marks = l->s->marks[i] & ((1u << l->f->plan->views) - 1u), level = 0;
     if (!marks) return;
@@ -165,8 +165,8 @@ static void list_one(lister *l, uint32_t i) {
     }
 }
 
-/* The counts of the forms of a mesh in a view: its draw commands, which are never read (upload memory
- * may be write-combined), and the statistics. */
+/* The counts of the forms of a mesh in a view: its draw commands, which are never read (upload
+ * memory may be write-combined), and the statistics. */
 static void write_counts(const lister *l, uint32_t view, VkDrawIndexedIndirectCommand *draws) {
     masu_view_stats *counts = &l->s->slot_views[l->f->slot][view];
     for (uint32_t level = 0; level < 1 + l->mesh->lod_count; level++) {

@@ -145,7 +145,8 @@ static float radius(const masu_cull_plane *p, const float h[3], uint32_t kind) {
 
 #define ALL_OUT 0x80u
 
-/* Returns 0 if the group is inside of plane p, its bit if they intersect, ALL_OUT if it is outside. */
+/* Returns 0 if the group is inside of plane p, its bit if it intersects it, ALL_OUT if it is
+ * outside. */
 static inline uint32_t test_plane(const masu_cull_node *node, const masu_cull_view *view,
                                   uint32_t p) {
     float m = signed_distance(&view->planes[p], node->box.center);
@@ -210,7 +211,8 @@ static uint32_t outside_simd(const masu_cull_set *set, uint32_t at, const masu_c
 #define outside_simd outside_plain
 #endif
 
-static void mark(const masu_cull_set *set, uint32_t at, uint32_t kept, uint8_t *marks, uint8_t bit) {
+static void mark(const masu_cull_set *set, uint32_t at, uint32_t kept, uint8_t *marks,
+                 uint8_t bit) {
     for (; kept; kept >>= 1, at++) {
         if (kept & 1u) marks[set->items[at]] |= bit;
     }
