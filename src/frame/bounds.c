@@ -97,7 +97,7 @@ void masu_bounds_copy_scene(masu_bounds *b, const masu_frame_plan *plan, const m
  * with. */
 void masu_bounds_move(masu_bounds *b, const masu_frame_plan *plan, const masu_instances *in,
                       uint32_t instance) {
-    uint32_t position = b->positions[instance] & ~MASU_BOX_MOVED;
+    uint32_t position = masu_bounds_position(b, instance);
     set_box(b, in, position, instance);
     if (position >= plan->scene.group_items || b->positions[instance] & MASU_BOX_MOVED) return;
     b->positions[instance] |= MASU_BOX_MOVED;
@@ -105,7 +105,7 @@ void masu_bounds_move(masu_bounds *b, const masu_frame_plan *plan, const masu_in
 }
 
 void masu_bounds_of(const masu_bounds *b, uint32_t instance, float box[6]) {
-    uint32_t position = b->positions[instance] & ~MASU_BOX_MOVED;
+    uint32_t position = masu_bounds_position(b, instance);
     for (uint32_t k = 0; k < 6; k++) box[k] = b->boxes[k * b->box_stride + position];
 }
 

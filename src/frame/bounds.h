@@ -30,6 +30,11 @@ void masu_bounds_copy_scene(masu_bounds *b, const masu_frame_plan *plan, const m
 void masu_bounds_move(masu_bounds *b, const masu_frame_plan *plan, const masu_instances *in,
                       uint32_t instance);
 
+/* Index of an instance's box. */
+static inline uint32_t masu_bounds_position(const masu_bounds *b, uint32_t instance) {
+    return b->positions[instance] & ~MASU_BOX_MOVED;
+}
+
 /* Middle and half size of an instance's box. */
 void masu_bounds_of(const masu_bounds *b, uint32_t instance, float box[6]);
 /* As masu_cull takes them. */

@@ -328,7 +328,7 @@ static void follow_sdf(masu_local_shadows *s, const masu_frame_data *f) {
         s->sdf_box[3 + k] = (float)(0.5 * (high - low) * 1.0001);
     }
     uint64_t hash = masu_fnv1a64(f->u.anchor, 3 * sizeof *f->u.anchor);
-    if (f->plan->needs.dynamic) {
+    if (f->plan->needs.moving) {
         hash ^= masu_fnv1a64(f->u.sdf_params, sizeof f->u.sdf_params);
     }
     if (f->plan->needs.timed)

@@ -138,6 +138,20 @@ static uint32_t write_pairs(const masu_occlusion *o, const masu_visible *s,
     return n;
 }
 
+/* For each view, the number of instances that stage 1 has kept, then these. The list is never read:
+ * upload memory may be write-combined. */
+static void write_kept(const masu_visible *s, const masu_frame_plan *plan, uint32_t *to) {
+    uint64_t stride = (uint64_t)plan->scene.instances + 1;
+    uint32_t counts[MASU_MAX_VIEWS] = {0}, all = (1u << plan->views) - 1u;
+    for (uint32_t i = 0; i < plan->scene.instances; i++) {
+        uint32_t marks = s->marks[i] & all;
+        for (uint32_t *kept = to, *count = counts; marks; marks >>= 1, kept += stride, count++) {
+            if (marks & 1u) kept[++*count] = i;
+        }
+    }
+    for (uint32_t view = 0; view < plan->views; view++) to[view * stride] = counts[view];
+}
+
 void masu_occlusion_write(masu_occlusion *o, masu_visible *s, const masu_instances *in,
                           const masu_views *views, const masu_frame_data *f) {
     const masu_frame_plan *plan = f->plan;
@@ -160,12 +174,5 @@ void masu_occlusion_write(masu_occlusion *o, masu_visible *s, const masu_instanc
         memcpy(draw + offsetof(VkDrawIndirectCommand, instanceCount), &n, sizeof n);
         s->slot_views[f->slot][part].occluders = n;
     }
-    for (uint32_t view = 0; view < plan->views; view++) {
-        /* The instances that stage 1 kept, without gaps. */
-        uint32_t *kept = words + d->kept + view * ((uint64_t)plan->scene.instances + 1), count = 0;
-        for (uint32_t i = 0; i < plan->scene.instances; i++) {
-            if (s->marks[i] >> view & 1u) kept[++count] = i;
-        }
-        kept[0] = count;
-    }
+    write_kept(s, plan, words + d->kept);
 }

@@ -7,6 +7,7 @@
 typedef struct masu_visible {
     masu_blob_lod *lods; /* [plan->scene.lods], if the plan has any */
     uint8_t *levels;     /* [instance]: 0, or the LOD of its last draw; only with LODs */
+    uint32_t levels_chosen; /* LODs chosen in the last frame: at most one per instance */
     uint8_t *group_states; /* [view][group] */
     uint8_t *marks;        /* [instance]: a bit per view that stage 1 has kept it for */
     masu_view_stats slot_views[MASU_MAX_FLIGHT][MASU_MAX_VIEWS];

@@ -58,7 +58,8 @@ typedef struct MASU_MAY_ALIAS masu_scene_data {
     uint32_t sdf_params; /* run-time parameters */
     uint32_t sdf_parts, sdf_slots, sdf_block_words;
     uint32_t sdf_dynamic;  /* flag: slots depend on parameters or time */
-    uint32_t sdf_timed;    /* flag: some of these depend on time */
+    uint32_t sdf_timed;    /* flag: the field or its surfaces depend on time */
+    uint32_t sdf_static;   /* flag: the field never changes; its surfaces may */
     uint32_t sdf_anchored; /* flag: precise far from the origin (docs/sdf.md) */
 #ifdef MASU_LAB
     uint32_t sdf_march; /* bit per masu_march that the blob has code for */

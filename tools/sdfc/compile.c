@@ -116,8 +116,6 @@ static void fill_result(sdfc *c, masu_sdfc_result *out) {
     out->block_words = sdfc_block_words(c);
     out->glossiest = least_roughness(c);
     out->timeless = c->time_expr < 0;
-    /* masu_time() */
-    for (int i = 0; i < c->part_count; i++) out->timeless = out->timeless && !out->parts[i].user;
     out->anchored = c->place_count > 0;
     for (int i = 0; i < c->dynamic_count; i++) {
         const sdfc_expr *e = &c->exprs[c->dynamic_slots[2 * i + 1]];

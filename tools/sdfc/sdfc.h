@@ -73,7 +73,7 @@ typedef struct masu_sdfc_result {
     uint32_t block_words; /* that say what of the field matters in a block of pixels, at most
                              MASU_SDFC_BLOCK_WORDS_MAX; 0: it is one whole */
     bool dynamic;     /* slots depend on parameters or time */
-    bool timeless;    /* none depends on time */
+    bool timeless;    /* no expression uses time; GLSL of a block may */
     bool anchored;    /* slots depend on the anchor */
     double glossiest; /* least roughness that a part which does not shine may have; 1: all do */
 } masu_sdfc_result;

@@ -186,7 +186,8 @@ static bool build_scene(masu_bake_description *d, const masu_bake_options *optio
     free(panorama.rgb);
     if (options->describe) return true;
     return !d->sdf.source || masu_bake_compile_march(content, d->sdf.source, &d->sdf.occlusion,
-                                                     d->reflections.wanted, d->probes.live, options->variants);
+                                                     d->sdf.is_static, d->reflections.wanted,
+                                                     d->probes.live, options->variants);
 }
 
 static bool build_probes(const masu_bake_description *d, const masu_bake_options *options,

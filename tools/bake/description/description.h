@@ -129,6 +129,7 @@ typedef struct masu_bake_sdf {
     masu_bake_box bounds;
     double lipschitz /* 0: measured */, max_distance;
     bool anchored;
+    bool is_static; /* declared: a field that may change is an error */
     masu_bake_occlusion occlusion;
     masu_bake_sdf_param *params;
     size_t param_count;

@@ -21,12 +21,15 @@ typedef struct masu_bake_occlusion {
     double radius, strength;
 } masu_bake_occlusion;
 
-/* Reads the scene's GLSL and fills MARCH_SPIRV. The content's instances, lights and SDF
- * parameters are complete: they decide how the shader is compiled. A .sdf brings its own
- * parameters, which are added. reflected: rays of reflections meet it. Reports errors under the
- * GLSL's own name and lines. */
+/* Reads the scene's GLSL and fills MARCH_SPIRV. The content's instances, lights and SDF parameters are
+ * complete: they decide how the shader is compiled. A .sdf brings its own parameters, which are
+ * added. reflected: rays of reflections meet it. is_static: the scene declares that the field never
+ * changes; one that reads time, or a parameter that may change, is then an error. A field that does
+ * neither is static without the declaration: the blob then has no VELOCITY_SPIRV.
+ * Reports errors under the GLSL's own name and lines. */
 bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path,
-                             const masu_bake_occlusion *occlusion, bool reflected, bool bounced, bool variants);
+                             const masu_bake_occlusion *occlusion, bool is_static, bool reflected, bool bounced,
+                             bool variants);
 
 /* Whether a source is a file in the language of docs/sdf.md. */
 bool masu_bake_is_sdf(const char *path);
