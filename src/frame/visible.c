@@ -1,21 +1,22 @@
-/* visible.c: what each view draws. The recordings are static: each has every draw, indirect, and
- * how many instances a draw has, and which, is read from two buffers that are written here for each
- * frame:
+/* visible.c: the instances that each view draws. The recordings are static: each contains all draws
+ * as indirect draws. The number of instances of each draw, and their indices, are read from two
+ * buffers that are written here for each frame:
  *
  *   draw commands      [view][draw]    VkDrawIndexedIndirectCommand; instanceCount 0: nothing
- *   drawn instances    [view][list]    of each form of a placed mesh those that are kept
+ *   drawn instances    [view][list]    the visible instances of each LOD of a placed mesh
  *
- * Each form of a mesh, the mesh itself and its LODs, has draws and a list of its own, with room for all
- * instances: where a list begins is recorded. A kept instance is in one of them. Which, depends on the
- * camera and on where the instance is, and on nothing else: the same in each view and whatever is
- * culled. So all views are culled first, and one pass over the instances then fills their lists.
+ * Each LOD of a mesh, including the mesh itself, has separate draws and a list with space for all
+ * instances: the start of each list is recorded. A visible instance is in one list. The LOD depends
+ * only on the camera and the instance's transform: it is the same in each view, with any culling. So
+ * all views are culled first, and one pass over the instances then fills their lists.
  *
- * firstInstance stays 0, since another one would need the feature drawIndirectFirstInstance: a draw
- * finds the start of its list in its push constants. All primitives of a mesh share one list.
- * With stage 2 (occlusion.c) both have a second half, in which the GPU writes what it has left.
+ * firstInstance is always 0, since other values would need the feature drawIndirectFirstInstance: a
+ * draw reads the start of its list from push constants. All primitives of a mesh share one list.
+ * With stage 2 (occlusion.c) both buffers have a second half, in which the GPU writes the instances
+ * that remain.
  *
- * Kept instances stay in order, so that what is not seen changes nothing: of two surfaces at one
- * depth the same one wins with and without it. */
+ * Visible instances keep their order, so that culling does not change the image: of two surfaces at
+ * one depth the same one wins with and without culling. */
 #include "frame/visible.h"
 
 #include "device/bind.h"
@@ -84,9 +85,10 @@ void masu_visible_write_scene(const masu_device *device, const masu_draws *draws
 
 _Static_assert(sizeof(struct masu_instance_data) == 12 * sizeof(float), "three rows of four");
 
-/* Lower bound of the depth of an instance's box: that of its nearest corner, or the distance of the
- * box times the cosine of the widest angle, whichever is larger. The latter also serves boxes beside
- * or behind the camera that cast a shadow. Inside its box the camera sees the full mesh. */
+/* Uses a lower bound of the depth of the box's points in the image: the depth of its nearest
+ * corner, or its distance times the cosine of the widest angle, whichever is larger. The latter
+ * also handles casters next to or behind the camera. A box that contains the camera has the
+ * finest LOD. */
 static uint32_t level_of(const masu_visible *s, const masu_lod_view *view,
                          const masu_bounds *bounds, const masu_instances *in,
                          const masu_batch *mesh, uint32_t instance) {
@@ -106,7 +108,7 @@ static uint32_t level_of(const masu_visible *s, const masu_lod_view *view,
                            (float)depth, view->pixels, view->threshold);
 }
 
-/* Stage 1: the bit of a view in the marks of what it keeps. */
+/* Stage 1: sets the bit of a view in the marks of its visible instances. */
 static void mark(masu_visible *s, const masu_bounds *bounds, const masu_instances *in,
                  const masu_views *views, const masu_frame_data *f, uint32_t view) {
     const masu_scene_data *scene = &f->plan->scene;

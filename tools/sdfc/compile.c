@@ -74,7 +74,8 @@ void sdfc_fill_part(const sdfc *c, int i, masu_sdfc_part *out) {
     }
 }
 
-/* Expressions of time or parameters may have any value; what a surface knows of itself is within its interval. */
+/* Expressions of time or parameters may have any value; what a surface knows of itself is within
+ * its interval. */
 static double roughness_of(const sdfc *c, int material) {
     const sdfc_expr *e = &c->exprs[c->materials[material].value[3]];
     return e->op == SDFC_CONST || (e->local && !e->timed) ? fmax(e->low, 0) : 0;

@@ -54,7 +54,8 @@ static bool write_text(const char *directory, const char *name, const void *text
 
 static void append_scene_header(masu_bake_buffer *text, const masu_bake_content *content,
                                 const char *glsl_path) {
-    /* docs/scene.md promises version 450, of which 440 lacks this for fields (shaders/shaders.mk says why 440). */
+    /* docs/scene.md promises version 450, of which 440 lacks this for fields (shaders/shaders.mk
+     * says why 440). */
     masu_bake_append_text(text, "#extension GL_EXT_shader_integer_mix : require\n");
     for (uint64_t i = 0; i < masu_bake_count(content, MASU_BLOB_SDF_PARAMS); i++) {
         const masu_blob_sdf_param *p =
@@ -109,7 +110,8 @@ static void take_parts(const masu_sdfc_result *scene, masu_bake_content *content
     masu_blob_sdf *sdf = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf);
     sdf->part_count = scene->part_count;
     sdf->block_words = scene->block_words;
-    if (!scene->anchored) sdf->flags &= ~MASU_SDF_ANCHORED; /* nothing in it depends on where it is */
+    /* nothing in it depends on where it is */
+    if (!scene->anchored) sdf->flags &= ~MASU_SDF_ANCHORED;
     if (scene->timeless) sdf->flags |= MASU_SDF_TIMELESS;
     masu_bake_append(&content->section[MASU_BLOB_SLOTS],
                      scene->slot_count ? scene->slots : &no_slot,
@@ -118,7 +120,8 @@ static void take_parts(const masu_sdfc_result *scene, masu_bake_content *content
     content->sdf_glossiest = (float)scene->glossiest;
 }
 
-/* A field that is written by hand says with a line of its own that it has terms (shaders/sdf/terms.glsl). */
+/* A field that is written by hand says with a line of its own that it has terms
+ * (shaders/sdf/terms.glsl). */
 static bool has_terms(const masu_bake_buffer *text) {
     static const char line[] = "#define MASU_SDF_TERMS";
     const char *data = (const char *)text->data;
@@ -320,7 +323,8 @@ static bool load_whole_vectors(const char *path, const char *glsl_path) {
     }
 }
 
-/* What the module was compiled for, in the module itself: masu_scene_bind compares it with the blob's numbers. */
+/* What the module was compiled for, in the module itself: masu_scene_bind compares it with the
+ * blob's numbers. */
 static bool put_record(const char *path, const masu_module_counts *counts, const char *glsl_path) {
     masu_bake_buffer words = {0};
     uint32_t record[MASU_MODULE_RECORD_WORDS] = {MASU_MODULE_RECORD_FIRST};
@@ -412,8 +416,8 @@ enum {
     BOUNCED
 };
 
-/* The shaders that are compiled together with the scene's field, and the sections they go to. The march
- * is first: what does not compile is reported under its name. */
+/* The shaders that are compiled together with the scene's field, and the sections they go to.
+ * The march is first: what does not compile is reported under its name. */
 static const struct {
     const char *source, *define /* or NULL */, *raw, *optimised;
     uint32_t kind;
@@ -604,7 +608,8 @@ static bool try_blocks(masu_bake_content *content, masu_sdfc_result *scene, cons
     return good;
 }
 
-/* Those that a program adds to other scenes have no shadows of the SDF: it is not compiled for them. */
+/* Those that a program adds to other scenes have no shadows of the SDF: it is not compiled for
+ * them. */
 static bool any_light_casts(const masu_bake_content *content) {
     const masu_blob_light *lights = MASU_BAKE_ARRAY(content, MASU_BLOB_LIGHTS, const masu_blob_light);
     for (uint64_t i = 0; i < masu_bake_count(content, MASU_BLOB_LIGHTS); i++) {

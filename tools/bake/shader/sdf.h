@@ -1,11 +1,11 @@
-/* sdf.h: the scene's GLSL, or its .sdf text (docs/sdf.md) by way of the SDF compiler, becomes
- * the march shader that travels in the blob.
+/* sdf.h: the scene's GLSL, or its .sdf text (docs/sdf.md) by way of the SDF compiler, becomes the
+ * march shader that travels in the blob.
  *
- * The march shader and its headers are part of masu-bake (scene_sources.h, made by the build). They
- * are laid out in a temporary directory together with sdf_scene.glsl, which holds one #define per
- * parameter and the scene's own text, and go through glslangValidator, spirv-val, spirv-opt, whole_vectors.h and
- * spirv-val again: the optimiser is a program like any other. docs/scene.md states what the
- * scene's GLSL must define. */
+ * The march shader and its headers are part of masu-bake (scene_sources.h, made by the build).
+ * They are laid out in a temporary directory together with sdf_scene.glsl, which holds one
+ * #define per parameter and the scene's own text, and go through glslangValidator, spirv-val,
+ * spirv-opt, whole_vectors.h and spirv-val again: the optimiser is a program like any other.
+ * docs/scene.md states what the scene's GLSL must define. */
 #ifndef MASU_BAKE_SDF_H
 #define MASU_BAKE_SDF_H
 

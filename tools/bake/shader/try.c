@@ -231,8 +231,9 @@ static bool keeps(trial *t, const double p[3], double fp, const double q[3], dou
     return false;
 }
 
-/* Of the halves of a pair one is as steep as the whole or steeper: going there again and again finds
- * a jump that no random pair is near enough to. The slope of a jump doubles with each halving. */
+/* Of the halves of a pair one is as steep as the whole or steeper: going there again and again
+ * finds a jump that no random pair is near enough to. The slope of a jump doubles with each
+ * halving. */
 static bool narrow(trial *t, double p[3], double fp, double q[3], double fq) {
     double early = 0;
     for (int i = 0; i < HALVINGS; i++) {
