@@ -293,7 +293,7 @@ void main()
                 float alpha = masu_sane(s.roughness * s.roughness, 0.0, 1.0) * (twice ? 1.41421356 : 1.0);
                 float radius;
                 vec3 blurred = masu_behind(pixel, alpha, radius);
-                float share = smoothstep(1.0, 3.0, radius); /* the finest level may be of half size */
+                float share = smoothstep(1.0, 3.0, radius); /* finest level: may be half size */
                 behind = refracts ? mix(behind, blurred, share) : blurred * share;
                 shown = max(shown, share);
             }
