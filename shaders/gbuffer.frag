@@ -152,7 +152,8 @@ void main()
     /* The back of a face has the same relief from below: the whole normal is negated. */
     bent = away ? -bent : bent;
 #ifdef MASU_SURFACE
-    vec3 even = masu_normalize(masu_lean_to_eye(away ? -n : n, in_rel, 0.0), n); /* without relief */
+    /* The normal without the relief. */
+    vec3 even = masu_normalize(masu_lean_to_eye(away ? -n : n, in_rel, 0.0), n);
     if (coat_bends) {
         even = masu_normalize(masu_seen_normal(away ? -bent_coat : bent_coat, in_rel, n), n);
     }

@@ -63,7 +63,7 @@ layout(set = MASU_SET_PASS, binding = MASU_AT_HDR, rgba16f) uniform image2D hdr_
  * texels with a relevant weight. */
 vec4 gathered(uvec2 at, vec3 point, vec3 n, float depth, out float most)
 {
-    vec2 place = (vec2(at) - 0.5) * 0.5; /* the centre of a texel is that of its four pixels */
+    vec2 place = (vec2(at) - 0.5) * 0.5; /* a texel and its four pixels share a centre */
     vec2 corner = floor(place);
     vec2 part = place - corner;
     ivec2 last = ivec2(pc.output_width, pc.output_height) - 1;
@@ -104,7 +104,7 @@ vec4 gathered(uvec2 at, vec3 point, vec3 n, float depth, out float most)
 }
 
 #ifdef MASU_RESOLVED
-const float apart = 0.1;  /* share of the smaller depth: a silhouette, as in temporal_find.comp */
+const float apart = 0.1;  /* share of the closer depth: a silhouette, see temporal_find.comp */
 const float least = 0.03; /* pixels: more than the motion of stationary pixels */
 
 /* Whether a pixel is at the outline of its surface. The outline moves with its surface. */
@@ -119,9 +119,10 @@ bool ends(ivec2 at, float depth)
 }
 
 /* Replaces a pixel's velocity by that of its reflection: temporal.comp then reprojects to the
- * position where the reflection was visible in the surface. The depth is that of the surface's
- * plane there. If the reflection is stationary on screen and the surface is not, as with the sky,
- * the velocity is set to `least`: a velocity of 0 would disable the clamp to current colours. */
+ * position where the reflection was visible in the surface. The depth is the depth of the
+ * surface's plane there. If the reflection is stationary on screen and the surface is not, as with
+ * the sky, the velocity is set to `least`: a velocity of 0 would disable the clamp to current
+ * colours. */
 void follow(uvec2 at, uvec2 texel, float depth, vec3 n)
 {
     uint age = texelFetch(age_image, ivec2(texel), 0).g;

@@ -3,7 +3,7 @@
  * (light/shade.glsl: the sun with its shadow map, punctual lights, ambient light); misses return
  * the sky. A surface in a reflection reflects the sky or the probes.
  *
- * The sun's disc is not included, and neither is the sun's glow around the reflecting surface:
+ * The sun's disc and the sun's light in the sky around the reflecting surface are not included:
  * light.comp adds the sun's highlight exactly.
  *
  * push.accumulate: 1: the reference: radiance is multiplied by the ray weight.

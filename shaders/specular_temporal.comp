@@ -1,7 +1,7 @@
 /*
  * specular_temporal.comp: temporal accumulation of reflections. Each texel's history is sampled at
- * two positions of the previous frame: that of the surface (velocity), and that of the reflected
- * object (specular_motion; averaged over 3x3 texels, since each texel's ray has a different hit).
+ * two positions of the previous frame: of the surface (velocity), and of the reflected object
+ * (specular_motion; averaged over 3x3 texels, since each texel's ray has a different hit).
  * Mirrors need the second, rough surfaces with their wide lobes the first.
  *
  * A history texel is weighted by its distance to the plane of the reprojected surface and by the
@@ -354,7 +354,8 @@ void main()
                     float most_y = max((1.0 + near_mean) * luma.x + usual * masu_sqrt(luma.y), 0.0);
                     /* After a rejected history (frames) the usual brightness is not defined. */
                     if (frames > 1.0 && masu_is_moving(motion) && h.g.roughness > masu_mirror_roughness) {
-                        color = masu_no_brighter(color, most_y); /* not y, see `usual` */
+                        /* y is not limited: its square determines the next frame's limit. */
+                        color = masu_no_brighter(color, most_y);
                     }
                     mean = mix(history, vec4(color, y * y), share);
                     frames += 1.0;

@@ -135,7 +135,7 @@ void main()
 #elif defined(MASU_DEEP)
         if (push.roots != 0u) {
             MASU_STORE_HALF(ldr_image, at, vec4(masu_nearest_half(stored(y)), 0.0));
-        } else if (masu_encoding == MASU_OUTPUT_LINEAR && masu_is_last()) { /* no round trip by PQ */
+        } else if (masu_encoding == MASU_OUTPUT_LINEAR && masu_is_last()) { /* without PQ */
             vec3 white = min(y * push.white, 1e4) * (1.0 / 80.0);
             MASU_STORE_HALF(ldr_image, at, vec4(masu_nearest_half(white), 1.0));
         } else {

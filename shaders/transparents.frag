@@ -3,7 +3,7 @@
  * the background that it removes. Blending: source + (1 - alpha) * destination.
  *
  * Light that passes because of the material's opacity is neither scattered nor mirrored, so opacity
- * does not weaken reflections: clear glass reflects like black glass, and transmits what it does
+ * does not weaken reflections: clear glass reflects like black glass and transmits what it does
  * not reflect. The alpha of a map is different: it is the share of the pixel that the surface
  * covers. Additive surfaces add their scattered light and remove nothing.
  *
