@@ -329,8 +329,8 @@ void light_up(masu_surface s, uint normal, vec3 v, out vec3 around, out vec3 sun
     sun = lit.diffuse + lit.specular;
 }
 
-/* Colour of a hit at t in the light of pixel `like`; without its light if no pixel has the same
- * kind of surface (!found). The loop, first for that pixel, avoids compiling the lighting twice.
+/* Colour of a hit at t in the light of pixel `like`; with full sun if no pixel has the same kind
+ * of surface (!found). The loop, first for that pixel, avoids compiling the lighting twice.
  * The pixel's emission is not stored: if it emits, the hit's emission is assumed. */
 vec3 lit_like(ivec2 like, bool found, vec3 direction, float t, uint met_albedo, uint met_normal)
 {
