@@ -27,7 +27,7 @@ static void resolve_upscaling(const masu_desc *d, uint32_t r, const masu_rung_pl
                         : 2 * rp->render_width == d->output.width &&
                               2 * rp->render_height == d->output.height;
     needs->twice = half && needs->upscale && needs->easu == MASU_EASU_FULL && !d->debug.exact &&
-                   d->half_floats != MASU_ON;
+                   !d->deny.easu_twice && d->half_floats != MASU_ON;
     /* If a resizable output becomes odd, the last pixels of a 2x rung would be offset by one from
      * those of other rungs, whose history it continues. */
     int doubles =
