@@ -160,27 +160,22 @@ static void sparse_accessors_change_some_elements(void **state) {
     vertex_at(0, 4, 0, 0);
 }
 
-/* The last element may be changed; the one behind it would be a write beyond the array. */
+/* The test above changes the last element; the one behind it would be a write beyond the array. */
 static void a_sparse_index_is_below_the_count(void **state) {
     (void)state;
     static const float to[3];
-    for (int i = 0; i < 4; i++) {
-        bool integers = i & 1, beyond = i & 2;
-        int count = integers ? 6 : 4;
-        const uint8_t changed = (uint8_t)(count - !beyond);
+    for (int integers = 0; integers < 2; integers++) {
+        const uint8_t changed = integers ? 6 : 4;
         char sparse[256], why[80];
         begin_quad();
         snprintf(sparse, sizeof sparse,
                  ",\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":%d,\"componentType\":5121},\"values\":{\"bufferView\":%d}}",
                  view(&changed, 1, 0), view(to, sizeof to, 0));
-        int a = accessor(-1, integers ? UINT : FLOAT, integers ? "SCALAR" : "VEC3", count, sparse);
-        const char *file = finish("\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":%d},\"indices\":%d}]}],\"nodes\":[{\"mesh\":0}]",
-                                  integers ? quad_positions : a, integers ? a : quad_indices);
-        snprintf(why, sizeof why, "\"sparse\" changes element %d of %d", count, count);
-        if (beyond)
-            refused(file, NULL, why);
-        else
-            import_quietly(file);
+        int a = accessor(-1, integers ? UINT : FLOAT, integers ? "SCALAR" : "VEC3", changed, sparse);
+        snprintf(why, sizeof why, "\"sparse\" changes element %d of %d", changed, changed);
+        refused(finish("\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":%d},\"indices\":%d}]}],\"nodes\":[{\"mesh\":0}]",
+                       integers ? quad_positions : a, integers ? a : quad_indices),
+                NULL, why);
     }
 }
 
