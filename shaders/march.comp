@@ -1,10 +1,10 @@
 /*
- * march.comp: sphere tracing of the scene's SDF, limited by the raster depth; the nearer surface
- * wins. A hit becomes texels of the G-buffer, so that every later pass has one path.
+ * march.comp: sphere tracing of the scene's SDF, limited by the raster depth; the closer surface
+ * wins. A hit is written to the G-buffer, so that later passes treat it like a rasterized pixel.
  *
- * One workgroup per active tile of 16x16 pixels, with the tile's list of parts; each invocation begins and ends four
- * pixels. A pixel starts where the cone of its 4x4 block stopped (cone.comp). Compiled by masu-bake
- * together with the scene's field.
+ * One workgroup per active tile of 16x16 pixels, with the tile's list of parts; each invocation
+ * begins and ends four pixels. A pixel starts where the cone of its 4x4 block stopped (cone.comp).
+ * Compiled by masu-bake together with the scene's field.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -41,20 +41,20 @@ layout(constant_id = 10) const bool share_rays = false;
 #define INVOCATIONS (MASU_GROUP * MASU_GROUP)
 #define RAYS (MASU_TILE * MASU_TILE)
 
-/* Of each pixel of the tile: minus where the march begins, then what it has found, below 0 if nothing; where it ends; the
- * distance of a half-space, or -1. */
+/* Per pixel of the tile. ray_start: minus the start distance, then the hit distance, below 0 for a
+ * miss; ray_limit: the end distance; ray_flat: the distance of a half-space, or -1. */
 shared float ray_start[RAYS];
 shared float ray_limit[RAYS];
 shared float ray_flat[RAYS];
-shared uint taken; /* of them, by now */
+shared uint taken; /* rays that invocations have fetched */
 
-/* Of the tile: its first pixel, where that one is, what is between two pixels. Wrong turn: what the first pixel looks through,
- * and sums of what is between two of a row and a column: at the horizon of a plane that is 1e5 units long depths were off by
- * 2.3e-6 instead of 1e-6. */
+/* corner: the tile's first pixel; ndc_corner: its NDC; ndc_step: NDC between two pixels. Rejected:
+ * the direction of the first pixel plus increments per column and row. At the horizon of a plane
+ * 1e5 units long the depth error was 2.3e-6 instead of 1e-6. */
 uvec2 size, corner;
 vec2 ndc_corner, ndc_step;
 
-/* Where in the tile its pixel i is: 8x8 after 8x8. */
+/* Position of pixel i in the tile: one 8x8 block after the other. */
 uvec2 place_of(uint i)
 {
     return masu_block_at(i & uint(INVOCATIONS - 1)) + (uvec2(i >> 6 & 1u, i >> 7) << 3u);
@@ -64,14 +64,15 @@ ray ray_of(uvec2 place, out float z_scale)
 {
     vec2 ndc = ndc_corner + ndc_step * vec2(place);
     vec3 through = frame.forward.xyz + frame.right.xyz * ndc.x - frame.up.xyz * ndc.y;
-    /* Wrong turn: one reciprocal root for both. At the horizon of a plain half of the depths were off by 1.11e-7 instead of 0.84e-7. */
+    /* Rejected: one inversesqrt for both. At the horizon of a plain, half of the depths had an
+     * error of 1.11e-7 instead of 0.84e-7. */
     z_scale = length(through);
     float inverse = 1.0 / z_scale;
     return ray(through * inverse, frame.up.w * ndc_step.y * inverse, 0.0, 0.0);
 }
 
-/* Row and column of a tile by a float's division: at most 2^20 tiles, 1024 in a row, and half a tile is further from a whole row
- * than what rounding can add. */
+/* Column and row of a tile by float division. Exact: there are at most 2^20 tiles, 1024 in a row,
+ * and the rounding error is smaller than the added half tile. */
 uvec2 tile_at(uint tile, uint columns)
 {
     uint row = uint((float(tile) + 0.5) / float(columns));
@@ -86,8 +87,8 @@ void look_from(uvec2 tile)
     ndc_step = 2.0 / vec2(size);
 }
 
-/* The box of the listed parts as the eye sees it. Not that of the SDF's bounds, too: a Vega has no registers left for what
- * all rays share, and would keep some of it elsewhere. */
+/* Bounds of the listed parts relative to the camera. The SDF's bounds are not stored as well: on
+ * Vega the values shared by all rays already use all registers, and more would spill. */
 vec3 box_low, box_high;
 
 void look_at_boxes()
@@ -97,7 +98,7 @@ void look_at_boxes()
     box_high = box_high - eye_hi - eye_lo;
 }
 
-/* Between which distances the ray is within a box. */
+/* Distances at which the ray enters and leaves a box. */
 vec2 within(vec3 low, vec3 high, vec3 inverse)
 {
     vec3 a = low * inverse;
@@ -107,7 +108,7 @@ vec2 within(vec3 low, vec3 high, vec3 inverse)
     return vec2(max(enter.x, max(enter.y, enter.z)), min(leave.x, min(leave.y, leave.z)));
 }
 
-/* Where the cone of a pixel's block has stopped. */
+/* Distance at which the cone of the pixel's 4x4 block stopped. */
 float cone_end(uvec2 at)
 {
 #if MASU_SDF_BLOCK_WORDS > 0
@@ -117,8 +118,9 @@ float cone_end(uvec2 at)
 #endif
 }
 
-/* Where the ray of a pixel begins and ends, and the half-space that ends it, as pixel_ray and clip_to_box say, of
- * what the four share. A component of the direction that is zero is replaced by a tiny one. */
+/* Start and end distance of a pixel's ray, and the distance of the half-space that ends it, or -1.
+ * The same as pixel_ray and clip_to_box, from values that the four pixels share. Zero components of
+ * the direction are replaced by 1e-12. */
 vec3 prepare(uvec2 place)
 {
     uvec2 at = corner + place;
@@ -127,7 +129,7 @@ vec3 prepare(uvec2 place)
     vec3 inverse = 1.0 / mix(r.direction, vec3(1e-12), lessThan(abs(r.direction), vec3(1e-12)));
     vec2 bounds = within(frame.sdf_low.xyz, frame.sdf_high.xyz, inverse);
     float nearest = frame.forward.w * z_scale;
-    /* Half-spaces begin in the SDF's bounds; the listed parts' box is within those. */
+    /* Half-spaces start at the SDF's bounds, which contain the box of the listed parts. */
     float first_t = MASU_SDF_PART_COUNT > MASU_SDF_LISTED_COUNT ? max(nearest, bounds.x) : nearest;
     float last_t = min(frame.sdf_max.w, bounds.y);
 #if MASU_HAS_RASTER
@@ -138,7 +140,7 @@ vec3 prepare(uvec2 place)
     float end = masu_sdf_flat(eye_hi + eye_lo, r.direction, first_t, part);
     float farthest = min(last_t, end);
     vec2 box = within(box_low, box_high, inverse);
-    /* What ends at the very side of the box may be found a little behind it. */
+    /* A surface on the far side of the box may be found slightly behind it. */
     last_t = min(min(last_t, box.y) * (1.0 + newton_reach * r.pixel), farthest);
     first_t = max(max(first_t, box.x), cone_end(at));
     return vec3(first_t, last_t, end <= farthest && end < 1e30 ? end : -1.0);
@@ -149,17 +151,17 @@ void begin_spans(uvec2 place, float t)
     span_begin(min(corner + place, size - 1u), size, t);
 }
 
-/* The field at t by what matters there. Wrong turn: rays that look for themselves what matters in a ball of their own, at
- * their second sample. They asked for fewer terms, and it cost as much as it saved (engine 1.00, city 1.03, rods
- * 1.06). */
+/* Evaluates the SDF at t with the terms of the span that contains t. Rejected: each ray selects its
+ * terms in a ball around its second sample. It evaluated fewer terms, but the selection cost as
+ * much as it saved (time: engine 1.00, city 1.03, rods 1.06). */
 float field_here(ray r, float t)
 {
     span_follow(t, size);
     return field_at(r, t);
 }
 
-/* The next ray from i on that has a piece to march, at `most` if there is none. Not so late that one could not be marched to its
- * end. */
+/* The next ray from i on that has an interval to march; RAYS or more if there is none, or if too
+ * few steps remain to march it to its end. */
 uint take(uint i, int step)
 {
     MASU_LOOP for (int k = 0; k < RAYS; k++) {
@@ -182,10 +184,12 @@ march_state begin(uint i, out ray r)
     return march_begin(r);
 }
 
-/* In one loop: an invocation that is done with one ray takes the next, instead of waiting for the slowest of its subgroup, which
- * took 1.2 to 1.9 times the steps of the mean. With four rays to each that still was 1.4 times for 8 lanes, 1.6 for 16, 2.2 for
- * 64; with the rays shared it is 1.2, 1.4 and 1.8 (engine). Which invocation marches a ray is chance, what is found is
- * not. A CPU driver gains little and pays for the barrier: 1.1 to 1.4 times the march's time. */
+/* Marches all rays in one loop: an invocation that has finished a ray fetches the next, instead of
+ * waiting for the slowest ray of its subgroup, which took 1.2 to 1.9 times the mean number of
+ * steps. Steps of the slowest invocation over the mean (engine), for 8, 16 and 64 lanes: 1.4, 1.6,
+ * 2.2 with four rays per invocation; 1.2, 1.4, 1.8 with share_rays. The invocation that marches a
+ * ray varies between runs, the result does not. CPU drivers gain little from share_rays and pay for
+ * the barrier: 1.1 to 1.4 times the time of the march. */
 uint march_all()
 {
     uint evals = 0u;
@@ -223,7 +227,7 @@ void main()
     }
     span_prepare(size);
     uvec2 own = place_of(gl_LocalInvocationIndex);
-    /* Pixels behind the edge of the picture march nothing. */
+    /* Pixels outside the image march nothing. */
     MASU_LOOP for (int k = 0; k < 4; k++) {
         uint i = gl_LocalInvocationIndex + uint(k * INVOCATIONS);
         uvec2 place = own + uvec2((k & 1) << 3, k >> 1 << 3);
@@ -231,7 +235,7 @@ void main()
         if (all(lessThan(corner + place, size))) {
             piece = prepare(place);
         }
-        /* What has no piece to march is marched: nothing is found. */
+        /* A ray without an interval is already finished, as a miss. */
         bool any = listed && piece.x < piece.y;
         ray_start[i] = any ? -piece.x : -1.0;
         ray_limit[i] = any ? piece.y : -1.0;
@@ -250,7 +254,7 @@ void main()
         uvec2 at = corner + place;
         float t = ray_start[i];
         bool known = !(t >= 0.0);
-        t = known ? ray_flat[i] : t; /* -1 behind the edge of the picture */
+        t = known ? ray_flat[i] : t; /* -1 outside the image */
         if (t >= 0.0) {
             float z_scale;
             ray r = ray_of(place, z_scale);

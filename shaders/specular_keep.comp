@@ -1,7 +1,8 @@
 /*
- * specular_keep.comp: what the next frame reads of this one. Recordings are fixed, so images do not take
- * turns: a copy is what keeps them. All texels, and not those of the listed tiles alone: a tile that has
- * nothing to trace must not show the next frame what it had some frames ago.
+ * specular_keep.comp: copies the reflection history for the next frame. Command buffers are
+ * recorded once, so images cannot alternate and a copy is needed. It copies all
+ * texels, not only the listed tiles: a tile without reflections must not leave values of an older
+ * frame to the next one.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

@@ -1,6 +1,6 @@
 /*
- * specular_keep_fine.comp: the full-resolution history, for the next frame. Of the listed tiles alone: which texels
- * have traced anything the kept guide says (specular_keep.comp).
+ * specular_keep_fine.comp: copies the full-resolution history for the next frame. Only the listed
+ * tiles: the copied guide records which texels have traced rays (specular_keep.comp).
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

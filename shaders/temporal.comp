@@ -27,7 +27,7 @@
 
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
-layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D color_image; /* roots of display light */
+layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D color_image; /* roots of display colour */
 
 void main()
 {
@@ -36,15 +36,16 @@ void main()
         return;
     }
     vec2 scale = vec2(push.scale_x, push.scale_y), steps = 1.0 / scale;
-    /* In texels of the render size, whose middles are whole numbers: where the pixel lies; that within the picture, and a
-     * little before the middle of the last one, for what lies beyond is read even for a weight of 0; the texel that it is
-     * in; and of the four around it the upper left one. Of a size of 1 they are the same texel. */
+    /* In texels of the render size, whose centres are whole numbers. place: position of the pixel;
+     * inside: place clamped to the image, slightly before the centre of the last texel, because the
+     * next texel is read even for a weight of 0; texel: the texel that contains it; corner: the
+     * upper left of the four texels around it (the same texel for a size of 1). */
     vec2 place = (vec2(at) + 0.5) * scale - (frame.shifts.xy + 0.5);
     vec2 inside = min(max(place, vec2(0.0)), vec2(push.last_x, push.last_y));
     vec2 texel = floor(inside + 0.5), corner = floor(inside);
     vec2 f = place - corner;
 
-    /* Before `found`, which what follows waits for: these need not. */
+    /* Read before `found`: these reads do not depend on it, all later ones do. */
     vec2 gather = (corner + 1.0) * vec2(push.texel_x, push.texel_y);
     vec4 red = textureGather(color_image, gather, 0), green = textureGather(color_image, gather, 1),
          blue = textureGather(color_image, gather, 2);
@@ -52,10 +53,11 @@ void main()
     uvec2 found = texelFetch(found_image, ivec2(texel), 0).xy;
     masu_past old = masu_history(found, vec2(at) + 0.5, ivec2(texel), inside, steps);
 
-    /* Of what rests in a world that does a sample counts for the pixel that it lies in, and a little across its border. Of all else
-     * there are few, and it counts by a tent as wide as two pixels of the output; at half size a quarter wider (0.6 of that and
-     * 0.4 of a tent of the input), or rows that this frame's samples miss would differ from those beside them: dotted
-     * edges. */
+    /* Stationary pixels of an unchanged scene: a sample contributes to the output pixel that
+     * contains it, plus a small border. Other pixels have few samples, so they use a tent filter
+     * two output pixels wide, 2.5 at half size (0.6 of that tent and 0.4 of the input's tent).
+     * Without the extra width, rows that this frame's samples miss would differ from their
+     * neighbours: dotted edges. */
     bool stays = masu_has_stayed(found);
     vec2 slope = stays ? 2.0 * steps : 0.6 * steps + 0.4;
     float top = stays ? 1.5 : 1.0;

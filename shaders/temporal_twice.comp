@@ -1,15 +1,15 @@
 /*
- * temporal_twice.comp: temporal.comp to twice the width and height: the same for less.
+ * temporal_twice.comp: temporal.comp for 2x upscaling: the same result at a lower cost.
  *
- * Between the middles of four texels lie four pixels of the output, 2x2, whatever the jitter is: the first of them has odd
- * coordinates or even ones, in all the picture. An invocation makes these: it reads the four texels once, each pixel is
- * nearest to one of them, and where pixels lie between texels is the same for all, so that most of what a texel counts
- * is a constant, or none.
+ * For any jitter, a 2x2 block of output pixels falls between the centres of four texels. The first
+ * pixel of every block has odd coordinates, or every one has even ones. An invocation writes one
+ * block: it reads the four texels once, and each pixel is closest to one texel. The positions
+ * between the texels are the same in all blocks, so most texel weights are constant or zero.
  *
- * One invocation for each four texels, those at the picture's edge with what lies beyond: one more each way than there are
- * texels.
+ * One invocation per four texels. Blocks at the image border include texels outside the image, so
+ * there is one invocation more per row and column than there are texels.
  *
- * Push constants: output_* = size to write, render_* = the input's; the rest is history.glsl's.
+ * Push constants: output_* = size to write, render_* = input size; history.glsl documents the rest.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -23,7 +23,7 @@
 
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
-layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D color_image; /* roots of display light */
+layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D color_image; /* roots of display colour */
 
 vec3 light_at(ivec2 texel)
 {
@@ -34,15 +34,15 @@ vec3 light_at(ivec2 texel)
 
 /* Four texels and the pixels between them. */
 struct cell {
-    ivec2 before, low, high; /* upper left texel, and what is read for it and for the lower right one */
+    ivec2 before, low, high; /* upper left texel; it and the lower right one, clamped */
     ivec2 first;             /* pixel */
-    vec2 inside_x, inside_y; /* 1 for a texel of the picture; one beyond it is no sample */
+    vec2 inside_x, inside_y; /* 1 for a texel of the image, 0 outside: no sample */
     vec3 light[4];
     uint chance; /* of the first pixel */
 };
 
-/* One of the four pixels. A function, called four times, and no loop: what compilers make of a loop that they unroll is
- * counted as if each turn ran all of it (docs/design/20-cost-model.md). */
+/* Resolves one of the four pixels. A function that is called four times, not a loop: the cost model
+ * counts an unrolled loop as if each iteration ran the whole loop (docs/design/20-cost-model.md). */
 void resolve(cell c, ivec2 way)
 {
     ivec2 at = c.first + way;
@@ -50,7 +50,7 @@ void resolve(cell c, ivec2 way)
     uvec2 found = texelFetch(found_image, texel, 0).xy;
     vec4 column = frame.columns[way.x], row = frame.rows[way.y];
     vec2 f = vec2(column.x, row.x);
-    vec2 place = min(vec2(c.before) + f, vec2(push.last_x, push.last_y)); /* samplers care for what is less than 0 */
+    vec2 place = min(vec2(c.before) + f, vec2(push.last_x, push.last_y)); /* < 0: clamped */
     masu_past old = masu_history(found, vec2(at) + 0.5, texel, place, vec2(2.0));
     bool stays = masu_has_stayed(found);
     vec2 x = (stays ? column.y * vec2(1 - way.x, way.x) : column.zw) * c.inside_x;
@@ -64,7 +64,7 @@ void resolve(cell c, ivec2 way)
     sum += weights.y * c.light[1];
     sum += weights.z * c.light[2];
     sum += weights.w * c.light[3];
-    if (all(lessThan(uvec2(at), uvec2(pc.output_width, pc.output_height)))) { /* -1, before the first, is not */
+    if (all(lessThan(uvec2(at), uvec2(pc.output_width, pc.output_height)))) { /* not -1 */
         vec3 mean = sum * (1.0 / max(count, 1.0));
         uint other = uint(way.x) * masu_chance_step.x + uint(way.y) * masu_chance_step.y;
         masu_show(at, mean, count, old, stays, c.chance + other);
@@ -81,7 +81,7 @@ void main()
     if (any(greaterThanEqual(c.first, ivec2(pc.output_width, pc.output_height)))) {
         return;
     }
-    /* Beyond the picture its last texel is repeated. */
+    /* Outside the image, the closest texel is repeated. */
     ivec2 after = c.before + 1;
     c.low = clamp(c.before, ivec2(0), last);
     c.high = clamp(after, ivec2(0), last);

@@ -10,7 +10,7 @@
 typedef struct options {
     masu_desc desc;
     const char *ladder, *gpus, *csv;
-    bool json;
+    bool json, extras;
 } options;
 
 static const masu_column columns[] = {
@@ -94,10 +94,22 @@ static const masu_option rows[] = {
               "reserve room for that many particles of each frame (default 0)"),
     MASU_UINT(options, desc.reserve.decals, "decals", 0, 1024, "the same for decals"),
     MASU_UINT(options, desc.reserve.lines, "lines", 0, 65536, "the same for debug lines"),
+    MASU_FLAG(options, extras, "extras",
+              "reserve a mesh, textured particles, trails and decals, looks and all post effects"),
     MASU_FLAG(options, json, "json", "print JSON"),
     MASU_FILE(options, csv, "csv", "FILE",
               "write every stage of every pipeline as CSV; - is standard output"),
     {.name = NULL}};
+
+/* Reserves one of each kind of what the host adds at run time. */
+static void reserve_extras(masu_desc *desc) {
+    masu_reserve *r = &desc->reserve;
+    r->particles = r->decals = r->textures = 1;
+    r->trail_points = 2;
+    r->meshes[0] = (masu_mesh_kind){.meshes = 1, .vertices = 300, .triangles = 100};
+    desc->instance_looks = 1;
+    desc->post = MASU_POST_ALL;
+}
 
 static int run(masu_cli *cli) {
     options o = {.desc = {.output = {1920, 1080}, .targets = {.storage = 1}}};
@@ -108,6 +120,7 @@ static int run(masu_cli *cli) {
     if (!masu_options_read(cli, rows, &o, &given, &code)) return code;
     if (o.gpus && !strcmp(o.gpus, "help")) return list_gpus();
     if (!given.count) return masu_cli_usage_error("no scene given: expected SCENE.masu");
+    if (o.extras) reserve_extras(&o.desc);
     if (masu_isa_is_child()) return masu_isa_child(given.arguments[0], o.ladder, &o.desc);
     if (!o.gpus) return masu_cli_usage_error("no GPU is given: --gpu GPU[,GPU...]");
     uint32_t count = masu_isa_list("--gpu", o.gpus, gpus);

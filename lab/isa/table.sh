@@ -45,3 +45,4 @@ sized 0.5 temporal
 rows 'engine at half size' engine temporal_twice --ladder "$ladder"
 rows 'engine with particles' engine 'particles|decals|lines' --particles 1 --decals 1 --lines 1
 rows 'shadows with particles' test_shadows particles --particles 1
+rows 'mirrors with extras' mirrors 'mesh|texture|bloom|focus|particles|decals|tonemap|gbuffer' --extras
