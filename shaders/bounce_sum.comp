@@ -1,10 +1,10 @@
 /*
- * bounce_sum.comp: of each probe that has traced rays in this frame, what they have found: their projection into
- * nine harmonics of irradiance / pi becomes its set, as halves; the mean of its sets what light.comp and the next
- * frame's rays ask for. A workgroup per probe, an invocation per ray, then per coefficient.
+ * bounce_sum.comp: projects the rays that a probe traced in this frame into nine spherical harmonics of irradiance / pi.
+ * They are stored as the probe's current set, in half precision. light.comp and the next frame's rays read the mean of
+ * the probe's sets. One workgroup per probe, one invocation per ray, then per coefficient.
  *
- * A number of a set stays where the new one is within a step of it, of halves as large as the first coefficient:
- * light that is fed back would otherwise round to and fro for ever.
+ * A coefficient keeps its old value if the new one is within a half-precision step of the first coefficient: light that
+ * is fed back would otherwise alternate between two roundings forever.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -20,7 +20,7 @@ shared vec3 light[MASU_BOUNCE_RAYS_MAX];
 shared vec3 directions[MASU_BOUNCE_RAYS_MAX];
 shared float means[28];
 
-/* Real spherical harmonics (Ramamoorthi and Hanrahan 2001), times what turns radiance into irradiance / pi. */
+/* Real spherical harmonics (Ramamoorthi and Hanrahan 2001), times the factors of irradiance / pi per band. */
 float harmonic(uint k, vec3 d)
 {
     switch (k) {
@@ -49,7 +49,7 @@ float projected(uint coefficient, uint rays)
     return masu_sane(sum * (12.5663706 / float(rays)), -65504.0, 65504.0);
 }
 
-/* As it was, unless the new one is farther than a step from it. */
+/* Keeps the old value unless the new one differs by more than a step. */
 float settled(float old, float new, float first)
 {
     float step = max(abs(first), 6e-5) * (1.0 / 1024.0);

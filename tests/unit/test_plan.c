@@ -645,6 +645,18 @@ static void velocities_keep_the_frame_before_and_nothing_else_does(void **state)
     assert_int_equal(plan.buffers[MASU_BUFFER_SLOTS].count, 7);
     assert_int_equal(plan.buffers[MASU_BUFFER_FRAME].count, 4);
     assert_int_equal(plan.buffers[MASU_BUFFER_INSTANCES].count, 6);
+    support_scene.sdf_static = 1;
+    (void)snprintf(expected, sizeof expected,
+                   "%s" MARCH_ON_RASTER "static_velocity(r:depth r:scene_depth u:velocity) " LIGHT_SDF
+                   "readback(from:velocity) " TONEMAP,
+                   gbuffer);
+    assert_frame(&d, 0, expected);
+    d = scene_desc(SDF, 64, 64);
+    support_scene.sdf_static = 1;
+    d.readback = MASU_READBACK_VELOCITY;
+    assert_frame(&d, 0,
+                 MARCH_ALONE LIGHT_SDF "static_velocity_alone(r:scene_depth w:velocity) "
+                 "readback(from:velocity) " TONEMAP);
     d = scene_desc(SDF, 64, 64);
     support_scene.sdf_dynamic = 1;
     d.readback = MASU_READBACK_VELOCITY;
