@@ -170,12 +170,13 @@ else
 	done
 endif
 
-# Without MASU_ISA_DRIVERS only the rows of RADV's GPUs change.
-ISA_GPUS := vangogh,raven$(if $(MASU_ISA_DRIVERS),$(comma)skl$(comma)kbl$(comma)tgl$(comma)a630$(comma)a660)
+# Rows of GPUs whose driver is not in MASU_ISA_DRIVERS do not change.
+isa_with = $(if $(wildcard $(MASU_ISA_DRIVERS)/$(1).so),$(comma)$(2))
+ISA_GPUS := vangogh,raven$(if $(MASU_ISA_DRIVERS),$(call isa_with,libvulkan_intel,bdw$(comma)skl$(comma)kbl$(comma)tgl)$(call isa_with,libvulkan_freedreno,a630$(comma)a660)$(call isa_with,libvulkan_panfrost,g52$(comma)g610))
 .PHONY: isa-table
 isa-table: $(LAB) $(SCENES)
 	$(V)BUILD=$(BUILD) MADE=$(MADE) lab/isa/table.sh $(ISA_GPUS) > $(BUILD)/isa.csv
-	$(V)test -n '$(MASU_ISA_DRIVERS)' || awk -F, '$$2 ~ /^(skl|kbl|tgl|a630|a660)$$/' lab/notes/isa.csv >> $(BUILD)/isa.csv
+	$(V)awk -F, -v made=,$(ISA_GPUS), 'NR > 1 && !index(made, "," $$2 ",")' lab/notes/isa.csv >> $(BUILD)/isa.csv
 	$(V)mv $(BUILD)/isa.csv lab/notes/isa.csv
 
 .PHONY: ladders ladder-costs ladder-devices

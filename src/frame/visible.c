@@ -7,8 +7,8 @@
  *
  * Each LOD of a mesh, including the mesh itself, has separate draws and a list with space for all
  * instances: the start of each list is recorded. A visible instance is in one list. The LOD depends
- * only on the camera and the instance's transform: it is the same in each view, with any culling.
- * So all views are culled first, and one pass over the instances then fills their lists.
+ * only on the camera and the instance's transform: it is the same in each view, with any culling. So
+ * all views are culled first, and one pass over the instances then fills their lists.
  *
  * firstInstance is always 0, since other values would need the feature drawIndirectFirstInstance: a
  * draw reads the start of its list from push constants. All primitives of a mesh share one list.

@@ -111,8 +111,8 @@ static void noise_follows_within_a_second(void **state) {
     assert_true(g.noise == 0.5);
 }
 
-/* Before noise is measured, a sample and the load that it gives deviate by 2 % each. A rung is left at
- * 1.25 of their deviations: 2.83 %. */
+/* Before noise is measured, a sample and the load that it gives deviate by 2 % each. A rung is left
+ * at 1.25 deviations of their sum, which deviates by 2.83 %. */
 static void the_first_time_has_a_margin(void **state) {
     (void)state;
     for (int over = 0; over < 2; over++) {
