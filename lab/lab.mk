@@ -27,6 +27,10 @@ gallery: tools ## write build/gallery/index.html: all models of assimp-testmodel
 study isa-table ladders ladder-costs ladder-devices gallery:
 	+$(V)$(lab_make) $@
 
+.PHONY: mutants
+mutants: all $(UNIT_TESTS) $(GPU_TESTS) $(DRIVER_INFO) ## try the mutants of lab/mutants/drawn.tsv (hours): MUTANTS_DIR=/tmp/masu-mutants DRIVERS=system WANTED=60
+	$(V)DRIVERS='$(DRIVERS)' lab/mutants/run.sh $(BUILD)/mutants.tsv
+
 .PHONY: light
 light: tools $(foreach s,alley garden night room small_lamps,$(BUILD)/scenes/$(s).masu) ## measure local lights and the live bounce beside the reference path tracer (an hour)
 	+$(V)$(lab_make) $@
