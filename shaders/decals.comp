@@ -61,10 +61,10 @@ float painted(uint at, vec3 rel, vec3 n, vec4 look)
     return edge * clamp((dot(axis.xyz, n) - place.z) * place.w, 0.0, 1.0);
 }
 
-/* Mixes paint into a surface so that the reflected light is mixed linearly: diffuse albedo, a (1 -
- * m), and reflectance at normal incidence, a m + 0.04 (1 - m). Metallic is weighted by albedo,
- * which mixes the diffuse part exactly: black paint on metal remains metal until it is nearly
- * black. The albedo absorbs the remaining difference, so that the sum of both parts is exact. */
+/* Mixes paint into a surface linearly in reflected light: diffuse albedo, a (1-m), and reflectance
+ * at normal incidence, a m + 0.04 (1-m). Metallic is weighted by albedo, which mixes the diffuse
+ * part exactly: black paint on metal remains metal until it is nearly black. The albedo absorbs the
+ * remaining difference, so that the sum of both parts is exact. */
 void cover(inout masu_surface s, vec3 paint, float metallic, float share)
 {
     float own = (1.0 - share) * (masu_brightest(s.albedo) + 1.0 / 256.0);

@@ -6,7 +6,7 @@
  * the motion is the camera's only. Otherwise the pixel belongs to the nearest part, which may be
  * static too. For a dynamic part, the previous position of the point is found in two steps:
  *
- *   1. The part's root transform (the translations, rotations and scales around the whole part) maps
+ *   1. The part's root transform (translations, rotations and scales around the whole part) maps
  *      the point to part space with the present slots, and back with the previous ones. For rigid
  *      or scaled parts this is the full motion.
  *   2. The rest is a change of the SDF itself: a radius, a morph, a blend. The part's SDF f at the
@@ -142,7 +142,7 @@ vec3 part_step(uvec2 at, uvec2 size, vec3 direction, float t, float z)
     if (!masu_sdf_part_moves(part)) {
         return vec3(0.0);
     }
-    masu_list_bits = uint[](0xFFFFFFFFu, 0xFFFFFFFFu); /* previously, others may have mattered */
+    masu_list_bits = uint[](0xFFFFFFFFu, 0xFFFFFFFFu); /* earlier, others may have mattered */
     vec3 a = abs(p);
     float pixel = 2.0 * frame.up.w / float(size.y) * z;
     float extent = ulp * max(max(a.x, max(a.y, a.z)), t);
