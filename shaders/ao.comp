@@ -31,8 +31,9 @@
  *
  * push.radius: radius, metres. push.reach: largest radius on the screen, as a share of the image
  * height. push.slices: slices. push.steps: samples per side of a slice. push.size: pixels per
- * texel, 2, or 1 for comparison. Out: bits 0-9 visibility, bits 10-31 depth of the pixel
- * (ao_texel.glsl).
+ * texel, 2, or 1 for comparison.
+ *
+ * Out: bits 0-9 visibility, bits 10-31 depth of the pixel (ao_texel.glsl).
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

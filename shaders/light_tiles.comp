@@ -2,11 +2,12 @@
  * light_tiles.comp: tiled light culling: lists the punctual lights that can reach a surface of each
  * tile. One workgroup per tile of 16x16 pixels; the list of a tile without surfaces is empty.
  *
- * A light is culled if its bounding sphere is - before the nearest or behind the farthest surface
- * of the tile, or between the two at depths where the tile has no surface (32 slices of the
- * logarithm of depth; Harada, "A 2.5D culling for forward+", SIGGRAPH Asia 2012 technical briefs),
- * - outside one of the tile's four side planes, or outside the bounds of the frustum piece between
- * the two depths: plane tests by themselves keep lights near a corner,
+ * A light is culled if its bounding sphere is
+ *   - before the nearest or behind the farthest surface of the tile, or between the two at depths
+ *     where the tile has no surface (32 slices of the logarithm of depth; Harada, "A 2.5D culling
+ *     for forward+", SIGGRAPH Asia 2012 technical briefs),
+ *   - outside one of the tile's four side planes, or outside the bounds of the frustum piece
+ *     between the two depths: plane tests by themselves keep lights near a corner,
  * or if its cone misses the sphere around these bounds.
  *
  * With transparent surfaces in front (push.blended), the depth range of a tile is from the near

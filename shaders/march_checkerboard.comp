@@ -4,11 +4,14 @@
  * free. masu-bake compiles it with --variants.
  *
  * A sample with the free radius r at distance t on a neighbour's ray clears every point within r.
- * On a ray at the angle d to it these are the distances t +- h, h = sqrt(r^2 - (t d)^2 + (t d^2 /
- * 2)^2) - t d^2 / 2. Intervals are chained while they overlap, from the distance that the cone has
- * cleared; the first gap ends the chain. A pixel starts at the largest end of its neighbours'
- * chains: this is exact, without a cap or fallback colours. d is the pixel spacing at the image
- * centre, the largest there is.
+ * On a ray at the angle d to it these are the distances t +- h, with
+ *
+ *   h = sqrt(r^2 - (t d)^2 + (t d^2 / 2)^2) - t d^2 / 2.
+ *
+ * Intervals are chained while they overlap, from the distance that the cone has cleared; the first
+ * gap ends the chain. A pixel starts at the largest end of its neighbours' chains: this is exact,
+ * without a cap or fallback colours. d is the pixel spacing at the image centre, the largest there
+ * is.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
