@@ -1,34 +1,39 @@
 /*
- * ao.comp: how much of the light from everywhere reaches a surface past what the picture shows of its
- * surroundings, at every second pixel of every second row. Polygons and SDF alike: it knows depths
- * and normals alone. ao_upsample.comp makes full size of it.
+ * ao.comp: screen-space ambient occlusion of polygons and SDF from depth and normals, at every
+ * second pixel of every second row. ao_upsample.comp upsamples the result to full resolution.
  *
  * After Jimenez, Wu, Pesce and Jarabo, "Practical Realtime Strategies for Accurate Indirect
- * Occlusion", 2016: the hemisphere is cut into slices that hold the direction to the eye; in each, on
- * either side, the highest of some samples is the horizon, and what the cosine lets through between
- * horizons is known in closed form. Here the same integral is taken over what is hidden: with alpha
- * the elevation above the surface and gamma the angle from the eye to the normal n in the slice,
+ * Occlusion", 2016: the hemisphere is divided into slices that contain the view direction. On each
+ * side of a slice, the sample with the largest elevation is the horizon. The cosine-weighted
+ * visibility between the two horizons has a closed form. This shader evaluates the same integral
+ * over the occluded part. With alpha the elevation above the surface, and gamma the angle in the
+ * slice from the view direction to the normal n,
  *
- *   hidden(a0..a1) = |n_slice| (F(a0) - F(a1)),  4 F(a) = cos(2a - gamma) - 2a sin(gamma),
+ *   occluded(a0..a1) = |n_slice| (F(a0) - F(a1)),  4 F(a) = cos(2a - gamma) - 2a sin(gamma),
  *
- * which is their equation 7 with h = gamma + pi / 2 - alpha. Two changes pay, both measured against
- * rays (docs/design/06-ambient-occlusion.md):
- *  - A sample hides what it adds to the horizon, weighted by its own distance (1 - t / radius: the
- *    truth's rule). Theirs pulls the sample's direction towards the lowest horizon, by the distance.
- *  - Elevation is measured from the pixel's own plane: the height above it over the way along the
- *    slice. Samples are texels, so they lie beside the slice, and on a floor seen under a small angle
- *    a neighbour half a texel aside stood "above" it: the error of the mean was -0.025 instead of
- *    0.004.
- * Something behind which there is air hides as if it were endless along the eye's ray; what limits it
- * is its distance alone. An assumed thickness (arcs with an end, in a mask of 32 bits) gained nothing.
+ * which is their equation 7 with h = gamma + pi / 2 - alpha. Two changes lower the error, both
+ * measured against ray tracing (docs/design/06-ambient-occlusion.md):
+ *  - A sample occludes the arc that it adds to the horizon, weighted by its distance (1 - t /
+ *    radius, as in the ray-traced reference). The paper instead pulls the sample's direction
+ *    towards the lowest horizon, by the distance.
+ *  - Elevation is measured from the plane of the pixel: the height above the plane over the
+ *    distance along the slice. Samples are texel centres, up to half a texel away from the slice.
+ *    On a floor viewed at a grazing angle such a sample appeared "above" the floor: the error of
+ *    the mean was -0.025 instead of 0.004.
  *
- * The directions of the slices and the phases of the samples repeat every 4x4 texels, as the 16 points
- * of a rank-1 lattice, so that a 4x4 mean has 16 times as many of both. Nothing depends on time:
- * a camera at rest sees a picture at rest.
+ * A sample's surface is assumed endless along the view ray, even if there is air behind it; only
+ * its distance limits the occlusion. An assumed thickness (bounded arcs in a mask of 32 bits)
+ * gained nothing.
  *
- * push.radius: radius, metres; push.reach: most of it, as a share of the picture's height. push.slices: slices;
- * push.steps: samples on either side of each; push.size: pixels per texel, 2, or 1 for comparison.
- * Out: bits 0-9 seen part, bits 10-31 depth of the pixel (ao_texel.glsl).
+ * Slice directions and sample phases repeat every 4x4 texels, as the 16 points of a rank-1 lattice,
+ * so that a mean over 4x4 texels has 16 times as many slices and samples. Nothing depends on time:
+ * a stationary camera gets the same image each frame.
+ *
+ * push.radius: radius, metres. push.reach: largest radius on the screen, as a share of the image
+ * height. push.slices: slices. push.steps: samples per side of a slice. push.size: pixels per
+ * texel, 2, or 1 for comparison.
+ *
+ * Out: bits 0-9 visibility, bits 10-31 depth of the pixel (ao_texel.glsl).
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -56,7 +61,7 @@ float fast_acos(float x)
     return x < 0.0 ? 3.14159265 - r : r;
 }
 
-/* 4 F by the cosine of the elevation, its sine and itself; slice: cosine and sine of gamma. */
+/* 4 F from the cosine c and sine s of the elevation a; slice: cosine and sine of gamma. */
 float free_above(float c, float s, float a, vec2 slice)
 {
     return (2.0 * c * c - 1.0) * slice.x + (2.0 * s * c - 2.0 * a) * slice.y;
@@ -64,14 +69,14 @@ float free_above(float c, float s, float a, vec2 slice)
 
 struct surface_point {
     vec3 place;  /* view space: right, down, away */
-    vec2 slope;  /* x / z and y / z of it */
+    vec2 slope;  /* x / z and y / z */
     vec3 normal;
-    vec3 eye;    /* towards it */
-    vec2 pixel;  /* in the middle of its pixel */
+    vec3 eye;    /* unit, from the point to the camera */
+    vec2 pixel;  /* pixel centre */
 };
 
-/* One side of a slice. way: along the slice, unit, this side's; screen: the same in pixels, unit;
- * slice: cosine and sine of gamma on this side. */
+/* Occlusion on one side of a slice. way: unit direction along the slice to this side. screen: the
+ * same direction in pixels, unit. slice: cosine and sine of gamma on this side. */
 float hidden_by(surface_point p, ao_lens lens, vec3 way, vec2 screen, vec2 slice, float length_n,
                 float reach, float phase)
 {
@@ -86,7 +91,7 @@ float hidden_by(surface_point p, ao_lens lens, vec3 way, vec2 screen, vec2 slice
         float share = (float(i) + phase) / float(push.steps);
         vec2 at = floor(p.pixel + screen * max(share * share * reach, 1.0));
         if (!(all(greaterThanEqual(at, vec2(0.0))) && all(lessThan(at, lens.size)))) {
-            break; /* farther ones are outside as well */
+            break; /* all farther samples are outside too */
         }
         float z = ao_view_z(texelFetch(depth_image, ivec2(at), 0).r);
         vec3 to = ao_place(lens, at + 0.5, z) - p.place;
@@ -97,7 +102,7 @@ float hidden_by(surface_point p, ao_lens lens, vec3 way, vec2 screen, vec2 slice
         if (!(z < ao_farthest) || !(high > 0.0) || !(weight > 0.0)) {
             continue;
         }
-        /* Not beyond the direction to the eye: nothing that is seen stands in front of the surface. */
+        /* Clamped to the view direction: no visible point is in front of the surface. */
         float c = max(far / max(length(vec2(far, high)), masu_tiny), -slice.y);
         if (!(c < highest_c)) {
             continue;
@@ -112,16 +117,16 @@ float hidden_by(surface_point p, ao_lens lens, vec3 way, vec2 screen, vec2 slice
 
 float seen_from(surface_point p, ao_lens lens, uvec2 texel)
 {
-    /* Point k of the lattice; 5x + 4y runs over all 16 in any 4x4 texels. */
+    /* Point k of the lattice; 5x + 4y takes all 16 values in any 4x4 texels. */
     uint k = (5u * texel.x + 4u * texel.y) & 15u;
     float turn = (float(k) + 0.5) / 16.0;
     float phase = (float((7u * k) & 15u) + 0.5) / 16.0;
     float reach = push.radius * lens.pixels.y / p.place.z;
     if (!(reach > 1.0)) {
-        return 1.0; /* all that could hide something is in this pixel */
+        return 1.0; /* all possible occluders are in this pixel */
     }
     reach = min(reach, push.reach * lens.size.y);
-    /* Duff's frame (JCGT 6-1, 2017) about the direction to the eye, whose z is below 0. */
+    /* Duff's frame (JCGT 6-1, 2017) around the view direction, whose z is below 0. */
     vec3 e = p.eye;
     float a = 1.0 / (1.0 - e.z);
     vec3 u = vec3(1.0 - e.x * e.x * a, -e.x * e.y * a, e.x);
@@ -138,7 +143,7 @@ float seen_from(surface_point p, ao_lens lens, uvec2 texel)
         vec2 in_slice = vec2(dot(p.normal, e), dot(p.normal, way));
         float length_n = length(in_slice);
         if (!(length_n > 1e-4)) {
-            continue; /* the slice lies in the surface: its share of the cosine is nothing */
+            continue; /* the slice is parallel to the surface: its cosine weight is 0 */
         }
         in_slice /= length_n;
         hidden += hidden_by(p, lens, way, screen, in_slice, length_n, reach, phase);

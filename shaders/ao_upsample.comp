@@ -1,26 +1,30 @@
 /*
- * ao_upsample.comp: the ambient half of the occlusion image, from ao.comp's texels at half size. Each
- * pixel takes the mean of 4x4 of them, which is what their pattern of directions repeats in, as far
- * as they lie in its own plane and face its way.
+ * ao_upsample.comp: upsamples ao.comp's half-resolution texels into the ambient half of the
+ * occlusion image. Each pixel averages the 4x4 texels around it, because their pattern of
+ * directions repeats every 4x4. A texel contributes if it is in the pixel's plane and has a similar
+ * normal.
  *
- * One invocation works on the 2x2 pixels of a texel: all four look at the same 16, and a group's texels
- * are unpacked once, in shared memory.
+ * One invocation filters the 2x2 pixels of a texel, which share the same 16 texels. The texels of a
+ * workgroup are unpacked once, into shared memory.
  *
- * WEIGHTS. By the distance of the texel's point from the pixel's plane: (1 - (d / tolerance)^2)^2, 0
- * beyond the tolerance of half a texel's width there and a hundredth of the radius; by the fourth
- * power of the normals' cosine. Without the latter, edges at which a plane goes on (a bolt on its
- * flange) smear: the motor's error was 0.078 instead of 0.049. Where all 16 are something else, the
- * nearest to the plane is taken alone.
+ * WEIGHTS. By the distance d of the texel's point from the pixel's plane: (1 - (d /
+ * tolerance)^2)^2, and 0 beyond the tolerance, which is half a texel's width at that depth plus a
+ * hundredth of the radius. Multiplied by the fourth power of the cosine between the normals.
+ * Without the normals, edges between coplanar surfaces (a bolt on its flange) are blurred: the
+ * motor's error was 0.078 instead of 0.049. If all 16 weights are about 0, the pixel takes the one
+ * texel with the lowest cost (plane distance and angle).
  *
- * Out in the open, where all 16 are seen but for so little that no picture shows it (open), none of that is asked: all
- * arrives. Nor where the 16 differ by no more than `even`, which is most of a picture: their plain mean is less far than
- * that from any weighting of them, and mostly they differ by the pattern alone.
+ * If all 16 texels are unoccluded up to quantisation (`open`), the pixel is unoccluded without
+ * filtering. If the 16 differ by at most `even`, as in most of an image, the pixel takes their
+ * plain mean: its difference from any weighted mean is less than `even`, and usually the texels
+ * differ by the pattern only.
  *
- * Where the SDF has an ambient occlusion of its own, the lesser of the two counts: what both see they
- * would count twice as a product (docs/design/06-ambient-occlusion.md has the errors).
+ * If the SDF pass wrote its own ambient occlusion, the pixel takes the smaller of the two values. A
+ * product would apply the occluders that both detect twice (docs/design/06-ambient-occlusion.md has
+ * the errors).
  *
- * push.radius: radius, metres. push.multiplies: not 0: the occlusion image holds something already;
- * push.size: pixels per texel, 2, or 1 for comparison.
+ * push.radius: radius, metres. push.multiplies: not 0 if the occlusion image already contains
+ * occlusion. push.size: pixels per texel, 2, or 1 for comparison.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -39,23 +43,24 @@ layout(set = MASU_SET_PASS, binding = 1) uniform usampler2D normal_image;
 layout(set = MASU_SET_PASS, binding = 2) uniform usampler2D ao_image;
 layout(set = MASU_SET_PASS, binding = 3, r32ui) uniform uimage2D occlusion_image;
 
-/* Along the ray through the middle of a pixel, as long as makes its view z 1: masu_pixel_ray in steps. */
+/* Along the ray through the pixel's centre, scaled to view z 1: masu_pixel_ray in separate
+ * steps. */
 vec3 ray_at(ao_lens lens, uvec2 pixel)
 {
     vec2 ndc = masu_ndc(vec2(pixel) + 0.5, lens.size);
     return frame.forward.xyz + frame.right.xyz * ndc.x - frame.up.xyz * ndc.y;
 }
 
-/* Three steps of ao_texel.glsl's 1023 and what rounds. */
+/* Three steps of ao_texel.glsl's 1023, and rounding. */
 const float open = 1.0 - 3.5 / 1023.0;
 
-/* The most by which 16 texels differ that are averaged without a look at planes. */
+/* Largest difference between 16 texels that are averaged without plane tests. */
 const float even = 0.125;
 
 #define EDGE (MASU_GROUP + 3)
 
-/* What the texels of the group and around it say: where they are and how much is seen (below 0:
- * nothing is there), and their normals. */
+/* Texels of the workgroup and its border: position, visibility (below 0: no surface), and
+ * normal. */
 shared vec4 texels[EDGE * EDGE];
 shared vec3 normals[EDGE * EDGE];
 
@@ -80,7 +85,8 @@ void load_texels(ao_lens lens, uvec2 last)
     barrier();
 }
 
-/* What arrives at the four pixels of a texel, each component one of them, by the 16 texels from `corner` on. */
+/* Visibility of the four pixels of a texel, one per component, from the 16 texels that start at
+ * `corner`. */
 vec4 filtered(uvec2 texel, uvec2 last, uint corner)
 {
     ao_lens lens = ao_lens_of(last + 1u);
@@ -118,7 +124,7 @@ vec4 filtered(uvec2 texel, uvec2 last, uint corner)
     }
     bvec4 trusted = greaterThan(weights, vec4(1e-3));
     vec4 ambient = sum / max(weights, 1e-3);
-    /* Few pixels are alone: only for them the texels are gone through once more. */
+    /* A second pass over the texels, only for the few pixels that match none. */
     if (any(greaterThan(there * vec4(not(trusted)), vec4(0.0)))) {
         vec4 nearest = vec4(1e30);
         vec4 fallback = vec4(1.0);

@@ -1,7 +1,8 @@
 /*
- * background.comp: the lit picture before transparent surfaces and in alpha its depth, in six halvings, with
- * MASU_REFRACTED also at full size (light/background.glsl). An invocation reduces 8x8 pixels, a workgroup 64x64; pixels beyond the edge repeat the last
- * ones.
+ * background.comp: the lit image before transparent surfaces, with depth in alpha, as six levels of
+ * half the size each, and with MASU_REFRACTED also at full resolution (light/background.glsl). An
+ * invocation reduces 8x8 pixels, a workgroup 64x64. Pixels beyond the edge repeat the last row and
+ * column.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

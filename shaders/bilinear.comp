@@ -1,9 +1,8 @@
 /*
- * bilinear.comp: the plain upscale that others are compared with: of the display-encoded colour of
- * the four texels around a pixel, weighted by how near they are. One invocation for each output
- * pixel.
+ * bilinear.comp: bilinear upscale, the baseline for comparisons: the mean of the four texels around
+ * a pixel, in display encoding. One invocation per output pixel.
  *
- * Push constants: render_* = valid corner of the input, output_* = size to write, push.scale_* = input
+ * Push constants: render_*: valid corner of the input, output_*: size to write, push.scale_*: input
  * size * (1 / output size).
  */
 #version 440
@@ -34,7 +33,7 @@ void main()
     masu_place place = masu_place_of(at, vec2(push.scale_x, push.scale_y));
     ivec2 f = place.texel;
     vec3 here = fetch(f), under = fetch(f + ivec2(0, 1));
-    /* In differences: of four equal texels it is that texel, to the bit. */
+    /* As differences: four equal texels give exactly that texel. */
     vec3 above = here + place.p.x * (fetch(f + ivec2(1, 0)) - here);
     vec3 below = under + place.p.x * (fetch(f + ivec2(1, 1)) - under);
     vec3 result = above + place.p.y * (below - above);

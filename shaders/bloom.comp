@@ -1,7 +1,7 @@
 /*
- * bloom.comp: the scattered light at 1/4 of the size: the weighted mean of all sizes of bloom_reduce.comp, magnified by
- * B-splines. Sizes are weighted by the fraction of the image height that a texel covers, not by their number, so that
- * the glow has the same width at any resolution.
+ * bloom.comp: the scattered light at 1/4 of the size: the weighted mean of all sizes of
+ * bloom_reduce.comp, magnified by B-splines. Sizes are weighted by the fraction of the image height
+ * that a texel covers, not by their number, so that the glow has the same width at any resolution.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -19,8 +19,8 @@ layout(set = MASU_SET_PASS, binding = 1) uniform sampler2D bloom_16;
 layout(set = MASU_SET_PASS, binding = 2) uniform sampler2D bloom_128;
 layout(set = MASU_SET_PASS, binding = 3, rgba16f) uniform writeonly image2D bloom_image;
 
-/* The same for each octave from 1/128 to 1/24 of the height, with a fade of about an octave at both ends. The last term
- * selects the smallest size in images of few rows. */
+/* The same for each octave from 1/128 to 1/24 of the height, with a fade of about an octave at both
+ * ends. The last term selects the smallest size in images of few rows. */
 float weight_of(uint divisor)
 {
     float octave = masu_log2(float(divisor) / float(max(pc.render_height, 1u)));

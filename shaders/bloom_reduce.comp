@@ -1,16 +1,17 @@
 /*
- * bloom_reduce.comp: reduces the lit image for bloom (post/bloom.glsl) to 1/2, 1/4 and 1/8 of a larger size, each
- * directly.
+ * bloom_reduce.comp: reduces the lit image for bloom (post/bloom.glsl) to 1/2, 1/4 and 1/8 of a
+ * larger size, each directly.
  *
- * A tent as wide as two texels of the result weights the source: all of its texels have the same total weight, so that
- * the energy of the image is conserved, and a bright pixel that moves changes its neighbours evenly. Two source texels
- * per axis take one bilinear sample. (A 13-tap filter for each halving, and a tent for each doubling, is J. Jimenez,
- * "Next Generation Post Processing in Call of Duty: Advanced Warfare", SIGGRAPH 2014.)
+ * The source is weighted by a tent as wide as two texels of the result. All source texels have the
+ * same total weight, so that the energy of the image is conserved, and a moving bright pixel
+ * changes its neighbours evenly. One bilinear sample reads two source texels per axis. (J. Jimenez,
+ * "Next Generation Post Processing in Call of Duty: Advanced Warfare", SIGGRAPH 2014, has a 13-tap
+ * filter for each halving and a tent for each doubling.)
  *
  * There is no weighting by luminance against fireflies: it loses energy.
  *
- * Push constants: push.divisor = source, 1 / divisor of the render size; push.levels = sizes to write: 1: 1/4, else the
- * first `levels` of 1/2, 1/4, 1/8 of the source.
+ * Push constants: push.divisor: the source has 1 / divisor of the render size. push.levels: sizes
+ * to write: 1: 1/4, else the first `levels` of 1/2, 1/4, 1/8 of the source.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

@@ -1,9 +1,11 @@
 /*
- * bounce_sdf.comp: what of the SDF each ray of the frame's live probes meets, where that is nearer than the polygon
- * that it has met; with push.shadow whether it lies between what was met and the light chosen for it. Compiled by
- * masu-bake with the scene's field for scenes with a live bounce.
+ * bounce_sdf.comp: marches the rays of the frame's live probes through the SDF and stores a hit
+ * that is closer than the ray's polygon hit. With push.shadow it tests instead whether the SDF
+ * blocks the light chosen for a hit. masu-bake compiles it with the scene's SDF for scenes with a
+ * live bounce.
  *
- * push.steps: most steps of a ray; push.begins: no polygons are traced, so that rays have met nothing yet.
+ * push.steps: most steps per ray. push.begins: not 0 if no polygons are traced, so that rays have
+ * no hit yet.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -26,7 +28,8 @@ layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 #include "light/probes.glsl"
 #include "bounce/ray.glsl"
 
-/* Rays as wide as a millimetre where they begin, by as much more in a metre: of diffuse light nobody sees less. */
+/* Ray width: a millimetre at the origin, and another per metre. Finer detail is invisible in
+ * diffuse light. */
 #define WIDTH 1e-3
 #define SPREAD 1e-3
 

@@ -1,10 +1,11 @@
 /*
- * bounce_shade.comp: the diffuse light that leaves what each ray of the frame's live probes has met: what it
- * emits; the mean that live probes had around it, so that light bounces on and on; and that of one light, chosen
- * in proportion to what each would add without shadows, by a hash of the ray, and divided by its probability. What
- * blocks that light a ray of its own finds: no light passes walls, whether or not it has a shadow map.
+ * bounce_shade.comp: the diffuse light that leaves each hit of the frame's live probe rays. It is
+ * the sum of emission, the indirect light of the surrounding live probes (so that light bounces
+ * repeatedly), and one light. This light is chosen by a hash of the ray, in proportion to each
+ * light's unshadowed contribution, and divided by its probability. A separate shadow ray tests it,
+ * so that no light leaks through walls, whether or not the light has a shadow map.
  *
- * Where probes have baked light, that of sky and sun is in there, bounces and all: neither counts here.
+ * Baked probes already contain sky and sun with all bounces: both are then omitted here.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -33,9 +34,10 @@
 
 layout(local_size_x = 64) in;
 
-/* Directional albedo, diffuse and specular, for incident light at that cosine to the normal; by reciprocity also for
- * uniform incident light that leaves at that cosine. Probes store light of low frequency only, so the specular part is
- * spread over the hemisphere like the diffuse part. Without it wet asphalt of albedo 0.045 would reflect a third. */
+/* Directional albedo, diffuse and specular, for incident light at the given cosine to the normal;
+ * by reciprocity also for uniform incident light that leaves at that cosine. Probes store only
+ * low-frequency light, so the specular part is spread over the hemisphere like the diffuse part.
+ * Otherwise wet asphalt of albedo 0.045 would reflect a third. */
 vec3 reflectance(masu_surface s, float cosine)
 {
     uint row = masu_row_of(masu_sane(s.roughness, 0.0, 1.0));
@@ -45,7 +47,7 @@ vec3 reflectance(masu_surface s, float cosine)
     float matte = f0 * (1.0 - t.x) + (f90 - f0) * t.y;
     vec3 mirrored = vec3(matte);
 #ifdef MASU_SURFACE
-    /* The colour, and multiple scattering, which is not negligible for an f0 above 0.08. */
+    /* The colour, and multiple scattering, which is significant for an f0 above 0.08. */
     if (masu_extra_lobes != 0u) {
         float lost = masu_table_averages(uint(MASU_TABLE_AVERAGE), 2u, row, 0u).x;
         float rest = masu_rest_color(vec3(f0), f90, lost).r * t.x;
@@ -54,21 +56,21 @@ vec3 reflectance(masu_surface s, float cosine)
         mirrored = colors * (1.0 - t.x) + (f90 - colors) * t.y + rest;
     }
 #endif
-    /* Metals: energy that single scattering loses is reflected again, once more coloured. */
+    /* Metals: energy lost by single scattering is reflected again, tinted once more. */
     vec3 metal = albedo * (1.0 - t.x + t.x * albedo) + (1.0 - albedo) * t.y;
     return mix(albedo * (1.0 - matte) + mirrored, metal, masu_sane(s.metallic, 0.0, 1.0));
 }
 
-/* A light that was chosen among those asked so far. */
+/* The light chosen among those offered so far. */
 struct chosen {
-    vec3 color;  /* what it adds, irradiance / pi */
+    vec3 color;  /* its contribution, irradiance / pi */
     vec3 l;
-    float far;   /* how far it is */
-    float weight; /* of it */
-    float total; /* of all */
+    float far;   /* its distance */
+    float weight; /* its weight */
+    float total; /* sum of weights */
 };
 
-/* Each takes the place of the one before with the probability of its share of the sum so far. */
+/* Reservoir sampling: each light replaces the chosen one with probability weight / sum so far. */
 void ask(inout chosen c, vec3 l, float far, vec3 color, float chance)
 {
     float weight = dot(color, vec3(0.2126, 0.7152, 0.0722));
@@ -84,8 +86,9 @@ void ask(inout chosen c, vec3 l, float far, vec3 color, float chance)
 }
 
 #ifdef MASU_LIGHTS
-/* Asks a light at a point relative to the eye. Capsules and rectangles are seen as far as one of their points is,
- * which two numbers choose. Rays end short of what a lamp may be in, and of a light's own surface. */
+/* Offers a light, for a point relative to the camera. Capsules and rectangles are sampled at one
+ * point, which two random numbers choose. Shadow rays end before the bulb around a lamp and before
+ * a light's own surface. */
 void ask_light(inout chosen c, masu_punctual_light_data light, vec3 rel, vec3 n, uvec3 hash)
 {
     vec3 l;
@@ -94,9 +97,9 @@ void ask_light(inout chosen c, masu_punctual_light_data light, vec3 rel, vec3 n,
         return;
     }
     vec3 to = light.position.xyz - rel;
-    float margin = max(1.1 * masu_sqrt(light.color.w) + 0.02, 0.05); /* its bulb may be of the same radius */
+    float margin = max(1.1 * masu_sqrt(light.color.w) + 0.02, 0.05); /* the bulb may be as large */
     if (masu_light_is_shared(light) && masu_light_within(light, rel) < 1.0) {
-        return; /* its own surface */
+        return; /* the light's own surface */
     }
     if (masu_area_lights && masu_light_kind(light) != MASU_KIND_POINT) {
         vec3 u, v;
@@ -117,7 +120,8 @@ void ask_light(inout chosen c, masu_punctual_light_data light, vec3 rel, vec3 n,
     ask(c, l, max(masu_sqrt(dot(to, to)) - margin, 0.0), color, masu_bounce_unit(hash.x));
 }
 
-/* Whether a point relative to the eye is the surface of a light, whose emission comes as that light. */
+/* Whether a point relative to the camera is on the surface of a light, whose emission is added as
+ * that light. */
 bool is_of_light(vec3 rel)
 {
     uint lights = masu_light_count();
@@ -151,7 +155,7 @@ void main()
             met m;
 #ifdef MASU_TRACE_POLYGONS
             if ((hit.y & MASU_HIT_SDF) == 0u) {
-                /* As wide as a set's rays are apart. */
+                /* Footprint: the spacing of a set's rays. */
                 m = met_polygon(hit, direction, t * masu_rsqrt(float(masu_bounce_each())) * 3.0);
             } else
 #endif

@@ -1,10 +1,12 @@
 /*
- * bounce_sum.comp: projects the rays that a probe traced in this frame into nine spherical harmonics of irradiance / pi.
- * They are stored as the probe's current set, in half precision. light.comp and the next frame's rays read the mean of
- * the probe's sets. One workgroup per probe, one invocation per ray, then per coefficient.
+ * bounce_sum.comp: updates each live probe that has traced rays in this frame. The rays' radiance
+ * is projected to nine harmonics of irradiance / pi and stored as one set of the probe, in halves.
+ * The mean of the probe's sets is then stored for light.comp and for the next frame's rays. A
+ * workgroup per probe, an invocation per ray, then per coefficient.
  *
- * A coefficient keeps its old value if the new one is within a half-precision step of the first coefficient: light that
- * is fed back would otherwise alternate between two roundings forever.
+ * A coefficient keeps its old value if the new one is within one half-float step, at the magnitude
+ * of the first coefficient. Otherwise rounding of the light that is fed back would oscillate
+ * forever.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -20,7 +22,8 @@ shared vec3 light[MASU_BOUNCE_RAYS_MAX];
 shared vec3 directions[MASU_BOUNCE_RAYS_MAX];
 shared float means[28];
 
-/* Real spherical harmonics (Ramamoorthi and Hanrahan 2001), times the factors of irradiance / pi per band. */
+/* Real spherical harmonics (Ramamoorthi and Hanrahan 2001), times the factor from radiance to
+ * irradiance / pi. */
 float harmonic(uint k, vec3 d)
 {
     switch (k) {
@@ -49,7 +52,7 @@ float projected(uint coefficient, uint rays)
     return masu_sane(sum * (12.5663706 / float(rays)), -65504.0, 65504.0);
 }
 
-/* Keeps the old value unless the new one differs by more than a step. */
+/* The old value, unless the new one differs by more than a step. */
 float settled(float old, float new, float first)
 {
     float step = max(abs(first), 6e-5) * (1.0 / 1024.0);

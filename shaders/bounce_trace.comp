@@ -1,6 +1,7 @@
 /*
- * bounce_trace.comp: the polygon that each ray of the frame's live probes meets first; with push.shadow whether
- * one lies between what was met and the light that bounce_shade.comp has chosen for it.
+ * bounce_trace.comp: traces the rays of the frame's live probes against polygons and stores the
+ * closest hit. With push.shadow it tests instead whether a polygon blocks the light that
+ * bounce_shade.comp has chosen for a hit.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

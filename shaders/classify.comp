@@ -1,13 +1,13 @@
 /*
- * classify.comp: which parts of the SDF can be seen in which tile, and which tiles have any.
+ * classify.comp: tile culling of SDF parts: lists the parts visible in each tile, and the tiles
+ * with any parts. masu-bake compiles it with the scene's SDF.
  *
- * One workgroup per tile of 16x16 pixels. It takes the raster depth over to scene_depth (0 where
- * nothing is), so that the march touches only pixels it hits. A part stays out of a tile's list when
- * its bounding sphere lies outside one of the tile's four side planes, before the near plane or
- * behind the farthest raster depth of the tile: no ray of the tile can meet it then. Leaving it out
- * makes steps longer, never wrong. The list is in the order of the parts, whatever the order in
- * which invocations run.
- * Compiled by masu-bake together with the scene's field.
+ * One workgroup per tile of 16x16 pixels. It copies raster depth to scene_depth (0 for background),
+ * so that the march writes only pixels that it hits. A part is omitted from a tile's list if its
+ * bounding sphere is outside one of the tile's four side planes, before the near plane or behind
+ * the tile's farthest raster depth: no ray of the tile can hit it. Omitting a part makes steps
+ * longer but changes no result. The list is in part order, regardless of the order in which
+ * invocations run.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -38,8 +38,8 @@ layout(set = MASU_SET_PASS, binding = MASU_FIRST_WRITE, r32f) uniform writeonly 
 shared uint farthest; /* bits of the least reverse-Z depth; positive floats order like their bits */
 shared bool active_tile;
 shared uint masks[MASKS];
-shared vec3 planes[4];  /* the tile's side planes through the eye */
-shared bool sdf_seen, listed_seen; /* the box of the SDF, of the listed parts */
+shared vec3 planes[4];  /* the tile's side planes, through the camera */
+shared bool sdf_seen, listed_seen; /* visibility of the bounds of the SDF, of the listed parts */
 
 uvec2 pixel_of(uvec2 corner, int i)
 {
@@ -47,7 +47,7 @@ uvec2 pixel_of(uvec2 corner, int i)
 }
 
 #if MASU_HAS_RASTER
-/* Raster depth of the tile to scene_depth. */
+/* Copies the tile's raster depth to scene_depth. */
 void take_depth(uvec2 corner, uvec2 size)
 {
     float least = 1.0;
@@ -62,7 +62,7 @@ void take_depth(uvec2 corner, uvec2 size)
     atomicMin(farthest, floatBitsToUint(least));
 }
 #else
-/* Where the march does not come, nothing is. */
+/* Clears the depth of a tile that the march skips. */
 void clear_depth(uvec2 corner, uvec2 size)
 {
     for (int i = 0; i < 4; i++) {
@@ -74,8 +74,8 @@ void clear_depth(uvec2 corner, uvec2 size)
 }
 #endif
 
-/* One of the four side planes of the tile through the eye, normal inwards, half a pixel wider: the march
- * stops a tenth of a pixel before a surface. */
+/* A side plane of the tile, through the camera, with its normal inwards. Half a pixel wider,
+ * because the march stops a tenth of a pixel before a surface. */
 vec3 tile_plane(uint i, uvec2 corner, uvec2 size)
 {
     vec2 low = masu_ndc(vec2(corner) - 0.5, vec2(size));
@@ -92,7 +92,7 @@ vec3 tile_plane(uint i, uvec2 corner, uvec2 size)
 bool sphere_seen(vec4 sphere, float z_far)
 {
     if (!(sphere.w >= 0.0)) {
-        return true; /* unbounded, or not a number: kept */
+        return true; /* unbounded, or NaN: kept */
     }
     vec3 c = sphere.xyz - frame.sdf_eye_hi.xyz - frame.sdf_eye_lo.xyz;
     /* Rounding of the centre and of the planes: a few ulp of the distances involved. */
@@ -105,7 +105,7 @@ bool sphere_seen(vec4 sphere, float z_far)
     return !outside;
 }
 
-/* A box against the same planes: the corner farthest along each normal. */
+/* Tests a box against the same planes, by its corner farthest along each normal. */
 bool box_seen(vec3 low, vec3 high, float z_far)
 {
     low = low - frame.sdf_eye_hi.xyz - frame.sdf_eye_lo.xyz;
@@ -121,8 +121,8 @@ bool box_seen(vec3 low, vec3 high, float z_far)
     return !outside;
 }
 
-/* Half-spaces are in no list. The rate at which a ray nears one is affine over the picture: if no
- * corner ray of the tile meets it, none does. */
+/* Half-spaces are in no list. The rate at which a ray approaches one is affine over the image: if
+ * no corner ray of the tile hits it, no ray does. */
 bool flat_parts_seen(uvec2 corner, uvec2 size)
 {
     bool seen = false;
@@ -186,7 +186,7 @@ void main()
             masks[uint(w * INVOCATIONS) + me] = 0u;
         }
     }
-    /* What is the same for all parts is found by as few invocations as it takes. */
+    /* Values common to all parts are computed by few invocations. */
     if (me < 4u) {
         planes[me] = tile_plane(me, corner, size);
     }

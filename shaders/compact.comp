@@ -1,11 +1,11 @@
 /*
- * compact.comp: lists of the instances that are visible, and the counts of their draws. The order of
- * stage 1 is kept: of two surfaces at one depth the first wins, and which one that is may not depend
- * on what is hidden or on how invocations run.
+ * compact.comp: writes the lists of visible instances and the counts of their draws. The order of
+ * stage 1 is preserved: the first of two surfaces at equal depth wins, so the order may not depend
+ * on culling or on the order in which invocations run.
  *
- * Placed meshes of few instances have one invocation each; for the others a group works off 64
- * instances at a time. Views in y. push.header: the header of src/frame/occlusion.c; push.few: groups of the
- * first kind; push.view: the first view.
+ * Placed meshes with few instances have one invocation each. For the others, a group processes 64
+ * instances per iteration. Views in y. push.header: the header of src/frame/occlusion.c. push.few:
+ * groups of the first kind. push.view: the first view.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -55,7 +55,7 @@ void main()
     uint instance_count = masu_cull_word(MASU_CULL_INSTANCES);
     uint draw_count = masu_cull_word(MASU_CULL_DRAWS);
     uint marks = view * instance_count;
-    uint from = view * masu_cull_word(MASU_CULL_LISTED); /* lists of stage 1, and of ours */
+    uint from = view * masu_cull_word(MASU_CULL_LISTED); /* stage 1's lists, and the output's */
     uint to = masu_cull_word(MASU_CULL_LISTS) + from;
     uint draws_from = view * draw_count, draws_to = (views + view) * draw_count;
     uint lane = gl_LocalInvocationID.x;
@@ -107,7 +107,7 @@ void main()
             count += uint(bitCount(group_mask[0]) + bitCount(group_mask[1]));
         }
     }
-    /* Of a batch that is large by number and small by what stage 1 has left, the first kind. */
+    /* A large batch of which stage 1 keeps at most 64 is processed like a small one. */
     bool own = small ? mine && kept <= 64u : kept > 64u && lane == 0u;
     if (own) {
         for (uint i = 0u; i < uint(MASU_CULL_ROUNDS); i++) {

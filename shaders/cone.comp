@@ -1,16 +1,17 @@
 /*
- * cone.comp: how far the rays of a whole block of pixels are free. Compiled by masu-bake with the
- * scene's field, once per MASU_CONE_BLOCK: 8 (from the start), then 4 (from where its 8x8 block
- * stopped).
+ * cone.comp: cone marching: the distance up to which all rays of a block of pixels are free.
+ * masu-bake compiles it with the scene's SDF, once per MASU_CONE_BLOCK: 8 (starts at the camera),
+ * then 4 (starts where its 8x8 block stopped).
  *
- * The rays of a block lie in a cone around the ray through its middle, of tangent k = block / sqrt(2)
- * pixels. If the field allows a step r at distance t, all of the cone is free up to the plane where
- * its rim leaves the sphere of radius r:  (s - t)^2 + (k s)^2 = r^2.  A ray of the block meets that
- * plane at s or later, so that it may start at s: nothing is approximated, no feature is jumped over.
- * The march stops where the sphere no longer holds the cone, or gains less than a quarter of its
- * radius (beyond that the pixels do better alone).
+ * The rays of a block are inside a cone around its centre ray, of tangent k = block / sqrt(2)
+ * pixels. If the SDF allows a step r at distance t, the whole cone is free up to the plane where
+ * its rim leaves the sphere of radius r:  (s - t)^2 + (k s)^2 = r^2.  A ray of the block reaches
+ * that plane at distance s or later, so it may start at s: this is exact and skips no feature. The
+ * march stops if the sphere no longer contains the cone, or if it gains less than a quarter of the
+ * cone's radius (from there on, separate pixels are faster).
  *
- * Outside the box of the listed parts nothing is listed: there the distance to it is a step as well.
+ * There are no listed parts outside their bounding box, so the distance to that box is also a safe
+ * step.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -67,7 +68,7 @@ void main()
 #if MASU_CONE_BLOCK == 4
         t = max(t, texelFetch(parent_image, ivec2(at) / 2, 0).r);
 #endif
-        /* A half-space ends most cones; where the middle ray meets it is as far as any needs to go. */
+        /* Most cones end at a half-space; marching beyond the centre ray's hit on it is useless. */
         uint part;
         float limit = min(frame.sdf_max.w, masu_sdf_flat(world_at(r.direction, 0.0), r.direction, t, part));
         uint evals = 0u;
@@ -84,7 +85,7 @@ void main()
             float at_t = t;
 #if MASU_WRITES_BLOCKS
             if (done) {
-                /* A sample more for each piece of the rays that begin here. */
+                /* One more sample for each span of the rays that start here. */
                 vec4 ends = span_ends(t, r.pixel);
                 float begin = span == 0 ? t : span == 1 ? ends.x : span == 2 ? ends.y : ends.z;
                 float end = span == 0 ? ends.x : span == 1 ? ends.y : span == 2 ? ends.z : ends.w;
@@ -121,7 +122,8 @@ void main()
             t = done ? t : t + gain;
         }
 #if MASU_WRITES_BLOCKS
-        /* Where the middle ray has ended few others go on: by what the tile sees, as all do with push.all_terms. */
+        /* Few rays continue past the end of the centre ray: they use the tile's list, as all rays
+         * do with push.all_terms. */
         uint place = span_place(at);
         masu_tiles_out[place] = floatBitsToUint(t);
         for (int i = 0; i < MASU_BLOCK_SPANS; i++) {

@@ -1,17 +1,17 @@
 /*
- * cull.comp: whether an instance that stage 1 has kept is hidden by occluders: its box against every
- * texel of the atlas that it can touch. One invocation per kept instance; views in y.
+ * cull.comp: occlusion culling: tests the bounds of each instance that stage 1 has kept against
+ * every atlas texel that they can touch. One invocation per kept instance; views in y.
  *
- * The answer is a word per view and instance that outlives the frame: what was hidden is asked again
- * in every frame, so that it is drawn in the frame in which it appears; what was visible, in every
- * fifth of those that draw the view. After a cut all are asked. A word that is older than it should be, or noise, therefore costs
- * time and never a pixel.
+ * The result is a 32-bit value per view and instance that persists over frames. Occluded instances
+ * are tested in every frame, so that they are drawn in the frame in which they appear. Visible
+ * instances are tested in every fifth frame that draws the view. After a camera cut all are tested.
+ * A stale or random value therefore costs time but never a pixel.
  *
- * A caster whose shadow falls on nothing in the picture is hidden as well, in cascades that this frame
- * alone looks at: of each texel of the sun's part of the atlas, receiver_mask.comp has noted how far from
- * the sun the farthest surface in the picture is that looks into the cascade.
+ * Shadow casters are also culled if their shadow falls on no visible surface, in cascades that only
+ * this frame samples: for each texel of the sun's part of the atlas, receiver_mask.comp has stored
+ * the distance from the sun of the farthest visible surface that samples the cascade there.
  *
- * push.header: the header of src/frame/occlusion.c; push.view: the first view.
+ * push.header: the header of src/frame/occlusion.c. push.view: the first view.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -32,11 +32,11 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SEEN, std430) buffer Seen
     uint seen[];
 };
 
-/* Larger rectangles are taken to be visible: they nearly always are. */
+/* Larger rectangles are assumed visible: they nearly always are. */
 #define MASU_TEXELS_MOST 16384
 
-/* Whether a surface of the picture lies behind what is at `nearest`, in texels that its shadow may be looked
- * up in. */
+/* Whether a visible surface is farther from the sun than `nearest`, in texels where the shadow may
+ * be sampled. */
 bool receives(uint cascade, vec2 low, vec2 high, float nearest)
 {
     ivec2 from = ivec2(clamp(floor(low), vec2(0.0), vec2(MASU_ATLAS_SUN)));
@@ -89,7 +89,7 @@ bool hidden(uint view, vec3 center, vec3 extent)
         !receives(view - 1u, low - reach, high + reach, nearest * (1.0 + 1.2e-4) + 2e-6)) {
         return true;
     }
-    /* 2^-13 for the depth that the raster interpolates, 2^-9 texel for the positions. */
+    /* 2^-13 for rounding of the interpolated depth, 2^-9 texel for the positions. */
     nearest = nearest * (1.0 + 1.2e-4) + masu_drawn_float(at + MASU_CULL_VIEW_BIAS);
     low = clamp(floor(low - margin - 0.002), vec2(0.0), atlas.zw);
     high = clamp(ceil(high + margin + 0.002), vec2(0.0), atlas.zw);

@@ -1,10 +1,11 @@
 /*
- * decals.comp: boxes that paint the G-buffer before light falls on it: base colour, metallic, roughness. Runs over
- * the part of the picture that decals are in (an indirect dispatch; src/frame/decals.c). A workgroup looks once which of
- * them may touch its 8x8 pixels, a bit each; each pixel with a surface then goes through these, in the order of the
- * frame's array, which is that of the bits. What is painted is mixed as linear colour; a pixel that none touches is not written.
+ * decals.comp: paints the base colour, metallic and roughness of decal boxes into the G-buffer
+ * before lighting. An indirect dispatch covers the part of the image that contains decals
+ * (src/frame/decals.c). Each workgroup first finds the decals that may touch its 8x8 pixels, one
+ * bit each. Each pixel with a surface then applies these in bit order, which is the order of the
+ * frame's array. Paint is mixed in linear colour. Pixels that no decal touches are not written.
  *
- * Paint covers what shines through it. What only shines (masu_is_unlit) stays as it is.
+ * Paint also covers emission. Surfaces that only emit (masu_is_unlit) remain unchanged.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -44,7 +45,7 @@ shared uint touched[WORDS];
 
 const float dielectric = 0.04; /* reflectance at normal incidence */
 
-/* How much of a decal is at a point relative to the eye, where the surface has the normal n. */
+/* Weight of a decal at a point relative to the camera, for a surface with the normal n. */
 float painted(uint at, vec3 rel, vec3 n, vec4 look)
 {
     vec4 row0 = sprites[at], row1 = sprites[at + 1u], row2 = sprites[at + 2u], axis = sprites[at + 5u];
@@ -60,10 +61,10 @@ float painted(uint at, vec3 rel, vec3 n, vec4 look)
     return edge * clamp((dot(axis.xyz, n) - place.z) * place.w, 0.0, 1.0);
 }
 
-/* Mixes paint into a surface as light would be: its diffuse albedo, a (1 - m), and its reflectance
- * at normal incidence, a m + 0.04 (1 - m). Metallic is weighted by albedo, which mixes the diffuse
- * part exactly: black paint on metal stays metal until it is nearly black. The albedo makes up for
- * the rest, so that the sum of both parts is exact. */
+/* Mixes paint into a surface linearly in reflected light: diffuse albedo, a (1-m), and reflectance
+ * at normal incidence, a m + 0.04 (1-m). Metallic is weighted by albedo, which mixes the diffuse
+ * part exactly: black paint on metal remains metal until it is nearly black. The albedo absorbs the
+ * remaining difference, so that the sum of both parts is exact. */
 void cover(inout masu_surface s, vec3 paint, float metallic, float share)
 {
     float own = (1.0 - share) * (masu_brightest(s.albedo) + 1.0 / 256.0);
@@ -75,7 +76,8 @@ void cover(inout masu_surface s, vec3 paint, float metallic, float share)
 }
 
 #ifdef MASU_LIVE_TEXTURES
-/* Where the ray of a neighbouring pixel meets the plane of the surface, relative to the point; seen edge-on not far. */
+/* Hit of a neighbouring pixel's ray on the plane of the surface, relative to the point; clamped at
+ * grazing angles. */
 vec3 to_neighbour(vec3 ray, vec3 rel, vec3 n)
 {
     float away = dot(n, rel), towards = dot(n, ray);
@@ -83,7 +85,8 @@ vec3 to_neighbour(vec3 ray, vec3 rel, vec3 n)
     return far > 0.0 ? ray * far - rel : vec3(0.0);
 }
 
-/* Colour and opacity of a decal at a point, times those of its texture. dx, dy: to the neighbours. */
+/* Colour and opacity of a decal at a point, times those of its texture. dx, dy: to neighbouring
+ * pixels. */
 vec4 textured(uint at, vec4 color, vec3 rel, vec3 dx, vec3 dy)
 {
     uint number = floatBitsToUint(sprites[at + 8u].x);
@@ -151,8 +154,8 @@ void paint(ivec2 at, uvec2 size, uint words)
         }
     }
     if (changed) {
-        /* The texel has 16 steps of metallic: without what albedo makes up for, soft edges have
-         * rings. */
+        /* The texel stores metallic in 16 steps. Soft edges would have rings if the albedo did not
+         * correct for the rounding. */
         float steps = floor(masu_sane_unit(s.metallic) * 15.0 + 0.5) / 15.0;
         s.albedo += dielectric * (steps - s.metallic);
         s.metallic = steps;

@@ -1,14 +1,14 @@
 /*
- * easu.comp: FSR1 edge-adaptive upscale, fp32, one invocation for each output pixel. With MASU_HALF taps are
- * weighted in 16 bits.
+ * easu.comp: FSR1 edge-adaptive upscale, fp32, one invocation per output pixel. With MASU_HALF,
+ * taps are weighted in 16 bits.
  *
- * AMD's published fp32 shader (ffx_fsr1 v1.0.2), approximate reciprocals included; with MASU_EXACT equal
- * to it, as rounded by tests/reference/fsr1.c, to the bit. It differs from the original in how it reads:
- * 12 clamped texelFetch instead of 12 gathers, because the input is the corner of a larger image and a
- * gather at its border would return what an earlier frame left outside. A clamp is of a column or a row:
- * eight in all.
+ * Follows AMD's published fp32 shader (ffx_fsr1 v1.0.2), including its approximate reciprocals.
+ * With MASU_EXACT it is bit-identical to that shader as rounded by tests/reference/fsr1.c. It
+ * differs from the original in its reads: 12 clamped texelFetch instead of 12 gathers, because the
+ * input is the corner of a larger image, and a gather at its border would return texels of an
+ * earlier frame. A clamp is per column or row: eight in all.
  *
- * Push constants: render_* = valid corner of the input, output_* = size to write, push.scale_* = input
+ * Push constants: render_*: valid corner of the input, output_*: size to write, push.scale_*: input
  * size * (1 / output size).
  */
 #version 450

@@ -1,9 +1,9 @@
 /*
- * easu_fast.comp: the cheap form of easu.comp (upscale/easu_fast.glsl), one invocation for each
- * output pixel. With MASU_BYTES the input can hold nothing but 0..1; with MASU_COUNTED tiles that
- * leave early are counted.
+ * easu_fast.comp: the fast variant of easu.comp (upscale/easu_fast.glsl), one invocation per output
+ * pixel. With MASU_BYTES the input format contains only 0..1; with MASU_COUNTED, tiles that exit
+ * early are counted.
  *
- * Push constants: render_* = valid corner of the input, output_* = size to write, push.scale_* = input
+ * Push constants: render_*: valid corner of the input, output_*: size to write, push.scale_*: input
  * size * (1 / output size).
  */
 #version 450
@@ -29,7 +29,7 @@ layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D source; /* perceptual
 layout(set = MASU_SET_PASS, binding = 1, MASU_COLOR_FORMAT) uniform writeonly MASU_COLOR_IMAGE target;
 
 #ifdef MASU_COUNTED
-shared uint filtered; /* not 0: some pixel of the tile */
+shared uint filtered; /* not 0: a pixel of the tile needs filtering */
 #endif
 
 vec3 upscaled(uvec2 at)

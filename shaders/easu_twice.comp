@@ -1,18 +1,21 @@
 /*
- * easu_twice.comp: EASU (upscale/easu.glsl) to twice the width and height: what easu.comp makes of it, for less.
+ * easu_twice.comp: EASU (upscale/easu.glsl) at exactly twice the width and height: easu.comp's
+ * result at a lower cost.
  *
- * Of four texels the same four pixels of the output lie between them, 2x2 of those whose first has odd coordinates,
- * a quarter of a texel from the middle of each. They take the same twelve texels and have the same gradients and
- * straightness at the four; only weights differ. So an invocation makes all four, and reads and looks once.
+ * The centres of any 2x2 texels enclose 2x2 output pixels, the first at odd coordinates, each a
+ * quarter of a texel from the closest centre on both axes. All four pixels read the same twelve
+ * texels, with the same gradients and straightness at the four central ones; only their weights
+ * differ. So an invocation writes all four and reads and analyses the texels once.
  *
- * Where the four texels differ by at most half a step of 8 bits, what EASU gives lies between them, and so does their
- * bilinear mean: it is taken, and the other eight are not read.
+ * If the four central texels differ by at most half a step of 8 bits, both EASU's result and the
+ * bilinear mean are between them. The bilinear mean is then written, and the other eight texels are
+ * not read.
  *
- * One invocation for each four texels, those at the picture's edge with what lies beyond: one more each way than there
- * are texels. An output of odd size is twice the input less a row, or more: a pixel at most by which the last
- * lies elsewhere than easu.comp would put it.
+ * One invocation per 2x2 texels, including those across the image edge: one more per axis than
+ * there are texels. An output of odd size is less than twice the input. Its last pixel may then
+ * differ in position from easu.comp's by up to a pixel.
  *
- * Push constants: render_* = valid corner of the input, output_* = size to write.
+ * Push constants: render_*: valid corner of the input, output_*: size to write.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -59,7 +62,7 @@ void main()
             vec3 mean = masu_weighted_mean(t, masu_kernel_of(vec3(dot(w, e.x), dot(w, e.y), dot(w, e.z))), p);
             result = min(most, max(least, mean));
         }
-        if (all(lessThan(at, size))) { /* -1, beyond the first, is not */
+        if (all(lessThan(at, size))) { /* false for -1, which wraps around */
             MASU_STORE_FILTERED(target, at, result);
         }
     }

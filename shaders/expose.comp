@@ -1,15 +1,16 @@
 /*
- * expose.comp: the exposure that the bins of meter.comp ask for, as far as time lets it adapt. One
- * workgroup, of which one invocation sums up: in one order, so that the same picture gives the same
- * bits.
+ * expose.comp: automatic exposure from the histogram of meter.comp, with adaptation over time. One
+ * workgroup, in which one invocation adds up the bins: a fixed order, so that equal images give
+ * bit-identical results.
  *
- * The mean is that of log2 of luminance without the darkest and the brightest shares; a bin that
- * straddles a share's end counts in part. The exposure makes it a grey card's. In log2 it goes a share
- * 1 - exp(-speed dt) of the way: two frames of dt do what one of 2 dt does. A frame without a pixel that
- * counts leaves it where it is.
+ * The metered value is the mean of log2 luminance without the darkest and the brightest shares of
+ * the pixels; a bin across the end of a share is weighted by its part inside. The target exposure
+ * maps the mean to the luminance of a grey card. In log2, exposure moves by 1 - exp(-speed dt) of
+ * the remaining distance, so that two frames of dt equal one frame of 2 dt. A frame without any
+ * metered pixel leaves it unchanged.
  *
- * Push constants: push: speed to brighten, to darken, min, max; low and high = shares left out, of
- * 2^16, below and above.
+ * Push constants: push: speed to brighten, to darken, min, max; low and high: shares ignored at the
+ * dark and at the bright end, in units of 2^-16.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -26,14 +27,14 @@ layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_EXPOSURE, std430) buffer Exposure
 {
     float exposure;
-    float adapted; /* log2 of what is metered of it */
+    float adapted; /* log2 of the metered part */
     uint unused[MASU_EXPOSURE_HEADER - 2];
     uint bins[MASU_EXPOSURE_BINS];
 };
 
 shared uint counts[MASU_EXPOSURE_BINS];
 
-/* log2 of the middle of a bin. */
+/* log2 luminance at the centre of a bin. */
 float middle(uint bin)
 {
     return float(MASU_EXPOSURE_LOG2) + float(bin >> 3) + masu_log2((float(bin & 7u) + 8.5) / 8.0);
@@ -52,7 +53,7 @@ void main()
     for (uint k = 0u; k < uint(MASU_EXPOSURE_BINS); k++) {
         all_pixels += counts[k];
     }
-    /* At most 2^28 pixels: floats lose what is below 16 of them. */
+    /* At most 2^28 pixels: a float's rounding error is below 16 of them. */
     float pixels = float(all_pixels);
     float low = pixels * (float(push.low) / 65536.0);
     float high = pixels * (1.0 - float(push.high) / 65536.0);
@@ -65,7 +66,7 @@ void main()
         sum += inside * middle(k);
     }
     bool cut = (frame.history.w & uint(MASU_HISTORY_CUT)) != 0u;
-    /* What no frame leaves is not kept: it would take as long to go as it is far away. */
+    /* Clamped to the reachable range: a value beyond it would take time to return. */
     float least = min(masu_log2(push.min), 0.0), most = max(masu_log2(push.max), 0.0);
     float before = masu_sane(adapted, least, most);
     float wanted = cut ? 0.0 : before;

@@ -1,6 +1,7 @@
 /*
- * focus.comp: depth of field: mixes the layers of focus_gather.comp into the lit image. Pixels with a circle of
- * confusion of less than half a pixel in radius stay as they are, where no closer disc covers them.
+ * focus.comp: depth of field: mixes the layers of focus_gather.comp into the lit image. A pixel
+ * whose circle of confusion is less than half a pixel in radius remains unchanged unless a closer
+ * disc covers it.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -23,7 +24,7 @@ void main()
         return;
     }
     float radius = masu_focus_radius(texelFetch(depth_image, ivec2(at), 0).r);
-    /* Bilinear, of four texels: their weights make texels without a layer count for nothing. */
+    /* Bilinear, of four texels: texels without a layer have weight 0. */
     vec2 place = 0.5 * (vec2(at) + 0.5) - 0.5, part = fract(place);
     ivec2 first = ivec2(floor(place)), last = (ivec2(pc.render_width, pc.render_height) + 1) / 2 - 1;
     vec4 behind = vec4(0.0), front = vec4(0.0);
@@ -40,9 +41,10 @@ void main()
     vec4 lit = imageLoad(hdr_image, ivec2(at));
     vec3 color = masu_sane(lit.rgb, 0.0, 65504.0), distant = behind.a > 1e-3 ? behind.rgb / behind.a : color;
     if (radius < 0.0 && blurred > 0.0) {
-        /* Discs around have the share of this one. Without it, they cover the pixel as far as the surface does. */
+        /* The surrounding discs have this pixel's share. Dividing by it leaves the coverage of the
+         * surface. */
         front /= max(blurred, max(front.a, 1e-3));
-        front += max(0.5 - front.a, 0.0) * vec4(color, 1.0); /* half of it at the edge */
+        front += max(0.5 - front.a, 0.0) * vec4(color, 1.0); /* half at the edge */
         color = mix(color, distant * (1.0 - front.a) + front.rgb, blurred);
     } else {
         color = mix(color, distant, blurred) * (1.0 - min(front.a, 1.0)) + front.rgb;

@@ -1,15 +1,18 @@
 /*
- * focus_gather.comp: depth of field: gathers the discs that cover a pixel, at half size, in two layers. After J.
- * Jimenez, "Next Generation Post Processing in Call of Duty: Advanced Warfare", SIGGRAPH 2014.
+ * focus_gather.comp: depth of field: gathers the discs that cover a pixel, at half resolution, in
+ * two layers. After J. Jimenez, "Next Generation Post Processing in Call of Duty: Advanced
+ * Warfare", SIGGRAPH 2014.
  *
- * Behind the sharp plane: a sample contributes if both its disc and that of the pixel reach as far as it is away. Sharp
- * samples thus reach no other pixel, and no distant light spreads over a closer surface. For pixels that are not behind
- * the plane, the layer has what is farther away nearby: it shows through the edges of closer discs.
+ * Far layer, behind the focal plane: a sample contributes if both its disc and the pixel's disc
+ * reach across the distance between them. So sharp samples reach no other pixel, and no distant
+ * light spreads over a closer surface. For pixels that are not behind the focal plane, this layer
+ * contains the farther surroundings, which are visible through the edges of closer discs.
  *
- * In front: a sample contributes if its disc reaches the pixel, which may be sharp itself. What all discs contribute,
- * each one per area, is how much of the pixel they cover.
+ * Near layer, in front of the focal plane: a sample contributes if its disc reaches the pixel,
+ * which may be sharp itself. The sum of the contributions, each divided by the disc's area, is the
+ * coverage of the pixel.
  *
- * push.vary: not 0: another rotation of the samples in each frame, for rung.temporal.
+ * push.vary: not 0: rotates the samples differently in each frame, for rung.temporal.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -30,7 +33,7 @@ layout(set = MASU_SET_PASS, binding = 3, rgba16f) uniform writeonly image2D near
 
 #define SAMPLES 48
 
-shared uint nearest; /* bits of the largest radius in front of the plane whose disc may reach this tile */
+shared uint nearest; /* bits of the largest near radius whose disc may reach this tile */
 
 void main()
 {
@@ -45,7 +48,7 @@ void main()
     ivec2 last = ivec2(pc.output_width, pc.output_height) - 1;
     float most = min(float(MASU_FOCUS_MOST) * float(pc.render_height), masu_focus_reach);
     int around = int(most / float(MASU_TILE)) + 1; /* 9 at most */
-    int side = 2 * around + 1; /* 6 rounds suffice for 19 x 19 tiles */
+    int side = 2 * around + 1; /* 6 iterations suffice for 19 x 19 tiles */
     for (int n = 0; n < 6; n++) {
         int k = n * MASU_GROUP * MASU_GROUP + int(gl_LocalInvocationIndex);
         ivec2 offset = ivec2(k % side, min(k / side, side)) - around;
@@ -62,7 +65,7 @@ void main()
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
     vec4 own = masu_sane(texelFetch(source_image, min(at, last), 0), -65504.0, 65504.0);
     float widest = max(own.a, uintBitsToFloat(nearest));
-    float radius = max(0.5 * masu_focus_disc(widest), 0.5); /* here and below: texels of half size */
+    float radius = max(0.5 * masu_focus_disc(widest), 0.5); /* here and below: half-size texels */
     float own_disc = max(0.5 * masu_focus_disc(max(own.a, 0.0)), 0.5);
     vec4 behind = vec4(0.0), front = vec4(0.0);
     if (widest > 0.5) {
@@ -70,17 +73,17 @@ void main()
         float turn = float(noise >> 8) * (6.2831853 / 16777216.0);
         float area = radius * radius / float(SAMPLES);
         for (int k = 0; k < SAMPLES; k++) {
-            /* Evenly over the disc, from its centre on: the golden angle; H. Vogel, 1979. */
+            /* Evenly distributed from the disc's centre, by the golden angle; H. Vogel, 1979. */
             float away = radius * masu_sqrt(float(k) / float(SAMPLES)), angle = turn + 2.3999632 * float(k);
             ivec2 from = ivec2(floor(vec2(at) + 0.5 + away * vec2(cos(angle), sin(angle))));
             vec4 there = masu_sane(texelFetch(source_image, clamp(from, ivec2(0), last), 0), -65504.0, 65504.0);
             float disc = max(0.5 * masu_focus_disc(there.a), 0.5);
-            /* Behind. */
+            /* Far layer. */
             float least = min(disc, own_disc);
             float weight = own.a > 0.0 ? clamp(least - away + 0.5, 0.0, 1.0) * clamp(there.a, 0.0, 1.0) / (least * least)
                                        : clamp(there.a - own.a - 1.0, 0.0, 1.0);
             behind += weight * vec4(there.rgb, 1.0);
-            /* In front. */
+            /* Near layer. */
             float covers = there.a < 0.0 ? clamp(disc - away + 0.5, 0.0, 1.0) * masu_focus_share(there.a) : 0.0;
             front += covers * area / (disc * disc) * vec4(there.rgb, 1.0);
         }

@@ -1,9 +1,10 @@
 /*
- * focus_source.comp: depth of field: halves the lit image, and finds the nearest circle of confusion of each 16x16
- * pixels. A workgroup has one such tile.
+ * focus_source.comp: depth of field: halves the lit image, and finds the largest near circle of
+ * confusion of each 16x16 pixels. A workgroup has one such tile.
  *
- * Of 2x2 pixels the most blurred one decides: in front of the sharp plane if at least two are there, else behind it.
- * Pixels whose radius differs from its by two pixels do not contribute, so that sharp and blurred surfaces do not mix.
+ * The most blurred pixel of 2x2 decides: in front of the focal plane if at least two are there,
+ * else behind it. Pixels whose radius differs from its radius by two pixels do not contribute, so
+ * that sharp and blurred surfaces do not mix.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

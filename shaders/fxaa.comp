@@ -1,13 +1,13 @@
 /*
- * fxaa.comp: anti-aliasing in one pass, for where SMAA is too dear: pixels of high contrast become
- * a mean along the edge, whose direction the nearest pixels tell.
+ * fxaa.comp: anti-aliasing in one pass, if SMAA is too expensive. Pixels of high contrast become a
+ * mean along the edge, whose direction the adjacent pixels give.
  *
  * The idea is Lottes' ("FXAA", NVIDIA white paper, 2009; the short variant): two taps half a pixel
- * along the edge, two more up to two pixels away that count unless they have met something else,
- * which a luma outside of the neighbourhood's gives away. Taps are mixed as light, whose curve is a
- * square here: near enough for a mean of neighbours, and the pass is there to be cheap.
+ * along the edge, and two more up to two pixels away. The outer two contribute unless they have
+ * left the edge, which a luma outside the neighbourhood's range indicates. Taps are mixed as linear
+ * light, approximated by the square: accurate enough for a mean of neighbours, and cheap.
  *
- * Push constants: render_* = valid corner of the picture.
+ * Push constants: render_*: valid corner of the image.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -20,7 +20,7 @@ layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D picture; /* display-encoded */
 layout(set = MASU_SET_PASS, binding = 1, MASU_COLOR_FORMAT) uniform writeonly MASU_COLOR_IMAGE smooth_image;
 
-/* Contrasts that count: of the brightest pixel near by an eighth, of white 1/24. */
+/* Contrast thresholds: an eighth of the brightest neighbour, 1/24 of white. */
 const float least_share = 0.125;
 const float least_step = 2550000.0 / 24.0;
 const float farthest = 2.0;
@@ -75,13 +75,14 @@ void main()
         float se = masu_smaa_luma(down_right);
         least = min(least, min(min(nw, ne), min(sw, se)));
         most = max(most, max(max(nw, ne), max(sw, se)));
-        /* Along the edge is across the gradient. None, as of a single pixel: nothing to follow. */
+        /* The edge is perpendicular to the gradient. A single pixel has no gradient: nothing to
+         * follow. */
         vec2 along = vec2((nw + 2.0 * n + ne) - (sw + 2.0 * s + se),
                           (ne + 2.0 * e + se) - (nw + 2.0 * w + sw));
         float length_squared = dot(along, along);
         if (length_squared > 1.0) {
             along *= masu_rsqrt(length_squared);
-            /* Half a pixel to both sides is still among the nine. */
+            /* Half a pixel to both sides is still within the nine pixels. */
             vec2 share = 0.5 * abs(along);
             bool falls = along.x * along.y > 0.0;
             vec3 corners = falls ? up_left * up_left + down_right * down_right

@@ -1,15 +1,15 @@
 /*
- * light.comp: one path for polygons and SDF hits: sun, ambient light, sky where there is
- * nothing. With MASU_OCCLUSION it is light_occluded, in which the sun and what comes from everywhere
- * arrive as far as sdf_occlusion.comp says; with MASU_PROBES light probes say what comes from
- * everywhere; with MASU_LIGHTS there are points and spots, with MASU_LOCAL_SHADOWS their shadows; with MASU_SURFACE some
- * surfaces are more than albedo, roughness and metallic.
+ * light.comp: deferred lighting of polygon and SDF hits: sun, ambient light, and the sky where
+ * depth is 0. Variants: MASU_OCCLUSION (light_occluded) scales sun and ambient light by the
+ * occlusion image, MASU_PROBES takes ambient light from light probes, MASU_LIGHTS adds local
+ * lights, MASU_LOCAL_SHADOWS their shadows, and MASU_SURFACE materials with more than albedo,
+ * roughness and metallic.
  *
- * Surfaces as light/shade.glsl has them; what the air takes and adds (light/air.glsl) only in scenes
- * with fog. What of the mirrored light is traced is left out.
+ * Materials are in light/shade.glsl. Absorption and in-scattering of the air (light/air.glsl) apply
+ * only in scenes with fog. The part of the specular reflection that is traced is not added here.
  *
- * push.light_tiles: not 0: there are lists of lights; push.cutoff: roughness from which nothing is traced; push.accumulate: not
- * 0: debug.reference.
+ * push.light_tiles: not 0 if there are tile lists of lights. push.cutoff: roughness from which
+ * reflections are not traced. push.accumulate: not 0 with debug.reference.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -29,12 +29,12 @@
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
 layout(constant_id = 2) const bool foggy = false; /* the scene has fog */
-layout(constant_id = 4) const bool reflections = false; /* some are traced: push.cutoff, push.accumulate */
+layout(constant_id = 4) const bool reflections = false; /* some traced: cutoff, accumulate */
 
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D albedo_image;
 layout(set = MASU_SET_PASS, binding = 1) uniform usampler2D normal_image;
 layout(set = MASU_SET_PASS, binding = 2) uniform sampler2D depth_image;
-/* The images that a build has beside those three, one behind the other. */
+/* The optional images of a variant follow those three. */
 #ifdef MASU_OCCLUSION
 #define MASU_AT_SURFACE 4
 layout(set = MASU_SET_PASS, binding = 3) uniform usampler2D occlusion_image;
@@ -57,7 +57,7 @@ layout(set = MASU_SET_PASS, binding = MASU_AT_SURFACE) uniform sampler2D surface
 #endif
 layout(set = MASU_SET_PASS, binding = MASU_AT_HDR, rgba16f) uniform image2D hdr_image;
 
-/* How much arrives of the sun and of the ambient light. */
+/* Visibility of the sun (x) and of the ambient light (y). */
 vec2 arriving(uvec2 at)
 {
 #ifdef MASU_OCCLUSION
@@ -67,7 +67,7 @@ vec2 arriving(uvec2 at)
 #endif
 }
 
-/* What the G-buffer says of a pixel. */
+/* The surface that the G-buffer stores at a pixel. */
 masu_surface surface_at(ivec2 at, vec4 albedo, uint normal)
 {
     masu_surface s = masu_unpack_look(albedo, normal);
@@ -83,9 +83,9 @@ masu_surface surface_at(ivec2 at, vec4 albedo, uint normal)
 }
 
 #ifdef MASU_LOCAL_SHADOWS
-layout(constant_id = 16) const bool reliefs = false; /* normals may be those of maps */
+layout(constant_id = 16) const bool reliefs = false; /* normals may be from normal maps */
 
-/* The smaller step of depth to the two pixels beside: across an edge there is none. */
+/* The smaller depth difference to the two neighbours: it does not cross an edge. */
 float depth_step(ivec2 before, ivec2 after, float depth)
 {
     float low = depth - texelFetch(depth_image, before, 0).r;
@@ -93,8 +93,9 @@ float depth_step(ivec2 before, ivec2 after, float depth)
     return abs(low) < abs(high) ? low : high;
 }
 
-/* The normal of the surface itself, which a map may have tilted: by depth, which is affine across a plane. A surface
- * of an SDF is not as smooth in depth; where the two are far apart, the G-buffer's counts. */
+/* The geometric normal, from depth, which is affine across a plane: the G-buffer's may be from a
+ * normal map. Depth of SDF surfaces is less smooth: if the two normals differ strongly, the
+ * G-buffer's is used. */
 vec3 flat_normal(ivec2 at, ivec2 size, float depth, vec3 n)
 {
     float x = depth_step(ivec2(max(at.x - 1, 0), at.y), ivec2(min(at.x + 1, size.x - 1), at.y), depth);
@@ -110,11 +111,12 @@ vec3 flat_normal(ivec2 at, ivec2 size, float depth, vec3 n)
 #endif
 
 #ifdef MASU_LIGHTS
-/* Adds the local lights. rel, n: the point relative to the eye, the normal of the surface itself. */
+/* Adds the local lights. rel: the point relative to the camera. n: the geometric normal. */
 void add_lights(inout vec3 color, masu_surface s, masu_bsdf b, uvec2 at, vec3 rel, vec3 n, vec3 traced)
 {
     uvec2 size = uvec2(pc.output_width, pc.output_height);
-    /* As a number of the workgroup: lights are then loaded once for all lanes, not into registers of each. */
+    /* From the workgroup's number: light loads are then uniform, not into registers of each
+     * lane. */
     uvec2 tile = gl_WorkGroupID.xy / uint(MASU_TILE / MASU_GROUP);
     masu_asked asked = masu_lights_asked(tile, size, push.light_tiles != 0u);
     masu_light_sum sum = masu_light_sum(color);

@@ -1,21 +1,24 @@
 /*
- * light_tiles.comp: which punctual lights can reach a surface of which tile. One workgroup per tile of
- * 16x16 pixels; a tile without surfaces lists none.
+ * light_tiles.comp: tiled light culling: lists the punctual lights that can reach a surface of each
+ * tile. One workgroup per tile of 16x16 pixels; the list of a tile without surfaces is empty.
  *
- * A light stays out of a list when its bounding sphere is
+ * A light is culled if its bounding sphere is
  *   - before the nearest or behind the farthest surface of the tile, or between the two at depths
- *     where the tile has none (32 slices of the logarithm of depth; Harada, "A 2.5D culling for
- *     forward+", SIGGRAPH Asia 2012 technical briefs),
- *   - outside one of the tile's four side planes, or of the box around the piece of the tile's
- *     pyramid between the two depths: planes alone keep what is near a corner,
- * or when its cone misses the sphere around that box. Where something is blended before the surfaces
- * (push.blended), a tile has everything from the near plane to its farthest surface, or where it shows the
- * sky, to the end. The host has widened the bounding spheres by
- * more than all rounding here and in lights.glsl amounts to, and the planes lie half a pixel outside
- * of all pixel centres: a light that is left out reaches no pixel in exact bits.
+ *     where the tile has no surface (32 slices of the logarithm of depth; Harada, "A 2.5D culling
+ *     for forward+", SIGGRAPH Asia 2012 technical briefs),
+ *   - outside one of the tile's four side planes, or outside the bounds of the frustum piece
+ *     between the two depths: plane tests by themselves keep lights near a corner,
+ * or if its cone misses the sphere around these bounds.
  *
- * Lists rise, whatever the order in which invocations run. One that would be longer than
- * MASU_TILE_LIGHTS_MAX says MASU_TILE_ALL: slower and just as right.
+ * With transparent surfaces in front (push.blended), the depth range of a tile is from the near
+ * plane to its farthest surface, or unlimited if the tile contains sky.
+ *
+ * The culling is conservative: the host enlarges the bounding spheres by more than all rounding
+ * here and in lights.glsl, and the planes are half a pixel outside of all pixel centres. A culled
+ * light contributes exactly 0 to every pixel.
+ *
+ * Lists are in ascending order, regardless of the order in which invocations run. If a list would
+ * exceed MASU_TILE_LIGHTS_MAX, its count is MASU_TILE_ALL: slower, with the same result.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -35,16 +38,16 @@ layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D depth_image;
 #define INVOCATIONS (MASU_GROUP * MASU_GROUP)
 #define WORDS (MASU_LOCAL_LIGHTS_MAX / 32)
 
-/* View depths by their bits, which order as positive floats do and grow with the logarithm. */
+/* Bits of view depths: they order like positive floats and grow with the logarithm. */
 shared uint nearest;
 shared uint farthest;
-shared uint slices; /* those with a surface */
+shared uint slices; /* slices with a surface */
 shared uint kept[WORDS];
 
 /* Farther than any light reaches; its square is a float. */
 const float end_of_world = 1e17;
 
-/* The piece of the tile's pyramid that has surfaces. View space: x right, y down, z ahead. */
+/* The piece of the tile's frustum that has surfaces. View space: x right, y down, z ahead. */
 struct piece {
     vec2 low, high;           /* slopes x / z, y / z of the side planes */
     vec2 low_unit, high_unit; /* 1 / length of (1, slope) */
@@ -71,7 +74,7 @@ piece make_piece(uvec2 corner, uvec2 size)
     p.box_low = vec3(min(p.low * p.z_near, p.low * p.z_far), p.z_near);
     p.box_high = vec3(max(p.high * p.z_near, p.high * p.z_far), p.z_far);
     p.first = nearest;
-    /* The span of bits in at most 32 steps of a power of two. */
+    /* Divides the range of bits into at most 32 steps of a power of two. */
     uint span = farthest - nearest;
     p.shift = uint(max(findMSB(span) - 4, 0));
     p.filled = 0u;
@@ -84,7 +87,7 @@ vec3 to_view(vec3 v)
                 dot(v, frame.forward.xyz));
 }
 
-/* Comparisons are written so that NaN keeps. */
+/* With NaN the comparisons keep the light. */
 bool sphere_misses(vec3 c, float radius, piece p)
 {
     vec2 inside_low = (c.xy - p.low * c.z) * p.low_unit;
@@ -107,9 +110,9 @@ bool sphere_misses(vec3 c, float radius, piece p)
     return (mask & p.filled) == 0u;
 }
 
-/* The tangent plane of the cone on the side of the sphere's centre: the cone, which is no wider than
- * a half-space, lies behind it. (Along the axis the root of |v|^2 - (v.axis)^2 would lose half of
- * its digits; the cross product loses none.) */
+/* Tests against the cone's tangent plane on the side of the sphere's centre: a cone no wider than a
+ * half-space is behind it. (The square root of |v|^2 - (v.axis)^2 would lose half of its digits
+ * along the axis; the cross product loses none.) */
 bool cone_misses(masu_punctual_light_data light, piece p)
 {
     if (!(light.cone.z > 0.0) || masu_light_kind(light) != MASU_KIND_POINT) {
@@ -174,7 +177,7 @@ void main()
         slices = 0u;
     }
     barrier();
-    /* What is not finite is lit by none: lights.glsl. */
+    /* Non-finite depth is lit by no light: lights.glsl. */
     float z[4];
     bool there[4];
     uint low = 0xFFFFFFFFu;

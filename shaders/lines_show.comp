@@ -1,6 +1,6 @@
 /*
- * lines_show.comp: debug lines over the picture that is shown, encoded as it is; where there is none, nothing is
- * written. push.white: nits.
+ * lines_show.comp: draws the debug lines over the output image, in its encoding. Pixels without a
+ * line are not written. push.white: nits.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

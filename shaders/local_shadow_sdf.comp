@@ -1,15 +1,17 @@
 /*
- * local_shadow_sdf.comp: the SDF as punctual lights see it: a ray for each texel of the shadow faces that a frame
- * renders, from the light to its range. Compiled by masu-bake with the scene's field. What is stored is near / z, as
- * depth of polygons, rounded down to 16 bits; 0 where nothing is. local_shadow_keep.frag puts the nearer of the two
- * into the atlas. A face in which only polygons have moved is not marched again.
+ * local_shadow_sdf.comp: SDF shadow maps of punctual lights: one ray from the light to its range
+ * for each texel of the shadow faces that the frame renders. masu-bake compiles it with the scene's
+ * SDF. The stored value is near / z, as for the depth of polygons, rounded down to 16 bits; 0 if
+ * the ray hits nothing. local_shadow_keep.frag writes the closer of the two depths to the atlas. If
+ * only polygons have moved in a face, it is not marched again.
  *
- * A workgroup is a block of 8x8 texels. It lists the parts whose bounding spheres its rays can touch: as a scene has
- * few parts, bits of them, else numbers in shared memory, or all where there are more than LIST_MOST.
+ * A workgroup is a block of 8x8 texels. It lists the parts whose bounding spheres its rays can
+ * touch: in scenes with few parts as a bit mask, otherwise as part numbers in shared memory, or as
+ * "all parts" if there are more than LIST_MOST.
  *
- * What is nearer than the near distance casts a shadow too, from there. A light that is inside of something (its own
- * bulb) shines out of it: its rays begin where they have left what it is in. Nothing here depends on the eye or the
- * rung, so that a face can be kept.
+ * Surfaces closer than the near distance cast shadows too, from the near distance on. If a light is
+ * inside a solid (its own bulb), its rays start where they leave that solid. Nothing here depends
+ * on the camera or the rung, so that faces can be cached.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -46,7 +48,8 @@ layout(set = MASU_SET_PASS, binding = 0, r32ui) uniform writeonly uimage2D pairs
 shared uint masks[MASKS];
 shared uint depths[INVOCATIONS];
 
-/* Whether a sphere comes near any ray of the block; across: distance of the rays from the middle one, at distance 1. */
+/* Whether a ray of the block may touch the sphere. across: distance of the rays from the centre
+ * ray, at distance 1. */
 bool can_touch(vec4 sphere, vec3 middle, float across, float longest)
 {
     vec3 c = sphere.xyz - eye_hi - eye_lo;
@@ -55,10 +58,10 @@ bool can_touch(vec4 sphere, vec3 middle, float across, float longest)
     vec3 a = abs(eye_hi);
     float slack = 128.0 * ulp * (sphere.w + max(a.x, max(a.y, a.z)) + farthest);
     float reach = sphere.w + across * farthest + slack;
-    return !(sphere.w >= 0.0) || !(dot(off, off) > reach * reach); /* not: unbounded, or not a number */
+    return !(sphere.w >= 0.0) || !(dot(off, off) > reach * reach); /* false: unbounded, or NaN */
 }
 
-/* From here on the field is that of the parts that the block's rays can touch. */
+/* Restricts the SDF to the parts that the block's rays can touch, for all later evaluations. */
 void list_parts(vec3 middle, float across, float longest)
 {
     uint me = gl_LocalInvocationIndex;
@@ -83,7 +86,8 @@ void list_parts(vec3 middle, float across, float longest)
         masu_list_bits[w] = w < MASKS ? masks[min(w, MASKS - 1)] : 0u;
     }
 #else
-    /* Each word is written out by one invocation, behind the words before it: rising order. */
+    /* Each mask is written by one invocation, after the parts of the preceding masks: ascending
+     * order. */
     for (int i = 0; i < (MASKS + INVOCATIONS - 1) / INVOCATIONS; i++) {
         uint word = uint(i * INVOCATIONS) + me;
         if (word >= uint(MASKS)) {
@@ -129,7 +133,7 @@ bool any_listed()
 #endif
 }
 
-/* Distance from the light of what a ray meets, or -1. */
+/* Distance from the light to the ray's hit, or -1. */
 float march_from_light(ray r, inout uint evals)
 {
     march_state s = march_begin(r);
@@ -173,7 +177,7 @@ float depth_of_texel(uint k, vec2 at, bool listed, inout uint evals)
         masu_listed_box(low, high);
         float farthest = ends ? end : r.limit;
         clip_to_box(r, low, high);
-        /* As in march.comp: what ends at the very side of the box may be found a little behind it. */
+        /* As in march.comp: a surface at the very side of the box may be hit slightly behind it. */
         r.limit = min(r.limit * (1.0 + newton_reach * r.pixel), farthest);
         if (listed && r.start < r.limit) {
             t = march_from_light(r, evals);
@@ -191,7 +195,7 @@ void main()
     uvec2 texel = gl_GlobalInvocationID.xy;
     float edge = float(faces.tile[k].z);
     float width = faces.origin_hi[k].w;
-    /* The whole workgroup or none of it: tiles are whole blocks. */
+    /* Uniform in the workgroup: tiles are whole blocks. */
     if (faces.tile[k].w == 2u && gl_WorkGroupID.x * uint(MASU_GROUP) < faces.tile[k].z &&
         gl_WorkGroupID.y * uint(MASU_GROUP) < faces.tile[k].z) {
         eye_hi = faces.origin_hi[k].xyz - frame.anchor.xyz;
@@ -201,7 +205,7 @@ void main()
         vec2 block = (vec2(gl_WorkGroupID.xy) * float(MASU_GROUP) + 0.5 * float(MASU_GROUP) - 0.5 * edge) * width;
         vec3 middle = faces.row2[k].xyz + faces.row0[k].xyz * block.x + faces.row1[k].xyz * block.y;
         float stretch = length(middle);
-        /* Half the diagonal of the block, and what the march takes for a hit. */
+        /* Half the diagonal of the block, plus the march's hit distance. */
         float across = (0.70711 * float(MASU_GROUP) + newton_reach) * width;
         list_parts(middle / stretch, across, faces.origin_lo[k].w * (stretch + across));
         uint evals = 0u;

@@ -1,14 +1,17 @@
 /*
- * march_checkerboard.comp: for comparison with march.comp: 8x8 cones, then two phases. The second half of the pixels
- * starts where its marched neighbours have proved its way free. Compiled by masu-bake with
- * --variants.
+ * march_checkerboard.comp: for comparison with march.comp: 8x8 cones, then two phases. Pixels of
+ * the second phase start at the distance up to which their marched neighbours have proved the ray
+ * free. masu-bake compiles it with --variants.
  *
- * A sample r at distance t on a neighbour's ray keeps free every point within r of it. On a ray that
- * differs by the angle d those are the distances t +- h, h = sqrt(r^2 - (t d)^2 + (t d^2 / 2)^2) -
- * t d^2 / 2. Intervals are chained while they overlap, from the distance the cone has proved free;
- * the first gap ends the chain. Any pixel may start at the largest of its neighbours' ends: nothing
- * is approximated, no cap, no fallback colours. d is the pixel spacing at the middle of the picture,
- * the largest there is.
+ * A sample with the free radius r at distance t on a neighbour's ray clears every point within r.
+ * On a ray at the angle d to it these are the distances t +- h, with
+ *
+ *   h = sqrt(r^2 - (t d)^2 + (t d^2 / 2)^2) - t d^2 / 2.
+ *
+ * Intervals are chained while they overlap, from the distance that the cone has cleared; the first
+ * gap ends the chain. A pixel starts at the largest end of its neighbours' chains: this is exact,
+ * without a cap or fallback colours. d is the pixel spacing at the image centre, the largest there
+ * is.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -35,9 +38,9 @@ layout(set = MASU_SET_PASS, binding = 4, rgba16f) uniform writeonly image2D hdr_
 
 #define EDGE (2 * MASU_GROUP)
 
-shared float free_to[EDGE][EDGE]; /* of first-phase pixels: the neighbours are free to here */
+shared float free_to[EDGE][EDGE]; /* of first-phase pixels: the free distance of their neighbours */
 
-/* One pixel; returns how far its neighbours are free. */
+/* Marches one pixel; returns the free distance of its neighbours. */
 float march_pixel(uvec2 at, uvec2 size, float start)
 {
     if (any(greaterThanEqual(at, size))) {
@@ -50,7 +53,7 @@ float march_pixel(uvec2 at, uvec2 size, float start)
     depth = imageLoad(depth_image, ivec2(at)).r;
 #endif
     ray r = pixel_ray(at, size, depth, z_scale);
-    /* Cones do not know half-spaces, and the field here does. */
+    /* Cones ignore half-spaces, but the SDF here includes them. */
     uint part;
     start = min(start, masu_sdf_flat(world_at(r.direction, 0.0), r.direction, r.start, part));
     r.start = max(r.start, start);
@@ -87,7 +90,7 @@ void main()
         float start = own;
         MASU_LOOP for (int k = 0; k < 4; k++) {
             ivec2 q = p + ivec2(k == 0 ? 1 : k == 1 ? -1 : 0, k == 2 ? 1 : k == 3 ? -1 : 0);
-            /* A neighbour's chain begins where the cone of its own block ended. */
+            /* A neighbour's chain starts at the end of its block's cone. */
             if (all(greaterThanEqual(q, ivec2(0))) && all(lessThan(q, ivec2(EDGE))) &&
                 texelFetch(cone_image, (ivec2(corner) + q) / 8, 0).r <= own) {
                 start = max(start, free_to[q.y][q.x]);

@@ -1,7 +1,7 @@
 /*
- * march_plain.comp: the baseline: every pixel by itself, from the near plane, all parts. Kept for
- * masu-lab study march. Compiled by masu-bake together with the scene's field. MASU_HAS_RASTER says
- * whether polygons limit it.
+ * march_plain.comp: the baseline march: every pixel separately, from the near plane, with all
+ * parts. Kept for masu-lab study march. masu-bake compiles it with the scene's SDF.
+ * MASU_HAS_RASTER: polygon depth limits the rays.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

@@ -1,10 +1,10 @@
 /*
- * march_seed.comp: for comparison: the two-phase checkerboard of the article this project began with,
- * by its own rule. Half of the pixels are marched; the other half restart at their neighbours'
- * surface distance with a sixteenth of the steps and no check. A restart that does not converge takes
- * over its nearest neighbour's surface. Known faults, kept on purpose: pixels that do not converge,
- * features nearer than the hint that are jumped over, tile borders with fewer hints. Compiled by
- * masu-bake with --variants.
+ * march_seed.comp: for comparison: the two-phase checkerboard march of the article that this
+ * project began with, by its original rule. Half of the pixels are marched. The other half restart
+ * at their neighbours' surface distance, with a sixteenth of the steps and no check. A restart that
+ * does not converge copies the surface of its nearest neighbour. Known faults, kept on purpose:
+ * pixels that do not converge, skipped features in front of the hint, tile borders with fewer
+ * hints. masu-bake compiles it with --variants.
  *
  * 32 invocations per 8x8 tile; each owns two pixels of a row.
  */
@@ -50,7 +50,8 @@ float raster_at(uvec2 at)
 #endif
 }
 
-/* The seed's march: fixed tolerance, no candidate, a cap. Returns -1 where it does not converge. */
+/* The original march: fixed tolerance, no candidate, capped steps. Returns -1 if it does not
+ * converge. */
 float capped(ray r, float start, uint cap, float epsilon)
 {
     float t = start;

@@ -1,6 +1,7 @@
 /*
- * mesh_shape.comp: what does not change when vertices of a host's mesh move: its triangles and, with MASU_MAPS, the
- * texture coordinates and colours of its vertices. Jobs in y, elements in x; shared/meshes.h has the layout.
+ * mesh_shape.comp: the static data of a host's mesh, independent of vertex motion: triangles and,
+ * with MASU_MAPS, texture coordinates and colours of its vertices. Jobs in y, elements in x;
+ * shared/meshes.h has the layout.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

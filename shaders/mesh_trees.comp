@@ -1,6 +1,6 @@
 /*
- * mesh_trees.comp: BVHs that the host has built over its meshes, and their triangles, to where rays read them.
- * Jobs in y, elements in x; shared/meshes.h has the layout.
+ * mesh_trees.comp: copies the BVHs that the host has built over its meshes, and their triangles, to
+ * the buffers that rays read. Jobs in y, elements in x; shared/meshes.h has the layout.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

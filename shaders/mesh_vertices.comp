@@ -1,7 +1,7 @@
 /*
- * mesh_vertices.comp: vertices of a host's mesh. With MASU_MOTION also where they were in the previous frame: there if
- * they have moved, here if the mesh is new or they have stopped. Jobs in y, vertices in x; shared/meshes.h has the
- * layout.
+ * mesh_vertices.comp: vertices of a host's mesh. With MASU_MOTION also their previous positions:
+ * those of the previous frame if they have moved, the present ones if the mesh is new or has
+ * stopped. Jobs in y, vertices in x; shared/meshes.h has the layout.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

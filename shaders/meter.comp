@@ -1,9 +1,9 @@
 /*
- * meter.comp: how many pixels of the picture have which luminance. An invocation looks at 4x4 pixels, a
- * workgroup counts in shared memory and adds what it has to the buffer. Integers alone: the sums do not
- * depend on who comes first.
+ * meter.comp: luminance histogram of the image. An invocation reads 4x4 pixels. A workgroup adds up
+ * its bins in shared memory, then adds them to the buffer. Integers only: the sums do not depend on
+ * order.
  *
- * Push constants: render_* = the picture, output_* = invocations.
+ * Push constants: render_*: image size, output_*: invocations.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

@@ -1,11 +1,13 @@
 /*
- * pick_tell.comp: what the pixel that the host asks for shows (frame.temporal.w): the nearest of the polygons that
- * pick has found there, the SDF, or the sky; and where that is. The depth is the picture's own, but of what
- * is blended, which has none there.
+ * pick_tell.comp: resolves picking: the visible object at the pixel that the host requests
+ * (frame.temporal.w), and its position. The result is the closest polygon that the pick pass found
+ * there, the SDF, or the sky. Depth is the image's own, except for transparent surfaces, which
+ * write no depth.
  *
- * Where there are polygons and an SDF, the picture's depth is the SDF's where it is not the raster's, bit by bit:
- * classify.comp has copied it from there. (Depths that pick has drawn differ from the raster's by what
- * interpolation rounds; comparing them with the picture's would make ground that the SDF touches either.)
+ * With polygons and an SDF, a pixel shows the SDF if image and raster depth differ in any bit:
+ * classify.comp copies raster depth unchanged. (Depth drawn by the pick pass differs from raster
+ * depth by rounding of the interpolation. Compared with the image's depth, it could report polygon
+ * or SDF on ground that the SDF touches.)
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -42,7 +44,7 @@ void main()
     bool sdf = depth != texelFetch(raster_depth_image, ivec2(pixel), 0).r;
     bool blended = (found & MASU_PICK_BLENDED) != 0u;
     if (depth > 0.0 && !sdf) {
-        what = MASU_PICKED_INSTANCE; /* whichever */
+        what = MASU_PICKED_INSTANCE; /* of unknown id */
     }
     if (found != 0u && (sdf || blended ? nearest > depth : depth > 0.0)) {
         what = MASU_PICKED_INSTANCE;

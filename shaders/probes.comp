@@ -1,7 +1,7 @@
 /*
- * probes.comp: the light of the frame at every probe: what the baker has found for the parts of the
- * sky and for some suns, times the sky and the sun of now. One invocation per probe; lookups then
- * read one set, however many there are. With MASU_LIVE_PROBES what rays of live probes have found is added.
+ * probes.comp: the light of every probe in this frame: the baked transfer of the sky's parts and of
+ * some suns, times the current sky and sun. One invocation per probe; lookups then read one set,
+ * regardless of the number of baked sets. MASU_LIVE_PROBES adds the result of live probe rays.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -27,7 +27,7 @@ float near_sun(uint k)
     return 1.0 - masu_acos(cosine) * 0.318309886;
 }
 
-/* Row k of the inverse, times how near the suns are. */
+/* Row k of the inverse, times the nearness of the sun to each baked sun. */
 float sun_weight(uint k)
 {
     float sum = 0.0;

@@ -1,14 +1,14 @@
 /*
- * rcas.comp: FSR1 contrast-adaptive sharpening, fp32, an invocation for two pixels side by side,
- * which share two of their ten texels.
+ * rcas.comp: FSR1 contrast-adaptive sharpening, fp32. An invocation writes two horizontally
+ * adjacent pixels, which share two of their ten texels.
  *
- * Five taps in a cross; the lobe is the strongest that drives no channel out of 0..1. AMD's version
- * (ffx_fsr1 v1.0.2) ends with an approximate reciprocal; the true one here differs from it by at most
- * 0.8/255 and, unlike it, returns a constant picture unchanged. The scalar judge is
- * tests/reference/fsr1.c. No noise guard: the input is rendered, not filmed.
+ * Five taps in a cross; the lobe is the strongest that keeps all channels in 0..1. AMD's version
+ * (ffx_fsr1 v1.0.2) ends with an approximate reciprocal. The exact reciprocal here differs from it
+ * by at most 0.8/255 and, unlike it, leaves a constant image unchanged. tests/reference/fsr1.c is
+ * the scalar reference. There is no noise guard: the input is rendered, not filmed.
  *
- * Push constants: output_* = size of input and output, push.last_* = its last pixel, push.lobe =
- * exp2(-stops), in 0..1, 1 the sharpest, 0 a copy, push.stops = exp2(stops).
+ * Push constants: output_*: size of input and output, push.last_*: its last pixel, push.lobe:
+ * exp2(-stops), in 0..1, 1 the sharpest, 0 a copy, push.stops: exp2(stops).
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -35,7 +35,7 @@ void main()
     if (at.x > last.x || masu_is_outside(uvec2(at))) {
         return;
     }
-    /* `at` is inside: each clamp has one side. */
+    /* `at` is inside, so one clamp per direction suffices. */
     ivec2 before = max(at - 1, 0), after = min(at + 1, last);
     vec3 up = fetch(at.x, before.y), up2 = fetch(after.x, before.y);
     vec3 down = fetch(at.x, after.y), down2 = fetch(after.x, after.y);

@@ -1,7 +1,8 @@
 /*
- * receiver_mask.comp: where the picture has surfaces that the sun may light, as the sun sees them: of each
- * texel of its part of the occluder atlas, and of each cascade, the farthest, for cull.comp. Only what shadow.comp would look
- * up a shadow for counts; where rounding might let the two disagree, it counts.
+ * receiver_mask.comp: shadow receivers in light space: for each texel of the sun's part of the
+ * occluder atlas, and for each cascade, the farthest visible surface that the sun may light, for
+ * cull.comp. A surface contributes if shadow.comp samples its shadow, or might sample it after
+ * rounding.
  *
  * push.header: the header of src/frame/occlusion.c.
  */
@@ -29,7 +30,7 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SHADOW, std140) uniform Shadow
     masu_shadow_uniforms shadow;
 };
 
-/* A point relative to the eye, in each cascade that shadow.comp looks into for it. */
+/* Adds a point relative to the camera to each cascade that shadow.comp samples for it. */
 void note(vec3 rel)
 {
     mat4 clip = masu_cull_matrix(masu_cull_view(1u) + MASU_CULL_VIEW_CLIP);
@@ -51,12 +52,12 @@ void note(vec3 rel)
                        dot(shadow.row2[k].xyz, rel) + shadow.row2[k].w);
         float inside = (1.0 - 3.0 / shadow.rect[k].z) - max(abs(at.x), abs(at.y));
         uint here = word + k * MASU_RECEIVER_WORDS;
-        /* Most pixels find their texel noted by a neighbour. */
+        /* For most pixels a neighbour has already written the texel. */
         if (inside >= -1e-4 && at.z >= -1e-4 && seen[here] > depth) {
             atomicMin(seen[here], depth);
         }
         if (inside > MASU_CASCADE_BLEND + 1e-4 && at.z > 1e-4) {
-            break; /* it has all of the weight */
+            break; /* it has the full weight */
         }
     }
 }

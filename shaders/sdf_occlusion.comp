@@ -1,16 +1,17 @@
 /*
- * sdf_occlusion.comp: how much of the sun and of the ambient light reaches each surface, polygons
- * too, past the SDF. After the march, before the light. Compiled by masu-bake with the scene's field
- * for scenes that ask for shadows or ambient occlusion (sdf_options.glsl says which, and how far).
+ * sdf_occlusion.comp: visibility of the sun and of ambient light past the SDF, for SDF and polygon
+ * surfaces. Runs between the march and lighting. masu-bake compiles it with the scene's SDF for
+ * scenes that request shadows or ambient occlusion (sdf_options.glsl specifies which, and their
+ * range).
  *
- * The tiles' lists of parts hold what their pixels can see; what casts a shadow into a picture may
- * stand outside of it. So each block of 8x8 pixels makes lists of its own, in shared memory: its
- * surface points lie within k t of the segment [t0, t1] of the ray through its middle, and a part is
- * left out when its bounding sphere stays clear of all that is asked around them. Shadows: the rays
- * of the segment towards the sun sweep a flat strip; outside is what is farther than the radii from
- * the strip's plane, or from the ray of the segment's middle. Ambient occlusion: the ball around the
- * segment. Half-spaces are in neither list: they count everywhere. Leaving a part out makes steps
- * longer, never wrong.
+ * The tile lists contain only the parts that are visible in a tile; a shadow caster may be outside
+ * the image. So each block of 8x8 pixels builds its own lists in shared memory. Its surface points
+ * are within k t of the segment [t0, t1] of its centre ray. A part is culled if its bounding sphere
+ * is outside the queried region around these points. For shadows this region is the strip that the
+ * segment's rays to the sun sweep: a part is culled if its distance from the strip's plane, or from
+ * the ray of the segment's centre, exceeds the radii. For ambient occlusion the region is the ball
+ * around the segment. Half-spaces are in neither list and are always evaluated. A culled part makes
+ * steps longer but changes no result.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -31,8 +32,8 @@ layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D depth_image;
 layout(set = MASU_SET_PASS, binding = 1) uniform usampler2D normal_image;
 layout(set = MASU_SET_PASS, binding = 2, r32ui) uniform writeonly uimage2D occlusion_image;
 
-/* Two lists of as many; one that is longer becomes "all parts". A scene of few parts has bits
- * instead, as for its tiles, and needs no room. */
+/* Capacity of each of the two lists; a longer list becomes "all parts". Scenes with few parts use
+ * bit masks, as in the tile lists, and need no list. */
 #define LIST_MOST 255
 #define MASU_OWN_PARTS (2 * LIST_MOST)
 #include "sdf/field.glsl"
@@ -40,7 +41,7 @@ layout(set = MASU_SET_PASS, binding = 2, r32ui) uniform writeonly uimage2D occlu
 
 #define SUN 0
 #define AMBIENT 1
-/* Half-spaces, the last parts, are in no list: they count everywhere. */
+/* Half-spaces, the last parts, are in no list: they are always evaluated. */
 #define MASKS ((MASU_SDF_LISTED_COUNT + 31) / 32 + (MASU_SDF_LISTED_COUNT == 0 ? 1 : 0))
 #define INVOCATIONS (MASU_GROUP * MASU_GROUP)
 
@@ -48,10 +49,10 @@ shared uint nearest[2]; /* bits of distances; positive floats order like their b
 shared uint farthest[2];
 shared uint masks[2 * MASKS];
 
-/* What the points of a block lie in. */
+/* Bounds of the surface points of a block. */
 struct block {
-    vec3 middle; /* direction of the ray through the middle, unit */
-    float k;     /* distance of the other rays from it, at distance 1 */
+    vec3 middle; /* direction of the centre ray, unit */
+    float k;     /* largest distance of the other rays from it, at distance 1 */
     float offset; /* at distance 1, at most */
 };
 
@@ -73,7 +74,7 @@ float slack_of(vec4 sphere, float t1)
     return 64.0 * ulp * (length(sphere.xyz) + sphere.w + max(a.x, max(a.y, a.z)) + t1);
 }
 
-/* Whether the sphere comes near the rays from the block's points to the sun's disc. */
+/* Whether the sphere may touch a ray from the block's points to the sun's disc. */
 bool in_sunlight(vec4 sphere, block b, float t0, float t1)
 {
 #if MASU_SHADOWS
@@ -82,8 +83,8 @@ bool in_sunlight(vec4 sphere, block b, float t0, float t1)
     float reach = sphere.w + (b.k + b.offset) * t1 + slack_of(sphere, t1);
     vec3 from = c - b.middle * (0.5 * (t0 + t1));
     float half_length = 0.5 * (t1 - t0);
-    /* The rays to the disc spread up to the farthest place from which they can touch the sphere:
-     * u <= along + reach + w u. */
+    /* The rays to the disc spread up to the farthest point from which they can touch the sphere: u
+     * <= along + reach + w u. */
     float along = dot(from, towards);
     float highest = max(along + reach + half_length, 0.0) / (1.0 - sun_tangent);
     reach += sun_tangent * min(highest, MASU_SHADOW_DISTANCE);
@@ -99,7 +100,7 @@ bool in_sunlight(vec4 sphere, block b, float t0, float t1)
 #endif
 }
 
-/* Whether it comes near the points themselves. */
+/* Whether the sphere may touch the points themselves. */
 bool in_surroundings(vec4 sphere, block b, float t0, float t1)
 {
 #if MASU_AMBIENT_OCCLUSION
@@ -114,8 +115,8 @@ bool in_surroundings(vec4 sphere, block b, float t0, float t1)
 #endif
 }
 
-/* The parts of both lists. All invocations of the group get here, with the distance of their surface
- * along its ray or a negative number. */
+/* Builds both lists. All invocations of the group call it, with the distance of their surface along
+ * its ray, or a negative number. */
 void make_lists(block b, float sunny, float there)
 {
     uint me = gl_LocalInvocationIndex;
@@ -145,7 +146,7 @@ void make_lists(block b, float sunny, float there)
             break;
         }
         vec4 sphere = masu_sdf_bounds(part);
-        bool bounded = sphere.w >= 0.0; /* not: unbounded, or not a number: kept */
+        bool bounded = sphere.w >= 0.0; /* false: unbounded, or NaN: kept */
         uint bit = 1u << (part & 31u);
         if (range.x <= range.y && (!bounded || in_sunlight(sphere, b, range.x, range.y))) {
             atomicOr(masks[part >> 5], bit);
@@ -156,7 +157,8 @@ void make_lists(block b, float sunny, float there)
     }
     barrier();
 #if !MASU_SDF_MASKED
-    /* Each word is written out by one invocation, behind the words before it: rising order. */
+    /* Each mask is written by one invocation, after the parts of the preceding masks: ascending
+     * order. */
     for (int i = 0; i < (2 * MASKS + INVOCATIONS - 1) / INVOCATIONS; i++) {
         uint word = uint(i * INVOCATIONS) + me;
         if (word >= uint(2 * MASKS)) {
@@ -185,7 +187,7 @@ void make_lists(block b, float sunny, float there)
 #endif
 }
 
-/* From here on the field is that of one of the two lists. */
+/* Restricts the SDF to one of the two lists, for all later evaluations. */
 void use_list(uint which)
 {
 #if MASU_SDF_MASKED

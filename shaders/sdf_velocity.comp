@@ -1,23 +1,23 @@
 /*
- * sdf_velocity.comp: the velocity of what the SDF shows, and of the sky. Compiled by masu-bake with
- * the scene's field.
+ * sdf_velocity.comp: motion vectors of SDF pixels and of the sky. masu-bake compiles it with the
+ * scene's SDF.
  *
- * Where no part of a tile changes, or none that matters where the ray of a block of 4x4 pixels ends, the point under a
- * pixel has moved with the eye alone. Elsewhere it belongs to the nearest part, which may be at rest, too. Where the
- * point of one that is not was in the previous frame:
+ * If no listed part of the tile, or of the span of the 4x4 block in which the ray ends, is dynamic,
+ * the motion is the camera's only. Otherwise the pixel belongs to the nearest part, which may be
+ * static too. For a dynamic part, the previous position of the point is found in two steps:
  *
- *   1. The part's root transform (the movements, turns and scalings that stand around all else in
- *      it) takes the point into the part's own space with the present slots and out of it with the
- *      previous ones. This is all there is to a part that moves, turns or grows as a whole.
- *   2. What is left is the change of the field itself: a radius, a morph, a blend. The part's field
- *      f at the present point and the previous one f' at the point of step 1 differ by what the
- *      surface has moved along its normal; steps of (f' - f) / |grad f'| take it back. A point of a
- *      changing surface has no past of its own: the one along the normal is the nearest.
+ *   1. The part's root transform (translations, rotations and scales around the whole part) maps
+ *      the point to part space with the present slots, and back with the previous ones. For rigid
+ *      or scaled parts this is the full motion.
+ *   2. The rest is a change of the SDF itself: a radius, a morph, a blend. The part's SDF f at the
+ *      present point and the previous SDF f' at the point of step 1 differ by the motion of the
+ *      surface along its normal. Steps of (f' - f) / |grad f'| undo it. A point of a deforming
+ *      surface has no unique previous position: the one along the normal is the closest.
  *
- * f is compared with f', not with 0: the march stops a little before the surface, and this distance
- * is no motion. A field that did not change is evaluated twice, by the same code, and gives 0.
+ * f is compared with f' rather than with 0: the march stops a little before the surface, and this
+ * gap is not motion. An unchanged SDF is evaluated twice by the same code and gives exactly 0.
  *
- * push.listed: 0: all parts; 1: the tiles' lists are there; 2: and what matters to blocks of 4x4 pixels.
+ * push.listed: 0: all parts; 1: the tile lists are valid; 2: the lists of 4x4 blocks are valid too.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -49,7 +49,7 @@ uint own_tile;
 #include "sdf/spans.glsl"
 #include "shared/motion.glsl"
 
-/* Where the root transform of the part says that p was. */
+/* Previous position of p by the part's root transform. */
 vec3 carried(uint part, vec3 p)
 {
     vec3 own = masu_sdf_root(part, p, false);
@@ -66,8 +66,8 @@ vec3 carried(uint part, vec3 p)
 #define ROUNDS 2
 #define SAMPLES (1 + 5 * ROUNDS)
 
-/* One loop over all samples, so that the field is compiled once: the present field at p; then, each
- * round, the previous one at q and at the corners of a tetrahedron around it. */
+/* One loop over all samples, so that the SDF is compiled once: the present SDF at p, then in each
+ * iteration the previous SDF at q and at the corners of a tetrahedron around q. */
 vec3 followed(uint part, vec3 p, vec3 q, float h, float enough)
 {
     float now = 0.0;
@@ -85,7 +85,7 @@ vec3 followed(uint part, vec3 p, vec3 q, float h, float enough)
             residue = f - now;
             slope = vec3(0.0);
             if (!(abs(residue) > enough)) {
-                break; /* nothing has moved, or it is not a number */
+                break; /* static, or NaN */
             }
         } else {
             slope += corner * (f / (4.0 * h));
@@ -99,7 +99,7 @@ vec3 followed(uint part, vec3 p, vec3 q, float h, float enough)
     return q;
 }
 
-/* Whether a part that is listed changes. */
+/* Whether any listed part is dynamic. */
 bool any_moves()
 {
 #if !MASU_SDF_MOVING
@@ -126,8 +126,8 @@ bool any_moves()
 #endif
 }
 
-/* What the part under a pixel has moved by, back to the previous frame: in a tile of which some part changes. z: t along
- * the view. */
+/* Motion of the part under a pixel, present to previous frame, in a tile with a dynamic part. z: t
+ * along the view direction. */
 vec3 part_step(uvec2 at, uvec2 size, vec3 direction, float t, float z)
 {
     if (push.listed == 2u) {
@@ -142,7 +142,7 @@ vec3 part_step(uvec2 at, uvec2 size, vec3 direction, float t, float z)
     if (!masu_sdf_part_moves(part)) {
         return vec3(0.0);
     }
-    masu_list_bits = uint[](0xFFFFFFFFu, 0xFFFFFFFFu); /* before, other terms of it may have mattered */
+    masu_list_bits = uint[](0xFFFFFFFFu, 0xFFFFFFFFu); /* earlier, others may have mattered */
     vec3 a = abs(p);
     float pixel = 2.0 * frame.up.w / float(size.y) * z;
     float extent = ulp * max(max(a.x, max(a.y, a.z)), t);
