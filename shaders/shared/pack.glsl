@@ -13,7 +13,7 @@
  *                   1-15  metallic, 0..14
  *   surface, rgba8, if MASU_SURFACE_MORE is set (else: specular 0.5, no coat, no relief):
  *                   r    specular
- *                   g    clear coat, 4 bits, and its roughness, 4 bits; for a small relief, which has no
+ *                   g    clear coat, 4 bits, and its roughness, 4 bits; for a small relief, without
  *                        coat: factor of the specular terms at grazing angles
  *                   b    occlusion
  *                   a    0: no small relief; else its self-shadowing factor f, as (1 + 254 f) / 255
